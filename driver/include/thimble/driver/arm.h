@@ -1,0 +1,55 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "thimble/driver/motor_currents.h"
+
+namespace thimble::driver {
+
+/// Is the size of the largest report any arm sends or takes, in bytes (a full-speed HID report).
+inline constexpr std::size_t kReportCapacity = 64;
+
+/// Holds what one report from an arm says, still in the arm's own units.
+struct ArmReading {
+  std::array<std::int32_t, 3> counts{};     ///< Motor encoders, counts.
+  std::array<std::int32_t, 3> auxiliary{};  ///< Gimbal encoders or whatever the arm sends there.
+  std::uint16_t buttons = 0;                ///< One bit each.
+};
+
+/// Holds where an arm is. Frames: B arm base, T tip.
+struct ArmPose {
+  Eigen::Vector3d q{0, 0, 0};                      ///< Joint angles, rad.
+  Eigen::Vector3d p_BT{0, 0, 0};                   ///< Tip in the base frame, m.
+  Eigen::Matrix3d J_BT = Eigen::Matrix3d::Zero();  ///< d p_BT / d q, m/rad.
+};
+
+/// Is one kind of arm: its wire format and its geometry, both pure functions with no state. The
+/// driver talks to every arm through it. Adding an arm means implementing it under arms/<name>/.
+class Arm {
+ public:
+  Arm() = default;
+  Arm(const Arm&) = delete;
+  Arm& operator=(const Arm&) = delete;
+  virtual ~Arm() = default;
+
+  /// Decodes one report. Total: any bytes of any length are either understood (true) or rejected
+  /// (false, `reading` untouched). Real-time: safe.
+  virtual bool decode(std::span<const std::byte> report, ArmReading& reading) const noexcept = 0;
+
+  /// Encodes motor currents and returns how many bytes of `report` it filled.
+  /// Real-time: safe.
+  virtual std::size_t encode(const MotorCurrents& currents,
+                             std::span<std::byte, kReportCapacity> report) const noexcept = 0;
+
+  /// Finds joint angles, tip position and Jacobian of a reading. Real-time: safe.
+  virtual ArmPose pose(const ArmReading& reading) const noexcept = 0;
+
+  /// Tells how torque becomes current in each motor. Real-time: safe.
+  virtual const std::array<MotorDrive, 3>& drives() const noexcept = 0;
+};
+
+}  // namespace thimble::driver

@@ -1,0 +1,103 @@
+#pragma once
+
+#include <memory>
+
+#include "thimble/driver/arm.h"
+#include "thimble/driver/device_state.h"
+#include "thimble/driver/force_command.h"
+#include "thimble/driver/result.h"
+#include "thimble/driver/safety_gate.h"
+#include "thimble/driver/tick_record.h"
+#include "thimble/driver/transport.h"
+#include "thimble/driver/velocity_estimator.h"
+
+namespace thimble::driver {
+
+/// Sets how a device is placed and what it tolerates.
+struct DeviceSettings {
+  Eigen::Matrix3d R_WB = Eigen::Matrix3d::Identity();  ///< Rotation of the arm's base in the world.
+  Eigen::Vector3d p_WB{0, 0, 0};                       ///< Position of the arm's base, m.
+  GateLimits limits;
+  double velocity_corner_frequency = 0;        ///< Pole of the velocity estimate, Hz; 0: none.
+  std::int64_t silence_limit_ns = 20'000'000;  ///< Silence of the arm that is a fault, ns (20
+                                               ///< reports of a full-speed USB arm; chosen).
+};
+
+/// Counts what arrived over the wire.
+struct WireCounters {
+  std::uint64_t reports = 0;   ///< Reports decoded.
+  std::uint64_t rejected = 0;  ///< Reports of a length or content the protocol does not know.
+  std::uint64_t skipped = 0;   ///< Reports dropped because a newer one was there.
+  std::uint64_t missing = 0;   ///< Ticks without a new report.
+};
+
+/// Is one open arm, from its bytes to its tip: idle -> active -> (fault ->) idle, until destroyed.
+///
+/// Every way out sends zero force: `deactivate`, a fault, the destructor. A fault latches until
+/// `activate` is called again. Used by one thread at a time.
+class Device {
+ public:
+  /// Takes an open wire and the arm at its other end; waits up to `timeout_ns` of `clock_now_ns`
+  /// time for the first report by way of the transport's deadline. Fails if none arrives or none
+  /// can be understood, or if a limit is not a positive finite number. Real-time: never from the
+  /// servo thread.
+  static Result<std::unique_ptr<Device>> open(std::unique_ptr<Transport> transport,
+                                              std::unique_ptr<const Arm> arm,
+                                              const DeviceSettings& settings,
+                                              std::int64_t clock_now_ns,
+                                              std::int64_t timeout_ns = 1'000'000'000);
+
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+  /// Sends zero force, then closes the wire.
+  ~Device();
+
+  /// Lets forces through from the next tick on, with a soft start; clears a fault. Fails if the
+  /// wire is lost. Real-time: never from the servo thread.
+  Result<void> activate();
+
+  /// Sends zero force now and in every later tick. Real-time: safe.
+  void deactivate() noexcept;
+
+  /// Begins a tick: reads the newest report and finds where the tip is. With no new report the last
+  /// state stands (`fresh` is false); after `silence_limit_ns` of that it is a fault.
+  /// Real-time: safe; waits no longer than `deadline_ns`.
+  const DeviceState& read(std::int64_t now_ns, std::int64_t deadline_ns) noexcept;
+
+  /// Ends a tick: passes the command through the gate and sends what is left of it, or zero if the
+  /// device is not active. Real-time: safe.
+  void write(const ForceCommand& command) noexcept;
+
+  /// Makes a fault that somebody above found (it latches, the force goes off). Real-time: safe.
+  void trip(Fault fault) noexcept { gate_.trip(fault); }
+
+  DeviceStage stage() const noexcept;
+  Fault fault() const noexcept { return gate_.fault(); }
+  const DeviceState& state() const noexcept { return state_; }
+  /// Tells the force that was sent in the last tick, N in the world.
+  const Eigen::Vector3d& f_sent_W() const noexcept { return f_sent_W_; }
+  const WireCounters& wire_counters() const noexcept { return wire_; }
+  const GateCounters& gate_counters() const noexcept { return gate_.counters(); }
+
+ private:
+  Device(std::unique_ptr<Transport> transport, std::unique_ptr<const Arm> arm,
+         const DeviceSettings& settings) noexcept;
+  bool take_report(std::int64_t now_ns, std::int64_t deadline_ns) noexcept;
+  void send(const MotorCurrents& currents) noexcept;
+
+  std::unique_ptr<Transport> transport_;
+  std::unique_ptr<const Arm> arm_;
+  DeviceSettings settings_;
+  SafetyGate gate_;
+  VelocityEstimator velocity_;
+  WireCounters wire_;
+  ArmPose pose_;
+  DeviceState state_;
+  Eigen::Vector3d f_sent_W_{0, 0, 0};
+  std::int64_t last_report_ns_ = 0;
+  bool active_ = false;
+  bool started_ = false;  // a tick has been read
+  bool lost_ = false;
+};
+
+}  // namespace thimble::driver

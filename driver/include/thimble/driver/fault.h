@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+namespace thimble::driver {
+
+/// Names the reason why an arm's force is off and stays off until somebody activates it again.
+enum class Fault : std::uint8_t {
+  kNone = 0,
+  kTransportLost,   ///< The wire reported that the arm is gone.
+  kNoReports,       ///< The arm stayed silent longer than `DeviceSettings::silence_limit_ns`.
+  kForceNotFinite,  ///< The force law answered with NaN or infinity.
+  kStateNotFinite,  ///< Position or velocity came out as NaN or infinity.
+  kOverSpeed,       ///< The tip moved faster than `GateLimits::speed_max`.
+  kLoopStalled,     ///< The loop stood still longer than the arm's own watchdog waits.
+};
+
+/// Tells what a fault means and what to do, in one or two sentences for the user.
+/// Real-time: safe.
+std::string_view describe(Fault fault) noexcept;
+
+/// Gives the short name of a fault as it stands in reports ("transport_lost").
+/// Real-time: safe.
+std::string_view name(Fault fault) noexcept;
+
+}  // namespace thimble::driver

@@ -1,0 +1,30 @@
+#pragma once
+
+#include "thimble/driver/device_state.h"
+#include "thimble/driver/force_command.h"
+
+namespace thimble::driver {
+
+/// Refers to a force law: any object callable as `ForceCommand law(const DeviceState&) noexcept`.
+///
+/// It does not own the law; whoever makes a ForceLaw keeps the law alive while the loop runs.
+/// Real-time: safe if the law is; one indirect call.
+class ForceLaw {
+ public:
+  template <class Law>
+  explicit ForceLaw(Law& law) noexcept
+      : law_(const_cast<void*>(static_cast<const void*>(&law))),
+        call_([](void* self, const DeviceState& state) noexcept -> ForceCommand {
+          static_assert(noexcept((*static_cast<Law*>(self))(state)),
+                        "A force law runs on the servo thread and must be noexcept.");
+          return (*static_cast<Law*>(self))(state);
+        }) {}
+
+  ForceCommand operator()(const DeviceState& state) const noexcept { return call_(law_, state); }
+
+ private:
+  void* law_;
+  ForceCommand (*call_)(void*, const DeviceState&) noexcept;
+};
+
+}  // namespace thimble::driver

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+
+namespace thimble::driver {
+
+/// Says what went wrong on a set-up path, where, and what the user can do about it.
+///
+/// `message` is one or two full sentences, ready to print ("No access to 1234:0006: install
+/// udev/70-thimble.rules and replug the arm.").
+struct Error {
+  std::string message;
+};
+
+/// Holds a value or the Error that explains why there is none; for set-up paths only.
+///
+/// Precondition of `value()` is `ok()`, of `error()` is `!ok()`; breaking it throws
+/// std::bad_variant_access. Real-time: never from the servo thread.
+template <class T>
+class [[nodiscard]] Result {
+ public:
+  Result(T value) : content_(std::in_place_index<0>, std::move(value)) {}      // NOLINT
+  Result(Error error) : content_(std::in_place_index<1>, std::move(error)) {}  // NOLINT
+
+  bool ok() const { return content_.index() == 0; }
+  explicit operator bool() const { return ok(); }
+
+  T& value() & { return std::get<0>(content_); }
+  const T& value() const& { return std::get<0>(content_); }
+  T&& value() && { return std::get<0>(std::move(content_)); }
+  const Error& error() const { return std::get<1>(content_); }
+
+  T* operator->() { return &value(); }
+  const T* operator->() const { return &value(); }
+  T& operator*() & { return value(); }
+  const T& operator*() const& { return value(); }
+
+ private:
+  std::variant<T, Error> content_;
+};
+
+/// Says that a set-up step worked, or why it did not.
+template <>
+class [[nodiscard]] Result<void> {
+ public:
+  Result() = default;
+  Result(Error error) : error_(std::move(error)) {}  // NOLINT
+
+  bool ok() const { return !error_.has_value(); }
+  explicit operator bool() const { return ok(); }
+  const Error& error() const { return error_.value(); }
+
+ private:
+  std::optional<Error> error_;
+};
+
+}  // namespace thimble::driver

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+
+#include "thimble/driver/fault.h"
+
+namespace thimble::driver {
+
+/// Holds a force that passed the safety gate: the only force that can become motor currents. Anyone
+/// may make the zero force; only SafetyGate makes another.
+class GatedForce {
+ public:
+  /// Is zero force.
+  GatedForce() = default;
+
+  /// Tells the force on the hand in the world frame, N.
+  const Eigen::Vector3d& f_T_W() const noexcept { return f_T_W_; }
+
+ private:
+  friend class SafetyGate;
+  explicit GatedForce(const Eigen::Vector3d& f_T_W) noexcept : f_T_W_(f_T_W) {}
+  Eigen::Vector3d f_T_W_{0, 0, 0};
+};
+
+/// Sets what an arm may do to a hand. There is no "off": a limit is raised, never left out.
+struct GateLimits {
+  double force_max = 0;   ///< Largest force, N. Must be finite and > 0.
+  double speed_max = 0;   ///< Tip speed above which the force goes off and stays off, m/s.
+  double rise_max = 0;    ///< Fastest rise of the force's magnitude, N/s. A fall is never slowed.
+  double soft_start = 0;  ///< Time over which the limit opens from 0 to `force_max`, s.
+  std::int64_t stall_ns = 0;     ///< Gap between ticks after which the soft start begins anew, ns.
+  std::int64_t watchdog_ns = 0;  ///< Gap after which the arm's own watchdog has fired: a fault, ns.
+};
+
+/// Counts the ticks in which each stage of the gate changed the force.
+struct GateCounters {
+  std::uint64_t limited = 0;       ///< Cut to `force_max`.
+  std::uint64_t rise_limited = 0;  ///< Held back by `rise_max`.
+  std::uint64_t soft_started = 0;  ///< Cut by the soft start.
+  std::uint64_t stalls = 0;        ///< Soft starts begun anew after a gap.
+};
+
+/// Stands between every force law and the motors: finite -> the arm's limit -> speed limit -> rise
+/// limit -> soft start.
+///
+/// The rise limit is one-sided. A limit on the fall as well would turn a passive wall into an
+/// active one (restitution up to 2.7) [STABILITY 1.6].
+///
+/// A fault latches: from then on the gate gives zero force until `restart`.
+/// All functions are Real-time: safe.
+class SafetyGate {
+ public:
+  explicit SafetyGate(const GateLimits& limits) noexcept;
+
+  /// Forgets the fault and the past, and begins the soft start.
+  void restart() noexcept;
+
+  /// Turns a wish into a force that may reach the motors. `f_T_W` in N, `v_WT` in m/s, both in the
+  /// world; `dt` is the time since the previous call, s (0 on the first after `restart`).
+  GatedForce pass(const Eigen::Vector3d& f_T_W, const Eigen::Vector3d& v_WT, double dt) noexcept;
+
+  /// Latches a fault that somebody else found; the first one stays.
+  void trip(Fault fault) noexcept;
+
+  Fault fault() const noexcept { return fault_; }
+  const GateCounters& counters() const noexcept { return counters_; }
+  const GateLimits& limits() const noexcept { return limits_; }
+
+ private:
+  GateLimits limits_;
+  GateCounters counters_;
+  Fault fault_ = Fault::kNone;
+  double since_start_ = 0;     // s of active time since the soft start began
+  double last_magnitude_ = 0;  // N
+};
+
+}  // namespace thimble::driver

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+namespace thimble::driver {
+
+/// Is the geometry of a serial arm of the PHANTOM family: a yaw A and two links B and C that are
+/// both measured from the ground, because a parallel linkage carries the second one [hfab
+/// kinematics].
+///
+///          z_B            r = length_b sin(B) + length_c sin(C)
+///           |  B  / link b
+///           |    /        x = r cos(A),  y = r sin(A)
+///           |   /         z = height + length_b cos(B) - length_c cos(C)
+///           |  /\ .
+///           | /  \ .      B = 0: link b points up;  C = 0: link c hangs down.
+///       ----+     \ link c
+///        base      T
+///
+/// Frame B: origin on the yaw axis, x towards the user, y to the user's right, z up. Angles in rad.
+/// Joint vector q = (A, B, C). All functions are Real-time: safe.
+struct SerialArm {
+  double height = 0;    ///< Height of the shoulder above the base's origin (Ln), m.
+  double length_b = 0;  ///< Length of the first link (Lb), m.
+  double length_c = 0;  ///< Length of the second link up to the tip (Lc), m.
+
+  /// Finds the tip p_BT, m, from the joint angles.
+  Eigen::Vector3d forward(const Eigen::Vector3d& q) const noexcept;
+
+  /// Finds the Jacobian J_BT = d p_BT / d q, m/rad, so that v_BT = J_BT qdot and
+  /// tau = J_BT^T f_T_B.
+  Eigen::Matrix3d jacobian(const Eigen::Vector3d& q) const noexcept;
+
+  /// Does `forward` and `jacobian` at once, for one price.
+  void forward(const Eigen::Vector3d& q, Eigen::Vector3d& p_BT,
+               Eigen::Matrix3d& J_BT) const noexcept;
+
+  /// Finds the joint angles that put the tip at p_BT (m), on the branch in which such an arm works:
+  /// 0 < B + C < pi (folded at 0, stretched at pi, isotropic in between). Empty if the point is out
+  /// of reach, on the yaw axis, or not finite.
+  std::optional<Eigen::Vector3d> inverse(const Eigen::Vector3d& p_BT) const noexcept;
+};
+
+}  // namespace thimble::driver

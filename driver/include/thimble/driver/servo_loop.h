@@ -1,0 +1,56 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+
+#include "thimble/driver/clock.h"
+#include "thimble/driver/device.h"
+#include "thimble/driver/force_law.h"
+#include "thimble/driver/tick_record.h"
+
+namespace thimble::driver {
+
+/// Refers to whoever keeps the record of each tick: callable as `void sink(const TickRecord&)
+/// noexcept` on the servo thread. Does not own it. Real-time: safe if the sink is.
+class TickSink {
+ public:
+  template <class Sink>
+  explicit TickSink(Sink& sink) noexcept
+      : sink_(const_cast<void*>(static_cast<const void*>(&sink))),
+        call_([](void* self, const TickRecord& record) noexcept {
+          static_assert(noexcept((*static_cast<Sink*>(self))(record)),
+                        "A tick sink runs on the servo thread and must be noexcept.");
+          (*static_cast<Sink*>(self))(record);
+        }) {}
+
+  void operator()(const TickRecord& record) const noexcept { call_(sink_, record); }
+
+ private:
+  void* sink_;
+  void (*call_)(void*, const TickRecord&) noexcept;
+};
+
+/// Sets the pace of a servo loop.
+struct ServoSettings {
+  std::int64_t period_ns = 1'000'000;  ///< Time between ticks.
+  std::uint64_t ticks =
+      0;  ///< Ends after so many periods (missed ticks count); 0: never by itself.
+};
+
+/// Says why a servo loop ended.
+enum class ServoEnd : std::uint8_t {
+  kDone,     ///< All periods have passed.
+  kStopped,  ///< Somebody set the stop flag.
+  kFault,    ///< The device reported a fault; `Device::fault` names it.
+};
+
+/// Runs one force law on one device: wait, read, ask the law, write, tell the sink; and so on until
+/// the periods are used up, `stop` is set, or the device is in fault. Leaves the device idle (or in
+/// fault) with zero force sent.
+///
+/// Ticks are due at fixed times; after a gap the missed ones are skipped, not run in a burst.
+/// Real-time: safe; it is the servo thread.
+ServoEnd run_servo(Device& device, Clock& clock, ForceLaw law, TickSink sink,
+                   const ServoSettings& settings, const std::atomic<bool>& stop) noexcept;
+
+}  // namespace thimble::driver

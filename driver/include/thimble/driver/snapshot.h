@@ -1,0 +1,62 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <cstring>
+#include <type_traits>
+
+namespace thimble::driver {
+
+/// Shows the newest value of one writer to any number of readers: the writer never waits, readers
+/// retry while it writes.
+///
+/// A sequence lock whose words are lock-free atomics: no data race by the letter of the standard,
+/// and usable in memory shared by processes. Real-time: `store` is safe; `load` is for readers at
+/// the side.
+template <class T>
+class Snapshot {
+  static_assert(std::is_trivially_copyable_v<T>, "A snapshot is copied word by word.");
+  static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
+
+ public:
+  /// Publishes a value. One thread only.
+  void store(const T& value) noexcept {
+    std::array<std::uint64_t, kWords> words{};
+    std::memcpy(words.data(), &value, sizeof(T));
+    const std::uint64_t sequence = sequence_.load(std::memory_order_relaxed);
+    sequence_.store(sequence + 1, std::memory_order_relaxed);
+    // Each release store below makes the odd sequence visible before the word it writes.
+    for (std::size_t i = 0; i < kWords; ++i) words_[i].store(words[i], std::memory_order_release);
+    sequence_.store(sequence + 2, std::memory_order_release);
+  }
+
+  /// Copies the newest value. Returns false, and leaves `value` alone, if nothing was stored yet or
+  /// if the writer was faster `attempts` times in a row.
+  bool load(T& value, int attempts = 1000) const noexcept {
+    for (int attempt = 0; attempt < attempts; ++attempt) {
+      const std::uint64_t before = sequence_.load(std::memory_order_acquire);
+      if (before == 0) return false;
+      if (before % 2 != 0) continue;
+      std::array<std::uint64_t, kWords> words;
+      for (std::size_t i = 0; i < kWords; ++i) {
+        words[i] = words_[i].load(std::memory_order_acquire);
+      }
+      if (sequence_.load(std::memory_order_relaxed) == before) {
+        std::memcpy(static_cast<void*>(&value), words.data(), sizeof(T));
+        return true;
+      }
+    }
+    return false;
+  }
+
+  /// Tells how many values were stored so far.
+  std::uint64_t count() const noexcept { return sequence_.load(std::memory_order_acquire) / 2; }
+
+ private:
+  static constexpr std::size_t kWords = (sizeof(T) + 7) / 8;
+  std::atomic<std::uint64_t> sequence_{0};
+  std::array<std::atomic<std::uint64_t>, kWords> words_{};
+};
+
+}  // namespace thimble::driver

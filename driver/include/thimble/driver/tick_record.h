@@ -1,0 +1,42 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "thimble/driver/fault.h"
+
+namespace thimble::driver {
+
+/// Says where a device is in its life.
+enum class DeviceStage : std::uint8_t {
+  kIdle,    ///< Reports are read, zero force is sent.
+  kActive,  ///< Forces are sent through the gate.
+  kFault,   ///< Zero force, latched; see the fault.
+};
+
+/// Holds everything one tick did, as plain numbers: what the snapshot shows, the recorder keeps and
+/// reports are made of. Trivially copyable. Frames: W world, T tip, P proxy.
+struct TickRecord {
+  std::uint64_t tick = 0;
+  std::int64_t time_ns = 0;  ///< When the tick began, on the loop's clock.
+  std::int64_t due_ns = 0;   ///< When it should have begun.
+  std::int64_t work_ns = 0;  ///< From wake-up to write, on the loop's clock (0 in virtual time).
+  std::array<std::int32_t, 3> counts{};
+  std::array<double, 3> q{};           ///< rad
+  std::array<double, 3> p_WT{};        ///< m
+  std::array<double, 3> v_WT{};        ///< m/s
+  std::array<double, 3> p_WP{};        ///< m
+  std::array<double, 3> n_W{};         ///< unit normal
+  std::array<double, 3> f_wanted_W{};  ///< N, what the force law asked for
+  std::array<double, 3> f_sent_W{};    ///< N, what went through the gate and the current limits
+  double depth = 0;                    ///< m
+  std::int32_t feature = -1;           ///< active triangle
+  std::uint16_t hops = 0;
+  std::uint16_t buttons = 0;
+  bool in_contact = false;
+  bool fresh = false;
+  DeviceStage stage = DeviceStage::kIdle;
+  Fault fault = Fault::kNone;
+};
+
+}  // namespace thimble::driver

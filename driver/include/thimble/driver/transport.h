@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace thimble::driver {
+
+/// Says how one exchange over the wire ended.
+enum class TransportStatus : std::uint8_t {
+  kOk,       ///< Bytes were read or written.
+  kNothing,  ///< No new report arrived before the deadline.
+  kLost,     ///< The arm is gone; every later call says so too.
+};
+
+/// Says how a read ended and how much of the buffer it filled.
+struct TransportRead {
+  TransportStatus status = TransportStatus::kNothing;
+  std::size_t size = 0;       ///< Bytes of the newest report, 0 unless `status` is kOk.
+  std::uint32_t skipped = 0;  ///< Older reports that were dropped in favour of the newest.
+};
+
+/// Carries reports between the host and one arm; knows bytes, not what they mean.
+///
+/// Implementations neither allocate nor lock after they are opened. A transport is used by one
+/// thread at a time. Its destructor closes the wire.
+class Transport {
+ public:
+  Transport() = default;
+  Transport(const Transport&) = delete;
+  Transport& operator=(const Transport&) = delete;
+  virtual ~Transport() = default;
+
+  /// Fills `buffer` with the newest report and drops older ones; a report longer than the buffer
+  /// is cut. `deadline_ns` is on the loop's clock; a deadline in the past means "do not wait".
+  /// Real-time: safe; waits no longer than the deadline.
+  virtual TransportRead read_latest(std::span<std::byte> buffer,
+                                    std::int64_t deadline_ns) noexcept = 0;
+
+  /// Sends one report. Never answers kNothing.
+  /// Real-time: safe; waits no longer than one transfer of the bus.
+  virtual TransportStatus write(std::span<const std::byte> report) noexcept = 0;
+};
+
+}  // namespace thimble::driver

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace thimble::driver {
+
+/// Estimates velocity from sampled positions: backward difference, then one low-pass pole.
+///
+/// The pole costs stability: it adds about T(1-a)/a, a = 1 - exp(-2 pi f T), to the loop's latency
+/// for damping forces [STABILITY 1.1], and pays with less encoder noise in them (B * step / T
+/// without). All functions are Real-time: safe.
+class VelocityEstimator {
+ public:
+  /// Takes the corner frequency of the pole in Hz; 0 means the plain difference.
+  explicit VelocityEstimator(double corner_frequency = 0) noexcept;
+
+  /// Forgets the past; the next estimate is zero.
+  void reset() noexcept { primed_ = false; }
+
+  /// Takes the position p (m) sampled `dt` (s) after the previous one and returns the velocity,
+  /// m/s. A `dt` that is not positive returns the last estimate.
+  Eigen::Vector3d update(const Eigen::Vector3d& p, double dt) noexcept;
+
+ private:
+  double corner_frequency_;
+  double pole_dt_ = -1;  // dt that `gain_` was computed for
+  double gain_ = 1;
+  bool primed_ = false;
+  Eigen::Vector3d p_{0, 0, 0};
+  Eigen::Vector3d v_{0, 0, 0};
+};
+
+}  // namespace thimble::driver

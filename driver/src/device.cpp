@@ -1,0 +1,156 @@
+#include "thimble/driver/device.h"
+
+#include <array>
+#include <cmath>
+
+namespace thimble::driver {
+namespace {
+
+bool is_limit(double value) noexcept {
+  return value > 0 && value < HUGE_VAL;
+}
+
+Result<void> check(const DeviceSettings& settings) {
+  const GateLimits& limits = settings.limits;
+  const auto wrong = [](const char* what) {
+    return Error{std::string("The arm's ") + what +
+                 " must be a finite number above zero; set it in the arm file."};
+  };
+  if (!is_limit(limits.force_max)) return wrong("force_max");
+  if (!is_limit(limits.speed_max)) return wrong("speed_max");
+  if (!is_limit(limits.rise_max)) return wrong("rise_max");
+  if (!is_limit(limits.soft_start)) return wrong("soft_start");
+  if (limits.stall_ns <= 0) return wrong("stall time");
+  if (limits.watchdog_ns <= 0) return wrong("watchdog time");
+  if (settings.silence_limit_ns <= 0) return wrong("silence limit");
+  return {};
+}
+
+}  // namespace
+
+Device::Device(std::unique_ptr<Transport> transport, std::unique_ptr<const Arm> arm,
+               const DeviceSettings& settings) noexcept
+    : transport_(std::move(transport)),
+      arm_(std::move(arm)),
+      settings_(settings),
+      gate_(settings.limits),
+      velocity_(settings.velocity_corner_frequency) {}
+
+Device::~Device() {
+  deactivate();
+}
+
+Result<std::unique_ptr<Device>> Device::open(std::unique_ptr<Transport> transport,
+                                             std::unique_ptr<const Arm> arm,
+                                             const DeviceSettings& settings,
+                                             std::int64_t clock_now_ns, std::int64_t timeout_ns) {
+  if (auto checked = check(settings); !checked) return checked.error();
+  std::unique_ptr<Device> device(new Device(std::move(transport), std::move(arm), settings));
+  // Whatever was in flight before, the motors start from zero.
+  device->send(MotorCurrents());
+  const std::int64_t deadline_ns = clock_now_ns + timeout_ns;
+  constexpr int kAttempts = 100;  // reports of a form nobody knows, before giving up
+  for (int attempt = 0; attempt < kAttempts && !device->lost_; ++attempt) {
+    const std::uint64_t rejected = device->wire_.rejected;
+    if (device->take_report(clock_now_ns, deadline_ns)) return device;
+    if (device->wire_.rejected == rejected) break;
+  }
+  if (device->lost_) return Error{std::string(describe(Fault::kTransportLost))};
+  if (device->wire_.rejected > 0) {
+    return Error{"The arm sends reports of a form that its driver does not know (" +
+                 std::to_string(device->wire_.rejected) +
+                 " rejected). Check that the arm file is the one of this arm."};
+  }
+  return Error{"The arm sent no report within " + std::to_string(timeout_ns / 1'000'000) +
+               " ms. Check its power and cable, and that no other program uses it."};
+}
+
+Result<void> Device::activate() {
+  if (lost_) return Error{std::string(describe(Fault::kTransportLost))};
+  gate_.restart();
+  velocity_.reset();
+  active_ = true;
+  started_ = false;
+  return {};
+}
+
+void Device::deactivate() noexcept {
+  active_ = false;
+  send(MotorCurrents());
+  f_sent_W_.setZero();
+}
+
+DeviceStage Device::stage() const noexcept {
+  if (gate_.fault() != Fault::kNone) return DeviceStage::kFault;
+  return active_ ? DeviceStage::kActive : DeviceStage::kIdle;
+}
+
+const DeviceState& Device::read(std::int64_t now_ns, std::int64_t deadline_ns) noexcept {
+  if (started_) {
+    state_.dt = static_cast<double>(now_ns - state_.time_ns) * 1e-9;
+    ++state_.tick;
+  } else {
+    started_ = true;
+    state_.dt = 0;
+    last_report_ns_ = now_ns;
+  }
+  state_.time_ns = now_ns;
+  state_.fresh = take_report(now_ns, deadline_ns);
+  if (!state_.fresh) {
+    ++wire_.missing;
+    if (now_ns - last_report_ns_ > settings_.silence_limit_ns) gate_.trip(Fault::kNoReports);
+  }
+  return state_;
+}
+
+bool Device::take_report(std::int64_t now_ns, std::int64_t deadline_ns) noexcept {
+  std::array<std::byte, kReportCapacity> buffer;
+  const TransportRead read = transport_->read_latest(buffer, deadline_ns);
+  wire_.skipped += read.skipped;
+  if (read.status == TransportStatus::kLost) {
+    lost_ = true;
+    gate_.trip(Fault::kTransportLost);
+  }
+  if (read.status != TransportStatus::kOk) return false;
+
+  ArmReading reading;
+  if (!arm_->decode(std::span<const std::byte>(buffer).first(read.size), reading)) {
+    ++wire_.rejected;
+    return false;
+  }
+  ++wire_.reports;
+  pose_ = arm_->pose(reading);
+  state_.counts = reading.counts;
+  state_.buttons = reading.buttons;
+  state_.q = pose_.q;
+  state_.p_WT = settings_.p_WB + settings_.R_WB * pose_.p_BT;
+  const double since_last = static_cast<double>(now_ns - last_report_ns_) * 1e-9;
+  state_.v_WT = velocity_.update(state_.p_WT, since_last);
+  if (!(state_.p_WT.squaredNorm() < HUGE_VAL)) gate_.trip(Fault::kStateNotFinite);
+  last_report_ns_ = now_ns;
+  return true;
+}
+
+void Device::write(const ForceCommand& command) noexcept {
+  if (!active_ || lost_) {
+    send(MotorCurrents());
+    f_sent_W_.setZero();
+    return;
+  }
+  const GatedForce force = gate_.pass(command.f_T_W, state_.v_WT, state_.dt);
+  const MotorCurrents currents(force, settings_.R_WB, pose_.J_BT, arm_->drives());
+  send(currents);
+  f_sent_W_ = currents.scale() * force.f_T_W();
+}
+
+void Device::send(const MotorCurrents& currents) noexcept {
+  if (lost_) return;
+  std::array<std::byte, kReportCapacity> report;
+  const std::size_t size = arm_->encode(currents, report);
+  if (transport_->write(std::span<const std::byte>(report).first(size)) == TransportStatus::kLost) {
+    lost_ = true;
+    gate_.trip(Fault::kTransportLost);
+  }
+}
+
+}  // namespace thimble::driver

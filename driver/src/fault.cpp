@@ -1,0 +1,51 @@
+#include "thimble/driver/fault.h"
+
+namespace thimble::driver {
+
+std::string_view describe(Fault fault) noexcept {
+  switch (fault) {
+    case Fault::kNone:
+      return "No fault.";
+    case Fault::kTransportLost:
+      return "The arm is gone from the wire. Check its cable and power, then start again.";
+    case Fault::kNoReports:
+      return "The arm stopped sending reports. Check its cable and power; if it is a USB arm "
+             "behind "
+             "a hub, plug it into the computer itself.";
+    case Fault::kForceNotFinite:
+      return "The force law answered with a force that is not a number. This is a fault in the "
+             "scene or in an effect; the last records show where the tip was.";
+    case Fault::kStateNotFinite:
+      return "The tip's position came out as not a number. Check the arm's geometry and encoder "
+             "data.";
+    case Fault::kOverSpeed:
+      return "The tip moved faster than the arm's speed limit. Hold the arm, or raise speed_max in "
+             "the arm file if such speeds are meant.";
+    case Fault::kLoopStalled:
+      return "The servo loop stood still longer than the arm's watchdog waits. Close other "
+             "programs, or allow real-time scheduling.";
+  }
+  return "Unknown fault.";
+}
+
+std::string_view name(Fault fault) noexcept {
+  switch (fault) {
+    case Fault::kNone:
+      return "none";
+    case Fault::kTransportLost:
+      return "transport_lost";
+    case Fault::kNoReports:
+      return "no_reports";
+    case Fault::kForceNotFinite:
+      return "force_not_finite";
+    case Fault::kStateNotFinite:
+      return "state_not_finite";
+    case Fault::kOverSpeed:
+      return "over_speed";
+    case Fault::kLoopStalled:
+      return "loop_stalled";
+  }
+  return "unknown";
+}
+
+}  // namespace thimble::driver

@@ -1,0 +1,50 @@
+#include "thimble/driver/serial_arm.h"
+
+#include <cmath>
+
+namespace thimble::driver {
+
+void SerialArm::forward(const Eigen::Vector3d& q, Eigen::Vector3d& p_BT,
+                        Eigen::Matrix3d& J_BT) const noexcept {
+  const double sin_a = std::sin(q[0]), cos_a = std::cos(q[0]);
+  const double sin_b = std::sin(q[1]), cos_b = std::cos(q[1]);
+  const double sin_c = std::sin(q[2]), cos_c = std::cos(q[2]);
+  const double r = length_b * sin_b + length_c * sin_c;
+  p_BT = {r * cos_a, r * sin_a, height + length_b * cos_b - length_c * cos_c};
+  // clang-format off
+  J_BT << -r * sin_a, length_b * cos_b * cos_a, length_c * cos_c * cos_a,
+           r * cos_a, length_b * cos_b * sin_a, length_c * cos_c * sin_a,
+                   0,        -length_b * sin_b,         length_c * sin_c;
+  // clang-format on
+}
+
+Eigen::Vector3d SerialArm::forward(const Eigen::Vector3d& q) const noexcept {
+  const double r = length_b * std::sin(q[1]) + length_c * std::sin(q[2]);
+  return {r * std::cos(q[0]), r * std::sin(q[0]),
+          height + length_b * std::cos(q[1]) - length_c * std::cos(q[2])};
+}
+
+Eigen::Matrix3d SerialArm::jacobian(const Eigen::Vector3d& q) const noexcept {
+  Eigen::Vector3d p_BT;
+  Eigen::Matrix3d J_BT;
+  forward(q, p_BT, J_BT);
+  return J_BT;
+}
+
+std::optional<Eigen::Vector3d> SerialArm::inverse(const Eigen::Vector3d& p_BT) const noexcept {
+  const double r = std::hypot(p_BT.x(), p_BT.y());
+  const double z = p_BT.z() - height;
+  const double distance_squared = r * r + z * z;
+  // The law of cosines gives the angle between the links, B + C.
+  const double cos_sum =
+      (length_b * length_b + length_c * length_c - distance_squared) / (2 * length_b * length_c);
+  if (!(r > 0) || !(std::abs(cos_sum) < 1)) return std::nullopt;
+  const double sin_sum = std::sqrt((1 - cos_sum) * (1 + cos_sum));
+  // r = u sin(B) + w cos(B) and z = u cos(B) - w sin(B), solved for B.
+  const double u = length_b - length_c * cos_sum;
+  const double w = length_c * sin_sum;
+  const double b = std::atan2(u * r - w * z, w * r + u * z);
+  return Eigen::Vector3d{std::atan2(p_BT.y(), p_BT.x()), b, std::atan2(sin_sum, cos_sum) - b};
+}
+
+}  // namespace thimble::driver

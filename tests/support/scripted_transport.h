@@ -1,0 +1,44 @@
+#pragma once
+
+#include <algorithm>
+#include <deque>
+#include <vector>
+
+#include "thimble/driver/transport.h"
+
+namespace thimble::support {
+
+/// What a ScriptedTransport was asked to send, kept outside so that it outlives the device.
+struct Wire {
+  std::deque<std::vector<std::byte>> to_host;  ///< Reports not read yet, oldest first.
+  std::vector<std::vector<std::byte>> to_arm;  ///< Everything written, oldest first.
+  bool lost = false;
+};
+
+/// Is a wire whose far side is written by the test.
+class ScriptedTransport final : public driver::Transport {
+ public:
+  explicit ScriptedTransport(Wire& wire) : wire_(wire) {}
+
+  driver::TransportRead read_latest(std::span<std::byte> buffer, std::int64_t) noexcept override {
+    if (wire_.lost) return {.status = driver::TransportStatus::kLost};
+    if (wire_.to_host.empty()) return {};
+    const auto newest = wire_.to_host.back();
+    const auto skipped = static_cast<std::uint32_t>(wire_.to_host.size() - 1);
+    wire_.to_host.clear();
+    const std::size_t size = std::min(newest.size(), buffer.size());
+    std::copy_n(newest.begin(), size, buffer.begin());
+    return {.status = driver::TransportStatus::kOk, .size = size, .skipped = skipped};
+  }
+
+  driver::TransportStatus write(std::span<const std::byte> report) noexcept override {
+    if (wire_.lost) return driver::TransportStatus::kLost;
+    wire_.to_arm.emplace_back(report.begin(), report.end());
+    return driver::TransportStatus::kOk;
+  }
+
+ private:
+  Wire& wire_;
+};
+
+}  // namespace thimble::support

@@ -1,0 +1,204 @@
+#include "thimble/driver/device.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "support/scripted_transport.h"
+#include "support/vintage_arm.h"
+
+namespace thimble::driver {
+namespace {
+
+constexpr std::int64_t kPeriod_ns = 1'000'000;
+
+std::vector<std::byte> report(std::int16_t a = 0, std::int16_t b = 0, std::int16_t c = 0) {
+  hfab::InputReport input;
+  input.counts = {a, b, c, 0, 0, 0};
+  const auto bytes = hfab::encode_input(input);
+  return {bytes.begin(), bytes.end()};
+}
+
+/// A device at home on a scripted wire, with its own time.
+class DeviceTest : public ::testing::Test {
+ protected:
+  Result<std::unique_ptr<Device>> open() {
+    return Device::open(std::make_unique<support::ScriptedTransport>(wire_),
+                        std::make_unique<hfab::HfabArm>(support::vintage_model()),
+                        support::vintage_settings(), now_ns_);
+  }
+
+  void open_and_activate() {
+    wire_.to_host.push_back(report());
+    auto opened = open();
+    ASSERT_TRUE(opened) << opened.error().message;
+    device_ = std::move(opened).value();
+    ASSERT_TRUE(device_->activate());
+  }
+
+  /// Runs one tick with a new report; returns the current of the first motor, mA.
+  void tick(const Eigen::Vector3d& f_T_W) {
+    now_ns_ += kPeriod_ns;
+    device_->read(now_ns_, now_ns_);
+    device_->write({.f_T_W = f_T_W, .touch = {}});
+  }
+
+  /// Runs ticks past the soft start.
+  void settle(const Eigen::Vector3d& f_T_W = {0, 0.5, 0}) {
+    for (int k = 0; k < 400; ++k) {
+      wire_.to_host.push_back(report());
+      tick(f_T_W);
+    }
+    ASSERT_EQ(device_->fault(), Fault::kNone);
+    ASSERT_NE(last_currents(), (std::array<std::int16_t, 3>{}));
+  }
+
+  std::array<std::int16_t, 3> last_currents() const {
+    return hfab::decode_output(wire_.to_arm.back())->current_mA;
+  }
+
+  static constexpr std::array<std::int16_t, 3> kZero{};
+  support::Wire wire_;
+  std::int64_t now_ns_ = 0;
+  std::unique_ptr<Device> device_;
+};
+
+TEST_F(DeviceTest, SaysWhyItCannotBeOpened) {
+  EXPECT_NE(open().error().message.find("no report within 1000 ms"), std::string::npos);
+
+  wire_.to_host.push_back({std::byte{1}, std::byte{2}});
+  EXPECT_NE(open().error().message.find("form that its driver does not know"), std::string::npos);
+
+  wire_.lost = true;
+  EXPECT_NE(open().error().message.find("gone from the wire"), std::string::npos);
+}
+
+TEST_F(DeviceTest, RefusesLimitsThatAreNotPositiveNumbers) {
+  DeviceSettings settings = support::vintage_settings();
+  settings.limits.force_max = NAN;
+  wire_.to_host.push_back(report());
+  const auto opened =
+      Device::open(std::make_unique<support::ScriptedTransport>(wire_),
+                   std::make_unique<hfab::HfabArm>(support::vintage_model()), settings, 0);
+  ASSERT_FALSE(opened);
+  EXPECT_NE(opened.error().message.find("force_max"), std::string::npos);
+}
+
+TEST_F(DeviceTest, SendsZeroWhenOpenedAndWhileIdle) {
+  wire_.to_host.push_back(report());
+  auto opened = open();
+  ASSERT_TRUE(opened);
+  device_ = std::move(opened).value();
+  EXPECT_EQ(last_currents(), kZero);
+  EXPECT_EQ(device_->stage(), DeviceStage::kIdle);
+  tick({1, 1, 1});
+  EXPECT_EQ(last_currents(), kZero);
+}
+
+TEST_F(DeviceTest, FindsTheTipInTheWorld) {
+  open_and_activate();
+  wire_.to_host.push_back(report());
+  tick({0, 0, 0});
+  EXPECT_LT(device_->state().p_WT.norm(), 1e-15);
+  EXPECT_TRUE(device_->state().fresh);
+  // One count of yaw at home: 0.138 m x 2 pi / 36000 to the left (sign -1).
+  wire_.to_host.push_back(report(1));
+  tick({0, 0, 0});
+  EXPECT_NEAR(device_->state().p_WT.y(), -0.138 * 2 * M_PI / 36000, 1e-12);
+  EXPECT_NEAR(device_->state().v_WT.y(), -0.138 * 2 * M_PI / 36000 / 1e-3, 1e-9);
+  EXPECT_EQ(device_->state().tick, 1u);
+  EXPECT_NEAR(device_->state().dt, 1e-3, 1e-15);
+}
+
+TEST_F(DeviceTest, SendsTheGatedForceAndTellsIt) {
+  open_and_activate();
+  settle({0, 0.5, 0});
+  // 0.5 N at 0.138 m through 9:1 and 0.0234 N m/A, sign -1.
+  EXPECT_EQ(last_currents()[0], std::lround(-0.5 * 0.138 / 9 / 0.0234 * 1e3));
+  EXPECT_LT((device_->f_sent_W() - Eigen::Vector3d(0, 0.5, 0)).norm(), 1e-12);
+}
+
+TEST_F(DeviceTest, KeepsItsStateThroughAMissingReportAndFaultsWhenTheArmStaysSilent) {
+  open_and_activate();
+  settle();
+  tick({0, 0.5, 0});
+  EXPECT_FALSE(device_->state().fresh);
+  EXPECT_EQ(device_->fault(), Fault::kNone);
+  EXPECT_NE(last_currents(), kZero);
+  int ticks = 1;
+  while (device_->fault() == Fault::kNone && ticks < 100) {
+    tick({0, 0.5, 0});
+    ++ticks;
+  }
+  EXPECT_EQ(device_->fault(), Fault::kNoReports);
+  EXPECT_EQ(ticks, 21);               // silence_limit_ns of 20 ms, then the next tick
+  EXPECT_EQ(last_currents(), kZero);  // in that very tick
+}
+
+TEST_F(DeviceTest, CountsAndSurvivesReportsItDoesNotKnow) {
+  open_and_activate();
+  settle();
+  wire_.to_host.push_back(std::vector<std::byte>(13));
+  tick({0, 0.5, 0});
+  EXPECT_EQ(device_->wire_counters().rejected, 1u);
+  EXPECT_FALSE(device_->state().fresh);
+  EXPECT_EQ(device_->fault(), Fault::kNone);
+}
+
+TEST_F(DeviceTest, TakesTheNewestReportAndCountsTheOthers) {
+  open_and_activate();
+  wire_.to_host = {report(1), report(2), report(3)};
+  tick({0, 0, 0});
+  EXPECT_EQ(device_->state().counts[0], 3);
+  EXPECT_EQ(device_->wire_counters().skipped, 2u);
+}
+
+TEST_F(DeviceTest, SendsZeroInTheTickOfAForceThatIsNotANumber) {
+  open_and_activate();
+  settle();
+  wire_.to_host.push_back(report());
+  tick({0, NAN, 0});
+  EXPECT_EQ(last_currents(), kZero);
+  EXPECT_EQ(device_->fault(), Fault::kForceNotFinite);
+  EXPECT_EQ(device_->stage(), DeviceStage::kFault);
+  EXPECT_EQ(device_->f_sent_W(), Eigen::Vector3d(0, 0, 0));
+  // It stays off until somebody activates the device again.
+  wire_.to_host.push_back(report());
+  tick({0, 0.5, 0});
+  EXPECT_EQ(last_currents(), kZero);
+  ASSERT_TRUE(device_->activate());
+  settle();
+}
+
+TEST_F(DeviceTest, SendsZeroInTheTickOfAnImpossibleJump) {
+  open_and_activate();
+  settle();
+  wire_.to_host.push_back(report(1000));  // 24 mm in one tick
+  tick({0, 0.5, 0});
+  EXPECT_EQ(last_currents(), kZero);
+  EXPECT_EQ(device_->fault(), Fault::kOverSpeed);
+}
+
+TEST_F(DeviceTest, NamesALostArmAndCannotBeActivatedAgain) {
+  open_and_activate();
+  settle();
+  wire_.lost = true;
+  tick({0, 0.5, 0});
+  EXPECT_EQ(device_->fault(), Fault::kTransportLost);
+  EXPECT_FALSE(device_->activate());
+}
+
+TEST_F(DeviceTest, SendsZeroWhenDeactivatedAndWhenDestroyed) {
+  open_and_activate();
+  settle();
+  device_->deactivate();
+  EXPECT_EQ(last_currents(), kZero);
+
+  ASSERT_TRUE(device_->activate());
+  settle();
+  device_.reset();
+  EXPECT_EQ(last_currents(), kZero);
+}
+
+}  // namespace
+}  // namespace thimble::driver

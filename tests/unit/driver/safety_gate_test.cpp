@@ -1,0 +1,154 @@
+#include "thimble/driver/safety_gate.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "support/random.h"
+#include "support/vintage_arm.h"
+
+namespace thimble::driver {
+namespace {
+
+constexpr double kPeriod = 1e-3;
+const Eigen::Vector3d kStill{0, 0, 0};
+
+GateLimits limits() {
+  return support::vintage_settings().limits;
+}
+
+/// Makes a gate whose soft start is over and whose last force was zero.
+SafetyGate open_gate(const GateLimits& with = limits()) {
+  SafetyGate gate(with);
+  for (double t = 0; t <= with.soft_start + 0.01; t += 0.01) gate.pass({0, 0, 0}, kStill, 0.01);
+  return gate;
+}
+
+TEST(SafetyGate, LetsAForceWithinAllLimitsThroughUnchanged) {
+  SafetyGate gate = open_gate();
+  const Eigen::Vector3d f{0.5, -1, 0.3};
+  EXPECT_EQ(gate.pass(f, kStill, kPeriod).f_T_W(), f);
+  EXPECT_EQ(gate.counters().limited + gate.counters().rise_limited, 0u);
+}
+
+TEST(SafetyGate, NeverExceedsTheLimitAndKeepsTheDirection) {
+  support::Random random(41);
+  SafetyGate gate = open_gate();
+  for (int i = 0; i < 10'000; ++i) {
+    const Eigen::Vector3d f = random.in_box(20);
+    const Eigen::Vector3d sent = gate.pass(f, kStill, kPeriod).f_T_W();
+    EXPECT_LE(sent.norm(), limits().force_max * (1 + 1e-15));
+    EXPECT_LT((sent.normalized() - f.normalized()).norm(), 1e-12);
+  }
+  EXPECT_GT(gate.counters().limited, 1000u);
+}
+
+TEST(SafetyGate, LimitsOnlyTheRiseOfAForce) {
+  GateLimits slow = limits();
+  slow.rise_max = 100;
+  SafetyGate gate = open_gate(slow);
+  for (int k = 1; k <= 30; ++k) {
+    EXPECT_NEAR(gate.pass({0, 0, 3}, kStill, kPeriod).f_T_W().z(), std::min(3.0, 0.1 * k), 1e-12);
+  }
+  // A fall is followed at once: slowing it would give energy back to the hand [STABILITY 1.6].
+  EXPECT_EQ(gate.pass({0, 0, 0.2}, kStill, kPeriod).f_T_W().z(), 0.2);
+  EXPECT_EQ(gate.pass({0, 0, 0}, kStill, kPeriod).f_T_W().z(), 0);
+}
+
+/// Visits a wall on a path that is the same in and out, and tells the work done on the hand, J.
+double work_of_visit(double rise_max, double stiffness, double speed) {
+  GateLimits with = limits();
+  with.rise_max = rise_max;
+  SafetyGate gate = open_gate(with);
+  constexpr double kTick = 1e-5;
+  double work = 0, x = 0;
+  const int half = static_cast<int>(0.004 / speed / kTick);
+  for (int k = 0; k < 2 * half; ++k) {
+    const double v = k < half ? speed : -speed;
+    // Midpoint of the tick, so that an elastic wall without a gate does no net work.
+    const double f = -stiffness * (x + v * kTick / 2);
+    work += gate.pass({f, 0, 0}, {v, 0, 0}, kTick).f_T_W().x() * v * kTick;
+    x += v * kTick;
+  }
+  return work;
+}
+
+TEST(SafetyGate, KeepsAWallPassiveWhenItsRiseLimitIsAtLeastStiffnessTimesSpeed) {
+  for (const double speed : {0.1, 0.3, 1.0, 2.0}) {
+    EXPECT_LE(work_of_visit(1000 * speed * 1.01, 1000, speed), 1e-9) << speed;
+  }
+}
+
+TEST(SafetyGate, MakesAWallActiveWhenItsRiseLimitIsTooLow) {
+  // The guard of the test above: a limit on the rise alone, too, gives more energy on the way out
+  // than it took on the way in once it is below stiffness times speed. Hence the arm's default.
+  for (const double speed : {0.3, 1.0, 2.0}) {
+    EXPECT_GT(work_of_visit(1000 * speed * 0.3, 1000, speed), 1e-4) << speed;
+  }
+  EXPECT_GE(limits().rise_max, 1000 * 2.0);
+}
+
+TEST(SafetyGate, OpensSlowlyAfterARestart) {
+  SafetyGate gate(limits());
+  double worst = 0;
+  for (int k = 0; k < 300; ++k) {
+    const double force = gate.pass({0, 0, 100}, kStill, k == 0 ? 0 : kPeriod).f_T_W().norm();
+    worst = std::max(worst, force - limits().force_max * k * kPeriod / limits().soft_start);
+  }
+  EXPECT_LT(worst, 1e-12);
+  EXPECT_GT(gate.counters().soft_started, 290u);
+}
+
+TEST(SafetyGate, LatchesZeroForceOnAForceThatIsNotANumber) {
+  for (const double bad : {std::nan(""), HUGE_VAL, -HUGE_VAL, std::numeric_limits<double>::max()}) {
+    SafetyGate gate = open_gate();
+    EXPECT_EQ(gate.pass({0, bad, 0}, kStill, kPeriod).f_T_W(), Eigen::Vector3d(0, 0, 0)) << bad;
+    EXPECT_EQ(gate.fault(), Fault::kForceNotFinite);
+    EXPECT_EQ(gate.pass({0, 1, 0}, kStill, kPeriod).f_T_W(), Eigen::Vector3d(0, 0, 0));
+    gate.restart();
+    EXPECT_EQ(gate.fault(), Fault::kNone);
+  }
+}
+
+TEST(SafetyGate, LatchesZeroForceOnRunawaySpeed) {
+  SafetyGate gate = open_gate();
+  EXPECT_GT(gate.pass({1, 0, 0}, {2.99, 0, 0}, kPeriod).f_T_W().norm(), 0);
+  EXPECT_EQ(gate.pass({1, 0, 0}, {3.01, 0, 0}, kPeriod).f_T_W().norm(), 0);
+  EXPECT_EQ(gate.fault(), Fault::kOverSpeed);
+  SafetyGate other = open_gate();
+  EXPECT_EQ(other.pass({1, 0, 0}, {NAN, 0, 0}, kPeriod).f_T_W().norm(), 0);
+  EXPECT_EQ(other.fault(), Fault::kStateNotFinite);
+}
+
+TEST(SafetyGate, BeginsTheSoftStartAnewAfterAStallAndFaultsAfterTheWatchdogsTime) {
+  SafetyGate gate = open_gate();
+  EXPECT_GT(gate.pass({1, 0, 0}, kStill, kPeriod).f_T_W().norm(), 0.9);
+  EXPECT_EQ(gate.pass({1, 0, 0}, kStill, 0.030).f_T_W().norm(), 0);
+  EXPECT_EQ(gate.counters().stalls, 1u);
+  EXPECT_EQ(gate.fault(), Fault::kNone);
+  // With the limit opening at force_max / soft_start, 1 N is back after 60 ms.
+  for (int k = 0; k < 60; ++k) gate.pass({1, 0, 0}, kStill, kPeriod);
+  EXPECT_NEAR(gate.pass({1, 0, 0}, kStill, kPeriod).f_T_W().norm(), 1, 1e-9);
+
+  EXPECT_EQ(gate.pass({1, 0, 0}, kStill, 0.100).f_T_W().norm(), 0);
+  EXPECT_EQ(gate.fault(), Fault::kLoopStalled);
+}
+
+TEST(SafetyGate, KeepsTheFirstFault) {
+  SafetyGate gate(limits());
+  gate.trip(Fault::kTransportLost);
+  gate.trip(Fault::kOverSpeed);
+  EXPECT_EQ(gate.fault(), Fault::kTransportLost);
+}
+
+TEST(Fault, SaysWhatToDo) {
+  for (int i = 0; i <= static_cast<int>(Fault::kLoopStalled); ++i) {
+    const auto fault = static_cast<Fault>(i);
+    EXPECT_NE(name(fault), "unknown");
+    EXPECT_EQ(describe(fault).back(), '.');
+  }
+}
+
+}  // namespace
+}  // namespace thimble::driver

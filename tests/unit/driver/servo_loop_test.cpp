@@ -1,0 +1,184 @@
+#include "thimble/driver/servo_loop.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+#include "support/scripted_transport.h"
+#include "support/vintage_arm.h"
+
+namespace thimble::driver {
+namespace {
+
+/// Keeps all records, without allocating while the loop runs.
+struct Records {
+  std::vector<TickRecord> rows;
+  explicit Records(std::size_t capacity) { rows.reserve(capacity); }
+  void operator()(const TickRecord& record) noexcept {
+    if (rows.size() < rows.capacity()) rows.push_back(record);
+  }
+};
+
+/// A virtual clock that oversleeps once.
+class LateClock final : public Clock {
+ public:
+  std::int64_t late_at_ns = -1, late_by_ns = 0;
+  std::int64_t now_ns() const noexcept override { return now_ns_; }
+  void sleep_until_ns(std::int64_t time_ns) noexcept override {
+    if (time_ns > now_ns_) now_ns_ = time_ns;
+    if (late_at_ns >= 0 && now_ns_ >= late_at_ns) {
+      now_ns_ += late_by_ns;
+      late_at_ns = -1;
+    }
+  }
+
+ private:
+  std::int64_t now_ns_ = 0;
+};
+
+/// A transport that always has a report of the arm at home.
+class HomeTransport final : public Transport {
+ public:
+  explicit HomeTransport(support::Wire& wire) : wire_(wire) {}
+  TransportRead read_latest(std::span<std::byte> buffer, std::int64_t) noexcept override {
+    if (wire_.lost) return {.status = TransportStatus::kLost};
+    const auto bytes = hfab::encode_input({});
+    std::copy(bytes.begin(), bytes.end(), buffer.begin());
+    return {.status = TransportStatus::kOk, .size = bytes.size()};
+  }
+  TransportStatus write(std::span<const std::byte> report) noexcept override {
+    if (wire_.lost) return TransportStatus::kLost;
+    wire_.to_arm.emplace_back(report.begin(), report.end());
+    return TransportStatus::kOk;
+  }
+
+ private:
+  support::Wire& wire_;
+};
+
+class ServoLoopTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    auto opened = Device::open(std::make_unique<HomeTransport>(wire_),
+                               std::make_unique<hfab::HfabArm>(support::vintage_model()),
+                               support::vintage_settings(), 0);
+    ASSERT_TRUE(opened) << opened.error().message;
+    device_ = std::move(opened).value();
+    ASSERT_TRUE(device_->activate());
+  }
+
+  bool ends_in_zero() const {
+    return hfab::decode_output(wire_.to_arm.back())->current_mA == std::array<std::int16_t, 3>{};
+  }
+
+  support::Wire wire_;
+  std::unique_ptr<Device> device_;
+  std::atomic<bool> stop_{false};
+};
+
+TEST_F(ServoLoopTest, RunsItsTicksAtEvenTimesAndLeavesWithZeroForce) {
+  VirtualClock clock;
+  Records records(2000);
+  auto law = [](const DeviceState&) noexcept {
+    return ForceCommand{.f_T_W = {1, 0, 0}, .touch = {}};
+  };
+  EXPECT_EQ(run_servo(*device_, clock, ForceLaw(law), TickSink(records), {.ticks = 1000}, stop_),
+            ServoEnd::kDone);
+  ASSERT_EQ(records.rows.size(), 1000u);
+  for (std::size_t i = 0; i < records.rows.size(); ++i) {
+    EXPECT_EQ(records.rows[i].time_ns, static_cast<std::int64_t>(i) * 1'000'000);
+    EXPECT_EQ(records.rows[i].tick, i);
+  }
+  EXPECT_EQ(records.rows.back().f_sent_W, (std::array<double, 3>{1, 0, 0}));
+  EXPECT_TRUE(ends_in_zero());
+  EXPECT_EQ(device_->stage(), DeviceStage::kIdle);
+}
+
+TEST_F(ServoLoopTest, SkipsMissedTicksInsteadOfRunningThemInABurst) {
+  LateClock clock;
+  clock.late_at_ns = 5'000'000;
+  clock.late_by_ns = 2'300'000;
+  Records records(100);
+  auto law = [](const DeviceState&) noexcept { return ForceCommand{}; };
+  run_servo(*device_, clock, ForceLaw(law), TickSink(records), {.ticks = 10}, stop_);
+  std::vector<std::int64_t> times;
+  for (const auto& row : records.rows) times.push_back(row.time_ns / 100'000);
+  // The tick due at 5.0 ms ran at 7.3 ms; the ones due at 6 and 7 ms were skipped.
+  EXPECT_EQ(times, (std::vector<std::int64_t>{0, 10, 20, 30, 40, 73, 80, 90}));
+  EXPECT_EQ(records.rows[5].due_ns, 5'000'000);
+}
+
+TEST_F(ServoLoopTest, StopsWithinOneTickOfTheStopFlagAndSendsZero) {
+  VirtualClock clock;
+  Records records(1000);
+  auto law = [this](const DeviceState& state) noexcept {
+    if (state.tick == 400) stop_.store(true);
+    return ForceCommand{.f_T_W = {1, 0, 0}, .touch = {}};
+  };
+  EXPECT_EQ(run_servo(*device_, clock, ForceLaw(law), TickSink(records), {}, stop_),
+            ServoEnd::kStopped);
+  EXPECT_EQ(records.rows.size(), 401u);
+  EXPECT_TRUE(ends_in_zero());
+}
+
+TEST_F(ServoLoopTest, EndsInTheTickOfAFaultWithZeroForceAndItsName) {
+  VirtualClock clock;
+  Records records(1000);
+  auto law = [](const DeviceState& state) noexcept {
+    return ForceCommand{.f_T_W = {state.tick == 350 ? NAN : 1.0, 0, 0}, .touch = {}};
+  };
+  EXPECT_EQ(run_servo(*device_, clock, ForceLaw(law), TickSink(records), {}, stop_),
+            ServoEnd::kFault);
+  ASSERT_EQ(records.rows.size(), 351u);
+  EXPECT_EQ(records.rows.back().fault, Fault::kForceNotFinite);
+  EXPECT_EQ(records.rows.back().stage, DeviceStage::kFault);
+  EXPECT_EQ(records.rows.back().f_sent_W, (std::array<double, 3>{}));
+  EXPECT_TRUE(ends_in_zero());
+}
+
+TEST_F(ServoLoopTest, EndsWhenTheArmIsPulledOff) {
+  VirtualClock clock;
+  Records records(1000);
+  auto law = [this](const DeviceState& state) noexcept {
+    if (state.tick == 350) wire_.lost = true;
+    return ForceCommand{.f_T_W = {1, 0, 0}, .touch = {}};
+  };
+  EXPECT_EQ(run_servo(*device_, clock, ForceLaw(law), TickSink(records), {}, stop_),
+            ServoEnd::kFault);
+  EXPECT_EQ(device_->fault(), Fault::kTransportLost);
+  EXPECT_EQ(records.rows.size(), 351u);
+}
+
+TEST_F(ServoLoopTest, LeavesZeroForceBehindWhenTheApplicationThrows) {
+  VirtualClock clock;
+  Records records(1000);
+  auto law = [](const DeviceState&) noexcept {
+    return ForceCommand{.f_T_W = {1, 0, 0}, .touch = {}};
+  };
+  try {
+    const std::unique_ptr<Device> owned = std::move(device_);
+    for (int k = 0; k < 400; ++k) {
+      clock.sleep_until_ns(clock.now_ns() + 1'000'000);
+      owned->read(clock.now_ns(), clock.now_ns());
+      owned->write(law(owned->state()));
+    }
+    ASSERT_FALSE(ends_in_zero());
+    throw std::runtime_error("the application's own trouble");
+  } catch (const std::runtime_error&) {
+  }
+  EXPECT_TRUE(ends_in_zero());
+}
+
+TEST(WallClock, SleepsUntilTheTimeAskedForAndNotLess) {
+  WallClock clock;
+  const std::int64_t start_ns = clock.now_ns();
+  clock.sleep_until_ns(start_ns + 3'000'000);
+  EXPECT_GE(clock.now_ns(), start_ns + 3'000'000);
+  clock.sleep_until_ns(start_ns);  // in the past: at once, and no harm
+  EXPECT_GE(clock.now_ns(), start_ns + 3'000'000);
+}
+
+}  // namespace
+}  // namespace thimble::driver
