@@ -1,0 +1,43 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "thimble/driver/serial_arm.h"
+
+namespace thimble::device_sim {
+
+/// Holds the true pose of a serial arm as sines and cosines of its joint angles, found from the tip
+/// without a single trigonometric function. Frame B: base of the arm.
+class SerialPose {
+ public:
+  /// Is the smallest sine of the angle between the links, and the smallest distance from the yaw
+  /// axis in units of the first link, that force_from uses. Nearer to fold, stretch or the yaw axis
+  /// the structure carries what the formula would send to infinity. [guess: within 3 degrees of the
+  /// end of travel; no arm is meant to be used there]
+  static constexpr double kSingular = 0.05;
+
+  /// Finds the pose whose tip is at p_BT (m), on the branch of SerialArm::inverse and within reach
+  /// under the same condition. A tip that is not finite is out of reach. Real-time: safe.
+  SerialPose(const driver::SerialArm& arm, const Eigen::Vector3d& p_BT) noexcept;
+
+  /// Tells whether the arm gets there; if not, nothing else may be asked. Real-time: safe.
+  bool within_reach() const noexcept { return within_reach_; }
+
+  /// Finds the tip force f_T_B (N) that joint torques tau (N m) make on a hand: J_BT^-T tau,
+  /// bounded near singular poses by kSingular. Real-time: safe.
+  Eigen::Vector3d force_from(const Eigen::Vector3d& tau) const noexcept;
+
+  /// Finds the joint angles (A, B, C), rad; equal to SerialArm::inverse. Real-time: safe.
+  Eigen::Vector3d angles() const noexcept;
+
+ private:
+  double length_b_, length_c_;
+  double sin_a_ = 0, cos_a_ = 1;
+  double sin_b_ = 0, cos_b_ = 1;
+  double sin_c_ = 0, cos_c_ = 1;
+  double sin_sum_ = 0;  // of B + C, the angle between the links
+  double r_ = 0;        // distance of the tip from the yaw axis, m
+  bool within_reach_ = false;
+};
+
+}  // namespace thimble::device_sim

@@ -1,0 +1,91 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "thimble/device_sim/arm_plant.h"
+#include "thimble/device_sim/firmware.h"
+#include "thimble/device_sim/hand_path.h"
+#include "thimble/device_sim/settings.h"
+#include "thimble/device_sim/tremor.h"
+#include "thimble/device_sim/wire_queue.h"
+#include "thimble/driver/arms/hfab/hfab_arm.h"
+
+namespace thimble::device_sim {
+
+/// Is a whole arm on the far side of the wire: plant, encoders, motors, firmware and a hand, driven
+/// by time alone. It speaks the bytes of the real arm and shares no state with the driver.
+///
+/// Events in time order: at each report period (the first at time 0) the firmware samples the
+/// encoders; `delay_in` later the host can read that report; a message of the host reaches the
+/// motors `delay_out` after its write; the watchdog fires when no message came for its time. At
+/// equal times the encoders are sampled first, then messages arrive, then the watchdog looks: a
+/// report shows the state before a message of the same moment, and a message just in time keeps the
+/// motors on. Without delay that makes an ideal zero-order hold: a host that reads at k periods and
+/// writes at once sees the sample of that very moment, and its force acts from there on.
+///
+/// Between events the plant moves by its exact map, in sub-steps of at most 1 ms during which the
+/// point that the hand wants moves evenly; a corner of the path inside a sub-step is cut.
+/// After construction nothing allocates. All functions but the constructor are Real-time: safe; how
+/// long advance_to takes grows with the time that passes.
+class SimulatedArm {
+ public:
+  /// Builds the arm at rest at the path's first point, with time 0. `seed` sets the tremor's
+  /// phases. Throws std::invalid_argument if a constant is out of range or the path's start is out
+  /// of reach.
+  SimulatedArm(const driver::hfab::HfabModel& model, const SimulatedArmSettings& settings,
+               HandPath path, std::uint64_t seed = 0);
+
+  /// Lets time pass up to `time_ns`; a time in the past does nothing.
+  void advance_to(std::int64_t time_ns) noexcept;
+
+  /// Copies the newest report that the host can read at the present time; returns its size, or 0 if
+  /// none came since the last call. `skipped` tells how many older ones were dropped. A report
+  /// longer than the buffer is cut.
+  std::size_t take_report(std::span<std::byte> buffer, std::uint32_t& skipped) noexcept;
+
+  /// Tells when the next report can be read, ns; never earlier than the present time.
+  std::int64_t next_report_ns() const noexcept;
+
+  /// Hands the host's bytes to the wire at the present time.
+  void put_message(std::span<const std::byte> bytes) noexcept;
+
+  /// Presses the button on the arm, as a hand would.
+  void press_button() noexcept { firmware_.press_button(); }
+
+  // What is true in the simulation, for tests and studies; a driver cannot see it.
+
+  /// Tells the present time, ns.
+  std::int64_t time_ns() const noexcept { return time_ns_; }
+  /// Shows the mechanics.
+  const ArmPlant& plant() const noexcept { return plant_; }
+  /// Shows the board.
+  const Firmware& firmware() const noexcept { return firmware_; }
+  /// Tells where the hand wants to be, m.
+  const Eigen::Vector3d& p_BH() const noexcept { return plant_.p_BH(); }
+  /// Tells how many reports or messages were lost because more than WireQueue::kFrames were in
+  /// flight.
+  std::uint64_t wire_overflows() const noexcept { return reports_.dropped() + messages_.dropped(); }
+
+ private:
+  Eigen::Vector3d wanted_at(std::int64_t time_ns) noexcept;
+  void sample() noexcept;
+  void receive(std::span<const std::byte> bytes) noexcept;
+  void deliver() noexcept;
+
+  std::int64_t report_period_ns_;
+  WireSettings wire_;
+  HandPath path_;
+  Tremor tremor_;
+  ArmPlant plant_;
+  Firmware firmware_;
+  std::int64_t time_ns_ = 0;
+  std::int64_t next_sample_ns_ = 0;
+  WireQueue reports_, messages_;
+  WireFrame newest_;            // the newest report the host can read
+  std::uint32_t readable_ = 0;  // reports that became readable since the last was taken
+};
+
+}  // namespace thimble::device_sim

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "thimble/driver/arm.h"
+
+namespace thimble::device_sim {
+
+/// Is one report or message on its way.
+struct WireFrame {
+  /// One byte more than any report has, so that what was too long stays recognisable as such.
+  static constexpr std::size_t kCapacity = driver::kReportCapacity + 1;
+
+  std::int64_t due_ns = 0;  ///< When it arrives.
+  std::size_t size = 0;     ///< Bytes that count.
+  std::array<std::byte, kCapacity> bytes{};
+
+  /// Tells the bytes that count.
+  std::span<const std::byte> content() const noexcept {
+    return std::span<const std::byte>(bytes).first(size);
+  }
+};
+
+/// Holds the frames in flight in one direction, in order of arrival. When it is full the oldest is
+/// dropped and counted. All functions are Real-time: safe.
+class WireQueue {
+ public:
+  /// Is how many frames may be in flight.
+  static constexpr std::size_t kFrames = 256;
+
+  bool empty() const noexcept { return count_ == 0; }
+
+  /// Tells the next frame to arrive. Precondition: not empty (the caller's duty; otherwise it is a
+  /// frame of the past).
+  const WireFrame& front() const noexcept { return frames_[first_]; }
+
+  /// Sends bytes that will arrive at `due_ns`, which must not lie before that of the frame sent
+  /// last (the caller's duty; otherwise it arrives with that one).
+  void push(std::span<const std::byte> bytes, std::int64_t due_ns) noexcept {
+    if (count_ == kFrames) {
+      pop();
+      ++dropped_;
+    }
+    WireFrame& frame = frames_[(first_ + count_) % kFrames];
+    frame.due_ns = due_ns;
+    frame.size = std::min(bytes.size(), WireFrame::kCapacity);
+    std::copy_n(bytes.begin(), frame.size, frame.bytes.begin());
+    ++count_;
+  }
+
+  /// Takes the next frame away; does nothing if there is none.
+  void pop() noexcept {
+    if (count_ == 0) return;
+    first_ = (first_ + 1) % kFrames;
+    --count_;
+  }
+
+  /// Tells how many frames were lost because too many were in flight.
+  std::uint64_t dropped() const noexcept { return dropped_; }
+
+ private:
+  std::array<WireFrame, kFrames> frames_{};
+  std::size_t first_ = 0;
+  std::size_t count_ = 0;
+  std::uint64_t dropped_ = 0;
+};
+
+}  // namespace thimble::device_sim

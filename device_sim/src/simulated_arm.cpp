@@ -1,0 +1,96 @@
+#include "thimble/device_sim/simulated_arm.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+namespace thimble::device_sim {
+
+SimulatedArm::SimulatedArm(const driver::hfab::HfabModel& model,
+                           const SimulatedArmSettings& settings, HandPath path, std::uint64_t seed)
+    : report_period_ns_(settings.firmware.report_period_ns),
+      wire_(settings.wire),
+      path_(std::move(path)),
+      tremor_(settings.hand, seed),
+      plant_(model.geometry, model.drives, settings.plant, settings.hand, settings.motors,
+             path_.points().front().p_BH, wanted_at(0)),
+      firmware_(model, settings.firmware) {
+  if (wire_.delay_in_ns < 0 || wire_.delay_out_ns < 0) {
+    throw std::invalid_argument("The simulated wire's delays must not be negative (ns).");
+  }
+  sample();
+  deliver();
+}
+
+Eigen::Vector3d SimulatedArm::wanted_at(std::int64_t time_ns) noexcept {
+  const double time = static_cast<double>(time_ns) * 1e-9;
+  return path_.at(time) + tremor_.at(time);
+}
+
+void SimulatedArm::advance_to(std::int64_t time_ns) noexcept {
+  while (time_ns_ < time_ns) {
+    std::int64_t next_ns = std::min(time_ns, time_ns_ + ArmPlant::kStepMax_ns);
+    next_ns = std::min({next_ns, next_sample_ns_, firmware_.watchdog_due_ns()});
+    if (!messages_.empty()) next_ns = std::min(next_ns, messages_.front().due_ns);
+
+    plant_.step(wanted_at(next_ns), next_ns - time_ns_);
+    time_ns_ = next_ns;
+
+    if (next_sample_ns_ == time_ns_) sample();
+    while (!messages_.empty() && messages_.front().due_ns <= time_ns_) {
+      receive(messages_.front().content());
+      messages_.pop();
+    }
+    if (firmware_.watchdog_due_ns() <= time_ns_) {
+      firmware_.watch(time_ns_);
+      plant_.set_currents(firmware_.currents());
+    }
+    deliver();
+  }
+}
+
+void SimulatedArm::sample() noexcept {
+  reports_.push(firmware_.sample(plant_.pose()), time_ns_ + wire_.delay_in_ns);
+  next_sample_ns_ += report_period_ns_;
+}
+
+void SimulatedArm::receive(std::span<const std::byte> bytes) noexcept {
+  firmware_.receive(bytes, time_ns_, plant_.pose());
+  plant_.set_currents(firmware_.currents());
+}
+
+void SimulatedArm::deliver() noexcept {
+  while (!reports_.empty() && reports_.front().due_ns <= time_ns_) {
+    const std::span<const std::byte> report = reports_.front().content();
+    std::copy(report.begin(), report.end(), newest_.bytes.begin());
+    newest_.size = report.size();
+    ++readable_;
+    reports_.pop();
+  }
+}
+
+std::size_t SimulatedArm::take_report(std::span<std::byte> buffer,
+                                      std::uint32_t& skipped) noexcept {
+  skipped = readable_ > 0 ? readable_ - 1 : 0;
+  if (readable_ == 0) return 0;
+  readable_ = 0;
+  const std::size_t size = std::min(newest_.size, buffer.size());
+  std::copy_n(newest_.bytes.begin(), size, buffer.begin());
+  return size;
+}
+
+std::int64_t SimulatedArm::next_report_ns() const noexcept {
+  if (readable_ > 0) return time_ns_;
+  if (!reports_.empty()) return reports_.front().due_ns;
+  return next_sample_ns_ + wire_.delay_in_ns;
+}
+
+void SimulatedArm::put_message(std::span<const std::byte> bytes) noexcept {
+  if (wire_.delay_out_ns == 0) {
+    receive(bytes);
+  } else {
+    messages_.push(bytes, time_ns_ + wire_.delay_out_ns);
+  }
+}
+
+}  // namespace thimble::device_sim

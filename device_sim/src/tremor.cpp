@@ -1,0 +1,67 @@
+#include "thimble/device_sim/tremor.h"
+
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+namespace thimble::device_sim {
+namespace {
+
+// Ratios without a common period, so that the pattern does not repeat within a session.
+const Eigen::Vector3d kRatios{0.83, 1.0, 1.19};
+// Shares of the amplitude; the middle is the strongest.
+const Eigen::Vector3d kShares{0.3, 0.4, 0.3};
+
+// SplitMix64 (Steele, Lea, Flood 2014): the same bits on every platform, which the distributions of
+// the standard library do not promise.
+class SplitMix {
+ public:
+  explicit SplitMix(std::uint64_t seed) noexcept : state_(seed) {}
+  double uniform() noexcept {
+    state_ += 0x9e3779b97f4a7c15ULL;
+    std::uint64_t z = state_;
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
+    z ^= z >> 31;
+    return static_cast<double>(z >> 11) * 0x1p-53;
+  }
+
+ private:
+  std::uint64_t state_;
+};
+
+}  // namespace
+
+Tremor::Tremor(const HandSettings& hand, std::uint64_t seed)
+    : angular_frequencies_(2 * std::numbers::pi * hand.tremor_frequency * kRatios),
+      still_(hand.tremor_amplitude == 0) {
+  if (!(hand.tremor_amplitude >= 0 && hand.tremor_amplitude < HUGE_VAL)) {
+    throw std::invalid_argument("The hand's tremor amplitude must be finite and not negative (m).");
+  }
+  if (!(hand.tremor_frequency >= 0 && hand.tremor_frequency < HUGE_VAL)) {
+    throw std::invalid_argument(
+        "The hand's tremor frequency must be finite and not negative (Hz).");
+  }
+  SplitMix random(seed);
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int wave = 0; wave < 3; ++wave) {
+      const double phase = 2 * std::numbers::pi * random.uniform();
+      // sin(w t + phase), so that one sine and cosine per frequency serve all axes.
+      sines_(axis, wave) = hand.tremor_amplitude * kShares[wave] * std::cos(phase);
+      cosines_(axis, wave) = hand.tremor_amplitude * kShares[wave] * std::sin(phase);
+    }
+  }
+}
+
+Eigen::Vector3d Tremor::at(double time) const noexcept {
+  if (still_) return Eigen::Vector3d::Zero();
+  Eigen::Vector3d sine, cosine;
+  for (int wave = 0; wave < 3; ++wave) {
+    const double angle = angular_frequencies_[wave] * time;
+    sine[wave] = std::sin(angle);
+    cosine[wave] = std::cos(angle);
+  }
+  return sines_ * sine + cosines_ * cosine;
+}
+
+}  // namespace thimble::device_sim

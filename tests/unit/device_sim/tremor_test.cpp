@@ -1,0 +1,67 @@
+#include "thimble/device_sim/tremor.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+
+namespace thimble::device_sim {
+namespace {
+
+HandSettings trembling(double amplitude) {
+  HandSettings hand;
+  hand.tremor_amplitude = amplitude;
+  hand.tremor_frequency = 10;
+  return hand;
+}
+
+TEST(Tremor, NeverExceedsItsAmplitudeAndComesNearIt) {
+  const Tremor tremor(trembling(300e-6), 1);
+  Eigen::Vector3d largest(0, 0, 0);
+  for (int k = 0; k < 200000; ++k) largest = largest.cwiseMax(tremor.at(k * 1e-3).cwiseAbs());
+  for (int axis = 0; axis < 3; ++axis) {
+    EXPECT_LE(largest[axis], 300e-6 * (1 + 1e-12));
+    EXPECT_GT(largest[axis], 0.9 * 300e-6);
+  }
+}
+
+TEST(Tremor, KeepsItsPowerBetweenEightAndTwelveHertz) {
+  const Tremor tremor(trembling(1), 2);
+  double inside = 0, outside = 0;
+  // 100 s hold a whole number of periods of all three sines (8.3, 10 and 11.9 Hz), so no power
+  // leaks.
+  for (int cycle = 0; cycle < 3000; cycle += 10) {
+    std::complex<double> sum = 0;
+    for (int k = 0; k < 10000; ++k) {
+      const double angle = -2 * std::numbers::pi * cycle * k / 10000.0;
+      sum += tremor.at(k * 0.01).x() * std::polar(1e-4, angle);
+    }
+    (cycle >= 800 && cycle <= 1200 ? inside : outside) += std::norm(sum);
+  }
+  EXPECT_GT(inside, 0.01);
+  EXPECT_LT(outside, 1e-20);
+}
+
+TEST(Tremor, DependsOnItsSeedAlone) {
+  const Tremor one(trembling(1), 5), same(trembling(1), 5), other(trembling(1), 6);
+  EXPECT_EQ(one.at(1.234), same.at(1.234));
+  EXPECT_NE(one.at(1.234), other.at(1.234));
+}
+
+TEST(Tremor, IsExactlyStillWithoutAmplitude) {
+  const Tremor tremor(trembling(0), 1);
+  EXPECT_EQ(tremor.at(3.21), Eigen::Vector3d(0, 0, 0));
+}
+
+TEST(Tremor, RefusesAmplitudesAndFrequenciesOutOfRange) {
+  EXPECT_THROW(Tremor(trembling(-1), 0), std::invalid_argument);
+  HandSettings hand = trembling(1);
+  hand.tremor_frequency = std::numeric_limits<double>::infinity();
+  EXPECT_THROW(Tremor(hand, 0), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace thimble::device_sim
