@@ -1,0 +1,68 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "thimble/render/mesh/triangle_mesh.h"
+
+namespace thimble::render {
+
+/// Is a triangle's smallest height as a share of its longest edge at or below which it counts as
+/// degenerate: coordinates carry 2^-53 of their size, so a flatter triangle's normal would be wrong
+/// by more than about 1e-4 rad. Relative, so that scaling a mesh changes no finding.
+inline constexpr double kFlatness = 1e-12;
+
+/// Is one kind of fault that keeps a mesh from being touched, how often it stands in the mesh, and
+/// where it stands first.
+struct MeshFault {
+  /// What is wrong with a mesh.
+  enum class Kind {
+    kNotFinite,           ///< A vertex with NaN or infinity.
+    kIndexOutOfRange,     ///< A triangle that names a vertex which does not exist.
+    kDegenerateTriangle,  ///< A triangle with no area, or with the same vertex twice.
+    kDuplicateTriangle,   ///< A triangle with the same three vertices as an earlier one.
+    kOpenEdge,            ///< An edge with one triangle: the mesh has a hole.
+    kNonManifoldEdge,     ///< An edge with three or more triangles.
+    kFlippedEdge,         ///< An edge whose two triangles are wound against each other.
+    kNonManifoldVertex,   ///< A vertex whose triangles form more than one fan.
+    kInsideOut,           ///< A closed component whose normals point into its material.
+  };
+  Kind kind{};
+  std::size_t count = 0;
+  std::string where;  ///< The first place, in words ("edge 12-57 near (0.1, 0.2, 0.3)").
+};
+
+/// Tells what a mesh is and what is wrong with it.
+struct MeshFindings {
+  std::size_t vertices = 0;
+  std::size_t unused_vertices = 0;
+  std::size_t triangles = 0;
+  std::size_t edges = 0;
+  std::size_t components = 0;
+  long euler_characteristic = 0;  ///< vertices in use - edges + triangles
+  Eigen::Vector3d box_min{0, 0, 0};
+  Eigen::Vector3d box_max{0, 0, 0};
+  double area = 0;
+  double volume = 0;  ///< Signed; meaningful only if closed.
+  double edge_min = 0, edge_mean = 0, edge_max = 0;
+  std::vector<MeshFault> faults;
+
+  /// True if each triangle touches exactly three others and everything is finite and wound alike:
+  /// what the contact algorithms need.
+  bool touchable() const { return faults.empty() && triangles > 0; }
+};
+
+/// Looks at a mesh, in whatever unit and frame it has. Total: any mesh gives findings; triangles
+/// that name no three finite vertices are counted and otherwise left out. Whether a closed
+/// component is inside out is told by how many others it lies in: a component in another one is a
+/// cavity and has its normals towards its own middle. O(n log n) plus O(n) per component that lies
+/// in another one's box. Real-time: never from the servo thread.
+MeshFindings check_mesh(const TriangleMesh& mesh);
+
+/// Tells a fault as one sentence ("3 edges belong to only one triangle, so the mesh has a hole;
+/// ...").
+std::string describe(const MeshFault& fault);
+
+}  // namespace thimble::render

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "thimble/driver/device_state.h"
+#include "thimble/render/contact/contact_state.h"
+
+namespace thimble::render {
+
+/// Pushes back like a spring and a damper along the surface's normal: F = k x + b v, with x the
+/// depth and v its growth [BP 2]. Never pulls, so that leaving does not stick. The `SurfaceForce`
+/// stage of Touch.
+struct SpringDamper {
+  double stiffness = 0;  ///< k, N/m, >= 0. The scene's loader checks both.
+  double damping = 0;    ///< b, N s/m, >= 0.
+
+  /// Finds the force on the hand, N in W. Precondition: the contact is touching. Zero if depth,
+  /// normal or velocity is NaN. Real-time: safe.
+  Eigen::Vector3d force(const ContactState& contact,
+                        const driver::DeviceState& state) const noexcept {
+    const double growth = -contact.n_W.dot(state.v_WT);
+    const double magnitude = stiffness * contact.depth + damping * growth;
+    // Written so that NaN means no force.
+    if (!(magnitude > 0)) return Eigen::Vector3d::Zero();
+    return magnitude * contact.n_W;
+  }
+};
+
+}  // namespace thimble::render

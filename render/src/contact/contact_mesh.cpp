@@ -1,0 +1,122 @@
+#include "thimble/render/contact/contact_mesh.h"
+
+#include <Eigen/Geometry>
+#include <string>
+#include <utility>
+
+#include "thimble/render/mesh/adjacency.h"
+#include "thimble/render/mesh/check_mesh.h"
+#include "thimble/render/mesh/orient_mesh.h"
+
+namespace thimble::render {
+namespace {
+
+using Eigen::Vector3d;
+
+// A distance is three products and three sums of numbers no larger than the mesh, each wrong by
+// 2^-53 of it, from a normal wrong by a few 2^-53: 64 x 2^-53 of the size covers them with room.
+constexpr double kDepthRounding = 64 * 0x1p-53;
+
+// The sum of two unit normals below which the faces lie back to back: the direction of their
+// average is then rounding, and the plane is put along the faces instead. At 1e-7 the direction
+// would still be good to 1e-9.
+constexpr double kBackToBack = 1e-7;
+
+Vector3d unit_normal(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
+  return (b - a).cross(c - a).stableNormalized();
+}
+
+// Finds the edge plane of two triangles, positive on the side of the first, which runs the edge
+// from `from` along `edge`. Of faces back to back with no matter between, the first keeps all
+// outside its face; a gap of no width is not told apart from that.
+Plane edge_plane(const Vector3d& from, const Vector3d& edge, const Vector3d& n_first,
+                 const Vector3d& n_second) {
+  const Vector3d average = n_first + n_second;
+  Plane plane;
+  plane.n = average.norm() > kBackToBack ? average.cross(edge).stableNormalized() : n_first;
+  plane.d = -plane.n.dot(from);
+  return plane;
+}
+
+}  // namespace
+
+driver::Result<ContactMesh> ContactMesh::build(const TriangleMesh& mesh,
+                                               const ContactMeshOptions& options) {
+  const MeshFindings findings = check_mesh(mesh);
+  if (findings.triangles == 0) return driver::Error{"The mesh has no triangles."};
+  std::string refusal;
+  bool inside_out = false;
+  for (const MeshFault& fault : findings.faults) {
+    if (fault.kind == MeshFault::Kind::kInsideOut && options.orient) {
+      inside_out = true;
+    } else {
+      refusal += ' ';
+      refusal += describe(fault);
+    }
+  }
+  if (!refusal.empty()) return driver::Error{"The mesh cannot be touched:" + refusal};
+
+  ContactMesh contact;
+  TriangleMesh oriented = mesh;
+  if (inside_out) contact.turned_components_ = orient_components(oriented);
+  const auto neighbours = find_adjacency(oriented);
+  if (!neighbours) return neighbours.error();
+
+  contact.vertices_ = std::move(oriented.vertices);
+  contact.triangles_ = std::move(oriented.triangles);
+  contact.cells_.resize(contact.triangles_.size());
+  for (std::size_t t = 0; t < contact.cells_.size(); ++t) {
+    contact.cells_[t].neighbours = (*neighbours)[t];
+  }
+  contact.box_min_ = findings.box_min;
+  contact.box_max_ = findings.box_max;
+  contact.origin_ = findings.box_min + (findings.box_max - findings.box_min) / 2;
+  // Far from the world's origin the vertices themselves carry the rounding of their place.
+  contact.depth_rounding_ =
+      kDepthRounding * ((findings.box_max - findings.box_min).norm() + contact.origin_.norm());
+  contact.compute_planes();
+  contact.collect_fans();
+  return contact;
+}
+
+void ContactMesh::compute_planes() {
+  for (std::int32_t t = 0; t < triangle_count(); ++t) {
+    Plane& face = cells_[static_cast<std::size_t>(t)].face;
+    face.n = unit_normal(position(t, 0), position(t, 1), position(t, 2));
+    face.d = -face.n.dot(position(t, 0) - origin_);
+  }
+  for (std::int32_t t = 0; t < triangle_count(); ++t) {
+    TriangleCell& mine = cells_[static_cast<std::size_t>(t)];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::int32_t other = mine.neighbours[k];
+      TriangleCell& theirs = cells_[static_cast<std::size_t>(other)];
+      const std::int32_t from = corners(t)[k];
+      const std::int32_t to = corners(t)[(k + 1) % 3];
+      // Each edge is done once, by the triangle that runs it upwards.
+      if (from > to) continue;
+      const Plane plane = edge_plane(position(from) - origin_, position(to) - position(from),
+                                     mine.face.n, theirs.face.n);
+      mine.edges[k] = plane;
+      for (std::size_t j = 0; j < 3; ++j) {
+        if (corners(other)[j] == to && corners(other)[(j + 1) % 3] == from) {
+          theirs.edges[j] = {-plane.n, -plane.d};
+        }
+      }
+    }
+  }
+}
+
+void ContactMesh::collect_fans() {
+  fan_begin_.assign(vertices_.size() + 1, 0);
+  for (const auto& triangle : triangles_) {
+    for (const std::int32_t v : triangle) ++fan_begin_[static_cast<std::size_t>(v) + 1];
+  }
+  for (std::size_t v = 0; v < vertices_.size(); ++v) fan_begin_[v + 1] += fan_begin_[v];
+  fans_.resize(3 * triangles_.size());
+  std::vector<std::size_t> next(fan_begin_.begin(), fan_begin_.end() - 1);
+  for (std::int32_t t = 0; t < triangle_count(); ++t) {
+    for (const std::int32_t v : corners(t)) fans_[next[static_cast<std::size_t>(v)]++] = t;
+  }
+}
+
+}  // namespace thimble::render

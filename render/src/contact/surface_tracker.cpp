@@ -1,0 +1,153 @@
+#include "thimble/render/contact/surface_tracker.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "thimble/render/contact/closest_point.h"
+
+namespace thimble::render {
+namespace {
+
+using Eigen::Vector3d;
+
+// Is an edge plane with the tip's distance to it; negative means violated.
+struct WorstEdge {
+  std::size_t edge = 0;
+  double distance = 0;
+};
+
+WorstEdge worst_edge(const TriangleCell& cell, const Vector3d& p) noexcept {
+  const double d0 = cell.edges[0].distance(p);
+  const double d1 = cell.edges[1].distance(p);
+  const double d2 = cell.edges[2].distance(p);
+  WorstEdge worst{0, d0};
+  if (d1 < worst.distance) worst = {1, d1};
+  if (d2 < worst.distance) worst = {2, d2};
+  return worst;
+}
+
+// Keeps the triangle nearest to the tip among those that have the tip below them. At a vertex
+// several are equally near: there the deepest one tells inside from outside.
+class NearestAbove {
+ public:
+  NearestAbove(const ContactMesh& mesh, const Vector3d& p_WT) noexcept : mesh_(mesh), p_WT_(p_WT) {}
+
+  void consider(std::int32_t triangle) noexcept {
+    const double depth = mesh_.depth(triangle, p_WT_);
+    if (!(depth >= -mesh_.depth_rounding())) return;
+    const Vector3d nearest =
+        closest_point(p_WT_, mesh_.position(triangle, 0), mesh_.position(triangle, 1),
+                      mesh_.position(triangle, 2));
+    const double distance = (nearest - p_WT_).squaredNorm();
+    if (distance < distance_ || (distance == distance_ && depth > depth_)) {
+      triangle_ = triangle;
+      distance_ = distance;
+      depth_ = depth;
+    }
+  }
+
+  std::int32_t triangle() const noexcept { return triangle_; }
+
+ private:
+  const ContactMesh& mesh_;
+  const Vector3d& p_WT_;
+  std::int32_t triangle_ = -1;
+  double distance_ = std::numeric_limits<double>::infinity();
+  double depth_ = 0;
+};
+
+}  // namespace
+
+TrackerStep SurfaceTracker::follow(const Vector3d& p_WT) noexcept {
+  const std::int32_t before = active_;
+  TrackerStep step;
+  step.hops = walk(p_WT - mesh_->origin());
+  double depth = mesh_->depth(active_, p_WT);
+  if (depth >= 0) return {true, depth, step.hops};
+  if (!search_->inside(p_WT)) return step;
+  // Inside, with the plane above by no more than rounding: the tip is on the surface.
+  if (depth < -mesh_->depth_rounding()) {
+    if (find_near(p_WT, before)) {
+      ++counters_.found_near;
+    } else {
+      find_far(p_WT);
+      ++counters_.found_far;
+    }
+    depth = mesh_->depth(active_, p_WT);
+  }
+  step.touching = true;
+  step.depth = std::max(depth, 0.0);
+  return step;
+}
+
+std::uint16_t SurfaceTracker::walk(const Vector3d& p) noexcept {
+  // Nearly every tick ends here or one hop on, without the memory that a long walk needs.
+  if (!(worst_edge(mesh_->cell(active_), p).distance < 0)) return 0;
+  return settle(p);
+}
+
+std::uint16_t SurfaceTracker::settle(const Vector3d& p) noexcept {
+  std::array<std::int32_t, kHopsMax> visited;
+  std::int32_t best = active_;
+  double best_distance = -std::numeric_limits<double>::infinity();
+  for (std::uint16_t hops = 0; hops < kHopsMax; ++hops) {
+    const TriangleCell& cell = mesh_->cell(active_);
+    const WorstEdge worst = worst_edge(cell, p);
+    if (!(worst.distance < 0)) return hops;
+    if (worst.distance > best_distance) {
+      best = active_;
+      best_distance = worst.distance;
+    }
+    visited[hops] = active_;
+    const std::int32_t next = cell.neighbours[worst.edge];
+    const auto end = visited.begin() + hops + 1;
+    if (std::find(visited.begin(), end, next) != end) {
+      ++counters_.cycles;
+      active_ = best;
+      return hops;
+    }
+    active_ = next;
+  }
+  ++counters_.long_walks;
+  active_ = best;
+  return kHopsMax;
+}
+
+bool SurfaceTracker::find_near(const Vector3d& p_WT, std::int32_t before) noexcept {
+  // Ring by ring over shared vertices, from where the walk ended and from where it began: a far
+  // side is reached only around an edge, never through the material.
+  std::array<std::int32_t, kPatchMax> patch;
+  std::int32_t size = 0;
+  const auto add = [&patch, &size](std::int32_t triangle) noexcept {
+    const auto end = patch.begin() + size;
+    if (size < kPatchMax && std::find(patch.begin(), end, triangle) == end) {
+      patch[static_cast<std::size_t>(size++)] = triangle;
+    }
+  };
+  add(active_);
+  add(before);
+  NearestAbove nearest(*mesh_, p_WT);
+  for (std::int32_t i = 0; i < size; ++i) {
+    const std::int32_t triangle = patch[static_cast<std::size_t>(i)];
+    nearest.consider(triangle);
+    for (const std::int32_t vertex : mesh_->corners(triangle)) {
+      if (size == kPatchMax) break;
+      for (const std::int32_t around : mesh_->fan(vertex)) {
+        if (size == kPatchMax) break;
+        add(around);
+      }
+    }
+  }
+  if (nearest.triangle() < 0) return false;
+  active_ = nearest.triangle();
+  return true;
+}
+
+void SurfaceTracker::find_far(const Vector3d& p_WT) noexcept {
+  NearestAbove nearest(*mesh_, p_WT);
+  for (std::int32_t t = 0; t < mesh_->triangle_count(); ++t) nearest.consider(t);
+  if (nearest.triangle() >= 0) active_ = nearest.triangle();
+}
+
+}  // namespace thimble::render

@@ -1,0 +1,55 @@
+#include "thimble/render/mesh/adjacency.h"
+
+#include <string>
+
+#include "mesh/mesh_edges.h"
+
+namespace thimble::render {
+namespace {
+
+std::string edge_name(const EdgeUse& use) {
+  return "Edge " + std::to_string(use.low) + "-" + std::to_string(use.high);
+}
+
+}  // namespace
+
+driver::Result<Adjacency> find_adjacency(const TriangleMesh& mesh) {
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (!has_three_vertices(mesh, t)) {
+      return driver::Error{"Triangle " + std::to_string(t) +
+                           " does not name three different vertices that exist: remove it."};
+    }
+  }
+  Adjacency neighbours(mesh.triangles.size());
+  const std::vector<EdgeUse> uses = sorted_edge_uses(mesh);
+  for (std::size_t begin = 0; begin < uses.size();) {
+    const std::size_t end = end_of_edge(uses, begin);
+    const EdgeUse& first = uses[begin];
+    if (end - begin == 1) {
+      return driver::Error{edge_name(first) + " belongs to triangle " +
+                           std::to_string(first.triangle) +
+                           " alone, so the mesh has a hole: close it."};
+    }
+    if (end - begin > 2) {
+      return driver::Error{edge_name(first) + " belongs to " + std::to_string(end - begin) +
+                           " triangles: split the mesh there so that each edge has two."};
+    }
+    const EdgeUse& second = uses[begin + 1];
+    if (first.upward == second.upward) {
+      return driver::Error{edge_name(first) + " lies between triangles " +
+                           std::to_string(first.triangle) + " and " +
+                           std::to_string(second.triangle) +
+                           ", which are wound against each other: turn one of them round."};
+    }
+    const auto place = [&neighbours](const EdgeUse& use) -> std::int32_t& {
+      return neighbours[static_cast<std::size_t>(use.triangle)]
+                       [static_cast<std::size_t>(use.corner)];
+    };
+    place(first) = second.triangle;
+    place(second) = first.triangle;
+    begin = end;
+  }
+  return neighbours;
+}
+
+}  // namespace thimble::render

@@ -1,0 +1,62 @@
+#include "thimble/render/mesh/check_mesh.h"
+
+namespace thimble::render {
+namespace {
+
+// Says what is wrong (for one and for many) and what to do about it.
+struct Wording {
+  const char* one;
+  const char* many;
+  const char* remedy;
+};
+
+Wording wording_of(MeshFault::Kind kind) {
+  switch (kind) {
+    case MeshFault::Kind::kNotFinite:
+      return {"vertex has a coordinate that is no finite number",
+              "vertices have coordinates that are no finite numbers", "export the mesh again"};
+    case MeshFault::Kind::kIndexOutOfRange:
+      return {"triangle names a vertex that does not exist",
+              "triangles name vertices that do not exist", "export the mesh again"};
+    case MeshFault::Kind::kDegenerateTriangle:
+      return {"triangle has no area", "triangles have no area",
+              "collapse such triangles in a mesh editor"};
+    case MeshFault::Kind::kDuplicateTriangle:
+      return {"triangle repeats another one", "triangles repeat others",
+              "remove the copies in a mesh editor"};
+    case MeshFault::Kind::kOpenEdge:
+      return {"edge belongs to only one triangle, so the mesh has a hole",
+              "edges belong to only one triangle, so the mesh has a hole",
+              "close the mesh in a mesh editor"};
+    case MeshFault::Kind::kNonManifoldEdge:
+      return {"edge belongs to more than two triangles", "edges belong to more than two triangles",
+              "split the mesh there so that each edge has two triangles"};
+    case MeshFault::Kind::kFlippedEdge:
+      return {"edge lies between triangles wound against each other",
+              "edges lie between triangles wound against each other",
+              "turn the triangles on one side round"};
+    case MeshFault::Kind::kNonManifoldVertex:
+      return {"vertex joins parts that share nothing else",
+              "vertices join parts that share nothing else",
+              "give each part a vertex of its own, a little apart"};
+    case MeshFault::Kind::kInsideOut:
+      return {"closed component has its normals pointing into its material",
+              "closed components have their normals pointing into their material",
+              "turn all its triangles round, or let the contact mesh do it (option `orient`)"};
+  }
+  return {"fault is of an unknown kind", "faults are of an unknown kind", "report this"};
+}
+
+}  // namespace
+
+std::string describe(const MeshFault& fault) {
+  const Wording wording = wording_of(fault.kind);
+  std::string sentence = std::to_string(fault.count) + " ";
+  sentence += fault.count == 1 ? wording.one : wording.many;
+  if (!fault.where.empty()) {
+    sentence += (fault.count == 1 ? " (" : " (the first: ") + fault.where + ")";
+  }
+  return sentence + "; " + wording.remedy + ".";
+}
+
+}  // namespace thimble::render

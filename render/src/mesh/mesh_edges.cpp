@@ -1,0 +1,64 @@
+#include "mesh/mesh_edges.h"
+
+#include <algorithm>
+#include <numeric>
+#include <tuple>
+
+namespace thimble::render {
+
+bool has_three_vertices(const TriangleMesh& mesh, std::size_t triangle) {
+  const auto& [a, b, c] = mesh.triangles[triangle];
+  const auto size = static_cast<std::int64_t>(mesh.vertices.size());
+  const auto exists = [size](std::int32_t vertex) { return vertex >= 0 && vertex < size; };
+  return exists(a) && exists(b) && exists(c) && a != b && b != c && c != a;
+}
+
+std::vector<EdgeUse> sorted_edge_uses(const TriangleMesh& mesh) {
+  std::vector<EdgeUse> uses;
+  uses.reserve(3 * mesh.triangles.size());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (!has_three_vertices(mesh, t)) continue;
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      const std::int32_t from = mesh.triangles[t][corner];
+      const std::int32_t to = mesh.triangles[t][(corner + 1) % 3];
+      uses.push_back({std::min(from, to), std::max(from, to), static_cast<std::int32_t>(t),
+                      static_cast<std::int8_t>(corner), from < to});
+    }
+  }
+  std::sort(uses.begin(), uses.end(), [](const EdgeUse& a, const EdgeUse& b) {
+    return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
+  });
+  return uses;
+}
+
+std::size_t end_of_edge(const std::vector<EdgeUse>& uses, std::size_t begin) {
+  std::size_t end = begin + 1;
+  while (end < uses.size() && uses[end].low == uses[begin].low &&
+         uses[end].high == uses[begin].high) {
+    ++end;
+  }
+  return end;
+}
+
+Groups::Groups(std::size_t size) : parent_(size) {
+  std::iota(parent_.begin(), parent_.end(), 0);
+}
+
+std::int32_t Groups::find(std::int32_t member) {
+  auto at = [this](std::int32_t i) -> std::int32_t& {
+    return parent_[static_cast<std::size_t>(i)];
+  };
+  while (at(member) != member) {
+    at(member) = at(at(member));
+    member = at(member);
+  }
+  return member;
+}
+
+void Groups::join(std::int32_t a, std::int32_t b) {
+  a = find(a);
+  b = find(b);
+  parent_[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+}
+
+}  // namespace thimble::render

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "thimble/render/mesh/triangle_mesh.h"
+
+namespace thimble::render {
+
+/// Is one side of a triangle: the edge from its corner `corner` to the next corner.
+struct EdgeUse {
+  std::int32_t low = 0;   ///< The smaller vertex number of the edge.
+  std::int32_t high = 0;  ///< The larger one.
+  std::int32_t triangle = 0;
+  std::int8_t corner = 0;
+  bool upward = false;  ///< True if the triangle runs the edge from `low` to `high`.
+};
+
+/// Lists the sides of all triangles, sorted so that the sides of one edge stand together, in the
+/// order of their triangles. Triangles that name a vertex which does not exist, or one vertex
+/// twice, are left out. Real-time: never from the servo thread.
+std::vector<EdgeUse> sorted_edge_uses(const TriangleMesh& mesh);
+
+/// Finds the end of the group of sides that share the edge of side `begin`.
+std::size_t end_of_edge(const std::vector<EdgeUse>& uses, std::size_t begin);
+
+/// Tells whether a triangle names three different vertices that exist.
+bool has_three_vertices(const TriangleMesh& mesh, std::size_t triangle);
+
+/// Joins numbers into groups (union by smaller number, with path halving).
+class Groups {
+ public:
+  explicit Groups(std::size_t size);
+  std::int32_t find(std::int32_t member);
+  void join(std::int32_t a, std::int32_t b);
+
+ private:
+  std::vector<std::int32_t> parent_;
+};
+
+}  // namespace thimble::render

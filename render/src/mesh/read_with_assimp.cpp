@@ -1,0 +1,117 @@
+#include "mesh/read_with_assimp.h"
+
+#include <assimp/scene.h>
+
+#include <algorithm>
+#include <assimp/Importer.hpp>
+#include <cctype>
+#include <cmath>
+#include <cstdint>
+#include <exception>
+#include <limits>
+#include <sstream>
+
+#include "mesh/read_off.h"
+#include "mesh/triangulate_polygon.h"
+
+namespace thimble::render {
+namespace {
+
+using driver::Error;
+
+// Reads a PLY header through before the library does: the library sets memory aside for counts that
+// the file cannot hold, and does not come back from a header that is cut off.
+driver::Result<void> check_ply_header(std::string_view bytes) {
+  constexpr std::size_t kHeaderMax = 65536;
+  std::istringstream header{std::string(bytes.substr(0, kHeaderMax))};
+  std::string line;
+  while (std::getline(header, line)) {
+    std::istringstream words(line);
+    std::string keyword;
+    words >> keyword;
+    if (keyword == "end_header") return {};
+    if (keyword != "ply" && keyword != "format" && keyword != "comment" && keyword != "obj_info" &&
+        keyword != "element" && keyword != "property") {
+      break;
+    }
+    if (keyword != "element") continue;
+    std::string name;
+    long long count = 0;
+    if (!(words >> name >> count) || count < 0) {
+      return Error{"its header has no valid count in \"" + line.substr(0, 40) + "\"."};
+    }
+    if (static_cast<unsigned long long>(count) > bytes.size()) {
+      return Error{"its header promises " + std::to_string(count) + " of \"" + name.substr(0, 20) +
+                   "\" but the file has only " + std::to_string(bytes.size()) +
+                   " bytes: it is truncated."};
+    }
+  }
+  return Error{"this is no PLY file that can be read (its header does not reach end_header)."};
+}
+
+driver::Result<void> append(const aiMesh& part, TriangleMesh& mesh) {
+  const std::size_t first = mesh.vertices.size();
+  if (first + part.mNumVertices > std::numeric_limits<std::int32_t>::max()) {
+    return Error{"it has more than 2^31 - 1 vertices."};
+  }
+  for (unsigned i = 0; i < part.mNumVertices; ++i) {
+    const aiVector3D& v = part.mVertices[i];
+    const Eigen::Vector3d vertex(v.x, v.y, v.z);
+    for (const double x : vertex) {
+      if (!(std::abs(x) <= kCoordinateMax)) {
+        return Error{"vertex " + std::to_string(first + i) +
+                     " has a coordinate that is not a number between -1e15 and 1e15."};
+      }
+    }
+    mesh.vertices.push_back(vertex);
+  }
+  std::vector<std::int32_t> corners;
+  for (unsigned f = 0; f < part.mNumFaces; ++f) {
+    const aiFace& face = part.mFaces[f];
+    corners.clear();
+    for (unsigned corner = 0; corner < face.mNumIndices; ++corner) {
+      if (face.mIndices[corner] >= part.mNumVertices) {
+        return Error{"face " + std::to_string(f) + " names a vertex that does not exist."};
+      }
+      corners.push_back(static_cast<std::int32_t>(first + face.mIndices[corner]));
+    }
+    if (corners.size() >= 3) triangulate_polygon(mesh.vertices, corners, mesh.triangles);
+  }
+  return {};
+}
+
+// Tells why Assimp refused a file, without the name that it gives to files in memory.
+Error cannot_read(std::string ending, std::string reason) {
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  if (const auto name = reason.find(" for $$$"); name != std::string::npos) reason.resize(name);
+  while (!reason.empty() && (reason.back() == '\n' || reason.back() == '.')) reason.pop_back();
+  return Error{"this is no " + ending + " file that can be read (" + reason + ")."};
+}
+
+}  // namespace
+
+driver::Result<TriangleMesh> read_with_assimp(std::string_view bytes, const std::string& ending) {
+  if (bytes.empty()) return Error{"the file is empty."};
+  if (ending == "ply") {
+    if (auto counts = check_ply_header(bytes); !counts) return counts.error();
+  }
+  try {
+    Assimp::Importer importer;
+    const aiScene* scene =
+        importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, ending.c_str());
+    if (scene == nullptr) {
+      return cannot_read(ending, importer.GetErrorString());
+    }
+    TriangleMesh mesh;
+    for (unsigned i = 0; i < scene->mNumMeshes; ++i) {
+      if (auto appended = append(*scene->mMeshes[i], mesh); !appended) return appended.error();
+    }
+    if (mesh.triangles.empty()) return Error{"it has no face with three corners."};
+    return mesh;
+  } catch (const std::exception& exception) {
+    return cannot_read(ending, exception.what());
+  }
+}
+
+}  // namespace thimble::render

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "thimble/driver/result.h"
+#include "thimble/render/mesh/triangle_mesh.h"
+
+namespace thimble::render {
+
+/// Reads the bytes of an OBJ, STL or PLY file by the Assimp library. `ending` is "obj", "stl" or
+/// "ply". Not welded. The error is a sentence without the file's name. Real-time: never from the
+/// servo thread.
+driver::Result<TriangleMesh> read_with_assimp(std::string_view bytes, const std::string& ending);
+
+}  // namespace thimble::render

@@ -1,0 +1,79 @@
+#include "thimble/render/contact/contact_mesh.h"
+
+#include <gtest/gtest.h>
+
+#include "support/reference_geometry.h"
+#include "support/shapes.h"
+
+namespace thimble::render {
+namespace {
+
+using Eigen::Vector3d;
+
+TEST(ContactMesh, GivesNeighboursTheSameEdgePlaneWithOppositeSign) {
+  for (const TriangleMesh& mesh :
+       {support::bumpy_sphere(3, 0.05, 0.3, 6), support::wedge(0.08, 0.1, 0.1),
+        support::needle(64, 0.1, 0.01), support::plate(0.1, 0.0002, 3)}) {
+    const auto built = ContactMesh::build(mesh);
+    ASSERT_TRUE(built.ok());
+    for (std::int32_t t = 0; t < built->triangle_count(); ++t) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Plane& mine = built->cell(t).edges[k];
+        const TriangleCell& other = built->cell(built->cell(t).neighbours[k]);
+        int negations = 0;
+        for (std::size_t j = 0; j < 3; ++j) {
+          negations += other.neighbours[j] == t && other.edges[j].n == -mine.n &&
+                       other.edges[j].d == -mine.d;
+        }
+        EXPECT_EQ(negations, 1);
+        EXPECT_NEAR(mine.n.norm(), 1, 1e-14);
+      }
+    }
+  }
+}
+
+TEST(ContactMesh, PutsEdgePlanesThroughTheEdgeAndTheAverageNormal) {
+  const TriangleMesh mesh = support::bumpy_sphere(3, 0.05, 0.3, 6);
+  const auto built = ContactMesh::build(mesh);
+  ASSERT_TRUE(built.ok());
+  for (std::int32_t t = 0; t < built->triangle_count(); ++t) {
+    const Vector3d middle =
+        (built->position(t, 0) + built->position(t, 1) + built->position(t, 2)) / 3;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Plane& plane = built->cell(t).edges[k];
+      const auto other = static_cast<std::size_t>(built->cell(t).neighbours[k]);
+      const Vector3d average = support::outward_normal(mesh, static_cast<std::size_t>(t)) +
+                               support::outward_normal(mesh, other);
+      EXPECT_NEAR(plane.distance(built->position(t, k) - built->origin()), 0, 1e-16);
+      EXPECT_NEAR(plane.distance(built->position(t, (k + 1) % 3) - built->origin()), 0, 1e-16);
+      EXPECT_NEAR(plane.n.dot(average), 0, 1e-12);
+      EXPECT_GT(plane.distance(middle - built->origin()), 0);
+    }
+  }
+}
+
+TEST(ContactMesh, TurnsWhatIsInsideOutOnlyIfAllowed) {
+  TriangleMesh mesh = support::icosphere(1, 1);
+  for (auto& triangle : mesh.triangles) std::swap(triangle[0], triangle[1]);
+  const auto turned = ContactMesh::build(mesh);
+  ASSERT_TRUE(turned.ok());
+  EXPECT_EQ(turned->turned_components(), 1u);
+  EXPECT_GT(turned->depth(0, Vector3d::Zero()), 0);
+  const auto refused = ContactMesh::build(mesh, {.orient = false});
+  ASSERT_FALSE(refused.ok());
+  EXPECT_NE(refused.error().message.find("normals pointing into"), std::string::npos);
+}
+
+TEST(ContactMesh, RefusesAFaultyMeshWithAllItsSentences) {
+  TriangleMesh mesh = support::icosphere(1, 1);
+  mesh.triangles.pop_back();
+  std::swap(mesh.triangles[3][0], mesh.triangles[3][1]);
+  const auto refused = ContactMesh::build(mesh);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_NE(refused.error().message.find("has a hole"), std::string::npos);
+  EXPECT_NE(refused.error().message.find("wound against each other"), std::string::npos);
+  EXPECT_FALSE(ContactMesh::build({}).ok());
+}
+
+}  // namespace
+}  // namespace thimble::render

@@ -1,0 +1,171 @@
+#include "thimble/render/mesh/load_mesh.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <fstream>
+#include <string>
+
+#include "thimble/render/mesh/check_mesh.h"
+
+namespace thimble::render {
+namespace {
+
+const std::filesystem::path kMeshes = std::filesystem::path(THIMBLE_TEST_DATA) / "meshes";
+
+// A file that lives as long as the test.
+class MeshFile {
+ public:
+  MeshFile(const std::string& ending, const std::string& bytes)
+      : path_(std::filesystem::path(testing::TempDir()) /
+              ("load_mesh_" +
+               std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) + "." +
+               ending)) {
+    std::ofstream(path_, std::ios::binary) << bytes;
+  }
+  ~MeshFile() { std::filesystem::remove(path_); }
+  MeshFile(const MeshFile&) = delete;
+  MeshFile& operator=(const MeshFile&) = delete;
+
+  driver::Result<TriangleMesh> load() const { return load_mesh(path_); }
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+void expect_error(const std::string& ending, const std::string& bytes, const std::string& part) {
+  const MeshFile file(ending, bytes);
+  const auto mesh = file.load();
+  ASSERT_FALSE(mesh.ok()) << bytes.substr(0, 80);
+  EXPECT_EQ(mesh.error().message.find(file.path().string()), 0u) << mesh.error().message;
+  EXPECT_NE(mesh.error().message.find(part), std::string::npos) << mesh.error().message;
+}
+
+std::size_t triangles_in(const std::string& ending, const std::string& bytes) {
+  const MeshFile file(ending, bytes);
+  const auto mesh = file.load();
+  EXPECT_TRUE(mesh.ok()) << (mesh.ok() ? "" : mesh.error().message);
+  return mesh.ok() ? mesh->triangles.size() : 0;
+}
+
+const char* const kTetrahedron = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n";
+
+TEST(LoadMesh, ReadsTheSameMeshFromEveryFormat) {
+  for (const char* name : {"box.off", "box.obj", "box.ply", "box_ascii.stl", "box_binary.stl"}) {
+    const auto mesh = load_mesh(kMeshes / name);
+    ASSERT_TRUE(mesh.ok()) << mesh.error().message;
+    const MeshFindings findings = check_mesh(*mesh);
+    EXPECT_TRUE(findings.touchable()) << name;
+    EXPECT_EQ(findings.vertices, 8u) << name;
+    EXPECT_EQ(findings.triangles, 12u) << name;
+    EXPECT_DOUBLE_EQ(findings.volume, 6) << name;
+  }
+}
+
+TEST(LoadMesh, KeepsDoublePrecisionOfOff) {
+  const MeshFile file("off", "OFF 3 1 0\n0.1234567890123456 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  const auto mesh = file.load();
+  ASSERT_TRUE(mesh.ok());
+  EXPECT_EQ(mesh->vertices[0].x(), 0.1234567890123456);
+}
+
+TEST(LoadMesh, UnderstandsEveryDialectOfOffText) {
+  EXPECT_EQ(triangles_in("off", std::string("OFF\n4 4 6\n") + kTetrahedron), 4u);
+  EXPECT_EQ(triangles_in("off", std::string("OFF 4 4 6\n") + kTetrahedron), 4u);
+  EXPECT_EQ(triangles_in("OFF", std::string("# c\n\nOFF # c\n# c\n4 4\n\n") + kTetrahedron), 4u);
+  EXPECT_EQ(triangles_in("off", std::string("OFF\n4 4 6\n") + kTetrahedron + "text after"), 4u);
+  EXPECT_EQ(triangles_in("off", "OFF\r\n3 1 0\r\n0 0 0\r\n+1 0 0\r\n0 1 0\r\n3 0 1 2\r\n"), 1u);
+  EXPECT_EQ(triangles_in("off", "OFF 3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2  255 0 0\n"), 1u);
+  EXPECT_EQ(triangles_in("off", "COFF 3 1 0\n0 0 0 1 2 3 4\n1 0 0 1 2 3\n0 1 0\n3 0 1 2\n"), 1u);
+  EXPECT_EQ(triangles_in("off", "NOFF 3 1 0\n0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n3 0 1 2"), 1u);
+  EXPECT_EQ(triangles_in("off", "STOFF 3 1 0\n0 0 0 0 0\n1 0 0 0 1\n0 1 0 1 0\n3 0 1 2"), 1u);
+}
+
+TEST(LoadMesh, SplitsConvexAndConcavePolygonsWithoutChangingTheirArea) {
+  EXPECT_EQ(triangles_in("off", "OFF 4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n"), 2u);
+  // An arrowhead: a fan from its first corner would cover the notch and count it twice.
+  const MeshFile file("off", "OFF 4 1 0\n0 0 0\n2 -1 0\n1 0 0\n2 1 0\n4 1 2 3 0\n");
+  const auto mesh = file.load();
+  ASSERT_TRUE(mesh.ok());
+  EXPECT_EQ(mesh->triangles.size(), 2u);
+  EXPECT_DOUBLE_EQ(check_mesh(*mesh).area, 1);
+}
+
+TEST(LoadMesh, NamesFileAndLineOfEveryFaultInOffText) {
+  expect_error("off", "", ":1: the file is empty");
+  expect_error("off", "PLY 1 2 3", ":1: an OFF file begins with OFF, not with \"PLY\"");
+  expect_error("off", "4OFF 1 1 0\n", ":1: 4OFF has vertices that are not three numbers");
+  expect_error("off", "OFF BINARY\n", ":1: binary OFF is not read");
+  expect_error("off", "OFF\nx 1 0\n", ":2: expected a count, found \"x\"");
+  expect_error("off", "OFF\n-3 1 0\n", ":2: the count \"-3\" is negative");
+  expect_error("off", "OFF\n1000000000000 1000000000000 0\n", "promises 1000000000000 vertices");
+  expect_error("off", "OFF\n3 1000000000000 0\n0 0 0\n1 0 0\n0 1 0\n", "000000000000 faces");
+  expect_error("off", "OFF\n3 1 0\n0 0 0\n1 0 nan\n0 1 0\n3 0 1 2\n", ":4: \"nan\" in vertex 1");
+  expect_error("off", "OFF\n3 1 0\n0 0 0\n1 0 1e300\n0 1 0\n3 0 1 2\n", ":4: \"1e300\"");
+  expect_error("off", "OFF\n3 1 0\n0 0 0\n1 0 1e999\n0 1 0\n3 0 1 2\n", ":4: \"1e999\"");
+  expect_error("off", "OFF\n3 1 0\n0.00 0.00 0.00\n1.00 0.00\n", "ends in vertex 1 of 3");
+  expect_error("off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n",
+               ":6: face 0 names vertex \"3\"; the vertices are 0 to 2");
+  expect_error("off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 -1 2\n", "names vertex \"-1\"");
+  expect_error("off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1\n",
+               "ends in face 0: it is truncated");
+  expect_error("off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n1000000000000 0 1 2\n", "ends in face 0");
+  expect_error("off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n0    \n", "number of corners of face 0");
+  expect_error("off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n2 0 1\n", "no face with three corners");
+  expect_error("off", "OFF\n0 0 0\n", "no face with three corners");
+}
+
+TEST(LoadMesh, RefusesWhatIsNoMeshFile) {
+  EXPECT_NE(load_mesh("no_such_file.off").error().message.find("no such file"), std::string::npos);
+  EXPECT_NE(load_mesh("mesh.xyz").error().message.find("ending \"xyz\" is not known"),
+            std::string::npos);
+  const auto folder = std::filesystem::path(testing::TempDir()) / "load_mesh_folder.off";
+  std::filesystem::create_directories(folder);
+  EXPECT_NE(load_mesh(folder).error().message.find("this is not a file"), std::string::npos);
+  std::filesystem::remove(folder);
+}
+
+TEST(LoadMesh, AnswersGarbageInEveryFormatWithAnError) {
+  std::string garbage;
+  std::uint32_t seed = 7;
+  for (int i = 0; i < 4000; ++i)
+    garbage += static_cast<char>((seed = seed * 1664525u + 1013904223u) >> 24);
+  for (const char* ending : {"off", "obj", "stl", "ply"}) {
+    expect_error(ending, garbage, ": ");
+    expect_error(ending, "", "the file is empty");
+  }
+}
+
+TEST(LoadMesh, RefusesPromisesThatAFileCannotKeep) {
+  expect_error("ply",
+               "ply\nformat ascii 1.0\nelement vertex 1000000000000\nproperty float x\n"
+               "property float y\nproperty float z\nend_header\n0 0 0\n",
+               "promises 1000000000000 of \"vertex\"");
+  std::string stl(84, '\0');
+  const std::uint32_t promised = 1000000000;
+  std::memcpy(stl.data() + 80, &promised, sizeof promised);
+  expect_error("stl", stl + std::string(100, '\1'), "this is no STL file that can be read");
+}
+
+TEST(LoadMesh, AnswersEveryTruncationOfEveryFormat) {
+  for (const char* name : {"box.off", "box.obj", "box.ply", "box_ascii.stl", "box_binary.stl"}) {
+    std::ifstream stream(kMeshes / name, std::ios::binary);
+    const std::string whole{std::istreambuf_iterator<char>(stream), {}};
+    ASSERT_FALSE(whole.empty()) << name;
+    for (std::size_t size = 0; size < whole.size(); size += 7) {
+      const MeshFile file(std::string(name).substr(std::string(name).size() - 3),
+                          whole.substr(0, size));
+      const auto mesh = file.load();
+      // A cut between two faces of a format without counts is a smaller mesh, not an error.
+      if (mesh.ok()) {
+        EXPECT_LE(mesh->triangles.size(), 12u) << name << " cut at " << size;
+      } else {
+        EXPECT_FALSE(mesh.error().message.empty());
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace thimble::render

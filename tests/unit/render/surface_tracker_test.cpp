@@ -1,0 +1,201 @@
+#include "thimble/render/contact/surface_tracker.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "support/reference_geometry.h"
+#include "support/shapes.h"
+#include "thimble/render/contact/mesh_contact.h"
+
+namespace thimble::render {
+namespace {
+
+using Eigen::Vector3d;
+
+const ContactState& move(MeshContact& contact, const Vector3d& p_WT) {
+  driver::DeviceState state;
+  state.p_WT = p_WT;
+  return contact.update(state);
+}
+
+// Walks below a surface along a wandering path and counts contacts lost while the tip is inside.
+struct Walk {
+  int crossings = 0;
+  int lost = 0;
+  int inside = 0;
+  std::uint16_t hops_max = 0;
+  TrackerCounters counters;
+};
+
+Walk wander(const TriangleMesh& mesh, double depth, double step, int crossings_wanted) {
+  MeshContact contact = MeshContact::build(mesh).value();
+  std::mt19937_64 random(11);
+  std::normal_distribution<double> normal;
+  const auto any = [&] { return Vector3d(normal(random), normal(random), normal(random)); };
+  Walk walk;
+  Vector3d heading = any();
+  Vector3d p = support::corner(mesh, 0, 0) * 1.5;
+  move(contact, p);
+  p = (support::corner(mesh, 0, 0) + support::corner(mesh, 0, 1) + support::corner(mesh, 0, 2)) /
+          3 -
+      depth * support::outward_normal(mesh, 0);
+  move(contact, p);
+  for (int i = 0; walk.crossings < crossings_wanted && i < 20 * crossings_wanted; ++i) {
+    const ContactState& state = contact.state();
+    if (!state.touching) {
+      // Only a tip outside may be free; the walk goes on from the first triangle.
+      ++walk.lost;
+      p = support::corner(mesh, 0, 0) * 1.5;
+      move(contact, p);
+      p = support::corner(mesh, 0, 0) * (1 - 1e-3);
+      move(contact, p);
+      continue;
+    }
+    heading = (heading + 0.2 * any()).normalized();
+    heading -= heading.dot(state.n_W) * state.n_W;
+    // Back to the wanted depth along the normal, on along the surface.
+    const Vector3d next = p + step * heading.normalized() + (state.depth - depth) * state.n_W * 0.5;
+    const std::int32_t before = state.triangle;
+    move(contact, next);
+    if (!contact.state().touching) {
+      if (support::is_inside(mesh, next)) {
+        ++walk.lost;
+      } else {
+        // Left over an edge: the wanted path goes round it, a little deeper.
+        move(contact, p);
+        if (!contact.state().touching) ++walk.lost;
+        heading = any();
+        continue;
+      }
+    }
+    walk.crossings += contact.state().triangle != before;
+    walk.hops_max = std::max(walk.hops_max, contact.state().hops);
+    p = next;
+  }
+  walk.counters = contact.counters();
+  return walk;
+}
+
+TEST(SurfaceTracker, LosesNoContactInManyCrossingsOfAConvexMesh) {
+  const Walk walk = wander(support::icosphere(4, 0.05), 0.0008, 0.001, 100000);
+  EXPECT_GE(walk.crossings, 100000);
+  EXPECT_EQ(walk.lost, 0);
+  EXPECT_EQ(walk.counters.found_far, 0u);
+}
+
+TEST(SurfaceTracker, LosesNoContactInManyCrossingsOfATorus) {
+  const Walk walk = wander(support::torus(0.05, 0.02, 60, 30), 0.0008, 0.001, 100000);
+  EXPECT_GE(walk.crossings, 100000);
+  EXPECT_EQ(walk.lost, 0);
+  EXPECT_EQ(walk.counters.found_far, 0u);
+}
+
+TEST(SurfaceTracker, LosesNoContactInManyCrossingsOfABumpyMesh) {
+  const Walk walk = wander(support::bumpy_sphere(4, 0.05, 0.3, 6), 0.0008, 0.001, 100000);
+  EXPECT_GE(walk.crossings, 100000);
+  EXPECT_EQ(walk.lost, 0);
+  EXPECT_EQ(walk.counters.found_far, 0u);
+}
+
+TEST(SurfaceTracker, KeepsDepthWhenCrossingAnEdge) {
+  const TriangleMesh mesh = support::bumpy_sphere(3, 0.05, 0.3, 6);
+  const ContactMesh contact = ContactMesh::build(mesh).value();
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  for (std::int32_t t = 0; t < contact.triangle_count(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::int32_t other = contact.cell(t).neighbours[k];
+      const Vector3d average = contact.cell(t).face.n + contact.cell(other).face.n;
+      const double along = uniform(random);
+      const Vector3d on_plane = (1 - along) * contact.position(t, k) +
+                                along * contact.position(t, (k + 1) % 3) -
+                                0.002 * uniform(random) * average;
+      EXPECT_NEAR(contact.depth(t, on_plane), contact.depth(other, on_plane), 1e-16);
+    }
+  }
+}
+
+TEST(SurfaceTracker, ChangesDepthByNoMoreThanTheTipMovesOverOneEdge) {
+  MeshContact contact = MeshContact::build(support::icosphere(3, 0.05)).value();
+  std::mt19937_64 random(4);
+  std::normal_distribution<double> normal;
+  Vector3d p(0.049, 0.001, 0.002);
+  move(contact, {0.06, 0.001, 0.002});
+  move(contact, p);
+  int single_hops = 0;
+  for (int i = 0; i < 100000; ++i) {
+    const double depth = contact.state().depth;
+    const Vector3d next =
+        0.0485 *
+        (p + 0.0003 * Vector3d(normal(random), normal(random), normal(random))).normalized();
+    const ContactState& state = move(contact, next);
+    ASSERT_TRUE(state.touching);
+    if (state.hops <= 1) {
+      ASSERT_LE(std::abs(state.depth - depth), (next - p).norm() + 1e-16);
+      single_hops += state.hops;
+    }
+    p = next;
+  }
+  EXPECT_GT(single_hops, 1000);
+}
+
+TEST(SurfaceTracker, SettlesWithinItsBoundAtANeedleTipAndInAnAcuteWedge) {
+  struct Case {
+    TriangleMesh mesh;
+    Vector3d entry, middle;
+    double size;
+  };
+  std::mt19937_64 random(6);
+  std::normal_distribution<double> normal;
+  for (const Case& now :
+       {Case{support::needle(64, 0.05, 0.01), {0.0004, 0.0003, 0.045}, {0, 0, 0.047}, 0.002},
+        Case{support::wedge(5 * std::numbers::pi / 180, 0.05, 0.05),
+             {0.04, 0.001, 0.0001},
+             {0.048, 0, 0},
+             0.001}}) {
+    MeshContact contact = MeshContact::build(now.mesh).value();
+    int touched = 0;
+    for (int i = 0; i < 20000; ++i) {
+      if (!contact.state().touching) {
+        move(contact, now.entry + Vector3d(0.02, 0.01, 0.02));
+        move(contact, now.entry);
+      }
+      const Vector3d p =
+          now.middle + now.size * Vector3d(normal(random), normal(random), normal(random));
+      const ContactState& state = move(contact, p);
+      ASSERT_LE(state.hops, kHopsMax);
+      if (support::is_inside(now.mesh, p)) {
+        ASSERT_TRUE(state.touching);
+      }
+      touched += state.touching;
+    }
+    EXPECT_GT(touched, 1000);
+    EXPECT_EQ(contact.counters().long_walks, 0u);
+  }
+}
+
+TEST(SurfaceTracker, NeverPopsThroughAThinPlate) {
+  for (const double side : {1.0, -1.0}) {
+    MeshContact contact = MeshContact::build(support::plate(0.1, 0.0002, 8)).value();
+    std::mt19937_64 random(8);
+    std::normal_distribution<double> tremor(0, 0.0001);
+    move(contact, {0.003, 0.002, side * 0.01});
+    for (int i = 0; i < 2000; ++i) {
+      // Down to 8.5 mm, as deep as 8.5 N at 1 N/mm, and back to the surface.
+      const double press = 0.0085 * std::sin(std::numbers::pi * (i + 0.5) / 2000);
+      const Vector3d p(0.003 + tremor(random), 0.002 + tremor(random), side * (0.0001 - press));
+      const ContactState& state = move(contact, p);
+      ASSERT_TRUE(state.touching) << i;
+      ASSERT_NEAR(state.depth, press, 1e-15);
+      ASSERT_EQ(state.n_W, Vector3d(0, 0, side));
+    }
+    EXPECT_FALSE(move(contact, {0.003, 0.002, side * 0.0002}).touching);
+  }
+}
+
+}  // namespace
+}  // namespace thimble::render
