@@ -1,0 +1,9 @@
+#!/usr/bin/env bash
+# The first touch: sets the machine up, then a simulated PHANTOM-class arm in a simulated hand touches
+# a scanned elephant for 10 s at 1 kHz, and pictures of it are drawn.
+#   app/demo.sh [options of `thimble run`]      for example: app/demo.sh --duration 3
+set -euo pipefail
+cd "$(dirname "$0")/.."
+app/setup.sh release thimble
+exec build/release/app/thimble run app/scenes/elephant.yaml --device sim --clock wall \
+  --report build/demo "$@"

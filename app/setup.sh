@@ -1,0 +1,65 @@
+#!/usr/bin/env bash
+# Makes a Debian 12 machine ready and builds one preset: installs the Debian packages that are missing,
+# unpacks the scanned meshes, configures, builds. Quick when there is nothing to do.
+#   app/setup.sh [PRESET [TARGET...]]      PRESET: release (default), dev, asan, tsan
+set -euo pipefail
+cd "$(dirname "$0")/.."
+preset=${1:-release}
+targets=("${@:2}")
+
+packages=(
+  g++ cmake ninja-build pkg-config       # to build
+  libeigen3-dev                          # vectors and matrices
+  libusb-1.0-0-dev libhidapi-dev         # arms on USB
+  libassimp-dev                          # OBJ, STL and PLY files
+  libyaml-cpp-dev nlohmann-json3-dev     # scenes in, reports out
+  libspdlog-dev libcli11-dev             # messages and arguments of the program
+  gnuplot-nox fonts-dejavu-core          # pictures
+  libgtest-dev libbenchmark-dev          # tests and benchmarks
+)
+
+missing=()
+for package in "${packages[@]}"; do
+  dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q '^install ok installed$' ||
+    missing+=("$package")
+done
+if [ ${#missing[@]} -gt 0 ]; then
+  if ! command -v apt-get >/dev/null; then
+    echo "Thimble needs these Debian packages, and this system has no apt-get: ${missing[*]}" >&2
+    exit 3
+  fi
+  if [ "$(id -u)" = 0 ]; then
+    as_root=()
+  elif command -v sudo >/dev/null && { sudo -n true 2>/dev/null || [ -t 0 ]; }; then
+    as_root=(sudo)
+  else
+    echo "Thimble needs Debian packages that only an administrator can install. Ask one to run:" >&2
+    echo "  apt-get install --no-install-recommends ${missing[*]}" >&2
+    exit 3
+  fi
+  echo "Installing Debian packages: ${missing[*]}"
+  "${as_root[@]}" apt-get update -q
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
+    apt-get install -y -q --no-install-recommends "${missing[@]}"
+fi
+
+app/fetch_meshes.sh
+
+log=build/$preset.log
+mkdir -p build
+run() {
+  "$@" >>"$log" 2>&1 || {
+    tail -n 40 "$log" >&2
+    echo "'$*' failed; the whole output is in $log." >&2
+    exit 4
+  }
+}
+: >"$log"
+[ -f "build/$preset/build.ninja" ] || run cmake --preset "$preset"
+if [ ${#targets[@]} -gt 0 ]; then
+  echo "Building ${targets[*]} ($preset) ..."
+  run cmake --build --preset "$preset" --target "${targets[@]}"
+else
+  echo "Building everything ($preset) ..."
+  run cmake --build --preset "$preset"
+fi

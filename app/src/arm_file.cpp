@@ -1,0 +1,137 @@
+#include "arm_file.h"
+
+#include <cmath>
+#include <cstdint>
+
+#include "yaml_reader.h"
+
+namespace thimble::app {
+namespace {
+
+// The bounds below are no limits of any arm: they are far outside of what a desk-top arm can be
+// [DEVICES 3], so that a slipped decimal point or a value in mm is caught at its line.
+
+std::int64_t to_ns(double seconds) {
+  return std::llround(seconds * 1e9);
+}
+
+driver::SerialArm read_geometry(YamlMap map) {
+  driver::SerialArm geometry;
+  geometry.height = map.require_number("height", "m", -1, 1);
+  geometry.length_b = map.require_number("length_b", "m", 0.01, 1);
+  geometry.length_c = map.require_number("length_c", "m", 0.01, 1);
+  map.finish();
+  return geometry;
+}
+
+void read_joints(YamlMap map, driver::hfab::HfabModel& model) {
+  const Eigen::Vector3d ratio = map.require_vector3("ratio", "motor turns per joint turn", 1, 1000);
+  const Eigen::Vector3d torque = map.require_vector3("torque_constant", "N m/A", 1e-4, 10);
+  const Eigen::Vector3d current = map.require_vector3("current_max", "A", 0.01, 32);
+  const Eigen::Vector3d counts = map.require_vector3("counts_per_motor_turn", "counts", 1, 1e6);
+  const Eigen::Vector3d home = map.require_vector3("home_counts", "counts", -1e6, 1e6);
+  const Eigen::Vector3d motor_sign = map.require_vector3("motor_sign", "", -1, 1);
+  const Eigen::Vector3d encoder_sign = map.require_vector3("encoder_sign", "", -1, 1);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    if (std::abs(motor_sign[k]) != 1) map.reject("motor_sign", "expected each to be 1 or -1");
+    if (std::abs(encoder_sign[k]) != 1) map.reject("encoder_sign", "expected each to be 1 or -1");
+    if (home[k] != std::round(home[k])) map.reject("home_counts", "expected whole numbers");
+    model.drives[i] = {motor_sign[k], ratio[k], torque[k], current[k]};
+    model.encoders[i] = {encoder_sign[k], counts[k], static_cast<std::int32_t>(home[k])};
+  }
+  map.finish();
+}
+
+driver::GateLimits read_gate(YamlMap map) {
+  driver::GateLimits limits;
+  limits.force_max = map.require_number("force_max", "N", 0.01, 100);
+  limits.speed_max = map.require_number("speed_max", "m/s", 0.01, 20);
+  limits.rise_max = map.require_number("rise_max", "N/s", 1, 1e6);
+  limits.soft_start = map.require_number("soft_start", "s", 0, 10);
+  limits.stall_ns = to_ns(map.require_number("stall", "s", 0.001, 10));
+  limits.watchdog_ns = to_ns(map.require_number("watchdog", "s", 0.001, 10));
+  map.finish();
+  return limits;
+}
+
+WorkspaceBox read_workspace(YamlMap map) {
+  const Eigen::Vector3d min_W = map.require_vector3("min", "m", -2, 2);
+  const Eigen::Vector3d max_W = map.require_vector3("max", "m", -2, 2);
+  if (!(min_W.array() <= max_W.array()).all()) {
+    map.reject("max", "expected no coordinate below that of min");
+  }
+  map.finish();
+  return {min_W, max_W};
+}
+
+DeclaredLimits read_declared(YamlMap map) {
+  DeclaredLimits declared;
+  declared.force = map.require_number("force", "N", 0.01, 100);
+  declared.stiffness = map.require_number("stiffness", "N/m", 1, 1e5);
+  declared.damping = map.require_number("damping", "N s/m", 0, 1000);
+  map.finish();
+  return declared;
+}
+
+device_sim::SimulatedArmSettings read_simulation(YamlMap map, bool& ideal_encoders) {
+  device_sim::SimulatedArmSettings settings;
+  ideal_encoders = map.require_choice("encoders", {"quantised", "ideal"}) == 1;
+  YamlMap tip = map.require_map("tip");
+  settings.plant.mass = tip.require_number("mass", "kg", 1e-3, 10);
+  settings.plant.viscous = tip.require_number("viscous", "N s/m", 0, 100);
+  settings.plant.coulomb = tip.require_number("coulomb", "N", 0, 10);
+  tip.finish();
+  YamlMap motors = map.require_map("motors");
+  settings.motors.current_max = motors.require_number("current_max", "A", 0.01, 32);
+  motors.finish();
+  YamlMap firmware = map.require_map("firmware");
+  settings.firmware.report_period_ns =
+      to_ns(firmware.require_number("report_period", "s", 1e-5, 0.1));
+  settings.firmware.watchdog_ns = to_ns(firmware.require_number("watchdog", "s", 1e-3, 10));
+  // The wire carries 16-bit mA [DEVICES 1].
+  settings.firmware.current_range_mA = static_cast<std::int16_t>(
+      std::lround(1000 * firmware.require_number("current_range", "A", 0.01, 32.767)));
+  firmware.finish();
+  YamlMap wire = map.require_map("wire");
+  settings.wire.delay_in_ns = to_ns(wire.require_number("delay_in", "s", 0, 1));
+  settings.wire.delay_out_ns = to_ns(wire.require_number("delay_out", "s", 0, 1));
+  wire.finish();
+  YamlMap hand = map.require_map("hand");
+  settings.hand.mass = hand.require_number("mass", "kg", 0, 10);
+  settings.hand.stiffness = hand.require_number("stiffness", "N/m", 0, 1e5);
+  settings.hand.damping = hand.require_number("damping", "N s/m", 0, 1000);
+  settings.hand.tremor_amplitude = hand.require_number("tremor_amplitude", "m", 0, 0.01);
+  settings.hand.tremor_frequency = hand.require_number("tremor_frequency", "Hz", 0.1, 100);
+  hand.finish();
+  map.finish();
+  return settings;
+}
+
+}  // namespace
+
+driver::Result<ArmFile> read_arm_file(const std::filesystem::path& file) {
+  driver::Result<YamlFile> yaml = YamlFile::load(file);
+  if (!yaml) return yaml.error();
+  YamlMap& root = yaml->root();
+  ArmFile arm;
+  arm.name = root.require_string("name");
+  arm.description = root.optional_string("description", "");
+  root.require_choice("protocol", {"hfab_14_byte"});
+  arm.model.geometry = read_geometry(root.require_map("geometry"));
+  read_joints(root.require_map("joints"), arm.model);
+  YamlMap base = root.require_map("base");
+  arm.p_WB = base.require_vector3("position", "m", -2, 2);
+  arm.R_WB = base.optional_rotation("rotate_degrees");
+  base.finish();
+  arm.workspace = read_workspace(root.require_map("workspace"));
+  arm.declared = read_declared(root.require_map("declared"));
+  arm.limits = read_gate(root.require_map("gate"));
+  arm.velocity_corner_frequency = root.require_number("velocity_corner_frequency", "Hz", 0, 1e5);
+  arm.simulated = read_simulation(root.require_map("simulation"), arm.model.fractional_counts);
+  root.finish();
+  if (auto done = yaml->finish(); !done) return done.error();
+  return arm;
+}
+
+}  // namespace thimble::app

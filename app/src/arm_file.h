@@ -1,0 +1,45 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <string>
+
+#include "thimble/device_sim/settings.h"
+#include "thimble/driver/arms/hfab/hfab_arm.h"
+#include "thimble/driver/result.h"
+#include "thimble/driver/safety_gate.h"
+
+namespace thimble::app {
+
+/// Is where the tip may work: a box along the axes of the world, m.
+struct WorkspaceBox {
+  Eigen::Vector3d min_W{0, 0, 0};
+  Eigen::Vector3d max_W{0, 0, 0};
+};
+
+/// Is what an arm's maker or refitter declares of it; scenes that ask for more are told so.
+struct DeclaredLimits {
+  double force = 0;      ///< N
+  double stiffness = 0;  ///< N/m
+  double damping = 0;    ///< N s/m
+};
+
+/// Is one arm, as its file describes it: geometry, motors, limits, place, and how it is simulated.
+struct ArmFile {
+  std::string name;
+  std::string description;
+  driver::hfab::HfabModel model;
+  driver::GateLimits limits;
+  DeclaredLimits declared;
+  double velocity_corner_frequency = 0;                ///< Hz
+  Eigen::Matrix3d R_WB = Eigen::Matrix3d::Identity();  ///< Rotation of the base in the world.
+  Eigen::Vector3d p_WB{0, 0, 0};                       ///< Position of the base, m.
+  WorkspaceBox workspace;
+  device_sim::SimulatedArmSettings simulated;
+};
+
+/// Reads an arm file (see app/arms/vintage_phantom.yaml for the form). The error tells up to five
+/// mistakes, one per line, with file and line. Real-time: never from the servo thread.
+driver::Result<ArmFile> read_arm_file(const std::filesystem::path& file);
+
+}  // namespace thimble::app

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string_view>
+
+namespace thimble::app {
+
+/// Says which build of the program made a report.
+struct BuildInfo {
+  std::string_view version;
+  std::string_view compiler;
+  std::string_view type;      ///< CMake's build type.
+  std::string_view revision;  ///< Of the source when the build was configured; empty if unknown.
+};
+
+/// Tells what this build is.
+BuildInfo build_info();
+
+}  // namespace thimble::app

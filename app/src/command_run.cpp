@@ -1,0 +1,171 @@
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "commands.h"
+#include "exit_code.h"
+#include "interrupt.h"
+#include "lost_contacts.h"
+#include "meshes.h"
+#include "pictures.h"
+#include "report.h"
+#include "session.h"
+#include "thimble/driver/real_time.h"
+
+namespace thimble::app {
+namespace {
+
+struct RunOptions {
+  std::string scene;
+  std::string device = "sim";
+  std::string clock = "virtual";
+  std::optional<double> duration;
+  std::optional<std::uint64_t> seed;
+  std::string report;
+};
+
+/// Tells a person on a terminal how far the run is, until it ends.
+void show_progress(const Session& session, const std::atomic<bool>& ended) {
+  const bool on_terminal = isatty(STDERR_FILENO) != 0;
+  const double total = static_cast<double>(session.ticks_planned()) *
+                       static_cast<double>(session.period_ns()) * 1e-9;
+  while (!ended.load()) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    driver::TickRecord record;
+    if (!on_terminal || !session.snapshot().load(record)) continue;
+    const double force = Eigen::Map<const Eigen::Vector3d>(record.f_sent_W.data()).norm();
+    std::fprintf(stderr, "\r%6.1f of %.1f s   %-8s  force %5.2f N   depth %5.2f mm ",
+                 static_cast<double>(record.time_ns) * 1e-9, total,
+                 record.in_contact ? "touching" : "free", force, record.depth * 1e3);
+  }
+  if (on_terminal) std::fprintf(stderr, "\r%*s\r", 70, "");
+}
+
+/// Runs the servo on a thread of its own; on the wall clock it asks for real-time priority first.
+driver::ServoEnd run_session(Session& session, ClockKind clock, driver::RealTimeGrant& grant) {
+  const std::atomic<bool>& stop = catch_interrupts();
+  std::atomic<bool> ended{false};
+  driver::ServoEnd end = driver::ServoEnd::kDone;
+  std::thread servo([&] {
+    if (clock == ClockKind::kWall) grant = driver::enter_real_time();
+    end = session.run(stop);
+    ended.store(true);
+  });
+  show_progress(session, ended);
+  servo.join();
+  return end;
+}
+
+RunReport report_of(const Session& session, ClockKind clock, driver::ServoEnd end,
+                    const driver::RealTimeGrant& grant) {
+  RunReport report;
+  report.scene = session.scene().name;
+  report.object = session.scene().objects.front().name;
+  report.arm = session.arm_file().name;
+  report.virtual_time = clock == ClockKind::kVirtual;
+  report.seed = session.seed();
+  report.rate_asked = session.scene().rate;
+  report.force_limit = session.arm_file().limits.force_max;
+  report.triangles = session.mesh_W().triangles.size();
+  report.statistics = session.statistics();
+  report.lost_contacts =
+      count_lost_contacts(session.trace().rows(), session.touch().contact().search());
+  report.wire = session.device().wire_counters();
+  report.gate = session.device().gate_counters();
+  report.real_time = grant;
+  report.end = end;
+  report.fault = session.device().fault();
+  report.current_at_exit = session.arm().firmware().currents().cwiseAbs().maxCoeff();
+  report.trace_stride = session.trace().stride();
+  report.trace_dropped = session.trace().dropped();
+  return report;
+}
+
+int trouble(const driver::Error& error) {
+  spdlog::error("{}", error.message);
+  return kExitTrouble;
+}
+
+int run_scene(const RunOptions& options) {
+  SessionOptions session_options;
+  session_options.clock = options.clock == "wall" ? ClockKind::kWall : ClockKind::kVirtual;
+  session_options.duration = options.duration;
+  session_options.seed = options.seed;
+  session_options.mesh_folder = mesh_folder();
+  auto opened = Session::open(options.scene, session_options);
+  if (!opened) {
+    std::fprintf(stderr, "thimble: %s\n", opened.error().message.c_str());
+    return kExitBadInput;
+  }
+  Session& session = **opened;
+  driver::RealTimeGrant grant;
+  const driver::ServoEnd end = run_session(session, session_options.clock, grant);
+  if (!grant.advice.empty()) spdlog::warn("{}", grant.advice);
+
+  const RunReport report = report_of(session, session_options.clock, end, grant);
+  std::printf("%s", summary(report).c_str());
+  if (!options.report.empty()) {
+    const std::filesystem::path folder = options.report;
+    if (const auto written = write_report(report, folder); !written)
+      return trouble(written.error());
+    const PictureInfo info{.title = report.scene + ", " + report.arm,
+                           .virtual_time = report.virtual_time,
+                           .period = 1 / report.rate_asked,
+                           .period_times = &report.statistics.period(),
+                           .work_times = &report.statistics.work()};
+    const auto drawn = draw_pictures(session.trace().rows(), session.mesh_W(), info, folder);
+    if (!drawn) {
+      return trouble(drawn.error());
+    }
+    std::printf("Report and pictures: %s\n", folder.c_str());
+  }
+  switch (end) {
+    case driver::ServoEnd::kDone:
+      return kExitDone;
+    case driver::ServoEnd::kStopped:
+      return kExitInterrupted;
+    case driver::ServoEnd::kFault:
+      return kExitFault;
+  }
+  return kExitTrouble;
+}
+
+}  // namespace
+
+void add_run_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("run", "Touch a scene");
+  auto options = std::make_shared<RunOptions>();
+  command->add_option("SCENE", options->scene, "Scene file (YAML)")->required();
+  command->add_option("--device", options->device, "Arm to use (see `thimble devices`)")
+      ->check(CLI::IsMember({"sim"}))
+      ->capture_default_str();
+  command->add_option("--duration", options->duration, "Seconds to run; the scene's own if absent")
+      ->check(CLI::Validator(
+          [](const std::string& text) {
+            char* end = nullptr;
+            const double seconds = std::strtod(text.c_str(), &end);
+            // Written so that NaN is refused.
+            const bool good =
+                end != text.c_str() && *end == 0 && seconds >= 1e-3 && seconds <= 86400;
+            return good ? std::string() : "expected 0.001 to 86400 seconds, found " + text;
+          },
+          "SECONDS"));
+  command
+      ->add_option("--clock", options->clock,
+                   "virtual: as fast as it computes, repeatable to the bit; wall: in real time")
+      ->check(CLI::IsMember({"virtual", "wall"}))
+      ->capture_default_str();
+  command->add_option("--report", options->report, "Folder for report.json and pictures");
+  command->add_option("--seed", options->seed, "Seed of everything random; the scene's if absent");
+  command->callback([options, &exit_code] { exit_code = run_scene(*options); });
+}
+
+}  // namespace thimble::app

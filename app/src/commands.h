@@ -1,0 +1,17 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace thimble::app {
+
+// One function per command of the program. Each adds its sub-command with options and help to
+// `app`; when the user chose it, its exit code (exit_code.h) is left in `exit_code`.
+
+/// `thimble run SCENE`: touches a scene.
+void add_run_command(CLI::App& app, int& exit_code);
+/// `thimble devices`: lists the arms.
+void add_devices_command(CLI::App& app, int& exit_code);
+/// `thimble mesh FILE`: tells what a mesh is and what is wrong with it.
+void add_mesh_command(CLI::App& app, int& exit_code);
+
+}  // namespace thimble::app

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "thimble/driver/result.h"
+
+namespace thimble::app {
+
+/// Is one picture: gnuplot commands that draw it, and its size.
+struct Plot {
+  std::string name;      ///< Of the files, without ending.
+  int width = 1600;      ///< pixels
+  int height = 900;      ///< pixels
+  std::string commands;  ///< Paths in them are relative to the folder of the picture.
+};
+
+/// Draws a plot as NAME.png and NAME.svg into `folder`, and leaves the script as data/NAME.gp
+/// there, so that `gnuplot data/NAME.gp` in the folder draws it again. The folder data/ must exist.
+///
+/// Fails if gnuplot is not installed, or tells what gnuplot said against the commands.
+/// Real-time: never from the servo thread.
+driver::Result<void> draw_plot(const Plot& plot, const std::filesystem::path& folder);
+
+/// Tells whether gnuplot can be run.
+bool has_gnuplot();
+
+}  // namespace thimble::app

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "thimble/render/mesh/triangle_mesh.h"
+
+namespace thimble::app {
+
+/// Is a direction to look from, orthographically: axes of the picture in the world. World: x
+/// towards the user, y to the user's right, z up.
+struct ViewDirection {
+  std::string_view name;
+  std::string_view u_label, v_label;  ///< World axes along the picture's sides.
+  Eigen::Vector3d u_W, v_W, w_W;      ///< Right, up, and towards the eye; unit vectors.
+  double v_sign = 1;                  ///< -1 if the world's axis `v_label` runs down the picture.
+};
+
+/// Lists what the user sees from the front, what is seen from the left, and from above.
+const std::array<ViewDirection, 3>& view_directions();
+
+/// Is one shaded picture of a mesh on white, and how deep it is at each pixel.
+class MeshView {
+ public:
+  /// Draws the mesh (m) as seen in a square window of side `extent` (m, > 0) about `center_W`, with
+  /// `pixels` pixels a side (> 0), each the mean of 2 x 2 samples.
+  /// Real-time: never from the servo thread.
+  MeshView(const render::TriangleMesh& mesh_W, const ViewDirection& direction,
+           const Eigen::Vector3d& center_W, double extent, int pixels);
+
+  /// Tells the pixels, three bytes (red, green, blue) each, rows from below, columns from the left.
+  const std::vector<std::uint8_t>& rgb() const noexcept { return rgb_; }
+  int pixels() const noexcept { return pixels_; }
+
+  /// Tells where a point falls in the picture: right and up, m in the world's axes u and v.
+  Eigen::Vector2d project(const Eigen::Vector3d& p_W) const;
+
+  /// Tells whether the mesh stands more than `tolerance` (m) before the point.
+  bool hides(const Eigen::Vector3d& p_W, double tolerance) const;
+
+ private:
+  struct Corner;
+  void draw(const std::array<Corner, 3>& corner);
+  void outline();
+  void shrink();
+
+  ViewDirection direction_;
+  Eigen::Vector2d origin_;  // of the window's lower left corner, m
+  double pitch_ = 0;        // of samples, m
+  int samples_ = 0;         // per side
+  int pixels_ = 0;
+  std::vector<float> depth_;  // towards the eye, m; -infinity where nothing is
+  std::vector<float> shade_;  // 0 black to 1 white
+  std::vector<std::uint8_t> rgb_;
+};
+
+/// Finds the box around a mesh's vertices; empty for a mesh without any.
+Eigen::AlignedBox3d box_of(const render::TriangleMesh& mesh);
+
+}  // namespace thimble::app

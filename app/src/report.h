@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "figure.h"
+#include "run_statistics.h"
+#include "thimble/driver/device.h"
+#include "thimble/driver/fault.h"
+#include "thimble/driver/real_time.h"
+#include "thimble/driver/result.h"
+#include "thimble/driver/safety_gate.h"
+#include "thimble/driver/servo_loop.h"
+
+namespace thimble::app {
+
+/// Is everything a report tells of a run; the session fills it.
+struct RunReport {
+  std::string scene;
+  std::string object;  ///< What was touched.
+  std::string arm;
+  bool simulated_arm = true;
+  bool virtual_time = true;
+  std::uint64_t seed = 0;
+  double rate_asked = 0;   ///< Hz
+  double force_limit = 0;  ///< The gate's, N.
+  std::size_t triangles = 0;
+  RunStatistics statistics;
+  std::uint64_t lost_contacts =
+      0;                       ///< Stretches inside the object without a force (checked after).
+  double current_at_exit = 0;  ///< Largest motor current after the end, A (simulated arm).
+  driver::WireCounters wire;
+  driver::GateCounters gate;
+  driver::RealTimeGrant real_time;
+  driver::ServoEnd end = driver::ServoEnd::kDone;
+  driver::Fault fault = driver::Fault::kNone;
+  std::uint64_t trace_stride = 1;   ///< Every n-th tick is in the pictures.
+  std::uint64_t trace_dropped = 0;  ///< Rows that found no room.
+};
+
+/// Tells the figures a run stands for, with their goals (DESIGN.md, Figures).
+std::vector<Figure> run_figures(const RunReport& report);
+
+/// Tells a run in plain words, about ten lines, for somebody who sees it for the first time.
+std::string summary(const RunReport& report);
+
+/// Writes report.json and figures.json into the folder, which is made if need be. Fails, naming the
+/// file, if that cannot be done. Real-time: never from the servo thread.
+driver::Result<void> write_report(const RunReport& report, const std::filesystem::path& folder);
+
+}  // namespace thimble::app

@@ -1,0 +1,136 @@
+#include "scene_file.h"
+
+#include <Eigen/Geometry>
+#include <system_error>
+
+#include "thimble/render/mesh/placed_mesh.h"
+#include "yaml_reader.h"
+
+namespace thimble::app {
+namespace {
+
+// Bounds catch slipped decimal points and values in mm; they are far outside of what a desk-top arm
+// can use [DEVICES 3].
+constexpr double kPositionMax = 2;      // m
+constexpr double kStiffnessMax = 1e5;   // N/m
+constexpr double kDampingMax = 1000;    // N s/m
+constexpr double kPressMax = 0.1;       // m
+constexpr double kDurationMax = 86400;  // s
+constexpr std::string_view kMeshScheme = "cgal:";
+
+std::filesystem::path find_file(YamlMap& map, std::string_view key,
+                                const std::filesystem::path& folder,
+                                const std::filesystem::path& mesh_folder) {
+  const std::string text = map.require_string(key);
+  if (text.empty()) return {};
+  const bool in_collection = text.starts_with(kMeshScheme) && !mesh_folder.empty();
+  if (text.starts_with(kMeshScheme) && mesh_folder.empty()) {
+    map.reject(
+        key, "expected a file beside the scene: no folder of meshes is known for \"" + text + "\"");
+    return {};
+  }
+  const std::filesystem::path path =
+      in_collection ? mesh_folder / text.substr(kMeshScheme.size()) : folder / text;
+  std::error_code status;
+  if (!std::filesystem::is_regular_file(path, status)) {
+    map.reject(key, "expected a file, found none at " + path.lexically_normal().string());
+  }
+  return path.lexically_normal();
+}
+
+SceneObject read_object(YamlMap map, const std::filesystem::path& folder,
+                        const std::filesystem::path& mesh_folder) {
+  SceneObject object;
+  object.name = map.require_string("name");
+  object.mesh_file = find_file(map, "mesh", folder, mesh_folder);
+  if (map.has("size")) object.size = map.require_number("size", "m", 1e-4, kPositionMax);
+  if (object.size && map.has("scale")) {
+    map.reject("scale", "cannot stand together with size; keep one of them");
+  } else {
+    object.scale = map.optional_number("scale", 1, "m per unit of the file", 1e-9, 1e9);
+  }
+  object.R_WO = map.optional_rotation("rotate_degrees");
+  object.p_WO =
+      map.optional_vector3("position", Eigen::Vector3d::Zero(), "m", -kPositionMax, kPositionMax);
+  object.stiffness = map.require_number("stiffness", "N/m", 0, kStiffnessMax);
+  object.damping = map.optional_number("damping", 0, "N s/m", 0, kDampingMax);
+  map.finish();
+  return object;
+}
+
+HandWaypoint read_waypoint(YamlMap map, const std::vector<SceneObject>& objects) {
+  HandWaypoint waypoint;
+  waypoint.time = map.require_number("t", "s", 0, kDurationMax);
+  waypoint.stop = map.optional_bool("stop", false);
+  if (map.has("at") == map.has("on")) {
+    map.reject("", "expected either at: [x, y, z] or on: OBJECT with near: [x, y, z]");
+  } else if (map.has("at")) {
+    waypoint.p_W = map.require_vector3("at", "m", -kPositionMax, kPositionMax);
+  } else {
+    waypoint.on = map.require_string("on");
+    waypoint.p_W = map.require_vector3("near", "m", -kPositionMax, kPositionMax);
+    waypoint.press = map.optional_number("press", 0, "m", -kPressMax, kPressMax);
+    bool known = false;
+    for (const SceneObject& object : objects) known = known || object.name == *waypoint.on;
+    if (!known) map.reject("on", "expected an object of this scene, found \"" + *waypoint.on + '"');
+  }
+  map.finish();
+  return waypoint;
+}
+
+std::vector<HandWaypoint> read_hand(YamlMap map, const std::vector<SceneObject>& objects) {
+  std::vector<HandWaypoint> hand;
+  for (YamlMap& entry : map.require_maps("path")) {
+    hand.push_back(read_waypoint(entry, objects));
+    if (hand.size() > 1 && !(hand.back().time > hand[hand.size() - 2].time)) {
+      entry.reject("t", "expected a time after that of the station before");
+    }
+  }
+  map.finish();
+  return hand;
+}
+
+}  // namespace
+
+driver::Result<Scene> read_scene(const std::filesystem::path& file,
+                                 const std::filesystem::path& mesh_folder) {
+  driver::Result<YamlFile> yaml = YamlFile::load(file);
+  if (!yaml) return yaml.error();
+  YamlMap& root = yaml->root();
+  const std::filesystem::path folder = file.parent_path();
+  Scene scene;
+  scene.name = root.require_string("name");
+  scene.description = root.optional_string("description", "");
+  scene.arm_file = find_file(root, "arm", folder, {});
+  scene.rate = root.optional_number("rate", 1000, "Hz", 10, 1e5);
+  scene.duration = root.require_number("duration", "s", 0.001, kDurationMax);
+  // 2^53: every whole number up to here is a double.
+  scene.seed = static_cast<std::uint64_t>(root.optional_number("seed", 0, "", 0, 0x1p53));
+  for (YamlMap& object : root.require_maps("objects")) {
+    scene.objects.push_back(read_object(object, folder, mesh_folder));
+  }
+  if (scene.objects.size() > 1) {
+    root.reject("objects", "expected one object, found " + std::to_string(scene.objects.size()) +
+                               ": this version touches one mesh");
+  }
+  scene.hand = read_hand(root.require_map("hand"), scene.objects);
+  root.finish();
+  if (auto done = yaml->finish(); !done) return done.error();
+  return scene;
+}
+
+render::TriangleMesh place_mesh(const render::TriangleMesh& mesh, const SceneObject& object) {
+  // The box of the mesh as it lies in its file gives the size: turning an object must not change
+  // it.
+  Eigen::AlignedBox3d file_box;
+  Eigen::AlignedBox3d turned_box;
+  for (const Eigen::Vector3d& vertex : mesh.vertices) {
+    file_box.extend(vertex);
+    turned_box.extend(object.R_WO * vertex);
+  }
+  const double largest = file_box.sizes().maxCoeff();
+  const double scale = object.size && largest > 0 ? *object.size / largest : object.scale;
+  return render::placed(mesh, scale, object.R_WO, object.p_WO - scale * turned_box.center());
+}
+
+}  // namespace thimble::app

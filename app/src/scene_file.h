@@ -1,0 +1,51 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hand_route.h"
+#include "thimble/driver/result.h"
+#include "thimble/render/mesh/triangle_mesh.h"
+
+namespace thimble::app {
+
+/// Is one object of a scene: a mesh, where it stands, and how its surface pushes back.
+struct SceneObject {
+  std::string name;
+  std::filesystem::path mesh_file;
+  std::optional<double> size;                          ///< Largest side of the mesh's box, m.
+  double scale = 1;                                    ///< Metres per unit of the file, if no size.
+  Eigen::Matrix3d R_WO = Eigen::Matrix3d::Identity();  ///< Rotation of the mesh in the world.
+  Eigen::Vector3d p_WO{0, 0, 0};  ///< Where the centre of the turned mesh's box lies, m.
+  double stiffness = 0;           ///< N/m
+  double damping = 0;             ///< N s/m
+};
+
+/// Is one scene: which arm touches what, how fast the loop runs, and what the simulated hand does.
+struct Scene {
+  std::string name;
+  std::string description;
+  std::filesystem::path arm_file;
+  double rate = 1000;      ///< Ticks per second, Hz.
+  double duration = 0;     ///< s
+  std::uint64_t seed = 0;  ///< Of everything random in the simulation.
+  std::vector<SceneObject> objects;
+  std::vector<HandWaypoint> hand;
+};
+
+/// Reads a scene file (see app/scenes/elephant.yaml for the form). Paths in it are relative to the
+/// file; a mesh `cgal:NAME` is looked for in `mesh_folder`. This version touches one mesh: a scene
+/// with another number of objects is refused. The error tells up to five mistakes, one per line.
+/// Real-time: never from the servo thread.
+driver::Result<Scene> read_scene(const std::filesystem::path& file,
+                                 const std::filesystem::path& mesh_folder);
+
+/// Turns a mesh as its file holds it into the world (m), as `object` says.
+/// Precondition: the mesh has a vertex. Real-time: never from the servo thread.
+render::TriangleMesh place_mesh(const render::TriangleMesh& mesh, const SceneObject& object);
+
+}  // namespace thimble::app

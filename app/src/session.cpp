@@ -1,0 +1,123 @@
+#include "session.h"
+
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "hand_route.h"
+#include "thimble/render/mesh/load_mesh.h"
+
+namespace thimble::app {
+namespace {
+
+/// Turns the hand's way from the world into the arm's base. Throws what HandPath throws.
+device_sim::HandPath in_base(const HandRoute& route, const ArmFile& arm) {
+  std::vector<device_sim::HandPath::Point> points;
+  points.reserve(route.size());
+  for (const auto& [time, p_WH] : route) {
+    points.push_back({.time = time, .p_BH = arm.R_WB.transpose() * (p_WH - arm.p_WB)});
+  }
+  return device_sim::HandPath(std::move(points));
+}
+
+/// Finds the first point of the hand's way that the arm cannot reach.
+driver::Result<void> check_reach(const HandRoute& route, const ArmFile& arm) {
+  for (const auto& [time, p_WH] : route) {
+    const bool in_box = (p_WH.array() >= arm.workspace.min_W.array()).all() &&
+                        (p_WH.array() <= arm.workspace.max_W.array()).all();
+    if (!in_box || !arm.model.geometry.inverse(arm.R_WB.transpose() * (p_WH - arm.p_WB))) {
+      char text[200];
+      std::snprintf(text, sizeof text,
+                    "At %.3f s the hand would be at (%.3f, %.3f, %.3f) m, outside the arm's "
+                    "workspace; move that waypoint or the object.",
+                    time, p_WH.x(), p_WH.y(), p_WH.z());
+      return driver::Error{text};
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+driver::Result<std::unique_ptr<Session>> Session::open(const std::filesystem::path& scene_file,
+                                                       const SessionOptions& options) {
+  auto scene = read_scene(scene_file, options.mesh_folder);
+  if (!scene) return scene.error();
+  auto arm_file = read_arm_file(scene->arm_file);
+  if (!arm_file) return arm_file.error();
+
+  std::unique_ptr<Session> session(new Session);
+  session->scene_ = std::move(scene).value();
+  session->arm_file_ = std::move(arm_file).value();
+  const SceneObject& object = session->scene_.objects.front();
+  const ArmFile& arm = session->arm_file_;
+
+  const auto mesh = render::load_mesh(object.mesh_file);
+  if (!mesh) return mesh.error();
+  session->mesh_W_ = place_mesh(*mesh, object);
+  auto contact_mesh = render::ContactMesh::build(session->mesh_W_);
+  if (!contact_mesh) {
+    return driver::Error{object.mesh_file.string() + ": " + contact_mesh.error().message};
+  }
+  session->touch_ = std::make_unique<render::MeshTouch>(
+      render::MeshContact(std::move(contact_mesh).value()),
+      render::SpringDamper{.stiffness = object.stiffness, .damping = object.damping});
+
+  const auto route = plan_hand(session->scene_.hand, session->mesh_W_);
+  if (!route) return driver::Error{scene_file.string() + ": " + route.error().message};
+  if (auto reach = check_reach(*route, arm); !reach) {
+    return driver::Error{scene_file.string() + ": " + reach.error().message};
+  }
+
+  session->seed_ = options.seed.value_or(session->scene_.seed);
+  session->period_ns_ = std::llround(1e9 / session->scene_.rate);
+  const double duration = options.duration.value_or(session->scene_.duration);
+  session->ticks_ = static_cast<std::uint64_t>(
+      std::ceil(duration * 1e9 / static_cast<double>(session->period_ns_)));
+  session->statistics_ = std::make_unique<RunStatistics>();
+  session->trace_ = std::make_unique<Trace>(session->ticks_);
+
+  try {
+    session->arm_ = std::make_unique<device_sim::SimulatedArm>(
+        arm.model, arm.simulated, in_base(*route, arm), session->seed_);
+  } catch (const std::invalid_argument& wrong) {
+    return driver::Error{session->scene_.arm_file.string() + ": " + wrong.what()};
+  }
+  // The clock starts last, so that the arm's time begins with the session's.
+  if (options.clock == ClockKind::kWall) {
+    session->clock_ = std::make_unique<driver::WallClock>();
+  } else {
+    session->clock_ = std::make_unique<driver::VirtualClock>();
+  }
+  auto device = driver::Device::open(
+      std::make_unique<device_sim::SimTransport>(*session->clock_, *session->arm_),
+      std::make_unique<driver::hfab::HfabArm>(arm.model),
+      {.R_WB = arm.R_WB,
+       .p_WB = arm.p_WB,
+       .limits = arm.limits,
+       .velocity_corner_frequency = arm.velocity_corner_frequency},
+      session->clock_->now_ns());
+  if (!device) return device.error();
+  session->device_ = std::move(device).value();
+  if (auto activated = session->device_->activate(); !activated) return activated.error();
+  return session;
+}
+
+driver::ServoEnd Session::run(const std::atomic<bool>& stop) noexcept {
+  const driver::ServoEnd end =
+      driver::run_servo(*device_, *clock_, driver::ForceLaw(*touch_), driver::TickSink(*this),
+                        {.period_ns = period_ns_, .ticks = ticks_}, stop);
+  // The arm lives on after the loop: the last message, zero force, is still on its way to it.
+  arm_->advance_to(clock_->now_ns() + arm_file_.simulated.wire.delay_out_ns);
+  return end;
+}
+
+void Session::operator()(const driver::TickRecord& record) noexcept {
+  snapshot_.store(record);
+  (*statistics_)(record);
+  (*trace_)(record);
+}
+
+}  // namespace thimble::app

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "arm_file.h"
+#include "run_statistics.h"
+#include "scene_file.h"
+#include "thimble/device_sim/sim_transport.h"
+#include "thimble/driver/clock.h"
+#include "thimble/driver/device.h"
+#include "thimble/driver/servo_loop.h"
+#include "thimble/driver/snapshot.h"
+#include "thimble/render/mesh_touch.h"
+#include "trace.h"
+
+namespace thimble::app {
+
+/// Says which time a session runs on.
+enum class ClockKind { kVirtual, kWall };
+
+/// Says what the user asked for beyond the scene.
+struct SessionOptions {
+  ClockKind clock = ClockKind::kVirtual;
+  std::optional<double> duration;     ///< s; the scene's own if empty
+  std::optional<std::uint64_t> seed;  ///< of everything random; the scene's own if empty
+  std::filesystem::path mesh_folder;  ///< where `cgal:` meshes lie
+};
+
+/// Is one scene, loaded and joined: clock, simulated arm, wire, device, touch, and who keeps the
+/// records. The servo runs in `run`, on the caller's thread; `snapshot` may be read by others.
+class Session {
+ public:
+  /// Reads the scene, its arm and its mesh, plans the hand's way and opens the arm. The error names
+  /// the file and what to mend. Real-time: never from the servo thread.
+  static driver::Result<std::unique_ptr<Session>> open(const std::filesystem::path& scene_file,
+                                                       const SessionOptions& options);
+
+  /// Activates the arm and runs the servo loop until the scene's time is over, `stop` is set, or a
+  /// fault. In every case the arm is left with zero force.
+  driver::ServoEnd run(const std::atomic<bool>& stop) noexcept;
+
+  const Scene& scene() const { return scene_; }
+  const ArmFile& arm_file() const { return arm_file_; }
+  const render::TriangleMesh& mesh_W() const { return mesh_W_; }
+  const driver::Device& device() const { return *device_; }
+  const device_sim::SimulatedArm& arm() const { return *arm_; }
+  const render::MeshTouch& touch() const { return *touch_; }
+  const RunStatistics& statistics() const { return *statistics_; }
+  const Trace& trace() const { return *trace_; }
+  const driver::Snapshot<driver::TickRecord>& snapshot() const { return snapshot_; }
+  std::uint64_t seed() const { return seed_; }
+  std::uint64_t ticks_planned() const { return ticks_; }
+  std::int64_t period_ns() const { return period_ns_; }
+
+  /// Takes the record of one tick (the servo loop's sink). Real-time: safe.
+  void operator()(const driver::TickRecord& record) noexcept;
+
+ private:
+  Session() = default;
+
+  Scene scene_;
+  ArmFile arm_file_;
+  render::TriangleMesh mesh_W_;
+  std::uint64_t seed_ = 0;
+  std::uint64_t ticks_ = 0;
+  std::int64_t period_ns_ = 0;
+  std::unique_ptr<driver::Clock> clock_;
+  std::unique_ptr<device_sim::SimulatedArm> arm_;
+  std::unique_ptr<driver::Device> device_;  // holds the wire to arm_, so it goes first
+  std::unique_ptr<render::MeshTouch> touch_;
+  std::unique_ptr<RunStatistics> statistics_;
+  std::unique_ptr<Trace> trace_;
+  driver::Snapshot<driver::TickRecord> snapshot_;
+};
+
+}  // namespace thimble::app

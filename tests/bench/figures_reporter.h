@@ -1,0 +1,36 @@
+#pragma once
+
+#include <benchmark/benchmark.h>
+
+#include <string>
+#include <vector>
+
+#include "figure.h"
+
+namespace thimble::bench {
+
+/// Prints like Google Benchmark's console and keeps the median of each benchmark as a figure, in
+/// nanoseconds of CPU or manual time per iteration.
+class FiguresReporter : public benchmark::ConsoleReporter {
+ public:
+  void ReportRuns(const std::vector<Run>& runs) override {
+    benchmark::ConsoleReporter::ReportRuns(runs);
+    for (const Run& run : runs) {
+      if (run.error_occurred) continue;
+      const bool median = run.run_type == Run::RT_Aggregate && run.aggregate_name == "median";
+      if (!median && !(run.run_type == Run::RT_Iteration && run.repetitions <= 1)) continue;
+      figures_.push_back({.name = run.run_name.function_name,
+                          .value = run.GetAdjustedRealTime() * 1e9 /
+                                   benchmark::GetTimeUnitMultiplier(run.time_unit),
+                          .unit = "ns",
+                          .goal = {}});
+    }
+  }
+
+  std::vector<app::Figure>& figures() { return figures_; }
+
+ private:
+  std::vector<app::Figure> figures_;
+};
+
+}  // namespace thimble::bench

@@ -1,0 +1,84 @@
+#!/usr/bin/env bash
+# Bad input of every kind: one clear sentence, a non-zero exit code, and nothing crashes.
+source "$(dirname "$0")/expect.sh" "$@"
+
+good_scene() {
+  cp -r "$source_dir/app/arms" "$source_dir/app/scenes" .
+}
+
+# scene_with SED: the demo's scene, changed by a sed expression, as scenes/changed.yaml.
+scene_with() { sed -E "$1" scenes/elephant.yaml >scenes/changed.yaml; }
+
+tetrahedron() {
+  printf 'OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n'
+}
+
+# Meshes.
+tetrahedron >good.off
+expect 0 'can be touched' "$thimble" mesh good.off
+expect 2 'no_such.off' "$thimble" mesh no_such.off
+: >empty.off
+expect 2 'empty\.off' "$thimble" mesh empty.off
+printf 'OFF\n0 0 0\n' >no_triangles.off
+expect 2 'no_triangles\.off' "$thimble" mesh no_triangles.off
+tetrahedron | sed 's/^1 0 0$/1 nan 0/' >nan.off
+expect 2 'nan\.off:4' "$thimble" mesh nan.off
+tetrahedron | sed 's/^1 0 0$/1e300 0 0/' >huge.off
+expect 2 'huge\.off:4' "$thimble" mesh huge.off
+tetrahedron | sed '$d' >open.off
+sed -i 's/^4 4 0/4 3 0/' open.off
+expect 2 'only one triangle' "$thimble" mesh open.off
+tetrahedron | head -c 40 >truncated.off
+expect 2 'truncated\.off' "$thimble" mesh truncated.off
+tetrahedron | sed 's/^3 2 0 3$/3 2 0 9/' >index.off
+expect 2 'index\.off:10' "$thimble" mesh index.off
+printf 'OFF\n1000000000000 4 0\n' >bomb.off
+expect 2 'bomb\.off' "$thimble" mesh bomb.off
+head -c 4000 /dev/urandom >noise.off
+expect 2 'noise\.off' "$thimble" mesh noise.off
+head -c 4000 /dev/urandom >noise.stl
+expect 2 'noise\.stl' "$thimble" mesh noise.stl
+head -c 4000 /dev/urandom >noise.ply
+expect 2 'noise\.ply' "$thimble" mesh noise.ply
+head -c 4000 /dev/urandom >noise.obj
+expect 2 'noise\.obj' "$thimble" mesh noise.obj
+cp good.off good.xyz
+expect 2 'good\.xyz' "$thimble" mesh good.xyz
+mkdir folder.off
+expect 2 'folder\.off: this is not a file' "$thimble" mesh folder.off
+# Faces that are no triangles are split: a cube of six squares can be touched.
+printf 'OFF\n8 6 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n4 3 2 1 0\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n' >cube.off
+expect 0 'triangles +12' "$thimble" mesh cube.off
+
+# Scenes.
+good_scene
+expect 2 'no_such.yaml' "$thimble" run no_such.yaml
+: >empty.yaml
+expect 2 'empty\.yaml' "$thimble" run empty.yaml
+printf '{[' >syntax.yaml
+expect 2 'syntax\.yaml:1' "$thimble" run syntax.yaml
+head -c 4000 /dev/urandom >noise.yaml
+expect 2 'noise\.yaml' "$thimble" run noise.yaml
+scene_with 's/^( *)stiffness:.*/\1stiffness: stiff/'
+expect 2 'changed\.yaml:[0-9]+: stiffness: expected a number .*N/m, found "stiff"' \
+  "$thimble" run scenes/changed.yaml
+scene_with 's/^( *)stiffness:.*/\1stiffness: -5/'
+expect 2 'changed\.yaml:[0-9]+: stiffness: .*-5' "$thimble" run scenes/changed.yaml
+scene_with 's/^( *)stiffness:.*/\1stiffness: .nan/'
+expect 2 'changed\.yaml:[0-9]+: stiffness' "$thimble" run scenes/changed.yaml
+scene_with 's/^( *)stiffness:(.*)/\1stifness:\2/'
+expect 2 'changed\.yaml:[0-9]+: .*stifness.*stiffness' "$thimble" run scenes/changed.yaml
+scene_with 's/^arm:.*/arm: no_such_arm.yaml/'
+expect 2 'no_such_arm\.yaml' "$thimble" run scenes/changed.yaml
+scene_with 's/^( *)mesh:.*/\1mesh: no_such_mesh.off/'
+expect 2 'no_such_mesh\.off' "$thimble" run scenes/changed.yaml
+cp good.off open.off noise.off scenes/
+scene_with 's/^( *)mesh:.*/\1mesh: open.off/'
+expect 2 'open\.off: .*only one triangle' "$thimble" run scenes/changed.yaml
+
+# A report that cannot be written.
+if [ -f "$THIMBLE_MESHES/elephant.off" ]; then
+  : >a_file
+  expect 1 'a_file' "$thimble" run scenes/elephant.yaml --duration 0.01 --report a_file/report
+fi
+finish

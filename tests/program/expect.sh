@@ -1,0 +1,36 @@
+# Shared by the tests of the program: source it with the test's three arguments.
+#   source expect.sh THIMBLE SOURCE_DIR WORK_DIR
+set -u
+thimble=$1
+source_dir=$2
+work=$3
+rm -rf "$work"
+mkdir -p "$work"
+cd "$work"
+failures=0
+checks=0
+
+# expect CODE PATTERN COMMAND...: COMMAND must exit with CODE and print a line matching PATTERN (an
+# extended regular expression) on standard output or error; it may never die from a signal.
+expect() {
+  local code=$1 pattern=$2 output status
+  shift 2
+  checks=$((checks + 1))
+  output=$("$@" 2>&1 </dev/null)
+  status=$?
+  if [ "$status" != "$code" ]; then
+    echo "FAILED: $* : exit code $status, expected $code"
+    echo "$output" | head -20 | sed 's/^/    /'
+    failures=$((failures + 1))
+  elif ! grep -qE -- "$pattern" <<<"$output"; then
+    echo "FAILED: $* : no line matches: $pattern"
+    echo "$output" | head -20 | sed 's/^/    /'
+    failures=$((failures + 1))
+  fi
+}
+
+finish() {
+  echo "$((checks - failures)) passed, $failures failed"
+  [ "$failures" = 0 ]
+  exit
+}

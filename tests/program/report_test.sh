@@ -1,0 +1,17 @@
+#!/usr/bin/env bash
+# The demo's run on the virtual clock: a report, figures and pictures.
+source "$(dirname "$0")/expect.sh" "$@"
+[ -f "$THIMBLE_MESHES/elephant.off" ] || { echo "Needs the scanned meshes"; exit 77; }
+
+expect 0 'Report and pictures' "$thimble" run "$source_dir/app/scenes/elephant.yaml" --report out
+for key in arm scene build seed ticks rate_Hz period contact force_N energy_to_hand_J; do
+  expect 0 "\"$key\"" cat out/report.json
+done
+expect 0 '"lost": 0,' cat out/report.json
+expect 0 '"touch_downs": [1-9]' cat out/report.json
+expect 0 '"met": true' cat out/figures.json
+for picture in force_and_depth path_on_mesh period_histogram; do
+  expect 0 'PNG' head -c 4 out/$picture.png
+  expect 0 '<svg' head -c 2000 out/$picture.svg
+done
+finish

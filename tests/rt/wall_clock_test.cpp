@@ -1,0 +1,64 @@
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <thread>
+#include <vector>
+
+#include "support/elephant.h"
+#include "thimble/driver/real_time.h"
+
+// The loop in wall-clock time, beside readers: what the thread sanitizer looks at. Times are not
+// judged: this machine may be busy.
+
+namespace thimble {
+namespace {
+
+TEST(WallClockRun, ShowsItsTicksToReadersThatNeverStopIt) {
+  THIMBLE_NEEDS_MESHES();
+  app::SessionOptions options;
+  options.clock = app::ClockKind::kWall;
+  options.duration = 2;
+  options.mesh_folder = THIMBLE_MESHES;
+  auto opened = app::Session::open(support::elephant_scene(), options);
+  ASSERT_TRUE(opened) << opened.error().message;
+  app::Session& session = **opened;
+
+  const std::atomic<bool> stop{false};
+  std::atomic<bool> ended{false};
+  driver::ServoEnd end{};
+  std::thread servo([&] {
+    driver::enter_real_time();
+    end = session.run(stop);
+    ended.store(true);
+  });
+  std::vector<std::thread> readers;
+  std::atomic<std::uint64_t> seen{0}, backwards{0};
+  for (int reader = 0; reader < 2; ++reader) {
+    readers.emplace_back([&] {
+      driver::TickRecord record;
+      std::uint64_t last = 0;
+      while (!ended.load()) {
+        if (session.snapshot().load(record)) {
+          if (record.tick < last) backwards.fetch_add(1);
+          if (record.tick > last) seen.fetch_add(1);
+          last = record.tick;
+        }
+        std::this_thread::sleep_for(std::chrono::microseconds(300));
+      }
+    });
+  }
+  servo.join();
+  for (auto& reader : readers) reader.join();
+
+  EXPECT_GT(seen.load(), 0u);
+  EXPECT_EQ(backwards.load(), 0u);
+  EXPECT_EQ(session.statistics().ticks(), session.snapshot().count());
+  // A machine that pauses for 100 ms makes the arm's watchdog fire, which the loop must name.
+  if (end != driver::ServoEnd::kDone) {
+    EXPECT_EQ(session.device().fault(), driver::Fault::kLoopStalled);
+  }
+  EXPECT_EQ(session.arm().firmware().currents().cwiseAbs().maxCoeff(), 0);
+}
+
+}  // namespace
+}  // namespace thimble

@@ -1,0 +1,34 @@
+#!/usr/bin/env bash
+# Runs every test: sets the machine up, builds, and runs the tests as release, under the address and
+# undefined-behaviour sanitizers and under the thread sanitizer.
+#   tests/run.sh [--long] [PRESET...]    --long: tests at full length; PRESET: only these
+set -euo pipefail
+cd "$(dirname "$0")/.."
+presets=()
+for argument in "$@"; do
+  case $argument in
+    --long) export THIMBLE_LONG=1 ;;
+    release | dev | asan | tsan) presets+=("$argument") ;;
+    *)
+      sed -n '2,4s/^# \{0,1\}//p' "$0"
+      exit 2
+      ;;
+  esac
+done
+[ ${#presets[@]} -gt 0 ] || presets=(release asan tsan)
+
+# Sanitizers may not trade a report for a pass.
+export ASAN_OPTIONS=${ASAN_OPTIONS:-detect_leaks=1:halt_on_error=1}
+export UBSAN_OPTIONS=${UBSAN_OPTIONS:-print_stacktrace=1:halt_on_error=1}
+export TSAN_OPTIONS=${TSAN_OPTIONS:-halt_on_error=1}
+
+failed=()
+for preset in "${presets[@]}"; do
+  app/setup.sh "$preset"
+  echo "== Tests: $preset"
+  ctest --preset "$preset" || failed+=("$preset")
+done
+if [ ${#failed[@]} -gt 0 ]; then
+  echo "Tests failed in: ${failed[*]}" >&2
+  exit 1
+fi

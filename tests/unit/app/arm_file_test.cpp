@@ -1,0 +1,103 @@
+#include "arm_file.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <sstream>
+#include <string>
+
+namespace thimble::app {
+namespace {
+
+const std::filesystem::path kArm =
+    std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms/vintage_phantom.yaml";
+
+std::string content() {
+  std::ostringstream text;
+  text << std::ifstream(kArm).rdbuf();
+  return text.str();
+}
+
+// Reads the shipped arm with one piece of text replaced, and tells what was wrong with it.
+std::string mistake_with(const std::string& piece, const std::string& by) {
+  std::string text = content();
+  const std::size_t at = text.find(piece);
+  EXPECT_NE(at, std::string::npos) << piece;
+  text.replace(at, piece.size(), by);
+  const std::filesystem::path file =
+      std::filesystem::path(testing::TempDir()) / "thimble_arm_test.yaml";
+  std::ofstream(file) << text;
+  const auto arm = read_arm_file(file);
+  return arm ? "" : arm.error().message;
+}
+
+TEST(ArmFile, ReadsTheShippedArmToTheLastConstant) {
+  const auto read = read_arm_file(kArm);
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  const ArmFile& arm = *read;
+  EXPECT_EQ(arm.name, "vintage_phantom");
+  EXPECT_EQ(arm.model.geometry.length_b, 0.138);
+  EXPECT_EQ(arm.model.geometry.length_c, 0.112);
+  EXPECT_EQ(arm.model.drives[0].ratio, 9.0);
+  EXPECT_EQ(arm.model.drives[1].sign, 1);
+  EXPECT_EQ(arm.model.drives[2].torque_constant, 0.0234);
+  EXPECT_EQ(arm.model.drives[2].current_max, 3);
+  EXPECT_EQ(arm.model.encoders[1].home_counts, 7700);
+  EXPECT_EQ(arm.model.encoders[2].sign, -1);
+  EXPECT_FALSE(arm.model.fractional_counts);
+  EXPECT_EQ(arm.limits.force_max, 5);
+  EXPECT_EQ(arm.limits.stall_ns, 20'000'000);
+  EXPECT_EQ(arm.limits.watchdog_ns, 100'000'000);
+  EXPECT_EQ(arm.declared.stiffness, 800);
+  EXPECT_EQ(arm.velocity_corner_frequency, 100);
+  EXPECT_EQ(arm.workspace.max_W.x(), 0.1);
+  EXPECT_EQ(arm.simulated.plant.mass, 0.075);
+  EXPECT_EQ(arm.simulated.hand.stiffness, 300);
+  EXPECT_EQ(arm.simulated.hand.tremor_amplitude, 50e-6);
+  EXPECT_EQ(arm.simulated.firmware.current_range_mA, 6000);
+  EXPECT_EQ(arm.simulated.firmware.report_period_ns, 1'000'000);
+  EXPECT_EQ(arm.simulated.wire.delay_in_ns, 0);
+  EXPECT_EQ(arm.simulated.wire.delay_out_ns, 1'000'000);
+}
+
+TEST(ArmFile, HasItsHomeAtTheOriginOfTheWorld) {
+  const auto arm = read_arm_file(kArm);
+  ASSERT_TRUE(arm.ok());
+  const driver::SerialArm& geometry = arm->model.geometry;
+  // Home: A = 0, B = 90 degrees, C = 0, by the drawing in serial_arm.h.
+  const Eigen::Vector3d p_BT(geometry.length_b, 0, geometry.height - geometry.length_c);
+  EXPECT_LT((arm->p_WB + arm->R_WB * p_BT).norm(), 1e-15);
+}
+
+TEST(ArmFile, CountsAQuarterTurnAsItsHomeCounts) {
+  const auto arm = read_arm_file(kArm);
+  ASSERT_TRUE(arm.ok());
+  EXPECT_EQ(arm->model.encoders[1].counts_per_motor_turn * arm->model.drives[1].ratio / 4,
+            arm->model.encoders[1].home_counts);
+}
+
+TEST(ArmFile, ChoosesIdealEncoders) {
+  EXPECT_EQ(mistake_with("encoders: quantised", "encoders: ideal"), "");
+  EXPECT_NE(mistake_with("encoders: quantised", "encoders: perfect").find("quantised or ideal"),
+            std::string::npos);
+}
+
+TEST(ArmFile, RefusesSignsOtherThanOne) {
+  EXPECT_NE(mistake_with("motor_sign: [-1, 1, -1]", "motor_sign: [-1, 0.5, -1]")
+                .find("motor_sign: expected each to be 1 or -1"),
+            std::string::npos);
+}
+
+TEST(ArmFile, RefusesALengthInMillimetres) {
+  EXPECT_NE(mistake_with("length_b: 0.138", "length_b: 138")
+                .find("length_b: expected a number from 0.01 to 1 m, found \"138\""),
+            std::string::npos);
+}
+
+TEST(ArmFile, RefusesAWorkspaceTurnedInsideOut) {
+  EXPECT_NE(mistake_with("max: [0.1, 0.1, 0.1]", "max: [0.1, -0.2, 0.1]").find("max: expected"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace thimble::app

@@ -1,0 +1,126 @@
+#include "pictures.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "gnuplot.h"
+#include "mesh_view.h"
+
+namespace thimble::app {
+namespace {
+
+// A tetrahedron with a corner at the origin and legs of 50 mm, wound outwards.
+render::TriangleMesh tetrahedron() {
+  render::TriangleMesh mesh;
+  mesh.vertices = {{0, 0, 0}, {0.05, 0, 0}, {0, 0.05, 0}, {0, 0, 0.05}};
+  mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+  return mesh;
+}
+
+std::vector<driver::TickRecord> stroke() {
+  std::vector<driver::TickRecord> rows(2000);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const auto x = static_cast<double>(i) / 2000;
+    rows[i].time_ns = static_cast<std::int64_t>(i) * 1'000'000;
+    rows[i].work_ns = 5000 + static_cast<std::int64_t>(i % 100) * 10;
+    rows[i].in_contact = i > 500 && i < 1500;
+    rows[i].p_WT = rows[i].p_WP = {0.05 * x, 0.01, 0.06 - 0.05 * x};
+    rows[i].f_sent_W = {0, 0, rows[i].in_contact ? std::sin(3 * x) : 0};
+    rows[i].f_wanted_W = rows[i].f_sent_W;
+    rows[i].depth = rows[i].in_contact ? 0.001 : 0;
+  }
+  return rows;
+}
+
+std::pair<int, int> png_size(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::string head(24, '\0');
+  stream.read(head.data(), 24);
+  if (!stream || head.substr(1, 3) != "PNG" || head.substr(12, 4) != "IHDR") return {0, 0};
+  const auto number = [&](std::size_t at) {
+    int value = 0;
+    for (std::size_t i = 0; i < 4; ++i)
+      value = value * 256 + static_cast<unsigned char>(head[at + i]);
+    return value;
+  };
+  return {number(16), number(20)};
+}
+
+TEST(MeshView, HidesWhatLiesBehindAndNothingBeside) {
+  const auto& front = view_directions()[0];
+  const MeshView view(tetrahedron(), front, {0.02, 0.02, 0.02}, 0.08, 200);
+  EXPECT_TRUE(view.hides({-0.03, 0.01, 0.01}, 0.001));
+  EXPECT_FALSE(view.hides({0.06, 0.01, 0.01}, 0.001));
+  EXPECT_FALSE(view.hides({-0.03, 0.045, 0.045}, 0.001));
+  EXPECT_FALSE(view.hides({-0.03, 10, 0.01}, 0.001));
+  EXPECT_FALSE(view.hides({NAN, NAN, NAN}, 0.001));
+}
+
+TEST(MeshView, CoversTheTrianglesShareOfThePicture) {
+  // Seen from the front the tetrahedron is a right triangle of 50 x 50 mm in a window of 80 x 80
+  // mm.
+  const MeshView view(tetrahedron(), view_directions()[0], {0.02, 0.02, 0.02}, 0.08, 200);
+  int covered = 0;
+  for (std::size_t i = 0; i < view.rgb().size(); i += 3) covered += view.rgb()[i] < 250 ? 1 : 0;
+  EXPECT_NEAR(covered / 40000.0, 0.5 * 0.05 * 0.05 / (0.08 * 0.08), 0.005);
+}
+
+TEST(MeshView, LooksAlongThreeRightHandedFrames) {
+  for (const ViewDirection& direction : view_directions()) {
+    EXPECT_LT((direction.u_W.cross(direction.v_W) - direction.w_W).norm(), 1e-15) << direction.name;
+  }
+}
+
+TEST(Pictures, AreWrittenAsPngAndSvg) {
+  if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  const std::filesystem::path folder =
+      std::filesystem::path(testing::TempDir()) / "thimble's pictures";
+  std::filesystem::remove_all(folder);
+  const std::vector<driver::TickRecord> rows = stroke();
+  const auto done = draw_pictures(rows, tetrahedron(), {.title = "it's_a \"test\""}, folder);
+  ASSERT_TRUE(done.ok()) << done.error().message;
+  for (const std::string name : {"force_and_depth", "path_on_mesh", "period_histogram"}) {
+    const auto [width, height] = png_size(folder / (name + ".png"));
+    EXPECT_GE(width, 1600) << name;
+    EXPECT_GE(height, 600) << name;
+    EXPECT_GT(std::filesystem::file_size(folder / (name + ".png")), 15'000U) << name;
+    EXPECT_GT(std::filesystem::file_size(folder / (name + ".svg")), 5'000U) << name;
+    EXPECT_FALSE(std::filesystem::exists(folder / "data" / (name + ".log"))) << name;
+  }
+}
+
+TEST(Pictures, AreDrawnOfARunWithoutContactToo) {
+  if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  std::vector<driver::TickRecord> rows(3);
+  for (std::size_t i = 0; i < 3; ++i) rows[i].time_ns = static_cast<std::int64_t>(i) * 1'000'000;
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "thimble_empty";
+  EXPECT_TRUE(draw_pictures(rows, tetrahedron(), {}, folder).ok());
+  EXPECT_TRUE(draw_pictures({}, tetrahedron(), {}, folder).ok());
+}
+
+TEST(Pictures, TellWhatGnuplotSaidAgainstACommand) {
+  if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "thimble_wrong";
+  std::filesystem::create_directories(folder / "data");
+  const auto done = draw_plot({"wrong", 400, 300, "plot nonsense(x)\n"}, folder);
+  ASSERT_FALSE(done.ok());
+  EXPECT_NE(done.error().message.find("undefined function"), std::string::npos)
+      << done.error().message;
+}
+
+TEST(MeshPicture, IsWrittenWhereItWasAskedFor) {
+  if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  const std::filesystem::path folder = testing::TempDir();
+  ASSERT_TRUE(draw_mesh(tetrahedron(), folder / "tetrahedron.png", "tetrahedron", "m").ok());
+  EXPECT_GT(png_size(folder / "tetrahedron.png").first, 1000);
+  EXPECT_FALSE(draw_mesh(tetrahedron(), folder / "tetrahedron.jpg").ok());
+  EXPECT_FALSE(draw_mesh({}, folder / "nothing.png").ok());
+}
+
+}  // namespace
+}  // namespace thimble::app

@@ -1,0 +1,131 @@
+#include "report.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+namespace thimble::app {
+namespace {
+
+RunReport example() {
+  RunReport report;
+  report.scene = "elephant";
+  report.object = "elephant";
+  report.arm = "vintage_phantom";
+  report.virtual_time = false;
+  report.seed = 42;
+  report.rate_asked = 1000;
+  report.force_limit = 5;
+  report.triangles = 5558;
+  driver::TickRecord record;
+  for (int i = 0; i <= 2000; ++i) {
+    record.time_ns = record.due_ns = i * 1'000'000LL;
+    record.work_ns = 8000;
+    record.fresh = true;
+    record.in_contact = i >= 500 && i < 1500;
+    record.depth = record.in_contact ? 0.001 : 0;
+    record.f_sent_W = {0, 0, record.in_contact ? 0.8 : 0};
+    report.statistics(record);
+  }
+  report.wire.reports = 2001;
+  report.gate.limited = 3;
+  return report;
+}
+
+nlohmann::json read(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  return nlohmann::json::parse(stream);
+}
+
+TEST(Report, HoldsTheValuesOfTheRun) {
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "thimble_report";
+  ASSERT_TRUE(write_report(example(), folder).ok());
+  const nlohmann::json report = read(folder / "report.json");
+  EXPECT_EQ(report["scene"], "elephant");
+  EXPECT_EQ(report["arm"]["name"], "vintage_phantom");
+  EXPECT_EQ(report["seed"], 42);
+  EXPECT_EQ(report["clock"], "wall");
+  EXPECT_EQ(report["ticks"], 2001);
+  EXPECT_NEAR(report["rate_Hz"]["reached"].get<double>(), 1000, 1e-6);
+  EXPECT_EQ(report["period"]["p50"], 1000.0);
+  EXPECT_NEAR(report["tick_time"]["p99_9"].get<double>(), 8, 0.008);
+  EXPECT_EQ(report["contact"]["touch_downs"], 1);
+  EXPECT_EQ(report["contact"]["lost"], 0);
+  EXPECT_NEAR(report["contact"]["time_s"].get<double>(), 1, 1e-9);
+  EXPECT_NEAR(report["force_N"]["max"].get<double>(), 0.8, 1e-12);
+  EXPECT_EQ(report["gate"]["limited"], 3);
+  EXPECT_EQ(report["wire"]["reports"], 2001);
+  EXPECT_EQ(report["end"]["reason"], "done");
+  EXPECT_EQ(report["end"]["fault"], "none");
+  EXPECT_FALSE(report["build"]["version"].get<std::string>().empty());
+}
+
+TEST(Report, WritesEachFigureWithItsGoal) {
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "thimble_report";
+  RunReport report = example();
+  report.lost_contacts = 2;
+  ASSERT_TRUE(write_report(report, folder).ok());
+  const nlohmann::json figures = read(folder / "figures.json");
+  ASSERT_TRUE(figures.is_array());
+  const auto named = [&](const std::string& name) {
+    const auto found = std::find_if(figures.begin(), figures.end(),
+                                    [&](const auto& figure) { return figure["name"] == name; });
+    return found == figures.end() ? nlohmann::json() : *found;
+  };
+  EXPECT_EQ(named("force_max")["goal"], "<= 5");
+  EXPECT_EQ(named("force_max")["met"], true);
+  EXPECT_EQ(named("lost_contacts")["value"], 2.0);
+  EXPECT_EQ(named("lost_contacts")["met"], false);
+  EXPECT_FALSE(named("touch_downs").contains("goal"));
+}
+
+TEST(Report, TellsTheRunInPlainWords) {
+  const std::string text = summary(example());
+  EXPECT_NE(text.find("touched it 1 time,"), std::string::npos) << text;
+  EXPECT_NE(text.find("0.80 N at most"), std::string::npos) << text;
+  EXPECT_NE(text.find("No contact was lost"), std::string::npos) << text;
+  const auto lines = std::count(text.begin(), text.end(), '\n');
+  EXPECT_GE(lines, 8);
+  EXPECT_LE(lines, 12);
+}
+
+TEST(Report, NamesTheFaultThatEndedIt) {
+  RunReport report = example();
+  report.end = driver::ServoEnd::kFault;
+  report.fault = driver::Fault::kOverSpeed;
+  EXPECT_NE(summary(report).find(driver::describe(driver::Fault::kOverSpeed)), std::string::npos);
+}
+
+TEST(Report, SaysWhereItCannotWrite) {
+  const auto done = write_report(example(), "/proc/no_such_folder");
+  ASSERT_FALSE(done.ok());
+  EXPECT_NE(done.error().message.find("/proc/no_such_folder"), std::string::npos);
+}
+
+TEST(Report, SurvivesANameThatIsNotUtf8) {
+  RunReport report = example();
+  report.scene = "\xff\xfe";
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "thimble_report";
+  EXPECT_TRUE(write_report(report, folder).ok());
+  EXPECT_TRUE(read(folder / "report.json")["scene"].is_string());
+}
+
+TEST(Figure, MeetsItsGoalOrNot) {
+  EXPECT_TRUE((Figure{"a", 5, "N", "<= 5"}.met()));
+  EXPECT_FALSE((Figure{"a", 5.001, "N", "<= 5"}.met()));
+  EXPECT_TRUE((Figure{"a", 20, "", ">= 20"}.met()));
+  EXPECT_FALSE((Figure{"a", 5, "", "< 5"}.met()));
+  EXPECT_FALSE((Figure{"a", 5, "", "> 5"}.met()));
+  EXPECT_TRUE((Figure{"a", 0, "", "== 0"}.met()));
+  EXPECT_TRUE((Figure{"a", 5, "", ""}.met()));
+  EXPECT_FALSE((Figure{"a", 5, "", "about 5"}.met()));
+  for (const char* goal : {"<= 5", ">= 5", "== 5", "< 5", "> 5"}) {
+    EXPECT_FALSE((Figure{"a", std::numeric_limits<double>::quiet_NaN(), "", goal}.met())) << goal;
+  }
+}
+
+}  // namespace
+}  // namespace thimble::app
