@@ -11,7 +11,7 @@ packages=(
   g++ cmake ninja-build pkg-config       # to build
   libeigen3-dev                          # vectors and matrices
   libusb-1.0-0-dev libhidapi-dev         # arms on USB
-  libassimp-dev                          # OBJ, STL and PLY files
+  libassimp-dev zlib1g-dev               # OBJ, STL and PLY files
   libyaml-cpp-dev nlohmann-json3-dev     # scenes in, reports out
   libspdlog-dev libcli11-dev             # messages and arguments of the program
   gnuplot-nox fonts-dejavu-core          # pictures
