@@ -65,8 +65,9 @@ driver::Result<void> draw_plot(const Plot& plot, const std::filesystem::path& fo
                 "svg size " + size + " font 'DejaVu Sans,sans-serif,17' background '#ffffff'"}};
   std::string script = "set encoding utf8\n";
   for (const auto& [ending, terminal] : terminals) {
-    script += "reset\nset terminal " + terminal + "\nset output '" + plot.name + "." + ending +
-              "'\n" + plot.commands + "unset output\n";
+    script.append("reset\nset terminal ").append(terminal).append("\nset output '");
+    script.append(plot.name).append(".").append(ending).append("'\n");
+    script.append(plot.commands).append("unset output\n");
   }
   const std::string script_name = "data/" + plot.name + ".gp";
   const std::string log_name = "data/" + plot.name + ".log";

@@ -89,12 +89,12 @@ driver::Result<HandRoute> plan_hand(const std::vector<HandWaypoint>& waypoints,
   };
   // Free stretches that end on the surface lead to the pressed point, not to the one near it.
   std::vector<Vector3d> stations;
+  stations.reserve(waypoints.size());
   for (const HandWaypoint& w : waypoints) {
     stations.push_back(w.on ? pressed(probe.closest(w.p_W), w.press) : w.p_W);
   }
   HandRoute route{{waypoints.front().time, stations.front()}};
-  std::size_t run_begin =
-      0;  // index in the route at which the present stretch on the surface began
+  std::size_t run_begin = 0;  // where in the route the present stretch on the surface began
   for (std::size_t i = 0; i + 1 < waypoints.size(); ++i) {
     const HandWaypoint& from = waypoints[i];
     const HandWaypoint& to = waypoints[i + 1];

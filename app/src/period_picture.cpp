@@ -69,7 +69,10 @@ std::string percentiles(const Histogram& histogram) {
 std::string logarithmic_tics(const Range& range) {
   const bool many = range.high > 1e4 * range.low;
   std::string tics;
-  for (double ten = std::pow(10, std::floor(std::log10(range.low))); ten < range.high; ten *= 10) {
+  const int first = static_cast<int>(std::floor(std::log10(range.low)));
+  const int last = static_cast<int>(std::ceil(std::log10(range.high)));
+  for (int power = first; power <= last; ++power) {
+    const double ten = std::pow(10, power);
     for (const double tic : {ten, 2 * ten, 5 * ten}) {
       if (tic < range.low || tic > range.high || (many && tic != ten)) continue;
       tics += (tics.empty() ? "" : ", ") + number(tic);

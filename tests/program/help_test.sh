@@ -7,6 +7,7 @@ expect 0 'Exit codes: 0 done' "$thimble" --help
 expect 0 '^thimble [0-9]+\.[0-9]+\.[0-9]+ \(' "$thimble" --version
 for command in run devices mesh; do
   expect 0 "$command" "$thimble" "$command" --help
+  expect 0 '^thimble [0-9]' "$thimble" "$command" --version
 done
 for option in device clock duration report seed; do
   expect 0 "--$option" "$thimble" run --help
