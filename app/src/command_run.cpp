@@ -68,7 +68,9 @@ RunReport report_of(const Session& session, ClockKind clock, driver::ServoEnd en
                     const driver::RealTimeGrant& grant) {
   RunReport report;
   report.scene = session.scene().name;
-  report.object = session.scene().objects.front().name;
+  for (const SceneObject& object : session.scene().objects) {
+    report.object += (report.object.empty() ? "" : ", ") + object.name;
+  }
   report.arm = session.arm_file().name;
   report.virtual_time = clock == ClockKind::kVirtual;
   report.seed = session.seed();
@@ -76,8 +78,7 @@ RunReport report_of(const Session& session, ClockKind clock, driver::ServoEnd en
   report.force_limit = session.arm_file().limits.force_max;
   report.triangles = session.mesh_W().triangles.size();
   report.statistics = session.statistics();
-  report.lost_contacts =
-      count_lost_contacts(session.trace().rows(), session.touch().contact().search());
+  report.lost_contacts = count_lost_contacts(session.trace().rows(), session.touch());
   report.wire = session.device().wire_counters();
   report.gate = session.device().gate_counters();
   report.real_time = grant;

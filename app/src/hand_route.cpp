@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <sstream>
+#include <string>
 
 #include "surface_probe.h"
 
@@ -39,7 +41,7 @@ struct Quintic {
 };
 
 bool follows_surface(const HandWaypoint& from, const HandWaypoint& to) {
-  return from.on && to.on;
+  return from.on && to.on && *from.on == *to.on;
 }
 
 // Speed at station `i`: zero where the hand rests, else the mean over its neighbours.
@@ -74,7 +76,7 @@ driver::Error jump_error(const HandWaypoint& from, const HandWaypoint& to, doubl
 }  // namespace
 
 driver::Result<HandRoute> plan_hand(const std::vector<HandWaypoint>& waypoints,
-                                    const render::TriangleMesh& mesh_W) {
+                                    const std::vector<NamedMesh>& objects) {
   if (waypoints.empty()) return driver::Error{"The hand's way has no station."};
   for (std::size_t i = 1; i < waypoints.size(); ++i) {
     if (waypoints[i].time > waypoints[i - 1].time) continue;
@@ -83,7 +85,13 @@ driver::Result<HandRoute> plan_hand(const std::vector<HandWaypoint>& waypoints,
          << " s after t = " << waypoints[i - 1].time << " s: times must grow.";
     return driver::Error{text.str()};
   }
-  SurfaceProbe probe(mesh_W);
+  std::map<std::string, SurfaceProbe> probes;
+  for (const NamedMesh& object : objects) probes.try_emplace(object.name, *object.mesh_W);
+  for (const HandWaypoint& w : waypoints) {
+    if (w.on && !probes.contains(*w.on)) {
+      return driver::Error{"The hand's way touches \"" + *w.on + "\", which is no object here."};
+    }
+  }
   const auto pressed = [](const SurfacePoint& point, double press) -> Vector3d {
     return point.p_WS - press * point.n_W;
   };
@@ -91,7 +99,7 @@ driver::Result<HandRoute> plan_hand(const std::vector<HandWaypoint>& waypoints,
   std::vector<Vector3d> stations;
   stations.reserve(waypoints.size());
   for (const HandWaypoint& w : waypoints) {
-    stations.push_back(w.on ? pressed(probe.closest(w.p_W), w.press) : w.p_W);
+    stations.push_back(w.on ? pressed(probes.at(*w.on).closest(w.p_W), w.press) : w.p_W);
   }
   HandRoute route{{waypoints.front().time, stations.front()}};
   std::size_t run_begin = 0;  // where in the route the present stretch on the surface began
@@ -102,14 +110,16 @@ driver::Result<HandRoute> plan_hand(const std::vector<HandWaypoint>& waypoints,
     const Quintic way{on_surface ? from.p_W : stations[i], on_surface ? to.p_W : stations[i + 1],
                       speed_at(waypoints, i), speed_at(waypoints, i + 1), to.time - from.time};
     const int steps = std::max(1, static_cast<int>(std::ceil(way.time / kSampleTime)));
-    SurfacePoint last = probe.closest(way.at(0));
+    SurfaceProbe* const probe = on_surface ? &probes.at(*from.on) : nullptr;
+    SurfacePoint last;
+    if (probe) last = probe->closest(way.at(0));
     for (int step = 1; step <= steps; ++step) {
       const double s = static_cast<double>(step) / steps;
       const double time = from.time + s * way.time;
       Vector3d p_WH = way.at(s);
-      if (on_surface) {
+      if (probe) {
         const double asked = (p_WH - way.at(static_cast<double>(step - 1) / steps)).norm();
-        const SurfacePoint point = probe.closest(p_WH);
+        const SurfacePoint point = probe->closest(p_WH);
         if (!((point.p_WS - last.p_WS).norm() <= std::max(kRunMax * asked, kJumpMin))) {
           return jump_error(from, to, time);
         }

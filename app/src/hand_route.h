@@ -23,18 +23,26 @@ struct HandWaypoint {
 /// Is where the hand wants to be over time: seconds and points in the world (m).
 using HandRoute = std::vector<std::pair<double, Eigen::Vector3d>>;
 
+/// Is one object that the hand may follow: its name and its mesh in the world (m), kept by the
+/// caller.
+struct NamedMesh {
+  std::string name;
+  const render::TriangleMesh* mesh_W = nullptr;
+};
+
 /// Plans the hand's way through its stations, one point every 2 ms or so.
 ///
-/// Between two stations on the object the hand follows the surface: points on the way between are
-/// moved to the closest surface point and pressed in along its smooth normal. Every other stretch
-/// is a straight line. The way over the surface is averaged over 60 ms, as by a hand. Position,
-/// speed and acceleration are continuous in time before the move to the surface; the hand rests
-/// where the kind of stretch changes, at the ends, and where `stop` is set.
+/// Between two stations on the same object the hand follows the surface: points on the way between
+/// are moved to the closest surface point and pressed in along its smooth normal. Every other
+/// stretch is a straight line. The way over the surface is averaged over 60 ms, as by a hand.
+/// Position, speed and acceleration are continuous in time before the move to the surface; the hand
+/// rests where the kind of stretch changes, at the ends, and where `stop` is set.
 ///
-/// Fails, naming the times, if times do not grow or if the closest surface point jumps on the way
+/// Fails, naming the times, if times do not grow, if a station is on an object that is not among
+/// `objects`, or if the closest surface point jumps on the way
 /// (the stations then lead through the object's middle and need another one between them).
 /// Real-time: never from the servo thread.
 driver::Result<HandRoute> plan_hand(const std::vector<HandWaypoint>& waypoints,
-                                    const render::TriangleMesh& mesh_W);
+                                    const std::vector<NamedMesh>& objects);
 
 }  // namespace thimble::app

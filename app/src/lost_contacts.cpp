@@ -12,7 +12,7 @@ constexpr std::size_t kChecks = 20'000;  // [chosen: about 0.1 s on a mesh of 5,
 }  // namespace
 
 std::uint64_t count_lost_contacts(std::span<const driver::TickRecord> rows,
-                                  const render::LinearSearch& search_W) {
+                                  const render::SceneTouch& touch) {
   const std::size_t stride = std::max<std::size_t>(1, rows.size() / kChecks);
   std::uint64_t lost = 0;
   bool was_outside = false, in_lost_stretch = false, in_contact_before = false;
@@ -21,7 +21,7 @@ std::uint64_t count_lost_contacts(std::span<const driver::TickRecord> rows,
     if (row.in_contact) {
       in_lost_stretch = false;
     } else if (in_contact_before || in_lost_stretch || i % stride == 0) {
-      const bool inside = search_W.inside(Eigen::Map<const Eigen::Vector3d>(row.p_WT.data()));
+      const bool inside = touch.inside(Eigen::Map<const Eigen::Vector3d>(row.p_WT.data()));
       if (inside && was_outside && !in_lost_stretch) ++lost;
       in_lost_stretch = inside && was_outside;
       was_outside = was_outside || !inside;

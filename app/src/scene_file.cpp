@@ -109,9 +109,13 @@ driver::Result<Scene> read_scene(const std::filesystem::path& file,
   for (YamlMap& object : root.require_maps("objects")) {
     scene.objects.push_back(read_object(object, folder, mesh_folder));
   }
-  if (scene.objects.size() > 1) {
-    root.reject("objects", "expected one object, found " + std::to_string(scene.objects.size()) +
-                               ": this version touches one mesh");
+  for (std::size_t i = 1; i < scene.objects.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (scene.objects[i].name == scene.objects[j].name) {
+        root.reject("objects",
+                    "expected different names, found \"" + scene.objects[i].name + "\" twice");
+      }
+    }
   }
   scene.hand = read_hand(root.require_map("hand"), scene.objects);
   root.finish();

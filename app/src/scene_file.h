@@ -38,9 +38,8 @@ struct Scene {
 };
 
 /// Reads a scene file (see app/scenes/elephant.yaml for the form). Paths in it are relative to the
-/// file; a mesh `cgal:NAME` is looked for in `mesh_folder`. This version touches one mesh: a scene
-/// with another number of objects is refused. The error tells up to five mistakes, one per line.
-/// Real-time: never from the servo thread.
+/// file; a mesh `cgal:NAME` is looked for in `mesh_folder`. Objects must not share a name. The
+/// error tells up to five mistakes, one per line. Real-time: never from the servo thread.
 driver::Result<Scene> read_scene(const std::filesystem::path& file,
                                  const std::filesystem::path& mesh_folder);
 

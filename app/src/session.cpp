@@ -8,6 +8,7 @@
 
 #include "hand_route.h"
 #include "thimble/render/mesh/load_mesh.h"
+#include "thimble/render/mesh_touch.h"
 
 namespace thimble::app {
 namespace {
@@ -39,6 +40,42 @@ driver::Result<void> check_reach(const HandRoute& route, const ArmFile& arm) {
   return {};
 }
 
+/// Reads the mesh of every object and puts it into the world (m).
+driver::Result<std::vector<render::TriangleMesh>> load_meshes(const Scene& scene) {
+  std::vector<render::TriangleMesh> meshes;
+  for (const SceneObject& object : scene.objects) {
+    const auto mesh = render::load_mesh(object.mesh_file);
+    if (!mesh) return mesh.error();
+    meshes.push_back(place_mesh(*mesh, object));
+  }
+  return meshes;
+}
+
+/// Builds the force law that the scene calls for.
+driver::Result<std::unique_ptr<render::SceneTouch>> build_touch(
+    const Scene& scene, const std::vector<render::TriangleMesh>& meshes_W) {
+  std::vector<std::unique_ptr<render::ObjectTouch>> objects;
+  for (std::size_t i = 0; i < meshes_W.size(); ++i) {
+    const SceneObject& object = scene.objects[i];
+    auto contact = render::MeshContact::build(meshes_W[i]);
+    if (!contact) {
+      return driver::Error{object.mesh_file.string() + ": " + contact.error().message};
+    }
+    objects.push_back(std::make_unique<render::ObjectTouchOf<render::MeshTouch>>(render::MeshTouch(
+        std::move(contact).value(), {.stiffness = object.stiffness, .damping = object.damping})));
+  }
+  return std::make_unique<render::SceneTouch>(std::move(objects));
+}
+
+/// Adds the triangles of one mesh to another.
+void append(const render::TriangleMesh& mesh, render::TriangleMesh& whole) {
+  const auto first = static_cast<std::int32_t>(whole.vertices.size());
+  whole.vertices.insert(whole.vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
+  for (const auto& [a, b, c] : mesh.triangles) {
+    whole.triangles.push_back({first + a, first + b, first + c});
+  }
+}
+
 }  // namespace
 
 driver::Result<std::unique_ptr<Session>> Session::open(const std::filesystem::path& scene_file,
@@ -51,21 +88,20 @@ driver::Result<std::unique_ptr<Session>> Session::open(const std::filesystem::pa
   std::unique_ptr<Session> session(new Session);
   session->scene_ = std::move(scene).value();
   session->arm_file_ = std::move(arm_file).value();
-  const SceneObject& object = session->scene_.objects.front();
   const ArmFile& arm = session->arm_file_;
 
-  const auto mesh = render::load_mesh(object.mesh_file);
-  if (!mesh) return mesh.error();
-  session->mesh_W_ = place_mesh(*mesh, object);
-  auto contact_mesh = render::ContactMesh::build(session->mesh_W_);
-  if (!contact_mesh) {
-    return driver::Error{object.mesh_file.string() + ": " + contact_mesh.error().message};
-  }
-  session->touch_ = std::make_unique<render::MeshTouch>(
-      render::MeshContact(std::move(contact_mesh).value()),
-      render::SpringDamper{.stiffness = object.stiffness, .damping = object.damping});
+  auto meshes = load_meshes(session->scene_);
+  if (!meshes) return meshes.error();
+  auto touch = build_touch(session->scene_, *meshes);
+  if (!touch) return touch.error();
+  session->touch_ = std::move(touch).value();
 
-  const auto route = plan_hand(session->scene_.hand, session->mesh_W_);
+  std::vector<NamedMesh> named;
+  for (std::size_t i = 0; i < meshes->size(); ++i) {
+    named.push_back({session->scene_.objects[i].name, &(*meshes)[i]});
+    append((*meshes)[i], session->mesh_W_);
+  }
+  const auto route = plan_hand(session->scene_.hand, named);
   if (!route) return driver::Error{scene_file.string() + ": " + route.error().message};
   if (auto reach = check_reach(*route, arm); !reach) {
     return driver::Error{scene_file.string() + ": " + reach.error().message};

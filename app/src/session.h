@@ -15,7 +15,7 @@
 #include "thimble/driver/device.h"
 #include "thimble/driver/servo_loop.h"
 #include "thimble/driver/snapshot.h"
-#include "thimble/render/mesh_touch.h"
+#include "thimble/render/scene_touch.h"
 #include "trace.h"
 
 namespace thimble::app {
@@ -46,10 +46,11 @@ class Session {
 
   const Scene& scene() const { return scene_; }
   const ArmFile& arm_file() const { return arm_file_; }
+  /// Gives the meshes of all objects in the world as one (m), for pictures and checks.
   const render::TriangleMesh& mesh_W() const { return mesh_W_; }
   const driver::Device& device() const { return *device_; }
   const device_sim::SimulatedArm& arm() const { return *arm_; }
-  const render::MeshTouch& touch() const { return *touch_; }
+  const render::SceneTouch& touch() const { return *touch_; }
   const RunStatistics& statistics() const { return *statistics_; }
   const Trace& trace() const { return *trace_; }
   const driver::Snapshot<driver::TickRecord>& snapshot() const { return snapshot_; }
@@ -72,7 +73,7 @@ class Session {
   std::unique_ptr<driver::Clock> clock_;
   std::unique_ptr<device_sim::SimulatedArm> arm_;
   std::unique_ptr<driver::Device> device_;  // holds the wire to arm_, so it goes first
-  std::unique_ptr<render::MeshTouch> touch_;
+  std::unique_ptr<render::SceneTouch> touch_;
   std::unique_ptr<RunStatistics> statistics_;
   std::unique_ptr<Trace> trace_;
   driver::Snapshot<driver::TickRecord> snapshot_;

@@ -22,6 +22,7 @@ TickRecord record_of(const DeviceState& state, const ForceCommand& command,
   record.f_sent_W = plain(device.f_sent_W());
   record.depth = command.touch.depth;
   record.feature = command.touch.feature;
+  record.object = command.touch.object;
   record.hops = command.touch.hops;
   record.buttons = state.buttons;
   record.in_contact = command.touch.in_contact;

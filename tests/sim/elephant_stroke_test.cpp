@@ -71,7 +71,7 @@ TEST_F(ElephantStroke, LosesNoContactWhileTheTipIsInside) {
   EXPECT_EQ(lost, 0u);
   EXPECT_EQ(felt_outside, 0u);
   // The report's own count says the same.
-  EXPECT_EQ(app::count_lost_contacts(rows(), session_->touch().contact().search()), 0u);
+  EXPECT_EQ(app::count_lost_contacts(rows(), session_->touch()), 0u);
 }
 
 TEST_F(ElephantStroke, KeepsTheTriangleWhoseCellHoldsTheTip) {

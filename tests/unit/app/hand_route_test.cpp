@@ -61,6 +61,11 @@ HandWaypoint at(double time, const Vector3d& p_W) {
   return waypoint;
 }
 
+driver::Result<HandRoute> plan_on_sphere(const std::vector<HandWaypoint>& waypoints,
+                                         const render::TriangleMesh& mesh_W) {
+  return plan_hand(waypoints, {{"sphere", &mesh_W}});
+}
+
 TEST(SurfaceProbe, FindsTheSamePointAsALookAtEveryTriangle) {
   const render::TriangleMesh mesh = sphere(3);
   SurfaceProbe probe(mesh);
@@ -78,9 +83,9 @@ TEST(SurfaceProbe, FindsTheSamePointAsALookAtEveryTriangle) {
 TEST(HandRoute, LiesPressBelowTheSphereAllAlongTheStroke) {
   const render::TriangleMesh mesh = sphere(5);
   const double press = 0.004;
-  const auto route = plan_hand({on(0, {0.04, 0, 0}, press), on(1, {0.02, 0.03, 0.01}, press),
-                                on(2, {-0.01, 0.02, 0.03}, press)},
-                               mesh);
+  const auto route = plan_on_sphere({on(0, {0.04, 0, 0}, press), on(1, {0.02, 0.03, 0.01}, press),
+                                     on(2, {-0.01, 0.02, 0.03}, press)},
+                                    mesh);
   ASSERT_TRUE(route.ok()) << route.error().message;
   EXPECT_GE(route->size(), 1000U);
   for (const auto& [time, p_W] : *route) {
@@ -91,7 +96,7 @@ TEST(HandRoute, LiesPressBelowTheSphereAllAlongTheStroke) {
 
 TEST(HandRoute, ChangesThePressSmoothlyFromStationToStation) {
   const auto route =
-      plan_hand({on(0, {0.04, 0, 0}, 0.001), on(1, {0.02, 0.03, 0}, 0.005)}, sphere(5));
+      plan_on_sphere({on(0, {0.04, 0, 0}, 0.001), on(1, {0.02, 0.03, 0}, 0.005)}, sphere(5));
   ASSERT_TRUE(route.ok());
   double last = kRadius;
   for (const auto& [time, p_W] : *route) {
@@ -102,9 +107,10 @@ TEST(HandRoute, ChangesThePressSmoothlyFromStationToStation) {
 }
 
 TEST(HandRoute, GrowsInTimeAndMovesAsFastAsAHandOnly) {
-  const auto route = plan_hand({at(0, {0.08, 0, 0}), on(0.8, {0.04, 0, 0}, 0.003),
-                                on(1.6, {0.02, 0.03, 0.01}, 0.004), at(2.2, {0.03, 0.07, 0.03})},
-                               sphere(4));
+  const auto route =
+      plan_on_sphere({at(0, {0.08, 0, 0}), on(0.8, {0.04, 0, 0}, 0.003),
+                      on(1.6, {0.02, 0.03, 0.01}, 0.004), at(2.2, {0.03, 0.07, 0.03})},
+                     sphere(4));
   ASSERT_TRUE(route.ok()) << route.error().message;
   EXPECT_EQ(route->front().first, 0);
   EXPECT_EQ(route->back().first, 2.2);
@@ -122,7 +128,7 @@ TEST(HandRoute, GrowsInTimeAndMovesAsFastAsAHandOnly) {
 
 TEST(HandRoute, GoesStraightThroughFreePointsWithoutAStop) {
   const auto route =
-      plan_hand({at(0, {0, 0, 0}), at(1, {0.1, 0, 0}), at(2, {0.2, 0, 0})}, sphere(0));
+      plan_on_sphere({at(0, {0, 0, 0}), at(1, {0.1, 0, 0}), at(2, {0.2, 0, 0})}, sphere(0));
   ASSERT_TRUE(route.ok());
   for (std::size_t i = 1; i < route->size(); ++i) {
     const double dt = (*route)[i].first - (*route)[i - 1].first;
@@ -135,17 +141,36 @@ TEST(HandRoute, GoesStraightThroughFreePointsWithoutAStop) {
 
 TEST(HandRoute, RefusesAWayThroughTheMiddle) {
   const auto route =
-      plan_hand({on(0, {0.03, 0.001, 0}, 0.003), on(1, {-0.03, 0.0001, 0}, 0.003)}, sphere(3));
+      plan_on_sphere({on(0, {0.03, 0.001, 0}, 0.003), on(1, {-0.03, 0.0001, 0}, 0.003)}, sphere(3));
   ASSERT_FALSE(route.ok());
   EXPECT_NE(route.error().message.find("from t = 0 s to 1 s jumps"), std::string::npos)
       << route.error().message;
 }
 
 TEST(HandRoute, RefusesTimesThatDoNotGrow) {
-  const auto route = plan_hand({at(1, {0, 0, 0}), at(1, {0.1, 0, 0})}, sphere(0));
+  const auto route = plan_on_sphere({at(1, {0, 0, 0}), at(1, {0.1, 0, 0})}, sphere(0));
   ASSERT_FALSE(route.ok());
   EXPECT_NE(route.error().message.find("times must grow"), std::string::npos);
-  EXPECT_FALSE(plan_hand({}, sphere(0)).ok());
+  EXPECT_FALSE(plan_on_sphere({}, sphere(0)).ok());
+}
+
+TEST(HandRoute, GoesStraightFromOneObjectToAnotherAndFollowsEach) {
+  const render::TriangleMesh left = sphere(3);
+  render::TriangleMesh right = left;
+  for (Vector3d& vertex : right.vertices) vertex += Vector3d(0.2, 0, 0);
+  HandWaypoint there = on(1, {0.2, 0, 0.04}, 0);
+  there.on = "other";
+  const auto route =
+      plan_hand({on(0, {0, 0, 0.04}, 0), there}, {{"sphere", &left}, {"other", &right}});
+  ASSERT_TRUE(route.ok()) << route.error().message;
+  EXPECT_NEAR(route->front().second.z(), kRadius, 1e-3);
+  EXPECT_NEAR(route->back().second.x(), 0.2, 1e-3);
+  for (const auto& [time, p_W] : *route) EXPECT_NEAR(p_W.z(), kRadius, 1e-3);
+  // And a station on nothing is told.
+  there.on = "moon";
+  const auto lost = plan_hand({there}, {{"sphere", &left}});
+  ASSERT_FALSE(lost.ok());
+  EXPECT_NE(lost.error().message.find("\"moon\""), std::string::npos);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@ namespace thimble::driver {
 /// Says what a force law touched in one tick; for readers at the side (viewer, recorder, tests).
 struct TouchInfo {
   bool in_contact = false;        ///< True while the tip is held outside an object.
+  std::int16_t object = -1;       ///< Which of the scene's objects, -1 for none.
   std::int32_t feature = -1;      ///< Active triangle or other feature of the object, -1 for none.
   double depth = 0;               ///< Penetration depth along the force's normal, m; 0 if none.
   Eigen::Vector3d p_WP{0, 0, 0};  ///< Proxy: the surface point the tip is held at, in the world, m.

@@ -31,6 +31,7 @@ struct TickRecord {
   std::array<double, 3> f_sent_W{};    ///< N, what went through the gate and the current limits
   double depth = 0;                    ///< m
   std::int32_t feature = -1;           ///< active triangle
+  std::int16_t object = -1;   ///< which of the scene\'s objects
   std::uint16_t hops = 0;
   std::uint16_t buttons = 0;
   bool in_contact = false;

@@ -26,6 +26,7 @@ class Touch {
     if (contact.touching && contact.depth > 0) {
       command.f_T_W = surface_force_.force(contact, state);
       command.touch = {.in_contact = true,
+                       .object = 0,
                        .feature = contact.triangle,
                        .depth = contact.depth,
                        .p_WP = contact.p_WP,

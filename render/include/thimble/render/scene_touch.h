@@ -1,0 +1,52 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "thimble/driver/device_state.h"
+#include "thimble/driver/force_command.h"
+#include "thimble/render/object_touch.h"
+
+namespace thimble::render {
+
+/// Is the force law of a whole scene: several separate objects, each closed by itself. Their forces
+/// add; what is told of the touch is that of the object the tip is deepest in.
+class SceneTouch {
+ public:
+  /// Takes the objects in the scene's order; TouchInfo::object counts them from 0.
+  explicit SceneTouch(std::vector<std::unique_ptr<ObjectTouch>> objects)
+      : objects_(std::move(objects)) {}
+
+  /// Finds the force of the scene on the hand. Real-time: safe.
+  driver::ForceCommand operator()(const driver::DeviceState& state) noexcept {
+    driver::ForceCommand sum;
+    for (std::size_t i = 0; i < objects_.size(); ++i) {
+      const driver::ForceCommand one = objects_[i]->update(state);
+      sum.f_T_W += one.f_T_W;
+      if (one.touch.in_contact && !(one.touch.depth <= sum.touch.depth)) {
+        sum.touch = one.touch;
+        sum.touch.object = static_cast<std::int16_t>(i);
+      }
+    }
+    return sum;
+  }
+
+  /// Tells whether a point (W, m) lies inside any object; for checks beside the servo.
+  /// Real-time: safe; time grows with the objects' size.
+  bool inside(const Eigen::Vector3d& p_W) const noexcept {
+    for (const auto& object : objects_) {
+      if (object->inside(p_W)) return true;
+    }
+    return false;
+  }
+
+  std::size_t size() const noexcept { return objects_.size(); }
+  const ObjectTouch& object(std::size_t i) const noexcept { return *objects_[i]; }
+
+ private:
+  std::vector<std::unique_ptr<ObjectTouch>> objects_;
+};
+
+}  // namespace thimble::render
