@@ -1,6 +1,8 @@
 #include "scene_file.h"
 
 #include <Eigen/Geometry>
+#include <numbers>
+#include <span>
 #include <system_error>
 
 #include "thimble/render/mesh/placed_mesh.h"
@@ -38,6 +40,25 @@ std::filesystem::path find_file(YamlMap& map, std::string_view key,
   return path.lexically_normal();
 }
 
+render::ContactChoice read_contact(YamlMap map) {
+  render::ContactChoice choice;
+  const auto choose = [&map]<class Choice>(std::string_view key, Choice& chosen,
+                                           std::span<const std::string_view> names) {
+    const std::size_t number =
+        map.optional_choice(key, static_cast<std::size_t>(chosen), {names.begin(), names.end()});
+    chosen = static_cast<Choice>(number);
+  };
+  choose("tracker", choice.tracker, render::kTrackerNames);
+  choose("blending", choice.blending, render::kBlendingNames);
+  choose("search", choice.search, render::kSearchNames);
+  choice.curved_depth = map.optional_bool("curved_depth", choice.curved_depth);
+  choice.crease_angle =
+      map.optional_number("crease_degrees", 0, "degrees", 0, 180) * std::numbers::pi / 180;
+  choice.band = map.optional_number("band", choice.band, "m", 0, kPressMax);
+  map.finish();
+  return choice;
+}
+
 SceneObject read_object(YamlMap map, const std::filesystem::path& folder,
                         const std::filesystem::path& mesh_folder) {
   SceneObject object;
@@ -54,6 +75,7 @@ SceneObject read_object(YamlMap map, const std::filesystem::path& folder,
       map.optional_vector3("position", Eigen::Vector3d::Zero(), "m", -kPositionMax, kPositionMax);
   object.stiffness = map.require_number("stiffness", "N/m", 0, kStiffnessMax);
   object.damping = map.optional_number("damping", 0, "N s/m", 0, kDampingMax);
+  if (map.has("contact")) object.contact = read_contact(map.require_map("contact"));
   map.finish();
   return object;
 }

@@ -9,6 +9,7 @@
 
 #include "hand_route.h"
 #include "thimble/driver/result.h"
+#include "thimble/render/contact_choice.h"
 #include "thimble/render/mesh/triangle_mesh.h"
 
 namespace thimble::app {
@@ -23,6 +24,7 @@ struct SceneObject {
   Eigen::Vector3d p_WO{0, 0, 0};  ///< Where the centre of the turned mesh's box lies, m.
   double stiffness = 0;           ///< N/m
   double damping = 0;             ///< N s/m
+  render::ContactChoice contact;  ///< How the surface is found, followed and felt.
 };
 
 /// Is one scene: which arm touches what, how fast the loop runs, and what the simulated hand does.

@@ -261,6 +261,11 @@ std::size_t YamlMap::require_choice(std::string_view key,
   return 0;
 }
 
+std::size_t YamlMap::optional_choice(std::string_view key, std::size_t fallback,
+                                     const std::vector<std::string_view>& choices) {
+  return has(key) ? require_choice(key, choices) : fallback;
+}
+
 bool YamlMap::optional_bool(std::string_view key, bool fallback) {
   const Entry* entry = find(key, false);
   if (entry == nullptr) return fallback;

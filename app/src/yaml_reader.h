@@ -83,6 +83,11 @@ class YamlMap {
   /// Reads one of the words of `choices` and gives its number. A mistake gives 0.
   std::size_t require_choice(std::string_view key, const std::vector<std::string_view>& choices);
 
+  /// Reads one of the words of `choices` like `require_choice`, or gives `fallback` if the key is
+  /// absent.
+  std::size_t optional_choice(std::string_view key, std::size_t fallback,
+                              const std::vector<std::string_view>& choices);
+
   /// Reads `true` or `false`, or gives `fallback` if the key is absent or wrong.
   bool optional_bool(std::string_view key, bool fallback);
 

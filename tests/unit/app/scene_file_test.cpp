@@ -57,6 +57,25 @@ TEST(SceneFile, ReadsSeveralObjectsIfTheirNamesDiffer) {
   EXPECT_NE(mistake("", kWait).find("objects: expected a list"), std::string::npos);
 }
 
+TEST(SceneFile, NamesTheWayOfContactOrSaysWhichThereAre) {
+  const auto scene = read(
+      "  - {name: b, mesh: cgal:ball.off, stiffness: 1, contact: {tracker: offset, blending: "
+      "phong, "
+      "curved_depth: true, crease_degrees: 60}}\n",
+      kWait);
+  ASSERT_TRUE(scene.ok()) << scene.error().message;
+  EXPECT_EQ(scene->objects[0].contact.tracker, render::TrackerChoice::kOffset);
+  EXPECT_EQ(scene->objects[0].contact.blending, render::BlendingChoice::kPhong);
+  EXPECT_EQ(scene->objects[0].contact.search, render::ContactChoice().search);
+  EXPECT_TRUE(scene->objects[0].contact.curved_depth);
+  EXPECT_NEAR(scene->objects[0].contact.crease_angle, 1.0471975511965976, 1e-12);
+  EXPECT_NE(mistake("  - {name: b, mesh: cgal:ball.off, stiffness: 1, contact: {tracker: magic}}\n",
+                    kWait)
+                .find("tracker: expected edge_planes, normal_projection, offset, god_object or "
+                      "compact, found \"magic\""),
+            std::string::npos);
+}
+
 TEST(SceneFile, NamesAMeshOrArmThatIsNotThere) {
   EXPECT_NE(mistake("  - {name: b, mesh: cgal:cube.off, stiffness: 1}\n", kWait)
                 .find("scene.yaml:5: mesh: expected a file, found none at"),
