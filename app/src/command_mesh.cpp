@@ -1,12 +1,17 @@
+#include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <string>
 
 #include "commands.h"
 #include "exit_code.h"
 #include "pictures.h"
+#include "thimble/render/contact/contact_mesh.h"
 #include "thimble/render/mesh/check_mesh.h"
 #include "thimble/render/mesh/load_mesh.h"
+#include "thimble/render/mesh/repair_mesh.h"
+#include "thimble/render/mesh/save_mesh.h"
 
 namespace thimble::app {
 namespace {
@@ -14,6 +19,7 @@ namespace {
 struct MeshOptions {
   std::string file;
   std::string picture;
+  std::string repair;
 };
 
 void print(const render::MeshFindings& found) {
@@ -31,31 +37,68 @@ void print(const render::MeshFindings& found) {
   if (found.touchable()) std::printf("  volume      %.4g\n", found.volume);
 }
 
-int tell_mesh(const MeshOptions& options) {
-  const auto mesh = render::load_mesh(options.file);
-  if (!mesh) {
-    std::fprintf(stderr, "thimble: %s\n", mesh.error().message.c_str());
-    return kExitBadInput;
-  }
-  const render::MeshFindings found = render::check_mesh(*mesh);
-  std::printf("%s (lengths in the file's unit)\n", options.file.c_str());
-  print(found);
-  if (!options.picture.empty()) {
-    if (const auto drawn = draw_mesh(*mesh, options.picture); !drawn) {
-      std::fprintf(stderr, "thimble: %s\n", drawn.error().message.c_str());
-      return kExitTrouble;
-    }
-    std::printf("Picture: %s\n", options.picture.c_str());
-  }
+int fail(const driver::Error& error, int exit_code) {
+  std::fprintf(stderr, "thimble: %s\n", error.message.c_str());
+  return exit_code;
+}
+
+// Tells whether a mesh can be touched, and if not, why.
+int tell_verdict(const render::TriangleMesh& mesh, const render::MeshFindings& found) {
   if (found.touchable()) {
     std::printf("The mesh is closed and wound alike: it can be touched.\n");
     return kExitDone;
   }
-  std::printf("The mesh cannot be touched:\n");
+  const auto contact = render::ContactMesh::build(mesh);
+  std::printf(contact ? "The mesh can be touched; in a scene it is put right:\n"
+                      : "The mesh cannot be touched:\n");
   for (const render::MeshFault& fault : found.faults) {
     std::printf("  - %s\n", render::describe(fault).c_str());
   }
+  if (contact) {
+    std::printf("  %s\n", render::describe(contact->orientation()).c_str());
+    return kExitDone;
+  }
+  // A surface with one side only shows no other fault than edges wound two ways.
+  const bool only_winding =
+      std::all_of(found.faults.begin(), found.faults.end(), [](const render::MeshFault& fault) {
+        return fault.kind == render::MeshFault::Kind::kFlippedEdge ||
+               fault.kind == render::MeshFault::Kind::kInsideOut;
+      });
+  if (only_winding) std::printf("  %s\n", contact.error().message.c_str());
   return kExitBadInput;
+}
+
+int repair(const render::TriangleMesh& mesh, const std::string& file) {
+  const render::RepairedMesh repaired = render::repair_mesh(mesh);
+  if (auto saved = render::save_mesh(repaired.mesh, file); !saved) {
+    return fail(saved.error(), kExitTrouble);
+  }
+  std::printf("Repaired: %s\n", file.c_str());
+  if (repaired.changes.empty()) std::printf("  Nothing was changed.\n");
+  for (const render::RepairChange& change : repaired.changes) {
+    std::printf("  - %s\n", render::describe(change).c_str());
+  }
+  const render::MeshFindings found = render::check_mesh(repaired.mesh);
+  print(found);
+  return tell_verdict(repaired.mesh, found);
+}
+
+int tell_mesh(const MeshOptions& options) {
+  const auto mesh = render::load_mesh(options.file);
+  if (!mesh) return fail(mesh.error(), kExitBadInput);
+  const render::MeshFindings found = render::check_mesh(*mesh);
+  std::printf("%s (lengths in the file's unit)\n", options.file.c_str());
+  print(found);
+  if (!options.picture.empty()) {
+    const std::string title = std::filesystem::path(options.file).filename().string();
+    if (const auto drawn = draw_mesh(*mesh, options.picture, title, "unit of the file", &found);
+        !drawn) {
+      return fail(drawn.error(), kExitTrouble);
+    }
+    std::printf("Picture: %s\n", options.picture.c_str());
+  }
+  const int verdict = tell_verdict(*mesh, found);
+  return options.repair.empty() ? verdict : repair(*mesh, options.repair);
 }
 
 }  // namespace
@@ -64,9 +107,18 @@ void add_mesh_command(CLI::App& app, int& exit_code) {
   CLI::App* command =
       app.add_subcommand("mesh", "Tell what a mesh is and what is wrong with it (exit code 2)");
   auto options = std::make_shared<MeshOptions>();
-  command->add_option("FILE", options->file, "Mesh: OFF, OBJ, STL or PLY")->required();
-  command->add_option("--picture", options->picture, "Draw the mesh from three sides (PNG)");
-  command->callback([options, &exit_code] { exit_code = tell_mesh(*options); });
+  command->add_option("FILE", options->file, "Mesh: OFF, OBJ, STL or PLY");
+  command->add_option("--picture", options->picture,
+                      "Draw the mesh from three sides, its faults marked (PNG, SVG)");
+  command->add_option("--repair", options->repair,
+                      "Write the mesh repaired (OFF): welded within 1e-5 of its size, no triangles "
+                      "without area or twice, seams closed, wound outwards");
+  add_mesh_page_command(*command, exit_code);
+  command->callback([command, options, &exit_code] {
+    if (!command->get_subcommands().empty()) return;
+    if (options->file.empty()) throw CLI::RequiredError("FILE");
+    exit_code = tell_mesh(*options);
+  });
 }
 
 }  // namespace thimble::app

@@ -13,5 +13,7 @@ void add_run_command(CLI::App& app, int& exit_code);
 void add_devices_command(CLI::App& app, int& exit_code);
 /// `thimble mesh FILE`: tells what a mesh is and what is wrong with it.
 void add_mesh_command(CLI::App& app, int& exit_code);
+/// `thimble mesh page IN OUT`: cuts a mesh into volumes on disk.
+void add_mesh_page_command(CLI::App& mesh_command, int& exit_code);
 
 }  // namespace thimble::app

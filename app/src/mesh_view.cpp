@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "surface_probe.h"
+#include "thimble/render/mesh/vertex_normals.h"
 
 namespace thimble::app {
 namespace {
@@ -57,7 +57,7 @@ MeshView::MeshView(const render::TriangleMesh& mesh_W, const ViewDirection& dire
   const auto size = static_cast<std::size_t>(samples_) * static_cast<std::size_t>(samples_);
   depth_.assign(size, kNothing);
   shade_.assign(size, 1);
-  const std::vector<Vector3d> normals = vertex_normals(mesh_W);
+  const std::vector<Vector3d> normals = render::vertex_normals(mesh_W);
   const Vector3d light =
       (-0.45 * direction.u_W + 0.65 * direction.v_W + direction.w_W).normalized();
   for (const auto& triangle : mesh_W.triangles) {

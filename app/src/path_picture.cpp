@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <sstream>
 
+#include "fault_marks.h"
 #include "figure.h"
 #include "gnuplot.h"
 #include "mesh_view.h"
@@ -16,8 +17,10 @@ using Eigen::Vector3d;
 constexpr int kPixels = 760;  // of a view's side; a panel is about 500 wide in the PNG
 constexpr std::size_t kPointsMax = 4000;
 constexpr double kHiddenBy = 0.01;  // of the extent: the tip lies in the surface, not behind it
+constexpr double kMarkHiddenBy = 0.004;  // of the extent: marks lie in the surface to rounding
 constexpr int kWidth = 1800;
-constexpr double kPanel = 0.25;  // side of a panel in widths of the picture
+constexpr double kPanel = 0.25;       // side of a panel in widths of the picture
+constexpr double kWidePanel = 0.268;  // where no colours need a scale
 
 // Viridis by van der Walt and Smith (CC0), at nine even steps; its light end is left out, for
 // yellow is lost on light grey.
@@ -90,7 +93,8 @@ struct PanelText {
   std::string title;
   std::string unit;
   double unit_scale = 1;
-  double force_max = 0;  // N; 0: no way, no colours
+  double force_max = 0;                          // N; 0: no way, no colours
+  const render::MeshFindings* faults = nullptr;  // null: none to mark
 };
 
 driver::Result<void> draw_views(std::span<const driver::TickRecord> rows,
@@ -98,13 +102,16 @@ driver::Result<void> draw_views(std::span<const driver::TickRecord> rows,
                                 const std::string& name, const std::filesystem::path& folder) {
   const Window window = window_of(mesh, rows);
   const bool with_way = say.force_max > 0;
+  const bool with_faults = say.faults != nullptr && has_marks(*say.faults);
   // A square panel must be as many pixels high as it is wide.
-  const int height = 690;
-  const double panel_height = kPanel * kWidth / height;
+  const int height = with_faults ? 780 : with_way ? 690 : 740;
+  const double panel = with_way ? kPanel : kWidePanel;
+  const double margin = with_way ? 0.052 : 0.058;
+  const double panel_height = panel * kWidth / height;
   std::ostringstream c;
   c << quiet_style() << "set border 15 lw 1 lc rgb '" << kFaintInk << "'\nunset key\nunset grid\n"
-    << "set multiplot\nset label 1 " << quote(say.title)
-    << " at screen 0.052, screen 0.94 font ',22' noenhanced textcolor rgb '" << kInk << "'\n";
+    << "set multiplot\nset label 1 " << quote(say.title) << " at screen " << number(margin)
+    << ", screen 0.94 font ',22' noenhanced textcolor rgb '" << kInk << "'\n";
   if (with_way) {
     c << kPalette << "set cbrange [0:" << number(say.force_max) << "]\n"
       << "set label 2 'in air' at screen 0.86, screen 0.94 textcolor rgb '" << kInk << "'\n"
@@ -114,6 +121,13 @@ driver::Result<void> draw_views(std::span<const driver::TickRecord> rows,
       << kFaintInk
       << "'\nset arrow 2 from screen 0.65, screen 0.94 to screen 0.68, screen 0.94 nohead lw 2 dt "
          "'.' lc rgb '#7d5a8a'\n";
+  }
+  if (with_faults) {
+    c << fault_legend(*say.faults, margin, 0.875)
+      << "set label 2 'thin and pale: behind the mesh' at screen 0.984, screen 0.94 right "
+         "textcolor "
+         "rgb '"
+      << kFaintInk << "'\n";
   }
   int index = 0;
   for (const ViewDirection& direction : view_directions()) {
@@ -126,9 +140,9 @@ driver::Result<void> draw_views(std::span<const driver::TickRecord> rows,
     const Eigen::Vector2d low = middle - Eigen::Vector2d::Constant(half);
     const Eigen::Vector2d high = middle + Eigen::Vector2d::Constant(half);
     const double pitch = 2 * half / kPixels;
-    const double left = 0.052 + index * (kPanel + 0.058);
+    const double left = margin + index * (panel + (with_way ? 0.058 : 0.062));
     c << "set lmargin at screen " << number(left) << "\nset rmargin at screen "
-      << number(left + kPanel) << "\nset bmargin at screen 0.14\nset tmargin at screen "
+      << number(left + panel) << "\nset bmargin at screen 0.14\nset tmargin at screen "
       << number(0.14 + panel_height) << "\n"
       << "set xrange [" << number(low.x()) << ":" << number(high.x()) << "]\nset yrange ["
       << number(low.y()) << ":" << number(high.y()) << "]\n"
@@ -139,7 +153,7 @@ driver::Result<void> draw_views(std::span<const driver::TickRecord> rows,
       << "]' offset 1.3,0 textcolor rgb '" << kInk << "'\nset title '" << direction.name
       << "' offset 0,-0.5\n";
     if (with_way && index == 2) {
-      c << "set colorbox user origin screen " << number(left + kPanel + 0.014)
+      c << "set colorbox user origin screen " << number(left + panel + 0.014)
         << ", screen 0.14 size screen 0.011, screen " << number(panel_height)
         << "\nset cblabel 'force on the hand [N]' offset 0.5,0 textcolor rgb '" << kInk
         << "'\nset cbtics " << number(tic_step(say.force_max, 5)) << "\n";
@@ -159,7 +173,13 @@ driver::Result<void> draw_views(std::span<const driver::TickRecord> rows,
         << "2 using 1:2 with lines lw 6 lc rgb '#ffffff'" << data
         << "2 using 1:2:3 with lines lw 3.2 lc palette";
     }
+    if (with_faults) {
+      const std::string marks = fault_table(*say.faults, mesh, view, kMarkHiddenBy * window.extent);
+      if (auto done = write_text(marks, folder / (stem + ".dat")); !done) return done;
+      c << fault_clauses(*say.faults, stem + ".dat");
+    }
     c << "\nunset label 1\nunset label 2\nunset label 3\nunset arrow\n";
+    if (with_faults) c << end_of_legend(*say.faults);
     ++index;
   }
   c << "unset multiplot\n";
@@ -181,7 +201,7 @@ driver::Result<void> draw_path_on_mesh(std::span<const driver::TickRecord> rows,
 
 driver::Result<void> draw_mesh(const render::TriangleMesh& mesh,
                                const std::filesystem::path& picture, const std::string& title,
-                               const std::string& unit) {
+                               const std::string& unit, const render::MeshFindings* faults) {
   if (mesh.vertices.empty()) return driver::Error{"A mesh without vertices cannot be drawn."};
   const std::string ending = picture.extension().string();
   if (ending != ".png" && ending != ".svg") {
@@ -194,7 +214,7 @@ driver::Result<void> draw_mesh(const render::TriangleMesh& mesh,
   }
   const std::filesystem::path folder = pattern;
   driver::Result<void> done = make_picture_folder(folder);
-  if (done) done = draw_views({}, mesh, {title, unit, 1, 0}, "mesh", folder);
+  if (done) done = draw_views({}, mesh, {title, unit, 1, 0, faults}, "mesh", folder);
   std::error_code status;
   if (done) {
     std::filesystem::copy_file(folder / ("mesh" + ending), picture,

@@ -7,6 +7,7 @@
 #include "histogram.h"
 #include "thimble/driver/result.h"
 #include "thimble/driver/tick_record.h"
+#include "thimble/render/mesh/check_mesh.h"
 #include "thimble/render/mesh/triangle_mesh.h"
 
 namespace thimble::app {
@@ -34,10 +35,12 @@ driver::Result<void> draw_pictures(std::span<const driver::TickRecord> rows,
                                    const std::filesystem::path& folder);
 
 /// Draws a mesh alone from three sides into the file `picture`, whose ending (.png or .svg) tells
-/// the format. `unit` names the coordinates' unit on the axes. Fails on a mesh without vertices,
-/// and like `draw_pictures`. Real-time: never from the servo thread.
+/// the format. `unit` names the coordinates' unit on the axes. Where `faults` are given (those of
+/// this mesh) their places are marked, with a legend. Fails on a mesh without finite vertices, and
+/// like `draw_pictures`. Real-time: never from the servo thread.
 driver::Result<void> draw_mesh(const render::TriangleMesh& mesh,
                                const std::filesystem::path& picture, const std::string& title = "",
-                               const std::string& unit = "unit of the file");
+                               const std::string& unit = "unit of the file",
+                               const render::MeshFindings* faults = nullptr);
 
 }  // namespace thimble::app

@@ -42,18 +42,19 @@ std::filesystem::path find_file(YamlMap& map, std::string_view key,
 
 render::ContactChoice read_contact(YamlMap map) {
   render::ContactChoice choice;
-  const auto choose = [&map]<class Choice>(std::string_view key, Choice& chosen,
-                                           std::span<const std::string_view> names) {
-    const std::size_t number =
-        map.optional_choice(key, static_cast<std::size_t>(chosen), {names.begin(), names.end()});
-    chosen = static_cast<Choice>(number);
+  const auto choose = [&map](std::string_view key, std::span<const std::string_view> names) {
+    return map.optional_choice(key, 0, {names.begin(), names.end()});
   };
-  choose("tracker", choice.tracker, render::kTrackerNames);
-  choose("blending", choice.blending, render::kBlendingNames);
-  choose("search", choice.search, render::kSearchNames);
-  choice.curved_depth = map.optional_bool("curved_depth", choice.curved_depth);
-  choice.crease_angle =
-      map.optional_number("crease_degrees", 0, "degrees", 0, 180) * std::numbers::pi / 180;
+  choice.tracker = static_cast<render::TrackerChoice>(choose("tracker", render::kTrackerNames));
+  if (map.has("blending")) {
+    choice.blending =
+        static_cast<render::BlendingChoice>(choose("blending", render::kBlendingNames));
+  }
+  if (map.has("curved_depth")) choice.curved_depth = map.optional_bool("curved_depth", false);
+  if (map.has("crease_degrees")) {
+    choice.crease_angle =
+        map.require_number("crease_degrees", "degrees", 0, 180) * std::numbers::pi / 180;
+  }
   choice.band = map.optional_number("band", choice.band, "m", 0, kPressMax);
   map.finish();
   return choice;

@@ -7,8 +7,9 @@
 #include <vector>
 
 #include "hand_route.h"
+#include "thimble/render/build_object_touch.h"
 #include "thimble/render/mesh/load_mesh.h"
-#include "thimble/render/mesh_touch.h"
+#include "thimble/render/mesh/orient_mesh.h"
 
 namespace thimble::app {
 namespace {
@@ -47,6 +48,8 @@ driver::Result<std::vector<render::TriangleMesh>> load_meshes(const Scene& scene
     const auto mesh = render::load_mesh(object.mesh_file);
     if (!mesh) return mesh.error();
     meshes.push_back(place_mesh(*mesh, object));
+    // What plans and draws must know the same outside as what touches.
+    render::orient_mesh(meshes.back());
   }
   return meshes;
 }
@@ -57,12 +60,10 @@ driver::Result<std::unique_ptr<render::SceneTouch>> build_touch(
   std::vector<std::unique_ptr<render::ObjectTouch>> objects;
   for (std::size_t i = 0; i < meshes_W.size(); ++i) {
     const SceneObject& object = scene.objects[i];
-    auto contact = render::MeshContact::build(meshes_W[i]);
-    if (!contact) {
-      return driver::Error{object.mesh_file.string() + ": " + contact.error().message};
-    }
-    objects.push_back(std::make_unique<render::ObjectTouchOf<render::MeshTouch>>(render::MeshTouch(
-        std::move(contact).value(), {.stiffness = object.stiffness, .damping = object.damping})));
+    auto touch = render::build_object_touch(
+        meshes_W[i], object.contact, {.stiffness = object.stiffness, .damping = object.damping});
+    if (!touch) return driver::Error{object.mesh_file.string() + ": " + touch.error().message};
+    objects.push_back(std::move(touch).value());
   }
   return std::make_unique<render::SceneTouch>(std::move(objects));
 }

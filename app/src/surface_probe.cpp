@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "thimble/render/mesh/vertex_normals.h"
+
 namespace thimble::app {
 namespace {
 
@@ -50,24 +52,8 @@ std::array<Vector3d, 3> corners(const render::TriangleMesh& mesh, std::size_t tr
 
 }  // namespace
 
-std::vector<Vector3d> vertex_normals(const render::TriangleMesh& mesh) {
-  std::vector<Vector3d> normals(mesh.vertices.size(), Vector3d::Zero());
-  for (std::size_t triangle = 0; triangle < mesh.triangles.size(); ++triangle) {
-    const std::array<Vector3d, 3> corner = corners(mesh, triangle);
-    const Vector3d normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]).normalized();
-    for (std::size_t i = 0; i < 3; ++i) {
-      const Vector3d to_next = corner[(i + 1) % 3] - corner[i];
-      const Vector3d to_last = corner[(i + 2) % 3] - corner[i];
-      const double angle = std::atan2(to_next.cross(to_last).norm(), to_next.dot(to_last));
-      normals[static_cast<std::size_t>(mesh.triangles[triangle][i])] += angle * normal;
-    }
-  }
-  for (Vector3d& normal : normals) normal.normalize();
-  return normals;
-}
-
 SurfaceProbe::SurfaceProbe(const render::TriangleMesh& mesh)
-    : mesh_(mesh), normals_(vertex_normals(mesh)) {
+    : mesh_(mesh), normals_(render::vertex_normals(mesh)) {
   Eigen::AlignedBox3d box;
   for (std::size_t triangle = 0; triangle < mesh.triangles.size(); ++triangle) {
     const std::array<Vector3d, 3> corner = corners(mesh, triangle);

@@ -40,8 +40,4 @@ class SurfaceProbe {
   double slack_ = 0;  // m the question may move before candidates_ is out of date
 };
 
-/// Finds unit normals at the vertices: triangle normals weighted by the triangle's angle there
-/// [M Thuermer and Wuethrich 1998], so that the answer does not depend on how a surface is cut up.
-std::vector<Eigen::Vector3d> vertex_normals(const render::TriangleMesh& mesh);
-
 }  // namespace thimble::app

@@ -45,20 +45,29 @@ driver::Result<ContactMesh> ContactMesh::build(const TriangleMesh& mesh,
   const MeshFindings findings = check_mesh(mesh);
   if (findings.triangles == 0) return driver::Error{"The mesh has no triangles."};
   std::string refusal;
-  bool inside_out = false;
+  bool wrongly_wound = false;
+  bool broken = false;
   for (const MeshFault& fault : findings.faults) {
-    if (fault.kind == MeshFault::Kind::kInsideOut && options.orient) {
-      inside_out = true;
+    const bool winding_only =
+        fault.kind == MeshFault::Kind::kInsideOut || fault.kind == MeshFault::Kind::kFlippedEdge;
+    if (winding_only && options.orient) {
+      wrongly_wound = true;
+      // Turned without the user's help in any case; a flipped edge may need a closed mesh first.
+      if (fault.kind == MeshFault::Kind::kInsideOut) continue;
     } else {
-      refusal += ' ';
-      refusal += describe(fault);
+      broken = true;
     }
+    refusal += ' ';
+    refusal += describe(fault);
   }
-  if (!refusal.empty()) return driver::Error{"The mesh cannot be touched:" + refusal};
+  if (broken) return driver::Error{"The mesh cannot be touched:" + refusal};
 
   ContactMesh contact;
   TriangleMesh oriented = mesh;
-  if (inside_out) contact.turned_components_ = orient_components(oriented);
+  if (wrongly_wound) contact.orientation_ = orient_mesh(oriented);
+  if (contact.orientation_.one_sided_components > 0) {
+    return driver::Error{"The mesh cannot be touched: " + describe(contact.orientation_)};
+  }
   const auto neighbours = find_adjacency(oriented);
   if (!neighbours) return neighbours.error();
 

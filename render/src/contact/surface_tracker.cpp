@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <utility>
 
 #include "thimble/render/contact/closest_point.h"
 
@@ -10,6 +11,9 @@ namespace thimble::render {
 namespace {
 
 using Eigen::Vector3d;
+
+// A tip pressed straight down sinks by what it moves: twice as much cannot be rounding.
+constexpr double kRiseSquaredMax = 4;
 
 // Is an edge plane with the tip's distance to it; negative means violated.
 struct WorstEdge {
@@ -27,8 +31,13 @@ WorstEdge worst_edge(const TriangleCell& cell, const Vector3d& p) noexcept {
   return worst;
 }
 
-// Keeps the triangle nearest to the tip among those that have the tip below them. At a vertex
-// several are equally near: there the deepest one tells inside from outside.
+// Squared distances this near to each other, as a share, are those of a common edge or vertex:
+// which is smaller is rounding, and must not decide. A mesh 1e4 sizes from the origin is exact to
+// 1e-12.
+constexpr double kTie = 1e-6;
+
+// Keeps the triangle nearest to the tip among those that have the tip below them. At an edge or
+// vertex several are equally near: there the deepest one tells inside from outside.
 class NearestAbove {
  public:
   NearestAbove(const ContactMesh& mesh, const Vector3d& p_WT) noexcept : mesh_(mesh), p_WT_(p_WT) {}
@@ -40,7 +49,8 @@ class NearestAbove {
         closest_point(p_WT_, mesh_.position(triangle, 0), mesh_.position(triangle, 1),
                       mesh_.position(triangle, 2));
     const double distance = (nearest - p_WT_).squaredNorm();
-    if (distance < distance_ || (distance == distance_ && depth > depth_)) {
+    const bool tied = distance <= (1 + kTie) * distance_ && distance_ <= (1 + kTie) * distance;
+    if (tied ? depth > depth_ : distance < distance_) {
       triangle_ = triangle;
       distance_ = distance;
       depth_ = depth;
@@ -64,21 +74,49 @@ TrackerStep SurfaceTracker::follow(const Vector3d& p_WT) noexcept {
   TrackerStep step;
   step.hops = walk(p_WT - mesh_->origin());
   double depth = mesh_->depth(active_, p_WT);
-  if (depth >= 0) return {true, depth, step.hops};
-  if (!search_->inside(p_WT)) return step;
-  // Inside, with the plane above by no more than rounding: the tip is on the surface.
-  if (depth < -mesh_->depth_rounding()) {
-    if (find_near(p_WT, before)) {
-      ++counters_.found_near;
-    } else {
-      find_far(p_WT);
-      ++counters_.found_far;
+  if (step.hops > 0 && too_deep(p_WT, before, depth)) depth = call_back(p_WT, before, depth);
+  if (!(depth >= 0)) {
+    if (!search_->inside(p_WT)) return step;
+    // Inside, with the plane above by no more than rounding: the tip is on the surface.
+    if (depth < -mesh_->depth_rounding()) {
+      if (find_near(p_WT, before)) {
+        ++counters_.found_near;
+      } else {
+        find_far(p_WT);
+        ++counters_.found_far;
+      }
+      depth = mesh_->depth(active_, p_WT);
     }
-    depth = mesh_->depth(active_, p_WT);
   }
   step.touching = true;
   step.depth = std::max(depth, 0.0);
+  has_before_ = true;
+  p_WT_before_ = p_WT;
+  depth_before_ = step.depth;
   return step;
+}
+
+double SurfaceTracker::call_back(const Vector3d& p_WT, std::int32_t before,
+                                 double depth_walked) noexcept {
+  // Around the triangle left only: the other end of the walk is what is in doubt.
+  const std::int32_t walked_to = std::exchange(active_, before);
+  double depth = find_near(p_WT, before) ? mesh_->depth(active_, p_WT) : depth_walked;
+  if (!(depth < depth_walked)) {
+    active_ = walked_to;
+    return depth_walked;
+  }
+  ++counters_.called_back;
+  ++counters_.found_near;
+  return depth;
+}
+
+bool SurfaceTracker::too_deep(const Vector3d& p_WT, std::int32_t before,
+                              double depth) const noexcept {
+  // On entering, the triangle that was entered tells how deep the tip may be at least.
+  const double rise =
+      depth - (has_before_ ? depth_before_ : std::max(mesh_->depth(before, p_WT), 0.0));
+  const double moved_squared = has_before_ ? (p_WT - p_WT_before_).squaredNorm() : 0;
+  return rise > mesh_->depth_rounding() && rise * rise > kRiseSquaredMax * moved_squared;
 }
 
 std::uint16_t SurfaceTracker::walk(const Vector3d& p) noexcept {

@@ -52,4 +52,21 @@ driver::Result<Adjacency> find_adjacency(const TriangleMesh& mesh) {
   return neighbours;
 }
 
+std::int32_t find_neighbour(const TriangleMesh& mesh, std::int32_t triangle,
+                            std::size_t edge) noexcept {
+  const auto own = static_cast<std::size_t>(triangle);
+  const std::size_t count = mesh.triangles.size();
+  const std::int32_t from = mesh.triangles[own][edge];
+  const std::int32_t to = mesh.triangles[own][(edge + 1) % 3];
+  const auto names_both = [&mesh, from, to](std::size_t t) noexcept {
+    const auto& [a, b, c] = mesh.triangles[t];
+    return (a == from || b == from || c == from) && (a == to || b == to || c == to);
+  };
+  for (std::size_t away = 1; away < count; ++away) {
+    if (away <= own && names_both(own - away)) return static_cast<std::int32_t>(own - away);
+    if (away < count - own && names_both(own + away)) return static_cast<std::int32_t>(own + away);
+  }
+  return -1;
+}
+
 }  // namespace thimble::render

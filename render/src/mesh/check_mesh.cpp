@@ -62,14 +62,15 @@ class Inspection {
   }
 
   template <class Where>
-  void add(Kind kind, Where where) {
+  void add(Kind kind, const FaultPlace& place, Where where) {
     for (MeshFault& fault : found_.faults) {
       if (fault.kind == kind) {
         ++fault.count;
+        if (fault.places.size() < kPlacesMax) fault.places.push_back(place);
         return;
       }
     }
-    found_.faults.push_back({kind, 1, where()});
+    found_.faults.push_back({kind, 1, where(), {place}});
   }
 
   void look_at_vertices() {
@@ -87,7 +88,8 @@ class Inspection {
       if (p.allFinite()) {
         box.extend(p);
       } else {
-        add(Kind::kNotFinite, [&] { return "vertex " + std::to_string(v); });
+        add(Kind::kNotFinite, {static_cast<std::int32_t>(v), -1, -1},
+            [&] { return "vertex " + std::to_string(v); });
       }
       found_.unused_vertices += !used[v];
     }
@@ -105,11 +107,11 @@ class Inspection {
       const auto& triangle = mesh_.triangles[t];
       if (std::any_of(triangle.begin(), triangle.end(),
                       [size](std::int32_t v) { return v < 0 || v >= size; })) {
-        add(Kind::kIndexOutOfRange, where);
+        add(Kind::kIndexOutOfRange, triangle, where);
         continue;
       }
       if (!has_three_vertices(mesh_, t)) {
-        add(Kind::kDegenerateTriangle, where);
+        add(Kind::kDegenerateTriangle, triangle, where);
         continue;
       }
       const Vector3d& a = at(triangle[0]);
@@ -119,7 +121,8 @@ class Inspection {
       const double twice_area = (b - a).cross(c - a).stableNorm();
       const double longest =
           std::max({(b - a).stableNorm(), (c - b).stableNorm(), (a - c).stableNorm()});
-      if (!(twice_area > kFlatness * longest * longest)) add(Kind::kDegenerateTriangle, where);
+      if (!(twice_area > kFlatness * longest * longest))
+        add(Kind::kDegenerateTriangle, triangle, where);
       found_.area += twice_area / 2;
       found_.volume += (a - middle).dot((b - middle).cross(c - middle)) / 6;
     }
@@ -135,7 +138,8 @@ class Inspection {
     std::sort(sorted.begin(), sorted.end());
     for (std::size_t i = 1; i < sorted.size(); ++i) {
       if (sorted[i].first == sorted[i - 1].first) {
-        add(Kind::kDuplicateTriangle, [&] { return triangle_text(sorted[i].second); });
+        add(Kind::kDuplicateTriangle, mesh_.triangles[sorted[i].second],
+            [&] { return triangle_text(sorted[i].second); });
       }
     }
   }
@@ -151,10 +155,12 @@ class Inspection {
       found_.edge_min = std::min(found_.edge_min, length);
       found_.edge_max = std::max(found_.edge_max, length);
       ++found_.edges;
+      const FaultPlace place{use.low, use.high, -1};
       const auto where = [&] { return edge_text(use); };
-      if (end - begin == 1) add(Kind::kOpenEdge, where);
-      if (end - begin > 2) add(Kind::kNonManifoldEdge, where);
-      if (end - begin == 2 && use.upward == uses_[begin + 1].upward) add(Kind::kFlippedEdge, where);
+      if (end - begin == 1) add(Kind::kOpenEdge, place, where);
+      if (end - begin > 2) add(Kind::kNonManifoldEdge, place, where);
+      if (end - begin == 2 && use.upward == uses_[begin + 1].upward)
+        add(Kind::kFlippedEdge, place, where);
       begin = end;
     }
     if (found_.edges == 0) found_.edge_min = 0;
@@ -189,7 +195,7 @@ class Inspection {
         const auto corner = static_cast<std::int32_t>(3 * t + k);
         const std::int32_t vertex = mesh_.triangles[t][k];
         if (corners.find(corner) == corner && ++fans[static_cast<std::size_t>(vertex)] == 2) {
-          add(Kind::kNonManifoldVertex,
+          add(Kind::kNonManifoldVertex, {vertex, -1, -1},
               [&] { return "vertex " + std::to_string(vertex) + " at " + text(at(vertex)); });
         }
       }
@@ -201,12 +207,12 @@ class Inspection {
     found_.components = parts.count;
     for (std::size_t part = 0; part < parts.count; ++part) {
       if (!parts.inside_out[part]) continue;
-      add(Kind::kInsideOut, [&] {
-        const auto first = std::find(parts.component_of.begin(), parts.component_of.end(),
-                                     static_cast<std::int32_t>(part));
-        return "the component of " +
-               triangle_text(static_cast<std::size_t>(first - parts.component_of.begin()));
-      });
+      const auto first =
+          static_cast<std::size_t>(std::find(parts.component_of.begin(), parts.component_of.end(),
+                                             static_cast<std::int32_t>(part)) -
+                                   parts.component_of.begin());
+      add(Kind::kInsideOut, mesh_.triangles[first],
+          [&] { return "the component of " + triangle_text(first); });
     }
   }
 

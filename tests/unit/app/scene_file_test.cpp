@@ -66,9 +66,8 @@ TEST(SceneFile, NamesTheWayOfContactOrSaysWhichThereAre) {
   ASSERT_TRUE(scene.ok()) << scene.error().message;
   EXPECT_EQ(scene->objects[0].contact.tracker, render::TrackerChoice::kOffset);
   EXPECT_EQ(scene->objects[0].contact.blending, render::BlendingChoice::kPhong);
-  EXPECT_EQ(scene->objects[0].contact.search, render::ContactChoice().search);
-  EXPECT_TRUE(scene->objects[0].contact.curved_depth);
-  EXPECT_NEAR(scene->objects[0].contact.crease_angle, 1.0471975511965976, 1e-12);
+  EXPECT_EQ(scene->objects[0].contact.curved_depth, true);
+  EXPECT_NEAR(scene->objects[0].contact.crease_angle.value(), 1.0471975511965976, 1e-12);
   EXPECT_NE(mistake("  - {name: b, mesh: cgal:ball.off, stiffness: 1, contact: {tracker: magic}}\n",
                     kWait)
                 .find("tracker: expected edge_planes, normal_projection, offset, god_object or "

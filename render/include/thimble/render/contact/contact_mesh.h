@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "thimble/driver/result.h"
+#include "thimble/render/mesh/orient_mesh.h"
 #include "thimble/render/mesh/triangle_mesh.h"
 
 namespace thimble::render {
@@ -31,8 +32,8 @@ struct TriangleCell {
 
 /// Sets how a contact mesh is built.
 struct ContactMeshOptions {
-  /// Turns closed components that are inside out: a closed and consistently wound surface has only
-  /// one right answer. If false they are refused.
+  /// Winds triangles alike and outwards (see orient_mesh): for a closed surface only one answer is
+  /// right. If false, meshes that need it are refused.
   bool orient = true;
 };
 
@@ -54,8 +55,11 @@ class ContactMesh {
 
   std::int32_t triangle_count() const noexcept { return static_cast<std::int32_t>(cells_.size()); }
 
-  /// Tells how many components were inside out and have been turned.
-  std::size_t turned_components() const noexcept { return turned_components_; }
+  /// Tells how many components were wholly inside out and have been turned.
+  std::size_t turned_components() const noexcept { return orientation_.turned_components; }
+
+  /// Tells all that was turned round.
+  const OrientReport& orientation() const noexcept { return orientation_; }
 
   /// Tells the corners of a triangle, counter-clockwise from outside.
   const std::array<std::int32_t, 3>& corners(std::int32_t triangle) const noexcept {
@@ -111,7 +115,7 @@ class ContactMesh {
   Eigen::Vector3d box_min_{0, 0, 0};
   Eigen::Vector3d box_max_{0, 0, 0};
   double depth_rounding_ = 0;
-  std::size_t turned_components_ = 0;
+  OrientReport orientation_;
 };
 
 }  // namespace thimble::render

@@ -1,28 +1,45 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <memory>
+#include <utility>
 
 #include "thimble/driver/device_state.h"
 #include "thimble/driver/result.h"
 #include "thimble/render/contact/contact_mesh.h"
 #include "thimble/render/contact/contact_state.h"
 #include "thimble/render/contact/linear_search.h"
+#include "thimble/render/contact/offset_tracker.h"
 #include "thimble/render/contact/surface_tracker.h"
 
 namespace thimble::render {
 
 /// Finds what the tip touches on one mesh: a search along the tip's path while it is free, tracking
 /// over the surface while it touches [BP 3.1]. The `Contact` stage of Touch.
-class MeshContact {
+///
+/// `Tracker` is how it is followed: SurfaceTracker, OffsetTracker or NormalProjectionTracker; see
+/// there for what each promises. The names MeshContact and OffsetContact below stand for the first
+/// two.
+template <class Tracker>
+class TrackedContact {
  public:
-  /// Takes a prepared mesh. Real-time: never from the servo thread.
-  explicit MeshContact(ContactMesh mesh);
+  /// Takes a prepared mesh, and what the tracker's constructor takes after mesh and search.
+  /// Real-time: never from the servo thread.
+  template <class... TrackerOptions>
+  explicit TrackedContact(ContactMesh mesh, TrackerOptions... options)
+      : mesh_(std::make_shared<const ContactMesh>(std::move(mesh))),
+        search_(std::make_shared<const LinearSearch>(*mesh_)),
+        tracker_(*mesh_, *search_, options...) {}
 
   /// Prepares a mesh (W, m); the error is that of ContactMesh::build.
   /// Real-time: never from the servo thread.
-  static driver::Result<MeshContact> build(const TriangleMesh& mesh,
-                                           const ContactMeshOptions& options = {});
+  static driver::Result<TrackedContact> build(const TriangleMesh& mesh,
+                                              const ContactMeshOptions& options = {}) {
+    auto prepared = ContactMesh::build(mesh, options);
+    if (!prepared) return prepared.error();
+    return TrackedContact(std::move(prepared).value());
+  }
 
   /// Finds the contact at `state.p_WT` (W, m) and keeps it until the next call.
   ///
@@ -37,7 +54,14 @@ class MeshContact {
   /// Gives the result of the last `update`. Real-time: safe.
   const ContactState& state() const noexcept { return state_; }
 
-  const TrackerCounters& counters() const noexcept { return tracker_.counters(); }
+  /// Tells where on the active triangle the tip belongs (surface_weights.h). Precondition: the last
+  /// `update` was at `p_WT` (W, m) and touches. Real-time: safe.
+  Eigen::Vector3d weights(const Eigen::Vector3d& p_WT) const noexcept {
+    return tracker_.weights(p_WT);
+  }
+
+  TrackerCounters counters() const noexcept { return tracker_.counters(); }
+  const Tracker& tracker() const noexcept { return tracker_; }
   const ContactMesh& mesh() const noexcept { return *mesh_; }
   const LinearSearch& search() const noexcept { return *search_; }
 
@@ -45,10 +69,58 @@ class MeshContact {
   // On the heap, so that search and tracker keep pointing at them when the contact moves.
   std::shared_ptr<const ContactMesh> mesh_;
   std::shared_ptr<const LinearSearch> search_;
-  SurfaceTracker tracker_;
+  Tracker tracker_;
   ContactState state_;
   Eigen::Vector3d p_WT_before_{0, 0, 0};
   bool has_before_ = false;
 };
+
+template <class Tracker>
+const ContactState& TrackedContact<Tracker>::update(const driver::DeviceState& state) noexcept {
+  const Eigen::Vector3d& p_WT = state.p_WT;
+  // Written so that NaN is out of range.
+  const bool in_range = std::abs(p_WT.x()) <= kPositionMax && std::abs(p_WT.y()) <= kPositionMax &&
+                        std::abs(p_WT.z()) <= kPositionMax;
+  if (!in_range) {
+    state_ = {};
+    has_before_ = false;
+    return state_;
+  }
+  bool follow = state_.touching;
+  if (!follow && has_before_) {
+    const Entry entry = search_->first_entry(p_WT_before_, p_WT);
+    follow = entry.triangle >= 0;
+    if (follow) tracker_.start(entry.triangle);
+  }
+  p_WT_before_ = p_WT;
+  has_before_ = true;
+  if (!follow) {
+    state_ = {};
+    return state_;
+  }
+  const TrackerStep step = tracker_.follow(p_WT);
+  if (!step.touching) {
+    state_ = {};
+    state_.hops = step.hops;
+    return state_;
+  }
+  state_.touching = true;
+  state_.triangle = tracker_.active();
+  state_.depth = step.depth;
+  state_.n_W = tracker_.normal();
+  state_.p_WP = p_WT + step.depth * state_.n_W;
+  state_.hops = step.hops;
+  return state_;
+}
+
+/// Follows the surface over edge planes [BP 4b]: flat faces, the least work per tick.
+using MeshContact = TrackedContact<SurfaceTracker>;
+
+/// Follows the smooth surface: Phong's normal and the depth along it, continuous over smooth edges
+/// and vertices at every depth.
+using OffsetContact = TrackedContact<OffsetTracker>;
+
+extern template class TrackedContact<SurfaceTracker>;
+extern template class TrackedContact<OffsetTracker>;
 
 }  // namespace thimble::render

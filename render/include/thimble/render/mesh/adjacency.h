@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -17,5 +18,14 @@ using Adjacency = std::vector<std::array<std::int32_t, 3>>;
 /// third one, or lies between triangles wound against each other, or which triangle does not name
 /// three vertices that exist. O(n log n). Real-time: never from the servo thread.
 driver::Result<Adjacency> find_adjacency(const TriangleMesh& mesh);
+
+/// Finds the neighbour of one triangle over the edge from corner `edge` to the next, in the cycle:
+/// no memory, one pass over the triangles at worst [BP 3.1, memory against time]. -1 if there is
+/// none; of several, the one with the nearest number. Equal to the array's entry wherever
+/// find_adjacency has one. Looks at nearest numbers first, because files mostly list neighbours
+/// close together. Preconditions: `triangle` exists, `edge` is 0 to 2. Real-time: safe; time grows
+/// with the number of triangles.
+std::int32_t find_neighbour(const TriangleMesh& mesh, std::int32_t triangle,
+                            std::size_t edge) noexcept;
 
 }  // namespace thimble::render

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -13,6 +15,14 @@ namespace thimble::render {
 /// degenerate: coordinates carry 2^-53 of their size, so a flatter triangle's normal would be wrong
 /// by more than about 1e-4 rad. Relative, so that scaling a mesh changes no finding.
 inline constexpr double kFlatness = 1e-12;
+
+/// Is the most places of one kind of fault that are listed: plenty for a picture, and a bound on
+/// memory for a mesh where everything is wrong.
+inline constexpr std::size_t kPlacesMax = 10000;
+
+/// Names the vertices of a faulty vertex, edge or triangle: one, two or three numbers, -1 after.
+/// They may name vertices that do not exist if that is the fault.
+using FaultPlace = std::array<std::int32_t, 3>;
 
 /// Is one kind of fault that keeps a mesh from being touched, how often it stands in the mesh, and
 /// where it stands first.
@@ -32,6 +42,8 @@ struct MeshFault {
   Kind kind{};
   std::size_t count = 0;
   std::string where;  ///< The first place, in words ("edge 12-57 near (0.1, 0.2, 0.3)").
+  /// The first `kPlacesMax` places; a component stands for itself with its first triangle.
+  std::vector<FaultPlace> places{};
 };
 
 /// Tells what a mesh is and what is wrong with it.

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "thimble/render/mesh/triangle_mesh.h"
@@ -28,5 +29,26 @@ MeshComponents find_components(const TriangleMesh& mesh);
 /// Turns the triangles of all components that are inside out round, and returns how many components
 /// those were. Open components stay as they are. Real-time: never from the servo thread.
 std::size_t orient_components(TriangleMesh& mesh);
+
+/// Tells what was done to wind the triangles of a mesh alike.
+struct OrientReport {
+  std::size_t turned_triangles = 0;      ///< Triangles that stand the other way round now.
+  std::int32_t first_turned = -1;        ///< The first of them, -1 for none.
+  std::size_t mended_components = 0;     ///< Components that were wound in two ways.
+  std::size_t turned_components = 0;     ///< Closed components that were wholly inside out.
+  std::size_t one_sided_components = 0;  ///< Components with no two sides, left as they were.
+};
+
+/// Winds the triangles of each component alike, then turns the closed components that are inside
+/// out (see find_components). Winding spreads from a triangle to its neighbours over edges of
+/// exactly two triangles and takes the way that turns fewer triangles; components with no inside
+/// (open ones) keep that. A surface with one side only (a Moebius strip) has no right answer and
+/// stays as it is. Degenerate triangles take part; those that name no three vertices stay.
+/// O(n log n), and see check_mesh. Real-time: never from the servo thread.
+OrientReport orient_mesh(TriangleMesh& mesh);
+
+/// Tells an orientation as one sentence for the user ("5 triangles were turned round ..."); empty
+/// if nothing had to be turned and every component has two sides.
+std::string describe(const OrientReport& report);
 
 }  // namespace thimble::render

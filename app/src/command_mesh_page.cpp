@@ -1,0 +1,50 @@
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "commands.h"
+#include "exit_code.h"
+#include "thimble/render/contact/compact_surface.h"
+#include "thimble/render/contact/contact_mesh.h"
+#include "thimble/render/mesh/load_mesh.h"
+#include "thimble/render/page/page_file.h"
+
+namespace thimble::app {
+namespace {
+
+struct PageOptions {
+  std::string in, out;
+};
+
+int complain(const driver::Error& error, int code) {
+  std::fprintf(stderr, "thimble: %s\n", error.message.c_str());
+  return code;
+}
+
+int page_mesh(const PageOptions& options) {
+  const auto mesh = render::load_mesh(options.in);
+  if (!mesh) return complain(mesh.error(), kExitBadInput);
+  const auto checked = render::ContactMesh::build(*mesh);
+  if (!checked) return complain({options.in + ": " + checked.error().message}, kExitBadInput);
+  const auto surface = render::CompactSurface::build(*checked);
+  if (!surface) return complain({options.in + ": " + surface.error().message}, kExitBadInput);
+  if (const auto written = render::write_page_file(*surface, options.out); !written) {
+    return complain(written.error(), kExitTrouble);
+  }
+  std::printf("%s: %d triangles in %d pages.\n", options.out.c_str(), surface->triangle_count(),
+              (surface->triangle_count() + render::kPageRecords - 1) / render::kPageRecords);
+  return kExitDone;
+}
+
+}  // namespace
+
+void add_mesh_page_command(CLI::App& mesh_command, int& exit_code) {
+  CLI::App* command = mesh_command.add_subcommand(
+      "page", "Cut a mesh into volumes on disk, of which few are in memory while touching");
+  auto options = std::make_shared<PageOptions>();
+  command->add_option("IN", options->in, "Mesh: OFF, OBJ, STL or PLY")->required();
+  command->add_option("OUT", options->out, "Page file to write")->required();
+  command->callback([options, &exit_code] { exit_code = page_mesh(*options); });
+}
+
+}  // namespace thimble::app

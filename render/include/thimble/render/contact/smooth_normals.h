@@ -1,0 +1,59 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <numbers>
+#include <vector>
+
+#include "thimble/render/contact/contact_mesh.h"
+
+namespace thimble::render {
+
+/// Is the angle between two faces' normals (rad) above which their edge is felt as a crease: the
+/// right angles of made things stay sharp, the steps of a scan do not. A default; scenes may say
+/// another.
+inline constexpr double kCreaseAngle = std::numbers::pi / 3;
+
+/// Says how much each face counts in the normal of a vertex.
+enum class NormalWeights {
+  kAngle,  ///< By its angle there [Thuermer]: flat ground may be cut up at will.
+  kRound,  ///< By sin(angle) / (product of its two sides) [Max]: exact on every mesh of a sphere,
+           ///< and closer than kAngle on other smooth surfaces; noisy scans sway it more.
+};
+
+/// Holds the normals that a mesh is shaded with, at each corner of each triangle, and says which
+/// edges are creases.
+///
+/// Triangles around a vertex that are joined over edges which are no creases form a smooth group.
+/// A corner's normal is the weighted mean of its group's face normals. So two triangles agree, to
+/// the bit, on the normals at both ends of an edge that is no crease, and nothing is ever averaged
+/// over a crease. W, unit length. 73 bytes per triangle.
+class SmoothNormals {
+ public:
+  /// Finds the normals of a mesh. At `crease_angle` = 0 all edges between faces that are not in one
+  /// plane are creases, at pi none are. Real-time: never from the servo thread.
+  explicit SmoothNormals(const ContactMesh& mesh, double crease_angle = kCreaseAngle,
+                         NormalWeights weights = NormalWeights::kAngle);
+
+  // All of the following are Real-time: safe. Precondition: numbers name what exists.
+
+  /// Gives the normals at the three corners of a triangle.
+  const std::array<Eigen::Vector3d, 3>& corners(std::int32_t triangle) const noexcept {
+    return corners_[static_cast<std::size_t>(triangle)];
+  }
+
+  /// Tells whether the edge from corner `k` to the next one is a crease.
+  bool crease(std::int32_t triangle, std::size_t k) const noexcept {
+    return ((creases_[static_cast<std::size_t>(triangle)] >> k) & 1U) != 0;
+  }
+
+ private:
+  void average_group(const ContactMesh& mesh, NormalWeights weights, std::int32_t triangle,
+                     std::size_t k, std::vector<bool>& done);
+
+  std::vector<std::array<Eigen::Vector3d, 3>> corners_;
+  std::vector<std::uint8_t> creases_;  // bit k for edge k
+};
+
+}  // namespace thimble::render

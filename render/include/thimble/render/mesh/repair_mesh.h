@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "thimble/render/mesh/triangle_mesh.h"
+
+namespace thimble::render {
+
+/// Sets what a repair may do. Each step can be left out.
+struct RepairOptions {
+  /// How far apart two places may lie to be taken for one, as a share of the diagonal of the mesh's
+  /// box: 1 um on an object of 0.1 m, a thirtieth of an encoder step [STABILITY, set P]. 0 or NaN
+  /// leaves out all that depends on it. At most 0.01 is used.
+  double tolerance = 1e-5;
+  bool weld = true;         ///< Join vertices on open edges that lie within the tolerance.
+  bool drop = true;         ///< Drop broken, degenerate and repeated triangles, unused vertices.
+  bool close_seams = true;  ///< Split open edges where the other side has vertices (T-junctions).
+  bool split_vertices = true;  ///< Give parts that share only a vertex one each, a rounding apart.
+  bool orient = true;          ///< Wind triangles alike and outwards (see orient_mesh).
+};
+
+/// Is one kind of change that a repair made, how often, and where first.
+struct RepairChange {
+  /// What was done.
+  enum class Kind {
+    kDroppedBroken,      ///< A triangle without three finite vertices.
+    kWeldedVertex,       ///< A vertex replaced by another within the tolerance.
+    kDroppedDegenerate,  ///< A triangle with no area.
+    kDroppedDuplicate,   ///< A triangle with the same three vertices as an earlier one.
+    kClosedSeam,         ///< An open edge split at the vertices of the edges opposite.
+    kSplitVertex,        ///< A vertex doubled and moved by a rounding.
+    kTurnedTriangle,     ///< A triangle turned round.
+    kDroppedVertex,      ///< A vertex that no triangle uses.
+  };
+  Kind kind{};
+  std::size_t count = 0;
+  std::string where;  ///< The first place, with the numbers of the mesh before the repair.
+};
+
+/// Is a mesh after a repair, and all that was changed, in the order of RepairChange::Kind.
+struct RepairedMesh {
+  TriangleMesh mesh;
+  std::vector<RepairChange> changes;
+};
+
+/// Repairs what can be mended without guessing; total, any mesh gives one. What is whole stays as
+/// it was: a mesh that check_mesh finds nothing wrong with comes back unchanged. Only vertices on
+/// open edges are welded, and none moves by more than the tolerance. Holes wider than that, fins
+/// and one-sided surfaces remain; check_mesh tells what is left. Lengths in the mesh's unit;
+/// scaling a mesh scales the answer. O(n log n). Real-time: never from the servo thread.
+RepairedMesh repair_mesh(const TriangleMesh& mesh, const RepairOptions& options = {});
+
+/// Tells a change as one sentence ("12 vertices were joined with ones within ...").
+std::string describe(const RepairChange& change);
+
+}  // namespace thimble::render

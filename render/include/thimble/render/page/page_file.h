@@ -1,0 +1,107 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "thimble/driver/result.h"
+#include "thimble/render/contact/compact_surface.h"
+
+namespace thimble::render {
+
+// Page files: a closed surface cut into volumes, so that only what lies around the tip need be in
+// memory [BP 4.1]. A volume is a run of kPageRecords records that lie near each other in space.
+//
+//   header | one box per page | padding to a page of the disk | pages of records
+//
+// Little endian, as the machine is; records as CompactTriangle lays them out. A file of another
+// version, byte order or record is refused.
+
+/// Is how many records a page holds: 64 KiB, a size that disks read at full speed.
+inline constexpr std::int32_t kPageRecords = 1024;
+
+/// Is the box of a page's triangles, in steps of the lattice, rounded outwards.
+struct PageBox {
+  std::array<float, 3> min;
+  std::array<float, 3> max;
+};
+
+/// Finds the box of some records. Real-time: safe.
+PageBox box_of(std::span<const CompactTriangle> records) noexcept;
+
+/// Is the lattice of a surface: where its middle lies and how long one step is, m in W.
+struct Lattice {
+  Eigen::Vector3d origin{0, 0, 0};
+  double step = 0;
+
+  /// Tells where corner `k` of a record is, m in W; the same as CompactSurface::position.
+  Eigen::Vector3d position(const CompactTriangle& record, std::size_t k) const noexcept {
+    return origin + step * record.corner(k);
+  }
+};
+
+/// Writes a page file record by record, for surfaces that fit no memory.
+/// Real-time: never from the servo thread.
+class PageFileWriter {
+ public:
+  /// Begins a file for `triangle_count` records (> 0). Fails, naming the file, if it cannot be
+  /// written.
+  static driver::Result<PageFileWriter> create(const std::filesystem::path& file,
+                                               const Lattice& lattice, std::int64_t triangle_count);
+
+  PageFileWriter(PageFileWriter&&) noexcept;
+  PageFileWriter& operator=(PageFileWriter&&) noexcept;
+  ~PageFileWriter();
+
+  /// Adds records in the order of their numbers. Fails when the disk is full.
+  driver::Result<void> append(std::span<const CompactTriangle> records);
+
+  /// Writes what is left and the boxes. Fails if the number of records is not the one promised.
+  driver::Result<void> finish();
+
+ private:
+  struct State;
+  explicit PageFileWriter(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+/// Writes a whole surface. Fails, naming the file, if it cannot be written.
+/// Real-time: never from the servo thread.
+driver::Result<void> write_page_file(const CompactSurface& surface,
+                                     const std::filesystem::path& file);
+
+/// Is an open page file: what stands before the records, in memory.
+/// Real-time: never from the servo thread.
+class PageFile {
+ public:
+  /// Opens a file. Fails, with what to do, if it cannot be read, is no page file, is cut short, or
+  /// holds numbers that cannot be.
+  static driver::Result<PageFile> open(const std::filesystem::path& file);
+
+  PageFile(PageFile&& other) noexcept;
+  PageFile& operator=(PageFile&& other) noexcept;
+  ~PageFile();
+
+  /// Reads a page's records; `records` must have room for `kPageRecords`. Returns how many it
+  /// holds, or 0 if the disk failed or a record names a neighbour that cannot be.
+  std::int32_t read_page(std::int32_t page, std::span<CompactTriangle> records) const noexcept;
+
+  const Lattice& lattice() const noexcept { return lattice_; }
+  std::int32_t triangle_count() const noexcept { return triangle_count_; }
+  const std::vector<PageBox>& boxes() const noexcept { return boxes_; }
+
+ private:
+  PageFile() = default;
+
+  int descriptor_ = -1;
+  Lattice lattice_;
+  std::int32_t triangle_count_ = 0;
+  std::int64_t records_at_ = 0;
+  std::vector<PageBox> boxes_;
+};
+
+}  // namespace thimble::render

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "thimble/render/page/page_file.h"
+
+namespace thimble::render {
+
+/// Finds which of many boxes a region reaches: a complete binary tree over boxes that lie near each
+/// other when their numbers do. All lengths in steps of the lattice. Questions are Real-time: safe.
+class PageTree {
+ public:
+  /// Builds the tree. Real-time: never from the servo thread.
+  explicit PageTree(std::span<const PageBox> boxes);
+
+  /// Calls `visit(number)` for each box that the box from `low` to `high` reaches, in rising order,
+  /// until it answers false. NaN reaches nothing.
+  template <class Visit>
+  void visit_reached(const Eigen::Vector3d& low, const Eigen::Vector3d& high, Visit visit) const {
+    // Of each level at most one branch waits, and a complete tree of 2^31 boxes has 31 levels.
+    std::array<std::size_t, 64> waiting;
+    std::size_t count = 0;
+    waiting[count++] = 1;
+    while (count > 0) {
+      const std::size_t node = waiting[--count];
+      if (!reaches(nodes_[node], low, high)) continue;
+      if (node < leaves_) {
+        waiting[count++] = 2 * node + 1;
+        waiting[count++] = 2 * node;
+      } else if (!visit(static_cast<std::int32_t>(node - leaves_))) {
+        return;
+      }
+    }
+  }
+
+ private:
+  static bool reaches(const PageBox& box, const Eigen::Vector3d& low,
+                      const Eigen::Vector3d& high) noexcept {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto i = static_cast<Eigen::Index>(axis);
+      if (!(double{box.min[axis]} <= high[i] && double{box.max[axis]} >= low[i])) return false;
+    }
+    return true;
+  }
+
+  std::size_t leaves_ = 1;      // a power of two; leaf k is node leaves_ + k
+  std::vector<PageBox> nodes_;  // node n has the children 2 n and 2 n + 1; missing ones are empty
+};
+
+}  // namespace thimble::render

@@ -1,0 +1,131 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <thread>
+#include <vector>
+
+#include "thimble/driver/result.h"
+#include "thimble/driver/snapshot.h"
+#include "thimble/render/contact/compact_surface.h"
+#include "thimble/render/contact/linear_search.h"
+#include "thimble/render/page/page_file.h"
+#include "thimble/render/page/page_tree.h"
+
+namespace thimble::render {
+
+/// Sets how much of a paged surface is kept in memory around the tip.
+struct PagingSettings {
+  std::size_t frames = 4096;  ///< Pages in memory at once: 256 MiB. Must be > 0.
+  double reach = 0.001;       ///< Everything this near to the tip is wanted, m.
+  double horizon = 0.02;      ///< So far ahead of its velocity too, s: twice a disk's worst seek.
+};
+
+/// Counts what paging did.
+struct PagingCounters {
+  std::uint64_t loads = 0;            ///< Pages read from the disk.
+  std::uint64_t evictions = 0;        ///< Pages given up for others.
+  std::uint64_t failures = 0;         ///< Reads that failed or gave records that cannot be.
+  std::uint64_t short_of_frames = 0;  ///< Times that more pages were wanted than there are frames.
+};
+
+/// Is a surface of which only the volumes around the tip are in memory [BP 4.1]. A loader brings
+/// what lies ahead of the tip and gives up what it left behind; the servo never waits for it.
+///
+/// The servo marks its ticks by `begin_tick` and `end_tick` and keeps no pointer beyond a tick; a
+/// frame is reused only when a tick that could have seen its page is over.
+class PagedSurface {
+ public:
+  /// Opens a page file; nothing is in memory yet. Fails as PageFile::open does.
+  /// Real-time: never from the servo thread.
+  static driver::Result<std::unique_ptr<PagedSurface>> open(const std::filesystem::path& file,
+                                                            const PagingSettings& settings = {});
+
+  PagedSurface(const PagedSurface&) = delete;
+  PagedSurface& operator=(const PagedSurface&) = delete;
+  /// Ends the loader.
+  ~PagedSurface();
+
+  // The servo's side: one thread. Real-time: safe.
+
+  /// Begins a tick with the tip at `p_W` (m), moving with `v_W` (m/s).
+  void begin_tick(const Eigen::Vector3d& p_W, const Eigen::Vector3d& v_W) noexcept;
+  /// Ends a tick: records found in it may go.
+  void end_tick() noexcept;
+
+  /// Finds a record, or nullptr if its page is not in memory. Good until `end_tick`.
+  const CompactTriangle* find(std::int32_t triangle) const noexcept {
+    const std::int32_t frame =
+        table_[static_cast<std::size_t>(triangle / kPageRecords)].load(std::memory_order_seq_cst);
+    if (frame < 0) return nullptr;
+    return &frames_[static_cast<std::size_t>(frame)]
+                .records[static_cast<std::size_t>(triangle % kPageRecords)];
+  }
+
+  /// Finds the first record that the segment (W, m) crosses from outside to inside, among those in
+  /// memory; `complete` tells whether all that could matter were.
+  Entry first_entry(const Eigen::Vector3d& p_from, const Eigen::Vector3d& p_to,
+                    bool& complete) const noexcept;
+
+  std::int32_t triangle_count() const noexcept { return file_.triangle_count(); }
+  const Lattice& lattice() const noexcept { return file_.lattice(); }
+
+  // The loader's side: one thread. Real-time: never from the servo thread.
+
+  /// Starts a thread that calls `serve` again and again.
+  void start_loader();
+
+  /// Brings what is wanted for the tip's last known place and way; returns how many pages it read.
+  /// Waits for the end of a tick before it reuses a frame. For whoever has no loader thread.
+  std::size_t serve();
+
+  PagingCounters counters() const noexcept;
+  /// Counts the bytes held in memory.
+  std::size_t bytes() const noexcept;
+
+ private:
+  static constexpr std::int32_t kGroup = 16;  // records under one box within a page
+  static constexpr std::int32_t kGroups = kPageRecords / kGroup;
+
+  struct Frame {
+    std::array<CompactTriangle, kPageRecords> records;
+    std::array<PageBox, kGroups> boxes;  // of each group, in steps
+    std::int32_t count = 0;
+  };
+  struct Cursor {
+    std::array<double, 3> p_W{};
+    std::array<double, 3> v_W{};
+  };
+
+  PagedSurface(PageFile file, const PagingSettings& settings);
+  void want(const Cursor& cursor);
+  std::int32_t free_frame();
+  bool load(std::int32_t page, std::int32_t frame);
+  void wait_for_ticks_end() const;
+
+  PageFile file_;
+  PagingSettings settings_;
+  PageTree tree_;
+  std::vector<std::atomic<std::int32_t>> table_;  // frame of each page, -1 if none
+  std::vector<Frame> frames_;
+
+  driver::Snapshot<Cursor> cursor_;
+  std::atomic<std::uint64_t> tick_{0};  // odd within a tick
+
+  // The loader's own.
+  std::vector<std::int32_t> page_in_frame_;  // -1 if empty
+  std::vector<std::uint64_t> wanted_at_;     // round in which a frame's page was last wanted
+  std::vector<std::pair<double, std::int32_t>> wanted_;
+  std::vector<CompactTriangle> incoming_;
+  std::uint64_t round_ = 0;
+  std::atomic<std::uint64_t> loads_{0}, evictions_{0}, failures_{0}, short_of_frames_{0};
+  std::atomic<bool> stop_{false};
+  std::thread loader_;
+};
+
+}  // namespace thimble::render

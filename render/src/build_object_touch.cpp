@@ -1,0 +1,127 @@
+#include "thimble/render/build_object_touch.h"
+
+#include <string>
+#include <utility>
+
+#include "thimble/render/contact/blended.h"
+#include "thimble/render/contact/compact_contact.h"
+#include "thimble/render/contact/curved_depth.h"
+#include "thimble/render/contact/edge_blending.h"
+#include "thimble/render/contact/god_object.h"
+#include "thimble/render/contact/mesh_contact.h"
+#include "thimble/render/contact/normal_projection_tracker.h"
+#include "thimble/render/contact/offset_tracker.h"
+#include "thimble/render/contact/smooth_normals.h"
+#include "thimble/render/touch.h"
+
+namespace thimble::render {
+namespace {
+
+using Built = driver::Result<std::unique_ptr<ObjectTouch>>;
+
+driver::Error apart(const ContactChoice& choice, const std::string& why) {
+  return driver::Error{"The tracker \"" +
+                       std::string(kTrackerNames[static_cast<std::size_t>(choice.tracker)]) +
+                       "\" " + why};
+}
+
+template <class Contact>
+Built touch_of(Contact contact, const SpringDamper& surface) {
+  using Stages = Touch<Contact, SpringDamper>;
+  return std::unique_ptr<ObjectTouch>(
+      std::make_unique<ObjectTouchOf<Stages>>(Stages(std::move(contact), surface)));
+}
+
+template <class Contact, class Shading, class Depth>
+Built blended_touch(Contact contact, Shading shading, double crease_angle,
+                    const SpringDamper& surface) {
+  return touch_of(
+      Blended<Contact, Shading, Depth>(std::move(contact), std::move(shading), crease_angle),
+      surface);
+}
+
+template <class Contact, class Shading>
+Built shaded_touch(Contact contact, Shading shading, bool curved, double crease_angle,
+                   const SpringDamper& surface) {
+  return curved ? blended_touch<Contact, Shading, CurvedDepth>(std::move(contact), shading,
+                                                               crease_angle, surface)
+                : blended_touch<Contact, Shading, MeshDepth>(std::move(contact), shading,
+                                                             crease_angle, surface);
+}
+
+/// Wraps a tracked contact into the shading that is asked for, or leaves it bare if none is.
+template <class Contact>
+Built tracked_touch(Contact contact, const ContactChoice& choice, BlendingChoice blending,
+                    bool curved, const SpringDamper& surface) {
+  const double crease = choice.crease_angle.value_or(kCreaseAngle);
+  switch (blending) {
+    case BlendingChoice::kFlat:
+      if (!curved) return touch_of(std::move(contact), surface);
+      return shaded_touch(std::move(contact), Flat(), curved, crease, surface);
+    case BlendingChoice::kFixedBand:
+      return shaded_touch(std::move(contact), FixedBand{.width = choice.band}, curved, crease,
+                          surface);
+    case BlendingChoice::kSizedBand:
+      return shaded_touch(std::move(contact), SizedBand(), curved, crease, surface);
+    case BlendingChoice::kPhong:
+      return shaded_touch(std::move(contact), Phong(), curved, crease, surface);
+  }
+  return apart(choice, "does not know this blending.");
+}
+
+Built compact_touch(const TriangleMesh& mesh_W, const ContactChoice& choice,
+                    const SpringDamper& surface) {
+  if (choice.blending.value_or(BlendingChoice::kPhong) != BlendingChoice::kPhong ||
+      !choice.curved_depth.value_or(true)) {
+    return apart(choice,
+                 "always feels smooth (phong, curved depth): leave blending and curved_depth away, "
+                 "or take the tracker \"offset\" or \"edge_planes\".");
+  }
+  // Looks at the whole mesh first, so that faults are told as for every other way.
+  const auto checked = ContactMesh::build(mesh_W);
+  if (!checked) return checked.error();
+  CompactSurfaceOptions options;
+  if (choice.crease_angle) options.crease_angle = *choice.crease_angle;
+  auto compact = CompactSurface::build(*checked, options);
+  if (!compact) return compact.error();
+  return touch_of(CompactContact(std::move(compact).value()), surface);
+}
+
+template <class Contact>
+Built mesh_touch(const TriangleMesh& mesh_W, const ContactChoice& choice, bool smooth,
+                 const SpringDamper& surface) {
+  auto contact = Contact::build(mesh_W);
+  if (!contact) return contact.error();
+  return tracked_touch(
+      std::move(contact).value(), choice,
+      choice.blending.value_or(smooth ? BlendingChoice::kPhong : BlendingChoice::kFlat),
+      choice.curved_depth.value_or(smooth), surface);
+}
+
+}  // namespace
+
+Built build_object_touch(const TriangleMesh& mesh_W, const ContactChoice& choice,
+                         const SpringDamper& surface) {
+  switch (choice.tracker) {
+    case TrackerChoice::kEdgePlanes:
+      return mesh_touch<MeshContact>(mesh_W, choice, false, surface);
+    case TrackerChoice::kNormalProjection:
+      return mesh_touch<TrackedContact<NormalProjectionTracker>>(mesh_W, choice, false, surface);
+    case TrackerChoice::kOffset:
+      return mesh_touch<OffsetContact>(mesh_W, choice, true, surface);
+    case TrackerChoice::kGodObject: {
+      if (choice.blending.value_or(BlendingChoice::kFlat) != BlendingChoice::kFlat ||
+          choice.curved_depth.value_or(false)) {
+        return apart(choice, "pushes towards its proxy: it goes with the blending \"flat\" only.");
+      }
+      auto contact = GodObjectContact::build(mesh_W);
+      if (!contact) return contact.error();
+      return touch_of(std::move(contact).value(), surface);
+    }
+    case TrackerChoice::kCompact:
+      return compact_touch(mesh_W, choice, surface);
+  }
+  return apart(choice, "is not known.");
+}
+
+}  // namespace thimble::render

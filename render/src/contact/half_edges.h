@@ -1,0 +1,57 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace thimble::render {
+
+/// Lists, per vertex, the sides of triangles that begin there: who is whose neighbour in O(n),
+/// where sorting all edges takes several times as long. Real-time: never from the servo thread.
+class HalfEdges {
+ public:
+  /// Is a side of a triangle without its begin.
+  struct Side {
+    std::int32_t end;
+    std::int32_t triangle;
+  };
+
+  HalfEdges(const std::vector<std::array<std::int32_t, 3>>& triangles, std::size_t vertices)
+      : begin_(vertices + 2, 0), sides_(3 * triangles.size()) {
+    for (const auto& corners : triangles) {
+      for (const std::int32_t v : corners) ++begin_[static_cast<std::size_t>(v) + 2];
+    }
+    for (std::size_t v = 2; v < begin_.size(); ++v) begin_[v] += begin_[v - 1];
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto v = static_cast<std::size_t>(triangles[t][k]);
+        sides_[begin_[v + 1]++] = {triangles[t][(k + 1) % 3], static_cast<std::int32_t>(t)};
+      }
+    }
+  }
+
+  /// Lists the sides that begin at a vertex; one per triangle around it.
+  std::span<const Side> around(std::int32_t vertex) const noexcept {
+    const auto v = static_cast<std::size_t>(vertex);
+    return {sides_.data() + begin_[v], begin_[v + 1] - begin_[v]};
+  }
+
+  /// Finds the one triangle that runs the edge from `from` to `to`; -1 if there is none or several.
+  std::int32_t opposite(std::int32_t from, std::int32_t to) const noexcept {
+    std::int32_t found = -1;
+    for (const Side& side : around(from)) {
+      if (side.end != to) continue;
+      if (found >= 0) return -1;
+      found = side.triangle;
+    }
+    return found;
+  }
+
+ private:
+  std::vector<std::uint32_t> begin_;
+  std::vector<Side> sides_;
+};
+
+}  // namespace thimble::render

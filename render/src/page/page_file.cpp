@@ -1,0 +1,271 @@
+#include "thimble/render/page/page_file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <bit>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <string>
+#include <type_traits>
+#include <utility>
+
+namespace thimble::render {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "Page files are little endian.");
+static_assert(std::is_trivially_copyable_v<CompactTriangle>);
+
+constexpr std::array<char, 8> kMagic{'T', 'H', 'M', 'B', 'P', 'A', 'G', 'E'};
+constexpr std::uint32_t kVersion = 1;
+constexpr std::int64_t kAlignment = 4096;  // of the records, so that a page covers whole disk pages
+
+struct Header {
+  std::array<char, 8> magic = kMagic;
+  std::uint32_t version = kVersion;
+  std::uint32_t record_bytes = sizeof(CompactTriangle);
+  std::uint32_t page_records = kPageRecords;
+  std::uint32_t unused = 0;
+  std::int64_t triangle_count = 0;
+  std::array<double, 3> origin{};
+  double step = 0;
+};
+static_assert(sizeof(Header) == 64);
+
+std::int64_t pages_of(std::int64_t triangles) {
+  return (triangles + kPageRecords - 1) / kPageRecords;
+}
+
+std::int64_t records_begin(std::int64_t pages) {
+  const std::int64_t end = static_cast<std::int64_t>(sizeof(Header)) +
+                           pages * static_cast<std::int64_t>(sizeof(PageBox));
+  return (end + kAlignment - 1) / kAlignment * kAlignment;
+}
+
+bool write_all(int descriptor, const void* data, std::size_t size, std::int64_t at) noexcept {
+  const char* bytes = static_cast<const char*>(data);
+  while (size > 0) {
+    const ssize_t written = pwrite(descriptor, bytes, size, at);
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) return false;
+    bytes += written;
+    at += written;
+    size -= static_cast<std::size_t>(written);
+  }
+  return true;
+}
+
+bool read_all(int descriptor, void* data, std::size_t size, std::int64_t at) noexcept {
+  char* bytes = static_cast<char*>(data);
+  while (size > 0) {
+    const ssize_t got = pread(descriptor, bytes, size, at);
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0) return false;
+    bytes += got;
+    at += got;
+    size -= static_cast<std::size_t>(got);
+  }
+  return true;
+}
+
+driver::Error trouble(const std::filesystem::path& file, const std::string& what) {
+  return driver::Error{file.string() + ": " + what};
+}
+
+float down(double value) noexcept {
+  return std::nextafter(static_cast<float>(value), -std::numeric_limits<float>::infinity());
+}
+
+float up(double value) noexcept {
+  return std::nextafter(static_cast<float>(value), std::numeric_limits<float>::infinity());
+}
+
+}  // namespace
+
+PageBox box_of(std::span<const CompactTriangle> records) noexcept {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  PageBox box{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
+  for (const CompactTriangle& record : records) {
+    const std::array<const std::array<std::int32_t, 3>*, 3> axes{&record.x, &record.y, &record.z};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto [low, high] = std::minmax({(*axes[axis])[0], (*axes[axis])[1], (*axes[axis])[2]});
+      box.min[axis] = std::min(box.min[axis], down(low));
+      box.max[axis] = std::max(box.max[axis], up(high));
+    }
+  }
+  return box;
+}
+
+struct PageFileWriter::State {
+  std::filesystem::path file;
+  int descriptor = -1;
+  Header header;
+  std::int64_t written = 0;
+  std::vector<CompactTriangle> page;
+  std::vector<PageBox> boxes;
+
+  ~State() {
+    if (descriptor >= 0) close(descriptor);
+  }
+
+  bool flush() {
+    if (page.empty()) return true;
+    boxes.push_back(box_of(page));
+    const std::int64_t at = records_begin(pages_of(header.triangle_count)) +
+                            (written - static_cast<std::int64_t>(page.size())) *
+                                static_cast<std::int64_t>(sizeof(CompactTriangle));
+    const bool done = write_all(descriptor, page.data(), page.size() * sizeof(CompactTriangle), at);
+    page.clear();
+    return done;
+  }
+};
+
+PageFileWriter::PageFileWriter(std::unique_ptr<State> state) : state_(std::move(state)) {}
+PageFileWriter::PageFileWriter(PageFileWriter&&) noexcept = default;
+PageFileWriter& PageFileWriter::operator=(PageFileWriter&&) noexcept = default;
+PageFileWriter::~PageFileWriter() = default;
+
+driver::Result<PageFileWriter> PageFileWriter::create(const std::filesystem::path& file,
+                                                      const Lattice& lattice,
+                                                      std::int64_t triangle_count) {
+  if (triangle_count <= 0 || triangle_count > std::numeric_limits<std::int32_t>::max()) {
+    return trouble(file, "a page file holds 1 to 2^31 - 1 triangles, not " +
+                             std::to_string(triangle_count) + ".");
+  }
+  auto state = std::make_unique<State>();
+  state->file = file;
+  state->header.triangle_count = triangle_count;
+  state->header.origin = {lattice.origin.x(), lattice.origin.y(), lattice.origin.z()};
+  state->header.step = lattice.step;
+  state->page.reserve(kPageRecords);
+  state->descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (state->descriptor < 0) {
+    return trouble(file, std::string("it cannot be written (") + std::strerror(errno) + ").");
+  }
+  return PageFileWriter(std::move(state));
+}
+
+driver::Result<void> PageFileWriter::append(std::span<const CompactTriangle> records) {
+  for (const CompactTriangle& record : records) {
+    state_->page.push_back(record);
+    ++state_->written;
+    if (state_->page.size() == static_cast<std::size_t>(kPageRecords) && !state_->flush()) {
+      return trouble(state_->file, std::string("writing failed (") + std::strerror(errno) + ").");
+    }
+  }
+  return {};
+}
+
+driver::Result<void> PageFileWriter::finish() {
+  State& state = *state_;
+  if (state.written != state.header.triangle_count) {
+    return trouble(state.file, std::to_string(state.written) + " triangles were written, but " +
+                                   std::to_string(state.header.triangle_count) + " promised.");
+  }
+  // The header comes last: a file that was not finished is no page file.
+  if (!state.flush() ||
+      !write_all(state.descriptor, state.boxes.data(), state.boxes.size() * sizeof(PageBox),
+                 sizeof(Header)) ||
+      !write_all(state.descriptor, &state.header, sizeof(Header), 0)) {
+    return trouble(state.file, std::string("writing failed (") + std::strerror(errno) + ").");
+  }
+  return {};
+}
+
+driver::Result<void> write_page_file(const CompactSurface& surface,
+                                     const std::filesystem::path& file) {
+  auto writer =
+      PageFileWriter::create(file, {surface.origin(), surface.step()}, surface.triangle_count());
+  if (!writer) return writer.error();
+  if (auto done = writer->append(surface.records()); !done) return done;
+  return writer->finish();
+}
+
+driver::Result<PageFile> PageFile::open(const std::filesystem::path& file) {
+  PageFile opened;
+  opened.descriptor_ = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  if (opened.descriptor_ < 0) {
+    return trouble(file, std::string("it cannot be opened (") + std::strerror(errno) + ").");
+  }
+  struct stat status {};
+  if (fstat(opened.descriptor_, &status) != 0 || !S_ISREG(status.st_mode)) {
+    return trouble(file, "this is not a file.");
+  }
+  Header header;
+  if (status.st_size < static_cast<off_t>(sizeof(Header)) ||
+      !read_all(opened.descriptor_, &header, sizeof(Header), 0) || header.magic != kMagic) {
+    return trouble(file, "this is no page file; write one with `thimble mesh page IN OUT`.");
+  }
+  const Header expected;
+  if (header.version != kVersion || header.record_bytes != expected.record_bytes ||
+      header.page_records != expected.page_records) {
+    return trouble(file, "it was written by another version; write it again.");
+  }
+  const bool numbers_can_be = header.triangle_count > 0 &&
+                              header.triangle_count <= std::numeric_limits<std::int32_t>::max() &&
+                              header.step > 0 && std::isfinite(header.step) &&
+                              std::all_of(header.origin.begin(), header.origin.end(),
+                                          [](double x) { return std::isfinite(x); });
+  if (!numbers_can_be) return trouble(file, "its header is damaged; write it again.");
+
+  const std::int64_t pages = pages_of(header.triangle_count);
+  opened.records_at_ = records_begin(pages);
+  const std::int64_t size =
+      opened.records_at_ +
+      header.triangle_count * static_cast<std::int64_t>(sizeof(CompactTriangle));
+  if (status.st_size < size) {
+    return trouble(file, "it ends after " + std::to_string(status.st_size) + " of " +
+                             std::to_string(size) + " bytes; write it again.");
+  }
+  opened.boxes_.resize(static_cast<std::size_t>(pages));
+  if (!read_all(opened.descriptor_, opened.boxes_.data(), opened.boxes_.size() * sizeof(PageBox),
+                sizeof(Header))) {
+    return trouble(file, "reading it failed.");
+  }
+  opened.lattice_ = {{header.origin[0], header.origin[1], header.origin[2]}, header.step};
+  opened.triangle_count_ = static_cast<std::int32_t>(header.triangle_count);
+  return opened;
+}
+
+PageFile::PageFile(PageFile&& other) noexcept {
+  *this = std::move(other);
+}
+
+PageFile& PageFile::operator=(PageFile&& other) noexcept {
+  std::swap(descriptor_, other.descriptor_);
+  std::swap(lattice_, other.lattice_);
+  std::swap(triangle_count_, other.triangle_count_);
+  std::swap(records_at_, other.records_at_);
+  std::swap(boxes_, other.boxes_);
+  return *this;
+}
+
+PageFile::~PageFile() {
+  if (descriptor_ >= 0) close(descriptor_);
+}
+
+std::int32_t PageFile::read_page(std::int32_t page,
+                                 std::span<CompactTriangle> records) const noexcept {
+  const std::int32_t first = page * kPageRecords;
+  const std::int32_t count = std::min(kPageRecords, triangle_count_ - first);
+  if (page < 0 || count <= 0 || records.size() < static_cast<std::size_t>(count)) return 0;
+  const std::int64_t at =
+      records_at_ + std::int64_t{first} * static_cast<std::int64_t>(sizeof(CompactTriangle));
+  if (!read_all(descriptor_, records.data(),
+                static_cast<std::size_t>(count) * sizeof(CompactTriangle), at)) {
+    return 0;
+  }
+  // The servo follows neighbours without asking: none may lead out of the file.
+  for (std::int32_t i = 0; i < count; ++i) {
+    for (const std::int32_t neighbour : records[static_cast<std::size_t>(i)].neighbours) {
+      if (neighbour < 0 || neighbour >= triangle_count_) return 0;
+    }
+  }
+  return count;
+}
+
+}  // namespace thimble::render

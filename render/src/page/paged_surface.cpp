@@ -1,0 +1,241 @@
+#include "thimble/render/page/paged_surface.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "thimble/render/mesh/segment_crossing.h"
+
+namespace thimble::render {
+namespace {
+
+using Eigen::Vector3d;
+
+// How long the loader rests when there is nothing to bring: at 0.5 m/s the tip moves 0.1 mm, a
+// tenth of the default reach.
+constexpr std::chrono::microseconds kRest{200};
+
+bool reaches(const PageBox& box, const Vector3d& low, const Vector3d& high) noexcept {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto i = static_cast<Eigen::Index>(axis);
+    if (!(double{box.min[axis]} <= high[i] && double{box.max[axis]} >= low[i])) return false;
+  }
+  return true;
+}
+
+double distance_squared(const PageBox& box, const Vector3d& p) noexcept {
+  double sum = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double x = p[static_cast<Eigen::Index>(axis)];
+    const double outside = std::max({double{box.min[axis]} - x, x - double{box.max[axis]}, 0.0});
+    sum += outside * outside;
+  }
+  return sum;
+}
+
+}  // namespace
+
+driver::Result<std::unique_ptr<PagedSurface>> PagedSurface::open(const std::filesystem::path& file,
+                                                                 const PagingSettings& settings) {
+  const bool sound = settings.frames > 0 && settings.reach >= 0 && settings.horizon >= 0;
+  if (!sound) {
+    return driver::Error{"Paging needs at least one frame and a reach and horizon of at least 0."};
+  }
+  auto opened = PageFile::open(file);
+  if (!opened) return opened.error();
+  return std::unique_ptr<PagedSurface>(new PagedSurface(std::move(opened).value(), settings));
+}
+
+PagedSurface::PagedSurface(PageFile file, const PagingSettings& settings)
+    : file_(std::move(file)),
+      settings_(settings),
+      tree_(file_.boxes()),
+      table_(file_.boxes().size()),
+      frames_(std::min(settings.frames, file_.boxes().size())),
+      page_in_frame_(frames_.size(), -1),
+      wanted_at_(frames_.size(), 0),
+      incoming_(kPageRecords) {
+  for (auto& frame : table_) frame.store(-1, std::memory_order_relaxed);
+  wanted_.reserve(table_.size());
+}
+
+PagedSurface::~PagedSurface() {
+  stop_.store(true);
+  if (loader_.joinable()) loader_.join();
+}
+
+void PagedSurface::begin_tick(const Vector3d& p_W, const Vector3d& v_W) noexcept {
+  cursor_.store({.p_W = {p_W.x(), p_W.y(), p_W.z()}, .v_W = {v_W.x(), v_W.y(), v_W.z()}});
+  // In one order with the loader's taking back of pages: either it sees this tick and waits for its
+  // end, or this tick no longer finds the page.
+  tick_.fetch_add(1, std::memory_order_seq_cst);
+}
+
+void PagedSurface::end_tick() noexcept {
+  tick_.fetch_add(1, std::memory_order_seq_cst);
+}
+
+Entry PagedSurface::first_entry(const Vector3d& p_from, const Vector3d& p_to,
+                                bool& complete) const noexcept {
+  complete = true;
+  Entry first;
+  const Lattice& lattice = file_.lattice();
+  const Vector3d from = (p_from - lattice.origin) / lattice.step;
+  const Vector3d to = (p_to - lattice.origin) / lattice.step;
+  const Vector3d way = to - from;
+  // Two steps of room: the rounding of these divisions, and of the boxes.
+  const Vector3d low = from.cwiseMin(to) - Vector3d::Constant(2);
+  const Vector3d high = from.cwiseMax(to) + Vector3d::Constant(2);
+  tree_.visit_reached(low, high, [&](std::int32_t page) noexcept {
+    const std::int32_t frame_number =
+        table_[static_cast<std::size_t>(page)].load(std::memory_order_seq_cst);
+    if (frame_number < 0) {
+      complete = false;
+      return true;
+    }
+    const Frame& frame = frames_[static_cast<std::size_t>(frame_number)];
+    for (std::int32_t begin = 0; begin < frame.count; begin += kGroup) {
+      if (!reaches(frame.boxes[static_cast<std::size_t>(begin / kGroup)], low, high)) continue;
+      for (std::int32_t i = begin; i < std::min(begin + kGroup, frame.count); ++i) {
+        const CompactTriangle& record = frame.records[static_cast<std::size_t>(i)];
+        if (crossing(p_from, p_to, lattice.position(record, 0), lattice.position(record, 1),
+                     lattice.position(record, 2)) != Crossing::kEnters) {
+          continue;
+        }
+        const Vector3d a = record.corner(0);
+        const Vector3d n = (record.corner(1) - a).cross(record.corner(2) - a);
+        const double above = n.dot(from - a), steep = -n.dot(way);
+        const double parameter = steep > 0 ? std::clamp(above / steep, 0.0, 1.0) : 0.0;
+        if (first.triangle < 0 || parameter < first.parameter) {
+          first = {page * kPageRecords + i, parameter};
+        }
+      }
+    }
+    return true;
+  });
+  return first;
+}
+
+void PagedSurface::start_loader() {
+  loader_ = std::thread([this] {
+    while (!stop_.load(std::memory_order_relaxed)) {
+      if (serve() == 0) std::this_thread::sleep_for(kRest);
+    }
+  });
+}
+
+void PagedSurface::want(const Cursor& cursor) {
+  // A box around the way ahead finds candidates; the distance to the nearest of a few places on it
+  // decides, and sorts the near ones first.
+  constexpr int kPlaces = 8;
+  const Lattice& lattice = file_.lattice();
+  const double reach = settings_.reach / lattice.step;
+  const Vector3d p =
+      (Eigen::Map<const Vector3d>(cursor.p_W.data()) - lattice.origin) / lattice.step;
+  const Vector3d way =
+      settings_.horizon / lattice.step * Eigen::Map<const Vector3d>(cursor.v_W.data());
+  const Vector3d low = p.cwiseMin(p + way) - Vector3d::Constant(reach);
+  const Vector3d high = p.cwiseMax(p + way) + Vector3d::Constant(reach);
+  // Places stand no farther apart than this; half of it is what a box between two may be off.
+  const double room = reach + way.norm() / (2 * kPlaces);
+  wanted_.clear();
+  tree_.visit_reached(low, high, [&](std::int32_t page) {
+    const PageBox& box = file_.boxes()[static_cast<std::size_t>(page)];
+    double nearest = HUGE_VAL;
+    for (int k = 0; k <= kPlaces; ++k) {
+      // What the tip reaches later may come later.
+      const double share = static_cast<double>(k) / kPlaces;
+      const double distance = std::sqrt(distance_squared(box, p + share * way));
+      if (distance <= room) nearest = std::min(nearest, distance + share * way.norm());
+    }
+    if (nearest < HUGE_VAL) wanted_.emplace_back(nearest, page);
+    return true;
+  });
+  std::sort(wanted_.begin(), wanted_.end());
+}
+
+std::size_t PagedSurface::serve() {
+  Cursor cursor;
+  if (!cursor_.load(cursor)) return 0;
+  ++round_;
+  want(cursor);
+  if (wanted_.size() > frames_.size()) {
+    wanted_.resize(frames_.size());
+    short_of_frames_.fetch_add(1, std::memory_order_relaxed);
+  }
+  for (const auto& [distance, page] : wanted_) {
+    const std::int32_t frame = table_[static_cast<std::size_t>(page)].load();
+    if (frame >= 0) wanted_at_[static_cast<std::size_t>(frame)] = round_;
+  }
+  // A few pages at a time, then a new look at where the tip is.
+  constexpr std::size_t kAtOnce = 16;
+  std::size_t read = 0;
+  for (const auto& [distance, page] : wanted_) {
+    if (read == kAtOnce || stop_.load(std::memory_order_relaxed)) break;
+    if (table_[static_cast<std::size_t>(page)].load() >= 0) continue;
+    const std::int32_t frame = free_frame();
+    if (frame < 0 || !load(page, frame)) continue;
+    ++read;
+  }
+  return read;
+}
+
+std::int32_t PagedSurface::free_frame() {
+  const auto oldest = std::min_element(wanted_at_.begin(), wanted_at_.end());
+  if (*oldest == round_) return -1;
+  const auto number = static_cast<std::int32_t>(oldest - wanted_at_.begin());
+  std::int32_t& page = page_in_frame_[static_cast<std::size_t>(number)];
+  if (page >= 0) {
+    table_[static_cast<std::size_t>(page)].store(-1, std::memory_order_seq_cst);
+    page = -1;
+    evictions_.fetch_add(1, std::memory_order_relaxed);
+    wait_for_ticks_end();
+  }
+  return number;
+}
+
+void PagedSurface::wait_for_ticks_end() const {
+  const std::uint64_t tick = tick_.load(std::memory_order_seq_cst);
+  if (tick % 2 == 0) return;
+  while (tick_.load(std::memory_order_seq_cst) == tick && !stop_.load(std::memory_order_relaxed)) {
+    std::this_thread::yield();
+  }
+}
+
+bool PagedSurface::load(std::int32_t page, std::int32_t frame_number) {
+  Frame& frame = frames_[static_cast<std::size_t>(frame_number)];
+  const std::int32_t count = file_.read_page(page, incoming_);
+  if (count == 0 || stop_.load(std::memory_order_relaxed)) {
+    failures_.fetch_add(count == 0 ? 1 : 0, std::memory_order_relaxed);
+    return false;
+  }
+  std::copy_n(incoming_.begin(), count, frame.records.begin());
+  frame.count = count;
+  for (std::int32_t begin = 0; begin < count; begin += kGroup) {
+    const auto size = static_cast<std::size_t>(std::min(kGroup, count - begin));
+    frame.boxes[static_cast<std::size_t>(begin / kGroup)] =
+        box_of({frame.records.data() + begin, size});
+  }
+  page_in_frame_[static_cast<std::size_t>(frame_number)] = page;
+  wanted_at_[static_cast<std::size_t>(frame_number)] = round_;
+  loads_.fetch_add(1, std::memory_order_relaxed);
+  table_[static_cast<std::size_t>(page)].store(frame_number, std::memory_order_seq_cst);
+  return true;
+}
+
+PagingCounters PagedSurface::counters() const noexcept {
+  return {.loads = loads_.load(std::memory_order_relaxed),
+          .evictions = evictions_.load(std::memory_order_relaxed),
+          .failures = failures_.load(std::memory_order_relaxed),
+          .short_of_frames = short_of_frames_.load(std::memory_order_relaxed)};
+}
+
+std::size_t PagedSurface::bytes() const noexcept {
+  return frames_.size() * sizeof(Frame) + table_.size() * sizeof(table_[0]) +
+         4 * file_.boxes().size() * sizeof(PageBox);
+}
+
+}  // namespace thimble::render

@@ -1,0 +1,295 @@
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <functional>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "bench/peers.h"
+#include "figure.h"
+#include "support/bench_meshes.h"
+#include "support/random.h"
+#include "thimble/render/contact/compact_contact.h"
+
+// Contact on closed shapes of 0.1 m from 10^3 to 10^7 triangles, against other libraries in the
+// same run. Every time is the least of several rounds in which the contenders take turns: what the
+// machine does besides only adds.
+
+namespace thimble::bench {
+namespace {
+
+using Eigen::Vector3d;
+using Clock = std::chrono::steady_clock;
+
+constexpr double kPressed = 0.5e-3;  // m below the surface
+constexpr std::size_t kTicks = 100000;
+constexpr int kRounds = 3;
+
+double seconds_since(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+struct Path {
+  std::vector<Vector3d> tips;  // one per tick, m
+  Vector3d start;              // outside, above the first
+};
+
+// Winds over a ball in steps of equal length.
+Path path_over(const support::BumpyBall& ball, double step, std::size_t ticks) {
+  Path path;
+  support::Random random(7);
+  Vector3d at = Vector3d(0.3, 0.5, 0.8).normalized();
+  Vector3d axis = Vector3d(0.1, 0.9, -0.2);
+  path.start = ball.at(at) + 2e-3 * ball.normal(at);
+  for (std::size_t i = 0; i < ticks; ++i) {
+    const Vector3d p = ball.at(at);
+    path.tips.push_back(p - kPressed * ball.normal(at));
+    axis = (axis + 0.003 * at.cross(axis) + 0.002 * random.direction()).normalized();
+    at = (at + step / p.norm() * axis.cross(at).normalized()).normalized();
+  }
+  return path;
+}
+
+// Winds around a torus in steps of nearly equal length.
+Path path_over(const support::Ring& ring, double step, std::size_t ticks) {
+  Path path;
+  path.start = ring.at(0, 0) + 2e-3 * ring.normal(0, 0);
+  for (std::size_t i = 0; i < ticks; ++i) {
+    const double way = step * static_cast<double>(i);
+    const double around = 0.6 * way / ring.ring_radius;
+    const double across = 0.8 * way / ring.tube_radius;
+    path.tips.push_back(ring.at(around, across) - kPressed * ring.normal(around, across));
+  }
+  return path;
+}
+
+// Is a contender: gives the depth at a tip, NaN where it has none.
+using Follow = std::function<double(const Vector3d&)>;
+
+struct Followed {
+  double ns = INFINITY;  // per tick
+  double error_mm = 0;   // mean of |depth - truth|
+  std::size_t lost = 0;  // ticks
+};
+
+template <class F>
+void follow_hot(const Path& path, F&& follow, Followed& result) {
+  follow(path.start);
+  follow(path.tips.front());
+  double error = 0;
+  std::size_t lost = 0;
+  const auto begin = Clock::now();
+  for (const Vector3d& p : path.tips) {
+    const double depth = follow(p);
+    if (depth > 0) {
+      error += std::abs(depth - kPressed);
+    } else {
+      ++lost;
+    }
+  }
+  const auto ticks = static_cast<double>(path.tips.size());
+  result.ns = std::min(result.ns, seconds_since(begin) * 1e9 / ticks);
+  result.error_mm = error * 1e3 / std::max(ticks - static_cast<double>(lost), 1.0);
+  result.lost = lost;
+}
+
+// Ticks of a 1 kHz loop that sleeps: {mean, 99th of 100} in ns, of the contact alone.
+template <class F>
+std::pair<double, double> follow_in_loop(const Path& path, F&& follow) {
+  follow(path.start);
+  std::vector<double> ns;
+  auto next = Clock::now();
+  for (const Vector3d& p : path.tips) {
+    next += std::chrono::milliseconds(1);
+    std::this_thread::sleep_until(next);
+    const auto begin = Clock::now();
+    follow(p);
+    ns.push_back(seconds_since(begin) * 1e9);
+  }
+  double sum = 0;
+  for (const double v : ns) sum += v;
+  std::sort(ns.begin(), ns.end());
+  return {sum / static_cast<double>(ns.size()), ns[ns.size() * 99 / 100]};
+}
+
+class Bench {
+ public:
+  void run(const std::string& size, std::size_t triangles) {
+    const support::BumpyBall ball;
+    const support::Ring ring;
+    run_shape("ball " + size, support::bench_ball(ball, triangles), ball, triangles);
+    run_shape("torus " + size, support::bench_ring(ring, triangles), ring, triangles);
+  }
+
+  const std::vector<app::Figure>& figures() const { return figures_; }
+
+ private:
+  void add(const std::string& name, double value, const std::string& unit,
+           const std::string& goal = {}) {
+    figures_.push_back({.name = name, .value = value, .unit = unit, .goal = goal});
+    std::printf("%s", app::figure_table({figures_.back()}).c_str());
+    std::fflush(stdout);
+  }
+
+  template <class Shape>
+  void run_shape(const std::string& name, const render::TriangleMesh& mesh, const Shape& shape,
+                 std::size_t triangles) {
+    const auto begin = Clock::now();
+    auto surface = render::CompactSurface::build(mesh);
+    if (!surface) {
+      std::fprintf(stderr, "%s\n", surface.error().message.c_str());
+      return;
+    }
+    const std::size_t surface_bytes = surface.value().bytes();
+    render::CompactContact contact(std::move(surface).value());
+    add(name + ": build", seconds_since(begin), "s", triangles == 1000000 ? "<= 0.5" : "");
+    add(name + ": memory",
+        static_cast<double>(surface_bytes + contact.search().bytes()) /
+            static_cast<double>(mesh.triangles.size()),
+        "B per triangle", triangles == 1000000 ? "<= 96" : "");
+    std::unique_ptr<Peer> embree;
+    if constexpr (THIMBLE_HAVE_EMBREE) embree = make_embree(mesh);
+    driver::DeviceState state;
+    const auto ours = [&](const Vector3d& p) {
+      state.p_WT = p;
+      const render::ContactState& touched = contact.update(state);
+      return touched.touching ? touched.depth : NAN;
+    };
+    const auto theirs = [&](const Vector3d& p) { return embree->follow(p); };
+    const bool coarse = triangles <= 10000;
+    const bool large = triangles > 1000000;
+    for (const bool fast : {false, true}) {
+      const std::string way = name + (fast ? ": fast slide" : ": stroke");
+      const Path path = path_over(shape, fast ? 0.3e-3 : 0.03e-3, kTicks);
+      Followed us, them;
+      for (int round = 0; round < kRounds; ++round) {
+        follow_hot(path, ours, us);
+        if (embree) follow_hot(path, theirs, them);
+      }
+      add(way + " hot", us.ns, "ns");
+      add(way + ", depth error", us.error_mm, "mm", "<= 0.01");
+      add(way + ", contact lost", static_cast<double>(us.lost), "ticks", "== 0");
+      if (embree) {
+        add(way + " hot, embree", them.ns, "ns");
+        add(way + ", depth error, embree", them.error_mm, "mm");
+        add(way + ", contact lost, embree", static_cast<double>(them.lost), "ticks");
+        const char* goal = fast ? (coarse                ? ">= 10"
+                                   : triangles <= 100000 ? ">= 5"
+                                   : large               ? ">= 1.2"
+                                                         : ">= 2")
+                                : (coarse  ? ""
+                                   : large ? ">= 3"
+                                           : ">= 10");
+        add(way + " hot, embree / ours", them.ns / us.ns, "", goal);
+      }
+      if (!fast) continue;
+      const Path slow = path_over(shape, 0.3e-3, 1000);
+      const auto [mean, late] = follow_in_loop(slow, ours);
+      add(way + " in the loop, mean", mean, "ns");
+      add(way + " in the loop, p99", late, "ns");
+      if (!embree) continue;
+      const auto [mean_embree, late_embree] = follow_in_loop(slow, theirs);
+      add(way + " in the loop, mean, embree", mean_embree, "ns");
+      add(way + " in the loop, p99, embree", late_embree, "ns");
+      add(way + " in the loop, embree / ours", mean_embree / mean, "", large ? ">= 1" : ">= 1.5");
+    }
+    run_cold(name, mesh, contact, embree.get(), triangles);
+  }
+
+  void run_cold(const std::string& name, const render::TriangleMesh& mesh,
+                const render::CompactContact& contact, Peer* embree, std::size_t triangles) {
+    constexpr std::size_t kQueries = 20000;
+    support::Random random(9);
+    std::vector<Vector3d> from, to, near;
+    for (std::size_t i = 0; i < kQueries; ++i) {
+      const auto t = random.bits() % mesh.triangles.size();
+      const Vector3d& on =
+          mesh.vertices[static_cast<std::size_t>(mesh.triangles[static_cast<std::size_t>(t)][0])];
+      from.push_back(on + random.in_box(0.25e-3));
+      to.push_back(from.back() + 0.5e-3 * random.direction());
+      near.push_back(on + random.uniform(0, 1e-3) * random.direction());
+    }
+    double sum = 0;  // read below, so that no query is left out
+    const auto time = [&](const auto& query) {
+      double best = INFINITY;
+      for (int round = 0; round < kRounds; ++round) {
+        const auto begin = Clock::now();
+        for (std::size_t i = 0; i < kQueries; ++i) sum += query(i);
+        best = std::min(best, seconds_since(begin) * 1e9 / static_cast<double>(kQueries));
+      }
+      return best;
+    };
+    const render::Bvh& bvh = contact.search();
+    const double segment =
+        time([&](std::size_t i) { return bvh.first_entry(from[i], to[i]).parameter; });
+    add(name + ": cold segment", segment, "ns");
+    const double closest =
+        time([&](std::size_t i) { return bvh.closest(near[i], 1.01e-3).distance; });
+    add(name + ": cold closest point", closest, "ns");
+    if (embree != nullptr) {
+      const double theirs = time([&](std::size_t i) { return embree->first_hit(from[i], to[i]); });
+      add(name + ": cold segment, embree", theirs, "ns");
+      add(name + ": cold segment, ours / embree", segment / theirs, "", "<= 1.2");
+    }
+    double best = INFINITY;
+    const auto ask = [&](Peer& peer) {
+      const double theirs = time([&](std::size_t i) { return peer.closest(near[i], 1.01e-3); });
+      add(name + ": cold closest point, " + peer.name(), theirs, "ns");
+      best = std::min(best, theirs);
+    };
+    if (embree != nullptr) ask(*embree);
+    // Slower by far than Embree and large in memory: asked where that settles the order.
+    if (triangles <= 100000) {
+      if constexpr (THIMBLE_HAVE_CGAL) ask(*make_cgal(mesh));
+      if constexpr (THIMBLE_HAVE_FCL) ask(*make_fcl(mesh));
+    }
+    if (std::isfinite(best)) {
+      add(name + ": cold closest point, best peer / ours", best / closest, "",
+          triangles <= 100000 ? ">= 4" : ">= 3");
+    }
+    if (sum == -1) std::printf("never\n");
+  }
+
+  std::vector<app::Figure> figures_;
+};
+
+}  // namespace
+}  // namespace thimble::bench
+
+int main(int argc, char** argv) {
+  // --figures=FILE writes the figures, --max=N stops at N triangles (default 1e6), --long goes on
+  // to 10^7.
+  std::string figures_file;
+  double most = 1e6;
+  for (int i = 1; i < argc; ++i) {
+    if (std::strncmp(argv[i], "--figures=", 10) == 0) {
+      figures_file = argv[i] + 10;
+    } else if (std::strncmp(argv[i], "--max=", 6) == 0) {
+      most = std::atof(argv[i] + 6);
+    } else if (std::strcmp(argv[i], "--long") == 0) {
+      most = 1e7;
+    } else {
+      std::fprintf(stderr, "Unknown option %s. Options: --figures=FILE --max=N --long\n", argv[i]);
+      return 2;
+    }
+  }
+  thimble::bench::Bench bench;
+  std::size_t triangles = 1000;
+  for (int power = 3; power <= 7 && static_cast<double>(triangles) <= most; ++power) {
+    bench.run("10^" + std::to_string(power), triangles);
+    triangles *= 10;
+  }
+  std::printf("\n%s", thimble::app::figure_table(bench.figures()).c_str());
+  if (!figures_file.empty()) {
+    const auto written = thimble::app::write_figures(bench.figures(), figures_file);
+    if (!written) {
+      std::fprintf(stderr, "%s\n", written.error().message.c_str());
+      return 1;
+    }
+  }
+  return 0;
+}

@@ -1,0 +1,36 @@
+#!/usr/bin/env bash
+# thimble mesh: what is put right on loading, what a repair mends, and what it leaves.
+source "$(dirname "$0")/expect.sh" "$@"
+
+tetrahedron() {
+  printf 'OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n'
+}
+
+tetrahedron >good.off
+expect 0 'Nothing was changed' "$thimble" mesh good.off --repair same.off
+expect 0 'it can be touched' "$thimble" mesh same.off
+tetrahedron | sed 's/^3 1 2 3$/3 2 1 3/' >flipped.off
+expect 0 '1 triangle was turned round' "$thimble" mesh flipped.off
+expect 0 '1 triangle was turned round' "$thimble" mesh flipped.off --repair turned.off
+expect 0 'closed and wound alike' "$thimble" mesh turned.off
+# A fifth vertex a hair beside the fourth tears the tip open.
+printf 'OFF\n5 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n0 0 1.000001\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 4\n' >torn.off
+expect 2 'only one triangle' "$thimble" mesh torn.off
+expect 0 '1 vertex was joined' "$thimble" mesh torn.off --repair joined.off
+expect 0 'closed and wound alike' "$thimble" mesh joined.off
+tetrahedron | sed '$d;s/^4 4 0/4 3 0/' >open.off
+expect 2 'only one triangle' "$thimble" mesh open.off --repair still_open.off
+expect 2 'only one triangle' "$thimble" mesh still_open.off
+expect 1 'end in \.off' "$thimble" mesh good.off --repair good.stl
+expect 1 'cannot be written' "$thimble" mesh good.off --repair no_folder/good.off
+# Cutting a mesh into pages.
+expect 0 'good\.pages: 4 triangles in 1 pages' "$thimble" mesh page good.off good.pages
+expect 0 'THMBPAGE' head -c 8 good.pages
+expect 2 'only one triangle' "$thimble" mesh page open.off open.pages
+expect 1 'cannot be written' "$thimble" mesh page good.off no_folder/good.pages
+expect 2 'FILE is required' "$thimble" mesh
+if command -v gnuplot >/dev/null; then
+  expect 2 'Picture: open\.png' "$thimble" mesh open.off --picture open.png
+  expect 0 'PNG' head -c 4 open.png
+fi
+finish

@@ -1,0 +1,69 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include "lost_contacts.h"
+#include "support/elephant.h"
+
+// The demo's stroke with every way of contact that a scene can name, from the wire up.
+
+namespace thimble {
+namespace {
+
+/// Opens the demo's scene with a `contact:` section; the error is empty if it could be opened.
+std::unique_ptr<app::Session> open_with(const std::string& contact, std::string& error) {
+  const std::filesystem::path folder = support::elephant_scene().parent_path();
+  std::ifstream stream(support::elephant_scene());
+  std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  const std::string arm = "../arms/";
+  text.replace(text.find(arm), arm.size(), (folder.parent_path() / "arms").string() + "/");
+  const std::string damping = "    damping: 1 ";
+  text.insert(text.find(damping), "    contact: {" + contact + "}\n");
+  const auto file = std::filesystem::path(testing::TempDir()) / "thimble_contact_choice.yaml";
+  std::ofstream(file) << text;
+  app::SessionOptions options;
+  options.mesh_folder = THIMBLE_MESHES;
+  auto session = app::Session::open(file, options);
+  error = session ? "" : session.error().message;
+  return session ? std::move(session).value() : nullptr;
+}
+
+class EveryWayOfContact : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(EveryWayOfContact, TouchesTheElephantAndLosesItNever) {
+  THIMBLE_NEEDS_MESHES();
+  std::string error;
+  const auto session = open_with(GetParam(), error);
+  ASSERT_TRUE(session) << error;
+  ASSERT_EQ(session->run(std::atomic<bool>{false}), driver::ServoEnd::kDone);
+  EXPECT_EQ(app::count_lost_contacts(session->trace().rows(), session->touch()), 0u);
+  EXPECT_GE(session->statistics().contacts(), 2u);
+  EXPECT_GT(session->statistics().contact_time(), 5.0);
+  EXPECT_GT(session->statistics().force_max(), 0.5);
+  EXPECT_LT(session->statistics().force_max(), 3.0);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    ByName, EveryWayOfContact,
+    ::testing::Values("tracker: edge_planes",
+                      "tracker: edge_planes, blending: fixed_band, band: 0.0005",
+                      "tracker: edge_planes, blending: sized_band",
+                      "tracker: edge_planes, blending: phong, curved_depth: true",
+                      "tracker: offset", "tracker: offset, blending: flat, curved_depth: false",
+                      "tracker: offset, crease_degrees: 30", "tracker: god_object",
+                      "tracker: compact"));
+
+TEST(WayOfContact, ThatDoesNotGoTogetherIsRefusedWithTheReason) {
+  THIMBLE_NEEDS_MESHES();
+  std::string error;
+  EXPECT_FALSE(open_with("tracker: god_object, blending: phong", error));
+  EXPECT_NE(error.find("\"god_object\" pushes towards its proxy"), std::string::npos) << error;
+  EXPECT_FALSE(open_with("tracker: compact, blending: flat", error));
+  EXPECT_NE(error.find("\"compact\" always feels smooth"), std::string::npos) << error;
+}
+
+}  // namespace
+}  // namespace thimble
