@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -22,7 +23,8 @@ std::unique_ptr<app::Session> open_with(const std::string& contact, std::string&
   text.replace(text.find(arm), arm.size(), (folder.parent_path() / "arms").string() + "/");
   const std::string damping = "    damping: 1 ";
   text.insert(text.find(damping), "    contact: {" + contact + "}\n");
-  const auto file = std::filesystem::path(testing::TempDir()) / "thimble_contact_choice.yaml";
+  const auto file = std::filesystem::path(testing::TempDir()) /
+                    ("thimble_contact_" + std::to_string(getpid()) + ".yaml");
   std::ofstream(file) << text;
   app::SessionOptions options;
   options.mesh_folder = THIMBLE_MESHES;
