@@ -1,5 +1,4 @@
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -8,6 +7,7 @@
 
 #include "lost_contacts.h"
 #include "support/elephant.h"
+#include "support/scratch.h"
 
 // The demo's stroke with every way of contact that a scene can name, from the wire up.
 
@@ -23,8 +23,7 @@ std::unique_ptr<app::Session> open_with(const std::string& contact, std::string&
   text.replace(text.find(arm), arm.size(), (folder.parent_path() / "arms").string() + "/");
   const std::string damping = "    damping: 1 ";
   text.insert(text.find(damping), "    contact: {" + contact + "}\n");
-  const auto file = std::filesystem::path(testing::TempDir()) /
-                    ("thimble_contact_" + std::to_string(getpid()) + ".yaml");
+  const auto file = support::scratch_folder() / "contact.yaml";
   std::ofstream(file) << text;
   app::SessionOptions options;
   options.mesh_folder = THIMBLE_MESHES;

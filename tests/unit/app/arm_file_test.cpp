@@ -6,6 +6,8 @@
 #include <sstream>
 #include <string>
 
+#include "support/scratch.h"
+
 namespace thimble::app {
 namespace {
 
@@ -24,8 +26,7 @@ std::string mistake_with(const std::string& piece, const std::string& by) {
   const std::size_t at = text.find(piece);
   EXPECT_NE(at, std::string::npos) << piece;
   text.replace(at, piece.size(), by);
-  const std::filesystem::path file =
-      std::filesystem::path(testing::TempDir()) / "thimble_arm_test.yaml";
+  const std::filesystem::path file = support::scratch_folder() / "thimble_arm_test.yaml";
   std::ofstream(file) << text;
   const auto arm = read_arm_file(file);
   return arm ? "" : arm.error().message;

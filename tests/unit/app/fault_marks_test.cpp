@@ -11,6 +11,7 @@
 
 #include "gnuplot.h"
 #include "pictures.h"
+#include "support/scratch.h"
 #include "support/shapes.h"
 
 namespace thimble::app {
@@ -61,7 +62,7 @@ TEST(FaultMarks, AreDrawnWithAMeshThatHasThem) {
   if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
   const render::TriangleMesh mesh = open_box();
   const render::MeshFindings found = render::check_mesh(mesh);
-  const std::filesystem::path folder = testing::TempDir();
+  const std::filesystem::path folder = support::scratch_folder();
   ASSERT_TRUE(draw_mesh(mesh, folder / "plain.svg", "box", "m").ok());
   ASSERT_TRUE(draw_mesh(mesh, folder / "marked.svg", "box", "m", &found).ok());
   const auto text = [](const std::filesystem::path& file) {

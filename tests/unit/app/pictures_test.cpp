@@ -10,6 +10,7 @@
 
 #include "gnuplot.h"
 #include "mesh_view.h"
+#include "support/scratch.h"
 
 namespace thimble::app {
 namespace {
@@ -78,8 +79,7 @@ TEST(MeshView, LooksAlongThreeRightHandedFrames) {
 
 TEST(Pictures, AreWrittenAsPngAndSvg) {
   if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
-  const std::filesystem::path folder =
-      std::filesystem::path(testing::TempDir()) / "thimble's pictures";
+  const std::filesystem::path folder = support::scratch_folder() / "thimble's pictures";
   std::filesystem::remove_all(folder);
   const std::vector<driver::TickRecord> rows = stroke();
   const auto done = draw_pictures(rows, tetrahedron(), {.title = "it's_a \"test\""}, folder);
@@ -98,14 +98,14 @@ TEST(Pictures, AreDrawnOfARunWithoutContactToo) {
   if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
   std::vector<driver::TickRecord> rows(3);
   for (std::size_t i = 0; i < 3; ++i) rows[i].time_ns = static_cast<std::int64_t>(i) * 1'000'000;
-  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "thimble_empty";
+  const std::filesystem::path folder = support::scratch_folder() / "thimble_empty";
   EXPECT_TRUE(draw_pictures(rows, tetrahedron(), {}, folder).ok());
   EXPECT_TRUE(draw_pictures({}, tetrahedron(), {}, folder).ok());
 }
 
 TEST(Pictures, TellWhatGnuplotSaidAgainstACommand) {
   if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
-  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "thimble_wrong";
+  const std::filesystem::path folder = support::scratch_folder() / "thimble_wrong";
   std::filesystem::create_directories(folder / "data");
   const auto done = draw_plot({"wrong", 400, 300, "plot nonsense(x)\n"}, folder);
   ASSERT_FALSE(done.ok());
@@ -115,7 +115,7 @@ TEST(Pictures, TellWhatGnuplotSaidAgainstACommand) {
 
 TEST(MeshPicture, IsWrittenWhereItWasAskedFor) {
   if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
-  const std::filesystem::path folder = testing::TempDir();
+  const std::filesystem::path folder = support::scratch_folder();
   ASSERT_TRUE(draw_mesh(tetrahedron(), folder / "tetrahedron.png", "tetrahedron", "m").ok());
   EXPECT_GT(png_size(folder / "tetrahedron.png").first, 1000);
   EXPECT_FALSE(draw_mesh(tetrahedron(), folder / "tetrahedron.jpg").ok());

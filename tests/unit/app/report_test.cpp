@@ -7,6 +7,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "support/scratch.h"
+
 namespace thimble::app {
 namespace {
 
@@ -41,7 +43,7 @@ nlohmann::json read(const std::filesystem::path& file) {
 }
 
 TEST(Report, HoldsTheValuesOfTheRun) {
-  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "thimble_report";
+  const std::filesystem::path folder = support::scratch_folder() / "thimble_report";
   ASSERT_TRUE(write_report(example(), folder).ok());
   const nlohmann::json report = read(folder / "report.json");
   EXPECT_EQ(report["scene"], "elephant");
@@ -64,7 +66,7 @@ TEST(Report, HoldsTheValuesOfTheRun) {
 }
 
 TEST(Report, WritesEachFigureWithItsGoal) {
-  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "thimble_report";
+  const std::filesystem::path folder = support::scratch_folder() / "thimble_report";
   RunReport report = example();
   report.lost_contacts = 2;
   ASSERT_TRUE(write_report(report, folder).ok());
@@ -108,7 +110,7 @@ TEST(Report, SaysWhereItCannotWrite) {
 TEST(Report, SurvivesANameThatIsNotUtf8) {
   RunReport report = example();
   report.scene = "\xff\xfe";
-  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "thimble_report";
+  const std::filesystem::path folder = support::scratch_folder() / "thimble_report";
   EXPECT_TRUE(write_report(report, folder).ok());
   EXPECT_TRUE(read(folder / "report.json")["scene"].is_string());
 }

@@ -6,10 +6,12 @@
 #include <fstream>
 #include <string>
 
+#include "support/scratch.h"
+
 namespace thimble::app {
 namespace {
 
-const std::filesystem::path kFolder = std::filesystem::path(testing::TempDir()) / "thimble_scene";
+const std::filesystem::path kFolder = support::scratch_folder() / "thimble_scene";
 
 // Writes a scene beside an arm and a mesh that exist, and tells what was wrong with it.
 driver::Result<Scene> read(const std::string& objects, const std::string& path,

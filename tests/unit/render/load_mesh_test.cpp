@@ -6,6 +6,7 @@
 #include <fstream>
 #include <string>
 
+#include "support/scratch.h"
 #include "thimble/render/mesh/check_mesh.h"
 
 namespace thimble::render {
@@ -17,7 +18,7 @@ const std::filesystem::path kMeshes = std::filesystem::path(THIMBLE_TEST_DATA) /
 class MeshFile {
  public:
   MeshFile(const std::string& ending, const std::string& bytes)
-      : path_(std::filesystem::path(testing::TempDir()) /
+      : path_(support::scratch_folder() /
               ("load_mesh_" +
                std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) + "." +
                ending)) {
@@ -120,7 +121,7 @@ TEST(LoadMesh, RefusesWhatIsNoMeshFile) {
   EXPECT_NE(load_mesh("no_such_file.off").error().message.find("no such file"), std::string::npos);
   EXPECT_NE(load_mesh("mesh.xyz").error().message.find("ending \"xyz\" is not known"),
             std::string::npos);
-  const auto folder = std::filesystem::path(testing::TempDir()) / "load_mesh_folder.off";
+  const auto folder = support::scratch_folder() / "load_mesh_folder.off";
   std::filesystem::create_directories(folder);
   EXPECT_NE(load_mesh(folder).error().message.find("this is not a file"), std::string::npos);
   std::filesystem::remove(folder);

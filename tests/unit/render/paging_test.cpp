@@ -1,5 +1,4 @@
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <cmath>
@@ -10,6 +9,7 @@
 #include <thread>
 
 #include "support/random.h"
+#include "support/scratch.h"
 #include "support/shapes.h"
 #include "thimble/render/contact/bvh.h"
 #include "thimble/render/page/paged_surface.h"
@@ -30,15 +30,9 @@ const CompactSurface& bumpy() {
   return surface;
 }
 
-/// Names a file of this process alone: tests run side by side.
-std::filesystem::path scratch(const std::string& name) {
-  return std::filesystem::path(testing::TempDir()) /
-         ("thimble_" + std::to_string(getpid()) + "_" + name);
-}
-
 std::filesystem::path page_file() {
   static const std::filesystem::path file = [] {
-    const auto path = scratch("bumpy.pages");
+    const auto path = support::scratch_folder() / "bumpy.pages";
     EXPECT_TRUE(write_page_file(bumpy(), path).ok());
     return path;
   }();
@@ -68,7 +62,7 @@ std::string bytes_of(const std::filesystem::path& file) {
 
 /// Opens a file of these bytes and tells what was wrong with it.
 std::string refusal(const std::string& bytes) {
-  const auto path = scratch("damaged.pages");
+  const auto path = support::scratch_folder() / "damaged.pages";
   std::ofstream(path, std::ios::binary) << bytes;
   const auto opened = PageFile::open(path);
   return opened ? "" : opened.error().message;
@@ -129,7 +123,7 @@ TEST(PageFile, GivesNoPageWhoseNeighboursLeadOutOfTheFile) {
     std::string damaged = good;
     const std::size_t record = random.bits() % 1024;
     damaged[records_at + record * 64 + 48 + 3] = '\x7f';  // high byte of the first neighbour
-    const auto path = scratch("damaged.pages");
+    const auto path = support::scratch_folder() / "damaged.pages";
     std::ofstream(path, std::ios::binary) << damaged;
     const auto file = PageFile::open(path);
     ASSERT_TRUE(file.ok());
@@ -140,7 +134,7 @@ TEST(PageFile, GivesNoPageWhoseNeighboursLeadOutOfTheFile) {
 }
 
 TEST(PageFile, RefusesToEndWithAnotherNumberOfTrianglesThanPromised) {
-  const auto path = scratch("short.pages");
+  const auto path = support::scratch_folder() / "short.pages";
   auto writer = PageFileWriter::create(path, {{0, 0, 0}, 1}, 10);
   ASSERT_TRUE(writer.ok());
   ASSERT_TRUE(writer->append(bumpy().records().first(9)).ok());

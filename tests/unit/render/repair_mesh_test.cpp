@@ -12,6 +12,7 @@
 
 #include "support/random.h"
 #include "support/reference_geometry.h"
+#include "support/scratch.h"
 #include "support/shapes.h"
 #include "thimble/render/contact/mesh_contact.h"
 #include "thimble/render/mesh/check_mesh.h"
@@ -202,7 +203,7 @@ TEST(RepairMesh, GivesPartsThatShareAVertexOneEach) {
   EXPECT_EQ(count(repaired, Kind::kSplitVertex), 1u);
   EXPECT_TRUE(check_mesh(repaired.mesh).touchable());
   // Written and read again they stay apart, though loading joins equal places.
-  const fs::path file = fs::path(testing::TempDir()) / "split.off";
+  const fs::path file = support::scratch_folder() / "split.off";
   ASSERT_TRUE(save_mesh(repaired.mesh, file).ok());
   const auto loaded = load_mesh(file);
   ASSERT_TRUE(loaded.ok());
