@@ -18,14 +18,6 @@ using Eigen::Vector3d;
 // tenth of the default reach.
 constexpr std::chrono::microseconds kRest{200};
 
-bool reaches(const PageBox& box, const Vector3d& low, const Vector3d& high) noexcept {
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto i = static_cast<Eigen::Index>(axis);
-    if (!(double{box.min[axis]} <= high[i] && double{box.max[axis]} >= low[i])) return false;
-  }
-  return true;
-}
-
 double distance_squared(const PageBox& box, const Vector3d& p) noexcept {
   double sum = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -33,6 +33,17 @@ struct PageBox {
 /// Finds the box of some records. Real-time: safe.
 PageBox box_of(std::span<const CompactTriangle> records) noexcept;
 
+/// Tells whether two boxes share a point; `low` and `high` in steps. NaN shares none.
+/// Real-time: safe.
+inline bool reaches(const PageBox& box, const Eigen::Vector3d& low,
+                    const Eigen::Vector3d& high) noexcept {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto i = static_cast<Eigen::Index>(axis);
+    if (!(double{box.min[axis]} <= high[i] && double{box.max[axis]} >= low[i])) return false;
+  }
+  return true;
+}
+
 /// Is the lattice of a surface: where its middle lies and how long one step is, m in W.
 struct Lattice {
   Eigen::Vector3d origin{0, 0, 0};

@@ -39,15 +39,6 @@ class PageTree {
   }
 
  private:
-  static bool reaches(const PageBox& box, const Eigen::Vector3d& low,
-                      const Eigen::Vector3d& high) noexcept {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const auto i = static_cast<Eigen::Index>(axis);
-      if (!(double{box.min[axis]} <= high[i] && double{box.max[axis]} >= low[i])) return false;
-    }
-    return true;
-  }
-
   std::size_t leaves_ = 1;      // a power of two; leaf k is node leaves_ + k
   std::vector<PageBox> nodes_;  // node n has the children 2 n and 2 n + 1; missing ones are empty
 };
