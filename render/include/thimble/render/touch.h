@@ -1,37 +1,46 @@
 #pragma once
 
+#include <tuple>
 #include <utility>
 
 #include "thimble/driver/device_state.h"
 #include "thimble/driver/force_command.h"
+#include "thimble/render/contact/contact_state.h"
+#include "thimble/render/surface/surface_feel.h"
 
 namespace thimble::render {
 
-/// Is the force law of a scene: just the stages the scene names, joined at compile time, so that a
-/// stage that is not named costs nothing.
+/// Is the force law of an object: just the stages the scene names, joined at compile time, so that
+/// a stage that is not named costs nothing.
 ///
 /// `Contact` finds what the tip touches: `const ContactState& update(const DeviceState&) noexcept`.
-/// `SurfaceForce` says how that pushes back: `Vector3d force(const ContactState&, const
-/// DeviceState&) noexcept`, N in the world. Real-time: safe if its stages are.
-template <class Contact, class SurfaceForce>
+/// The surface stages say how that feels, one after the other (surface_feel.h). Real-time: safe if
+/// its stages are.
+template <class Contact, SurfaceStage... Stages>
 class Touch {
  public:
-  Touch(Contact contact, SurfaceForce surface_force)
-      : contact_(std::move(contact)), surface_force_(std::move(surface_force)) {}
+  Touch(Contact contact, Stages... stages)
+      : contact_(std::move(contact)), stages_(std::move(stages)...) {}
 
   driver::ForceCommand operator()(const driver::DeviceState& state) noexcept {
     driver::ForceCommand command;
-    const auto& contact = contact_.update(state);
+    const ContactState& contact = contact_.update(state);
     // Written so that a NaN depth means no contact and no force.
     if (contact.touching && contact.depth > 0) {
-      command.f_T_W = surface_force_.force(contact, state);
+      SurfaceFeel feel{.contact = contact};
+      std::apply([&](auto&... stage) { (stage.touch(state, feel), ...); }, stages_);
+      command.f_T_W = feel.f_T_W;
       command.touch = {.in_contact = true,
                        .object = 0,
                        .feature = contact.triangle,
-                       .depth = contact.depth,
-                       .p_WP = contact.p_WP,
-                       .n_W = contact.n_W,
+                       .depth = feel.contact.depth,
+                       .p_WP = feel.contact.p_WP,
+                       .n_W = feel.contact.n_W,
                        .hops = contact.hops};
+      touching_ = true;
+    } else if (touching_) {
+      std::apply([](auto&... stage) { (stage.leave(), ...); }, stages_);
+      touching_ = false;
     }
     return command;
   }
@@ -40,7 +49,8 @@ class Touch {
 
  private:
   Contact contact_;
-  SurfaceForce surface_force_;
+  [[no_unique_address]] std::tuple<Stages...> stages_;
+  bool touching_ = false;
 };
 
 }  // namespace thimble::render

@@ -4,12 +4,12 @@
 
 #include "thimble/driver/device_state.h"
 #include "thimble/render/contact/contact_state.h"
+#include "thimble/render/surface/surface_feel.h"
 
 namespace thimble::render {
 
 /// Pushes back like a spring and a damper along the surface's normal: F = k x + b v, with x the
-/// depth and v its growth [BP 2]. Never pulls, so that leaving does not stick. The `SurfaceForce`
-/// stage of Touch.
+/// depth and v its growth [BP 2]. Never pulls, so that leaving does not stick. A SurfaceStage.
 struct SpringDamper {
   double stiffness = 0;  ///< k, N/m, >= 0. The scene's loader checks both.
   double damping = 0;    ///< b, N s/m, >= 0.
@@ -24,6 +24,11 @@ struct SpringDamper {
     if (!(magnitude > 0)) return Eigen::Vector3d::Zero();
     return magnitude * contact.n_W;
   }
+
+  void touch(const driver::DeviceState& state, SurfaceFeel& feel) const noexcept {
+    feel.f_T_W += force(feel.contact, state);
+  }
+  void leave() const noexcept {}
 };
 
 }  // namespace thimble::render

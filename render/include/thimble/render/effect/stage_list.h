@@ -1,0 +1,58 @@
+#pragma once
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "thimble/render/surface/surface_feel.h"
+
+namespace thimble::render {
+
+/// Is a surface stage whose kind is known only when a scene has been read.
+class AnyStage {
+ public:
+  AnyStage() = default;
+  AnyStage(const AnyStage&) = delete;
+  AnyStage& operator=(const AnyStage&) = delete;
+  virtual ~AnyStage() = default;
+
+  /// See SurfaceStage. Real-time: safe.
+  virtual void touch(const driver::DeviceState& state, SurfaceFeel& feel) noexcept = 0;
+  virtual void leave() noexcept = 0;
+};
+
+/// Makes any surface stage an AnyStage.
+template <SurfaceStage Stage>
+class AnyStageOf final : public AnyStage {
+ public:
+  explicit AnyStageOf(Stage stage) : stage_(std::move(stage)) {}
+
+  void touch(const driver::DeviceState& state, SurfaceFeel& feel) noexcept override {
+    stage_.touch(state, feel);
+  }
+  void leave() noexcept override { stage_.leave(); }
+
+  const Stage& stage() const noexcept { return stage_; }
+
+ private:
+  Stage stage_;
+};
+
+/// Is a surface stage made of others, run in order: just those that a scene names, one indirect
+/// call each.
+class StageList {
+ public:
+  explicit StageList(std::vector<std::unique_ptr<AnyStage>> stages) : stages_(std::move(stages)) {}
+
+  void touch(const driver::DeviceState& state, SurfaceFeel& feel) noexcept {
+    for (const auto& stage : stages_) stage->touch(state, feel);
+  }
+  void leave() noexcept {
+    for (const auto& stage : stages_) stage->leave();
+  }
+
+ private:
+  std::vector<std::unique_ptr<AnyStage>> stages_;
+};
+
+}  // namespace thimble::render
