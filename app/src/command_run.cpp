@@ -71,11 +71,11 @@ RunReport report_of(const Session& session, ClockKind clock, driver::ServoEnd en
   for (const SceneObject& object : session.scene().objects) {
     report.object += (report.object.empty() ? "" : ", ") + object.name;
   }
-  report.arm = session.arm_file().name;
+  report.arm = session.scene().arm.name;
   report.virtual_time = clock == ClockKind::kVirtual;
   report.seed = session.seed();
   report.rate_asked = session.scene().rate;
-  report.force_limit = session.arm_file().limits.force_max;
+  report.force_limit = session.scene().arm.limits.force_max;
   report.triangles = session.mesh_W().triangles.size();
   report.statistics = session.statistics();
   report.lost_contacts = count_lost_contacts(session.trace().rows(), session.touch());

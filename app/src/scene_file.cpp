@@ -4,7 +4,9 @@
 #include <numbers>
 #include <span>
 #include <system_error>
+#include <utility>
 
+#include "scene_effects.h"
 #include "thimble/render/mesh/placed_mesh.h"
 #include "yaml_reader.h"
 
@@ -61,7 +63,8 @@ render::ContactChoice read_contact(YamlMap map) {
 }
 
 SceneObject read_object(YamlMap map, const std::filesystem::path& folder,
-                        const std::filesystem::path& mesh_folder) {
+                        const std::filesystem::path& mesh_folder,
+                        render::EffectSurroundings surroundings) {
   SceneObject object;
   object.name = map.require_string("name");
   object.mesh_file = find_file(map, "mesh", folder, mesh_folder);
@@ -77,6 +80,11 @@ SceneObject read_object(YamlMap map, const std::filesystem::path& folder,
   object.stiffness = map.require_number("stiffness", "N/m", 0, kStiffnessMax);
   object.damping = map.optional_number("damping", 0, "N s/m", 0, kDampingMax);
   if (map.has("contact")) object.contact = read_contact(map.require_map("contact"));
+  if (map.has("effects")) {
+    surroundings.surface_stiffness = object.stiffness;
+    surroundings.surface_damping = object.damping;
+    object.effects = read_effects(map, folder, surroundings);
+  }
   map.finish();
   return object;
 }
@@ -129,8 +137,11 @@ driver::Result<Scene> read_scene(const std::filesystem::path& file,
   scene.duration = root.require_number("duration", "s", 0.001, kDurationMax);
   // 2^53: every whole number up to here is a double.
   scene.seed = static_cast<std::uint64_t>(root.optional_number("seed", 0, "", 0, 0x1p53));
+  auto arm = read_arm_file(scene.arm_file);
+  if (arm) scene.arm = std::move(arm).value();
+  const render::EffectSurroundings surroundings = surroundings_of(scene.arm, scene.rate);
   for (YamlMap& object : root.require_maps("objects")) {
-    scene.objects.push_back(read_object(object, folder, mesh_folder));
+    scene.objects.push_back(read_object(object, folder, mesh_folder, surroundings));
   }
   for (std::size_t i = 1; i < scene.objects.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
@@ -143,6 +154,7 @@ driver::Result<Scene> read_scene(const std::filesystem::path& file,
   scene.hand = read_hand(root.require_map("hand"), scene.objects);
   root.finish();
   if (auto done = yaml->finish(); !done) return done.error();
+  if (!arm) return arm.error();
   return scene;
 }
 

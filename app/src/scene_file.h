@@ -7,24 +7,27 @@
 #include <string>
 #include <vector>
 
+#include "arm_file.h"
 #include "hand_route.h"
 #include "thimble/driver/result.h"
 #include "thimble/render/contact_choice.h"
+#include "thimble/render/effect/effect_table.h"
 #include "thimble/render/mesh/triangle_mesh.h"
 
 namespace thimble::app {
 
-/// Is one object of a scene: a mesh, where it stands, and how its surface pushes back.
+/// Is one object of a scene: a mesh, where it stands, and how its surface feels.
 struct SceneObject {
   std::string name;
   std::filesystem::path mesh_file;
   std::optional<double> size;                          ///< Largest side of the mesh's box, m.
   double scale = 1;                                    ///< Metres per unit of the file, if no size.
   Eigen::Matrix3d R_WO = Eigen::Matrix3d::Identity();  ///< Rotation of the mesh in the world.
-  Eigen::Vector3d p_WO{0, 0, 0};  ///< Where the centre of the turned mesh's box lies, m.
-  double stiffness = 0;           ///< N/m
-  double damping = 0;             ///< N s/m
-  render::ContactChoice contact;  ///< How the surface is found, followed and felt.
+  Eigen::Vector3d p_WO{0, 0, 0};            ///< Where the centre of the turned mesh's box lies, m.
+  double stiffness = 0;                     ///< N/m
+  double damping = 0;                       ///< N s/m
+  render::ContactChoice contact;            ///< How the surface is found, followed and felt.
+  std::vector<render::EffectPlan> effects;  ///< What is put on it, as a tick runs them.
 };
 
 /// Is one scene: which arm touches what, how fast the loop runs, and what the simulated hand does.
@@ -32,6 +35,7 @@ struct Scene {
   std::string name;
   std::string description;
   std::filesystem::path arm_file;
+  ArmFile arm;
   double rate = 1000;      ///< Ticks per second, Hz.
   double duration = 0;     ///< s
   std::uint64_t seed = 0;  ///< Of everything random in the simulation.
@@ -41,7 +45,8 @@ struct Scene {
 
 /// Reads a scene file (see app/scenes/elephant.yaml for the form). Paths in it are relative to the
 /// file; a mesh `cgal:NAME` is looked for in `mesh_folder`. Objects must not share a name. The
-/// error tells up to five mistakes, one per line. Real-time: never from the servo thread.
+/// arm's file is read too: what is stable depends on the arm. The error tells up to five mistakes,
+/// one per line. Real-time: never from the servo thread.
 driver::Result<Scene> read_scene(const std::filesystem::path& file,
                                  const std::filesystem::path& mesh_folder);
 

@@ -61,7 +61,9 @@ driver::Result<std::unique_ptr<render::SceneTouch>> build_touch(
   for (std::size_t i = 0; i < meshes_W.size(); ++i) {
     const SceneObject& object = scene.objects[i];
     auto touch = render::build_object_touch(
-        meshes_W[i], object.contact, {.stiffness = object.stiffness, .damping = object.damping});
+        meshes_W[i], object.contact,
+        {.spring = {.stiffness = object.stiffness, .damping = object.damping},
+         .effects = object.effects});
     if (!touch) return driver::Error{object.mesh_file.string() + ": " + touch.error().message};
     objects.push_back(std::move(touch).value());
   }
@@ -83,13 +85,10 @@ driver::Result<std::unique_ptr<Session>> Session::open(const std::filesystem::pa
                                                        const SessionOptions& options) {
   auto scene = read_scene(scene_file, options.mesh_folder);
   if (!scene) return scene.error();
-  auto arm_file = read_arm_file(scene->arm_file);
-  if (!arm_file) return arm_file.error();
 
   std::unique_ptr<Session> session(new Session);
   session->scene_ = std::move(scene).value();
-  session->arm_file_ = std::move(arm_file).value();
-  const ArmFile& arm = session->arm_file_;
+  const ArmFile& arm = session->scene_.arm;
 
   auto meshes = load_meshes(session->scene_);
   if (!meshes) return meshes.error();
@@ -147,7 +146,7 @@ driver::ServoEnd Session::run(const std::atomic<bool>& stop) noexcept {
       driver::run_servo(*device_, *clock_, driver::ForceLaw(*touch_), driver::TickSink(*this),
                         {.period_ns = period_ns_, .ticks = ticks_}, stop);
   // The arm lives on after the loop: the last message, zero force, is still on its way to it.
-  arm_->advance_to(clock_->now_ns() + arm_file_.simulated.wire.delay_out_ns);
+  arm_->advance_to(clock_->now_ns() + scene_.arm.simulated.wire.delay_out_ns);
   return end;
 }
 

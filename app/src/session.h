@@ -7,7 +7,6 @@
 #include <optional>
 #include <string>
 
-#include "arm_file.h"
 #include "run_statistics.h"
 #include "scene_file.h"
 #include "thimble/device_sim/sim_transport.h"
@@ -45,7 +44,6 @@ class Session {
   driver::ServoEnd run(const std::atomic<bool>& stop) noexcept;
 
   const Scene& scene() const { return scene_; }
-  const ArmFile& arm_file() const { return arm_file_; }
   /// Gives the meshes of all objects in the world as one (m), for pictures and checks.
   const render::TriangleMesh& mesh_W() const { return mesh_W_; }
   const driver::Device& device() const { return *device_; }
@@ -65,7 +63,6 @@ class Session {
   Session() = default;
 
   Scene scene_;
-  ArmFile arm_file_;
   render::TriangleMesh mesh_W_;
   std::uint64_t seed_ = 0;
   std::uint64_t ticks_ = 0;

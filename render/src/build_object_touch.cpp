@@ -25,16 +25,36 @@ driver::Error apart(const ContactChoice& choice, const std::string& why) {
                        "\" " + why};
 }
 
+/// Builds the stages of a surface: its spring comes after what changes the depth.
+StageList stage_list(const SurfaceChoice& surface) {
+  std::vector<std::unique_ptr<AnyStage>> stages;
+  bool sprung = false;
+  for (const EffectPlan& effect : surface.effects) {
+    if (!sprung && effect.kind->order > EffectOrder::kDepth) {
+      stages.push_back(std::make_unique<AnyStageOf<SpringDamper>>(surface.spring));
+      sprung = true;
+    }
+    stages.push_back(effect.build());
+  }
+  if (!sprung) stages.push_back(std::make_unique<AnyStageOf<SpringDamper>>(surface.spring));
+  return StageList(std::move(stages));
+}
+
+template <class Stages>
+Built object_of(Stages stages) {
+  return std::unique_ptr<ObjectTouch>(std::make_unique<ObjectTouchOf<Stages>>(std::move(stages)));
+}
+
 template <class Contact>
-Built touch_of(Contact contact, const SpringDamper& surface) {
-  using Stages = Touch<Contact, SpringDamper>;
-  return std::unique_ptr<ObjectTouch>(
-      std::make_unique<ObjectTouchOf<Stages>>(Stages(std::move(contact), surface)));
+Built touch_of(Contact contact, const SurfaceChoice& surface) {
+  // A bare surface, by far the most frequent, is joined wholly at compile time.
+  if (surface.effects.empty()) return object_of(Touch(std::move(contact), surface.spring));
+  return object_of(Touch(std::move(contact), stage_list(surface)));
 }
 
 template <class Contact, class Shading, class Depth>
 Built blended_touch(Contact contact, Shading shading, double crease_angle,
-                    const SpringDamper& surface) {
+                    const SurfaceChoice& surface) {
   return touch_of(
       Blended<Contact, Shading, Depth>(std::move(contact), std::move(shading), crease_angle),
       surface);
@@ -42,7 +62,7 @@ Built blended_touch(Contact contact, Shading shading, double crease_angle,
 
 template <class Contact, class Shading>
 Built shaded_touch(Contact contact, Shading shading, bool curved, double crease_angle,
-                   const SpringDamper& surface) {
+                   const SurfaceChoice& surface) {
   return curved ? blended_touch<Contact, Shading, CurvedDepth>(std::move(contact), shading,
                                                                crease_angle, surface)
                 : blended_touch<Contact, Shading, MeshDepth>(std::move(contact), shading,
@@ -52,7 +72,7 @@ Built shaded_touch(Contact contact, Shading shading, bool curved, double crease_
 /// Wraps a tracked contact into the shading that is asked for, or leaves it bare if none is.
 template <class Contact>
 Built tracked_touch(Contact contact, const ContactChoice& choice, BlendingChoice blending,
-                    bool curved, const SpringDamper& surface) {
+                    bool curved, const SurfaceChoice& surface) {
   const double crease = choice.crease_angle.value_or(kCreaseAngle);
   switch (blending) {
     case BlendingChoice::kFlat:
@@ -70,7 +90,7 @@ Built tracked_touch(Contact contact, const ContactChoice& choice, BlendingChoice
 }
 
 Built compact_touch(const TriangleMesh& mesh_W, const ContactChoice& choice,
-                    const SpringDamper& surface) {
+                    const SurfaceChoice& surface) {
   if (choice.blending.value_or(BlendingChoice::kPhong) != BlendingChoice::kPhong ||
       !choice.curved_depth.value_or(true)) {
     return apart(choice,
@@ -89,7 +109,7 @@ Built compact_touch(const TriangleMesh& mesh_W, const ContactChoice& choice,
 
 template <class Contact>
 Built mesh_touch(const TriangleMesh& mesh_W, const ContactChoice& choice, bool smooth,
-                 const SpringDamper& surface) {
+                 const SurfaceChoice& surface) {
   auto contact = Contact::build(mesh_W);
   if (!contact) return contact.error();
   return tracked_touch(
@@ -101,7 +121,7 @@ Built mesh_touch(const TriangleMesh& mesh_W, const ContactChoice& choice, bool s
 }  // namespace
 
 Built build_object_touch(const TriangleMesh& mesh_W, const ContactChoice& choice,
-                         const SpringDamper& surface) {
+                         const SurfaceChoice& surface) {
   switch (choice.tracker) {
     case TrackerChoice::kEdgePlanes:
       return mesh_touch<MeshContact>(mesh_W, choice, false, surface);

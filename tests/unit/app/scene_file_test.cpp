@@ -17,7 +17,9 @@ const std::filesystem::path kFolder = support::scratch_folder() / "thimble_scene
 driver::Result<Scene> read(const std::string& objects, const std::string& path,
                            const std::string& more = "") {
   std::filesystem::create_directories(kFolder / "meshes");
-  std::ofstream(kFolder / "arm.yaml") << "name: arm\n";
+  std::filesystem::copy_file(
+      std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms/vintage_phantom.yaml",
+      kFolder / "arm.yaml", std::filesystem::copy_options::overwrite_existing);
   std::ofstream(kFolder / "meshes/ball.off") << "OFF\n";
   std::ofstream(kFolder / "scene.yaml") << "name: test\narm: arm.yaml\nduration: 2\n" + more +
                                                "objects:\n" + objects + "hand:\n  path:\n" + path;

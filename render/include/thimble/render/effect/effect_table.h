@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -17,15 +18,24 @@ enum class EffectOrder : std::uint8_t {
   kTangential,  ///< Adds force along the surface, after the spring: friction.
 };
 
+/// Builds a stage from settings that have been read and found right; may be called again and again.
+/// Real-time: never from the servo thread.
+using StageBuilder = std::function<std::unique_ptr<AnyStage>()>;
+
 /// Is one effect that a scene can put on an object: `- GROUP: NAME` and its settings.
 struct EffectKind {
   std::string_view group;  ///< What stands left of the colon: "friction", "texture".
   std::string_view name;   ///< What stands right of it: "bristle".
   EffectOrder order;
-  /// Reads the settings and builds the stage. Mistakes are told to the reader; the stage is then
-  /// harmless and not used. Real-time: never from the servo thread.
-  std::unique_ptr<AnyStage> (*build)(SettingsReader& settings,
-                                     const EffectSurroundings& surroundings);
+  /// Reads the settings. Mistakes are told to the reader; what comes back is then not to be used.
+  /// Real-time: never from the servo thread.
+  StageBuilder (*read)(SettingsReader& settings, const EffectSurroundings& surroundings);
+};
+
+/// Is one effect with the settings that a scene gives it.
+struct EffectPlan {
+  const EffectKind* kind = nullptr;
+  StageBuilder build;
 };
 
 /// Makes the table's line of an effect: a SurfaceStage with `kGroup`, `kName`, `kOrder`, a struct
@@ -34,11 +44,12 @@ struct EffectKind {
 template <SurfaceStage Stage>
 constexpr EffectKind effect_kind() {
   return {Stage::kGroup, Stage::kName, Stage::kOrder,
-          [](SettingsReader& reader,
-             const EffectSurroundings& surroundings) -> std::unique_ptr<AnyStage> {
+          [](SettingsReader& reader, const EffectSurroundings& surroundings) -> StageBuilder {
             typename Stage::Settings settings;
             settings.read(reader, surroundings);
-            return std::make_unique<AnyStageOf<Stage>>(Stage(settings, surroundings));
+            return [settings, surroundings]() -> std::unique_ptr<AnyStage> {
+              return std::make_unique<AnyStageOf<Stage>>(Stage(settings, surroundings));
+            };
           }};
 }
 

@@ -6,6 +6,7 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace thimble::render {
 
@@ -28,10 +29,15 @@ class SettingsReader {
   SettingsReader& operator=(const SettingsReader&) = delete;
   virtual ~SettingsReader() = default;
 
+  /// Tells whether a setting is given at all.
+  virtual bool has(std::string_view key) = 0;
   /// Reads a finite number within limits.
   virtual void number(std::string_view key, double& value, const NumberLimits& limits) = 0;
   /// Reads three finite numbers, each within limits.
   virtual void vector(std::string_view key, Eigen::Vector3d& value, const NumberLimits& limits) = 0;
+  /// Reads one of several words and gives its number; absent leaves `value`.
+  virtual void choice(std::string_view key, std::size_t& value,
+                      const std::vector<std::string_view>& names) = 0;
   /// Reads the name of an existing file; relative names begin beside the scene.
   virtual void file(std::string_view key, std::filesystem::path& value) = 0;
   /// Reads a list of maps with at least one entry; calls `read` for each.

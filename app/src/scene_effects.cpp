@@ -1,0 +1,150 @@
+#include "scene_effects.h"
+
+#include <algorithm>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <system_error>
+#include <utility>
+
+namespace thimble::app {
+namespace {
+
+/// Answers an effect's questions from a map of a scene file.
+class YamlSettings final : public render::SettingsReader {
+ public:
+  YamlSettings(YamlMap map, std::filesystem::path folder)
+      : map_(std::move(map)), folder_(std::move(folder)) {}
+
+  bool has(std::string_view key) override { return map_.has(key); }
+  void number(std::string_view key, double& value, const render::NumberLimits& limits) override {
+    value = limits.required
+                ? map_.require_number(key, limits.unit, limits.least, limits.most)
+                : map_.optional_number(key, value, limits.unit, limits.least, limits.most);
+  }
+  void vector(std::string_view key, Eigen::Vector3d& value,
+              const render::NumberLimits& limits) override {
+    value = limits.required
+                ? map_.require_vector3(key, limits.unit, limits.least, limits.most)
+                : map_.optional_vector3(key, value, limits.unit, limits.least, limits.most);
+  }
+  void choice(std::string_view key, std::size_t& value,
+              const std::vector<std::string_view>& names) override {
+    value = map_.optional_choice(key, value, names);
+  }
+  void file(std::string_view key, std::filesystem::path& value) override {
+    const std::string name = map_.require_string(key);
+    if (name.empty()) return;
+    value = (folder_ / name).lexically_normal();
+    std::error_code status;
+    if (!std::filesystem::is_regular_file(value, status)) {
+      map_.reject(key, "expected a file, found none at " + value.string());
+    }
+  }
+  void list(std::string_view key,
+            const std::function<void(render::SettingsReader&)>& read) override {
+    for (const YamlMap& entry : map_.require_maps(key)) {
+      YamlSettings settings(entry, folder_);
+      read(settings);
+      settings.finish();
+    }
+  }
+  void reject(std::string_view key, const std::string& sentence) override {
+    map_.reject(key, sentence);
+  }
+
+  void finish() { map_.finish(); }
+
+ private:
+  YamlMap map_;
+  std::filesystem::path folder_;
+};
+
+/// Gives the groups of the table, each once, in its order.
+std::vector<std::string_view> group_names() {
+  std::vector<std::string_view> groups;
+  for (const render::EffectKind& kind : render::effect_table()) {
+    if (std::find(groups.begin(), groups.end(), kind.group) == groups.end()) {
+      groups.push_back(kind.group);
+    }
+  }
+  return groups;
+}
+
+/// Finds which effect an entry of the list names; nullptr if none, and notes why.
+const render::EffectKind* named_effect(YamlMap& entry) {
+  const render::EffectKind* found = nullptr;
+  std::string known;
+  for (const std::string_view group : group_names()) {
+    known += (known.empty() ? "" : " or ") + std::string(group) + ": NAME";
+    if (!entry.has(group)) continue;
+    if (found != nullptr) {
+      entry.reject(group, "stands beside another effect; begin a list entry of its own");
+      return nullptr;
+    }
+    std::vector<const render::EffectKind*> kinds;
+    std::vector<std::string_view> names;
+    for (const render::EffectKind& kind : render::effect_table()) {
+      if (kind.group != group) continue;
+      kinds.push_back(&kind);
+      names.push_back(kind.name);
+    }
+    found = kinds[entry.require_choice(group, names)];
+  }
+  if (found == nullptr) entry.reject("", "expected " + known);
+  return found;
+}
+
+/// Is the longest step that one count makes at the tip, m: the largest column sum [STABILITY 9].
+double tip_step(const ArmFile& arm, const Eigen::Matrix3d& J_BT) {
+  if (arm.model.fractional_counts) return 0;
+  double longest = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double joint_step =
+        2 * std::numbers::pi /
+        (arm.model.encoders[k].counts_per_motor_turn * arm.model.drives[k].ratio);
+    longest =
+        std::max(longest, J_BT.col(static_cast<Eigen::Index>(k)).cwiseAbs().sum() * joint_step);
+  }
+  return longest;
+}
+
+}  // namespace
+
+render::EffectSurroundings surroundings_of(const ArmFile& arm, double rate) {
+  render::EffectSurroundings surroundings;
+  surroundings.tick = 1 / rate;
+  surroundings.delay =
+      1e-9 * static_cast<double>(arm.simulated.wire.delay_in_ns + arm.simulated.wire.delay_out_ns);
+  surroundings.force_max = arm.limits.force_max;
+  surroundings.tip_mass = arm.simulated.plant.mass;
+  surroundings.tip_damping = arm.simulated.plant.viscous;
+  // Corners, middles and centre of the workspace.
+  for (int i = 0; i < 27; ++i) {
+    const Eigen::Vector3d share(i % 3 / 2.0, i / 3 % 3 / 2.0, i / 9 / 2.0);
+    const Eigen::Vector3d p_W =
+        arm.workspace.min_W + share.cwiseProduct(arm.workspace.max_W - arm.workspace.min_W);
+    const auto q = arm.model.geometry.inverse(arm.R_WB.transpose() * (p_W - arm.p_WB));
+    if (!q) continue;
+    surroundings.encoder_step =
+        std::max(surroundings.encoder_step, tip_step(arm, arm.model.geometry.jacobian(*q)));
+  }
+  return surroundings;
+}
+
+std::vector<render::EffectPlan> read_effects(YamlMap& object, const std::filesystem::path& folder,
+                                             const render::EffectSurroundings& surroundings) {
+  std::vector<render::EffectPlan> plans;
+  for (YamlMap& entry : object.require_maps("effects")) {
+    const render::EffectKind* kind = named_effect(entry);
+    if (kind == nullptr) continue;
+    YamlSettings settings(entry, folder);
+    plans.push_back({kind, kind->read(settings, surroundings)});
+    settings.finish();
+  }
+  std::stable_sort(plans.begin(), plans.end(),
+                   [](const auto& a, const auto& b) { return a.kind->order < b.kind->order; });
+  return plans;
+}
+
+}  // namespace thimble::app

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "arm_file.h"
+#include "thimble/render/effect/effect_surroundings.h"
+#include "thimble/render/effect/effect_table.h"
+#include "yaml_reader.h"
+
+namespace thimble::app {
+
+/// Tells what effects may know of an arm and a loop of `rate` (Hz): the worst of a grid of points
+/// over the workspace. The surface's own values are left 0. Real-time: never from the servo thread.
+render::EffectSurroundings surroundings_of(const ArmFile& arm, double rate);
+
+/// Reads the list `effects` of an object, `- GROUP: NAME` and the settings of each, in the order in
+/// which a tick runs them; files are looked for in `folder`. Mistakes are noted by `object`.
+/// Real-time: never from the servo thread.
+std::vector<render::EffectPlan> read_effects(YamlMap& object, const std::filesystem::path& folder,
+                                             const render::EffectSurroundings& surroundings);
+
+}  // namespace thimble::app
