@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -95,10 +96,10 @@ TEST(SmoothNormals, AreTheSameFromBothSidesOfAnEdgeThatIsNoCrease) {
   EXPECT_GT(creases, 1000);
 }
 
-TEST(SmoothNormals, WithoutCreasesAreTheNormalsOfTheVertices) {
+TEST(SmoothNormals, WeightedByAnglesAreTheNormalsOfTheVertices) {
   const TriangleMesh shape = support::bumpy_sphere(3, 0.05, 0.5, 9);
   const ContactMesh mesh = prepared_mesh(shape);
-  const SmoothNormals normals(mesh, std::numbers::pi);
+  const SmoothNormals normals(mesh, std::numbers::pi, NormalWeights::kAngle);
   const std::vector<Vector3d> wanted = vertex_normals(shape);
   for (std::int32_t t = 0; t < mesh.triangle_count(); ++t) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -116,7 +117,7 @@ TEST(SmoothNormals, WithRoundWeightsAreExactOnAnyMeshOfASphere) {
   }
   const ContactMesh mesh = prepared_mesh(shape);
   const SmoothNormals round(mesh, kCreaseAngle, NormalWeights::kRound);
-  const SmoothNormals angle(mesh);
+  const SmoothNormals angle(mesh, kCreaseAngle, NormalWeights::kAngle);
   double worst_angle = 0;
   for (std::int32_t t = 0; t < mesh.triangle_count(); ++t) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -126,6 +127,29 @@ TEST(SmoothNormals, WithRoundWeightsAreExactOnAnyMeshOfASphere) {
     }
   }
   EXPECT_GT(worst_angle, 1e-3);
+}
+
+TEST(SmoothNormals, ThatAreFittedStandStraightOnFlatGroundHoweverItIsCutUp) {
+  const ContactMesh mesh = prepared_mesh(support::plate(0.05, 0.004, 7));
+  const SmoothNormals normals(mesh);
+  for (std::int32_t t = 0; t < mesh.triangle_count(); ++t) {
+    for (const Vector3d& n : normals.corners(t)) {
+      EXPECT_LT((n - mesh.cell(t).face.n).norm(), 1e-13);
+    }
+  }
+}
+
+TEST(SmoothNormals, ThatAreFittedLeanAwayFromNoFaceOfANeedle) {
+  // Points of a needle are no paraboloid: there the mean of the faces must stand.
+  const ContactMesh mesh = prepared_mesh(support::needle(64, 0.05, 0.002));
+  const SmoothNormals fitted(mesh, std::numbers::pi);
+  const SmoothNormals angle(mesh, std::numbers::pi, NormalWeights::kAngle);
+  for (std::int32_t t = 0; t < mesh.triangle_count(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double lean = mesh.cell(t).face.n.dot(fitted.corners(t)[k]);
+      EXPECT_GE(lean, std::min(0.5, mesh.cell(t).face.n.dot(angle.corners(t)[k]) - 1e-12));
+    }
+  }
 }
 
 }  // namespace

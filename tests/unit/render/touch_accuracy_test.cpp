@@ -189,24 +189,57 @@ TEST(TouchAccuracy, OfCurvedDepthOnATorusFallsWithTheSquareOfTheEdgeLength) {
   }
 }
 
-TEST(TouchAccuracy, OfCurvedDepthOnAGyroidMeetsTheLimitsOfFeel) {
-  // Irregular triangles of surface nets: cells where the net is a clean surface were chosen.
-  const support::GyroidSurface surface{2 * std::numbers::pi / 0.06, 0.04, 0.6};
-  Errors coarse;
-  Errors fine;
+template <class Surface>
+Errors replay_with(NormalWeights weights, const Surface& surface, const TriangleMesh& shape,
+                   const Vector3d& start, double reach) {
+  const ContactMesh mesh = ContactMesh::build(shape).value();
+  const auto normals = std::make_shared<const SmoothNormals>(mesh, kCreaseAngle, weights);
+  const Errors errors =
+      replay(Curved(OffsetContact(mesh, normals), {}, normals), surface, start, reach);
+  print(weights == NormalWeights::kFitted ? "fitted, curved depth" : "angles, curved depth",
+        errors);
+  EXPECT_EQ(errors.lost, 0);
+  return errors;
+}
+
+TEST(TouchAccuracy, OfFittedNormalsFallsWithTheSquareOfTheEdgeLengthOnIrregularTriangles) {
+  const support::GyroidSurface gyroid{2 * std::numbers::pi / 0.06, 0.04, 0.6};
+  const support::SphereSurface sphere{0.03};
+  const support::TorusSurface torus{0.05, 0.02};
+  const auto check = [](const Errors& coarse, const Errors& fine) {
+    EXPECT_LE(coarse.force_rms, 0.035);
+    EXPECT_LE(coarse.direction_p99, 5 / kDegrees);
+    EXPECT_GE(slope(coarse.force_rms, fine.force_rms, coarse, fine), 1.8);
+    EXPECT_GE(slope(coarse.direction_mean, fine.direction_mean, coarse, fine), 1.8);
+  };
+  std::vector<Errors> on_gyroid, on_sphere, on_torus;
   for (const double cell : {0.005, 0.0025, 0.0013}) {
-    const TriangleMesh shape = support::surface_nets(surface, 0.048, cell);
-    const Errors curved = replay(Curved(offset_contact(shape)), surface, {0.001, 0.001, 0}, 0.02);
-    print("phong, curved depth", curved);
-    EXPECT_EQ(curved.lost, 0);
-    EXPECT_LE(curved.force_rms, cell > 0.004 ? 0.05 : 0.035);
-    EXPECT_LE(curved.direction_p99, 5 / kDegrees);
-    if (cell > 0.004) coarse = curved;
-    fine = curved;
+    on_gyroid.push_back(replay_with(NormalWeights::kFitted, gyroid,
+                                    support::surface_nets(gyroid, 0.048, cell), {0.001, 0.001, 0},
+                                    0.02));
+    on_sphere.push_back(replay_with(NormalWeights::kFitted, sphere,
+                                    support::surface_nets(sphere, 0.048, cell), kOnSphere,
+                                    kAnywhere));
+    const int fine = static_cast<int>(std::lround(0.01 / cell));
+    on_torus.push_back(replay_with(NormalWeights::kFitted, torus,
+                                   support::torus(0.05, 0.02, 32 * fine, 16 * fine),
+                                   {0.06, 0.01, 0.005}, kAnywhere));
   }
-  EXPECT_NEAR(slope(coarse.magnitude_mean, fine.magnitude_mean, coarse, fine), 2, 0.2);
-  // Angle-weighted normals are first order on irregular triangles.
-  EXPECT_GT(slope(coarse.direction_mean, fine.direction_mean, coarse, fine), 0.8);
+  check(on_gyroid.front(), on_gyroid.back());
+  check(on_sphere.front(), on_sphere.back());
+  check(on_torus.front(), on_torus.back());
+}
+
+TEST(TouchAccuracy, OfAngleWeightedNormalsIsFirstOrderOnIrregularTriangles) {
+  const support::GyroidSurface gyroid{2 * std::numbers::pi / 0.06, 0.04, 0.6};
+  std::vector<Errors> errors;
+  for (const double cell : {0.005, 0.0025, 0.0013}) {
+    errors.push_back(replay_with(NormalWeights::kAngle, gyroid,
+                                 support::surface_nets(gyroid, 0.048, cell), {0.001, 0.001, 0},
+                                 0.02));
+  }
+  EXPECT_NEAR(slope(errors[0].direction_mean, errors[2].direction_mean, errors[0], errors[2]), 1,
+              0.2);
 }
 
 TEST(TouchAccuracy, RisesFromFlatOverBandsToPhongToCurvedDepth) {

@@ -17,16 +17,19 @@ inline constexpr double kCreaseAngle = std::numbers::pi / 3;
 
 /// Says how much each face counts in the normal of a vertex.
 enum class NormalWeights {
-  kAngle,  ///< By its angle there [Thuermer]: flat ground may be cut up at will.
-  kRound,  ///< By sin(angle) / (product of its two sides) [Max]: exact on every mesh of a sphere,
-           ///< and closer than kAngle on other smooth surfaces; noisy scans sway it more.
+  kAngle,   ///< By its angle there [Thuermer]: flat ground may be cut up at will.
+  kRound,   ///< By sin(angle) / (product of its two sides) [Max]: exact on every mesh of a sphere,
+            ///< and closer than kAngle on other smooth surfaces; noisy scans sway it more.
+  kFitted,  ///< Of the paraboloid that fits the vertices around best [Cazals & Pouget]: second
+            ///< order on triangles of any shape, where both means are first order.
 };
 
 /// Holds the normals that a mesh is shaded with, at each corner of each triangle, and says which
 /// edges are creases.
 ///
 /// Triangles around a vertex that are joined over edges which are no creases form a smooth group.
-/// A corner's normal is the weighted mean of its group's face normals. So two triangles agree, to
+/// A corner's normal is the weighted mean of its group's face normals, or fitted to its group's
+/// vertices. So two triangles agree, to
 /// the bit, on the normals at both ends of an edge that is no crease, and nothing is ever averaged
 /// over a crease. W, unit length. 73 bytes per triangle.
 class SmoothNormals {
@@ -34,7 +37,7 @@ class SmoothNormals {
   /// Finds the normals of a mesh. At `crease_angle` = 0 all edges between faces that are not in one
   /// plane are creases, at pi none are. Real-time: never from the servo thread.
   explicit SmoothNormals(const ContactMesh& mesh, double crease_angle = kCreaseAngle,
-                         NormalWeights weights = NormalWeights::kAngle);
+                         NormalWeights weights = NormalWeights::kFitted);
 
   // All of the following are Real-time: safe. Precondition: numbers name what exists.
 
