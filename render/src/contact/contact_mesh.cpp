@@ -83,36 +83,48 @@ driver::Result<ContactMesh> ContactMesh::build(const TriangleMesh& mesh,
   // Far from the world's origin the vertices themselves carry the rounding of their place.
   contact.depth_rounding_ =
       kDepthRounding * ((findings.box_max - findings.box_min).norm() + contact.origin_.norm());
-  contact.compute_planes();
+  for (std::int32_t t = 0; t < contact.triangle_count(); ++t) contact.compute_face(t);
+  for (std::int32_t t = 0; t < contact.triangle_count(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      // Each edge is done once, by the triangle that runs it upwards.
+      if (contact.corners(t)[k] < contact.corners(t)[(k + 1) % 3]) contact.compute_edge(t, k);
+    }
+  }
   contact.collect_fans();
   return contact;
 }
 
-void ContactMesh::compute_planes() {
-  for (std::int32_t t = 0; t < triangle_count(); ++t) {
-    Plane& face = cells_[static_cast<std::size_t>(t)].face;
-    face.n = unit_normal(position(t, 0), position(t, 1), position(t, 2));
-    face.d = -face.n.dot(position(t, 0) - origin_);
+void ContactMesh::move_vertex(std::int32_t vertex, const Vector3d& p_W) noexcept {
+  vertices_[static_cast<std::size_t>(vertex)] = p_W;
+  for (const std::int32_t t : fan(vertex)) compute_face(t);
+  for (const std::int32_t t : fan(vertex)) {
+    for (std::size_t k = 0; k < 3; ++k) compute_edge(t, k);
   }
-  for (std::int32_t t = 0; t < triangle_count(); ++t) {
-    TriangleCell& mine = cells_[static_cast<std::size_t>(t)];
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::int32_t other = mine.neighbours[k];
-      TriangleCell& theirs = cells_[static_cast<std::size_t>(other)];
-      const std::int32_t from = corners(t)[k];
-      const std::int32_t to = corners(t)[(k + 1) % 3];
-      // Each edge is done once, by the triangle that runs it upwards.
-      if (from > to) continue;
-      const Plane plane = edge_plane(position(from) - origin_, position(to) - position(from),
-                                     mine.face.n, theirs.face.n);
-      mine.edges[k] = plane;
-      for (std::size_t j = 0; j < 3; ++j) {
-        if (corners(other)[j] == to && corners(other)[(j + 1) % 3] == from) {
-          theirs.edges[j] = {-plane.n, -plane.d};
-        }
-      }
-    }
-  }
+}
+
+void ContactMesh::compute_face(std::int32_t triangle) noexcept {
+  Plane& face = cells_[static_cast<std::size_t>(triangle)].face;
+  face.n = unit_normal(position(triangle, 0), position(triangle, 1), position(triangle, 2));
+  face.d = -face.n.dot(position(triangle, 0) - origin_);
+}
+
+// Finds the plane over an edge and gives both its triangles the same numbers, whichever asks.
+void ContactMesh::compute_edge(std::int32_t triangle, std::size_t k) noexcept {
+  TriangleCell& asking = cells_[static_cast<std::size_t>(triangle)];
+  const std::int32_t other = asking.neighbours[k];
+  TriangleCell& asked = cells_[static_cast<std::size_t>(other)];
+  const std::int32_t from = corners(triangle)[k];
+  const std::int32_t to = corners(triangle)[(k + 1) % 3];
+  std::size_t j = 0;
+  while (j < 2 && !(corners(other)[j] == to && corners(other)[(j + 1) % 3] == from)) ++j;
+  const bool upwards = from < to;
+  Plane& mine = upwards ? asking.edges[k] : asked.edges[j];
+  Plane& theirs = upwards ? asked.edges[j] : asking.edges[k];
+  const std::int32_t low = upwards ? from : to;
+  const std::int32_t high = upwards ? to : from;
+  mine = edge_plane(position(low) - origin_, position(high) - position(low),
+                    upwards ? asking.face.n : asked.face.n, upwards ? asked.face.n : asking.face.n);
+  theirs = {-mine.n, -mine.d};
 }
 
 void ContactMesh::collect_fans() {

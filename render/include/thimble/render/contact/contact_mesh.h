@@ -71,6 +71,11 @@ class ContactMesh {
     return vertices_[static_cast<std::size_t>(vertex)];
   }
 
+  /// Moves a vertex to `p_W` (m; finite), and with it the planes of the triangles around it and of
+  /// their neighbours. What was built over the mesh (boxes of a search, smooth normals) knows the
+  /// old place until it is told. Real-time: safe; some 20 ns per triangle around the vertex.
+  void move_vertex(std::int32_t vertex, const Eigen::Vector3d& p_W) noexcept;
+
   /// Tells where corner `k` of a triangle is, m in W.
   const Eigen::Vector3d& position(std::int32_t triangle, std::size_t k) const noexcept {
     return position(corners(triangle)[k]);
@@ -103,7 +108,8 @@ class ContactMesh {
 
  private:
   ContactMesh() = default;
-  void compute_planes();
+  void compute_face(std::int32_t triangle) noexcept;
+  void compute_edge(std::int32_t triangle, std::size_t k) noexcept;
   void collect_fans();
 
   std::vector<Eigen::Vector3d> vertices_;
