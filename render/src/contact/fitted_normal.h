@@ -7,7 +7,7 @@ namespace thimble::render {
 
 /// Finds the normal of a smooth surface at a vertex from points around it: that of the paraboloid
 /// z = a u + b v + c u^2 + d u v + e v^2 through the vertex that fits the points best, near ones
-/// most [Cazals & Pouget]. Second order on triangles of any shape, where every weighted mean of
+/// most [Cazals]. Second order on triangles of any shape, where every weighted mean of
 /// face normals is first order. `about` is a first guess (unit) that says which way is out; it
 /// comes back if the points are fewer than six, or do not pin the paraboloid down, or lean away
 /// from it. Real-time: never from the servo thread.

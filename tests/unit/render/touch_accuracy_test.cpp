@@ -137,15 +137,16 @@ TEST(TouchAccuracy, OfPhongAloneLeavesTheMagnitudeWrongByTheSagitta) {
 
 TEST(TouchAccuracy, OfCurvedDepthOnASphereMeetsTheLimitsOfFeel) {
   Errors before;
-  for (const int level : {3, 4, 5}) {
+  for (const int level : {2, 3, 4, 5}) {
     const Errors curved = replay(Curved(offset_contact(support::icosphere(level, 0.03))), kSphere,
                                  kOnSphere, kAnywhere);
     print("phong, curved depth", curved);
     EXPECT_EQ(curved.lost, 0);
-    // STABILITY 7, case 21: at L/R = 0.15 and finer.
-    EXPECT_LE(curved.force_rms, 0.035 / 10);
+    // STABILITY 7, case 21: a tenth of both limits at L/R = 0.15 and finer. At 0.3 the depth falls
+    // below the sagitta, where CurvedDepth is not exact.
+    EXPECT_LE(curved.force_rms, level > 2 ? 0.0035 : 0.07);
     EXPECT_LE(curved.direction_p99, 0.5 / kDegrees);
-    if (level > 3) {
+    if (level > 2) {
       // Better than the square.
       EXPECT_GT(slope(before.magnitude_mean, curved.magnitude_mean, before, curved), 2);
     }
