@@ -136,13 +136,13 @@ driver::Result<CompactSurface> CompactSurface::build(const TriangleMesh& mesh,
   surface.records_.resize(count);
   for (std::size_t t = 0; t < count; ++t) place(surface.records_[t], mesh.triangles[t]);
   std::vector<std::array<std::int32_t, 3>> triangles(count);
-  surface.sources_.resize(count);
   {
     const std::vector<KeyedIndex> order = sorted_by_place(surface.records_);
     for (std::size_t t = 0; t < count; ++t) {
-      surface.sources_[t] = order[t].index;
       triangles[t] = mesh.triangles[index(order[t].index)];
       place(surface.records_[t], triangles[t]);
+      surface.records_[t].flags = static_cast<std::uint32_t>(order[t].index)
+                                  << CompactTriangle::kSourceShift;
     }
   }
 
@@ -154,7 +154,7 @@ driver::Result<CompactSurface> CompactSurface::build(const TriangleMesh& mesh,
       const bool alone = half_edges.opposite(triangles[t][k], triangles[t][(k + 1) % 3]) >= 0;
       if (record.neighbours[k] < 0 || !alone) {
         return refusal(
-            index(surface.sources_[t]),
+            index(record.source()),
             "lacks a neighbour of its own, wound like itself, over its edge from vertex " +
                 std::to_string(triangles[t][k]) + " to vertex " +
                 std::to_string(triangles[t][(k + 1) % 3]) + ".");
@@ -164,7 +164,8 @@ driver::Result<CompactSurface> CompactSurface::build(const TriangleMesh& mesh,
   const std::ptrdiff_t flat = assign_corner_normals(mesh.vertices, triangles, half_edges,
                                                     options.crease_angle, surface.records_);
   if (flat >= 0) {
-    return refusal(index(surface.sources_[static_cast<std::size_t>(flat)]), "has no area.");
+    return refusal(index(surface.records_[static_cast<std::size_t>(flat)].source()),
+                   "has no area.");
   }
   return surface;
 }

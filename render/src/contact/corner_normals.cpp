@@ -76,7 +76,7 @@ std::ptrdiff_t assign_corner_normals(const std::vector<Vector3d>& vertices,
       const Vector3d& other = faces.normals[index(records[t].neighbours[k])];
       if (!(faces.normals[t].dot(other) >= crease_cosine)) flags |= 1u << k;
     }
-    records[t].flags = flags;
+    records[t].flags |= flags;
   }
   for (std::size_t v = 0; v < vertices.size(); ++v) {
     const auto vertex = static_cast<std::int32_t>(v);

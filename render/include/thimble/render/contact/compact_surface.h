@@ -25,9 +25,14 @@ struct alignas(64) CompactTriangle {
   std::array<std::int32_t, 3> x, y, z;     ///< Corners on the lattice, one array per axis.
   std::array<std::uint32_t, 3> normals;    ///< Of the corners, octahedral, 16 bits per half.
   std::array<std::int32_t, 3> neighbours;  ///< Record over the edge from corner k to k + 1.
-  std::uint32_t flags;                     ///< Bit k: edge k is a crease.
+  std::uint32_t flags;  ///< Bit k: edge k is a crease. From bit 3: the input's number.
+
+  static constexpr int kSourceShift = 3;  // 2^28 triangles fit, the most that a surface takes
 
   bool crease(std::size_t edge) const noexcept { return ((flags >> edge) & 1u) != 0; }
+
+  /// Tells which triangle of the input this is.
+  std::int32_t source() const noexcept { return static_cast<std::int32_t>(flags >> kSourceShift); }
 
   /// Tells where corner `k` is, in steps of the lattice from its middle; exact.
   Eigen::Vector3d corner(std::size_t k) const noexcept {
@@ -84,9 +89,7 @@ class CompactSurface {
   std::span<const CompactTriangle> records() const noexcept { return records_; }
 
   /// Tells which triangle of the input a record is.
-  std::int32_t source(std::int32_t t) const noexcept {
-    return sources_[static_cast<std::size_t>(t)];
-  }
+  std::int32_t source(std::int32_t t) const noexcept { return record(t).source(); }
 
   /// Tells where corner `k` of a record is, m in W. Equal for all records that share it.
   Eigen::Vector3d position(std::int32_t t, std::size_t k) const noexcept {
@@ -103,16 +106,12 @@ class CompactSurface {
   double step() const noexcept { return step_; }
 
   /// Counts the bytes of memory held.
-  std::size_t bytes() const noexcept {
-    return records_.capacity() * sizeof(CompactTriangle) +
-           sources_.capacity() * sizeof(std::int32_t);
-  }
+  std::size_t bytes() const noexcept { return records_.capacity() * sizeof(CompactTriangle); }
 
  private:
   CompactSurface() = default;
 
   std::vector<CompactTriangle> records_;
-  std::vector<std::int32_t> sources_;
   Eigen::Vector3d origin_{0, 0, 0};
   double step_ = 0;
   double per_step_ = 0;

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "thimble/render/contact/contact_state.h"
+
+namespace thimble::render {
+
+/// Stands in for a surface that is not known for a while: the plane that was felt last. It begins
+/// where the contact was, so nothing jumps, and when the surface is known again the felt one fades
+/// over to it in `kFadeTicks`. All Real-time: safe.
+class HeldPlane {
+ public:
+  /// Is how long the plane fades: 32 ms at 1 kHz, as long as the finest change that a hand follows.
+  static constexpr int kFadeTicks = 32;
+
+  /// Puts the contact at `p_WT` (W, m) on the plane; the first call of a hold takes the plane from
+  /// `state`, that of the last tick. The depth is at least 0: nobody knows that the contact ended.
+  void hold(const Eigen::Vector3d& p_WT, ContactState& state) noexcept {
+    if (left_ < kFadeTicks) {
+      n_W_ = state.n_W;
+      height_ = state.n_W.dot(state.p_WP);
+    }
+    left_ = kFadeTicks;
+    state.n_W = n_W_;
+    state.depth = std::max(height_ - n_W_.dot(p_WT), 0.0);
+    state.p_WP = p_WT + state.depth * n_W_;
+  }
+
+  /// Turns what is felt at `p_WT` (W, m) from the plane towards the surface, which `state` tells.
+  void fade(const Eigen::Vector3d& p_WT, ContactState& state) noexcept {
+    if (left_ == 0) return;
+    --left_;
+    const double share = static_cast<double>(left_) / kFadeTicks;
+    const double held = std::max(height_ - n_W_.dot(p_WT), 0.0);
+    const Eigen::Vector3d turned = (1 - share) * state.n_W + share * n_W_;
+    const double size = std::sqrt(turned.squaredNorm());
+    // Opposite to each other: no way to turn is better than another.
+    if (size > 0) state.n_W = turned / size;
+    state.depth = (1 - share) * state.depth + share * held;
+    state.p_WP = p_WT + state.depth * state.n_W;
+  }
+
+  /// Puts the contact at `p_WT` (W, m) on the fading plane where the surface says that there is
+  /// none; false once the plane has faded or the tip is above it: the contact has ended.
+  bool fade_out(const Eigen::Vector3d& p_WT, ContactState& state) noexcept {
+    if (left_ == 0) return false;
+    --left_;
+    const double depth = height_ - n_W_.dot(p_WT);
+    if (!(depth > 0) || left_ == 0) return false;
+    state.n_W = n_W_;
+    state.depth = depth * left_ / kFadeTicks;
+    state.p_WP = p_WT + state.depth * n_W_;
+    return true;
+  }
+
+  /// Forgets the plane: the contact has ended.
+  void drop() noexcept { left_ = 0; }
+
+ private:
+  int left_ = 0;  // ticks of fading to come; kFadeTicks while held
+  Eigen::Vector3d n_W_{0, 0, 0};
+  double height_ = 0;  // n_W . p on the plane, m
+};
+
+}  // namespace thimble::render

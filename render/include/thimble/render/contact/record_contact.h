@@ -1,0 +1,85 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <utility>
+
+#include "thimble/driver/device_state.h"
+#include "thimble/render/contact/contact_state.h"
+#include "thimble/render/contact/held_plane.h"
+#include "thimble/render/contact/lowered_triangle.h"
+#include "thimble/render/contact/record_store.h"
+#include "thimble/render/contact/surface_tracker.h"
+
+namespace thimble::render {
+
+/// Finds what the tip touches on a smooth surface of records: a search while it is free, tracking
+/// from lowered triangle to lowered triangle (lowered_triangle.h) while it touches. Where the
+/// records come from is the store's affair; CompactContact has all of them in memory. The bodies
+/// are in record_contact_steps.h, for who instantiates it.
+///
+/// Depth and direction are continuous over edges and vertices, since neighbours share lowered edges
+/// to the bit. Over a crease the tip changes sides at the plane that halves the angle, where both
+/// faces measure the same depth [BP 3.1, Fig. 4b], and the direction jumps.
+///
+/// Contact begins when the path enters the triangles themselves: on a bulge of edge length L and
+/// radius R the depth starts at up to L^2 / 6R [STABILITY 3]. It ends when the depth is negative
+/// and the tip is outside the triangles; in a hollow the depth is 0 until then.
+///
+/// Where a record is absent the plane felt last is held (held_plane.h) and the tick is counted; the
+/// contact goes on from the last triangle at hand, and while it is free it keeps the path that it
+/// could not examine.
+template <RecordStore Store>
+class RecordContact {
+ public:
+  /// Takes the store. Real-time: never from the servo thread.
+  explicit RecordContact(Store store) : store_(std::move(store)) {}
+
+  /// Finds the contact at `state.p_WT` (W, m) and keeps it until the next call; `triangle` is the
+  /// number of the input's triangle. A tip that is inside on the first tick touches nothing until
+  /// it has been outside. A position that is NaN or beyond `kPositionMax` ends the contact and
+  /// makes the next tick a first one. Real-time: safe; tens of ns in contact, at worst `kHopsMax`
+  /// triangles, `kPatchMax` more and two questions to the search.
+  const ContactState& update(const driver::DeviceState& state) noexcept;
+
+  /// Gives the result of the last `update`. Real-time: safe.
+  const ContactState& state() const noexcept { return state_; }
+
+  const TrackerCounters& counters() const noexcept { return counters_; }
+  /// Counts the ticks in which a record was absent.
+  std::uint64_t ticks_held() const noexcept { return ticks_held_; }
+  const Store& store() const noexcept { return store_; }
+
+ private:
+  // Says what a tick in contact came to: kUnknown where a record that decides it is absent.
+  using Outcome = Known;
+
+  bool begin(const Eigen::Vector3d& p_WT) noexcept;
+  Outcome follow(const Eigen::Vector3d& p_WT) noexcept;
+  Outcome settle(const Eigen::Vector3d& p, bool walked, LoweredPlace& place) noexcept;
+  Outcome find_again(const Eigen::Vector3d& p_WT, const Eigen::Vector3d& p,
+                     std::int32_t before) noexcept;
+  Outcome find_near(const Eigen::Vector3d& p, std::int32_t before) noexcept;
+  Outcome walk(const Eigen::Vector3d& p, std::int32_t& triangle) noexcept;
+  Outcome edge_to_hop(const Eigen::Vector3d& p, const LoweredPlace& place,
+                      int& edge) const noexcept;
+  bool activate(std::int32_t triangle) noexcept;
+  void report(const Eigen::Vector3d& p_WT, const LoweredFeel& felt) noexcept;
+  void end() noexcept;
+
+  static bool absent(const CompactTriangle* record) noexcept {
+    return !Store::kComplete && record == nullptr;
+  }
+
+  Store store_;
+  std::int32_t active_ = -1;
+  LoweredTriangle lowered_;
+  ContactState state_;
+  TrackerCounters counters_;
+  Eigen::Vector3d p_WT_before_{0, 0, 0};
+  bool has_before_ = false;
+  HeldPlane held_;
+  std::uint64_t ticks_held_ = 0;
+};
+
+}  // namespace thimble::render

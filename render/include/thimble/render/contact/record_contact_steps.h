@@ -1,0 +1,282 @@
+#pragma once
+
+// The bodies of RecordContact: included where it is instantiated for a store, and nowhere else.
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include "thimble/render/contact/closest_point.h"
+#include "thimble/render/contact/record_contact.h"
+#include "thimble/render/contact/record_walk.h"
+
+namespace thimble::render {
+
+/// Is how far outside a triangle, as a share of its height, the tip may be and stay: rounding on
+/// both sides of an edge must not send it back and forth. The jump that this leaves is as small a
+/// share of the depth.
+inline constexpr double kOutside = -1e-11;
+
+template <RecordStore Store>
+const ContactState& RecordContact<Store>::update(const driver::DeviceState& state) noexcept {
+  const Eigen::Vector3d& p_WT = state.p_WT;
+  // Written so that NaN is out of range.
+  if (!(std::abs(p_WT.x()) <= kPositionMax && std::abs(p_WT.y()) <= kPositionMax &&
+        std::abs(p_WT.z()) <= kPositionMax)) {
+    end();
+    has_before_ = false;
+    return state_;
+  }
+  if (!state_.touching && !begin(p_WT)) return state_;
+  p_WT_before_ = p_WT;
+  const Outcome outcome = follow(p_WT);
+  if constexpr (!Store::kComplete) {
+    // The one place where an absent record is felt.
+    if (outcome == Outcome::kUnknown) {
+      ++ticks_held_;
+      held_.hold(p_WT, state_);
+      state_.touching = true;
+      return state_;
+    }
+    if (outcome == Outcome::kYes) {
+      held_.fade(p_WT, state_);
+      return state_;
+    }
+    if (held_.fade_out(p_WT, state_)) return state_;
+  }
+  if (outcome != Outcome::kYes) {
+    const std::uint16_t hops = state_.hops;
+    end();
+    state_.hops = hops;
+  }
+  return state_;
+}
+
+template <RecordStore Store>
+void RecordContact<Store>::end() noexcept {
+  state_ = {};
+  if constexpr (!Store::kComplete) held_.drop();
+}
+
+// Looks for the triangle through which the path since the last tick enters, and makes it active.
+template <RecordStore Store>
+bool RecordContact<Store>::begin(const Eigen::Vector3d& p_WT) noexcept {
+  FoundEntry found;
+  const Eigen::Vector3d from = p_WT_before_;
+  if (has_before_) found = store_.first_entry(from, p_WT);
+  state_ = {};
+  if (found.complete) p_WT_before_ = p_WT;
+  has_before_ = true;
+  if (!found.complete) ++ticks_held_;
+  if (found.entry.triangle < 0 || !activate(found.entry.triangle)) return false;
+  state_.n_W = lowered_.face();
+  state_.triangle = lowered_.source();
+  state_.p_WP = from + found.entry.parameter * (p_WT - from);
+  return true;
+}
+
+template <RecordStore Store>
+typename RecordContact<Store>::Outcome RecordContact<Store>::follow(
+    const Eigen::Vector3d& p_WT) noexcept {
+  const Eigen::Vector3d p = store_.to_lattice(p_WT);
+  const std::int32_t before = active_;
+  const bool sliding = state_.hops > 0;
+  state_.hops = 0;
+  // Who hopped in the last tick will hop again: the cheap walk first spares unpacking a triangle
+  // that is left at once.
+  if (sliding) {
+    std::int32_t next = active_;
+    const Outcome walked = walk(p, next);
+    if (next != active_) activate(next);
+    if (walked == Outcome::kUnknown) return Outcome::kUnknown;
+  }
+  LoweredPlace place = lowered_.locate(p);
+  const bool held = place.valid && place.l0 >= kOutside && place.l1 >= kOutside &&
+                    place.l2 >= kOutside && lowered_.creases() == 0;
+  const Outcome settled = held ? Outcome::kYes : settle(p, sliding, place);
+  if (settled == Outcome::kUnknown) return settled;
+  if (settled == Outcome::kYes && place.depth >= 0) {
+    report(p_WT, lowered_.feel(place));
+    if (state_.depth >= 0) return Outcome::kYes;
+  }
+  const Known inside = store_.inside(p_WT);
+  if (inside == Known::kUnknown) return Outcome::kUnknown;
+  if (inside == Known::kNo) {
+    // A bulge reaches beyond its triangles.
+    if (settled == Outcome::kNo || place.depth >= 0) return Outcome::kNo;
+    report(p_WT, lowered_.feel(place));
+    return state_.depth >= 0 ? Outcome::kYes : Outcome::kNo;
+  }
+  if (settled == Outcome::kYes && place.depth >= 0) {
+    // In a hollow, between the triangles and the surface that they stand for.
+    state_.depth = 0;
+    state_.p_WP = p_WT;
+    return Outcome::kYes;
+  }
+  const Outcome found = find_again(p_WT, p, before);
+  if (found == Outcome::kYes) report(p_WT, lowered_.feel_nearest(p));
+  return found;
+}
+
+// Hops from triangle to triangle until one holds the tip; `place` becomes its place there.
+template <RecordStore Store>
+typename RecordContact<Store>::Outcome RecordContact<Store>::settle(const Eigen::Vector3d& p,
+                                                                    bool walked,
+                                                                    LoweredPlace& place) noexcept {
+  std::array<std::int32_t, 8> visited;
+  std::size_t visits = 0;
+  for (;;) {
+    if (!place.valid) return Outcome::kNo;
+    int edge = -1;
+    if (edge_to_hop(p, place, edge) == Outcome::kUnknown) return Outcome::kUnknown;
+    if (edge < 0) return Outcome::kYes;
+    if (state_.hops >= kHopsMax || visits == visited.size()) {
+      ++counters_.long_walks;
+      return Outcome::kNo;
+    }
+    visited[visits++] = active_;
+    const auto end = visited.begin() + static_cast<std::ptrdiff_t>(visits);
+    const auto is_new = [&](std::int32_t t) { return std::find(visited.begin(), end, t) == end; };
+    const CompactTriangle* record = store_.find(active_);
+    if (absent(record)) return Outcome::kUnknown;
+    std::int32_t next = record->neighbours[static_cast<std::size_t>(edge)];
+    ++state_.hops;
+    if (!is_new(next)) {
+      // A gap between lowered triangles: around it all are nearly right.
+      ++counters_.cycles;
+      return Outcome::kYes;
+    }
+    if (!walked) {
+      std::int32_t far = next;
+      const Outcome arrived = walk(p, far);
+      if (is_new(far)) next = far;
+      if (arrived == Outcome::kUnknown) {
+        activate(next);
+        return Outcome::kUnknown;
+      }
+      walked = true;
+    }
+    if (!activate(next)) return Outcome::kUnknown;
+    place = lowered_.locate(p);
+  }
+}
+
+// Makes a record active; false if it is absent.
+template <RecordStore Store>
+bool RecordContact<Store>::activate(std::int32_t triangle) noexcept {
+  const CompactTriangle* record = store_.find(triangle);
+  if (absent(record)) return false;
+  active_ = triangle;
+  lowered_.unpack(*record);
+  return true;
+}
+
+// Tells the edge that the tip is farthest outside of, as a share of the triangle's height; -1 if
+// the triangle holds it.
+template <RecordStore Store>
+typename RecordContact<Store>::Outcome RecordContact<Store>::edge_to_hop(const Eigen::Vector3d& p,
+                                                                         const LoweredPlace& place,
+                                                                         int& edge) const noexcept {
+  std::array<double, 3> side{place.l2, place.l0, place.l1};
+  if (lowered_.creases() != 0) {
+    const CompactTriangle* own = store_.find(active_);
+    if (absent(own)) return Outcome::kUnknown;
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (((lowered_.creases() >> k) & 1u) == 0) continue;
+      const CompactTriangle* other = store_.find(own->neighbours[k]);
+      if (absent(other)) return Outcome::kUnknown;
+      side[k] = lowered_.side_of_crease(p, k, *other);
+    }
+  }
+  int worst = 0;
+  if (side[1] < side[0]) worst = 1;
+  if (side[2] < side[static_cast<std::size_t>(worst)]) worst = 2;
+  edge = side[static_cast<std::size_t>(worst)] < kOutside ? worst : -1;
+  return Outcome::kYes;
+}
+
+// Walks over the triangles as they lie, seen along the last tick's normal; stops at creases and at
+// the last record at hand.
+template <RecordStore Store>
+typename RecordContact<Store>::Outcome RecordContact<Store>::walk(const Eigen::Vector3d& p,
+                                                                  std::int32_t& triangle) noexcept {
+  const RecordWalk way(p, state_.n_W);
+  const CompactTriangle* record = store_.find(triangle);
+  if (absent(record)) return Outcome::kUnknown;
+  for (; state_.hops < kHopsMax; ++state_.hops) {
+    const int edge = way.edge_to_hop(*record);
+    if (edge < 0) break;
+    const std::int32_t next = record->neighbours[static_cast<std::size_t>(edge)];
+    record = store_.find(next);
+    if (absent(record)) return Outcome::kUnknown;
+    triangle = next;
+  }
+  return Outcome::kYes;
+}
+
+// Looks over the surface around where the walk ended and where it began for the nearest triangle
+// that has the tip below it.
+template <RecordStore Store>
+typename RecordContact<Store>::Outcome RecordContact<Store>::find_near(
+    const Eigen::Vector3d& p, std::int32_t before) noexcept {
+  using Eigen::Vector3d;
+  std::array<std::int32_t, kPatchMax> patch;
+  std::int32_t size = 0;
+  const auto add = [&patch, &size](std::int32_t triangle) noexcept {
+    const auto end = patch.begin() + size;
+    if (size < kPatchMax && std::find(patch.begin(), end, triangle) == end) {
+      patch[static_cast<std::size_t>(size++)] = triangle;
+    }
+  };
+  add(active_);
+  add(before);
+  std::int32_t best = -1;
+  double best_squared = std::numeric_limits<double>::infinity();
+  double best_depth = 0;
+  for (std::int32_t i = 0; i < size; ++i) {
+    const std::int32_t t = patch[static_cast<std::size_t>(i)];
+    const CompactTriangle* record = store_.find(t);
+    if (absent(record)) return Outcome::kUnknown;
+    const CompactTriangle& r = *record;
+    const Vector3d a = r.corner(0), b = r.corner(1), c = r.corner(2);
+    const Vector3d area = (b - a).cross(c - a);
+    const double depth = area.dot(a - p) / std::sqrt(area.squaredNorm());
+    for (const std::int32_t neighbour : r.neighbours) add(neighbour);
+    if (!(depth >= -kPlaced)) continue;
+    const double squared = (closest_point(p, a, b, c) - p).squaredNorm();
+    if (squared < best_squared || (squared == best_squared && depth > best_depth)) {
+      best = t;
+      best_squared = squared;
+      best_depth = depth;
+    }
+  }
+  return best >= 0 && activate(best) ? Outcome::kYes : Outcome::kNo;
+}
+
+template <RecordStore Store>
+typename RecordContact<Store>::Outcome RecordContact<Store>::find_again(
+    const Eigen::Vector3d& p_WT, const Eigen::Vector3d& p, std::int32_t before) noexcept {
+  const Outcome near = find_near(p, before);
+  if (near == Outcome::kYes) ++counters_.found_near;
+  if (near != Outcome::kNo) return near;
+  const FoundRecord nearest = store_.closest(p_WT, std::numeric_limits<double>::infinity());
+  if (!nearest.complete) return Outcome::kUnknown;
+  if (nearest.triangle < 0 || !activate(nearest.triangle)) return Outcome::kNo;
+  ++counters_.found_far;
+  return Outcome::kYes;
+}
+
+// Fills in the state from what is felt in the active triangle.
+template <RecordStore Store>
+void RecordContact<Store>::report(const Eigen::Vector3d& p_WT, const LoweredFeel& felt) noexcept {
+  state_.touching = true;
+  state_.triangle = lowered_.source();
+  state_.n_W = felt.n_W;
+  state_.depth = store_.step() * felt.depth;
+  state_.p_WP = p_WT + state_.depth * felt.n_W;
+}
+
+}  // namespace thimble::render

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <concepts>
+#include <cstdint>
+
+#include "thimble/render/contact/compact_surface.h"
+#include "thimble/render/contact/linear_search.h"
+
+namespace thimble::render {
+
+/// Is an answer of a store that may lack the records it would need to know.
+enum class Known : std::uint8_t { kNo, kYes, kUnknown };
+
+/// Is where a segment first enters the surface; not `complete`: among the records at hand.
+struct FoundEntry {
+  Entry entry;
+  bool complete = true;
+};
+
+/// Is the record nearest to a point, -1 for none; not `complete`: among the records at hand.
+struct FoundRecord {
+  std::int32_t triangle = -1;
+  bool complete = true;
+};
+
+/// Is where a RecordContact takes its records from. All questions are in W and m, and Real-time:
+/// safe. `kComplete` says that no record is ever absent; then the contact holds no code for that.
+// clang-format off
+template <class Store>
+concept RecordStore = requires(const Store& store, std::int32_t t, const Eigen::Vector3d& p_W,
+                               double radius) {
+  { Store::kComplete } -> std::convertible_to<bool>;
+  // The record, nullptr if it is absent; good until the end of the tick.
+  { store.find(t) } noexcept -> std::same_as<const CompactTriangle*>;
+  { store.to_lattice(p_W) } noexcept -> std::same_as<Eigen::Vector3d>;
+  { store.step() } noexcept -> std::same_as<double>;
+  { store.first_entry(p_W, p_W) } noexcept -> std::same_as<FoundEntry>;
+  { store.inside(p_W) } noexcept -> std::same_as<Known>;
+  { store.closest(p_W, radius) } noexcept -> std::same_as<FoundRecord>;
+};
+// clang-format on
+
+}  // namespace thimble::render

@@ -1,0 +1,185 @@
+#include "thimble/render/contact/record_contact.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <utility>
+
+#include "support/heap_guard.h"
+#include "support/shapes.h"
+#include "thimble/render/contact/bvh.h"
+#include "thimble/render/contact/compact_contact.h"
+#include "thimble/render/contact/record_contact_steps.h"
+
+namespace thimble::render {
+namespace {
+
+using Eigen::Vector3d;
+
+// What a script says is absent now.
+struct Absence {
+  std::function<bool(const CompactTriangle&)> records = [](const CompactTriangle&) {
+    return false;
+  };
+  bool searches = false;
+};
+
+// Drops records as a script says, as a surface on disk does.
+class ScriptedStore {
+ public:
+  static constexpr bool kComplete = false;
+
+  ScriptedStore(const CompactSurface& surface, const Bvh& search, const Absence& absence)
+      : surface_(&surface), search_(&search), absence_(&absence) {}
+
+  const CompactTriangle* find(std::int32_t t) const noexcept {
+    const CompactTriangle& record = surface_->record(t);
+    return absence_->records(record) ? nullptr : &record;
+  }
+  Vector3d to_lattice(const Vector3d& p_W) const noexcept { return surface_->to_lattice(p_W); }
+  double step() const noexcept { return surface_->step(); }
+  FoundEntry first_entry(const Vector3d& from, const Vector3d& to) const noexcept {
+    if (absence_->searches) return {.entry = {}, .complete = false};
+    return {.entry = search_->first_entry(from, to)};
+  }
+  Known inside(const Vector3d& p_W) const noexcept {
+    if (absence_->searches) return Known::kUnknown;
+    return search_->inside(p_W) ? Known::kYes : Known::kNo;
+  }
+  FoundRecord closest(const Vector3d& p_W, double radius) const noexcept {
+    if (absence_->searches) return {.triangle = -1, .complete = false};
+    return {.triangle = search_->closest(p_W, radius).triangle};
+  }
+
+ private:
+  const CompactSurface* surface_;
+  const Bvh* search_;
+  const Absence* absence_;
+};
+static_assert(RecordStore<ScriptedStore> && RecordStore<CompactStore>);
+
+struct Scene {
+  explicit Scene(const TriangleMesh& mesh)
+      : surface(CompactSurface::build(mesh).value()),
+        search(surface),
+        contact(ScriptedStore(surface, search, absence)) {}
+  const ContactState& move(const Vector3d& p_WT) {
+    driver::DeviceState state;
+    state.p_WT = p_WT;
+    return contact.update(state);
+  }
+  Absence absence;
+  CompactSurface surface;
+  Bvh search;
+  RecordContact<ScriptedStore> contact;
+};
+
+// On a ball of 50 mm, 1 mm deep, by angle from the top.
+Vector3d on_stroke(double angle) {
+  return 0.049 * Vector3d(std::sin(angle), 0.01, std::cos(angle)).normalized();
+}
+
+TEST(RecordContact, AnswersAsTheContactInMemoryWhileNothingIsAbsent) {
+  const TriangleMesh mesh = support::bumpy_sphere(3, 0.05, 0.2, 4);
+  Scene scene(mesh);
+  CompactContact reference = CompactContact::build(mesh).value();
+  int touched = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const double along = 0.004 * i;
+    const double size = 0.05 + 0.012 * std::sin(0.37 * along);
+    driver::DeviceState state;
+    state.p_WT = size * Vector3d(std::cos(along), std::sin(along), std::sin(0.3 * along));
+    const ContactState& wanted = reference.update(state);
+    const ContactState& found = scene.contact.update(state);
+    ASSERT_EQ(found.touching, wanted.touching);
+    ASSERT_EQ(found.depth, wanted.depth);
+    ASSERT_EQ(found.n_W, wanted.n_W);
+    touched += found.touching;
+  }
+  EXPECT_GT(touched, 1000);
+  EXPECT_EQ(scene.contact.ticks_held(), 0u);
+}
+
+TEST(RecordContact, HoldsThePlaneWhereRecordsAreAbsentAndNeverJumps) {
+  Scene scene(support::icosphere(4, 0.05));
+  // Nothing is at hand beyond 0.28 rad from the top, until the loader catches up.
+  scene.absence.records = [&](const CompactTriangle& record) {
+    return record.corner(0).x() > 0.28 * kLatticeHalf;
+  };
+  scene.move(1.2 * on_stroke(0));
+  ContactState before = scene.move(on_stroke(0));
+  ASSERT_TRUE(before.touching);
+  constexpr double kTurn = 2e-4;  // rad per tick: 10 um
+  double held_depth = 0;
+  const auto stroke = [&](int first, int last) {
+    for (int i = first; i <= last; ++i) {
+      const ContactState& now = scene.move(on_stroke(kTurn * i));
+      ASSERT_TRUE(now.touching);
+      ASSERT_NEAR(now.n_W.norm(), 1, 1e-12);
+      // A move of 10 um and, while the plane fades, a thirtieth of what it had gone astray.
+      ASSERT_LT(std::abs(now.depth - before.depth), 1.2e-5 + std::abs(held_depth - 1e-3) / 30);
+      ASSERT_LT((now.n_W - before.n_W).norm(), 0.02);
+      before = now;
+    }
+  };
+  stroke(1, 1000);
+  EXPECT_EQ(scene.contact.ticks_held(), 0u);
+  EXPECT_NEAR(before.depth, 1e-3, 2e-5);
+  stroke(1001, 1800);
+  EXPECT_GT(scene.contact.ticks_held(), 300u);
+  EXPECT_LT(scene.contact.ticks_held(), 800u);
+  held_depth = before.depth;
+  EXPECT_GT(std::abs(held_depth - 1e-3), 5e-5);  // a plane is no ball
+  scene.absence.records = [](const CompactTriangle&) { return false; };
+  const std::uint64_t held = scene.contact.ticks_held();
+  stroke(1801, 1900);
+  EXPECT_EQ(scene.contact.ticks_held(), held);
+  EXPECT_NEAR(before.depth, 1e-3, 2e-5);
+}
+
+TEST(RecordContact, KeepsContactInsideWhileTheSearchKnowsNothingAndEndsItWhenItDoes) {
+  Scene scene(support::icosphere(3, 0.05));
+  scene.move({0, 0, 0.06});
+  ASSERT_TRUE(scene.move({0, 0, 0.049}).touching);
+  scene.absence.searches = true;
+  for (int i = 0; i <= 100; ++i) {
+    // Out through the surface: the plane says that nothing is felt there.
+    const ContactState& state = scene.move({0, 0, 0.049 + 2e-5 * i});
+    ASSERT_TRUE(state.touching);
+    ASSERT_GE(state.depth, 0);
+  }
+  EXPECT_EQ(scene.contact.state().depth, 0);
+  scene.absence.searches = false;
+  EXPECT_FALSE(scene.move({0, 0, 0.052}).touching);
+}
+
+TEST(RecordContact, ExaminesLaterThePathThatItCouldNotExamine) {
+  Scene scene(support::icosphere(3, 0.05));
+  scene.move({0, 0, 0.06});
+  scene.absence.searches = true;
+  EXPECT_FALSE(scene.move({0, 0, 0.055}).touching);
+  EXPECT_FALSE(scene.move({0, 0, 0.049}).touching);  // through the surface, unseen
+  EXPECT_EQ(scene.contact.ticks_held(), 2u);
+  scene.absence.searches = false;
+  const ContactState& state = scene.move({0, 0, 0.0489});
+  EXPECT_TRUE(state.touching);
+  EXPECT_NEAR(state.depth, 1.1e-3, 2e-5);
+}
+
+TEST(RecordContact, LeavesTheHeapAloneWhileItHolds) {
+  Scene scene(support::icosphere(3, 0.05));
+  scene.move({0, 0, 0.06});
+  scene.move(on_stroke(0));
+  scene.absence.records = [](const CompactTriangle&) { return true; };
+  const int calls = support::heap_calls_of([&] {
+    for (int i = 0; i < 1000; ++i) scene.move(on_stroke(1e-3 * i));
+  });
+  EXPECT_EQ(calls, 0);
+  EXPECT_GT(scene.contact.ticks_held(), 500u);
+}
+
+}  // namespace
+}  // namespace thimble::render
