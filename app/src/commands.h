@@ -15,5 +15,7 @@ void add_devices_command(CLI::App& app, int& exit_code);
 void add_mesh_command(CLI::App& app, int& exit_code);
 /// `thimble mesh page IN OUT`: cuts a mesh into volumes on disk.
 void add_mesh_page_command(CLI::App& mesh_command, int& exit_code);
+/// `thimble study NAME`: measures and draws.
+void add_study_command(CLI::App& app, int& exit_code);
 
 }  // namespace thimble::app
