@@ -1,0 +1,49 @@
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "commands.h"
+#include "exit_code.h"
+#include "study/cost_subjects.h"
+#include "study/instruction_count.h"
+
+namespace thimble::app {
+namespace {
+
+struct ProbeOptions {
+  std::string subject;
+  int strokes = 1;
+};
+
+int probe(const ProbeOptions& options) {
+  for (const CostSubject& subject : cost_subjects()) {
+    if (subject.name != options.subject) continue;
+    const auto touch = subject.build();
+    if (!touch) {
+      std::fprintf(stderr, "thimble: %s\n", touch.error().message.c_str());
+      return kExitBadInput;
+    }
+    const auto states = ring_stroke(kCostRing, kStrokeTicks, 0.001);
+    double sum = 0;
+    for (int i = 0; i < options.strokes; ++i) {
+      for (const auto& state : states) sum += (*touch)->update(state).f_T_W.x();
+    }
+    std::printf("%.17g\n", sum);
+    return kExitDone;
+  }
+  std::fprintf(stderr, "thimble: cost-probe knows no \"%s\".\n", options.subject.c_str());
+  return kExitBadInput;
+}
+
+}  // namespace
+
+void add_cost_probe_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("cost-probe", "Run strokes of one cost subject");
+  command->group("");  // for `thimble study cost`, not for people
+  auto options = std::make_shared<ProbeOptions>();
+  command->add_option("SUBJECT", options->subject)->required();
+  command->add_option("STROKES", options->strokes)->required()->check(CLI::Range(1, 100000));
+  command->callback([options, &exit_code] { exit_code = probe(*options); });
+}
+
+}  // namespace thimble::app

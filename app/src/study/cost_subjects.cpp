@@ -1,0 +1,101 @@
+#include "study/cost_subjects.h"
+
+#include <string_view>
+#include <utility>
+
+#include "scene_effects.h"
+#include "thimble/render/build_object_touch.h"
+#include "yaml_reader.h"
+
+namespace thimble::app {
+namespace {
+
+using Built = driver::Result<std::unique_ptr<render::ObjectTouch>>;
+
+// What scenes give most surfaces: the vintage arm's declared stiffness [DEVICES 3].
+constexpr render::SpringDamper kSpring{.stiffness = 800, .damping = 1};
+
+// Settings of effects that have none of their own; every other effect is taken as it is.
+struct Sample {
+  std::string_view name;
+  std::string_view settings;
+};
+constexpr Sample kSamples[] = {
+    {"sines", "waves: [{amplitude: 0.0001, wavelength: 0.002, direction: [1, 0, 0]}]"},
+};
+
+std::string joined(std::string_view a, char between, std::string_view b) {
+  std::string name(a);
+  name += between;
+  name += b;
+  return name;
+}
+
+render::ContactChoice choice_of(render::TrackerChoice tracker) {
+  render::ContactChoice choice;
+  choice.tracker = tracker;
+  return choice;
+}
+
+Built build_effect(const render::EffectKind& kind) {
+  std::string settings;
+  for (const Sample& sample : kSamples) {
+    if (sample.name == kind.name) settings.append(", ").append(sample.settings);
+  }
+  std::string text = "effects:\n  - {";
+  text.append(kind.group).append(": ").append(kind.name).append(settings).append("}\n");
+  auto yaml = YamlFile::parse(text, std::string(kind.name));
+  if (!yaml) return yaml.error();
+  render::SurfaceChoice surface{.spring = kSpring, .effects = {}};
+  // The PHANTOM-like set of [STABILITY].
+  const render::EffectSurroundings surroundings{.tick = 0.001,
+                                                .delay = 0.001,
+                                                .encoder_step = 0.03e-3,
+                                                .force_max = 8.5,
+                                                .tip_mass = 0.075,
+                                                .tip_damping = 0.005,
+                                                .surface_stiffness = kSpring.stiffness,
+                                                .surface_damping = kSpring.damping};
+  surface.effects = read_effects(yaml->root(), {}, surroundings);
+  if (auto right = yaml->finish(); !right) return right.error();
+  return render::build_object_touch(kCostRing.mesh(kCostAround, kCostAcross),
+                                    choice_of(render::TrackerChoice::kOffset), surface);
+}
+
+}  // namespace
+
+std::vector<CostSubject> cost_subjects() {
+  std::vector<CostSubject> subjects;
+  const auto add = [&](std::string name, const render::ContactChoice& choice) {
+    subjects.push_back({std::move(name), CostSubject::Kind::kContact, [choice]() -> Built {
+                          return render::build_object_touch(
+                              kCostRing.mesh(kCostAround, kCostAcross), choice,
+                              {.spring = kSpring, .effects = {}});
+                        }});
+  };
+  using enum render::TrackerChoice;
+  for (std::size_t i = 0; i < render::kTrackerNames.size(); ++i) {
+    const auto tracker = static_cast<render::TrackerChoice>(i);
+    // These two have one way to be felt.
+    render::ContactChoice choice = choice_of(tracker);
+    if (tracker == kGodObject || tracker == kCompact) {
+      add(std::string(render::kTrackerNames[i]), choice);
+      continue;
+    }
+    choice.curved_depth = false;
+    for (std::size_t j = 0; j < render::kBlendingNames.size(); ++j) {
+      choice.blending = static_cast<render::BlendingChoice>(j);
+      add(joined(render::kTrackerNames[i], '+', render::kBlendingNames[j]), choice);
+    }
+    choice.curved_depth = true;
+    add(joined(render::kTrackerNames[i], '+', "phong+curved_depth"), choice);
+  }
+  add(kBareSubject, choice_of(kOffset));
+  for (const render::EffectKind& kind : render::effect_table()) {
+    subjects.push_back({joined(kind.group, ':', kind.name), CostSubject::Kind::kEffect,
+                        [&kind] { return build_effect(kind); }});
+  }
+  return subjects;
+}
+
+}  // namespace thimble::app
