@@ -114,6 +114,7 @@ void add_mesh_command(CLI::App& app, int& exit_code) {
                       "Write the mesh repaired (OFF): welded within 1e-5 of its size, no triangles "
                       "without area or twice, seams closed, wound outwards");
   add_mesh_page_command(*command, exit_code);
+  add_mesh_generate_command(*command, exit_code);
   command->callback([command, options, &exit_code] {
     if (!command->get_subcommands().empty()) return;
     if (options->file.empty()) throw CLI::RequiredError("FILE");

@@ -19,5 +19,7 @@ void add_mesh_page_command(CLI::App& mesh_command, int& exit_code);
 void add_study_command(CLI::App& app, int& exit_code);
 /// `thimble cost-probe SUBJECT STROKES`: what `thimble study cost` counts the instructions of.
 void add_cost_probe_command(CLI::App& app, int& exit_code);
+/// `thimble mesh generate OUT`: writes a page file of any number of triangles.
+void add_mesh_generate_command(CLI::App& mesh_command, int& exit_code);
 
 }  // namespace thimble::app

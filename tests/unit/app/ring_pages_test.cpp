@@ -1,0 +1,164 @@
+#include "ring_pages.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "resident_memory.h"
+#include "support/contact_walk.h"
+#include "support/random.h"
+#include "support/scratch.h"
+#include "thimble/render/contact/bvh.h"
+#include "thimble/render/page/paged_surface.h"
+
+namespace thimble::app {
+namespace {
+
+using Eigen::Vector3d;
+using render::CompactTriangle;
+
+constexpr BumpyRing kRing;
+
+std::filesystem::path ring_of(std::int64_t triangles) {
+  const auto file = support::scratch_folder() / (std::to_string(triangles) + ".pages");
+  if (!std::filesystem::exists(file)) {
+    EXPECT_TRUE(write_ring(kRing, ring_grid(kRing, triangles), file).ok());
+  }
+  return file;
+}
+
+std::array<std::int32_t, 3> corner(const CompactTriangle& t, std::size_t k) {
+  return {t.x[k], t.y[k], t.z[k]};
+}
+
+/// Tells whether the edge from corner k of `t` runs backwards along one edge of `other` whose
+/// neighbour is `number`, with the same normals at its ends.
+bool shares_edge(const CompactTriangle& t, std::size_t k, std::int32_t number,
+                 const CompactTriangle& other) {
+  for (std::size_t m = 0; m < 3; ++m) {
+    if (other.neighbours[m] == number && corner(other, m) == corner(t, (k + 1) % 3) &&
+        corner(other, (m + 1) % 3) == corner(t, k) && other.normals[m] == t.normals[(k + 1) % 3] &&
+        other.normals[(m + 1) % 3] == t.normals[k]) {
+      return true;
+    }
+  }
+  return false;
+}
+
+TEST(RingPages, AreAClosedSurfaceWhoseNeighboursAreMutualAndBoxesRight) {
+  for (const std::int64_t triangles : {1024, 20'000, 100'000}) {
+    const auto file = render::PageFile::open(ring_of(triangles));
+    ASSERT_TRUE(file.ok()) << file.error().message;
+    const auto wanted = static_cast<double>(triangles);
+    EXPECT_NEAR(file->triangle_count(), wanted, 0.25 * wanted + 100);
+    std::vector<CompactTriangle> all;
+    std::vector<CompactTriangle> page(render::kPageRecords);
+    for (std::size_t p = 0; p < file->boxes().size(); ++p) {
+      ASSERT_EQ(file->read_page(static_cast<std::int32_t>(p), page), render::kPageRecords);
+      const render::PageBox around = render::box_of(page);
+      EXPECT_EQ(around.min, file->boxes()[p].min);
+      EXPECT_EQ(around.max, file->boxes()[p].max);
+      all.insert(all.end(), page.begin(), page.end());
+    }
+    for (std::size_t t = 0; t < all.size(); ++t) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        ASSERT_TRUE(shares_edge(all[t], k, static_cast<std::int32_t>(t),
+                                all[static_cast<std::size_t>(all[t].neighbours[k])]))
+            << "triangle " << t << ", edge " << k;
+      }
+      const Vector3d face = (all[t].corner(1) - all[t].corner(0))
+                                .cross(all[t].corner(2) - all[t].corner(0))
+                                .normalized();
+      for (std::size_t k = 0; k < 3; ++k) {
+        EXPECT_GT(face.dot(render::unpack_normal(all[t].normals[k])),
+                  triangles > 2000 ? 0.95 : 0.6);
+      }
+    }
+  }
+}
+
+TEST(RingPages, GiveTheSameEntriesAsTheSameMeshCutByTheUsualWay) {
+  const auto file = ring_of(20'000);
+  const auto pages = render::PageFile::open(file);
+  ASSERT_TRUE(pages.ok());
+  render::TriangleMesh mesh;
+  std::map<std::array<std::int32_t, 3>, std::int32_t> vertices;
+  std::vector<CompactTriangle> page(render::kPageRecords);
+  for (std::size_t p = 0; p < pages->boxes().size(); ++p) {
+    ASSERT_GT(pages->read_page(static_cast<std::int32_t>(p), page), 0);
+    for (const CompactTriangle& t : page) {
+      std::array<std::int32_t, 3> corners{};
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto [place, is_new] =
+            vertices.try_emplace(corner(t, k), static_cast<std::int32_t>(mesh.vertices.size()));
+        if (is_new) mesh.vertices.push_back(pages->lattice().position(t, k));
+        corners[k] = place->second;
+      }
+      mesh.triangles.push_back(corners);
+    }
+  }
+  const auto surface = render::CompactSurface::build(mesh);
+  ASSERT_TRUE(surface.ok()) << surface.error().message;
+  const render::Bvh tree(*surface);
+  // Corner normals of the mesh are averages, those of the ring are exact.
+  for (std::int32_t t = 0; t < surface->triangle_count(); ++t) {
+    const std::int32_t source = surface->source(t);
+    if (source / render::kPageRecords != 3) continue;
+    ASSERT_GT(pages->read_page(3, page), 0);
+    const CompactTriangle& ours = page[static_cast<std::size_t>(source % render::kPageRecords)];
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_GT(render::unpack_normal(ours.normals[k])
+                    .dot(render::unpack_normal(surface->record(t).normals[k])),
+                0.999);
+    }
+  }
+  auto paged = render::PagedSurface::open(file, {.frames = 64, .reach = 1, .horizon = 0});
+  ASSERT_TRUE(paged.ok());
+  (*paged)->begin_tick({0, 0, 0}, {0, 0, 0});
+  (*paged)->end_tick();
+  while ((*paged)->serve() > 0) {
+  }
+  support::Random random(3);
+  int entries = 0;
+  for (int i = 0; i < 5000; ++i) {
+    const Vector3d from = random.in_box(0.06), to = random.in_box(0.06);
+    bool complete = false;
+    const render::Entry expected = tree.first_entry(from, to);
+    const render::Entry entry = (*paged)->first_entry(from, to, complete);
+    EXPECT_TRUE(complete);
+    ASSERT_EQ(entry.triangle, expected.triangle < 0 ? -1 : surface->source(expected.triangle));
+    entries += entry.triangle >= 0;
+  }
+  EXPECT_GT(entries, 500);
+}
+
+TEST(RingPages, NormalIsThatOfTheSurface) {
+  support::Random random(4);
+  for (int i = 0; i < 200; ++i) {
+    const double u = random.uniform(0, 7), v = random.uniform(0, 7);
+    constexpr double kStep = 1e-5;
+    const Vector3d du = kRing.at(u + kStep, v) - kRing.at(u - kStep, v);
+    const Vector3d dv = kRing.at(u, v + kStep) - kRing.at(u, v - kStep);
+    EXPECT_LT((kRing.normal(u, v) - du.cross(dv).normalized()).norm(), 1e-7);
+    EXPECT_LE(kRing.at(u, v).cwiseAbs().maxCoeff(), kRing.half_size());
+  }
+}
+
+TEST(RingPages, AreWrittenInAMemoryThatDoesNotGrowWithTheMesh) {
+  if (!support::long_form()) GTEST_SKIP() << "writes 640 MB: only with THIMBLE_LONG=1";
+  ring_of(1'000'000);
+  const std::size_t before = resident_memory().most;
+  const auto file = ring_of(10'000'000);
+  EXPECT_LT(resident_memory().most, before + (4u << 20));
+  std::filesystem::remove(file);
+}
+
+TEST(RingPages, SayWhenTheyCannotBeWritten) {
+  EXPECT_FALSE(write_ring(kRing, ring_grid(kRing, 1024), "/no/such/folder/ring.pages").ok());
+}
+
+}  // namespace
+}  // namespace thimble::app
