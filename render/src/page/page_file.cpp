@@ -14,6 +14,8 @@
 #include <type_traits>
 #include <utility>
 
+#include "page/checksum.h"
+
 namespace thimble::render {
 namespace {
 
@@ -21,7 +23,7 @@ static_assert(std::endian::native == std::endian::little, "Page files are little
 static_assert(std::is_trivially_copyable_v<CompactTriangle>);
 
 constexpr std::array<char, 8> kMagic{'T', 'H', 'M', 'B', 'P', 'A', 'G', 'E'};
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 constexpr std::int64_t kAlignment = 4096;  // of the records, so that a page covers whole disk pages
 
 struct Header {
@@ -29,20 +31,34 @@ struct Header {
   std::uint32_t version = kVersion;
   std::uint32_t record_bytes = sizeof(CompactTriangle);
   std::uint32_t page_records = kPageRecords;
-  std::uint32_t unused = 0;
+  std::uint32_t sum = 0;  // of all that stands before the pages, taken while this is 0
   std::int64_t triangle_count = 0;
   std::array<double, 3> origin{};
   double step = 0;
 };
 static_assert(sizeof(Header) == 64);
 
+std::uint32_t sum_of(Header header, const std::vector<PageBox>& boxes,
+                     const std::vector<std::uint64_t>& sums) {
+  header.sum = 0;
+  std::uint64_t sum = checksum(std::as_bytes(std::span(&header, 1)));
+  sum = checksum(std::as_bytes(std::span(boxes)), sum);
+  sum = checksum(std::as_bytes(std::span(sums)), sum);
+  return static_cast<std::uint32_t>(sum ^ (sum >> 32));
+}
+
+std::uint64_t sum_of(std::span<const CompactTriangle> records) {
+  return checksum(std::as_bytes(records));
+}
+
 std::int64_t pages_of(std::int64_t triangles) {
   return (triangles + kPageRecords - 1) / kPageRecords;
 }
 
 std::int64_t records_begin(std::int64_t pages) {
-  const std::int64_t end = static_cast<std::int64_t>(sizeof(Header)) +
-                           pages * static_cast<std::int64_t>(sizeof(PageBox));
+  const std::int64_t end =
+      static_cast<std::int64_t>(sizeof(Header)) +
+      pages * static_cast<std::int64_t>(sizeof(PageBox) + sizeof(std::uint64_t));
   return (end + kAlignment - 1) / kAlignment * kAlignment;
 }
 
@@ -107,6 +123,7 @@ struct PageFileWriter::State {
   std::int64_t written = 0;
   std::vector<CompactTriangle> page;
   std::vector<PageBox> boxes;
+  std::vector<std::uint64_t> sums;
 
   ~State() {
     if (descriptor >= 0) close(descriptor);
@@ -115,6 +132,7 @@ struct PageFileWriter::State {
   bool flush() {
     if (page.empty()) return true;
     boxes.push_back(box_of(page));
+    sums.push_back(sum_of(page));
     const std::int64_t at = records_begin(pages_of(header.triangle_count)) +
                             (written - static_cast<std::int64_t>(page.size())) *
                                 static_cast<std::int64_t>(sizeof(CompactTriangle));
@@ -167,9 +185,12 @@ driver::Result<void> PageFileWriter::finish() {
                                    std::to_string(state.header.triangle_count) + " promised.");
   }
   // The header comes last: a file that was not finished is no page file.
-  if (!state.flush() ||
-      !write_all(state.descriptor, state.boxes.data(), state.boxes.size() * sizeof(PageBox),
-                 sizeof(Header)) ||
+  const bool flushed = state.flush();
+  const std::size_t boxes_size = state.boxes.size() * sizeof(PageBox);
+  state.header.sum = sum_of(state.header, state.boxes, state.sums);
+  if (!flushed || !write_all(state.descriptor, state.boxes.data(), boxes_size, sizeof(Header)) ||
+      !write_all(state.descriptor, state.sums.data(), state.sums.size() * sizeof(std::uint64_t),
+                 static_cast<std::int64_t>(sizeof(Header) + boxes_size)) ||
       !write_all(state.descriptor, &state.header, sizeof(Header), 0)) {
     return trouble(state.file, std::string("writing failed (") + std::strerror(errno) + ").");
   }
@@ -222,9 +243,23 @@ driver::Result<PageFile> PageFile::open(const std::filesystem::path& file) {
                              std::to_string(size) + " bytes; write it again.");
   }
   opened.boxes_.resize(static_cast<std::size_t>(pages));
-  if (!read_all(opened.descriptor_, opened.boxes_.data(), opened.boxes_.size() * sizeof(PageBox),
-                sizeof(Header))) {
+  opened.sums_.resize(static_cast<std::size_t>(pages));
+  const std::size_t boxes_size = opened.boxes_.size() * sizeof(PageBox);
+  if (!read_all(opened.descriptor_, opened.boxes_.data(), boxes_size, sizeof(Header)) ||
+      !read_all(opened.descriptor_, opened.sums_.data(),
+                opened.sums_.size() * sizeof(std::uint64_t),
+                static_cast<std::int64_t>(sizeof(Header) + boxes_size))) {
     return trouble(file, "reading it failed.");
+  }
+  if (sum_of(header, opened.boxes_, opened.sums_) != header.sum) {
+    return trouble(file, "its header is damaged; write it again.");
+  }
+  opened.whole_ = opened.boxes_.front();
+  for (const PageBox& box : opened.boxes_) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      opened.whole_.min[axis] = std::min(opened.whole_.min[axis], box.min[axis]);
+      opened.whole_.max[axis] = std::max(opened.whole_.max[axis], box.max[axis]);
+    }
   }
   opened.lattice_ = {{header.origin[0], header.origin[1], header.origin[2]}, header.step};
   opened.triangle_count_ = static_cast<std::int32_t>(header.triangle_count);
@@ -240,7 +275,9 @@ PageFile& PageFile::operator=(PageFile&& other) noexcept {
   std::swap(lattice_, other.lattice_);
   std::swap(triangle_count_, other.triangle_count_);
   std::swap(records_at_, other.records_at_);
+  std::swap(whole_, other.whole_);
   std::swap(boxes_, other.boxes_);
+  std::swap(sums_, other.sums_);
   return *this;
 }
 
@@ -259,6 +296,10 @@ std::int32_t PageFile::read_page(std::int32_t page,
                 static_cast<std::size_t>(count) * sizeof(CompactTriangle), at)) {
     return 0;
   }
+  if (sum_of(records.first(static_cast<std::size_t>(count))) !=
+      sums_[static_cast<std::size_t>(page)]) {
+    return 0;
+  }
   // The servo follows neighbours without asking: none may lead out of the file.
   for (std::int32_t i = 0; i < count; ++i) {
     for (const std::int32_t neighbour : records[static_cast<std::size_t>(i)].neighbours) {
@@ -266,6 +307,11 @@ std::int32_t PageFile::read_page(std::int32_t page,
     }
   }
   return count;
+}
+
+void PageFile::announce_page(std::int32_t page) const noexcept {
+  constexpr off_t kPageBytes = kPageRecords * sizeof(CompactTriangle);
+  posix_fadvise(descriptor_, records_at_ + page * kPageBytes, kPageBytes, POSIX_FADV_WILLNEED);
 }
 
 }  // namespace thimble::render

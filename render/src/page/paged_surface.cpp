@@ -7,7 +7,9 @@
 #include <string>
 #include <utility>
 
-#include "thimble/render/mesh/segment_crossing.h"
+#include "contact/record_tests.h"
+#include "page/record_segment.h"
+#include "thimble/render/contact/closest_point.h"
 
 namespace thimble::render {
 namespace {
@@ -18,15 +20,9 @@ using Eigen::Vector3d;
 // tenth of the default reach.
 constexpr std::chrono::microseconds kRest{200};
 
-double distance_squared(const PageBox& box, const Vector3d& p) noexcept {
-  double sum = 0;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double x = p[static_cast<Eigen::Index>(axis)];
-    const double outside = std::max({double{box.min[axis]} - x, x - double{box.max[axis]}, 0.0});
-    sum += outside * outside;
-  }
-  return sum;
-}
+// So many pages nearer than the nearest triangle found may be absent before a search for it gives
+// up: a few hundred ns.
+constexpr int kAbsentMax = 64;
 
 }  // namespace
 
@@ -70,45 +66,96 @@ void PagedSurface::end_tick() noexcept {
   tick_.fetch_add(1, std::memory_order_seq_cst);
 }
 
-Entry PagedSurface::first_entry(const Vector3d& p_from, const Vector3d& p_to,
-                                bool& complete) const noexcept {
-  complete = true;
-  Entry first;
-  const Lattice& lattice = file_.lattice();
-  const Vector3d from = (p_from - lattice.origin) / lattice.step;
-  const Vector3d to = (p_to - lattice.origin) / lattice.step;
-  const Vector3d way = to - from;
-  // Two steps of room: the rounding of these divisions, and of the boxes.
-  const Vector3d low = from.cwiseMin(to) - Vector3d::Constant(2);
-  const Vector3d high = from.cwiseMax(to) + Vector3d::Constant(2);
-  tree_.visit_reached(low, high, [&](std::int32_t page) noexcept {
-    const std::int32_t frame_number =
-        table_[static_cast<std::size_t>(page)].load(std::memory_order_seq_cst);
-    if (frame_number < 0) {
+template <class Visit>
+bool PagedSurface::visit_crossings(const RecordSegment& segment, Visit visit) const noexcept {
+  bool complete = true;
+  tree_.visit_reached(segment.low, segment.high, [&](std::int32_t page) noexcept {
+    if (!segment.reaches(file_.boxes()[static_cast<std::size_t>(page)])) return true;
+    const Frame* const frame = frame_of(page);
+    if (frame == nullptr) {
       complete = false;
       return true;
     }
-    const Frame& frame = frames_[static_cast<std::size_t>(frame_number)];
-    for (std::int32_t begin = 0; begin < frame.count; begin += kGroup) {
-      if (!reaches(frame.boxes[static_cast<std::size_t>(begin / kGroup)], low, high)) continue;
-      for (std::int32_t i = begin; i < std::min(begin + kGroup, frame.count); ++i) {
-        const CompactTriangle& record = frame.records[static_cast<std::size_t>(i)];
-        if (crossing(p_from, p_to, lattice.position(record, 0), lattice.position(record, 1),
-                     lattice.position(record, 2)) != Crossing::kEnters) {
-          continue;
-        }
-        const Vector3d a = record.corner(0);
-        const Vector3d n = (record.corner(1) - a).cross(record.corner(2) - a);
-        const double above = n.dot(from - a), steep = -n.dot(way);
-        const double parameter = steep > 0 ? std::clamp(above / steep, 0.0, 1.0) : 0.0;
-        if (first.triangle < 0 || parameter < first.parameter) {
-          first = {page * kPageRecords + i, parameter};
-        }
+    for (std::int32_t begin = 0; begin < frame->count; begin += kGroup) {
+      if (!segment.reaches(frame->boxes[static_cast<std::size_t>(begin / kGroup)])) continue;
+      for (std::int32_t i = begin; i < std::min(begin + kGroup, frame->count); ++i) {
+        double parameter = 0;
+        const Crossing way = segment.cross(frame->records[static_cast<std::size_t>(i)], parameter);
+        if (way != Crossing::kNone) visit(page * kPageRecords + i, way, parameter);
       }
     }
     return true;
   });
+  return complete;
+}
+
+Entry PagedSurface::first_entry(const Vector3d& p_from, const Vector3d& p_to,
+                                bool& complete) const noexcept {
+  Entry first;
+  complete = true;
+  if (!within_range(p_from) || !within_range(p_to)) return first;
+  complete = visit_crossings(RecordSegment(file_.lattice(), p_from, p_to),
+                             [&first](std::int32_t t, Crossing way, double parameter) noexcept {
+                               if (way != Crossing::kEnters) return;
+                               if (first.triangle >= 0 && parameter >= first.parameter) return;
+                               first = {t, parameter};
+                             });
   return first;
+}
+
+std::int32_t PagedSurface::closest(const Vector3d& p_W, double radius,
+                                   bool& complete) const noexcept {
+  complete = true;
+  if (!within_range(p_W) || !(radius >= 0)) return -1;
+  const Vector3d p = (p_W - file_.lattice().origin) / file_.lattice().step;
+  const double reach = radius / file_.lattice().step;
+  double best_squared = reach * reach;
+  double absent_squared = HUGE_VAL;
+  std::int32_t best = -1;
+  int absent = 0;
+  tree_.visit_near(p, best_squared, [&](std::int32_t page, double squared) noexcept {
+    const Frame* const frame = frame_of(page);
+    if (frame == nullptr) {
+      absent_squared = std::min(absent_squared, squared);
+      // Who lacks so many does not know; and a tick has an end.
+      return ++absent < kAbsentMax ? best_squared : 0.0;
+    }
+    for (std::int32_t begin = 0; begin < frame->count; begin += kGroup) {
+      const PageBox& box = frame->boxes[static_cast<std::size_t>(begin / kGroup)];
+      if (!(distance_squared(box, p) < best_squared)) continue;
+      for (std::int32_t i = begin; i < std::min(begin + kGroup, frame->count); ++i) {
+        const CompactTriangle& r = frame->records[static_cast<std::size_t>(i)];
+        const double away =
+            (closest_point(p, r.corner(0), r.corner(1), r.corner(2)) - p).squaredNorm();
+        const std::int32_t t = page * kPageRecords + i;
+        if (!(away < best_squared || (away == best_squared && best >= 0 && t < best))) continue;
+        best_squared = away;
+        best = t;
+      }
+    }
+    return best_squared;
+  });
+  complete = absent < kAbsentMax && !(absent_squared < best_squared);
+  return best;
+}
+
+bool PagedSurface::inside(const Vector3d& p_W, bool& complete) const noexcept {
+  const std::int32_t near = closest(p_W, HUGE_VAL, complete);
+  if (!complete || near < 0) return false;
+  const CompactTriangle& r = *find(near);
+  const Vector3d a = r.corner(0);
+  const Vector3d side = r.corner(1) - a, other = r.corner(2) - a;
+  const Vector3d n = side.cross(other);
+  // A thousandth of the triangle below its middle is inside, and a way from there to the point
+  // crosses the surface an even number of times if that is inside too. The way is as short as can
+  // be, so that few pages need be there.
+  const double height = 1e-3 * std::sqrt(n.norm());
+  const Vector3d under = a + (side + other) / 3 - height / n.norm() * n;
+  int crossings = 0;
+  complete = visit_crossings(
+      RecordSegment(file_.lattice(), p_W, file_.lattice().origin + file_.lattice().step * under),
+      [&crossings](std::int32_t, Crossing, double) noexcept { ++crossings; });
+  return complete && crossings % 2 == 0;
 }
 
 void PagedSurface::start_loader() {
@@ -164,6 +211,13 @@ std::size_t PagedSurface::serve() {
   }
   // A few pages at a time, then a new look at where the tip is.
   constexpr std::size_t kAtOnce = 16;
+  std::size_t announced = 0;
+  for (const auto& [distance, page] : wanted_) {
+    if (announced == kAtOnce) break;
+    if (table_[static_cast<std::size_t>(page)].load(std::memory_order_relaxed) >= 0) continue;
+    file_.announce_page(page);
+    ++announced;
+  }
   std::size_t read = 0;
   for (const auto& [distance, page] : wanted_) {
     if (read == kAtOnce || stop_.load(std::memory_order_relaxed)) break;
@@ -227,7 +281,7 @@ PagingCounters PagedSurface::counters() const noexcept {
 
 std::size_t PagedSurface::bytes() const noexcept {
   return frames_.size() * sizeof(Frame) + table_.size() * sizeof(table_[0]) +
-         4 * file_.boxes().size() * sizeof(PageBox);
+         file_.boxes().size() * (5 * sizeof(PageBox) + sizeof(std::uint64_t));
 }
 
 }  // namespace thimble::render

@@ -114,22 +114,35 @@ TEST(PageFile, IsRefusedWithAReasonWhenItIsNoneOrDamaged) {
             std::string::npos);
 }
 
-TEST(PageFile, GivesNoPageWhoseNeighboursLeadOutOfTheFile) {
+TEST(PageFile, GivesNoPageThatIsDamagedInAnyBit) {
   support::Random random(5);
   const std::string good = bytes_of(page_file());
   const std::size_t records_at =
       good.size() - static_cast<std::size_t>(bumpy().triangle_count()) * sizeof(CompactTriangle);
-  for (int k = 0; k < 50; ++k) {
+  for (int k = 0; k < 200; ++k) {
     std::string damaged = good;
-    const std::size_t record = random.bits() % 1024;
-    damaged[records_at + record * 64 + 48 + 3] = '\x7f';  // high byte of the first neighbour
+    const std::size_t at = random.bits() % (64 * 1024);
+    damaged[records_at + at] =
+        static_cast<char>(damaged[records_at + at] ^ (1 << (random.bits() % 8)));
     const auto path = support::scratch_folder() / "damaged.pages";
     std::ofstream(path, std::ios::binary) << damaged;
     const auto file = PageFile::open(path);
     ASSERT_TRUE(file.ok());
     std::vector<CompactTriangle> records(kPageRecords);
-    EXPECT_EQ(file->read_page(0, records), 0);
+    EXPECT_EQ(file->read_page(0, records), 0) << "byte " << at;
     EXPECT_GT(file->read_page(1, records), 0);
+  }
+}
+
+TEST(PageFile, IsRefusedWhenAnyBitBeforeItsPagesIsDamaged) {
+  support::Random random(6);
+  const std::string good = bytes_of(page_file());
+  const std::size_t used = 64 + (24 + 8) * PageFile::open(page_file())->boxes().size();
+  for (int k = 0; k < 300; ++k) {
+    std::string damaged = good;
+    const std::size_t at = k < 64 ? static_cast<std::size_t>(k) : random.bits() % used;
+    damaged[at] = static_cast<char>(damaged[at] ^ (1 << (random.bits() % 8)));
+    EXPECT_NE(refusal(damaged), "") << "byte " << at;
   }
 }
 
@@ -208,6 +221,76 @@ TEST(PagedSurface, FindsTheSameEntriesAsATreeInMemoryAndSaysWhenItCannotKnow) {
     EXPECT_NEAR(entry.parameter, expected.parameter, 1e-9);
   }
   EXPECT_GT(entries, 10'000);
+}
+
+TEST(PagedSurface, KnowsInsideAndNearestAsATreeInMemoryDoes) {
+  const auto surface = open({.frames = 64, .reach = 1, .horizon = 0});
+  const Bvh tree(bumpy());
+  support::Random random(9);
+  bool complete = true;
+  surface->inside({0, 0, 0}, complete);
+  EXPECT_FALSE(complete);
+  EXPECT_EQ(surface->closest({0, 0, 0}, 1, complete), -1);
+  EXPECT_FALSE(complete);
+  tick(*surface, {0, 0, 0.05});
+  serve_all(*surface);
+  int within = 0;
+  for (int k = 0; k < 5'000; ++k) {
+    const auto t = static_cast<std::int32_t>(random.bits() % 20'480);
+    // Corners, middles of edges, places near the surface and anywhere.
+    Vector3d p = random.in_box(0.06);
+    if (k % 4 == 0) p = bumpy().position(t, 0);
+    if (k % 4 == 1) p = 0.5 * (bumpy().position(t, 0) + bumpy().position(t, 1));
+    if (k % 4 == 2) p = bumpy().position(t, 0) + random.in_box(1e-4);
+    const bool inside = surface->inside(p, complete);
+    EXPECT_TRUE(complete);
+    EXPECT_EQ(inside, tree.inside(p)) << k;
+    within += inside;
+    const SurfacePoint nearest = tree.closest(p, 0.002);
+    const std::int32_t found = surface->closest(p, 0.002, complete);
+    EXPECT_TRUE(complete);
+    if (k % 4 > 1) {  // else several are equally near
+      EXPECT_EQ(found, nearest.triangle) << k;
+    }
+    EXPECT_EQ(found < 0, nearest.triangle < 0) << k;
+  }
+  EXPECT_GT(within, 1000);
+  EXPECT_LT(within, 4000);
+}
+
+TEST(PagedSurface, SaysThatItCannotKnowRatherThanAnythingWrong) {
+  // A few pages of many: every answer that claims to be complete must be right.
+  const auto surface = open({.frames = 5, .reach = 0.006, .horizon = 0});
+  const Bvh tree(bumpy());
+  support::Random random(10);
+  int known = 0, unknown = 0;
+  for (int place = 0; place < 40; ++place) {
+    const Vector3d around = 0.05 * random.direction();
+    tick(*surface, around);
+    serve_all(*surface);
+    for (int k = 0; k < 200; ++k) {
+      const Vector3d p = around + random.in_box(0.008), to = around + random.in_box(0.008);
+      bool complete = false;
+      const bool inside = surface->inside(p, complete);
+      if (complete) {
+        EXPECT_EQ(inside, tree.inside(p));
+      }
+      if (!complete) {
+        EXPECT_FALSE(inside);
+      }
+      complete ? ++known : ++unknown;
+      const Entry entry = surface->first_entry(p, to, complete);
+      if (complete) {
+        EXPECT_EQ(entry.triangle, tree.first_entry(p, to).triangle);
+      }
+      const std::int32_t nearest = surface->closest(p, 0.01, complete);
+      if (complete) {
+        EXPECT_EQ(nearest, tree.closest(p, 0.01).triangle);
+      }
+    }
+  }
+  EXPECT_GT(known, 1000);
+  EXPECT_GT(unknown, 1000);
 }
 
 TEST(PagedSurface, NeverShowsAWrongRecordWhileALoaderChangesItsFrames) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <filesystem>
@@ -16,10 +17,11 @@ namespace thimble::render {
 // Page files: a closed surface cut into volumes, so that only what lies around the tip need be in
 // memory [BP 4.1]. A volume is a run of kPageRecords records that lie near each other in space.
 //
-//   header | one box per page | padding to a page of the disk | pages of records
+//   header | one box per page | one checksum per page | padding to a page of the disk | pages
 //
 // Little endian, as the machine is; records as CompactTriangle lays them out. A file of another
-// version, byte order or record is refused.
+// version, byte order or record is refused, and so is damage: on opening that of what stands before
+// the pages, on reading that of a page.
 
 /// Is how many records a page holds: 64 KiB, a size that disks read at full speed.
 inline constexpr std::int32_t kPageRecords = 1024;
@@ -42,6 +44,17 @@ inline bool reaches(const PageBox& box, const Eigen::Vector3d& low,
     if (!(double{box.min[axis]} <= high[i] && double{box.max[axis]} >= low[i])) return false;
   }
   return true;
+}
+
+/// Finds the squared distance from a point to a box, in squared steps; 0 inside. Real-time: safe.
+inline double distance_squared(const PageBox& box, const Eigen::Vector3d& p) noexcept {
+  double sum = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double x = p[static_cast<Eigen::Index>(axis)];
+    const double outside = std::max({double{box.min[axis]} - x, x - double{box.max[axis]}, 0.0});
+    sum += outside * outside;
+  }
+  return sum;
 }
 
 /// Is the lattice of a surface: where its middle lies and how long one step is, m in W.
@@ -98,11 +111,17 @@ class PageFile {
   ~PageFile();
 
   /// Reads a page's records; `records` must have room for `kPageRecords`. Returns how many it
-  /// holds, or 0 if the disk failed or a record names a neighbour that cannot be.
+  /// holds, or 0 if the disk failed, the page is damaged, or a record names a neighbour that cannot
+  /// be.
   std::int32_t read_page(std::int32_t page, std::span<CompactTriangle> records) const noexcept;
+
+  /// Asks the kernel to bring a page near, for a `read_page` soon: so the disk works on several.
+  void announce_page(std::int32_t page) const noexcept;
 
   const Lattice& lattice() const noexcept { return lattice_; }
   std::int32_t triangle_count() const noexcept { return triangle_count_; }
+  /// Tells the box around the whole surface, in steps.
+  const PageBox& whole() const noexcept { return whole_; }
   const std::vector<PageBox>& boxes() const noexcept { return boxes_; }
 
  private:
@@ -112,7 +131,9 @@ class PageFile {
   Lattice lattice_;
   std::int32_t triangle_count_ = 0;
   std::int64_t records_at_ = 0;
+  PageBox whole_{};
   std::vector<PageBox> boxes_;
+  std::vector<std::uint64_t> sums_;
 };
 
 }  // namespace thimble::render

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "thimble/render/page/page_file.h"
@@ -35,6 +36,33 @@ class PageTree {
       } else if (!visit(static_cast<std::int32_t>(node - leaves_))) {
         return;
       }
+    }
+  }
+
+  /// Calls `visit(number, squared distance)` for boxes nearer to `p` than a limit, near ones first
+  /// as far as the tree tells; `visit` returns the new limit (squared steps). Precondition: `p` is
+  /// finite.
+  template <class Visit>
+  void visit_near(const Eigen::Vector3d& p, double limit_squared, Visit visit) const {
+    struct Waiting {
+      std::size_t node;
+      double squared;
+    };
+    std::array<Waiting, 64> waiting;
+    std::size_t count = 0;
+    waiting[count++] = {1, distance_squared(nodes_[1], p)};
+    while (count > 0) {
+      const Waiting next = waiting[--count];
+      if (!(next.squared < limit_squared)) continue;
+      if (next.node >= leaves_) {
+        limit_squared = visit(static_cast<std::int32_t>(next.node - leaves_), next.squared);
+        continue;
+      }
+      Waiting near{2 * next.node, distance_squared(nodes_[2 * next.node], p)};
+      Waiting far{2 * next.node + 1, distance_squared(nodes_[2 * next.node + 1], p)};
+      if (far.squared < near.squared) std::swap(near, far);
+      waiting[count++] = far;
+      waiting[count++] = near;
     }
   }
 

@@ -19,6 +19,8 @@
 
 namespace thimble::render {
 
+class RecordSegment;
+
 /// Sets how much of a paged surface is kept in memory around the tip.
 struct PagingSettings {
   std::size_t frames = 4096;  ///< Pages in memory at once: 256 MiB. Must be > 0.
@@ -53,25 +55,34 @@ class PagedSurface {
 
   // The servo's side: one thread. Real-time: safe.
 
-  /// Begins a tick with the tip at `p_W` (m), moving with `v_W` (m/s).
+  /// Begins a tick that will ask about places near `p_W` (m), which move with `v_W` (m/s): the tip
+  /// while it is free, the place that it touches while it touches.
   void begin_tick(const Eigen::Vector3d& p_W, const Eigen::Vector3d& v_W) noexcept;
   /// Ends a tick: records found in it may go.
   void end_tick() noexcept;
 
   /// Finds a record, or nullptr if its page is not in memory. Good until `end_tick`.
   const CompactTriangle* find(std::int32_t triangle) const noexcept {
-    const std::int32_t frame =
-        table_[static_cast<std::size_t>(triangle / kPageRecords)].load(std::memory_order_seq_cst);
-    if (frame < 0) return nullptr;
-    return &frames_[static_cast<std::size_t>(frame)]
-                .records[static_cast<std::size_t>(triangle % kPageRecords)];
+    const Frame* const frame = frame_of(triangle / kPageRecords);
+    return frame == nullptr ? nullptr
+                            : &frame->records[static_cast<std::size_t>(triangle % kPageRecords)];
   }
 
-  /// Finds the first record that the segment (W, m) crosses from outside to inside, among those in
-  /// memory; `complete` tells whether all that could matter were.
+  // Answers of the following are about the records in memory; `complete` tells whether they are
+  // those about the whole surface.
+
+  /// Finds the first record that the segment (W, m) crosses from outside to inside.
   Entry first_entry(const Eigen::Vector3d& p_from, const Eigen::Vector3d& p_to,
                     bool& complete) const noexcept;
 
+  /// Finds the record nearest to a point (W, m) and nearer than `radius` (m), -1 for none.
+  std::int32_t closest(const Eigen::Vector3d& p_W, double radius, bool& complete) const noexcept;
+
+  /// Tells whether a point (W, m) is inside; false if not `complete`. Needs the pages between the
+  /// point and the surface nearest to it.
+  bool inside(const Eigen::Vector3d& p_W, bool& complete) const noexcept;
+
+  const PageFile& file() const noexcept { return file_; }
   std::int32_t triangle_count() const noexcept { return file_.triangle_count(); }
   const Lattice& lattice() const noexcept { return file_.lattice(); }
 
@@ -97,6 +108,14 @@ class PagedSurface {
     std::array<PageBox, kGroups> boxes;  // of each group, in steps
     std::int32_t count = 0;
   };
+  const Frame* frame_of(std::int32_t page) const noexcept {
+    const std::int32_t frame =
+        table_[static_cast<std::size_t>(page)].load(std::memory_order_seq_cst);
+    return frame < 0 ? nullptr : &frames_[static_cast<std::size_t>(frame)];
+  }
+  template <class Visit>
+  bool visit_crossings(const RecordSegment& segment, Visit visit) const noexcept;
+
   struct Cursor {
     std::array<double, 3> p_W{};
     std::array<double, 3> v_W{};
