@@ -44,7 +44,7 @@ void add_mesh_generate_command(CLI::App& mesh_command, int& exit_code) {
   command
       ->add_option("--triangles", options->triangles,
                    "About how many; a triangle takes 64 bytes on the disk")
-      ->check(CLI::Range(1024.0, 2e9))
+      ->check(CLI::Range(1024.0, 2.5e8))
       ->capture_default_str();
   command->add_option("--size", options->size, "Width of the ring, m")
       ->check(CLI::Range(1e-3, 2.0))

@@ -220,6 +220,12 @@ driver::Result<void> write_ring(const BumpyRing& ring, const RingGrid& grid,
                                    numbers.triangle(gi - 1, gj, false)};
       }
     }
+    // What a touch tells of: there is no other file that it could be counted in.
+    for (std::size_t i = 0; i < page.size(); ++i) {
+      page[i].flags =
+          static_cast<std::uint32_t>(number * render::kPageRecords + static_cast<std::int32_t>(i))
+          << render::CompactTriangle::kSourceShift;
+    }
     if (auto done = writer->append(page); !done) return done;
   }
   return writer->finish();

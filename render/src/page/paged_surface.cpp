@@ -158,6 +158,28 @@ bool PagedSurface::inside(const Vector3d& p_W, bool& complete) const noexcept {
   return complete && crossings % 2 == 0;
 }
 
+bool PagedSurface::inside_by_reading(const Vector3d& p_W) const {
+  if (!within_range(p_W)) return false;
+  Vector3d p_out = p_W;
+  p_out.x() = file_.lattice().origin.x() + 4 * kLatticeHalf * file_.lattice().step;
+  const RecordSegment way(file_.lattice(), p_W, p_out);
+  std::vector<CompactTriangle> records(kPageRecords);
+  int crossings = 0;
+  bool read = true;
+  tree_.visit_reached(way.low, way.high, [&](std::int32_t page) {
+    const std::int32_t count = file_.read_page(page, records);
+    read = read && count > 0;
+    for (std::int32_t i = 0; i < count; ++i) {
+      double parameter = 0;
+      if (way.cross(records[static_cast<std::size_t>(i)], parameter) != Crossing::kNone) {
+        ++crossings;
+      }
+    }
+    return read;
+  });
+  return read && crossings % 2 == 1;
+}
+
 void PagedSurface::start_loader() {
   loader_ = std::thread([this] {
     while (!stop_.load(std::memory_order_relaxed)) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 
 #include "thimble/driver/result.h"
@@ -26,6 +27,7 @@ class CompactStore {
     return surface_->to_lattice(p_W);
   }
   double step() const noexcept { return surface_->step(); }
+  double reach() const noexcept { return std::numeric_limits<double>::infinity(); }
   FoundEntry first_entry(const Eigen::Vector3d& p_from,
                          const Eigen::Vector3d& p_to) const noexcept {
     return {.entry = search_->first_entry(p_from, p_to)};

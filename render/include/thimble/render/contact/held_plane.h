@@ -17,14 +17,18 @@ class HeldPlane {
 
   /// Puts the contact at `p_WT` (W, m) on the plane; the first call of a hold takes the plane from
   /// `state`, that of the last tick. The depth is at least 0: nobody knows that the contact ended.
+  /// Once the tip has come above the plane it stays 0: a plane has no end, and who goes round the
+  /// object must not run into it in free air.
   void hold(const Eigen::Vector3d& p_WT, ContactState& state) noexcept {
     if (left_ < kFadeTicks) {
       n_W_ = state.n_W;
       height_ = state.n_W.dot(state.p_WP);
+      lifted_ = false;
     }
     left_ = kFadeTicks;
     state.n_W = n_W_;
-    state.depth = std::max(height_ - n_W_.dot(p_WT), 0.0);
+    state.depth = held_depth(p_WT);
+    lifted_ = lifted_ || !(state.depth > 0);
     state.p_WP = p_WT + state.depth * n_W_;
   }
 
@@ -33,7 +37,7 @@ class HeldPlane {
     if (left_ == 0) return;
     --left_;
     const double share = static_cast<double>(left_) / kFadeTicks;
-    const double held = std::max(height_ - n_W_.dot(p_WT), 0.0);
+    const double held = held_depth(p_WT);
     const Eigen::Vector3d turned = (1 - share) * state.n_W + share * n_W_;
     const double size = std::sqrt(turned.squaredNorm());
     // Opposite to each other: no way to turn is better than another.
@@ -47,7 +51,7 @@ class HeldPlane {
   bool fade_out(const Eigen::Vector3d& p_WT, ContactState& state) noexcept {
     if (left_ == 0) return false;
     --left_;
-    const double depth = height_ - n_W_.dot(p_WT);
+    const double depth = held_depth(p_WT);
     if (!(depth > 0) || left_ == 0) return false;
     state.n_W = n_W_;
     state.depth = depth * left_ / kFadeTicks;
@@ -59,7 +63,12 @@ class HeldPlane {
   void drop() noexcept { left_ = 0; }
 
  private:
-  int left_ = 0;  // ticks of fading to come; kFadeTicks while held
+  double held_depth(const Eigen::Vector3d& p_WT) const noexcept {
+    return lifted_ ? 0.0 : std::max(height_ - n_W_.dot(p_WT), 0.0);
+  }
+
+  bool lifted_ = false;  // whether the tip has been above the plane since the hold began
+  int left_ = 0;         // ticks of fading to come; kFadeTicks while held
   Eigen::Vector3d n_W_{0, 0, 0};
   double height_ = 0;  // n_W . p on the plane, m
 };

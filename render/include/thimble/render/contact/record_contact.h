@@ -26,9 +26,11 @@ namespace thimble::render {
 /// radius R the depth starts at up to L^2 / 6R [STABILITY 3]. It ends when the depth is negative
 /// and the tip is outside the triangles; in a hollow the depth is 0 until then.
 ///
-/// Where a record is absent the plane felt last is held (held_plane.h) and the tick is counted; the
-/// contact goes on from the last triangle at hand, and while it is free it keeps the path that it
-/// could not examine.
+/// Where a record is absent the plane felt last is held (held_plane.h) and the tick is counted. The
+/// contact goes on from the last triangle at hand, or from the one nearest to where the tip is held
+/// if the way there is not; it ends if there is none within the store's reach. A free tip keeps the
+/// path that could not be examined; an entry found on it later counts if the tip is inside then,
+/// for nobody knows whether it went straight.
 template <RecordStore Store>
 class RecordContact {
  public:
@@ -59,6 +61,7 @@ class RecordContact {
   Outcome settle(const Eigen::Vector3d& p, bool walked, LoweredPlace& place) noexcept;
   Outcome find_again(const Eigen::Vector3d& p_WT, const Eigen::Vector3d& p,
                      std::int32_t before) noexcept;
+  Outcome resume(const Eigen::Vector3d& p_WT, const Eigen::Vector3d& p_WP) noexcept;
   Outcome find_near(const Eigen::Vector3d& p, std::int32_t before) noexcept;
   Outcome walk(const Eigen::Vector3d& p, std::int32_t& triangle) noexcept;
   Outcome edge_to_hop(const Eigen::Vector3d& p, const LoweredPlace& place,
@@ -78,6 +81,7 @@ class RecordContact {
   TrackerCounters counters_;
   Eigen::Vector3d p_WT_before_{0, 0, 0};
   bool has_before_ = false;
+  bool path_kept_ = false;  // whether the path began before the last tick
   HeldPlane held_;
   std::uint64_t ticks_held_ = 0;
 };

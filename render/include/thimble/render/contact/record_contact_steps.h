@@ -27,18 +27,23 @@ const ContactState& RecordContact<Store>::update(const driver::DeviceState& stat
   if (!(std::abs(p_WT.x()) <= kPositionMax && std::abs(p_WT.y()) <= kPositionMax &&
         std::abs(p_WT.z()) <= kPositionMax)) {
     end();
-    has_before_ = false;
+    has_before_ = path_kept_ = false;
     return state_;
   }
   if (!state_.touching && !begin(p_WT)) return state_;
   p_WT_before_ = p_WT;
-  const Outcome outcome = follow(p_WT);
+  ContactState held = state_;
+  Outcome outcome = follow(p_WT);
   if constexpr (!Store::kComplete) {
     // The one place where an absent record is felt.
     if (outcome == Outcome::kUnknown) {
       ++ticks_held_;
-      held_.hold(p_WT, state_);
-      state_.touching = true;
+      held_.hold(p_WT, held);
+      held.touching = true;
+      outcome = resume(p_WT, held.p_WP);
+    }
+    if (outcome == Outcome::kUnknown) {
+      state_ = held;
       return state_;
     }
     if (outcome == Outcome::kYes) {
@@ -68,9 +73,17 @@ bool RecordContact<Store>::begin(const Eigen::Vector3d& p_WT) noexcept {
   const Eigen::Vector3d from = p_WT_before_;
   if (has_before_) found = store_.first_entry(from, p_WT);
   state_ = {};
+  if constexpr (!Store::kComplete) {
+    if (path_kept_ && found.complete && found.entry.triangle >= 0) {
+      const Known inside = store_.inside(p_WT);
+      if (inside == Known::kNo) found.entry = {};
+      if (inside == Known::kUnknown) found = {.entry = {}, .complete = false};
+    }
+    if (!found.complete) ++ticks_held_;
+    path_kept_ = !found.complete && found.entry.triangle < 0;
+  }
   if (found.complete) p_WT_before_ = p_WT;
   has_before_ = true;
-  if (!found.complete) ++ticks_held_;
   if (found.entry.triangle < 0 || !activate(found.entry.triangle)) return false;
   state_.n_W = lowered_.face();
   state_.triangle = lowered_.source();
@@ -267,6 +280,25 @@ typename RecordContact<Store>::Outcome RecordContact<Store>::find_again(
   if (nearest.triangle < 0 || !activate(nearest.triangle)) return Outcome::kNo;
   ++counters_.found_far;
   return Outcome::kYes;
+}
+
+// Goes on where the tip is held, when the way there from the active triangle is not at hand.
+template <RecordStore Store>
+typename RecordContact<Store>::Outcome RecordContact<Store>::resume(
+    const Eigen::Vector3d& p_WT, const Eigen::Vector3d& p_WP) noexcept {
+  const FoundRecord nearest = store_.closest(p_WP, store_.reach());
+  if (!nearest.complete) return Outcome::kUnknown;
+  if (nearest.triangle < 0) return Outcome::kNo;
+  if (!activate(nearest.triangle)) return Outcome::kUnknown;
+  const Eigen::Vector3d p = store_.to_lattice(p_WT);
+  LoweredPlace place = lowered_.locate(p);
+  state_.hops = 0;
+  if (settle(p, false, place) != Outcome::kYes) return Outcome::kUnknown;
+  if (place.depth >= 0) {
+    report(p_WT, lowered_.feel(place));
+    if (state_.depth >= 0) return Outcome::kYes;
+  }
+  return store_.inside(p_WT) == Known::kNo ? Outcome::kNo : Outcome::kUnknown;
 }
 
 // Fills in the state from what is felt in the active triangle.

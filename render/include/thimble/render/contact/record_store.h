@@ -35,6 +35,8 @@ concept RecordStore = requires(const Store& store, std::int32_t t, const Eigen::
   { store.find(t) } noexcept -> std::same_as<const CompactTriangle*>;
   { store.to_lattice(p_W) } noexcept -> std::same_as<Eigen::Vector3d>;
   { store.step() } noexcept -> std::same_as<double>;
+  // Once it has caught up, everything is at hand this near to the tip and to what it touches.
+  { store.reach() } noexcept -> std::same_as<double>;
   { store.first_entry(p_W, p_W) } noexcept -> std::same_as<FoundEntry>;
   { store.inside(p_W) } noexcept -> std::same_as<Known>;
   { store.closest(p_W, radius) } noexcept -> std::same_as<FoundRecord>;

@@ -82,6 +82,7 @@ class PagedSurface {
   /// point and the surface nearest to it.
   bool inside(const Eigen::Vector3d& p_W, bool& complete) const noexcept;
 
+  const PagingSettings& settings() const noexcept { return settings_; }
   const PageFile& file() const noexcept { return file_; }
   std::int32_t triangle_count() const noexcept { return file_.triangle_count(); }
   const Lattice& lattice() const noexcept { return file_.lattice(); }
@@ -94,6 +95,10 @@ class PagedSurface {
   /// Brings what is wanted for the tip's last known place and way; returns how many pages it read.
   /// Waits for the end of a tick before it reuses a frame. For whoever has no loader thread.
   std::size_t serve();
+
+  /// Tells whether a point (W, m) is inside, by the parity of crossings on the way out; reads the
+  /// pages on that way. False if a coordinate is NaN or beyond `kPositionMax`, or the disk fails.
+  bool inside_by_reading(const Eigen::Vector3d& p_W) const;
 
   PagingCounters counters() const noexcept;
   /// Counts the bytes held in memory.
