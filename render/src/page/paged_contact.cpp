@@ -25,10 +25,12 @@ const ContactState& PagedContact::update(const driver::DeviceState& state) noexc
   driver::DeviceState in_mesh_state = state;
   in_mesh_state.p_WT = in_mesh(state.p_WT);
   in_mesh_state.v_WT = place_.R_WM.transpose() * state.v_WT * per_scale_;
-  // What a pressed tip touches lies away from it: the pages there count.
-  const Vector3d p_W = state_.touching ? state_.p_WP + (state.p_WT - p_WT_before_) : state.p_WT;
+  // What a pressed tip touches lies away from it, and so may the path that is still to be examined.
+  const Vector3d p_place = state_.touching ? in_mesh(state_.p_WP + (state.p_WT - p_WT_before_))
+                           : has_before_   ? contact_.path_begin()
+                                           : in_mesh_state.p_WT;
   PagedSurface& pages = surface();
-  pages.begin_tick(in_mesh(p_W), in_mesh_state.v_WT);
+  pages.begin_tick(in_mesh_state.p_WT, p_place, in_mesh_state.v_WT);
   ContactState now = contact_.update(in_mesh_state);
   pages.end_tick();
   if (now.touching) {

@@ -45,8 +45,9 @@ PagedSurface::PagedSurface(PageFile file, const PagingSettings& settings)
       frames_(std::min(settings.frames, file_.boxes().size())),
       page_in_frame_(frames_.size(), -1),
       wanted_at_(frames_.size(), 0),
+      wanted_in_(table_.size(), 0),
       incoming_(kPageRecords) {
-  for (auto& frame : table_) frame.store(-1, std::memory_order_relaxed);
+  for (auto& frame : table_) frame.store(kAbsent, std::memory_order_relaxed);
   wanted_.reserve(table_.size());
 }
 
@@ -55,8 +56,11 @@ PagedSurface::~PagedSurface() {
   if (loader_.joinable()) loader_.join();
 }
 
-void PagedSurface::begin_tick(const Vector3d& p_W, const Vector3d& v_W) noexcept {
-  cursor_.store({.p_W = {p_W.x(), p_W.y(), p_W.z()}, .v_W = {v_W.x(), v_W.y(), v_W.z()}});
+void PagedSurface::begin_tick(const Vector3d& p_tip, const Vector3d& p_place,
+                              const Vector3d& v_W) noexcept {
+  cursor_.store({.p_tip = {p_tip.x(), p_tip.y(), p_tip.z()},
+                 .p_place = {p_place.x(), p_place.y(), p_place.z()},
+                 .v_W = {v_W.x(), v_W.y(), v_W.z()}});
   // In one order with the loader's taking back of pages: either it sees this tick and waits for its
   // end, or this tick no longer finds the page.
   tick_.fetch_add(1, std::memory_order_seq_cst);
@@ -89,17 +93,21 @@ bool PagedSurface::visit_crossings(const RecordSegment& segment, Visit visit) co
   return complete;
 }
 
-Entry PagedSurface::first_entry(const Vector3d& p_from, const Vector3d& p_to,
-                                bool& complete) const noexcept {
+Entry PagedSurface::first_entry(const Vector3d& p_from, const Vector3d& p_to, bool& complete,
+                                bool& leaves) const noexcept {
   Entry first;
   complete = true;
+  leaves = false;
   if (!within_range(p_from) || !within_range(p_to)) return first;
+  int crossings = 0;
   complete = visit_crossings(RecordSegment(file_.lattice(), p_from, p_to),
-                             [&first](std::int32_t t, Crossing way, double parameter) noexcept {
+                             [&](std::int32_t t, Crossing way, double parameter) noexcept {
+                               ++crossings;
                                if (way != Crossing::kEnters) return;
                                if (first.triangle >= 0 && parameter >= first.parameter) return;
                                first = {t, parameter};
                              });
+  leaves = crossings % 2 == 0;
   return first;
 }
 
@@ -189,20 +197,32 @@ void PagedSurface::start_loader() {
 }
 
 void PagedSurface::want(const Cursor& cursor) {
-  // A box around the way ahead finds candidates; the distance to the nearest of a few places on it
+  const Lattice& lattice = file_.lattice();
+  const auto in_steps = [&lattice](const std::array<double, 3>& p) -> Vector3d {
+    return (Eigen::Map<const Vector3d>(p.data()) - lattice.origin) / lattice.step;
+  };
+  wanted_.clear();
+  const Vector3d tip = in_steps(cursor.p_tip), place = in_steps(cursor.p_place);
+  const Vector3d ahead =
+      settings_.horizon / lattice.step * Eigen::Map<const Vector3d>(cursor.v_W.data());
+  // What is touched comes first, then what lies between it and the tip, then what the tip nears.
+  want_along(place, ahead);
+  if (tip == place) return;
+  want_along(tip, place - tip);
+  want_along(tip, ahead);
+}
+
+// Adds the pages within reach of a way, in the order in which it comes by.
+void PagedSurface::want_along(const Vector3d& p, const Vector3d& way) {
+  // A box around the way finds candidates; the distance to the nearest of a few places on it
   // decides, and sorts the near ones first.
   constexpr int kPlaces = 8;
-  const Lattice& lattice = file_.lattice();
-  const double reach = settings_.reach / lattice.step;
-  const Vector3d p =
-      (Eigen::Map<const Vector3d>(cursor.p_W.data()) - lattice.origin) / lattice.step;
-  const Vector3d way =
-      settings_.horizon / lattice.step * Eigen::Map<const Vector3d>(cursor.v_W.data());
+  const double reach = settings_.reach / file_.lattice().step;
   const Vector3d low = p.cwiseMin(p + way) - Vector3d::Constant(reach);
   const Vector3d high = p.cwiseMax(p + way) + Vector3d::Constant(reach);
   // Places stand no farther apart than this; half of it is what a box between two may be off.
   const double room = reach + way.norm() / (2 * kPlaces);
-  wanted_.clear();
+  const auto first = static_cast<std::ptrdiff_t>(wanted_.size());
   tree_.visit_reached(low, high, [&](std::int32_t page) {
     const PageBox& box = file_.boxes()[static_cast<std::size_t>(page)];
     double nearest = HUGE_VAL;
@@ -212,10 +232,13 @@ void PagedSurface::want(const Cursor& cursor) {
       const double distance = std::sqrt(distance_squared(box, p + share * way));
       if (distance <= room) nearest = std::min(nearest, distance + share * way.norm());
     }
-    if (nearest < HUGE_VAL) wanted_.emplace_back(nearest, page);
+    if (nearest < HUGE_VAL && wanted_in_[static_cast<std::size_t>(page)] != round_) {
+      wanted_in_[static_cast<std::size_t>(page)] = round_;
+      wanted_.emplace_back(nearest, page);
+    }
     return true;
   });
-  std::sort(wanted_.begin(), wanted_.end());
+  std::sort(wanted_.begin() + first, wanted_.end());
 }
 
 std::size_t PagedSurface::serve() {
@@ -236,14 +259,14 @@ std::size_t PagedSurface::serve() {
   std::size_t announced = 0;
   for (const auto& [distance, page] : wanted_) {
     if (announced == kAtOnce) break;
-    if (table_[static_cast<std::size_t>(page)].load(std::memory_order_relaxed) >= 0) continue;
+    if (table_[static_cast<std::size_t>(page)].load(std::memory_order_relaxed) != kAbsent) continue;
     file_.announce_page(page);
     ++announced;
   }
   std::size_t read = 0;
   for (const auto& [distance, page] : wanted_) {
     if (read == kAtOnce || stop_.load(std::memory_order_relaxed)) break;
-    if (table_[static_cast<std::size_t>(page)].load() >= 0) continue;
+    if (table_[static_cast<std::size_t>(page)].load() != kAbsent) continue;
     const std::int32_t frame = free_frame();
     if (frame < 0 || !load(page, frame)) continue;
     ++read;
@@ -257,7 +280,7 @@ std::int32_t PagedSurface::free_frame() {
   const auto number = static_cast<std::int32_t>(oldest - wanted_at_.begin());
   std::int32_t& page = page_in_frame_[static_cast<std::size_t>(number)];
   if (page >= 0) {
-    table_[static_cast<std::size_t>(page)].store(-1, std::memory_order_seq_cst);
+    table_[static_cast<std::size_t>(page)].store(kAbsent, std::memory_order_seq_cst);
     page = -1;
     evictions_.fetch_add(1, std::memory_order_relaxed);
     wait_for_ticks_end();
@@ -277,7 +300,11 @@ bool PagedSurface::load(std::int32_t page, std::int32_t frame_number) {
   Frame& frame = frames_[static_cast<std::size_t>(frame_number)];
   const std::int32_t count = file_.read_page(page, incoming_);
   if (count == 0 || stop_.load(std::memory_order_relaxed)) {
-    failures_.fetch_add(count == 0 ? 1 : 0, std::memory_order_relaxed);
+    if (count == 0) {
+      // It would fail again, and keep the loader from what it can bring.
+      table_[static_cast<std::size_t>(page)].store(kDamaged, std::memory_order_relaxed);
+      failures_.fetch_add(1, std::memory_order_relaxed);
+    }
     return false;
   }
   std::copy_n(incoming_.begin(), count, frame.records.begin());

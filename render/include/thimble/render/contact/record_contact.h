@@ -27,10 +27,10 @@ namespace thimble::render {
 /// and the tip is outside the triangles; in a hollow the depth is 0 until then.
 ///
 /// Where a record is absent the plane felt last is held (held_plane.h) and the tick is counted. The
-/// contact goes on from the last triangle at hand, or from the one nearest to where the tip is held
-/// if the way there is not; it ends if there is none within the store's reach. A free tip keeps the
-/// path that could not be examined; an entry found on it later counts if the tip is inside then,
-/// for nobody knows whether it went straight.
+/// contact goes on from the last triangle at hand, or from the one nearest to the tip if the way
+/// there is not; it ends if there is none within the store's reach. A free tip keeps the path that
+/// could not be examined; an entry found on it later counts if the path does not come out again,
+/// for nobody knows whether the tip went straight.
 template <RecordStore Store>
 class RecordContact {
  public:
@@ -45,11 +45,17 @@ class RecordContact {
   const ContactState& update(const driver::DeviceState& state) noexcept;
 
   /// Gives the result of the last `update`. Real-time: safe.
-  const ContactState& state() const noexcept { return state_; }
+  const ContactState& state() const noexcept {
+    if constexpr (Store::kComplete) return state_;
+    return felt_;
+  }
 
   const TrackerCounters& counters() const noexcept { return counters_; }
   /// Counts the ticks in which a record was absent.
   std::uint64_t ticks_held() const noexcept { return ticks_held_; }
+  /// Tells where the path begins that the next tick examines if the tip is free (W, m): the last
+  /// tip, or an older one where records were absent. Real-time: safe.
+  const Eigen::Vector3d& path_begin() const noexcept { return p_WT_before_; }
   const Store& store() const noexcept { return store_; }
 
  private:
@@ -61,7 +67,7 @@ class RecordContact {
   Outcome settle(const Eigen::Vector3d& p, bool walked, LoweredPlace& place) noexcept;
   Outcome find_again(const Eigen::Vector3d& p_WT, const Eigen::Vector3d& p,
                      std::int32_t before) noexcept;
-  Outcome resume(const Eigen::Vector3d& p_WT, const Eigen::Vector3d& p_WP) noexcept;
+  Outcome resume(const Eigen::Vector3d& p_WT, const ContactState& last) noexcept;
   Outcome find_near(const Eigen::Vector3d& p, std::int32_t before) noexcept;
   Outcome walk(const Eigen::Vector3d& p, std::int32_t& triangle) noexcept;
   Outcome edge_to_hop(const Eigen::Vector3d& p, const LoweredPlace& place,
@@ -78,6 +84,8 @@ class RecordContact {
   std::int32_t active_ = -1;
   LoweredTriangle lowered_;
   ContactState state_;
+  ContactState felt_;   // of a store that lacks records: as held or fading
+  ContactState begun_;  // where the contact began, likewise
   TrackerCounters counters_;
   Eigen::Vector3d p_WT_before_{0, 0, 0};
   bool has_before_ = false;

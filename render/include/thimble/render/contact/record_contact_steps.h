@@ -30,27 +30,37 @@ const ContactState& RecordContact<Store>::update(const driver::DeviceState& stat
     has_before_ = path_kept_ = false;
     return state_;
   }
+  const Eigen::Vector3d from = p_WT_before_;
   if (!state_.touching && !begin(p_WT)) return state_;
   p_WT_before_ = p_WT;
-  ContactState held = state_;
-  Outcome outcome = follow(p_WT);
+  // Where the tip was out of sight the way from the last triangle says nothing.
+  const bool late = path_kept_, lost = late || held_.holding();
+  Outcome outcome = lost ? Outcome::kUnknown : follow(p_WT);
   if constexpr (!Store::kComplete) {
-    // The one place where an absent record is felt.
+    // The one place where an absent record is felt. What the surface tells stays in `state_`, for
+    // the walk to go on from.
     if (outcome == Outcome::kUnknown) {
-      ++ticks_held_;
-      held_.hold(p_WT, held);
-      held.touching = true;
-      outcome = resume(p_WT, held.p_WP);
+      const ContactState last = felt_.touching ? felt_ : begun_;
+      felt_ = last;
+      held_.hold(p_WT, felt_);
+      felt_.touching = true;
+      outcome = resume(p_WT, last);
+      if (!lost || outcome == Outcome::kUnknown) ++ticks_held_;
+      state_.touching = true;
+      if (outcome == Outcome::kUnknown && late) {
+        end();
+        p_WT_before_ = from;
+        return felt_;
+      }
     }
-    if (outcome == Outcome::kUnknown) {
-      state_ = held;
-      return state_;
-    }
+    path_kept_ = false;
+    if (outcome == Outcome::kUnknown) return felt_;
     if (outcome == Outcome::kYes) {
-      held_.fade(p_WT, state_);
-      return state_;
+      felt_ = state_;
+      held_.fade(p_WT, felt_);
+      return felt_;
     }
-    if (held_.fade_out(p_WT, state_)) return state_;
+    if (held_.fade_out(p_WT, felt_)) return felt_;
   }
   if (outcome != Outcome::kYes) {
     const std::uint16_t hops = state_.hops;
@@ -63,7 +73,10 @@ const ContactState& RecordContact<Store>::update(const driver::DeviceState& stat
 template <RecordStore Store>
 void RecordContact<Store>::end() noexcept {
   state_ = {};
-  if constexpr (!Store::kComplete) held_.drop();
+  if constexpr (!Store::kComplete) {
+    felt_ = {};
+    held_.drop();
+  }
 }
 
 // Looks for the triangle through which the path since the last tick enters, and makes it active.
@@ -74,13 +87,10 @@ bool RecordContact<Store>::begin(const Eigen::Vector3d& p_WT) noexcept {
   if (has_before_) found = store_.first_entry(from, p_WT);
   state_ = {};
   if constexpr (!Store::kComplete) {
-    if (path_kept_ && found.complete && found.entry.triangle >= 0) {
-      const Known inside = store_.inside(p_WT);
-      if (inside == Known::kNo) found.entry = {};
-      if (inside == Known::kUnknown) found = {.entry = {}, .complete = false};
-    }
+    // Who was out of sight may have gone round what the straight way passes through.
+    if (path_kept_ && (found.leaves || !found.complete)) found.entry = {};
     if (!found.complete) ++ticks_held_;
-    path_kept_ = !found.complete && found.entry.triangle < 0;
+    if (found.entry.triangle < 0) path_kept_ = !found.complete;
   }
   if (found.complete) p_WT_before_ = p_WT;
   has_before_ = true;
@@ -88,6 +98,7 @@ bool RecordContact<Store>::begin(const Eigen::Vector3d& p_WT) noexcept {
   state_.n_W = lowered_.face();
   state_.triangle = lowered_.source();
   state_.p_WP = from + found.entry.parameter * (p_WT - from);
+  if constexpr (!Store::kComplete) begun_ = state_;
   return true;
 }
 
@@ -282,23 +293,42 @@ typename RecordContact<Store>::Outcome RecordContact<Store>::find_again(
   return Outcome::kYes;
 }
 
-// Goes on where the tip is held, when the way there from the active triangle is not at hand.
+// Goes on at the surface nearest to the tip, when the way there from the active triangle is not at
+// hand; or nearest to what it touched last, if that other one looks the other way: the back of a
+// thin part is not what was touched.
 template <RecordStore Store>
 typename RecordContact<Store>::Outcome RecordContact<Store>::resume(
-    const Eigen::Vector3d& p_WT, const Eigen::Vector3d& p_WP) noexcept {
-  const FoundRecord nearest = store_.closest(p_WP, store_.reach());
-  if (!nearest.complete) return Outcome::kUnknown;
-  if (nearest.triangle < 0) return Outcome::kNo;
-  if (!activate(nearest.triangle)) return Outcome::kUnknown;
+    const Eigen::Vector3d& p_WT, const ContactState& last) noexcept {
+  const FoundRecord by_tip = store_.closest(p_WT, store_.reach());
+  if (!by_tip.complete) return Outcome::kUnknown;
+  std::int32_t nearest = by_tip.triangle;
+  if (nearest >= 0 && !activate(nearest)) return Outcome::kUnknown;
+  if (nearest < 0 || lowered_.face().dot(last.n_W) < 0) {
+    const FoundRecord by_plane = store_.closest(last.p_WP, store_.reach());
+    if (!by_plane.complete) return Outcome::kUnknown;
+    if (by_plane.triangle >= 0) nearest = by_plane.triangle;
+    if (nearest < 0) return Outcome::kNo;
+    if (!activate(nearest)) return Outcome::kUnknown;
+  }
   const Eigen::Vector3d p = store_.to_lattice(p_WT);
+  const double apart = lowered_.feel_nearest(p).depth;
   LoweredPlace place = lowered_.locate(p);
   state_.hops = 0;
-  if (settle(p, false, place) != Outcome::kYes) return Outcome::kUnknown;
-  if (place.depth >= 0) {
+  state_.n_W = lowered_.face();  // the direction to walk by
+  const Outcome settled = settle(p, false, place);
+  if (settled == Outcome::kUnknown) return settled;
+  // Deeper by far than the triangle where it began: a cell of another part.
+  const bool astray = place.depth > 2 * apart && apart > 0;
+  if (settled == Outcome::kYes && place.depth >= 0 && !astray) {
     report(p_WT, lowered_.feel(place));
     if (state_.depth >= 0) return Outcome::kYes;
   }
-  return store_.inside(p_WT) == Known::kNo ? Outcome::kNo : Outcome::kUnknown;
+  const Known inside = store_.inside(p_WT);
+  if (inside == Known::kYes) {
+    if (!activate(nearest)) return Outcome::kUnknown;
+    report(p_WT, lowered_.feel_nearest(p));
+  }
+  return inside;
 }
 
 // Fills in the state from what is felt in the active triangle.

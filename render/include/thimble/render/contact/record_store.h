@@ -16,6 +16,7 @@ enum class Known : std::uint8_t { kNo, kYes, kUnknown };
 struct FoundEntry {
   Entry entry;
   bool complete = true;
+  bool leaves = false;  ///< Whether it ends outside again; only stores that lack records tell.
 };
 
 /// Is the record nearest to a point, -1 for none; not `complete`: among the records at hand.

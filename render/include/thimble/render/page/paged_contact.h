@@ -31,7 +31,7 @@ class PagedStore {
   FoundEntry first_entry(const Eigen::Vector3d& p_from,
                          const Eigen::Vector3d& p_to) const noexcept {
     FoundEntry found;
-    found.entry = surface_->first_entry(p_from, p_to, found.complete);
+    found.entry = surface_->first_entry(p_from, p_to, found.complete, found.leaves);
     return found;
   }
   Known inside(const Eigen::Vector3d& p) const noexcept {

@@ -30,9 +30,9 @@ struct PagingSettings {
 
 /// Counts what paging did.
 struct PagingCounters {
-  std::uint64_t loads = 0;            ///< Pages read from the disk.
-  std::uint64_t evictions = 0;        ///< Pages given up for others.
-  std::uint64_t failures = 0;         ///< Reads that failed or gave records that cannot be.
+  std::uint64_t loads = 0;      ///< Pages read from the disk.
+  std::uint64_t evictions = 0;  ///< Pages given up for others.
+  std::uint64_t failures = 0;   ///< Pages that could not be read or are damaged; they stay absent.
   std::uint64_t short_of_frames = 0;  ///< Times that more pages were wanted than there are frames.
 };
 
@@ -55,9 +55,14 @@ class PagedSurface {
 
   // The servo's side: one thread. Real-time: safe.
 
-  /// Begins a tick that will ask about places near `p_W` (m), which move with `v_W` (m/s): the tip
-  /// while it is free, the place that it touches while it touches.
-  void begin_tick(const Eigen::Vector3d& p_W, const Eigen::Vector3d& v_W) noexcept;
+  /// Begins a tick that will ask about places near the straight way from `p_tip` to `p_place` (W,
+  /// m), which move with `v_W` (m/s): the place that is touched, or for a free tip the begin of a
+  /// path that has not been examined.
+  void begin_tick(const Eigen::Vector3d& p_tip, const Eigen::Vector3d& p_place,
+                  const Eigen::Vector3d& v_W) noexcept;
+  void begin_tick(const Eigen::Vector3d& p_tip, const Eigen::Vector3d& v_W) noexcept {
+    begin_tick(p_tip, p_tip, v_W);
+  }
   /// Ends a tick: records found in it may go.
   void end_tick() noexcept;
 
@@ -71,9 +76,15 @@ class PagedSurface {
   // Answers of the following are about the records in memory; `complete` tells whether they are
   // those about the whole surface.
 
-  /// Finds the first record that the segment (W, m) crosses from outside to inside.
+  /// Finds the first record that the segment (W, m) crosses from outside to inside; `leaves` tells
+  /// whether one that begins outside ends there too.
+  Entry first_entry(const Eigen::Vector3d& p_from, const Eigen::Vector3d& p_to, bool& complete,
+                    bool& leaves) const noexcept;
   Entry first_entry(const Eigen::Vector3d& p_from, const Eigen::Vector3d& p_to,
-                    bool& complete) const noexcept;
+                    bool& complete) const noexcept {
+    bool leaves = false;
+    return first_entry(p_from, p_to, complete, leaves);
+  }
 
   /// Finds the record nearest to a point (W, m) and nearer than `radius` (m), -1 for none.
   std::int32_t closest(const Eigen::Vector3d& p_W, double radius, bool& complete) const noexcept;
@@ -105,7 +116,9 @@ class PagedSurface {
   std::size_t bytes() const noexcept;
 
  private:
-  static constexpr std::int32_t kGroup = 16;  // records under one box within a page
+  static constexpr std::int32_t kAbsent = -1;
+  static constexpr std::int32_t kDamaged = -2;  // could not be read; is not asked for again
+  static constexpr std::int32_t kGroup = 16;    // records under one box within a page
   static constexpr std::int32_t kGroups = kPageRecords / kGroup;
 
   struct Frame {
@@ -122,12 +135,14 @@ class PagedSurface {
   bool visit_crossings(const RecordSegment& segment, Visit visit) const noexcept;
 
   struct Cursor {
-    std::array<double, 3> p_W{};
+    std::array<double, 3> p_tip{};
+    std::array<double, 3> p_place{};
     std::array<double, 3> v_W{};
   };
 
   PagedSurface(PageFile file, const PagingSettings& settings);
   void want(const Cursor& cursor);
+  void want_along(const Eigen::Vector3d& p, const Eigen::Vector3d& way);
   std::int32_t free_frame();
   bool load(std::int32_t page, std::int32_t frame);
   void wait_for_ticks_end() const;
@@ -135,7 +150,7 @@ class PagedSurface {
   PageFile file_;
   PagingSettings settings_;
   PageTree tree_;
-  std::vector<std::atomic<std::int32_t>> table_;  // frame of each page, -1 if none
+  std::vector<std::atomic<std::int32_t>> table_;  // frame of each page, or one of the two below
   std::vector<Frame> frames_;
 
   driver::Snapshot<Cursor> cursor_;
@@ -144,6 +159,7 @@ class PagedSurface {
   // The loader's own.
   std::vector<std::int32_t> page_in_frame_;  // -1 if empty
   std::vector<std::uint64_t> wanted_at_;     // round in which a frame's page was last wanted
+  std::vector<std::uint64_t> wanted_in_;     // round in which a page was last wanted
   std::vector<std::pair<double, std::int32_t>> wanted_;
   std::vector<CompactTriangle> incoming_;
   std::uint64_t round_ = 0;
