@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
-# Measures how long a tick takes on this machine, whole and part by part, and contact on meshes of
-# many sizes against other libraries where they are installed (Debian: libembree-dev libcgal-dev
-# libfcl-dev); prints tables and writes figures.json. Figures are reported, never pass criteria.
+# Measures how long a tick takes on this machine, whole and part by part, contact on meshes of many
+# sizes against other libraries where they are installed (Debian: libembree-dev libcgal-dev
+# libfcl-dev), and contact with pages on the disk (640 MB for two minutes); prints tables and writes
+# figures.json. Figures are reported, never pass criteria.
 #   tests/bench/run.sh [FOLDER]      FOLDER: where to write (default build/bench)
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 folder=${1:-build/bench}
-app/setup.sh release bench_tick bench_contact
+app/setup.sh release bench_tick bench_contact bench_paged
 mkdir -p "$folder"
 build/release/tests/bench/bench_tick --benchmark_repetitions=5 \
   --benchmark_report_aggregates_only=true \
@@ -14,3 +15,6 @@ build/release/tests/bench/bench_tick --benchmark_repetitions=5 \
   --figures="$folder/figures.json"
 mkdir -p "$folder/contact"
 build/release/tests/bench/bench_contact --figures="$folder/contact/figures.json"
+mkdir -p "$folder/paged"
+build/release/tests/bench/bench_paged --folder="$folder/paged" \
+  --figures="$folder/paged/figures.json"

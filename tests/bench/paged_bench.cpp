@@ -1,0 +1,271 @@
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+#include <numbers>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "figure.h"
+#include "resident_memory.h"
+#include "ring_pages.h"
+#include "thimble/render/contact/compact_contact.h"
+#include "thimble/render/page/paged_contact.h"
+
+// A tip that slides at 0.5 m/s over a ring of 10^7 (--long: 10^8) triangles on the disk, in a loop
+// of 1 kHz that sleeps, a thread loading for it; beside it the same over 10^6 triangles in memory,
+// turn by turn.
+
+namespace thimble::bench {
+namespace {
+
+using Eigen::Vector3d;
+using Clock = std::chrono::steady_clock;
+
+constexpr app::BumpyRing kRing;
+constexpr double kPressed = 0.5e-3;  // m below the surface
+constexpr double kTick = 1e-3;       // s
+constexpr double kSpeed = 0.5;       // m/s
+constexpr int kTurns = 5;
+constexpr int kTurnTicks = 2000;
+
+double seconds_since(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+// Winds over the ring in steps of equal length; the heading turns slowly round, so that the tip
+// comes by everywhere.
+class Way {
+ public:
+  Vector3d next() {
+    constexpr double kStep = 1e-6;
+    const Vector3d along_u = (kRing.at(u_ + kStep, v_) - kRing.at(u_ - kStep, v_)) / (2 * kStep);
+    const Vector3d along_v = (kRing.at(u_, v_ + kStep) - kRing.at(u_, v_ - kStep)) / (2 * kStep);
+    const Vector3d heading =
+        std::cos(turn_) * along_u / along_u.norm() + std::sin(turn_) * along_v / along_v.norm();
+    const double step = kSpeed * kTick / heading.norm();
+    u_ += step * std::cos(turn_) / along_u.norm();
+    v_ += step * std::sin(turn_) / along_v.norm();
+    turn_ += 7e-4;
+    return at(-kPressed);
+  }
+  Vector3d at(double height) const { return kRing.at(u_, v_) + height * kRing.normal(u_, v_); }
+
+ private:
+  double u_ = 0.3, v_ = 0.2, turn_ = 0.4;
+};
+
+struct Ticks {
+  std::vector<double> ns;
+  double error = 0;
+  std::size_t touching = 0;
+
+  double mean() const {
+    double sum = 0;
+    for (const double v : ns) sum += v;
+    return sum / static_cast<double>(ns.size());
+  }
+  double percentile(double share) {
+    std::sort(ns.begin(), ns.end());
+    return ns[static_cast<std::size_t>(share * static_cast<double>(ns.size() - 1))];
+  }
+};
+
+// One contender on its way.
+template <class Contact>
+class Slide {
+ public:
+  explicit Slide(Contact& contact) : contact_(contact) { state_.dt = kTick; }
+
+  // From outside down to the pressed depth within a tenth of a second.
+  void approach() {
+    for (int i = 0; i <= 100; ++i) {
+      move(way_.at(2e-3 - (2e-3 + kPressed) * i / 100));
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  }
+  void run(int ticks, Ticks& result) {
+    auto next = Clock::now();
+    for (int i = 0; i < ticks; ++i) {
+      const Vector3d p = way_.next();
+      next += std::chrono::milliseconds(1);
+      std::this_thread::sleep_until(next);
+      const auto begin = Clock::now();
+      const render::ContactState& felt = move(p);
+      result.ns.push_back(seconds_since(begin) * 1e9);
+      if (!felt.touching) continue;
+      ++result.touching;
+      result.error += std::abs(felt.depth - kPressed);
+    }
+  }
+
+ private:
+  const render::ContactState& move(const Vector3d& p) {
+    state_.v_WT = state_.tick++ > 0 ? Vector3d((p - state_.p_WT) / kTick) : Vector3d::Zero();
+    state_.p_WT = p;
+    return contact_.update(state_);
+  }
+
+  Contact& contact_;
+  Way way_;
+  driver::DeviceState state_;
+};
+
+render::TriangleMesh ring_mesh(std::int64_t triangles) {
+  const app::RingGrid grid = app::ring_grid(kRing, triangles);
+  render::TriangleMesh mesh;
+  for (std::int32_t i = 0; i < grid.around; ++i) {
+    for (std::int32_t j = 0; j < grid.across; ++j) {
+      mesh.vertices.push_back(
+          kRing.at(2 * std::numbers::pi * i / grid.around, 2 * std::numbers::pi * j / grid.across));
+      const auto at = [&grid](std::int32_t a, std::int32_t b) {
+        return a % grid.around * grid.across + b % grid.across;
+      };
+      mesh.triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+      mesh.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+    }
+  }
+  return mesh;
+}
+
+// Asks the kernel to forget what it has read of a file; it may refuse.
+void forget(const std::filesystem::path& file) {
+  const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  fdatasync(descriptor);
+  posix_fadvise(descriptor, 0, 0, POSIX_FADV_DONTNEED);
+  close(descriptor);
+}
+
+class Bench {
+ public:
+  // False, with a sentence on stderr, if the file cannot be written.
+  bool run(const std::string& size, std::int64_t triangles, const std::filesystem::path& folder) {
+    const auto file = folder / ("ring_" + std::to_string(triangles) + ".pages");
+    auto begin = Clock::now();
+    const app::RingGrid grid = app::ring_grid(kRing, triangles);
+    if (const auto written = app::write_ring(kRing, grid, file); !written) {
+      std::fprintf(stderr, "%s\n", written.error().message.c_str());
+      return false;
+    }
+    add(size + ": generate", seconds_since(begin), "s");
+    add(size + ": generate, memory", megabytes(app::resident_memory().most), "MiB");
+    add(size + ": page file", static_cast<double>(std::filesystem::file_size(file)) / 1e6, "MB");
+    begin = Clock::now();
+    auto reference = render::CompactContact::build(ring_mesh(1'000'000));
+    if (!reference) return false;
+    for (const bool cold : {false, true}) {
+      if (!slide(size + (cold ? ", disk cache emptied" : ""), file, *reference, cold)) return false;
+    }
+    std::filesystem::remove(file);
+    return true;
+  }
+
+  const std::vector<app::Figure>& figures() const { return figures_; }
+
+ private:
+  static double megabytes(std::size_t bytes) { return static_cast<double>(bytes) / (1 << 20); }
+
+  void add(const std::string& name, double value, const std::string& unit,
+           const std::string& goal = {}) {
+    figures_.push_back({.name = name, .value = value, .unit = unit, .goal = goal});
+    std::printf("%s", app::figure_table({figures_.back()}).c_str());
+    std::fflush(stdout);
+  }
+
+  bool slide(const std::string& name, const std::filesystem::path& file,
+             render::CompactContact& reference, bool cold) {
+    if (cold) forget(file);
+    auto opened = render::PagedSurface::open(file);
+    if (!opened) {
+      std::fprintf(stderr, "%s\n", opened.error().message.c_str());
+      return false;
+    }
+    const std::shared_ptr<render::PagedSurface> surface = std::move(opened).value();
+    surface->start_loader();
+    render::PagedContact paged(surface);
+    Slide ours(paged);
+    Slide theirs(reference);
+    ours.approach();
+    theirs.approach();
+    Ticks on_disk, in_memory;
+    for (int turn = 0; turn < kTurns; ++turn) {
+      ours.run(kTurnTicks, on_disk);
+      theirs.run(kTurnTicks, in_memory);
+    }
+    const auto ticks = static_cast<double>(on_disk.ns.size());
+    add(name + ": page misses", static_cast<double>(paged.misses()), "ticks", "== 0");
+    add(name + ": contact lost", ticks - static_cast<double>(on_disk.touching), "ticks", "== 0");
+    add(name + ": depth error", on_disk.error * 1e3 / static_cast<double>(on_disk.touching), "mm",
+        "<= 0.01");
+    add(name + ": pages read", static_cast<double>(surface->counters().loads), "");
+    add(name + ": pages read per s",
+        static_cast<double>(surface->counters().loads) / (ticks * kTick), "1/s");
+    add(name + ": hops cut short", static_cast<double>(paged.counters().long_walks), "ticks");
+    add(name + ": memory, with the mesh of 10^6", megabytes(app::resident_memory().now), "MiB",
+        "< 1024");
+    add(name + ": memory of the pages", megabytes(surface->bytes()), "MiB");
+    add(name + ": tick in the loop, mean", on_disk.mean(), "ns");
+    add(name + ": tick in the loop, p50", on_disk.percentile(0.5), "ns");
+    add(name + ": tick in the loop, p99", on_disk.percentile(0.99), "ns");
+    add(name + ": tick in the loop, 10^6 in memory, mean", in_memory.mean(), "ns");
+    add(name + ": tick in the loop, 10^6 in memory, p50", in_memory.percentile(0.5), "ns");
+    add(name + ": tick in the loop, 10^6 in memory, p99", in_memory.percentile(0.99), "ns");
+    add(name + ": p99, pages / memory", on_disk.percentile(0.99) / in_memory.percentile(0.99), "",
+        "<= 2");
+    return true;
+  }
+
+  std::vector<app::Figure> figures_;
+};
+
+}  // namespace
+}  // namespace thimble::bench
+
+int main(int argc, char** argv) {
+  // --figures=FILE writes the figures, --folder=FOLDER says where the page files go (default: the
+  // folder for temporary files), --max=N stops at N triangles (default 1e7), --long goes on to 10^8
+  // (6.4 GB of disk).
+  std::string figures_file;
+  std::filesystem::path folder = std::filesystem::temp_directory_path();
+  double most = 1e7;
+  for (int i = 1; i < argc; ++i) {
+    if (std::strncmp(argv[i], "--figures=", 10) == 0) {
+      figures_file = argv[i] + 10;
+    } else if (std::strncmp(argv[i], "--folder=", 9) == 0) {
+      folder = argv[i] + 9;
+    } else if (std::strncmp(argv[i], "--max=", 6) == 0) {
+      most = std::atof(argv[i] + 6);
+    } else if (std::strcmp(argv[i], "--long") == 0) {
+      most = 1e8;
+    } else {
+      std::fprintf(stderr,
+                   "Unknown option %s. Options: --figures=FILE --folder=FOLDER --max=N --long\n",
+                   argv[i]);
+      return 2;
+    }
+  }
+  thimble::bench::Bench bench;
+  std::int64_t triangles = 1'000'000;
+  for (int power = 6; power <= 8 && static_cast<double>(triangles) <= most; ++power) {
+    if (!bench.run("10^" + std::to_string(power), triangles, folder)) return 1;
+    triangles *= 10;
+  }
+  std::printf("\n%s", thimble::app::figure_table(bench.figures()).c_str());
+  if (!figures_file.empty()) {
+    const auto written = thimble::app::write_figures(bench.figures(), figures_file);
+    if (!written) {
+      std::fprintf(stderr, "%s\n", written.error().message.c_str());
+      return 1;
+    }
+  }
+  return 0;
+}
