@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "commands.h"
 #include "exit_code.h"
@@ -12,6 +13,7 @@
 #include "thimble/render/mesh/load_mesh.h"
 #include "thimble/render/mesh/repair_mesh.h"
 #include "thimble/render/mesh/save_mesh.h"
+#include "thimble/render/page/page_file.h"
 
 namespace thimble::app {
 namespace {
@@ -83,7 +85,48 @@ int repair(const render::TriangleMesh& mesh, const std::string& file) {
   return tell_verdict(repaired.mesh, found);
 }
 
+// Tells what a page file is; its triangles are looked at one page at a time, if at all.
+int tell_pages(const MeshOptions& options) {
+  const auto pages = render::PageFile::open(options.file);
+  if (!pages) return fail(pages.error(), kExitBadInput);
+  if (!options.picture.empty() || !options.repair.empty()) {
+    return fail({options.file + ": a mesh in pages is neither drawn nor repaired; take the mesh "
+                                "that it was cut from."},
+                kExitBadInput);
+  }
+  const double step = pages->lattice().step;
+  Eigen::Vector3d low, high;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    low[static_cast<Eigen::Index>(axis)] = double{pages->whole().min[axis]};
+    high[static_cast<Eigen::Index>(axis)] = double{pages->whole().max[axis]};
+  }
+  low = pages->lattice().origin + step * low;
+  high = pages->lattice().origin + step * high;
+  const Eigen::Vector3d size = high - low;
+  std::printf(
+      "%s (a mesh in pages, lengths in m)\n  triangles   %d\n  pages       %zu of up to %d\n",
+      options.file.c_str(), pages->triangle_count(), pages->boxes().size(), render::kPageRecords);
+  std::printf("  box         (%.4g, %.4g, %.4g) to (%.4g, %.4g, %.4g), %.4g x %.4g x %.4g\n",
+              low.x(), low.y(), low.z(), high.x(), high.y(), high.z(), size.x(), size.y(),
+              size.z());
+  std::vector<render::CompactTriangle> records(render::kPageRecords);
+  std::size_t damaged = 0;
+  for (std::size_t page = 0; page < pages->boxes().size(); ++page) {
+    damaged += pages->read_page(static_cast<std::int32_t>(page), records) == 0;
+  }
+  if (damaged > 0) {
+    std::printf(
+        "%zu pages are damaged: they would be holes that nothing is felt of. Write the file "
+        "again.\n",
+        damaged);
+    return kExitBadInput;
+  }
+  std::printf("All pages are whole: it can be touched, with few of them in memory.\n");
+  return kExitDone;
+}
+
 int tell_mesh(const MeshOptions& options) {
+  if (render::is_page_file(options.file)) return tell_pages(options);
   const auto mesh = render::load_mesh(options.file);
   if (!mesh) return fail(mesh.error(), kExitBadInput);
   const render::MeshFindings found = render::check_mesh(*mesh);
@@ -107,7 +150,7 @@ void add_mesh_command(CLI::App& app, int& exit_code) {
   CLI::App* command =
       app.add_subcommand("mesh", "Tell what a mesh is and what is wrong with it (exit code 2)");
   auto options = std::make_shared<MeshOptions>();
-  command->add_option("FILE", options->file, "Mesh: OFF, OBJ, STL or PLY");
+  command->add_option("FILE", options->file, "Mesh: OFF, OBJ, STL, PLY, or one in pages");
   command->add_option("--picture", options->picture,
                       "Draw the mesh from three sides, its faults marked (PNG, SVG)");
   command->add_option("--repair", options->repair,

@@ -76,6 +76,13 @@ Json to_json(const RunReport& report) {
   json["force_N"] = {
       {"max", run.force_max()}, {"rms_in_contact", run.force_rms()}, {"limit", report.force_limit}};
   json["energy_to_hand_J"] = {{"total", run.energy_to_hand()}, {"max", run.energy_to_hand_max()}};
+  if (report.paging) {
+    json["paging"] = {{"pages_read", report.paging->loads},
+                      {"pages_given_up", report.paging->evictions},
+                      {"pages_damaged", report.paging->failures},
+                      {"ticks_missing_a_page", report.paging->misses},
+                      {"short_of_room", report.paging->short_of_frames}};
+  }
   json["wire"] = {{"reports", report.wire.reports},
                   {"rejected", report.wire.rejected},
                   {"skipped", report.wire.skipped},
@@ -118,6 +125,10 @@ std::vector<Figure> run_figures(const RunReport& report) {
       {"fault_ticks", static_cast<double>(run.fault_ticks()), "", "== 0"},
       {"current_at_exit", report.current_at_exit, "A", "== 0"},
   };
+  if (report.paging) {
+    figures.push_back({"page_misses", static_cast<double>(report.paging->misses), "", "== 0"});
+    figures.push_back({"pages_damaged", static_cast<double>(report.paging->failures), "", "== 0"});
+  }
   if (!report.virtual_time) {
     figures.push_back({"tick_time_p50", microseconds(run.work().percentile(0.5)), "us", ""});
     figures.push_back({"tick_time_p99_9", microseconds(run.work().percentile(0.999)), "us", ""});
@@ -164,6 +175,16 @@ std::string summary(const RunReport& report) {
                 "%.0f us.\n",
                 microseconds(run.work().percentile(0.5)),
                 microseconds(run.work().percentile(0.999)), period_us);
+  if (report.paging) {
+    s += text(
+        "Pages     %llu read from the disk, %llu given up, %llu damaged; one was missing in "
+        "%llu ticks%s.\n",
+        static_cast<unsigned long long>(report.paging->loads),
+        static_cast<unsigned long long>(report.paging->evictions),
+        static_cast<unsigned long long>(report.paging->failures),
+        static_cast<unsigned long long>(report.paging->misses),
+        report.paging->misses > 0 ? ", and the last plane was held" : "");
+  }
   s += text("Wire      %llu reports, %llu not understood, %llu ticks without a new one.\n",
             static_cast<unsigned long long>(report.wire.reports),
             static_cast<unsigned long long>(report.wire.rejected),

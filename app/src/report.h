@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "thimble/driver/result.h"
 #include "thimble/driver/safety_gate.h"
 #include "thimble/driver/servo_loop.h"
+#include "thimble/render/page/paged_surface.h"
 
 namespace thimble::app {
 
@@ -31,6 +33,7 @@ struct RunReport {
   std::uint64_t lost_contacts =
       0;                       ///< Stretches inside the object without a force (checked after).
   double current_at_exit = 0;  ///< Largest motor current after the end, A (simulated arm).
+  std::optional<render::PagingCounters> paging;  ///< Of objects on the disk, if there are any.
   driver::WireCounters wire;
   driver::GateCounters gate;
   driver::RealTimeGrant real_time;

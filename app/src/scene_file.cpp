@@ -79,7 +79,19 @@ SceneObject read_object(YamlMap map, const std::filesystem::path& folder,
       map.optional_vector3("position", Eigen::Vector3d::Zero(), "m", -kPositionMax, kPositionMax);
   object.stiffness = map.require_number("stiffness", "N/m", 0, kStiffnessMax);
   object.damping = map.optional_number("damping", 0, "N s/m", 0, kDampingMax);
+  object.paged = !object.mesh_file.empty() && render::is_page_file(object.mesh_file);
   if (map.has("contact")) object.contact = read_contact(map.require_map("contact"));
+  if (object.paged) {
+    const render::ContactChoice& c = object.contact;
+    const bool as_it_is = c.tracker == render::TrackerChoice::kCompact && !c.blending &&
+                          !c.curved_depth && !c.crease_angle;
+    if (map.has("contact") && !as_it_is) {
+      map.reject("contact",
+                 "a mesh in pages is touched in one way, \"tracker: compact\", and has its creases "
+                 "in the file; keep nothing else");
+    }
+    object.contact.tracker = render::TrackerChoice::kCompact;
+  }
   if (map.has("effects")) {
     surroundings.surface_stiffness = object.stiffness;
     surroundings.surface_damping = object.damping;
@@ -102,7 +114,15 @@ HandWaypoint read_waypoint(YamlMap map, const std::vector<SceneObject>& objects)
     waypoint.p_W = map.require_vector3("near", "m", -kPositionMax, kPositionMax);
     waypoint.press = map.optional_number("press", 0, "m", -kPressMax, kPressMax);
     bool known = false;
-    for (const SceneObject& object : objects) known = known || object.name == *waypoint.on;
+    for (const SceneObject& object : objects) {
+      if (object.name != *waypoint.on) continue;
+      known = true;
+      if (object.paged) {
+        map.reject("on",
+                   "the surface of a mesh in pages is not in memory to plan on; give points "
+                   "of the way by at: [x, y, z]");
+      }
+    }
     if (!known) map.reject("on", "expected an object of this scene, found \"" + *waypoint.on + '"');
   }
   map.finish();
@@ -170,6 +190,20 @@ render::TriangleMesh place_mesh(const render::TriangleMesh& mesh, const SceneObj
   const double largest = file_box.sizes().maxCoeff();
   const double scale = object.size && largest > 0 ? *object.size / largest : object.scale;
   return render::placed(mesh, scale, object.R_WO, object.p_WO - scale * turned_box.center());
+}
+
+render::PagedPlace place_pages(const render::PageFile& file, const SceneObject& object) {
+  Eigen::Vector3d low, high;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    low[static_cast<Eigen::Index>(axis)] = double{file.whole().min[axis]};
+    high[static_cast<Eigen::Index>(axis)] = double{file.whole().max[axis]};
+  }
+  const double step = file.lattice().step;
+  const Eigen::Vector3d center = file.lattice().origin + step * 0.5 * (low + high);
+  const double largest = step * (high - low).maxCoeff();
+  const double scale = object.size && largest > 0 ? *object.size / largest : object.scale;
+  return {
+      .scale = scale, .R_WM = object.R_WO, .p_WM = object.p_WO - scale * (object.R_WO * center)};
 }
 
 }  // namespace thimble::app

@@ -13,6 +13,7 @@
 #include "thimble/render/contact_choice.h"
 #include "thimble/render/effect/effect_table.h"
 #include "thimble/render/mesh/triangle_mesh.h"
+#include "thimble/render/page/paged_contact.h"
 
 namespace thimble::app {
 
@@ -20,8 +21,9 @@ namespace thimble::app {
 struct SceneObject {
   std::string name;
   std::filesystem::path mesh_file;
-  std::optional<double> size;                          ///< Largest side of the mesh's box, m.
-  double scale = 1;                                    ///< Metres per unit of the file, if no size.
+  bool paged = false;          ///< Whether the mesh is a page file, of which little is in memory.
+  std::optional<double> size;  ///< Largest side of the mesh's box, m.
+  double scale = 1;            ///< Metres per unit of the file, if no size.
   Eigen::Matrix3d R_WO = Eigen::Matrix3d::Identity();  ///< Rotation of the mesh in the world.
   Eigen::Vector3d p_WO{0, 0, 0};            ///< Where the centre of the turned mesh's box lies, m.
   double stiffness = 0;                     ///< N/m
@@ -53,5 +55,10 @@ driver::Result<Scene> read_scene(const std::filesystem::path& file,
 /// Turns a mesh as its file holds it into the world (m), as `object` says.
 /// Precondition: the mesh has a vertex. Real-time: never from the servo thread.
 render::TriangleMesh place_mesh(const render::TriangleMesh& mesh, const SceneObject& object);
+
+/// Finds where a mesh on the disk stands in the world, as `object` says; it turns about the centre
+/// of its box in the file, for the box of the turned mesh is not known.
+/// Real-time: never from the servo thread.
+render::PagedPlace place_pages(const render::PageFile& file, const SceneObject& object);
 
 }  // namespace thimble::app

@@ -41,10 +41,14 @@ driver::Result<void> check_reach(const HandRoute& route, const ArmFile& arm) {
   return {};
 }
 
-/// Reads the mesh of every object and puts it into the world (m).
+/// Reads the mesh of every object and puts it into the world (m); empty for those on the disk.
 driver::Result<std::vector<render::TriangleMesh>> load_meshes(const Scene& scene) {
   std::vector<render::TriangleMesh> meshes;
   for (const SceneObject& object : scene.objects) {
+    if (object.paged) {
+      meshes.emplace_back();
+      continue;
+    }
     const auto mesh = render::load_mesh(object.mesh_file);
     if (!mesh) return mesh.error();
     meshes.push_back(place_mesh(*mesh, object));
@@ -56,14 +60,23 @@ driver::Result<std::vector<render::TriangleMesh>> load_meshes(const Scene& scene
 
 /// Builds the force law that the scene calls for.
 driver::Result<std::unique_ptr<render::SceneTouch>> build_touch(
-    const Scene& scene, const std::vector<render::TriangleMesh>& meshes_W) {
+    const Scene& scene, const std::vector<render::TriangleMesh>& meshes_W,
+    std::vector<std::shared_ptr<render::PagedSurface>>& pages) {
   std::vector<std::unique_ptr<render::ObjectTouch>> objects;
   for (std::size_t i = 0; i < meshes_W.size(); ++i) {
     const SceneObject& object = scene.objects[i];
-    auto touch = render::build_object_touch(
-        meshes_W[i], object.contact,
-        {.spring = {.stiffness = object.stiffness, .damping = object.damping},
-         .effects = object.effects});
+    const render::SurfaceChoice surface{
+        .spring = {.stiffness = object.stiffness, .damping = object.damping},
+        .effects = object.effects};
+    if (object.paged) {
+      auto opened = render::PagedSurface::open(object.mesh_file);
+      if (!opened) return opened.error();
+      pages.emplace_back(std::move(opened).value());
+      const render::PagedPlace place = place_pages(pages.back()->file(), object);
+      objects.push_back(render::build_paged_touch(pages.back(), place, surface));
+      continue;
+    }
+    auto touch = render::build_object_touch(meshes_W[i], object.contact, surface);
     if (!touch) return driver::Error{object.mesh_file.string() + ": " + touch.error().message};
     objects.push_back(std::move(touch).value());
   }
@@ -92,12 +105,13 @@ driver::Result<std::unique_ptr<Session>> Session::open(const std::filesystem::pa
 
   auto meshes = load_meshes(session->scene_);
   if (!meshes) return meshes.error();
-  auto touch = build_touch(session->scene_, *meshes);
+  auto touch = build_touch(session->scene_, *meshes, session->pages_);
   if (!touch) return touch.error();
   session->touch_ = std::move(touch).value();
 
   std::vector<NamedMesh> named;
   for (std::size_t i = 0; i < meshes->size(); ++i) {
+    if (session->scene_.objects[i].paged) continue;
     named.push_back({session->scene_.objects[i].name, &(*meshes)[i]});
     append((*meshes)[i], session->mesh_W_);
   }
@@ -138,6 +152,10 @@ driver::Result<std::unique_ptr<Session>> Session::open(const std::filesystem::pa
   if (!device) return device.error();
   session->device_ = std::move(device).value();
   if (auto activated = session->device_->activate(); !activated) return activated.error();
+  session->pages_by_thread_ = options.clock == ClockKind::kWall;
+  if (session->pages_by_thread_) {
+    for (const auto& pages : session->pages_) pages->start_loader();
+  }
   return session;
 }
 
@@ -154,6 +172,33 @@ void Session::operator()(const driver::TickRecord& record) noexcept {
   snapshot_.store(record);
   (*statistics_)(record);
   (*trace_)(record);
+  if (pages_by_thread_) return;
+  // In virtual time a tick lasts as long as it computes: the disk is as fast as one could wish, and
+  // every run is the same.
+  for (const auto& pages : pages_) {
+    while (pages->serve() > 0) {
+    }
+  }
+}
+
+std::optional<render::PagingCounters> Session::paging() const {
+  if (pages_.empty()) return {};
+  render::PagingCounters sum;
+  for (const auto& pages : pages_) {
+    const render::PagingCounters one = pages->counters();
+    sum.loads += one.loads;
+    sum.evictions += one.evictions;
+    sum.failures += one.failures;
+    sum.misses += one.misses;
+    sum.short_of_frames += one.short_of_frames;
+  }
+  return sum;
+}
+
+std::size_t Session::triangle_count() const {
+  std::size_t count = mesh_W_.triangles.size();
+  for (const auto& pages : pages_) count += static_cast<std::size_t>(pages->triangle_count());
+  return count;
 }
 
 }  // namespace thimble::app

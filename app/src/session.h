@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "run_statistics.h"
 #include "scene_file.h"
@@ -14,6 +15,7 @@
 #include "thimble/driver/device.h"
 #include "thimble/driver/servo_loop.h"
 #include "thimble/driver/snapshot.h"
+#include "thimble/render/page/paged_surface.h"
 #include "thimble/render/scene_touch.h"
 #include "trace.h"
 
@@ -44,11 +46,16 @@ class Session {
   driver::ServoEnd run(const std::atomic<bool>& stop) noexcept;
 
   const Scene& scene() const { return scene_; }
-  /// Gives the meshes of all objects in the world as one (m), for pictures and checks.
+  /// Gives the meshes of all objects in the world as one (m), for pictures and checks; those on the
+  /// disk are not in it.
   const render::TriangleMesh& mesh_W() const { return mesh_W_; }
   const driver::Device& device() const { return *device_; }
   const device_sim::SimulatedArm& arm() const { return *arm_; }
   const render::SceneTouch& touch() const { return *touch_; }
+  /// Sums up what paging did for all objects on the disk; nothing if there are none.
+  std::optional<render::PagingCounters> paging() const;
+  /// Counts the triangles of all objects.
+  std::size_t triangle_count() const;
   const RunStatistics& statistics() const { return *statistics_; }
   const Trace& trace() const { return *trace_; }
   const driver::Snapshot<driver::TickRecord>& snapshot() const { return snapshot_; }
@@ -70,6 +77,8 @@ class Session {
   std::unique_ptr<driver::Clock> clock_;
   std::unique_ptr<device_sim::SimulatedArm> arm_;
   std::unique_ptr<driver::Device> device_;  // holds the wire to arm_, so it goes first
+  std::vector<std::shared_ptr<render::PagedSurface>> pages_;  // of the objects on the disk
+  bool pages_by_thread_ = false;
   std::unique_ptr<render::SceneTouch> touch_;
   std::unique_ptr<RunStatistics> statistics_;
   std::unique_ptr<Trace> trace_;

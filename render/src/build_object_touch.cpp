@@ -144,4 +144,10 @@ Built build_object_touch(const TriangleMesh& mesh_W, const ContactChoice& choice
   return apart(choice, "is not known.");
 }
 
+std::unique_ptr<ObjectTouch> build_paged_touch(std::shared_ptr<PagedSurface> pages,
+                                               const PagedPlace& place,
+                                               const SurfaceChoice& surface) {
+  return touch_of(PagedContact(std::move(pages), place), surface).value();
+}
+
 }  // namespace thimble::render

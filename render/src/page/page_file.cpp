@@ -206,6 +206,15 @@ driver::Result<void> write_page_file(const CompactSurface& surface,
   return writer->finish();
 }
 
+bool is_page_file(const std::filesystem::path& file) {
+  const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (descriptor < 0) return false;
+  std::array<char, 8> magic{};
+  const bool read = read_all(descriptor, magic.data(), magic.size(), 0);
+  close(descriptor);
+  return read && magic == kMagic;
+}
+
 driver::Result<PageFile> PageFile::open(const std::filesystem::path& file) {
   PageFile opened;
   opened.descriptor_ = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);

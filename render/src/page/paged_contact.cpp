@@ -33,6 +33,7 @@ const ContactState& PagedContact::update(const driver::DeviceState& state) noexc
   pages.begin_tick(in_mesh_state.p_WT, p_place, in_mesh_state.v_WT);
   ContactState now = contact_.update(in_mesh_state);
   pages.end_tick();
+  pages.note_misses(contact_.ticks_held());
   if (now.touching) {
     now.n_W = place_.R_WM * now.n_W;
     // Written so that NaN stays and means no force.

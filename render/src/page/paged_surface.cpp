@@ -325,6 +325,7 @@ PagingCounters PagedSurface::counters() const noexcept {
   return {.loads = loads_.load(std::memory_order_relaxed),
           .evictions = evictions_.load(std::memory_order_relaxed),
           .failures = failures_.load(std::memory_order_relaxed),
+          .misses = misses_.load(std::memory_order_relaxed),
           .short_of_frames = short_of_frames_.load(std::memory_order_relaxed)};
 }
 

@@ -98,6 +98,10 @@ class PageFileWriter {
 driver::Result<void> write_page_file(const CompactSurface& surface,
                                      const std::filesystem::path& file);
 
+/// Tells whether a file begins as a page file does; false if it cannot be read.
+/// Real-time: never from the servo thread.
+bool is_page_file(const std::filesystem::path& file);
+
 /// Is an open page file: what stands before the records, in memory.
 /// Real-time: never from the servo thread.
 class PageFile {

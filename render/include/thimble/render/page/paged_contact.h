@@ -20,7 +20,13 @@ class PagedStore {
 
   // As RecordStore says. Real-time: safe.
 
+  // Who asks for one record walks on to those around it.
   const CompactTriangle* find(std::int32_t triangle) const noexcept {
+    const std::int32_t group = triangle / PagedSurface::kGroup;
+    if (group != group_) {
+      group_ = group;
+      surface_->announce(triangle);
+    }
     return surface_->find(triangle);
   }
   Eigen::Vector3d to_lattice(const Eigen::Vector3d& p) const noexcept {
@@ -49,6 +55,7 @@ class PagedStore {
 
  private:
   std::shared_ptr<PagedSurface> surface_;
+  mutable std::int32_t group_ = -1;  // of the last record
 };
 
 extern template class RecordContact<PagedStore>;

@@ -13,6 +13,7 @@
 #include "thimble/driver/result.h"
 #include "thimble/driver/snapshot.h"
 #include "thimble/render/contact/compact_surface.h"
+#include "thimble/render/contact/large_pages.h"
 #include "thimble/render/contact/linear_search.h"
 #include "thimble/render/page/page_file.h"
 #include "thimble/render/page/page_tree.h"
@@ -25,7 +26,8 @@ class RecordSegment;
 struct PagingSettings {
   std::size_t frames = 4096;  ///< Pages in memory at once: 256 MiB. Must be > 0.
   double reach = 0.001;       ///< Everything this near to the tip is wanted, m.
-  double horizon = 0.02;      ///< So far ahead of its velocity too, s: twice a disk's worst seek.
+  double horizon = 0.05;  ///< So far ahead of its velocity too, s: a disk's worst seek, or as long
+                          ///< as a busy machine lets the loader wait, twice.
 };
 
 /// Counts what paging did.
@@ -33,6 +35,7 @@ struct PagingCounters {
   std::uint64_t loads = 0;      ///< Pages read from the disk.
   std::uint64_t evictions = 0;  ///< Pages given up for others.
   std::uint64_t failures = 0;   ///< Pages that could not be read or are damaged; they stay absent.
+  std::uint64_t misses = 0;     ///< Ticks that needed a page which was absent.
   std::uint64_t short_of_frames = 0;  ///< Times that more pages were wanted than there are frames.
 };
 
@@ -65,6 +68,10 @@ class PagedSurface {
   }
   /// Ends a tick: records found in it may go.
   void end_tick() noexcept;
+  /// Notes how many ticks up to now needed a page that was absent, for `counters`.
+  void note_misses(std::uint64_t misses) noexcept {
+    misses_.store(misses, std::memory_order_relaxed);
+  }
 
   /// Finds a record, or nullptr if its page is not in memory. Good until `end_tick`.
   const CompactTriangle* find(std::int32_t triangle) const noexcept {
@@ -72,6 +79,17 @@ class PagedSurface {
     return frame == nullptr ? nullptr
                             : &frame->records[static_cast<std::size_t>(triangle % kPageRecords)];
   }
+
+  /// Asks the processor to bring the records around one near, all at once: a walk to them would
+  /// wait for each in turn. Nothing happens if its page is absent.
+  void announce(std::int32_t triangle) const noexcept {
+    const Frame* const frame = frame_of(triangle / kPageRecords);
+    if (frame == nullptr) return;
+    const auto first = static_cast<std::size_t>(triangle % kPageRecords / kGroup * kGroup);
+    for (std::size_t i = 0; i < kGroup; ++i) __builtin_prefetch(&frame->records[first + i]);
+  }
+  /// Is how many records stand together: numbers that differ by less are likely near.
+  static constexpr std::int32_t kGroup = 16;
 
   // Answers of the following are about the records in memory; `complete` tells whether they are
   // those about the whole surface.
@@ -118,7 +136,6 @@ class PagedSurface {
  private:
   static constexpr std::int32_t kAbsent = -1;
   static constexpr std::int32_t kDamaged = -2;  // could not be read; is not asked for again
-  static constexpr std::int32_t kGroup = 16;    // records under one box within a page
   static constexpr std::int32_t kGroups = kPageRecords / kGroup;
 
   struct Frame {
@@ -151,7 +168,7 @@ class PagedSurface {
   PagingSettings settings_;
   PageTree tree_;
   std::vector<std::atomic<std::int32_t>> table_;  // frame of each page, or one of the two below
-  std::vector<Frame> frames_;
+  std::vector<Frame, LargePages<Frame>> frames_;
 
   driver::Snapshot<Cursor> cursor_;
   std::atomic<std::uint64_t> tick_{0};  // odd within a tick
@@ -164,6 +181,7 @@ class PagedSurface {
   std::vector<CompactTriangle> incoming_;
   std::uint64_t round_ = 0;
   std::atomic<std::uint64_t> loads_{0}, evictions_{0}, failures_{0}, short_of_frames_{0};
+  std::atomic<std::uint64_t> misses_{0};
   std::atomic<bool> stop_{false};
   std::thread loader_;
 };
