@@ -157,7 +157,7 @@ class Bench {
       return false;
     }
     add(size + ": generate", seconds_since(begin), "s");
-    add(size + ": generate, memory", megabytes(app::resident_memory().most), "MiB");
+    add(size + ": generate, memory", megabytes(app::resident_memory().now), "MiB");
     add(size + ": page file", static_cast<double>(std::filesystem::file_size(file)) / 1e6, "MB");
     begin = Clock::now();
     auto reference = render::CompactContact::build(ring_mesh(1'000'000));
@@ -254,8 +254,8 @@ int main(int argc, char** argv) {
     }
   }
   thimble::bench::Bench bench;
-  std::int64_t triangles = 1'000'000;
-  for (int power = 6; power <= 8 && static_cast<double>(triangles) <= most; ++power) {
+  std::int64_t triangles = 10'000'000;
+  for (int power = 7; power <= 8 && static_cast<double>(triangles) <= most; ++power) {
     if (!bench.run("10^" + std::to_string(power), triangles, folder)) return 1;
     triangles *= 10;
   }

@@ -1,5 +1,8 @@
 #include "thimble/render/page/paged_surface.h"
 
+#include <sys/resource.h>
+#include <unistd.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <chrono>
@@ -20,9 +23,15 @@ using Eigen::Vector3d;
 // tenth of the default reach.
 constexpr std::chrono::microseconds kRest{200};
 
+// The loader works little and must not wait: before all programs, after what is real-time.
+constexpr int kLoaderNice = -15;
+
 // So many pages nearer than the nearest triangle found may be absent before a search for it gives
 // up: a few hundred ns.
 constexpr int kAbsentMax = 64;
+
+// Into so many pieces at most a way is cut to find the pages beside it.
+constexpr int kPiecesMax = 64;
 
 }  // namespace
 
@@ -190,6 +199,8 @@ bool PagedSurface::inside_by_reading(const Vector3d& p_W) const {
 
 void PagedSurface::start_loader() {
   loader_ = std::thread([this] {
+    // On a busy machine the pages would come late; where this is refused it goes on as it is.
+    (void)setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kLoaderNice);
     while (!stop_.load(std::memory_order_relaxed)) {
       if (serve() == 0) std::this_thread::sleep_for(kRest);
     }
@@ -201,44 +212,47 @@ void PagedSurface::want(const Cursor& cursor) {
   const auto in_steps = [&lattice](const std::array<double, 3>& p) -> Vector3d {
     return (Eigen::Map<const Vector3d>(p.data()) - lattice.origin) / lattice.step;
   };
-  wanted_.clear();
   const Vector3d tip = in_steps(cursor.p_tip), place = in_steps(cursor.p_place);
   const Vector3d ahead =
       settings_.horizon / lattice.step * Eigen::Map<const Vector3d>(cursor.v_W.data());
-  // What is touched comes first, then what lies between it and the tip, then what the tip nears.
+  wanted_.clear();
   want_along(place, ahead);
-  if (tip == place) return;
-  want_along(tip, place - tip);
-  want_along(tip, ahead);
+  if (tip != place) {
+    want_along(tip, place - tip);
+    want_along(tip, ahead);
+  }
+  // What is reached later may come later.
+  std::sort(wanted_.begin(), wanted_.end());
 }
 
-// Adds the pages within reach of a way, in the order in which it comes by.
+// Adds the pages within reach of a straight way, each with how far along it and beside it they lie.
 void PagedSurface::want_along(const Vector3d& p, const Vector3d& way) {
-  // A box around the way finds candidates; the distance to the nearest of a few places on it
-  // decides, and sorts the near ones first.
-  constexpr int kPlaces = 8;
   const double reach = settings_.reach / file_.lattice().step;
-  const Vector3d low = p.cwiseMin(p + way) - Vector3d::Constant(reach);
-  const Vector3d high = p.cwiseMax(p + way) + Vector3d::Constant(reach);
-  // Places stand no farther apart than this; half of it is what a box between two may be off.
-  const double room = reach + way.norm() / (2 * kPlaces);
-  const auto first = static_cast<std::ptrdiff_t>(wanted_.size());
-  tree_.visit_reached(low, high, [&](std::int32_t page) {
-    const PageBox& box = file_.boxes()[static_cast<std::size_t>(page)];
-    double nearest = HUGE_VAL;
-    for (int k = 0; k <= kPlaces; ++k) {
-      // What the tip reaches later may come later.
-      const double share = static_cast<double>(k) / kPlaces;
-      const double distance = std::sqrt(distance_squared(box, p + share * way));
-      if (distance <= room) nearest = std::min(nearest, distance + share * way.norm());
-    }
-    if (nearest < HUGE_VAL && wanted_in_[static_cast<std::size_t>(page)] != round_) {
+  const double length = way.norm();
+  const Vector3d along = length > 0 ? Vector3d(way / length) : Vector3d::Zero();
+  // Pieces no longer than the reach, so that the boxes around them hold little else.
+  const int pieces = std::clamp(static_cast<int>(std::ceil(length / (2 * reach))), 1, kPiecesMax);
+  for (int piece = 0; piece < pieces; ++piece) {
+    const Vector3d from = p + way * piece / pieces, to = p + way * (piece + 1) / pieces;
+    const Vector3d low = from.cwiseMin(to) - Vector3d::Constant(reach);
+    const Vector3d high = from.cwiseMax(to) + Vector3d::Constant(reach);
+    tree_.visit_reached(low, high, [&](std::int32_t page) {
+      if (wanted_in_[static_cast<std::size_t>(page)] == round_) return true;
+      const PageBox& box = file_.boxes()[static_cast<std::size_t>(page)];
+      const Vector3d middle(0.5 * (double{box.min[0]} + double{box.max[0]}),
+                            0.5 * (double{box.min[1]} + double{box.max[1]}),
+                            0.5 * (double{box.min[2]} + double{box.max[2]}));
+      const Vector3d half =
+          Vector3d(double{box.max[0]}, double{box.max[1]}, double{box.max[2]}) - middle;
+      // No part of the box is nearer than the place on the way nearest to its middle tells.
+      const double ahead = std::clamp(along.dot(middle - p), 0.0, length);
+      const double beside = std::sqrt(distance_squared(box, p + ahead * along));
+      if (beside > reach + half.norm()) return true;
       wanted_in_[static_cast<std::size_t>(page)] = round_;
-      wanted_.emplace_back(nearest, page);
-    }
-    return true;
-  });
-  std::sort(wanted_.begin() + first, wanted_.end());
+      wanted_.emplace_back(std::max(ahead - half.norm(), 0.0) + beside, page);
+      return true;
+    });
+  }
 }
 
 std::size_t PagedSurface::serve() {

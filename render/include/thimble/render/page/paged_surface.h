@@ -26,8 +26,7 @@ class RecordSegment;
 struct PagingSettings {
   std::size_t frames = 4096;  ///< Pages in memory at once: 256 MiB. Must be > 0.
   double reach = 0.001;       ///< Everything this near to the tip is wanted, m.
-  double horizon = 0.05;  ///< So far ahead of its velocity too, s: a disk's worst seek, or as long
-                          ///< as a busy machine lets the loader wait, twice.
+  double horizon = 0.02;      ///< So far ahead of its velocity too, s: twice a disk's worst seek.
 };
 
 /// Counts what paging did.
