@@ -28,6 +28,14 @@ expect 0 'good\.pages: 4 triangles in 1 pages' "$thimble" mesh page good.off goo
 expect 0 'THMBPAGE' head -c 8 good.pages
 expect 2 'only one triangle' "$thimble" mesh page open.off open.pages
 expect 1 'cannot be written' "$thimble" mesh page good.off no_folder/good.pages
+# What a page file is, and one of any size.
+expect 0 'All pages are whole' "$thimble" mesh good.pages
+expect 0 'bumpy ring of 2048 triangles in 2 pages' "$thimble" mesh generate ring.pages --triangles 2000
+expect 0 'triangles   2048' "$thimble" mesh ring.pages
+expect 2 'neither drawn nor repaired' "$thimble" mesh ring.pages --repair ring.off
+expect 1 'cannot be written' "$thimble" mesh generate no_folder/ring.pages
+printf 'x' | dd of=ring.pages bs=1 seek=10000 conv=notrunc status=none
+expect 2 '1 pages are damaged' "$thimble" mesh ring.pages
 expect 2 'FILE is required' "$thimble" mesh
 if command -v gnuplot >/dev/null; then
   expect 2 'Picture: open\.png' "$thimble" mesh open.off --picture open.png

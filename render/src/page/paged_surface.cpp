@@ -127,6 +127,7 @@ std::int32_t PagedSurface::closest(const Vector3d& p_W, double radius,
   const Vector3d p = (p_W - file_.lattice().origin) / file_.lattice().step;
   const double reach = radius / file_.lattice().step;
   double best_squared = reach * reach;
+  double limit_squared = best_squared;
   double absent_squared = HUGE_VAL;
   std::int32_t best = -1;
   int absent = 0;
@@ -134,8 +135,11 @@ std::int32_t PagedSurface::closest(const Vector3d& p_W, double radius,
     const Frame* const frame = frame_of(page);
     if (frame == nullptr) {
       absent_squared = std::min(absent_squared, squared);
-      // Who lacks so many does not know; and a tick has an end.
-      return ++absent < kAbsentMax ? best_squared : 0.0;
+      // No triangle of its own is farther than its box's farthest corner: so no other page that is
+      // farther than that matters. Who lacks many still does not know; and a tick has an end.
+      limit_squared = std::min(limit_squared,
+                               farthest_squared(file_.boxes()[static_cast<std::size_t>(page)], p));
+      return ++absent < kAbsentMax ? limit_squared : 0.0;
     }
     for (std::int32_t begin = 0; begin < frame->count; begin += kGroup) {
       const PageBox& box = frame->boxes[static_cast<std::size_t>(begin / kGroup)];
@@ -150,7 +154,8 @@ std::int32_t PagedSurface::closest(const Vector3d& p_W, double radius,
         best = t;
       }
     }
-    return best_squared;
+    limit_squared = std::min(limit_squared, best_squared);
+    return limit_squared;
   });
   complete = absent < kAbsentMax && !(absent_squared < best_squared);
   return best;

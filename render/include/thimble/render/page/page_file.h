@@ -57,6 +57,18 @@ inline double distance_squared(const PageBox& box, const Eigen::Vector3d& p) noe
   return sum;
 }
 
+/// Finds the squared distance from a point to the farthest corner of a box, in squared steps.
+/// Real-time: safe.
+inline double farthest_squared(const PageBox& box, const Eigen::Vector3d& p) noexcept {
+  double sum = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double x = p[static_cast<Eigen::Index>(axis)];
+    const double far = std::max(x - double{box.min[axis]}, double{box.max[axis]} - x);
+    sum += far * far;
+  }
+  return sum;
+}
+
 /// Is the lattice of a surface: where its middle lies and how long one step is, m in W.
 struct Lattice {
   Eigen::Vector3d origin{0, 0, 0};

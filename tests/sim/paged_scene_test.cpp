@@ -1,0 +1,102 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "lost_contacts.h"
+#include "report.h"
+#include "ring_pages.h"
+#include "session.h"
+#include "support/scratch.h"
+
+namespace thimble {
+namespace {
+
+/// Writes a scene with a ring in pages, 90 mm wide, and with lines of one's own in it.
+std::filesystem::path scene(const std::string& object_lines, const std::string& station) {
+  const auto folder = support::scratch_folder();
+  if (!std::filesystem::exists(folder / "ring.pages")) {
+    const app::BumpyRing ring;
+    EXPECT_TRUE(app::write_ring(ring, app::ring_grid(ring, 100'000), folder / "ring.pages").ok());
+  }
+  const auto file = folder / "ring.yaml";
+  std::ofstream(file) << "name: ring\narm: " << THIMBLE_SOURCE_DIR
+                      << "/app/arms/vintage_phantom.yaml\nduration: 2.6\nseed: 1\nobjects:\n"
+                         "  - name: ring\n    mesh: ring.pages\n    size: 0.09\n"
+                         "    rotate_degrees: [[z, 20]]\n    stiffness: 700\n    damping: 1\n"
+                      << object_lines
+                      << "hand:\n  path:\n    - {t: 0, at: [0.0317, 0, 0.035]}\n"
+                         "    - {t: 0.8, at: [0.0317, 0, 0.009]}\n"
+                         "    - {t: 1.8, at: [0.0290, 0.012, 0.009]}\n"
+                      << station << "    - {t: 2.6, at: [0.0290, 0.012, 0.035]}\n";
+  return file;
+}
+
+std::string refusal(const std::string& object_lines, const std::string& station) {
+  const auto opened = app::Session::open(scene(object_lines, station), {});
+  return opened ? "" : opened.error().message;
+}
+
+TEST(PagedScene, IsTouchedFromTheDiskTheSameInEveryRun) {
+  std::vector<std::array<double, 3>> forces;
+  for (int run = 0; run < 2; ++run) {
+    const auto opened = app::Session::open(scene("", ""), {});
+    ASSERT_TRUE(opened) << opened.error().message;
+    app::Session& session = **opened;
+    ASSERT_EQ(session.run(std::atomic<bool>{false}), driver::ServoEnd::kDone);
+    const auto rows = session.trace().rows();
+    const auto touching =
+        std::count_if(rows.begin(), rows.end(), [](const auto& row) { return row.in_contact; });
+    EXPECT_GT(touching, 1000);
+    EXPECT_EQ(app::count_lost_contacts(rows, session.touch()), 0u);
+    ASSERT_TRUE(session.paging().has_value());
+    EXPECT_EQ(session.paging()->misses, 0u);
+    EXPECT_GT(session.paging()->loads, 5u);
+    EXPECT_GT(session.triangle_count(), 90'000u);
+    // On top of the tube, of 0.0127 m with bumps, and beside where the tip slides off.
+    for (const auto& row : rows) {
+      EXPECT_TRUE(!row.in_contact || std::abs(row.p_WT[2] - 0.0112) < 0.0025) << row.p_WT[2];
+    }
+    if (run == 0) {
+      for (const auto& row : rows) forces.push_back(row.f_sent_W);
+      continue;
+    }
+    ASSERT_EQ(forces.size(), rows.size());
+    for (std::size_t i = 0; i < rows.size(); ++i) ASSERT_EQ(forces[i], rows[i].f_sent_W);
+  }
+}
+
+TEST(PagedScene, RefusesWhatNeedsTheWholeMeshWithASentence) {
+  EXPECT_EQ(refusal("    contact: {tracker: compact}\n", ""), "");
+  EXPECT_NE(refusal("    contact: {tracker: offset}\n", "").find("a mesh in pages is touched"),
+            std::string::npos);
+  EXPECT_NE(refusal("    contact: {tracker: compact, crease_degrees: 40}\n", "")
+                .find("a mesh in pages is touched"),
+            std::string::npos);
+  EXPECT_NE(refusal("", "    - {t: 2, on: ring, near: [0.03, 0, 0.01]}\n")
+                .find("is not in memory to plan on"),
+            std::string::npos);
+}
+
+TEST(PagedScene, IsTouchedOnTheWallClockWithALoaderOfItsOwn) {
+  app::SessionOptions options;
+  options.clock = app::ClockKind::kWall;
+  options.duration = 1.2;
+  const auto opened = app::Session::open(scene("", ""), options);
+  ASSERT_TRUE(opened) << opened.error().message;
+  app::Session& session = **opened;
+  const driver::ServoEnd end = session.run(std::atomic<bool>{false});
+  // A machine may be too busy for the loop; nothing else may end it.
+  EXPECT_TRUE(end == driver::ServoEnd::kDone || end == driver::ServoEnd::kFault);
+  EXPECT_GT(session.paging()->loads, 0u);
+  app::RunReport report;
+  report.paging = session.paging();
+  EXPECT_NE(app::summary(report).find("read from the disk"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace thimble
