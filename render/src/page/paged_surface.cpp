@@ -141,9 +141,7 @@ std::int32_t PagedSurface::closest(const Vector3d& p_W, double radius,
                                farthest_squared(file_.boxes()[static_cast<std::size_t>(page)], p));
       return ++absent < kAbsentMax ? limit_squared : 0.0;
     }
-    for (std::int32_t begin = 0; begin < frame->count; begin += kGroup) {
-      const PageBox& box = frame->boxes[static_cast<std::size_t>(begin / kGroup)];
-      if (!(distance_squared(box, p) < best_squared)) continue;
+    const auto look = [&](std::int32_t begin) noexcept {
       for (std::int32_t i = begin; i < std::min(begin + kGroup, frame->count); ++i) {
         const CompactTriangle& r = frame->records[static_cast<std::size_t>(i)];
         const double away =
@@ -153,6 +151,19 @@ std::int32_t PagedSurface::closest(const Vector3d& p_W, double radius,
         best_squared = away;
         best = t;
       }
+    };
+    // The nearest box first: then few others are near enough to be opened.
+    std::array<double, kGroups> box_squared;
+    std::size_t first = 0;
+    const auto groups = static_cast<std::size_t>((frame->count + kGroup - 1) / kGroup);
+    for (std::size_t group = 0; group < groups; ++group) {
+      box_squared[group] = distance_squared(frame->boxes[group], p);
+      if (box_squared[group] < box_squared[first]) first = group;
+    }
+    look(static_cast<std::int32_t>(first) * kGroup);
+    for (std::size_t group = 0; group < groups; ++group) {
+      if (group == first || !(box_squared[group] < best_squared)) continue;
+      look(static_cast<std::int32_t>(group) * kGroup);
     }
     limit_squared = std::min(limit_squared, best_squared);
     return limit_squared;
