@@ -55,7 +55,7 @@ TEST(PagedScene, IsTouchedFromTheDiskTheSameInEveryRun) {
     EXPECT_EQ(app::count_lost_contacts(rows, session.touch()), 0u);
     ASSERT_TRUE(session.paging().has_value());
     EXPECT_EQ(session.paging()->misses, 0u);
-    EXPECT_GT(session.paging()->loads, 5u);
+    EXPECT_GE(session.paging()->loads, 4u);
     EXPECT_GT(session.triangle_count(), 90'000u);
     // On top of the tube, of 0.0127 m with bumps, and beside where the tip slides off.
     for (const auto& row : rows) {
