@@ -157,7 +157,7 @@ typename RecordContact<Store>::Outcome RecordContact<Store>::settle(const Eigen:
     int edge = -1;
     if (edge_to_hop(p, place, edge) == Outcome::kUnknown) return Outcome::kUnknown;
     if (edge < 0) return Outcome::kYes;
-    if (state_.hops >= kHopsMax || visits == visited.size()) {
+    if (state_.hops >= kWalkMax || visits == visited.size()) {
       ++counters_.long_walks;
       return Outcome::kNo;
     }
@@ -230,7 +230,7 @@ typename RecordContact<Store>::Outcome RecordContact<Store>::walk(const Eigen::V
   const RecordWalk way(p, state_.n_W);
   const CompactTriangle* record = store_.find(triangle);
   if (absent(record)) return Outcome::kUnknown;
-  for (; state_.hops < kHopsMax; ++state_.hops) {
+  for (; state_.hops < kWalkMax; ++state_.hops) {
     const int edge = way.edge_to_hop(*record);
     if (edge < 0) break;
     const std::int32_t next = record->neighbours[static_cast<std::size_t>(edge)];
