@@ -119,6 +119,7 @@ render::EffectSurroundings surroundings_of(const ArmFile& arm, double rate) {
   surroundings.force_max = arm.limits.force_max;
   surroundings.tip_mass = arm.simulated.plant.mass;
   surroundings.tip_damping = arm.simulated.plant.viscous;
+  surroundings.tip_coulomb = arm.simulated.plant.coulomb;
   // Corners, middles and centre of the workspace.
   for (int i = 0; i < 27; ++i) {
     const Eigen::Vector3d share(i % 3 / 2.0, i / 3 % 3 / 2.0, i / 9 / 2.0);

@@ -11,6 +11,7 @@ struct EffectSurroundings {
   double force_max = 0;          ///< What the gate lets pass, N.
   double tip_mass = 0;           ///< Least apparent mass of arm at the tip, kg; 0 if not known.
   double tip_damping = 0;        ///< Least viscous damping of the arm at the tip, N s/m.
+  double tip_coulomb = 0;        ///< Least dry friction of the arm at the tip, N; 0 if not known.
   double surface_stiffness = 0;  ///< Of the object, N/m.
   double surface_damping = 0;    ///< Of the object, N s/m.
 };
