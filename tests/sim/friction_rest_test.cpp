@@ -23,7 +23,7 @@
 namespace thimble::app {
 namespace {
 
-using support::GivenSettings;
+
 using support::make_friction;
 
 std::unique_ptr<render::AnyStage> friction(std::string_view name, const FrictionRigSettings& rig,

@@ -6,10 +6,12 @@
 #include <string_view>
 #include <vector>
 
-#include "support/given_settings.h"
 #include "thimble/render/effect/effect_table.h"
+#include "thimble/render/effect/given_settings.h"
 
 namespace thimble::support {
+
+using render::GivenSettings;
 
 /// Is the PHANTOM-like arm at 1 kHz, as effects know it [STABILITY, heading].
 inline render::EffectSurroundings phantom_surroundings() {

@@ -17,7 +17,7 @@ namespace thimble::render {
 namespace {
 
 using Eigen::Vector3d;
-using support::GivenSettings;
+
 using support::make_friction;
 using support::Rubbing;
 

@@ -17,7 +17,7 @@ namespace {
 
 using Eigen::Vector3d;
 using support::complaints_of;
-using support::GivenSettings;
+
 using support::make_friction;
 using support::Rubbing;
 

@@ -1,18 +1,21 @@
 #pragma once
 
-#include <cmath>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "thimble/render/effect/settings_reader.h"
 
-namespace thimble::support {
+namespace thimble::render {
 
-/// Answers an effect's questions from values in code, and keeps its complaints.
-class GivenSettings final : public render::SettingsReader {
+/// Answers an effect's questions from values in code, for programs and tests that need no scene, and
+/// keeps its complaints. Vectors, files and lists cannot be given.
+/// Real-time: never from the servo thread.
+class GivenSettings final : public SettingsReader {
  public:
   GivenSettings() = default;
+  /// Takes numbers (SI) and words by their keys.
   explicit GivenSettings(std::map<std::string, double> numbers,
                          std::map<std::string, std::string> words = {})
       : numbers_(std::move(numbers)), words_(std::move(words)) {}
@@ -20,7 +23,7 @@ class GivenSettings final : public render::SettingsReader {
   bool has(std::string_view key) override {
     return numbers_.contains(std::string(key)) || words_.contains(std::string(key));
   }
-  void number(std::string_view key, double& value, const render::NumberLimits& limits) override {
+  void number(std::string_view key, double& value, const NumberLimits& limits) override {
     const auto given = numbers_.find(std::string(key));
     if (given == numbers_.end()) {
       if (limits.required) reject(key, "is missing");
@@ -33,7 +36,7 @@ class GivenSettings final : public render::SettingsReader {
     }
     value = given->second;
   }
-  void vector(std::string_view key, Eigen::Vector3d&, const render::NumberLimits&) override {
+  void vector(std::string_view key, Eigen::Vector3d&, const NumberLimits&) override {
     reject(key, "cannot be given here");
   }
   void choice(std::string_view key, std::size_t& value,
@@ -51,13 +54,14 @@ class GivenSettings final : public render::SettingsReader {
   void file(std::string_view key, std::filesystem::path&) override {
     reject(key, "cannot be given here");
   }
-  void list(std::string_view key, const std::function<void(render::SettingsReader&)>&) override {
+  void list(std::string_view key, const std::function<void(SettingsReader&)>&) override {
     reject(key, "cannot be given here");
   }
   void reject(std::string_view key, const std::string& sentence) override {
     mistakes_.push_back(std::string(key) + ": " + sentence);
   }
 
+  /// Gives "key: sentence" of each mistake so far.
   const std::vector<std::string>& mistakes() const { return mistakes_; }
 
  private:
@@ -66,4 +70,4 @@ class GivenSettings final : public render::SettingsReader {
   std::vector<std::string> mistakes_;
 };
 
-}  // namespace thimble::support
+}  // namespace thimble::render
