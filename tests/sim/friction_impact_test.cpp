@@ -43,8 +43,7 @@ struct Impact {
 /// period after the entry.
 Impact impact(std::string_view name, double speed, double phase, bool held, double stiffness,
               driver::SafetyGate* gate, bool symmetric) {
-  const auto friction =
-      support::make_friction(name, GivenSettings({{"coefficient", 0.5}}));
+  const auto friction = support::make_friction(name, render::GivenSettings({{"coefficient", 0.5}}));
   const render::SpringDamper surface{.stiffness = stiffness, .damping = 0};
   const device_sim::PlantSettings plant{.mass = 0.075, .viscous = 0.005, .coulomb = 0.04};
   device_sim::HandSettings hand;

@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "study/friction_cases.h"
 #include "study/friction_rig.h"
 #include "study/signal.h"
 #include "support/rubbing.h"
@@ -23,9 +24,10 @@
 namespace thimble::app {
 namespace {
 
-
+using render::GivenSettings;
 using support::make_friction;
 
+/// Builds a friction with the table's coefficient of 0.5.
 std::unique_ptr<render::AnyStage> friction(std::string_view name, const FrictionRigSettings& rig,
                                            std::map<std::string, std::string> words = {}) {
   return make_friction(name, GivenSettings({{"coefficient", 0.5}}, std::move(words)),
@@ -74,45 +76,17 @@ TEST(NaiveFriction, MovesTheHandNoMoreOnceTheEncodersAreIdeal) {
   EXPECT_GT(rest.sign_changes, 500);
 }
 
-struct Sliding {
-  double mean = 0;    // N, against the motion
-  double ripple = 0;  // N RMS
-};
-
-/// Slides evenly whatever the friction does: a very stiff hand, twenty runs over 3 mm around home.
-/// (Farther out the other joints' counts move x by less than a micrometre, and each of them is a
-/// full pulse of the naive law.)
-Sliding slide(FrictionRigSettings rig, double speed) {
-  rig.hand_stiffness = 1e7;
-  rig.hand_damping = 2000;
-  double sum = 0, squares = 0, count = 0;
-  for (int i = 0; i < 20; ++i) {
-    const double offset = i * 3e-5 / 20 - 0.0015;
-    const auto naive = friction("naive", rig);
-    const double duration = 0.5 + 0.003 / speed;
-    const RigRun run =
-        rub(*naive, {{0, offset}, {0.5, offset}, {duration, offset + 0.003}}, duration, rig);
-    // 2.7 mm are 90 counts.
-    for (const double f : std::span(run.force).last(static_cast<std::size_t>(2.7 / speed))) {
-      sum += f;
-      squares += f * f;
-      count += 1;
-    }
-  }
-  return {-sum / count, std::sqrt(squares / count - sum * sum / count / count)};
-}
-
 // Case 13 from the wire up.
 TEST(NaiveFriction, HasTheMeanAndRippleOfItsLaw) {
   for (const double speed : {0.005, 0.02}) {
-    const Sliding naive = slide({}, speed);
+    const EvenSliding naive = slide_evenly({}, speed);
     const double p = speed * 1e-3 / 3e-5;
     EXPECT_NEAR(naive.mean, p * 0.5, 0.01 * p * 0.5) << speed;
     EXPECT_NEAR(naive.ripple, 0.5 * std::sqrt(p * (1 - p)), 0.01 * 0.5 * std::sqrt(p * (1 - p)))
         << speed;
     FrictionRigSettings ideal;
     ideal.encoder_step = 0;
-    const Sliding whole = slide(ideal, speed);
+    const EvenSliding whole = slide_evenly(ideal, speed);
     EXPECT_NEAR(whole.mean, 0.5, 0.005) << speed;
     EXPECT_LT(whole.ripple, 0.005) << speed;
   }

@@ -88,11 +88,13 @@ FrictionMeasures measure(const FrictionCase& which, const FrictionRigSettings& r
   const auto second = static_cast<std::size_t>(std::llround(rate));
   found.rest_force = above_corner(found.stop.force, rate, second);
   found.rest_way = above_corner(found.stop.x, rate, second);
+  std::vector<double> rest(found.stop.force.end() - std::llround(rate), found.stop.force.end());
+  const double held = std::abs(mean(rest));
   if (found.rest_force > kTrembles) {
-    const std::vector<double> fast = high_passed(found.stop.force, rate, kCorner);
-    found.rest_frequency = sign_changes_per_second(std::span(fast).last(second), rate) / 2;
+    const double middle = mean(rest);
+    for (double& force : rest) force -= middle;
+    found.rest_frequency = sign_changes_per_second(rest, rate) / 2;
   }
-  const double held = std::abs(mean(std::span<const double>(found.stop.force).last(second)));
   found.rest_held = held > kNothing ? held : 0;
 
   const RigRun creep = creep_run(which, rig, 0.001);

@@ -32,7 +32,7 @@ std::unique_ptr<render::AnyStage> build_friction(const FrictionCase& which,
 struct FrictionMeasures {
   double rest_force = 0;      ///< In the last second after a stop from 50 mm/s.
   double rest_way = 0;        ///< The tip's, then.
-  double rest_frequency = 0;  ///< Half the changes of sign above 50 Hz, Hz, then; 0 if silent.
+  double rest_frequency = 0;  ///< How often the force swings about its mean then, Hz; 0 if silent.
   double rest_held = 0;       ///< Mean force held, then.
   double creep_force = 0;     ///< The hand creeping at 1 mm/s.
   double creep_mean = 0;      ///< Mean friction, then.

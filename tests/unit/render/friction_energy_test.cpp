@@ -15,7 +15,6 @@ namespace thimble::render {
 namespace {
 
 using Eigen::Vector3d;
-
 using support::make_friction;
 using support::Rubbing;
 

@@ -17,7 +17,6 @@ namespace thimble::render {
 namespace {
 
 using Eigen::Vector3d;
-
 using support::make_friction;
 using support::Rubbing;
 

@@ -17,7 +17,6 @@ namespace {
 
 using Eigen::Vector3d;
 using support::complaints_of;
-
 using support::make_friction;
 using support::Rubbing;
 
