@@ -12,7 +12,7 @@
 #include "thimble/render/contact/normal_projection_tracker.h"
 #include "thimble/render/contact/offset_tracker.h"
 #include "thimble/render/contact/smooth_normals.h"
-#include "thimble/render/touch.h"
+#include "touch_of.h"
 
 namespace thimble::render {
 namespace {
@@ -23,33 +23,6 @@ driver::Error apart(const ContactChoice& choice, const std::string& why) {
   return driver::Error{"The tracker \"" +
                        std::string(kTrackerNames[static_cast<std::size_t>(choice.tracker)]) +
                        "\" " + why};
-}
-
-/// Builds the stages of a surface: its spring comes after what changes the depth.
-StageList stage_list(const SurfaceChoice& surface) {
-  std::vector<std::unique_ptr<AnyStage>> stages;
-  bool sprung = false;
-  for (const EffectPlan& effect : surface.effects) {
-    if (!sprung && effect.kind->order > EffectOrder::kDepth) {
-      stages.push_back(std::make_unique<AnyStageOf<SpringDamper>>(surface.spring));
-      sprung = true;
-    }
-    stages.push_back(effect.build());
-  }
-  if (!sprung) stages.push_back(std::make_unique<AnyStageOf<SpringDamper>>(surface.spring));
-  return StageList(std::move(stages));
-}
-
-template <class Stages>
-Built object_of(Stages stages) {
-  return std::unique_ptr<ObjectTouch>(std::make_unique<ObjectTouchOf<Stages>>(std::move(stages)));
-}
-
-template <class Contact>
-Built touch_of(Contact contact, const SurfaceChoice& surface) {
-  // A bare surface, by far the most frequent, is joined wholly at compile time.
-  if (surface.effects.empty()) return object_of(Touch(std::move(contact), surface.spring));
-  return object_of(Touch(std::move(contact), stage_list(surface)));
 }
 
 template <class Contact, class Shading, class Depth>
