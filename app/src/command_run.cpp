@@ -76,7 +76,7 @@ RunReport report_of(const Session& session, ClockKind clock, driver::ServoEnd en
   report.seed = session.seed();
   report.rate_asked = session.scene().rate;
   report.force_limit = session.scene().arm.limits.force_max;
-  report.triangles = session.mesh_W().triangles.size();
+  report.triangles = session.triangles();
   report.statistics = session.statistics();
   report.lost_contacts = count_lost_contacts(session.trace().rows(), session.touch());
   report.wire = session.device().wire_counters();

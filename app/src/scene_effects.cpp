@@ -148,4 +148,15 @@ std::vector<render::EffectPlan> read_effects(YamlMap& object, const std::filesys
   return plans;
 }
 
+render::FieldBuilder read_field(YamlMap& object, const std::filesystem::path& folder,
+                                const render::EffectSurroundings& surroundings) {
+  std::vector<std::string_view> names;
+  for (const render::FieldKind& kind : render::field_table()) names.push_back(kind.name);
+  const render::FieldKind& kind = render::field_table()[object.require_choice("field", names)];
+  YamlSettings settings(object, folder);
+  render::FieldBuilder build = kind.read(settings, surroundings);
+  settings.finish();
+  return build;
+}
+
 }  // namespace thimble::app

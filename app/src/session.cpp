@@ -41,10 +41,15 @@ driver::Result<void> check_reach(const HandRoute& route, const ArmFile& arm) {
   return {};
 }
 
-/// Reads the mesh of every object and puts it into the world (m).
+/// Reads the mesh of every object and puts it into the world (m); a shape has one to be drawn, a
+/// field an empty one.
 driver::Result<std::vector<render::TriangleMesh>> load_meshes(const Scene& scene) {
   std::vector<render::TriangleMesh> meshes;
   for (const SceneObject& object : scene.objects) {
+    if (object.shape || object.build_field) {
+      meshes.push_back(object.shape ? object.shape->mesh_W : render::TriangleMesh());
+      continue;
+    }
     const auto mesh = render::load_mesh(object.mesh_file);
     if (!mesh) return mesh.error();
     meshes.push_back(place_mesh(*mesh, object));
@@ -60,10 +65,16 @@ driver::Result<std::unique_ptr<render::SceneTouch>> build_touch(
   std::vector<std::unique_ptr<render::ObjectTouch>> objects;
   for (std::size_t i = 0; i < meshes_W.size(); ++i) {
     const SceneObject& object = scene.objects[i];
-    auto touch = render::build_object_touch(
-        meshes_W[i], object.contact,
-        {.spring = {.stiffness = object.stiffness, .damping = object.damping},
-         .effects = object.effects});
+    const render::SurfaceChoice surface{
+        .spring = {.stiffness = object.stiffness, .damping = object.damping},
+        .effects = object.effects};
+    if (object.build_field || object.shape) {
+      objects.push_back(object.build_field
+                            ? object.build_field()
+                            : render::build_primitive_touch(object.shape->shape_W, surface));
+      continue;
+    }
+    auto touch = render::build_object_touch(meshes_W[i], object.contact, surface);
     if (!touch) return driver::Error{object.mesh_file.string() + ": " + touch.error().message};
     objects.push_back(std::move(touch).value());
   }
@@ -98,7 +109,9 @@ driver::Result<std::unique_ptr<Session>> Session::open(const std::filesystem::pa
 
   std::vector<NamedMesh> named;
   for (std::size_t i = 0; i < meshes->size(); ++i) {
-    named.push_back({session->scene_.objects[i].name, &(*meshes)[i]});
+    const SceneObject& object = session->scene_.objects[i];
+    if (!object.build_field) named.push_back({object.name, &(*meshes)[i]});
+    if (!object.shape) session->triangles_ += (*meshes)[i].triangles.size();
     append((*meshes)[i], session->mesh_W_);
   }
   const auto route = plan_hand(session->scene_.hand, named);

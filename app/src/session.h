@@ -44,8 +44,11 @@ class Session {
   driver::ServoEnd run(const std::atomic<bool>& stop) noexcept;
 
   const Scene& scene() const { return scene_; }
-  /// Gives the meshes of all objects in the world as one (m), for pictures and checks.
+  /// Gives the meshes of all objects in the world as one (m), for pictures: those that are touched,
+  /// and those that stand for shapes.
   const render::TriangleMesh& mesh_W() const { return mesh_W_; }
+  /// Tells how many triangles can be touched.
+  std::size_t triangles() const { return triangles_; }
   const driver::Device& device() const { return *device_; }
   const device_sim::SimulatedArm& arm() const { return *arm_; }
   const render::SceneTouch& touch() const { return *touch_; }
@@ -64,6 +67,7 @@ class Session {
 
   Scene scene_;
   render::TriangleMesh mesh_W_;
+  std::size_t triangles_ = 0;
   std::uint64_t seed_ = 0;
   std::uint64_t ticks_ = 0;
   std::int64_t period_ns_ = 0;
