@@ -48,6 +48,9 @@ render::ContactChoice read_contact(YamlMap map) {
     return map.optional_choice(key, 0, {names.begin(), names.end()});
   };
   choice.tracker = static_cast<render::TrackerChoice>(choose("tracker", render::kTrackerNames));
+  if (map.has("search")) {
+    choice.search = static_cast<render::SearchChoice>(choose("search", render::kSearchNames));
+  }
   if (map.has("blending")) {
     choice.blending =
         static_cast<render::BlendingChoice>(choose("blending", render::kBlendingNames));

@@ -77,13 +77,13 @@ Built compact_touch(const TriangleMesh& mesh_W, const ContactChoice& choice,
   if (choice.crease_angle) options.crease_angle = *choice.crease_angle;
   auto compact = CompactSurface::build(*checked, options);
   if (!compact) return compact.error();
-  return touch_of(CompactContact(std::move(compact).value()), surface);
+  return touch_of(CompactContact(std::move(compact).value(), choice.search), surface);
 }
 
 template <class Contact>
 Built mesh_touch(const TriangleMesh& mesh_W, const ContactChoice& choice, bool smooth,
                  const SurfaceChoice& surface) {
-  auto contact = Contact::build(mesh_W);
+  auto contact = Contact::build(mesh_W, {}, choice.search);
   if (!contact) return contact.error();
   return tracked_touch(
       std::move(contact).value(), choice,
@@ -107,7 +107,7 @@ Built build_object_touch(const TriangleMesh& mesh_W, const ContactChoice& choice
           choice.curved_depth.value_or(false)) {
         return apart(choice, "pushes towards its proxy: it goes with the blending \"flat\" only.");
       }
-      auto contact = GodObjectContact::build(mesh_W);
+      auto contact = GodObjectContact::build(mesh_W, {}, choice.search);
       if (!contact) return contact.error();
       return touch_of(std::move(contact).value(), surface);
     }

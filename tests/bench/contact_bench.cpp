@@ -5,8 +5,11 @@
 #include <cstring>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "bench/peers.h"
@@ -14,6 +17,7 @@
 #include "support/bench_meshes.h"
 #include "support/random.h"
 #include "thimble/render/contact/compact_contact.h"
+#include "thimble/render/contact/make_search.h"
 
 // Contact on closed shapes of 0.1 m from 10^3 to 10^7 triangles, against other libraries in the
 // same run. Every time is the least of several rounds in which the contenders take turns: what the
@@ -118,6 +122,8 @@ std::pair<double, double> follow_in_loop(const Path& path, F&& follow) {
 
 class Bench {
  public:
+  explicit Bench(bool cold_only) : cold_only_(cold_only) {}
+
   void run(const std::string& size, std::size_t triangles) {
     const support::BumpyBall ball;
     const support::Ring ring;
@@ -153,6 +159,7 @@ class Bench {
         "B per triangle", triangles == 1000000 ? "<= 96" : "");
     std::unique_ptr<Peer> embree;
     if constexpr (THIMBLE_HAVE_EMBREE) embree = make_embree(mesh);
+    if (cold_only_) return run_cold(name, mesh, contact.surface(), embree.get(), triangles);
     driver::DeviceState state;
     const auto ours = [&](const Vector3d& p) {
       state.p_WT = p;
@@ -197,11 +204,11 @@ class Bench {
       add(way + " in the loop, p99, embree", late_embree, "ns");
       add(way + " in the loop, embree / ours", mean_embree / mean, "", large ? ">= 1" : ">= 1.5");
     }
-    run_cold(name, mesh, contact, embree.get(), triangles);
+    run_cold(name, mesh, contact.surface(), embree.get(), triangles);
   }
 
   void run_cold(const std::string& name, const render::TriangleMesh& mesh,
-                const render::CompactContact& contact, Peer* embree, std::size_t triangles) {
+                const render::CompactSurface& surface, Peer* embree, std::size_t triangles) {
     constexpr std::size_t kQueries = 20000;
     support::Random random(9);
     std::vector<Vector3d> from, to, near;
@@ -223,13 +230,31 @@ class Bench {
       }
       return best;
     };
-    const render::Bvh& bvh = contact.search();
-    const double segment =
-        time([&](std::size_t i) { return bvh.first_entry(from[i], to[i]).parameter; });
-    add(name + ": cold segment", segment, "ns");
-    const double closest =
-        time([&](std::size_t i) { return bvh.closest(near[i], 1.01e-3).distance; });
-    add(name + ": cold closest point", closest, "ns");
+    double segment = INFINITY, closest = INFINITY;  // of the default search
+    const auto search = render::make_search(surface);
+    const auto ask_search = [&](const std::string& kind, const render::ContactSearch& s) {
+      const double segment_ns =
+          time([&](std::size_t i) { return s.first_entry(from[i], to[i]).parameter; });
+      add(name + ": cold segment" + kind, segment_ns, "ns");
+      const double closest_ns =
+          time([&](std::size_t i) { return s.closest(near[i], 1.01e-3).distance; });
+      add(name + ": cold closest point" + kind, closest_ns, "ns");
+      return std::pair(segment_ns, closest_ns);
+    };
+    const auto ask_kind = [&](const std::string& kind, std::optional<render::SearchChoice> choice) {
+      const auto begin = Clock::now();
+      const auto s = render::make_search(surface, choice);
+      add(name + ": build, " + kind, seconds_since(begin), "s");
+      add(name + ": memory, " + kind,
+          static_cast<double>(s->bytes()) / static_cast<double>(mesh.triangles.size()),
+          "B per triangle");
+      return ask_search(", " + kind, *s);
+    };
+    if (triangles <= 10000) ask_kind("linear", render::SearchChoice::kLinear);
+    ask_kind("tree", render::SearchChoice::kTree);
+    ask_kind("grid", render::SearchChoice::kGrid);
+    // Peers and the default take turns next to each other.
+    std::tie(segment, closest) = ask_search("", *search);
     if (embree != nullptr) {
       const double theirs = time([&](std::size_t i) { return embree->first_hit(from[i], to[i]); });
       add(name + ": cold segment, embree", theirs, "ns");
@@ -254,6 +279,7 @@ class Bench {
     if (sum == -1) std::printf("never\n");
   }
 
+  bool cold_only_;
   std::vector<app::Figure> figures_;
 };
 
@@ -262,8 +288,9 @@ class Bench {
 
 int main(int argc, char** argv) {
   // --figures=FILE writes the figures, --max=N stops at N triangles (default 1e6), --long goes on
-  // to 10^7.
+  // to 10^7, --cold asks the searches only.
   std::string figures_file;
+  bool cold_only = false;
   double most = 1e6;
   for (int i = 1; i < argc; ++i) {
     if (std::strncmp(argv[i], "--figures=", 10) == 0) {
@@ -272,12 +299,15 @@ int main(int argc, char** argv) {
       most = std::atof(argv[i] + 6);
     } else if (std::strcmp(argv[i], "--long") == 0) {
       most = 1e7;
+    } else if (std::strcmp(argv[i], "--cold") == 0) {
+      cold_only = true;
     } else {
-      std::fprintf(stderr, "Unknown option %s. Options: --figures=FILE --max=N --long\n", argv[i]);
+      std::fprintf(stderr, "Unknown option %s. Options: --figures=FILE --max=N --long --cold\n",
+                   argv[i]);
       return 2;
     }
   }
-  thimble::bench::Bench bench;
+  thimble::bench::Bench bench(cold_only);
   std::size_t triangles = 1000;
   for (int power = 3; power <= 7 && static_cast<double>(triangles) <= most; ++power) {
     bench.run("10^" + std::to_string(power), triangles);

@@ -82,11 +82,11 @@ OffsetFoot find_offset_foot(const ContactMesh& mesh, const SmoothNormals& normal
   return foot;
 }
 
-OffsetTracker::OffsetTracker(const ContactMesh& mesh, const LinearSearch& search,
+OffsetTracker::OffsetTracker(const ContactMesh& mesh, const ContactSearch& search,
                              double crease_angle)
     : OffsetTracker(mesh, search, std::make_shared<const SmoothNormals>(mesh, crease_angle)) {}
 
-OffsetTracker::OffsetTracker(const ContactMesh& mesh, const LinearSearch& search,
+OffsetTracker::OffsetTracker(const ContactMesh& mesh, const ContactSearch& search,
                              std::shared_ptr<const SmoothNormals> normals)
     : mesh_(&mesh), search_(&search), normals_(std::move(normals)), edge_planes_(mesh, search) {}
 

@@ -14,6 +14,15 @@ using Eigen::Vector3d;
 constexpr double kRounding = 0x1p-48;
 constexpr double kSpread = 16;
 
+// The same in single precision, from corners that are exact but for one rounding, and from a begin
+// that is wrong by half a step.
+constexpr float kSingleRounding = 0x1p-21f;
+
+// Lanes 0 to 2 become those of the next corner.
+__m128 next_corner(__m128 u) noexcept {
+  return _mm_shuffle_ps(u, u, _MM_SHUFFLE(3, 0, 2, 1));
+}
+
 int sign_beyond(double value, double bound) noexcept {
   return value > bound ? 1 : value < -bound ? -1 : 0;
 }
@@ -40,7 +49,47 @@ SegmentTest::SegmentTest(const CompactSurface& surface, const Vector3d& p_from,
     const double begin = from_[i], end = from_[i] + way_[i];
     low_[static_cast<std::size_t>(i)] = whole(std::min(begin, end) - room);
     high_[static_cast<std::size_t>(i)] = whole(std::max(begin, end) + room);
+    from_whole_[static_cast<std::size_t>(i)] = whole(begin);
   }
+  // Differences of corners and begin fit into 32 bits, and triple products into a float.
+  single_ = from_.cwiseAbs().maxCoeff() < kLatticeHalf && way_size_ <= 4 * kLatticeHalf;
+}
+
+// Lane k is the side of edge k on which the segment's line passes: of two signs, one is wrong for a
+// crossing.
+bool SegmentTest::passes_by(const CompactTriangle& record) const noexcept {
+  if (!single_) return false;
+  const auto relative = [this](const std::array<std::int32_t, 3>& x, std::size_t axis) noexcept {
+    return _mm_cvtepi32_ps(_mm_sub_epi32(load(x), _mm_set1_epi32(from_whole_[axis])));
+  };
+  const __m128 x = relative(record.x, 0);
+  const __m128 y = relative(record.y, 1);
+  const __m128 z = relative(record.z, 2);
+  const __m128 next_x = next_corner(x), next_y = next_corner(y), next_z = next_corner(z);
+  const auto along = [this](int axis) noexcept {
+    return _mm_set1_ps(static_cast<float>(way_[axis]));
+  };
+  const auto minor = [](__m128 a, __m128 b, __m128 next_a, __m128 next_b) noexcept {
+    return _mm_sub_ps(_mm_mul_ps(a, next_b), _mm_mul_ps(b, next_a));
+  };
+  const __m128 side = _mm_add_ps(_mm_add_ps(_mm_mul_ps(along(0), minor(y, z, next_y, next_z)),
+                                            _mm_mul_ps(along(1), minor(z, x, next_z, next_x))),
+                                 _mm_mul_ps(along(2), minor(x, y, next_x, next_y)));
+  const __m128 sign_bit = _mm_set1_ps(-0.0f);
+  const __m128 sizes =
+      _mm_max_ps(_mm_max_ps(_mm_andnot_ps(sign_bit, x), _mm_andnot_ps(sign_bit, y)),
+                 _mm_andnot_ps(sign_bit, z));
+  const __m128 size = _mm_max_ps(_mm_shuffle_ps(sizes, sizes, _MM_SHUFFLE(0, 0, 0, 0)),
+                                 _mm_max_ps(_mm_shuffle_ps(sizes, sizes, _MM_SHUFFLE(1, 1, 1, 1)),
+                                            _mm_shuffle_ps(sizes, sizes, _MM_SHUFFLE(2, 2, 2, 2))));
+  const __m128 reach = _mm_add_ps(size, _mm_set1_ps(static_cast<float>(way_size_)));
+  const __m128 wrong = _mm_add_ps(_mm_set1_ps(static_cast<float>(position_rounding_) + 1),
+                                  _mm_mul_ps(_mm_set1_ps(kSingleRounding), reach));
+  const __m128 bound = _mm_mul_ps(_mm_mul_ps(_mm_set1_ps(static_cast<float>(kSpread)), wrong),
+                                  _mm_mul_ps(size, reach));
+  const int left = _mm_movemask_ps(_mm_cmpgt_ps(side, bound)) & 7;
+  const int right = _mm_movemask_ps(_mm_cmplt_ps(side, _mm_xor_ps(bound, sign_bit))) & 7;
+  return (left != 0) & (right != 0);
 }
 
 Crossing SegmentTest::cross(std::int32_t t, double& parameter) const noexcept {
@@ -73,7 +122,21 @@ Crossing SegmentTest::cross(std::int32_t t, double& parameter) const noexcept {
   const double sign = way == Crossing::kEnters ? 1 : -1;
   parameter = 0;
   if (sign * above > 0) parameter = sign * below > 0 ? above / (above + below) : 1;
+  parameter = kept_in_box(parameter, way_, a, b, c);
   return way;
+}
+
+double kept_in_box(double parameter, const Vector3d& way, const Vector3d& a, const Vector3d& b,
+                   const Vector3d& c) noexcept {
+  double begin = 0, end = 1;
+  for (int i = 0; i < 3; ++i) {
+    if (way[i] == 0) continue;
+    const double one = std::min({a[i], b[i], c[i]}) / way[i];
+    const double other = std::max({a[i], b[i], c[i]}) / way[i];
+    begin = std::max(begin, std::min(one, other));
+    end = std::min(end, std::max(one, other));
+  }
+  return std::max(begin, std::min(parameter, end));
 }
 
 ReachedPart reached_part(const Vector3d& from, const Vector3d& way) noexcept {
@@ -97,6 +160,7 @@ ReachedPart reached_part(const Vector3d& from, const Vector3d& way) noexcept {
   part.length = end - begin;
   part.from = (from + begin * way).cast<float>();
   part.way = (part.length * way).cast<float>();
+  part.room = kBoxRoom + static_cast<float>(0x1p-48 * size);
   return part;
 }
 

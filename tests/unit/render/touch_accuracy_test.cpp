@@ -161,7 +161,7 @@ TEST(TouchAccuracy, OfRoundWeightsOnASphereIsFourthOrder) {
     const auto normals =
         std::make_shared<const SmoothNormals>(mesh, kCreaseAngle, NormalWeights::kRound);
     const Errors curved =
-        replay(Curved(OffsetContact(mesh, normals), {}, normals), kSphere, kOnSphere, kAnywhere);
+        replay(Curved(OffsetContact(mesh, {}, normals), {}, normals), kSphere, kOnSphere, kAnywhere);
     print("round weights, curved", curved);
     EXPECT_LT(curved.direction_p99, 1e-6);
     if (level > 3) {

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "thimble/render/contact/compact_surface.h"
-#include "thimble/render/contact/linear_search.h"
+#include "thimble/render/contact/contact_search.h"
 
 namespace thimble::render {
 
