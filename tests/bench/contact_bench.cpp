@@ -8,7 +8,6 @@
 #include <optional>
 #include <string>
 #include <thread>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -220,60 +219,88 @@ class Bench {
       to.push_back(from.back() + 0.5e-3 * random.direction());
       near.push_back(on + random.uniform(0, 1e-3) * random.direction());
     }
-    double sum = 0;  // read below, so that no query is left out
-    const auto time = [&](const auto& query) {
-      double best = INFINITY;
-      for (int round = 0; round < kRounds; ++round) {
-        const auto begin = Clock::now();
-        for (std::size_t i = 0; i < kQueries; ++i) sum += query(i);
-        best = std::min(best, seconds_since(begin) * 1e9 / static_cast<double>(kQueries));
-      }
-      return best;
+    using Question = std::function<double(std::size_t)>;
+    struct Contender {
+      std::string name;
+      Question segment, closest;
     };
-    double segment = INFINITY, closest = INFINITY;  // of the default search
-    const auto search = render::make_search(surface);
-    const auto ask_search = [&](const std::string& kind, const render::ContactSearch& s) {
-      const double segment_ns =
-          time([&](std::size_t i) { return s.first_entry(from[i], to[i]).parameter; });
-      add(name + ": cold segment" + kind, segment_ns, "ns");
-      const double closest_ns =
-          time([&](std::size_t i) { return s.closest(near[i], 1.01e-3).distance; });
-      add(name + ": cold closest point" + kind, closest_ns, "ns");
-      return std::pair(segment_ns, closest_ns);
-    };
-    const auto ask_kind = [&](const std::string& kind, std::optional<render::SearchChoice> choice) {
+    std::vector<Contender> contenders;
+    std::vector<std::shared_ptr<const render::ContactSearch>> searches;
+    std::vector<std::unique_ptr<Peer>> peers;
+    const auto add_search = [&](const std::string& kind,
+                                std::optional<render::SearchChoice> choice) {
       const auto begin = Clock::now();
-      const auto s = render::make_search(surface, choice);
-      add(name + ": build, " + kind, seconds_since(begin), "s");
-      add(name + ": memory, " + kind,
-          static_cast<double>(s->bytes()) / static_cast<double>(mesh.triangles.size()),
-          "B per triangle");
-      return ask_search(", " + kind, *s);
+      const auto search = render::make_search(surface, choice);
+      if (choice) add(name + ": build, " + kind, seconds_since(begin), "s");
+      if (choice) {
+        add(name + ": memory, " + kind,
+            static_cast<double>(search->bytes()) / static_cast<double>(mesh.triangles.size()),
+            "B per triangle");
+      }
+      searches.push_back(search);
+      const render::ContactSearch& s = *search;
+      contenders.push_back({kind,
+                            [&](std::size_t i) { return s.first_entry(from[i], to[i]).parameter; },
+                            [&](std::size_t i) { return s.closest(near[i], 1.01e-3).distance; }});
     };
-    if (triangles <= 10000) ask_kind("linear", render::SearchChoice::kLinear);
-    ask_kind("tree", render::SearchChoice::kTree);
-    ask_kind("grid", render::SearchChoice::kGrid);
-    // Peers and the default take turns next to each other.
-    std::tie(segment, closest) = ask_search("", *search);
-    if (embree != nullptr) {
-      const double theirs = time([&](std::size_t i) { return embree->first_hit(from[i], to[i]); });
-      add(name + ": cold segment, embree", theirs, "ns");
-      add(name + ": cold segment, ours / embree", segment / theirs, "", "<= 1.2");
-    }
-    double best = INFINITY;
-    const auto ask = [&](Peer& peer) {
-      const double theirs = time([&](std::size_t i) { return peer.closest(near[i], 1.01e-3); });
-      add(name + ": cold closest point, " + peer.name(), theirs, "ns");
-      best = std::min(best, theirs);
+    const auto add_peer = [&](Peer& peer) {
+      contenders.push_back({peer.name(),
+                            peer.has_first_hit()
+                                ? [&](std::size_t i) { return peer.first_hit(from[i], to[i]); }
+                                : Question(),
+                            [&](std::size_t i) { return peer.closest(near[i], 1.01e-3); }});
     };
-    if (embree != nullptr) ask(*embree);
+    add_search("ours", {});
+    if (embree != nullptr) add_peer(*embree);
+    add_search("tree", render::SearchChoice::kTree);
+    add_search("grid", render::SearchChoice::kGrid);
+    if (triangles <= 10000) add_search("linear", render::SearchChoice::kLinear);
     // Slower by far than Embree and large in memory: asked where that settles the order.
     if (triangles <= 100000) {
-      if constexpr (THIMBLE_HAVE_CGAL) ask(*make_cgal(mesh));
-      if constexpr (THIMBLE_HAVE_FCL) ask(*make_fcl(mesh));
+      if constexpr (THIMBLE_HAVE_CGAL) peers.push_back(make_cgal(mesh));
+      if constexpr (THIMBLE_HAVE_FCL) peers.push_back(make_fcl(mesh));
+    }
+    for (const auto& peer : peers) add_peer(*peer);
+
+    double sum = 0;  // read below, so that no query is left out
+    // Takes turns in batches short enough to lie between two interruptions, and adds up the least
+    // time of each batch; between two rounds of a batch all others have been asked.
+    const auto take_turns = [&](Question Contender::*question) {
+      constexpr std::size_t kBatch = 500;
+      std::vector<double> ns(contenders.size(), 0);
+      std::vector<std::vector<double>> least(contenders.size(),
+                                             std::vector<double>(kQueries / kBatch, INFINITY));
+      for (int round = 0; round < 2 * kRounds; ++round) {
+        for (std::size_t c = 0; c < contenders.size(); ++c) {
+          const Question& ask = contenders[c].*question;
+          if (!ask) continue;
+          for (std::size_t batch = 0; batch < kQueries / kBatch; ++batch) {
+            const auto begin = Clock::now();
+            for (std::size_t i = batch * kBatch; i < (batch + 1) * kBatch; ++i) sum += ask(i);
+            least[c][batch] = std::min(least[c][batch], seconds_since(begin));
+          }
+        }
+      }
+      for (std::size_t c = 0; c < contenders.size(); ++c) {
+        for (const double seconds : least[c]) ns[c] += seconds * 1e9 / kQueries;
+      }
+      return ns;
+    };
+    const std::vector<double> segment = take_turns(&Contender::segment);
+    const std::vector<double> closest = take_turns(&Contender::closest);
+    double best = INFINITY;  // of the peers
+    for (std::size_t c = 0; c < contenders.size(); ++c) {
+      const std::string who = c == 0 ? "" : ", " + contenders[c].name;
+      if (std::isfinite(segment[c])) add(name + ": cold segment" + who, segment[c], "ns");
+      add(name + ": cold closest point" + who, closest[c], "ns");
+      const bool is_peer = (c == 1 && embree != nullptr) || c >= contenders.size() - peers.size();
+      if (is_peer) best = std::min(best, closest[c]);
+    }
+    if (embree != nullptr) {
+      add(name + ": cold segment, ours / embree", segment[0] / segment[1], "", "<= 1.2");
     }
     if (std::isfinite(best)) {
-      add(name + ": cold closest point, best peer / ours", best / closest, "",
+      add(name + ": cold closest point, best peer / ours", best / closest[0], "",
           triangles <= 100000 ? ">= 4" : ">= 3");
     }
     if (sum == -1) std::printf("never\n");

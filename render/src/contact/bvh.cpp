@@ -50,13 +50,15 @@ class Stack {
 }  // namespace
 
 template <class Surface>
-template <class Visit>
-void TreeSearch<Surface>::visit_leaf(std::uint32_t leaf, Visit visit) const noexcept {
-  const std::size_t begin = first_place(leaf), end = end_place(leaf);
-  for (std::size_t place = begin; place < end; ++place) visit(triangle_at(place));
+auto TreeSearch<Surface>::leaf_at(std::uint32_t child) const noexcept -> Leaf {
+  Leaf leaf;
+  const std::size_t begin = first_place(child);
+  leaf.size = end_place(child) - begin;
+  for (std::size_t i = 0; i < leaf.size; ++i) leaf.triangles[i] = triangle_at(begin + i);
+  return leaf;
 }
 
-// Calls visit(triangle) for all triangles near the segment; it returns the parameter beyond which
+// Calls visit(list) for all leaves near the segment; it returns the parameter beyond which
 // no more are wanted.
 template <class Surface>
 template <class Visit>
@@ -90,10 +92,9 @@ void TreeSearch<Surface>::visit_reached(const Vector3d& from, const Vector3d& wa
     const Waiting next = stack.pop();
     if (!(next.near <= limit)) continue;
     if ((next.child & kLeaf) != 0) {
-      visit_leaf(next.child, [&](std::int32_t t) noexcept {
-        const double wanted = (visit(t) - part.begin) / part.length;
-        limit = std::min(limit, static_cast<float>(wanted) + 1e-5f);
-      });
+      const Leaf leaf = leaf_at(next.child);
+      const double wanted = (visit(leaf.list()) - part.begin) / part.length;
+      limit = std::min(limit, static_cast<float>(wanted) + 1e-5f);
       continue;
     }
     const Node& n = nodes_[next.child];
@@ -129,8 +130,8 @@ Entry TreeSearch<Surface>::first_entry(const Vector3d& p_from,
   if (!within_range(p_from) || !within_range(p_to)) return {};
   const auto segment = segment_test(*surface_, frame_, p_from, p_to);
   FirstEntry first(segment);
-  visit_reached(segment.from(), segment.way(), [&](std::int32_t t) noexcept {
-    first.consider(t);
+  visit_reached(segment.from(), segment.way(), [&](std::span<const std::int32_t> list) noexcept {
+    first.consider(list);
     return first.limit();
   });
   return first.entry();
@@ -142,9 +143,8 @@ bool TreeSearch<Surface>::inside(const Vector3d& p_W) const noexcept {
   const Vector3d p_far = far_along_x(frame_, p_W);
   const auto segment = segment_test(*surface_, frame_, p_W, p_far);
   unsigned crossings = 0;
-  visit_reached(segment.from(), segment.way(), [&](std::int32_t t) noexcept {
-    double parameter = 0;
-    crossings += segment.near(t) && segment.cross(t, parameter) != Crossing::kNone;
+  visit_reached(segment.from(), segment.way(), [&](std::span<const std::int32_t> list) noexcept {
+    crossings += count_crossings(segment, list);
     return 2.0;
   });
   return crossings % 2 == 1;
@@ -168,7 +168,8 @@ SurfacePoint TreeSearch<Surface>::closest(const Vector3d& p_W, double radius) co
     const Waiting next = stack.pop();
     if (!(static_cast<double>(next.near) <= best.squared())) continue;
     if ((next.child & kLeaf) != 0) {
-      visit_leaf(next.child, [&best](std::int32_t t) noexcept { best.consider(t); });
+      const Leaf leaf = leaf_at(next.child);
+      for (const std::int32_t t : leaf.list()) best.consider(t);
       continue;
     }
     const Node& n = nodes_[next.child];

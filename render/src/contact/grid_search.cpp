@@ -24,21 +24,21 @@ constexpr double kShortVolumes = 6;
 constexpr double kMeanListMax = 24;
 constexpr std::size_t kListMax = 192;
 
-// Remembers the triangles that have been asked, as neighbouring volumes list the same ones. Where
-// it is full, a triangle may be asked again.
+// Remembers triangles that have been asked, as neighbouring volumes list the same ones. Of those
+// with the same last digits it remembers one: another may be asked again.
 class Asked {
  public:
+  Asked() noexcept { triangles_.fill(-1); }
   bool first_time(std::int32_t t) noexcept {
-    for (std::size_t i = 0; i < size_; ++i) {
-      if (triangles_[i] == t) return false;
-    }
-    if (size_ < triangles_.size()) triangles_[size_++] = t;
+    std::int32_t& place = triangles_[static_cast<std::uint32_t>(t) % kPlaces];
+    if (place == t) return false;
+    place = t;
     return true;
   }
 
  private:
-  std::array<std::int32_t, 16> triangles_;
-  std::size_t size_ = 0;
+  static constexpr std::uint32_t kPlaces = 64;
+  std::array<std::int32_t, kPlaces> triangles_;
 };
 
 // Is a straight piece of a path, to tell the volumes beside it from those on it.
@@ -152,9 +152,7 @@ Entry GridSearch<Surface>::first_entry(const Vector3d& p_from,
   if (!within_range(p_from) || !within_range(p_to)) return {};
   const auto segment = segment_test(*surface_, frame_, p_from, p_to);
   FirstEntry first(segment);
-  visit_reached(segment, [&](List list) noexcept {
-    for (const std::int32_t t : list) first.consider(t);
-  });
+  visit_reached(segment, [&first](List list) noexcept { first.consider(list); });
   return first.entry();
 }
 
@@ -168,24 +166,23 @@ bool GridSearch<Surface>::inside(const Vector3d& p_W) const noexcept {
   std::size_t crossings = 0;
   bool all_kept = true;
   visit_reached(segment, [&](List list) noexcept {
-    for (const std::int32_t t : list) {
+    visit_near(segment, list, [&](std::int32_t t) noexcept {
       double parameter = 0;
-      if (!segment.near(t) || segment.cross(t, parameter) == Crossing::kNone) continue;
+      if (segment.cross(t, parameter) == Crossing::kNone) return;
       const auto kept_end = crossed.begin() + static_cast<std::ptrdiff_t>(crossings);
-      if (std::find(crossed.begin(), kept_end, t) != kept_end) continue;
+      if (std::find(crossed.begin(), kept_end, t) != kept_end) return;
       if (crossings == crossed.size()) {
         all_kept = false;
         return;
       }
       crossed[crossings++] = t;
-    }
+    });
   });
   if (all_kept) return crossings % 2 == 1;
   // More layers than anyone keeps in mind: every triangle once.
-  std::size_t all = 0;
+  unsigned all = 0;
   for (std::int32_t t = 0; t < surface_->triangle_count(); ++t) {
-    double parameter = 0;
-    all += segment.near(t) && segment.cross(t, parameter) != Crossing::kNone;
+    all += count_crossings(segment, {&t, 1});
   }
   return all % 2 == 1;
 }
@@ -199,32 +196,33 @@ SurfacePoint GridSearch<Surface>::closest(const Vector3d& p_W, double radius) co
   const double room = kGridRoom * side + 0x1p-48 * p.cwiseAbs().maxCoeff();
   NearestPoint<Surface> best(*surface_, frame_, p, reach);
   Asked asked;
-  // Wider and wider balls, until one holds the nearest triangle seen.
-  const double clear = grid_.clearance(p);
-  for (double ball = clear + 0.75 * side;; ball *= 2) {
-    const double wide = std::min(ball, reach);
-    double limit = wide * wide;
-    const auto wanted = [&](const Vector3d& corner) noexcept {
-      const double gap = std::max(0.0, gap_to_box(p, corner, side).norm() - room);
-      return gap * gap <= limit;
-    };
-    const auto visit = [&](List list) noexcept {
-      for (const std::int32_t t : list) {
-        if (asked.first_time(t)) best.consider(t);
-      }
-      limit = std::min(limit, best.squared());
-    };
-    const auto ask_within = [&](double r) noexcept {
-      const Vector3d grown = Vector3d::Constant(r + room);
-      grid_.visit_box(p - grown, p + grown, wanted, visit);
-    };
-    ask_within(wide);
-    if (best.found() && best.squared() > wide * wide) {
-      limit = best.squared();
-      ask_within(std::sqrt(limit));
+  double limit = (reach + room) * (reach + room);
+  const auto wanted = [&](const Vector3d& corner) noexcept {
+    return gap_to_box(p, corner, side).squaredNorm() <= limit;
+  };
+  const auto visit = [&](List list) noexcept {
+    for (const std::int32_t t : list) {
+      if (asked.first_time(t)) best.consider(t);
     }
-    if (best.found() || wide >= reach) return best.point();
+    const double ball = std::sqrt(best.squared()) + room;
+    limit = ball * ball;
+  };
+  const auto ask_within = [&](double r) noexcept {
+    const Vector3d grown = Vector3d::Constant(r + room);
+    grid_.visit_box(p - grown, p + grown, wanted, visit);
+  };
+  // The volume that the point is in, then wider and wider boxes until one has a triangle within
+  // reach; then the ball up to that one.
+  const double clear = grid_.clearance(p);
+  double width = clear > 0 ? clear + side : 0;
+  ask_within(std::min(width, reach));
+  while (!best.found() && width < reach) {
+    width = std::max(2 * width, side);
+    ask_within(std::min(width, reach));
   }
+  const double distance = std::sqrt(best.squared());
+  if (best.found() && distance > width) ask_within(distance);
+  return best.point();
 }
 
 template <class Surface>

@@ -80,7 +80,9 @@ Entry LinearSearchOver<Surface>::first_entry(const Vector3d& p_from,
   if (!within_range(p_from) || !within_range(p_to)) return {};
   const auto segment = segment_test(*surface_, frame_, p_from, p_to);
   FirstEntry first(segment);
-  visit_reached(segment.low(), segment.high(), [&](std::int32_t t) noexcept { first.consider(t); });
+  visit_reached(segment.low(), segment.high(), [&](std::int32_t t) noexcept {
+    first.consider({&t, 1});
+  });
   return first.entry();
 }
 
@@ -91,8 +93,7 @@ bool LinearSearchOver<Surface>::inside(const Vector3d& p_W) const noexcept {
   const auto segment = segment_test(*surface_, frame_, p_W, p_far);
   unsigned crossings = 0;
   visit_reached(segment.low(), segment.high(), [&](std::int32_t t) noexcept {
-    double parameter = 0;
-    crossings += segment.near(t) && segment.cross(t, parameter) != Crossing::kNone;
+    crossings += count_crossings(segment, {&t, 1});
   });
   return crossings % 2 == 1;
 }

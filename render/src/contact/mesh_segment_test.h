@@ -2,7 +2,9 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "contact/record_tests.h"
 #include "thimble/render/contact/contact_mesh.h"
@@ -24,16 +26,15 @@ class MeshSegmentTest {
         from_(frame.to_steps(p_from)),
         to_(frame.to_steps(p_to)) {}
 
-  /// Tells whether the boxes of the segment and of triangle `t` meet.
-  bool near(std::int32_t t) const noexcept {
-    const Eigen::Vector3d& a = mesh_.position(t, 0);
-    const Eigen::Vector3d& b = mesh_.position(t, 1);
-    const Eigen::Vector3d& c = mesh_.position(t, 2);
-    for (int i = 0; i < 3; ++i) {
-      if (std::min({a[i], b[i], c[i]}) > std::max(p_from_[i], p_to_[i])) return false;
-      if (std::max({a[i], b[i], c[i]}) < std::min(p_from_[i], p_to_[i])) return false;
+  /// Writes to `near` those of a list of triangles whose boxes meet the segment's, and gives their
+  /// number. Precondition: `near` has room for the whole list.
+  std::size_t select_near(std::span<const std::int32_t> list, std::int32_t* near) const noexcept {
+    std::size_t count = 0;
+    for (const std::int32_t t : list) {
+      near[count] = t;
+      count += meets(t) ? 1 : 0;
     }
-    return true;
+    return count;
   }
 
   /// Tells the way in which the segment crosses triangle `t`, and where (0 at its begin, 1 at its
@@ -63,6 +64,17 @@ class MeshSegmentTest {
   Eigen::Vector3d high() const noexcept { return from_.cwiseMax(to_); }
 
  private:
+  bool meets(std::int32_t t) const noexcept {
+    const Eigen::Vector3d& a = mesh_.position(t, 0);
+    const Eigen::Vector3d& b = mesh_.position(t, 1);
+    const Eigen::Vector3d& c = mesh_.position(t, 2);
+    for (int i = 0; i < 3; ++i) {
+      if (std::min({a[i], b[i], c[i]}) > std::max(p_from_[i], p_to_[i])) return false;
+      if (std::max({a[i], b[i], c[i]}) < std::min(p_from_[i], p_to_[i])) return false;
+    }
+    return true;
+  }
+
   const ContactMesh& mesh_;
   const Eigen::Vector3d& p_from_;
   const Eigen::Vector3d& p_to_;

@@ -4,7 +4,9 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "thimble/render/contact/compact_surface.h"
 #include "thimble/render/contact/contact_search.h"
@@ -21,12 +23,10 @@ class SegmentTest {
   SegmentTest(const CompactSurface& surface, const Eigen::Vector3d& p_from,
               const Eigen::Vector3d& p_to) noexcept;
 
-  /// Tells whether the segment may cross record `t`: false is certain, by boxes and by the sides
-  /// that the segment passes the edges on in single precision.
-  bool near(std::int32_t t) const noexcept {
-    const CompactTriangle& r = surface_.record(t);
-    return meets(r.x, 0) && meets(r.y, 1) && meets(r.z, 2) && !passes_by(r);
-  }
+  /// Writes to `near` those of a list of records that the segment may cross, and gives their
+  /// number: what is left out is certain, by boxes and by the sides that the segment passes the
+  /// edges on in single precision. Precondition: `near` has room for the whole list.
+  std::size_t select_near(std::span<const std::int32_t> list, std::int32_t* near) const noexcept;
 
   /// Tells the way in which the segment crosses record `t`, and where (0 at its begin, 1 at its
   /// end).
@@ -46,15 +46,6 @@ class SegmentTest {
   static __m128i load(const std::array<std::int32_t, 3>& x) noexcept {
     return _mm_loadu_si128(reinterpret_cast<const __m128i*>(x.data()));
   }
-  bool meets(const std::array<std::int32_t, 3>& x, std::size_t axis) const noexcept {
-    const __m128i corners = load(x);
-    const __m128i above = _mm_cmpgt_epi32(corners, _mm_set1_epi32(high_[axis]));
-    const __m128i below = _mm_cmplt_epi32(corners, _mm_set1_epi32(low_[axis]));
-    const int all_above = _mm_movemask_ps(_mm_castsi128_ps(above)) & 7;
-    const int all_below = _mm_movemask_ps(_mm_castsi128_ps(below)) & 7;
-    return (all_above != 7) & (all_below != 7);
-  }
-  bool passes_by(const CompactTriangle& record) const noexcept;
 
   const CompactSurface& surface_;
   Eigen::Vector3d p_from_, p_to_;

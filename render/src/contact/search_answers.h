@@ -2,8 +2,11 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "thimble/render/contact/closest_point.h"
 #include "thimble/render/contact/contact_search.h"
@@ -15,20 +18,34 @@ namespace thimble::render {
 // What all searches do with the triangles that they come upon, in whatever order, so that their
 // answers are the same. Real-time: safe.
 
+/// Calls visit(t) for each triangle of a list, of whatever length, that a segment may cross.
+template <class Test, class Visit>
+void visit_near(const Test& segment, std::span<const std::int32_t> list, Visit visit) noexcept {
+  constexpr std::size_t kAtOnce = 16;
+  std::array<std::int32_t, kAtOnce> near;
+  while (!list.empty()) {
+    const auto part = list.first(std::min(list.size(), kAtOnce));
+    const std::size_t count = segment.select_near(part, near.data());
+    for (std::size_t i = 0; i < count; ++i) visit(near[i]);
+    list = list.subspan(part.size());
+  }
+}
+
 /// Keeps the first entry among the triangles shown to it.
 template <class Test>
 class FirstEntry {
  public:
   explicit FirstEntry(const Test& segment) noexcept : segment_(segment) {}
 
-  void consider(std::int32_t t) noexcept {
-    if (!segment_.near(t)) return;
-    double parameter = 0;
-    if (segment_.cross(t, parameter) != Crossing::kEnters) return;
-    if (parameter < limit_ || (parameter == limit_ && t < entry_.triangle)) {
-      entry_ = {t, parameter};
-      limit_ = parameter;
-    }
+  void consider(std::span<const std::int32_t> list) noexcept {
+    visit_near(segment_, list, [this](std::int32_t t) noexcept {
+      double parameter = 0;
+      if (segment_.cross(t, parameter) != Crossing::kEnters) return;
+      if (parameter < limit_ || (parameter == limit_ && t < entry_.triangle)) {
+        entry_ = {t, parameter};
+        limit_ = parameter;
+      }
+    });
   }
 
   const Entry& entry() const noexcept { return entry_; }
@@ -41,6 +58,17 @@ class FirstEntry {
   double limit_ = 2;
 };
 
+/// Counts how many triangles of a list a segment crosses.
+template <class Test>
+unsigned count_crossings(const Test& segment, std::span<const std::int32_t> list) noexcept {
+  unsigned crossings = 0;
+  visit_near(segment, list, [&](std::int32_t t) noexcept {
+    double parameter = 0;
+    crossings += segment.cross(t, parameter) != Crossing::kNone;
+  });
+  return crossings;
+}
+
 /// Keeps the nearest point among the triangles shown to it. `p` and the reach are in steps.
 template <class Surface>
 class NearestPoint {
@@ -50,16 +78,21 @@ class NearestPoint {
       : surface_(surface), frame_(frame), p_(p), squared_(reach * reach) {}
 
   void consider(std::int32_t t) noexcept {
-    const Eigen::Vector3d q =
-        closest_point(p_, corner_in(frame_, surface_, t, 0), corner_in(frame_, surface_, t, 1),
-                      corner_in(frame_, surface_, t, 2));
-    const double squared = (q - p_).squaredNorm();
+    const Eigen::Vector3d a = corner_in(frame_, surface_, t, 0) - p_;
+    const Eigen::Vector3d b = corner_in(frame_, surface_, t, 1) - p_;
+    const Eigen::Vector3d c = corner_in(frame_, surface_, t, 2) - p_;
+    // All of a triangle lies as far along the way to the nearest point as its corners: beyond the
+    // plane there, nothing of it is nearer. Most triangles around are told so by nine products.
+    const bool beyond = std::min({a.dot(to_), b.dot(to_), c.dot(to_)}) > squared_;
+    if (beyond & (triangle_ >= 0)) return;
+    const Eigen::Vector3d to = closest_point(Eigen::Vector3d::Zero(), a, b, c);
+    const double squared = to.squaredNorm();
     // Written so that NaN is not nearer.
     const bool nearer = squared < squared_;
     const bool tied = squared == squared_ && (triangle_ < 0 || t < triangle_);
     if (!nearer && !tied) return;
     squared_ = squared;
-    nearest_ = q;
+    to_ = to;
     triangle_ = t;
   }
 
@@ -72,7 +105,7 @@ class NearestPoint {
     if (triangle_ < 0) return point;
     point.triangle = triangle_;
     point.distance = frame_.step * std::sqrt(squared_);
-    point.p_W = frame_.origin + frame_.step * nearest_;
+    point.p_W = frame_.origin + frame_.step * (p_ + to_);
     return point;
   }
 
@@ -80,12 +113,12 @@ class NearestPoint {
   const Surface& surface_;
   const SearchFrame& frame_;
   const Eigen::Vector3d p_;
-  Eigen::Vector3d nearest_{0, 0, 0};
+  Eigen::Vector3d to_{0, 0, 0};  // from `p_` to the nearest point
   std::int32_t triangle_ = -1;
   double squared_;
 };
 
-/// Turns a radius (m) into steps, finite also where the radius is not.
+/// Turns a radius (m) into steps, at most such that its square is a finite float.
 inline double reach_of(const SearchFrame& frame, double radius) noexcept {
   return std::min(radius * frame.per_step, 1e18);
 }

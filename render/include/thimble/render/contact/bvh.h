@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "thimble/render/contact/compact_surface.h"
@@ -63,8 +64,13 @@ class TreeSearch final : public ContactSearch {
   std::int32_t triangle_at(std::size_t place) const noexcept {
     return order_.empty() ? static_cast<std::int32_t>(place) : order_[place];
   }
-  template <class Visit>
-  void visit_leaf(std::uint32_t leaf, Visit visit) const noexcept;
+  // Is the triangles of a leaf.
+  struct Leaf {
+    std::array<std::int32_t, 4> triangles;
+    std::size_t size;
+    std::span<const std::int32_t> list() const noexcept { return {triangles.data(), size}; }
+  };
+  Leaf leaf_at(std::uint32_t child) const noexcept;
 
   const Surface* surface_;
   SearchFrame frame_;

@@ -54,8 +54,8 @@ class ContactSearch {
   virtual bool inside(const Eigen::Vector3d& p_W) const noexcept = 0;
 
   /// Finds the nearest point of the surface no farther than `radius` (m) from a point (W, m); of
-  /// several triangles equally near the one with the lowest number. None if a coordinate is NaN or
-  /// beyond `kPositionMax`, or if `radius` is NaN.
+  /// several triangles equally near always the same one. None if a coordinate is NaN or beyond
+  /// `kPositionMax`, if `radius` is NaN or negative, or farther than 10^8 times the surface's size.
   virtual SurfacePoint closest(const Eigen::Vector3d& p_W, double radius) const noexcept = 0;
 
   /// Tells a distance (m) from a point (W, m) within which there is certainly no triangle, as far
