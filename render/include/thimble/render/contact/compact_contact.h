@@ -12,8 +12,8 @@
 
 namespace thimble::render {
 
-/// Is a store that has all records in memory and a search over them: no question costs more than its
-/// answer. Asked by one thread at a time: it remembers the free space around the last path.
+/// Is a store that has all records in memory and a search over them: no question costs more than
+/// its answer. Asked by one thread at a time: it remembers the free space around the last path.
 class CompactStore {
  public:
   static constexpr bool kComplete = true;
