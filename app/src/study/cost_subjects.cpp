@@ -21,10 +21,11 @@ constexpr render::SpringDamper kSpring{.stiffness = 800, .damping = 1};
 
 // Settings of effects that have none of their own; every other effect is taken as it is.
 struct Sample {
-  std::string_view name;
+  std::string_view name;  // or group
   std::string_view settings;
 };
 constexpr Sample kSamples[] = {
+    {"friction", "coefficient: 0.5"},
     {"sines", "waves: [{amplitude: 0.0001, wavelength: 0.002, direction: [1, 0, 0]}]"},
 };
 
@@ -60,7 +61,8 @@ Built build_effect(const render::EffectKind& kind) {
   }
   std::string settings;
   for (const Sample& sample : kSamples) {
-    if (sample.name == kind.name) settings.append(", ").append(sample.settings);
+    if (sample.name == kind.name || sample.name == kind.group)
+      settings.append(", ").append(sample.settings);
   }
   std::string text = "effects:\n  - {";
   text.append(kind.group).append(": ").append(kind.name).append(settings).append("}\n");
