@@ -144,7 +144,7 @@ TEST(EveryFriction, RefusesSettingsThatMakeNoSense) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const std::string& name : support::friction_names()) {
     EXPECT_TRUE(complaints_of(name, half()).empty()) << name;
-    EXPECT_EQ(complaints_of(name, GivenSettings()).size(), 1U) << name;
+    EXPECT_TRUE(complaints_of(name, GivenSettings()).empty()) << name;
     for (const double wrong : {-0.1, nan, 1e9}) {
       EXPECT_EQ(complaints_of(name, GivenSettings({{"coefficient", wrong}})).size(), 1U) << name;
     }

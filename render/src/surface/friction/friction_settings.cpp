@@ -9,6 +9,7 @@ namespace {
 
 // Rubber on clean glass reaches about 4 [M]; more is a slipped decimal point.
 constexpr double kCoefficientMax = 5;
+constexpr double kCoefficient = 0.3;   // wood or metal under a tool [chosen]
 constexpr double kHandDamping = 3;     // N s/m, pinch grip [STABILITY, heading]
 constexpr double kSafety = 1.5;        // [STABILITY 2.3]
 constexpr double kStiffnessMax = 1e6;  // N/m
@@ -26,7 +27,8 @@ std::string refusal(double stiffness, double most, const std::string& remedy) {
 }  // namespace
 
 void CoulombSettings::read_sliding(SettingsReader& reader) {
-  reader.number("coefficient", sliding, {.unit = "", .most = kCoefficientMax, .required = true});
+  sliding = kCoefficient;
+  reader.number("coefficient", sliding, {.unit = "", .most = kCoefficientMax});
   holding = sliding;
 }
 

@@ -14,7 +14,7 @@ namespace thimble::render {
 
 /// Is dry friction's size: what share of the normal force holds back.
 struct CoulombSettings {
-  double sliding = 0;  ///< While sliding, no unit, >= 0. The key `coefficient`, required.
+  double sliding = 0;  ///< While sliding, no unit, >= 0. The key `coefficient`, 0.3 if not given.
   double holding = 0;  ///< Before it slides; at least `sliding`. The key `static_coefficient`.
 
   /// Reads the sliding coefficient alone. Real-time: never from the servo thread.
