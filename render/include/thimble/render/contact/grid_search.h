@@ -12,9 +12,10 @@
 namespace thimble::render {
 
 /// Looks for contact in space cut into volumes, of which only those around the question are looked
-/// at [BP 4.1]. The fastest search where the triangles are about as large as each other: volumes
-/// are as wide as a triangle, so a tick's path meets one or two of them, whatever the mesh's size.
-/// Where a few volumes hold most of the triangles it is no better than a linear search: see `even`.
+/// at [BP 4.1]. Volumes are as wide as a mean triangle, so a tick's path meets few of them. The
+/// fastest search up to some 10^4 triangles of like size; beyond, lists and records that are not in
+/// the cache take what the volumes save. Where a few volumes hold most of the triangles it is no
+/// better than a linear search: see `even`.
 ///
 /// All questions are Real-time: safe. Paths of a tick and nearest points nearby take time that does
 /// not grow with the mesh but by what memory is far; longer paths skip empty space in long steps.

@@ -12,12 +12,12 @@ namespace thimble::render {
 /// Says how contact is looked for while the tip is free. All give the same answers.
 enum class SearchChoice {
   kLinear,  ///< Every triangle [BP 3.1]: no structure, time grows with the mesh.
-  kGrid,    ///< Space cut into volumes [BP 4.1]: fastest where triangles are of like size.
+  kGrid,    ///< Space cut into volumes [BP 4.1]: fastest where few triangles are of like size.
   kTree,    ///< A tree of boxes: fast however the triangles lie.
 };
 
-/// Builds the search that is named; if none is, a grid where the triangles lie evenly (GridSearch),
-/// else a tree. Keeps a reference: the surface must outlive the search.
+/// Builds the search that is named; if none is, a grid for up to 30,000 triangles that lie evenly
+/// (GridSearch), else a tree. Keeps a reference: the surface must outlive the search.
 /// Real-time: never from the servo thread.
 std::shared_ptr<const ContactSearch> make_search(const ContactMesh& mesh,
                                                  std::optional<SearchChoice> choice = {});
