@@ -7,7 +7,7 @@
 namespace thimble::render {
 namespace {
 
-constexpr std::size_t kTargetsMax = 64;  // 0.3 us per tick [chosen]
+constexpr std::size_t kTargetsMax = 64;  // [chosen: below a microsecond per tick]
 constexpr NumberLimits kPlace{.unit = "m", .least = -2, .most = 2, .required = true};
 
 void read_target(SettingsReader& reader, MagneticSnap::Settings::Target& target) {

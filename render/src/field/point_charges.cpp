@@ -5,7 +5,7 @@
 namespace thimble::render {
 namespace {
 
-constexpr std::size_t kChargesMax = 64;  // 0.3 us per tick [chosen]
+constexpr std::size_t kChargesMax = 64;  // [chosen: below a microsecond per tick]
 
 }  // namespace
 

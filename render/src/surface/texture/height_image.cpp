@@ -28,10 +28,12 @@ struct Neighbours {
     const double whole = std::floor(place);
     t = place - whole;
     const auto count = static_cast<double>(side);
-    // The remainder is exact, so this is from 0 to side - 1.
-    const double first = std::fmod(whole, count);
-    auto at = static_cast<std::size_t>(first < 0 ? first + count : first);
-    at = (at + side - 1) % side;
+    // All whole numbers below 2^53, so that only the quotient can be off, by one.
+    double first = whole - count * std::floor(whole / count);
+    if (first < 0) first += count;
+    if (first >= count) first -= count;
+    auto at = static_cast<std::size_t>(first);
+    at = at == 0 ? side - 1 : at - 1;
     for (std::size_t& one : pixel) {
       one = at;
       at = at + 1 == side ? 0 : at + 1;

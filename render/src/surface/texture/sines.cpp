@@ -10,7 +10,7 @@ namespace {
 // Bounds catch slipped decimal points; what is felt is checked as a whole.
 constexpr double kAmplitudeMax = 0.05;                       // m
 constexpr double kWavelengthMin = 1e-5, kWavelengthMax = 1;  // m
-constexpr std::size_t kWavesMax = 64;  // 1.3 us per tick [chosen: a thousandth of it at 1 kHz]
+constexpr std::size_t kWavesMax = 64;  // 12,000 instructions per tick [chosen: a few us]
 
 std::vector<Wave> waves_of(const Sines::Settings& settings,
                            const EffectSurroundings& surroundings) {

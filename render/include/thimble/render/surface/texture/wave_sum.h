@@ -24,7 +24,7 @@ class WaveSum {
     for (const Wave& wave : waves_) peak_ += wave.amplitude;
   }
 
-  /// Finds the height at a place (W, m). NaN gives NaN. Real-time: safe; about 20 ns per wave.
+  /// Finds the height at a place (W, m). NaN gives NaN. Real-time: safe; 180 instructions per wave.
   TextureHeight at(const Eigen::Vector3d& p_W) const noexcept {
     TextureHeight texture{.height = -peak_};
     for (const Wave& wave : waves_) {
