@@ -55,6 +55,9 @@ class HeldPlane {
     return true;
   }
 
+  /// Tells whether the plane is still felt.
+  bool fading() const noexcept { return left_ > 0; }
+
   /// Forgets the plane: the contact has ended.
   void drop() noexcept { left_ = 0; }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <cstdint>
 #include <utility>
 
@@ -54,8 +55,12 @@ class RecordContact {
   // Says what a tick in contact came to: kUnknown where a record that decides it is absent.
   using Outcome = Known;
 
+  bool stay(const Eigen::Vector3d& p_WT) noexcept;
+  void move(const Eigen::Vector3d& p_WT) noexcept;
   bool begin(const Eigen::Vector3d& p_WT) noexcept;
   Outcome follow(const Eigen::Vector3d& p_WT) noexcept;
+  Outcome seek(const Eigen::Vector3d& p_WT, const Eigen::Vector3d& p, std::int32_t before,
+               Outcome settled, const LoweredPlace& place) noexcept;
   Outcome settle(const Eigen::Vector3d& p, bool walked, LoweredPlace& place) noexcept;
   Outcome find_again(const Eigen::Vector3d& p_WT, const Eigen::Vector3d& p,
                      std::int32_t before) noexcept;
@@ -67,6 +72,11 @@ class RecordContact {
   void report(const Eigen::Vector3d& p_WT, const LoweredFeel& felt) noexcept;
   void end() noexcept;
 
+  // Written so that NaN is out of range.
+  static bool within_range(const Eigen::Vector3d& p_W) noexcept {
+    return std::abs(p_W.x()) <= kPositionMax && std::abs(p_W.y()) <= kPositionMax &&
+           std::abs(p_W.z()) <= kPositionMax;
+  }
   static bool absent(const CompactTriangle* record) noexcept {
     return !Store::kComplete && record == nullptr;
   }
@@ -78,6 +88,7 @@ class RecordContact {
   TrackerCounters counters_;
   Eigen::Vector3d p_WT_before_{0, 0, 0};
   bool has_before_ = false;
+  bool steady_ = false;  // the last tick was in contact without a hop, where there is no crease
   HeldPlane held_;
   std::uint64_t ticks_held_ = 0;
 };

@@ -16,48 +16,83 @@
 namespace thimble::render {
 
 /// Is how far outside a triangle, as a share of its height, the tip may be and stay: rounding on
-/// both sides of an edge must not send it back and forth. The jump that this leaves is as small a
-/// share of the depth.
-inline constexpr double kOutside = -1e-11;
+/// both sides of an edge must not send it back and forth (lowered_triangle.h). The jump that this
+/// leaves is so small a share of the triangle's bulge.
+inline constexpr double kOutside = -1e-6;
+
+/// Is the same at a crease, where the direction jumps and everything is in double precision.
+inline constexpr double kOutsideOfCrease = -1e-11;
 
 template <RecordStore Store>
 const ContactState& RecordContact<Store>::update(const driver::DeviceState& state) noexcept {
   const Eigen::Vector3d& p_WT = state.p_WT;
-  // Written so that NaN is out of range.
-  if (!(std::abs(p_WT.x()) <= kPositionMax && std::abs(p_WT.y()) <= kPositionMax &&
-        std::abs(p_WT.z()) <= kPositionMax)) {
+  // Most ticks are spent in the triangle of the last one.
+  if (!stay(p_WT)) move(p_WT);
+  return state_;
+}
+
+// Fills in the state from what is felt in the active triangle.
+template <RecordStore Store>
+inline void RecordContact<Store>::report(const Eigen::Vector3d& p_WT,
+                                         const LoweredFeel& felt) noexcept {
+  state_.touching = true;
+  state_.triangle = lowered_.source();
+  state_.n_W = felt.n_W;
+  state_.depth = store_.step() * felt.depth;
+  state_.p_WP = p_WT + state_.depth * felt.n_W;
+}
+
+// Ends the tick if the tip is where the active triangle answers alone.
+template <RecordStore Store>
+inline bool RecordContact<Store>::stay(const Eigen::Vector3d& p_WT) noexcept {
+  if (!steady_ || !within_range(p_WT)) return false;
+  const LoweredPlace place = lowered_.locate(store_.to_lattice(p_WT));
+  const double least = std::min(std::min(place.l0, place.l1), place.l2);
+  if (!(place.valid && least >= 0)) return false;
+  const LoweredFeel felt = lowered_.feel_within(place);
+  if (!(felt.depth >= 0)) return false;
+  p_WT_before_ = p_WT;
+  report(p_WT, felt);
+  return true;
+}
+
+template <RecordStore Store>
+void RecordContact<Store>::move(const Eigen::Vector3d& p_WT) noexcept {
+  if (!within_range(p_WT)) {
     end();
     has_before_ = false;
-    return state_;
+    return;
   }
-  if (!state_.touching && !begin(p_WT)) return state_;
+  if (!state_.touching && !begin(p_WT)) return;
   p_WT_before_ = p_WT;
   const Outcome outcome = follow(p_WT);
+  steady_ = state_.hops == 0 && outcome == Outcome::kYes && lowered_.creases() == 0;
   if constexpr (!Store::kComplete) {
     // The one place where an absent record is felt.
     if (outcome == Outcome::kUnknown) {
       ++ticks_held_;
       held_.hold(p_WT, state_);
       state_.touching = true;
-      return state_;
+      return;
     }
     if (outcome == Outcome::kYes) {
       held_.fade(p_WT, state_);
-      return state_;
+      steady_ = steady_ && !held_.fading();
+      return;
     }
-    if (held_.fade_out(p_WT, state_)) return state_;
+    if (held_.fade_out(p_WT, state_)) return;
   }
   if (outcome != Outcome::kYes) {
     const std::uint16_t hops = state_.hops;
     end();
     state_.hops = hops;
   }
-  return state_;
 }
 
 template <RecordStore Store>
 void RecordContact<Store>::end() noexcept {
   state_ = {};
+  steady_ = false;
   if constexpr (!Store::kComplete) held_.drop();
 }
 
@@ -97,27 +132,39 @@ typename RecordContact<Store>::Outcome RecordContact<Store>::follow(
   const bool held = place.valid && place.l0 >= kOutside && place.l1 >= kOutside &&
                     place.l2 >= kOutside && lowered_.creases() == 0;
   const Outcome settled = held ? Outcome::kYes : settle(p, sliding, place);
-  if (settled == Outcome::kUnknown) return settled;
-  if (settled == Outcome::kYes && place.depth >= 0) {
-    report(p_WT, lowered_.feel(place));
-    if (state_.depth >= 0) return Outcome::kYes;
+  if (settled == Outcome::kYes) {
+    // Above the triangle too, where the surface that it stands for bulges beyond the tip.
+    const LoweredFeel felt = lowered_.feel(place);
+    if (felt.depth >= 0) {
+      report(p_WT, felt);
+      return Outcome::kYes;
+    }
   }
+  return seek(p_WT, p, before, settled, place);
+}
+
+// Decides what the active triangle alone cannot: whether contact has ended, or where it goes on.
+template <RecordStore Store>
+typename RecordContact<Store>::Outcome RecordContact<Store>::seek(
+    const Eigen::Vector3d& p_WT, const Eigen::Vector3d& p, std::int32_t before, Outcome settled,
+    const LoweredPlace& place) noexcept {
+  if (settled == Outcome::kUnknown) return settled;
   const Known inside = store_.inside(p_WT);
   if (inside == Known::kUnknown) return Outcome::kUnknown;
-  if (inside == Known::kNo) {
-    // A bulge reaches beyond its triangles.
-    if (settled == Outcome::kNo || place.depth >= 0) return Outcome::kNo;
-    report(p_WT, lowered_.feel(place));
-    return state_.depth >= 0 ? Outcome::kYes : Outcome::kNo;
-  }
+  if (inside == Known::kNo) return Outcome::kNo;
   if (settled == Outcome::kYes && place.depth >= 0) {
     // In a hollow, between the triangles and the surface that they stand for.
-    state_.depth = 0;
-    state_.p_WP = p_WT;
+    LoweredFeel felt = lowered_.feel(place);
+    felt.depth = 0;
+    report(p_WT, felt);
     return Outcome::kYes;
   }
   const Outcome found = find_again(p_WT, p, before);
-  if (found == Outcome::kYes) report(p_WT, lowered_.feel_nearest(p));
+  if (found == Outcome::kYes) {
+    const CompactTriangle* record = store_.find(active_);
+    if (absent(record)) return Outcome::kUnknown;
+    report(p_WT, feel_nearest(p, *record, lowered_));
+  }
   return found;
 }
 
@@ -171,6 +218,10 @@ bool RecordContact<Store>::activate(std::int32_t triangle) noexcept {
   if (absent(record)) return false;
   active_ = triangle;
   lowered_.unpack(*record);
+  if constexpr (Store::kComplete) {
+    // The tip goes to one of these, now or in a later tick.
+    for (const std::int32_t t : record->neighbours) __builtin_prefetch(store_.find(t));
+  }
   return true;
 }
 
@@ -181,6 +232,7 @@ typename RecordContact<Store>::Outcome RecordContact<Store>::edge_to_hop(const E
                                                                          const LoweredPlace& place,
                                                                          int& edge) const noexcept {
   std::array<double, 3> side{place.l2, place.l0, place.l1};
+  std::array<double, 3> least{kOutside, kOutside, kOutside};
   if (lowered_.creases() != 0) {
     const CompactTriangle* own = store_.find(active_);
     if (absent(own)) return Outcome::kUnknown;
@@ -188,13 +240,14 @@ typename RecordContact<Store>::Outcome RecordContact<Store>::edge_to_hop(const E
       if (((lowered_.creases() >> k) & 1u) == 0) continue;
       const CompactTriangle* other = store_.find(own->neighbours[k]);
       if (absent(other)) return Outcome::kUnknown;
-      side[k] = lowered_.side_of_crease(p, k, *other);
+      side[k] = side_of_crease(p, *own, k, *other);
+      least[k] = kOutsideOfCrease;
     }
   }
-  int worst = 0;
-  if (side[1] < side[0]) worst = 1;
-  if (side[2] < side[static_cast<std::size_t>(worst)]) worst = 2;
-  edge = side[static_cast<std::size_t>(worst)] < kOutside ? worst : -1;
+  std::size_t worst = 0;
+  if (side[1] - least[1] < side[0] - least[0]) worst = 1;
+  if (side[2] - least[2] < side[worst] - least[worst]) worst = 2;
+  edge = side[worst] < least[worst] ? static_cast<int>(worst) : -1;
   return Outcome::kYes;
 }
 
@@ -267,16 +320,6 @@ typename RecordContact<Store>::Outcome RecordContact<Store>::find_again(
   if (nearest.triangle < 0 || !activate(nearest.triangle)) return Outcome::kNo;
   ++counters_.found_far;
   return Outcome::kYes;
-}
-
-// Fills in the state from what is felt in the active triangle.
-template <RecordStore Store>
-void RecordContact<Store>::report(const Eigen::Vector3d& p_WT, const LoweredFeel& felt) noexcept {
-  state_.touching = true;
-  state_.triangle = lowered_.source();
-  state_.n_W = felt.n_W;
-  state_.depth = store_.step() * felt.depth;
-  state_.p_WP = p_WT + state_.depth * felt.n_W;
 }
 
 }  // namespace thimble::render
