@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -38,7 +39,7 @@ std::size_t index(std::int32_t i) noexcept {
 }
 
 // Says that the record of triangle t stands at place[t] once the keys are sorted.
-std::vector<KeyedIndex> sorted_by_place(const std::vector<CompactTriangle>& records) {
+std::vector<KeyedIndex> sorted_by_place(std::span<const CompactTriangle> records) {
   std::vector<KeyedIndex> order(records.size());
   for (std::size_t t = 0; t < records.size(); ++t) {
     order[t] = {morton_key(records[t]), static_cast<std::int32_t>(t)};

@@ -9,6 +9,7 @@
 
 #include "thimble/driver/result.h"
 #include "thimble/render/contact/contact_mesh.h"
+#include "thimble/render/contact/large_pages.h"
 #include "thimble/render/mesh/triangle_mesh.h"
 
 namespace thimble::render {
@@ -111,7 +112,7 @@ class CompactSurface {
  private:
   CompactSurface() = default;
 
-  std::vector<CompactTriangle> records_;
+  std::vector<CompactTriangle, LargePages<CompactTriangle>> records_;
   Eigen::Vector3d origin_{0, 0, 0};
   double step_ = 0;
   double per_step_ = 0;

@@ -88,7 +88,8 @@ class RecordContact {
   TrackerCounters counters_;
   Eigen::Vector3d p_WT_before_{0, 0, 0};
   bool has_before_ = false;
-  bool steady_ = false;  // the last tick was in contact without a hop, where there is no crease
+  bool steady_ = false;  // in contact, where there is no crease and hops are rare
+  int haste_ = 0;        // counts up to 3 with ticks that hop, and down with the others
   HeldPlane held_;
   std::uint64_t ticks_held_ = 0;
 };

@@ -53,6 +53,8 @@ inline bool RecordContact<Store>::stay(const Eigen::Vector3d& p_WT) noexcept {
   if (!(felt.depth >= 0)) return false;
   p_WT_before_ = p_WT;
   report(p_WT, felt);
+  state_.hops = 0;
+  haste_ = 0;
   return true;
 }
 
@@ -66,7 +68,8 @@ void RecordContact<Store>::move(const Eigen::Vector3d& p_WT) noexcept {
   if (!state_.touching && !begin(p_WT)) return;
   p_WT_before_ = p_WT;
   const Outcome outcome = follow(p_WT);
-  steady_ = state_.hops == 0 && outcome == Outcome::kYes && lowered_.creases() == 0;
+  haste_ = state_.hops > 0 ? std::min(haste_ + 1, 3) : std::max(haste_ - 1, 0);
+  steady_ = haste_ < 2 && outcome == Outcome::kYes && lowered_.creases() == 0;
   if constexpr (!Store::kComplete) {
     // The one place where an absent record is felt.
     if (outcome == Outcome::kUnknown) {
@@ -93,6 +96,7 @@ template <RecordStore Store>
 void RecordContact<Store>::end() noexcept {
   state_ = {};
   steady_ = false;
+  haste_ = 0;
   if constexpr (!Store::kComplete) held_.drop();
 }
 
@@ -118,10 +122,10 @@ typename RecordContact<Store>::Outcome RecordContact<Store>::follow(
     const Eigen::Vector3d& p_WT) noexcept {
   const Eigen::Vector3d p = store_.to_lattice(p_WT);
   const std::int32_t before = active_;
-  const bool sliding = state_.hops > 0;
+  const bool sliding = haste_ >= 2;
   state_.hops = 0;
-  // Who hopped in the last tick will hop again: the cheap walk first spares unpacking a triangle
-  // that is left at once.
+  // Who hopped in the last ticks will hop again: the cheap walk first spares looking closely at a
+  // triangle that is left at once.
   if (sliding) {
     std::int32_t next = active_;
     const Outcome walked = walk(p, next);
