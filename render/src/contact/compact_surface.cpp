@@ -10,6 +10,7 @@
 #include "contact/corner_normals.h"
 #include "contact/half_edges.h"
 #include "contact/radix_sort.h"
+#include "thimble/render/contact/lowered_triangle.h"
 
 namespace thimble::render {
 namespace {
@@ -168,6 +169,14 @@ driver::Result<CompactSurface> CompactSurface::build(const TriangleMesh& mesh,
     return refusal(index(surface.records_[static_cast<std::size_t>(flat)].source()),
                    "has no area.");
   }
+  double rise = 0;
+  LoweredTriangle lowered;
+  for (const CompactTriangle& record : surface.records_) {
+    lowered.unpack(record);
+    rise = std::max(rise, lowered.rise());
+  }
+  constexpr double kFelt = 1e-5 * 2 * kLatticeHalf;
+  if (rise > kFelt) surface.rise_ = rise * surface.step_;
   return surface;
 }
 

@@ -29,6 +29,8 @@ class CompactStore {
     return surface_->to_lattice(p_W);
   }
   double step() const noexcept { return surface_->step(); }
+  /// Tells how far the surface rises above its triangles, m (CompactSurface::rise).
+  double rise() const noexcept { return surface_->rise(); }
   FoundEntry first_entry(const Eigen::Vector3d& p_from,
                          const Eigen::Vector3d& p_to) const noexcept {
     return {.entry = free_space_.first_entry(*search_, p_from, p_to)};

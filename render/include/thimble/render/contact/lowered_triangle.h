@@ -3,6 +3,7 @@
 #include <emmintrin.h>
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -56,6 +57,13 @@ class LoweredTriangle {
 
   /// Tells the same faster. Precondition: no weight is negative.
   LoweredFeel feel_within(const LoweredPlace& place) const noexcept;
+
+  /// Tells how far the surface rises above this triangle at most, in steps; 0 if it does not. A
+  /// third of the largest bulge is the most that the sum over pairs reaches, and where corners are
+  /// not creases 1 + |sum l_i n_i| is above 5/3.
+  double rise() const noexcept {
+    return std::max(std::max(bulge_[0], bulge_[1]), std::max(bulge_[2], 0.0)) / 5;
+  }
 
   /// Tells whether an edge is a crease, in bit k for edge k.
   std::uint32_t creases() const noexcept { return creases_; }

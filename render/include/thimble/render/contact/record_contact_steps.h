@@ -89,6 +89,7 @@ void RecordContact<Store>::move(const Eigen::Vector3d& p_WT) noexcept {
     const std::uint16_t hops = state_.hops;
     end();
     state_.hops = hops;
+    above_ = true;
   }
 }
 
@@ -96,6 +97,7 @@ template <RecordStore Store>
 void RecordContact<Store>::end() noexcept {
   state_ = {};
   steady_ = false;
+  above_ = false;
   haste_ = 0;
   if constexpr (!Store::kComplete) held_.drop();
 }
@@ -110,10 +112,40 @@ bool RecordContact<Store>::begin(const Eigen::Vector3d& p_WT) noexcept {
   if (found.complete) p_WT_before_ = p_WT;
   has_before_ = true;
   if (!found.complete) ++ticks_held_;
-  if (found.entry.triangle < 0 || !activate(found.entry.triangle)) return false;
+  if (found.entry.triangle < 0) {
+    if constexpr (requires { store_.rise(); }) return begin_above(p_WT);
+    return false;
+  }
+  if (!activate(found.entry.triangle)) return false;
   state_.n_W = lowered_.face();
   state_.triangle = lowered_.source();
   state_.p_WP = from + found.entry.parameter * (p_WT - from);
+  return true;
+}
+
+// Looks whether the tip has come from above into where the smooth surface bulges beyond its
+// triangles, and makes the triangle below it active: there contact begins with depth 0.
+template <RecordStore Store>
+bool RecordContact<Store>::begin_above(const Eigen::Vector3d& p_WT) noexcept {
+  const double rise = store_.rise();
+  if (!(rise > 0)) return false;
+  const bool was_above = above_;
+  const FoundRecord nearest = store_.closest(p_WT, rise);
+  above_ = true;
+  if (nearest.triangle < 0 || !activate(nearest.triangle)) return false;
+  state_.n_W = lowered_.face();
+  const Eigen::Vector3d p = store_.to_lattice(p_WT);
+  LoweredPlace place = lowered_.locate(p);
+  const bool bulges =
+      settle(p, true, place) == Outcome::kYes && place.depth < 0 && lowered_.feel(place).depth >= 0;
+  // Who is below the triangles has not come from above, nor has who came up through them.
+  above_ = place.depth < 0 && (was_above || !bulges);
+  if (!bulges || !was_above) {
+    state_ = {};
+    return false;
+  }
+  state_.triangle = lowered_.source();
+  state_.p_WP = p_WT;
   return true;
 }
 
