@@ -139,8 +139,10 @@ inline LoweredPlace LoweredTriangle::solve(double a, double b, double h, double 
   place.l0 = 1 - place.l1 - place.l2;
   const double upright = w_[0] + place.l1 * w_[1] + place.l2 * w_[2];
   place.depth = h / upright;
-  // Written so that NaN is folded over.
-  place.valid = area > 0 && upright > 0 && place.depth <= std::numeric_limits<double>::max();
+  // Folded over along one axis the area is negative, along both the sum is. Written so that NaN is
+  // folded over.
+  place.valid =
+      area > 0 && m11 + m22 > 0 && upright > 0 && place.depth <= std::numeric_limits<double>::max();
   return place;
 }
 
