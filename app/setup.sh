@@ -12,6 +12,7 @@ packages=(
   libeigen3-dev                          # vectors and matrices
   libusb-1.0-0-dev libhidapi-dev         # arms on USB
   libassimp-dev zlib1g-dev               # OBJ, STL and PLY files
+  libpng-dev                             # pictures felt as heights
   libyaml-cpp-dev nlohmann-json3-dev     # scenes in, reports out
   libspdlog-dev libcli11-dev             # messages and arguments of the program
   gnuplot-nox fonts-dejavu-core          # pictures

@@ -76,7 +76,7 @@ RunReport report_of(const Session& session, ClockKind clock, driver::ServoEnd en
   report.seed = session.seed();
   report.rate_asked = session.scene().rate;
   report.force_limit = session.scene().arm.limits.force_max;
-  report.triangles = session.triangle_count();
+  report.triangles = session.triangles();
   report.paging = session.paging();
   report.statistics = session.statistics();
   report.lost_contacts = count_lost_contacts(session.trace().rows(), session.touch());

@@ -152,9 +152,12 @@ std::string summary(const RunReport& report) {
                   report.lost_contacts == 1 ? "" : "s");
   s += text("Force     %.2f N at most (limit %.2f N), %.2f N on average (rms) while touching.\n",
             run.force_max(), report.force_limit, run.force_rms());
-  s += text("Depth     %.2f mm at most; %u triangle%s crossed in one tick at most, of %zu.\n",
-            1e3 * run.depth_max(), unsigned{run.hops_max()}, run.hops_max() == 1 ? "" : "s",
-            report.triangles);
+  s += report.triangles == 0
+           ? text("Depth     %.2f mm at most; no triangles, all shapes are exact.\n",
+                  1e3 * run.depth_max())
+           : text("Depth     %.2f mm at most; %u triangle%s crossed in one tick at most, of %zu.\n",
+                  1e3 * run.depth_max(), unsigned{run.hops_max()}, run.hops_max() == 1 ? "" : "s",
+                  report.triangles);
   const double energy = 1e3 * run.energy_to_hand();
   s += text("Energy    the arm %s %.2f mJ in all%s\n", energy > 0 ? "gave the hand" : "took",
             energy > 0 ? energy : -energy,

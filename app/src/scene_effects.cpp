@@ -119,6 +119,7 @@ render::EffectSurroundings surroundings_of(const ArmFile& arm, double rate) {
   surroundings.force_max = arm.limits.force_max;
   surroundings.tip_mass = arm.simulated.plant.mass;
   surroundings.tip_damping = arm.simulated.plant.viscous;
+  surroundings.tip_coulomb = arm.simulated.plant.coulomb;
   // Corners, middles and centre of the workspace.
   for (int i = 0; i < 27; ++i) {
     const Eigen::Vector3d share(i % 3 / 2.0, i / 3 % 3 / 2.0, i / 9 / 2.0);
@@ -145,6 +146,17 @@ std::vector<render::EffectPlan> read_effects(YamlMap& object, const std::filesys
   std::stable_sort(plans.begin(), plans.end(),
                    [](const auto& a, const auto& b) { return a.kind->order < b.kind->order; });
   return plans;
+}
+
+render::FieldBuilder read_field(YamlMap& object, const std::filesystem::path& folder,
+                                const render::EffectSurroundings& surroundings) {
+  std::vector<std::string_view> names;
+  for (const render::FieldKind& kind : render::field_table()) names.push_back(kind.name);
+  const render::FieldKind& kind = render::field_table()[object.require_choice("field", names)];
+  YamlSettings settings(object, folder);
+  render::FieldBuilder build = kind.read(settings, surroundings);
+  settings.finish();
+  return build;
 }
 
 }  // namespace thimble::app

@@ -6,6 +6,7 @@
 #include "arm_file.h"
 #include "thimble/render/effect/effect_surroundings.h"
 #include "thimble/render/effect/effect_table.h"
+#include "thimble/render/field/field_table.h"
 #include "yaml_reader.h"
 
 namespace thimble::app {
@@ -19,5 +20,10 @@ render::EffectSurroundings surroundings_of(const ArmFile& arm, double rate);
 /// Real-time: never from the servo thread.
 std::vector<render::EffectPlan> read_effects(YamlMap& object, const std::filesystem::path& folder,
                                              const render::EffectSurroundings& surroundings);
+
+/// Reads the field that an object is, `field: NAME` and its settings beside it, and is then done
+/// with the object. Mistakes are noted by `object`. Real-time: never from the servo thread.
+render::FieldBuilder read_field(YamlMap& object, const std::filesystem::path& folder,
+                                const render::EffectSurroundings& surroundings);
 
 }  // namespace thimble::app

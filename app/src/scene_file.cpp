@@ -48,6 +48,9 @@ render::ContactChoice read_contact(YamlMap map) {
     return map.optional_choice(key, 0, {names.begin(), names.end()});
   };
   choice.tracker = static_cast<render::TrackerChoice>(choose("tracker", render::kTrackerNames));
+  if (map.has("search")) {
+    choice.search = static_cast<render::SearchChoice>(choose("search", render::kSearchNames));
+  }
   if (map.has("blending")) {
     choice.blending =
         static_cast<render::BlendingChoice>(choose("blending", render::kBlendingNames));
@@ -62,11 +65,8 @@ render::ContactChoice read_contact(YamlMap map) {
   return choice;
 }
 
-SceneObject read_object(YamlMap map, const std::filesystem::path& folder,
-                        const std::filesystem::path& mesh_folder,
-                        render::EffectSurroundings surroundings) {
-  SceneObject object;
-  object.name = map.require_string("name");
+void read_mesh(YamlMap& map, const std::filesystem::path& folder,
+               const std::filesystem::path& mesh_folder, SceneObject& object) {
   object.mesh_file = find_file(map, "mesh", folder, mesh_folder);
   if (map.has("size")) object.size = map.require_number("size", "m", 1e-4, kPositionMax);
   if (object.size && map.has("scale")) {
@@ -74,17 +74,40 @@ SceneObject read_object(YamlMap map, const std::filesystem::path& folder,
   } else {
     object.scale = map.optional_number("scale", 1, "m per unit of the file", 1e-9, 1e9);
   }
+}
+
+SceneObject read_object(YamlMap map, const std::filesystem::path& folder,
+                        const std::filesystem::path& mesh_folder,
+                        render::EffectSurroundings surroundings) {
+  SceneObject object;
+  object.name = map.require_string("name");
+  int forms = 0;
+  for (const char* form : {"mesh", "plane", "sphere", "box", "field"}) forms += map.has(form);
+  if (forms > 1) {
+    map.reject("", "expected one of mesh, plane, sphere, box and field, found several");
+    return object;
+  }
   object.R_WO = map.optional_rotation("rotate_degrees");
   object.p_WO =
       map.optional_vector3("position", Eigen::Vector3d::Zero(), "m", -kPositionMax, kPositionMax);
+  surroundings.R_WO = object.R_WO;
+  surroundings.p_WO = object.p_WO;
+  if (map.has("field")) {
+    object.build_field = read_field(map, folder, surroundings);
+    return object;
+  }
+  object.shape = read_shape(map, object.R_WO, object.p_WO);
+  if (!object.shape) read_mesh(map, folder, mesh_folder, object);
   object.stiffness = map.require_number("stiffness", "N/m", 0, kStiffnessMax);
   object.damping = map.optional_number("damping", 0, "N s/m", 0, kDampingMax);
   object.paged = !object.mesh_file.empty() && render::is_page_file(object.mesh_file);
-  if (map.has("contact")) object.contact = read_contact(map.require_map("contact"));
+  if (!object.shape && map.has("contact")) {
+    object.contact = read_contact(map.require_map("contact"));
+  }
   if (object.paged) {
     const render::ContactChoice& c = object.contact;
-    const bool as_it_is = c.tracker == render::TrackerChoice::kCompact && !c.blending &&
-                          !c.curved_depth && !c.crease_angle;
+    const bool as_it_is = c.tracker == render::TrackerChoice::kCompact && !c.search &&
+                          !c.blending && !c.curved_depth && !c.crease_angle;
     if (map.has("contact") && !as_it_is) {
       map.reject("contact",
                  "a mesh in pages is touched in one way, \"tracker: compact\", and has its creases "
@@ -113,10 +136,11 @@ HandWaypoint read_waypoint(YamlMap map, const std::vector<SceneObject>& objects)
     waypoint.on = map.require_string("on");
     waypoint.p_W = map.require_vector3("near", "m", -kPositionMax, kPositionMax);
     waypoint.press = map.optional_number("press", 0, "m", -kPressMax, kPressMax);
-    bool known = false;
+    bool known = false, is_field = false;
     for (const SceneObject& object : objects) {
       if (object.name != *waypoint.on) continue;
       known = true;
+      is_field = object.build_field != nullptr;
       if (object.paged) {
         map.reject("on",
                    "the surface of a mesh in pages is not in memory to plan on; give points "
@@ -124,6 +148,7 @@ HandWaypoint read_waypoint(YamlMap map, const std::vector<SceneObject>& objects)
       }
     }
     if (!known) map.reject("on", "expected an object of this scene, found \"" + *waypoint.on + '"');
+    if (is_field) map.reject("on", "a field has no surface to be on; use at: [x, y, z]");
   }
   map.finish();
   return waypoint;

@@ -9,21 +9,25 @@
 
 #include "arm_file.h"
 #include "hand_route.h"
+#include "scene_shapes.h"
 #include "thimble/driver/result.h"
 #include "thimble/render/contact_choice.h"
 #include "thimble/render/effect/effect_table.h"
+#include "thimble/render/field/field_table.h"
 #include "thimble/render/mesh/triangle_mesh.h"
 #include "thimble/render/page/paged_contact.h"
 
 namespace thimble::app {
 
-/// Is one object of a scene: a mesh, where it stands, and how its surface feels.
+/// Is one object of a scene: a mesh, a shape or a field, where it stands, and how it feels.
 struct SceneObject {
   std::string name;
-  std::filesystem::path mesh_file;
-  bool paged = false;          ///< Whether the mesh is a page file, of which little is in memory.
-  std::optional<double> size;  ///< Largest side of the mesh's box, m.
-  double scale = 1;            ///< Metres per unit of the file, if no size.
+  std::filesystem::path mesh_file;   ///< Empty for a shape or a field.
+  bool paged = false;                ///< Whether that is a page file, of which little is in memory.
+  std::optional<SceneShape> shape;   ///< A shape instead of a mesh.
+  render::FieldBuilder build_field;  ///< A field instead of a mesh; it has no surface.
+  std::optional<double> size;        ///< Largest side of the mesh's box, m.
+  double scale = 1;                  ///< Metres per unit of the file, if no size.
   Eigen::Matrix3d R_WO = Eigen::Matrix3d::Identity();  ///< Rotation of the mesh in the world.
   Eigen::Vector3d p_WO{0, 0, 0};            ///< Where the centre of the turned mesh's box lies, m.
   double stiffness = 0;                     ///< N/m

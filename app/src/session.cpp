@@ -41,12 +41,13 @@ driver::Result<void> check_reach(const HandRoute& route, const ArmFile& arm) {
   return {};
 }
 
-/// Reads the mesh of every object and puts it into the world (m); empty for those on the disk.
+/// Reads the mesh of every object and puts it into the world (m); a shape has one to be drawn, a
+/// field and a mesh on the disk an empty one.
 driver::Result<std::vector<render::TriangleMesh>> load_meshes(const Scene& scene) {
   std::vector<render::TriangleMesh> meshes;
   for (const SceneObject& object : scene.objects) {
-    if (object.paged) {
-      meshes.emplace_back();
+    if (object.shape || object.build_field || object.paged) {
+      meshes.push_back(object.shape ? object.shape->mesh_W : render::TriangleMesh());
       continue;
     }
     const auto mesh = render::load_mesh(object.mesh_file);
@@ -68,6 +69,12 @@ driver::Result<std::unique_ptr<render::SceneTouch>> build_touch(
     const render::SurfaceChoice surface{
         .spring = {.stiffness = object.stiffness, .damping = object.damping},
         .effects = object.effects};
+    if (object.build_field || object.shape) {
+      objects.push_back(object.build_field
+                            ? object.build_field()
+                            : render::build_primitive_touch(object.shape->shape_W, surface));
+      continue;
+    }
     if (object.paged) {
       auto opened = render::PagedSurface::open(object.mesh_file);
       if (!opened) return opened.error();
@@ -111,9 +118,13 @@ driver::Result<std::unique_ptr<Session>> Session::open(const std::filesystem::pa
 
   std::vector<NamedMesh> named;
   for (std::size_t i = 0; i < meshes->size(); ++i) {
-    if (session->scene_.objects[i].paged) continue;
-    named.push_back({session->scene_.objects[i].name, &(*meshes)[i]});
+    const SceneObject& object = session->scene_.objects[i];
+    if (!object.build_field && !object.paged) named.push_back({object.name, &(*meshes)[i]});
+    if (!object.shape) session->triangles_ += (*meshes)[i].triangles.size();
     append((*meshes)[i], session->mesh_W_);
+  }
+  for (const auto& pages : session->pages_) {
+    session->triangles_ += static_cast<std::size_t>(pages->triangle_count());
   }
   const auto route = plan_hand(session->scene_.hand, named);
   if (!route) return driver::Error{scene_file.string() + ": " + route.error().message};
@@ -193,12 +204,6 @@ std::optional<render::PagingCounters> Session::paging() const {
     sum.short_of_frames += one.short_of_frames;
   }
   return sum;
-}
-
-std::size_t Session::triangle_count() const {
-  std::size_t count = mesh_W_.triangles.size();
-  for (const auto& pages : pages_) count += static_cast<std::size_t>(pages->triangle_count());
-  return count;
 }
 
 }  // namespace thimble::app

@@ -46,16 +46,16 @@ class Session {
   driver::ServoEnd run(const std::atomic<bool>& stop) noexcept;
 
   const Scene& scene() const { return scene_; }
-  /// Gives the meshes of all objects in the world as one (m), for pictures and checks; those on the
-  /// disk are not in it.
+  /// Gives the meshes of all objects in the world as one (m), for pictures: those that are touched,
+  /// and those that stand for shapes; those on the disk are not in it.
   const render::TriangleMesh& mesh_W() const { return mesh_W_; }
+  /// Tells how many triangles can be touched, in memory and on the disk.
+  std::size_t triangles() const { return triangles_; }
   const driver::Device& device() const { return *device_; }
   const device_sim::SimulatedArm& arm() const { return *arm_; }
   const render::SceneTouch& touch() const { return *touch_; }
   /// Sums up what paging did for all objects on the disk; nothing if there are none.
   std::optional<render::PagingCounters> paging() const;
-  /// Counts the triangles of all objects.
-  std::size_t triangle_count() const;
   const RunStatistics& statistics() const { return *statistics_; }
   const Trace& trace() const { return *trace_; }
   const driver::Snapshot<driver::TickRecord>& snapshot() const { return snapshot_; }
@@ -71,6 +71,7 @@ class Session {
 
   Scene scene_;
   render::TriangleMesh mesh_W_;
+  std::size_t triangles_ = 0;
   std::uint64_t seed_ = 0;
   std::uint64_t ticks_ = 0;
   std::int64_t period_ns_ = 0;

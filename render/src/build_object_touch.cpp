@@ -12,7 +12,7 @@
 #include "thimble/render/contact/normal_projection_tracker.h"
 #include "thimble/render/contact/offset_tracker.h"
 #include "thimble/render/contact/smooth_normals.h"
-#include "thimble/render/touch.h"
+#include "touch_of.h"
 
 namespace thimble::render {
 namespace {
@@ -23,33 +23,6 @@ driver::Error apart(const ContactChoice& choice, const std::string& why) {
   return driver::Error{"The tracker \"" +
                        std::string(kTrackerNames[static_cast<std::size_t>(choice.tracker)]) +
                        "\" " + why};
-}
-
-/// Builds the stages of a surface: its spring comes after what changes the depth.
-StageList stage_list(const SurfaceChoice& surface) {
-  std::vector<std::unique_ptr<AnyStage>> stages;
-  bool sprung = false;
-  for (const EffectPlan& effect : surface.effects) {
-    if (!sprung && effect.kind->order > EffectOrder::kDepth) {
-      stages.push_back(std::make_unique<AnyStageOf<SpringDamper>>(surface.spring));
-      sprung = true;
-    }
-    stages.push_back(effect.build());
-  }
-  if (!sprung) stages.push_back(std::make_unique<AnyStageOf<SpringDamper>>(surface.spring));
-  return StageList(std::move(stages));
-}
-
-template <class Stages>
-Built object_of(Stages stages) {
-  return std::unique_ptr<ObjectTouch>(std::make_unique<ObjectTouchOf<Stages>>(std::move(stages)));
-}
-
-template <class Contact>
-Built touch_of(Contact contact, const SurfaceChoice& surface) {
-  // A bare surface, by far the most frequent, is joined wholly at compile time.
-  if (surface.effects.empty()) return object_of(Touch(std::move(contact), surface.spring));
-  return object_of(Touch(std::move(contact), stage_list(surface)));
 }
 
 template <class Contact, class Shading, class Depth>
@@ -104,13 +77,13 @@ Built compact_touch(const TriangleMesh& mesh_W, const ContactChoice& choice,
   if (choice.crease_angle) options.crease_angle = *choice.crease_angle;
   auto compact = CompactSurface::build(*checked, options);
   if (!compact) return compact.error();
-  return touch_of(CompactContact(std::move(compact).value()), surface);
+  return touch_of(CompactContact(std::move(compact).value(), choice.search), surface);
 }
 
 template <class Contact>
 Built mesh_touch(const TriangleMesh& mesh_W, const ContactChoice& choice, bool smooth,
                  const SurfaceChoice& surface) {
-  auto contact = Contact::build(mesh_W);
+  auto contact = Contact::build(mesh_W, {}, choice.search);
   if (!contact) return contact.error();
   return tracked_touch(
       std::move(contact).value(), choice,
@@ -134,7 +107,7 @@ Built build_object_touch(const TriangleMesh& mesh_W, const ContactChoice& choice
           choice.curved_depth.value_or(false)) {
         return apart(choice, "pushes towards its proxy: it goes with the blending \"flat\" only.");
       }
-      auto contact = GodObjectContact::build(mesh_W);
+      auto contact = GodObjectContact::build(mesh_W, {}, choice.search);
       if (!contact) return contact.error();
       return touch_of(std::move(contact).value(), surface);
     }
@@ -147,7 +120,7 @@ Built build_object_touch(const TriangleMesh& mesh_W, const ContactChoice& choice
 std::unique_ptr<ObjectTouch> build_paged_touch(std::shared_ptr<PagedSurface> pages,
                                                const PagedPlace& place,
                                                const SurfaceChoice& surface) {
-  return touch_of(PagedContact(std::move(pages), place), surface).value();
+  return touch_of(PagedContact(std::move(pages), place), surface);
 }
 
 }  // namespace thimble::render

@@ -5,8 +5,10 @@
 #include <cstring>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "bench/peers.h"
@@ -14,10 +16,12 @@
 #include "support/bench_meshes.h"
 #include "support/random.h"
 #include "thimble/render/contact/compact_contact.h"
+#include "thimble/render/contact/make_search.h"
 
 // Contact on closed shapes of 0.1 m from 10^3 to 10^7 triangles, against other libraries in the
-// same run. Every time is the least of several rounds in which the contenders take turns: what the
-// machine does besides only adds.
+// same run. Every time is the least of several rounds in which the contenders take turns, stretch
+// by stretch of a path: what the machine does besides only adds, and it seldom does nothing for as
+// long as a whole path takes.
 
 namespace thimble::bench {
 namespace {
@@ -27,7 +31,8 @@ using Clock = std::chrono::steady_clock;
 
 constexpr double kPressed = 0.5e-3;  // m below the surface
 constexpr std::size_t kTicks = 100000;
-constexpr int kRounds = 3;
+constexpr std::size_t kStretch = 1000;  // ticks
+constexpr int kRounds = 5;
 
 double seconds_since(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
@@ -71,9 +76,10 @@ Path path_over(const support::Ring& ring, double step, std::size_t ticks) {
 using Follow = std::function<double(const Vector3d&)>;
 
 struct Followed {
-  double ns = INFINITY;  // per tick
-  double error_mm = 0;   // mean of |depth - truth|
-  std::size_t lost = 0;  // ticks
+  std::vector<double> stretches;  // least of each, s
+  double ns = 0;                  // per tick
+  double error_mm = 0;            // mean of |depth - truth|
+  std::size_t lost = 0;           // ticks
 };
 
 template <class F>
@@ -82,17 +88,24 @@ void follow_hot(const Path& path, F&& follow, Followed& result) {
   follow(path.tips.front());
   double error = 0;
   std::size_t lost = 0;
-  const auto begin = Clock::now();
-  for (const Vector3d& p : path.tips) {
-    const double depth = follow(p);
-    if (depth > 0) {
-      error += std::abs(depth - kPressed);
-    } else {
-      ++lost;
+  result.stretches.resize(path.tips.size() / kStretch, INFINITY);
+  double sum = 0;
+  for (std::size_t stretch = 0; stretch < result.stretches.size(); ++stretch) {
+    const auto begin = Clock::now();
+    for (std::size_t i = stretch * kStretch; i < (stretch + 1) * kStretch; ++i) {
+      const double depth = follow(path.tips[i]);
+      if (depth > 0) {
+        error += std::abs(depth - kPressed);
+      } else {
+        ++lost;
+      }
     }
+    double& best = result.stretches[stretch];
+    best = std::min(best, seconds_since(begin));
+    sum += best;
   }
   const auto ticks = static_cast<double>(path.tips.size());
-  result.ns = std::min(result.ns, seconds_since(begin) * 1e9 / ticks);
+  result.ns = sum * 1e9 / ticks;
   result.error_mm = error * 1e3 / std::max(ticks - static_cast<double>(lost), 1.0);
   result.lost = lost;
 }
@@ -118,6 +131,8 @@ std::pair<double, double> follow_in_loop(const Path& path, F&& follow) {
 
 class Bench {
  public:
+  Bench(bool hot, bool cold) : hot_(hot), cold_(cold) {}
+
   void run(const std::string& size, std::size_t triangles) {
     const support::BumpyBall ball;
     const support::Ring ring;
@@ -153,6 +168,7 @@ class Bench {
         "B per triangle", triangles == 1000000 ? "<= 96" : "");
     std::unique_ptr<Peer> embree;
     if constexpr (THIMBLE_HAVE_EMBREE) embree = make_embree(mesh);
+    if (!hot_) return run_cold(name, mesh, contact.surface(), embree.get(), triangles);
     driver::DeviceState state;
     const auto ours = [&](const Vector3d& p) {
       state.p_WT = p;
@@ -197,11 +213,11 @@ class Bench {
       add(way + " in the loop, p99, embree", late_embree, "ns");
       add(way + " in the loop, embree / ours", mean_embree / mean, "", large ? ">= 1" : ">= 1.5");
     }
-    run_cold(name, mesh, contact, embree.get(), triangles);
+    if (cold_) run_cold(name, mesh, contact.surface(), embree.get(), triangles);
   }
 
   void run_cold(const std::string& name, const render::TriangleMesh& mesh,
-                const render::CompactContact& contact, Peer* embree, std::size_t triangles) {
+                const render::CompactSurface& surface, Peer* embree, std::size_t triangles) {
     constexpr std::size_t kQueries = 20000;
     support::Random random(9);
     std::vector<Vector3d> from, to, near;
@@ -213,47 +229,96 @@ class Bench {
       to.push_back(from.back() + 0.5e-3 * random.direction());
       near.push_back(on + random.uniform(0, 1e-3) * random.direction());
     }
-    double sum = 0;  // read below, so that no query is left out
-    const auto time = [&](const auto& query) {
-      double best = INFINITY;
-      for (int round = 0; round < kRounds; ++round) {
-        const auto begin = Clock::now();
-        for (std::size_t i = 0; i < kQueries; ++i) sum += query(i);
-        best = std::min(best, seconds_since(begin) * 1e9 / static_cast<double>(kQueries));
+    using Question = std::function<double(std::size_t)>;
+    struct Contender {
+      std::string name;
+      Question segment, closest;
+    };
+    std::vector<Contender> contenders;
+    std::vector<std::shared_ptr<const render::ContactSearch>> searches;
+    std::vector<std::unique_ptr<Peer>> peers;
+    const auto add_search = [&](const std::string& kind,
+                                std::optional<render::SearchChoice> choice) {
+      const auto begin = Clock::now();
+      const auto search = render::make_search(surface, choice);
+      if (choice) add(name + ": build, " + kind, seconds_since(begin), "s");
+      if (choice) {
+        add(name + ": memory, " + kind,
+            static_cast<double>(search->bytes()) / static_cast<double>(mesh.triangles.size()),
+            "B per triangle");
       }
-      return best;
+      searches.push_back(search);
+      const render::ContactSearch& s = *search;
+      contenders.push_back(
+          {kind, [&](std::size_t i) { return s.first_entry(from[i], to[i]).parameter; },
+           choice == render::SearchChoice::kLinear
+               ? Question()  // 0.1 s for a thousand of them
+               : [&](std::size_t i) { return s.closest(near[i], 1.01e-3).distance; }});
     };
-    const render::Bvh& bvh = contact.search();
-    const double segment =
-        time([&](std::size_t i) { return bvh.first_entry(from[i], to[i]).parameter; });
-    add(name + ": cold segment", segment, "ns");
-    const double closest =
-        time([&](std::size_t i) { return bvh.closest(near[i], 1.01e-3).distance; });
-    add(name + ": cold closest point", closest, "ns");
-    if (embree != nullptr) {
-      const double theirs = time([&](std::size_t i) { return embree->first_hit(from[i], to[i]); });
-      add(name + ": cold segment, embree", theirs, "ns");
-      add(name + ": cold segment, ours / embree", segment / theirs, "", "<= 1.2");
-    }
-    double best = INFINITY;
-    const auto ask = [&](Peer& peer) {
-      const double theirs = time([&](std::size_t i) { return peer.closest(near[i], 1.01e-3); });
-      add(name + ": cold closest point, " + peer.name(), theirs, "ns");
-      best = std::min(best, theirs);
+    const auto add_peer = [&](Peer& peer) {
+      contenders.push_back({peer.name(),
+                            peer.has_first_hit()
+                                ? [&](std::size_t i) { return peer.first_hit(from[i], to[i]); }
+                                : Question(),
+                            [&](std::size_t i) { return peer.closest(near[i], 1.01e-3); }});
     };
-    if (embree != nullptr) ask(*embree);
+    add_search("ours", {});
+    if (embree != nullptr) add_peer(*embree);
+    add_search("tree", render::SearchChoice::kTree);
+    add_search("grid", render::SearchChoice::kGrid);
+    if (triangles <= 10000) add_search("linear", render::SearchChoice::kLinear);
     // Slower by far than Embree and large in memory: asked where that settles the order.
     if (triangles <= 100000) {
-      if constexpr (THIMBLE_HAVE_CGAL) ask(*make_cgal(mesh));
-      if constexpr (THIMBLE_HAVE_FCL) ask(*make_fcl(mesh));
+      if constexpr (THIMBLE_HAVE_CGAL) peers.push_back(make_cgal(mesh));
+      if constexpr (THIMBLE_HAVE_FCL) peers.push_back(make_fcl(mesh));
+    }
+    for (const auto& peer : peers) add_peer(*peer);
+
+    double sum = 0;  // read below, so that no query is left out
+    // Takes turns in batches short enough to lie between two interruptions, and adds up the least
+    // time of each batch; between two rounds of a batch all others have been asked.
+    const auto take_turns = [&](Question Contender::*question) {
+      constexpr std::size_t kBatch = 500;
+      std::vector<double> ns(contenders.size(), 0);
+      std::vector<std::vector<double>> least(contenders.size(),
+                                             std::vector<double>(kQueries / kBatch, INFINITY));
+      for (int round = 0; round < 2 * kRounds; ++round) {
+        for (std::size_t c = 0; c < contenders.size(); ++c) {
+          const Question& ask = contenders[c].*question;
+          if (!ask) continue;
+          for (std::size_t batch = 0; batch < kQueries / kBatch; ++batch) {
+            const auto begin = Clock::now();
+            for (std::size_t i = batch * kBatch; i < (batch + 1) * kBatch; ++i) sum += ask(i);
+            least[c][batch] = std::min(least[c][batch], seconds_since(begin));
+          }
+        }
+      }
+      for (std::size_t c = 0; c < contenders.size(); ++c) {
+        for (const double seconds : least[c]) ns[c] += seconds * 1e9 / kQueries;
+      }
+      return ns;
+    };
+    const std::vector<double> segment = take_turns(&Contender::segment);
+    const std::vector<double> closest = take_turns(&Contender::closest);
+    double best = INFINITY;  // of the peers
+    for (std::size_t c = 0; c < contenders.size(); ++c) {
+      const std::string who = c == 0 ? "" : ", " + contenders[c].name;
+      if (std::isfinite(segment[c])) add(name + ": cold segment" + who, segment[c], "ns");
+      if (std::isfinite(closest[c])) add(name + ": cold closest point" + who, closest[c], "ns");
+      const bool is_peer = (c == 1 && embree != nullptr) || c >= contenders.size() - peers.size();
+      if (is_peer) best = std::min(best, closest[c]);
+    }
+    if (embree != nullptr) {
+      add(name + ": cold segment, ours / embree", segment[0] / segment[1], "", "<= 1.2");
     }
     if (std::isfinite(best)) {
-      add(name + ": cold closest point, best peer / ours", best / closest, "",
+      add(name + ": cold closest point, best peer / ours", best / closest[0], "",
           triangles <= 100000 ? ">= 4" : ">= 3");
     }
     if (sum == -1) std::printf("never\n");
   }
 
+  bool hot_, cold_;
   std::vector<app::Figure> figures_;
 };
 
@@ -261,26 +326,37 @@ class Bench {
 }  // namespace thimble::bench
 
 int main(int argc, char** argv) {
-  // --figures=FILE writes the figures, --max=N stops at N triangles (default 1e6), --long goes on
-  // to 10^7.
+  // --figures=FILE writes the figures, --min=N begins at N triangles, --max=N stops there (default
+  // 1e6), --long goes on to 10^7, --contact leaves out the cold questions, --cold asks only them.
   std::string figures_file;
-  double most = 1e6;
+  double least = 0, most = 1e6;
+  bool hot = true, cold = true;
   for (int i = 1; i < argc; ++i) {
     if (std::strncmp(argv[i], "--figures=", 10) == 0) {
       figures_file = argv[i] + 10;
     } else if (std::strncmp(argv[i], "--max=", 6) == 0) {
       most = std::atof(argv[i] + 6);
+    } else if (std::strncmp(argv[i], "--min=", 6) == 0) {
+      least = std::atof(argv[i] + 6);
+    } else if (std::strcmp(argv[i], "--contact") == 0) {
+      cold = false;
     } else if (std::strcmp(argv[i], "--long") == 0) {
       most = 1e7;
+    } else if (std::strcmp(argv[i], "--cold") == 0) {
+      hot = false;
     } else {
-      std::fprintf(stderr, "Unknown option %s. Options: --figures=FILE --max=N --long\n", argv[i]);
+      std::fprintf(stderr,
+                   "Unknown option %s. Options: --figures=FILE --min=N --max=N --long --contact "
+                   "--cold\n",
+                   argv[i]);
       return 2;
     }
   }
-  thimble::bench::Bench bench;
+  thimble::bench::Bench bench(hot, cold);
   std::size_t triangles = 1000;
   for (int power = 3; power <= 7 && static_cast<double>(triangles) <= most; ++power) {
-    bench.run("10^" + std::to_string(power), triangles);
+    if (static_cast<double>(triangles) >= least)
+      bench.run("10^" + std::to_string(power), triangles);
     triangles *= 10;
   }
   std::printf("\n%s", thimble::app::figure_table(bench.figures()).c_str());

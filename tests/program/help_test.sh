@@ -15,6 +15,9 @@ done
 expect 0 '^sim +simulated arm' "$thimble" devices
 
 expect 2 'subcommand is required' "$thimble"
+expect 0 'friction +how friction trembles' "$thimble" study --help
+expect 0 '--out' "$thimble" study friction --help
+
 expect 2 'subcommand is required' "$thimble" touch
 expect 2 'SCENE is required' "$thimble" run
 expect 2 'clock' "$thimble" run scene.yaml --clock sundial

@@ -55,7 +55,9 @@ INSTANTIATE_TEST_SUITE_P(
                       "tracker: edge_planes, blending: phong, curved_depth: true",
                       "tracker: offset", "tracker: offset, blending: flat, curved_depth: false",
                       "tracker: offset, crease_degrees: 30", "tracker: god_object",
-                      "tracker: compact"));
+                      "tracker: compact", "search: linear", "search: grid", "search: tree",
+                      "tracker: god_object, search: linear", "tracker: offset, search: tree",
+                      "tracker: compact, search: linear", "tracker: compact, search: tree"));
 
 TEST(WayOfContact, ThatDoesNotGoTogetherIsRefusedWithTheReason) {
   THIMBLE_NEEDS_MESHES();

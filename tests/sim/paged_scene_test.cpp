@@ -56,7 +56,7 @@ TEST(PagedScene, IsTouchedFromTheDiskTheSameInEveryRun) {
     ASSERT_TRUE(session.paging().has_value());
     EXPECT_EQ(session.paging()->misses, 0u);
     EXPECT_GE(session.paging()->loads, 4u);
-    EXPECT_GT(session.triangle_count(), 90'000u);
+    EXPECT_GT(session.triangles(), 90'000u);
     // On top of the tube, of 0.0127 m with bumps, and beside where the tip slides off.
     for (const auto& row : rows) {
       EXPECT_TRUE(!row.in_contact || std::abs(row.p_WT[2] - 0.0112) < 0.0025) << row.p_WT[2];

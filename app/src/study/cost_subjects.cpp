@@ -3,8 +3,12 @@
 #include <string_view>
 #include <utility>
 
+#include <memory>
+#include <vector>
+
 #include "scene_effects.h"
 #include "thimble/render/build_object_touch.h"
+#include "thimble/render/surface/texture/height_map.h"
 #include "yaml_reader.h"
 
 namespace thimble::app {
@@ -17,10 +21,11 @@ constexpr render::SpringDamper kSpring{.stiffness = 800, .damping = 1};
 
 // Settings of effects that have none of their own; every other effect is taken as it is.
 struct Sample {
-  std::string_view name;
+  std::string_view name;  // or group
   std::string_view settings;
 };
 constexpr Sample kSamples[] = {
+    {"friction", "coefficient: 0.5"},
     {"sines", "waves: [{amplitude: 0.0001, wavelength: 0.002, direction: [1, 0, 0]}]"},
 };
 
@@ -37,10 +42,27 @@ render::ContactChoice choice_of(render::TrackerChoice tracker) {
   return choice;
 }
 
+/// Is a height map without a file: stripes of two pixels, 1 mm apart.
+std::unique_ptr<render::AnyStage> striped_map() {
+  render::HeightMap::Settings settings;
+  settings.image =
+      std::make_shared<const render::HeightImage>(4, 1, std::vector<float>{0, 0, 1, 1});
+  settings.width = 0.002;
+  settings.height = 0.0002;
+  return std::make_unique<render::AnyStageOf<render::HeightMap>>(
+      render::HeightMap(settings, render::EffectSurroundings()));
+}
+
 Built build_effect(const render::EffectKind& kind) {
+  if (kind.name == render::HeightMap::kName) {
+    return render::build_object_touch(kCostRing.mesh(kCostAround, kCostAcross),
+                                      choice_of(render::TrackerChoice::kOffset),
+                                      {.spring = kSpring, .effects = {{&kind, striped_map}}});
+  }
   std::string settings;
   for (const Sample& sample : kSamples) {
-    if (sample.name == kind.name) settings.append(", ").append(sample.settings);
+    if (sample.name == kind.name || sample.name == kind.group)
+      settings.append(", ").append(sample.settings);
   }
   std::string text = "effects:\n  - {";
   text.append(kind.group).append(": ").append(kind.name).append(settings).append("}\n");

@@ -1,7 +1,10 @@
 #include <array>
 
 #include "study/study.h"
+#include "study/study_box.h"
 #include "study/study_cost.h"
+#include "study/study_friction.h"
+#include "study/study_texture.h"
 
 namespace thimble::app {
 namespace {
@@ -9,6 +12,12 @@ namespace {
 constexpr std::array kStudies{
     Study{"cost", "what each way of contact and each effect costs per tick, and what it buys",
           study_cost},
+    Study{"friction", "how friction trembles on coarse encoders, and which ways cure it",
+          study_friction},
+    Study{"texture", "whether a stroke over a texture feels the waves that were asked for",
+          study_texture},
+    Study{"box", "the paper's Fig. 2: the force over a square, in both forms of the box",
+          study_box},
 };
 
 }  // namespace

@@ -17,6 +17,7 @@
 #include "picture_parts.h"
 #include "study/cost_subjects.h"
 #include "study/instruction_count.h"
+#include "study/memory_trades.h"
 
 namespace thimble::app {
 namespace {
@@ -195,6 +196,11 @@ std::vector<Figure> figures_of(const std::vector<Cost>& costs, const Cost& bare)
       }
       add(name + ": force missing without", cost.error, "N");
     }
+  }
+  for (const MemoryTrade& trade : measure_memory_trades()) {
+    add(trade.name + ": time", trade.ns_per_question, "ns/question");
+    add(trade.name + ": memory", trade.bytes_per_triangle, "B/triangle");
+    add(trade.name + ": build", trade.build_us_per_triangle, "us/triangle");
   }
   return figures;
 }

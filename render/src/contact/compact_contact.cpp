@@ -6,15 +6,15 @@
 
 namespace thimble::render {
 
-CompactStore::CompactStore(CompactSurface surface)
+CompactStore::CompactStore(CompactSurface surface, std::optional<SearchChoice> search)
     : surface_(std::make_shared<const CompactSurface>(std::move(surface))),
-      search_(std::make_shared<const Bvh>(*surface_)),
+      search_(make_search(*surface_, search)),
       records_(surface_->records().data()) {}
 
 template class RecordContact<CompactStore>;
 
-CompactContact::CompactContact(CompactSurface surface)
-    : RecordContact(CompactStore(std::move(surface))) {}
+CompactContact::CompactContact(CompactSurface surface, std::optional<SearchChoice> search)
+    : RecordContact(CompactStore(std::move(surface), search)) {}
 
 driver::Result<CompactContact> CompactContact::build(const TriangleMesh& mesh,
                                                      const CompactSurfaceOptions& options) {

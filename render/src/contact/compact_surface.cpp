@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <string>
 #include <utility>
 
 #include "contact/corner_normals.h"
 #include "contact/half_edges.h"
 #include "contact/radix_sort.h"
+#include "thimble/render/contact/lowered_triangle.h"
 
 namespace thimble::render {
 namespace {
@@ -38,7 +40,7 @@ std::size_t index(std::int32_t i) noexcept {
 }
 
 // Says that the record of triangle t stands at place[t] once the keys are sorted.
-std::vector<KeyedIndex> sorted_by_place(const std::vector<CompactTriangle>& records) {
+std::vector<KeyedIndex> sorted_by_place(std::span<const CompactTriangle> records) {
   std::vector<KeyedIndex> order(records.size());
   for (std::size_t t = 0; t < records.size(); ++t) {
     order[t] = {morton_key(records[t]), static_cast<std::int32_t>(t)};
@@ -167,6 +169,7 @@ driver::Result<CompactSurface> CompactSurface::build(const TriangleMesh& mesh,
     return refusal(index(surface.records_[static_cast<std::size_t>(flat)].source()),
                    "has no area.");
   }
+  surface.rise_ = surface.step_ * rise_above(surface.records_);
   return surface;
 }
 

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 namespace thimble::render {
 namespace {
@@ -25,7 +26,7 @@ std::size_t corner_of(const std::array<std::int32_t, 3>& corners, std::int32_t v
 // Sums the faces that are reached from a triangle around one of its vertices without crossing a
 // crease, first one way round, then the other.
 Vector3d fan_normal(const std::vector<std::array<std::int32_t, 3>>& triangles,
-                    const std::vector<CompactTriangle>& records, const Faces& faces,
+                    std::span<const CompactTriangle> records, const Faces& faces,
                     std::int32_t vertex, std::int32_t first) {
   Vector3d sum{0, 0, 0};
   const auto add = [&](std::int32_t t) {
@@ -52,7 +53,7 @@ Vector3d fan_normal(const std::vector<std::array<std::int32_t, 3>>& triangles,
 std::ptrdiff_t assign_corner_normals(const std::vector<Vector3d>& vertices,
                                      const std::vector<std::array<std::int32_t, 3>>& triangles,
                                      const HalfEdges& half_edges, double crease_angle,
-                                     std::vector<CompactTriangle>& records) {
+                                     std::span<CompactTriangle> records) {
   Faces faces;
   faces.normals.resize(triangles.size());
   faces.angles.resize(triangles.size());

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "contact/half_edges.h"
@@ -17,6 +18,6 @@ namespace thimble::render {
 std::ptrdiff_t assign_corner_normals(const std::vector<Eigen::Vector3d>& vertices,
                                      const std::vector<std::array<std::int32_t, 3>>& triangles,
                                      const HalfEdges& half_edges, double crease_angle,
-                                     std::vector<CompactTriangle>& records);
+                                     std::span<CompactTriangle> records);
 
 }  // namespace thimble::render

@@ -17,23 +17,18 @@ using Eigen::Vector3d;
 // direction is good to 2^-10 rad at worst, a hundredth of what a hand can tell [STABILITY 6].
 constexpr double kDirectionMin = 64;
 
-bool within_range(const Vector3d& p) noexcept {
-  // Written so that NaN is out of range.
-  return std::abs(p.x()) <= kPositionMax && std::abs(p.y()) <= kPositionMax &&
-         std::abs(p.z()) <= kPositionMax;
-}
-
 }  // namespace
 
-GodObjectContact::GodObjectContact(ContactMesh mesh)
+GodObjectContact::GodObjectContact(ContactMesh mesh, std::optional<SearchChoice> search)
     : mesh_(std::make_shared<const ContactMesh>(std::move(mesh))),
-      search_(std::make_shared<const LinearSearch>(*mesh_)) {}
+      search_(make_search(*mesh_, search)) {}
 
 driver::Result<GodObjectContact> GodObjectContact::build(const TriangleMesh& mesh,
-                                                         const ContactMeshOptions& options) {
+                                                         const ContactMeshOptions& options,
+                                                         std::optional<SearchChoice> search) {
   auto prepared = ContactMesh::build(mesh, options);
   if (!prepared) return prepared.error();
-  return GodObjectContact(std::move(prepared).value());
+  return GodObjectContact(std::move(prepared).value(), search);
 }
 
 const ContactState& GodObjectContact::update(const driver::DeviceState& state) noexcept {
@@ -45,7 +40,9 @@ const ContactState& GodObjectContact::update(const driver::DeviceState& state) n
   }
   if (!state_.touching) {
     place_ = {};
-    if (has_before_) place_.triangle = search_->first_entry(p_OP_, p_OT).triangle;
+    if (has_before_) {
+      place_.triangle = free_space_.first_entry(*search_, p_OP_, p_OT).triangle;
+    }
   }
   has_before_ = true;
   state_ = {};

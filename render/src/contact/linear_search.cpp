@@ -1,9 +1,11 @@
 #include "thimble/render/contact/linear_search.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "thimble/render/mesh/segment_crossing.h"
+#include "contact/mesh_segment_test.h"
+#include "contact/search_answers.h"
 
 namespace thimble::render {
 namespace {
@@ -15,26 +17,23 @@ using Eigen::Vector3f;
 // costs little to find again.
 constexpr std::size_t kBlock = 32;
 
-bool within_range(const Vector3d& p) noexcept {
-  return std::abs(p.x()) <= kPositionMax && std::abs(p.y()) <= kPositionMax &&
-         std::abs(p.z()) <= kPositionMax;
-}
-
 }  // namespace
 
-LinearSearch::LinearSearch(const ContactMesh& mesh) : mesh_(&mesh) {
-  const auto count = static_cast<std::size_t>(mesh.triangle_count());
+template <class Surface>
+LinearSearchOver<Surface>::LinearSearchOver(const Surface& surface)
+    : surface_(&surface), frame_(frame_of(surface)) {
+  const auto count = static_cast<std::size_t>(surface.triangle_count());
   const std::size_t padded = (count + kBlock - 1) / kBlock * kBlock;
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   for (auto* side : {&min_x_, &min_y_, &min_z_}) side->assign(padded, kInfinity);
   for (auto* side : {&max_x_, &max_y_, &max_z_}) side->assign(padded, -kInfinity);
   for (std::size_t i = 0; i < count; ++i) {
     const auto t = static_cast<std::int32_t>(i);
-    const Vector3d& a = mesh.position(t, 0);
-    const Vector3d& b = mesh.position(t, 1);
-    const Vector3d& c = mesh.position(t, 2);
-    const Vector3f low = (a.cwiseMin(b).cwiseMin(c) - mesh.origin()).cast<float>();
-    const Vector3f high = (a.cwiseMax(b).cwiseMax(c) - mesh.origin()).cast<float>();
+    const Vector3d a = corner_in(frame_, surface, t, 0);
+    const Vector3d b = corner_in(frame_, surface, t, 1);
+    const Vector3d c = corner_in(frame_, surface, t, 2);
+    const Vector3f low = a.cwiseMin(b).cwiseMin(c).template cast<float>();
+    const Vector3f high = a.cwiseMax(b).cwiseMax(c).template cast<float>();
     min_x_[i] = low.x();
     min_y_[i] = low.y();
     min_z_[i] = low.z();
@@ -44,13 +43,14 @@ LinearSearch::LinearSearch(const ContactMesh& mesh) : mesh_(&mesh) {
   }
 }
 
+template <class Surface>
 template <class Visit>
-void LinearSearch::visit_reached(const Vector3d& p_from, const Vector3d& p_to,
-                                 Visit visit) const noexcept {
-  const Vector3f low = (p_from.cwiseMin(p_to) - mesh_->origin()).cast<float>();
-  const Vector3f high = (p_from.cwiseMax(p_to) - mesh_->origin()).cast<float>();
-  const float low_x = low.x(), low_y = low.y(), low_z = low.z();
-  const float high_x = high.x(), high_y = high.y(), high_z = high.z();
+void LinearSearchOver<Surface>::visit_reached(const Vector3d& low, const Vector3d& high,
+                                              Visit visit) const noexcept {
+  const Vector3f low_f = low.cast<float>();
+  const Vector3f high_f = high.cast<float>();
+  const float low_x = low_f.x(), low_y = low_f.y(), low_z = low_f.z();
+  const float high_x = high_f.x(), high_y = high_f.y(), high_z = high_f.z();
   for (std::size_t block = 0; block < min_x_.size(); block += kBlock) {
     const float* const min_x = min_x_.data() + block;
     const float* const min_y = min_y_.data() + block;
@@ -69,42 +69,49 @@ void LinearSearch::visit_reached(const Vector3d& p_from, const Vector3d& p_to,
     }
     if (any == 0) continue;
     for (std::size_t i = 0; i < kBlock; ++i) {
-      if (reached[i] == 0) continue;
-      const auto t = static_cast<std::int32_t>(block + i);
-      visit(t, crossing(p_from, p_to, mesh_->position(t, 0), mesh_->position(t, 1),
-                        mesh_->position(t, 2)));
+      if (reached[i] != 0) visit(static_cast<std::int32_t>(block + i));
     }
   }
 }
 
-Entry LinearSearch::first_entry(const Vector3d& p_from, const Vector3d& p_to) const noexcept {
-  Entry first;
-  if (!within_range(p_from) || !within_range(p_to)) return first;
-  visit_reached(p_from, p_to, [&](std::int32_t t, Crossing way) noexcept {
-    if (way != Crossing::kEnters) return;
-    const double above = -mesh_->depth(t, p_from);
-    const double below = mesh_->depth(t, p_to);
-    // Rounding may make either end seem to lie on the other side: such an entry is at that end.
-    double parameter = 0;
-    if (above > 0) parameter = below > 0 ? above / (above + below) : 1;
-    if (first.triangle < 0 || parameter < first.parameter) first = {t, parameter};
+template <class Surface>
+Entry LinearSearchOver<Surface>::first_entry(const Vector3d& p_from,
+                                             const Vector3d& p_to) const noexcept {
+  if (!within_range(p_from) || !within_range(p_to)) return {};
+  const auto segment = segment_test(*surface_, frame_, p_from, p_to);
+  FirstEntry first(segment);
+  visit_reached(segment.low(), segment.high(), [&](std::int32_t t) noexcept {
+    first.consider({&t, 1});
   });
-  return first;
+  return first.entry();
 }
 
-bool LinearSearch::inside(const Vector3d& p_W) const noexcept {
-  if (!within_range(p_W)) return false;
-  const bool in_box = (p_W.array() >= mesh_->box_min().array()).all() &&
-                      (p_W.array() <= mesh_->box_max().array()).all();
-  if (!in_box) return false;
-  // Along an axis, so that the boxes drop all but the triangles in the way.
-  Vector3d p_far = p_W;
-  p_far.x() = mesh_->box_max().x() + (mesh_->box_max() - mesh_->box_min()).norm();
+template <class Surface>
+bool LinearSearchOver<Surface>::inside(const Vector3d& p_W) const noexcept {
+  if (!within_range(p_W) || !in_frame(frame_.to_steps(p_W))) return false;
+  const Vector3d p_far = far_along_x(frame_, p_W);
+  const auto segment = segment_test(*surface_, frame_, p_W, p_far);
   unsigned crossings = 0;
-  visit_reached(p_W, p_far, [&crossings](std::int32_t, Crossing way) noexcept {
-    crossings += way != Crossing::kNone;
+  visit_reached(segment.low(), segment.high(), [&](std::int32_t t) noexcept {
+    crossings += count_crossings(segment, {&t, 1});
   });
   return crossings % 2 == 1;
 }
+
+template <class Surface>
+SurfacePoint LinearSearchOver<Surface>::closest(const Vector3d& p_W, double radius) const noexcept {
+  if (!within_range(p_W) || !(radius >= 0)) return {};
+  NearestPoint nearest(*surface_, frame_, frame_.to_steps(p_W), reach_of(frame_, radius));
+  for (std::int32_t t = 0; t < surface_->triangle_count(); ++t) nearest.consider(t);
+  return nearest.point();
+}
+
+template <class Surface>
+double LinearSearchOver<Surface>::clearance(const Vector3d&) const noexcept {
+  return 0;
+}
+
+template class LinearSearchOver<ContactMesh>;
+template class LinearSearchOver<CompactSurface>;
 
 }  // namespace thimble::render

@@ -1,8 +1,8 @@
 #include "thimble/render/contact/normal_projection_tracker.h"
 
-#include <algorithm>
-#include <array>
 #include <limits>
+
+#include "contact/triangle_set.h"
 
 namespace thimble::render {
 
@@ -18,7 +18,7 @@ TrackerStep NormalProjectionTracker::follow(const Vector3d& p_WT) noexcept {
 }
 
 std::uint16_t NormalProjectionTracker::walk(const Vector3d& p_WT) noexcept {
-  std::array<std::int32_t, kHopsMax> visited;
+  TriangleSet<kHopsMax> visited;
   std::int32_t best = active_;
   double best_weight = -std::numeric_limits<double>::infinity();
   for (std::uint16_t hops = 0; hops < kHopsMax; ++hops) {
@@ -30,12 +30,11 @@ std::uint16_t NormalProjectionTracker::walk(const Vector3d& p_WT) noexcept {
       best = active_;
       best_weight = least;
     }
-    visited[hops] = active_;
+    visited.add(active_);
     // The side opposite corner k is the edge from corner k + 1.
     const std::int32_t next =
         mesh_->cell(active_).neighbours[(static_cast<std::size_t>(corner) + 1) % 3];
-    const auto end = visited.begin() + hops + 1;
-    if (std::find(visited.begin(), end, next) != end) {
+    if (visited.has(next)) {
       ++counters_.cycles;
       active_ = best;
       return hops;

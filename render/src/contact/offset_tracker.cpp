@@ -7,6 +7,8 @@
 #include <limits>
 #include <utility>
 
+#include "contact/triangle_set.h"
+
 namespace thimble::render {
 namespace {
 
@@ -82,11 +84,11 @@ OffsetFoot find_offset_foot(const ContactMesh& mesh, const SmoothNormals& normal
   return foot;
 }
 
-OffsetTracker::OffsetTracker(const ContactMesh& mesh, const LinearSearch& search,
+OffsetTracker::OffsetTracker(const ContactMesh& mesh, const ContactSearch& search,
                              double crease_angle)
     : OffsetTracker(mesh, search, std::make_shared<const SmoothNormals>(mesh, crease_angle)) {}
 
-OffsetTracker::OffsetTracker(const ContactMesh& mesh, const LinearSearch& search,
+OffsetTracker::OffsetTracker(const ContactMesh& mesh, const ContactSearch& search,
                              std::shared_ptr<const SmoothNormals> normals)
     : mesh_(&mesh), search_(&search), normals_(std::move(normals)), edge_planes_(mesh, search) {}
 
@@ -129,7 +131,7 @@ OffsetFoot OffsetTracker::foot_on(std::int32_t triangle, const Vector3d& p_WT) c
 }
 
 std::uint16_t OffsetTracker::walk(const Vector3d& p_WT) noexcept {
-  std::array<std::int32_t, kHopsMax> visited;
+  TriangleSet<kHopsMax> visited;
   std::int32_t best = active_;
   OffsetFoot best_foot;
   double best_share = -std::numeric_limits<double>::infinity();
@@ -143,13 +145,12 @@ std::uint16_t OffsetTracker::walk(const Vector3d& p_WT) noexcept {
       best_foot = foot_;
       best_share = least;
     }
-    visited[hops] = active_;
-    const auto end = visited.begin() + hops + 1;
+    visited.add(active_);
     std::int32_t next = -1;
     double next_share = -kWeightRounding;
     for (std::size_t k = 0; k < 3; ++k) {
       const std::int32_t neighbour = mesh_->cell(active_).neighbours[k];
-      if (shares[k] < next_share && std::find(visited.begin(), end, neighbour) == end) {
+      if (shares[k] < next_share && !visited.has(neighbour)) {
         next = neighbour;
         next_share = shares[k];
       }

@@ -1,22 +1,18 @@
 #pragma once
 
+#include <emmintrin.h>
+
 #include <Eigen/Core>
 #include <array>
-#include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "thimble/render/contact/compact_surface.h"
-#include "thimble/render/contact/linear_search.h"
+#include "thimble/render/contact/contact_search.h"
 #include "thimble/render/mesh/segment_crossing.h"
 
 namespace thimble::render {
-
-/// Tells whether a point may be asked about: no coordinate is NaN or beyond `kPositionMax`.
-/// Real-time: safe.
-inline bool within_range(const Eigen::Vector3d& p_W) noexcept {
-  return std::abs(p_W.x()) <= kPositionMax && std::abs(p_W.y()) <= kPositionMax &&
-         std::abs(p_W.z()) <= kPositionMax;
-}
 
 /// Decides how one segment passes the records of a surface: in double precision on the lattice
 /// where that is beyond doubt, else by `crossing`. Real-time: safe; about 10 ns where there is no
@@ -27,11 +23,10 @@ class SegmentTest {
   SegmentTest(const CompactSurface& surface, const Eigen::Vector3d& p_from,
               const Eigen::Vector3d& p_to) noexcept;
 
-  /// Tells whether the boxes of the segment and of record `t` meet.
-  bool near(std::int32_t t) const noexcept {
-    const CompactTriangle& r = surface_.record(t);
-    return meets(r.x, 0) && meets(r.y, 1) && meets(r.z, 2);
-  }
+  /// Writes to `near` those of a list of records that the segment may cross, and gives their
+  /// number: what is left out is certain, by boxes and by the sides that the segment passes the
+  /// edges on in single precision. Precondition: `near` has room for the whole list.
+  std::size_t select_near(std::span<const std::int32_t> list, std::int32_t* near) const noexcept;
 
   /// Tells the way in which the segment crosses record `t`, and where (0 at its begin, 1 at its
   /// end).
@@ -41,13 +36,15 @@ class SegmentTest {
   const Eigen::Vector3d& from() const noexcept { return from_; }
   const Eigen::Vector3d& way() const noexcept { return way_; }
 
+  /// Gives the box around the segment in steps of the lattice, with room for rounding; beyond twice
+  /// the lattice it is cut.
+  Eigen::Vector3d low() const noexcept { return Eigen::Vector3i(low_.data()).cast<double>(); }
+  Eigen::Vector3d high() const noexcept { return Eigen::Vector3i(high_.data()).cast<double>(); }
+
  private:
-  bool meets(const std::array<std::int32_t, 3>& x, std::size_t axis) const noexcept {
-    const std::int32_t low = low_[axis], high = high_[axis];
-    // Bitwise: one branch per axis.
-    const bool above = (x[0] > high) & (x[1] > high) & (x[2] > high);
-    const bool below = (x[0] < low) & (x[1] < low) & (x[2] < low);
-    return !(above | below);
+  // A fourth number is loaded with the three corners; it belongs to the same record.
+  static __m128i load(const std::array<std::int32_t, 3>& x) noexcept {
+    return _mm_loadu_si128(reinterpret_cast<const __m128i*>(x.data()));
   }
 
   const CompactSurface& surface_;
@@ -55,20 +52,30 @@ class SegmentTest {
   Eigen::Vector3d from_, way_;
   double way_size_;
   std::array<std::int32_t, 3> low_, high_;  // around the segment, with room for rounding
+  std::array<std::int32_t, 3> from_whole_;  // `from_` rounded
+  bool single_ = false;                     // whether single precision says anything
   double position_rounding_;
 };
 
+/// Keeps the parameter of a crossing within the part of the segment that lies in the box of the
+/// triangle a, b, c, given from the segment's begin. Where the two are nearly parallel, the
+/// parameter is rounding: so a triangle whose box begins later never seems to be crossed before.
+/// Real-time: safe.
+double kept_in_box(double parameter, const Eigen::Vector3d& way, const Eigen::Vector3d& a,
+                   const Eigen::Vector3d& b, const Eigen::Vector3d& c) noexcept;
+
+/// Is the room around boxes, in steps, that covers the rounding of a segment within the lattice
+/// (2^-24 of 2^31 steps, a few times).
+inline constexpr float kBoxRoom = 1024;
+
 /// Is a segment cut to the part that can reach a surface, in steps of the lattice and single
-/// precision, with the room that this rounding needs.
+/// precision.
 struct ReachedPart {
   bool any = false;
   Eigen::Vector3f from, way;
   double begin = 0, length = 0;  ///< Of the part, as parameters of the whole segment.
+  float room = kBoxRoom;         ///< Around boxes, for this rounding and that of far ends.
 };
-
-/// Is the room around boxes, in steps, that covers the rounding of `ReachedPart` (2^-24 of 2^31
-/// steps, a few times).
-inline constexpr float kBoxRoom = 1024;
 
 /// Cuts a segment to the cube of the lattice. Real-time: safe.
 ReachedPart reached_part(const Eigen::Vector3d& from, const Eigen::Vector3d& way) noexcept;

@@ -1,10 +1,10 @@
 #include "thimble/render/contact/surface_tracker.h"
 
 #include <algorithm>
-#include <array>
 #include <limits>
 #include <utility>
 
+#include "contact/triangle_set.h"
 #include "thimble/render/contact/closest_point.h"
 
 namespace thimble::render {
@@ -126,7 +126,7 @@ std::uint16_t SurfaceTracker::walk(const Vector3d& p) noexcept {
 }
 
 std::uint16_t SurfaceTracker::settle(const Vector3d& p) noexcept {
-  std::array<std::int32_t, kHopsMax> visited;
+  TriangleSet<kHopsMax> visited;
   std::int32_t best = active_;
   double best_distance = -std::numeric_limits<double>::infinity();
   for (std::uint16_t hops = 0; hops < kHopsMax; ++hops) {
@@ -137,10 +137,9 @@ std::uint16_t SurfaceTracker::settle(const Vector3d& p) noexcept {
       best = active_;
       best_distance = worst.distance;
     }
-    visited[hops] = active_;
+    visited.add(active_);
     const std::int32_t next = cell.neighbours[worst.edge];
-    const auto end = visited.begin() + hops + 1;
-    if (std::find(visited.begin(), end, next) != end) {
+    if (visited.has(next)) {
       ++counters_.cycles;
       active_ = best;
       return hops;
@@ -155,25 +154,18 @@ std::uint16_t SurfaceTracker::settle(const Vector3d& p) noexcept {
 bool SurfaceTracker::find_near(const Vector3d& p_WT, std::int32_t before) noexcept {
   // Ring by ring over shared vertices, from where the walk ended and from where it began: a far
   // side is reached only around an edge, never through the material.
-  std::array<std::int32_t, kPatchMax> patch;
-  std::int32_t size = 0;
-  const auto add = [&patch, &size](std::int32_t triangle) noexcept {
-    const auto end = patch.begin() + size;
-    if (size < kPatchMax && std::find(patch.begin(), end, triangle) == end) {
-      patch[static_cast<std::size_t>(size++)] = triangle;
-    }
-  };
-  add(active_);
-  add(before);
+  TriangleSet<kPatchMax> patch;
+  patch.add(active_);
+  patch.add(before);
   NearestAbove nearest(*mesh_, p_WT);
-  for (std::int32_t i = 0; i < size; ++i) {
-    const std::int32_t triangle = patch[static_cast<std::size_t>(i)];
+  for (std::size_t i = 0; i < patch.size(); ++i) {
+    const std::int32_t triangle = patch[i];
     nearest.consider(triangle);
     for (const std::int32_t vertex : mesh_->corners(triangle)) {
-      if (size == kPatchMax) break;
+      if (patch.full()) break;
       for (const std::int32_t around : mesh_->fan(vertex)) {
-        if (size == kPatchMax) break;
-        add(around);
+        if (patch.full()) break;
+        patch.add(around);
       }
     }
   }

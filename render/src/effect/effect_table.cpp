@@ -1,14 +1,63 @@
 #include "thimble/render/effect/effect_table.h"
 
 #include <array>
+#include <cstddef>
+
+#include "thimble/render/surface/friction/bristle.h"
+#include "thimble/render/surface/friction/dahl.h"
+#include "thimble/render/surface/friction/implicit_coulomb.h"
+#include "thimble/render/surface/friction/karnopp.h"
+#include "thimble/render/surface/friction/lugre.h"
+#include "thimble/render/surface/friction/naive.h"
+#include "thimble/render/surface/friction/paper.h"
+#include "thimble/render/surface/friction/stiction_point.h"
+#include "thimble/render/surface/texture/height_map.h"
+#include "thimble/render/surface/texture/sandpaper.h"
+#include "thimble/render/surface/texture/sines.h"
 
 namespace thimble::render {
 namespace {
 
-constexpr std::array<EffectKind, 0> kEffects{};
+// A program may be built with one effect only ("": with none), so that it can be counted that the
+// others cost a scene nothing which does not name them (tests/arch).
+constexpr bool kept([[maybe_unused]] std::string_view name) {
+#ifdef THIMBLE_ONLY_EFFECT
+  return name == THIMBLE_ONLY_EFFECT;
+#else
+  return true;
+#endif
+}
+
+template <SurfaceStage... Stages>
+constexpr auto kinds_of() {
+  std::array<EffectKind, (std::size_t{kept(Stages::kName)} + ...)> kinds{};
+  [[maybe_unused]] std::size_t i = 0;
+  (
+      [&] {
+        if constexpr (kept(Stages::kName)) kinds[i++] = effect_kind<Stages>();
+      }(),
+      ...);
+  return kinds;
+}
+
+constexpr auto kEffects = kinds_of<  //
+    BristleFriction,                 //
+    DahlFriction,                    //
+    ImplicitCoulombFriction,         //
+    KarnoppFriction,                 //
+    LugreFriction,                   //
+    NaiveFriction,                   //
+    PaperFriction,                   //
+    StictionPointFriction,           //
+    Sines,                           //
+    Sandpaper,                       //
+    HeightMap                        //
+    >();
 
 }  // namespace
 
-std::span<const EffectKind> effect_table() { return kEffects; }
+std::span<const EffectKind> effect_table() {
+  return kEffects;
+}
 
 }  // namespace thimble::render

@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "page/checksum.h"
+#include "thimble/render/contact/lowered_triangle.h"
 
 namespace thimble::render {
 namespace {
@@ -35,8 +36,9 @@ struct Header {
   std::int64_t triangle_count = 0;
   std::array<double, 3> origin{};
   double step = 0;
+  double rise = 0;  // m
 };
-static_assert(sizeof(Header) == 64);
+static_assert(sizeof(Header) == 72);
 
 std::uint32_t sum_of(Header header, const std::vector<PageBox>& boxes,
                      const std::vector<std::uint64_t>& sums) {
@@ -133,6 +135,7 @@ struct PageFileWriter::State {
     if (page.empty()) return true;
     boxes.push_back(box_of(page));
     sums.push_back(sum_of(page));
+    header.rise = std::max(header.rise, header.step * rise_above(page));
     const std::int64_t at = records_begin(pages_of(header.triangle_count)) +
                             (written - static_cast<std::int64_t>(page.size())) *
                                 static_cast<std::int64_t>(sizeof(CompactTriangle));
@@ -237,7 +240,8 @@ driver::Result<PageFile> PageFile::open(const std::filesystem::path& file) {
   }
   const bool numbers_can_be = header.triangle_count > 0 &&
                               header.triangle_count <= std::numeric_limits<std::int32_t>::max() &&
-                              header.step > 0 && std::isfinite(header.step) &&
+                              header.step > 0 && std::isfinite(header.step) && header.rise >= 0 &&
+                              std::isfinite(header.rise) &&
                               std::all_of(header.origin.begin(), header.origin.end(),
                                           [](double x) { return std::isfinite(x); });
   if (!numbers_can_be) return trouble(file, "its header is damaged; write it again.");
@@ -271,6 +275,7 @@ driver::Result<PageFile> PageFile::open(const std::filesystem::path& file) {
     }
   }
   opened.lattice_ = {{header.origin[0], header.origin[1], header.origin[2]}, header.step};
+  opened.rise_ = header.rise;
   opened.triangle_count_ = static_cast<std::int32_t>(header.triangle_count);
   return opened;
 }
@@ -284,6 +289,7 @@ PageFile& PageFile::operator=(PageFile&& other) noexcept {
   std::swap(lattice_, other.lattice_);
   std::swap(triangle_count_, other.triangle_count_);
   std::swap(records_at_, other.records_at_);
+  std::swap(rise_, other.rise_);
   std::swap(whole_, other.whole_);
   std::swap(boxes_, other.boxes_);
   std::swap(sums_, other.sums_);

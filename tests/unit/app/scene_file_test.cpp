@@ -127,5 +127,102 @@ TEST(PlaceMesh, GivesTheBoxItsSizeAndCentre) {
   }
 }
 
+TEST(SceneFile, ReadsShapesAndFieldsInPlaceOfMeshes) {
+  const auto scene = read(
+      "  - {name: wall, plane: {normal: [0, 2, 0]}, position: [0, 0.01, 0], stiffness: 500}\n"
+      "  - {name: ball, sphere: {radius: 0.02}, stiffness: 400, damping: 1, effects: [{texture: "
+      "sandpaper, grain: 0.003}]}\n"
+      "  - {name: block, box: {sides: [0.01, 0.02, 0.03]}, rotate_degrees: [[z, 90]], stiffness: "
+      "300}\n"
+      "  - {name: split, box: {sides: [0.01, 0.02, 0.03], form: wedges}, stiffness: 300}\n"
+      "  - {name: weight, field: gravity, mass: 0.1}\n",
+      kWait + "    - {t: 1, on: ball, near: [0, 0, 0.05], press: 0.004}\n");
+  ASSERT_TRUE(scene.ok()) << scene.error().message;
+  ASSERT_EQ(scene->objects.size(), 5U);
+  const auto& wall = std::get<render::HalfSpace>(scene->objects[0].shape->shape_W);
+  EXPECT_EQ(wall.n_W, Eigen::Vector3d(0, 1, 0));
+  EXPECT_EQ(wall.p_WO, Eigen::Vector3d(0, 0.01, 0));
+  EXPECT_EQ(std::get<render::Sphere>(scene->objects[1].shape->shape_W).radius, 0.02);
+  EXPECT_EQ(scene->objects[1].effects.size(), 1U);
+  const auto& block = std::get<render::EntryFaceBox>(scene->objects[2].shape->shape_W);
+  EXPECT_EQ(block.half_sides, Eigen::Vector3d(0.005, 0.01, 0.015));
+  EXPECT_TRUE(block.inside({0.009, 0, 0}));  // turned: its longer side lies along x
+  EXPECT_TRUE(std::holds_alternative<render::WedgeBox>(scene->objects[3].shape->shape_W));
+  EXPECT_FALSE(scene->objects[4].shape.has_value());
+  driver::DeviceState state;
+  EXPECT_NEAR(scene->objects[4].build_field()->update(state).f_T_W.z(), -0.980665, 1e-12);
+}
+
+TEST(SceneFile, DrawsShapesWhereTheyAre) {
+  const auto scene = read(
+      "  - {name: ball, sphere: {radius: 0.02}, position: [0.01, 0, 0], stiffness: 400}\n"
+      "  - {name: block, box: {sides: [0.01, 0.02, 0.03]}, rotate_degrees: [[x, 30]], stiffness: "
+      "3}\n"
+      "  - {name: wall, plane: {normal: [1, 1, 0], drawn_side: 0.2}, stiffness: 400}\n",
+      kWait);
+  ASSERT_TRUE(scene.ok()) << scene.error().message;
+  for (const SceneObject& object : scene->objects) {
+    const auto& mesh = object.shape->mesh_W;
+    ASSERT_FALSE(mesh.triangles.empty());
+    double volume = 0;
+    for (const auto& t : mesh.triangles) {
+      const auto v = [&](int k) { return mesh.vertices[static_cast<std::size_t>(t[k])]; };
+      volume += (v(0) - object.p_WO).dot((v(1) - object.p_WO).cross(v(2) - object.p_WO)) / 6;
+    }
+    for (const auto& vertex : mesh.vertices) {
+      const auto place = std::visit(
+          [&](const auto& shape) {
+            if constexpr (requires { shape.place(vertex, vertex); }) {
+              return shape.place(vertex, vertex).depth;
+            } else {
+              return render::WedgeBox{shape}.place(vertex, vertex).depth;
+            }
+          },
+          object.shape->shape_W);
+      EXPECT_NEAR(place, 0, 1e-15) << object.name;
+    }
+    // Wound outwards: volumes are positive (that of a flat patch is nothing).
+    if (object.name == "ball") {
+      EXPECT_NEAR(volume, 4.0 / 3 * 3.14159265 * 8e-6, 1e-7);
+    }
+    if (object.name == "block") {
+      EXPECT_NEAR(volume, 6e-6, 1e-15);
+    }
+  }
+}
+
+TEST(SceneFile, SaysWhatIsWrongWithAShapeOrAField) {
+  const auto wrong = [](const std::string& object) {
+    return mistake("  - {name: a, " + object + "}\n", kWait);
+  };
+  EXPECT_NE(wrong("sphere: {radius: -1}, stiffness: 1").find("radius"), std::string::npos);
+  EXPECT_NE(wrong("sphere: {radius: .nan}, stiffness: 1").find("radius"), std::string::npos);
+  EXPECT_NE(wrong("sphere: {radius: 0.1, sides: 2}, stiffness: 1").find("sides"),
+            std::string::npos);
+  EXPECT_NE(wrong("plane: {normal: [0, 0, 0]}, stiffness: 1").find("expected a direction"),
+            std::string::npos);
+  EXPECT_NE(wrong("box: {sides: [0.1, 0, 0.1]}, stiffness: 1").find("sides"), std::string::npos);
+  EXPECT_NE(wrong("box: {sides: [0.1, 0.1, 0.1], form: round}, stiffness: 1").find("form"),
+            std::string::npos);
+  EXPECT_NE(wrong("sphere: {radius: 0.1}").find("stiffness"), std::string::npos);
+  EXPECT_NE(
+      wrong("sphere: {radius: 0.1}, stiffness: 1, contact: {tracker: offset}").find("contact"),
+      std::string::npos);
+  EXPECT_NE(wrong("sphere: {radius: 0.1}, plane: {}, stiffness: 1").find("found several"),
+            std::string::npos);
+  EXPECT_NE(wrong("field: magic").find("field"), std::string::npos);
+  EXPECT_NE(wrong("field: gravity").find("mass"), std::string::npos);
+  EXPECT_NE(wrong("field: gravity, mass: 0.1, stiffness: 3").find("stiffness"), std::string::npos);
+  EXPECT_NE(wrong("field: viscous, damping: 500").find("swings an arm"), std::string::npos);
+  EXPECT_NE(mistake("  - {name: a, field: gravity, mass: 0.1}\n",
+                    kWait + "    - {t: 1, on: a, near: [0, 0, 0]}\n")
+                .find("a field has no surface"),
+            std::string::npos);
+  EXPECT_NE(wrong("sphere: {radius: 0.1}, stiffness: 800, effects: [{texture: sines, waves: "
+                  "[{amplitude: 0.004, wavelength: 0.1}]}]")
+                .find("5 N press no deeper than 6.25 mm"),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace thimble::app

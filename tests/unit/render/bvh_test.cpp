@@ -9,6 +9,7 @@
 #include "support/random.h"
 #include "support/reference_geometry.h"
 #include "support/shapes.h"
+#include "thimble/render/contact/linear_search.h"
 #include "thimble/render/mesh/placed_mesh.h"
 #include "thimble/render/mesh/weld_mesh.h"
 

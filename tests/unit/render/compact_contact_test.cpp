@@ -74,6 +74,39 @@ TEST(CompactContact, MeasuresDepthAndDirectionOfASphereHoweverCoarse) {
   }
 }
 
+TEST(CompactContact, BeginsAndEndsWithoutAJumpWhereACoarseSurfaceBulgesAboveItsTriangles) {
+  const CompactContact untouched = CompactContact::build(support::icosphere(2, 0.03)).value();
+  ASSERT_GT(untouched.surface().rise(), 2e-4);
+  support::Random random(17);
+  for (int press = 0; press < 200; ++press) {
+    const Vector3d u = random.direction();
+    CompactContact contact = untouched;
+    double before = 0;
+    constexpr double kStep = 2e-6;  // m
+    // Down from 0.1 mm above the ball to 0.6 mm below it and up again.
+    for (int i = -50; i <= 650; ++i) {
+      const double below = kStep * (i <= 300 ? i : 600 - i);
+      const ContactState& state = move(contact, (0.03 - below) * u);
+      const double depth = state.touching ? state.depth : 0;
+      ASSERT_LT(std::abs(depth - before), 1.1 * kStep) << press << " at " << below;
+      ASSERT_NEAR(depth, std::max(below, 0.0), 4e-5) << press;
+      before = depth;
+    }
+    ASSERT_FALSE(contact.state().touching);
+  }
+}
+
+TEST(CompactContact, TouchesNoBulgeThatTheTipReachesFromInside) {
+  CompactContact contact = CompactContact::build(support::icosphere(2, 0.03)).value();
+  const Vector3d u = (contact.surface().position(0, 0) + contact.surface().position(0, 1) +
+                      contact.surface().position(0, 2))
+                         .normalized();
+  for (int i = 0; i <= 1000; ++i) {
+    ASSERT_FALSE(move(contact, (0.029 + 1.2e-6 * i) * u).touching) << i;
+  }
+  EXPECT_TRUE(move(contact, 0.0299 * u).touching);
+}
+
 TEST(CompactContact, MeasuresDepthOnATorusWithAnErrorThatFallsAtLeastWithTheSquareOfTheEdge) {
   const support::Ring ring;
   std::vector<double> errors;

@@ -9,6 +9,7 @@
 #include "support/contact_walk.h"
 #include "support/reference_geometry.h"
 #include "support/shapes.h"
+#include "thimble/render/contact/linear_search.h"
 #include "thimble/render/contact/mesh_contact.h"
 
 namespace thimble::render {

@@ -15,6 +15,7 @@
 #include "support/random.h"
 #include "support/scratch.h"
 #include "support/shapes.h"
+#include "thimble/render/contact/bvh.h"
 #include "thimble/render/contact/compact_contact.h"
 #include "thimble/render/page/page_file.h"
 

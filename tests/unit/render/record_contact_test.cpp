@@ -42,6 +42,7 @@ class ScriptedStore {
   Vector3d to_lattice(const Vector3d& p_W) const noexcept { return surface_->to_lattice(p_W); }
   double step() const noexcept { return surface_->step(); }
   double reach() const noexcept { return 0.002; }
+  double rise() const noexcept { return surface_->rise(); }
   FoundEntry first_entry(const Vector3d& from, const Vector3d& to) const noexcept {
     if (absence_->searches) return {.entry = {}, .complete = false};
     return {.entry = search_->first_entry(from, to)};

@@ -160,8 +160,8 @@ TEST(TouchAccuracy, OfRoundWeightsOnASphereIsFourthOrder) {
     const ContactMesh mesh = ContactMesh::build(support::icosphere(level, 0.03)).value();
     const auto normals =
         std::make_shared<const SmoothNormals>(mesh, kCreaseAngle, NormalWeights::kRound);
-    const Errors curved =
-        replay(Curved(OffsetContact(mesh, normals), {}, normals), kSphere, kOnSphere, kAnywhere);
+    const Errors curved = replay(Curved(OffsetContact(mesh, {}, normals), {}, normals), kSphere,
+                                 kOnSphere, kAnywhere);
     print("round weights, curved", curved);
     EXPECT_LT(curved.direction_p99, 1e-6);
     if (level > 3) {
@@ -196,7 +196,7 @@ Errors replay_with(NormalWeights weights, const Surface& surface, const Triangle
   const ContactMesh mesh = ContactMesh::build(shape).value();
   const auto normals = std::make_shared<const SmoothNormals>(mesh, kCreaseAngle, weights);
   const Errors errors =
-      replay(Curved(OffsetContact(mesh, normals), {}, normals), surface, start, reach);
+      replay(Curved(OffsetContact(mesh, {}, normals), {}, normals), surface, start, reach);
   print(weights == NormalWeights::kFitted ? "fitted, curved depth" : "angles, curved depth",
         errors);
   EXPECT_EQ(errors.lost, 0);

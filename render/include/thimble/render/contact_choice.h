@@ -4,6 +4,8 @@
 #include <optional>
 #include <string_view>
 
+#include "thimble/render/contact/make_search.h"
+
 namespace thimble::render {
 
 // Every way to follow and feel a surface, by name, so that a scene or a study can swap them.
@@ -11,14 +13,17 @@ namespace thimble::render {
 
 /// Says how the tip is followed over the surface while it touches.
 enum class TrackerChoice {
-  kEdgePlanes,        ///< The paper's edge planes [BP 4b]; searches linearly.
-  kNormalProjection,  ///< What the paper had before [BP 4a]; searches linearly; for comparison.
-  kOffset,            ///< Smooth cells without gaps, in double precision; searches linearly.
-  kGodObject,         ///< A proxy that no face lets through [ZS]; searches linearly.
-  kCompact,           ///< Smooth cells on 64-byte records; searches in a tree of boxes.
+  kEdgePlanes,        ///< The paper's edge planes [BP 4b].
+  kNormalProjection,  ///< What the paper had before [BP 4a]; for comparison.
+  kOffset,            ///< Smooth cells without gaps, in double precision.
+  kGodObject,         ///< A proxy that no face lets through [ZS].
+  kCompact,           ///< Smooth cells on 64-byte records.
 };
 inline constexpr std::array<std::string_view, 5> kTrackerNames{"edge_planes", "normal_projection",
                                                                "offset", "god_object", "compact"};
+
+/// Names what SearchChoice says.
+inline constexpr std::array<std::string_view, 3> kSearchNames{"linear", "grid", "tree"};
 
 /// Says which normal is felt.
 enum class BlendingChoice { kFlat, kFixedBand, kSizedBand, kPhong };
@@ -29,6 +34,7 @@ inline constexpr std::array<std::string_view, 4> kBlendingNames{"flat", "fixed_b
 /// `offset` are smooth (phong, curved depth), the others are flat.
 struct ContactChoice {
   TrackerChoice tracker = TrackerChoice::kEdgePlanes;
+  std::optional<SearchChoice> search;  ///< If empty, what suits the mesh (make_search).
   std::optional<BlendingChoice> blending;
   std::optional<bool> curved_depth;    ///< Depth below the smooth surface instead of the triangles.
   std::optional<double> crease_angle;  ///< Edges sharper than this stay sharp, rad.

@@ -21,7 +21,7 @@ class ObjectTouch {
   virtual driver::ForceCommand update(const driver::DeviceState& state) noexcept = 0;
 
   /// Tells whether a point (W, m) lies inside the object; for checks beside the servo.
-  /// Real-time: safe unless the object is on the disk; time grows with the object's size.
+  /// Real-time: safe unless the object is on the disk; one question to its search.
   virtual bool inside(const Eigen::Vector3d& p_W) const noexcept = 0;
 };
 

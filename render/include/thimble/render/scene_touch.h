@@ -25,7 +25,8 @@ class SceneTouch {
     for (std::size_t i = 0; i < objects_.size(); ++i) {
       const driver::ForceCommand one = objects_[i]->update(state);
       sum.f_T_W += one.f_T_W;
-      if (one.touch.in_contact && !(one.touch.depth <= sum.touch.depth)) {
+      // A contact of depth 0, over the groove of a texture, is one as well.
+      if (one.touch.in_contact && !(sum.touch.in_contact && one.touch.depth <= sum.touch.depth)) {
         sum.touch = one.touch;
         sum.touch.object = static_cast<std::int16_t>(i);
       }

@@ -4,55 +4,47 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
+#include <span>
 #include <vector>
 
 #include "thimble/render/contact/compact_surface.h"
-#include "thimble/render/contact/linear_search.h"
+#include "thimble/render/contact/contact_mesh.h"
+#include "thimble/render/contact/contact_search.h"
+#include "thimble/render/contact/search_frame.h"
 
 namespace thimble::render {
 
-/// Is the point of a surface nearest to a point asked about.
-struct SurfacePoint {
-  std::int32_t triangle = -1;  ///< Record of the surface, -1 for none within reach.
-  double distance = std::numeric_limits<double>::infinity();  ///< m
-  Eigen::Vector3d p_W{0, 0, 0};                               ///< m
-};
-
 /// Looks for contact in a tree of boxes with four children per node, built along the Morton order
-/// of the records [Lauterbach]: leaves are up to four consecutive records.
+/// of the triangles [Lauterbach]: leaves are up to four triangles that follow each other in it.
 ///
 /// Boxes are compared in single precision with room for its rounding; triangles are decided in
-/// double precision and, where that leaves doubt, without rounding (segment_crossing.h). So the
-/// answers are those of LinearSearch over the same positions. Built in linear time. All questions
-/// are Real-time: safe; about a microsecond at 10^6 triangles.
-class Bvh {
+/// double precision and, where that leaves doubt, without rounding (segment_crossing.h). Built in
+/// linear time. Its time grows with the logarithm of the size however unevenly the triangles lie.
+/// All questions are Real-time: safe; about a microsecond at 10^6 triangles.
+///
+/// `Surface` is ContactMesh or CompactSurface; Bvh stands for the second.
+template <class Surface>
+class TreeSearch final : public ContactSearch {
  public:
   /// Builds the tree. Keeps a reference: the surface must outlive the tree.
   /// Real-time: never from the servo thread.
-  explicit Bvh(const CompactSurface& surface);
+  explicit TreeSearch(const Surface& surface);
 
-  /// Finds the first record that the segment (W, m) crosses from outside to inside. None if a
-  /// coordinate is NaN or beyond `kPositionMax`.
-  Entry first_entry(const Eigen::Vector3d& p_from, const Eigen::Vector3d& p_to) const noexcept;
+  Entry first_entry(const Eigen::Vector3d& p_from,
+                    const Eigen::Vector3d& p_to) const noexcept override;
+  bool inside(const Eigen::Vector3d& p_W) const noexcept override;
+  SurfacePoint closest(const Eigen::Vector3d& p_W, double radius) const noexcept override;
+  double clearance(const Eigen::Vector3d& p_W) const noexcept override;
+  std::size_t bytes() const noexcept override {
+    return nodes_.capacity() * sizeof(Node) + order_.capacity() * sizeof(std::int32_t);
+  }
 
-  /// Tells whether a point (W, m) is inside the surface, by the parity of crossings on the way out.
-  /// False if a coordinate is NaN or beyond `kPositionMax`.
-  bool inside(const Eigen::Vector3d& p_W) const noexcept;
-
-  /// Finds the nearest point of the surface no farther than `radius` (m) from a point (W, m); of
-  /// several equally near ones always the same. None if a coordinate is NaN or beyond
-  /// `kPositionMax`.
-  SurfacePoint closest(const Eigen::Vector3d& p_W, double radius) const noexcept;
-
-  const CompactSurface& surface() const noexcept { return *surface_; }
-
-  /// Counts the bytes of memory held, without the surface's.
-  std::size_t bytes() const noexcept { return nodes_.capacity() * sizeof(Node); }
+  const Surface& surface() const noexcept { return *surface_; }
 
  private:
   // Boxes of up to four children, in steps of the lattice, one array per side; an empty place has
-  // an empty box. Child: number of a node, or kLeaf | first record << 2 | records - 1.
+  // an empty box. Child: number of a node, or kLeaf | place of the first triangle << 2 | triangles
+  // - 1.
   struct alignas(64) Node {
     std::array<float, 4> min_x, min_y, min_z, max_x, max_y, max_z;
     std::array<std::uint32_t, 4> children;
@@ -68,8 +60,27 @@ class Bvh {
   void visit_reached(const Eigen::Vector3d& from, const Eigen::Vector3d& way,
                      Visit visit) const noexcept;
 
-  const CompactSurface* surface_;
+  // Tells which triangle stands at a place of the Morton order.
+  std::int32_t triangle_at(std::size_t place) const noexcept {
+    return order_.empty() ? static_cast<std::int32_t>(place) : order_[place];
+  }
+  // Is the triangles of a leaf.
+  struct Leaf {
+    std::array<std::int32_t, 4> triangles;
+    std::size_t size;
+    std::span<const std::int32_t> list() const noexcept { return {triangles.data(), size}; }
+  };
+  Leaf leaf_at(std::uint32_t child) const noexcept;
+
+  const Surface* surface_;
+  SearchFrame frame_;
+  std::vector<std::int32_t> order_;  // empty where the triangles stand in it already
   std::vector<Node> nodes_;
 };
+
+using Bvh = TreeSearch<CompactSurface>;
+
+extern template class TreeSearch<ContactMesh>;
+extern template class TreeSearch<CompactSurface>;
 
 }  // namespace thimble::render

@@ -3,22 +3,25 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 
 #include "thimble/driver/result.h"
-#include "thimble/render/contact/bvh.h"
 #include "thimble/render/contact/compact_surface.h"
+#include "thimble/render/contact/free_space.h"
+#include "thimble/render/contact/make_search.h"
 #include "thimble/render/contact/record_contact.h"
 
 namespace thimble::render {
 
-/// Is a store that has all records in memory and a tree of boxes over them: no question costs more
-/// than its answer.
+/// Is a store that has all records in memory and a search over them: no question costs more than
+/// its answer. Asked by one thread at a time: it remembers the free space around the last path.
 class CompactStore {
  public:
   static constexpr bool kComplete = true;
 
-  /// Takes a prepared surface and builds the tree. Real-time: never from the servo thread.
-  explicit CompactStore(CompactSurface surface);
+  /// Takes a prepared surface and builds how it is searched (make_search). Real-time: never from
+  /// the servo thread.
+  explicit CompactStore(CompactSurface surface, std::optional<SearchChoice> search = {});
 
   // As RecordStore says. Real-time: safe.
 
@@ -28,9 +31,11 @@ class CompactStore {
   }
   double step() const noexcept { return surface_->step(); }
   double reach() const noexcept { return std::numeric_limits<double>::infinity(); }
+  /// Tells how far the surface rises above its triangles, m (CompactSurface::rise).
+  double rise() const noexcept { return surface_->rise(); }
   FoundEntry first_entry(const Eigen::Vector3d& p_from,
                          const Eigen::Vector3d& p_to) const noexcept {
-    return {.entry = search_->first_entry(p_from, p_to)};
+    return {.entry = free_space_.first_entry(*search_, p_from, p_to)};
   }
   Known inside(const Eigen::Vector3d& p_W) const noexcept {
     return search_->inside(p_W) ? Known::kYes : Known::kNo;
@@ -40,13 +45,14 @@ class CompactStore {
   }
 
   const CompactSurface& surface() const noexcept { return *surface_; }
-  const Bvh& search() const noexcept { return *search_; }
+  const ContactSearch& search() const noexcept { return *search_; }
 
  private:
-  // On the heap, so that the tree keeps pointing at the surface when the contact moves.
+  // On the heap, so that the search keeps pointing at the surface when the contact moves.
   std::shared_ptr<const CompactSurface> surface_;
-  std::shared_ptr<const Bvh> search_;
+  std::shared_ptr<const ContactSearch> search_;
   const CompactTriangle* records_;
+  mutable FreeSpace free_space_;  // changes what a question costs, never its answer
 };
 
 extern template class RecordContact<CompactStore>;
@@ -56,8 +62,9 @@ extern template class RecordContact<CompactStore>;
 /// what it measures: record_contact.h.
 class CompactContact : public RecordContact<CompactStore> {
  public:
-  /// Takes a prepared surface and builds the tree. Real-time: never from the servo thread.
-  explicit CompactContact(CompactSurface surface);
+  /// Takes a prepared surface and builds how it is searched (make_search). Real-time: never from
+  /// the servo thread.
+  explicit CompactContact(CompactSurface surface, std::optional<SearchChoice> search = {});
 
   /// Prepares a mesh (W, m); the error is that of CompactSurface::build.
   /// Real-time: never from the servo thread.
@@ -65,7 +72,7 @@ class CompactContact : public RecordContact<CompactStore> {
                                               const CompactSurfaceOptions& options = {});
 
   const CompactSurface& surface() const noexcept { return store().surface(); }
-  const Bvh& search() const noexcept { return store().search(); }
+  const ContactSearch& search() const noexcept { return store().search(); }
 };
 
 }  // namespace thimble::render

@@ -9,6 +9,7 @@
 
 #include "thimble/driver/result.h"
 #include "thimble/render/contact/contact_mesh.h"
+#include "thimble/render/contact/large_pages.h"
 #include "thimble/render/mesh/triangle_mesh.h"
 
 namespace thimble::render {
@@ -105,16 +106,21 @@ class CompactSurface {
   /// Tells the length of one step of the lattice, m.
   double step() const noexcept { return step_; }
 
+  /// Tells how far the smooth surface that the normals stand for rises above the triangles at most,
+  /// m; 0 where that is less than 1e-5 of the size and nobody would feel it.
+  double rise() const noexcept { return rise_; }
+
   /// Counts the bytes of memory held.
   std::size_t bytes() const noexcept { return records_.capacity() * sizeof(CompactTriangle); }
 
  private:
   CompactSurface() = default;
 
-  std::vector<CompactTriangle> records_;
+  std::vector<CompactTriangle, LargePages<CompactTriangle>> records_;
   Eigen::Vector3d origin_{0, 0, 0};
   double step_ = 0;
   double per_step_ = 0;
+  double rise_ = 0;
 };
 
 /// Tells where a record's middle lies along the Morton curve: 16 bits per axis, interleaved.

@@ -3,12 +3,14 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "thimble/driver/device_state.h"
 #include "thimble/driver/result.h"
 #include "thimble/render/contact/contact_mesh.h"
 #include "thimble/render/contact/contact_state.h"
-#include "thimble/render/contact/linear_search.h"
+#include "thimble/render/contact/free_space.h"
+#include "thimble/render/contact/make_search.h"
 #include "thimble/render/contact/surface_place.h"
 
 namespace thimble::render {
@@ -41,13 +43,15 @@ struct GodObjectCounters {
 /// Frames: W world, O mesh, T tip, P proxy. No length is compared with a constant in scene units.
 class GodObjectContact {
  public:
-  /// Takes a prepared mesh. Real-time: never from the servo thread.
-  explicit GodObjectContact(ContactMesh mesh);
+  /// Takes a prepared mesh and how it is searched (make_search). Real-time: never from the servo
+  /// thread.
+  explicit GodObjectContact(ContactMesh mesh, std::optional<SearchChoice> search = {});
 
   /// Prepares a mesh (O, m); the error is that of ContactMesh::build.
   /// Real-time: never from the servo thread.
   static driver::Result<GodObjectContact> build(const TriangleMesh& mesh,
-                                                const ContactMeshOptions& options = {});
+                                                const ContactMeshOptions& options = {},
+                                                std::optional<SearchChoice> search = {});
 
   /// Places the mesh for the next `update`: p_WV = R_WO * p_OV + p_WO for each vertex V, m. `R_WO`
   /// must be a rotation; NaN ends the contact. Where it is never called O is W. Real-time: safe.
@@ -67,8 +71,8 @@ class GodObjectContact {
   /// Contact begins when the path since the last tick, relative to the mesh, enters it. A tip that
   /// is inside on the first tick touches nothing until it has been outside. A position that is NaN
   /// or beyond `kPositionMax` ends the contact and makes the next tick a first one. Real-time:
-  /// safe; one triangle or a few while touching; one pass over the mesh while free and for each
-  /// lift.
+  /// safe; one triangle or a few while touching; one question to the search for each lift, and
+  /// while free near the mesh.
   const ContactState& update(const driver::DeviceState& state) noexcept;
 
   /// Gives the result of the last `update`. Real-time: safe.
@@ -76,17 +80,18 @@ class GodObjectContact {
 
   const GodObjectCounters& counters() const noexcept { return counters_; }
   const ContactMesh& mesh() const noexcept { return *mesh_; }
-  const LinearSearch& search() const noexcept { return *search_; }
+  const ContactSearch& search() const noexcept { return *search_; }
 
  private:
   void follow(const Eigen::Vector3d& p_OT) noexcept;
 
   // On the heap, so that the search keeps pointing at the mesh when the contact moves.
   std::shared_ptr<const ContactMesh> mesh_;
-  std::shared_ptr<const LinearSearch> search_;
+  std::shared_ptr<const ContactSearch> search_;
   Eigen::Matrix3d R_WO_ = Eigen::Matrix3d::Identity();
   Eigen::Vector3d p_WO_{0, 0, 0};
   ContactState state_;
+  FreeSpace free_space_;  // O
   GodObjectCounters counters_;
   Eigen::Vector3d p_OP_{0, 0, 0};  // The proxy; a free proxy is at the tip.
   SurfacePlace place_;             // What a touching proxy rests on.

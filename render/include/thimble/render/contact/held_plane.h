@@ -63,6 +63,8 @@ class HeldPlane {
 
   /// Tells whether the last tick was held.
   bool holding() const noexcept { return left_ == kFadeTicks; }
+  /// Tells whether the plane is still felt.
+  bool fading() const noexcept { return left_ > 0; }
 
   /// Forgets the plane: the contact has ended.
   void drop() noexcept { left_ = 0; }

@@ -1,15 +1,16 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cmath>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "thimble/driver/device_state.h"
 #include "thimble/driver/result.h"
 #include "thimble/render/contact/contact_mesh.h"
 #include "thimble/render/contact/contact_state.h"
-#include "thimble/render/contact/linear_search.h"
+#include "thimble/render/contact/free_space.h"
+#include "thimble/render/contact/make_search.h"
 #include "thimble/render/contact/offset_tracker.h"
 #include "thimble/render/contact/surface_tracker.h"
 
@@ -24,21 +25,26 @@ namespace thimble::render {
 template <class Tracker>
 class TrackedContact {
  public:
-  /// Takes a prepared mesh, and what the tracker's constructor takes after mesh and search.
-  /// Real-time: never from the servo thread.
+  /// Takes a prepared mesh, how it is searched (make_search), and what the tracker's constructor
+  /// takes after mesh and search. Real-time: never from the servo thread.
   template <class... TrackerOptions>
-  explicit TrackedContact(ContactMesh mesh, TrackerOptions... options)
+  TrackedContact(ContactMesh mesh, std::optional<SearchChoice> search, TrackerOptions... options)
       : mesh_(std::make_shared<const ContactMesh>(std::move(mesh))),
-        search_(std::make_shared<const LinearSearch>(*mesh_)),
+        search_(make_search(*mesh_, search)),
         tracker_(*mesh_, *search_, options...) {}
+
+  /// Takes a prepared mesh, searched in the way that suits it. Real-time: never from the servo
+  /// thread.
+  explicit TrackedContact(ContactMesh mesh) : TrackedContact(std::move(mesh), std::nullopt) {}
 
   /// Prepares a mesh (W, m); the error is that of ContactMesh::build.
   /// Real-time: never from the servo thread.
   static driver::Result<TrackedContact> build(const TriangleMesh& mesh,
-                                              const ContactMeshOptions& options = {}) {
+                                              const ContactMeshOptions& options = {},
+                                              std::optional<SearchChoice> search = {}) {
     auto prepared = ContactMesh::build(mesh, options);
     if (!prepared) return prepared.error();
-    return TrackedContact(std::move(prepared).value());
+    return TrackedContact(std::move(prepared).value(), search);
   }
 
   /// Finds the contact at `state.p_WT` (W, m) and keeps it until the next call.
@@ -47,8 +53,8 @@ class TrackedContact {
   /// tracker runs in the same tick. A tip that is inside on the first tick touches nothing until it
   /// has been outside: it would be thrown out otherwise. A position that is NaN or beyond
   /// `kPositionMax` ends the contact and makes the next tick a first one. In the tick that ends a
-  /// contact no new one begins, unless the tip is inside. Real-time: safe; a few ns in contact, one
-  /// pass over the mesh while free or when contact ends.
+  /// contact no new one begins, unless the tip is inside. Real-time: safe; a few ns in contact and
+  /// far from the mesh, else one question to the search.
   const ContactState& update(const driver::DeviceState& state) noexcept;
 
   /// Gives the result of the last `update`. Real-time: safe.
@@ -63,14 +69,15 @@ class TrackedContact {
   TrackerCounters counters() const noexcept { return tracker_.counters(); }
   const Tracker& tracker() const noexcept { return tracker_; }
   const ContactMesh& mesh() const noexcept { return *mesh_; }
-  const LinearSearch& search() const noexcept { return *search_; }
+  const ContactSearch& search() const noexcept { return *search_; }
 
  private:
   // On the heap, so that search and tracker keep pointing at them when the contact moves.
   std::shared_ptr<const ContactMesh> mesh_;
-  std::shared_ptr<const LinearSearch> search_;
+  std::shared_ptr<const ContactSearch> search_;
   Tracker tracker_;
   ContactState state_;
+  FreeSpace free_space_;
   Eigen::Vector3d p_WT_before_{0, 0, 0};
   bool has_before_ = false;
 };
@@ -78,17 +85,14 @@ class TrackedContact {
 template <class Tracker>
 const ContactState& TrackedContact<Tracker>::update(const driver::DeviceState& state) noexcept {
   const Eigen::Vector3d& p_WT = state.p_WT;
-  // Written so that NaN is out of range.
-  const bool in_range = std::abs(p_WT.x()) <= kPositionMax && std::abs(p_WT.y()) <= kPositionMax &&
-                        std::abs(p_WT.z()) <= kPositionMax;
-  if (!in_range) {
+  if (!within_range(p_WT)) {
     state_ = {};
     has_before_ = false;
     return state_;
   }
   bool follow = state_.touching;
   if (!follow && has_before_) {
-    const Entry entry = search_->first_entry(p_WT_before_, p_WT);
+    const Entry entry = free_space_.first_entry(*search_, p_WT_before_, p_WT);
     follow = entry.triangle >= 0;
     if (follow) tracker_.start(entry.triangle);
   }

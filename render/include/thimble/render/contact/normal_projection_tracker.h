@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "thimble/render/contact/contact_mesh.h"
-#include "thimble/render/contact/linear_search.h"
+#include "thimble/render/contact/contact_search.h"
 #include "thimble/render/contact/surface_tracker.h"
 #include "thimble/render/contact/surface_weights.h"
 
@@ -23,7 +23,7 @@ class NormalProjectionTracker {
  public:
   /// Keeps a reference: the mesh must outlive the tracker. The search is not needed: contact that
   /// is lost stays lost.
-  NormalProjectionTracker(const ContactMesh& mesh, const LinearSearch&) noexcept : mesh_(&mesh) {}
+  NormalProjectionTracker(const ContactMesh& mesh, const ContactSearch&) noexcept : mesh_(&mesh) {}
 
   /// Makes a triangle active, where the tip has just entered.
   void start(std::int32_t triangle) noexcept { active_ = triangle; }

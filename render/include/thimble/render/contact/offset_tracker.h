@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "thimble/render/contact/contact_mesh.h"
-#include "thimble/render/contact/linear_search.h"
+#include "thimble/render/contact/contact_search.h"
 #include "thimble/render/contact/smooth_normals.h"
 #include "thimble/render/contact/surface_tracker.h"
 #include "thimble/render/contact/surface_weights.h"
@@ -50,12 +50,12 @@ class OffsetTracker {
  public:
   /// Keeps references: mesh and search must outlive the tracker.
   /// Real-time: never from the servo thread.
-  OffsetTracker(const ContactMesh& mesh, const LinearSearch& search,
+  OffsetTracker(const ContactMesh& mesh, const ContactSearch& search,
                 double crease_angle = kCreaseAngle);
 
   /// Takes the normals that somebody has already found of the same mesh.
   /// Real-time: never from the servo thread.
-  OffsetTracker(const ContactMesh& mesh, const LinearSearch& search,
+  OffsetTracker(const ContactMesh& mesh, const ContactSearch& search,
                 std::shared_ptr<const SmoothNormals> normals);
 
   /// Makes a triangle active, where the tip has just entered.
@@ -84,7 +84,7 @@ class OffsetTracker {
   bool find_again(const Eigen::Vector3d& p_WT) noexcept;
 
   const ContactMesh* mesh_;
-  const LinearSearch* search_;
+  const ContactSearch* search_;
   std::shared_ptr<const SmoothNormals> normals_;
   SurfaceTracker edge_planes_;
   std::int32_t active_ = -1;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <cstdint>
 #include <utility>
 
@@ -22,9 +23,11 @@ namespace thimble::render {
 /// to the bit. Over a crease the tip changes sides at the plane that halves the angle, where both
 /// faces measure the same depth [BP 3.1, Fig. 4b], and the direction jumps.
 ///
-/// Contact begins when the path enters the triangles themselves: on a bulge of edge length L and
-/// radius R the depth starts at up to L^2 / 6R [STABILITY 3]. It ends when the depth is negative
-/// and the tip is outside the triangles; in a hollow the depth is 0 until then.
+/// Contact begins where the smooth surface does. On a bulge that is above the triangles, by up to
+/// L^2 / 6R for edges of length L on a radius R [STABILITY 3]: there the depth rises from 0, as
+/// long as the store can tell how high the surface rises. In a hollow it is below them: there
+/// contact begins and ends at the triangles, and the depth is 0 in between. So nothing jumps, and
+/// no depth is bent towards the triangles as CurvedDepth has to do, which begins at the mesh.
 ///
 /// Where a record is absent the plane felt last is held (held_plane.h) and the tick is counted. The
 /// contact goes on from the last triangle at hand, or from the one nearest to the tip if the way
@@ -65,8 +68,13 @@ class RecordContact {
   // Says what a tick in contact came to: kUnknown where a record that decides it is absent.
   using Outcome = Known;
 
+  bool stay(const Eigen::Vector3d& p_WT) noexcept;
+  void move(const Eigen::Vector3d& p_WT) noexcept;
   bool begin(const Eigen::Vector3d& p_WT) noexcept;
+  bool begin_above(const Eigen::Vector3d& p_WT) noexcept requires TellsRise<Store>;
   Outcome follow(const Eigen::Vector3d& p_WT) noexcept;
+  Outcome seek(const Eigen::Vector3d& p_WT, const Eigen::Vector3d& p, std::int32_t before,
+               Outcome settled, const LoweredPlace& place) noexcept;
   Outcome settle(const Eigen::Vector3d& p, bool walked, LoweredPlace& place) noexcept;
   Outcome find_again(const Eigen::Vector3d& p_WT, const Eigen::Vector3d& p,
                      std::int32_t before) noexcept;
@@ -79,6 +87,11 @@ class RecordContact {
   void report(const Eigen::Vector3d& p_WT, const LoweredFeel& felt) noexcept;
   void end() noexcept;
 
+  // Written so that NaN is out of range.
+  static bool within_range(const Eigen::Vector3d& p_W) noexcept {
+    return std::abs(p_W.x()) <= kPositionMax && std::abs(p_W.y()) <= kPositionMax &&
+           std::abs(p_W.z()) <= kPositionMax;
+  }
   static bool absent(const CompactTriangle* record) noexcept {
     return !Store::kComplete && record == nullptr;
   }
@@ -93,6 +106,9 @@ class RecordContact {
   Eigen::Vector3d p_WT_before_{0, 0, 0};
   bool has_before_ = false;
   bool path_kept_ = false;  // whether the path began before the last tick
+  bool above_ = false;      // free, and known to be above the smooth surface
+  bool steady_ = false;     // in contact, where there is no crease and hops are rare
+  int haste_ = 0;           // counts up to 3 with ticks that hop, and down with the others
   HeldPlane held_;
   std::uint64_t ticks_held_ = 0;
 };

@@ -16,26 +16,65 @@
 namespace thimble::render {
 
 /// Is how far outside a triangle, as a share of its height, the tip may be and stay: rounding on
-/// both sides of an edge must not send it back and forth. The jump that this leaves is as small a
-/// share of the depth.
-inline constexpr double kOutside = -1e-11;
+/// both sides of an edge must not send it back and forth (lowered_triangle.h). The jump that this
+/// leaves is so small a share of the triangle's bulge.
+inline constexpr double kOutside = -1e-6;
+
+/// Is the same at a crease, where the direction jumps and everything is in double precision.
+inline constexpr double kOutsideOfCrease = -1e-11;
 
 template <RecordStore Store>
 const ContactState& RecordContact<Store>::update(const driver::DeviceState& state) noexcept {
   const Eigen::Vector3d& p_WT = state.p_WT;
-  // Written so that NaN is out of range.
-  if (!(std::abs(p_WT.x()) <= kPositionMax && std::abs(p_WT.y()) <= kPositionMax &&
-        std::abs(p_WT.z()) <= kPositionMax)) {
+  // Most ticks are spent in the triangle of the last one.
+  if (!stay(p_WT)) move(p_WT);
+  return this->state();
+}
+
+// Fills in the state from what is felt in the active triangle.
+template <RecordStore Store>
+inline void RecordContact<Store>::report(const Eigen::Vector3d& p_WT,
+                                         const LoweredFeel& felt) noexcept {
+  state_.touching = true;
+  state_.triangle = lowered_.source();
+  state_.n_W = felt.n_W;
+  state_.depth = store_.step() * felt.depth;
+  state_.p_WP = p_WT + state_.depth * felt.n_W;
+}
+
+// Ends the tick if the tip is where the active triangle answers alone.
+template <RecordStore Store>
+inline bool RecordContact<Store>::stay(const Eigen::Vector3d& p_WT) noexcept {
+  if (!steady_ || !within_range(p_WT)) return false;
+  const LoweredPlace place = lowered_.locate(store_.to_lattice(p_WT));
+  const double least = std::min(std::min(place.l0, place.l1), place.l2);
+  if (!(place.valid && least >= 0)) return false;
+  const LoweredFeel felt = lowered_.feel_within(place);
+  if (!(felt.depth >= 0)) return false;
+  p_WT_before_ = p_WT;
+  report(p_WT, felt);
+  state_.hops = 0;
+  haste_ = 0;
+  if constexpr (!Store::kComplete) felt_ = state_;
+  return true;
+}
+
+template <RecordStore Store>
+void RecordContact<Store>::move(const Eigen::Vector3d& p_WT) noexcept {
+  if (!within_range(p_WT)) {
     end();
     has_before_ = path_kept_ = false;
-    return state_;
+    return;
   }
-  const Eigen::Vector3d from = p_WT_before_;
-  if (!state_.touching && !begin(p_WT)) return state_;
+  [[maybe_unused]] const Eigen::Vector3d from = p_WT_before_;
+  if (!state_.touching && !begin(p_WT)) return;
   p_WT_before_ = p_WT;
   // Where the tip was out of sight the way from the last triangle says nothing.
-  const bool late = path_kept_, lost = late || held_.holding();
+  const bool late = !Store::kComplete && path_kept_;
+  const bool lost = late || (!Store::kComplete && held_.holding());
   Outcome outcome = lost ? Outcome::kUnknown : follow(p_WT);
+  haste_ = state_.hops > 0 ? std::min(haste_ + 1, 3) : std::max(haste_ - 1, 0);
+  steady_ = haste_ < 2 && outcome == Outcome::kYes && lowered_.creases() == 0;
   if constexpr (!Store::kComplete) {
     // The one place where an absent record is felt. What the surface tells stays in `state_`, for
     // the walk to go on from.
@@ -50,29 +89,34 @@ const ContactState& RecordContact<Store>::update(const driver::DeviceState& stat
       if (outcome == Outcome::kUnknown && late) {
         end();
         p_WT_before_ = from;
-        return felt_;
+        return;
       }
     }
     path_kept_ = false;
-    if (outcome == Outcome::kUnknown) return felt_;
+    if (outcome == Outcome::kUnknown) return;
     if (outcome == Outcome::kYes) {
       felt_ = state_;
       held_.fade(p_WT, felt_);
-      return felt_;
+      steady_ = steady_ && !held_.fading();
+      return;
     }
-    if (held_.fade_out(p_WT, felt_)) return felt_;
+    if (held_.fade_out(p_WT, felt_)) return;
   }
   if (outcome != Outcome::kYes) {
     const std::uint16_t hops = state_.hops;
     end();
     state_.hops = hops;
+    if constexpr (!Store::kComplete) felt_.hops = hops;
+    above_ = true;
   }
-  return state_;
 }
 
 template <RecordStore Store>
 void RecordContact<Store>::end() noexcept {
   state_ = {};
+  steady_ = false;
+  above_ = false;
+  haste_ = 0;
   if constexpr (!Store::kComplete) {
     felt_ = {};
     held_.drop();
@@ -87,6 +131,7 @@ bool RecordContact<Store>::begin(const Eigen::Vector3d& p_WT) noexcept {
   if (has_before_) found = store_.first_entry(from, p_WT);
   state_ = {};
   if constexpr (!Store::kComplete) {
+    felt_ = {};
     // Who was out of sight may have gone round what the straight way passes through.
     if (path_kept_ && (found.leaves || !found.complete)) found.entry = {};
     if (!found.complete) ++ticks_held_;
@@ -94,10 +139,51 @@ bool RecordContact<Store>::begin(const Eigen::Vector3d& p_WT) noexcept {
   }
   if (found.complete) p_WT_before_ = p_WT;
   has_before_ = true;
-  if (found.entry.triangle < 0 || !activate(found.entry.triangle)) return false;
+  if (found.entry.triangle < 0) {
+    if constexpr (TellsRise<Store>) {
+      if (found.complete) return begin_above(p_WT);
+      above_ = false;  // for all that is known
+    }
+    return false;
+  }
+  if (!activate(found.entry.triangle)) return false;
   state_.n_W = lowered_.face();
   state_.triangle = lowered_.source();
   state_.p_WP = from + found.entry.parameter * (p_WT - from);
+  if constexpr (!Store::kComplete) begun_ = state_;
+  return true;
+}
+
+// Looks whether the tip has come from above into where the smooth surface bulges beyond its
+// triangles, and makes the triangle below it active: there contact begins with depth 0.
+template <RecordStore Store>
+bool RecordContact<Store>::begin_above(
+    const Eigen::Vector3d& p_WT) noexcept requires TellsRise<Store> {
+  const double rise = store_.rise();
+  if (!(rise > 0)) return false;
+  const bool was_above = above_;
+  const FoundRecord nearest = store_.closest(p_WT, rise);
+  above_ = nearest.complete;
+  if (!nearest.complete || nearest.triangle < 0 || !activate(nearest.triangle)) return false;
+  state_.n_W = lowered_.face();
+  const Eigen::Vector3d p = store_.to_lattice(p_WT);
+  LoweredPlace place = lowered_.locate(p);
+  const Outcome settled = settle(p, true, place);
+  if (!Store::kComplete && settled == Outcome::kUnknown) {
+    above_ = false;
+    state_ = {};
+    return false;
+  }
+  const bool bulges =
+      settled == Outcome::kYes && place.depth < 0 && lowered_.feel(place).depth >= 0;
+  // Who is below the triangles has not come from above, nor has who came up through them.
+  above_ = place.depth < 0 && (was_above || !bulges);
+  if (!bulges || !was_above) {
+    state_ = {};
+    return false;
+  }
+  state_.triangle = lowered_.source();
+  state_.p_WP = p_WT;
   if constexpr (!Store::kComplete) begun_ = state_;
   return true;
 }
@@ -107,10 +193,10 @@ typename RecordContact<Store>::Outcome RecordContact<Store>::follow(
     const Eigen::Vector3d& p_WT) noexcept {
   const Eigen::Vector3d p = store_.to_lattice(p_WT);
   const std::int32_t before = active_;
-  const bool sliding = state_.hops > 0;
+  const bool sliding = haste_ >= 2;
   state_.hops = 0;
-  // Who hopped in the last tick will hop again: the cheap walk first spares unpacking a triangle
-  // that is left at once.
+  // Who hopped in the last ticks will hop again: the cheap walk first spares looking closely at a
+  // triangle that is left at once.
   if (sliding) {
     std::int32_t next = active_;
     const Outcome walked = walk(p, next);
@@ -121,27 +207,39 @@ typename RecordContact<Store>::Outcome RecordContact<Store>::follow(
   const bool held = place.valid && place.l0 >= kOutside && place.l1 >= kOutside &&
                     place.l2 >= kOutside && lowered_.creases() == 0;
   const Outcome settled = held ? Outcome::kYes : settle(p, sliding, place);
-  if (settled == Outcome::kUnknown) return settled;
-  if (settled == Outcome::kYes && place.depth >= 0) {
-    report(p_WT, lowered_.feel(place));
-    if (state_.depth >= 0) return Outcome::kYes;
+  if (settled == Outcome::kYes) {
+    // Above the triangle too, where the surface that it stands for bulges beyond the tip.
+    const LoweredFeel felt = lowered_.feel(place);
+    if (felt.depth >= 0) {
+      report(p_WT, felt);
+      return Outcome::kYes;
+    }
   }
+  return seek(p_WT, p, before, settled, place);
+}
+
+// Decides what the active triangle alone cannot: whether contact has ended, or where it goes on.
+template <RecordStore Store>
+typename RecordContact<Store>::Outcome RecordContact<Store>::seek(
+    const Eigen::Vector3d& p_WT, const Eigen::Vector3d& p, std::int32_t before, Outcome settled,
+    const LoweredPlace& place) noexcept {
+  if (settled == Outcome::kUnknown) return settled;
   const Known inside = store_.inside(p_WT);
   if (inside == Known::kUnknown) return Outcome::kUnknown;
-  if (inside == Known::kNo) {
-    // A bulge reaches beyond its triangles.
-    if (settled == Outcome::kNo || place.depth >= 0) return Outcome::kNo;
-    report(p_WT, lowered_.feel(place));
-    return state_.depth >= 0 ? Outcome::kYes : Outcome::kNo;
-  }
+  if (inside == Known::kNo) return Outcome::kNo;
   if (settled == Outcome::kYes && place.depth >= 0) {
     // In a hollow, between the triangles and the surface that they stand for.
-    state_.depth = 0;
-    state_.p_WP = p_WT;
+    LoweredFeel felt = lowered_.feel(place);
+    felt.depth = 0;
+    report(p_WT, felt);
     return Outcome::kYes;
   }
   const Outcome found = find_again(p_WT, p, before);
-  if (found == Outcome::kYes) report(p_WT, lowered_.feel_nearest(p));
+  if (found == Outcome::kYes) {
+    const CompactTriangle* record = store_.find(active_);
+    if (absent(record)) return Outcome::kUnknown;
+    report(p_WT, feel_nearest(p, *record, lowered_));
+  }
   return found;
 }
 
@@ -195,6 +293,10 @@ bool RecordContact<Store>::activate(std::int32_t triangle) noexcept {
   if (absent(record)) return false;
   active_ = triangle;
   lowered_.unpack(*record);
+  if constexpr (Store::kComplete) {
+    // The tip goes to one of these, now or in a later tick.
+    for (const std::int32_t t : record->neighbours) __builtin_prefetch(store_.find(t));
+  }
   return true;
 }
 
@@ -205,6 +307,7 @@ typename RecordContact<Store>::Outcome RecordContact<Store>::edge_to_hop(const E
                                                                          const LoweredPlace& place,
                                                                          int& edge) const noexcept {
   std::array<double, 3> side{place.l2, place.l0, place.l1};
+  std::array<double, 3> least{kOutside, kOutside, kOutside};
   if (lowered_.creases() != 0) {
     const CompactTriangle* own = store_.find(active_);
     if (absent(own)) return Outcome::kUnknown;
@@ -212,13 +315,14 @@ typename RecordContact<Store>::Outcome RecordContact<Store>::edge_to_hop(const E
       if (((lowered_.creases() >> k) & 1u) == 0) continue;
       const CompactTriangle* other = store_.find(own->neighbours[k]);
       if (absent(other)) return Outcome::kUnknown;
-      side[k] = lowered_.side_of_crease(p, k, *other);
+      side[k] = side_of_crease(p, *own, k, *other);
+      least[k] = kOutsideOfCrease;
     }
   }
-  int worst = 0;
-  if (side[1] < side[0]) worst = 1;
-  if (side[2] < side[static_cast<std::size_t>(worst)]) worst = 2;
-  edge = side[static_cast<std::size_t>(worst)] < kOutside ? worst : -1;
+  std::size_t worst = 0;
+  if (side[1] - least[1] < side[0] - least[0]) worst = 1;
+  if (side[2] - least[2] < side[worst] - least[worst]) worst = 2;
+  edge = side[worst] < least[worst] ? static_cast<int>(worst) : -1;
   return Outcome::kYes;
 }
 
@@ -311,34 +415,29 @@ typename RecordContact<Store>::Outcome RecordContact<Store>::resume(
     if (!activate(nearest)) return Outcome::kUnknown;
   }
   const Eigen::Vector3d p = store_.to_lattice(p_WT);
-  const double apart = lowered_.feel_nearest(p).depth;
+  const CompactTriangle* record = store_.find(active_);
+  if (absent(record)) return Outcome::kUnknown;
+  const LoweredFeel beside = feel_nearest(p, *record, lowered_);
   LoweredPlace place = lowered_.locate(p);
   state_.hops = 0;
   state_.n_W = lowered_.face();  // the direction to walk by
   const Outcome settled = settle(p, false, place);
   if (settled == Outcome::kUnknown) return settled;
   // Deeper by far than the triangle where it began: a cell of another part.
-  const bool astray = place.depth > 2 * apart && apart > 0;
-  if (settled == Outcome::kYes && place.depth >= 0 && !astray) {
-    report(p_WT, lowered_.feel(place));
-    if (state_.depth >= 0) return Outcome::kYes;
+  const bool astray = place.depth > 2 * beside.depth && beside.depth > 0;
+  if (settled == Outcome::kYes && !astray) {
+    const LoweredFeel felt = lowered_.feel(place);
+    if (felt.depth >= 0) {
+      report(p_WT, felt);
+      return Outcome::kYes;
+    }
   }
   const Known inside = store_.inside(p_WT);
   if (inside == Known::kYes) {
     if (!activate(nearest)) return Outcome::kUnknown;
-    report(p_WT, lowered_.feel_nearest(p));
+    report(p_WT, beside);
   }
   return inside;
-}
-
-// Fills in the state from what is felt in the active triangle.
-template <RecordStore Store>
-void RecordContact<Store>::report(const Eigen::Vector3d& p_WT, const LoweredFeel& felt) noexcept {
-  state_.touching = true;
-  state_.triangle = lowered_.source();
-  state_.n_W = felt.n_W;
-  state_.depth = store_.step() * felt.depth;
-  state_.p_WP = p_WT + state_.depth * felt.n_W;
 }
 
 }  // namespace thimble::render

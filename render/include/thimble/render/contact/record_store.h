@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "thimble/render/contact/compact_surface.h"
-#include "thimble/render/contact/linear_search.h"
+#include "thimble/render/contact/contact_search.h"
 
 namespace thimble::render {
 
@@ -41,6 +41,12 @@ concept RecordStore = requires(const Store& store, std::int32_t t, const Eigen::
   { store.first_entry(p_W, p_W) } noexcept -> std::same_as<FoundEntry>;
   { store.inside(p_W) } noexcept -> std::same_as<Known>;
   { store.closest(p_W, radius) } noexcept -> std::same_as<FoundRecord>;
+};
+
+// Can tell how far the surface rises above its triangles at most, m: then contact begins there.
+template <class Store>
+concept TellsRise = requires(const Store& store) {
+  { store.rise() } noexcept -> std::same_as<double>;
 };
 // clang-format on
 

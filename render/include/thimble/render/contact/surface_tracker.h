@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "thimble/render/contact/contact_mesh.h"
-#include "thimble/render/contact/linear_search.h"
+#include "thimble/render/contact/contact_search.h"
 #include "thimble/render/contact/surface_weights.h"
 
 namespace thimble::render {
@@ -52,7 +52,7 @@ struct TrackerStep {
 class SurfaceTracker {
  public:
   /// Keeps references: mesh and search must outlive the tracker.
-  SurfaceTracker(const ContactMesh& mesh, const LinearSearch& search) noexcept
+  SurfaceTracker(const ContactMesh& mesh, const ContactSearch& search) noexcept
       : mesh_(&mesh), search_(&search) {}
 
   /// Makes a triangle active, where the tip has just entered.
@@ -87,7 +87,7 @@ class SurfaceTracker {
   bool too_deep(const Eigen::Vector3d& p_WT, std::int32_t before, double depth) const noexcept;
 
   const ContactMesh* mesh_;
-  const LinearSearch* search_;
+  const ContactSearch* search_;
   std::int32_t active_ = -1;
   bool has_before_ = false;  // whether the two below are those of the last tick
   Eigen::Vector3d p_WT_before_{0, 0, 0};

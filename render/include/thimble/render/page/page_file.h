@@ -136,6 +136,8 @@ class PageFile {
 
   const Lattice& lattice() const noexcept { return lattice_; }
   std::int32_t triangle_count() const noexcept { return triangle_count_; }
+  /// Tells how far the smooth surface rises above its triangles, m in W; as CompactSurface::rise.
+  double rise() const noexcept { return rise_; }
   /// Tells the box around the whole surface, in steps.
   const PageBox& whole() const noexcept { return whole_; }
   const std::vector<PageBox>& boxes() const noexcept { return boxes_; }
@@ -147,6 +149,7 @@ class PageFile {
   Lattice lattice_;
   std::int32_t triangle_count_ = 0;
   std::int64_t records_at_ = 0;
+  double rise_ = 0;
   PageBox whole_{};
   std::vector<PageBox> boxes_;
   std::vector<std::uint64_t> sums_;

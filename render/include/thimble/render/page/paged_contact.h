@@ -34,6 +34,7 @@ class PagedStore {
   }
   double step() const noexcept { return surface_->lattice().step; }
   double reach() const noexcept { return surface_->settings().reach; }
+  double rise() const noexcept { return surface_->file().rise(); }
   FoundEntry first_entry(const Eigen::Vector3d& p_from,
                          const Eigen::Vector3d& p_to) const noexcept {
     FoundEntry found;

@@ -14,7 +14,7 @@
 #include "thimble/driver/snapshot.h"
 #include "thimble/render/contact/compact_surface.h"
 #include "thimble/render/contact/large_pages.h"
-#include "thimble/render/contact/linear_search.h"
+#include "thimble/render/contact/contact_search.h"
 #include "thimble/render/page/page_file.h"
 #include "thimble/render/page/page_tree.h"
 

@@ -14,14 +14,15 @@ struct SpringDamper {
   double stiffness = 0;  ///< k, N/m, >= 0. The scene's loader checks both.
   double damping = 0;    ///< b, N s/m, >= 0.
 
-  /// Finds the force on the hand, N in W. Precondition: the contact is touching. Zero if depth,
-  /// normal or velocity is NaN. Real-time: safe.
+  /// Finds the force on the hand, N in W. Precondition: the contact is touching. Zero if the depth
+  /// is not above 0, as in the groove of a texture, and if depth, normal or velocity is NaN.
+  /// Real-time: safe.
   Eigen::Vector3d force(const ContactState& contact,
                         const driver::DeviceState& state) const noexcept {
     const double growth = -contact.n_W.dot(state.v_WT);
     const double magnitude = stiffness * contact.depth + damping * growth;
     // Written so that NaN means no force.
-    if (!(magnitude > 0)) return Eigen::Vector3d::Zero();
+    if (!(magnitude > 0 && contact.depth > 0)) return Eigen::Vector3d::Zero();
     return magnitude * contact.n_W;
   }
 

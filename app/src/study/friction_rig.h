@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "thimble/render/effect/effect_surroundings.h"
+#include "thimble/render/effect/stage_list.h"
+
+namespace thimble::app {
+
+/// Says what hand, arm, wire and surface a friction is tried on. The defaults are the PHANTOM-like
+/// set with a hand in pinch grip at 1 kHz [STABILITY, heading].
+struct FrictionRigSettings {
+  double encoder_step = 3e-5;  ///< At the tip along x, m; 0: ideal encoders.
+  std::int64_t delay_ns = 0;   ///< From the host's write to the motors.
+  std::int64_t period_ns = 1'000'000;
+  double arm_mass = 0.075;      ///< kg
+  double arm_viscous = 0.005;   ///< N s/m
+  double arm_coulomb = 0.04;    ///< N
+  double hand_mass = 0.025;     ///< kg
+  double hand_stiffness = 300;  ///< N/m
+  double hand_damping = 3;      ///< N s/m
+  double tremor_amplitude = 0;  ///< m
+  double load = 1;              ///< Force of the surface, N, the same all the time.
+  double depth = 0.001;         ///< m
+};
+
+/// Is one corner of the hand's way along the surface.
+struct RigPoint {
+  double time = 0;  ///< s
+  double x = 0;     ///< Where the hand wants to be, m, within 0.03 of the middle.
+};
+
+/// Is what happened along x, one entry per tick.
+struct RigRun {
+  double period = 0.001;         ///< s
+  std::vector<double> x;         ///< Where the tip truly was, m.
+  std::vector<double> x_read;    ///< Where the driver saw it, m.
+  std::vector<double> x_wanted;  ///< Where the hand wanted it, m.
+  std::vector<double> force;     ///< What was sent along x, N.
+  bool fault = false;            ///< The loop ended early by a fault of the device.
+};
+
+/// Rubs along a straight line from the wire up: simulated vintage arm at its home pose, where x is
+/// moved by one joint alone, its encoder cut to the asked step; wire, driver, velocity estimate,
+/// safety gate and servo loop as in any session, in virtual time. The surface presses with the same
+/// force all the time; that force is not sent, as if the hand held it exactly, so that only
+/// friction is seen. Begins at rest; forces open softly within the first 0.3 s. Throws
+/// std::invalid_argument if a setting is out of the simulator's range. Real-time: never from the
+/// servo thread.
+RigRun rub(render::AnyStage& friction, const std::vector<RigPoint>& way, double duration,
+           const FrictionRigSettings& settings);
+
+/// Tells what an effect may know of the rig. Real-time: never from the servo thread.
+render::EffectSurroundings surroundings_of(const FrictionRigSettings& settings);
+
+}  // namespace thimble::app

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+namespace thimble::app {
+
+// What studies measure in sampled signals. Real-time: never from the servo thread.
+
+/// Takes away what is slow: Butterworth's high-pass of fourth order at `corner` (Hz), `rate` (Hz).
+std::vector<double> high_passed(std::span<const double> signal, double rate, double corner);
+
+/// Tells the root of the mean square; 0 of nothing.
+double root_mean_square(std::span<const double> signal);
+
+/// Tells the mean; 0 of nothing.
+double mean(std::span<const double> signal);
+
+/// Tells how often per second the sign changes; zeros count as the sign before.
+double sign_changes_per_second(std::span<const double> signal, double rate);
+
+/// Is one line of a spectrum.
+struct SpectralLine {
+  double frequency = 0;  ///< Hz
+  double amplitude = 0;  ///< Peak, in the signal's unit.
+};
+
+/// Finds the amplitudes from one line above 0 up to half the rate, mean taken away, no window.
+std::vector<SpectralLine> spectrum(std::span<const double> signal, double rate);
+
+/// Finds the strongest line; of a signal without any, {0, 0}.
+SpectralLine strongest(std::span<const SpectralLine> lines);
+
+}  // namespace thimble::app

@@ -1,0 +1,179 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace thimble::render {
+
+/// Counts the ones of a word without the instruction that not every x86-64 has. Real-time: safe.
+inline std::uint32_t count_ones(std::uint64_t v) noexcept {
+  v -= (v >> 1) & 0x5555555555555555u;
+  v = (v & 0x3333333333333333u) + ((v >> 2) & 0x3333333333333333u);
+  v = (v + (v >> 4)) & 0x0f0f0f0f0f0f0f0fu;
+  return static_cast<std::uint32_t>((v * 0x0101010101010101u) >> 56);
+}
+
+/// Is space cut into volumes (cubes) with the triangles that reach into each [BP 4.1]. Volumes
+/// stand in blocks of 4 x 4 x 4:
+///
+///     top: one word per block of the box  ->  block: which of its 64 volumes hold anything
+///          (empty: how far all is empty)      ->  volume: where its list begins  ->  triangles
+///
+/// so that empty space takes no memory but the word per block, and a question near the surface
+/// costs three lines of the cache besides the triangles. A triangle is listed in every volume that
+/// it, made thicker by `kGridRoom` of a volume, reaches into. Lengths are steps of a SearchFrame.
+class VolumeGrid {
+ public:
+  /// Is one block: bit x + 4 y + 16 z is set where that volume lists anything.
+  struct Block {
+    std::uint64_t occupied = 0;
+    std::uint32_t first_volume = 0;  ///< Place of its first occupied volume in `begins`.
+  };
+  /// Marks a word of `top` as an empty block; the rest tells how many blocks away the nearest block
+  /// is that is not, along the axis where they are farthest apart, at most `kFarthest`.
+  static constexpr std::uint32_t kEmpty = 0x80000000u;
+  static constexpr std::uint32_t kFarthest = 255;
+  /// Is the most blocks along an axis.
+  static constexpr std::int32_t kBlocksMax = 1024;
+
+  /// Is what a grid is made of; see build_volume_grid.
+  struct Parts {
+    Eigen::Vector3d low{0, 0, 0};  ///< The corner where the grid begins.
+    double side = 1;               ///< Of a volume.
+    std::array<std::int32_t, 3> blocks{1, 1, 1};
+    std::vector<std::uint32_t> top;
+    std::vector<Block> all_blocks;
+    std::vector<std::uint32_t> begins;    ///< Per occupied volume; and one more, the end.
+    std::vector<std::int32_t> triangles;  ///< Lists of the volumes, each in rising order.
+  };
+
+  explicit VolumeGrid(Parts parts) noexcept : parts_(std::move(parts)) {
+    per_side_ = 1 / parts_.side;
+    for (std::size_t i = 0; i < 3; ++i) last_[i] = 4 * parts_.blocks[i] - 1;
+    for (int i = 0; i < 3; ++i) {
+      high_[i] = parts_.low[i] + parts_.side * (last_[static_cast<std::size_t>(i)] + 1);
+    }
+  }
+
+  double side() const noexcept { return parts_.side; }
+  const Parts& parts() const noexcept { return parts_; }
+
+  /// Counts the bytes of memory held.
+  std::size_t bytes() const noexcept {
+    return parts_.top.capacity() * sizeof(std::uint32_t) +
+           parts_.all_blocks.capacity() * sizeof(Block) +
+           parts_.begins.capacity() * sizeof(std::uint32_t) +
+           parts_.triangles.capacity() * sizeof(std::int32_t);
+  }
+
+  /// Tells the volume a coordinate is in; what lies beside the grid counts to its outermost ones.
+  /// Monotone. NaN is in the first. Real-time: safe.
+  std::int32_t volume_of(double u, int axis) const noexcept {
+    const double v = (u - parts_.low[axis]) * per_side_;
+    const auto last = static_cast<double>(last_[static_cast<std::size_t>(axis)]);
+    return static_cast<std::int32_t>(v > 0 ? std::min(v, last) : 0.0);
+  }
+
+  /// Calls visit(list) for each occupied volume that meets a box and for which wanted(corner) is
+  /// true; corner is where the volume begins. A triangle may be in several lists.
+  /// Real-time: safe; its time grows with the blocks in the box.
+  template <class Wanted, class Visit>
+  void visit_box(const Eigen::Vector3d& low, const Eigen::Vector3d& high, Wanted wanted,
+                 Visit visit) const noexcept;
+
+  /// Tells a distance from a point within which all blocks are empty; 0 near the surface.
+  /// Real-time: safe; one line of the cache.
+  double clearance(const Eigen::Vector3d& p) const noexcept;
+
+ private:
+  std::size_t top_place(std::int32_t x, std::int32_t y, std::int32_t z) const noexcept {
+    return (static_cast<std::size_t>(z) * static_cast<std::size_t>(parts_.blocks[1]) +
+            static_cast<std::size_t>(y)) *
+               static_cast<std::size_t>(parts_.blocks[0]) +
+           static_cast<std::size_t>(x);
+  }
+  std::span<const std::int32_t> list(const Block& block, std::uint64_t bit) const noexcept {
+    const std::size_t v = block.first_volume + count_ones(block.occupied & (bit - 1));
+    const std::uint32_t begin = parts_.begins[v];
+    return {parts_.triangles.data() + begin, parts_.begins[v + 1] - begin};
+  }
+
+  Parts parts_;
+  double per_side_ = 1;
+  std::array<std::int32_t, 3> last_{};
+  Eigen::Vector3d high_{0, 0, 0};
+};
+
+/// Is how far, as a share of a volume's side, triangles count as reaching: it covers the rounding
+/// of places in the grid (2^-52 of 2^12 volumes) by far.
+inline constexpr double kGridRoom = 0x1p-16;
+
+template <class Wanted, class Visit>
+void VolumeGrid::visit_box(const Eigen::Vector3d& low, const Eigen::Vector3d& high, Wanted wanted,
+                           Visit visit) const noexcept {
+  std::array<std::int32_t, 3> first, last;
+  for (int i = 0; i < 3; ++i) {
+    // Written so that a box with a NaN meets nothing.
+    if (!(low[i] <= high_[i] && high[i] >= parts_.low[i])) return;
+    first[static_cast<std::size_t>(i)] = volume_of(low[i], i);
+    last[static_cast<std::size_t>(i)] = volume_of(high[i], i);
+  }
+  // The ones of all places between two along an axis of a block, with `shift` bits per place.
+  const auto between = [](std::int32_t from, std::int32_t to, int shift) noexcept {
+    const int end = (to + 1) << shift, begin = from << shift;
+    return (end == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << end) - 1) &
+           (~std::uint64_t{0} << begin);
+  };
+  const auto part = [&](std::size_t axis, std::int32_t block, int shift) noexcept {
+    const std::int32_t from = std::max(first[axis] - 4 * block, 0);
+    const std::int32_t to = std::min(last[axis] - 4 * block, 3);
+    return between(from, to, shift);
+  };
+  for (std::int32_t z = first[2] >> 2; z <= last[2] >> 2; ++z) {
+    const std::uint64_t layers = part(2, z, 4);
+    for (std::int32_t y = first[1] >> 2; y <= last[1] >> 2; ++y) {
+      const std::uint64_t rows = layers & (part(1, y, 2) * 0x0001000100010001u);
+      for (std::int32_t x = first[0] >> 2; x <= last[0] >> 2; ++x) {
+        const std::uint32_t word = parts_.top[top_place(x, y, z)];
+        if ((word & kEmpty) != 0) continue;
+        const Block& block = parts_.all_blocks[word];
+        std::uint64_t left = block.occupied & rows & (part(0, x, 0) * 0x1111111111111111u);
+        for (; left != 0; left &= left - 1) {
+          const auto i = std::countr_zero(left);
+          const Eigen::Vector3d corner =
+              parts_.low + parts_.side * Eigen::Vector3d(4 * x + (i & 3), 4 * y + ((i >> 2) & 3),
+                                                         4 * z + (i >> 4));
+          if (wanted(corner)) visit(list(block, left & (~left + 1)));
+        }
+      }
+    }
+  }
+}
+
+inline double VolumeGrid::clearance(const Eigen::Vector3d& p) const noexcept {
+  std::array<std::int32_t, 3> at;
+  double beside = 0;
+  for (int i = 0; i < 3; ++i) {
+    at[static_cast<std::size_t>(i)] = volume_of(p[i], i) >> 2;
+    beside = std::max({beside, parts_.low[i] - p[i], p[i] - high_[i]});
+  }
+  if (beside > 0) return beside;
+  const std::uint32_t word = parts_.top[top_place(at[0], at[1], at[2])];
+  if ((word & kEmpty) == 0) return 0;
+  const double block = 4 * parts_.side;
+  double border = block;
+  for (int i = 0; i < 3; ++i) {
+    const double in = p[i] - parts_.low[i] - block * at[static_cast<std::size_t>(i)];
+    border = std::min({border, in, block - in});
+  }
+  const double clear = (static_cast<double>(word & ~kEmpty) - 1) * block + border;
+  return std::max(clear - parts_.side * kGridRoom, 0.0);
+}
+
+}  // namespace thimble::render

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+#include <cstdint>
+
+#include "thimble/render/field/primitive_contact.h"
+
+namespace thimble::render {
+
+/// Is a solid box that stands anywhere. Its faces are numbered -x, +x, -y, +y, -z, +z of its own
+/// frame O, from 0.
+struct Box {
+  Eigen::Matrix3d R_WO = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d p_WO{0, 0, 0};        ///< Centre, m.
+  Eigen::Vector3d half_sides{0, 0, 0};  ///< m, each > 0
+
+  Eigen::Vector3d to_box(const Eigen::Vector3d& p_W) const noexcept {
+    return R_WO.transpose() * (p_W - p_WO);
+  }
+
+  /// Gives the outward unit normal of a face in W. Real-time: safe.
+  Eigen::Vector3d normal(std::int32_t face) const noexcept {
+    return face % 2 == 0 ? Eigen::Vector3d(-R_WO.col(face / 2))
+                         : Eigen::Vector3d(R_WO.col(face / 2));
+  }
+
+  /// Tells how far a point (O, m) lies below the plane of a face, m. Real-time: safe.
+  double depth(const Eigen::Vector3d& p_O, std::int32_t face) const noexcept {
+    const Eigen::Index axis = face / 2;
+    return half_sides[axis] - (face % 2 == 0 ? -p_O[axis] : p_O[axis]);
+  }
+
+  /// Tells whether a point (W, m) lies inside. Real-time: safe.
+  bool inside(const Eigen::Vector3d& p_W) const noexcept {
+    return (to_box(p_W).array().abs() < half_sides.array()).all();
+  }
+};
+
+/// Is a box split into wedges, one per face: the nearest face pushes [BP Fig. 2b]. A PrimitiveShape
+/// with six faces.
+///
+/// Where two faces are equally near the force changes its direction but not its strength; no way
+/// round a closed loop gains energy. On a plate of thickness h the tip is pushed out at the back as
+/// soon as it has passed the middle, at stiffness * h / 2 [STABILITY 3]: kept as the paper's
+/// counter-example; EntryFaceContact cures it.
+struct WedgeBox : Box {
+  /// Finds the nearest face of a point (W, m); the first of several. NaN lies outside.
+  /// Real-time: safe.
+  PrimitivePlace place(const Eigen::Vector3d& p_W, const Eigen::Vector3d&) const noexcept {
+    const Eigen::Vector3d p_O = to_box(p_W);
+    Eigen::Index axis = 0;
+    // NaN in any coordinate arrives here as a depth that is not above 0.
+    const double depth = (half_sides - p_O.cwiseAbs()).minCoeff<Eigen::PropagateNaN>(&axis);
+    const std::int32_t face =
+        2 * static_cast<std::int32_t>(axis) + (std::signbit(p_O[axis]) ? 0 : 1);
+    return {.depth = depth, .n_W = normal(face), .face = face};
+  }
+};
+
+}  // namespace thimble::render

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <memory>
+#include <variant>
+
+#include "thimble/render/build_object_touch.h"
+#include "thimble/render/field/box.h"
+#include "thimble/render/field/half_space.h"
+#include "thimble/render/field/sphere.h"
+#include "thimble/render/object_touch.h"
+
+namespace thimble::render {
+
+/// Is a box whose force depends on the face by which the tip came in (EntryFaceContact).
+struct EntryFaceBox : Box {};
+
+/// Is any shape that needs no mesh.
+using Primitive = std::variant<HalfSpace, Sphere, WedgeBox, EntryFaceBox>;
+
+/// Builds the force law of one shape (W, m) from just the stages that `surface` names. Whoever
+/// fills in the shape sees to unit normals and sizes above 0.
+/// Real-time: never from the servo thread.
+std::unique_ptr<ObjectTouch> build_primitive_touch(const Primitive& shape_W,
+                                                   const SurfaceChoice& surface);
+
+}  // namespace thimble::render

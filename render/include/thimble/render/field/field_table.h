@@ -1,0 +1,43 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <string_view>
+
+#include "thimble/render/effect/effect_surroundings.h"
+#include "thimble/render/effect/settings_reader.h"
+#include "thimble/render/field/field_touch.h"
+
+namespace thimble::render {
+
+/// Builds a field from settings that have been read and found right.
+/// Real-time: never from the servo thread.
+using FieldBuilder = std::function<std::unique_ptr<ObjectTouch>()>;
+
+/// Is one field that a scene can name: `field: NAME` and its settings.
+struct FieldKind {
+  std::string_view name;
+  /// Reads the settings. Mistakes are told to the reader; what comes back is then not to be used.
+  /// Real-time: never from the servo thread.
+  FieldBuilder (*read)(SettingsReader& settings, const EffectSurroundings& surroundings);
+};
+
+/// Makes the table's line of a field: a Field with `kName`, a struct `Settings` with
+/// `read(SettingsReader&, const EffectSurroundings&)`, and a constructor from both.
+template <Field F>
+constexpr FieldKind field_kind() {
+  return {F::kName,
+          [](SettingsReader& reader, const EffectSurroundings& surroundings) -> FieldBuilder {
+            typename F::Settings settings;
+            settings.read(reader, surroundings);
+            return [settings, surroundings]() -> std::unique_ptr<ObjectTouch> {
+              return std::make_unique<FieldTouch<F>>(F(settings, surroundings));
+            };
+          }};
+}
+
+/// Gives every field that a scene can name. To add one: write its file, add its line here.
+std::span<const FieldKind> field_table();
+
+}  // namespace thimble::render

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <concepts>
+#include <memory>
+#include <type_traits>
+#include <utility>
+
+#include "thimble/driver/device_state.h"
+#include "thimble/driver/force_command.h"
+#include "thimble/render/object_touch.h"
+
+namespace thimble::render {
+
+/// Is a force that fills the space and needs no surface [BP 2, "continuous vector fields"]: a pure
+/// function of the state. `force` gives the force on the hand (N in W) and is Real-time: safe.
+template <class F>
+concept Field = requires(const F& field, const driver::DeviceState& state) {
+  { field.force(state) }
+  noexcept->std::convertible_to<Eigen::Vector3d>;
+};
+
+/// Is a field as an object of a scene. It has no inside and is never in contact.
+template <Field F>
+class FieldTouch final : public ObjectTouch {
+ public:
+  explicit FieldTouch(F field) : field_(std::move(field)) {}
+
+  driver::ForceCommand update(const driver::DeviceState& state) noexcept override {
+    return {.f_T_W = field_.force(state), .touch = {}};
+  }
+  bool inside(const Eigen::Vector3d&) const noexcept override { return false; }
+
+  const F& field() const noexcept { return field_; }
+
+ private:
+  F field_;
+};
+
+/// Is any function of the state as a field.
+template <class Function>
+requires std::is_nothrow_invocable_r_v<Eigen::Vector3d, const Function&, const driver::DeviceState&>
+class FunctionField {
+ public:
+  explicit FunctionField(Function function) : function_(std::move(function)) {}
+
+  Eigen::Vector3d force(const driver::DeviceState& state) const noexcept {
+    return function_(state);
+  }
+
+ private:
+  Function function_;
+};
+
+/// Makes a function of the state an object of a scene: how a program adds a force law of its own.
+///
+/// The function is called on the servo thread and must keep its rules. What it returns goes on
+/// unchanged: NaN or infinity reaches the safety gate, which lets nothing through and latches a
+/// fault, because a broken law must not go unnoticed. Real-time: never from the servo thread.
+template <class Function>
+std::unique_ptr<ObjectTouch> field_of(Function function) {
+  using Own = FunctionField<Function>;
+  return std::make_unique<FieldTouch<Own>>(Own(std::move(function)));
+}
+
+}  // namespace thimble::render

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+#include <string_view>
+#include <vector>
+
+#include "thimble/driver/device_state.h"
+#include "thimble/render/effect/effect_surroundings.h"
+#include "thimble/render/effect/settings_reader.h"
+
+namespace thimble::render {
+
+/// Is what draws the tip onto points and lines once it is near. A Field; conservative.
+///
+/// At distance r from a target, within its capture radius R, the energy is -U (1 - (r/R)^2)^2: the
+/// pull begins at R without a step, is largest at R / sqrt 3 and zero on the target, where it holds
+/// the tip as a spring of 2.6 force / R. Targets that overlap add up. On a line, all its points are
+/// equal: the tip runs along it freely.
+class MagneticSnap {
+ public:
+  static constexpr std::string_view kName = "magnetic_snap";
+
+  struct Settings {
+    struct Target {
+      Eigen::Vector3d from_O{0, 0, 0};  ///< The point, or one end of the line; object's frame, m.
+      Eigen::Vector3d to_O{0, 0, 0};    ///< The other end; the same for a point.
+      double force = 0;                 ///< The largest, N.
+      double radius = 0;                ///< R, m
+    };
+    std::vector<Target> targets;
+
+    /// Reads the list `targets`: point, or from and to; force, capture_radius.
+    /// Real-time: never from the servo thread.
+    void read(SettingsReader& reader, const EffectSurroundings& surroundings);
+  };
+
+  /// Real-time: never from the servo thread.
+  MagneticSnap(const Settings& settings, const EffectSurroundings& surroundings);
+
+  /// Finds the force on the hand, N in W; zero where the tip is NaN or infinite. Real-time: safe; a
+  /// few ns per target.
+  Eigen::Vector3d force(const driver::DeviceState& state) const noexcept;
+
+ private:
+  struct Target {
+    Eigen::Vector3d from_W;
+    Eigen::Vector3d way_W;  // from there to the other end, m; zero for a point
+    double per_square;      // 1 / |way|^2, 0 for a point
+    double stiffness;       // at the target, N/m
+    double square;          // R^2, m^2
+  };
+  std::vector<Target> targets_;
+};
+
+}  // namespace thimble::render

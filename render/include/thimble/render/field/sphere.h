@@ -1,0 +1,34 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "thimble/render/field/primitive_contact.h"
+
+namespace thimble::render {
+
+/// Is a ball; its force points away from the centre [BP 2]. A PrimitiveShape with one face.
+struct Sphere {
+  Eigen::Vector3d p_WO{0, 0, 0};  ///< Centre, m.
+  double radius = 0;              ///< m, > 0
+
+  /// Tells how deep a point (W, m) lies below the surface. NaN lies outside. At the very centre the
+  /// normal is the last one felt, or up where there was none. Real-time: safe.
+  PrimitivePlace place(const Eigen::Vector3d& p_W,
+                       const Eigen::Vector3d& n_before_W) const noexcept {
+    const Eigen::Vector3d p_O = p_W - p_WO;
+    // Divided by the largest coordinate first, so that no square under- or overflows.
+    const double largest = p_O.cwiseAbs().maxCoeff();
+    if (largest == 0) {
+      const bool felt = n_before_W.squaredNorm() > 0;
+      return {.depth = radius, .n_W = felt ? n_before_W : Eigen::Vector3d::UnitZ()};
+    }
+    const Eigen::Vector3d scaled = p_O / largest;
+    const double length = scaled.norm();
+    return {.depth = radius - largest * length, .n_W = scaled / length};
+  }
+
+  /// Tells whether a point (W, m) lies inside. Real-time: safe.
+  bool inside(const Eigen::Vector3d& p_W) const noexcept { return (p_W - p_WO).norm() < radius; }
+};
+
+}  // namespace thimble::render

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string_view>
+
+#include "thimble/driver/device_state.h"
+#include "thimble/render/effect/effect_surroundings.h"
+#include "thimble/render/effect/settings_reader.h"
+
+namespace thimble::render {
+
+/// Is a thick liquid that fills the space: a force against the velocity. A Field; takes energy out
+/// of every motion.
+class Viscous {
+ public:
+  static constexpr std::string_view kName = "viscous";
+
+  struct Settings {
+    double damping = 0;  ///< N s/m
+
+    /// Reads `damping`, and refuses what the loop cannot hold: against a free mass m a damper that
+    /// acts late by L swings up beyond pi m / (2 L) [Nyquist's criterion for -b exp(-L s) / (m s)].
+    /// L is period + delay: the velocity is half a period old, and the force is held for another
+    /// half. The filter of the velocity comes on top. Real-time: never from the servo thread.
+    void read(SettingsReader& reader, const EffectSurroundings& surroundings);
+  };
+
+  Viscous(const Settings& settings, const EffectSurroundings&) : damping_(settings.damping) {}
+
+  /// Finds the force on the hand, N in W; zero where the velocity is NaN or infinite.
+  /// Real-time: safe.
+  Eigen::Vector3d force(const driver::DeviceState& state) const noexcept {
+    const Eigen::Vector3d push = -damping_ * state.v_WT;
+    return push.allFinite() ? push : Eigen::Vector3d::Zero();
+  }
+
+ private:
+  double damping_;
+};
+
+}  // namespace thimble::render

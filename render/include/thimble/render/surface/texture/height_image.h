@@ -1,0 +1,53 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <filesystem>
+#include <vector>
+
+#include "thimble/driver/result.h"
+
+namespace thimble::render {
+
+/// Is a grey picture read as heights that repeats in both directions. Between its pixels runs a
+/// cubic B-spline: smooth in value, slope and curvature, never above the brightest nor below the
+/// darkest pixel nearby. It rounds off what is finer than about three pixels.
+class HeightImage {
+ public:
+  /// Is the most pixels that a side may have: 32 MB of heights. [chosen]
+  static constexpr std::size_t kSideMax = 2048;
+
+  /// Takes `values` (0 to 1, rows from the bottom, each from the left).
+  /// Precondition: width * height of them. Real-time: never from the servo thread.
+  HeightImage(std::size_t width, std::size_t height, std::vector<float> values);
+
+  /// Reads a PNG of any kind: its grey value is the height, white 1, whatever gamma it claims;
+  /// transparency is ignored. Fails, naming the file, if it is no PNG, damaged or larger than
+  /// kSideMax. Real-time: never from the servo thread.
+  static driver::Result<HeightImage> load(const std::filesystem::path& file);
+
+  struct Sample {
+    double value = 0;  ///< 0 to 1
+    double du = 0;     ///< Per pixel to the right.
+    double dv = 0;     ///< Per pixel up.
+  };
+  /// Finds the value at `u` pixels from the left and `v` from the bottom, counted from the middle
+  /// of the first pixel. NaN gives NaN; so does what is beyond 1e15. Real-time: safe.
+  Sample at(double u, double v) const noexcept;
+
+  std::size_t width() const noexcept { return width_; }
+  std::size_t height() const noexcept { return height_; }
+  /// Is a bound of the slope's size, per pixel. Real-time: safe.
+  double slope_max() const noexcept { return slope_max_; }
+
+ private:
+  double value(std::size_t column, std::size_t row) const noexcept {
+    return static_cast<double>(values_[row * width_ + column]);
+  }
+
+  std::size_t width_ = 0, height_ = 0;
+  std::vector<float> values_;
+  double slope_max_ = 0;
+};
+
+}  // namespace thimble::render

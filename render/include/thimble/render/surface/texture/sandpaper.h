@@ -1,0 +1,49 @@
+#pragma once
+
+#include <string_view>
+
+#include "thimble/driver/device_state.h"
+#include "thimble/render/effect/effect_table.h"
+#include "thimble/render/surface/texture/texture_limits.h"
+#include "thimble/render/surface/texture/wave_sum.h"
+
+namespace thimble::render {
+
+/// Makes a rough surface that catches the tip sideways, by the slope of a random height [BP 4.2:
+/// the sandpaper system]. A SurfaceStage.
+///
+/// The height is a sum of plane waves in random directions with lengths in one octave around the
+/// grain, the same for the same seed on every machine. So it holds no waves shorter than
+/// grain / sqrt 2 and is smooth. All textures: texture_height.h.
+class Sandpaper {
+ public:
+  static constexpr std::string_view kGroup = "texture";
+  static constexpr std::string_view kName = "sandpaper";
+  static constexpr EffectOrder kOrder = EffectOrder::kDepth;
+
+  struct Settings : TextureSettings {
+    double grain = 0.002;        ///< Middle wavelength, m.
+    double roughness = 0.00003;  ///< Root mean square of the height, m.
+    double seed = 1;             ///< A whole number; another one, another piece of sandpaper.
+
+    /// Reads `form`, `hand_speed`, `grain`, `roughness`, `seed`.
+    /// Real-time: never from the servo thread.
+    void read(SettingsReader& reader, const EffectSurroundings& surroundings);
+  };
+
+  /// Real-time: never from the servo thread.
+  Sandpaper(const Settings& settings, const EffectSurroundings& surroundings);
+
+  void touch(const driver::DeviceState& state, SurfaceFeel& feel) const noexcept {
+    feel_height(height_.at(state.p_WT), form_, feel);
+  }
+  void leave() const noexcept {}
+
+  const WaveSum& height() const noexcept { return height_; }
+
+ private:
+  WaveSum height_;
+  TextureForm form_;
+};
+
+}  // namespace thimble::render

@@ -1,0 +1,34 @@
+#include "thimble/render/field/point_charges.h"
+
+#include <numbers>
+
+namespace thimble::render {
+namespace {
+
+constexpr std::size_t kChargesMax = 64;  // [chosen: below a microsecond per tick]
+
+}  // namespace
+
+void PointCharges::Settings::read(SettingsReader& reader, const EffectSurroundings&) {
+  reader.list("charges", [this](SettingsReader& entry) {
+    One& one = charges.emplace_back();
+    entry.vector("position", one.p_O, {.unit = "m", .least = -2, .most = 2, .required = true});
+    // Larger than any desk-top arm [DEVICES 3]; catches slipped decimal points.
+    entry.number("force", one.force, {.unit = "N", .least = -50, .most = 50, .required = true});
+    entry.number("radius", one.radius, {.unit = "m", .least = 1e-4, .most = 1});
+  });
+  if (charges.size() > kChargesMax) {
+    reader.reject("charges",
+                  "expected at most 64 charges, found " + std::to_string(charges.size()));
+  }
+}
+
+PointCharges::PointCharges(const Settings& settings, const EffectSurroundings& surroundings) {
+  for (const Settings::One& one : settings.charges) {
+    charges_.push_back({.p_W = surroundings.p_WO + surroundings.R_WO * one.p_O,
+                        .strength = 1.5 * std::numbers::sqrt3 * one.force * one.radius * one.radius,
+                        .radius = one.radius});
+  }
+}
+
+}  // namespace thimble::render

@@ -1,0 +1,24 @@
+#include "thimble/render/surface/friction/dahl.h"
+
+#include <cmath>
+
+namespace thimble::render {
+
+void DahlLaw::Settings::read(SettingsReader& reader, const EffectSurroundings& surroundings) {
+  coulomb.read_sliding(reader);
+  stiffness = read_stick_stiffness(reader, surroundings, coulomb.holding);
+}
+
+Eigen::Vector3d DahlLaw::pull(const SlideTick& tick) noexcept {
+  const double limit = settings_.coulomb.sliding * tick.load;
+  const double way = tick.slip.norm();
+  // What was stretched under more load slides back to what this load holds.
+  pull_ = shortened(pull_, limit);
+  if (way > 0 && limit > 0) {
+    const Eigen::Vector3d end = limit / way * tick.slip;
+    pull_ = end + (pull_ - end) * std::exp(-settings_.stiffness * way / limit);
+  }
+  return pull_;
+}
+
+}  // namespace thimble::render

@@ -1,0 +1,87 @@
+#include "thimble/render/surface/friction/friction_settings.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <limits>
+
+namespace thimble::render {
+namespace {
+
+// Rubber on clean glass reaches about 4 [M]; more is a slipped decimal point.
+constexpr double kCoefficientMax = 5;
+constexpr double kCoefficient = 0.3;   // wood or metal under a tool [chosen]
+constexpr double kHandDamping = 3;     // N s/m, pinch grip [STABILITY, heading]
+constexpr double kSafety = 1.5;        // [STABILITY 2.3]
+constexpr double kStiffnessMax = 1e6;  // N/m
+constexpr double kBendMax = 0.05;      // m
+
+std::string refusal(double stiffness, double most, const std::string& remedy) {
+  char text[240];
+  std::snprintf(text, sizeof text,
+                "friction would hold with %.4g N/m, but this arm stays quiet only up to %.4g N/m "
+                "(sampling, delay and encoder steps); %s",
+                stiffness, most, remedy.c_str());
+  return text;
+}
+
+}  // namespace
+
+void CoulombSettings::read_sliding(SettingsReader& reader) {
+  sliding = kCoefficient;
+  reader.number("coefficient", sliding, {.unit = "", .most = kCoefficientMax});
+  holding = sliding;
+}
+
+void CoulombSettings::read(SettingsReader& reader, double ratio) {
+  read_sliding(reader);
+  holding = ratio * sliding;
+  reader.number("static_coefficient", holding, {.unit = "", .most = 2 * kCoefficientMax});
+  if (holding < sliding) {
+    reader.reject("static_coefficient", "must not be below coefficient, the sliding friction");
+  }
+}
+
+void ViscousSettings::read(SettingsReader& reader) {
+  reader.number("viscous", viscous, {.unit = "N s/m", .most = 20});
+  reader.number("fade_depth", fade_depth, {.unit = "m", .most = 0.1});
+}
+
+double stick_stiffness_max(const EffectSurroundings& surroundings) {
+  const double latency = surroundings.tick / 2 + surroundings.delay;
+  const double sampled = (surroundings.tip_damping + kHandDamping) / (kSafety * latency);
+  const double counted = surroundings.encoder_step > 0 && surroundings.tip_coulomb > 0
+                             ? 2 * surroundings.tip_coulomb / surroundings.encoder_step
+                             : std::numeric_limits<double>::infinity();
+  return std::min({sampled, counted, kStiffnessMax});
+}
+
+double read_stick_stiffness(SettingsReader& reader, const EffectSurroundings& surroundings,
+                            double holding) {
+  const double most = stick_stiffness_max(surroundings);
+  constexpr double kRounding = 1 + 1e-9;
+  double stiffness = most;
+  if (reader.has("stiffness") && reader.has("z_max")) {
+    reader.reject("z_max", "cannot stand together with stiffness; keep one of them");
+  } else if (reader.has("stiffness")) {
+    reader.number("stiffness", stiffness, {.unit = "N/m", .least = 1, .most = kStiffnessMax});
+    if (stiffness > kRounding * most) {
+      reader.reject("stiffness", refusal(stiffness, most, "lower it or leave it away"));
+    }
+  } else if (reader.has("z_max")) {
+    double bend = kBendMax;
+    reader.number("z_max", bend, {.unit = "m", .least = 1e-9, .most = kBendMax});
+    const double force = holding * surroundings.force_max;
+    stiffness = force / bend;
+    if (!(force > 0)) {
+      reader.reject("z_max", "needs friction and an arm with a largest force; give stiffness");
+    } else if (stiffness > kRounding * most) {
+      char least[80];
+      std::snprintf(least, sizeof least, "expected z_max >= %.3g m, found %.3g m", force / most,
+                    bend);
+      reader.reject("z_max", refusal(stiffness, most, least));
+    }
+  }
+  return stiffness;
+}
+
+}  // namespace thimble::render

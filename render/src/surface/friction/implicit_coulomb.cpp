@@ -1,0 +1,24 @@
+#include "thimble/render/surface/friction/implicit_coulomb.h"
+
+namespace thimble::render {
+
+void ImplicitCoulombLaw::Settings::read(SettingsReader& reader,
+                                        const EffectSurroundings& surroundings) {
+  coulomb.read_sliding(reader);
+  stiffness = read_stick_stiffness(reader, surroundings, coulomb.holding);
+  reader.number("damping", damping, {.unit = "N s/m", .most = 3});
+}
+
+Eigen::Vector3d ImplicitCoulombLaw::pull(const SlideTick& tick) noexcept {
+  const double damping = settings_.damping / tick.dt;  // per bend, N/m
+  const double total = settings_.stiffness + damping;
+  if (!(total > 0)) return Eigen::Vector3d::Zero();
+  // If the point stays, the bend grows by the whole way.
+  const Eigen::Vector3d wish = settings_.stiffness * (bend_ + tick.slip) + damping * tick.slip;
+  const Eigen::Vector3d pull = shortened(wish, settings_.coulomb.sliding * tick.load);
+  // Else it follows until spring and damper pull with just that force.
+  bend_ = (pull + damping * bend_) / total;
+  return pull;
+}
+
+}  // namespace thimble::render

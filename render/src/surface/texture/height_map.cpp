@@ -1,0 +1,64 @@
+#include "thimble/render/surface/texture/height_map.h"
+
+#include <utility>
+
+namespace thimble::render {
+
+void HeightMap::Settings::read(SettingsReader& reader, const EffectSurroundings& surroundings) {
+  TextureSettings::read(reader);
+  std::filesystem::path file;
+  reader.file("image", file);
+  reader.number("width", width, {.unit = "m", .least = 1e-4, .most = 1, .required = true});
+  reader.number("height", height, {.unit = "m", .least = 0, .most = 0.05, .required = true});
+  auto chosen = static_cast<std::size_t>(along);
+  reader.choice("along", chosen, {"all", "x", "y", "z"});
+  along = static_cast<Along>(chosen);
+  if (file.empty() || !std::filesystem::is_regular_file(file)) return;  // was refused already
+  auto loaded = HeightImage::load(file);
+  if (!loaded) {
+    reader.reject("image", loaded.error().message);
+    return;
+  }
+  image = std::make_shared<const HeightImage>(std::move(loaded).value());
+  if (!(width > 0)) return;
+  const double pixel = width / static_cast<double>(image->width());
+  // Two pixels are the shortest wave a picture can hold.
+  check_texture(
+      reader, "height",
+      {.relief = height, .slope = height * image->slope_max() / pixel, .wavelength = 2 * pixel},
+      *this, surroundings);
+}
+
+HeightMap::HeightMap(const Settings& settings, const EffectSurroundings& surroundings)
+    : image_(settings.image),
+      R_WO_(surroundings.R_WO),
+      p_WO_(surroundings.p_WO),
+      pixels_per_metre_(image_ ? static_cast<double>(image_->width()) / settings.width : 0),
+      height_(settings.height),
+      along_(settings.along),
+      form_(settings.form) {}
+
+TextureHeight HeightMap::at(const Eigen::Vector3d& p_W, const Eigen::Vector3d& n_W) const noexcept {
+  const Eigen::Vector3d place = pixels_per_metre_ * (R_WO_.transpose() * (p_W - p_WO_));
+  Eigen::Vector3d share = Eigen::Vector3d::Zero();
+  if (along_ == Along::kAll) {
+    share = (R_WO_.transpose() * n_W).cwiseAbs2();
+  } else {
+    share[static_cast<Eigen::Index>(along_) - 1] = 1;
+  }
+  double value = 0;
+  Eigen::Vector3d slope_O = Eigen::Vector3d::Zero();
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    if (share[axis] == 0) continue;
+    // Seen from the tip of each axis: the next axis to the right, the one after it up.
+    const Eigen::Index right = (axis + 1) % 3, up = (axis + 2) % 3;
+    const HeightImage::Sample sample = image_->at(place[right], place[up]);
+    value += share[axis] * sample.value;
+    slope_O[right] += share[axis] * sample.du;
+    slope_O[up] += share[axis] * sample.dv;
+  }
+  return {.height = height_ * (value - 1),
+          .slope_W = height_ * pixels_per_metre_ * (R_WO_ * slope_O)};
+}
+
+}  // namespace thimble::render

@@ -1,0 +1,73 @@
+#include "thimble/render/surface/texture/sines.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace thimble::render {
+namespace {
+
+// Bounds catch slipped decimal points; what is felt is checked as a whole.
+constexpr double kAmplitudeMax = 0.05;                       // m
+constexpr double kWavelengthMin = 1e-5, kWavelengthMax = 1;  // m
+constexpr std::size_t kWavesMax = 64;  // 12,000 instructions per tick [chosen: a few us]
+
+std::vector<Wave> waves_of(const Sines::Settings& settings,
+                           const EffectSurroundings& surroundings) {
+  std::vector<Wave> waves;
+  for (const Sines::Settings::One& one : settings.waves) {
+    const Eigen::Vector3d k_W = 2 * std::numbers::pi / one.wavelength *
+                                (surroundings.R_WO * one.direction.stableNormalized());
+    // Waves begin at the object's place, so that it can be moved without a change.
+    waves.push_back({one.amplitude, k_W, one.phase - k_W.dot(surroundings.p_WO)});
+  }
+  return waves;
+}
+
+void read_wave(SettingsReader& reader, Sines::Settings::One& wave) {
+  reader.number("amplitude", wave.amplitude,
+                {.unit = "m", .least = 0, .most = kAmplitudeMax, .required = true});
+  double frequency = 0;
+  if (reader.has("wavelength") == reader.has("frequency")) {
+    reader.reject("", "expected either wavelength (m) or frequency (waves per metre)");
+  } else if (reader.has("wavelength")) {
+    reader.number("wavelength", wave.wavelength,
+                  {.unit = "m", .least = kWavelengthMin, .most = kWavelengthMax, .required = true});
+  } else {
+    reader.number(
+        "frequency", frequency,
+        {.unit = "1/m", .least = 1 / kWavelengthMax, .most = 1 / kWavelengthMin, .required = true});
+    if (frequency > 0) wave.wavelength = 1 / frequency;
+  }
+  reader.vector("direction", wave.direction, {.unit = "", .least = -1e3, .most = 1e3});
+  reader.number("phase", wave.phase, {.unit = "rad", .least = -10, .most = 10});
+  if (!(wave.direction.stableNorm() > 0)) {
+    reader.reject("direction", "expected a direction, found zeros");
+  }
+}
+
+}  // namespace
+
+void Sines::Settings::read(SettingsReader& reader, const EffectSurroundings& surroundings) {
+  TextureSettings::read(reader);
+  reader.list("waves", [this](SettingsReader& entry) {
+    waves.emplace_back();
+    read_wave(entry, waves.back());
+  });
+  if (waves.size() > kWavesMax) {
+    reader.reject("waves", "expected at most 64 waves, found " + std::to_string(waves.size()));
+  }
+  TextureExtent extent{.wavelength = kWavelengthMax};
+  for (const One& wave : waves) {
+    if (!(wave.wavelength > 0)) return;  // was refused already
+    extent.relief += 2 * wave.amplitude;
+    extent.slope += 2 * std::numbers::pi * wave.amplitude / wave.wavelength;
+    extent.wavelength = std::min(extent.wavelength, wave.wavelength);
+  }
+  check_texture(reader, "waves", extent, *this, surroundings);
+}
+
+Sines::Sines(const Settings& settings, const EffectSurroundings& surroundings)
+    : height_(waves_of(settings, surroundings)), form_(settings.form) {}
+
+}  // namespace thimble::render

@@ -1,0 +1,49 @@
+#include "thimble/render/surface/texture/texture_limits.h"
+
+#include <cstdio>
+
+namespace thimble::render {
+
+void TextureSettings::read(SettingsReader& reader) {
+  auto chosen = static_cast<std::size_t>(form);
+  reader.choice("form", chosen, {kTextureFormNames.begin(), kTextureFormNames.end()});
+  form = static_cast<TextureForm>(chosen);
+  // A hand is never faster than a few m/s.
+  reader.number("hand_speed", hand_speed, {.unit = "m/s", .least = 1e-3, .most = 5});
+}
+
+void check_texture(SettingsReader& reader, std::string_view key, const TextureExtent& extent,
+                   const TextureSettings& settings, const EffectSurroundings& surroundings) {
+  char text[250];
+  const double deepest = surroundings.surface_stiffness > 0
+                             ? surroundings.force_max / surroundings.surface_stiffness
+                             : 0;
+  // Where arm or spring is not known there is nothing to compare with.
+  if (deepest > 0 && !(extent.relief <= deepest)) {
+    std::snprintf(text, sizeof text,
+                  "is %.3g mm from peak to valley, but the arm's %.3g N press no deeper than "
+                  "%.3g mm into %.4g N/m: make it flatter, or the surface softer",
+                  1e3 * extent.relief, surroundings.force_max, 1e3 * deepest,
+                  surroundings.surface_stiffness);
+    reader.reject(key, text);
+  }
+  if (!(extent.slope <= kTextureSlopeMax)) {
+    std::snprintf(text, sizeof text,
+                  "is as steep as %.3g; slopes may reach %.3g: make it flatter or its waves longer",
+                  extent.slope, kTextureSlopeMax);
+    reader.reject(key, text);
+  }
+  const double frequency = settings.hand_speed / extent.wavelength;
+  const double highest = 0.5 / surroundings.tick;
+  if (!(frequency <= highest)) {
+    std::snprintf(text, sizeof text,
+                  "has waves of %.3g mm, which a hand at %.3g m/s feels as %.4g Hz; a loop of %.4g "
+                  "Hz shows %.4g Hz at most: make the waves longer, the loop faster or hand_speed "
+                  "smaller",
+                  1e3 * extent.wavelength, settings.hand_speed, frequency, 1 / surroundings.tick,
+                  highest);
+    reader.reject(key, text);
+  }
+}
+
+}  // namespace thimble::render

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "thimble/render/build_object_touch.h"
+#include "thimble/render/effect/stage_list.h"
+#include "thimble/render/touch.h"
+
+namespace thimble::render {
+
+/// Builds the stages of a surface: its spring comes after what changes the depth.
+/// Real-time: never from the servo thread.
+inline StageList stage_list(const SurfaceChoice& surface) {
+  std::vector<std::unique_ptr<AnyStage>> stages;
+  bool sprung = false;
+  for (const EffectPlan& effect : surface.effects) {
+    if (!sprung && effect.kind->order > EffectOrder::kDepth) {
+      stages.push_back(std::make_unique<AnyStageOf<SpringDamper>>(surface.spring));
+      sprung = true;
+    }
+    stages.push_back(effect.build());
+  }
+  if (!sprung) stages.push_back(std::make_unique<AnyStageOf<SpringDamper>>(surface.spring));
+  return StageList(std::move(stages));
+}
+
+template <class Stages>
+std::unique_ptr<ObjectTouch> object_of(Stages stages) {
+  return std::make_unique<ObjectTouchOf<Stages>>(std::move(stages));
+}
+
+/// Builds the force law of one object from a contact stage and a surface.
+/// Real-time: never from the servo thread.
+template <class Contact>
+std::unique_ptr<ObjectTouch> touch_of(Contact contact, const SurfaceChoice& surface) {
+  // A bare surface, by far the most frequent, is joined wholly at compile time.
+  if (surface.effects.empty()) return object_of(Touch(std::move(contact), surface.spring));
+  return object_of(Touch(std::move(contact), stage_list(surface)));
+}
+
+}  // namespace thimble::render
