@@ -28,9 +28,21 @@ double worst_jacobian_error(const Geometry& geometry, const Eigen::Vector3d& q) 
   return (J - differences).norm() / J.norm();
 }
 
-/// Draws joint angles in the middle of the Polhem's workspace.
+/// Draws joint angles at which the bars close, at least 8 degrees from where they stretch.
 Eigen::Vector3d polhem_angles(support::Random& random) {
-  return {random.uniform(-1, 1), random.uniform(0.9, 1.9), random.uniform(2.8, 3.8)};
+  const LinkageArm arm = polhem_model().geometry;
+  for (;;) {
+    const Eigen::Vector3d q(random.uniform(-1, 1), random.uniform(0.5, 2.2),
+                            random.uniform(2.0, 4.4));
+    const Eigen::Vector2d bar(
+        arm.length_0 + arm.length_1 * std::cos(q[1]) - arm.length_2 * std::cos(q[2]),
+        arm.length_1 * std::sin(q[1]) - arm.length_2 * std::sin(q[2]));
+    const double distance = bar.norm();
+    const double cosine =
+        (distance * distance + arm.length_4 * arm.length_4 - arm.length_3 * arm.length_3) /
+        (2 * arm.length_4 * distance);
+    if (std::abs(cosine) < 0.99) return q;
+  }
 }
 
 TEST(HfabModels, PolhemHasTheJacobianOfCentralDifferences) {
