@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "calibration.h"
 #include "hand_route.h"
 #include "real_arm.h"
 #include "thimble/render/build_object_touch.h"
@@ -94,6 +95,11 @@ driver::Result<std::unique_ptr<Session>> Session::open(const std::filesystem::pa
     if (!other) return other.error();
     session->scene_.arm = std::move(other).value();
     session->scene_.arm_file = options.arm_file;
+  }
+  if (options.real_arm) {
+    const auto calibration = load_calibration(options.real_arm->name());
+    if (!calibration) return calibration.error();
+    if (*calibration) apply(**calibration, session->scene_.arm);
   }
   const ArmFile& arm = session->scene_.arm;
 
