@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <memory>
+#include <string>
 
 #include "arm_choice.h"
 #include "calibration.h"
@@ -20,7 +21,30 @@ bool enter_pressed() {
   return poll(&terminal, 1, 0) > 0 && read(STDIN_FILENO, ignored, sizeof ignored) >= 0;
 }
 
-int check_arm(const ArmChoice& choice) {
+/// Reads the arm with zero force, and tells how well its reports arrive.
+int listen_to(BenchArm& bench, double duration, const std::atomic<bool>& stop) {
+  const auto rest = [](const driver::DeviceState&) { return Eigen::Vector3d(0, 0, 0); };
+  const driver::WireCounters before = bench.device().wire_counters();
+  const bool whole = bench.run(duration, rest, stop);
+  const driver::WireCounters& after = bench.device().wire_counters();
+  const std::uint64_t reports = after.reports - before.reports;
+  const std::uint64_t missing = after.missing - before.missing;
+  std::printf(
+      "%.0f reports per second; %llu ticks without one, %llu skipped, %llu rejected, %llu "
+      "messages refused.\n",
+      static_cast<double>(reports) / duration, static_cast<unsigned long long>(missing),
+      static_cast<unsigned long long>(after.skipped - before.skipped),
+      static_cast<unsigned long long>(after.rejected - before.rejected),
+      static_cast<unsigned long long>(after.refused - before.refused));
+  if (!whole && !stop.load()) {
+    std::printf("%s\n", std::string(driver::describe(bench.device().fault())).c_str());
+  }
+  // One tick in twenty without a report is what a loop without real-time priority may cost.
+  const bool good = whole && missing * 20 <= reports && after.rejected == before.rejected;
+  return good ? kExitDone : kExitFault;
+}
+
+int check_arm(const ArmChoice& choice, double listen) {
   auto chosen = resolve(choice);
   if (!chosen) {
     std::fprintf(stderr, "thimble: %s\n", chosen.error().message.c_str());
@@ -39,6 +63,7 @@ int check_arm(const ArmChoice& choice) {
     return kExitNoDevice;
   }
   const std::atomic<bool>& stop = catch_interrupts();
+  if (listen > 0) return listen_to(**bench, listen, stop);
   const bool person = !(*bench)->simulated();
   if (person) {
     std::printf("No force above %.1f N. Keep the arm's switch at hand; Ctrl-C ends the check.\n",
@@ -65,8 +90,11 @@ void add_feel_check_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
       "feel-check", "Check an arm by hand: encoders, directions, forces, watchdog");
   auto choice = std::make_shared<ArmChoice>();
+  auto listen = std::make_shared<double>(0);
   choice->add_options(*command);
-  command->callback([choice, &exit_code] { exit_code = check_arm(*choice); });
+  command->add_option("--listen", *listen, "Only read for so many seconds, with zero force")
+      ->check(CLI::Range(0.1, 3600.0));
+  command->callback([choice, listen, &exit_code] { exit_code = check_arm(*choice, *listen); });
 }
 
 }  // namespace thimble::app
