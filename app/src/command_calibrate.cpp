@@ -1,6 +1,3 @@
-#include <poll.h>
-#include <unistd.h>
-
 #include <array>
 #include <cstdio>
 #include <memory>
@@ -10,18 +7,13 @@
 #include "bench_arm.h"
 #include "calibration.h"
 #include "commands.h"
+#include "enter_key.h"
 #include "exit_code.h"
 #include "interrupt.h"
 #include "real_arm.h"
 
 namespace thimble::app {
 namespace {
-
-bool enter_pressed() {
-  pollfd terminal{.fd = STDIN_FILENO, .events = POLLIN, .revents = 0};
-  char ignored[64];
-  return poll(&terminal, 1, 0) > 0 && read(STDIN_FILENO, ignored, sizeof ignored) >= 0;
-}
 
 int fail(const driver::Error& error, int exit_code) {
   std::fprintf(stderr, "thimble: %s\n", error.message.c_str());
@@ -64,13 +56,16 @@ int calibrate(const ArmChoice& choice, bool dry_run) {
   std::array<driver::ArmReading, 4> readings;
   for (std::size_t i = 0; i < kAsks.size(); ++i) {
     std::printf("%s%s\n", kAsks[i], chosen->real_arm ? " Hold it there and press Enter." : "");
+    EnterKey key = EnterKey::kNothing;
     const auto done = [&] {
-      return chosen->real_arm ? enter_pressed() : (*bench)->now() >= kSimulatedTimes[i];
+      if (!chosen->real_arm) return (*bench)->now() >= kSimulatedTimes[i];
+      return (key = look_for_enter()) != EnterKey::kNothing;
     };
     if (!(*bench)->hold(done, stop)) {
       if (stop.load()) return kExitInterrupted;
       return fail({std::string(driver::describe((*bench)->device().fault()))}, kExitFault);
     }
+    if (key == EnterKey::kClosed) return fail({"Nobody is at the terminal."}, kExitBadInput);
     readings[i].counts = (*bench)->device().state().counts;
   }
   const driver::ArmKind kind = chosen->real_arm ? chosen->real_arm->kind : driver::ArmKind::kPolhem;

@@ -1,6 +1,3 @@
-#include <poll.h>
-#include <unistd.h>
-
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -8,18 +5,13 @@
 #include "arm_choice.h"
 #include "calibration.h"
 #include "commands.h"
+#include "enter_key.h"
 #include "exit_code.h"
 #include "feel_check.h"
 #include "interrupt.h"
 
 namespace thimble::app {
 namespace {
-
-bool enter_pressed() {
-  pollfd terminal{.fd = STDIN_FILENO, .events = POLLIN, .revents = 0};
-  char ignored[64];
-  return poll(&terminal, 1, 0) > 0 && read(STDIN_FILENO, ignored, sizeof ignored) >= 0;
-}
 
 /// Reads the arm with zero force, and tells how well its reports arrive.
 int listen_to(BenchArm& bench, double duration, const std::atomic<bool>& stop) {
@@ -71,7 +63,10 @@ int check_arm(const ArmChoice& choice, double listen) {
   }
   const Prompt prompt = [&](const std::string& what) {
     std::printf("%s%s\n", what.c_str(), person ? " Press Enter to begin." : "");
-    return !person || (*bench)->hold(enter_pressed, stop);
+    if (!person) return true;
+    EnterKey key = EnterKey::kNothing;
+    const auto done = [&key] { return (key = look_for_enter()) != EnterKey::kNothing; };
+    return (*bench)->hold(done, stop) && key == EnterKey::kPressed;
   };
   bool all = true;
   const auto results = feel_check(**bench, chosen->file, prompt, stop);

@@ -174,7 +174,8 @@ int run_scene(const RunOptions& options) {
   }
   switch (end) {
     case driver::ServoEnd::kDone:
-      return kExitDone;
+      // A loop with a real arm outlives its faults.
+      return report.fault == driver::Fault::kNone ? kExitDone : kExitFault;
     case driver::ServoEnd::kStopped:
       return kExitInterrupted;
     case driver::ServoEnd::kFault:

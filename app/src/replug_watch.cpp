@@ -1,27 +1,13 @@
 #include "replug_watch.h"
 
-#include <poll.h>
-#include <unistd.h>
-
 #include <cstdio>
 #include <string>
 #include <utility>
 
+#include "enter_key.h"
 #include "real_arm.h"
 
 namespace thimble::app {
-namespace {
-
-/// Tells whether the user pressed Enter since the last call.
-bool enter_pressed() {
-  pollfd terminal{.fd = STDIN_FILENO, .events = POLLIN, .revents = 0};
-  char ignored[64];
-  return poll(&terminal, 1, 0) > 0 && (terminal.revents & POLLIN) != 0 &&
-         read(STDIN_FILENO, ignored, sizeof ignored) > 0;
-}
-
-}  // namespace
-
 ReplugWatch::ReplugWatch(Session& session, const driver::FoundArm& arm,
                          std::filesystem::path firmware)
     : session_(session), arm_(arm), firmware_(std::move(firmware)) {}
@@ -32,7 +18,7 @@ void ReplugWatch::step() {
   if (record.fault == driver::Fault::kNone) {
     told_ = false;
     present_ = true;
-    enter_pressed();  // an Enter of before must not count for a fault to come
+    look_for_enter();  // an Enter of before must not count for a fault to come
     return;
   }
   if (!told_) {
@@ -41,7 +27,7 @@ void ReplugWatch::step() {
     std::fprintf(stderr, "\nForce is off (%s). %s\n", std::string(name(record.fault)).c_str(),
                  std::string(describe(record.fault)).c_str());
     if (present_) std::fprintf(stderr, "Press Enter to let forces through again.\n");
-    enter_pressed();
+    look_for_enter();
   }
   if (!present_) {
     if (offered_ && record.fresh) {
@@ -50,13 +36,13 @@ void ReplugWatch::step() {
       std::fprintf(stderr,
                    "The arm is back. Hold it as before and press Enter to let forces "
                    "through.\n");
-      enter_pressed();
+      look_for_enter();
     } else if (!offered_) {
       search();
     }
     return;
   }
-  if (enter_pressed()) session_.device().ask_to_activate();
+  if (look_for_enter() == EnterKey::kPressed) session_.device().ask_to_activate();
 }
 
 void ReplugWatch::search() {
