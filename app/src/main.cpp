@@ -25,6 +25,9 @@ int run(int argc, char** argv) {
   int exit_code = thimble::app::kExitDone;
   thimble::app::add_run_command(app, exit_code);
   thimble::app::add_devices_command(app, exit_code);
+  thimble::app::add_doctor_command(app, exit_code);
+  thimble::app::add_calibrate_command(app, exit_code);
+  thimble::app::add_feel_check_command(app, exit_code);
   thimble::app::add_mesh_command(app, exit_code);
   thimble::app::add_study_command(app, exit_code);
   thimble::app::add_cost_probe_command(app, exit_code);
