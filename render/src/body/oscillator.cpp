@@ -82,12 +82,9 @@ Flow over_damped(const Rates& r, Real s) {
   const Real way = slow > 0 ? -std::expm1(-slow * r.h) / slow : r.h;
   const Real two_s = 2 * s;
   const Real q = (slow_end - fast_end) / two_s;
-  return {(fast * slow_end - slow * fast_end) / two_s,
-          q,
-          (way + std::expm1(-fast * r.h) / fast) / two_s,
-          -r.w2 * q,
-          (fast * fast_end - slow * slow_end) / two_s,
-          q};
+  return {(fast * slow_end - slow * fast_end) / two_s,    q,
+          (way + std::expm1(-fast * r.h) / fast) / two_s, -r.w2 * q,
+          (fast * fast_end - slow * slow_end) / two_s,    q};
 }
 
 Flow flow_of(const Rates& r) {

@@ -26,8 +26,8 @@ Motion closed_form(double mass, double stiffness, double damping, long double t,
   const long double a = b / (2 * m);
   const long double d = a * a - k / m;
   const long double y0 = x0 - rest;
-  // At zeta = 1 the rounding of b leaves d about 1e-16 a^2, where the two roots would cancel: the double
-  // root is then exact to d t^2 / 6 of what is left, below 1e-16.
+  // At zeta = 1 the rounding of b leaves d about 1e-16 a^2, where the two roots would cancel: the
+  // double root is then exact to d t^2 / 6 of what is left, below 1e-16.
   if (std::abs(d) < 1e-14L * a * a) {
     const long double e = std::exp(-a * t);
     const long double c = v0 + a * y0;
