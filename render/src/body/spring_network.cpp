@@ -101,7 +101,9 @@ driver::Result<SpringNetwork<kDof>> SpringNetwork<kDof>::build(
     tie(spring.stiffness, spring.damping);
     network.coupled_ = network.coupled_ || spring.stiffness > 0 || spring.damping > 0;
   }
+  double rate_min = std::numeric_limits<double>::infinity();
   for (const BodyNode& node : nodes) {
+    rate_min = std::min(rate_min, node.base_damping / node.mass);
     network.mass_.push_back(node.mass);
     network.stiffness_.node.push_back(node.base_stiffness);
     network.damping_.node.push_back(node.base_damping);
@@ -109,7 +111,11 @@ driver::Result<SpringNetwork<kDof>> SpringNetwork<kDof>::build(
   }
   const SpectralRadius stiff = spectral_radius(network, network.stiffness_);
   const SpectralRadius damp = spectral_radius(network, network.damping_);
-  network.bounds_ = {std::sqrt(stiff.value), std::sqrt(stiff.gershgorin), damp.value, relaxation,
+  network.bounds_ = {std::sqrt(stiff.value),
+                     std::sqrt(stiff.gershgorin),
+                     damp.value,
+                     relaxation,
+                     rate_min,
                      stiff.converged && damp.converged};
   return network;
 }

@@ -14,10 +14,13 @@ constexpr double kAnyStep = std::numeric_limits<double>::infinity();
 // quadratic with real coefficients; its roots stay in the unit circle under the conditions below.
 
 // s^2 + c s + k = 0 with |1 + h s| <= 1: h <= c / k where s is complex, h <= 2 / |s| where it is
-// real, and |s| <= c. c / k is at least the least ratio of any spring.
+// real, and |s| <= c. c / k is at least the least ratio of any spring, and at
+// least the least c over the largest k.
 double explicit_euler(const NetworkBounds& bounds) {
+  const double stiffest = bounds.omega_max * bounds.omega_max;
+  const double by_nodes = stiffest > 0 ? bounds.damping_rate_min / stiffest : kAnyStep;
   const double by_damping = bounds.damping_rate_max > 0 ? 2 / bounds.damping_rate_max : kAnyStep;
-  return std::min(bounds.relaxation_min, by_damping);
+  return std::min(std::max(bounds.relaxation_min, by_nodes), by_damping);
 }
 
 // 2 c h + k h^2 <= 4.

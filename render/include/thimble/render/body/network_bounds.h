@@ -14,6 +14,8 @@ struct NetworkBounds {
   double damping_rate_max = 0;
   /// The least damping over stiffness of any spring, s; 0 if a spring has no damper.
   double relaxation_min = 0;
+  /// The least rate at which a node's own damper stops it, 1/s.
+  double damping_rate_min = 0;
   bool converged = true;
 };
 
