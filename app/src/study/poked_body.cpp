@@ -1,0 +1,144 @@
+#include "study/poked_body.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "thimble/render/body/modal_motion.h"
+
+namespace thimble::app {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// What else the machine does only adds, so the least of some runs is taken; slow ones run less.
+constexpr int kRuns = 7;
+constexpr double kRunsBudget = 0.6;  // s
+
+// Runs frame after frame; `at_end(frame)` sees the body after each. Tells the time it took, s.
+template <class Motion, class Vector, class AtEnd>
+double run(Motion& motion, std::int32_t poked, const Vector& force, int poke_frames, int frames,
+           AtEnd&& at_end) {
+  const auto begin = Clock::now();
+  for (int frame = 0; frame < frames; ++frame) {
+    if (frame < poke_frames) motion.push(poked, force);
+    motion.step();
+    at_end(frame);
+  }
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+// Keeps the largest error against the truth.
+template <int kDof>
+class Compared {
+ public:
+  explicit Compared(const PokedBody<kDof>& body) : body_(body) {}
+
+  template <class At>
+  void look(int frame, At&& at) {
+    const auto& truth = body_.truth[static_cast<std::size_t>(frame)];
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+      const double off = (at(i) - truth[i]).norm();
+      // Written so that NaN counts as diverged.
+      if (!(off < kFar)) diverged_ = true;
+      error_ = std::max(error_, off);
+      size_ = std::max(size_, truth[i].norm());
+    }
+  }
+  void tell(WorkPoint& point) const {
+    point.error = error_ / size_;
+    point.diverged = diverged_ || !(point.error < 10);
+  }
+
+ private:
+  static constexpr double kFar = 1e3;  // m
+  const PokedBody<kDof>& body_;
+  double error_ = 0;
+  double size_ = std::numeric_limits<double>::min();
+  bool diverged_ = false;
+};
+
+// Takes the least time of several runs, each with a body at rest.
+template <class Make, class Run>
+double least_frame_us(Make&& make, Run&& run_once, int frames) {
+  double least = std::numeric_limits<double>::infinity();
+  double spent = 0;
+  for (int i = 0; i < kRuns && spent < kRunsBudget; ++i) {
+    auto motion = make();
+    const double seconds = run_once(motion);
+    spent += seconds;
+    least = std::min(least, seconds);
+  }
+  return least * 1e6 / frames;
+}
+
+}  // namespace
+
+template <int kDof>
+driver::Result<render::SpringMotion<kDof>> motion_of(const PokedBody<kDof>& body,
+                                                     render::SpringScheme scheme, int substeps) {
+  render::SpringMotionOptions options;
+  options.scheme = scheme;
+  options.step = kFrame;
+  options.substeps = substeps;
+  options.substeps_max = substeps;
+  options.beyond = render::SpringMotionOptions::Beyond::kAllow;
+  return render::SpringMotion<kDof>::build(body.network, options);
+}
+
+template <int kDof>
+driver::Result<WorkPoint> measure(const PokedBody<kDof>& body, render::SpringScheme scheme,
+                                  int substeps) {
+  const auto built = motion_of(body, scheme, substeps);
+  if (!built) return built.error();
+  const int frames = static_cast<int>(body.truth.size());
+  WorkPoint point{std::string(render::name_of(scheme)), substeps};
+  Compared<kDof> compared(body);
+  auto motion = *built;
+  run(motion, body.poked, body.force, body.poke_frames, frames,
+      [&](int frame) { compared.look(frame, [&](std::size_t i) { return motion.u()[i]; }); });
+  compared.tell(point);
+  if (point.diverged) return point;
+  point.frame_us = least_frame_us([&] { return *built; },
+                                  [&](auto& fresh) {
+                                    return run(fresh, body.poked, body.force, body.poke_frames,
+                                               frames, [](int) {});
+                                  },
+                                  frames);
+  return point;
+}
+
+template <int kDof>
+driver::Result<WorkPoint> measure_modal(const PokedBody<kDof>& body) {
+  const auto built = render::ModalMotion<kDof>::build(body.network, kFrame);
+  if (!built) return built.error();
+  const int frames = static_cast<int>(body.truth.size());
+  WorkPoint point{std::string(render::name_of(render::SpringScheme::kModal)), 1};
+  Compared<kDof> compared(body);
+  auto motion = *built;
+  run(motion, body.poked, body.force, body.poke_frames, frames, [&](int frame) {
+    compared.look(frame, [&](std::size_t i) { return motion.u(static_cast<std::int32_t>(i)); });
+  });
+  compared.tell(point);
+  // A tick of touch asks for the touched node; all others would cost one row of modes each.
+  point.frame_us = least_frame_us([&] { return *built; },
+                                  [&](auto& fresh) {
+                                    volatile double seen = 0;
+                                    return run(fresh, body.poked, body.force, body.poke_frames,
+                                               frames, [&](int) { seen = fresh.u(body.poked)[0]; });
+                                  },
+                                  frames);
+  return point;
+}
+
+template driver::Result<render::SpringMotion<1>> motion_of<1>(const PokedBody<1>&,
+                                                              render::SpringScheme, int);
+template driver::Result<render::SpringMotion<3>> motion_of<3>(const PokedBody<3>&,
+                                                              render::SpringScheme, int);
+template driver::Result<WorkPoint> measure<1>(const PokedBody<1>&, render::SpringScheme, int);
+template driver::Result<WorkPoint> measure<3>(const PokedBody<3>&, render::SpringScheme, int);
+template driver::Result<WorkPoint> measure_modal<1>(const PokedBody<1>&);
+template driver::Result<WorkPoint> measure_modal<3>(const PokedBody<3>&);
+
+}  // namespace thimble::app
