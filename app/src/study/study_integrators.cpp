@@ -29,9 +29,9 @@ constexpr double kFelt = 0.035;
 
 // The scan: small, closed, of irregular triangles. Scaled to what fits in a hand.
 constexpr const char* kScan = "elephant.off";
-constexpr double kScanSize = 0.1;         // m, the longest side of its box
-constexpr double kScanMass = 0.1;         // kg in all
-constexpr int kReferenceSubsteps = 1024;  // per frame: 4 times finer than the finest tested
+constexpr double kScanSize = 0.1;        // m, the longest side of its box
+constexpr double kScanMass = 0.1;        // kg in all
+constexpr int kReferenceSubsteps = 512;  // per frame: 8 times finer than the finest of its order
 
 struct Line {
   SpringScheme scheme;
@@ -40,12 +40,16 @@ struct Line {
 };
 
 std::vector<Line> lines(bool membrane) {
-  std::vector<Line> all{{SpringScheme::kSymplecticEuler, 1, {1, 2, 4, 8, 16, 32, 64, 128, 256}},
-                        {SpringScheme::kVerlet, 2, {1, 2, 4, 8, 16, 32, 64, 128, 256}},
-                        {SpringScheme::kImplicitEuler, 1, {1, 2, 4, 8, 16, 32, 64, 128}},
-                        {SpringScheme::kTrapezoid, 2, {1, 2, 4, 8, 16, 32, 64, 128}},
-                        {SpringScheme::kExplicitEuler, 1, {1, 4, 16, 64, 128, 256, 512}}};
-  if (membrane) all.back().substeps.push_back(1024);
+  std::vector<Line> all{{SpringScheme::kSymplecticEuler, 1, {1, 2, 4, 8, 16, 32, 64}},
+                        {SpringScheme::kVerlet, 2, {1, 2, 4, 8, 16, 32, 64}},
+                        {SpringScheme::kImplicitEuler, 1, {1, 2, 4, 8, 16, 32}},
+                        {SpringScheme::kTrapezoid, 2, {1, 2, 4, 8, 16, 32}},
+                        {SpringScheme::kExplicitEuler, 1, {1, 4, 16, 64, 256}}};
+  if (!membrane) return all;
+  // Cheap enough to go on until orders show.
+  for (Line& line : all) {
+    for (int i = 0; i < 2; ++i) line.substeps.push_back(2 * line.substeps.back());
+  }
   return all;
 }
 
