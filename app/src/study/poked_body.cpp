@@ -1,16 +1,14 @@
 #include "study/poked_body.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <ctime>
 #include <limits>
 
 #include "thimble/render/body/modal_motion.h"
 
 namespace thimble::app {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 // Looks at the touched node, in a way that cannot be left out.
 template <int kDof>
@@ -24,27 +22,24 @@ void keep(const render::ModalMotion<kDof>& motion, std::int32_t node) {
   static_cast<void>(seen);
 }
 
-// What else the machine does only adds, so the least of some runs is taken; slow ones run once.
-constexpr int kRuns = 7;
+// What else the machine does adds to the time even of this thread alone, so the least of some runs
+// is taken; slow ones run once.
+constexpr int kRuns = 9;
 constexpr double kRunsBudget = 0.2;  // s
 
-// Runs frame after frame; `at_end(frame)` sees the body after each. Tells the time that the frames
-// took, without the looks at them, s.
-template <class Motion, class Vector, class AtEnd>
-double run(Motion& motion, std::int32_t poked, const Vector& force, int poke_frames, int frames,
-           AtEnd&& at_end) {
-  Clock::duration spent{};
-  for (int frame = 0; frame < frames; ++frame) {
-    const auto begin = Clock::now();
-    if (frame < poke_frames) motion.push(poked, force);
-    motion.step();
-    // A tick of touch asks for the touched node; all others of a modal body would cost as much
-    // each.
-    keep(motion, poked);
-    spent += Clock::now() - begin;
-    at_end(frame);
-  }
-  return std::chrono::duration<double>(spent).count();
+// The time that this thread has worked, s: others that want the processor do not count.
+double worked() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+// Moves on by a frame and looks at the touched node, as a tick of touch does.
+template <class Motion, class Vector>
+void frame_of(Motion& motion, std::int32_t poked, const Vector& force, bool poke) {
+  if (poke) motion.push(poked, force);
+  motion.step();
+  keep(motion, poked);
 }
 
 // Keeps the largest error against the truth.
@@ -77,17 +72,26 @@ class Compared {
   bool diverged_ = false;
 };
 
-// Runs copies of `rest`, the first under the eyes of `look`, and takes the least time.
+// Runs a copy of `rest` under the eyes of `look`, then others for the least time per frame.
 template <class Motion, class Vector, class Look>
 double least_frame_us(const Motion& rest, std::int32_t poked, const Vector& force, int poke_frames,
                       int frames, Look&& look) {
   Motion seen = rest;
-  double least =
-      run(seen, poked, force, poke_frames, frames, [&](int frame) { look(seen, frame); });
+  double least = 0;
+  for (int frame = 0; frame < frames; ++frame) {
+    const double begin = worked();
+    frame_of(seen, poked, force, frame < poke_frames);
+    least += worked() - begin;
+    look(seen, frame);
+  }
   double spent = least;
   for (int i = 1; i < kRuns && spent < kRunsBudget; ++i) {
     Motion unseen = rest;
-    const double seconds = run(unseen, poked, force, poke_frames, frames, [](int) {});
+    const double begin = worked();
+    for (int frame = 0; frame < frames; ++frame) {
+      frame_of(unseen, poked, force, frame < poke_frames);
+    }
+    const double seconds = worked() - begin;
     spent += seconds;
     least = std::min(least, seconds);
   }

@@ -27,7 +27,7 @@ struct PokedBody {
 struct WorkPoint {
   std::string integrator;
   int substeps = 1;       ///< per frame
-  double frame_us = 0;    ///< the least of several runs
+  double frame_us = 0;    ///< of work; the least of several runs
   double error = 0;       ///< largest of all nodes and frames, as a share of the largest motion
   bool diverged = false;  ///< then error stands for nothing
 };

@@ -105,7 +105,7 @@ void RigidBody::kick(double time) noexcept {
 }
 
 // Turns freely for `time`: the energy is the sum of L_k^2 / 2 I_k, and each term alone turns the
-// body about its axis k by a rate that stays [Touma, Wisdom]; five such turns in a palindrome are
+// body about its axis k by a rate that stays [Touma]; five such turns in a palindrome are
 // of order 2, three palindromes of order 4 [Yoshida].
 void RigidBody::rotate(double time) noexcept {
   const double root = std::cbrt(2.0);

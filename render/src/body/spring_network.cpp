@@ -109,6 +109,10 @@ driver::Result<SpringNetwork<kDof>> SpringNetwork<kDof>::build(
     network.damping_.node.push_back(node.base_damping);
     tie(node.base_stiffness, node.base_damping);
   }
+  for (NetworkWeights* weights : {&network.stiffness_, &network.damping_}) {
+    weights->joined = std::any_of(weights->half.begin(), weights->half.end(),
+                                  [](double weight) { return weight > 0; });
+  }
   const SpectralRadius stiff = spectral_radius(network, network.stiffness_);
   const SpectralRadius damp = spectral_radius(network, network.damping_);
   network.bounds_ = {std::sqrt(stiff.value),
@@ -126,6 +130,7 @@ typename SpringNetwork<kDof>::Vector SpringNetwork<kDof>::row(
   const auto i = static_cast<std::size_t>(node);
   const Vector here = x[i];
   Vector sum = weights.node[i] * here;
+  if (!weights.joined) return sum;
   if (along_.empty()) {
     for (std::size_t e = begin_[i]; e < begin_[i + 1]; ++e) {
       sum += weights.half[e] * (here - x[static_cast<std::size_t>(other_[e])]);

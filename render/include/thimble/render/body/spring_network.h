@@ -34,6 +34,7 @@ struct BodySpring {
 struct NetworkWeights {
   std::vector<double> node;
   std::vector<double> half;
+  bool joined = true;  ///< False if all of `half` is 0, so that nobody need look there.
 };
 
 /// Is masses, springs and dampers between nodes: M u'' + C u' + K u = f, with u the displacements
