@@ -26,7 +26,7 @@ template <int kDof>
 MatrixXd dense(const SpringNetwork<kDof>& network, const NetworkWeights& weights) {
   using Vector = typename SpringNetwork<kDof>::Vector;
   const std::int32_t n = network.node_count();
-  MatrixXd matrix = MatrixXd::Zero(n * kDof, n * kDof);
+  MatrixXd matrix = MatrixXd::Zero(Eigen::Index{n} * kDof, Eigen::Index{n} * kDof);
   std::vector<Vector> unit(at(n), Vector::Zero());
   for (std::int32_t i = 0; i < n; ++i) {
     for (int k = 0; k < kDof; ++k) {

@@ -128,7 +128,7 @@ template <int kDof>
 typename SpringNetwork<kDof>::Vector SpringNetwork<kDof>::row(
     const NetworkWeights& weights, std::int32_t node, std::span<const Vector> x) const noexcept {
   const auto i = static_cast<std::size_t>(node);
-  const Vector here = x[i];
+  const Vector& here = x[i];
   Vector sum = weights.node[i] * here;
   if (!weights.joined) return sum;
   if (along_.empty()) {
