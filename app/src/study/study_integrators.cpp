@@ -184,9 +184,8 @@ Plot work_precision(const Diagram& diagram) {
        << "set key outside right center Left reverse samplen 2\n"
        << "set arrow 1 from graph 0, first " << number(100 * kFelt) << " to graph 1, first "
        << number(100 * kFelt) << " nohead dt '-' lc rgb '" << kFaintInk << "'\n"
-       << "set label 1 'below: not felt (half of the 7 % that a hand can tell)' at graph 0.99, "
-          "first "
-       << number(100 * kFelt) << " left offset 0,-0.8 tc rgb '" << kFaintInk << "'\n"
+       << "set label 1 'below: not felt' at graph 0.01, first " << number(100 * kFelt)
+       << " left offset 0,-0.8 tc rgb '" << kFaintInk << "'\n"
        << "set label 2 'a tick' at first 1000, graph 0.03 rotate left offset 0.8,0 tc rgb '"
        << kFaintInk
        << "'\nset arrow 2 from first 1000, graph 0 to first 1000, graph 1 nohead dt '-' "
