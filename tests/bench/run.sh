@@ -6,7 +6,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 folder=${1:-build/bench}
-app/setup.sh release bench_tick bench_contact
+app/setup.sh release bench_tick bench_contact bench_body
 mkdir -p "$folder"
 build/release/tests/bench/bench_tick --benchmark_repetitions=5 \
   --benchmark_report_aggregates_only=true \
@@ -14,3 +14,6 @@ build/release/tests/bench/bench_tick --benchmark_repetitions=5 \
   --figures="$folder/figures.json"
 mkdir -p "$folder/contact"
 build/release/tests/bench/bench_contact --figures="$folder/contact/figures.json"
+mkdir -p "$folder/body"
+build/release/tests/bench/bench_body --benchmark_repetitions=5 \
+  --benchmark_report_aggregates_only=true --figures="$folder/body/figures.json"
