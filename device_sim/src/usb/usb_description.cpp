@@ -44,9 +44,9 @@ Bytes hid_descriptor(const UsbDescription& d) {
 
 Bytes configuration_descriptor(const UsbDescription& d) {
   Bytes inner;
-  put(inner, {9, kInterfaceDescriptor, 0, 0, static_cast<unsigned>(d.endpoints.size()),
-              d.interface_class, d.interface_subclass, d.interface_protocol,
-              d.product.empty() ? 0U : 2U});
+  put(inner,
+      {9, kInterfaceDescriptor, 0, 0, static_cast<unsigned>(d.endpoints.size()), d.interface_class,
+       d.interface_subclass, d.interface_protocol, d.product.empty() ? 0U : 2U});
   if (!d.report_descriptor.empty()) {
     const Bytes hid = hid_descriptor(d);
     inner.insert(inner.end(), hid.begin(), hid.end());
@@ -127,10 +127,10 @@ std::vector<std::byte> build_raw_report_descriptor(std::uint16_t usage_page, std
   put_word(bytes, usage_page);
   put(bytes, {0x0a});  // usage
   put_word(bytes, usage);
-  put(bytes, {0xa1, 0x01});        // application collection
-  put(bytes, {0x15, 0x00});        // logical minimum 0
-  put(bytes, {0x26, 0xff, 0x00});  // logical maximum 255
-  put(bytes, {0x75, 0x08});        // report size 8 bits
+  put(bytes, {0xa1, 0x01});                               // application collection
+  put(bytes, {0x15, 0x00});                               // logical minimum 0
+  put(bytes, {0x26, 0xff, 0x00});                         // logical maximum 255
+  put(bytes, {0x75, 0x08});                               // report size 8 bits
   put(bytes, {0x95, in_bytes, 0x09, 0x01, 0x81, 0x02});   // so many inputs: data, variable
   put(bytes, {0x95, out_bytes, 0x09, 0x02, 0x91, 0x02});  // so many outputs
   put(bytes, {0xc0});

@@ -30,9 +30,12 @@ bool parse(std::string_view text, Number& number) {
 }
 
 driver::Error bad(std::string_view word, const char* why) {
-  return {"'" + std::string(word) + "' " + why +
-          ". A fault is: KIND [in|out] [after=FRAMES] [for=FRAMES] [rate=CHANCE], KIND one of "
-          "stall, short, long, torn, stale, duplicate, silence, bit_errors, unplug."};
+  std::string text(1, '\'');
+  text.append(word).append("' ").append(why);
+  text.append(
+      ". A fault is: KIND [in|out] [after=FRAMES] [for=FRAMES] [rate=CHANCE], KIND one of stall, "
+      "short, long, torn, stale, duplicate, silence, bit_errors, unplug.");
+  return {text};
 }
 
 }  // namespace
@@ -106,9 +109,8 @@ const FaultyDevice::OpenOrder* FaultyDevice::hit(bool to_host) noexcept {
 
 void FaultyDevice::advance_to(std::int64_t time_ns) noexcept {
   frame_ = time_ns / UsbipSession::kFrame_ns;
-  const auto* over =
-      std::remove_if(orders_.begin(), orders_.begin() + order_count_,
-                     [&](const OpenOrder& open) { return frame_ >= open.end; });
+  const auto* over = std::remove_if(orders_.begin(), orders_.begin() + order_count_,
+                                    [&](const OpenOrder& open) { return frame_ >= open.end; });
   order_count_ = static_cast<std::size_t>(over - orders_.begin());
   device_.advance_to(time_ns);
 }
@@ -195,8 +197,7 @@ PacketResult FaultyDevice::out(std::uint8_t address, std::span<const std::byte> 
     std::copy_n(bytes.begin(), size, last_out_.bytes.begin());
   }
   if (open != nullptr) spoil(open->order, bytes, size, before);
-  const PacketResult result =
-      device_.out(address, std::span<const std::byte>(bytes).first(size));
+  const PacketResult result = device_.out(address, std::span<const std::byte>(bytes).first(size));
   if (open != nullptr && open->order.kind == FaultKind::kDuplicate) {
     device_.out(address, std::span<const std::byte>(bytes).first(size));
   }

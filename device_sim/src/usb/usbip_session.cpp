@@ -9,8 +9,8 @@ namespace {
 
 // Linux's errno values, which are what travels over the wire [Linux, usbip_protocol.rst; uapi
 // errno.h]; written out because another system's differ.
-constexpr std::int32_t kStalled = -32;   // EPIPE
-constexpr std::int32_t kBabble = -75;    // EOVERFLOW
+constexpr std::int32_t kStalled = -32;    // EPIPE
+constexpr std::int32_t kBabble = -75;     // EOVERFLOW
 constexpr std::int32_t kUnlinked = -104;  // ECONNRESET
 constexpr std::int32_t kNoEndpoint = -2;  // ENOENT
 
@@ -92,9 +92,9 @@ std::size_t UsbipSession::command(std::span<const std::byte> bytes) {
 }
 
 void UsbipSession::unlink(const UsbipCommand& command) {
-  const auto found =
-      std::find_if(pending_.begin(), pending_.end(),
-                   [&](const Transfer& t) { return t.sequence == command.unlinked; });
+  const auto found = std::find_if(pending_.begin(), pending_.end(), [&](const Transfer& t) {
+    return t.sequence == command.unlinked;
+  });
   const bool waits = found != pending_.end();
   if (waits) {
     pending_.erase(found);

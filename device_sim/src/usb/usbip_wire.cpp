@@ -14,7 +14,7 @@ constexpr std::uint32_t kReplySubmit = 3, kReplyUnlink = 4;
 constexpr std::size_t kRequestHeaderSize = 8;
 constexpr std::size_t kPathSize = 256;
 constexpr std::uint32_t kNotIsochronous = 0xffffffffU;
-constexpr std::uint32_t kFullSpeed = 2;     // enum usb_device_speed of Linux
+constexpr std::uint32_t kFullSpeed = 2;  // enum usb_device_speed of Linux
 constexpr std::uint32_t kBus = 1, kDevice = 1;
 
 std::uint32_t get(std::span<const std::byte> bytes, std::size_t at, std::size_t size) noexcept {
@@ -79,9 +79,8 @@ Decode decode_request(std::span<const std::byte> bytes, UsbipRequest& request) {
   }
   if (code != kRequestImport) return Decode::kInvalid;
   if (bytes.size() < kRequestHeaderSize + kBusIdSize) return Decode::kPartial;
-  request = {.kind = UsbipRequest::Kind::kImport,
-             .bus_id = {},
-             .size = kRequestHeaderSize + kBusIdSize};
+  request = {
+      .kind = UsbipRequest::Kind::kImport, .bus_id = {}, .size = kRequestHeaderSize + kBusIdSize};
   for (const std::byte letter : bytes.subspan(kRequestHeaderSize, kBusIdSize)) {
     if (letter == std::byte{0}) break;
     request.bus_id.push_back(static_cast<char>(letter));

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "thimble/device_sim/usb/usb_arm.h"
+#include "thimble/driver/arms/hfab/hfab_arm.h"
 #include "thimble/driver/result.h"
 
 namespace thimble::device_sim::usb {
@@ -36,6 +37,10 @@ inline constexpr std::array<ShelfEntry, 4> kShelf{{
     {"polhem-64", "Polhem on a Teensy, HID 16c0:0486, the same reports in 64 bytes"},
     {"falcon", "Novint Falcon, FTDI 0403:cb48, boots, takes firmware, homes"},
 }};
+
+/// Gives the geometry, motors and encoders of a HID arm on the shelf, for whoever drives it.
+/// Real-time: never from the servo thread.
+driver::hfab::HfabModel shelf_model(std::string_view name);
 
 /// Makes an arm by its name. Fails with the list of names. The hand moves for ten minutes, then
 /// rests. Real-time: never from the servo thread.

@@ -27,7 +27,7 @@ struct EndpointDescription {
 struct UsbDescription {
   std::uint16_t vendor_id = 0;
   std::uint16_t product_id = 0;
-  std::uint16_t release = 0x0100;  ///< bcdDevice; some hosts tell chips apart by it.
+  std::uint16_t release = 0x0100;             ///< bcdDevice; some hosts tell chips apart by it.
   std::string manufacturer, product, serial;  ///< ASCII; empty ones get no string descriptor.
   std::uint8_t interface_class = 0xff;        ///< 3 for HID, 0xff for the vendor's own.
   std::uint8_t interface_subclass = 0;

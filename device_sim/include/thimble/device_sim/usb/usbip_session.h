@@ -22,8 +22,8 @@ struct UsbipCounters {
   std::uint64_t unlinked = 0;   ///< Transfers taken back while pending.
 };
 
-/// Is one connection of a USB/IP client to a device: bytes in, bytes out, and in between the schedule
-/// of a full-speed bus. It owns no socket and no clock, so that tests feed it by hand.
+/// Is one connection of a USB/IP client to a device: bytes in, bytes out, and in between the
+/// schedule of a full-speed bus. It owns no socket and no clock, so that tests feed it by hand.
 ///
 /// A transfer waits for the next frame, as it does on a real bus. In each frame an interrupt
 /// endpoint moves one packet if its interval is over, a bulk endpoint up to kBulkPackets, and the

@@ -36,14 +36,14 @@ struct UsbipCommand {
   enum class Kind : std::uint8_t { kSubmit, kUnlink };
   Kind kind = Kind::kSubmit;
   std::uint32_t sequence = 0;
-  std::uint32_t device = 0;      ///< (bus << 16) | device number.
-  bool to_host = false;          ///< Direction of the data.
-  std::uint8_t endpoint = 0;     ///< Number, 0 to 15.
-  std::uint32_t length = 0;      ///< Bytes to move.
-  std::uint32_t unlinked = 0;    ///< For kUnlink: sequence number of the transfer taken back.
+  std::uint32_t device = 0;          ///< (bus << 16) | device number.
+  bool to_host = false;              ///< Direction of the data.
+  std::uint8_t endpoint = 0;         ///< Number, 0 to 15.
+  std::uint32_t length = 0;          ///< Bytes to move.
+  std::uint32_t unlinked = 0;        ///< For kUnlink: sequence number of the transfer taken back.
   std::array<std::byte, 8> setup{};  ///< For endpoint 0.
-  std::size_t size = 0;          ///< Bytes of the whole message; its last `length` are the data if
-                                 ///< they go to the device.
+  std::size_t size = 0;  ///< Bytes of the whole message; its last `length` are the data if
+                         ///< they go to the device.
 };
 
 /// Says how far a decoder came.

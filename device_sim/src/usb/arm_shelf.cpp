@@ -1,0 +1,139 @@
+#include "thimble/device_sim/usb/arm_shelf.h"
+
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "thimble/device_sim/usb/hid_arm.h"
+
+namespace thimble::device_sim::usb {
+namespace {
+
+constexpr double kMotionTime = 600;   // s
+constexpr double kMotionStep = 0.02;  // s between two points of the hand's path
+constexpr double kReach = 0.015;      // m
+constexpr double kQuiet = 1.0;        // s at rest before the hand begins
+constexpr double kTwoPi = 2 * std::numbers::pi;
+
+// Vendor-defined page and usage of the raw HID examples of mbed and Teensy, from which both boards'
+// firmware grew [S mbed USBHID.cpp, Teensy usb_rawhid].
+constexpr std::uint16_t kRawHidPage = 0xffab;
+constexpr std::uint16_t kRawHidUsage = 0x0200;
+
+Eigen::Vector3d offset(HandMotion motion, double time) {
+  if (time <= 0) return {0, 0, 0};
+  switch (motion) {
+    case HandMotion::kRest:
+      break;
+    case HandMotion::kTap:
+      return {0, 0, -kReach * std::sin(kTwoPi * time)};
+    case HandMotion::kStroke:
+      return {0, kReach * std::sin(kTwoPi * time / 2), kReach * (std::cos(kTwoPi * time / 2) - 1)};
+  }
+  return {0, 0, 0};
+}
+
+HandPath hand_path(const Eigen::Vector3d& p_BT, HandMotion motion) {
+  std::vector<HandPath::Point> points{{0, p_BT}};
+  if (motion == HandMotion::kRest) return HandPath(points);
+  for (int i = 0; i * kMotionStep <= kMotionTime; ++i) {
+    const double time = i * kMotionStep;
+    points.push_back({kQuiet + time, p_BT + offset(motion, time)});
+  }
+  return HandPath(points);
+}
+
+UsbDescription hid_description(std::uint16_t vendor, std::uint16_t product, std::string maker,
+                               std::string name, std::string serial, std::uint8_t report_size) {
+  UsbDescription d;
+  d.vendor_id = vendor;
+  d.product_id = product;
+  d.manufacturer = std::move(maker);
+  d.product = std::move(name);
+  d.serial = std::move(serial);
+  d.interface_class = 3;
+  d.report_descriptor =
+      build_raw_report_descriptor(kRawHidPage, kRawHidUsage, report_size, report_size);
+  d.endpoints = {{0x81, TransferKind::kInterrupt, 64, 1}, {0x01, TransferKind::kInterrupt, 64, 1}};
+  return d;
+}
+
+// A hand in pinch grip on a PHANTOM-like arm [M DEVICES 3]; the boards send a report in the frame
+// after they sampled it, because they wait until the host took the last one [S woody-experimental
+// main.cpp: send, then sample again].
+SimulatedArmSettings settings_of_board(double tip_mass, double current_max) {
+  SimulatedArmSettings settings;
+  settings.plant = {.mass = tip_mass, .viscous = 0.005, .coulomb = 0.04};
+  settings.hand.mass = 0.025;
+  settings.hand.stiffness = 300;
+  settings.hand.damping = 3;
+  settings.motors.current_max = current_max;
+  settings.firmware.watchdog_ns = 500'000'000;     // [S woody-experimental main.cpp: 0.5 s]
+  settings.firmware.current_range_mA = INT16_MAX;  // the board clamps, it does not refuse [S]
+  settings.wire.delay_in_ns = 1'000'000;
+  return settings;
+}
+
+}  // namespace
+
+driver::hfab::HfabModel shelf_model(std::string_view name) {
+  driver::hfab::HfabModel model;
+  const bool woody = name == "woodenhaptics";
+  // WoodenHaptics as published; a Polhem board on the mechanics of the vintage PHANTOM refit, whose
+  // figures are known [S DEVICES 2].
+  model.geometry = woody ? driver::SerialArm{.height = 0.080, .length_b = 0.205, .length_c = 0.245}
+                         : driver::SerialArm{.height = 0, .length_b = 0.138, .length_c = 0.112};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double ratio = woody ? (i == 0 ? 16.0 : 12.0) : (i == 0 ? 9.0 : 7.7);
+    model.drives[i] = {.sign = i == 1 ? 1.0 : -1.0,
+                       .ratio = ratio,
+                       .torque_constant = woody ? 0.0259 : 0.0234,
+                       .current_max = 3};
+    model.encoders[i] = {.sign = i == 1 ? 1.0 : -1.0,
+                         .counts_per_motor_turn = woody ? 2000.0 : 4000.0,
+                         .home_counts = 0};
+  }
+  // At the home pose link B points forward and link C hangs down.
+  model.encoders[1].home_counts =
+      static_cast<std::int32_t>(std::lround(std::numbers::pi / 2 / model.step(1)));
+  return model;
+}
+
+driver::Result<std::unique_ptr<UsbArm>> make_usb_arm(std::string_view name,
+                                                     const ShelfOptions& options) {
+  const auto serial_arm = [&](HidLayout layout, UsbDescription description, double tip_mass) {
+    const driver::hfab::HfabModel model = shelf_model(name);
+    driver::ArmReading home;
+    const Eigen::Vector3d p_BT = model.geometry.forward(model.joint_angles(home));
+    return std::make_unique<HidArm>(layout, std::move(description), model,
+                                    settings_of_board(tip_mass, 3), hand_path(p_BT, options.motion),
+                                    options.seed);
+  };
+  if (name == "woodenhaptics") {
+    return {serial_arm(HidLayout::kWoodenHaptics,
+                       hid_description(0x1234, 0x0006, "mbed.org", "HID DEVICE", options.serial, 8),
+                       0.2)};  // kg, about what links of 170 and 110 g weigh at the tip [guess]
+  }
+  if (name == "polhem") {
+    return {serial_arm(HidLayout::kPolhem,
+                       hid_description(0x16c0, 0x0486, "Haptikfabriken", "Polhem", options.serial,
+                                       driver::hfab::kReportSize),
+                       0.075)};
+  }
+  if (name == "polhem-64") {
+    return {serial_arm(HidLayout::kPolhemPadded,
+                       hid_description(0x16c0, 0x0486, "Teensyduino", "Teensyduino RawHID",
+                                       options.serial, driver::hfab::kPaddedReportSize),
+                       0.075)};
+  }
+  std::string names;
+  for (const ShelfEntry& entry : kShelf) {
+    names += (names.empty() ? "" : ", ") + std::string(entry.name);
+  }
+  return driver::Error{"There is no simulated USB arm '" + std::string(name) +
+                       "'; there are: " + names + "."};
+}
+
+}  // namespace thimble::device_sim::usb
