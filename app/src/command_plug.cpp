@@ -11,6 +11,7 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "commands.h"
 #include "exit_code.h"
@@ -19,6 +20,7 @@
 #include "thimble/device_sim/usb/usb_fault.h"
 #include "thimble/device_sim/usb/usbip_server.h"
 #include "thimble/device_sim/usb/vhci.h"
+#include "thimble/driver/arms/falcon/falcon_boot.h"
 
 namespace thimble::app {
 namespace {
@@ -33,7 +35,7 @@ struct PlugOptions {
   std::string motion = "tap";
   std::string serial = "SIM0001";
   std::uint64_t seed = 0;
-  std::string faults, control, trace;
+  std::string firmware, faults, control, trace;
 };
 
 /// Hands the device to the kernel from a thread of its own, because the server answers meanwhile;
@@ -204,9 +206,19 @@ void say_what_to_do(const usb::UsbipServer& server, const PlugOptions& options) 
 }
 
 int plug(const PlugOptions& options) {
-  auto arm = usb::make_usb_arm(
-      options.arm,
-      {.motion = motion_of(options.motion), .serial = options.serial, .seed = options.seed});
+  usb::ShelfOptions shelf;
+  shelf.motion = motion_of(options.motion);
+  shelf.serial = options.serial;
+  shelf.seed = options.seed;
+  if (!options.firmware.empty()) {
+    auto image = driver::falcon::read_firmware(options.firmware);
+    if (!image) {
+      std::fprintf(stderr, "thimble: %s\n", image.error().message.c_str());
+      return kExitBadInput;
+    }
+    shelf.firmware = std::move(*image);
+  }
+  auto arm = usb::make_usb_arm(options.arm, shelf);
   if (!arm) {
     std::fprintf(stderr, "thimble: %s\n", arm.error().message.c_str());
     return kExitBadInput;
@@ -291,6 +303,8 @@ void add_plug_command(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command->add_option("--serial", options->serial, "Serial number")->capture_default_str();
   command->add_option("--seed", options->seed, "Seed of everything random")->capture_default_str();
+  command->add_option("--firmware", options->firmware,
+                      "The only firmware that a simulated Falcon runs; without it any will do");
   command->add_option("--faults", options->faults,
                       "File of faults, one a line: KIND [in|out] [after=FRAMES] [for=FRAMES] "
                       "[rate=CHANCE];\nKIND: stall, short, long, torn, stale, duplicate, silence, "

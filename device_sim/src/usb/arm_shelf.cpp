@@ -6,15 +6,18 @@
 #include <utility>
 #include <vector>
 
+#include "thimble/device_sim/usb/falcon_on_usb.h"
 #include "thimble/device_sim/usb/hid_arm.h"
+#include "thimble/driver/arms/falcon/falcon_arm.h"
 
 namespace thimble::device_sim::usb {
 namespace {
 
-constexpr double kMotionTime = 600;   // s
-constexpr double kMotionStep = 0.02;  // s between two points of the hand's path
-constexpr double kReach = 0.015;      // m
-constexpr double kQuiet = 1.0;        // s at rest before the hand begins
+constexpr double kMotionTime = 600;     // s
+constexpr double kMotionStep = 0.02;    // s between two points of the hand's path
+constexpr double kReach = 0.015;        // m
+constexpr double kFalconReach = 0.020;  // m; the legs pass their homes at 15 mm
+constexpr double kQuiet = 1.0;          // s at rest before the hand begins
 constexpr double kTwoPi = 2 * std::numbers::pi;
 
 // Vendor-defined page and usage of the raw HID examples of mbed and Teensy, from which both boards'
@@ -22,25 +25,25 @@ constexpr double kTwoPi = 2 * std::numbers::pi;
 constexpr std::uint16_t kRawHidPage = 0xffab;
 constexpr std::uint16_t kRawHidUsage = 0x0200;
 
-Eigen::Vector3d offset(HandMotion motion, double time) {
+Eigen::Vector3d offset(HandMotion motion, double reach, double time) {
   if (time <= 0) return {0, 0, 0};
   switch (motion) {
     case HandMotion::kRest:
       break;
     case HandMotion::kTap:
-      return {0, 0, -kReach * std::sin(kTwoPi * time)};
+      return {0, 0, -reach * std::sin(kTwoPi * time)};
     case HandMotion::kStroke:
-      return {0, kReach * std::sin(kTwoPi * time / 2), kReach * (std::cos(kTwoPi * time / 2) - 1)};
+      return {0, reach * std::sin(kTwoPi * time / 2), kReach * (std::cos(kTwoPi * time / 2) - 1)};
   }
   return {0, 0, 0};
 }
 
-HandPath hand_path(const Eigen::Vector3d& p_BT, HandMotion motion) {
+HandPath hand_path(const Eigen::Vector3d& p_BT, HandMotion motion, double reach = kReach) {
   std::vector<HandPath::Point> points{{0, p_BT}};
   if (motion == HandMotion::kRest) return HandPath(points);
   for (int i = 0; i * kMotionStep <= kMotionTime; ++i) {
     const double time = i * kMotionStep;
-    points.push_back({kQuiet + time, p_BT + offset(motion, time)});
+    points.push_back({kQuiet + time, p_BT + offset(motion, reach, time)});
   }
   return HandPath(points);
 }
@@ -57,6 +60,19 @@ UsbDescription hid_description(std::uint16_t vendor, std::uint16_t product, std:
   d.report_descriptor =
       build_raw_report_descriptor(kRawHidPage, kRawHidUsage, report_size, report_size);
   d.endpoints = {{0x81, TransferKind::kInterrupt, 64, 1}, {0x01, TransferKind::kInterrupt, 64, 1}};
+  return d;
+}
+
+UsbDescription falcon_description(std::string serial) {
+  UsbDescription d;
+  d.vendor_id = 0x0403;
+  d.product_id = 0xcb48;
+  d.release = 0x0400;  // FT232BM [S libftdi tells chips apart by it]
+  d.manufacturer = "FTDI";
+  d.product = "FALCON HAPTIC";
+  d.serial = std::move(serial);
+  d.endpoints = {{FtdiChip::kInEndpoint, TransferKind::kBulk, 64, 0},
+                 {FtdiChip::kOutEndpoint, TransferKind::kBulk, 64, 0}};
   return d;
 }
 
@@ -127,6 +143,14 @@ driver::Result<std::unique_ptr<UsbArm>> make_usb_arm(std::string_view name,
                        hid_description(0x16c0, 0x0486, "Teensyduino", "Teensyduino RawHID",
                                        options.serial, driver::hfab::kPaddedReportSize),
                        0.075)};
+  }
+  if (name == "falcon") {
+    const Eigen::Vector3d p_BM = driver::falcon::falcon_geometry().p_BM;
+    // Tip mass and friction of a Falcon are not known [DEVICES 3]; those of the PHANTOM stand in.
+    const SimulatedArmSettings grip = settings_of_board(0.15, 1);
+    return {std::make_unique<FalconOnUsb>(falcon_description(options.serial), grip.plant, grip.hand,
+                                          hand_path(p_BM, options.motion, kFalconReach),
+                                          options.firmware)};
   }
   std::string names;
   for (const ShelfEntry& entry : kShelf) {

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "thimble/device_sim/usb/usb_arm.h"
 #include "thimble/driver/arms/hfab/hfab_arm.h"
@@ -15,8 +17,8 @@ namespace thimble::device_sim::usb {
 /// Says what the simulated hand does with the arm.
 enum class HandMotion : std::uint8_t {
   kRest,    ///< Holds the tip at the home pose.
-  kTap,     ///< Goes up and down by 15 mm along the base's z, once a second.
-  kStroke,  ///< Goes round a circle of 15 mm in the base's y and z, once in two seconds.
+  kTap,     ///< Goes up and down by 15 mm (Falcon: 20 mm) along the base's z, once a second.
+  kStroke,  ///< Goes round a circle of so much in the base's y and z, once in two seconds.
 };
 
 /// Says how an arm from the shelf is to be.
@@ -24,6 +26,7 @@ struct ShelfOptions {
   HandMotion motion = HandMotion::kTap;
   std::string serial = "SIM0001";
   std::uint64_t seed = 0;
+  std::vector<std::byte> firmware;  ///< The only image that a Falcon runs; empty: any.
 };
 
 /// Lists the arms that can be plugged in: name for the command line, and what it is.
