@@ -9,6 +9,7 @@
 #include "thimble/device_sim/usb/falcon_on_usb.h"
 #include "thimble/device_sim/usb/hid_arm.h"
 #include "thimble/driver/arms/falcon/falcon_arm.h"
+#include "thimble/driver/arms/hfab/hfab_models.h"
 
 namespace thimble::device_sim::usb {
 namespace {
@@ -95,26 +96,15 @@ SimulatedArmSettings settings_of_board(double tip_mass, double current_max) {
 }  // namespace
 
 driver::hfab::HfabModel shelf_model(std::string_view name) {
-  driver::hfab::HfabModel model;
-  const bool woody = name == "woodenhaptics";
-  // WoodenHaptics as published; a Polhem board on the mechanics of the vintage PHANTOM refit, whose
-  // figures are known [S DEVICES 2].
-  model.geometry = woody ? driver::SerialArm{.height = 0.080, .length_b = 0.205, .length_c = 0.245}
-                         : driver::SerialArm{.height = 0, .length_b = 0.138, .length_c = 0.112};
-  for (std::size_t i = 0; i < 3; ++i) {
-    const double ratio = woody ? (i == 0 ? 16.0 : 12.0) : (i == 0 ? 9.0 : 7.7);
-    model.drives[i] = {.sign = i == 1 ? 1.0 : -1.0,
-                       .ratio = ratio,
-                       .torque_constant = woody ? 0.0259 : 0.0234,
-                       .current_max = 3};
-    model.encoders[i] = {.sign = i == 1 ? 1.0 : -1.0,
-                         .counts_per_motor_turn = woody ? 2000.0 : 4000.0,
-                         .home_counts = 0};
-  }
-  // At the home pose link B points forward and link C hangs down.
-  model.encoders[1].home_counts =
-      static_cast<std::int32_t>(std::lround(std::numbers::pi / 2 / model.step(1)));
-  return model;
+  // A Polhem board on the mechanics of the vintage PHANTOM refit, for which the same board was
+  // made; the Polhem's own linkage is not simulated.
+  const driver::JointModel<driver::SerialArm> model =
+      name == "woodenhaptics" ? driver::hfab::woody_model() : driver::hfab::vintage_model();
+  driver::hfab::HfabModel shelf;
+  shelf.geometry = model.geometry;
+  shelf.drives = model.drives;
+  shelf.encoders = model.encoders;
+  return shelf;
 }
 
 driver::Result<std::unique_ptr<UsbArm>> make_usb_arm(std::string_view name,

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
+
 #include <random>
 
 #include "support/usb_host_line.h"
@@ -39,6 +41,12 @@ class FalconOnUsbTest : public testing::Test {
     host_.reset();
     server_.reset();
   }
+  ShelfOptions with_image() const {
+    ShelfOptions options;
+    options.firmware = image_;
+    return options;
+  }
+
   std::unique_ptr<UsbArm> arm_;
   const FalconOnUsb* falcon_ = nullptr;
   std::optional<FaultyDevice> faulty_;
@@ -57,7 +65,7 @@ TEST_F(FalconOnUsbTest, SaysNothingUntilItHasFirmware) {
 }
 
 TEST_F(FalconOnUsbTest, BootsTakesFirmwareAndRunsIt) {
-  plug({.firmware = image_});
+  plug(with_image());
   const auto report = driver::falcon::upload_firmware(*line_, image_, quick_);
   ASSERT_TRUE(report.ok()) << report.error().message;
   EXPECT_EQ(report->attempts, 1);
@@ -68,7 +76,7 @@ TEST_F(FalconOnUsbTest, BootsTakesFirmwareAndRunsIt) {
 }
 
 TEST_F(FalconOnUsbTest, DoesNotRunFirmwareThatCameWrong) {
-  plug({.firmware = image_});
+  plug(with_image());
   ASSERT_TRUE(driver::falcon::enter_boot_loader(*line_, quick_).ok());
   std::vector<std::byte> wrong(image_.begin(), image_.begin() + 62);
   wrong[30] ^= std::byte{1};
@@ -80,7 +88,7 @@ TEST_F(FalconOnUsbTest, DoesNotRunFirmwareThatCameWrong) {
 }
 
 TEST_F(FalconOnUsbTest, TakesFirmwareOverABadCableInTheEnd) {
-  plug({.firmware = image_});
+  plug(with_image());
   // One bit in 20,000 flips on the way out: about one in the 16,000 of the first upload, until the
   // cable is pushed home after 400 frames.
   faulty_->order(*parse_fault("bit_errors out rate=0.00005 for=400"));
@@ -92,7 +100,7 @@ TEST_F(FalconOnUsbTest, TakesFirmwareOverABadCableInTheEnd) {
 }
 
 TEST_F(FalconOnUsbTest, KnowsWhereItIsOnlyAfterHoming) {
-  plug({.motion = HandMotion::kTap});
+  plug({});
   ASSERT_TRUE(driver::falcon::upload_firmware(*line_, image_, quick_).ok());
   auto state = driver::falcon::home_once(*line_, 0, quick_);
   ASSERT_TRUE(state.answered);
