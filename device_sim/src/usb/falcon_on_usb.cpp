@@ -30,12 +30,12 @@ void FalconOnUsb::move_to(std::int64_t time_ns) noexcept {
   time_ns_ = time_ns;
 }
 
-void FalconOnUsb::hear_line() noexcept {
+void FalconOnUsb::hear_line(std::int64_t dt_ns) noexcept {
   const Eigen::Vector3d exact = plant_.exact_counts();
   board_.set_encoders({exact[0], exact[1], exact[2]});
   board_.watch(time_ns_);
   board_.host_rate(chip_.rate());
-  chip_.deliver();
+  chip_.deliver(dt_ns);
   if (board_.counters().packets != packets_) {
     truth_.messages += board_.counters().packets - packets_;
     truth_.reports = truth_.messages;  // each packet is answered
@@ -58,10 +58,11 @@ void FalconOnUsb::hear_line() noexcept {
 
 void FalconOnUsb::advance_to(std::int64_t time_ns) noexcept {
   while (time_ns_ < time_ns) {
-    const std::int64_t frame_end = std::min(time_ns, time_ns_ + UsbipSession::kFrame_ns);
-    move_to(std::min(frame_end, time_ns_ + chip_.line_time_ns()));
-    hear_line();
-    move_to(frame_end);
+    const std::int64_t dt_ns = std::min(time_ns - time_ns_, UsbipSession::kFrame_ns);
+    const std::int64_t end_ns = time_ns_ + dt_ns;
+    move_to(time_ns_ + chip_.line_time_ns(dt_ns));
+    hear_line(dt_ns);
+    move_to(end_ns);
   }
 }
 

@@ -46,10 +46,6 @@ double FtdiChip::rate() const noexcept {
   return kClock / (whole + kEighths[(divisor_ >> 14U) & 7U] / 8);
 }
 
-std::size_t FtdiChip::bytes_per_frame() const noexcept {
-  return static_cast<std::size_t>(std::ceil(rate() / kBitsPerByte / 1000));
-}
-
 PacketResult FtdiChip::control(const SetupPacket& setup, std::span<std::byte> data) noexcept {
   if ((setup.request_type & kKindMask) != kKindVendor) return {Answer::kStall, 0};
   const auto low = static_cast<std::uint8_t>(setup.value & 0xffU);
@@ -121,14 +117,13 @@ PacketResult FtdiChip::out(std::span<const std::byte> packet) noexcept {
   return done(packet.size());
 }
 
-std::int64_t FtdiChip::line_time_ns() const noexcept {
-  const std::size_t bytes = std::min(to_board_.size(), bytes_per_frame());
-  const double time = static_cast<double>(bytes) * kBitsPerByte / rate();
-  return std::min<std::int64_t>(static_cast<std::int64_t>(time * 1e9), 900'000);
+std::int64_t FtdiChip::line_time_ns(std::int64_t dt_ns) const noexcept {
+  const double time = static_cast<double>(to_board_.size()) * kBitsPerByte / rate();
+  return std::min(static_cast<std::int64_t>(time * 1e9), dt_ns);
 }
 
-void FtdiChip::deliver() noexcept {
-  const double more = rate() / kBitsPerByte / 1000;
+void FtdiChip::deliver(std::int64_t dt_ns) noexcept {
+  const double more = rate() / kBitsPerByte * static_cast<double>(dt_ns) * 1e-9;
   const auto move = [&](ByteQueue& from, double& credit, auto&& give) {
     credit = from.size() == 0 ? 0 : credit + more;
     for (; credit >= 1 && from.size() > 0; --credit) give(from.pop());

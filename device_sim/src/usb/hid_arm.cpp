@@ -66,8 +66,10 @@ void HidArm::keep_sample() noexcept {
 void HidArm::advance_to(std::int64_t time_ns) noexcept {
   // Frame by frame, so that what the encoders really saw is known for each.
   while (arm_.time_ns() < time_ns) {
-    arm_.advance_to(std::min(time_ns, arm_.time_ns() + UsbipSession::kFrame_ns));
-    keep_sample();
+    const std::int64_t frame_ns =
+        (arm_.time_ns() / UsbipSession::kFrame_ns + 1) * UsbipSession::kFrame_ns;
+    arm_.advance_to(std::min(time_ns, frame_ns));
+    if (arm_.time_ns() == frame_ns) keep_sample();
   }
 }
 

@@ -13,12 +13,19 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <ctime>
 #include <utility>
 
 namespace thimble::device_sim::usb {
 namespace {
 
 constexpr std::size_t kClientsMax = 16;
+
+std::int64_t monotonic_ns() noexcept {
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return now.tv_sec * std::int64_t{1'000'000'000} + now.tv_nsec;
+}
 
 driver::Error trouble(const std::string& what) {
   return {what + ": " + std::strerror(errno) + "."};
@@ -161,9 +168,19 @@ void UsbipServer::frame(std::int64_t time_ns) {
   drop_finished();
 }
 
+void UsbipServer::send_bulk(std::int64_t time_ns) {
+  for (Client& client : clients_) {
+    if (!client.session->has_bulk_to_send()) continue;
+    device_.advance_to(time_ns);
+    client.session->send_bulk();
+    send_ready(client);
+  }
+}
+
 void UsbipServer::run(const std::atomic<bool>& stop, const FrameObserver& observer) {
   const int timer = timerfd_create(CLOCK_MONOTONIC, TFD_CLOEXEC | TFD_NONBLOCK);
   const itimerspec every_frame{{0, UsbipSession::kFrame_ns}, {0, UsbipSession::kFrame_ns}};
+  const std::int64_t start_ns = monotonic_ns();
   timerfd_settime(timer, 0, &every_frame, nullptr);
   std::int64_t number = 0;
   while (!stop.load(std::memory_order_relaxed)) {
@@ -176,11 +193,24 @@ void UsbipServer::run(const std::atomic<bool>& stop, const FrameObserver& observ
       if (observer) observer(number);
       continue;
     }
-    // Nothing is answered between frames, so waiting for the timer alone costs no time.
-    pollfd wait{timer, POLLIN, 0};
-    poll(&wait, 1, 100);
+    wait_for(timer);
+    serve(0);
+    // The frame that is running ends when the timer says so, not before.
+    const std::int64_t end_ns = (number + 1) * UsbipSession::kFrame_ns - 1;
+    send_bulk(std::min(monotonic_ns() - start_ns, end_ns));
   }
   close(timer);
+}
+
+void UsbipServer::wait_for(int timer) {
+  std::array<pollfd, kClientsMax + 2> waits;
+  nfds_t count = 0;
+  waits[count++] = {timer, POLLIN, 0};
+  if (listener_ >= 0) waits[count++] = {listener_, POLLIN, 0};
+  for (const Client& client : clients_) {
+    if (count < waits.size()) waits[count++] = {client.socket, POLLIN, 0};
+  }
+  poll(waits.data(), count, 100);
 }
 
 }  // namespace thimble::device_sim::usb

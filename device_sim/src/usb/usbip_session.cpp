@@ -103,17 +103,17 @@ void UsbipSession::unlink(const UsbipCommand& command) {
   append_unlink_reply(output_, command.sequence, waits ? kUnlinked : 0);
 }
 
-void UsbipSession::frame(std::int64_t time_ns) {
-  if (state_ != State::kAttached) return;
+template <class Chosen>
+void UsbipSession::run_chosen(std::int64_t frame, Chosen&& chosen) {
   // An endpoint whose transfer waits, or that had its packet in this frame, is done for it.
   std::uint32_t done = 0;
   for (auto transfer = pending_.begin(); transfer != pending_.end();) {
     const std::uint32_t bit = bit_of(transfer->address);
-    if ((done & bit) != 0) {
+    if ((done & bit) != 0 || !chosen(*transfer)) {
       ++transfer;
       continue;
     }
-    const Step step = run(*transfer, time_ns / kFrame_ns);
+    const Step step = run(*transfer, frame);
     if (step == Step::kGone) {
       state_ = State::kClosing;
       return;
@@ -123,6 +123,28 @@ void UsbipSession::frame(std::int64_t time_ns) {
     if (step == Step::kWaits || !bulk) done |= bit;
     transfer = step == Step::kComplete ? pending_.erase(transfer) : std::next(transfer);
   }
+}
+
+bool UsbipSession::is_bulk_out(const Transfer& transfer) const noexcept {
+  if ((transfer.address & 0x80U) != 0) return false;
+  const EndpointDescription* endpoint = device_.description().endpoint(transfer.address);
+  return endpoint != nullptr && endpoint->kind == TransferKind::kBulk;
+}
+
+bool UsbipSession::has_bulk_to_send() const noexcept {
+  return state_ == State::kAttached &&
+         std::any_of(pending_.begin(), pending_.end(),
+                     [this](const Transfer& transfer) { return is_bulk_out(transfer); });
+}
+
+void UsbipSession::send_bulk() {
+  if (state_ != State::kAttached) return;
+  run_chosen(0, [this](const Transfer& transfer) { return is_bulk_out(transfer); });
+}
+
+void UsbipSession::frame(std::int64_t time_ns) {
+  if (state_ != State::kAttached) return;
+  run_chosen(time_ns / kFrame_ns, [](const Transfer&) { return true; });
 }
 
 UsbipSession::Step UsbipSession::run(Transfer& transfer, std::int64_t frame) {

@@ -13,8 +13,8 @@
 namespace thimble::device_sim::usb {
 
 /// Is a simulated Novint Falcon on a USB plug: FTDI converter, board, delta mechanics and a hand.
-/// What the host sends in one frame reaches the board at the line's rate, the board samples the
-/// encoders when a packet is complete, and its answer is there in the next frame.
+/// What the host sends reaches the board at the line's rate, the board samples the encoders when a
+/// packet is complete, and its answer goes to the host when the latency timer of 1 ms is over.
 class FalconOnUsb final : public UsbArm {
  public:
   /// Rests the arm at the path's first point. `image` is the firmware that it can run; empty if any
@@ -36,7 +36,7 @@ class FalconOnUsb final : public UsbArm {
 
  private:
   void move_to(std::int64_t time_ns) noexcept;
-  void hear_line() noexcept;
+  void hear_line(std::int64_t dt_ns) noexcept;
 
   UsbDescription description_;
   HandPath path_;

@@ -76,12 +76,12 @@ class FtdiChip {
   PacketResult in(std::int64_t time_ns, std::span<std::byte> packet) noexcept;
   PacketResult out(std::span<const std::byte> packet) noexcept;
 
-  /// Tells how long the line needs for what the host sent and may go in one frame, ns; 0 if nothing
-  /// waits. The caller lets that time pass before `deliver`.
-  std::int64_t line_time_ns() const noexcept;
-  /// Brings the board what the host sent, and the host what the board says, each as far as a
-  /// millisecond of the line's time allows. Once a frame.
-  void deliver() noexcept;
+  /// Tells how long the line needs for what the host sent and may go within `dt_ns`, ns; 0 if
+  /// nothing waits. The caller lets that time pass before `deliver`.
+  std::int64_t line_time_ns(std::int64_t dt_ns) const noexcept;
+  /// Brings the board what the host sent, and the host what the board says, each as far as the line
+  /// comes in `dt_ns`.
+  void deliver(std::int64_t dt_ns) noexcept;
 
   std::uint8_t latency_ms() const noexcept { return latency_ms_; }
   /// Tells the line's rate as the host set it, baud.
@@ -90,8 +90,6 @@ class FtdiChip {
   std::uint64_t garbled() const noexcept { return garbled_; }
 
  private:
-  std::size_t bytes_per_frame() const noexcept;
-
   SerialBoard& board_;
   ByteQueue to_board_, from_board_, to_host_;
   double to_board_credit_ = 0, to_host_credit_ = 0;  // bytes that the line could have moved

@@ -48,6 +48,9 @@ class UsbipServer {
   /// Lets the bus run one frame with this start time (ns) and sends what became ready.
   void frame(std::int64_t time_ns);
 
+  /// Sends what clients have for bulk endpoints, in the middle of a frame, at this time (ns).
+  void send_bulk(std::int64_t time_ns);
+
   /// Serves at the pace of the wall clock, a frame each millisecond, until `stop` is set. A frame
   /// that comes too late is left out and counted.
   void run(const std::atomic<bool>& stop, const FrameObserver& observer);
@@ -70,6 +73,7 @@ class UsbipServer {
   };
 
   void take(Client& client);
+  void wait_for(int timer);
   static void send_ready(Client& client);
   void accept_client();
   void drop_finished();

@@ -25,9 +25,10 @@ struct UsbipCounters {
 /// Is one connection of a USB/IP client to a device: bytes in, bytes out, and in between the
 /// schedule of a full-speed bus. It owns no socket and no clock, so that tests feed it by hand.
 ///
-/// A transfer waits for the next frame, as it does on a real bus. In each frame an interrupt
+/// An interrupt transfer waits for its frame, as it does on a real bus: in each frame an interrupt
 /// endpoint moves one packet if its interval is over, a bulk endpoint up to kBulkPackets, and the
-/// control pipe one transfer. Transfers of one endpoint keep their order.
+/// control pipe one transfer. What goes out in bulk may also go at once, in what a frame has left
+/// (`send_bulk`). Transfers of one endpoint keep their order.
 class UsbipSession {
  public:
   /// Is how many bulk packets of 64 bytes a frame holds [USB 2.0, table 5-9].
@@ -55,6 +56,13 @@ class UsbipSession {
   /// kClosing. The caller moves the device's time. Real-time: never from the servo thread.
   void frame(std::int64_t time_ns);
 
+  /// Tells whether bulk data wait to go to the device. Real-time: safe.
+  bool has_bulk_to_send() const noexcept;
+
+  /// Sends bulk data to the device in the running frame. The caller moves the device's time.
+  /// Real-time: never from the servo thread.
+  void send_bulk();
+
   /// Gives the bytes for the client; the caller takes away from the front what it sent.
   std::vector<std::byte>& output() noexcept { return output_; }
 
@@ -76,6 +84,9 @@ class UsbipSession {
   std::size_t ask(std::span<const std::byte> bytes, bool available);
   std::size_t command(std::span<const std::byte> bytes);
   void unlink(const UsbipCommand& command);
+  template <class Chosen>
+  void run_chosen(std::int64_t frame, Chosen&& chosen);
+  bool is_bulk_out(const Transfer& transfer) const noexcept;
   Step run(Transfer& transfer, std::int64_t frame);
   Step run_control(Transfer& transfer);
   Step run_packets(Transfer& transfer, const EndpointDescription& endpoint);
