@@ -3,6 +3,8 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "thimble/device_sim/usb/usbip_session.h"
+#include "thimble/device_sim/usb/usbip_wire.h"
 #include "thimble/driver/arms/falcon/falcon_arm.h"
 #include "thimble/driver/arms/hfab/hfab_line.h"
 #include "thimble/driver/arms/hfab/hfab_report.h"
@@ -78,6 +80,92 @@ bool reads(Bytes bytes) {
   return false;
 }
 
+/// Reads the bytes as one message of a USB/IP client in each of its two phases.
+bool usbip_decode(Bytes bytes) {
+  namespace usb = device_sim::usb;
+  usb::UsbipRequest request;
+  const bool asked = usb::decode_request(bytes, request) == usb::Decode::kWhole;
+  if (asked) {
+    promise(request.size <= bytes.size(), "a request lies within its bytes");
+    const auto again = usb::encode_request(request);
+    usb::UsbipRequest same;
+    promise(usb::decode_request(again, same) == usb::Decode::kWhole, "a request comes back");
+    // A bus id that fills its field loses its last letter to the closing zero.
+    promise(request.bus_id.starts_with(same.bus_id), "a bus id comes back");
+  }
+  usb::UsbipCommand command;
+  if (usb::decode_command(bytes, command) != usb::Decode::kWhole) return asked;
+  promise(command.size <= bytes.size() && command.length <= usb::kTransferMax,
+          "a command lies within its bytes");
+  const Bytes data = bytes.first(command.size).subspan(usb::kUsbipHeaderSize);
+  usb::UsbipCommand same;
+  promise(usb::decode_command(usb::encode_command(command, data), same) == usb::Decode::kWhole,
+          "a command comes back");
+  promise(same.sequence == command.sequence && same.setup == command.setup &&
+              same.length == command.length && same.unlinked == command.unlinked,
+          "a command means the same again");
+  return true;
+}
+
+/// Is a device with one endpoint of each kind, which takes and gives whatever it is asked.
+class Obliging final : public device_sim::usb::UsbDevice {
+ public:
+  Obliging() {
+    using device_sim::usb::TransferKind;
+    description_.endpoints = {{0x81, TransferKind::kInterrupt, 8, 1},
+                              {0x01, TransferKind::kInterrupt, 8, 1},
+                              {0x82, TransferKind::kBulk, 64, 0},
+                              {0x02, TransferKind::kBulk, 64, 0}};
+  }
+  const device_sim::usb::UsbDescription& description() const noexcept override {
+    return description_;
+  }
+  void advance_to(std::int64_t) noexcept override {}
+  device_sim::usb::PacketResult control(const device_sim::usb::SetupPacket& setup,
+                                        std::span<std::byte> data) noexcept override {
+    promise(data.size() <= setup.length, "a device is asked for no more than the set-up says");
+    return {device_sim::usb::Answer::kDone, data.size()};
+  }
+  device_sim::usb::PacketResult in(std::uint8_t, std::span<std::byte> packet) noexcept override {
+    promise(packet.size() >= kPacketMax, "a device has room for a packet");
+    return {device_sim::usb::Answer::kDone, ++count_ % 70};
+  }
+  device_sim::usb::PacketResult out(std::uint8_t,
+                                    std::span<const std::byte> packet) noexcept override {
+    promise(packet.size() <= kPacketMax, "a packet is no longer than packets are");
+    return {device_sim::usb::Answer::kDone, packet.size()};
+  }
+
+ private:
+  device_sim::usb::UsbDescription description_;
+  std::size_t count_ = 0;
+};
+
+/// Lets a client that imported a device and configured it go on with these bytes, in two pieces.
+bool usbip_session(Bytes bytes) {
+  namespace usb = device_sim::usb;
+  Obliging device;
+  usb::UsbipSession session(device, "1-1");
+  session.receive(
+      usb::encode_request({.kind = usb::UsbipRequest::Kind::kImport, .bus_id = "1-1", .size = 0}),
+      true);
+  usb::UsbipCommand configure;
+  configure.setup = {std::byte{0}, std::byte{9}, std::byte{1}};
+  session.receive(usb::encode_command(configure), true);
+  session.frame(0);
+  session.output().clear();
+  session.receive(bytes.first(bytes.size() / 2), true);
+  session.frame(1'000'000);
+  session.receive(bytes.subspan(bytes.size() / 2), true);
+  session.send_bulk();
+  for (int frame = 2; frame < 5; ++frame) session.frame(frame * 1'000'000);
+  const auto& counters = session.counters();
+  promise(counters.completed + counters.stalled + counters.babbled + counters.unlinked <=
+              counters.submitted,
+          "no more answers than questions");
+  return session.state() == usb::UsbipSession::State::kAttached && counters.completed > 1;
+}
+
 }  // namespace
 
 bool decode_anything(Bytes bytes) {
@@ -110,8 +198,12 @@ bool decode_anything(Bytes bytes) {
     case 7:
       return comes_back(rest, falcon::decode_host_packet, falcon::encode_host_packet,
                         "packet to the arm");
-    default:
+    case 8:
       return find_frames(rest);
+    case 9:
+      return usbip_decode(rest);
+    default:
+      return usbip_session(rest);
   }
 }
 
