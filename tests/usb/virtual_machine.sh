@@ -90,15 +90,15 @@ head -c 1500 /bin/sh >"$root/etc/falcon.bin"
 
 ticks=2000 faulty=woodenhaptics arms=woodenhaptics,polhem,polhem-64,falcon limit=600
 [ -z "$long" ] || { ticks=10000 faulty=$arms limit=1800; }
-arms=${THIMBLE_USB_ARMS:-$arms} faulty=${THIMBLE_USB_FAULTY-$faulty}
+arms=${THIMBLE_USB_ARMS-$arms} faulty=${THIMBLE_USB_FAULTY-$faulty}
 log=$work/console.log
 begin=$(date +%s)
 status=0
 timeout $limit qemu-system-x86_64 -accel tcg -icount shift=2,sleep=off -smp 1 -m 384 \
   -kernel "$kernel" -initrd "$work/initrd.gz" -nographic -no-reboot -nodefaults -serial stdio \
   -append "console=ttyS0 quiet panic=-1 mitigations=off nokaslr thimble.ticks=$ticks \
-thimble.arms=$arms thimble.faulty=$faulty" </dev/null 2>"$work/qemu.log" |
-  tr -d '\r' >"$log" || status=$?
+thimble.arms=$arms thimble.faulty=$faulty" </dev/null 2>"$work/qemu.log" >"$log" || status=$?
+sed -i 's/\r//g' "$log"
 echo "The virtual machine ran for $(($(date +%s) - begin)) s."
 if [ $status != 0 ] && grep -qiE "could not load|failed to|not supported|Could not" "$work/qemu.log"; then
   cat "$work/qemu.log" >&2
