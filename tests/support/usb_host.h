@@ -117,6 +117,12 @@ class UsbHost {
   }
   std::int64_t frame() const { return frame_; }
 
+  /// Lets bulk data go to the device now, in the middle of a frame (ns).
+  void send_bulk(std::int64_t time_ns) {
+    server_.send_bulk(time_ns);
+    listen();
+  }
+
   /// Takes the answer to a transfer, if it came.
   std::optional<Done> done(std::uint32_t sequence) {
     listen();

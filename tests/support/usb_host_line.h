@@ -13,6 +13,10 @@ namespace thimble::support {
 class UsbHostLine final : public driver::SerialLine {
  public:
   explicit UsbHostLine(UsbHost& host) : host_(host) {}
+  ~UsbHostLine() override {
+    // A read that is left behind would take what is meant for whoever comes next.
+    if (asked_ != 0) host_.take_back(asked_);
+  }
 
   bool set_rate_divisor(std::uint16_t divisor) override { return request(3, divisor); }
   bool set_frame_8n1() override { return request(4, 8) && request(2, 0); }

@@ -19,8 +19,6 @@ for module in usb-common usbcore hid usbip-core vhci-hcd usbhid hid-generic; do
   insmod /lib/modules/$module.ko || echo "FAIL module $module: not loaded"
 done
 /lib/systemd/systemd-udevd --daemon --resolve-names=early 2>/dev/null
-udevadm trigger --action=add
-udevadm settle --timeout=20
 uptime() { cut -d' ' -f1 /proc/uptime; }
 echo "NOTE ready after $(uptime) s"
 
