@@ -58,6 +58,20 @@ for arm in $arms; do
   sed -n 's/^Unplugged\. /NOTE '$arm': /p' /tmp/plug.log
   usb_check compare $arm /tmp/driver.trace /tmp/device.trace
 
+  # The program itself, where the arm file and the simulated mechanics are of the same arm.
+  if [ $arm = woodenhaptics ] || [ $arm = falcon ]; then
+    plug $arm /tmp/run.trace
+    program="thimble run /data/tests/data/scenes/two_boxes.yaml --arm /data/app/arms/$arm.yaml"
+    [ -z "$image" ] || program="$program --firmware $image"
+    if as tester "thimble devices && HOME=/tmp $program --device SIM0001 --yes --duration 0.5" \
+      >/tmp/run.log 2>&1 && grep -q 'SIM0001.*ready' /tmp/run.log; then
+      echo "PASS $arm with thimble devices and thimble run"
+    else
+      echo "FAIL $arm with thimble devices and thimble run: $(cat /tmp/run.log)"
+    fi
+    unplug
+  fi
+
   plug $arm /tmp/replug.trace
   as tester "usb_check replug $arm $control $image"
   unplug

@@ -84,6 +84,9 @@ tester:x:1000:
 stranger:x:1001:
 EOF
 echo 'passwd: files' >"$root/etc/nsswitch.conf"
+mkdir -p "$root/data/app" "$root/data/tests/data"
+cp -r "$source/app/arms" "$root/data/app/"
+cp -r "$source/tests/data/scenes" "$source/tests/data/meshes" "$root/data/tests/data/"
 # Any bytes: the simulated Falcon runs whatever it is given.
 head -c 1500 /bin/sh >"$root/etc/falcon.bin"
 (cd "$root" && find . | cpio -o -H newc --quiet) | gzip -1 >"$work/initrd.gz"
