@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -32,20 +33,23 @@ struct VirtualArm {
 /// Tells the limits under which all checks run.
 driver::DeviceSettings check_settings();
 
-/// Is a wall across the base's z, a little below where the tip was at the first tick: a spring of
-/// 300 N/m. The simulated hand presses the tip into it once a second.
+/// Is a wall across the base's z, a spring of 300 N/m. The simulated hand goes up and down once a
+/// second by 15 mm or more; the wall stands 19 mm below the highest place that the tip has reached,
+/// so that it is the same wherever the hand was when the check began. It rises slowly enough that a
+/// spoilt report does not carry it away.
 class Wall {
  public:
-  static constexpr double kStiffness = 300;  // N/m
-  static constexpr double kBelow = 0.004;    // m
+  static constexpr double kStiffness = 300;   // N/m
+  static constexpr double kBelow = 0.019;     // m
+  static constexpr double kRiseMax = 0.0002;  // m in a tick; the hand moves at 0.13 mm in one
 
   driver::ForceCommand operator()(const driver::DeviceState& state) noexcept {
-    if (!placed_) {
-      placed_ = true;
-      height_ = state.p_WT.z() - kBelow;
-    }
+    const double height = state.p_WT.z();
+    if (!placed_) top_ = height;
+    placed_ = true;
+    if (height > top_) top_ += std::min(height - top_, kRiseMax);
     driver::ForceCommand command;
-    const double depth = height_ - state.p_WT.z();
+    const double depth = top_ - kBelow - height;
     if (depth > 0) {
       command.f_T_W.z() = kStiffness * depth;
       command.touch.in_contact = true;
@@ -56,7 +60,7 @@ class Wall {
 
  private:
   bool placed_ = false;
-  double height_ = 0;
+  double top_ = 0;
 };
 
 }  // namespace thimble::usb_test
