@@ -72,6 +72,9 @@ for arm in $arms; do
     unplug
   fi
 
+  # The padded board differs from the other in its reports only.
+  [ $arm = polhem-64 ] && { echo "NOTE $arm done after $(uptime) s"; continue; }
+
   plug $arm /tmp/replug.trace
   as tester "usb_check replug $arm $control $image"
   unplug
@@ -80,8 +83,8 @@ for arm in $arms; do
   if [ $arm != falcon ]; then
     plug $arm /tmp/killed.trace
     as tester "exec usb_check hang $arm" >/tmp/hang.log &
-    for i in $(seq 200); do grep -q touching /tmp/hang.log && break; usleep 10000; done
-    usleep 400000
+    for i in $(seq 400); do grep -q touching /tmp/hang.log && break; usleep 10000; done
+    usleep 50000
     killall -9 usb_check
     usleep 800000
     unplug

@@ -163,6 +163,7 @@ int compare_traces(const VirtualArm& arm, const std::string& driver_trace,
 
   // Forces: the ticks' messages are a run of the arm's; the driver sent a few before the first.
   std::vector<Numbers> wanted;
+  wanted.reserve(ticks.size());
   for (const Tick& tick : ticks) wanted.push_back(values_for(*protocol, tick));
   Match best;
   std::uint64_t best_first = 0;

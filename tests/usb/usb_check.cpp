@@ -2,7 +2,7 @@
 //   usb_check find ARM
 //   usb_check denied ARM
 //   usb_check touch ARM TICKS TRACE [FIRMWARE]
-//   usb_check hang ARM                            touches until it is killed
+//   usb_check hang ARM                            touches, says so, until it is killed
 //   usb_check replug ARM PIPE [FIRMWARE]
 //   usb_check fault ARM PIPE "FAULT" [FIRMWARE]
 //   usb_check compare ARM TRACE DEVICE_TRACE
@@ -133,20 +133,6 @@ int touch(const VirtualArm& arm, std::uint64_t ticks, const std::string& trace) 
   return bad;
 }
 
-int hang(const VirtualArm& arm) {
-  auto bench = open_bench(arm);
-  if (!bench) return verdict(false, arm.name + " opened", bench.error().message);
-  if (!(*bench)->device->activate()) return 1;
-  Wall wall;
-  const std::atomic<bool> stop{false};
-  Recorder recorder;
-  std::printf("touching\n");
-  std::fflush(stdout);
-  driver::run_servo(*(*bench)->device, (*bench)->clock, driver::ForceLaw(wall),
-                    driver::TickSink(recorder), {.period_ns = kPeriod_ns, .ticks = 0}, stop);
-  return 0;
-}
-
 void order(const std::string& pipe, const std::string& line) {
   std::ofstream(pipe) << line << std::endl;
 }
@@ -189,6 +175,21 @@ class Ticker {
   Wall wall_;
   std::int64_t due_ns_;
 };
+
+int hang(const VirtualArm& arm) {
+  auto bench = open_bench(arm);
+  if (!bench) return verdict(false, arm.name + " opened", bench.error().message);
+  if (!(*bench)->device->activate()) return 1;
+  Ticker ticker(**bench);
+  bool told = false;
+  for (;;) {
+    ticker.tick();
+    if (told || ticker.force < 0.5) continue;
+    told = true;
+    std::printf("touching\n");
+    std::fflush(stdout);
+  }
+}
 
 int replug(const VirtualArm& arm, const std::string& pipe) {
   auto opened = open_bench(arm);
