@@ -17,6 +17,8 @@ for argument in "$@"; do
 done
 [ ${#presets[@]} -gt 0 ] || presets=(release asan tsan)
 
+tests/usb/setup.sh || true  # optional: without it the USB arms are not tested through a kernel
+
 failed=()
 for preset in "${presets[@]}"; do
   app/setup.sh "$preset"

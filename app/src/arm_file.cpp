@@ -3,6 +3,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "thimble/driver/arms/falcon/falcon_arm.h"
+#include "thimble/driver/arms/hfab/hfab_models.h"
 #include "yaml_reader.h"
 
 namespace thimble::app {
@@ -41,6 +43,13 @@ void read_joints(YamlMap map, driver::hfab::HfabModel& model) {
     model.encoders[i] = {encoder_sign[k], counts[k], static_cast<std::int32_t>(home[k])};
   }
   map.finish();
+}
+
+/// Takes drives and encoders of an arm whose data are code.
+template <class Geometry>
+void take_joints(const driver::JointModel<Geometry>& built_in, driver::hfab::HfabModel& model) {
+  model.drives = built_in.drives;
+  model.encoders = built_in.encoders;
 }
 
 driver::GateLimits read_gate(YamlMap map) {
@@ -117,9 +126,20 @@ driver::Result<ArmFile> read_arm_file(const std::filesystem::path& file) {
   ArmFile arm;
   arm.name = root.require_string("name");
   arm.description = root.optional_string("description", "");
-  root.require_choice("protocol", {"hfab_14_byte"});
-  arm.model.geometry = read_geometry(root.require_map("geometry"));
-  read_joints(root.require_map("joints"), arm.model);
+  arm.protocol = static_cast<ArmProtocol>(
+      root.require_choice("protocol", {"hfab_14_byte", "woody_8_byte", "falcon_packet"}));
+  arm.shape =
+      static_cast<ArmShape>(root.optional_choice("shape", 0, {"serial", "polhem", "falcon"}));
+  arm.board_model = static_cast<int>(root.optional_number("board_model", 0, "", 0, 1000));
+  if (arm.shape == ArmShape::kPolhem) take_joints(driver::hfab::polhem_model(), arm.model);
+  if (arm.shape == ArmShape::kFalcon) take_joints(driver::falcon::falcon_model(), arm.model);
+  if (arm.shape == ArmShape::kSerial) {
+    arm.model.geometry = read_geometry(root.require_map("geometry"));
+    read_joints(root.require_map("joints"), arm.model);
+  }
+  if ((arm.protocol == ArmProtocol::kFalconPacket) != (arm.shape == ArmShape::kFalcon)) {
+    root.reject("protocol", "expected falcon_packet with the shape falcon, and only with it");
+  }
   YamlMap base = root.require_map("base");
   arm.p_WB = base.require_vector3("position", "m", -2, 2);
   arm.R_WB = base.optional_rotation("rotate_degrees");
@@ -128,7 +148,10 @@ driver::Result<ArmFile> read_arm_file(const std::filesystem::path& file) {
   arm.declared = read_declared(root.require_map("declared"));
   arm.limits = read_gate(root.require_map("gate"));
   arm.velocity_corner_frequency = root.require_number("velocity_corner_frequency", "Hz", 0, 1e5);
-  arm.simulated = read_simulation(root.require_map("simulation"), arm.model.fractional_counts);
+  if (arm.shape == ArmShape::kSerial) {
+    arm.simulated = read_simulation(root.require_map("simulation"), arm.model.fractional_counts);
+    arm.can_simulate = true;
+  }
   root.finish();
   if (auto done = yaml->finish(); !done) return done.error();
   return arm;

@@ -24,10 +24,21 @@ struct DeclaredLimits {
   double damping = 0;    ///< N s/m
 };
 
+/// Says what the arm speaks; the text lines of Haptikfabriken boards are understood with either of
+/// the first two, for the board's firmware decides.
+enum class ArmProtocol { kHfab14Byte, kWoody8Byte, kFalconPacket };
+
+/// Says how the arm is built.
+enum class ArmShape { kSerial, kPolhem, kFalcon };
+
 /// Is one arm, as its file describes it: geometry, motors, limits, place, and how it is simulated.
 struct ArmFile {
   std::string name;
   std::string description;
+  ArmProtocol protocol = ArmProtocol::kHfab14Byte;
+  ArmShape shape = ArmShape::kSerial;
+  int board_model = 0;  ///< What its board calls itself in text lines; 0: not known.
+  /// Drives, encoders and, for a serial arm, the geometry. The other shapes have theirs in code.
   driver::hfab::HfabModel model;
   driver::GateLimits limits;
   DeclaredLimits declared;
@@ -35,6 +46,7 @@ struct ArmFile {
   Eigen::Matrix3d R_WB = Eigen::Matrix3d::Identity();  ///< Rotation of the base in the world.
   Eigen::Vector3d p_WB{0, 0, 0};                       ///< Position of the base, m.
   WorkspaceBox workspace;
+  bool can_simulate = false;  ///< The file has a section `simulation`, and the arm is serial.
   device_sim::SimulatedArmSettings simulated;
 };
 

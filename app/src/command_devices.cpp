@@ -1,4 +1,6 @@
 #include <cstdio>
+#include <memory>
+#include <string>
 
 #include "commands.h"
 #include "exit_code.h"
@@ -7,17 +9,25 @@
 namespace thimble::app {
 namespace {
 
-int list_devices() {
-  std::printf("%-10s %-16s %-10s %-22s %s\n", "name", "arm", "bus", "where", "state");
-  std::printf("%-10s %-16s %-10s %-22s %s\n", "sim", "simulated arm", "-", "-", "ready");
-  const auto arms = driver::find_arms();
+const char* state_of(const driver::FoundArm& arm) {
+  if (arm.kind == driver::ArmKind::kUnsupported) return "its protocol is not public";
+  if (arm.node.empty()) return "no driver has it: thimble doctor";
+  if (!arm.accessible) return "no access: thimble doctor";
+  return "ready";
+}
+
+int list_devices(const std::string& root) {
+  constexpr const char* kRow = "%-14s %-16s %-10s %-18s %-22s %s\n";
+  std::printf(kRow, "name", "arm", "bus", "where", "node", "state");
+  std::printf(kRow, "sim", "simulated arm", "-", "-", "-", "ready");
+  const auto arms = driver::find_arms(root);
   if (!arms) {
-    std::fprintf(stderr, "thimble: %s\n", arms.error().message.c_str());
-    return kExitTrouble;
+    std::printf("%s\n", arms.error().message.c_str());
+    return kExitDone;  // the simulated arm needs no USB
   }
   for (const driver::FoundArm& arm : *arms) {
-    std::printf("%-10s %-16s %-10s %-22s %s\n", "-", arm.arm.c_str(), arm.bus.c_str(),
-                arm.address.c_str(), "plugged in; this version drives the simulated arm only");
+    std::printf(kRow, arm.name().c_str(), arm.arm.c_str(), arm.bus.c_str(), arm.address.c_str(),
+                arm.node.empty() ? "-" : arm.node.c_str(), state_of(arm));
   }
   if (arms->empty()) std::printf("No arm that Thimble knows is plugged in on USB.\n");
   return kExitDone;
@@ -27,7 +37,11 @@ int list_devices() {
 
 void add_devices_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("devices", "List the arms: simulated, and plugged in");
-  command->callback([&exit_code] { exit_code = list_devices(); });
+  auto root = std::make_shared<std::string>("/");
+  command->add_option("--root", *root, "List the machine below this folder")
+      ->check(CLI::ExistingDirectory)
+      ->capture_default_str();
+  command->callback([root, &exit_code] { exit_code = list_devices(*root); });
 }
 
 }  // namespace thimble::app

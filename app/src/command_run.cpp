@@ -16,6 +16,8 @@
 #include "lost_contacts.h"
 #include "meshes.h"
 #include "pictures.h"
+#include "real_arm.h"
+#include "replug_watch.h"
 #include "report.h"
 #include "session.h"
 #include "thimble/driver/real_time.h"
@@ -30,15 +32,20 @@ struct RunOptions {
   std::optional<double> duration;
   std::optional<std::uint64_t> seed;
   std::string report;
+  std::string arm_file;
+  std::string firmware;
+  bool yes = false;
 };
 
 /// Tells a person on a terminal how far the run is, until it ends.
-void show_progress(const Session& session, const std::atomic<bool>& ended) {
+/// Watches over a real arm meanwhile.
+void show_progress(const Session& session, const std::atomic<bool>& ended, ReplugWatch* watch) {
   const bool on_terminal = isatty(STDERR_FILENO) != 0;
   const double total = static_cast<double>(session.ticks_planned()) *
                        static_cast<double>(session.period_ns()) * 1e-9;
   while (!ended.load()) {
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    if (watch != nullptr) watch->step();
     driver::TickRecord record;
     if (!on_terminal || !session.snapshot().load(record)) continue;
     const double force = Eigen::Map<const Eigen::Vector3d>(record.f_sent_W.data()).norm();
@@ -50,7 +57,8 @@ void show_progress(const Session& session, const std::atomic<bool>& ended) {
 }
 
 /// Runs the servo on a thread of its own; on the wall clock it asks for real-time priority first.
-driver::ServoEnd run_session(Session& session, ClockKind clock, driver::RealTimeGrant& grant) {
+driver::ServoEnd run_session(Session& session, ClockKind clock, driver::RealTimeGrant& grant,
+                             ReplugWatch* watch) {
   const std::atomic<bool>& stop = catch_interrupts();
   std::atomic<bool> ended{false};
   driver::ServoEnd end = driver::ServoEnd::kDone;
@@ -59,7 +67,7 @@ driver::ServoEnd run_session(Session& session, ClockKind clock, driver::RealTime
     end = session.run(stop);
     ended.store(true);
   });
-  show_progress(session, ended);
+  show_progress(session, ended, watch);
   servo.join();
   return end;
 }
@@ -85,7 +93,9 @@ RunReport report_of(const Session& session, ClockKind clock, driver::ServoEnd en
   report.real_time = grant;
   report.end = end;
   report.fault = session.device().fault();
-  report.current_at_exit = session.arm().firmware().currents().cwiseAbs().maxCoeff();
+  if (const auto* arm = session.simulated_arm()) {
+    report.current_at_exit = arm->firmware().currents().cwiseAbs().maxCoeff();
+  }
   report.trace_stride = session.trace().stride();
   report.trace_dropped = session.trace().dropped();
   return report;
@@ -96,20 +106,54 @@ int trouble(const driver::Error& error) {
   return kExitTrouble;
 }
 
+/// Lets nobody be surprised by a force: asks before a real arm gets any.
+bool may_begin(const driver::FoundArm& arm, bool yes) {
+  std::fprintf(stderr, "%s %s is about to get forces. Keep clear of it, hold its grip, keep its ",
+               arm.arm.c_str(), arm.name().c_str());
+  std::fprintf(stderr, "switch at hand.\n");
+  if (yes) return true;
+  if (isatty(STDIN_FILENO) == 0) {
+    std::fprintf(stderr, "thimble: Nobody is at the terminal to agree; say so with --yes.\n");
+    return false;
+  }
+  std::fprintf(stderr, "Press Enter to begin, Ctrl-C to leave. ");
+  return std::getchar() != EOF;
+}
+
+int fail(const driver::Error& error, int exit_code) {
+  std::fprintf(stderr, "thimble: %s\n", error.message.c_str());
+  return exit_code;
+}
+
 int run_scene(const RunOptions& options) {
+  std::optional<driver::FoundArm> real_arm;
+  if (options.device != "sim") {
+    const auto plugged_in = driver::find_arms();
+    auto chosen =
+        choose_arm(plugged_in ? *plugged_in : std::vector<driver::FoundArm>(), options.device);
+    if (!chosen) return fail(chosen.error(), kExitNoDevice);
+    real_arm = *chosen;
+    if (!real_arm) std::printf("No arm is plugged in: the simulated one is used.\n");
+  }
   SessionOptions session_options;
   session_options.clock = options.clock == "wall" ? ClockKind::kWall : ClockKind::kVirtual;
   session_options.duration = options.duration;
   session_options.seed = options.seed;
   session_options.mesh_folder = mesh_folder();
+  session_options.arm_file = options.arm_file;
+  session_options.real_arm = real_arm;
+  session_options.firmware = options.firmware;
+  if (real_arm) session_options.clock = ClockKind::kWall;
+  if (real_arm && !may_begin(*real_arm, options.yes)) return kExitBadInput;
   auto opened = Session::open(options.scene, session_options);
   if (!opened) {
-    std::fprintf(stderr, "thimble: %s\n", opened.error().message.c_str());
-    return kExitBadInput;
+    return fail(opened.error(), real_arm ? kExitNoDevice : kExitBadInput);
   }
   Session& session = **opened;
+  std::unique_ptr<ReplugWatch> watch;
+  if (real_arm) watch = std::make_unique<ReplugWatch>(session, *real_arm, options.firmware);
   driver::RealTimeGrant grant;
-  const driver::ServoEnd end = run_session(session, session_options.clock, grant);
+  const driver::ServoEnd end = run_session(session, session_options.clock, grant, watch.get());
   if (!grant.advice.empty()) spdlog::warn("{}", grant.advice);
 
   const RunReport report = report_of(session, session_options.clock, end, grant);
@@ -131,7 +175,8 @@ int run_scene(const RunOptions& options) {
   }
   switch (end) {
     case driver::ServoEnd::kDone:
-      return kExitDone;
+      // A loop with a real arm outlives its faults.
+      return report.fault == driver::Fault::kNone ? kExitDone : kExitFault;
     case driver::ServoEnd::kStopped:
       return kExitInterrupted;
     case driver::ServoEnd::kFault:
@@ -146,9 +191,15 @@ void add_run_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("run", "Touch a scene");
   auto options = std::make_shared<RunOptions>();
   command->add_option("SCENE", options->scene, "Scene file (YAML)")->required();
-  command->add_option("--device", options->device, "Arm to use (see `thimble devices`)")
-      ->check(CLI::IsMember({"sim"}))
+  command
+      ->add_option("--device", options->device,
+                   "Arm to use: sim, auto, or a name that `thimble devices` lists")
       ->capture_default_str();
+  command->add_option("--arm", options->arm_file, "Arm file in place of the scene's own")
+      ->check(CLI::ExistingFile);
+  command->add_option("--firmware", options->firmware, "Firmware image for an arm that needs one")
+      ->check(CLI::ExistingFile);
+  command->add_flag("--yes", options->yes, "Give a real arm forces without asking");
   command->add_option("--duration", options->duration, "Seconds to run; the scene's own if absent")
       ->check(CLI::Validator(
           [](const std::string& text) {

@@ -11,6 +11,14 @@ namespace thimble::app {
 void add_run_command(CLI::App& app, int& exit_code);
 /// `thimble devices`: lists the arms.
 void add_devices_command(CLI::App& app, int& exit_code);
+/// `thimble calibrate`: finds an arm's home pose and the signs of its encoders.
+void add_calibrate_command(CLI::App& app, int& exit_code);
+/// `thimble feel-check`: checks an arm by hand.
+void add_feel_check_command(CLI::App& app, int& exit_code);
+/// `thimble doctor`: says why an arm cannot be used, and what mends it.
+void add_doctor_command(CLI::App& app, int& exit_code);
+/// `thimble plug ARM`: exports a simulated arm as a USB device.
+void add_plug_command(CLI::App& app, int& exit_code);
 /// `thimble mesh FILE`: tells what a mesh is and what is wrong with it.
 void add_mesh_command(CLI::App& app, int& exit_code);
 /// `thimble mesh page IN OUT`: cuts a mesh into volumes on disk.

@@ -25,9 +25,13 @@ int run(int argc, char** argv) {
   int exit_code = thimble::app::kExitDone;
   thimble::app::add_run_command(app, exit_code);
   thimble::app::add_devices_command(app, exit_code);
+  thimble::app::add_doctor_command(app, exit_code);
+  thimble::app::add_calibrate_command(app, exit_code);
+  thimble::app::add_feel_check_command(app, exit_code);
   thimble::app::add_mesh_command(app, exit_code);
   thimble::app::add_study_command(app, exit_code);
   thimble::app::add_cost_probe_command(app, exit_code);
+  thimble::app::add_plug_command(app, exit_code);
   for (CLI::App* command : app.get_subcommands({})) {
     command->set_version_flag("--version", app.version());
   }

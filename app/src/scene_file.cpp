@@ -169,7 +169,8 @@ std::vector<HandWaypoint> read_hand(YamlMap map, const std::vector<SceneObject>&
 }  // namespace
 
 driver::Result<Scene> read_scene(const std::filesystem::path& file,
-                                 const std::filesystem::path& mesh_folder) {
+                                 const std::filesystem::path& mesh_folder,
+                                 const std::filesystem::path& other_arm) {
   driver::Result<YamlFile> yaml = YamlFile::load(file);
   if (!yaml) return yaml.error();
   YamlMap& root = yaml->root();
@@ -182,6 +183,7 @@ driver::Result<Scene> read_scene(const std::filesystem::path& file,
   scene.duration = root.require_number("duration", "s", 0.001, kDurationMax);
   // 2^53: every whole number up to here is a double.
   scene.seed = static_cast<std::uint64_t>(root.optional_number("seed", 0, "", 0, 0x1p53));
+  if (!other_arm.empty()) scene.arm_file = other_arm;
   auto arm = read_arm_file(scene.arm_file);
   if (arm) scene.arm = std::move(arm).value();
   const render::EffectSurroundings surroundings = surroundings_of(scene.arm, scene.rate);

@@ -51,10 +51,12 @@ struct Scene {
 
 /// Reads a scene file (see app/scenes/elephant.yaml for the form). Paths in it are relative to the
 /// file; a mesh `cgal:NAME` is looked for in `mesh_folder`. Objects must not share a name. The
-/// arm's file is read too: what is stable depends on the arm. The error tells up to five mistakes,
+/// arm's file is read too, or `other_arm` in its place if named: what is stable depends on the arm.
+/// The error tells up to five mistakes,
 /// one per line. Real-time: never from the servo thread.
 driver::Result<Scene> read_scene(const std::filesystem::path& file,
-                                 const std::filesystem::path& mesh_folder);
+                                 const std::filesystem::path& mesh_folder,
+                                 const std::filesystem::path& other_arm = {});
 
 /// Turns a mesh as its file holds it into the world (m), as `object` says.
 /// Precondition: the mesh has a vertex. Real-time: never from the servo thread.

@@ -6,7 +6,9 @@
 #include <utility>
 #include <vector>
 
+#include "calibration.h"
 #include "hand_route.h"
+#include "real_arm.h"
 #include "thimble/render/build_object_touch.h"
 #include "thimble/render/mesh/load_mesh.h"
 #include "thimble/render/mesh/orient_mesh.h"
@@ -103,11 +105,16 @@ void append(const render::TriangleMesh& mesh, render::TriangleMesh& whole) {
 
 driver::Result<std::unique_ptr<Session>> Session::open(const std::filesystem::path& scene_file,
                                                        const SessionOptions& options) {
-  auto scene = read_scene(scene_file, options.mesh_folder);
+  auto scene = read_scene(scene_file, options.mesh_folder, options.arm_file);
   if (!scene) return scene.error();
 
   std::unique_ptr<Session> session(new Session);
   session->scene_ = std::move(scene).value();
+  if (options.real_arm) {
+    const auto calibration = load_calibration(options.real_arm->name());
+    if (!calibration) return calibration.error();
+    if (*calibration) apply(**calibration, session->scene_.arm);
+  }
   const ArmFile& arm = session->scene_.arm;
 
   auto meshes = load_meshes(session->scene_);
@@ -116,22 +123,13 @@ driver::Result<std::unique_ptr<Session>> Session::open(const std::filesystem::pa
   if (!touch) return touch.error();
   session->touch_ = std::move(touch).value();
 
-  std::vector<NamedMesh> named;
   for (std::size_t i = 0; i < meshes->size(); ++i) {
-    const SceneObject& object = session->scene_.objects[i];
-    if (!object.build_field && !object.paged) named.push_back({object.name, &(*meshes)[i]});
-    if (!object.shape) session->triangles_ += (*meshes)[i].triangles.size();
+    if (!session->scene_.objects[i].shape) session->triangles_ += (*meshes)[i].triangles.size();
     append((*meshes)[i], session->mesh_W_);
   }
   for (const auto& pages : session->pages_) {
     session->triangles_ += static_cast<std::size_t>(pages->triangle_count());
   }
-  const auto route = plan_hand(session->scene_.hand, named);
-  if (!route) return driver::Error{scene_file.string() + ": " + route.error().message};
-  if (auto reach = check_reach(*route, arm); !reach) {
-    return driver::Error{scene_file.string() + ": " + reach.error().message};
-  }
-
   session->seed_ = options.seed.value_or(session->scene_.seed);
   session->period_ns_ = std::llround(1e9 / session->scene_.rate);
   const double duration = options.duration.value_or(session->scene_.duration);
@@ -140,42 +138,78 @@ driver::Result<std::unique_ptr<Session>> Session::open(const std::filesystem::pa
   session->statistics_ = std::make_unique<RunStatistics>();
   session->trace_ = std::make_unique<Trace>(session->ticks_);
 
-  try {
-    session->arm_ = std::make_unique<device_sim::SimulatedArm>(
-        arm.model, arm.simulated, in_base(*route, arm), session->seed_);
-  } catch (const std::invalid_argument& wrong) {
-    return driver::Error{session->scene_.arm_file.string() + ": " + wrong.what()};
+  if (!options.real_arm) {
+    if (auto planned = session->plan_simulation(scene_file, *meshes); !planned) {
+      return planned.error();
+    }
   }
-  // The clock starts last, so that the arm's time begins with the session's.
-  if (options.clock == ClockKind::kWall) {
+  // The clock starts last, so that the arm's time begins with the session's. A real arm knows only
+  // the time of the world.
+  if (options.clock == ClockKind::kWall || options.real_arm) {
     session->clock_ = std::make_unique<driver::WallClock>();
   } else {
     session->clock_ = std::make_unique<driver::VirtualClock>();
   }
-  auto device = driver::Device::open(
-      std::make_unique<device_sim::SimTransport>(*session->clock_, *session->arm_),
-      std::make_unique<driver::hfab::HfabArm>(arm.model),
-      {.R_WB = arm.R_WB,
-       .p_WB = arm.p_WB,
-       .limits = arm.limits,
-       .velocity_corner_frequency = arm.velocity_corner_frequency},
-      session->clock_->now_ns());
+  std::unique_ptr<driver::Transport> wire;
+  std::unique_ptr<const driver::Arm> protocol;
+  if (options.real_arm) {
+    auto opened = open_wire(*options.real_arm, arm, options.firmware, *session->clock_);
+    if (!opened) return opened.error();
+    wire = std::move(opened).value();
+    protocol = make_arm(arm, options.real_arm->kind);
+  } else {
+    wire = std::make_unique<device_sim::SimTransport>(*session->clock_, *session->arm_);
+    protocol = std::make_unique<driver::hfab::HfabArm>(arm.model);
+  }
+  auto device = driver::Device::open(std::move(wire), std::move(protocol),
+                                     {.R_WB = arm.R_WB,
+                                      .p_WB = arm.p_WB,
+                                      .limits = arm.limits,
+                                      .velocity_corner_frequency = arm.velocity_corner_frequency},
+                                     session->clock_->now_ns());
   if (!device) return device.error();
   session->device_ = std::move(device).value();
   if (auto activated = session->device_->activate(); !activated) return activated.error();
-  session->pages_by_thread_ = options.clock == ClockKind::kWall;
+  session->pages_by_thread_ = options.clock == ClockKind::kWall || options.real_arm.has_value();
   if (session->pages_by_thread_) {
     for (const auto& pages : session->pages_) pages->start_loader();
   }
   return session;
 }
 
+driver::Result<void> Session::plan_simulation(const std::filesystem::path& scene_file,
+                                              const std::vector<render::TriangleMesh>& meshes_W) {
+  const ArmFile& arm = scene_.arm;
+  if (!arm.can_simulate) {
+    return driver::Error{"The arm " + arm.name +
+                         " cannot be simulated inside the program. Plug it in, or choose a serial "
+                         "arm with --arm."};
+  }
+  std::vector<NamedMesh> named;
+  for (std::size_t i = 0; i < meshes_W.size(); ++i) {
+    const SceneObject& object = scene_.objects[i];
+    if (!object.build_field && !object.paged) named.push_back({object.name, &meshes_W[i]});
+  }
+  const auto route = plan_hand(scene_.hand, named);
+  if (!route) return driver::Error{scene_file.string() + ": " + route.error().message};
+  if (auto reach = check_reach(*route, arm); !reach) {
+    return driver::Error{scene_file.string() + ": " + reach.error().message};
+  }
+  try {
+    arm_ = std::make_unique<device_sim::SimulatedArm>(arm.model, arm.simulated,
+                                                      in_base(*route, arm), seed_);
+  } catch (const std::invalid_argument& wrong) {
+    return driver::Error{scene_.arm_file.string() + ": " + wrong.what()};
+  }
+  return {};
+}
+
 driver::ServoEnd Session::run(const std::atomic<bool>& stop) noexcept {
   const driver::ServoEnd end =
       driver::run_servo(*device_, *clock_, driver::ForceLaw(*touch_), driver::TickSink(*this),
-                        {.period_ns = period_ns_, .ticks = ticks_}, stop);
+                        {.period_ns = period_ns_, .ticks = ticks_, .outlive_faults = !arm_}, stop);
   // The arm lives on after the loop: the last message, zero force, is still on its way to it.
-  arm_->advance_to(clock_->now_ns() + scene_.arm.simulated.wire.delay_out_ns);
+  if (arm_) arm_->advance_to(clock_->now_ns() + scene_.arm.simulated.wire.delay_out_ns);
   return end;
 }
 

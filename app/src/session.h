@@ -13,6 +13,7 @@
 #include "thimble/device_sim/sim_transport.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/device.h"
+#include "thimble/driver/discovery.h"
 #include "thimble/driver/servo_loop.h"
 #include "thimble/driver/snapshot.h"
 #include "thimble/render/page/paged_surface.h"
@@ -27,9 +28,12 @@ enum class ClockKind { kVirtual, kWall };
 /// Says what the user asked for beyond the scene.
 struct SessionOptions {
   ClockKind clock = ClockKind::kVirtual;
-  std::optional<double> duration;     ///< s; the scene's own if empty
-  std::optional<std::uint64_t> seed;  ///< of everything random; the scene's own if empty
-  std::filesystem::path mesh_folder;  ///< where `cgal:` meshes lie
+  std::optional<double> duration;            ///< s; the scene's own if empty
+  std::optional<std::uint64_t> seed;         ///< of everything random; the scene's own if empty
+  std::filesystem::path mesh_folder;         ///< where `cgal:` meshes lie
+  std::filesystem::path arm_file;            ///< in place of the scene's own; empty: the scene's
+  std::optional<driver::FoundArm> real_arm;  ///< in place of the simulated one
+  std::filesystem::path firmware;            ///< for a real arm that needs some (Falcon)
 };
 
 /// Is one scene, loaded and joined: clock, simulated arm, wire, device, touch, and who keeps the
@@ -41,8 +45,9 @@ class Session {
   static driver::Result<std::unique_ptr<Session>> open(const std::filesystem::path& scene_file,
                                                        const SessionOptions& options);
 
-  /// Activates the arm and runs the servo loop until the scene's time is over, `stop` is set, or a
-  /// fault. In every case the arm is left with zero force.
+  /// Runs the servo loop until the scene's time is over, `stop` is set, or, with the simulated arm,
+  /// a fault; with a real arm the loop outlives faults with zero force, so that the arm can come
+  /// back. In every case the arm is left with zero force.
   driver::ServoEnd run(const std::atomic<bool>& stop) noexcept;
 
   const Scene& scene() const { return scene_; }
@@ -52,7 +57,12 @@ class Session {
   /// Tells how many triangles can be touched, in memory and on the disk.
   std::size_t triangles() const { return triangles_; }
   const driver::Device& device() const { return *device_; }
+  driver::Device& device() { return *device_; }
+  /// Gives the simulated arm; nullptr if a real one is used.
+  const device_sim::SimulatedArm* simulated_arm() const { return arm_.get(); }
   const device_sim::SimulatedArm& arm() const { return *arm_; }
+  /// Gives the clock that a new wire to a real arm must use.
+  driver::Clock& clock() { return *clock_; }
   const render::SceneTouch& touch() const { return *touch_; }
   /// Sums up what paging did for all objects on the disk; nothing if there are none.
   std::optional<render::PagingCounters> paging() const;
@@ -68,6 +78,8 @@ class Session {
 
  private:
   Session() = default;
+  driver::Result<void> plan_simulation(const std::filesystem::path& scene_file,
+                                       const std::vector<render::TriangleMesh>& meshes_W);
 
   Scene scene_;
   render::TriangleMesh mesh_W_;

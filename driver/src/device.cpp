@@ -38,6 +38,8 @@ Device::Device(std::unique_ptr<Transport> transport, std::unique_ptr<const Arm> 
 
 Device::~Device() {
   deactivate();
+  delete offered_.exchange(nullptr);
+  delete retired_.exchange(nullptr);
 }
 
 Result<std::unique_ptr<Device>> Device::open(std::unique_ptr<Transport> transport,
@@ -46,14 +48,19 @@ Result<std::unique_ptr<Device>> Device::open(std::unique_ptr<Transport> transpor
                                              std::int64_t clock_now_ns, std::int64_t timeout_ns) {
   if (auto checked = check(settings); !checked) return checked.error();
   std::unique_ptr<Device> device(new Device(std::move(transport), std::move(arm), settings));
-  // Whatever was in flight before, the motors start from zero.
-  device->send(MotorCurrents());
-  const std::int64_t deadline_ns = clock_now_ns + timeout_ns;
+  // Whatever was in flight before, the motors start from zero. An arm that speaks only when spoken
+  // to may miss the first message while it starts up, so zero is said again with each wait.
+  constexpr int kGreetings = 10;
   constexpr int kAttempts = 100;  // reports of a form nobody knows, before giving up
-  for (int attempt = 0; attempt < kAttempts && !device->lost_; ++attempt) {
-    const std::uint64_t rejected = device->wire_.rejected;
-    if (device->take_report(clock_now_ns, deadline_ns)) return device;
-    if (device->wire_.rejected == rejected) break;
+  int attempt = 0;
+  for (int greeting = 1; greeting <= kGreetings && !device->lost_; ++greeting) {
+    device->send(MotorCurrents());
+    const std::int64_t deadline_ns = clock_now_ns + timeout_ns * greeting / kGreetings;
+    for (; attempt < kAttempts && !device->lost_; ++attempt) {
+      const std::uint64_t rejected = device->wire_.rejected;
+      if (device->take_report(clock_now_ns, deadline_ns)) return device;
+      if (device->wire_.rejected == rejected) break;
+    }
   }
   if (device->lost_) return Error{std::string(describe(Fault::kTransportLost))};
   if (device->wire_.rejected > 0) {
@@ -67,11 +74,39 @@ Result<std::unique_ptr<Device>> Device::open(std::unique_ptr<Transport> transpor
 
 Result<void> Device::activate() {
   if (lost_) return Error{std::string(describe(Fault::kTransportLost))};
+  begin_activity();
+  return {};
+}
+
+void Device::begin_activity() noexcept {
   gate_.restart();
   velocity_.reset();
+  refused_in_a_row_ = 0;
   active_ = true;
   started_ = false;
-  return {};
+}
+
+void Device::offer(std::unique_ptr<Transport> transport) {
+  delete retired_.exchange(nullptr, std::memory_order_acq_rel);
+  delete offered_.exchange(transport.release(), std::memory_order_acq_rel);
+}
+
+void Device::take_offer(std::int64_t now_ns) noexcept {
+  // The old wire may free memory when it goes, so it waits for the next offer or the end. Without
+  // a free place for it the offer is left for a later tick.
+  if (retired_.load(std::memory_order_acquire) != nullptr) return;
+  Transport* const fresh = offered_.exchange(nullptr, std::memory_order_acq_rel);
+  if (fresh == nullptr) return;
+  retired_.store(transport_.release(), std::memory_order_release);
+  transport_.reset(fresh);
+  ++wire_.replugged;
+  lost_ = false;
+  reported_ = false;
+  active_ = false;
+  refused_in_a_row_ = 0;
+  last_report_ns_ = now_ns;
+  velocity_.reset();
+  send(MotorCurrents());
 }
 
 void Device::deactivate() noexcept {
@@ -86,6 +121,10 @@ DeviceStage Device::stage() const noexcept {
 }
 
 const DeviceState& Device::read(std::int64_t now_ns, std::int64_t deadline_ns) noexcept {
+  if (lost_) take_offer(now_ns);
+  if (activation_asked_.exchange(false, std::memory_order_acq_rel) && !lost_ && reported_) {
+    begin_activity();
+  }
   if (started_) {
     state_.dt = static_cast<double>(now_ns - state_.time_ns) * 1e-9;
     ++state_.tick;
@@ -119,6 +158,7 @@ bool Device::take_report(std::int64_t now_ns, std::int64_t deadline_ns) noexcept
     return false;
   }
   ++wire_.reports;
+  reported_ = true;
   pose_ = arm_->pose(reading);
   state_.counts = reading.counts;
   state_.buttons = reading.buttons;
@@ -147,10 +187,18 @@ void Device::send(const MotorCurrents& currents) noexcept {
   if (lost_) return;
   std::array<std::byte, kReportCapacity> report;
   const std::size_t size = arm_->encode(currents, report);
-  if (transport_->write(std::span<const std::byte>(report).first(size)) == TransportStatus::kLost) {
+  const auto status = transport_->write(std::span<const std::byte>(report).first(size));
+  if (status == TransportStatus::kLost) {
     lost_ = true;
     gate_.trip(Fault::kTransportLost);
   }
+  if (status != TransportStatus::kRefused) {
+    refused_in_a_row_ = 0;
+    return;
+  }
+  ++wire_.refused;
+  if (refused_in_a_row_++ == 0) refused_since_ns_ = state_.time_ns;
+  if (state_.time_ns - refused_since_ns_ > settings_.silence_limit_ns) gate_.trip(Fault::kRefused);
 }
 
 }  // namespace thimble::driver

@@ -24,6 +24,9 @@ std::string_view describe(Fault fault) noexcept {
     case Fault::kLoopStalled:
       return "The servo loop stood still longer than the arm's watchdog waits. Close other "
              "programs, or allow real-time scheduling.";
+    case Fault::kRefused:
+      return "The arm takes no messages any more, so its own watchdog must switch the motors off. "
+             "Switch it off and on, and plug it in again.";
   }
   return "Unknown fault.";
 }
@@ -44,6 +47,8 @@ std::string_view name(Fault fault) noexcept {
       return "over_speed";
     case Fault::kLoopStalled:
       return "loop_stalled";
+    case Fault::kRefused:
+      return "messages_refused";
   }
   return "unknown";
 }

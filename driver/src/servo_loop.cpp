@@ -55,7 +55,7 @@ ServoEnd run_servo(Device& device, Clock& clock, ForceLaw law, TickSink sink,
     record.due_ns = due_ns;
     record.work_ns = clock.now_ns() - now_ns;
     sink(record);
-    if (device.fault() != Fault::kNone) {
+    if (device.fault() != Fault::kNone && !settings.outlive_faults) {
       end = ServoEnd::kFault;
       break;
     }

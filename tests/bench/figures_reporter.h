@@ -19,11 +19,13 @@ class FiguresReporter : public benchmark::ConsoleReporter {
       if (run.error_occurred) continue;
       const bool median = run.run_type == Run::RT_Aggregate && run.aggregate_name == "median";
       if (!median && !(run.run_type == Run::RT_Iteration && run.repetitions <= 1)) continue;
-      figures_.push_back({.name = run.run_name.function_name,
-                          .value = run.GetAdjustedRealTime() * 1e9 /
-                                   benchmark::GetTimeUnitMultiplier(run.time_unit),
-                          .unit = "ns",
-                          .goal = {}});
+      const std::string& arguments = run.run_name.args;
+      figures_.push_back(
+          {.name = run.run_name.function_name + (arguments.empty() ? "" : "/" + arguments),
+           .value =
+               run.GetAdjustedRealTime() * 1e9 / benchmark::GetTimeUnitMultiplier(run.time_unit),
+           .unit = "ns",
+           .goal = {}});
     }
   }
 

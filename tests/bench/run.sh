@@ -7,7 +7,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 folder=${1:-build/bench}
-app/setup.sh release bench_tick bench_contact bench_paged
+app/setup.sh release bench_tick bench_contact bench_paged bench_body
 mkdir -p "$folder"
 build/release/tests/bench/bench_tick --benchmark_repetitions=5 \
   --benchmark_report_aggregates_only=true \
@@ -18,3 +18,6 @@ build/release/tests/bench/bench_contact --figures="$folder/contact/figures.json"
 mkdir -p "$folder/paged"
 build/release/tests/bench/bench_paged --folder="$folder/paged" \
   --figures="$folder/paged/figures.json"
+mkdir -p "$folder/body"
+build/release/tests/bench/bench_body --benchmark_repetitions=5 \
+  --benchmark_report_aggregates_only=true --figures="$folder/body/figures.json"

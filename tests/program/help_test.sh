@@ -5,7 +5,7 @@ source "$(dirname "$0")/expect.sh" "$@"
 expect 0 'makes virtual objects touchable' "$thimble" --help
 expect 0 'Exit codes: 0 done' "$thimble" --help
 expect 0 '^thimble [0-9]+\.[0-9]+\.[0-9]+ \(' "$thimble" --version
-for command in run devices mesh; do
+for command in run devices doctor calibrate feel-check mesh plug; do
   expect 0 "$command" "$thimble" "$command" --help
   expect 0 '^thimble [0-9]' "$thimble" "$command" --version
 done
@@ -21,7 +21,7 @@ expect 0 '--out' "$thimble" study friction --help
 expect 2 'subcommand is required' "$thimble" touch
 expect 2 'SCENE is required' "$thimble" run
 expect 2 'clock' "$thimble" run scene.yaml --clock sundial
-expect 2 'device' "$thimble" run scene.yaml --device omni
+expect 3 "No arm is called 'omni'" "$thimble" run scene.yaml --device omni
 expect 2 'duration' "$thimble" run scene.yaml --duration -1
 expect 2 'duration' "$thimble" run scene.yaml --duration nan
 expect 2 'seed' "$thimble" run scene.yaml --seed many

@@ -5,6 +5,7 @@
 #include "study/study_cost.h"
 #include "study/study_friction.h"
 #include "study/study_texture.h"
+#include "study/study_integrators.h"
 
 namespace thimble::app {
 namespace {
@@ -18,6 +19,8 @@ constexpr std::array kStudies{
           study_texture},
     Study{"box", "the paper's Fig. 2: the force over a square, in both forms of the box",
           study_box},
+    Study{"integrators", "what each integrator of bodies costs per tick, and how wrong it is",
+          study_integrators},
 };
 
 }  // namespace

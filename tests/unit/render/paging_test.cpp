@@ -79,6 +79,8 @@ TEST(PageFile, GivesBackEveryRecordAndABoxAroundEachPage) {
   const auto file = PageFile::open(page_file());
   ASSERT_TRUE(file.ok()) << file.error().message;
   ASSERT_EQ(file->triangle_count(), bumpy().triangle_count());
+  EXPECT_GT(file->rise(), 0);
+  EXPECT_EQ(file->rise(), bumpy().rise());
   std::vector<CompactTriangle> records(kPageRecords);
   std::int32_t next = 0;
   for (std::size_t page = 0; page < file->boxes().size(); ++page) {

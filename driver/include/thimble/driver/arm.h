@@ -10,8 +10,10 @@
 
 namespace thimble::driver {
 
-/// Is the size of the largest report any arm sends or takes, in bytes (a full-speed HID report).
-inline constexpr std::size_t kReportCapacity = 64;
+/// Is the size of the largest report any arm sends or takes, in bytes: the line buffer of the
+/// Haptikfabriken boards [S forsslund/woodenhaptics firmware, buf_len]; a full-speed HID report has
+/// half of it.
+inline constexpr std::size_t kReportCapacity = 128;
 
 /// Holds what one report from an arm says, still in the arm's own units.
 struct ArmReading {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <memory>
 
 #include "thimble/driver/arm.h"
@@ -25,22 +26,30 @@ struct DeviceSettings {
 
 /// Counts what arrived over the wire.
 struct WireCounters {
-  std::uint64_t reports = 0;   ///< Reports decoded.
-  std::uint64_t rejected = 0;  ///< Reports of a length or content the protocol does not know.
-  std::uint64_t skipped = 0;   ///< Reports dropped because a newer one was there.
-  std::uint64_t missing = 0;   ///< Ticks without a new report.
+  std::uint64_t reports = 0;    ///< Reports decoded.
+  std::uint64_t rejected = 0;   ///< Reports of a length or content the protocol does not know.
+  std::uint64_t skipped = 0;    ///< Reports dropped because a newer one was there.
+  std::uint64_t missing = 0;    ///< Ticks without a new report.
+  std::uint64_t refused = 0;    ///< Messages that the arm did not take.
+  std::uint64_t replugged = 0;  ///< Times a lost wire was replaced.
 };
 
 /// Is one open arm, from its bytes to its tip: idle -> active -> (fault ->) idle, until destroyed.
 ///
 /// Every way out sends zero force: `deactivate`, a fault, the destructor. A fault latches until
-/// `activate` is called again. Used by one thread at a time.
+/// `activate` is called again. Used by one thread at a time, but for `offer` and `ask_to_activate`.
+///
+/// An arm that was pulled and plugged in again: the loop goes on with zero force and the fault
+/// kTransportLost; somebody at the side finds the arm by its serial number, opens a wire and offers
+/// it; the next tick takes it and reads positions again. Forces come back only when the user says
+/// so (`ask_to_activate`). Encoders count from where the arm stood when it got power, so it must
+/// stand in its home pose then.
 class Device {
  public:
   /// Takes an open wire and the arm at its other end; waits up to `timeout_ns` of `clock_now_ns`
-  /// time for the first report by way of the transport's deadline. Fails if none arrives or none
-  /// can be understood, or if a limit is not a positive finite number. Real-time: never from the
-  /// servo thread.
+  /// time for the first report by way of the transport's deadline, and sends zero force meanwhile,
+  /// because some arms speak only when spoken to. Fails if none arrives or none can be understood,
+  /// or if a limit is not a positive finite number. Real-time: never from the servo thread.
   static Result<std::unique_ptr<Device>> open(std::unique_ptr<Transport> transport,
                                               std::unique_ptr<const Arm> arm,
                                               const DeviceSettings& settings,
@@ -71,7 +80,19 @@ class Device {
   /// Makes a fault that somebody above found (it latches, the force goes off). Real-time: safe.
   void trip(Fault fault) noexcept { gate_.trip(fault); }
 
+  /// Offers a new wire to the same arm in place of a lost one; an earlier offer that was not taken
+  /// is dropped. The next `read` takes it if the wire is lost. From any one thread beside the
+  /// loop's. Real-time: never from the servo thread.
+  void offer(std::unique_ptr<Transport> transport);
+
+  /// Asks the next `read` to activate the device. An ask while the wire is lost, or before the
+  /// first report of a new wire, is forgotten: nobody gets a force he did not just ask for. From
+  /// any thread. Real-time: safe.
+  void ask_to_activate() noexcept { activation_asked_.store(true, std::memory_order_release); }
+
   DeviceStage stage() const noexcept;
+  /// Tells whether the wire is lost and waits for an offer. Real-time: safe.
+  bool lost() const noexcept { return lost_; }
   Fault fault() const noexcept { return gate_.fault(); }
   const DeviceState& state() const noexcept { return state_; }
   /// Tells the force that was sent in the last tick, N in the world.
@@ -83,6 +104,8 @@ class Device {
   Device(std::unique_ptr<Transport> transport, std::unique_ptr<const Arm> arm,
          const DeviceSettings& settings) noexcept;
   bool take_report(std::int64_t now_ns, std::int64_t deadline_ns) noexcept;
+  void take_offer(std::int64_t now_ns) noexcept;
+  void begin_activity() noexcept;
   void send(const MotorCurrents& currents) noexcept;
 
   std::unique_ptr<Transport> transport_;
@@ -98,6 +121,11 @@ class Device {
   bool active_ = false;
   bool started_ = false;  // a tick has been read
   bool lost_ = false;
+  bool reported_ = false;  // a report came over this wire
+  int refused_in_a_row_ = 0;
+  std::int64_t refused_since_ns_ = 0;
+  std::atomic<Transport*> offered_{nullptr}, retired_{nullptr};
+  std::atomic<bool> activation_asked_{false};
 };
 
 }  // namespace thimble::driver

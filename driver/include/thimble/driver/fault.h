@@ -14,6 +14,7 @@ enum class Fault : std::uint8_t {
   kStateNotFinite,  ///< Position or velocity came out as NaN or infinity.
   kOverSpeed,       ///< The tip moved faster than `GateLimits::speed_max`.
   kLoopStalled,     ///< The loop stood still longer than the arm's own watchdog waits.
+  kRefused,         ///< The arm took no message for longer than `DeviceSettings::silence_limit_ns`.
 };
 
 /// Tells what a fault means and what to do, in one or two sentences for the user.

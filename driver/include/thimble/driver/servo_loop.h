@@ -35,6 +35,8 @@ struct ServoSettings {
   std::int64_t period_ns = 1'000'000;  ///< Time between ticks.
   std::uint64_t ticks =
       0;  ///< Ends after so many periods (missed ticks count); 0: never by itself.
+  bool outlive_faults = false;  ///< Goes on with zero force after a fault, so that positions are
+                                ///< still seen and a pulled arm can come back.
 };
 
 /// Says why a servo loop ended.

@@ -11,6 +11,7 @@ enum class TransportStatus : std::uint8_t {
   kOk,       ///< Bytes were read or written.
   kNothing,  ///< No new report arrived before the deadline.
   kLost,     ///< The arm is gone; every later call says so too.
+  kRefused,  ///< The arm is there and did not take the bytes (stalled, or still busy with others).
 };
 
 /// Says how a read ended and how much of the buffer it filled.
@@ -37,7 +38,7 @@ class Transport {
   virtual TransportRead read_latest(std::span<std::byte> buffer,
                                     std::int64_t deadline_ns) noexcept = 0;
 
-  /// Sends one report. Never answers kNothing.
+  /// Sends one report. Never answers kNothing; kRefused means that nothing of it may have arrived.
   /// Real-time: safe; waits no longer than one transfer of the bus.
   virtual TransportStatus write(std::span<const std::byte> report) noexcept = 0;
 };

@@ -2,16 +2,12 @@
 
 #include "thimble/driver/arm.h"
 #include "thimble/driver/arms/hfab/hfab_report.h"
+#include "thimble/driver/joint_model.h"
 #include "thimble/driver/serial_arm.h"
 
 namespace thimble::driver::hfab {
 
-/// Describes one encoder and where its zero lies.
-struct JointEncoder {
-  double sign = 1;                   ///< +1 if counts grow with the joint angle, else -1.
-  double counts_per_motor_turn = 0;  ///< Quadrature counts per turn of the motor.
-  std::int32_t home_counts = 0;      ///< Added to the counter, which is zero at the home pose.
-};
+using driver::JointEncoder;
 
 /// Describes an arm that speaks the 14-byte report: data of one model, no state.
 struct HfabModel {

@@ -52,4 +52,8 @@ std::optional<OutputReport> decode_output(std::span<const std::byte> bytes) noex
 /// Encodes what the host sends.
 std::array<std::byte, kReportSize> encode_output(const OutputReport& report) noexcept;
 
+/// Pads a report of either direction with zeros, as boards built on the Teensy send and take it.
+std::array<std::byte, kPaddedReportSize> pad(
+    const std::array<std::byte, kReportSize>& report) noexcept;
+
 }  // namespace thimble::driver::hfab

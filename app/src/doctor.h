@@ -1,0 +1,38 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace thimble::app {
+
+/// Says how bad a finding is.
+enum class Health {
+  kGood,     ///< As it should be.
+  kAdvice,   ///< Works, but touch may suffer.
+  kProblem,  ///< The arm cannot be used like this.
+};
+
+/// Is one thing that the doctor looked at.
+struct Finding {
+  Health health = Health::kGood;
+  std::string what;  ///< One sentence.
+  std::string mend;  ///< A command or an act that mends it; empty if nothing is wrong.
+};
+
+/// Is the machine as the doctor sees it; tests give one of their own.
+struct Patient {
+  std::filesystem::path root = "/";  ///< Everything the kernel tells is read below it.
+  long real_time_priority_max = 0;   ///< This user's RLIMIT_RTPRIO.
+  bool in_plugdev = false;           ///< This user is in the group plugdev.
+};
+
+/// Looks at this machine and user. Real-time: never from the servo thread.
+Patient this_machine();
+
+/// Examines why an arm cannot be used or touch may suffer: the udev rule, each arm's node, access,
+/// driver, hub, power saving and latency timer, and the kernel's real-time limits. Opens and
+/// changes nothing. Real-time: never from the servo thread.
+std::vector<Finding> examine(const Patient& patient);
+
+}  // namespace thimble::app

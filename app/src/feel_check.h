@@ -1,0 +1,37 @@
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bench_arm.h"
+
+namespace thimble::app {
+
+/// Is the largest force that the check lets through, N: enough to feel, too little to hurt.
+inline constexpr double kFeelCheckForceMax = 0.5;
+
+/// Is what one step of the check found.
+struct CheckResult {
+  std::string name;
+  bool passed = false;
+  std::string text;  ///< One sentence with figures.
+};
+
+/// Is called before each step with what the user shall do; returns false to end the check.
+using Prompt = std::function<bool(const std::string& what)>;
+
+/// Checks an arm step by step: do all encoders count, do the directions agree with the world, does
+/// a force push the way it should (0.4 N along x, y and z), and do the motors go off by themselves
+/// when nobody speaks to the arm. The device must be idle; it is idle afterwards, with zero force.
+/// Real-time: never from the servo thread.
+std::vector<CheckResult> feel_check(BenchArm& bench, const ArmFile& file, const Prompt& prompt,
+                                    const std::atomic<bool>& stop);
+
+/// Gives the way of a simulated hand that does what the prompts ask, without pauses between them
+/// (seconds and points in the world, m). `p_WT` is where it begins.
+std::vector<std::pair<double, Eigen::Vector3d>> feel_check_hand(const Eigen::Vector3d& p_WT);
+
+}  // namespace thimble::app

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "arm_file.h"
+#include "thimble/driver/arm.h"
+#include "thimble/driver/clock.h"
+#include "thimble/driver/discovery.h"
+#include "thimble/driver/transport.h"
+
+namespace thimble::app {
+
+// How a scene comes to a real arm. Real-time: never from the servo thread.
+
+/// Chooses among the arms that are plugged in. `wanted`: "sim" gives none; "auto" the only arm that
+/// Thimble can drive, or none if there is none; else the arm of that serial number or name (see
+/// `thimble devices`). The error says what to do.
+driver::Result<std::optional<driver::FoundArm>> choose_arm(
+    const std::vector<driver::FoundArm>& plugged_in, const std::string& wanted);
+
+/// Finds the same arm again after it was pulled: by its serial number, or by its socket if it has
+/// none. Empty if it is not there or cannot be opened yet.
+std::optional<driver::FoundArm> find_again(const std::vector<driver::FoundArm>& plugged_in,
+                                           const driver::FoundArm& lost);
+
+/// Says whether an arm file may be used with an arm: currents of one arm in another's motors are
+/// dangerous.
+driver::Result<void> check_fits(const ArmFile& file, const driver::FoundArm& arm);
+
+/// Makes the arm of a file with the wire that this kind of arm has. Precondition: `check_fits`.
+std::unique_ptr<const driver::Arm> make_arm(const ArmFile& file, driver::ArmKind kind);
+
+/// Opens the wire to an arm and brings the arm up: a Falcon gets its firmware (from the file the
+/// user named, or not at all) and is homed by the user's hand, for which it prints what to do; a
+/// board on USB serial must be the one that the file is for.
+driver::Result<std::unique_ptr<driver::Transport>> open_wire(
+    const driver::FoundArm& arm, const ArmFile& file, const std::filesystem::path& firmware,
+    driver::Clock& clock);
+
+}  // namespace thimble::app

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "thimble/render/body/spring_network.h"
+
+namespace thimble::app {
+
+/// Is a square membrane of n x n nodes in a fixed frame that is poked at one node and let go: the
+/// deformable body whose motion is known exactly [STABILITY 4].
+struct Membrane {
+  std::int32_t n = 32;
+  double mass = 1e-3;      ///< kg per node
+  double stiffness = 300;  ///< N/m between neighbours, and from the outer nodes to the frame
+  double damping = 0.02;   ///< N s/m per node
+  double force = 1;        ///< N, held from 0 until `poke`
+  double poke = 0.05;      ///< s
+
+  /// Tells which node is poked: off the middle, so that no mode is spared by symmetry.
+  std::int32_t poked() const { return (2 * n / 5) * n + n / 3; }
+};
+
+/// Builds the membrane as a spring network: heights over the frame's plane. Real-time: never from
+/// the servo thread.
+render::SpringNetwork<1> membrane_network(const Membrane& membrane);
+
+/// Tells the true height (m) of every node at time `t` (s): the sum of all n^2 sine modes, each by
+/// its closed form. Real-time: never from the servo thread.
+std::vector<double> membrane_truth(const Membrane& membrane, double t);
+
+}  // namespace thimble::app

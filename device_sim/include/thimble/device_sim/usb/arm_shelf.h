@@ -1,0 +1,53 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "thimble/device_sim/usb/usb_arm.h"
+#include "thimble/driver/arms/hfab/hfab_arm.h"
+#include "thimble/driver/result.h"
+
+namespace thimble::device_sim::usb {
+
+/// Says what the simulated hand does with the arm.
+enum class HandMotion : std::uint8_t {
+  kRest,    ///< Holds the tip at the home pose.
+  kTap,     ///< Goes up and down by 15 mm (Falcon: 20 mm) along the base's z, once a second.
+  kStroke,  ///< Goes round a circle of so much in the base's y and z, once in two seconds.
+};
+
+/// Says how an arm from the shelf is to be.
+struct ShelfOptions {
+  HandMotion motion = HandMotion::kTap;
+  std::string serial = "SIM0001";
+  std::uint64_t seed = 0;
+  std::vector<std::byte> firmware;  ///< The only image that a Falcon runs; empty: any.
+};
+
+/// Lists the arms that can be plugged in: name for the command line, and what it is.
+struct ShelfEntry {
+  std::string_view name;
+  std::string_view what;
+};
+inline constexpr std::array<ShelfEntry, 4> kShelf{{
+    {"woodenhaptics", "WoodenHaptics, HID 1234:0006, 8-byte reports"},
+    {"polhem", "Polhem v2, HID 16c0:0486, 14-byte reports"},
+    {"polhem-64", "Polhem on a Teensy, HID 16c0:0486, the same reports in 64 bytes"},
+    {"falcon", "Novint Falcon, FTDI 0403:cb48, boots, takes firmware, homes"},
+}};
+
+/// Gives the geometry, motors and encoders of a HID arm on the shelf, for whoever drives it.
+/// Real-time: never from the servo thread.
+driver::hfab::HfabModel shelf_model(std::string_view name);
+
+/// Makes an arm by its name. Fails with the list of names. The hand moves for ten minutes, then
+/// rests. Real-time: never from the servo thread.
+driver::Result<std::unique_ptr<UsbArm>> make_usb_arm(std::string_view name,
+                                                     const ShelfOptions& options);
+
+}  // namespace thimble::device_sim::usb

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "thimble/device_sim/delta_plant.h"
+#include "thimble/device_sim/hand_path.h"
+#include "thimble/device_sim/usb/falcon_board.h"
+#include "thimble/device_sim/usb/ftdi_chip.h"
+#include "thimble/device_sim/usb/usb_arm.h"
+
+namespace thimble::device_sim::usb {
+
+/// Is a simulated Novint Falcon on a USB plug: FTDI converter, board, delta mechanics and a hand.
+/// What the host sends reaches the board at the line's rate, the board samples the encoders when a
+/// packet is complete, and its answer goes to the host when the latency timer of 1 ms is over.
+class FalconOnUsb final : public UsbArm {
+ public:
+  /// Rests the arm at the path's first point. `image` is the firmware that it can run; empty if any
+  /// will do. Throws as DeltaPlant does. Real-time: never from the servo thread.
+  FalconOnUsb(UsbDescription description, const PlantSettings& plant, const HandSettings& hand,
+              HandPath path, std::vector<std::byte> image);
+
+  const UsbDescription& description() const noexcept override { return description_; }
+  void advance_to(std::int64_t time_ns) noexcept override;
+  PacketResult control(const SetupPacket& setup, std::span<std::byte> data) noexcept override;
+  PacketResult in(std::uint8_t address, std::span<std::byte> packet) noexcept override;
+  PacketResult out(std::uint8_t address, std::span<const std::byte> packet) noexcept override;
+  ArmTruth truth() const noexcept override;
+
+  // For tests. Real-time: safe.
+  const FalconBoard& board() const noexcept { return board_; }
+  const FtdiChip& chip() const noexcept { return chip_; }
+  const DeltaPlant& plant() const noexcept { return plant_; }
+
+ private:
+  void move_to(std::int64_t time_ns) noexcept;
+  void hear_line(std::int64_t dt_ns) noexcept;
+
+  UsbDescription description_;
+  HandPath path_;
+  DeltaPlant plant_;
+  FalconBoard board_;
+  FtdiChip chip_;
+  ArmTruth truth_;
+  std::int64_t time_ns_ = 0;
+  std::uint64_t packets_ = 0;
+};
+
+}  // namespace thimble::device_sim::usb

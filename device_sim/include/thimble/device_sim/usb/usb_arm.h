@@ -1,0 +1,34 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+
+#include "thimble/device_sim/usb/usb_device.h"
+
+namespace thimble::device_sim::usb {
+
+/// Is what is true of a simulated arm at its last packets; a driver cannot see it. Frame B: base of
+/// the arm.
+struct ArmTruth {
+  std::uint64_t reports = 0;                   ///< Reports that the host took.
+  std::int64_t report_ns = 0;                  ///< When the last of them was sampled, ns.
+  std::array<std::int32_t, 3> counts{};        ///< What it said, counts.
+  Eigen::Vector3d exact_counts{0, 0, 0};       ///< The same before rounding to whole counts.
+  std::uint64_t messages = 0;                  ///< Messages that came and were understood.
+  std::int64_t message_ns = 0;                 ///< When the last of them came, ns.
+  std::array<std::int32_t, 3> motor_values{};  ///< What it asked for, in the wire's unit.
+  Eigen::Vector3d currents{0, 0, 0};           ///< What flows in the motors now, A or motor units.
+  Eigen::Vector3d p_BT{0, 0, 0};               ///< Where the tip is now, m.
+  bool motors_on = false;                      ///< False before the first message and after the
+                                               ///< watchdog fired.
+};
+
+/// Is a simulated arm on a USB plug.
+class UsbArm : public UsbDevice {
+ public:
+  /// Shows what is true. Real-time: safe.
+  virtual ArmTruth truth() const noexcept = 0;
+};
+
+}  // namespace thimble::device_sim::usb

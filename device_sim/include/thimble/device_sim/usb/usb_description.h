@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace thimble::device_sim::usb {
+
+/// Says how an endpoint moves data (bmAttributes of its descriptor [USB 2.0, 9.6.6]).
+enum class TransferKind : std::uint8_t { kBulk = 2, kInterrupt = 3 };
+
+/// Describes one endpoint besides the control pipe.
+struct EndpointDescription {
+  std::uint8_t address = 0;  ///< Number, with bit 7 set if it sends to the host.
+  TransferKind kind = TransferKind::kInterrupt;
+  std::uint16_t packet_size = 64;  ///< Bytes; at most 64 at full speed.
+  std::uint8_t interval = 0;       ///< Frames between two polls of an interrupt endpoint.
+
+  bool to_host() const noexcept { return (address & 0x80U) != 0; }
+  std::uint8_t number() const noexcept { return address & 0x0fU; }
+};
+
+/// Describes a full-speed USB device with one configuration of one interface: what a host reads
+/// before it talks to the device's endpoints.
+struct UsbDescription {
+  std::uint16_t vendor_id = 0;
+  std::uint16_t product_id = 0;
+  std::uint16_t release = 0x0100;             ///< bcdDevice; some hosts tell chips apart by it.
+  std::string manufacturer, product, serial;  ///< ASCII; empty ones get no string descriptor.
+  std::uint8_t interface_class = 0xff;        ///< 3 for HID, 0xff for the vendor's own.
+  std::uint8_t interface_subclass = 0;
+  std::uint8_t interface_protocol = 0;
+  std::vector<std::byte> report_descriptor;  ///< For HID: what the reports hold.
+  std::vector<EndpointDescription> endpoints;
+
+  /// Finds an endpoint by its address, or nullptr. Real-time: safe.
+  const EndpointDescription* endpoint(std::uint8_t address) const noexcept;
+};
+
+/// Is the kind of a descriptor [USB 2.0, table 9-5; HID 1.11, 7.1].
+enum DescriptorKind : std::uint8_t {
+  kDeviceDescriptor = 1,
+  kConfigurationDescriptor = 2,
+  kStringDescriptor = 3,
+  kInterfaceDescriptor = 4,
+  kEndpointDescriptor = 5,
+  kHidDescriptor = 0x21,
+  kReportDescriptor = 0x22,
+};
+
+/// Builds the descriptor that a host asks for by GET_DESCRIPTOR with this kind and index; empty if
+/// the device has none. Strings are cut at 126 characters. Real-time: never from the servo thread.
+std::vector<std::byte> build_descriptor(const UsbDescription& description, std::uint8_t kind,
+                                        std::uint8_t index);
+
+/// Builds the report descriptor of a device that exchanges plain bytes: one report of `in_bytes` to
+/// the host and one of `out_bytes` from it, no report ids, on a vendor's usage page
+/// [HID 1.11, 6.2.2]. Real-time: never from the servo thread.
+std::vector<std::byte> build_raw_report_descriptor(std::uint16_t usage_page, std::uint16_t usage,
+                                                   std::uint8_t in_bytes, std::uint8_t out_bytes);
+
+}  // namespace thimble::device_sim::usb

@@ -1,0 +1,74 @@
+#include "thimble/device_sim/delta_plant.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace thimble::device_sim {
+namespace {
+
+constexpr double kDifference = 1e-6;  // m
+
+}  // namespace
+
+DeltaPlant::DeltaPlant(const driver::JointModel<driver::DeltaArm>& model,
+                       const PlantSettings& plant, const HandSettings& hand,
+                       const MotorSettings& motors, const Eigen::Vector3d& p_BT)
+    : model_(model),
+      current_max_(motors.current_max),
+      dynamics_(plant, hand),
+      axes_{AxisState{p_BT.x(), 0}, AxisState{p_BT.y(), 0}, AxisState{p_BT.z(), 0}},
+      p_BH_(p_BT) {
+  for (int i = 0; i < 3; ++i) {
+    const driver::MotorDrive& drive = model.drives[static_cast<std::size_t>(i)];
+    torque_per_ampere_[i] = drive.sign * drive.ratio * drive.torque_constant;
+  }
+  if (!torque_per_ampere_.allFinite() || !(current_max_ > 0 && current_max_ < HUGE_VAL)) {
+    throw std::invalid_argument(
+        "The simulated delta arm's motors need finite constants and a current_max above zero (A).");
+  }
+  const auto q = model_.geometry.inverse(p_BT);
+  if (!q) throw std::invalid_argument("The simulated delta arm cannot reach its starting point.");
+  q_ = *q;
+}
+
+void DeltaPlant::set_currents(const Eigen::Vector3d& amperes) noexcept {
+  for (int i = 0; i < 3; ++i) {
+    const double wanted = std::isnan(amperes[i]) ? 0.0 : amperes[i];
+    amperes_[i] = std::clamp(wanted, -current_max_, current_max_);
+  }
+}
+
+Eigen::Vector3d DeltaPlant::f_T_B() const noexcept {
+  const Eigen::Vector3d tau = torque_per_ampere_.cwiseProduct(amperes_);
+  Eigen::Vector3d force(0, 0, 0);
+  if (tau.isZero(0)) return force;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Eigen::Vector3d step = kDifference * Eigen::Vector3d::Unit(axis);
+    const auto ahead = model_.geometry.inverse(p_BT() + step);
+    const auto behind = model_.geometry.inverse(p_BT() - step);
+    if (!ahead || !behind) return {0, 0, 0};  // at the end of reach the stop carries everything
+    force[axis] = (*ahead - *behind).dot(tau) / (2 * kDifference);
+  }
+  return force;
+}
+
+void DeltaPlant::step(const Eigen::Vector3d& p_BH, std::int64_t dt_ns) noexcept {
+  if (!(dt_ns > 0)) return;
+  const Eigen::Vector3d force = f_T_B();
+  const Eigen::Vector3d v_BH = (p_BH - p_BH_) / (static_cast<double>(dt_ns) * 1e-9);
+  const std::array<AxisState, 3> before = axes_;
+  for (int i = 0; i < 3; ++i) {
+    dynamics_.step(axes_[static_cast<std::size_t>(i)],
+                   {.force = force[i], .anchor = p_BH_[i], .anchor_speed = v_BH[i]}, dt_ns);
+  }
+  p_BH_ = p_BH;
+  if (const auto q = model_.geometry.inverse(p_BT())) {
+    q_ = *q;
+    return;
+  }
+  axes_ = before;
+  for (AxisState& axis : axes_) axis.v = 0;
+}
+
+}  // namespace thimble::device_sim

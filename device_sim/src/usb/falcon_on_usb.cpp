@@ -1,0 +1,91 @@
+#include "thimble/device_sim/usb/falcon_on_usb.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "thimble/device_sim/usb/usbip_session.h"
+#include "thimble/driver/arms/falcon/falcon_arm.h"
+
+namespace thimble::device_sim::usb {
+namespace {
+
+constexpr double kMotorValuesPerAmpere = 1000;  // as driver::falcon::FalconArm counts them
+constexpr double kMotorValueMax = 4096;         // what users of libnifalcon clamp to [S]
+
+}  // namespace
+
+FalconOnUsb::FalconOnUsb(UsbDescription description, const PlantSettings& plant,
+                         const HandSettings& hand, HandPath path, std::vector<std::byte> image)
+    : description_(std::move(description)),
+      path_(std::move(path)),
+      plant_(driver::falcon::falcon_model(), plant, hand,
+             MotorSettings{.current_max = kMotorValueMax / kMotorValuesPerAmpere},
+             path_.points().front().p_BH),
+      board_(std::move(image)),
+      chip_(board_) {}
+
+void FalconOnUsb::move_to(std::int64_t time_ns) noexcept {
+  if (time_ns <= time_ns_) return;
+  plant_.step(path_.at(static_cast<double>(time_ns) * 1e-9), time_ns - time_ns_);
+  time_ns_ = time_ns;
+}
+
+void FalconOnUsb::hear_line(std::int64_t dt_ns) noexcept {
+  const Eigen::Vector3d exact = plant_.exact_counts();
+  board_.set_encoders({exact[0], exact[1], exact[2]});
+  board_.watch(time_ns_);
+  board_.host_rate(chip_.rate());
+  chip_.deliver(dt_ns);
+  if (board_.counters().packets != packets_) {
+    truth_.messages += board_.counters().packets - packets_;
+    truth_.reports = truth_.messages;  // each packet is answered
+    packets_ = board_.counters().packets;
+    truth_.message_ns = truth_.report_ns = time_ns_;
+    truth_.exact_counts = exact;
+    for (std::size_t i = 0; i < 3; ++i) {
+      truth_.motor_values[i] = board_.asked().motors[i];
+      truth_.counts[i] = board_.answered().counts[i];
+    }
+  }
+  Eigen::Vector3d amperes(0, 0, 0);
+  if (board_.running() && board_.motors_on()) {
+    for (int i = 0; i < 3; ++i) {
+      amperes[i] = board_.asked().motors[static_cast<std::size_t>(i)] / kMotorValuesPerAmpere;
+    }
+  }
+  plant_.set_currents(amperes);
+}
+
+void FalconOnUsb::advance_to(std::int64_t time_ns) noexcept {
+  while (time_ns_ < time_ns) {
+    const std::int64_t dt_ns = std::min(time_ns - time_ns_, UsbipSession::kFrame_ns);
+    const std::int64_t end_ns = time_ns_ + dt_ns;
+    move_to(time_ns_ + chip_.line_time_ns(dt_ns));
+    hear_line(dt_ns);
+    move_to(end_ns);
+  }
+}
+
+PacketResult FalconOnUsb::control(const SetupPacket& setup, std::span<std::byte> data) noexcept {
+  return chip_.control(setup, data);
+}
+
+PacketResult FalconOnUsb::in(std::uint8_t address, std::span<std::byte> packet) noexcept {
+  if (address != FtdiChip::kInEndpoint) return {Answer::kStall, 0};
+  return chip_.in(time_ns_, packet);
+}
+
+PacketResult FalconOnUsb::out(std::uint8_t address, std::span<const std::byte> packet) noexcept {
+  if (address != FtdiChip::kOutEndpoint) return {Answer::kStall, 0};
+  return chip_.out(packet);
+}
+
+ArmTruth FalconOnUsb::truth() const noexcept {
+  ArmTruth truth = truth_;
+  truth.currents = plant_.currents();
+  truth.p_BT = plant_.p_BT();
+  truth.motors_on = board_.motors_on();
+  return truth;
+}
+
+}  // namespace thimble::device_sim::usb

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+namespace thimble::driver {
+
+/// Is the size of a packet of a full-speed FTDI converter, bytes, and of the modem and line status
+/// at its beginning [S libnifalcon, libftdi].
+inline constexpr std::size_t kFtdiPacketSize = 64;
+inline constexpr std::size_t kFtdiStatusSize = 2;
+
+/// Calls `take(std::span<const std::byte>)` with what each packet of a transfer holds beyond its
+/// status bytes. Total: a packet too short to hold them holds nothing. Real-time: safe if `take`
+/// is.
+template <class Take>
+void for_each_ftdi_packet(std::span<const std::byte> transfer, Take&& take) noexcept {
+  while (transfer.size() > kFtdiStatusSize) {
+    const std::size_t size = transfer.size() < kFtdiPacketSize ? transfer.size() : kFtdiPacketSize;
+    if (size > kFtdiStatusSize) {
+      take(transfer.subspan(kFtdiStatusSize, size - kFtdiStatusSize));
+    }
+    transfer = transfer.subspan(size);
+  }
+}
+
+}  // namespace thimble::driver

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace thimble::driver {
+
+/// Is the geometry of the Polhem arm: a yaw, and in its plane two motors side by side that move the
+/// forearm through a linkage of four bars [S forsslund/hfabapi hfab_polhem.h].
+///
+///     h |            elbow            bar 1 from the front motor to the elbow, at angle q1
+///       |      1   . o - - -forearm-> T   length_5 from elbow to tip, at angle lambda
+///       |     .   / 4                 bar 4 continues the forearm backwards
+///       |  . o - o                    bar 2 on the back motor, at angle q2
+///       | o 2  3                      bar 3 joins the ends of 2 and 4
+///   --- back - - front - - r          the motors stand length_0 apart, the yaw axis half-way
+///
+/// Frame B: origin on the yaw axis between the motors, z up. Joint vector q = (yaw, q1, q2), rad,
+/// both link angles measured from the r axis. All functions are Real-time: safe.
+struct LinkageArm {
+  double length_0 = 0;  ///< Between the two motors, m.
+  double length_1 = 0;  ///< Front motor to elbow, m.
+  double length_2 = 0;  ///< Crank on the back motor, m.
+  double length_3 = 0;  ///< Coupling bar, m.
+  double length_4 = 0;  ///< Elbow back to the coupling bar, m.
+  double length_5 = 0;  ///< Elbow to tip, m.
+
+  /// Finds the tip p_BT (m) and the Jacobian J_BT = d p_BT / d q (m/rad). Where the bars cannot
+  /// close, both are NaN, so that everything after gives zero force.
+  void forward(const Eigen::Vector3d& q, Eigen::Vector3d& p_BT,
+               Eigen::Matrix3d& J_BT) const noexcept;
+};
+
+}  // namespace thimble::driver

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace thimble::driver {
+
+/// Is an FTDI converter seen as what it converts: a serial line with its control wires. For set-up
+/// only (boot, firmware upload); touching goes through a Transport. Every function answers false
+/// if the converter did not take the request; the line is then of no further use.
+/// Real-time: never from the servo thread.
+class SerialLine {
+ public:
+  SerialLine() = default;
+  SerialLine(const SerialLine&) = delete;
+  SerialLine& operator=(const SerialLine&) = delete;
+  virtual ~SerialLine() = default;
+
+  /// Sets the rate by the converter's own divisor word (FTDI's SET_BAUD_RATE value).
+  virtual bool set_rate_divisor(std::uint16_t divisor) = 0;
+  /// Sets 8 data bits, no parity, 1 stop bit, no flow control.
+  virtual bool set_frame_8n1() = 0;
+  virtual bool set_rts(bool high) = 0;
+  virtual bool set_dtr(bool high) = 0;
+  /// Sets how long the converter keeps bytes back before it sends a packet that is not full, ms.
+  virtual bool set_latency_ms(std::uint8_t latency_ms) = 0;
+  /// Forgets every byte in the converter, both ways.
+  virtual bool purge() = 0;
+
+  /// Sends all bytes.
+  virtual bool write(std::span<const std::byte> bytes) = 0;
+  /// Waits up to `timeout_ms` for bytes (without FTDI's status bytes); tells how many came, 0 if
+  /// none, or -1 if the converter is gone.
+  virtual int read(std::span<std::byte> bytes, int timeout_ms) = 0;
+};
+
+}  // namespace thimble::driver

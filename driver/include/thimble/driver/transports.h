@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "thimble/driver/clock.h"
+#include "thimble/driver/frame_finder.h"
+#include "thimble/driver/result.h"
+#include "thimble/driver/serial_line.h"
+#include "thimble/driver/transport.h"
+
+namespace thimble::driver {
+
+// The wires to real arms. Each keeps the clock by reference (its deadlines are on it), so the clock
+// must outlive the transport. Opening is for set-up; the transports themselves are Real-time: safe,
+// with what their libraries do beneath said at each. driver/README.md has the table.
+
+/// Opens an arm on USB HID by its node (/dev/hidraw3). Messages are filled up with zeros to
+/// `message_size` bytes (0: sent as they are), with report id 0 in front.
+///
+/// Reading takes the newest report and counts older ones; the kernel keeps 64. Nothing allocates
+/// while the arm is there (hidapi makes an error text when it is not). Writing returns when the arm
+/// has taken the message, one USB frame as a rule; the kernel itself waits up to 5 s for an arm
+/// that refuses messages without an answer, during which the loop stands still and the arm's own
+/// watchdog switches it off (Fault::kLoopStalled names it afterwards).
+Result<std::unique_ptr<Transport>> open_hid_transport(const std::string& node,
+                                                      std::size_t message_size, const Clock& clock);
+
+/// Opens an arm on a serial port by its node (/dev/serial/by-id/...), for this program alone.
+/// Neither allocates nor locks. A message that the port has no room for is refused, not waited for.
+Result<std::unique_ptr<Transport>> open_serial_transport(const std::string& node,
+                                                         const Framing& framing,
+                                                         const Clock& clock);
+
+/// Is where the kernel put a USB device.
+struct UsbAddress {
+  int bus = 0;
+  int device = 0;
+};
+
+/// Is an arm behind an FTDI converter: a serial line for the set-up, then a transport.
+class FtdiLine : public SerialLine {
+ public:
+  /// Opens the converter, takes it from the kernel's serial driver if that has it, and claims it.
+  static Result<std::unique_ptr<FtdiLine>> open(const UsbAddress& address);
+
+  /// Turns the line into a transport; the line is of no use afterwards. All transfers are made here
+  /// and used again and again; libusb itself allocates a request block per transfer and takes its
+  /// own (uncontended) locks. FTDI's two status bytes per packet are taken out.
+  virtual Result<std::unique_ptr<Transport>> into_transport(const Framing& framing,
+                                                            const Clock& clock) = 0;
+};
+
+}  // namespace thimble::driver

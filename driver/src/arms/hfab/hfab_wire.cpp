@@ -1,0 +1,40 @@
+#include "thimble/driver/arms/hfab/hfab_wire.h"
+
+#include <algorithm>
+
+#include "thimble/driver/arms/hfab/hfab_report.h"
+
+namespace thimble::driver::hfab {
+
+bool LineWire::decode(std::span<const std::byte> bytes, ArmReading& reading) noexcept {
+  const auto line = decode_arm_line(bytes);
+  if (!line || (line->error & kErrorStale) != 0) return false;
+  std::copy_n(line->counts.begin(), 3, reading.counts.begin());
+  std::copy_n(line->counts.begin() + 3, 3, reading.auxiliary.begin());
+  reading.buttons = 0;
+  return true;
+}
+
+std::size_t LineWire::encode(const std::array<std::int16_t, 3>& mA,
+                             std::span<std::byte, kReportCapacity> bytes) noexcept {
+  return encode_host_line({.current_mA = {mA[0], mA[1], mA[2]}}, bytes.first<kLineCapacity>());
+}
+
+bool ReportWire::decode(std::span<const std::byte> bytes, ArmReading& reading) noexcept {
+  const auto report = decode_input(bytes);
+  if (!report) return false;
+  std::copy_n(report->counts.begin(), 3, reading.counts.begin());
+  std::copy_n(report->counts.begin() + 3, 3, reading.auxiliary.begin());
+  reading.buttons = static_cast<std::uint16_t>(report->info & 1);
+  return true;
+}
+
+std::size_t ReportWire::encode(const std::array<std::int16_t, 3>& mA,
+                               std::span<std::byte, kReportCapacity> bytes) noexcept {
+  const auto report = encode_output(
+      {.current_mA = mA, .command = static_cast<std::int16_t>(Command::kDrive), .attributes = {}});
+  std::copy(report.begin(), report.end(), bytes.begin());
+  return report.size();
+}
+
+}  // namespace thimble::driver::hfab

@@ -1,0 +1,102 @@
+#include <fcntl.h>
+#include <hidapi.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+
+#include "thimble/driver/arm.h"
+#include "thimble/driver/transports.h"
+
+namespace thimble::driver {
+namespace {
+
+class HidTransport final : public Transport {
+ public:
+  HidTransport(hid_device* device, std::size_t message_size, const Clock& clock) noexcept
+      : clock_(clock), device_(device), message_size_(std::min(message_size, kReportCapacity)) {}
+  ~HidTransport() override { hid_close(device_); }
+
+  TransportRead read_latest(std::span<std::byte> buffer,
+                            std::int64_t deadline_ns) noexcept override {
+    TransportRead read;
+    if (lost_) return {.status = TransportStatus::kLost};
+    // The kernel keeps 64 reports (HIDRAW_BUFFER_SIZE, linux/drivers/hid/hidraw.c); an arm that
+    // sends faster than they are read is left after two rounds of them.
+    constexpr std::uint32_t kReportsMax = 128;
+    std::uint32_t reports = 0;
+    int wait_ms = 0;
+    while (reports < kReportsMax) {
+      const int count = hid_read_timeout(device_, reinterpret_cast<unsigned char*>(buffer.data()),
+                                         buffer.size(), wait_ms);
+      if (count < 0) {
+        lost_ = true;
+        return {.status = TransportStatus::kLost};
+      }
+      if (count > 0) {
+        read.size = static_cast<std::size_t>(count);
+        ++reports;
+        wait_ms = 0;
+        continue;
+      }
+      if (reports > 0 || wait_ms > 0) break;
+      // hidapi waits in whole milliseconds: round down, so as not to pass the deadline.
+      wait_ms = static_cast<int>(
+          std::clamp<std::int64_t>((deadline_ns - clock_.now_ns()) / 1'000'000, 0, 60'000));
+      if (wait_ms == 0) break;
+    }
+    if (reports > 0) {
+      read.status = TransportStatus::kOk;
+      read.skipped = reports - 1;
+    }
+    return read;
+  }
+
+  TransportStatus write(std::span<const std::byte> report) noexcept override {
+    if (lost_) return TransportStatus::kLost;
+    std::array<unsigned char, kReportCapacity + 1> message{};  // report id 0 in front
+    const std::size_t used = std::min(report.size(), kReportCapacity);
+    std::memcpy(message.data() + 1, report.data(), used);
+    const std::size_t size = 1 + std::max(used, message_size_);
+    errno = 0;
+    if (hid_write(device_, message.data(), size) >= 0) return TransportStatus::kOk;
+    // A stalled or silent endpoint is an arm that refuses; only a missing device is a lost one.
+    if (errno != ENODEV && errno != EIO && errno != ESHUTDOWN && errno != EBADF) {
+      return TransportStatus::kRefused;
+    }
+    lost_ = true;
+    return TransportStatus::kLost;
+  }
+
+ private:
+  const Clock& clock_;
+  hid_device* device_;
+  std::size_t message_size_;
+  bool lost_ = false;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<Transport>> open_hid_transport(const std::string& node,
+                                                      std::size_t message_size,
+                                                      const Clock& clock) {
+  // hidapi says only that it failed; the kernel says why.
+  const int probe = ::open(node.c_str(), O_RDWR | O_CLOEXEC);
+  if (probe < 0) {
+    if (errno == EACCES || errno == EPERM) {
+      return Error{"No access to " + node +
+                   ": install udev/70-thimble.rules and plug the arm in again (see `thimble "
+                   "doctor`)."};
+    }
+    return Error{node + " cannot be opened (" + std::strerror(errno) +
+                 "). Check that the arm is plugged in."};
+  }
+  ::close(probe);
+  hid_device* device = hid_open_path(node.c_str());
+  if (device == nullptr) return Error{node + " is no HID device that can be used."};
+  return std::unique_ptr<Transport>(std::make_unique<HidTransport>(device, message_size, clock));
+}
+
+}  // namespace thimble::driver

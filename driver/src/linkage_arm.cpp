@@ -1,0 +1,40 @@
+#include "thimble/driver/linkage_arm.h"
+
+#include <cmath>
+
+namespace thimble::driver {
+
+void LinkageArm::forward(const Eigen::Vector3d& q, Eigen::Vector3d& p_BT,
+                         Eigen::Matrix3d& J_BT) const noexcept {
+  const double cos_1 = std::cos(q[1]), sin_1 = std::sin(q[1]);
+  const double cos_2 = std::cos(q[2]), sin_2 = std::sin(q[2]);
+  // From the crank's end to the elbow, and how that turns with q1 and q2.
+  const Eigen::Vector2d D(length_0 + length_1 * cos_1 - length_2 * cos_2,
+                          length_1 * sin_1 - length_2 * sin_2);
+  const Eigen::Vector2d D_by_1(-length_1 * sin_1, length_1 * cos_1);
+  const Eigen::Vector2d D_by_2(length_2 * sin_2, -length_2 * cos_2);
+  // Bar 3 closes when |D - length_4 u| = length_3, u along the forearm: D.u = along.
+  const double along =
+      (D.squaredNorm() + length_4 * length_4 - length_3 * length_3) / (2 * length_4);
+  // acos of more than one is NaN, and stays NaN in all that follows.
+  const double lambda = std::atan2(D.y(), D.x()) - std::acos(along / D.norm());
+  const Eigen::Vector2d u(std::cos(lambda), std::sin(lambda));
+  const Eigen::Vector2d across(-u.y(), u.x());
+  const Eigen::Vector2d lambda_by_D = (D / length_4 - u) / D.dot(across);
+  const Eigen::Vector2d lambda_by(lambda_by_D.dot(D_by_1), lambda_by_D.dot(D_by_2));
+
+  const double r = length_0 / 2 + length_1 * cos_1 + length_5 * u.x();
+  const double r_by_1 = -length_1 * sin_1 + length_5 * across.x() * lambda_by[0];
+  const double r_by_2 = length_5 * across.x() * lambda_by[1];
+  const double h_by_1 = length_1 * cos_1 + length_5 * across.y() * lambda_by[0];
+  const double h_by_2 = length_5 * across.y() * lambda_by[1];
+  const double cos_0 = std::cos(q[0]), sin_0 = std::sin(q[0]);
+  p_BT = {r * cos_0, r * sin_0, length_1 * sin_1 + length_5 * u.y()};
+  // clang-format off
+  J_BT << -r * sin_0, r_by_1 * cos_0, r_by_2 * cos_0,
+           r * cos_0, r_by_1 * sin_0, r_by_2 * sin_0,
+                   0, h_by_1,         h_by_2;
+  // clang-format on
+}
+
+}  // namespace thimble::driver

@@ -1,0 +1,103 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "thimble/driver/result.h"
+#include "thimble/render/body/network_bounds.h"
+
+namespace thimble::render {
+
+/// Is one node: a mass on a spring and a damper to its own base point [BP Fig. 6, 7].
+struct BodyNode {
+  double mass = 1e-3;         ///< kg, > 0
+  double base_stiffness = 0;  ///< N/m, >= 0
+  double base_damping = 0;    ///< N s/m, >= 0
+};
+
+/// Joins two nodes by a spring and a damper, at rest while both stand alike to their base points.
+template <int kDof>
+struct BodySpring {
+  std::int32_t a = 0;
+  std::int32_t b = 0;
+  double stiffness = 0;  ///< N/m, >= 0
+  double damping = 0;    ///< N s/m, >= 0
+  /// Unit vector: pulls along it only. Zero: pulls alike in all directions. In one network all
+  /// springs are of one sort.
+  Eigen::Matrix<double, kDof, 1> along = Eigen::Matrix<double, kDof, 1>::Zero();
+};
+
+/// Holds a matrix with the network's pattern: one weight per node and one per half of a spring.
+struct NetworkWeights {
+  std::vector<double> node;
+  std::vector<double> half;
+  bool joined = true;  ///< False if all of `half` is 0, so that nobody need look there.
+};
+
+/// Is masses, springs and dampers between nodes: M u'' + C u' + K u = f, with u the displacements
+/// from the base points. `kDof` = 3: vectors (m); 1: displacements along each vertex's normal (m).
+///
+/// Linear in u, and at rest at u = 0 wherever the base points are: who moves base points (rigid
+/// motion, clay, snap) changes the shape without straining it. K and C are symmetric and never
+/// negative, which is what the proofs about the integrators stand on (spring_motion.h).
+template <int kDof>
+class SpringNetwork {
+ public:
+  using Vector = Eigen::Matrix<double, kDof, 1>;
+
+  /// Checks and joins nodes and springs, and finds the bounds. The error names the first node or
+  /// spring with a mass that is not positive, a negative or infinite constant, an end that does not
+  /// exist, or a direction that is neither unit nor zero. Real-time: never from the servo thread.
+  static driver::Result<SpringNetwork> build(std::span<const BodyNode> nodes,
+                                             std::span<const BodySpring<kDof>> springs);
+
+  // All of the following are Real-time: safe. Precondition: numbers name what exists, spans hold
+  // one entry per node.
+
+  std::int32_t node_count() const noexcept { return static_cast<std::int32_t>(mass_.size()); }
+  double mass(std::int32_t node) const noexcept { return mass_[static_cast<std::size_t>(node)]; }
+  const NetworkWeights& stiffness() const noexcept { return stiffness_; }
+  const NetworkWeights& damping() const noexcept { return damping_; }
+  /// Tells whether springs or dampers join nodes, and whether there are dampers at all.
+  bool coupled() const noexcept { return coupled_; }
+  bool damped() const noexcept { return damped_; }
+  const NetworkBounds& bounds() const noexcept { return bounds_; }
+
+  /// Lists the nodes that springs join to `node`.
+  std::span<const std::int32_t> neighbours(std::int32_t node) const noexcept {
+    const auto i = static_cast<std::size_t>(node);
+    return {other_.data() + begin_[i], begin_[i + 1] - begin_[i]};
+  }
+
+  /// Multiplies: y_i = w_i x_i + sum over i's springs of w (x_i - x_other), for the `nodes` named.
+  void multiply(const NetworkWeights& weights, std::span<const std::int32_t> nodes,
+                std::span<const Vector> x, std::span<Vector> y) const noexcept;
+
+  /// Tells row `node` of that product alone.
+  Vector row(const NetworkWeights& weights, std::int32_t node,
+             std::span<const Vector> x) const noexcept;
+
+  /// Tells the energy of displacements `u` (m) and velocities `v` (m/s), J.
+  double energy(std::span<const Vector> u, std::span<const Vector> v) const noexcept;
+
+ private:
+  SpringNetwork() = default;
+
+  std::vector<double> mass_;
+  NetworkWeights stiffness_;
+  NetworkWeights damping_;
+  std::vector<std::size_t> begin_;
+  std::vector<std::int32_t> other_;
+  std::vector<Vector> along_;  // per half of a spring; empty if springs pull in all directions
+  bool coupled_ = false;
+  bool damped_ = false;
+  NetworkBounds bounds_;
+};
+
+extern template class SpringNetwork<1>;
+extern template class SpringNetwork<3>;
+
+}  // namespace thimble::render

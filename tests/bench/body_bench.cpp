@@ -1,0 +1,176 @@
+#include <benchmark/benchmark.h>
+
+#include <cstdio>
+#include <cstring>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "bench/figures_reporter.h"
+#include "figure.h"
+#include "support/body_meshes.h"
+#include "support/shapes.h"
+#include "thimble/render/body/mesh_springs.h"
+#include "thimble/render/body/modal_motion.h"
+#include "thimble/render/body/plastic_base.h"
+#include "thimble/render/body/rigid_body.h"
+#include "thimble/render/body/ring_patch.h"
+#include "thimble/render/body/snap_base.h"
+#include "thimble/render/body/spring_motion.h"
+
+// What the dynamics of bodies cost: per node and step, or per step of one body.
+
+namespace thimble::bench {
+namespace {
+
+using render::SpringScheme;
+
+constexpr double kTick = 1e-3;
+
+// A ball of 2,562 vertices with soft springs, so that every scheme is stable at a tick.
+render::SpringNetwork<3> ball() {
+  return render::join_vertices(support::icosphere(4, 0.05), {1e-3, 20, 0.002, 100, 0.01, true})
+      .value();
+}
+
+void step_nodes(benchmark::State& state, SpringScheme scheme) {
+  render::SpringMotionOptions options;
+  options.scheme = scheme;
+  options.step = scheme == SpringScheme::kExplicitEuler ? 2e-5 : kTick;
+  auto motion = render::SpringMotion<3>::build(ball(), options).value();
+  for (auto _ : state) {
+    motion.push(7, {0, 0, 0.1});
+    motion.step();
+    benchmark::DoNotOptimize(motion.u().data());
+  }
+  state.counters["ns_per_node"] = benchmark::Counter(
+      static_cast<double>(motion.network().node_count()) * 1e-9,
+      benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+BENCHMARK_CAPTURE(step_nodes, explicit_euler, SpringScheme::kExplicitEuler);
+BENCHMARK_CAPTURE(step_nodes, symplectic_euler, SpringScheme::kSymplecticEuler);
+BENCHMARK_CAPTURE(step_nodes, verlet, SpringScheme::kVerlet);
+BENCHMARK_CAPTURE(step_nodes, implicit_euler, SpringScheme::kImplicitEuler);
+BENCHMARK_CAPTURE(step_nodes, trapezoid, SpringScheme::kTrapezoid);
+
+// A patch of 3 rings on meshes of 642 to 163,842 vertices: must not depend on the mesh.
+void step_patch(benchmark::State& state, SpringScheme scheme) {
+  const auto mesh = support::icosphere(static_cast<int>(state.range(0)), 0.05);
+  render::SpringMotionOptions options;
+  options.scheme = scheme;
+  auto motion =
+      render::SpringMotion<3>::build(
+          render::join_vertices(mesh, {1e-3, 20, 0.002, 100, 0.01, false}).value(), options)
+          .value();
+  render::RingPatch rings(motion.network().node_count(), 128);
+  const std::vector<std::int32_t> first(mesh.triangles[0].begin(), mesh.triangles[0].end());
+  for (auto _ : state) {
+    motion.set_active(rings.around(motion.network(), first, 3));
+    motion.push(first[0], {0, 0, 0.1});
+    motion.step();
+    benchmark::DoNotOptimize(motion.u().data());
+  }
+}
+BENCHMARK_CAPTURE(step_patch, verlet, SpringScheme::kVerlet)->Arg(3)->Arg(5)->Arg(7);
+BENCHMARK_CAPTURE(step_patch, implicit_euler, SpringScheme::kImplicitEuler)->Arg(3)->Arg(5)->Arg(7);
+
+void step_modal(benchmark::State& state) {
+  const auto network =
+      render::join_vertices(support::icosphere(2, 0.05), {1e-3, 20, 0.002, 100, 0.01, true});
+  auto motion = render::ModalMotion<3>::build(*network, kTick).value();
+  for (auto _ : state) {
+    motion.push(7, {0, 0, 0.1});
+    motion.step();
+    benchmark::DoNotOptimize(motion.u(7));
+  }
+}
+BENCHMARK(step_modal);
+
+void step_exponential_node(benchmark::State& state) {
+  const auto flow = render::OscillatorStep::of(1e-3, 1000, 0.1, kTick);
+  Eigen::Vector3d u(1e-3, 0, 0);
+  Eigen::Vector3d v(0, 0, 0);
+  const Eigen::Vector3d f(0, 0, 0.1);
+  for (auto _ : state) {
+    flow.apply(u, v, f);
+    benchmark::DoNotOptimize(u);
+  }
+}
+BENCHMARK(step_exponential_node);
+
+void find_exponential(benchmark::State& state) {
+  double stiffness = 1000;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(render::OscillatorStep::of(1e-3, stiffness, 0.1, kTick));
+    stiffness = 2001 - stiffness;
+  }
+}
+BENCHMARK(find_exponential);
+
+void press_snap(benchmark::State& state) {
+  render::SnapBase base({}, {0, 0, -1});
+  double way = 0;
+  for (auto _ : state) {
+    way = way > 20e-3 ? -10e-3 : way + 1e-5;
+    base.pull_by_spring(way, 300, kTick);
+    benchmark::DoNotOptimize(base.way());
+  }
+}
+BENCHMARK(press_snap);
+
+void press_clay(benchmark::State& state) {
+  render::PlasticBase base({.stiffness = 1000, .yield_force = 1, .movement_limit = 5e-3});
+  double way = 0;
+  for (auto _ : state) {
+    way = way > 8e-3 ? -8e-3 : way + 1e-5;
+    base.pull({0, 0, way}, kTick);
+    benchmark::DoNotOptimize(base.displacement());
+  }
+}
+BENCHMARK(press_clay);
+
+void step_rigid(benchmark::State& state) {
+  const auto mesh = support::icosphere(1, 0.05);
+  render::RigidBodySettings settings;
+  settings.mass = render::mass_properties(mesh, 0.2).value();
+  settings.gravity_W = {0, 0, -9.81};
+  if (state.range(0) > 0) {
+    settings.floor = render::Floor{.height = -0.06};
+    settings.support_B.assign(mesh.vertices.begin(), mesh.vertices.end());
+    settings.support_B.resize(static_cast<std::size_t>(state.range(0)));
+  }
+  auto body = render::RigidBody::build(settings).value();
+  body.set_momentum({0, 0, 0}, {1e-3, 2e-3, 3e-3});
+  for (auto _ : state) {
+    body.press({.depth = 1e-3, .stiffness = 800}, kTick);
+    body.step(kTick);
+    benchmark::DoNotOptimize(body.p_WC());
+  }
+}
+BENCHMARK(step_rigid)->Arg(0)->Arg(8)->Arg(42);
+
+}  // namespace
+}  // namespace thimble::bench
+
+int main(int argc, char** argv) {
+  // --figures=FILE is ours; everything else is Google Benchmark's.
+  std::string figures_file;
+  std::vector<char*> rest;
+  for (int i = 0; i < argc; ++i) {
+    constexpr const char* kOption = "--figures=";
+    if (std::strncmp(argv[i], kOption, std::strlen(kOption)) == 0) {
+      figures_file = argv[i] + std::strlen(kOption);
+    } else {
+      rest.push_back(argv[i]);
+    }
+  }
+  int count = static_cast<int>(rest.size());
+  benchmark::Initialize(&count, rest.data());
+  if (benchmark::ReportUnrecognizedArguments(count, rest.data())) return 2;
+  thimble::bench::FiguresReporter reporter;
+  benchmark::RunSpecifiedBenchmarks(&reporter);
+  if (figures_file.empty()) return 0;
+  const auto written = thimble::app::write_figures(reporter.figures(), figures_file);
+  if (!written) std::fprintf(stderr, "%s\n", written.error().message.c_str());
+  return written ? 0 : 1;
+}

@@ -1,0 +1,210 @@
+#include "fuzz/decoders.h"
+
+#include <cstdio>
+#include <cstdlib>
+
+#include "thimble/device_sim/usb/usbip_session.h"
+#include "thimble/device_sim/usb/usbip_wire.h"
+#include "thimble/driver/arms/falcon/falcon_arm.h"
+#include "thimble/driver/arms/hfab/hfab_line.h"
+#include "thimble/driver/arms/hfab/hfab_report.h"
+#include "thimble/driver/arms/hfab/hfab_wire.h"
+#include "thimble/driver/arms/woody/woody_wire.h"
+#include "thimble/driver/frame_finder.h"
+#include "thimble/driver/ftdi_packet.h"
+
+namespace thimble::fuzz {
+namespace {
+
+using Bytes = std::span<const std::byte>;
+
+void promise(bool kept, const char* what) {
+  if (kept) return;
+  std::fprintf(stderr, "A decoder broke its promise: %s\n", what);
+  std::abort();
+}
+
+template <class Decode, class Encode>
+bool comes_back(Bytes bytes, Decode decode, Encode encode, const char* what) {
+  const auto meaning = decode(bytes);
+  if (!meaning) return false;
+  promise(decode(encode(*meaning)) == meaning, what);
+  return true;
+}
+
+template <class Line>
+bool line_comes_back(Bytes bytes, std::optional<Line> (*decode)(Bytes) noexcept,
+                     std::size_t (*encode)(
+                         const Line&, std::span<std::byte, driver::hfab::kLineCapacity>) noexcept) {
+  const auto meaning = decode(bytes);
+  if (!meaning) return false;
+  std::array<std::byte, driver::hfab::kLineCapacity> buffer{};
+  const std::size_t size = encode(*meaning, buffer);
+  promise(size <= buffer.size(), "a line fits its buffer");
+  promise(decode(Bytes(buffer).first(size)) == meaning, "a line means the same again");
+  return true;
+}
+
+/// Cuts the bytes into pieces whose lengths they tell themselves, and finds messages.
+bool find_frames(Bytes bytes) {
+  driver::FrameFinder finder({.begin = std::byte{'<'}, .end = std::byte{'>'}, .size_max = 16});
+  bool any = false;
+  while (!bytes.empty()) {
+    const std::size_t length =
+        std::min<std::size_t>(bytes.size(), 1 + std::to_integer<unsigned>(bytes[0]) % 64);
+    driver::for_each_ftdi_packet(bytes.first(length), [&](Bytes part) {
+      promise(part.size() <= driver::kFtdiPacketSize - driver::kFtdiStatusSize,
+              "a packet's content is shorter than the packet");
+      finder.push(part);
+    });
+    bytes = bytes.subspan(length);
+    std::array<std::byte, 16> buffer{};
+    std::uint32_t skipped = 0;
+    const std::size_t size = finder.take(buffer, skipped);
+    if (size == 0) continue;
+    any = true;
+    promise(size >= 2 && size <= 16, "a message has the size it may have");
+    promise(buffer[0] == std::byte{'<'} && buffer[size - 1] == std::byte{'>'},
+            "a message has its borders");
+  }
+  return any;
+}
+
+/// What an arm makes of the bytes must be a pose or NaN, and a rejection leaves the reading alone.
+template <class Wire>
+bool reads(Bytes bytes) {
+  driver::ArmReading reading{.counts = {11, 22, 33}, .auxiliary = {44, 55, 66}, .buttons = 77};
+  if (Wire::decode(bytes, reading)) return true;
+  promise(reading.counts == std::array<std::int32_t, 3>{11, 22, 33} && reading.buttons == 77,
+          "a rejected report leaves the reading alone");
+  return false;
+}
+
+/// Reads the bytes as one message of a USB/IP client in each of its two phases.
+bool usbip_decode(Bytes bytes) {
+  namespace usb = device_sim::usb;
+  usb::UsbipRequest request;
+  const bool asked = usb::decode_request(bytes, request) == usb::Decode::kWhole;
+  if (asked) {
+    promise(request.size <= bytes.size(), "a request lies within its bytes");
+    const auto again = usb::encode_request(request);
+    usb::UsbipRequest same;
+    promise(usb::decode_request(again, same) == usb::Decode::kWhole, "a request comes back");
+    // A bus id that fills its field loses its last letter to the closing zero.
+    promise(request.bus_id.starts_with(same.bus_id), "a bus id comes back");
+  }
+  usb::UsbipCommand command;
+  if (usb::decode_command(bytes, command) != usb::Decode::kWhole) return asked;
+  promise(command.size <= bytes.size() && command.length <= usb::kTransferMax,
+          "a command lies within its bytes");
+  const Bytes data = bytes.first(command.size).subspan(usb::kUsbipHeaderSize);
+  usb::UsbipCommand same;
+  promise(usb::decode_command(usb::encode_command(command, data), same) == usb::Decode::kWhole,
+          "a command comes back");
+  promise(same.sequence == command.sequence && same.setup == command.setup &&
+              same.length == command.length && same.unlinked == command.unlinked,
+          "a command means the same again");
+  return true;
+}
+
+/// Is a device with one endpoint of each kind, which takes and gives whatever it is asked.
+class Obliging final : public device_sim::usb::UsbDevice {
+ public:
+  Obliging() {
+    using device_sim::usb::TransferKind;
+    description_.endpoints = {{0x81, TransferKind::kInterrupt, 8, 1},
+                              {0x01, TransferKind::kInterrupt, 8, 1},
+                              {0x82, TransferKind::kBulk, 64, 0},
+                              {0x02, TransferKind::kBulk, 64, 0}};
+  }
+  const device_sim::usb::UsbDescription& description() const noexcept override {
+    return description_;
+  }
+  void advance_to(std::int64_t) noexcept override {}
+  device_sim::usb::PacketResult control(const device_sim::usb::SetupPacket& setup,
+                                        std::span<std::byte> data) noexcept override {
+    promise(data.size() <= setup.length, "a device is asked for no more than the set-up says");
+    return {device_sim::usb::Answer::kDone, data.size()};
+  }
+  device_sim::usb::PacketResult in(std::uint8_t, std::span<std::byte> packet) noexcept override {
+    promise(packet.size() >= kPacketMax, "a device has room for a packet");
+    return {device_sim::usb::Answer::kDone, ++count_ % 70};
+  }
+  device_sim::usb::PacketResult out(std::uint8_t,
+                                    std::span<const std::byte> packet) noexcept override {
+    promise(packet.size() <= kPacketMax, "a packet is no longer than packets are");
+    return {device_sim::usb::Answer::kDone, packet.size()};
+  }
+
+ private:
+  device_sim::usb::UsbDescription description_;
+  std::size_t count_ = 0;
+};
+
+/// Lets a client that imported a device and configured it go on with these bytes, in two pieces.
+bool usbip_session(Bytes bytes) {
+  namespace usb = device_sim::usb;
+  Obliging device;
+  usb::UsbipSession session(device, "1-1");
+  session.receive(
+      usb::encode_request({.kind = usb::UsbipRequest::Kind::kImport, .bus_id = "1-1", .size = 0}),
+      true);
+  usb::UsbipCommand configure;
+  configure.setup = {std::byte{0}, std::byte{9}, std::byte{1}};
+  session.receive(usb::encode_command(configure), true);
+  session.frame(0);
+  session.output().clear();
+  session.receive(bytes.first(bytes.size() / 2), true);
+  session.frame(1'000'000);
+  session.receive(bytes.subspan(bytes.size() / 2), true);
+  session.send_bulk();
+  for (int frame = 2; frame < 5; ++frame) session.frame(frame * 1'000'000);
+  const auto& counters = session.counters();
+  promise(counters.completed + counters.stalled + counters.babbled + counters.unlinked <=
+              counters.submitted,
+          "no more answers than questions");
+  return session.state() == usb::UsbipSession::State::kAttached && counters.completed > 1;
+}
+
+}  // namespace
+
+bool decode_anything(Bytes bytes) {
+  namespace falcon = driver::falcon;
+  namespace hfab = driver::hfab;
+  namespace woody = driver::woody;
+  if (bytes.empty()) return false;
+  const unsigned target = std::to_integer<unsigned>(bytes[0]) % kTargets;
+  const Bytes rest = bytes.subspan(1);
+  switch (target) {
+    case 0:
+      return reads<hfab::ReportWire>(rest) &&
+             comes_back(rest, hfab::decode_input, hfab::encode_input, "14-byte input");
+    case 1:
+      return comes_back(rest, hfab::decode_output, hfab::encode_output, "14-byte output");
+    case 2:
+      reads<hfab::LineWire>(rest);
+      return line_comes_back<hfab::ArmLine>(rest, hfab::decode_arm_line, hfab::encode_arm_line);
+    case 3:
+      return line_comes_back<hfab::HostLine>(rest, hfab::decode_host_line, hfab::encode_host_line);
+    case 4:
+      return reads<woody::ReportWire>(rest) &&
+             comes_back(rest, woody::decode_input, woody::encode_input, "8-byte input");
+    case 5:
+      return comes_back(rest, woody::decode_output, woody::encode_output, "8-byte output");
+    case 6:
+      return reads<falcon::PacketWire>(rest) &&
+             comes_back(rest, falcon::decode_arm_packet, falcon::encode_arm_packet,
+                        "packet to the host");
+    case 7:
+      return comes_back(rest, falcon::decode_host_packet, falcon::encode_host_packet,
+                        "packet to the arm");
+    case 8:
+      return find_frames(rest);
+    case 9:
+      return usbip_decode(rest);
+    default:
+      return usbip_session(rest);
+  }
+}
+
+}  // namespace thimble::fuzz

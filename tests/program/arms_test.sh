@@ -1,0 +1,39 @@
+#!/usr/bin/env bash
+# What the program says of arms that are not there, and what it does with the simulated one.
+source "$(dirname "$0")/expect.sh" "$@"
+export XDG_CONFIG_HOME=$work/config
+vintage=$source_dir/app/arms/vintage_phantom.yaml
+
+# A machine below a folder: one WoodenHaptics arm without rule and without node.
+mkdir -p root/sys/bus/usb/devices/1-1/power
+cd root/sys/bus/usb/devices/1-1
+echo 1234 >idVendor
+echo 0006 >idProduct
+echo WH01 >serial
+echo 1 >busnum
+echo 4 >devnum
+echo auto >power/control
+cd "$work"
+expect 0 '^WH01 +WoodenHaptics +USB HID +bus 1, device 4 +- +no driver has it' \
+  "$thimble" devices --root root
+expect 3 'PROBLEM The udev rule is not installed' "$thimble" doctor --root root
+expect 3 '-> sudo modprobe usbhid' "$thimble" doctor --root root
+expect 3 'power/control' "$thimble" doctor --root root
+mkdir -p root/etc/udev/rules.d
+cp "$source_dir/udev/70-thimble.rules" root/etc/udev/rules.d/
+expect 3 'ok +The udev rule is installed in /etc/udev/rules.d' "$thimble" doctor --root root
+rm -r root/sys/bus/usb/devices/1-1
+expect 0 'No arm that Thimble knows is plugged in' "$thimble" doctor --root root
+
+expect 3 "No arm is called 'WH02'" \
+  "$thimble" run "$source_dir/tests/data/scenes/stroke.yaml" --device WH02
+expect 2 'cannot be simulated' "$thimble" run "$source_dir/tests/data/scenes/stroke.yaml" \
+  --arm "$source_dir/app/arms/falcon.yaml"
+
+expect 0 '^home_counts +0 7700 0$' "$thimble" calibrate --arm "$vintage"
+expect 0 '^encoder_sign: \[-1, 1, -1\]$' cat config/thimble/arms/sim.yaml
+expect 0 '^ok +watchdog' "$thimble" feel-check --arm "$vintage"
+echo 'home_counts: nonsense' >config/thimble/arms/sim.yaml
+expect 2 'sim.yaml:1' "$thimble" feel-check --arm "$vintage"
+expect 3 "No arm is called 'WH02'" "$thimble" feel-check --arm "$vintage" --device WH02
+finish

@@ -1,0 +1,41 @@
+#!/usr/bin/env bash
+# A simulated arm on a USB plug: it says what to do, takes faults while it runs, and ends by Ctrl-C.
+source "$(dirname "$0")/expect.sh" "$@"
+
+for arm in woodenhaptics polhem polhem-64 falcon; do
+  expect 0 "$arm" "$thimble" plug --help
+done
+expect 2 'there are: woodenhaptics, polhem, polhem-64, falcon' "$thimble" plug excalibur --port 0
+expect 2 'hand' "$thimble" plug polhem --hand fist
+expect 2 '70000' "$thimble" plug polhem --port 70000
+expect 1 'is not an IPv4 address' "$thimble" plug polhem --port 0 --listen nowhere
+expect 2 'cannot read the fault script' "$thimble" plug polhem --port 0 --faults missing.txt
+echo 'stall sideways' >bad_faults.txt
+expect 2 "'sideways' is not understood" "$thimble" plug polhem --port 0 --faults bad_faults.txt
+if [ ! -e /sys/devices/platform/vhci_hcd.0 ]; then
+  expect 1 'modprobe vhci-hcd' "$thimble" plug polhem --port 0 --attach
+fi
+
+# It runs until it is told to end; meanwhile the pipe takes orders.
+"$thimble" plug woodenhaptics --port 0 --control pipe --trace trace.txt >out.txt 2>&1 &
+plug=$!
+for _ in $(seq 100); do
+  grep -q 'Ctrl-C unplugs it' out.txt && break
+  sleep 0.1
+done
+echo 'short in for=5' >pipe
+echo 'quake' >pipe
+for _ in $(seq 100); do
+  grep -q 'is not a kind of fault' out.txt && break
+  sleep 0.1
+done
+kill -INT $plug
+wait $plug
+status=$?
+expect 0 '^0$' echo $status
+expect 0 'waits on port [0-9]+ as USB device 1-1' cat out.txt
+expect 0 "'quake' is not a kind of fault" cat out.txt
+expect 0 '^Unplugged' cat out.txt
+expect 0 'frame reports sampled_frame' cat trace.txt
+expect 1 '' test -e pipe
+finish

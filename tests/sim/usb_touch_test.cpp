@@ -1,0 +1,201 @@
+// The whole way of an arm on USB in simulated time: hand, mechanics, board, USB/IP, driver, force.
+// tests/usb does the same through a real kernel.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+
+#include "support/usb_host_line.h"
+#include "support/usb_host_transport.h"
+#include "thimble/device_sim/usb/arm_shelf.h"
+#include "thimble/driver/arms/falcon/falcon_boot.h"
+#include "thimble/driver/arms/falcon/falcon_packet.h"
+#include "thimble/driver/device.h"
+#include "usb/virtual_arm.h"
+
+namespace thimble {
+namespace {
+
+namespace usb = device_sim::usb;
+
+constexpr std::int64_t kTick_ns = 1'000'000;
+
+class UsbTouch : public testing::TestWithParam<usb::ShelfEntry> {
+ protected:
+  void SetUp() override {
+    virtual_arm_.name = GetParam().name;
+    auto arm = usb::make_usb_arm(virtual_arm_.name, {});
+    ASSERT_TRUE(arm.ok());
+    arm_ = std::move(*arm);
+    faulty_.emplace(*arm_, 3);
+    server_.emplace(*faulty_, "1-1");
+    plug();
+    auto transport = wire();  // brings the clock to the bus's time
+    auto device = driver::Device::open(std::move(transport), virtual_arm_.protocol(),
+                                       usb_test::check_settings(), clock_.now_ns());
+    ASSERT_TRUE(device.ok()) << device.error().message;
+    device_ = std::move(*device);
+    ASSERT_TRUE(device_->activate().ok());
+  }
+  void TearDown() override {
+    device_.reset();
+    host_.reset();
+    server_.reset();
+  }
+
+  void plug() {
+    host_.emplace(*server_);
+    ASSERT_TRUE(host_->import_device());
+    host_->configure();
+    if (!virtual_arm_.is_falcon()) return;
+    support::UsbHostLine line(*host_);
+    const driver::falcon::BootSettings quick{.settle_ms = 0};
+    const std::vector<std::byte> image(500, std::byte{0x5a});
+    ASSERT_TRUE(driver::falcon::upload_firmware(line, image, quick).ok());
+    driver::falcon::HomingState state;
+    for (int i = 0; i < 3000 && !state.done(); ++i) {
+      state = driver::falcon::home_once(line, state.homed, quick);
+    }
+    ASSERT_TRUE(state.done());
+  }
+  std::unique_ptr<driver::Transport> wire() {
+    if (virtual_arm_.is_falcon()) {
+      return std::make_unique<support::UsbHostTransport>(
+          *host_, clock_, 64,
+          driver::Framing{.begin = std::byte{'<'},
+                          .end = std::byte{'>'},
+                          .size_max = driver::falcon::kPacketSize});
+    }
+    const std::size_t size = virtual_arm_.name == "woodenhaptics" ? 8
+                             : virtual_arm_.name == "polhem"      ? 14
+                                                                  : 64;
+    return std::make_unique<support::UsbHostTransport>(*host_, clock_, size);
+  }
+
+  void tick() {
+    clock_.sleep_until_ns(clock_.now_ns() + kTick_ns);
+    const std::int64_t now_ns = clock_.now_ns();
+    const driver::DeviceState& state = device_->read(now_ns, now_ns);
+    device_->write(wall_(state));
+    force_ = device_->f_sent_W().norm();
+    force_max_ = std::max(force_max_, force_);
+  }
+  bool touch_until_contact() {
+    for (int i = 0; i < 3000; ++i) {
+      tick();
+      if (force_ > 0.5) return true;
+    }
+    return false;
+  }
+  /// Finds what the motors must be asked for: tau = J^T f of this tick, in the wire's unit.
+  Eigen::Vector3d motor_values() const {
+    const auto protocol = virtual_arm_.protocol();
+    driver::ArmReading reading;
+    reading.counts = device_->state().counts;
+    const Eigen::Vector3d tau = protocol->pose(reading).J_BT.transpose() * device_->f_sent_W();
+    Eigen::Vector3d values;
+    for (int i = 0; i < 3; ++i) {
+      const driver::MotorDrive& drive = protocol->drives()[static_cast<std::size_t>(i)];
+      values[i] = 1000 * tau[i] / (drive.sign * drive.ratio * drive.torque_constant);
+    }
+    return values;
+  }
+
+  usb_test::VirtualArm virtual_arm_;
+  std::unique_ptr<usb::UsbArm> arm_;
+  std::optional<usb::FaultyDevice> faulty_;
+  std::optional<usb::UsbipServer> server_;
+  std::optional<support::UsbHost> host_;
+  driver::VirtualClock clock_;
+  std::unique_ptr<driver::Device> device_;
+  usb_test::Wall wall_;
+  double force_ = 0, force_max_ = 0;
+};
+
+TEST_P(UsbTouch, BringsEveryPositionAndForceOverWithinAQuantum) {
+  const int ticks = std::getenv("THIMBLE_LONG") != nullptr ? 10'000 : 3'000;
+  int in_contact = 0, fresh = 0;
+  Eigen::Vector3d wanted(0, 0, 0);
+  std::int64_t sampled_ns = 0;
+  for (int i = 0; i < ticks; ++i) {
+    tick();
+    const usb::ArmTruth truth = arm_->truth();
+    if (i > 0) {
+      // The message of the tick before has arrived in this frame.
+      for (int k = 0; k < 3; ++k) {
+        ASSERT_LE(std::abs(truth.motor_values[static_cast<std::size_t>(k)] - wanted[k]), 0.5001);
+      }
+      // Encoders were sampled, read, answered, and the motors heard of it two frames later at most.
+      ASSERT_LE(truth.message_ns - sampled_ns, 2 * kTick_ns);
+    }
+    wanted = motor_values();
+    if (device_->state().fresh) {
+      ++fresh;
+      ASSERT_EQ(device_->state().counts, truth.counts);
+      for (int k = 0; k < 3; ++k) {
+        const auto count = truth.counts[static_cast<std::size_t>(k)];
+        ASSERT_LE(std::abs(count - truth.exact_counts[k]), 0.5);
+      }
+    }
+    sampled_ns = truth.report_ns;
+    in_contact += force_ > 0 ? 1 : 0;
+  }
+  EXPECT_EQ(device_->fault(), driver::Fault::kNone);
+  EXPECT_GT(in_contact, ticks / 10);
+  EXPECT_GE(fresh, ticks - 3);
+}
+
+TEST_P(UsbTouch, KeepsTheForceWithinItsLimitUnderEveryFault) {
+  for (std::size_t kind = 0; kind < usb::kFaultKinds; ++kind) {
+    for (const char* way : {" in", " out"}) {
+      const auto fault = static_cast<usb::FaultKind>(kind);
+      if (fault == usb::FaultKind::kUnplug) continue;
+      const std::string line = std::string(usb::name(fault)) + way + " for=100 rate=0.01";
+      SCOPED_TRACE(line);
+      ASSERT_TRUE(touch_until_contact());
+      faulty_->order(*usb::parse_fault(line));
+      // Behind a converter there is room for more bytes, which are no message and are skipped.
+      const bool babbles = fault == usb::FaultKind::kLong && !virtual_arm_.is_falcon();
+      const bool stops = std::string_view(way) == " in" &&
+                         (fault == usb::FaultKind::kStall || fault == usb::FaultKind::kShort ||
+                          babbles || fault == usb::FaultKind::kSilence);
+      for (int i = 0; i < 150; ++i) {
+        tick();
+        ASSERT_TRUE(std::isfinite(force_));
+        ASSERT_LE(force_, usb_test::check_settings().limits.force_max + 1e-9);
+        // 20 ms of silence and the tick in which it is noticed.
+        if (stops && i > 22 && i < 100) {
+          ASSERT_EQ(force_, 0) << i;
+        }
+      }
+      if (stops) {
+        EXPECT_EQ(device_->fault(), driver::Fault::kNoReports);
+      }
+      faulty_->heal();
+      for (int i = 0; i < 10; ++i) tick();
+      ASSERT_TRUE(device_->activate().ok());
+    }
+  }
+}
+
+TEST_P(UsbTouch, SendsNothingMoreWhenTheCableIsPulledAndTheArmSwitchesOff) {
+  ASSERT_TRUE(touch_until_contact());
+  ASSERT_GT(arm_->truth().currents.norm(), 0);
+  faulty_->order(*usb::parse_fault("unplug"));
+  for (int i = 0; i < 2; ++i) tick();
+  EXPECT_EQ(device_->fault(), driver::Fault::kTransportLost);
+  EXPECT_EQ(force_, 0);
+  for (int i = 0; i < 500; ++i) host_->frames();
+  EXPECT_FALSE(arm_->truth().motors_on);
+  EXPECT_EQ(arm_->truth().currents.norm(), 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Arms, UsbTouch, testing::ValuesIn(usb::kShelf),
+                         [](const auto& param_info) {
+                           std::string name(param_info.param.name);
+                           std::erase(name, '-');
+                           return name;
+                         });
+
+}  // namespace
+}  // namespace thimble

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "support/random.h"
+#include "thimble/render/body/spring_motion.h"
+#include "thimble/render/body/spring_network.h"
+#include "thimble/render/mesh/triangle_mesh.h"
+
+namespace thimble::support {
+
+/// Makes an open sheet of n x n vertices with triangles of equal sides (m), valence 6 inside.
+inline render::TriangleMesh triangle_sheet(std::int32_t n, double side) {
+  render::TriangleMesh mesh;
+  for (std::int32_t j = 0; j < n; ++j) {
+    for (std::int32_t i = 0; i < n; ++i) {
+      mesh.vertices.emplace_back(side * (i + 0.5 * j), side * std::sqrt(0.75) * j, 0);
+    }
+  }
+  for (std::int32_t j = 0; j + 1 < n; ++j) {
+    for (std::int32_t i = 0; i + 1 < n; ++i) {
+      const std::int32_t a = j * n + i;
+      mesh.triangles.push_back({a, a + 1, a + n});
+      mesh.triangles.push_back({a + 1, a + n + 1, a + n});
+    }
+  }
+  return mesh;
+}
+
+/// Makes a chain-and-chords network of `n` nodes with constants spread over many powers of ten.
+template <int kDof>
+render::SpringNetwork<kDof> wild_network(std::int32_t n, double stiffness_max, bool damped,
+                                         std::uint64_t seed) {
+  Random random(seed);
+  const auto spread = [&](double high) { return high * std::pow(10, random.uniform(-6, 0)); };
+  std::vector<render::BodyNode> nodes;
+  std::vector<render::BodySpring<kDof>> springs;
+  for (std::int32_t i = 0; i < n; ++i) {
+    nodes.push_back(
+        {spread(1e-2), i % 3 == 0 ? spread(stiffness_max) : 0.0, damped ? spread(1.0) : 0.0});
+    for (const std::int32_t other : {i - 1, static_cast<std::int32_t>(random.bits() % 1000) % n}) {
+      if (other < 0 || other == i) continue;
+      render::BodySpring<kDof> spring{i, other, spread(stiffness_max), damped ? spread(10.0) : 0.0};
+      if constexpr (kDof == 3) {
+        if (seed % 2 == 0) spring.along = random.direction();
+      }
+      springs.push_back(spring);
+    }
+  }
+  return render::SpringNetwork<kDof>::build(nodes, springs).value();
+}
+
+/// Throws every active node somewhere, up to `u` (m) away and with up to `v` (m/s).
+template <int kDof>
+void throw_nodes(render::SpringMotion<kDof>& motion, double u, double v, std::uint64_t seed) {
+  Random random(seed);
+  using Vector = typename render::SpringMotion<kDof>::Vector;
+  const auto draw = [&](double size) {
+    Vector x;
+    for (int k = 0; k < kDof; ++k) x[k] = random.uniform(-size, size);
+    return x;
+  };
+  const std::vector<std::int32_t> nodes(motion.active().begin(), motion.active().end());
+  for (const std::int32_t i : nodes) {
+    const Vector place = draw(u);
+    motion.place(i, place, draw(v));
+  }
+}
+
+}  // namespace thimble::support

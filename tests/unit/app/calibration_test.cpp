@@ -1,0 +1,148 @@
+#include "calibration.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+
+#include "feel_check.h"
+#include "real_arm.h"
+#include "support/random.h"
+#include "support/scratch.h"
+
+namespace thimble::app {
+namespace {
+
+ArmFile vintage() {
+  auto file =
+      read_arm_file(std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms/vintage_phantom.yaml");
+  EXPECT_TRUE(file) << file.error().message;
+  return std::move(file).value();
+}
+
+class CalibrationTest : public ::testing::Test {
+ protected:
+  CalibrationTest() {
+    setenv("XDG_CONFIG_HOME", (support::scratch_folder() / "config").c_str(), 1);
+  }
+
+  /// What an arm with this calibration reports with its tip at p_WT.
+  static driver::ArmReading reading_at(const ArmFile& truth, const Eigen::Vector3d& p_WT) {
+    const auto q = truth.model.geometry.inverse(truth.R_WB.transpose() * (p_WT - truth.p_WB));
+    EXPECT_TRUE(q);
+    const Eigen::Vector3d counts = truth.model.exact_counts(*q);
+    driver::ArmReading reading;
+    for (std::size_t i = 0; i < 3; ++i) {
+      reading.counts[i] =
+          static_cast<std::int32_t>(std::lround(counts[static_cast<Eigen::Index>(i)]));
+    }
+    return reading;
+  }
+};
+
+TEST_F(CalibrationTest, FindsHomeAndSignsOfAnyArmFromThreeMovements) {
+  const ArmFile file = vintage();
+  support::Random random(111);
+  for (int i = 0; i < 200; ++i) {
+    // An arm whose encoders and motors are wired any way, switched on with its counters anywhere.
+    Calibration truth;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int flip = random.bits() % 2 == 0 ? 1 : -1;
+      truth.encoder_sign[k] = flip * static_cast<int>(file.model.encoders[k].sign);
+      truth.motor_sign[k] = flip * static_cast<int>(file.model.drives[k].sign);
+      truth.home_counts[k] = static_cast<std::int32_t>(random.uniform(-9000, 9000));
+    }
+    ArmFile true_file = file;
+    apply(truth, true_file);
+    const Eigen::Vector3d home(0, 0, 0);  // the tip at home is the world's origin
+    std::array<driver::ArmReading, 3> moved;
+    for (int axis = 0; axis < 3; ++axis) {
+      // People do not move along an axis exactly, nor by 5 cm.
+      const Eigen::Vector3d step = random.uniform(0.035, 0.06) *
+                                   (Eigen::Vector3d::Unit(axis) + random.in_box(0.25)).normalized();
+      moved[static_cast<std::size_t>(axis)] = reading_at(true_file, home + step);
+    }
+    const auto found =
+        find_calibration(file, driver::ArmKind::kPolhem, reading_at(true_file, home), moved);
+    ASSERT_TRUE(found) << found.error().message;
+    EXPECT_EQ(found->encoder_sign, truth.encoder_sign);
+    EXPECT_EQ(found->motor_sign, truth.motor_sign);
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_NEAR(found->home_counts[k], truth.home_counts[k], 1);  // a count of rounding
+    }
+  }
+}
+
+TEST_F(CalibrationTest, RefusesMovementsThatSayNothing) {
+  const ArmFile file = vintage();
+  const auto home = reading_at(file, {0, 0, 0});
+  const auto still = find_calibration(file, driver::ArmKind::kPolhem, home, {home, home, home});
+  ASSERT_FALSE(still);
+  EXPECT_NE(still.error().message.find("too little"), std::string::npos);
+  const auto same = reading_at(file, {0.04, 0, 0});
+  const auto unclear = find_calibration(file, driver::ArmKind::kPolhem, home, {same, same, same});
+  ASSERT_FALSE(unclear);
+  EXPECT_NE(unclear.error().message.find("do not tell"), std::string::npos);
+}
+
+TEST_F(CalibrationTest, IsKeptPerArmAndComesBackUnchanged) {
+  const Calibration kept{
+      .home_counts = {12, -7700, 0}, .encoder_sign = {-1, 1, -1}, .motor_sign = {1, -1, -1}};
+  EXPECT_FALSE(load_calibration("A/../B 1")->has_value());
+  ASSERT_TRUE(save_calibration("A/../B 1", kept));
+  EXPECT_EQ(calibration_file("A/../B 1").filename(), "A____B_1.yaml");
+  EXPECT_EQ(load_calibration("A/../B 1")->value(), kept);
+  EXPECT_FALSE(load_calibration("another")->has_value());
+  std::ofstream(calibration_file("A/../B 1")) << "home_counts: [1, 2]\n";
+  const auto wrong = load_calibration("A/../B 1");
+  ASSERT_FALSE(wrong);
+  EXPECT_NE(wrong.error().message.find(":1"), std::string::npos);
+}
+
+/// The check of a simulated arm whose driver believes `believed` of it.
+std::vector<CheckResult> check_with(const ArmFile& believed, bool& prompted_all) {
+  auto bench =
+      BenchArm::open(believed, std::nullopt, "", feel_check_hand({0, 0, 0}), kFeelCheckForceMax);
+  EXPECT_TRUE(bench) << bench.error().message;
+  int prompts = 0;
+  const std::atomic<bool> stop{false};
+  const auto results = feel_check(
+      **bench, believed, [&](const std::string&) { return ++prompts > 0; }, stop);
+  prompted_all = prompts == 8;
+  EXPECT_EQ((*bench)->device().f_sent_W().norm(), 0);
+  return results;
+}
+
+TEST_F(CalibrationTest, FeelCheckPassesAGoodArmAndTimesItsWatchdog) {
+  bool prompted_all = false;
+  const auto results = check_with(vintage(), prompted_all);
+  EXPECT_TRUE(prompted_all);
+  ASSERT_EQ(results.size(), 8u);
+  for (const CheckResult& result : results) {
+    EXPECT_TRUE(result.passed) << result.name << ": " << result.text;
+  }
+}
+
+TEST_F(CalibrationTest, FeelCheckEndsAtTheFirstStepThatIsLeft) {
+  auto bench =
+      BenchArm::open(vintage(), std::nullopt, "", feel_check_hand({0, 0, 0}), kFeelCheckForceMax);
+  ASSERT_TRUE(bench);
+  const std::atomic<bool> stop{false};
+  int prompts = 0;
+  const auto results = feel_check(
+      **bench, vintage(), [&](const std::string&) { return ++prompts < 3; }, stop);
+  EXPECT_EQ(results.size(), 2u);
+}
+
+TEST_F(CalibrationTest, FeelCheckSeesAWatchdogThatIsLaterThanTheFileSays) {
+  ArmFile slow = vintage();
+  slow.simulated.firmware.watchdog_ns = 700'000'000;
+  bool prompted_all = false;
+  const auto results = check_with(slow, prompted_all);
+  ASSERT_EQ(results.size(), 8u);
+  EXPECT_EQ(results.back().name, "watchdog");
+  EXPECT_FALSE(results.back().passed) << results.back().text;
+}
+
+}  // namespace
+}  // namespace thimble::app

@@ -1,0 +1,116 @@
+#include "doctor.h"
+
+#include <gtest/gtest.h>
+
+#include "support/fake_usb.h"
+
+namespace thimble::app {
+namespace {
+
+/// A machine on which all is well, with a WoodenHaptics arm; each test breaks one thing.
+class DoctorTest : public ::testing::Test {
+ protected:
+  DoctorTest()
+      : usb_(std::string("doctor_") +
+             testing::UnitTest::GetInstance()->current_test_info()->name()) {
+    usb_.write("etc/udev/rules.d/70-thimble.rules", "#");
+    patient_.root = usb_.root();
+    patient_.real_time_priority_max = 99;
+    patient_.in_plugdev = true;
+  }
+
+  void plug_woody(const std::string& port = "1-1") const {
+    usb_.plug(port, "1234", "0006", "WH01", 1, 2);
+    usb_.bind(port, 0, "usbhid");
+    usb_.add_hidraw(port, 0, "hidraw3");
+  }
+
+  void plug_falcon() const { usb_.plug("1-2", "0403", "cb48", "F1", 1, 5); }
+
+  /// Finds what the doctor says with these words; fails the test if there is nothing.
+  Finding finding(const std::string& words) const {
+    for (const Finding& found : examine(patient_)) {
+      if (found.what.find(words) != std::string::npos) return found;
+    }
+    ADD_FAILURE() << "no finding about: " << words;
+    return {};
+  }
+
+  std::size_t troubles() const {
+    std::size_t count = 0;
+    for (const Finding& found : examine(patient_)) {
+      EXPECT_EQ(found.health == Health::kGood, found.mend.empty()) << found.what;
+      count += found.health != Health::kGood;
+    }
+    return count;
+  }
+
+  support::FakeUsb usb_;
+  Patient patient_;
+};
+
+TEST_F(DoctorTest, FindsNothingWrongWithAMachineOnWhichAllIsWell) {
+  plug_woody();
+  plug_falcon();
+  EXPECT_EQ(troubles(), 0u);
+}
+
+TEST_F(DoctorTest, MissesTheRule) {
+  plug_woody();
+  std::filesystem::remove(usb_.root() / "etc/udev/rules.d/70-thimble.rules");
+  EXPECT_EQ(finding("rule is not installed").health, Health::kProblem);
+  EXPECT_NE(finding("rule is not installed").mend.find("udevadm"), std::string::npos);
+}
+
+TEST_F(DoctorTest, SaysWhyANodeMayNotBeOpened) {
+  plug_woody();
+  std::filesystem::remove(usb_.root() / "dev/hidraw3");  // root may open all that exists
+  patient_.in_plugdev = false;
+  EXPECT_EQ(finding("may not open /dev/hidraw3").health, Health::kProblem);
+  EXPECT_NE(finding("may not open").mend.find("usermod -aG plugdev"), std::string::npos);
+  patient_.in_plugdev = true;
+  EXPECT_NE(finding("may not open").mend.find("udevadm trigger"), std::string::npos);
+  std::filesystem::remove(usb_.root() / "etc/udev/rules.d/70-thimble.rules");
+  EXPECT_NE(finding("may not open").what.find("rule is missing"), std::string::npos);
+}
+
+TEST_F(DoctorTest, NamesADriverThatIsMissingOrInTheWay) {
+  usb_.plug("1-1", "1234", "0006", "WH01", 1, 2);
+  EXPECT_NE(finding("no kernel driver has it").mend.find("modprobe usbhid"), std::string::npos);
+  usb_.plug("1-3", "16c0", "0483", "7654321", 1, 4);
+  EXPECT_NE(finding("no serial port").mend.find("modprobe cdc_acm"), std::string::npos);
+  plug_falcon();
+  usb_.bind("1-2", 0, "ftdi_sio");
+  usb_.write(usb_.device_folder("1-2") / "1-2:1.0/ttyUSB0/latency_timer", "16");
+  EXPECT_NE(finding("ftdi_sio").what.find("latency timer of 16 ms"), std::string::npos);
+  EXPECT_NE(finding("ftdi_sio").mend.find("1-2:1.0"), std::string::npos);
+}
+
+TEST_F(DoctorTest, SeesPowerSavingAndHubs) {
+  plug_woody("1-4.2");
+  usb_.write(usb_.device_folder("1-4.2") / "power/control", "auto");
+  usb_.plug("1-4", "05e3", "0608", "", 1, 9, "12");
+  EXPECT_NE(finding("to sleep").mend.find("1-4.2/power/control"), std::string::npos);
+  EXPECT_EQ(finding("full-speed hub").health, Health::kAdvice);
+  usb_.write(usb_.device_folder("1-4") / "speed", "480");
+  EXPECT_NE(finding("hangs on a hub").mend.find("computer itself"), std::string::npos);
+}
+
+TEST_F(DoctorTest, SeesTheKernelsRealTimeLimits) {
+  plug_woody();
+  patient_.real_time_priority_max = 0;
+  EXPECT_NE(finding("real-time priority").mend.find("rtprio 80"), std::string::npos);
+  usb_.write("proc/sys/kernel/sched_rt_runtime_us", "100000");
+  EXPECT_NE(finding("100000 us").mend.find("sysctl"), std::string::npos);
+  usb_.write("proc/sys/kernel/sched_rt_runtime_us", "-1");  // no limit at all is fine
+  EXPECT_EQ(troubles(), 1u);
+}
+
+TEST_F(DoctorTest, SaysSoWhenNothingIsPluggedInOrItsProtocolIsSecret) {
+  EXPECT_EQ(finding("No arm that Thimble knows").health, Health::kAdvice);
+  usb_.plug("1-5", "1451", "0402", "FD", 1, 6);
+  EXPECT_EQ(finding("not public").health, Health::kAdvice);
+}
+
+}  // namespace
+}  // namespace thimble::app

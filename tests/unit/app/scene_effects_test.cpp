@@ -1,0 +1,78 @@
+#include "scene_effects.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+
+namespace thimble::app {
+namespace {
+
+std::vector<std::string> names_of(const std::vector<render::EffectPlan>& plans) {
+  std::vector<std::string> names;
+  for (const render::EffectPlan& plan : plans) names.emplace_back(plan.kind->name);
+  return names;
+}
+
+// Reads a list of effects and tells what was wrong with it.
+std::string mistake(const std::string& effects) {
+  auto yaml = YamlFile::parse("effects:\n" + effects, "scene");
+  if (!yaml) return yaml.error().message;
+  render::EffectSurroundings surroundings;
+  surroundings.force_max = 5;
+  surroundings.surface_stiffness = 800;
+  read_effects(yaml->root(), {}, surroundings);
+  yaml->root().finish();
+  const auto done = yaml->finish();
+  return done ? "" : done.error().message;
+}
+
+TEST(SceneEffects, RunInTheOrderOfATickWhateverOrderASceneNamesThemIn) {
+  auto yaml = YamlFile::parse(
+      "effects:\n  - {friction: bristle, coefficient: 0.4}\n  - {texture: sandpaper}\n", "scene");
+  ASSERT_TRUE(yaml.ok());
+  render::EffectSurroundings surroundings;
+  surroundings.force_max = 5;
+  surroundings.surface_stiffness = 800;
+  const auto plans = read_effects(yaml->root(), {}, surroundings);
+  EXPECT_EQ(names_of(plans), (std::vector<std::string>{"sandpaper", "bristle"}));
+  for (const render::EffectPlan& plan : plans) EXPECT_NE(plan.build(), nullptr);
+}
+
+TEST(SceneEffects, AreRefusedByLineWhereTheyAreNotKnownOrStandTogether) {
+  EXPECT_EQ(mistake("  - {friction: bristle, coefficient: 0.4}\n"), "");
+  EXPECT_NE(mistake("  - {friction: magic}\n").find("scene:2: friction: expected bristle"),
+            std::string::npos);
+  EXPECT_NE(mistake("  - {colour: red}\n").find("scene:2: expected friction: NAME"),
+            std::string::npos);
+  EXPECT_NE(mistake("  - {friction: bristle, texture: sandpaper}\n").find("entry of its own"),
+            std::string::npos);
+  EXPECT_NE(mistake("  - {friction: bristle, coeficient: 0.4}\n")
+                .find("perhaps \"coefficient\" was meant"),
+            std::string::npos);
+  EXPECT_NE(mistake("  - {friction: bristle, coefficient: -1}\n").find("coefficient: expected"),
+            std::string::npos);
+  EXPECT_NE(mistake("  - {friction: bristle, coefficient: .nan}\n").find("coefficient: expected"),
+            std::string::npos);
+}
+
+TEST(Surroundings, OfEveryArmThatComesAlongAreThoseOfADeskTopArm) {
+  int arms = 0;
+  for (const auto& file : std::filesystem::directory_iterator(
+           std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms")) {
+    const auto arm = read_arm_file(file.path());
+    ASSERT_TRUE(arm.ok()) << arm.error().message;
+    const render::EffectSurroundings surroundings = surroundings_of(*arm, 1000);
+    // Steps of the arms we know lie between 0.02 and 0.07 mm [DEVICES 2]; column sums above that.
+    EXPECT_GT(surroundings.encoder_step, 0.01e-3) << file.path();
+    EXPECT_LT(surroundings.encoder_step, 0.3e-3) << file.path();
+    EXPECT_EQ(surroundings.tick, 0.001);
+    EXPECT_GE(surroundings.delay, 0.001) << file.path();
+    EXPECT_GT(surroundings.force_max, 0) << file.path();
+    ++arms;
+  }
+  EXPECT_GE(arms, 4);
+}
+
+}  // namespace
+}  // namespace thimble::app

@@ -1,0 +1,154 @@
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <vector>
+
+#include "support/scripted_transport.h"
+#include "support/vintage_arm.h"
+#include "thimble/driver/servo_loop.h"
+
+namespace thimble::driver {
+namespace {
+
+std::vector<std::byte> report() {
+  const auto bytes = hfab::encode_input({});
+  return {bytes.begin(), bytes.end()};
+}
+
+/// An arm that answers each message, so that it never runs dry while it is plugged in.
+class AnsweringTransport final : public Transport {
+ public:
+  explicit AnsweringTransport(support::Wire& wire) : wire_(wire), inner_(wire) {}
+  TransportRead read_latest(std::span<std::byte> buffer, std::int64_t until) noexcept override {
+    wire_.to_host.push_back(report());
+    return inner_.read_latest(buffer, until);
+  }
+  TransportStatus write(std::span<const std::byte> bytes) noexcept override {
+    if (refuses && !wire_.lost) return TransportStatus::kRefused;
+    return inner_.write(bytes);
+  }
+  bool refuses = false;
+
+ private:
+  support::Wire& wire_;
+  support::ScriptedTransport inner_;
+};
+
+/// A loop in contact with a wall that always pushes; `at_tick` does things to the wire.
+class ReplugTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    auto transport = std::make_unique<AnsweringTransport>(wire_);
+    transport_ = transport.get();
+    auto opened = Device::open(std::move(transport),
+                               std::make_unique<hfab::HfabArm>(support::vintage_model()),
+                               support::vintage_settings(), 0);
+    ASSERT_TRUE(opened) << opened.error().message;
+    device_ = std::move(opened).value();
+    ASSERT_TRUE(device_->activate());
+  }
+
+  struct Sink {
+    ReplugTest& test;
+    void operator()(const TickRecord& record) noexcept {
+      test.records_.push_back(record);
+      if (test.at_tick_) test.at_tick_(record);
+    }
+  };
+  struct Push {
+    ForceCommand operator()(const DeviceState&) noexcept {
+      return {.f_T_W = {0, 0.5, 0}, .touch = {}};
+    }
+  };
+
+  ServoEnd run(std::uint64_t ticks) {
+    Push push;
+    Sink sink{*this};
+    const std::atomic<bool> stop{false};
+    return run_servo(*device_, clock_, ForceLaw(push), TickSink(sink),
+                     {.ticks = ticks, .outlive_faults = true}, stop);
+  }
+
+  static double force(const TickRecord& record) {
+    return Eigen::Map<const Eigen::Vector3d>(record.f_sent_W.data()).norm();
+  }
+  static bool is_zero(const std::vector<std::byte>& message) {
+    return hfab::decode_output(message)->current_mA == std::array<std::int16_t, 3>{};
+  }
+
+  support::Wire wire_, second_wire_;
+  AnsweringTransport* transport_ = nullptr;
+  VirtualClock clock_;
+  std::unique_ptr<Device> device_;
+  std::vector<TickRecord> records_;
+  std::function<void(const TickRecord&)> at_tick_;
+};
+
+TEST_F(ReplugTest, LatchesZeroForceAndKeepsTheLoopAliveWhenTheArmIsPulledInContact) {
+  at_tick_ = [&](const TickRecord&) { wire_.lost = records_.size() >= 500; };
+  EXPECT_EQ(run(1000), ServoEnd::kDone);
+  ASSERT_EQ(records_.size(), 1000u);
+  EXPECT_NEAR(force(records_[499]), 0.5, 1e-9);
+  for (std::size_t i = 500; i < 1000; ++i) {
+    EXPECT_EQ(force(records_[i]), 0) << i;
+    EXPECT_EQ(records_[i].fault, Fault::kTransportLost);
+    EXPECT_EQ(records_[i].stage, DeviceStage::kFault);
+  }
+}
+
+TEST_F(ReplugTest, FindsTheArmAgainButGivesForceOnlyWhenTheUserSaysSo) {
+  at_tick_ = [&](const TickRecord&) {
+    const std::size_t tick = records_.size();
+    if (tick == 500) wire_.lost = true;
+    if (tick == 550) device_->ask_to_activate();  // too early: the arm is not there
+    if (tick == 600) device_->offer(std::make_unique<AnsweringTransport>(second_wire_));
+    if (tick == 800) device_->ask_to_activate();
+  };
+  EXPECT_EQ(run(1500), ServoEnd::kDone);
+  ASSERT_EQ(records_.size(), 1500u);
+  EXPECT_FALSE(records_[599].fresh);
+  EXPECT_TRUE(records_[601].fresh);  // positions are seen again at once
+  EXPECT_EQ(device_->wire_counters().replugged, 1u);
+  for (std::size_t i = 500; i < 800; ++i) {
+    EXPECT_EQ(force(records_[i]), 0) << i;
+    EXPECT_EQ(records_[i].fault, Fault::kTransportLost) << i;
+  }
+  EXPECT_EQ(records_[801].stage, DeviceStage::kActive);
+  EXPECT_LT(force(records_[802]), 0.05);  // soft start
+  EXPECT_NEAR(force(records_[1499]), 0.5, 1e-9);
+  // Everything the new wire carried before the user's word, and after the end, is zero.
+  ASSERT_GT(second_wire_.to_arm.size(), 800u);
+  for (std::size_t i = 0; i < 200; ++i) EXPECT_TRUE(is_zero(second_wire_.to_arm[i])) << i;
+  EXPECT_TRUE(is_zero(second_wire_.to_arm.back()));
+}
+
+TEST_F(ReplugTest, SurvivesManyPullsWithoutLosingAWire) {
+  std::vector<support::Wire> wires(20);
+  std::size_t next = 0;
+  at_tick_ = [&](const TickRecord&) {
+    if (records_.size() % 50 == 10) {
+      wire_.lost = true;
+      for (auto& wire : wires) wire.lost = true;
+    }
+    if (records_.size() % 50 == 20 && next < wires.size()) {
+      wires[next].lost = false;
+      device_->offer(std::make_unique<AnsweringTransport>(wires[next]));
+      ++next;
+    }
+    if (records_.size() % 50 == 30) device_->ask_to_activate();
+  };
+  EXPECT_EQ(run(1010), ServoEnd::kDone);
+  EXPECT_EQ(device_->wire_counters().replugged, 20u);
+}
+
+TEST_F(ReplugTest, NamesAnArmThatTakesNoMessages) {
+  at_tick_ = [&](const TickRecord&) { transport_->refuses = records_.size() >= 500; };
+  EXPECT_EQ(run(600), ServoEnd::kDone);
+  EXPECT_EQ(records_[510].fault, Fault::kNone);  // a moment is forgiven
+  EXPECT_EQ(records_[530].fault, Fault::kRefused);
+  EXPECT_EQ(force(records_[530]), 0);
+  EXPECT_GE(device_->wire_counters().refused, 100u);
+}
+
+}  // namespace
+}  // namespace thimble::driver

@@ -1,0 +1,121 @@
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#include <string>
+#include <string_view>
+
+#include "support/vintage_arm.h"
+#include "thimble/driver/arms/hfab/hfab_wire.h"
+#include "thimble/driver/device.h"
+#include "thimble/driver/transports.h"
+
+namespace thimble::driver {
+namespace {
+
+/// A serial port whose far end the test holds: a pseudo-terminal.
+class SerialTransportTest : public ::testing::Test {
+ protected:
+  SerialTransportTest() : far_(posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK)) {
+    if (far_ < 0 || grantpt(far_) != 0 || unlockpt(far_) != 0) far_ = -1;
+  }
+  ~SerialTransportTest() override { hang_up(); }
+
+  void open() {
+    ASSERT_GE(far_, 0);
+    auto opened = open_serial_transport(ptsname(far_), hfab::kLineFraming, clock_);
+    ASSERT_TRUE(opened) << opened.error().message;
+    wire_ = std::move(opened).value();
+  }
+  void hang_up() {
+    if (far_ >= 0) close(far_);
+    far_ = -1;
+  }
+  void say(std::string_view text) const {
+    ASSERT_EQ(::write(far_, text.data(), text.size()), static_cast<ssize_t>(text.size()));
+  }
+  std::string hear() const {
+    std::string text(256, '\0');
+    const ssize_t count = ::read(far_, text.data(), text.size());
+    text.resize(count > 0 ? static_cast<std::size_t>(count) : 0);
+    return text;
+  }
+  std::string read(std::int64_t wait_ns = 1'000'000'000) {
+    std::array<std::byte, kReportCapacity> buffer{};
+    last_ = wire_->read_latest(buffer, clock_.now_ns() + wait_ns);
+    return {reinterpret_cast<const char*>(buffer.data()), last_.size};
+  }
+  TransportStatus write(std::string_view text) {
+    return wire_->write({reinterpret_cast<const std::byte*>(text.data()), text.size()});
+  }
+
+  int far_;
+  WallClock clock_;
+  std::unique_ptr<Transport> wire_;
+  TransportRead last_;
+};
+
+TEST_F(SerialTransportTest, CarriesEveryByteUnchangedBothWays) {
+  open();
+  EXPECT_EQ(write("[1,-2,3]\n"), TransportStatus::kOk);
+  EXPECT_EQ(hear(), "[1,-2,3]\n");  // no newline turned into two, nothing echoed
+  say("[3,1,2,3,4,5,6,0]\n");
+  EXPECT_EQ(read(), "[3,1,2,3,4,5,6,0]");
+}
+
+TEST_F(SerialTransportTest, JoinsPiecesAndTakesTheNewest) {
+  open();
+  say("[1,1,");
+  EXPECT_EQ(read(0), "");
+  EXPECT_EQ(last_.status, TransportStatus::kNothing);
+  say("2]\n[2]\n[3]\n");
+  EXPECT_EQ(read(), "[3]");
+  EXPECT_EQ(last_.skipped, 2u);
+}
+
+TEST_F(SerialTransportTest, SaysThatTheArmIsGoneWhenThePortHangsUp) {
+  open();
+  hang_up();
+  read();
+  EXPECT_EQ(last_.status, TransportStatus::kLost);
+  EXPECT_EQ(write("[0,0,0]\n"), TransportStatus::kLost);
+}
+
+TEST_F(SerialTransportTest, RefusesWhatAFullPortCannotTakeInsteadOfWaiting) {
+  open();
+  const std::string line = "[" + std::string(90, '1') + "]\n";
+  int refused = 0;
+  for (int i = 0; i < 5000 && refused == 0; ++i) {
+    refused += write(line) == TransportStatus::kRefused ? 1 : 0;
+  }
+  EXPECT_EQ(refused, 1);
+}
+
+TEST_F(SerialTransportTest, NamesWhatIsWrongWithANode) {
+  const auto missing = open_serial_transport("/dev/no_such_arm", hfab::kLineFraming, clock_);
+  ASSERT_FALSE(missing);
+  EXPECT_NE(missing.error().message.find("plugged in"), std::string::npos);
+  const auto no_port = open_serial_transport("/dev/null", hfab::kLineFraming, clock_);
+  ASSERT_FALSE(no_port);
+  EXPECT_NE(no_port.error().message.find("no serial port"), std::string::npos);
+}
+
+TEST_F(SerialTransportTest, CarriesAWholeArm) {
+  open();
+  say("[2,100,-50,7,0,0,0,0]\n");
+  JointModel<SerialArm> model;
+  const hfab::HfabModel vintage = support::vintage_model();
+  model.geometry = vintage.geometry;
+  model.drives = vintage.drives;
+  model.encoders = vintage.encoders;
+  auto device =
+      Device::open(std::move(wire_), std::make_unique<WireArm<hfab::LineWire, SerialArm>>(model),
+                   support::vintage_settings(), clock_.now_ns());
+  ASSERT_TRUE(device) << device.error().message;
+  EXPECT_EQ((*device)->state().counts, (std::array<std::int32_t, 3>{100, -50, 7}));
+  EXPECT_EQ(hear(), "[0,0,0]\n");
+}
+
+}  // namespace
+}  // namespace thimble::driver

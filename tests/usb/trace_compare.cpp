@@ -1,0 +1,211 @@
+#include "usb/trace_compare.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+namespace thimble::usb_test {
+namespace {
+
+using Counts = std::array<std::int32_t, 3>;
+using Numbers = std::array<double, 3>;
+
+struct Tick {
+  int fresh = 0;
+  Counts counts{};
+  Numbers f_sent{};
+};
+
+/// Is one packet as the arm saw it.
+struct Report {
+  std::int64_t sampled = 0;  // frame
+  Counts counts{};
+  Numbers exact{};
+};
+struct Message {
+  std::int64_t frame = 0;
+  Counts values{};
+};
+
+std::vector<Tick> read_ticks(const std::string& file) {
+  std::ifstream in(file);
+  std::vector<Tick> ticks;
+  Tick t;
+  while (in >> t.fresh >> t.counts[0] >> t.counts[1] >> t.counts[2] >> t.f_sent[0] >> t.f_sent[1] >>
+         t.f_sent[2]) {
+    ticks.push_back(t);
+  }
+  return ticks;
+}
+
+struct DeviceTrace {
+  std::vector<Report> reports;
+  std::map<std::uint64_t, Message> messages;  // by number; two in one frame leave a gap
+};
+
+DeviceTrace read_device(const std::string& file) {
+  std::ifstream in(file);
+  DeviceTrace trace;
+  std::uint64_t reports_before = 0, messages_before = 0;
+  for (std::string line; std::getline(in, line);) {
+    if (line.starts_with('#')) continue;
+    std::istringstream words(line);
+    std::int64_t frame = 0;
+    std::uint64_t reports = 0, messages = 0;
+    Report r;
+    Message m;
+    words >> frame >> reports >> r.sampled >> r.counts[0] >> r.counts[1] >> r.counts[2] >>
+        r.exact[0] >> r.exact[1] >> r.exact[2] >> messages >> m.values[0] >> m.values[1] >>
+        m.values[2];
+    if (!words) break;  // the last line may be cut
+    m.frame = frame;
+    if (reports != reports_before) trace.reports.push_back(r);
+    if (messages != messages_before) trace.messages[messages] = m;
+    reports_before = reports;
+    messages_before = messages;
+  }
+  return trace;
+}
+
+/// Finds the motor values that a force at these counts asks for, by tau = J^T f, in the wire's unit
+/// (mA, or motor values of the Falcon, 1000 to the ampere too).
+Numbers values_for(const driver::Arm& arm, const Tick& tick) {
+  driver::ArmReading reading;
+  reading.counts = tick.counts;
+  const driver::ArmPose pose = arm.pose(reading);
+  const Eigen::Vector3d force(tick.f_sent[0], tick.f_sent[1], tick.f_sent[2]);
+  const Eigen::Vector3d tau = pose.J_BT.transpose() * force;
+  Numbers values{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const driver::MotorDrive& drive = arm.drives()[i];
+    values[i] = 1000 * tau[static_cast<Eigen::Index>(i)] /
+                (drive.sign * drive.ratio * drive.torque_constant);
+  }
+  return values;
+}
+
+struct Match {
+  std::size_t wrong = 0, compared = 0;
+  double worst = 0;
+};
+
+/// Compares tick i with message `first + i`.
+Match match_messages(const std::vector<Numbers>& wanted, const DeviceTrace& trace,
+                     std::uint64_t first) {
+  Match match;
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    const auto found = trace.messages.find(first + i);
+    if (found == trace.messages.end()) continue;
+    ++match.compared;
+    double off = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      off = std::max(off, std::abs(found->second.values[k] - wanted[i][k]));
+    }
+    // Rounding moves by half a quantum; the trace's own digits by a hundredth.
+    if (off > 0.51) ++match.wrong;
+    match.worst = std::max(match.worst, off);
+  }
+  return match;
+}
+
+int say(bool pass, const std::string& what, const std::string& detail) {
+  std::printf("%s %s: %s\n", pass ? "PASS" : "FAIL", what.c_str(), detail.c_str());
+  return pass ? 0 : 1;
+}
+
+}  // namespace
+
+void write_trace(const std::vector<driver::TickRecord>& records, const std::string& file) {
+  std::FILE* out = std::fopen(file.c_str(), "we");
+  if (out == nullptr) return;
+  for (const driver::TickRecord& r : records) {
+    std::fprintf(out, "%d %d %d %d %.9f %.9f %.9f\n", r.fresh ? 1 : 0, r.counts[0], r.counts[1],
+                 r.counts[2], r.f_sent_W[0], r.f_sent_W[1], r.f_sent_W[2]);
+  }
+  std::fclose(out);
+}
+
+int compare_traces(const VirtualArm& arm, const std::string& driver_trace,
+                   const std::string& device_trace) {
+  const std::vector<Tick> ticks = read_ticks(driver_trace);
+  const DeviceTrace trace = read_device(device_trace);
+  const auto protocol = arm.protocol();
+  if (ticks.size() < 100 || trace.reports.size() < 100) {
+    return say(false, arm.name + " traces", "too short to compare");
+  }
+
+  // Positions: each that the driver saw is the next of those that the arm sent.
+  std::size_t at = 0, unknown = 0;
+  std::vector<std::size_t> seen(ticks.size(), SIZE_MAX);
+  double worst_count = 0;
+  for (std::size_t i = 0; i < ticks.size(); ++i) {
+    if (ticks[i].fresh == 0) continue;
+    std::size_t k = at;
+    while (k < trace.reports.size() && trace.reports[k].counts != ticks[i].counts) ++k;
+    if (k == trace.reports.size()) {
+      ++unknown;
+      continue;
+    }
+    at = seen[i] = k;
+    for (std::size_t leg = 0; leg < 3; ++leg) {
+      const double off = std::abs(trace.reports[k].counts[leg] - trace.reports[k].exact[leg]);
+      worst_count = std::max(worst_count, off);
+    }
+  }
+  int bad = say(unknown == 0 && worst_count <= 1, arm.name + " position",
+                std::to_string(unknown) + " unknown positions of " + std::to_string(ticks.size()) +
+                    ", " + std::to_string(worst_count) + " counts off at most");
+
+  // Forces: the ticks' messages are a run of the arm's; the driver sent a few before the first.
+  std::vector<Numbers> wanted;
+  wanted.reserve(ticks.size());
+  for (const Tick& tick : ticks) wanted.push_back(values_for(*protocol, tick));
+  Match best;
+  std::uint64_t best_first = 0;
+  const std::uint64_t last = trace.messages.empty() ? 0 : trace.messages.rbegin()->first;
+  for (std::uint64_t first = 1; first + wanted.size() <= last + 1; ++first) {
+    const Match match = match_messages(wanted, trace, first);
+    const bool better = best_first == 0 || match.wrong < best.wrong;
+    if (!better) continue;
+    best = match;
+    best_first = first;
+  }
+  bad += say(best_first != 0 && best.wrong == 0 && best.compared > wanted.size() * 9 / 10,
+             arm.name + " force",
+             std::to_string(best.compared) + " messages compared, " + std::to_string(best.wrong) +
+                 " wrong, " + std::to_string(best.worst) + " quanta off at most");
+
+  // Delay: only where the counts say for sure which report it was.
+  std::vector<std::int64_t> delays;
+  for (std::size_t i = 0; i < ticks.size(); ++i) {
+    const std::size_t k = seen[i];
+    if (k == SIZE_MAX || k == 0 || k + 1 >= trace.reports.size()) continue;
+    const bool sure = trace.reports[k - 1].counts != trace.reports[k].counts &&
+                      trace.reports[k + 1].counts != trace.reports[k].counts;
+    const auto message = trace.messages.find(best_first + i);
+    if (!sure || message == trace.messages.end()) continue;
+    delays.push_back(message->second.frame - trace.reports[k].sampled);
+  }
+  std::sort(delays.begin(), delays.end());
+  if (delays.size() < 10) return bad + say(false, arm.name + " delay", "too few moving ticks");
+  const auto part = [&](double share) {
+    return delays[static_cast<std::size_t>(share * static_cast<double>(delays.size() - 1))];
+  };
+  std::printf("FIGURE %s.delay_median %lld frames\n", arm.name.c_str(),
+              static_cast<long long>(part(0.5)));
+  std::printf("FIGURE %s.delay_99 %lld frames\n", arm.name.c_str(),
+              static_cast<long long>(part(0.99)));
+  std::printf("FIGURE %s.delay_least %lld frames\n", arm.name.c_str(),
+              static_cast<long long>(delays.front()));
+  return bad + say(delays.front() >= 1, arm.name + " delay",
+                   "from encoder to force " + std::to_string(part(0.5)) + " frames, 99 in 100 " +
+                       std::to_string(part(0.99)) + " at most, of " +
+                       std::to_string(delays.size()) + " sure ones");
+}
+
+}  // namespace thimble::usb_test

@@ -1,0 +1,328 @@
+// Drives a plugged arm through the kernel and says PASS or FAIL. Runs inside the virtual machine:
+//   usb_check find ARM
+//   usb_check denied ARM
+//   usb_check touch ARM TICKS TRACE [FIRMWARE]
+//   usb_check hang ARM                            touches, says so, until it is killed
+//   usb_check replug ARM PIPE [FIRMWARE]
+//   usb_check fault ARM PIPE "FAULT" [FIRMWARE]
+//   usb_check compare ARM TRACE DEVICE_TRACE
+#include <dirent.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "thimble/driver/servo_loop.h"
+#include "usb/trace_compare.h"
+#include "usb/virtual_arm.h"
+
+namespace thimble::usb_test {
+namespace {
+
+constexpr std::int64_t kPeriod_ns = 1'000'000;
+
+int verdict(bool pass, const std::string& what, const std::string& detail) {
+  std::printf("%s %s: %s\n", pass ? "PASS" : "FAIL", what.c_str(), detail.c_str());
+  std::fflush(stdout);
+  return pass ? 0 : 1;
+}
+
+int open_descriptors() {
+  int count = 0;
+  DIR* folder = opendir("/proc/self/fd");
+  if (folder == nullptr) return -1;
+  while (readdir(folder) != nullptr) ++count;
+  closedir(folder);
+  return count;
+}
+
+/// Keeps what each tick did, in room made beforehand.
+struct Recorder {
+  std::vector<driver::TickRecord> records;
+
+  void operator()(const driver::TickRecord& record) noexcept {
+    if (records.size() < records.capacity()) records.push_back(record);
+  }
+};
+
+/// Is one arm opened and ready to be touched.
+struct Bench {
+  driver::WallClock clock{0};  // one processor: a loop that spins keeps the kernel from working
+  driver::FoundArm found;
+  std::unique_ptr<driver::Device> device;
+};
+
+driver::Result<std::unique_ptr<Bench>> open_bench(const VirtualArm& arm) {
+  auto bench = std::make_unique<Bench>();
+  auto found = arm.find();
+  if (!found) return found.error();
+  bench->found = *found;
+  auto wire = arm.open(*found, bench->clock);
+  if (!wire) return wire.error();
+  auto device = driver::Device::open(std::move(*wire), arm.protocol(), check_settings(),
+                                     bench->clock.now_ns());
+  if (!device) return device.error();
+  bench->device = std::move(*device);
+  return bench;
+}
+
+double force_of(const driver::TickRecord& record) {
+  return std::hypot(record.f_sent_W[0], record.f_sent_W[1], record.f_sent_W[2]);
+}
+
+int find(const VirtualArm& arm) {
+  const auto found = arm.find();
+  if (!found) return verdict(false, arm.name + " listed", found.error().message);
+  return verdict(found->serial == "SIM0001", arm.name + " listed",
+                 found->arm + " at " + found->node + ", serial " + found->serial);
+}
+
+int denied(const VirtualArm& arm) {
+  const auto found = arm.find();
+  if (!found) return verdict(false, arm.name + " denied", found.error().message);
+  const driver::WallClock clock(0);
+  const auto wire = arm.open(*found, clock);
+  const bool told = !wire && wire.error().message.find("70-thimble.rules") != std::string::npos;
+  return verdict(told && !found->accessible, arm.name + " closed to strangers",
+                 wire ? "it was opened" : wire.error().message);
+}
+
+int touch(const VirtualArm& arm, std::uint64_t ticks, const std::string& trace) {
+  const int descriptors = open_descriptors();
+  Recorder recorder;
+  recorder.records.reserve(ticks);
+  driver::ServoEnd end = driver::ServoEnd::kDone;
+  driver::WireCounters wire;
+  {
+    auto bench = open_bench(arm);
+    if (!bench) return verdict(false, arm.name + " opened", bench.error().message);
+    verdict((*bench)->found.accessible, arm.name + " opened by a normal user",
+            (*bench)->found.node);
+    if (!(*bench)->device->activate()) return verdict(false, arm.name + " activated", "no");
+    Wall wall;
+    const std::atomic<bool> stop{false};
+    end = driver::run_servo(*(*bench)->device, (*bench)->clock, driver::ForceLaw(wall),
+                            driver::TickSink(recorder), {.period_ns = kPeriod_ns, .ticks = ticks},
+                            stop);
+    wire = (*bench)->device->wire_counters();
+  }
+  write_trace(recorder.records, trace);
+  double force_max = 0;
+  std::size_t contact = 0;
+  for (const driver::TickRecord& record : recorder.records) {
+    force_max = std::max(force_max, force_of(record));
+    contact += record.in_contact ? 1U : 0U;
+  }
+  int bad = verdict(end == driver::ServoEnd::kDone && contact > recorder.records.size() / 10,
+                    arm.name + " touched",
+                    std::to_string(recorder.records.size()) + " ticks, " + std::to_string(contact) +
+                        " in contact, " + std::to_string(force_max) + " N at most; " +
+                        std::to_string(wire.reports) + " reports, " + std::to_string(wire.skipped) +
+                        " skipped, " + std::to_string(wire.missing) + " ticks without, " +
+                        std::to_string(wire.rejected) + " rejected, " +
+                        std::to_string(wire.refused) + " refused");
+  bad += verdict(open_descriptors() == descriptors, arm.name + " closed",
+                 std::to_string(open_descriptors() - descriptors) + " descriptors left open");
+  return bad;
+}
+
+void order(const std::string& pipe, const std::string& line) {
+  std::ofstream(pipe) << line << std::endl;
+}
+
+/// Ticks by hand, so that a check can look at every one and go on after a fault.
+class Ticker {
+ public:
+  explicit Ticker(Bench& bench) : bench_(bench), due_ns_(bench.clock.now_ns()) {}
+
+  void tick() {
+    due_ns_ = std::max(due_ns_ + kPeriod_ns, bench_.clock.now_ns());
+    bench_.clock.sleep_until_ns(due_ns_);
+    const std::int64_t now_ns = bench_.clock.now_ns();
+    const driver::DeviceState& state = bench_.device->read(now_ns, now_ns);
+    const driver::ForceCommand command = wall_(state);
+    bench_.device->write(command);
+    longest_ns = std::max(longest_ns, bench_.clock.now_ns() - now_ns);
+    force = bench_.device->f_sent_W().norm();
+    force_max = std::max(force_max, force);
+    in_contact = command.touch.in_contact;
+    ++ticks;
+  }
+  /// Ticks until it is true, or too long.
+  template <class Condition>
+  bool until(Condition&& condition, int ticks_max) {
+    for (int i = 0; i < ticks_max; ++i) {
+      tick();
+      if (condition()) return true;
+    }
+    return false;
+  }
+
+  double force = 0, force_max = 0;
+  bool in_contact = false;
+  int ticks = 0;
+  std::int64_t longest_ns = 0;
+
+ private:
+  Bench& bench_;
+  Wall wall_;
+  std::int64_t due_ns_;
+};
+
+int hang(const VirtualArm& arm) {
+  auto bench = open_bench(arm);
+  if (!bench) return verdict(false, arm.name + " opened", bench.error().message);
+  if (!(*bench)->device->activate()) return 1;
+  Ticker ticker(**bench);
+  bool told = false;
+  for (;;) {
+    ticker.tick();
+    if (told || ticker.force < 0.5) continue;
+    told = true;
+    std::printf("touching\n");
+    std::fflush(stdout);
+  }
+}
+
+int replug(const VirtualArm& arm, const std::string& pipe) {
+  auto opened = open_bench(arm);
+  if (!opened) return verdict(false, arm.name + " opened", opened.error().message);
+  Bench& bench = **opened;
+  if (!bench.device->activate()) return verdict(false, arm.name + " activated", "no");
+  Ticker ticker(bench);
+  const bool contact = ticker.until([&] { return ticker.force > 0.5; }, 3000);
+  int bad = verdict(contact, arm.name + " in contact", std::to_string(ticker.force) + " N");
+  order(pipe, "unplug for=300");
+  const int begin = ticker.ticks;
+  const bool lost = ticker.until(
+      [&] { return bench.device->fault() == driver::Fault::kTransportLost && ticker.force == 0; },
+      1000);
+  bad += verdict(lost, arm.name + " pulled in contact",
+                 "zero force and '" + std::string(driver::name(bench.device->fault())) +
+                     "' after " + std::to_string(ticker.ticks - begin) + " ticks");
+
+  // At the side: find the arm by its serial number and offer the new wire.
+  std::atomic<bool> offered{false};
+  std::string trouble;
+  std::thread side([&] {
+    // The old entry may still be listed for a moment; take one that opens.
+    for (int i = 0; i < 300 && !offered; ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+      const auto again = arm.find("SIM0001", 1000);
+      if (!again) continue;
+      auto wire = arm.open(*again, bench.clock);
+      if (!wire) {
+        trouble = wire.error().message;
+        continue;
+      }
+      bench.device->offer(std::move(*wire));
+      offered.store(true);
+    }
+  });
+  const bool back =
+      ticker.until([&] { return bench.device->wire_counters().replugged > 0; }, 15000);
+  side.join();
+  bad += verdict(back, arm.name + " found again by its serial number",
+                 back ? "loop alive, " + std::to_string(ticker.ticks) + " ticks" : trouble);
+  double force_before_asked = 0;
+  const bool contact_again = ticker.until(
+      [&] {
+        force_before_asked = std::max(force_before_asked, ticker.force);
+        return ticker.in_contact;
+      },
+      3000);
+  bad += verdict(contact_again && force_before_asked == 0, arm.name + " idle until asked",
+                 std::to_string(force_before_asked) + " N in contact before");
+  bench.device->ask_to_activate();
+  const bool active = ticker.until([&] { return ticker.force > 0.2; }, 3000);
+  bad += verdict(active, arm.name + " active when asked", std::to_string(ticker.force) + " N");
+  return bad;
+}
+
+/// Says whether a fault leaves the driver without reports, so that it must stop.
+bool must_stop(const VirtualArm& arm, const std::string& fault) {
+  if (fault.find(" out") != std::string::npos) return false;
+  // Behind a converter there is room for more bytes, which are no message and are skipped.
+  if (fault.starts_with("long")) return !arm.is_falcon();
+  return fault.starts_with("silence") || fault.starts_with("short") || fault.starts_with("stall");
+}
+
+int fault(const VirtualArm& arm, const std::string& pipe, const std::string& line) {
+  auto opened = open_bench(arm);
+  if (!opened) return verdict(false, arm.name + " opened", opened.error().message);
+  Bench& bench = **opened;
+  if (!bench.device->activate()) return verdict(false, arm.name + " activated", "no");
+  Ticker ticker(bench);
+  if (!ticker.until([&] { return ticker.force > 0.5; }, 3000)) {
+    return verdict(false, arm.name + " in contact", "never");
+  }
+  const driver::WireCounters before = bench.device->wire_counters();
+  ticker.longest_ns = 0;
+  order(pipe, line);
+  const int begin = ticker.ticks;
+  int stopped_after = -1;
+  for (int i = 0; i < 250; ++i) {
+    ticker.tick();
+    if (stopped_after < 0 && bench.device->fault() != driver::Fault::kNone && ticker.force == 0) {
+      stopped_after = ticker.ticks - begin;
+    }
+  }
+  order(pipe, "heal");
+  const driver::WireCounters after = bench.device->wire_counters();
+  const driver::Fault named = bench.device->fault();
+  // Silence counts from 20 ms on; the order itself takes a tick or two to reach the arm.
+  constexpr int kStopTicks = 30;
+  const bool stop_kept =
+      !must_stop(arm, line) || (stopped_after >= 0 && stopped_after <= kStopTicks);
+  const bool limit_kept = ticker.force_max <= check_settings().limits.force_max + 1e-9;
+  return verdict(
+      stop_kept && limit_kept, arm.name + " with " + line,
+      "fault '" + std::string(driver::name(named)) + "'" +
+          (stopped_after >= 0 ? " and zero force after " + std::to_string(stopped_after) + " ticks"
+                              : ", force goes on") +
+          "; at most " + std::to_string(ticker.force_max) + " N; rejected " +
+          std::to_string(after.rejected - before.rejected) + ", missing " +
+          std::to_string(after.missing - before.missing) + ", skipped " +
+          std::to_string(after.skipped - before.skipped) + ", refused " +
+          std::to_string(after.refused - before.refused) + "; longest tick " +
+          std::to_string(ticker.longest_ns / 1000) + " us");
+}
+
+int run(const std::vector<std::string>& words) {
+  const auto word = [&](std::size_t i) { return i < words.size() ? words[i] : std::string(); };
+  VirtualArm arm{.name = word(1), .firmware = {}};
+  const std::string& what = words[0];
+  if (what == "find") return find(arm);
+  if (what == "denied") return denied(arm);
+  if (what == "hang") return hang(arm);
+  if (what == "compare") return compare_traces(arm, word(2), word(3));
+  if (what == "touch") {
+    arm.firmware = word(4);
+    return touch(arm, std::strtoull(word(2).c_str(), nullptr, 10), word(3));
+  }
+  if (what == "replug") {
+    arm.firmware = word(3);
+    return replug(arm, word(2));
+  }
+  if (what == "fault") {
+    arm.firmware = word(4);
+    return fault(arm, word(2), word(3));
+  }
+  return verdict(false, what, "is no check");
+}
+
+}  // namespace
+}  // namespace thimble::usb_test
+
+int main(int argc, char** argv) {
+  const std::vector<std::string> words(argv + 1, argv + argc);
+  if (words.size() < 2) return 2;
+  return thimble::usb_test::run(words);
+}

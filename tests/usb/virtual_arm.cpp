@@ -1,0 +1,85 @@
+#include "usb/virtual_arm.h"
+
+#include <chrono>
+#include <thread>
+
+#include "thimble/device_sim/usb/arm_shelf.h"
+#include "thimble/driver/arms/falcon/falcon_arm.h"
+#include "thimble/driver/arms/falcon/falcon_boot.h"
+#include "thimble/driver/arms/falcon/falcon_packet.h"
+#include "thimble/driver/arms/hfab/hfab_arm.h"
+#include "thimble/driver/arms/hfab/hfab_models.h"
+#include "thimble/driver/arms/woody/woody_wire.h"
+#include "thimble/driver/transports.h"
+
+namespace thimble::usb_test {
+namespace {
+
+constexpr driver::Framing kFalconFraming{
+    .begin = std::byte{'<'}, .end = std::byte{'>'}, .size_max = driver::falcon::kPacketSize};
+
+driver::Result<void> home(driver::SerialLine& line) {
+  driver::falcon::HomingState state;
+  for (int i = 0; i < 5000 && !state.done(); ++i) {
+    state = driver::falcon::home_once(line, state.homed);
+  }
+  if (!state.done()) return driver::Error{"The Falcon did not find its home."};
+  return {};
+}
+
+}  // namespace
+
+std::unique_ptr<const driver::Arm> VirtualArm::protocol() const {
+  if (is_falcon()) {
+    return std::make_unique<driver::falcon::FalconArm>(driver::falcon::falcon_model());
+  }
+  if (name == "woodenhaptics") {
+    return std::make_unique<driver::woody::WoodyArm>(driver::hfab::woody_model());
+  }
+  return std::make_unique<driver::hfab::HfabArm>(device_sim::usb::shelf_model(name));
+}
+
+driver::Result<driver::FoundArm> VirtualArm::find(const std::string& serial, int timeout_ms) const {
+  const auto kind = is_falcon()               ? driver::ArmKind::kFalcon
+                    : name == "woodenhaptics" ? driver::ArmKind::kWoody
+                                              : driver::ArmKind::kPolhem;
+  for (int waited_ms = 0; waited_ms < timeout_ms; waited_ms += 10) {
+    const auto arms = driver::find_arms();
+    if (!arms) return arms.error();
+    for (const driver::FoundArm& arm : *arms) {
+      const bool wanted = arm.kind == kind && (serial.empty() || arm.serial == serial);
+      if (wanted && !arm.node.empty()) return arm;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  return driver::Error{"The arm '" + name + "' was not listed in " + std::to_string(timeout_ms) +
+                       " ms."};
+}
+
+driver::Result<std::unique_ptr<driver::Transport>> VirtualArm::open(
+    const driver::FoundArm& found, const driver::Clock& clock) const {
+  if (!is_falcon()) {
+    return driver::open_hid_transport(found.node, name == "polhem-64" ? 64 : 0, clock);
+  }
+  auto line = driver::FtdiLine::open(found.usb);
+  if (!line) return line.error();
+  if (const auto prepared = driver::falcon::prepare(**line, firmware); !prepared) {
+    return prepared.error();
+  }
+  if (const auto homed = home(**line); !homed) return homed.error();
+  return (*line)->into_transport(kFalconFraming, clock);
+}
+
+driver::DeviceSettings check_settings() {
+  driver::DeviceSettings settings;
+  settings.limits = {.force_max = 3,
+                     .speed_max = 3,
+                     .rise_max = 2000,
+                     .soft_start = 0.05,
+                     .stall_ns = 20'000'000,
+                     .watchdog_ns = 100'000'000};
+  settings.velocity_corner_frequency = 100;
+  return settings;
+}
+
+}  // namespace thimble::usb_test

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "thimble/driver/arm.h"
+#include "thimble/driver/clock.h"
+#include "thimble/driver/device.h"
+#include "thimble/driver/discovery.h"
+#include "thimble/driver/force_command.h"
+
+namespace thimble::usb_test {
+
+/// Is one of the arms that `thimble plug` exports, as a driver opens it: by what the kernel shows.
+struct VirtualArm {
+  std::string name;
+  std::string firmware;  ///< For the Falcon: the file to upload.
+
+  bool is_falcon() const { return name == "falcon"; }
+  std::unique_ptr<const driver::Arm> protocol() const;
+
+  /// Waits for the arm to be listed with this serial number (or any, if empty).
+  driver::Result<driver::FoundArm> find(const std::string& serial = {},
+                                        int timeout_ms = 5000) const;
+
+  /// Opens the wire to it; boots and homes a Falcon, whose grip the simulated hand moves.
+  driver::Result<std::unique_ptr<driver::Transport>> open(const driver::FoundArm& found,
+                                                          const driver::Clock& clock) const;
+};
+
+/// Tells the limits under which all checks run.
+driver::DeviceSettings check_settings();
+
+/// Is a wall across the base's z, a spring of 300 N/m. The simulated hand goes up and down once a
+/// second by 15 mm or more; the wall stands 19 mm below the highest place that the tip has reached,
+/// so that it is the same wherever the hand was when the check began. It rises slowly enough that a
+/// spoilt report does not carry it away.
+class Wall {
+ public:
+  static constexpr double kStiffness = 300;   // N/m
+  static constexpr double kBelow = 0.019;     // m
+  static constexpr double kRiseMax = 0.0002;  // m in a tick; the hand moves at 0.13 mm in one
+
+  driver::ForceCommand operator()(const driver::DeviceState& state) noexcept {
+    const double height = state.p_WT.z();
+    if (!placed_) top_ = height;
+    placed_ = true;
+    if (height > top_) top_ += std::min(height - top_, kRiseMax);
+    driver::ForceCommand command;
+    const double depth = top_ - kBelow - height;
+    if (depth > 0) {
+      command.f_T_W.z() = kStiffness * depth;
+      command.touch.in_contact = true;
+      command.touch.depth = depth;
+    }
+    return command;
+  }
+
+ private:
+  bool placed_ = false;
+  double top_ = 0;
+};
+
+}  // namespace thimble::usb_test

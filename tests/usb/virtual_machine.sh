@@ -1,0 +1,124 @@
+#!/usr/bin/env bash
+# Boots this system's Debian kernel in QEMU and drives every simulated USB arm through it.
+#   virtual_machine.sh THIMBLE USB_CHECK SOURCE_DIR WORK_DIR [--long]
+# Ends with 0 if all passed, 1 if not, 77 if this machine lacks what it takes. The whole log stays in
+# WORK_DIR/console.log, the figures in WORK_DIR/figures.json.
+#
+# The machine counts instructions instead of time (-icount): one instruction is 4 ns, and idle time
+# is skipped. So a busy computer makes the test slower, never different.
+set -euo pipefail
+thimble=$1 check=$2 source=$3 work=$4
+long=${THIMBLE_LONG:+--long}
+[ "${5:-$long}" = --long ] && long=1 || long=
+
+skip() {
+  echo "SKIPPED: the USB arms were NOT tested through a kernel: $1" >&2
+  echo "  As root: apt-get install qemu-system-x86 linux-image-amd64 busybox-static cpio udev" >&2
+  exit 77
+}
+# A sanitizer's run-time needs more than this machine in a machine gives; the release build is tested.
+if nm -D "$check" 2>/dev/null | grep -qE '__asan_init|__tsan_init'; then
+  skip "this is a build with a sanitizer; the release build tests them"
+fi
+[ "$(uname -m)" = x86_64 ] || skip "it needs an x86_64 machine"
+for tool in qemu-system-x86_64 cpio; do
+  command -v $tool >/dev/null || skip "$tool is missing"
+done
+udevd=/lib/systemd/systemd-udevd
+[ -x $udevd ] || skip "systemd-udevd is missing"
+busybox=$(command -v busybox || true)
+[ -n "$busybox" ] && ! ldd "$busybox" >/dev/null 2>&1 || skip "a static busybox is missing"
+kernel=
+for image in /boot/vmlinuz-*; do
+  version=${image#/boot/vmlinuz-}
+  [ -f "/lib/modules/$version/kernel/drivers/usb/usbip/vhci-hcd.ko" ] && [ -r "$image" ] &&
+    kernel=$image
+done
+[ -n "$kernel" ] || skip "no readable kernel with the module vhci-hcd"
+version=${kernel#/boot/vmlinuz-}
+
+rm -rf "$work"
+root=$work/root
+mkdir -p "$root"/{bin,dev,etc/udev/rules.d,lib/modules,lib/systemd,lib/udev/rules.d,proc,run,sys,tmp,usr/bin,var}
+cp "$source/tests/usb/init.sh" "$root/init"
+chmod +x "$root/init"
+cp "$busybox" "$root/bin/busybox"
+
+# A program and the libraries that it names, each at its own place.
+add() {
+  local program=$1 place=$2
+  cp -L "$program" "$root$place"
+  strip "$root$place" 2>/dev/null || true
+  ldd "$program" | grep -o '/[^ ]*' | while read -r library; do
+    mkdir -p "$root$(dirname "$library")"
+    [ -e "$root$library" ] || cp -L "$library" "$root$library"
+  done
+}
+add "$thimble" /bin/thimble
+add "$check" /bin/usb_check
+# systemd-udevd and udevadm are one program that looks at its name.
+add /bin/udevadm /bin/udevadm
+add $udevd $udevd
+drivers=/lib/modules/$version/kernel/drivers
+for module in usb/common/usb-common usb/core/usbcore hid/hid usb/usbip/usbip-core \
+  usb/usbip/vhci-hcd hid/usbhid/usbhid hid/hid-generic; do
+  cp "$drivers/$module.ko" "$root/lib/modules/"
+done
+for rule in 50-udev-default 70-uaccess 71-seat 73-seat-late; do
+  cp "/lib/udev/rules.d/$rule.rules" "$root/lib/udev/rules.d/"
+done
+cp "$source/udev/70-thimble.rules" "$root/lib/udev/rules.d/"
+
+# Two users: one in the group of the rule, one not.
+cat >"$root/etc/passwd" <<'EOF'
+root:x:0:0:root:/:/bin/sh
+tester:x:1000:1000::/tmp:/bin/sh
+stranger:x:1001:1001::/tmp:/bin/sh
+EOF
+grep -E '^(tty|dialout|kmem|input|video|render|sgx|audio|lp|disk|cdrom|tape|kvm|floppy):' /etc/group |
+  sed 's/:[^:]*$/:/' >"$root/etc/group"
+cat >>"$root/etc/group" <<'EOF'
+root:x:0:
+plugdev:x:46:tester
+tester:x:1000:
+stranger:x:1001:
+EOF
+echo 'passwd: files' >"$root/etc/nsswitch.conf"
+mkdir -p "$root/data/app" "$root/data/tests/data"
+cp -r "$source/app/arms" "$root/data/app/"
+cp -r "$source/tests/data/scenes" "$source/tests/data/meshes" "$root/data/tests/data/"
+# Any bytes: the simulated Falcon runs whatever it is given.
+head -c 1500 /bin/sh >"$root/etc/falcon.bin"
+(cd "$root" && find . | cpio -o -H newc --quiet) | gzip -1 >"$work/initrd.gz"
+
+ticks=2000 faulty=woodenhaptics arms=woodenhaptics,polhem,polhem-64,falcon limit=600
+[ -z "$long" ] || { ticks=10000 faulty=$arms limit=1800; }
+arms=${THIMBLE_USB_ARMS-$arms} faulty=${THIMBLE_USB_FAULTY-$faulty}
+log=$work/console.log
+begin=$(date +%s)
+status=0
+timeout $limit qemu-system-x86_64 -accel tcg -icount shift=2,sleep=off -smp 1 -m 384 \
+  -kernel "$kernel" -initrd "$work/initrd.gz" -nographic -no-reboot -nodefaults -serial stdio \
+  -append "console=ttyS0 quiet panic=-1 mitigations=off nokaslr thimble.ticks=$ticks \
+thimble.arms=$arms thimble.faulty=$faulty" </dev/null 2>"$work/qemu.log" >"$log" || status=$?
+sed -i 's/\r//g' "$log"
+echo "The virtual machine ran for $(($(date +%s) - begin)) s."
+if [ $status != 0 ] && grep -qiE "could not load|failed to|not supported|Could not" "$work/qemu.log"; then
+  cat "$work/qemu.log" >&2
+  skip "QEMU does not start here"
+fi
+
+grep -aE '^(PASS|FAIL|FIGURE|NOTE|END)' "$log" || true
+grep -aE '^FIGURE' "$log" | awk '
+  BEGIN { print "[" }
+  { printf "%s  {\"name\": \"usb.%s\", \"value\": %s, \"unit\": \"%s\"}", (NR > 1 ? ",\n" : ""), $2, $3, $4 }
+  END { print "\n]" }' >"$work/figures.json"
+if ! grep -aq '^END' "$log"; then
+  echo "FAIL: the machine did not come to its end (status $status). Its last words:" >&2
+  tail -n 30 "$log" >&2
+  exit 1
+fi
+failed=$(grep -ac '^FAIL' "$log" || true)
+passed=$(grep -ac '^PASS' "$log" || true)
+echo "$passed passed, $failed failed; whole log: $log"
+[ "$failed" = 0 ] && [ "$passed" -gt 0 ]
