@@ -7,18 +7,13 @@
 #include "bench_arm.h"
 #include "calibration.h"
 #include "commands.h"
+#include "complain.h"
 #include "enter_key.h"
-#include "exit_code.h"
 #include "interrupt.h"
 #include "real_arm.h"
 
 namespace thimble::app {
 namespace {
-
-int fail(const driver::Error& error, int exit_code) {
-  std::fprintf(stderr, "thimble: %s\n", error.message.c_str());
-  return exit_code;
-}
 
 /// Is where the simulated hand goes: each pose is reached after a second and held for a second.
 std::vector<std::pair<double, Eigen::Vector3d>> simulated_hand(const Eigen::Vector3d& p_home) {
@@ -41,12 +36,12 @@ Eigen::Vector3d home_of(const ArmFile& file) {
 
 int calibrate(const ArmChoice& choice, bool dry_run) {
   auto chosen = resolve(choice);
-  if (!chosen) return fail(chosen.error(), kExitNoDevice);
+  if (!chosen) return complain(chosen.error(), kExitNoDevice);
   const auto way =
       chosen->real_arm ? decltype(simulated_hand({})){} : simulated_hand(home_of(chosen->file));
   // Zero force throughout: the limit is only what the device asks for.
   auto bench = BenchArm::open(chosen->file, chosen->real_arm, choice.firmware, way, 0.1);
-  if (!bench) return fail(bench.error(), kExitNoDevice);
+  if (!bench) return complain(bench.error(), kExitNoDevice);
   const std::atomic<bool>& stop = catch_interrupts();
 
   constexpr std::array<const char*, 4> kAsks = {
@@ -63,22 +58,22 @@ int calibrate(const ArmChoice& choice, bool dry_run) {
     };
     if (!(*bench)->hold(done, stop)) {
       if (stop.load()) return kExitInterrupted;
-      return fail({std::string(driver::describe((*bench)->device().fault()))}, kExitFault);
+      return complain({std::string(driver::describe((*bench)->device().fault()))}, kExitFault);
     }
-    if (key == EnterKey::kClosed) return fail({"Nobody is at the terminal."}, kExitBadInput);
+    if (key == EnterKey::kClosed) return complain({"Nobody is at the terminal."}, kExitBadInput);
     readings[i].counts = (*bench)->device().state().counts;
   }
   const driver::ArmKind kind = chosen->real_arm ? chosen->real_arm->kind : driver::ArmKind::kPolhem;
   const auto found =
       find_calibration(chosen->file, kind, readings[0], {readings[1], readings[2], readings[3]});
-  if (!found) return fail(found.error(), kExitTrouble);
+  if (!found) return complain(found.error(), kExitTrouble);
   std::printf("home_counts  %d %d %d\nencoder_sign %d %d %d\nmotor_sign   %d %d %d\n",
               found->home_counts[0], found->home_counts[1], found->home_counts[2],
               found->encoder_sign[0], found->encoder_sign[1], found->encoder_sign[2],
               found->motor_sign[0], found->motor_sign[1], found->motor_sign[2]);
   if (dry_run) return kExitDone;
   if (auto saved = save_calibration(chosen->name, *found); !saved) {
-    return fail(saved.error(), kExitTrouble);
+    return complain(saved.error(), kExitTrouble);
   }
   std::printf("Kept in %s. Check it: thimble feel-check\n", calibration_file(chosen->name).c_str());
   return kExitDone;

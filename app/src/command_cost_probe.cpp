@@ -3,7 +3,7 @@
 #include <string>
 
 #include "commands.h"
-#include "exit_code.h"
+#include "complain.h"
 #include "study/cost_subjects.h"
 #include "study/instruction_count.h"
 
@@ -20,8 +20,7 @@ int probe(const ProbeOptions& options) {
     if (subject.name != options.subject) continue;
     const auto touch = subject.build();
     if (!touch) {
-      std::fprintf(stderr, "thimble: %s\n", touch.error().message.c_str());
-      return kExitBadInput;
+      return complain(touch.error(), kExitBadInput);
     }
     const auto states = ring_stroke(kCostRing, kStrokeTicks, 0.001);
     double sum = 0;
@@ -31,8 +30,7 @@ int probe(const ProbeOptions& options) {
     std::printf("%.17g\n", sum);
     return kExitDone;
   }
-  std::fprintf(stderr, "thimble: cost-probe knows no \"%s\".\n", options.subject.c_str());
-  return kExitBadInput;
+  return complain({"cost-probe knows no \"" + options.subject + "\"."}, kExitBadInput);
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "commands.h"
-#include "exit_code.h"
+#include "complain.h"
 #include "pictures.h"
 #include "thimble/render/contact/contact_mesh.h"
 #include "thimble/render/mesh/check_mesh.h"
@@ -39,11 +39,6 @@ void print(const render::MeshFindings& found) {
   if (found.touchable()) std::printf("  volume      %.4g\n", found.volume);
 }
 
-int fail(const driver::Error& error, int exit_code) {
-  std::fprintf(stderr, "thimble: %s\n", error.message.c_str());
-  return exit_code;
-}
-
 // Tells whether a mesh can be touched, and if not, why.
 int tell_verdict(const render::TriangleMesh& mesh, const render::MeshFindings& found) {
   if (found.touchable()) {
@@ -73,7 +68,7 @@ int tell_verdict(const render::TriangleMesh& mesh, const render::MeshFindings& f
 int repair(const render::TriangleMesh& mesh, const std::string& file) {
   const render::RepairedMesh repaired = render::repair_mesh(mesh);
   if (auto saved = render::save_mesh(repaired.mesh, file); !saved) {
-    return fail(saved.error(), kExitTrouble);
+    return complain(saved.error(), kExitTrouble);
   }
   std::printf("Repaired: %s\n", file.c_str());
   if (repaired.changes.empty()) std::printf("  Nothing was changed.\n");
@@ -88,11 +83,12 @@ int repair(const render::TriangleMesh& mesh, const std::string& file) {
 // Tells what a page file is; its triangles are looked at one page at a time, if at all.
 int tell_pages(const MeshOptions& options) {
   const auto pages = render::PageFile::open(options.file);
-  if (!pages) return fail(pages.error(), kExitBadInput);
+  if (!pages) return complain(pages.error(), kExitBadInput);
   if (!options.picture.empty() || !options.repair.empty()) {
-    return fail({options.file + ": a mesh in pages is neither drawn nor repaired; take the mesh "
-                                "that it was cut from."},
-                kExitBadInput);
+    return complain(
+        {options.file + ": a mesh in pages is neither drawn nor repaired; take the mesh "
+                        "that it was cut from."},
+        kExitBadInput);
   }
   const double step = pages->lattice().step;
   Eigen::Vector3d low, high;
@@ -128,7 +124,7 @@ int tell_pages(const MeshOptions& options) {
 int tell_mesh(const MeshOptions& options) {
   if (render::is_page_file(options.file)) return tell_pages(options);
   const auto mesh = render::load_mesh(options.file);
-  if (!mesh) return fail(mesh.error(), kExitBadInput);
+  if (!mesh) return complain(mesh.error(), kExitBadInput);
   const render::MeshFindings found = render::check_mesh(*mesh);
   std::printf("%s (lengths in the file's unit)\n", options.file.c_str());
   print(found);
@@ -136,7 +132,7 @@ int tell_mesh(const MeshOptions& options) {
     const std::string title = std::filesystem::path(options.file).filename().string();
     if (const auto drawn = draw_mesh(*mesh, options.picture, title, "unit of the file", &found);
         !drawn) {
-      return fail(drawn.error(), kExitTrouble);
+      return complain(drawn.error(), kExitTrouble);
     }
     std::printf("Picture: %s\n", options.picture.c_str());
   }

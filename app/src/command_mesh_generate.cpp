@@ -3,7 +3,7 @@
 #include <string>
 
 #include "commands.h"
-#include "exit_code.h"
+#include "complain.h"
 #include "resident_memory.h"
 #include "ring_pages.h"
 #include "thimble/render/page/page_file.h"
@@ -24,8 +24,7 @@ int generate_mesh(const GenerateOptions& options) {
   ring.tube_radius *= scale;
   const RingGrid grid = ring_grid(ring, static_cast<std::int64_t>(options.triangles));
   if (const auto written = write_ring(ring, grid, options.out); !written) {
-    std::fprintf(stderr, "thimble: %s\n", written.error().message.c_str());
-    return kExitTrouble;
+    return complain(written.error(), kExitTrouble);
   }
   std::printf("%s: a bumpy ring of %d triangles in %d pages; %.0f MiB of memory at most.\n",
               options.out.c_str(), grid.triangle_count(),

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "commands.h"
-#include "exit_code.h"
+#include "complain.h"
 #include "thimble/render/contact/compact_surface.h"
 #include "thimble/render/contact/contact_mesh.h"
 #include "thimble/render/mesh/load_mesh.h"
@@ -15,11 +15,6 @@ namespace {
 struct PageOptions {
   std::string in, out;
 };
-
-int complain(const driver::Error& error, int code) {
-  std::fprintf(stderr, "thimble: %s\n", error.message.c_str());
-  return code;
-}
 
 int page_mesh(const PageOptions& options) {
   const auto mesh = render::load_mesh(options.in);

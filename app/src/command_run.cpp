@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "commands.h"
-#include "exit_code.h"
+#include "complain.h"
 #include "interrupt.h"
 #include "lost_contacts.h"
 #include "meshes.h"
@@ -101,11 +101,6 @@ RunReport report_of(const Session& session, ClockKind clock, driver::ServoEnd en
   return report;
 }
 
-int trouble(const driver::Error& error) {
-  spdlog::error("{}", error.message);
-  return kExitTrouble;
-}
-
 /// Lets nobody be surprised by a force: asks before a real arm gets any.
 bool may_begin(const driver::FoundArm& arm, bool yes) {
   std::fprintf(stderr, "%s %s is about to get forces. Keep clear of it, hold its grip, keep its ",
@@ -120,18 +115,13 @@ bool may_begin(const driver::FoundArm& arm, bool yes) {
   return std::getchar() != EOF;
 }
 
-int fail(const driver::Error& error, int exit_code) {
-  std::fprintf(stderr, "thimble: %s\n", error.message.c_str());
-  return exit_code;
-}
-
 int run_scene(const RunOptions& options) {
   std::optional<driver::FoundArm> real_arm;
   if (options.device != "sim") {
     const auto plugged_in = driver::find_arms();
     auto chosen =
         choose_arm(plugged_in ? *plugged_in : std::vector<driver::FoundArm>(), options.device);
-    if (!chosen) return fail(chosen.error(), kExitNoDevice);
+    if (!chosen) return complain(chosen.error(), kExitNoDevice);
     real_arm = *chosen;
     if (!real_arm) std::printf("No arm is plugged in: the simulated one is used.\n");
   }
@@ -147,7 +137,7 @@ int run_scene(const RunOptions& options) {
   if (real_arm && !may_begin(*real_arm, options.yes)) return kExitBadInput;
   auto opened = Session::open(options.scene, session_options);
   if (!opened) {
-    return fail(opened.error(), real_arm ? kExitNoDevice : kExitBadInput);
+    return complain(opened.error(), real_arm ? kExitNoDevice : kExitBadInput);
   }
   Session& session = **opened;
   std::unique_ptr<ReplugWatch> watch;
@@ -161,7 +151,7 @@ int run_scene(const RunOptions& options) {
   if (!options.report.empty()) {
     const std::filesystem::path folder = options.report;
     if (const auto written = write_report(report, folder); !written)
-      return trouble(written.error());
+      return complain(written.error(), kExitTrouble);
     const PictureInfo info{.title = report.scene + ", " + report.arm,
                            .virtual_time = report.virtual_time,
                            .period = 1 / report.rate_asked,
@@ -169,7 +159,7 @@ int run_scene(const RunOptions& options) {
                            .work_times = &report.statistics.work()};
     const auto drawn = draw_pictures(session.trace().rows(), session.mesh_W(), info, folder);
     if (!drawn) {
-      return trouble(drawn.error());
+      return complain(drawn.error(), kExitTrouble);
     }
     std::printf("Report and pictures: %s\n", folder.c_str());
   }

@@ -4,29 +4,24 @@
 #include <system_error>
 
 #include "commands.h"
-#include "exit_code.h"
+#include "complain.h"
 #include "study/study.h"
 
 namespace thimble::app {
 namespace {
 
-int complain(const std::string& sentence, int code) {
-  std::fprintf(stderr, "thimble: %s\n", sentence.c_str());
-  return code;
-}
-
 int run_study(const Study& study, const std::filesystem::path& folder) {
   std::error_code status;
   std::filesystem::create_directories(folder, status);
   if (!std::filesystem::is_directory(folder, status)) {
-    return complain(
-        "Cannot make the folder " + folder.string() + "; name one that may be written with --out.",
-        kExitBadInput);
+    return complain({"Cannot make the folder " + folder.string() +
+                     "; name one that may be written with --out."},
+                    kExitBadInput);
   }
   const auto figures = study.run(folder);
-  if (!figures) return complain(figures.error().message, kExitTrouble);
+  if (!figures) return complain(figures.error(), kExitTrouble);
   if (const auto written = write_figures(*figures, folder / "figures.json"); !written) {
-    return complain(written.error().message, kExitTrouble);
+    return complain(written.error(), kExitTrouble);
   }
   std::printf("%s\nWritten to %s.\n", figure_table(*figures).c_str(), folder.string().c_str());
   return kExitDone;

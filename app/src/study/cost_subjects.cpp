@@ -16,9 +16,6 @@ namespace {
 
 using Built = driver::Result<std::unique_ptr<render::ObjectTouch>>;
 
-// What scenes give most surfaces: the vintage arm's declared stiffness [DEVICES 3].
-constexpr render::SpringDamper kSpring{.stiffness = 800, .damping = 1};
-
 // Settings of effects that have none of their own; every other effect is taken as it is.
 struct Sample {
   std::string_view name;  // or group
@@ -57,7 +54,7 @@ Built build_effect(const render::EffectKind& kind) {
   if (kind.name == render::HeightMap::kName) {
     return render::build_object_touch(kCostRing.mesh(kCostAround, kCostAcross),
                                       choice_of(render::TrackerChoice::kOffset),
-                                      {.spring = kSpring, .effects = {{&kind, striped_map}}});
+                                      {.spring = kCostSpring, .effects = {{&kind, striped_map}}});
   }
   std::string settings;
   for (const Sample& sample : kSamples) {
@@ -68,7 +65,7 @@ Built build_effect(const render::EffectKind& kind) {
   text.append(kind.group).append(": ").append(kind.name).append(settings).append("}\n");
   auto yaml = YamlFile::parse(text, std::string(kind.name));
   if (!yaml) return yaml.error();
-  render::SurfaceChoice surface{.spring = kSpring, .effects = {}};
+  render::SurfaceChoice surface{.spring = kCostSpring, .effects = {}};
   // The PHANTOM-like set of [STABILITY].
   const render::EffectSurroundings surroundings{.tick = 0.001,
                                                 .delay = 0.001,
@@ -76,8 +73,8 @@ Built build_effect(const render::EffectKind& kind) {
                                                 .force_max = 8.5,
                                                 .tip_mass = 0.075,
                                                 .tip_damping = 0.005,
-                                                .surface_stiffness = kSpring.stiffness,
-                                                .surface_damping = kSpring.damping};
+                                                .surface_stiffness = kCostSpring.stiffness,
+                                                .surface_damping = kCostSpring.damping};
   surface.effects = read_effects(yaml->root(), {}, surroundings);
   if (auto right = yaml->finish(); !right) return right.error();
   return render::build_object_touch(kCostRing.mesh(kCostAround, kCostAcross),
@@ -92,7 +89,7 @@ std::vector<CostSubject> cost_subjects() {
     subjects.push_back({std::move(name), CostSubject::Kind::kContact, [choice]() -> Built {
                           return render::build_object_touch(
                               kCostRing.mesh(kCostAround, kCostAcross), choice,
-                              {.spring = kSpring, .effects = {}});
+                              {.spring = kCostSpring, .effects = {}});
                         }});
   };
   using enum render::TrackerChoice;

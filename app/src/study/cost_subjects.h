@@ -8,6 +8,7 @@
 #include "study/ring_surface.h"
 #include "thimble/driver/result.h"
 #include "thimble/render/object_touch.h"
+#include "thimble/render/surface/spring_damper.h"
 
 namespace thimble::app {
 
@@ -23,6 +24,10 @@ struct CostSubject {
 /// Is the ring that all subjects are measured on, and how finely it is cut: 4,096 triangles.
 inline constexpr RingSurface kCostRing{};
 inline constexpr int kCostAround = 64, kCostAcross = 32;
+
+/// Is the spring of all subjects' surface, what scenes give most: the vintage arm's declared
+/// stiffness [DEVICES 3].
+inline constexpr render::SpringDamper kCostSpring{.stiffness = 800, .damping = 1};
 
 /// Is the subject that has no effect; effects are measured as what they add to it.
 inline constexpr const char* kBareSubject = "bare";

@@ -26,7 +26,6 @@ using Eigen::Vector3d;
 
 constexpr int kRounds = 41;           // strokes timed of each subject, in turn with all others
 constexpr double kDeepEnough = 2e-4;  // m; shallower, a relative error says nothing
-constexpr double kStiffness = 800, kDamping = 1;  // of cost_subjects.cpp
 
 struct Cost {
   const CostSubject* subject = nullptr;
@@ -69,7 +68,9 @@ void compare_with_truth(Cost& cost, const std::vector<driver::DeviceState>& stat
     const double depth = kCostRing.depth(states[i].p_WT);
     if (depth < kDeepEnough) continue;
     const Vector3d n = kCostRing.normal(states[i].p_WT);
-    const Vector3d truth = std::max(kStiffness * depth - kDamping * n.dot(states[i].v_WT), 0.0) * n;
+    const Vector3d truth =
+        std::max(kCostSpring.stiffness * depth - kCostSpring.damping * n.dot(states[i].v_WT), 0.0) *
+        n;
     const Vector3d& felt = cost.forces[i];
     squares += (felt - truth).squaredNorm() / truth.squaredNorm();
     angles.push_back(felt.norm() > 0 ? std::acos(std::clamp(felt.normalized().dot(n), -1.0, 1.0))
