@@ -107,7 +107,7 @@ TEST(MovingMesh, HasThePlanesAndNormalsOfOneBuiltAnew) {
     std::uint64_t seed = 20;
     for (const TriangleMesh& shape : shapes()) {
       // Creases come and go: dents are steeper than this.
-      constexpr double kCrease = 0.5;
+      constexpr double kCrease = 0.25;
       MovingMesh surface(ContactMesh::build(shape, {.room = 0.2}).value(),
                          {.normals = weights, .crease_angle = kCrease});
       support::Random random(++seed);
