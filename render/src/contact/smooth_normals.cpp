@@ -139,31 +139,26 @@ void SmoothNormals::prepare_refit(const ContactMesh& mesh) {
   group_.points.reserve(3 * valence);
 }
 
-void SmoothNormals::refit(const ContactMesh& mesh, std::span<const VertexMove> moved) noexcept {
-  for (const VertexMove& move : moved) {
-    for (const std::int32_t t : mesh.fan(move.vertex)) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        find_crease(mesh, t, k);
-        // The other side of the edge: it names its own begin where this one ends.
-        const Corner behind = across(mesh, {t, (k + 1) % 3}, k);
-        find_crease(mesh, behind.triangle, behind.k);
-      }
+void SmoothNormals::refit(const ContactMesh& mesh,
+                          std::span<const std::int32_t> triangles) noexcept {
+  for (const std::int32_t t : triangles) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      find_crease(mesh, t, k);
+      // The other side of the edge: it names its own begin where this one ends.
+      const Corner behind = across(mesh, {t, (k + 1) % 3}, k);
+      find_crease(mesh, behind.triangle, behind.k);
     }
   }
-  // A normal knows the faces around its vertex, and a fitted one the vertices behind them.
   if (++refits_ == 0) {
     std::fill(seen_.begin(), seen_.end(), 0);
     refits_ = 1;
   }
-  for (const VertexMove& move : moved) {
-    for (const std::int32_t t : mesh.fan(move.vertex)) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        refit_vertex(mesh, mesh.corners(t)[k]);
-        if (weights_ != NormalWeights::kFitted) continue;
-        for (const std::int32_t vertex : mesh.corners(mesh.cell(t).neighbours[k])) {
-          refit_vertex(mesh, vertex);
-        }
-      }
+  // A normal knows the faces around its vertex, and a fitted one the vertices behind them.
+  for (const std::int32_t t : triangles) {
+    for (const std::int32_t vertex : mesh.corners(t)) refit_vertex(mesh, vertex);
+    if (weights_ != NormalWeights::kFitted) continue;
+    for (const std::int32_t behind : mesh.cell(t).neighbours) {
+      for (const std::int32_t vertex : mesh.corners(behind)) refit_vertex(mesh, vertex);
     }
   }
 }

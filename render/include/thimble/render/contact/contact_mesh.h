@@ -126,6 +126,9 @@ class ContactMesh {
   double depth_rounding() const noexcept { return depth_rounding_; }
 
  private:
+  // Moves many vertices at once and does each face and edge around them once.
+  friend class MovingMesh;
+
   ContactMesh() = default;
   void compute_face(std::int32_t triangle) noexcept;
   void compute_edge(std::int32_t triangle, std::size_t k) noexcept;

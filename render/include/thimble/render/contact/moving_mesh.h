@@ -1,10 +1,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "thimble/render/contact/contact_mesh.h"
 #include "thimble/render/contact/contact_search.h"
@@ -34,10 +36,10 @@ struct SurfaceMoved {
 /// afterwards all of it is as if built anew over the same mesh.
 ///
 /// Trackers take mesh, search and normals from here and stay true while they move; contact stages
-/// are told by MovingContact. Vertices may go anywhere in the mesh's box
-/// (ContactMeshOptions::room). That no triangle turns over or loses its area is for the caller to
-/// see to (movement_limits): in such places the surface cuts through itself, and contact is what
-/// parity makes of it.
+/// are told by MovingContact. 13 bytes per triangle for keeping them. Vertices may go anywhere in
+/// the mesh's box (ContactMeshOptions::room). That no triangle turns over or loses its area is for
+/// the caller to see to (movement_limits): in such places the surface cuts through itself, and
+/// contact is what parity makes of it.
 class MovingMesh {
  public:
   /// Takes a prepared mesh. Real-time: never from the servo thread.
@@ -64,8 +66,16 @@ class MovingMesh {
  private:
   bool place(const VertexMove& move, const Eigen::Vector3d& p_WT, const Eigen::Vector3d& p_far,
              std::int32_t& swept_over) noexcept;
+  bool marked(std::int32_t triangle) const noexcept {
+    return marks_[static_cast<std::size_t>(triangle)] == round_;
+  }
+  void fit_planes() noexcept;
 
   ContactMesh mesh_;
+  // The triangles around the vertices of this call, each once.
+  std::vector<std::int32_t> around_;
+  std::vector<std::uint32_t> marks_;
+  std::uint32_t round_ = 0;
   std::shared_ptr<ContactSearch> search_;
   std::optional<SmoothNormals> normals_;
 };

@@ -45,11 +45,10 @@ class SmoothNormals {
 
   // All of the following are Real-time: safe. Precondition: numbers name what exists.
 
-  /// Finds again what depends on vertices of the mesh that have moved: normals and creases are
-  /// those of the mesh built anew, to the bit. Precondition: `prepare_refit` was called with the
-  /// same mesh. Its time does not grow with the mesh; some 2 us per vertex in and around the moved
-  /// ones if normals are fitted, 0.3 us if they are means.
-  void refit(const ContactMesh& mesh, std::span<const VertexMove> moved) noexcept;
+  /// Finds again what depends on triangles of the mesh whose corners have moved (all around these):
+  /// normals and creases are those of the mesh built anew, to the bit. Precondition:
+  /// `prepare_refit` was called with the same mesh. Its time does not grow with the mesh.
+  void refit(const ContactMesh& mesh, std::span<const std::int32_t> triangles) noexcept;
 
   /// Gives the normals at the three corners of a triangle.
   const std::array<Eigen::Vector3d, 3>& corners(std::int32_t triangle) const noexcept {
