@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 
 #include "contact/fitted_normal.h"
 #include "thimble/render/mesh/vertex_normals.h"
@@ -23,7 +24,7 @@ double weight_of(const ContactMesh& mesh, NormalWeights weights, std::int32_t tr
 }  // namespace
 
 SmoothNormals::SmoothNormals(const ContactMesh& mesh, double crease_angle, NormalWeights weights)
-    : crease_angle_(crease_angle), weights_(weights) {
+    : crease_angle_(crease_angle), crease_cosine_(std::cos(crease_angle)), weights_(weights) {
   const auto count = static_cast<std::size_t>(mesh.triangle_count());
   corners_.resize(count);
   creases_.assign(count, 0);
@@ -53,10 +54,16 @@ auto SmoothNormals::across(const ContactMesh& mesh, const Corner& at, std::size_
 void SmoothNormals::find_crease(const ContactMesh& mesh, std::int32_t triangle,
                                 std::size_t k) noexcept {
   const TriangleCell& cell = mesh.cell(triangle);
-  const double angle = corner_angle(cell.face.n, mesh.cell(cell.neighbours[k]).face.n);
+  const Vector3d& n = cell.face.n;
+  const Vector3d& behind = mesh.cell(cell.neighbours[k]).face.n;
+  // The cosine is wrong by some 2^-53: where it is clear of the limit, that decides.
+  constexpr double kClear = 1e-12;
+  const double cosine = n.dot(behind);
+  const bool clear = std::abs(cosine - crease_cosine_) > kClear;
+  const bool sharp = clear ? cosine < crease_cosine_ : corner_angle(n, behind) > crease_angle_;
   const auto bit = static_cast<std::uint8_t>(1U << k);
   std::uint8_t& creases = creases_[static_cast<std::size_t>(triangle)];
-  creases = static_cast<std::uint8_t>(angle > crease_angle_ ? creases | bit : creases & ~bit);
+  creases = static_cast<std::uint8_t>(sharp ? creases | bit : creases & ~bit);
 }
 
 // The vertices of the triangles of a smooth group, and of those behind them.

@@ -82,6 +82,7 @@ class SmoothNormals {
   void refit_vertex(const ContactMesh& mesh, std::int32_t vertex) noexcept;
 
   double crease_angle_;
+  double crease_cosine_;
   NormalWeights weights_;
   std::vector<std::array<Eigen::Vector3d, 3>> corners_;
   std::vector<std::uint8_t> creases_;  // bit k for edge k
