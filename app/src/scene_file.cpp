@@ -55,6 +55,9 @@ render::ContactChoice read_contact(YamlMap map) {
     choice.blending =
         static_cast<render::BlendingChoice>(choose("blending", render::kBlendingNames));
   }
+  if (map.has("normals")) {
+    choice.normals = static_cast<render::NormalWeights>(choose("normals", render::kNormalNames));
+  }
   if (map.has("curved_depth")) choice.curved_depth = map.optional_bool("curved_depth", false);
   if (map.has("crease_degrees")) {
     choice.crease_angle =
@@ -107,7 +110,7 @@ SceneObject read_object(YamlMap map, const std::filesystem::path& folder,
   if (object.paged) {
     const render::ContactChoice& c = object.contact;
     const bool as_it_is = c.tracker == render::TrackerChoice::kCompact && !c.search &&
-                          !c.blending && !c.curved_depth && !c.crease_angle;
+                          !c.blending && !c.normals && !c.curved_depth && !c.crease_angle;
     if (map.has("contact") && !as_it_is) {
       map.reject("contact",
                  "a mesh in pages is touched in one way, \"tracker: compact\", and has its creases "

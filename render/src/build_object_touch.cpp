@@ -1,6 +1,8 @@
 #include "thimble/render/build_object_touch.h"
 
+#include <memory>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 #include "thimble/render/contact/blended.h"
@@ -25,39 +27,34 @@ driver::Error apart(const ContactChoice& choice, const std::string& why) {
                        "\" " + why};
 }
 
-template <class Contact, class Shading, class Depth>
-Built blended_touch(Contact contact, Shading shading, double crease_angle,
-                    const SurfaceChoice& surface) {
-  return touch_of(
-      Blended<Contact, Shading, Depth>(std::move(contact), std::move(shading), crease_angle),
-      surface);
-}
+using Normals = std::shared_ptr<const SmoothNormals>;
 
 template <class Contact, class Shading>
-Built shaded_touch(Contact contact, Shading shading, bool curved, double crease_angle,
+Built shaded_touch(Contact contact, Shading shading, Normals normals, bool curved,
                    const SurfaceChoice& surface) {
-  return curved ? blended_touch<Contact, Shading, CurvedDepth>(std::move(contact), shading,
-                                                               crease_angle, surface)
-                : blended_touch<Contact, Shading, MeshDepth>(std::move(contact), shading,
-                                                             crease_angle, surface);
+  if (!curved) {
+    return touch_of(Blended<Contact, Shading, MeshDepth>(std::move(contact), shading, normals),
+                    surface);
+  }
+  return touch_of(Blended<Contact, Shading, CurvedDepth>(std::move(contact), shading, normals),
+                  surface);
 }
 
 /// Wraps a tracked contact into the shading that is asked for, or leaves it bare if none is.
 template <class Contact>
 Built tracked_touch(Contact contact, const ContactChoice& choice, BlendingChoice blending,
-                    bool curved, const SurfaceChoice& surface) {
-  const double crease = choice.crease_angle.value_or(kCreaseAngle);
+                    bool curved, const Normals& normals, const SurfaceChoice& surface) {
   switch (blending) {
     case BlendingChoice::kFlat:
       if (!curved) return touch_of(std::move(contact), surface);
-      return shaded_touch(std::move(contact), Flat(), curved, crease, surface);
+      return shaded_touch(std::move(contact), Flat(), normals, curved, surface);
     case BlendingChoice::kFixedBand:
-      return shaded_touch(std::move(contact), FixedBand{.width = choice.band}, curved, crease,
+      return shaded_touch(std::move(contact), FixedBand{.width = choice.band}, normals, curved,
                           surface);
     case BlendingChoice::kSizedBand:
-      return shaded_touch(std::move(contact), SizedBand(), curved, crease, surface);
+      return shaded_touch(std::move(contact), SizedBand(), normals, curved, surface);
     case BlendingChoice::kPhong:
-      return shaded_touch(std::move(contact), Phong(), curved, crease, surface);
+      return shaded_touch(std::move(contact), Phong(), normals, curved, surface);
   }
   return apart(choice, "does not know this blending.");
 }
@@ -70,6 +67,11 @@ Built compact_touch(const TriangleMesh& mesh_W, const ContactChoice& choice,
                  "always feels smooth (phong, curved depth): leave blending and curved_depth away, "
                  "or take the tracker \"offset\" or \"edge_planes\".");
   }
+  if (choice.normals.value_or(NormalWeights::kAngle) != NormalWeights::kAngle) {
+    return apart(choice,
+                 "has the mean of the faces by their angles at its corners: leave normals away, or "
+                 "take the tracker \"offset\".");
+  }
   // Looks at the whole mesh first, so that faults are told as for every other way.
   const auto checked = ContactMesh::build(mesh_W);
   if (!checked) return checked.error();
@@ -81,14 +83,29 @@ Built compact_touch(const TriangleMesh& mesh_W, const ContactChoice& choice,
 }
 
 template <class Contact>
-Built mesh_touch(const TriangleMesh& mesh_W, const ContactChoice& choice, bool smooth,
+Built mesh_touch(const TriangleMesh& mesh_W, const ContactChoice& choice,
                  const SurfaceChoice& surface) {
-  auto contact = Contact::build(mesh_W, {}, choice.search);
-  if (!contact) return contact.error();
-  return tracked_touch(
-      std::move(contact).value(), choice,
-      choice.blending.value_or(smooth ? BlendingChoice::kPhong : BlendingChoice::kFlat),
-      choice.curved_depth.value_or(smooth), surface);
+  // This tracker walks on the normals themselves, and shares them with what is felt.
+  constexpr bool kSmooth = std::is_same_v<Contact, OffsetContact>;
+  const BlendingChoice blending =
+      choice.blending.value_or(kSmooth ? BlendingChoice::kPhong : BlendingChoice::kFlat);
+  const bool curved = choice.curved_depth.value_or(kSmooth);
+  auto prepared = ContactMesh::build(mesh_W);
+  if (!prepared) return prepared.error();
+  const auto mesh = std::make_shared<const ContactMesh>(std::move(prepared).value());
+  const auto search = make_search(*mesh, choice.search);
+  Normals normals;
+  if (kSmooth || curved || blending != BlendingChoice::kFlat) {
+    normals =
+        std::make_shared<const SmoothNormals>(*mesh, choice.crease_angle.value_or(kCreaseAngle),
+                                              choice.normals.value_or(NormalWeights::kFitted));
+  }
+  if constexpr (kSmooth) {
+    return tracked_touch(Contact(mesh, search, normals), choice, blending, curved, normals,
+                         surface);
+  } else {
+    return tracked_touch(Contact(mesh, search), choice, blending, curved, normals, surface);
+  }
 }
 
 }  // namespace
@@ -97,16 +114,17 @@ Built build_object_touch(const TriangleMesh& mesh_W, const ContactChoice& choice
                          const SurfaceChoice& surface) {
   switch (choice.tracker) {
     case TrackerChoice::kEdgePlanes:
-      return mesh_touch<MeshContact>(mesh_W, choice, false, surface);
+      return mesh_touch<MeshContact>(mesh_W, choice, surface);
     case TrackerChoice::kNormalProjection:
-      return mesh_touch<TrackedContact<NormalProjectionTracker>>(mesh_W, choice, false, surface);
+      return mesh_touch<TrackedContact<NormalProjectionTracker>>(mesh_W, choice, surface);
     case TrackerChoice::kOffset:
-      return mesh_touch<OffsetContact>(mesh_W, choice, true, surface);
+      return mesh_touch<OffsetContact>(mesh_W, choice, surface);
     case TrackerChoice::kGodObject: {
       if (choice.blending.value_or(BlendingChoice::kFlat) != BlendingChoice::kFlat ||
           choice.curved_depth.value_or(false)) {
         return apart(choice, "pushes towards its proxy: it goes with the blending \"flat\" only.");
       }
+      if (choice.normals) return apart(choice, "feels no normals of corners: leave normals away.");
       auto contact = GodObjectContact::build(mesh_W, {}, choice.search);
       if (!contact) return contact.error();
       return touch_of(std::move(contact).value(), surface);

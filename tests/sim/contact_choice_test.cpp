@@ -54,8 +54,11 @@ INSTANTIATE_TEST_SUITE_P(
                       "tracker: edge_planes, blending: sized_band",
                       "tracker: edge_planes, blending: phong, curved_depth: true",
                       "tracker: offset", "tracker: offset, blending: flat, curved_depth: false",
-                      "tracker: offset, crease_degrees: 30", "tracker: god_object",
-                      "tracker: compact", "search: linear", "search: grid", "search: tree",
+                      "tracker: offset, crease_degrees: 30", "tracker: offset, normals: angle",
+                      "tracker: offset, normals: round",
+                      "tracker: edge_planes, blending: phong, normals: fitted",
+                      "tracker: compact, normals: angle", "tracker: god_object", "tracker: compact",
+                      "search: linear", "search: grid", "search: tree",
                       "tracker: god_object, search: linear", "tracker: offset, search: tree",
                       "tracker: compact, search: linear", "tracker: compact, search: tree"));
 
@@ -66,6 +69,10 @@ TEST(WayOfContact, ThatDoesNotGoTogetherIsRefusedWithTheReason) {
   EXPECT_NE(error.find("\"god_object\" pushes towards its proxy"), std::string::npos) << error;
   EXPECT_FALSE(open_with("tracker: compact, blending: flat", error));
   EXPECT_NE(error.find("\"compact\" always feels smooth"), std::string::npos) << error;
+  EXPECT_FALSE(open_with("tracker: compact, normals: fitted", error));
+  EXPECT_NE(error.find("\"compact\" has the mean of the faces"), std::string::npos) << error;
+  EXPECT_FALSE(open_with("tracker: god_object, normals: angle", error));
+  EXPECT_NE(error.find("\"god_object\" feels no normals of corners"), std::string::npos) << error;
 }
 
 }  // namespace

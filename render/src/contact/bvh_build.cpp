@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "contact/bvh_box.h"
 #include "contact/bvh_leaf.h"
 #include "contact/radix_sort.h"
 #include "thimble/render/contact/bvh.h"
@@ -11,16 +12,6 @@ namespace thimble::render {
 namespace {
 
 using Eigen::Vector3d;
-
-float rounded_down(double v) noexcept {
-  const auto f = static_cast<float>(v);
-  return static_cast<double>(f) > v ? std::nextafter(f, -INFINITY) : f;
-}
-
-float rounded_up(double v) noexcept {
-  const auto f = static_cast<float>(v);
-  return static_cast<double>(f) < v ? std::nextafter(f, INFINITY) : f;
-}
 
 // Gives the keys of all triangles in their Morton order, and that order unless it is their own.
 std::vector<std::uint64_t> morton_order(const CompactSurface& surface, const SearchFrame&,
@@ -59,27 +50,6 @@ std::vector<std::uint64_t> morton_order(const ContactMesh& mesh, const SearchFra
 }
 
 }  // namespace
-
-template <class Surface>
-struct TreeSearch<Surface>::Box {
-  static constexpr double kHighest = std::numeric_limits<double>::infinity();
-  std::array<double, 3> min{kHighest, kHighest, kHighest};
-  std::array<double, 3> max{-kHighest, -kHighest, -kHighest};
-
-  void add(std::size_t axis, double low, double high) noexcept {
-    min[axis] = std::min(min[axis], low);
-    max[axis] = std::max(max[axis], high);
-  }
-  void add(const Box& box) noexcept {
-    for (std::size_t axis = 0; axis < 3; ++axis) add(axis, box.min[axis], box.max[axis]);
-  }
-  void add(const Vector3d& p) noexcept {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double u = p[static_cast<Eigen::Index>(axis)];
-      add(axis, u, u);
-    }
-  }
-};
 
 template <class Surface>
 TreeSearch<Surface>::TreeSearch(const Surface& surface)

@@ -1,6 +1,7 @@
 #include "thimble/render/contact/contact_mesh.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -77,12 +78,13 @@ driver::Result<ContactMesh> ContactMesh::build(const TriangleMesh& mesh,
   for (std::size_t t = 0; t < contact.cells_.size(); ++t) {
     contact.cells_[t].neighbours = (*neighbours)[t];
   }
-  contact.box_min_ = findings.box_min;
-  contact.box_max_ = findings.box_max;
-  contact.origin_ = findings.box_min + (findings.box_max - findings.box_min) / 2;
+  const Vector3d size = findings.box_max - findings.box_min;
+  const Vector3d room = Vector3d::Constant(std::max(options.room, 0.0) * size.maxCoeff());
+  contact.box_min_ = findings.box_min - room;
+  contact.box_max_ = findings.box_max + room;
+  contact.origin_ = findings.box_min + size / 2;
   // Far from the world's origin the vertices themselves carry the rounding of their place.
-  contact.depth_rounding_ =
-      kDepthRounding * ((findings.box_max - findings.box_min).norm() + contact.origin_.norm());
+  contact.depth_rounding_ = kDepthRounding * ((size + 2 * room).norm() + contact.origin_.norm());
   for (std::int32_t t = 0; t < contact.triangle_count(); ++t) contact.compute_face(t);
   for (std::int32_t t = 0; t < contact.triangle_count(); ++t) {
     for (std::size_t k = 0; k < 3; ++k) {

@@ -24,7 +24,7 @@ constexpr double kLeanMax = 0.5774;
 }  // namespace
 
 Vector3d fitted_normal(const Vector3d& vertex, std::span<const Vector3d> around,
-                       const Vector3d& about) {
+                       const Vector3d& about) noexcept {
   if (around.size() < kPointsMin) return about;
   const Vector3d axis_u = about.unitOrthogonal();
   const Vector3d axis_v = about.cross(axis_u);

@@ -10,9 +10,10 @@ namespace thimble::render {
 /// most [Cazals]. Second order on triangles of any shape, where every weighted mean of
 /// face normals is first order. `about` is a first guess (unit) that says which way is out; it
 /// comes back if the points are fewer than six, or do not pin the paraboloid down, or lean away
-/// from it. Real-time: never from the servo thread.
+/// from it. Real-time: safe; some 100
+/// instructions per point.
 Eigen::Vector3d fitted_normal(const Eigen::Vector3d& vertex,
                               std::span<const Eigen::Vector3d> around,
-                              const Eigen::Vector3d& about);
+                              const Eigen::Vector3d& about) noexcept;
 
 }  // namespace thimble::render

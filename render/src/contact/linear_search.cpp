@@ -27,20 +27,29 @@ LinearSearchOver<Surface>::LinearSearchOver(const Surface& surface)
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   for (auto* side : {&min_x_, &min_y_, &min_z_}) side->assign(padded, kInfinity);
   for (auto* side : {&max_x_, &max_y_, &max_z_}) side->assign(padded, -kInfinity);
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto t = static_cast<std::int32_t>(i);
-    const Vector3d a = corner_in(frame_, surface, t, 0);
-    const Vector3d b = corner_in(frame_, surface, t, 1);
-    const Vector3d c = corner_in(frame_, surface, t, 2);
-    const Vector3f low = a.cwiseMin(b).cwiseMin(c).template cast<float>();
-    const Vector3f high = a.cwiseMax(b).cwiseMax(c).template cast<float>();
-    min_x_[i] = low.x();
-    min_y_[i] = low.y();
-    min_z_[i] = low.z();
-    max_x_[i] = high.x();
-    max_y_[i] = high.y();
-    max_z_[i] = high.z();
-  }
+  for (std::int32_t t = 0; t < surface.triangle_count(); ++t) fit_box(t);
+}
+
+template <class Surface>
+void LinearSearchOver<Surface>::fit_box(std::int32_t triangle) noexcept {
+  const Vector3d a = corner_in(frame_, *surface_, triangle, 0);
+  const Vector3d b = corner_in(frame_, *surface_, triangle, 1);
+  const Vector3d c = corner_in(frame_, *surface_, triangle, 2);
+  const Vector3f low = a.cwiseMin(b).cwiseMin(c).template cast<float>();
+  const Vector3f high = a.cwiseMax(b).cwiseMax(c).template cast<float>();
+  const auto i = static_cast<std::size_t>(triangle);
+  min_x_[i] = low.x();
+  min_y_[i] = low.y();
+  min_z_[i] = low.z();
+  max_x_[i] = high.x();
+  max_y_[i] = high.y();
+  max_z_[i] = high.z();
+}
+
+template <class Surface>
+bool LinearSearchOver<Surface>::refit(std::span<const std::int32_t> triangles) noexcept {
+  for (const std::int32_t t : triangles) fit_box(t);
+  return true;
 }
 
 template <class Surface>

@@ -43,4 +43,12 @@ std::shared_ptr<const ContactSearch> make_search(const CompactSurface& surface,
   return build_search(surface, choice);
 }
 
+std::shared_ptr<ContactSearch> make_moving_search(const ContactMesh& mesh,
+                                                  std::optional<SearchChoice> choice) {
+  if (choice == SearchChoice::kLinear) return std::make_shared<LinearSearch>(mesh);
+  auto tree = std::make_shared<TreeSearch<ContactMesh>>(mesh);
+  tree->keep_parents();
+  return tree;
+}
+
 }  // namespace thimble::render

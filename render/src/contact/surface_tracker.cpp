@@ -175,9 +175,15 @@ bool SurfaceTracker::find_near(const Vector3d& p_WT, std::int32_t before) noexce
 }
 
 void SurfaceTracker::find_far(const Vector3d& p_WT) noexcept {
+  const SurfacePoint hit = search_->closest(p_WT, std::numeric_limits<double>::infinity());
+  if (hit.triangle < 0) return;
+  // Where the nearest point lies on an edge or at a vertex, one of the triangles there has a tip
+  // that is inside below it, but not every one of them.
   NearestAbove nearest(*mesh_, p_WT);
-  for (std::int32_t t = 0; t < mesh_->triangle_count(); ++t) nearest.consider(t);
-  if (nearest.triangle() >= 0) active_ = nearest.triangle();
+  for (const std::int32_t vertex : mesh_->corners(hit.triangle)) {
+    for (const std::int32_t t : mesh_->fan(vertex)) nearest.consider(t);
+  }
+  active_ = nearest.triangle() >= 0 ? nearest.triangle() : hit.triangle;
 }
 
 }  // namespace thimble::render

@@ -64,12 +64,13 @@ TEST(SceneFile, ReadsSeveralObjectsIfTheirNamesDiffer) {
 TEST(SceneFile, NamesTheWayOfContactOrSaysWhichThereAre) {
   const auto scene = read(
       "  - {name: b, mesh: cgal:ball.off, stiffness: 1, contact: {tracker: offset, blending: "
-      "phong, "
+      "phong, normals: round, "
       "curved_depth: true, crease_degrees: 60}}\n",
       kWait);
   ASSERT_TRUE(scene.ok()) << scene.error().message;
   EXPECT_EQ(scene->objects[0].contact.tracker, render::TrackerChoice::kOffset);
   EXPECT_EQ(scene->objects[0].contact.blending, render::BlendingChoice::kPhong);
+  EXPECT_EQ(scene->objects[0].contact.normals, render::NormalWeights::kRound);
   EXPECT_EQ(scene->objects[0].contact.curved_depth, true);
   EXPECT_NEAR(scene->objects[0].contact.crease_angle.value(), 1.0471975511965976, 1e-12);
   EXPECT_NE(mistake("  - {name: b, mesh: cgal:ball.off, stiffness: 1, contact: {tracker: magic}}\n",
@@ -77,6 +78,10 @@ TEST(SceneFile, NamesTheWayOfContactOrSaysWhichThereAre) {
                 .find("tracker: expected edge_planes, normal_projection, offset, god_object or "
                       "compact, found \"magic\""),
             std::string::npos);
+  EXPECT_NE(
+      mistake("  - {name: b, mesh: cgal:ball.off, stiffness: 1, contact: {normals: mean}}\n", kWait)
+          .find("normals: expected angle, round or fitted, found \"mean\""),
+      std::string::npos);
 }
 
 TEST(SceneFile, NamesAMeshOrArmThatIsNotThere) {

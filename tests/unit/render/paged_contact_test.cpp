@@ -222,6 +222,42 @@ TEST(PagedContact, DoesNotThrowOutATipThatCameInUnseen) {
   EXPECT_LT(fastest_out, 2.5 * PagedContact::kRiseSpeed);  // but slowly
 }
 
+TEST(PagedContact, ComesBackSlowlyToATipThatWentIntoABulgeUnseen) {
+  // A coarse ball: over the middle of a triangle its smooth surface stands 3 mm above it.
+  const CompactSurface coarse = CompactSurface::build(support::icosphere(1, kRadius)).value();
+  const auto file = support::scratch_folder() / "coarse.pages";
+  ASSERT_TRUE(write_page_file(coarse, file).ok());
+  const Vector3d middle =
+      (coarse.record(0).corner(0) + coarse.record(0).corner(1) + coarse.record(0).corner(2)) / 3;
+  const double triangles = middle.norm() * coarse.step();
+  ASSERT_GT(coarse.rise(), 0.002);
+  for (const double share : {0.2, 0.8}) {
+    // Hand watches that the depth never grows by more than the tip sinks and 20 um per tick.
+    Hand hand(PagedContact(open({.frames = 4, .reach = 0.003, .horizon = 0.01}, file)));
+    CompactContact whole = CompactContact::build(support::icosphere(1, kRadius)).value();
+    support::move_tip(whole, 0.06 * middle.normalized());
+    const double seen = triangles + share * coarse.rise();
+    double height = 0.06;
+    for (; height > seen; height -= 5e-5) {
+      EXPECT_FALSE(hand.move(height * middle.normalized()).touching);
+      support::move_tip(whole, height * middle.normalized());
+    }
+    EXPECT_GT(hand.contact.misses(), 0u);
+    for (int i = 0; i < 100; ++i) {
+      hand.serve();
+      hand.move(height * middle.normalized());
+    }
+    for (; height > triangles - 0.001; height -= 5e-5) {
+      hand.serve();
+      hand.move(height * middle.normalized());
+      support::move_tip(whole, height * middle.normalized());
+    }
+    for (int i = 0; i < 300; ++i) hand.move(hand.tip());
+    EXPECT_TRUE(hand.contact.state().touching);
+    EXPECT_NEAR(hand.contact.state().depth, whole.state().depth, 1e-9) << share;
+  }
+}
+
 TEST(PagedContact, DoesNotTouchWhatAnUnseenTipWentAround) {
   // From above to the side of the ball outside of it: the straight way between leads through it.
   Hand hand(PagedContact(open({.frames = 80, .reach = 1, .horizon = 0})));

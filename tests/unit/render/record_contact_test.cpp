@@ -173,6 +173,80 @@ TEST(RecordContact, ExaminesLaterThePathThatItCouldNotExamine) {
   EXPECT_NEAR(state.depth, 1.1e-3, 2e-5);  // but soon
 }
 
+// A coarse ball, whose smooth surface stands millimetres above its triangles: contact begins there.
+struct Bulge {
+  Bulge() : scene(support::icosphere(1, 0.05)) {
+    // Down through the middle of a triangle.
+    const CompactTriangle& record = scene.surface.record(0);
+    const Vector3d middle = (record.corner(0) + record.corner(1) + record.corner(2)) / 3;
+    way = middle.normalized();
+    triangles = middle.norm() * scene.surface.step();
+    // Where contact begins when all is at hand.
+    Scene whole(support::icosphere(1, 0.05));
+    smooth = 0.06;
+    while (!whole.move(smooth * way).touching && smooth > triangles) smooth -= 1e-5;
+  }
+  const ContactState& move(double height) { return scene.move(height * way); }
+
+  Scene scene;
+  Vector3d way{0, 0, 0};
+  double triangles = 0;  // heights over the middle, m: of the triangle,
+  double smooth = 0;     // and of the smooth surface above it
+};
+
+TEST(RecordContact, BeginsAboveTheTrianglesWhereTheSmoothSurfaceBulges) {
+  Bulge bulge;
+  EXPECT_GT(bulge.smooth - bulge.triangles, 0.001);
+  bulge.move(0.06);
+  double before = 0;
+  for (double height = 0.06; height > bulge.triangles; height -= 1e-5) {
+    const ContactState& state = bulge.move(height);
+    ASSERT_LT(state.depth - before, 1.2e-5);  // the tip's own move
+    before = state.depth;
+  }
+  EXPECT_NEAR(before, bulge.smooth - bulge.triangles, 3e-5);
+}
+
+// While the tip goes down into the bulge nothing is known of it, or it is known but its record is
+// absent, or the one is there but not those around: it is felt as soon as they are back or when the
+// tip passes through the triangles, and then as if they had never been away. (That the depth comes
+// back slowly is for PagedContact to see to.)
+TEST(RecordContact, FeelsABulgeThatItCouldNotSeeOnceItsRecordsAreThere) {
+  enum class Absent { kSearches, kAllRecords, kRecordsAround };
+  for (const Absent absent : {Absent::kSearches, Absent::kAllRecords, Absent::kRecordsAround}) {
+    for (const double share : {0.1, 0.5, 0.9}) {
+      Bulge bulge;
+      Scene whole(support::icosphere(1, 0.05));
+      const CompactTriangle* const own = &bulge.scene.surface.record(0);
+      bulge.scene.absence.searches = absent == Absent::kSearches;
+      bulge.scene.absence.records = [=](const CompactTriangle& record) {
+        return absent == Absent::kAllRecords ||
+               (absent == Absent::kRecordsAround && &record != own);
+      };
+      const double seen = bulge.smooth - share * (bulge.smooth - bulge.triangles);
+      double height = 0.06;
+      for (; height > seen; height -= 1e-5) {
+        const bool touching = bulge.move(height).touching;
+        const bool wanted = whole.move(height * bulge.way).touching;
+        // Of the records around none is needed over the middle of its own.
+        ASSERT_EQ(touching, wanted && absent == Absent::kRecordsAround) << height;
+      }
+      bulge.scene.absence = {};
+      bool touching = false;
+      for (; height > bulge.triangles - 0.001; height -= 1e-5) {
+        const ContactState& wanted = whole.move(height * bulge.way);
+        const ContactState& found = bulge.move(height);
+        ASSERT_TRUE(found.touching || (!touching && height > bulge.triangles - 1e-5)) << height;
+        touching = found.touching;
+        if (touching) {
+          ASSERT_EQ(found.depth, wanted.depth);
+        }
+      }
+      EXPECT_TRUE(touching);
+    }
+  }
+}
+
 TEST(RecordContact, LeavesTheHeapAloneWhileItHolds) {
   Scene scene(support::icosphere(3, 0.05));
   scene.move({0, 0, 0.06});

@@ -7,8 +7,11 @@
 #include <numbers>
 #include <random>
 
+#include "support/random.h"
 #include "support/reference_geometry.h"
 #include "support/shapes.h"
+#include "thimble/render/contact/closest_point.h"
+#include "thimble/render/contact/make_search.h"
 #include "thimble/render/contact/mesh_contact.h"
 
 namespace thimble::render {
@@ -175,6 +178,51 @@ TEST(SurfaceTracker, SettlesWithinItsBoundAtANeedleTipAndInAnAcuteWedge) {
     }
     EXPECT_GT(touched, 1000);
     EXPECT_EQ(contact.counters().long_walks, 0u);
+  }
+}
+
+// Two shapes beside each other, `apart` m along x.
+TriangleMesh pair_of(const TriangleMesh& shape, double apart) {
+  TriangleMesh pair = shape;
+  const auto shift = static_cast<std::int32_t>(shape.vertices.size());
+  for (const Vector3d& p : shape.vertices) pair.vertices.push_back(p + apart * Vector3d::UnitX());
+  for (const auto& [a, b, c] : shape.triangles) {
+    pair.triangles.push_back({a + shift, b + shift, c + shift});
+  }
+  return pair;
+}
+
+// A tip that leaps far away inside, where neither a walk nor the patch around can follow: the
+// surface nearest to it is touched, and the tip is below the triangle that is named.
+TEST(SurfaceTracker, FindsTheNearestSurfaceWhenTheTipLeapsFarAwayInside) {
+  for (const TriangleMesh& shape : {pair_of(support::torus(0.035, 0.015, 60, 30), 0.12),
+                                    pair_of(support::bumpy_sphere(4, 0.05, 0.3, 6), 0.15)}) {
+    const ContactMesh mesh = ContactMesh::build(shape).value();
+    const auto search = make_search(mesh);
+    SurfaceTracker tracker(mesh, *search);
+    support::Random random(9);
+    std::uint64_t far = 0;
+    for (int i = 0; i < 20000 && far < 300; ++i) {
+      const Vector3d p = mesh.origin() + 2 * random.in_box(0.06);
+      if (!search->inside(p)) continue;
+      tracker.start(static_cast<std::int32_t>(random.bits() %
+                                              static_cast<std::uint64_t>(mesh.triangle_count())));
+      const TrackerStep step = tracker.follow(p);
+      ASSERT_TRUE(step.touching);
+      if (tracker.counters().found_far == far) continue;
+      ++far;
+      double nearest = INFINITY;
+      const auto distance_to = [&](std::int32_t t) {
+        return (closest_point(p, mesh.position(t, 0), mesh.position(t, 1), mesh.position(t, 2)) - p)
+            .norm();
+      };
+      for (std::int32_t t = 0; t < mesh.triangle_count(); ++t) {
+        if (mesh.depth(t, p) >= 0) nearest = std::min(nearest, distance_to(t));
+      }
+      ASSERT_NEAR(distance_to(tracker.active()), nearest, 1e-6 * nearest);
+      ASSERT_GE(mesh.depth(tracker.active(), p), -mesh.depth_rounding());
+    }
+    EXPECT_GE(far, 20u);
   }
 }
 

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "thimble/render/contact/make_search.h"
+#include "thimble/render/contact/smooth_normals.h"
 
 namespace thimble::render {
 
@@ -30,12 +31,17 @@ enum class BlendingChoice { kFlat, kFixedBand, kSizedBand, kPhong };
 inline constexpr std::array<std::string_view, 4> kBlendingNames{"flat", "fixed_band", "sized_band",
                                                                 "phong"};
 
+/// Names what NormalWeights says.
+inline constexpr std::array<std::string_view, 3> kNormalNames{"angle", "round", "fitted"};
+
 /// Is how one object is touched. What is left empty is chosen to go with the tracker: `compact` and
 /// `offset` are smooth (phong, curved depth), the others are flat.
 struct ContactChoice {
   TrackerChoice tracker = TrackerChoice::kEdgePlanes;
   std::optional<SearchChoice> search;  ///< If empty, what suits the mesh (make_search).
   std::optional<BlendingChoice> blending;
+  std::optional<NormalWeights> normals;  ///< Of the corners; fitted if empty. Not with `compact`,
+                                         ///< which knows means by angle only.
   std::optional<bool> curved_depth;    ///< Depth below the smooth surface instead of the triangles.
   std::optional<double> crease_angle;  ///< Edges sharper than this stay sharp, rad.
   double band = 0.001;                 ///< Width of the band of `fixed_band`, m.

@@ -44,6 +44,13 @@ class Blended {
     return state_;
   }
 
+  /// Passes on that the surface has moved (TrackedContact). Real-time: safe.
+  void surface_moved(std::int32_t swept_over) noexcept {
+    contact_.surface_moved(swept_over);
+    state_ = contact_.state();
+  }
+  Eigen::Vector3d free_tip() const noexcept { return contact_.free_tip(); }
+
   /// Gives the result of the last `update`. Real-time: safe.
   const ContactState& state() const noexcept { return state_; }
 

@@ -35,6 +35,15 @@ struct ContactMeshOptions {
   /// Winds triangles alike and outwards (see orient_mesh): for a closed surface only one answer is
   /// right. If false, meshes that need it are refused.
   bool orient = true;
+  /// How far vertices may later move out of the box, as a share of its longest side, >= 0:
+  /// `box_min` and `box_max` grow by it on all sides. 0 for a mesh that keeps its shape.
+  double room = 0;
+};
+
+/// Says where a vertex goes.
+struct VertexMove {
+  std::int32_t vertex = 0;
+  Eigen::Vector3d p_W{0, 0, 0};  ///< m
 };
 
 /// Is a mesh made ready to be touched: closed, wound alike, with face planes, edge planes and
@@ -55,6 +64,8 @@ class ContactMesh {
 
   std::int32_t triangle_count() const noexcept { return static_cast<std::int32_t>(cells_.size()); }
 
+  std::int32_t vertex_count() const noexcept { return static_cast<std::int32_t>(vertices_.size()); }
+
   /// Tells how many components were wholly inside out and have been turned.
   std::size_t turned_components() const noexcept { return orientation_.turned_components; }
 
@@ -73,7 +84,8 @@ class ContactMesh {
 
   /// Moves a vertex to `p_W` (m; finite), and with it the planes of the triangles around it and of
   /// their neighbours. What was built over the mesh (boxes of a search, smooth normals) knows the
-  /// old place until it is told. Real-time: safe; some 20 ns per triangle around the vertex.
+  /// old place until it is told: MovingMesh does all of it. A triangle that loses its area has the
+  /// normal 0 and no depth. Real-time: safe; some 20 ns per triangle around the vertex.
   void move_vertex(std::int32_t vertex, const Eigen::Vector3d& p_W) noexcept;
 
   /// Tells where corner `k` of a triangle is, m in W.
@@ -95,8 +107,15 @@ class ContactMesh {
   /// Tells the point that cells are relative to: the middle of the box, m in W.
   const Eigen::Vector3d& origin() const noexcept { return origin_; }
 
+  /// Tell the box of the vertices as they were when built, grown by ContactMeshOptions::room; m, W.
+  /// Searches count in it: they find nothing that lies outside.
   const Eigen::Vector3d& box_min() const noexcept { return box_min_; }
   const Eigen::Vector3d& box_max() const noexcept { return box_max_; }
+
+  /// Tells whether a point lies in the box. NaN does not.
+  bool in_box(const Eigen::Vector3d& p_W) const noexcept {
+    return (p_W.array() >= box_min_.array()).all() && (p_W.array() <= box_max_.array()).all();
+  }
 
   /// Tells how far a point lies below a triangle's plane, m; negative outside.
   double depth(std::int32_t triangle, const Eigen::Vector3d& p_W) const noexcept {
@@ -107,6 +126,9 @@ class ContactMesh {
   double depth_rounding() const noexcept { return depth_rounding_; }
 
  private:
+  // Moves many vertices at once and does each face and edge around them once.
+  friend class MovingMesh;
+
   ContactMesh() = default;
   void compute_face(std::int32_t triangle) noexcept;
   void compute_edge(std::int32_t triangle, std::size_t k) noexcept;

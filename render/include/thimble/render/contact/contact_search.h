@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 
 namespace thimble::render {
 
@@ -61,6 +62,15 @@ class ContactSearch {
   /// Tells a distance (m) from a point (W, m) within which there is certainly no triangle, as far
   /// as that can be told faster than by `first_entry`; 0 where it cannot.
   virtual double clearance(const Eigen::Vector3d& p_W) const noexcept = 0;
+
+  /// Takes in that the corners of `triangles` have moved, all within the box that the surface was
+  /// built with. Afterwards every question is answered as by a search built anew. False, and
+  /// nothing done, where this search cannot: ask make_moving_search for one that can.
+  /// Real-time: safe; its time does not grow with the mesh but by the depth of a tree.
+  virtual bool refit(std::span<const std::int32_t> triangles) noexcept {
+    static_cast<void>(triangles);
+    return false;
+  }
 
   /// Counts the bytes of memory held, without the surface's.
   virtual std::size_t bytes() const noexcept = 0;

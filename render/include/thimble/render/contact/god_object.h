@@ -2,8 +2,10 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "thimble/driver/device_state.h"
 #include "thimble/driver/result.h"
@@ -47,6 +49,12 @@ class GodObjectContact {
   /// thread.
   explicit GodObjectContact(ContactMesh mesh, std::optional<SearchChoice> search = {});
 
+  /// Takes a mesh and a search over it that somebody else moves (moving_mesh.h).
+  /// Real-time: never from the servo thread.
+  GodObjectContact(std::shared_ptr<const ContactMesh> mesh,
+                   std::shared_ptr<const ContactSearch> search)
+      : mesh_(std::move(mesh)), search_(std::move(search)) {}
+
   /// Prepares a mesh (O, m); the error is that of ContactMesh::build.
   /// Real-time: never from the servo thread.
   static driver::Result<GodObjectContact> build(const TriangleMesh& mesh,
@@ -74,6 +82,25 @@ class GodObjectContact {
   /// safe; one triangle or a few while touching; one question to the search for each lift, and
   /// while free near the mesh.
   const ContactState& update(const driver::DeviceState& state) noexcept;
+
+  /// Takes in that vertices have moved since the last `update`, and which triangle has swept over
+  /// the free tip from outside, -1 for none: the proxy rests on it from then on. Real-time: safe.
+  void surface_moved(std::int32_t swept_over) noexcept {
+    free_space_ = {};
+    if (swept_over < 0 || state_.touching || !has_before_) return;
+    place_ = {.triangle = swept_over};
+    state_.touching = true;
+    state_.triangle = swept_over;
+    state_.n_W = R_WO_ * mesh_->cell(swept_over).face.n;
+    state_.p_WP = R_WO_ * p_OP_ + p_WO_;
+  }
+
+  /// Tells where a free tip was in the last `update`, m in O; NaN if there was none, or it touches.
+  /// Real-time: safe.
+  Eigen::Vector3d free_tip() const noexcept {
+    if (has_before_ && !state_.touching) return p_OP_;
+    return Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
+  }
 
   /// Gives the result of the last `update`. Real-time: safe.
   const ContactState& state() const noexcept { return state_; }

@@ -2,6 +2,8 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "thimble/render/contact/compact_surface.h"
@@ -31,9 +33,11 @@ class LinearSearchOver final : public ContactSearch {
   bool inside(const Eigen::Vector3d& p_W) const noexcept override;
   SurfacePoint closest(const Eigen::Vector3d& p_W, double radius) const noexcept override;
   double clearance(const Eigen::Vector3d& p_W) const noexcept override;
+  bool refit(std::span<const std::int32_t> triangles) noexcept override;
   std::size_t bytes() const noexcept override { return 6 * min_x_.capacity() * sizeof(float); }
 
  private:
+  void fit_box(std::int32_t triangle) noexcept;
   template <class Visit>
   void visit_reached(const Eigen::Vector3d& low, const Eigen::Vector3d& high,
                      Visit visit) const noexcept;

@@ -24,4 +24,11 @@ std::shared_ptr<const ContactSearch> make_search(const ContactMesh& mesh,
 std::shared_ptr<const ContactSearch> make_search(const CompactSurface& surface,
                                                  std::optional<SearchChoice> choice = {});
 
+/// Builds a search that can be told that triangles have moved (ContactSearch::refit): linear if
+/// that is named, else a tree. A grid cannot: triangles that come into new volumes would need room
+/// in lists that stand close together. Keeps a reference: the mesh must outlive the search.
+/// Real-time: never from the servo thread.
+std::shared_ptr<ContactSearch> make_moving_search(const ContactMesh& mesh,
+                                                  std::optional<SearchChoice> choice = {});
+
 }  // namespace thimble::render

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -33,6 +35,15 @@ class TrackedContact {
         search_(make_search(*mesh_, search)),
         tracker_(*mesh_, *search_, options...) {}
 
+  /// Takes a mesh and a search over it that somebody else moves (moving_mesh.h), and what the
+  /// tracker's constructor takes after them. Real-time: never from the servo thread.
+  template <class... TrackerOptions>
+  TrackedContact(std::shared_ptr<const ContactMesh> mesh,
+                 std::shared_ptr<const ContactSearch> search, TrackerOptions... options)
+      : mesh_(std::move(mesh)),
+        search_(std::move(search)),
+        tracker_(*mesh_, *search_, options...) {}
+
   /// Takes a prepared mesh, searched in the way that suits it. Real-time: never from the servo
   /// thread.
   explicit TrackedContact(ContactMesh mesh) : TrackedContact(std::move(mesh), std::nullopt) {}
@@ -59,6 +70,25 @@ class TrackedContact {
 
   /// Gives the result of the last `update`. Real-time: safe.
   const ContactState& state() const noexcept { return state_; }
+
+  /// Takes in that the surface has moved since the last `update`, and which triangle has swept over
+  /// the free tip from outside, -1 for none: it is touched from then on. Real-time: safe.
+  void surface_moved(std::int32_t swept_over) noexcept {
+    free_space_ = {};
+    if (swept_over < 0 || state_.touching || !has_before_) return;
+    tracker_.start(swept_over);
+    state_.touching = true;
+    state_.triangle = swept_over;
+    state_.n_W = mesh_->cell(swept_over).face.n;
+    state_.p_WP = p_WT_before_;
+  }
+
+  /// Tells where a free tip was in the last `update`, m in W; NaN if there was none, or it touches:
+  /// what a surface that moves may sweep over. Real-time: safe.
+  Eigen::Vector3d free_tip() const noexcept {
+    if (has_before_ && !state_.touching) return p_WT_before_;
+    return Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
+  }
 
   /// Tells where on the active triangle the tip belongs (surface_weights.h). Precondition: the last
   /// `update` was at `p_WT` (W, m) and touches. Real-time: safe.

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <numbers>
+#include <span>
 #include <vector>
 
 #include "thimble/render/contact/contact_mesh.h"
@@ -39,7 +40,15 @@ class SmoothNormals {
   explicit SmoothNormals(const ContactMesh& mesh, double crease_angle = kCreaseAngle,
                          NormalWeights weights = NormalWeights::kFitted);
 
+  /// Makes `refit` possible: 3 bytes more per triangle. Real-time: never from the servo thread.
+  void prepare_refit(const ContactMesh& mesh);
+
   // All of the following are Real-time: safe. Precondition: numbers name what exists.
+
+  /// Finds again what depends on triangles of the mesh whose corners have moved (all around these):
+  /// normals and creases are those of the mesh built anew, to the bit. Precondition:
+  /// `prepare_refit` was called with the same mesh. Its time does not grow with the mesh.
+  void refit(const ContactMesh& mesh, std::span<const std::int32_t> triangles) noexcept;
 
   /// Gives the normals at the three corners of a triangle.
   const std::array<Eigen::Vector3d, 3>& corners(std::int32_t triangle) const noexcept {
@@ -52,11 +61,35 @@ class SmoothNormals {
   }
 
  private:
-  void average_group(const ContactMesh& mesh, NormalWeights weights, std::int32_t triangle,
-                     std::size_t k, std::vector<bool>& done);
+  // Is a corner of a triangle: one place in the fan of its vertex.
+  struct Corner {
+    std::int32_t triangle;
+    std::size_t k;
 
+    bool operator==(const Corner&) const = default;
+  };
+  // What one group needs while its normal is found; kept, so that `refit` asks nothing of the heap.
+  struct Group {
+    std::vector<Corner> corners;
+    std::vector<std::int32_t> vertices;
+    std::vector<Eigen::Vector3d> points;
+  };
+
+  static Corner across(const ContactMesh& mesh, const Corner& at, std::size_t edge) noexcept;
+  void find_crease(const ContactMesh& mesh, std::int32_t triangle, std::size_t k) noexcept;
+  void average_group(const ContactMesh& mesh, const Corner& start, Group& group) noexcept;
+  void collect_points(const ContactMesh& mesh, Group& group) const noexcept;
+  void refit_vertex(const ContactMesh& mesh, std::int32_t vertex) noexcept;
+
+  double crease_angle_;
+  double crease_cosine_;
+  NormalWeights weights_;
   std::vector<std::array<Eigen::Vector3d, 3>> corners_;
   std::vector<std::uint8_t> creases_;  // bit k for edge k
+  std::vector<bool> done_;             // per corner; empty unless refits are prepared
+  std::vector<std::uint32_t> seen_;    // per vertex: the number of the last refit that found it
+  std::uint32_t refits_ = 0;
+  Group group_;
 };
 
 }  // namespace thimble::render

@@ -24,7 +24,7 @@ struct TrackerCounters {
   std::uint64_t long_walks = 0;   ///< Walks that reached `kHopsMax`.
   std::uint64_t found_near = 0;   ///< Contact found again over the surface nearby.
   std::uint64_t called_back = 0;  ///< Of those, walks undone because they ended too deep.
-  std::uint64_t found_far = 0;    ///< Contact found again only by asking the whole mesh.
+  std::uint64_t found_far = 0;    ///< Contact found again only by asking the search.
 };
 
 /// Says where the tip stands with respect to the surface after one tick.
@@ -47,8 +47,8 @@ struct TrackerStep {
 /// instead, if it is less deep. If the depth turns negative while the tip is still inside, the
 /// nearest triangle that can be reached over the surface and has the tip below it becomes active,
 /// so contact is never lost inside. Deterministic. All but the constructor is Real-time: safe;
-/// usually one cell per tick, at worst `kHopsMax` cells, twice `kPatchMax` triangles and two passes
-/// over the mesh.
+/// usually one cell per tick, at worst `kHopsMax` cells, twice `kPatchMax` triangles and two
+/// questions to the search.
 class SurfaceTracker {
  public:
   /// Keeps references: mesh and search must outlive the tracker.
