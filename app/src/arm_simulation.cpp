@@ -48,6 +48,10 @@ std::optional<Eigen::Vector3d> joint_angles_at(const ArmFile& file, const Eigen:
   return std::nullopt;
 }
 
+driver::ArmKind simulated_kind(const ArmFile& file) {
+  return file.shape == ArmShape::kFalcon ? driver::ArmKind::kFalcon : driver::ArmKind::kPolhem;
+}
+
 driver::Result<std::unique_ptr<ArmSimulation>> ArmSimulation::make(
     const ArmFile& file, const std::vector<std::pair<double, Eigen::Vector3d>>& hand_W,
     const std::filesystem::path& firmware, std::uint64_t seed) {
@@ -92,14 +96,7 @@ std::unique_ptr<driver::Transport> ArmSimulation::wire(driver::Clock& clock) {
 }
 
 std::unique_ptr<const driver::Arm> ArmSimulation::protocol() const {
-  switch (file_.shape) {
-    case ArmShape::kSerial:
-      break;
-    case ArmShape::kPolhem:
-      return make_arm(file_, driver::ArmKind::kPolhem);
-    case ArmShape::kFalcon:
-      return make_arm(file_, driver::ArmKind::kFalcon);
-  }
+  if (file_.shape != ArmShape::kSerial) return make_arm(file_, simulated_kind(file_));
   return std::make_unique<driver::hfab::HfabArm>(file_.model);  // knows ideal encoders too
 }
 

@@ -29,8 +29,9 @@ expect 3 "No arm is called 'WH02'" \
   "$thimble" run "$source_dir/tests/data/scenes/stroke.yaml" --device WH02
 # Every arm file runs on its own simulated arm; the Falcon takes the firmware that it is given, or any.
 for arm in "$source_dir"/app/arms/*.yaml; do
-  expect 0 'in contact|contacts' "$thimble" run "$source_dir/tests/data/scenes/two_boxes.yaml" --arm "$arm"
+  expect 0 'touched it [1-9]' "$thimble" run "$source_dir/tests/data/scenes/two_boxes.yaml" --arm "$arm"
   expect 0 '^ok +force z' "$thimble" feel-check --arm "$arm"
+  expect 0 '^motor_sign' "$thimble" calibrate --dry-run --arm "$arm"
 done
 sed '/^simulation:/,$d' "$source_dir/app/arms/falcon.yaml" >bare.yaml
 expect 2 "no section 'simulation'" "$thimble" run "$source_dir/tests/data/scenes/two_boxes.yaml" \

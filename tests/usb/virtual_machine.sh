@@ -104,6 +104,7 @@ head -c 1500 /bin/sh >"$root/etc/falcon.bin"
 ticks=2000 faulty=woodenhaptics arms=woodenhaptics,polhem,polhem-64,falcon limit=700
 [ -z "$long" ] || { ticks=10000 faulty=$arms limit=1800; }
 arms=${THIMBLE_USB_ARMS-$arms} faulty=${THIMBLE_USB_FAULTY-$faulty}
+gadgets=${THIMBLE_USB_GADGETS-$gadgets}
 log=$work/console.log
 begin=$(date +%s)
 status=0

@@ -100,7 +100,7 @@ TEST(Firmware, PresetsAllCountersClearsTheButtonAndAsksForNoCurrent) {
   firmware.receive(
       driver::hfab::encode_output({.current_mA = {7, 8, 9}, .command = 1, .attributes = {1, 2, 3}}),
       1, pose.angles());
-  const auto report = sampled(firmware, pose.angles());
+  const auto report = sampled(firmware, pose);
   EXPECT_EQ(report.counts, (std::array<std::int16_t, 6>{1, 2, 3, 7, 8, 9}));
   EXPECT_EQ(report.info, 0);
   EXPECT_EQ(firmware.currents(), Eigen::Vector3d(0, 0, 0));
@@ -108,6 +108,21 @@ TEST(Firmware, PresetsAllCountersClearsTheButtonAndAsksForNoCurrent) {
   // The discs did not move: the next edge is where it was, 0.2 of a step away.
   EXPECT_EQ(sampled(firmware, steps_from_home(10.45, 20.45, 30.45)).counts[0], 1);
   EXPECT_EQ(sampled(firmware, steps_from_home(10.55, 20.55, 30.55)).counts[0], 2);
+}
+
+TEST(Firmware, SeesAndDrivesWhatIsPluggedIntoIt) {
+  FirmwareSettings settings;
+  settings.wiring.encoder_of = {1, 0, 2};
+  settings.wiring.encoder_gain = {1, -1, 0};
+  settings.wiring.motor_of = {0, 2, 1};
+  settings.wiring.motor_gain = {0, -1, 1};
+  Firmware firmware(support::vintage_model(), settings);
+  EXPECT_EQ(sampled(firmware, steps_from_home(100, 200, 300)).counts,
+            (std::array<std::int16_t, 6>{200, -100, 0, 0, 0, 0}));
+  firmware.receive(drive_message(1000, 2000, 3000), 0, steps_from_home(0, 0, 0).angles());
+  EXPECT_EQ(firmware.currents(), Eigen::Vector3d(0, 3, -2));
+  settings.wiring.motor_of = {0, 3, 1};
+  EXPECT_THROW(Firmware(support::vintage_model(), settings), std::invalid_argument);
 }
 
 TEST(Firmware, TakesACurrentBeyondItsRangeAsZero) {
