@@ -87,6 +87,11 @@ void ticks(benchmark::State& state, std::vector<Report> reports,
     (*device)->write(command);
   }
   if ((*device)->fault() != driver::Fault::kNone) state.SkipWithError("the device has a fault");
+  const auto& wire = (*device)->wire_counters();
+  const bool started = now_ns > 1'000'000'000;  // softly, like every arm
+  if (wire.rejected + wire.missing > 0 || (started && !((*device)->f_sent_W().norm() > 0.8))) {
+    state.SkipWithError("not every tick had a report and its force");
+  }
 }
 
 void duty_woodenhaptics(benchmark::State& state) {
