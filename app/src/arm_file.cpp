@@ -1,7 +1,9 @@
 #include "arm_file.h"
 
+#include <array>
 #include <cmath>
 #include <cstdint>
+#include <string_view>
 
 #include "thimble/driver/arms/falcon/falcon_arm.h"
 #include "thimble/driver/arms/hfab/hfab_models.h"
@@ -83,14 +85,28 @@ DeclaredLimits read_declared(YamlMap map) {
   return declared;
 }
 
-device_sim::SimulatedArmSettings read_simulation(YamlMap map, bool& ideal_encoders) {
-  device_sim::SimulatedArmSettings settings;
-  ideal_encoders = map.require_choice("encoders", {"quantised", "ideal"}) == 1;
-  YamlMap tip = map.require_map("tip");
-  settings.plant.mass = tip.require_number("mass", "kg", 1e-3, 10);
-  settings.plant.viscous = tip.require_number("viscous", "N s/m", 0, 100);
-  settings.plant.coulomb = tip.require_number("coulomb", "N", 0, 10);
-  tip.finish();
+std::array<std::uint8_t, 3> joints_of(YamlMap& map, std::string_view key) {
+  const Eigen::Vector3d named = map.optional_vector3(key, {1, 2, 3}, "", 1, 3);
+  std::array<std::uint8_t, 3> joints{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double joint = named[static_cast<Eigen::Index>(i)];
+    if (joint != std::round(joint)) map.reject(key, "expected whole numbers");
+    joints[i] = static_cast<std::uint8_t>(std::lround(joint) - 1);
+  }
+  return joints;
+}
+
+device_sim::WiringSettings read_wiring(YamlMap map) {
+  device_sim::WiringSettings wiring;
+  wiring.encoder_of = joints_of(map, "encoder_of");
+  wiring.encoder_gain = map.optional_vector3("encoder_gain", wiring.encoder_gain, "", -1, 1);
+  wiring.motor_of = joints_of(map, "motor_of");
+  wiring.motor_gain = map.optional_vector3("motor_gain", wiring.motor_gain, "", -1, 1);
+  map.finish();
+  return wiring;
+}
+
+void read_board(YamlMap& map, device_sim::SimulatedArmSettings& settings) {
   YamlMap motors = map.require_map("motors");
   settings.motors.current_max = motors.require_number("current_max", "A", 0.01, 32);
   motors.finish();
@@ -106,6 +122,23 @@ device_sim::SimulatedArmSettings read_simulation(YamlMap map, bool& ideal_encode
   settings.wire.delay_in_ns = to_ns(wire.require_number("delay_in", "s", 0, 1));
   settings.wire.delay_out_ns = to_ns(wire.require_number("delay_out", "s", 0, 1));
   wire.finish();
+}
+
+/// Reads how an arm is simulated. A Falcon's converter and board are code, so that its file has
+/// nothing to say of them.
+device_sim::SimulatedArmSettings read_simulation(YamlMap map, ArmShape shape,
+                                                 bool& ideal_encoders) {
+  device_sim::SimulatedArmSettings settings;
+  if (shape == ArmShape::kSerial) {
+    ideal_encoders = map.require_choice("encoders", {"quantised", "ideal"}) == 1;
+  }
+  if (map.has("wiring")) settings.firmware.wiring = read_wiring(map.require_map("wiring"));
+  YamlMap tip = map.require_map("tip");
+  settings.plant.mass = tip.require_number("mass", "kg", 1e-3, 10);
+  settings.plant.viscous = tip.require_number("viscous", "N s/m", 0, 100);
+  settings.plant.coulomb = tip.require_number("coulomb", "N", 0, 10);
+  tip.finish();
+  if (shape != ArmShape::kFalcon) read_board(map, settings);
   YamlMap hand = map.require_map("hand");
   settings.hand.mass = hand.require_number("mass", "kg", 0, 10);
   settings.hand.stiffness = hand.require_number("stiffness", "N/m", 0, 1e5);
@@ -148,8 +181,9 @@ driver::Result<ArmFile> read_arm_file(const std::filesystem::path& file) {
   arm.declared = read_declared(root.require_map("declared"));
   arm.limits = read_gate(root.require_map("gate"));
   arm.velocity_corner_frequency = root.require_number("velocity_corner_frequency", "Hz", 0, 1e5);
-  if (arm.shape == ArmShape::kSerial) {
-    arm.simulated = read_simulation(root.require_map("simulation"), arm.model.fractional_counts);
+  if (arm.shape == ArmShape::kSerial || root.has("simulation")) {
+    arm.simulated =
+        read_simulation(root.require_map("simulation"), arm.shape, arm.model.fractional_counts);
     arm.can_simulate = true;
   }
   root.finish();

@@ -46,7 +46,7 @@ struct ArmFile {
   Eigen::Matrix3d R_WB = Eigen::Matrix3d::Identity();  ///< Rotation of the base in the world.
   Eigen::Vector3d p_WB{0, 0, 0};                       ///< Position of the base, m.
   WorkspaceBox workspace;
-  bool can_simulate = false;  ///< The file has a section `simulation`, and the arm is serial.
+  bool can_simulate = false;  ///< The file has a section `simulation`.
   device_sim::SimulatedArmSettings simulated;
 };
 

@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 #include "real_arm.h"
-#include "thimble/device_sim/sim_transport.h"
 
 namespace thimble::app {
 namespace {
@@ -28,23 +26,12 @@ driver::Result<std::unique_ptr<BenchArm>> BenchArm::open(
     wire = std::move(opened).value();
     protocol = make_arm(file, real_arm->kind);
   } else {
-    if (!file.can_simulate) {
-      return driver::Error{"The arm " + file.name +
-                           " cannot be simulated inside the program; plug it in."};
-    }
     bench->clock_ = std::make_unique<driver::VirtualClock>();
-    std::vector<device_sim::HandPath::Point> points;
-    for (const auto& [time, p_WH] : hand_W) {
-      points.push_back({.time = time, .p_BH = file.R_WB.transpose() * (p_WH - file.p_WB)});
-    }
-    try {
-      bench->arm_ = std::make_unique<device_sim::SimulatedArm>(
-          file.model, file.simulated, device_sim::HandPath(std::move(points)));
-    } catch (const std::invalid_argument& wrong) {
-      return driver::Error{file.name + ": " + wrong.what()};
-    }
-    wire = std::make_unique<device_sim::SimTransport>(*bench->clock_, *bench->arm_);
-    protocol = std::make_unique<driver::hfab::HfabArm>(file.model);
+    auto simulation = ArmSimulation::make(file, hand_W, firmware);
+    if (!simulation) return simulation.error();
+    bench->simulation_ = std::move(simulation).value();
+    wire = bench->simulation_->wire(*bench->clock_);
+    protocol = bench->simulation_->protocol();
   }
   driver::GateLimits limits = file.limits;
   limits.force_max = std::min(limits.force_max, force_max);
@@ -60,6 +47,7 @@ driver::Result<std::unique_ptr<BenchArm>> BenchArm::open(
 }
 
 bool BenchArm::run(double duration, const Law& law, const std::atomic<bool>& stop, bool silent) {
+  const bool active = device_->stage() == driver::DeviceStage::kActive;
   std::int64_t due_ns = clock_->now_ns();
   const std::int64_t end_ns = due_ns + std::llround(duration * 1e9);
   for (; due_ns < end_ns; due_ns += kPeriod_ns) {
@@ -68,7 +56,9 @@ bool BenchArm::run(double duration, const Law& law, const std::atomic<bool>& sto
     const std::int64_t now_ns = clock_->now_ns();
     const Eigen::Vector3d f_T_W = law(device_->read(now_ns, now_ns));
     if (!silent) device_->write({.f_T_W = f_T_W, .touch = {}});
-    if (device_->fault() != driver::Fault::kNone) return false;
+    if (simulation_) true_force_max_ = std::max(true_force_max_, simulation_->f_T_W().norm());
+    const bool seen_only = !active && device_->fault() == driver::Fault::kStateNotFinite;
+    if (device_->fault() != driver::Fault::kNone && !seen_only) return false;
   }
   return true;
 }

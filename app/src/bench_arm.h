@@ -8,8 +8,7 @@
 #include <optional>
 
 #include "arm_file.h"
-#include "thimble/device_sim/hand_path.h"
-#include "thimble/device_sim/simulated_arm.h"
+#include "arm_simulation.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/device.h"
 #include "thimble/driver/discovery.h"
@@ -33,7 +32,7 @@ class BenchArm {
 
   /// Runs the loop at 1 kHz for `duration` (s), until `stop` is set, or a fault; with `silent` it
   /// reads and sends nothing, so that the arm's watchdog can be seen. Answers false on a fault or a
-  /// stop.
+  /// stop. A pose that cannot be is none as long as the device is idle: a check wants to see it.
   bool run(double duration, const Law& law, const std::atomic<bool>& stop, bool silent = false);
 
   /// Runs with zero force until `done` answers true or `stop` is set.
@@ -41,14 +40,18 @@ class BenchArm {
 
   driver::Device& device() { return *device_; }
   /// Tells whether the arm is simulated.
-  bool simulated() const { return arm_ != nullptr; }
+  bool simulated() const { return simulation_ != nullptr; }
+  /// Tells the largest force that the motors made on the tip in any run, N: what was true of a
+  /// simulated arm, whatever its driver believes; 0 for a real one.
+  double true_force_max() const { return true_force_max_; }
   /// Tells the time, s.
   double now() const { return static_cast<double>(clock_->now_ns()) * 1e-9; }
 
  private:
   std::unique_ptr<driver::Clock> clock_;
-  std::unique_ptr<device_sim::SimulatedArm> arm_;
-  std::unique_ptr<driver::Device> device_;  // holds the wire to arm_, so it goes first
+  std::unique_ptr<ArmSimulation> simulation_;
+  double true_force_max_ = 0;
+  std::unique_ptr<driver::Device> device_;  // holds the wire to the simulation, so it goes first
 };
 
 }  // namespace thimble::app

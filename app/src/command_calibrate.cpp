@@ -4,6 +4,7 @@
 #include <string>
 
 #include "arm_choice.h"
+#include "arm_simulation.h"
 #include "bench_arm.h"
 #include "calibration.h"
 #include "commands.h"
@@ -31,7 +32,7 @@ std::vector<std::pair<double, Eigen::Vector3d>> simulated_hand(const Eigen::Vect
 }
 
 Eigen::Vector3d home_of(const ArmFile& file) {
-  return file.p_WB + file.R_WB * make_arm(file, driver::ArmKind::kPolhem)->pose({}).p_BT;
+  return file.p_WB + file.R_WB * make_arm(file, simulated_kind(file))->pose({}).p_BT;
 }
 
 int calibrate(const ArmChoice& choice, bool dry_run) {
@@ -63,7 +64,8 @@ int calibrate(const ArmChoice& choice, bool dry_run) {
     if (key == EnterKey::kClosed) return complain({"Nobody is at the terminal."}, kExitBadInput);
     readings[i].counts = (*bench)->device().state().counts;
   }
-  const driver::ArmKind kind = chosen->real_arm ? chosen->real_arm->kind : driver::ArmKind::kPolhem;
+  const driver::ArmKind kind =
+      chosen->real_arm ? chosen->real_arm->kind : simulated_kind(chosen->file);
   const auto found =
       find_calibration(chosen->file, kind, readings[0], {readings[1], readings[2], readings[3]});
   if (!found) return complain(found.error(), kExitTrouble);

@@ -93,8 +93,8 @@ RunReport report_of(const Session& session, ClockKind clock, driver::ServoEnd en
   report.real_time = grant;
   report.end = end;
   report.fault = session.device().fault();
-  if (const auto* arm = session.simulated_arm()) {
-    report.current_at_exit = arm->firmware().currents().cwiseAbs().maxCoeff();
+  if (const auto* arm = session.simulation()) {
+    report.current_at_exit = arm->currents().cwiseAbs().maxCoeff();
   }
   report.trace_stride = session.trace().stride();
   report.trace_dropped = session.trace().dropped();

@@ -24,9 +24,11 @@ struct CheckResult {
 using Prompt = std::function<bool(const std::string& what)>;
 
 /// Checks an arm step by step: do all encoders count, do the directions agree with the world, does
-/// a force push the way it should (0.4 N along x, y and z), and do the motors go off by themselves
-/// when nobody speaks to the arm. The device must be idle; it is idle afterwards, with zero force.
-/// Real-time: never from the servo thread.
+/// a force push the way it should (at most 0.4 N along x, y and z, and so little that no
+/// swapped motors make it more than kFeelCheckForceMax), and do the motors go off by themselves
+/// when nobody speaks to the arm. A wire that is wrong is named: an encoder or motor that is dead,
+/// turned round, or swapped with another. The device must be idle; it is idle afterwards, with zero
+/// force. Real-time: never from the servo thread.
 std::vector<CheckResult> feel_check(BenchArm& bench, const ArmFile& file, const Prompt& prompt,
                                     const std::atomic<bool>& stop);
 

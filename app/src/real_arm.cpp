@@ -20,9 +20,6 @@ using driver::Error;
 using driver::FoundArm;
 using driver::Result;
 
-constexpr driver::Framing kFalconFraming{
-    .begin = std::byte{'<'}, .end = std::byte{'>'}, .size_max = falcon::kPacketSize};
-
 template <class Wire, class Geometry>
 std::unique_ptr<const driver::Arm> arm_of(const Geometry& geometry, const ArmFile& file) {
   driver::JointModel<Geometry> model;
@@ -59,9 +56,10 @@ Result<void> check_board(driver::Transport& wire, const ArmFile& file, const Fou
                  ", but the arm file " + file.name + " is for model " +
                  std::to_string(file.board_model) + ". Choose the right file with --arm."};
   }
-  return Error{arm.node +
-               " does not answer as a Haptikfabriken arm. Check its power; if it is another Teensy, "
-               "choose your arm by name (thimble devices)."};
+  return Error{
+      arm.node +
+      " does not answer as a Haptikfabriken arm. Check its power; if it is another Teensy, "
+      "choose your arm by name (thimble devices)."};
 }
 
 Result<void> home(driver::SerialLine& line) {
@@ -90,7 +88,7 @@ Result<std::unique_ptr<driver::Transport>> open_falcon(const FoundArm& arm,
   if (!line) return line.error();
   if (auto prepared = falcon::prepare(**line, firmware); !prepared) return prepared.error();
   if (auto homed = home(**line); !homed) return homed.error();
-  return (*line)->into_transport(kFalconFraming, clock);
+  return (*line)->into_transport(falcon::kPacketFraming, clock);
 }
 
 }  // namespace

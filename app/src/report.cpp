@@ -86,6 +86,7 @@ Json to_json(const RunReport& report) {
   json["wire"] = {{"reports", report.wire.reports},
                   {"rejected", report.wire.rejected},
                   {"skipped", report.wire.skipped},
+                  {"repeated", report.wire.repeated},
                   {"missing", report.wire.missing},
                   {"ticks_without_report", run.missing_reports()}};
   json["gate"] = {{"limited", report.gate.limited},

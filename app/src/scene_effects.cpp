@@ -152,7 +152,7 @@ render::EffectSurroundings surroundings_of(const ArmFile& arm, double rate) {
   surroundings.delay =
       1e-9 * static_cast<double>(arm.simulated.wire.delay_in_ns + arm.simulated.wire.delay_out_ns);
   // A frame for the report and one for the force, whatever the arm [STABILITY 5].
-  if (!arm.can_simulate) surroundings.delay = 0.001;
+  if (!arm.can_simulate || arm.shape == ArmShape::kFalcon) surroundings.delay = 0.001;
   surroundings.force_max = arm.limits.force_max;
   surroundings.tip_mass = arm.simulated.plant.mass;
   surroundings.tip_damping = arm.simulated.plant.viscous;

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <cstdio>
-#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -16,22 +15,12 @@
 namespace thimble::app {
 namespace {
 
-/// Turns the hand's way from the world into the arm's base. Throws what HandPath throws.
-device_sim::HandPath in_base(const HandRoute& route, const ArmFile& arm) {
-  std::vector<device_sim::HandPath::Point> points;
-  points.reserve(route.size());
-  for (const auto& [time, p_WH] : route) {
-    points.push_back({.time = time, .p_BH = arm.R_WB.transpose() * (p_WH - arm.p_WB)});
-  }
-  return device_sim::HandPath(std::move(points));
-}
-
 /// Finds the first point of the hand's way that the arm cannot reach.
 driver::Result<void> check_reach(const HandRoute& route, const ArmFile& arm) {
   for (const auto& [time, p_WH] : route) {
     const bool in_box = (p_WH.array() >= arm.workspace.min_W.array()).all() &&
                         (p_WH.array() <= arm.workspace.max_W.array()).all();
-    if (!in_box || !arm.model.geometry.inverse(arm.R_WB.transpose() * (p_WH - arm.p_WB))) {
+    if (!in_box || !joint_angles_at(arm, p_WH)) {
       char text[200];
       std::snprintf(text, sizeof text,
                     "At %.3f s the hand would be at (%.3f, %.3f, %.3f) m, outside the arm's "
@@ -139,7 +128,7 @@ driver::Result<std::unique_ptr<Session>> Session::open(const std::filesystem::pa
   session->trace_ = std::make_unique<Trace>(session->ticks_);
 
   if (!options.real_arm) {
-    if (auto planned = session->plan_simulation(scene_file, *meshes); !planned) {
+    if (auto planned = session->plan_simulation(scene_file, *meshes, options.firmware); !planned) {
       return planned.error();
     }
   }
@@ -158,8 +147,8 @@ driver::Result<std::unique_ptr<Session>> Session::open(const std::filesystem::pa
     wire = std::move(opened).value();
     protocol = make_arm(arm, options.real_arm->kind);
   } else {
-    wire = std::make_unique<device_sim::SimTransport>(*session->clock_, *session->arm_);
-    protocol = std::make_unique<driver::hfab::HfabArm>(arm.model);
+    wire = session->simulation_->wire(*session->clock_);
+    protocol = session->simulation_->protocol();
   }
   auto device = driver::Device::open(std::move(wire), std::move(protocol),
                                      {.R_WB = arm.R_WB,
@@ -178,13 +167,9 @@ driver::Result<std::unique_ptr<Session>> Session::open(const std::filesystem::pa
 }
 
 driver::Result<void> Session::plan_simulation(const std::filesystem::path& scene_file,
-                                              const std::vector<render::TriangleMesh>& meshes_W) {
+                                              const std::vector<render::TriangleMesh>& meshes_W,
+                                              const std::filesystem::path& firmware) {
   const ArmFile& arm = scene_.arm;
-  if (!arm.can_simulate) {
-    return driver::Error{"The arm " + arm.name +
-                         " cannot be simulated inside the program. Plug it in, or choose a serial "
-                         "arm with --arm."};
-  }
   std::vector<NamedMesh> named;
   for (std::size_t i = 0; i < meshes_W.size(); ++i) {
     const SceneObject& object = scene_.objects[i];
@@ -195,21 +180,18 @@ driver::Result<void> Session::plan_simulation(const std::filesystem::path& scene
   if (auto reach = check_reach(*route, arm); !reach) {
     return driver::Error{scene_file.string() + ": " + reach.error().message};
   }
-  try {
-    arm_ = std::make_unique<device_sim::SimulatedArm>(arm.model, arm.simulated,
-                                                      in_base(*route, arm), seed_);
-  } catch (const std::invalid_argument& wrong) {
-    return driver::Error{scene_.arm_file.string() + ": " + wrong.what()};
-  }
+  auto simulation = ArmSimulation::make(arm, *route, firmware, seed_);
+  if (!simulation)
+    return driver::Error{scene_.arm_file.string() + ": " + simulation.error().message};
+  simulation_ = std::move(simulation).value();
   return {};
 }
 
 driver::ServoEnd Session::run(const std::atomic<bool>& stop) noexcept {
-  const driver::ServoEnd end =
-      driver::run_servo(*device_, *clock_, driver::ForceLaw(*touch_), driver::TickSink(*this),
-                        {.period_ns = period_ns_, .ticks = ticks_, .outlive_faults = !arm_}, stop);
-  // The arm lives on after the loop: the last message, zero force, is still on its way to it.
-  if (arm_) arm_->advance_to(clock_->now_ns() + scene_.arm.simulated.wire.delay_out_ns);
+  const driver::ServoEnd end = driver::run_servo(
+      *device_, *clock_, driver::ForceLaw(*touch_), driver::TickSink(*this),
+      {.period_ns = period_ns_, .ticks = ticks_, .outlive_faults = !simulation_}, stop);
+  if (simulation_) simulation_->settle(clock_->now_ns());
   return end;
 }
 

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "arm_simulation.h"
 #include "run_statistics.h"
 #include "scene_file.h"
-#include "thimble/device_sim/sim_transport.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/device.h"
 #include "thimble/driver/discovery.h"
@@ -58,9 +58,10 @@ class Session {
   std::size_t triangles() const { return triangles_; }
   const driver::Device& device() const { return *device_; }
   driver::Device& device() { return *device_; }
-  /// Gives the simulated arm; nullptr if a real one is used.
-  const device_sim::SimulatedArm* simulated_arm() const { return arm_.get(); }
-  const device_sim::SimulatedArm& arm() const { return *arm_; }
+  /// Gives the simulation of the arm; nullptr if a real one is used.
+  const ArmSimulation* simulation() const { return simulation_.get(); }
+  /// Gives the simulated arm. Precondition: it is simulated, and no Falcon.
+  const device_sim::SimulatedArm& arm() const { return *simulation_->board_arm(); }
   /// Gives the clock that a new wire to a real arm must use.
   driver::Clock& clock() { return *clock_; }
   const render::SceneTouch& touch() const { return *touch_; }
@@ -79,7 +80,8 @@ class Session {
  private:
   Session() = default;
   driver::Result<void> plan_simulation(const std::filesystem::path& scene_file,
-                                       const std::vector<render::TriangleMesh>& meshes_W);
+                                       const std::vector<render::TriangleMesh>& meshes_W,
+                                       const std::filesystem::path& firmware);
 
   Scene scene_;
   render::TriangleMesh mesh_W_;
@@ -88,8 +90,8 @@ class Session {
   std::uint64_t ticks_ = 0;
   std::int64_t period_ns_ = 0;
   std::unique_ptr<driver::Clock> clock_;
-  std::unique_ptr<device_sim::SimulatedArm> arm_;
-  std::unique_ptr<driver::Device> device_;  // holds the wire to arm_, so it goes first
+  std::unique_ptr<ArmSimulation> simulation_;
+  std::unique_ptr<driver::Device> device_;  // holds the wire to the simulation, so it goes first
   std::vector<std::shared_ptr<render::PagedSurface>> pages_;  // of the objects on the disk
   bool pages_by_thread_ = false;
   std::unique_ptr<render::SceneTouch> touch_;

@@ -26,6 +26,7 @@ std::int16_t low_word(std::int64_t value) noexcept {
 
 Firmware::Firmware(const driver::hfab::HfabModel& model, const FirmwareSettings& settings)
     : settings_(settings), fractional_counts_(model.fractional_counts) {
+  settings.wiring.check();
   if (settings.report_period_ns <= 0) {
     throw std::invalid_argument("The simulated firmware's report period must be above zero (ns).");
   }
@@ -49,13 +50,13 @@ Firmware::Firmware(const driver::hfab::HfabModel& model, const FirmwareSettings&
   }
 }
 
-Eigen::Vector3d Firmware::counts_at(const SerialPose& pose) const noexcept {
-  return pose.angles().cwiseProduct(counts_per_radian_) - home_counts_;
+Eigen::Vector3d Firmware::counts_at(const Eigen::Vector3d& q) const noexcept {
+  return settings_.wiring.inputs(q.cwiseProduct(counts_per_radian_) - home_counts_);
 }
 
 std::array<std::byte, driver::hfab::kReportSize> Firmware::sample(
-    const SerialPose& pose) const noexcept {
-  const Eigen::Vector3d counts = counts_at(pose) + preset_counts_;
+    const Eigen::Vector3d& q) const noexcept {
+  const Eigen::Vector3d counts = counts_at(q) + preset_counts_;
   driver::hfab::InputReport report;
   for (std::size_t i = 0; i < 3; ++i) {
     const double count = counts[static_cast<int>(i)];
@@ -73,7 +74,7 @@ std::array<std::byte, driver::hfab::kReportSize> Firmware::sample(
 }
 
 void Firmware::receive(std::span<const std::byte> message, std::int64_t time_ns,
-                       const SerialPose& pose) noexcept {
+                       const Eigen::Vector3d& q) noexcept {
   const auto decoded = driver::hfab::decode_output(message);
   if (!decoded) {
     ++counters_.malformed;
@@ -82,23 +83,26 @@ void Firmware::receive(std::span<const std::byte> message, std::int64_t time_ns,
   ++counters_.messages;
   watchdog_due_ns_ = time_ns + settings_.watchdog_ns;
   if (decoded->command == static_cast<std::int16_t>(driver::hfab::Command::kPreset)) {
-    preset(*decoded, pose);
+    preset(*decoded, q);
     return;
   }
+  Eigen::Vector3d outputs;
   for (std::size_t i = 0; i < 3; ++i) {
     const int mA = decoded->current_mA[i];
     const bool in_range = std::abs(mA) <= settings_.current_range_mA;
     if (!in_range) ++counters_.over_range;
-    amperes_[static_cast<int>(i)] = in_range ? mA * 1e-3 : 0;
+    outputs[static_cast<int>(i)] = in_range ? mA * 1e-3 : 0;
   }
+  amperes_ = settings_.wiring.motors(outputs);
 }
 
-void Firmware::preset(const driver::hfab::OutputReport& message, const SerialPose& pose) noexcept {
+void Firmware::preset(const driver::hfab::OutputReport& message,
+                      const Eigen::Vector3d& q) noexcept {
   ++counters_.presets;
   button_ = false;
   amperes_.setZero();
   gimbal_counts_ = message.current_mA;
-  const Eigen::Vector3d counts = counts_at(pose);
+  const Eigen::Vector3d counts = counts_at(q);
   for (int i = 0; i < 3; ++i) {
     // A preset moves the counter by whole counts: where the edges of the encoder's slots lie is
     // given by its disc. An ideal encoder has no slots.

@@ -6,20 +6,62 @@
 
 namespace thimble::device_sim {
 
-SimulatedArm::SimulatedArm(const driver::hfab::HfabModel& model,
-                           const SimulatedArmSettings& settings, HandPath path, std::uint64_t seed)
+namespace {
+
+/// Finds where the hand wants the tip at the beginning.
+Eigen::Vector3d wanted_first(const HandPath& path, const Tremor& tremor) {
+  HandPath way = path;
+  return way.at(0) + tremor.at(0);
+}
+
+/// Takes what the board knows of an arm: motors and encoders.
+driver::hfab::HfabModel board_of(const driver::JointModel<driver::LinkageArm>& model) {
+  driver::hfab::HfabModel board;
+  board.drives = model.drives;
+  board.encoders = model.encoders;
+  return board;
+}
+
+}  // namespace
+
+SimulatedArm::SimulatedArm(const driver::hfab::HfabModel& board, AnyPlant plant,
+                           const SimulatedArmSettings& settings, HandPath path,
+                           const Tremor& tremor)
     : report_period_ns_(settings.firmware.report_period_ns),
       wire_(settings.wire),
       path_(std::move(path)),
-      tremor_(settings.hand, seed),
-      plant_(model.geometry, model.drives, settings.plant, settings.hand, settings.motors,
-             path_.points().front().p_BH, wanted_at(0)),
-      firmware_(model, settings.firmware) {
+      tremor_(tremor),
+      plant_(std::move(plant)),
+      firmware_(board, settings.firmware) {
   if (wire_.delay_in_ns < 0 || wire_.delay_out_ns < 0) {
     throw std::invalid_argument("The simulated wire's delays must not be negative (ns).");
   }
   sample();
   deliver();
+}
+
+SimulatedArm::SimulatedArm(const driver::hfab::HfabModel& model,
+                           const SimulatedArmSettings& settings, HandPath path, std::uint64_t seed)
+    : SimulatedArm(
+          model,
+          ArmPlant(model.geometry, model.drives, settings.plant, settings.hand, settings.motors,
+                   path.points().front().p_BH, wanted_first(path, Tremor(settings.hand, seed))),
+          settings, path, Tremor(settings.hand, seed)) {}
+
+SimulatedArm::SimulatedArm(const driver::JointModel<driver::LinkageArm>& model,
+                           const SimulatedArmSettings& settings, HandPath path, std::uint64_t seed)
+    : SimulatedArm(
+          board_of(model),
+          LinkagePlant(model, settings.plant, settings.hand, settings.motors,
+                       path.points().front().p_BH, wanted_first(path, Tremor(settings.hand, seed))),
+          settings, path, Tremor(settings.hand, seed)) {}
+
+const Eigen::Vector3d& SimulatedArm::angles() noexcept {
+  if (q_time_ns_ != time_ns_) {
+    q_ = plant().q();
+    q_time_ns_ = time_ns_;
+  }
+  return q_;
 }
 
 Eigen::Vector3d SimulatedArm::wanted_at(std::int64_t time_ns) noexcept {
@@ -33,7 +75,7 @@ void SimulatedArm::advance_to(std::int64_t time_ns) noexcept {
     next_ns = std::min({next_ns, next_sample_ns_, firmware_.watchdog_due_ns()});
     if (!messages_.empty()) next_ns = std::min(next_ns, messages_.front().due_ns);
 
-    plant_.step(wanted_at(next_ns), next_ns - time_ns_);
+    mechanics().step(wanted_at(next_ns), next_ns - time_ns_);
     time_ns_ = next_ns;
 
     if (next_sample_ns_ == time_ns_) sample();
@@ -43,20 +85,20 @@ void SimulatedArm::advance_to(std::int64_t time_ns) noexcept {
     }
     if (firmware_.watchdog_due_ns() <= time_ns_) {
       firmware_.watch(time_ns_);
-      plant_.set_currents(firmware_.currents());
+      mechanics().set_currents(firmware_.currents());
     }
     deliver();
   }
 }
 
 void SimulatedArm::sample() noexcept {
-  reports_.push(firmware_.sample(plant_.pose()), time_ns_ + wire_.delay_in_ns);
+  reports_.push(firmware_.sample(angles()), time_ns_ + wire_.delay_in_ns);
   next_sample_ns_ += report_period_ns_;
 }
 
 void SimulatedArm::receive(std::span<const std::byte> bytes) noexcept {
-  firmware_.receive(bytes, time_ns_, plant_.pose());
-  plant_.set_currents(firmware_.currents());
+  firmware_.receive(bytes, time_ns_, angles());
+  mechanics().set_currents(firmware_.currents());
 }
 
 void SimulatedArm::deliver() noexcept {

@@ -101,7 +101,8 @@ void Device::take_offer(std::int64_t now_ns) noexcept {
   transport_.reset(fresh);
   ++wire_.replugged;
   lost_ = false;
-  reported_ = false;
+  reported_ = numbered_ = false;
+  number_.reset();
   active_ = false;
   refused_in_a_row_ = 0;
   last_report_ns_ = now_ns;
@@ -157,6 +158,10 @@ bool Device::take_report(std::int64_t now_ns, std::int64_t deadline_ns) noexcept
     ++wire_.rejected;
     return false;
   }
+  if (came_before(reading)) {
+    ++wire_.repeated;
+    return false;
+  }
   ++wire_.reports;
   reported_ = true;
   pose_ = arm_->pose(reading);
@@ -169,6 +174,15 @@ bool Device::take_report(std::int64_t now_ns, std::int64_t deadline_ns) noexcept
   if (!(state_.p_WT.squaredNorm() < HUGE_VAL)) gate_.trip(Fault::kStateNotFinite);
   last_report_ns_ = now_ns;
   return true;
+}
+
+bool Device::came_before(const ArmReading& reading) noexcept {
+  if (!reading.number) return false;
+  const bool same = number_ == reading.number;
+  // A board that leaves the number alone says nothing by it.
+  if (number_ && !same) numbered_ = true;
+  number_ = reading.number;
+  return same && numbered_;
 }
 
 void Device::write(const ForceCommand& command) noexcept {

@@ -134,6 +134,10 @@ Result<std::unique_ptr<FtdiLine>> FtdiLine::open(const UsbAddress& address) {
   libusb_set_auto_detach_kernel_driver(usb.handle.get(), 1);
   code = libusb_claim_interface(usb.handle.get(), kFtdiInterface);
   if (code != 0) return cannot_open(address, code);
+  // An endpoint that stalled under the program before stays halted until somebody says this. A
+  // converter that refuses it tells so at the first request.
+  libusb_clear_halt(usb.handle.get(), kFtdiEndpointIn);
+  libusb_clear_halt(usb.handle.get(), kFtdiEndpointOut);
   return std::unique_ptr<FtdiLine>(std::make_unique<UsbFtdiLine>(std::move(usb)));
 }
 

@@ -3,6 +3,19 @@
 #include <cmath>
 
 namespace thimble::driver {
+namespace {
+
+/// Finds the angle at the base of a triangle, between `base` and `side`, whose third side is
+/// `across` (m); NaN if there is no such triangle.
+double angle_between(double base, double side, double across) noexcept {
+  return std::acos((base * base + side * side - across * across) / (2 * base * side));
+}
+
+double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) noexcept {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
+}  // namespace
 
 void LinkageArm::forward(const Eigen::Vector3d& q, Eigen::Vector3d& p_BT,
                          Eigen::Matrix3d& J_BT) const noexcept {
@@ -35,6 +48,26 @@ void LinkageArm::forward(const Eigen::Vector3d& q, Eigen::Vector3d& p_BT,
            r * cos_0, r_by_1 * sin_0, r_by_2 * sin_0,
                    0, h_by_1,         h_by_2;
   // clang-format on
+}
+
+std::optional<Eigen::Vector3d> LinkageArm::inverse(const Eigen::Vector3d& p_BT) const noexcept {
+  // In the arm's plane, with the front motor at the origin.
+  const double r = std::hypot(p_BT.x(), p_BT.y());
+  const Eigen::Vector2d tip(r - length_0 / 2, p_BT.z());
+  const double q1 = std::atan2(tip.y(), tip.x()) + angle_between(tip.norm(), length_1, length_5);
+  const Eigen::Vector2d elbow = length_1 * Eigen::Vector2d(std::cos(q1), std::sin(q1));
+  const Eigen::Vector2d u = (tip - elbow) / length_5;
+  // From the back motor to where bar 3 meets the forearm's other end.
+  const Eigen::Vector2d joint = elbow - length_4 * u + Eigen::Vector2d(length_0, 0);
+  const double middle = std::atan2(joint.y(), joint.x());
+  const double aside = angle_between(joint.norm(), length_2, length_3);
+  for (const double q2 : {middle + aside, middle - aside}) {
+    // `forward` turns clockwise from the crank's end to the forearm; so must this.
+    const Eigen::Vector2d bar_3 = joint - length_2 * Eigen::Vector2d(std::cos(q2), std::sin(q2));
+    if (!(cross(u, bar_3) > 0)) continue;
+    return Eigen::Vector3d(std::atan2(p_BT.y(), p_BT.x()), q1, q2);
+  }
+  return std::nullopt;
 }
 
 }  // namespace thimble::driver

@@ -10,6 +10,7 @@ folder=${1:-build/bench}
 app/setup.sh release bench_tick bench_contact bench_paged bench_body
 mkdir -p "$folder"
 build/release/tests/bench/bench_tick --benchmark_repetitions=5 \
+  --benchmark_enable_random_interleaving=true \
   --benchmark_report_aggregates_only=true \
   --benchmark_out="$folder/bench_tick.json" --benchmark_out_format=json \
   --figures="$folder/figures.json"

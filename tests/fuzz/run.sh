@@ -1,9 +1,12 @@
 #!/usr/bin/env bash
-# Fuzzes the decoders for 5 s, or 60 s with THIMBLE_LONG. Skipped where the fuzzer was not built.
-#   tests/fuzz/run.sh BUILD_DIR CORPUS
+# Fuzzes all decoders together for 5 s (THIMBLE_FUZZ_SECONDS says another time), or with THIMBLE_LONG
+# each of them alone for 60 s, as many at once as there are processors. Skipped where the fuzzer was
+# not built.
+#   tests/fuzz/run.sh BUILD_DIR CORPUS DECODERS
 set -euo pipefail
 fuzzer=$(realpath "$1")/fuzz_decoders
 corpus=$(realpath "$2")
+decoders=$3
 if [ ! -x "$fuzzer" ]; then
   echo "FUZZING SKIPPED: build it with: cmake --build --preset release --target fuzz"
   exit 77
@@ -12,7 +15,23 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 # New files go to the working folder, a crash too: copy it into the corpus, named after the fault.
 cd "$work"
-mkdir found
-"$fuzzer" -max_total_time="$([ -n "${THIMBLE_LONG:-}" ] && echo 60 || echo 5)" -max_len=200 -seed=1 \
-  -print_final_stats=1 found "$corpus" 2>&1 | tail -n 12
-exit "${PIPESTATUS[0]}"
+fuzz() {  # fuzz NAME SECONDS
+  mkdir "found_$1"
+  "$fuzzer" -max_total_time="$2" -max_len=200 -seed=1 -print_final_stats=1 \
+    -artifact_prefix="$work/$1_" "found_$1" "$corpus" >"$1.log" 2>&1 || {
+    tail -n 40 "$1.log"
+    for crash in "$work/$1_"*; do
+      [ -f "$crash" ] && echo "$crash:" && od -A n -t x1 "$crash"
+    done
+    return 1
+  }
+  echo "decoder $1: $(grep -oE 'number_of_executed_units: *[0-9]+' "$1.log")"
+}
+if [ -z "${THIMBLE_LONG:-}" ]; then
+  fuzz all "${THIMBLE_FUZZ_SECONDS:-5}"
+  exit
+fi
+export -f fuzz
+export fuzzer corpus work
+seq 0 $((decoders - 1)) |
+  xargs -P "$(nproc)" -I{} bash -c 'set -euo pipefail; THIMBLE_DECODER={} fuzz {} 60'

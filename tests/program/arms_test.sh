@@ -27,8 +27,18 @@ expect 0 'No arm that Thimble knows is plugged in' "$thimble" doctor --root root
 
 expect 3 "No arm is called 'WH02'" \
   "$thimble" run "$source_dir/tests/data/scenes/stroke.yaml" --device WH02
-expect 2 'cannot be simulated' "$thimble" run "$source_dir/tests/data/scenes/stroke.yaml" \
-  --arm "$source_dir/app/arms/falcon.yaml"
+# Every arm file runs on its own simulated arm; the Falcon takes the firmware that it is given, or any.
+for arm in "$source_dir"/app/arms/*.yaml; do
+  expect 0 'touched it [1-9]' "$thimble" run "$source_dir/tests/data/scenes/two_boxes.yaml" --arm "$arm"
+  expect 0 '^ok +force z' "$thimble" feel-check --arm "$arm"
+  expect 0 '^motor_sign' "$thimble" calibrate --dry-run --arm "$arm"
+done
+sed '/^simulation:/,$d' "$source_dir/app/arms/falcon.yaml" >bare.yaml
+expect 2 "no section 'simulation'" "$thimble" run "$source_dir/tests/data/scenes/two_boxes.yaml" \
+  --arm bare.yaml
+: >empty.bin
+expect 2 'no Falcon firmware' "$thimble" run "$source_dir/tests/data/scenes/two_boxes.yaml" \
+  --arm "$source_dir/app/arms/falcon.yaml" --firmware empty.bin
 
 expect 0 '^home_counts +0 7700 0$' "$thimble" calibrate --arm "$vintage"
 expect 0 '^encoder_sign: \[-1, 1, -1\]$' cat config/thimble/arms/sim.yaml

@@ -53,15 +53,17 @@ for arm in $arms; do
   plug $arm /tmp/device.trace
   cat /tmp/found.log
   as stranger "usb_check denied $arm $image"
-  as tester "usb_check touch $arm $ticks /tmp/driver.trace $image"
+  touched=$ticks
+  [ $arm = woodenhaptics ] && touched=10000
+  as tester "usb_check touch $arm $touched /tmp/driver.trace $image"
   unplug
   sed -n 's/^Unplugged\. /NOTE '$arm': /p' /tmp/plug.log
   usb_check compare $arm /tmp/driver.trace /tmp/device.trace
 
-  # The program itself, where the arm file and the simulated mechanics are of the same arm.
-  if [ $arm = woodenhaptics ] || [ $arm = falcon ]; then
+  # The program itself; it fills a Polhem's messages up to 64 bytes.
+  if [ $arm != polhem ]; then
     plug $arm /tmp/run.trace
-    program="thimble run /data/tests/data/scenes/two_boxes.yaml --arm /data/app/arms/$arm.yaml"
+    program="thimble run /data/tests/data/scenes/two_boxes.yaml --arm /data/app/arms/${arm%-64}.yaml"
     [ -z "$image" ] || program="$program --firmware $image"
     if as tester "thimble devices && HOME=/tmp $program --device SIM0001 --yes --duration 0.5" \
       >/tmp/run.log 2>&1 && grep -q 'SIM0001.*ready' /tmp/run.log; then
@@ -73,29 +75,36 @@ for arm in $arms; do
   fi
 
   # The padded board differs from the other in its reports only.
-  [ $arm = polhem-64 ] && { echo "NOTE $arm done after $(uptime) s"; continue; }
+  [ $arm = polhem-64 ] && [ $ticks -lt 10000 ] && { echo "NOTE $arm done after $(uptime) s"; continue; }
 
   plug $arm /tmp/replug.trace
   as tester "usb_check replug $arm $control $image"
   unplug
 
-  # A driver that is killed in contact: the arm's own watchdog is what is left.
-  if [ $arm != falcon ]; then
-    plug $arm /tmp/killed.trace
-    as tester "exec usb_check hang $arm" >/tmp/hang.log &
-    for i in $(seq 400); do grep -q touching /tmp/hang.log && break; usleep 10000; done
-    usleep 50000
-    killall -9 usb_check
-    usleep 800000
-    unplug
-    off=$(tail -n 1 /tmp/killed.trace | awk '{ print $NF, ($14 == 0 && $15 == 0 && $16 == 0) }')
-    before=$(awk '$NF == 1 && ($14 != 0 || $15 != 0 || $16 != 0) { n++ } END { print n + 0 }' /tmp/killed.trace)
-    if [ "$off" = "0 1" ] && [ "$before" -gt 20 ]; then
-      echo "PASS $arm with a killed driver: the watchdog switched the motors off"
-    else
-      echo "FAIL $arm with a killed driver: motors on, currents zero: $off; frames with force: $before"
-    fi
-  fi
+  # A driver that is killed in contact: the arm's own watchdog is what is left. Its time is that from
+  # the last message to the motors' end, in the arm's own frames.
+  plug $arm /tmp/killed.trace
+  as tester "exec usb_check hang $arm $image" >/tmp/hang.log &
+  for i in $(seq 1500); do grep -q touching /tmp/hang.log && break; usleep 10000; done
+  usleep 50000
+  killall -9 usb_check
+  usleep 800000
+  unplug
+  watchdog=500
+  [ $arm = falcon ] && watchdog=100
+  awk -v arm=$arm -v stated=$watchdog '
+    !/^#/ && NF == 20 {
+      forced = $14 != 0 || $15 != 0 || $16 != 0
+      if ($10 != messages) { messages = $10; said = $1; contact = forced; frames += forced; on = 1 }
+      if (on && $NF == 0) { on = 0; off = $1; current = forced }
+    }
+    END {
+      after = off - said
+      good = !on && frames > 20 && contact && !current && after >= stated - 1 && after <= stated + 2
+      printf "%s %s with a killed driver: motors off %d frames after the last message (stated: %d), " \
+             "%d messages with force before\n", good ? "PASS" : "FAIL", arm, after, stated, frames
+      printf "FIGURE %s.watchdog %d frames\n", arm, after
+    }' /tmp/killed.trace
   echo "NOTE $arm done after $(uptime) s"
 done
 
@@ -113,7 +122,48 @@ for arm in $faulty; do
     done
   done
   unplug
+  # The arm's side counts too: each kind must have hit packets, or the checks above say nothing.
+  for kind in short long torn stale duplicate silence bit_errors stall; do
+    hits=$(sed -n "s/^Fault $kind hit \([0-9]*\) packets.*/\1/p" /tmp/plug.log)
+    [ "${hits:-0}" -gt 0 ] || echo "FAIL $arm with faults: no packet was hit by '$kind'"
+  done
   echo "NOTE $arm with faults done after $(uptime) s"
+done
+
+# The second way: the kernel's own HID gadget on its own virtual bus, with no USB/IP in between.
+for arm in $(setting gadgets | tr , ' '); do
+  for module in configfs udc-core libcomposite usb_f_hid dummy_hcd; do
+    [ -d /sys/module/$(echo $module | tr - _) ] || insmod /lib/modules/$module.ko 2>/dev/null ||
+      echo "FAIL module $module: not loaded"
+  done
+  [ -d /sys/kernel/config/usb_gadget ] || mount -t configfs none /sys/kernel/config
+  gadget=/sys/kernel/config/usb_gadget/$arm
+  mkdir -p $gadget/strings/0x409 $gadget/configs/c.1 $gadget/functions/hid.0
+  product=0x0006 vendor=0x1234 length=8
+  [ $arm = woodenhaptics ] || product=0x0486 vendor=0x16c0 length=14
+  [ $arm = polhem-64 ] && length=64
+  echo $vendor >$gadget/idVendor
+  echo $product >$gadget/idProduct
+  echo SIM0001 >$gadget/strings/0x409/serialnumber
+  echo $length >$gadget/functions/hid.0/report_length
+  usb_check descriptor $arm >$gadget/functions/hid.0/report_desc
+  ln -s $gadget/functions/hid.0 $gadget/configs/c.1/
+  echo dummy_udc.0 >$gadget/UDC
+  udevadm settle --timeout=20
+  usb_check gadget $arm /dev/hidg0 &
+  behind=$!
+  {
+    as tester "usb_check find $arm"
+    as stranger "usb_check denied $arm"
+    as tester "usb_check touch $arm 2000 /tmp/gadget.trace"
+  } | sed "s/^\([A-Z]* $arm\)/\1 as a gadget/"
+  kill -9 $behind
+  wait $behind 2>/dev/null
+  echo "" >$gadget/UDC
+  rm $gadget/configs/c.1/hid.0
+  rmdir $gadget/functions/hid.0 $gadget/configs/c.1 $gadget/strings/0x409 $gadget
+  udevadm settle --timeout=20
+  echo "NOTE $arm as a gadget done after $(uptime) s"
 done
 
 dmesg | grep -E "Oops|BUG:|Kernel panic|blocked for more|WARNING:" && echo "FAIL kernel: see the log"

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -8,8 +9,9 @@
 
 namespace thimble::usb_test {
 
-/// Writes what a driver did, a line a tick.
-void write_trace(const std::vector<driver::TickRecord>& records, const std::string& file);
+/// Writes what a driver did: how many messages the wire refused, then a line a tick.
+void write_trace(const std::vector<driver::TickRecord>& records, std::uint64_t refused,
+                 const std::string& file);
 
 /// Compares a driver's trace with that of `thimble plug --trace`: every position that the driver
 /// saw is one that the arm sent, in order, and right within a count; every message that the arm

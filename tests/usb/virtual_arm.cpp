@@ -3,20 +3,16 @@
 #include <chrono>
 #include <thread>
 
-#include "thimble/device_sim/usb/arm_shelf.h"
 #include "thimble/driver/arms/falcon/falcon_arm.h"
 #include "thimble/driver/arms/falcon/falcon_boot.h"
 #include "thimble/driver/arms/falcon/falcon_packet.h"
-#include "thimble/driver/arms/hfab/hfab_arm.h"
 #include "thimble/driver/arms/hfab/hfab_models.h"
+#include "thimble/driver/arms/hfab/hfab_wire.h"
 #include "thimble/driver/arms/woody/woody_wire.h"
 #include "thimble/driver/transports.h"
 
 namespace thimble::usb_test {
 namespace {
-
-constexpr driver::Framing kFalconFraming{
-    .begin = std::byte{'<'}, .end = std::byte{'>'}, .size_max = driver::falcon::kPacketSize};
 
 driver::Result<void> home(driver::SerialLine& line) {
   driver::falcon::HomingState state;
@@ -36,7 +32,8 @@ std::unique_ptr<const driver::Arm> VirtualArm::protocol() const {
   if (name == "woodenhaptics") {
     return std::make_unique<driver::woody::WoodyArm>(driver::hfab::woody_model());
   }
-  return std::make_unique<driver::hfab::HfabArm>(device_sim::usb::shelf_model(name));
+  return std::make_unique<driver::WireArm<driver::hfab::ReportWire, driver::LinkageArm>>(
+      driver::hfab::polhem_model());
 }
 
 driver::Result<driver::FoundArm> VirtualArm::find(const std::string& serial, int timeout_ms) const {
@@ -67,7 +64,7 @@ driver::Result<std::unique_ptr<driver::Transport>> VirtualArm::open(
     return prepared.error();
   }
   if (const auto homed = home(**line); !homed) return homed.error();
-  return (*line)->into_transport(kFalconFraming, clock);
+  return (*line)->into_transport(driver::falcon::kPacketFraming, clock);
 }
 
 driver::DeviceSettings check_settings() {

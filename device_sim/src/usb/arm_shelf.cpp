@@ -18,6 +18,7 @@ constexpr double kMotionTime = 600;     // s
 constexpr double kMotionStep = 0.02;    // s between two points of the hand's path
 constexpr double kReach = 0.015;        // m
 constexpr double kFalconReach = 0.020;  // m; the legs pass their homes at 15 mm
+constexpr double kPolhemMass = 0.1;     // kg at the tip [guess]
 constexpr double kQuiet = 1.0;          // s at rest before the hand begins
 constexpr double kTwoPi = 2 * std::numbers::pi;
 
@@ -25,6 +26,11 @@ constexpr double kTwoPi = 2 * std::numbers::pi;
 // firmware grew [S mbed USBHID.cpp, Teensy usb_rawhid].
 constexpr std::uint16_t kRawHidPage = 0xffab;
 constexpr std::uint16_t kRawHidUsage = 0x0200;
+
+/// Is the middle of the Polhem's workspace, m [S forsslund/hfabapi].
+Eigen::Vector3d polhem_middle() {
+  return {0.2045, 0, 0.0325};
+}
 
 Eigen::Vector3d offset(HandMotion motion, double reach, double time) {
   if (time <= 0) return {0, 0, 0};
@@ -64,19 +70,6 @@ UsbDescription hid_description(std::uint16_t vendor, std::uint16_t product, std:
   return d;
 }
 
-UsbDescription falcon_description(std::string serial) {
-  UsbDescription d;
-  d.vendor_id = 0x0403;
-  d.product_id = 0xcb48;
-  d.release = 0x0400;  // FT232BM [S libftdi tells chips apart by it]
-  d.manufacturer = "FTDI";
-  d.product = "FALCON HAPTIC";
-  d.serial = std::move(serial);
-  d.endpoints = {{FtdiChip::kInEndpoint, TransferKind::kBulk, 64, 0},
-                 {FtdiChip::kOutEndpoint, TransferKind::kBulk, 64, 0}};
-  return d;
-}
-
 // A hand in pinch grip on a PHANTOM-like arm [M DEVICES 3]; the boards send a report in the frame
 // after they sampled it, because they wait until the host took the last one [S woody-experimental
 // main.cpp: send, then sample again].
@@ -95,44 +88,48 @@ SimulatedArmSettings settings_of_board(double tip_mass, double current_max) {
 
 }  // namespace
 
-driver::hfab::HfabModel shelf_model(std::string_view name) {
-  // A Polhem board on the mechanics of the vintage PHANTOM refit, for which the same board was
-  // made; the Polhem's own linkage is not simulated.
-  const driver::JointModel<driver::SerialArm> model =
-      name == "woodenhaptics" ? driver::hfab::woody_model() : driver::hfab::vintage_model();
-  driver::hfab::HfabModel shelf;
-  shelf.geometry = model.geometry;
-  shelf.drives = model.drives;
-  shelf.encoders = model.encoders;
-  return shelf;
+UsbDescription falcon_description(std::string serial) {
+  UsbDescription d;
+  d.vendor_id = 0x0403;
+  d.product_id = 0xcb48;
+  d.release = 0x0400;  // FT232BM [S libftdi tells chips apart by it]
+  d.manufacturer = "FTDI";
+  d.product = "FALCON HAPTIC";
+  d.serial = std::move(serial);
+  d.endpoints = {{FtdiChip::kInEndpoint, TransferKind::kBulk, 64, 0},
+                 {FtdiChip::kOutEndpoint, TransferKind::kBulk, 64, 0}};
+  return d;
 }
 
 driver::Result<std::unique_ptr<UsbArm>> make_usb_arm(std::string_view name,
                                                      const ShelfOptions& options) {
-  const auto serial_arm = [&](HidLayout layout, UsbDescription description, double tip_mass) {
-    const driver::hfab::HfabModel model = shelf_model(name);
-    driver::ArmReading home;
-    const Eigen::Vector3d p_BT = model.geometry.forward(model.joint_angles(home));
-    return std::make_unique<HidArm>(layout, std::move(description), model,
-                                    settings_of_board(tip_mass, 3), hand_path(p_BT, options.motion),
-                                    options.seed);
-  };
   if (name == "woodenhaptics") {
-    return {serial_arm(HidLayout::kWoodenHaptics,
-                       hid_description(0x1234, 0x0006, "mbed.org", "HID DEVICE", options.serial, 8),
-                       0.2)};  // kg, about what links of 170 and 110 g weigh at the tip [guess]
+    const auto arm = driver::hfab::woody_model();
+    driver::hfab::HfabModel model;
+    model.geometry = arm.geometry;
+    model.drives = arm.drives;
+    model.encoders = arm.encoders;
+    const Eigen::Vector3d p_BT = model.geometry.forward(model.joint_angles({}));
+    // 0.2 kg is about what links of 170 and 110 g weigh at the tip [guess].
+    return {std::make_unique<HidArm>(
+        HidLayout::kWoodenHaptics,
+        hid_description(0x1234, 0x0006, "mbed.org", "HID DEVICE", options.serial, 8), model,
+        settings_of_board(0.2, 3), hand_path(p_BT, options.motion), options.seed)};
   }
+  const auto polhem = [&](HidLayout layout, UsbDescription description) {
+    // Its home is where it is parked; the hand works in the middle of its room.
+    return std::make_unique<HidArm>(layout, std::move(description), driver::hfab::polhem_model(),
+                                    settings_of_board(kPolhemMass, 3),
+                                    hand_path(polhem_middle(), options.motion), options.seed);
+  };
   if (name == "polhem") {
-    return {serial_arm(HidLayout::kPolhem,
-                       hid_description(0x16c0, 0x0486, "Haptikfabriken", "Polhem", options.serial,
-                                       driver::hfab::kReportSize),
-                       0.075)};
+    return {polhem(HidLayout::kPolhem, hid_description(0x16c0, 0x0486, "Haptikfabriken", "Polhem",
+                                                       options.serial, driver::hfab::kReportSize))};
   }
   if (name == "polhem-64") {
-    return {serial_arm(HidLayout::kPolhemPadded,
-                       hid_description(0x16c0, 0x0486, "Teensyduino", "Teensyduino RawHID",
-                                       options.serial, driver::hfab::kPaddedReportSize),
-                       0.075)};
+    return {polhem(HidLayout::kPolhemPadded,
+                   hid_description(0x16c0, 0x0486, "Teensyduino", "Teensyduino RawHID",
+                                   options.serial, driver::hfab::kPaddedReportSize))};
   }
   if (name == "falcon") {
     const Eigen::Vector3d p_BM = driver::falcon::falcon_geometry().p_BM;

@@ -15,23 +15,35 @@ constexpr double kMotorValueMax = 4096;         // what users of libnifalcon cla
 }  // namespace
 
 FalconOnUsb::FalconOnUsb(UsbDescription description, const PlantSettings& plant,
-                         const HandSettings& hand, HandPath path, std::vector<std::byte> image)
+                         const HandSettings& hand, HandPath path, std::vector<std::byte> image,
+                         const WiringSettings& wiring, std::uint64_t seed)
     : description_(std::move(description)),
       path_(std::move(path)),
+      tremor_(hand, seed),
+      wiring_(wiring),
       plant_(driver::falcon::falcon_model(), plant, hand,
              MotorSettings{.current_max = kMotorValueMax / kMotorValuesPerAmpere},
-             path_.points().front().p_BH),
+             path_.points().front().p_BH, path_.points().front().p_BH),
       board_(std::move(image)),
-      chip_(board_) {}
+      chip_(board_) {
+  wiring_.check();
+}
+
+void FalconOnUsb::lead(HandPath path) {
+  path_ = std::move(path);
+  path_begin_ns_ = time_ns_;
+}
 
 void FalconOnUsb::move_to(std::int64_t time_ns) noexcept {
   if (time_ns <= time_ns_) return;
-  plant_.step(path_.at(static_cast<double>(time_ns) * 1e-9), time_ns - time_ns_);
+  const Eigen::Vector3d p_BH = path_.at(static_cast<double>(time_ns - path_begin_ns_) * 1e-9) +
+                               tremor_.at(static_cast<double>(time_ns) * 1e-9);
+  plant_.step(p_BH, time_ns - time_ns_);
   time_ns_ = time_ns;
 }
 
 void FalconOnUsb::hear_line(std::int64_t dt_ns) noexcept {
-  const Eigen::Vector3d exact = plant_.exact_counts();
+  const Eigen::Vector3d exact = wiring_.inputs(plant_.exact_counts());
   board_.set_encoders({exact[0], exact[1], exact[2]});
   board_.watch(time_ns_);
   board_.host_rate(chip_.rate());
@@ -53,7 +65,7 @@ void FalconOnUsb::hear_line(std::int64_t dt_ns) noexcept {
       amperes[i] = board_.asked().motors[static_cast<std::size_t>(i)] / kMotorValuesPerAmpere;
     }
   }
-  plant_.set_currents(amperes);
+  plant_.set_currents(wiring_.motors(amperes));
 }
 
 void FalconOnUsb::advance_to(std::int64_t time_ns) noexcept {

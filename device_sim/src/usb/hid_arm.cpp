@@ -5,12 +5,16 @@
 
 #include "thimble/device_sim/usb/usbip_session.h"
 #include "thimble/driver/arms/hfab/hfab_report.h"
+#include "thimble/driver/arms/woody/woody_report.h"
+#include "thimble/driver/little_endian.h"
 
 namespace thimble::device_sim::usb {
 namespace {
 
+using driver::get_word;
+using driver::put_word;
+
 constexpr std::uint8_t kInEndpoint = 0x81;
-constexpr std::size_t kWoodenHapticsReport = 8;
 
 // Requests of the HID class [HID 1.11, 7.2].
 enum HidRequest : std::uint8_t {
@@ -21,18 +25,6 @@ enum HidRequest : std::uint8_t {
 };
 constexpr std::uint8_t kInputReport = 1;
 constexpr std::uint8_t kOutputReport = 2;
-
-std::int16_t get_word(std::span<const std::byte> bytes, std::size_t word) noexcept {
-  const auto low = std::to_integer<unsigned>(bytes[2 * word]);
-  const auto high = std::to_integer<unsigned>(bytes[2 * word + 1]);
-  return static_cast<std::int16_t>(static_cast<std::uint16_t>(low | (high << 8)));
-}
-
-void put_word(std::span<std::byte> bytes, std::size_t word, std::int16_t value) noexcept {
-  const auto bits = static_cast<std::uint16_t>(value);
-  bytes[2 * word] = static_cast<std::byte>(bits & 0xff);
-  bytes[2 * word + 1] = static_cast<std::byte>(bits >> 8);
-}
 
 }  // namespace
 
@@ -46,10 +38,22 @@ HidArm::HidArm(HidLayout layout, UsbDescription description, const driver::hfab:
   keep_sample();
 }
 
+HidArm::HidArm(HidLayout layout, UsbDescription description,
+               const driver::JointModel<driver::LinkageArm>& model,
+               const SimulatedArmSettings& settings, HandPath path, std::uint64_t seed)
+    : layout_(layout),
+      description_(std::move(description)),
+      report_age_ns_(settings.wire.delay_in_ns),
+      arm_(model, settings, std::move(path), seed) {
+  model_.drives = model.drives;
+  model_.encoders = model.encoders;
+  keep_sample();
+}
+
 std::size_t HidArm::report_size() const noexcept {
   switch (layout_) {
     case HidLayout::kWoodenHaptics:
-      return kWoodenHapticsReport;
+      return driver::woody::kReportSize;
     case HidLayout::kPolhem:
       return driver::hfab::kReportSize;
     case HidLayout::kPolhemPadded:

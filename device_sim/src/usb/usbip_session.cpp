@@ -35,17 +35,16 @@ void UsbipSession::receive(std::span<const std::byte> bytes, bool available) {
   input_.erase(input_.begin(), input_.begin() + static_cast<std::ptrdiff_t>(taken));
 }
 
+// Tells whether a message is there; after one that is none there is no telling where the next
+// begins.
+bool UsbipSession::whole(Decode decoded) noexcept {
+  if (decoded == Decode::kInvalid) state_ = State::kClosing;
+  return decoded == Decode::kWhole;
+}
+
 std::size_t UsbipSession::ask(std::span<const std::byte> bytes, bool available) {
   UsbipRequest request;
-  switch (decode_request(bytes, request)) {
-    case Decode::kPartial:
-      return 0;
-    case Decode::kInvalid:
-      state_ = State::kClosing;
-      return 0;
-    case Decode::kWhole:
-      break;
-  }
+  if (!whole(decode_request(bytes, request))) return 0;
   const UsbDescription* offer = available ? &device_.description() : nullptr;
   if (request.kind == UsbipRequest::Kind::kList) {
     output_ = encode_list(offer, bus_id_);
@@ -60,15 +59,7 @@ std::size_t UsbipSession::ask(std::span<const std::byte> bytes, bool available) 
 
 std::size_t UsbipSession::command(std::span<const std::byte> bytes) {
   UsbipCommand decoded;
-  switch (decode_command(bytes, decoded)) {
-    case Decode::kPartial:
-      return 0;
-    case Decode::kInvalid:
-      state_ = State::kClosing;
-      return 0;
-    case Decode::kWhole:
-      break;
-  }
+  if (!whole(decode_command(bytes, decoded))) return 0;
   if (decoded.kind == UsbipCommand::Kind::kUnlink) {
     unlink(decoded);
     return decoded.size;

@@ -4,6 +4,7 @@
 
 #include <cstdlib>
 #include <fstream>
+#include <tuple>
 
 #include "feel_check.h"
 #include "real_arm.h"
@@ -142,6 +143,105 @@ TEST_F(CalibrationTest, FeelCheckSeesAWatchdogThatIsLaterThanTheFileSays) {
   ASSERT_EQ(results.size(), 8u);
   EXPECT_EQ(results.back().name, "watchdog");
   EXPECT_FALSE(results.back().passed) << results.back().text;
+}
+
+/// A mistake in the wiring of an arm, and the sentence that names it.
+struct Miswired {
+  const char* name;
+  void (*break_it)(device_sim::FirmwareSettings&);
+  const char* sentence;
+};
+
+const Miswired kMiswired[] = {
+    {"EncoderBackwards", [](auto& f) { f.wiring.encoder_gain[1] = -1; },
+     "Encoder 2 counts backwards."},
+    {"TwoEncodersBackwards", [](auto& f) { f.wiring.encoder_gain = Eigen::Vector3d(-1, 1, -1); },
+     "Encoder 1 counts backwards. Encoder 3 counts backwards."},
+    {"EncoderDead", [](auto& f) { f.wiring.encoder_gain[2] = 0; }, "Encoder 3 does not count."},
+    {"EncodersSwapped",
+     [](auto& f) {
+       f.wiring.encoder_of = {0, 2, 1};
+     },
+     "Encoder 2 does what 3 should: they are swapped."},
+    {"MotorBackwards", [](auto& f) { f.wiring.motor_gain[0] = -1; }, "Motor 1 pulls backwards."},
+    {"MotorDead", [](auto& f) { f.wiring.motor_gain[1] = 0; }, "Motor 2 does not pull."},
+    {"MotorsSwapped",
+     [](auto& f) {
+       f.wiring.motor_of = {1, 0, 2};
+     },
+     "Motor 1 does what 2 should: they are swapped."},
+    {"MotorsSwappedAndOneBackwards",
+     [](auto& f) {
+       f.wiring.motor_of = {0, 2, 1};
+       f.wiring.motor_gain[2] = -1;
+     },
+     "they are swapped"},
+};
+const char* const kArmFiles[] = {"vintage_phantom", "woodenhaptics", "polhem", "falcon"};
+
+/// Each arm with each mistake.
+class FeelCheckOfAMiswiredArm : public testing::TestWithParam<std::tuple<const char*, Miswired>> {};
+
+TEST_P(FeelCheckOfAMiswiredArm, NamesTheWireAndPushesNoHarder) {
+  const auto& [arm, mistake] = GetParam();
+  auto read = read_arm_file(std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms" /
+                            (std::string(arm) + ".yaml"));
+  ASSERT_TRUE(read) << read.error().message;
+  ArmFile file = std::move(read).value();
+  mistake.break_it(file.simulated.firmware);
+  auto bench =
+      BenchArm::open(file, std::nullopt, "", feel_check_hand({0, 0, 0}), kFeelCheckForceMax);
+  ASSERT_TRUE(bench) << bench.error().message;
+  const std::atomic<bool> stop{false};
+  const auto results = feel_check(
+      **bench, file, [](const std::string&) { return true; }, stop);
+  std::string said;
+  bool passed = true;
+  for (const CheckResult& result : results) {
+    said += result.name + ": " + result.text + "\n";
+    passed = passed && result.passed;
+  }
+  EXPECT_FALSE(passed);
+  EXPECT_NE(said.find(mistake.sentence), std::string::npos) << said;
+  EXPECT_LE((*bench)->true_force_max(), kFeelCheckForceMax) << said;
+  EXPECT_EQ((*bench)->device().f_sent_W().norm(), 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Arms, FeelCheckOfAMiswiredArm,
+                         testing::Combine(testing::ValuesIn(kArmFiles),
+                                          testing::ValuesIn(kMiswired)),
+                         [](const auto& instance) {
+                           return std::string(std::get<0>(instance.param)) +
+                                  std::get<1>(instance.param).name;
+                         });
+
+TEST_F(CalibrationTest, FeelCheckPassesEveryGoodArmAndPushesNoHarder) {
+  for (const char* arm : kArmFiles) {
+    SCOPED_TRACE(arm);
+    const auto file = read_arm_file(std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms" /
+                                    (std::string(arm) + ".yaml"));
+    ASSERT_TRUE(file);
+    auto bench =
+        BenchArm::open(*file, std::nullopt, "", feel_check_hand({0, 0, 0}), kFeelCheckForceMax);
+    ASSERT_TRUE(bench) << bench.error().message;
+    const std::atomic<bool> stop{false};
+    for (const CheckResult& result : feel_check(
+             **bench, *file, [](const std::string&) { return true; }, stop)) {
+      EXPECT_TRUE(result.passed) << result.name << ": " << result.text;
+    }
+    EXPECT_LE((*bench)->true_force_max(), kFeelCheckForceMax);
+    EXPECT_GT((*bench)->true_force_max(), 0.3);
+  }
+}
+
+TEST_F(CalibrationTest, FeelCheckSaysThatAnArmHasNoWatchdog) {
+  ArmFile careless = vintage();
+  careless.simulated.firmware.watchdog_ns = INT64_MAX / 4;
+  bool prompted_all = false;
+  const auto results = check_with(careless, prompted_all);
+  ASSERT_EQ(results.size(), 8u);
+  EXPECT_FALSE(results.back().passed);
+  EXPECT_NE(results.back().text.find("did not go off"), std::string::npos) << results.back().text;
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ SerialPose steps_from_home(double a, double b, double c) {
 }
 
 driver::hfab::InputReport sampled(const Firmware& firmware, const SerialPose& pose) {
-  return driver::hfab::decode_input(firmware.sample(pose)).value();
+  return driver::hfab::decode_input(firmware.sample(pose.angles())).value();
 }
 
 TEST(Firmware, CountsFromZeroAtHomeAndRoundsToTheNearestStep) {
@@ -54,8 +54,8 @@ TEST(Firmware, StepsTheTipAsFarAsTheGeometrySays) {
       Eigen::Vector3d counts(0, 0, 0);
       counts[joint] = steps;
       driver::ArmReading reading;
-      EXPECT_TRUE(
-          arm.decode(firmware.sample(steps_from_home(counts[0], counts[1], counts[2])), reading));
+      EXPECT_TRUE(arm.decode(
+          firmware.sample(steps_from_home(counts[0], counts[1], counts[2]).angles()), reading));
       return arm.pose(reading).p_BT;
     };
     EXPECT_EQ(tip(0.49), tip(-0.49));
@@ -74,7 +74,7 @@ TEST(Firmware, SendsFractionsOfCountsBelowTenNanometres) {
   for (int i = 0; i < 2000; ++i) {
     const Eigen::Vector3d p_BT = home_tip() + random.in_box(0.05);
     driver::ArmReading reading;
-    ASSERT_TRUE(arm.decode(firmware.sample(SerialPose(model.geometry, p_BT)), reading));
+    ASSERT_TRUE(arm.decode(firmware.sample(SerialPose(model.geometry, p_BT).angles()), reading));
     ASSERT_LT((arm.pose(reading).p_BT - p_BT).norm(), 1e-9);
   }
 }
@@ -84,7 +84,7 @@ TEST(Firmware, WrapsItsCountersAtSixteenBits) {
   const SerialPose home = steps_from_home(0, 0, 0);
   firmware.receive(driver::hfab::encode_output(
                        {.current_mA = {}, .command = 1, .attributes = {32767, -32768, 5}}),
-                   0, home);
+                   0, home.angles());
   EXPECT_EQ(sampled(firmware, home).counts,
             (std::array<std::int16_t, 6>{32767, -32768, 5, 0, 0, 0}));
   EXPECT_EQ(sampled(firmware, steps_from_home(1, -1, 0)).counts,
@@ -94,12 +94,12 @@ TEST(Firmware, WrapsItsCountersAtSixteenBits) {
 TEST(Firmware, PresetsAllCountersClearsTheButtonAndAsksForNoCurrent) {
   Firmware firmware(support::vintage_model(), {});
   const SerialPose pose = steps_from_home(10.3, 20.3, 30.3);
-  firmware.receive(drive_message(100, 200, 300), 0, pose);
+  firmware.receive(drive_message(100, 200, 300), 0, pose.angles());
   firmware.press_button();
   EXPECT_EQ(sampled(firmware, pose).info, 1);
   firmware.receive(
       driver::hfab::encode_output({.current_mA = {7, 8, 9}, .command = 1, .attributes = {1, 2, 3}}),
-      1, pose);
+      1, pose.angles());
   const auto report = sampled(firmware, pose);
   EXPECT_EQ(report.counts, (std::array<std::int16_t, 6>{1, 2, 3, 7, 8, 9}));
   EXPECT_EQ(report.info, 0);
@@ -110,14 +110,29 @@ TEST(Firmware, PresetsAllCountersClearsTheButtonAndAsksForNoCurrent) {
   EXPECT_EQ(sampled(firmware, steps_from_home(10.55, 20.55, 30.55)).counts[0], 2);
 }
 
+TEST(Firmware, SeesAndDrivesWhatIsPluggedIntoIt) {
+  FirmwareSettings settings;
+  settings.wiring.encoder_of = {1, 0, 2};
+  settings.wiring.encoder_gain = {1, -1, 0};
+  settings.wiring.motor_of = {0, 2, 1};
+  settings.wiring.motor_gain = {0, -1, 1};
+  Firmware firmware(support::vintage_model(), settings);
+  EXPECT_EQ(sampled(firmware, steps_from_home(100, 200, 300)).counts,
+            (std::array<std::int16_t, 6>{200, -100, 0, 0, 0, 0}));
+  firmware.receive(drive_message(1000, 2000, 3000), 0, steps_from_home(0, 0, 0).angles());
+  EXPECT_EQ(firmware.currents(), Eigen::Vector3d(0, 3, -2));
+  settings.wiring.motor_of = {0, 3, 1};
+  EXPECT_THROW(Firmware(support::vintage_model(), settings), std::invalid_argument);
+}
+
 TEST(Firmware, TakesACurrentBeyondItsRangeAsZero) {
   FirmwareSettings settings;
   settings.current_range_mA = 3000;
   Firmware firmware(support::vintage_model(), settings);
-  firmware.receive(drive_message(3000, 3001, -3000), 0, steps_from_home(0, 0, 0));
+  firmware.receive(drive_message(3000, 3001, -3000), 0, steps_from_home(0, 0, 0).angles());
   EXPECT_EQ(firmware.currents(), Eigen::Vector3d(3, 0, -3));
   EXPECT_EQ(firmware.counters().over_range, 1U);
-  firmware.receive(drive_message(-32768, 1, 32767), 0, steps_from_home(0, 0, 0));
+  firmware.receive(drive_message(-32768, 1, 32767), 0, steps_from_home(0, 0, 0).angles());
   EXPECT_EQ(firmware.currents(), Eigen::Vector3d(0, 0.001, 0));
   EXPECT_EQ(firmware.counters().over_range, 3U);
 }
@@ -125,12 +140,12 @@ TEST(Firmware, TakesACurrentBeyondItsRangeAsZero) {
 TEST(Firmware, IgnoresAndCountsMessagesOfUnknownLength) {
   Firmware firmware(support::vintage_model(), {});
   const SerialPose home = steps_from_home(0, 0, 0);
-  firmware.receive(drive_message(100, 0, 0), 0, home);
+  firmware.receive(drive_message(100, 0, 0), 0, home.angles());
   const std::array<std::byte, 65> bytes{};
   std::uint64_t malformed = 0;
   for (std::size_t size = 0; size <= bytes.size(); ++size) {
     if (size == driver::hfab::kReportSize || size == driver::hfab::kPaddedReportSize) continue;
-    firmware.receive(std::span<const std::byte>(bytes).first(size), 50'000'000, home);
+    firmware.receive(std::span<const std::byte>(bytes).first(size), 50'000'000, home.angles());
     ++malformed;
   }
   EXPECT_EQ(firmware.counters().malformed, malformed);
@@ -145,7 +160,7 @@ TEST(Firmware, StartsWithItsMotorsOffAndArmsItsWatchdogWithTheFirstMessage) {
   EXPECT_EQ(firmware.watchdog_due_ns(), Firmware::kNever_ns);
   firmware.watch(1'000'000'000'000);
   EXPECT_EQ(firmware.counters().watchdog_fired, 0U);
-  firmware.receive(drive_message(500, 0, 0), 7, steps_from_home(0, 0, 0));
+  firmware.receive(drive_message(500, 0, 0), 7, steps_from_home(0, 0, 0).angles());
   EXPECT_TRUE(firmware.motors_on());
   firmware.watch(100'000'006);
   EXPECT_EQ(firmware.currents().x(), 0.5);

@@ -174,7 +174,7 @@ TEST(SimulatedArm, IsAnIdealZeroOrderHoldWithoutDelay) {
     ASSERT_TRUE(report.has_value());
     arm.put_message(law(*report, k));
 
-    const auto direct = driver::hfab::decode_input(board.sample(plant.pose())).value();
+    const auto direct = driver::hfab::decode_input(board.sample(plant.q())).value();
     ASSERT_EQ(*report, direct) << k;
     const auto message = driver::hfab::decode_output(law(direct, k)).value();
     plant.set_currents({message.current_mA[0] * 1e-3, 0, 0});

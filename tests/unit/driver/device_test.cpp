@@ -6,6 +6,8 @@
 
 #include "support/scripted_transport.h"
 #include "support/vintage_arm.h"
+#include "thimble/driver/arms/hfab/hfab_models.h"
+#include "thimble/driver/arms/woody/woody_wire.h"
 
 namespace thimble::driver {
 namespace {
@@ -198,6 +200,60 @@ TEST_F(DeviceTest, SendsZeroWhenDeactivatedAndWhenDestroyed) {
   settle();
   device_.reset();
   EXPECT_EQ(last_currents(), kZero);
+}
+
+/// A WoodenHaptics arm, whose reports carry a number.
+class NumberedReports : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    say(0);
+    auto opened = Device::open(std::make_unique<support::ScriptedTransport>(wire_),
+                               std::make_unique<woody::WoodyArm>(hfab::woody_model()),
+                               support::vintage_settings(), 0);
+    ASSERT_TRUE(opened) << opened.error().message;
+    device_ = std::move(opened).value();
+    ASSERT_TRUE(device_->activate());
+  }
+  void say(int number) {
+    const auto bytes =
+        woody::encode_input({.counts = {7, 8, 9}, .counter = static_cast<std::uint16_t>(number)});
+    wire_.to_host.emplace_back(bytes.begin(), bytes.end());
+  }
+  bool tick(int number) {
+    say(number);
+    now_ns_ += kPeriod_ns;
+    device_->read(now_ns_, now_ns_);
+    device_->write({.f_T_W = {0, 0, 0.5}, .touch = {}});
+    return device_->state().fresh;
+  }
+
+  support::Wire wire_;
+  std::int64_t now_ns_ = 0;
+  std::unique_ptr<Device> device_;
+};
+
+TEST_F(NumberedReports, AreOldWhenTheyComeAgainAndStopTheForce) {
+  for (int k = 65500; k < 65600; ++k) ASSERT_TRUE(tick(k));  // the number wraps
+  ASSERT_GT(device_->f_sent_W().norm(), 0);
+  int ticks = 0;
+  while (device_->f_sent_W().norm() > 0 && ticks < 100) {
+    EXPECT_FALSE(tick(65599));
+    ++ticks;
+  }
+  EXPECT_EQ(ticks, 21);  // 20 ms, and the tick that notices
+  EXPECT_EQ(device_->fault(), Fault::kNoReports);
+  EXPECT_EQ(device_->wire_counters().repeated, 21u);
+}
+
+TEST_F(NumberedReports, ThatComeTwiceCostNothingButTheSecondOne) {
+  for (int k = 0; k < 200; ++k) EXPECT_EQ(tick(1 + k / 2), k % 2 == 0);
+  EXPECT_EQ(device_->fault(), Fault::kNone);
+  EXPECT_EQ(device_->wire_counters().repeated, 100u);
+}
+
+TEST_F(NumberedReports, AreTakenFromABoardThatDoesNotCount) {
+  for (int k = 0; k < 100; ++k) EXPECT_TRUE(tick(0));
+  EXPECT_EQ(device_->fault(), Fault::kNone);
 }
 
 }  // namespace

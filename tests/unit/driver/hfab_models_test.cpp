@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
 #include <cmath>
 
 #include "support/random.h"
@@ -51,6 +52,41 @@ TEST(HfabModels, PolhemHasTheJacobianOfCentralDifferences) {
   for (int i = 0; i < 2000; ++i) {
     EXPECT_LT(worst_jacobian_error(model.geometry, polhem_angles(random)), 1e-6);
   }
+}
+
+TEST(HfabModels, PolhemFindsTheAnglesOfEveryPlaceItReachesAsItIsBuilt) {
+  const LinkageArm arm = polhem_model().geometry;
+  const Eigen::Vector3d middle(0.2045, 0, 0.0325);  // of the workspace [S forsslund/hfabapi]
+  support::Random random(93);
+  int reached = 0;
+  for (int i = 0; i < 5000; ++i) {
+    const Eigen::Vector3d p_BT = middle + random.in_box(0.08);
+    const auto q = arm.inverse(p_BT);
+    if (!q) continue;
+    Eigen::Vector3d p;
+    Eigen::Matrix3d J;
+    arm.forward(*q, p, J);
+    ASSERT_LT((p - p_BT).norm(), 1e-12);
+    // The same way of closing the bars everywhere: a small step of the tip is one of the angles,
+    // as the Jacobian says, but at the very edge of reach.
+    const Eigen::Vector3d step(1e-6, -1e-6, 1e-6);
+    const Eigen::Vector3d turn = J.inverse() * step;
+    const auto next = arm.inverse(p_BT + step);
+    if (!next || turn.norm() > 1e-4) continue;
+    ASSERT_LT((*next - *q - turn).norm(), 0.01 * turn.norm());
+    ++reached;
+  }
+  EXPECT_GT(reached, 4500);
+  EXPECT_FALSE(arm.inverse({0.6, 0, 0}));
+  EXPECT_FALSE(arm.inverse({NAN, 0, 0}));
+  // Parked, all counters are zero.
+  const auto model = polhem_model();
+  const Eigen::Vector3d q_parked = model.joint_angles({});
+  Eigen::Vector3d p_parked;
+  Eigen::Matrix3d J;
+  arm.forward(q_parked, p_parked, J);
+  ASSERT_TRUE(arm.inverse(p_parked));
+  EXPECT_LT((*arm.inverse(p_parked) - q_parked).norm(), 1e-9);
 }
 
 TEST(HfabModels, PolhemClosesItsLinkage) {

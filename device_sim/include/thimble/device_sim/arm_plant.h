@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "thimble/device_sim/axis_dynamics.h"
+#include "thimble/device_sim/plant.h"
 #include "thimble/device_sim/serial_pose.h"
 #include "thimble/device_sim/settings.h"
 #include "thimble/driver/motor_currents.h"
@@ -21,7 +22,7 @@ namespace thimble::device_sim {
 /// velocity. That is the plant's one error of integration: second order in the sub-step, relative
 /// to the force about (v dt / length)^2, i.e. 1e-6 at 0.1 m/s and 1 ms. Each axis then moves
 /// exactly.
-class ArmPlant {
+class ArmPlant final : public Plant {
  public:
   /// Is the longest sub-step, ns.
   static constexpr std::int64_t kStepMax_ns = 1'000'000;
@@ -33,31 +34,19 @@ class ArmPlant {
            const PlantSettings& plant, const HandSettings& hand, const MotorSettings& motors,
            const Eigen::Vector3d& p_BT, const Eigen::Vector3d& p_BH);
 
-  /// Sets what the amplifiers are asked for, A. They saturate at MotorSettings::current_max;
-  /// what is not a number counts as zero. Real-time: safe.
-  void set_currents(const Eigen::Vector3d& amperes) noexcept;
+  void set_currents(const Eigen::Vector3d& amperes) noexcept override;
+  void step(const Eigen::Vector3d& p_BH, std::int64_t dt_ns) noexcept override;
+  Eigen::Vector3d p_BT() const noexcept override { return {axes_[0].x, axes_[1].x, axes_[2].x}; }
+  Eigen::Vector3d v_BT() const noexcept override { return {axes_[0].v, axes_[1].v, axes_[2].v}; }
+  const Eigen::Vector3d& p_BH() const noexcept override { return p_BH_; }
+  Eigen::Vector3d q() const noexcept override { return pose_.angles(); }
+  const Eigen::Vector3d& currents() const noexcept override { return amperes_; }
+  /// Tells the motors' force on the tip in the last sub-step, N. Real-time: safe.
+  Eigen::Vector3d f_T_B() const noexcept override { return f_T_B_; }
+  std::uint64_t stops() const noexcept override { return stops_; }
 
-  /// Lets 0 < dt_ns <= kStepMax_ns pass, while the point the hand wants moves evenly to p_BH (m).
-  /// At a mechanical stop (end of reach) the tip stays where it was, with no velocity. Real-time:
-  /// safe.
-  void step(const Eigen::Vector3d& p_BH, std::int64_t dt_ns) noexcept;
-
-  /// Tells where the tip is, m. Real-time: safe.
-  Eigen::Vector3d p_BT() const noexcept { return {axes_[0].x, axes_[1].x, axes_[2].x}; }
-  /// Tells how the tip moves, m/s. Real-time: safe.
-  Eigen::Vector3d v_BT() const noexcept { return {axes_[0].v, axes_[1].v, axes_[2].v}; }
-  /// Tells where the hand wants the tip, m. Real-time: safe.
-  const Eigen::Vector3d& p_BH() const noexcept { return p_BH_; }
   /// Shows the true pose of the links. Real-time: safe.
   const SerialPose& pose() const noexcept { return pose_; }
-  /// Tells the true joint angles, rad. Real-time: safe.
-  Eigen::Vector3d q() const noexcept { return pose_.angles(); }
-  /// Tells the currents that flow, A. Real-time: safe.
-  const Eigen::Vector3d& currents() const noexcept { return amperes_; }
-  /// Tells the motors' force on the tip in the last sub-step, N. Real-time: safe.
-  const Eigen::Vector3d& f_T_B() const noexcept { return f_T_B_; }
-  /// Tells how many sub-steps ended at a mechanical stop. Real-time: safe.
-  std::uint64_t stops() const noexcept { return stops_; }
   /// Tells what dry friction did in all axes. Real-time: safe.
   const AxisCounters& axis_counters() const noexcept { return dynamics_.counters(); }
 

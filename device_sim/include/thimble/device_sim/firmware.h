@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <span>
 
-#include "thimble/device_sim/serial_pose.h"
 #include "thimble/device_sim/settings.h"
 #include "thimble/driver/arms/hfab/hfab_arm.h"
 
@@ -32,16 +31,18 @@ class Firmware {
   /// Is the time of an event that is not going to happen, ns.
   static constexpr std::int64_t kNever_ns = INT64_MAX;
 
-  /// Throws std::invalid_argument if a period is not above zero, the range negative, or an encoder
-  /// has no counts. Real-time: never from the servo thread.
+  /// Takes motors and encoders of the model, not its geometry. Throws std::invalid_argument if a
+  /// period is not above zero, the range negative, an encoder has no counts, or the wiring names a
+  /// joint that is not there. Real-time: never from the servo thread.
   Firmware(const driver::hfab::HfabModel& model, const FirmwareSettings& settings);
 
-  /// Samples the encoders of an arm in this true pose into the report the board would send.
-  std::array<std::byte, driver::hfab::kReportSize> sample(const SerialPose& pose) const noexcept;
+  /// Samples the encoders of an arm at these true joint angles (rad) into the report the board
+  /// would send.
+  std::array<std::byte, driver::hfab::kReportSize> sample(const Eigen::Vector3d& q) const noexcept;
 
-  /// Takes a message that arrived at `time_ns` with the arm in this true pose.
+  /// Takes a message that arrived at `time_ns` with the arm at these true joint angles (rad).
   void receive(std::span<const std::byte> message, std::int64_t time_ns,
-               const SerialPose& pose) noexcept;
+               const Eigen::Vector3d& q) noexcept;
 
   /// Switches the motors off if no message came for the watchdog's time.
   void watch(std::int64_t time_ns) noexcept;
@@ -52,7 +53,7 @@ class Firmware {
   /// Presses the calibration button; its flag stays set until a preset.
   void press_button() noexcept { button_ = true; }
 
-  /// Tells the currents the amplifiers are asked for, A.
+  /// Tells the currents the motors are asked for, joint by joint, A.
   const Eigen::Vector3d& currents() const noexcept { return amperes_; }
 
   /// Tells whether the amplifiers are enabled.
@@ -61,8 +62,8 @@ class Firmware {
   const FirmwareCounters& counters() const noexcept { return counters_; }
 
  private:
-  Eigen::Vector3d counts_at(const SerialPose& pose) const noexcept;
-  void preset(const driver::hfab::OutputReport& message, const SerialPose& pose) noexcept;
+  Eigen::Vector3d counts_at(const Eigen::Vector3d& q) const noexcept;
+  void preset(const driver::hfab::OutputReport& message, const Eigen::Vector3d& q) noexcept;
 
   FirmwareSettings settings_;
   bool fractional_counts_;

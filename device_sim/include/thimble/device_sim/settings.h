@@ -1,5 +1,7 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <array>
 #include <cstdint>
 
 namespace thimble::device_sim {
@@ -29,6 +31,30 @@ struct MotorSettings {
   double current_max = 0;  ///< The amplifier saturates here, A. Must be > 0.
 };
 
+/// Describes how encoders and motors are plugged into the board: a well-made arm has the defaults,
+/// anything else is a mistake for a check to find.
+struct WiringSettings {
+  /// Names the joint whose encoder is plugged into each input of the board.
+  std::array<std::uint8_t, 3> encoder_of{0, 1, 2};
+  /// Is 1 for an encoder that counts as it should, -1 for one that counts backwards, 0 for a dead
+  /// one; one for each input.
+  Eigen::Vector3d encoder_gain{1, 1, 1};
+  /// Names the joint whose motor is plugged into each output of the board.
+  std::array<std::uint8_t, 3> motor_of{0, 1, 2};
+  /// Is 1 for a motor that pulls as it should, -1 for one with its wires swapped, 0 for a dead one;
+  /// one for each output.
+  Eigen::Vector3d motor_gain{1, 1, 1};
+
+  /// Throws std::invalid_argument if it names a joint that is not there. Real-time: never from the
+  /// servo thread.
+  void check() const;
+  /// Turns the encoders' counts, joint by joint, into those that the inputs see. Real-time: safe.
+  Eigen::Vector3d inputs(const Eigen::Vector3d& counts) const noexcept;
+  /// Turns the currents of the outputs into those of the motors, joint by joint, A. Real-time:
+  /// safe.
+  Eigen::Vector3d motors(const Eigen::Vector3d& outputs) const noexcept;
+};
+
 /// Describes the firmware. Sources of the defaults: device_sim/README.md.
 struct FirmwareSettings {
   std::int64_t report_period_ns = 1'000'000;  ///< One report is sampled and sent in each period.
@@ -36,6 +62,7 @@ struct FirmwareSettings {
   std::int64_t watchdog_ns = 100'000'000;
   /// A current beyond this counts as zero [S, DEVICES 1; the value is a guess].
   std::int16_t current_range_mA = 6000;
+  WiringSettings wiring;
 };
 
 /// Describes the way between host and firmware.

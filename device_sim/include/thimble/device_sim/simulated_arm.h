@@ -4,10 +4,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <variant>
 
 #include "thimble/device_sim/arm_plant.h"
 #include "thimble/device_sim/firmware.h"
 #include "thimble/device_sim/hand_path.h"
+#include "thimble/device_sim/inverse_plant.h"
 #include "thimble/device_sim/settings.h"
 #include "thimble/device_sim/tremor.h"
 #include "thimble/device_sim/wire_queue.h"
@@ -37,6 +39,9 @@ class SimulatedArm {
   /// of reach.
   SimulatedArm(const driver::hfab::HfabModel& model, const SimulatedArmSettings& settings,
                HandPath path, std::uint64_t seed = 0);
+  /// Builds an arm with a linkage (Polhem) in the same way; its encoders have steps.
+  SimulatedArm(const driver::JointModel<driver::LinkageArm>& model,
+               const SimulatedArmSettings& settings, HandPath path, std::uint64_t seed = 0);
 
   /// Lets time pass up to `time_ns`; a time in the past does nothing.
   void advance_to(std::int64_t time_ns) noexcept;
@@ -60,16 +65,26 @@ class SimulatedArm {
   /// Tells the present time, ns.
   std::int64_t time_ns() const noexcept { return time_ns_; }
   /// Shows the mechanics.
-  const ArmPlant& plant() const noexcept { return plant_; }
+  const Plant& plant() const noexcept {
+    return std::visit([](const auto& plant) -> const Plant& { return plant; }, plant_);
+  }
   /// Shows the board.
   const Firmware& firmware() const noexcept { return firmware_; }
   /// Tells where the hand wants to be, m.
-  const Eigen::Vector3d& p_BH() const noexcept { return plant_.p_BH(); }
+  const Eigen::Vector3d& p_BH() const noexcept { return plant().p_BH(); }
   /// Tells how many reports or messages were lost because more than WireQueue::kFrames were in
   /// flight.
   std::uint64_t wire_overflows() const noexcept { return reports_.dropped() + messages_.dropped(); }
 
  private:
+  using AnyPlant = std::variant<ArmPlant, LinkagePlant>;
+
+  SimulatedArm(const driver::hfab::HfabModel& board, AnyPlant plant,
+               const SimulatedArmSettings& settings, HandPath path, const Tremor& tremor);
+  Plant& mechanics() noexcept {
+    return std::visit([](auto& plant) -> Plant& { return plant; }, plant_);
+  }
+  const Eigen::Vector3d& angles() noexcept;
   Eigen::Vector3d wanted_at(std::int64_t time_ns) noexcept;
   void sample() noexcept;
   void receive(std::span<const std::byte> bytes) noexcept;
@@ -79,8 +94,10 @@ class SimulatedArm {
   WireSettings wire_;
   HandPath path_;
   Tremor tremor_;
-  ArmPlant plant_;
+  AnyPlant plant_;
   Firmware firmware_;
+  Eigen::Vector3d q_{0, 0, 0};  // at q_time_ns_; the firmware asks for it twice at one time
+  std::int64_t q_time_ns_ = -1;
   std::int64_t time_ns_ = 0;
   std::int64_t next_sample_ns_ = 0;
   WireQueue reports_, messages_;

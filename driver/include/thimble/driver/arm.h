@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "thimble/driver/motor_currents.h"
@@ -20,6 +21,8 @@ struct ArmReading {
   std::array<std::int32_t, 3> counts{};     ///< Motor encoders, counts.
   std::array<std::int32_t, 3> auxiliary{};  ///< Gimbal encoders or whatever the arm sends there.
   std::uint16_t buttons = 0;                ///< One bit each.
+  /// Is the report's own number, if the arm counts its reports; it tells old ones that come again.
+  std::optional<std::uint16_t> number = std::nullopt;
 };
 
 /// Holds where an arm is. Frames: B arm base, T tip.

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <memory>
+#include <optional>
 
 #include "thimble/driver/arm.h"
 #include "thimble/driver/device_state.h"
@@ -31,6 +32,7 @@ struct WireCounters {
   std::uint64_t skipped = 0;    ///< Reports dropped because a newer one was there.
   std::uint64_t missing = 0;    ///< Ticks without a new report.
   std::uint64_t refused = 0;    ///< Messages that the arm did not take.
+  std::uint64_t repeated = 0;   ///< Reports that came before, of an arm that numbers them.
   std::uint64_t replugged = 0;  ///< Times a lost wire was replaced.
 };
 
@@ -104,6 +106,7 @@ class Device {
   Device(std::unique_ptr<Transport> transport, std::unique_ptr<const Arm> arm,
          const DeviceSettings& settings) noexcept;
   bool take_report(std::int64_t now_ns, std::int64_t deadline_ns) noexcept;
+  bool came_before(const ArmReading& reading) noexcept;
   void take_offer(std::int64_t now_ns) noexcept;
   void begin_activity() noexcept;
   void send(const MotorCurrents& currents) noexcept;
@@ -122,6 +125,8 @@ class Device {
   bool started_ = false;  // a tick has been read
   bool lost_ = false;
   bool reported_ = false;  // a report came over this wire
+  bool numbered_ = false;  // two reports of this wire had different numbers
+  std::optional<std::uint16_t> number_;
   int refused_in_a_row_ = 0;
   std::int64_t refused_since_ns_ = 0;
   std::atomic<Transport*> offered_{nullptr}, retired_{nullptr};

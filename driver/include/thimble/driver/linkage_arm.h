@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 
 namespace thimble::driver {
 
@@ -28,6 +29,11 @@ struct LinkageArm {
   /// close, both are NaN, so that everything after gives zero force.
   void forward(const Eigen::Vector3d& q, Eigen::Vector3d& p_BT,
                Eigen::Matrix3d& J_BT) const noexcept;
+
+  /// Finds the joint angles that put the tip at p_BT (m), in the way the arm is built: elbow above
+  /// the line from the front motor to the tip, crank behind its bar. Empty if the bars do not
+  /// reach the point, or if it is not finite.
+  std::optional<Eigen::Vector3d> inverse(const Eigen::Vector3d& p_BT) const noexcept;
 };
 
 }  // namespace thimble::driver

@@ -10,6 +10,7 @@ bool ReportWire::decode(std::span<const std::byte> bytes, ArmReading& reading) n
   std::copy(report->counts.begin(), report->counts.end(), reading.counts.begin());
   reading.auxiliary = {report->counter, 0, 0};
   reading.buttons = 0;
+  reading.number = report->counter;
   return true;
 }
 

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "thimble/device_sim/usb/usb_arm.h"
-#include "thimble/driver/arms/hfab/hfab_arm.h"
 #include "thimble/driver/result.h"
 
 namespace thimble::device_sim::usb {
@@ -41,9 +40,8 @@ inline constexpr std::array<ShelfEntry, 4> kShelf{{
     {"falcon", "Novint Falcon, FTDI 0403:cb48, boots, takes firmware, homes"},
 }};
 
-/// Gives the geometry, motors and encoders of a HID arm on the shelf, for whoever drives it.
-/// Real-time: never from the servo thread.
-driver::hfab::HfabModel shelf_model(std::string_view name);
+/// Tells the kernel what a simulated Falcon is. Real-time: never from the servo thread.
+UsbDescription falcon_description(std::string serial);
 
 /// Makes an arm by its name. Fails with the list of names. The hand moves for ten minutes, then
 /// rests. Real-time: never from the servo thread.

@@ -4,8 +4,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "thimble/device_sim/delta_plant.h"
 #include "thimble/device_sim/hand_path.h"
+#include "thimble/device_sim/inverse_plant.h"
+#include "thimble/device_sim/tremor.h"
 #include "thimble/device_sim/usb/falcon_board.h"
 #include "thimble/device_sim/usb/ftdi_chip.h"
 #include "thimble/device_sim/usb/usb_arm.h"
@@ -20,7 +21,11 @@ class FalconOnUsb final : public UsbArm {
   /// Rests the arm at the path's first point. `image` is the firmware that it can run; empty if any
   /// will do. Throws as DeltaPlant does. Real-time: never from the servo thread.
   FalconOnUsb(UsbDescription description, const PlantSettings& plant, const HandSettings& hand,
-              HandPath path, std::vector<std::byte> image);
+              HandPath path, std::vector<std::byte> image, const WiringSettings& wiring = {},
+              std::uint64_t seed = 0);
+
+  /// Gives the hand another way, whose time 0 is now. Real-time: never from the servo thread.
+  void lead(HandPath path);
 
   const UsbDescription& description() const noexcept override { return description_; }
   void advance_to(std::int64_t time_ns) noexcept override;
@@ -40,6 +45,9 @@ class FalconOnUsb final : public UsbArm {
 
   UsbDescription description_;
   HandPath path_;
+  std::int64_t path_begin_ns_ = 0;
+  Tremor tremor_;
+  WiringSettings wiring_;
   DeltaPlant plant_;
   FalconBoard board_;
   FtdiChip chip_;

@@ -26,6 +26,10 @@ class HidArm final : public UsbArm {
   /// Throws as SimulatedArm does. Real-time: never from the servo thread.
   HidArm(HidLayout layout, UsbDescription description, const driver::hfab::HfabModel& model,
          const SimulatedArmSettings& settings, HandPath path, std::uint64_t seed = 0);
+  /// Makes an arm with a linkage in the same way.
+  HidArm(HidLayout layout, UsbDescription description,
+         const driver::JointModel<driver::LinkageArm>& model, const SimulatedArmSettings& settings,
+         HandPath path, std::uint64_t seed = 0);
 
   const UsbDescription& description() const noexcept override { return description_; }
   void advance_to(std::int64_t time_ns) noexcept override;
@@ -55,7 +59,7 @@ class HidArm final : public UsbArm {
 
   HidLayout layout_;
   UsbDescription description_;
-  driver::hfab::HfabModel model_;
+  driver::hfab::HfabModel model_;  // motors and encoders of either build
   std::int64_t report_age_ns_;
   SimulatedArm arm_;
   ArmTruth truth_;

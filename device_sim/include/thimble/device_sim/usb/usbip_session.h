@@ -81,6 +81,7 @@ class UsbipSession {
   };
   enum class Step : std::uint8_t { kWaits, kComplete, kGone };
 
+  bool whole(Decode decoded) noexcept;
   std::size_t ask(std::span<const std::byte> bytes, bool available);
   std::size_t command(std::span<const std::byte> bytes);
   void unlink(const UsbipCommand& command);

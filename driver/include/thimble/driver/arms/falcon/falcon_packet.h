@@ -6,6 +6,8 @@
 #include <optional>
 #include <span>
 
+#include "thimble/driver/frame_finder.h"
+
 namespace thimble::driver::falcon {
 
 // The 16-byte packets of the Novint Falcon's firmware [S libnifalcon
@@ -31,6 +33,10 @@ inline constexpr std::uint8_t kRedLight = 0x08;
 
 /// Is all three legs homed, as `ArmPacket::homed` tells it.
 inline constexpr std::uint8_t kAllHomed = 0x07;
+
+/// Is how packets stand out of the line's bytes.
+inline constexpr Framing kPacketFraming{
+    .begin = std::byte{'<'}, .end = std::byte{'>'}, .size_max = kPacketSize};
 
 /// Is what the host sends.
 struct HostPacket {

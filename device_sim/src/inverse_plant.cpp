@@ -1,4 +1,4 @@
-#include "thimble/device_sim/delta_plant.h"
+#include "thimble/device_sim/inverse_plant.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,35 +11,41 @@ constexpr double kDifference = 1e-6;  // m
 
 }  // namespace
 
-DeltaPlant::DeltaPlant(const driver::JointModel<driver::DeltaArm>& model,
-                       const PlantSettings& plant, const HandSettings& hand,
-                       const MotorSettings& motors, const Eigen::Vector3d& p_BT)
+template <class Geometry>
+InversePlant<Geometry>::InversePlant(const driver::JointModel<Geometry>& model,
+                                     const PlantSettings& plant, const HandSettings& hand,
+                                     const MotorSettings& motors, const Eigen::Vector3d& p_BT,
+                                     const Eigen::Vector3d& p_BH)
     : model_(model),
       current_max_(motors.current_max),
       dynamics_(plant, hand),
       axes_{AxisState{p_BT.x(), 0}, AxisState{p_BT.y(), 0}, AxisState{p_BT.z(), 0}},
-      p_BH_(p_BT) {
+      p_BH_(p_BH) {
   for (int i = 0; i < 3; ++i) {
     const driver::MotorDrive& drive = model.drives[static_cast<std::size_t>(i)];
     torque_per_ampere_[i] = drive.sign * drive.ratio * drive.torque_constant;
   }
   if (!torque_per_ampere_.allFinite() || !(current_max_ > 0 && current_max_ < HUGE_VAL)) {
     throw std::invalid_argument(
-        "The simulated delta arm's motors need finite constants and a current_max above zero (A).");
+        "The simulated arm's motors need finite constants and a current_max above zero (A).");
   }
   const auto q = model_.geometry.inverse(p_BT);
-  if (!q) throw std::invalid_argument("The simulated delta arm cannot reach its starting point.");
+  if (!q)
+    throw std::invalid_argument(
+        "The simulated arm cannot reach its starting point; start the hand's path within reach.");
   q_ = *q;
 }
 
-void DeltaPlant::set_currents(const Eigen::Vector3d& amperes) noexcept {
+template <class Geometry>
+void InversePlant<Geometry>::set_currents(const Eigen::Vector3d& amperes) noexcept {
   for (int i = 0; i < 3; ++i) {
     const double wanted = std::isnan(amperes[i]) ? 0.0 : amperes[i];
     amperes_[i] = std::clamp(wanted, -current_max_, current_max_);
   }
 }
 
-Eigen::Vector3d DeltaPlant::f_T_B() const noexcept {
+template <class Geometry>
+Eigen::Vector3d InversePlant<Geometry>::f_T_B() const noexcept {
   const Eigen::Vector3d tau = torque_per_ampere_.cwiseProduct(amperes_);
   Eigen::Vector3d force(0, 0, 0);
   if (tau.isZero(0)) return force;
@@ -53,7 +59,8 @@ Eigen::Vector3d DeltaPlant::f_T_B() const noexcept {
   return force;
 }
 
-void DeltaPlant::step(const Eigen::Vector3d& p_BH, std::int64_t dt_ns) noexcept {
+template <class Geometry>
+void InversePlant<Geometry>::step(const Eigen::Vector3d& p_BH, std::int64_t dt_ns) noexcept {
   if (!(dt_ns > 0)) return;
   const Eigen::Vector3d force = f_T_B();
   const Eigen::Vector3d v_BH = (p_BH - p_BH_) / (static_cast<double>(dt_ns) * 1e-9);
@@ -67,8 +74,12 @@ void DeltaPlant::step(const Eigen::Vector3d& p_BH, std::int64_t dt_ns) noexcept 
     q_ = *q;
     return;
   }
+  ++stops_;
   axes_ = before;
   for (AxisState& axis : axes_) axis.v = 0;
 }
+
+template class InversePlant<driver::DeltaArm>;
+template class InversePlant<driver::LinkageArm>;
 
 }  // namespace thimble::device_sim

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+
+namespace thimble::device_sim {
+
+/// Is the mechanics of an arm with a hand on it, whatever its build: motors pull on the joints, the
+/// tip moves as a mass with friction. Frames: B base, T tip, H where the hand wants to be. All
+/// functions are Real-time: safe.
+class Plant {
+ public:
+  virtual ~Plant() = default;
+
+  /// Sets what the amplifiers are asked for, A. They saturate; what is not a number counts as zero.
+  virtual void set_currents(const Eigen::Vector3d& amperes) noexcept = 0;
+
+  /// Lets 0 < dt_ns <= 1 ms pass, while the point the hand wants moves evenly to p_BH (m). At the
+  /// end of reach the tip stays where it was, with no velocity.
+  virtual void step(const Eigen::Vector3d& p_BH, std::int64_t dt_ns) noexcept = 0;
+
+  /// Tells where the tip is, m.
+  virtual Eigen::Vector3d p_BT() const noexcept = 0;
+  /// Tells how the tip moves, m/s.
+  virtual Eigen::Vector3d v_BT() const noexcept = 0;
+  /// Tells where the hand wants the tip, m.
+  virtual const Eigen::Vector3d& p_BH() const noexcept = 0;
+  /// Tells the true joint angles, rad.
+  virtual Eigen::Vector3d q() const noexcept = 0;
+  /// Tells the currents that flow, A.
+  virtual const Eigen::Vector3d& currents() const noexcept = 0;
+  /// Tells the motors' force on the tip, N.
+  virtual Eigen::Vector3d f_T_B() const noexcept = 0;
+  /// Tells how many sub-steps ended at a mechanical stop.
+  virtual std::uint64_t stops() const noexcept = 0;
+
+ protected:
+  Plant() = default;
+  Plant(const Plant&) = default;
+  Plant& operator=(const Plant&) = default;
+};
+
+}  // namespace thimble::device_sim

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "thimble/device_sim/usb/falcon_on_usb.h"
+#include "thimble/driver/clock.h"
+#include "thimble/driver/result.h"
+#include "thimble/driver/transport.h"
+
+namespace thimble::device_sim::usb {
+
+/// Is a simulated Falcon inside the program: the arm of `thimble plug falcon` with a host's bus in
+/// place of the kernel. It is booted, takes firmware and is homed by its own hand through the very
+/// bytes of a real one, before the path of the hand begins.
+class SimulatedFalcon {
+ public:
+  /// Builds the arm and brings it up; its hand then rests at the first point of `path`, with time 0
+  /// before it. Any firmware will do; without one it takes some bytes of its own. Throws
+  /// std::invalid_argument as DeltaPlant does; fails if the arm does not come up. Real-time: never
+  /// from the servo thread.
+  static driver::Result<std::unique_ptr<SimulatedFalcon>> make(const SimulatedArmSettings& settings,
+                                                               HandPath path,
+                                                               std::vector<std::byte> firmware,
+                                                               std::uint64_t seed = 0);
+
+  /// Makes the wire to it, whose frames of a millisecond pass as the clock does from time 0. Keeps
+  /// neither clock nor arm alive. Real-time: never from the servo thread.
+  std::unique_ptr<driver::Transport> wire(driver::Clock& clock);
+
+  /// Lets time pass up to `time_ns` of the clock with nobody on the bus. Real-time: safe.
+  void advance_to(std::int64_t time_ns) noexcept { falcon_.advance_to(begin_ns_ + time_ns); }
+
+  const FalconOnUsb& arm() const noexcept { return falcon_; }
+
+ private:
+  SimulatedFalcon(const SimulatedArmSettings& settings, const HandPath& path, std::uint64_t seed);
+  driver::Result<void> bring_up(std::vector<std::byte> firmware, const Eigen::Vector3d& p_BH);
+
+  FalconOnUsb falcon_;
+  std::int64_t begin_ns_ = 0;  // on the arm's own time
+};
+
+}  // namespace thimble::device_sim::usb

@@ -1,0 +1,83 @@
+#include "thimble/device_sim/usb/simulated_falcon.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "ftdi_bus.h"
+#include "thimble/device_sim/usb/arm_shelf.h"
+#include "thimble/driver/arms/falcon/falcon_arm.h"
+#include "thimble/driver/arms/falcon/falcon_boot.h"
+
+namespace thimble::device_sim::usb {
+namespace {
+
+// The hand pulls the grip out and pushes it in; the legs pass their homes within 15 mm of the
+// middle, whatever the rest of its way is.
+constexpr double kHomingReach = 0.020;          // m
+constexpr double kHomingStroke = 0.5;           // s from one end to the other
+constexpr std::int64_t kRest_ns = 500'000'000;  // until the grip stands still again
+
+HandPath homing_path(const Eigen::Vector3d& p_BH) {
+  const Eigen::Vector3d p_BM = driver::falcon::falcon_geometry().p_BM;
+  const Eigen::Vector3d out = p_BM + kHomingReach * Eigen::Vector3d::UnitZ();
+  const Eigen::Vector3d in = p_BM - kHomingReach * Eigen::Vector3d::UnitZ();
+  return HandPath({{0, p_BH},
+                   {kHomingStroke, out},
+                   {2 * kHomingStroke, in},
+                   {3 * kHomingStroke, out},
+                   {4 * kHomingStroke, p_BH}});
+}
+
+}  // namespace
+
+SimulatedFalcon::SimulatedFalcon(const SimulatedArmSettings& settings, const HandPath& path,
+                                 std::uint64_t seed)
+    : falcon_(falcon_description("SIM0001"), settings.plant, settings.hand,
+              HandPath({path.points().front()}), {}, settings.firmware.wiring, seed) {}
+
+driver::Result<std::unique_ptr<SimulatedFalcon>> SimulatedFalcon::make(
+    const SimulatedArmSettings& settings, HandPath path, std::vector<std::byte> firmware,
+    std::uint64_t seed) {
+  std::unique_ptr<SimulatedFalcon> arm(new SimulatedFalcon(settings, path, seed));
+  if (auto up = arm->bring_up(std::move(firmware), path.points().front().p_BH); !up) {
+    return up.error();
+  }
+  arm->falcon_.lead(std::move(path));
+  return arm;
+}
+
+driver::Result<void> SimulatedFalcon::bring_up(std::vector<std::byte> firmware,
+                                               const Eigen::Vector3d& p_BH) {
+  namespace falcon = driver::falcon;
+  if (firmware.empty()) firmware.assign(2 * falcon::kBlockSize, std::byte{0x5a});
+  FtdiBus bus(falcon_, 0);
+  FtdiBusLine line(bus);
+  const falcon::BootSettings quick{.settle_ms = 0};  // its pauses are of the world's time
+  if (auto loaded = falcon::upload_firmware(line, firmware, quick); !loaded) {
+    return loaded.error();
+  }
+  const std::int64_t homing_ns = bus.time_ns();
+  const HandPath way = homing_path(p_BH);
+  falcon_.lead(way);
+  const std::int64_t end_ns =
+      homing_ns + static_cast<std::int64_t>(way.points().back().time * 1e9) + kRest_ns;
+  falcon::HomingState state;
+  while (!state.done() && bus.time_ns() < end_ns) {
+    state = falcon::home_once(line, state.homed, quick);
+  }
+  if (!state.done()) {
+    return driver::Error{
+        "The simulated Falcon was not homed; its hand must begin inside of its workspace."};
+  }
+  // The arm's frames go on from here; the hand's way begins with one of them.
+  begin_ns_ = (std::max(bus.time_ns(), end_ns) / FtdiBus::kFrame_ns + 1) * FtdiBus::kFrame_ns;
+  while (bus.time_ns() < begin_ns_) bus.frame([](std::span<const std::byte>) {});
+  return {};
+}
+
+std::unique_ptr<driver::Transport> SimulatedFalcon::wire(driver::Clock& clock) {
+  return std::make_unique<FtdiBusTransport>(falcon_, clock, driver::falcon::kPacketFraming,
+                                            begin_ns_);
+}
+
+}  // namespace thimble::device_sim::usb

@@ -1,0 +1,52 @@
+#include "support/fake_hidapi.h"
+
+#include <hidapi.h>
+
+#include <algorithm>
+#include <cerrno>
+
+namespace thimble::support {
+
+FakeHidapi& fake_hidapi() {
+  static FakeHidapi only;
+  return only;
+}
+
+}  // namespace thimble::support
+
+using thimble::support::fake_hidapi;
+
+extern "C" {
+
+hid_device* hid_open_path(const char*) {
+  static int place = 0;
+  ++fake_hidapi().open;
+  return reinterpret_cast<hid_device*>(&place);
+}
+void hid_close(hid_device*) {
+  --fake_hidapi().open;
+}
+int hid_read_timeout(hid_device*, unsigned char* data, std::size_t length, int milliseconds) {
+  auto& hid = fake_hidapi();
+  hid.last_timeout_ms = milliseconds;
+  if (hid.gone) return -1;
+  if (hid.reports == 0) return 0;
+  --hid.reports;
+  const std::size_t size = std::min<std::size_t>(length, 8);
+  std::fill_n(data, size, static_cast<unsigned char>(0));
+  data[0] = ++hid.number;
+  return static_cast<int>(size);
+}
+int hid_write(hid_device*, const unsigned char* data, std::size_t length) {
+  auto& hid = fake_hidapi();
+  if (hid.write_error != 0) {
+    errno = hid.write_error;
+    return -1;
+  }
+  hid.last_message_size = std::min(length, hid.last_message.size());
+  std::copy_n(data, hid.last_message_size, hid.last_message.begin());
+  ++hid.messages;
+  return static_cast<int>(length);
+}
+
+}  // extern "C"

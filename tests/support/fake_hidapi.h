@@ -1,0 +1,26 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace thimble::support {
+
+/// Is hidapi with one scripted arm, for programs that link fake_hidapi.cpp: its functions stand in
+/// for the library's. Nothing here asks the heap for anything.
+struct FakeHidapi {
+  int reports = 0;           ///< Waiting to be read; each holds its number.
+  std::uint8_t number = 0;   ///< Of the last report that was read.
+  bool gone = false;         ///< Reads fail.
+  int write_error = 0;       ///< errno of a write; 0: it goes well.
+  int last_timeout_ms = -1;  ///< Of the last read.
+  std::uint64_t messages = 0;
+  std::array<unsigned char, 130> last_message{};
+  std::size_t last_message_size = 0;
+  int open = 0;
+};
+
+/// Gives the only one.
+FakeHidapi& fake_hidapi();
+
+}  // namespace thimble::support
