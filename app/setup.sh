@@ -14,6 +14,7 @@ packages=(
   libassimp-dev zlib1g-dev               # OBJ, STL and PLY files
   libpng-dev                             # pictures felt as heights
   libyaml-cpp-dev nlohmann-json3-dev     # scenes in, reports out
+  libhdf5-dev                            # recordings
   libspdlog-dev libcli11-dev             # messages and arguments of the program
   gnuplot-nox fonts-dejavu-core          # pictures
   libgtest-dev libbenchmark-dev          # tests and benchmarks

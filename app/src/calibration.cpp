@@ -1,14 +1,13 @@
 #include "calibration.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
-#include <cstdlib>
 #include <fstream>
 #include <ostream>
 #include <system_error>
 
 #include "real_arm.h"
+#include "user_folders.h"
 #include "yaml_reader.h"
 
 namespace thimble::app {
@@ -35,17 +34,7 @@ void put(std::ostream& stream, const char* key, const std::array<Number, 3>& num
 }  // namespace
 
 fs::path calibration_file(const std::string& name) {
-  std::string safe = name;
-  for (char& c : safe) {
-    const bool good = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_';
-    if (!good) c = '_';
-  }
-  const char* config = std::getenv("XDG_CONFIG_HOME");
-  const char* user = std::getenv("HOME");
-  fs::path folder = config != nullptr && *config != 0
-                        ? fs::path(config)
-                        : fs::path(user != nullptr ? user : "/") / ".config";
-  return folder / "thimble/arms" / (safe + ".yaml");
+  return config_folder() / "arms" / (as_file_name(name) + ".yaml");
 }
 
 driver::Result<std::optional<Calibration>> load_calibration(const std::string& name) {

@@ -17,6 +17,7 @@
 #include "meshes.h"
 #include "pictures.h"
 #include "real_arm.h"
+#include "recording/write_black_box.h"
 #include "replug_watch.h"
 #include "report.h"
 #include "session.h"
@@ -34,18 +35,33 @@ struct RunOptions {
   std::string report;
   std::string arm_file;
   std::string firmware;
+  std::string record;
   bool yes = false;
 };
 
+/// Writes the seconds around a fault, if one came, where a person finds them.
+void keep_black_box(Session& session) {
+  const auto ticks = session.black_box().take();
+  if (ticks.empty()) return;
+  const auto written = write_black_box(ticks, session.recording_info());
+  if (written) {
+    std::fprintf(stderr, "thimble: the last seconds before the fault are in %s\n",
+                 written->c_str());
+  } else {
+    complain(written.error(), kExitTrouble);
+  }
+}
+
 /// Tells a person on a terminal how far the run is, until it ends.
 /// Watches over a real arm meanwhile.
-void show_progress(const Session& session, const std::atomic<bool>& ended, ReplugWatch* watch) {
+void show_progress(Session& session, const std::atomic<bool>& ended, ReplugWatch* watch) {
   const bool on_terminal = isatty(STDERR_FILENO) != 0;
   const double total = static_cast<double>(session.ticks_planned()) *
                        static_cast<double>(session.period_ns()) * 1e-9;
   while (!ended.load()) {
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
     if (watch != nullptr) watch->step();
+    if (session.black_box().full()) keep_black_box(session);
     driver::TickRecord record;
     if (!on_terminal || !session.snapshot().load(record)) continue;
     const double force = Eigen::Map<const Eigen::Vector3d>(record.f_sent_W.data()).norm();
@@ -133,6 +149,7 @@ int run_scene(const RunOptions& options) {
   session_options.arm_file = options.arm_file;
   session_options.real_arm = real_arm;
   session_options.firmware = options.firmware;
+  session_options.record = options.record;
   if (real_arm) session_options.clock = ClockKind::kWall;
   if (real_arm && !may_begin(*real_arm, options.yes)) return kExitBadInput;
   auto opened = Session::open(options.scene, session_options);
@@ -144,8 +161,17 @@ int run_scene(const RunOptions& options) {
   if (real_arm) watch = std::make_unique<ReplugWatch>(session, *real_arm, options.firmware);
   driver::RealTimeGrant grant;
   const driver::ServoEnd end = run_session(session, session_options.clock, grant, watch.get());
+  keep_black_box(session);
   if (!grant.advice.empty()) spdlog::warn("{}", grant.advice);
 
+  if (session.recorder() != nullptr) {
+    // The touch went on, whatever became of the recording: the exit code is the touch's.
+    if (const auto finished = session.recorder()->finish(); !finished) {
+      complain(finished.error(), kExitTrouble);
+    } else {
+      std::printf("Recording: %s\n", options.record.c_str());
+    }
+  }
   const RunReport report = report_of(session, session_options.clock, end, grant);
   std::printf("%s", summary(report).c_str());
   if (!options.report.empty()) {
@@ -207,6 +233,9 @@ void add_run_command(CLI::App& app, int& exit_code) {
       ->check(CLI::IsMember({"virtual", "wall"}))
       ->capture_default_str();
   command->add_option("--report", options->report, "Folder for report.json and pictures");
+  command->add_option(
+      "--record", options->record,
+      "Recording of every tick to write (HDF5; thimble export makes a table of it)");
   command->add_option("--seed", options->seed, "Seed of everything random; the scene's if absent");
   command->callback([options, &exit_code] { exit_code = run_scene(*options); });
 }

@@ -2,9 +2,12 @@
 
 #include <cmath>
 #include <cstdio>
+#include <fstream>
+#include <iterator>
 #include <utility>
 #include <vector>
 
+#include "build_info.h"
 #include "calibration.h"
 #include "hand_route.h"
 #include "real_arm.h"
@@ -79,6 +82,11 @@ driver::Result<std::unique_ptr<render::SceneTouch>> build_touch(
     objects.push_back(std::move(touch).value());
   }
   return std::make_unique<render::SceneTouch>(std::move(objects));
+}
+
+std::string text_of(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
 }
 
 /// Adds the triangles of one mesh to another.
@@ -159,11 +167,39 @@ driver::Result<std::unique_ptr<Session>> Session::open(const std::filesystem::pa
   if (!device) return device.error();
   session->device_ = std::move(device).value();
   if (auto activated = session->device_->activate(); !activated) return activated.error();
-  session->pages_by_thread_ = options.clock == ClockKind::kWall || options.real_arm.has_value();
-  if (session->pages_by_thread_) {
+  session->by_thread_ = options.clock == ClockKind::kWall || options.real_arm.has_value();
+  if (session->by_thread_) {
     for (const auto& pages : session->pages_) pages->start_loader();
   }
+  session->scene_file_ = scene_file;
+  session->device_name_ = options.real_arm ? options.real_arm->name() : "sim";
+  session->black_box_ = std::make_unique<BlackBox>(session->scene_.rate);
+  if (!options.record.empty()) {
+    auto recorder = Recorder::open(options.record, session->recording_info(), session->ticks_);
+    if (!recorder) return recorder.error();
+    session->recorder_ = std::move(recorder).value();
+    if (session->by_thread_) session->recorder_->start_thread();
+  }
   return session;
+}
+
+RecordingInfo Session::recording_info() const {
+  const BuildInfo build = build_info();
+  std::string program = "thimble";
+  for (const std::string_view part : {build.version, build.revision, build.type, build.compiler}) {
+    if (!part.empty()) program.append(" ").append(part);
+  }
+  return {.scene = scene_.name,
+          .scene_file = std::filesystem::absolute(scene_file_).lexically_normal().string(),
+          .scene_text = text_of(scene_file_),
+          .arm = scene_.arm.name,
+          .arm_file = std::filesystem::absolute(scene_.arm_file).lexically_normal().string(),
+          .arm_text = text_of(scene_.arm_file),
+          .device = device_name_,
+          .clock = by_thread_ ? "wall" : "virtual",
+          .program = program,
+          .rate = scene_.rate,
+          .seed = seed_};
 }
 
 driver::Result<void> Session::plan_simulation(const std::filesystem::path& scene_file,
@@ -199,13 +235,16 @@ void Session::operator()(const driver::TickRecord& record) noexcept {
   snapshot_.store(record);
   (*statistics_)(record);
   (*trace_)(record);
-  if (pages_by_thread_) return;
+  (*black_box_)(record);
+  if (recorder_) (*recorder_)(record);
+  if (by_thread_) return;
   // In virtual time a tick lasts as long as it computes: the disk is as fast as one could wish, and
   // every run is the same.
   for (const auto& pages : pages_) {
     while (pages->serve() > 0) {
     }
   }
+  if (recorder_ && recorder_->waiting() >= Recorder::kRingTicks / 2) recorder_->serve();
 }
 
 std::optional<render::PagingCounters> Session::paging() const {

@@ -9,6 +9,9 @@
 #include <vector>
 
 #include "arm_simulation.h"
+#include "recording/black_box.h"
+#include "recording/recorder.h"
+#include "recording/recording_info.h"
 #include "run_statistics.h"
 #include "scene_file.h"
 #include "thimble/driver/clock.h"
@@ -34,6 +37,7 @@ struct SessionOptions {
   std::filesystem::path arm_file;            ///< in place of the scene's own; empty: the scene's
   std::optional<driver::FoundArm> real_arm;  ///< in place of the simulated one
   std::filesystem::path firmware;            ///< for a real arm that needs some (Falcon)
+  std::filesystem::path record;              ///< where every tick is written; empty: nowhere
 };
 
 /// Is one scene, loaded and joined: clock, simulated arm, wire, device, touch, and who keeps the
@@ -70,6 +74,12 @@ class Session {
   const RunStatistics& statistics() const { return *statistics_; }
   const Trace& trace() const { return *trace_; }
   const driver::Snapshot<driver::TickRecord>& snapshot() const { return snapshot_; }
+  /// Gives the recording; nullptr if none was asked for.
+  Recorder* recorder() { return recorder_.get(); }
+  /// Gives what always keeps the last seconds.
+  BlackBox& black_box() { return *black_box_; }
+  /// Says what this session is, for its recordings.
+  RecordingInfo recording_info() const;
   std::uint64_t seed() const { return seed_; }
   std::uint64_t ticks_planned() const { return ticks_; }
   std::int64_t period_ns() const { return period_ns_; }
@@ -89,15 +99,19 @@ class Session {
   std::uint64_t seed_ = 0;
   std::uint64_t ticks_ = 0;
   std::int64_t period_ns_ = 0;
+  std::filesystem::path scene_file_;
+  std::string device_name_;
   std::unique_ptr<driver::Clock> clock_;
   std::unique_ptr<ArmSimulation> simulation_;
   std::unique_ptr<driver::Device> device_;  // holds the wire to the simulation, so it goes first
   std::vector<std::shared_ptr<render::PagedSurface>> pages_;  // of the objects on the disk
-  bool pages_by_thread_ = false;
+  bool by_thread_ = false;  // whether threads load pages and write recordings
   std::unique_ptr<render::SceneTouch> touch_;
   std::unique_ptr<RunStatistics> statistics_;
   std::unique_ptr<Trace> trace_;
   driver::Snapshot<driver::TickRecord> snapshot_;
+  std::unique_ptr<Recorder> recorder_;
+  std::unique_ptr<BlackBox> black_box_;
 };
 
 }  // namespace thimble::app

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace thimble::app {
+
+/// Tells where a user's settings for Thimble lie: $XDG_CONFIG_HOME/thimble, or
+/// ~/.config/thimble [XDG Base Directory Specification].
+std::filesystem::path config_folder();
+
+/// Tells where what Thimble keeps on a user's behalf lies: $XDG_STATE_HOME/thimble, or
+/// ~/.local/state/thimble [XDG Base Directory Specification].
+std::filesystem::path state_folder();
+
+/// Turns any name into one that is safe as a file's: other signs than letters, digits, - and _
+/// become _.
+std::string as_file_name(const std::string& name);
+
+}  // namespace thimble::app

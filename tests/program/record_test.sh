@@ -1,0 +1,38 @@
+#!/usr/bin/env bash
+# Every tick is recorded, whatever becomes of the program, and the last seconds before a fault always.
+source "$(dirname "$0")/expect.sh" "$@"
+[ -f "$THIMBLE_MESHES/elephant.off" ] || { echo "Needs the scanned meshes"; exit 77; }
+scene=$source_dir/app/scenes/elephant.yaml
+export XDG_STATE_HOME=$PWD/state
+rm -rf state
+
+expect 0 'Recording: run.h5' "$thimble" run "$scene" --duration 2 --record run.h5
+expect 0 '2000 ticks of elephant at 1000 Hz' "$thimble" export run.h5 --csv run.csv
+expect 0 'p_WT.x \[m\],p_WT.y \[m\]' head -1 run.csv
+expect 0 '^2001$' grep -c '' run.csv
+
+# The disk says no.
+expect 2 'no/such/folder' "$thimble" run "$scene" --duration 1 --record no/such/folder/run.h5
+expect 2 'not a recording' "$thimble" export "$scene" --csv x.csv
+expect 2 'no such file' "$thimble" export none.h5 --csv x.csv
+
+# Killed in the middle, the recording can be read all the same.
+"$thimble" run "$scene" --clock wall --duration 60 --record killed.h5 >/dev/null 2>&1 &
+pid=$!
+sleep 2
+kill -9 $pid
+wait $pid 2>/dev/null
+expect 0 'ticks of elephant at 1000 Hz; the recording was cut off' \
+  "$thimble" export killed.h5 --csv killed.csv
+
+# A loop that stood still is a fault: the seconds before it are kept without being asked for.
+"$thimble" run "$scene" --clock wall --duration 60 >stalled 2>&1 &
+pid=$!
+sleep 2
+kill -STOP $pid
+sleep 0.5
+kill -CONT $pid
+wait $pid
+expect 0 'the last seconds before the fault are in .*loop_stalled.h5' cat stalled
+expect 0 'ticks of elephant' "$thimble" export state/thimble/faults/*loop_stalled.h5 --csv fault.csv
+finish
