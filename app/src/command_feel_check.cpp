@@ -5,8 +5,8 @@
 #include "arm_choice.h"
 #include "calibration.h"
 #include "commands.h"
+#include "complain.h"
 #include "enter_key.h"
-#include "exit_code.h"
 #include "feel_check.h"
 #include "interrupt.h"
 
@@ -39,20 +39,17 @@ int listen_to(BenchArm& bench, double duration, const std::atomic<bool>& stop) {
 int check_arm(const ArmChoice& choice, double listen) {
   auto chosen = resolve(choice);
   if (!chosen) {
-    std::fprintf(stderr, "thimble: %s\n", chosen.error().message.c_str());
-    return kExitNoDevice;
+    return complain(chosen.error(), kExitNoDevice);
   }
   const auto calibration = load_calibration(chosen->name);
   if (!calibration) {
-    std::fprintf(stderr, "thimble: %s\n", calibration.error().message.c_str());
-    return kExitBadInput;
+    return complain(calibration.error(), kExitBadInput);
   }
   if (*calibration) apply(**calibration, chosen->file);
   auto bench = BenchArm::open(chosen->file, chosen->real_arm, choice.firmware,
                               feel_check_hand({0, 0, 0}), kFeelCheckForceMax);
   if (!bench) {
-    std::fprintf(stderr, "thimble: %s\n", bench.error().message.c_str());
-    return kExitNoDevice;
+    return complain(bench.error(), kExitNoDevice);
   }
   const std::atomic<bool>& stop = catch_interrupts();
   if (listen > 0) return listen_to(**bench, listen, stop);

@@ -14,7 +14,7 @@
 #include <utility>
 
 #include "commands.h"
-#include "exit_code.h"
+#include "complain.h"
 #include "interrupt.h"
 #include "thimble/device_sim/usb/arm_shelf.h"
 #include "thimble/device_sim/usb/usb_fault.h"
@@ -213,15 +213,13 @@ int plug(const PlugOptions& options) {
   if (!options.firmware.empty()) {
     auto image = driver::falcon::read_firmware(options.firmware);
     if (!image) {
-      std::fprintf(stderr, "thimble: %s\n", image.error().message.c_str());
-      return kExitBadInput;
+      return complain(image.error(), kExitBadInput);
     }
     shelf.firmware = std::move(*image);
   }
   auto arm = usb::make_usb_arm(options.arm, shelf);
   if (!arm) {
-    std::fprintf(stderr, "thimble: %s\n", arm.error().message.c_str());
-    return kExitBadInput;
+    return complain(arm.error(), kExitBadInput);
   }
   usb::FaultyDevice device(**arm, options.seed);
   if (!options.faults.empty() && !obey_file(device, options.faults)) return kExitBadInput;
@@ -238,8 +236,7 @@ int plug(const PlugOptions& options) {
   }
   auto server = usb::UsbipServer::open(device, {.address = options.address, .port = options.port});
   if (!server) {
-    std::fprintf(stderr, "thimble: %s\n", server.error().message.c_str());
-    return kExitTrouble;
+    return complain(server.error(), kExitTrouble);
   }
   say_what_to_do(**server, options);
 
