@@ -120,7 +120,7 @@ if [ $status != 0 ] && grep -qiE "could not load|failed to|not supported|Could n
 fi
 
 grep -aE '^(PASS|FAIL|FIGURE|NOTE|END)' "$log" || true
-grep -aE '^FIGURE' "$log" | awk '
+{ grep -aE '^FIGURE' "$log" || true; } | awk '
   BEGIN { print "[" }
   { printf "%s  {\"name\": \"usb.%s\", \"value\": %s, \"unit\": \"%s\"}", (NR > 1 ? ",\n" : ""), $2, $3, $4 }
   END { print "\n]" }' >"$work/figures.json"

@@ -8,8 +8,10 @@
 
 #include "support/usb_host_line.h"
 #include "thimble/device_sim/usb/arm_shelf.h"
+#include "thimble/device_sim/usb/simulated_falcon.h"
 #include "thimble/driver/arms/falcon/falcon_arm.h"
 #include "thimble/driver/arms/falcon/falcon_boot.h"
+#include "thimble/driver/device.h"
 
 namespace thimble::device_sim::usb {
 namespace {
@@ -212,6 +214,82 @@ TEST(DeltaPlant, StopsAtTheEndOfReach) {
   for (int i = 0; i < 3000; ++i) plant.step(far, 1'000'000);
   EXPECT_TRUE(plant.p_BT().allFinite());
   EXPECT_TRUE(model.geometry.inverse(plant.p_BT()).has_value());
+}
+
+/// Is a driver of a Falcon inside the program, whose hand goes 10 mm to the side in a second.
+struct InProgram {
+  explicit InProgram(std::vector<std::byte> firmware = {}) {
+    SimulatedArmSettings settings;
+    settings.plant = {.mass = 0.15, .viscous = 0.005, .coulomb = 0.04};
+    settings.hand.stiffness = 300;
+    settings.hand.damping = 3;
+    const Eigen::Vector3d p_BM = driver::falcon::falcon_geometry().p_BM;
+    auto made = SimulatedFalcon::make(settings, HandPath({{0, p_BM}, {1, p_BM + p_MH}}),
+                                      std::move(firmware));
+    EXPECT_TRUE(made) << made.error().message;
+    falcon = std::move(made).value();
+    driver::DeviceSettings limits;
+    limits.limits = {.force_max = 2,
+                     .speed_max = 3,
+                     .rise_max = 2000,
+                     .soft_start = 0.01,
+                     .stall_ns = 20'000'000,
+                     .watchdog_ns = 100'000'000};
+    auto opened = driver::Device::open(
+        falcon->wire(clock),
+        std::make_unique<driver::falcon::FalconArm>(driver::falcon::falcon_model()), limits, 0);
+    EXPECT_TRUE(opened) << opened.error().message;
+    device = std::move(opened).value();
+  }
+  void tick(const Eigen::Vector3d& f_T_W) {
+    clock.sleep_until_ns(clock.now_ns() + 1'000'000);
+    device->read(clock.now_ns(), clock.now_ns());
+    device->write({.f_T_W = f_T_W, .touch = {}});
+  }
+
+  const Eigen::Vector3d p_MH{0.01, 0, 0};
+  std::unique_ptr<SimulatedFalcon> falcon;
+  driver::VirtualClock clock;
+  std::unique_ptr<driver::Device> device;  // holds the wire to it, so it goes first
+};
+
+TEST(SimulatedFalcon, IsHomedBeforeItsHandBeginsAndSaysWhereItIs) {
+  InProgram run(std::vector<std::byte>(1500, std::byte{7}));
+  EXPECT_TRUE(run.falcon->arm().board().running());
+  EXPECT_EQ(run.falcon->arm().board().uploaded(), 1500u);
+  const Eigen::Vector3d p_BM = driver::falcon::falcon_geometry().p_BM;
+  EXPECT_LT((run.device->state().p_WT - p_BM).norm(), 5e-4);  // but for dry friction
+  int fresh = 0;
+  for (int k = 0; k < 1200; ++k) {
+    run.tick({0, 0, 0});
+    fresh += run.device->state().fresh ? 1 : 0;
+    // A tick old, at a centimetre a second, and a count or two.
+    ASSERT_LT((run.device->state().p_WT - run.falcon->arm().truth().p_BT).norm(), 1.5e-4) << k;
+  }
+  EXPECT_GE(fresh, 1198);
+  EXPECT_LT((run.device->state().p_WT - p_BM - run.p_MH).norm(), 5e-4);
+}
+
+TEST(SimulatedFalcon, PushesItsHandAndRepeatsItself) {
+  InProgram first, second;
+  ASSERT_TRUE(first.device->activate());
+  ASSERT_TRUE(second.device->activate());
+  for (int k = 0; k < 500; ++k) {
+    first.tick({0, 0.6, 0});
+    second.tick({0, 0.6, 0});
+    ASSERT_EQ(first.device->state().counts, second.device->state().counts) << k;
+  }
+  EXPECT_NEAR(first.falcon->arm().plant().f_T_B().y(), 0.6, 0.01);
+  first.device->deactivate();
+  first.falcon->advance_to(first.clock.now_ns() + 2'000'000);
+  EXPECT_EQ(first.falcon->arm().truth().currents.norm(), 0);
+}
+
+TEST(SimulatedFalcon, MustBeginWithinReach) {
+  SimulatedArmSettings settings;
+  settings.plant.mass = 0.1;
+  EXPECT_THROW((void)SimulatedFalcon::make(settings, HandPath({{0, {1, 0, 0}}}), {}),
+               std::invalid_argument);
 }
 
 }  // namespace
