@@ -83,12 +83,10 @@ Json to_json(const RunReport& report) {
                       {"ticks_missing_a_page", report.paging->misses},
                       {"short_of_room", report.paging->short_of_frames}};
   }
-  json["wire"] = {{"reports", report.wire.reports},
-                  {"rejected", report.wire.rejected},
-                  {"skipped", report.wire.skipped},
-                  {"repeated", report.wire.repeated},
-                  {"missing", report.wire.missing},
-                  {"ticks_without_report", run.missing_reports()}};
+  json["wire"] = {
+      {"reports", report.wire.reports}, {"rejected", report.wire.rejected},
+      {"skipped", report.wire.skipped}, {"repeated", report.wire.repeated},
+      {"missing", report.wire.missing}, {"ticks_without_report", run.missing_reports()}};
   json["gate"] = {{"limited", report.gate.limited},
                   {"rise_limited", report.gate.rise_limited},
                   {"soft_started", report.gate.soft_started},

@@ -42,19 +42,20 @@ SimulatedArm::SimulatedArm(const driver::hfab::HfabModel& board, AnyPlant plant,
 
 SimulatedArm::SimulatedArm(const driver::hfab::HfabModel& model,
                            const SimulatedArmSettings& settings, HandPath path, std::uint64_t seed)
-    : SimulatedArm(
+    // Braces take their arguments in order: the path is moved after its last use.
+    : SimulatedArm{
           model,
           ArmPlant(model.geometry, model.drives, settings.plant, settings.hand, settings.motors,
                    path.points().front().p_BH, wanted_first(path, Tremor(settings.hand, seed))),
-          settings, path, Tremor(settings.hand, seed)) {}
+          settings, std::move(path), Tremor(settings.hand, seed)} {}
 
 SimulatedArm::SimulatedArm(const driver::JointModel<driver::LinkageArm>& model,
                            const SimulatedArmSettings& settings, HandPath path, std::uint64_t seed)
-    : SimulatedArm(
+    : SimulatedArm{
           board_of(model),
           LinkagePlant(model, settings.plant, settings.hand, settings.motors,
                        path.points().front().p_BH, wanted_first(path, Tremor(settings.hand, seed))),
-          settings, path, Tremor(settings.hand, seed)) {}
+          settings, std::move(path), Tremor(settings.hand, seed)} {}
 
 const Eigen::Vector3d& SimulatedArm::angles() noexcept {
   if (q_time_ns_ != time_ns_) {
