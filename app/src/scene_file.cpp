@@ -123,6 +123,12 @@ SceneObject read_object(YamlMap map, const std::filesystem::path& folder,
     surroundings.surface_damping = object.damping;
     object.effects = read_effects(map, folder, surroundings);
   }
+  if (map.has("body")) {
+    if (object.shape || object.paged) {
+      map.reject("body", "only a mesh that is in memory has a body; put it on an object with mesh");
+    }
+    object.body = read_body(map, folder, surroundings);
+  }
   map.finish();
   return object;
 }
