@@ -70,7 +70,8 @@ driver::Result<std::unique_ptr<render::SceneTouch>> build_touch(
     const SceneObject& object = scene.objects[i];
     const render::SurfaceChoice surface{
         .spring = {.stiffness = object.stiffness, .damping = object.damping},
-        .effects = object.effects};
+        .effects = object.effects,
+        .dent = object.body.dent};
     if (object.build_field || object.shape) {
       objects.push_back(object.build_field
                             ? object.build_field()

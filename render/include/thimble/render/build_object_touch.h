@@ -1,9 +1,11 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "thimble/driver/result.h"
+#include "thimble/render/body/dent_settings.h"
 #include "thimble/render/contact_choice.h"
 #include "thimble/render/effect/effect_table.h"
 #include "thimble/render/mesh/triangle_mesh.h"
@@ -18,6 +20,7 @@ namespace thimble::render {
 struct SurfaceChoice {
   SpringDamper spring;
   std::vector<EffectPlan> effects;
+  std::optional<DentSettings> dent;  ///< Of a mesh in memory; others are stiff.
 };
 
 /// Builds the force law of one object (mesh in W, m) from just the stages that `choice` and

@@ -5,6 +5,8 @@
 
 #include "thimble/driver/device_state.h"
 #include "thimble/driver/force_command.h"
+#include "thimble/render/body/body_patch.h"
+#include "thimble/render/contact/contact_mesh.h"
 
 namespace thimble::render {
 
@@ -23,6 +25,13 @@ class ObjectTouch {
   /// Tells whether a point (W, m) lies inside the object; for checks beside the servo.
   /// Real-time: safe unless the object is on the disk; one question to its search.
   virtual bool inside(const Eigen::Vector3d& p_W) const noexcept = 0;
+
+  /// Gives the mesh whose triangles TouchInfo::feature names, if there is one in full.
+  virtual const ContactMesh* mesh() const noexcept { return nullptr; }
+
+  /// Draws what of the object has left its place (body_patch.h); false, and `patch` is left alone,
+  /// if the object is stiff. Real-time: safe; for the rate of a picture.
+  virtual bool draw(BodyPatch& /*patch*/) noexcept { return false; }
 };
 
 /// Is an ObjectTouch made of a Touch with its stages known at compile time. `Stages` is callable
@@ -37,6 +46,13 @@ class ObjectTouchOf final : public ObjectTouch {
   }
   bool inside(const Eigen::Vector3d& p_W) const noexcept override {
     return stages_.contact().search().inside(p_W);
+  }
+  const ContactMesh* mesh() const noexcept override {
+    if constexpr (requires { stages_.contact().mesh(); }) {
+      return &stages_.contact().mesh();
+    } else {
+      return nullptr;
+    }
   }
 
   const Stages& stages() const noexcept { return stages_; }

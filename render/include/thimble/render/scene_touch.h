@@ -43,6 +43,20 @@ class SceneTouch {
     return false;
   }
 
+  /// Draws the dent of the first object that has one; false, and `patch` is left alone, if no
+  /// object can dent. Real-time: safe; for the rate of a picture.
+  bool draw(BodyPatch& patch) noexcept {
+    bool any = false;
+    for (std::size_t i = 0; i < objects_.size(); ++i) {
+      if (!objects_[i]->draw(patch)) continue;
+      any = true;
+      if (patch.triangle_count == 0) continue;
+      patch.object = static_cast<std::int16_t>(i);
+      break;
+    }
+    return any;
+  }
+
   std::size_t size() const noexcept { return objects_.size(); }
   const ObjectTouch& object(std::size_t i) const noexcept { return *objects_[i]; }
 
