@@ -84,7 +84,7 @@ void BendablePolygon::touch(std::int32_t triangle, const Eigen::Vector3d& weight
   for (std::size_t k = 0; k < 3; ++k) {
     const auto a = static_cast<Eigen::Index>(k);
     const Eigen::Index b = (a + 1) % 3;
-    const double both = 4 * weights[a] * weights[b];
+    const double both = 2 * weights[a] * weights[b];
     const double sum = both + weights[3 - a - b];
     const Eigen::Vector3d& from = mesh_->position(triangle, k);
     const Eigen::Vector3d side = mesh_->position(triangle, (k + 1) % 3) - from;

@@ -20,7 +20,7 @@ namespace thimble::render {
 struct SurfaceChoice {
   SpringDamper spring;
   std::vector<EffectPlan> effects;
-  std::optional<DentSettings> dent;  ///< Of a mesh in memory; others are stiff.
+  std::optional<DentSettings> dent = {};  ///< Of a mesh in memory; others are stiff.
 };
 
 /// Builds the force law of one object (mesh in W, m) from just the stages that `choice` and
