@@ -1,6 +1,7 @@
 #include "thimble/render/body/bendable_polygon.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -13,6 +14,10 @@ namespace {
 // Points that split keep this far from the ends of what they split, as a share of it, so that no
 // triangle that is drawn is without area. A thousandth of a triangle is below what anybody sees.
 constexpr double kApart = 1e-3;
+
+// No hand is as fast, m/s [STABILITY 7: strokes of 2 m/s]: what jumps farther in a tick is not
+// handed on by dampers as a blow.
+constexpr double kSpeedMax = 10;
 
 }  // namespace
 
@@ -57,7 +62,7 @@ void BendablePolygon::go_to(std::int32_t triangle) noexcept {
 void BendablePolygon::touch(std::int32_t triangle, const Eigen::Vector3d& weights,
                             const Eigen::Vector3d& p_WT) noexcept {
   // Written so that NaN means no touch.
-  if (!(weights.minCoeff() >= 0 && weights.sum() > 0.5 && within_range(p_WT))) {
+  if (!(weights.minCoeff() >= 0 && std::abs(weights.sum() - 1) < 1e-6 && within_range(p_WT))) {
     rest();
     return;
   }
@@ -72,7 +77,11 @@ void BendablePolygon::touch(std::int32_t triangle, const Eigen::Vector3d& weight
   const auto& corners = mesh_->corners(triangle);
   DentMotion::CursorSpring spring;
   spring.target = cursor_;
-  if (was_touching) spring.rate = (cursor_ - last) / settings.step;
+  if (was_touching) {
+    spring.rate = (cursor_ - last) / settings.step;
+    const double speed = spring.rate.norm();
+    if (speed > kSpeedMax) spring.rate *= kSpeedMax / speed;
+  }
   for (std::size_t k = 0; k < 3; ++k) {
     const double w = weights[static_cast<Eigen::Index>(k)];
     spring.stiffness = settings.reach * motion_.stiffness() * (w / std::max(1 - w, 1e-12));

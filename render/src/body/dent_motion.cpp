@@ -14,9 +14,12 @@ namespace {
 constexpr double kShareOfLimit = 0.98;
 constexpr int kSubstepsMax = 64;
 
-// A vertex has settled where it keeps less than this of the largest dent: nobody sees a ten
-// thousandth of it end.
-constexpr double kSettled = 1e-4;
+// A vertex has settled where it keeps less than this of the largest dent: nobody sees a thousandth
+// of it end.
+constexpr double kSettled = 1e-3;
+
+// Rounds end where what is left moves no vertex by more than this share of the largest dent.
+constexpr double kStill = 1e-5;
 
 // Ticks between two looks at what has settled.
 constexpr int kLookEvery = 16;
@@ -24,6 +27,10 @@ constexpr int kLookEvery = 16;
 // A cursor spring so much stiffer than the surface is rigid to 1e-6 of the dent; stiffer ones would
 // only cost digits.
 constexpr double kRigid = 1e6;
+
+// Nothing swings faster, m/s: strokes are up to 2 m/s [STABILITY 7]. What the cursor throws farther
+// in one tick, as by a lost contact that is found elsewhere, takes energy out here, never in.
+constexpr double kSpeedMax = 10;
 
 }  // namespace
 
@@ -34,8 +41,10 @@ DentMotion::DentMotion(std::shared_ptr<const VertexLinks> links, const DentSetti
       damping_{settings.damping, settings.neighbour_damping} {
   places_.resize(at(links_->vertex_count()));
   const std::size_t room = std::min(kNodesMax, places_.size());
-  for (auto* each : {&u_, &v_, &b_, &w_, &r_, &p_, &q_}) each->assign(room, Vector::Zero());
-  for (auto* each : {&sum_, &diagonal_, &extra_}) each->assign(room, 0);
+  for (auto* each : {&u_, &v_, &b_, &w_, &q_}) each->assign(room, Lane::Zero());
+  for (auto* each : {&wf_, &rf_, &pf_, &qf_}) each->assign(room, Lanef::Zero());
+  for (auto* each : {&sum_, &extra_}) each->assign(room, 0);
+  for (auto* each : {&inverse_, &extraf_}) each->assign(room, 0);
   vertices_.reserve(room);
   gathered_.reserve(room);
   link_begin_.assign(room + 1, 0);
@@ -161,14 +170,14 @@ void DentMotion::prune() noexcept {
 void DentMotion::take_over() noexcept {
   for (std::size_t i = 0; i < gathered_.size(); ++i) {
     const std::int32_t slot = places_[at(gathered_[i])].slot;
-    w_[i] = slot < 0 ? Vector::Zero() : u_[at(slot)];
-    r_[i] = slot < 0 ? Vector::Zero() : v_[at(slot)];
+    w_[i] = slot < 0 ? Lane(0, 0, 0, 0) : u_[at(slot)];
+    q_[i] = slot < 0 ? Lane(0, 0, 0, 0) : v_[at(slot)];
   }
   for (const std::int32_t vertex : vertices_) places_[at(vertex)].slot = -1;
   for (Grip& grip : grips_) grip.slot = -1;
   vertices_.swap(gathered_);
   u_.swap(w_);
-  v_.swap(r_);
+  v_.swap(q_);
   for (std::size_t i = 0; i < vertices_.size(); ++i) {
     places_[at(vertices_[i])].slot = static_cast<std::int32_t>(i);
   }
@@ -184,7 +193,8 @@ void DentMotion::link_up() noexcept {
     for (const std::int32_t other : others) {
       const std::int32_t slot = places_[at(other)].slot;
       if (slot < 0) continue;
-      link_list_.push_back({slot, VertexLinks::weight(valence, links_->valence(other))});
+      link_list_.push_back(
+          {slot, static_cast<float>(VertexLinks::weight(valence, links_->valence(other)))});
     }
     link_begin_[i + 1] = static_cast<std::uint32_t>(link_list_.size());
     sum_[i] = links_->sum(vertex);
@@ -201,8 +211,10 @@ void DentMotion::pull(std::size_t k, std::int32_t vertex, const CursorSpring& sp
                      spring.rate.squaredNorm() < kInfinite;
   grip.slot = right ? places_[at(vertex)].slot : -1;
   if (grip.slot < 0) return;
-  grip.spring = spring;
-  grip.spring.stiffness = std::min(spring.stiffness, kRigid * stiffness());
+  grip.stiffness = std::min(spring.stiffness, kRigid * stiffness());
+  grip.damping = spring.damping;
+  grip.target.head<3>() = spring.target;
+  grip.rate.head<3>() = spring.rate;
   largest_ = std::max(largest_, spring.target.norm());
 }
 
@@ -211,17 +223,11 @@ void DentMotion::step() noexcept {
   if (resting()) return;
   for (int i = 0; i < substeps_; ++i) {
     switch (settings_.integrator) {
-      case SpringScheme::kExplicitEuler:
-        accelerate();
-        drift(h_);
-        for (std::size_t n = 0; n < vertices_.size(); ++n) v_[n] += h_ * b_[n];
-        reach_out(h_);
-        break;
       case SpringScheme::kSymplecticEuler:
         accelerate();
         for (std::size_t n = 0; n < vertices_.size(); ++n) v_[n] += h_ * b_[n];
-        reach_out(h_);
         drift(h_);
+        reach_out();
         break;
       case SpringScheme::kVerlet:
         verlet();
@@ -230,7 +236,8 @@ void DentMotion::step() noexcept {
         implicit(0.5);
         break;
       case SpringScheme::kImplicitEuler:
-      case SpringScheme::kExponential:  // build() refuses these two
+      case SpringScheme::kExplicitEuler:  // build() refuses these three
+      case SpringScheme::kExponential:
       case SpringScheme::kModal:
         implicit(1);
         break;
@@ -240,48 +247,53 @@ void DentMotion::step() noexcept {
     grip.force /= substeps_;
     grip.slot = -1;
   }
+  for (std::size_t i = 0; i < vertices_.size(); ++i) {
+    const double speed = v_[i].squaredNorm();
+    if (speed > kSpeedMax * kSpeedMax) v_[i] *= kSpeedMax / std::sqrt(speed);
+  }
   if (vertices_.size() > wanted_ && --until_look_ <= 0) prune();
 }
 
-DentMotion::Vector DentMotion::row(const Weights& weights, std::size_t i,
-                                   const Vector* x) const noexcept {
-  Vector sum = Vector::Zero();
+template <class Value>
+Value DentMotion::row(const Weights& weights, std::size_t i,
+                      const std::vector<Value>& x) const noexcept {
+  using Number = typename Value::Scalar;
+  Value sum = Value::Zero();
   for (std::uint32_t e = link_begin_[i]; e < link_begin_[i + 1]; ++e) {
-    sum += link_list_[e].weight * x[at(link_list_[e].slot)];
+    sum += Number{link_list_[e].weight} * x[at(link_list_[e].slot)];
   }
-  return (weights.node + weights.link * sum_[i]) * x[i] - weights.link * sum;
-}
-
-DentMotion::Vector DentMotion::spring_force(std::size_t i) const noexcept {
-  return -row(stiffness_, i, u_.data()) - row(damping_, i, v_.data());
+  return static_cast<Number>(weights.node + weights.link * sum_[i]) * x[i] -
+         static_cast<Number>(weights.link) * sum;
 }
 
 // Tells what a cursor spring does to its vertex while that stands where it is, N.
-DentMotion::Vector DentMotion::cursor_force(const Grip& grip, std::size_t i) const noexcept {
-  return grip.spring.stiffness * (grip.spring.target - u_[i]) +
-         grip.spring.damping * grip.spring.rate;
+DentMotion::Lane DentMotion::cursor_force(const Grip& grip, std::size_t i) const noexcept {
+  return grip.stiffness * (grip.target - u_[i]) + grip.damping * grip.rate;
 }
 
 // Finds what springs and dampers do to each vertex, m/s^2, in b_.
 void DentMotion::accelerate() noexcept {
-  for (std::size_t i = 0; i < vertices_.size(); ++i) b_[i] = spring_force(i) / settings_.mass;
+  for (std::size_t i = 0; i < vertices_.size(); ++i) {
+    b_[i] = -1 / settings_.mass * (row(stiffness_, i, u_) + row(damping_, i, v_));
+  }
 }
 
 void DentMotion::drift(double time) noexcept {
   for (std::size_t i = 0; i < vertices_.size(); ++i) u_[i] += time * v_[i];
 }
 
-// Lets the cursor's springs act such that they hold at the end of the drift that is to come.
-void DentMotion::reach_out(double drift) noexcept {
+// Lets the cursor's springs act at the end of the step, by an impulse J that moves a vertex by
+// h J / m: J = h (k (target - u) + c (rate - v)) there. However stiff, it neither overshoots nor
+// rings.
+void DentMotion::reach_out() noexcept {
   for (Grip& grip : grips_) {
     if (grip.slot < 0) continue;
-    Vector& v = v_[at(grip.slot)];
-    const Vector before = v;
-    const double k = h_ * grip.spring.stiffness;
-    const double c = h_ * grip.spring.damping;
-    v = (settings_.mass * v + k * (grip.spring.target - u_[at(grip.slot)]) + c * grip.spring.rate) /
-        (settings_.mass + drift * k + c);
-    grip.force += settings_.mass / h_ * (v - before);
+    const std::size_t i = at(grip.slot);
+    const double weight = settings_.mass + h_ * (h_ * grip.stiffness + grip.damping);
+    const Lane kick = h_ / weight * (cursor_force(grip, i) - grip.damping * v_[i]);
+    v_[i] += kick;
+    u_[i] += h_ * kick;
+    grip.force += settings_.mass / h_ * kick.head<3>();
   }
 }
 
@@ -289,15 +301,13 @@ void DentMotion::reach_out(double drift) noexcept {
 void DentMotion::verlet() noexcept {
   drift(h_ / 2);
   const std::size_t n = vertices_.size();
-  for (std::size_t i = 0; i < n; ++i) b_[i] = -row(stiffness_, i, u_.data());
+  for (std::size_t i = 0; i < n; ++i) b_[i] = -row(stiffness_, i, u_);
   for (std::size_t i = 0; i < n; ++i) {
-    q_[i] = v_[i] + h_ / 2 / settings_.mass * (b_[i] - row(damping_, i, v_.data()));
+    q_[i] = v_[i] + h_ / 2 / settings_.mass * (b_[i] - row(damping_, i, v_));
   }
-  for (std::size_t i = 0; i < n; ++i) {
-    v_[i] += h_ / settings_.mass * (b_[i] - row(damping_, i, q_.data()));
-  }
-  reach_out(h_ / 2);
+  for (std::size_t i = 0; i < n; ++i) v_[i] += h_ / settings_.mass * (b_[i] - row(damping_, i, q_));
   drift(h_ / 2);
+  reach_out();
 }
 
 // One substep of implicit Euler (share 1) or of the trapezoid rule (share 1/2), w the velocity:
@@ -306,18 +316,20 @@ void DentMotion::verlet() noexcept {
 void DentMotion::implicit(double share) noexcept {
   const double s = share * h_;
   const std::size_t n = vertices_.size();
-  const Weights system{settings_.mass + s * damping_.node + s * s * stiffness_.node,
-                       s * damping_.link + s * s * stiffness_.link};
+  // In units of a vertex's own weight, so that no stiffness leaves the range of single precision.
+  Weights system{settings_.mass + s * damping_.node + s * s * stiffness_.node,
+                 s * damping_.link + s * s * stiffness_.link};
+  const double unit = system.node + 6 * system.link;
+  system = {system.node / unit, system.link / unit};
+  const double per_unit = 1 / unit;
   for (std::size_t i = 0; i < n; ++i) {
-    b_[i] = settings_.mass * v_[i] - s * row(stiffness_, i, u_.data());
-    diagonal_[i] = system.node + system.link * sum_[i];
+    b_[i] = per_unit * (settings_.mass * v_[i] - s * row(stiffness_, i, u_));
   }
   for (const Grip& grip : grips_) {
     if (grip.slot < 0) continue;
     const std::size_t i = at(grip.slot);
-    b_[i] += s * cursor_force(grip, i);
-    extra_[i] = s * (h_ * grip.spring.stiffness + grip.spring.damping);
-    diagonal_[i] += extra_[i];
+    b_[i] += per_unit * s * cursor_force(grip, i);
+    extra_[i] = per_unit * s * (h_ * grip.stiffness + grip.damping);
   }
   solve(system);
   for (Grip& grip : grips_) {
@@ -325,54 +337,67 @@ void DentMotion::implicit(double share) noexcept {
     // What the vertex needed beside its own springs: unlike the stretch of a stiff spring this
     // loses no digits.
     const std::size_t i = at(grip.slot);
-    const Vector own = b_[i] - s * cursor_force(grip, i);
-    grip.force += (row(system, i, w_.data()) - own) / s;
-    extra_[i] = 0;
+    const Lane own = b_[i] - per_unit * s * cursor_force(grip, i);
+    grip.force += unit / s * (row(system, i, w_) - own).head<3>();
   }
   for (std::size_t i = 0; i < n; ++i) {
     u_[i] += h_ * w_[i];
-    v_[i] = share == 1 ? w_[i] : Vector(2 * w_[i] - v_[i]);
+    if (share == 1) {
+      v_[i] = w_[i];
+    } else {
+      // Beyond the middle of the step by the trapezoid rule; a vertex that the cursor holds does
+      // not swing on.
+      const double held = extra_[i] / (system.node + system.link * sum_[i] + extra_[i]);
+      v_[i] = w_[i] + (1 - held) * (w_[i] - v_[i]);
+    }
+  }
+  for (const Grip& grip : grips_) {
+    if (grip.slot >= 0) extra_[at(grip.slot)] = 0;
   }
 }
 
 // Solves for w by conjugate gradients from v on, and scales it as SpringMotion does.
 void DentMotion::solve(const Weights& system) noexcept {
   const std::size_t n = vertices_.size();
-  double start = 0;
-  double rz = 0;
-  for (std::size_t i = 0; i < n; ++i) w_[i] = v_[i];
+  float start = 0;
+  float rz = 0;
+  for (std::size_t i = 0; i < n; ++i) wf_[i] = v_[i].cast<float>();
   for (std::size_t i = 0; i < n; ++i) {
-    q_[i] = row(system, i, w_.data()) + extra_[i] * w_[i];
-    r_[i] = b_[i] - q_[i];
-    p_[i] = r_[i] / diagonal_[i];
-    start += b_[i].squaredNorm() / diagonal_[i];
-    rz += r_[i].dot(p_[i]);
+    extraf_[i] = static_cast<float>(extra_[i]);
+    inverse_[i] = static_cast<float>(1 / (system.node + system.link * sum_[i] + extra_[i]));
+    const Lanef b = b_[i].cast<float>();
+    rf_[i] = b - row(system, i, wf_) - extraf_[i] * wf_[i];
+    pf_[i] = inverse_[i] * rf_[i];
+    start += inverse_[i] * b.squaredNorm();
+    rz += rf_[i].dot(pf_[i]);
   }
-  const double end = settings_.remainder * settings_.remainder * start;
-  double wb = 0;
-  double waw = 0;
+  const double still = kStill * largest_ / h_;
+  const auto end = static_cast<float>(
+      std::max(settings_.remainder * settings_.remainder * double{start}, still * still));
   for (int round = 0; round < settings_.rounds && rz > end; ++round) {
-    double pq = 0;
+    float pq = 0;
     for (std::size_t i = 0; i < n; ++i) {
-      q_[i] = row(system, i, p_.data()) + extra_[i] * p_[i];
-      pq += p_[i].dot(q_[i]);
+      qf_[i] = row(system, i, pf_) + extraf_[i] * pf_[i];
+      pq += pf_[i].dot(qf_[i]);
     }
     if (!(pq > 0)) break;
-    const double alpha = rz / pq;
-    double rz_next = 0;
+    const float alpha = rz / pq;
+    float rz_next = 0;
     for (std::size_t i = 0; i < n; ++i) {
-      w_[i] += alpha * p_[i];
-      r_[i] -= alpha * q_[i];
-      rz_next += r_[i].squaredNorm() / diagonal_[i];
+      wf_[i] += alpha * pf_[i];
+      rf_[i] -= alpha * qf_[i];
+      rz_next += inverse_[i] * rf_[i].squaredNorm();
     }
-    const double beta = rz_next / rz;
-    for (std::size_t i = 0; i < n; ++i) p_[i] = r_[i] / diagonal_[i] + beta * p_[i];
+    const float beta = rz_next / rz;
+    for (std::size_t i = 0; i < n; ++i) pf_[i] = inverse_[i] * rf_[i] + beta * pf_[i];
     rz = rz_next;
   }
-  // A w = b - r by the rounds' own sums.
+  double wb = 0;
+  double waw = 0;
+  for (std::size_t i = 0; i < n; ++i) w_[i] = wf_[i].cast<double>();
   for (std::size_t i = 0; i < n; ++i) {
     wb += w_[i].dot(b_[i]);
-    waw += w_[i].dot(b_[i] - r_[i]);
+    waw += w_[i].dot(row(system, i, w_) + extra_[i] * w_[i]);
   }
   const double scale = waw > 0 ? wb / waw : 0;
   for (std::size_t i = 0; i < n; ++i) w_[i] *= scale;
@@ -381,7 +406,7 @@ void DentMotion::solve(const Weights& system) noexcept {
 double DentMotion::energy() const noexcept {
   double twice = 0;
   for (std::size_t i = 0; i < vertices_.size(); ++i) {
-    twice += settings_.mass * v_[i].squaredNorm() + u_[i].dot(row(stiffness_, i, u_.data()));
+    twice += settings_.mass * v_[i].squaredNorm() + u_[i].dot(row(stiffness_, i, u_));
   }
   return twice / 2;
 }

@@ -20,9 +20,8 @@ constexpr int kSubstepsMax = 64;       // as SpringMotionOptions
 constexpr int kRoundsMax = 100;
 
 // Those that can step nodes which springs join, on a patch that changes.
-constexpr std::array kSchemes{SpringScheme::kExplicitEuler, SpringScheme::kSymplecticEuler,
-                              SpringScheme::kVerlet, SpringScheme::kImplicitEuler,
-                              SpringScheme::kTrapezoid};
+constexpr std::array kSchemes{SpringScheme::kSymplecticEuler, SpringScheme::kVerlet,
+                              SpringScheme::kImplicitEuler, SpringScheme::kTrapezoid};
 
 void read_whole(SettingsReader& reader, std::string_view key, int& value, double least,
                 double most) {
@@ -83,6 +82,11 @@ driver::Result<void> DentSettings::check() const {
   if (!positive(step)) return refuse("a time step above 0 s.");
   if (substeps < 1 || rounds < 1 || !(remainder >= 0)) {
     return refuse("one substep and one round or more, and a remainder of 0 or more.");
+  }
+  if (integrator == SpringScheme::kExplicitEuler) {
+    return refuse(
+        "another integrator than explicit_euler, which gains energy from the cursor's "
+        "springs; thimble study integrators shows how.");
   }
   if (integrator == SpringScheme::kExponential || integrator == SpringScheme::kModal) {
     return refuse(std::string("an integrator for a patch that moves along; ") +

@@ -275,7 +275,7 @@ TEST(BendablePolygon, StaysBoundedOnCoarseSoftMeshesAtAnyStiffnessMassAndStep) {
         settings.whole = true;
         settings.step = step;
         settings.integrator = scheme;
-        settings.mass = std::pow(10, random.uniform(-5, -2));
+        settings.mass = std::pow(10, random.uniform(-5, -3));
         auto mesh = std::make_shared<const ContactMesh>(ContactMesh::build(ball).value());
         auto built = BendablePolygon::build(mesh, settings);
         if (!built) {
@@ -286,20 +286,29 @@ TEST(BendablePolygon, StaysBoundedOnCoarseSoftMeshesAtAnyStiffnessMassAndStep) {
         }
         ++run;
         BendablePolygon dent = std::move(built).value();
+        // Presses of a hand at 0.3 m/s, up to 10 mm, from which it slides on to a neighbour.
         constexpr double kDepth = 0.01;
         double largest = 0;
-        for (int i = 0; i < 200; ++i) {
+        for (int i = 0; i < 8; ++i) {
           const auto t = static_cast<std::int32_t>(random.bits() % ball.triangles.size());
           const Vector3d w = any_weights(random);
-          for (int k = 0; k < 3; ++k) press(dent, t, w, kDepth * random.uniform(0, 1));
+          const double depth = kDepth * random.uniform(0, 1);
+          const int ticks = std::clamp(static_cast<int>(depth / (0.3 * step)), 1, 3000);
+          for (int k = 1; k <= ticks; ++k) press(dent, t, w, depth * k / ticks);
+          // Slides on within the triangle, over up to 30 mm at 1 m/s.
+          const Vector3d on = any_weights(random);
+          const int slide = std::clamp(static_cast<int>(0.03 / step), 1, 3000);
+          for (int k = 1; k <= slide; ++k) {
+            press(dent, t, w + (1.0 * k / slide) * (on - w), depth);
+          }
           for (const std::int32_t v : dent.motion().vertices()) {
             largest = std::max(largest, dent.motion().u(v).norm());
           }
-          if (i % 10 == 0) dent.rest();
+          for (int k = 0; k < 5; ++k) dent.rest();
         }
-        // Written so that NaN fails. A vertex that is let go swings about as far as it was pressed;
-        // jumps from place to place in every third tick add up to a few times that.
-        EXPECT_TRUE(largest < 10 * kDepth)
+        // Written so that NaN fails. A vertex swings as far as it was pressed, and farther by what
+        // the speed of the hand gives it.
+        EXPECT_TRUE(largest < 3 * kDepth)
             << largest << " at " << times << ", " << step << " s, " << name_of(scheme);
         const double energy = dent.motion().energy();
         for (int i = 0; i < 200; ++i) dent.rest();
@@ -309,7 +318,7 @@ TEST(BendablePolygon, StaysBoundedOnCoarseSoftMeshesAtAnyStiffnessMassAndStep) {
     }
   }
   std::printf("%d ran, %d were refused\n", run, refused);
-  EXPECT_GT(run, 50);
+  EXPECT_GT(run, 40);
   EXPECT_GT(refused, 5);
 }
 

@@ -25,7 +25,8 @@ namespace thimble::render {
 /// up to three cursor springs that change from tick to tick. Those act at the end of the step in
 /// every scheme, so that they may be as stiff as they like: at infinity the vertex is where the
 /// cursor is. The implicit schemes are those of SpringMotion, scaled in the same way: whatever the
-/// rounds, without the cursor they never gain energy, and with it no more than it puts in.
+/// rounds, without the cursor they never gain energy, and with it no more than it puts in. So the
+/// rounds may be few and in single precision; what is scaled is in double.
 class DentMotion {
  public:
   using Vector = Eigen::Vector3d;
@@ -65,11 +66,11 @@ class DentMotion {
   /// Tells the displacement (m) and velocity (m/s) of any vertex.
   Vector u(std::int32_t vertex) const noexcept {
     const std::int32_t s = places_[at(vertex)].slot;
-    return s < 0 ? Vector::Zero() : u_[at(s)];
+    return s < 0 ? Vector(0, 0, 0) : Vector(u_[at(s)].head<3>());
   }
   Vector v(std::int32_t vertex) const noexcept {
     const std::int32_t s = places_[at(vertex)].slot;
-    return s < 0 ? Vector::Zero() : v_[at(s)];
+    return s < 0 ? Vector(0, 0, 0) : Vector(v_[at(s)].head<3>());
   }
   /// Tells whether a vertex moves at all.
   bool moves(std::int32_t vertex) const noexcept { return places_[at(vertex)].slot >= 0; }
@@ -80,7 +81,7 @@ class DentMotion {
   /// Leaves a vertex where it is while its base point goes `way` (m), if it moves at all.
   void keep_place(std::int32_t vertex, const Vector& way) noexcept {
     const std::int32_t s = places_[at(vertex)].slot;
-    if (s >= 0) u_[at(s)] -= way;
+    if (s >= 0) u_[at(s)].head<3>() -= way;
   }
 
   /// Lists the vertices that move.
@@ -98,17 +99,24 @@ class DentMotion {
   int substeps() const noexcept { return substeps_; }
 
  private:
+  // A vector and a zero: four numbers go through the processor two or four at a time.
+  using Lane = Eigen::Vector4d;
+  using Lanef = Eigen::Vector4f;
+
   struct Place {
     std::int32_t slot = -1;   // in the arrays below; -1: on its base point
     std::uint32_t round = 0;  // in which gather() has seen it
   };
   struct Link {
     std::int32_t slot = 0;
-    double weight = 0;
+    float weight = 0;
   };
   struct Grip {
     std::int32_t slot = -1;
-    CursorSpring spring;
+    double stiffness = 0;
+    double damping = 0;
+    Lane target{0, 0, 0, 0};
+    Lane rate{0, 0, 0, 0};
     Vector force{0, 0, 0};
   };
   // One matrix of the network's pattern: `node` on the diagonal, `link` per weight of an edge.
@@ -126,12 +134,12 @@ class DentMotion {
   void take_over() noexcept;
   void link_up() noexcept;
   bool swings(std::size_t slot) const noexcept;
-  Vector row(const Weights& weights, std::size_t i, const Vector* x) const noexcept;
-  Vector spring_force(std::size_t i) const noexcept;
-  Vector cursor_force(const Grip& grip, std::size_t i) const noexcept;
+  template <class Value>
+  Value row(const Weights& weights, std::size_t i, const std::vector<Value>& x) const noexcept;
+  Lane cursor_force(const Grip& grip, std::size_t i) const noexcept;
   void accelerate() noexcept;
   void drift(double time) noexcept;
-  void reach_out(double drift) noexcept;
+  void reach_out() noexcept;
   void verlet() noexcept;
   void implicit(double share) noexcept;
   void solve(const Weights& system) noexcept;
@@ -148,10 +156,11 @@ class DentMotion {
   std::size_t links_gathered_ = 0;
   std::vector<std::uint32_t> link_begin_;
   std::vector<Link> link_list_;
-  std::vector<double> sum_;       // of all weights around a vertex, moving or not
-  std::vector<double> diagonal_;  // of the system, the cursor's springs in it
-  std::vector<double> extra_;     // of it, what the cursor's springs add
-  std::vector<Vector> u_, v_, b_, w_, r_, p_, q_;
+  std::vector<double> sum_;    // of all weights around a vertex, moving or not
+  std::vector<double> extra_;  // what the cursor's springs add to the diagonal of the system
+  std::vector<Lane> u_, v_, b_, w_, q_;
+  std::vector<Lanef> wf_, rf_, pf_, qf_;  // of the rounds
+  std::vector<float> inverse_, extraf_;
   std::array<Grip, 3> grips_;
   double largest_ = 0;  // displacement that the cursor asked for since it touched, m
   int until_look_ = 0;

@@ -25,9 +25,9 @@ struct DentSettings {
   SpringScheme integrator = kDefaultScheme;
   int substeps = 1;  ///< Per tick, at least; more where the integrator needs them.
   int rounds = 25;   ///< Of the implicit integrators per substep, at most.
-  /// Relative remainder at which rounds end early: a thousandth of a dent is never felt
-  /// [STABILITY 6: 7 %], and no remainder harms stability.
-  double remainder = 1e-3;
+  /// Relative remainder of one tick at which rounds end early; the next tick takes it up. Below
+  /// what is felt [STABILITY 6: 7 %], and no remainder harms stability.
+  double remainder = 1e-2;
   double step = 1e-3;  ///< Time of one tick, s, > 0.
 
   static constexpr int kRingsMax = 8;
