@@ -171,6 +171,11 @@ int run_scene(const RunOptions& options) {
     if (!drawn) {
       return trouble(drawn.error());
     }
+    if (session.dents() != nullptr && session.dents()->deepest().triangle_count > 0) {
+      const auto bent = draw_mesh(session.bent_mesh_W(), folder / "dent.png",
+                                  report.scene + ": the deepest dent", "m");
+      if (!bent) return trouble(bent.error());
+    }
     std::printf("Report and pictures: %s\n", folder.c_str());
   }
   switch (end) {

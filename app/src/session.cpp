@@ -1,5 +1,6 @@
 #include "session.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <stdexcept>
@@ -126,6 +127,7 @@ driver::Result<std::unique_ptr<Session>> Session::open(const std::filesystem::pa
 
   for (std::size_t i = 0; i < meshes->size(); ++i) {
     if (!session->scene_.objects[i].shape) session->triangles_ += (*meshes)[i].triangles.size();
+    session->first_triangles_.push_back(session->mesh_W_.triangles.size());
     append((*meshes)[i], session->mesh_W_);
   }
   for (const auto& pages : session->pages_) {
@@ -138,6 +140,10 @@ driver::Result<std::unique_ptr<Session>> Session::open(const std::filesystem::pa
       std::ceil(duration * 1e9 / static_cast<double>(session->period_ns_)));
   session->statistics_ = std::make_unique<RunStatistics>();
   session->trace_ = std::make_unique<Trace>(session->ticks_);
+  const auto dents = [](const SceneObject& object) { return object.body.dent.has_value(); };
+  if (std::any_of(session->scene_.objects.begin(), session->scene_.objects.end(), dents)) {
+    session->dents_ = std::make_unique<DentRecord>(session->period_ns_);
+  }
 
   if (!options.real_arm) {
     if (auto planned = session->plan_simulation(scene_file, *meshes); !planned) {
@@ -218,6 +224,7 @@ void Session::operator()(const driver::TickRecord& record) noexcept {
   snapshot_.store(record);
   (*statistics_)(record);
   (*trace_)(record);
+  if (dents_) dents_->take(record, *touch_);
   if (pages_by_thread_) return;
   // In virtual time a tick lasts as long as it computes: the disk is as fast as one could wish, and
   // every run is the same.
@@ -225,6 +232,12 @@ void Session::operator()(const driver::TickRecord& record) noexcept {
     while (pages->serve() > 0) {
     }
   }
+}
+
+render::TriangleMesh Session::bent_mesh_W() const {
+  if (!dents_ || dents_->deepest().triangle_count == 0) return mesh_W_;
+  const render::BodyPatch& patch = dents_->deepest();
+  return bent(mesh_W_, first_triangles_[static_cast<std::size_t>(patch.object)], patch);
 }
 
 std::optional<render::PagingCounters> Session::paging() const {

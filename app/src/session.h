@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "dent_record.h"
 #include "run_statistics.h"
 #include "scene_file.h"
 #include "thimble/device_sim/sim_transport.h"
@@ -69,6 +70,10 @@ class Session {
   const RunStatistics& statistics() const { return *statistics_; }
   const Trace& trace() const { return *trace_; }
   const driver::Snapshot<driver::TickRecord>& snapshot() const { return snapshot_; }
+  /// Gives the dents; nullptr if no object of the scene can dent.
+  const DentRecord* dents() const { return dents_.get(); }
+  /// Gives the meshes with the deepest dent of the run; as `mesh_W` if there was none.
+  render::TriangleMesh bent_mesh_W() const;
   std::uint64_t seed() const { return seed_; }
   std::uint64_t ticks_planned() const { return ticks_; }
   std::int64_t period_ns() const { return period_ns_; }
@@ -95,6 +100,8 @@ class Session {
   std::unique_ptr<render::SceneTouch> touch_;
   std::unique_ptr<RunStatistics> statistics_;
   std::unique_ptr<Trace> trace_;
+  std::unique_ptr<DentRecord> dents_;
+  std::vector<std::size_t> first_triangles_;  // of each object in mesh_W_
   driver::Snapshot<driver::TickRecord> snapshot_;
 };
 
