@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "thimble/driver/snapshot.h"
@@ -34,9 +35,15 @@ class DentRecord {
   driver::Snapshot<render::BodyPatch> newest_;
 };
 
-/// Gives a mesh (m) with a patch in place of the triangles it stands for, which begin at
-/// `first_triangle` in the mesh. Real-time: never from the servo thread.
-render::TriangleMesh bent(const render::TriangleMesh& mesh, std::size_t first_triangle,
+/// Says where an object begins in a mesh of several.
+struct MeshPlace {
+  std::size_t vertex = 0;
+  std::size_t triangle = 0;
+};
+
+/// Gives a mesh (m) with the patch of the object that begins at `place` in place of the triangles
+/// it stands for. Real-time: never from the servo thread.
+render::TriangleMesh bent(const render::TriangleMesh& mesh, const MeshPlace& place,
                           const render::BodyPatch& patch);
 
 }  // namespace thimble::app

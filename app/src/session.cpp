@@ -127,7 +127,8 @@ driver::Result<std::unique_ptr<Session>> Session::open(const std::filesystem::pa
 
   for (std::size_t i = 0; i < meshes->size(); ++i) {
     if (!session->scene_.objects[i].shape) session->triangles_ += (*meshes)[i].triangles.size();
-    session->first_triangles_.push_back(session->mesh_W_.triangles.size());
+    session->places_.push_back(
+        {session->mesh_W_.vertices.size(), session->mesh_W_.triangles.size()});
     append((*meshes)[i], session->mesh_W_);
   }
   for (const auto& pages : session->pages_) {
@@ -237,7 +238,7 @@ void Session::operator()(const driver::TickRecord& record) noexcept {
 render::TriangleMesh Session::bent_mesh_W() const {
   if (!dents_ || dents_->deepest().triangle_count == 0) return mesh_W_;
   const render::BodyPatch& patch = dents_->deepest();
-  return bent(mesh_W_, first_triangles_[static_cast<std::size_t>(patch.object)], patch);
+  return bent(mesh_W_, places_[static_cast<std::size_t>(patch.object)], patch);
 }
 
 std::optional<render::PagingCounters> Session::paging() const {

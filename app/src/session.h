@@ -101,7 +101,7 @@ class Session {
   std::unique_ptr<RunStatistics> statistics_;
   std::unique_ptr<Trace> trace_;
   std::unique_ptr<DentRecord> dents_;
-  std::vector<std::size_t> first_triangles_;  // of each object in mesh_W_
+  std::vector<MeshPlace> places_;  // of each object in mesh_W_
   driver::Snapshot<driver::TickRecord> snapshot_;
 };
 

@@ -15,6 +15,7 @@
 #include "session.h"
 #include "support/heap_guard.h"
 #include "thimble/render/effect/effect_table.h"
+#include "thimble/render/mesh/adjacency.h"
 
 // Every scene without a scanned mesh that comes with the program, from the wire up.
 
@@ -119,6 +120,7 @@ TEST_P(DentedScene, ShowsItsDentAndIsTheSameToTheBitInEveryRun) {
     // The bent mesh is as closed as the one it came from.
     const auto whole = session->bent_mesh_W();
     EXPECT_GT(whole.triangles.size(), session->mesh_W().triangles.size());
+    EXPECT_TRUE(render::find_adjacency(whole));
     one = hash_of(*session);
   }
   EXPECT_EQ(hash[0], hash[1]);

@@ -77,6 +77,8 @@ TEST(BendablePolygon, PullsAlikeInTheMiddleOverEdgesAndOverCorners) {
       const auto [least, most] = spread_of_pull(shape.mesh, between, 0);
       std::printf("%-14s k_n / k = %.2f: the pull is %+.1f %% to %+.1f %% of its mean\n",
                   shape.name, between, 100 * (least - 1), 100 * (most - 1));
+      EXPECT_GT(least, between < 1 ? 0.93 : 0.85) << shape.name;
+      EXPECT_LT(most, 1.05) << shape.name;
     }
     // Under a given force the tip goes in alike, within 5 %: by the pull and a surface as stiff.
     const auto [least, most] = spread_of_pull(shape.mesh, 0.25, 450);
