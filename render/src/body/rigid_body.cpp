@@ -138,10 +138,14 @@ void RigidBody::step(double step) noexcept {
     kick(time / 2);
     momentum_W_ *= slow;
     angular_W_ *= calm;
-    p_WC_ += time * v_WC();
+    const Vector3d way = time * v_WC();
+    p_WC_ += way;
     rotate(time);
     momentum_W_ *= slow;
     angular_W_ *= calm;
+    // Forces stay at their points in W while C moves: so what the body gains about any point is
+    // what they give, to rounding.
+    tau_W_ -= way.cross(f_W_);
     kick(time / 2);
     if (settings_.floor) stand_on_floor(time);
   }
@@ -187,6 +191,16 @@ void RigidBody::stop_at(const Vector3d& arm, double allowed, double& pressed) no
   if (!(fast > 0) || !(pressed > 0)) return;
   const Vector3d along = slip / fast;
   hit(-std::min(fast / along.dot(give(arm, along)), floor.friction * pressed) * along);
+}
+
+void RigidBody::keep_within(double reach) noexcept {
+  const Vector3d away = p_WC_ - settings_.mass.p_WC;
+  const double far = away.norm();
+  // Written so that NaN moves nothing.
+  if (!(far > reach) || !(reach >= 0)) return;
+  const Vector3d n = away / far;
+  p_WC_ = settings_.mass.p_WC + reach * n;
+  momentum_W_ -= std::max(momentum_W_.dot(n), 0.0) * n;
 }
 
 double RigidBody::kinetic_energy() const noexcept {

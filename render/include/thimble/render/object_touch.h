@@ -1,12 +1,15 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
+#include <span>
 #include <utility>
 
 #include "thimble/driver/device_state.h"
 #include "thimble/driver/force_command.h"
 #include "thimble/render/body/body_patch.h"
 #include "thimble/render/contact/contact_mesh.h"
+#include "thimble/render/body/body_pose.h"
 
 namespace thimble::render {
 
@@ -32,6 +35,19 @@ class ObjectTouch {
   /// Draws what of the object has left its place (body_patch.h); false, and `patch` is left alone,
   /// if the object is stiff. Real-time: safe; for the rate of a picture.
   virtual bool draw(BodyPatch& /*patch*/) noexcept { return false; }
+
+  // The following are for readers beside the servo, and for bodies (render/body) to answer.
+
+  /// Tells whether the surface is where it was before the first tick: neither moved nor bent.
+  virtual bool stands_still() const noexcept { return true; }
+  /// Counts contacts that ended with the tip inside; 0 for what stands still, where they can be
+  /// found afterwards. Real-time: safe.
+  virtual std::uint64_t lost_contacts() const noexcept { return 0; }
+  /// Tells where the object has moved to. Real-time: safe.
+  virtual BodyPose pose() const noexcept { return {}; }
+  /// Puts the vertices of the object's mesh, as it was given (W, m), where they are now.
+  /// Real-time: safe; time grows with the mesh.
+  virtual void place_now(std::span<Eigen::Vector3d>) const noexcept {}
 };
 
 /// Is an ObjectTouch made of a Touch with its stages known at compile time. `Stages` is callable

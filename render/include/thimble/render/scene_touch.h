@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -34,11 +35,11 @@ class SceneTouch {
     return sum;
   }
 
-  /// Tells whether a point (W, m) lies inside any object; for checks beside the servo.
-  /// Real-time: safe; time grows with the objects' size.
+  /// Tells whether a point (W, m) lies inside any object that stands still; for checks beside the
+  /// servo. Real-time: safe; time grows with the objects' size.
   bool inside(const Eigen::Vector3d& p_W) const noexcept {
     for (const auto& object : objects_) {
-      if (object->inside(p_W)) return true;
+      if (object->stands_still() && object->inside(p_W)) return true;
     }
     return false;
   }
@@ -55,6 +56,13 @@ class SceneTouch {
       break;
     }
     return any;
+  }
+
+  /// Counts the contacts that objects which do not stand still have lost. Real-time: safe.
+  std::uint64_t lost_contacts() const noexcept {
+    std::uint64_t lost = 0;
+    for (const auto& object : objects_) lost += object->lost_contacts();
+    return lost;
   }
 
   std::size_t size() const noexcept { return objects_.size(); }
