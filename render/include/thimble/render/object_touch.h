@@ -13,6 +13,8 @@
 
 namespace thimble::render {
 
+class BodyShape;
+
 /// Is the force law of one object of a scene, whatever stages it is made of: one indirect call per
 /// tick stands for all of them (see object_touch_of).
 class ObjectTouch {
@@ -45,6 +47,8 @@ class ObjectTouch {
   virtual std::uint64_t lost_contacts() const noexcept { return 0; }
   /// Tells where the object has moved to. Real-time: safe.
   virtual BodyPose pose() const noexcept { return {}; }
+  /// Gives the shape of an object whose base points move by themselves; nullptr for others.
+  virtual const BodyShape* shape() const noexcept { return nullptr; }
   /// Puts the vertices of the object's mesh, as it was given (W, m), where they are now.
   /// Real-time: safe; time grows with the mesh.
   virtual void place_now(std::span<Eigen::Vector3d>) const noexcept {}

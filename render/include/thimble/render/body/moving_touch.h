@@ -82,6 +82,7 @@ class MovingTouch final : public ObjectTouch {
     const Eigen::Vector3d p = motion_.p_WB();
     return {.p_WB = {p.x(), p.y(), p.z()}, .q_WB = {q.w(), q.x(), q.y(), q.z()}};
   }
+  const BodyShape* shape() const noexcept override { return surface_->shape(); }
   void place_now(std::span<Eigen::Vector3d> vertices) const noexcept override {
     surface_->place_now(vertices);
     for (Eigen::Vector3d& p : vertices) p = motion_.p_WB() + motion_.R_WB() * p;
