@@ -14,7 +14,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kStill = 1e-7;  // of the mesh's size: 10 nm on 100 mm, no hand tells it [chosen]
+constexpr double kStill = 1e-12;        // of the mesh's size; what is nearer is rounding
 constexpr std::uint8_t kTries = 8;      // for a vertex that others are in the way of [chosen]
 constexpr std::size_t kPrintMax = 512;  // vertices that one print moves
 

@@ -14,7 +14,7 @@ constexpr double kPlateau = 0.25;    // of the radius goes in as deep as the mid
 constexpr double kApart = 1.2;       // radii between the middles of two panels, so that walls stay
 constexpr double kFollow = 0.05;     // radii that the tip goes before its panel follows [chosen]
 constexpr double kHoldLeast = 0.05;  // of the profile: less does not press a panel [chosen]
-constexpr double kStill = 1e-7;      // of the depth: a smaller way is none
+constexpr double kStill = 1e-9;      // of the depth: a smaller way is none
 
 bool positive(double x) {
   return x > 0 && std::isfinite(x);
@@ -127,17 +127,18 @@ void SnapShape::lead(const ContactMesh& mesh, const ShapeContact& contact) noexc
   put(*live_, mesh, contact);
 }
 
-template <class Pull>
-double SnapShape::pull(Panel& panel, Pull pull_base) noexcept {
-  const double before = panel.base.way();
-  const double released = panel.base.released();
+// Pulls a panel by a spring (N/m) whose other end is at `end` (m), or lets it go (0).
+double SnapShape::pull(Panel& panel, double end, double spring, double step) noexcept {
+  const double from = panel.base.way();
+  const double energy = panel.base.energy();
   const std::int64_t snaps = panel.base.snaps();
-  pull_base(panel.base);
-  released_ += panel.base.released() - released;
+  panel.base.pull_by_spring(end, spring, step);
+  const double to = panel.base.way();
   snaps_ += panel.base.snaps() - snaps;
-  const double way = panel.base.way() - before;
-  panel.moved = panel.moved || std::abs(way) > kStill * choice_.depth;
-  return way;
+  // What the spring gave on the way, its other end held, less what the panel keeps.
+  released_ += spring * (end - (from + to) / 2) * (to - from) - (panel.base.energy() - energy);
+  panel.moved = panel.moved || std::abs(to - from) > kStill * choice_.depth;
+  return to - from;
 }
 
 double SnapShape::press(const ContactMesh& mesh, const ShapeContact& contact,
@@ -161,11 +162,9 @@ double SnapShape::press(const ContactMesh& mesh, const ShapeContact& contact,
     if (&panel == pressed) {
       // The spring's other end, as seen by the panel: energy k (way - hold u)^2 / 2.
       const double end = contact.depth / hold + panel.base.way();
-      way = hold * pull(panel, [&](SnapBase& base) {
-              base.pull_by_spring(end, stiffness_ * hold * hold, step);
-            });
+      way = hold * pull(panel, end, stiffness_ * hold * hold, step);
     } else if (!(hold_of(panel, contact) > kHoldLeast)) {
-      pull(panel, [&](SnapBase& base) { base.pull_by_load(0, step); });
+      pull(panel, 0, 0, step);
     }
   }
   return way;
@@ -176,7 +175,7 @@ void SnapShape::rest(double step) noexcept {
   for (Panel& panel : panels_) {
     panel.moved = false;
     if (!panel.used) continue;
-    pull(panel, [&](SnapBase& base) { base.pull_by_load(0, step); });
+    pull(panel, 0, 0, step);
     const bool flat =
         !panel.base.snapped() && !(std::abs(panel.base.way()) > kStill * choice_.depth);
     if (!flat) continue;

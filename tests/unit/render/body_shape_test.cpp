@@ -94,15 +94,22 @@ int presses() {
 // Hard case 34, through contact and mesh: set = x_max - F_y / k, heat = F_y * set, and the second
 // press is as stiff as the first.
 TEST(Clay, Case34KeepsWhatItGaveWayBeyondTheYieldForce) {
-  const TriangleMesh mesh = support::box({0.03, 0.03, 0.02});
   support::Random random(34);
   for (int i = 0; i < 50; ++i) {
+    const TriangleMesh mesh =
+        support::box({random.uniform(0.02, 0.05), random.uniform(0.02, 0.05), 0.02});
+    // In the middle of a triangle all three corners go in alike, so that the face stays level.
+    Vector3d middle(0, 0, 0);
+    for (const auto& [a, b, c] : mesh.triangles) {
+      const auto p = [&](std::int32_t v) { return mesh.vertices[static_cast<std::size_t>(v)]; };
+      middle = (p(a) + p(b) + p(c)) / 3;
+      if (middle.z() > 0.0199) break;
+    }
     const double yield = random.uniform(0.1, 1.5);
     const double x_max = random.uniform(0.2, 4) * 1e-3;
     auto object = shaped(mesh, {.clay = ClayChoice{.yield_force = yield}, .snap = {}});
     Tip tip(*object);
-    const double x = random.uniform(-0.02, 0.02), y = random.uniform(-0.02, 0.02);
-    const auto at = [&](double depth) { return tip.at({x, y, 0.02 - depth}); };
+    const auto at = [&](double depth) { return tip.at(middle - Vector3d(0, 0, depth)); };
     at(-1e-3);
     double work = 0, before = 0, f_before = 0;
     const auto go = [&](double depth) {

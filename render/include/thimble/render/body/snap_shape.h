@@ -66,7 +66,8 @@ class SnapShape {
   /// Tells how far a vertex that was at `p_first` (m) shall be from there, m.
   Eigen::Vector3d displacement(const Eigen::Vector3d& p_first) const noexcept;
 
-  /// Counts the snaps; tells the energy in the panels and what they released, J.
+  /// Counts the snaps; tells the energy in the panels, and what they released (J): what pressed them
+  /// in less what they keep. It goes into sound and heat.
   std::int64_t snaps() const noexcept;
   double energy() const noexcept;
   double released() const noexcept { return released_; }
@@ -88,8 +89,7 @@ class SnapShape {
   void lead(const ContactMesh& mesh, const ShapeContact& contact) noexcept;
   bool room_for(const Eigen::Vector3d& centre) const noexcept;
   void put(Panel& panel, const ContactMesh& mesh, const ShapeContact& contact) noexcept;
-  template <class Pull>
-  double pull(Panel& panel, Pull pull) noexcept;
+  double pull(Panel& panel, double end, double spring, double step) noexcept;
 
   SnapChoice choice_;
   SnapSettings truss_;
