@@ -135,8 +135,12 @@ double SnapShape::pull(Panel& panel, double end, double spring, double step) noe
   panel.base.pull_by_spring(end, spring, step);
   const double to = panel.base.way();
   snaps_ += panel.base.snaps() - snaps;
-  // What the spring gave on the way, its other end held, less what the panel keeps.
-  released_ += spring * (end - (from + to) / 2) * (to - from) - (panel.base.energy() - energy);
+  // What the spring gave on the way, its other end held, less what the panel keeps. A surface that
+  // falls away from the tip is not held by it.
+  const double pressed_before = std::max(end - from, 0.0);
+  const double pressed = std::max(end - to, 0.0);
+  released_ += spring / 2 * (pressed_before * pressed_before - pressed * pressed) -
+               (panel.base.energy() - energy);
   panel.moved = panel.moved || std::abs(to - from) > kStill * choice_.depth;
   return to - from;
 }

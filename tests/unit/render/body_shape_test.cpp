@@ -293,18 +293,19 @@ TEST(Snap, Case33DoesNotChatterUnderAHandAndItsAccountCloses) {
   const double top = 0.015;
   stylus.p_WT = stylus.p_WH = {0.0011, 0.0007, top + 1e-3};
   std::int64_t snapped_at = -1;
-  double work = 0, damped = 0;
-  Vector3d p_before = stylus.p_WT;
+  double work = 0, damped = 0, damper_before = 0;
+  Vector3d p_before = stylus.p_WT, f_before(0, 0, 0);
   double z_end = 0;
   for (int i = 0; i < 6000; ++i) {
     stylus.p_WH.z() = top + 1e-3 - std::min(i * 3e-6, 9e-3);
+    // The force is that of the tick's place; between two ticks it is taken as their mean.
     const Vector3d p = stylus.p_WT;
     const auto felt = stylus.follow(*object);
-    work -= felt.f_T_W.dot(stylus.p_WT - p);
-    if (felt.touch.in_contact) {
-      const double spring = kStiffness * felt.touch.depth;
-      damped += (spring - felt.f_T_W.norm()) * (stylus.p_WT - p).dot(felt.touch.n_W);
-    }
+    const double damper = felt.f_T_W.norm() - kStiffness * felt.touch.depth;
+    work -= (felt.f_T_W + f_before).dot(p - p_before) / 2;
+    damped -= (damper + damper_before) / 2 * (p.z() - p_before.z());
+    f_before = felt.f_T_W;
+    damper_before = damper;
     const std::int64_t snaps = object->shape()->snap()->snaps();
     if (snaps > 0 && snapped_at < 0) snapped_at = i;
     ASSERT_LE(snaps, 1) << "again after " << i - snapped_at << " ms";
