@@ -21,6 +21,7 @@
 #include "report.h"
 #include "session.h"
 #include "thimble/driver/real_time.h"
+#include "thimble/render/mesh/save_mesh.h"
 
 namespace thimble::app {
 namespace {
@@ -34,6 +35,8 @@ struct RunOptions {
   std::string report;
   std::string arm_file;
   std::string firmware;
+  std::string save_mesh;
+  std::string save_object;
   bool yes = false;
 };
 
@@ -125,6 +128,15 @@ int fail(const driver::Error& error, int exit_code) {
   return exit_code;
 }
 
+/// Finds which object's mesh is to be saved: -1 for all. Nothing if the scene has no such object.
+std::optional<int> object_to_save(const Scene& scene, const std::string& name) {
+  if (name.empty()) return -1;
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    if (scene.objects[i].name == name) return static_cast<int>(i);
+  }
+  return {};
+}
+
 int run_scene(const RunOptions& options) {
   std::optional<driver::FoundArm> real_arm;
   if (options.device != "sim") {
@@ -150,6 +162,11 @@ int run_scene(const RunOptions& options) {
     return fail(opened.error(), real_arm ? kExitNoDevice : kExitBadInput);
   }
   Session& session = **opened;
+  const auto saved = object_to_save(session.scene(), options.save_object);
+  if (!saved) {
+    return fail({"--save-object: the scene has no object \"" + options.save_object + "\"."},
+                kExitBadInput);
+  }
   std::unique_ptr<ReplugWatch> watch;
   if (real_arm) watch = std::make_unique<ReplugWatch>(session, *real_arm, options.firmware);
   driver::RealTimeGrant grant;
@@ -177,6 +194,11 @@ int run_scene(const RunOptions& options) {
       if (!bent) return trouble(bent.error());
     }
     std::printf("Report and pictures: %s\n", folder.c_str());
+  }
+  if (!options.save_mesh.empty()) {
+    const auto written = render::save_mesh(session.mesh_now(*saved), options.save_mesh);
+    if (!written) return trouble(written.error());
+    std::printf("Mesh as it is now: %s\n", options.save_mesh.c_str());
   }
   switch (end) {
     case driver::ServoEnd::kDone:
@@ -222,6 +244,13 @@ void add_run_command(CLI::App& app, int& exit_code) {
       ->check(CLI::IsMember({"virtual", "wall"}))
       ->capture_default_str();
   command->add_option("--report", options->report, "Folder for report.json and pictures");
+  CLI::Option* save = command->add_option(
+      "--save-mesh", options->save_mesh,
+      "OFF file for the meshes as they are at the end: moved, dented, sculpted (world, m)");
+  command
+      ->add_option("--save-object", options->save_object,
+                   "Save the mesh of this object of the scene alone")
+      ->needs(save);
   command->add_option("--seed", options->seed, "Seed of everything random; the scene's if absent");
   command->callback([options, &exit_code] { exit_code = run_scene(*options); });
 }

@@ -36,6 +36,7 @@ struct SceneObject {
   render::ContactChoice contact;            ///< How the surface is found, followed and felt.
   std::vector<render::EffectPlan> effects;  ///< What is put on it, as a tick runs them.
   SceneBody body;                           ///< What its matter does.
+  render::BodyCoupling coupling;            ///< How stiff its surface answers, if it moves.
 };
 
 /// Is one scene: which arm touches what, how fast the loop runs, and what the simulated hand does.

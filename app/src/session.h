@@ -11,6 +11,7 @@
 #include "dent_record.h"
 #include "run_statistics.h"
 #include "scene_file.h"
+#include "scene_poses.h"
 #include "thimble/device_sim/sim_transport.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/device.h"
@@ -65,6 +66,8 @@ class Session {
   /// Gives the clock that a new wire to a real arm must use.
   driver::Clock& clock() { return *clock_; }
   const render::SceneTouch& touch() const { return *touch_; }
+  /// Gives the force law, to be driven by hand in place of `run`.
+  render::SceneTouch& touch() { return *touch_; }
   /// Sums up what paging did for all objects on the disk; nothing if there are none.
   std::optional<render::PagingCounters> paging() const;
   const RunStatistics& statistics() const { return *statistics_; }
@@ -74,6 +77,11 @@ class Session {
   const DentRecord* dents() const { return dents_.get(); }
   /// Gives the meshes with the deepest dent of the run; as `mesh_W` if there was none.
   render::TriangleMesh bent_mesh_W() const;
+  /// Shows where the objects that move are; nothing is ever stored if none does.
+  const driver::Snapshot<ScenePoses>& poses() const { return poses_; }
+  /// Gives the mesh of one object, or of all as one if `object` is negative, where it is now: moved
+  /// and bent (W, m). Not while `run` runs.
+  render::TriangleMesh mesh_now(int object = -1) const;
   std::uint64_t seed() const { return seed_; }
   std::uint64_t ticks_planned() const { return ticks_; }
   std::int64_t period_ns() const { return period_ns_; }
@@ -83,6 +91,7 @@ class Session {
 
  private:
   Session() = default;
+  void store_poses(std::uint64_t tick) noexcept;
   driver::Result<void> plan_simulation(const std::filesystem::path& scene_file,
                                        const std::vector<render::TriangleMesh>& meshes_W);
 
@@ -101,8 +110,11 @@ class Session {
   std::unique_ptr<RunStatistics> statistics_;
   std::unique_ptr<Trace> trace_;
   std::unique_ptr<DentRecord> dents_;
-  std::vector<MeshPlace> places_;  // of each object in mesh_W_
+  std::vector<MeshPlace> places_;  // of each object in mesh_W_, and of its end
   driver::Snapshot<driver::TickRecord> snapshot_;
+  std::vector<std::size_t> moving_;  // the objects that move
+  ScenePoses poses_now_;
+  driver::Snapshot<ScenePoses> poses_;
 };
 
 }  // namespace thimble::app

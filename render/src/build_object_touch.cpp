@@ -5,6 +5,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "body/shape_object.h"
 #include "thimble/render/body/bendable_polygon.h"
 #include "thimble/render/body/dented_touch.h"
 #include "thimble/render/contact/blended.h"
@@ -139,7 +140,8 @@ Built stiff_touch(const TriangleMesh& mesh_W, const ContactChoice& choice,
 
 Built build_object_touch(const TriangleMesh& mesh_W, const ContactChoice& choice,
                          const SurfaceChoice& surface) {
-  auto touch = stiff_touch(mesh_W, choice, surface);
+  auto touch = surface.shape.named() ? shaped_touch(mesh_W, choice, surface)
+                                     : stiff_touch(mesh_W, choice, surface);
   if (!touch || !surface.dent) return touch;
   std::shared_ptr<const ContactMesh> mesh;
   if (const ContactMesh* touched = (*touch)->mesh()) {

@@ -44,11 +44,11 @@ driver::Result<void> check_size(const ContactMesh& mesh, const char* what, doubl
 }  // namespace
 
 driver::Result<BodyShape> BodyShape::build(const ContactMesh& mesh, const ShapeChoice& choice,
-                                           double stiffness, double step) {
+                                           double stiffness) {
   if (!(stiffness > 0) || !std::isfinite(stiffness)) {
     return driver::Error{"A body that changes shape needs a surface of stiffness above 0 N/m."};
   }
-  if (!(step > 0) || !std::isfinite(step)) {
+  if (!(choice.step > 0) || !std::isfinite(choice.step)) {
     return driver::Error{"A body that changes shape needs a time step above 0 s."};
   }
   if (choice.clay) {
@@ -63,12 +63,11 @@ driver::Result<BodyShape> BodyShape::build(const ContactMesh& mesh, const ShapeC
     auto fit = check_size(mesh, "A panel", choice.snap->radius, kLeast, SnapShape::kVerticesMax);
     if (!fit) return fit.error();
   }
-  return BodyShape(mesh, choice, stiffness, step);
+  return BodyShape(mesh, choice, stiffness);
 }
 
-BodyShape::BodyShape(const ContactMesh& mesh, const ShapeChoice& choice, double stiffness,
-                     double step)
-    : guard_(mesh), step_(step), still_(kStill * (mesh.box_max() - mesh.box_min()).norm()) {
+BodyShape::BodyShape(const ContactMesh& mesh, const ShapeChoice& choice, double stiffness)
+    : guard_(mesh), step_(choice.step), still_(kStill * (mesh.box_max() - mesh.box_min()).norm()) {
   const auto count = static_cast<std::size_t>(mesh.vertex_count());
   first_places_.reserve(count);
   for (std::int32_t v = 0; v < mesh.vertex_count(); ++v) first_places_.push_back(mesh.position(v));

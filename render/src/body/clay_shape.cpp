@@ -8,19 +8,6 @@ namespace thimble::render {
 
 using Eigen::Vector3d;
 
-driver::Result<void> ClayChoice::check() const {
-  // Written so that NaN is refused. What has no limit may be infinite.
-  if (!(yield_force >= 0) || !std::isfinite(yield_force)) {
-    return driver::Error{"Clay needs a yield_force of 0 N or more."};
-  }
-  if (!(flow_rate > 0)) return driver::Error{"Clay needs a flow_rate above 0 m/s."};
-  if (!(movement_limit >= 0)) return driver::Error{"Clay needs a movement_limit of 0 m or more."};
-  if (!(radius > 0) || !std::isfinite(radius)) {
-    return driver::Error{"Clay needs a radius above 0 m."};
-  }
-  return {};
-}
-
 ClayShape::ClayShape(const ClayChoice& choice, double stiffness, std::size_t vertices)
     : choice_(choice), stiffness_(stiffness), sets_(vertices, Vector3d::Zero()) {}
 

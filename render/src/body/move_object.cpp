@@ -13,9 +13,20 @@ namespace {
 
 using Moved = driver::Result<std::unique_ptr<ObjectTouch>>;
 
-// More points to stand on cost time in every tick near the floor; a round rim of this many stands
-// as if it were whole to 1 % of its radius. [chosen]
-constexpr std::size_t kStandOn = 24;
+// Bounds of a scene's numbers catch slipped decimal points and values in g or mm.
+constexpr double kMassMin = 1e-4;         // kg
+constexpr double kMassMax = 1e3;          // kg
+constexpr double kAccelerationMax = 100;  // m/s^2
+constexpr double kDampingMax = 1e3;       // N s/m, N m s
+constexpr double kTimeScaleMin = 1e-3;
+constexpr double kTimeScaleMax = 100;
+constexpr double kPositionMax = 2;   // m
+constexpr double kSpeedMax = 10;     // m/s
+constexpr double kTurningMax = 100;  // rad/s
+constexpr double kFrictionMax = 10;
+
+// A round rim of half of them rolls over sides of 11 degrees.
+constexpr std::size_t kStandOn = RigidBody::kSupportMax;
 
 Moved move_three_ways(std::unique_ptr<ObjectTouch> surface, const TriangleMesh& mesh_W,
                       const MotionChoice& choice, const BodyCoupling& coupling) {
@@ -36,6 +47,41 @@ Moved move_three_ways(std::unique_ptr<ObjectTouch> surface, const TriangleMesh& 
 }
 
 }  // namespace
+
+void MotionChoice::read(SettingsReader& reader) {
+  std::size_t ways = 0;
+  reader.choice("kind", ways, {"translate", "rigid"});
+  kind = static_cast<MotionKind>(ways);
+  reader.number("mass", mass,
+                {.unit = "kg", .least = kMassMin, .most = kMassMax, .required = true});
+  reader.vector("gravity", gravity_W,
+                {.unit = "m/s^2", .least = -kAccelerationMax, .most = kAccelerationMax});
+  reader.number("damping", damping, {.unit = "N s/m", .least = 0, .most = kDampingMax});
+  reader.number("time_scale", time_scale,
+                {.unit = "", .least = kTimeScaleMin, .most = kTimeScaleMax});
+  reader.vector("velocity", v_W, {.unit = "m/s", .least = -kSpeedMax, .most = kSpeedMax});
+  if (reader.has("reach")) {
+    reach = 0;
+    reader.number("reach", reach, {.unit = "m", .least = 0, .most = kPositionMax});
+  }
+  if (reader.has("floor")) {
+    floor.emplace();
+    reader.number("floor", floor->height,
+                  {.unit = "m", .least = -kPositionMax, .most = kPositionMax});
+    reader.number("floor_friction", floor->friction,
+                  {.unit = "", .least = 0, .most = kFrictionMax});
+  } else if (reader.has("floor_friction")) {
+    reader.reject("floor_friction", "needs a floor: its height in m");
+  }
+  for (const char* key : {"angular_damping", "turning"}) {
+    if (kind == MotionKind::kTranslate && reader.has(key)) {
+      reader.reject(key, "is for what turns; say kind: rigid");
+    }
+  }
+  reader.number("angular_damping", angular_damping,
+                {.unit = "N m s", .least = 0, .most = kDampingMax});
+  reader.vector("turning", omega_W, {.unit = "rad/s", .least = -kTurningMax, .most = kTurningMax});
+}
 
 Moved move_object(std::unique_ptr<ObjectTouch> surface, const TriangleMesh& mesh_W,
                   const MotionChoice& choice, const BodyCoupling& coupling) {

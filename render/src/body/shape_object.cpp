@@ -1,8 +1,9 @@
-#include "thimble/render/body/shape_object.h"
+#include "body/shape_object.h"
 
 #include <string>
 #include <utility>
 
+#include "thimble/render/body/body_shape.h"
 #include "thimble/render/body/shaped_touch.h"
 #include "thimble/render/contact/blended.h"
 #include "thimble/render/contact/edge_blending.h"
@@ -28,8 +29,8 @@ Built shaped(std::shared_ptr<MovingMesh> mesh, Contact contact, const SurfaceCho
 
 }  // namespace
 
-Built build_shaped_touch(const TriangleMesh& mesh_W, const ContactChoice& choice,
-                         const SurfaceChoice& surface, const ShapeChoice& shape, double step) {
+Built shaped_touch(const TriangleMesh& mesh_W, const ContactChoice& choice,
+                   const SurfaceChoice& surface) {
   const bool smooth = choice.tracker == TrackerChoice::kOffset;
   const BlendingChoice blending =
       choice.blending.value_or(smooth ? BlendingChoice::kPhong : BlendingChoice::kFlat);
@@ -45,7 +46,7 @@ Built build_shaped_touch(const TriangleMesh& mesh_W, const ContactChoice& choice
   }
   auto prepared = ContactMesh::build(mesh_W, {.room = kRoom});
   if (!prepared) return prepared.error();
-  auto body = BodyShape::build(*prepared, shape, surface.spring.stiffness, step);
+  auto body = BodyShape::build(*prepared, surface.shape, surface.spring.stiffness);
   if (!body) return body.error();
   MovingMeshOptions options{.search = choice.search};
   // Means of faces: to fit them anew at each move would cost seven times as much.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <string>
 
 namespace thimble::render {
 namespace {
@@ -16,34 +15,7 @@ constexpr double kFollow = 0.05;     // radii that the tip goes before its panel
 constexpr double kHoldLeast = 0.05;  // of the profile: less does not press a panel [chosen]
 constexpr double kStill = 1e-9;      // of the depth: a smaller way is none
 
-bool positive(double x) {
-  return x > 0 && std::isfinite(x);
-}
-
 }  // namespace
-
-driver::Result<void> SnapChoice::check() const {
-  if (!positive(force)) return driver::Error{"A wall that snaps needs a force above 0 N."};
-  if (!positive(depth)) return driver::Error{"A wall that snaps needs a depth above 0 m."};
-  if (!positive(radius) || !(radius > depth / 2)) {
-    return driver::Error{
-        "A wall that snaps needs a radius of more than half its depth, or it would fold."};
-  }
-  if (!positive(speed)) return driver::Error{"A wall that snaps needs a speed above 0 m/s."};
-  if (panels < 1 || panels > kPanelsMax) {
-    return driver::Error{"A wall may have 1 to " + std::to_string(kPanelsMax) + " panels in."};
-  }
-  return {};
-}
-
-SnapSettings SnapChoice::truss() const {
-  // The load is in proportion to the bars' stiffness.
-  const double per_stiffness = SnapTruss(radius, depth / 2, 1).limit_load();
-  return {.half_span = radius,
-          .rise = depth / 2,
-          .bar_stiffness = force / per_stiffness,
-          .speed_max = speed};
-}
 
 SnapShape::SnapShape(const SnapChoice& choice, double stiffness, const ContactMesh& mesh,
                      std::span<const Vector3d> first_places)

@@ -13,7 +13,7 @@
 #include "support/random.h"
 #include "support/shapes.h"
 #include "support/stylus.h"
-#include "thimble/render/body/shape_object.h"
+#include "thimble/render/build_object_touch.h"
 #include "thimble/render/effect/given_settings.h"
 
 // Clay and snapping walls through the whole of an object: contact, surface, shape, mesh.
@@ -30,8 +30,8 @@ const double kNaN = std::numeric_limits<double>::quiet_NaN();
 std::unique_ptr<ObjectTouch> shaped(const TriangleMesh& mesh, const ShapeChoice& shape,
                                     ContactChoice contact = {}, double damping = 0) {
   const SurfaceChoice surface{.spring = {.stiffness = kStiffness, .damping = damping},
-                              .effects = {}};
-  auto built = build_shaped_touch(mesh, contact, surface, shape, kTick);
+                              .shape = shape};
+  auto built = build_object_touch(mesh, contact, surface);
   EXPECT_TRUE(built) << (built ? "" : built.error().message);
   return std::move(built).value();
 }
@@ -371,8 +371,8 @@ TEST(Shape, RefusesOrSurvivesNonsense) {
   const TriangleMesh mesh = support::icosphere(3, 0.03);
   const auto refused = [&](const ShapeChoice& shape, double stiffness = kStiffness,
                            ContactChoice contact = {}) {
-    const SurfaceChoice surface{.spring = {.stiffness = stiffness}, .effects = {}};
-    return !build_shaped_touch(mesh, contact, surface, shape, kTick);
+    const SurfaceChoice surface{.spring = {.stiffness = stiffness}, .shape = shape};
+    return !build_object_touch(mesh, contact, surface);
   };
   const ShapeChoice clay{.clay = ClayChoice{}, .snap = {}};
   const ShapeChoice snap{.clay = {}, .snap = SnapChoice{}};
@@ -410,8 +410,8 @@ TEST(Shape, RefusesOrSurvivesNonsense) {
   ShapeChoice both = clay;
   both.snap = SnapChoice{.force = 1e-3, .depth = 6e-3, .radius = 10e-3, .speed = 100};
   for (const double stiffness : {1e-3, 1e12}) {
-    const SurfaceChoice surface{.spring = {.stiffness = stiffness}, .effects = {}};
-    auto object = build_shaped_touch(mesh, {}, surface, both, kTick).value();
+    const SurfaceChoice surface{.spring = {.stiffness = stiffness}, .shape = both};
+    auto object = build_object_touch(mesh, {}, surface).value();
     support::Random random(5);
     driver::DeviceState state;
     for (int i = 0; i < 3000; ++i) {

@@ -26,7 +26,7 @@ constexpr double kTick = 1e-3;
 const double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 SurfaceChoice surface_of(double stiffness, double damping, bool friction = false) {
-  SurfaceChoice surface{.spring = {.stiffness = stiffness, .damping = damping}, .effects = {}};
+  SurfaceChoice surface{.spring = {.stiffness = stiffness, .damping = damping}};
   for (const EffectKind& kind : effect_table()) {
     if (!friction || kind.name != "bristle") continue;
     GivenSettings settings({{"coefficient", 0.6}, {"stiffness", stiffness}});

@@ -10,6 +10,7 @@
 #include "thimble/driver/force_command.h"
 #include "thimble/driver/result.h"
 #include "thimble/render/body/clay_shape.h"
+#include "thimble/render/body/shape_choice.h"
 #include "thimble/render/body/shape_contact.h"
 #include "thimble/render/body/snap_shape.h"
 #include "thimble/render/body/surface_patch.h"
@@ -17,12 +18,6 @@
 #include "thimble/render/contact/contact_mesh.h"
 
 namespace thimble::render {
-
-/// Sets how the base points of an object move by themselves; what is left empty does not happen.
-struct ShapeChoice {
-  std::optional<ClayChoice> clay;
-  std::optional<SnapChoice> snap;
-};
 
 /// Moves the base points of a mesh under what presses on it [BP 4.3]: says in each tick which
 /// vertices go where.
@@ -33,11 +28,11 @@ struct ShapeChoice {
 /// remembered either.
 class BodyShape {
  public:
-  /// Takes a mesh (m) as it is at first, how stiff its surface is (N/m) and the loop's period (s).
-  /// The error says which setting makes no sense, or that the mesh is too coarse or too fine for
-  /// it. Real-time: never from the servo thread.
+  /// Takes a mesh (m) as it is at first and how stiff its surface is (N/m). The error says which
+  /// setting makes no sense, or that the mesh is too coarse or too fine for it.
+  /// Real-time: never from the servo thread.
   static driver::Result<BodyShape> build(const ContactMesh& mesh, const ShapeChoice& choice,
-                                         double stiffness, double step);
+                                         double stiffness);
 
   // Its parts point at each other's memory, which goes along when it is moved.
   BodyShape(BodyShape&&) = default;
@@ -60,7 +55,7 @@ class BodyShape {
   static constexpr std::size_t kMovesMax = 16;  ///< Vertices moved per tick.
 
  private:
-  BodyShape(const ContactMesh& mesh, const ShapeChoice& choice, double stiffness, double step);
+  BodyShape(const ContactMesh& mesh, const ShapeChoice& choice, double stiffness);
   ShapeContact contact_of(const ContactMesh& mesh, const driver::TouchInfo& touch) const noexcept;
   void mark(std::int32_t vertex) noexcept;
   bool carry(const ContactMesh& mesh, std::int32_t vertex) noexcept;

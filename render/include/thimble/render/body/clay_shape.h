@@ -3,28 +3,13 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <vector>
 
-#include "thimble/driver/result.h"
+#include "thimble/render/body/shape_choice.h"
 #include "thimble/render/body/shape_contact.h"
 
 namespace thimble::render {
-
-/// Sets how an object keeps what it gave way [BP 4.3].
-struct ClayChoice {
-  double yield_force = 1;  ///< N, >= 0: what presses harder moves the base points.
-  /// m/s, > 0: how fast they flow at most [BP 4.3: the time variable made small].
-  double flow_rate = std::numeric_limits<double>::infinity();
-  /// m, >= 0: how far a base point may go from its first place in all [BP 4.3: limiting to some
-  /// degree their movement].
-  double movement_limit = std::numeric_limits<double>::infinity();
-  double radius = 5e-3;  ///< m, > 0: of the print that a press leaves.
-
-  /// Says what about the settings is beyond all sense.
-  driver::Result<void> check() const;
-};
 
 /// Moves the base points of a mesh as clay does: each keeps a set, which flows where the surface's
 /// spring presses with more than the yield force.

@@ -1,7 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
 #include <memory>
+#include <span>
 #include <utility>
 
 #include "thimble/render/body/bendable_polygon.h"
@@ -27,6 +30,16 @@ class DentedTouch final : public ObjectTouch {
   driver::ForceCommand update(const driver::DeviceState& state) noexcept override;
   bool inside(const Eigen::Vector3d& p_W) const noexcept override { return inner_->inside(p_W); }
   const ContactMesh* mesh() const noexcept override { return &dent_.mesh(); }
+  bool stands_still() const noexcept override { return inner_->stands_still(); }
+  std::uint64_t lost_contacts() const noexcept override { return inner_->lost_contacts(); }
+  const BodyShape* shape() const noexcept override { return inner_->shape(); }
+  /// Puts the vertices where they hang at the moment, off their base points.
+  void place_now(std::span<Eigen::Vector3d> vertices) const noexcept override {
+    inner_->place_now(vertices);
+    for (std::size_t v = 0; v < vertices.size(); ++v) {
+      vertices[v] += dent_.motion().u(static_cast<std::int32_t>(v));
+    }
+  }
   bool draw(BodyPatch& patch) noexcept override {
     dent_.draw(patch);
     return true;

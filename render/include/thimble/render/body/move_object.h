@@ -9,6 +9,7 @@
 #include "thimble/driver/result.h"
 #include "thimble/render/body/body_coupling.h"
 #include "thimble/render/body/rigid_body.h"
+#include "thimble/render/effect/settings_reader.h"
 #include "thimble/render/mesh/triangle_mesh.h"
 #include "thimble/render/object_touch.h"
 
@@ -32,6 +33,9 @@ struct MotionChoice {
   double reach = std::numeric_limits<double>::infinity();  ///< m, >= 0: how far its centre may go
   Eigen::Vector3d v_W{0, 0, 0};                            ///< m/s, at first
   Eigen::Vector3d omega_W{0, 0, 0};                        ///< rad/s, at first; rigid alone
+
+  /// Reads the settings of a scene. Real-time: never from the servo thread.
+  void read(SettingsReader& reader);
 };
 
 /// Lets an object move: wraps its force law, made for `mesh_W` (W, m; closed). The error says which

@@ -82,6 +82,9 @@ class MovingTouch final : public ObjectTouch {
     const Eigen::Vector3d p = motion_.p_WB();
     return {.p_WB = {p.x(), p.y(), p.z()}, .q_WB = {q.w(), q.x(), q.y(), q.z()}};
   }
+  const ContactMesh* mesh() const noexcept override { return surface_->mesh(); }
+  /// Draws in B: whoever draws moves it to `pose`.
+  bool draw(BodyPatch& patch) noexcept override { return surface_->draw(patch); }
   const BodyShape* shape() const noexcept override { return surface_->shape(); }
   void place_now(std::span<Eigen::Vector3d> vertices) const noexcept override {
     surface_->place_now(vertices);

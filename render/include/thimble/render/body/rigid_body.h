@@ -112,7 +112,7 @@ class RigidBody {
   void kick(double time) noexcept;
   void rotate(double time) noexcept;
   void stand_on_floor(double time) noexcept;
-  void stop_at(const Eigen::Vector3d& arm, double allowed, double& pressed) noexcept;
+  double stop_at(const Eigen::Vector3d& arm, double allowed, double& pressed) noexcept;
 
   RigidBodySettings settings_;
   Eigen::Vector3d p_WC_;

@@ -35,6 +35,7 @@ class ShapedTouch final : public ObjectTouch {
   bool inside(const Eigen::Vector3d& p_W) const noexcept override {
     return stages_.contact().search().inside(p_W);
   }
+  const ContactMesh* mesh() const noexcept override { return &stages_.contact().mesh(); }
   bool stands_still() const noexcept override { return false; }
   std::uint64_t lost_contacts() const noexcept override { return lost_; }
   void place_now(std::span<Eigen::Vector3d> vertices) const noexcept override {

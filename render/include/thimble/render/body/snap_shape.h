@@ -6,29 +6,13 @@
 #include <span>
 #include <vector>
 
-#include "thimble/driver/result.h"
+#include "thimble/render/body/shape_choice.h"
 #include "thimble/render/body/shape_contact.h"
 #include "thimble/render/body/snap_base.h"
 #include "thimble/render/body/surface_patch.h"
 #include "thimble/render/contact/contact_mesh.h"
 
 namespace thimble::render {
-
-/// Sets how the wall of an object snaps [BP 4.3, the tin can].
-struct SnapChoice {
-  double force = 3;       ///< N, > 0: past it the wall jumps.
-  double depth = 6e-3;    ///< m, > 0: how far in its second shape lies.
-  double radius = 15e-3;  ///< m, > 0: of the panel that goes in together; more than half the depth.
-  double speed = 1;       ///< m/s, > 0: how fast it runs at most.
-  int panels = 8;         ///< 1 to kPanelsMax: how many may be in at the same time.
-
-  static constexpr int kPanelsMax = 16;
-
-  /// Says what about the settings is beyond all sense.
-  driver::Result<void> check() const;
-  /// Gives the truss whose limit load is `force`.
-  SnapSettings truss() const;
-};
 
 /// Moves the base points of a mesh as the wall of a tin can does: around the press a panel gives
 /// way elastically, and past the threshold it jumps to a second shape and stays there.
@@ -66,8 +50,8 @@ class SnapShape {
   /// Tells how far a vertex that was at `p_first` (m) shall be from there, m.
   Eigen::Vector3d displacement(const Eigen::Vector3d& p_first) const noexcept;
 
-  /// Counts the snaps; tells the energy in the panels, and what they released (J): what pressed them
-  /// in less what they keep. It goes into sound and heat.
+  /// Counts the snaps; tells the energy in the panels, and what they released (J): what pressed
+  /// them in less what they keep. It goes into sound and heat.
   std::int64_t snaps() const noexcept;
   double energy() const noexcept;
   double released() const noexcept { return released_; }

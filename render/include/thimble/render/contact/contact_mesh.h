@@ -63,9 +63,9 @@ class ContactMesh {
   // All of the following are Real-time: safe. Precondition: numbers name what exists.
 
   std::int32_t triangle_count() const noexcept { return static_cast<std::int32_t>(cells_.size()); }
-  std::int32_t vertex_count() const noexcept { return static_cast<std::int32_t>(vertices_.size()); }
 
   std::int32_t vertex_count() const noexcept { return static_cast<std::int32_t>(vertices_.size()); }
+
 
   /// Tells how many components were wholly inside out and have been turned.
   std::size_t turned_components() const noexcept { return orientation_.turned_components; }

@@ -1,0 +1,151 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "lost_contacts.h"
+#include "session.h"
+#include "support/heap_guard.h"
+#include "thimble/render/body/body_shape.h"
+#include "thimble/render/effect/effect_table.h"
+
+// The scenes with bodies that move, keep what they gave way, and snap, from the wire up.
+
+namespace thimble {
+namespace {
+
+using Eigen::Vector3d;
+
+std::unique_ptr<app::Session> open(const std::string& name) {
+  auto opened = app::Session::open(
+      std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/scenes" / (name + ".yaml"), {});
+  EXPECT_TRUE(opened) << (opened ? "" : opened.error().message);
+  return opened ? std::move(opened).value() : nullptr;
+}
+
+// Mixes the bits of what a run felt and where its bodies ended [FNV-1a, 64 bit].
+class Hash {
+ public:
+  template <class T>
+  void add(const T& value) {
+    unsigned char bytes[sizeof(T)];
+    std::memcpy(bytes, &value, sizeof(T));
+    for (const unsigned char byte : bytes) hash_ = (hash_ ^ byte) * 0x100000001b3u;
+  }
+  std::uint64_t value() const { return hash_; }
+
+ private:
+  std::uint64_t hash_ = 0xcbf29ce484222325u;
+};
+
+std::uint64_t hash_of(const app::Session& session) {
+  Hash hash;
+  for (const auto& row : session.trace().rows()) {
+    hash.add(row.p_WT);
+    hash.add(row.f_wanted_W);
+    hash.add(row.depth);
+    hash.add(row.feature);
+  }
+  for (const Vector3d& p : session.mesh_now().vertices) {
+    for (const double x : p) hash.add(x);
+  }
+  return hash.value();
+}
+
+struct BodyScene {
+  const char* name;
+  // One hash for every build type; see determinism_test.cpp. A change of the scene, the arm's data
+  // or any force shows here: store the new one only if it was meant.
+  std::uint64_t stored;
+};
+
+void PrintTo(const BodyScene& scene, std::ostream* out) {
+  *out << scene.name;
+}
+
+class SceneWithBodies : public ::testing::TestWithParam<BodyScene> {};
+
+TEST_P(SceneWithBodies, RunsForItsWholeTimeAlikeEachTimeWithoutAFaultALostContactOrTheHeap) {
+  if (!std::any_of(render::effect_table().begin(), render::effect_table().end(),
+                   [](const auto& kind) { return kind.name == "bristle"; })) {
+    GTEST_SKIP() << "this build knows no friction";
+  }
+  std::uint64_t first = 0;
+  for (int time = 0; time < 2; ++time) {
+    const auto session = open(GetParam().name);
+    ASSERT_TRUE(session);
+    EXPECT_GT(session->scene().description.size(), 40u) << "says what to feel";
+    driver::ServoEnd end{};
+    EXPECT_EQ(support::heap_calls_of([&] { end = session->run(std::atomic<bool>{false}); }), 0);
+    EXPECT_EQ(end, driver::ServoEnd::kDone);
+    EXPECT_EQ(session->device().fault(), driver::Fault::kNone);
+    EXPECT_EQ(app::count_lost_contacts(session->trace().rows(), session->touch()), 0u);
+    EXPECT_GT(session->statistics().force_max(), 0.3);
+    EXPECT_LT(session->statistics().force_max(), session->scene().arm.limits.force_max);
+    EXPECT_LT(session->statistics().energy_to_hand(), 1e-3);
+    const std::uint64_t hash = hash_of(*session);
+    if (time == 0) first = hash;
+    EXPECT_EQ(hash, first);
+    EXPECT_EQ(hash, GetParam().stored) << "new hash: 0x" << std::hex << hash;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(ByName, SceneWithBodies,
+                         ::testing::Values(BodyScene{"clay", 0}, BodyScene{"floating_block", 0},
+                                           BodyScene{"tin_can", 0}),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+double farthest(const app::Session& session) {
+  double far = 0;
+  const auto now = session.mesh_now();
+  for (std::size_t v = 0; v < now.vertices.size(); ++v) {
+    far = std::max(far, (now.vertices[v] - session.mesh_W().vertices[v]).norm());
+  }
+  return far;
+}
+
+TEST(ClayScene, KeepsItsPrints) {
+  const auto session = open("clay");
+  ASSERT_TRUE(session);
+  ASSERT_EQ(session->run(std::atomic<bool>{false}), driver::ServoEnd::kDone);
+  EXPECT_GT(farthest(*session), 3e-3);
+  EXPECT_LE(farthest(*session), 12e-3 * (1 + 1e-9));
+  EXPECT_GT(session->touch().object(0).shape()->clay()->dissipated(), 1e-3);
+}
+
+TEST(TinCanScene, SnapsTwiceAndRollsMeanwhile) {
+  const auto session = open("tin_can");
+  ASSERT_TRUE(session);
+  ASSERT_EQ(session->run(std::atomic<bool>{false}), driver::ServoEnd::kDone);
+  EXPECT_EQ(session->touch().object(0).shape()->snap()->snaps(), 2);
+  app::ScenePoses poses;
+  ASSERT_TRUE(session->poses().load(poses));
+  ASSERT_EQ(poses.count, 1u);
+  EXPECT_EQ(poses.object[0], 0);
+  const auto& q = poses.pose[0].q_WB;
+  EXPECT_GT(2 * std::acos(std::min(std::abs(q[0]), 1.0)), 0.05) << "rad";
+}
+
+TEST(FloatingBlockScene, DriftsAndTurns) {
+  const auto session = open("floating_block");
+  ASSERT_TRUE(session);
+  ASSERT_EQ(session->run(std::atomic<bool>{false}), driver::ServoEnd::kDone);
+  app::ScenePoses poses;
+  ASSERT_TRUE(session->poses().load(poses));
+  ASSERT_EQ(poses.count, 1u);
+  const auto& [p, q] = poses.pose[0];
+  const double away = Vector3d(p[0], p[1], p[2]).norm();
+  EXPECT_GT(away, 3e-3);
+  EXPECT_LT(away, 0.1);
+  EXPECT_GT(2 * std::acos(std::min(std::abs(q[0]), 1.0)), 0.05) << "rad";
+}
+
+}  // namespace
+}  // namespace thimble
