@@ -98,9 +98,10 @@ TEST_P(SceneWithBodies, RunsForItsWholeTimeAlikeEachTimeWithoutAFaultALostContac
 }
 
 INSTANTIATE_TEST_SUITE_P(ByName, SceneWithBodies,
-                         ::testing::Values(BodyScene{"clay", 0}, BodyScene{"floating_block", 0},
-                                           BodyScene{"tin_can", 0}),
-                         [](const auto& info) { return std::string(info.param.name); });
+                         ::testing::Values(BodyScene{"clay", 0x7b98c673a233fdd8},
+                                           BodyScene{"floating_block", 0xf73b298e2b2c6586},
+                                           BodyScene{"tin_can", 0xa59f512f64e48f21}),
+                         [](const auto& scene) { return std::string(scene.param.name); });
 
 double farthest(const app::Session& session) {
   double far = 0;
