@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <string>
 #include <vector>
@@ -13,8 +14,12 @@
 #include "lost_contacts.h"
 #include "session.h"
 #include "support/heap_guard.h"
+#include "support/scratch.h"
 #include "thimble/render/body/body_shape.h"
+#include "thimble/render/contact/contact_mesh.h"
 #include "thimble/render/effect/effect_table.h"
+#include "thimble/render/mesh/load_mesh.h"
+#include "thimble/render/mesh/save_mesh.h"
 
 // The scenes with bodies that move, keep what they gave way, and snap, from the wire up.
 
@@ -119,6 +124,56 @@ TEST(ClayScene, KeepsItsPrints) {
   EXPECT_GT(farthest(*session), 3e-3);
   EXPECT_LE(farthest(*session), 12e-3 * (1 + 1e-9));
   EXPECT_GT(session->touch().object(0).shape()->clay()->dissipated(), 1e-3);
+  // What has been sculpted can be saved, and touched again.
+  const auto file = support::scratch_folder() / "sculpted.off";
+  ASSERT_TRUE(render::save_mesh(session->mesh_now(0), file));
+  const auto again = render::load_mesh(file);
+  ASSERT_TRUE(again);
+  EXPECT_EQ(again->vertices, session->mesh_now().vertices);
+  EXPECT_TRUE(render::ContactMesh::build(*again));
+}
+
+// Reads a scene with `body` on an object that is `what`; gives the error's text, empty if there is
+// none.
+std::string refusal(const std::string& what, const std::string& body) {
+  const std::filesystem::path scenes = std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/scenes";
+  const auto file = support::scratch_folder() / "scene.yaml";
+  std::ofstream(file) << "name: x\narm: " << std::filesystem::absolute(scenes).string()
+                      << "/../arms/vintage_phantom.yaml\nduration: 1\nobjects:\n"
+                      << "  - {name: o, " << what << ", stiffness: 500, body: " << body << "}\n"
+                      << "hand: {path: [{t: 0, at: [0, 0, 0.05]}, {t: 1, at: [0, 0, 0.06]}]}\n";
+  const auto session = app::Session::open(file, {});
+  return session ? "" : session.error().message;
+}
+
+TEST(BodyKeys, TellWhatIsWrongWithABody) {
+  const std::string ball =
+      "mesh: " + std::filesystem::relative(
+                     std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/scenes/clay_ball.off",
+                     support::scratch_folder())
+                     .string();
+  const std::string block = "box: {sides: [0.05, 0.05, 0.05]}";
+  const auto says = [](const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos
+               ? ::testing::AssertionSuccess()
+               : ::testing::AssertionFailure() << '"' << text << "\" without \"" << part << '"';
+  };
+  EXPECT_EQ(refusal(ball, "{plastic: {}, snap: {}, motion: {mass: 0.1}}"), "");
+  EXPECT_EQ(refusal(block, "{motion: {mass: 0.1, kind: rigid}}"), "");
+  EXPECT_TRUE(says(refusal(ball, "{motion: {}}"), "mass"));
+  EXPECT_TRUE(says(refusal(ball, "{motion: {mass: 0}}"), "mass: expected a number from 0.0001"));
+  EXPECT_TRUE(says(refusal(ball, "{motion: {mass: .nan}}"), "mass"));
+  EXPECT_TRUE(says(refusal(ball, "{motion: {mass: 1, turning: [0, 0, 1]}}"), "kind: rigid"));
+  EXPECT_TRUE(says(refusal(ball, "{motion: {mass: 1, floor_friction: 1}}"), "floor"));
+  EXPECT_TRUE(says(refusal(ball, "{motion: {mass: 1, time_scale: 0}}"), "time_scale"));
+  EXPECT_TRUE(says(refusal(ball, "{plastic: {yield_force: -1}}"), "yield_force"));
+  EXPECT_TRUE(says(refusal(ball, "{snap: {depth: 0.02, radius: 0.01}}"), "would fold"));
+  EXPECT_TRUE(says(refusal(ball, "{snap: {radius: 0.002, depth: 0.001}}"), "finer mesh"));
+  EXPECT_TRUE(says(refusal(ball, "{sticky: {}}"), "sticky"));
+  EXPECT_TRUE(says(refusal(block, "{plastic: {}}"), "only a mesh gives way"));
+  EXPECT_TRUE(says(refusal("plane: {normal: [0, 0, 1]}", "{motion: {mass: 1}}"), "no volume"));
+  EXPECT_TRUE(
+      says(refusal(ball + ", contact: {tracker: compact}", "{plastic: {}}"), "edge_planes"));
 }
 
 TEST(TinCanScene, SnapsTwiceAndRollsMeanwhile) {

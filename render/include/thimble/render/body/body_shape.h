@@ -52,7 +52,7 @@ class BodyShape {
   const SnapShape* snap() const noexcept { return snap_ ? &*snap_ : nullptr; }
   const TurnGuard& guard() const noexcept { return guard_; }
 
-  static constexpr std::size_t kMovesMax = 16;  ///< Vertices moved per tick.
+  static constexpr std::size_t kMovesMax = 8;  ///< Vertices moved per tick: about 3 us.
 
  private:
   BodyShape(const ContactMesh& mesh, const ShapeChoice& choice, double stiffness);
