@@ -103,9 +103,10 @@ TEST_P(SceneWithBodies, RunsForItsWholeTimeAlikeEachTimeWithoutAFaultALostContac
 }
 
 INSTANTIATE_TEST_SUITE_P(ByName, SceneWithBodies,
-                         ::testing::Values(BodyScene{"clay", 0x7b98c673a233fdd8},
-                                           BodyScene{"floating_block", 0xf73b298e2b2c6586},
-                                           BodyScene{"tin_can", 0xa59f512f64e48f21}),
+                         ::testing::Values(BodyScene{"clay", 0xaa461165e13d1029},
+                                           BodyScene{"floating_block", 0xc953b9ac9560fe8a},
+                                           BodyScene{"held_block", 0xaa58f955f149e32e},
+                                           BodyScene{"tin_can", 0xd1dfaed21159d1ee}),
                          [](const auto& scene) { return std::string(scene.param.name); });
 
 double farthest(const app::Session& session) {

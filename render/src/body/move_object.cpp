@@ -24,9 +24,24 @@ constexpr double kPositionMax = 2;   // m
 constexpr double kSpeedMax = 10;     // m/s
 constexpr double kTurningMax = 100;  // rad/s
 constexpr double kFrictionMax = 10;
+constexpr double kHoldMax = 1e5;       // N/m
+constexpr double kHoldForceMax = 100;  // N
 
 // A round rim of half of them rolls over sides of 11 degrees.
 constexpr std::size_t kStandOn = RigidBody::kSupportMax;
+
+template <class Motion>
+Moved held(std::unique_ptr<MovingTouch<Motion>> object, const MotionChoice& choice,
+           const BodyCoupling& coupling) {
+  if (!choice.grip) return Moved(std::move(object));
+  const Grip& grip = *choice.grip;
+  // Written so that NaN is refused.
+  if (!(grip.stiffness > 0 && grip.damping >= 0 && grip.force_max > 0) ||
+      !std::isfinite(grip.stiffness + grip.damping + grip.force_max)) {
+    return driver::Error{"A hand that holds needs a stiffness and a force above 0, and a damping."};
+  }
+  return Moved(std::make_unique<HeldTouch<Motion>>(std::move(object), grip, coupling.step));
+}
 
 Moved move_three_ways(std::unique_ptr<ObjectTouch> surface, const TriangleMesh& mesh_W,
                       const MotionChoice& choice, const BodyCoupling& coupling) {
@@ -42,8 +57,9 @@ Moved move_three_ways(std::unique_ptr<ObjectTouch> surface, const TriangleMesh& 
       settings.lowest = std::min(settings.lowest, choice.floor->n_W.dot(p));
     }
   }
-  return Moved(std::make_unique<MovingTouch<TranslatingMotion>>(
-      std::move(surface), TranslatingMotion(body, settings), coupling));
+  return held(std::make_unique<MovingTouch<TranslatingMotion>>(
+                  std::move(surface), TranslatingMotion(body, settings), coupling),
+              choice, coupling);
 }
 
 }  // namespace
@@ -72,6 +88,14 @@ void MotionChoice::read(SettingsReader& reader) {
                   {.unit = "", .least = 0, .most = kFrictionMax});
   } else if (reader.has("floor_friction")) {
     reader.reject("floor_friction", "needs a floor: its height in m");
+  }
+  if (reader.has("hold")) {
+    grip.emplace();
+    reader.number("hold", grip->stiffness, {.unit = "N/m", .least = 1, .most = kHoldMax});
+    reader.number("hold_damping", grip->damping,
+                  {.unit = "N s/m", .least = 0, .most = kDampingMax});
+    reader.number("hold_force", grip->force_max,
+                  {.unit = "N", .least = 0.01, .most = kHoldForceMax});
   }
   for (const char* key : {"angular_damping", "turning"}) {
     if (kind == MotionKind::kTranslate && reader.has(key)) {
@@ -112,8 +136,9 @@ Moved move_object(std::unique_ptr<ObjectTouch> surface, const TriangleMesh& mesh
   const Eigen::Vector3d omega_B = mass->q_WB.conjugate() * choice.omega_W;
   body->set_momentum(choice.mass * choice.v_W / choice.time_scale,
                      mass->q_WB * mass->inertia.cwiseProduct(omega_B) / choice.time_scale);
-  return Moved(std::make_unique<MovingTouch<RigidMotion>>(
-      std::move(surface), RigidMotion(*body, choice.reach), coupling));
+  return held(std::make_unique<MovingTouch<RigidMotion>>(
+                  std::move(surface), RigidMotion(*body, choice.reach), coupling),
+              choice, coupling);
 }
 
 }  // namespace thimble::render

@@ -49,8 +49,10 @@ Built shaped_touch(const TriangleMesh& mesh_W, const ContactChoice& choice,
   auto body = BodyShape::build(*prepared, surface.shape, surface.spring.stiffness);
   if (!body) return body.error();
   MovingMeshOptions options{.search = choice.search};
-  // Means of faces: to fit them anew at each move would cost seven times as much.
-  if (blending == BlendingChoice::kPhong) options.normals = NormalWeights::kAngle;
+  // Means of faces unless said: to fit them anew at each move costs seven times as much.
+  if (blending == BlendingChoice::kPhong) {
+    options.normals = choice.normals.value_or(NormalWeights::kAngle);
+  }
   options.crease_angle = choice.crease_angle.value_or(kCreaseAngle);
   const auto mesh = std::make_shared<MovingMesh>(std::move(prepared).value(), options);
   if (god_object) {

@@ -263,6 +263,34 @@ TEST(MovingTouch, LeavesTheHandUnharmedWhenItIsPushedOffTheWorkspacesEdge) {
   }
 }
 
+TEST(HeldTouch, IsAsHeavyAsItIsAndSlipsOutWhereTheBodyCannotFollow) {
+  for (const MotionKind kind : {MotionKind::kTranslate, MotionKind::kRigid}) {
+    for (const double mass : {1e-3, 0.1, 0.15}) {
+      MotionChoice motion{.kind = kind, .mass = mass, .damping = 0.1, .reach = 0.08};
+      motion.angular_damping = 1e-4;
+      motion.gravity_W = {0, 0, -9.81};
+      motion.grip = Grip{};
+      auto object = moving(block(), motion, 800, 1);
+      support::Stylus stylus{.hand_stiffness = 300, .hand_damping = 5};
+      stylus.p_WT = stylus.p_WH = {0, 0, 0.01};
+      for (int i = 0; i < 4000; ++i) stylus.follow(*object);
+      EXPECT_NEAR(stylus.follow(*object).f_T_W.z(), -9.81 * mass, 0.02 * 9.81 * mass) << mass;
+      // Carried to the workspace's edge and on, to 1 m beyond it.
+      bool slipped = false;
+      for (int i = 0; i < 6000; ++i) {
+        stylus.p_WH.x() = std::min(i * 2.5e-4, 1.0);
+        const auto felt = stylus.follow(*object);
+        ASSERT_TRUE(felt.f_T_W.allFinite());
+        ASSERT_LE(felt.f_T_W.norm(), Grip{}.force_max * (1 + 1e-12));
+        slipped = slipped || (i > 1000 && felt.f_T_W.norm() == 0);
+        const auto p = object->pose().p_WB;
+        ASSERT_LT(Vector3d(p[0], p[1], p[2]).norm(), 0.2);
+      }
+      EXPECT_TRUE(slipped) << mass;
+    }
+  }
+}
+
 TEST(MovingTouch, RefusesOrSurvivesNonsense) {
   const MotionChoice good{.kind = MotionKind::kRigid, .mass = 0.1};
   const auto refused = [&](const MotionChoice& choice, const TriangleMesh& mesh) {
@@ -294,6 +322,11 @@ TEST(MovingTouch, RefusesOrSurvivesNonsense) {
   EXPECT_TRUE(refused(choice, block()));
   choice = good;
   choice.omega_W.x() = kNaN;
+  EXPECT_TRUE(refused(choice, block()));
+  choice = good;
+  choice.grip = Grip{.stiffness = 0};
+  EXPECT_TRUE(refused(choice, block()));
+  choice.grip = Grip{.force_max = kNaN};
   EXPECT_TRUE(refused(choice, block()));
   TriangleMesh open = block();
   for (Vector3d& p : open.vertices) p.z() = 0;

@@ -8,6 +8,7 @@
 
 #include "thimble/driver/result.h"
 #include "thimble/render/body/body_coupling.h"
+#include "thimble/render/body/held_touch.h"
 #include "thimble/render/body/rigid_body.h"
 #include "thimble/render/effect/settings_reader.h"
 #include "thimble/render/mesh/triangle_mesh.h"
@@ -33,6 +34,7 @@ struct MotionChoice {
   double reach = std::numeric_limits<double>::infinity();  ///< m, >= 0: how far its centre may go
   Eigen::Vector3d v_W{0, 0, 0};                            ///< m/s, at first
   Eigen::Vector3d omega_W{0, 0, 0};                        ///< rad/s, at first; rigid alone
+  std::optional<Grip> grip{};  ///< The hand holds it from the first tick.
 
   /// Reads the settings of a scene. Real-time: never from the servo thread.
   void read(SettingsReader& reader);

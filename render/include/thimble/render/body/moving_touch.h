@@ -92,6 +92,8 @@ class MovingTouch final : public ObjectTouch {
   }
 
   const Motion& motion() const noexcept { return motion_; }
+  /// Gives the motion to who holds the body otherwise than by its surface. Real-time: safe.
+  Motion& motion() noexcept { return motion_; }
   const ObjectTouch& surface() const noexcept { return *surface_; }
 
  private:
