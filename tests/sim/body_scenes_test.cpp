@@ -103,7 +103,7 @@ TEST_P(SceneWithBodies, RunsForItsWholeTimeAlikeEachTimeWithoutAFaultALostContac
 }
 
 INSTANTIATE_TEST_SUITE_P(ByName, SceneWithBodies,
-                         ::testing::Values(BodyScene{"clay", 0xaa461165e13d1029},
+                         ::testing::Values(BodyScene{"clay", 0x26630134154c4be7},
                                            BodyScene{"floating_block", 0xc953b9ac9560fe8a},
                                            BodyScene{"held_block", 0xaa58f955f149e32e},
                                            BodyScene{"tin_can", 0xd1dfaed21159d1ee}),
@@ -123,7 +123,7 @@ TEST(ClayScene, KeepsItsPrints) {
   ASSERT_TRUE(session);
   ASSERT_EQ(session->run(std::atomic<bool>{false}), driver::ServoEnd::kDone);
   EXPECT_GT(farthest(*session), 3e-3);
-  EXPECT_LE(farthest(*session), 12e-3 * (1 + 1e-9));
+  EXPECT_LE(farthest(*session), 8e-3 * (1 + 1e-9));
   EXPECT_GT(session->touch().object(0).shape()->clay()->dissipated(), 1e-3);
   // What has been sculpted can be saved, and touched again.
   const auto file = support::scratch_folder() / "sculpted.off";

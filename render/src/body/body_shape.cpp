@@ -87,6 +87,7 @@ ShapeContact BodyShape::contact_of(const ContactMesh& mesh,
   ShapeContact contact;
   contact.triangle = touch.feature;
   contact.inward = -mesh.cell(touch.feature).face.n;
+  contact.first_inward = -guard_.first_normal(touch.feature);
   contact.depth = touch.depth;
   const Vector3d raw = projected_weights(mesh, touch.feature, touch.p_WP).cwiseMax(0.0);
   const double sum = raw.sum();

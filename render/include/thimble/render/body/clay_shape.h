@@ -16,8 +16,9 @@ namespace thimble::render {
 ///
 /// The touched place is a spring in a row with a slider [STABILITY 4, plastic truth]: it gives way
 /// until the spring holds the yield force, so pressed to x_max it keeps x_max - F_y / k, whatever
-/// the mesh; the base points around go with it by a smooth print (1 - (r / radius)^2)^2. Never
-/// gives energy: it moves against the force that presses it only.
+/// the mesh; the base points around go with it by a smooth print (1 - (r / radius)^2)^2, along the
+/// first normal of the touched triangle. Never gives energy: it moves against the force that
+/// presses it only.
 class ClayShape {
  public:
   /// Takes the surface's stiffness (N/m, > 0) and the number of vertices.

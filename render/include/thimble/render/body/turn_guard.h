@@ -26,6 +26,11 @@ class TurnGuard {
   double allowed(const ContactMesh& mesh, std::span<const Eigen::Vector3d> places,
                  std::int32_t vertex, const Eigen::Vector3d& p_W) const noexcept;
 
+  /// Tells a triangle's first outward normal; zero if it had no area.
+  Eigen::Vector3d first_normal(std::int32_t triangle) const noexcept {
+    return seen_along_[static_cast<std::size_t>(triangle)].stableNormalized();
+  }
+
   /// Tells a triangle's area seen along its first normal, over its first area: 1 at first, above 0
   /// as long as it has not turned over.
   double seen_area(const ContactMesh& mesh, std::int32_t triangle) const noexcept;
