@@ -22,6 +22,7 @@
 #include "report.h"
 #include "session.h"
 #include "thimble/driver/real_time.h"
+#include "thimble/render/mesh/save_mesh.h"
 
 namespace thimble::app {
 namespace {
@@ -36,6 +37,8 @@ struct RunOptions {
   std::string arm_file;
   std::string firmware;
   std::string record;
+  std::string save_mesh;
+  std::string save_object;
   bool yes = false;
 };
 
@@ -131,6 +134,15 @@ bool may_begin(const driver::FoundArm& arm, bool yes) {
   return std::getchar() != EOF;
 }
 
+/// Finds which object's mesh is to be saved: -1 for all. Nothing if the scene has no such object.
+std::optional<int> object_to_save(const Scene& scene, const std::string& name) {
+  if (name.empty()) return -1;
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    if (scene.objects[i].name == name) return static_cast<int>(i);
+  }
+  return {};
+}
+
 int run_scene(const RunOptions& options) {
   std::optional<driver::FoundArm> real_arm;
   if (options.device != "sim") {
@@ -157,6 +169,11 @@ int run_scene(const RunOptions& options) {
     return complain(opened.error(), real_arm ? kExitNoDevice : kExitBadInput);
   }
   Session& session = **opened;
+  const auto saved = object_to_save(session.scene(), options.save_object);
+  if (!saved) {
+    return complain({"--save-object: the scene has no object \"" + options.save_object + "\"."},
+                    kExitBadInput);
+  }
   std::unique_ptr<ReplugWatch> watch;
   if (real_arm) watch = std::make_unique<ReplugWatch>(session, *real_arm, options.firmware);
   driver::RealTimeGrant grant;
@@ -187,7 +204,17 @@ int run_scene(const RunOptions& options) {
     if (!drawn) {
       return complain(drawn.error(), kExitTrouble);
     }
+    if (session.dents() != nullptr && session.dents()->deepest().triangle_count > 0) {
+      const auto bent = draw_mesh(session.bent_mesh_W(), folder / "dent.png",
+                                  report.scene + ": the deepest dent", "m");
+      if (!bent) return complain(bent.error(), kExitTrouble);
+    }
     std::printf("Report and pictures: %s\n", folder.c_str());
+  }
+  if (!options.save_mesh.empty()) {
+    const auto written = render::save_mesh(session.mesh_now(*saved), options.save_mesh);
+    if (!written) return complain(written.error(), kExitTrouble);
+    std::printf("Mesh as it is now: %s\n", options.save_mesh.c_str());
   }
   switch (end) {
     case driver::ServoEnd::kDone:
@@ -236,6 +263,13 @@ void add_run_command(CLI::App& app, int& exit_code) {
   command->add_option(
       "--record", options->record,
       "Recording of every tick to write (HDF5; thimble export makes a table of it)");
+  CLI::Option* save = command->add_option(
+      "--save-mesh", options->save_mesh,
+      "OFF file for the meshes as they are at the end: moved, dented, sculpted (world, m)");
+  command
+      ->add_option("--save-object", options->save_object,
+                   "Save the mesh of this object of the scene alone")
+      ->needs(save);
   command->add_option("--seed", options->seed, "Seed of everything random; the scene's if absent");
   command->callback([options, &exit_code] { exit_code = run_scene(*options); });
 }

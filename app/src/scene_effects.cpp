@@ -4,63 +4,13 @@
 #include <limits>
 #include <numbers>
 #include <string>
-#include <system_error>
 #include <utility>
 
 #include "real_arm.h"
+#include "yaml_settings.h"
 
 namespace thimble::app {
 namespace {
-
-/// Answers an effect's questions from a map of a scene file.
-class YamlSettings final : public render::SettingsReader {
- public:
-  YamlSettings(YamlMap map, std::filesystem::path folder)
-      : map_(std::move(map)), folder_(std::move(folder)) {}
-
-  bool has(std::string_view key) override { return map_.has(key); }
-  void number(std::string_view key, double& value, const render::NumberLimits& limits) override {
-    value = limits.required
-                ? map_.require_number(key, limits.unit, limits.least, limits.most)
-                : map_.optional_number(key, value, limits.unit, limits.least, limits.most);
-  }
-  void vector(std::string_view key, Eigen::Vector3d& value,
-              const render::NumberLimits& limits) override {
-    value = limits.required
-                ? map_.require_vector3(key, limits.unit, limits.least, limits.most)
-                : map_.optional_vector3(key, value, limits.unit, limits.least, limits.most);
-  }
-  void choice(std::string_view key, std::size_t& value,
-              const std::vector<std::string_view>& names) override {
-    value = map_.optional_choice(key, value, names);
-  }
-  void file(std::string_view key, std::filesystem::path& value) override {
-    const std::string name = map_.require_string(key);
-    if (name.empty()) return;
-    value = (folder_ / name).lexically_normal();
-    std::error_code status;
-    if (!std::filesystem::is_regular_file(value, status)) {
-      map_.reject(key, "expected a file, found none at " + value.string());
-    }
-  }
-  void list(std::string_view key,
-            const std::function<void(render::SettingsReader&)>& read) override {
-    for (const YamlMap& entry : map_.require_maps(key)) {
-      YamlSettings settings(entry, folder_);
-      read(settings);
-      settings.finish();
-    }
-  }
-  void reject(std::string_view key, const std::string& sentence) override {
-    map_.reject(key, sentence);
-  }
-
-  void finish() { map_.finish(); }
-
- private:
-  YamlMap map_;
-  std::filesystem::path folder_;
-};
 
 /// Gives the groups of the table, each once, in its order.
 std::vector<std::string_view> group_names() {

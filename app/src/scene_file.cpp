@@ -1,6 +1,7 @@
 #include "scene_file.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <numbers>
 #include <span>
 #include <system_error>
@@ -118,10 +119,24 @@ SceneObject read_object(YamlMap map, const std::filesystem::path& folder,
     }
     object.contact.tracker = render::TrackerChoice::kCompact;
   }
+  surroundings.surface_stiffness = object.stiffness;
+  surroundings.surface_damping = object.damping;
   if (map.has("effects")) {
-    surroundings.surface_stiffness = object.stiffness;
-    surroundings.surface_damping = object.damping;
     object.effects = read_effects(map, folder, surroundings);
+  }
+  if (map.has("body")) {
+    object.body = read_body(map, folder, surroundings);
+    const auto names = [&object](std::string_view group) {
+      return std::any_of(object.effects.begin(), object.effects.end(),
+                         [&](const auto& effect) { return effect.kind->group == group; });
+    };
+    object.coupling = coupling_of(surroundings, names("texture"), names("friction"));
+    if (object.paged) {
+      map.reject("body", "only what is in memory has a body; put it on another object");
+    } else if (object.shape && (object.body.dent || object.body.shape.named())) {
+      map.reject("body",
+                 "a shape can move, but only a mesh gives way; keep motion, or name a mesh");
+    }
   }
   map.finish();
   return object;

@@ -9,6 +9,7 @@
 
 #include "arm_file.h"
 #include "hand_route.h"
+#include "scene_body.h"
 #include "scene_shapes.h"
 #include "thimble/driver/result.h"
 #include "thimble/render/contact_choice.h"
@@ -34,6 +35,8 @@ struct SceneObject {
   double damping = 0;                       ///< N s/m
   render::ContactChoice contact;            ///< How the surface is found, followed and felt.
   std::vector<render::EffectPlan> effects;  ///< What is put on it, as a tick runs them.
+  SceneBody body;                           ///< What its matter does.
+  render::BodyCoupling coupling;            ///< How stiff its surface answers, if it moves.
 };
 
 /// Is one scene: which arm touches what, how fast the loop runs, and what the simulated hand does.

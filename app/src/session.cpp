@@ -1,9 +1,12 @@
 #include "session.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <iterator>
+#include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -11,6 +14,7 @@
 #include "calibration.h"
 #include "hand_route.h"
 #include "real_arm.h"
+#include "thimble/render/body/move_object.h"
 #include "thimble/render/build_object_touch.h"
 #include "thimble/render/mesh/load_mesh.h"
 #include "thimble/render/mesh/orient_mesh.h"
@@ -53,6 +57,13 @@ driver::Result<std::vector<render::TriangleMesh>> load_meshes(const Scene& scene
   return meshes;
 }
 
+using Touched = driver::Result<std::unique_ptr<render::ObjectTouch>>;
+
+/// Says which object a sentence is about.
+std::string name_of(const SceneObject& object) {
+  return object.mesh_file.empty() ? object.name : object.mesh_file.string();
+}
+
 /// Builds the force law that the scene calls for.
 driver::Result<std::unique_ptr<render::SceneTouch>> build_touch(
     const Scene& scene, const std::vector<render::TriangleMesh>& meshes_W,
@@ -62,11 +73,11 @@ driver::Result<std::unique_ptr<render::SceneTouch>> build_touch(
     const SceneObject& object = scene.objects[i];
     const render::SurfaceChoice surface{
         .spring = {.stiffness = object.stiffness, .damping = object.damping},
-        .effects = object.effects};
-    if (object.build_field || object.shape) {
-      objects.push_back(object.build_field
-                            ? object.build_field()
-                            : render::build_primitive_touch(object.shape->shape_W, surface));
+        .effects = object.effects,
+        .dent = object.body.dent,
+        .shape = object.body.shape};
+    if (object.build_field) {
+      objects.push_back(object.build_field());
       continue;
     }
     if (object.paged) {
@@ -77,8 +88,14 @@ driver::Result<std::unique_ptr<render::SceneTouch>> build_touch(
       objects.push_back(render::build_paged_touch(pages.back(), place, surface));
       continue;
     }
-    auto touch = render::build_object_touch(meshes_W[i], object.contact, surface);
-    if (!touch) return driver::Error{object.mesh_file.string() + ": " + touch.error().message};
+    auto touch = object.shape
+                     ? Touched(render::build_primitive_touch(object.shape->shape_W, surface))
+                     : render::build_object_touch(meshes_W[i], object.contact, surface);
+    if (touch && object.body.motion) {
+      touch = render::move_object(std::move(touch).value(), meshes_W[i], *object.body.motion,
+                                  object.coupling);
+    }
+    if (!touch) return driver::Error{name_of(object) + ": " + touch.error().message};
     objects.push_back(std::move(touch).value());
   }
   return std::make_unique<render::SceneTouch>(std::move(objects));
@@ -122,7 +139,15 @@ driver::Result<std::unique_ptr<Session>> Session::open(const std::filesystem::pa
 
   for (std::size_t i = 0; i < meshes->size(); ++i) {
     if (!session->scene_.objects[i].shape) session->triangles_ += (*meshes)[i].triangles.size();
+    session->places_.push_back(
+        {session->mesh_W_.vertices.size(), session->mesh_W_.triangles.size()});
     append((*meshes)[i], session->mesh_W_);
+    if (session->scene_.objects[i].body.motion) session->moving_.push_back(i);
+  }
+  session->places_.push_back({session->mesh_W_.vertices.size(), session->mesh_W_.triangles.size()});
+  if (session->moving_.size() > ScenePoses::kMost) {
+    return driver::Error{scene_file.string() + ": at most " + std::to_string(ScenePoses::kMost) +
+                         " objects may move."};
   }
   for (const auto& pages : session->pages_) {
     session->triangles_ += static_cast<std::size_t>(pages->triangle_count());
@@ -134,6 +159,10 @@ driver::Result<std::unique_ptr<Session>> Session::open(const std::filesystem::pa
       std::ceil(duration * 1e9 / static_cast<double>(session->period_ns_)));
   session->statistics_ = std::make_unique<RunStatistics>();
   session->trace_ = std::make_unique<Trace>(session->ticks_);
+  const auto dents = [](const SceneObject& object) { return object.body.dent.has_value(); };
+  if (std::any_of(session->scene_.objects.begin(), session->scene_.objects.end(), dents)) {
+    session->dents_ = std::make_unique<DentRecord>(session->period_ns_);
+  }
 
   if (!options.real_arm) {
     if (auto planned = session->plan_simulation(scene_file, *meshes, options.firmware); !planned) {
@@ -236,6 +265,8 @@ void Session::operator()(const driver::TickRecord& record) noexcept {
   (*statistics_)(record);
   (*trace_)(record);
   (*black_box_)(record);
+  if (dents_) dents_->take(record, *touch_);
+  if (!moving_.empty()) store_poses(record.tick);
   if (recorder_) (*recorder_)(record);
   if (by_thread_) return;
   // In virtual time a tick lasts as long as it computes: the disk is as fast as one could wish, and
@@ -245,6 +276,44 @@ void Session::operator()(const driver::TickRecord& record) noexcept {
     }
   }
   if (recorder_ && recorder_->waiting() >= Recorder::kRingTicks / 2) recorder_->serve();
+}
+
+render::TriangleMesh Session::bent_mesh_W() const {
+  if (!dents_ || dents_->deepest().triangle_count == 0) return mesh_W_;
+  const render::BodyPatch& patch = dents_->deepest();
+  return bent(mesh_W_, places_[static_cast<std::size_t>(patch.object)], patch);
+}
+
+void Session::store_poses(std::uint64_t tick) noexcept {
+  poses_now_.tick = tick;
+  poses_now_.count = static_cast<std::uint32_t>(moving_.size());
+  for (std::size_t i = 0; i < moving_.size(); ++i) {
+    poses_now_.object[i] = static_cast<std::int32_t>(moving_[i]);
+    poses_now_.pose[i] = touch_->object(moving_[i]).pose();
+  }
+  poses_.store(poses_now_);
+}
+
+render::TriangleMesh Session::mesh_now(int object) const {
+  render::TriangleMesh mesh = mesh_W_;
+  for (std::size_t i = 0; i < touch_->size(); ++i) {
+    const std::size_t begin = places_[i].vertex;
+    touch_->object(i).place_now(
+        std::span(mesh.vertices).subspan(begin, places_[i + 1].vertex - begin));
+  }
+  if (object < 0) return mesh;
+  const auto& [v, t] = places_[static_cast<std::size_t>(object)];
+  const auto& [v_end, t_end] = places_[static_cast<std::size_t>(object) + 1];
+  const auto at = [](auto& list, std::size_t i) {
+    return list.begin() + static_cast<std::ptrdiff_t>(i);
+  };
+  render::TriangleMesh one;
+  one.vertices.assign(at(mesh.vertices, v), at(mesh.vertices, v_end));
+  one.triangles.assign(at(mesh.triangles, t), at(mesh.triangles, t_end));
+  for (auto& triangle : one.triangles) {
+    for (std::int32_t& vertex : triangle) vertex -= static_cast<std::int32_t>(v);
+  }
+  return one;
 }
 
 std::optional<render::PagingCounters> Session::paging() const {

@@ -9,11 +9,13 @@
 #include <vector>
 
 #include "arm_simulation.h"
+#include "dent_record.h"
 #include "recording/black_box.h"
 #include "recording/recorder.h"
 #include "recording/recording_info.h"
 #include "run_statistics.h"
 #include "scene_file.h"
+#include "scene_poses.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/device.h"
 #include "thimble/driver/discovery.h"
@@ -69,6 +71,8 @@ class Session {
   /// Gives the clock that a new wire to a real arm must use.
   driver::Clock& clock() { return *clock_; }
   const render::SceneTouch& touch() const { return *touch_; }
+  /// Gives the force law, to be driven by hand in place of `run`.
+  render::SceneTouch& touch() { return *touch_; }
   /// Sums up what paging did for all objects on the disk; nothing if there are none.
   std::optional<render::PagingCounters> paging() const;
   const RunStatistics& statistics() const { return *statistics_; }
@@ -80,6 +84,15 @@ class Session {
   BlackBox& black_box() { return *black_box_; }
   /// Says what this session is, for its recordings.
   RecordingInfo recording_info() const;
+  /// Gives the dents; nullptr if no object of the scene can dent.
+  const DentRecord* dents() const { return dents_.get(); }
+  /// Gives the meshes with the deepest dent of the run; as `mesh_W` if there was none.
+  render::TriangleMesh bent_mesh_W() const;
+  /// Shows where the objects that move are; nothing is ever stored if none does.
+  const driver::Snapshot<ScenePoses>& poses() const { return poses_; }
+  /// Gives the mesh of one object, or of all as one if `object` is negative, where it is now: moved
+  /// and bent (W, m). Not while `run` runs.
+  render::TriangleMesh mesh_now(int object = -1) const;
   std::uint64_t seed() const { return seed_; }
   std::uint64_t ticks_planned() const { return ticks_; }
   std::int64_t period_ns() const { return period_ns_; }
@@ -89,6 +102,7 @@ class Session {
 
  private:
   Session() = default;
+  void store_poses(std::uint64_t tick) noexcept;
   driver::Result<void> plan_simulation(const std::filesystem::path& scene_file,
                                        const std::vector<render::TriangleMesh>& meshes_W,
                                        const std::filesystem::path& firmware);
@@ -109,9 +123,14 @@ class Session {
   std::unique_ptr<render::SceneTouch> touch_;
   std::unique_ptr<RunStatistics> statistics_;
   std::unique_ptr<Trace> trace_;
+  std::unique_ptr<DentRecord> dents_;
+  std::vector<MeshPlace> places_;  // of each object in mesh_W_, and of its end
   driver::Snapshot<driver::TickRecord> snapshot_;
   std::unique_ptr<Recorder> recorder_;
   std::unique_ptr<BlackBox> black_box_;
+  std::vector<std::size_t> moving_;  // the objects that move
+  ScenePoses poses_now_;
+  driver::Snapshot<ScenePoses> poses_;
 };
 
 }  // namespace thimble::app

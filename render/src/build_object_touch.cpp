@@ -5,6 +5,9 @@
 #include <type_traits>
 #include <utility>
 
+#include "body/shape_object.h"
+#include "thimble/render/body/bendable_polygon.h"
+#include "thimble/render/body/dented_touch.h"
 #include "thimble/render/contact/blended.h"
 #include "thimble/render/contact/compact_contact.h"
 #include "thimble/render/contact/curved_depth.h"
@@ -108,10 +111,8 @@ Built mesh_touch(const TriangleMesh& mesh_W, const ContactChoice& choice,
   }
 }
 
-}  // namespace
-
-Built build_object_touch(const TriangleMesh& mesh_W, const ContactChoice& choice,
-                         const SurfaceChoice& surface) {
+Built stiff_touch(const TriangleMesh& mesh_W, const ContactChoice& choice,
+                  const SurfaceChoice& surface) {
   switch (choice.tracker) {
     case TrackerChoice::kEdgePlanes:
       return mesh_touch<MeshContact>(mesh_W, choice, surface);
@@ -133,6 +134,28 @@ Built build_object_touch(const TriangleMesh& mesh_W, const ContactChoice& choice
       return compact_touch(mesh_W, choice, surface);
   }
   return apart(choice, "is not known.");
+}
+
+}  // namespace
+
+Built build_object_touch(const TriangleMesh& mesh_W, const ContactChoice& choice,
+                         const SurfaceChoice& surface) {
+  auto touch = surface.shape.named() ? shaped_touch(mesh_W, choice, surface)
+                                     : stiff_touch(mesh_W, choice, surface);
+  if (!touch || !surface.dent) return touch;
+  std::shared_ptr<const ContactMesh> mesh;
+  if (const ContactMesh* touched = (*touch)->mesh()) {
+    // Belongs to the contact, which lives as long as the dent around it.
+    mesh = std::shared_ptr<const ContactMesh>(std::shared_ptr<const ContactMesh>(), touched);
+  } else {
+    // Contact on records keeps none; base points are read from here.
+    auto own = ContactMesh::build(mesh_W);
+    if (!own) return own.error();
+    mesh = std::make_shared<const ContactMesh>(std::move(own).value());
+  }
+  auto dent = BendablePolygon::build(std::move(mesh), *surface.dent);
+  if (!dent) return dent.error();
+  return Built(std::make_unique<DentedTouch>(std::move(touch).value(), std::move(dent).value()));
 }
 
 std::unique_ptr<ObjectTouch> build_paged_touch(std::shared_ptr<PagedSurface> pages,

@@ -1,7 +1,9 @@
 #include <benchmark/benchmark.h>
 
+#include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <memory>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -10,6 +12,7 @@
 #include "figure.h"
 #include "support/body_meshes.h"
 #include "support/shapes.h"
+#include "thimble/render/body/bendable_polygon.h"
 #include "thimble/render/body/mesh_springs.h"
 #include "thimble/render/body/modal_motion.h"
 #include "thimble/render/body/plastic_base.h"
@@ -17,6 +20,8 @@
 #include "thimble/render/body/ring_patch.h"
 #include "thimble/render/body/snap_base.h"
 #include "thimble/render/body/spring_motion.h"
+#include "thimble/render/build_object_touch.h"
+#include "thimble/render/contact/surface_weights.h"
 
 // What the dynamics of bodies cost: per node and step, or per step of one body.
 
@@ -73,6 +78,62 @@ void step_patch(benchmark::State& state, SpringScheme scheme) {
 }
 BENCHMARK_CAPTURE(step_patch, verlet, SpringScheme::kVerlet)->Arg(3)->Arg(5)->Arg(7);
 BENCHMARK_CAPTURE(step_patch, implicit_euler, SpringScheme::kImplicitEuler)->Arg(3)->Arg(5)->Arg(7);
+
+// One tick of touch on a torus of `range(0)` triangles, with or without a dent of 3 rings: the tip
+// strokes along at `range(1)` um per tick, 0.5 mm deep.
+void touch_torus(benchmark::State& state, bool dented) {
+  const int across =
+      static_cast<int>(std::lround(std::sqrt(static_cast<double>(state.range(0)) / 4)));
+  const auto mesh = support::torus(0.05, 0.02, 2 * across, across);
+  render::SurfaceChoice surface{
+      .spring = {.stiffness = 500, .damping = 0}, .effects = {}};
+  if (dented) surface.dent.emplace().pull = 0.2;
+  render::ContactChoice choice;
+  choice.tracker = render::TrackerChoice::kCompact;
+  auto touch = render::build_object_touch(mesh, choice, surface).value();
+  // Forth and back over 60 mm, so that the way is closed.
+  const double step = static_cast<double>(state.range(1)) * 1e-6;
+  const int half = static_cast<int>(0.06 / step);
+  std::vector<driver::DeviceState> ways(static_cast<std::size_t>(2 * half));
+  for (int i = 0; i < 2 * half; ++i) {
+    const double way = step * (i < half ? i : 2 * half - i);
+    const double theta = way / 0.07;
+    const double phi = 0.1 + 4 * way;
+    const double out = 0.05 + 0.0195 * std::cos(phi);
+    auto& at = ways[static_cast<std::size_t>(i)];
+    at.p_WT = {out * std::cos(theta), out * std::sin(theta), 0.0195 * std::sin(phi)};
+  }
+  driver::DeviceState outside;
+  outside.p_WT = {0.08, 0, 0.003};
+  touch->update(outside);
+  std::size_t i = 0;
+  int touching = 0;
+  for (std::size_t k = 0; k < ways.size(); ++k) touching += touch->update(ways[k]).touch.in_contact;
+  if (touching == 0) state.SkipWithError("never touched");
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(touch->update(ways[i]));
+    i = i + 1 == ways.size() ? 0 : i + 1;
+  }
+}
+BENCHMARK_CAPTURE(touch_torus, stiff, false)->ArgsProduct({{10000, 1000000}, {30, 300}});
+BENCHMARK_CAPTURE(touch_torus, dented, true)->ArgsProduct({{10000, 1000000}, {30, 300}});
+
+// What drawing a dent of 3 rings takes.
+void draw_dent(benchmark::State& state) {
+  auto contact = std::make_shared<const render::ContactMesh>(
+      render::ContactMesh::build(support::torus(0.05, 0.02, 100, 50)).value());
+  auto dent = render::BendablePolygon::build(contact, {}).value();
+  auto patch = std::make_unique<render::BodyPatch>();
+  const Eigen::Vector3d w(0.5, 0.3, 0.2);
+  for (int i = 0; i < 20; ++i) {
+    dent.touch(7, w, render::point_at(*contact, 7, w) - 5e-4 * contact->cell(7).face.n);
+  }
+  for (auto _ : state) {
+    dent.draw(*patch);
+    benchmark::DoNotOptimize(patch->point_count);
+  }
+}
+BENCHMARK(draw_dent);
 
 void step_modal(benchmark::State& state) {
   const auto network =

@@ -20,11 +20,14 @@ class FiguresReporter : public benchmark::ConsoleReporter {
       const bool median = run.run_type == Run::RT_Aggregate && run.aggregate_name == "median";
       if (!median && !(run.run_type == Run::RT_Iteration && run.repetitions <= 1)) continue;
       const std::string& arguments = run.run_name.args;
+      const auto goal = run.counters.find("goal_below_ns");
       figures_.push_back(
           {.name = run.run_name.function_name + (arguments.empty() ? "" : "/" + arguments),
            .value = time_of(run) * 1e9 / benchmark::GetTimeUnitMultiplier(run.time_unit),
            .unit = "ns",
-           .goal = {}});
+           .goal = goal == run.counters.end()
+                       ? std::string()
+                       : "< " + std::to_string(static_cast<long>(goal->second.value))});
     }
   }
 

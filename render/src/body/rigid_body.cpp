@@ -138,10 +138,14 @@ void RigidBody::step(double step) noexcept {
     kick(time / 2);
     momentum_W_ *= slow;
     angular_W_ *= calm;
-    p_WC_ += time * v_WC();
+    const Vector3d way = time * v_WC();
+    p_WC_ += way;
     rotate(time);
     momentum_W_ *= slow;
     angular_W_ *= calm;
+    // Forces stay at their points in W while C moves: so what the body gains about any point is
+    // what they give, to rounding.
+    tau_W_ -= way.cross(f_W_);
     kick(time / 2);
     if (settings_.floor) stand_on_floor(time);
   }
@@ -154,39 +158,72 @@ void RigidBody::step(double step) noexcept {
 // takes energy. To look ahead lets a side come to lie flat: all its corners count at once.
 void RigidBody::stand_on_floor(double time) noexcept {
   const Floor& floor = *settings_.floor;
-  constexpr int kRounds = 16;  // a block at rest on a side then creeps below 1 um/s
-  std::array<double, kSupportMax> pressed{};
+  constexpr int kRounds = 16;     // a block at rest on a side then creeps below 1 um/s
+  constexpr double kCalm = 1e-9;  // of all impulses: what a round adds less than is rounding
+  // Points that the next step cannot bring to the floor, at four times the speed, are left out.
+  constexpr double kAhead = 4;
+  constexpr double kNear = 1e-3;  // of the farthest point's distance from C
+  std::array<Vector3d, kSupportMax> arms;
+  std::array<double, kSupportMax> allowed, pressed{};
+  std::size_t near = 0;
   double deepest = 0;
+  const double turning = omega_W().norm();
+  const double height = floor.n_W.dot(p_WC_) - floor.height;
+  for (const Vector3d& p_B : settings_.support_B) {
+    const Vector3d arm = q_WB_ * p_B;
+    const double gap = height + floor.n_W.dot(arm);
+    const double far = p_B.norm();
+    if (!(gap <= kAhead * time * (v_WC().norm() + turning * far) + kNear * far)) continue;
+    deepest = std::max(deepest, -gap);
+    arms[near] = arm;
+    allowed[near++] = std::max(gap, 0.0) / time;
+  }
+  double sum = 0;
   for (int round = 0; round < kRounds; ++round) {
-    for (std::size_t i = 0; i < settings_.support_B.size(); ++i) {
-      const Vector3d arm = q_WB_ * settings_.support_B[i];
-      const double depth = floor.height - floor.n_W.dot(p_WC_ + arm);
-      deepest = std::max(deepest, depth);
-      stop_at(arm, std::max(-depth, 0.0) / time, pressed[i]);
-    }
+    double given = 0;
+    for (std::size_t i = 0; i < near; ++i) given += stop_at(arms[i], allowed[i], pressed[i]);
+    sum += given;
+    if (!(given > kCalm * sum)) break;
   }
   p_WC_ += deepest * floor.n_W;
 }
 
 // Slows the point at `arm` down to `allowed` m/s into the floor; `pressed` sums up the impulses.
-void RigidBody::stop_at(const Vector3d& arm, double allowed, double& pressed) noexcept {
+// Tells the size of what it gave.
+double RigidBody::stop_at(const Vector3d& arm, double allowed, double& pressed) noexcept {
   const Floor& floor = *settings_.floor;
   const auto speed = [&] { return (v_WC() + omega_W().cross(arm)).eval(); };
   const auto hit = [&](const Vector3d& impulse) {
     momentum_W_ += impulse;
     angular_W_ += arm.cross(impulse);
   };
+  double given = 0;
   const double beyond = -floor.n_W.dot(speed()) - allowed;
   if (beyond > 0) {
     const double impulse = beyond / floor.n_W.dot(give(arm, floor.n_W));
     pressed += impulse;
+    given += impulse;
     hit(impulse * floor.n_W);
   }
-  const Vector3d slip = speed() - floor.n_W.dot(speed()) * floor.n_W;
+  if (!(pressed > 0)) return given;
+  const Vector3d v = speed();
+  const Vector3d slip = v - floor.n_W.dot(v) * floor.n_W;
   const double fast = slip.norm();
-  if (!(fast > 0) || !(pressed > 0)) return;
+  if (!(fast > 0)) return given;
   const Vector3d along = slip / fast;
-  hit(-std::min(fast / along.dot(give(arm, along)), floor.friction * pressed) * along);
+  const double drag = std::min(fast / along.dot(give(arm, along)), floor.friction * pressed);
+  hit(-drag * along);
+  return given + drag;
+}
+
+void RigidBody::keep_within(double reach) noexcept {
+  const Vector3d away = p_WC_ - settings_.mass.p_WC;
+  const double far = away.norm();
+  // Written so that NaN moves nothing.
+  if (!(far > reach) || !(reach >= 0)) return;
+  const Vector3d n = away / far;
+  p_WC_ = settings_.mass.p_WC + reach * n;
+  momentum_W_ -= std::max(momentum_W_.dot(n), 0.0) * n;
 }
 
 double RigidBody::kinetic_energy() const noexcept {

@@ -84,6 +84,44 @@ TEST(SceneFile, NamesTheWayOfContactOrSaysWhichThereAre) {
       std::string::npos);
 }
 
+TEST(SceneFile, ReadsADentOrSaysWhatIsWrongWithIt) {
+  const auto with = [](const std::string& dent) {
+    return "  - {name: b, mesh: cgal:ball.off, stiffness: 1, body: {dent: {" + dent + "}}}\n";
+  };
+  const auto plain = read(with(""), kWait);
+  ASSERT_TRUE(plain.ok()) << plain.error().message;
+  ASSERT_TRUE(plain->objects[0].body.dent);
+  EXPECT_EQ(plain->objects[0].body.dent->step, 1e-3);
+  EXPECT_EQ(plain->objects[0].body.dent->integrator, render::kDefaultScheme);
+  EXPECT_FALSE(
+      read("  - {name: b, mesh: cgal:ball.off, stiffness: 1}\n", kWait)->objects[0].body.dent);
+  const auto full =
+      read(with("mass: 0.002, stiffness: 30, rings: 2, integrator: verlet, pull: 0.5"), kWait);
+  ASSERT_TRUE(full.ok()) << full.error().message;
+  const render::DentSettings& dent = *full->objects[0].body.dent;
+  EXPECT_EQ(dent.mass, 0.002);
+  EXPECT_EQ(dent.rings, 2);
+  EXPECT_EQ(dent.integrator, render::SpringScheme::kVerlet);
+  for (const auto& [wrong, said] : std::vector<std::pair<std::string, std::string>>{
+           {"mass: 0", "mass: expected a number"},
+           {"mass: -1", "mass: expected a number"},
+           {"mass: .nan", "mass: expected a"},
+           {"stiffness: 1e12", "stiffness: expected a number"},
+           {"stiffness: 0", "stiffness: expected a number"},
+           {"pull: 2", "pull: expected a number"},
+           {"rings: 1.5", "rings: expected a whole number"},
+           {"region: whole, rings: 2", "rings: cannot stand together with region: whole"},
+           {"integrator: explicit_euler", "integrator: expected symplectic_euler"},
+           {"stifness: 3", "perhaps \"stiffness\" was meant"}}) {
+    EXPECT_NE(mistake(with(wrong), kWait).find(said), std::string::npos)
+        << mistake(with(wrong), kWait);
+  }
+  EXPECT_NE(
+      mistake("  - {name: b, sphere: {radius: 0.02}, stiffness: 1, body: {dent: {}}}\n", kWait)
+          .find("body: only a mesh that is in memory has a body"),
+      std::string::npos);
+}
+
 TEST(SceneFile, NamesAMeshOrArmThatIsNotThere) {
   EXPECT_NE(mistake("  - {name: b, mesh: cgal:cube.off, stiffness: 1}\n", kWait)
                 .find("scene.yaml:5: mesh: expected a file, found none at"),

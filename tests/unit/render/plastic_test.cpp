@@ -48,7 +48,7 @@ Press press(PlasticBase& base, const Vector3d& inward, double depth, int ticks,
 }
 
 // Hard case 34, the law: set = x_max - F_y / k, heat = F_y set, the second press follows k.
-TEST(PlasticBase, KeepsWhatTheLawSays) {
+TEST(PlasticBase, Case34KeepsWhatTheLawSays) {
   const PlasticSettings clay{.stiffness = 800, .yield_force = 1.5};
   const Vector3d inward(0.6, 0, -0.8);
   PlasticBase base(clay);
@@ -78,7 +78,7 @@ TEST(PlasticBase, SpringsBackWhollyBelowItsYieldForce) {
 }
 
 // Hard case 34: a thousand presses of any depth and speed into clays of all sorts.
-TEST(PlasticBase, ObeysTheLawAndTakesWorkInAThousandRandomPresses) {
+TEST(PlasticBase, Case34ObeysTheLawAndTakesWorkInAThousandRandomPresses) {
   support::Random random(34);
   for (int clay = 0; clay < 50; ++clay) {
     PlasticSettings settings;
@@ -170,7 +170,7 @@ TEST(PlasticBase, StaysOnNonsense) {
 }
 
 // Hard case 34, that the mesh never inverts: as far as limits on movement can promise it.
-TEST(MovementLimits, KeepEveryTriangleOnItsSide) {
+TEST(MovementLimits, Case34KeepEveryTriangleOnItsSide) {
   support::Random random(36);
   TriangleMesh mesh = support::icosphere(2, 0.03);
   for (Vector3d& p : mesh.vertices) p += random.in_box(1e-3);

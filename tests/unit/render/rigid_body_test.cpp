@@ -119,7 +119,7 @@ struct FreeTop {
 };
 
 // Hard case 36: spin about the middle axis, against the closed form.
-TEST(RigidBody, TumblesWithThePeriodOfTheClosedForm) {
+TEST(RigidBody, Case36TumblesWithThePeriodOfTheClosedForm) {
   for (const double tilt : {0.003, 0.03, 0.3}) {
     for (const double spin : {2.0, 20.0, 60.0}) {
       RigidBody body = body_of(block(), 0.3);
@@ -154,7 +154,7 @@ TEST(RigidBody, TumblesWithThePeriodOfTheClosedForm) {
 }
 
 // Hard case 36.
-TEST(RigidBody, FollowsTheClosedFormAllTheWay) {
+TEST(RigidBody, Case36FollowsTheClosedFormAllTheWay) {
   RigidBody body = body_of(block(), 0.3);
   const Vector3d inertia = body.settings().mass.inertia;
   const Vector3d start(5, 0, 12);  // w2 = 0: where sn begins
@@ -189,7 +189,7 @@ TEST(RigidBody, TurnsWithOrderFour) {
 }
 
 // Hard case 36: however fast it spins and however long the step.
-TEST(RigidBody, NeverSpinsItselfUp) {
+TEST(RigidBody, Case36NeverSpinsItselfUp) {
   support::Random random(36);
   for (int i = 0; i < 100; ++i) {
     RigidBody body = body_of(block(), 0.3);
@@ -207,7 +207,7 @@ TEST(RigidBody, NeverSpinsItselfUp) {
 }
 
 // Hard case 36: a free stylus of 0.1 kg meets bodies a thousand times lighter and heavier.
-TEST(RigidBody, KeepsTheMomentaAndTakesEnergyWhenAStylusPushesAtAnyMassRatio) {
+TEST(RigidBody, Case36KeepsTheMomentaAndTakesEnergyWhenAStylusPushesAtAnyMassRatio) {
   for (const double mass : {1e-4, 1e-2, 0.1, 1.0, 100.0}) {
     for (const double off : {0.0, 0.015}) {
       for (const double stiffness : {200.0, 2000.0}) {

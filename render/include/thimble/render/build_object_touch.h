@@ -1,9 +1,12 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "thimble/driver/result.h"
+#include "thimble/render/body/dent_settings.h"
+#include "thimble/render/body/shape_choice.h"
 #include "thimble/render/contact_choice.h"
 #include "thimble/render/effect/effect_table.h"
 #include "thimble/render/mesh/triangle_mesh.h"
@@ -17,7 +20,9 @@ namespace thimble::render {
 /// order in which a tick runs them.
 struct SurfaceChoice {
   SpringDamper spring;
-  std::vector<EffectPlan> effects;
+  std::vector<EffectPlan> effects = {};
+  std::optional<DentSettings> dent = {};  ///< Of a mesh in memory; others are stiff.
+  ShapeChoice shape = {};                 ///< Of a mesh in memory: how its base points move.
 };
 
 /// Builds the force law of one object (mesh in W, m) from just the stages that `choice` and

@@ -1,12 +1,19 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
+#include <span>
 #include <utility>
 
 #include "thimble/driver/device_state.h"
 #include "thimble/driver/force_command.h"
+#include "thimble/render/body/body_patch.h"
+#include "thimble/render/contact/contact_mesh.h"
+#include "thimble/render/body/body_pose.h"
 
 namespace thimble::render {
+
+class BodyShape;
 
 /// Is the force law of one object of a scene, whatever stages it is made of: one indirect call per
 /// tick stands for all of them (see object_touch_of).
@@ -23,6 +30,28 @@ class ObjectTouch {
   /// Tells whether a point (W, m) lies inside the object; for checks beside the servo.
   /// Real-time: safe unless the object is on the disk; one question to its search.
   virtual bool inside(const Eigen::Vector3d& p_W) const noexcept = 0;
+
+  /// Gives the mesh whose triangles TouchInfo::feature names, if there is one in full.
+  virtual const ContactMesh* mesh() const noexcept { return nullptr; }
+
+  /// Draws what of the object has left its place (body_patch.h); false, and `patch` is left alone,
+  /// if the object is stiff. Real-time: safe; for the rate of a picture.
+  virtual bool draw(BodyPatch& /*patch*/) noexcept { return false; }
+
+  // The following are for readers beside the servo, and for bodies (render/body) to answer.
+
+  /// Tells whether the surface is where it was before the first tick: neither moved nor bent.
+  virtual bool stands_still() const noexcept { return true; }
+  /// Counts contacts that ended with the tip inside; 0 for what stands still, where they can be
+  /// found afterwards. Real-time: safe.
+  virtual std::uint64_t lost_contacts() const noexcept { return 0; }
+  /// Tells where the object has moved to. Real-time: safe.
+  virtual BodyPose pose() const noexcept { return {}; }
+  /// Gives the shape of an object whose base points move by themselves; nullptr for others.
+  virtual const BodyShape* shape() const noexcept { return nullptr; }
+  /// Puts the vertices of the object's mesh, as it was given (W, m), where they are now.
+  /// Real-time: safe; time grows with the mesh.
+  virtual void place_now(std::span<Eigen::Vector3d>) const noexcept {}
 };
 
 /// Is an ObjectTouch made of a Touch with its stages known at compile time. `Stages` is callable
@@ -37,6 +66,13 @@ class ObjectTouchOf final : public ObjectTouch {
   }
   bool inside(const Eigen::Vector3d& p_W) const noexcept override {
     return stages_.contact().search().inside(p_W);
+  }
+  const ContactMesh* mesh() const noexcept override {
+    if constexpr (requires { stages_.contact().mesh(); }) {
+      return &stages_.contact().mesh();
+    } else {
+      return nullptr;
+    }
   }
 
   const Stages& stages() const noexcept { return stages_; }

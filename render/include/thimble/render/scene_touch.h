@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -34,13 +35,34 @@ class SceneTouch {
     return sum;
   }
 
-  /// Tells whether a point (W, m) lies inside any object; for checks beside the servo.
-  /// Real-time: safe; time grows with the objects' size.
+  /// Tells whether a point (W, m) lies inside any object that stands still; for checks beside the
+  /// servo. Real-time: safe; time grows with the objects' size.
   bool inside(const Eigen::Vector3d& p_W) const noexcept {
     for (const auto& object : objects_) {
-      if (object->inside(p_W)) return true;
+      if (object->stands_still() && object->inside(p_W)) return true;
     }
     return false;
+  }
+
+  /// Draws the dent of the first object that has one; false, and `patch` is left alone, if no
+  /// object can dent. Real-time: safe; for the rate of a picture.
+  bool draw(BodyPatch& patch) noexcept {
+    bool any = false;
+    for (std::size_t i = 0; i < objects_.size(); ++i) {
+      if (!objects_[i]->draw(patch)) continue;
+      any = true;
+      if (patch.triangle_count == 0) continue;
+      patch.object = static_cast<std::int16_t>(i);
+      break;
+    }
+    return any;
+  }
+
+  /// Counts the contacts that objects which do not stand still have lost. Real-time: safe.
+  std::uint64_t lost_contacts() const noexcept {
+    std::uint64_t lost = 0;
+    for (const auto& object : objects_) lost += object->lost_contacts();
+    return lost;
   }
 
   std::size_t size() const noexcept { return objects_.size(); }

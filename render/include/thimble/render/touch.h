@@ -46,6 +46,8 @@ class Touch {
   }
 
   const Contact& contact() const noexcept { return contact_; }
+  /// Gives the contact stage to who moves its surface. Real-time: safe.
+  Contact& contact() noexcept { return contact_; }
 
  private:
   Contact contact_;

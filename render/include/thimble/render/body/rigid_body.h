@@ -28,7 +28,7 @@ struct RigidBodySettings {
   /// Is the body's time over ours, > 0: smaller feels heavier, as 1 / time_scale^2 times the mass,
   /// and as if in a thick liquid [BP 4.3].
   double time_scale = 1;
-  std::optional<Floor> floor;
+  std::optional<Floor> floor{};
   /// Points that stand on the floor, m in B; kSupportMax at most. Corners of the hull do.
   std::vector<Eigen::Vector3d> support_B;
 };
@@ -88,6 +88,15 @@ class RigidBody {
   Eigen::Vector3d omega_W() const noexcept;
   /// Tells the velocity (m/s, in our time) of the body's point at `p_W`.
   Eigen::Vector3d velocity_at(const Eigen::Vector3d& p_W) const noexcept;
+  /// Tells which velocity (m/s, in our time) the body's point at `p_W` gains by an impulse (N s, in
+  /// our time) given there.
+  Eigen::Vector3d gain_at(const Eigen::Vector3d& p_W,
+                          const Eigen::Vector3d& impulse) const noexcept {
+    return settings_.time_scale * settings_.time_scale * give(p_W - p_WC_, impulse);
+  }
+  /// Keeps C within `reach` m of where it was at first: puts it back and takes the momentum that
+  /// leads away, so that energy only falls. Nonsense: nothing.
+  void keep_within(double reach) noexcept;
   /// Tells where a point of the body that was at `p_W` at first is now, m.
   Eigen::Vector3d moved(const Eigen::Vector3d& p_W) const noexcept {
     return p_WC_ + q_WB_ * (settings_.mass.q_WB.conjugate() * (p_W - settings_.mass.p_WC));
@@ -103,7 +112,7 @@ class RigidBody {
   void kick(double time) noexcept;
   void rotate(double time) noexcept;
   void stand_on_floor(double time) noexcept;
-  void stop_at(const Eigen::Vector3d& arm, double allowed, double& pressed) noexcept;
+  double stop_at(const Eigen::Vector3d& arm, double allowed, double& pressed) noexcept;
 
   RigidBodySettings settings_;
   Eigen::Vector3d p_WC_;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 
 #include "thimble/render/body/oscillator.h"
 
@@ -15,7 +16,9 @@ class TranslatingBody {
   /// and as if in a thick liquid. Numbers that make no sense: it stays where it is. Steps of `step`
   /// s.
   TranslatingBody(double mass, double damping, double time_scale, double step) noexcept
-      : flow_(OscillatorStep::of(mass, 0, damping, time_scale * step)), mass_(mass) {}
+      : flow_(OscillatorStep::of(mass, 0, damping, time_scale * step)),
+        mass_(mass),
+        time_scale_(time_scale) {}
 
   // All of the following are Real-time: safe.
 
@@ -25,11 +28,31 @@ class TranslatingBody {
     constexpr double kForceMax = 1e6;  // N; no arm pushes with more
     if (f_W.squaredNorm() <= kForceMax * kForceMax) f_W_ += f_W;
   }
+  /// Gives the velocity (m/s, the body's own time) at once.
+  void set_velocity(const Eigen::Vector3d& v_W) noexcept { v_W_ = v_W; }
   /// Moves on by one step under what was pushed, which is then gone.
   void step() noexcept {
     flow_.apply(p_W_, v_W_, f_W_);
     f_W_.setZero();
   }
+
+  /// Keeps the body where n . p >= height (`n_W` unit; m): puts it back, takes the velocity that
+  /// leads out, and of that along the bound up to `friction` times as much. Energy only falls.
+  void keep_above(const Eigen::Vector3d& n_W, double height, double friction) noexcept {
+    const double below = height - n_W.dot(p_W_);
+    // Written so that NaN moves nothing.
+    if (!(below > 0)) return;
+    p_W_ += below * n_W;
+    const double into = std::max(-n_W.dot(v_W_), 0.0);
+    v_W_ += into * n_W;
+    const Eigen::Vector3d slip = v_W_ - n_W.dot(v_W_) * n_W;
+    const double fast = slip.norm();
+    if (fast > 0) v_W_ -= std::min(1.0, friction * into / fast) * slip;
+  }
+
+  /// Tells the velocity (m/s, in our time), and which of it is gained per impulse (N s, our time).
+  Eigen::Vector3d velocity() const noexcept { return time_scale_ * v_W_; }
+  double gain() const noexcept { return time_scale_ * time_scale_ / mass_; }
 
   /// Tells how far all base points have moved, m; the velocity (m/s) and momentum (kg m/s) are in
   /// the body's own time.
@@ -40,6 +63,7 @@ class TranslatingBody {
  private:
   OscillatorStep flow_;
   double mass_;
+  double time_scale_;
   Eigen::Vector3d p_W_{0, 0, 0};
   Eigen::Vector3d v_W_{0, 0, 0};
   Eigen::Vector3d f_W_{0, 0, 0};

@@ -66,6 +66,7 @@ class ContactMesh {
 
   std::int32_t vertex_count() const noexcept { return static_cast<std::int32_t>(vertices_.size()); }
 
+
   /// Tells how many components were wholly inside out and have been turned.
   std::size_t turned_components() const noexcept { return orientation_.turned_components; }
 

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <limits>
+#include <optional>
+
+#include "thimble/driver/result.h"
+#include "thimble/render/body/snap_base.h"
+#include "thimble/render/effect/settings_reader.h"
+
+namespace thimble::render {
+
+/// Sets how an object keeps what it gave way [BP 4.3].
+struct ClayChoice {
+  double yield_force = 1;  ///< N, >= 0: what presses harder moves the base points.
+  /// m/s, > 0: how fast they flow at most [BP 4.3: the time variable made small].
+  double flow_rate = std::numeric_limits<double>::infinity();
+  /// m, >= 0: how far a base point may go from its first place in all [BP 4.3: limiting to some
+  /// degree their movement].
+  double movement_limit = std::numeric_limits<double>::infinity();
+  double radius = 5e-3;  ///< m, > 0: of the print that a press leaves.
+
+  /// Reads the settings of a scene. Real-time: never from the servo thread.
+  void read(SettingsReader& reader);
+  /// Says what about the settings is beyond all sense. Real-time: never from the servo thread.
+  driver::Result<void> check() const;
+};
+
+/// Sets how the wall of an object snaps [BP 4.3, the tin can].
+struct SnapChoice {
+  double force = 3;       ///< N, > 0: past it the wall jumps.
+  double depth = 6e-3;    ///< m, > 0: how far in its second shape lies.
+  double radius = 15e-3;  ///< m, > 0: of the panel that goes in together; more than half the depth.
+  double speed = 1;       ///< m/s, > 0: how fast it runs at most.
+  int panels = 8;         ///< 1 to kPanelsMax: how many may be in at the same time.
+
+  static constexpr int kPanelsMax = 16;
+
+  /// Reads the settings of a scene. Real-time: never from the servo thread.
+  void read(SettingsReader& reader);
+  /// Says what about the settings is beyond all sense. Real-time: never from the servo thread.
+  driver::Result<void> check() const;
+  /// Gives the truss whose limit load is `force`.
+  SnapSettings truss() const;
+};
+
+/// Sets how the base points of an object move by themselves; what is left empty does not happen.
+struct ShapeChoice {
+  std::optional<ClayChoice> clay{};
+  std::optional<SnapChoice> snap{};
+  double step = 1e-3;  ///< s, > 0: the loop's period
+
+  bool named() const { return clay || snap; }
+};
+
+}  // namespace thimble::render

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <memory>
+
+#include "thimble/driver/result.h"
+#include "thimble/render/build_object_touch.h"
+#include "thimble/render/contact_choice.h"
+#include "thimble/render/mesh/triangle_mesh.h"
+#include "thimble/render/object_touch.h"
+
+namespace thimble::render {
+
+/// Builds the force law of an object whose base points move by themselves (mesh in W, m), as
+/// `surface.shape` says. The error is that of ContactMesh::build or BodyShape::build, or says that
+/// the contact that is asked for cannot follow a surface that changes shape. Real-time: never from
+/// the servo thread.
+driver::Result<std::unique_ptr<ObjectTouch>> shaped_touch(const TriangleMesh& mesh_W,
+                                                          const ContactChoice& contact,
+                                                          const SurfaceChoice& surface);
+
+}  // namespace thimble::render
