@@ -201,9 +201,17 @@ SurfacePoint GridSearch<Surface>::closest(const Vector3d& p_W, double radius) co
     return gap_to_box(p, corner, side).squaredNorm() <= limit;
   };
   const auto visit = [&](List list) noexcept {
+    constexpr std::size_t kAtOnce = 32;
+    std::array<std::int32_t, kAtOnce> fresh;
+    std::size_t count = 0;
     for (const std::int32_t t : list) {
-      if (asked.first_time(t)) best.consider(t);
+      fresh[count] = t;
+      count += asked.first_time(t) ? 1 : 0;
+      if (count < kAtOnce) continue;
+      best.consider(fresh);
+      count = 0;
     }
+    best.consider({fresh.data(), count});
     const double ball = std::sqrt(best.squared()) + room;
     limit = ball * ball;
   };
