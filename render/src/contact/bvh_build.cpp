@@ -11,7 +11,7 @@ namespace {
 using Eigen::Vector3d;
 
 // What leaves hold at most.
-constexpr std::size_t kLeafSize = 4;
+constexpr std::size_t kLeafSize = 3;
 
 // Gives the keys of all triangles in their Morton order, and that order unless it is their own.
 std::vector<std::uint64_t> morton_order(const CompactSurface& surface, const SearchFrame&,
