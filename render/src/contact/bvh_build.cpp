@@ -2,7 +2,7 @@
 #include <bit>
 
 #include "contact/radix_sort.h"
-#include "contact/wide_lanes.h"
+#include "thimble/render/contact/wide_lanes.h"
 #include "thimble/render/contact/bvh.h"
 
 namespace thimble::render {

@@ -87,7 +87,7 @@ Vector3d area_of(const CompactTriangle& r) noexcept {
 }  // namespace
 
 // Everything is made for two or three vectors at once; (a, b) stands for a pair of them.
-void LoweredTriangle::unpack(const CompactTriangle& r) noexcept {
+inline void LoweredTriangle::unpack_here(const CompactTriangle& r) noexcept {
   creases_ = r.flags & 7u;
   source_ = r.source();
   // Corner 0 twice, and the two sides from it; differences may need 33 bits.
@@ -147,6 +147,18 @@ void LoweredTriangle::unpack(const CompactTriangle& r) noexcept {
       _mm_add_ps(_mm_add_ps(_mm_mul_ps(x.edges(), turn(n.x)), _mm_mul_ps(y.edges(), turn(n.y))),
                  _mm_mul_ps(z.edges(), turn(n.z)));
   bulge_ = {first(bulge), first(all<1>(bulge)), first(all<2>(bulge))};
+}
+
+void LoweredTriangle::unpack(const CompactTriangle& r) noexcept {
+  if (wide_lanes()) {
+    unpack_wide(r);
+  } else {
+    unpack_here(r);
+  }
+}
+
+void LoweredTriangle::unpack_wide(const CompactTriangle& r) noexcept {
+  unpack_here(r);
 }
 
 // Goes on where one round does not suffice: the most bent triangles that are no creases take four.

@@ -1,7 +1,7 @@
 #include "contact/nearest_list.h"
 
 #include "contact/lanes.h"
-#include "contact/wide_lanes.h"
+#include "thimble/render/contact/wide_lanes.h"
 
 namespace thimble::render {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "contact/lanes.h"
-#include "contact/wide_lanes.h"
+#include "thimble/render/contact/wide_lanes.h"
 
 namespace thimble::render {
 namespace {

@@ -1,4 +1,4 @@
-#include "contact/wide_lanes.h"
+#include "thimble/render/contact/wide_lanes.h"
 
 #include <cstdlib>
 

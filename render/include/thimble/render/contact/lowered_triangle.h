@@ -11,6 +11,7 @@
 #include <span>
 
 #include "thimble/render/contact/compact_surface.h"
+#include "thimble/render/contact/wide_lanes.h"
 
 namespace thimble::render {
 
@@ -75,6 +76,8 @@ class LoweredTriangle {
 
  private:
   LoweredPlace solve(double a, double b, double h, double d) const noexcept;
+  void unpack_here(const CompactTriangle& record) noexcept;
+  THIMBLE_FOR_AVX2 void unpack_wide(const CompactTriangle& record) noexcept;
   LoweredPlace locate_far(double a, double b, double h, double d) const noexcept;
 
   using Pair = std::array<double, 2>;
@@ -137,13 +140,16 @@ inline LoweredPlace LoweredTriangle::solve(double a, double b, double h, double 
   const double m21 = d * uv_[1][1], m22 = 1 - d * uv_[2][1];
   const double r1 = a + d * uv_[0][0], r2 = b + d * uv_[0][1];
   const double area = m11 * m22 - m12 * m21;
-  const double per_area = 1 / area;
+  const double a1 = r1 * m22 + m12 * r2, a2 = r2 * m11 + m21 * r1;
+  const double upright = area * w_[0] + (a1 * w_[1] + a2 * w_[2]);
+  // One division for the weights and the depth.
+  const double both = 1 / (area * upright);
+  const double per_area = upright * both;
   LoweredPlace place;
-  place.l1 = (r1 * m22 + m12 * r2) * per_area;
-  place.l2 = (r2 * m11 + m21 * r1) * per_area;
+  place.l1 = a1 * per_area;
+  place.l2 = a2 * per_area;
   place.l0 = 1 - place.l1 - place.l2;
-  const double upright = w_[0] + place.l1 * w_[1] + place.l2 * w_[2];
-  place.depth = h / upright;
+  place.depth = h * area * area * both;
   // Folded over along one axis the area is negative, along both the sum is. Written so that NaN is
   // folded over.
   place.valid =
@@ -173,13 +179,15 @@ inline LoweredFeel LoweredTriangle::feel_within(const LoweredPlace& place) const
   const __m128d xy = _mm_cvtps_pd(normal);
   const double z = _mm_cvtsd_f64(_mm_cvtps_pd(_mm_movehl_ps(normal, normal)));
   const __m128d squares = _mm_mul_pd(xy, xy);
-  const double size =
-      std::sqrt(_mm_cvtsd_f64(_mm_add_sd(squares, _mm_unpackhi_pd(squares, squares))) + z * z);
+  const double squared =
+      _mm_cvtsd_f64(_mm_add_sd(squares, _mm_unpackhi_pd(squares, squares))) + z * z;
+  // The bare instruction: nothing here is negative, and nobody reads errno.
+  const double size = _mm_cvtsd_f64(_mm_sqrt_sd(_mm_setzero_pd(), _mm_set_sd(squared)));
   const double rise =
       place.l1 * (place.l0 * bulge_[0] + place.l2 * bulge_[1]) + place.l2 * place.l0 * bulge_[2];
   // Divided by 1 + size in place of 2 the bend is exact on a sphere, however coarse. One division
   // for both quotients.
-  const double both = 1 / (size * (1 + size));
+  const double both = 1 / (size + squared);
   const double per_size = (1 + size) * both;
   const __m128d n = _mm_mul_pd(xy, _mm_set1_pd(per_size));
   return {{_mm_cvtsd_f64(n), _mm_cvtsd_f64(_mm_unpackhi_pd(n, n)), z * per_size},

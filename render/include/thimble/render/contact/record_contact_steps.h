@@ -25,10 +25,23 @@ inline constexpr double kOutsideOfCrease = -1e-11;
 
 template <RecordStore Store>
 const ContactState& RecordContact<Store>::update(const driver::DeviceState& state) noexcept {
-  const Eigen::Vector3d& p_WT = state.p_WT;
+  if (wide_) {
+    tick_wide(state.p_WT);
+  } else {
+    tick(state.p_WT);
+  }
+  return this->state();
+}
+
+template <RecordStore Store>
+inline void RecordContact<Store>::tick(const Eigen::Vector3d& p_WT) noexcept {
   // Most ticks are spent in the triangle of the last one.
   if (!stay(p_WT)) move(p_WT);
-  return this->state();
+}
+
+template <RecordStore Store>
+void RecordContact<Store>::tick_wide(const Eigen::Vector3d& p_WT) noexcept {
+  tick(p_WT);
 }
 
 // Fills in the state from what is felt in the active triangle.
@@ -42,21 +55,47 @@ inline void RecordContact<Store>::report(const Eigen::Vector3d& p_WT,
   state_.p_WP = p_WT + state_.depth * felt.n_W;
 }
 
-// Ends the tick if the tip is where the active triangle answers alone.
+// Ends the tick if the tip is where the active triangle, or the one over the edge it has crossed,
+// answers alone.
 template <RecordStore Store>
 inline bool RecordContact<Store>::stay(const Eigen::Vector3d& p_WT) noexcept {
   if (!steady_ || !within_range(p_WT)) return false;
-  const LoweredPlace place = lowered_.locate(store_.to_lattice(p_WT));
+  const Eigen::Vector3d p = store_.to_lattice(p_WT);
+  const LoweredPlace place = lowered_.locate(p);
   const double least = std::min(std::min(place.l0, place.l1), place.l2);
-  if (!(place.valid && least >= 0)) return false;
-  const LoweredFeel felt = lowered_.feel_within(place);
-  if (!(felt.depth >= 0)) return false;
+  if (!place.valid) return false;
+  LoweredFeel felt;
+  if (least >= 0) {
+    felt = lowered_.feel_within(place);
+    if (!(felt.depth >= 0)) return false;
+    state_.hops = 0;
+    haste_ = 0;
+  } else {
+    if (!step_over(p, place, felt)) return false;
+    state_.hops = 1;
+    steady_ = ++haste_ < 2;
+  }
   p_WT_before_ = p_WT;
   report(p_WT, felt);
-  state_.hops = 0;
-  haste_ = 0;
   if constexpr (!Store::kComplete) felt_ = state_;
   return true;
+}
+
+// Makes the triangle active that lies over the edge that the tip is outside of; true if it answers
+// alone. If not, the way goes on from there.
+template <RecordStore Store>
+inline bool RecordContact<Store>::step_over(const Eigen::Vector3d& p, const LoweredPlace& place,
+                                            LoweredFeel& felt) noexcept {
+  const CompactTriangle* record = store_.find(active_);
+  if (absent(record)) return false;
+  std::size_t edge = place.l2 <= place.l0 ? 0 : 1;
+  if (place.l1 < std::min(place.l0, place.l2)) edge = 2;
+  if (!activate(record->neighbours[edge]) || lowered_.creases() != 0) return false;
+  const LoweredPlace there = lowered_.locate(p);
+  const double least = std::min(std::min(there.l0, there.l1), there.l2);
+  if (!(there.valid && least >= kOutside)) return false;
+  felt = lowered_.feel(there);
+  return felt.depth >= 0;
 }
 
 template <RecordStore Store>
