@@ -79,6 +79,13 @@ __m128 dot(__m128 x, __m128 y, __m128 z, const Vectors& b) noexcept {
   return _mm_add_ps(_mm_add_ps(_mm_mul_ps(x, b.x), _mm_mul_ps(y, b.y)), _mm_mul_ps(z, b.z));
 }
 
+// (x_i - x_j) . (n_i - n_j) of the edges 01, 12 and 20.
+__m128 bulges(const Sides& x, const Sides& y, const Sides& z, const Vectors& n) noexcept {
+  return _mm_add_ps(
+      _mm_add_ps(_mm_mul_ps(x.edges(), turn(n.x)), _mm_mul_ps(y.edges(), turn(n.y))),
+      _mm_mul_ps(z.edges(), turn(n.z)));
+}
+
 Vector3d area_of(const CompactTriangle& r) noexcept {
   const Vector3d corner = r.corner(0);
   return (r.corner(1) - corner).cross(r.corner(2) - corner);
@@ -143,9 +150,7 @@ inline void LoweredTriangle::unpack_here(const CompactTriangle& r) noexcept {
   _mm_store_ps(n_[0].data(), _mm_movelh_ps(_mm_unpacklo_ps(n.x, n.y), n.z));
   _mm_store_ps(n_[1].data(), _mm_shuffle_ps(low, dz, _MM_SHUFFLE(1, 1, 3, 2)));
   _mm_store_ps(n_[2].data(), _mm_shuffle_ps(high, dz, _MM_SHUFFLE(2, 2, 1, 0)));
-  const __m128 bulge =
-      _mm_add_ps(_mm_add_ps(_mm_mul_ps(x.edges(), turn(n.x)), _mm_mul_ps(y.edges(), turn(n.y))),
-                 _mm_mul_ps(z.edges(), turn(n.z)));
+  const __m128 bulge = bulges(x, y, z, n);
   bulge_ = {first(bulge), first(all<1>(bulge)), first(all<2>(bulge))};
 }
 
@@ -204,12 +209,14 @@ LoweredFeel feel_nearest(const Vector3d& p, const CompactTriangle& r,
 
 double rise_above(std::span<const CompactTriangle> records) noexcept {
   constexpr double kFelt = 1e-5 * 2 * kLatticeHalf;
-  double rise = 0;
-  LoweredTriangle lowered;
-  for (const CompactTriangle& record : records) {
-    lowered.unpack(record);
-    rise = std::max(rise, lowered.rise());
+  // A third of the largest bulge is the most that the sum over pairs reaches, and where corners are
+  // not creases 1 + |sum l_i n_i| is above 5/3.
+  __m128 most = _mm_setzero_ps();
+  for (const CompactTriangle& r : records) {
+    const Sides x(r.x.data()), y(r.y.data()), z(r.z.data());
+    most = _mm_max_ps(most, bulges(x, y, z, unpack_normals(r)));
   }
+  const double rise = std::max(std::max(first(most), first(all<1>(most))), first(all<2>(most))) / 5;
   return rise > kFelt ? rise : 0;
 }
 

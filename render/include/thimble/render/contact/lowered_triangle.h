@@ -60,13 +60,6 @@ class LoweredTriangle {
   /// Tells the same faster. Precondition: no weight is negative.
   LoweredFeel feel_within(const LoweredPlace& place) const noexcept;
 
-  /// Tells how far the surface rises above this triangle at most, in steps; 0 if it does not. A
-  /// third of the largest bulge is the most that the sum over pairs reaches, and where corners are
-  /// not creases 1 + |sum l_i n_i| is above 5/3.
-  double rise() const noexcept {
-    return std::max(std::max(bulge_[0], bulge_[1]), std::max(bulge_[2], 0.0)) / 5;
-  }
-
   /// Tells whether an edge is a crease, in bit k for edge k.
   std::uint32_t creases() const noexcept { return creases_; }
   /// Tells which triangle of the input this is.
@@ -107,7 +100,7 @@ LoweredFeel feel_nearest(const Eigen::Vector3d& p, const CompactTriangle& record
                          const LoweredTriangle& lowered) noexcept;
 
 /// Finds how far the surface rises above some records at most, in steps; 0 where that is less than
-/// 1e-5 of the size of the lattice and nobody would feel it. Real-time: safe; some 10 ns each.
+/// 1e-5 of the size of the lattice and nobody would feel it. Real-time: safe; some ns each.
 double rise_above(std::span<const CompactTriangle> records) noexcept;
 
 /// Is how well `locate` places a tip, in steps: 3e-8 of the mesh's longest side.
