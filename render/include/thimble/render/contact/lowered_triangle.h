@@ -8,25 +8,12 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <span>
 
 #include "thimble/render/contact/compact_surface.h"
+#include "thimble/render/contact/lowered_place.h"
 #include "thimble/render/contact/wide_lanes.h"
 
 namespace thimble::render {
-
-/// Is where a tip stands in a lowered triangle.
-struct LoweredPlace {
-  double l0 = 0, l1 = 0, l2 = 0;  ///< Weights; negative: outside the edge opposite of that corner.
-  double depth = 0;               ///< d, in steps of the lattice.
-  bool valid = false;             ///< False where the lowered triangle is folded over.
-};
-
-/// Is what is felt at a place of a lowered triangle.
-struct LoweredFeel {
-  Eigen::Vector3d n_W{0, 0, 0};  ///< Outward unit normal.
-  double depth = 0;              ///< Below the smooth surface along n_W, in steps of the lattice.
-};
 
 /// Is one record unpacked: a triangle that sinks along its corner normals. Lowered by d along them,
 /// a triangle x_i becomes the triangle x_i - d n_i. The one that holds the tip p, for its own d,
@@ -88,20 +75,6 @@ class LoweredTriangle {
   std::uint32_t creases_ = 0;
   std::int32_t source_ = -1;
 };
-
-/// Tells how far `p` (steps) is on this side of the plane that halves the angle at a crease, as a
-/// share of the triangle's height over that edge. Real-time: safe.
-double side_of_crease(const Eigen::Vector3d& p, const CompactTriangle& own, std::size_t edge,
-                      const CompactTriangle& other) noexcept;
-
-/// Tells what is felt at the point of a record that is nearest to `p` (steps), where no lowered
-/// triangle holds it; `lowered` is that record unpacked. Real-time: safe.
-LoweredFeel feel_nearest(const Eigen::Vector3d& p, const CompactTriangle& record,
-                         const LoweredTriangle& lowered) noexcept;
-
-/// Finds how far the surface rises above some records at most, in steps; 0 where that is less than
-/// 1e-5 of the size of the lattice and nobody would feel it. Real-time: safe; some ns each.
-double rise_above(std::span<const CompactTriangle> records) noexcept;
 
 /// Is how well `locate` places a tip, in steps: 3e-8 of the mesh's longest side.
 inline constexpr double kPlaced = 64;

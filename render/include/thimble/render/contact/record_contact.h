@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "thimble/driver/device_state.h"
+#include "thimble/render/contact/contact_search.h"
 #include "thimble/render/contact/contact_state.h"
 #include "thimble/render/contact/held_plane.h"
 #include "thimble/render/contact/lowered_triangle.h"
@@ -80,11 +81,12 @@ class RecordContact {
   [[gnu::noinline]] bool begin(const Eigen::Vector3d& p_WT) noexcept;
   bool begin_above(const Eigen::Vector3d& p_WT) noexcept requires TellsRise<Store>;
   Outcome follow(const Eigen::Vector3d& p_WT) noexcept;
-  [[gnu::noinline]] Outcome seek(const Eigen::Vector3d& p_WT, const Eigen::Vector3d& p, std::int32_t before,
-               Outcome settled, const LoweredPlace& place) noexcept;
+  [[gnu::noinline]] Outcome seek(const Eigen::Vector3d& p_WT, const Eigen::Vector3d& p,
+                                 std::int32_t before, Outcome settled,
+                                 const LoweredPlace& place) noexcept;
   Outcome settle(const Eigen::Vector3d& p, bool walked, LoweredPlace& place) noexcept;
   [[gnu::noinline]] Outcome find_again(const Eigen::Vector3d& p_WT, const Eigen::Vector3d& p,
-                     std::int32_t before) noexcept;
+                                       std::int32_t before) noexcept;
   [[gnu::noinline]] Outcome resume(const Eigen::Vector3d& p_WT, const ContactState& last) noexcept;
   Outcome find_near(const Eigen::Vector3d& p, std::int32_t before) noexcept;
   Outcome walk(const Eigen::Vector3d& p, std::int32_t& triangle) noexcept;
@@ -94,11 +96,6 @@ class RecordContact {
   void report(const Eigen::Vector3d& p_WT, const LoweredFeel& felt) noexcept;
   void end() noexcept;
 
-  // Written so that NaN is out of range.
-  static bool within_range(const Eigen::Vector3d& p_W) noexcept {
-    return std::abs(p_W.x()) <= kPositionMax && std::abs(p_W.y()) <= kPositionMax &&
-           std::abs(p_W.z()) <= kPositionMax;
-  }
   static bool absent(const CompactTriangle* record) noexcept {
     return !Store::kComplete && record == nullptr;
   }
