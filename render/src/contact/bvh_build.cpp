@@ -2,7 +2,6 @@
 #include <bit>
 
 #include "contact/radix_sort.h"
-#include "thimble/render/contact/wide_lanes.h"
 #include "thimble/render/contact/bvh.h"
 
 namespace thimble::render {
@@ -52,8 +51,8 @@ std::vector<std::uint64_t> morton_order(const ContactMesh& mesh, const SearchFra
 }  // namespace
 
 template <class Surface>
-TreeSearch<Surface>::TreeSearch(const Surface& surface)
-    : surface_(&surface), frame_(frame_of(surface)), wide_(wide_lanes()) {
+TreeSearch<Surface>::TreeSearch(const Surface& surface, bool wide)
+    : surface_(&surface), frame_(frame_of(surface)), wide_(wide) {
   const auto count = static_cast<std::size_t>(surface.triangle_count());
   std::vector<std::uint64_t> keys = morton_order(surface, frame_, order_);
   // Leaves hold 2.3 triangles in the mean and nodes 6 of their children.
@@ -134,13 +133,13 @@ StepBox TreeSearch<Surface>::build_node(const std::vector<std::uint64_t>& keys, 
 }
 
 // All but the building stands in bvh.cpp and is instantiated there.
-template TreeSearch<ContactMesh>::TreeSearch(const ContactMesh&);
+template TreeSearch<ContactMesh>::TreeSearch(const ContactMesh&, bool);
 template auto TreeSearch<ContactMesh>::split(const std::vector<std::uint64_t>&, Range, Range&) const
     -> Range;
 template StepBox TreeSearch<ContactMesh>::box_of(Range) const noexcept;
 template StepBox TreeSearch<ContactMesh>::build_node(const std::vector<std::uint64_t>&, Range,
                                                      std::uint32_t);
-template TreeSearch<CompactSurface>::TreeSearch(const CompactSurface&);
+template TreeSearch<CompactSurface>::TreeSearch(const CompactSurface&, bool);
 template auto TreeSearch<CompactSurface>::split(const std::vector<std::uint64_t>&, Range,
                                                 Range&) const -> Range;
 template StepBox TreeSearch<CompactSurface>::box_of(Range) const noexcept;

@@ -229,7 +229,9 @@ SurfacePoint GridSearch<Surface>::closest(const Vector3d& p_W, double radius) co
     ask_within(std::min(width, reach));
   }
   const double distance = std::sqrt(best.squared());
-  if (best.found() && distance > width) ask_within(distance);
+  if (!best.found() || distance <= width) return best.point();
+  // Near in the middle of a large volume everything else is farther.
+  if (width > 0 || distance + room > grid_.within_volume(p)) ask_within(distance);
   return best.point();
 }
 

@@ -12,6 +12,7 @@
 #include "thimble/render/contact/contact_search.h"
 #include "thimble/render/contact/large_pages.h"
 #include "thimble/render/contact/search_frame.h"
+#include "thimble/render/contact/wide_lanes.h"
 
 namespace thimble::render {
 
@@ -28,9 +29,10 @@ namespace thimble::render {
 template <class Surface>
 class TreeSearch final : public ContactSearch {
  public:
-  /// Builds the tree. Keeps a reference: the surface must outlive the tree.
+  /// Builds the tree. Keeps a reference: the surface must outlive the tree. `wide` false asks as
+  /// processors do that cannot compare eight boxes at a time; true is for those that can.
   /// Real-time: never from the servo thread.
-  explicit TreeSearch(const Surface& surface);
+  explicit TreeSearch(const Surface& surface, bool wide = wide_lanes());
 
   Entry first_entry(const Eigen::Vector3d& p_from,
                     const Eigen::Vector3d& p_to) const noexcept override;
