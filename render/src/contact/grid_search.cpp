@@ -107,7 +107,7 @@ void GridSearch<Surface>::visit_reached(const Test& segment, Visit visit) const 
     return;
   }
   const Vector3d& from = segment.from();
-  const Vector3d way = segment.way();
+  const Vector3d& way = segment.way();
   const double size = std::max(from.cwiseAbs().maxCoeff(), (from + way).cwiseAbs().maxCoeff());
   const double room = kGridRoom * side + 0x1p-48 * size;
   const auto visit_piece = [&](const Vector3d& a, const Vector3d& b, const Vector3d& piece_low,
