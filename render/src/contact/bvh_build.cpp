@@ -1,10 +1,6 @@
 #include <algorithm>
 #include <bit>
-#include <cmath>
-#include <limits>
 
-#include "contact/bvh_box.h"
-#include "contact/bvh_leaf.h"
 #include "contact/radix_sort.h"
 #include "thimble/render/contact/bvh.h"
 
@@ -12,6 +8,9 @@ namespace thimble::render {
 namespace {
 
 using Eigen::Vector3d;
+
+// What leaves hold at most.
+constexpr std::size_t kLeafSize = 3;
 
 // Gives the keys of all triangles in their Morton order, and that order unless it is their own.
 std::vector<std::uint64_t> morton_order(const CompactSurface& surface, const SearchFrame&,
@@ -52,12 +51,12 @@ std::vector<std::uint64_t> morton_order(const ContactMesh& mesh, const SearchFra
 }  // namespace
 
 template <class Surface>
-TreeSearch<Surface>::TreeSearch(const Surface& surface)
-    : surface_(&surface), frame_(frame_of(surface)) {
+TreeSearch<Surface>::TreeSearch(const Surface& surface, bool wide)
+    : surface_(&surface), frame_(frame_of(surface)), wide_(wide) {
   const auto count = static_cast<std::size_t>(surface.triangle_count());
   std::vector<std::uint64_t> keys = morton_order(surface, frame_, order_);
-  // Leaves hold 2.5 triangles in the mean and nodes 3 of their children.
-  nodes_.reserve(count / 6 + 16);
+  // Leaves hold 2.3 triangles in the mean and nodes 6 of their children.
+  nodes_.reserve(count / 8 + 16);
   nodes_.emplace_back();
   build_node(keys, {0, count}, 0);
   nodes_.shrink_to_fit();
@@ -84,73 +83,67 @@ auto TreeSearch<Surface>::split(const std::vector<std::uint64_t>& keys, Range ra
 }
 
 template <class Surface>
-auto TreeSearch<Surface>::build_node(const std::vector<std::uint64_t>& keys, Range range,
-                                     std::uint32_t node) -> Box {
-  std::array<Range, 4> parts;
+StepBox TreeSearch<Surface>::box_of(Range places) const noexcept {
+  StepBox box;
+  for (std::size_t place = places.begin; place < places.end; ++place) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vector3d p = corner_in(frame_, *surface_, triangle_at(place), k);
+      box.add(p.x(), p.y(), p.z());
+    }
+  }
+  return box;
+}
+
+template <class Surface>
+StepBox TreeSearch<Surface>::build_node(const std::vector<std::uint64_t>& keys, Range range,
+                                        std::uint32_t node) {
+  std::array<Range, BoxNode::kChildrenMax> parts;
   std::size_t count = 1;
   parts[0] = range;
-  while (count < 4) {
+  while (count < parts.size()) {
     const auto largest = std::max_element(
-        parts.begin(), parts.begin() + count,
+        parts.begin(), parts.begin() + static_cast<std::ptrdiff_t>(count),
         [](const Range& a, const Range& b) { return a.end - a.begin < b.end - b.begin; });
-    if (largest->end - largest->begin <= kLeafMax) break;
+    if (largest->end - largest->begin <= kLeafSize) break;
     *largest = split(keys, *largest, parts[count]);
     ++count;
   }
   // Siblings stand together: a query that enters one often enters the next.
-  std::array<std::uint32_t, 4> children{};
+  std::array<std::uint32_t, BoxNode::kChildrenMax> children{};
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t size = parts[i].end - parts[i].begin;
-    if (size <= kLeafMax) {
-      children[i] = kLeaf | static_cast<std::uint32_t>(parts[i].begin << 2) |
-                    static_cast<std::uint32_t>(size - 1);
+    if (size <= kLeafSize) {
+      children[i] = leaf_of(parts[i].begin, size);
     } else {
       children[i] = static_cast<std::uint32_t>(nodes_.size());
       nodes_.emplace_back();
     }
   }
-  Box whole;
-  for (std::size_t i = 0; i < 4; ++i) {
-    Box box;
-    if (i < count && (children[i] & kLeaf) != 0) {
-      for (std::size_t place = parts[i].begin; place < parts[i].end; ++place) {
-        for (std::size_t k = 0; k < 3; ++k) {
-          box.add(corner_in(frame_, *surface_, triangle_at(place), k));
-        }
-      }
-    } else if (i < count) {
-      // May move the nodes: no reference to one is held.
-      box = build_node(keys, parts[i], children[i]);
-    }
-    Node& n = nodes_[node];
-    if (i >= count) {
-      // No segment and no ball reaches it.
-      for (auto* side : {&n.min_x, &n.min_y, &n.min_z}) (*side)[i] = INFINITY;
-      for (auto* side : {&n.max_x, &n.max_y, &n.max_z}) (*side)[i] = -INFINITY;
-      continue;
-    }
-    n.min_x[i] = rounded_down(box.min[0]);
-    n.min_y[i] = rounded_down(box.min[1]);
-    n.min_z[i] = rounded_down(box.min[2]);
-    n.max_x[i] = rounded_up(box.max[0]);
-    n.max_y[i] = rounded_up(box.max[1]);
-    n.max_z[i] = rounded_up(box.max[2]);
-    n.children[i] = children[i];
-    whole.add(box);
+  std::array<StepBox, BoxNode::kChildrenMax> boxes;
+  StepBox whole;
+  for (std::size_t i = 0; i < count; ++i) {
+    // May move the nodes: no reference to one is held.
+    boxes[i] = (children[i] & BoxNode::kLeaf) != 0 ? box_of(parts[i])
+                                                   : build_node(keys, parts[i], children[i]);
+    whole.add(boxes[i]);
   }
+  nodes_[node].children = children;
+  nodes_[node].set_boxes({boxes.data(), count});
   return whole;
 }
 
 // All but the building stands in bvh.cpp and is instantiated there.
-template TreeSearch<ContactMesh>::TreeSearch(const ContactMesh&);
+template TreeSearch<ContactMesh>::TreeSearch(const ContactMesh&, bool);
 template auto TreeSearch<ContactMesh>::split(const std::vector<std::uint64_t>&, Range, Range&) const
     -> Range;
-template auto TreeSearch<ContactMesh>::build_node(const std::vector<std::uint64_t>&, Range,
-                                                  std::uint32_t) -> Box;
-template TreeSearch<CompactSurface>::TreeSearch(const CompactSurface&);
+template StepBox TreeSearch<ContactMesh>::box_of(Range) const noexcept;
+template StepBox TreeSearch<ContactMesh>::build_node(const std::vector<std::uint64_t>&, Range,
+                                                     std::uint32_t);
+template TreeSearch<CompactSurface>::TreeSearch(const CompactSurface&, bool);
 template auto TreeSearch<CompactSurface>::split(const std::vector<std::uint64_t>&, Range,
                                                 Range&) const -> Range;
-template auto TreeSearch<CompactSurface>::build_node(const std::vector<std::uint64_t>&, Range,
-                                                     std::uint32_t) -> Box;
+template StepBox TreeSearch<CompactSurface>::box_of(Range) const noexcept;
+template StepBox TreeSearch<CompactSurface>::build_node(const std::vector<std::uint64_t>&, Range,
+                                                        std::uint32_t);
 
 }  // namespace thimble::render

@@ -10,7 +10,7 @@
 #include "contact/corner_normals.h"
 #include "contact/half_edges.h"
 #include "contact/radix_sort.h"
-#include "thimble/render/contact/lowered_triangle.h"
+#include "thimble/render/contact/surface_rise.h"
 
 namespace thimble::render {
 namespace {

@@ -107,7 +107,7 @@ void GridSearch<Surface>::visit_reached(const Test& segment, Visit visit) const 
     return;
   }
   const Vector3d& from = segment.from();
-  const Vector3d way = segment.way();
+  const Vector3d& way = segment.way();
   const double size = std::max(from.cwiseAbs().maxCoeff(), (from + way).cwiseAbs().maxCoeff());
   const double room = kGridRoom * side + 0x1p-48 * size;
   const auto visit_piece = [&](const Vector3d& a, const Vector3d& b, const Vector3d& piece_low,
@@ -201,9 +201,17 @@ SurfacePoint GridSearch<Surface>::closest(const Vector3d& p_W, double radius) co
     return gap_to_box(p, corner, side).squaredNorm() <= limit;
   };
   const auto visit = [&](List list) noexcept {
+    constexpr std::size_t kAtOnce = 32;
+    std::array<std::int32_t, kAtOnce> fresh;
+    std::size_t count = 0;
     for (const std::int32_t t : list) {
-      if (asked.first_time(t)) best.consider(t);
+      fresh[count] = t;
+      count += asked.first_time(t) ? 1 : 0;
+      if (count < kAtOnce) continue;
+      best.consider(fresh);
+      count = 0;
     }
+    best.consider({fresh.data(), count});
     const double ball = std::sqrt(best.squared()) + room;
     limit = ball * ball;
   };
@@ -221,7 +229,9 @@ SurfacePoint GridSearch<Surface>::closest(const Vector3d& p_W, double radius) co
     ask_within(std::min(width, reach));
   }
   const double distance = std::sqrt(best.squared());
-  if (best.found() && distance > width) ask_within(distance);
+  if (!best.found() || distance <= width) return best.point();
+  // Near in the middle of a large volume everything else is farther.
+  if (width > 0 || distance + room > grid_.within_volume(p)) ask_within(distance);
   return best.point();
 }
 

@@ -1,8 +1,10 @@
 #include "thimble/render/contact/linear_search.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "contact/mesh_segment_test.h"
 #include "contact/search_answers.h"
@@ -111,7 +113,14 @@ template <class Surface>
 SurfacePoint LinearSearchOver<Surface>::closest(const Vector3d& p_W, double radius) const noexcept {
   if (!within_range(p_W) || !(radius >= 0)) return {};
   NearestPoint nearest(*surface_, frame_, frame_.to_steps(p_W), reach_of(frame_, radius));
-  for (std::int32_t t = 0; t < surface_->triangle_count(); ++t) nearest.consider(t);
+  constexpr std::int32_t kAtOnce = 64;
+  std::array<std::int32_t, kAtOnce> list;
+  const std::int32_t count = surface_->triangle_count();
+  for (std::int32_t begin = 0; begin < count; begin += kAtOnce) {
+    const std::int32_t size = std::min(kAtOnce, count - begin);
+    std::iota(list.begin(), list.begin() + size, begin);
+    nearest.consider({list.data(), static_cast<std::size_t>(size)});
+  }
   return nearest.point();
 }
 

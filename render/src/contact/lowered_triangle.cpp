@@ -1,93 +1,16 @@
 #include "thimble/render/contact/lowered_triangle.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 
-#include "thimble/render/contact/closest_point.h"
+#include "contact/unpack_record.h"
 
 namespace thimble::render {
-namespace {
 
-using Eigen::Vector3d;
-
-// Below this the faces lie back to back and the plane between them is rounding (contact_mesh.cpp).
-constexpr double kBackToBack = 1e-7;
-
-// Three vectors side by side, one per lane; the fourth lane is any finite number.
-struct Vectors {
-  __m128 x, y, z;
-};
-
-template <unsigned kLane>
-__m128 all(__m128 v) noexcept {
-  return _mm_shuffle_ps(v, v, _MM_SHUFFLE(kLane, kLane, kLane, kLane));
-}
-
-double first(__m128 v) noexcept {
-  return static_cast<double>(_mm_cvtss_f32(v));
-}
-
-__m128d swapped(__m128d v) noexcept {
-  return _mm_shuffle_pd(v, v, 1);
-}
-
-// u_1 v_2 - u_2 v_1 of two pairs.
-double x_times_y(__m128d u, __m128d v) noexcept {
-  const __m128d products = _mm_mul_pd(u, swapped(v));
-  return _mm_cvtsd_f64(_mm_sub_sd(products, _mm_unpackhi_pd(products, products)));
-}
-
-// One coordinate of corner 0, twice, and of the two sides from it.
-struct Sides {
-  explicit Sides(const std::int32_t* v) noexcept {
-    const __m128i corners = _mm_loadu_si128(reinterpret_cast<const __m128i*>(v));
-    corner = _mm_cvtepi32_pd(_mm_shuffle_epi32(corners, 0));
-    both = _mm_sub_pd(_mm_cvtepi32_pd(_mm_shuffle_epi32(corners, _MM_SHUFFLE(2, 2, 2, 1))), corner);
-  }
-  // From each corner to the next; the fourth lane is 0.
-  __m128 edges() const noexcept {
-    const __m128 sides = _mm_cvtpd_ps(both);  // side 1, side 2, 0, 0
-    return _mm_sub_ps(sides, _mm_shuffle_ps(sides, sides, _MM_SHUFFLE(3, 1, 0, 3)));
-  }
-  __m128d corner, both;
-};
-
-// From each corner's to the next one's.
-__m128 turn(__m128 v) noexcept {
-  return _mm_sub_ps(_mm_shuffle_ps(v, v, _MM_SHUFFLE(3, 0, 2, 1)), v);
-}
-
-// Unpacks the three normals of a record; the same bits give the same normals.
-Vectors unpack_normals(const CompactTriangle& r) noexcept {
-  // The fourth lane is a neighbour's number: any bits are a finite normal.
-  const __m128i packed = _mm_loadu_si128(reinterpret_cast<const __m128i*>(r.normals.data()));
-  const __m128 sign = _mm_set1_ps(-0.0f);
-  __m128 x = _mm_cvtepi32_ps(_mm_srai_epi32(_mm_slli_epi32(packed, 16), 16));
-  __m128 y = _mm_cvtepi32_ps(_mm_srai_epi32(packed, 16));
-  const __m128 z = _mm_sub_ps(_mm_set1_ps(kOctahedron),
-                              _mm_add_ps(_mm_andnot_ps(sign, x), _mm_andnot_ps(sign, y)));
-  const __m128 fold = _mm_max_ps(_mm_sub_ps(_mm_setzero_ps(), z), _mm_setzero_ps());
-  x = _mm_sub_ps(x, _mm_or_ps(fold, _mm_and_ps(sign, x)));
-  y = _mm_sub_ps(y, _mm_or_ps(fold, _mm_and_ps(sign, y)));
-  const __m128 squared =
-      _mm_add_ps(_mm_add_ps(_mm_mul_ps(x, x), _mm_mul_ps(y, y)), _mm_mul_ps(z, z));
-  const __m128 scale = _mm_div_ps(_mm_set1_ps(1), _mm_sqrt_ps(squared));
-  return {_mm_mul_ps(x, scale), _mm_mul_ps(y, scale), _mm_mul_ps(z, scale)};
-}
-
-__m128 dot(__m128 x, __m128 y, __m128 z, const Vectors& b) noexcept {
-  return _mm_add_ps(_mm_add_ps(_mm_mul_ps(x, b.x), _mm_mul_ps(y, b.y)), _mm_mul_ps(z, b.z));
-}
-
-Vector3d area_of(const CompactTriangle& r) noexcept {
-  const Vector3d corner = r.corner(0);
-  return (r.corner(1) - corner).cross(r.corner(2) - corner);
-}
-
-}  // namespace
+using namespace unpacked;
 
 // Everything is made for two or three vectors at once; (a, b) stands for a pair of them.
-void LoweredTriangle::unpack(const CompactTriangle& r) noexcept {
+inline void LoweredTriangle::unpack_here(const CompactTriangle& r) noexcept {
   creases_ = r.flags & 7u;
   source_ = r.source();
   // Corner 0 twice, and the two sides from it; differences may need 33 bits.
@@ -143,10 +66,20 @@ void LoweredTriangle::unpack(const CompactTriangle& r) noexcept {
   _mm_store_ps(n_[0].data(), _mm_movelh_ps(_mm_unpacklo_ps(n.x, n.y), n.z));
   _mm_store_ps(n_[1].data(), _mm_shuffle_ps(low, dz, _MM_SHUFFLE(1, 1, 3, 2)));
   _mm_store_ps(n_[2].data(), _mm_shuffle_ps(high, dz, _MM_SHUFFLE(2, 2, 1, 0)));
-  const __m128 bulge =
-      _mm_add_ps(_mm_add_ps(_mm_mul_ps(x.edges(), turn(n.x)), _mm_mul_ps(y.edges(), turn(n.y))),
-                 _mm_mul_ps(z.edges(), turn(n.z)));
+  const __m128 bulge = bulges(x, y, z, n);
   bulge_ = {first(bulge), first(all<1>(bulge)), first(all<2>(bulge))};
+}
+
+void LoweredTriangle::unpack(const CompactTriangle& r) noexcept {
+  if (wide_lanes()) {
+    unpack_wide(r);
+  } else {
+    unpack_here(r);
+  }
+}
+
+void LoweredTriangle::unpack_wide(const CompactTriangle& r) noexcept {
+  unpack_here(r);
 }
 
 // Goes on where one round does not suffice: the most bent triangles that are no creases take four.
@@ -160,45 +93,6 @@ LoweredPlace LoweredTriangle::locate_far(double a, double b, double h, double d)
     if (!place.valid || change * change * tilt_squared_ <= kPlaced * kPlaced) break;
   }
   return place;
-}
-
-double side_of_crease(const Vector3d& p, const CompactTriangle& own, std::size_t edge,
-                      const CompactTriangle& other) noexcept {
-  const Vector3d area = area_of(own);
-  const Vector3d other_area = area_of(other);
-  const double twice_area = std::sqrt(area.squaredNorm());
-  const Vector3d average = area / twice_area + other_area / std::sqrt(other_area.squaredNorm());
-  const double size = average.norm();
-  if (!(size > kBackToBack)) return 0;
-  const Vector3d begin = own.corner(edge);
-  const Vector3d along = own.corner((edge + 1) % 3) - begin;
-  return average.cross(along).dot(p - begin) / (size * twice_area);
-}
-
-LoweredFeel feel_nearest(const Vector3d& p, const CompactTriangle& r,
-                         const LoweredTriangle& lowered) noexcept {
-  const Vector3d a = r.corner(0), b = r.corner(1), c = r.corner(2);
-  const Vector3d q = closest_point(p, a, b, c);
-  const Vector3d area = area_of(r);
-  const double per_squared = 1 / area.squaredNorm();
-  LoweredPlace place;
-  place.l1 = (c - a).cross(area).dot(q - a) * per_squared;
-  place.l2 = area.cross(b - a).dot(q - a) * per_squared;
-  place.l0 = 1 - place.l1 - place.l2;
-  LoweredFeel felt = lowered.feel(place);
-  felt.depth = std::max((q - p).dot(felt.n_W), 0.0);
-  return felt;
-}
-
-double rise_above(std::span<const CompactTriangle> records) noexcept {
-  constexpr double kFelt = 1e-5 * 2 * kLatticeHalf;
-  double rise = 0;
-  LoweredTriangle lowered;
-  for (const CompactTriangle& record : records) {
-    lowered.unpack(record);
-    rise = std::max(rise, lowered.rise());
-  }
-  return rise > kFelt ? rise : 0;
 }
 
 }  // namespace thimble::render

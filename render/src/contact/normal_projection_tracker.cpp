@@ -1,8 +1,7 @@
 #include "thimble/render/contact/normal_projection_tracker.h"
 
 #include <limits>
-
-#include "contact/triangle_set.h"
+#include "thimble/render/contact/triangle_set.h"
 
 namespace thimble::render {
 

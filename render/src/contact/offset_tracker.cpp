@@ -6,8 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <utility>
-
-#include "contact/triangle_set.h"
+#include "thimble/render/contact/triangle_set.h"
 
 namespace thimble::render {
 namespace {

@@ -14,6 +14,16 @@
 
 namespace thimble::render {
 
+/// Is a segment in numbers that tell fast that it does not cross a record, in steps.
+struct SegmentBounds {
+  std::array<std::int32_t, 4> low, high;  ///< Around it, with room for rounding; three count.
+  std::array<std::int32_t, 4> from;       ///< Where it begins, rounded.
+  std::array<float, 3> way;
+  float way_size;    ///< Largest part of `way`.
+  float from_wrong;  ///< How far `from` may be from where it begins.
+  bool single;       ///< Whether single precision says anything.
+};
+
 /// Decides how one segment passes the records of a surface: in double precision on the lattice
 /// where that is beyond doubt, else by `crossing`. Real-time: safe; about 10 ns where there is no
 /// doubt.
@@ -38,23 +48,20 @@ class SegmentTest {
 
   /// Gives the box around the segment in steps of the lattice, with room for rounding; beyond twice
   /// the lattice it is cut.
-  Eigen::Vector3d low() const noexcept { return Eigen::Vector3i(low_.data()).cast<double>(); }
-  Eigen::Vector3d high() const noexcept { return Eigen::Vector3i(high_.data()).cast<double>(); }
+  Eigen::Vector3d low() const noexcept { return vector(bounds_.low); }
+  Eigen::Vector3d high() const noexcept { return vector(bounds_.high); }
 
  private:
-  // A fourth number is loaded with the three corners; it belongs to the same record.
-  static __m128i load(const std::array<std::int32_t, 3>& x) noexcept {
-    return _mm_loadu_si128(reinterpret_cast<const __m128i*>(x.data()));
+  static Eigen::Vector3d vector(const std::array<std::int32_t, 4>& v) noexcept {
+    return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
   }
 
   const CompactSurface& surface_;
   Eigen::Vector3d p_from_, p_to_;
   Eigen::Vector3d from_, way_;
   double way_size_;
-  std::array<std::int32_t, 3> low_, high_;  // around the segment, with room for rounding
-  std::array<std::int32_t, 3> from_whole_;  // `from_` rounded
-  bool single_ = false;                     // whether single precision says anything
   double position_rounding_;
+  SegmentBounds bounds_;
 };
 
 /// Keeps the parameter of a crossing within the part of the segment that lies in the box of the

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <span>
 
-#include "thimble/render/contact/closest_point.h"
+#include "contact/nearest_list.h"
 #include "thimble/render/contact/contact_search.h"
 #include "thimble/render/contact/search_frame.h"
 #include "thimble/render/mesh/segment_crossing.h"
@@ -75,37 +75,23 @@ class NearestPoint {
  public:
   NearestPoint(const Surface& surface, const SearchFrame& frame, const Eigen::Vector3d& p,
                double reach) noexcept
-      : surface_(surface), frame_(frame), p_(p), squared_(reach * reach) {}
+      : surface_(surface), frame_(frame), p_(p), best_{.squared = reach * reach} {}
 
-  void consider(std::int32_t t) noexcept {
-    const Eigen::Vector3d a = corner_in(frame_, surface_, t, 0) - p_;
-    const Eigen::Vector3d b = corner_in(frame_, surface_, t, 1) - p_;
-    const Eigen::Vector3d c = corner_in(frame_, surface_, t, 2) - p_;
-    // All of a triangle lies as far along the way to the nearest point as its corners: beyond the
-    // plane there, nothing of it is nearer. Most triangles around are told so by nine products.
-    const bool beyond = std::min({a.dot(to_), b.dot(to_), c.dot(to_)}) > squared_;
-    if (beyond & (triangle_ >= 0)) return;
-    const Eigen::Vector3d to = closest_point(Eigen::Vector3d::Zero(), a, b, c);
-    const double squared = to.squaredNorm();
-    // Written so that NaN is not nearer.
-    const bool nearer = squared < squared_;
-    const bool tied = squared == squared_ && (triangle_ < 0 || t < triangle_);
-    if (!nearer && !tied) return;
-    squared_ = squared;
-    to_ = to;
-    triangle_ = t;
+  void consider(std::span<const std::int32_t> list) noexcept {
+    render::consider(surface_, frame_, list, p_, best_);
   }
 
-  bool found() const noexcept { return triangle_ >= 0; }
+  bool found() const noexcept { return best_.triangle >= 0; }
   /// Tells the squared distance beyond which no more triangles are wanted.
-  double squared() const noexcept { return squared_; }
+  double squared() const noexcept { return best_.squared; }
+  NearestSoFar& so_far() noexcept { return best_; }
 
   SurfacePoint point() const noexcept {
     SurfacePoint point;
-    if (triangle_ < 0) return point;
-    point.triangle = triangle_;
-    point.distance = frame_.step * std::sqrt(squared_);
-    point.p_W = frame_.origin + frame_.step * (p_ + to_);
+    if (best_.triangle < 0) return point;
+    point.triangle = best_.triangle;
+    point.distance = frame_.step * std::sqrt(best_.squared);
+    point.p_W = frame_.origin + frame_.step * (p_ + best_.to);
     return point;
   }
 
@@ -113,9 +99,7 @@ class NearestPoint {
   const Surface& surface_;
   const SearchFrame& frame_;
   const Eigen::Vector3d p_;
-  Eigen::Vector3d to_{0, 0, 0};  // from `p_` to the nearest point
-  std::int32_t triangle_ = -1;
-  double squared_;
+  NearestSoFar best_;
 };
 
 /// Turns a radius (m) into steps, at most such that its square is a finite float.

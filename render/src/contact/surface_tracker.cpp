@@ -4,8 +4,8 @@
 #include <limits>
 #include <utility>
 
-#include "contact/triangle_set.h"
 #include "thimble/render/contact/closest_point.h"
+#include "thimble/render/contact/triangle_set.h"
 
 namespace thimble::render {
 namespace {

@@ -15,7 +15,7 @@
 #include <utility>
 
 #include "page/checksum.h"
-#include "thimble/render/contact/lowered_triangle.h"
+#include "thimble/render/contact/surface_rise.h"
 
 namespace thimble::render {
 namespace {

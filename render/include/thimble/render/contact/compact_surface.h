@@ -105,6 +105,8 @@ class CompactSurface {
   const Eigen::Vector3d& origin() const noexcept { return origin_; }
   /// Tells the length of one step of the lattice, m.
   double step() const noexcept { return step_; }
+  /// Tells how many steps there are in 1 m.
+  double per_step() const noexcept { return per_step_; }
 
   /// Tells how far the smooth surface that the normals stand for rises above the triangles at most,
   /// m; 0 where that is less than 1e-5 of the size and nobody would feel it.

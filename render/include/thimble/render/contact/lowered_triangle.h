@@ -8,24 +8,12 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <span>
 
 #include "thimble/render/contact/compact_surface.h"
+#include "thimble/render/contact/lowered_place.h"
+#include "thimble/render/contact/wide_lanes.h"
 
 namespace thimble::render {
-
-/// Is where a tip stands in a lowered triangle.
-struct LoweredPlace {
-  double l0 = 0, l1 = 0, l2 = 0;  ///< Weights; negative: outside the edge opposite of that corner.
-  double depth = 0;               ///< d, in steps of the lattice.
-  bool valid = false;             ///< False where the lowered triangle is folded over.
-};
-
-/// Is what is felt at a place of a lowered triangle.
-struct LoweredFeel {
-  Eigen::Vector3d n_W{0, 0, 0};  ///< Outward unit normal.
-  double depth = 0;              ///< Below the smooth surface along n_W, in steps of the lattice.
-};
 
 /// Is one record unpacked: a triangle that sinks along its corner normals. Lowered by d along them,
 /// a triangle x_i becomes the triangle x_i - d n_i. The one that holds the tip p, for its own d,
@@ -59,13 +47,6 @@ class LoweredTriangle {
   /// Tells the same faster. Precondition: no weight is negative.
   LoweredFeel feel_within(const LoweredPlace& place) const noexcept;
 
-  /// Tells how far the surface rises above this triangle at most, in steps; 0 if it does not. A
-  /// third of the largest bulge is the most that the sum over pairs reaches, and where corners are
-  /// not creases 1 + |sum l_i n_i| is above 5/3.
-  double rise() const noexcept {
-    return std::max(std::max(bulge_[0], bulge_[1]), std::max(bulge_[2], 0.0)) / 5;
-  }
-
   /// Tells whether an edge is a crease, in bit k for edge k.
   std::uint32_t creases() const noexcept { return creases_; }
   /// Tells which triangle of the input this is.
@@ -75,6 +56,8 @@ class LoweredTriangle {
 
  private:
   LoweredPlace solve(double a, double b, double h, double d) const noexcept;
+  void unpack_here(const CompactTriangle& record) noexcept;
+  THIMBLE_FOR_AVX2 void unpack_wide(const CompactTriangle& record) noexcept;
   LoweredPlace locate_far(double a, double b, double h, double d) const noexcept;
 
   using Pair = std::array<double, 2>;
@@ -92,20 +75,6 @@ class LoweredTriangle {
   std::uint32_t creases_ = 0;
   std::int32_t source_ = -1;
 };
-
-/// Tells how far `p` (steps) is on this side of the plane that halves the angle at a crease, as a
-/// share of the triangle's height over that edge. Real-time: safe.
-double side_of_crease(const Eigen::Vector3d& p, const CompactTriangle& own, std::size_t edge,
-                      const CompactTriangle& other) noexcept;
-
-/// Tells what is felt at the point of a record that is nearest to `p` (steps), where no lowered
-/// triangle holds it; `lowered` is that record unpacked. Real-time: safe.
-LoweredFeel feel_nearest(const Eigen::Vector3d& p, const CompactTriangle& record,
-                         const LoweredTriangle& lowered) noexcept;
-
-/// Finds how far the surface rises above some records at most, in steps; 0 where that is less than
-/// 1e-5 of the size of the lattice and nobody would feel it. Real-time: safe; some 10 ns each.
-double rise_above(std::span<const CompactTriangle> records) noexcept;
 
 /// Is how well `locate` places a tip, in steps: 3e-8 of the mesh's longest side.
 inline constexpr double kPlaced = 64;
@@ -137,13 +106,16 @@ inline LoweredPlace LoweredTriangle::solve(double a, double b, double h, double 
   const double m21 = d * uv_[1][1], m22 = 1 - d * uv_[2][1];
   const double r1 = a + d * uv_[0][0], r2 = b + d * uv_[0][1];
   const double area = m11 * m22 - m12 * m21;
-  const double per_area = 1 / area;
+  const double a1 = r1 * m22 + m12 * r2, a2 = r2 * m11 + m21 * r1;
+  const double upright = area * w_[0] + (a1 * w_[1] + a2 * w_[2]);
+  // One division for the weights and the depth.
+  const double both = 1 / (area * upright);
+  const double per_area = upright * both;
   LoweredPlace place;
-  place.l1 = (r1 * m22 + m12 * r2) * per_area;
-  place.l2 = (r2 * m11 + m21 * r1) * per_area;
+  place.l1 = a1 * per_area;
+  place.l2 = a2 * per_area;
   place.l0 = 1 - place.l1 - place.l2;
-  const double upright = w_[0] + place.l1 * w_[1] + place.l2 * w_[2];
-  place.depth = h / upright;
+  place.depth = h * area * area * both;
   // Folded over along one axis the area is negative, along both the sum is. Written so that NaN is
   // folded over.
   place.valid =
@@ -173,13 +145,15 @@ inline LoweredFeel LoweredTriangle::feel_within(const LoweredPlace& place) const
   const __m128d xy = _mm_cvtps_pd(normal);
   const double z = _mm_cvtsd_f64(_mm_cvtps_pd(_mm_movehl_ps(normal, normal)));
   const __m128d squares = _mm_mul_pd(xy, xy);
-  const double size =
-      std::sqrt(_mm_cvtsd_f64(_mm_add_sd(squares, _mm_unpackhi_pd(squares, squares))) + z * z);
+  const double squared =
+      _mm_cvtsd_f64(_mm_add_sd(squares, _mm_unpackhi_pd(squares, squares))) + z * z;
+  // The bare instruction: nothing here is negative, and nobody reads errno.
+  const double size = _mm_cvtsd_f64(_mm_sqrt_sd(_mm_setzero_pd(), _mm_set_sd(squared)));
   const double rise =
       place.l1 * (place.l0 * bulge_[0] + place.l2 * bulge_[1]) + place.l2 * place.l0 * bulge_[2];
   // Divided by 1 + size in place of 2 the bend is exact on a sphere, however coarse. One division
   // for both quotients.
-  const double both = 1 / (size * (1 + size));
+  const double both = 1 / (size + squared);
   const double per_size = (1 + size) * both;
   const __m128d n = _mm_mul_pd(xy, _mm_set1_pd(per_size));
   return {{_mm_cvtsd_f64(n), _mm_cvtsd_f64(_mm_unpackhi_pd(n, n)), z * per_size},

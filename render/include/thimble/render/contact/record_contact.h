@@ -6,11 +6,13 @@
 #include <utility>
 
 #include "thimble/driver/device_state.h"
+#include "thimble/render/contact/contact_search.h"
 #include "thimble/render/contact/contact_state.h"
 #include "thimble/render/contact/held_plane.h"
 #include "thimble/render/contact/lowered_triangle.h"
 #include "thimble/render/contact/record_store.h"
 #include "thimble/render/contact/surface_tracker.h"
+#include "thimble/render/contact/wide_lanes.h"
 
 namespace thimble::render {
 
@@ -68,17 +70,24 @@ class RecordContact {
   // Says what a tick in contact came to: kUnknown where a record that decides it is absent.
   using Outcome = Known;
 
+  // The tick, made twice for different processors; see wide_lanes.
+  void tick(const Eigen::Vector3d& p_WT) noexcept;
+  THIMBLE_FOR_AVX2 void tick_wide(const Eigen::Vector3d& p_WT) noexcept;
+
   bool stay(const Eigen::Vector3d& p_WT) noexcept;
+  bool step_over(const Eigen::Vector3d& p, const LoweredPlace& place, LoweredFeel& felt) noexcept;
   void move(const Eigen::Vector3d& p_WT) noexcept;
-  bool begin(const Eigen::Vector3d& p_WT) noexcept;
+  // What seldom happens is not made twice.
+  [[gnu::noinline]] bool begin(const Eigen::Vector3d& p_WT) noexcept;
   bool begin_above(const Eigen::Vector3d& p_WT) noexcept requires TellsRise<Store>;
   Outcome follow(const Eigen::Vector3d& p_WT) noexcept;
-  Outcome seek(const Eigen::Vector3d& p_WT, const Eigen::Vector3d& p, std::int32_t before,
-               Outcome settled, const LoweredPlace& place) noexcept;
+  [[gnu::noinline]] Outcome seek(const Eigen::Vector3d& p_WT, const Eigen::Vector3d& p,
+                                 std::int32_t before, Outcome settled,
+                                 const LoweredPlace& place) noexcept;
   Outcome settle(const Eigen::Vector3d& p, bool walked, LoweredPlace& place) noexcept;
-  Outcome find_again(const Eigen::Vector3d& p_WT, const Eigen::Vector3d& p,
-                     std::int32_t before) noexcept;
-  Outcome resume(const Eigen::Vector3d& p_WT, const ContactState& last) noexcept;
+  [[gnu::noinline]] Outcome find_again(const Eigen::Vector3d& p_WT, const Eigen::Vector3d& p,
+                                       std::int32_t before) noexcept;
+  [[gnu::noinline]] Outcome resume(const Eigen::Vector3d& p_WT, const ContactState& last) noexcept;
   Outcome find_near(const Eigen::Vector3d& p, std::int32_t before) noexcept;
   Outcome walk(const Eigen::Vector3d& p, std::int32_t& triangle) noexcept;
   Outcome edge_to_hop(const Eigen::Vector3d& p, const LoweredPlace& place,
@@ -87,16 +96,12 @@ class RecordContact {
   void report(const Eigen::Vector3d& p_WT, const LoweredFeel& felt) noexcept;
   void end() noexcept;
 
-  // Written so that NaN is out of range.
-  static bool within_range(const Eigen::Vector3d& p_W) noexcept {
-    return std::abs(p_W.x()) <= kPositionMax && std::abs(p_W.y()) <= kPositionMax &&
-           std::abs(p_W.z()) <= kPositionMax;
-  }
   static bool absent(const CompactTriangle* record) noexcept {
     return !Store::kComplete && record == nullptr;
   }
 
   Store store_;
+  bool wide_ = wide_lanes();
   std::int32_t active_ = -1;
   LoweredTriangle lowered_;
   ContactState state_;

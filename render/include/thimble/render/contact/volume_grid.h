@@ -87,6 +87,17 @@ class VolumeGrid {
   void visit_box(const Eigen::Vector3d& low, const Eigen::Vector3d& high, Wanted wanted,
                  Visit visit) const noexcept;
 
+  /// Tells how far a point is from the border of the volume it is in; not above 0 beside the grid.
+  /// Real-time: safe.
+  double within_volume(const Eigen::Vector3d& p) const noexcept {
+    double least = parts_.side;
+    for (int i = 0; i < 3; ++i) {
+      const double begin = parts_.low[i] + parts_.side * volume_of(p[i], i);
+      least = std::min(least, std::min(p[i] - begin, begin + parts_.side - p[i]));
+    }
+    return least;
+  }
+
   /// Tells a distance from a point within which all blocks are empty; 0 near the surface.
   /// Real-time: safe; one line of the cache.
   double clearance(const Eigen::Vector3d& p) const noexcept;

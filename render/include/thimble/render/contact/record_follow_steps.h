@@ -1,0 +1,181 @@
+#pragma once
+
+// How the contact goes from triangle to triangle: bodies of RecordContact, included by
+// record_contact_steps.h alone.
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "thimble/render/contact/beside_lowered.h"
+#include "thimble/render/contact/record_contact.h"
+#include "thimble/render/contact/record_walk.h"
+#include "thimble/render/contact/triangle_set.h"
+
+namespace thimble::render {
+
+/// Is how far outside a triangle, as a share of its height, the tip may be and stay: rounding on
+/// both sides of an edge must not send it back and forth (lowered_triangle.h). The jump that this
+/// leaves is so small a share of the triangle's bulge.
+inline constexpr double kOutside = -1e-6;
+
+/// Is the same at a crease, where the direction jumps and everything is in double precision.
+inline constexpr double kOutsideOfCrease = -1e-11;
+
+template <RecordStore Store>
+typename RecordContact<Store>::Outcome RecordContact<Store>::follow(
+    const Eigen::Vector3d& p_WT) noexcept {
+  const Eigen::Vector3d p = store_.to_lattice(p_WT);
+  const std::int32_t before = active_;
+  const bool sliding = haste_ >= 2;
+  state_.hops = 0;
+  // Who hopped in the last ticks will hop again: the cheap walk first spares looking closely at a
+  // triangle that is left at once.
+  if (sliding) {
+    std::int32_t next = active_;
+    const Outcome walked = walk(p, next);
+    if (next != active_) activate(next);
+    if (walked == Outcome::kUnknown) return Outcome::kUnknown;
+  }
+  LoweredPlace place = lowered_.locate(p);
+  const bool held = place.valid && place.l0 >= kOutside && place.l1 >= kOutside &&
+                    place.l2 >= kOutside && lowered_.creases() == 0;
+  const Outcome settled = held ? Outcome::kYes : settle(p, sliding, place);
+  if (settled == Outcome::kYes) {
+    // Above the triangle too, where the surface that it stands for bulges beyond the tip.
+    const LoweredFeel felt = lowered_.feel(place);
+    if (felt.depth >= 0) {
+      report(p_WT, felt);
+      return Outcome::kYes;
+    }
+  }
+  return seek(p_WT, p, before, settled, place);
+}
+
+// Decides what the active triangle alone cannot: whether contact has ended, or where it goes on.
+template <RecordStore Store>
+typename RecordContact<Store>::Outcome RecordContact<Store>::seek(
+    const Eigen::Vector3d& p_WT, const Eigen::Vector3d& p, std::int32_t before, Outcome settled,
+    const LoweredPlace& place) noexcept {
+  if (settled == Outcome::kUnknown) return settled;
+  const Known inside = store_.inside(p_WT);
+  if (inside == Known::kUnknown) return Outcome::kUnknown;
+  if (inside == Known::kNo) return Outcome::kNo;
+  if (settled == Outcome::kYes && place.depth >= 0) {
+    // In a hollow, between the triangles and the surface that they stand for.
+    LoweredFeel felt = lowered_.feel(place);
+    felt.depth = 0;
+    report(p_WT, felt);
+    return Outcome::kYes;
+  }
+  const Outcome found = find_again(p_WT, p, before);
+  if (found == Outcome::kYes) {
+    const CompactTriangle* record = store_.find(active_);
+    if (absent(record)) return Outcome::kUnknown;
+    report(p_WT, feel_nearest(p, *record, lowered_));
+  }
+  return found;
+}
+
+// Hops from triangle to triangle until one holds the tip; `place` becomes its place there.
+template <RecordStore Store>
+typename RecordContact<Store>::Outcome RecordContact<Store>::settle(const Eigen::Vector3d& p,
+                                                                    bool walked,
+                                                                    LoweredPlace& place) noexcept {
+  TriangleSet<8> visited;
+  for (;;) {
+    if (!place.valid) return Outcome::kNo;
+    int edge = -1;
+    if (edge_to_hop(p, place, edge) == Outcome::kUnknown) return Outcome::kUnknown;
+    if (edge < 0) return Outcome::kYes;
+    if (state_.hops >= kWalkMax || visited.full()) {
+      ++counters_.long_walks;
+      return Outcome::kNo;
+    }
+    visited.add(active_);
+    const CompactTriangle* record = store_.find(active_);
+    if (absent(record)) return Outcome::kUnknown;
+    std::int32_t next = record->neighbours[static_cast<std::size_t>(edge)];
+    ++state_.hops;
+    if (visited.has(next)) {
+      // A gap between lowered triangles: around it all are nearly right.
+      ++counters_.cycles;
+      return Outcome::kYes;
+    }
+    if (!walked) {
+      std::int32_t far = next;
+      const Outcome arrived = walk(p, far);
+      if (!visited.has(far)) next = far;
+      if (arrived == Outcome::kUnknown) {
+        activate(next);
+        return Outcome::kUnknown;
+      }
+      walked = true;
+    }
+    if (!activate(next)) return Outcome::kUnknown;
+    place = lowered_.locate(p);
+  }
+}
+
+// Makes a record active; false if it is absent.
+template <RecordStore Store>
+bool RecordContact<Store>::activate(std::int32_t triangle) noexcept {
+  const CompactTriangle* record = store_.find(triangle);
+  if (absent(record)) return false;
+  active_ = triangle;
+  lowered_.unpack(*record);
+  if constexpr (Store::kComplete) {
+    // The tip goes to one of these, now or in a later tick.
+    for (const std::int32_t t : record->neighbours) __builtin_prefetch(store_.find(t));
+  }
+  return true;
+}
+
+// Tells the edge that the tip is farthest outside of, as a share of the triangle's height; -1 if
+// the triangle holds it.
+template <RecordStore Store>
+typename RecordContact<Store>::Outcome RecordContact<Store>::edge_to_hop(const Eigen::Vector3d& p,
+                                                                         const LoweredPlace& place,
+                                                                         int& edge) const noexcept {
+  std::array<double, 3> side{place.l2, place.l0, place.l1};
+  std::array<double, 3> least{kOutside, kOutside, kOutside};
+  if (lowered_.creases() != 0) {
+    const CompactTriangle* own = store_.find(active_);
+    if (absent(own)) return Outcome::kUnknown;
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (((lowered_.creases() >> k) & 1u) == 0) continue;
+      const CompactTriangle* other = store_.find(own->neighbours[k]);
+      if (absent(other)) return Outcome::kUnknown;
+      side[k] = side_of_crease(p, *own, k, *other);
+      least[k] = kOutsideOfCrease;
+    }
+  }
+  std::size_t worst = 0;
+  if (side[1] - least[1] < side[0] - least[0]) worst = 1;
+  if (side[2] - least[2] < side[worst] - least[worst]) worst = 2;
+  edge = side[worst] < least[worst] ? static_cast<int>(worst) : -1;
+  return Outcome::kYes;
+}
+
+// Walks over the triangles as they lie, seen along the last tick's normal; stops at creases and at
+// the last record at hand.
+template <RecordStore Store>
+typename RecordContact<Store>::Outcome RecordContact<Store>::walk(const Eigen::Vector3d& p,
+                                                                  std::int32_t& triangle) noexcept {
+  const RecordWalk way(p, state_.n_W);
+  const CompactTriangle* record = store_.find(triangle);
+  if (absent(record)) return Outcome::kUnknown;
+  for (; state_.hops < kWalkMax; ++state_.hops) {
+    const int edge = way.edge_to_hop(*record);
+    if (edge < 0) break;
+    const std::int32_t next = record->neighbours[static_cast<std::size_t>(edge)];
+    record = store_.find(next);
+    if (absent(record)) return Outcome::kUnknown;
+    triangle = next;
+  }
+  return Outcome::kYes;
+}
+
+}  // namespace thimble::render
