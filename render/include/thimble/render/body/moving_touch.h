@@ -103,7 +103,7 @@ class MovingTouch final : public ObjectTouch {
     // Written so that NaN means no force.
     if (!(size > 0)) return Eigen::Vector3d::Zero();
     const Eigen::Vector3d u = f_W / size;
-    const Eigen::Vector3d shared = shared_force(coupling_, u, motion_.gain_at(p_WT, u)) * f_W;
+    Eigen::Vector3d shared = shared_force(coupling_, u, motion_.gain_at(p_WT, u)) * f_W;
     if (!shared.allFinite()) return Eigen::Vector3d::Zero();
     motion_.push(-shared, p_WT);
     return shared;

@@ -25,7 +25,7 @@ class ShapedTouch final : public ObjectTouch {
       : stages_(std::move(stages)), shape_(std::move(shape)) {}
 
   driver::ForceCommand update(const driver::DeviceState& state) noexcept override {
-    const driver::ForceCommand command = stages_(state);
+    driver::ForceCommand command = stages_(state);
     if (was_touching_ && !command.touch.in_contact && inside(state.p_WT)) ++lost_;
     was_touching_ = command.touch.in_contact;
     const auto moves = shape_.follow(stages_.contact().mesh(), command.touch);
