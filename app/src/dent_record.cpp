@@ -36,7 +36,7 @@ render::TriangleMesh bent(const render::TriangleMesh& mesh, const MeshPlace& pla
   std::vector<std::int32_t> number;
   for (std::size_t i = 0; i < patch.point_count; ++i) {
     const render::BodyPatch::Point& point = patch.points[i];
-    const Eigen::Vector3d p(double{point.p[0]}, double{point.p[1]}, double{point.p[2]});
+    const Eigen::Vector3d p(point.p[0], point.p[1], point.p[2]);
     if (point.vertex >= 0) {
       const std::size_t vertex = place.vertex + static_cast<std::size_t>(point.vertex);
       result.vertices[vertex] = p;

@@ -160,7 +160,7 @@ TEST(SoftCoarse, IsBoundedAtATenthAndAtTenTimesItsStiffness) {
     const render::BodyPatch& dent = session.dents()->deepest();
     EXPECT_GT(dent.triangle_count, 11);
     for (std::size_t i = 0; i < dent.point_count; ++i) {
-      for (const float x : dent.points[i].p) EXPECT_LT(std::abs(x), 0.15F);
+      for (const double x : dent.points[i].p) EXPECT_LT(std::abs(x), 0.15);
     }
   }
 }

@@ -14,8 +14,7 @@ namespace {
 // Stands for a point that found no room.
 constexpr std::uint16_t kNone = 0xffff;
 
-// Keeps this share of each triangle's area, seen along its first normal: well above the rounding
-// of the patch's single precision.
+// Keeps this share of each triangle's area, seen along its first normal: well above rounding.
 constexpr double kAreaLeft = 0.02;
 
 }  // namespace
@@ -202,12 +201,10 @@ void PatchDrawing::finish(BodyPatch& patch) noexcept {
     Eigen::Vector3d n = point.n;
     // The border keeps its normals, for triangles beside the patch share them.
     if (point.moves && point.area > 0) n += point.turn / point.area;
-    const Eigen::Vector3f p_float = (point.p + point.u).cast<float>();
+    const Eigen::Vector3d p = point.p + point.u;
     const Eigen::Vector3f n_float = n.cast<float>();
     BodyPatch::Point& to = patch.points[patch.point_count++];
-    to = {{p_float.x(), p_float.y(), p_float.z()},
-          {n_float.x(), n_float.y(), n_float.z()},
-          point.vertex};
+    to = {{p.x(), p.y(), p.z()}, {n_float.x(), n_float.y(), n_float.z()}, point.vertex};
   }
   for (std::size_t i = 0; i < drawn_.size(); ++i) {
     patch.triangles[i] = drawn_[i];

@@ -129,7 +129,7 @@ double beside(BendablePolygon& dent, std::int32_t triangle, const Vector3d& w, B
       std::array<Vector3d, 3> at, before;
       for (std::size_t c = 0; c < 3; ++c) {
         const auto& p = patch.points[patch.triangles[k][c]].p;
-        at[c] = Vector3d(double{p[0]}, double{p[1]}, double{p[2]});
+        at[c] = Vector3d(p[0], p[1], p[2]);
         before[c] = mesh.position(patch.source[k], c);
       }
       if (!(drawn == drawn)) drawn = way_down(at, from, -n);

@@ -32,7 +32,7 @@ namespace fs = std::filesystem;
 
 Vector3d at(const BodyPatch& patch, std::size_t point) {
   const auto& p = patch.points[point].p;
-  return {double{p[0]}, double{p[1]}, double{p[2]}};
+  return {p[0], p[1], p[2]};
 }
 
 /// Counts cracks between the patch and the mesh around it, and triangles that have turned over.
@@ -64,7 +64,7 @@ Faults faults_of(const BodyPatch& patch, const ContactMesh& mesh) {
         continue;
       }
       // To the bit where the mesh's own vertex is drawn.
-      const Eigen::Vector3f drawn = mesh.position(vertex).cast<float>();
+      const Vector3d& drawn = mesh.position(vertex);
       const auto& p = patch.points[static_cast<std::size_t>(point)].p;
       faults.cracks += !(p[0] == drawn.x() && p[1] == drawn.y() && p[2] == drawn.z());
     }

@@ -19,7 +19,9 @@ struct BodyPatch {
 
   /// Is one corner of the triangles.
   struct Point {
-    std::array<float, 3> p{};  ///< m, in the frame the mesh is given in.
+    /// m, in the frame the mesh is given in; in double, since scans have slivers whose parts would
+    /// turn over by the rounding of single precision.
+    std::array<double, 3> p{};
     /// Normal: interpolate it over the triangle and make it unit then. At the cursor and on edges
     /// it is what the untouched triangle has there, so that touching alone changes no shade.
     std::array<float, 3> n{};
