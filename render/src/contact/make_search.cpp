@@ -9,7 +9,7 @@
 namespace thimble::render {
 namespace {
 
-// Up to here the grid answers both questions sooner than the tree (10^4: 0.6 and 0.8 of its time);
+// Up to here the grid answers both questions sooner than the tree (10^4: 0.6 and 0.7 of its time);
 // from 10^5 on memory decides, and the tree reads less of it (tests/bench/contact_bench, --cold).
 constexpr std::int32_t kGridTrianglesMax = 30000;
 
