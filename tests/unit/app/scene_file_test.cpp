@@ -118,7 +118,7 @@ TEST(SceneFile, ReadsADentOrSaysWhatIsWrongWithIt) {
   }
   EXPECT_NE(
       mistake("  - {name: b, sphere: {radius: 0.02}, stiffness: 1, body: {dent: {}}}\n", kWait)
-          .find("body: only a mesh that is in memory has a body"),
+          .find("body: a shape can move, but only a mesh gives way"),
       std::string::npos);
 }
 
