@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <string_view>
 
 namespace thimble::app {
@@ -14,5 +15,9 @@ struct BuildInfo {
 
 /// Tells what this build is.
 BuildInfo build_info();
+
+/// Tells the same in one line: two programs with the same one feel the same to the bit on one
+/// machine, if neither was built from changed sources.
+std::string program_name();
 
 }  // namespace thimble::app

@@ -19,6 +19,8 @@ void add_feel_check_command(CLI::App& app, int& exit_code);
 void add_doctor_command(CLI::App& app, int& exit_code);
 /// `thimble export FILE`: writes a recording as a table.
 void add_export_command(CLI::App& app, int& exit_code);
+/// `thimble replay FILE`: lets a recorded hand touch a scene again.
+void add_replay_command(CLI::App& app, int& exit_code);
 /// `thimble plug ARM`: exports a simulated arm as a USB device.
 void add_plug_command(CLI::App& app, int& exit_code);
 /// `thimble mesh FILE`: tells what a mesh is and what is wrong with it.

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "mesh_place.h"
 #include "thimble/driver/snapshot.h"
 #include "thimble/driver/tick_record.h"
 #include "thimble/render/body/body_patch.h"
@@ -33,12 +34,6 @@ class DentRecord {
   render::BodyPatch patch_{};
   render::BodyPatch deepest_{};
   driver::Snapshot<render::BodyPatch> newest_;
-};
-
-/// Says where an object begins in a mesh of several.
-struct MeshPlace {
-  std::size_t vertex = 0;
-  std::size_t triangle = 0;
 };
 
 /// Gives a mesh (m) with the patch of the object that begins at `place` in place of the triangles

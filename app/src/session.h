@@ -15,14 +15,13 @@
 #include "recording/recording_info.h"
 #include "run_statistics.h"
 #include "scene_file.h"
+#include "scene_objects.h"
 #include "scene_poses.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/device.h"
 #include "thimble/driver/discovery.h"
 #include "thimble/driver/servo_loop.h"
 #include "thimble/driver/snapshot.h"
-#include "thimble/render/page/paged_surface.h"
-#include "thimble/render/scene_touch.h"
 #include "trace.h"
 
 namespace thimble::app {
@@ -59,9 +58,9 @@ class Session {
   const Scene& scene() const { return scene_; }
   /// Gives the meshes of all objects in the world as one (m), for pictures: those that are touched,
   /// and those that stand for shapes; those on the disk are not in it.
-  const render::TriangleMesh& mesh_W() const { return mesh_W_; }
+  const render::TriangleMesh& mesh_W() const { return objects_->mesh_W(); }
   /// Tells how many triangles can be touched, in memory and on the disk.
-  std::size_t triangles() const { return triangles_; }
+  std::size_t triangles() const { return objects_->triangles(); }
   const driver::Device& device() const { return *device_; }
   driver::Device& device() { return *device_; }
   /// Gives the simulation of the arm; nullptr if a real one is used.
@@ -70,11 +69,11 @@ class Session {
   const device_sim::SimulatedArm& arm() const { return *simulation_->board_arm(); }
   /// Gives the clock that a new wire to a real arm must use.
   driver::Clock& clock() { return *clock_; }
-  const render::SceneTouch& touch() const { return *touch_; }
+  const render::SceneTouch& touch() const { return objects_->touch(); }
   /// Gives the force law, to be driven by hand in place of `run`.
-  render::SceneTouch& touch() { return *touch_; }
+  render::SceneTouch& touch() { return objects_->touch(); }
   /// Sums up what paging did for all objects on the disk; nothing if there are none.
-  std::optional<render::PagingCounters> paging() const;
+  std::optional<render::PagingCounters> paging() const { return objects_->paging(); }
   const RunStatistics& statistics() const { return *statistics_; }
   const Trace& trace() const { return *trace_; }
   const driver::Snapshot<driver::TickRecord>& snapshot() const { return snapshot_; }
@@ -92,7 +91,7 @@ class Session {
   const driver::Snapshot<ScenePoses>& poses() const { return poses_; }
   /// Gives the mesh of one object, or of all as one if `object` is negative, where it is now: moved
   /// and bent (W, m). Not while `run` runs.
-  render::TriangleMesh mesh_now(int object = -1) const;
+  render::TriangleMesh mesh_now(int object = -1) const { return objects_->mesh_now(object); }
   std::uint64_t seed() const { return seed_; }
   std::uint64_t ticks_planned() const { return ticks_; }
   std::int64_t period_ns() const { return period_ns_; }
@@ -104,12 +103,9 @@ class Session {
   Session() = default;
   void store_poses(std::uint64_t tick) noexcept;
   driver::Result<void> plan_simulation(const std::filesystem::path& scene_file,
-                                       const std::vector<render::TriangleMesh>& meshes_W,
                                        const std::filesystem::path& firmware);
 
   Scene scene_;
-  render::TriangleMesh mesh_W_;
-  std::size_t triangles_ = 0;
   std::uint64_t seed_ = 0;
   std::uint64_t ticks_ = 0;
   std::int64_t period_ns_ = 0;
@@ -118,17 +114,14 @@ class Session {
   std::unique_ptr<driver::Clock> clock_;
   std::unique_ptr<ArmSimulation> simulation_;
   std::unique_ptr<driver::Device> device_;  // holds the wire to the simulation, so it goes first
-  std::vector<std::shared_ptr<render::PagedSurface>> pages_;  // of the objects on the disk
-  bool by_thread_ = false;  // whether threads load pages and write recordings
-  std::unique_ptr<render::SceneTouch> touch_;
+  bool by_thread_ = false;                  // whether threads load pages and write recordings
+  std::unique_ptr<SceneObjects> objects_;
   std::unique_ptr<RunStatistics> statistics_;
   std::unique_ptr<Trace> trace_;
   std::unique_ptr<DentRecord> dents_;
-  std::vector<MeshPlace> places_;  // of each object in mesh_W_, and of its end
   driver::Snapshot<driver::TickRecord> snapshot_;
   std::unique_ptr<Recorder> recorder_;
   std::unique_ptr<BlackBox> black_box_;
-  std::vector<std::size_t> moving_;  // the objects that move
   ScenePoses poses_now_;
   driver::Snapshot<ScenePoses> poses_;
 };

@@ -11,6 +11,18 @@ expect 0 '2000 ticks of elephant at 1000 Hz' "$thimble" export run.h5 --csv run.
 expect 0 'p_WT.x \[m\],p_WT.y \[m\]' head -1 run.csv
 expect 0 '^2001$' grep -c '' run.csv
 
+# The recorded hand touches again: the same scene feels the same to the bit, another one does not.
+for name in elephant tin_can honey; do
+  expect 0 'Recording' "$thimble" run "$source_dir/app/scenes/$name.yaml" --duration 3 --record again.h5
+  expect 0 '3000 ticks of .* every force is the recorded one to the bit' \
+    "$thimble" replay again.h5 --verify
+done
+sed "s/stiffness: 800/stiffness: 700/; s#\.\./arms#$source_dir/app/arms#" "$scene" >softer.yaml
+expect 0 'forces differ from the recorded ones' "$thimble" replay run.h5 --scene softer.yaml \
+  --record softer.h5
+expect 0 '2000 ticks of elephant' "$thimble" export softer.h5 --csv softer.csv
+expect 2 'is not the scene that was recorded' "$thimble" replay run.h5 --scene softer.yaml --verify
+
 # The disk says no.
 expect 2 'no/such/folder' "$thimble" run "$scene" --duration 1 --record no/such/folder/run.h5
 expect 2 'not a recording' "$thimble" export "$scene" --csv x.csv
