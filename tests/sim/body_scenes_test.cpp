@@ -14,6 +14,7 @@
 #include "lost_contacts.h"
 #include "session.h"
 #include "support/heap_guard.h"
+#include "support/run_hash.h"
 #include "support/scratch.h"
 #include "thimble/render/body/body_shape.h"
 #include "thimble/render/contact/contact_mesh.h"
@@ -35,23 +36,8 @@ std::unique_ptr<app::Session> open(const std::string& name) {
   return opened ? std::move(opened).value() : nullptr;
 }
 
-// Mixes the bits of what a run felt and where its bodies ended [FNV-1a, 64 bit].
-class Hash {
- public:
-  template <class T>
-  void add(const T& value) {
-    unsigned char bytes[sizeof(T)];
-    std::memcpy(bytes, &value, sizeof(T));
-    for (const unsigned char byte : bytes) hash_ = (hash_ ^ byte) * 0x100000001b3u;
-  }
-  std::uint64_t value() const { return hash_; }
-
- private:
-  std::uint64_t hash_ = 0xcbf29ce484222325u;
-};
-
 std::uint64_t hash_of(const app::Session& session) {
-  Hash hash;
+  support::RunHash hash;
   for (const auto& row : session.trace().rows()) {
     hash.add(row.p_WT);
     hash.add(row.f_wanted_W);
@@ -106,7 +92,10 @@ INSTANTIATE_TEST_SUITE_P(ByName, SceneWithBodies,
                          ::testing::Values(BodyScene{"clay", 0x26630134154c4be7},
                                            BodyScene{"floating_block", 0xc953b9ac9560fe8a},
                                            BodyScene{"held_block", 0xaa58f955f149e32e},
-                                           BodyScene{"tin_can", 0xd1dfaed21159d1ee}),
+                                           BodyScene{"soft_coarse", 1},
+                                           BodyScene{"tin_can", 0xd1dfaed21159d1ee},
+                                           BodyScene{"trampoline", 2},
+                                           BodyScene{"water_balloon", 3}),
                          [](const auto& scene) { return std::string(scene.param.name); });
 
 double farthest(const app::Session& session) {

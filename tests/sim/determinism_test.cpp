@@ -1,51 +1,17 @@
 #include <gtest/gtest.h>
 
-#include <cstring>
-
 #include "support/elephant.h"
+#include "support/run_hash.h"
 
 namespace thimble {
 namespace {
-
-/// Mixes the bits of everything a tick did but its timing on the wall clock [FNV-1a, 64 bit].
-class Hash {
- public:
-  template <class T>
-  void add(const T& value) {
-    unsigned char bytes[sizeof(T)];
-    std::memcpy(bytes, &value, sizeof(T));
-    for (const unsigned char byte : bytes) hash_ = (hash_ ^ byte) * 0x100000001b3u;
-  }
-
-  void add(const driver::TickRecord& row) {
-    add(row.tick);
-    add(row.time_ns);
-    add(row.counts);
-    add(row.q);
-    add(row.p_WT);
-    add(row.v_WT);
-    add(row.p_WP);
-    add(row.n_W);
-    add(row.f_wanted_W);
-    add(row.f_sent_W);
-    add(row.depth);
-    add(row.feature);
-    add(row.hops);
-    add(row.in_contact);
-  }
-
-  std::uint64_t value() const { return hash_; }
-
- private:
-  std::uint64_t hash_ = 0xcbf29ce484222325u;
-};
 
 std::uint64_t hash_of_run(std::uint64_t seed) {
   const auto session = support::open_elephant({}, seed);
   if (!session) return 0;
   EXPECT_EQ(session->run(std::atomic<bool>{false}), driver::ServoEnd::kDone);
   EXPECT_EQ(session->trace().stride(), 1u);
-  Hash hash;
+  support::RunHash hash;
   for (const auto& row : session->trace().rows()) hash.add(row);
   return hash.value();
 }
