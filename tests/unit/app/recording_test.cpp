@@ -120,7 +120,9 @@ TEST(Recording, IsAsShortAsTheRunWas) {
     ASSERT_TRUE(read) << read.error().message;
     EXPECT_TRUE(read->complete);
     ASSERT_EQ(read->ticks.size(), ticks);
-    if (ticks > 0) EXPECT_TRUE(same(read->ticks.back(), tick_number(ticks - 1)));
+    if (ticks > 0) {
+      EXPECT_TRUE(same(read->ticks.back(), tick_number(ticks - 1)));
+    }
     EXPECT_LT(std::filesystem::file_size(path), 64'000 + ticks * 300);
     EXPECT_FALSE(std::filesystem::exists(scratch("short.h5.part")));
   }
@@ -262,10 +264,13 @@ TEST(Recording, CutShortAnywhereIsReadOrRefused) {
   ASSERT_TRUE(recorder);
   for (std::uint64_t i = 0; i < 100; ++i) (**recorder)(tick_number(i));
   ASSERT_TRUE((*recorder)->finish());
-  for (auto size = std::filesystem::file_size(path); size > 0; size -= std::min(size, {511})) {
+  for (auto size = std::filesystem::file_size(path); size > 0;
+       size -= std::min<std::uintmax_t>(size, 511)) {
     std::filesystem::resize_file(path, size);
     const auto read = read_recording(path);
-    if (read) EXPECT_LE(read->ticks.size(), 100U);
+    if (read) {
+      EXPECT_LE(read->ticks.size(), 100U);
+    }
   }
 }
 
