@@ -92,10 +92,10 @@ INSTANTIATE_TEST_SUITE_P(ByName, SceneWithBodies,
                          ::testing::Values(BodyScene{"clay", 0x26630134154c4be7},
                                            BodyScene{"floating_block", 0xc953b9ac9560fe8a},
                                            BodyScene{"held_block", 0xaa58f955f149e32e},
-                                           BodyScene{"soft_coarse", 1},
+                                           BodyScene{"soft_coarse", 0x40eee37a59d498b8},
                                            BodyScene{"tin_can", 0xd1dfaed21159d1ee},
-                                           BodyScene{"trampoline", 2},
-                                           BodyScene{"water_balloon", 3}),
+                                           BodyScene{"trampoline", 0xf65baa89f626b85d},
+                                           BodyScene{"water_balloon", 0x33ec8830e6465cb0}),
                          [](const auto& scene) { return std::string(scene.param.name); });
 
 double farthest(const app::Session& session) {

@@ -91,8 +91,11 @@ for arm in $arms; do
   usleep 800000
   unplug
   watchdog=500
-  [ $arm = falcon ] && watchdog=100
-  awk -v arm=$arm -v stated=$watchdog '
+  early=1
+  # The Falcon's board dates a message by the frame it was last run in; a plug that was held up for a
+  # few frames makes that too early, never too late.
+  [ $arm = falcon ] && watchdog=100 && early=5
+  awk -v arm=$arm -v stated=$watchdog -v early=$early '
     !/^#/ && NF == 20 {
       forced = $14 != 0 || $15 != 0 || $16 != 0
       if ($10 != messages) { messages = $10; said = $1; contact = forced; frames += forced; on = 1 }
@@ -100,7 +103,7 @@ for arm in $arms; do
     }
     END {
       after = off - said
-      good = !on && frames > 20 && contact && !current && after >= stated - 1 && after <= stated + 2
+      good = !on && frames > 20 && contact && !current && after >= stated - early && after <= stated + 2
       printf "%s %s with a killed driver: motors off %d frames after the last message (stated: %d), " \
              "%d messages with force before\n", good ? "PASS" : "FAIL", arm, after, stated, frames
       printf "FIGURE %s.watchdog %d frames\n", arm, after

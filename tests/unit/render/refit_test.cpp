@@ -179,7 +179,7 @@ TEST(MovingMesh, HasNoGrid) {
   const std::size_t bytes = tree.bytes();
   tree.keep_parents();
   EXPECT_TRUE(tree.refit(first));
-  EXPECT_LE(tree.bytes(), bytes + 40 * static_cast<std::size_t>(mesh.triangle_count()));
+  EXPECT_LE(tree.bytes(), bytes + 90 * static_cast<std::size_t>(mesh.triangle_count()));
   for (const auto choice : {SearchChoice::kGrid, SearchChoice::kTree, SearchChoice::kLinear}) {
     EXPECT_TRUE(make_moving_search(mesh, choice)->refit(first));
   }

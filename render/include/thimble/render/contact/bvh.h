@@ -46,7 +46,7 @@ class TreeSearch final : public ContactSearch {
            boxes_.capacity() * sizeof(StepBox);
   }
 
-  /// Makes `refit` possible: some 32 bytes more per triangle, for who stands above whom and for
+  /// Makes `refit` possible: some 60 bytes more per triangle, for who stands above whom and for
   /// boxes that are not rounded. The tree keeps
   /// the order it was built in, so that triangles that wander far from their neighbours make it
   /// slower, never wrong. Real-time: never from the servo thread.
