@@ -205,9 +205,11 @@ int run_scene(const RunOptions& options) {
       return complain(drawn.error(), kExitTrouble);
     }
     if (session.dents() != nullptr && session.dents()->deepest().triangle_count > 0) {
-      const auto bent = draw_mesh(session.bent_mesh_W(), folder / "dent.png",
-                                  report.scene + ": the deepest dent", "m");
-      if (!bent) return complain(bent.error(), kExitTrouble);
+      render::TriangleMesh bent = session.bent_mesh_W();
+      for (Eigen::Vector3d& vertex : bent.vertices) vertex *= 1e3;
+      const auto dent =
+          draw_mesh(bent, folder / "dent.png", report.scene + ": the deepest dent", "mm");
+      if (!dent) return complain(dent.error(), kExitTrouble);
     }
     std::printf("Report and pictures: %s\n", folder.c_str());
   }
