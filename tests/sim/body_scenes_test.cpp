@@ -3,22 +3,15 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <memory>
 #include <string>
-#include <vector>
 
-#include "lost_contacts.h"
 #include "session.h"
-#include "support/heap_guard.h"
-#include "support/run_hash.h"
 #include "support/scratch.h"
+#include "support/shipped_scene.h"
 #include "thimble/render/body/body_shape.h"
 #include "thimble/render/contact/contact_mesh.h"
-#include "thimble/render/effect/effect_table.h"
 #include "thimble/render/mesh/load_mesh.h"
 #include "thimble/render/mesh/save_mesh.h"
 
@@ -28,75 +21,6 @@ namespace thimble {
 namespace {
 
 using Eigen::Vector3d;
-
-std::unique_ptr<app::Session> open(const std::string& name) {
-  auto opened = app::Session::open(
-      std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/scenes" / (name + ".yaml"), {});
-  EXPECT_TRUE(opened) << (opened ? "" : opened.error().message);
-  return opened ? std::move(opened).value() : nullptr;
-}
-
-std::uint64_t hash_of(const app::Session& session) {
-  support::RunHash hash;
-  for (const auto& row : session.trace().rows()) {
-    hash.add(row.p_WT);
-    hash.add(row.f_wanted_W);
-    hash.add(row.depth);
-    hash.add(row.feature);
-  }
-  for (const Vector3d& p : session.mesh_now().vertices) {
-    for (const double x : p) hash.add(x);
-  }
-  return hash.value();
-}
-
-struct BodyScene {
-  const char* name;
-  // One hash for every build type; see determinism_test.cpp. A change of the scene, the arm's data
-  // or any force shows here: store the new one only if it was meant.
-  std::uint64_t stored;
-};
-
-void PrintTo(const BodyScene& scene, std::ostream* out) {
-  *out << scene.name;
-}
-
-class SceneWithBodies : public ::testing::TestWithParam<BodyScene> {};
-
-TEST_P(SceneWithBodies, RunsForItsWholeTimeAlikeEachTimeWithoutAFaultALostContactOrTheHeap) {
-  if (!std::any_of(render::effect_table().begin(), render::effect_table().end(),
-                   [](const auto& kind) { return kind.name == "bristle"; })) {
-    GTEST_SKIP() << "this build knows no friction";
-  }
-  std::uint64_t first = 0;
-  for (int time = 0; time < 2; ++time) {
-    const auto session = open(GetParam().name);
-    ASSERT_TRUE(session);
-    EXPECT_GT(session->scene().description.size(), 40u) << "says what to feel";
-    driver::ServoEnd end{};
-    EXPECT_EQ(support::heap_calls_of([&] { end = session->run(std::atomic<bool>{false}); }), 0);
-    EXPECT_EQ(end, driver::ServoEnd::kDone);
-    EXPECT_EQ(session->device().fault(), driver::Fault::kNone);
-    EXPECT_EQ(app::count_lost_contacts(session->trace().rows(), session->touch()), 0u);
-    EXPECT_GT(session->statistics().force_max(), 0.3);
-    EXPECT_LT(session->statistics().force_max(), session->scene().arm.limits.force_max);
-    EXPECT_LT(session->statistics().energy_to_hand(), 1e-3);
-    const std::uint64_t hash = hash_of(*session);
-    if (time == 0) first = hash;
-    EXPECT_EQ(hash, first);
-    EXPECT_EQ(hash, GetParam().stored) << "new hash: 0x" << std::hex << hash;
-  }
-}
-
-INSTANTIATE_TEST_SUITE_P(ByName, SceneWithBodies,
-                         ::testing::Values(BodyScene{"clay", 0x26630134154c4be7},
-                                           BodyScene{"floating_block", 0xc953b9ac9560fe8a},
-                                           BodyScene{"held_block", 0xaa58f955f149e32e},
-                                           BodyScene{"soft_coarse", 0x40eee37a59d498b8},
-                                           BodyScene{"tin_can", 0xd1dfaed21159d1ee},
-                                           BodyScene{"trampoline", 0xf65baa89f626b85d},
-                                           BodyScene{"water_balloon", 0x33ec8830e6465cb0}),
-                         [](const auto& scene) { return std::string(scene.param.name); });
 
 double farthest(const app::Session& session) {
   double far = 0;
@@ -108,7 +32,7 @@ double farthest(const app::Session& session) {
 }
 
 TEST(ClayScene, KeepsItsPrints) {
-  const auto session = open("clay");
+  const auto session = support::open_shipped("clay");
   ASSERT_TRUE(session);
   ASSERT_EQ(session->run(std::atomic<bool>{false}), driver::ServoEnd::kDone);
   EXPECT_GT(farthest(*session), 3e-3);
@@ -167,7 +91,7 @@ TEST(BodyKeys, TellWhatIsWrongWithABody) {
 }
 
 TEST(TinCanScene, SnapsTwiceAndRollsMeanwhile) {
-  const auto session = open("tin_can");
+  const auto session = support::open_shipped("tin_can");
   ASSERT_TRUE(session);
   ASSERT_EQ(session->run(std::atomic<bool>{false}), driver::ServoEnd::kDone);
   EXPECT_EQ(session->touch().object(0).shape()->snap()->snaps(), 2);
@@ -180,7 +104,7 @@ TEST(TinCanScene, SnapsTwiceAndRollsMeanwhile) {
 }
 
 TEST(FloatingBlockScene, DriftsAndTurns) {
-  const auto session = open("floating_block");
+  const auto session = support::open_shipped("floating_block");
   ASSERT_TRUE(session);
   ASSERT_EQ(session->run(std::atomic<bool>{false}), driver::ServoEnd::kDone);
   app::ScenePoses poses;

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "session.h"
+
+namespace thimble::support {
+
+/// Opens a scene that comes with the program, on the virtual clock; fails the test if that cannot
+/// be done.
+inline std::unique_ptr<app::Session> open_shipped(const std::string& name) {
+  auto opened = app::Session::open(
+      std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/scenes" / (name + ".yaml"), {});
+  if (!opened) {
+    ADD_FAILURE() << opened.error().message;
+    return nullptr;
+  }
+  return std::move(opened).value();
+}
+
+}  // namespace thimble::support
