@@ -18,7 +18,7 @@ skip() {
   exit 77
 }
 # A sanitizer's run-time needs more than this machine in a machine gives; the release build is tested.
-if nm -D "$check" 2>/dev/null | grep -qE '__asan_init|__tsan_init'; then
+if nm -D "$check" 2>/dev/null | grep -E "__asan_init|__tsan_init" >/dev/null; then
   skip "this is a build with a sanitizer; the release build tests them"
 fi
 [ "$(uname -m)" = x86_64 ] || skip "it needs an x86_64 machine"
