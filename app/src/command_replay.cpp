@@ -80,10 +80,9 @@ int replay_recording(const ReplayOptions& options) {
     info.program = program_name();
     info.device = "replay of " + options.file;
     info.clock = "virtual";
-    auto file = RecordingFile::create(options.record, info, felt.size());
-    if (!file) return complain(file.error(), kExitTrouble);
-    if (auto written = file->append(felt); !written) return complain(written.error(), kExitTrouble);
-    if (auto ended = file->finish(); !ended) return complain(ended.error(), kExitTrouble);
+    if (auto written = write_recording(options.record, info, felt); !written) {
+      return complain(written.error(), kExitTrouble);
+    }
   }
   return options.verify && compared.differing > 0 ? kExitTrouble : kExitDone;
 }

@@ -230,4 +230,12 @@ driver::Result<void> RecordingFile::finish() {
   return {};
 }
 
+driver::Result<void> write_recording(const std::filesystem::path& path, const RecordingInfo& info,
+                                     std::span<const driver::TickRecord> ticks) {
+  auto file = RecordingFile::create(path, info, ticks.size());
+  if (!file) return file.error();
+  if (auto written = file->append(ticks); !written) return written;
+  return file->finish();
+}
+
 }  // namespace thimble::app

@@ -59,4 +59,9 @@ class RecordingFile {
   std::vector<unsigned char> column_;  // of the ticks being written
 };
 
+/// Writes a whole recording at once. The error is that of what cannot be written.
+/// Real-time: never from the servo thread.
+driver::Result<void> write_recording(const std::filesystem::path& path, const RecordingInfo& info,
+                                     std::span<const driver::TickRecord> ticks);
+
 }  // namespace thimble::app

@@ -61,10 +61,7 @@ driver::Result<fs::path> write_black_box(std::span<const driver::TickRecord> tic
   }
   const fs::path path =
       folder / (time_as_name() + "-" + as_file_name(info.scene) + "-" + cause + ".h5");
-  auto file = RecordingFile::create(path, info, ticks.size());
-  if (!file) return file.error();
-  if (auto written = file->append(ticks); !written) return written.error();
-  if (auto finished = file->finish(); !finished) return finished.error();
+  if (auto written = write_recording(path, info, ticks); !written) return written.error();
   return path;
 }
 
