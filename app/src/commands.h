@@ -23,6 +23,8 @@ void add_export_command(CLI::App& app, int& exit_code);
 void add_replay_command(CLI::App& app, int& exit_code);
 /// `thimble plug ARM`: exports a simulated arm as a USB device.
 void add_plug_command(CLI::App& app, int& exit_code);
+/// `thimble manual`: what the installation makes the manual page of.
+void add_manual_command(CLI::App& app, int& exit_code);
 /// `thimble mesh FILE`: tells what a mesh is and what is wrong with it.
 void add_mesh_command(CLI::App& app, int& exit_code);
 /// `thimble mesh page IN OUT`: cuts a mesh into volumes on disk.

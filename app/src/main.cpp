@@ -34,6 +34,7 @@ int run(int argc, char** argv) {
   thimble::app::add_study_command(app, exit_code);
   thimble::app::add_cost_probe_command(app, exit_code);
   thimble::app::add_plug_command(app, exit_code);
+  thimble::app::add_manual_command(app, exit_code);
   for (CLI::App* command : app.get_subcommands({})) {
     command->set_version_flag("--version", app.version());
   }

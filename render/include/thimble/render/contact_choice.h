@@ -38,13 +38,14 @@ inline constexpr std::array<std::string_view, 3> kNormalNames{"angle", "round", 
 /// `offset` are smooth (phong, curved depth), the others are flat.
 struct ContactChoice {
   TrackerChoice tracker = TrackerChoice::kEdgePlanes;
-  std::optional<SearchChoice> search;  ///< If empty, what suits the mesh (make_search).
-  std::optional<BlendingChoice> blending;
-  std::optional<NormalWeights> normals;  ///< Of the corners; fitted if empty. Not with `compact`,
-                                         ///< which knows means by angle only.
-  std::optional<bool> curved_depth;    ///< Depth below the smooth surface instead of the triangles.
-  std::optional<double> crease_angle;  ///< Edges sharper than this stay sharp, rad.
-  double band = 0.001;                 ///< Width of the band of `fixed_band`, m.
+  std::optional<SearchChoice> search = {};  ///< If empty, what suits the mesh (make_search).
+  std::optional<BlendingChoice> blending = {};
+  std::optional<NormalWeights> normals = {};  ///< Of the corners; fitted if empty. Not with
+                                              ///< `compact`, which knows means by angle only.
+  /// Depth below the smooth surface instead of the triangles.
+  std::optional<bool> curved_depth = {};
+  std::optional<double> crease_angle = {};  ///< Edges sharper than this stay sharp, rad.
+  double band = 0.001;                      ///< Width of the band of `fixed_band`, m.
 };
 
 }  // namespace thimble::render

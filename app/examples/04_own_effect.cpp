@@ -1,0 +1,75 @@
+// Gives a surface an effect of your own: one class with `touch` and `leave`.
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <numbers>
+
+#include "desk_arm.h"
+#include "thimble/render/build_object_touch.h"
+#include "thimble/render/mesh/load_mesh.h"
+
+using thimble::driver::DeviceState;
+using thimble::driver::TickRecord;
+namespace render = thimble::render;
+
+/// Hums under the finger: the depth swings in time, however still the hand is.
+class Hum {
+ public:
+  static constexpr std::string_view kGroup = "texture";
+  static constexpr std::string_view kName = "hum";
+  static constexpr render::EffectOrder kOrder = render::EffectOrder::kDepth;
+
+  struct Settings {
+    double amplitude = 2e-4;  // m
+    double frequency = 100;   // Hz
+    void read(render::SettingsReader& reader, const render::EffectSurroundings&) {
+      reader.number("amplitude", amplitude, {.unit = "m", .least = 0, .most = 0.001});
+      reader.number("frequency", frequency, {.unit = "Hz", .least = 1, .most = 400});
+    }
+  };
+  Hum(const Settings& settings, const render::EffectSurroundings&) : settings_(settings) {}
+
+  // Runs in every tick of contact, before the surface's spring; the depth it leaves is what is
+  // felt.
+  void touch(const DeviceState& state, render::SurfaceFeel& feel) noexcept {
+    time_ += state.dt;
+    const double phase = 2 * std::numbers::pi * settings_.frequency * time_;
+    feel.contact.depth += settings_.amplitude * std::sin(phase);
+  }
+  void leave() noexcept { time_ = 0; }
+
+ private:
+  Settings settings_;
+  double time_ = 0;  // s since contact began
+};
+
+int main() {
+  auto mesh = render::load_mesh(THIMBLE_SCENES "/clay_ball.off");
+  if (!mesh) {
+    std::fprintf(stderr, "%s\n", mesh.error().message.c_str());
+    return 1;
+  }
+  for (Eigen::Vector3d& p : mesh->vertices) p.z() -= 0.03;  // its top at the origin
+  static constexpr render::EffectKind kHum = render::effect_kind<Hum>();
+  const render::EffectPlan hum{&kHum, []() -> std::unique_ptr<render::AnyStage> {
+                                 return std::make_unique<render::AnyStageOf<Hum>>(Hum({}, {}));
+                               }};
+  auto object = render::build_object_touch(
+      *mesh, {}, {.spring = {.stiffness = 800, .damping = 1}, .effects = {hum}});
+  if (!object) {
+    std::fprintf(stderr, "%s\n", object.error().message.c_str());
+    return 1;
+  }
+  DeskArm desk({{0.0, {0, 0, 0.01}}, {0.3, {0, 0, -0.004}}, {1.0, {0, 0, -0.004}}});
+  if (!desk.device().activate()) return 1;
+  auto law = [&](const DeviceState& state) noexcept { return (*object)->update(state); };
+  double least = 1e9, most = 0;
+  auto watch = [&](const TickRecord& tick) noexcept {
+    if (tick.tick < 800) return;  // the hand holds still from here on
+    least = std::min(least, tick.f_sent_W[2]);
+    most = std::max(most, tick.f_sent_W[2]);
+  };
+  desk.run(1.0, law, watch);
+  std::printf("The hand holds still, and the force hums between %.2f and %.2f N.\n", least, most);
+  return most - least > 0.1 ? 0 : 1;
+}

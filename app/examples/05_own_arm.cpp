@@ -1,0 +1,97 @@
+// Drives an arm that Thimble does not know: say how its bytes and its geometry are, and the driver,
+// its gate and its loop do the rest. The arm here is a gantry of three rails on a serial line.
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+
+#include "thimble/driver/device.h"
+#include "thimble/driver/servo_loop.h"
+#include "thimble/driver/wire_arm.h"
+
+namespace driver = thimble::driver;
+
+/// Is the wire: three counts in, three motor values out, little-endian.
+struct GantryWire {
+  static bool decode(std::span<const std::byte> report, driver::ArmReading& reading) noexcept {
+    if (report.size() != sizeof reading.counts)
+      return false;  // any bytes are understood or refused
+    std::memcpy(reading.counts.data(), report.data(), report.size());
+    return true;
+  }
+  static std::size_t encode(const std::array<std::int16_t, 3>& mA,
+                            std::span<std::byte, driver::kReportCapacity> report) noexcept {
+    std::memcpy(report.data(), mA.data(), sizeof mA);
+    return sizeof mA;
+  }
+};
+
+/// Is the geometry: each motor's pulley moves one rail.
+struct Gantry {
+  double radius = 0.01;  // m, of the pulleys
+  void forward(const Eigen::Vector3d& q, Eigen::Vector3d& p_BT,
+               Eigen::Matrix3d& J_BT) const noexcept {
+    p_BT = radius * q;
+    J_BT = radius * Eigen::Matrix3d::Identity();
+  }
+};
+
+/// Stands in for the serial line: a hand moves the gantry up and down, and feels the motors.
+class Line final : public driver::Transport {
+ public:
+  explicit Line(const driver::Clock& clock) : clock_(clock) {}
+  driver::TransportRead read_latest(std::span<std::byte> buffer, std::int64_t) noexcept override {
+    const double time = static_cast<double>(clock_.now_ns()) * 1e-9;
+    const std::array<std::int32_t, 3> counts{0, 0,
+                                             static_cast<std::int32_t>(400 * std::sin(6 * time))};
+    std::memcpy(buffer.data(), counts.data(), sizeof counts);
+    return {.status = driver::TransportStatus::kOk, .size = sizeof counts};
+  }
+  driver::TransportStatus write(std::span<const std::byte> report) noexcept override {
+    std::memcpy(mA_.data(), report.data(), sizeof mA_);
+    most_mA_ = std::max<int>(most_mA_, mA_[2]);
+    return driver::TransportStatus::kOk;
+  }
+  int most_mA() const { return most_mA_; }
+
+ private:
+  const driver::Clock& clock_;
+  std::array<std::int16_t, 3> mA_{};
+  int most_mA_ = 0;
+};
+
+int main() {
+  driver::VirtualClock clock;
+  auto line = std::make_unique<Line>(clock);
+  const Line& seen = *line;
+  driver::JointModel<Gantry> model;
+  model.drives.fill({.sign = 1, .ratio = 1, .torque_constant = 0.02, .current_max = 2});
+  model.encoders.fill({.sign = 1, .counts_per_motor_turn = 4000, .home_counts = 0});
+  auto device = driver::Device::open(std::move(line),
+                                     std::make_unique<driver::WireArm<GantryWire, Gantry>>(model),
+                                     {.limits = {.force_max = 3,
+                                                 .speed_max = 1,
+                                                 .rise_max = 2000,
+                                                 .soft_start = 0.1,
+                                                 .stall_ns = 20'000'000,
+                                                 .watchdog_ns = 100'000'000}},
+                                     clock.now_ns());
+  if (!device) {
+    std::fprintf(stderr, "%s\n", device.error().message.c_str());
+    return 1;
+  }
+  if (!(*device)->activate()) return 1;
+  auto wall = [](const driver::DeviceState& state) noexcept {
+    driver::ForceCommand command;
+    if (state.p_WT.z() < 0) command.f_T_W.z() = -500 * state.p_WT.z();
+    return command;
+  };
+  auto nobody = [](const driver::TickRecord&) noexcept {};
+  const std::atomic<bool> stop{false};
+  driver::run_servo(**device, clock, driver::ForceLaw(wall), driver::TickSink(nobody),
+                    {.period_ns = 1'000'000, .ticks = 2000}, stop);
+  // 6.28 mm deep at 500 N/m are 3.14 N, of which the gate lets 3 N through: 30 mN m, 1.5 A.
+  std::printf("The gantry's motor got at most %d mA.\n", seen.most_mA());
+  return seen.most_mA() == 1500 ? 0 : 1;
+}

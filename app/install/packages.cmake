@@ -1,0 +1,61 @@
+# `cpack -G DEB` in the build folder: two Debian packages.
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME thimble)
+set(CPACK_PACKAGE_VENDOR "Thimble")
+set(CPACK_PACKAGE_CONTACT "Thimble developers <thimble@localhost>")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_COMPONENTS_ALL program udev dev)
+set(CPACK_COMPONENTS_GROUPING ALL_COMPONENTS_IN_ONE)
+set(CPACK_COMPONENTS_GROUPING ONE_PER_GROUP)
+set(CPACK_COMPONENT_PROGRAM_GROUP program)
+set(CPACK_COMPONENT_UDEV_GROUP program)
+set(CPACK_COMPONENT_DEV_GROUP dev)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME thimble)
+set(CPACK_DEBIAN_DEV_PACKAGE_NAME libthimble-dev)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "gnuplot-nox, valgrind")
+set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS
+    "libeigen3-dev, libusb-1.0-0-dev, libhidapi-dev, libassimp-dev, libpng-dev, pkg-config")
+set(CPACK_DEBIAN_DEV_PACKAGE_SUGGESTS "thimble")
+set(CPACK_COMPONENT_PROGRAM_DESCRIPTION
+"touch virtual objects by a force-feedback arm, real or simulated
+ Thimble drives 3-DOF force-feedback arms on USB, simulates them where there is
+ none, and renders triangle meshes, shapes and fields to the hand at 1 kHz and
+ more, with textures, friction and bodies that dent, move and snap.")
+set(CPACK_COMPONENT_DEV_DESCRIPTION
+"libraries and headers to build on Thimble
+ The driver of 3-DOF force-feedback arms, the simulated arm and the haptic
+ rendering of Thimble as static libraries, with a CMake package, a pkg-config
+ file and six small examples.")
+set(CPACK_DEBIAN_PROGRAM_DESCRIPTION "${CPACK_COMPONENT_PROGRAM_DESCRIPTION}")
+set(CPACK_DEBIAN_DEV_DESCRIPTION "${CPACK_COMPONENT_DEV_DESCRIPTION}")
+
+# What Debian wants of every package: its licence and its changes, and rules that udev reads anew.
+foreach(package thimble libthimble-dev)
+  set(folder "${CMAKE_CURRENT_BINARY_DIR}/${package}")
+  file(MAKE_DIRECTORY "${folder}")
+  configure_file("${PROJECT_SOURCE_DIR}/LICENSE" "${folder}/copyright" COPYONLY)
+  string(TIMESTAMP today "%a, %d %b %Y %H:%M:%S +0000" UTC)
+  file(WRITE "${folder}/changelog" "thimble (${PROJECT_VERSION}) unstable; urgency=low
+
+  * See CHANGELOG.md.
+
+ -- ${CPACK_PACKAGE_CONTACT}  ${today}
+")
+  execute_process(COMMAND gzip -9nf "${folder}/changelog")
+  if(package STREQUAL thimble)
+    set(component program)
+  else()
+    set(component dev)
+  endif()
+  install(FILES "${folder}/copyright" "${folder}/changelog.gz"
+          DESTINATION "share/doc/${package}" COMPONENT ${component})
+endforeach()
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_CONTROL_EXTRA "${CMAKE_CURRENT_SOURCE_DIR}/postinst")
+include(CPack)

@@ -1,0 +1,52 @@
+#!/usr/bin/env bash
+# Installs the build into a folder of its own, builds the six examples against it as somebody else's
+# project would, runs them, and looks at what was installed beside them.
+#   install_test.sh BUILD_FOLDER EXAMPLES_FOLDER
+set -euo pipefail
+build=$1 examples=$2
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+fail() {
+  echo "FAILED: $*" >&2
+  exit 1
+}
+
+cmake --install "$build" --prefix "$work/usr" >"$work/install.log" || fail "$(cat "$work/install.log")"
+
+echo "Building the examples against the installed package ..."
+cmake -S "$examples" -B "$work/examples" -G Ninja -DCMAKE_BUILD_TYPE=Debug \
+  -DCMAKE_PREFIX_PATH="$work/usr" -DCMAKE_CXX_FLAGS="-Wall -Wextra -Werror" >"$work/log" 2>&1 ||
+  fail "$(cat "$work/log")"
+cmake --build "$work/examples" >"$work/log" 2>&1 || fail "$(cat "$work/log")"
+cd "$work"
+for example in "$work"/examples/0?_*; do
+  [ -x "$example" ] && [ -f "$example" ] || continue
+  said=$("$example") || fail "$example: $said"
+  echo "  $(basename "$example"): $(tail -n 1 <<<"$said")"
+done
+[ "$(wc -l <touch.csv)" = 2001 ] || fail "06_record left $(wc -l <touch.csv) lines"
+
+echo "Looking at the installed program ..."
+program=$work/usr/bin/thimble
+"$program" run "$work/usr/share/thimble/scenes/soft_coarse.yaml" --duration 1 >"$work/log" ||
+  fail "the installed program: $(cat "$work/log")"
+for command in $("$program" --help | sed -n '/^Subcommands:/,/^$/s/^  \([a-z][a-z-]*\).*/\1/p'); do
+  zcat "$work/usr/share/man/man1/thimble.1.gz" | grep -q "^\.SS ${command//-/\\\\-}$" ||
+    fail "the manual page does not know $command"
+done
+if command -v man >/dev/null; then
+  LC_ALL=C.UTF-8 man --warnings -l "$work/usr/share/man/man1/thimble.1.gz" 2>"$work/log" >/dev/null
+  [ ! -s "$work/log" ] || fail "the manual page: $(cat "$work/log")"
+fi
+completed=$(PATH=$work/usr/bin:$PATH bash -c '
+  complete() { :; }
+  . "$1"
+  COMP_WORDS=(thimble ru) COMP_CWORD=1 && _thimble && echo "${COMPREPLY[*]}"
+  COMP_WORDS=(thimble run --dur) COMP_CWORD=2 && _thimble && echo "${COMPREPLY[*]}"' - \
+  "$work/usr/share/bash-completion/completions/thimble")
+[ "$completed" = "run
+--duration" ] || fail "completion answered: $completed"
+[ -f "$work/usr/lib/udev/rules.d/70-thimble.rules" ] || fail "no udev rules"
+PKG_CONFIG_PATH=$(dirname "$(find "$work/usr" -name thimble.pc)") pkg-config --cflags thimble >/dev/null ||
+  fail "pkg-config does not find the libraries"
+echo "Done."
