@@ -1,0 +1,43 @@
+#!/usr/bin/env bash
+# Runs every command that the guide and the README promise (the blocks marked "sh"), in the guide's
+# order. Studies take minutes and have tests of their own: they run with THIMBLE_LONG alone.
+#   guide_test.sh PROGRAM SOURCE_FOLDER WORK_FOLDER
+set -euo pipefail
+program=$1 source=$2 work=$3
+rm -rf "$work"
+mkdir -p "$work/bin"
+ln -s "$program" "$work/bin/thimble"
+ln -s "$source/app" "$work/app"
+export PATH=$work/bin:$PATH
+cd "$work"
+
+pages=$(sed -n 's/^ *- .*: \(.*\.md\)$/\1/p' "$source/app/guide/mkdocs.yml")
+commands=0
+for page in $pages; do
+  while IFS= read -r line; do
+    case $line in
+      "thimble study "*) [ -n "${THIMBLE_LONG:-}" ] || continue ;;
+    esac
+    commands=$((commands + 1))
+    bash -c "$line" >said 2>&1 || {
+      echo "FAILED: $page: $line" >&2
+      cat said >&2
+      exit 1
+    }
+  done < <(awk '/^```sh$/ { inside = 1; next } /^```/ { inside = 0 } inside' \
+    "$source/app/guide/pages/$page")
+done
+[ "$commands" -ge 12 ] || { echo "FAILED: only $commands commands were found" >&2 && exit 1; }
+echo "$commands commands of $(wc -w <<<"$pages") pages ran."
+
+# The scene that the guide writes out is one.
+awk '/^```yaml$/ { inside = 1; next } /^```/ { inside = 0 } inside' \
+  "$source/app/guide/pages/scenes.md" | sed "s|\.\./arms|$source/app/arms|" >my_ball.yaml
+thimble run my_ball.yaml >said 2>&1 || { echo "FAILED: the guide's scene" >&2 && cat said >&2 && exit 1; }
+
+if command -v mkdocs >/dev/null; then
+  mkdocs build --strict --quiet -f "$source/app/guide/mkdocs.yml" -d "$work/pages"
+  echo "The pages are built without a broken link."
+else
+  echo "mkdocs is not installed: the pages were not built."
+fi
