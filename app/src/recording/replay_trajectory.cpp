@@ -67,9 +67,10 @@ TrajectoryComparison replay_trajectory(const std::vector<TrajectoryPoint>& traje
     compared.force_rms += pressed * pressed;
     compared.recorded_rms += recorded * recorded;
     compared.error_rms += (command.f_T_W - point.f).squaredNorm();
-    if (pressed > compared.kPress && recorded > compared.kPress) {
+    if (pressed > TrajectoryComparison::kPress && recorded > TrajectoryComparison::kPress) {
       angles.push_back(angle_between(command.f_T_W, point.f));
-    } else if (std::max(pressed, recorded) > compared.kPress && std::min(pressed, recorded) == 0) {
+    } else if (std::max(pressed, recorded) > TrajectoryComparison::kPress &&
+               std::min(pressed, recorded) == 0) {
       ++compared.contact_disagrees;
     }
     if (sink) sink(record_of(state, command));
