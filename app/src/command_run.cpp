@@ -186,6 +186,11 @@ int run_scene(const RunOptions& options) {
     return complain({"--hand mouse leads the simulated arm's hand; a real arm has yours."},
                     kExitBadInput);
   }
+  if (options.led() && options.clock == "virtual" && !options.duration) {
+    return complain({"--hand mouse without an end needs real time: leave --clock away, or give "
+                     "--duration."},
+                    kExitBadInput);
+  }
   std::optional<driver::FoundArm> real_arm;
   if (options.device != "sim") {
     const auto plugged_in = driver::find_arms();
@@ -213,6 +218,7 @@ int run_scene(const RunOptions& options) {
   session_options.share_out =
       !options.name.empty() || options.view || options.led() || (real_time && !options.no_view);
   session_options.share_name = options.name;
+  session_options.share_if_possible = options.name.empty() && !for_a_person;
   if (real_arm && !may_begin(*real_arm, options.yes)) return kExitBadInput;
   auto opened = Session::open(options.scene, session_options);
   if (!opened) {

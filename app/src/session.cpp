@@ -21,6 +21,10 @@ namespace {
 // What a viewer's plots can look back on, and how much memory that may take: 32 MB. Chosen.
 constexpr double kShownSeconds = 8;
 constexpr std::size_t kShownTicksMost = 100'000;
+constexpr int kRunsOfAScene = 100;  // at the same time; chosen
+
+// Rows of the trace of a run whose end nobody knows: 80 MB, 5 min at 1 kHz. Chosen.
+constexpr std::size_t kRowsOfEndless = 300'000;
 
 /// Finds the first point of the hand's way that the arm cannot reach.
 driver::Result<void> check_reach(const HandRoute& route, const ArmFile& arm) {
@@ -72,7 +76,8 @@ driver::Result<std::unique_ptr<Session>> Session::open(const std::filesystem::pa
         std::ceil(duration * 1e9 / static_cast<double>(session->period_ns_)));
   }
   session->statistics_ = std::make_unique<RunStatistics>();
-  session->trace_ = std::make_unique<Trace>(session->ticks_);
+  session->trace_ = std::make_unique<Trace>(
+      session->ticks_, session->ticks_ == 0 ? kRowsOfEndless : Trace::kDefaultRowsMax);
   const auto dents = [](const SceneObject& object) { return object.body.dent.has_value(); };
   if (std::any_of(session->scene_.objects.begin(), session->scene_.objects.end(), dents)) {
     session->dents_ = std::make_unique<DentRecord>(session->period_ns_);
@@ -119,7 +124,12 @@ driver::Result<std::unique_ptr<Session>> Session::open(const std::filesystem::pa
     if (auto begun = session->begin_recording(options.record); !begun) return begun.error();
   }
   if (options.share || options.share_out) {
-    if (auto shared = session->share(options); !shared) return shared.error();
+    const auto shared = session->share(options);
+    if (!shared && !options.share_if_possible) return shared.error();
+    if (!shared) {
+      std::fprintf(stderr, "thimble: nobody can watch: %s\n", shared.error().message.c_str());
+      session->control_.reset();
+    }
   }
   return session;
 }
@@ -148,15 +158,22 @@ driver::Result<void> Session::share(const SessionOptions& options) {
     first += scene.objects[i].vertex_count;
   }
   const auto ring = static_cast<std::size_t>(std::ceil(kShownSeconds * scene_.rate));
-  std::string name;
-  if (options.share_out) {
-    name =
-        options.share_name.empty() ? free_run_name(scene_.name) : run_name_of(options.share_name);
-  }
+  const std::string asked = options.share_name.empty() ? scene_.name : options.share_name;
+  const std::string name = options.share_out ? run_name_of(asked) : "";
   auto shared = SharedRun::create(name, scene, std::min(ring, kShownTicksMost));
+  // Where the scene gives the name, a second run of it is another one.
+  for (int number = 2; !shared && options.share_name.empty() && number < kRunsOfAScene; ++number) {
+    if (!run_name_taken(name)) break;
+    std::string next = name;
+    next += '-' + std::to_string(number);
+    shared = SharedRun::create(next, scene, std::min(ring, kShownTicksMost));
+  }
   if (!shared) return shared.error();
   shared_ = std::move(shared).value();
   may_record_ = true;
+  if (const Recorder* recorder = recording_.recorder()) {
+    shared_->set_recording_path(std::filesystem::absolute(recorder->path()).string());
+  }
   return {};
 }
 

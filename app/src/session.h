@@ -42,6 +42,7 @@ struct SessionOptions {
   std::filesystem::path firmware;            ///< for a real arm that needs some (Falcon)
   std::filesystem::path record;              ///< where every tick is written; empty: nowhere
   bool share = false;                        ///< lets a viewer in this process see the run
+  bool share_if_possible = false;            ///< goes on unseen where there is no shared memory
   bool share_out = false;                    ///< lets viewers of other processes see it
   bool hand_by_mouse =
       false;               ///< a viewer leads the simulated hand; the run ends when it is asked to

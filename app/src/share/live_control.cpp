@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <thread>
 
 namespace thimble::app {
@@ -12,7 +13,9 @@ LiveControl::LiveControl(const Scene& scene, render::SceneTouch& touch, ArmSimul
       touch_(touch),
       simulation_(simulation),
       real_time_(real_time),
-      knobs_(scene, touch) {}
+      knobs_(scene, touch) {
+  hand_.p_WH.fill(std::numeric_limits<double>::quiet_NaN());  // equals nothing that is asked for
+}
 
 void LiveControl::join(SharedRun& shared, bool hand_by_mouse, const std::atomic<bool>& stop) {
   shared_ = &shared;

@@ -37,7 +37,7 @@ void RequestDesk::step() {
   shared.watch_viewers();
   if (const auto order = shared.record_order_after(last_order_)) record(*order);
   shared.set_recording(session_.recording().on(), session_.recording().dropped());
-  const bool closed = viewer_ && !viewer_->alive();
+  const bool closed = viewer_ && viewer_->closed();
   if (shared.stop_asked() || (closed && ends_with_viewer_)) {
     ended_ = true;
     ask_to_stop();

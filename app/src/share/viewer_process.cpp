@@ -36,9 +36,13 @@ driver::Result<std::unique_ptr<ViewerProcess>> ViewerProcess::start(const std::s
   return std::unique_ptr<ViewerProcess>(new ViewerProcess(pid));
 }
 
-bool ViewerProcess::alive() {
-  if (alive_ && waitpid(pid_, nullptr, WNOHANG) == pid_) alive_ = false;
-  return alive_;
+bool ViewerProcess::closed() {
+  int status = 0;
+  if (alive_ && waitpid(pid_, &status, WNOHANG) == pid_) {
+    alive_ = false;
+    closed_ = WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  }
+  return closed_;
 }
 
 }  // namespace thimble::app

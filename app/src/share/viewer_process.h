@@ -20,14 +20,15 @@ class ViewerProcess {
   /// Starts `thimble view RUN`. It stays when the run ends, and tells so.
   static driver::Result<std::unique_ptr<ViewerProcess>> start(const std::string& run);
 
-  /// Tells whether it still runs.
-  bool alive();
+  /// Tells whether a person has closed it; one that could not open its window was not closed.
+  bool closed();
 
  private:
   explicit ViewerProcess(pid_t pid) : pid_(pid) {}
 
   pid_t pid_;
   bool alive_ = true;
+  bool closed_ = false;
 };
 
 }  // namespace thimble::app
