@@ -1,5 +1,6 @@
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -144,6 +145,9 @@ Turned turn(const std::filesystem::path& scene_file, const std::string& knob_nam
 }
 
 TEST(LiveKnobs, NeverStepTheForceWhileTheyAreTurnedFromEndToEnd) {
+#if defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "no threads meet in it";
+#endif
   const double most = app::LiveKnobs::kForceRate * 1e-3;  // N in a tick of 1 kHz
   const std::filesystem::path rubber = rubber_that_does_not_jump();
   for (const auto& [scene, knob] :
@@ -182,8 +186,14 @@ TEST(LiveKnobs, TurnWithoutTheHeapAndEndOnTheValueThatIsWanted) {
 }
 
 TEST(LiveKnobs, LeaveTheLoopStableAtBothEndsOfEveryKnob) {
-  for (const char* name :
-       {"rubber", "sandpaper", "honey", "clay", "floating_block", "trampoline"}) {
+#if defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "no threads meet in it";
+#endif
+  std::vector<std::string> scenes{"rubber", "sandpaper", "honey"};
+  if (std::getenv("THIMBLE_LONG") != nullptr) {
+    scenes.insert(scenes.end(), {"clay", "floating_block", "trampoline"});
+  }
+  for (const std::string& name : scenes) {
     SessionOptions options;
     options.share = true;
     options.duration = 3;
@@ -195,7 +205,7 @@ TEST(LiveKnobs, LeaveTheLoopStableAtBothEndsOfEveryKnob) {
       const auto session = open(shipped(name), options);
       const auto reader = reader_of(*session);
       const auto& knob = reader->scene().knobs[turned / 2];
-      SCOPED_TRACE(std::string(name) + ", " + knob.name);
+      SCOPED_TRACE(name + ", " + knob.name);
       reader->turn_knob(turned / 2, turned % 2 == 0 ? knob.least : knob.most);
       session->run(std::atomic<bool>{false});
       EXPECT_EQ(session->device().fault(), driver::Fault::kNone);
