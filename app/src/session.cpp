@@ -11,10 +11,20 @@
 #include "calibration.h"
 #include "hand_route.h"
 #include "real_arm.h"
+#include "share/describe_scene.h"
 #include "text_file.h"
+#include "thimble/render/body/body_shape.h"
 
 namespace thimble::app {
 namespace {
+
+// What a viewer's plots can look back on, and how much memory that may take: 32 MB. Chosen.
+constexpr double kShownSeconds = 8;
+constexpr std::size_t kShownTicksMost = 100'000;
+constexpr int kRunsOfAScene = 100;  // at the same time; chosen
+
+// Rows of the trace of a run whose end nobody knows: 80 MB, 5 min at 1 kHz. Chosen.
+constexpr std::size_t kRowsOfEndless = 300'000;
 
 /// Finds the first point of the hand's way that the arm cannot reach.
 driver::Result<void> check_reach(const HandRoute& route, const ArmFile& arm) {
@@ -59,10 +69,15 @@ driver::Result<std::unique_ptr<Session>> Session::open(const std::filesystem::pa
   session->seed_ = options.seed.value_or(session->scene_.seed);
   session->period_ns_ = std::llround(1e9 / session->scene_.rate);
   const double duration = options.duration.value_or(session->scene_.duration);
-  session->ticks_ = static_cast<std::uint64_t>(
-      std::ceil(duration * 1e9 / static_cast<double>(session->period_ns_)));
+  session->hand_by_mouse_ = options.hand_by_mouse;
+  // Led by a person it goes on until he has enough, unless he says how long.
+  if (!options.hand_by_mouse || options.duration) {
+    session->ticks_ = static_cast<std::uint64_t>(
+        std::ceil(duration * 1e9 / static_cast<double>(session->period_ns_)));
+  }
   session->statistics_ = std::make_unique<RunStatistics>();
-  session->trace_ = std::make_unique<Trace>(session->ticks_);
+  session->trace_ = std::make_unique<Trace>(
+      session->ticks_, session->ticks_ == 0 ? kRowsOfEndless : Trace::kDefaultRowsMax);
   const auto dents = [](const SceneObject& object) { return object.body.dent.has_value(); };
   if (std::any_of(session->scene_.objects.begin(), session->scene_.objects.end(), dents)) {
     session->dents_ = std::make_unique<DentRecord>(session->period_ns_);
@@ -106,12 +121,60 @@ driver::Result<std::unique_ptr<Session>> Session::open(const std::filesystem::pa
   session->device_name_ = options.real_arm ? options.real_arm->name() : "sim";
   session->black_box_ = std::make_unique<BlackBox>(session->scene_.rate);
   if (!options.record.empty()) {
-    auto recorder = Recorder::open(options.record, session->recording_info(), session->ticks_);
-    if (!recorder) return recorder.error();
-    session->recorder_ = std::move(recorder).value();
-    if (session->by_thread_) session->recorder_->start_thread();
+    if (auto begun = session->begin_recording(options.record); !begun) return begun.error();
+  }
+  if (options.share || options.share_out) {
+    const auto shared = session->share(options);
+    if (!shared && !options.share_if_possible) return shared.error();
+    if (!shared) {
+      std::fprintf(stderr, "thimble: nobody can watch: %s\n", shared.error().message.c_str());
+      session->control_.reset();
+    }
   }
   return session;
+}
+
+driver::Result<void> Session::begin_recording(const std::filesystem::path& path) {
+  constexpr double kLongest = 86400;  // s, of a run without an end; chosen
+  const auto ticks_max =
+      ticks_ > 0 ? ticks_ : static_cast<std::uint64_t>(std::ceil(kLongest * scene_.rate));
+  may_record_ = true;
+  if (shared_) shared_->set_recording_path(std::filesystem::absolute(path).string());
+  return recording_.begin(path, recording_info(), ticks_max, by_thread_);
+}
+
+driver::Result<void> Session::share(const SessionOptions& options) {
+  SharedScene scene = describe_scene(scene_, *objects_, device_name_);
+  scene.file = std::filesystem::absolute(scene_file_).lexically_normal().string();
+  scene.period_ns = period_ns_;
+  scene.wall_clock = by_thread_;
+  scene.hand_by_mouse = hand_by_mouse_;
+  control_ = std::make_unique<LiveControl>(scene_, touch(), simulation_.get(), by_thread_);
+  scene.knobs = control_->knobs().described();
+  std::size_t first = 0;
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    if (!scene.objects[i].shaped) continue;
+    shaped_.push_back({i, first});
+    first += scene.objects[i].vertex_count;
+  }
+  const auto ring = static_cast<std::size_t>(std::ceil(kShownSeconds * scene_.rate));
+  const std::string asked = options.share_name.empty() ? scene_.name : options.share_name;
+  const std::string name = options.share_out ? run_name_of(asked) : "";
+  auto shared = SharedRun::create(name, scene, std::min(ring, kShownTicksMost));
+  // Where the scene gives the name, a second run of it is another one.
+  for (int number = 2; !shared && options.share_name.empty() && number < kRunsOfAScene; ++number) {
+    if (!run_name_taken(name)) break;
+    std::string next = name;
+    next += '-' + std::to_string(number);
+    shared = SharedRun::create(next, scene, std::min(ring, kShownTicksMost));
+  }
+  if (!shared) return shared.error();
+  shared_ = std::move(shared).value();
+  may_record_ = true;
+  if (const Recorder* recorder = recording_.recorder()) {
+    shared_->set_recording_path(std::filesystem::absolute(recorder->path()).string());
+  }
+  return {};
 }
 
 RecordingInfo Session::recording_info() const {
@@ -138,11 +201,12 @@ driver::Result<void> Session::plan_simulation(const std::filesystem::path& scene
     const SceneObject& object = scene_.objects[i];
     if (!object.build_field && !object.paged) named.push_back({object.name, &meshes_W[i]});
   }
-  const auto route = plan_hand(scene_.hand, named);
+  auto route = plan_hand(scene_.hand, named);
   if (!route) return driver::Error{scene_file.string() + ": " + route.error().message};
   if (auto reach = check_reach(*route, arm); !reach) {
     return driver::Error{scene_file.string() + ": " + reach.error().message};
   }
+  if (hand_by_mouse_) route->resize(1);  // waits where the planned way begins
   auto simulation = ArmSimulation::make(arm, *route, firmware, seed_);
   if (!simulation)
     return driver::Error{scene_.arm_file.string() + ": " + simulation.error().message};
@@ -151,10 +215,16 @@ driver::Result<void> Session::plan_simulation(const std::filesystem::path& scene
 }
 
 driver::ServoEnd Session::run(const std::atomic<bool>& stop) noexcept {
+  if (shared_) {
+    control_->join(*shared_, hand_by_mouse_, stop);
+    shared_->set_state(RunState::kRunning);
+  }
   const driver::ServoEnd end = driver::run_servo(
-      *device_, *clock_, driver::ForceLaw(touch()), driver::TickSink(*this),
+      *device_, *clock_, shared_ ? driver::ForceLaw(*control_) : driver::ForceLaw(touch()),
+      driver::TickSink(*this),
       {.period_ns = period_ns_, .ticks = ticks_, .outlive_faults = !simulation_}, stop);
   if (simulation_) simulation_->settle(clock_->now_ns());
+  if (shared_) shared_->set_state(RunState::kEnded);
   return end;
 }
 
@@ -163,20 +233,35 @@ void Session::operator()(const driver::TickRecord& record) noexcept {
   (*statistics_)(record);
   (*trace_)(record);
   (*black_box_)(record);
-  if (dents_) dents_->take(record, touch());
+  const bool drawn = dents_ && dents_->take(record, touch());
   if (!objects_->moving().empty()) store_poses(record.tick);
-  if (recorder_) (*recorder_)(record);
+  if (shared_) {
+    shared_->store_tick(record);
+    if (drawn) shared_->store_patch(dents_->drawn());
+    if (!objects_->moving().empty()) shared_->store_poses(poses_now_);
+    if (!shaped_.empty()) store_shapes();
+    control_->take(record);
+  }
+  if (may_record_) recording_(record);
   if (by_thread_) return;
   // In virtual time a tick lasts as long as it computes: the disk is as fast as one could wish, and
   // every run is the same.
   objects_->serve_pages();
-  if (recorder_ && recorder_->waiting() >= Recorder::kRingTicks / 2) recorder_->serve();
+  if (may_record_) recording_.serve_if_half_full();
 }
 
 render::TriangleMesh Session::bent_mesh_W() const {
   if (!dents_ || dents_->deepest().triangle_count == 0) return objects_->mesh_W();
   const render::BodyPatch& patch = dents_->deepest();
   return bent(objects_->mesh_W(), objects_->place(static_cast<std::size_t>(patch.object)), patch);
+}
+
+void Session::store_shapes() noexcept {
+  for (const ShapedPlace& place : shaped_) {
+    for (const render::VertexMove& move : touch().object(place.object).shape()->moves()) {
+      shared_->store_vertex(place.first + static_cast<std::size_t>(move.vertex), move.p_W);
+    }
+  }
 }
 
 void Session::store_poses(std::uint64_t tick) noexcept {

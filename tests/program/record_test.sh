@@ -23,6 +23,17 @@ expect 0 'forces differ from the recorded ones' "$thimble" replay run.h5 --scene
 expect 0 '2000 ticks of elephant' "$thimble" export softer.h5 --csv softer.csv
 expect 2 'is not the scene that was recorded' "$thimble" replay run.h5 --scene softer.yaml --verify
 
+# A probe that somebody else has recorded touches a scene, and its forces are compared.
+printf 't x y z fx fy fz\n0 0 0 20 0 0 0\n1 0 0 5 0 0 1\n2 10 0 5 0 0 1\n' >probe.traj
+rubber=$source_dir/app/scenes/rubber.yaml
+expect 0 'Force error .* N \(rms\), .* direction within' "$thimble" replay probe.traj --scene "$rubber" \
+  --length mm --columns 't x y z fx fy fz' --record probe.h5
+expect 0 '2001 ticks of rubber' "$thimble" export probe.h5 --csv probe.csv
+expect 0 'along the trajectory' "$thimble" replay probe.traj --scene "$scene" --frame elephant
+expect 2 'needs --scene' "$thimble" replay probe.traj
+expect 2 'line 2: is farther than 10 m' "$thimble" replay probe.traj --scene "$rubber"
+expect 2 'object of the scene, found "mouse"' "$thimble" replay probe.traj --scene "$rubber" --frame mouse
+
 # The disk says no.
 expect 2 'no/such/folder' "$thimble" run "$scene" --duration 1 --record no/such/folder/run.h5
 expect 2 'not a recording' "$thimble" export "$scene" --csv x.csv
