@@ -9,6 +9,8 @@ namespace thimble::app {
 
 /// `thimble run SCENE`: touches a scene.
 void add_run_command(CLI::App& app, int& exit_code);
+/// `thimble shot SCENE`: draws a moment of a scene.
+void add_shot_command(CLI::App& app, int& exit_code);
 /// `thimble devices`: lists the arms.
 void add_devices_command(CLI::App& app, int& exit_code);
 /// `thimble calibrate`: finds an arm's home pose and the signs of its encoders.
