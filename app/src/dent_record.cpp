@@ -13,12 +13,13 @@ constexpr std::int64_t kFrame = 16'000'000;  // ns: a screen's 60 pictures a sec
 DentRecord::DentRecord(std::int64_t period_ns)
     : every_(static_cast<std::uint64_t>(std::max<std::int64_t>(1, kFrame / period_ns))) {}
 
-void DentRecord::take(const driver::TickRecord& tick, render::SceneTouch& touch) noexcept {
-  if (tick.tick % every_ != 0 || !touch.draw(patch_)) return;
+bool DentRecord::take(const driver::TickRecord& tick, render::SceneTouch& touch) noexcept {
+  if (tick.tick % every_ != 0 || !touch.draw(patch_)) return false;
   newest_.store(patch_);
-  if (patch_.triangle_count == 0 || !(tick.depth > depth_)) return;
+  if (patch_.triangle_count == 0 || !(tick.depth > depth_)) return true;
   depth_ = tick.depth;
   deepest_ = patch_;
+  return true;
 }
 
 render::TriangleMesh bent(const render::TriangleMesh& mesh, const MeshPlace& place,

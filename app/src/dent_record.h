@@ -20,9 +20,11 @@ class DentRecord {
   /// as pictures change. Real-time: never from the servo thread.
   explicit DentRecord(std::int64_t period_ns);
 
-  /// Draws if it is time. Real-time: safe; some 15 us in one tick of 16.
-  void take(const driver::TickRecord& tick, render::SceneTouch& touch) noexcept;
+  /// Draws if it is time, and tells whether it did. Real-time: safe; some 15 us in one tick of 16.
+  bool take(const driver::TickRecord& tick, render::SceneTouch& touch) noexcept;
 
+  /// Gives what was drawn last. On the servo thread.
+  const render::BodyPatch& drawn() const noexcept { return patch_; }
   /// Gives the newest patch; any thread may load it.
   const driver::Snapshot<render::BodyPatch>& newest() const noexcept { return newest_; }
   /// Gives the patch of the deepest touch; no triangles if nothing was dented. After the run.

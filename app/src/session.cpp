@@ -11,10 +11,16 @@
 #include "calibration.h"
 #include "hand_route.h"
 #include "real_arm.h"
+#include "share/describe_scene.h"
 #include "text_file.h"
+#include "thimble/render/body/body_shape.h"
 
 namespace thimble::app {
 namespace {
+
+// What a viewer's plots can look back on, and how much memory that may take: 32 MB. Chosen.
+constexpr double kShownSeconds = 8;
+constexpr std::size_t kShownTicksMost = 100'000;
 
 /// Finds the first point of the hand's way that the arm cannot reach.
 driver::Result<void> check_reach(const HandRoute& route, const ArmFile& arm) {
@@ -111,7 +117,28 @@ driver::Result<std::unique_ptr<Session>> Session::open(const std::filesystem::pa
     session->recorder_ = std::move(recorder).value();
     if (session->by_thread_) session->recorder_->start_thread();
   }
+  if (options.share) {
+    if (auto shared = session->share(options.share_name); !shared) return shared.error();
+  }
   return session;
+}
+
+driver::Result<void> Session::share(const std::string& name) {
+  SharedScene scene = describe_scene(scene_, *objects_, device_name_);
+  scene.file = std::filesystem::absolute(scene_file_).lexically_normal().string();
+  scene.period_ns = period_ns_;
+  scene.wall_clock = by_thread_;
+  std::size_t first = 0;
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    if (!scene.objects[i].shaped) continue;
+    shaped_.push_back({i, first});
+    first += scene.objects[i].vertex_count;
+  }
+  const auto ring = static_cast<std::size_t>(std::ceil(kShownSeconds * scene_.rate));
+  auto shared = SharedRun::create(name, scene, std::min(ring, kShownTicksMost));
+  if (!shared) return shared.error();
+  shared_ = std::move(shared).value();
+  return {};
 }
 
 RecordingInfo Session::recording_info() const {
@@ -151,10 +178,12 @@ driver::Result<void> Session::plan_simulation(const std::filesystem::path& scene
 }
 
 driver::ServoEnd Session::run(const std::atomic<bool>& stop) noexcept {
+  if (shared_) shared_->set_state(RunState::kRunning);
   const driver::ServoEnd end = driver::run_servo(
       *device_, *clock_, driver::ForceLaw(touch()), driver::TickSink(*this),
       {.period_ns = period_ns_, .ticks = ticks_, .outlive_faults = !simulation_}, stop);
   if (simulation_) simulation_->settle(clock_->now_ns());
+  if (shared_) shared_->set_state(RunState::kEnded);
   return end;
 }
 
@@ -163,8 +192,14 @@ void Session::operator()(const driver::TickRecord& record) noexcept {
   (*statistics_)(record);
   (*trace_)(record);
   (*black_box_)(record);
-  if (dents_) dents_->take(record, touch());
+  const bool drawn = dents_ && dents_->take(record, touch());
   if (!objects_->moving().empty()) store_poses(record.tick);
+  if (shared_) {
+    shared_->store_tick(record);
+    if (drawn) shared_->store_patch(dents_->drawn());
+    if (!objects_->moving().empty()) shared_->store_poses(poses_now_);
+    if (!shaped_.empty()) store_shapes();
+  }
   if (recorder_) (*recorder_)(record);
   if (by_thread_) return;
   // In virtual time a tick lasts as long as it computes: the disk is as fast as one could wish, and
@@ -177,6 +212,14 @@ render::TriangleMesh Session::bent_mesh_W() const {
   if (!dents_ || dents_->deepest().triangle_count == 0) return objects_->mesh_W();
   const render::BodyPatch& patch = dents_->deepest();
   return bent(objects_->mesh_W(), objects_->place(static_cast<std::size_t>(patch.object)), patch);
+}
+
+void Session::store_shapes() noexcept {
+  for (const ShapedPlace& place : shaped_) {
+    for (const render::VertexMove& move : touch().object(place.object).shape()->moves()) {
+      shared_->store_vertex(place.first + static_cast<std::size_t>(move.vertex), move.p_W);
+    }
+  }
 }
 
 void Session::store_poses(std::uint64_t tick) noexcept {

@@ -17,6 +17,7 @@
 #include "scene_file.h"
 #include "scene_objects.h"
 #include "scene_poses.h"
+#include "share/shared_run.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/device.h"
 #include "thimble/driver/discovery.h"
@@ -39,6 +40,8 @@ struct SessionOptions {
   std::optional<driver::FoundArm> real_arm;  ///< in place of the simulated one
   std::filesystem::path firmware;            ///< for a real arm that needs some (Falcon)
   std::filesystem::path record;              ///< where every tick is written; empty: nowhere
+  bool share = false;                        ///< lets viewers see the run
+  std::string share_name;                    ///< under which name; empty: in this process alone
 };
 
 /// Is one scene, loaded and joined: clock, simulated arm, wire, device, touch, and who keeps the
@@ -92,6 +95,8 @@ class Session {
   /// Gives the mesh of one object, or of all as one if `object` is negative, where it is now: moved
   /// and bent (W, m). Not while `run` runs.
   render::TriangleMesh mesh_now(int object = -1) const { return objects_->mesh_now(object); }
+  /// Gives what viewers see; nullptr if the run is not shared.
+  SharedRun* shared() { return shared_.get(); }
   std::uint64_t seed() const { return seed_; }
   std::uint64_t ticks_planned() const { return ticks_; }
   std::int64_t period_ns() const { return period_ns_; }
@@ -100,8 +105,16 @@ class Session {
   void operator()(const driver::TickRecord& record) noexcept;
 
  private:
+  /// Says where the vertices of a shaped object begin in what is shared.
+  struct ShapedPlace {
+    std::size_t object = 0;
+    std::size_t first = 0;
+  };
+
   Session() = default;
   void store_poses(std::uint64_t tick) noexcept;
+  void store_shapes() noexcept;
+  driver::Result<void> share(const std::string& name);
   driver::Result<void> plan_simulation(const std::filesystem::path& scene_file,
                                        const std::filesystem::path& firmware);
 
@@ -124,6 +137,8 @@ class Session {
   std::unique_ptr<BlackBox> black_box_;
   ScenePoses poses_now_;
   driver::Snapshot<ScenePoses> poses_;
+  std::unique_ptr<SharedRun> shared_;
+  std::vector<ShapedPlace> shaped_;  // the objects whose vertices move for good, if it is shared
 };
 
 }  // namespace thimble::app

@@ -24,11 +24,13 @@ class Snapshot {
   void store(const T& value) noexcept {
     std::array<std::uint64_t, kWords> words{};
     std::memcpy(words.data(), &value, sizeof(T));
-    const std::uint64_t sequence = sequence_.load(std::memory_order_relaxed);
-    sequence_.store(sequence + 1, std::memory_order_relaxed);
+    // Odd while it is written; it is odd already if the writer before, another process, was killed
+    // half-way.
+    const std::uint64_t writing = sequence_.load(std::memory_order_relaxed) | 1;
+    sequence_.store(writing, std::memory_order_relaxed);
     // Each release store below makes the odd sequence visible before the word it writes.
     for (std::size_t i = 0; i < kWords; ++i) words_[i].store(words[i], std::memory_order_release);
-    sequence_.store(sequence + 2, std::memory_order_release);
+    sequence_.store(writing + 1, std::memory_order_release);
   }
 
   /// Copies the newest value. Returns false, and leaves `value` alone, if nothing was stored yet or

@@ -46,6 +46,8 @@ class BodyShape {
   std::span<const VertexMove> follow(const ContactMesh& mesh,
                                      const driver::TouchInfo& touch) noexcept;
 
+  /// Gives the moves of the last `follow` again. Real-time: safe.
+  std::span<const VertexMove> moves() const noexcept { return moves_; }
   /// Tells whether all vertices are where they shall be. Real-time: safe.
   bool settled() const noexcept { return waiting_ == 0; }
   const ClayShape* clay() const noexcept { return clay_ ? &*clay_ : nullptr; }

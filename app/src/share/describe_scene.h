@@ -1,0 +1,14 @@
+#pragma once
+
+#include "scene_file.h"
+#include "scene_objects.h"
+#include "share/shared_scene.h"
+
+namespace thimble::app {
+
+/// Says of a loaded scene what its viewers need to draw it; the knobs are left out. `device` is
+/// "sim" or the name of the arm on the desk. Real-time: never from the servo thread.
+SharedScene describe_scene(const Scene& scene, const SceneObjects& objects,
+                           const std::string& device);
+
+}  // namespace thimble::app

@@ -1,0 +1,500 @@
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <limits>
+#include <random>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "share/arm_lines.h"
+#include "share/shared_reader.h"
+#include "share/shared_run.h"
+#include "support/heap_guard.h"
+
+namespace thimble::app {
+namespace {
+
+using driver::TickRecord;
+
+/// Makes a scene of two triangles, one of them shaped, and a knob.
+SharedScene small_scene() {
+  SharedScene scene;
+  scene.name = "small";
+  scene.file = "scenes/small.yaml";
+  scene.period_ns = 1'000'000;
+  scene.force_max = 6;
+  scene.arm.name = "vintage";
+  scene.arm.device = "sim";
+  scene.arm.shape = SharedArmShape::kSerial;
+  scene.arm.numbers = {0.1, 0.13, 0.16};
+  scene.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
+  scene.triangles = {{0, 1, 2}, {3, 4, 5}};
+  scene.objects.push_back({.name = "stiff", .dents = true, .vertex_count = 3, .triangle_count = 1});
+  scene.objects.push_back({.name = "clay",
+                           .colour = 1,
+                           .shaped = true,
+                           .first_vertex = 3,
+                           .vertex_count = 3,
+                           .first_triangle = 1,
+                           .triangle_count = 1});
+  scene.knobs.push_back({"stiff: stiffness", "N/m", 0, 1000, 800});
+  return scene;
+}
+
+/// Gives a name that no other test has at the moment.
+std::string name_for(const char* test) {
+  return std::string(test) + "-" + std::to_string(getpid());
+}
+
+/// Makes a tick all of whose numbers follow from one, so that a torn one shows.
+TickRecord tick_number(std::uint64_t number) {
+  TickRecord tick;
+  tick.tick = number;
+  tick.time_ns = tick.due_ns = static_cast<std::int64_t>(number) * 1'000'000;
+  for (auto* vector :
+       {&tick.q, &tick.p_WT, &tick.v_WT, &tick.p_WP, &tick.n_W, &tick.f_wanted_W, &tick.f_sent_W}) {
+    vector->fill(static_cast<double>(number));
+  }
+  tick.depth = static_cast<double>(number);
+  return tick;
+}
+
+bool whole(const TickRecord& tick) {
+  const auto number = static_cast<double>(tick.tick);
+  for (const auto* vector :
+       {&tick.q, &tick.p_WT, &tick.v_WT, &tick.p_WP, &tick.n_W, &tick.f_wanted_W, &tick.f_sent_W}) {
+    for (const double x : *vector) {
+      if (x != number) return false;
+    }
+  }
+  return tick.depth == number;
+}
+
+struct Pair {
+  std::unique_ptr<SharedRun> run;
+  std::unique_ptr<SharedReader> reader;
+};
+
+/// Joins a run and a reader over memory without a name.
+Pair joined(const SharedScene& scene, std::size_t ring_ticks = 100) {
+  Pair pair;
+  pair.run = SharedRun::create("", scene, ring_ticks).value();
+  pair.reader = SharedReader::over(pair.run->memory().again().value()).value();
+  return pair;
+}
+
+TEST(Share, ShowsTheSceneAsItWasDescribed) {
+  const SharedScene scene = small_scene();
+  const Pair pair = joined(scene);
+  const SharedScene& seen = pair.reader->scene();
+  EXPECT_EQ(seen.name, scene.name);
+  EXPECT_EQ(seen.file, scene.file);
+  EXPECT_EQ(seen.period_ns, scene.period_ns);
+  EXPECT_EQ(seen.force_max, scene.force_max);
+  EXPECT_EQ(seen.pid, getpid());
+  EXPECT_EQ(seen.arm.name, "vintage");
+  EXPECT_EQ(seen.arm.shape, SharedArmShape::kSerial);
+  EXPECT_EQ(seen.arm.numbers, scene.arm.numbers);
+  EXPECT_EQ(seen.vertices, scene.vertices);
+  EXPECT_EQ(seen.triangles, scene.triangles);
+  ASSERT_EQ(seen.objects.size(), 2U);
+  EXPECT_EQ(seen.objects[1].name, "clay");
+  EXPECT_TRUE(seen.objects[0].dents);
+  EXPECT_TRUE(seen.objects[1].shaped);
+  EXPECT_EQ(seen.objects[1].first_vertex, 3U);
+  ASSERT_EQ(seen.knobs.size(), 1U);
+  EXPECT_EQ(seen.knobs[0].name, "stiff: stiffness");
+  EXPECT_EQ(seen.knobs[0].unit, "N/m");
+  EXPECT_EQ(pair.reader->state(), RunState::kLoading);
+}
+
+TEST(Share, ShowsTheNewestTickAndThoseBefore) {
+  const Pair pair = joined(small_scene(), 10);
+  TickRecord seen;
+  EXPECT_FALSE(pair.reader->newest(seen)) << "nothing was stored yet";
+  std::uint64_t serial = 0;
+  std::vector<TickRecord> ticks;
+  for (std::uint64_t i = 0; i < 4; ++i) pair.run->store_tick(tick_number(i));
+  ASSERT_TRUE(pair.reader->newest(seen));
+  EXPECT_EQ(seen.tick, 3U);
+  EXPECT_EQ(pair.reader->ticks_since(serial, ticks), 0U);
+  ASSERT_EQ(ticks.size(), 4U);
+  for (std::uint64_t i = 0; i < 4; ++i) EXPECT_EQ(ticks[i].tick, i);
+
+  // A reader that sleeps while the ring goes round is told how many it has missed.
+  ticks.clear();
+  for (std::uint64_t i = 4; i < 29; ++i) pair.run->store_tick(tick_number(i));
+  EXPECT_EQ(pair.reader->ticks_since(serial, ticks), 15U);
+  ASSERT_EQ(ticks.size(), 10U);
+  EXPECT_EQ(ticks.front().tick, 19U);
+  EXPECT_EQ(ticks.back().tick, 28U);
+  EXPECT_EQ(pair.reader->ticks_since(serial, ticks), 0U);
+  EXPECT_EQ(ticks.size(), 10U) << "nothing new";
+}
+
+TEST(Share, CountsPeriodsThatTheLoopMissed) {
+  const Pair pair = joined(small_scene());
+  pair.run->store_tick(tick_number(0));
+  pair.run->store_tick(tick_number(1));
+  pair.run->store_tick(tick_number(5));
+  EXPECT_EQ(pair.reader->counters().missed, 3U);
+  EXPECT_EQ(pair.reader->counters().ticks, 3U);
+}
+
+TEST(Share, TearsNoReadWhileTheWriterRunsAtFullSpeed) {
+  const Pair pair = joined(small_scene(), 64);
+  std::atomic<bool> stop{false};
+  std::atomic<std::uint64_t> reads{0}, torn{0};
+  std::vector<std::thread> readers;
+  for (int i = 0; i < 3; ++i) {
+    readers.emplace_back([&] {
+      // Over the same mapping, so that the thread sanitizer sees both sides.
+      const auto reader = SharedReader::over(pair.run->memory().bytes()).value();
+      std::uint64_t serial = 0;
+      std::vector<TickRecord> ticks;
+      render::BodyPatch patch{};
+      ScenePoses poses;
+      while (!stop.load()) {
+        ticks.clear();
+        TickRecord tick;
+        if (reader->newest(tick)) ticks.push_back(tick);
+        reader->ticks_since(serial, ticks);
+        for (const TickRecord& one : ticks) torn += whole(one) ? 0 : 1;
+        reads += ticks.size();
+        if (reader->patch(patch)) {
+          for (std::size_t t = 0; t < patch.point_count; ++t) {
+            torn += patch.points[t].p[0] == patch.points[0].p[0] ? 0 : 1;
+          }
+          ++reads;
+        }
+        if (reader->poses(poses)) {
+          torn += poses.pose[0].p_WB[0] == static_cast<double>(poses.tick) ? 0 : 1;
+          ++reads;
+        }
+      }
+    });
+  }
+  const std::uint64_t rounds = std::getenv("THIMBLE_LONG") != nullptr ? 3'000'000 : 30'000;
+  render::BodyPatch patch{};
+  patch.object = 0;
+  patch.point_count = 300;
+  ScenePoses poses;
+  poses.count = 1;
+  for (std::uint64_t i = 0; i < rounds || reads.load() < 1000; ++i) {
+    pair.run->store_tick(tick_number(i));
+    poses.tick = i;
+    poses.pose[0].p_WB[0] = static_cast<double>(i);
+    pair.run->store_poses(poses);
+    if (i % 16 != 0) continue;
+    for (std::size_t t = 0; t < patch.point_count; ++t) {
+      patch.points[t].p[0] = static_cast<double>(i);
+    }
+    pair.run->store_patch(patch);
+  }
+  stop.store(true);
+  for (std::thread& reader : readers) reader.join();
+  EXPECT_EQ(torn.load(), 0U);
+  EXPECT_GE(reads.load(), 1000U) << "nothing was put to the test";
+}
+
+TEST(Share, StoresWithoutTheHeap) {
+  const Pair pair = joined(small_scene());
+  render::BodyPatch patch{};
+  SharedHand hand;
+  const int calls = support::heap_calls_of([&] {
+    for (std::uint64_t i = 0; i < 300; ++i) {
+      pair.run->store_tick(tick_number(i));
+      pair.run->store_poses({});
+      pair.run->store_patch(patch);
+      pair.run->store_vertex(i, {0, 0, 0});
+      pair.run->store_knob(0, pair.run->knob_wanted(0).value_or(0));
+      static_cast<void>(pair.run->hand(hand));
+    }
+  });
+  EXPECT_EQ(calls, 0);
+}
+
+TEST(Share, ShowsWhereShapedVerticesHaveGoneForGood) {
+  const Pair pair = joined(small_scene());
+  std::vector<Eigen::Vector3d> vertices(pair.reader->scene().vertices.begin() + 3,
+                                        pair.reader->scene().vertices.end());
+  const auto first = vertices;
+  pair.reader->shaped_vertices(1, vertices);
+  EXPECT_EQ(vertices, first) << "nothing has moved";
+  pair.run->store_vertex(1, {7, 8, 9});
+  pair.run->store_vertex(3, {7, 8, 9});  // there is none
+  EXPECT_EQ(pair.reader->shape_moves(), 1U);
+  pair.reader->shaped_vertices(1, vertices);
+  EXPECT_EQ(vertices[0], first[0]);
+  EXPECT_EQ(vertices[1], Eigen::Vector3d(7, 8, 9));
+}
+
+TEST(Share, TurnsKnobsWithinTheirBoundsAlone) {
+  const Pair pair = joined(small_scene());
+  EXPECT_EQ(pair.reader->knob(0), 800);
+  EXPECT_EQ(pair.run->knob_wanted(0), 800);
+  pair.reader->turn_knob(0, 300);
+  EXPECT_EQ(pair.run->knob_wanted(0), 300);
+  pair.reader->turn_knob(0, 5000);
+  EXPECT_EQ(pair.run->knob_wanted(0), 1000);
+  pair.reader->turn_knob(0, std::numeric_limits<double>::quiet_NaN());
+  EXPECT_EQ(pair.run->knob_wanted(0), 1000);
+  pair.run->store_knob(0, 400);
+  EXPECT_EQ(pair.reader->knob(0), 400);
+}
+
+TEST(Share, CarriesWhatViewersAskFor) {
+  const Pair pair = joined(small_scene());
+  EXPECT_FALSE(pair.run->pause_asked());
+  pair.reader->ask_pause(true);
+  EXPECT_TRUE(pair.run->pause_asked());
+  EXPECT_FALSE(pair.run->stop_asked());
+  pair.reader->ask_stop();
+  EXPECT_TRUE(pair.run->stop_asked());
+
+  EXPECT_FALSE(pair.run->record_order_after(0));
+  ASSERT_TRUE(pair.reader->ask_record("touch.h5"));
+  auto order = pair.run->record_order_after(0);
+  ASSERT_TRUE(order);
+  EXPECT_TRUE(order->record);
+  EXPECT_EQ(order->path, "touch.h5");
+  ASSERT_TRUE(pair.reader->ask_record_stop());
+  order = pair.run->record_order_after(order->number);
+  ASSERT_TRUE(order);
+  EXPECT_FALSE(order->record);
+  EXPECT_FALSE(pair.run->record_order_after(order->number));
+
+  SharedHand hand;
+  EXPECT_FALSE(pair.run->hand(hand)) << "nobody has led it";
+  ASSERT_TRUE(pair.reader->lead_hand({0.01, 0.02, 0.03}, true));
+  ASSERT_TRUE(pair.run->hand(hand));
+  EXPECT_EQ(hand.p_WH[1], 0.02);
+  EXPECT_EQ(hand.active, 1U);
+  EXPECT_FALSE(pair.reader->lead_hand({std::numeric_limits<double>::infinity(), 0, 0}, true));
+}
+
+/// Lets a child process do something with a run's memory and die by SIGKILL.
+template <class Work>
+void in_a_viewer_that_is_killed(Work work) {
+  const pid_t viewer = fork();
+  if (viewer == 0) {
+    work();
+    raise(SIGKILL);
+  }
+  int status = 0;
+  ASSERT_EQ(waitpid(viewer, &status, 0), viewer);
+  ASSERT_TRUE(WIFSIGNALED(status));
+}
+
+TEST(Share, LetsTheHandGoWhenTheViewerThatHoldsItDies) {
+  const Pair pair = joined(small_scene());
+  in_a_viewer_that_is_killed([&] { pair.reader->lead_hand({0, 0, 0}, true); });
+  SharedHand hand;
+  ASSERT_TRUE(pair.run->hand(hand));
+  EXPECT_EQ(hand.active, 1U);
+  pair.run->watch_viewers();
+  ASSERT_TRUE(pair.run->hand(hand));
+  EXPECT_EQ(hand.active, 0U);
+  // One that lives keeps it.
+  ASSERT_TRUE(pair.reader->lead_hand({0, 0, 0}, true));
+  pair.run->watch_viewers();
+  ASSERT_TRUE(pair.run->hand(hand));
+  EXPECT_EQ(hand.active, 1U);
+}
+
+TEST(Share, HearsTheNextViewerAfterOneWasKilledWhileItWrote) {
+  const Pair pair = joined(small_scene());
+  auto* live = reinterpret_cast<SharedLive*>(pair.run->memory().bytes().data() + kSharedLiveOffset);
+  ASSERT_TRUE(pair.reader->lead_hand({1, 1, 1}, true));
+  // What such a death leaves: its turn, and a snapshot half written (its first word is odd).
+  in_a_viewer_that_is_killed(
+      [&] { live->requests.writer.store(static_cast<std::uint64_t>(getpid())); });
+  auto& sequence = *reinterpret_cast<std::atomic<std::uint64_t>*>(&live->requests.hand);
+  sequence.store(sequence.load() + 1);
+  SharedHand hand;
+  EXPECT_FALSE(pair.run->hand(hand)) << "half of it must not be taken";
+  ASSERT_TRUE(pair.reader->lead_hand({2, 2, 2}, true));
+  ASSERT_TRUE(pair.run->hand(hand));
+  EXPECT_EQ(hand.p_WH[0], 2);
+  EXPECT_EQ(sequence.load() % 2, 0U);
+}
+
+TEST(Share, IsForThisUserAloneAndGoneAfterwards) {
+  const std::string name = name_for("private");
+  const std::string path = "/dev/shm/thimble-" + std::to_string(geteuid()) + "-" + name;
+  {
+    const auto run = SharedRun::create(name, small_scene(), 10).value();
+    struct stat status {};
+    ASSERT_EQ(stat(path.c_str(), &status), 0);
+    EXPECT_EQ(status.st_mode & 0777, 0600U);
+    EXPECT_EQ(SharedReader::attach(name).value()->name(), name);
+    const auto second = SharedRun::create(name, small_scene(), 10);
+    ASSERT_FALSE(second);
+    EXPECT_NE(second.error().message.find("already shown"), std::string::npos);
+    bool listed = false;
+    for (const RunningRun& one : running_runs()) listed |= one.name == name;
+    EXPECT_TRUE(listed);
+  }
+  struct stat status {};
+  EXPECT_NE(stat(path.c_str(), &status), 0);
+  const auto gone = SharedReader::attach(name);
+  ASSERT_FALSE(gone);
+  EXPECT_NE(gone.error().message.find("--list"), std::string::npos) << gone.error().message;
+}
+
+TEST(Share, TellsThatARunWasKilledAndClearsItAway) {
+  const std::string name = name_for("killed");
+  std::array<int, 2> pipe_ends{};
+  ASSERT_EQ(pipe(pipe_ends.data()), 0);
+  const pid_t child = fork();
+  if (child == 0) {
+    const auto run = SharedRun::create(name, small_scene(), 10).value();
+    run->set_state(RunState::kRunning);
+    static_cast<void>(write(pipe_ends[1], "x", 1));
+    for (;;) pause();
+  }
+  char ready = 0;
+  ASSERT_EQ(read(pipe_ends[0], &ready, 1), 1);
+  const auto reader = SharedReader::attach(name).value();
+  EXPECT_EQ(reader->state(), RunState::kRunning);
+  EXPECT_FALSE(reader->died());
+  kill(child, SIGKILL);
+  waitpid(child, nullptr, 0);
+  EXPECT_TRUE(reader->died());
+  EXPECT_EQ(reader->state(), RunState::kEnded);
+  for (const RunningRun& one : running_runs()) EXPECT_NE(one.name, name);
+  // Its name is free again.
+  EXPECT_TRUE(SharedRun::create(name, small_scene(), 10));
+}
+
+/// Gives a copy of a run's memory, aligned as the real one.
+struct Copy {
+  explicit Copy(std::span<const std::byte> from)
+      : words(from.size() / 8 + 8), bytes(aligned(), from.size()) {
+    std::memcpy(bytes.data(), from.data(), from.size());
+  }
+  std::byte* aligned() {
+    auto at = reinterpret_cast<std::uintptr_t>(words.data());
+    return reinterpret_cast<std::byte*>((at + 63) / 64 * 64);
+  }
+  std::vector<std::uint64_t> words;
+  std::span<std::byte> bytes;
+};
+
+/// Asks a reader everything there is to ask.
+void read_all(SharedReader& reader) {
+  TickRecord tick;
+  static_cast<void>(reader.newest(tick));
+  std::uint64_t serial = 0;
+  std::vector<TickRecord> ticks;
+  reader.ticks_since(serial, ticks);
+  ScenePoses poses;
+  static_cast<void>(reader.poses(poses));
+  render::BodyPatch patch{};
+  static_cast<void>(reader.patch(patch));
+  for (std::size_t i = 0; i < reader.scene().objects.size(); ++i) {
+    std::vector<Eigen::Vector3d> vertices(reader.scene().objects[i].vertex_count);
+    reader.shaped_vertices(i, vertices);
+  }
+  for (std::size_t i = 0; i < reader.scene().knobs.size(); ++i) {
+    const double value = reader.knob(i);
+    EXPECT_TRUE(value >= reader.scene().knobs[i].least && value <= reader.scene().knobs[i].most);
+  }
+  static_cast<void>(reader.counters());
+  static_cast<void>(reader.recording_path());
+  static_cast<void>(reader.state());
+  static_cast<void>(arm_lines(reader.scene().arm, tick));
+}
+
+TEST(Share, RefusesAnotherVersionWithASentence) {
+  const Pair pair = joined(small_scene());
+  Copy copy(pair.run->memory().bytes());
+  const std::uint32_t other = kSharedVersion + 1;
+  std::memcpy(copy.bytes.data() + offsetof(SharedHead, version), &other, sizeof other);
+  const auto reader = SharedReader::over(copy.bytes);
+  ASSERT_FALSE(reader);
+  EXPECT_NE(reader.error().message.find("different builds"), std::string::npos);
+}
+
+TEST(Share, RefusesEveryFlippedByteOfWhatDoesNotChange) {
+  const Pair pair = joined(small_scene());
+  Copy copy(pair.run->memory().bytes());
+  const auto& head = *reinterpret_cast<const SharedHead*>(copy.bytes.data());
+  const auto refused = [&](std::size_t at) {
+    copy.bytes[at] ^= std::byte{0x41};
+    EXPECT_FALSE(SharedReader::over(copy.bytes)) << "byte " << at;
+    copy.bytes[at] ^= std::byte{0x41};
+  };
+  for (std::size_t at = 0; at < sizeof(SharedHead); ++at) refused(at);
+  for (std::size_t at = head.objects.offset;
+       at < head.triangles.offset + head.triangles.count * sizeof(SharedTriangle); ++at) {
+    // Between two tables there are bytes that nobody reads.
+    for (const auto& [table, size] :
+         {std::pair(head.objects, sizeof(SharedObject)), std::pair(head.knobs, sizeof(SharedKnob)),
+          std::pair(head.vertices, sizeof(SharedVertex)),
+          std::pair(head.triangles, sizeof(SharedTriangle))}) {
+      if (at >= table.offset && at < table.offset + table.count * size) refused(at);
+    }
+  }
+  EXPECT_TRUE(SharedReader::over(copy.bytes)) << "as it was";
+}
+
+TEST(Share, ReadsAnyNonsenseInWhatChangesWithoutHarm) {
+  const Pair pair = joined(small_scene());
+  for (std::uint64_t i = 0; i < 150; ++i) pair.run->store_tick(tick_number(i));
+  pair.run->store_patch({});
+  pair.run->store_poses({});
+  Copy copy(pair.run->memory().bytes());
+  const auto reader = SharedReader::over(copy.bytes).value();
+  read_all(*reader);
+  EXPECT_EQ(reader->rejected(), 0U);
+  std::mt19937_64 random(1);
+  const std::size_t begin = kSharedLiveOffset;
+  const auto& tables = *reinterpret_cast<const SharedHead*>(copy.bytes.data());
+  for (int round = 0; round < 200; ++round) {
+    const int flips = 1 << random() % 12;
+    for (int i = 0; i < flips; ++i) {
+      const std::size_t at = begin + random() % (copy.bytes.size() - begin);
+      if (at >= tables.objects.offset && at < tables.shaped.offset) continue;
+      copy.bytes[at] = static_cast<std::byte>(random());
+    }
+    read_all(*reader);
+  }
+  EXPECT_GT(reader->rejected(), 0U) << "nothing was put to the test";
+}
+
+TEST(Share, RefusesMemoryThatWasCutShort) {
+  const Pair pair = joined(small_scene());
+  for (std::size_t bytes = 0; bytes < pair.run->memory().bytes().size(); bytes += 613) {
+    Copy copy(pair.run->memory().bytes().first(bytes));
+    EXPECT_FALSE(SharedReader::over(copy.bytes)) << bytes;
+  }
+}
+
+TEST(Share, OutlivesMemoryThatIsCutShortUnderIt) {
+  const std::string name = name_for("cut");
+  const auto run = SharedRun::create(name, small_scene(), 100).value();
+  for (std::uint64_t i = 0; i < 150; ++i) run->store_tick(tick_number(i));
+  const auto reader = SharedReader::attach(name).value();
+  read_all(*reader);
+  EXPECT_FALSE(reader->died());
+  const std::string path = "/dev/shm/thimble-" + std::to_string(geteuid()) + "-" + name;
+  ASSERT_EQ(truncate(path.c_str(), 100), 0);
+  read_all(*reader);
+  EXPECT_TRUE(reader->died());
+  EXPECT_EQ(reader->state(), RunState::kEnded);
+  run->store_tick(tick_number(150));  // nor does the servo die of it
+  EXPECT_TRUE(run->memory().broken());
+  EXPECT_FALSE(SharedReader::attach(name)) << "nobody else attaches to it";
+}
+
+}  // namespace
+}  // namespace thimble::app
