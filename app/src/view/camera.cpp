@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "view/touch_marks.h"
+
 namespace thimble::app::view {
 namespace {
 
@@ -77,25 +79,39 @@ void Camera::pan(double right_share, double up_share) {
 
 void Camera::zoom(double factor) { distance = std::clamp(distance / factor, 1e-3, 10.0); }
 
-Eigen::AlignedBox3d framed_box(const DrawnScene& scene, const DrawnMoment& moment) {
-  Eigen::AlignedBox3d box;
+std::vector<Eigen::Vector3d> framed_points(const DrawnScene& scene, const DrawnMoment& moment) {
+  constexpr std::size_t kEnough = 4000;  // vertices show what shape a mesh has
+  std::vector<Eigen::Vector3d> points;
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     if (scene.objects[i].endless) continue;
-    const render::BodyPose pose =
-        i < moment.poses.size() ? moment.poses[i] : render::BodyPose{};
-    for (const Eigen::Vector3d& vertex : scene.objects[i].mesh.vertices) {
-      box.extend(placed(pose, vertex));
+    const render::BodyPose pose = i < moment.poses.size() ? moment.poses[i] : render::BodyPose{};
+    const auto& vertices = scene.objects[i].mesh.vertices;
+    const std::size_t step = vertices.size() / kEnough + 1;
+    for (std::size_t v = 0; v < vertices.size(); v += step) {
+      points.push_back(placed(pose, vertices[v]));
     }
   }
   const Eigen::Map<const Eigen::Vector3d> p_WT(moment.tick.p_WT.data());
-  if (p_WT.allFinite()) box.extend(p_WT);
-  // A field has no size: the tip alone would fill the picture.
-  const double least = 0.06;  // m
-  if (box.sizes().maxCoeff() < least) {
-    box.extend(Eigen::Vector3d(box.center().array() + least / 2));
-    box.extend(Eigen::Vector3d(box.center().array() - least / 2));
+  const Eigen::Map<const Eigen::Vector3d> f_W(moment.tick.f_sent_W.data());
+  if (p_WT.allFinite()) points.emplace_back(p_WT);
+  if (p_WT.allFinite() && f_W.norm() > 0) {
+    const Eigen::Map<const Eigen::Vector3d> p_WP(moment.tick.p_WP.data());
+    const Eigen::Vector3d from = moment.tick.in_contact && p_WP.allFinite() ? p_WP : p_WT;
+    points.emplace_back(from + arrow_length(f_W.norm(), scene) * f_W.normalized());
   }
-  return box;
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3d& point : points) box.extend(point);
+  // A field has no size: the tip alone would fill the picture.
+  constexpr double kLeast = 0.1;  // m
+  if (box.isEmpty()) box.extend(Eigen::Vector3d(0, 0, 0));
+  if (box.sizes().maxCoeff() < kLeast) {
+    for (const double end : {-kLeast / 2, kLeast / 2}) {
+      for (int k = 0; k < 3; ++k) {
+        points.emplace_back(box.center() + end * Eigen::Vector3d::Unit(k));
+      }
+    }
+  }
+  return points;
 }
 
 Camera frame(const DrawnScene& scene, const DrawnMoment& moment, double aspect) {
@@ -110,20 +126,32 @@ Camera frame(const DrawnScene& scene, const DrawnMoment& moment, double aspect) 
   }
   if (moment.tick.in_contact && n_W.z() > 0.9) camera.pitch = 0.5;
 
-  const Eigen::AlignedBox3d box = framed_box(scene, moment);
-  camera.p_WTarget = box.center();
+  const std::vector<Eigen::Vector3d> points = framed_points(scene, moment);
   const double slope_v = std::tan(camera.opening / 2) / kMargin;
   const double slope_u = slope_v * aspect;
-  // The least distance at which each corner of the box is inside all four sides of the picture.
-  double distance = 0;
-  for (int k = 0; k < 8; ++k) {
-    const Eigen::Vector3d corner =
-        box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(k)) - box.center();
-    const double towards = corner.dot(camera.towards_eye());
-    distance = std::max({distance, towards + std::abs(corner.dot(camera.right())) / slope_u,
-                         towards + std::abs(corner.dot(camera.up())) / slope_v});
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3d& point : points) box.extend(point);
+  camera.p_WTarget = box.center();
+  // The least distance at which each point is inside all four sides of the picture; then again
+  // with the target moved to the middle of what is seen.
+  for (int round = 0; round < 4; ++round) {
+    const Eigen::Vector3d forward = camera.towards_eye();
+    camera.distance = 0.02;
+    Eigen::Array2d low(1e9, 1e9);
+    Eigen::Array2d high(-1e9, -1e9);
+    for (const Eigen::Vector3d& point : points) {
+      const Eigen::Vector3d from = point - camera.p_WTarget;
+      const double towards = from.dot(forward);
+      const Eigen::Array2d seen(from.dot(camera.right()), from.dot(camera.up()));
+      camera.distance = std::max({camera.distance, towards + std::abs(seen.x()) / slope_u,
+                                  towards + std::abs(seen.y()) / slope_v});
+      low = low.min(seen);
+      high = high.max(seen);
+    }
+    if (round == 3) break;
+    const Eigen::Array2d middle = (low + high) / 2;
+    camera.p_WTarget += middle.x() * camera.right() + middle.y() * camera.up();
   }
-  camera.distance = distance;
   return camera;
 }
 

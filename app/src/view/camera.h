@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <vector>
 
 #include "view/drawn_scene.h"
 
@@ -43,8 +44,9 @@ struct Camera {
   void zoom(double factor);
 };
 
-/// Finds the box around all that must be seen: objects where they are, and the tip (W, m).
-Eigen::AlignedBox3d framed_box(const DrawnScene& scene, const DrawnMoment& moment);
+/// Lists points that must be seen (W, m): of objects where they are, of the tip and the force. A
+/// large mesh gives some thousand of its vertices.
+std::vector<Eigen::Vector3d> framed_points(const DrawnScene& scene, const DrawnMoment& moment);
 
 /// Finds a camera that shows the scene well: all of it in the picture, the touched side to the
 /// front. `aspect` is the picture's width by height.

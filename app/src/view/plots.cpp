@@ -25,26 +25,24 @@ double round_up(double value) {
   return 10 * power;
 }
 
-ImDrawList& list() { return *ImGui::GetForegroundDrawList(); }
-
 /// Draws the box of a plot, its title and the two ends of its axis; gives the inner part.
-ScreenPart draw_box(const ScreenPart& part, const char* title, const char* top, const char* unit) {
+ScreenPart draw_box(ImDrawList& list, const ScreenPart& part, const char* title, const char* top, const char* unit) {
   const float line = ImGui::GetFontSize();
   const float pad = 0.35F * line;
   const ScreenPart inner = {part.x, part.y + 1.5F * line, part.width, part.height - 1.5F * line};
-  list().AddRectFilled({inner.x, inner.y}, {inner.x + inner.width, inner.y + inner.height},
+  list.AddRectFilled({inner.x, inner.y}, {inner.x + inner.width, inner.y + inner.height},
                        packed(kSkyColour));
-  list().AddText({part.x, part.y + 0.2F * line}, packed(kTextColour), title);
+  list.AddText({part.x, part.y + 0.2F * line}, packed(kTextColour), title);
   char text[64];
   std::snprintf(text, sizeof text, "%s %s", top, unit);
   const ImVec2 size = ImGui::CalcTextSize(text);
-  list().AddText({part.x + part.width - size.x, part.y + 0.2F * line}, packed(kQuietTextColour),
+  list.AddText({part.x + part.width - size.x, part.y + 0.2F * line}, packed(kQuietTextColour),
                  text);
   for (int k = 1; k < 4; ++k) {
     const float y = inner.y + inner.height * static_cast<float>(k) / 4;
-    list().AddLine({inner.x, y}, {inner.x + inner.width, y}, packed(kGridColour, 0.25F));
+    list.AddLine({inner.x, y}, {inner.x + inner.width, y}, packed(kGridColour, 0.25F));
   }
-  list().AddLine({inner.x, inner.y + inner.height},
+  list.AddLine({inner.x, inner.y + inner.height},
                  {inner.x + inner.width, inner.y + inner.height}, packed(kGridColour));
   return {inner.x, inner.y + pad, inner.width, inner.height - pad};
 }
@@ -73,10 +71,10 @@ void Plots::add(const driver::TickRecord& tick) {
   while (samples_.front().time < time - kSeconds) samples_.pop_front();
 }
 
-void Plots::draw_line(const ScreenPart& part, const Look& look, float Sample::*value) const {
+void Plots::draw_line(ImDrawList& list, const ScreenPart& part, const Look& look, float Sample::*value) const {
   char top[32];
   std::snprintf(top, sizeof top, "%g", look.top);
-  const ScreenPart inner = draw_box(part, look.title, top, look.unit);
+  const ScreenPart inner = draw_box(list, part, look.title, top, look.unit);
   if (samples_.empty()) return;
   // From the least to the most within each column of pixels, so that no spike is lost.
   const double end = std::max(samples_.back().time, samples_.front().time + kSeconds);
@@ -103,32 +101,32 @@ void Plots::draw_line(const ScreenPart& part, const Look& look, float Sample::*v
     const float x = inner.x + static_cast<float>(i) + 0.5F;
     line.push_back({x, y(spans[i].least)});
     if (spans[i].most > spans[i].least) line.push_back({x, y(spans[i].most)});
-    list().AddLine({x, inner.y + inner.height}, {x, y(spans[i].most)}, packed(look.colour, 0.10F));
+    list.AddLine({x, inner.y + inner.height}, {x, y(spans[i].most)}, packed(look.colour, 0.10F));
   }
-  list().AddPolyline(line.data(), static_cast<int>(line.size()), packed(look.colour), 0,
+  list.AddPolyline(line.data(), static_cast<int>(line.size()), packed(look.colour), 0,
                      std::max(1.5F, ImGui::GetFontSize() / 9));
 }
 
-void Plots::draw_force(const ScreenPart& part, double force_limit) const {
+void Plots::draw_force(ImDrawList& list, const ScreenPart& part, double force_limit) const {
   float most = 0.5F;
   for (const Sample& sample : samples_) most = std::max(most, sample.force);
-  draw_line(part, {"force", "N", kForceColour, std::min(round_up(most), round_up(force_limit))},
+  draw_line(list, part, {"force", "N", kForceColour, std::min(round_up(most), round_up(force_limit))},
             &Sample::force);
 }
 
-void Plots::draw_depth(const ScreenPart& part) const {
+void Plots::draw_depth(ImDrawList& list, const ScreenPart& part) const {
   float most = 1;
   for (const Sample& sample : samples_) most = std::max(most, sample.depth);
-  draw_line(part, {"depth", "mm", kDepthColour, round_up(most)}, &Sample::depth);
+  draw_line(list, part, {"depth", "mm", kDepthColour, round_up(most)}, &Sample::depth);
 }
 
-void Plots::draw_work(const ScreenPart& part) const {
+void Plots::draw_work(ImDrawList& list, const ScreenPart& part) const {
   float most = 10;
   for (const Sample& sample : samples_) most = std::max(most, sample.work);
-  draw_line(part, {"time a tick computes", "us", kEdgePlaneColour, round_up(most)}, &Sample::work);
+  draw_line(list, part, {"time a tick computes", "us", kEdgePlaneColour, round_up(most)}, &Sample::work);
 }
 
-void Plots::draw_periods(const ScreenPart& part, std::int64_t period_ns) const {
+void Plots::draw_periods(ImDrawList& list, const ScreenPart& part, std::int64_t period_ns) const {
   const double wanted = static_cast<double>(period_ns) * 1e-3;
   constexpr std::size_t kBins = 61;
   std::array<int, kBins> count{};
@@ -145,7 +143,7 @@ void Plots::draw_periods(const ScreenPart& part, std::int64_t period_ns) const {
   }
   char range[64];
   std::snprintf(range, sizeof range, "%g +/- %g", wanted, reach);
-  const ScreenPart inner = draw_box(part, "period", range, "us");
+  const ScreenPart inner = draw_box(list, part, "period", range, "us");
   const int most = std::max(1, *std::max_element(count.begin(), count.end()));
   for (std::size_t i = 0; i < kBins; ++i) {
     if (count[i] == 0) continue;
@@ -154,7 +152,7 @@ void Plots::draw_periods(const ScreenPart& part, std::int64_t period_ns) const {
     const float width = inner.width / kBins;
     const float x = inner.x + width * static_cast<float>(i);
     const float top = inner.y + inner.height * static_cast<float>(1 - share);
-    list().AddRectFilled({x, top}, {x + std::max(1.0F, width - 1), inner.y + inner.height},
+    list.AddRectFilled({x, top}, {x + std::max(1.0F, width - 1), inner.y + inner.height},
                          packed(kDepthColour, 0.8F));
   }
 }

@@ -7,6 +7,8 @@
 #include "thimble/driver/tick_record.h"
 #include "view/text_style.h"
 
+struct ImDrawList;
+
 namespace thimble::app::view {
 
 /// Keeps the last seconds of a run and draws them over time, into a part of the screen.
@@ -19,17 +21,16 @@ class Plots {
   void add(const driver::TickRecord& tick);
   void clear();
 
-  // To be called between ImGui's NewFrame and Render; they draw into its current window, or behind
-  // all windows if there is none.
+  // To be called between ImGui's NewFrame and Render.
 
   /// Draws the force on the hand (N), up to its limit if it comes near.
-  void draw_force(const ScreenPart& part, double force_limit) const;
+  void draw_force(ImDrawList& list, const ScreenPart& part, double force_limit) const;
   /// Draws how deep the tip is (mm).
-  void draw_depth(const ScreenPart& part) const;
+  void draw_depth(ImDrawList& list, const ScreenPart& part) const;
   /// Draws how long ticks computed (us): nothing where time is virtual.
-  void draw_work(const ScreenPart& part) const;
+  void draw_work(ImDrawList& list, const ScreenPart& part) const;
   /// Draws how often periods lasted how long about the wanted one (ns).
-  void draw_periods(const ScreenPart& part, std::int64_t period_ns) const;
+  void draw_periods(ImDrawList& list, const ScreenPart& part, std::int64_t period_ns) const;
 
  private:
   struct Sample {
@@ -40,7 +41,7 @@ class Plots {
     float period;   // us
   };
   struct Look;
-  void draw_line(const ScreenPart& part, const Look& look, float Sample::*value) const;
+  void draw_line(ImDrawList& list, const ScreenPart& part, const Look& look, float Sample::*value) const;
 
   std::deque<Sample> samples_;
 };

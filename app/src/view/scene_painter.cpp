@@ -42,6 +42,13 @@ void set_paint(const GlProgram& program, const Colour& colour, float cover) {
   glUniform4f(program.at("paint"), colour[0], colour[1], colour[2], cover);
 }
 
+/// Tells whether a plane's mesh is level, so that it can be drawn as the ground.
+bool is_level(const render::TriangleMesh& mesh) {
+  return std::all_of(mesh.vertices.begin(), mesh.vertices.end(), [&](const auto& vertex) {
+    return std::abs(vertex.z() - mesh.vertices[0].z()) < 1e-9;
+  });
+}
+
 }  // namespace
 
 /// Is the block of the shaders that all programs read; std140 leaves no gaps between these.
@@ -65,7 +72,9 @@ ScenePainter::ScenePainter(DrawnScene scene)
   Eigen::AlignedBox3d box;
   for (const DrawnObject& object : scene_.objects) {
     models_.emplace_back(object.mesh, object.crease_angle);
-    if (object.endless) has_ground_ = false;
+    if (object.endless && is_level(object.mesh)) {
+      floor_object_ = static_cast<std::ptrdiff_t>(models_.size()) - 1;
+    }
     for (const Eigen::Vector3d& vertex : object.mesh.vertices) box.extend(vertex);
   }
   if (box.isEmpty()) box = Eigen::AlignedBox3d(Eigen::Vector3d::Constant(-0.06),
@@ -73,6 +82,9 @@ ScenePainter::ScenePainter(DrawnScene scene)
   light_centre_ = box.center();
   light_radius_ = std::clamp(0.5 * box.diagonal().norm() + 0.05, 0.08, 0.5);
   ground_height_ = box.min().z() - 2e-4;  // so that what stands on it does not flicker
+  if (floor_object_ >= 0) {
+    ground_height_ = scene_.objects[static_cast<std::size_t>(floor_object_)].mesh.vertices[0].z();
+  }
 
   glBindTexture(GL_TEXTURE_2D, *shadow_map_);
   glTexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT24, kShadowPixels, kShadowPixels, 0,
@@ -176,12 +188,19 @@ void ScenePainter::paint_shadows(const std::vector<Solid>& solids) {
   glDisable(GL_POLYGON_OFFSET_FILL);
 }
 
+// Twice what a pixel of the light's map covers, m.
+float ScenePainter::shadow_offset() const {
+  return static_cast<float>(2 * 2 * light_radius_ / kShadowPixels);
+}
+
 void ScenePainter::paint_surfaces(const PaintChoice& choice) {
   for (const GlProgram* program : {&surface_, &dent_}) {
     glUseProgram(**program);
     glUniform1i(program->at("gouraud"), choice.shading == Shading::kGouraud ? 1 : 0);
     glUniform1f(program->at("shadow_strength"), choice.shadows ? 1.0F : 0.0F);
+    glUniform1f(program->at("shadow_offset"), shadow_offset());
     for (std::size_t i = 0; i < models_.size(); ++i) {
+      if (static_cast<std::ptrdiff_t>(i) == floor_object_) continue;
       set(*program, "model", places_[i]);
       set(*program, "normal_matrix", Eigen::Matrix3f(places_[i].block<3, 3>(0, 0)));
       set_colour(*program, object_colour(i), 0.16F);
@@ -227,7 +246,7 @@ void ScenePainter::paint_edges(const PaintChoice& choice) {
   glDepthMask(GL_FALSE);
   for (std::size_t i = 0; i < models_.size(); ++i) {
     const bool few = models_[i].triangles() <= kFewTriangles && !scene_.objects[i].stands_for_shape;
-    if (choice.edges == Edges::kAuto && !few) continue;
+    if (scene_.objects[i].endless || (choice.edges == Edges::kAuto && !few)) continue;
     set(plain_, "model", places_[i]);
     set_paint(plain_, kTextColour, 0.22F);
     shown(i).draw_edges();
@@ -236,14 +255,15 @@ void ScenePainter::paint_edges(const PaintChoice& choice) {
 }
 
 void ScenePainter::paint_ground(bool grid) {
-  if (!has_ground_) return;
   glUseProgram(*ground_);
+  const Eigen::Vector3f colour = linear(
+      floor_object_ < 0 ? kGroundColour : object_colour(static_cast<std::size_t>(floor_object_)));
+  glUniform3fv(ground_.at("colour"), 1, colour.data());
   glUniform1f(ground_.at("shadow_strength"), 1);
   glUniform1f(ground_.at("grid_strength"), grid ? 1.0F : 0.0F);
   glBindVertexArray(*nothing_);
-  glDepthMask(GL_FALSE);
+  // Its depth counts, so that what is below it is not outlined above.
   glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
-  glDepthMask(GL_TRUE);
 }
 
 void ScenePainter::paint_panes(const std::vector<Pane>& panes, const Camera& camera) {

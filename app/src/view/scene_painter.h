@@ -68,6 +68,7 @@ class ScenePainter {
   void paint_ground(bool grid);
   void paint_panes(const std::vector<Pane>& panes, const Camera& camera);
   void place_objects(const DrawnMoment& moment, DentNormals normals);
+  float shadow_offset() const;
   const SurfaceModel& shown(std::size_t object) const;
 
   DrawnScene scene_;
@@ -85,7 +86,7 @@ class ScenePainter {
   Eigen::Vector3d light_centre_{0, 0, 0};
   double light_radius_ = 0.2;  // m: what is nearer to the centre casts shadows
   double ground_height_ = 0;   // m
-  bool has_ground_ = true;
+  std::ptrdiff_t floor_object_ = -1;  // the object that is the ground: a level plane
 };
 
 }  // namespace thimble::app::view

@@ -26,11 +26,11 @@ void light(vec3 n_any, vec3 p, out vec3 around, out vec3 direct) {
   vec3 to_eye = normalize(eye.xyz - p);
   float up = 0.5 + 0.5 * n.z;
   vec3 fill = normalize(vec3(0.35, 0.85, 0.15));
-  around = colour * (mix(vec3(0.20, 0.185, 0.175), vec3(0.40, 0.43, 0.47), up) +
-                     0.16 * max(dot(n, fill), 0.0));
+  around = colour * (mix(vec3(0.17, 0.155, 0.15), vec3(0.36, 0.39, 0.43), up) +
+                     0.18 * max(dot(n, fill), 0.0));
   float facing = max(dot(n, key.xyz), 0.0);
   float mirror = pow(max(dot(n, normalize(key.xyz + to_eye)), 0.0), 48.0);
-  direct = colour * (0.78 * facing) + vec3(gloss * mirror * smoothstep(0.0, 0.2, facing));
+  direct = colour * (0.90 * facing) + vec3(gloss * mirror * smoothstep(0.0, 0.2, facing));
 }
 )";
 
@@ -48,7 +48,9 @@ float lit(vec3 p) {
       sum += texture(shadow_map, vec3(at.xy + (vec2(i, j) - 1.5) * texel, at.z));
     }
   }
-  return mix(1.0, sum / 16.0, shadow_strength);
+  // Towards the rim of what the light's map holds, shadows fade: beyond nothing is known.
+  float rim = 2.0 * max(abs(at.x - 0.5), abs(at.y - 0.5));
+  return mix(1.0, sum / 16.0, shadow_strength * (1.0 - smoothstep(0.8, 0.98, rim)));
 }
 )";
 
@@ -131,12 +133,14 @@ in vec3 n_W;
 in vec3 around_v;
 in vec3 direct_v;
 uniform int gouraud;
+uniform float shadow_offset;  // m
 out vec4 pixel;
 void main() {
   vec3 around = around_v;
   vec3 direct = direct_v;
   if (gouraud == 0) light(n_W, p_W, around, direct);
-  float open = lit(p_W);
+  // Asked a little off the surface, or it would cast shadows on itself.
+  float open = lit(p_W + shadow_offset * normalize(n_W));
   pixel = vec4(to_screen(around * (0.82 + 0.18 * open) + direct * open), 1.0);
 }
 )";
@@ -213,6 +217,7 @@ std::string ground_fragment() {
   return kHead + kShadow + kToScreen + R"(
 in vec3 p_W;
 uniform float grid_strength;
+uniform vec3 colour;   // linear
 out vec4 pixel;
 // How much of the pixel a grid's lines cover, for lines about a pixel wide.
 float lines(float pitch) {
@@ -224,10 +229,10 @@ float lines(float pitch) {
 }
 void main() {
   float away = length(p_W.xy - ground_place.xy) / ground_place.w;
-  float fade = 1.0 - smoothstep(0.25, 1.0, away);
-  float grid_cover = max(0.35 * lines(0.01), 0.8 * lines(0.05)) * grid_strength;
-  vec3 dark = mix(ground.rgb * 0.36, ground.rgb, lit(p_W));
-  vec3 shown = mix(dark, grid.rgb * (0.45 + 0.55 * lit(p_W)), grid_cover);
+  float fade = 1.0 - smoothstep(0.15, 0.9, away);
+  float grid_cover = max(0.28 * lines(0.01), 0.6 * lines(0.05)) * grid_strength;
+  float open = lit(p_W);
+  vec3 shown = mix(colour, grid.rgb, grid_cover) * mix(vec3(0.52, 0.545, 0.58), vec3(1.0), open);
   // Seen from below the ground is not in the way.
   float from_above = smoothstep(0.0, 0.02, eye.z - p_W.z);
   pixel = vec4(to_screen(shown), fade * from_above);

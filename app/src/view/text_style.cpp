@@ -11,7 +11,7 @@ namespace thimble::app::view {
 namespace {
 
 constexpr const char* kFont = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";  // fonts-dejavu-core
-constexpr float kFontSize = 15;  // pixels at scale 1
+constexpr float kFontSize = 16;  // pixels at scale 1
 
 ImU32 packed(const Colour& colour, float cover = 1) {
   return ImGui::ColorConvertFloat4ToU32({colour[0], colour[1], colour[2], cover});
@@ -22,7 +22,7 @@ void write_rimmed(ImDrawList& list, const ImVec2& at, const Colour& colour, cons
   for (int k = 0; k < 8; ++k) {
     const float turn = static_cast<float>(k) * 0.785398F;
     list.AddText({at.x + rim * std::cos(turn), at.y + rim * std::sin(turn)},
-                 packed(kSkyColour, 0.5F), text);
+                 packed(kSkyColour, 0.8F), text);
   }
   list.AddText(at, packed(colour), text);
 }
@@ -71,9 +71,14 @@ void write_labels(const std::vector<Label>& labels, const Camera& camera, const 
     if ((label.p_W - camera.p_WEye()).dot(camera.towards_eye()) >= 0) continue;
     const Eigen::Vector2f at =
         camera.pixel(label.p_W, part.width, part.height).cast<float>();
+    // To the left or right, where the scene says there is room: above stands the arm.
+    const double side = label.away_W.dot(camera.right());
+    const Eigen::Vector2f away(side < -0.05 ? -1.0F : 1.0F, 0);
     const ImVec2 size = ImGui::CalcTextSize(label.text.c_str());
-    const float x = std::clamp(at.x() + margin, margin, part.width - size.x - margin);
-    const float y = std::clamp(at.y() - size.y - 0.2F * margin, margin,
+    const float x = std::clamp(at.x() + away.x() * (0.5F * size.x + 2.5F * margin) - 0.5F * size.x,
+                               margin,
+                               part.width - size.x - margin);
+    const float y = std::clamp(at.y() + away.y() * (0.5F * size.y + margin) - 0.5F * size.y, margin,
                                part.height - size.y - margin);
     write_rimmed(list, {std::round(part.x + x), std::round(part.y + y)}, label.colour,
                  label.text.c_str());
@@ -85,6 +90,11 @@ void write_caption(const std::string& text, const ScreenPart& part) {
   write_rimmed(*ImGui::GetBackgroundDrawList(),
                {part.x + margin, part.y + part.height - margin - ImGui::GetFontSize()},
                kQuietTextColour, text.c_str());
+}
+
+void fill_part(const ScreenPart& part, const Colour& colour) {
+  ImGui::GetBackgroundDrawList()->AddRectFilled(
+      {part.x, part.y}, {part.x + part.width, part.y + part.height}, packed(colour));
 }
 
 PictureText::PictureText(float scale) {

@@ -23,6 +23,9 @@ void write_labels(const std::vector<Label>& labels, const Camera& camera, const 
 /// Writes one line at the lower left of a part: what scene it is, and how wide the grid.
 void write_caption(const std::string& text, const ScreenPart& part);
 
+/// Fills a part with one colour, behind everything else that is written there later.
+void fill_part(const ScreenPart& part, const Colour& colour);
+
 /// Is ImGui without a window: to write on pictures. One at a time.
 class PictureText {
  public:

@@ -16,13 +16,34 @@ using Point = Eigen::Vector3d;
 Point point(const std::array<double, 3>& p) { return {p[0], p[1], p[2]}; }
 
 void add_arm(const DrawnMoment& moment, TouchMarks& marks) {
-  // As thick as the tubes of such arms, m.
-  constexpr double kTube = 0.0035;
-  constexpr double kJoint = 0.0055;
+  // As thick as the tubes of such arms, m; the last piece ends in a thin stem, as the rod that
+  // carries a thimble does, so that it hides little of what is touched.
+  constexpr double kTube = 0.0026;
+  constexpr double kJoint = 0.0042;
+  constexpr double kStem = 0.0009;
+  constexpr double kStemLength = 0.022;
+  const Point tip = point(moment.tick.p_WT);
   for (const auto& [from, to] : moment.arm) {
-    marks.solids.push_back(rod(from, to, kTube, kArmColour));
+    const double length = (to - from).norm();
+    if ((to - tip).norm() < 1e-6 && length > 2 * kStemLength) {
+      const Point along = (to - from) / length;
+      const Point neck = to - kStemLength * along;
+      const Point shoulder = neck - 0.6 * kStemLength * along;
+      marks.solids.push_back(rod(from, shoulder, kTube, kArmColour));
+      marks.solids.push_back(cone(shoulder, neck + 0.32 * kStemLength * along, kTube, kArmColour));
+      marks.solids.push_back(rod(shoulder, to, kStem, kArmColour));
+    } else {
+      marks.solids.push_back(rod(from, to, kTube, kArmColour));
+    }
     marks.solids.push_back(ball(from, kJoint, kJointColour));
   }
+}
+
+/// Tells where the touch is seen: the proxy on a stiff surface; on one that is bent, where the tip
+/// has taken it.
+Point touched_point(const DrawnMoment& moment) {
+  const bool bent = moment.patch.triangle_count > 0 && moment.patch.object == moment.tick.object;
+  return point(moment.tick.in_contact && !bent ? moment.tick.p_WP : moment.tick.p_WT);
 }
 
 void add_force(const DrawnScene& scene, const DrawnMoment& moment, double thick,
@@ -30,7 +51,7 @@ void add_force(const DrawnScene& scene, const DrawnMoment& moment, double thick,
   const Point force = point(moment.tick.f_sent_W);
   const double size = force.norm();
   if (!(size > kThinnest)) return;  // NaN: no arrow
-  const Point from = moment.tick.in_contact ? point(moment.tick.p_WP) : point(moment.tick.p_WT);
+  const Point from = touched_point(moment);
   if (!from.allFinite()) return;
   const Point along = force / size;
   const double length = std::max(arrow_length(size, scene), 6 * thick);
@@ -40,7 +61,7 @@ void add_force(const DrawnScene& scene, const DrawnMoment& moment, double thick,
   marks.solids.push_back(cone(neck, tip, 2.4 * thick, kForceColour));
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%.2f N", size);
-  marks.labels.push_back({tip, text.data(), kForceColour});
+  marks.labels.push_back({tip, along, text.data(), kForceColour});
 }
 
 void add_tip(const DrawnMoment& moment, double thick, TouchMarks& marks) {
@@ -49,9 +70,10 @@ void add_tip(const DrawnMoment& moment, double thick, TouchMarks& marks) {
   Solid tip = ball(p_WT, 1.8 * thick, kTipColour);
   tip.shines_through = true;
   marks.solids.push_back(tip);
-  const Point p_WP = point(moment.tick.p_WP);
+  const Point p_WP = touched_point(moment);
   if (!moment.tick.in_contact || !p_WP.allFinite()) return;
   marks.solids.push_back(ball(p_WP, 1.7 * thick, kProxyColour));
+  if ((p_WP - p_WT).norm() < 1e-6) return;
   Solid link = rod(p_WT, p_WP, 0.5 * thick, kTipColour);
   link.shines_through = true;
   marks.solids.push_back(link);
