@@ -97,18 +97,20 @@ void fill_part(const ScreenPart& part, const Colour& colour) {
       {part.x, part.y}, {part.x + part.width, part.y + part.height}, packed(colour));
 }
 
-PictureText::PictureText(float scale) {
-  ImGui::CreateContext();
+PictureText::PictureText(float scale) : context_(ImGui::CreateContext()) {
+  ImGui::SetCurrentContext(context_);
   set_text_style(scale);
   ImGui_ImplOpenGL3_Init("#version 330 core");
 }
 
 PictureText::~PictureText() {
+  ImGui::SetCurrentContext(context_);
   ImGui_ImplOpenGL3_Shutdown();
-  ImGui::DestroyContext();
+  ImGui::DestroyContext(context_);
 }
 
 void PictureText::begin(int width, int height) {
+  ImGui::SetCurrentContext(context_);
   ImGuiIO& io = ImGui::GetIO();
   io.DisplaySize = {static_cast<float>(width), static_cast<float>(height)};
   io.DeltaTime = 1.0F / 60;

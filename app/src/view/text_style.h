@@ -5,6 +5,8 @@
 #include "view/camera.h"
 #include "view/touch_marks.h"
 
+struct ImGuiContext;
+
 namespace thimble::app::view {
 
 /// Gives text, panels and plots of the current ImGui context their looks, `scale` times as large as
@@ -26,7 +28,7 @@ void write_caption(const std::string& text, const ScreenPart& part);
 /// Fills a part with one colour, behind everything else that is written there later.
 void fill_part(const ScreenPart& part, const Colour& colour);
 
-/// Is ImGui without a window: to write on pictures. One at a time.
+/// Is ImGui without a window, to write on pictures.
 class PictureText {
  public:
   /// Precondition: a context of OpenGL 3.3 is current, and outlives this.
@@ -35,10 +37,13 @@ class PictureText {
   PictureText& operator=(const PictureText&) = delete;
   ~PictureText();
 
-  /// Begins a picture of this size, pixels.
+  /// Begins a picture of this size, pixels. Until `end` all text goes there.
   void begin(int width, int height);
   /// Draws what was asked for since onto the framebuffer that is bound.
   void end();
+
+ private:
+  ImGuiContext* context_;
 };
 
 }  // namespace thimble::app::view
