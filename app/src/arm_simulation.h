@@ -43,6 +43,10 @@ class ArmSimulation {
   /// safe.
   void settle(std::int64_t now_ns) noexcept;
 
+  /// Gives the hand, which thinks in the arm's base. On the thread that the arm lives on.
+  /// Real-time: safe.
+  device_sim::Hand& hand() noexcept { return falcon_ ? falcon_->hand() : board_arm_->hand(); }
+
   /// Tells the currents that the motors are asked for, A (Falcon: 1000 motor values).
   Eigen::Vector3d currents() const;
   /// Tells the force of the motors on the tip, N in the world: what is true, not what was sent.

@@ -21,6 +21,8 @@
 #include "replug_watch.h"
 #include "report.h"
 #include "session.h"
+#include "share/request_desk.h"
+#include "share/viewer_process.h"
 #include "thimble/driver/real_time.h"
 #include "thimble/render/mesh/save_mesh.h"
 
@@ -30,7 +32,7 @@ namespace {
 struct RunOptions {
   std::string scene;
   std::string device = "sim";
-  std::string clock = "virtual";
+  std::string clock;  // empty: as suits
   std::optional<double> duration;
   std::optional<std::uint64_t> seed;
   std::string report;
@@ -39,7 +41,12 @@ struct RunOptions {
   std::string record;
   std::string save_mesh;
   std::string save_object;
+  std::string hand = "path";
+  std::string name;
+  bool view = false, no_view = false;
   bool yes = false;
+
+  bool led() const { return hand == "mouse"; }
 };
 
 /// Writes the seconds around a fault, if one came, where a person finds them.
@@ -56,20 +63,24 @@ void keep_black_box(Session& session) {
 }
 
 /// Tells a person on a terminal how far the run is, until it ends.
-/// Watches over a real arm meanwhile.
-void show_progress(Session& session, const std::atomic<bool>& ended, ReplugWatch* watch) {
+/// Watches over a real arm meanwhile, and hears what viewers ask.
+void show_progress(Session& session, const std::atomic<bool>& ended, ReplugWatch* watch,
+                   RequestDesk* desk) {
   const bool on_terminal = isatty(STDERR_FILENO) != 0;
   const double total = static_cast<double>(session.ticks_planned()) *
                        static_cast<double>(session.period_ns()) * 1e-9;
   while (!ended.load()) {
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
     if (watch != nullptr) watch->step();
+    if (desk != nullptr) desk->step();
     if (session.black_box().full()) keep_black_box(session);
     driver::TickRecord record;
     if (!on_terminal || !session.snapshot().load(record)) continue;
     const double force = Eigen::Map<const Eigen::Vector3d>(record.f_sent_W.data()).norm();
-    std::fprintf(stderr, "\r%6.1f of %.1f s   %-8s  force %5.2f N   depth %5.2f mm ",
-                 static_cast<double>(record.time_ns) * 1e-9, total,
+    char of_total[32] = "";
+    if (total > 0) std::snprintf(of_total, sizeof of_total, "of %.1f ", total);
+    std::fprintf(stderr, "\r%6.1f %ss   %-8s  force %5.2f N   depth %5.2f mm ",
+                 static_cast<double>(record.time_ns) * 1e-9, of_total,
                  record.in_contact ? "touching" : "free", force, record.depth * 1e3);
   }
   if (on_terminal) std::fprintf(stderr, "\r%*s\r", 70, "");
@@ -77,7 +88,7 @@ void show_progress(Session& session, const std::atomic<bool>& ended, ReplugWatch
 
 /// Runs the servo on a thread of its own; on the wall clock it asks for real-time priority first.
 driver::ServoEnd run_session(Session& session, ClockKind clock, driver::RealTimeGrant& grant,
-                             ReplugWatch* watch) {
+                             ReplugWatch* watch, RequestDesk* desk) {
   const std::atomic<bool>& stop = catch_interrupts();
   std::atomic<bool> ended{false};
   driver::ServoEnd end = driver::ServoEnd::kDone;
@@ -86,7 +97,7 @@ driver::ServoEnd run_session(Session& session, ClockKind clock, driver::RealTime
     end = session.run(stop);
     ended.store(true);
   });
-  show_progress(session, ended, watch);
+  show_progress(session, ended, watch, desk);
   servo.join();
   return end;
 }
@@ -143,6 +154,33 @@ std::optional<int> object_to_save(const Scene& scene, const std::string& name) {
   return {};
 }
 
+/// Says whether the run opens a viewer: if it is asked to, and where a person watches it in real
+/// time.
+bool wants_viewer(const RunOptions& options, bool real_time) {
+  if (options.no_view) return false;
+  if (options.view || options.led()) return has_display();
+  return real_time && has_display() && isatty(STDERR_FILENO) != 0;
+}
+
+/// Opens the viewer if one is wanted, and serves all that come.
+std::unique_ptr<RequestDesk> open_desk(Session& session, const RunOptions& options,
+                                       bool real_time) {
+  if (session.shared() == nullptr) return nullptr;
+  std::unique_ptr<ViewerProcess> viewer;
+  if (wants_viewer(options, real_time)) {
+    auto started = ViewerProcess::start(session.shared()->name());
+    if (started) {
+      viewer = std::move(started).value();
+    } else {
+      complain(started.error(), kExitTrouble);
+    }
+  } else if (options.view || options.led()) {
+    std::fprintf(stderr, "No screen (DISPLAY, WAYLAND_DISPLAY): watch by `thimble view %s`.\n",
+                 session.shared()->name().c_str());
+  }
+  return std::make_unique<RequestDesk>(session, std::move(viewer), options.led());
+}
+
 int run_scene(const RunOptions& options) {
   std::optional<driver::FoundArm> real_arm;
   if (options.device != "sim") {
@@ -154,7 +192,11 @@ int run_scene(const RunOptions& options) {
     if (!real_arm) std::printf("No arm is plugged in: the simulated one is used.\n");
   }
   SessionOptions session_options;
-  session_options.clock = options.clock == "wall" ? ClockKind::kWall : ClockKind::kVirtual;
+  // A person who watches or leads does so in real time, unless he says otherwise.
+  const bool for_a_person = options.view || options.led();
+  const bool wall = options.clock.empty() ? for_a_person : options.clock == "wall";
+  session_options.clock = wall ? ClockKind::kWall : ClockKind::kVirtual;
+  session_options.hand_by_mouse = options.led();
   session_options.duration = options.duration;
   session_options.seed = options.seed;
   session_options.mesh_folder = mesh_folder();
@@ -163,6 +205,10 @@ int run_scene(const RunOptions& options) {
   session_options.firmware = options.firmware;
   session_options.record = options.record;
   if (real_arm) session_options.clock = ClockKind::kWall;
+  const bool real_time = session_options.clock == ClockKind::kWall;
+  session_options.share_out =
+      !options.name.empty() || options.view || options.led() || (real_time && !options.no_view);
+  session_options.share_name = options.name;
   if (real_arm && !may_begin(*real_arm, options.yes)) return kExitBadInput;
   auto opened = Session::open(options.scene, session_options);
   if (!opened) {
@@ -176,17 +222,20 @@ int run_scene(const RunOptions& options) {
   }
   std::unique_ptr<ReplugWatch> watch;
   if (real_arm) watch = std::make_unique<ReplugWatch>(session, *real_arm, options.firmware);
+  const auto desk = open_desk(session, options, real_time);
   driver::RealTimeGrant grant;
-  const driver::ServoEnd end = run_session(session, session_options.clock, grant, watch.get());
+  const driver::ServoEnd end =
+      run_session(session, session_options.clock, grant, watch.get(), desk.get());
   keep_black_box(session);
   if (!grant.advice.empty()) spdlog::warn("{}", grant.advice);
 
-  if (session.recorder() != nullptr) {
+  if (Recorder* recorder = session.recording().recorder()) {
+    const std::string path = recorder->path();
     // The touch went on, whatever became of the recording: the exit code is the touch's.
-    if (const auto finished = session.recorder()->finish(); !finished) {
+    if (const auto finished = session.recording().stop(); !finished) {
       complain(finished.error(), kExitTrouble);
     } else {
-      std::printf("Recording: %s\n", options.record.c_str());
+      std::printf("Recording: %s\n", path.c_str());
     }
   }
   const RunReport report = report_of(session, session_options.clock, end, grant);
@@ -223,7 +272,7 @@ int run_scene(const RunOptions& options) {
       // A loop with a real arm outlives its faults.
       return report.fault == driver::Fault::kNone ? kExitDone : kExitFault;
     case driver::ServoEnd::kStopped:
-      return kExitInterrupted;
+      return desk && desk->ended() ? kExitDone : kExitInterrupted;
     case driver::ServoEnd::kFault:
       return kExitFault;
   }
@@ -258,9 +307,19 @@ void add_run_command(CLI::App& app, int& exit_code) {
           "SECONDS"));
   command
       ->add_option("--clock", options->clock,
-                   "virtual: as fast as it computes, repeatable to the bit; wall: in real time")
-      ->check(CLI::IsMember({"virtual", "wall"}))
+                   "virtual: as fast as it computes, repeatable to the bit; wall: in real time "
+                   "(if absent: wall with --view or --hand mouse, virtual otherwise)")
+      ->check(CLI::IsMember({"virtual", "wall"}));
+  command
+      ->add_option("--hand", options->hand,
+                   "Who leads the simulated hand: path, as the scene says; mouse, by the viewer, "
+                   "until its window is closed")
+      ->check(CLI::IsMember({"path", "mouse"}))
       ->capture_default_str();
+  CLI::Option* view = command->add_flag("--view", options->view, "Watch the run in a window");
+  command->add_flag("--no-view", options->no_view, "Show the run to nobody")->excludes(view);
+  command->add_option("--name", options->name,
+                      "Name of the run for `thimble view NAME`; the scene's if absent");
   command->add_option("--report", options->report, "Folder for report.json and pictures");
   command->add_option(
       "--record", options->record,

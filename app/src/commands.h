@@ -1,8 +1,14 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <functional>
 
 namespace thimble::app {
+
+class RunAttachment;
+
+/// Opens a window on runs until it is closed, and gives the exit code; empty where there is none.
+using ShowWindow = std::function<int(RunAttachment& runs)>;
 
 // One function per command of the program. Each adds its sub-command with options and help to
 // `app`; when the user chose it, its exit code (exit_code.h) is left in `exit_code`.
@@ -11,6 +17,10 @@ namespace thimble::app {
 void add_run_command(CLI::App& app, int& exit_code);
 /// `thimble shot SCENE`: draws a moment of a scene.
 void add_shot_command(CLI::App& app, int& exit_code);
+/// `thimble view RUN`: shows a run that goes on in another process, by `show_window` or as text.
+void add_view_command(CLI::App& app, int& exit_code, const ShowWindow& show_window);
+/// `thimble view RUN` with the window of this program.
+void add_window_command(CLI::App& app, int& exit_code);
 /// `thimble devices`: lists the arms.
 void add_devices_command(CLI::App& app, int& exit_code);
 /// `thimble calibrate`: finds an arm's home pose and the signs of its encoders.

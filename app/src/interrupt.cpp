@@ -23,4 +23,8 @@ const std::atomic<bool>& catch_interrupts() {
   return interrupted;
 }
 
+void ask_to_stop() noexcept {
+  interrupted.store(true);
+}
+
 }  // namespace thimble::app

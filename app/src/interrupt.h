@@ -9,4 +9,7 @@ namespace thimble::app {
 /// is then what stops the motors.
 const std::atomic<bool>& catch_interrupts();
 
+/// Sets that flag as a first Ctrl-C would. Real-time: safe.
+void ask_to_stop() noexcept;
+
 }  // namespace thimble::app

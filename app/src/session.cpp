@@ -65,8 +65,12 @@ driver::Result<std::unique_ptr<Session>> Session::open(const std::filesystem::pa
   session->seed_ = options.seed.value_or(session->scene_.seed);
   session->period_ns_ = std::llround(1e9 / session->scene_.rate);
   const double duration = options.duration.value_or(session->scene_.duration);
-  session->ticks_ = static_cast<std::uint64_t>(
-      std::ceil(duration * 1e9 / static_cast<double>(session->period_ns_)));
+  session->hand_by_mouse_ = options.hand_by_mouse;
+  // Led by a person it goes on until he has enough, unless he says how long.
+  if (!options.hand_by_mouse || options.duration) {
+    session->ticks_ = static_cast<std::uint64_t>(
+        std::ceil(duration * 1e9 / static_cast<double>(session->period_ns_)));
+  }
   session->statistics_ = std::make_unique<RunStatistics>();
   session->trace_ = std::make_unique<Trace>(session->ticks_);
   const auto dents = [](const SceneObject& object) { return object.body.dent.has_value(); };
@@ -112,22 +116,31 @@ driver::Result<std::unique_ptr<Session>> Session::open(const std::filesystem::pa
   session->device_name_ = options.real_arm ? options.real_arm->name() : "sim";
   session->black_box_ = std::make_unique<BlackBox>(session->scene_.rate);
   if (!options.record.empty()) {
-    auto recorder = Recorder::open(options.record, session->recording_info(), session->ticks_);
-    if (!recorder) return recorder.error();
-    session->recorder_ = std::move(recorder).value();
-    if (session->by_thread_) session->recorder_->start_thread();
+    if (auto begun = session->begin_recording(options.record); !begun) return begun.error();
   }
-  if (options.share) {
-    if (auto shared = session->share(options.share_name); !shared) return shared.error();
+  if (options.share || options.share_out) {
+    if (auto shared = session->share(options); !shared) return shared.error();
   }
   return session;
 }
 
-driver::Result<void> Session::share(const std::string& name) {
+driver::Result<void> Session::begin_recording(const std::filesystem::path& path) {
+  constexpr double kLongest = 86400;  // s, of a run without an end; chosen
+  const auto ticks_max =
+      ticks_ > 0 ? ticks_ : static_cast<std::uint64_t>(std::ceil(kLongest * scene_.rate));
+  may_record_ = true;
+  if (shared_) shared_->set_recording_path(std::filesystem::absolute(path).string());
+  return recording_.begin(path, recording_info(), ticks_max, by_thread_);
+}
+
+driver::Result<void> Session::share(const SessionOptions& options) {
   SharedScene scene = describe_scene(scene_, *objects_, device_name_);
   scene.file = std::filesystem::absolute(scene_file_).lexically_normal().string();
   scene.period_ns = period_ns_;
   scene.wall_clock = by_thread_;
+  scene.hand_by_mouse = hand_by_mouse_;
+  control_ = std::make_unique<LiveControl>(scene_, touch(), simulation_.get(), by_thread_);
+  scene.knobs = control_->knobs().described();
   std::size_t first = 0;
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     if (!scene.objects[i].shaped) continue;
@@ -135,9 +148,15 @@ driver::Result<void> Session::share(const std::string& name) {
     first += scene.objects[i].vertex_count;
   }
   const auto ring = static_cast<std::size_t>(std::ceil(kShownSeconds * scene_.rate));
+  std::string name;
+  if (options.share_out) {
+    name =
+        options.share_name.empty() ? free_run_name(scene_.name) : run_name_of(options.share_name);
+  }
   auto shared = SharedRun::create(name, scene, std::min(ring, kShownTicksMost));
   if (!shared) return shared.error();
   shared_ = std::move(shared).value();
+  may_record_ = true;
   return {};
 }
 
@@ -165,11 +184,12 @@ driver::Result<void> Session::plan_simulation(const std::filesystem::path& scene
     const SceneObject& object = scene_.objects[i];
     if (!object.build_field && !object.paged) named.push_back({object.name, &meshes_W[i]});
   }
-  const auto route = plan_hand(scene_.hand, named);
+  auto route = plan_hand(scene_.hand, named);
   if (!route) return driver::Error{scene_file.string() + ": " + route.error().message};
   if (auto reach = check_reach(*route, arm); !reach) {
     return driver::Error{scene_file.string() + ": " + reach.error().message};
   }
+  if (hand_by_mouse_) route->resize(1);  // waits where the planned way begins
   auto simulation = ArmSimulation::make(arm, *route, firmware, seed_);
   if (!simulation)
     return driver::Error{scene_.arm_file.string() + ": " + simulation.error().message};
@@ -178,9 +198,13 @@ driver::Result<void> Session::plan_simulation(const std::filesystem::path& scene
 }
 
 driver::ServoEnd Session::run(const std::atomic<bool>& stop) noexcept {
-  if (shared_) shared_->set_state(RunState::kRunning);
+  if (shared_) {
+    control_->join(*shared_, hand_by_mouse_, stop);
+    shared_->set_state(RunState::kRunning);
+  }
   const driver::ServoEnd end = driver::run_servo(
-      *device_, *clock_, driver::ForceLaw(touch()), driver::TickSink(*this),
+      *device_, *clock_, shared_ ? driver::ForceLaw(*control_) : driver::ForceLaw(touch()),
+      driver::TickSink(*this),
       {.period_ns = period_ns_, .ticks = ticks_, .outlive_faults = !simulation_}, stop);
   if (simulation_) simulation_->settle(clock_->now_ns());
   if (shared_) shared_->set_state(RunState::kEnded);
@@ -199,13 +223,14 @@ void Session::operator()(const driver::TickRecord& record) noexcept {
     if (drawn) shared_->store_patch(dents_->drawn());
     if (!objects_->moving().empty()) shared_->store_poses(poses_now_);
     if (!shaped_.empty()) store_shapes();
+    control_->take(record);
   }
-  if (recorder_) (*recorder_)(record);
+  if (may_record_) recording_(record);
   if (by_thread_) return;
   // In virtual time a tick lasts as long as it computes: the disk is as fast as one could wish, and
   // every run is the same.
   objects_->serve_pages();
-  if (recorder_ && recorder_->waiting() >= Recorder::kRingTicks / 2) recorder_->serve();
+  if (may_record_) recording_.serve_if_half_full();
 }
 
 render::TriangleMesh Session::bent_mesh_W() const {

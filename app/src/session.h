@@ -11,12 +11,13 @@
 #include "arm_simulation.h"
 #include "dent_record.h"
 #include "recording/black_box.h"
-#include "recording/recorder.h"
 #include "recording/recording_info.h"
+#include "recording/recording_switch.h"
 #include "run_statistics.h"
 #include "scene_file.h"
 #include "scene_objects.h"
 #include "scene_poses.h"
+#include "share/live_control.h"
 #include "share/shared_run.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/device.h"
@@ -40,8 +41,11 @@ struct SessionOptions {
   std::optional<driver::FoundArm> real_arm;  ///< in place of the simulated one
   std::filesystem::path firmware;            ///< for a real arm that needs some (Falcon)
   std::filesystem::path record;              ///< where every tick is written; empty: nowhere
-  bool share = false;                        ///< lets viewers see the run
-  std::string share_name;                    ///< under which name; empty: in this process alone
+  bool share = false;                        ///< lets a viewer in this process see the run
+  bool share_out = false;                    ///< lets viewers of other processes see it
+  bool hand_by_mouse =
+      false;               ///< a viewer leads the simulated hand; the run ends when it is asked to
+  std::string share_name;  ///< under which name; empty: the scene's, with a number if it is taken
 };
 
 /// Is one scene, loaded and joined: clock, simulated arm, wire, device, touch, and who keeps the
@@ -80,8 +84,10 @@ class Session {
   const RunStatistics& statistics() const { return *statistics_; }
   const Trace& trace() const { return *trace_; }
   const driver::Snapshot<driver::TickRecord>& snapshot() const { return snapshot_; }
-  /// Gives the recording; nullptr if none was asked for.
-  Recorder* recorder() { return recorder_.get(); }
+  /// Gives the recordings of the run; from one thread beside the servo's, and after the run.
+  RecordingSwitch& recording() { return recording_; }
+  /// Begins a recording of every tick from now on. Real-time: never from the servo thread.
+  driver::Result<void> begin_recording(const std::filesystem::path& path);
   /// Gives what always keeps the last seconds.
   BlackBox& black_box() { return *black_box_; }
   /// Says what this session is, for its recordings.
@@ -114,7 +120,7 @@ class Session {
   Session() = default;
   void store_poses(std::uint64_t tick) noexcept;
   void store_shapes() noexcept;
-  driver::Result<void> share(const std::string& name);
+  driver::Result<void> share(const SessionOptions& options);
   driver::Result<void> plan_simulation(const std::filesystem::path& scene_file,
                                        const std::filesystem::path& firmware);
 
@@ -133,11 +139,14 @@ class Session {
   std::unique_ptr<Trace> trace_;
   std::unique_ptr<DentRecord> dents_;
   driver::Snapshot<driver::TickRecord> snapshot_;
-  std::unique_ptr<Recorder> recorder_;
+  RecordingSwitch recording_;
+  bool may_record_ = false;  // a recording was asked for, or viewers may ask for one
   std::unique_ptr<BlackBox> black_box_;
   ScenePoses poses_now_;
   driver::Snapshot<ScenePoses> poses_;
   std::unique_ptr<SharedRun> shared_;
+  std::unique_ptr<LiveControl> control_;  // if it is shared
+  bool hand_by_mouse_ = false;
   std::vector<ShapedPlace> shaped_;  // the objects whose vertices move for good, if it is shared
 };
 

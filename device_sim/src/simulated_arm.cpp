@@ -29,8 +29,7 @@ SimulatedArm::SimulatedArm(const driver::hfab::HfabModel& board, AnyPlant plant,
                            const Tremor& tremor)
     : report_period_ns_(settings.firmware.report_period_ns),
       wire_(settings.wire),
-      path_(std::move(path)),
-      tremor_(tremor),
+      hand_(std::move(path), tremor),
       plant_(std::move(plant)),
       firmware_(board, settings.firmware) {
   if (wire_.delay_in_ns < 0 || wire_.delay_out_ns < 0) {
@@ -65,18 +64,13 @@ const Eigen::Vector3d& SimulatedArm::angles() noexcept {
   return q_;
 }
 
-Eigen::Vector3d SimulatedArm::wanted_at(std::int64_t time_ns) noexcept {
-  const double time = static_cast<double>(time_ns) * 1e-9;
-  return path_.at(time) + tremor_.at(time);
-}
-
 void SimulatedArm::advance_to(std::int64_t time_ns) noexcept {
   while (time_ns_ < time_ns) {
     std::int64_t next_ns = std::min(time_ns, time_ns_ + ArmPlant::kStepMax_ns);
     next_ns = std::min({next_ns, next_sample_ns_, firmware_.watchdog_due_ns()});
     if (!messages_.empty()) next_ns = std::min(next_ns, messages_.front().due_ns);
 
-    mechanics().step(wanted_at(next_ns), next_ns - time_ns_);
+    mechanics().step(hand_.at(next_ns), next_ns - time_ns_);
     time_ns_ = next_ns;
 
     if (next_sample_ns_ == time_ns_) sample();

@@ -215,6 +215,17 @@ std::string run_name_of(const std::string& scene) {
   return name.empty() ? "run" : name;
 }
 
+std::string free_run_name(const std::string& scene) {
+  const std::string first = run_name_of(scene);
+  const auto runs = running_runs();
+  const auto taken = [&runs](const std::string& name) {
+    return std::any_of(runs.begin(), runs.end(), [&](const auto& run) { return run.name == name; });
+  };
+  std::string name = first;
+  for (int number = 2; taken(name); ++number) name = first + "-" + std::to_string(number);
+  return name;
+}
+
 std::uint64_t start_of_process(std::int64_t pid) {
   std::ifstream file("/proc/" + std::to_string(pid) + "/stat");
   std::string line;

@@ -77,6 +77,10 @@ void remove_dead_runs();
 /// Turns a scene's name into one for its run: letters, digits, - and _ stay, others become -.
 std::string run_name_of(const std::string& scene);
 
+/// Finds a name for a run of a scene that no other run has: with a number behind it if need be.
+/// Real-time: never from the servo thread.
+std::string free_run_name(const std::string& scene);
+
 /// Tells when a process began, in clock ticks since boot; 0 if there is none [proc(5), field 22].
 /// Real-time: never from the servo thread.
 std::uint64_t start_of_process(std::int64_t pid);

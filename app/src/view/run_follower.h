@@ -1,28 +1,28 @@
 #pragma once
 
-#include <chrono>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "share/shared_reader.h"
+#include "share/run_attachment.h"
 #include "view/live_scene.h"
 #include "view/plots.h"
 
 namespace thimble::app::view {
 
-/// Follows the runs of a name, one after the other: attaches, keeps the newest moment, and takes
-/// the next run when one has ended. Real-time: never from the servo thread.
+/// Keeps the newest moment of the runs that are watched, one after the other.
+/// Real-time: never from the servo thread.
 class RunFollower {
  public:
-  /// Follows runs of this name; empty: whatever run is newest.
-  explicit RunFollower(std::string name) : name_(std::move(name)) {}
+  /// Keeps `runs`, which must outlive this.
+  explicit RunFollower(RunAttachment& runs) : runs_(runs) {}
 
   /// Looks what is new. Tells whether another run was taken, so that all must be drawn anew.
   bool step();
 
   /// Gives the run, which may have ended; nullptr if there was none so far.
-  SharedReader* reader() { return reader_.get(); }
+  SharedReader* reader() { return runs_.reader(); }
   /// Gives what is drawn. Precondition: there is a reader; as for the moment.
   const DrawnScene& scene() const { return live_->scene(); }
   const DrawnMoment& moment() const { return *moment_; }
@@ -33,10 +33,7 @@ class RunFollower {
   const std::string& notice() const { return notice_; }
 
  private:
-  bool attach();
-
-  std::string name_;
-  std::unique_ptr<SharedReader> reader_;
+  RunAttachment& runs_;
   std::unique_ptr<LiveScene> live_;
   std::unique_ptr<DrawnMoment> moment_ = std::make_unique<DrawnMoment>();
   bool has_moment_ = false;
@@ -44,7 +41,6 @@ class RunFollower {
   std::uint64_t serial_ = 0;
   std::vector<driver::TickRecord> ticks_;
   std::string notice_;
-  std::chrono::steady_clock::time_point next_try_{};
 };
 
 }  // namespace thimble::app::view

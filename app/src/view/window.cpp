@@ -130,7 +130,7 @@ Picture read_window(GLFWwindow* window) {
 /// Is the window's content from picture to picture.
 class Content {
  public:
-  Content(Screen& screen, const std::string& name) : screen_(screen), follower_(name) {}
+  Content(Screen& screen, RunAttachment& runs) : screen_(screen), follower_(runs) {}
 
   /// Draws one picture into the window.
   void draw(double frame_time);
@@ -225,11 +225,11 @@ void Content::draw(double frame_time) {
 
 }  // namespace
 
-driver::Result<void> show_window(const WindowChoice& choice) {
+driver::Result<void> show_window(RunAttachment& runs, const WindowChoice& choice) {
   auto screen = Screen::open();
   if (!screen) return screen.error();
   GLFWwindow* window = (*screen)->window();
-  Content content(**screen, choice.name);
+  Content content(**screen, runs);
   const double began = glfwGetTime();
   double last = began;
   while (glfwWindowShouldClose(window) == GLFW_FALSE && !content.wants_to_close()) {

@@ -2,20 +2,20 @@
 
 #include <string>
 
+#include "share/run_attachment.h"
 #include "thimble/driver/result.h"
 
 namespace thimble::app::view {
 
-/// Says what a window shows.
+/// Says when a window closes by itself, for tests.
 struct WindowChoice {
-  std::string name;           ///< Of the run; empty: the newest.
-  double seconds = 0;         ///< Closes by itself after so long; 0: when the user closes it.
-  std::string last_picture;   ///< PNG of the whole window, written before it closes; empty: none.
+  double seconds = 0;        ///< Closes after so long; 0: when the user closes it.
+  std::string last_picture;  ///< PNG of the whole window, written before it closes so; empty: none.
 };
 
-/// Opens a window on a run and shows it until the window is closed. Where there is no such run, or
-/// it has ended, the window says so and takes the next of that name. The run never notices.
+/// Opens a window on the runs that are watched and shows them until it is closed. Where there is no
+/// run, or it has ended, the window says so and takes the next. The runs never notice.
 /// The error says why there is no window. Real-time: never from the servo thread.
-driver::Result<void> show_window(const WindowChoice& choice);
+driver::Result<void> show_window(RunAttachment& runs, const WindowChoice& choice);
 
 }  // namespace thimble::app::view

@@ -18,27 +18,24 @@ FalconOnUsb::FalconOnUsb(UsbDescription description, const PlantSettings& plant,
                          const HandSettings& hand, HandPath path, std::vector<std::byte> image,
                          const WiringSettings& wiring, std::uint64_t seed)
     : description_(std::move(description)),
-      path_(std::move(path)),
       tremor_(hand, seed),
+      hand_(std::move(path), tremor_),
       wiring_(wiring),
       plant_(driver::falcon::falcon_model(), plant, hand,
              MotorSettings{.current_max = kMotorValueMax / kMotorValuesPerAmpere},
-             path_.points().front().p_BH, path_.points().front().p_BH),
+             hand_.path().points().front().p_BH, hand_.path().points().front().p_BH),
       board_(std::move(image)),
       chip_(board_) {
   wiring_.check();
 }
 
 void FalconOnUsb::lead(HandPath path) {
-  path_ = std::move(path);
-  path_begin_ns_ = time_ns_;
+  hand_ = Hand(std::move(path), tremor_, time_ns_);
 }
 
 void FalconOnUsb::move_to(std::int64_t time_ns) noexcept {
   if (time_ns <= time_ns_) return;
-  const Eigen::Vector3d p_BH = path_.at(static_cast<double>(time_ns - path_begin_ns_) * 1e-9) +
-                               tremor_.at(static_cast<double>(time_ns) * 1e-9);
-  plant_.step(p_BH, time_ns - time_ns_);
+  plant_.step(hand_.at(time_ns), time_ns - time_ns_);
   time_ns_ = time_ns;
 }
 

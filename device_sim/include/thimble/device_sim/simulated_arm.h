@@ -8,6 +8,7 @@
 
 #include "thimble/device_sim/arm_plant.h"
 #include "thimble/device_sim/firmware.h"
+#include "thimble/device_sim/hand.h"
 #include "thimble/device_sim/hand_path.h"
 #include "thimble/device_sim/inverse_plant.h"
 #include "thimble/device_sim/settings.h"
@@ -57,6 +58,9 @@ class SimulatedArm {
   /// Hands the host's bytes to the wire at the present time.
   void put_message(std::span<const std::byte> bytes) noexcept;
 
+  /// Gives the hand, to be led or held by whoever lets time pass.
+  Hand& hand() noexcept { return hand_; }
+
   /// Presses the button on the arm, as a hand would.
   void press_button() noexcept { firmware_.press_button(); }
 
@@ -85,15 +89,13 @@ class SimulatedArm {
     return std::visit([](auto& plant) -> Plant& { return plant; }, plant_);
   }
   const Eigen::Vector3d& angles() noexcept;
-  Eigen::Vector3d wanted_at(std::int64_t time_ns) noexcept;
   void sample() noexcept;
   void receive(std::span<const std::byte> bytes) noexcept;
   void deliver() noexcept;
 
   std::int64_t report_period_ns_;
   WireSettings wire_;
-  HandPath path_;
-  Tremor tremor_;
+  Hand hand_;
   AnyPlant plant_;
   Firmware firmware_;
   Eigen::Vector3d q_{0, 0, 0};  // at q_time_ns_; the firmware asks for it twice at one time

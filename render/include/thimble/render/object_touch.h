@@ -8,8 +8,9 @@
 #include "thimble/driver/device_state.h"
 #include "thimble/driver/force_command.h"
 #include "thimble/render/body/body_patch.h"
-#include "thimble/render/contact/contact_mesh.h"
 #include "thimble/render/body/body_pose.h"
+#include "thimble/render/contact/contact_mesh.h"
+#include "thimble/render/effect/live_settings.h"
 
 namespace thimble::render {
 
@@ -37,6 +38,10 @@ class ObjectTouch {
   /// Draws what of the object has left its place (body_patch.h); false, and `patch` is left alone,
   /// if the object is stiff. Real-time: safe; for the rate of a picture.
   virtual bool draw(BodyPatch& /*patch*/) noexcept { return false; }
+
+  /// Tells of the settings that can be changed between two ticks, on the servo's thread.
+  /// Real-time: never from the servo thread.
+  virtual void list_settings(LiveSettings&) {}
 
   // The following are for readers beside the servo, and for bodies (render/body) to answer.
 
@@ -74,6 +79,8 @@ class ObjectTouchOf final : public ObjectTouch {
       return nullptr;
     }
   }
+
+  void list_settings(LiveSettings& settings) override { list_settings_of(stages_, settings); }
 
   const Stages& stages() const noexcept { return stages_; }
 

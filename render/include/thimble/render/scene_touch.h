@@ -67,6 +67,7 @@ class SceneTouch {
 
   std::size_t size() const noexcept { return objects_.size(); }
   const ObjectTouch& object(std::size_t i) const noexcept { return *objects_[i]; }
+  ObjectTouch& object(std::size_t i) noexcept { return *objects_[i]; }
 
  private:
   std::vector<std::unique_ptr<ObjectTouch>> objects_;

@@ -6,6 +6,7 @@
 #include "thimble/driver/device_state.h"
 #include "thimble/driver/force_command.h"
 #include "thimble/render/contact/contact_state.h"
+#include "thimble/render/effect/live_settings.h"
 #include "thimble/render/surface/surface_feel.h"
 
 namespace thimble::render {
@@ -43,6 +44,12 @@ class Touch {
       touching_ = false;
     }
     return command;
+  }
+
+  /// Tells of the stages' settings that can be changed between two ticks. Real-time: never from the
+  /// servo thread.
+  void list_settings(LiveSettings& settings) {
+    std::apply([&](auto&... stage) { (list_settings_of(stage, settings), ...); }, stages_);
   }
 
   const Contact& contact() const noexcept { return contact_; }

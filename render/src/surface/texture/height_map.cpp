@@ -21,12 +21,13 @@ void HeightMap::Settings::read(SettingsReader& reader, const EffectSurroundings&
   }
   image = std::make_shared<const HeightImage>(std::move(loaded).value());
   if (!(width > 0)) return;
+  check_texture(reader, "height", extent(), *this, surroundings);
+}
+
+TextureExtent HeightMap::Settings::extent() const noexcept {
   const double pixel = width / static_cast<double>(image->width());
   // Two pixels are the shortest wave a picture can hold.
-  check_texture(
-      reader, "height",
-      {.relief = height, .slope = height * image->slope_max() / pixel, .wavelength = 2 * pixel},
-      *this, surroundings);
+  return {.relief = height, .slope = height * image->slope_max() / pixel, .wavelength = 2 * pixel};
 }
 
 HeightMap::HeightMap(const Settings& settings, const EffectSurroundings& surroundings)
@@ -36,7 +37,21 @@ HeightMap::HeightMap(const Settings& settings, const EffectSurroundings& surroun
       pixels_per_metre_(image_ ? static_cast<double>(image_->width()) / settings.width : 0),
       height_(settings.height),
       along_(settings.along),
-      form_(settings.form) {}
+      form_(settings.form) {
+  if (!image_) return;
+  extent_ = settings.extent();
+  height_most_ = height_ * texture_headroom(extent_, surroundings);
+}
+
+void HeightMap::list_settings(LiveSettings& settings) {
+  if (!(height_ > 0)) return;
+  ForceLever lever = texture_lever(extent_);
+  lever.per_force /= height_;
+  lever.per_stiffness /= height_;
+  settings.add<[](HeightMap& map, double height) noexcept { map.height_ = height; }>(
+      *this,
+      {.name = "height", .unit = "m", .most = height_most_, .value = height_, .lever = lever});
+}
 
 TextureHeight HeightMap::at(const Eigen::Vector3d& p_W, const Eigen::Vector3d& n_W) const noexcept {
   const Eigen::Vector3d place = pixels_per_metre_ * (R_WO_.transpose() * (p_W - p_WO_));

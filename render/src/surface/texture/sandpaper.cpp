@@ -42,15 +42,41 @@ void Sandpaper::Settings::read(SettingsReader& reader, const EffectSurroundings&
   reader.number("roughness", roughness, {.unit = "m", .least = 0, .most = 0.01});
   reader.number("seed", seed, {.unit = "", .least = 0, .most = 0x1p53});
   if (!(grain > 0)) return;
+  check_texture(reader, "roughness", extent(), *this, surroundings);
+}
+
+TextureExtent Sandpaper::Settings::extent() const noexcept {
   const double amplitude = roughness * std::sqrt(2.0 / kWaves);
-  check_texture(reader, "roughness",
-                {.relief = 2 * kWaves * amplitude,
-                 .slope = 2 * std::numbers::pi * roughness / grain,
-                 .wavelength = grain / std::numbers::sqrt2},
-                *this, surroundings);
+  return {.relief = 2 * kWaves * amplitude,
+          .slope = 2 * std::numbers::pi * roughness / grain,
+          .wavelength = grain / std::numbers::sqrt2};
 }
 
 Sandpaper::Sandpaper(const Settings& settings, const EffectSurroundings& surroundings)
-    : height_(random_waves(settings, surroundings)), form_(settings.form) {}
+    : height_(random_waves(settings, surroundings)),
+      form_(settings.form),
+      roughness_(settings.roughness),
+      roughness_most_(settings.roughness * texture_headroom(settings.extent(), surroundings)),
+      extent_(settings.extent()) {}
+
+void Sandpaper::set_roughness(double roughness) noexcept {
+  height_.scale(roughness / roughness_);
+  roughness_ = roughness;
+}
+
+void Sandpaper::list_settings(LiveSettings& settings) {
+  // By factors, which zero would lose: a fiftieth is not felt any more.
+  ForceLever lever = texture_lever(extent_);
+  lever.per_force /= roughness_;
+  lever.per_stiffness /= roughness_;
+  if (!(roughness_ > 0)) return;
+  settings.add<[](Sandpaper& paper, double roughness) noexcept { paper.set_roughness(roughness); }>(
+      *this, {.name = "roughness",
+              .unit = "m",
+              .least = roughness_ / 50,
+              .most = roughness_most_,
+              .value = roughness_,
+              .lever = lever});
+}
 
 }  // namespace thimble::render

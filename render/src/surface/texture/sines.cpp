@@ -57,17 +57,42 @@ void Sines::Settings::read(SettingsReader& reader, const EffectSurroundings& sur
   if (waves.size() > kWavesMax) {
     reader.reject("waves", "expected at most 64 waves, found " + std::to_string(waves.size()));
   }
-  TextureExtent extent{.wavelength = kWavelengthMax};
   for (const One& wave : waves) {
     if (!(wave.wavelength > 0)) return;  // was refused already
+  }
+  check_texture(reader, "waves", extent(), *this, surroundings);
+}
+
+TextureExtent Sines::Settings::extent() const noexcept {
+  TextureExtent extent{.wavelength = kWavelengthMax};
+  for (const One& wave : waves) {
     extent.relief += 2 * wave.amplitude;
     extent.slope += 2 * std::numbers::pi * wave.amplitude / wave.wavelength;
     extent.wavelength = std::min(extent.wavelength, wave.wavelength);
   }
-  check_texture(reader, "waves", extent, *this, surroundings);
+  return extent;
 }
 
 Sines::Sines(const Settings& settings, const EffectSurroundings& surroundings)
-    : height_(waves_of(settings, surroundings)), form_(settings.form) {}
+    : height_(waves_of(settings, surroundings)),
+      form_(settings.form),
+      gain_most_(texture_headroom(settings.extent(), surroundings)),
+      extent_(settings.extent()) {}
+
+void Sines::set_gain(double gain) noexcept {
+  height_.scale(gain / gain_);
+  gain_ = gain;
+}
+
+void Sines::list_settings(LiveSettings& settings) {
+  // By factors, which zero would lose: a fiftieth is not felt any more.
+  settings.add<[](Sines& sines, double gain) noexcept { sines.set_gain(gain); }>(
+      *this, {.name = "gain",
+              .unit = "",
+              .least = 0.02,
+              .most = gain_most_,
+              .value = 1,
+              .lever = texture_lever(extent_)});
+}
 
 }  // namespace thimble::render

@@ -1,5 +1,7 @@
 #include "thimble/render/surface/texture/texture_limits.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 namespace thimble::render {
@@ -10,6 +12,22 @@ void TextureSettings::read(SettingsReader& reader) {
   form = static_cast<TextureForm>(chosen);
   // A hand is never faster than a few m/s.
   reader.number("hand_speed", hand_speed, {.unit = "m/s", .least = 1e-3, .most = 5});
+}
+
+double texture_headroom(const TextureExtent& extent, const EffectSurroundings& surroundings) {
+  constexpr double kMost = 3;  // chosen
+  double headroom = kMost;
+  if (extent.slope > 0) headroom = std::min(headroom, kTextureSlopeMax / extent.slope);
+  if (extent.relief > 0 && surroundings.surface_stiffness > 0) {
+    headroom =
+        std::min(headroom, surroundings.force_max / surroundings.surface_stiffness / extent.relief);
+  }
+  return std::max(headroom, 1.0);
+}
+
+ForceLever texture_lever(const TextureExtent& extent) {
+  return {.per_force = extent.slope,
+          .per_stiffness = extent.relief * std::hypot(1, kTextureSlopeMax)};
 }
 
 void check_texture(SettingsReader& reader, std::string_view key, const TextureExtent& extent,

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "thimble/device_sim/hand.h"
 #include "thimble/device_sim/hand_path.h"
 #include "thimble/device_sim/inverse_plant.h"
 #include "thimble/device_sim/tremor.h"
@@ -26,6 +27,8 @@ class FalconOnUsb final : public UsbArm {
 
   /// Gives the hand another way, whose time 0 is now. Real-time: never from the servo thread.
   void lead(HandPath path);
+  /// Gives the hand, to be led or held by whoever lets time pass. Real-time: safe.
+  Hand& hand() noexcept { return hand_; }
 
   const UsbDescription& description() const noexcept override { return description_; }
   void advance_to(std::int64_t time_ns) noexcept override;
@@ -44,9 +47,8 @@ class FalconOnUsb final : public UsbArm {
   void hear_line(std::int64_t dt_ns) noexcept;
 
   UsbDescription description_;
-  HandPath path_;
-  std::int64_t path_begin_ns_ = 0;
   Tremor tremor_;
+  Hand hand_;
   WiringSettings wiring_;
   DeltaPlant plant_;
   FalconBoard board_;

@@ -33,6 +33,8 @@ class SimulatedFalcon {
   /// Lets time pass up to `time_ns` of the clock with nobody on the bus. Real-time: safe.
   void advance_to(std::int64_t time_ns) noexcept { falcon_.advance_to(begin_ns_ + time_ns); }
 
+  /// Gives the hand, to be led or held by whoever lets time pass. Real-time: safe.
+  Hand& hand() noexcept { return falcon_.hand(); }
   const FalconOnUsb& arm() const noexcept { return falcon_; }
 
  private:

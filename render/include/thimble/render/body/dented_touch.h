@@ -45,6 +45,8 @@ class DentedTouch final : public ObjectTouch {
     return true;
   }
 
+  void list_settings(LiveSettings& settings) override { inner_->list_settings(settings); }
+
   const BendablePolygon& dent() const noexcept { return dent_; }
   BendablePolygon& dent() noexcept { return dent_; }
   const BodyPull& pull() const noexcept { return pull_; }

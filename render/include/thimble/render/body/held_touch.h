@@ -61,6 +61,8 @@ class HeldTouch final : public ObjectTouch {
     object_->place_now(vertices);
   }
 
+  void list_settings(LiveSettings& settings) override { object_->list_settings(settings); }
+
   bool slipped() const noexcept { return slipped_; }
 
  private:

@@ -91,6 +91,13 @@ class MovingTouch final : public ObjectTouch {
     for (Eigen::Vector3d& p : vertices) p = motion_.p_WB() + motion_.R_WB() * p;
   }
 
+  /// The coupling to the body counts on a surface no stiffer than it was built with.
+  void list_settings(LiveSettings& settings) override {
+    LiveSettings own(0, 0);
+    surface_->list_settings(own);
+    settings.take(own);
+  }
+
   const Motion& motion() const noexcept { return motion_; }
   /// Gives the motion to who holds the body otherwise than by its surface. Real-time: safe.
   Motion& motion() noexcept { return motion_; }

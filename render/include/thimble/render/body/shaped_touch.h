@@ -45,6 +45,8 @@ class ShapedTouch final : public ObjectTouch {
     }
   }
 
+  void list_settings(LiveSettings& settings) override { list_settings_of(stages_, settings); }
+
   const Stages& stages() const noexcept { return stages_; }
   const BodyShape* shape() const noexcept override { return &shape_; }
 

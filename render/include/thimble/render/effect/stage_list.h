@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "thimble/render/effect/live_settings.h"
 #include "thimble/render/surface/surface_feel.h"
 
 namespace thimble::render {
@@ -19,6 +20,8 @@ class AnyStage {
   /// See SurfaceStage. Real-time: safe.
   virtual void touch(const driver::DeviceState& state, SurfaceFeel& feel) noexcept = 0;
   virtual void leave() noexcept = 0;
+  /// See LiveSettings. Real-time: never from the servo thread.
+  virtual void list_settings(LiveSettings& settings) = 0;
 };
 
 /// Makes any surface stage an AnyStage.
@@ -31,6 +34,11 @@ class AnyStageOf final : public AnyStage {
     stage_.touch(state, feel);
   }
   void leave() noexcept override { stage_.leave(); }
+  void list_settings(LiveSettings& settings) override {
+    if constexpr (requires { Stage::kGroup; }) settings.set_group(Stage::kGroup);
+    list_settings_of(stage_, settings);
+    settings.set_group({});
+  }
 
   const Stage& stage() const noexcept { return stage_; }
 
@@ -49,6 +57,9 @@ class StageList {
   }
   void leave() noexcept {
     for (const auto& stage : stages_) stage->leave();
+  }
+  void list_settings(LiveSettings& settings) {
+    for (const auto& stage : stages_) stage->list_settings(settings);
   }
 
  private:

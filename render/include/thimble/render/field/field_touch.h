@@ -31,6 +31,8 @@ class FieldTouch final : public ObjectTouch {
   }
   bool inside(const Eigen::Vector3d&) const noexcept override { return false; }
 
+  void list_settings(LiveSettings& settings) override { list_settings_of(field_, settings); }
+
   const F& field() const noexcept { return field_; }
 
  private:

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <string_view>
 
 #include "thimble/driver/device_state.h"
 #include "thimble/render/effect/effect_surroundings.h"
+#include "thimble/render/effect/live_settings.h"
 #include "thimble/render/effect/settings_reader.h"
 
 namespace thimble::render {
@@ -25,7 +27,25 @@ class Viscous {
     void read(SettingsReader& reader, const EffectSurroundings& surroundings);
   };
 
-  Viscous(const Settings& settings, const EffectSurroundings&) : damping_(settings.damping) {}
+  Viscous(const Settings& settings, const EffectSurroundings& surroundings)
+      : damping_(settings.damping), damping_most_(most_damping(surroundings)) {}
+
+  /// Tells what the loop can hold, N s/m: see Settings::read; infinite where the arm's mass is not
+  /// known. Real-time: never from the servo thread.
+  static double most_damping(const EffectSurroundings& surroundings);
+
+  /// Tells of the damping: up to two thirds of what the loop can hold, for the filter of the
+  /// velocity comes on top. Real-time: never from the servo thread.
+  void list_settings(LiveSettings& settings) {
+    constexpr double kMargin = 1.5, kUnknown = 20;  // chosen; N s/m
+    const double most = damping_most_ < HUGE_VAL ? damping_most_ / kMargin : kUnknown;
+    settings.add<[](Viscous& field, double b) noexcept { field.damping_ = b; }>(
+        *this, {.name = "damping",
+                .unit = "N s/m",
+                .most = most,
+                .value = damping_,
+                .lever = {.per_speed = 1}});
+  }
 
   /// Finds the force on the hand, N in W; zero where the velocity is NaN or infinite.
   /// Real-time: safe.
@@ -36,6 +56,7 @@ class Viscous {
 
  private:
   double damping_;
+  double damping_most_;
 };
 
 }  // namespace thimble::render

@@ -4,6 +4,7 @@
 
 #include "thimble/driver/device_state.h"
 #include "thimble/render/contact/contact_state.h"
+#include "thimble/render/effect/live_settings.h"
 #include "thimble/render/surface/surface_feel.h"
 
 namespace thimble::render {
@@ -30,6 +31,22 @@ struct SpringDamper {
     feel.f_T_W += force(feel.contact, state);
   }
   void leave() const noexcept {}
+
+  /// Tells of both numbers. Real-time: never from the servo thread.
+  void list_settings(LiveSettings& settings) {
+    settings.add<[](SpringDamper& spring, double k) noexcept { spring.stiffness = k; }>(
+        *this, {.name = "stiffness",
+                .unit = "N/m",
+                .most = settings.stiffness_max(),
+                .value = stiffness,
+                .lever = {.per_depth = 1}});
+    settings.add<[](SpringDamper& spring, double b) noexcept { spring.damping = b; }>(
+        *this, {.name = "damping",
+                .unit = "N s/m",
+                .most = settings.damping_max(),
+                .value = damping,
+                .lever = {.per_speed = 1}});
+  }
 };
 
 }  // namespace thimble::render

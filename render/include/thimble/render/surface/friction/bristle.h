@@ -36,6 +36,9 @@ class BristleLaw {
     slides_ = false;
   }
 
+  /// Gives the coefficients, to be changed between two ticks. Real-time: safe.
+  CoulombSettings& coulomb() noexcept { return settings_.coulomb; }
+
  private:
   Settings settings_;
   Eigen::Vector3d pull_{0, 0, 0};  // of the bent bristle, N

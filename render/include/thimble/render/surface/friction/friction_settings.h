@@ -17,6 +17,15 @@ struct CoulombSettings {
   double sliding = 0;  ///< While sliding, no unit, >= 0. The key `coefficient`, 0.3 if not given.
   double holding = 0;  ///< Before it slides; at least `sliding`. The key `static_coefficient`.
 
+  /// Changes the sliding coefficient (> 0); the other keeps its ratio to it. Real-time: safe.
+  void set_sliding(double coefficient) noexcept {
+    holding = ratio() * coefficient;
+    sliding = coefficient;
+  }
+
+  /// Tells how much more it holds before it slides, >= 1. Real-time: safe.
+  double ratio() const noexcept { return sliding > 0 ? holding / sliding : 1; }
+
   /// Reads the sliding coefficient alone. Real-time: never from the servo thread.
   void read_sliding(SettingsReader& reader);
   /// Reads both; where the second is not given it is `ratio` times the first.

@@ -69,7 +69,23 @@ class FrictionStage {
     law_.forget();
   }
 
+  /// Tells of the coefficient; how stiff friction holds hangs on arm and loop, and stays.
+  /// Real-time: never from the servo thread.
+  void list_settings(LiveSettings& settings) {
+    settings.add<[](FrictionStage& stage, double mu) noexcept {
+      stage.law_.coulomb().set_sliding(mu);
+    }>(*this, {.name = "coefficient",
+               .unit = "",
+               .least = kLeastCoefficient,
+               .most = kMostCoefficient,
+               .value = law_.coulomb().sliding,
+               .lever = {.per_force = law_.coulomb().ratio()}});
+  }
+
  private:
+  // What a hand may choose from: less is not felt, more is not met [chosen].
+  static constexpr double kLeastCoefficient = 0.01, kMostCoefficient = 1.5;
+
   Law law_;
   TangentMotion motion_;
 };

@@ -29,6 +29,9 @@ class ImplicitCoulombLaw {
   void turn(const Turn& turn) noexcept { bend_ = turn.carry(bend_); }
   void forget() noexcept { bend_.setZero(); }
 
+  /// Gives the coefficients, to be changed between two ticks. Real-time: safe.
+  CoulombSettings& coulomb() noexcept { return settings_.coulomb; }
+
  private:
   Settings settings_;
   Eigen::Vector3d bend_{0, 0, 0};  // from the point to the tip, m

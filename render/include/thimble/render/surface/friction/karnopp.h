@@ -34,6 +34,9 @@ class KarnoppLaw {
   void turn(const Turn& turn) noexcept;
   void forget() noexcept;
 
+  /// Gives the coefficients, to be changed between two ticks. Real-time: safe.
+  CoulombSettings& coulomb() noexcept { return settings_.coulomb; }
+
  private:
   static constexpr double kSpeedCorner = 30;  // Hz [STABILITY 2.2]
 

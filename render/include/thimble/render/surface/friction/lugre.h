@@ -37,6 +37,9 @@ class LugreLaw {
   void turn(const Turn& turn) noexcept;
   void forget() noexcept;
 
+  /// Gives the coefficients, to be changed between two ticks. Real-time: safe.
+  CoulombSettings& coulomb() noexcept { return settings_.coulomb; }
+
  private:
   // Hz; one count per tick would else swing the Stribeck curve from end to end [STABILITY 2.2].
   static constexpr double kSpeedCorner = 30;

@@ -34,6 +34,9 @@ class NaiveFrictionLaw {
   void turn(const Turn& turn) noexcept { direction_ = turn.carry(direction_); }
   void forget() noexcept { direction_.setZero(); }
 
+  /// Gives the coefficients, to be changed between two ticks. Real-time: safe.
+  CoulombSettings& coulomb() noexcept { return settings_.coulomb; }
+
  private:
   Settings settings_;
   Eigen::Vector3d direction_{0, 0, 0};

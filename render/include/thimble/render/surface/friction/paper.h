@@ -43,6 +43,9 @@ class PaperFrictionLaw {
   void turn(const Turn& turn) noexcept;
   void forget() noexcept;
 
+  /// Gives the coefficients, to be changed between two ticks. Real-time: safe.
+  CoulombSettings& coulomb() noexcept { return settings_.coulomb; }
+
  private:
   Eigen::Vector3d dry(const SlideTick& tick) noexcept;
 

@@ -36,6 +36,8 @@ class HeightMap {
     /// Reads `form`, `hand_speed`, `image`, `width`, `height`, `along`.
     /// Real-time: never from the servo thread.
     void read(SettingsReader& reader, const EffectSurroundings& surroundings);
+    /// Tells how high and steep it is. Precondition: it has an image and a width. Real-time: safe.
+    TextureExtent extent() const noexcept;
   };
 
   /// Precondition: there is an image. Real-time: never from the servo thread.
@@ -45,6 +47,9 @@ class HeightMap {
     feel_height(at(state.p_WT, feel.contact.n_W), form_, feel);
   }
   void leave() const noexcept {}
+
+  /// Tells of the height. Real-time: never from the servo thread.
+  void list_settings(LiveSettings& settings);
 
   /// Finds the height at a place (W, m) of a surface with the normal `n_W`. NaN gives NaN.
   /// Real-time: safe; 16 pixels for each axis that counts.
@@ -56,6 +61,8 @@ class HeightMap {
   Eigen::Vector3d p_WO_;
   double pixels_per_metre_;
   double height_;
+  double height_most_ = 0;
+  TextureExtent extent_;  // of the first height
   Along along_;
   TextureForm form_;
 };

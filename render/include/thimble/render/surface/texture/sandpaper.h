@@ -29,6 +29,8 @@ class Sandpaper {
     /// Reads `form`, `hand_speed`, `grain`, `roughness`, `seed`.
     /// Real-time: never from the servo thread.
     void read(SettingsReader& reader, const EffectSurroundings& surroundings);
+    /// Tells how high and steep it is. Real-time: safe.
+    TextureExtent extent() const noexcept;
   };
 
   /// Real-time: never from the servo thread.
@@ -39,11 +41,19 @@ class Sandpaper {
   }
   void leave() const noexcept {}
 
+  /// Tells of the roughness. Real-time: never from the servo thread.
+  void list_settings(LiveSettings& settings);
+
   const WaveSum& height() const noexcept { return height_; }
 
  private:
+  void set_roughness(double roughness) noexcept;
+
   WaveSum height_;
   TextureForm form_;
+  double roughness_;       // m
+  double roughness_most_;  // m
+  TextureExtent extent_;   // of the first roughness
 };
 
 }  // namespace thimble::render

@@ -34,6 +34,9 @@ class Sines {
     /// Reads `form`, `hand_speed` and the list `waves`: amplitude, wavelength or frequency (waves
     /// per metre), direction, phase. Real-time: never from the servo thread.
     void read(SettingsReader& reader, const EffectSurroundings& surroundings);
+    /// Tells how high and steep they are together. Precondition: each has a length.
+    /// Real-time: safe.
+    TextureExtent extent() const noexcept;
   };
 
   /// Real-time: never from the servo thread.
@@ -44,11 +47,19 @@ class Sines {
   }
   void leave() const noexcept {}
 
+  /// Tells of the height of all waves, as a factor. Real-time: never from the servo thread.
+  void list_settings(LiveSettings& settings);
+
   const WaveSum& height() const noexcept { return height_; }
 
  private:
+  void set_gain(double gain) noexcept;
+
   WaveSum height_;
   TextureForm form_;
+  double gain_ = 1;
+  double gain_most_;
+  TextureExtent extent_;  // at a gain of 1
 };
 
 }  // namespace thimble::render

@@ -3,6 +3,7 @@
 #include <string_view>
 
 #include "thimble/render/effect/effect_surroundings.h"
+#include "thimble/render/effect/live_settings.h"
 #include "thimble/render/effect/settings_reader.h"
 #include "thimble/render/surface/texture/texture_height.h"
 
@@ -31,6 +32,15 @@ struct TextureExtent {
   double slope = 0;       ///< The steepest, or its root mean square where it is random.
   double wavelength = 0;  ///< The shortest, m.
 };
+
+/// Tells by which factor (>= 1) a texture that was found right may be made higher, until it would
+/// be refused or three times as high. Real-time: never from the servo thread.
+double texture_headroom(const TextureExtent& extent, const EffectSurroundings& surroundings);
+
+/// Bounds how the force changes with the factor by which a texture is made higher. With the depth
+/// d + g h it is k (d + g h) (n - g grad h), so its change is at most k |h| |n - g grad h| and
+/// k (d + g h) |grad h| together. Real-time: never from the servo thread.
+ForceLever texture_lever(const TextureExtent& extent);
 
 /// Refuses, in a sentence at `key`, a texture that is deeper than the arm's whole force can press
 /// into the surface, steeper than kTextureSlopeMax, or so fine that a hand at `hand_speed` runs

@@ -35,6 +35,12 @@ class WaveSum {
     return texture;
   }
 
+  /// Makes all waves higher or lower by a factor (> 0). Real-time: safe.
+  void scale(double factor) noexcept {
+    for (Wave& wave : waves_) wave.amplitude *= factor;
+    peak_ *= factor;
+  }
+
   /// Tells how far the height goes down from 0 at most, m. Real-time: safe.
   double relief() const noexcept { return 2 * peak_; }
 

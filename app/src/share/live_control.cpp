@@ -1,0 +1,66 @@
+#include "share/live_control.h"
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+
+namespace thimble::app {
+
+LiveControl::LiveControl(const Scene& scene, render::SceneTouch& touch, ArmSimulation* simulation,
+                         bool real_time)
+    : scene_(scene),
+      touch_(touch),
+      simulation_(simulation),
+      real_time_(real_time),
+      knobs_(scene, touch) {}
+
+void LiveControl::join(SharedRun& shared, bool hand_by_mouse, const std::atomic<bool>& stop) {
+  shared_ = &shared;
+  hand_by_mouse_ = hand_by_mouse;
+  stop_ = &stop;
+}
+
+driver::ForceCommand LiveControl::operator()(const driver::DeviceState& state) noexcept {
+  knobs_.step(*shared_, last_, state.dt);
+  driver::ForceCommand command = touch_(state);
+  if (real_time_) {
+    const double way = state.dt / kFade;
+    gain_ = std::clamp(gain_ + (paused_ ? -way : way), 0.0, 1.0);
+    if (gain_ < 1) command.f_T_W *= gain_;
+  }
+  return command;
+}
+
+void LiveControl::take(const driver::TickRecord& record) noexcept {
+  last_ = record;
+  const bool paused = shared_->pause_asked();
+  if (paused != paused_) {
+    paused_ = paused;
+    shared_->set_state(paused ? RunState::kPaused : RunState::kRunning);
+    if (simulation_ != nullptr && real_time_) simulation_->hand().hold(paused);
+  }
+  if (hand_by_mouse_ && simulation_ != nullptr) lead_hand();
+  if (paused_ && !real_time_) wait_while_paused();
+}
+
+void LiveControl::lead_hand() noexcept {
+  SharedHand asked;
+  if (!shared_->hand(asked) || asked.p_WH == hand_.p_WH) return;
+  hand_ = asked;
+  const WorkspaceBox& box = scene_.arm.workspace;
+  const Eigen::Vector3d p_WH =
+      Eigen::Map<const Eigen::Vector3d>(asked.p_WH.data()).cwiseMax(box.min_W).cwiseMin(box.max_W);
+  // Where the arm does not reach, the hand stays where it was led last.
+  if (!joint_angles_at(scene_.arm, p_WH)) return;
+  simulation_->hand().lead(scene_.arm.R_WB.transpose() * (p_WH - scene_.arm.p_WB));
+}
+
+void LiveControl::wait_while_paused() noexcept {
+  while (shared_->pause_asked() && !stop_->load(std::memory_order_relaxed)) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  paused_ = false;
+  shared_->set_state(RunState::kRunning);
+}
+
+}  // namespace thimble::app
