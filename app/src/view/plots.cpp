@@ -110,7 +110,7 @@ void Plots::draw_line(ImDrawList& list, const ScreenPart& part, const Look& look
 void Plots::draw_force(ImDrawList& list, const ScreenPart& part, double force_limit) const {
   float most = 0.5F;
   for (const Sample& sample : samples_) most = std::max(most, sample.force);
-  draw_line(list, part, {"force", "N", kForceColour, std::min(round_up(most), round_up(force_limit))},
+  draw_line(list, part, {"force, last 8 s", "N", kForceColour, std::min(round_up(most), round_up(force_limit))},
             &Sample::force);
 }
 

@@ -199,6 +199,7 @@ void ScenePainter::paint_surfaces(const PaintChoice& choice) {
     glUniform1i(program->at("gouraud"), choice.shading == Shading::kGouraud ? 1 : 0);
     glUniform1f(program->at("shadow_strength"), choice.shadows ? 1.0F : 0.0F);
     glUniform1f(program->at("shadow_offset"), shadow_offset());
+    glUniform1i(program->at("shadow_samples"), choice.fine ? 4 : 2);
     for (std::size_t i = 0; i < models_.size(); ++i) {
       if (static_cast<std::ptrdiff_t>(i) == floor_object_) continue;
       set(*program, "model", places_[i]);
@@ -254,13 +255,14 @@ void ScenePainter::paint_edges(const PaintChoice& choice) {
   glDepthMask(GL_TRUE);
 }
 
-void ScenePainter::paint_ground(bool grid) {
+void ScenePainter::paint_ground(const PaintChoice& choice) {
   glUseProgram(*ground_);
   const Eigen::Vector3f colour = linear(
       floor_object_ < 0 ? kGroundColour : object_colour(static_cast<std::size_t>(floor_object_)));
   glUniform3fv(ground_.at("colour"), 1, colour.data());
-  glUniform1f(ground_.at("shadow_strength"), 1);
-  glUniform1f(ground_.at("grid_strength"), grid ? 1.0F : 0.0F);
+  glUniform1f(ground_.at("shadow_strength"), choice.shadows ? 1.0F : 0.0F);
+  glUniform1i(ground_.at("shadow_samples"), choice.fine ? 4 : 2);
+  glUniform1f(ground_.at("grid_strength"), choice.grid ? 1.0F : 0.0F);
   glBindVertexArray(*nothing_);
   // Its depth counts, so that what is below it is not outlined above.
   glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
@@ -321,7 +323,7 @@ std::vector<Label> ScenePainter::paint(const DrawnMoment& moment, const Camera& 
   paint_solids(marks.solids);
   glEnable(GL_BLEND);
   glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-  paint_ground(choice.grid);
+  paint_ground(choice);
   paint_edges(choice);
   paint_panes(marks.panes, camera);
   paint_what_shines_through(marks.solids);

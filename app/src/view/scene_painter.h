@@ -39,6 +39,7 @@ struct PaintChoice {
   Edges edges = Edges::kAuto;
   DentNormals dent_normals = DentNormals::kSplit;
   bool shadows = true;
+  bool fine = true;  ///< Soft rims of shadows: 16 samples; else 4, for software that draws.
   bool grid = true;
   MarkChoice marks;
 };
@@ -65,7 +66,7 @@ class ScenePainter {
   void paint_solids(const std::vector<Solid>& solids);
   void paint_what_shines_through(const std::vector<Solid>& solids);
   void paint_edges(const PaintChoice& choice);
-  void paint_ground(bool grid);
+  void paint_ground(const PaintChoice& choice);
   void paint_panes(const std::vector<Pane>& panes, const Camera& camera);
   void place_objects(const DrawnMoment& moment, DentNormals normals);
   float shadow_offset() const;

@@ -37,20 +37,24 @@ void light(vec3 n_any, vec3 p, out vec3 around, out vec3 direct) {
 const std::string kShadow = R"(
 uniform sampler2DShadow shadow_map;
 uniform float shadow_strength;
+uniform int shadow_samples;   // along a side
 float lit(vec3 p) {
   if (shadow_strength <= 0.0) return 1.0;
   vec3 at = (shadow_from_world * vec4(p, 1.0)).xyz * 0.5 + 0.5;
   if (any(lessThan(at, vec3(0.0))) || any(greaterThan(at, vec3(1.0)))) return 1.0;
-  vec2 texel = 1.6 / vec2(textureSize(shadow_map, 0));
+  // Of a square of samples, each the mean of four already.
+  vec2 texel = 6.4 / float(shadow_samples) / vec2(textureSize(shadow_map, 0));
+  float middle = 0.5 * float(shadow_samples - 1);
   float sum = 0.0;
-  for (int i = 0; i < 4; ++i) {
-    for (int j = 0; j < 4; ++j) {
-      sum += texture(shadow_map, vec3(at.xy + (vec2(i, j) - 1.5) * texel, at.z));
+  for (int i = 0; i < shadow_samples; ++i) {
+    for (int j = 0; j < shadow_samples; ++j) {
+      sum += texture(shadow_map, vec3(at.xy + (vec2(i, j) - middle) * texel, at.z));
     }
   }
+  sum /= float(shadow_samples * shadow_samples);
   // Towards the rim of what the light's map holds, shadows fade: beyond nothing is known.
   float rim = 2.0 * max(abs(at.x - 0.5), abs(at.y - 0.5));
-  return mix(1.0, sum / 16.0, shadow_strength * (1.0 - smoothstep(0.8, 0.98, rim)));
+  return mix(1.0, sum, shadow_strength * (1.0 - smoothstep(0.8, 0.98, rim)));
 }
 )";
 

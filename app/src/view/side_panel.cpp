@@ -169,9 +169,9 @@ void draw_side_panel(const ScreenPart& part, SharedReader* reader, const driver:
   } else {
     draw_head(*reader, tick);
     draw_buttons(*reader, choice);
-    draw_plots(*reader, plots, std::max(0.5F * part.height, 20 * ImGui::GetFontSize()));
+    draw_plots(*reader, plots, std::max(0.48F * part.height, 19 * ImGui::GetFontSize()));
     ImGui::Separator();
-    const float rest = ImGui::GetContentRegionAvail().y - 4.6F * ImGui::GetFrameHeightWithSpacing();
+    const float rest = ImGui::GetContentRegionAvail().y - 3.4F * ImGui::GetFrameHeightWithSpacing();
     ImGui::BeginChild("knobs", {0, std::max(rest, 3 * ImGui::GetFontSize())});
     draw_knobs(*reader);
     ImGui::EndChild();
