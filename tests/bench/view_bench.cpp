@@ -28,12 +28,15 @@ void paint(benchmark::State& state) {
       {.name = "ball",
        .mesh = support::bumpy_sphere(static_cast<int>(state.range(0)), 0.05, 0.002, 40)});
   app::view::ScenePainter painter(scene);
-  Canvas canvas(960, 640);
+  Canvas canvas(960, 640, 0, state.range(2) == 1 ? Canvas::kSamples : 1);
   const DrawnMoment moment{};
   const auto camera = app::view::frame(scene, moment, canvas.aspect());
   PaintChoice choice;
   choice.shadows = state.range(1) == 1;
   choice.fine = state.range(2) == 1;
+  // The first pictures translate the shaders.
+  for (int i = 0; i < 2; ++i) painter.paint(moment, camera, choice, canvas);
+  glFinish();
   for (auto _ : state) {
     painter.paint(moment, camera, choice, canvas);
     glFinish();

@@ -4,16 +4,11 @@
 #include <cstddef>
 
 namespace thimble::app::view {
-namespace {
-
-constexpr GLint kSamples = 4;  // what Mesa's software can; more is hardly seen
-
-}  // namespace
-
-Canvas::Canvas(int width, int height, int strip) : width_(width), height_(height), strip_(strip) {
+Canvas::Canvas(int width, int height, int strip, int samples_wanted)
+    : width_(width), height_(height), strip_(strip) {
   GLint most = 0;
   glGetIntegerv(GL_MAX_SAMPLES, &most);
-  const GLint samples = std::min(kSamples, most);
+  const GLint samples = samples_wanted > 1 ? std::min(samples_wanted, most) : 0;
   const auto storage = [&](const GlRenderbuffer& buffer, GLint count, GLenum format) {
     glBindRenderbuffer(GL_RENDERBUFFER, *buffer);
     glRenderbufferStorageMultisample(GL_RENDERBUFFER, count, format, width, height);

@@ -19,7 +19,10 @@ class Canvas {
  public:
   /// Makes one of this size (pixels, > 0), of which the lowest `strip` rows are left for plots.
   /// Precondition: a context of OpenGL 3.3 is current.
-  Canvas(int width, int height, int strip = 0);
+  Canvas(int width, int height, int strip = 0, int samples = kSamples);
+
+  /// Samples a pixel for smooth rims: what Mesa's software can; more is hardly seen.
+  static constexpr int kSamples = 4;
 
   int width() const { return width_; }
   int height() const { return height_; }

@@ -17,7 +17,7 @@ constexpr GLuint kViewBinding = 0;
 
 /// Turns a colour as on the screen into amounts of light, as the shaders turn it back.
 Eigen::Vector3f linear(const Colour& colour) {
-  return Eigen::Array3f(colour[0], colour[1], colour[2]).pow(2.2F);
+  return Eigen::Array3f(colour[0], colour[1], colour[2]).square();
 }
 
 Eigen::Vector4f padded(const Eigen::Vector3f& v) { return {v.x(), v.y(), v.z(), 0}; }

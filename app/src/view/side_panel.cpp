@@ -1,5 +1,8 @@
 #include "view/side_panel.h"
 
+#include <epoxy/gl.h>
+// After the above, which brings OpenGL.
+#include <GLFW/glfw3.h>
 #include <imgui.h>
 
 #include <algorithm>
@@ -146,6 +149,8 @@ void draw_looks(ViewChoice& choice) {
   if (ImGui::Checkbox("edges", &edges)) paint.edges = edges ? Edges::kOn : Edges::kOff;
   ImGui::SameLine();
   ImGui::Checkbox("edge planes", &paint.marks.edge_planes);
+  ImGui::SameLine();
+  ImGui::Checkbox("fine", &paint.fine);
   ImGui::Checkbox("arm", &paint.marks.arm);
   ImGui::SameLine();
   ImGui::Checkbox("shadows", &paint.shadows);
@@ -217,28 +222,49 @@ void draw_notices(const ScreenPart& part, const ViewNotes& notes, const ViewChoi
   }
 }
 
-void take_keys(SharedReader* reader, ViewChoice& choice) {
-  if (ImGui::GetIO().WantTextInput) return;
+void take_key(int key, SharedReader* reader, ViewChoice& choice) {
   PaintChoice& paint = choice.paint;
-  // ImGui 1.86 numbers keys as the window's library does: GLFW by the letters' ASCII codes.
-  const auto pressed = [](int key) { return ImGui::IsKeyPressed(key, false); };
-  constexpr int kF1 = 290;      // GLFW_KEY_F1
-  constexpr int kEscape = 256;  // GLFW_KEY_ESCAPE
-  if (pressed('H')) choice.mouse_is_hand = !choice.mouse_is_hand;
-  if (pressed('F')) choice.frame = true;
-  if (pressed('S')) choice.screenshot = true;
-  if (pressed('G')) {
-    paint.shading = paint.shading == Shading::kPhong ? Shading::kGouraud : Shading::kPhong;
+  switch (key) {
+    case GLFW_KEY_H:
+      choice.mouse_is_hand = !choice.mouse_is_hand;
+      break;
+    case GLFW_KEY_F:
+      choice.frame = true;
+      break;
+    case GLFW_KEY_S:
+      choice.screenshot = true;
+      break;
+    case GLFW_KEY_G:
+      paint.shading = paint.shading == Shading::kPhong ? Shading::kGouraud : Shading::kPhong;
+      break;
+    case GLFW_KEY_E:
+      paint.edges = paint.edges == Edges::kOn ? Edges::kOff : Edges::kOn;
+      break;
+    case GLFW_KEY_P:
+      paint.marks.edge_planes = !paint.marks.edge_planes;
+      break;
+    case GLFW_KEY_A:
+      paint.marks.arm = !paint.marks.arm;
+      break;
+    case GLFW_KEY_F1:
+    case GLFW_KEY_SLASH:
+      choice.help = !choice.help;
+      break;
+    case GLFW_KEY_ESCAPE:
+      choice.help = false;
+      break;
+    case GLFW_KEY_Q:
+      choice.close = true;
+      break;
+    case GLFW_KEY_SPACE:
+      if (reader != nullptr) reader->ask_pause(!reader->pause_asked());
+      break;
+    case GLFW_KEY_R:
+      if (reader != nullptr) toggle_record(*reader);
+      break;
+    default:
+      break;
   }
-  if (pressed('E')) paint.edges = paint.edges == Edges::kOn ? Edges::kOff : Edges::kOn;
-  if (pressed('P')) paint.marks.edge_planes = !paint.marks.edge_planes;
-  if (pressed('A')) paint.marks.arm = !paint.marks.arm;
-  if (pressed(kF1) || pressed('/')) choice.help = !choice.help;
-  if (pressed(kEscape)) choice.help = false;
-  if (pressed('Q')) choice.close = true;
-  if (reader == nullptr) return;
-  if (pressed(' ')) reader->ask_pause(!reader->pause_asked());
-  if (pressed('R')) toggle_record(*reader);
 }
 
 }  // namespace thimble::app::view

@@ -35,7 +35,7 @@ void draw_side_panel(const ScreenPart& part, SharedReader* reader, const driver:
 /// Draws the notice, if there is one, and the help, if it is asked for, over the scene's part.
 void draw_notices(const ScreenPart& part, const ViewNotes& notes, const ViewChoice& choice);
 
-/// Does what the keys ask for; lists of them stand in the help.
-void take_keys(SharedReader* reader, ViewChoice& choice);
+/// Does what a key asks for (a GLFW_KEY_...); lists of them stand in the help.
+void take_key(int key, SharedReader* reader, ViewChoice& choice);
 
 }  // namespace thimble::app::view

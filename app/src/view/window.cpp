@@ -14,6 +14,7 @@
 #include <optional>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "view/picture_file.h"
 #include "view/run_follower.h"
@@ -61,6 +62,12 @@ class Screen {
     if (screen->window_ == nullptr) return driver::Error{"No window: " + glfw_words() + "."};
     glfwMakeContextCurrent(screen->window_);
     glfwSwapInterval(1);
+    // Heard one by one, so that none is lost where pictures take long.
+    glfwSetWindowUserPointer(screen->window_, screen.get());
+    glfwSetKeyCallback(screen->window_, [](GLFWwindow* window, int key, int, int action, int) {
+      auto* self = static_cast<Screen*>(glfwGetWindowUserPointer(window));
+      if (action == GLFW_PRESS) self->keys_.push_back(key);
+    });
     ImGui::CreateContext();
     screen->imgui_ = true;
     ImGui_ImplGlfw_InitForOpenGL(screen->window_, true);
@@ -81,6 +88,12 @@ class Screen {
 
   GLFWwindow* window() { return window_; }
   float scale() const { return scale_; }
+  /// Gives the keys pressed since it was asked last, but those typed into a field.
+  std::vector<int> take_keys() {
+    std::vector<int> keys = std::exchange(keys_, {});
+    if (ImGui::GetIO().WantTextInput) keys.clear();
+    return keys;
+  }
 
   void begin() {
     glfwPollEvents();
@@ -109,6 +122,7 @@ class Screen {
   bool imgui_ = false;
   GLFWwindow* window_ = nullptr;
   float scale_ = 0;
+  std::vector<int> keys_;
 };
 
 /// Reads what the window shows.
@@ -127,10 +141,20 @@ Picture read_window(GLFWwindow* window) {
   return picture;
 }
 
+/// Tells whether the processor draws in place of a graphics card: then a picture as fine as can be
+/// takes 2.5 times as long as need be (tests/bench/view_bench).
+bool software_draws() {
+  const auto* words = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+  const std::string name = words == nullptr ? "" : words;
+  return name.find("llvmpipe") != std::string::npos || name.find("softpipe") != std::string::npos;
+}
+
 /// Is the window's content from picture to picture.
 class Content {
  public:
-  Content(Screen& screen, RunAttachment& runs) : screen_(screen), follower_(runs) {}
+  Content(Screen& screen, RunAttachment& runs) : screen_(screen), follower_(runs) {
+    choice_.paint.fine = !software_draws();
+  }
 
   /// Draws one picture into the window.
   void draw(double frame_time);
@@ -145,6 +169,7 @@ class Content {
   RunFollower follower_;
   std::unique_ptr<ScenePainter> painter_;
   std::optional<Canvas> canvas_;
+  bool canvas_fine_ = true;
   Camera camera_;
   SceneMouse mouse_;
   bool led_ = false;
@@ -168,8 +193,10 @@ void Content::take_picture() {
 void Content::draw_scene(const ScreenPart& part, float ratio) {
   const int width = std::max(1, static_cast<int>(part.width * ratio));
   const int height = std::max(1, static_cast<int>(part.height * ratio));
-  if (!canvas_ || canvas_->width() != width || canvas_->height() != height) {
-    canvas_.emplace(width, height);
+  if (!canvas_ || canvas_->width() != width || canvas_->height() != height ||
+      canvas_fine_ != choice_.paint.fine) {
+    canvas_fine_ = choice_.paint.fine;
+    canvas_.emplace(width, height, 0, canvas_fine_ ? Canvas::kSamples : 1);
   }
   const DrawnMoment& moment = follower_.moment();
   if (choice_.frame && follower_.has_moment()) {
@@ -192,7 +219,7 @@ void Content::draw_scene(const ScreenPart& part, float ratio) {
 }
 
 void Content::draw(double frame_time) {
-  notes_.frame_time += 0.05 * (frame_time - notes_.frame_time);
+  notes_.frame_time += (notes_.frame_time > 0 ? 0.05 : 1) * (frame_time - notes_.frame_time);
   if (follower_.step()) {
     painter_ = std::make_unique<ScenePainter>(follower_.scene());
     choice_.frame = true;
@@ -211,7 +238,7 @@ void Content::draw(double frame_time) {
   glViewport(0, 0, pixels_x, pixels_y);
   glClearColor(kGroundColour[0], kGroundColour[1], kGroundColour[2], 1);
   glClear(GL_COLOR_BUFFER_BIT);
-  take_keys(follower_.reader(), choice_);
+  for (const int key : screen_.take_keys()) take_key(key, follower_.reader(), choice_);
   if (painter_ != nullptr && scene.width >= 1 && scene.height >= 1) draw_scene(scene, ratio);
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
   glViewport(0, 0, pixels_x, pixels_y);
