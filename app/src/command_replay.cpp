@@ -1,8 +1,11 @@
 #include <cinttypes>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
 #include <memory>
+#include <numbers>
 #include <string>
+#include <vector>
 
 #include "build_info.h"
 #include "commands.h"
@@ -11,9 +14,12 @@
 #include "recording/read_recording.h"
 #include "recording/recording_file.h"
 #include "recording/replay.h"
+#include "recording/replay_trajectory.h"
+#include "recording/trajectory_file.h"
 #include "scene_file.h"
 #include "scene_objects.h"
 #include "text_file.h"
+#include "thimble/render/mesh/load_mesh.h"
 
 namespace thimble::app {
 namespace {
@@ -23,6 +29,9 @@ struct ReplayOptions {
   std::string scene;
   std::string record;
   bool verify = false;
+  TrajectoryForm form;
+  std::string length = "m", time = "s";
+  std::string frame;
 };
 
 /// Says what keeps a replay from being the same run again; nothing if it must be the same.
@@ -45,7 +54,107 @@ driver::Result<void> comparable(const Recording& recording, const std::string& s
   return {};
 }
 
+/// Tells a recording from a text: by the first byte of an HDF5 file [HDF5 file format, superblock].
+bool is_recording(const std::string& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return !stream || stream.get() == 0x89;
+}
+
+/// Takes a trajectory from the frame of an object's mesh file into the world; one that is in the
+/// world already if no object is named.
+driver::Result<void> into_world(std::vector<TrajectoryPoint>& trajectory, const Scene& scene,
+                                const std::string& frame) {
+  if (frame.empty() || frame == "world") return {};
+  for (const SceneObject& object : scene.objects) {
+    if (object.name != frame) continue;
+    if (object.mesh_file.empty() || object.paged) {
+      return driver::Error{"--frame: \"" + frame + "\" has no mesh file in memory; give the " +
+                           "trajectory in the world, in m."};
+    }
+    const auto mesh = render::load_mesh(object.mesh_file);
+    if (!mesh) return mesh.error();
+    const MeshPlacement place = placement_of(*mesh, object);
+    for (TrajectoryPoint& point : trajectory) {
+      point.p = place.p_WM + place.scale * (object.R_WO * point.p);
+      point.f = object.R_WO * point.f;
+    }
+    return {};
+  }
+  return driver::Error{"--frame: expected world or an object of the scene, found \"" + frame +
+                       "\"."};
+}
+
+void print_comparison(const std::string& file, const TrajectoryComparison& compared,
+                      const Scene& scene, bool forces) {
+  std::printf("%s: %zu ticks of %s along the trajectory, %zu of them touching; force %.4g N (rms)",
+              file.c_str(), compared.ticks, scene.name.c_str(), compared.touching,
+              compared.force_rms);
+  if (!forces) {
+    std::printf(".\n");
+    return;
+  }
+  std::printf(", recorded %.4g N.\n", compared.recorded_rms);
+  std::printf("Force error %.4g N (rms)", compared.error_rms);
+  if (compared.recorded_rms > 0) {
+    std::printf(", %.3g %% of the recorded", 100 * compared.error_rms / compared.recorded_rms);
+  }
+  std::printf(
+      "; direction within %.3g degrees in 99 of 100 of %zu ticks; contact differs in %zu.\n",
+      compared.direction_p99 * 180 / std::numbers::pi, compared.directions,
+      compared.contact_disagrees);
+}
+
+/// Lets the probe of a trajectory file touch a scene.
+int replay_probe(const ReplayOptions& options) {
+  if (options.scene.empty()) {
+    return complain({options.file + " is no recording; as a trajectory it needs --scene."},
+                    kExitBadInput);
+  }
+  TrajectoryForm form = options.form;
+  form.metres = options.length == "mm" ? 1e-3 : 1;
+  form.seconds = options.time == "ms" ? 1e-3 : 1;
+  // In the frame of a mesh file its unit is that of the file.
+  if (!options.frame.empty() && options.frame != "world") form.metres = 1;
+  auto trajectory = read_trajectory(options.file, form);
+  if (!trajectory) return complain(trajectory.error(), kExitBadInput);
+  const auto scene = read_scene(options.scene, mesh_folder(), {});
+  if (!scene) return complain(scene.error(), kExitBadInput);
+  if (auto placed = into_world(*trajectory, *scene, options.frame); !placed) {
+    return complain(placed.error(), kExitBadInput);
+  }
+  constexpr double kLongest = 86400;  // s
+  if (!(trajectory->back().time - trajectory->front().time < kLongest)) {
+    return complain({options.file + " lasts for more than a day; --time says the unit."},
+                    kExitBadInput);
+  }
+  auto objects = SceneObjects::build(*scene);
+  if (!objects) return complain(objects.error(), kExitBadInput);
+  std::vector<driver::TickRecord> felt;
+  const TrajectoryComparison compared =
+      replay_trajectory(*trajectory, scene->rate, **objects, [&](const driver::TickRecord& tick) {
+        if (!options.record.empty()) felt.push_back(tick);
+      });
+  print_comparison(options.file, compared, *scene, form.has_forces());
+  if (options.record.empty()) return kExitDone;
+  const RecordingInfo info{.scene = scene->name,
+                           .scene_file = options.scene,
+                           .scene_text = text_of(options.scene),
+                           .arm = scene->arm.name,
+                           .arm_file = scene->arm_file.string(),
+                           .arm_text = text_of(scene->arm_file),
+                           .device = "trajectory " + options.file,
+                           .clock = "virtual",
+                           .program = program_name(),
+                           .rate = scene->rate,
+                           .seed = scene->seed};
+  if (auto written = write_recording(options.record, info, felt); !written) {
+    return complain(written.error(), kExitTrouble);
+  }
+  return kExitDone;
+}
+
 int replay_recording(const ReplayOptions& options) {
+  if (!is_recording(options.file)) return replay_probe(options);
   const auto recording = read_recording(options.file);
   if (!recording) return complain(recording.error(), kExitBadInput);
   const std::string scene_file = options.scene.empty() ? recording->info.scene_file : options.scene;
@@ -93,8 +202,25 @@ void add_replay_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
       "replay", "Let a recorded hand touch a scene again, and compare the forces");
   auto options = std::make_shared<ReplayOptions>();
-  command->add_option("FILE", options->file, "Recording, made by `thimble run SCENE --record FILE`")
+  command
+      ->add_option("FILE", options->file,
+                   "Recording, made by `thimble run SCENE --record FILE`, or a trajectory as text: "
+                   "where a probe was in each line, and what it felt")
       ->required();
+  command
+      ->add_option(
+          "--columns", options->form.columns,
+          "Columns of a trajectory: t x y z fx fy fz, in its order; - for one to leave out")
+      ->capture_default_str();
+  command->add_option("--length", options->length, "Unit of length of a trajectory in the world")
+      ->check(CLI::IsMember({"m", "mm"}))
+      ->capture_default_str();
+  command->add_option("--time", options->time, "Unit of time of a trajectory")
+      ->check(CLI::IsMember({"s", "ms"}))
+      ->capture_default_str();
+  command->add_option("--frame", options->frame,
+                      "Where a trajectory is told in: world, or the object whose mesh file has its "
+                      "frame and unit");
   command->add_option(
       "--scene", options->scene,
       "Scene to touch in place of the recorded one: what would this hand have felt?");

@@ -182,6 +182,10 @@ std::unique_ptr<RequestDesk> open_desk(Session& session, const RunOptions& optio
 }
 
 int run_scene(const RunOptions& options) {
+  if (options.led() && options.device != "sim") {
+    return complain({"--hand mouse leads the simulated arm's hand; a real arm has yours."},
+                    kExitBadInput);
+  }
   std::optional<driver::FoundArm> real_arm;
   if (options.device != "sim") {
     const auto plugged_in = driver::find_arms();

@@ -223,7 +223,7 @@ driver::Result<Scene> read_scene(const std::filesystem::path& file,
   return scene;
 }
 
-render::TriangleMesh place_mesh(const render::TriangleMesh& mesh, const SceneObject& object) {
+MeshPlacement placement_of(const render::TriangleMesh& mesh, const SceneObject& object) {
   // The box of the mesh as it lies in its file gives the size: turning an object must not change
   // it.
   Eigen::AlignedBox3d file_box;
@@ -234,7 +234,12 @@ render::TriangleMesh place_mesh(const render::TriangleMesh& mesh, const SceneObj
   }
   const double largest = file_box.sizes().maxCoeff();
   const double scale = object.size && largest > 0 ? *object.size / largest : object.scale;
-  return render::placed(mesh, scale, object.R_WO, object.p_WO - scale * turned_box.center());
+  return {.scale = scale, .p_WM = object.p_WO - scale * turned_box.center()};
+}
+
+render::TriangleMesh place_mesh(const render::TriangleMesh& mesh, const SceneObject& object) {
+  const MeshPlacement place = placement_of(mesh, object);
+  return render::placed(mesh, place.scale, object.R_WO, place.p_WM);
 }
 
 render::PagedPlace place_pages(const render::PageFile& file, const SceneObject& object) {

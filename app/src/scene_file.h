@@ -61,6 +61,16 @@ driver::Result<Scene> read_scene(const std::filesystem::path& file,
                                  const std::filesystem::path& mesh_folder,
                                  const std::filesystem::path& other_arm = {});
 
+/// Is how a mesh file stands in the world: p_W = p_WM + scale R_WO p, with p as in the file.
+struct MeshPlacement {
+  double scale = 1;               ///< m per unit of the file
+  Eigen::Vector3d p_WM{0, 0, 0};  ///< m
+};
+
+/// Finds how the mesh of an object stands in the world. Precondition: the mesh has a vertex.
+/// Real-time: never from the servo thread.
+MeshPlacement placement_of(const render::TriangleMesh& mesh, const SceneObject& object);
+
 /// Turns a mesh as its file holds it into the world (m), as `object` says.
 /// Precondition: the mesh has a vertex. Real-time: never from the servo thread.
 render::TriangleMesh place_mesh(const render::TriangleMesh& mesh, const SceneObject& object);

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "fuzz/shared_run_memory.h"
 #include "thimble/device_sim/usb/usbip_session.h"
 #include "thimble/device_sim/usb/usbip_wire.h"
 #include "thimble/driver/arms/falcon/falcon_arm.h"
@@ -202,8 +203,10 @@ bool decode_anything(Bytes bytes) {
       return find_frames(rest);
     case 9:
       return usbip_decode(rest);
-    default:
+    case 10:
       return usbip_session(rest);
+    default:
+      return read_shared_memory(rest);
   }
 }
 

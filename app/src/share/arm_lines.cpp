@@ -37,13 +37,13 @@ std::vector<ArmLine> delta_lines(const std::array<double, 12>& n, const Vector3d
   const auto [a, c, f, r, s] = std::tuple(n[0], n[2], n[5], n[6], n[7]);
   std::vector<ArmLine> lines(1);
   ArmLine base, plate;
-  for (int leg = 0; leg < 3; ++leg) {
-    const double azimuth = n[static_cast<std::size_t>(8 + leg)];
+  for (std::size_t leg = 0; leg < 3; ++leg) {
+    const double azimuth = n[8 + leg];
+    const double angle = q[static_cast<Eigen::Index>(leg)];
     const Vector3d u(std::cos(azimuth), std::sin(azimuth), 0);
     const Vector3d v(-std::sin(azimuth), std::cos(azimuth), 0);
     const Vector3d joint = r * u + s * v;
-    const Vector3d elbow =
-        joint + a * (std::cos(q[leg]) * u + std::sin(q[leg]) * Vector3d::UnitZ());
+    const Vector3d elbow = joint + a * (std::cos(angle) * u + std::sin(angle) * Vector3d::UnitZ());
     const Vector3d end = p_BT + c * u + f * v;
     lines.push_back({joint, elbow, end});
     base.push_back(joint);

@@ -29,7 +29,7 @@ extern "C" void on_bus_error(int number, siginfo_t* info, void*) {
   const auto address = reinterpret_cast<std::uintptr_t>(info->si_addr);
   for (Guarded& one : guarded) {
     if (address < one.begin.load() || address >= one.end.load()) continue;
-    auto* page = reinterpret_cast<void*>(address / page_size * page_size);
+    auto* page = static_cast<std::byte*>(info->si_addr) - address % page_size;
     if (mmap(page, page_size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_FIXED, -1,
              0) == MAP_FAILED) {
       break;

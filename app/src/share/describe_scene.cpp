@@ -12,6 +12,8 @@ namespace {
 // things have between neighbours. Chosen.
 constexpr double kCreaseDrawn = std::numbers::pi / 4;
 
+}  // namespace
+
 SharedScene::Arm describe_arm(const ArmFile& arm, const std::string& device) {
   SharedScene::Arm described{.name = arm.name,
                              .device = device,
@@ -42,6 +44,8 @@ SharedScene::Arm describe_arm(const ArmFile& arm, const std::string& device) {
   }
   return described;
 }
+
+namespace {
 
 SharedKind kind_of(const SceneObject& object) {
   if (object.build_field) return SharedKind::kField;

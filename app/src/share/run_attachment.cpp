@@ -18,7 +18,13 @@ bool RunAttachment::step() {
   const auto found = std::find_if(runs.begin(), runs.end(), [this](const RunningRun& run) {
     return name_.empty() || run.name == name_;
   });
-  if (found == runs.end()) return false;
+  if (found == runs.end()) {
+    // One that was killed is shown as it was left, until the next run clears it away.
+    if (reader_ || name_.empty()) return false;
+    auto left = SharedReader::attach(name_);
+    if (left) reader_ = std::move(left).value();
+    return reader_ != nullptr;
+  }
   if (reader_ && reader_->scene().began_ns == found->began_ns) return false;  // the ended one
   auto reader = SharedReader::attach(found->name);
   trouble_ = reader ? "" : reader.error().message;

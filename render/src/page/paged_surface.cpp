@@ -102,22 +102,21 @@ bool PagedSurface::visit_crossings(const RecordSegment& segment, Visit visit) co
   return complete;
 }
 
-Entry PagedSurface::first_entry(const Vector3d& p_from, const Vector3d& p_to, bool& complete,
-                                bool& leaves) const noexcept {
-  Entry first;
-  complete = true;
-  leaves = false;
-  if (!within_range(p_from) || !within_range(p_to)) return first;
+FoundEntry PagedSurface::first_entry(const Vector3d& p_from, const Vector3d& p_to) const noexcept {
+  FoundEntry found;
+  if (!within_range(p_from) || !within_range(p_to)) return found;
   int crossings = 0;
-  complete = visit_crossings(RecordSegment(file_.lattice(), p_from, p_to),
-                             [&](std::int32_t t, Crossing way, double parameter) noexcept {
-                               ++crossings;
-                               if (way != Crossing::kEnters) return;
-                               if (first.triangle >= 0 && parameter >= first.parameter) return;
-                               first = {t, parameter};
-                             });
-  leaves = crossings % 2 == 0;
-  return first;
+  found.complete = visit_crossings(RecordSegment(file_.lattice(), p_from, p_to),
+                                   [&](std::int32_t t, Crossing way, double parameter) noexcept {
+                                     ++crossings;
+                                     if (way != Crossing::kEnters) return;
+                                     const Entry& first = found.entry;
+                                     if (first.triangle >= 0 && parameter >= first.parameter)
+                                       return;
+                                     found.entry = {t, parameter};
+                                   });
+  found.leaves = crossings % 2 == 0;
+  return found;
 }
 
 std::int32_t PagedSurface::closest(const Vector3d& p_W, double radius,
@@ -175,7 +174,12 @@ std::int32_t PagedSurface::closest(const Vector3d& p_W, double radius,
 bool PagedSurface::inside(const Vector3d& p_W, bool& complete) const noexcept {
   const std::int32_t near = closest(p_W, HUGE_VAL, complete);
   if (!complete || near < 0) return false;
-  const CompactTriangle& r = *find(near);
+  const CompactTriangle* const nearest = find(near);
+  if (nearest == nullptr) {  // The loader has taken its page back meanwhile.
+    complete = false;
+    return false;
+  }
+  const CompactTriangle& r = *nearest;
   const Vector3d a = r.corner(0);
   const Vector3d side = r.corner(1) - a, other = r.corner(2) - a;
   const Vector3d n = side.cross(other);

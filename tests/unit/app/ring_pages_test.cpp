@@ -125,10 +125,10 @@ TEST(RingPages, GiveTheSameEntriesAsTheSameMeshCutByTheUsualWay) {
   int entries = 0;
   for (int i = 0; i < 5000; ++i) {
     const Vector3d from = random.in_box(0.06), to = random.in_box(0.06);
-    bool complete = false;
     const render::Entry expected = tree.first_entry(from, to);
-    const render::Entry entry = (*paged)->first_entry(from, to, complete);
-    EXPECT_TRUE(complete);
+    const auto found = (*paged)->first_entry(from, to);
+    const render::Entry& entry = found.entry;
+    EXPECT_TRUE(found.complete);
     ASSERT_EQ(entry.triangle, expected.triangle < 0 ? -1 : surface->source(expected.triangle));
     entries += entry.triangle >= 0;
   }

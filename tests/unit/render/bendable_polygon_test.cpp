@@ -317,9 +317,17 @@ TEST(BendablePolygon, StaysBoundedOnCoarseSoftMeshesAtAnyStiffnessMassAndStep) {
         // the speed of the hand gives it.
         EXPECT_TRUE(largest < 3 * kDepth)
             << largest << " at " << times << ", " << step << " s, " << name_of(scheme);
+        // Symplectic Euler and Verlet keep another sum than the energy: with a = h w / 2 the first
+        // keeps v^2 / 2 + w^2 x^2 / 2 - a w x v, which lies within 1 - a and 1 + a times the
+        // energy, Verlet's lies nearer; so the energy swings by that much. The others never gain
+        // any.
+        const bool swings =
+            scheme == SpringScheme::kSymplecticEuler || scheme == SpringScheme::kVerlet;
+        const double h = step / dent.motion().substeps();
+        const double a = swings ? h / largest_step(scheme, dent.motion().bounds()) : 0;
         const double energy = dent.motion().energy();
         for (int i = 0; i < 200; ++i) dent.rest();
-        EXPECT_TRUE(dent.motion().energy() <= energy * (1 + 1e-9))
+        EXPECT_TRUE(dent.motion().energy() <= energy * (1 + a) / (1 - a) * (1 + 1e-9))
             << times << ", " << step << " s, " << name_of(scheme);
       }
     }

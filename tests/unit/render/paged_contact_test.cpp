@@ -415,6 +415,21 @@ TEST(PagedContact, LeavesTheHeapAloneInEveryTick) {
   EXPECT_GT(hand.contact.misses(), 10u);
 }
 
+TEST(PagedContact, FindsTheSurfaceAgainHoweverFarItWentUnseen) {
+  // More of the ball lies between where it was last known to be free and where it is than fits the
+  // frames.
+  Hand hand(PagedContact(open({.frames = 5, .reach = 0.002, .horizon = 0.01})));
+  Way way(9);
+  int touching = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    const ContactState& felt = hand.move(way.next(4e-4, 8e-4 + 1.2e-3 * std::sin(0.007 * i)));
+    touching += felt.touching;
+    if (i > 3'000) hand.contact.surface().serve();
+  }
+  EXPECT_GT(touching, 10'000);
+  EXPECT_LT(hand.largest_jump, 5e-4);
+}
+
 TEST(PagedContact, NeverJumpsWhileAThreadLoadsForIt) {
   // Few frames and a fast tip, so that the loader is late and gives pages up all the time.
   const auto surface = open({.frames = 5, .reach = 0.002, .horizon = 0.01});

@@ -211,9 +211,7 @@ TEST(PagedSurface, FindsTheSameEntriesAsATreeInMemoryAndSaysWhenItCannotKnow) {
   const auto surface = open({.frames = 64, .reach = 1, .horizon = 0});
   const Bvh tree(bumpy());
   support::Random random(7);
-  bool complete = true;
-  surface->first_entry({0, 0, 0.08}, {0, 0, 0.03}, complete);
-  EXPECT_FALSE(complete);  // nothing is in memory yet
+  EXPECT_FALSE(surface->first_entry({0, 0, 0.08}, {0, 0, 0.03}).complete);  // nothing is there yet
   tick(*surface, {0, 0, 0.05});
   serve_all(*surface);
   int entries = 0;
@@ -222,8 +220,9 @@ TEST(PagedSurface, FindsTheSameEntriesAsATreeInMemoryAndSaysWhenItCannotKnow) {
     const Vector3d to =
         k % 2 == 0 ? Vector3d(random.in_box(0.05)) : Vector3d(from * 0.6 + random.in_box(0.003));
     const Entry expected = tree.first_entry(from, to);
-    const Entry entry = surface->first_entry(from, to, complete);
+    const auto [entry, complete, leaves] = surface->first_entry(from, to);
     EXPECT_TRUE(complete);
+    EXPECT_EQ(leaves, tree.inside(from) == tree.inside(to));
     EXPECT_EQ(entry.triangle, expected.triangle);
     if (entry.triangle < 0) continue;
     ++entries;
@@ -288,9 +287,9 @@ TEST(PagedSurface, SaysThatItCannotKnowRatherThanAnythingWrong) {
         EXPECT_FALSE(inside);
       }
       complete ? ++known : ++unknown;
-      const Entry entry = surface->first_entry(p, to, complete);
-      if (complete) {
-        EXPECT_EQ(entry.triangle, tree.first_entry(p, to).triangle);
+      const FoundEntry found = surface->first_entry(p, to);
+      if (found.complete) {
+        EXPECT_EQ(found.entry.triangle, tree.first_entry(p, to).triangle);
       }
       const std::int32_t nearest = surface->closest(p, 0.01, complete);
       if (complete) {

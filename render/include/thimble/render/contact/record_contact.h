@@ -34,8 +34,8 @@ namespace thimble::render {
 /// Where a record is absent the plane felt last is held (held_plane.h) and the tick is counted. The
 /// contact goes on from the last triangle at hand, or from the one nearest to the tip if the way
 /// there is not; it ends if there is none within the store's reach. A free tip keeps the path that
-/// could not be examined; an entry found on it later counts if the path does not come out again,
-/// for nobody knows whether the tip went straight.
+/// could not be examined until it is known to be outside where it is; an entry found on the path
+/// later counts if it does not come out again, for nobody knows whether the tip went straight.
 template <RecordStore Store>
 class RecordContact {
  public:

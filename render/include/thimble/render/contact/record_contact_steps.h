@@ -158,14 +158,19 @@ bool RecordContact<Store>::begin(const Eigen::Vector3d& p_WT) noexcept {
   const Eigen::Vector3d from = p_WT_before_;
   if (has_before_) found = store_.first_entry(from, p_WT);
   state_ = {};
+  bool free = found.complete;
   if constexpr (!Store::kComplete) {
     felt_ = {};
     // Who was out of sight may have gone round what the straight way passes through.
     if (path_kept_ && (found.leaves || !found.complete)) found.entry = {};
     if (!found.complete) ++ticks_held_;
-    if (found.entry.triangle < 0) path_kept_ = !found.complete;
+    if (found.entry.triangle < 0) {
+      // A long path may never be at hand as a whole; who is outside by what is near begins anew.
+      free = free || store_.inside(p_WT) == Known::kNo;
+      path_kept_ = !free;
+    }
   }
-  if (found.complete) p_WT_before_ = p_WT;
+  if (free) p_WT_before_ = p_WT;
   has_before_ = true;
   if (found.entry.triangle < 0) {
     if constexpr (TellsRise<Store>) {

@@ -37,9 +37,7 @@ class PagedStore {
   double rise() const noexcept { return surface_->file().rise(); }
   FoundEntry first_entry(const Eigen::Vector3d& p_from,
                          const Eigen::Vector3d& p_to) const noexcept {
-    FoundEntry found;
-    found.entry = surface_->first_entry(p_from, p_to, found.complete, found.leaves);
-    return found;
+    return surface_->first_entry(p_from, p_to);
   }
   Known inside(const Eigen::Vector3d& p) const noexcept {
     bool complete = false;

@@ -13,8 +13,9 @@
 #include "thimble/driver/result.h"
 #include "thimble/driver/snapshot.h"
 #include "thimble/render/contact/compact_surface.h"
-#include "thimble/render/contact/large_pages.h"
 #include "thimble/render/contact/contact_search.h"
+#include "thimble/render/contact/large_pages.h"
+#include "thimble/render/contact/record_store.h"
 #include "thimble/render/page/page_file.h"
 #include "thimble/render/page/page_tree.h"
 
@@ -93,15 +94,8 @@ class PagedSurface {
   // Answers of the following are about the records in memory; `complete` tells whether they are
   // those about the whole surface.
 
-  /// Finds the first record that the segment (W, m) crosses from outside to inside; `leaves` tells
-  /// whether one that begins outside ends there too.
-  Entry first_entry(const Eigen::Vector3d& p_from, const Eigen::Vector3d& p_to, bool& complete,
-                    bool& leaves) const noexcept;
-  Entry first_entry(const Eigen::Vector3d& p_from, const Eigen::Vector3d& p_to,
-                    bool& complete) const noexcept {
-    bool leaves = false;
-    return first_entry(p_from, p_to, complete, leaves);
-  }
+  /// Finds the first record that the segment (W, m) crosses from outside to inside.
+  FoundEntry first_entry(const Eigen::Vector3d& p_from, const Eigen::Vector3d& p_to) const noexcept;
 
   /// Finds the record nearest to a point (W, m) and nearer than `radius` (m), -1 for none.
   std::int32_t closest(const Eigen::Vector3d& p_W, double radius, bool& complete) const noexcept;

@@ -1,0 +1,170 @@
+#include "fuzz/shared_run_memory.h"
+
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <vector>
+
+#include "share/arm_lines.h"
+#include "share/shared_reader.h"
+#include "share/shared_run.h"
+
+namespace thimble::fuzz {
+namespace {
+
+void promise(bool kept, const char* what) {
+  if (kept) return;
+  std::fprintf(stderr, "A viewer broke its promise: %s\n", what);
+  std::abort();
+}
+
+/// Makes the memory of a run with a bit of everything.
+std::vector<std::byte> sound_memory() {
+  app::SharedScene scene;
+  scene.name = "fuzz";
+  scene.period_ns = 1'000'000;
+  scene.force_max = 5;
+  scene.arm.shape = app::SharedArmShape::kDelta;
+  scene.arm.numbers.fill(0.05);
+  scene.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
+  scene.triangles = {{0, 1, 2}, {3, 4, 5}};
+  scene.objects.push_back({.name = "a", .moves = true, .vertex_count = 3, .triangle_count = 1});
+  scene.objects.push_back({.name = "b",
+                           .dents = true,
+                           .shaped = true,
+                           .first_vertex = 3,
+                           .vertex_count = 3,
+                           .first_triangle = 1,
+                           .triangle_count = 1});
+  scene.knobs.push_back({"a: stiffness", "N/m", 0, 800, 400});
+  const auto run = app::SharedRun::create("", scene, 8).value();
+  run->set_state(app::RunState::kRunning);
+  driver::TickRecord tick;
+  for (tick.tick = 0; tick.tick < 12; ++tick.tick) run->store_tick(tick);
+  app::ScenePoses poses;
+  poses.count = 1;
+  run->store_poses(poses);
+  render::BodyPatch patch{};
+  patch.object = 1;
+  patch.point_count = 3;
+  patch.triangle_count = 1;
+  patch.triangles[0] = {0, 1, 2};
+  run->store_patch(patch);
+  run->store_vertex(1, {1, 2, 3});
+  run->set_recording_path("x.h5");
+  return {run->memory().bytes().begin(), run->memory().bytes().end()};
+}
+
+void put_checksum_right(std::span<std::byte> memory) {
+  auto& head = *reinterpret_cast<app::SharedHead*>(memory.data());
+  const auto table = [&]<class T>(const app::SharedTable& t, T*) {
+    const bool lies_in = t.offset % 64 == 0 && t.offset <= memory.size() &&
+                         t.count <= (memory.size() - t.offset) / sizeof(T);
+    return lies_in ? std::span(reinterpret_cast<const T*>(memory.data() + t.offset), t.count)
+                   : std::span<const T>();
+  };
+  head.hash = app::shared_hash(head, table(head.objects, static_cast<app::SharedObject*>(nullptr)),
+                               table(head.knobs, static_cast<app::SharedKnob*>(nullptr)),
+                               table(head.vertices, static_cast<app::SharedVertex*>(nullptr)),
+                               table(head.triangles, static_cast<app::SharedTriangle*>(nullptr)));
+}
+
+void read_everything(app::SharedReader& reader) {
+  const app::SharedScene& scene = reader.scene();
+  for (const auto& triangle : scene.triangles) {
+    for (const std::uint32_t vertex : triangle) {
+      promise(vertex < scene.vertices.size(), "a triangle has vertices");
+    }
+  }
+  for (const auto& vertex : scene.vertices) promise(vertex.allFinite(), "a vertex is somewhere");
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    const auto& object = scene.objects[i];
+    promise(object.first_vertex + object.vertex_count <= scene.vertices.size() &&
+                object.first_triangle + object.triangle_count <= scene.triangles.size(),
+            "an object lies in its tables");
+    std::vector<Eigen::Vector3d> vertices(object.vertex_count, Eigen::Vector3d::Zero());
+    reader.shaped_vertices(i, vertices);
+    for (const auto& vertex : vertices) promise(vertex.allFinite(), "a vertex stays somewhere");
+  }
+  for (std::size_t i = 0; i < scene.knobs.size(); ++i) {
+    const auto& knob = scene.knobs[i];
+    for (const double value : {reader.knob(i), reader.knob_wanted(i)}) {
+      promise(value >= knob.least && value <= knob.most, "a knob is within its bounds");
+    }
+    reader.turn_knob(i, 1e9);
+  }
+  driver::TickRecord tick;
+  std::vector<driver::TickRecord> ticks;
+  if (reader.newest(tick)) ticks.push_back(tick);
+  std::uint64_t serial = 0;
+  reader.ticks_since(serial, ticks);
+  for (const auto& one : ticks) {
+    promise(one.object < static_cast<int>(scene.objects.size()), "a tick names an object");
+    promise(std::isfinite(one.p_WT[0]) && std::isfinite(one.depth), "a tick is somewhere");
+    static_cast<void>(app::arm_lines(scene.arm, one));
+  }
+  app::ScenePoses poses;
+  if (reader.poses(poses)) {
+    promise(poses.count <= app::ScenePoses::kMost, "poses are as many as fit");
+    for (std::size_t i = 0; i < poses.count; ++i) {
+      promise(
+          poses.object[i] >= 0 && static_cast<std::size_t>(poses.object[i]) < scene.objects.size(),
+          "a pose names an object");
+    }
+  }
+  render::BodyPatch patch{};
+  if (reader.patch(patch) && patch.triangle_count > 0) {
+    const auto& object = scene.objects[static_cast<std::size_t>(patch.object)];
+    for (std::size_t t = 0; t < patch.triangle_count; ++t) {
+      promise(static_cast<std::size_t>(patch.source[t]) < object.triangle_count,
+              "a patch stands for triangles that there are");
+      for (const auto corner : patch.triangles[t]) {
+        promise(corner < patch.point_count, "a patch has its corners");
+      }
+    }
+  }
+  static_cast<void>(reader.state());
+  static_cast<void>(reader.counters());
+  static_cast<void>(reader.recording_path());
+  reader.ask_record("somewhere");
+  reader.lead_hand({0, 0, 0}, true);
+  reader.ask_record_stop();
+}
+
+}  // namespace
+
+bool read_shared_memory(std::span<const std::byte> bytes) {
+  static const std::vector<std::byte> sound = sound_memory();
+  // Aligned as mapped memory is.
+  struct alignas(64) Line {
+    std::byte bytes[64];
+  };
+  std::vector<Line> lines((sound.size() + 63) / 64);
+  const std::span<std::byte> memory(lines.front().bytes, sound.size());
+  std::memcpy(memory.data(), sound.data(), sound.size());
+  const bool rehash = !bytes.empty() && (std::to_integer<unsigned>(bytes[0]) & 1) != 0;
+  std::span<const std::byte> orders = bytes.empty() ? bytes : bytes.subspan(1);
+  while (orders.size() > 5) {
+    std::uint32_t place = 0;
+    std::memcpy(&place, orders.data(), sizeof place);
+    std::size_t count = std::to_integer<unsigned>(orders[4]) % 17;
+    orders = orders.subspan(5);
+    count = std::min(count, orders.size());
+    for (std::size_t i = 0; i < count; ++i) {
+      memory[(place + i) % memory.size()] = orders[i];
+    }
+    orders = orders.subspan(count);
+  }
+  if (rehash) put_checksum_right(memory);
+  auto reader = app::SharedReader::over(memory);
+  if (!reader) {
+    promise(!reader.error().message.empty(), "a refusal is a sentence");
+    return false;
+  }
+  read_everything(**reader);
+  return true;
+}
+
+}  // namespace thimble::fuzz

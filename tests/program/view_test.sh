@@ -1,0 +1,126 @@
+#!/usr/bin/env bash
+# Servo and viewer are two processes: whatever happens to a viewer, the run feels the same to the bit;
+# whatever happens to a run, its viewer says so; and what a run leaves when it is killed is cleared away.
+# THIMBLE_LONG: 50 kills while recording in place of 4, and 10 minutes at 8 kHz in place of 5 s.
+source "$(dirname "$0")/expect.sh" "$@"
+[ -d /dev/shm ] || { echo "SKIPPED: no POSIX shared memory here"; exit 77; }
+unset DISPLAY WAYLAND_DISPLAY
+scenes=$source_dir/app/scenes
+me=test$$
+segment=/dev/shm/thimble-$(id -u)-$me
+
+# trace NAME ARGUMENTS...: every tick of a run in virtual time, as text.
+trace() {
+  "$thimble" run "$scenes/tin_can.yaml" --duration 4 --record "$1.h5" "${@:2}" >"$1.log" 2>&1 &&
+    "$thimble" export "$1.h5" --csv "$1.csv" >>"$1.log" 2>&1
+}
+
+# A viewer that is absent, that looks on, that stands still, that is killed and started again.
+trace alone --no-view
+trace unwatched --name "$me"
+expect 0 '^$' bash -c 'cmp alone.csv unwatched.csv && echo'
+
+harass() {
+  local viewer
+  while [ -e run_goes_on ]; do
+    timeout 20 "$thimble" view "$me" --text --follow >/dev/null 2>&1 &
+    viewer=$!
+    sleep 0.05
+    kill -STOP $viewer 2>/dev/null
+    sleep 0.05
+    kill -9 $viewer 2>/dev/null
+    wait $viewer 2>/dev/null
+  done
+}
+touch run_goes_on
+harass &
+trace harassed --name "$me"
+rm run_goes_on
+wait
+expect 0 '^$' bash -c 'cmp alone.csv harassed.csv && echo'
+
+# The same in real time, where missed periods are told and not judged.
+"$thimble" run "$scenes/rubber.yaml" --clock wall --duration 4 --name "$me" >wall.log 2>&1 &
+run=$!
+touch run_goes_on
+harass &
+for _ in $(seq 100); do [ -e "$segment" ] && break; sleep 0.1; done
+expect 0 '^600$' stat -c %a "$segment"
+timeout 60 "$thimble" view "$me" --text >view.log 2>&1 &
+viewer=$!
+sleep 1
+expect 0 "$me: rubber" "$thimble" view --list
+expect 0 'ball: friction coefficient = ' "$thimble" view --list
+expect 0 '' "$thimble" view "$me" --turn 'ball: stiffness=200'
+expect 2 'has no knob "ball: colour"; it has' "$thimble" view "$me" --turn 'ball: colour=2'
+expect 2 'expected NAME=VALUE' "$thimble" view "$me" --turn 'ball: stiffness=nan'
+expect 2 'is already shown' "$thimble" run "$scenes/honey.yaml" --name "$me"
+expect 0 '' "$thimble" view "$me" --record ordered.h5
+sleep 1
+expect 0 '' "$thimble" view "$me" --record-stop
+wait $run
+rm -f run_goes_on
+wait $viewer
+expect 0 'The run has ended' cat view.log
+expect 0 'running: .* ticks, .* missed' cat view.log
+echo "real time, viewers killed in a loop: $(tail -2 view.log | head -1)"
+expect 0 'ticks of rubber at 1000 Hz' "$thimble" export ordered.h5 --csv ordered.csv
+expect 1 '' test -e "$segment"
+wait
+
+# Ended by a viewer, and by a signal: the name is gone in each case.
+for end in view signal; do
+  "$thimble" run "$scenes/honey.yaml" --hand mouse --name "$me" >led.log 2>&1 &
+  run=$!
+  for _ in $(seq 100); do "$thimble" view --list | grep -q "^$me:" && break; sleep 0.1; done
+  if [ $end = view ]; then "$thimble" view "$me" --stop; else kill -TERM $run; fi
+  wait $run
+  echo $? >code
+  expect 0 "$([ $end = view ] && echo '^0$' || echo '^130$')" cat code
+  expect 0 'No screen .*: watch by' cat led.log
+  expect 1 '' test -e "$segment"
+done
+
+# Killed while it records, at any moment: the recording opens and lacks 100 ms at most, the viewer
+# tells, and the next run clears away what was left.
+lost_most=0
+for i in $(seq "$([ -n "${THIMBLE_LONG:-}" ] && echo 50 || echo 3)"); do
+  "$thimble" run "$scenes/rubber.yaml" --clock wall --duration 60 --name "$me" --record killed.h5 \
+    >/dev/null 2>&1 &
+  run=$!
+  for _ in $(seq 200); do "$thimble" view --list | grep -q "^$me:" && break; sleep 0.05; done
+  sleep "0.$((RANDOM % 900 + 100))"
+  kill -9 $run
+  wait $run 2>/dev/null
+  expect 0 'process has died' timeout 10 "$thimble" view "$me" --text
+  stored=$(timeout 10 "$thimble" view "$me" --text | grep -oE '[0-9]+ ticks' | head -1 | grep -oE '[0-9]+')
+  expect 0 'the recording was cut off' "$thimble" export killed.h5 --csv killed.csv
+  rows=$(($(wc -l <killed.csv) - 1))
+  lost=$((stored - rows))
+  [ "$lost" -gt "$lost_most" ] && lost_most=$lost
+  # The file's writer looks every 20 ms; a machine that gives it no turn is told, not judged, here.
+  expect 0 '^yes$' echo "$([ "$lost" -le 1000 ] && [ "$rows" -gt 0 ] && echo yes || echo "lost $lost of $stored")"
+done
+echo "killed while recording $i times: $lost_most ticks of 1 ms lost at most (aim: 100)"
+expect 0 'the scene was over' "$thimble" run "$scenes/honey.yaml" --duration 0.1 --name "$me"
+expect 1 '' test -e "$segment"
+
+# A long recording at 8 kHz: no tick is dropped, and memory stays where it was.
+seconds=$([ -n "${THIMBLE_LONG:-}" ] && echo 600 || echo 5)
+sed "s#\.\./arms#$source_dir/app/arms#; s/^duration:.*/duration: $seconds\nrate: 8000/" "$scenes/honey.yaml" >fast.yaml
+"$thimble" run fast.yaml --record fast.h5 >fast.log 2>&1 &
+run=$!
+early=0 resident=0
+while kill -0 $run 2>/dev/null; do
+  resident=$(awk '/VmRSS/ {print $2}' /proc/$run/status 2>/dev/null || echo 0)
+  [ "$early" = 0 ] && [ "${resident:-0}" -gt 20000 ] && early=$resident
+  [ "${resident:-0}" -gt 0 ] && late=$resident
+  sleep 0.05
+done
+wait $run
+expect 0 'Recording: fast.h5' cat fast.log
+expect 0 "^fast.csv: $((seconds * 8000)) ticks of honey at 8000 Hz\.$" "$thimble" export fast.h5 --csv fast.csv
+rm -f fast.csv fast.h5
+echo "8 kHz for $seconds s: no tick dropped; resident $early kB early, ${late:-0} kB late"
+expect 0 '^yes$' echo "$([ "$((${late:-0} - early))" -lt 300000 ] && echo yes || echo grew)"
+finish

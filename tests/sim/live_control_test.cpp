@@ -1,0 +1,352 @@
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "session.h"
+#include "share/describe_scene.h"
+#include "share/live_knobs.h"
+#include "share/shared_reader.h"
+#include "support/heap_guard.h"
+#include "support/run_hash.h"
+#include "support/scratch.h"
+#include "support/shipped_scene.h"
+
+namespace thimble {
+namespace {
+
+using app::SessionOptions;
+
+std::filesystem::path shipped(const std::string& name) {
+  return std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/scenes" / (name + ".yaml");
+}
+
+/// Writes the rubber ball with one coefficient of friction in place of two: where it sticks until
+/// it slips, two copies that differ by a hair slip in different ticks, and the jump that is
+/// friction's own would be taken for the knob's.
+std::filesystem::path rubber_that_does_not_jump() {
+  std::ifstream from(shipped("rubber"));
+  std::string text((std::istreambuf_iterator<char>(from)), {});
+  const auto line = text.find("        static_coefficient");
+  text.erase(line, text.find('\n', line) + 1 - line);
+  text.replace(text.find("../arms"), 7, std::string(THIMBLE_SOURCE_DIR) + "/app/arms");
+  const auto path = support::scratch_folder() / "rubber.yaml";
+  std::ofstream(path) << text;
+  return path;
+}
+
+std::unique_ptr<app::Session> open(const std::filesystem::path& scene,
+                                   const SessionOptions& options) {
+  auto opened = app::Session::open(scene, options);
+  if (!opened) {
+    ADD_FAILURE() << opened.error().message;
+    return nullptr;
+  }
+  return std::move(opened).value();
+}
+
+std::unique_ptr<app::SharedReader> reader_of(app::Session& session) {
+  return app::SharedReader::over(session.shared()->memory().again().value()).value();
+}
+
+std::uint64_t hash_of(const app::Session& session) {
+  support::RunHash hash;
+  for (const auto& row : session.trace().rows()) hash.add(row);
+  return hash.value();
+}
+
+/// Is one copy of a scene's force law with its knobs.
+struct Copy {
+  explicit Copy(const app::Scene& scene)
+      : objects(app::SceneObjects::build(scene).value()), knobs(scene, objects->touch()) {}
+  std::unique_ptr<app::SceneObjects> objects;
+  app::LiveKnobs knobs;
+};
+
+driver::DeviceState state_of(const driver::TickRecord& row, double dt) {
+  driver::DeviceState state;
+  state.time_ns = row.time_ns;
+  state.tick = row.tick;
+  state.dt = dt;
+  state.p_WT = {row.p_WT[0], row.p_WT[1], row.p_WT[2]};
+  state.v_WT = {row.v_WT[0], row.v_WT[1], row.v_WT[2]};
+  state.fresh = row.fresh;
+  return state;
+}
+
+driver::TickRecord told(const driver::DeviceState& state, const driver::ForceCommand& command) {
+  driver::TickRecord record;
+  record.v_WT = {state.v_WT.x(), state.v_WT.y(), state.v_WT.z()};
+  record.f_wanted_W = {command.f_T_W.x(), command.f_T_W.y(), command.f_T_W.z()};
+  record.depth = command.touch.depth;
+  record.in_contact = command.touch.in_contact;
+  return record;
+}
+
+/// Is what turning a knob does to a force.
+struct Turned {
+  double largest_step = 0;  // by the turning of one tick alone, N
+  double range = 0;         // how far the values went, of their bounds
+  double felt = 0;          // how different the force was at its most from that without, N
+};
+
+/// Feeds a run's own states to two copies of its scene; the second one's knob is always one tick
+/// behind. So the difference of their forces is what the turning does in a tick.
+Turned turn(const std::filesystem::path& scene_file, const std::string& knob_name) {
+  Turned turned;
+  SessionOptions options;
+  const auto session = open(scene_file, options);
+  if (!session) return turned;
+  session->run(std::atomic<bool>{false});
+  const app::Scene& scene = session->scene();
+  Copy now(scene), before(scene), plain(scene);
+
+  app::SharedScene described = app::describe_scene(scene, *now.objects, "test");
+  described.period_ns = session->period_ns();
+  described.knobs = now.knobs.described();
+  const auto shared = app::SharedRun::create("", described, 10).value();
+  const auto reader = app::SharedReader::over(shared->memory().again().value()).value();
+  std::size_t knob = described.knobs.size();
+  for (std::size_t i = 0; i < described.knobs.size(); ++i) {
+    if (described.knobs[i].name == knob_name) knob = i;
+  }
+  if (knob == described.knobs.size()) {
+    ADD_FAILURE() << scene_file << " has no knob " << knob_name;
+    return turned;
+  }
+  const auto& bounds = described.knobs[knob];
+  const double dt = 1e-9 * static_cast<double>(session->period_ns());
+  driver::TickRecord last;
+  double lowest = bounds.initial, highest = bounds.initial;
+  for (const auto& row : session->trace().rows()) {
+    reader->turn_knob(knob, row.tick / 400 % 2 == 0 ? bounds.most : bounds.least);
+    const driver::DeviceState state = state_of(row, dt);
+    now.knobs.step(*shared, last, dt);
+    const auto f_now = now.objects->touch()(state);
+    const auto f_before = before.objects->touch()(state);
+    const auto f_plain = plain.objects->touch()(state);
+    before.knobs.step(*shared, last, dt);
+    turned.largest_step = std::max(turned.largest_step, (f_now.f_T_W - f_before.f_T_W).norm());
+    turned.felt = std::max(turned.felt, (f_now.f_T_W - f_plain.f_T_W).norm());
+    lowest = std::min(lowest, now.knobs.value(knob));
+    highest = std::max(highest, now.knobs.value(knob));
+    last = told(state, f_now);
+  }
+  turned.range = (highest - lowest) / (bounds.most - bounds.least);
+  return turned;
+}
+
+TEST(LiveKnobs, NeverStepTheForceWhileTheyAreTurnedFromEndToEnd) {
+  const double most = app::LiveKnobs::kForceRate * 1e-3;  // N in a tick of 1 kHz
+  const std::filesystem::path rubber = rubber_that_does_not_jump();
+  for (const auto& [scene, knob] :
+       {std::pair(rubber, "ball: stiffness"), std::pair(rubber, "ball: damping"),
+        std::pair(rubber, "ball: friction coefficient"),
+        std::pair(shipped("sandpaper"), "sandpaper: texture roughness"),
+        std::pair(shipped("sandpaper"), "ribs: texture gain"),
+        std::pair(shipped("honey"), "honey: damping"),
+        std::pair(shipped("clay"), "ball: stiffness")}) {
+    SCOPED_TRACE(scene.stem().string() + ", " + knob);
+    const Turned turned = turn(scene, knob);
+    EXPECT_LE(turned.largest_step, most);
+    EXPECT_GT(turned.felt, 0.1) << "it was not felt at all";
+    EXPECT_GT(turned.range, 0.9) << "it was not turned from end to end";
+    std::printf("%s, %s: %.4f N in a tick at most by turning it (allowed %.3f)\n",
+                scene.stem().c_str(), knob, turned.largest_step, most);
+  }
+}
+
+TEST(LiveKnobs, TurnWithoutTheHeapAndEndOnTheValueThatIsWanted) {
+  SessionOptions options;
+  options.share = true;
+  const auto session = open(shipped("rubber"), options);
+  const auto reader = reader_of(*session);
+  Copy copy(session->scene());
+  reader->turn_knob(0, 123);
+  driver::TickRecord last;
+  last.in_contact = true;
+  last.depth = 0.005;
+  const int calls = support::heap_calls_of([&] {
+    for (int i = 0; i < 1000; ++i) copy.knobs.step(*session->shared(), last, 1e-3);
+  });
+  EXPECT_EQ(calls, 0);
+  EXPECT_EQ(copy.knobs.value(0), 123);
+  EXPECT_EQ(reader->knob(0), 123);
+}
+
+TEST(LiveControl, AViewerThatOnlyWatchesChangesNoBitOfTheRun) {
+  for (const char* name : {"rubber", "clay", "floating_block", "water_balloon"}) {
+    SCOPED_TRACE(name);
+    SessionOptions options;
+    options.duration = 2;
+    const auto alone = open(shipped(name), options);
+    options.share = true;
+    const auto shared = open(shipped(name), options);
+    ASSERT_TRUE(alone && shared);
+    alone->run(std::atomic<bool>{false});
+    std::atomic<bool> ended{false};
+    std::thread viewer([&] {
+      const auto reader = reader_of(*shared);
+      std::uint64_t serial = 0;
+      std::vector<driver::TickRecord> ticks;
+      while (!ended.load()) {
+        ticks.clear();
+        reader->ticks_since(serial, ticks);
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      }
+      driver::TickRecord last;
+      EXPECT_TRUE(reader->newest(last));
+      EXPECT_EQ(last.tick, shared->trace().rows().back().tick);
+      EXPECT_EQ(reader->rejected(), 0u);
+    });
+    shared->run(std::atomic<bool>{false});
+    ended.store(true);
+    viewer.join();
+    EXPECT_EQ(hash_of(*alone), hash_of(*shared));
+  }
+}
+
+TEST(LiveControl, ShowsShapedAndMovedObjectsWhereTheyAre) {
+  SessionOptions options;
+  options.share = true;
+  options.duration = 3;
+  const auto clay = open(shipped("clay"), options);
+  const auto reader = reader_of(*clay);
+  clay->run(std::atomic<bool>{false});
+  std::vector<Eigen::Vector3d> vertices = reader->scene().vertices;
+  const auto first = vertices;
+  reader->shaped_vertices(0, vertices);
+  EXPECT_NE(vertices, first) << "it left a print";
+  EXPECT_EQ(vertices, clay->mesh_now().vertices);
+
+  const auto block = open(shipped("floating_block"), options);
+  const auto watcher = reader_of(*block);
+  block->run(std::atomic<bool>{false});
+  app::ScenePoses seen, real;
+  ASSERT_TRUE(watcher->poses(seen));
+  ASSERT_TRUE(block->poses().load(real));
+  EXPECT_EQ(seen.tick, real.tick);
+  EXPECT_EQ(seen.pose[0].p_WB, real.pose[0].p_WB);
+}
+
+TEST(LiveControl, APauseInVirtualTimeChangesNoBit) {
+  SessionOptions options;
+  options.duration = 2;
+  const auto alone = open(shipped("rubber"), options);
+  alone->run(std::atomic<bool>{false});
+  options.share = true;
+  const auto paused = open(shipped("rubber"), options);
+  const auto reader = reader_of(*paused);
+  reader->ask_pause(true);
+  std::thread servo([&] { paused->run(std::atomic<bool>{false}); });
+  while (reader->state() != app::RunState::kPaused) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  const std::uint64_t ticks = reader->counters().ticks;
+  std::this_thread::sleep_for(std::chrono::milliseconds(30));
+  EXPECT_EQ(reader->counters().ticks, ticks) << "it stands still";
+  EXPECT_LT(ticks, 2000u);
+  reader->ask_pause(false);
+  servo.join();
+  EXPECT_EQ(hash_of(*alone), hash_of(*paused));
+}
+
+/// Leads the hand in virtual time to a point over the ball and then into it.
+TEST(LiveControl, AHandThatTheMouseLeadsFeelsTheScene) {
+  SessionOptions options;
+  options.share = true;
+  options.hand_by_mouse = true;
+  options.duration = 1.5;
+  const auto session = open(shipped("rubber"), options);
+  const auto reader = reader_of(*session);
+  EXPECT_TRUE(reader->scene().hand_by_mouse);
+  // Far outside of the workspace to the side, and 8 mm into the ball: what cannot be is bounded.
+  ASSERT_TRUE(reader->lead_hand({0, 0, 0.002}, true));
+  session->run(std::atomic<bool>{false});
+  double fastest = 0, force = 0;
+  for (const auto& row : session->trace().rows()) {
+    fastest = std::max(fastest, Eigen::Map<const Eigen::Vector3d>(row.v_WT.data()).norm());
+    force = std::max(force, Eigen::Map<const Eigen::Vector3d>(row.f_sent_W.data()).norm());
+  }
+  const auto& end = session->trace().rows().back();
+  EXPECT_EQ(end.tick, 1499u);
+  EXPECT_TRUE(end.in_contact);
+  EXPECT_GT(force, 0.5);
+  EXPECT_LT(fastest, 1.5 * device_sim::Hand::kSpeedMax) << "an arm on a hand swings a little over";
+}
+
+TEST(LiveControl, KeepsTheHandWithinTheWorkspace) {
+  SessionOptions options;
+  options.share = true;
+  options.hand_by_mouse = true;
+  options.duration = 3;
+  const auto session = open(shipped("rubber"), options);
+  const auto reader = reader_of(*session);
+  ASSERT_TRUE(reader->lead_hand({5, 5, 5}, true));
+  session->run(std::atomic<bool>{false});
+  const auto& box = session->scene().arm.workspace;
+  for (const auto& row : session->trace().rows()) {
+    for (int k = 0; k < 3; ++k) {
+      ASSERT_LE(row.p_WT[static_cast<std::size_t>(k)], box.max_W[k] + 2e-3) << row.tick;
+    }
+  }
+  EXPECT_EQ(session->device().fault(), driver::Fault::kNone);
+}
+
+TEST(LiveControl, APauseInRealTimeFadesTheForceOutAndIn) {
+  app::SessionOptions options;
+  options.clock = app::ClockKind::kWall;
+  options.share = true;
+  options.duration = 30;
+  const auto session = open(shipped("rubber"), options);
+  const auto reader = reader_of(*session);
+  std::atomic<bool> stop{false};
+  std::thread servo([&] { session->run(stop); });
+  const auto force = [&] {
+    driver::TickRecord tick;
+    if (!reader->newest(tick)) return 0.0;
+    return Eigen::Map<const Eigen::Vector3d>(tick.f_wanted_W.data()).norm();
+  };
+  // Wall time is waited for here, and never judged: a fault by a machine that pauses ends the run.
+  const auto wait_for = [&](auto condition) {
+    for (int i = 0; i < 2000 && !condition() && reader->state() != app::RunState::kEnded; ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+  };
+  wait_for([&] { return force() > 0.3; });
+  reader->ask_pause(true);
+  wait_for([&] { return reader->state() == app::RunState::kPaused && force() == 0; });
+  const bool faulty = reader->state() == app::RunState::kEnded;
+  if (!faulty) {
+    EXPECT_EQ(force(), 0);
+    driver::TickRecord held;
+    EXPECT_TRUE(reader->newest(held));
+    EXPECT_TRUE(held.in_contact) << "the hand stands where it was";
+    reader->ask_pause(false);
+    wait_for([&] { return force() > 0.3; });
+  }
+  stop.store(true);
+  servo.join();
+  // Out and in again without a step: fading 5 N in 0.3 s is 0.017 N a tick, beside what the hand
+  // does.
+  const auto rows = session->trace().rows();
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    if (rows[i].tick - rows[i - 1].tick > 3 ||
+        rows[i].due_ns - rows[i - 1].due_ns > 3 * session->period_ns()) {
+      continue;  // the machine slept
+    }
+    const Eigen::Map<const Eigen::Vector3d> f_before(rows[i - 1].f_wanted_W.data());
+    const Eigen::Map<const Eigen::Vector3d> f_now(rows[i].f_wanted_W.data());
+    ASSERT_LT((f_now - f_before).norm(), 0.25) << i;
+  }
+  if (faulty) GTEST_SKIP() << "the machine paused for longer than the arm's watchdog waits";
+}
+
+}  // namespace
+}  // namespace thimble
