@@ -9,7 +9,7 @@ namespace {
 
 driver::Error missing(const std::string& what) {
   return {"No OpenGL 3.3 to draw with: " + what +
-          ". Install Mesa: apt-get install libegl1 libegl-mesa0 libgl1-mesa-dri libopengl0."};
+          ". Install Mesa: apt-get install libegl1 libegl-mesa0 libgl1 libgl1-mesa-dri."};
 }
 
 /// Asks for the display that needs no screen; its function is an extension.

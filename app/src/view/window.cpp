@@ -159,6 +159,10 @@ class Content {
   /// Draws one picture into the window.
   void draw(double frame_time);
   bool wants_to_close() const { return choice_.close; }
+  /// Tells whether nothing moves by itself: there is no run, or it has ended.
+  bool still() {
+    return follower_.reader() == nullptr || follower_.reader()->state() == RunState::kEnded;
+  }
 
  private:
   void draw_scene(const ScreenPart& part, float ratio);
@@ -270,6 +274,8 @@ driver::Result<void> show_window(RunAttachment& runs, const WindowChoice& choice
     }
     if (over) break;
     glfwSwapBuffers(window);
+    // Waiting for a run takes no processor; the mouse and the keys wake it.
+    if (content.still()) glfwWaitEventsTimeout(0.25);
     // Where the screen does not set the pace (a remote one, say), this does.
     const double rest = kFrame - (glfwGetTime() - now);
     if (rest > 0.002) std::this_thread::sleep_for(std::chrono::duration<double>(rest - 0.001));
