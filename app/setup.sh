@@ -17,6 +17,9 @@ packages=(
   libhdf5-dev                            # recordings
   libspdlog-dev libcli11-dev             # messages and arguments of the program
   gnuplot-nox fonts-dejavu-core          # pictures
+  libepoxy-dev libegl-dev libgl-dev      # scenes drawn with OpenGL ...
+  libegl-mesa0 libgl1-mesa-dri           # ... by the processor where there is no graphics card
+  libglfw3-dev libimgui-dev              # the window
   libgtest-dev libbenchmark-dev          # tests and benchmarks
 )
 

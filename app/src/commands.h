@@ -15,8 +15,12 @@ using ShowWindow = std::function<int(RunAttachment& runs)>;
 
 /// `thimble run SCENE`: touches a scene.
 void add_run_command(CLI::App& app, int& exit_code);
+/// `thimble shot SCENE`: draws a moment of a scene.
+void add_shot_command(CLI::App& app, int& exit_code);
 /// `thimble view RUN`: shows a run that goes on in another process, by `show_window` or as text.
 void add_view_command(CLI::App& app, int& exit_code, const ShowWindow& show_window);
+/// `thimble view RUN` with the window of this program.
+void add_window_command(CLI::App& app, int& exit_code);
 /// `thimble devices`: lists the arms.
 void add_devices_command(CLI::App& app, int& exit_code);
 /// `thimble calibrate`: finds an arm's home pose and the signs of its encoders.

@@ -24,7 +24,8 @@ int run(int argc, char** argv) {
   app.footer(kFooter);
   int exit_code = thimble::app::kExitDone;
   thimble::app::add_run_command(app, exit_code);
-  thimble::app::add_view_command(app, exit_code, {});
+  thimble::app::add_shot_command(app, exit_code);
+  thimble::app::add_window_command(app, exit_code);
   thimble::app::add_devices_command(app, exit_code);
   thimble::app::add_doctor_command(app, exit_code);
   thimble::app::add_calibrate_command(app, exit_code);

@@ -15,7 +15,7 @@ forbid() {
   fi
 }
 
-graphics='GL/|GLFW|imgui|EGL/'
+graphics='GL/|GLFW|imgui|EGL/|epoxy/'
 forbid driver "thimble/(device_sim|render|app)/|$graphics|spdlog/|yaml-cpp/|CLI/" \
   "other rooms, graphics, logging or files"
 forbid driver/include 'libusb|hidapi|termios' "a bus library in a public header"

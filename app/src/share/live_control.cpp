@@ -36,6 +36,7 @@ driver::ForceCommand LiveControl::operator()(const driver::DeviceState& state) n
 
 void LiveControl::take(const driver::TickRecord& record) noexcept {
   last_ = record;
+  if (shared_ == nullptr) return;  // nobody has joined: the session is driven by hand
   const bool paused = shared_->pause_asked();
   if (paused != paused_) {
     paused_ = paused;

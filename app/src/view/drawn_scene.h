@@ -1,0 +1,51 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "thimble/driver/tick_record.h"
+#include "thimble/render/body/body_patch.h"
+#include "thimble/render/body/body_pose.h"
+#include "thimble/render/mesh/triangle_mesh.h"
+
+namespace thimble::app::view {
+
+/// Is one object as it is drawn; a field has a mesh without triangles.
+struct DrawnObject {
+  std::string name;
+  render::TriangleMesh mesh;      ///< W before the first tick, m.
+  double crease_angle = 0.87;     ///< Edges sharper than this stay sharp, rad.
+  bool stands_for_shape = false;  ///< Its triangles are not those that are touched.
+  bool endless = false;           ///< A plane: drawn, but no part of what must fit in the picture.
+};
+
+/// Is what of a scene stays the same while it is drawn.
+struct DrawnScene {
+  std::string name;
+  std::string arm;
+  std::vector<DrawnObject> objects;
+  double force_limit = 5;  ///< N
+  double rate = 1000;      ///< Ticks per second, Hz.
+};
+
+/// Is one part of the arm: a rod between two points of the world, m.
+using DrawnRod = std::pair<Eigen::Vector3d, Eigen::Vector3d>;
+
+/// Is a scene at one moment.
+struct DrawnMoment {
+  driver::TickRecord tick;
+  std::vector<render::BodyPose> poses;  ///< One per object of the scene.
+  render::BodyPatch patch;              ///< No triangles if nothing is dented.
+  std::vector<DrawnRod> arm;            ///< From the base to the tip; empty: not drawn.
+  /// One per object: what it has been shaped to, with the triangles of its mesh; null if it has
+  /// not. A new shape is a new object.
+  std::vector<std::shared_ptr<const render::TriangleMesh>> shapes;
+};
+
+/// Takes a point of an object's frame to where it is now (W, m).
+Eigen::Vector3d placed(const render::BodyPose& pose, const Eigen::Vector3d& p_B);
+
+}  // namespace thimble::app::view

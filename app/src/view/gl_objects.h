@@ -1,0 +1,64 @@
+#pragma once
+
+#include <epoxy/gl.h>
+
+#include <string>
+#include <utility>
+
+namespace thimble::app::view {
+
+/// Owns one name that OpenGL gave; deletes it with the context that is current then.
+template <auto make, auto remove>
+class GlName {
+ public:
+  GlName() { make(&name_); }
+  GlName(GlName&& other) noexcept : name_(std::exchange(other.name_, 0)) {}
+  GlName& operator=(GlName&& other) noexcept {
+    std::swap(name_, other.name_);
+    return *this;
+  }
+  ~GlName() {
+    if (name_ != 0) remove(&name_);
+  }
+  GLuint operator*() const { return name_; }
+
+ private:
+  GLuint name_ = 0;
+};
+
+// The functions are looked up when first called, so their addresses are not known to the compiler.
+inline void make_buffer(GLuint* name) { glGenBuffers(1, name); }
+inline void remove_buffer(GLuint* name) { glDeleteBuffers(1, name); }
+inline void make_vertex_array(GLuint* name) { glGenVertexArrays(1, name); }
+inline void remove_vertex_array(GLuint* name) { glDeleteVertexArrays(1, name); }
+inline void make_texture(GLuint* name) { glGenTextures(1, name); }
+inline void remove_texture(GLuint* name) { glDeleteTextures(1, name); }
+inline void make_framebuffer(GLuint* name) { glGenFramebuffers(1, name); }
+inline void remove_framebuffer(GLuint* name) { glDeleteFramebuffers(1, name); }
+inline void make_renderbuffer(GLuint* name) { glGenRenderbuffers(1, name); }
+inline void remove_renderbuffer(GLuint* name) { glDeleteRenderbuffers(1, name); }
+
+using GlBuffer = GlName<make_buffer, remove_buffer>;
+using GlVertexArray = GlName<make_vertex_array, remove_vertex_array>;
+using GlTexture = GlName<make_texture, remove_texture>;
+using GlFramebuffer = GlName<make_framebuffer, remove_framebuffer>;
+using GlRenderbuffer = GlName<make_renderbuffer, remove_renderbuffer>;
+
+/// Is a program of a vertex and a fragment shader. Throws std::runtime_error with the compiler's
+/// words if they do not compile, which is a mistake of ours or of the driver.
+class GlProgram {
+ public:
+  GlProgram(const std::string& vertex, const std::string& fragment);
+  GlProgram(const GlProgram&) = delete;
+  GlProgram& operator=(const GlProgram&) = delete;
+  ~GlProgram() { glDeleteProgram(name_); }
+
+  GLuint operator*() const { return name_; }
+  /// Finds a uniform; -1, which OpenGL ignores, if the program does not use it.
+  GLint at(const char* uniform) const { return glGetUniformLocation(name_, uniform); }
+
+ private:
+  GLuint name_;
+};
+
+}  // namespace thimble::app::view

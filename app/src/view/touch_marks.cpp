@@ -1,0 +1,162 @@
+#include "view/touch_marks.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdio>
+
+namespace thimble::app::view {
+namespace {
+
+constexpr double kThinnest = 0.05;  // N: less than this no hand feels in the arm's own friction
+
+using Point = Eigen::Vector3d;
+
+Point point(const std::array<double, 3>& p) { return {p[0], p[1], p[2]}; }
+
+void add_arm(const DrawnMoment& moment, TouchMarks& marks) {
+  // As thick as the tubes of such arms, m; the last piece ends in a thin stem, as the rod that
+  // carries a thimble does, so that it hides little of what is touched.
+  constexpr double kTube = 0.0026;
+  constexpr double kJoint = 0.0042;
+  constexpr double kStem = 0.0009;
+  constexpr double kStemLength = 0.022;
+  const Point tip = point(moment.tick.p_WT);
+  for (const auto& [from, to] : moment.arm) {
+    const double length = (to - from).norm();
+    if ((to - tip).norm() < 1e-6 && length > 2 * kStemLength) {
+      const Point along = (to - from) / length;
+      const Point neck = to - kStemLength * along;
+      const Point shoulder = neck - 0.6 * kStemLength * along;
+      marks.solids.push_back(rod(from, shoulder, kTube, kArmColour));
+      marks.solids.push_back(cone(shoulder, neck + 0.32 * kStemLength * along, kTube, kArmColour));
+      marks.solids.push_back(rod(shoulder, to, kStem, kArmColour));
+    } else {
+      marks.solids.push_back(rod(from, to, kTube, kArmColour));
+    }
+    marks.solids.push_back(ball(from, kJoint, kJointColour));
+  }
+}
+
+/// Tells where the touch is seen: the proxy on a stiff surface; on one that is bent, where the tip
+/// has taken it.
+Point touched_point(const DrawnMoment& moment) {
+  const bool bent = moment.patch.triangle_count > 0 && moment.patch.object == moment.tick.object;
+  return point(moment.tick.in_contact && !bent ? moment.tick.p_WP : moment.tick.p_WT);
+}
+
+void add_force(const DrawnScene& scene, const DrawnMoment& moment, double thick,
+               TouchMarks& marks) {
+  const Point force = point(moment.tick.f_sent_W);
+  const double size = force.norm();
+  if (!(size > kThinnest)) return;  // NaN: no arrow
+  const Point from = touched_point(moment);
+  if (!from.allFinite()) return;
+  const Point along = force / size;
+  const double length = std::max(arrow_length(size, scene), 6 * thick);
+  const Point neck = from + std::max(length - 5 * thick, 0.4 * length) * along;
+  const Point tip = from + length * along;
+  marks.solids.push_back(rod(from, neck, thick, kForceColour));
+  marks.solids.push_back(cone(neck, tip, 2.4 * thick, kForceColour));
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.2f N", size);
+  marks.labels.push_back({tip, along, text.data(), kForceColour});
+}
+
+void add_tip(const DrawnMoment& moment, double thick, TouchMarks& marks) {
+  const Point p_WT = point(moment.tick.p_WT);
+  if (!p_WT.allFinite()) return;
+  Solid tip = ball(p_WT, 1.8 * thick, kTipColour);
+  tip.shines_through = true;
+  marks.solids.push_back(tip);
+  const Point p_WP = touched_point(moment);
+  if (!moment.tick.in_contact || !p_WP.allFinite()) return;
+  marks.solids.push_back(ball(p_WP, 1.7 * thick, kProxyColour));
+  if ((p_WP - p_WT).norm() < 1e-6) return;
+  Solid link = rod(p_WT, p_WP, 0.5 * thick, kTipColour);
+  link.shines_through = true;
+  marks.solids.push_back(link);
+}
+
+/// Finds the triangle beside another's edge; -1 if there is none.
+std::ptrdiff_t beside(const render::TriangleMesh& mesh, std::size_t triangle, std::size_t k) {
+  const auto& c = mesh.triangles[triangle];
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      if (mesh.triangles[t][j] == c[(k + 1) % 3] && mesh.triangles[t][(j + 1) % 3] == c[k]) {
+        return static_cast<std::ptrdiff_t>(t);
+      }
+    }
+  }
+  return -1;
+}
+
+// The active triangle and, through each of its edges, the plane half way between its own side and
+// its neighbour's, as far in as the triangle is wide.
+void add_edge_planes(const DrawnScene& scene, const DrawnMoment& moment, TouchMarks& marks) {
+  const auto object = static_cast<std::size_t>(moment.tick.object);
+  const auto triangle = static_cast<std::size_t>(moment.tick.feature);
+  if (!moment.tick.in_contact || moment.tick.object < 0 || moment.tick.feature < 0 ||
+      object >= scene.objects.size() || scene.objects[object].stands_for_shape) {
+    return;
+  }
+  const render::TriangleMesh& mesh = scene.objects[object].mesh;
+  if (triangle >= mesh.triangles.size()) return;
+  const render::BodyPose pose =
+      object < moment.poses.size() ? moment.poses[object] : render::BodyPose{};
+  const auto corner = [&](std::size_t t, std::size_t k) {
+    return placed(pose, mesh.vertices[static_cast<std::size_t>(mesh.triangles[t][k % 3])]);
+  };
+  const auto normal = [&](std::size_t t) -> Point {
+    return (corner(t, 1) - corner(t, 0)).cross(corner(t, 2) - corner(t, 0)).stableNormalized();
+  };
+  const Point n = normal(triangle);
+  const double reach =
+      0.45 * std::sqrt((corner(triangle, 1) - corner(triangle, 0)).norm() *
+                       (corner(triangle, 2) - corner(triangle, 0)).norm());
+  const Point lift = 1e-3 * reach * n;
+  marks.panes.push_back({{corner(triangle, 0) + lift, corner(triangle, 1) + lift,
+                          corner(triangle, 2) + lift, corner(triangle, 2) + lift},
+                         kTriangleColour});
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::ptrdiff_t other = beside(mesh, triangle, k);
+    const Point half =
+        (other < 0 ? n : Point(n + normal(static_cast<std::size_t>(other)))).stableNormalized();
+    const Point a = corner(triangle, k);
+    const Point b = corner(triangle, k + 1);
+    marks.panes.push_back(
+        {{a + reach * half, b + reach * half, b - reach * half, a - reach * half},
+         kEdgePlaneColour});
+  }
+}
+
+}  // namespace
+
+double size_of(const DrawnScene& scene) {
+  Eigen::AlignedBox3d box;
+  for (const DrawnObject& object : scene.objects) {
+    if (object.endless) continue;
+    for (const Point& vertex : object.mesh.vertices) box.extend(vertex);
+  }
+  constexpr double kLeast = 0.06;  // m: about a hand's play
+  constexpr double kMost = 0.3;
+  return box.isEmpty() ? kLeast : std::clamp(box.diagonal().norm(), kLeast, kMost);
+}
+
+double arrow_length(double force, const DrawnScene& scene) {
+  return 0.5 * size_of(scene) * force / scene.force_limit;
+}
+
+TouchMarks mark_touch(const DrawnScene& scene, const DrawnMoment& moment, double eye_distance,
+                      const MarkChoice& choice) {
+  const double thick = 0.0032 * eye_distance;
+  TouchMarks marks;
+  if (choice.arm) add_arm(moment, marks);
+  if (choice.force) add_force(scene, moment, thick, marks);
+  if (choice.tip) add_tip(moment, thick, marks);
+  if (choice.edge_planes) add_edge_planes(scene, moment, marks);
+  return marks;
+}
+
+}  // namespace thimble::app::view
