@@ -82,7 +82,13 @@ GatedForce SafetyGate::pass_guarded(const Eigen::Vector3d& f_T_W, const Eigen::V
   } else if (energy_.stage == EnergyStage::kPassivity) {
     counters_.energy_least = std::min(counters_.energy_least, observer_.energy());
     const Eigen::Vector3d damping_W = observer_.damping(v_WT, dt);
-    if (damping_W.isZero(0)) return limited;
+    // A damper within its bounds cannot hold a wall that pushes on and on, slowly. So beyond the
+    // onset the force fades with the debt, whatever the velocity seems to be, and at twice the
+    // onset there is none left that could give energy. What the hand brings in brings it back.
+    const double beyond = -observer_.energy() - energy_.allowance - energy_.onset;
+    const bool fades = energy_.onset > 0 && beyond > 0;
+    if (!fades && damping_W.isZero(0)) return limited;
+    if (fades) f_W *= 1 - std::min(1.0, beyond / energy_.onset);
     f_W += damping_W;
     ++counters_.damped;
     const double open = limits_.force_max * std::min(1.0, since_start_ / opening_);

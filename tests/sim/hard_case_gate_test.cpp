@@ -41,15 +41,13 @@ enum class Booking { kSent, kDemanded };
 /// Joins a gate to a one-dimensional wall as Device joins it to an arm.
 class GatedWall {
  public:
-  GatedWall(const Wall& wall, const GateLimits& gate_limits, const EnergyGuardSettings& energy,
-            Booking booking = Booking::kSent)
-      : rig(wall), gate(gate_limits, energy), booking_(booking) {}
+  GatedWall(const Wall& wall, const GateLimits& gate_limits, const EnergyGuardSettings& energy)
+      : rig(wall), gate(gate_limits, energy) {}
 
   void tick() {
     rig.tick([this](double wish, double, double v, double dt) {
-      const double booked = booking_ == Booking::kSent ? sent_ : wish_;
       const EnergyFlow flow{
-          .work = booked * rig.way(), .move_W = {rig.way(), 0, 0}, .f_sent_W = {booked, 0, 0}};
+          .work = sent_ * rig.way(), .move_W = {rig.way(), 0, 0}, .f_sent_W = {sent_, 0, 0}};
       sent_ = gate.pass_guarded({wish, 0, 0}, {v, 0, 0}, dt, flow).f_T_W().x();
       wish_ = wish;
       most_damping = std::max(most_damping, v != 0 ? (wish_ - sent_) / v : 0);
@@ -63,33 +61,29 @@ class GatedWall {
   double most_damping = 0, most_force = 0;
 
  private:
-  Booking booking_;
   double sent_ = 0, wish_ = 0;
 };
 
 /// Lets a hand pull the tip against a wall with 1 N from 5 mm away; tells how far it bounces back
 /// each time, m.
-std::vector<double> apexes(GatedWall& wall, double duration) {
+template <class Tick>
+std::vector<double> apexes(WallRig& rig, double duration, Tick tick) {
   std::vector<double> found;
-  wall.rig.state = {.x = 5e-3, .v = 0};
-  double before = 0, highest = 5e-3;
-  bool touched = false;
-  for (int k = 0; k < static_cast<int>(duration * 1e3); ++k) {
-    wall.tick();
-    const double x = wall.rig.state.x;
+  rig.state = {.x = 5e-3, .v = 0};
+  bool inside = false;
+  for (int k = 0; k < static_cast<int>(duration * 1e3) && rig.state.x < 1; ++k) {
+    tick();
+    const double x = rig.state.x;
     if (x < 0) {
-      if (!touched && k > 0 && !found.empty()) found.back() = highest;
-      touched = true;
-      highest = 0;
-    } else {
-      if (touched && before < 0) found.push_back(0);
-      touched = false;
-      highest = std::max(highest, x);
-      if (!found.empty()) found.back() = highest;
+      inside = true;
+    } else if (inside) {
+      inside = false;
+      found.push_back(x);
+    } else if (!found.empty()) {
+      found.back() = std::max(found.back(), x);
     }
-    before = x;
-    if (x > 1) break;
   }
+  if (!inside && !found.empty()) found.pop_back();  // the last is not over
   return found;
 }
 
@@ -105,7 +99,7 @@ const EnergyGuardSettings kPassivity{
 
 TEST(HardCase11, PassivityControllerKeepsBouncesFromGrowing) {
   GatedWall wall(pulled_wall(3000), limits(50), kPassivity);
-  const std::vector<double> bounces = apexes(wall, 5);
+  const std::vector<double> bounces = apexes(wall.rig, 5, [&wall] { wall.tick(); });
   ASSERT_GE(bounces.size(), 5u);
   double growth = 0;
   for (std::size_t i = 1; i < bounces.size(); ++i) {
@@ -126,25 +120,40 @@ TEST(HardCase11, PassivityControllerKeepsBouncesFromGrowing) {
 
 TEST(HardCase11, BouncesGrowWithoutTheController) {
   GatedWall wall(pulled_wall(3000), limits(50), {});
-  const std::vector<double> bounces = apexes(wall, 5);
+  const std::vector<double> bounces = apexes(wall.rig, 5, [&wall] { wall.tick(); });
   ASSERT_GE(bounces.size(), 3u);
   EXPECT_GT(bounces.back(), 10 * bounces.front());
 }
 
+/// Lets the observer guard a wall whose force cannot pull, and keep its account of what is sent or
+/// of what was asked for; tells the bounces.
+std::vector<double> bounces_with(Booking booking) {
+  driver::PassivityObserver observer(kPassivity);
+  WallRig rig(pulled_wall(3000));
+  double booked = 0;
+  return apexes(rig, 5, [&] {
+    rig.tick([&](double wish, double x, double v, double dt) {
+      observer.book(booked * rig.way());
+      const double asked = wish + observer.damping({v, 0, 0}, dt).x();
+      const double sent = x < 0 ? std::max(0.0, asked) : 0;
+      booked = booking == Booking::kSent ? sent : asked;
+      return sent;
+    });
+  });
+}
+
 TEST(HardCase11, BouncesCreepWhenNotTheSentForceIsBooked) {
-  // The limit cuts what is sent: an account of what was asked for believes in energy that was never
-  // taken, so its wall gives more than it took.
-  const double kCut = 3;  // N
-  GatedWall honest(pulled_wall(3000), limits(kCut), kPassivity);
-  GatedWall fooled(pulled_wall(3000), limits(kCut), kPassivity, Booking::kDemanded);
-  const auto good = apexes(honest, 5), bad = apexes(fooled, 5);
+  // A wall that must not stick clamps the damping on the way out: an account of what was asked for
+  // believes that it was paid.
+  const auto good = bounces_with(Booking::kSent), bad = bounces_with(Booking::kDemanded);
   ASSERT_GE(good.size(), 3u);
   ASSERT_GE(bad.size(), 3u);
-  EXPECT_LE(*std::max_element(good.begin() + 1, good.end()), 1.05 * good.front());
-  EXPECT_GT(*std::max_element(bad.begin() + 1, bad.end()), 1.05 * bad.front());
+  const double crept = *std::max_element(bad.begin() + 1, bad.end()) / bad.front();
+  // Less than perfect without pulling: what it cannot take on the way out it takes on the next in.
+  EXPECT_LE(*std::max_element(good.begin() + 1, good.end()), 1.1 * good.front());
+  EXPECT_GT(crept, 1.2);
   record_hard_case(11, "guard: asked force booked in place of the sent one",
-                   "> largest bounce over the first",
-                   *std::max_element(bad.begin() + 1, bad.end()) / bad.front(), 1.05, "1");
+                   "> largest bounce over the first", crept, 1.2, "1");
 }
 
 /// Tells the largest restitution of a bounded wall over 40 phases.

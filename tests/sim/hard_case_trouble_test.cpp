@@ -79,6 +79,7 @@ struct Press {
   std::vector<Row> rows;
   Fault fault = Fault::kNone;
   driver::WireCounters wire;
+  driver::EnergyGuardSettings energy;
   double current_at_end = 0;  // A
 
   static constexpr double kEntry = 0.5;  // s; the hand begins to go in
@@ -88,7 +89,8 @@ struct Press {
     // At home the lower link hangs: its joint alone moves the tip along x, by the link's length.
     model.encoders[2].counts_per_motor_turn =
         2 * std::numbers::pi * model.geometry.length_c / (model.drives[2].ratio * encoder_step);
-    const driver::DeviceSettings settings = support::vintage_settings();
+    driver::DeviceSettings settings = support::vintage_settings();
+    settings.energy = energy;
     const double deep = press / 300;
     const Vector3d home = -settings.p_WB;
     const Vector3d away = home + Vector3d(0.004, 0, 0), inside = home - Vector3d(deep, 0, 0);
@@ -135,17 +137,25 @@ struct Press {
   }
 };
 
-TEST(HardCase09, StalledLoopInContactIsBackSoonAndGivesNoEnergy) {
-  double slowest = 0, most = 0, given = 0, first = 0;
-  for (const int at : {520, 530, 540, 560, 600}) {
-    Press press;
-    press.disturb = [at](std::uint64_t tick, driver::VirtualClock& clock, driver::ForceCommand&) {
-      if (static_cast<int>(tick) == at) clock.sleep_until_ns(clock.now_ns() + 30'000'000);
-    };
-    press.run(1000);
-    EXPECT_EQ(press.fault, Fault::kNone);
-    const auto stall = static_cast<std::size_t>(at) + 1;
-    EXPECT_GT(press.rows[stall].time_ns - press.rows[stall - 1].time_ns, 29'000'000);
+/// Runs a press whose loop stands still for 30 ms from tick `at` on.
+Press stalled_press(std::uint64_t at, const driver::EnergyGuardSettings& energy) {
+  Press press;
+  press.energy = energy;
+  press.disturb = [at](std::uint64_t tick, driver::VirtualClock& clock, driver::ForceCommand&) {
+    if (tick == at) clock.sleep_until_ns(clock.now_ns() + 30'000'000);
+  };
+  press.run(1000);
+  EXPECT_EQ(press.fault, Fault::kNone);
+  EXPECT_GT(press.rows[at + 1].time_ns - press.rows[at].time_ns, 29'000'000);
+  EXPECT_GT(press.rows[at].wanted, 0) << "not in contact";
+  return press;
+}
+
+TEST(HardCase09, StalledLoopInContactIsBackSoonAndWithinItsForce) {
+  double slowest = 0, most = 0, first = 0;
+  for (const std::uint64_t at : {535u, 540u, 545u, 560u, 600u}) {
+    const Press press = stalled_press(at, {});
+    const std::size_t stall = at + 1;
     first = std::max(first, press.rows[stall].sent);  // the tick that notices sends nothing
     std::size_t back = stall;
     while (back + 1 < press.rows.size() &&
@@ -154,21 +164,51 @@ TEST(HardCase09, StalledLoopInContactIsBackSoonAndGivesNoEnergy) {
     }
     slowest = std::max(
         slowest, 1e-6 * static_cast<double>(press.rows[back].time_ns - press.rows[stall].time_ns));
-    for (const Press::Row& row : press.rows) {
-      most = std::max(most, row.sent);
-      given = std::max(given, row.given);
-    }
+    for (const Press::Row& row : press.rows) most = std::max(most, row.sent);
   }
   EXPECT_EQ(first, 0);
   EXPECT_LE(most, 5 + 1e-9);
   EXPECT_LT(slowest, 50);
-  EXPECT_LE(given, 0.0);
   record_hard_case(9, "30 ms gap in contact at 0.2 m/s: force of the tick that notices", "== force",
                    first, 0, "N");
   record_hard_case(9, "the same: until all of the wanted force is back", "< time", slowest, 50,
                    "ms");
   record_hard_case(9, "the same", "<= largest force", most, 5, "N");
-  record_hard_case(9, "the same: energy out beyond energy in", "<= energy", 1e3 * given, 0, "mJ");
+}
+
+TEST(HardCase09, StalledLoopGivesNoMoreEnergyThanItTookUnderTheController) {
+  // While the force is away the tip sinks in, and a wall that comes back pushes it out again: up to
+  // K (x1^2 - x0^2) / 2 that nobody gave. So the energy needs the controller. Its bound is twice
+  // the onset, and it sees a tick and a wire late: 2 * 0.1 mJ + F v (T + delay) with 5 N, 0.2 m/s,
+  // 2 ms.
+  double guarded = 0, bare = 0;
+  for (const std::uint64_t at : {535u, 540u, 545u}) {
+    const auto given = [at](const driver::EnergyGuardSettings& energy) {
+      double most = 0;
+      for (const Press::Row& row : stalled_press(at, energy).rows) most = std::max(most, row.given);
+      return most;
+    };
+    guarded = std::max(guarded, given({.stage = driver::EnergyStage::kPassivity,
+                                       .mass = 0.075,
+                                       .allowance = 0,
+                                       .reservoir = 0.02,
+                                       .onset = 1e-4,
+                                       .delay_ticks = 1}));
+    bare = std::max(bare, given({}));
+  }
+  const Press way_out = stalled_press(560, {.stage = driver::EnergyStage::kPassivity,
+                                            .mass = 0.075,
+                                            .allowance = 0,
+                                            .reservoir = 0.02,
+                                            .onset = 1e-4,
+                                            .delay_ticks = 1});
+  EXPECT_GT(way_out.rows[562].given, 10e-3);
+  EXPECT_LE(way_out.rows.back().given, 2.5e-3);
+  EXPECT_LE(guarded, 2.2e-3);
+  EXPECT_GT(bare, 2.2e-3);
+  record_hard_case(9, "30 ms gap in contact at 0.2 m/s, controller: energy out beyond energy in",
+                   "<= energy, 2 onset + F v (T + delay)", 1e3 * guarded, 2.2, "mJ");
+  record_hard_case(9, "guard: the same without the controller", "> energy", 1e3 * bare, 2.2, "mJ");
 }
 
 TEST(HardCase09, LongerGapThanTheWatchdogIsAFaultWithNoForce) {
@@ -183,7 +223,7 @@ TEST(HardCase09, LongerGapThanTheWatchdogIsAFaultWithNoForce) {
 
 TEST(HardCase33, SnapUnderTheControllerDoesNotChatterAndItsAccountCloses) {
   // A vertex on a snapping base point, pressed in by a hand through spring and gate.
-  constexpr double kContact = 1500;  // N/m
+  constexpr double kContact = 350;  // N/m; below 440, so that it jumps
   support::Wall wall;
   wall.plant.coulomb = 0.04;
   wall.hand.mass = 0.025;
@@ -200,7 +240,7 @@ TEST(HardCase33, SnapUnderTheControllerDoesNotChatterAndItsAccountCloses) {
        .watchdog_ns = 100'000'000},
       {.stage = driver::EnergyStage::kPassivity, .mass = 0.075, .allowance = 0, .reservoir = 1});
   render::SnapBase base({.half_span = 20e-3, .rise = 6e-3, .bar_stiffness = 5000}, {-1, 0, 0});
-  double sent = 0, spring = 0;
+  double sent = 0, spring = 0, midway = 0;
   std::int64_t snapped_at = -1;
   for (int k = 0; k < 8000; ++k) {
     // In by 24 mm within 6 s, and there for two.
@@ -208,10 +248,12 @@ TEST(HardCase33, SnapUnderTheControllerDoesNotChatterAndItsAccountCloses) {
     rig.tick([&](double, double x, double v, double dt) {
       const double in = std::max(0.0, -x);
       base.pull_by_spring(in, kContact, 1e-3);
-      spring = std::max(0.0, kContact * (in - base.way()));
+      spring = kContact * (in - base.way());
       const driver::EnergyFlow flow{
           .work = sent * rig.way(), .move_W = {rig.way(), 0, 0}, .f_sent_W = {sent, 0, 0}};
+      const double before = sent;
       sent = gate.pass_guarded({spring, 0, 0}, {v, 0, 0}, dt, flow).f_T_W().x();
+      midway -= (sent + before) / 2 * rig.way();
       return sent;
     });
     if (base.snaps() > 0 && snapped_at < 0) snapped_at = k;
@@ -226,9 +268,12 @@ TEST(HardCase33, SnapUnderTheControllerDoesNotChatterAndItsAccountCloses) {
   // The last tick is not booked yet; it rests then.
   EXPECT_NEAR(booked / taken, 1, 0.01);
   const double kept = base.energy() + base.released() + spring * spring / (2 * kContact);
-  EXPECT_NEAR(kept / taken, 1, 0.05);
+  // A held force lags by half a tick; with the mean of two ticks the surface's own account closes.
+  EXPECT_NEAR(kept / midway, 1, 0.01);
   record_hard_case(33, "snap under passivity control and hand", "== snaps",
                    static_cast<double>(base.snaps()), 1, "1");
+  record_hard_case(33, "the same: what bars and spring keep and release against what was given",
+                   "<= relative error", std::abs(kept / midway - 1), 0.01, "1");
   record_hard_case(33, "the same: energy booked against energy taken", "<= relative error",
                    std::abs(booked / taken - 1), 0.01, "1");
 }
