@@ -23,6 +23,7 @@ struct WallTrial {
 /// Is what became of it.
 struct WallTouch {
   double swing = 0;         ///< Of the true tip in the last 0.2 s, peak to peak, m.
+  double swing_before = 0;  ///< The same 0.4 s earlier, m.
   double force_max = 0;     ///< Sent, N.
   double energy_given = 0;  ///< Most that motors truly gave the tip beyond what they took, J.
   double force_rms = 0;     ///< Of what was sent, about its mean, in the last 0.2 s, N.
@@ -35,9 +36,9 @@ struct WallTouch {
 /// Real-time: never from the servo thread.
 driver::Result<WallTouch> press_on_wall(const ArmFile& arm, const WallTrial& trial);
 
-/// Finds the largest stiffness at which the tip comes to rest on the wall (swing up to `quiet`, m),
-/// N/m, between a tenth and ten times `guess` to 1 %; `trial.stiffness` is not looked at. Fails as
-/// `press_on_wall`.
+/// Finds the largest stiffness at which the tip comes to rest on the wall (it swings by no more
+/// than `quiet`, m, or ever less), N/m, between a tenth and ten times `guess` to 1 %;
+/// `trial.stiffness` is not looked at. Fails as `press_on_wall`.
 driver::Result<double> simulated_edge(const ArmFile& arm, WallTrial trial, double guess,
                                       double quiet);
 
