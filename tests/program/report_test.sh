@@ -14,4 +14,11 @@ for picture in force_and_depth path_on_mesh period_histogram; do
   expect 0 'PNG' head -c 4 out/$picture.png
   expect 0 '<svg' head -c 2000 out/$picture.svg
 done
+expect 0 'watched by the gate' "$thimble" run "$source_dir/app/scenes/elephant.yaml"
+expect 0 'simulated [0-9]+ N/m' "$thimble" tune "$source_dir/app/scenes/elephant.yaml" --out tuned
+expect 0 '"elephant.margin"' cat tuned/figures.json
+sed -e 's/stiffness: 800/stiffness: 8000/' -e "s#arm: ../arms#arm: $source_dir/app/arms#" \
+  "$source_dir/app/scenes/elephant.yaml" >stiff.yaml
+expect 0 'asks for 8000 N/m.* set its stiffness to' "$thimble" tune stiff.yaml
+expect 0 'asks for 8000 N/m.*See thimble tune' "$thimble" run stiff.yaml --duration 0.5
 finish

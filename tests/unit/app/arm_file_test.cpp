@@ -77,6 +77,24 @@ TEST(ArmFile, CountsAQuarterTurnAsItsHomeCounts) {
             arm->model.encoders[1].home_counts);
 }
 
+TEST(ArmFile, NamesTheGatesEnergyStageAndWhatItLeavesOpenFollowsFromTheArm) {
+  const auto arm = read_arm_file(kArm);
+  ASSERT_TRUE(arm.ok());
+  const auto own = energy_settings(*arm, 1000, {});
+  EXPECT_EQ(own.stage, driver::EnergyStage::kPassivity);
+  EXPECT_EQ(own.mass, 0.075);
+  EXPECT_EQ(own.delay_ticks, 1);
+  EXPECT_DOUBLE_EQ(own.reservoir, 5.0 * 5 / (2 * 800));
+  EXPECT_DOUBLE_EQ(own.slope, 0.005 / 0.0015);
+  EXPECT_EQ(energy_settings(*arm, 4000, {}).delay_ticks, 4);
+  EXPECT_EQ(energy_settings(*arm, 1000, driver::EnergyStage::kNone).stage,
+            driver::EnergyStage::kNone);
+  EXPECT_EQ(mistake_with("energy: passivity", "energy: none"), "");
+  EXPECT_EQ(mistake_with("energy: passivity", "energy: bounding\n  energy_slope: 700"), "");
+  EXPECT_NE(mistake_with("energy: passivity", "energy: all").find("none, passivity or bounding"),
+            std::string::npos);
+}
+
 TEST(ArmFile, ChoosesIdealEncoders) {
   EXPECT_EQ(mistake_with("encoders: quantised", "encoders: ideal"), "");
   EXPECT_NE(mistake_with("encoders: quantised", "encoders: perfect").find("quantised or ideal"),

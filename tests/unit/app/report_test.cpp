@@ -129,5 +129,22 @@ TEST(Figure, MeetsItsGoalOrNot) {
   }
 }
 
+TEST(Report, TellsWhatTheEnergyStageDidIfThereIsOne) {
+  RunReport report = example();
+  EXPECT_EQ(summary(report).find("by the gate"), std::string::npos);
+  report.energy_stage = driver::EnergyStage::kPassivity;
+  report.gate.energy_least = -0.0031;
+  report.gate.damped = 17;
+  EXPECT_NE(summary(report).find("3.10 mJ given at most beyond what it took; damped in 17 ticks"),
+            std::string::npos);
+  report.energy_stage = driver::EnergyStage::kBounding;
+  report.gate.bounded = 4;
+  report.gate.stalls = 1;
+  report.reopen = 0.04;
+  EXPECT_NE(summary(report).find("force cut in 4 ticks"), std::string::npos);
+  EXPECT_NE(summary(report).find("stood still 1 time; the force came back within 40 ms"),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace thimble::app

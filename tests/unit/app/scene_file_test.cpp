@@ -145,6 +145,15 @@ TEST(SceneFile, RefusesStationsThatAreNeitherFreeNorOnAnObject) {
   EXPECT_NE(mistake(kBall, kWait + kWait).find("t: expected a time after"), std::string::npos);
 }
 
+TEST(SceneFile, NamesAnEnergyStageInPlaceOfTheArms) {
+  const auto own = read(kBall, kWait), none = read(kBall, kWait, "gate: {energy: none}\n");
+  ASSERT_TRUE(own.ok());
+  ASSERT_TRUE(none.ok());
+  EXPECT_FALSE(own->energy.has_value());
+  EXPECT_EQ(none->energy, driver::EnergyStage::kNone);
+  EXPECT_NE(mistake(kBall, kWait, "gate: {force_max: 9}\n").find("force_max"), std::string::npos);
+}
+
 TEST(SceneFile, RefusesUnknownKeys) {
   EXPECT_NE(mistake(kBall, kWait, "rait: 1000\n").find("perhaps \"rate\" was meant"),
             std::string::npos);
