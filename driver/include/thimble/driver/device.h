@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <memory>
 #include <optional>
@@ -20,6 +21,7 @@ struct DeviceSettings {
   Eigen::Matrix3d R_WB = Eigen::Matrix3d::Identity();  ///< Rotation of the arm's base in the world.
   Eigen::Vector3d p_WB{0, 0, 0};                       ///< Position of the arm's base, m.
   GateLimits limits;
+  EnergyGuardSettings energy;                  ///< Which energy stage the gate has; none: free.
   double velocity_corner_frequency = 0;        ///< Pole of the velocity estimate, Hz; 0: none.
   std::int64_t silence_limit_ns = 20'000'000;  ///< Silence of the arm that is a fault, ns (20
                                                ///< reports of a full-speed USB arm; chosen).
@@ -101,6 +103,7 @@ class Device {
   const Eigen::Vector3d& f_sent_W() const noexcept { return f_sent_W_; }
   const WireCounters& wire_counters() const noexcept { return wire_; }
   const GateCounters& gate_counters() const noexcept { return gate_.counters(); }
+  const SafetyGate& gate() const noexcept { return gate_; }
 
  private:
   Device(std::unique_ptr<Transport> transport, std::unique_ptr<const Arm> arm,
@@ -110,6 +113,10 @@ class Device {
   void take_offer(std::int64_t now_ns) noexcept;
   void begin_activity() noexcept;
   void send(const MotorCurrents& currents) noexcept;
+  void choose_way() noexcept;
+  void write_otherwise(const ForceCommand& command) noexcept;
+  void write_guarded(const ForceCommand& command) noexcept;
+  Eigen::Vector3d torque_of(const MotorCurrents& currents) const noexcept;
 
   std::unique_ptr<Transport> transport_;
   std::unique_ptr<const Arm> arm_;
@@ -121,12 +128,19 @@ class Device {
   DeviceState state_;
   Eigen::Vector3d f_sent_W_{0, 0, 0};
   std::int64_t last_report_ns_ = 0;
+  bool plain_ = false;  // active, with a wire, and no energy stage: the one test of a usual tick
   bool active_ = false;
   bool started_ = false;  // a tick has been read
   bool lost_ = false;
   bool reported_ = false;  // a report came over this wire
   bool numbered_ = false;  // two reports of this wire had different numbers
   std::optional<std::uint16_t> number_;
+  // Of the energy stage: torques on their way to the motors, N m, the newest first, and where the
+  // arm was when it was asked last.
+  std::array<Eigen::Vector3d, EnergyGuardSettings::kDelayMost + 1> tau_sent_{};
+  Eigen::Vector3d q_booked_{0, 0, 0};
+  Eigen::Vector3d p_booked_W_{0, 0, 0};
+  bool booked_ = false;
   int refused_in_a_row_ = 0;
   std::int64_t refused_since_ns_ = 0;
   std::atomic<Transport*> offered_{nullptr}, retired_{nullptr};
