@@ -189,18 +189,35 @@ bool Device::take_report(std::int64_t now_ns, std::int64_t deadline_ns) noexcept
     ++wire_.repeated;
     return false;
   }
+  const ArmPose pose = arm_->pose(reading);
+  const double since_last = static_cast<double>(now_ns - last_report_ns_) * 1e-9;
+  const Eigen::Vector3d p_WT = settings_.p_WB + settings_.R_WB * pose.p_BT;
+  if (jumped(p_WT, since_last)) return false;
   ++wire_.reports;
   reported_ = true;
-  pose_ = arm_->pose(reading);
+  pose_ = pose;
   state_.counts = reading.counts;
   state_.buttons = reading.buttons;
   state_.q = pose_.q;
-  state_.p_WT = settings_.p_WB + settings_.R_WB * pose_.p_BT;
-  const double since_last = static_cast<double>(now_ns - last_report_ns_) * 1e-9;
+  state_.p_WT = p_WT;
   state_.v_WT = velocity_.update(state_.p_WT, since_last);
   if (!(state_.p_WT.squaredNorm() < HUGE_VAL)) gate_.trip(Fault::kStateNotFinite);
   last_report_ns_ = now_ns;
   return true;
+}
+
+bool Device::jumped(const Eigen::Vector3d& p_WT, double since_last) noexcept {
+  // 100 times gravity; impacts of a hand-held tip on a surface stay below 10 of them (5 N on 50 g).
+  constexpr double kAcceleration = 1000;  // m/s^2
+  // Reports come in frames of 1 ms; a loop that is late sees them closer together than they are.
+  constexpr double kLeast = 1e-3, kMost = 5e-3;  // s
+  const bool known = active_ && velocity_.primed() && !jumped_ && since_last < kMost;
+  const double time = since_last > kLeast ? since_last : kLeast;
+  const Eigen::Vector3d off = p_WT - state_.p_WT - state_.v_WT * since_last;
+  const double most = kAcceleration * time * time;
+  jumped_ = known && off.squaredNorm() > most * most;
+  if (jumped_) ++wire_.jumped;
+  return jumped_;
 }
 
 bool Device::came_before(const ArmReading& reading) noexcept {
@@ -230,8 +247,8 @@ void Device::write_otherwise(const ForceCommand& command) noexcept {
 // motors that hold their torque, where f . dx would take the Jacobian of one end of the way.
 void Device::write_guarded(const ForceCommand& command) noexcept {
   EnergyFlow flow;
+  const auto delay = static_cast<std::size_t>(settings_.energy.delay_ticks);
   if (booked_) {
-    const auto delay = static_cast<std::size_t>(settings_.energy.delay_ticks);
     flow = {.work = tau_sent_[delay].dot(pose_.q - q_booked_),
             .move_W = state_.p_WT - p_booked_W_,
             .f_sent_W = f_sent_W_};
@@ -243,7 +260,7 @@ void Device::write_guarded(const ForceCommand& command) noexcept {
   const MotorCurrents currents(force, settings_.R_WB, pose_.J_BT, arm_->drives());
   send(currents);
   f_sent_W_ = currents.scale() * force.f_T_W();
-  for (std::size_t i = tau_sent_.size() - 1; i > 0; --i) tau_sent_[i] = tau_sent_[i - 1];
+  for (std::size_t i = delay; i > 0; --i) tau_sent_[i] = tau_sent_[i - 1];
   tau_sent_[0] = torque_of(currents);
 }
 

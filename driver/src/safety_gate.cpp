@@ -76,20 +76,18 @@ GatedForce SafetyGate::pass_guarded(const Eigen::Vector3d& f_T_W, const Eigen::V
   if (energy_.stage == EnergyStage::kBounding) {
     const double bound = bounded_force(flow, energy_.slope);
     const double magnitude = f_W.norm();
-    if (!(magnitude <= bound)) {
-      f_W *= bound / magnitude;
-      ++counters_.bounded;
-    }
+    if (magnitude <= bound) return limited;
+    f_W *= bound / magnitude;
+    ++counters_.bounded;
   } else if (energy_.stage == EnergyStage::kPassivity) {
     counters_.energy_least = std::min(counters_.energy_least, observer_.energy());
     const Eigen::Vector3d damping_W = observer_.damping(v_WT, dt);
-    if (!damping_W.isZero(0)) {
-      f_W += damping_W;
-      ++counters_.damped;
-      const double open = limits_.force_max * std::min(1.0, since_start_ / opening_);
-      const double magnitude = f_W.norm();
-      if (magnitude > open) f_W *= open / magnitude;
-    }
+    if (damping_W.isZero(0)) return limited;
+    f_W += damping_W;
+    ++counters_.damped;
+    const double open = limits_.force_max * std::min(1.0, since_start_ / opening_);
+    const double magnitude = f_W.norm();
+    if (magnitude > open) f_W *= open / magnitude;
   }
   last_magnitude_ = f_W.norm();
   return GatedForce(f_W);

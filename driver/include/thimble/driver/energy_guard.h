@@ -20,6 +20,9 @@ struct EnergyGuardSettings {
   /// Most energy that is kept to one's credit, J; passivity: must be > 0. Without an end to it an
   /// hour of rubbing would pay for a minute of trouble.
   double reservoir = 0;
+  /// Debt at which the controller damps as hard as it may, J; below, in proportion. 0: at once.
+  /// Without it small debts of slow hands are paid in jolts (2 N against 1 N of touch were seen).
+  double onset = 0;
   double slope = 0;     ///< c1 of the bound, N/m. Bounding: must be > 0; 2 b / T makes it passive.
   int delay_ticks = 0;  ///< Ticks from sampling to force beyond the hold, 0 to kDelayMost.
   static constexpr int kDelayMost = 15;
@@ -50,7 +53,8 @@ class PassivityObserver {
 
   /// Finds the damping for the tip's velocity (m/s): -alpha v, N, with alpha the least that pays
   /// the debt within a tick of `dt` (s), and never above m / (T (1 + 2 delay)): a damper on a mass
-  /// swings up by itself beyond m / T, earlier when late.
+  /// swings up by itself beyond m / T, earlier when late. Up to the debt `onset` that end rises in
+  /// proportion.
   Eigen::Vector3d damping(const Eigen::Vector3d& v_WT, double dt) const noexcept;
 
   /// Tells the energy on the account, J; below 0 the arm gave more than it took.
