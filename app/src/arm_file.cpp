@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <string_view>
 
 #include "thimble/driver/arms/falcon/falcon_arm.h"
@@ -54,7 +55,13 @@ void take_joints(const driver::JointModel<Geometry>& built_in, driver::hfab::Hfa
   model.encoders = built_in.encoders;
 }
 
-driver::GateLimits read_gate(YamlMap map) {
+std::optional<double> number_if_there(YamlMap& map, std::string_view key, std::string_view unit,
+                                      double least, double most) {
+  if (!map.has(key)) return {};
+  return map.require_number(key, unit, least, most);
+}
+
+driver::GateLimits read_gate(YamlMap map, EnergyChoice& energy) {
   driver::GateLimits limits;
   limits.force_max = map.require_number("force_max", "N", 0.01, 100);
   limits.speed_max = map.require_number("speed_max", "m/s", 0.01, 20);
@@ -62,6 +69,15 @@ driver::GateLimits read_gate(YamlMap map) {
   limits.soft_start = map.require_number("soft_start", "s", 0, 10);
   limits.stall_ns = to_ns(map.require_number("stall", "s", 0.001, 10));
   limits.watchdog_ns = to_ns(map.require_number("watchdog", "s", 0.001, 10));
+  limits.reopen = map.optional_number("reopen", limits.reopen, "s", 0.001, 10);
+  if (map.has("energy")) {
+    energy.stage =
+        static_cast<driver::EnergyStage>(map.require_choice("energy", kEnergyStageNames));
+  }
+  energy.mass = number_if_there(map, "tip_mass", "kg", 1e-3, 10);
+  energy.allowance = number_if_there(map, "energy_allowance", "J", 0, 1);
+  energy.reservoir = number_if_there(map, "energy_reservoir", "J", 1e-6, 10);
+  energy.slope = number_if_there(map, "energy_slope", "N/m", 0.1, 1e6);
   map.finish();
   return limits;
 }
@@ -179,7 +195,7 @@ driver::Result<ArmFile> read_arm_file(const std::filesystem::path& file) {
   base.finish();
   arm.workspace = read_workspace(root.require_map("workspace"));
   arm.declared = read_declared(root.require_map("declared"));
-  arm.limits = read_gate(root.require_map("gate"));
+  arm.limits = read_gate(root.require_map("gate"), arm.energy);
   arm.velocity_corner_frequency = root.require_number("velocity_corner_frequency", "Hz", 0, 1e5);
   if (arm.shape == ArmShape::kSerial || root.has("simulation")) {
     arm.simulated =

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 
+#include "energy_choice.h"
 #include "thimble/device_sim/settings.h"
 #include "thimble/driver/arms/hfab/hfab_arm.h"
 #include "thimble/driver/result.h"
@@ -41,6 +42,7 @@ struct ArmFile {
   /// Drives, encoders and, for a serial arm, the geometry. The other shapes have theirs in code.
   driver::hfab::HfabModel model;
   driver::GateLimits limits;
+  EnergyChoice energy;
   DeclaredLimits declared;
   double velocity_corner_frequency = 0;                ///< Hz
   Eigen::Matrix3d R_WB = Eigen::Matrix3d::Identity();  ///< Rotation of the base in the world.

@@ -23,6 +23,7 @@
 #include "session.h"
 #include "thimble/driver/real_time.h"
 #include "thimble/render/mesh/save_mesh.h"
+#include "tuning.h"
 
 namespace thimble::app {
 namespace {
@@ -109,6 +110,8 @@ RunReport report_of(const Session& session, ClockKind clock, driver::ServoEnd en
   report.lost_contacts = count_lost_contacts(session.trace().rows(), session.touch());
   report.wire = session.device().wire_counters();
   report.gate = session.device().gate_counters();
+  report.energy_stage = session.device().gate().energy_stage();
+  report.reopen = session.device().gate().limits().reopen;
   report.real_time = grant;
   report.end = end;
   report.fault = session.device().fault();
@@ -169,6 +172,9 @@ int run_scene(const RunOptions& options) {
     return complain(opened.error(), real_arm ? kExitNoDevice : kExitBadInput);
   }
   Session& session = **opened;
+  for (const std::string& warning : stability_warnings(session.scene())) {
+    std::fprintf(stderr, "thimble: %s See thimble tune.\n", warning.c_str());
+  }
   const auto saved = object_to_save(session.scene(), options.save_object);
   if (!saved) {
     return complain({"--save-object: the scene has no object \"" + options.save_object + "\"."},

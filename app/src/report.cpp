@@ -90,7 +90,10 @@ Json to_json(const RunReport& report) {
   json["gate"] = {{"limited", report.gate.limited},
                   {"rise_limited", report.gate.rise_limited},
                   {"soft_started", report.gate.soft_started},
-                  {"stalls", report.gate.stalls}};
+                  {"stalls", report.gate.stalls},
+                  {"damped", report.gate.damped},
+                  {"bounded", report.gate.bounded},
+                  {"energy_least_J", report.gate.energy_least}};
   json["real_time"] = {{"fifo", report.real_time.fifo},
                        {"memory_locked", report.real_time.memory_locked},
                        {"advice", report.real_time.advice}};
@@ -197,6 +200,20 @@ std::string summary(const RunReport& report) {
       static_cast<unsigned long long>(report.gate.limited),
       static_cast<unsigned long long>(report.gate.rise_limited),
       static_cast<unsigned long long>(report.gate.soft_started));
+  if (report.energy_stage == driver::EnergyStage::kPassivity) {
+    s += text(
+        "Energy    watched by the gate: %.2f mJ given at most beyond what it took; damped in "
+        "%llu ticks.\n",
+        -1e3 * report.gate.energy_least, static_cast<unsigned long long>(report.gate.damped));
+  } else if (report.energy_stage == driver::EnergyStage::kBounding) {
+    s += text("Energy    bounded by the gate: force cut in %llu ticks.\n",
+              static_cast<unsigned long long>(report.gate.bounded));
+  }
+  if (report.gate.stalls > 0) {
+    s += text("Stalls    the loop stood still %llu time%s; the force came back within %.0f ms.\n",
+              static_cast<unsigned long long>(report.gate.stalls),
+              report.gate.stalls == 1 ? "" : "s", 1e3 * report.reopen);
+  }
   switch (report.end) {
     case driver::ServoEnd::kDone:
       s += "End       the scene was over; the arm was left with zero force.\n";

@@ -36,6 +36,8 @@ struct RunReport {
   std::optional<render::PagingCounters> paging;  ///< Of objects on the disk, if there are any.
   driver::WireCounters wire;
   driver::GateCounters gate;
+  driver::EnergyStage energy_stage = driver::EnergyStage::kNone;
+  double reopen = 0;  ///< The gate's, s.
   driver::RealTimeGrant real_time;
   driver::ServoEnd end = driver::ServoEnd::kDone;
   driver::Fault fault = driver::Fault::kNone;

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "energy_choice.h"
 #include "real_arm.h"
 #include "yaml_settings.h"
 
@@ -99,10 +100,7 @@ double tip_step_at_home(const ArmFile& arm) {
 render::EffectSurroundings surroundings_of(const ArmFile& arm, double rate) {
   render::EffectSurroundings surroundings;
   surroundings.tick = 1 / rate;
-  surroundings.delay =
-      1e-9 * static_cast<double>(arm.simulated.wire.delay_in_ns + arm.simulated.wire.delay_out_ns);
-  // A frame for the report and one for the force, whatever the arm [STABILITY 5].
-  if (!arm.can_simulate || arm.shape == ArmShape::kFalcon) surroundings.delay = 0.001;
+  surroundings.delay = loop_delay(arm);
   surroundings.force_max = arm.limits.force_max;
   surroundings.tip_mass = arm.simulated.plant.mass;
   surroundings.tip_damping = arm.simulated.plant.viscous;

@@ -213,6 +213,12 @@ driver::Result<Scene> read_scene(const std::filesystem::path& file,
   scene.duration = root.require_number("duration", "s", 0.001, kDurationMax);
   // 2^53: every whole number up to here is a double.
   scene.seed = static_cast<std::uint64_t>(root.optional_number("seed", 0, "", 0, 0x1p53));
+  if (root.has("gate")) {
+    YamlMap gate = root.require_map("gate");
+    scene.energy =
+        static_cast<driver::EnergyStage>(gate.optional_choice("energy", 0, kEnergyStageNames));
+    gate.finish();
+  }
   if (!other_arm.empty()) scene.arm_file = other_arm;
   auto arm = read_arm_file(scene.arm_file);
   if (arm) scene.arm = std::move(arm).value();

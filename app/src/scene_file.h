@@ -45,9 +45,10 @@ struct Scene {
   std::string description;
   std::filesystem::path arm_file;
   ArmFile arm;
-  double rate = 1000;      ///< Ticks per second, Hz.
-  double duration = 0;     ///< s
-  std::uint64_t seed = 0;  ///< Of everything random in the simulation.
+  double rate = 1000;                         ///< Ticks per second, Hz.
+  double duration = 0;                        ///< s
+  std::uint64_t seed = 0;                     ///< Of everything random in the simulation.
+  std::optional<driver::EnergyStage> energy;  ///< In place of the arm's own, if named.
   std::vector<SceneObject> objects;
   std::vector<HandWaypoint> hand;
 };

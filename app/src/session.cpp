@@ -9,6 +9,7 @@
 
 #include "build_info.h"
 #include "calibration.h"
+#include "energy_choice.h"
 #include "hand_route.h"
 #include "real_arm.h"
 #include "text_file.h"
@@ -91,12 +92,14 @@ driver::Result<std::unique_ptr<Session>> Session::open(const std::filesystem::pa
     wire = session->simulation_->wire(*session->clock_);
     protocol = session->simulation_->protocol();
   }
-  auto device = driver::Device::open(std::move(wire), std::move(protocol),
-                                     {.R_WB = arm.R_WB,
-                                      .p_WB = arm.p_WB,
-                                      .limits = arm.limits,
-                                      .velocity_corner_frequency = arm.velocity_corner_frequency},
-                                     session->clock_->now_ns());
+  auto device = driver::Device::open(
+      std::move(wire), std::move(protocol),
+      {.R_WB = arm.R_WB,
+       .p_WB = arm.p_WB,
+       .limits = arm.limits,
+       .energy = energy_settings(arm, session->scene_.rate, session->scene_.energy),
+       .velocity_corner_frequency = arm.velocity_corner_frequency},
+      session->clock_->now_ns());
   if (!device) return device.error();
   session->device_ = std::move(device).value();
   if (auto activated = session->device_->activate(); !activated) return activated.error();

@@ -4,6 +4,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <limits>
 #include <numbers>
 
@@ -75,6 +76,17 @@ double stiffness_limit(double damping, double latency) {
   return damping / latency;
 }
 
+double late_stiffness_limit(double damping, double latency, double mass) {
+  const double target = damping * latency / mass;
+  double low = 0, high = kPi / 2;
+  for (int i = 0; i < 60; ++i) {
+    const double u = 0.5 * (low + high);
+    (u * std::tan(u) < target ? low : high) = u;
+  }
+  const double u = 0.5 * (low + high);
+  return damping / latency * (u > 1e-9 ? u / std::sin(u) : 1);
+}
+
 double passive_damping(double stiffness, double damping, double period, double delay) {
   double most = -kNone;
   for (int i = 0; i <= kAngles; ++i) {
@@ -127,6 +139,15 @@ double swing_speed_limit(double stiffness, double viscous, double coulomb, doubl
 
 double restitution(double stiffness, double damping, double mass, double latency) {
   return std::exp(-kPi * (damping - stiffness * latency) / (2 * std::sqrt(stiffness * mass)));
+}
+
+double late_restitution(double stiffness, double damping, double mass, double latency) {
+  std::complex<double> s(0, std::sqrt(stiffness / mass));
+  for (int i = 0; i < 50; ++i) {
+    const std::complex<double> late = stiffness * std::exp(-s * latency);
+    s -= (mass * s * s + damping * s + late) / (2 * mass * s + damping - latency * late);
+  }
+  return std::exp(kPi * s.real() / s.imag());
 }
 
 double bristle_length(double friction_force, double latency, double damping, double encoder_step,

@@ -2,6 +2,9 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
+
+#include "thimble/driver/wire_arm.h"
 
 namespace thimble::driver {
 namespace {
@@ -20,9 +23,23 @@ Result<void> check(const DeviceSettings& settings) {
   if (!is_limit(limits.speed_max)) return wrong("speed_max");
   if (!is_limit(limits.rise_max)) return wrong("rise_max");
   if (!is_limit(limits.soft_start)) return wrong("soft_start");
+  if (!is_limit(limits.reopen)) return wrong("reopen time");
   if (limits.stall_ns <= 0) return wrong("stall time");
   if (limits.watchdog_ns <= 0) return wrong("watchdog time");
   if (settings.silence_limit_ns <= 0) return wrong("silence limit");
+  const EnergyGuardSettings& energy = settings.energy;
+  if (energy.stage == EnergyStage::kPassivity) {
+    if (!is_limit(energy.mass)) return wrong("tip mass, which its passivity stage needs,");
+    if (!is_limit(energy.reservoir)) return wrong("energy reservoir");
+    if (!(energy.allowance >= 0)) return wrong("energy allowance");
+  }
+  if (energy.stage == EnergyStage::kBounding && !is_limit(energy.slope)) {
+    return wrong("slope of the energy bound");
+  }
+  if (energy.delay_ticks < 0 || energy.delay_ticks > EnergyGuardSettings::kDelayMost) {
+    return Error{"The energy stage of the gate knows delays of 0 to 15 ticks; the loop's is " +
+                 std::to_string(energy.delay_ticks) + "."};
+  }
   return {};
 }
 
@@ -33,7 +50,7 @@ Device::Device(std::unique_ptr<Transport> transport, std::unique_ptr<const Arm> 
     : transport_(std::move(transport)),
       arm_(std::move(arm)),
       settings_(settings),
-      gate_(settings.limits),
+      gate_(settings.limits, settings.energy),
       velocity_(settings.velocity_corner_frequency) {}
 
 Device::~Device() {
@@ -84,6 +101,13 @@ void Device::begin_activity() noexcept {
   refused_in_a_row_ = 0;
   active_ = true;
   started_ = false;
+  booked_ = false;
+  tau_sent_.fill(Eigen::Vector3d::Zero());
+  choose_way();
+}
+
+void Device::choose_way() noexcept {
+  plain_ = active_ && !lost_ && gate_.energy_stage() == EnergyStage::kNone;
 }
 
 void Device::offer(std::unique_ptr<Transport> transport) {
@@ -104,6 +128,7 @@ void Device::take_offer(std::int64_t now_ns) noexcept {
   reported_ = numbered_ = false;
   number_.reset();
   active_ = false;
+  choose_way();
   refused_in_a_row_ = 0;
   last_report_ns_ = now_ns;
   velocity_.reset();
@@ -112,6 +137,7 @@ void Device::take_offer(std::int64_t now_ns) noexcept {
 
 void Device::deactivate() noexcept {
   active_ = false;
+  choose_way();
   send(MotorCurrents());
   f_sent_W_.setZero();
 }
@@ -149,6 +175,7 @@ bool Device::take_report(std::int64_t now_ns, std::int64_t deadline_ns) noexcept
   wire_.skipped += read.skipped;
   if (read.status == TransportStatus::kLost) {
     lost_ = true;
+    choose_way();
     gate_.trip(Fault::kTransportLost);
   }
   if (read.status != TransportStatus::kOk) return false;
@@ -162,18 +189,35 @@ bool Device::take_report(std::int64_t now_ns, std::int64_t deadline_ns) noexcept
     ++wire_.repeated;
     return false;
   }
+  const ArmPose pose = arm_->pose(reading);
+  const double since_last = static_cast<double>(now_ns - last_report_ns_) * 1e-9;
+  const Eigen::Vector3d p_WT = settings_.p_WB + settings_.R_WB * pose.p_BT;
+  if (jumped(p_WT, since_last)) return false;
   ++wire_.reports;
   reported_ = true;
-  pose_ = arm_->pose(reading);
+  pose_ = pose;
   state_.counts = reading.counts;
   state_.buttons = reading.buttons;
   state_.q = pose_.q;
-  state_.p_WT = settings_.p_WB + settings_.R_WB * pose_.p_BT;
-  const double since_last = static_cast<double>(now_ns - last_report_ns_) * 1e-9;
+  state_.p_WT = p_WT;
   state_.v_WT = velocity_.update(state_.p_WT, since_last);
   if (!(state_.p_WT.squaredNorm() < HUGE_VAL)) gate_.trip(Fault::kStateNotFinite);
   last_report_ns_ = now_ns;
   return true;
+}
+
+bool Device::jumped(const Eigen::Vector3d& p_WT, double since_last) noexcept {
+  // 100 times gravity; impacts of a hand-held tip on a surface stay below 10 of them (5 N on 50 g).
+  constexpr double kAcceleration = 1000;  // m/s^2
+  // Reports come in frames of 1 ms; a loop that is late sees them closer together than they are.
+  constexpr double kLeast = 1e-3, kMost = 5e-3;  // s
+  const bool known = active_ && velocity_.primed() && !jumped_ && since_last < kMost;
+  const double time = since_last > kLeast ? since_last : kLeast;
+  const Eigen::Vector3d off = p_WT - state_.p_WT - state_.v_WT * since_last;
+  const double most = kAcceleration * time * time;
+  jumped_ = known && off.squaredNorm() > most * most;
+  if (jumped_) ++wire_.jumped;
+  return jumped_;
 }
 
 bool Device::came_before(const ArmReading& reading) noexcept {
@@ -186,15 +230,49 @@ bool Device::came_before(const ArmReading& reading) noexcept {
 }
 
 void Device::write(const ForceCommand& command) noexcept {
-  if (!active_ || lost_) {
-    send(MotorCurrents());
-    f_sent_W_.setZero();
-    return;
-  }
+  if (!plain_) return write_otherwise(command);
   const GatedForce force = gate_.pass(command.f_T_W, state_.v_WT, state_.dt);
   const MotorCurrents currents(force, settings_.R_WB, pose_.J_BT, arm_->drives());
   send(currents);
   f_sent_W_ = currents.scale() * force.f_T_W();
+}
+
+void Device::write_otherwise(const ForceCommand& command) noexcept {
+  if (active_ && !lost_) return write_guarded(command);
+  send(MotorCurrents());
+  f_sent_W_.setZero();
+}
+
+// Work is booked at the joints, tau . dq, with the torques as the message holds them: exact for
+// motors that hold their torque, where f . dx would take the Jacobian of one end of the way.
+void Device::write_guarded(const ForceCommand& command) noexcept {
+  EnergyFlow flow;
+  const auto delay = static_cast<std::size_t>(settings_.energy.delay_ticks);
+  if (booked_) {
+    flow = {.work = tau_sent_[delay].dot(pose_.q - q_booked_),
+            .move_W = state_.p_WT - p_booked_W_,
+            .f_sent_W = f_sent_W_};
+  }
+  booked_ = true;
+  q_booked_ = pose_.q;
+  p_booked_W_ = state_.p_WT;
+  const GatedForce force = gate_.pass_guarded(command.f_T_W, state_.v_WT, state_.dt, flow);
+  const MotorCurrents currents(force, settings_.R_WB, pose_.J_BT, arm_->drives());
+  send(currents);
+  f_sent_W_ = currents.scale() * force.f_T_W();
+  for (std::size_t i = delay; i > 0; --i) tau_sent_[i] = tau_sent_[i - 1];
+  tau_sent_[0] = torque_of(currents);
+}
+
+Eigen::Vector3d Device::torque_of(const MotorCurrents& currents) const noexcept {
+  const std::array<std::int16_t, 3> mA = whole_mA(currents);
+  Eigen::Vector3d tau;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const MotorDrive& drive = arm_->drives()[i];
+    tau[static_cast<Eigen::Index>(i)] =
+        drive.sign * drive.ratio * drive.torque_constant * 1e-3 * mA[i];
+  }
+  return tau;
 }
 
 void Device::send(const MotorCurrents& currents) noexcept {
@@ -204,6 +282,7 @@ void Device::send(const MotorCurrents& currents) noexcept {
   const auto status = transport_->write(std::span<const std::byte>(report).first(size));
   if (status == TransportStatus::kLost) {
     lost_ = true;
+    choose_way();
     gate_.trip(Fault::kTransportLost);
   }
   if (status != TransportStatus::kRefused) {

@@ -1,15 +1,19 @@
 #include "thimble/driver/safety_gate.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace thimble::driver {
 
-SafetyGate::SafetyGate(const GateLimits& limits) noexcept : limits_(limits) {}
+SafetyGate::SafetyGate(const GateLimits& limits, const EnergyGuardSettings& energy) noexcept
+    : limits_(limits), opening_(limits.soft_start), energy_(energy), observer_(energy) {}
 
 void SafetyGate::restart() noexcept {
   fault_ = Fault::kNone;
   since_start_ = 0;
+  opening_ = limits_.soft_start;
   last_magnitude_ = 0;
+  observer_.restart();
 }
 
 void SafetyGate::trip(Fault fault) noexcept {
@@ -32,6 +36,8 @@ GatedForce SafetyGate::pass(const Eigen::Vector3d& f_T_W, const Eigen::Vector3d&
 
   if (dt * 1e9 >= static_cast<double>(limits_.stall_ns)) {
     ++counters_.stalls;
+    // A first soft start that was not over stays as slow as it was.
+    if (since_start_ >= opening_) opening_ = limits_.reopen;
     since_start_ = 0;
     last_magnitude_ = 0;
     dt = 0;
@@ -48,8 +54,8 @@ GatedForce SafetyGate::pass(const Eigen::Vector3d& f_T_W, const Eigen::Vector3d&
     allowed = risen;
     ++counters_.rise_limited;
   }
-  if (since_start_ < limits_.soft_start) {
-    const double open = limits_.force_max * since_start_ / limits_.soft_start;
+  if (since_start_ < opening_) {
+    const double open = limits_.force_max * since_start_ / opening_;
     if (allowed > open) {
       allowed = open;
       ++counters_.soft_started;
@@ -57,6 +63,34 @@ GatedForce SafetyGate::pass(const Eigen::Vector3d& f_T_W, const Eigen::Vector3d&
   }
   last_magnitude_ = allowed;
   return magnitude > allowed ? GatedForce(f_T_W * (allowed / magnitude)) : GatedForce(f_T_W);
+}
+
+GatedForce SafetyGate::pass_guarded(const Eigen::Vector3d& f_T_W, const Eigen::Vector3d& v_WT,
+                                    double dt, const EnergyFlow& flow) noexcept {
+  // What was given is given, whatever becomes of this tick.
+  observer_.book(flow.work);
+  if (!(std::abs(flow.work) + flow.move_W.squaredNorm() < HUGE_VAL)) trip(Fault::kStateNotFinite);
+  const GatedForce limited = pass(f_T_W, v_WT, dt);
+  if (fault_ != Fault::kNone) return limited;
+  Eigen::Vector3d f_W = limited.f_T_W();
+  if (energy_.stage == EnergyStage::kBounding) {
+    const double bound = bounded_force(flow, energy_.slope);
+    const double magnitude = f_W.norm();
+    if (magnitude <= bound) return limited;
+    f_W *= bound / magnitude;
+    ++counters_.bounded;
+  } else if (energy_.stage == EnergyStage::kPassivity) {
+    counters_.energy_least = std::min(counters_.energy_least, observer_.energy());
+    const Eigen::Vector3d damping_W = observer_.damping(v_WT, dt);
+    if (damping_W.isZero(0)) return limited;
+    f_W += damping_W;
+    ++counters_.damped;
+    const double open = limits_.force_max * std::min(1.0, since_start_ / opening_);
+    const double magnitude = f_W.norm();
+    if (magnitude > open) f_W *= open / magnitude;
+  }
+  last_magnitude_ = f_W.norm();
+  return GatedForce(f_W);
 }
 
 }  // namespace thimble::driver

@@ -172,11 +172,30 @@ TEST_F(DeviceTest, SendsZeroInTheTickOfAForceThatIsNotANumber) {
   settle();
 }
 
-TEST_F(DeviceTest, SendsZeroInTheTickOfAnImpossibleJump) {
+TEST_F(DeviceTest, DropsOneReportOfAnImpossibleJumpAndHoldsTheForce) {
   open_and_activate();
   settle();
+  const auto before = last_currents();
+  const Eigen::Vector3d p_WT = device_->state().p_WT;
   wire_.to_host.push_back(report(1000));  // 24 mm in one tick
   tick({0, 0.5, 0});
+  EXPECT_EQ(last_currents(), before);
+  EXPECT_EQ(device_->state().p_WT, p_WT);
+  EXPECT_FALSE(device_->state().fresh);
+  wire_.to_host.push_back(report());
+  tick({0, 0.5, 0});
+  EXPECT_EQ(device_->fault(), Fault::kNone);
+  EXPECT_TRUE(device_->state().fresh);
+  EXPECT_EQ(device_->wire_counters().jumped, 1u);
+}
+
+TEST_F(DeviceTest, SendsZeroInTheSecondTickOfAnImpossibleJump) {
+  open_and_activate();
+  settle();
+  for (int k = 0; k < 2; ++k) {
+    wire_.to_host.push_back(report(1000));
+    tick({0, 0.5, 0});
+  }
   EXPECT_EQ(last_currents(), kZero);
   EXPECT_EQ(device_->fault(), Fault::kOverSpeed);
 }

@@ -121,18 +121,102 @@ TEST(SafetyGate, LatchesZeroForceOnRunawaySpeed) {
   EXPECT_EQ(other.fault(), Fault::kStateNotFinite);
 }
 
-TEST(SafetyGate, BeginsTheSoftStartAnewAfterAStallAndFaultsAfterTheWatchdogsTime) {
+TEST(SafetyGate, OpensAnewAfterAStallAndFaultsAfterTheWatchdogsTime) {
   SafetyGate gate = open_gate();
   EXPECT_GT(gate.pass({1, 0, 0}, kStill, kPeriod).f_T_W().norm(), 0.9);
   EXPECT_EQ(gate.pass({1, 0, 0}, kStill, 0.030).f_T_W().norm(), 0);
   EXPECT_EQ(gate.counters().stalls, 1u);
   EXPECT_EQ(gate.fault(), Fault::kNone);
-  // With the limit opening at force_max / soft_start, 1 N is back after 60 ms.
-  for (int k = 0; k < 60; ++k) gate.pass({1, 0, 0}, kStill, kPeriod);
+  // With the limit opening at force_max / reopen, 1 N is back after 8 ms.
+  for (int k = 0; k < 7; ++k) {
+    EXPECT_LT(gate.pass({1, 0, 0}, kStill, kPeriod).f_T_W().norm(), 0.9);
+  }
   EXPECT_NEAR(gate.pass({1, 0, 0}, kStill, kPeriod).f_T_W().norm(), 1, 1e-9);
 
   EXPECT_EQ(gate.pass({1, 0, 0}, kStill, 0.100).f_T_W().norm(), 0);
   EXPECT_EQ(gate.fault(), Fault::kLoopStalled);
+}
+
+TEST(SafetyGate, StaysAsSlowAsItWasAfterAStallInItsSoftStart) {
+  SafetyGate gate(limits());
+  for (int k = 0; k < 100; ++k) gate.pass({5, 0, 0}, kStill, kPeriod);
+  gate.pass({5, 0, 0}, kStill, 0.030);
+  for (int k = 0; k < 60; ++k) gate.pass({5, 0, 0}, kStill, kPeriod);
+  EXPECT_NEAR(gate.pass({5, 0, 0}, kStill, kPeriod).f_T_W().norm(), 61e-3 * 5 / 0.3, 1e-9);
+}
+
+EnergyGuardSettings passivity() {
+  return {.stage = EnergyStage::kPassivity, .mass = 0.075, .allowance = 0, .reservoir = 0.02};
+}
+
+TEST(EnergyGuard, LeavesAForceAloneWhileTheHandHasPaidForIt) {
+  SafetyGate gate(limits(), passivity());
+  for (int k = 0; k < 400; ++k) gate.pass_guarded({0, 0, 0}, kStill, kPeriod, {});
+  const Eigen::Vector3d f{0.5, -1, 0.3};
+  // The hand gives 1 mJ, and gets a part of it back.
+  EXPECT_EQ(gate.pass_guarded(f, {0.1, 0, 0}, kPeriod, {.work = -1e-3}).f_T_W(), f);
+  EXPECT_EQ(gate.pass_guarded(f, {0.1, 0, 0}, kPeriod, {.work = 0.9e-3}).f_T_W(), f);
+  EXPECT_EQ(gate.counters().damped, 0u);
+  EXPECT_NEAR(gate.energy(), 0.1e-3, 1e-15);
+}
+
+TEST(EnergyGuard, DampsAgainstTheVelocityWithAsMuchAsPaysTheDebtAndNoMore) {
+  SafetyGate gate(limits(), passivity());
+  for (int k = 0; k < 400; ++k) gate.pass_guarded({0, 0, 0}, kStill, kPeriod, {});
+  const Eigen::Vector3d v{0.1, -0.2, 0.1};
+  const Eigen::Vector3d f = gate.pass_guarded({0, 0, 0}, v, kPeriod, {.work = 1e-4}).f_T_W();
+  EXPECT_NEAR(-f.dot(v) * kPeriod, 1e-4, 1e-12);
+  EXPECT_LT(f.cross(v).norm(), 1e-12);
+  // However great the debt: the damper is no more than mass / period, and the force no more than
+  // the limit.
+  const Eigen::Vector3d slow{0.001, 0, 0};
+  EXPECT_NEAR(gate.pass_guarded({0, 0, 0}, slow, kPeriod, {.work = 1}).f_T_W().x(), -0.075, 1e-12);
+  EXPECT_NEAR(gate.pass_guarded({0, 0, 0}, {1, 0, 0}, kPeriod, {}).f_T_W().x(), -5, 1e-12);
+  EXPECT_EQ(gate.counters().damped, 3u);
+  EXPECT_LT(gate.counters().energy_least, -0.9);
+}
+
+TEST(EnergyGuard, KeepsNoMoreToOnesCreditThanTheReservoirAndAllowsWhatItIsTold) {
+  EnergyGuardSettings settings = passivity();
+  settings.allowance = 0.002;
+  SafetyGate gate(limits(), settings);
+  for (int k = 0; k < 400; ++k) gate.pass_guarded({0, 0, 0}, kStill, kPeriod, {.work = -1});
+  EXPECT_EQ(gate.energy(), 0.02);
+  const auto damped = [&](double work) {
+    return gate.pass_guarded({0, 0, 0}, {0.1, 0, 0}, kPeriod, {.work = work}).f_T_W().norm() > 0;
+  };
+  EXPECT_FALSE(damped(0.0219));
+  EXPECT_TRUE(damped(0.0002));
+}
+
+TEST(EnergyGuard, HoldsItsDampingBackWithTheSoftStart) {
+  SafetyGate gate(limits(), passivity());
+  gate.pass_guarded({0, 0, 0}, kStill, 0, {});
+  EXPECT_NEAR(gate.pass_guarded({0, 0, 0}, {1, 0, 0}, kPeriod, {.work = 1}).f_T_W().norm(),
+              5e-3 / 0.3, 1e-12);
+}
+
+TEST(EnergyGuard, BoundsAForceByWhatTheSpringOfItsSlopeWouldHold) {
+  SafetyGate gate(limits(), {.stage = EnergyStage::kBounding, .slope = 10});
+  for (int k = 0; k < 400; ++k) gate.pass_guarded({0, 0, 0}, kStill, kPeriod, {});
+  // From nothing, 1 mm of way carries 10 mN; held at 2 N, 1 mm back costs at least 10 mN.
+  EXPECT_NEAR(gate.pass_guarded({3, 0, 0}, kStill, kPeriod, {.move_W = {-1e-3, 0, 0}}).f_T_W().x(),
+              0.01, 1e-15);
+  const EnergyFlow back{.move_W = {1e-3, 0, 0}, .f_sent_W = {2, 0, 0}};
+  EXPECT_NEAR(gate.pass_guarded({2, 0, 0}, kStill, kPeriod, back).f_T_W().x(), 1.99, 1e-15);
+  EXPECT_EQ(gate.pass_guarded({1, 0, 0}, kStill, kPeriod, back).f_T_W().x(), 1);
+  EXPECT_EQ(gate.counters().bounded, 2u);
+}
+
+TEST(EnergyGuard, FindsNoForceForEnergyThatIsNotANumber) {
+  for (const EnergyGuardSettings& settings :
+       {passivity(), EnergyGuardSettings{.stage = EnergyStage::kBounding, .slope = 10}}) {
+    SafetyGate gate(limits(), settings);
+    for (int k = 0; k < 400; ++k) gate.pass_guarded({0, 0, 0}, kStill, kPeriod, {});
+    const EnergyFlow bad{.work = NAN, .move_W = {NAN, 0, 0}};
+    EXPECT_EQ(gate.pass_guarded({1, 0, 0}, {1, 0, 0}, kPeriod, bad).f_T_W().norm(), 0);
+    EXPECT_EQ(gate.fault(), Fault::kStateNotFinite);
+  }
 }
 
 TEST(SafetyGate, KeepsTheFirstFault) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <memory>
 #include <optional>
@@ -20,6 +21,7 @@ struct DeviceSettings {
   Eigen::Matrix3d R_WB = Eigen::Matrix3d::Identity();  ///< Rotation of the arm's base in the world.
   Eigen::Vector3d p_WB{0, 0, 0};                       ///< Position of the arm's base, m.
   GateLimits limits;
+  EnergyGuardSettings energy{};                ///< Which energy stage the gate has; none: free.
   double velocity_corner_frequency = 0;        ///< Pole of the velocity estimate, Hz; 0: none.
   std::int64_t silence_limit_ns = 20'000'000;  ///< Silence of the arm that is a fault, ns (20
                                                ///< reports of a full-speed USB arm; chosen).
@@ -33,6 +35,7 @@ struct WireCounters {
   std::uint64_t missing = 0;    ///< Ticks without a new report.
   std::uint64_t refused = 0;    ///< Messages that the arm did not take.
   std::uint64_t repeated = 0;   ///< Reports that came before, of an arm that numbers them.
+  std::uint64_t jumped = 0;     ///< Reports dropped for a jump that no hand makes.
   std::uint64_t replugged = 0;  ///< Times a lost wire was replaced.
 };
 
@@ -70,9 +73,11 @@ class Device {
   /// Sends zero force now and in every later tick. Real-time: safe.
   void deactivate() noexcept;
 
-  /// Begins a tick: reads the newest report and finds where the tip is. With no new report the last
-  /// state stands (`fresh` is false); after `silence_limit_ns` of that it is a fault.
-  /// Real-time: safe; waits no longer than `deadline_ns`.
+  /// Begins a tick: reads the newest report and finds where the tip is. A report after which the
+  /// tip would have changed its speed by 1 m/s within 1 ms is dropped, once: no hand does that, but
+  /// a disturbed encoder line does; the second in a row is believed. With no new report the last
+  /// state stands (`fresh` is false); after `silence_limit_ns` of that it is a fault. Real-time:
+  /// safe; waits no longer than `deadline_ns`.
   const DeviceState& read(std::int64_t now_ns, std::int64_t deadline_ns) noexcept;
 
   /// Ends a tick: passes the command through the gate and sends what is left of it, or zero if the
@@ -101,15 +106,21 @@ class Device {
   const Eigen::Vector3d& f_sent_W() const noexcept { return f_sent_W_; }
   const WireCounters& wire_counters() const noexcept { return wire_; }
   const GateCounters& gate_counters() const noexcept { return gate_.counters(); }
+  const SafetyGate& gate() const noexcept { return gate_; }
 
  private:
   Device(std::unique_ptr<Transport> transport, std::unique_ptr<const Arm> arm,
          const DeviceSettings& settings) noexcept;
   bool take_report(std::int64_t now_ns, std::int64_t deadline_ns) noexcept;
+  bool jumped(const Eigen::Vector3d& p_WT, double since_last) noexcept;
   bool came_before(const ArmReading& reading) noexcept;
   void take_offer(std::int64_t now_ns) noexcept;
   void begin_activity() noexcept;
   void send(const MotorCurrents& currents) noexcept;
+  void choose_way() noexcept;
+  void write_otherwise(const ForceCommand& command) noexcept;
+  void write_guarded(const ForceCommand& command) noexcept;
+  Eigen::Vector3d torque_of(const MotorCurrents& currents) const noexcept;
 
   std::unique_ptr<Transport> transport_;
   std::unique_ptr<const Arm> arm_;
@@ -121,12 +132,20 @@ class Device {
   DeviceState state_;
   Eigen::Vector3d f_sent_W_{0, 0, 0};
   std::int64_t last_report_ns_ = 0;
+  bool plain_ = false;  // active, with a wire, and no energy stage: the one test of a usual tick
   bool active_ = false;
   bool started_ = false;  // a tick has been read
   bool lost_ = false;
+  bool jumped_ = false;    // the newest report was dropped for a jump
   bool reported_ = false;  // a report came over this wire
   bool numbered_ = false;  // two reports of this wire had different numbers
   std::optional<std::uint16_t> number_;
+  // Of the energy stage: torques on their way to the motors, N m, the newest first, and where the
+  // arm was when it was asked last.
+  std::array<Eigen::Vector3d, EnergyGuardSettings::kDelayMost + 1> tau_sent_{};
+  Eigen::Vector3d q_booked_{0, 0, 0};
+  Eigen::Vector3d p_booked_W_{0, 0, 0};
+  bool booked_ = false;
   int refused_in_a_row_ = 0;
   std::int64_t refused_since_ns_ = 0;
   std::atomic<Transport*> offered_{nullptr}, retired_{nullptr};

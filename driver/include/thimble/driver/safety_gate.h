@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 
+#include "thimble/driver/energy_guard.h"
 #include "thimble/driver/fault.h"
 
 namespace thimble::driver {
@@ -29,7 +30,10 @@ struct GateLimits {
   double speed_max = 0;   ///< Tip speed above which the force goes off and stays off, m/s.
   double rise_max = 0;    ///< Fastest rise of the force's magnitude, N/s. A fall is never slowed.
   double soft_start = 0;  ///< Time over which the limit opens from 0 to `force_max`, s.
-  std::int64_t stall_ns = 0;     ///< Gap between ticks after which the soft start begins anew, ns.
+  /// The same after a gap, for somebody who is touching already, s; a hand feels a surface as gone
+  /// if it is away for longer [STABILITY 7, case 9: back within 50 ms].
+  double reopen = 0.04;
+  std::int64_t stall_ns = 0;     ///< Gap between ticks after which the limit opens anew, ns.
   std::int64_t watchdog_ns = 0;  ///< Gap after which the arm's own watchdog has fired: a fault, ns.
 };
 
@@ -38,11 +42,14 @@ struct GateCounters {
   std::uint64_t limited = 0;       ///< Cut to `force_max`.
   std::uint64_t rise_limited = 0;  ///< Held back by `rise_max`.
   std::uint64_t soft_started = 0;  ///< Cut by the soft start.
-  std::uint64_t stalls = 0;        ///< Soft starts begun anew after a gap.
+  std::uint64_t stalls = 0;        ///< Gaps after which the limit opened anew.
+  std::uint64_t damped = 0;        ///< Damped by the passivity controller.
+  std::uint64_t bounded = 0;       ///< Cut by the energy bound.
+  double energy_least = 0;         ///< Lowest energy that the observer saw, J; never above 0.
 };
 
 /// Stands between every force law and the motors: finite -> the arm's limit -> speed limit -> rise
-/// limit -> soft start.
+/// limit -> soft start -> energy stage, if one is named.
 ///
 /// The rise limit is one-sided. A limit on the fall as well would turn a passive wall into an
 /// active one (restitution up to 2.7) [STABILITY 1.6].
@@ -51,7 +58,7 @@ struct GateCounters {
 /// All functions are Real-time: safe.
 class SafetyGate {
  public:
-  explicit SafetyGate(const GateLimits& limits) noexcept;
+  explicit SafetyGate(const GateLimits& limits, const EnergyGuardSettings& energy = {}) noexcept;
 
   /// Forgets the fault and the past, and begins the soft start.
   void restart() noexcept;
@@ -60,19 +67,31 @@ class SafetyGate {
   /// world; `dt` is the time since the previous call, s (0 on the first after `restart`).
   GatedForce pass(const Eigen::Vector3d& f_T_W, const Eigen::Vector3d& v_WT, double dt) noexcept;
 
+  /// Does the same, and then keeps the energy in bounds: what the energy stage is for. `flow` tells
+  /// what came of the call before. The stage may cut the force, or add damping to it, but never
+  /// beyond the arm's limit as far as the soft start has opened it.
+  GatedForce pass_guarded(const Eigen::Vector3d& f_T_W, const Eigen::Vector3d& v_WT, double dt,
+                          const EnergyFlow& flow) noexcept;
+
   /// Latches a fault that somebody else found; the first one stays.
   void trip(Fault fault) noexcept;
 
   Fault fault() const noexcept { return fault_; }
   const GateCounters& counters() const noexcept { return counters_; }
   const GateLimits& limits() const noexcept { return limits_; }
+  EnergyStage energy_stage() const noexcept { return energy_.stage; }
+  /// Tells the energy on the observer's account, J.
+  double energy() const noexcept { return observer_.energy(); }
 
  private:
   GateLimits limits_;
   GateCounters counters_;
   Fault fault_ = Fault::kNone;
-  double since_start_ = 0;     // s of active time since the soft start began
+  double since_start_ = 0;     // s of active time since the limit began to open
+  double opening_ = 0;         // s that it takes
   double last_magnitude_ = 0;  // N
+  EnergyGuardSettings energy_;
+  PassivityObserver observer_;
 };
 
 }  // namespace thimble::driver

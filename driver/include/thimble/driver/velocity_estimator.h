@@ -17,6 +17,9 @@ class VelocityEstimator {
   /// Forgets the past; the next estimate is zero.
   void reset() noexcept { primed_ = false; }
 
+  /// Tells whether a position has been taken since `reset`.
+  bool primed() const noexcept { return primed_; }
+
   /// Takes the position p (m) sampled `dt` (s) after the previous one and returns the velocity,
   /// m/s. A `dt` that is not positive returns the last estimate.
   Eigen::Vector3d update(const Eigen::Vector3d& p, double dt) noexcept;

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+
+namespace thimble::driver {
+
+/// Names the stage of the gate that keeps the arm from giving more energy than it took.
+enum class EnergyStage : std::uint8_t {
+  kNone,       ///< No such stage; a tick executes nothing for it.
+  kPassivity,  ///< Observer and controller: books energy, damps when too much went out.
+  kBounding,   ///< Bounds each force so that the arm's own friction pays for every leak.
+};
+
+/// Sets the energy stage of a gate.
+struct EnergyGuardSettings {
+  EnergyStage stage = EnergyStage::kNone;
+  double mass = 0;       ///< Least apparent mass at the tip, kg. Passivity: must be > 0.
+  double allowance = 0;  ///< Energy that may go out before the controller acts, J. Must be >= 0.
+  /// Most energy that is kept to one's credit, J; passivity: must be > 0. Without an end to it an
+  /// hour of rubbing would pay for a minute of trouble.
+  double reservoir = 0;
+  /// Debt at which the controller damps as hard as it may, J; below, in proportion. 0: at once.
+  /// Without it small debts of slow hands are paid in jolts (2 N against 1 N of touch were seen).
+  double onset = 0;
+  double slope = 0;     ///< c1 of the bound, N/m. Bounding: must be > 0; 2 b / T makes it passive.
+  int delay_ticks = 0;  ///< Ticks from sampling to force beyond the hold, 0 to kDelayMost.
+  static constexpr int kDelayMost = 15;
+};
+
+/// Says what happened at the motors since the tick before; the device books it.
+struct EnergyFlow {
+  double work = 0;  ///< Done on the hand by what was truly sent, after all clamps and rounding, J.
+  Eigen::Vector3d move_W{0, 0, 0};    ///< Way of the tip, m.
+  Eigen::Vector3d f_sent_W{0, 0, 0};  ///< What was sent in the tick before, N.
+};
+
+/// Books the energy that the arm took from the hand and finds the damping that gets back what went
+/// out too much [STABILITY 1.6, Hannaford and Ryu; derived again there].
+///
+/// In three dimensions power is f . v: one account for all directions, since a hand is hurt by the
+/// sum. Damping acts against the velocity, where a given force takes most energy.
+/// All functions are Real-time: safe.
+class PassivityObserver {
+ public:
+  explicit PassivityObserver(const EnergyGuardSettings& settings) noexcept : settings_(settings) {}
+
+  /// Forgets the past.
+  void restart() noexcept { energy_ = 0; }
+
+  /// Books `work` done on the hand, J.
+  void book(double work) noexcept;
+
+  /// Finds the damping for the tip's velocity (m/s): -alpha v, N, with alpha the least that pays
+  /// the debt within a tick of `dt` (s), and never above m / (T (1 + 2 delay)): a damper on a mass
+  /// swings up by itself beyond m / T, earlier when late. Up to the debt `onset` that end rises in
+  /// proportion.
+  Eigen::Vector3d damping(const Eigen::Vector3d& v_WT, double dt) const noexcept;
+
+  /// Tells the energy on the account, J; below 0 the arm gave more than it took.
+  double energy() const noexcept { return energy_; }
+
+ private:
+  EnergyGuardSettings settings_;
+  double energy_ = 0;  // J
+};
+
+/// Finds how long a force may be so that storage |f|^2 / (2 c1) and the arm's friction pay for all
+/// that is given: |f_last - c1 move| [STABILITY 1.6, Kim and Ryu; the slope form in 3-D].
+///
+/// Why: a held force f over a way s takes -f . s from the hand, and viscous friction b takes at
+/// least b |s|^2 / T more. The sum covers the change of |f|^2 / (2 c1) if |f'|^2 <= |f|^2 - 2 c1
+/// f.s
+/// + 2 c1 b |s|^2 / T, which is |f - c1 s|^2 when c1 = 2 b / T. Falling below is always allowed.
+/// Real-time: safe.
+double bounded_force(const EnergyFlow& flow, double slope) noexcept;
+
+}  // namespace thimble::driver

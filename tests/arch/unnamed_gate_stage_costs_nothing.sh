@@ -1,0 +1,37 @@
+#!/usr/bin/env bash
+# Shows that an energy stage which no file names costs a device nothing: no function of it is ever
+# called; the one test of a tick (plain_ in device.h) stands in place of two that were there before.
+#   unnamed_gate_stage_costs_nothing.sh GATE_TICKS
+set -euo pipefail
+program=$1
+command -v valgrind >/dev/null || {
+  echo "NOTE: valgrind is not installed; nothing was counted (Debian: valgrind)."
+  exit 0
+}
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+stages='pass_guarded|write_guarded|write_otherwise|PassivityObserver|bounded_force'
+
+# instructions STAGE TICKS: all that the run executes; the functions that it called are in STAGE.out.
+instructions() {
+  valgrind --tool=callgrind --callgrind-out-file="$folder/$1.out" "$program" "$1" "$2" 2>&1 >/dev/null |
+    sed -n 's/.*Collected : //p'
+}
+
+bad=0
+for stage in none passivity bounding; do
+  one=$(instructions "$stage" 1000)
+  three=$(instructions "$stage" 3000)
+  echo "$stage: $(((three - one) / 2000)) instructions per tick of the device"
+  # Before the device is active it sends zero the other way; after that nobody calls it.
+  calls=$(grep -E "^fn=.*($stages)" "$folder/$stage.out" | grep -vc 'write_otherwise' || true)
+  if [ "$stage" = none ] && [ "$calls" -ne 0 ]; then
+    echo "  a stage that was not named ran"
+    bad=1
+  fi
+  if [ "$stage" != none ] && [ "$calls" -eq 0 ]; then
+    echo "  the stage did not run: this test could not fail"
+    bad=1
+  fi
+done
+exit $bad

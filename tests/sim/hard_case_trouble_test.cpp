@@ -1,0 +1,401 @@
+// Hard cases 9, 33 and 37 to 39 of [STABILITY 7]: loops that stall, surfaces that snap, poses that
+// cannot, encoders and reports that lie. Through arm, board, wire, device and gate but for 33.
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <numbers>
+#include <vector>
+
+#include "support/hard_case.h"
+#include "support/random.h"
+#include "support/vintage_arm.h"
+#include "support/wall_rig.h"
+#include "thimble/device_sim/sim_transport.h"
+#include "thimble/driver/clock.h"
+#include "thimble/driver/servo_loop.h"
+#include "thimble/render/body/snap_base.h"
+
+namespace thimble {
+namespace {
+
+using driver::Fault;
+using driver::hfab::InputReport;
+using Eigen::Vector3d;
+using support::record_hard_case;
+
+/// Changes what the arm sends: `tamper` gets the number of the read and the report; an empty answer
+/// is a packet of 7 bytes.
+class TamperedWire final : public driver::Transport {
+ public:
+  using Tamper = std::function<std::optional<InputReport>(int, InputReport)>;
+  TamperedWire(driver::Clock& clock, device_sim::SimulatedArm& arm, Tamper tamper)
+      : wire_(clock, arm), tamper_(std::move(tamper)) {}
+
+  driver::TransportRead read_latest(std::span<std::byte> buffer,
+                                    std::int64_t deadline_ns) noexcept override {
+    driver::TransportRead read = wire_.read_latest(buffer, deadline_ns);
+    const auto report = driver::hfab::decode_input(buffer.first(read.size));
+    if (!report) return read;
+    const auto changed = tamper_(reads_++, *report);
+    if (!changed) {
+      read.size = 7;
+      return read;
+    }
+    const auto bytes = driver::hfab::encode_input(*changed);
+    std::copy(bytes.begin(), bytes.end(), buffer.begin());
+    return read;
+  }
+  driver::TransportStatus write(std::span<const std::byte> report) noexcept override {
+    return wire_.write(report);
+  }
+
+ private:
+  device_sim::SimTransport wire_;
+  Tamper tamper_;
+  int reads_ = 0;
+};
+
+/// Presses on a wall at x = 0 of the vintage arm and keeps what was sent.
+struct Press {
+  double stiffness = 800;      // N/m
+  double encoder_step = 3e-5;  // m at the tip along x
+  double speed = 0.2;          // of the hand, m/s
+  double press = 2;            // N
+  TamperedWire::Tamper tamper = [](int, const InputReport& report) { return report; };
+  std::function<void(std::uint64_t, driver::VirtualClock&, driver::ForceCommand&)> disturb =
+      [](std::uint64_t, driver::VirtualClock&, driver::ForceCommand&) {};
+
+  struct Row {
+    std::int64_t time_ns = 0;
+    double wanted = 0, sent = 0, given = 0;  // N, N, J
+  };
+  std::vector<Row> rows;
+  Fault fault = Fault::kNone;
+  driver::WireCounters wire;
+  double current_at_end = 0;  // A
+
+  static constexpr double kEntry = 0.5;  // s; the hand begins to go in
+
+  void run(std::uint64_t ticks) {
+    auto model = support::vintage_model();
+    // At home the lower link hangs: its joint alone moves the tip along x, by the link's length.
+    model.encoders[2].counts_per_motor_turn =
+        2 * std::numbers::pi * model.geometry.length_c / (model.drives[2].ratio * encoder_step);
+    const driver::DeviceSettings settings = support::vintage_settings();
+    const double deep = press / 300;
+    const Vector3d home = -settings.p_WB;
+    const Vector3d away = home + Vector3d(0.004, 0, 0), inside = home - Vector3d(deep, 0, 0);
+    device_sim::SimulatedArmSettings arm_settings;
+    arm_settings.plant = {.mass = 0.075, .viscous = 0.005, .coulomb = 0.04};
+    arm_settings.hand = {.mass = 0.025, .stiffness = 300, .damping = 3};
+    arm_settings.motors.current_max = 6;
+    arm_settings.wire.delay_out_ns = 1'000'000;
+    device_sim::SimulatedArm arm(
+        model, arm_settings,
+        device_sim::HandPath(
+            {{0, away}, {kEntry, away}, {kEntry + (0.004 + deep) / speed, inside}}));
+    driver::VirtualClock clock;
+    auto opened = driver::Device::open(std::make_unique<TamperedWire>(clock, arm, tamper),
+                                       std::make_unique<driver::hfab::HfabArm>(model), settings,
+                                       clock.now_ns());
+    if (!opened) throw std::runtime_error(opened.error().message);
+    driver::Device& device = **opened;
+    if (!device.activate()) throw std::runtime_error("not active");
+    auto law = [&](const driver::DeviceState& state) noexcept {
+      driver::ForceCommand command;
+      command.f_T_W.x() = std::max(0.0, -stiffness * state.p_WT.x());
+      disturb(state.tick, clock, command);
+      return command;
+    };
+    double given = 0, x = arm.plant().p_BT().x();
+    auto sink = [&](const driver::TickRecord& record) noexcept {
+      const double now = arm.plant().p_BT().x();
+      given += arm.plant().f_T_B().x() * (now - x);
+      x = now;
+      rows.push_back({.time_ns = record.time_ns,
+                      .wanted = record.f_wanted_W[0],
+                      .sent = record.f_sent_W[0],
+                      .given = given});
+    };
+    const std::atomic<bool> stop{false};
+    run_servo(device, clock, driver::ForceLaw(law), driver::TickSink(sink),
+              {.period_ns = 1'000'000, .ticks = ticks, .outlive_faults = true}, stop);
+    fault = device.fault();
+    wire = device.wire_counters();
+    clock.sleep_until_ns(clock.now_ns() + 2'000'000);
+    arm.advance_to(clock.now_ns());
+    current_at_end = arm.firmware().currents().cwiseAbs().maxCoeff();
+  }
+};
+
+TEST(HardCase09, StalledLoopInContactIsBackSoonAndGivesNoEnergy) {
+  double slowest = 0, most = 0, given = 0, first = 0;
+  for (const int at : {520, 530, 540, 560, 600}) {
+    Press press;
+    press.disturb = [at](std::uint64_t tick, driver::VirtualClock& clock, driver::ForceCommand&) {
+      if (static_cast<int>(tick) == at) clock.sleep_until_ns(clock.now_ns() + 30'000'000);
+    };
+    press.run(1000);
+    EXPECT_EQ(press.fault, Fault::kNone);
+    const auto stall = static_cast<std::size_t>(at) + 1;
+    EXPECT_GT(press.rows[stall].time_ns - press.rows[stall - 1].time_ns, 29'000'000);
+    first = std::max(first, press.rows[stall].sent);  // the tick that notices sends nothing
+    std::size_t back = stall;
+    while (back + 1 < press.rows.size() &&
+           press.rows[back].sent < 0.999 * std::min(5.0, press.rows[back].wanted)) {
+      ++back;
+    }
+    slowest = std::max(
+        slowest, 1e-6 * static_cast<double>(press.rows[back].time_ns - press.rows[stall].time_ns));
+    for (const Press::Row& row : press.rows) {
+      most = std::max(most, row.sent);
+      given = std::max(given, row.given);
+    }
+  }
+  EXPECT_EQ(first, 0);
+  EXPECT_LE(most, 5 + 1e-9);
+  EXPECT_LT(slowest, 50);
+  EXPECT_LE(given, 0.0);
+  record_hard_case(9, "30 ms gap in contact at 0.2 m/s: force of the tick that notices", "== force",
+                   first, 0, "N");
+  record_hard_case(9, "the same: until all of the wanted force is back", "< time", slowest, 50,
+                   "ms");
+  record_hard_case(9, "the same", "<= largest force", most, 5, "N");
+  record_hard_case(9, "the same: energy out beyond energy in", "<= energy", 1e3 * given, 0, "mJ");
+}
+
+TEST(HardCase09, LongerGapThanTheWatchdogIsAFaultWithNoForce) {
+  Press press;
+  press.disturb = [](std::uint64_t tick, driver::VirtualClock& clock, driver::ForceCommand&) {
+    if (tick == 600) clock.sleep_until_ns(clock.now_ns() + 120'000'000);
+  };
+  press.run(900);
+  EXPECT_EQ(press.fault, Fault::kLoopStalled);
+  EXPECT_EQ(press.current_at_end, 0);
+}
+
+TEST(HardCase33, SnapUnderTheControllerDoesNotChatterAndItsAccountCloses) {
+  // A vertex on a snapping base point, pressed in by a hand through spring and gate.
+  constexpr double kContact = 1500;  // N/m
+  support::Wall wall;
+  wall.plant.coulomb = 0.04;
+  wall.hand.mass = 0.025;
+  wall.hand.stiffness = 300;
+  wall.hand.damping = 3;
+  wall.stiffness = 0;
+  support::WallRig rig(wall);
+  driver::SafetyGate gate(
+      {.force_max = 8.5,
+       .speed_max = 50,
+       .rise_max = 1e6,
+       .soft_start = 1e-9,
+       .stall_ns = 20'000'000,
+       .watchdog_ns = 100'000'000},
+      {.stage = driver::EnergyStage::kPassivity, .mass = 0.075, .allowance = 0, .reservoir = 1});
+  render::SnapBase base({.half_span = 20e-3, .rise = 6e-3, .bar_stiffness = 5000}, {-1, 0, 0});
+  double sent = 0, spring = 0;
+  std::int64_t snapped_at = -1;
+  for (int k = 0; k < 8000; ++k) {
+    // In by 24 mm within 6 s, and there for two.
+    rig.anchor = -std::min(k * 4e-6, 24e-3);
+    rig.tick([&](double, double x, double v, double dt) {
+      const double in = std::max(0.0, -x);
+      base.pull_by_spring(in, kContact, 1e-3);
+      spring = std::max(0.0, kContact * (in - base.way()));
+      const driver::EnergyFlow flow{
+          .work = sent * rig.way(), .move_W = {rig.way(), 0, 0}, .f_sent_W = {sent, 0, 0}};
+      sent = gate.pass_guarded({spring, 0, 0}, {v, 0, 0}, dt, flow).f_T_W().x();
+      return sent;
+    });
+    if (base.snaps() > 0 && snapped_at < 0) snapped_at = k;
+  }
+  ASSERT_GE(snapped_at, 0);
+  EXPECT_EQ(base.snaps(), 1);
+  // What the hand gave is on the account; of that the surface keeps and released its part, and the
+  // controller took the rest.
+  const double taken = -rig.work();
+  const double booked = gate.energy();
+  EXPECT_GT(taken, 4e-3);
+  // The last tick is not booked yet; it rests then.
+  EXPECT_NEAR(booked / taken, 1, 0.01);
+  const double kept = base.energy() + base.released() + spring * spring / (2 * kContact);
+  EXPECT_NEAR(kept / taken, 1, 0.05);
+  record_hard_case(33, "snap under passivity control and hand", "== snaps",
+                   static_cast<double>(base.snaps()), 1, "1");
+  record_hard_case(33, "the same: energy booked against energy taken", "<= relative error",
+                   std::abs(booked / taken - 1), 0.01, "1");
+}
+
+TEST(HardCase37, SingularPosesAndTheEdgeOfReachGiveFiniteClampedCurrents) {
+  const auto model = support::vintage_model();
+  driver::SafetyGate gate({.force_max = 5,
+                           .speed_max = 50,
+                           .rise_max = 1e9,
+                           .soft_start = 1e-9,
+                           .stall_ns = 20'000'000,
+                           .watchdog_ns = 100'000'000});
+  gate.pass({0, 0, 0}, {0, 0, 0}, 1e-3);
+  support::Random random(37);
+  double most = 0, worst_angle = 0, lost = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    // Folded (B + C = 0), stretched (B + C = pi) and on the yaw axis, exactly and nearly.
+    const double off = i % 4 == 0 ? 0 : std::pow(10, random.uniform(-12, -1));
+    Vector3d q(random.uniform(-1, 1), random.uniform(0.1, 2.5), 0);
+    q[2] = (i % 3 == 0 ? 0 : std::numbers::pi) - q[1] + off;
+    if (i % 3 == 2) {  // the tip on the yaw axis
+      q[2] = std::asin(-model.geometry.length_b / model.geometry.length_c * std::sin(q[1])) + off;
+      if (!std::isfinite(q[2])) continue;
+    }
+    const Eigen::Matrix3d J = model.geometry.jacobian(q);
+    const Vector3d wish = random.uniform(0, 20) * random.direction();
+    const auto force = gate.pass(wish, {0, 0, 0}, 1e-3);
+    const driver::MotorCurrents currents(force, Eigen::Matrix3d::Identity(), J, model.drives);
+    ASSERT_TRUE(currents.amperes().allFinite());
+    most = std::max(most, currents.amperes().cwiseAbs().maxCoeff());
+    // What such torques make at the tip, in the directions in which it can move.
+    Vector3d tau;
+    for (int k = 0; k < 3; ++k) {
+      const auto& drive = model.drives[static_cast<std::size_t>(k)];
+      tau[k] = drive.sign * drive.ratio * drive.torque_constant * currents.amperes()[k];
+    }
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(J * J.transpose());
+    Vector3d made(0, 0, 0), asked(0, 0, 0);
+    for (int k = 0; k < 3; ++k) {
+      const double squared = solver.eigenvalues()[k];
+      if (!(squared > 1e-10)) continue;
+      const Vector3d u = solver.eigenvectors().col(k);
+      made += u * u.dot(J * tau) / squared;
+      asked += u * u.dot(force.f_T_W());
+    }
+    if (asked.norm() < 1e-3) continue;
+    const double cosine = std::clamp(made.dot(asked) / (made.norm() * asked.norm()), -1.0, 1.0);
+    worst_angle = std::max(worst_angle, std::acos(cosine));
+    lost = std::max(lost, (force.f_T_W() - asked).norm() / force.f_T_W().norm());
+  }
+  EXPECT_LE(most, 3 * (1 + 1e-12));
+  EXPECT_LE(worst_angle, 1e-6);
+  EXPECT_GT(lost, 0.9);  // the poses were singular
+  record_hard_case(37, "folded, stretched, on the yaw axis: motor current", "<= largest", most, 3,
+                   "A");
+  record_hard_case(37, "the same: error of direction where the tip can move", "<= largest angle",
+                   worst_angle, 1e-6, "rad");
+}
+
+/// Tells the largest change of the force from tick to tick from `from` on, N.
+double largest_step(const std::vector<Press::Row>& rows, std::size_t from) {
+  double most = 0;
+  for (std::size_t i = from; i < rows.size(); ++i) {
+    most = std::max(most, std::abs(rows[i].sent - rows[i - 1].sent));
+  }
+  return most;
+}
+
+TEST(HardCase38, GlitchesOfAnEncoderAreDroppedWithinATickAndMoveNoForce) {
+  constexpr double kAllowed = 0.2 * 5;  // N
+  double most = 0;
+  std::uint64_t dropped = 0;
+  for (const double step : {1e-6, 3e-6, 1e-5, 3e-5, 1e-4}) {
+    for (const int glitch : {-1000, 1000, -32768}) {  // the last: a counter that wraps
+      for (const std::size_t axis : {0u, 1u, 2u}) {
+        Press press;
+        press.encoder_step = step;
+        press.tamper = [glitch, axis](int read, InputReport report) {
+          if (read == 800) {
+            report.counts[axis] = static_cast<std::int16_t>(report.counts[axis] + glitch);
+          }
+          return report;
+        };
+        press.run(900);
+        EXPECT_EQ(press.fault, Fault::kNone) << step << " " << glitch << " " << axis;
+        EXPECT_LE(largest_step(press.rows, 700), kAllowed) << step << " " << glitch << " " << axis;
+        most = std::max(most, largest_step(press.rows, 700));
+        dropped = std::max(dropped, press.wire.jumped);
+      }
+    }
+  }
+  EXPECT_EQ(dropped, 1u);
+  record_hard_case(38, "steps of 1 to 100 um, one report off by 1000 counts or wrapped, any axis",
+                   "<= largest step of force", most, kAllowed, "N");
+  record_hard_case(38, "the same: reports dropped", "<= per glitch", static_cast<double>(dropped),
+                   1, "1");
+}
+
+TEST(HardCase38, EncoderThatStaysOffIsAFaultAndADeadAxisStaysWithinItsForce) {
+  Press off;
+  off.tamper = [](int read, InputReport report) {
+    if (read >= 800) report.counts[2] = static_cast<std::int16_t>(report.counts[2] + 1000);
+    return report;
+  };
+  off.run(900);
+  EXPECT_EQ(off.fault, Fault::kOverSpeed);
+  EXPECT_EQ(off.rows[802].sent, 0);
+  EXPECT_EQ(off.current_at_end, 0);
+  double most = 0, step = 0;
+  for (const std::size_t axis : {0u, 1u, 2u}) {
+    Press dead;
+    std::int16_t last = 0;
+    dead.tamper = [axis, &last](int read, InputReport report) {
+      if (read < 600) {
+        last = report.counts[axis];
+      } else {
+        report.counts[axis] = last;
+      }
+      return report;
+    };
+    dead.run(1200);
+    for (const Press::Row& row : dead.rows) most = std::max(most, std::abs(row.sent));
+    step = std::max(step, largest_step(dead.rows, 600));
+  }
+  EXPECT_LE(most, 5 + 1e-9);
+  EXPECT_LE(step, 1);
+  record_hard_case(38, "dead axis in contact", "<= largest step of force", step, 1, "N");
+}
+
+TEST(HardCase39, ForceThatIsNoNumberAndPacketsThatAreTornEndInNoForce) {
+  double after = 0;
+  for (const double bad : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
+    Press press;
+    press.disturb = [bad](std::uint64_t tick, driver::VirtualClock&,
+                          driver::ForceCommand& command) {
+      if (tick == 800) command.f_T_W.y() = bad;
+    };
+    press.run(900);
+    EXPECT_EQ(press.fault, Fault::kForceNotFinite);
+    for (std::size_t i = 800; i < press.rows.size(); ++i) {
+      after = std::max(after, std::abs(press.rows[i].sent));
+    }
+    EXPECT_EQ(press.current_at_end, 0);
+  }
+  // The smallest numbers are numbers.
+  Press tiny;
+  tiny.disturb = [](std::uint64_t tick, driver::VirtualClock&, driver::ForceCommand& command) {
+    if (tick == 800) command.f_T_W = Vector3d(5e-324, -5e-324, 1e-310);
+  };
+  tiny.run(900);
+  EXPECT_EQ(tiny.fault, Fault::kNone);
+  EXPECT_LT(std::abs(tiny.rows[800].sent), 1e-300);
+  // One torn packet is passed over; an arm that sends nothing else is silent.
+  Press torn;
+  torn.tamper = [](int read, const InputReport& report) -> std::optional<InputReport> {
+    if (read == 700 || read >= 800) return {};
+    return report;
+  };
+  torn.run(900);
+  EXPECT_EQ(torn.fault, Fault::kNoReports);
+  EXPECT_GT(torn.rows[705].sent, 1);
+  EXPECT_EQ(torn.rows[825].sent, 0);
+  EXPECT_EQ(torn.current_at_end, 0);
+  EXPECT_EQ(after, 0);
+  record_hard_case(39, "NaN and infinity from the force law: force from that tick on", "== force",
+                   after, 0, "N");
+}
+
+}  // namespace
+}  // namespace thimble

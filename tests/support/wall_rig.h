@@ -1,0 +1,111 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+
+#include "thimble/device_sim/axis_dynamics.h"
+
+namespace thimble::support {
+
+/// Is a sampled wall in one dimension: the plant's exact map, an encoder, a late and held force.
+/// Free space is x > 0, and the wall's force is positive.
+struct Wall {
+  device_sim::PlantSettings plant{.mass = 0.075, .viscous = 0.005, .coulomb = 0};
+  device_sim::HandSettings hand{};
+  double stiffness = 1000;     ///< N/m
+  double damping = 0;          ///< N s/m; of the wall, never pulls
+  double encoder_step = 0;     ///< m; 0: none
+  double velocity_corner = 0;  ///< Pole of the velocity estimate, Hz; 0: none.
+  std::int64_t period_ns = 1'000'000;
+  std::int64_t delay_ns = 0;
+  bool two_sided = false;  ///< Pulls on its far side as well, and sticks to the tip.
+  double pull = 0;         ///< Constant force of the hand, N.
+};
+
+/// Runs one wall tick by tick. A Gate is called as `double gate(wish, x_read, v, dt)` and answers
+/// with the force that goes to the motor.
+class WallRig {
+ public:
+  explicit WallRig(const Wall& wall)
+      : wall_(wall),
+        axis_(wall.plant, wall.hand),
+        whole_(static_cast<std::size_t>(wall.delay_ns / wall.period_ns)),
+        rest_ns_(wall.delay_ns % wall.period_ns),
+        period_(static_cast<double>(wall.period_ns) * 1e-9) {
+    if (wall.velocity_corner > 0) {
+      gain_ = -std::expm1(-2 * std::numbers::pi * wall.velocity_corner * period_);
+    }
+  }
+
+  device_sim::AxisState state;
+  double anchor = 0;  ///< Where the hand wants to be, m.
+
+  /// Lets time pass without a tick.
+  void drift(std::int64_t ns) { move(0, ns); }
+
+  /// Reads, asks the wall, lets a period pass. Returns the force that was sent.
+  double tick() {
+    return tick([](double wish, double, double, double) { return wish; });
+  }
+
+  template <class Gate>
+  double tick(Gate gate) {
+    const double x = read(state.x);
+    if (begun_) {
+      velocity_ += gain_ * ((x - x_read_) / period_ - velocity_);
+      x_before_ = x_read_;
+    } else {
+      x_before_ = x;
+    }
+    x_read_ = x;
+    double wish = 0;
+    if (wall_.two_sided) {
+      wish = -wall_.stiffness * x - wall_.damping * velocity_;
+    } else if (x < 0) {
+      wish = std::max(0.0, -wall_.stiffness * x - wall_.damping * velocity_);
+    }
+    const double sent = gate(wish, x, velocity_, begun_ ? period_ : 0);
+    begun_ = true;
+    forces_[ticks_ % forces_.size()] = sent;
+    const double now = late(whole_), before = late(whole_ + 1);
+    ++ticks_;
+    move(before, rest_ns_);
+    move(now, wall_.period_ns - rest_ns_);
+    return sent;
+  }
+
+  /// Tells the way since the tick before, as read.
+  double way() const { return x_read_ - x_before_; }
+  /// Tells the work that the motor truly did on the tip, J.
+  double work() const { return work_; }
+  double velocity() const { return velocity_; }
+
+ private:
+  double read(double x) const {
+    return wall_.encoder_step > 0 ? wall_.encoder_step * std::round(x / wall_.encoder_step) : x;
+  }
+  double late(std::size_t ticks) const {
+    return ticks > ticks_ ? 0 : forces_[(ticks_ - ticks) % forces_.size()];
+  }
+  void move(double force, std::int64_t ns) {
+    const double before = state.x;
+    axis_.step(state, {.force = force + wall_.pull, .anchor = anchor}, ns);
+    work_ += force * (state.x - before);
+  }
+
+  Wall wall_;
+  device_sim::AxisDynamics axis_;
+  std::size_t whole_;
+  std::int64_t rest_ns_;
+  double period_;
+  double gain_ = 1;
+  std::array<double, 32> forces_{};
+  std::size_t ticks_ = 0;
+  double x_read_ = 0, x_before_ = 0, velocity_ = 0, work_ = 0;
+  bool begun_ = false;
+};
+
+}  // namespace thimble::support
