@@ -1,0 +1,120 @@
+#include "stability_laws.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+// The figures are those of [STABILITY 1 and 2.3], which independent simulations have confirmed.
+
+namespace thimble::app {
+namespace {
+
+constexpr double kMass = 0.075, kViscous = 0.005, kCoulomb = 0.04, kStep = 3e-5;
+
+TEST(StabilityLaws, SumUpTheLatencyBudget) {
+  EXPECT_DOUBLE_EQ(latency_of({.period = 0.001}), 0.0005);
+  EXPECT_DOUBLE_EQ(latency_of({.period = 0.001, .delay = 0.002, .amplifier_lag = 0.0003}), 0.0028);
+  // Exponential periods have a spread as large as their mean: half the stiffness.
+  EXPECT_DOUBLE_EQ(latency_of({.period = 0.001, .period_spread = 0.001}), 0.001);
+  // Of 1000 ticks, 10 take 10 ms: 396 -> 221 N/m, 44 % lost (b = 0.2 gives the 396).
+  const double mean = 0.99e-3 + 0.01 * 10e-3, square = 0.99e-6 + 0.01 * 100e-6;
+  const double spread = std::sqrt(square - mean * mean);
+  const double jittered = latency_of({.period = mean, .period_spread = spread});
+  EXPECT_NEAR(0.0005 / jittered, 221.0 / 396, 0.03);
+}
+
+TEST(StabilityLaws, GiveAFilterTheLagThatItsPoleHas) {
+  EXPECT_EQ(low_pass_lag(0, 0.001), 0);
+  const double a = 1 - std::exp(-2 * M_PI * 100 * 0.001);
+  EXPECT_NEAR(low_pass_lag(100, 0.001), 0.001 * (1 - a) / a, 1e-12);
+  // A slow pole lags by its time constant.
+  EXPECT_NEAR(low_pass_lag(1, 1e-5), 1 / (2 * M_PI), 1e-5);
+}
+
+TEST(StabilityLaws, AskForTheFrictionThatColgateAndSchenkelDo) {
+  EXPECT_NEAR(passive_damping(1000, 0, 0.001), 0.5, 1e-9);
+  EXPECT_NEAR(passive_damping(1000, -0.3, 0.001), 0.8, 1e-9);
+  EXPECT_NEAR(passive_damping(1000, 0.3, 0.001), 0.8, 1e-9);
+  EXPECT_NEAR(passive_damping(1000, 0, 0.001, 0.001), 1.5, 1e-9);
+  EXPECT_NEAR(passive_damping(1000, 0, 0.001, 0.002), 2.5, 1e-9);
+  EXPECT_NEAR(passive_damping(1000, 0.5, 0.001, 0.001), 1.25, 1e-6);  // the sum would say 2
+  EXPECT_NEAR(passive_damping_filtered(1000, 0.6, 0.001, 0.001), 0.7, 1e-12);
+  EXPECT_NEAR(passive_damping_filtered(1000, -0.6, 0.001, 0.001), 1.1, 1e-12);
+}
+
+TEST(StabilityLaws, FindTheStiffnessThatAFrictionMakesPassive) {
+  for (const double delay : {0.0, 0.0005, 0.001, 0.003}) {
+    for (const double damping : {-0.2, 0.0, 0.4}) {
+      const double stiffness = passive_stiffness(2, damping, 0.001, delay);
+      EXPECT_NEAR(passive_damping(stiffness, damping, 0.001, delay), 2, 1e-9) << delay << damping;
+    }
+  }
+  EXPECT_EQ(passive_stiffness(0.1, 0.2, 0.001), 0);
+  EXPECT_DOUBLE_EQ(passive_stiffness_quantised(kViscous, kCoulomb, kStep, 0.001), 10);
+  EXPECT_NEAR(passive_stiffness_quantised(5, kCoulomb, kStep, 0.001), 2667, 0.5);
+  EXPECT_DOUBLE_EQ(passive_stiffness_quantised(5, kCoulomb, 0, 0.001), 10'000);
+}
+
+TEST(StabilityLaws, PlaceAWallInTheMapOfDiolaiti) {
+  using enum WallRegion;
+  for (const double d : {0.0, 1.0}) {
+    EXPECT_EQ(region_of({0.52 + d, 0.52, d}), kComesToRest);
+    EXPECT_EQ(region_of({0.52 + d, 0.48, d}), kFlickers);
+    EXPECT_EQ(region_of({0.48 + d, 0.52, d}), kHoldsSmallSwings);
+    EXPECT_EQ(region_of({0.48 + d, 0.48, d}), kGrows);
+  }
+  const WallPlace place = place_of_wall(1000, 0.5, 0.03, kStep, 0.001, 0.002);
+  EXPECT_DOUBLE_EQ(place.beta, 0.5);
+  EXPECT_DOUBLE_EQ(place.sigma, 1);
+  EXPECT_DOUBLE_EQ(place.delay_periods, 2);
+  EXPECT_EQ(place_of_wall(1000, 0.5, 0.03, 0, 0.001).sigma,
+            std::numeric_limits<double>::infinity());
+  EXPECT_NEAR(swing_speed_limit(1000, kViscous, kCoulomb, 0.0005), 0.103, 0.0005);
+  EXPECT_EQ(swing_speed_limit(9, kViscous, kCoulomb, 0.0005),
+            std::numeric_limits<double>::infinity());
+}
+
+TEST(StabilityLaws, TellTheRestitutionOfAnImpact) {
+  EXPECT_NEAR(restitution(1000, kViscous, kMass, 0.0005), 1.0939, 5e-5);
+  EXPECT_NEAR(restitution(1000, kViscous, kMass, 0.0015), 1.3115, 5e-5);
+  EXPECT_NEAR(restitution(3000, kViscous, kMass, 0.0005), 1.170, 6e-4);
+  EXPECT_NEAR(restitution(1000, kViscous, kMass, 0.000125), 1.0220, 5e-5);
+  EXPECT_NEAR(restitution(1000, kViscous, kMass, 0.0000625), 1.0105, 5e-5);
+  EXPECT_NEAR(restitution(1000, 2 + kViscous, kMass, 0.0005), 0.761, 5e-4);
+}
+
+TEST(StabilityLaws, TellHowFarABristleMustGive) {
+  // 0.5 N, hand of 3 N s/m: the law without its factor is 0.083 mm without delay, 0.582 at 3 ms.
+  EXPECT_NEAR(bristle_length(0.5, 0.0005, 3.005, 0, 0), 1.5 * 0.083e-3, 0.5e-6);
+  EXPECT_NEAR(bristle_length(0.5, 0.0035, 3.005, 0, 0), 1.5 * 0.582e-3, 1e-6);
+  EXPECT_NEAR(bristle_length(0.5, 0.0005, 3.005, kStep, kCoulomb), 0.1875e-3, 1e-9);
+  EXPECT_EQ(bristle_length(0.5, 0.0005, 3, kStep, 0), std::numeric_limits<double>::infinity());
+}
+
+TEST(SampledWall, HasTheEdgeOfTheLatencyBudgetWhereItsLawHolds) {
+  for (const double period : {0.004, 0.001, 0.000125}) {
+    for (const double delay : {0.0, 0.5, 1.0, 2.0}) {
+      const SampledWall wall{
+          .mass = kMass, .viscous = 0.2, .period = period, .delay = delay * period};
+      const double law = stiffness_limit(0.2, latency_of({.period = period, .delay = wall.delay}));
+      EXPECT_NEAR(stiffness_edge(wall) / law, 1, 0.03) << period << " " << delay;
+    }
+  }
+  const SampledWall lagging{.mass = kMass, .viscous = 0.2, .period = 0.001, .amplifier_lag = 0.001};
+  EXPECT_NEAR(stiffness_edge(lagging) / stiffness_limit(0.2, 0.0015), 1, 0.03);
+}
+
+TEST(SampledWall, LosesWhatALowPassOnItsVelocityCosts) {
+  // B = 2 N s/m, simulated [STABILITY 1.1]; the exact map agrees within 0.3 %.
+  SampledWall wall{.mass = kMass, .viscous = kViscous, .damping = 2, .period = 0.001};
+  for (const auto& [corner, edge] :
+       {std::pair(0.0, 3902.0), {100.0, 3412.0}, {50.0, 2692.0}, {30.0, 2016.0}}) {
+    wall.velocity_corner = corner;
+    EXPECT_NEAR(stiffness_edge(wall) / edge, 1, 0.003) << corner;
+  }
+}
+
+}  // namespace
+}  // namespace thimble::app
