@@ -16,6 +16,7 @@
 #include "lost_contacts.h"
 #include "meshes.h"
 #include "pictures.h"
+#include "quality.h"
 #include "real_arm.h"
 #include "recording/write_black_box.h"
 #include "replug_watch.h"
@@ -45,6 +46,7 @@ struct RunOptions {
   std::string hand = "path";
   std::string name;
   bool view = false, no_view = false;
+  std::string quality = "normal";
   bool yes = false;
 
   bool led() const { return hand == "mouse"; }
@@ -216,6 +218,11 @@ int run_scene(const RunOptions& options) {
   session_options.real_arm = real_arm;
   session_options.firmware = options.firmware;
   session_options.record = options.record;
+  session_options.adjust = [&](Scene& scene) {
+    for (const std::string& choice : apply_quality(quality_named(options.quality), scene)) {
+      std::printf("%s: %s\n", options.quality.c_str(), choice.c_str());
+    }
+  };
   if (real_arm) session_options.clock = ClockKind::kWall;
   const bool real_time = session_options.clock == ClockKind::kWall;
   session_options.share_out =
@@ -336,6 +343,12 @@ void add_run_command(CLI::App& app, int& exit_code) {
   command->add_flag("--no-view", options->no_view, "Show the run to nobody")->excludes(view);
   command->add_option("--name", options->name,
                       "Name of the run for `thimble view NAME`; the scene's if absent");
+  command
+      ->add_option("--quality", options->quality,
+                   "draft, normal (what the scene says) or reference: points on the diagrams of "
+                   "`thimble study accuracy`; each choice is printed")
+      ->check(CLI::IsMember({"draft", "normal", "reference"}))
+      ->capture_default_str();
   command->add_option("--report", options->report, "Folder for report.json and pictures");
   command->add_option(
       "--record", options->record,

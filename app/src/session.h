@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -47,6 +48,7 @@ struct SessionOptions {
   bool hand_by_mouse =
       false;               ///< a viewer leads the simulated hand; the run ends when it is asked to
   std::string share_name;  ///< under which name; empty: the scene's, with a number if it is taken
+  std::function<void(Scene&)> adjust = {};   ///< changes the scene before anything is built of it
 };
 
 /// Is one scene, loaded and joined: clock, simulated arm, wire, device, touch, and who keeps the
