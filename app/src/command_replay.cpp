@@ -114,7 +114,10 @@ int replay_probe(const ReplayOptions& options) {
   form.metres = options.length == "mm" ? 1e-3 : 1;
   form.seconds = options.time == "ms" ? 1e-3 : 1;
   // In the frame of a mesh file its unit is that of the file.
-  if (!options.frame.empty() && options.frame != "world") form.metres = 1;
+  if (!options.frame.empty() && options.frame != "world") {
+    form.metres = 1;
+    form.farthest = 1e9;
+  }
   auto trajectory = read_trajectory(options.file, form);
   if (!trajectory) return complain(trajectory.error(), kExitBadInput);
   const auto scene = read_scene(options.scene, mesh_folder(), {});

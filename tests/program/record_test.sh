@@ -31,7 +31,7 @@ expect 0 'Force error .* N \(rms\), .* direction within' "$thimble" replay probe
 expect 0 '2001 ticks of rubber' "$thimble" export probe.h5 --csv probe.csv
 expect 0 'along the trajectory' "$thimble" replay probe.traj --scene "$scene" --frame elephant
 expect 2 'needs --scene' "$thimble" replay probe.traj
-expect 2 'line 2: is farther than 10 m' "$thimble" replay probe.traj --scene "$rubber"
+expect 2 'line 2: is too far away' "$thimble" replay probe.traj --scene "$rubber"
 expect 2 'object of the scene, found "mouse"' "$thimble" replay probe.traj --scene "$rubber" --frame mouse
 
 # The disk says no.

@@ -13,8 +13,7 @@ namespace thimble::app {
 namespace {
 
 constexpr std::array<std::string_view, 7> kNames{"t", "x", "y", "z", "fx", "fy", "fz"};
-// Bounds catch a file in other units than was said.
-constexpr double kFarthest = 10;    // m
+// Catches a file in other units than was said.
 constexpr double kStrongest = 1e4;  // N
 
 /// Finds which of kNames each column is; -1: left out.
@@ -92,9 +91,9 @@ driver::Result<std::vector<TrajectoryPoint>> read_trajectory(const std::filesyst
                                 .p = form.metres * Eigen::Vector3d(values[1], values[2], values[3]),
                                 .f = {values[4], values[5], values[6]}};
     // Written so that NaN is refused.
-    if (!(point.p.cwiseAbs().maxCoeff() < kFarthest && point.f.norm() < kStrongest &&
+    if (!(point.p.cwiseAbs().maxCoeff() < form.farthest && point.f.norm() < kStrongest &&
           std::isfinite(point.time))) {
-      return wrong("is farther than 10 m or stronger than 10 kN; --length says the unit.");
+      return wrong("is too far away (10 m) or too strong (10 kN); --length says the unit.");
     }
     if (!trajectory.empty() && point.time < trajectory.back().time) {
       return wrong("goes back in time.");

@@ -22,6 +22,8 @@ struct TrajectoryForm {
   double metres = 1;                ///< Metres per unit of length.
   double seconds = 1;               ///< Seconds per unit of time.
 
+  double farthest = 10;  ///< m; what is beyond is taken for a wrong unit.
+
   /// Tells whether forces are among the columns.
   bool has_forces() const { return columns.find("fx") != std::string::npos; }
 };
