@@ -39,8 +39,8 @@ if command -v Xvfb >/dev/null; then
     sleep 0.1
   done
   expect 0 '' "$thimble" view shot_test_$$ --for 2 --picture window.png
-  # A window with nothing in it would take a few kB.
-  expect 0 '^[0-9]{5,}$' stat -c %s window.png
+  # A window with nothing in it takes 11 kB.
+  expect 0 '^[0-9]{6,}$' stat -c %s window.png
   kill -INT $run
   wait $run
   expect 0 '' "$thimble" view shot_test_$$ --for 1 --picture none.png  # waits for a run
