@@ -7,8 +7,7 @@ app/setup.sh release thimble
 shot() { build/release/app/thimble shot "app/scenes/$1.yaml" "${@:2}"; }
 out=app/pictures
 
-shot elephant --at 2.2 --size 900x600 --out $out/elephant.png
-shot water_balloon --at 0.6 --until 3.2 --pace 15 --size 480x360 --no-caption --animate $out/dent.png
+shot elephant --at 1.5 --size 900x600 --out $out/elephant.png
+shot water_balloon --at 0.6 --until 3.2 --pace 12 --size 480x360 --no-caption --animate $out/dent.png
 shot soft_coarse --size 480x360 --no-caption --out $out/soft_coarse.png
-shot tin_can --size 480x360 --no-caption --out $out/tin_can.png
-shot box --at 2.2 --edge-planes --size 480x360 --no-caption --out $out/edge_planes.png
+shot tin_can --at 5 --camera 25 40 --size 480x360 --no-caption --out $out/tin_can.png

@@ -54,9 +54,9 @@ void turn(view::Camera& camera, const std::vector<double>& wanted) {
 int take_shot(const ShotOptions& options) {
   view::ShotChoice choice;
   if (!read_size(options.size, choice.width, choice.height)) {
-    return complain({"--size: expected WIDTHxHEIGHT of 64 to 8192 pixels, found " + options.size +
-                     "."},
-                    kExitBadInput);
+    return complain(
+        {"--size: expected WIDTHxHEIGHT of 64 to 8192 pixels, found " + options.size + "."},
+        kExitBadInput);
   }
   if (options.out.empty() && options.animate.empty()) {
     return complain({"Say where the picture goes: --out FILE.png, or --animate FILE.png."},
@@ -103,9 +103,9 @@ int take_shot(const ShotOptions& options) {
     pictures.push_back(painter.paint(moment, plots));
   });
   if (!options.out.empty()) {
-    const auto written = view::write_png(
-        pictures.front(), options.out,
-        options.all_colours ? view::PngColours::kAll : view::PngColours::k256);
+    const auto written =
+        view::write_png(pictures.front(), options.out,
+                        options.all_colours ? view::PngColours::kAll : view::PngColours::k256);
     if (!written) return complain(written.error(), kExitTrouble);
     std::printf("Picture: %s\n", options.out.c_str());
   }

@@ -7,7 +7,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 folder=${1:-build/bench}
-app/setup.sh release bench_tick bench_contact bench_paged bench_body
+app/setup.sh release bench_tick bench_contact bench_paged bench_body bench_view
 mkdir -p "$folder"
 build/release/tests/bench/bench_tick --benchmark_repetitions=5 \
   --benchmark_enable_random_interleaving=true \
@@ -22,3 +22,4 @@ build/release/tests/bench/bench_paged --folder="$folder/paged" \
 mkdir -p "$folder/body"
 build/release/tests/bench/bench_body --benchmark_repetitions=5 \
   --benchmark_report_aggregates_only=true --figures="$folder/body/figures.json"
+build/release/tests/bench/bench_view

@@ -29,9 +29,13 @@ Eigen::Vector3d Camera::towards_eye() const {
   return {std::cos(pitch) * std::cos(yaw), std::cos(pitch) * std::sin(yaw), std::sin(pitch)};
 }
 
-Eigen::Vector3d Camera::right() const { return {-std::sin(yaw), std::cos(yaw), 0}; }
+Eigen::Vector3d Camera::right() const {
+  return {-std::sin(yaw), std::cos(yaw), 0};
+}
 
-Eigen::Vector3d Camera::up() const { return towards_eye().cross(right()); }
+Eigen::Vector3d Camera::up() const {
+  return towards_eye().cross(right());
+}
 
 Eigen::Matrix4f Camera::view() const {
   Eigen::Matrix4d view = Eigen::Matrix4d::Identity();
@@ -77,7 +81,9 @@ void Camera::pan(double right_share, double up_share) {
   p_WTarget -= height * (right_share * right() + up_share * up());
 }
 
-void Camera::zoom(double factor) { distance = std::clamp(distance / factor, 1e-3, 10.0); }
+void Camera::zoom(double factor) {
+  distance = std::clamp(distance / factor, 1e-3, 10.0);
+}
 
 std::vector<Eigen::Vector3d> framed_points(const DrawnScene& scene, const DrawnMoment& moment) {
   constexpr std::size_t kEnough = 4000;  // vertices show what shape a mesh has

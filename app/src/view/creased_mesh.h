@@ -18,10 +18,10 @@ enum class NormalWeights {
 /// Is a mesh ready to be drawn: a vertex has one normal, the mean of its polygons, except where
 /// they meet in a crease: there each side of the crease has its own.
 struct CreasedMesh {
-  std::vector<Eigen::Vector3f> positions;                ///< m, in the mesh's frame.
-  std::vector<Eigen::Vector3f> normals;                  ///< Unit.
-  std::vector<std::array<std::uint32_t, 3>> triangles;   ///< In the mesh's order.
-  std::vector<std::array<std::uint32_t, 2>> edges;       ///< Each of the mesh's edges once.
+  std::vector<Eigen::Vector3f> positions;               ///< m, in the mesh's frame.
+  std::vector<Eigen::Vector3f> normals;                 ///< Unit.
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< In the mesh's order.
+  std::vector<std::array<std::uint32_t, 2>> edges;      ///< Each of the mesh's edges once.
 };
 
 /// Splits a mesh at its creases: where the normals of two polygons differ by more than

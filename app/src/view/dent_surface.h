@@ -13,8 +13,8 @@ namespace thimble::app::view {
 /// Is one corner of a bent triangle, with all that its shade is made of. `a`, `b`, `c` are the
 /// corners of the mesh's own triangle, as it is drawn when nothing is bent.
 struct DentVertex {
-  Eigen::Vector3f p;  ///< m, in the mesh's frame; so are all positions.
-  Eigen::Vector3f n;  ///< Not unit: interpolate it, then make it unit.
+  Eigen::Vector3f p;        ///< m, in the mesh's frame; so are all positions.
+  Eigen::Vector3f n;        ///< Not unit: interpolate it, then make it unit.
   Eigen::Vector3f weights;  ///< Of a, b and c, where the corner was before it was bent.
   Eigen::Vector3f p_a, n_a, p_b, n_b, p_c, n_c;
 };
@@ -45,12 +45,12 @@ class DentSurface {
   Eigen::Vector3d weights(const render::BodyPatch& patch, std::uint16_t point,
                           std::int32_t source) const;
 
-  std::vector<Eigen::Vector3d> rest_;                      // of the mesh's vertices
-  std::vector<Eigen::Vector3d> normals_;                   // as patches take them: without creases
+  std::vector<Eigen::Vector3d> rest_;     // of the mesh's vertices
+  std::vector<Eigen::Vector3d> normals_;  // as patches take them: without creases
   std::vector<std::array<std::int32_t, 3>> triangles_;
-  std::vector<std::array<std::uint32_t, 3>> drawn_;        // the same, as numbers of:
+  std::vector<std::array<std::uint32_t, 3>> drawn_;  // the same, as numbers of:
   std::vector<Eigen::Vector3f> drawn_normals_;
-  std::vector<std::array<std::int32_t, 2>> sources_;       // of the points that are no vertices
+  std::vector<std::array<std::int32_t, 2>> sources_;  // of the points that are no vertices
   std::vector<DentVertex> vertices_;
   std::vector<std::uint32_t> hidden_;
 };

@@ -27,16 +27,36 @@ class GlName {
 };
 
 // The functions are looked up when first called, so their addresses are not known to the compiler.
-inline void make_buffer(GLuint* name) { glGenBuffers(1, name); }
-inline void remove_buffer(GLuint* name) { glDeleteBuffers(1, name); }
-inline void make_vertex_array(GLuint* name) { glGenVertexArrays(1, name); }
-inline void remove_vertex_array(GLuint* name) { glDeleteVertexArrays(1, name); }
-inline void make_texture(GLuint* name) { glGenTextures(1, name); }
-inline void remove_texture(GLuint* name) { glDeleteTextures(1, name); }
-inline void make_framebuffer(GLuint* name) { glGenFramebuffers(1, name); }
-inline void remove_framebuffer(GLuint* name) { glDeleteFramebuffers(1, name); }
-inline void make_renderbuffer(GLuint* name) { glGenRenderbuffers(1, name); }
-inline void remove_renderbuffer(GLuint* name) { glDeleteRenderbuffers(1, name); }
+inline void make_buffer(GLuint* name) {
+  glGenBuffers(1, name);
+}
+inline void remove_buffer(GLuint* name) {
+  glDeleteBuffers(1, name);
+}
+inline void make_vertex_array(GLuint* name) {
+  glGenVertexArrays(1, name);
+}
+inline void remove_vertex_array(GLuint* name) {
+  glDeleteVertexArrays(1, name);
+}
+inline void make_texture(GLuint* name) {
+  glGenTextures(1, name);
+}
+inline void remove_texture(GLuint* name) {
+  glDeleteTextures(1, name);
+}
+inline void make_framebuffer(GLuint* name) {
+  glGenFramebuffers(1, name);
+}
+inline void remove_framebuffer(GLuint* name) {
+  glDeleteFramebuffers(1, name);
+}
+inline void make_renderbuffer(GLuint* name) {
+  glGenRenderbuffers(1, name);
+}
+inline void remove_renderbuffer(GLuint* name) {
+  glDeleteRenderbuffers(1, name);
+}
 
 using GlBuffer = GlName<make_buffer, remove_buffer>;
 using GlVertexArray = GlName<make_vertex_array, remove_vertex_array>;

@@ -31,13 +31,12 @@ inline constexpr Colour kTextColour = colour_of(0x1F2933);
 inline constexpr Colour kQuietTextColour = colour_of(0x616E7C);
 inline constexpr Colour kDepthColour = colour_of(0x0072B2);  // blue, in plots
 
-inline constexpr std::array<Colour, 6> kObjectColours = {
-    colour_of(0x8FB3D1),   // steel blue
-    colour_of(0xE0B88A),   // sand
-    colour_of(0x96C3AC),   // sage
-    colour_of(0xC7A5C4),   // mauve
-    colour_of(0xB9BFC7),   // pewter
-    colour_of(0xD9CF9A)};  // straw
+inline constexpr std::array<Colour, 6> kObjectColours = {colour_of(0x8FB3D1),   // steel blue
+                                                         colour_of(0xE0B88A),   // sand
+                                                         colour_of(0x96C3AC),   // sage
+                                                         colour_of(0xC7A5C4),   // mauve
+                                                         colour_of(0xB9BFC7),   // pewter
+                                                         colour_of(0xD9CF9A)};  // straw
 
 /// Gives the colour of the object with this number; more objects than colours begin anew.
 constexpr const Colour& object_colour(std::size_t object) {

@@ -25,9 +25,7 @@ class PngChunks {
     out_.write("\x89PNG\r\n\x1a\n", 8);
   }
 
-  void begin(const char* name) {
-    chunk_.assign(name, name + 4);
-  }
+  void begin(const char* name) { chunk_.assign(name, name + 4); }
   void add_byte(std::size_t value) { chunk_.push_back(static_cast<std::uint8_t>(value)); }
   void add_short(std::size_t value) {
     add_byte(value >> 8U);
@@ -94,7 +92,8 @@ void write_head(PngChunks& chunks, const Picture& picture, std::size_t colour_ty
   chunks.begin("IHDR");
   chunks.add(static_cast<std::size_t>(picture.width));
   chunks.add(static_cast<std::size_t>(picture.height));
-  for (const std::size_t value : {std::size_t{8}, colour_type, std::size_t{0}, std::size_t{0}, std::size_t{0}})
+  for (const std::size_t value :
+       {std::size_t{8}, colour_type, std::size_t{0}, std::size_t{0}, std::size_t{0}})
     chunks.add_byte(value);
   chunks.end();
 }

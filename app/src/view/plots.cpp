@@ -26,24 +26,25 @@ double round_up(double value) {
 }
 
 /// Draws the box of a plot, its title and the two ends of its axis; gives the inner part.
-ScreenPart draw_box(ImDrawList& list, const ScreenPart& part, const char* title, const char* top, const char* unit) {
+ScreenPart draw_box(ImDrawList& list, const ScreenPart& part, const char* title, const char* top,
+                    const char* unit) {
   const float line = ImGui::GetFontSize();
   const float pad = 0.35F * line;
   const ScreenPart inner = {part.x, part.y + 1.5F * line, part.width, part.height - 1.5F * line};
   list.AddRectFilled({inner.x, inner.y}, {inner.x + inner.width, inner.y + inner.height},
-                       packed(kSkyColour));
+                     packed(kSkyColour));
   list.AddText({part.x, part.y + 0.2F * line}, packed(kTextColour), title);
   char text[64];
   std::snprintf(text, sizeof text, "%s %s", top, unit);
   const ImVec2 size = ImGui::CalcTextSize(text);
   list.AddText({part.x + part.width - size.x, part.y + 0.2F * line}, packed(kQuietTextColour),
-                 text);
+               text);
   for (int k = 1; k < 4; ++k) {
     const float y = inner.y + inner.height * static_cast<float>(k) / 4;
     list.AddLine({inner.x, y}, {inner.x + inner.width, y}, packed(kGridColour, 0.25F));
   }
-  list.AddLine({inner.x, inner.y + inner.height},
-                 {inner.x + inner.width, inner.y + inner.height}, packed(kGridColour));
+  list.AddLine({inner.x, inner.y + inner.height}, {inner.x + inner.width, inner.y + inner.height},
+               packed(kGridColour));
   return {inner.x, inner.y + pad, inner.width, inner.height - pad};
 }
 
@@ -57,7 +58,9 @@ struct Plots::Look {
   double top;
 };
 
-void Plots::clear() { samples_.clear(); }
+void Plots::clear() {
+  samples_.clear();
+}
 
 void Plots::add(const driver::TickRecord& tick) {
   const double time = static_cast<double>(tick.time_ns) * 1e-9;
@@ -71,7 +74,8 @@ void Plots::add(const driver::TickRecord& tick) {
   while (samples_.front().time < time - kSeconds) samples_.pop_front();
 }
 
-void Plots::draw_line(ImDrawList& list, const ScreenPart& part, const Look& look, float Sample::*value) const {
+void Plots::draw_line(ImDrawList& list, const ScreenPart& part, const Look& look,
+                      float Sample::*value) const {
   char top[32];
   std::snprintf(top, sizeof top, "%g", look.top);
   const ScreenPart inner = draw_box(list, part, look.title, top, look.unit);
@@ -104,13 +108,14 @@ void Plots::draw_line(ImDrawList& list, const ScreenPart& part, const Look& look
     list.AddLine({x, inner.y + inner.height}, {x, y(spans[i].most)}, packed(look.colour, 0.10F));
   }
   list.AddPolyline(line.data(), static_cast<int>(line.size()), packed(look.colour), 0,
-                     std::max(1.5F, ImGui::GetFontSize() / 9));
+                   std::max(1.5F, ImGui::GetFontSize() / 9));
 }
 
 void Plots::draw_force(ImDrawList& list, const ScreenPart& part, double force_limit) const {
   float most = 0.5F;
   for (const Sample& sample : samples_) most = std::max(most, sample.force);
-  draw_line(list, part, {"force, last 8 s", "N", kForceColour, std::min(round_up(most), round_up(force_limit))},
+  draw_line(list, part,
+            {"force, last 8 s", "N", kForceColour, std::min(round_up(most), round_up(force_limit))},
             &Sample::force);
 }
 
@@ -123,7 +128,8 @@ void Plots::draw_depth(ImDrawList& list, const ScreenPart& part) const {
 void Plots::draw_work(ImDrawList& list, const ScreenPart& part) const {
   float most = 10;
   for (const Sample& sample : samples_) most = std::max(most, sample.work);
-  draw_line(list, part, {"time a tick computes", "us", kEdgePlaneColour, round_up(most)}, &Sample::work);
+  draw_line(list, part, {"time a tick computes", "us", kEdgePlaneColour, round_up(most)},
+            &Sample::work);
 }
 
 void Plots::draw_periods(ImDrawList& list, const ScreenPart& part, std::int64_t period_ns) const {
@@ -153,7 +159,7 @@ void Plots::draw_periods(ImDrawList& list, const ScreenPart& part, std::int64_t 
     const float x = inner.x + width * static_cast<float>(i);
     const float top = inner.y + inner.height * static_cast<float>(1 - share);
     list.AddRectFilled({x, top}, {x + std::max(1.0F, width - 1), inner.y + inner.height},
-                         packed(kDepthColour, 0.8F));
+                       packed(kDepthColour, 0.8F));
   }
 }
 

@@ -34,14 +34,15 @@ class Plots {
 
  private:
   struct Sample {
-    double time;    // s
-    float force;    // N
-    float depth;    // mm
-    float work;     // us
-    float period;   // us
+    double time;   // s
+    float force;   // N
+    float depth;   // mm
+    float work;    // us
+    float period;  // us
   };
   struct Look;
-  void draw_line(ImDrawList& list, const ScreenPart& part, const Look& look, float Sample::*value) const;
+  void draw_line(ImDrawList& list, const ScreenPart& part, const Look& look,
+                 float Sample::*value) const;
 
   std::deque<Sample> samples_;
 };

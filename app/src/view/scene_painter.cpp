@@ -20,9 +20,13 @@ Eigen::Vector3f linear(const Colour& colour) {
   return Eigen::Array3f(colour[0], colour[1], colour[2]).square();
 }
 
-Eigen::Vector4f padded(const Eigen::Vector3f& v) { return {v.x(), v.y(), v.z(), 0}; }
+Eigen::Vector4f padded(const Eigen::Vector3f& v) {
+  return {v.x(), v.y(), v.z(), 0};
+}
 
-Eigen::Vector3d towards_light() { return Eigen::Vector3d(0.45, -0.55, 1.0).normalized(); }
+Eigen::Vector3d towards_light() {
+  return Eigen::Vector3d(0.45, -0.55, 1.0).normalized();
+}
 
 void set(const GlProgram& program, const char* name, const Eigen::Matrix4f& value) {
   glUniformMatrix4fv(program.at(name), 1, GL_FALSE, value.data());
@@ -77,8 +81,8 @@ ScenePainter::ScenePainter(DrawnScene scene)
     }
     for (const Eigen::Vector3d& vertex : object.mesh.vertices) box.extend(vertex);
   }
-  if (box.isEmpty()) box = Eigen::AlignedBox3d(Eigen::Vector3d::Constant(-0.06),
-                                               Eigen::Vector3d::Constant(0.06));
+  if (box.isEmpty())
+    box = Eigen::AlignedBox3d(Eigen::Vector3d::Constant(-0.06), Eigen::Vector3d::Constant(0.06));
   light_centre_ = box.center();
   light_radius_ = std::clamp(0.5 * box.diagonal().norm() + 0.05, 0.08, 0.5);
   ground_height_ = box.min().z() - 2e-4;  // so that what stands on it does not flicker
@@ -126,8 +130,8 @@ void ScenePainter::place_objects(const DrawnMoment& moment, DentNormals normals)
       places_[i].block<3, 1>(0, 3) =
           Eigen::Map<const Eigen::Vector3d>(pose.p_WB.data()).cast<float>();
     }
-    const bool bent = moment.patch.triangle_count > 0 &&
-                      moment.patch.object == static_cast<std::int16_t>(i);
+    const bool bent =
+        moment.patch.triangle_count > 0 && moment.patch.object == static_cast<std::int16_t>(i);
     if (!bent) {
       models_[i].unbend();
     } else if (normals == DentNormals::kSplit) {
@@ -158,9 +162,9 @@ void ScenePainter::set_view(const Camera& camera, double aspect) {
   block.sky = padded(linear(kSkyColour));
   block.ground = padded(linear(kGroundColour));
   block.grid = padded(linear(kGridColour));
-  block.ground_place = Eigen::Vector4d(light_centre_.x(), light_centre_.y(), ground_height_,
-                                       5 * light_radius_)
-                           .cast<float>();
+  block.ground_place =
+      Eigen::Vector4d(light_centre_.x(), light_centre_.y(), ground_height_, 5 * light_radius_)
+          .cast<float>();
   glBindBuffer(GL_UNIFORM_BUFFER, *view_block_);
   glBufferData(GL_UNIFORM_BUFFER, sizeof block, &block, GL_STREAM_DRAW);
   glBindBufferBase(GL_UNIFORM_BUFFER, kViewBinding, *view_block_);

@@ -85,8 +85,8 @@ class ScenePainter {
   GlTexture shadow_map_;
   GlFramebuffer shadow_frame_;
   Eigen::Vector3d light_centre_{0, 0, 0};
-  double light_radius_ = 0.2;  // m: what is nearer to the centre casts shadows
-  double ground_height_ = 0;   // m
+  double light_radius_ = 0.2;         // m: what is nearer to the centre casts shadows
+  double ground_height_ = 0;          // m
   std::ptrdiff_t floor_object_ = -1;  // the object that is the ground: a level plane
 };
 

@@ -34,7 +34,9 @@ void watch(Session& session, std::function<void(const driver::TickRecord&)> look
 }
 
 /// Sizes are chosen for a picture as high as this.
-float scale_of(int height) { return std::clamp(static_cast<float>(height) / 640, 0.7F, 4.0F); }
+float scale_of(int height) {
+  return std::clamp(static_cast<float>(height) / 640, 0.7F, 4.0F);
+}
 
 int strip_of(const ShotChoice& choice) {
   return choice.plots ? static_cast<int>(0.24 * choice.height) : 0;
@@ -61,13 +63,14 @@ driver::Result<std::unique_ptr<PlayedScene>> PlayedScene::open(const std::filesy
 }
 
 void PlayedScene::play(const std::vector<double>& times, const Look& look) {
-  const auto every = static_cast<std::uint64_t>(
-      std::max<std::int64_t>(1, kDentFrame / session_->period_ns()));
+  const auto every =
+      static_cast<std::uint64_t>(std::max<std::int64_t>(1, kDentFrame / session_->period_ns()));
   std::vector<std::uint64_t> ticks;
   for (const double time : times) {
     const double tick = time * 1e9 / static_cast<double>(session_->period_ns());
-    const auto rounded = static_cast<std::uint64_t>(
-                             std::max(0.0, std::round(tick / static_cast<double>(every)))) * every;
+    const auto rounded =
+        static_cast<std::uint64_t>(std::max(0.0, std::round(tick / static_cast<double>(every)))) *
+        every;
     ticks.push_back(std::min(rounded, (session_->ticks_planned() - 1) / every * every));
   }
   const auto moment = std::make_unique<DrawnMoment>();

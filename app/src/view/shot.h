@@ -53,9 +53,9 @@ driver::Result<double> strongest_moment(const std::filesystem::path& scene,
 struct ShotChoice {
   int width = 960, height = 640;  ///< pixels
   PaintChoice paint;
-  bool plots = false;              ///< Force and depth over time, below.
-  bool caption = true;             ///< Scene, time and grid in words.
-  std::optional<Camera> camera;    ///< Framed by itself if empty.
+  bool plots = false;            ///< Force and depth over time, below.
+  bool caption = true;           ///< Scene, time and grid in words.
+  std::optional<Camera> camera;  ///< Framed by itself if empty.
 };
 
 /// Draws moments of a scene into pictures. Keeps what OpenGL holds from one to the next.

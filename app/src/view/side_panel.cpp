@@ -19,24 +19,25 @@ struct Key {
   const char* does;
 };
 
-constexpr std::array kKeys = {
-    Key{"left drag", "turn about the scene"},
-    Key{"right drag", "move along (also shift + left)"},
-    Key{"wheel", "nearer, farther"},
-    Key{"ctrl + left drag", "lead the simulated hand; wheel: push"},
-    Key{"H", "swap the two left drags"},
-    Key{"F", "frame the scene"},
-    Key{"space", "pause, go on"},
-    Key{"R", "record, stop recording"},
-    Key{"S", "screenshot"},
-    Key{"G", "Gouraud or Phong shading"},
-    Key{"E", "edges of polygons"},
-    Key{"P", "active triangle and edge planes"},
-    Key{"A", "arm"},
-    Key{"F1", "this help"},
-    Key{"Q", "close; the run goes on"}};
+constexpr std::array kKeys = {Key{"left drag", "turn about the scene"},
+                              Key{"right drag", "move along (also shift + left)"},
+                              Key{"wheel", "nearer, farther"},
+                              Key{"ctrl + left drag", "lead the simulated hand; wheel: push"},
+                              Key{"H", "swap the two left drags"},
+                              Key{"F", "frame the scene"},
+                              Key{"space", "pause, go on"},
+                              Key{"R", "record, stop recording"},
+                              Key{"S", "screenshot"},
+                              Key{"G", "Gouraud or Phong shading"},
+                              Key{"E", "edges of polygons"},
+                              Key{"P", "active triangle and edge planes"},
+                              Key{"A", "arm"},
+                              Key{"F1", "this help"},
+                              Key{"Q", "close; the run goes on"}};
 
-ImVec4 vec(const Colour& colour) { return {colour[0], colour[1], colour[2], 1}; }
+ImVec4 vec(const Colour& colour) {
+  return {colour[0], colour[1], colour[2], 1};
+}
 
 const char* word_of(RunState state) {
   switch (state) {

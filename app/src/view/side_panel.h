@@ -21,8 +21,8 @@ struct ViewChoice {
 
 /// Is what the panel says of the window itself.
 struct ViewNotes {
-  std::string notice;    ///< Above the scene: that the run has ended, say; empty: none.
-  std::string message;   ///< Of what was just done; empty: none.
+  std::string notice;     ///< Above the scene: that the run has ended, say; empty: none.
+  std::string message;    ///< Of what was just done; empty: none.
   double frame_time = 0;  ///< s, smoothed
 };
 

@@ -17,8 +17,8 @@ render::TriangleMesh unit_ball() {
     const double down = std::numbers::pi * i / kRings;
     for (int k = 0; k < kSides; ++k) {
       const double about = 2 * std::numbers::pi * k / kSides;
-      mesh.vertices.emplace_back(std::sin(down) * std::cos(about),
-                                 std::sin(down) * std::sin(about), std::cos(down));
+      mesh.vertices.emplace_back(std::sin(down) * std::cos(about), std::sin(down) * std::sin(about),
+                                 std::cos(down));
     }
   }
   const auto number = [](int i, int k) { return i * kSides + k % kSides; };

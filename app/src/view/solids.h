@@ -32,7 +32,9 @@ Solid cone(const Eigen::Vector3d& base, const Eigen::Vector3d& tip, double radiu
 class SolidModels {
  public:
   SolidModels();
-  const SurfaceModel& model(SolidKind kind) const { return models_[static_cast<std::size_t>(kind)]; }
+  const SurfaceModel& model(SolidKind kind) const {
+    return models_[static_cast<std::size_t>(kind)];
+  }
 
  private:
   std::vector<SurfaceModel> models_;

@@ -31,7 +31,10 @@ void fill(GLenum kind, const std::vector<T>& data, GLenum use) {
 
 SurfaceModel::SurfaceModel(const render::TriangleMesh& mesh, double crease_angle,
                            NormalWeights weights)
-    : crease_angle_(crease_angle), weights_(weights), triangles_(mesh.triangles.size()), dent_(mesh, {}) {
+    : crease_angle_(crease_angle),
+      weights_(weights),
+      triangles_(mesh.triangles.size()),
+      dent_(mesh, {}) {
   reshape(mesh);
   glBindVertexArray(*mesh_array_);
   glBindBuffer(GL_ARRAY_BUFFER, *vertices_);

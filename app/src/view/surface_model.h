@@ -44,8 +44,8 @@ class SurfaceModel {
   DentSurface dent_;
   GlVertexArray mesh_array_, edge_array_, dent_array_, dent_edge_array_;
   GlBuffer vertices_, indices_, edge_indices_, dent_vertices_, dent_edge_indices_;
-  std::vector<GLsizei> range_counts_;         // of the triangles that are not bent
-  std::vector<const void*> range_begins_;     // as offsets in bytes
+  std::vector<GLsizei> range_counts_;      // of the triangles that are not bent
+  std::vector<const void*> range_begins_;  // as offsets in bytes
   GLsizei dent_edges_ = 0;
 };
 

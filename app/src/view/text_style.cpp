@@ -10,8 +10,9 @@
 namespace thimble::app::view {
 namespace {
 
-constexpr const char* kFont = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";  // fonts-dejavu-core
-constexpr float kFontSize = 16;  // pixels at scale 1
+constexpr const char* kFont =
+    "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";  // fonts-dejavu-core
+constexpr float kFontSize = 16;                         // pixels at scale 1
 
 ImU32 packed(const Colour& colour, float cover = 1) {
   return ImGui::ColorConvertFloat4ToU32({colour[0], colour[1], colour[2], cover});
@@ -69,15 +70,13 @@ void write_labels(const std::vector<Label>& labels, const Camera& camera, const 
   const float margin = 0.5F * ImGui::GetFontSize();
   for (const Label& label : labels) {
     if ((label.p_W - camera.p_WEye()).dot(camera.towards_eye()) >= 0) continue;
-    const Eigen::Vector2f at =
-        camera.pixel(label.p_W, part.width, part.height).cast<float>();
+    const Eigen::Vector2f at = camera.pixel(label.p_W, part.width, part.height).cast<float>();
     // To the left or right, where the scene says there is room: above stands the arm.
     const double side = label.away_W.dot(camera.right());
     const Eigen::Vector2f away(side < -0.05 ? -1.0F : 1.0F, 0);
     const ImVec2 size = ImGui::CalcTextSize(label.text.c_str());
     const float x = std::clamp(at.x() + away.x() * (0.5F * size.x + 2.5F * margin) - 0.5F * size.x,
-                               margin,
-                               part.width - size.x - margin);
+                               margin, part.width - size.x - margin);
     const float y = std::clamp(at.y() + away.y() * (0.5F * size.y + margin) - 0.5F * size.y, margin,
                                part.height - size.y - margin);
     write_rimmed(list, {std::round(part.x + x), std::round(part.y + y)}, label.colour,

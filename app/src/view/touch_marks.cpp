@@ -13,7 +13,9 @@ constexpr double kThinnest = 0.05;  // N: less than this no hand feels in the ar
 
 using Point = Eigen::Vector3d;
 
-Point point(const std::array<double, 3>& p) { return {p[0], p[1], p[2]}; }
+Point point(const std::array<double, 3>& p) {
+  return {p[0], p[1], p[2]};
+}
 
 void add_arm(const DrawnMoment& moment, TouchMarks& marks) {
   // As thick as the tubes of such arms, m; the last piece ends in a thin stem, as the rod that
@@ -112,9 +114,8 @@ void add_edge_planes(const DrawnScene& scene, const DrawnMoment& moment, TouchMa
     return (corner(t, 1) - corner(t, 0)).cross(corner(t, 2) - corner(t, 0)).stableNormalized();
   };
   const Point n = normal(triangle);
-  const double reach =
-      0.45 * std::sqrt((corner(triangle, 1) - corner(triangle, 0)).norm() *
-                       (corner(triangle, 2) - corner(triangle, 0)).norm());
+  const double reach = 0.45 * std::sqrt((corner(triangle, 1) - corner(triangle, 0)).norm() *
+                                        (corner(triangle, 2) - corner(triangle, 0)).norm());
   const Point lift = 1e-3 * reach * n;
   marks.panes.push_back({{corner(triangle, 0) + lift, corner(triangle, 1) + lift,
                           corner(triangle, 2) + lift, corner(triangle, 2) + lift},
@@ -125,9 +126,8 @@ void add_edge_planes(const DrawnScene& scene, const DrawnMoment& moment, TouchMa
         (other < 0 ? n : Point(n + normal(static_cast<std::size_t>(other)))).stableNormalized();
     const Point a = corner(triangle, k);
     const Point b = corner(triangle, k + 1);
-    marks.panes.push_back(
-        {{a + reach * half, b + reach * half, b - reach * half, a - reach * half},
-         kEdgePlaneColour});
+    marks.panes.push_back({{a + reach * half, b + reach * half, b - reach * half, a - reach * half},
+                           kEdgePlaneColour});
   }
 }
 

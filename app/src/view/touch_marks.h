@@ -12,8 +12,8 @@ namespace thimble::app::view {
 
 /// Is a word at a place of the scene.
 struct Label {
-  Eigen::Vector3d p_W{0, 0, 0};      ///< m
-  Eigen::Vector3d away_W{0, 0, 0};   ///< From the place towards where the word has room.
+  Eigen::Vector3d p_W{0, 0, 0};     ///< m
+  Eigen::Vector3d away_W{0, 0, 0};  ///< From the place towards where the word has room.
   std::string text;
   Colour colour{};
 };

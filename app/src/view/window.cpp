@@ -1,6 +1,7 @@
 #include "view/window.h"
 
 #include <epoxy/gl.h>
+// After the above, which brings OpenGL.
 #include <GLFW/glfw3.h>
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
@@ -24,8 +25,8 @@
 namespace thimble::app::view {
 namespace {
 
-constexpr float kPanelWidth = 380;        // pixels at scale 1
-constexpr double kFrame = 1.0 / 60;       // s
+constexpr float kPanelWidth = 380;   // pixels at scale 1
+constexpr double kFrame = 1.0 / 60;  // s
 constexpr double kMessageSeconds = 4;
 
 std::string glfw_words() {

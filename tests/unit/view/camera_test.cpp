@@ -42,7 +42,8 @@ TEST(Camera, FramesAllThatMustBeSeenFromAnySide) {
   support::Random random(4);
   for (int i = 0; i < 100; ++i) {
     DrawnScene scene;
-    render::TriangleMesh mesh = support::box({random.uniform(0.01, 0.1), random.uniform(0.01, 0.1), 0.03});
+    render::TriangleMesh mesh =
+        support::box({random.uniform(0.01, 0.1), random.uniform(0.01, 0.1), 0.03});
     const Vector3d away = random.in_box(0.1);
     for (Vector3d& vertex : mesh.vertices) vertex += away;
     scene.objects.push_back({.name = "box", .mesh = mesh});

@@ -35,8 +35,9 @@ TEST(CreasedMesh, IsTheMeshItselfWhereNothingIsSharp) {
   for (std::size_t t = 0; t < ball.triangles.size(); ++t) {
     for (std::size_t k = 0; k < 3; ++k) {
       const auto vertex = static_cast<std::size_t>(ball.triangles[t][k]);
-      EXPECT_LT((drawn.positions[drawn.triangles[t][k]] - ball.vertices[vertex].cast<float>()).norm(),
-                1e-6F);
+      EXPECT_LT(
+          (drawn.positions[drawn.triangles[t][k]] - ball.vertices[vertex].cast<float>()).norm(),
+          1e-6F);
       EXPECT_LT((drawn.normals[drawn.triangles[t][k]] - normals[vertex].cast<float>()).norm(),
                 1e-5F);
     }

@@ -49,7 +49,8 @@ Vector3d any_weights(support::Random& random) {
   return w / w.sum();
 }
 
-// The mesh's own normal at a place that a bent corner came from, as Phong's shading interpolates it.
+// The mesh's own normal at a place that a bent corner came from, as Phong's shading interpolates
+// it.
 Vector3f whole_normal(const DentVertex& v) {
   return v.weights[0] * v.n_a + v.weights[1] * v.n_b + v.weights[2] * v.n_c;
 }
@@ -76,8 +77,8 @@ TEST(DentSurface, HidesWhatItStandsForOnceAndInOrder) {
   support::Random random(2);
   Fixture f(support::icosphere(3, 0.04));
   for (int i = 0; i < 50; ++i) {
-    f.press(static_cast<std::int32_t>(random.bits() % f.mesh.triangles.size()),
-            any_weights(random), 0.004);
+    f.press(static_cast<std::int32_t>(random.bits() % f.mesh.triangles.size()), any_weights(random),
+            0.004);
     const auto& hidden = f.surface.hidden();
     std::set<std::uint32_t> sources;
     for (std::size_t t = 0; t < f.patch.triangle_count; ++t) {

@@ -16,7 +16,8 @@ namespace {
 
 using support::difference;
 
-/// Is the coarsest of balls (app/scenes/soft_coarse.yaml), a camera before one of its triangles, and the patch of the least of touches.
+/// Is the coarsest of balls (app/scenes/soft_coarse.yaml), a camera before one of its triangles,
+/// and the patch of the least of touches.
 struct FirstTouch {
   FirstTouch() {
     scene.objects.push_back({.name = "ball", .mesh = support::icosphere(0, 0.04)});
@@ -34,7 +35,8 @@ struct FirstTouch {
       }
     }
     const Eigen::Vector3d w(0.5, 0.3, 0.2);
-    dent.touch(facing, w, render::point_at(*contact, facing, w) - 1e-9 * contact->cell(facing).face.n);
+    dent.touch(facing, w,
+               render::point_at(*contact, facing, w) - 1e-9 * contact->cell(facing).face.n);
     dent.draw(touched.patch);
     touched.patch.object = 0;
     choice.edges = Edges::kOff;
@@ -64,10 +66,11 @@ TEST(FirstTouch, ChangesNoShade) {
     const Picture before = paint(first.before, DentNormals::kSplit);
     const auto cured = difference(before, paint(first.touched, DentNormals::kSplit));
     const auto naive = difference(before, paint(first.touched, DentNormals::kNaive));
-    std::printf("%s: at first touch the picture changes by up to %.0f of 255 (mean %.4f) with naive "
-                "normals, %.0f (mean %.4f) with split ones\n",
-                shading == Shading::kPhong ? "Phong" : "Gouraud", naive.most, naive.mean,
-                cured.most, cured.mean);
+    std::printf(
+        "%s: at first touch the picture changes by up to %.0f of 255 (mean %.4f) with naive "
+        "normals, %.0f (mean %.4f) with split ones\n",
+        shading == Shading::kPhong ? "Phong" : "Gouraud", naive.most, naive.mean, cured.most,
+        cured.mean);
     EXPECT_GT(naive.most, 5);  // the jump is there to be cured
     // What is left is rounding, and samples on the new edges.
     EXPECT_LE(cured.mean, 0.002);

@@ -12,9 +12,10 @@ namespace thimble::support {
 
 /// Tells how two pictures of one size differ, in steps of 255.
 struct PictureDifference {
-  double mean = 0;        ///< Of all bytes.
-  double most = 0;        ///< Of any byte.
-  double bad_blocks = 0;  ///< Share of blocks of 8 x 8 pixels whose mean brightness differs by > 10.
+  double mean = 0;  ///< Of all bytes.
+  double most = 0;  ///< Of any byte.
+  double bad_blocks =
+      0;  ///< Share of blocks of 8 x 8 pixels whose mean brightness differs by > 10.
 };
 
 inline PictureDifference difference(const app::view::Picture& a, const app::view::Picture& b) {

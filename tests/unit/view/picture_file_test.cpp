@@ -75,7 +75,8 @@ TEST(PictureFile, AnimationShowsItsFirstPictureToReadersThatKnowNone) {
   std::ifstream in(file, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(in), {}};
   std::size_t frames = 0;
-  for (std::size_t at = bytes.find("fcTL"); at != std::string::npos; at = bytes.find("fcTL", at + 1)) {
+  for (std::size_t at = bytes.find("fcTL"); at != std::string::npos;
+       at = bytes.find("fcTL", at + 1)) {
     ++frames;
   }
   EXPECT_EQ(frames, pictures.size());

@@ -1,0 +1,51 @@
+#!/usr/bin/env bash
+# Pictures without a screen, and mistakes in what was asked for; then the window, on a screen in
+# memory where there is one (Debian: xvfb).
+source "$(dirname "$0")/expect.sh" "$@"
+scene=$source_dir/app/scenes/water_balloon.yaml
+
+expect 2 '--out FILE.png' "$thimble" shot "$scene"
+expect 2 'WIDTHxHEIGHT' "$thimble" shot "$scene" --out a.png --size 10x10
+expect 2 'WIDTHxHEIGHT' "$thimble" shot "$scene" --out a.png --size 640
+expect 2 'no_such.yaml' "$thimble" shot no_such.yaml --out a.png
+if ! "$thimble" shot "$scene" --at 1 --size 160x120 --out probe.png >probe.txt 2>&1; then
+  if grep -q 'No OpenGL' probe.txt && [ -z "${CI:-}" ]; then
+    echo "NOT TESTED: pictures. $(cat probe.txt)"
+    exit 77
+  fi
+fi
+expect 0 'Picture: a.png' "$thimble" shot "$scene" --at 1 --size 160x120 --plots --edge-planes \
+  --shading gouraud --edges on --camera 40 20 --out a.png
+expect 0 'PNG' head -c 4 a.png
+expect 0 'Picture: b.png' "$thimble" shot "$scene" --at 1 --size 160x120 --plots --edge-planes \
+  --shading gouraud --edges on --camera 40 20 --out b.png
+expect 0 '' cmp a.png b.png  # the same to the bit
+expect 0 'Animated' "$thimble" shot "$scene" --at 1 --until 1.2 --pace 10 --size 160x120 \
+  --animate c.png
+expect 0 '^[1-9]' grep -ac fcTL c.png
+expect 1 'cannot be written' "$thimble" shot "$scene" --at 1 --size 160x120 --out no/such/a.png
+expect 1 'screen' env -u DISPLAY -u WAYLAND_DISPLAY "$thimble" view --for 1
+
+if command -v Xvfb >/dev/null; then
+  Xvfb -displayfd 3 -screen 0 1300x820x24 3>display.txt 2>/dev/null &
+  xvfb=$!
+  for _ in $(seq 100); do [ -s display.txt ] && break; sleep 0.1; done
+  DISPLAY=:$(cat display.txt)
+  export DISPLAY
+  "$thimble" run "$scene" --clock wall --name shot_test_$$ --no-view --duration 60 >run.txt 2>&1 &
+  run=$!
+  for _ in $(seq 100); do
+    "$thimble" view --list | grep -q "^shot_test_$$:" && break
+    sleep 0.1
+  done
+  expect 0 '' "$thimble" view shot_test_$$ --for 2 --picture window.png
+  # A window with nothing in it takes 11 kB.
+  expect 0 '^[0-9]{6,}$' stat -c %s window.png
+  kill -INT $run
+  wait $run
+  expect 0 '' "$thimble" view shot_test_$$ --for 1 --picture none.png  # waits for a run
+  kill $xvfb
+else
+  echo "NOT TESTED: the window, for want of Xvfb."
+fi
+finish
