@@ -164,7 +164,7 @@ TEST(Tuning, FindsByLawWhatTheWholeWaySimulates) {
   std::printf("%s", result.text.c_str());
   for (const Figure& figure : result.figures) {
     if (figure.name == "wall.simulated_over_exact") {
-      EXPECT_NEAR(figure.value, 1, 0.1);
+      EXPECT_NEAR(figure.value, 1, 0.05);
     }
     if (figure.name == "wall.margin") {
       EXPECT_TRUE(figure.met()) << figure.value;

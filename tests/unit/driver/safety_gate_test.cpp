@@ -189,6 +189,20 @@ TEST(EnergyGuard, KeepsNoMoreToOnesCreditThanTheReservoirAndAllowsWhatItIsTold) 
   EXPECT_TRUE(damped(0.0002));
 }
 
+TEST(EnergyGuard, FadesTheForceOfADebtBeyondItsOnsetEvenAtRest) {
+  EnergyGuardSettings settings = passivity();
+  settings.onset = 0.002;
+  SafetyGate gate(limits(), settings);
+  for (int k = 0; k < 400; ++k) gate.pass_guarded({0, 0, 0}, kStill, kPeriod, {});
+  const auto sent = [&](double work) {
+    return gate.pass_guarded({2, 0, 0}, kStill, kPeriod, {.work = work}).f_T_W().x();
+  };
+  EXPECT_EQ(sent(0.002), 2);           // at the onset
+  EXPECT_NEAR(sent(0.001), 1, 1e-9);   // half-way beyond
+  EXPECT_NEAR(sent(0.002), 0, 1e-12);  // and no more at twice the onset
+  EXPECT_NEAR(sent(-0.004), 2, 1e-9);  // the hand has brought it back
+}
+
 TEST(EnergyGuard, HoldsItsDampingBackWithTheSoftStart) {
   SafetyGate gate(limits(), passivity());
   gate.pass_guarded({0, 0, 0}, kStill, 0, {});

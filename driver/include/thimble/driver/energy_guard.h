@@ -20,8 +20,8 @@ struct EnergyGuardSettings {
   /// Most energy that is kept to one's credit, J; passivity: must be > 0. Without an end to it an
   /// hour of rubbing would pay for a minute of trouble.
   double reservoir = 0;
-  /// Debt at which the controller damps as hard as it may, J; below, in proportion. 0: at once.
-  /// Without it small debts of slow hands are paid in jolts (2 N against 1 N of touch were seen).
+  /// Debt at which the controller damps as hard as it may, J; in proportion before; beyond, the
+  /// force fades and is gone at twice that. 0: at once, in jolts (2 N on 1 N were seen), no fading.
   double onset = 0;
   double slope = 0;     ///< c1 of the bound, N/m. Bounding: must be > 0; 2 b / T makes it passive.
   int delay_ticks = 0;  ///< Ticks from sampling to force beyond the hold, 0 to kDelayMost.
