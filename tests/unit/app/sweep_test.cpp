@@ -1,0 +1,138 @@
+#include "study/sweep.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <fstream>
+#include <stdexcept>
+
+#include "study/sweep_journal.h"
+#include "support/scratch.h"
+#include "text_file.h"
+
+namespace thimble::app {
+namespace {
+
+/// Is a folder of its own in that of this process.
+class Folder {
+ public:
+  Folder() {
+    static int count = 0;
+    path_ = support::scratch_folder() / ("sweep_" + std::to_string(count++));
+    std::filesystem::create_directories(path_);
+  }
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+const std::atomic<bool> kNoStop{false};
+
+/// Is a sweep whose cells give what they alone know, some of it no ordinary number.
+Sweep plain_sweep(std::size_t cells = 50) {
+  return {.name = "plain", .key = "plain 1", .cells = cells, .measure = [](std::size_t cell) {
+            const double x = static_cast<double>(cell);
+            return std::vector<double>{std::sqrt(x), -0.0, std::log(x), std::nan("")};
+          }};
+}
+
+std::string journal_after(const std::filesystem::path& folder, int jobs, bool resume) {
+  const auto done =
+      run_sweep(plain_sweep(), {.folder = folder, .jobs = jobs, .resume = resume}, kNoStop);
+  if (!done) {
+    ADD_FAILURE() << done.error().message;
+    return {};
+  }
+  EXPECT_EQ(done->end, SweepEnd::kDone);
+  EXPECT_EQ(done->numbers[49][0], 7);
+  EXPECT_TRUE(std::signbit(done->numbers[3][1]));
+  return text_of(folder / "plain.journal");
+}
+
+TEST(Sweep, GivesTheSameBytesWithAnyNumberOfThreads) {
+  const Folder one, four;
+  const std::string first = journal_after(one.path(), 1, false);
+  EXPECT_EQ(journal_after(four.path(), 4, false), first);
+  EXPECT_EQ(std::count(first.begin(), first.end(), '\n'), 51);
+}
+
+TEST(Sweep, GoesOnAfterAnyTornOrDamagedEndOfItsJournalAndGivesTheSameBytes) {
+  const Folder scratch;
+  const std::string whole = journal_after(scratch.path(), 2, false);
+  const auto file = scratch.path() / "plain.journal";
+  for (std::size_t size = 0; size < whole.size(); size += 97) {
+    std::ofstream(file, std::ios::binary) << whole.substr(0, size);
+    EXPECT_EQ(journal_after(scratch.path(), 2, true), whole) << size;
+  }
+  std::string damaged = whole;
+  damaged[whole.size() / 2] ^= 1;
+  std::ofstream(file, std::ios::binary) << damaged;
+  EXPECT_EQ(journal_after(scratch.path(), 2, true), whole);
+}
+
+TEST(Sweep, MeasuresNoCellAgainThatItsJournalHolds) {
+  const Folder scratch;
+  journal_after(scratch.path(), 2, false);
+  Sweep sweep = plain_sweep();
+  sweep.measure = [](std::size_t) -> std::vector<double> { throw std::logic_error("again"); };
+  const auto done =
+      run_sweep(sweep, {.folder = scratch.path(), .jobs = 2, .resume = true}, kNoStop);
+  ASSERT_TRUE(done) << done.error().message;
+  EXPECT_EQ(done->numbers[49][0], 7);
+}
+
+TEST(Sweep, KeepsAnOlderJournalBesideANewOne) {
+  const Folder scratch;
+  const std::string first = journal_after(scratch.path(), 2, false);
+  journal_after(scratch.path(), 2, false);
+  EXPECT_EQ(text_of(scratch.path() / "plain.journal.old"), first);
+}
+
+TEST(Sweep, RefusesTheJournalOfAnotherSweep) {
+  const Folder scratch;
+  journal_after(scratch.path(), 2, false);
+  Sweep other = plain_sweep();
+  other.key = "plain 2";
+  const auto done =
+      run_sweep(other, {.folder = scratch.path(), .jobs = 2, .resume = true}, kNoStop);
+  ASSERT_FALSE(done);
+  EXPECT_NE(done.error().message.find("--resume"), std::string::npos);
+}
+
+TEST(Sweep, NamesTheCellThatFailed) {
+  const Folder scratch;
+  Sweep sweep = plain_sweep();
+  sweep.measure = [](std::size_t cell) {
+    if (cell == 17) throw std::runtime_error("no such wall");
+    return std::vector<double>{1};
+  };
+  const auto done = run_sweep(sweep, {.folder = scratch.path(), .jobs = 2}, kNoStop);
+  ASSERT_FALSE(done);
+  EXPECT_EQ(done.error().message, "plain, cell 17: no such wall");
+}
+
+TEST(Sweep, StopsWhenAskedAndLaterGoesOn) {
+  const Folder scratch, other;
+  std::atomic<bool> stop{false};
+  Sweep sweep = plain_sweep();
+  sweep.measure = [&stop](std::size_t cell) {
+    if (cell == 20) stop = true;
+    return plain_sweep().measure(cell);
+  };
+  const auto stopped = run_sweep(sweep, {.folder = scratch.path(), .jobs = 2}, stop);
+  ASSERT_TRUE(stopped);
+  EXPECT_EQ(stopped->end, SweepEnd::kStopped);
+  EXPECT_EQ(journal_after(scratch.path(), 2, true), journal_after(other.path(), 1, false));
+}
+
+TEST(Sweep, SaysWhatToDoAboutAFolderThatIsNotThere) {
+  const auto done = run_sweep(plain_sweep(), {.folder = "/nowhere/at/all", .jobs = 1}, kNoStop);
+  ASSERT_FALSE(done);
+  EXPECT_NE(done.error().message.find("Cannot write /nowhere/at/all"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace thimble::app
