@@ -172,8 +172,20 @@ HandWaypoint read_waypoint(YamlMap map, const std::vector<SceneObject>& objects)
   return waypoint;
 }
 
-std::vector<HandWaypoint> read_hand(YamlMap map, const std::vector<SceneObject>& objects) {
+/// Reads how the simulated hand holds the arm, where the scene wants another one than the arm's
+/// file; limits as there.
+void read_grip(YamlMap map, device_sim::HandSettings& hand) {
+  hand.mass = map.optional_number("mass", hand.mass, "kg", 0, 10);
+  hand.stiffness = map.optional_number("stiffness", hand.stiffness, "N/m", 0, 1e5);
+  hand.damping = map.optional_number("damping", hand.damping, "N s/m", 0, 1000);
+  hand.tremor_amplitude = map.optional_number("tremor", hand.tremor_amplitude, "m", 0, 0.01);
+  map.finish();
+}
+
+std::vector<HandWaypoint> read_hand(YamlMap map, const std::vector<SceneObject>& objects,
+                                    device_sim::HandSettings& grip) {
   std::vector<HandWaypoint> hand;
+  if (map.has("grip")) read_grip(map.require_map("grip"), grip);
   for (YamlMap& entry : map.require_maps("path")) {
     hand.push_back(read_waypoint(entry, objects));
     if (hand.size() > 1 && !(hand.back().time > hand[hand.size() - 2].time)) {
@@ -222,7 +234,7 @@ driver::Result<Scene> read_scene(const std::filesystem::path& file,
       }
     }
   }
-  scene.hand = read_hand(root.require_map("hand"), scene.objects);
+  scene.hand = read_hand(root.require_map("hand"), scene.objects, scene.arm.simulated.hand);
   root.finish();
   if (auto done = yaml->finish(); !done) return done.error();
   if (!arm) return arm.error();

@@ -13,6 +13,9 @@
 
 namespace thimble::app {
 
+/// Is the numbers of each cell that was measured; an empty list stands for a cell that was not.
+using CellNumbers = std::vector<std::vector<double>>;
+
 /// Is a list of independent cells, each a pure function of its number. That is what makes a sweep
 /// give the same bytes with any number of threads and machines, interrupted or not.
 struct Sweep {
@@ -43,7 +46,7 @@ enum class SweepEnd {
 /// Is what a sweep gave: a list of numbers for each cell; empty lists unless it is done.
 struct SweepResult {
   SweepEnd end = SweepEnd::kDone;
-  std::vector<std::vector<double>> numbers;
+  CellNumbers numbers;
 };
 
 /// Measures all cells, in parallel, with a progress bar if stderr is a terminal. Every result goes

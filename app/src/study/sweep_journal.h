@@ -5,14 +5,11 @@
 #include <memory>
 #include <span>
 #include <string>
-#include <vector>
 
+#include "study/sweep.h"
 #include "thimble/driver/result.h"
 
 namespace thimble::app {
-
-/// Is the numbers of each cell that was measured; an empty list stands for a cell that was not.
-using CellNumbers = std::vector<std::vector<double>>;
 
 /// Is the file that keeps what a sweep has measured: one line per cell, to the bit, with a check
 /// sum, each written by one call. Whatever ends the program, at most the last line is torn; `open`
