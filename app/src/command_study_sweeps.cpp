@@ -23,7 +23,8 @@ struct SweepChoice {
     command.add_option("--jobs", jobs, "Threads in each process; 0: one per core")
         ->check(CLI::Range(0, 1024))
         ->capture_default_str();
-    command.add_flag("--resume", resume, "Go on where an interrupted run of the same options ended");
+    command.add_flag("--resume", resume,
+                     "Go on where an interrupted run of the same options ended");
   }
 };
 
@@ -38,15 +39,14 @@ int run_by_sweep(const SweepChoice& choice, const Run& run) {
   std::error_code status;
   if (leads) std::filesystem::create_directories(choice.out, status);
   if (leads && !std::filesystem::is_directory(choice.out, status)) {
-    return complain({"Cannot make the folder " + choice.out +
-                     "; name one that may be written with --out."},
-                    kExitBadInput);
+    return complain(
+        {"Cannot make the folder " + choice.out + "; name one that may be written with --out."},
+        kExitBadInput);
   }
-  const auto report = run(SweepOptions{.folder = choice.out,
-                                       .jobs = choice.jobs,
-                                       .resume = choice.resume,
-                                       .team = team->get()},
-                          stop);
+  const auto report = run(
+      SweepOptions{
+          .folder = choice.out, .jobs = choice.jobs, .resume = choice.resume, .team = team->get()},
+      stop);
   if (!report) return complain(report.error(), kExitBadInput);
   if (report->end == SweepEnd::kHelped) return kExitDone;
   if (report->end == SweepEnd::kStopped) {
@@ -78,9 +78,10 @@ void add_trouble_study(CLI::App& study_command, int& exit_code) {
       ->capture_default_str();
   command->add_option("--seed", options->seed, "Of all scenes")->capture_default_str();
   command->callback([choice, options, &exit_code] {
-    exit_code = run_by_sweep(*choice, [&](const SweepOptions& sweep, const std::atomic<bool>& stop) {
-      return study_trouble(*options, sweep, stop);
-    });
+    exit_code =
+        run_by_sweep(*choice, [&](const SweepOptions& sweep, const std::atomic<bool>& stop) {
+          return study_trouble(*options, sweep, stop);
+        });
   });
 }
 

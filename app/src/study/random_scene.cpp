@@ -90,9 +90,10 @@ class Drawing {
     lines_.add(0, "seed", static_cast<double>(seed_ % 1000));
     lines_.add(0, "objects", "");
     const std::size_t count = 1 + draw_.one_of(3);
+    share_ = 1 / static_cast<double>(count);
     for (std::size_t i = 0; i < count; ++i) object(i);
     hand();
-    return {std::move(lines_.text()), own_energy_};
+    return {std::move(lines_.text()), own_energy_, trembles_};
   }
 
  private:
@@ -140,17 +141,18 @@ class Drawing {
         // The potential's depth: 1.5 sqrt(3) F R.
         own_energy_ += 2.6 * std::abs(force) * radius;
         lines_.add(4, "field", "charges");
-        lines_.add(4, "charges", joined({"[{position: [0, 0, 0], force: ", number(force),
-                                           ", radius: ", number(radius), "}]"}));
+        lines_.add(4, "charges",
+                   joined({"[{position: [0, 0, 0], force: ", number(force),
+                           ", radius: ", number(radius), "}]"}));
         break;
       }
       default: {
         const double force = draw_.uniform(0, 1.5), radius = draw_.uniform(0.008, 0.02);
         own_energy_ += 0.65 * force * radius;
         lines_.add(4, "field", "magnetic_snap");
-        lines_.add(4, "targets", joined({"[{from: [0, 0, 0], to: ", vector(0.03 * draw_.direction()),
-                                           ", force: ", number(force),
-                                           ", capture_radius: ", number(radius), "}]"}));
+        lines_.add(4, "targets",
+                   joined({"[{from: [0, 0, 0], to: ", vector(0.03 * draw_.direction()), ", force: ",
+                           number(force), ", capture_radius: ", number(radius), "}]"}));
       }
     }
   }
@@ -169,20 +171,24 @@ class Drawing {
       lines_.add(4, "sphere", joined({"{radius: ", number(placed.size / 2), "}"}));
     } else if (form <= 3) {
       const Vector3d sides = placed.size * (Vector3d(0.6, 0.6, 0.6) + draw_.in_box(0.4));
-      lines_.add(4, "box", joined({"{sides: ", vector(sides), ", form: ",
-                                     form == 2 ? "entry_face" : "wedges", "}"}));
+      lines_.add(4, "box",
+                 joined({"{sides: ", vector(sides), ", form: ", form == 2 ? "entry_face" : "wedges",
+                         "}"}));
     } else {
-      lines_.add(4, "mesh", joined({limits_.mesh_path, "/",
-                                      kSmallMeshes[draw_.one_of(kSmallMeshes.size())], ".off"}));
+      lines_.add(4, "mesh",
+                 joined({limits_.mesh_path, "/", kSmallMeshes[draw_.one_of(kSmallMeshes.size())],
+                         ".off"}));
       lines_.add(4, "size", placed.size);
     }
     if (form != 0 && draw_.chance(0.5)) {
-      lines_.add(4, "rotate_degrees", joined({"[[x, ", number(draw_.uniform(-180, 180)), "], [y, ",
-                                              number(draw_.uniform(-90, 90)), "]]"}));
+      lines_.add(4, "rotate_degrees",
+                 joined({"[[x, ", number(draw_.uniform(-180, 180)), "], [y, ",
+                         number(draw_.uniform(-90, 90)), "]]"}));
     }
     const bool texture = draw_.chance(0.3);
-    // A slope of up to 1 makes a surface up to twice as stiff.
-    const double stiffest = stiffness_max() / (texture ? 2 : 1);
+    // Objects may overlap, and then their springs add up; a slope of up to 1 makes a surface up to
+    // twice as stiff.
+    const double stiffest = share_ * stiffness_max() / (texture ? 2 : 1);
     lines_.add(4, "stiffness", draw_.octave(std::min(50.0, stiffest / 2), stiffest));
     lines_.add(4, "damping", draw_.chance(0.3) ? 0 : draw_.uniform(0, 3));
     bool compact = false;
@@ -219,9 +225,9 @@ class Drawing {
       lines_.text().append("      - texture: sines\n");
       const double wavelength = draw_.octave(0.002, 0.02);
       const double amplitude = draw_.uniform(0, 0.1) * wavelength;
-      lines_.add(8, "waves", joined({"[{amplitude: ", number(amplitude), ", wavelength: ",
-                                       number(wavelength), ", direction: ",
-                                       vector(draw_.direction()), "}]"}));
+      lines_.add(8, "waves",
+                 joined({"[{amplitude: ", number(amplitude), ", wavelength: ", number(wavelength),
+                         ", direction: ", vector(draw_.direction()), "}]"}));
     } else if (texture) {
       lines_.text().append("      - texture: sandpaper\n");
       const double grain = draw_.octave(0.002, 0.01);
@@ -230,12 +236,11 @@ class Drawing {
     }
     if (!friction) return;
     constexpr std::array<std::string_view, 8> kFrictions{
-        "bristle", "dahl", "implicit_coulomb", "karnopp", "lugre", "naive", "paper",
-        "stiction_point"};
-    lines_.text()
-        .append("      - friction: ")
-        .append(kFrictions[draw_.one_of(kFrictions.size())])
-        .append("\n");
+        "bristle", "dahl",  "implicit_coulomb", "karnopp", "lugre",
+        "naive",   "paper", "stiction_point"};
+    const std::string_view chosen = kFrictions[draw_.one_of(kFrictions.size())];
+    trembles_ = trembles_ || chosen == "naive" || chosen == "paper";
+    lines_.text().append("      - friction: ").append(chosen).append("\n");
     lines_.add(8, "coefficient", draw_.uniform(0.05, 1));
   }
 
@@ -288,9 +293,10 @@ class Drawing {
 
   void hand() {
     lines_.add(0, "hand", "");
-    lines_.add(2, "grip", joined({"{mass: ", number(hand_.mass), ", stiffness: ",
-                                    number(hand_.stiffness), ", damping: ", number(hand_.damping),
-                                    ", tremor: ", number(hand_.tremor), "}"}));
+    lines_.add(
+        2, "grip",
+        joined({"{mass: ", number(hand_.mass), ", stiffness: ", number(hand_.stiffness),
+                ", damping: ", number(hand_.damping), ", tremor: ", number(hand_.tremor), "}"}));
     lines_.add(2, "path", "");
     // Above everything, so that nothing is touched while the forces open softly.
     station(0, Vector3d(draw_.uniform(-0.05, 0.05), draw_.uniform(-0.05, 0.05), 0.075));
@@ -327,8 +333,8 @@ class Drawing {
     way_ = (way_ + 0.4 * draw_.in_box(1)).normalized();
     const Vector3d near = last->size > 0 ? Vector3d(last->p_WO + 0.6 * last->size * way_)
                                          : Vector3d(last->p_WO + 0.02 * way_);
-    return joined({", on: ", last->name, ", near: ", vector(near), ", press: ",
-                   number(draw_.uniform(0, 0.01))});
+    return joined({", on: ", last->name, ", near: ", vector(near),
+                   ", press: ", number(draw_.uniform(0, 0.01))});
   }
 
   Draw draw_;
@@ -338,6 +344,8 @@ class Drawing {
   Hand hand_{};
   Lines lines_;
   double own_energy_ = 0;
+  bool trembles_ = false;
+  double share_ = 1;  // of the stiffness, for each object
   std::vector<Placed> objects_;
   Vector3d way_{0, 0, 1};
 };

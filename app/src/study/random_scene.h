@@ -25,6 +25,9 @@ struct RandomScene {
   std::string text;  ///< YAML.
   /// Energy that the scene itself may give to the hand, J: of weights and of fields of force.
   double own_energy = 0;
+  /// Whether a friction of the scene is one that trembles at rest on coarse encoders by its nature:
+  /// naive and paper, kept to compare with [STABILITY 2.2].
+  bool trembles = false;
 };
 
 /// Draws a scene and a hand: one to three objects (shapes, small meshes in every way of contact,

@@ -25,8 +25,8 @@ TriangleMesh refined(const TriangleMesh& coarse) {
     const auto [place, fresh] = middles.try_emplace(
         {std::min(a, b), std::max(a, b)}, static_cast<std::int32_t>(mesh.vertices.size()));
     if (fresh) {
-      const Vector3d sum =
-          coarse.vertices[static_cast<std::size_t>(a)] + coarse.vertices[static_cast<std::size_t>(b)];
+      const Vector3d sum = coarse.vertices[static_cast<std::size_t>(a)] +
+                           coarse.vertices[static_cast<std::size_t>(b)];
       mesh.vertices.push_back(sum.normalized());
     }
     return place->second;
@@ -42,9 +42,9 @@ TriangleMesh refined(const TriangleMesh& coarse) {
 }
 
 TriangleMesh ball(int refinements) {
-  TriangleMesh mesh{{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}},
-                    {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4},
-                     {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}}};
+  TriangleMesh mesh{
+      {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}},
+      {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}}};
   for (int i = 0; i < refinements; ++i) mesh = refined(mesh);
   return mesh;
 }

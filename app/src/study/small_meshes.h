@@ -12,7 +12,7 @@ namespace thimble::app {
 
 /// Names the small closed meshes for random scenes, about 1 unit large: smooth and sharp, hollow,
 /// thin, and with a needle's point.
-inline constexpr std::array<std::string_view, 7> kSmallMeshes{"ball", "cube",   "ring",  "star",
+inline constexpr std::array<std::string_view, 7> kSmallMeshes{"ball",  "cube",   "ring", "star",
                                                               "plate", "needle", "wedge"};
 
 /// Makes one of them. Real-time: never from the servo thread.

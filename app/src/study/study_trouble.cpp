@@ -19,8 +19,9 @@
 namespace thimble::app {
 namespace {
 
-constexpr int kTries = 4;            // a scene that the loader refuses is drawn anew
-constexpr std::size_t kWorst = 10;  // kept
+constexpr int kTries = 4;              // a scene that the loader refuses is drawn anew
+constexpr std::size_t kWorst = 10;     // kept
+constexpr double kTrembleMost = 0.02;  // N RMS [STABILITY 6]
 
 /// Is a folder for scene files of this process; it goes with the object.
 class SceneFolder {
@@ -62,7 +63,7 @@ std::vector<double> measure(std::size_t cell, std::uint64_t seed, const RandomSc
     if (auto done = write_text(scene.text, file); !done) {
       throw std::runtime_error(done.error().message);
     }
-    found = run_for_trouble(file, scene.own_energy);
+    found = run_for_trouble(file, scene);
     std::error_code ignored;
     std::filesystem::remove(file, ignored);
     if (!found.refused) break;
@@ -75,14 +76,15 @@ std::vector<double> measure(std::size_t cell, std::uint64_t seed, const RandomSc
 std::string table_of(const CellNumbers& cells, std::uint64_t seed) {
   std::string csv =
       "cell,seed,refused,not_finite_ticks,fault,force_share,energy_excess_J,tremble_N,speed_m_s,"
-      "motor_work_J,contact_share\n";
+      "given_J,contact_share,must_tremble\n";
   char line[300];
   for (std::size_t cell = 0; cell < cells.size(); ++cell) {
     const TroubleFound f = trouble_of(cells[cell]);
     const auto attempt = static_cast<int>(cells[cell].back());
-    std::snprintf(line, sizeof line, "%zu,%s,%d,%.17g,%.17g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g\n", cell,
-                  seed_name(try_seed(seed, cell, attempt)).c_str(), attempt, f.not_finite, f.fault,
-                  f.force_share, f.excess, f.tremble, f.speed, f.work, f.contact);
+    std::snprintf(line, sizeof line, "%zu,%s,%d,%.17g,%.17g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%d\n",
+                  cell, seed_name(try_seed(seed, cell, attempt)).c_str(), attempt, f.not_finite,
+                  f.fault, f.force_share, f.excess, f.tremble, f.speed, f.given, f.contact,
+                  f.must_tremble ? 1 : 0);
     csv += line;
   }
   return csv;
@@ -109,8 +111,8 @@ driver::Result<void> keep_worst(const CellNumbers& cells, std::uint64_t seed,
     char heading[300];
     std::snprintf(heading, sizeof heading,
                   "# own_energy: %.9g J; showed an excess of %.3g J, a tremble of %.3g N, fault "
-                  "%.0f, %.3g of the arm's force.\n",
-                  scene.own_energy, f.excess, f.tremble, f.fault, f.force_share);
+                  "%.0f, %.3g of the arm's force; %.3g J given.\n",
+                  scene.own_energy, f.excess, f.tremble, f.fault, f.force_share, f.given);
     char name[40];
     std::snprintf(name, sizeof name, "%02zu_%s.yaml", rank + 1, seed_name(drawn).c_str());
     if (auto done = write_text(heading + scene.text, folder / name); !done) return done;
@@ -126,8 +128,9 @@ driver::Result<TroubleReport> study_trouble(const TroubleOptions& options,
   const auto arm = read_arm_file(options.arm_file);
   if (!arm) return arm.error();
   if (!arm->can_simulate || arm->shape == ArmShape::kFalcon) {
-    return driver::Error{arm->name + ": the search needs a simulated arm whose board reports by "
-                                     "itself; vintage_phantom.yaml is one."};
+    return driver::Error{arm->name +
+                         ": the search needs a simulated arm whose board reports by "
+                         "itself; vintage_phantom.yaml is one."};
   }
   const SceneFolder scratch;
   if (auto done = write_small_meshes(scratch.path() / "meshes"); !done) return done.error();
@@ -148,7 +151,8 @@ driver::Result<TroubleReport> study_trouble(const TroubleOptions& options,
   if (report.end != SweepEnd::kDone) return report;
 
   double refused = 0, given_up = 0, not_finite = 0, faults = 0, over = 0, grown = 0;
-  double excess = 0, share = 0, tremble = 0, contact = 0;
+  double given_scenes = 0, trembling = 0;
+  double excess = 0, given = 0, share = 0, tremble = 0, known = 0, contact = 0;
   for (const auto& cell : result->numbers) {
     const TroubleFound f = trouble_of(cell);
     refused += cell.back();
@@ -158,8 +162,11 @@ driver::Result<TroubleReport> study_trouble(const TroubleOptions& options,
     over += f.force_share > 1 + 1e-9 ? 1 : 0;
     grown += f.excess > kEnergyAllowed ? 1 : 0;
     excess = std::max(excess, f.excess);
+    given = std::max(given, f.given);
+    given_scenes += f.given > kEnergyAllowed ? 1 : 0;
+    trembling += !f.must_tremble && f.tremble > kTrembleMost ? 1 : 0;
     share = std::max(share, f.force_share);
-    tremble = std::max(tremble, f.tremble);
+    (f.must_tremble ? known : tremble) = std::max(f.must_tremble ? known : tremble, f.tremble);
     contact += f.contact;
   }
   const auto count = static_cast<double>(options.count);
@@ -171,8 +178,12 @@ driver::Result<TroubleReport> study_trouble(const TroubleOptions& options,
                     {"scenes_above_the_arms_force", over, "", "== 0"},
                     {"scenes_with_energy_beyond_the_hands", grown, "", "== 0"},
                     {"largest_energy_excess", excess, "J", ""},
+                    {"most_energy_given_by_the_motors", given, "J", ""},
+                    {"scenes_whose_motors_gave_over_1_mJ", given_scenes, "", ""},
                     {"largest_force_share", share, "", ""},
-                    {"largest_tremble_at_rest", tremble, "N", ""}};
+                    {"largest_tremble_at_rest", tremble, "N", ""},
+                    {"scenes_that_tremble_at_rest_over_20_mN", trembling, "", ""},
+                    {"largest_tremble_of_naive_and_paper_friction", known, "N", ""}};
   const std::filesystem::path& folder = sweep_options.folder;
   if (auto done = write_text(table_of(result->numbers, options.seed), folder / "trouble.csv");
       !done) {

@@ -26,9 +26,9 @@ struct TroubleReport {
 };
 
 /// Touches `count` random scenes by random hands for 2 s each (random_scene.h), and writes
-/// trouble.csv and the ten worst scenes into `worst/` of the sweep's folder. The promises: no number
-/// that is none, no force above the arm's limit, no fault, no energy beyond what the hand put in.
-/// Real-time: never from the servo thread.
+/// trouble.csv and the ten worst scenes into `worst/` of the sweep's folder. The promises: no
+/// number that is none, no force above the arm's limit, no fault, no energy beyond what the hand
+/// put in. Real-time: never from the servo thread.
 driver::Result<TroubleReport> study_trouble(const TroubleOptions& options,
                                             const SweepOptions& sweep,
                                             const std::atomic<bool>& stop);

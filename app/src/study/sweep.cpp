@@ -25,8 +25,8 @@ namespace {
 using Message = SweepTeam::Message;
 
 // A helper asks for work by the results of its last portion: 0, then CELL COUNT NUMBERS... of each;
-// or says what went wrong: 1, then one character a number. It is answered by its next cells; by none
-// it may go.
+// or says what went wrong: 1, then one character a number. It is answered by its next cells; by
+// none it may go.
 constexpr std::uint64_t kResults = 0;
 constexpr std::uint64_t kTrouble = 1;
 

@@ -51,8 +51,8 @@ struct SweepResult {
 
 /// Measures all cells, in parallel, with a progress bar if stderr is a terminal. Every result goes
 /// into the journal at once, so that a killed sweep loses only the cells it was at. In the end the
-/// journal holds the cells in order. Without `resume` an older journal is kept beside the new one as
-/// NAME.journal.old.
+/// journal holds the cells in order. Without `resume` an older journal is kept beside the new one
+/// as NAME.journal.old.
 ///
 /// Fails if the journal cannot be written or is one of another sweep, or if a cell throws.
 /// Real-time: never from the servo thread.

@@ -16,8 +16,8 @@ namespace thimble::app {
 /// cuts it off.
 class SweepJournal {
  public:
-  /// Opens a journal for `cells` cells of a sweep with this key. With `resume` and a file there, its
-  /// results go into `numbers`; else a new one is begun, and an old file is kept as FILE.old.
+  /// Opens a journal for `cells` cells of a sweep with this key. With `resume` and a file there,
+  /// its results go into `numbers`; else a new one is begun, and an old file is kept as FILE.old.
   /// Fails if the file is of another sweep or cannot be written. Real-time: never from the servo
   /// thread.
   static driver::Result<std::unique_ptr<SweepJournal>> open(const std::filesystem::path& file,

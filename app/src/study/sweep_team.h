@@ -16,9 +16,9 @@ class SweepTeam {
   using Message = std::vector<std::uint64_t>;
 
   /// Joins the team that this process was started in; nullptr if it was started alone. MPI is
-  /// loaded only here and only then, from libthimble_mpi.so beside the program. Fails if the program
-  /// was built without it: then each process would do the whole work.
-  /// Real-time: never from the servo thread.
+  /// loaded only here and only then, from libthimble_mpi.so beside the program. Fails if the
+  /// program was built without it: then each process would do the whole work. Real-time: never from
+  /// the servo thread.
   static driver::Result<std::unique_ptr<SweepTeam>> join();
 
   SweepTeam() = default;

@@ -51,7 +51,8 @@ class Account {
     }
     found_.force_share = std::max(found_.force_share, sent.norm() / force_max_);
     found_.speed = std::max(found_.speed, v.norm());
-    found_.work += plant.f_T_B().dot(p - p_);
+    work_ += plant.f_T_B().dot(p - p_);
+    found_.given = std::max(found_.given, work_ - own_energy_);
     // The hand's wish moves evenly within a step; its force is taken as the mean of both ends.
     const Vector3d way = hand_p - hand_p_;
     const Vector3d hand_v = way / period_;
@@ -93,6 +94,7 @@ class Account {
   Vector3d p_, v_, hand_p_;
   double first_ = 0;   // J
   double put_in_ = 0;  // J
+  double work_ = 0;    // J, of the motors
   double ticks_ = 0;
   std::array<std::vector<double>, 3> force_;
   TroubleFound found_;
@@ -109,33 +111,43 @@ double TroubleFound::badness() const {
   if (not_finite > 0) return 1e9;
   // A fault takes the force away, so what is beside it tells little.
   return (fault > 0 ? 1e6 : 0) + (force_share > 1 + 1e-9 ? 1e5 : 0) + excess / kEnergyAllowed +
-         0.1 * tremble;
+         given / kEnergyAllowed + (must_tremble ? 0 : 10 * tremble);
 }
 
-TroubleFound run_for_trouble(const std::filesystem::path& scene_file, double own_energy) {
-  TroubleFound found;
+TroubleFound run_for_trouble(const std::filesystem::path& scene_file, const RandomScene& scene) {
+  TroubleFound found{.must_tremble = scene.trembles};
   auto opened = Session::open(scene_file, {});
   if (!opened) {
     found.refused = true;
     return found;
   }
   Session& session = **opened;
-  Account account(session, own_energy);
+  Account account(session, scene.own_energy);
   const std::atomic<bool> stop{false};
   driver::run_servo(session.device(), session.clock(), driver::ForceLaw(session.touch()),
                     driver::TickSink(account),
                     {.period_ns = session.period_ns(), .ticks = session.ticks_planned()}, stop);
-  return account.close();
+  found = account.close();
+  found.must_tremble = scene.trembles;
+  return found;
 }
 
 std::vector<double> numbers_of(const TroubleFound& found) {
-  return {found.refused ? 1.0 : 0.0, found.not_finite, found.fault, found.force_share, found.excess,
-          found.tremble,             found.speed,      found.work,  found.contact};
+  return {found.refused ? 1.0 : 0.0,
+          found.not_finite,
+          found.fault,
+          found.force_share,
+          found.excess,
+          found.tremble,
+          found.speed,
+          found.given,
+          found.contact,
+          found.must_tremble ? 1.0 : 0.0};
 }
 
 TroubleFound trouble_of(const std::vector<double>& numbers) {
   TroubleFound found;
-  if (numbers.size() < 9) return found;
+  if (numbers.size() < 10) return found;
   found.refused = numbers[0] > 0;
   found.not_finite = numbers[1];
   found.fault = numbers[2];
@@ -143,8 +155,9 @@ TroubleFound trouble_of(const std::vector<double>& numbers) {
   found.excess = numbers[4];
   found.tremble = numbers[5];
   found.speed = numbers[6];
-  found.work = numbers[7];
+  found.given = numbers[7];
   found.contact = numbers[8];
+  found.must_tremble = numbers[9] > 0;
   return found;
 }
 

@@ -10,19 +10,22 @@ namespace thimble::app {
 
 /// Is what a scene showed on the virtual clock. All of it is finite, whatever happened.
 struct TroubleFound {
-  bool refused = false;    ///< The loader would not have it; nothing else is said.
-  double not_finite = 0;   ///< Ticks with a place or a force that is no number.
-  double fault = 0;        ///< Of the device, as a number; 0: none.
-  double force_share = 0;  ///< Largest force sent, of the arm's limit.
-  double excess = 0;       ///< See energy_excess below, J.
-  double tremble = 0;      ///< Force above 50 Hz in the last quarter of a second, N RMS.
-  double speed = 0;        ///< Largest of the tip, m/s.
-  double work = 0;         ///< What the motors did on the tip in all, J.
-  double contact = 0;      ///< Share of ticks in contact.
+  bool refused = false;       ///< The loader would not have it; nothing else is said.
+  double not_finite = 0;      ///< Ticks with a place or a force that is no number.
+  double fault = 0;           ///< Of the device, as a number; 0: none.
+  double force_share = 0;     ///< Largest force sent, of the arm's limit.
+  double excess = 0;          ///< See energy_excess below, J.
+  double tremble = 0;         ///< Force above 50 Hz in the last quarter of a second, N RMS.
+  bool must_tremble = false;  ///< As RandomScene::trembles.
+  double speed = 0;           ///< Largest of the tip, m/s.
+  double given = 0;           ///< Most that the motors had ever given to the tip, beyond what the
+                              ///< scene may give by itself, J; 0 of a passive scene.
+  double contact = 0;         ///< Share of ticks in contact.
 
   /// Tells whether the scene broke one of the promises.
   bool bad() const;
-  /// Orders scenes by how near they came to trouble; larger is worse.
+  /// Orders scenes by how near they came to trouble; larger is worse. Their tremble counts unless
+  /// it is known that they must.
   double badness() const;
 };
 
@@ -31,13 +34,12 @@ struct TroubleFound {
 /// was found].
 inline constexpr double kEnergyAllowed = 1e-3;
 
-/// Runs a scene file and keeps the account. `own_energy` (J) is what the scene may give by itself.
+/// Runs a scene's file and keeps the account.
 ///
 /// The account: the energy of arm and hand, (m v^2 + k (x - x_hand)^2) / 2, may grow by the work of
-/// whoever moves the hand, and by `own_energy`, and by nothing else; friction only takes away. Its
-/// largest excess over that is told.
-/// Real-time: never from the servo thread.
-TroubleFound run_for_trouble(const std::filesystem::path& scene_file, double own_energy);
+/// whoever moves the hand, and by the scene's own energy, and by nothing else; friction only takes
+/// away. Its largest excess over that is told. Real-time: never from the servo thread.
+TroubleFound run_for_trouble(const std::filesystem::path& scene_file, const RandomScene& scene);
 
 /// Turns what was found into the numbers of a sweep and back.
 std::vector<double> numbers_of(const TroubleFound& found);
