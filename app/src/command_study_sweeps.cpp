@@ -6,6 +6,7 @@
 #include "commands.h"
 #include "complain.h"
 #include "interrupt.h"
+#include "study/study_stability.h"
 #include "study/study_trouble.h"
 
 namespace thimble::app {
@@ -62,6 +63,37 @@ int run_by_sweep(const SweepChoice& choice, const Run& run) {
 }
 
 }  // namespace
+
+void add_stability_study(CLI::App& study_command, int& exit_code) {
+  CLI::App* command = study_command.add_subcommand(
+      "stability", "where walls are stable on an arm: the laws against the whole way, simulated");
+  auto choice = std::make_shared<SweepChoice>();
+  auto options = std::make_shared<StabilityOptions>();
+  choice->out = "study-stability";
+  choice->add_options(*command);
+  command->add_option("--arm", options->arm_file, "Arm file (app/arms)")
+      ->check(CLI::ExistingFile)
+      ->required();
+  command->add_option("--rate", options->rate, "Ticks per second, Hz")
+      ->check(CLI::Range(100, 20'000))
+      ->capture_default_str();
+  command
+      ->add_option("--hand", options->hand,
+                   "arm (as its file says), none, or MASS,STIFFNESS,DAMPING (kg, N/m, N s/m)")
+      ->capture_default_str();
+  command
+      ->add_option("--direction", options->direction,
+                   "X Y Z in the world, along which the wall stands; else that of the coarsest "
+                   "encoder")
+      ->expected(3);
+  command->add_flag("--coarse", options->coarse, "Few points: seconds instead of a minute");
+  command->callback([choice, options, &exit_code] {
+    exit_code =
+        run_by_sweep(*choice, [&](const SweepOptions& sweep, const std::atomic<bool>& stop) {
+          return study_stability(*options, sweep, stop);
+        });
+  });
+}
 
 void add_trouble_study(CLI::App& study_command, int& exit_code) {
   CLI::App* command = study_command.add_subcommand(

@@ -31,6 +31,8 @@ void add_mesh_page_command(CLI::App& mesh_command, int& exit_code);
 void add_study_command(CLI::App& app, int& exit_code);
 /// `thimble tune SCENE`: tells what arm, loop and hand can carry.
 void add_tune_command(CLI::App& app, int& exit_code);
+/// `thimble study stability`: measures where walls are stable.
+void add_stability_study(CLI::App& study_command, int& exit_code);
 /// `thimble study trouble`: touches random scenes.
 void add_trouble_study(CLI::App& study_command, int& exit_code);
 /// `thimble cost-probe SUBJECT STROKES`: what `thimble study cost` counts the instructions of.

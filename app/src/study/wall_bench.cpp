@@ -1,0 +1,185 @@
+#include "study/wall_bench.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <stdexcept>
+#include <utility>
+
+#include "arm_simulation.h"
+#include "thimble/driver/arms/hfab/hfab_models.h"
+#include "thimble/driver/clock.h"
+#include "thimble/driver/device.h"
+
+namespace thimble::app {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+// What a report can carry [DEVICES 1]: no limit is felt below it.
+constexpr double kCurrentMost = 32;  // A
+
+/// Is how the joints move the tip at home: its place, and the Jacobian in the world.
+struct HomePose {
+  Vector3d p_WT;
+  Matrix3d J_WT;
+};
+
+/// Finds where all counters are zero. Its error says why not.
+driver::Result<HomePose> home_pose(const ArmFile& arm) {
+  Vector3d p_BT;
+  Matrix3d J_BT;
+  switch (arm.shape) {
+    case ArmShape::kSerial:
+      arm.model.geometry.forward(arm.model.joint_angles({}), p_BT, J_BT);
+      break;
+    case ArmShape::kPolhem:
+      driver::hfab::polhem_model().geometry.forward(arm.model.joint_angles({}), p_BT, J_BT);
+      break;
+    case ArmShape::kFalcon:
+      return driver::Error{arm.name +
+                           ": the study needs an arm whose board reports by itself, which this one "
+                           "does not; vintage_phantom.yaml is one."};
+  }
+  return HomePose{arm.p_WB + arm.R_WB * p_BT, arm.R_WB * J_BT};
+}
+
+/// Tells the tip's jumps by one count of each joint, m in the world.
+Matrix3d count_ways(const ArmFile& arm, const HomePose& home) {
+  Matrix3d ways = home.J_WT;
+  for (int i = 0; i < 3; ++i) ways.col(i) *= arm.model.step(i);
+  return ways;
+}
+
+ArmDirection along(const Vector3d& n_W, const HomePose& home, const Matrix3d& ways) {
+  const Vector3d n = n_W.normalized();
+  return {.n_W = n, .p_WT = home.p_WT, .step = (ways.transpose() * n).cwiseAbs().sum()};
+}
+
+/// Makes the arm that the case asks for out of that of the file.
+ArmFile arm_of(const ArmFile& file, const WallCase& wall) {
+  ArmFile arm = file;
+  arm.velocity_corner_frequency = wall.velocity_corner;
+  arm.simulated.plant = wall.tip;
+  arm.simulated.hand = wall.hand;
+  arm.simulated.hand.tremor_amplitude = 0;
+  arm.simulated.firmware.report_period_ns = wall.report_ns > 0 ? wall.report_ns : wall.period_ns;
+  arm.simulated.wire = {.delay_in_ns = 0, .delay_out_ns = wall.delay_ns};
+  if (!wall.own_step && wall.step > 0) {
+    for (auto& encoder : arm.model.encoders) {
+      encoder.counts_per_motor_turn *= wall.direction.step / wall.step;
+    }
+  }
+  if (!wall.own_step && !(wall.step > 0)) arm.model.fractional_counts = true;
+  if (!wall.own_limits) {
+    arm.limits = {.force_max = 1e4,
+                  .speed_max = 1e4,
+                  .rise_max = 1e9,
+                  .soft_start = 1e-9,
+                  .stall_ns = 1'000'000'000,
+                  .watchdog_ns = 1'000'000'000};
+    arm.simulated.motors.current_max = kCurrentMost;
+    arm.simulated.firmware.current_range_mA = 32767;
+    for (auto& drive : arm.model.drives) drive.current_max = kCurrentMost;
+  }
+  return arm;
+}
+
+}  // namespace
+
+driver::Result<ArmDirection> coarsest_direction(const ArmFile& arm) {
+  const auto home = home_pose(arm);
+  if (!home) return home.error();
+  const Matrix3d ways = count_ways(arm, *home);
+  Eigen::Index coarsest = 0;
+  ways.colwise().norm().maxCoeff(&coarsest);
+  // Upwards or to the user, so that the same direction reads the same on every arm.
+  Vector3d way = ways.col(coarsest);
+  if (way.sum() < 0) way = -way;
+  return along(way, *home, ways);
+}
+
+driver::Result<ArmDirection> worst_direction_at_home(const ArmFile& arm) {
+  const auto home = home_pose(arm);
+  if (!home) return home.error();
+  const Matrix3d ways = count_ways(arm, *home);
+  // The sum of |n . way_i| is largest along the longest of the sums of the ways with any signs.
+  Vector3d longest = Vector3d::Zero();
+  for (int signs = 0; signs < 4; ++signs) {
+    const Vector3d sum =
+        ways.col(0) + (signs & 1 ? -1 : 1) * ways.col(1) + (signs & 2 ? -1 : 1) * ways.col(2);
+    if (sum.norm() > longest.norm()) longest = sum;
+  }
+  return along(longest, *home, ways);
+}
+
+driver::Result<ArmDirection> direction_at_home(const ArmFile& arm, const Vector3d& way_W) {
+  if (!(way_W.norm() > 0)) return driver::Error{"A direction needs a length above 0."};
+  const auto home = home_pose(arm);
+  if (!home) return home.error();
+  return along(way_W, *home, count_ways(arm, *home));
+}
+
+WallRun run_wall(const ArmFile& file, const WallCase& wall) {
+  const ArmFile arm = arm_of(file, wall);
+  const Vector3d n_W = wall.direction.n_W;
+  const Vector3d home_W = wall.direction.p_WT;
+  const auto wish = [&](double offset) { return Vector3d(home_W + offset * n_W); };
+  std::vector<std::pair<double, Vector3d>> way{{0.0, wish(wall.hand_from)}};
+  if (wall.hand_end > wall.hand_start) {
+    way.emplace_back(std::max(wall.hand_start, 1e-6), wish(wall.hand_from));
+    way.emplace_back(wall.hand_end, wish(wall.hand_to));
+  }
+  auto simulation = ArmSimulation::make(arm, way);
+  if (!simulation) throw std::invalid_argument(simulation.error().message);
+  const device_sim::SimulatedArm* const board = (*simulation)->board_arm();
+  if (board == nullptr) {
+    throw std::invalid_argument(arm.name + ": its board does not report by itself.");
+  }
+  driver::VirtualClock clock;
+  auto opened = driver::Device::open((*simulation)->wire(clock), (*simulation)->protocol(),
+                                     {.R_WB = arm.R_WB,
+                                      .p_WB = arm.p_WB,
+                                      .limits = arm.limits,
+                                      .velocity_corner_frequency = arm.velocity_corner_frequency,
+                                      .silence_limit_ns = 1'000'000'000},
+                                     clock.now_ns());
+  if (!opened) throw std::invalid_argument(opened.error().message);
+  driver::Device& device = **opened;
+  if (auto active = device.activate(); !active) {
+    throw std::invalid_argument(active.error().message);
+  }
+
+  WallRun run;
+  const double mass = wall.tip.mass + wall.hand.mass;
+  const auto end_ns = static_cast<std::int64_t>(wall.duration * 1e9);
+  std::size_t gap = 0;
+  std::int64_t tick_ns = 0;
+  for (std::size_t tick = 0; tick_ns < end_ns; ++tick) {
+    clock.sleep_until_ns(tick_ns);
+    const driver::DeviceState& state = device.read(tick_ns, tick_ns);
+    const double depth = n_W.dot(state.p_WT - home_W) - wall.offset;
+    double force = -wall.stiffness * depth - wall.damping * n_W.dot(state.v_WT);
+    // A wall pushes outwards, along the direction, and never pulls.
+    if (wall.one_sided) force = depth < 0 ? std::max(force, 0.0) : 0;
+    if (wall.kick != 0 && tick < 2) {
+      // The gate opens within the first tick, so that the kick comes with the second.
+      force = tick == 1 ? -wall.kick * mass / (static_cast<double>(wall.period_ns) * 1e-9) : 0;
+    }
+    device.write({.f_T_W = force * n_W, .touch = {}});
+    const Vector3d p_WT = arm.p_WB + arm.R_WB * board->plant().p_BT();
+    run.time.push_back(static_cast<double>(tick_ns) * 1e-9);
+    run.x.push_back(n_W.dot(p_WT - home_W));
+    run.v.push_back(n_W.dot(arm.R_WB * board->plant().v_BT()));
+    run.gave_up = device.fault() != driver::Fault::kNone ||
+                  !(std::abs(run.x.back() - wall.offset) < wall.give_up);
+    if (run.gave_up) break;
+    tick_ns += wall.gaps_ns.empty() ? wall.period_ns : wall.gaps_ns[gap];
+    if (++gap >= wall.gaps_ns.size()) gap = 0;
+  }
+  return run;
+}
+
+}  // namespace thimble::app

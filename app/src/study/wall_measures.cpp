@@ -1,0 +1,179 @@
+#include "study/wall_measures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "study/draw.h"
+
+namespace thimble::app {
+namespace {
+
+constexpr double kTouchSpeed = 0.1;  // m/s: a light tap [STABILITY 1.5 and 1.6]
+constexpr double kStartForce = 0.3;  // N, of a small swing: far above a step of the current
+
+/// Finds where a measure leaves what is good, in equal steps of the logarithm.
+template <class Good>
+double bisect(double least, double most, double share, const Good& good) {
+  if (!good(least)) return 0;
+  if (good(most)) return most;
+  while (most / least > 1 + share) {
+    const double middle = std::sqrt(least * most);
+    (good(middle) ? least : most) = middle;
+  }
+  return std::sqrt(least * most);
+}
+
+/// Tells the mean energy of a swing in a part of a run, J.
+double swing_energy(const WallRun& run, const WallCase& wall, double from, double to) {
+  const double mass = wall.tip.mass + wall.hand.mass;
+  const double spring = wall.stiffness + wall.hand.stiffness;
+  // Between the hand's wish at home and the spring's middle lies where the tip rests.
+  const double rest = wall.offset * wall.stiffness / spring;
+  double most = 0;
+  for (std::size_t i = 0; i < run.x.size(); ++i) {
+    if (run.time[i] < from || run.time[i] > to) continue;
+    const double x = run.x[i] - rest;
+    most = std::max(most, 0.5 * (mass * run.v[i] * run.v[i] + spring * x * x));
+  }
+  return most;
+}
+
+template <class Times>
+void shuffle(Times& times, std::uint64_t seed) {
+  Draw draw(seed);
+  for (std::size_t i = times.size(); i > 1; --i) std::swap(times[i - 1], times[draw.one_of(i)]);
+}
+
+}  // namespace
+
+double growth_rate(const ArmFile& arm, WallCase wall) {
+  const double start = std::min(0.001, kStartForce / wall.stiffness);
+  wall.offset = start;
+  wall.give_up = 50 * start;
+  const WallRun run = run_wall(arm, wall);
+  const double end = run.time.back();
+  // Long enough for a swing to show all its energy; the first tenth is how it began.
+  const double window = 0.15 * end;
+  const double early = swing_energy(run, wall, 0.1 * end, 0.1 * end + window);
+  const double late = swing_energy(run, wall, end - window, end);
+  const double passed = 0.9 * end - window;
+  if (!(early > 0 && late > 0)) return -std::numeric_limits<double>::infinity();
+  return 0.5 * std::log(late / early) / passed;
+}
+
+double linear_edge(const ArmFile& arm, WallCase wall, double least, double most) {
+  return bisect(least, most, 0.003, [&](double stiffness) {
+    wall.stiffness = stiffness;
+    return growth_rate(arm, wall) <= 0;
+  });
+}
+
+double last_swing(const ArmFile& arm, const WallCase& wall) {
+  const WallRun run = run_wall(arm, wall);
+  if (run.gave_up) return wall.give_up;
+  double low = HUGE_VAL, high = -HUGE_VAL;
+  for (std::size_t i = 0; i < run.x.size(); ++i) {
+    if (run.time[i] < 0.75 * wall.duration) continue;
+    low = std::min(low, run.x[i]);
+    high = std::max(high, run.x[i]);
+  }
+  return std::min(high - low, wall.give_up);
+}
+
+double pressed_swing(const ArmFile& arm, WallCase wall) {
+  constexpr double kWay = 0.005;  // m, to each side of the wall
+  wall.one_sided = true;
+  wall.offset = -kWay;
+  wall.hand_from = 0;
+  wall.hand_to = -2 * kWay;
+  // The soft start is over when the wall is reached.
+  wall.hand_start = arm.limits.soft_start + 0.02;
+  wall.hand_end = wall.hand_start + 2 * kWay / kTouchSpeed;
+  wall.duration = wall.hand_end + 1.4;
+  return last_swing(arm, wall);
+}
+
+double released_swing(const ArmFile& arm, WallCase wall, double speed, double duration) {
+  const double mass = wall.tip.mass + wall.hand.mass;
+  wall.one_sided = false;
+  wall.offset = speed * std::sqrt(mass / wall.stiffness);
+  // Between two counts the force is never zero: the worst place to come to rest [STABILITY 1.4].
+  const double step = wall.own_step ? wall.direction.step : wall.step;
+  if (step > 0) wall.offset = (std::floor(wall.offset / step) + 0.5) * step;
+  wall.duration = duration;
+  wall.give_up = std::min(20 * wall.offset, 0.05);
+  return last_swing(arm, wall);
+}
+
+double pressed_edge(const ArmFile& arm, WallCase wall, double quiet, double least, double most) {
+  return bisect(least, most, 0.005, [&](double stiffness) {
+    wall.stiffness = stiffness;
+    return pressed_swing(arm, wall) < quiet;
+  });
+}
+
+double released_edge(const ArmFile& arm, WallCase wall, double speed, double duration, double quiet,
+                     double least, double most) {
+  return bisect(least, most, 0.005, [&](double stiffness) {
+    wall.stiffness = stiffness;
+    return released_swing(arm, wall, speed, duration) < quiet;
+  });
+}
+
+Restitution throw_at_wall(const ArmFile& arm, WallCase wall, int phases) {
+  constexpr double kRunUp = 0.002;  // m
+  const double mass = wall.tip.mass + wall.hand.mass;
+  const double period = static_cast<double>(wall.period_ns) * 1e-9;
+  const double delay = static_cast<double>(wall.delay_ns) * 1e-9;
+  wall.one_sided = true;
+  wall.kick = kTouchSpeed;
+  // There and back, and half a swing in the wall.
+  const double swing = std::numbers::pi * std::sqrt(mass / wall.stiffness);
+  wall.duration = 2.5 * kRunUp / kTouchSpeed + 1.5 * swing + 3 * delay + 10 * period;
+  const auto late = static_cast<std::size_t>(std::ceil(delay / period));
+  Restitution found{0, HUGE_VAL, 0};
+  for (int i = 0; i < phases; ++i) {
+    wall.offset = -kRunUp - (i + 0.5) / phases * kTouchSpeed * period;
+    const WallRun run = run_wall(arm, wall);
+    // In: the last tick before the wall. Out: when the last force has ended, `late` ticks after the
+    // first that is seen outside again.
+    std::size_t k = 0;
+    while (k + 1 < run.x.size() && run.x[k + 1] > wall.offset) ++k;
+    const double in = run.v[k];
+    while (++k < run.x.size() && !(run.x[k] > wall.offset)) {
+    }
+    const double out = run.v[std::min(k + late, run.v.size() - 1)];
+    const double e = in < 0 ? std::abs(out / in) : 0;
+    found.mean += e / phases;
+    found.least = std::min(found.least, e);
+    found.most = std::max(found.most, e);
+  }
+  return found;
+}
+
+std::vector<std::int64_t> late_ticks(std::int64_t period_ns, double share, int late_periods,
+                                     std::uint64_t seed) {
+  constexpr std::size_t kCount = 2000;
+  std::vector<std::int64_t> gaps(kCount, period_ns);
+  const auto late = static_cast<std::size_t>(std::llround(share * kCount));
+  std::fill_n(gaps.begin(), late, period_ns * (1 + late_periods));
+  shuffle(gaps, seed);
+  return gaps;
+}
+
+std::vector<std::int64_t> spread_ticks(std::int64_t period_ns, double spread, std::int64_t grain_ns,
+                                       std::uint64_t seed) {
+  constexpr std::size_t kCount = 2000;
+  std::vector<std::int64_t> gaps;
+  const auto grains = static_cast<double>(period_ns / grain_ns);
+  for (std::size_t i = 0; i < kCount; ++i) {
+    const double u = (static_cast<double>(i) + 0.5) / kCount;
+    gaps.push_back(grain_ns * std::llround(grains * (1 + spread * (2 * u - 1))));
+  }
+  shuffle(gaps, seed);
+  return gaps;
+}
+
+}  // namespace thimble::app
