@@ -70,7 +70,6 @@ driver::Result<void> write_data(const std::vector<std::vector<double>>& rows,
   std::string text;
   char word[32];
   for (const auto& row : rows) {
-    if (row.empty()) text += "\n";
     for (const double value : row) {
       std::snprintf(word, sizeof word, "%.9g ", value);
       text += std::isfinite(value) ? word : "? ";
@@ -155,16 +154,16 @@ driver::Result<void> draw_kb_map(const StabilitySetup& setup, const std::vector<
   c << quiet_style() << "set multiplot\n"
     << heading("Where a wall is stable: stiffness against damping", subject(setup, true))
     << "unset grid\nset border 15 lw 1 lc rgb '" << kFaintInk << "'\n"
-    << "set key at screen 0.06, screen 0.155 left top Left reverse samplen 2.2 spacing 1.15 "
-       "maxrows 3 font ',14' textcolor rgb '"
+    << "set key at screen 0.06, screen 0.185 left top Left reverse samplen 2.2 spacing 1.2 "
+       "maxrows 5 font ',15' textcolor rgb '"
     << kInk << "'\n"
     << axis_labels("damping B of the wall [N s/m]", "stiffness K of the wall [N/m]")
-    << decade_axes() << panel(0.06, 0.435, 0.27, 0.83)
+    << decade_axes() << panel(0.06, 0.435, 0.29, 0.83)
     << panel_title("The linear arm: ideal encoders, no dry friction, small swings")
     << "set palette defined (-40 '#0072b2', -8 '#a9cfe6', 0 '#ffffff', 8 '#f3c19b', 40 '#d55e00')\n"
     << "set cbrange [-40:40]\nset cbtics 20\n"
-    << "set cblabel 'growth of a swing [1/s]' textcolor rgb '" << kInk << "' offset -0.8,0\n"
-    << "set colorbox user origin screen 0.443, screen 0.27 size screen 0.012, screen 0.56\n"
+    << "set cblabel 'growth of a swing [1/s]' textcolor rgb '" << kInk << "' offset -0.5,0\n"
+    << "set colorbox user origin screen 0.443, screen 0.29 size screen 0.012, screen 0.54\n"
     << "plot 'data/kb_linear.dat' using 1:2:3 with image pixels notitle, "
     << curve("kb_lines.dat", "1:2", kInk, "with points pt 7 ps 0.45", "measured edge") << ", "
     << curve("kb_lines.dat", "1:4", kInk, "with lines lw 1.5", "exact map of one tick") << ", "
@@ -174,16 +173,16 @@ driver::Result<void> draw_kb_map(const StabilitySetup& setup, const std::vector<
              "passive to any hand (Colgate, Schenkel)")
     << "\n";
   std::snprintf(note, sizeof note, "L = %.3g ms", 1e3 * latency);
-  c << "set key at screen 0.545, screen 0.155\n"
-    << panel(0.545, 0.92, 0.27, 0.83)
+  c << "set key at screen 0.555, screen 0.185\nset ylabel ''\n"
+    << panel(0.555, 0.92, 0.29, 0.83)
     << panel_title(setup.hand.stiffness > 0
-                       ? "The arm as it is, pressed into the wall at 0.1 m/s by the hand"
+                       ? "The arm as it is, pressed into the wall by the hand"
                        : "The arm as it is, let go so that it swings at 0.1 m/s")
     << "set palette defined (-2 '#ffffff', -1 '#f6e3c8', 0 '#f0c08a', 1 '#d55e00', 2 '#8c2d04', "
        "3 '#3b0f00')\n"
     << "set cbrange [-2:3]\nset cbtics ('rest' -2, '0.1' -1, '1' 0, '10' 1, '100' 2, '1000' 3)\n"
     << "set cblabel 'tremble at the end [encoder steps]' textcolor rgb '" << kInk << "'\n"
-    << "set colorbox user origin screen 0.928, screen 0.27 size screen 0.012, screen 0.56\n"
+    << "set colorbox user origin screen 0.928, screen 0.29 size screen 0.012, screen 0.54\n"
     << "plot 'data/kb_arm.dat' using 1:2:3 with image pixels notitle, "
     << curve("kb_lines.dat", "1:5", kInk, "with lines lw 2", "measured edge") << ", "
     << curve("kb_lines.dat", "1:7", kForceInk, "with lines lw 2 dt 3",
@@ -244,7 +243,8 @@ driver::Result<void> draw_restitution(const StabilitySetup& setup,
     << kInk << "'\n"
     << "set arrow 1 from graph 0, first 1 to graph 1, first 1 nohead lw 1.5 lc rgb '" << kFaintInk
     << "'\n"
-    << "set label 1 'above this line the wall gives energy away' at first 100, first 1.025 font "
+    << "set label 1 'above this line the wall gives energy away, below it takes some' at first "
+       "30000, first 0.98 right font "
        "',14' textcolor rgb '"
     << kFaintInk << "'\nplot ";
   for (std::size_t i = 0; i < series.size(); ++i) {
@@ -274,10 +274,11 @@ driver::Result<void> draw_cycles(const StabilitySetup& setup, const std::vector<
   const auto cycles = part_of(rows, StabilityPart::kCycle);
   std::ostringstream c;
   c << quiet_style() << "set multiplot\n"
-    << heading("Where coarse encoders and dry friction keep a wall trembling",
-               subject(setup, false) +
-                   "; β = b/(K T), σ = c/(K Δ); lines: corners of Diolaiti et al. and the speed "
-                   "that dry friction holds")
+    << heading(
+           "Where coarse encoders and dry friction keep a wall trembling",
+           "β = b/(K T), σ = c/(K Δ); blue: corners of Diolaiti et al.; green: where dry friction "
+           "just holds the start; " +
+               setup.arm.name + ", no hand")
     << "unset grid\nset border 15 lw 1 lc rgb '" << kFaintInk << "'\n"
     << "set palette defined (-3 '#ffffff', -2 '#f6e3c8', 0 '#f0c08a', 1 '#d55e00', 2.4 '#3b0f00')\n"
     << "set cbrange [-3:2.4]\nset cbtics ('rest' -3, '0.01' -2, '0.1' -1, '1' 0, '10' 1, '100' 2)\n"
@@ -303,7 +304,7 @@ driver::Result<void> draw_cycles(const StabilitySetup& setup, const std::vector<
         return done;
       }
       const int column = index % 2, row = index / 2;
-      const double left = 0.07 + 0.435 * column, top = 0.84 - 0.4 * row;
+      const double left = 0.075 + 0.43 * column, top = 0.84 - 0.4 * row;
       char title[120];
       std::snprintf(title, sizeof title, "%s start (%.3g steps), force %s",
                     start < 10 ? "small" : "large", start,
@@ -314,14 +315,16 @@ driver::Result<void> draw_cycles(const StabilitySetup& setup, const std::vector<
         << "set arrow 1 from 0.5, graph 0 to 0.5, graph 1 nohead front lw 2 lc rgb '" << kForceInk
         << "'\nset arrow 2 from graph 0, first " << 0.5 + delay << " to graph 1, first "
         << 0.5 + delay << " nohead front lw 2 lc rgb '" << kForceInk << "'\n";
-      const auto region = [&c](int tag, const char* text, double x, double y) {
+      const auto region = [&](int tag, const char* text, double x, double y, const char* ink) {
         c << "set label " << tag << " '" << text << "' at graph " << x << ", graph " << y
-          << " center front font ',14' textcolor rgb '" << kInk << "'\n";
+          << " center front font ',15' textcolor rgb '" << ink << "'\n";
       };
-      region(1, "comes to rest", 0.66, 0.66);
-      region(2, "flickers", 0.16, 0.66);
-      region(3, "holds small swings", 0.66, 0.06);
-      region(4, "grows", 0.16, 0.06);
+      const bool large = start > 10;
+      region(1, "comes to rest", 0.66, 0.66, kInk);
+      region(2, "flickers", 0.16, 0.66, kInk);
+      region(3, large ? "too fast for dry friction: grows" : "holds so small a swing", 0.66,
+             large ? 0.06 : 0.16, large ? "#ffffff" : kInk);
+      region(4, large ? "grows" : "", 0.16, 0.06, "#ffffff");
       c << (index == 0 ? "set colorbox user origin screen 0.92, screen 0.14 size screen 0.014, "
                          "screen 0.7\n"
                        : "unset colorbox\n")
@@ -374,7 +377,7 @@ driver::Result<void> draw_largest(const StabilitySetup& setup,
     << heading("What the largest stiffness of a wall depends on",
                "lines: the laws; dots: simulated through the whole way; " + setup.arm.name)
     << "set key top right samplen 2 spacing 1.2 font ',15' textcolor rgb '" << kInk << "'\n"
-    << panel(0.075, 0.475, 0.57, 0.83) << panel_title("Rate: free linear arm, b = 1 N s/m")
+    << panel(0.085, 0.475, 0.57, 0.83) << panel_title("Rate: free linear arm, b = 1 N s/m")
     << axis_labels("rate [kHz]", y)
     << "set logscale xy\nset xrange [0.22:9]\nset xtics (0.25, 0.5, 1, 2, 4, 8)\n"
     << "set yrange [80:40000]\nset key bottom right\nplot "
@@ -385,8 +388,7 @@ driver::Result<void> draw_largest(const StabilitySetup& setup,
     << axis_labels("delay beyond the hold [ms]", "")
     << "unset logscale x\nset xrange [-0.1:5.1]\nset xtics auto\nset yrange [150:3000]\n"
     << "set key top right\nplot " << pair("by_delay.dat", kForceInk, "", 0) << "\n"
-    << panel(0.075, 0.475, 0.11, 0.40)
-    << panel_title("Jitter: the same arm, 1 period, 3 missed ticks in a row")
+    << panel(0.085, 0.475, 0.11, 0.40) << panel_title("Jitter: the same arm")
     << axis_labels("late ticks, or spread of the period [%]", y)
     << "unset logscale y\nset xrange [-2:92]\nset yrange [0:2400]\nplot "
     << pair("by_late.dat", kDepthInk, "this share of ticks comes 3 periods late", 0) << ", "

@@ -21,6 +21,8 @@ using Eigen::Vector3d;
 // What a report can carry [DEVICES 1]: no limit is felt below it.
 constexpr double kCurrentMost = 32;  // A
 
+constexpr int kKickTicks = 4;  // so that no kick needs more than the motors' current
+
 /// Is how the joints move the tip at home: its place, and the Jacobian in the world.
 struct HomePose {
   Vector3d p_WT;
@@ -68,8 +70,13 @@ ArmFile arm_of(const ArmFile& file, const WallCase& wall) {
   arm.simulated.firmware.report_period_ns = wall.report_ns > 0 ? wall.report_ns : wall.period_ns;
   arm.simulated.wire = {.delay_in_ns = 0, .delay_out_ns = wall.delay_ns};
   if (!wall.own_step && wall.step > 0) {
+    const double finer = wall.direction.step / wall.step;
     for (auto& encoder : arm.model.encoders) {
-      encoder.counts_per_motor_turn *= wall.direction.step / wall.step;
+      // The home pose stays in the middle of a step, as it is with the arm's own encoders; where a
+      // wall stands between two steps decides whether it can rest.
+      const double home = std::round(encoder.home_counts * finer);
+      encoder.counts_per_motor_turn *= home != 0 ? home / encoder.home_counts : finer;
+      encoder.home_counts = static_cast<std::int32_t>(home);
     }
   }
   if (!wall.own_step && !(wall.step > 0)) arm.model.fractional_counts = true;
@@ -154,6 +161,7 @@ WallRun run_wall(const ArmFile& file, const WallCase& wall) {
 
   WallRun run;
   const double mass = wall.tip.mass + wall.hand.mass;
+  const double period = static_cast<double>(wall.period_ns) * 1e-9;
   const auto end_ns = static_cast<std::int64_t>(wall.duration * 1e9);
   std::size_t gap = 0;
   std::int64_t tick_ns = 0;
@@ -164,9 +172,9 @@ WallRun run_wall(const ArmFile& file, const WallCase& wall) {
     double force = -wall.stiffness * depth - wall.damping * n_W.dot(state.v_WT);
     // A wall pushes outwards, along the direction, and never pulls.
     if (wall.one_sided) force = depth < 0 ? std::max(force, 0.0) : 0;
-    if (wall.kick != 0 && tick < 2) {
-      // The gate opens within the first tick, so that the kick comes with the second.
-      force = tick == 1 ? -wall.kick * mass / (static_cast<double>(wall.period_ns) * 1e-9) : 0;
+    if (wall.kick != 0 && tick <= kKickTicks) {
+      // The gate opens within the first tick, so that the kick begins with the second.
+      force = tick > 0 ? -wall.kick * mass / (kKickTicks * period) : 0;
     }
     device.write({.f_T_W = force * n_W, .touch = {}});
     const Vector3d p_WT = arm.p_WB + arm.R_WB * board->plant().p_BT();

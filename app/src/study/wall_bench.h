@@ -41,7 +41,7 @@ struct WallCase {
   std::int64_t delay_ns = 0;          ///< From encoder to motor.
   std::vector<std::int64_t> gaps_ns;  ///< Times between ticks, used in turn; empty: the period.
   double offset = 0;  ///< Where the wall stands or the spring's middle lies, from home, m.
-  double kick = 0;    ///< Speed that one tick of force gives the free tip at first, m/s.
+  double kick = 0;    ///< Speed that the first ticks give the free tip, against the direction, m/s.
   double hand_from = 0, hand_to = 0;    ///< The hand's wish moves between them, from home, m,
   double hand_start = 0, hand_end = 0;  ///< between these times, s.
   double duration = 1;                  ///< s

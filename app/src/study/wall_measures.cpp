@@ -11,6 +11,8 @@ namespace thimble::app {
 namespace {
 
 constexpr double kTouchSpeed = 0.1;  // m/s: a light tap [STABILITY 1.5 and 1.6]
+constexpr double kFarthest = 50;     // of its start: a small swing that comes so far grows
+constexpr double kFloor = 1e-3;      // of its energy: a swing below that is seen no more
 constexpr double kStartForce = 0.3;  // N, of a small swing: far above a step of the current
 
 /// Finds where a measure leaves what is good, in equal steps of the logarithm.
@@ -40,6 +42,17 @@ double swing_energy(const WallRun& run, const WallCase& wall, double from, doubl
   return most;
 }
 
+/// Tells how fast a swing of so much energy died that soon came down to the steps of the motors'
+/// current, 1/s.
+double decay_rate(const WallRun& run, const WallCase& wall, double first) {
+  double last = run.time.back();
+  for (std::size_t i = run.x.size(); i-- > 0;) {
+    last = run.time[i];
+    if (swing_energy(run, wall, last, last) > kFloor * first) break;
+  }
+  return 0.5 * std::log(kFloor) / std::max(last, 1e-3);
+}
+
 template <class Times>
 void shuffle(Times& times, std::uint64_t seed) {
   Draw draw(seed);
@@ -51,16 +64,17 @@ void shuffle(Times& times, std::uint64_t seed) {
 double growth_rate(const ArmFile& arm, WallCase wall) {
   const double start = std::min(0.001, kStartForce / wall.stiffness);
   wall.offset = start;
-  wall.give_up = 50 * start;
+  wall.give_up = kFarthest * start;
   const WallRun run = run_wall(arm, wall);
+  if (run.gave_up) return std::log(kFarthest) / std::max(run.time.back(), 1e-3);
   const double end = run.time.back();
   // Long enough for a swing to show all its energy; the first tenth is how it began.
   const double window = 0.15 * end;
   const double early = swing_energy(run, wall, 0.1 * end, 0.1 * end + window);
   const double late = swing_energy(run, wall, end - window, end);
-  const double passed = 0.9 * end - window;
-  if (!(early > 0 && late > 0)) return -std::numeric_limits<double>::infinity();
-  return 0.5 * std::log(late / early) / passed;
+  const double first = swing_energy(run, wall, 0, 0.02 * end);
+  if (!(early > kFloor * first)) return decay_rate(run, wall, first);
+  return 0.5 * std::log(late / early) / (0.9 * end - window);
 }
 
 double linear_edge(const ArmFile& arm, WallCase wall, double least, double most) {
@@ -98,12 +112,15 @@ double pressed_swing(const ArmFile& arm, WallCase wall) {
 double released_swing(const ArmFile& arm, WallCase wall, double speed, double duration) {
   const double mass = wall.tip.mass + wall.hand.mass;
   wall.one_sided = false;
-  wall.offset = speed * std::sqrt(mass / wall.stiffness);
-  // Between two counts the force is never zero: the worst place to come to rest [STABILITY 1.4].
   const double step = wall.own_step ? wall.direction.step : wall.step;
-  if (step > 0) wall.offset = (std::floor(wall.offset / step) + 0.5) * step;
+  // Between two counts the force is never zero: the worst place to come to rest [STABILITY 1.4].
+  // There the tip lies and the hand wants to be when the kick comes.
+  wall.offset = wall.hand_from = wall.hand_to = 0.5 * step;
+  wall.hand_start = wall.hand_end = 0;
+  wall.kick = speed;
+  const double reach = speed * std::sqrt(mass / (wall.stiffness + wall.hand.stiffness));
   wall.duration = duration;
-  wall.give_up = std::min(20 * wall.offset, 0.05);
+  wall.give_up = std::min(20 * reach, 0.05);
   return last_swing(arm, wall);
 }
 
