@@ -162,7 +162,7 @@ driver::Result<void> draw_kb_map(const StabilitySetup& setup, const std::vector<
     << panel_title("The linear arm: ideal encoders, no dry friction, small swings")
     << "set palette defined (-40 '#0072b2', -8 '#a9cfe6', 0 '#ffffff', 8 '#f3c19b', 40 '#d55e00')\n"
     << "set cbrange [-40:40]\nset cbtics 20\n"
-    << "set cblabel 'growth of a swing [1/s]' textcolor rgb '" << kInk << "' offset -0.5,0\n"
+    << "set cblabel 'growth of a swing [1/s]' textcolor rgb '" << kInk << "' offset 0.6,0\n"
     << "set colorbox user origin screen 0.443, screen 0.29 size screen 0.012, screen 0.54\n"
     << "plot 'data/kb_linear.dat' using 1:2:3 with image pixels notitle, "
     << curve("kb_lines.dat", "1:2", kInk, "with points pt 7 ps 0.45", "measured edge") << ", "
@@ -184,8 +184,9 @@ driver::Result<void> draw_kb_map(const StabilitySetup& setup, const std::vector<
     << "set cblabel 'tremble at the end [encoder steps]' textcolor rgb '" << kInk << "'\n"
     << "set colorbox user origin screen 0.928, screen 0.29 size screen 0.012, screen 0.54\n"
     << "plot 'data/kb_arm.dat' using 1:2:3 with image pixels notitle, "
-    << curve("kb_lines.dat", "1:5", kInk, "with lines lw 2", "measured edge") << ", "
-    << curve("kb_lines.dat", "1:7", kForceInk, "with lines lw 2 dt 3",
+    << curve("kb_lines.dat", "1:5", kInk, "with lines lw 2", "measured edge: trembles by 1/4 step")
+    << ", "
+    << curve("kb_lines.dat", "1:7", kForceInk, "with lines lw 3 dt 3",
              "the same in the worst direction")
     << ", "
     << curve("kb_lines.dat", "1:6", kGreenInk, "with lines lw 3 dt 2",
@@ -232,8 +233,9 @@ driver::Result<void> draw_restitution(const StabilitySetup& setup,
   std::ostringstream c;
   c << quiet_style()
     << heading("How a wall throws back what hits it",
-               subject(setup, false) +
-                   ", ideal encoders, no dry friction; 0.1 m/s, mean over all sampling phases")
+               setup.arm.name +
+                   " without a hand, ideal encoders, no dry friction; 0.1 m/s; dots: mean over all "
+                   "sampling phases, bars: least and most")
     << panel(0.08, 0.73, 0.12, 0.86)
     << "set logscale x\nset xrange [90:35000]\nset yrange [0.5:2]\n"
     << "set logscale y\nset ytics (0.5, 0.6, 0.7, 0.8, 0.9, 1, 1.1, 1.2, 1.4, 1.6, 1.8, 2)\n"
@@ -377,30 +379,32 @@ driver::Result<void> draw_largest(const StabilitySetup& setup,
     << heading("What the largest stiffness of a wall depends on",
                "lines: the laws; dots: simulated through the whole way; " + setup.arm.name)
     << "set key top right samplen 2 spacing 1.2 font ',15' textcolor rgb '" << kInk << "'\n"
-    << panel(0.085, 0.475, 0.57, 0.83) << panel_title("Rate: free linear arm, b = 1 N s/m")
+    << panel(0.095, 0.475, 0.57, 0.83) << panel_title("Rate: free linear arm, b = 1 N s/m")
     << axis_labels("rate [kHz]", y)
     << "set logscale xy\nset xrange [0.22:9]\nset xtics (0.25, 0.5, 1, 2, 4, 8)\n"
-    << "set yrange [80:40000]\nset key bottom right\nplot "
+    << "set ytics (100, 300, 1000, 3000, 10000, 30000)\nset yrange [80:40000]\nset key bottom "
+       "right\nplot "
     << pair("by_rate.dat", kForceInk, "no delay", 0) << ", "
     << pair("by_rate.dat", kDepthInk, "one period late", 1)
     << "\nunset label 101\nunset label 102\n"
     << panel(0.575, 0.975, 0.57, 0.83) << panel_title("Delay: the same arm")
     << axis_labels("delay beyond the hold [ms]", "")
-    << "unset logscale x\nset xrange [-0.1:5.1]\nset xtics auto\nset yrange [150:3000]\n"
+    << "unset logscale x\nset xrange [-0.1:5.1]\nset xtics auto\nset ytics (200, 300, 500, 1000, "
+       "2000)\nset yrange [150:3000]\n"
     << "set key top right\nplot " << pair("by_delay.dat", kForceInk, "", 0) << "\n"
-    << panel(0.085, 0.475, 0.11, 0.40) << panel_title("Jitter: the same arm")
+    << panel(0.095, 0.475, 0.11, 0.40) << panel_title("Jitter: the same arm")
     << axis_labels("late ticks, or spread of the period [%]", y)
-    << "unset logscale y\nset xrange [-2:92]\nset yrange [0:2400]\nplot "
+    << "unset logscale y\nset xrange [-2:92]\nset ytics 500\nset yrange [0:2800]\nplot "
     << pair("by_late.dat", kDepthInk, "this share of ticks comes 3 periods late", 0) << ", "
     << pair("by_spread.dat", kForceInk, "periods spread evenly by ± this", 0) << "\n"
     << panel(0.575, 0.975, 0.11, 0.40)
     << panel_title("Encoder step: the arm with its dry friction and the hand")
     << axis_labels("encoder step at the tip [µm]", "")
     << "set logscale xy\nset xrange [2.5:360]\nset xtics (3, 10, 30, 100, 300)\n"
-    << "set yrange [150:5000]\nset ytics auto\n"
+    << "set yrange [150:5000]\nset ytics (200, 500, 1000, 2000, 5000)\n"
     << "set label 1 'what damping and dry friction hold' at graph 0.03, graph 0.62 font ',14' "
        "textcolor rgb '"
-    << kFaintInk << "'\nset label 2 '2 c / Δ' at graph 0.8, graph 0.42 font ',14' textcolor rgb '"
+    << kFaintInk << "'\nset label 2 '2 c / Δ' at graph 0.86, graph 0.42 font ',14' textcolor rgb '"
     << kFaintInk << "'\nplot " << pair("by_step.dat", kForceInk, "", 0) << "\nunset multiplot\n";
   return draw_plot({"stiffness", 1600, 1100, c.str()}, folder);
 }

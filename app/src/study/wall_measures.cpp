@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kTouchSpeed = 0.1;  // m/s: a light tap [STABILITY 1.5 and 1.6]
 constexpr double kFarthest = 50;     // of its start: a small swing that comes so far grows
+constexpr double kCeiling = 400;     // times its energy at first
 constexpr double kFloor = 1e-3;      // of its energy: a swing below that is seen no more
 constexpr double kStartForce = 0.3;  // N, of a small swing: far above a step of the current
 
@@ -27,30 +28,18 @@ double bisect(double least, double most, double share, const Good& good) {
   return std::sqrt(least * most);
 }
 
-/// Tells the mean energy of a swing in a part of a run, J.
-double swing_energy(const WallRun& run, const WallCase& wall, double from, double to) {
+/// Tells the energy of a swing at each tick, J.
+std::vector<double> swing_energies(const WallRun& run, const WallCase& wall) {
   const double mass = wall.tip.mass + wall.hand.mass;
   const double spring = wall.stiffness + wall.hand.stiffness;
   // Between the hand's wish at home and the spring's middle lies where the tip rests.
   const double rest = wall.offset * wall.stiffness / spring;
-  double most = 0;
+  std::vector<double> energies;
   for (std::size_t i = 0; i < run.x.size(); ++i) {
-    if (run.time[i] < from || run.time[i] > to) continue;
     const double x = run.x[i] - rest;
-    most = std::max(most, 0.5 * (mass * run.v[i] * run.v[i] + spring * x * x));
+    energies.push_back(0.5 * (mass * run.v[i] * run.v[i] + spring * x * x));
   }
-  return most;
-}
-
-/// Tells how fast a swing of so much energy died that soon came down to the steps of the motors'
-/// current, 1/s.
-double decay_rate(const WallRun& run, const WallCase& wall, double first) {
-  double last = run.time.back();
-  for (std::size_t i = run.x.size(); i-- > 0;) {
-    last = run.time[i];
-    if (swing_energy(run, wall, last, last) > kFloor * first) break;
-  }
-  return 0.5 * std::log(kFloor) / std::max(last, 1e-3);
+  return energies;
 }
 
 template <class Times>
@@ -67,14 +56,27 @@ double growth_rate(const ArmFile& arm, WallCase wall) {
   wall.give_up = kFarthest * start;
   const WallRun run = run_wall(arm, wall);
   if (run.gave_up) return std::log(kFarthest) / std::max(run.time.back(), 1e-3);
-  const double end = run.time.back();
-  // Long enough for a swing to show all its energy; the first tenth is how it began.
-  const double window = 0.15 * end;
-  const double early = swing_energy(run, wall, 0.1 * end, 0.1 * end + window);
-  const double late = swing_energy(run, wall, end - window, end);
-  const double first = swing_energy(run, wall, 0, 0.02 * end);
-  if (!(early > kFloor * first)) return decay_rate(run, wall, first);
-  return 0.5 * std::log(late / early) / (0.9 * end - window);
+  const std::vector<double> energies = swing_energies(run, wall);
+  const std::size_t count = energies.size();
+  const auto most = [&](double from, double to) {
+    const auto at = [&](double share) {
+      return energies.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(count));
+    };
+    return *std::max_element(at(from), std::max(at(from) + 1, at(to)));
+  };
+  // What soon grows far or dies down to the steps of the motors' current is timed; the rest is
+  // compared early and late, each long enough for a swing to show all its energy.
+  const double first = most(0, 0.01);
+  const double late = most(0.85, 1);
+  std::size_t last_alive = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (energies[i] > kCeiling * first) return 0.5 * std::log(kCeiling) / run.time[i];
+    if (energies[i] > kFloor * first) last_alive = i;
+  }
+  if (late < kFloor * first) {
+    return 0.5 * std::log(kFloor) / std::max(run.time[last_alive], 1e-3);
+  }
+  return 0.5 * std::log(late / most(0.1, 0.25)) / (0.75 * run.time.back());
 }
 
 double linear_edge(const ArmFile& arm, WallCase wall, double least, double most) {
