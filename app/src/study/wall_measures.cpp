@@ -32,12 +32,9 @@ double bisect(double least, double most, double share, const Good& good) {
 std::vector<double> swing_energies(const WallRun& run, const WallCase& wall) {
   const double mass = wall.tip.mass + wall.hand.mass;
   const double spring = wall.stiffness + wall.hand.stiffness;
-  // Between the hand's wish at home and the spring's middle lies where the tip rests.
-  const double rest = wall.offset * wall.stiffness / spring;
   std::vector<double> energies;
   for (std::size_t i = 0; i < run.x.size(); ++i) {
-    const double x = run.x[i] - rest;
-    energies.push_back(0.5 * (mass * run.v[i] * run.v[i] + spring * x * x));
+    energies.push_back(0.5 * (mass * run.v[i] * run.v[i] + spring * run.x[i] * run.x[i]));
   }
   return energies;
 }
@@ -52,7 +49,8 @@ void shuffle(Times& times, std::uint64_t seed) {
 
 double growth_rate(const ArmFile& arm, WallCase wall) {
   const double start = std::min(0.001, kStartForce / wall.stiffness);
-  wall.offset = start;
+  const double mass = wall.tip.mass + wall.hand.mass;
+  wall.kick = start * std::sqrt((wall.stiffness + wall.hand.stiffness) / mass);
   wall.give_up = kFarthest * start;
   const WallRun run = run_wall(arm, wall);
   if (run.gave_up) return std::log(kFarthest) / std::max(run.time.back(), 1e-3);

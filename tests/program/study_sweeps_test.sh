@@ -1,0 +1,79 @@
+#!/usr/bin/env bash
+# Sweeps: the laws agree with what is measured, nothing goes wrong in random scenes, and a sweep
+# gives the same bytes whether it was killed and resumed, or shared by any number of processes.
+source "$(dirname "$0")/expect.sh" "$@"
+
+arm=$source_dir/app/arms/vintage_phantom.yaml
+# What was compared: everything but the pictures.
+results() { (cd "$1" && find . -type f ! -name '*.png' ! -name '*.svg' ! -path './data/*' -exec sha256sum {} + | sort -k 2); }
+same() {
+  checks=$((checks + 1))
+  if ! diff <(results "$1") <(results "$2") >diff.txt; then
+    echo "FAILED: $1 and $2 differ:"
+    head -5 diff.txt
+    failures=$((failures + 1))
+  fi
+}
+
+# The laws, on few points.
+expect 0 'limit_cycles_rest_as_predicted' "$thimble" study stability --arm "$arm" --coarse --out laws
+expect 1 '' grep -q '"met": false' laws/figures.json
+expect 0 '"z_width.area"' cat laws/summary.json
+expect 0 '^damping_Ns_m,stiffness_N_m,law_N_m,exact_N_m' head -1 laws/kb_edge_linear.csv
+if command -v gnuplot >/dev/null; then
+  for picture in kb_map restitution limit_cycles stiffness; do
+    expect 0 'PNG' head -c 4 "laws/$picture.png"
+    expect 0 '<svg' head -c 2000 "laws/$picture.svg"
+  done
+fi
+
+# Random scenes: none may break a promise.
+count=${THIMBLE_LONG:+20000}
+trouble=("$thimble" study trouble --arm "$arm" --count "${count:-150}")
+expect 0 'scenes_with_energy_beyond_the_hands.* met' "${trouble[@]}" --out whole
+expect 1 '' grep -q '"met": false' whole/figures.json
+expect 0 '^10$' bash -c 'ls whole/worst/*.yaml | wc -l'
+
+# Killed in the middle, again and again, then resumed.
+small=("$thimble" study trouble --arm "$arm" --count 60)
+expect 0 'scenes ' "${small[@]}" --out plain
+for kill in 1 2; do
+  "${small[@]}" --out killed --jobs 1 --resume >/dev/null 2>&1 &
+  running=$!
+  until [ "$(wc -l 2>/dev/null <killed/trouble.journal || echo 0)" -gt $((kill * 15)) ]; do
+    kill -0 $running 2>/dev/null || break
+    sleep 0.01
+  done
+  kill -9 $running 2>/dev/null
+  wait $running 2>/dev/null
+done
+checks=$((checks + 1))
+if [ "$(wc -l <killed/trouble.journal)" -ge 61 ]; then
+  echo "FAILED: the sweep was over before it could be killed"
+  failures=$((failures + 1))
+fi
+expect 0 'scenes ' "${small[@]}" --out killed --resume
+same plain killed
+# Finished: nothing is measured again, and the options must be the same.
+expect 0 'scenes ' "${small[@]}" --out killed --resume
+same plain killed
+expect 2 'without|leave out --resume' "${small[@]}" --seed 2 --out killed --resume
+
+# Shared by several processes.
+mpi=$(dirname "$thimble")/libthimble_mpi.so
+if ! command -v mpirun >/dev/null || [ ! -f "$mpi" ]; then
+  echo "NOT TESTED: sweeps shared by mpirun; install openmpi-bin and libopenmpi-dev, then build again."
+else
+  export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+  for ranks in 1 2 4; do
+    expect 0 'scenes ' mpirun --oversubscribe -n $ranks "${small[@]}" --out mpi$ranks
+    same plain mpi$ranks
+  done
+fi
+
+expect 2 'neither arm nor none' "$thimble" study stability --arm "$arm" --hand soft --out bad
+expect 2 'needs an arm whose board reports by itself' "$thimble" study stability --arm "$source_dir/app/arms/falcon.yaml" --out bad
+expect 2 'needs a length' "$thimble" study stability --arm "$arm" --direction 0 0 0 --out bad
+: >a_file
+expect 2 'a_file' "$thimble" study trouble --arm "$arm" --out a_file
+finish
