@@ -83,8 +83,8 @@ void add_stability_study(CLI::App& study_command, int& exit_code) {
       ->capture_default_str();
   command
       ->add_option("--direction", options->direction,
-                   "X Y Z in the world, along which the wall stands; else that of the coarsest "
-                   "encoder")
+                   "X Y Z in the world, along which the wall stands; else the worst of the "
+                   "base's axes")
       ->expected(3);
   command->add_flag("--coarse", options->coarse, "Few points: seconds instead of a minute");
   command->callback([choice, options, &exit_code] {

@@ -97,14 +97,14 @@ driver::Result<void> write_kb_lines(const StabilitySetup& setup,
                                     const std::filesystem::path& folder) {
   const auto linear = part_of(rows, StabilityPart::kLinearEdge);
   const auto arm = part_of(rows, StabilityPart::kArmEdge);
-  const auto worst = part_of(rows, StabilityPart::kWorstEdge);
+  const auto diagonal = part_of(rows, StabilityPart::kDiagonalEdge);
   const device_sim::PlantSettings& tip = setup.arm.simulated.plant;
   std::vector<std::vector<double>> lines;
   for (std::size_t i = 0; i < linear.size(); ++i) {
     const double b = linear[i].cell.b;
     lines.push_back({std::log10(b), log_of(linear[i].found[0]), log_of(linear[i].law),
                      log_of(linear[i].exact), log_of(arm[i].found[0]), log_of(arm[i].law),
-                     log_of(worst[i].found[0]),
+                     log_of(diagonal[i].found[0]),
                      log_of(passive_stiffness(tip.viscous, b, setup.period(), setup.delay()))});
   }
   return write_data(lines, folder / "data/kb_lines.dat");
@@ -187,7 +187,7 @@ driver::Result<void> draw_kb_map(const StabilitySetup& setup, const std::vector<
     << curve("kb_lines.dat", "1:5", kInk, "with lines lw 2", "measured edge: trembles by 1/4 step")
     << ", "
     << curve("kb_lines.dat", "1:7", kForceInk, "with lines lw 3 dt 3",
-             "the same in the worst direction")
+             "the same where all encoders step at once")
     << ", "
     << curve("kb_lines.dat", "1:6", kGreenInk, "with lines lw 3 dt 2",
              "law: what damping and dry friction hold")

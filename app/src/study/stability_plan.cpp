@@ -121,7 +121,7 @@ void add_maps(const StabilitySetup& setup, std::vector<StabilityCell>& cells) {
     }
   }
   for (const auto part :
-       {StabilityPart::kLinearEdge, StabilityPart::kArmEdge, StabilityPart::kWorstEdge}) {
+       {StabilityPart::kLinearEdge, StabilityPart::kArmEdge, StabilityPart::kDiagonalEdge}) {
     for (const double damping : octaves(kDampingLeast, kDampingMost, setup.coarse ? 11 : 101)) {
       cells.push_back({part, 0, damping});
     }
@@ -217,8 +217,8 @@ std::vector<double> measure_stability(const StabilitySetup& setup, const Stabili
     }
     case StabilityPart::kArmEdge:
       return {arm_edge(setup, setup.direction, cell.b)};
-    case StabilityPart::kWorstEdge:
-      return {arm_edge(setup, setup.worst, cell.b)};
+    case StabilityPart::kDiagonalEdge:
+      return {arm_edge(setup, setup.diagonal, cell.b)};
     case StabilityPart::kRestitution: {
       WallCase wall = linear_case(setup);
       wall.hand = {};

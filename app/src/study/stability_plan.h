@@ -26,18 +26,18 @@ struct StabilitySetup {
 
 /// Says which sweep a cell is of, and what its numbers are.
 enum class StabilityPart {
-  kLinearMap,    ///< a: stiffness, b: damping -> growth rate of the linear arm, 1/s.
-  kArmMap,       ///< a: stiffness, b: damping -> last swing of the arm as it is, m.
-  kLinearEdge,   ///< b: damping -> largest stiffness of the linear arm, N/m.
-  kArmEdge,      ///< b: damping -> the same of the arm as it is.
-  kWorstEdge,    ///< b: damping -> the same in the worst direction.
-  kRestitution,  ///< a: stiffness, b: damping, c: period s, d: delay s -> mean, least, most.
-  kCycle,        ///< a: sigma, b: beta, c: start in counts, d: delay in periods -> swing in counts.
-  kRateEdge,     ///< c: period s, d: delay s -> largest stiffness of an arm with b = 1.
-  kDelayEdge,    ///< c: period s, d: delay s -> the same.
-  kLateEdge,     ///< a: share of ticks that come three late -> the same.
-  kSpreadEdge,   ///< a: spread of the period -> the same.
-  kStepEdge      ///< a: encoder step m -> largest stiffness that comes to rest, with the hand.
+  kLinearMap,     ///< a: stiffness, b: damping -> growth rate of the linear arm, 1/s.
+  kArmMap,        ///< a: stiffness, b: damping -> last swing of the arm as it is, m.
+  kLinearEdge,    ///< b: damping -> largest stiffness of the linear arm, N/m.
+  kArmEdge,       ///< b: damping -> the same of the arm as it is.
+  kDiagonalEdge,  ///< b: damping -> the same along the diagonal.
+  kRestitution,   ///< a: stiffness, b: damping, c: period s, d: delay s -> mean, least, most.
+  kCycle,       ///< a: sigma, b: beta, c: start in counts, d: delay in periods -> swing in counts.
+  kRateEdge,    ///< c: period s, d: delay s -> largest stiffness of an arm with b = 1.
+  kDelayEdge,   ///< c: period s, d: delay s -> the same.
+  kLateEdge,    ///< a: share of ticks that come three late -> the same.
+  kSpreadEdge,  ///< a: spread of the period -> the same.
+  kStepEdge     ///< a: encoder step m -> largest stiffness that comes to rest, with the hand.
 };
 
 /// Is one cell of the study's sweep.

@@ -58,7 +58,7 @@ void add_laws(const StabilitySetup& setup, StabilityRow& row) {
                                 latency_of({.period = setup.period(), .delay = setup.delay()}));
       break;
     case StabilityPart::kArmEdge:
-    case StabilityPart::kWorstEdge:
+    case StabilityPart::kDiagonalEdge:
       row.law = arm_law(setup, cell.b);
       break;
     case StabilityPart::kRestitution: {
@@ -99,7 +99,7 @@ const std::vector<Table>& tables() {
       {"kb_map_arm.csv", "stiffness_N_m,damping_Ns_m,swing_m", {kArmMap}},
       {"kb_edge_linear.csv", "damping_Ns_m,stiffness_N_m,law_N_m,exact_N_m", {kLinearEdge}},
       {"kb_edge_arm.csv", "damping_Ns_m,stiffness_N_m,law_N_m", {kArmEdge}},
-      {"kb_edge_worst_direction.csv", "damping_Ns_m,stiffness_N_m,law_N_m", {kWorstEdge}},
+      {"kb_edge_diagonal.csv", "damping_Ns_m,stiffness_N_m,law_N_m", {kDiagonalEdge}},
       {"restitution.csv",
        "period_s,delay_s,damping_Ns_m,stiffness_N_m,mean,least,most,law",
        {kRestitution}},
@@ -122,7 +122,7 @@ std::vector<double> columns(const StabilityRow& row) {
     case StabilityPart::kLinearEdge:
       return {c.b, found, row.law, row.exact};
     case StabilityPart::kArmEdge:
-    case StabilityPart::kWorstEdge:
+    case StabilityPart::kDiagonalEdge:
       return {c.b, found, row.law};
     case StabilityPart::kRestitution:
       return {c.c, c.d, c.b, c.a, found, row.found.at(1), row.found.at(2), row.law};
@@ -258,14 +258,13 @@ std::vector<Figure> stability_figures(const StabilitySetup& setup,
   };
   const auto linear = part_of(rows, StabilityPart::kLinearEdge);
   const auto arm = part_of(rows, StabilityPart::kArmEdge);
-  const auto worst = part_of(rows, StabilityPart::kWorstEdge);
-  const ZWidth width = z_width(arm), worst_width = z_width(worst), ideal = z_width(linear);
+  const auto diagonal = part_of(rows, StabilityPart::kDiagonalEdge);
+  const ZWidth width = z_width(arm), diagonal_width = z_width(diagonal), ideal = z_width(linear);
   figures.push_back({"z_width.area", width.area, "N/m N s/m", ""});
   figures.push_back({"z_width.stiffness_max", width.stiffness_max, "N/m", ""});
   figures.push_back({"z_width.decades_above_jnd", width.decades, "log10(K_max/K_JND)", ""});
-  figures.push_back({"z_width.worst_direction.area", worst_width.area, "N/m N s/m", ""});
-  figures.push_back(
-      {"z_width.worst_direction.stiffness_max", worst_width.stiffness_max, "N/m", ""});
+  figures.push_back({"z_width.diagonal.area", diagonal_width.area, "N/m N s/m", ""});
+  figures.push_back({"z_width.diagonal.stiffness_max", diagonal_width.stiffness_max, "N/m", ""});
   figures.push_back({"z_width.linear.area", ideal.area, "N/m N s/m", ""});
   figures.push_back({"z_width.linear.stiffness_max", ideal.stiffness_max, "N/m", ""});
 

@@ -49,7 +49,7 @@ driver::Result<void> write_summary(const StabilitySetup& setup, const std::vecto
                      {"damping_Ns_m", setup.hand.damping}};
   summary["loop"] = {{"period_s", setup.period()}, {"delay_s", setup.delay()}};
   summary["studied"] = way(setup.direction);
-  summary["worst"] = way(setup.worst);
+  summary["diagonal"] = way(setup.diagonal);
   for (const Figure& figure : figures) {
     auto& entry = summary["figures"][figure.name];
     entry["value"] = figure.value;
@@ -71,16 +71,16 @@ driver::Result<StabilitySetup> stability_setup(const StabilityOptions& options) 
   }
   auto hand = hand_of(options, *arm);
   if (!hand) return hand.error();
-  auto worst = worst_direction_at_home(*arm);
-  if (!worst) return worst.error();
+  auto diagonal = diagonal_direction_at_home(*arm);
+  if (!diagonal) return diagonal.error();
   const auto& d = options.direction;
   auto direction =
-      d.size() == 3 ? direction_at_home(*arm, {d[0], d[1], d[2]}) : coarsest_direction(*arm);
+      d.size() == 3 ? direction_at_home(*arm, {d[0], d[1], d[2]}) : worst_direction_at_home(*arm);
   if (!direction) return direction.error();
   return StabilitySetup{.arm = std::move(arm).value(),
                         .hand = *hand,
                         .direction = *direction,
-                        .worst = *worst,
+                        .diagonal = *diagonal,
                         .period_ns = std::llround(1e9 / options.rate),
                         .coarse = options.coarse};
 }

@@ -19,7 +19,7 @@ struct StabilityOptions {
   std::filesystem::path arm_file;
   double rate = 1000;             ///< Hz
   std::string hand = "arm";       ///< "arm": as its file says; "none"; or "MASS,STIFFNESS,DAMPING".
-  std::vector<double> direction;  ///< Along which the wall stands, in the world; empty: coarsest.
+  std::vector<double> direction;  ///< Along which the wall stands, in the world; empty: the worst.
   bool coarse = false;            ///< Few points, for tests.
 };
 

@@ -4,10 +4,12 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
 #include "arm_simulation.h"
+#include "energy_choice.h"
 #include "thimble/driver/arms/hfab/hfab_models.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/device.h"
@@ -23,41 +25,36 @@ constexpr double kCurrentMost = 32;  // A
 
 constexpr int kKickTicks = 4;  // so that no kick needs more than the motors' current
 
-/// Is how the joints move the tip at home: its place, and the Jacobian in the world.
-struct HomePose {
+/// Is the tip's jumps by one count of each joint at home, m in the world.
+struct HomeSteps {
   Vector3d p_WT;
-  Matrix3d J_WT;
+  Matrix3d ways_W;
 };
 
-/// Finds where all counters are zero. Its error says why not.
-driver::Result<HomePose> home_pose(const ArmFile& arm) {
+driver::Result<HomeSteps> home_steps(const ArmFile& arm) {
+  const Vector3d q = arm.model.joint_angles({});
   Vector3d p_BT;
   Matrix3d J_BT;
   switch (arm.shape) {
     case ArmShape::kSerial:
-      arm.model.geometry.forward(arm.model.joint_angles({}), p_BT, J_BT);
+      arm.model.geometry.forward(q, p_BT, J_BT);
       break;
     case ArmShape::kPolhem:
-      driver::hfab::polhem_model().geometry.forward(arm.model.joint_angles({}), p_BT, J_BT);
+      driver::hfab::polhem_model().geometry.forward(q, p_BT, J_BT);
       break;
     case ArmShape::kFalcon:
       return driver::Error{arm.name +
                            ": the study needs an arm whose board reports by itself, which this one "
                            "does not; vintage_phantom.yaml is one."};
   }
-  return HomePose{arm.p_WB + arm.R_WB * p_BT, arm.R_WB * J_BT};
+  HomeSteps steps{arm.p_WB + arm.R_WB * p_BT, arm.R_WB * J_BT};
+  for (int i = 0; i < 3; ++i) steps.ways_W.col(i) *= arm.model.step(i);
+  return steps;
 }
 
-/// Tells the tip's jumps by one count of each joint, m in the world.
-Matrix3d count_ways(const ArmFile& arm, const HomePose& home) {
-  Matrix3d ways = home.J_WT;
-  for (int i = 0; i < 3; ++i) ways.col(i) *= arm.model.step(i);
-  return ways;
-}
-
-ArmDirection along(const Vector3d& n_W, const HomePose& home, const Matrix3d& ways) {
-  const Vector3d n = n_W.normalized();
-  return {.n_W = n, .p_WT = home.p_WT, .step = (ways.transpose() * n).cwiseAbs().sum()};
+ArmDirection along(const Vector3d& way_W, const HomeSteps& home) {
+  const Vector3d n_W = way_W.normalized();
+  return {.n_W = n_W, .p_WT = home.p_WT, .step = (home.ways_W.transpose() * n_W).cwiseAbs().sum()};
 }
 
 /// Makes the arm that the case asks for out of that of the file.
@@ -96,22 +93,21 @@ ArmFile arm_of(const ArmFile& file, const WallCase& wall) {
 
 }  // namespace
 
-driver::Result<ArmDirection> coarsest_direction(const ArmFile& arm) {
-  const auto home = home_pose(arm);
+driver::Result<ArmDirection> worst_direction_at_home(const ArmFile& arm) {
+  const auto home = home_steps(arm);
   if (!home) return home.error();
-  const Matrix3d ways = count_ways(arm, *home);
-  Eigen::Index coarsest = 0;
-  ways.colwise().norm().maxCoeff(&coarsest);
-  // Upwards or to the user, so that the same direction reads the same on every arm.
-  Vector3d way = ways.col(coarsest);
-  if (way.sum() < 0) way = -way;
-  return along(way, *home, ways);
+  ArmDirection worst;
+  for (int axis = 0; axis < 3; ++axis) {
+    const ArmDirection one = along(arm.R_WB.col(axis), *home);
+    if (one.step > worst.step) worst = one;
+  }
+  return worst;
 }
 
-driver::Result<ArmDirection> worst_direction_at_home(const ArmFile& arm) {
-  const auto home = home_pose(arm);
+driver::Result<ArmDirection> diagonal_direction_at_home(const ArmFile& arm) {
+  const auto home = home_steps(arm);
   if (!home) return home.error();
-  const Matrix3d ways = count_ways(arm, *home);
+  const Matrix3d& ways = home->ways_W;
   // The sum of |n . way_i| is largest along the longest of the sums of the ways with any signs.
   Vector3d longest = Vector3d::Zero();
   for (int signs = 0; signs < 4; ++signs) {
@@ -119,14 +115,14 @@ driver::Result<ArmDirection> worst_direction_at_home(const ArmFile& arm) {
         ways.col(0) + (signs & 1 ? -1 : 1) * ways.col(1) + (signs & 2 ? -1 : 1) * ways.col(2);
     if (sum.norm() > longest.norm()) longest = sum;
   }
-  return along(longest, *home, ways);
+  return along(longest, *home);
 }
 
 driver::Result<ArmDirection> direction_at_home(const ArmFile& arm, const Vector3d& way_W) {
   if (!(way_W.norm() > 0)) return driver::Error{"A direction needs a length above 0."};
-  const auto home = home_pose(arm);
+  const auto home = home_steps(arm);
   if (!home) return home.error();
-  return along(way_W, *home, count_ways(arm, *home));
+  return along(way_W, *home);
 }
 
 WallRun run_wall(const ArmFile& file, const WallCase& wall) {
@@ -145,11 +141,16 @@ WallRun run_wall(const ArmFile& file, const WallCase& wall) {
   if (board == nullptr) {
     throw std::invalid_argument(arm.name + ": its board does not report by itself.");
   }
+  driver::EnergyGuardSettings energy;
+  if (wall.own_limits) {
+    energy = energy_settings(arm, 1e9 / static_cast<double>(wall.period_ns), std::nullopt);
+  }
   driver::VirtualClock clock;
   auto opened = driver::Device::open((*simulation)->wire(clock), (*simulation)->protocol(),
                                      {.R_WB = arm.R_WB,
                                       .p_WB = arm.p_WB,
                                       .limits = arm.limits,
+                                      .energy = energy,
                                       .velocity_corner_frequency = arm.velocity_corner_frequency,
                                       .silence_limit_ns = 1'000'000'000},
                                      clock.now_ns());

@@ -16,11 +16,12 @@ struct ArmDirection {
   double step = 0;  ///< How far the tip seems to jump along it when all encoders step at once, m.
 };
 
-/// Finds the direction in which the coarsest encoder alone moves the tip at home. Fails if the home
-/// pose cannot be found. Real-time: never from the servo thread.
-driver::Result<ArmDirection> coarsest_direction(const ArmFile& arm);
-/// Finds the direction in which the encoders' steps add up to the most [STABILITY 9].
+/// Finds the worst direction for a wall: the axis of the base along which the steps of all encoders
+/// add up to the most against its dry friction (worst_direction.h says why an axis). Fails if the
+/// arm has no pose to simulate. Real-time: never from the servo thread.
 driver::Result<ArmDirection> worst_direction_at_home(const ArmFile& arm);
+/// Finds the direction in which the encoders' steps add up to the most whatever the friction.
+driver::Result<ArmDirection> diagonal_direction_at_home(const ArmFile& arm);
 /// Takes a direction as it is; its length does not matter, but it must have one.
 driver::Result<ArmDirection> direction_at_home(const ArmFile& arm, const Eigen::Vector3d& way_W);
 
