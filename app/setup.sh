@@ -17,6 +17,7 @@ packages=(
   libhdf5-dev                            # recordings
   libspdlog-dev libcli11-dev             # messages and arguments of the program
   gnuplot-nox fonts-dejavu-core          # pictures
+  libopenmpi-dev openmpi-bin             # sweeps over several machines; built and run without, too
   libgtest-dev libbenchmark-dev          # tests and benchmarks
 )
 

@@ -13,7 +13,7 @@ struct StabilitySetup {
   ArmFile arm;
   device_sim::HandSettings hand;
   ArmDirection direction;  ///< That of all sweeps.
-  ArmDirection worst;      ///< In which the encoders' steps add up to the most.
+  ArmDirection diagonal;   ///< In which the encoders' steps add up to the most.
   std::int64_t period_ns = 1'000'000;
   bool coarse = false;
 
