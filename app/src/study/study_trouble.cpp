@@ -19,8 +19,9 @@
 namespace thimble::app {
 namespace {
 
-constexpr int kTries = 4;              // a scene that the loader refuses is drawn anew
+constexpr int kTries = 12;             // a scene that the loader refuses is drawn anew
 constexpr std::size_t kWorst = 10;     // kept
+constexpr double kGivenMuch = 1e-3;    // J, told
 constexpr double kTrembleMost = 0.02;  // N RMS [STABILITY 6]
 
 /// Is a folder for scene files of this process; it goes with the object.
@@ -163,7 +164,7 @@ driver::Result<TroubleReport> study_trouble(const TroubleOptions& options,
     grown += f.excess > kEnergyAllowed ? 1 : 0;
     excess = std::max(excess, f.excess);
     given = std::max(given, f.given);
-    given_scenes += f.given > kEnergyAllowed ? 1 : 0;
+    given_scenes += f.given > kGivenMuch ? 1 : 0;
     trembling += !f.must_tremble && f.tremble > kTrembleMost ? 1 : 0;
     share = std::max(share, f.force_share);
     (f.must_tremble ? known : tremble) = std::max(f.must_tremble ? known : tremble, f.tremble);

@@ -29,10 +29,9 @@ struct TroubleFound {
   double badness() const;
 };
 
-/// Is how much energy (J) a run may show beyond what the hand put in. It is the account's own error
-/// in the worst case, a press of 5 N at 1 m/s seen in steps of 1 ms [chosen; the study prints what
-/// was found].
-inline constexpr double kEnergyAllowed = 1e-3;
+/// Is how much energy (J) a run may show beyond what the hand put in: what hard case 11 allows a
+/// guarded wall, and the gate's energy stage lets go before it acts [STABILITY 7].
+inline constexpr double kEnergyAllowed = 2e-3;
 
 /// Runs a scene's file and keeps the account.
 ///
