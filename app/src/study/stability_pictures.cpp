@@ -98,6 +98,7 @@ driver::Result<void> write_kb_lines(const StabilitySetup& setup,
   const auto linear = part_of(rows, StabilityPart::kLinearEdge);
   const auto arm = part_of(rows, StabilityPart::kArmEdge);
   const auto diagonal = part_of(rows, StabilityPart::kDiagonalEdge);
+  const auto guarded = part_of(rows, StabilityPart::kGuardedEdge);
   const device_sim::PlantSettings& tip = setup.arm.simulated.plant;
   std::vector<std::vector<double>> lines;
   for (std::size_t i = 0; i < linear.size(); ++i) {
@@ -105,7 +106,8 @@ driver::Result<void> write_kb_lines(const StabilitySetup& setup,
     lines.push_back({std::log10(b), log_of(linear[i].found[0]), log_of(linear[i].law),
                      log_of(linear[i].exact), log_of(arm[i].found[0]), log_of(arm[i].law),
                      log_of(diagonal[i].found[0]),
-                     log_of(passive_stiffness(tip.viscous, b, setup.period(), setup.delay()))});
+                     log_of(passive_stiffness(tip.viscous, b, setup.period(), setup.delay())),
+                     log_of(guarded[i].found[0])});
   }
   return write_data(lines, folder / "data/kb_lines.dat");
 }
@@ -154,8 +156,8 @@ driver::Result<void> draw_kb_map(const StabilitySetup& setup, const std::vector<
   c << quiet_style() << "set multiplot\n"
     << heading("Where a wall is stable: stiffness against damping", subject(setup, true))
     << "unset grid\nset border 15 lw 1 lc rgb '" << kFaintInk << "'\n"
-    << "set key at screen 0.06, screen 0.185 left top Left reverse samplen 2.2 spacing 1.2 "
-       "maxrows 5 font ',15' textcolor rgb '"
+    << "set key at screen 0.06, screen 0.195 left top Left reverse samplen 2.2 spacing 1.2 "
+       "maxrows 6 font ',15' textcolor rgb '"
     << kInk << "'\n"
     << axis_labels("damping B of the wall [N s/m]", "stiffness K of the wall [N/m]")
     << decade_axes() << panel(0.06, 0.435, 0.29, 0.83)
@@ -173,11 +175,10 @@ driver::Result<void> draw_kb_map(const StabilitySetup& setup, const std::vector<
              "passive to any hand (Colgate, Schenkel)")
     << "\n";
   std::snprintf(note, sizeof note, "L = %.3g ms", 1e3 * latency);
-  c << "set key at screen 0.555, screen 0.185\nset ylabel ''\n"
+  c << "set key at screen 0.555, screen 0.195\nset ylabel ''\n"
     << panel(0.555, 0.92, 0.29, 0.83)
-    << panel_title(setup.hand.stiffness > 0
-                       ? "The arm as it is, pressed into the wall by the hand"
-                       : "The arm as it is, let go so that it swings at 0.1 m/s")
+    << panel_title(setup.hand.stiffness > 0 ? "The arm without energy stage, pressed in by the hand"
+                                            : "The arm without energy stage, let go at 0.1 m/s")
     << "set palette defined (-2 '#ffffff', -1 '#f6e3c8', 0 '#f0c08a', 1 '#d55e00', 2 '#8c2d04', "
        "3 '#3b0f00')\n"
     << "set cbrange [-2:3]\nset cbtics ('rest' -2, '0.1' -1, '1' 0, '10' 1, '100' 2, '1000' 3)\n"
@@ -186,7 +187,10 @@ driver::Result<void> draw_kb_map(const StabilitySetup& setup, const std::vector<
     << "plot 'data/kb_arm.dat' using 1:2:3 with image pixels notitle, "
     << curve("kb_lines.dat", "1:5", kInk, "with lines lw 2", "measured edge: trembles by 1/4 step")
     << ", "
-    << curve("kb_lines.dat", "1:7", kForceInk, "with lines lw 3 dt 3",
+    << curve("kb_lines.dat", "1:9", kForceInk, "with lines lw 2.5",
+             "the same with the arm's energy stage")
+    << ", "
+    << curve("kb_lines.dat", "1:7", kInk, "with lines lw 3 dt 3",
              "the same where all encoders step at once")
     << ", "
     << curve("kb_lines.dat", "1:6", kGreenInk, "with lines lw 3 dt 2",

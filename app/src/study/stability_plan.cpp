@@ -45,7 +45,8 @@ WallCase linear_case(const StabilitySetup& setup) {
   return wall;
 }
 
-/// Is the arm as it is, with its friction, encoders and limits.
+/// Is the arm with its friction, encoders and limits, but without the energy stage of its gate, of
+/// which the laws know nothing.
 WallCase arm_case(const StabilitySetup& setup, const ArmDirection& direction) {
   WallCase wall = linear_case(setup);
   wall.direction = direction;
@@ -80,8 +81,10 @@ double arm_swing(const StabilitySetup& setup, const WallCase& wall) {
                                   : released_swing(setup.arm, wall, kReleaseSpeed, 2);
 }
 
-double arm_edge(const StabilitySetup& setup, const ArmDirection& direction, double damping) {
+double arm_edge(const StabilitySetup& setup, const ArmDirection& direction, double damping,
+                bool guarded) {
   WallCase wall = arm_case(setup, direction);
+  wall.own_energy = guarded;
   wall.damping = damping;
   const double quiet = kQuiet * direction.step;
   return setup.hand.stiffness > 0
@@ -120,8 +123,8 @@ void add_maps(const StabilitySetup& setup, std::vector<StabilityCell>& cells) {
       for (const double stiffness : stiffnesses) cells.push_back({part, stiffness, damping});
     }
   }
-  for (const auto part :
-       {StabilityPart::kLinearEdge, StabilityPart::kArmEdge, StabilityPart::kDiagonalEdge}) {
+  for (const auto part : {StabilityPart::kLinearEdge, StabilityPart::kArmEdge,
+                          StabilityPart::kGuardedEdge, StabilityPart::kDiagonalEdge}) {
     for (const double damping : octaves(kDampingLeast, kDampingMost, setup.coarse ? 11 : 101)) {
       cells.push_back({part, 0, damping});
     }
@@ -216,9 +219,11 @@ std::vector<double> measure_stability(const StabilitySetup& setup, const Stabili
       return {linear_edge(setup.arm, wall, kStiffnessLeast, kStiffnessMost)};
     }
     case StabilityPart::kArmEdge:
-      return {arm_edge(setup, setup.direction, cell.b)};
+      return {arm_edge(setup, setup.direction, cell.b, false)};
+    case StabilityPart::kGuardedEdge:
+      return {arm_edge(setup, setup.direction, cell.b, true)};
     case StabilityPart::kDiagonalEdge:
-      return {arm_edge(setup, setup.diagonal, cell.b)};
+      return {arm_edge(setup, setup.diagonal, cell.b, false)};
     case StabilityPart::kRestitution: {
       WallCase wall = linear_case(setup);
       wall.hand = {};

@@ -27,10 +27,11 @@ struct StabilitySetup {
 /// Says which sweep a cell is of, and what its numbers are.
 enum class StabilityPart {
   kLinearMap,     ///< a: stiffness, b: damping -> growth rate of the linear arm, 1/s.
-  kArmMap,        ///< a: stiffness, b: damping -> last swing of the arm as it is, m.
+  kArmMap,        ///< a: stiffness, b: damping -> last swing of the arm without energy stage, m.
   kLinearEdge,    ///< b: damping -> largest stiffness of the linear arm, N/m.
-  kArmEdge,       ///< b: damping -> the same of the arm as it is.
-  kDiagonalEdge,  ///< b: damping -> the same along the diagonal.
+  kArmEdge,       ///< b: damping -> the same of the arm without energy stage.
+  kGuardedEdge,   ///< b: damping -> the same of the arm as it is, with the gate's energy stage.
+  kDiagonalEdge,  ///< b: damping -> that without energy stage along the diagonal.
   kRestitution,   ///< a: stiffness, b: damping, c: period s, d: delay s -> mean, least, most.
   kCycle,       ///< a: sigma, b: beta, c: start in counts, d: delay in periods -> swing in counts.
   kRateEdge,    ///< c: period s, d: delay s -> largest stiffness of an arm with b = 1.

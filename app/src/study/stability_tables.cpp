@@ -58,6 +58,7 @@ void add_laws(const StabilitySetup& setup, StabilityRow& row) {
                                 latency_of({.period = setup.period(), .delay = setup.delay()}));
       break;
     case StabilityPart::kArmEdge:
+    case StabilityPart::kGuardedEdge:
     case StabilityPart::kDiagonalEdge:
       row.law = arm_law(setup, cell.b);
       break;
@@ -99,6 +100,7 @@ const std::vector<Table>& tables() {
       {"kb_map_arm.csv", "stiffness_N_m,damping_Ns_m,swing_m", {kArmMap}},
       {"kb_edge_linear.csv", "damping_Ns_m,stiffness_N_m,law_N_m,exact_N_m", {kLinearEdge}},
       {"kb_edge_arm.csv", "damping_Ns_m,stiffness_N_m,law_N_m", {kArmEdge}},
+      {"kb_edge_with_energy_stage.csv", "damping_Ns_m,stiffness_N_m,law_N_m", {kGuardedEdge}},
       {"kb_edge_diagonal.csv", "damping_Ns_m,stiffness_N_m,law_N_m", {kDiagonalEdge}},
       {"restitution.csv",
        "period_s,delay_s,damping_Ns_m,stiffness_N_m,mean,least,most,law",
@@ -122,6 +124,7 @@ std::vector<double> columns(const StabilityRow& row) {
     case StabilityPart::kLinearEdge:
       return {c.b, found, row.law, row.exact};
     case StabilityPart::kArmEdge:
+    case StabilityPart::kGuardedEdge:
     case StabilityPart::kDiagonalEdge:
       return {c.b, found, row.law};
     case StabilityPart::kRestitution:
@@ -263,6 +266,9 @@ std::vector<Figure> stability_figures(const StabilitySetup& setup,
   figures.push_back({"z_width.area", width.area, "N/m N s/m", ""});
   figures.push_back({"z_width.stiffness_max", width.stiffness_max, "N/m", ""});
   figures.push_back({"z_width.decades_above_jnd", width.decades, "log10(K_max/K_JND)", ""});
+  const ZWidth guarded = z_width(part_of(rows, StabilityPart::kGuardedEdge));
+  figures.push_back({"z_width.with_energy_stage.area", guarded.area, "N/m N s/m", ""});
+  figures.push_back({"z_width.with_energy_stage.stiffness_max", guarded.stiffness_max, "N/m", ""});
   figures.push_back({"z_width.diagonal.area", diagonal_width.area, "N/m N s/m", ""});
   figures.push_back({"z_width.diagonal.stiffness_max", diagonal_width.stiffness_max, "N/m", ""});
   figures.push_back({"z_width.linear.area", ideal.area, "N/m N s/m", ""});

@@ -142,7 +142,7 @@ WallRun run_wall(const ArmFile& file, const WallCase& wall) {
     throw std::invalid_argument(arm.name + ": its board does not report by itself.");
   }
   driver::EnergyGuardSettings energy;
-  if (wall.own_limits) {
+  if (wall.own_energy) {
     energy = energy_settings(arm, 1e9 / static_cast<double>(wall.period_ns), std::nullopt);
   }
   driver::VirtualClock clock;

@@ -35,6 +35,7 @@ struct WallCase {
   bool one_sided = false;
   double step = 0;             ///< Of the encoders along the direction, m; 0: ideal encoders.
   bool own_step = false;       ///< Keeps the encoders that the arm has.
+  bool own_energy = false;     ///< Keeps the energy stage of its gate; else there is none.
   bool own_limits = false;     ///< Keeps the limits of its gate and motors; else none is felt.
   double velocity_corner = 0;  ///< Hz
   std::int64_t period_ns = 1'000'000;

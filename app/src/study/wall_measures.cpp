@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kTouchSpeed = 0.1;  // m/s: a light tap [STABILITY 1.5 and 1.6]
 constexpr double kFarthest = 50;     // of its start: a small swing that comes so far grows
-constexpr double kCeiling = 400;     // times its energy at first
+constexpr double kCeiling = 25;      // times its energy at first
 constexpr double kFloor = 1e-3;      // of its energy: a swing below that is seen no more
 constexpr double kStartForce = 0.3;  // N, of a small swing: far above a step of the current
 
@@ -64,7 +64,7 @@ double growth_rate(const ArmFile& arm, WallCase wall) {
   };
   // What soon grows far or dies down to the steps of the motors' current is timed; the rest is
   // compared early and late, each long enough for a swing to show all its energy.
-  const double first = most(0, 0.01);
+  const double first = 0.5 * mass * wall.kick * wall.kick;
   const double late = most(0.85, 1);
   std::size_t last_alive = 0;
   for (std::size_t i = 0; i < count; ++i) {
