@@ -1,9 +1,11 @@
 #include <cstdio>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "commands.h"
 #include "complain.h"
+#include "study/accuracy/probed_stroke.h"
 #include "study/cost_subjects.h"
 #include "study/instruction_count.h"
 
@@ -15,7 +17,14 @@ struct ProbeOptions {
   int strokes = 1;
 };
 
+// Points of the diagrams of `thimble study accuracy`, each one stroke.
+constexpr std::string_view kAccuracy = "accuracy/";
+
 int probe(const ProbeOptions& options) {
+  if (options.subject.compare(0, kAccuracy.size(), kAccuracy) == 0 &&
+      probe_strokes(options.subject.substr(kAccuracy.size())) > 0) {
+    return kExitDone;
+  }
   for (const CostSubject& subject : cost_subjects()) {
     if (subject.name != options.subject) continue;
     const auto touch = subject.build();

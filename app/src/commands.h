@@ -35,6 +35,8 @@ void add_tune_command(CLI::App& app, int& exit_code);
 void add_stability_study(CLI::App& study_command, int& exit_code);
 /// `thimble study trouble`: touches random scenes.
 void add_trouble_study(CLI::App& study_command, int& exit_code);
+/// `thimble study accuracy`: what accuracy costs in time.
+void add_accuracy_study(CLI::App& study_command, int& exit_code);
 /// `thimble cost-probe SUBJECT STROKES`: what `thimble study cost` counts the instructions of.
 void add_cost_probe_command(CLI::App& app, int& exit_code);
 /// `thimble mesh generate OUT`: writes a page file of any number of triangles.

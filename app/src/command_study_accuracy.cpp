@@ -1,0 +1,52 @@
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "commands.h"
+#include "complain.h"
+#include "figure.h"
+#include "study/accuracy/study_accuracy.h"
+
+namespace thimble::app {
+namespace {
+
+struct AccuracyOptions {
+  std::vector<std::string> axes;
+  std::string out = "study-accuracy";
+};
+
+int run_accuracy(const AccuracyOptions& options) {
+  const std::filesystem::path folder = options.out;
+  std::error_code status;
+  std::filesystem::create_directories(folder, status);
+  if (!std::filesystem::is_directory(folder, status)) {
+    return complain({"Cannot make the folder " + folder.string() +
+                     "; name one that may be written with --out."},
+                    kExitBadInput);
+  }
+  const auto figures = study_accuracy(options.axes, folder);
+  if (!figures) return complain(figures.error(), kExitBadInput);
+  if (const auto written = write_figures(*figures, folder / "figures.json"); !written) {
+    return complain(written.error(), kExitTrouble);
+  }
+  std::printf("%s\nWritten to %s; the page is index.html there.\n", figure_table(*figures).c_str(),
+              folder.c_str());
+  return kExitDone;
+}
+
+}  // namespace
+
+void add_accuracy_study(CLI::App& study_command, int& exit_code) {
+  CLI::App* command = study_command.add_subcommand(
+      "accuracy", "what accuracy costs in time: a diagram for every knob, on one page");
+  auto options = std::make_shared<AccuracyOptions>();
+  command->add_option("--axis", options->axes,
+                      "Axes to measure, such as tessellation or velocity; all, if none is named");
+  command->add_option("--out", options->out, "Folder for the page, pictures, tables, figures.json")
+      ->capture_default_str();
+  command->callback([options, &exit_code] { exit_code = run_accuracy(*options); });
+}
+
+}  // namespace thimble::app

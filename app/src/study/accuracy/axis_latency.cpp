@@ -1,0 +1,98 @@
+#include <cmath>
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "stability_laws.h"
+#include "study/accuracy/axes.h"
+#include "study/accuracy/impact.h"
+#include "study/accuracy/stroked_ring.h"
+
+namespace thimble::app {
+namespace {
+
+constexpr double kTick = 1e-3;      // s
+constexpr double kStiffness = 800;  // N/m, the vintage arm's declared one
+constexpr double kViscous = 1e-4;   // N s/m: next to none, so that e = 1 is the truth
+
+// A number in [0, 1) that depends on run and tick alone.
+double chance(int run, int k) {
+  std::uint64_t z = static_cast<std::uint64_t>(run) * 1000003u + static_cast<std::uint64_t>(k) + 1;
+  z *= 0x9e3779b97f4a7c15ull;  // splitmix64 [S Steele, Lea, Flood 2014]
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
+  return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-53;
+}
+
+AccuracyPoint point_of(const std::string& name, const Impact& impact, double spread) {
+  const double latency =
+      latency_of({.period = impact.period, .period_spread = spread, .delay = impact.delay});
+  AccuracyPoint point{.name = name,
+                      .knob = 1e3 * latency,
+                      .error = [impact] { return 100 * (mean_restitution(impact) - 1); },
+                      .prepare = [] { return ring_work({}); }};
+  point.ticks = kRingTicks;
+  point.law = 100 * (restitution(impact.stiffness, impact.viscous, impact.mass, latency) - 1);
+  return point;
+}
+
+Impact plain() {
+  return {.viscous = kViscous, .stiffness = kStiffness, .period = kTick};
+}
+
+}  // namespace
+
+AccuracyAxis latency_axis() {
+  AccuracyAxis axis;
+  axis.name = "latency";
+  axis.title = "What delay and jitter cost: all that counts is the mean latency";
+  axis.knob = "latency L = E[T^2] / 2 E[T] + delay";
+  axis.knob_unit = "ms";
+  axis.metric = "speed gained by a bounce, e - 1";
+  axis.unit = std::string("%");
+  axis.truth =
+      "A wall in continuous time: e = 1. Beside it the law of restitution, "
+      "ln e = pi K L / 2 sqrt(K m).";
+  axis.threshold = 3.5;
+  axis.threshold_words = "half the force that can just be told apart";
+  axis.over_cost = false;
+  axis.default_words =
+      "One frame of delay is what a full-speed USB arm costs, whatever the program does: one "
+      "transfer "
+      "in and one out per frame. It is not the program's choice.";
+  axis.left_out =
+      "The error over the cost: delay and jitter are simulated at the same price whatever they "
+      "are. "
+      "Gaps of 30 ms, where the law is 13 % off.";
+  AccuracyLine delay{.name = "delay", .title = "delay", .order = {}, .points = {}};
+  for (const double ticks : {0.0, 0.25, 0.5, 1.0, 2.0, 3.0}) {
+    Impact impact = plain();
+    impact.delay = ticks * kTick;
+    delay.points.push_back(
+        point_of(std::to_string(static_cast<int>(1000 * ticks)) + "us", impact, 0));
+    delay.points.back().is_default = ticks == 1;
+  }
+  AccuracyLine jitter{
+      .name = "jitter", .title = "ticks of uneven length", .order = {}, .points = {}};
+  for (const double width : {0.2, 0.5, 0.8, 1.0, 1.4, 1.8}) {
+    Impact impact = plain();
+    impact.period_of = [width](int run, int k) {
+      return kTick * (1 + width * (chance(run, k) - 0.5));
+    };
+    jitter.points.push_back(point_of(std::to_string(static_cast<int>(100 * width)) + "percent",
+                                     impact, kTick * width / std::sqrt(12.0)));
+  }
+  AccuracyLine gaps{.name = "gaps", .title = "some ticks take 4 ms", .order = {}, .points = {}};
+  for (const double share : {0.005, 0.01, 0.02, 0.05, 0.1, 0.2}) {
+    Impact impact = plain();
+    impact.period = kTick * (1 + 3 * share);
+    impact.period_of = [share](int run, int k) { return chance(run, k) < share ? 4e-3 : 1e-3; };
+    gaps.points.push_back(point_of(std::to_string(static_cast<int>(1000 * share)) + "permille",
+                                   impact, 3e-3 * std::sqrt(share * (1 - share))));
+  }
+  axis.lines = {std::move(delay), std::move(jitter), std::move(gaps)};
+  return axis;
+}
+
+}  // namespace thimble::app

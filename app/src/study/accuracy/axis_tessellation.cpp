@@ -1,0 +1,106 @@
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "study/accuracy/axes.h"
+#include "study/accuracy/stroked_ring.h"
+
+namespace thimble::app {
+namespace {
+
+using render::BlendingChoice;
+
+constexpr int kAcross[] = {8, 12, 16, 24, 32, 48, 64};
+constexpr int kDefaultAcross = 32;
+// Orders show where triangles are much smaller than the curvature.
+constexpr int kFitsFrom = 24;
+
+struct Way {
+  const char* name;
+  const char* title;
+  BlendingChoice blending;
+  bool curved;
+  double force_order;
+  double direction_order;
+};
+
+// The flat normal turns by up to L / R within a triangle, the smooth one and the depth below the
+// triangles are off by (L / R)^2 [STABILITY 3].
+constexpr Way kWays[] = {
+    {"flat", "flat", BlendingChoice::kFlat, false, 1, 1},
+    {"band", "blended band", BlendingChoice::kSizedBand, false, 1, 1},
+    {"phong", "Phong", BlendingChoice::kPhong, false, 2, 2},
+    {"curved", "Phong, curved depth", BlendingChoice::kPhong, true, 2, 2},
+};
+
+RingTouch ring_of(const Way& way, int across) {
+  RingTouch ring;
+  ring.choice.blending = way.blending;
+  ring.choice.curved_depth = way.curved;
+  ring.across = across;
+  return ring;
+}
+
+AccuracyAxis axis_of(bool direction) {
+  AccuracyAxis axis;
+  axis.knob = "edge length over radius of curvature, L/R";
+  axis.truth =
+      "The ring (torus) itself: depth and normal of each point in closed form, stroked by the same "
+      "states.";
+  axis.default_words =
+      "It is the paper's way, which scenes keep until they name another: on a scan with edges of a "
+      "tenth of the radius it is not distinguishable by direction, and it asks nothing of the "
+      "normals of the mesh. --quality reference takes Phong with curved depth.";
+  for (const Way& way : kWays) {
+    AccuracyLine line{.name = way.name, .title = way.title, .order = {}, .points = {}};
+    line.order = direction ? way.direction_order : way.force_order;
+    for (const int across : kAcross) {
+      const RingTouch ring = ring_of(way, across);
+      AccuracyPoint point{.name = std::to_string(across),
+                          .knob = edge_over_radius(across),
+                          .error = {},
+                          .prepare = [ring] { return ring_work(ring); }};
+      if (direction) {
+        point.error = [ring] { return ring_errors(ring).direction_p99 * 180 / std::numbers::pi; };
+      } else {
+        point.error = [ring] { return 100 * ring_errors(ring).force; };
+      }
+      point.ticks = kRingTicks;
+      point.is_default = way.blending == BlendingChoice::kFlat && across == kDefaultAcross;
+      point.fits = across >= kFitsFrom;
+      line.points.push_back(std::move(point));
+    }
+    axis.lines.push_back(std::move(line));
+  }
+  return axis;
+}
+
+}  // namespace
+
+AccuracyAxis tessellation_axis() {
+  AccuracyAxis axis = axis_of(false);
+  axis.name = "tessellation";
+  axis.title = "How finely a surface must be cut, by the way it is felt: force";
+  axis.metric = "force error, RMS";
+  axis.unit = std::string("%");
+  axis.threshold = 3.5;  // half of 7 % [STABILITY 6, after Pang, Tan, Durlach 1991]
+  axis.threshold_words = "half the force that can just be told apart (3.5 %)";
+  axis.left_out =
+      "One shape alone, the ring, because its truth is exact on hollow and round sides; the "
+      "trackers' differences are in `thimble study cost`.";
+  return axis;
+}
+
+AccuracyAxis tessellation_direction_axis() {
+  AccuracyAxis axis = axis_of(true);
+  axis.name = "tessellation_direction";
+  axis.title = "How finely a surface must be cut, by the way it is felt: direction";
+  axis.metric = "direction error, 99th percentile";
+  axis.unit = "degrees";
+  axis.threshold = 5;  // [STABILITY 6]
+  axis.threshold_words = "a quarter of the direction that can just be told apart (5 degrees)";
+  axis.left_out = "Jumps from tick to tick over edges, which half of this bounds.";
+  return axis;
+}
+
+}  // namespace thimble::app

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "study/accuracy/accuracy_axis.h"
+
+/// Runs one stroke. Instructions are counted inside this function alone, which callgrind finds by
+/// its name; so it has a plain one.
+extern "C" double thimble_probed_stroke(const thimble::app::Stroke& stroke);
+
+namespace thimble::app {
+
+/// Runs one stroke of every point whose name AXIS/LINE/POINT begins with `prefix`, in the order of
+/// the axis, and returns how many there were. Real-time: never from the servo thread.
+int probe_strokes(const std::string& prefix);
+
+/// Counts the instructions of one stroke of each of these points, by one run of this program under
+/// callgrind. Empty if valgrind is not installed or fails. The same on every machine that runs the
+/// same binary. Real-time: never from the servo thread.
+std::optional<std::vector<double>> count_strokes(const std::string& prefix);
+
+}  // namespace thimble::app

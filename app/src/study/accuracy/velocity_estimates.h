@@ -1,0 +1,29 @@
+#pragma once
+
+#include <array>
+#include <memory>
+
+namespace thimble::app {
+
+/// Estimates velocity along one line from counted positions: the product's estimator and others to
+/// compare it with. Real-time: safe, once built.
+class VelocityEstimate {
+ public:
+  virtual ~VelocityEstimate() = default;
+  /// Takes the next place (m) and tells the velocity, m/s.
+  virtual double update(double x) noexcept = 0;
+};
+
+/// Makes the product's: backward difference and a pole at `corner` Hz (0: none), every `period` s.
+std::unique_ptr<VelocityEstimate> product_estimate(double corner, double period);
+/// Makes the difference over the last `ticks` (1 to 64) ticks.
+std::unique_ptr<VelocityEstimate> window_estimate(int ticks, double period);
+/// Makes the adaptive window: the longest one, up to `most` (1 to 64) ticks, in which a straight
+/// line through its ends misses no sample by more than half an encoder step [S Janabi-Sharifi,
+/// Hayward, Chen 2000: first-order adaptive windowing].
+std::unique_ptr<VelocityEstimate> adaptive_estimate(int most, double step, double period);
+/// Makes Levant's differentiator of first order for accelerations up to `most` m/s^2
+/// [M Levant 1998: gains 1.1 and 1.5 root].
+std::unique_ptr<VelocityEstimate> levant_estimate(double most, double period);
+
+}  // namespace thimble::app
