@@ -5,6 +5,7 @@
 
 #include "commands.h"
 #include "complain.h"
+#include "study/accuracy/gating.h"
 #include "study/accuracy/probed_stroke.h"
 #include "study/cost_subjects.h"
 #include "study/instruction_count.h"
@@ -19,10 +20,16 @@ struct ProbeOptions {
 
 // Points of the diagrams of `thimble study accuracy`, each one stroke.
 constexpr std::string_view kAccuracy = "accuracy/";
+// Scenes of `thimble study gating`, with all effects of the arm or without some.
+constexpr std::string_view kGating = "gating/";
 
 int probe(const ProbeOptions& options) {
   if (options.subject.compare(0, kAccuracy.size(), kAccuracy) == 0 &&
       probe_strokes(options.subject.substr(kAccuracy.size())) > 0) {
+    return kExitDone;
+  }
+  if (options.subject.compare(0, kGating.size(), kGating) == 0 &&
+      probe_gating(options.subject.substr(kGating.size()))) {
     return kExitDone;
   }
   for (const CostSubject& subject : cost_subjects()) {

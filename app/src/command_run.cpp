@@ -16,6 +16,7 @@
 #include "lost_contacts.h"
 #include "meshes.h"
 #include "pictures.h"
+#include "quality.h"
 #include "real_arm.h"
 #include "recording/write_black_box.h"
 #include "replug_watch.h"
@@ -40,6 +41,7 @@ struct RunOptions {
   std::string record;
   std::string save_mesh;
   std::string save_object;
+  std::string quality = "normal";
   bool yes = false;
 };
 
@@ -165,6 +167,11 @@ int run_scene(const RunOptions& options) {
   session_options.real_arm = real_arm;
   session_options.firmware = options.firmware;
   session_options.record = options.record;
+  session_options.adjust = [&](Scene& scene) {
+    for (const std::string& choice : apply_quality(quality_named(options.quality), scene)) {
+      std::printf("%s: %s\n", options.quality.c_str(), choice.c_str());
+    }
+  };
   if (real_arm) session_options.clock = ClockKind::kWall;
   if (real_arm && !may_begin(*real_arm, options.yes)) return kExitBadInput;
   auto opened = Session::open(options.scene, session_options);
@@ -266,6 +273,12 @@ void add_run_command(CLI::App& app, int& exit_code) {
       ->add_option("--clock", options->clock,
                    "virtual: as fast as it computes, repeatable to the bit; wall: in real time")
       ->check(CLI::IsMember({"virtual", "wall"}))
+      ->capture_default_str();
+  command
+      ->add_option("--quality", options->quality,
+                   "draft, normal (what the scene says) or reference: points on the diagrams of "
+                   "`thimble study accuracy`; each choice is printed")
+      ->check(CLI::IsMember({"draft", "normal", "reference"}))
       ->capture_default_str();
   command->add_option("--report", options->report, "Folder for report.json and pictures");
   command->add_option(

@@ -41,6 +41,7 @@ void add_study_command(CLI::App& app, int& exit_code) {
     command->callback([&study, folder, &exit_code] { exit_code = run_study(study, *folder); });
   }
   add_accuracy_study(*group, exit_code);
+  add_gating_study(*group, exit_code);
   add_stability_study(*group, exit_code);
   add_trouble_study(*group, exit_code);
 }

@@ -7,6 +7,7 @@
 #include "commands.h"
 #include "complain.h"
 #include "figure.h"
+#include "study/accuracy/gating.h"
 #include "study/accuracy/study_accuracy.h"
 
 namespace thimble::app {
@@ -15,6 +16,7 @@ namespace {
 struct AccuracyOptions {
   std::vector<std::string> axes;
   std::string out = "study-accuracy";
+  bool no_count = false;
 };
 
 int run_accuracy(const AccuracyOptions& options) {
@@ -26,7 +28,7 @@ int run_accuracy(const AccuracyOptions& options) {
                      "; name one that may be written with --out."},
                     kExitBadInput);
   }
-  const auto figures = study_accuracy(options.axes, folder);
+  const auto figures = study_accuracy(options.axes, !options.no_count, folder);
   if (!figures) return complain(figures.error(), kExitBadInput);
   if (const auto written = write_figures(*figures, folder / "figures.json"); !written) {
     return complain(written.error(), kExitTrouble);
@@ -36,7 +38,40 @@ int run_accuracy(const AccuracyOptions& options) {
   return kExitDone;
 }
 
+struct GatingOptions {
+  std::string scene;
+  std::string out = "study-gating";
+  bool no_count = false;
+};
+
+int run_gating(const GatingOptions& options) {
+  const std::filesystem::path folder = options.out;
+  std::error_code status;
+  std::filesystem::create_directories(folder, status);
+  const auto report = decide_gating(options.scene, !options.no_count);
+  if (!report) return complain(report.error(), kExitBadInput);
+  const std::string text = gating_text(*report);
+  std::printf("%s", text.c_str());
+  for (const auto& written : {write_figures(figures_of(*report), folder / "figures.json"),
+                              write_text(text, folder / "gating.txt")}) {
+    if (!written) return complain(written.error(), kExitTrouble);
+  }
+  std::printf("Written to %s.\n", folder.c_str());
+  return kExitDone;
+}
+
 }  // namespace
+
+void add_gating_study(CLI::App& study_command, int& exit_code) {
+  CLI::App* command = study_command.add_subcommand(
+      "gating", "which effects of the simulated arm a scene could do without, and what that saves");
+  auto options = std::make_shared<GatingOptions>();
+  command->add_option("SCENE", options->scene, "Scene file (YAML)")->required();
+  command->add_option("--out", options->out, "Folder for gating.txt and figures.json")
+      ->capture_default_str();
+  command->add_flag("--no-count", options->no_count, "Do not count instructions");
+  command->callback([options, &exit_code] { exit_code = run_gating(*options); });
+}
 
 void add_accuracy_study(CLI::App& study_command, int& exit_code) {
   CLI::App* command = study_command.add_subcommand(
@@ -46,6 +81,9 @@ void add_accuracy_study(CLI::App& study_command, int& exit_code) {
                       "Axes to measure, such as tessellation or velocity; all, if none is named");
   command->add_option("--out", options->out, "Folder for the page, pictures, tables, figures.json")
       ->capture_default_str();
+  command->add_flag(
+      "--no-count", options->no_count,
+      "Do not count instructions, which takes minutes; time alone says what is cheaper");
   command->callback([options, &exit_code] { exit_code = run_accuracy(*options); });
 }
 

@@ -43,6 +43,7 @@ driver::Result<std::unique_ptr<Session>> Session::open(const std::filesystem::pa
 
   std::unique_ptr<Session> session(new Session);
   session->scene_ = std::move(scene).value();
+  if (options.adjust) options.adjust(session->scene_);
   if (options.real_arm) {
     const auto calibration = load_calibration(options.real_arm->name());
     if (!calibration) return calibration.error();

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -39,6 +40,7 @@ struct SessionOptions {
   std::optional<driver::FoundArm> real_arm;  ///< in place of the simulated one
   std::filesystem::path firmware;            ///< for a real arm that needs some (Falcon)
   std::filesystem::path record;              ///< where every tick is written; empty: nowhere
+  std::function<void(Scene&)> adjust = {};   ///< changes the scene before anything is built of it
 };
 
 /// Is one scene, loaded and joined: clock, simulated arm, wire, device, touch, and who keeps the

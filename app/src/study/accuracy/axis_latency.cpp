@@ -55,7 +55,7 @@ AccuracyAxis latency_axis() {
       "A wall in continuous time: e = 1. Beside it the law of restitution, "
       "ln e = pi K L / 2 sqrt(K m).";
   axis.threshold = 3.5;
-  axis.threshold_words = "half the force that can just be told apart";
+  axis.threshold_words = "half the impact that can just be told apart (3.5 %)";
   axis.over_cost = false;
   axis.default_words =
       "One frame of delay is what a full-speed USB arm costs, whatever the program does: one "

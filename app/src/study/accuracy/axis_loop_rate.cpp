@@ -45,7 +45,7 @@ AccuracyAxis loop_rate_axis() {
       "A wall in continuous time, which returns the speed it was given: e = 1 (but for the "
       "arm's own friction, which the law counts in).";
   axis.threshold = 3.5;
-  axis.threshold_words = "half the force that can just be told apart: impact force goes with speed";
+  axis.threshold_words = "half the impact that can just be told apart (3.5 %)";
   axis.per = "ms of touch";
   axis.default_words =
       "1 kHz is what full-speed USB carries and what textbooks ask for. A free arm bounces there; "

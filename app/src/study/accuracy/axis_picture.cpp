@@ -15,17 +15,17 @@ namespace {
 // Colours that stay apart for colour-blind eyes [M Okabe and Ito].
 constexpr std::array kColours{"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#8a6d00", "#30343b"};
 constexpr std::array kMarks{7, 5, 9, 13, 11, 3};
-constexpr std::size_t kTitleWidth = 58;  // letters
+constexpr std::size_t kTitleWidth = 58, kKnobWidth = 70, kErrorWidth = 40;  // letters
 
 enum class View { kErrorOverCost, kErrorOverKnob, kCostOverKnob };
 
 // Breaks a text at spaces, and quotes it with gnuplot's own line breaks.
-std::string wrapped(const std::string& text) {
+std::string wrapped(const std::string& text, std::size_t width) {
   std::istringstream words(text);
   std::string quoted = "\"";
   std::size_t column = 0;
   for (std::string word; words >> word;) {
-    if (column > 0 && column + word.size() > kTitleWidth) {
+    if (column > 0 && column + word.size() > width) {
       quoted += "\\n";
       column = 0;
     } else if (column > 0) {
@@ -37,9 +37,25 @@ std::string wrapped(const std::string& text) {
   return quoted + "\"";
 }
 
-std::string labelled(const std::string& name, const std::string& unit) {
-  if (unit.empty()) return quote(name);
-  return quote(name + (unit[0] == '%' ? " in " : ", ") + unit);
+std::string labelled(const std::string& name, const std::string& unit, std::size_t width) {
+  if (unit.empty()) return wrapped(name, width);
+  return wrapped(name + (unit[0] == '%' ? " in " : ", ") + unit, width);
+}
+
+// Names 1, 2 and 5 of each decade where gnuplot would name one number only.
+std::string tics_of(char axis, double low, double high) {
+  if (high / low > 200) return {};
+  std::string text = "set ";
+  text.append(1, axis).append("tics (");
+  bool first = true;
+  for (double power = std::pow(10, std::floor(std::log10(low))); power <= high; power *= 10) {
+    for (const double factor : {1.0, 2.0, 5.0}) {
+      if (factor * power < low || factor * power > high) continue;
+      text.append(first ? "" : ", ").append(number(factor * power));
+      first = false;
+    }
+  }
+  return first ? std::string() : text + ")\n";
 }
 
 // Errors below this share of the threshold are drawn there: rounding, which would squeeze all else.
@@ -76,7 +92,24 @@ class Eye {
 };
 
 bool spans_decades(double low, double high) {
-  return low > 0 && high / low > 8;
+  return low > 0 && high / low > 5;
+}
+
+// Draws points that are methods of their own: each with its mark, colour and name.
+void draw_apart(const MeasuredLine& line, const Eye& eye, std::size_t index,
+                std::ostringstream& text, std::ostringstream& plots) {
+  std::size_t k = 0;
+  for (const MeasuredPoint& point : line.points) {
+    if (!eye.sees(point)) continue;
+    const std::string data = "$apart" + std::to_string(index) + "_" + std::to_string(k);
+    text << data << " << EOD\n" << number(eye.x(point)) << ' ' << number(eye.y(point)) << "\nEOD\n";
+    std::string name = point.point->name;
+    std::replace(name.begin(), name.end(), '_', ' ');
+    plots << ", " << data << " using 1:2 with points lw 2 ps 1.6 pt "
+          << kMarks[k % kMarks.size()] + (k >= kMarks.size() ? -1 : 0) << " lc rgb '"
+          << kColours[(k + 1) % kColours.size()] << "' title " << quote(name);
+    ++k;
+  }
 }
 
 Plot plot_of(const MeasuredAxis& axis, View view) {
@@ -84,7 +117,8 @@ Plot plot_of(const MeasuredAxis& axis, View view) {
   const AccuracyAxis& a = axis.axis;
   std::ostringstream text;
   std::ostringstream plots;
-  text << quiet_style() << "set key below samplen 2 spacing 1.15 width 1 maxrows 4\n";
+  text << quiet_style()
+       << "set key below Left reverse samplen 2 spacing 1.15 width 1 height 1.5 font ',14'\n";
   double low_x = INFINITY, high_x = 0, low_y = INFINITY, high_y = 0;
   bool floored = false;
   const MeasuredPoint* marked = axis.default_point();
@@ -115,51 +149,51 @@ Plot plot_of(const MeasuredAxis& axis, View view) {
     const std::string data = "$line" + std::to_string(i);
     const std::string title = quote(line.line->title);
     const std::string mark = std::to_string(kMarks[i % kMarks.size()]);
-    plots << ", " << data << " using 1:2 with " << (line.line->apart ? "points" : "linespoints")
-          << " lw 2.4 pt " << mark << " ps 1.3 lc rgb '" << colour << "' title " << title;
+    if (line.line->apart) {
+      draw_apart(line, eye, i, text, plots);
+      continue;
+    }
+    plots << ", " << data << " using 1:2 with linespoints lw 2.4 pt " << mark << " ps 1.3 lc rgb '"
+          << colour << "' title " << title;
     if (laws) {
       plots << ", " << data << " using 1:3 with lines lw 1 dt '.' lc rgb '" << colour
             << "' notitle";
     }
-    if (line.line->apart) {
-      plots << ", " << data
-            << " using 1:2:4 with labels noenhanced font ',12' left offset 0.7,0.35 tc rgb '"
-            << kInk << "' notitle";
-    }
   }
   if (marked != nullptr && eye.sees(*marked)) {
     plots << ", '-' using 1:2 with points pt 6 ps 3.2 lw 2.2 lc rgb '" << kInk
-          << "' title 'default'";
+          << "' title 'default of the product'";
   }
-  text << "set title " << wrapped(a.title) << " font ',17'\n";
+  text << "set title " << wrapped(a.title, kTitleWidth) << " font ',17'\n";
   const bool over_cost = view == View::kErrorOverCost;
   text << "set xlabel "
-       << (over_cost ? quote("ns per " + a.per + ", median") : labelled(a.knob, a.knob_unit))
+       << (over_cost ? quote("ns per " + a.per + ", median")
+                     : labelled(a.knob, a.knob_unit, kKnobWidth))
        << "\nset ylabel "
        << (view == View::kCostOverKnob ? quote("ns per " + a.per + ", median")
-                                       : labelled(a.metric, a.unit))
+                                       : labelled(a.metric, a.unit, kErrorWidth))
        << '\n';
   if (spans_decades(low_x, high_x)) {
-    text << "set logscale x\nset xrange [" << number(low_x / 1.35) << ':'
-         << number(high_x * (over_cost && axis.lines.back().line->apart ? 3 : 1.35)) << "]\n";
+    text << "set logscale x\nset xrange [" << number(low_x / 1.35) << ':' << number(high_x * 1.35)
+         << "]\n"
+         << tics_of('x', low_x / 1.35, high_x * 1.35);
   } else if (high_x > low_x) {
     const double more = 0.06 * (high_x - low_x);
-    text << "set xrange [" << number(low_x - more) << ':' << number(high_x + 5 * more) << "]\n";
+    text << "set xrange [" << number(low_x - more) << ':' << number(high_x + more) << "]\n";
   }
   if (a.threshold && view != View::kCostOverKnob) {
     low_y = std::min(low_y, *a.threshold);
     high_y = std::max(high_y, *a.threshold);
   }
   if (low_y < high_y) {
-    text << "set logscale y\nset format y '%g'\nset yrange [" << number(low_y / 2) << ':'
-         << number(high_y * 3) << "]\n";
+    const double low = low_y / (floored ? 5 : 1.6);
+    text << "set logscale y\nset format y '%g'\nset yrange [" << number(low) << ':'
+         << number(high_y * 1.6) << "]\n"
+         << tics_of('y', low, high_y * 1.6);
   }
   if (a.threshold && view != View::kCostOverKnob) {
-    text << "set arrow 1 from graph 0, first " << number(*a.threshold) << " to graph 1, first "
-         << number(*a.threshold) << " nohead dt '-' lw 1.5 lc rgb '" << kFaintInk
-         << "'\nset label 1 " << quote("not felt below: " + a.threshold_words)
-         << " at graph 0.01, first " << number(*a.threshold)
-         << " left offset 0,0.5 font ',12' tc rgb '" << kInk << "'\n";
+    plots << ", " << number(*a.threshold) << " with lines dt '-' lw 1.5 lc rgb '" << kFaintInk
+          << "' title " << quote("not felt below: " + a.threshold_words);
   }
   if (floored) {
     text
@@ -174,7 +208,10 @@ Plot plot_of(const MeasuredAxis& axis, View view) {
   std::string name = a.name;
   if (view == View::kErrorOverKnob && a.over_cost) name += "_knob";
   if (view == View::kCostOverKnob) name += "_cost";
-  return {.name = name, .width = 820, .height = 700, .commands = text.str()};
+  return {.name = name,
+          .width = 820,
+          .height = axis.lines.back().line->apart ? 840 : 740,
+          .commands = text.str()};
 }
 
 }  // namespace

@@ -14,17 +14,15 @@ using Eigen::Vector3d;
 
 constexpr int kAround = 32, kAcross = 16;  // 512 vertices: as many as can move at once
 constexpr int kTicks = 200;
-constexpr std::int32_t kTriangle = 2;  // on the outside of the ring
-constexpr double kPress = 0.003;       // m
+constexpr std::int32_t kTriangle = 2;
+constexpr double kPress = 0.003;  // m
 
 /// Is a soft ring that is pressed at the middle of a triangle and let go, over and over.
 class SoftRing {
  public:
   SoftRing(int rings, bool whole, double reach) : body_(build(rings, whole, reach)) {
-    const render::TriangleMesh ring = kCostRing.mesh(kAround, kAcross);
-    const auto& corners = ring.triangles[kTriangle];
-    for (const std::int32_t v : corners) middle_ += ring.vertices[static_cast<std::size_t>(v)] / 3;
-    n_ = kCostRing.normal(middle_);
+    for (std::size_t k = 0; k < 3; ++k) middle_ += body_.mesh().position(kTriangle, k) / 3;
+    n_ = body_.mesh().cell(kTriangle).face.n;
   }
 
   /// Goes on by tick `tick` of the press and tells the pull on the hand, N.

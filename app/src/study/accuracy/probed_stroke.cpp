@@ -71,6 +71,11 @@ int probe_strokes(const std::string& prefix) {
 }
 
 std::optional<std::vector<double>> count_strokes(const std::string& prefix) {
+  return count_subject("accuracy/" + prefix);
+}
+
+std::optional<std::vector<double>> count_subject(const std::string& subject) {
+  if (subject.find('\'') != std::string::npos) return std::nullopt;  // no word for a shell
   std::error_code error;
   const std::string program = std::filesystem::read_symlink("/proc/self/exe", error).string();
   const ScratchFolder folder;
@@ -78,7 +83,7 @@ std::optional<std::vector<double>> count_strokes(const std::string& prefix) {
   const std::string command =
       "valgrind --tool=callgrind --toggle-collect=thimble_probed_stroke "
       "--dump-after=thimble_probed_stroke --callgrind-out-file='" +
-      (folder.path() / "out").string() + "' '" + program + "' cost-probe 'accuracy/" + prefix +
+      (folder.path() / "out").string() + "' '" + program + "' cost-probe '" + subject +
       "' 1 >/dev/null 2>&1";
   if (std::system(command.c_str()) != 0) return std::nullopt;  // NOLINT(cert-env33-c)
   std::vector<double> counts;

@@ -21,4 +21,8 @@ int probe_strokes(const std::string& prefix);
 /// same binary. Real-time: never from the servo thread.
 std::optional<std::vector<double>> count_strokes(const std::string& prefix);
 
+/// Does the same for any subject of `thimble cost-probe` that runs strokes by
+/// `thimble_probed_stroke`.
+std::optional<std::vector<double>> count_subject(const std::string& subject);
+
 }  // namespace thimble::app

@@ -30,7 +30,7 @@ driver::Result<std::vector<const AxisMaker*>> named_axes(const std::vector<std::
 
 }  // namespace
 
-driver::Result<std::vector<Figure>> study_accuracy(const std::vector<std::string>& axes,
+driver::Result<std::vector<Figure>> study_accuracy(const std::vector<std::string>& axes, bool count,
                                                    const std::filesystem::path& folder) {
   const auto makers = named_axes(axes);
   if (!makers) return makers.error();
@@ -39,7 +39,7 @@ driver::Result<std::vector<Figure>> study_accuracy(const std::vector<std::string
   std::vector<std::unique_ptr<MeasuredAxis>> measured;
   std::vector<AxisSection> sections;
   std::vector<Figure> figures;
-  bool counted = true;
+  bool counted = count;
   for (const AxisMaker* maker : *makers) {
     std::printf("\rMeasuring %-40s", std::string(maker->name).c_str());
     std::fflush(stdout);
