@@ -5,11 +5,11 @@ source "$(dirname "$0")/expect.sh" "$@"
 expect 0 'makes virtual objects touchable' "$thimble" --help
 expect 0 'Exit codes: 0 done' "$thimble" --help
 expect 0 '^thimble [0-9]+\.[0-9]+\.[0-9]+ \(' "$thimble" --version
-for command in run view devices doctor calibrate feel-check mesh plug; do
+for command in run view devices doctor calibrate feel-check mesh plug bench; do
   expect 0 "$command" "$thimble" "$command" --help
   expect 0 '^thimble [0-9]' "$thimble" "$command" --version
 done
-for option in device clock duration report seed view hand name; do
+for option in device clock duration report seed quality view hand name; do
   expect 0 "--$option" "$thimble" run --help
 done
 expect 0 '^sim +simulated arm' "$thimble" devices

@@ -118,7 +118,8 @@ Plot plot_of(const MeasuredAxis& axis, View view) {
   std::ostringstream text;
   std::ostringstream plots;
   text << quiet_style()
-       << "set key below Left reverse samplen 2 spacing 1.15 width 1 height 1.5 font ',14'\n";
+       << "set key below Left reverse samplen 2 spacing 1.15 width 1 height 1.5 font ',14'"
+       << (axis.lines.back().line->apart ? " maxrows 7" : "") << "\n";
   double low_x = INFINITY, high_x = 0, low_y = INFINITY, high_y = 0;
   bool floored = false;
   const MeasuredPoint* marked = axis.default_point();

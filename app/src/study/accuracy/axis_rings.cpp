@@ -45,7 +45,7 @@ class SoftRing {
     auto body = render::BendablePolygon::build(
         std::make_shared<const render::ContactMesh>(*std::move(mesh)), settings);
     if (!body) throw std::invalid_argument(body.error().message);
-    return *std::move(body);
+    return std::move(body).value();
   }
 
   render::BendablePolygon body_;

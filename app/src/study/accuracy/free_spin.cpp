@@ -65,7 +65,7 @@ Eigen::Vector3d true_rate(const FreeSpin& spin, double t) {
   // follows from Euler's equation I2 w2' = (I3 - I1) w3 w1.
   const double sign1 = w[one] >= 0 ? 1 : -1;
   const double sign3 = w[three] >= 0 ? 1 : -1;
-  const double sense = sign1 * sign3 * (swap ? -1 : 1);
+  const double sense = sign1 * sign3;
   const double begin = inverse_sn(sense * w[1] / amplitude2, m);
   const Jacobi at = jacobi(begin + rate * t, m);
   Eigen::Vector3d omega;

@@ -250,6 +250,10 @@ std::string gating_text(const GatingReport& report) {
                   report.force, 100 * report.change);
   text += report.holds ? "less than can be felt, the choice holds.\n"
                        : "more than can be felt, this scene needs the full model.\n";
+  const bool saves =
+      std::any_of(report.decisions.begin(), report.decisions.end(),
+                  [](const GateDecision& one) { return one.left_out && one.changes; });
+  if (!saves) text += "This scene calls for every effect that costs anything: nothing is saved.\n";
   text += numbers("A whole tick takes %.0f ns, or %.0f ns without them", report.full_ns,
                   report.reduced_ns);
   if (report.full_instructions && report.reduced_instructions) {

@@ -1,0 +1,33 @@
+#!/usr/bin/env bash
+# What accuracy costs, as a script sees it: the page, its parts, and counts that are the same again.
+source "$(dirname "$0")/expect.sh" "$@"
+
+rm -rf out
+expect 2 'known are tessellation' "$thimble" study accuracy --axis nonsense --out out
+expect 0 'More accuracy can no longer be felt' \
+  "$thimble" study accuracy --axis velocity --no-count --out out
+for file in index.html velocity.csv summary.json figures.json; do
+  expect 0 '' test -s "out/$file"
+done
+expect 1 '' grep -E 'src="http|href="http' out/index.html
+expect 0 '"default_point"' cat out/summary.json
+expect 0 'Enough|Not enough' "$thimble" bench "$source_dir/app/scenes/box.yaml" --rate 1000 --seconds 0.3
+expect 2 'expected|not' "$thimble" run "$source_dir/app/scenes/box.yaml" --quality best
+expect 0 'reference: ' "$thimble" run "$source_dir/app/scenes/box.yaml" --duration 0.1 --quality reference
+
+if command -v valgrind >/dev/null; then
+  count() {
+    valgrind --tool=callgrind --toggle-collect=thimble_probed_stroke \
+      --callgrind-out-file=/dev/null "$thimble" cost-probe accuracy/velocity/window/8 1 2>&1 \
+      >/dev/null | awk '/Collected/ {print $4}'
+  }
+  first=$(count)
+  again=$(count)
+  echo "Instructions of one stroke: $first and $again"
+  off=$((first > again ? first - again : again - first))
+  expect 0 '' test "${first:-0}" -gt 10000
+  expect 0 '' test $((off * 1000)) -le "$first"
+else
+  echo "LEFT OUT: instructions are not counted, valgrind is not installed"
+fi
+finish

@@ -1,0 +1,245 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <set>
+#include <string>
+
+#include "histogram.h"
+#include "quality.h"
+#include "rate_bench.h"
+#include "study/accuracy/accuracy_axis.h"
+#include "study/accuracy/axis_words.h"
+#include "study/accuracy/free_spin.h"
+#include "study/accuracy/gating.h"
+#include "study/accuracy/measure_axis.h"
+
+namespace thimble::app {
+namespace {
+
+// What takes long in a debug build is looked at once, by its shortest form.
+bool is_costly(const AccuracyAxis& axis) {
+  return axis.name == "search" || axis.name == "float" || axis.name == "effects";
+}
+
+TEST(AccuracyAxes, SayAllThatAReaderNeeds) {
+  std::set<std::string> names;
+  for (const AxisMaker& maker : accuracy_axes()) {
+    const AccuracyAxis axis = maker.make();
+    EXPECT_EQ(axis.name, maker.name);
+    EXPECT_TRUE(names.insert(axis.name).second) << axis.name;
+    for (const std::string* text :
+         {&axis.title, &axis.metric, &axis.unit, &axis.truth, &axis.left_out}) {
+      EXPECT_FALSE(text->empty()) << axis.name;
+    }
+    EXPECT_TRUE(axis.threshold || !axis.felt_words.empty()) << axis.name;
+    int defaults = 0;
+    std::set<std::string> points;
+    for (const AccuracyLine& line : axis.lines) {
+      EXPECT_GE(line.points.size(), 5U) << axis.name << ' ' << line.name;
+      for (const AccuracyPoint& point : line.points) {
+        const std::string name = line.name + '/' + point.name;
+        EXPECT_TRUE(points.insert(name).second) << axis.name << ' ' << name;
+        EXPECT_EQ(name.find_first_of(" '"), std::string::npos) << name;
+        defaults += point.is_default ? 1 : 0;
+      }
+    }
+    EXPECT_LE(defaults, 1) << axis.name;
+    // The page says why where the default is not the best bargain, or that there is no default.
+    const bool simulator = axis.name.rfind("simulator", 0) == 0;
+    EXPECT_TRUE(simulator || !axis.default_words.empty()) << axis.name;
+  }
+}
+
+TEST(AccuracyAxes, ShowTheOrderOfEachMethodAndExactOnesAtRounding) {
+  int orders = 0;
+  int exact = 0;
+  for (const AxisMaker& maker : accuracy_axes()) {
+    const AccuracyAxis axis = maker.make();
+    if (is_costly(axis)) continue;
+    for (const AccuracyLine& line : axis.lines) {
+      std::vector<MeasuredPoint> points;
+      for (const AccuracyPoint& point : line.points) {
+        if (line.exact) {
+          EXPECT_LT(point.error(), 1e-8) << axis.name << ' ' << line.name << ' ' << point.name;
+          ++exact;
+        } else if (line.order && point.fits) {
+          MeasuredPoint measured;
+          measured.point = &point;
+          measured.error = point.error();
+          points.push_back(measured);
+        }
+      }
+      if (!line.order) continue;
+      const auto slope = slope_of(points);
+      ASSERT_TRUE(slope) << axis.name << ' ' << line.name;
+      EXPECT_NEAR(*slope, *line.order, 0.2) << axis.name << ' ' << line.name;
+      ++orders;
+    }
+  }
+  EXPECT_GE(orders, 20);
+  EXPECT_GE(exact, 15);
+}
+
+TEST(AccuracyAxes, AgreeWithThePublishedLaws) {
+  int looked_at = 0;
+  for (const AxisMaker& maker : accuracy_axes()) {
+    const AccuracyAxis axis = maker.make();
+    for (const AccuracyLine& line : axis.lines) {
+      for (const AccuracyPoint& point : line.points) {
+        if (!point.law) continue;
+        const bool bounce = axis.name != "encoder";
+        // The law of a bounce holds where a swing lasts for many ticks [STABILITY 1.5].
+        if (bounce && *point.law > 15) continue;
+        const double error = point.error();
+        if (bounce) {
+          EXPECT_NEAR((100 + error) / (100 + *point.law), 1, 0.01)
+              << axis.name << ' ' << point.name;
+        } else {
+          EXPECT_NEAR(error / *point.law, 1, 0.03) << axis.name << ' ' << point.name;
+        }
+        ++looked_at;
+      }
+    }
+  }
+  EXPECT_GE(looked_at, 20);
+}
+
+TEST(AccuracyAxes, GiveTheSameErrorsToTheBitAndReadyStrokesThatRun) {
+  for (const AxisMaker& maker : accuracy_axes()) {
+    const AccuracyAxis axis = maker.make();
+    if (is_costly(axis)) continue;
+    const AccuracyPoint& point = axis.lines.front().points.front();
+    const double first = point.error();
+    const double again = maker.make().lines.front().points.front().error();
+    EXPECT_TRUE(first == again || (std::isnan(first) && std::isnan(again))) << axis.name;
+    EXPECT_TRUE(std::isfinite(point.prepare()())) << axis.name;
+  }
+}
+
+TEST(FreeSpin, SolvesEulersEquationsOnBothSidesOfTheMiddleAxis) {
+  for (const Eigen::Vector3d& start : {Eigen::Vector3d(0.2, 12, 0.5), Eigen::Vector3d(3, 5, -1),
+                                       Eigen::Vector3d(-2, -7, 1), Eigen::Vector3d(0.3, 1, -4)}) {
+    FreeSpin spin;
+    spin.omega = start;
+    EXPECT_LT((true_rate(spin, 0) - start).norm(), 1e-9);
+    for (const double t : {0.1, 0.7, 2.3}) {
+      const double h = 1e-5;
+      const Eigen::Vector3d rate = (true_rate(spin, t + h) - true_rate(spin, t - h)) / (2 * h);
+      const Eigen::Vector3d w = true_rate(spin, t);
+      const Eigen::Vector3d turn = spin.inertia.cwiseProduct(w).cross(w);
+      EXPECT_LT((rate - turn.cwiseQuotient(spin.inertia)).norm(), 1e-4) << start.transpose();
+    }
+  }
+}
+
+// Makes an axis of two methods with given costs and errors; nothing is timed.
+MeasuredAxis measured_by_hand() {
+  AccuracyAxis axis;
+  axis.name = "by_hand";
+  axis.unit = "mN";
+  axis.threshold = 20;
+  axis.default_words = "because.";
+  AccuracyLine line{.name = "a", .title = "method a"};
+  for (const double knob : {1.0, 2.0, 4.0}) {
+    AccuracyPoint point{.name = std::to_string(static_cast<int>(knob)),
+                        .knob = knob,
+                        .error = [knob] { return 10 * knob * knob; },
+                        .prepare = [] { return Stroke([] { return 0.0; }); }};
+    point.is_default = knob == 4;
+    point.fits = true;
+    line.points.push_back(point);
+  }
+  axis.lines.push_back(line);
+  return measure_axis(axis, {.rounds = 0, .count = false});
+}
+
+TEST(MeasuredAxis, FindsSlopeDefaultAndThePointBeyondWhichNothingIsFelt) {
+  const MeasuredAxis axis = measured_by_hand();
+  ASSERT_TRUE(axis.lines[0].slope);
+  EXPECT_NEAR(*axis.lines[0].slope, 2, 1e-12);
+  ASSERT_NE(axis.enough(), nullptr);
+  EXPECT_EQ(axis.enough()->error, 10);
+  ASSERT_NE(axis.default_point(), nullptr);
+  // All cost the same, so only the best is on the front.
+  EXPECT_TRUE(axis.lines[0].points[0].on_front);
+  EXPECT_FALSE(axis.default_point()->on_front);
+  EXPECT_NE(default_sentence(axis).find("because."), std::string::npos);
+  EXPECT_NE(felt_sentence(axis).find("method a at 1"), std::string::npos);
+}
+
+TEST(Quality, LeavesANormalSceneAloneAndSaysWhatItChoosesElse) {
+  Scene scene;
+  scene.objects.resize(2);
+  scene.objects[0].name = "round";
+  scene.objects[1].name = "soft";
+  scene.objects[1].body.dent.emplace();
+  EXPECT_TRUE(apply_quality(Quality::kNormal, scene).empty());
+  EXPECT_FALSE(scene.objects[0].contact.blending);
+  EXPECT_EQ(scene.objects[1].body.dent->rings, render::DentSettings{}.rings);
+
+  const auto said = apply_quality(quality_named("reference"), scene);
+  ASSERT_EQ(said.size(), 3U);
+  EXPECT_NE(said[0].find("round: Phong"), std::string::npos);
+  EXPECT_EQ(scene.objects[0].contact.blending, render::BlendingChoice::kPhong);
+  EXPECT_TRUE(scene.objects[0].contact.curved_depth.value_or(false));
+  EXPECT_EQ(scene.objects[1].body.dent->integrator, render::SpringScheme::kTrapezoid);
+  EXPECT_GE(scene.objects[1].body.dent->substeps, 8);
+
+  // What the scene names itself stays.
+  Scene named;
+  named.objects.resize(1);
+  named.objects[0].contact.blending = render::BlendingChoice::kFixedBand;
+  apply_quality(Quality::kReference, named);
+  EXPECT_EQ(named.objects[0].contact.blending, render::BlendingChoice::kFixedBand);
+}
+
+TEST(RateBench, AnswersByTheLateOnesAndByWhatUnevenTicksCost) {
+  RateBench bench;
+  bench.rate = 1000;
+  bench.priority = true;
+  for (int i = 0; i < 10000; ++i) {
+    bench.period.add(1'000'000);
+    bench.lateness.add(20'000);
+    bench.work.add(10'000);
+  }
+  EXPECT_TRUE(verdict_of(bench).enough);
+  EXPECT_NEAR(verdict_of(bench).headroom, 0.97, 0.01);
+  EXPECT_EQ(verdict_of(bench).sentence.rfind("Enough", 0), 0U);
+
+  // One tick in a hundred takes 10 ms: 44 % of the stiffness are gone [STABILITY 1.1].
+  Histogram gaps;
+  for (int i = 0; i < 9900; ++i) gaps.add(1'000'000);
+  for (int i = 0; i < 100; ++i) gaps.add(10'000'000);
+  const double mean = 1.09;
+  EXPECT_NEAR(stiffness_lost(gaps), 1 - mean * mean / 1.99, 0.02);
+  RateBench uneven = bench;
+  uneven.period = gaps;
+  EXPECT_FALSE(verdict_of(uneven).enough);
+  EXPECT_NE(verdict_of(uneven).sentence.find("uneven ticks"), std::string::npos);
+
+  RateBench slow = bench;
+  for (int i = 0; i < 100; ++i) slow.work.add(2'000'000);
+  EXPECT_NE(verdict_of(slow).sentence.find("the work alone"), std::string::npos);
+}
+
+TEST(Gating, KeepsWhatASceneCallsForAndChecksItAgainstTheFullModel) {
+  const auto report =
+      decide_gating(std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/scenes/box.yaml", false);
+  ASSERT_TRUE(report.ok()) << report.error().message;
+  bool any_left_out = false;
+  for (const GateDecision& one : report->decisions) {
+    EXPECT_FALSE(one.rule.empty());
+    EXPECT_EQ(one.change.has_value(), one.changes) << one.effect;
+    any_left_out = any_left_out || (one.left_out && one.changes);
+  }
+  EXPECT_GT(report->force, 0);
+  // Nothing left out is the same run to the bit.
+  if (!any_left_out) {
+    EXPECT_EQ(report->change, 0);
+  }
+  EXPECT_NE(gating_text(*report).find("Without all"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace thimble::app
