@@ -70,7 +70,7 @@ GatedForce SafetyGate::pass_guarded(const Eigen::Vector3d& f_T_W, const Eigen::V
   // What was given is given, whatever becomes of this tick.
   observer_.book(flow.work);
   if (!(std::abs(flow.work) + flow.move_W.squaredNorm() < HUGE_VAL)) trip(Fault::kStateNotFinite);
-  const GatedForce limited = pass(f_T_W, v_WT, dt);
+  GatedForce limited = pass(f_T_W, v_WT, dt);
   if (fault_ != Fault::kNone) return limited;
   Eigen::Vector3d f_W = limited.f_T_W();
   if (energy_.stage == EnergyStage::kBounding) {
