@@ -19,6 +19,7 @@ constexpr double kEdgeRange = 4;  // an edge is looked for within the law divide
 /// Gives `count` values from `least` to `most`, evenly on a logarithm.
 std::vector<double> octaves(double least, double most, int count) {
   std::vector<double> values;
+  values.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) {
     values.push_back(least * std::pow(most / least, static_cast<double>(i) / (count - 1)));
   }
@@ -27,6 +28,7 @@ std::vector<double> octaves(double least, double most, int count) {
 
 std::vector<double> even(double least, double most, int count) {
   std::vector<double> values;
+  values.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) values.push_back(least + (most - least) * i / (count - 1));
   return values;
 }

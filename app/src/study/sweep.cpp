@@ -91,6 +91,7 @@ Message measure_portion(const Sweep& sweep, const Message& portion, int jobs,
   Message results{kResults};
   {
     std::vector<std::jthread> threads;
+    threads.reserve(static_cast<std::size_t>(jobs));
     for (int i = 0; i < jobs; ++i) {
       threads.emplace_back([&] {
         measure_all(sweep, work, [&](std::size_t cell, const std::vector<double>& numbers) {
@@ -133,6 +134,7 @@ class Lead {
     ProgressBar bar(done_, numbers_.size());
     int busy = jobs;
     std::vector<std::jthread> threads;
+    threads.reserve(static_cast<std::size_t>(jobs));
     for (int i = 0; i < jobs; ++i) {
       threads.emplace_back([&] {
         measure_all(sweep_, work_, [this](std::size_t cell, std::vector<double> found) {
@@ -204,7 +206,7 @@ class Lead {
     }
     // Large portions cost fewer questions; small ones at the end keep all busy to the last.
     constexpr std::size_t kPortionMax = 32;
-    const auto shares = static_cast<std::size_t>(4 * team.size());
+    const auto shares = std::size_t{4} * static_cast<std::size_t>(team.size());
     const auto cells = work_.take(std::clamp(work_.left() / shares, std::size_t{1}, kPortionMax));
     team.send(from, {cells.begin(), cells.end()});
     if (cells.empty()) --helpers;
