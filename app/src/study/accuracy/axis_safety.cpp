@@ -129,6 +129,7 @@ AccuracyAxis axis_of(double (*error)(EnergyStage, double)) {
   axis.knob = "stiffness of the wall";
   axis.knob_unit = "N/m";
   axis.unit = std::string("%");
+  axis.over_cost = false;
   for (const Stage& one : kStages) {
     AccuracyLine line{.name = one.name, .title = one.title};
     const EnergyStage stage = one.stage;
@@ -161,6 +162,7 @@ AccuracyAxis safety_axis() {
   axis.threshold = 3.5;
   axis.threshold_words = "half the impact that can just be told apart (3.5 %)";
   axis.left_out =
+      "The error over the cost: it is the stage's alone, whatever the stiffness (see the figures). "
       "The ramp with which the product's controller sets in, and the energy it lets pass first: "
       "here "
       "it acts at once. The virtual coupling, which the product does not have.";
