@@ -118,7 +118,7 @@ Plot plot_of(const MeasuredAxis& axis, View view) {
   std::ostringstream text;
   std::ostringstream plots;
   text << quiet_style()
-       << "set key below Left reverse samplen 2 spacing 1.15 width 1 height 1.5 font ',14'"
+       << "set key below Left reverse samplen 2 spacing 1.15 width 1 height 1.5 font ',13'"
        << (axis.lines.back().line->apart ? " maxrows 8" : "") << "\n";
   double low_x = INFINITY, high_x = 0, low_y = INFINITY, high_y = 0;
   bool floored = false;
@@ -210,8 +210,8 @@ Plot plot_of(const MeasuredAxis& axis, View view) {
   if (view == View::kErrorOverKnob && a.over_cost) name += "_knob";
   if (view == View::kCostOverKnob) name += "_cost";
   return {.name = name,
-          .width = 720,
-          .height = axis.lines.back().line->apart ? 800 : 700,
+          .width = 800,
+          .height = axis.lines.back().line->apart ? 900 : 720,
           .commands = text.str()};
 }
 

@@ -104,7 +104,7 @@ AccuracyAxis tessellation_direction_axis() {
   axis.metric = "direction error, 99th percentile";
   axis.unit = "degrees";
   axis.threshold = 5;  // [STABILITY 6]
-  axis.threshold_words = "a quarter of the direction that can just be told apart (5 degrees)";
+  axis.threshold_words = "a quarter of what can just be told apart (5 degrees)";
   axis.left_out = "Jumps from tick to tick over edges, which half of this bounds.";
   return axis;
 }
