@@ -160,7 +160,7 @@ std::vector<Figure> figures_of(const MeasuredAxis& axis) {
                        .unit = "",
                        .goal = {}});
   }
-  if (const auto* point = axis.enough()) add("enough", *point);
+  if (const auto* point = axis.axis.over_cost ? axis.enough() : nullptr) add("enough", *point);
   return figures;
 }
 
