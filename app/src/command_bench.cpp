@@ -17,13 +17,15 @@ struct BenchOptions {
   std::vector<double> rates{1000, 4000, 8000};
   double seconds = 4;
   std::string out;
+  std::string quality = "normal";
 };
 
 int run_bench(const BenchOptions& options) {
   std::vector<Figure> figures;
   std::string advice;
   for (const double rate : options.rates) {
-    const auto bench = bench_rate(options.scene, rate, options.seconds);
+    const auto bench =
+        bench_rate(options.scene, rate, options.seconds, quality_named(options.quality));
     if (!bench) return complain(bench.error(), kExitBadInput);
     const RateVerdict verdict = verdict_of(*bench);
     std::printf("%5.0f Hz  %s\n", rate, verdict.sentence.c_str());
@@ -55,6 +57,10 @@ void add_bench_command(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command->add_option("--seconds", options->seconds, "How long to touch at each rate, s")
       ->check(CLI::Range(0.1, 600.0))
+      ->capture_default_str();
+  command
+      ->add_option("--quality", options->quality, "draft, normal or reference, as in `thimble run`")
+      ->check(CLI::IsMember({"draft", "normal", "reference"}))
       ->capture_default_str();
   command->add_option("--out", options->out, "Folder for figures.json");
   command->callback([options, &exit_code] { exit_code = run_bench(*options); });

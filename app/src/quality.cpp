@@ -46,10 +46,14 @@ std::string reference(SceneObject& object) {
   std::string text;
   if (is_open(object)) {
     object.contact.blending = BlendingChoice::kPhong;
-    object.contact.curved_depth = true;
-    text +=
-        " Phong normals and curved depth, with which triangles of a fifth of the radius are no "
-        "longer felt (edges sharper than the crease angle stay sharp);";
+    text += " Phong normals (edges sharper than the crease angle stay sharp),";
+    if (object.body.shape.named()) {
+      text += " without curved depth, for the surface changes its shape;";
+    } else {
+      object.contact.curved_depth = true;
+      text +=
+          " and curved depth, with which triangles of a fifth of the radius are no longer felt;";
+    }
   }
   if (object.body.dent) {
     auto& dent = *object.body.dent;

@@ -77,12 +77,15 @@ double stiffness_lost(const Histogram& period) {
 }
 
 driver::Result<RateBench> bench_rate(const std::filesystem::path& scene, double rate,
-                                     double seconds) {
+                                     double seconds, Quality quality) {
   SessionOptions options;
   options.clock = ClockKind::kWall;
   options.duration = seconds;
   options.mesh_folder = mesh_folder();
-  options.adjust = [rate](Scene& changed) { change_rate(changed, rate); };
+  options.adjust = [rate, quality](Scene& changed) {
+    apply_quality(quality, changed);
+    change_rate(changed, rate);
+  };
   auto opened = Session::open(scene, options);
   if (!opened) return opened.error();
   Session& session = **opened;

@@ -6,6 +6,7 @@
 
 #include "figure.h"
 #include "histogram.h"
+#include "quality.h"
 #include "thimble/driver/result.h"
 
 namespace thimble::app {
@@ -28,10 +29,10 @@ struct RateVerdict {
   std::string sentence;
 };
 
-/// Touches a scene with the simulated arm on the wall clock for `seconds` at `rate` (Hz). The error
-/// names what is wrong with the scene. Real-time: never from the servo thread.
+/// Touches a scene with the simulated arm on the wall clock for `seconds` at `rate` (Hz), at a
+/// quality. The error names what is wrong with the scene. Real-time: never from the servo thread.
 driver::Result<RateBench> bench_rate(const std::filesystem::path& scene, double rate,
-                                     double seconds);
+                                     double seconds, Quality quality = Quality::kNormal);
 
 /// Judges it: enough if 999 of 1000 ticks are done within their period, and uneven ticks cost less
 /// of the stiffness than can be felt.

@@ -22,6 +22,8 @@ constexpr std::array kAxes{
     AxisMaker{"friction_stiction", friction_stiction_axis},
     AxisMaker{"search", search_axis},
     AxisMaker{"rigid_body", rigid_body_axis},
+    AxisMaker{"safety", safety_axis},
+    AxisMaker{"safety_stiffness", safety_stiffness_axis},
     AxisMaker{"effects", effects_axis},
     AxisMaker{"float", float_axis},
 };

@@ -160,7 +160,9 @@ driver::Result<void> write_accuracy_summary(const std::vector<AxisSection>& sect
       return one;
     };
     if (const auto* point = axis.default_point()) entry["default_point"] = point_of(point);
-    if (const auto* point = axis.enough()) entry["enough_point"] = point_of(point);
+    if (const auto* point = a.over_cost ? axis.enough() : nullptr) {
+      entry["enough_point"] = point_of(point);
+    }
     list.push_back(std::move(entry));
   }
   return write_text(list.dump(2) + "\n", file);

@@ -24,6 +24,7 @@ AccuracyAxis friction_stiction_axis();
 AccuracyAxis search_axis();
 AccuracyAxis rigid_body_axis();
 AccuracyAxis safety_axis();
+AccuracyAxis safety_stiffness_axis();
 AccuracyAxis effects_axis();
 AccuracyAxis float_axis();
 

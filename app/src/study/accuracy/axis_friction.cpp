@@ -56,8 +56,10 @@ AccuracyAxis axis_of(Wrong wrong) {
   }
   axis.lines = {std::move(bristles), std::move(others)};
   axis.default_words =
-      "Cheaper models tremble, or creep under any load; the bristle is the cheapest that does "
-      "neither, which the diagrams of trembling and of stiction show only together.";
+      "Cheaper models tremble, or creep under any load; but for the stiction point, which is felt "
+      "as "
+      "little here for a twentieth less. The bristle trembles a quarter as much, and is silent at "
+      "rest whatever the delay, which `thimble study friction` shows.";
   return axis;
 }
 

@@ -15,7 +15,7 @@ namespace {
 // Colours that stay apart for colour-blind eyes [M Okabe and Ito].
 constexpr std::array kColours{"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#8a6d00", "#30343b"};
 constexpr std::array kMarks{7, 5, 9, 13, 11, 3};
-constexpr std::size_t kTitleWidth = 58, kKnobWidth = 70, kErrorWidth = 40;  // letters
+constexpr std::size_t kTitleWidth = 52, kKnobWidth = 60, kErrorWidth = 36;  // letters
 
 enum class View { kErrorOverCost, kErrorOverKnob, kCostOverKnob };
 
@@ -105,7 +105,7 @@ void draw_apart(const MeasuredLine& line, const Eye& eye, std::size_t index,
     text << data << " << EOD\n" << number(eye.x(point)) << ' ' << number(eye.y(point)) << "\nEOD\n";
     std::string name = point.point->name;
     std::replace(name.begin(), name.end(), '_', ' ');
-    plots << ", " << data << " using 1:2 with points lw 2 ps 1.6 pt "
+    plots << ", " << data << " using 1:2 with points lw 2 ps 1.2 pt "
           << kMarks[k % kMarks.size()] + (k >= kMarks.size() ? -1 : 0) << " lc rgb '"
           << kColours[(k + 1) % kColours.size()] << "' title " << quote(name);
     ++k;
@@ -118,8 +118,8 @@ Plot plot_of(const MeasuredAxis& axis, View view) {
   std::ostringstream text;
   std::ostringstream plots;
   text << quiet_style()
-       << "set key below Left reverse samplen 2 spacing 1.15 width 1 height 1.5 font ',14'"
-       << (axis.lines.back().line->apart ? " maxrows 7" : "") << "\n";
+       << "set key below Left reverse samplen 2 spacing 1.15 width 1 height 1.5 font ',13'"
+       << (axis.lines.back().line->apart ? " maxrows 8" : "") << "\n";
   double low_x = INFINITY, high_x = 0, low_y = INFINITY, high_y = 0;
   bool floored = false;
   const MeasuredPoint* marked = axis.default_point();
@@ -154,7 +154,7 @@ Plot plot_of(const MeasuredAxis& axis, View view) {
       draw_apart(line, eye, i, text, plots);
       continue;
     }
-    plots << ", " << data << " using 1:2 with linespoints lw 2.4 pt " << mark << " ps 1.3 lc rgb '"
+    plots << ", " << data << " using 1:2 with linespoints lw 2.4 pt " << mark << " ps 1 lc rgb '"
           << colour << "' title " << title;
     if (laws) {
       plots << ", " << data << " using 1:3 with lines lw 1 dt '.' lc rgb '" << colour
@@ -162,7 +162,7 @@ Plot plot_of(const MeasuredAxis& axis, View view) {
     }
   }
   if (marked != nullptr && eye.sees(*marked)) {
-    plots << ", '-' using 1:2 with points pt 6 ps 3.2 lw 2.2 lc rgb '" << kInk
+    plots << ", '-' using 1:2 with points pt 6 ps 2.4 lw 2.2 lc rgb '" << kInk
           << "' title 'default of the product'";
   }
   text << "set title " << wrapped(a.title, kTitleWidth) << " font ',17'\n";
@@ -210,8 +210,8 @@ Plot plot_of(const MeasuredAxis& axis, View view) {
   if (view == View::kErrorOverKnob && a.over_cost) name += "_knob";
   if (view == View::kCostOverKnob) name += "_cost";
   return {.name = name,
-          .width = 820,
-          .height = axis.lines.back().line->apart ? 840 : 740,
+          .width = 800,
+          .height = axis.lines.back().line->apart ? 900 : 720,
           .commands = text.str()};
 }
 

@@ -86,7 +86,10 @@ AccuracyAxis search_axis() {
   axis.over_cost = false;
   axis.over_knob = false;
   axis.cost_over_knob = true;
-  axis.default_words = "For this mesh the grid is chosen; a tree serves what lies unevenly.";
+  axis.default_words =
+      "Cheaper are smaller meshes alone, and on this one the tree is as good: the grid is chosen "
+      "up to "
+      "30,000 triangles that lie evenly, a tree beyond.";
   axis.left_out =
       "The error, because there is none: all searches give the same answers, ties included. While "
       "the "

@@ -1,5 +1,6 @@
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <string>
 
 #include "study/accuracy/axes.h"
@@ -11,6 +12,8 @@ namespace {
 using render::BlendingChoice;
 
 constexpr int kAcross[] = {8, 12, 16, 24, 32, 48, 64};
+// Coarser ones are not touched at all in places, and a force that is not there has no direction.
+constexpr int kAcrossTouched[] = {24, 28, 32, 40, 48, 56, 64};
 constexpr int kDefaultAcross = 32;
 // Orders show where triangles are much smaller than the curvature.
 constexpr int kFitsFrom = 24;
@@ -57,7 +60,7 @@ AccuracyAxis axis_of(bool direction) {
     AccuracyLine line{.name = way.name, .title = way.title, .order = {}, .points = {}};
     const double order = direction ? way.direction_order : way.force_order;
     if (order > 0) line.order = order;
-    for (const int across : kAcross) {
+    for (const int across : direction ? std::span<const int>(kAcrossTouched) : std::span(kAcross)) {
       const RingTouch ring = ring_of(way, across);
       AccuracyPoint point{.name = std::to_string(across),
                           .knob = edge_over_radius(across),
@@ -101,7 +104,7 @@ AccuracyAxis tessellation_direction_axis() {
   axis.metric = "direction error, 99th percentile";
   axis.unit = "degrees";
   axis.threshold = 5;  // [STABILITY 6]
-  axis.threshold_words = "a quarter of the direction that can just be told apart (5 degrees)";
+  axis.threshold_words = "a quarter of what can just be told apart (5 degrees)";
   axis.left_out = "Jumps from tick to tick over edges, which half of this bounds.";
   return axis;
 }

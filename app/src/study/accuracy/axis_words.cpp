@@ -29,6 +29,25 @@ double largest_error(const MeasuredLine& line) {
   return largest;
 }
 
+// Where a knob costs nothing there is no cheapest point: how far may it be turned up?
+std::string coarsest_sentence(const MeasuredAxis& axis) {
+  std::string text;
+  for (const MeasuredLine& line : axis.lines) {
+    const MeasuredPoint* coarsest = nullptr;
+    for (const MeasuredPoint& point : line.points) {
+      // Written so that NaN is felt.
+      if (point.diverged || !(point.error <= *axis.axis.threshold)) continue;
+      if (coarsest == nullptr || point.point->knob > coarsest->point->knob) coarsest = &point;
+    }
+    if (coarsest == nullptr) continue;
+    text.append(text.empty() ? "" : "; ").append(name_of(axis, *coarsest));
+  }
+  const std::string threshold = with_unit(*axis.axis.threshold, axis.axis.unit);
+  if (text.empty()) return "No point here is below what can be felt (" + threshold + ").";
+  return "More accuracy can no longer be felt beyond these, the coarsest below " + threshold +
+         ": " + text + ".";
+}
+
 }  // namespace
 
 std::string three_digits(double value) {
@@ -55,6 +74,7 @@ std::string felt_sentence(const MeasuredAxis& axis) {
   if (!axis.axis.felt_words.empty()) return axis.axis.felt_words;
   if (!axis.axis.threshold) return {};
   const std::string threshold = with_unit(*axis.axis.threshold, axis.axis.unit);
+  if (!axis.axis.over_cost) return coarsest_sentence(axis);
   const MeasuredPoint* enough = axis.enough();
   if (enough == nullptr) {
     return "No point here is below what can be felt (" + threshold + ").";
@@ -140,7 +160,7 @@ std::vector<Figure> figures_of(const MeasuredAxis& axis) {
                        .unit = "",
                        .goal = {}});
   }
-  if (const auto* point = axis.enough()) add("enough", *point);
+  if (const auto* point = axis.axis.over_cost ? axis.enough() : nullptr) add("enough", *point);
   return figures;
 }
 
