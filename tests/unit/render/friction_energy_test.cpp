@@ -9,6 +9,7 @@
 
 #include "support/random.h"
 #include "support/rubbing.h"
+#include "thimble/render/surface/friction/friction_settings.h"
 #include "thimble/render/surface/friction/friction_stage.h"
 
 namespace thimble::render {
@@ -92,8 +93,10 @@ class LoadStiffenedLaw {
   static constexpr std::string_view kName = "load_stiffened";
   struct Settings {};
   explicit LoadStiffenedLaw(const Settings&) noexcept {}
+  CoulombSettings& coulomb() noexcept { return coulomb_; }
 
  private:
+  CoulombSettings coulomb_;  // for viewers to turn; not felt
   Vector3d bend_{0, 0, 0};
 };
 

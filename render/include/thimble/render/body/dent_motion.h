@@ -40,6 +40,12 @@ class DentMotion {
   static driver::Result<DentMotion> build(std::shared_ptr<const VertexLinks> links,
                                           const DentSettings& settings);
 
+  // A copy would not have the room that was reserved for what moves, and nothing would.
+  DentMotion(const DentMotion&) = delete;
+  DentMotion& operator=(const DentMotion&) = delete;
+  DentMotion(DentMotion&&) = default;
+  DentMotion& operator=(DentMotion&&) = default;
+
   // All of the following are Real-time: safe. Precondition: numbers name vertices that exist.
 
   /// Lets what lies within the rings of `first` move (all of a whole body), and what still swings;
