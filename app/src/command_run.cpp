@@ -349,12 +349,6 @@ void add_run_command(CLI::App& app, int& exit_code) {
                    "`thimble study accuracy`; each choice is printed")
       ->check(CLI::IsMember({"draft", "normal", "reference"}))
       ->capture_default_str();
-  command
-      ->add_option("--quality", options->quality,
-                   "draft, normal (what the scene says) or reference: points on the diagrams of "
-                   "`thimble study accuracy`; each choice is printed")
-      ->check(CLI::IsMember({"draft", "normal", "reference"}))
-      ->capture_default_str();
   command->add_option("--report", options->report, "Folder for report.json and pictures");
   command->add_option(
       "--record", options->record,
