@@ -20,9 +20,11 @@ packages=(
   libepoxy-dev libegl-dev libgl-dev      # scenes drawn with OpenGL ...
   libegl-mesa0 libgl1-mesa-dri           # ... by the processor where there is no graphics card
   libglfw3-dev libimgui-dev              # the window
-  libopenmpi-dev openmpi-bin             # sweeps over several machines; built and run without, too
   libgtest-dev libbenchmark-dev          # tests and benchmarks
 )
+
+# Sweeps over several machines: large, and nothing needs it, so not for the program alone.
+[ ${#targets[@]} -gt 0 ] || packages+=(libopenmpi-dev openmpi-bin)
 
 missing=()
 for package in "${packages[@]}"; do
