@@ -317,17 +317,23 @@ TEST(BendablePolygon, StaysBoundedOnCoarseSoftMeshesAtAnyStiffnessMassAndStep) {
         // the speed of the hand gives it.
         EXPECT_TRUE(largest < 3 * kDepth)
             << largest << " at " << times << ", " << step << " s, " << name_of(scheme);
-        // Symplectic Euler and Verlet keep another sum than the energy: with a = h w / 2 the first
-        // keeps v^2 / 2 + w^2 x^2 / 2 - a w x v, which lies within 1 - a and 1 + a times the
-        // energy, Verlet's lies nearer; so the energy swings by that much. The others never gain
-        // any.
+        // Symplectic Euler and Verlet keep another sum than the energy, which swings by much near
+        // the largest step, and damping takes from that sum: so theirs falls in the long run. The
+        // others never gain any. Written so that NaN stays and fails.
+        const auto most_energy = [&dent](int ticks) {
+          double most = 0;
+          for (int i = 0; i < ticks; ++i) {
+            dent.rest();
+            const double energy = dent.motion().energy();
+            if (!(energy <= most)) most = energy;
+          }
+          return most;
+        };
         const bool swings =
             scheme == SpringScheme::kSymplecticEuler || scheme == SpringScheme::kVerlet;
-        const double h = step / dent.motion().substeps();
-        const double a = swings ? h / largest_step(scheme, dent.motion().bounds()) : 0;
-        const double energy = dent.motion().energy();
-        for (int i = 0; i < 200; ++i) dent.rest();
-        EXPECT_TRUE(dent.motion().energy() <= energy * (1 + a) / (1 - a) * (1 + 1e-9))
+        const double before = swings ? most_energy(200) : dent.motion().energy() * (1 + 1e-9);
+        if (swings) most_energy(4000);
+        EXPECT_TRUE(most_energy(200) <= before)
             << times << ", " << step << " s, " << name_of(scheme);
       }
     }
