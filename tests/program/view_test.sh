@@ -40,7 +40,7 @@ wait
 expect 0 '^$' bash -c 'cmp alone.csv harassed.csv && echo'
 
 # The same in real time, where missed periods are told and not judged.
-"$thimble" run "$scenes/rubber.yaml" --clock wall --duration 4 --name "$me" >wall.log 2>&1 &
+"$thimble" run "$scenes/rubber.yaml" --clock wall --duration 120 --name "$me" >wall.log 2>&1 &
 run=$!
 touch run_goes_on
 harass &
@@ -58,7 +58,8 @@ expect 2 'is already shown' "$thimble" run "$scenes/honey.yaml" --name "$me"
 expect 0 '' "$thimble" view "$me" --record ordered.h5
 sleep 1
 expect 0 '' "$thimble" view "$me" --record-stop
-wait $run
+expect 0 '' "$thimble" view "$me" --stop
+wait $run || true
 rm -f run_goes_on
 wait $viewer
 expect 0 'The run has ended' cat view.log
