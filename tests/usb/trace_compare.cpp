@@ -123,8 +123,12 @@ Match match_messages(const std::vector<Numbers>& wanted, const DeviceTrace& trac
     const auto found = trace.messages.find(number);
     if (found == trace.messages.end()) continue;
     const double off = difference(found->second, wanted[i]);
-    const bool of_next = i + 1 < wanted.size() && difference(found->second, wanted[i + 1]) <= kOff;
-    if (off > kOff && of_next && match.left_out < refused) {
+    // Several in a row may have been refused.
+    bool of_later = false;
+    for (std::size_t k = i + 1; k < wanted.size() && k - i <= refused - match.left_out; ++k) {
+      of_later = of_later || difference(found->second, wanted[k]) <= kOff;
+    }
+    if (off > kOff && of_later) {
       ++match.left_out;
       continue;
     }
