@@ -143,7 +143,7 @@ class Session {
   std::unique_ptr<DentRecord> dents_;
   driver::Snapshot<driver::TickRecord> snapshot_;
   RecordingSwitch recording_;
-  bool may_record_ = false;  // a recording was asked for, or viewers may ask for one
+  std::atomic<bool> may_record_{false};  // a recording was asked for, or viewers may ask for one
   std::unique_ptr<BlackBox> black_box_;
   ScenePoses poses_now_;
   driver::Snapshot<ScenePoses> poses_;
