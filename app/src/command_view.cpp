@@ -92,26 +92,12 @@ int ask(const ViewOptions& options) {
   return kExitDone;
 }
 
-const char* word_for(RunState state) {
-  switch (state) {
-    case RunState::kLoading:
-      return "loading";
-    case RunState::kRunning:
-      return "running";
-    case RunState::kPaused:
-      return "paused";
-    case RunState::kEnded:
-      return "ended";
-  }
-  return "?";
-}
-
 void print_line(const SharedReader& reader) {
   driver::TickRecord tick;
   const bool any = reader.newest(tick);
   const SharedReader::Counters counters = reader.counters();
   const double force = Eigen::Map<const Eigen::Vector3d>(tick.f_sent_W.data()).norm();
-  std::printf("%s %s: ", reader.name().c_str(), word_for(reader.state()));
+  std::printf("%s %s: ", reader.name().c_str(), name_of(reader.state()));
   if (any) {
     std::printf("%.3f s, force %.2f N, depth %.2f mm, ", 1e-9 * static_cast<double>(tick.time_ns),
                 force, 1e3 * tick.depth);

@@ -45,6 +45,21 @@ struct SharedTable {
 /// Says what a run is doing.
 enum class RunState : std::uint32_t { kLoading, kRunning, kPaused, kEnded };
 
+/// Names a state as viewers show it.
+constexpr const char* name_of(RunState state) noexcept {
+  switch (state) {
+    case RunState::kLoading:
+      return "loading";
+    case RunState::kRunning:
+      return "running";
+    case RunState::kPaused:
+      return "paused";
+    case RunState::kEnded:
+      return "ended";
+  }
+  return "unknown";
+}
+
 /// Names the builds of arm that a viewer can draw; `numbers` of SharedArm says how long each part
 /// is.
 enum class SharedArmShape : std::uint32_t {

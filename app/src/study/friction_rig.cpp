@@ -41,32 +41,6 @@ driver::hfab::HfabModel model_with_step(double step) {
   return model;
 }
 
-/// Is the force law: a surface that presses evenly, and the friction on it.
-class EvenSurface {
- public:
-  EvenSurface(render::AnyStage& friction, double load, double depth)
-      : friction_(friction), load_(load), depth_(depth) {}
-
-  driver::ForceCommand operator()(const driver::DeviceState& state) noexcept {
-    const Eigen::Vector3d n_W(0, 0, 1);
-    render::SurfaceFeel feel;
-    feel.contact = {.touching = true,
-                    .triangle = 0,
-                    .depth = depth_,
-                    .n_W = n_W,
-                    .p_WP = state.p_WT + depth_ * n_W};
-    feel.f_T_W = load_ * n_W;
-    friction_.touch(state, feel);
-    driver::ForceCommand command;
-    command.f_T_W = feel.f_T_W - load_ * n_W;
-    return command;
-  }
-
- private:
-  render::AnyStage& friction_;
-  double load_, depth_;
-};
-
 /// Keeps what a tick did, and what the driver cannot see.
 class RigSink {
  public:
@@ -104,6 +78,21 @@ device_sim::SimulatedArmSettings arm_settings(const FrictionRigSettings& setting
 }
 
 }  // namespace
+
+driver::ForceCommand EvenSurface::operator()(const driver::DeviceState& state) noexcept {
+  const Eigen::Vector3d n_W(0, 0, 1);
+  render::SurfaceFeel feel;
+  feel.contact = {.touching = true,
+                  .triangle = 0,
+                  .depth = depth_,
+                  .n_W = n_W,
+                  .p_WP = state.p_WT + depth_ * n_W};
+  feel.f_T_W = load_ * n_W;
+  friction_.touch(state, feel);
+  driver::ForceCommand command;
+  command.f_T_W = feel.f_T_W - load_ * n_W;
+  return command;
+}
 
 RigRun rub(render::AnyStage& friction, const std::vector<RigPoint>& way, double duration,
            const FrictionRigSettings& settings) {

@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "thimble/driver/device_state.h"
+#include "thimble/driver/force_command.h"
 #include "thimble/render/effect/effect_surroundings.h"
 #include "thimble/render/effect/stage_list.h"
 
@@ -39,6 +41,20 @@ struct RigRun {
   std::vector<double> x_wanted;  ///< Where the hand wanted it, m.
   std::vector<double> force;     ///< What was sent along x, N.
   bool fault = false;            ///< The loop ended early by a fault of the device.
+};
+
+/// Is the force law of the rig: a surface that presses evenly with `load` (N), which is not told,
+/// and the friction on it. Keeps the friction only by reference. Real-time: safe.
+class EvenSurface {
+ public:
+  EvenSurface(render::AnyStage& friction, double load, double depth)
+      : friction_(friction), load_(load), depth_(depth) {}
+
+  driver::ForceCommand operator()(const driver::DeviceState& state) noexcept;
+
+ private:
+  render::AnyStage& friction_;
+  double load_, depth_;
 };
 
 /// Rubs along a straight line from the wire up: simulated vintage arm at its home pose, where x is

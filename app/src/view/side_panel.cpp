@@ -39,20 +39,6 @@ ImVec4 vec(const Colour& colour) {
   return {colour[0], colour[1], colour[2], 1};
 }
 
-const char* word_of(RunState state) {
-  switch (state) {
-    case RunState::kLoading:
-      return "loading";
-    case RunState::kRunning:
-      return "running";
-    case RunState::kPaused:
-      return "paused";
-    case RunState::kEnded:
-      return "ended";
-  }
-  return "unknown";
-}
-
 void toggle_record(SharedReader& reader) {
   if (reader.counters().recording) {
     reader.ask_record_stop();
@@ -73,7 +59,7 @@ void draw_head(const SharedReader& reader, const driver::TickRecord& tick) {
   ImGui::TextColored(vec(kDepthColour), "%5.2f mm", tick.in_contact ? tick.depth * 1e3 : 0.0);
   ImGui::SameLine(0, 2 * ImGui::GetFontSize());
   ImGui::TextDisabled("%.1f s, %s", static_cast<double>(tick.time_ns) * 1e-9,
-                      word_of(reader.state()));
+                      name_of(reader.state()));
   if (tick.fault != driver::Fault::kNone) {
     ImGui::TextColored(vec(kForceColour), "%s", std::string(driver::describe(tick.fault)).c_str());
   }

@@ -41,19 +41,9 @@ Stroke friction_work(const FrictionCase& which, const FrictionRigSettings& rig) 
     state.fresh = true;
   }
   return [friction, states, load = rig.load, depth = rig.depth] {
-    const Eigen::Vector3d n_W(0, 0, 1);
+    EvenSurface surface(*friction, load, depth);
     double sum = 0;
-    for (const auto& state : states) {
-      render::SurfaceFeel feel;
-      feel.contact = {.touching = true,
-                      .triangle = 0,
-                      .depth = depth,
-                      .n_W = n_W,
-                      .p_WP = state.p_WT + depth * n_W};
-      feel.f_T_W = load * n_W;
-      friction->touch(state, feel);
-      sum += feel.f_T_W.x();
-    }
+    for (const auto& state : states) sum += surface(state).f_T_W.x();
     return sum;
   };
 }

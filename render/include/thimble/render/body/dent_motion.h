@@ -103,8 +103,6 @@ class DentMotion {
   std::uint64_t cut() const noexcept { return cut_; }
   const DentSettings& settings() const noexcept { return settings_; }
   int substeps() const noexcept { return substeps_; }
-  /// Tells how fast the stiffest of the springs could swing, whatever moves.
-  NetworkBounds bounds() const noexcept;
 
  private:
   // A vector and a zero: four numbers go through the processor two or four at a time.
@@ -135,6 +133,7 @@ class DentMotion {
 
   DentMotion(std::shared_ptr<const VertexLinks> links, const DentSettings& settings);
   static std::size_t at(std::int32_t i) noexcept { return static_cast<std::size_t>(i); }
+  NetworkBounds bounds() const noexcept;
   bool add(std::int32_t vertex) noexcept;
   void add_swinging() noexcept;
   void prune() noexcept;
