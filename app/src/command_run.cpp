@@ -179,7 +179,7 @@ std::unique_ptr<RequestDesk> open_desk(Session& session, const RunOptions& optio
     } else {
       complain(started.error(), kExitTrouble);
     }
-  } else if (options.view || options.led()) {
+  } else if (!options.no_view && (options.view || options.led())) {
     std::fprintf(stderr, "No screen (DISPLAY, WAYLAND_DISPLAY): watch by `thimble view %s`.\n",
                  session.shared()->name().c_str());
   }
