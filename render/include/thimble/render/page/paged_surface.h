@@ -85,8 +85,10 @@ class PagedSurface {
   void announce(std::int32_t triangle) const noexcept {
     const Frame* const frame = frame_of(triangle / kPageRecords);
     if (frame == nullptr) return;
-    const auto first = static_cast<std::size_t>(triangle % kPageRecords / kGroup * kGroup);
-    for (std::size_t i = 0; i < kGroup; ++i) __builtin_prefetch(&frame->records[first + i]);
+    const std::int32_t first = triangle % kPageRecords / kGroup * kGroup;
+    for (std::int32_t i = first; i < first + kGroup; ++i) {
+      __builtin_prefetch(&frame->records[static_cast<std::size_t>(i)]);
+    }
   }
   /// Is how many records stand together: numbers that differ by less are likely near.
   static constexpr std::int32_t kGroup = 16;
