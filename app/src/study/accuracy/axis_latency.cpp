@@ -55,6 +55,7 @@ AccuracyPoint point_of(const std::string& name, const Times& times, Felt felt) {
     RestedWall wall;
     wall.period = times.period;
     wall.delay = times.delay;
+    wall.duration = 4;
     if (times.period_of) wall.period_of = [times](int k) { return times.period_of(0, k); };
     point.error = [wall] { return 1e3 / stiffest(wall); };
     point.law = 1e3 / late_stiffness_limit(wall.viscous, latency, wall.mass);
@@ -68,7 +69,9 @@ std::vector<AccuracyLine> lines_of(Felt felt) {
     delay.points.push_back(point_of(std::to_string(static_cast<int>(1000 * ticks)) + "us",
                                     {.delay = ticks * kTick}, felt));
     delay.points.back().is_default = ticks == 1;
+    delay.points.back().fits = true;
   }
+  if (felt == Felt::kGive) delay.order = 1;
   AccuracyLine jitter{
       .name = "jitter", .title = "ticks of uneven length", .order = {}, .points = {}};
   for (const double width : {0.2, 0.5, 0.8, 1.0, 1.4, 1.8}) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "energy_choice.h"
 #include "study/accuracy/axes.h"
 #include "study/accuracy/guarded_wall.h"
 #include "study/accuracy/hand_signal.h"
@@ -78,7 +79,10 @@ struct Line {
 };
 constexpr Line kLines[] = {
     {"none", "limits alone", {}},
-    {"passivity", "observer and controller", {.stage = EnergyStage::kPassivity}},
+    {"passivity",
+     "observer and controller (product)",
+     {.stage = EnergyStage::kPassivity, .allowance = kEnergyAllowance, .onset = kEnergyOnset}},
+    {"at_once", "controller that acts at once", {.stage = EnergyStage::kPassivity}},
     {"bounding", "energy bound", {.stage = EnergyStage::kBounding}},
     {"coupling",
      "virtual coupling for the arm alone (not in the product)",
@@ -102,18 +106,21 @@ AccuracyAxis axis_of(double (*error)(const WallGuard&, double)) {
                           .error = [=] { return error(guard, stiffness); },
                           .prepare = [=] { return work_of(guard, stiffness); }};
       point.ticks = kWorkTicks;
-      point.is_default = guard.stage == EnergyStage::kPassivity && stiffness == kUsual;
+      point.is_default = line.name == "passivity" && stiffness == kUsual;
       line.points.push_back(std::move(point));
     }
     axis.lines.push_back(std::move(line));
   }
   axis.default_words =
-      "Without a stage a stiff wall throws the arm back faster than it came; the bound stops that "
-      "too, but is felt as a wall of a hundredth of the stiffness, and so does a virtual coupling "
-      "that "
-      "counts on no hand; one that does gives back speed without it, and softens stiff walls. The "
-      "controller is the one that "
-      "does little while nothing is wrong, which the diagrams show only together.";
+      "What is shipped lets 2 mJ out before it acts, so a single bounce gains as much as without "
+      "it; "
+      "what it ends is the arm that gains at every bounce, and in return nothing is felt of it. At "
+      "once it would stop the first bounce too, and jolt by half a newton with the encoder's "
+      "steps. "
+      "The bound stops it as well, but is felt as a wall of a hundredth of the stiffness, and so "
+      "is "
+      "a virtual coupling that counts on no hand; one that does gives speed back without it, and "
+      "softens stiff walls.";
   return axis;
 }
 
@@ -130,9 +137,7 @@ AccuracyAxis safety_axis() {
   axis.left_out =
       "The error over the cost: that is the guard's alone, whatever the stiffness (see the "
       "figures). "
-      "The ramp with which the product's controller sets in, and the energy it lets pass first: "
-      "here "
-      "it acts at once.";
+      "Bounce after bounce, and loops with delay, which tests of the whole way look at.";
   return axis;
 }
 

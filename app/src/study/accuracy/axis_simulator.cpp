@@ -162,7 +162,7 @@ AccuracyAxis axis_of(bool dry, Wrong wrong) {
     axis.metric = "largest error of the speed in 1 s";
     axis.unit = "mm/s";
     axis.threshold = 20;  // [STABILITY 6]
-    axis.threshold_words = "what a damper of 1 N s/m turns into the smallest force felt (20 mN)";
+    axis.threshold_words = "20 mN from a damper of 1 N s/m";
   }
   const Line lines[] = {{Method::kEuler, "euler", "semi-implicit Euler", 1},
                         {Method::kMidpoint, "midpoint", "midpoint", 2},

@@ -25,7 +25,7 @@ using render::SearchChoice;
 using render::TrackerChoice;
 
 constexpr int kAcross = 64;                        // 16,384 triangles with edges of about 2 mm
-constexpr double kHills = 2e-4;                    // m, up and down
+constexpr double kHills = 4e-4;                    // m, up and down
 constexpr double kDeep = 1e-3;                     // m below the ring without hills
 constexpr double kTick = 1e-3;                     // s
 constexpr int kTicks = 400;                        // of a stroke
@@ -54,30 +54,28 @@ const FollowedSurface& surface() {
   return one;
 }
 
-/// Is a stroke around ring and tube at once, from outside in, and how far the surface is at each
-/// tick, found by looking at every triangle.
-struct Course {
+// A stroke around ring and tube at once, from outside in: its place at each tick.
+std::vector<Vector3d> course_at(double speed) {
   std::vector<Vector3d> places;
-  std::vector<double> nearest;  // m
-};
-
-const Course& course_at(double speed) {
-  static std::map<double, Course> courses;
-  const auto [at, fresh] = courses.try_emplace(speed);
-  Course& course = at->second;
-  if (!fresh) return course;
   for (int i = 0; i < kTicks; ++i) {
-    // As far around the ring as around the tube, in each tick; half of the speed is each one's.
+    // As far around the ring as around the tube in each tick.
     const double way = speed * kTick * i / std::sqrt(2);
     const double around = way / (kCostRing.ring_radius + kCostRing.tube_radius);
-    const double across = way / kCostRing.tube_radius;
-    course.places.push_back(kCostRing.at(around, across, i == 0 ? kDeep : -kDeep));
-    course.nearest.push_back(
-        surface()
-            .linear->closest(course.places.back(), std::numeric_limits<double>::infinity())
-            .distance);
+    places.push_back(kCostRing.at(around, way / kCostRing.tube_radius, i == 0 ? kDeep : -kDeep));
   }
-  return course;
+  return places;
+}
+
+// How far the surface is at each of these places, found by looking at every triangle; m.
+const std::vector<double>& nearest_at(double speed) {
+  static std::map<double, std::vector<double>> found;
+  const auto [at, fresh] = found.try_emplace(speed);
+  if (!fresh) return at->second;
+  for (const Vector3d& p : course_at(speed)) {
+    at->second.push_back(
+        surface().linear->closest(p, std::numeric_limits<double>::infinity()).distance);
+  }
+  return at->second;
 }
 
 double distance_to(std::int32_t triangle, const Vector3d& p) {
@@ -90,14 +88,14 @@ double distance_to(std::int32_t triangle, const Vector3d& p) {
 
 // Ticks whose triangle is a wrong one, or that have none though the tip is inside; in percent.
 double wrong_faces(const FollowerChoice& choice, double speed) {
-  const Course& course = course_at(speed);
+  const std::vector<Vector3d> places = course_at(speed);
+  const std::vector<double>& nearest = nearest_at(speed);
   const auto follower = make_follower(surface(), choice);
-  follower->follow(course.places[0]);
+  follower->follow(places[0]);
   int wrong = 0;
-  for (std::size_t i = 1; i < course.places.size(); ++i) {
-    const std::int32_t triangle = follower->follow(course.places[i]);
-    const bool right =
-        triangle >= 0 && distance_to(triangle, course.places[i]) <= course.nearest[i] + kFelt;
+  for (std::size_t i = 1; i < places.size(); ++i) {
+    const std::int32_t triangle = follower->follow(places[i]);
+    const bool right = triangle >= 0 && distance_to(triangle, places[i]) <= nearest[i] + kFelt;
     wrong += right ? 0 : 1;
   }
   return 100.0 * wrong / (kTicks - 1);
@@ -110,19 +108,19 @@ struct WorstTick {
 };
 
 WorstTick worst_tick(const FollowerChoice& choice, double speed) {
-  const Course& course = course_at(speed);
+  const std::vector<Vector3d> places = course_at(speed);
   const auto follower = make_follower(surface(), choice);
   const auto last = follower->copy();
   WorstTick worst;
   double most = -1;
-  follower->follow(course.places[0]);
-  for (std::size_t i = 1; i < course.places.size(); ++i) {
+  follower->follow(places[0]);
+  for (std::size_t i = 1; i < places.size(); ++i) {
     last->stand_where(*follower);
-    follower->follow(course.places[i]);
+    follower->follow(places[i]);
     // The tick that enters is a search's, whoever follows.
     if (i == 1 || !(follower->effort() > most)) continue;
     most = follower->effort();
-    worst = {last->copy(), course.places[i]};
+    worst = {last->copy(), places[i]};
   }
   return worst;
 }
@@ -195,7 +193,13 @@ AccuracyAxis tracking_axis() {
     }
     axis.lines.push_back(std::move(line));
   }
-  axis.default_words = "?";
+  axis.default_words =
+      "Hops alone are as right on this course, but lose the tip where cells leave gaps; edge "
+      "planes "
+      "look around there alone. Smooth cells (offset, compact) and the god-object name another "
+      "triangle where a hollow makes several as near: theirs is the one the smooth surface has "
+      "there, "
+      "or the one that the proxy can slide to.";
   return axis;
 }
 

@@ -6,7 +6,7 @@ namespace {
 using driver::EnergyStage;
 using Eigen::Vector3d;
 
-driver::SafetyGate gate_of(EnergyStage stage) {
+driver::SafetyGate gate_of(const WallGuard& guard) {
   const driver::GateLimits limits{.force_max = 100,
                                   .speed_max = 100,
                                   .rise_max = 1e9,
@@ -14,19 +14,19 @@ driver::SafetyGate gate_of(EnergyStage stage) {
                                   .stall_ns = 1'000'000'000,
                                   .watchdog_ns = 2'000'000'000};
   driver::EnergyGuardSettings settings;
-  settings.stage = stage;
+  settings.stage = guard.stage;
   settings.mass = GuardedArm::kMass;
-  settings.allowance = 0;
-  settings.reservoir = 0.01;                                      // J
-  settings.onset = 0;                                             // the plain controller of
-  settings.slope = 2 * GuardedArm::kViscous / GuardedArm::kTick;  // [STABILITY 1.6], passive
+  settings.allowance = guard.allowance;
+  settings.reservoir = 0.01;  // J
+  settings.onset = guard.onset;
+  settings.slope = 2 * GuardedArm::kViscous / GuardedArm::kTick;  // passive [STABILITY 1.6]
   return driver::SafetyGate(limits, settings);
 }
 
 }  // namespace
 
 GuardedWall::GuardedWall(const WallGuard& guard, double stiffness)
-    : gate_(gate_of(guard.stage)), guard_(guard), stiffness_(stiffness) {
+    : gate_(gate_of(guard)), guard_(guard), stiffness_(stiffness) {
   gate_.restart();
   if (!(guard.counted_on > 0)) return;
   spring_ = 2 * guard.counted_on / GuardedArm::kTick / 1.1;

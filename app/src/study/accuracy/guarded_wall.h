@@ -19,6 +19,8 @@ struct GuardedArm {
 /// coupling, which the product does not have.
 struct WallGuard {
   driver::EnergyStage stage = driver::EnergyStage::kNone;
+  double allowance = 0;  ///< J, and
+  double onset = 0;      ///< J, as in driver::EnergyGuardSettings.
   /// Damping (N s/m) that a coupling's limit counts on; 0: no coupling.
   double counted_on = 0;
 };

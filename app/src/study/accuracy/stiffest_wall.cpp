@@ -10,18 +10,17 @@ namespace thimble::app {
 namespace {
 
 constexpr double kStart = 1e-3;  // m
-constexpr double kDuration = 2;  // s; within 1 % of the limit a swing changes by a third
 constexpr double kMost = 1e6;    // N/m
 constexpr int kHalvings = 40;
 constexpr double kNearEnough = 1e-3;
 
-// Goes on to `end` (s) with the forces that arrive until then, which are in the order of sending.
+/// Is a force that is on its way to the motors.
 struct Sent {
   double arrives = 0;  // s
   double force = 0;    // N
 };
 
-/// Is the energy of the swing, as the square of an amplitude, summed over half of the time.
+// Tells whether a swing is larger in the last quarter of the time than in the second one.
 bool grows(const RestedWall& wall, double stiffness) {
   LineMotion now{kStart, 0};
   const auto estimate = wall.estimate ? wall.estimate() : nullptr;
@@ -31,7 +30,7 @@ bool grows(const RestedWall& wall, double stiffness) {
   double seen_before = now.x;
   double dt = 0;
   double early = 0, late = 0;
-  for (int k = 0; time < kDuration; ++k) {
+  for (int k = 0; time < wall.duration; ++k) {
     const double v = estimate ? estimate->update(now.x) : dt > 0 ? (now.x - seen_before) / dt : 0;
     seen_before = now.x;
     sent.push_back({time + wall.delay, -stiffness * now.x - wall.damping * v});
@@ -48,10 +47,10 @@ bool grows(const RestedWall& wall, double stiffness) {
     time = end;
     // Written so that NaN counts as growing.
     if (!(std::abs(now.x) < 1e3 * kStart)) return true;
+    // Its energy, as the square of an amplitude.
     const double size = now.x * now.x + wall.mass / stiffness * now.v * now.v;
-    // From half a period to a quarter of the time against the last quarter: what begins has died.
-    if (time > kDuration / 4 && time <= kDuration / 2) early += size * dt;
-    if (time > 3 * kDuration / 4) late += size * dt;
+    if (time > wall.duration / 4 && time <= wall.duration / 2) early += size * dt;
+    if (time > 3 * wall.duration / 4) late += size * dt;
   }
   return !(late <= early);
 }

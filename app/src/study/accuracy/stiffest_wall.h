@@ -16,6 +16,7 @@ struct RestedWall {
   double damping = 0;    ///< N s/m, of the wall
   double period = 1e-3;  ///< s
   double delay = 0;      ///< s, from seeing a place to the force
+  double duration = 1;   ///< s, of a swing; uneven ticks take longer to show their mean.
   /// Gives the length of tick k, s; if empty, all have `period`.
   std::function<double(int)> period_of = {};
   /// Makes the estimate of velocity for the damper; if empty, the difference over a tick.
