@@ -161,8 +161,7 @@ double least_counted_on(double stiffness) {
 
 TEST(VirtualCoupling, GivesNoSpeedUpToTheLimitItIsSizedByWhateverIsBehindIt) {
   for (const double stiffness : {250.0, 1000.0, 4000.0, 1e6}) {
-    // Its law leaves a tenth to the limit of the arm's own friction, and no more than some of it
-    // is lost to the mean of all phases.
+    // The law asks for no more than the arm has, and wastes less than half.
     const double counted_on = least_counted_on(stiffness);
     EXPECT_GE(counted_on, GuardedArm::kViscous) << stiffness;
     EXPECT_LE(counted_on, 2 * GuardedArm::kViscous) << stiffness;

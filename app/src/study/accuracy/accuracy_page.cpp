@@ -33,8 +33,8 @@ summary{cursor:pointer;margin:.6rem 0}nav a{margin-right:.9rem;white-space:nowra
 </style></head><body>
 <h1>What accuracy costs in time</h1>
 <p>Each diagram turns one knob: how wrong the result is against a truth that shares no code with it, and what it
-costs. Lower is truer, farther left is cheaper. Below the dashed line nobody can feel the difference. The ring marks
-what Thimble does unless told otherwise.</p>
+costs. Lower is truer, farther left is cheaper. Where a diagram is shaded, below the dashed line, nobody can feel the difference.
+The ring marks what Thimble does unless told otherwise.</p>
 <p class="small">Times are medians of this machine, in turn with each other, of the processor time of the work alone,
 with half the distance between the quartiles. Instructions are counted by callgrind and are the same on every machine
 that runs the same binary; they decide what is cheaper. Errors are the same bits in every run.</p>

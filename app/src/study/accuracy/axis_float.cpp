@@ -70,7 +70,7 @@ AccuracyAxis float_axis() {
   axis.unit = "% of the largest force";
   axis.truth = "The same way of contact at the origin.";
   axis.threshold = 3.5;
-  axis.threshold_words = "half the force that can just be told apart (3.5 %)";
+  axis.threshold_words = "half the change of force that is felt (3.5 %)";
   axis.over_cost = false;
   axis.default_words =
       "Double precision costs the same in a tick and leaves nothing to choose; where memory "

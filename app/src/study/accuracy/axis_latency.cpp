@@ -125,7 +125,7 @@ AccuracyAxis latency_axis() {
       "A wall in continuous time: e = 1. Beside it the law of restitution, "
       "ln e = pi K L / 2 sqrt(K m).";
   axis.threshold = 3.5;
-  axis.threshold_words = "half the impact that can just be told apart (3.5 %)";
+  axis.threshold_words = "half the change of impact that is felt (3.5 %)";
   return axis;
 }
 

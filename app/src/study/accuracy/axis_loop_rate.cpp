@@ -54,7 +54,7 @@ AccuracyAxis loop_rate_axis() {
       "A wall in continuous time, which returns the speed it was given: e = 1 (but for the "
       "arm's own friction, which the law counts in).";
   axis.threshold = 3.5;
-  axis.threshold_words = "half the impact that can just be told apart (3.5 %)";
+  axis.threshold_words = "half the change of impact that is felt (3.5 %)";
   axis.default_words =
       "1 kHz is what full-speed USB carries and what textbooks ask for. A free arm bounces there; "
       "in a "

@@ -18,7 +18,7 @@ constexpr std::array kColours{"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#8a6d
 constexpr std::array kMarks{7, 5, 9, 13, 11, 3};
 constexpr std::array kHollowMarks{6, 4, 8, 12, 10, 2};  // of the same shapes, for the next six
 constexpr const char* kUnfeltFill = "#f0f4ee";          // under what cannot be felt
-constexpr std::size_t kTitleWidth = 56, kKnobWidth = 60, kErrorWidth = 30;  // letters
+constexpr std::size_t kTitleWidth = 56, kKnobWidth = 60, kErrorWidth = 26;  // letters
 
 enum class View { kErrorOverCost, kErrorOverKnob, kCostOverKnob };
 
@@ -157,7 +157,8 @@ Plot plot_of(const MeasuredAxis& axis, View view) {
   std::ostringstream text;
   std::ostringstream plots;
   text << quiet_style()
-       << "set key below left Left reverse samplen 2 spacing 1.15 width 1 height 1.5 font ',13'"
+       << "set key below left Left reverse samplen 2 spacing 1.15 width 1 height 1.5 "
+          "font ',13'"
        << (axis.lines.back().line->apart ? " maxrows 8" : "") << "\n";
   double low_x = INFINITY, high_x = 0, low_y = INFINITY, high_y = 0;
   bool floored = false;

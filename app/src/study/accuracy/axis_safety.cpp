@@ -133,7 +133,7 @@ AccuracyAxis safety_axis() {
   axis.metric = "speed gained by a bounce";
   axis.truth = "A passive wall, which gives none: e <= 1.";
   axis.threshold = 3.5;
-  axis.threshold_words = "half the impact that can just be told apart (3.5 %)";
+  axis.threshold_words = "half the change of impact that is felt (3.5 %)";
   axis.left_out =
       "The error over the cost: that is the guard's alone, whatever the stiffness (see the "
       "figures). "
@@ -148,7 +148,7 @@ AccuracyAxis safety_stiffness_axis() {
   axis.metric = "stiffness missing";
   axis.truth = "The wall's own stiffness, pressed 1 mm deep.";
   axis.threshold = 8;  // [STABILITY 6]
-  axis.threshold_words = "the stiffness that cannot be told apart (8 %)";
+  axis.threshold_words = "half the change of stiffness that is felt (8 %)";
   axis.left_out = "How long the press takes to be felt in full; walls of moving objects.";
   return axis;
 }

@@ -157,7 +157,7 @@ AccuracyAxis axis_of(bool dry, Wrong wrong) {
     axis.metric = "largest error of the place in 1 s";
     axis.unit = "um";
     axis.threshold = 1;  // [STABILITY 6]
-    axis.threshold_words = "the smallest vibration that is felt (1 um at 100 Hz)";
+    axis.threshold_words = "the least vibration that is felt (1 um)";
   } else {
     axis.metric = "largest error of the speed in 1 s";
     axis.unit = "mm/s";

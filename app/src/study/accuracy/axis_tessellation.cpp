@@ -96,7 +96,7 @@ AccuracyAxis tessellation_axis() {
   axis.metric = "force error, RMS";
   axis.unit = std::string("%");
   axis.threshold = 3.5;  // half of 7 % [STABILITY 6, after Pang, Tan, Durlach 1991]
-  axis.threshold_words = "half the force that can just be told apart (3.5 %)";
+  axis.threshold_words = "half the change of force that is felt (3.5 %)";
   axis.left_out =
       "One shape alone, the ring, because its truth is exact on hollow and round sides; the "
       "trackers' differences are in `thimble study cost`.";
@@ -110,7 +110,7 @@ AccuracyAxis tessellation_direction_axis() {
   axis.metric = "direction error, 99th percentile";
   axis.unit = "degrees";
   axis.threshold = 5;  // [STABILITY 6]
-  axis.threshold_words = "a quarter of what can just be told apart (5 degrees)";
+  axis.threshold_words = "a quarter of the turn that is felt (5 degrees)";
   axis.left_out = "Jumps from tick to tick over edges, which are in the next diagram.";
   return axis;
 }
@@ -125,7 +125,7 @@ AccuracyAxis tessellation_jump_axis() {
       "The ring itself, on which the same stroke turns the force by no more than 0.2 degrees in a "
       "tick, which is taken off.";
   axis.threshold = 5;  // [STABILITY 6]
-  axis.threshold_words = "a quarter of what can just be told apart (5 degrees)";
+  axis.threshold_words = "a quarter of the turn that is felt (5 degrees)";
   axis.left_out = "Faster strokes, which meet the same edges in fewer ticks.";
   return axis;
 }
