@@ -209,7 +209,7 @@ Plot plot_of(const MeasuredAxis& axis, View view) {
   }
   plots << law_plots.str();
   if (marked != nullptr && eye.sees(*marked)) {
-    plots << ", '-' using 1:2 with points pt 6 ps 2.4 lw 2.2 lc rgb '" << kInk
+    plots << ", '-' using 1:2 with points pt 6 ps 2.1 lw 2.2 lc rgb '" << kInk
           << "' title 'default of the product'";
   }
   text << "set title " << wrapped(a.title, kTitleWidth) << " font ',17'\n";
