@@ -84,13 +84,13 @@ void add_table(const MeasuredAxis& axis, std::ostringstream& page) {
   const AccuracyAxis& a = axis.axis;
   page << "<details><summary>Figures</summary><div class=\"scroll\"><table><tr><th>method</th><th>"
        << escaped(a.knob) << (a.knob_unit.empty() ? "" : ", ") << escaped(a.knob_unit)
-       << "</th><th>" << escaped(a.unit) << "</th><th>ns per " << a.per
-       << "</th><th>&plusmn;</th><th>instructions</th>"
+       << "</th><th>" << escaped(a.unit) << "</th><th>ns " << (a.cost_is_added ? "more " : "")
+       << "per " << a.per << "</th><th>&plusmn;</th><th>instructions</th>"
        << "<th>best bargain</th></tr>\n";
   for (const MeasuredLine& line : axis.lines) {
     for (const MeasuredPoint& point : line.points) {
       page << "<tr" << (point.point->is_default ? " class=\"default\"" : "") << '>'
-           << cell(line.line->apart ? point.point->name : line.line->title)
+           << cell(line.line->apart ? name_of(axis, point) : line.line->title)
            << cell(std::isfinite(point.point->knob) ? three_digits(point.point->knob) : "")
            << cell(point.diverged ? "diverges" : three_digits(point.error))
            << cell(three_digits(point.ns)) << cell(three_digits(point.ns_spread))
