@@ -194,12 +194,12 @@ AccuracyAxis tracking_axis() {
     axis.lines.push_back(std::move(line));
   }
   axis.default_words =
-      "Hops alone are as right on this course, but lose the tip where cells leave gaps; edge "
-      "planes "
-      "look around there alone. Smooth cells (offset, compact) and the god-object name another "
-      "triangle where a hollow makes several as near: theirs is the one the smooth surface has "
-      "there, "
-      "or the one that the proxy can slide to.";
+      "Hops alone are as right on this course for less (some of the difference is the contact "
+      "stage "
+      "around the product's tracker). But where cells leave gaps, or a walk has left for the far "
+      "side of a part, they stay wrong, and edge planes look around there alone. Smooth cells "
+      "(offset, compact) and the god-object name another triangle where a hollow makes several as "
+      "near: the one that the smooth surface has there, or that the proxy can slide to.";
   return axis;
 }
 
