@@ -120,7 +120,7 @@ AccuracyAxis loop_rate_stiffness_axis() {
                           .prepare = [=] { return work_at(1000 * khz); }};
       point.ticks = kStrokeMs;
       point.is_default = khz == 1 && line.name == "hand";
-      point.fits = khz >= 2;
+      point.fits = khz >= 2 && khz <= 16;
       const double latency = latency_of({.period = wall.period, .delay = wall.delay});
       point.law = 1e3 / late_stiffness_limit(wall.viscous, latency, wall.mass);
       line.points.push_back(std::move(point));
