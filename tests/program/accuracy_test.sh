@@ -18,15 +18,18 @@ expect 0 'reference: ' "$thimble" run "$source_dir/app/scenes/box.yaml" --durati
 if command -v valgrind >/dev/null; then
   count() {
     valgrind --tool=callgrind --toggle-collect=thimble_probed_stroke \
-      --callgrind-out-file=/dev/null "$thimble" cost-probe accuracy/velocity/window/8 1 2>&1 \
+      --callgrind-out-file=/dev/null "$thimble" cost-probe "accuracy/$1" 1 2>&1 \
       >/dev/null | awk '/Collected/ {print $4}'
   }
-  first=$(count)
-  again=$(count)
-  echo "Instructions of one stroke: $first and $again"
-  off=$((first > again ? first - again : again - first))
-  expect 0 '' test "${first:-0}" -gt 10000
-  expect 0 '' test $((off * 1000)) -le "$first"
+  # A method alone, a tick that is found to be the worst, and an effect with what is taken off.
+  for subject in velocity/window/8 tracking/edge_planes/300mm_s effects/effects/friction.bristle; do
+    first=$(count "$subject")
+    again=$(count "$subject")
+    echo "Instructions of one stroke of $subject: $first and $again"
+    off=$((first > again ? first - again : again - first))
+    expect 0 '' test "${first:-0}" -gt 10000
+    expect 0 '' test $((off * 1000)) -le "$first"
+  done
 else
   echo "LEFT OUT: instructions are not counted, valgrind is not installed"
 fi

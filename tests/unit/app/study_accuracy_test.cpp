@@ -1,9 +1,12 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <set>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "histogram.h"
 #include "quality.h"
@@ -12,14 +15,19 @@
 #include "study/accuracy/axis_words.h"
 #include "study/accuracy/free_spin.h"
 #include "study/accuracy/gating.h"
+#include "study/accuracy/guarded_wall.h"
+#include "study/accuracy/held_motion.h"
 #include "study/accuracy/measure_axis.h"
+#include "study/accuracy/stiffest_wall.h"
+#include "study/accuracy/velocity_estimates.h"
 
 namespace thimble::app {
 namespace {
 
 // What takes long in a debug build is looked at once, by its shortest form.
 bool is_costly(const AccuracyAxis& axis) {
-  return axis.name == "search" || axis.name == "float" || axis.name == "effects";
+  return axis.name == "search" || axis.name == "float" || axis.name == "effects" ||
+         axis.name == "tracking";
 }
 
 TEST(AccuracyAxes, SayAllThatAReaderNeeds) {
@@ -56,8 +64,8 @@ TEST(AccuracyAxes, ShowTheOrderOfEachMethodAndExactOnesAtRounding) {
   int exact = 0;
   for (const AxisMaker& maker : accuracy_axes()) {
     const AccuracyAxis axis = maker.make();
-    if (is_costly(axis)) continue;
     for (const AccuracyLine& line : axis.lines) {
+      if (is_costly(axis) && !line.order) continue;
       std::vector<MeasuredPoint> points;
       for (const AccuracyPoint& point : line.points) {
         if (line.exact) {
@@ -77,8 +85,8 @@ TEST(AccuracyAxes, ShowTheOrderOfEachMethodAndExactOnesAtRounding) {
       ++orders;
     }
   }
-  EXPECT_GE(orders, 20);
-  EXPECT_GE(exact, 15);
+  EXPECT_GE(orders, 25);
+  EXPECT_GE(exact, 20);
 }
 
 TEST(AccuracyAxes, AgreeWithThePublishedLaws) {
@@ -88,21 +96,22 @@ TEST(AccuracyAxes, AgreeWithThePublishedLaws) {
     for (const AccuracyLine& line : axis.lines) {
       for (const AccuracyPoint& point : line.points) {
         if (!point.law) continue;
-        const bool bounce = axis.name != "encoder";
+        const bool bounce = axis.name == "loop_rate" || axis.name == "latency";
         // The law of a bounce holds where a swing lasts for many ticks [STABILITY 1.5].
         if (bounce && *point.law > 15) continue;
         const double error = point.error();
+        const std::string where = axis.name + ' ' + line.name + ' ' + point.name;
         if (bounce) {
-          EXPECT_NEAR((100 + error) / (100 + *point.law), 1, 0.01)
-              << axis.name << ' ' << point.name;
+          EXPECT_NEAR((100 + error) / (100 + *point.law), 1, 0.01) << where;
         } else {
-          EXPECT_NEAR(error / *point.law, 1, 0.03) << axis.name << ' ' << point.name;
+          // Long ticks are drawn by chance: 4 s of them are some percent off their mean.
+          EXPECT_NEAR(error / *point.law, 1, line.name == "gaps" ? 0.07 : 0.03) << where;
         }
         ++looked_at;
       }
     }
   }
-  EXPECT_GE(looked_at, 20);
+  EXPECT_GE(looked_at, 55);
 }
 
 TEST(AccuracyAxes, GiveTheSameErrorsToTheBitAndReadyStrokesThatRun) {
@@ -114,6 +123,67 @@ TEST(AccuracyAxes, GiveTheSameErrorsToTheBitAndReadyStrokesThatRun) {
     const double again = maker.make().lines.front().points.front().error();
     EXPECT_TRUE(first == again || (std::isnan(first) && std::isnan(again))) << axis.name;
     EXPECT_TRUE(std::isfinite(point.prepare()())) << axis.name;
+  }
+}
+
+TEST(StiffestWall, IsThatOfTheTableForDampersWithLowPasses) {
+  // [STABILITY 1.1]: B = 2 N s/m in front of the PHANTOM-like arm, checked there by a simulation.
+  struct Row {
+    double corner, stiffness;
+  };
+  for (const Row& row : {Row{0, 3902}, Row{100, 3412}, Row{50, 2692}, Row{30, 2016}}) {
+    RestedWall wall{.mass = 0.075, .viscous = 0.005, .damping = 2};
+    wall.duration = 4;
+    wall.estimate = [&row] { return product_estimate(row.corner, 1e-3); };
+    EXPECT_NEAR(stiffest(wall) / row.stiffness, 1, 0.02) << row.corner << " Hz";
+  }
+}
+
+// The least damping that a coupling counts on with which a bounce gives no speed.
+double least_counted_on(double stiffness) {
+  double gives = 1, none = GuardedArm::kViscous / 2;
+  while (gives > 1.02 * none) {
+    const double middle = std::sqrt(gives * none);
+    double most = 0;
+    for (int phase = 0; phase < 20; ++phase) {
+      GuardedWall wall({.counted_on = middle}, stiffness);
+      LineMotion now{-0.2 * GuardedArm::kTick * (1 + phase / 20.0), 0.2};
+      for (int i = 0; i < 20000 && !(now.x < 0 && now.v < 0); ++i) {
+        now = moved_by_held_force(now, GuardedArm::kMass, GuardedArm::kViscous, -wall.force(now.x),
+                                  GuardedArm::kTick);
+      }
+      most = std::max(most, -now.v / 0.2);
+    }
+    (most > 1 ? gives : none) = middle;
+  }
+  return none;
+}
+
+TEST(VirtualCoupling, GivesNoSpeedUpToTheLimitItIsSizedByWhateverIsBehindIt) {
+  for (const double stiffness : {250.0, 1000.0, 4000.0, 1e6}) {
+    // The law asks for no more than the arm has, and wastes less than half.
+    const double counted_on = least_counted_on(stiffness);
+    EXPECT_GE(counted_on, GuardedArm::kViscous) << stiffness;
+    EXPECT_LE(counted_on, 2 * GuardedArm::kViscous) << stiffness;
+  }
+}
+
+TEST(Tracking, SearchesInEachTickAreRightAndEdgePlanesNearlyAlways) {
+  for (const AxisMaker& maker : accuracy_axes()) {
+    if (maker.name != "tracking") continue;
+    const AccuracyAxis axis = maker.make();
+    for (const AccuracyLine& line : axis.lines) {
+      const AccuracyPoint& fast = line.points[3];
+      const double wrong = fast.error();
+      if (line.name == "tree" || line.name == "linear" || line.name == "hops_ring") {
+        EXPECT_EQ(wrong, 0) << line.name;
+      } else if (line.name == "edge_planes") {
+        EXPECT_LE(wrong, 0.5);
+        EXPECT_EQ(wrong, fast.error());
+      } else {
+        EXPECT_LE(wrong, 10) << line.name;
+      }
+    }
   }
 }
 
@@ -166,6 +236,22 @@ TEST(MeasuredAxis, FindsSlopeDefaultAndThePointBeyondWhichNothingIsFelt) {
   EXPECT_FALSE(axis.default_point()->on_front);
   EXPECT_NE(default_sentence(axis).find("because."), std::string::npos);
   EXPECT_NE(felt_sentence(axis).find("method a at 1"), std::string::npos);
+}
+
+TEST(MeasuredAxis, RunsWhatIsBesideAPointAsOftenAsThePoint) {
+  AccuracyAxis axis;
+  axis.name = "by_hand";
+  int with = 0, beside = 0;
+  AccuracyLine line{.name = "a", .title = "method a"};
+  line.points.push_back({.name = "1",
+                         .knob = 1,
+                         .error = [] { return 0.0; },
+                         .prepare = [&] { return Stroke([&] { return 1.0 * ++with; }); },
+                         .beside = [&] { return Stroke([&] { return 1.0 * ++beside; }); }});
+  axis.lines.push_back(line);
+  measure_axis(std::move(axis), {.rounds = 7, .count = false});
+  EXPECT_EQ(with, 8);  // once more, to read everything into the caches
+  EXPECT_EQ(beside, 8);
 }
 
 TEST(Quality, LeavesANormalSceneAloneAndSaysWhatItChoosesElse) {

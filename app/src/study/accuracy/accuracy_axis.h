@@ -22,10 +22,14 @@ struct AccuracyPoint {
   std::function<double()> error;
   /// Makes one stroke ready; called once, outside of what is timed.
   std::function<Stroke()> prepare;
+  /// Makes ready what a stroke does besides, which is no cost of the point and is taken off; empty
+  /// if there is nothing.
+  std::function<Stroke()> beside = {};
   double ticks = 1;  ///< What a stroke's cost is divided by: ticks, or ms of touch.
   bool is_default = false;
   bool fits = false;               ///< Whether the slope of the line is taken from it.
   std::optional<double> law = {};  ///< The error that a published law tells, if there is one.
+  std::string title = {};  ///< In words, where the line's title and the knob do not name it.
 };
 
 /// Is one method over its knob.
@@ -47,12 +51,13 @@ struct AccuracyAxis {
   std::string truth;                     ///< One sentence: what the errors are measured against.
   std::optional<double> threshold = {};  ///< What cannot be felt, in `unit` [STABILITY 6].
   std::string threshold_words;
-  std::string felt_words;       ///< In place of the sentence about the point beyond what is felt.
-  std::string per = "tick";     ///< What the cost is counted for.
-  std::string default_words;    ///< Why the default is where it is, if it is not on the front.
-  std::string left_out;         ///< One or two sentences: what this axis does not show, and why.
-  bool over_cost = true;        ///< Draws the error over the cost.
-  bool over_knob = true;        ///< Draws the error over the knob.
+  std::string felt_words;      ///< In place of the sentence about the point beyond what is felt.
+  std::string per = "tick";    ///< What the cost is counted for.
+  bool cost_is_added = false;  ///< The cost is what a point adds to something, and may be negative.
+  std::string default_words;   ///< Why the default is where it is, if it is not on the front.
+  std::string left_out;        ///< One or two sentences: what this axis does not show, and why.
+  bool over_cost = true;       ///< Draws the error over the cost.
+  bool over_knob = true;       ///< Draws the error over the knob.
   bool cost_over_knob = false;  ///< Draws the cost over the knob, where all are exact.
   std::vector<AccuracyLine> lines;
 };

@@ -33,8 +33,8 @@ summary{cursor:pointer;margin:.6rem 0}nav a{margin-right:.9rem;white-space:nowra
 </style></head><body>
 <h1>What accuracy costs in time</h1>
 <p>Each diagram turns one knob: how wrong the result is against a truth that shares no code with it, and what it
-costs. Lower is truer, farther left is cheaper. Below the dashed line nobody can feel the difference. The ring marks
-what Thimble does unless told otherwise.</p>
+costs. Lower is truer, farther left is cheaper. Where a diagram is shaded, below the dashed line, nobody can feel the difference.
+The ring marks what Thimble does unless told otherwise.</p>
 <p class="small">Times are medians of this machine, in turn with each other, of the processor time of the work alone,
 with half the distance between the quartiles. Instructions are counted by callgrind and are the same on every machine
 that runs the same binary; they decide what is cheaper. Errors are the same bits in every run.</p>
@@ -84,13 +84,13 @@ void add_table(const MeasuredAxis& axis, std::ostringstream& page) {
   const AccuracyAxis& a = axis.axis;
   page << "<details><summary>Figures</summary><div class=\"scroll\"><table><tr><th>method</th><th>"
        << escaped(a.knob) << (a.knob_unit.empty() ? "" : ", ") << escaped(a.knob_unit)
-       << "</th><th>" << escaped(a.unit) << "</th><th>ns per " << a.per
-       << "</th><th>&plusmn;</th><th>instructions</th>"
+       << "</th><th>" << escaped(a.unit) << "</th><th>ns " << (a.cost_is_added ? "more " : "")
+       << "per " << a.per << "</th><th>&plusmn;</th><th>instructions</th>"
        << "<th>best bargain</th></tr>\n";
   for (const MeasuredLine& line : axis.lines) {
     for (const MeasuredPoint& point : line.points) {
       page << "<tr" << (point.point->is_default ? " class=\"default\"" : "") << '>'
-           << cell(line.line->apart ? point.point->name : line.line->title)
+           << cell(line.line->apart ? name_of(axis, point) : line.line->title)
            << cell(std::isfinite(point.point->knob) ? three_digits(point.point->knob) : "")
            << cell(point.diverged ? "diverges" : three_digits(point.error))
            << cell(three_digits(point.ns)) << cell(three_digits(point.ns_spread))

@@ -9,22 +9,29 @@ namespace thimble::app {
 
 AccuracyAxis tessellation_axis();
 AccuracyAxis tessellation_direction_axis();
+AccuracyAxis tessellation_jump_axis();
 AccuracyAxis deformable_axis();
 AccuracyAxis modes_axis();
 AccuracyAxis rings_axis();
 AccuracyAxis simulator_axis();
+AccuracyAxis simulator_speed_axis();
 AccuracyAxis simulator_smooth_axis();
 AccuracyAxis loop_rate_axis();
+AccuracyAxis loop_rate_stiffness_axis();
 AccuracyAxis latency_axis();
+AccuracyAxis latency_stiffness_axis();
 AccuracyAxis encoder_axis();
 AccuracyAxis encoder_friction_axis();
 AccuracyAxis velocity_axis();
+AccuracyAxis velocity_stiffness_axis();
 AccuracyAxis friction_axis();
 AccuracyAxis friction_stiction_axis();
 AccuracyAxis search_axis();
+AccuracyAxis tracking_axis();
 AccuracyAxis rigid_body_axis();
 AccuracyAxis safety_axis();
 AccuracyAxis safety_stiffness_axis();
+AccuracyAxis safety_noise_axis();
 AccuracyAxis effects_axis();
 AccuracyAxis float_axis();
 

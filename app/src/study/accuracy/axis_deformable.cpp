@@ -149,7 +149,7 @@ AccuracyAxis deformable_axis() {
   axis.unit = "% of the largest motion";
   axis.truth = "The sum of all sine modes of the membrane, each by its closed form.";
   axis.threshold = 3.5;
-  axis.threshold_words = "half the force that can just be told apart (3.5 %)";
+  axis.threshold_words = "half the change of force that is felt (3.5 %)";
   axis.default_words =
       "Implicit Euler with one step per tick is stable at any stiffness, mass and step and comes "
       "to "

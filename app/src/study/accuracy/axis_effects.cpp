@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <stdexcept>
@@ -34,12 +35,21 @@ double missing(const CostSubject& with, const CostSubject& bare) {
   return 1e3 * std::sqrt(squares / ticks);
 }
 
+Stroke stroke_of(const CostSubject& subject) {
+  const std::shared_ptr<render::ObjectTouch> touch = built(subject);
+  return [touch, states = ring_states()] {
+    double sum = 0;
+    for (const auto& state : states) sum += touch->update(state).f_T_W.x();
+    return sum;
+  };
+}
+
 }  // namespace
 
 AccuracyAxis effects_axis() {
   AccuracyAxis axis;
   axis.name = "effects";
-  axis.title = "Each effect on and off: the force that is missing without it, and a tick with it";
+  axis.title = "Each effect on and off: what it adds to the force, and to a tick";
   axis.metric = "force missing without the effect, RMS";
   axis.unit = "mN";
   axis.truth = "The same stroke over the same ring with the effect.";
@@ -50,9 +60,11 @@ AccuracyAxis effects_axis() {
       "unnoticed; "
       "the others are what their scenes are about.";
   axis.over_knob = false;
+  axis.cost_is_added = true;
   axis.default_words =
-      "Off: a scene gets the effects that it names, and pays for no others; `bare` is a tick with "
-      "none.";
+      "Off: a scene gets the effects that it names, and pays for no others. The cost is what "
+      "leaving "
+      "the effect out saves: a tick with it, less the same tick of the bare ring.";
   axis.left_out =
       "What several effects cost together, which is the sum. Fronts say nothing here: who wants a "
       "texture is not served by a cheaper one.";
@@ -70,14 +82,11 @@ AccuracyAxis effects_axis() {
     AccuracyPoint point{.name = name,
                         .knob = NAN,
                         .error = [subjects, &subject, bare] { return missing(subject, *bare); },
-                        .prepare = [subjects, &subject]() -> Stroke {
-                          const std::shared_ptr<render::ObjectTouch> touch = built(subject);
-                          return [touch, states = ring_states()] {
-                            double sum = 0;
-                            for (const auto& state : states) sum += touch->update(state).f_T_W.x();
-                            return sum;
-                          };
-                        }};
+                        .prepare = [subjects, &subject] { return stroke_of(subject); },
+                        .beside = [subjects, bare] { return stroke_of(*bare); }};
+    const auto dot = name.find('.');
+    point.title = name.substr(0, dot) + ": " + name.substr(dot + 1);
+    std::replace(point.title.begin(), point.title.end(), '_', ' ');
     point.ticks = kRingTicks;
     line.points.push_back(std::move(point));
   }

@@ -67,7 +67,11 @@ AccuracyAxis encoder_axis() {
   axis.threshold_words = "the smallest force that is felt (20 mN)";
   axis.over_cost = false;
   axis.default_words = "The step is the arm's: it is bought and not chosen.";
-  axis.left_out = "The error over the cost: a tick costs the same whatever the step.";
+  axis.left_out =
+      "The error over the cost: a tick costs the same whatever the step. How stiff a wall the "
+      "steps "
+      "bear, 2 c / step, and how far they let the arm swing, which are in `thimble study "
+      "stability`. No step at all, which has no place on this scale and no error.";
   struct Line {
     const char* name;
     const char* title;

@@ -70,7 +70,7 @@ AccuracyAxis float_axis() {
   axis.unit = "% of the largest force";
   axis.truth = "The same way of contact at the origin.";
   axis.threshold = 3.5;
-  axis.threshold_words = "half the force that can just be told apart (3.5 %)";
+  axis.threshold_words = "half the change of force that is felt (3.5 %)";
   axis.over_cost = false;
   axis.default_words =
       "Double precision costs the same in a tick and leaves nothing to choose; where memory "
@@ -106,7 +106,8 @@ AccuracyAxis float_axis() {
     }
     axis.lines.push_back(std::move(line));
   }
-  AccuracyLine single{.name = "single", .title = "single throughout (not in the product)"};
+  AccuracyLine single{
+      .name = "single", .title = "single throughout (not in the product)", .order = 1};
   for (const double place : kPlaces) {
     AccuracyPoint point{.name = std::to_string(static_cast<int>(1000 * place)) + "mm",
                         .knob = place,
@@ -119,6 +120,7 @@ AccuracyAxis float_axis() {
                           };
                         }};
     point.ticks = kRingTicks;
+    point.fits = place >= 1;  // nearer, the arithmetic rounds more than the place
     single.points.push_back(std::move(point));
   }
   axis.lines.push_back(std::move(single));

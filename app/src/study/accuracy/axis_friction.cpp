@@ -45,6 +45,8 @@ AccuracyAxis axis_of(Wrong wrong) {
   for (const FrictionCase& which : friction_cases()) {
     if (which.stiffness > 0) continue;
     others.points.push_back(point_of(which, which.name, NAN, wrong));
+    others.points.back().title =
+        which.title + (which.letter.empty() ? "" : " (" + which.letter + ")");
     others.points.back().is_default = which.name == "bristle";
     if (which.name != "bristle") continue;
     for (const double length : kLengths) {
@@ -70,7 +72,11 @@ AccuracyAxis friction_axis() {
   axis.name = "friction";
   axis.title = "Models of friction under a hand that creeps at 1 mm/s: trembling";
   axis.metric = "force above 50 Hz, RMS";
-  axis.left_out = "Rest after a stop, drift and delays, which are in `thimble study friction`.";
+  axis.left_out =
+      "Rest after a stop, drift and delays, which are in `thimble study friction`. The letters are "
+      "those of its table; C, the sign of a smoothed velocity, is not in the product, for it "
+      "trembles as "
+      "B does and lags.";
   return axis;
 }
 

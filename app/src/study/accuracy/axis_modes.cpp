@@ -129,7 +129,7 @@ AccuracyAxis modes_axis() {
   axis.unit = "% of the largest motion";
   axis.truth = "All 256 modes of the membrane, each exact.";
   axis.threshold = 3.5;
-  axis.threshold_words = "half the force that can just be told apart (3.5 %)";
+  axis.threshold_words = "half the change of force that is felt (3.5 %)";
   axis.default_words =
       "The product moves all modes of what it moves by modes, for which nobody has to choose; a "
       "body with too many for that is moved by implicit Euler on the patch around the hand.";

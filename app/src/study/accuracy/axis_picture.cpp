@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <sstream>
 
@@ -15,24 +16,56 @@ namespace {
 // Colours that stay apart for colour-blind eyes [M Okabe and Ito].
 constexpr std::array kColours{"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#8a6d00", "#30343b"};
 constexpr std::array kMarks{7, 5, 9, 13, 11, 3};
-constexpr std::size_t kTitleWidth = 52, kKnobWidth = 60, kErrorWidth = 36;  // letters
+constexpr std::array kHollowMarks{6, 4, 8, 12, 10, 2};  // of the same shapes, for the next six
+constexpr const char* kUnfeltFill = "#f0f4ee";          // under what cannot be felt
+constexpr std::size_t kTitleWidth = 56, kKnobWidth = 60, kErrorWidth = 26;  // letters
 
 enum class View { kErrorOverCost, kErrorOverKnob, kCostOverKnob };
 
-// Breaks a text at spaces, and quotes it with gnuplot's own line breaks.
-std::string wrapped(const std::string& text, std::size_t width) {
-  std::istringstream words(text);
-  std::string quoted = "\"";
-  std::size_t column = 0;
-  for (std::string word; words >> word;) {
-    if (column > 0 && column + word.size() > width) {
-      quoted += "\\n";
-      column = 0;
-    } else if (column > 0) {
-      quoted += ' ';
+// Words that stay together: a number and its unit.
+std::vector<std::string> words_of(const std::string& text) {
+  std::istringstream stream(text);
+  std::vector<std::string> words;
+  for (std::string word; stream >> word;) {
+    const bool joins = !words.empty() && (std::isdigit(words.back().back()) || words.back() == "x");
+    if (joins) {
+      words.back() += " " + word;
+    } else {
+      words.push_back(word);
     }
-    quoted += word;
-    column += word.size() + 1;
+  }
+  return words;
+}
+
+std::vector<std::string> filled(const std::vector<std::string>& words, std::size_t width) {
+  std::vector<std::string> lines;
+  for (const std::string& word : words) {
+    if (!lines.empty() && lines.back().size() + 1 + word.size() <= width) {
+      lines.back() += " " + word;
+    } else {
+      lines.push_back(word);
+    }
+  }
+  return lines;
+}
+
+// Breaks a text at spaces into as few lines of up to `width` letters as it takes, as even as they
+// can be.
+std::vector<std::string> broken(const std::string& text, std::size_t width) {
+  const std::vector<std::string> words = words_of(text);
+  const std::vector<std::string> fewest = filled(words, width);
+  for (std::size_t narrow = text.size() / fewest.size(); narrow < width; ++narrow) {
+    std::vector<std::string> lines = filled(words, narrow);
+    if (lines.size() == fewest.size()) return lines;
+  }
+  return fewest;
+}
+
+// Quotes it with gnuplot's own line breaks.
+std::string wrapped(const std::string& text, std::size_t width) {
+  std::string quoted;
+  for (const std::string& line : broken(text, width)) {
+    quoted.append(quoted.empty() ? "\"" : "\\n").append(line);
   }
   return quoted + "\"";
 }
@@ -42,14 +75,17 @@ std::string labelled(const std::string& name, const std::string& unit, std::size
   return wrapped(name + (unit[0] == '%' ? " in " : ", ") + unit, width);
 }
 
-// Names 1, 2 and 5 of each decade where gnuplot would name one number only.
+// Names 1, 2 and 5 of each decade where gnuplot would name one number only; 1 and 3 where the
+// numbers are long.
 std::string tics_of(char axis, double low, double high) {
-  if (high / low > 200) return {};
+  if (high / low > 3000) return {};
+  const bool high_numbers = high > 1e4;
   std::string text = "set ";
   text.append(1, axis).append("tics (");
   bool first = true;
   for (double power = std::pow(10, std::floor(std::log10(low))); power <= high; power *= 10) {
-    for (const double factor : {1.0, 2.0, 5.0}) {
+    for (const double factor : {1.0, 2.0, 3.0, 5.0}) {
+      if (factor > 1 && (high / low > 300 || (factor == 3) != high_numbers)) continue;
       if (factor * power < low || factor * power > high) continue;
       text.append(first ? "" : ", ").append(number(factor * power));
       first = false;
@@ -64,7 +100,8 @@ constexpr double kFloorShare = 1e-4;
 /// Is how one view sees a point.
 class Eye {
  public:
-  Eye(const MeasuredAxis& axis, View view) : view_(view) {
+  Eye(const MeasuredAxis& axis, View view)
+      : view_(view), added_(view == View::kErrorOverCost && axis.axis.cost_is_added) {
     double largest = 0;
     for (const MeasuredLine& line : axis.lines) {
       for (const MeasuredPoint& point : line.points) {
@@ -82,12 +119,15 @@ class Eye {
   }
   double shown(double error) const { return std::max(std::abs(error), floor_); }
   bool sees(const MeasuredPoint& point) const {
-    if (!std::isfinite(x(point)) || !(x(point) > 0 || point.point->knob == 0)) return false;
+    if (!std::isfinite(x(point))) return false;
+    const bool any = added_ || point.point->knob == 0;  // what may be 0 has no decades
+    if (!(x(point) > 0) && !any) return false;
     return view_ == View::kCostOverKnob || !point.diverged;
   }
 
  private:
   View view_;
+  bool added_;
   double floor_ = 0;
 };
 
@@ -103,11 +143,10 @@ void draw_apart(const MeasuredLine& line, const Eye& eye, std::size_t index,
     if (!eye.sees(point)) continue;
     const std::string data = "$apart" + std::to_string(index) + "_" + std::to_string(k);
     text << data << " << EOD\n" << number(eye.x(point)) << ' ' << number(eye.y(point)) << "\nEOD\n";
-    std::string name = point.point->name;
-    std::replace(name.begin(), name.end(), '_', ' ');
-    plots << ", " << data << " using 1:2 with points lw 2 ps 1.2 pt "
-          << kMarks[k % kMarks.size()] + (k >= kMarks.size() ? -1 : 0) << " lc rgb '"
-          << kColours[(k + 1) % kColours.size()] << "' title " << quote(name);
+    plots << ", " << data << " using 1:2 with points lw 2 ps 1.4 pt "
+          << (k < kMarks.size() ? kMarks[k] : kHollowMarks[k % kHollowMarks.size()]) << " lc rgb '"
+          << kColours[(k + 1) % kColours.size()] << "' title "
+          << quote(point.point->title.empty() ? point.point->name : point.point->title);
     ++k;
   }
 }
@@ -118,10 +157,13 @@ Plot plot_of(const MeasuredAxis& axis, View view) {
   std::ostringstream text;
   std::ostringstream plots;
   text << quiet_style()
-       << "set key below Left reverse samplen 2 spacing 1.15 width 1 height 1.5 font ',13'"
+       << "set key below left Left reverse samplen 2 spacing 1.15 width 1 height 1.5 "
+          "font ',13'"
        << (axis.lines.back().line->apart ? " maxrows 8" : "") << "\n";
   double low_x = INFINITY, high_x = 0, low_y = INFINITY, high_y = 0;
   bool floored = false;
+  bool law_named = false;
+  std::ostringstream law_plots;
   const MeasuredPoint* marked = axis.default_point();
   for (std::size_t i = 0; i < axis.lines.size(); ++i) {
     const MeasuredLine& line = axis.lines[i];
@@ -149,32 +191,44 @@ Plot plot_of(const MeasuredAxis& axis, View view) {
     const std::string colour = kColours[i % kColours.size()];
     const std::string data = "$line" + std::to_string(i);
     const std::string title = quote(line.line->title);
-    const std::string mark = std::to_string(kMarks[i % kMarks.size()]);
+    const bool again = i >= kMarks.size();
+    const std::string mark =
+        std::to_string(again ? kHollowMarks[i % kHollowMarks.size()] : kMarks[i % kMarks.size()]) +
+        (again ? " dt (10,4)" : "");
     if (line.line->apart) {
       draw_apart(line, eye, i, text, plots);
       continue;
     }
-    plots << ", " << data << " using 1:2 with linespoints lw 2.4 pt " << mark << " ps 1 lc rgb '"
-          << colour << "' title " << title;
+    plots << ", " << data << " using 1:2 with linespoints lw 2.4 ps 1 lc rgb '" << colour << "' pt "
+          << mark << " title " << title;
     if (laws) {
-      plots << ", " << data << " using 1:3 with lines lw 1 dt '.' lc rgb '" << colour
-            << "' notitle";
+      law_plots << ", " << data << " using 1:3 with lines lw 4 dt '.' lc rgb '" << kInk
+                << (law_named ? "' notitle" : "' title 'what the published law tells'");
+      law_named = true;
     }
   }
+  plots << law_plots.str();
   if (marked != nullptr && eye.sees(*marked)) {
-    plots << ", '-' using 1:2 with points pt 6 ps 2.4 lw 2.2 lc rgb '" << kInk
+    plots << ", '-' using 1:2 with points pt 6 ps 2.1 lw 2.2 lc rgb '" << kInk
           << "' title 'default of the product'";
   }
   text << "set title " << wrapped(a.title, kTitleWidth) << " font ',17'\n";
   const bool over_cost = view == View::kErrorOverCost;
+  const std::string cost = "ns" + std::string(a.cost_is_added ? " more" : "") + " per " + a.per;
   text << "set xlabel "
-       << (over_cost ? quote("ns per " + a.per + ", median")
-                     : labelled(a.knob, a.knob_unit, kKnobWidth))
+       << (over_cost ? quote(cost + ", median") : labelled(a.knob, a.knob_unit, kKnobWidth))
        << "\nset ylabel "
-       << (view == View::kCostOverKnob ? quote("ns per " + a.per + ", median")
+       << (view == View::kCostOverKnob ? quote(cost + ", median")
                                        : labelled(a.metric, a.unit, kErrorWidth))
        << '\n';
-  if (spans_decades(low_x, high_x)) {
+  const std::size_t label_lines =
+      broken(a.metric + ", " + a.unit, kErrorWidth).size();  // room for them, beside the numbers
+  text << "set lmargin " << 9 + 2 * label_lines << "\nset ylabel offset -1\n";
+  if (over_cost && a.cost_is_added) {
+    const double more = 0.08 * (high_x - std::min(low_x, 0.0));
+    text << "set xrange [" << number(std::min(low_x, 0.0) - more / 4) << ':'
+         << number(high_x + more) << "]\n";
+  } else if (spans_decades(low_x, high_x)) {
     text << "set logscale x\nset xrange [" << number(low_x / 1.35) << ':' << number(high_x * 1.35)
          << "]\n"
          << tics_of('x', low_x / 1.35, high_x * 1.35);
@@ -193,14 +247,17 @@ Plot plot_of(const MeasuredAxis& axis, View view) {
          << tics_of('y', low, high_y * 1.6);
   }
   if (a.threshold && view != View::kCostOverKnob) {
+    text << "set object 1 rectangle from graph 0, graph 0 to graph 1, first "
+         << number(*a.threshold) << " behind fillcolor rgb '" << kUnfeltFill
+         << "' fillstyle solid noborder\n";
     plots << ", " << number(*a.threshold) << " with lines dt '-' lw 1.5 lc rgb '" << kFaintInk
           << "' title " << quote("not felt below: " + a.threshold_words);
   }
   if (floored) {
-    text
-        << "set label 2 'rounding is drawn at the lower edge' at graph 0.99, graph 0.03 right font "
-           "',12' tc rgb '"
-        << kFaintInk << "'\n";
+    text << "set label 2 'none and rounding are drawn at the lower edge' at graph 0.99, graph 0.03 "
+            "right font "
+            "',12' tc rgb '"
+         << kFaintInk << "'\n";
   }
   text << "plot " << plots.str().substr(2) << '\n';
   if (marked != nullptr && eye.sees(*marked)) {
@@ -209,9 +266,14 @@ Plot plot_of(const MeasuredAxis& axis, View view) {
   std::string name = a.name;
   if (view == View::kErrorOverKnob && a.over_cost) name += "_knob";
   if (view == View::kCostOverKnob) name += "_cost";
+  std::size_t entries = 2 + (law_named ? 1 : 0);
+  for (const MeasuredLine& line : axis.lines) {
+    entries += line.line->apart ? line.points.size() : 1;
+  }
+  // The more the legend says, the taller, so that the diagram stays as large.
   return {.name = name,
           .width = 800,
-          .height = axis.lines.back().line->apart ? 900 : 720,
+          .height = static_cast<int>(560 + 24 * entries),
           .commands = text.str()};
 }
 

@@ -148,7 +148,7 @@ AccuracyAxis rigid_body_axis() {
   axis.unit = std::string("%");
   axis.truth = "Jacobi's elliptic functions, which solve the free spin in closed form.";
   axis.threshold = 3.5;
-  axis.threshold_words = "half the force that can just be told apart (3.5 %)";
+  axis.threshold_words = "half the change of force that is felt (3.5 %)";
   axis.per = "ms of touch";
   axis.default_words =
       "It keeps the angular momentum to rounding at any step, which no method of the textbooks "

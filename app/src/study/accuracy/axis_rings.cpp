@@ -77,7 +77,7 @@ AccuracyAxis rings_axis() {
   axis.unit = "% of the largest force";
   axis.truth = "The same body with every vertex moving.";
   axis.threshold = 3.5;
-  axis.threshold_words = "half the force that can just be told apart (3.5 %)";
+  axis.threshold_words = "half the change of force that is felt (3.5 %)";
   axis.default_words =
       "Three rings draw the dent out to where it fades for the eye; the hand alone would do with "
       "fewer.";

@@ -2,18 +2,22 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "study/accuracy/axes.h"
 #include "study/accuracy/hand_signal.h"
+#include "study/accuracy/stiffest_wall.h"
 #include "study/accuracy/velocity_estimates.h"
 
 namespace thimble::app {
 namespace {
 
-constexpr double kTick = 1e-3;  // s
-constexpr double kStep = 3e-5;  // m, an encoder's at the tip [STABILITY, heading]
-constexpr double kDamping = 1;  // N s/m, what most scenes' surfaces have
+constexpr double kTick = 1e-3;      // s
+constexpr double kStep = 3e-5;      // m, an encoder's at the tip [STABILITY, heading]
+constexpr double kDamping = 1;      // N s/m, what most scenes' surfaces have
+constexpr double kHand = 1;         // N s/m, a light one
+constexpr double kWallDamping = 2;  // N s/m [STABILITY 1.1]
 constexpr int kTicks = 8000;
 constexpr int kSettle = 500;            // ticks that are not counted
 constexpr double kDefaultCorner = 100;  // Hz, app/arms/vintage_phantom.yaml
@@ -32,6 +36,15 @@ double error_of(const Make& make) {
   return 1e3 * kDamping * std::sqrt(squares / (kTicks - kSettle));
 }
 
+// How far the stiffest wall with a damper of 2 N s/m gives in a hand, mm/N: the lag's price.
+double give_of(const Make& make) {
+  RestedWall wall;
+  wall.viscous = kHand;
+  wall.damping = kWallDamping;
+  wall.estimate = make;
+  return 1e3 / stiffest(wall);
+}
+
 Stroke work_of(const Make& make) {
   const std::shared_ptr<VelocityEstimate> estimate = make();
   std::vector<double> places;
@@ -43,23 +56,65 @@ Stroke work_of(const Make& make) {
   };
 }
 
-AccuracyPoint point_of(const std::string& name, double knob, const Make& make) {
+enum class Price { kForce, kLag };
+
+AccuracyPoint point_of(const std::string& name, double knob, const Make& make, Price price) {
   return {.name = name,
           .knob = knob,
-          .error = [make] { return error_of(make); },
+          .error = [=] { return price == Price::kForce ? error_of(make) : give_of(make); },
           .prepare = [make] { return work_of(make); },
           .ticks = kTicks,
           .law = {}};
 }
 
+std::vector<AccuracyLine> lines_of(Price price) {
+  AccuracyLine pole{
+      .name = "pole", .title = "difference, low-pass (product)", .order = {}, .points = {}};
+  for (const double corner : {500.0, 200.0, 100.0, 50.0, 30.0, 15.0, 8.0}) {
+    const double knob = 1e3 / (2 * M_PI * corner);
+    pole.points.push_back(point_of(
+        std::to_string(static_cast<int>(corner)) + "Hz", knob,
+        [corner] { return product_estimate(corner, kTick); }, price));
+    pole.points.back().is_default = corner == kDefaultCorner;
+  }
+  AccuracyLine window{
+      .name = "window", .title = "difference over a window", .order = {}, .points = {}};
+  AccuracyLine adaptive{.name = "adaptive", .title = "adaptive window", .order = {}, .points = {}};
+  for (const int ticks : {1, 2, 4, 8, 16, 32, 64}) {
+    window.points.push_back(point_of(
+        std::to_string(ticks), ticks, [ticks] { return window_estimate(ticks, kTick); }, price));
+    adaptive.points.push_back(point_of(
+        std::to_string(ticks), ticks, [ticks] { return adaptive_estimate(ticks, kStep, kTick); },
+        price));
+  }
+  AccuracyLine levant{
+      .name = "levant", .title = "Levant's differentiator", .order = {}, .points = {}};
+  for (const double most : {64.0, 16.0, 4.0, 2.0, 1.0, 0.5, 0.25}) {
+    // It answers within about the time in which that acceleration crosses a step.
+    const double knob = 1e3 * std::sqrt(2 * kStep / most);
+    levant.points.push_back(point_of(
+        std::to_string(static_cast<int>(1000 * most)), knob,
+        [most] { return levant_estimate(most, kTick); }, price));
+  }
+  std::vector<AccuracyLine> lines;
+  for (AccuracyLine* line : {&pole, &window, &adaptive, &levant}) lines.push_back(std::move(*line));
+  return lines;
+}
+
+AccuracyAxis axis_of(Price price) {
+  AccuracyAxis axis;
+  axis.knob = "how far back the estimate looks";
+  axis.knob_unit = "ms";
+  axis.lines = lines_of(price);
+  return axis;
+}
+
 }  // namespace
 
 AccuracyAxis velocity_axis() {
-  AccuracyAxis axis;
+  AccuracyAxis axis = axis_of(Price::kForce);
   axis.name = "velocity";
   axis.title = "Estimates of velocity from an encoder of 30 um at 1 kHz";
-  axis.knob = "how far back the estimate looks";
-  axis.knob_unit = "ms";
   axis.metric = "force error of a damper of 1 N s/m, RMS";
   axis.unit = "mN";
   axis.truth = "The hand's velocity in closed form: strokes of 20 mm and 1 mm, and tremor.";
@@ -70,34 +125,30 @@ AccuracyAxis velocity_axis() {
       "that "
       "damping buys); a longer look is truer here and shakier at a wall.";
   axis.left_out =
-      "What the lag costs at a wall, which the latency diagram shows. The difference alone is the "
+      "What the lag costs at a wall, which is in the next diagram. The difference alone is the "
       "first point of the window.";
-  AccuracyLine pole{
-      .name = "pole", .title = "difference, low-pass (product)", .order = {}, .points = {}};
-  for (const double corner : {500.0, 200.0, 100.0, 50.0, 30.0, 15.0, 8.0}) {
-    const double knob = 1e3 / (2 * M_PI * corner);
-    pole.points.push_back(point_of(std::to_string(static_cast<int>(corner)) + "Hz", knob,
-                                   [corner] { return product_estimate(corner, kTick); }));
-    pole.points.back().is_default = corner == kDefaultCorner;
-  }
-  AccuracyLine window{
-      .name = "window", .title = "difference over a window", .order = {}, .points = {}};
-  AccuracyLine adaptive{.name = "adaptive", .title = "adaptive window", .order = {}, .points = {}};
-  for (const int ticks : {1, 2, 4, 8, 16, 32, 64}) {
-    window.points.push_back(
-        point_of(std::to_string(ticks), ticks, [ticks] { return window_estimate(ticks, kTick); }));
-    adaptive.points.push_back(point_of(std::to_string(ticks), ticks,
-                                       [ticks] { return adaptive_estimate(ticks, kStep, kTick); }));
-  }
-  AccuracyLine levant{
-      .name = "levant", .title = "Levant's differentiator", .order = {}, .points = {}};
-  for (const double most : {64.0, 16.0, 4.0, 2.0, 1.0, 0.5, 0.25}) {
-    // It answers within about the time in which that acceleration crosses a step.
-    const double knob = 1e3 * std::sqrt(2 * kStep / most);
-    levant.points.push_back(point_of(std::to_string(static_cast<int>(1000 * most)), knob,
-                                     [most] { return levant_estimate(most, kTick); }));
-  }
-  axis.lines = {std::move(pole), std::move(window), std::move(adaptive), std::move(levant)};
+  return axis;
+}
+
+AccuracyAxis velocity_stiffness_axis() {
+  AccuracyAxis axis = axis_of(Price::kLag);
+  axis.name = "velocity_stiffness";
+  axis.title = "Estimates of velocity: the stiffest wall with a damper that stays still in a hand";
+  axis.metric = "how far the stiffest wall gives";
+  axis.unit = "mm/N";
+  axis.truth =
+      "A wall in continuous time, which may be as stiff as wanted: what is left is half a tick and "
+      "what the estimate lags.";
+  axis.threshold = 1 / 0.8;  // [STABILITY 6, after Choi and Tan 2004]
+  axis.threshold_words = "the give of a wall that is felt as hard (0.8 N/mm)";
+  axis.default_words =
+      "The difference alone lags less, and shakes more than twice as much (diagram before); the "
+      "pole "
+      "at 100 Hz gives up a tenth of the stiffness for that.";
+  axis.left_out =
+      "Steps of the encoder, so that lag alone is seen: the window that adapts to them and "
+      "Levant's "
+      "differentiator answer another motion here than on counts.";
   return axis;
 }
 

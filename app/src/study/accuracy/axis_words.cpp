@@ -64,7 +64,7 @@ std::string three_digits(double value) {
 
 std::string name_of(const MeasuredAxis& axis, const MeasuredPoint& point) {
   const MeasuredLine* line = axis.line_of(&point);
-  if (line->line->apart) return point.point->name;
+  if (line->line->apart) return point.point->title.empty() ? point.point->name : point.point->title;
   std::string text = line->line->title;
   text.append(" at ").append(with_unit(point.point->knob, axis.axis.knob_unit));
   return text;
@@ -161,6 +161,13 @@ std::vector<Figure> figures_of(const MeasuredAxis& axis) {
                        .goal = {}});
   }
   if (const auto* point = axis.axis.over_cost ? axis.enough() : nullptr) add("enough", *point);
+  if (axis.axis.cost_is_added) {
+    for (const MeasuredLine& line : axis.lines) {
+      for (const MeasuredPoint& point : line.points) {
+        add(name_of(axis, point) + ", saved without", point);
+      }
+    }
+  }
   return figures;
 }
 

@@ -6,19 +6,10 @@
 #include <vector>
 
 #include "figure.h"
+#include "study/accuracy/gating_rules.h"
 #include "thimble/driver/result.h"
 
 namespace thimble::app {
-
-/// Is one effect of the simulated arm: whether this scene calls for it [STABILITY 8, gating].
-struct GateDecision {
-  std::string effect;            ///< In words.
-  std::string name;              ///< Without spaces: part of an argument of `thimble cost-probe`.
-  std::string rule;              ///< What is compared with what, with the scene's numbers.
-  bool left_out = false;         ///< May be left out.
-  bool changes = true;           ///< Whether leaving it out changes the simulation at all.
-  std::optional<double> change = {};  ///< RMS change of force in contact without it, of the force's RMS.
-};
 
 /// Is what the decisions come to.
 struct GatingReport {

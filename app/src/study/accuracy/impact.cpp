@@ -3,28 +3,22 @@
 #include <cmath>
 #include <vector>
 
+#include "study/accuracy/held_motion.h"
+
 namespace thimble::app {
 namespace {
 
 constexpr int kPhases = 200;
 constexpr int kTicksMax = 100000;
 
-struct Moving {
-  double x = 0, v = 0;
-};
-
-// The exact way of a mass with viscous friction under a force that is held.
-Moving moved(const Moving& at, const Impact& impact, double force, double time) {
-  const double rate = impact.viscous / impact.mass;
-  const double end = force / impact.viscous;
-  const double fade = -std::expm1(-rate * time);
-  return {at.x + end * time + (at.v - end) * fade / rate, at.v + (end - at.v) * fade};
+LineMotion moved(const LineMotion& at, const Impact& impact, double force, double time) {
+  return moved_by_held_force(at, impact.mass, impact.viscous, force, time);
 }
 
 double one_restitution(const Impact& impact, int run) {
   const double first = impact.period_of ? impact.period_of(run, 0) : impact.period;
   // The moment of contact lies anywhere in the first period.
-  Moving now{-impact.speed * first * (run + 0.5) / kPhases, impact.speed};
+  LineMotion now{-impact.speed * first * (run + 0.5) / kPhases, impact.speed};
   double seen_before = now.x;
   double period = first;
   double held = 0;             // N, what the motors give now

@@ -22,19 +22,28 @@ void measure_times(std::vector<MeasuredPoint*>& points, int rounds) {
   struct Timed {
     MeasuredPoint* point = nullptr;
     Stroke stroke;
+    Stroke beside = {};
     std::vector<double> ns = {};
   };
   std::vector<Timed> all;
   volatile double seen = 0;
   for (MeasuredPoint* point : points) {
     all.push_back({point, point->point->prepare()});
+    if (point->point->beside) all.back().beside = point->point->beside();
     seen = seen + all.back().stroke();  // the first one reads everything into the caches
+    if (all.back().beside) seen = seen + all.back().beside();
   }
   for (int round = 0; round < rounds; ++round) {
     for (Timed& timed : all) {
       const double begin = worked();
       seen = seen + timed.stroke();
-      timed.ns.push_back(1e9 * (worked() - begin) / timed.point->point->ticks);
+      double spent = worked() - begin;
+      if (timed.beside) {
+        const double begin_beside = worked();
+        seen = seen + timed.beside();
+        spent -= worked() - begin_beside;
+      }
+      timed.ns.push_back(1e9 * spent / timed.point->point->ticks);
     }
   }
   for (Timed& timed : all) {
@@ -134,10 +143,15 @@ MeasuredAxis measure_axis(AccuracyAxis axis, const MeasureOptions& options) {
   }
   if (options.rounds > 0) measure_times(points, options.rounds);
   if (options.count) {
+    std::size_t strokes = 0;
+    for (const MeasuredPoint* point : points) strokes += point->point->beside ? 2 : 1;
     const auto counts = count_strokes(measured.axis.name);
-    if (counts && counts->size() == points.size()) {
-      for (std::size_t i = 0; i < points.size(); ++i) {
-        points[i]->instructions = (*counts)[i] / points[i]->point->ticks;
+    if (counts && counts->size() == strokes) {
+      std::size_t next = 0;
+      for (MeasuredPoint* point : points) {
+        double count = (*counts)[next++];
+        if (point->point->beside) count -= (*counts)[next++];
+        point->instructions = count / point->point->ticks;
       }
     }
   }

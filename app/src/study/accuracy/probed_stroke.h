@@ -13,7 +13,8 @@ extern "C" double thimble_probed_stroke(const thimble::app::Stroke& stroke);
 namespace thimble::app {
 
 /// Runs one stroke of every point whose name AXIS/LINE/POINT begins with `prefix`, in the order of
-/// the axis, and returns how many there were. Real-time: never from the servo thread.
+/// the axis, each followed by what it does besides if there is that, and returns how many there
+/// were. Real-time: never from the servo thread.
 int probe_strokes(const std::string& prefix);
 
 /// Counts the instructions of one stroke of each of these points, by one run of this program under

@@ -1,5 +1,6 @@
 #include "study/accuracy/stroked_ring.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -20,6 +21,11 @@ Vector3d true_force(const driver::DeviceState& state) {
   const double depth = kCostRing.depth(state.p_WT);
   const Vector3d n = kCostRing.normal(state.p_WT);
   return std::max(kCostSpring.stiffness * depth - kCostSpring.damping * n.dot(state.v_WT), 0.0) * n;
+}
+
+// The angle between two forces, rad; 0 where one of them is none.
+double angle_between(const Vector3d& f, const Vector3d& g) {
+  return std::atan2(f.cross(g).norm(), f.dot(g));
 }
 
 }  // namespace
@@ -50,7 +56,10 @@ RingErrors ring_errors(const RingTouch& ring) {
   const auto states = ring_states();
   std::vector<double> angles;
   double squares = 0;
-  for (std::size_t i = 0; i < states.size(); ++i) {
+  double jump = 0;
+  for (std::size_t i = 1; i < states.size(); ++i) {
+    jump = std::max(jump, angle_between(forces[i - 1], forces[i]) -
+                              angle_between(true_force(states[i - 1]), true_force(states[i])));
     if (kCostRing.depth(states[i].p_WT) < kDeepEnough) continue;
     const Vector3d truth = true_force(states[i]);
     squares += (forces[i] - truth).squaredNorm() / truth.squaredNorm();
@@ -60,7 +69,8 @@ RingErrors ring_errors(const RingTouch& ring) {
   }
   std::sort(angles.begin(), angles.end());
   return {.force = std::sqrt(squares / static_cast<double>(angles.size())),
-          .direction_p99 = angles[angles.size() * 99 / 100]};
+          .direction_p99 = angles[angles.size() * 99 / 100],
+          .jump = jump};
 }
 
 Stroke ring_work(const RingTouch& ring) {

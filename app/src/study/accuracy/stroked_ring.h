@@ -34,6 +34,7 @@ std::vector<Eigen::Vector3d> forces_on(const RingTouch& ring);
 struct RingErrors {
   double force = 0;          ///< RMS, as a share.
   double direction_p99 = 0;  ///< rad
+  double jump = 0;           ///< Largest turn in a tick beyond that of the ring's own normal, rad.
 };
 RingErrors ring_errors(const RingTouch& ring);
 

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "thimble/driver/energy_guard.h"
+#include "thimble/driver/safety_gate.h"
+
+namespace thimble::app {
+
+/// Is the arm in front of a guarded wall: PHANTOM-like [STABILITY, heading].
+struct GuardedArm {
+  static constexpr double kMass = 0.075;     ///< kg
+  static constexpr double kViscous = 0.005;  ///< N s/m
+  static constexpr double kTick = 1e-3;      ///< s
+  static constexpr double kHand = 3;         ///< N s/m, of a pinch grip
+};
+
+/// Is what keeps a wall from giving more than it takes: a stage of the product's gate, or a virtual
+/// coupling, which the product does not have.
+struct WallGuard {
+  driver::EnergyStage stage = driver::EnergyStage::kNone;
+  double allowance = 0;  ///< J, and
+  double onset = 0;      ///< J, as in driver::EnergyGuardSettings.
+  /// Damping (N s/m) that a coupling's limit counts on; 0: no coupling.
+  double counted_on = 0;
+};
+
+/// Is a wall behind a guard: what is sent tick by tick, along one line.
+///
+/// The coupling is a spring and damper between the tip and a point without mass that the wall stops
+/// by an implicit step, so that all behind the coupling is passive. Spring and damper are 1 / 1.1
+/// and 1 / 1.2 of what K T / 2 + B < b leaves [STABILITY 1.2 and 1.6, after Adams and Hannaford].
+/// Real-time: safe, once built.
+class GuardedWall {
+ public:
+  GuardedWall(const WallGuard& guard, double stiffness);
+
+  /// Takes the depth (m) at this tick and tells the force against it, N.
+  double force(double depth) noexcept;
+
+ private:
+  double gated(double depth) noexcept;
+  double coupled(double depth) noexcept;
+
+  driver::SafetyGate gate_;
+  WallGuard guard_;
+  double stiffness_;
+  double spring_ = 0, damper_ = 0;  // of the coupling
+  double last_depth_ = 0;
+  double last_point_ = 0;  // where the coupling ended, m
+  Eigen::Vector3d sent_{0, 0, 0};
+  bool begun_ = false;
+};
+
+}  // namespace thimble::app
