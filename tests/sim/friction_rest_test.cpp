@@ -37,22 +37,25 @@ std::unique_ptr<render::AnyStage> friction(std::string_view name, const Friction
 }
 
 struct Rest {
-  double force_hf = 0;         // N RMS above 50 Hz in the last second
-  double force_hf_before = 0;  // in the second before
-  double x_hf = 0;             // m RMS
+  double force_hf = 0;    // N RMS above 50 Hz in the last second
+  double force_span = 0;  // N, largest less smallest in the last second
+  double x_hf = 0;        // m RMS
   double sign_changes = 0;
   double held = 0;
 };
 
-/// Slides at 50 mm/s, stops at `stop` (m), and looks at the last of two and a half seconds.
-Rest rest_after_stop(render::AnyStage& stage, const FrictionRigSettings& rig, double stop) {
-  const RigRun run = rub(stage, {{0, stop - 0.02}, {0.4, stop - 0.02}, {0.8, stop}}, 3.3, rig);
+/// Slides at 50 mm/s, stops at `stop` (m), and looks at the last second of `duration`.
+Rest rest_after_stop(render::AnyStage& stage, const FrictionRigSettings& rig, double stop,
+                     double duration = 3.3) {
+  const RigRun run = rub(stage, {{0, stop - 0.02}, {0.4, stop - 0.02}, {0.8, stop}}, duration, rig);
   EXPECT_FALSE(run.fault);
   const std::vector<double> force = high_passed(run.force, 1000, 50);
   const std::vector<double> x = high_passed(run.x, 1000, 50);
   const std::span<const double> raw(run.force), f(force), way(x);
+  const std::span<const double> rest = raw.last(1000);
   return {.force_hf = root_mean_square(f.last(1000)),
-          .force_hf_before = root_mean_square(f.last(2000).first(1000)),
+          .force_span = *std::max_element(rest.begin(), rest.end()) -
+                        *std::min_element(rest.begin(), rest.end()),
           .x_hf = root_mean_square(way.last(1000)),
           .sign_changes = sign_changes_per_second(raw.last(1000), 1000),
           .held = std::abs(mean(raw.last(1000)))};
@@ -128,8 +131,12 @@ TEST(HardCase14, DefaultFrictionIsSilentAtAnyStopAtAnyDelay) {
   record_hard_case(14, kStops, "> force that it goes on holding", least_held, 0.25, "N");
 }
 
-TEST(HardCase14, DefaultFrictionFlickersByACountAtMostOnAnArmWithoutDryFriction) {
-  double most_share = 0, most_changes = 0, most_growth = -1;
+// That the last second flickers no more than the first, as [STABILITY 7] proposes, holds of no
+// limit cycle: windows of a second see it from other phases, and differ by 3 % for ever. What must
+// not grow is its span: two counts, as case 5 has it, and the RMS below half a quantum.
+TEST(HardCase14, DefaultFrictionFlickersByTwoCountsAtMostOnAnArmWithoutDryFriction) {
+  double most_share = 0, most_changes = 0, most_span = 0;
+  double late_span = 0, late_share = 0;
   for (int delay = 0; delay <= 3; ++delay) {
     for (int i = 0; i < 40; ++i) {
       FrictionRigSettings rig;
@@ -143,17 +150,23 @@ TEST(HardCase14, DefaultFrictionFlickersByACountAtMostOnAnArmWithoutDryFriction)
       const Rest rest = rest_after_stop(bristle, rig, 0.01 + i * 3e-5 / 40);
       EXPECT_LE(rest.force_hf, 0.5 * stiffness * 3e-5) << delay << " " << i;
       EXPECT_EQ(rest.sign_changes, 0) << delay << " " << i;
-      EXPECT_LE(rest.force_hf, rest.force_hf_before + 1e-9) << delay << " " << i;
+      EXPECT_LE(rest.force_span, 2 * stiffness * 3e-5) << delay << " " << i;
       most_share = std::max(most_share, rest.force_hf / (stiffness * 3e-5));
       most_changes = std::max(most_changes, rest.sign_changes);
-      most_growth = std::max(most_growth, rest.force_hf - rest.force_hf_before);
+      most_span = std::max(most_span, rest.force_span / (stiffness * 3e-5));
+      if (i % 8 != 0) continue;
+      const Rest later = rest_after_stop(bristle, rig, 0.01 + i * 3e-5 / 40, 23.3);
+      late_span = std::max(late_span, later.force_span / (stiffness * 3e-5));
+      late_share = std::max(late_share, later.force_hf / (stiffness * 3e-5));
     }
   }
   const char* const kStops = "160 stops, arm without dry friction";
   record_hard_case(14, kStops, "<= force above 50 Hz over one quantum", most_share, 0.5, "1");
   record_hard_case(14, kStops, "== changes of sign per second", most_changes, 0, "1/s");
-  record_hard_case(14, kStops, "<= what the second second flickers beyond the first",
-                   1e3 * most_growth, 1e-6, "mN");
+  record_hard_case(14, kStops, "<= span of the force in quanta", most_span, 2, "1");
+  record_hard_case(14, "20 of these, 20 s later", "<= span of the force in quanta", late_span, 2,
+                   "1");
+  record_hard_case(14, "the same", "<= force above 50 Hz over one quantum", late_share, 0.5, "1");
 }
 
 // Hand and device constants are known from memory only: vary them by 3 [STABILITY 9].
