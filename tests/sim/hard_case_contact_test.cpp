@@ -198,13 +198,25 @@ TEST(HardCase25, TrackersSettleInOneTickAndDoNotCycleInSharpPlaces) {
   }
 }
 
-/// Moves all vertices to multiples of 2^-36 m, so that a shift of 1e4 m rounds none of them.
-TriangleMesh on_lattice(TriangleMesh mesh) {
-  for (Vector3d& p : mesh.vertices) p = (p * 0x1p36).array().round().matrix() * 0x1p-36;
+/// Moves a place to multiples of 2^-36 m, so that a shift of 1e4 m rounds nothing.
+Vector3d on_lattice(const Vector3d& p) {
+  return (p * 0x1p36).array().round().matrix() * 0x1p-36;
+}
+
+constexpr double kBallRadius = 0.05, kBump = 0.3, kWaves = 6;  // of support::bumpy_sphere
+
+TriangleMesh bumps(int level) {
+  TriangleMesh mesh = support::bumpy_sphere(level, kBallRadius, kBump, kWaves);
+  for (Vector3d& p : mesh.vertices) p = on_lattice(p);
   return mesh;
 }
 
-/// Splits triangles by points a hair off an edge: slivers of some 1e-14 m^2 and less.
+double bump_radius(const Vector3d& u) {
+  return kBallRadius * (1 + kBump * std::sin(kWaves * u.x()) * std::sin(kWaves * u.y() + 1) *
+                                std::sin(kWaves * u.z() + 2));
+}
+
+/// Splits triangles by points a hair off an edge: slivers of 1e-14 m^2 and less.
 TriangleMesh with_slivers(TriangleMesh mesh) {
   const std::size_t count = mesh.triangles.size();
   for (std::size_t t = 0; t < count; t += 3) {
@@ -224,7 +236,8 @@ struct Difference {
   double worst = 0;  // over the size of 0.1 m
 };
 
-/// Strokes a mesh and its scaled and moved copy alike, and compares depths and proxies.
+/// Strokes a mesh and its scaled and moved copy alike, at 1 m/s and down to 8.5 N at 1 N/mm, and
+/// compares depths and proxies.
 Difference difference(const TriangleMesh& base, TrackerChoice tracker, double scale,
                       double offset) {
   const double size = 0.1;
@@ -233,9 +246,12 @@ Difference difference(const TriangleMesh& base, TrackerChoice tracker, double sc
   Touched copy(placed(base, scale, Eigen::Matrix3d::Identity(), shift), tracker);
   support::Random random(27);
   Difference found;
-  Vector3d p(0.08, 0, 0);
+  Vector3d u(0.3, 0.5, 0.8), way = random.direction();
   for (int i = 0; i < 10000; ++i) {
-    p = on_lattice({{0.98 * p + random.in_box(0.006)}, {}}).vertices[0];
+    way = (way + 0.2 * random.direction()).normalized();
+    u = (u + 0.02 * u.cross(way)).normalized();
+    const double depth = 0.00325 - 0.00525 * std::cos(0.02 * i);  // from 2 mm above
+    const Vector3d p = on_lattice((bump_radius(u) - depth) * u);
     const driver::TouchInfo wanted = reference.at(p).touch;
     const driver::TouchInfo& told = copy.at(scale * p + shift).touch;
     if (told.in_contact != wanted.in_contact) {
@@ -252,30 +268,30 @@ Difference difference(const TriangleMesh& base, TrackerChoice tracker, double sc
   return found;
 }
 
+// A scale of 1e-6 rounds each vertex; a sliver 1e-12 m high is turned by that by 1e-5 rad, so it is
+// another shape. A scale that is a power of two rounds nothing: there even slivers must give the
+// very bits, which nothing with a length of its own in it would.
 TEST(HardCase27, EveryTrackerFeelsTheSameAtEveryScaleAndFarFromTheOrigin) {
-  const TriangleMesh bumps = on_lattice(support::bumpy_sphere(3, 0.05, 0.3, 6));
-  const TriangleMesh slivers = with_slivers(on_lattice(support::bumpy_sphere(2, 0.05, 0.3, 6)));
+  const TriangleMesh plain = bumps(3), slivers = with_slivers(bumps(2));
   struct Variant {
     const char* name;
-    double scale, offset;
+    const TriangleMesh& mesh;
+    double scale, offset, limit;
   };
   for (const TrackerChoice tracker : kTrackers) {
-    for (const Variant& v :
-         {Variant{"scale 1e-6", 1e-6, 0}, {"scale 1e3", 1e3, 0}, {"offset 1e4 m", 1, 1e4}}) {
-      Difference most = difference(bumps, tracker, v.scale, v.offset);
-      EXPECT_GT(most.touching, 1000) << name_of(tracker) << " " << v.name;
-      // Slivers of 1e-12 m are other shapes where places are rounded to 2e-12 m.
-      if (v.offset == 0) {
-        const Difference thin = difference(slivers, tracker, v.scale, v.offset);
-        EXPECT_GT(thin.touching, 1000) << name_of(tracker) << " slivers " << v.name;
-        most.other_contact += thin.other_contact;
-        most.worst = std::max(most.worst, thin.worst);
-      }
+    for (const Variant& v : {Variant{"scale 1e-6", plain, 1e-6, 0, 1e-9},
+                             {"scale 1e3", plain, 1e3, 0, 1e-9},
+                             {"10 km from the origin", plain, 1, 1e4, 1e-9},
+                             {"slivers, scale 2^-20", slivers, 0x1p-20, 0, 0},
+                             {"slivers, scale 2^10", slivers, 0x1p10, 0, 0}}) {
+      const Difference most = difference(v.mesh, tracker, v.scale, v.offset);
+      EXPECT_GT(most.touching, 5000) << name_of(tracker) << " " << v.name;
       EXPECT_EQ(most.other_contact, 0) << name_of(tracker) << " " << v.name;
-      EXPECT_LE(most.worst, 1e-9) << name_of(tracker) << " " << v.name;
+      EXPECT_LE(most.worst, v.limit) << name_of(tracker) << " " << v.name;
       const std::string words = name_of(tracker) + ", " + v.name;
       record_hard_case(27, words, "<= depth and proxy off the base's, over the size", most.worst,
-                       1e-9, "1");
+                       v.limit, "1");
+      if (most.other_contact == 0) continue;
       record_hard_case(27, words, "== ticks that touch otherwise", most.other_contact, 0, "1");
     }
   }
