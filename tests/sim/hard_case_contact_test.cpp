@@ -10,6 +10,7 @@
 #include <limits>
 #include <memory>
 #include <numbers>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -44,9 +45,11 @@ std::string name_of(TrackerChoice tracker) {
 /// Is an object that is touched at one place after the other.
 class Touched {
  public:
-  Touched(const TriangleMesh& mesh, TrackerChoice tracker) {
+  Touched(const TriangleMesh& mesh, TrackerChoice tracker,
+          std::optional<NormalWeights> normals = {}) {
     ContactChoice contact;
     contact.tracker = tracker;
+    if (tracker != TrackerChoice::kCompact) contact.normals = normals;  // it knows angles only
     auto built =
         build_object_touch(mesh, contact, {.spring = {.stiffness = kStiffness, .damping = 0}});
     if (!built) throw std::runtime_error(built.error().message);
@@ -196,6 +199,37 @@ TEST(HardCase25, TrackersSettleInOneTickAndDoNotCycleInSharpPlaces) {
     record_hard_case(25, words, "== ticks in which a still tip changes its force", changed, 0, "1");
     record_hard_case(25, words, "<= most hops in a tick", most_hops, kHopsMax, "1");
   }
+}
+
+// HardCase26 in offset_tracker_test.cpp holds the offset tracker to brute force; the compact one
+// has the same cells if its normals are the same, but for their packing, which moves borders by
+// some 1e-5 of an edge. So the proxies are compared: that of a neighbour, half an edge beyond the
+// border, would be (L/2)^2 / 2R = 1.4 um off.
+TEST(HardCase26, CompactTrackerHasTheOffsetTrackersProxyInAFastStroke) {
+  const TriangleMesh ball = support::icosphere(5, 0.008);  // edges of 0.3 mm
+  Touched compact(ball, TrackerChoice::kCompact, NormalWeights::kAngle);
+  Touched offset(ball, TrackerChoice::kOffset, NormalWeights::kAngle);
+  support::Random random(26);
+  Vector3d p(0.0075, 0.0001, 0.0002), axis = random.direction();
+  int most_hops = 0;
+  double apart = 0;
+  for (int i = 0; i < 10002; ++i) {
+    const Vector3d place = i == 0 ? Vector3d(2 * p) : p;
+    const driver::TouchInfo wanted = offset.at(place).touch;
+    const driver::TouchInfo& found = compact.at(place).touch;
+    ASSERT_EQ(found.in_contact, i > 0);
+    apart = std::max(apart, (found.p_WP - wanted.p_WP).norm());
+    most_hops = std::max<int>(most_hops, found.hops);
+    if (i == 0) continue;
+    axis = (axis + 0.3 * random.direction()).normalized();
+    axis = (axis - axis.dot(p.normalized()) * p.normalized()).normalized();
+    p = Eigen::AngleAxisd(0.002 / p.norm(), axis) * p;
+  }
+  EXPECT_LE(apart, 1e-7);
+  EXPECT_LE(most_hops, kHopsMax);
+  const char* const kStroke = "compact tracker, 1e4 ticks of 2 mm";
+  record_hard_case(26, kStroke, "<= proxy off the offset tracker's", 1e6 * apart, 0.1, "um");
+  record_hard_case(26, kStroke, "<= most hops in a tick", most_hops, kHopsMax, "1");
 }
 
 /// Moves a place to multiples of 2^-36 m, so that a shift of 1e4 m rounds nothing.
