@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "support/contact_walk.h"
 #include "support/hard_case.h"
 #include "support/random.h"
 #include "support/reference_geometry.h"
@@ -71,8 +72,9 @@ class Touched {
   driver::ForceCommand command_;
 };
 
-/// Slides a tip 1 mm below a smooth surface in steps of 0.1 mm; tells lost contacts, and the
-/// largest jump of the force beyond what the tip's own way makes, over the force.
+/// Slides a tip 1 mm below a smooth surface at 20 mm/s, so that its own way changes the force by no
+/// more than 2 % per tick and hides no jump; tells lost contacts, and the largest change of the
+/// force in a tick, over the force.
 template <class Surface>
 std::pair<int, double> slide(Touched& touched, const Surface& surface, Vector3d s, int crossings) {
   constexpr double kDepth = 1e-3;
@@ -84,18 +86,17 @@ std::pair<int, double> slide(Touched& touched, const Surface& surface, Vector3d 
   Vector3d f = touched.at(p).f_T_W;
   int lost = 0, crossed = 0;
   double jump = 0;
-  for (int i = 0; crossed < crossings && i < 100 * crossings; ++i) {
-    heading = (heading + 0.1 * random.direction()).normalized();
+  for (int i = 0; crossed < crossings && i < 1000 * crossings; ++i) {
+    heading = (heading + 0.04 * random.direction()).normalized();
     heading = (heading - heading.dot(n) * n).normalized();
-    s = support::onto(surface, s + 1e-4 * heading);
+    s = support::onto(surface, s + 2e-5 * heading);
     n = support::unit_normal(surface, s);
     const Vector3d next = s - kDepth * n;
     const std::int32_t before = touched.command().touch.feature;
     const Vector3d f_next = touched.at(next).f_T_W;
     lost += !touched.command().touch.in_contact;
     crossed += touched.command().touch.feature != before;
-    jump = std::max(jump,
-                    ((f_next - f).norm() - kStiffness * (next - p).norm()) / (kStiffness * kDepth));
+    jump = std::max(jump, (f_next - f).norm() / (kStiffness * kDepth));
     f = f_next;
     p = next;
   }
@@ -104,20 +105,23 @@ std::pair<int, double> slide(Touched& touched, const Surface& surface, Vector3d 
 }
 
 TEST(HardCase22, SmoothTrackersSlideOverConvexAndHollowTrianglesWithoutLossOrJump) {
+  const int crossings = support::long_form() ? 100'000 : 1000;
   for (const TrackerChoice tracker : {TrackerChoice::kOffset, TrackerChoice::kCompact}) {
     Touched ball(support::icosphere(4, 0.03), tracker);
     Touched torus(support::torus(0.05, 0.02, 96, 48), tracker);
     const auto [lost_ball, jump_ball] =
-        slide(ball, support::SphereSurface{0.03}, {0, 0.01, 0.03}, 10000);
+        slide(ball, support::SphereSurface{0.03}, {0, 0.01, 0.03}, crossings);
     const auto [lost_torus, jump_torus] =
-        slide(torus, support::TorusSurface{0.05, 0.02}, {0.06, 0.01, 0.01}, 10000);
+        slide(torus, support::TorusSurface{0.05, 0.02}, {0.06, 0.01, 0.01}, crossings);
     const int lost = lost_ball + lost_torus;
     const double jump = std::max(jump_ball, jump_torus);
     EXPECT_EQ(lost, 0) << name_of(tracker);
-    EXPECT_LE(jump, 0.05) << name_of(tracker);
-    const std::string words = name_of(tracker) + ", ball and torus, 1e4 crossings each";
+    EXPECT_LE(jump, 0.07) << name_of(tracker);
+    const std::string words =
+        name_of(tracker) + ", ball and torus, 1000 crossings each (long form: 1e5)";
     record_hard_case(22, words, "== contacts lost", lost, 0, "1");
-    record_hard_case(22, words, "<= jump beyond the tip's own way, over F", jump, 0.05, "1");
+    record_hard_case(22, words, "<= change of F in a tick, 2 % of it the tip's own way", 100 * jump,
+                     7, "%");
   }
 }
 
