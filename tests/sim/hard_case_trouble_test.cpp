@@ -169,9 +169,9 @@ TEST(HardCase09, StalledLoopInContactIsBackSoonAndWithinItsForce) {
   EXPECT_EQ(first, 0);
   EXPECT_LE(most, 5 + 1e-9);
   EXPECT_LT(slowest, 50);
-  record_hard_case(9, "30 ms gap in contact at 0.2 m/s: force of the tick that notices", "== force",
-                   first, 0, "N");
-  record_hard_case(9, "the same: until all of the wanted force is back", "< time", slowest, 50,
+  record_hard_case(9, "30 ms gap in contact at 0.2 m/s", "== force of the tick that notices", first,
+                   0, "N");
+  record_hard_case(9, "the same", "< time until all of the wanted force is back", slowest, 50,
                    "ms");
   record_hard_case(9, "the same", "<= largest force", most, 5, "N");
 }
@@ -206,9 +206,11 @@ TEST(HardCase09, StalledLoopGivesNoMoreEnergyThanItTookUnderTheController) {
   EXPECT_LE(way_out.rows.back().given, 2.5e-3);
   EXPECT_LE(guarded, 2.2e-3);
   EXPECT_GT(bare, 2.2e-3);
-  record_hard_case(9, "30 ms gap in contact at 0.2 m/s, controller: energy out beyond energy in",
-                   "<= energy, 2 onset + F v (T + delay)", 1e3 * guarded, 2.2, "mJ");
-  record_hard_case(9, "guard: the same without the controller", "> energy", 1e3 * bare, 2.2, "mJ");
+  record_hard_case(9, "30 ms gap in contact at 0.2 m/s, controller",
+                   "<= energy out beyond energy in, 2 onset + F v (T + delay)", 1e3 * guarded, 2.2,
+                   "mJ");
+  record_hard_case(9, "guard: 30 ms gap without the controller", "> energy out beyond energy in",
+                   1e3 * bare, 2.2, "mJ");
 }
 
 TEST(HardCase09, LongerGapThanTheWatchdogIsAFaultWithNoForce) {
@@ -272,9 +274,10 @@ TEST(HardCase33, SnapUnderTheControllerDoesNotChatterAndItsAccountCloses) {
   EXPECT_NEAR(kept / midway, 1, 0.01);
   record_hard_case(33, "snap under passivity control and hand", "== snaps",
                    static_cast<double>(base.snaps()), 1, "1");
-  record_hard_case(33, "the same: what bars and spring keep and release against what was given",
-                   "<= relative error", std::abs(kept / midway - 1), 0.01, "1");
-  record_hard_case(33, "the same: energy booked against energy taken", "<= relative error",
+  record_hard_case(33, "the same",
+                   "<= error of what bars and spring keep and release against what was given",
+                   std::abs(kept / midway - 1), 0.01, "1");
+  record_hard_case(33, "the same", "<= error of the energy booked against that taken",
                    std::abs(booked / taken - 1), 0.01, "1");
 }
 
@@ -327,10 +330,10 @@ TEST(HardCase37, SingularPosesAndTheEdgeOfReachGiveFiniteClampedCurrents) {
   EXPECT_LE(most, 3 * (1 + 1e-12));
   EXPECT_LE(worst_angle, 1e-6);
   EXPECT_GT(lost, 0.9);  // the poses were singular
-  record_hard_case(37, "folded, stretched, on the yaw axis: motor current", "<= largest", most, 3,
+  record_hard_case(37, "folded, stretched, on the yaw axis", "<= largest motor current", most, 3,
                    "A");
-  record_hard_case(37, "the same: error of direction where the tip can move", "<= largest angle",
-                   worst_angle, 1e-6, "rad");
+  record_hard_case(37, "the same", "<= error of direction where the tip can move", worst_angle,
+                   1e-6, "rad");
 }
 
 /// Tells the largest change of the force from tick to tick from `from` on, N.
@@ -368,8 +371,8 @@ TEST(HardCase38, GlitchesOfAnEncoderAreDroppedWithinATickAndMoveNoForce) {
   EXPECT_EQ(dropped, 1u);
   record_hard_case(38, "steps of 1 to 100 um, one report off by 1000 counts or wrapped, any axis",
                    "<= largest step of force", most, kAllowed, "N");
-  record_hard_case(38, "the same: reports dropped", "<= per glitch", static_cast<double>(dropped),
-                   1, "1");
+  record_hard_case(38, "the same", "<= reports dropped per glitch", static_cast<double>(dropped), 1,
+                   "1");
 }
 
 TEST(HardCase38, EncoderThatStaysOffIsAFaultAndADeadAxisStaysWithinItsForce) {
@@ -438,8 +441,8 @@ TEST(HardCase39, ForceThatIsNoNumberAndPacketsThatAreTornEndInNoForce) {
   EXPECT_EQ(torn.rows[825].sent, 0);
   EXPECT_EQ(torn.current_at_end, 0);
   EXPECT_EQ(after, 0);
-  record_hard_case(39, "NaN and infinity from the force law: force from that tick on", "== force",
-                   after, 0, "N");
+  record_hard_case(39, "NaN and infinity from the force law", "== force from that tick on", after,
+                   0, "N");
 }
 
 }  // namespace

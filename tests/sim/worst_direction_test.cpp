@@ -53,7 +53,7 @@ double adversary_step(const ArmFile& arm, const Vector3d& p_W, const Vector3d& n
   return jump_W.dot(n_W) / (arm.R_WB.transpose() * n_W).cwiseAbs().sum();
 }
 
-TEST(WorstDirection, NoAdversaryFindsALongerStepThanTheRule) {
+TEST(HardCase04, NoAdversaryFindsALongerStepThanTheRuleInThreeDimensions) {
   for (const char* const name : {"vintage_phantom", "woodenhaptics"}) {
     const ArmFile arm = shipped(name);
     support::Random random(9);
@@ -111,7 +111,7 @@ double joint_growth(const Matrix3d& J, const Vector3d& mass, const Vector3d& dam
       .maxCoeff();
 }
 
-TEST(WorstDirection, StiffnessTimesLatencyUpToTheLeastDampingIsStable) {
+TEST(HardCase01, StiffnessTimesLatencyUpToTheLeastDampingIsStableInThreeDimensions) {
   const double period = 1e-3;
   double lowest = 1e9, highest = 0;
   int poses = 0;

@@ -1,31 +1,47 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <string>
 
 namespace thimble::support {
 
 /// Notes what a test of a hard case has measured: prints one line
 ///
-///     HARD_CASE|number|case in words|criterion|measured|limit|unit
+///     HARD_CASE|number|case in words|criterion|measured|limit|unit|Suite.Test|file
 ///
-/// and appends it to the file that the environment variable THIMBLE_HARD_CASES names, if it does.
+/// and puts it into the file of the test's name in the folder that the environment variable
+/// THIMBLE_HARD_CASES names, if it does; a test's first line replaces those of an earlier run.
 /// `criterion` is a sentence that begins with the comparison that must hold between `measured` and
-/// `limit`: "<=", ">=", "<", ">" or "==". The table of all cases is made of these lines, so a test
-/// whose case has several figures notes each. No text may hold a bar.
+/// `limit`: "<=", ">=", "<", ">" or "==". The table tests/HARD_CASES.md is made of these lines, so
+/// a test whose case has several figures notes each. `words` begin with "guard: " where what is
+/// measured is that something bad shows. No text may hold a bar. The test must be in a suite
+/// HardCaseNN of a program marked HARD_CASES, or the table knows nothing of it.
 inline void record_hard_case(int number, const std::string& words, const std::string& criterion,
                              double measured, double limit, const std::string& unit) {
+  const ::testing::TestInfo* const test = ::testing::UnitTest::GetInstance()->current_test_info();
+  const std::string name = std::string(test->test_suite_name()) + "." + test->name();
+  std::string file = test->file();
+  if (const auto at = file.rfind("/tests/"); at != std::string::npos) file.erase(0, at + 1);
   char figures[80];
   std::snprintf(figures, sizeof figures, "%.6g|%.6g|", measured, limit);
   const std::string line = "HARD_CASE|" + std::to_string(number) + "|" + words + "|" + criterion +
-                           "|" + figures + unit + "\n";
+                           "|" + figures + unit + "|" + name + "|" + file + "\n";
   std::fputs(line.c_str(), stdout);
-  const char* const name = std::getenv("THIMBLE_HARD_CASES");
-  if (name == nullptr || *name == 0) return;
-  if (std::FILE* const file = std::fopen(name, "a"); file != nullptr) {
-    std::fputs(line.c_str(), file);
-    std::fclose(file);
+  const char* const folder = std::getenv("THIMBLE_HARD_CASES");
+  if (folder == nullptr || *folder == 0) return;
+  static std::string last_test;
+  const bool first = last_test != name;
+  last_test = name;
+  std::error_code there;  // if not, the file cannot be opened, and the table misses the line
+  std::filesystem::create_directories(folder, there);
+  const std::filesystem::path lines = std::filesystem::path(folder) / name;
+  if (std::FILE* const out = std::fopen(lines.c_str(), first ? "w" : "a"); out != nullptr) {
+    std::fputs(line.c_str(), out);
+    std::fclose(out);
   }
 }
 

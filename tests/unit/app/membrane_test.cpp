@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "support/hard_case.h"
 #include "thimble/render/body/modal_motion.h"
 #include "thimble/render/body/spring_motion.h"
 
@@ -87,7 +88,7 @@ TEST(Membrane, ShowsTheOrderOfEachIntegrator) {
   }
 }
 
-TEST(Membrane, MakesExplicitEulerDivergeWhereItsBoundSaysSo) {
+TEST(HardCase31, ExplicitEulerDivergesOnAMembraneWhereItsBoundSaysSo) {
   Membrane membrane;
   membrane.n = 12;
   // Dampers stand at the nodes alone: 2 zeta / w of the stiffest mode, here 8 us.
@@ -97,7 +98,10 @@ TEST(Membrane, MakesExplicitEulerDivergeWhereItsBoundSaysSo) {
   EXPECT_NEAR(limit, rate / (bounds.omega_max * bounds.omega_max), 1e-15);
   EXPECT_NEAR(limit, 8.4e-6, 0.2e-6);
   EXPECT_LT(error_of(membrane, SpringScheme::kExplicitEuler, 130), 0.2);
-  EXPECT_GT(error_of(membrane, SpringScheme::kExplicitEuler, 4), 10);
+  const double error = error_of(membrane, SpringScheme::kExplicitEuler, 4);
+  EXPECT_GT(error, 10);
+  support::record_hard_case(31, "guard: explicit Euler at 30 times its bound, membrane, 70 ms",
+                            "> error over the largest height", std::min(error, 1e12), 10, "1");
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "support/hard_case.h"
 #include "support/random.h"
 #include "support/rubbing.h"
 #include "thimble/render/surface/friction/bristle.h"
@@ -18,6 +19,7 @@ namespace {
 
 using Eigen::Vector3d;
 using support::make_friction;
+using support::record_hard_case;
 using support::Rubbing;
 
 constexpr double kStep = 3e-5;  // m
@@ -31,8 +33,9 @@ AnyStageOf<FrictionStage<Law>> stage(const typename Law::Settings& settings) {
   return AnyStageOf<FrictionStage<Law>>({settings, support::phantom_surroundings()});
 }
 
-// Case 13 of [STABILITY 7] with [STABILITY 2.1]: p = v T / step.
-TEST(NaiveFriction, IsOnlyADamperBelowOneCountPerTick) {
+// [STABILITY 2.1]: p = v T / step.
+TEST(HardCase13, NaiveFrictionIsOnlyADamperBelowOneCountPerTick) {
+  double worst = 0;
   for (const double speed : {0.005, 0.02}) {
     const auto friction = make_friction("naive", GivenSettings({{"coefficient", 0.5}}));
     Rubbing rubbing{*friction};
@@ -50,11 +53,13 @@ TEST(NaiveFriction, IsOnlyADamperBelowOneCountPerTick) {
     const double ripple = std::sqrt(squares / ticks - mean * mean);
     const double law = 0.5 * std::sqrt(p * (1 - p));
     EXPECT_NEAR(ripple, law, 0.01 * law) << speed;
+    worst = std::max({worst, std::abs(-mean / (p * 0.5) - 1), std::abs(ripple / law - 1)});
   }
+  record_hard_case(13, "the law alone", "<= error of mean and ripple", worst, 0.01, "1");
 }
 
-// Case 17 of [STABILITY 7].
-TEST(LugreFriction, NeverGrowsHoweverStiffAndFast) {
+TEST(HardCase17, LugreFrictionNeverGrowsHoweverStiffAndFast) {
+  double most_over = -1, most_ringing = 0;
   for (const double stiffness : {1e3, 1e5, 1e6}) {
     for (double speed = 1e-6; speed <= 2.01; speed *= 2) {
       auto lugre = stage<LugreLaw>({.coulomb = {.sliding = 0.5, .holding = 0.54},
@@ -69,22 +74,32 @@ TEST(LugreFriction, NeverGrowsHoweverStiffAndFast) {
         most = std::max(most, std::abs(f));
         if (k >= 1990) {
           EXPECT_NEAR(f, before, 1e-3 * std::abs(f)) << "no ringing";
+          most_ringing = std::max(most_ringing, std::abs(f / before - 1));
         }
         before = f;
       }
       EXPECT_LE(most, 0.54 + 0.4 * speed + 1e-9) << stiffness << " " << speed;
+      most_over = std::max(most_over, most - (0.54 + 0.4 * speed));
     }
   }
+  const char* const kSweep = "1 um/s to 2 m/s, 1e3 to 1e6 N/m, 2 s each";
+  record_hard_case(17, kSweep, "<= force beyond F_s + s2 v", most_over, 1e-9, "N");
+  record_hard_case(17, kSweep, "<= change per tick of the force at last", most_ringing, 1e-3, "1");
 }
 
-TEST(LugreFriction, WouldDivergeByEulersStep) {
+TEST(HardCase17, LugreFrictionWouldDivergeByEulersStep) {
   // The guard of the test above: z <- z + T v - T sigma0 |v| z / g where T sigma0 |v| / g > 2.
-  const double stiffness = 1e5, level = 0.5, speed = 2.2 * level / (1e-3 * stiffness);
-  double z = 0;
-  for (int k = 0; k < 2000; ++k) {
-    z += 1e-3 * (speed - stiffness * speed / level * z);
-  }
-  EXPECT_FALSE(std::abs(stiffness * z) < 1e6);
+  const double stiffness = 1e5, level = 0.5;
+  const auto force_after = [&](double share) {
+    const double speed = share * level / (1e-3 * stiffness);
+    double z = 0;
+    for (int k = 0; k < 2000; ++k) z += 1e-3 * (speed - stiffness * speed / level * z);
+    return std::abs(stiffness * z);
+  };
+  EXPECT_GT(force_after(2.2), 1e6);
+  EXPECT_LE(force_after(1.8), 2 * level);
+  record_hard_case(17, "guard: Euler's step at 1.1 of 2 g / (s0 T)", "> force after 2 s",
+                   std::min(force_after(2.2), 1e12), 1e6, "N");
 }
 
 TEST(DahlFriction, TakesOneLongStepAsExactlyAsManyShortOnes) {
@@ -137,7 +152,7 @@ TEST(StictionPointFriction, GripsAndSlipsBetweenBothFrictions) {
   EXPECT_NEAR(slips, (20'000 - 300) / 100, 2);  // one per 0.2 N / 2000 N/m
 }
 
-// Case 19 of [STABILITY 7]: 1 Hz, +-10 mm, from an encoder with steps.
+// 1 Hz, +-10 mm, from an encoder with steps.
 double loop_area(AnyStage& friction) {
   Rubbing rubbing{friction};
   double work = 0, x_before = 0, f_before = 0;
@@ -151,11 +166,13 @@ double loop_area(AnyStage& friction) {
   return work;
 }
 
-TEST(BristleFriction, TakesTheEnergyOfItsHysteresisLoop) {
+TEST(HardCase19, FrictionTakesTheEnergyOfItsHysteresisLoop) {
   const double full = 4 * 0.01 * 0.5;
   for (const char* name : {"bristle", "dahl", "implicit_coulomb", "lugre"}) {
     const auto friction = make_friction(name, GivenSettings({{"coefficient", 0.5}}));
-    EXPECT_NEAR(loop_area(*friction), full, 0.03 * full) << name;
+    const double area = loop_area(*friction);
+    EXPECT_NEAR(area, full, 0.03 * full) << name;
+    record_hard_case(19, name, "<= error of the loop's area", std::abs(area / full - 1), 0.03, "1");
   }
 }
 

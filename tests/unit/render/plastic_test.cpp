@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "support/hard_case.h"
 #include "support/random.h"
 #include "support/shapes.h"
 #include "thimble/render/body/movement_limits.h"
@@ -47,8 +48,8 @@ Press press(PlasticBase& base, const Vector3d& inward, double depth, int ticks,
   return told;
 }
 
-// Hard case 34, the law: set = x_max - F_y / k, heat = F_y set, the second press follows k.
-TEST(PlasticBase, Case34KeepsWhatTheLawSays) {
+// The law: set = x_max - F_y / k, heat = F_y set, the second press follows k.
+TEST(HardCase34, PlasticBaseKeepsWhatTheLawSays) {
   const PlasticSettings clay{.stiffness = 800, .yield_force = 1.5};
   const Vector3d inward(0.6, 0, -0.8);
   PlasticBase base(clay);
@@ -64,6 +65,8 @@ TEST(PlasticBase, Case34KeepsWhatTheLawSays) {
   EXPECT_NEAR(second.stiffest, 800, 1e-6);
   EXPECT_NEAR(second.work, 0, 1e-6);
   EXPECT_NEAR(base.displacement().norm(), set, 1e-12);
+  support::record_hard_case(34, "second press on the set", "<= error of its stiffness",
+                            std::abs(second.stiffest / 800 - 1), 1e-6, "1");
   // A little deeper: the set grows by as much.
   press(base, inward, depth + 1e-3, 4000);
   EXPECT_NEAR(base.displacement().norm(), set + 1e-3, 1e-9);
@@ -77,8 +80,9 @@ TEST(PlasticBase, SpringsBackWhollyBelowItsYieldForce) {
   EXPECT_NEAR(told.work, 0, 1e-12);
 }
 
-// Hard case 34: a thousand presses of any depth and speed into clays of all sorts.
-TEST(PlasticBase, Case34ObeysTheLawAndTakesWorkInAThousandRandomPresses) {
+// Of any depth and speed into clays of all sorts.
+TEST(HardCase34, PlasticBaseObeysTheLawAndTakesWorkInAThousandRandomPresses) {
+  double worst = 0, least = 0;
   support::Random random(34);
   for (int clay = 0; clay < 50; ++clay) {
     PlasticSettings settings;
@@ -100,8 +104,12 @@ TEST(PlasticBase, Case34ObeysTheLawAndTakesWorkInAThousandRandomPresses) {
       heat = base.dissipated();
       ASSERT_NEAR(heat, settings.yield_force * set, 1e-9 * (1 + heat));
       ASSERT_GE(told.work, -1e-12);
+      worst = std::max(worst, std::abs(base.displacement().norm() - set));
+      least = std::min(least, told.work);
     }
   }
+  support::record_hard_case(34, "1000 presses, 50 clays", "<= error of the set", worst, 1e-9, "m");
+  support::record_hard_case(34, "the same", "<= work given back by a press", -least, 1e-12, "J");
 }
 
 TEST(PlasticBase, NeverGivesEnergyWhereverItIsPulled) {
@@ -169,8 +177,9 @@ TEST(PlasticBase, StaysOnNonsense) {
   EXPECT_NEAR(hard.displacement().x(), 1, 1e-9);
 }
 
-// Hard case 34, that the mesh never inverts: as far as limits on movement can promise it.
-TEST(MovementLimits, Case34KeepEveryTriangleOnItsSide) {
+// That the mesh never inverts: as far as limits on movement can promise it.
+TEST(HardCase34, MovementLimitsKeepEveryTriangleOnItsSide) {
+  double least = 1;
   support::Random random(36);
   TriangleMesh mesh = support::icosphere(2, 0.03);
   for (Vector3d& p : mesh.vertices) p += random.in_box(1e-3);
@@ -189,8 +198,11 @@ TEST(MovementLimits, Case34KeepEveryTriangleOnItsSide) {
         return (at(1) - at(0)).cross(at(2) - at(0)).eval();
       };
       ASSERT_GT(normal(mesh).dot(normal(moved)), 0);
+      least = std::min(least, normal(mesh).dot(normal(moved)) / normal(mesh).squaredNorm());
     }
   }
+  support::record_hard_case(34, "all vertices moved at random to their limits",
+                            "> least area seen from outside, of the first", least, 0, "1");
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <limits>
 #include <vector>
 
+#include "support/hard_case.h"
 #include "support/random.h"
 #include "thimble/render/body/snap_base.h"
 #include "thimble/render/body/snap_truss.h"
@@ -59,8 +60,9 @@ TEST(SnapTruss, SettlesWhereForcesAreEqual) {
   EXPECT_GT(found, 10000);
 }
 
-// Hard case 32, under a growing load.
-TEST(SnapBase, SnapsInOnceAtTheLimitLoadAndOutOnceAtItsOpposite) {
+// Under a growing load.
+TEST(HardCase32, SnapBaseSnapsInOnceAtTheLimitLoadAndOutOnceAtItsOpposite) {
+  using support::record_hard_case;
   SnapBase base = stated_base();
   double load = 0;
   const double step = 2e-5;
@@ -74,6 +76,13 @@ TEST(SnapBase, SnapsInOnceAtTheLimitLoadAndOutOnceAtItsOpposite) {
   EXPECT_NEAR(base.way(), 12.979e-3, 0.005 * 12.979e-3);
   EXPECT_NEAR(base.released(), 11.63e-3, 0.02 * 11.63e-3);
   EXPECT_TRUE(base.snapped());
+  const char* const kLoad = "under a growing load";
+  record_hard_case(32, kLoad, "<= error of the limit load", std::abs(load / 0.994992 - 1), 0.005,
+                   "1");
+  record_hard_case(32, kLoad, "<= error of the way there", std::abs(way_before / 2.58577e-3 - 1),
+                   0.005, "1");
+  record_hard_case(32, kLoad, "<= error of the energy released",
+                   std::abs(base.released() / 11.63e-3 - 1), 0.02, "1");
   // Unloaded it rests in its new shape.
   for (; load > 0; load -= 1e-4) base.pull_by_load(load, 1e-3);
   base.pull_by_load(0, 1e-3);
@@ -82,11 +91,13 @@ TEST(SnapBase, SnapsInOnceAtTheLimitLoadAndOutOnceAtItsOpposite) {
   while (base.snaps() == 1 && load > -2) base.pull_by_load(load -= step, 1e-3);
   EXPECT_NEAR(load, -0.994992, 0.005 * 0.994992);
   EXPECT_EQ(base.snaps(), 2);
+  record_hard_case(32, "in and out again", "== snaps", static_cast<double>(base.snaps()), 2, "1");
   EXPECT_NEAR(base.released(), 2 * 11.63e-3, 0.02 * 2 * 11.63e-3);
 }
 
-// Hard case 32, with the vertex driven in and out: the loop through its own spring.
-TEST(SnapBase, RepeatsItsLoopAndAccountsForItsWork) {
+// With the vertex driven in and out: the loop through its own spring.
+TEST(HardCase32, SnapBaseRepeatsItsLoopAndAccountsForItsWork) {
+  double worst = 0;
   constexpr double kSpring = 200;  // softer than the truss is steep, so that it jumps
   constexpr double kIn = 25e-3;
   SnapBase base = stated_base();
@@ -121,13 +132,16 @@ TEST(SnapBase, RepeatsItsLoopAndAccountsForItsWork) {
       continue;
     }
     EXPECT_NEAR(work, first_loop, 1e-6 * first_loop);
+    worst = std::max(worst, std::abs(work / first_loop - 1));
     for (std::size_t i = 0; i < first.size(); ++i) ASSERT_NEAR(forces[i], first[i], 1e-6);
   }
   EXPECT_GT(first_loop, 0);
+  support::record_hard_case(32, "driven in and out by a soft spring, three loops",
+                            "<= difference of their work", worst, 1e-6, "1");
 }
 
-// Hard case 32, displacement control: driven stiffly it never jumps, and the force is the law's.
-TEST(SnapBase, FollowsTheWholeLawWhereItIsDrivenStiffly) {
+// Displacement control: driven stiffly it never jumps, and the force is the law's.
+TEST(HardCase32, SnapBaseFollowsTheWholeLawWhereItIsDrivenStiffly) {
   constexpr double kSpring = 1e6;
   SnapBase base = stated_base();
   double most = 0;
@@ -147,6 +161,10 @@ TEST(SnapBase, FollowsTheWholeLawWhereItIsDrivenStiffly) {
   EXPECT_NEAR(most, 0.994992, 0.005 * 0.994992);
   EXPECT_NEAR(at, 2.58577e-3, 0.005 * 2.58577e-3);
   EXPECT_EQ(base.released(), 0);
+  support::record_hard_case(32, "by displacement", "<= error of the limit load",
+                            std::abs(most / 0.994992 - 1), 0.005, "1");
+  support::record_hard_case(32, "by displacement", "<= error of the way there",
+                            std::abs(at / 2.58577e-3 - 1), 0.005, "1");
 }
 
 TEST(SnapBase, RunsNoFasterThanItMayAndReleasesTheSame) {

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <random>
 
+#include "support/hard_case.h"
 #include "support/random.h"
 #include "support/reference_geometry.h"
 #include "support/shapes.h"
@@ -83,25 +84,31 @@ Walk wander(const TriangleMesh& mesh, double depth, double step, int crossings_w
   return walk;
 }
 
-TEST(SurfaceTracker, LosesNoContactInManyCrossingsOfAConvexMesh) {
+TEST(HardCase22, SurfaceTrackerLosesNoContactInManyCrossingsOfAConvexMesh) {
   const Walk walk = wander(support::icosphere(4, 0.05), 0.0008, 0.001, 100000);
   EXPECT_GE(walk.crossings, 100000);
   EXPECT_EQ(walk.lost, 0);
   EXPECT_EQ(walk.counters.found_far, 0u);
+  support::record_hard_case(22, "edge planes, ball, 1e5 crossings", "== contacts lost", walk.lost,
+                            0, "1");
 }
 
-TEST(SurfaceTracker, LosesNoContactInManyCrossingsOfATorus) {
+TEST(HardCase22, SurfaceTrackerLosesNoContactInManyCrossingsOfATorus) {
   const Walk walk = wander(support::torus(0.05, 0.02, 60, 30), 0.0008, 0.001, 100000);
   EXPECT_GE(walk.crossings, 100000);
   EXPECT_EQ(walk.lost, 0);
   EXPECT_EQ(walk.counters.found_far, 0u);
+  support::record_hard_case(22, "edge planes, torus, 1e5 crossings", "== contacts lost", walk.lost,
+                            0, "1");
 }
 
-TEST(SurfaceTracker, LosesNoContactInManyCrossingsOfABumpyMesh) {
+TEST(HardCase22, SurfaceTrackerLosesNoContactInManyCrossingsOfABumpyMesh) {
   const Walk walk = wander(support::bumpy_sphere(4, 0.05, 0.3, 6), 0.0008, 0.001, 100000);
   EXPECT_GE(walk.crossings, 100000);
   EXPECT_EQ(walk.lost, 0);
   EXPECT_EQ(walk.counters.found_far, 0u);
+  support::record_hard_case(22, "edge planes, bumps and dents, 1e5 crossings", "== contacts lost",
+                            walk.lost, 0, "1");
 }
 
 TEST(SurfaceTracker, KeepsDepthWhenCrossingAnEdge) {

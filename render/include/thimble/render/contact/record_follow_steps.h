@@ -74,7 +74,22 @@ typename RecordContact<Store>::Outcome RecordContact<Store>::seek(
   if (found == Outcome::kYes) {
     const CompactTriangle* record = store_.find(active_);
     if (absent(record)) return Outcome::kUnknown;
-    report(p_WT, feel_nearest(p, *record, lowered_));
+    const LoweredFeel beside = feel_nearest(p, *record, lowered_);
+    const std::int32_t nearest = active_;
+    // Where a lowered triangle here holds the tip, that is what the next tick will feel: a tip that
+    // stands still must not feel one force now and another then.
+    LoweredPlace there = lowered_.locate(p);
+    const Outcome again = settle(p, true, there);
+    if (again == Outcome::kUnknown) return again;
+    if (again == Outcome::kYes) {
+      const LoweredFeel felt = lowered_.feel(there);
+      if (felt.depth >= 0) {
+        report(p_WT, felt);
+        return again;
+      }
+    }
+    if (!activate(nearest)) return Outcome::kUnknown;
+    report(p_WT, beside);
   }
   return found;
 }

@@ -1,0 +1,75 @@
+#!/usr/bin/env bash
+# Runs the tests of the hard cases and writes what they measured to tests/HARD_CASES.md.
+#   tests/hard_cases.sh [BUILD]        BUILD: a built folder (build/release if none is named)
+#   tests/hard_cases.sh --check LINES  LINES: the folder of lines that a run has left; writes nothing.
+# Fails where a case has no figure, a figure misses its criterion, or (--check) the table in the
+# repository says otherwise: rows must be the same but for the figures, and these may differ by
+# 2 %; where both are 10 times better than needed by a factor of 2, where 1000 times by anything:
+# another compiler or libm rounds otherwise. The long form (THIMBLE_LONG) measures more, so its
+# figures are compared with nothing.
+set -euo pipefail
+here=$(cd "$(dirname "$0")" && pwd)
+table=$here/HARD_CASES.md
+export LC_ALL=C
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+
+# Writes the table of a folder of lines to a file; tells the faults and fails if there are any.
+make_table() {
+  : >"$scratch/faults"
+  [ ! -d "$1" ] || find "$1" -type f | sort | xargs -r cat >"$scratch/lines"
+  touch "$scratch/lines"
+  awk -v faults="$scratch/faults" -f "$here/hard_cases.awk" "$here/hard_cases.list" \
+    "$scratch/lines" >"$2"
+  [ -s "$scratch/faults" ] || return 0
+  echo "The hard cases are not as they should be:" >&2
+  sed 's/^/  /' "$scratch/faults" >&2
+  return 1
+}
+
+if [ "${1:-}" = --check ]; then
+  [ $# = 2 ] || { echo "Usage: tests/hard_cases.sh --check LINES" >&2; exit 2; }
+  make_table "$2" "$scratch/now.md"
+  sed -n 's/^\([0-9]* of .*guards\.\)$/\1/p' "$scratch/now.md"
+  [ -z "${THIMBLE_LONG:-}" ] || exit 0
+  awk -v name="$table" '
+    function value(cell) {
+      gsub(/−/, "-", cell)
+      return cell ~ /∞/ ? 1e300 : cell + 0
+    }
+    function same(a, b, share,   most) {
+      most = a < 0 ? -a : a
+      if (b > most) most = b
+      if (-b > most) most = -b
+      return (a - b <= share * most) && (b - a <= share * most)
+    }
+    # How far from its limit a row is, by its margin.
+    function times(cell) { return cell ~ /> 1000|all/ ? 1000 : cell ~ /×/ ? cell + 0 : 0 }
+    BEGIN { FS = " [|] " }
+    NR == FNR { stored[NR] = $0; stored_count = NR; next }
+    {
+      if ($0 == stored[FNR]) next
+      n = split(stored[FNR], old, " [|] ")
+      equal = n == 6 && NF == 6 && $2 == old[2] && $4 == old[4] && $6 == old[6]
+      least = times($5) < times(old[5]) ? times($5) : times(old[5])
+      near = least >= 1000 || same(value($3), value(old[3]), least >= 10 ? 0.5 : 0.02)
+      if (equal && near) next
+      print "  " name ":" FNR " says\n    " stored[FNR] "\n  and the tests\n    " $0
+      bad = 1
+    }
+    END { exit bad || FNR != stored_count }' "$table" "$scratch/now.md" >&2 || {
+    echo "The table differs from what the tests measure: run tests/hard_cases.sh and look at it." >&2
+    exit 1
+  }
+  exit 0
+fi
+
+build=$(cd "${1:-$here/../build/release}" && pwd)
+ctest --test-dir "$build" -R '^(HardCase|hard_cases\.begin)' -j "$(nproc)" >"$scratch/log" || {
+  grep -A30 "tests failed" "$scratch/log" >&2
+  exit 1
+}
+status=0
+make_table "$build/hard_case_lines" "$table" || status=1
+echo "$table: $(grep -m1 ' guards\.$' "$table")"
+exit $status

@@ -1,0 +1,41 @@
+#!/usr/bin/env bash
+# Shows that hard_cases.sh --check fails where it must: on made-up lines of every case.
+set -euo pipefail
+here=$(cd "$(dirname "$0")" && pwd)
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+
+# Writes good lines; what is given as "number|figure" replaces that case's figure, "-" leaves it out.
+lines() {
+  awk -F'|' -v change="${1:-}" '
+    BEGIN { split(change, c, "|") }
+    /^[#=]/ { next }
+    { sub(/[?]$/, "", $1); figure = $1 == c[1] ? c[2] : "1"
+      if (figure == "-") next
+      print "HARD_CASE|" $1 "|words|<= something|" figure "|2|N|HardCase" $1 ".Test|tests/a_test.cpp" }
+  ' "$here/hard_cases.list" >"$scratch/lines/all"
+}
+check() { bash "$here/hard_cases.sh" --check "$scratch/lines" >"$scratch/log" 2>&1; }
+must_fail() {
+  if check; then
+    echo "hard_cases.sh --check did not notice $1" >&2
+    exit 1
+  fi
+  grep -q "$2" "$scratch/log" || { echo "Not told of $1:" >&2; cat "$scratch/log" >&2; exit 1; }
+}
+
+mkdir "$scratch/lines"
+export THIMBLE_LONG=1  # the lines are not those of the table
+lines && check || { cat "$scratch/log" >&2; exit 1; }
+lines '7|-' && must_fail "a case without figure" "case 7 has no figure"
+lines '7|2.1' && must_fail "a figure beyond its limit" "case 7, words: 2.1 is not ≤ 2"
+lines '7|nan' && must_fail "a figure that is no number" "case 7, words: nan is not"
+lines '7|inf' && must_fail "an infinite figure" "case 7, words: inf is not"
+lines && echo "HARD_CASE|42|w|<= s|1|2|N|T.T|f" >>"$scratch/lines/all"
+must_fail "a case that is not in the list" "case 42 is not in"
+lines && echo "HARD_CASE|1|torn" >>"$scratch/lines/all"
+must_fail "a torn line" "not understood"
+unset THIMBLE_LONG
+lines && must_fail "an old table" "differs from what the tests measure"
+rm -r "$scratch/lines" && must_fail "a run that has left nothing" "case 1 has no figure"
+echo "hard_cases.sh --check catches what it must."
