@@ -31,7 +31,7 @@ set(CPACK_COMPONENT_DEV_DESCRIPTION
 "libraries and headers to build on Thimble
  The driver of 3-DOF force-feedback arms, the simulated arm and the haptic
  rendering of Thimble as static libraries, with a CMake package, a pkg-config
- file and six small examples.")
+ file and seven small examples.")
 set(CPACK_DEBIAN_PROGRAM_DESCRIPTION "${CPACK_COMPONENT_PROGRAM_DESCRIPTION}")
 set(CPACK_DEBIAN_DEV_DESCRIPTION "${CPACK_COMPONENT_DEV_DESCRIPTION}")
 
