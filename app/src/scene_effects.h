@@ -11,9 +11,9 @@
 
 namespace thimble::app {
 
-/// Tells what effects may know of an arm and a loop of `rate` (Hz); steps are the longest of a grid
-/// of points over the workspace. The surface's own values are left 0. Real-time: never from the
-/// servo thread.
+/// Tells what effects may know of an arm and a loop of `rate` (Hz); the encoder step is that of the
+/// worst direction over the workspace (worst_direction.h). The surface's own values are left 0.
+/// Real-time: never from the servo thread.
 render::EffectSurroundings surroundings_of(const ArmFile& arm, double rate);
 
 /// Reads the list `effects` of an object, `- GROUP: NAME` and the settings of each, in the order in

@@ -19,7 +19,14 @@ struct Carried {
   double damping = 0;          ///< Of arm and hand, N s/m.
   double stiffness_law = 0;    ///< (b + B) / L, N/m.
   double stiffness_exact = 0;  ///< Of the exact linear map with hand and velocity filter, N/m.
-  double passive = 0;          ///< For any hand: min(2 b / T with delay, 2 c / d), N/m.
+  /// The same for the worst of all hands of a third to three times mass, stiffness and damping of
+  /// the file's, for these are guesses [STABILITY 9], N/m; and that hand.
+  double stiffness_any_hand = 0;
+  device_sim::HandSettings worst_hand;
+  /// What is safe to ask for, N/m: part of the one, and part of the other, at whose edge a swing
+  /// takes for ever to die.
+  double stiffness_safe = 0;
+  double passive = 0;     ///< For any hand: min(2 b / T with delay, 2 c / d), N/m.
   double held_speed = 0;  ///< Fastest swing that dry friction holds without a hand, m/s, at the
                           ///< stiffness asked for.
   double bristle_stiffness = 0;  ///< Stiffest bristle that stays quiet, F / z_max, N/m.

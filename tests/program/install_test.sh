@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs the build into a folder of its own, builds the six examples against it as somebody else's
+# Installs the build into a folder of its own, builds the seven examples against it as somebody else's
 # project would, runs them, and looks at what was installed beside them.
 #   install_test.sh BUILD_FOLDER EXAMPLES_FOLDER
 set -euo pipefail

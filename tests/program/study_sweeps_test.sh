@@ -44,6 +44,10 @@ for kill in 1 2; do
     kill -0 $running 2>/dev/null || break
     sleep 0.01
   done
+  if [ $kill = 1 ]; then # a second one on the same folder, while the first holds its breath
+    kill -STOP $running
+    expect 2 "killed is being written by process $running " "${small[@]}" --out killed --resume
+  fi
   kill -9 $running 2>/dev/null
   wait $running 2>/dev/null
 done

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 
+#include "energy_choice.h"
 #include "stability_laws.h"
 #include "study/wall_measures.h"
 
@@ -86,7 +88,10 @@ double arm_swing(const StabilitySetup& setup, const WallCase& wall) {
 double arm_edge(const StabilitySetup& setup, const ArmDirection& direction, double damping,
                 bool guarded) {
   WallCase wall = arm_case(setup, direction);
-  wall.own_energy = guarded;
+  if (guarded) {
+    wall.energy =
+        energy_settings(setup.arm, 1e9 / static_cast<double>(wall.period_ns), std::nullopt);
+  }
   wall.damping = damping;
   const double quiet = kQuiet * direction.step;
   return setup.hand.stiffness > 0

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "stability_laws.h"
-#include "study/wall_bench.h"
+#include "wall_bench.h"
 
 namespace thimble::app {
 

@@ -115,6 +115,8 @@ driver::Result<std::unique_ptr<SweepJournal>> SweepJournal::open(const std::file
                                                                  std::size_t cells, bool resume,
                                                                  CellNumbers& numbers) {
   numbers.assign(cells, {});
+  auto lock = FolderLock::take(file.parent_path());
+  if (!lock) return lock.error();
   const std::string heading = heading_of(key, cells);
   std::error_code status;
   const bool there = std::filesystem::exists(file, status);
@@ -133,7 +135,8 @@ driver::Result<std::unique_ptr<SweepJournal>> SweepJournal::open(const std::file
   }
   const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
   if (descriptor < 0) return unwritable(file);
-  std::unique_ptr<SweepJournal> journal(new SweepJournal(file, heading, descriptor));
+  std::unique_ptr<SweepJournal> journal(
+      new SweepJournal(std::move(lock).value(), file, heading, descriptor));
   if (::ftruncate(descriptor, static_cast<off_t>(good)) != 0) return unwritable(file);
   if (good == 0 && !write_all(descriptor, heading)) return unwritable(file);
   return journal;

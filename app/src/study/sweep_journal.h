@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 
+#include "study/folder_lock.h"
 #include "study/sweep.h"
 #include "thimble/driver/result.h"
 
@@ -18,8 +19,8 @@ class SweepJournal {
  public:
   /// Opens a journal for `cells` cells of a sweep with this key. With `resume` and a file there,
   /// its results go into `numbers`; else a new one is begun, and an old file is kept as FILE.old.
-  /// Fails if the file is of another sweep or cannot be written. Real-time: never from the servo
-  /// thread.
+  /// Fails if the file is of another sweep, cannot be written, or another process keeps a journal
+  /// in its folder. Real-time: never from the servo thread.
   static driver::Result<std::unique_ptr<SweepJournal>> open(const std::filesystem::path& file,
                                                             const std::string& key,
                                                             std::size_t cells, bool resume,
@@ -36,9 +37,13 @@ class SweepJournal {
   driver::Result<void> finish(const CellNumbers& numbers);
 
  private:
-  SweepJournal(std::filesystem::path file, std::string heading, int descriptor)
-      : file_(std::move(file)), heading_(std::move(heading)), descriptor_(descriptor) {}
+  SweepJournal(FolderLock lock, std::filesystem::path file, std::string heading, int descriptor)
+      : lock_(std::move(lock)),
+        file_(std::move(file)),
+        heading_(std::move(heading)),
+        descriptor_(descriptor) {}
 
+  FolderLock lock_;
   std::filesystem::path file_;
   std::string heading_;
   int descriptor_;

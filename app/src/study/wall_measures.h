@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "study/wall_bench.h"
+#include "wall_bench.h"
 
 namespace thimble::app {
 

@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <string>
 
+#include "worst_direction.h"
+
 namespace thimble::app {
 namespace {
 
@@ -63,9 +65,11 @@ TEST(Surroundings, OfEveryArmThatComesAlongAreThoseOfADeskTopArm) {
     const auto arm = read_arm_file(file.path());
     ASSERT_TRUE(arm.ok()) << arm.error().message;
     const render::EffectSurroundings surroundings = surroundings_of(*arm, 1000);
-    // Steps of the arms we know lie between 0.02 and 0.07 mm [DEVICES 2]; column sums above that.
+    // Steps of the arms we know lie between 0.02 and 0.07 mm [DEVICES 2]; row sums above that.
     EXPECT_GT(surroundings.encoder_step, 0.01e-3) << file.path();
     EXPECT_LT(surroundings.encoder_step, 0.3e-3) << file.path();
+    // One place computes it, and the laws are told the same.
+    EXPECT_EQ(surroundings.encoder_step, worst_over_workspace(*arm).encoder_step);
     EXPECT_EQ(surroundings.tick, 0.001);
     EXPECT_GE(surroundings.delay, 0.001) << file.path();
     EXPECT_GT(surroundings.force_max, 0) << file.path();

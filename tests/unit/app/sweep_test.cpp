@@ -1,6 +1,7 @@
 #include "study/sweep.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
@@ -93,6 +94,20 @@ TEST(Sweep, KeepsAnOlderJournalBesideANewOne) {
   const std::string first = journal_after(scratch.path(), 2, false);
   journal_after(scratch.path(), 2, false);
   EXPECT_EQ(text_of(scratch.path() / "plain.journal.old"), first);
+}
+
+TEST(Sweep, RefusesAFolderThatIsBeingWrittenAndSaysByWhom) {
+  const Folder scratch;
+  CellNumbers numbers;
+  auto first = SweepJournal::open(scratch.path() / "a.journal", "key", 3, false, numbers);
+  ASSERT_TRUE(first);
+  const auto second = SweepJournal::open(scratch.path() / "b.journal", "key", 3, true, numbers);
+  ASSERT_FALSE(second);
+  EXPECT_NE(second.error().message.find("is being written by process " + std::to_string(getpid())),
+            std::string::npos)
+      << second.error().message;
+  first.value().reset();  // whatever ends it
+  EXPECT_TRUE(SweepJournal::open(scratch.path() / "b.journal", "key", 3, true, numbers));
 }
 
 TEST(Sweep, RefusesTheJournalOfAnotherSweep) {

@@ -9,7 +9,7 @@ namespace thimble::render {
 struct EffectSurroundings {
   double tick = 0.001;           ///< Period of the loop, s.
   double delay = 0;              ///< From encoder to force beyond the period, s.
-  double encoder_step = 0;       ///< Largest step of the tip per encoder count, m; 0 if ideal.
+  double encoder_step = 0;       ///< Longest step of the tip along one axis, m; 0 if ideal.
   double force_max = 0;          ///< What the gate lets pass, N.
   double tip_mass = 0;           ///< Least apparent mass of arm at the tip, kg; 0 if not known.
   double tip_damping = 0;        ///< Least viscous damping of the arm at the tip, N s/m.

@@ -1,15 +1,13 @@
-#include "study/wall_bench.h"
+#include "wall_bench.h"
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <numbers>
-#include <optional>
 #include <stdexcept>
 #include <utility>
 
 #include "arm_simulation.h"
-#include "energy_choice.h"
 #include "thimble/driver/arms/hfab/hfab_models.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/device.h"
@@ -64,8 +62,10 @@ ArmFile arm_of(const ArmFile& file, const WallCase& wall) {
   arm.simulated.plant = wall.tip;
   arm.simulated.hand = wall.hand;
   arm.simulated.hand.tremor_amplitude = 0;
-  arm.simulated.firmware.report_period_ns = wall.report_ns > 0 ? wall.report_ns : wall.period_ns;
-  arm.simulated.wire = {.delay_in_ns = 0, .delay_out_ns = wall.delay_ns};
+  if (!wall.own_wire) {
+    arm.simulated.firmware.report_period_ns = wall.report_ns > 0 ? wall.report_ns : wall.period_ns;
+    arm.simulated.wire = {.delay_in_ns = 0, .delay_out_ns = wall.delay_ns};
+  }
   if (!wall.own_step && wall.step > 0) {
     const double finer = wall.direction.step / wall.step;
     for (auto& encoder : arm.model.encoders) {
@@ -141,16 +141,12 @@ WallRun run_wall(const ArmFile& file, const WallCase& wall) {
   if (board == nullptr) {
     throw std::invalid_argument(arm.name + ": its board does not report by itself.");
   }
-  driver::EnergyGuardSettings energy;
-  if (wall.own_energy) {
-    energy = energy_settings(arm, 1e9 / static_cast<double>(wall.period_ns), std::nullopt);
-  }
   driver::VirtualClock clock;
   auto opened = driver::Device::open((*simulation)->wire(clock), (*simulation)->protocol(),
                                      {.R_WB = arm.R_WB,
                                       .p_WB = arm.p_WB,
                                       .limits = arm.limits,
-                                      .energy = energy,
+                                      .energy = wall.energy,
                                       .velocity_corner_frequency = arm.velocity_corner_frequency,
                                       .silence_limit_ns = 1'000'000'000},
                                      clock.now_ns());
@@ -165,7 +161,10 @@ WallRun run_wall(const ArmFile& file, const WallCase& wall) {
   const double period = static_cast<double>(wall.period_ns) * 1e-9;
   const auto end_ns = static_cast<std::int64_t>(wall.duration * 1e9);
   std::size_t gap = 0;
-  std::int64_t tick_ns = 0;
+  // On a late wire the first report has taken its time.
+  std::int64_t tick_ns = clock.now_ns();
+  Vector3d p_last_W = arm.p_WB + arm.R_WB * board->plant().p_BT();
+  double work = 0;
   for (std::size_t tick = 0; tick_ns < end_ns; ++tick) {
     clock.sleep_until_ns(tick_ns);
     const driver::DeviceState& state = device.read(tick_ns, tick_ns);
@@ -182,12 +181,17 @@ WallRun run_wall(const ArmFile& file, const WallCase& wall) {
     run.time.push_back(static_cast<double>(tick_ns) * 1e-9);
     run.x.push_back(n_W.dot(p_WT - home_W));
     run.v.push_back(n_W.dot(arm.R_WB * board->plant().v_BT()));
-    run.gave_up = device.fault() != driver::Fault::kNone ||
-                  !(std::abs(run.x.back() - wall.offset) < wall.give_up);
+    run.f.push_back(device.f_sent_W().norm());
+    work += (*simulation)->f_T_W().dot(p_WT - p_last_W);
+    p_last_W = p_WT;
+    run.work.push_back(work);
+    run.fault = device.fault() != driver::Fault::kNone;
+    run.gave_up = run.fault || !(std::abs(run.x.back() - wall.offset) < wall.give_up);
     if (run.gave_up) break;
     tick_ns += wall.gaps_ns.empty() ? wall.period_ns : wall.gaps_ns[gap];
     if (++gap >= wall.gaps_ns.size()) gap = 0;
   }
+  run.gate = device.gate_counters();
   return run;
 }
 

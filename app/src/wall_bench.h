@@ -5,7 +5,9 @@
 #include <vector>
 
 #include "arm_file.h"
+#include "thimble/driver/energy_guard.h"
 #include "thimble/driver/result.h"
+#include "thimble/driver/safety_gate.h"
 
 namespace thimble::app {
 
@@ -25,7 +27,8 @@ driver::Result<ArmDirection> diagonal_direction_at_home(const ArmFile& arm);
 /// Takes a direction as it is; its length does not matter, but it must have one.
 driver::Result<ArmDirection> direction_at_home(const ArmFile& arm, const Eigen::Vector3d& way_W);
 
-/// Is one wall in front of one arm, and how it is begun. SI units.
+/// Is one wall in front of one arm, and how it is begun; the one way in which walls are tried
+/// (wall_trial.h and study/wall_measures.h say what is looked at). SI units.
 struct WallCase {
   ArmDirection direction;
   device_sim::PlantSettings tip;
@@ -33,14 +36,15 @@ struct WallCase {
   double stiffness = 0;  ///< N/m
   double damping = 0;    ///< N s/m
   bool one_sided = false;
-  double step = 0;             ///< Of the encoders along the direction, m; 0: ideal encoders.
-  bool own_step = false;       ///< Keeps the encoders that the arm has.
-  bool own_energy = false;     ///< Keeps the energy stage of its gate; else there is none.
+  double step = 0;        ///< Of the encoders along the direction, m; 0: ideal encoders.
+  bool own_step = false;  ///< Keeps the encoders that the arm has.
+  driver::EnergyGuardSettings energy{};  ///< Of the gate.
   bool own_limits = false;     ///< Keeps the limits of its gate and motors; else none is felt.
   double velocity_corner = 0;  ///< Hz
   std::int64_t period_ns = 1'000'000;
   std::int64_t report_ns = 0;         ///< Between the arm's reports; 0: the period.
   std::int64_t delay_ns = 0;          ///< From encoder to motor.
+  bool own_wire = false;              ///< Keeps the arm's delays and the pace of its reports.
   std::vector<std::int64_t> gaps_ns;  ///< Times between ticks, used in turn; empty: the period.
   double offset = 0;  ///< Where the wall stands or the spring's middle lies, from home, m.
   double kick = 0;    ///< Speed that the first ticks give the free tip, against the direction, m/s.
@@ -55,7 +59,11 @@ struct WallRun {
   std::vector<double> time;  ///< s
   std::vector<double> x;     ///< m
   std::vector<double> v;     ///< m/s
+  std::vector<double> f;     ///< Length of the force that was sent, N.
+  std::vector<double> work;  ///< What the motors truly gave the tip so far, J.
   bool gave_up = false;      ///< It went too far, or the device made a fault.
+  bool fault = false;        ///< The device made a fault.
+  driver::GateCounters gate;
 };
 
 /// Runs a wall through the whole way: simulated arm, wire, firmware, driver, gate; virtual time.

@@ -1,0 +1,86 @@
+// Feels a simulation that is far too slow for the servo: a thread of 60 Hz publishes what the tip
+// feels near where it is, and the servo evaluates that 1000 times a second.
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <thread>
+
+#include "desk_arm.h"
+#include "thimble/driver/snapshot.h"
+#include "thimble/render/multirate/model_slot.h"
+#include "thimble/render/multirate/model_touch.h"
+
+using thimble::driver::DeviceState;
+using thimble::driver::Snapshot;
+using thimble::driver::TickRecord;
+namespace render = thimble::render;
+
+/// Stands in for a finite-element body: a pad that gets stiffer the deeper it is pressed. It takes
+/// its time, and it may only be asked at one place at a time.
+render::LocalModel simulate(const TickRecord& tick) {
+  std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  const Eigen::Vector3d p_WT = Eigen::Map<const Eigen::Vector3d>(tick.p_WT.data());
+  const double depth = -p_WT.z();  // the pad's top lies at z = 0
+  render::LocalModel model;
+  model.time_ns = tick.time_ns;  // of the state it is computed for
+  model.n_W = {0, 0, 1};
+  model.damping = 0.5;  // N s/m
+  double stiffness = 200;
+  if (depth > 0) {
+    model.p_WR = p_WT;
+    model.f_T_W = {0, 0, 200 * depth + 5e4 * depth * depth};
+    stiffness = 200 + 1e5 * depth;  // -df/dz
+  } else {
+    // The tip is free: tell of the surface that it would meet.
+    model.p_WR = {p_WT.x(), p_WT.y(), 0};
+  }
+  model.stiffness(2, 2) = stiffness;
+  return model;
+}
+
+int main() {
+  DeskArm desk({{0.0, {0, 0, 0.01}}, {0.6, {0, 0, -0.01}}, {2.0, {0, 0, -0.01}}});
+  if (!desk.device().activate()) return 1;
+  Snapshot<TickRecord> tip;  // the servo shows where the tip is ...
+  render::ModelSlot slot;    // ... and finds here what it feels
+  // What arm, loop and hand carry: (b + B) / L = 3 N s/m / 1.5 ms, and a margin.
+  auto made = render::ModelTouch::make(slot, {.stiffness_max = 1400});
+  if (!made) {
+    std::fprintf(stderr, "%s\n", made.error().message.c_str());
+    return 1;
+  }
+  render::ModelTouch& touch = **made;
+
+  std::atomic<bool> over{false};
+  std::thread slow([&] {
+    TickRecord tick;
+    while (!over.load()) {
+      if (tip.load(tick)) {
+        if (auto published = slot.publish(simulate(tick)); !published) {
+          std::fprintf(stderr, "%s\n", published.error().message.c_str());
+        }
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(6));
+    }
+  });
+
+  auto law = [&](const DeviceState& state) noexcept { return touch.update(state); };
+  double force = 0, depth = 0;
+  auto show = [&](const TickRecord& tick) noexcept {
+    tip.store(tick);
+    force = tick.f_sent_W[2];
+    depth = -tick.p_WT[2];
+    // Virtual time runs ahead of any thread; a real arm's would not. So it waits a little here.
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  };
+  desk.run(2.0, law, show);
+  over.store(true);
+  slow.join();
+  const double truth = 200 * depth + 5e4 * depth * depth;
+  const std::string_view age = render::name(touch.age());
+  std::printf("%d models in 2 s; %.2f N at %.2f mm, where the pad gives %.2f N (%.*s).\n",
+              static_cast<int>(touch.counters().taken), force, depth * 1e3, truth,
+              static_cast<int>(age.size()), age.data());
+  return std::abs(force - truth) < 0.1 * truth ? 0 : 1;
+}
