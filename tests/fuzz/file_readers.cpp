@@ -35,11 +35,14 @@ void promise(bool kept, const char* what) {
   std::abort();
 }
 
-/// Gives a folder of this process alone, gone at its end.
+/// Gives a folder of this process alone, gone at its end: where TMPDIR says, or in memory where
+/// that can be had, for some disks write a file that is replaced at once.
 const std::filesystem::path& folder() {
   struct Folder {
-    std::filesystem::path path =
-        std::filesystem::temp_directory_path() / ("thimble_fuzz_" + std::to_string(getpid()));
+    std::filesystem::path path = (std::getenv("TMPDIR") == nullptr && access("/dev/shm", W_OK) == 0
+                                      ? "/dev/shm"
+                                      : std::filesystem::temp_directory_path()) /
+                                 std::filesystem::path("thimble_fuzz_" + std::to_string(getpid()));
     Folder() { std::filesystem::create_directories(path); }
     ~Folder() {
       std::error_code ignored;

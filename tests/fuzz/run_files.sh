@@ -12,9 +12,10 @@ if [ ! -x "$fuzzer" ]; then
 fi
 seconds=$((${THIMBLE_FUZZ_SECONDS:-10} / 5))
 [ -z "${THIMBLE_LONG:-}" ] || seconds=60
+[ -n "${TMPDIR:-}" ] || [ ! -w /dev/shm ] || export TMPDIR=/dev/shm  # some disks are slow
 work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
 export TMPDIR=$work  # the files that are read
+trap 'rm -rf "$work"' EXIT
 # What assimp and HDF5 leak or ask for is theirs; a refused allocation is an error for them, and ours
 # to tell.
 export LSAN_OPTIONS=suppressions=$(realpath "$(dirname "$0")/../support/lsan_suppressions.txt"):print_suppressions=0
@@ -23,8 +24,9 @@ cd "$work"
 # A crash is shown: copy it into the corpus of its kind, named after the fault.
 fuzz() {  # fuzz KIND
   mkdir "found_$1"
-  THIMBLE_FILE_KIND=$1 "$fuzzer" -max_total_time="$seconds" -max_len=2000 -timeout=20 -malloc_limit_mb=65536 -rss_limit_mb=4096 -seed=1 \
-    -print_final_stats=1 -artifact_prefix="$work/$1_" "found_$1" "$corpus/$1" >"$1.log" 2>&1 || {
+  THIMBLE_FILE_KIND=$1 "$fuzzer" -max_total_time="$seconds" -max_len=2000 -timeout=20 \
+    -malloc_limit_mb=65536 -rss_limit_mb=4096 -seed=1 -print_final_stats=1 \
+    -artifact_prefix="$work/$1_" "found_$1" "$corpus/$1" >"$1.log" 2>&1 || {
     tail -n 40 "$1.log"
     for crash in "$work/$1_"*; do
       [ -f "$crash" ] && echo "$crash:" && od -A n -t x1 "$crash"
