@@ -55,9 +55,8 @@ TEST_P(FileReaders, KeepTheirPromisesOnDamagedFiles) {
   support::Random random(202);
   int taken = 0;
   for (int i = 0; i < rounds; ++i) {
-    const File file = i % 4 == 0
-                          ? support::any_bytes(random, random.bits() % 140)
-                          : support::damaged(random, files[random.bits() % files.size()]);
+    const File file = i % 4 == 0 ? support::any_bytes(random, random.bits() % 140)
+                                 : support::damaged(random, files[random.bits() % files.size()]);
     taken += read_any_file(GetParam(), file) ? 1 : 0;
   }
   EXPECT_LT(taken, rounds);
