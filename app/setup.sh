@@ -23,8 +23,11 @@ packages=(
   libgtest-dev libbenchmark-dev          # tests and benchmarks
 )
 
-# Sweeps over several machines: large, and nothing needs it, so not for the program alone.
-[ ${#targets[@]} -gt 0 ] || packages+=(libopenmpi-dev openmpi-bin)
+# What the program alone does not need.
+[ ${#targets[@]} -gt 0 ] || packages+=(
+  libopenmpi-dev openmpi-bin             # sweeps over several machines
+  dpkg-dev                               # Debian packages
+)
 
 missing=()
 for package in "${packages[@]}"; do

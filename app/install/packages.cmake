@@ -2,7 +2,13 @@
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME thimble)
 set(CPACK_PACKAGE_VENDOR "Thimble")
-set(CPACK_PACKAGE_CONTACT "Thimble developers <thimble@localhost>")
+# Who builds a package answers for it, by the same two variables that Debian's own tools read. The
+# fallback says that nobody can be written to, in an address that will never exist (RFC 2606).
+set(CPACK_PACKAGE_CONTACT "Thimble developers <thimble@unreachable.invalid>")
+if(DEFINED ENV{DEBEMAIL})
+  set(CPACK_PACKAGE_CONTACT "$ENV{DEBFULLNAME} <$ENV{DEBEMAIL}>")
+endif()
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "")  # each package has a first line of its own
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
@@ -24,14 +30,14 @@ set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS
 set(CPACK_DEBIAN_DEV_PACKAGE_SUGGESTS "thimble")
 set(CPACK_COMPONENT_PROGRAM_DESCRIPTION
 "touch virtual objects by a force-feedback arm, real or simulated
- Thimble drives 3-DOF force-feedback arms on USB, simulates them where there is
- none, and renders triangle meshes, shapes and fields to the hand at 1 kHz and
- more, with textures, friction and bodies that dent, move and snap.")
+Thimble drives 3-DOF force-feedback arms on USB, simulates them where there is
+none, and renders triangle meshes, shapes and fields to the hand at 1 kHz and
+more, with textures, friction and bodies that dent, move and snap.")
 set(CPACK_COMPONENT_DEV_DESCRIPTION
 "libraries and headers to build on Thimble
- The driver of 3-DOF force-feedback arms, the simulated arm and the haptic
- rendering of Thimble as static libraries, with a CMake package, a pkg-config
- file and six small examples.")
+The driver of 3-DOF force-feedback arms, the simulated arm and the haptic
+rendering of Thimble as static libraries, with a CMake package, a pkg-config
+file and small numbered examples.")
 set(CPACK_DEBIAN_PROGRAM_DESCRIPTION "${CPACK_COMPONENT_PROGRAM_DESCRIPTION}")
 set(CPACK_DEBIAN_DEV_DESCRIPTION "${CPACK_COMPONENT_DEV_DESCRIPTION}")
 
