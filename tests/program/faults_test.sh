@@ -121,7 +121,7 @@ expect 2 'cannot be written here' bash -c \
   'ulimit -f 100; exec "$0" run "$1" --duration 60 --no-view --record small.h5' "$thimble" "$scenes/rubber.yaml"
 cell "file size limit" "opening" "refused with a sentence, no crash"
 expect 0 '' "$thimble" run "$scenes/rubber.yaml" --duration 1 --no-view --record good.h5
-expect 2 'full' "$thimble" export good.h5 --csv /dev/full
+expect 1 'full: cannot be written' "$thimble" export good.h5 --csv /dev/full
 cell "disk full" "table of a recording" "refused with a sentence"
 cat >on_full_disk.sh <<'END'
 mkdir -p disk
