@@ -19,6 +19,7 @@ done
 [ ${#presets[@]} -gt 0 ] || presets=(release asan "tsan${THIMBLE_LONG:+-all}")
 
 tests/usb/setup.sh || true  # optional: without it the USB arms are not tested through a kernel
+tests/fuzz/setup.sh || true  # optional: without it only the corpora are replayed
 
 failed=()
 for preset in "${presets[@]}"; do

@@ -20,7 +20,13 @@ extern "C" void on_signal(int number) {
 const std::atomic<bool>& catch_interrupts() {
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
+  std::signal(SIGHUP, on_signal);
   return interrupted;
+}
+
+void outlive_trouble_with_files() {
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
 }
 
 void ask_to_stop() noexcept {

@@ -6,6 +6,7 @@
 #include "build_info.h"
 #include "commands.h"
 #include "exit_code.h"
+#include "interrupt.h"
 
 namespace {
 
@@ -54,6 +55,7 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  thimble::app::outlive_trouble_with_files();
   // Every exception ends here, so that destructors run and the arm is left with zero force.
   try {
     return run(argc, argv);

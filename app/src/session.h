@@ -75,6 +75,8 @@ class Session {
   driver::Device& device() { return *device_; }
   /// Gives the simulation of the arm; nullptr if a real one is used.
   const ArmSimulation* simulation() const { return simulation_.get(); }
+  /// Gives it to who leads its hand from the servo's thread, beside a loop driven by hand.
+  ArmSimulation* simulation() { return simulation_.get(); }
   /// Gives the simulated arm. Precondition: it is simulated, and no Falcon.
   const device_sim::SimulatedArm& arm() const { return *simulation_->board_arm(); }
   /// Gives the clock that a new wire to a real arm must use.

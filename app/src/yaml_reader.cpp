@@ -1,5 +1,7 @@
 #include "yaml_reader.h"
 
+#include <yaml-cpp/eventhandler.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <charconv>
@@ -75,6 +77,41 @@ std::optional<double> to_number(const YAML::Node& node) {
   const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (status != std::errc() || end != text.data() + text.size()) return std::nullopt;
   return number;
+}
+
+/// Hears where documents begin, and nothing else.
+class DocumentStarts final : public YAML::EventHandler {
+ public:
+  void OnDocumentStart(const YAML::Mark& mark) override { line_ = mark.line + 1; }
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                const std::string&) override {}
+  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                       YAML::EmitterStyle::value) override {}
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                  YAML::EmitterStyle::value) override {}
+  void OnMapEnd() override {}
+
+  int line() const { return line_; }
+
+ private:
+  int line_ = 0;
+};
+
+/// Tells in which line a second document begins; 0 if there is none. To load all would never end
+/// where the parser stands still: before a comma outside of any list it finds one empty document
+/// after the other. Throws what yaml-cpp throws.
+int line_of_second_document(const std::string& text) {
+  std::istringstream stream(text);
+  YAML::Parser parser(stream);
+  DocumentStarts starts;
+  for (int document = 0; document < 2; ++document) {
+    if (!parser.HandleNextDocument(starts)) return 0;
+  }
+  return starts.line();
 }
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
@@ -346,13 +383,14 @@ driver::Result<YamlFile> YamlFile::load(const std::filesystem::path& file) {
 driver::Result<YamlFile> YamlFile::parse(const std::string& text, const std::string& name) {
   auto mistakes = std::make_shared<YamlMistakes>(name);
   try {
-    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
-    if (documents.empty() || documents.front().IsNull()) {
+    const int second = line_of_second_document(text);
+    const YAML::Node document = second > 0 ? YAML::Node() : YAML::Load(text);
+    if (second > 0) {
+      mistakes->add(second, "expected one document, found a second one");
+    } else if (document.IsNull()) {
       mistakes->add(0, "is empty; expected a map of keys and values");
-    } else if (documents.size() > 1) {
-      mistakes->add(line_of(documents[1], 0), "expected one document, found a second one");
     } else {
-      YamlMap root(documents.front(), "", 1, mistakes);
+      YamlMap root(document, "", 1, mistakes);
       if (mistakes->empty()) return YamlFile(std::move(root), mistakes);
     }
   } catch (const YAML::Exception& problem) {

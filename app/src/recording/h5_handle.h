@@ -28,8 +28,11 @@ class H5Handle {
   herr_t (*close_)(hid_t);
 };
 
-/// Keeps the library from printing its own stack of errors: Thimble says what happened.
+/// Keeps the library from printing its own stack of errors: Thimble says what happened. Before
+/// anything else of the library: then it does not tidy up at the program's end either, which on a
+/// full disk ends in a crash (HDF5 1.10); every handle here has an owner that closes it.
 inline void silence_hdf5() noexcept {
+  H5dont_atexit();
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
 }
 

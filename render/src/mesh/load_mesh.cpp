@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "mesh/read_off.h"
+#include "mesh/read_ply.h"
 #include "mesh/read_with_assimp.h"
 #include "thimble/render/mesh/weld_mesh.h"
 
@@ -47,7 +48,7 @@ driver::Result<TriangleMesh> load_mesh(const std::filesystem::path& file) {
     if (!mesh) return mesh.error();
     return weld_mesh(*mesh);
   }
-  const auto mesh = read_with_assimp(bytes, ending);
+  const auto mesh = ending == "ply" ? read_ply(bytes) : read_with_assimp(bytes, ending);
   if (!mesh) return error(mesh.error().message);
   return weld_mesh(*mesh);
 }

@@ -9,7 +9,6 @@
 #include <cstdint>
 #include <exception>
 #include <limits>
-#include <sstream>
 
 #include "mesh/read_off.h"
 #include "mesh/triangulate_polygon.h"
@@ -18,36 +17,6 @@ namespace thimble::render {
 namespace {
 
 using driver::Error;
-
-// Reads a PLY header through before the library does: the library sets memory aside for counts that
-// the file cannot hold, and does not come back from a header that is cut off.
-driver::Result<void> check_ply_header(std::string_view bytes) {
-  constexpr std::size_t kHeaderMax = 65536;
-  std::istringstream header{std::string(bytes.substr(0, kHeaderMax))};
-  std::string line;
-  while (std::getline(header, line)) {
-    std::istringstream words(line);
-    std::string keyword;
-    words >> keyword;
-    if (keyword == "end_header") return {};
-    if (keyword != "ply" && keyword != "format" && keyword != "comment" && keyword != "obj_info" &&
-        keyword != "element" && keyword != "property") {
-      break;
-    }
-    if (keyword != "element") continue;
-    std::string name;
-    long long count = 0;
-    if (!(words >> name >> count) || count < 0) {
-      return Error{"its header has no valid count in \"" + line.substr(0, 40) + "\"."};
-    }
-    if (static_cast<unsigned long long>(count) > bytes.size()) {
-      return Error{"its header promises " + std::to_string(count) + " of \"" + name.substr(0, 20) +
-                   "\" but the file has only " + std::to_string(bytes.size()) +
-                   " bytes: it is truncated."};
-    }
-  }
-  return Error{"this is no PLY file that can be read (its header does not reach end_header)."};
-}
 
 driver::Result<void> append(const aiMesh& part, TriangleMesh& mesh) {
   const std::size_t first = mesh.vertices.size();
@@ -93,9 +62,6 @@ Error cannot_read(std::string ending, std::string reason) {
 
 driver::Result<TriangleMesh> read_with_assimp(std::string_view bytes, const std::string& ending) {
   if (bytes.empty()) return Error{"the file is empty."};
-  if (ending == "ply") {
-    if (auto counts = check_ply_header(bytes); !counts) return counts.error();
-  }
   try {
     Assimp::Importer importer;
     const aiScene* scene =

@@ -102,6 +102,18 @@ float up(double value) noexcept {
   return std::nextafter(static_cast<float>(value), std::numeric_limits<float>::infinity());
 }
 
+/// Tells whether a box can be one of records, whose corners are whole numbers of 32 bits.
+bool can_be(const PageBox& box) {
+  constexpr float kFarthest = 0x1p31F;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (!(-2 * kFarthest <= box.min[axis] && box.min[axis] <= box.max[axis] &&
+          box.max[axis] <= 2 * kFarthest)) {
+      return false;
+    }
+  }
+  return true;
+}
+
 }  // namespace
 
 PageBox box_of(std::span<const CompactTriangle> records) noexcept {
@@ -266,6 +278,9 @@ driver::Result<PageFile> PageFile::open(const std::filesystem::path& file) {
   }
   if (sum_of(header, opened.boxes_, opened.sums_) != header.sum) {
     return trouble(file, "its header is damaged; write it again.");
+  }
+  if (!std::all_of(opened.boxes_.begin(), opened.boxes_.end(), can_be)) {
+    return trouble(file, "its boxes are damaged; write it again.");
   }
   opened.whole_ = opened.boxes_.front();
   for (const PageBox& box : opened.boxes_) {

@@ -251,7 +251,8 @@ void PagedSurface::want_along(const Vector3d& p, const Vector3d& way) {
   const double length = way.norm();
   const Vector3d along = length > 0 ? Vector3d(way / length) : Vector3d::Zero();
   // Pieces no longer than the reach, so that the boxes around them hold little else.
-  const int pieces = std::clamp(static_cast<int>(std::ceil(length / (2 * reach))), 1, kPiecesMax);
+  const double asked = std::ceil(length / (2 * reach));  // a way that is no number asks for none
+  const int pieces = asked > 1 ? static_cast<int>(std::min(asked, double{kPiecesMax})) : 1;
   for (int piece = 0; piece < pieces; ++piece) {
     const Vector3d from = p + way * piece / pieces, to = p + way * (piece + 1) / pieces;
     const Vector3d low = from.cwiseMin(to) - Vector3d::Constant(reach);

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cstring>
 #include <fstream>
 #include <string>
@@ -147,6 +149,60 @@ TEST(LoadMesh, RefusesPromisesThatAFileCannotKeep) {
   const std::uint32_t promised = 1000000000;
   std::memcpy(stl.data() + 80, &promised, sizeof promised);
   expect_error("stl", stl + std::string(100, '\1'), "this is no STL file that can be read");
+}
+
+TEST(LoadMesh, ReadsPlyOfEitherByteOrderWithWhateverStandsBesideTheMesh) {
+  const std::array<std::array<double, 3>, 4> vertices{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  const std::array<std::array<std::int16_t, 3>, 4> faces{
+      {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};
+  for (const bool big : {false, true}) {
+    std::string text = std::string("ply\r\nformat binary_") + (big ? "big" : "little") +
+                       "_endian 1.0\ncomment by hand\nelement marker 2\nproperty uchar colour\n"
+                       "element vertex 4\nproperty float64 x\nproperty double y\nproperty char "
+                       "quality\nproperty double z\nelement face 4\nproperty list uint8 int16 "
+                       "vertex_index\nproperty list uchar float32 texture\nend_header\n";
+    const auto put = [&](const auto& number) {
+      std::string bytes(sizeof number, 0);
+      std::memcpy(bytes.data(), &number, sizeof number);
+      if (big) std::reverse(bytes.begin(), bytes.end());
+      text += bytes;
+    };
+    text += "\1\2";
+    for (const auto& vertex : vertices) {
+      put(vertex[0]);
+      put(vertex[1]);
+      put(std::int8_t{-1});
+      put(vertex[2]);
+    }
+    for (const auto& face : faces) {
+      put(std::uint8_t{3});
+      for (const std::int16_t corner : face) put(corner);
+      put(std::uint8_t{1});
+      put(0.5F);
+    }
+    const MeshFile file("ply", text);
+    const auto mesh = file.load();
+    ASSERT_TRUE(mesh.ok()) << mesh.error().message;
+    EXPECT_EQ(mesh->vertices.size(), 4U);
+    ASSERT_EQ(mesh->triangles.size(), 4U);
+    EXPECT_EQ(mesh->triangles[1], (std::array<std::int32_t, 3>{0, 1, 3}));
+    EXPECT_EQ(mesh->vertices[3], Eigen::Vector3d(0, 0, 1));
+  }
+}
+
+TEST(LoadMesh, SaysWhatIsWrongWithAPlyFile) {
+  const std::string head =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+      "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n";
+  const std::string corners = "0 0 0\n1 0 0\n0 1 0\n";
+  expect_error("ply", head + corners + "3 0 1 3\n", "face 0 names a vertex that does not exist");
+  expect_error("ply", head + corners + "3 0 1 -1\n", "face 0 names a vertex that does not exist");
+  expect_error("ply", head + corners + "300 0 1 2\n", "in face 0 of 1");
+  expect_error("ply", head + "0 0 nan\n1 0 0\n0 1 0\n3 0 1 2\n", "vertex 0 has a coordinate");
+  expect_error("ply", head + "0 0\n", "in vertex 0 of 3");
+  expect_error("ply", head + corners + "2 0 1\n", "no face with three corners");
+  expect_error("ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float {\nquatsch\n",
+               "quatsch");
 }
 
 TEST(LoadMesh, AnswersEveryTruncationOfEveryFormat) {

@@ -9,8 +9,8 @@ namespace thimble::render {
 
 /// Reads a mesh from an OFF, OBJ, STL or PLY file (told by its name's ending), splits polygons into
 /// triangles and welds vertices that lie at exactly the same place (STL has no other way to share
-/// them). Coordinates stay in the file's unit; OFF keeps double precision, the others are read in
-/// single precision.
+/// them). Coordinates stay in the file's unit; OFF and PLY keep what
+/// precision the file has, OBJ and STL are read in single precision.
 ///
 /// The error names the file and, for OFF, the line: no such file, unknown ending, truncated, no
 /// triangles, a coordinate that is not a finite number or beyond 1e15, an index out of range.

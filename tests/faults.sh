@@ -1,0 +1,63 @@
+#!/usr/bin/env bash
+# Runs the matrix of faults and writes what was promised and measured as a table: fault by arm, a
+# column per phase. What runs in simulated time is the same on every machine; of what runs on the
+# wall clock the table says only whether the promise was kept.
+#   tests/faults.sh [BUILD_DIR [OUTPUT]]    default: build/release and tests/FAULTS.md
+set -euo pipefail
+cd "$(dirname "$0")/.."
+build=${1:-build/release}
+output=${2:-tests/FAULTS.md}
+lines=$(mktemp)
+trap 'rm -f "$lines"' EXIT
+THIMBLE_FAULTS=$lines "$build/tests/sim/test_faults" >/dev/null
+[ ! -e "$build/app/thimble" ] ||
+  THIMBLE_FAULTS=$lines bash tests/program/faults_test.sh "$(realpath "$build/app/thimble")" "$PWD" \
+    "$(realpath "$build")/tests/program/faults_table" >/dev/null || [ $? = 77 ]
+{
+  cat <<'TEXT'
+# Faults: what is promised, and what was measured
+
+Written by `tests/faults.sh`; do not edit. The promises are data in `tests/sim/fault_promises.h`, the cells are
+`tests/sim/fault_matrix_test.cpp` (simulated time, the whole way from hand to motors) and
+`tests/program/faults_test.sh` (real processes).
+
+A number is the time in ms until no current flowed in the motors of the simulated arm, for good; behind it the cause that
+the driver named. `-` is a touch that went on, every force sent within the arm's limit. In the column `limit`: no later than so
+many ms. "the arm switches off": the board's own watchdog of 100 ms, for the driver cannot know. Free motion has no current
+to begin with. "within the limit" is what can be promised of bytes that look like a touch: no wire of these arms has a
+checksum. Forces on the way out that a cable has changed are the board's business: it takes no current beyond its range.
+
+## In simulated time
+
+| fault | arm | promise | limit | opening | free | contact | sliding | deforming | recording |
+|---|---|---|---|---|---|---|---|---|---|
+TEXT
+  awk -F'|' '
+    $3 == "process" { next }
+    {
+      key = $2 "|" $3
+      if (!(key in seen)) { seen[key] = 1; order[++n] = key }
+      if ($4 != "opening") { promise[key] = $5; limit[key] = $7 }
+      value = $6
+      sub(/goes on/, "-", value)
+      cell[key "|" $4] = value
+    }
+    END {
+      split("opening free contact sliding deforming recording", phases, " ")
+      for (i = 1; i <= n; ++i) {
+        split(order[i], part, "|")
+        line = "| " part[1] " | " part[2] " | " promise[order[i]] " | " limit[order[i]] " |"
+        for (p = 1; p <= 6; ++p) line = line " " cell[order[i] "|" phases[p]] " |"
+        print line
+      }
+    }' "$lines" | sort -t'|' -s -k2,2
+  cat <<'TEXT'
+
+## With real processes, on the wall clock
+
+| fault | while | promise | result |
+|---|---|---|---|
+TEXT
+  awk -F'|' '$3 == "process" { print "| " $2 " | " $4 " | " $5 " | " $6 " |" }' "$lines"
+} >"$output"
+echo "$output: $(grep -c '^| ' "$output") rows"

@@ -1,0 +1,267 @@
+#include "fuzz/file_readers.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include "arm_file.h"
+#include "page/checksum.h"
+#include "recording/read_recording.h"
+#include "recording/recording_file.h"
+#include "scene_file.h"
+#include "scene_objects.h"
+#include "thimble/render/mesh/check_mesh.h"
+#include "thimble/render/mesh/load_mesh.h"
+#include "thimble/render/page/page_file.h"
+
+namespace thimble::fuzz {
+namespace {
+
+using Bytes = std::span<const std::byte>;
+
+void promise(bool kept, const char* what) {
+  if (kept) return;
+  std::fprintf(stderr, "A reader of files broke its promise: %s\n", what);
+  std::abort();
+}
+
+/// Gives a folder of this process alone, gone at its end: where TMPDIR says, or in memory where
+/// that can be had, for some disks write a file that is replaced at once.
+const std::filesystem::path& folder() {
+  struct Folder {
+    std::filesystem::path path = (std::getenv("TMPDIR") == nullptr && access("/dev/shm", W_OK) == 0
+                                      ? "/dev/shm"
+                                      : std::filesystem::temp_directory_path()) /
+                                 std::filesystem::path("thimble_fuzz_" + std::to_string(getpid()));
+    Folder() { std::filesystem::create_directories(path); }
+    ~Folder() {
+      std::error_code ignored;
+      std::filesystem::remove_all(path, ignored);
+    }
+  };
+  static const Folder one;
+  return one.path;
+}
+
+std::filesystem::path store(Bytes bytes, const char* name) {
+  const std::filesystem::path path = folder() / name;
+  std::ofstream(path, std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes.data()),
+             static_cast<std::streamsize>(bytes.size()));
+  return path;
+}
+
+template <class T>
+bool told(const driver::Result<T>& result) {
+  if (!result) promise(!result.error().message.empty(), "a refusal is a sentence");
+  return static_cast<bool>(result);
+}
+
+bool read_scene_file(Bytes bytes) {
+  static const bool arm_beside = std::filesystem::copy_file(
+      THIMBLE_SOURCE_DIR "/app/arms/vintage_phantom.yaml", folder() / "arm.yaml");
+  promise(arm_beside, "an arm stands beside the scene");
+  const auto scene =
+      app::read_scene(store(bytes, "any.yaml"), THIMBLE_SOURCE_DIR "/tests/data/meshes");
+  if (!told(scene)) return false;
+  promise(std::isfinite(scene->duration) && scene->duration > 0, "a scene has an end");
+  promise(std::isfinite(scene->rate) && scene->rate > 0, "a scene has a rate");
+  // Patches of a body may take long to build; scenes made by chance are kept small.
+  if (scene->objects.size() > 4) return true;
+  const auto objects = app::SceneObjects::build(*scene);
+  if (!told(objects)) return true;
+  render::SceneTouch& touch = (*objects)->touch();
+  driver::DeviceState state;
+  state.dt = 1e-3;
+  state.fresh = true;
+  for (const double z : {0.1, 0.01, 0.0, -0.01, 0.1}) {
+    ++state.tick;
+    state.time_ns += 1'000'000;
+    state.v_WT = (Eigen::Vector3d(0.001, 0.002, z) - state.p_WT) / state.dt;
+    state.p_WT = {0.001, 0.002, z};
+    const driver::ForceCommand command = touch(state);
+    // An infinite wish is the gate's business; what a tick costs and touches is this fuzzer's.
+    static_cast<void>(command);
+  }
+  return true;
+}
+
+bool read_mesh(Bytes bytes, const char* name) {
+  const auto mesh = render::load_mesh(store(bytes, name));
+  if (!told(mesh)) return false;
+  promise(!mesh->triangles.empty(), "a mesh has triangles");
+  for (const auto& vertex : mesh->vertices) {
+    promise(vertex.cwiseAbs().maxCoeff() <= 1e15, "a vertex is somewhere near");
+  }
+  for (const auto& triangle : mesh->triangles) {
+    for (const std::int32_t corner : triangle) {
+      promise(corner >= 0 && static_cast<std::size_t>(corner) < mesh->vertices.size(),
+              "a triangle has vertices");
+    }
+  }
+  // The first thing that anybody does with it.
+  if (mesh->triangles.size() <= 2000) static_cast<void>(render::check_mesh(*mesh));
+  return true;
+}
+
+std::vector<std::byte> bytes_of(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::vector<std::byte> bytes(std::filesystem::file_size(path));
+  in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  return bytes;
+}
+
+/// Damages a sound file: place (4 bytes, modulo the size of the file), count (1, at most 16), the
+/// bytes to put there, as often as there are orders.
+std::vector<std::byte> damaged(std::vector<std::byte> file, Bytes orders) {
+  while (orders.size() > 5) {
+    std::uint32_t place = 0;
+    std::memcpy(&place, orders.data(), sizeof place);
+    std::size_t count = std::to_integer<unsigned>(orders[4]) % 17;
+    orders = orders.subspan(5);
+    count = std::min(count, orders.size());
+    for (std::size_t i = 0; i < count; ++i) file[(place + i) % file.size()] = orders[i];
+    orders = orders.subspan(count);
+  }
+  return file;
+}
+
+std::vector<std::byte> sound_pages() {
+  const auto mesh = render::load_mesh(THIMBLE_SOURCE_DIR "/tests/data/meshes/box.off");
+  promise(static_cast<bool>(mesh), "a sound mesh is read");
+  const auto surface = render::CompactSurface::build(*mesh, {});
+  promise(static_cast<bool>(surface), "a sound mesh is packed");
+  const std::filesystem::path path = folder() / "sound.pages";
+  promise(static_cast<bool>(render::write_page_file(*surface, path)), "pages can be written");
+  return bytes_of(path);
+}
+
+/// Puts the checksums of a file of one page right, so that what lies behind them is reached.
+/// The places are those of page_file.cpp.
+void put_checksums_right(std::vector<std::byte>& file) {
+  constexpr std::size_t kHead = 72, kSum = 20, kBox = 24, kRecords = 4096;
+  const std::uint64_t page = render::checksum(Bytes(file).subspan(kRecords));
+  std::memcpy(file.data() + kHead + kBox, &page, sizeof page);
+  std::memset(file.data() + kSum, 0, sizeof(std::uint32_t));
+  std::uint64_t sum = render::checksum(Bytes(file).first(kHead));
+  sum = render::checksum(Bytes(file).subspan(kHead, kBox), sum);
+  sum = render::checksum(Bytes(file).subspan(kHead + kBox, sizeof page), sum);
+  const auto folded = static_cast<std::uint32_t>(sum ^ (sum >> 32));
+  std::memcpy(file.data() + kSum, &folded, sizeof folded);
+}
+
+/// Touches the pages as a scene does.
+void touch_pages(const std::filesystem::path& pages) {
+  app::Scene scene;
+  scene.rate = 1000;
+  app::SceneObject object;
+  object.name = "pages";
+  object.mesh_file = pages;
+  object.paged = true;
+  object.stiffness = 100;
+  object.contact.tracker = render::TrackerChoice::kCompact;
+  scene.objects.push_back(object);
+  const auto objects = app::SceneObjects::build(scene);
+  if (!told(objects)) return;
+  driver::DeviceState state;
+  state.dt = 1e-3;
+  state.fresh = true;
+  for (const double z : {4.0, 1.51, 1.49, 1.0, 0.5, -0.1}) {
+    ++state.tick;
+    state.p_WT = {0.1, 0.2, z};
+    static_cast<void>((*objects)->touch()(state));
+    (*objects)->serve_pages();
+  }
+}
+
+bool read_pages(Bytes bytes) {
+  static const std::vector<std::byte> sound = sound_pages();
+  const bool rehash = !bytes.empty() && (std::to_integer<unsigned>(bytes[0]) & 1) != 0;
+  std::vector<std::byte> whole = damaged(sound, bytes.empty() ? bytes : bytes.subspan(1));
+  if (rehash) put_checksums_right(whole);
+  const std::filesystem::path path = store(whole, "any.pages");
+  const auto file = render::PageFile::open(path);
+  if (!told(file)) return false;
+  promise(file->triangle_count() > 0, "a page file has triangles");
+  std::vector<render::CompactTriangle> records(render::kPageRecords);
+  std::int64_t in_all = 0;
+  for (std::size_t page = 0; page < file->boxes().size(); ++page) {
+    const std::int32_t count = file->read_page(static_cast<std::int32_t>(page), records);
+    promise(count >= 0 && count <= render::kPageRecords, "a page fits its buffer");
+    in_all += count;
+  }
+  promise(in_all <= file->triangle_count(), "pages hold no more than was told");
+  touch_pages(path);
+  return true;
+}
+
+/// Makes a recording of eight ticks whose bytes are all the same, of which the last may be missing;
+/// cut off, as a killed run leaves it.
+std::vector<std::byte> recording_of(int byte, bool whole) {
+  std::vector<driver::TickRecord> ticks(8);
+  std::memset(static_cast<void*>(ticks.data()), byte, ticks.size() * sizeof ticks[0]);
+  app::RecordingInfo info;
+  info.scene = "fuzz";
+  info.rate = 1000;
+  const std::filesystem::path path = folder() / "sound.h5";
+  auto file = app::RecordingFile::create(path, info, ticks.size());
+  promise(static_cast<bool>(file), "a recording can be begun");
+  const auto some = std::span<const driver::TickRecord>(ticks).first(whole ? 8 : 7);
+  promise(static_cast<bool>(file->append(some)), "a recording can be written");
+  return bytes_of(path);
+}
+
+bool read_recording(Bytes bytes) {
+  static const std::vector<std::byte> sound = recording_of(0, true);
+  // What is damaged is what we wrote: numbers of the ticks, and how many there are. What HDF5 keeps
+  // beside them it reads by itself, and release 1.10 does not survive all damage of that.
+  static const std::vector<std::size_t> places = [] {
+    const auto others = recording_of(0xff, true), shorter = recording_of(0, false);
+    std::vector<std::size_t> found;
+    for (std::size_t i = 0; i < sound.size(); ++i) {
+      if (sound[i] != others[i]) found.push_back(i);
+      if (sound[i] == shorter[i]) continue;
+      for (std::size_t k = 0; k < sizeof(std::uint64_t); ++k) found.push_back(i + k);
+    }
+    return found;
+  }();
+  std::vector<std::byte> data(places.size());
+  for (std::size_t i = 0; i < places.size(); ++i) data[i] = sound[places[i]];
+  data = damaged(std::move(data), bytes);
+  std::vector<std::byte> file = sound;
+  for (std::size_t i = 0; i < places.size(); ++i) file[places[i]] = data[i];
+  const auto recording = app::read_recording(store(file, "any.h5"));
+  if (!told(recording)) return false;
+  promise(recording->info.rate > 0, "a recording has a rate");
+  for (const driver::TickRecord& tick : recording->ticks) {
+    promise(!name(tick.fault).empty(), "a tick's fault has a name");
+  }
+  return true;
+}
+
+}  // namespace
+
+bool read_any_file(std::string_view kind, Bytes bytes) {
+  if (kind == "scene") return read_scene_file(bytes);
+  if (kind == "arm") return told(app::read_arm_file(store(bytes, "any.yaml")));
+  if (kind == "off") return read_mesh(bytes, "any.off");
+  if (kind == "obj") return read_mesh(bytes, "any.obj");
+  if (kind == "stl") return read_mesh(bytes, "any.stl");
+  if (kind == "ply") return read_mesh(bytes, "any.ply");
+  if (kind == "page") return read_pages(bytes);
+  if (kind == "recording") return read_recording(bytes);
+  promise(false, "the kind of file is known");
+  return false;
+}
+
+}  // namespace thimble::fuzz

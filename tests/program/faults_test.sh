@@ -1,0 +1,196 @@
+#!/usr/bin/env bash
+# Real processes in trouble: signals, a servo or a viewer that stands still, a full disk, shared
+# memory that is taken away, a date that jumps, no real-time priority, no processor to spare. In each
+# phase the arm is left with zero force, the cause is named, and no recorded tick is lost. The same in
+# simulated time: tests/sim/fault_matrix_test.cpp. Appends to the file that THIMBLE_FAULTS names.
+source "$(dirname "$0")/expect.sh" "$@"
+scenes=$source_dir/app/scenes
+export XDG_STATE_HOME=$PWD/state
+unset DISPLAY WAYLAND_DISPLAY
+me=faults$$
+
+# cell FAULT PHASE PROMISE: what was expected since the last cell is the result of this one.
+before=0
+cell() {
+  local result=met
+  [ "$failures" = "$before" ] || result="NOT MET"
+  before=$failures
+  [ -z "${THIMBLE_FAULTS:-}" ] || echo "FAULT|$1|process|$2|$3|$result|" >>"$THIMBLE_FAULTS"
+}
+not_tested() {  # not_tested FAULT PHASE WHY
+  echo "NOT TESTED: $1: $3"
+  [ -z "${THIMBLE_FAULTS:-}" ] || echo "FAULT|$1|process|$2|-|not tested here: $3|" >>"$THIMBLE_FAULTS"
+}
+
+# Each phase is a scene and a time (s) at which its hand is about that.
+phases=("opening rubber 0.02" "free rubber 0.5" "sliding rubber 1.6" "deforming trampoline 1.8")
+[ -n "${THIMBLE_LONG:-}" ] || phases=("opening rubber 0.02" "sliding rubber 1.6" "deforming trampoline 1.8")
+
+# trouble SCENE SECONDS COMMAND...: runs a scene on the wall clock, recorded, and COMMAND with the
+# process number after so many seconds of touch; leaves exit code, output, report and recording.
+trouble() {
+  local scene=$1 seconds=$2 pid
+  shift 2
+  rm -rf out report run.h5
+  "$thimble" run "$scenes/$scene.yaml" --clock wall --duration 30 --no-view --report report \
+    --record run.h5 >out 2>&1 </dev/null &
+  pid=$!
+  # Touch begins when the recording is there; a slow machine takes its time to open.
+  for _ in $(seq 200); do [ -e run.h5 ] && break; sleep 0.02; done
+  sleep "$seconds"
+  "$@" $pid
+  wait $pid
+  status=$?
+}
+# A machine that pauses for 100 ms makes the watchdog's fault come first, which is right too.
+left_well() {  # left_well CODE REASON
+  if [ "$status" = 4 ] && grep -q loop_stalled report/report.json 2>/dev/null; then
+    echo "(this machine paused for 100 ms: $1 came as loop_stalled)"
+  else
+    expect 0 "^$1\$" echo "$status"
+    expect 0 "\"$2\"" cat report/report.json
+  fi
+  expect 0 '"motor_current_A": -?0(\.0)?,?$' cat report/report.json
+  ticks=$(grep -oE '^  "ticks": [0-9]+' report/report.json | grep -oE '[0-9]+')
+  expect 0 "run.csv: $ticks ticks of" "$thimble" export run.h5 --csv run.csv
+}
+
+send() { kill -s "$1" "$2"; }
+for signal in INT TERM HUP; do
+  for phase in "${phases[@]}"; do
+    read -r name scene seconds <<<"$phase"
+    [ "$signal" = HUP ] && [ "$name" != sliding ] && [ -z "${THIMBLE_LONG:-}" ] && continue
+    trouble "$scene" "$seconds" send $signal
+    if [ "$name" = opening ] && [ ! -e report/report.json ]; then  # before any force
+      expect 0 '^(129|130|143)$' echo "$status"
+    else
+      left_well 130 stopped
+    fi
+    cell "SIG$signal" "$name, recording" "zero force, exit code 130, every tick recorded"
+  done
+done
+
+stand_still() {
+  kill -STOP "$1"
+  sleep 0.3
+  kill -CONT "$1"
+}
+for phase in "${phases[@]}"; do
+  read -r name scene seconds <<<"$phase"
+  [ "$name" = opening ] && continue  # a slow opening is no fault
+  trouble "$scene" "$seconds" stand_still
+  left_well 4 loop_stalled
+  expect 0 'the last seconds before the fault are in' cat out
+  cell "SIGSTOP, SIGCONT of the servo" "$name, recording" \
+    "zero force, loop_stalled, every tick recorded, black box"
+done
+
+# What stands beside the servo may stand still, go, or be taken away.
+if [ -d /dev/shm ]; then
+  segment=/dev/shm/thimble-$(id -u)-$me
+  "$thimble" run "$scenes/rubber.yaml" --clock wall --duration 4 --name "$me" --record watched.h5 \
+    >watched 2>&1 &
+  run=$!
+  for _ in $(seq 100); do [ -e "$segment" ] && break; sleep 0.05; done
+  "$thimble" view "$me" --text --follow >view.log 2>&1 &
+  viewer=$!
+  sleep 1
+  kill -STOP $viewer
+  sleep 1
+  kill -CONT $viewer
+  expect 0 '' rm "$segment"
+  wait $run
+  status=$?
+  expect 0 '^[04]$' echo "$status"
+  [ "$status" = 4 ] && expect 0 'loop_stalled|stood still' cat watched
+  expect 0 'left with zero force|the force is off' cat watched
+  expect 0 'ticks of rubber at 1000 Hz' "$thimble" export watched.h5 --csv watched.csv
+  kill $viewer 2>/dev/null
+  wait $viewer
+  expect 1 '' test $? -ge 132  # any end but a crash; 143 is the TERM above
+  cell "SIGSTOP, SIGCONT of the viewer" "sliding, recording" "the run goes on to its end"
+  expect 1 '' bash -c '"$0" view --list | grep "^$1:"' "$thimble" "$me"
+  expect 0 'the scene was over' "$thimble" run "$scenes/honey.yaml" --duration 0.1 --name "$me"
+  cell "shared memory removed" "sliding, recording" "the run goes on; the name is free again"
+else
+  not_tested "shared memory removed" sliding "no POSIX shared memory"
+fi
+
+# The disk. A file that may not grow is the same to a program, and anybody can make it so.
+expect 2 'cannot be written here' bash -c \
+  'ulimit -f 100; exec "$0" run "$1" --duration 60 --no-view --record small.h5' "$thimble" "$scenes/rubber.yaml"
+cell "file size limit" "opening" "refused with a sentence, no crash"
+expect 0 '' "$thimble" run "$scenes/rubber.yaml" --duration 1 --no-view --record good.h5
+expect 1 'full: cannot be written' "$thimble" export good.h5 --csv /dev/full
+cell "disk full" "table of a recording" "refused with a sentence"
+cat >on_full_disk.sh <<'END'
+mkdir -p disk
+mount -t tmpfs -o size=1m tmpfs disk || exit 77
+"$1" run "$2" --clock wall --duration 6 --no-view --record disk/run.h5 >full 2>&1
+echo "code $?"
+"$1" export disk/run.h5 --csv full.csv
+head -c 2m /dev/zero >disk/all 2>/dev/null
+"$1" run "$2" --duration 6 --no-view --record disk/second.h5
+echo "code $?"
+END
+if unshare -rm true 2>/dev/null; then
+  unshare -rm bash on_full_disk.sh "$thimble" "$scenes/rubber.yaml" >full_disk 2>&1
+  if [ $? = 77 ]; then
+    not_tested "disk full" recording "no file system in memory may be mounted"
+  else
+    expect 0 '^code [04]$' grep code full_disk
+    expect 0 'recording ends after [0-9]+ ticks: No space left' cat full
+    expect 0 'left with zero force|force is off' cat full
+    expect 0 'full.csv: [1-9][0-9]+ ticks of rubber.*cut off' cat full_disk
+    cell "disk full" "recording" "the touch goes on; what was written can be read; told"
+    expect 0 'second.h5: a recording cannot be written here' cat full_disk
+    expect 0 '^code 2$' tail -1 full_disk
+    cell "disk full" "opening" "refused with a sentence, no crash"
+  fi
+else
+  not_tested "disk full" recording "no namespaces of one's own"
+fi
+expect 0 '^0$' bash -c '"$0" run "$1" --duration 0.5 --no-view | true; echo ${PIPESTATUS[0]}' \
+  "$thimble" "$scenes/rubber.yaml"
+cell "reader of the output gone" "sliding" "the run goes on to its end"
+
+# Nothing of the servo looks at the date.
+jump=$(dirname "$work")/libclock_jump.so
+ends_well() {  # ends_well COMMAND...: a second on the wall clock, whatever the machine does
+  "$@" run "$scenes/rubber.yaml" --clock wall --duration 2 --no-view --report report >out 2>&1
+  status=$?
+  expect 0 '^[04]$' echo "$status"
+  [ "$status" = 0 ] || expect 0 loop_stalled cat report/report.json
+  expect 0 '"motor_current_A": -?0(\.0)?,?$' cat report/report.json
+}
+if [ -e "$jump" ]; then
+  ends_well env LD_PRELOAD="$jump" "$thimble"
+  # 2 s are 2000 ticks, less what the machine missed; a servo on the date would have millions, or none.
+  ticks=$(grep -oE '^  "ticks": [0-9]+' report/report.json | grep -oE '[0-9]+')
+  expect 0 '^yes$' echo "$([ "$ticks" -ge 20 ] && [ "$ticks" -le 2001 ] && echo yes || echo "$ticks ticks")"
+  cell "date jumps by a day and back" "sliding" "the servo does not notice"
+else
+  not_tested "date jumps by a day and back" sliding "no LD_PRELOAD beside a sanitizer"
+fi
+
+rt=(prlimit --rtprio=0)
+[ "$(id -u)" != 0 ] || rt=(setpriv --bounding-set=-sys_nice --inh-caps=-sys_nice prlimit --rtprio=0)
+if "${rt[@]}" true 2>/dev/null; then
+  ends_well "${rt[@]}" "$thimble"
+  expect 0 'Real-time scheduling was refused .*: add your user to a group' cat out
+  cell "real-time priority refused" "sliding" "told with what to do; the run goes on"
+else
+  not_tested "real-time priority refused" sliding "setpriv or prlimit cannot take it away"
+fi
+
+loops=()
+for _ in $(seq $((2 * $(nproc)))); do
+  timeout 20 bash -c 'while :; do :; done' &
+  loops+=($!)
+done
+ends_well "$thimble"
+kill "${loops[@]}"
+wait "${loops[@]}" 2>/dev/null
+cell "all processors busy" "sliding" "to its end, or off and named"
+
+finish

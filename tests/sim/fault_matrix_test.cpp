@@ -1,0 +1,178 @@
+// Every fault of cable, wiring and host, on every arm, in every phase of a touch: what is promised
+// (fault_promises.h) is held at the motors of the simulated arm, not in what the driver believes.
+// tests/FAULTS.md is the table of what was measured here.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <string>
+
+#include "sim/fault_promises.h"
+#include "sim/fault_rig.h"
+#include "support/fault_cell.h"
+#include "support/scratch.h"
+
+namespace thimble::fault_test {
+namespace {
+
+constexpr int kBefore = 260;  // ticks: the hand is where it shall be, and the soft start is over
+constexpr int kAfter = 180;   // ticks in which is watched what becomes of it
+
+/// Is what was seen of one cell.
+struct Seen {
+  std::int64_t off_after = 0;  ///< ms until the motors had no current, for good; -1: never
+  driver::Fault cause = driver::Fault::kNone;
+  bool named_late = false;  ///< the driver sent a force after it had named a cause
+};
+
+device_sim::WiringSettings wiring_of(const TestedFault& fault) {
+  device_sim::WiringSettings wiring;
+  if (fault.name == "dead encoder") wiring.encoder_gain[1] = 0;
+  if (fault.name == "encoder turned round") wiring.encoder_gain[1] = -1;
+  if (fault.name == "dead motor") wiring.motor_gain[1] = 0;
+  if (fault.name == "motor turned round") wiring.motor_gain[1] = -1;
+  if (fault.name == "two motors swapped") wiring.motor_of = {0, 2, 1};
+  return wiring;
+}
+
+std::string in_words(const Promised& promised) {
+  switch (promised.promise) {
+    case Promise::kOff:
+      return "off: " + std::string(name(promised.cause));
+    case Promise::kArmOff:
+      return "the arm switches off";
+    case Promise::kBound:
+      break;
+  }
+  return "within the limit";
+}
+
+void note(const TestedFault& fault, const TestedArm& arm, Phase phase, const Promised& promised,
+          const std::string& measured) {
+  support::record_fault(std::string(fault.name), std::string(arm.name),
+                        std::string(kPhaseNames[static_cast<std::size_t>(phase)]),
+                        in_words(promised), measured,
+                        promised.ticks > 0 ? std::to_string(promised.ticks) : "");
+}
+
+/// Lets the fault come and watches.
+Seen watch(FaultRig& rig, const TestedFault& fault) {
+  Seen seen;
+  const std::int64_t begin_ns = rig.watch().time_ns();
+  const bool dies = fault.name == "host dies";
+  if (fault.place == Place::kCable) {
+    rig.cable().order(*device_sim::usb::parse_fault(fault.order));
+  }
+  if (fault.name == "host stands still for 50 ms") rig.stall(50'000'000);
+  if (fault.name == "host stands still for 150 ms") rig.stall(150'000'000);
+  for (int i = 0; i < kAfter; ++i) {
+    const bool named = rig.device().fault() != driver::Fault::kNone;
+    if (dies) {
+      rig.pass_frame();
+    } else {
+      rig.tick(i == 0 && fault.name == "force law without a number");
+      seen.named_late |= named && rig.device().f_sent_W().norm() != 0;
+    }
+  }
+  const std::int64_t last_on_ns = rig.watch().last_on_ns();
+  if (last_on_ns > begin_ns) seen.off_after = (last_on_ns - begin_ns) / 1'000'000 + 1;
+  if (rig.motors() != 0) seen.off_after = -1;
+  seen.cause = rig.device().fault();
+  return seen;
+}
+
+std::string measured(const Seen& seen) {
+  const std::string ticks = seen.off_after < 0 ? "goes on" : std::to_string(seen.off_after);
+  return seen.cause == driver::Fault::kNone ? ticks : ticks + " " + std::string(name(seen.cause));
+}
+
+void check_opening(const TestedFault& fault, const TestedArm& arm) {
+  FaultRig rig(arm, Phase::kOpening, wiring_of(fault));
+  if (fault.place == Place::kCable) {
+    rig.cable().order(*device_sim::usb::parse_fault(fault.order));
+  }
+  const auto opened = rig.open();
+  if (const auto refused = refused_at_opening(fault.name, arm.kind)) {
+    EXPECT_EQ(!opened, *refused);
+  }
+  std::string what = "refused";
+  if (!opened) {
+    EXPECT_GT(opened.error().message.size(), 20U) << "a refusal tells what to do";
+  } else {
+    const Seen seen =
+        watch(rig, {fault.name, fault.place == Place::kHost ? Place::kHost : Place::kWiring, {}});
+    EXPECT_FALSE(seen.named_late);
+    what = "opened, " + measured(seen);
+    if (fault.name == "stall out") {
+      EXPECT_NE(seen.cause, driver::Fault::kNone) << "it was there from the start";
+    }
+  }
+  EXPECT_TRUE(rig.within_limit());
+  note(fault, arm, Phase::kOpening, {}, what);
+  // What is mended can be opened.
+  if (fault.place != Place::kCable) return;
+  rig.cable().heal();
+  for (int i = 0; i < 5; ++i) rig.pass_frame();
+  const auto again = rig.open();
+  ASSERT_TRUE(again) << again.error().message;
+  for (int i = 0; i < 30; ++i) rig.tick();
+  EXPECT_EQ(rig.device().fault(), driver::Fault::kNone) << "after it was mended";
+}
+
+void check_touch(const TestedFault& fault, const TestedArm& arm, Phase phase) {
+  FaultRig rig(arm, phase, wiring_of(fault));
+  const auto opened = rig.open();
+  ASSERT_TRUE(opened) << opened.error().message;
+  const bool recording = phase == Phase::kRecording;
+  if (recording) rig.record(support::scratch_folder() / "fault.h5");
+  for (int i = 0; i < kBefore; ++i) rig.tick();
+  if (fault.place != Place::kWiring) {
+    ASSERT_EQ(rig.device().fault(), driver::Fault::kNone);
+    ASSERT_EQ(rig.depth() > 0, phase != Phase::kFree) << "the phase is not what it should be";
+    ASSERT_EQ(rig.motors() > 0, phase != Phase::kFree);
+  }
+  const Promised promise = promised(fault.name, arm.kind);
+  const Seen seen = watch(rig, fault);
+
+  EXPECT_TRUE(rig.within_limit());
+  EXPECT_FALSE(seen.named_late) << "a force went out after its cause was named";
+  if (promise.promise != Promise::kBound) {
+    EXPECT_GE(seen.off_after, 0) << "the motors still pull";
+    EXPECT_LE(seen.off_after, promise.ticks);
+  }
+  if (promise.cause != driver::Fault::kNone) {
+    EXPECT_EQ(name(seen.cause), name(promise.cause));
+  }
+  if (recording) {
+    EXPECT_EQ(rig.recorded(), rig.ticks()) << "ticks are missing";
+  }
+  note(fault, arm, phase, promise, measured(seen));
+}
+
+class FaultMatrix : public testing::TestWithParam<TestedArm> {};
+
+TEST_P(FaultMatrix, KeepsWhatIsPromisedInEveryPhase) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  // Every cell once is the release build's business; what sanitizers find they find in a few.
+  const int every = std::getenv("THIMBLE_LONG") != nullptr ? 1 : 7;
+#else
+  const int every = 1;
+#endif
+  int cell = 0;
+  for (const TestedFault& fault : kTestedFaults) {
+    for (std::size_t phase = 0; phase < kPhaseNames.size(); ++phase) {
+      if (cell++ % every != 0) continue;
+      SCOPED_TRACE(std::string(fault.name) + ", " + std::string(kPhaseNames[phase]));
+      if (static_cast<Phase>(phase) == Phase::kOpening) {
+        check_opening(fault, GetParam());
+      } else {
+        check_touch(fault, GetParam(), static_cast<Phase>(phase));
+      }
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Arms, FaultMatrix, testing::ValuesIn(kTestedArms),
+                         [](const auto& param_info) { return std::string(param_info.param.name); });
+
+}  // namespace
+}  // namespace thimble::fault_test

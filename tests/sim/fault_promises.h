@@ -1,0 +1,116 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string_view>
+
+#include "sim/fault_rig.h"
+#include "thimble/driver/fault.h"
+
+namespace thimble::fault_test {
+
+/// Says what is promised of a fault.
+enum class Promise {
+  kOff,     ///< The driver sees it: the force goes off, stays off, and the cause is named.
+  kArmOff,  ///< The arm's own watchdog switches the motors off; the driver may not know.
+  kBound,   ///< It looks like a touch: every force stays within the arm's limit, and if it goes off
+            ///< it stays off, with its cause.
+};
+
+/// Says where a fault comes from.
+enum class Place { kCable, kWiring, kHost };
+
+/// Is one kind of fault.
+struct TestedFault {
+  std::string_view name;
+  Place place = Place::kCable;
+  std::string_view order;  ///< for the cable: device_sim/usb/usb_fault.h says how it reads
+};
+inline constexpr std::array<TestedFault, 27> kTestedFaults{{
+    {"stall in", Place::kCable, "stall in"},
+    {"stall out", Place::kCable, "stall out"},
+    {"short in", Place::kCable, "short in"},
+    {"short out", Place::kCable, "short out"},
+    {"long in", Place::kCable, "long in"},
+    {"long out", Place::kCable, "long out"},
+    {"torn in", Place::kCable, "torn in"},
+    {"torn out", Place::kCable, "torn out"},
+    {"stale in", Place::kCable, "stale in"},
+    {"stale out", Place::kCable, "stale out"},
+    {"duplicate in", Place::kCable, "duplicate in"},
+    {"duplicate out", Place::kCable, "duplicate out"},
+    {"silence in", Place::kCable, "silence in"},
+    {"silence out", Place::kCable, "silence out for=140"},
+    {"bit errors in, 1 in 1000", Place::kCable, "bit_errors in rate=0.001"},
+    {"bit errors in, 1 in 30", Place::kCable, "bit_errors in rate=0.03"},
+    {"bit errors out, 1 in 100", Place::kCable, "bit_errors out rate=0.01"},
+    {"unplug", Place::kCable, "unplug"},
+    {"dead encoder", Place::kWiring, {}},
+    {"encoder turned round", Place::kWiring, {}},
+    {"dead motor", Place::kWiring, {}},
+    {"motor turned round", Place::kWiring, {}},
+    {"two motors swapped", Place::kWiring, {}},
+    {"force law without a number", Place::kHost, {}},
+    {"host stands still for 50 ms", Place::kHost, {}},
+    {"host stands still for 150 ms", Place::kHost, {}},
+    {"host dies", Place::kHost, {}},
+}};
+
+/// Is what is promised, and in how many ms, which are ticks, the motors have no current.
+struct Promised {
+  Promise promise = Promise::kBound;
+  int ticks = 0;
+  driver::Fault cause = driver::Fault::kNone;  ///< kNone: any, or none
+};
+
+/// Finds what is promised of a fault that comes while an arm is touched.
+inline Promised promised(std::string_view fault, driver::ArmKind arm) {
+  using driver::Fault;
+  // 20 ms of silence, the tick that notices it, two frames until the zero has come.
+  constexpr int kNoticed = 24;
+  // The arm's watchdog of 100 ms after the last good message, whose way may take three frames.
+  constexpr int kWatchdog = 104;
+  const bool hid = arm == driver::ArmKind::kPolhem || arm == driver::ArmKind::kWoody;
+  const Promised unheard{Promise::kOff, kNoticed, Fault::kNoReports};
+  const Promised unknown{Promise::kArmOff, kWatchdog, Fault::kNone};
+  if (fault == "stall in" || fault == "short in" || fault == "silence in") return unheard;
+  if (fault == "long in" && hid) return unheard;  // babble; a stream skips what is no message
+  // Its reports are numbered, so that an old one is known.
+  if (fault == "stale in" && arm == driver::ArmKind::kWoody) return unheard;
+  if (!hid && (fault == "stall out" || fault == "short out" || fault == "silence out")) {
+    // An arm that speaks only when spoken to answers nothing to what it did not hear or understand,
+    // and its silence is noticed a tick before the messages count as refused.
+    return {Promise::kOff, kWatchdog, Fault::kNoReports};
+  }
+  if (fault == "stall out") return {Promise::kOff, kWatchdog, Fault::kRefused};
+  if (fault == "short out") return unknown;
+  if (fault == "long out" && hid) return unknown;
+  if (fault == "silence out") {
+    // A HID write waits for the arm, and the loop with it. The arm's watchdog switches the motors
+    // off meanwhile; when it takes messages again, after 140 ms, the one that waited moves them
+    // until the zero of the loop that stood still has come.
+    return {Promise::kOff, 140 + 3, Fault::kLoopStalled};
+  }
+  if (fault == "unplug") return {Promise::kOff, kWatchdog, Fault::kTransportLost};
+  if (fault == "force law without a number") return {Promise::kOff, 3, Fault::kForceNotFinite};
+  if (fault == "host stands still for 150 ms") {
+    return {Promise::kOff, kWatchdog, Fault::kLoopStalled};
+  }
+  if (fault == "host dies") return unknown;
+  return {};
+}
+
+/// Tells whether an arm with this fault cannot be opened at all; nothing if that is a matter of
+/// luck.
+inline std::optional<bool> refused_at_opening(std::string_view fault, driver::ArmKind arm) {
+  const bool hid = arm == driver::ArmKind::kPolhem || arm == driver::ArmKind::kWoody;
+  if (fault == "stall in" || fault == "short in" || fault == "silence in") return true;
+  if (fault == "unplug") return true;
+  if (fault == "bit errors in, 1 in 30") return std::nullopt;
+  if (fault == "long in") return hid;
+  // Without a first message there is no first answer.
+  if (fault == "stall out" || fault == "short out") return !hid;
+  return false;
+}
+
+}  // namespace thimble::fault_test

@@ -1,0 +1,216 @@
+#include "sim/fault_rig.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <vector>
+
+#include "energy_choice.h"
+#include "real_arm.h"
+#include "recording/read_recording.h"
+#include "scene_file.h"
+#include "support/line_arm.h"
+#include "support/scratch.h"
+#include "thimble/device_sim/usb/ftdi_chip.h"
+#include "thimble/device_sim/usb/hid_arm.h"
+#include "thimble/driver/arms/falcon/falcon_packet.h"
+#include "thimble/driver/arms/hfab/hfab_models.h"
+#include "thimble/driver/arms/woody/woody_report.h"
+
+namespace thimble::fault_test {
+namespace {
+
+namespace usb = device_sim::usb;
+using Eigen::Vector3d;
+
+// Soft enough that every arm carries it, so that all feel the same.
+constexpr std::string_view kPlane =
+    "  - {name: plate, plane: {normal: [0, 0, 1]}, stiffness: 300, damping: 1,\n"
+    "     effects: [{friction: bristle, coefficient: 0.5}]}\n";
+constexpr std::string_view kDent =
+    "  - {name: ball, mesh: soft_coarse.off, position: [0, 0, -0.04], stiffness: 60, damping: "
+    "0.5,\n"
+    "     contact: {tracker: offset},\n"
+    "     body: {dent: {mass: 0.002, stiffness: 30, neighbour_stiffness: 15, damping: 0.1,\n"
+    "                   region: whole, pull: 0.5}}}\n";
+
+app::Scene read(const TestedArm& tested, Phase phase) {
+  const auto folder = support::scratch_folder();
+  const auto source = std::filesystem::path(THIMBLE_SOURCE_DIR) / "app";
+  std::filesystem::copy_file(source / "scenes/soft_coarse.off", folder / "soft_coarse.off",
+                             std::filesystem::copy_options::skip_existing);
+  const auto arm = source / "arms" / (std::string(tested.file) + ".yaml");
+  std::ofstream(folder / "fault.yaml")
+      << "name: fault\narm: " << std::filesystem::relative(arm, folder).string()
+      << "\nduration: 1\nobjects:\n"
+      << (phase == Phase::kDeforming ? kDent : kPlane) << "hand: {path: [{t: 0, at: [0, 0, 0]}]}\n";
+  auto scene = app::read_scene(folder / "fault.yaml", {});
+  if (!scene) {
+    ADD_FAILURE() << scene.error().message;
+    return {};
+  }
+  return std::move(scene).value();
+}
+
+/// Plans the hand's way in the world: down in 0.15 s, unless it stays free, and from 0.2 s on to
+/// and fro at 0.2 m/s, unless it shall rest.
+std::vector<device_sim::HandPath::Point> hand_way(Phase phase, const app::ArmFile& file) {
+  constexpr double kStep = 0.005, kEnd = 2;  // s
+  std::vector<device_sim::HandPath::Point> points;
+  for (int i = 0; i * kStep <= kEnd; ++i) {
+    const double time = i * kStep;
+    const double share = std::min(time / 0.15, 1.0);
+    const bool down = phase != Phase::kFree;
+    Vector3d p_WH(0, 0, 0.02 - (down ? 0.028 : 0.0) * share * share * (3 - 2 * share));
+    if (phase != Phase::kContact && time > 0.2) {
+      p_WH.y() = 0.015 * std::sin(2 * std::numbers::pi * 2 * (time - 0.2));
+    }
+    points.push_back({time, file.R_WB.transpose() * (p_WH - file.p_WB)});
+  }
+  return points;
+}
+
+}  // namespace
+
+FaultRig::FaultRig(const TestedArm& tested, Phase phase, const device_sim::WiringSettings& wiring)
+    : tested_(tested), phase_(phase) {
+  // Reading a scene takes longer than a run of it.
+  static std::map<std::pair<std::string_view, bool>, app::Scene> read_before;
+  const std::pair key(tested.file, phase == Phase::kDeforming);
+  if (!read_before.contains(key)) read_before.emplace(key, read(tested, phase));
+  app::Scene& scene = read_before.at(key);
+  file_ = scene.arm;
+  file_.simulated.firmware.wiring = wiring;
+  file_.limits.soft_start = 0.05;  // what is tested is what comes after
+  auto objects = app::SceneObjects::build(scene);
+  if (!objects) {
+    ADD_FAILURE() << objects.error().message;
+    return;
+  }
+  objects_ = std::move(objects).value();
+  build_arm();
+  watch_.emplace(*arm_);
+  cable_.emplace(*watch_, 7);
+}
+
+FaultRig::~FaultRig() = default;
+
+void FaultRig::build_arm() {
+  device_sim::HandPath path(hand_way(phase_, file_));
+  driver::hfab::HfabModel model = file_.model;
+  model.fractional_counts = false;
+  if (tested_.kind == driver::ArmKind::kFalcon) {
+    auto falcon = usb::SimulatedFalcon::make(file_.simulated, std::move(path), {});
+    ASSERT_TRUE(falcon) << falcon.error().message;
+    falcon_ = std::move(falcon).value();
+    arm_ = &falcon_->on_bus();
+    return;
+  }
+  if (tested_.kind == driver::ArmKind::kHfabLine) {
+    own_arm_ =
+        std::make_unique<support::LineArm>(model, file_.simulated, std::move(path),
+                                           static_cast<driver::hfab::LineModel>(file_.board_model));
+  } else if (file_.shape == app::ArmShape::kPolhem) {
+    auto polhem = driver::hfab::polhem_model();
+    polhem.drives = file_.model.drives;
+    polhem.encoders = file_.model.encoders;
+    own_arm_ = std::make_unique<usb::HidArm>(usb::HidLayout::kPolhem, usb::UsbDescription(), polhem,
+                                             file_.simulated, std::move(path));
+  } else {
+    const auto layout = tested_.kind == driver::ArmKind::kWoody ? usb::HidLayout::kWoodenHaptics
+                                                                : usb::HidLayout::kPolhem;
+    own_arm_ = std::make_unique<usb::HidArm>(layout, usb::UsbDescription(), model, file_.simulated,
+                                             std::move(path));
+  }
+  arm_ = own_arm_.get();
+}
+
+support::BusWire::Way FaultRig::way() const {
+  support::BusWire::Way way;
+  switch (tested_.kind) {
+    case driver::ArmKind::kFalcon:
+      way.in = usb::FtdiChip::kInEndpoint;
+      way.out = usb::FtdiChip::kOutEndpoint;
+      way.framing = driver::falcon::kPacketFraming;
+      way.ftdi = true;
+      way.begin_ns = falcon_->begin_ns();
+      break;
+    case driver::ArmKind::kHfabLine:
+      way.out = support::LineArm::kOut;
+      way.framing = driver::hfab::kLineFraming;
+      break;
+    case driver::ArmKind::kWoody:
+      way.report_size = driver::woody::kReportSize;
+      break;
+    default:
+      way.report_size = driver::hfab::kReportSize;
+  }
+  return way;
+}
+
+driver::Result<void> FaultRig::open() {
+  auto device = driver::Device::open(std::make_unique<support::BusWire>(*cable_, clock_, way()),
+                                     app::make_arm(file_, tested_.kind),
+                                     {.R_WB = file_.R_WB,
+                                      .p_WB = file_.p_WB,
+                                      .limits = file_.limits,
+                                      .energy = app::energy_settings(file_, 1000, {}),
+                                      .velocity_corner_frequency = file_.velocity_corner_frequency},
+                                     clock_.now_ns());
+  if (!device) return device.error();
+  device_ = std::move(device).value();
+  return device_->activate();
+}
+
+void FaultRig::record(const std::filesystem::path& path) {
+  app::RecordingInfo info;
+  info.scene = "fault";
+  info.rate = 1000;
+  auto recorder = app::Recorder::open(path, info, 10'000);
+  ASSERT_TRUE(recorder) << recorder.error().message;
+  recorder_ = std::move(recorder).value();
+  recording_ = path;
+}
+
+std::uint64_t FaultRig::recorded() {
+  if (!recorder_) return 0;
+  EXPECT_TRUE(recorder_->finish());
+  recorder_.reset();
+  const auto recording = app::read_recording(recording_);
+  EXPECT_TRUE(recording) << recording.error().message;
+  return recording ? recording->ticks.size() : 0;
+}
+
+void FaultRig::tick(bool law_broken) {
+  clock_.sleep_until_ns((clock_.now_ns() / kPeriod_ns + 1) * kPeriod_ns);
+  const std::int64_t now_ns = clock_.now_ns();
+  const driver::DeviceState& state = device_->read(now_ns, now_ns);
+  driver::ForceCommand command = objects_->touch()(state);
+  depth_ = command.touch.in_contact ? command.touch.depth : 0;
+  if (law_broken) command.f_T_W.y() = std::numeric_limits<double>::quiet_NaN();
+  device_->write(command);
+  ++ticks_;
+  const double force = device_->f_sent_W().norm();
+  within_limit_ = within_limit_ && force <= file_.limits.force_max + 1e-9;  // false for NaN
+  if (recorder_) {
+    driver::TickRecord record;
+    record.tick = state.tick;
+    record.time_ns = state.time_ns;
+    record.stage = device_->stage();
+    record.fault = device_->fault();
+    (*recorder_)(record);
+  }
+}
+
+void FaultRig::pass_frame() {
+  clock_.sleep_until_ns((clock_.now_ns() / kPeriod_ns + 1) * kPeriod_ns);
+  const std::int64_t begin_ns = falcon_ ? falcon_->begin_ns() : 0;
+  cable_->advance_to(begin_ns + clock_.now_ns());
+}
+
+}  // namespace thimble::fault_test

@@ -1,0 +1,139 @@
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "arm_file.h"
+#include "recording/recorder.h"
+#include "scene_objects.h"
+#include "support/bus_wire.h"
+#include "thimble/device_sim/usb/simulated_falcon.h"
+#include "thimble/device_sim/usb/usb_arm.h"
+#include "thimble/device_sim/usb/usb_fault.h"
+#include "thimble/driver/clock.h"
+#include "thimble/driver/device.h"
+#include "thimble/driver/discovery.h"
+
+namespace thimble::fault_test {
+
+/// Is an arm as it comes, on its own wire.
+struct TestedArm {
+  std::string_view name;
+  std::string_view file;  ///< in app/arms
+  driver::ArmKind kind;   ///< what it speaks
+};
+inline constexpr std::array<TestedArm, 6> kTestedArms{{
+    {"vintage_phantom", "vintage_phantom", driver::ArmKind::kPolhem},
+    {"vintage_text", "vintage_phantom", driver::ArmKind::kHfabLine},
+    {"woodenhaptics", "woodenhaptics", driver::ArmKind::kWoody},
+    {"woodenhaptics_text", "woodenhaptics", driver::ArmKind::kHfabLine},
+    {"polhem", "polhem", driver::ArmKind::kPolhem},
+    {"falcon", "falcon", driver::ArmKind::kFalcon},
+}};
+
+/// Is what the arm is about when the fault comes.
+enum class Phase { kOpening, kFree, kContact, kSliding, kDeforming, kRecording };
+inline constexpr std::array<std::string_view, 6> kPhaseNames{"opening", "free",      "contact",
+                                                             "sliding", "deforming", "recording"};
+
+/// Watches the motors of an arm from frame to frame, whatever the host does meanwhile.
+class MotorWatch final : public device_sim::usb::UsbDevice {
+ public:
+  explicit MotorWatch(device_sim::usb::UsbArm& arm) noexcept : arm_(arm) {}
+
+  const device_sim::usb::UsbDescription& description() const noexcept override {
+    return arm_.description();
+  }
+  void advance_to(std::int64_t time_ns) noexcept override {
+    arm_.advance_to(time_ns);
+    time_ns_ = time_ns;
+    if (arm_.truth().currents.norm() != 0) last_on_ns_ = time_ns;
+  }
+  device_sim::usb::PacketResult control(const device_sim::usb::SetupPacket& setup,
+                                        std::span<std::byte> data) noexcept override {
+    return arm_.control(setup, data);
+  }
+  device_sim::usb::PacketResult in(std::uint8_t address,
+                                   std::span<std::byte> packet) noexcept override {
+    return arm_.in(address, packet);
+  }
+  device_sim::usb::PacketResult out(std::uint8_t address,
+                                    std::span<const std::byte> packet) noexcept override {
+    return arm_.out(address, packet);
+  }
+
+  /// Tells the time of the last frame, and of the last in which a current flowed, ns.
+  std::int64_t time_ns() const noexcept { return time_ns_; }
+  std::int64_t last_on_ns() const noexcept { return last_on_ns_; }
+
+ private:
+  device_sim::usb::UsbArm& arm_;
+  std::int64_t time_ns_ = 0;
+  std::int64_t last_on_ns_ = 0;
+};
+
+/// Is one arm with all between its hand and the force law: mechanics, board, a cable on which
+/// packets go wrong on demand, bus, driver, gate and a scene. Time is simulated.
+class FaultRig {
+ public:
+  static constexpr std::int64_t kPeriod_ns = 1'000'000;
+
+  /// Builds arm and scene; `wiring` says how the arm's encoders and motors are plugged in. Fails
+  /// the test if that cannot be done.
+  FaultRig(const TestedArm& tested, Phase phase, const device_sim::WiringSettings& wiring = {});
+  ~FaultRig();
+
+  /// Opens the arm and lets forces through.
+  driver::Result<void> open();
+  /// Begins to record what ticks do.
+  void record(const std::filesystem::path& path);
+  /// Ends the recording and tells how many ticks it holds.
+  std::uint64_t recorded();
+
+  /// Runs one tick, `law_broken` with a force law that answers with no number.
+  void tick(bool law_broken = false);
+  /// Lets a frame pass in which the host does nothing.
+  void pass_frame();
+  /// Lets the host stand still.
+  void stall(std::int64_t time_ns) { clock_.sleep_until_ns(clock_.now_ns() + time_ns); }
+
+  device_sim::usb::FaultyDevice& cable() { return *cable_; }
+  driver::Device& device() { return *device_; }
+  bool is_open() const { return device_ != nullptr; }
+  const app::ArmFile& file() const { return file_; }
+  /// Tells the current in all motors together: what is true, whatever the driver believes; A
+  /// (Falcon: motor values).
+  double motors() const { return arm_->truth().currents.norm(); }
+  const MotorWatch& watch() const { return *watch_; }
+  double depth() const { return depth_; }
+  std::uint64_t ticks() const { return ticks_; }
+  /// Tells whether all forces sent were finite and within the arm's limit.
+  bool within_limit() const { return within_limit_; }
+
+ private:
+  void build_arm();
+  support::BusWire::Way way() const;
+
+  TestedArm tested_;
+  Phase phase_;
+  app::ArmFile file_;
+  std::unique_ptr<app::SceneObjects> objects_;
+  driver::VirtualClock clock_;
+  std::unique_ptr<device_sim::usb::UsbArm> own_arm_;
+  std::unique_ptr<device_sim::usb::SimulatedFalcon> falcon_;
+  device_sim::usb::UsbArm* arm_ = nullptr;
+  std::optional<MotorWatch> watch_;
+  std::optional<device_sim::usb::FaultyDevice> cable_;
+  std::unique_ptr<driver::Device> device_;
+  std::unique_ptr<app::Recorder> recorder_;
+  std::filesystem::path recording_;
+  std::uint64_t ticks_ = 0;
+  double depth_ = 0;
+  bool within_limit_ = true;
+};
+
+}  // namespace thimble::fault_test

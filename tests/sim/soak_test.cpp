@@ -1,0 +1,203 @@
+// Every shipped scene under a hand that goes anywhere, for long: no fault, no number that is none,
+// no memory that grows, and the same bits again, on however many threads. THIMBLE_LONG: 10^8 ticks
+// in all (THIMBLE_SOAK_TICKS says another number).
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "resident_memory.h"
+#include "session.h"
+#include "support/random.h"
+#include "support/run_hash.h"
+
+namespace thimble {
+namespace {
+
+using Eigen::Vector3d;
+
+std::vector<std::string> shipped_scenes() {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(THIMBLE_SOURCE_DIR "/app/scenes")) {
+    const std::string name = entry.path().stem().string();
+    const bool scanned = name == "elephant";  // needs a mesh that is fetched
+    const bool there = std::filesystem::exists(THIMBLE_MESHES "/elephant.off");
+    if (entry.path().extension() == ".yaml" && (!scanned || there)) names.push_back(name);
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+/// Is what a scene did in its ticks.
+struct Soaked {
+  std::uint64_t ticks = 0;
+  std::uint64_t hash = 0;
+  std::uint64_t in_contact = 0;
+  driver::Fault fault = driver::Fault::kNone;
+  bool finite = true;
+  bool within_limit = true;
+  std::size_t memory_early = 0,
+              memory_late = 0;  ///< own pages after a tenth, and at the end, bytes
+};
+
+/// Leads the hand of a session to one place after the other, near where its scene is touched.
+class Wanderer {
+ public:
+  static constexpr std::uint64_t kTicksPerPlace = 300;
+
+  Wanderer(app::Session& session, std::uint64_t seed) : session_(session), random_(seed) {
+    for (const app::HandWaypoint& waypoint : session.scene().hand) places_.push_back(waypoint.p_W);
+  }
+  driver::ForceCommand operator()(const driver::DeviceState& state) noexcept {
+    if (state.tick % kTicksPerPlace == 0) {
+      const app::ArmFile& arm = session_.scene().arm;
+      const Vector3d place = places_[random_.bits() % places_.size()] + random_.in_box(0.012);
+      const Vector3d inside =
+          place.cwiseMax(0.9 * arm.workspace.min_W).cwiseMin(0.9 * arm.workspace.max_W);
+      session_.simulation()->hand().lead(arm.R_WB.transpose() * (inside - arm.p_WB));
+    }
+    return session_.touch()(state);
+  }
+
+ private:
+  app::Session& session_;
+  support::Random random_;
+  std::vector<Vector3d> places_;
+};
+
+/// Keeps what a scene did.
+class Witness {
+ public:
+  Witness(std::uint64_t ticks, double force_max) : early_(ticks / 10), force_max_(force_max) {}
+
+  void operator()(const driver::TickRecord& tick) noexcept {
+    hash_.add(tick);
+    soaked_.in_contact += tick.in_contact ? 1 : 0;
+    double square = 0;
+    for (const double f : tick.f_sent_W) square += f * f;
+    soaked_.finite = soaked_.finite && std::isfinite(square) && std::isfinite(tick.p_WT[0]);
+    soaked_.within_limit = soaked_.within_limit && std::sqrt(square) <= force_max_ + 1e-9;
+    if (tick.fault != driver::Fault::kNone) soaked_.fault = tick.fault;
+    if (++soaked_.ticks == early_) soaked_.memory_early = app::resident_memory().own;
+  }
+  Soaked close() {
+    soaked_.hash = hash_.value();
+    soaked_.memory_late = app::resident_memory().own;
+    return soaked_;
+  }
+
+ private:
+  std::uint64_t early_;
+  double force_max_;
+  support::RunHash hash_;
+  Soaked soaked_;
+};
+
+Soaked soak(const std::string& scene, std::uint64_t ticks) {
+  app::SessionOptions options;
+  options.mesh_folder = THIMBLE_MESHES;
+  options.hand_by_mouse = true;  // waits to be led
+  options.duration = 1;
+  auto opened = app::Session::open(
+      std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/scenes" / (scene + ".yaml"), options);
+  if (!opened) {
+    ADD_FAILURE() << opened.error().message;
+    return {};
+  }
+  app::Session& session = **opened;
+  Wanderer wanderer(session, 404);
+  Witness witness(ticks, session.scene().arm.limits.force_max);
+  driver::run_servo(session.device(), session.clock(), driver::ForceLaw(wanderer),
+                    driver::TickSink(witness), {.period_ns = session.period_ns(), .ticks = ticks},
+                    std::atomic<bool>{false});
+  return witness.close();
+}
+
+/// Soaks all scenes on so many threads.
+std::vector<Soaked> soak_all(const std::vector<std::string>& scenes, std::uint64_t ticks,
+                             unsigned threads) {
+  std::vector<Soaked> results(scenes.size());
+  std::atomic<std::size_t> next{0};
+  const auto work = [&] {
+    for (std::size_t i = next++; i < scenes.size(); i = next++) results[i] = soak(scenes[i], ticks);
+  };
+  std::vector<std::thread> team;
+  for (unsigned i = 1; i < threads; ++i) team.emplace_back(work);
+  work();
+  for (std::thread& one : team) one.join();
+  return results;
+}
+
+std::uint64_t hash_of(const std::vector<Soaked>& results) {
+  support::RunHash hash;
+  for (const Soaked& one : results) hash.add(one.hash);
+  return hash.value();
+}
+
+bool watched() {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  return true;
+#else
+  return false;
+#endif
+}
+
+std::uint64_t ticks_in_all() {
+  if (const char* const asked = std::getenv("THIMBLE_SOAK_TICKS"))
+    return std::strtoull(asked, nullptr, 10);
+  if (watched()) return 8'000;
+  return std::getenv("THIMBLE_LONG") != nullptr ? 100'000'000 : 140'000;
+}
+
+TEST(Soak, EverySceneOutlivesAHandThatGoesAnywhere) {
+  // Pages of the heap come and go; what grows with each tick would be far beyond this after 10^6.
+  constexpr std::size_t kGrowthMax = std::size_t{1} << 20;  // bytes
+  const auto scenes = shipped_scenes();
+  ASSERT_GE(scenes.size(), 13U);
+  const std::uint64_t ticks = ticks_in_all() / scenes.size();
+  const bool is_long = ticks > 100'000;
+  const unsigned threads = is_long ? std::max(1U, std::thread::hardware_concurrency()) : 1;
+  const auto results = soak_all(scenes, ticks, threads);
+  std::uint64_t in_contact = 0, done = 0;
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    SCOPED_TRACE(scenes[i]);
+    const Soaked& one = results[i];
+    EXPECT_EQ(one.ticks, ticks);
+    EXPECT_TRUE(one.finite);
+    EXPECT_TRUE(one.within_limit);
+    EXPECT_EQ(name(one.fault), name(driver::Fault::kNone));
+    if (!watched() && threads == 1) {  // a thread beside it opens another scene meanwhile
+      EXPECT_LE(one.memory_late, one.memory_early + kGrowthMax) << "memory grows with the ticks";
+    }
+    in_contact += one.in_contact;
+    done += one.ticks;
+  }
+  EXPECT_GT(in_contact, done / 20) << "hands that touch nothing say nothing";
+  std::printf(
+      "soaked: %llu ticks of %zu scenes on %u threads, %.0f %% in contact, hash %016llx, %.1f MB\n",
+      static_cast<unsigned long long>(done), scenes.size(), threads,
+      100.0 * static_cast<double>(in_contact) / static_cast<double>(done),
+      static_cast<unsigned long long>(hash_of(results)),
+      static_cast<double>(app::resident_memory().own) / 1e6);
+}
+
+TEST(Soak, GivesTheSameBitsOnAnyNumberOfThreads) {
+  const auto scenes = shipped_scenes();
+  const std::uint64_t ticks = watched() ? 100 : 2'000;
+  const auto alone = soak_all(scenes, ticks, 1);
+  const auto together = soak_all(scenes, ticks, 3);
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    EXPECT_EQ(alone[i].hash, together[i].hash) << scenes[i];
+  }
+  EXPECT_EQ(hash_of(alone), hash_of(together));
+}
+
+}  // namespace
+}  // namespace thimble
