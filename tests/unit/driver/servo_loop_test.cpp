@@ -96,6 +96,29 @@ TEST_F(ServoLoopTest, RunsItsTicksAtEvenTimesAndLeavesWithZeroForce) {
   EXPECT_EQ(device_->stage(), DeviceStage::kIdle);
 }
 
+TEST_F(ServoLoopTest, RunsTickByTickAndTellsItsEndAgainWithoutSendingMore) {
+  VirtualClock clock;
+  Records records(100);
+  auto law = [](const DeviceState&) noexcept {
+    return ForceCommand{.f_T_W = {1, 0, 0}, .touch = {}};
+  };
+  ServoLoop loop(*device_, clock, ForceLaw(law), TickSink(records), {.ticks = 3});
+  for (std::size_t tick = 1; tick <= 3; ++tick) {
+    EXPECT_EQ(loop.tick(stop_), std::nullopt);
+    ASSERT_EQ(records.rows.size(), tick);
+    EXPECT_EQ(records.rows.back().time_ns, static_cast<std::int64_t>(tick - 1) * 1'000'000);
+    EXPECT_EQ(device_->stage(), DeviceStage::kActive);
+  }
+  EXPECT_EQ(loop.tick(stop_), ServoEnd::kDone);
+  EXPECT_TRUE(ends_in_zero());
+  EXPECT_EQ(device_->stage(), DeviceStage::kIdle);
+  const std::size_t sent = wire_.to_arm.size();
+  stop_.store(true);
+  EXPECT_EQ(loop.tick(stop_), ServoEnd::kDone);
+  EXPECT_EQ(wire_.to_arm.size(), sent);
+  EXPECT_EQ(records.rows.size(), 3u);
+}
+
 TEST_F(ServoLoopTest, SkipsMissedTicksInsteadOfRunningThemInABurst) {
   LateClock clock;
   clock.late_at_ns = 5'000'000;
