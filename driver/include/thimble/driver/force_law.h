@@ -20,6 +20,7 @@ class ForceLaw {
           return (*static_cast<Law*>(self))(state);
         }) {}
 
+  /// Asks the law for the force of a tick. Real-time: safe if the law is.
   ForceCommand operator()(const DeviceState& state) const noexcept { return call_(law_, state); }
 
  private:

@@ -35,7 +35,7 @@ class SimulatedFalcon {
 
   /// Gives the hand, to be led or held by whoever lets time pass. Real-time: safe.
   Hand& hand() noexcept { return falcon_.hand(); }
-  const FalconOnUsb& arm() const noexcept { return falcon_; }
+  const FalconOnUsb& arm() const noexcept { return falcon_; }  ///< Shows the arm.
 
  private:
   SimulatedFalcon(const SimulatedArmSettings& settings, const HandPath& path, std::uint64_t seed);
