@@ -6,7 +6,7 @@
 The parts between the lines of "# %%" are cells for those who work in a notebook.
 """
 
-# %% Feel an elephant, and the same hand on a surface twice as soft: a force law of one's own, which
+# %% Feel a ball of rubber, and the same hand on a surface twice as soft: a force law of one's own, which
 # is asked in each tick of virtual time and may be any Python.
 import sys
 
@@ -14,8 +14,8 @@ import numpy as np
 
 import thimble
 
-touch = thimble.run("elephant")
-softer = thimble.run("elephant", law=lambda tick: 0.5 * tick.force_wanted)
+touch = thimble.run("rubber")
+softer = thimble.run("rubber", law=lambda tick: 0.5 * tick.force_wanted)
 print(touch.summary())
 
 # %% All is numpy: seconds, metres, newtons.
@@ -44,7 +44,7 @@ over_time.fill_between(
     touch.time, 0, 1, where=touch.in_contact, transform=over_time.get_xaxis_transform(),
     color=grey, alpha=0.12, linewidth=0, label="in contact",
 )
-over_time.set(xlabel="time, s", ylabel="force on the hand, N", title="An elephant under the hand")
+over_time.set(xlabel="time, s", ylabel="force on the hand, N", title="A rubber ball under the hand")
 over_time.set_xlim(0, touch.time[-1])
 over_time.legend(frameon=False, loc="upper right")
 

@@ -66,7 +66,7 @@ py::dtype tick_type() {
 
 /// Copies ticks into an array of Python's own.
 py::array array_of(std::span<const TickRecord> ticks) {
-  py::array array(tick_type(), {static_cast<py::ssize_t>(ticks.size())});
+  py::array array(tick_type(), static_cast<py::ssize_t>(ticks.size()));
   if (!ticks.empty()) std::memcpy(array.mutable_data(), ticks.data(), ticks.size_bytes());
   return array;
 }
