@@ -31,7 +31,7 @@ struct TickRecord {
   std::array<double, 3> f_sent_W{};        ///< N, what went through the gate and the current limits
   double depth = 0;                        ///< m
   std::int32_t feature = -1;               ///< active triangle
-  std::int16_t object = -1;                ///< which of the scene\'s objects
+  std::int16_t object = -1;                ///< which of the scene's objects
   std::uint16_t hops = 0;                  ///< triangles crossed in this tick
   std::uint16_t buttons = 0;               ///< one bit each; bit 0 is the arm's first
   bool in_contact = false;                 ///< the tip is held outside an object
