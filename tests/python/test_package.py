@@ -143,6 +143,17 @@ def test_nobody_is_surprised_by_a_real_arm():
         thimble.open("box", "WH02")
 
 
+def _python(script):
+    """Starts a Python that hears SIGINT even if the tests run in the background."""
+    return subprocess.Popen(
+        [sys.executable, "-c", script],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        text=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+    )
+
+
 @pytest.mark.parametrize("way_out", ["end", "exception", "SIGTERM", "SIGINT"])
 def test_every_way_out_of_python_ends_with_zero_force(way_out, tmp_path):
     record = tmp_path / "left.h5"
@@ -154,8 +165,7 @@ while live.tick is None or live.tick.time < 0.1: time.sleep(0.005)
 print("on", flush=True)
 {last}
 """
-    with subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, text=True,
-                          stderr=subprocess.DEVNULL) as python:
+    with _python(script) as python:
         assert python.stdout.readline() == "on\n"
         if way_out.startswith("SIG"):
             python.send_signal(getattr(signal, way_out))
@@ -174,7 +184,7 @@ try:
 except KeyboardInterrupt:
     print("interrupted", flush=True)
 """
-    with subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, text=True) as python:
+    with _python(script) as python:
         assert python.stdout.readline() == "on\n"
         time.sleep(0.3)
         python.send_signal(signal.SIGINT)
