@@ -22,7 +22,7 @@ print(touch.summary())
 force = np.linalg.norm(touch.force, axis=1)
 softer_force = np.linalg.norm(softer.force, axis=1)
 beginnings = np.flatnonzero(np.diff(touch.in_contact.astype(int)) == 1)
-print(f"{len(beginnings)} contacts; {force.max():.2f} N at most, {1e3 * touch.depth.max():.2f} mm deep.")
+print(f"Contacts: {len(beginnings)}; {force.max():.2f} N at most, {1e3 * touch.depth.max():.2f} mm deep.")
 print(f"Half the force lets the hand {1e3 * softer.depth.max():.2f} mm deep.")
 
 # %% Drawn, if matplotlib is installed.
@@ -46,7 +46,7 @@ over_time.fill_between(
 )
 over_time.set(xlabel="time, s", ylabel="force on the hand, N", title="A rubber ball under the hand")
 over_time.set_xlim(0, touch.time[-1])
-over_time.legend(frameon=False, loc="upper right")
+over_time.legend(frameon=False, loc="lower center", ncols=3)
 
 for run, strength, color in ((touch, force, blue), (softer, softer_force, orange)):
     felt = run.in_contact

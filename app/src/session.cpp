@@ -253,7 +253,7 @@ driver::Result<void> Session::set_law(driver::ForceLaw law) {
         "For that write it in C++ (app/examples/04_own_effect.cpp)."};
   }
   if (loop_) return driver::Error{"The run has begun with another force law; begin a new one."};
-  law_ = std::as_const(law);
+  law_ = law;
   return {};
 }
 

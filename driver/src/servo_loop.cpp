@@ -1,7 +1,5 @@
 #include "thimble/driver/servo_loop.h"
 
-#include <utility>
-
 namespace thimble::driver {
 namespace {
 
@@ -40,8 +38,8 @@ ServoLoop::ServoLoop(Device& device, Clock& clock, ForceLaw law, TickSink sink,
                      const ServoSettings& settings) noexcept
     : device_(device),
       clock_(clock),
-      law_(std::as_const(law)),
-      sink_(std::as_const(sink)),
+      law_(law),
+      sink_(sink),
       settings_(settings),
       due_ns_(clock.now_ns()),
       end_ns_(due_ns_ + static_cast<std::int64_t>(settings.ticks) * settings.period_ns) {}

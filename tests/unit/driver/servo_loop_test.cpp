@@ -119,6 +119,28 @@ TEST_F(ServoLoopTest, RunsTickByTickAndTellsItsEndAgainWithoutSendingMore) {
   EXPECT_EQ(records.rows.size(), 3u);
 }
 
+TEST_F(ServoLoopTest, CopiesALawAndASinkAsWhatTheyReferTo) {
+  auto law = [](const DeviceState&) noexcept {
+    return ForceCommand{.f_T_W = {1, 2, 3}, .touch = {}};
+  };
+  Records records(10);
+  std::optional<ForceLaw> copy;
+  std::optional<TickSink> sink_copy;
+  {
+    ForceLaw first(law);  // not const: a copy of it must not refer to it
+    ForceLaw second(first);
+    copy = second;
+    TickSink first_sink(records);
+    sink_copy = first_sink;
+    auto other = [](const DeviceState&) noexcept { return ForceCommand{}; };
+    first = ForceLaw(other);
+    second = ForceLaw(other);
+  }
+  EXPECT_EQ((*copy)(DeviceState{}).f_T_W, Eigen::Vector3d(1, 2, 3));
+  (*sink_copy)(TickRecord{});
+  EXPECT_EQ(records.rows.size(), 1u);
+}
+
 TEST_F(ServoLoopTest, SkipsMissedTicksInsteadOfRunningThemInABurst) {
   LateClock clock;
   clock.late_at_ns = 5'000'000;

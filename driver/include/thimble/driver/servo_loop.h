@@ -1,8 +1,10 @@
 #pragma once
 
 #include <atomic>
+#include <concepts>
 #include <cstdint>
 #include <optional>
+#include <type_traits>
 
 #include "thimble/driver/clock.h"
 #include "thimble/driver/device.h"
@@ -16,7 +18,8 @@ namespace thimble::driver {
 class TickSink {
  public:
   template <class Sink>
-  explicit TickSink(Sink& sink) noexcept
+  requires(!std::same_as<std::remove_const_t<Sink>, TickSink>)  // a copy is a copy
+      explicit TickSink(Sink& sink) noexcept
       : sink_(const_cast<void*>(static_cast<const void*>(&sink))),
         call_([](void* self, const TickRecord& record) noexcept {
           static_assert(noexcept((*static_cast<Sink*>(self))(record)),
