@@ -446,7 +446,7 @@ class Live(_Held):
 
     The servo loop runs in C++ on a thread of its own; Python looks on and can end it. Use it in a
     ``with``: at the end of it, at the end of the program, on Ctrl-C and SIGTERM the arm gets zero
-    force.
+    force. After a fault, or when the arm was pulled, the force stays off; open it anew.
     """
 
     def __init__(self, run: _core.Run) -> None:
