@@ -1,4 +1,4 @@
-# `cpack -G DEB` in the build folder: two Debian packages.
+# `cpack -G DEB` in the build folder: Debian packages.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME thimble)
 set(CPACK_PACKAGE_VENDOR "Thimble")
@@ -41,8 +41,28 @@ file and small numbered examples.")
 set(CPACK_DEBIAN_PROGRAM_DESCRIPTION "${CPACK_COMPONENT_PROGRAM_DESCRIPTION}")
 set(CPACK_DEBIAN_DEV_DESCRIPTION "${CPACK_COMPONENT_DEV_DESCRIPTION}")
 
+# Python's module, where it was built: for the Python that it was built with, and no other.
+set(packages thimble libthimble-dev)
+if(THIMBLE_HAS_PYTHON)
+  list(APPEND packages python3-thimble)
+  list(APPEND CPACK_COMPONENTS_ALL python)
+  set(CPACK_COMPONENT_PYTHON_GROUP python)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-thimble)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
+  math(EXPR python_next "${Python_VERSION_MINOR} + 1")
+  string(CONCAT CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "thimble (= ${PROJECT_VERSION}), python3-numpy, "
+         "python3 (>= 3.${Python_VERSION_MINOR}), python3 (<< 3.${python_next})")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-matplotlib")
+  set(CPACK_COMPONENT_PYTHON_DESCRIPTION
+"touch virtual objects from Python
+The scenes, simulated arms, recordings and studies of Thimble as numpy arrays:
+whole runs in virtual time, tick by tick, or watched in real time.")
+  set(CPACK_DEBIAN_PYTHON_DESCRIPTION "${CPACK_COMPONENT_PYTHON_DESCRIPTION}")
+endif()
+
 # What Debian wants of every package: its licence and its changes, and rules that udev reads anew.
-foreach(package thimble libthimble-dev)
+foreach(package ${packages})
   set(folder "${CMAKE_CURRENT_BINARY_DIR}/${package}")
   file(MAKE_DIRECTORY "${folder}")
   configure_file("${PROJECT_SOURCE_DIR}/LICENSE" "${folder}/copyright" COPYONLY)
@@ -56,6 +76,8 @@ foreach(package thimble libthimble-dev)
   execute_process(COMMAND gzip -9nf "${folder}/changelog")
   if(package STREQUAL thimble)
     set(component program)
+  elseif(package STREQUAL python3-thimble)
+    set(component python)
   else()
     set(component dev)
   endif()

@@ -3,6 +3,7 @@
 #include <optional>
 #include <utility>
 
+#include "file_options.h"
 #include "real_arm.h"
 
 namespace thimble::app {
@@ -10,9 +11,7 @@ namespace thimble::app {
 void ArmChoice::add_options(CLI::App& command) {
   command.add_option("--device", device, "Arm: sim, auto, or a name that `thimble devices` lists")
       ->capture_default_str();
-  command.add_option("--arm", arm_file, "Its arm file (app/arms)")
-      ->check(CLI::ExistingFile)
-      ->required();
+  add_arm_option(command, arm_file, "Its arm file (app/arms)")->required();
   command.add_option("--firmware", firmware, "Firmware image for an arm that needs one")
       ->check(CLI::ExistingFile);
 }

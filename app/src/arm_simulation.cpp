@@ -109,6 +109,14 @@ void ArmSimulation::settle(std::int64_t now_ns) noexcept {
   }
 }
 
+bool ArmSimulation::lead(const Eigen::Vector3d& p_WH) noexcept {
+  if (!p_WH.allFinite()) return false;
+  const Eigen::Vector3d p = p_WH.cwiseMax(file_.workspace.min_W).cwiseMin(file_.workspace.max_W);
+  if (!joint_angles_at(file_, p)) return false;
+  hand().lead(in_base(file_, p));
+  return true;
+}
+
 Eigen::Vector3d ArmSimulation::currents() const {
   return falcon_ ? falcon_->arm().truth().currents : board_arm_->firmware().currents();
 }

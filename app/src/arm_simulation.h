@@ -46,6 +46,11 @@ class ArmSimulation {
   /// Gives the hand, which thinks in the arm's base. On the thread that the arm lives on.
   /// Real-time: safe.
   device_sim::Hand& hand() noexcept { return falcon_ ? falcon_->hand() : board_arm_->hand(); }
+  /// Leads the hand to a point of the world (m) from now on, in place of its way: smoothly, as a
+  /// person's. A point beyond the workspace is drawn to its box; where the arm does not reach, the
+  /// hand stays where it was led last, and the answer is false. On the thread that the arm lives
+  /// on. Real-time: safe.
+  bool lead(const Eigen::Vector3d& p_WH) noexcept;
 
   /// Tells the currents that the motors are asked for, A (Falcon: 1000 motor values).
   Eigen::Vector3d currents() const;

@@ -7,13 +7,15 @@
 #include "commands.h"
 #include "complain.h"
 #include "figure.h"
+#include "file_options.h"
 #include "rate_bench.h"
+#include "shipped_files.h"
 
 namespace thimble::app {
 namespace {
 
 struct BenchOptions {
-  std::string scene = "app/scenes/elephant.yaml";
+  std::string scene = "elephant";
   std::vector<double> rates{1000, 4000, 8000};
   double seconds = 4;
   std::string out;
@@ -21,11 +23,12 @@ struct BenchOptions {
 };
 
 int run_bench(const BenchOptions& options) {
+  const auto scene = find_scene(options.scene);  // the default has not been looked for
+  if (!scene) return complain(scene.error(), kExitBadInput);
   std::vector<Figure> figures;
   std::string advice;
   for (const double rate : options.rates) {
-    const auto bench =
-        bench_rate(options.scene, rate, options.seconds, quality_named(options.quality));
+    const auto bench = bench_rate(*scene, rate, options.seconds, quality_named(options.quality));
     if (!bench) return complain(bench.error(), kExitBadInput);
     const RateVerdict verdict = verdict_of(*bench);
     std::printf("%5.0f Hz  %s\n", rate, verdict.sentence.c_str());
@@ -49,9 +52,7 @@ void add_bench_command(CLI::App& app, int& exit_code) {
   CLI::App* command =
       app.add_subcommand("bench", "Is this machine good enough for a scene at 1, 4 and 8 kHz?");
   auto options = std::make_shared<BenchOptions>();
-  command->add_option("SCENE", options->scene, "Scene file (YAML)")
-      ->check(CLI::ExistingFile)
-      ->capture_default_str();
+  add_scene_option(*command, options->scene)->capture_default_str();
   command->add_option("--rate", options->rates, "Ticks per second to try, Hz")
       ->check(CLI::Range(100, 50'000))
       ->capture_default_str();

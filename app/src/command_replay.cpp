@@ -10,6 +10,7 @@
 #include "build_info.h"
 #include "commands.h"
 #include "complain.h"
+#include "file_options.h"
 #include "meshes.h"
 #include "recording/read_recording.h"
 #include "recording/recording_file.h"
@@ -224,9 +225,8 @@ void add_replay_command(CLI::App& app, int& exit_code) {
   command->add_option("--frame", options->frame,
                       "Where a trajectory is told in: world, or the object whose mesh file has its "
                       "frame and unit");
-  command->add_option(
-      "--scene", options->scene,
-      "Scene to touch in place of the recorded one: what would this hand have felt?");
+  add_scene_option(*command, options->scene, "--scene",
+                   "Scene to touch in place of the recorded one: what would this hand have felt?");
   command->add_option("--record", options->record, "Recording of what is felt now to write");
   command->add_flag("--verify", options->verify,
                     "Fail unless scene and build are those of the recording and every force is the "

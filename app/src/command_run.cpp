@@ -9,11 +9,12 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "commands.h"
 #include "complain.h"
+#include "file_options.h"
 #include "interrupt.h"
-#include "lost_contacts.h"
 #include "meshes.h"
 #include "pictures.h"
 #include "quality.h"
@@ -22,8 +23,10 @@
 #include "replug_watch.h"
 #include "report.h"
 #include "session.h"
+#include "session_report.h"
 #include "share/request_desk.h"
 #include "share/viewer_process.h"
+#include "shipped_files.h"
 #include "thimble/driver/real_time.h"
 #include "thimble/render/mesh/save_mesh.h"
 #include "tuning.h"
@@ -103,37 +106,6 @@ driver::ServoEnd run_session(Session& session, ClockKind clock, driver::RealTime
   show_progress(session, ended, watch, desk);
   servo.join();
   return end;
-}
-
-RunReport report_of(const Session& session, ClockKind clock, driver::ServoEnd end,
-                    const driver::RealTimeGrant& grant) {
-  RunReport report;
-  report.scene = session.scene().name;
-  for (const SceneObject& object : session.scene().objects) {
-    report.object += (report.object.empty() ? "" : ", ") + object.name;
-  }
-  report.arm = session.scene().arm.name;
-  report.virtual_time = clock == ClockKind::kVirtual;
-  report.seed = session.seed();
-  report.rate_asked = session.scene().rate;
-  report.force_limit = session.scene().arm.limits.force_max;
-  report.triangles = session.triangles();
-  report.paging = session.paging();
-  report.statistics = session.statistics();
-  report.lost_contacts = count_lost_contacts(session.trace().rows(), session.touch());
-  report.wire = session.device().wire_counters();
-  report.gate = session.device().gate_counters();
-  report.energy_stage = session.device().gate().energy_stage();
-  report.reopen = session.device().gate().limits().reopen;
-  report.real_time = grant;
-  report.end = end;
-  report.fault = session.device().fault();
-  if (const auto* arm = session.simulation()) {
-    report.current_at_exit = arm->currents().cwiseAbs().maxCoeff();
-  }
-  report.trace_stride = session.trace().stride();
-  report.trace_dropped = session.trace().dropped();
-  return report;
 }
 
 /// Lets nobody be surprised by a force: asks before a real arm gets any.
@@ -261,7 +233,7 @@ int run_scene(const RunOptions& options) {
       std::printf("Recording: %s\n", path.c_str());
     }
   }
-  const RunReport report = report_of(session, session_options.clock, end, grant);
+  const RunReport report = report_of(session, end, grant);
   std::printf("%s", summary(report).c_str());
   if (!options.report.empty()) {
     const std::filesystem::path folder = options.report;
@@ -302,18 +274,41 @@ int run_scene(const RunOptions& options) {
   return kExitTrouble;
 }
 
+std::string first_sentence(const std::string& text) {
+  const std::size_t end = text.find(". ");
+  return end == std::string::npos ? text : text.substr(0, end + 1);
+}
+
+/// Prints what is known by name, and ends the program: there is nothing to run.
+void list_shipped() {
+  const auto print = [](const char* title, const std::vector<ShippedFile>& files) {
+    std::printf("%s:\n", title);
+    for (const ShippedFile& file : files) {
+      std::printf("  %-18s %s\n  %-18s   %s\n", file.name.c_str(), file.path.c_str(), "",
+                  first_sentence(description_of(file.path)).c_str());
+    }
+    if (files.empty()) std::printf("  none is known by name here; give the path of a file\n");
+  };
+  print("Scenes", shipped_scenes());
+  print("Arms", shipped_arms());
+  throw CLI::Success();
+}
+
 }  // namespace
 
 void add_run_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("run", "Touch a scene");
   auto options = std::make_shared<RunOptions>();
-  command->add_option("SCENE", options->scene, "Scene file (YAML)")->required();
+  add_scene_option(*command, options->scene)->required();
+  command
+      ->add_flag_callback("--list", list_shipped,
+                          "List the scenes and arms that are known by name, and end")
+      ->trigger_on_parse();
   command
       ->add_option("--device", options->device,
                    "Arm to use: sim, auto, or a name that `thimble devices` lists")
       ->capture_default_str();
-  command->add_option("--arm", options->arm_file, "Arm file in place of the scene's own")
-      ->check(CLI::ExistingFile);
+  add_arm_option(*command, options->arm_file, "Arm file in place of the scene's own");
   command->add_option("--firmware", options->firmware, "Firmware image for an arm that needs one")
       ->check(CLI::ExistingFile);
   command->add_flag("--yes", options->yes, "Give a real arm forces without asking");

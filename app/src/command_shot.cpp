@@ -6,6 +6,7 @@
 
 #include "commands.h"
 #include "complain.h"
+#include "file_options.h"
 #include "meshes.h"
 #include "view/offscreen_context.h"
 #include "view/picture_file.h"
@@ -122,7 +123,7 @@ int take_shot(const ShotOptions& options) {
 void add_shot_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("shot", "Draw a moment of a scene");
   auto options = std::make_shared<ShotOptions>();
-  command->add_option("SCENE", options->scene, "Scene file (YAML)")->required();
+  add_scene_option(*command, options->scene)->required();
   command->add_option("--out", options->out, "PNG file to write");
   command->add_option("--at", options->at, "Second to draw; when most is felt if absent")
       ->check(CLI::Range(0.0, 86400.0));
@@ -141,8 +142,7 @@ void add_shot_command(CLI::App& app, int& exit_code) {
                    "YAW PITCH [CLOSER]: degrees about z from the user, degrees above the horizon, "
                    "factor; framed by itself if absent")
       ->expected(2, 3);
-  command->add_option("--arm", options->arm_file, "Arm file in place of the scene's own")
-      ->check(CLI::ExistingFile);
+  add_arm_option(*command, options->arm_file, "Arm file in place of the scene's own");
   command->add_option("--shading", options->shading, "phong: per pixel; gouraud: per corner")
       ->check(CLI::IsMember({"phong", "gouraud"}))
       ->capture_default_str();

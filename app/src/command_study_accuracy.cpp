@@ -7,6 +7,7 @@
 #include "commands.h"
 #include "complain.h"
 #include "figure.h"
+#include "file_options.h"
 #include "study/accuracy/gating.h"
 #include "study/accuracy/study_accuracy.h"
 
@@ -66,7 +67,7 @@ void add_gating_study(CLI::App& study_command, int& exit_code) {
   CLI::App* command = study_command.add_subcommand(
       "gating", "which effects of the simulated arm a scene could do without, and what that saves");
   auto options = std::make_shared<GatingOptions>();
-  command->add_option("SCENE", options->scene, "Scene file (YAML)")->required();
+  add_scene_option(*command, options->scene)->required();
   command->add_option("--out", options->out, "Folder for gating.txt and figures.json")
       ->capture_default_str();
   command->add_flag("--no-count", options->no_count, "Do not count instructions");

@@ -5,6 +5,7 @@
 
 #include "commands.h"
 #include "complain.h"
+#include "file_options.h"
 #include "interrupt.h"
 #include "study/study_stability.h"
 #include "study/study_trouble.h"
@@ -71,9 +72,7 @@ void add_stability_study(CLI::App& study_command, int& exit_code) {
   auto options = std::make_shared<StabilityOptions>();
   choice->out = "study-stability";
   choice->add_options(*command);
-  command->add_option("--arm", options->arm_file, "Arm file (app/arms)")
-      ->check(CLI::ExistingFile)
-      ->required();
+  add_arm_option(*command, options->arm_file, "Arm file (app/arms)")->required();
   command->add_option("--rate", options->rate, "Ticks per second, Hz")
       ->check(CLI::Range(100, 20'000))
       ->capture_default_str();
@@ -102,9 +101,7 @@ void add_trouble_study(CLI::App& study_command, int& exit_code) {
   auto options = std::make_shared<TroubleOptions>();
   choice->out = "study-trouble";
   choice->add_options(*command);
-  command->add_option("--arm", options->arm_file, "Arm file (app/arms)")
-      ->check(CLI::ExistingFile)
-      ->required();
+  add_arm_option(*command, options->arm_file, "Arm file (app/arms)")->required();
   command->add_option("--count", options->count, "Scenes")
       ->check(CLI::Range(1, 100'000'000))
       ->capture_default_str();

@@ -8,6 +8,7 @@
 
 #include "commands.h"
 #include "complain.h"
+#include "file_options.h"
 #include "meshes.h"
 #include "thimble/driver/clock.h"
 #include "tuning.h"
@@ -74,9 +75,8 @@ void add_tune_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
       "tune", "Tell what stiffness, damping and friction this arm, loop and hand can carry");
   auto options = std::make_shared<TuneCommand>();
-  command->add_option("SCENE", options->scene, "Scene file (YAML)")->required();
-  command->add_option("--arm", options->arm_file, "Arm file in place of the scene's own")
-      ->check(CLI::ExistingFile);
+  add_scene_option(*command, options->scene)->required();
+  add_arm_option(*command, options->arm_file, "Arm file in place of the scene's own");
   command->add_option("--out", options->folder, "Folder for figures.json");
   CLI::Option* spread = command
                             ->add_option("--spread", options->spread_us,

@@ -219,17 +219,42 @@ driver::Result<void> Session::plan_simulation(const std::filesystem::path& scene
 }
 
 driver::ServoEnd Session::run(const std::atomic<bool>& stop) noexcept {
+  for (;;) {
+    if (const auto end = step(stop)) return *end;
+  }
+}
+
+std::optional<driver::ServoEnd> Session::step(const std::atomic<bool>& stop) noexcept {
+  if (!loop_) begin(stop);
+  const auto end = loop_->tick(stop);
+  if (!end || ended_) return end;
+  ended_ = true;
+  if (simulation_) simulation_->settle(clock_->now_ns());
+  if (shared_) shared_->set_state(RunState::kEnded);
+  return end;
+}
+
+void Session::begin(const std::atomic<bool>& stop) noexcept {
   if (shared_) {
     control_->join(*shared_, hand_by_mouse_, stop);
     shared_->set_state(RunState::kRunning);
   }
-  const driver::ServoEnd end = driver::run_servo(
-      *device_, *clock_, shared_ ? driver::ForceLaw(*control_) : driver::ForceLaw(touch()),
-      driver::TickSink(*this),
-      {.period_ns = period_ns_, .ticks = ticks_, .outlive_faults = !simulation_}, stop);
-  if (simulation_) simulation_->settle(clock_->now_ns());
-  if (shared_) shared_->set_state(RunState::kEnded);
-  return end;
+  const driver::ForceLaw own = shared_ ? driver::ForceLaw(*control_) : driver::ForceLaw(touch());
+  loop_.emplace(*device_, *clock_, law_.value_or(own), driver::TickSink(*this),
+                driver::ServoSettings{
+                    .period_ns = period_ns_, .ticks = ticks_, .outlive_faults = !simulation_});
+}
+
+driver::Result<void> Session::set_law(driver::ForceLaw law) {
+  if (by_thread_) {
+    return driver::Error{
+        "A force law of one's own runs in virtual time alone; in real time nothing may wait for "
+        "it. "
+        "For that write it in C++ (app/examples/04_own_effect.cpp)."};
+  }
+  if (loop_) return driver::Error{"The run has begun with another force law; begin a new one."};
+  law_ = law;
+  return {};
 }
 
 void Session::operator()(const driver::TickRecord& record) noexcept {

@@ -48,7 +48,7 @@ struct SessionOptions {
   bool hand_by_mouse =
       false;               ///< a viewer leads the simulated hand; the run ends when it is asked to
   std::string share_name;  ///< under which name; empty: the scene's, with a number if it is taken
-  std::function<void(Scene&)> adjust = {};   ///< changes the scene before anything is built of it
+  std::function<void(Scene&)> adjust = {};  ///< changes the scene before anything is built of it
 };
 
 /// Is one scene, loaded and joined: clock, simulated arm, wire, device, touch, and who keeps the
@@ -64,6 +64,20 @@ class Session {
   /// a fault; with a real arm the loop outlives faults with zero force, so that the arm can come
   /// back. In every case the arm is left with zero force.
   driver::ServoEnd run(const std::atomic<bool>& stop) noexcept;
+
+  /// Runs the next tick alone; `run` is nothing but all of them. Tells why there is none any more,
+  /// once the run is over. Always with the same `stop`. Real-time: safe.
+  std::optional<driver::ServoEnd> step(const std::atomic<bool>& stop) noexcept;
+
+  /// Puts a force law in place of the scene's, for the whole run; it may ask `touch` for the
+  /// scene's force. It must outlive the session. Fails unless time is virtual and no tick has run:
+  /// whoever writes one outside of this program may take his time, which on a real arm nobody has.
+  /// Real-time: never from the servo thread.
+  driver::Result<void> set_law(driver::ForceLaw law);
+
+  /// Leads the simulated hand from now on, in place of the scene's way (ArmSimulation::lead).
+  /// Precondition: the arm is simulated. Between two ticks. Real-time: safe.
+  bool lead_hand(const Eigen::Vector3d& p_WH) noexcept { return simulation_->lead(p_WH); }
 
   const Scene& scene() const { return scene_; }
   /// Gives the meshes of all objects in the world as one (m), for pictures: those that are touched,
@@ -108,6 +122,8 @@ class Session {
   render::TriangleMesh mesh_now(int object = -1) const { return objects_->mesh_now(object); }
   /// Gives what viewers see; nullptr if the run is not shared.
   SharedRun* shared() { return shared_.get(); }
+  /// Tells whether the run goes by the time of the world.
+  bool real_time() const { return by_thread_; }
   std::uint64_t seed() const { return seed_; }
   std::uint64_t ticks_planned() const { return ticks_; }
   std::int64_t period_ns() const { return period_ns_; }
@@ -123,6 +139,7 @@ class Session {
   };
 
   Session() = default;
+  void begin(const std::atomic<bool>& stop) noexcept;
   void store_poses(std::uint64_t tick) noexcept;
   void store_shapes() noexcept;
   driver::Result<void> share(const SessionOptions& options);
@@ -150,7 +167,10 @@ class Session {
   ScenePoses poses_now_;
   driver::Snapshot<ScenePoses> poses_;
   std::unique_ptr<SharedRun> shared_;
-  std::unique_ptr<LiveControl> control_;  // if it is shared
+  std::unique_ptr<LiveControl> control_;   // if it is shared
+  std::optional<driver::ForceLaw> law_;    // in place of the scene's
+  std::optional<driver::ServoLoop> loop_;  // since the first tick
+  bool ended_ = false;
   bool hand_by_mouse_ = false;
   std::vector<ShapedPlace> shaped_;  // the objects whose vertices move for good, if it is shared
 };

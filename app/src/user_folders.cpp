@@ -25,6 +25,10 @@ fs::path state_folder() {
   return folder("XDG_STATE_HOME", ".local/state");
 }
 
+fs::path data_folder() {
+  return folder("XDG_DATA_HOME", ".local/share");
+}
+
 std::string as_file_name(const std::string& name) {
   std::string safe = name;
   for (char& c : safe) {

@@ -13,6 +13,10 @@ std::filesystem::path config_folder();
 /// ~/.local/state/thimble [XDG Base Directory Specification].
 std::filesystem::path state_folder();
 
+/// Tells where a user's own scenes and arm files lie: $XDG_DATA_HOME/thimble, or
+/// ~/.local/share/thimble [XDG Base Directory Specification].
+std::filesystem::path data_folder();
+
 /// Turns any name into one that is safe as a file's: other signs than letters, digits, - and _
 /// become _.
 std::string as_file_name(const std::string& name);

@@ -34,37 +34,50 @@ TickRecord record_of(const DeviceState& state, const ForceCommand& command,
 
 }  // namespace
 
+ServoLoop::ServoLoop(Device& device, Clock& clock, ForceLaw law, TickSink sink,
+                     const ServoSettings& settings) noexcept
+    : device_(device),
+      clock_(clock),
+      law_(law),
+      sink_(sink),
+      settings_(settings),
+      due_ns_(clock.now_ns()),
+      end_ns_(due_ns_ + static_cast<std::int64_t>(settings.ticks) * settings.period_ns) {}
+
+std::optional<ServoEnd> ServoLoop::tick(const std::atomic<bool>& stop) noexcept {
+  if (end_) return end_;
+  if (settings_.ticks != 0 && due_ns_ >= end_ns_) return end_with(ServoEnd::kDone);
+  clock_.sleep_until_ns(due_ns_);
+  if (stop.load(std::memory_order_relaxed)) return end_with(ServoEnd::kStopped);
+  const std::int64_t now_ns = clock_.now_ns();
+  const DeviceState& state = device_.read(now_ns, now_ns);
+  const ForceCommand command = law_(state);
+  device_.write(command);
+
+  TickRecord record = record_of(state, command, device_);
+  record.due_ns = due_ns_;
+  record.work_ns = clock_.now_ns() - now_ns;
+  sink_(record);
+  if (device_.fault() != Fault::kNone && !settings_.outlive_faults) {
+    return end_with(ServoEnd::kFault);
+  }
+  due_ns_ += settings_.period_ns;
+  const std::int64_t late_ns = now_ns - due_ns_;
+  if (late_ns >= 0) due_ns_ += (late_ns / settings_.period_ns + 1) * settings_.period_ns;
+  return std::nullopt;
+}
+
+std::optional<ServoEnd> ServoLoop::end_with(ServoEnd end) noexcept {
+  device_.deactivate();
+  return end_ = end;
+}
+
 ServoEnd run_servo(Device& device, Clock& clock, ForceLaw law, TickSink sink,
                    const ServoSettings& settings, const std::atomic<bool>& stop) noexcept {
-  ServoEnd end = ServoEnd::kDone;
-  std::int64_t due_ns = clock.now_ns();
-  const std::int64_t end_ns =
-      due_ns + static_cast<std::int64_t>(settings.ticks) * settings.period_ns;
-  while (settings.ticks == 0 || due_ns < end_ns) {
-    clock.sleep_until_ns(due_ns);
-    if (stop.load(std::memory_order_relaxed)) {
-      end = ServoEnd::kStopped;
-      break;
-    }
-    const std::int64_t now_ns = clock.now_ns();
-    const DeviceState& state = device.read(now_ns, now_ns);
-    const ForceCommand command = law(state);
-    device.write(command);
-
-    TickRecord record = record_of(state, command, device);
-    record.due_ns = due_ns;
-    record.work_ns = clock.now_ns() - now_ns;
-    sink(record);
-    if (device.fault() != Fault::kNone && !settings.outlive_faults) {
-      end = ServoEnd::kFault;
-      break;
-    }
-    due_ns += settings.period_ns;
-    const std::int64_t late_ns = now_ns - due_ns;
-    if (late_ns >= 0) due_ns += (late_ns / settings.period_ns + 1) * settings.period_ns;
+  ServoLoop loop(device, clock, law, sink, settings);
+  for (;;) {
+    if (const auto end = loop.tick(stop)) return *end;
   }
-  device.deactivate();
-  return end;
 }
 
 }  // namespace thimble::driver

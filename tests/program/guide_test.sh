@@ -9,6 +9,15 @@ mkdir -p "$work/bin"
 ln -s "$program" "$work/bin/thimble"
 ln -s "$source/app" "$work/app"
 export PATH=$work/bin:$PATH
+# The Python package of this build, if it has one, with the Python that it is for.
+python=$(dirname "$program")/python
+if [ -d "$python/thimble" ] && /usr/bin/python3 -c 'import numpy' 2>/dev/null; then
+  ln -s /usr/bin/python3 "$work/bin/python3"
+  export PYTHONPATH=$python PYTHONDONTWRITEBYTECODE=1
+else
+  python=
+  echo "NOT TESTED: the guide's Python; the package was not built, or numpy is missing."
+fi
 cd "$work"
 
 pages=$(sed -n 's/^ *- .*: \(.*\.md\)$/\1/p' "$source/app/guide/mkdocs.yml")
@@ -17,9 +26,10 @@ for page in $pages; do
   while IFS= read -r line; do
     case $line in
       "thimble study "*) [ -n "${THIMBLE_LONG:-}" ] || continue ;;
+      "python3 "*) [ -n "$python" ] || continue ;;
     esac
     commands=$((commands + 1))
-    bash -c "$line" >said 2>&1 || {
+    bash -c "$line" >said 2>&1 || grep -q 'Without python3-matplotlib' said || {
       echo "FAILED: $page: $line" >&2
       cat said >&2
       exit 1
@@ -29,6 +39,14 @@ for page in $pages; do
 done
 [ "$commands" -ge 12 ] || { echo "FAILED: only $commands commands were found" >&2 && exit 1; }
 echo "$commands commands of $(wc -w <<<"$pages") pages ran."
+
+# What the guide writes in Python, all of it in one go.
+if [ -n "$python" ]; then
+  awk '/^```python$/ { inside = 1; next } /^```/ { inside = 0 } inside' \
+    "$source/app/guide/pages/python.md" >guide.py
+  [ "$(grep -c 'import thimble' guide.py)" -ge 5 ] || { echo "FAILED: the guide's Python is gone" >&2 && exit 1; }
+  python3 guide.py >said 2>&1 || { echo "FAILED: the guide's Python" >&2 && cat said >&2 && exit 1; }
+fi
 
 # The scene that the guide writes out is one.
 awk '/^```yaml$/ { inside = 1; next } /^```/ { inside = 0 } inside' \

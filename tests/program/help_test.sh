@@ -20,9 +20,9 @@ expect 0 '--out' "$thimble" study friction --help
 
 expect 2 'subcommand is required' "$thimble" touch
 expect 2 'SCENE is required' "$thimble" run
-expect 2 'clock' "$thimble" run scene.yaml --clock sundial
-expect 3 "No arm is called 'omni'" "$thimble" run scene.yaml --device omni
-expect 2 'duration' "$thimble" run scene.yaml --duration -1
-expect 2 'duration' "$thimble" run scene.yaml --duration nan
-expect 2 'seed' "$thimble" run scene.yaml --seed many
+expect 2 'clock' "$thimble" run box --clock sundial
+expect 3 "No arm is called 'omni'" "$thimble" run box --device omni
+expect 2 'duration' "$thimble" run box --duration -1
+expect 2 'duration' "$thimble" run box --duration nan
+expect 2 'seed' "$thimble" run box --seed many
 finish

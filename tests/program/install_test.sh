@@ -28,7 +28,7 @@ done
 
 echo "Looking at the installed program ..."
 program=$work/usr/bin/thimble
-"$program" run "$work/usr/share/thimble/scenes/soft_coarse.yaml" --duration 1 >"$work/log" ||
+"$program" run soft_coarse --arm vintage_phantom --duration 1 >"$work/log" ||
   fail "the installed program: $(cat "$work/log")"
 for command in $("$program" --help | sed -n '/^Subcommands:/,/^$/s/^  \([a-z][a-z-]*\).*/\1/p'); do
   zcat "$work/usr/share/man/man1/thimble.1.gz" | grep -q "^\.SS ${command//-/\\\\-}$" ||
@@ -42,10 +42,28 @@ completed=$(PATH=$work/usr/bin:$PATH bash -c '
   complete() { :; }
   . "$1"
   COMP_WORDS=(thimble ru) COMP_CWORD=1 && _thimble && echo "${COMPREPLY[*]}"
-  COMP_WORDS=(thimble run --dur) COMP_CWORD=2 && _thimble && echo "${COMPREPLY[*]}"' - \
+  COMP_WORDS=(thimble run --dur) COMP_CWORD=2 && _thimble && echo "${COMPREPLY[*]}"
+  COMP_WORDS=(thimble run eleph) COMP_CWORD=2 && _thimble && echo "${COMPREPLY[*]}"
+  COMP_WORDS=(thimble tune box --arm vint) COMP_CWORD=4 && _thimble && echo "${COMPREPLY[*]}"' - \
   "$work/usr/share/bash-completion/completions/thimble")
 [ "$completed" = "run
---duration" ] || fail "completion answered: $completed"
+--duration
+elephant
+vintage_phantom" ] || fail "completion answered: $completed"
+if [ ! -d "$work/usr/lib/python3" ]; then
+  echo "NOT TESTED: the Python package; it was not built."
+elif ! /usr/bin/python3 -c 'import numpy' 2>/dev/null; then
+  echo "NOT TESTED: the installed Python package; install python3-numpy."
+else
+  echo "Touching from the installed Python package ..."
+  PYTHONPATH=$work/usr/lib/python3/dist-packages /usr/bin/python3 -B "$examples/08_plot_a_touch.py" \
+    >"$work/log" 2>&1 || grep -q 'Without python3-matplotlib' "$work/log" || fail "$(cat "$work/log")"
+  grep -q 'Contacts: [1-9]' "$work/log" || fail "08_plot_a_touch.py: $(cat "$work/log")"
+  PYTHONPATH=$work/usr/lib/python3/dist-packages /usr/bin/python3 -B -c '
+import sys, thimble
+assert all(str(one.path).startswith(sys.argv[1]) for one in thimble.scenes()), thimble.scenes()
+assert thimble._program().startswith(sys.argv[1])' "$work/usr" || fail "the package uses files of another place"
+fi
 [ -f "$work/usr/lib/udev/rules.d/70-thimble.rules" ] || fail "no udev rules"
 PKG_CONFIG_PATH=$(dirname "$(find "$work/usr" -name thimble.pc)") pkg-config --cflags thimble >/dev/null ||
   fail "pkg-config does not find the libraries"

@@ -35,6 +35,10 @@ for file in usr/include/thimble/driver/safety_gate.h usr/lib/cmake/thimble/thimb
   holds "$development" "$file"
 done
 dpkg-deb --field "$program" Depends | grep -c libusb-1.0-0 >held || fail "$program does not ask for libusb"
+if python=$(ls "$work"/python3-thimble_*.deb 2>/dev/null); then
+  holds "$python" usr/lib/python3/dist-packages/thimble/__init__.py
+  holds "$python" 'usr/lib/python3/dist-packages/thimble/_core[^/]*\.so'
+fi
 if command -v lintian >/dev/null; then
   for package in "$work"/*.deb; do
     lintian --fail-on error "$package" 2>/dev/null || fail "lintian found errors in $package"

@@ -7,6 +7,7 @@
 #include "support/elephant.h"
 #include "support/hard_case.h"
 #include "support/run_hash.h"
+#include "support/shipped_scene.h"
 
 namespace thimble {
 namespace {
@@ -84,6 +85,43 @@ TEST(HardCase41, ScenesGiveTheBitsThatWereStoredAloneAndFourAtOnce) {
   support::record_hard_case(41,
                             std::to_string(runs) + " runs of three scenes, alone and four at once",
                             "== runs of other bits than those stored", others, 0, "1");
+}
+
+TEST(Determinism, SteppedTickByTickARunIsTheSame) {
+  const auto whole = support::open_shipped("honey");
+  const auto stepped = support::open_shipped("honey");
+  ASSERT_TRUE(whole && stepped);
+  const std::atomic<bool> stop{false};
+  EXPECT_EQ(whole->run(stop), driver::ServoEnd::kDone);
+  std::size_t ticks = 0;
+  while (!stepped->step(stop)) ++ticks;
+  EXPECT_EQ(stepped->step(stop), driver::ServoEnd::kDone);
+  ASSERT_EQ(stepped->trace().rows().size(), whole->trace().rows().size());
+  EXPECT_EQ(ticks, whole->trace().rows().size());
+  support::RunHash of_whole, of_stepped;
+  for (const auto& row : whole->trace().rows()) of_whole.add(row);
+  for (const auto& row : stepped->trace().rows()) of_stepped.add(row);
+  EXPECT_EQ(of_stepped.value(), of_whole.value());
+}
+
+TEST(Determinism, ALawFromOutsideRunsInVirtualTimeAlone) {
+  auto law = [](const driver::DeviceState&) noexcept {
+    return driver::ForceCommand{.f_T_W = {0, 0, 0.4}, .touch = {}};
+  };
+  const std::atomic<bool> stop{false};
+  const auto session = support::open_shipped("box");
+  ASSERT_TRUE(session);
+  ASSERT_TRUE(session->set_law(driver::ForceLaw(law)));
+  for (int tick = 0; tick < 300; ++tick) session->step(stop);
+  EXPECT_EQ(session->trace().rows().back().f_wanted_W, (std::array<double, 3>{0, 0, 0.4}));
+  EXPECT_FALSE(session->set_law(driver::ForceLaw(law))) << "it has begun";
+
+  app::SessionOptions in_real_time;
+  in_real_time.clock = app::ClockKind::kWall;
+  const auto real = app::Session::open(
+      std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/scenes/box.yaml", in_real_time);
+  ASSERT_TRUE(real);
+  EXPECT_FALSE((*real)->set_law(driver::ForceLaw(law)));
 }
 
 }  // namespace

@@ -9,11 +9,7 @@ namespace thimble::app {
 
 LiveControl::LiveControl(const Scene& scene, render::SceneTouch& touch, ArmSimulation* simulation,
                          bool real_time)
-    : scene_(scene),
-      touch_(touch),
-      simulation_(simulation),
-      real_time_(real_time),
-      knobs_(scene, touch) {
+    : touch_(touch), simulation_(simulation), real_time_(real_time), knobs_(scene, touch) {
   hand_.p_WH.fill(std::numeric_limits<double>::quiet_NaN());  // equals nothing that is asked for
 }
 
@@ -51,12 +47,7 @@ void LiveControl::lead_hand() noexcept {
   SharedHand asked;
   if (!shared_->hand(asked) || asked.p_WH == hand_.p_WH) return;
   hand_ = asked;
-  const WorkspaceBox& box = scene_.arm.workspace;
-  const Eigen::Vector3d p_WH =
-      Eigen::Map<const Eigen::Vector3d>(asked.p_WH.data()).cwiseMax(box.min_W).cwiseMin(box.max_W);
-  // Where the arm does not reach, the hand stays where it was led last.
-  if (!joint_angles_at(scene_.arm, p_WH)) return;
-  simulation_->hand().lead(scene_.arm.R_WB.transpose() * (p_WH - scene_.arm.p_WB));
+  simulation_->lead(Eigen::Map<const Eigen::Vector3d>(asked.p_WH.data()));
 }
 
 void LiveControl::wait_while_paused() noexcept {

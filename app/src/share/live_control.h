@@ -46,7 +46,6 @@ class LiveControl {
   void lead_hand() noexcept;
   void wait_while_paused() noexcept;
 
-  const Scene& scene_;
   render::SceneTouch& touch_;
   ArmSimulation* simulation_;
   bool real_time_;

@@ -96,6 +96,51 @@ TEST_F(ServoLoopTest, RunsItsTicksAtEvenTimesAndLeavesWithZeroForce) {
   EXPECT_EQ(device_->stage(), DeviceStage::kIdle);
 }
 
+TEST_F(ServoLoopTest, RunsTickByTickAndTellsItsEndAgainWithoutSendingMore) {
+  VirtualClock clock;
+  Records records(100);
+  auto law = [](const DeviceState&) noexcept {
+    return ForceCommand{.f_T_W = {1, 0, 0}, .touch = {}};
+  };
+  ServoLoop loop(*device_, clock, ForceLaw(law), TickSink(records), {.ticks = 3});
+  for (std::size_t tick = 1; tick <= 3; ++tick) {
+    EXPECT_EQ(loop.tick(stop_), std::nullopt);
+    ASSERT_EQ(records.rows.size(), tick);
+    EXPECT_EQ(records.rows.back().time_ns, static_cast<std::int64_t>(tick - 1) * 1'000'000);
+    EXPECT_EQ(device_->stage(), DeviceStage::kActive);
+  }
+  EXPECT_EQ(loop.tick(stop_), ServoEnd::kDone);
+  EXPECT_TRUE(ends_in_zero());
+  EXPECT_EQ(device_->stage(), DeviceStage::kIdle);
+  const std::size_t sent = wire_.to_arm.size();
+  stop_.store(true);
+  EXPECT_EQ(loop.tick(stop_), ServoEnd::kDone);
+  EXPECT_EQ(wire_.to_arm.size(), sent);
+  EXPECT_EQ(records.rows.size(), 3u);
+}
+
+TEST_F(ServoLoopTest, CopiesALawAndASinkAsWhatTheyReferTo) {
+  auto law = [](const DeviceState&) noexcept {
+    return ForceCommand{.f_T_W = {1, 2, 3}, .touch = {}};
+  };
+  Records records(10);
+  std::optional<ForceLaw> copy;
+  std::optional<TickSink> sink_copy;
+  {
+    ForceLaw first(law);  // not const: a copy of it must not refer to it
+    ForceLaw second(first);
+    copy = second;
+    TickSink first_sink(records);
+    sink_copy = first_sink;
+    auto other = [](const DeviceState&) noexcept { return ForceCommand{}; };
+    first = ForceLaw(other);
+    second = ForceLaw(other);
+  }
+  EXPECT_EQ((*copy)(DeviceState{}).f_T_W, Eigen::Vector3d(1, 2, 3));
+  (*sink_copy)(TickRecord{});
+  EXPECT_EQ(records.rows.size(), 1u);
+}
+
 TEST_F(ServoLoopTest, SkipsMissedTicksInsteadOfRunningThemInABurst) {
   LateClock clock;
   clock.late_at_ns = 5'000'000;

@@ -34,7 +34,7 @@ class Hand {
   /// Lets the hand stand still, or go on where it stood.
   void hold(bool still) noexcept;
 
-  const HandPath& path() const noexcept { return path_; }
+  const HandPath& path() const noexcept { return path_; }  ///< Shows the planned path.
 
  private:
   std::int64_t own_time_ns(std::int64_t time_ns) const noexcept {

@@ -22,7 +22,7 @@ class HandPath {
   /// Finds the wanted point (m) at a time (s). Fast when times asked for grow. Real-time: safe.
   Eigen::Vector3d at(double time) noexcept;
 
-  const std::vector<Point>& points() const noexcept { return points_; }
+  const std::vector<Point>& points() const noexcept { return points_; }  ///< Lists its points.
 
  private:
   std::vector<Point> points_;

@@ -62,7 +62,7 @@ struct FirmwareSettings {
   std::int64_t watchdog_ns = 100'000'000;
   /// A current beyond this counts as zero [S, DEVICES 1; the value is a guess].
   std::int16_t current_range_mA = 6000;
-  WiringSettings wiring;
+  WiringSettings wiring;  ///< Which lines are dead or swapped.
 };
 
 /// Describes the way between host and firmware.
@@ -73,11 +73,11 @@ struct WireSettings {
 
 /// Describes a whole simulated arm.
 struct SimulatedArmSettings {
-  PlantSettings plant;
-  HandSettings hand;
-  MotorSettings motors;
-  FirmwareSettings firmware;
-  WireSettings wire;
+  PlantSettings plant;        ///< Mass, friction and stops of the arm.
+  HandSettings hand;          ///< How the hand holds it.
+  MotorSettings motors;       ///< What the motors make of currents.
+  FirmwareSettings firmware;  ///< What the board does, and when it gives up.
+  WireSettings wire;          ///< How long messages are on their way.
 };
 
 }  // namespace thimble::device_sim

@@ -15,9 +15,9 @@ struct WireFrame {
   /// One byte more than any report has, so that what was too long stays recognisable as such.
   static constexpr std::size_t kCapacity = driver::kReportCapacity + 1;
 
-  std::int64_t due_ns = 0;  ///< When it arrives.
-  std::size_t size = 0;     ///< Bytes that count.
-  std::array<std::byte, kCapacity> bytes{};
+  std::int64_t due_ns = 0;                   ///< When it arrives.
+  std::size_t size = 0;                      ///< Bytes that count.
+  std::array<std::byte, kCapacity> bytes{};  ///< The first `size` count.
 
   /// Tells the bytes that count.
   std::span<const std::byte> content() const noexcept {
@@ -32,7 +32,7 @@ class WireQueue {
   /// Is how many frames may be in flight.
   static constexpr std::size_t kFrames = 256;
 
-  bool empty() const noexcept { return count_ == 0; }
+  bool empty() const noexcept { return count_ == 0; }  ///< Tells whether nothing waits.
 
   /// Tells the next frame to arrive. Precondition: not empty (the caller's duty; otherwise it is a
   /// frame of the past).

@@ -33,7 +33,7 @@ struct ArmPose {
 };
 
 /// Is one kind of arm: its wire format and its geometry, both pure functions with no state. The
-/// driver talks to every arm through it. Adding an arm means implementing it under arms/<name>/.
+/// driver talks to every arm through it. Adding an arm means implementing it under arms/NAME/.
 class Arm {
  public:
   Arm() = default;

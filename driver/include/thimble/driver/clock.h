@@ -42,7 +42,7 @@ class VirtualClock final : public Clock {
 /// second by default). The default of 60 us is 6 % of a 1 kHz tick.
 class WallClock final : public Clock {
  public:
-  static constexpr std::int64_t kDefaultSpin_ns = 60'000;
+  static constexpr std::int64_t kDefaultSpin_ns = 60'000;  ///< See above.
 
   /// Takes the length of the spin in ns; 0 sleeps only.
   explicit WallClock(std::int64_t spin_ns = kDefaultSpin_ns) noexcept;

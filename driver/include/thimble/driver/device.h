@@ -20,7 +20,7 @@ namespace thimble::driver {
 struct DeviceSettings {
   Eigen::Matrix3d R_WB = Eigen::Matrix3d::Identity();  ///< Rotation of the arm's base in the world.
   Eigen::Vector3d p_WB{0, 0, 0};                       ///< Position of the arm's base, m.
-  GateLimits limits;
+  GateLimits limits;                                   ///< Of force, rise and speed.
   EnergyGuardSettings energy{};                ///< Which energy stage the gate has; none: free.
   double velocity_corner_frequency = 0;        ///< Pole of the velocity estimate, Hz; 0: none.
   std::int64_t silence_limit_ns = 20'000'000;  ///< Silence of the arm that is a fault, ns (20
@@ -97,16 +97,19 @@ class Device {
   /// any thread. Real-time: safe.
   void ask_to_activate() noexcept { activation_asked_.store(true, std::memory_order_release); }
 
-  DeviceStage stage() const noexcept;
+  DeviceStage stage() const noexcept;  ///< Tells where it is in its life. Real-time: safe.
   /// Tells whether the wire is lost and waits for an offer. Real-time: safe.
   bool lost() const noexcept { return lost_; }
-  Fault fault() const noexcept { return gate_.fault(); }
+  Fault fault() const noexcept { return gate_.fault(); }  ///< Names what switched the force off.
+  /// Shows what was read last. Real-time: safe.
   const DeviceState& state() const noexcept { return state_; }
   /// Tells the force that was sent in the last tick, N in the world.
   const Eigen::Vector3d& f_sent_W() const noexcept { return f_sent_W_; }
+  /// Counts what came over the wire. Real-time: safe.
   const WireCounters& wire_counters() const noexcept { return wire_; }
+  /// Counts what the gate did. Real-time: safe.
   const GateCounters& gate_counters() const noexcept { return gate_.counters(); }
-  const SafetyGate& gate() const noexcept { return gate_; }
+  const SafetyGate& gate() const noexcept { return gate_; }  ///< Shows the gate. Real-time: safe.
 
  private:
   Device(std::unique_ptr<Transport> transport, std::unique_ptr<const Arm> arm,

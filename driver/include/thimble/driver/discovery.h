@@ -21,14 +21,14 @@ enum class ArmKind : std::uint8_t {
 
 /// Is one arm that is plugged in.
 struct FoundArm {
-  ArmKind kind = ArmKind::kUnsupported;
-  std::string arm;      ///< What it is ("WoodenHaptics").
-  std::string bus;      ///< How it is reached ("USB HID").
-  std::string address;  ///< Where it is plugged in ("bus 1, device 4").
-  std::uint16_t vendor_id = 0;
-  std::uint16_t product_id = 0;
-  std::string serial;           ///< Serial number; empty if the arm tells none.
-  UsbAddress usb;               ///< Bus and device number.
+  ArmKind kind = ArmKind::kUnsupported;  ///< How it is reached, and its language.
+  std::string arm;                       ///< What it is ("WoodenHaptics").
+  std::string bus;                       ///< How it is reached ("USB HID").
+  std::string address;                   ///< Where it is plugged in ("bus 1, device 4").
+  std::uint16_t vendor_id = 0;           ///< USB's, of the maker.
+  std::uint16_t product_id = 0;          ///< The maker's.
+  std::string serial;                    ///< Serial number; empty if the arm tells none.
+  UsbAddress usb;                        ///< Bus and device number.
   std::string node;             ///< What a program opens ("/dev/hidraw3"); empty if there is none.
   std::filesystem::path sysfs;  ///< The kernel's folder about it.
   bool accessible = false;      ///< This user may open the node.

@@ -14,7 +14,7 @@ enum class EnergyStage : std::uint8_t {
 
 /// Sets the energy stage of a gate.
 struct EnergyGuardSettings {
-  EnergyStage stage = EnergyStage::kNone;
+  EnergyStage stage = EnergyStage::kNone;  ///< Which one, if any.
   double mass = 0;       ///< Least apparent mass at the tip, kg. Passivity: must be > 0.
   double allowance = 0;  ///< Energy that may go out before the controller acts, J. Must be >= 0.
   /// Most energy that is kept to one's credit, J; passivity: must be > 0. Without an end to it an
@@ -25,7 +25,7 @@ struct EnergyGuardSettings {
   double onset = 0;
   double slope = 0;     ///< c1 of the bound, N/m. Bounding: must be > 0; 2 b / T makes it passive.
   int delay_ticks = 0;  ///< Ticks from sampling to force beyond the hold, 0 to kDelayMost.
-  static constexpr int kDelayMost = 15;
+  static constexpr int kDelayMost = 15;  ///< Most ticks of delay that it can count.
 };
 
 /// Says what happened at the motors since the tick before; the device books it.

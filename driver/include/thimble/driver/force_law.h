@@ -1,5 +1,8 @@
 #pragma once
 
+#include <concepts>
+#include <type_traits>
+
 #include "thimble/driver/device_state.h"
 #include "thimble/driver/force_command.h"
 
@@ -12,7 +15,8 @@ namespace thimble::driver {
 class ForceLaw {
  public:
   template <class Law>
-  explicit ForceLaw(Law& law) noexcept
+  requires(!std::same_as<std::remove_const_t<Law>, ForceLaw>)  // a copy is a copy
+      explicit ForceLaw(Law& law) noexcept
       : law_(const_cast<void*>(static_cast<const void*>(&law))),
         call_([](void* self, const DeviceState& state) noexcept -> ForceCommand {
           static_assert(noexcept((*static_cast<Law*>(self))(state)),
@@ -20,6 +24,7 @@ class ForceLaw {
           return (*static_cast<Law*>(self))(state);
         }) {}
 
+  /// Asks the law for the force of a tick. Real-time: safe if the law is.
   ForceCommand operator()(const DeviceState& state) const noexcept { return call_(law_, state); }
 
  private:

@@ -11,8 +11,8 @@ namespace thimble::driver {
 
 /// Says how messages stand out of a stream of bytes: by their first and last byte.
 struct Framing {
-  std::byte begin{};
-  std::byte end{};
+  std::byte begin{};         ///< First byte of a message.
+  std::byte end{};           ///< Last byte of a message.
   std::size_t size_max = 0;  ///< Longest message with both, at most kReportCapacity.
 };
 

@@ -22,9 +22,9 @@ struct JointEncoder {
 /// All functions are Real-time: safe.
 template <class Geometry>
 struct JointModel {
-  Geometry geometry;
-  std::array<MotorDrive, 3> drives;
-  std::array<JointEncoder, 3> encoders;
+  Geometry geometry;                     ///< Links and home pose.
+  std::array<MotorDrive, 3> drives;      ///< Motors.
+  std::array<JointEncoder, 3> encoders;  ///< Encoders.
 
   /// Tells the joint angle of one encoder step, rad.
   double step(std::size_t joint) const noexcept {

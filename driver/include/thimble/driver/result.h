@@ -12,7 +12,7 @@ namespace thimble::driver {
 /// `message` is one or two full sentences, ready to print ("No access to 1234:0006: install
 /// udev/70-thimble.rules and replug the arm.").
 struct Error {
-  std::string message;
+  std::string message;  ///< See above.
 };
 
 /// Holds a value or the Error that explains why there is none; for set-up paths only.
@@ -25,18 +25,18 @@ class [[nodiscard]] Result {
   Result(T value) : content_(std::in_place_index<0>, std::move(value)) {}      // NOLINT
   Result(Error error) : content_(std::in_place_index<1>, std::move(error)) {}  // NOLINT
 
-  bool ok() const { return content_.index() == 0; }
-  explicit operator bool() const { return ok(); }
+  bool ok() const { return content_.index() == 0; }  ///< Tells whether there is a value.
+  explicit operator bool() const { return ok(); }    ///< As `ok`.
 
-  T& value() & { return std::get<0>(content_); }
-  const T& value() const& { return std::get<0>(content_); }
-  T&& value() && { return std::get<0>(std::move(content_)); }
-  const Error& error() const { return std::get<1>(content_); }
+  T& value() & { return std::get<0>(content_); }                ///< Gives the value.
+  const T& value() const& { return std::get<0>(content_); }     ///< Gives the value.
+  T&& value() && { return std::get<0>(std::move(content_)); }   ///< Gives the value.
+  const Error& error() const { return std::get<1>(content_); }  ///< Gives the error.
 
-  T* operator->() { return &value(); }
-  const T* operator->() const { return &value(); }
-  T& operator*() & { return value(); }
-  const T& operator*() const& { return value(); }
+  T* operator->() { return &value(); }              ///< As `value`.
+  const T* operator->() const { return &value(); }  ///< As `value`.
+  T& operator*() & { return value(); }              ///< As `value`.
+  const T& operator*() const& { return value(); }   ///< As `value`.
 
  private:
   std::variant<T, Error> content_;
@@ -49,9 +49,9 @@ class [[nodiscard]] Result<void> {
   Result() = default;
   Result(Error error) : error_(std::move(error)) {}  // NOLINT
 
-  bool ok() const { return !error_.has_value(); }
-  explicit operator bool() const { return ok(); }
-  const Error& error() const { return error_.value(); }
+  bool ok() const { return !error_.has_value(); }        ///< Tells whether it worked.
+  explicit operator bool() const { return ok(); }        ///< As `ok`.
+  const Error& error() const { return error_.value(); }  ///< Gives the error.
 
  private:
   std::optional<Error> error_;

@@ -76,10 +76,10 @@ class SafetyGate {
   /// Latches a fault that somebody else found; the first one stays.
   void trip(Fault fault) noexcept;
 
-  Fault fault() const noexcept { return fault_; }
+  Fault fault() const noexcept { return fault_; }  ///< Names what switched the force off.
   const GateCounters& counters() const noexcept { return counters_; }
-  const GateLimits& limits() const noexcept { return limits_; }
-  EnergyStage energy_stage() const noexcept { return energy_.stage; }
+  const GateLimits& limits() const noexcept { return limits_; }        ///< Tells its limits.
+  EnergyStage energy_stage() const noexcept { return energy_.stage; }  ///< Names its energy stage.
   /// Tells the energy on the observer's account, J.
   double energy() const noexcept { return observer_.energy(); }
 

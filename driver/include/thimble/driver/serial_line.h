@@ -21,8 +21,8 @@ class SerialLine {
   virtual bool set_rate_divisor(std::uint16_t divisor) = 0;
   /// Sets 8 data bits, no parity, 1 stop bit, no flow control.
   virtual bool set_frame_8n1() = 0;
-  virtual bool set_rts(bool high) = 0;
-  virtual bool set_dtr(bool high) = 0;
+  virtual bool set_rts(bool high) = 0;  ///< Sets the line RTS.
+  virtual bool set_dtr(bool high) = 0;  ///< Sets the line DTR.
   /// Sets how long the converter keeps bytes back before it sends a packet that is not full, ms.
   virtual bool set_latency_ms(std::uint8_t latency_ms) = 0;
   /// Forgets every byte in the converter, both ways.

@@ -1,7 +1,10 @@
 #pragma once
 
 #include <atomic>
+#include <concepts>
 #include <cstdint>
+#include <optional>
+#include <type_traits>
 
 #include "thimble/driver/clock.h"
 #include "thimble/driver/device.h"
@@ -15,7 +18,8 @@ namespace thimble::driver {
 class TickSink {
  public:
   template <class Sink>
-  explicit TickSink(Sink& sink) noexcept
+  requires(!std::same_as<std::remove_const_t<Sink>, TickSink>)  // a copy is a copy
+      explicit TickSink(Sink& sink) noexcept
       : sink_(const_cast<void*>(static_cast<const void*>(&sink))),
         call_([](void* self, const TickRecord& record) noexcept {
           static_assert(noexcept((*static_cast<Sink*>(self))(record)),
@@ -23,6 +27,7 @@ class TickSink {
           (*static_cast<Sink*>(self))(record);
         }) {}
 
+  /// Hands over the record of a tick. Real-time: safe if the sink is.
   void operator()(const TickRecord& record) const noexcept { call_(sink_, record); }
 
  private:
@@ -46,11 +51,39 @@ enum class ServoEnd : std::uint8_t {
   kFault,    ///< The device reported a fault; `Device::fault` names it.
 };
 
-/// Runs one force law on one device: wait, read, ask the law, write, tell the sink; and so on until
-/// the periods are used up, `stop` is set, or the device is in fault. Leaves the device idle (or in
-/// fault) with zero force sent.
+/// Is a servo loop, tick by tick, for whoever has something to do of his own between two ticks of
+/// virtual time. `run_servo` is nothing but all its ticks.
 ///
-/// Ticks are due at fixed times; after a gap the missed ones are skipped, not run in a burst.
+/// Each tick: wait, read, ask the law, write, tell the sink. Ticks are due at fixed times; after a
+/// gap the missed ones are skipped, not run in a burst. Used by one thread.
+class ServoLoop {
+ public:
+  /// Takes an activated device and what it runs with, all of which must outlive the loop. The first
+  /// tick is due now. Real-time: safe.
+  ServoLoop(Device& device, Clock& clock, ForceLaw law, TickSink sink,
+            const ServoSettings& settings) noexcept;
+
+  /// Runs the next tick. Tells why there is none any more, once the periods are used up, `stop` is
+  /// set, or this tick ended in a fault; then the device has been left idle (or in fault) with zero
+  /// force sent, and later calls do nothing but tell the same. Real-time: safe; waits until the
+  /// tick is due.
+  std::optional<ServoEnd> tick(const std::atomic<bool>& stop) noexcept;
+
+ private:
+  std::optional<ServoEnd> end_with(ServoEnd end) noexcept;
+
+  Device& device_;
+  Clock& clock_;
+  ForceLaw law_;
+  TickSink sink_;
+  ServoSettings settings_;
+  std::int64_t due_ns_;
+  std::int64_t end_ns_;
+  std::optional<ServoEnd> end_;
+};
+
+/// Runs one force law on one device until the periods are used up, `stop` is set, or the device is
+/// in fault. Leaves the device idle (or in fault) with zero force sent.
 /// Real-time: safe; it is the servo thread.
 ServoEnd run_servo(Device& device, Clock& clock, ForceLaw law, TickSink sink,
                    const ServoSettings& settings, const std::atomic<bool>& stop) noexcept;

@@ -53,7 +53,7 @@ class StreamTransport : public Transport {
   /// Sends bytes.
   virtual TransportStatus put(std::span<const std::byte> bytes) noexcept = 0;
 
-  FrameFinder& finder() noexcept { return finder_; }
+  FrameFinder& finder() noexcept { return finder_; }  ///< Shows what finds messages.
 
  private:
   bool awaiting() const noexcept { return spoken_ && finder_.found() == found_before_; }

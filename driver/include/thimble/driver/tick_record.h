@@ -17,27 +17,27 @@ enum class DeviceStage : std::uint8_t {
 /// Holds everything one tick did, as plain numbers: what the snapshot shows, the recorder keeps and
 /// reports are made of. Trivially copyable. Frames: W world, T tip, P proxy.
 struct TickRecord {
-  std::uint64_t tick = 0;
+  std::uint64_t tick = 0;    ///< number of the tick, from 0; gaps are ticks that were missed
   std::int64_t time_ns = 0;  ///< When the tick began, on the loop's clock.
   std::int64_t due_ns = 0;   ///< When it should have begun.
   std::int64_t work_ns = 0;  ///< From wake-up to write, on the loop's clock (0 in virtual time).
-  std::array<std::int32_t, 3> counts{};
-  std::array<double, 3> q{};           ///< rad
-  std::array<double, 3> p_WT{};        ///< m
-  std::array<double, 3> v_WT{};        ///< m/s
-  std::array<double, 3> p_WP{};        ///< m
-  std::array<double, 3> n_W{};         ///< unit normal
-  std::array<double, 3> f_wanted_W{};  ///< N, what the force law asked for
-  std::array<double, 3> f_sent_W{};    ///< N, what went through the gate and the current limits
-  double depth = 0;                    ///< m
-  std::int32_t feature = -1;           ///< active triangle
-  std::int16_t object = -1;   ///< which of the scene\'s objects
-  std::uint16_t hops = 0;
-  std::uint16_t buttons = 0;
-  bool in_contact = false;
-  bool fresh = false;
-  DeviceStage stage = DeviceStage::kIdle;
-  Fault fault = Fault::kNone;
+  std::array<std::int32_t, 3> counts{};    ///< of the encoders, as they came over the wire
+  std::array<double, 3> q{};               ///< rad
+  std::array<double, 3> p_WT{};            ///< m
+  std::array<double, 3> v_WT{};            ///< m/s
+  std::array<double, 3> p_WP{};            ///< m
+  std::array<double, 3> n_W{};             ///< unit normal
+  std::array<double, 3> f_wanted_W{};      ///< N, what the force law asked for
+  std::array<double, 3> f_sent_W{};        ///< N, what went through the gate and the current limits
+  double depth = 0;                        ///< m
+  std::int32_t feature = -1;               ///< active triangle
+  std::int16_t object = -1;                ///< which of the scene's objects
+  std::uint16_t hops = 0;                  ///< triangles crossed in this tick
+  std::uint16_t buttons = 0;               ///< one bit each; bit 0 is the arm's first
+  bool in_contact = false;                 ///< the tip is held outside an object
+  bool fresh = false;                      ///< a new report came for this tick
+  DeviceStage stage = DeviceStage::kIdle;  ///< of the device, after the tick
+  Fault fault = Fault::kNone;              ///< that keeps the force off
 };
 
 }  // namespace thimble::driver

@@ -16,7 +16,7 @@ enum class TransportStatus : std::uint8_t {
 
 /// Says how a read ended and how much of the buffer it filled.
 struct TransportRead {
-  TransportStatus status = TransportStatus::kNothing;
+  TransportStatus status = TransportStatus::kNothing;  ///< What became of the read.
   std::size_t size = 0;       ///< Bytes of the newest report, 0 unless `status` is kOk.
   std::uint32_t skipped = 0;  ///< Older reports that were dropped in favour of the newest.
 };

@@ -35,8 +35,8 @@ Result<std::unique_ptr<Transport>> open_serial_transport(const std::string& node
 
 /// Is where the kernel put a USB device.
 struct UsbAddress {
-  int bus = 0;
-  int device = 0;
+  int bus = 0;     ///< Number of the bus.
+  int device = 0;  ///< Number of the device on it.
 };
 
 /// Is an arm behind an FTDI converter: a serial line for the set-up, then a transport.

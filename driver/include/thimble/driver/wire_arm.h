@@ -49,6 +49,7 @@ class WireArm final : public Arm {
 
   const std::array<MotorDrive, 3>& drives() const noexcept override { return model_.drives; }
 
+  /// Tells geometry, motors and encoders. Real-time: safe.
   const JointModel<Geometry>& model() const noexcept { return model_; }
 
  private:

@@ -19,8 +19,8 @@ namespace thimble::render {
 /// Says how the surface of one object feels: its spring, and the effects a scene puts on it in the
 /// order in which a tick runs them.
 struct SurfaceChoice {
-  SpringDamper spring;
-  std::vector<EffectPlan> effects = {};
+  SpringDamper spring;                    ///< Of the surface.
+  std::vector<EffectPlan> effects = {};   ///< What is put on it.
   std::optional<DentSettings> dent = {};  ///< Of a mesh in memory; others are stiff.
   ShapeChoice shape = {};                 ///< Of a mesh in memory: how its base points move.
 };

@@ -37,11 +37,11 @@ inline constexpr std::array<std::string_view, 3> kNormalNames{"angle", "round", 
 /// Is how one object is touched. What is left empty is chosen to go with the tracker: `compact` and
 /// `offset` are smooth (phong, curved depth), the others are flat.
 struct ContactChoice {
-  TrackerChoice tracker = TrackerChoice::kEdgePlanes;
-  std::optional<SearchChoice> search = {};  ///< If empty, what suits the mesh (make_search).
-  std::optional<BlendingChoice> blending = {};
-  std::optional<NormalWeights> normals = {};  ///< Of the corners; fitted if empty. Not with
-                                              ///< `compact`, which knows means by angle only.
+  TrackerChoice tracker = TrackerChoice::kEdgePlanes;  ///< How it is followed.
+  std::optional<SearchChoice> search = {};      ///< If empty, what suits the mesh (make_search).
+  std::optional<BlendingChoice> blending = {};  ///< Which normal is felt; or as suits.
+  std::optional<NormalWeights> normals = {};    ///< Of the corners; fitted if empty. Not with
+                                                ///< `compact`, which knows means by angle only.
   /// Depth below the smooth surface instead of the triangles.
   std::optional<bool> curved_depth = {};
   std::optional<double> crease_angle = {};  ///< Edges sharper than this stay sharp, rad.

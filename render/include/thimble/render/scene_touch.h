@@ -65,9 +65,9 @@ class SceneTouch {
     return lost;
   }
 
-  std::size_t size() const noexcept { return objects_.size(); }
-  const ObjectTouch& object(std::size_t i) const noexcept { return *objects_[i]; }
-  ObjectTouch& object(std::size_t i) noexcept { return *objects_[i]; }
+  std::size_t size() const noexcept { return objects_.size(); }  ///< Tells how many there are.
+  const ObjectTouch& object(std::size_t i) const noexcept { return *objects_[i]; }  ///< Shows one.
+  ObjectTouch& object(std::size_t i) noexcept { return *objects_[i]; }              ///< Gives one.
 
  private:
   std::vector<std::unique_ptr<ObjectTouch>> objects_;

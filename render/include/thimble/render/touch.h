@@ -23,6 +23,7 @@ class Touch {
   Touch(Contact contact, Stages... stages)
       : contact_(std::move(contact)), stages_(std::move(stages)...) {}
 
+  /// Finds the force of the object on the hand in this tick. Real-time: safe.
   driver::ForceCommand operator()(const driver::DeviceState& state) noexcept {
     driver::ForceCommand command;
     const ContactState& contact = contact_.update(state);

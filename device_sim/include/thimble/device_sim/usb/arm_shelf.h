@@ -22,16 +22,16 @@ enum class HandMotion : std::uint8_t {
 
 /// Says how an arm from the shelf is to be.
 struct ShelfOptions {
-  HandMotion motion = HandMotion::kTap;
-  std::string serial = "SIM0001";
-  std::uint64_t seed = 0;
-  std::vector<std::byte> firmware;  ///< The only image that a Falcon runs; empty: any.
+  HandMotion motion = HandMotion::kTap;  ///< What the hand does.
+  std::string serial = "SIM0001";        ///< Serial number that it tells.
+  std::uint64_t seed = 0;                ///< Of everything random.
+  std::vector<std::byte> firmware;       ///< The only image that a Falcon runs; empty: any.
 };
 
 /// Lists the arms that can be plugged in: name for the command line, and what it is.
 struct ShelfEntry {
-  std::string_view name;
-  std::string_view what;
+  std::string_view name;  ///< For the command line.
+  std::string_view what;  ///< What it is, for people.
 };
 inline constexpr std::array<ShelfEntry, 4> kShelf{{
     {"woodenhaptics", "WoodenHaptics, HID 1234:0006, 8-byte reports"},

@@ -51,14 +51,16 @@ class FalconBoard final : public SerialBoard {
   /// Switches the motors off if no packet came for the watchdog's time.
   void watch(std::int64_t time_ns) noexcept;
 
-  Stage stage() const noexcept { return stage_; }
+  Stage stage() const noexcept { return stage_; }  ///< Tells what it waits for.
   /// Tells whether firmware runs.
   bool running() const noexcept { return running_; }
   /// Tells how many bytes of firmware came.
   std::size_t uploaded() const noexcept { return uploaded_; }
+  /// Shows the last message of the host.
   const driver::falcon::HostPacket& asked() const noexcept { return asked_; }
+  /// Shows the last message to the host.
   const driver::falcon::ArmPacket& answered() const noexcept { return answered_; }
-  bool motors_on() const noexcept { return motors_on_; }
+  bool motors_on() const noexcept { return motors_on_; }  ///< Tells whether it has them on.
   const FalconCounters& counters() const noexcept { return counters_; }
 
  private:

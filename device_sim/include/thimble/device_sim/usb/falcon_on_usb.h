@@ -38,8 +38,8 @@ class FalconOnUsb final : public UsbArm {
   ArmTruth truth() const noexcept override;
 
   // For tests. Real-time: safe.
-  const FalconBoard& board() const noexcept { return board_; }
-  const FtdiChip& chip() const noexcept { return chip_; }
+  const FalconBoard& board() const noexcept { return board_; }  ///< Shows its board.
+  const FtdiChip& chip() const noexcept { return chip_; }       ///< Shows its converter.
   const DeltaPlant& plant() const noexcept { return plant_; }
 
  private:

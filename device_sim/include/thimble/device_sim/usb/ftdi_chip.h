@@ -12,11 +12,12 @@ namespace thimble::device_sim::usb {
 /// Is a queue of bytes of fixed capacity; what does not fit is lost and counted. Real-time: safe.
 class ByteQueue {
  public:
-  static constexpr std::size_t kCapacity = 1024;
+  static constexpr std::size_t kCapacity = 1024;  ///< Bytes.
 
-  std::size_t size() const noexcept { return size_; }
-  std::uint64_t lost() const noexcept { return lost_; }
-  void clear() noexcept { size_ = 0; }
+  std::size_t size() const noexcept { return size_; }    ///< Tells the bytes that wait.
+  std::uint64_t lost() const noexcept { return lost_; }  ///< Counts bytes without room.
+  void clear() noexcept { size_ = 0; }                   ///< Drops all that waits.
+  /// Lets a byte wait; counts it as lost if there is no room.
   void push(std::byte byte) noexcept {
     if (size_ == kCapacity) {
       ++lost_;
@@ -61,9 +62,9 @@ class SerialBoard {
 /// at are lost, as noise would be.
 class FtdiChip {
  public:
-  static constexpr std::uint8_t kInEndpoint = 0x81;
-  static constexpr std::uint8_t kOutEndpoint = 0x02;
-  static constexpr std::size_t kStatusBytes = 2;
+  static constexpr std::uint8_t kInEndpoint = 0x81;       ///< To the host.
+  static constexpr std::uint8_t kOutEndpoint = 0x02;      ///< From the host.
+  static constexpr std::size_t kStatusBytes = 2;          ///< Before the data of each packet.
   static constexpr std::uint8_t kLatencyDefault_ms = 16;  ///< After power-on [S ftdi_sio].
 
   /// Keeps a reference to the board, which must live longer.
@@ -71,9 +72,11 @@ class FtdiChip {
 
   // All functions are Real-time: safe.
 
+  /// Answers a control request of the host.
   PacketResult control(const SetupPacket& setup, std::span<std::byte> data) noexcept;
   /// Fills a packet if the latency timer is over or 62 bytes wait.
   PacketResult in(std::int64_t time_ns, std::span<std::byte> packet) noexcept;
+  /// Takes a packet of the host for the serial line.
   PacketResult out(std::span<const std::byte> packet) noexcept;
 
   /// Tells how long the line needs for what the host sent and may go within `dt_ns`, ns; 0 if
@@ -83,6 +86,7 @@ class FtdiChip {
   /// comes in `dt_ns`.
   void deliver(std::int64_t dt_ns) noexcept;
 
+  /// Tells the latency timer as the host set it, ms.
   std::uint8_t latency_ms() const noexcept { return latency_ms_; }
   /// Tells the line's rate as the host set it, baud.
   double rate() const noexcept;

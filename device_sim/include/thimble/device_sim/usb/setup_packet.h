@@ -9,10 +9,10 @@ namespace thimble::device_sim::usb {
 /// Is the eight bytes that begin every control transfer [USB 2.0, 9.3].
 struct SetupPacket {
   std::uint8_t request_type = 0;  ///< Bit 7: towards the host; bits 5-6: kind; bits 0-4: recipient.
-  std::uint8_t request = 0;
-  std::uint16_t value = 0;
-  std::uint16_t index = 0;
-  std::uint16_t length = 0;  ///< Bytes of the data stage.
+  std::uint8_t request = 0;       ///< What is asked.
+  std::uint16_t value = 0;        ///< What it is asked with.
+  std::uint16_t index = 0;        ///< Of which interface or endpoint.
+  std::uint16_t length = 0;       ///< Bytes of the data stage.
 
   friend bool operator==(const SetupPacket&, const SetupPacket&) = default;
 

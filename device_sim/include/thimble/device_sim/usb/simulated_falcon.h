@@ -35,11 +35,11 @@ class SimulatedFalcon {
 
   /// Gives the hand, to be led or held by whoever lets time pass. Real-time: safe.
   Hand& hand() noexcept { return falcon_.hand(); }
-  const FalconOnUsb& arm() const noexcept { return falcon_; }
   /// Gives the arm to another bus than `wire` makes, and tells the arm's own time (ns) at which its
   /// hand begins. Real-time: safe.
   UsbArm& on_bus() noexcept { return falcon_; }
   std::int64_t begin_ns() const noexcept { return begin_ns_; }
+  const FalconOnUsb& arm() const noexcept { return falcon_; }  ///< Shows the arm.
 
  private:
   SimulatedFalcon(const SimulatedArmSettings& settings, const HandPath& path, std::uint64_t seed);

@@ -14,26 +14,26 @@ enum class TransferKind : std::uint8_t { kBulk = 2, kInterrupt = 3 };
 /// Describes one endpoint besides the control pipe.
 struct EndpointDescription {
   std::uint8_t address = 0;  ///< Number, with bit 7 set if it sends to the host.
-  TransferKind kind = TransferKind::kInterrupt;
-  std::uint16_t packet_size = 64;  ///< Bytes; at most 64 at full speed.
-  std::uint8_t interval = 0;       ///< Frames between two polls of an interrupt endpoint.
+  TransferKind kind = TransferKind::kInterrupt;  ///< How it carries packets.
+  std::uint16_t packet_size = 64;                ///< Bytes; at most 64 at full speed.
+  std::uint8_t interval = 0;  ///< Frames between two polls of an interrupt endpoint.
 
-  bool to_host() const noexcept { return (address & 0x80U) != 0; }
-  std::uint8_t number() const noexcept { return address & 0x0fU; }
+  bool to_host() const noexcept { return (address & 0x80U) != 0; }  ///< Tells its direction.
+  std::uint8_t number() const noexcept { return address & 0x0fU; }  ///< Tells its number.
 };
 
 /// Describes a full-speed USB device with one configuration of one interface: what a host reads
 /// before it talks to the device's endpoints.
 struct UsbDescription {
-  std::uint16_t vendor_id = 0;
-  std::uint16_t product_id = 0;
-  std::uint16_t release = 0x0100;             ///< bcdDevice; some hosts tell chips apart by it.
-  std::string manufacturer, product, serial;  ///< ASCII; empty ones get no string descriptor.
-  std::uint8_t interface_class = 0xff;        ///< 3 for HID, 0xff for the vendor's own.
-  std::uint8_t interface_subclass = 0;
-  std::uint8_t interface_protocol = 0;
-  std::vector<std::byte> report_descriptor;  ///< For HID: what the reports hold.
-  std::vector<EndpointDescription> endpoints;
+  std::uint16_t vendor_id = 0;                 ///< USB's, of the maker.
+  std::uint16_t product_id = 0;                ///< The maker's.
+  std::uint16_t release = 0x0100;              ///< bcdDevice; some hosts tell chips apart by it.
+  std::string manufacturer, product, serial;   ///< ASCII; empty ones get no string descriptor.
+  std::uint8_t interface_class = 0xff;         ///< 3 for HID, 0xff for the vendor's own.
+  std::uint8_t interface_subclass = 0;         ///< Of its class (0: none).
+  std::uint8_t interface_protocol = 0;         ///< Of its subclass (0: none).
+  std::vector<std::byte> report_descriptor;    ///< For HID: what the reports hold.
+  std::vector<EndpointDescription> endpoints;  ///< But for the control endpoint.
 
   /// Finds an endpoint by its address, or nullptr. Real-time: safe.
   const EndpointDescription* endpoint(std::uint8_t address) const noexcept;

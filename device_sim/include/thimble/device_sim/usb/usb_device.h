@@ -19,8 +19,8 @@ enum class Answer : std::uint8_t {
 
 /// Says what became of one packet.
 struct PacketResult {
-  Answer answer = Answer::kNak;
-  std::size_t size = 0;  ///< Bytes moved; more than the host asked for is babble.
+  Answer answer = Answer::kNak;  ///< What became of the packet.
+  std::size_t size = 0;          ///< Bytes moved; more than the host asked for is babble.
 };
 
 /// Is a USB device as its own side of the cable sees it: what it says of itself, and what it does

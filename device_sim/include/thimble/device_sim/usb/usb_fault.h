@@ -31,13 +31,13 @@ std::string_view name(FaultKind kind) noexcept;
 
 /// Orders one fault for some frames.
 struct FaultOrder {
-  static constexpr std::int64_t kForever = INT64_MAX / 2;
+  static constexpr std::int64_t kForever = INT64_MAX / 2;  ///< A duration, ns, without an end.
 
-  FaultKind kind = FaultKind::kSilence;
-  bool to_host = true;             ///< Which direction it hits; an unplug hits both.
-  std::int64_t after = 0;          ///< Begins so many frames from now.
-  std::int64_t frames = kForever;  ///< Lasts so long.
-  double rate = 0.001;             ///< For kBitErrors: chance of each bit to flip.
+  FaultKind kind = FaultKind::kSilence;  ///< What goes wrong.
+  bool to_host = true;                   ///< Which direction it hits; an unplug hits both.
+  std::int64_t after = 0;                ///< Begins so many frames from now.
+  std::int64_t frames = kForever;        ///< Lasts so long.
+  double rate = 0.001;                   ///< For kBitErrors: chance of each bit to flip.
 };
 
 /// Reads one line of a fault script:

@@ -17,7 +17,7 @@ namespace thimble::device_sim::usb {
 struct UsbipServerSettings {
   std::string address = "127.0.0.1";  ///< IPv4; anything but loopback lets other machines in.
   std::uint16_t port = kUsbipPort;    ///< 0 lets the system choose.
-  std::string bus_id = "1-1";
+  std::string bus_id = "1-1";         ///< By which the kernel asks for it.
 };
 
 /// Serves one device to USB/IP clients: sockets on one side, frames of the bus on the other. Any
@@ -57,7 +57,7 @@ class UsbipServer {
 
   /// Tells the port that it listens on, 0 if on none.
   std::uint16_t port() const noexcept { return port_; }
-  const std::string& bus_id() const noexcept { return bus_id_; }
+  const std::string& bus_id() const noexcept { return bus_id_; }  ///< Tells the device's.
   /// Tells whether a client has the device now.
   bool attached() const noexcept;
   /// Tells how many frames `run` left out.

@@ -25,17 +25,19 @@ inline constexpr std::size_t kTransferMax = 1U << 16;  ///< Larger transfers are
 
 /// Is what a client asks before a device is attached.
 struct UsbipRequest {
+  /// Says what a client asks.
   enum class Kind : std::uint8_t { kList, kImport };
-  Kind kind = Kind::kList;
-  std::string bus_id;    ///< For kImport: the device it wants.
-  std::size_t size = 0;  ///< Bytes of the message.
+  Kind kind = Kind::kList;  ///< What is asked.
+  std::string bus_id;       ///< For kImport: the device it wants.
+  std::size_t size = 0;     ///< Bytes of the message.
 };
 
 /// Is one transfer that the host's controller hands over, or takes back.
 struct UsbipCommand {
+  /// Says what the host asks.
   enum class Kind : std::uint8_t { kSubmit, kUnlink };
-  Kind kind = Kind::kSubmit;
-  std::uint32_t sequence = 0;
+  Kind kind = Kind::kSubmit;         ///< What is asked.
+  std::uint32_t sequence = 0;        ///< Number of the command.
   std::uint32_t device = 0;          ///< (bus << 16) | device number.
   bool to_host = false;              ///< Direction of the data.
   std::uint8_t endpoint = 0;         ///< Number, 0 to 15.
@@ -86,10 +88,10 @@ std::vector<std::byte> encode_command(const UsbipCommand& command,
 
 /// Is the answer to a transfer or an unlink.
 struct UsbipReply {
-  bool unlink = false;
-  std::uint32_t sequence = 0;
-  std::int32_t status = 0;
-  std::uint32_t moved = 0;
+  bool unlink = false;         ///< Whether it answers an unlink.
+  std::uint32_t sequence = 0;  ///< Number of the command that it answers.
+  std::int32_t status = 0;     ///< 0, or a negative errno.
+  std::uint32_t moved = 0;     ///< Bytes that went over.
 };
 
 /// Decodes the header of an answer; data to the host follow it. Empty if it is none.

@@ -19,7 +19,7 @@ class TranslatingMotion {
   struct Settings {
     double mass = 1;                     ///< kg
     Eigen::Vector3d gravity_W{0, 0, 0};  ///< m/s^2
-    std::optional<Floor> floor{};
+    std::optional<Floor> floor{};        ///< Where it cannot go below.
     double lowest =
         0;  ///< m along the floor's normal: where the object's lowest point was at first
     double reach = std::numeric_limits<double>::infinity();  ///< m; see RigidBody::keep_within

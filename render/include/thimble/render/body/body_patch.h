@@ -14,8 +14,8 @@ namespace thimble::render {
 /// place: both have the same border, so the surface stays closed. Trivially copyable, for a
 /// snapshot between threads or processes.
 struct BodyPatch {
-  static constexpr std::size_t kPointsMax = 768;
-  static constexpr std::size_t kTrianglesMax = 1280;
+  static constexpr std::size_t kPointsMax = 768;      ///< Room for points.
+  static constexpr std::size_t kTrianglesMax = 1280;  ///< Room for triangles.
 
   /// Is one corner of the triangles.
   struct Point {
@@ -28,14 +28,14 @@ struct BodyPatch {
     std::int32_t vertex = -1;  ///< Of the mesh; -1: the cursor or a point on an edge.
   };
 
-  std::uint16_t point_count = 0;
-  std::uint16_t triangle_count = 0;
-  std::int16_t object = -1;  ///< Of the scene, counted from 0; -1: nothing is dented.
+  std::uint16_t point_count = 0;     ///< How many are in use.
+  std::uint16_t triangle_count = 0;  ///< How many are in use.
+  std::int16_t object = -1;          ///< Of the scene, counted from 0; -1: nothing is dented.
   /// False if more moves than fits: nothing is drawn then but the mesh as it was.
   bool complete = true;
   /// How much of the dent is drawn: below 1 where all of it would turn a triangle over.
   float share = 1;
-  std::array<Point, kPointsMax> points;
+  std::array<Point, kPointsMax> points;  ///< Its points.
   /// Numbers of points, counter-clockwise from outside.
   std::array<std::array<std::uint16_t, 3>, kTrianglesMax> triangles;
   /// The mesh's triangle that each of `triangles` is, or is a part of.

@@ -50,9 +50,11 @@ class BodyShape {
   std::span<const VertexMove> moves() const noexcept { return moves_; }
   /// Tells whether all vertices are where they shall be. Real-time: safe.
   bool settled() const noexcept { return waiting_ == 0; }
+  /// Shows the clay; nullptr if the body is of another matter. Real-time: safe.
   const ClayShape* clay() const noexcept { return clay_ ? &*clay_ : nullptr; }
+  /// Shows the panels that snap; nullptr if the body is of another matter. Real-time: safe.
   const SnapShape* snap() const noexcept { return snap_ ? &*snap_ : nullptr; }
-  const TurnGuard& guard() const noexcept { return guard_; }
+  const TurnGuard& guard() const noexcept { return guard_; }  ///< Shows its guard.
 
   static constexpr std::size_t kMovesMax = 8;  ///< Vertices moved per tick: about 3 us.
 

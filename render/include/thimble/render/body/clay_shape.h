@@ -46,7 +46,7 @@ class ClayShape {
   void correct(std::int32_t vertex, const Eigen::Vector3d& set) noexcept {
     sets_[static_cast<std::size_t>(vertex)] = set;
   }
-  double radius() const noexcept { return choice_.radius; }
+  double radius() const noexcept { return choice_.radius; }  ///< Of a print, m.
   /// Sums up what was turned into heat, J; never falls.
   double dissipated() const noexcept { return dissipated_; }
 

@@ -29,10 +29,10 @@ namespace thimble::render {
 /// rounds may be few and in single precision; what is scaled is in double.
 class DentMotion {
  public:
-  using Vector = Eigen::Vector3d;
+  using Vector = Eigen::Vector3d;  ///< In W.
   /// Most vertices that move at once: 8 rings of a regular mesh are 243.
   static constexpr std::size_t kNodesMax = 512;
-  static constexpr std::size_t kLinksMax = 8 * kNodesMax;
+  static constexpr std::size_t kLinksMax = 8 * kNodesMax;  ///< Most springs at once.
 
   /// Makes the vertices of a mesh ready to move, all on their base points. The error says what
   /// makes no sense, or which limit of the integrator the step breaks and what would help. More
@@ -74,6 +74,7 @@ class DentMotion {
     const std::int32_t s = places_[at(vertex)].slot;
     return s < 0 ? Vector(0, 0, 0) : Vector(u_[at(s)].head<3>());
   }
+  /// Tells the velocity of any vertex, m/s. Real-time: safe.
   Vector v(std::int32_t vertex) const noexcept {
     const std::int32_t s = places_[at(vertex)].slot;
     return s < 0 ? Vector(0, 0, 0) : Vector(v_[at(s)].head<3>());
@@ -92,7 +93,7 @@ class DentMotion {
 
   /// Lists the vertices that move.
   std::span<const std::int32_t> vertices() const noexcept { return vertices_; }
-  bool resting() const noexcept { return vertices_.empty(); }
+  bool resting() const noexcept { return vertices_.empty(); }  ///< Tells whether none moves.
   /// Tells the stiffness (N/m) of a vertex of valence 6 while its neighbours stand still.
   double stiffness() const noexcept {
     return settings_.stiffness + 6 * settings_.neighbour_stiffness;
@@ -102,7 +103,7 @@ class DentMotion {
   /// Counts vertices that were stopped while they still swung, for want of room.
   std::uint64_t cut() const noexcept { return cut_; }
   const DentSettings& settings() const noexcept { return settings_; }
-  int substeps() const noexcept { return substeps_; }
+  int substeps() const noexcept { return substeps_; }  ///< Tells how many steps make a tick.
 
  private:
   // A vector and a zero: four numbers go through the processor two or four at a time.

@@ -22,7 +22,7 @@ struct DentSettings {
   double pull = 0;
   bool whole = false;  ///< All vertices move, not only those near the cursor.
   int rings = 3;       ///< How many springs from the touched triangle the moving ones end, 0 to 8.
-  SpringScheme integrator = kDefaultScheme;
+  SpringScheme integrator = kDefaultScheme;  ///< How its springs are stepped.
   int substeps = 1;  ///< Per tick, at least; more where the integrator needs them.
   int rounds = 25;   ///< Of the implicit integrators per substep, at most.
   /// Relative remainder of one tick at which rounds end early; the next tick takes it up. Below
@@ -30,7 +30,7 @@ struct DentSettings {
   double remainder = 1e-2;
   double step = 1e-3;  ///< Time of one tick, s, > 0.
 
-  static constexpr int kRingsMax = 8;
+  static constexpr int kRingsMax = 8;  ///< Most rings of vertices.
 
   /// Reads the settings of a scene; `step` is that of the loop. Real-time: never from the servo
   /// thread.

@@ -47,9 +47,9 @@ class DentedTouch final : public ObjectTouch {
 
   void list_settings(LiveSettings& settings) override { inner_->list_settings(settings); }
 
-  const BendablePolygon& dent() const noexcept { return dent_; }
-  BendablePolygon& dent() noexcept { return dent_; }
-  const BodyPull& pull() const noexcept { return pull_; }
+  const BendablePolygon& dent() const noexcept { return dent_; }  ///< Shows the dent.
+  BendablePolygon& dent() noexcept { return dent_; }              ///< Gives the dent.
+  const BodyPull& pull() const noexcept { return pull_; }  ///< Shows the pull of the last tick.
 
  private:
   std::unique_ptr<ObjectTouch> inner_;

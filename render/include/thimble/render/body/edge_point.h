@@ -51,7 +51,7 @@ class EdgePoint {
 
   /// Tells the displacement from the base point, m.
   const Eigen::Vector3d& u() const noexcept { return u_; }
-  double place() const noexcept { return place_; }
+  double place() const noexcept { return place_; }  ///< Tells the same, m.
 
  private:
   std::int32_t from_ = -1, to_ = -1;

@@ -63,7 +63,7 @@ class HeldTouch final : public ObjectTouch {
 
   void list_settings(LiveSettings& settings) override { object_->list_settings(settings); }
 
-  bool slipped() const noexcept { return slipped_; }
+  bool slipped() const noexcept { return slipped_; }  ///< Tells whether it left the hand.
 
  private:
   static constexpr double kFarSquared = 1e6;  // m^2; no arm reaches there

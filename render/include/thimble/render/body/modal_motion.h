@@ -17,7 +17,7 @@ namespace thimble::render {
 template <int kDof>
 class ModalMotion {
  public:
-  using Vector = typename SpringNetwork<kDof>::Vector;
+  using Vector = typename SpringNetwork<kDof>::Vector;  ///< Numbers of a node.
 
   /// Is the most modes (nodes times directions) that are worked out: about 3 s and 20 MB.
   static constexpr std::int32_t kModesMax = 1600;
@@ -30,6 +30,7 @@ class ModalMotion {
 
   // All of the following are Real-time: safe. Precondition: numbers name nodes that exist.
 
+  /// Tells the number of modes. Real-time: safe.
   std::int32_t mode_count() const noexcept { return static_cast<std::int32_t>(x_.size()); }
   /// Tells the frequency of a mode, rad/s; modes go from slow to fast.
   double omega(std::int32_t mode) const noexcept { return omega_[static_cast<std::size_t>(mode)]; }
@@ -42,6 +43,7 @@ class ModalMotion {
   void step() noexcept;
   /// Tells where a node is (m) and how it moves (m/s), relative to its base point.
   Vector u(std::int32_t node) const noexcept { return sum(node, x_); }
+  /// Tells how a node moves, relative to its base point, m/s. Real-time: safe.
   Vector v(std::int32_t node) const noexcept { return sum(node, xdot_); }
   /// Tells the energy of all modes, J.
   double energy() const noexcept;

@@ -24,13 +24,13 @@ enum class MotionKind : std::uint8_t {
 
 /// Sets the motion of one object. The object is at rest where its mesh stands unless said.
 struct MotionChoice {
-  MotionKind kind = MotionKind::kTranslate;
-  double mass = 0.1;                   ///< kg, > 0
-  Eigen::Vector3d gravity_W{0, 0, 0};  ///< m/s^2
-  double damping = 0;                  ///< N s/m, >= 0
-  double angular_damping = 0;          ///< N m s, >= 0; rigid alone
-  double time_scale = 1;               ///< > 0; see RigidBodySettings
-  std::optional<Floor> floor{};
+  MotionKind kind = MotionKind::kTranslate;                ///< How it moves.
+  double mass = 0.1;                                       ///< kg, > 0
+  Eigen::Vector3d gravity_W{0, 0, 0};                      ///< m/s^2
+  double damping = 0;                                      ///< N s/m, >= 0
+  double angular_damping = 0;                              ///< N m s, >= 0; rigid alone
+  double time_scale = 1;                                   ///< > 0; see RigidBodySettings
+  std::optional<Floor> floor{};                            ///< Where it cannot go below.
   double reach = std::numeric_limits<double>::infinity();  ///< m, >= 0: how far its centre may go
   Eigen::Vector3d v_W{0, 0, 0};                            ///< m/s, at first
   Eigen::Vector3d omega_W{0, 0, 0};                        ///< rad/s, at first; rigid alone

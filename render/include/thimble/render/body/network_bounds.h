@@ -16,7 +16,7 @@ struct NetworkBounds {
   double relaxation_min = 0;
   /// The least rate at which a node's own damper stops it, 1/s.
   double damping_rate_min = 0;
-  bool converged = true;
+  bool converged = true;  ///< Whether these are bounds.
 };
 
 }  // namespace thimble::render

@@ -20,7 +20,7 @@ struct Floor {
 
 /// Sets what acts on a body besides what touches it, as data.
 struct RigidBodySettings {
-  MassProperties mass;
+  MassProperties mass;                 ///< Mass, centre, inertia.
   Eigen::Vector3d gravity_W{0, 0, 0};  ///< m/s^2
   double damping = 0;                  ///< N s/m, >= 0
   /// N m s, >= 0: angular momentum fades by this over the largest inertia, 1/s.
@@ -28,7 +28,7 @@ struct RigidBodySettings {
   /// Is the body's time over ours, > 0: smaller feels heavier, as 1 / time_scale^2 times the mass,
   /// and as if in a thick liquid [BP 4.3].
   double time_scale = 1;
-  std::optional<Floor> floor{};
+  std::optional<Floor> floor{};  ///< Where it cannot go below.
   /// Points that stand on the floor, m in B; kSupportMax at most. Corners of the hull do.
   std::vector<Eigen::Vector3d> support_B;
 };
@@ -51,7 +51,7 @@ struct BodyPress {
 /// cannot spin itself up.
 class RigidBody {
  public:
-  static constexpr std::size_t kSupportMax = 64;
+  static constexpr std::size_t kSupportMax = 64;  ///< Most points of its hull on the floor.
 
   /// Makes a body at rest where its mass properties put it. The error says which number a body
   /// cannot have. Real-time: never from the servo thread.
@@ -62,6 +62,7 @@ class RigidBody {
   /// Pushes with `f_W` (N) at the point `p_W` (m), and turns with `tau_W` (N m), during the next
   /// step. What is NaN, or beyond 10^6, is left out.
   void push(const Eigen::Vector3d& f_W, const Eigen::Vector3d& p_W) noexcept;
+  /// Turns the body by a torque, N m, during the next step; as `push` for what is NaN or too large.
   void turn(const Eigen::Vector3d& tau_W) noexcept;
 
   /// Pushes through a spring and a damper, and tells the force (N, >= 0), which acts on what
@@ -78,14 +79,16 @@ class RigidBody {
     angular_W_ = angular_W;
   }
 
-  const Eigen::Vector3d& p_WC() const noexcept { return p_WC_; }
-  const Eigen::Quaterniond& q_WB() const noexcept { return q_WB_; }
+  const Eigen::Vector3d& p_WC() const noexcept { return p_WC_; }     ///< Tells where C is, m.
+  const Eigen::Quaterniond& q_WB() const noexcept { return q_WB_; }  ///< Tells how it is turned.
+  /// Tells the momentum, kg m/s, in the body's own time.
   const Eigen::Vector3d& momentum_W() const noexcept { return momentum_W_; }
+  /// Tells the angular momentum about C, kg m^2/s, in the body's own time.
   const Eigen::Vector3d& angular_momentum_W() const noexcept { return angular_W_; }
   const RigidBodySettings& settings() const noexcept { return settings_; }
   /// Tells the velocity of C (m/s) and the turning rate (rad/s), in the body's own time.
   Eigen::Vector3d v_WC() const noexcept { return momentum_W_ / settings_.mass.mass; }
-  Eigen::Vector3d omega_W() const noexcept;
+  Eigen::Vector3d omega_W() const noexcept;  ///< Tells the turning rate, rad/s.
   /// Tells the velocity (m/s, in our time) of the body's point at `p_W`.
   Eigen::Vector3d velocity_at(const Eigen::Vector3d& p_W) const noexcept;
   /// Tells which velocity (m/s, in our time) the body's point at `p_W` gains by an impulse (N s, in
@@ -103,7 +106,7 @@ class RigidBody {
   }
   /// Tells the energy of motion, and of height over the origin where there is gravity, J.
   double kinetic_energy() const noexcept;
-  double potential_energy() const noexcept;
+  double potential_energy() const noexcept;  ///< Tells that of height, J.
 
  private:
   explicit RigidBody(const RigidBodySettings& settings)

@@ -33,7 +33,7 @@ struct SnapChoice {
   double speed = 1;       ///< m/s, > 0: how fast it runs at most.
   int panels = 8;         ///< 1 to kPanelsMax: how many may be in at the same time.
 
-  static constexpr int kPanelsMax = 16;
+  static constexpr int kPanelsMax = 16;  ///< Most panels of an object.
 
   /// Reads the settings of a scene. Real-time: never from the servo thread.
   void read(SettingsReader& reader);
@@ -45,11 +45,11 @@ struct SnapChoice {
 
 /// Sets how the base points of an object move by themselves; what is left empty does not happen.
 struct ShapeChoice {
-  std::optional<ClayChoice> clay{};
-  std::optional<SnapChoice> snap{};
-  double step = 1e-3;  ///< s, > 0: the loop's period
+  std::optional<ClayChoice> clay{};  ///< Clay, if it is.
+  std::optional<SnapChoice> snap{};  ///< Panels that snap, if any.
+  double step = 1e-3;                ///< s, > 0: the loop's period
 
-  bool named() const { return clay || snap; }
+  bool named() const { return clay || snap; }  ///< Tells whether it is any.
 };
 
 }  // namespace thimble::render

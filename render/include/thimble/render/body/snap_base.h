@@ -38,15 +38,16 @@ class SnapBase {
 
   /// Tells the way gone in (m), and as a displacement of the base point.
   double way() const noexcept { return u_; }
+  /// Tells the same as a displacement of the base point, m in W. Real-time: safe.
   Eigen::Vector3d displacement() const noexcept { return u_ * inward_; }
   /// Tells whether the second shape is the one it rests in or runs to.
   bool snapped() const noexcept { return snapped_; }
   /// Counts the snaps, and sums up the energy that they released (J): what the load did on the way
   /// less what the bars kept. It goes into sound and heat, never back to the hand.
   std::int64_t snaps() const noexcept { return snaps_; }
-  double released() const noexcept { return released_; }
-  double energy() const noexcept { return truss_.energy(u_); }
-  const SnapTruss& truss() const noexcept { return truss_; }
+  double released() const noexcept { return released_; }        ///< Tells what was released, J.
+  double energy() const noexcept { return truss_.energy(u_); }  ///< Tells what the bars keep, J.
+  const SnapTruss& truss() const noexcept { return truss_; }    ///< Shows the bars.
 
  private:
   void follow(double load, double spring, double step) noexcept;

@@ -53,8 +53,8 @@ class SnapShape {
   /// Counts the snaps; tells the energy in the panels, and what they released (J): what pressed
   /// them in less what they keep. It goes into sound and heat.
   std::int64_t snaps() const noexcept;
-  double energy() const noexcept;
-  double released() const noexcept { return released_; }
+  double energy() const noexcept;                         ///< Tells what the panels keep, J.
+  double released() const noexcept { return released_; }  ///< Tells what they released, J.
 
   static constexpr std::size_t kVerticesMax = 512;  ///< Of a panel.
 

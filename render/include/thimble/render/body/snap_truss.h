@@ -16,11 +16,11 @@ class SnapTruss {
 
   // All of the following are Real-time: safe.
 
-  bool valid() const noexcept { return k_ > 0; }
-  double rise() const noexcept { return rise_; }
+  bool valid() const noexcept { return k_ > 0; }  ///< Tells whether it can snap.
+  double rise() const noexcept { return rise_; }  ///< Tells its height at rest, m.
   /// Tells the force (N) that holds the joint at `u`; and the energy in the bars (J).
   double force(double u) const noexcept;
-  double energy(double u) const noexcept;
+  double energy(double u) const noexcept;  ///< Tells that in the bars, J.
   /// Tells the stiffness at `u`, N/m; below zero between the limit points.
   double stiffness(double u) const noexcept;
 

@@ -21,13 +21,13 @@ struct SpringMotionOptions {
     kRefuse,   ///< Refuse to build.
     kAllow,    ///< Go on regardless: for tests and studies, which show what happens.
   };
-  SpringScheme scheme = kDefaultScheme;
-  double step = 1e-3;  ///< s per call of step(), > 0
-  Beyond beyond = Beyond::kSubstep;
-  int substeps = 1;         ///< At least so many per call.
-  int substeps_max = 64;    ///< At most so many; a network that needs more is refused.
-  int rounds_max = 25;      ///< Of conjugate gradients per substep (implicit schemes).
-  double remainder = 1e-6;  ///< Relative, at which these rounds end early.
+  SpringScheme scheme = kDefaultScheme;  ///< How it is stepped.
+  double step = 1e-3;                    ///< s per call of step(), > 0
+  Beyond beyond = Beyond::kSubstep;      ///< What beyond its bound.
+  int substeps = 1;                      ///< At least so many per call.
+  int substeps_max = 64;                 ///< At most so many; a network that needs more is refused.
+  int rounds_max = 25;                   ///< Of conjugate gradients per substep (implicit schemes).
+  double remainder = 1e-6;               ///< Relative, at which these rounds end early.
 };
 
 /// Moves a spring network in time by one scheme, some or all of its nodes.
@@ -43,7 +43,7 @@ struct SpringMotionOptions {
 template <int kDof>
 class SpringMotion {
  public:
-  using Vector = typename SpringNetwork<kDof>::Vector;
+  using Vector = typename SpringNetwork<kDof>::Vector;  ///< Numbers of a node.
 
   /// Makes a network ready to move, at rest, all nodes active. The error says which limit the step
   /// breaks and what would help. Real-time: never from the servo thread.
@@ -52,14 +52,14 @@ class SpringMotion {
 
   // All of the following are Real-time: safe. Precondition: numbers name nodes that exist.
 
-  const SpringNetwork<kDof>& network() const noexcept { return network_; }
-  int substeps() const noexcept { return substeps_; }
+  const SpringNetwork<kDof>& network() const noexcept { return network_; }  ///< Shows the network.
+  int substeps() const noexcept { return substeps_; }  ///< Tells the steps of a tick.
   /// Tells how the step stands to the limit, in a sentence for a log. Real-time: never.
   std::string describe() const;
 
   /// Tells displacement (m) and velocity (m/s) of each node, relative to its base point.
   std::span<const Vector> u() const noexcept { return u_; }
-  std::span<const Vector> v() const noexcept { return v_; }
+  std::span<const Vector> v() const noexcept { return v_; }  ///< Tells velocities, m/s.
   /// Puts a node at displacement `u` with velocity `v`.
   void place(std::int32_t node, const Vector& u, const Vector& v) noexcept;
 
@@ -70,7 +70,7 @@ class SpringMotion {
   /// Lets only `nodes` (each once) move from now on, so that a tick costs what a patch costs. The
   /// others are put on their base points, at rest: hand over nodes that have settled.
   void set_active(std::span<const std::int32_t> nodes) noexcept;
-  std::span<const std::int32_t> active() const noexcept { return active_; }
+  std::span<const std::int32_t> active() const noexcept { return active_; }  ///< Lists what moves.
 
   /// Moves on by one step under the forces pushed, which are then gone.
   void step() noexcept;

@@ -21,8 +21,8 @@ struct BodyNode {
 /// Joins two nodes by a spring and a damper, at rest while both stand alike to their base points.
 template <int kDof>
 struct BodySpring {
-  std::int32_t a = 0;
-  std::int32_t b = 0;
+  std::int32_t a = 0;    ///< One node.
+  std::int32_t b = 0;    ///< The other.
   double stiffness = 0;  ///< N/m, >= 0
   double damping = 0;    ///< N s/m, >= 0
   /// Unit vector: pulls along it only. Zero: pulls alike in all directions. In one network all
@@ -32,9 +32,9 @@ struct BodySpring {
 
 /// Holds a matrix with the network's pattern: one weight per node and one per half of a spring.
 struct NetworkWeights {
-  std::vector<double> node;
-  std::vector<double> half;
-  bool joined = true;  ///< False if all of `half` is 0, so that nobody need look there.
+  std::vector<double> node;  ///< Of each node.
+  std::vector<double> half;  ///< Half of each spring's.
+  bool joined = true;        ///< False if all of `half` is 0, so that nobody need look there.
 };
 
 /// Is masses, springs and dampers between nodes: M u'' + C u' + K u = f, with u the displacements
@@ -46,7 +46,7 @@ struct NetworkWeights {
 template <int kDof>
 class SpringNetwork {
  public:
-  using Vector = Eigen::Matrix<double, kDof, 1>;
+  using Vector = Eigen::Matrix<double, kDof, 1>;  ///< Numbers of a node.
 
   /// Checks and joins nodes and springs, and finds the bounds. The error names the first node or
   /// spring with a mass that is not positive, a negative or infinite constant, an end that does not
@@ -57,14 +57,16 @@ class SpringNetwork {
   // All of the following are Real-time: safe. Precondition: numbers name what exists, spans hold
   // one entry per node.
 
+  /// Tells the number of nodes. Real-time: safe.
   std::int32_t node_count() const noexcept { return static_cast<std::int32_t>(mass_.size()); }
+  /// Tells the mass of a node, kg. Real-time: safe.
   double mass(std::int32_t node) const noexcept { return mass_[static_cast<std::size_t>(node)]; }
-  const NetworkWeights& stiffness() const noexcept { return stiffness_; }
-  const NetworkWeights& damping() const noexcept { return damping_; }
+  const NetworkWeights& stiffness() const noexcept { return stiffness_; }  ///< Shows the springs.
+  const NetworkWeights& damping() const noexcept { return damping_; }      ///< Shows the dampers.
   /// Tells whether springs or dampers join nodes, and whether there are dampers at all.
   bool coupled() const noexcept { return coupled_; }
-  bool damped() const noexcept { return damped_; }
-  const NetworkBounds& bounds() const noexcept { return bounds_; }
+  bool damped() const noexcept { return damped_; }  ///< Tells whether dampers are there.
+  const NetworkBounds& bounds() const noexcept { return bounds_; }  ///< Tells its bounds.
 
   /// Lists the nodes that springs join to `node`.
   std::span<const std::int32_t> neighbours(std::int32_t node) const noexcept {

@@ -25,7 +25,7 @@ class SurfacePatch {
   std::span<const std::int32_t> around(const ContactMesh& mesh, std::int32_t triangle,
                                        const Eigen::Vector3d& place, double radius) noexcept;
 
-  std::span<const std::int32_t> vertices() const noexcept { return patch_; }
+  std::span<const std::int32_t> vertices() const noexcept { return patch_; }  ///< Lists it.
 
  private:
   std::span<const Eigen::Vector3d> first_places_;

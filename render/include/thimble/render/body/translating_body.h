@@ -52,13 +52,14 @@ class TranslatingBody {
 
   /// Tells the velocity (m/s, in our time), and which of it is gained per impulse (N s, our time).
   Eigen::Vector3d velocity() const noexcept { return time_scale_ * v_W_; }
+  /// Tells the velocity gained per impulse, 1/kg, in our time. Real-time: safe.
   double gain() const noexcept { return time_scale_ * time_scale_ / mass_; }
 
   /// Tells how far all base points have moved, m; the velocity (m/s) and momentum (kg m/s) are in
   /// the body's own time.
   const Eigen::Vector3d& p_W() const noexcept { return p_W_; }
-  const Eigen::Vector3d& v_W() const noexcept { return v_W_; }
-  Eigen::Vector3d momentum_W() const noexcept { return mass_ * v_W_; }
+  const Eigen::Vector3d& v_W() const noexcept { return v_W_; }          ///< Tells it, m/s.
+  Eigen::Vector3d momentum_W() const noexcept { return mass_ * v_W_; }  ///< Tells it.
 
  private:
   OscillatorStep flow_;

@@ -28,6 +28,7 @@ class VertexLinks {
     const auto v = static_cast<std::size_t>(vertex);
     return {other_.data() + begin_[v], begin_[v + 1] - begin_[v]};
   }
+  /// Tells how many edges meet in `vertex`. Real-time: safe.
   std::int32_t valence(std::int32_t vertex) const noexcept {
     const auto v = static_cast<std::size_t>(vertex);
     return static_cast<std::int32_t>(begin_[v + 1] - begin_[v]);

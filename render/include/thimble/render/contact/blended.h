@@ -49,6 +49,7 @@ class Blended {
     contact_.surface_moved(swept_over);
     state_ = contact_.state();
   }
+  /// Passes on where the free tip is examined from (TrackedContact). Real-time: safe.
   Eigen::Vector3d free_tip() const noexcept { return contact_.free_tip(); }
 
   /// Gives the result of the last `update`. Real-time: safe.
@@ -57,6 +58,7 @@ class Blended {
   const Contact& contact() const noexcept { return contact_; }
   const ContactMesh& mesh() const noexcept { return contact_.mesh(); }
   const auto& search() const noexcept { return contact_.search(); }
+  /// Shows the normals that it blends. Real-time: safe.
   const std::shared_ptr<const SmoothNormals>& smooth_normals() const noexcept { return normals_; }
   auto counters() const noexcept { return contact_.counters(); }
 

@@ -15,7 +15,7 @@ struct StepBox {
   /// Makes the box hold another. Real-time: safe.
   void add(const StepBox& box) noexcept;
 
-  std::array<double, 3> min, max;
+  std::array<double, 3> min, max;  ///< Its corners, steps.
 };
 
 /// Is a node of a TreeSearch: the boxes of up to eight children, rounded outwards to 1/255 of the
@@ -24,8 +24,8 @@ struct StepBox {
 ///     byte 0        12      16                      64              96
 ///     | origin      | scale | sides                  | children      |
 struct alignas(32) BoxNode {
-  static constexpr std::size_t kChildrenMax = 8;
-  using Side = std::array<std::uint8_t, kChildrenMax>;
+  static constexpr std::size_t kChildrenMax = 8;        ///< Most.
+  using Side = std::array<std::uint8_t, kChildrenMax>;  ///< One side of all children.
 
   std::array<float, 3> origin{};  ///< Where sides count from, in steps.
   float scale = 1;                ///< Steps per unit of a side: a power of two.
@@ -35,8 +35,8 @@ struct alignas(32) BoxNode {
   /// triangles - 1, where places count along the tree's order of triangles.
   std::array<std::uint32_t, kChildrenMax> children{};
 
-  static constexpr std::uint32_t kLeaf = 0x80000000u;
-  static constexpr std::size_t kLeafMax = 4;
+  static constexpr std::uint32_t kLeaf = 0x80000000u;  ///< Marks a leaf.
+  static constexpr std::size_t kLeafMax = 4;           ///< Most triangles of a leaf.
 
   /// Sets the boxes of the first children. Precondition: at most `kChildrenMax`, none empty.
   /// Real-time: safe.

@@ -28,8 +28,11 @@ struct alignas(64) CompactTriangle {
   std::array<std::int32_t, 3> neighbours;  ///< Record over the edge from corner k to k + 1.
   std::uint32_t flags;  ///< Bit k: edge k is a crease. From bit 3: the input's number.
 
-  static constexpr int kSourceShift = 3;  // 2^28 triangles fit, the most that a surface takes
+  /// Is where the input's number begins in `flags`: 2^28 triangles fit, the most that a surface
+  /// takes.
+  static constexpr int kSourceShift = 3;
 
+  /// Tells whether an edge is a crease. Real-time: safe.
   bool crease(std::size_t edge) const noexcept { return ((flags >> edge) & 1u) != 0; }
 
   /// Tells which triangle of the input this is.
@@ -84,10 +87,11 @@ class CompactSurface {
   std::int32_t triangle_count() const noexcept {
     return static_cast<std::int32_t>(records_.size());
   }
+  /// Gives the record of a triangle. Real-time: safe.
   const CompactTriangle& record(std::int32_t t) const noexcept {
     return records_[static_cast<std::size_t>(t)];
   }
-  std::span<const CompactTriangle> records() const noexcept { return records_; }
+  std::span<const CompactTriangle> records() const noexcept { return records_; }  ///< Lists them.
 
   /// Tells which triangle of the input a record is.
   std::int32_t source(std::int32_t t) const noexcept { return record(t).source(); }
@@ -102,7 +106,7 @@ class CompactSurface {
     return (p_W - origin_) * per_step_;
   }
 
-  const Eigen::Vector3d& origin() const noexcept { return origin_; }
+  const Eigen::Vector3d& origin() const noexcept { return origin_; }  ///< Tells the lattice's, m.
   /// Tells the length of one step of the lattice, m.
   double step() const noexcept { return step_; }
   /// Tells how many steps there are in 1 m.

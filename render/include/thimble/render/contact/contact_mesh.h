@@ -15,9 +15,10 @@ namespace thimble::render {
 
 /// Is a plane with unit normal: `n . x + d` is the signed distance (m) of a point x.
 struct Plane {
-  Eigen::Vector3d n{0, 0, 0};
-  double d = 0;
+  Eigen::Vector3d n{0, 0, 0};  ///< Unit normal.
+  double d = 0;                ///< m; n x + d = 0 on it.
 
+  /// Tells the distance of a point from the plane, m, positive outside. Real-time: safe.
   double distance(const Eigen::Vector3d& x) const noexcept { return n.dot(x) + d; }
 };
 
@@ -42,7 +43,7 @@ struct ContactMeshOptions {
 
 /// Says where a vertex goes.
 struct VertexMove {
-  std::int32_t vertex = 0;
+  std::int32_t vertex = 0;       ///< Its number.
   Eigen::Vector3d p_W{0, 0, 0};  ///< m
 };
 
@@ -65,7 +66,6 @@ class ContactMesh {
   std::int32_t triangle_count() const noexcept { return static_cast<std::int32_t>(cells_.size()); }
 
   std::int32_t vertex_count() const noexcept { return static_cast<std::int32_t>(vertices_.size()); }
-
 
   /// Tells how many components were wholly inside out and have been turned.
   std::size_t turned_components() const noexcept { return orientation_.turned_components; }
@@ -111,7 +111,7 @@ class ContactMesh {
   /// Tell the box of the vertices as they were when built, grown by ContactMeshOptions::room; m, W.
   /// Searches count in it: they find nothing that lies outside.
   const Eigen::Vector3d& box_min() const noexcept { return box_min_; }
-  const Eigen::Vector3d& box_max() const noexcept { return box_max_; }
+  const Eigen::Vector3d& box_max() const noexcept { return box_max_; }  ///< Tells the other corner.
 
   /// Tells whether a point lies in the box. NaN does not.
   bool in_box(const Eigen::Vector3d& p_W) const noexcept {

@@ -7,7 +7,7 @@ namespace thimble::render {
 
 /// Is what a contact algorithm knows at one tick. Frames: W world, P proxy.
 struct ContactState {
-  bool touching = false;
+  bool touching = false;          ///< Whether the tip is held outside.
   std::int32_t triangle = -1;     ///< Active triangle, -1 if not touching.
   double depth = 0;               ///< Distance of the tip below the active surface along n_W, m.
   Eigen::Vector3d n_W{0, 0, 0};   ///< Outward unit normal.

@@ -16,7 +16,7 @@ namespace thimble::render {
 
 /// Leaves the face's own normal, which jumps over each edge by the angle there.
 struct Flat {
-  static constexpr std::string_view kName = "flat";
+  static constexpr std::string_view kName = "flat";  ///< As scenes name it.
 
   Eigen::Vector3d normal(const ContactMesh& mesh, const SmoothNormals& normals,
                          std::int32_t triangle, const Eigen::Vector3d& weights) const noexcept;
@@ -36,7 +36,7 @@ struct Flat {
 /// by b / (1 - b), with b falling from 1 on the edge to 0 at the band's width: on an edge it alone
 /// counts, so bands may overlap and triangles may be smaller than the band.
 struct FixedBand {
-  static constexpr std::string_view kName = "fixed_band";
+  static constexpr std::string_view kName = "fixed_band";  ///< As scenes name it.
 
   double width = 0;  ///< m, >= 0; 0 is Flat.
 
@@ -48,7 +48,7 @@ struct FixedBand {
 /// its inscribed circle, and times half the edge along it. On an edge only the edge's own length
 /// counts, so triangles of different size agree there.
 struct SizedBand {
-  static constexpr std::string_view kName = "sized_band";
+  static constexpr std::string_view kName = "sized_band";  ///< As scenes name it.
 
   double share = 1;  ///< 0 to 1; at 1 the bands meet in the middle.
 
@@ -58,7 +58,7 @@ struct SizedBand {
 
 /// Weighs the normals of the corners, as Phong shading does.
 struct Phong {
-  static constexpr std::string_view kName = "phong";
+  static constexpr std::string_view kName = "phong";  ///< As scenes name it.
 
   Eigen::Vector3d normal(const ContactMesh& mesh, const SmoothNormals& normals,
                          std::int32_t triangle, const Eigen::Vector3d& weights) const noexcept;

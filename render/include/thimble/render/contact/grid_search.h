@@ -39,7 +39,7 @@ class GridSearch final : public ContactSearch {
   /// Real-time: never from the servo thread.
   bool even() const noexcept;
 
-  const VolumeGrid& grid() const noexcept { return grid_; }
+  const VolumeGrid& grid() const noexcept { return grid_; }  ///< Shows its grid.
 
  private:
   template <class Test, class Visit>

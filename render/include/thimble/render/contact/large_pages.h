@@ -12,12 +12,13 @@ namespace thimble::render {
 /// Real-time: never from the servo thread.
 template <class T>
 struct LargePages {
-  using value_type = T;
+  using value_type = T;  ///< Of the array.
 
   LargePages() = default;
   template <class U>
-  LargePages(const LargePages<U>&) noexcept {}
+  LargePages(const LargePages<U>&) noexcept {}  ///< Takes nothing over.
 
+  /// Gives memory for `count` elements; throws std::bad_alloc.
   T* allocate(std::size_t count) {
     const std::size_t bytes = count * sizeof(T);
     if (bytes < kPage) return static_cast<T*>(::operator new(bytes, std::align_val_t(alignof(T))));
@@ -26,6 +27,7 @@ struct LargePages {
     (void)madvise(memory, bytes / kPage * kPage, MADV_HUGEPAGE);
     return static_cast<T*>(memory);
   }
+  /// Takes memory back.
   void deallocate(T* memory, std::size_t count) noexcept {
     const std::size_t align = count * sizeof(T) < kPage ? alignof(T) : kPage;
     ::operator delete(memory, std::align_val_t(align));

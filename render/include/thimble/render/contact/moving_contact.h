@@ -45,6 +45,7 @@ class MovingContact {
 
   // All Real-time: safe.
   const ContactState& state() const noexcept { return contact_.state(); }
+  /// Tells the weights of the corners at the place that is touched. Real-time: safe.
   auto weights(const Eigen::Vector3d& p_WT) const noexcept { return contact_.weights(p_WT); }
   auto counters() const noexcept { return contact_.counters(); }
   const Contact& contact() const noexcept { return contact_; }

@@ -61,7 +61,7 @@ class RecordContact {
   /// Tells where the path begins that the next tick examines if the tip is free (W, m): the last
   /// tip, or an older one where records were absent. Real-time: safe.
   const Eigen::Vector3d& path_begin() const noexcept { return p_WT_before_; }
-  const Store& store() const noexcept { return store_; }
+  const Store& store() const noexcept { return store_; }  ///< Shows whence records come.
 
  private:
   // Surfaces that fit no memory have triangles of 20 um: at 0.5 m/s a tip crosses 60 of them.

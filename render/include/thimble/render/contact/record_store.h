@@ -14,15 +14,15 @@ enum class Known : std::uint8_t { kNo, kYes, kUnknown };
 
 /// Is where a segment first enters the surface; not `complete`: among the records at hand.
 struct FoundEntry {
-  Entry entry;
-  bool complete = true;
-  bool leaves = false;  ///< Whether it ends outside again; only stores that lack records tell.
+  Entry entry;           ///< Where the path goes in, if it does.
+  bool complete = true;  ///< Whether all records were at hand.
+  bool leaves = false;   ///< Whether it ends outside again; only stores that lack records tell.
 };
 
 /// Is the record nearest to a point, -1 for none; not `complete`: among the records at hand.
 struct FoundRecord {
-  std::int32_t triangle = -1;
-  bool complete = true;
+  std::int32_t triangle = -1;  ///< The nearest; -1: none.
+  bool complete = true;        ///< Whether all records were at hand.
 };
 
 /// Is where a RecordContact takes its records from. All questions are in W and m, and Real-time:

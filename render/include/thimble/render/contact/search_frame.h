@@ -16,6 +16,7 @@ struct SearchFrame {
   double step = 1;                  ///< m
   double per_step = 1;              ///< 1/m
 
+  /// Turns a point (W, m) into steps of the frame. Real-time: safe.
   Eigen::Vector3d to_steps(const Eigen::Vector3d& p_W) const noexcept {
     return (p_W - origin) * per_step;
   }

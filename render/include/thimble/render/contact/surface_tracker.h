@@ -29,7 +29,7 @@ struct TrackerCounters {
 
 /// Says where the tip stands with respect to the surface after one tick.
 struct TrackerStep {
-  bool touching = false;
+  bool touching = false;   ///< Whether it still touches.
   double depth = 0;        ///< Below the active triangle's plane, m; at least 0 if touching.
   std::uint16_t hops = 0;  ///< Edge planes crossed.
 };

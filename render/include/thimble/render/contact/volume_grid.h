@@ -32,25 +32,25 @@ class VolumeGrid {
  public:
   /// Is one block: bit x + 4 y + 16 z is set where that volume lists anything.
   struct Block {
-    std::uint64_t occupied = 0;
+    std::uint64_t occupied = 0;      ///< One bit for each volume.
     std::uint32_t first_volume = 0;  ///< Place of its first occupied volume in `begins`.
   };
   /// Marks a word of `top` as an empty block; the rest tells how many blocks away the nearest block
   /// is that is not, along the axis where they are farthest apart, at most `kFarthest`.
   static constexpr std::uint32_t kEmpty = 0x80000000u;
-  static constexpr std::uint32_t kFarthest = 255;
+  static constexpr std::uint32_t kFarthest = 255;  ///< Blocks.
   /// Is the most blocks along an axis.
   static constexpr std::int32_t kBlocksMax = 1024;
 
   /// Is what a grid is made of; see build_volume_grid.
   struct Parts {
-    Eigen::Vector3d low{0, 0, 0};  ///< The corner where the grid begins.
-    double side = 1;               ///< Of a volume.
-    std::array<std::int32_t, 3> blocks{1, 1, 1};
-    std::vector<std::uint32_t> top;
-    std::vector<Block> all_blocks;
-    std::vector<std::uint32_t> begins;    ///< Per occupied volume; and one more, the end.
-    std::vector<std::int32_t> triangles;  ///< Lists of the volumes, each in rising order.
+    Eigen::Vector3d low{0, 0, 0};                 ///< The corner where the grid begins.
+    double side = 1;                              ///< Of a volume.
+    std::array<std::int32_t, 3> blocks{1, 1, 1};  ///< Along each axis.
+    std::vector<std::uint32_t> top;               ///< Of each block, or how far the next is.
+    std::vector<Block> all_blocks;                ///< Those with something in them.
+    std::vector<std::uint32_t> begins;            ///< Per occupied volume; and one more, the end.
+    std::vector<std::int32_t> triangles;          ///< Lists of the volumes, each in rising order.
   };
 
   explicit VolumeGrid(Parts parts) noexcept : parts_(std::move(parts)) {
@@ -61,8 +61,8 @@ class VolumeGrid {
     }
   }
 
-  double side() const noexcept { return parts_.side; }
-  const Parts& parts() const noexcept { return parts_; }
+  double side() const noexcept { return parts_.side; }    ///< Tells a volume's, m.
+  const Parts& parts() const noexcept { return parts_; }  ///< Shows what it is made of.
 
   /// Counts the bytes of memory held.
   std::size_t bytes() const noexcept {

@@ -26,7 +26,7 @@ using StageBuilder = std::function<std::unique_ptr<AnyStage>()>;
 struct EffectKind {
   std::string_view group;  ///< What stands left of the colon: "friction", "texture".
   std::string_view name;   ///< What stands right of it: "bristle".
-  EffectOrder order;
+  EffectOrder order;       ///< Where in a tick.
   /// Reads the settings. Mistakes are told to the reader; what comes back is then not to be used.
   /// Real-time: never from the servo thread.
   StageBuilder (*read)(SettingsReader& settings, const EffectSurroundings& surroundings);
@@ -34,8 +34,8 @@ struct EffectKind {
 
 /// Is one effect with the settings that a scene gives it.
 struct EffectPlan {
-  const EffectKind* kind = nullptr;
-  StageBuilder build;
+  const EffectKind* kind = nullptr;  ///< What it is.
+  StageBuilder build;                ///< Makes it.
 };
 
 /// Makes the table's line of an effect: a SurfaceStage with `kGroup`, `kName`, `kOrder`, a struct

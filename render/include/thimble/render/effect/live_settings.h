@@ -21,12 +21,12 @@ struct ForceLever {
 /// Is one setting of a force law that can be changed between two ticks. The stage that it belongs
 /// to must outlive it.
 struct LiveSetting {
-  std::string name;  ///< As a scene names it, with its group: "friction coefficient".
-  std::string unit;
-  double least = 0, most = 0;
-  double value = 0;    ///< As the scene has it.
-  ForceLever lever{};  ///< How fast it may be turned while it is felt follows from that.
-  void* stage = nullptr;
+  std::string name;            ///< As a scene names it, with its group: "friction coefficient".
+  std::string unit;            ///< SI.
+  double least = 0, most = 0;  ///< Its bounds.
+  double value = 0;            ///< As the scene has it.
+  ForceLever lever{};          ///< How fast it may be turned while it is felt follows from that.
+  void* stage = nullptr;       ///< Whose it is.
   /// Sets the value, which must be within its bounds. Real-time: safe.
   void (*set)(void* stage, double value) noexcept = nullptr;
 };
@@ -63,9 +63,9 @@ class LiveSettings {
     settings_.insert(settings_.end(), other.settings_.begin(), other.settings_.end());
   }
 
-  double stiffness_max() const { return stiffness_max_; }
-  double damping_max() const { return damping_max_; }
-  const std::vector<LiveSetting>& list() const { return settings_; }
+  double stiffness_max() const { return stiffness_max_; }             ///< N/m.
+  double damping_max() const { return damping_max_; }                 ///< N s/m.
+  const std::vector<LiveSetting>& list() const { return settings_; }  ///< Lists them.
 
  private:
   double stiffness_max_, damping_max_;

@@ -13,8 +13,8 @@ namespace thimble::render {
 /// Says which numbers a setting takes.
 struct NumberLimits {
   std::string_view unit;  ///< SI; empty for a plain number.
-  double least = 0;
-  double most = 0;
+  double least = 0;       ///< Smallest that is allowed.
+  double most = 0;        ///< Largest that is allowed.
   bool required = false;  ///< False: the value that the setting already has is its default.
 };
 

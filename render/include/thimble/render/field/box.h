@@ -11,10 +11,11 @@ namespace thimble::render {
 /// Is a solid box that stands anywhere. Its faces are numbered -x, +x, -y, +y, -z, +z of its own
 /// frame O, from 0.
 struct Box {
-  Eigen::Matrix3d R_WO = Eigen::Matrix3d::Identity();
-  Eigen::Vector3d p_WO{0, 0, 0};        ///< Centre, m.
-  Eigen::Vector3d half_sides{0, 0, 0};  ///< m, each > 0
+  Eigen::Matrix3d R_WO = Eigen::Matrix3d::Identity();  ///< Rotation.
+  Eigen::Vector3d p_WO{0, 0, 0};                       ///< Centre, m.
+  Eigen::Vector3d half_sides{0, 0, 0};                 ///< m, each > 0
 
+  /// Turns a point of W into the box's frame, m. Real-time: safe.
   Eigen::Vector3d to_box(const Eigen::Vector3d& p_W) const noexcept {
     return R_WO.transpose() * (p_W - p_WO);
   }

@@ -33,7 +33,7 @@ class FieldTouch final : public ObjectTouch {
 
   void list_settings(LiveSettings& settings) override { list_settings_of(field_, settings); }
 
-  const F& field() const noexcept { return field_; }
+  const F& field() const noexcept { return field_; }  ///< Shows the field.
 
  private:
   F field_;

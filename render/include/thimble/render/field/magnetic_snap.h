@@ -22,13 +22,14 @@ class MagneticSnap {
   static constexpr std::string_view kName = "magnetic_snap";
 
   struct Settings {
+    /// Is one point that pulls the tip in.
     struct Target {
       Eigen::Vector3d from_O{0, 0, 0};  ///< The point, or one end of the line; object's frame, m.
       Eigen::Vector3d to_O{0, 0, 0};    ///< The other end; the same for a point.
       double force = 0;                 ///< The largest, N.
       double radius = 0;                ///< R, m
     };
-    std::vector<Target> targets;
+    std::vector<Target> targets;  ///< All of them.
 
     /// Reads the list `targets`: point, or from and to; force, capture_radius.
     /// Real-time: never from the servo thread.

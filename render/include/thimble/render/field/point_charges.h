@@ -23,12 +23,13 @@ class PointCharges {
   static constexpr std::string_view kName = "charges";
 
   struct Settings {
+    /// Is one charge.
     struct One {
       Eigen::Vector3d p_O{0, 0, 0};  ///< In the object's frame, m.
       double force = 0;              ///< The largest, N; negative pulls.
       double radius = 0.01;          ///< a, m
     };
-    std::vector<One> charges;
+    std::vector<One> charges;  ///< All of them.
 
     /// Reads the list `charges`: position, force, radius. Real-time: never from the servo thread.
     void read(SettingsReader& reader, const EffectSurroundings& surroundings);

@@ -39,27 +39,27 @@ struct MeshFault {
     kNonManifoldVertex,   ///< A vertex whose triangles form more than one fan.
     kInsideOut,           ///< A closed component whose normals point into its material.
   };
-  Kind kind{};
-  std::size_t count = 0;
-  std::string where;  ///< The first place, in words ("edge 12-57 near (0.1, 0.2, 0.3)").
+  Kind kind{};            ///< What it is.
+  std::size_t count = 0;  ///< How often.
+  std::string where;      ///< The first place, in words ("edge 12-57 near (0.1, 0.2, 0.3)").
   /// The first `kPlacesMax` places; a component stands for itself with its first triangle.
   std::vector<FaultPlace> places{};
 };
 
 /// Tells what a mesh is and what is wrong with it.
 struct MeshFindings {
-  std::size_t vertices = 0;
-  std::size_t unused_vertices = 0;
-  std::size_t triangles = 0;
-  std::size_t edges = 0;
-  std::size_t components = 0;
-  long euler_characteristic = 0;  ///< vertices in use - edges + triangles
-  Eigen::Vector3d box_min{0, 0, 0};
-  Eigen::Vector3d box_max{0, 0, 0};
-  double area = 0;
-  double volume = 0;  ///< Signed; meaningful only if closed.
-  double edge_min = 0, edge_mean = 0, edge_max = 0;
-  std::vector<MeshFault> faults;
+  std::size_t vertices = 0;                          ///< In the file.
+  std::size_t unused_vertices = 0;                   ///< That no triangle has.
+  std::size_t triangles = 0;                         ///< In the file.
+  std::size_t edges = 0;                             ///< Between vertices.
+  std::size_t components = 0;                        ///< Parts that hang together.
+  long euler_characteristic = 0;                     ///< vertices in use - edges + triangles
+  Eigen::Vector3d box_min{0, 0, 0};                  ///< Of all vertices.
+  Eigen::Vector3d box_max{0, 0, 0};                  ///< Of all vertices.
+  double area = 0;                                   ///< The file's unit squared.
+  double volume = 0;                                 ///< Signed; meaningful only if closed.
+  double edge_min = 0, edge_mean = 0, edge_max = 0;  ///< Lengths, in the file's unit.
+  std::vector<MeshFault> faults;                     ///< What is wrong, if anything.
 
   /// True if each triangle touches exactly three others and everything is finite and wound alike:
   /// what the contact algorithms need.

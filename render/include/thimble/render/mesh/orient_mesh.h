@@ -12,8 +12,8 @@ namespace thimble::render {
 /// Holds the parts of a mesh that hang together over edges.
 struct MeshComponents {
   std::vector<std::int32_t> component_of;  ///< Component of each triangle, numbered from 0.
-  std::size_t count = 0;
-  std::vector<bool> closed;      ///< True if each edge has two triangles wound alike.
+  std::size_t count = 0;                   ///< How many there are.
+  std::vector<bool> closed;                ///< True if each edge has two triangles wound alike.
   std::vector<bool> inside_out;  ///< True for closed components whose normals point into material.
 };
 

@@ -34,15 +34,15 @@ struct RepairChange {
     kTurnedTriangle,     ///< A triangle turned round.
     kDroppedVertex,      ///< A vertex that no triangle uses.
   };
-  Kind kind{};
-  std::size_t count = 0;
-  std::string where;  ///< The first place, with the numbers of the mesh before the repair.
+  Kind kind{};            ///< What it is.
+  std::size_t count = 0;  ///< How often.
+  std::string where;      ///< The first place, with the numbers of the mesh before the repair.
 };
 
 /// Is a mesh after a repair, and all that was changed, in the order of RepairChange::Kind.
 struct RepairedMesh {
-  TriangleMesh mesh;
-  std::vector<RepairChange> changes;
+  TriangleMesh mesh;                  ///< As it is now.
+  std::vector<RepairChange> changes;  ///< What was done to it.
 };
 
 /// Repairs what can be mended without guessing; total, any mesh gives one. What is whole stays as

@@ -28,8 +28,8 @@ inline constexpr std::int32_t kPageRecords = 1024;
 
 /// Is the box of a page's triangles, in steps of the lattice, rounded outwards.
 struct PageBox {
-  std::array<float, 3> min;
-  std::array<float, 3> max;
+  std::array<float, 3> min;  ///< Lower corner.
+  std::array<float, 3> max;  ///< Upper corner.
 };
 
 /// Finds the box of some records. Real-time: safe.
@@ -71,8 +71,8 @@ inline double farthest_squared(const PageBox& box, const Eigen::Vector3d& p) noe
 
 /// Is the lattice of a surface: where its middle lies and how long one step is, m in W.
 struct Lattice {
-  Eigen::Vector3d origin{0, 0, 0};
-  double step = 0;
+  Eigen::Vector3d origin{0, 0, 0};  ///< Of the lattice.
+  double step = 0;                  ///< Of the lattice.
 
   /// Tells where corner `k` of a record is, m in W; the same as CompactSurface::position.
   Eigen::Vector3d position(const CompactTriangle& record, std::size_t k) const noexcept {
@@ -89,8 +89,8 @@ class PageFileWriter {
   static driver::Result<PageFileWriter> create(const std::filesystem::path& file,
                                                const Lattice& lattice, std::int64_t triangle_count);
 
-  PageFileWriter(PageFileWriter&&) noexcept;
-  PageFileWriter& operator=(PageFileWriter&&) noexcept;
+  PageFileWriter(PageFileWriter&&) noexcept;             ///< Takes it over.
+  PageFileWriter& operator=(PageFileWriter&&) noexcept;  ///< Takes it over.
   ~PageFileWriter();
 
   /// Adds records in the order of their numbers. Fails when the disk is full.
@@ -122,8 +122,8 @@ class PageFile {
   /// holds numbers that cannot be.
   static driver::Result<PageFile> open(const std::filesystem::path& file);
 
-  PageFile(PageFile&& other) noexcept;
-  PageFile& operator=(PageFile&& other) noexcept;
+  PageFile(PageFile&& other) noexcept;             ///< Takes it over.
+  PageFile& operator=(PageFile&& other) noexcept;  ///< Takes it over.
   ~PageFile();
 
   /// Reads a page's records; `records` must have room for `kPageRecords`. Returns how many it
@@ -134,12 +134,13 @@ class PageFile {
   /// Asks the kernel to bring a page near, for a `read_page` soon: so the disk works on several.
   void announce_page(std::int32_t page) const noexcept;
 
-  const Lattice& lattice() const noexcept { return lattice_; }
+  const Lattice& lattice() const noexcept { return lattice_; }  ///< Tells the lattice.
   std::int32_t triangle_count() const noexcept { return triangle_count_; }
   /// Tells how far the smooth surface rises above its triangles, m in W; as CompactSurface::rise.
   double rise() const noexcept { return rise_; }
   /// Tells the box around the whole surface, in steps.
   const PageBox& whole() const noexcept { return whole_; }
+  /// Tells the box of each page, in steps.
   const std::vector<PageBox>& boxes() const noexcept { return boxes_; }
 
  private:

@@ -61,9 +61,9 @@ extern template class RecordContact<PagedStore>;
 
 /// Says where a paged mesh M stands in the world: a point of it is at p_WM + scale R_WM p_M.
 struct PagedPlace {
-  double scale = 1;  ///< Metres in W per metre of the file; > 0.
-  Eigen::Matrix3d R_WM = Eigen::Matrix3d::Identity();
-  Eigen::Vector3d p_WM{0, 0, 0};  ///< m
+  double scale = 1;                                    ///< Metres in W per metre of the file; > 0.
+  Eigen::Matrix3d R_WM = Eigen::Matrix3d::Identity();  ///< Rotation of the file's frame.
+  Eigen::Vector3d p_WM{0, 0, 0};                       ///< m
 };
 
 /// Finds what the tip touches on a surface of which only the volumes around the tip are in memory
@@ -94,7 +94,7 @@ class PagedContact {
   /// Counts the ticks in which a page was absent that the answer needed.
   std::uint64_t misses() const noexcept { return contact_.ticks_held(); }
   PagedSurface& surface() const noexcept { return contact_.store().surface(); }
-  const PagedPlace& place() const noexcept { return place_; }
+  const PagedPlace& place() const noexcept { return place_; }  ///< Tells where it stands.
 
   /// Is the question `inside` for who stands beside the servo.
   class Search {

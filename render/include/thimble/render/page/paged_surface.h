@@ -63,6 +63,7 @@ class PagedSurface {
   /// path that has not been examined.
   void begin_tick(const Eigen::Vector3d& p_tip, const Eigen::Vector3d& p_place,
                   const Eigen::Vector3d& v_W) noexcept;
+  /// The same for a tip that is at the place.
   void begin_tick(const Eigen::Vector3d& p_tip, const Eigen::Vector3d& v_W) noexcept {
     begin_tick(p_tip, p_tip, v_W);
   }
@@ -107,9 +108,9 @@ class PagedSurface {
   bool inside(const Eigen::Vector3d& p_W, bool& complete) const noexcept;
 
   const PagingSettings& settings() const noexcept { return settings_; }
-  const PageFile& file() const noexcept { return file_; }
+  const PageFile& file() const noexcept { return file_; }  ///< Shows the file.
   std::int32_t triangle_count() const noexcept { return file_.triangle_count(); }
-  const Lattice& lattice() const noexcept { return file_.lattice(); }
+  const Lattice& lattice() const noexcept { return file_.lattice(); }  ///< Tells the lattice.
 
   // The loader's side: one thread. Real-time: never from the servo thread.
 

@@ -70,9 +70,9 @@ Result<UploadReport> prepare(SerialLine& line, const std::filesystem::path& firm
 
 /// Says how far homing has come.
 struct HomingState {
-  bool answered = false;   ///< A packet came.
-  std::uint8_t homed = 0;  ///< One bit per leg.
-  std::array<std::int16_t, 3> counts{};
+  bool answered = false;                 ///< A packet came.
+  std::uint8_t homed = 0;                ///< One bit per leg.
+  std::array<std::int16_t, 3> counts{};  ///< Encoder counts of the last packet.
   /// Tells whether the encoders know where they are.
   bool done() const { return homed == kAllHomed; }
 };

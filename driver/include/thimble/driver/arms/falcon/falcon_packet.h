@@ -42,7 +42,7 @@ inline constexpr Framing kPacketFraming{
 struct HostPacket {
   std::array<std::int16_t, 3> motors{};  ///< Legs a, b, c; about 10,000 per N m [S libnifalcon].
   std::uint8_t lights = 0;               ///< kHomingMode and the lights.
-  std::uint8_t unknown_14 = 0;
+  std::uint8_t unknown_14 = 0;           ///< Its meaning is not known.
 
   friend bool operator==(const HostPacket&, const HostPacket&) = default;
 };
@@ -52,7 +52,7 @@ struct ArmPacket {
   std::array<std::int16_t, 3> counts{};  ///< Encoders of legs a, b, c.
   std::uint8_t buttons = 0;              ///< Four bits: right, forward, centre, left [S].
   std::uint8_t homed = 0;                ///< Three bits: leg a, b, c has found its home.
-  std::uint8_t unknown_14 = 0;
+  std::uint8_t unknown_14 = 0;           ///< Its meaning is not known.
 
   friend bool operator==(const ArmPacket&, const ArmPacket&) = default;
 };

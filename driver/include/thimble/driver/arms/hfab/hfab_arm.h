@@ -11,9 +11,9 @@ using driver::JointEncoder;
 
 /// Describes an arm that speaks the 14-byte report: data of one model, no state.
 struct HfabModel {
-  SerialArm geometry;
-  std::array<MotorDrive, 3> drives;
-  std::array<JointEncoder, 3> encoders;
+  SerialArm geometry;                    ///< Links and home pose.
+  std::array<MotorDrive, 3> drives;      ///< Motors.
+  std::array<JointEncoder, 3> encoders;  ///< Encoders.
   /// True if encoders d, e, f carry the fractions (1/65536) of counts a, b, c. No real arm does;
   /// the simulated arm uses it for ideal encoders (step below a nanometre), to show what the steps
   /// cost.

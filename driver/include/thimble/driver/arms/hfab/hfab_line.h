@@ -33,16 +33,16 @@ inline constexpr std::int32_t kErrorStale =
 
 /// Is what the arm answers.
 struct ArmLine {
-  std::int32_t model = 1;
+  std::int32_t model = 1;                ///< What the board calls its arm.
   std::array<std::int32_t, 6> counts{};  ///< Motor encoders a to c, gimbal encoders d to f.
-  std::int32_t error = 0;
+  std::int32_t error = 0;                ///< Of the board; 0: none.
 
   friend bool operator==(const ArmLine&, const ArmLine&) = default;
 };
 
 /// Is what the host says. The board takes a current beyond its range as zero [S].
 struct HostLine {
-  std::array<std::int32_t, 3> current_mA{};
+  std::array<std::int32_t, 3> current_mA{};  ///< Currents of the motors, mA.
 
   friend bool operator==(const HostLine&, const HostLine&) = default;
 };

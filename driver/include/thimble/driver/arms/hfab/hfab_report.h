@@ -33,9 +33,9 @@ enum class Command : std::int16_t {
 
 /// Is what the arm takes: motor currents, or a preset for its counters.
 struct OutputReport {
-  std::array<std::int16_t, 3> current_mA{};
-  std::int16_t command = 0;
-  std::array<std::int16_t, 3> attributes{};
+  std::array<std::int16_t, 3> current_mA{};  ///< Currents of the motors, mA.
+  std::int16_t command = 0;                  ///< A Command.
+  std::array<std::int16_t, 3> attributes{};  ///< What kPreset sets counters by.
 
   friend bool operator==(const OutputReport&, const OutputReport&) = default;
 };

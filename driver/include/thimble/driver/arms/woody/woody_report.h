@@ -24,7 +24,7 @@ struct InputReport {
 
 /// Is what the arm takes. The board clamps a current beyond 3 A, it does not refuse it [S].
 struct OutputReport {
-  std::array<std::int16_t, 3> current_mA{};
+  std::array<std::int16_t, 3> current_mA{};  ///< Currents of the motors, mA.
   std::uint16_t unknown_debug = 0;  ///< Named "debug" in the firmware, which never reads it [S].
 
   friend bool operator==(const OutputReport&, const OutputReport&) = default;

@@ -68,6 +68,7 @@ class VectorLowPass {
   /// Takes the corner frequency, Hz.
   explicit VectorLowPass(double corner_frequency) noexcept : corner_frequency_(corner_frequency) {}
 
+  /// Takes the next input, `dt` (s) after the last, and gives it filtered. Real-time: safe.
   const Eigen::Vector3d& update(const Eigen::Vector3d& input, double dt) noexcept {
     if (dt != gain_dt_) {
       gain_dt_ = dt;
@@ -78,7 +79,7 @@ class VectorLowPass {
   }
   void turn(const Turn& turn) noexcept { value_ = turn.carry(value_); }
   void forget() noexcept { value_.setZero(); }
-  const Eigen::Vector3d& value() const noexcept { return value_; }
+  const Eigen::Vector3d& value() const noexcept { return value_; }  ///< Tells the last, filtered.
 
  private:
   double corner_frequency_;

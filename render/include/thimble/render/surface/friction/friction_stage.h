@@ -39,7 +39,7 @@ class FrictionStage {
   static constexpr std::string_view kGroup = "friction";
   static constexpr std::string_view kName = Law::kName;
   static constexpr EffectOrder kOrder = EffectOrder::kTangential;
-  using Settings = typename Law::Settings;
+  using Settings = typename Law::Settings;  ///< Of the law.
 
   /// Takes settings that Settings::read found right. Real-time: never from the servo thread.
   FrictionStage(const Settings& settings, const EffectSurroundings& surroundings)

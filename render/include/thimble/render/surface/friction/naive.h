@@ -23,7 +23,7 @@ class NaiveFrictionLaw {
 
   struct Settings {
     CoulombSettings coulomb;
-    AtRest at_rest = AtRest::kZero;
+    AtRest at_rest = AtRest::kZero;  ///< What it does at rest.
 
     void read(SettingsReader& reader, const EffectSurroundings& surroundings);
   };

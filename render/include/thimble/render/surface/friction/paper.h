@@ -27,9 +27,9 @@ class PaperFrictionLaw {
   struct Settings {
     CoulombSettings coulomb;
     ViscousSettings viscous;
-    Smooth smooth = Smooth::kVelocity;
-    double corner_frequency = 30;  ///< Hz [STABILITY 2.2]; 10 for kTwice.
-    double speed = 0.01;           ///< Dry friction is full from here on, m/s [STABILITY 2.2].
+    Smooth smooth = Smooth::kVelocity;  ///< What is smoothed.
+    double corner_frequency = 30;       ///< Hz [STABILITY 2.2]; 10 for kTwice.
+    double speed = 0.01;                ///< Dry friction is full from here on, m/s [STABILITY 2.2].
 
     void read(SettingsReader& reader, const EffectSurroundings& surroundings);
   };

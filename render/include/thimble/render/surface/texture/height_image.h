@@ -26,6 +26,7 @@ class HeightImage {
   /// kSideMax. Real-time: never from the servo thread.
   static driver::Result<HeightImage> load(const std::filesystem::path& file);
 
+  /// Is what the image says at a place: height and slope.
   struct Sample {
     double value = 0;  ///< 0 to 1
     double du = 0;     ///< Per pixel to the right.
@@ -35,8 +36,8 @@ class HeightImage {
   /// of the first pixel. NaN gives NaN; so does what is beyond 1e15. Real-time: safe.
   Sample at(double u, double v) const noexcept;
 
-  std::size_t width() const noexcept { return width_; }
-  std::size_t height() const noexcept { return height_; }
+  std::size_t width() const noexcept { return width_; }    ///< Pixels.
+  std::size_t height() const noexcept { return height_; }  ///< Pixels.
   /// Is a bound of the slope's size, per pixel. Real-time: safe.
   double slope_max() const noexcept { return slope_max_; }
 

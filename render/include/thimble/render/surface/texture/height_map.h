@@ -25,13 +25,15 @@ class HeightMap {
   static constexpr std::string_view kName = "height_map";
   static constexpr EffectOrder kOrder = EffectOrder::kDepth;
 
+  /// Says along which axes of the object the image is laid on: on every face from its own side, or
+  /// from one side alone.
   enum class Along : std::uint8_t { kAll, kX, kY, kZ };
 
   struct Settings : TextureSettings {
-    std::shared_ptr<const HeightImage> image;
-    double width = 0;   ///< Of the picture on the surface, m.
-    double height = 0;  ///< From black to white, m.
-    Along along = Along::kAll;
+    std::shared_ptr<const HeightImage> image;  ///< Its heights.
+    double width = 0;                          ///< Of the picture on the surface, m.
+    double height = 0;                         ///< From black to white, m.
+    Along along = Along::kAll;                 ///< Where it is laid from.
 
     /// Reads `form`, `hand_speed`, `image`, `width`, `height`, `along`.
     /// Real-time: never from the servo thread.

@@ -44,7 +44,7 @@ class Sandpaper {
   /// Tells of the roughness. Real-time: never from the servo thread.
   void list_settings(LiveSettings& settings);
 
-  const WaveSum& height() const noexcept { return height_; }
+  const WaveSum& height() const noexcept { return height_; }  ///< Shows its waves.
 
  private:
   void set_roughness(double roughness) noexcept;

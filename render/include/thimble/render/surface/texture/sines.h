@@ -23,13 +23,14 @@ class Sines {
   static constexpr EffectOrder kOrder = EffectOrder::kDepth;
 
   struct Settings : TextureSettings {
+    /// Is one wave.
     struct One {
       double amplitude = 0;                ///< Half from valley to peak, m.
       double wavelength = 0;               ///< m
       Eigen::Vector3d direction{1, 0, 0};  ///< In which it changes, in the object's frame.
       double phase = 0;                    ///< At the object's place, rad.
     };
-    std::vector<One> waves;
+    std::vector<One> waves;  ///< All of them.
 
     /// Reads `form`, `hand_speed` and the list `waves`: amplitude, wavelength or frequency (waves
     /// per metre), direction, phase. Real-time: never from the servo thread.
@@ -50,7 +51,7 @@ class Sines {
   /// Tells of the height of all waves, as a factor. Real-time: never from the servo thread.
   void list_settings(LiveSettings& settings);
 
-  const WaveSum& height() const noexcept { return height_; }
+  const WaveSum& height() const noexcept { return height_; }  ///< Shows them.
 
  private:
   void set_gain(double gain) noexcept;

@@ -19,8 +19,8 @@ inline constexpr double kTextureHandSpeed = 0.1;
 
 /// Is what all textures may be asked: how they push, and how fast the hand is expected to be.
 struct TextureSettings {
-  TextureForm form = TextureForm::kConservative;
-  double hand_speed = kTextureHandSpeed;  ///< m/s
+  TextureForm form = TextureForm::kConservative;  ///< What it does besides.
+  double hand_speed = kTextureHandSpeed;          ///< m/s
 
   /// Reads `form` and `hand_speed`. Real-time: never from the servo thread.
   void read(SettingsReader& reader);

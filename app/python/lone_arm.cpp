@@ -1,0 +1,48 @@
+#include "lone_arm.h"
+
+#include <cmath>
+#include <utility>
+
+#include "energy_choice.h"
+#include "shipped_files.h"
+#include "trouble.h"
+
+namespace thimble::python {
+LoneArm::LoneArm(const std::string& arm, const Eigen::Vector3d& p_WH, double rate,
+                 std::uint64_t seed)
+    : file_(value_of(app::read_arm_file(value_of(app::find_arm_file(arm))))) {
+  if (!(rate >= 10 && rate <= 1e5)) {
+    throw Trouble("rate: expected 10 to 100000 Hz, found " + std::to_string(rate) + ".");
+  }
+  if (!p_WH.allFinite() || !app::joint_angles_at(file_, p_WH)) {
+    throw Trouble("hand: the arm " + file_.name + " does not reach that point of the world (m).");
+  }
+  simulation_ = value_of(app::ArmSimulation::make(file_, {{0.0, p_WH}}, {}, seed));
+  auto protocol = simulation_->protocol();
+  device_ =
+      value_of(driver::Device::open(simulation_->wire(clock_), std::move(protocol),
+                                    {.R_WB = file_.R_WB,
+                                     .p_WB = file_.p_WB,
+                                     .limits = file_.limits,
+                                     .energy = app::energy_settings(file_, rate, {}),
+                                     .velocity_corner_frequency = file_.velocity_corner_frequency},
+                                    clock_.now_ns()));
+  activate();
+  loop_ = std::make_unique<driver::ServoLoop>(
+      *device_, clock_, driver::ForceLaw(*this), driver::TickSink(*this),
+      driver::ServoSettings{.period_ns = std::llround(1e9 / rate), .outlive_faults = true});
+}
+
+const driver::TickRecord& LoneArm::step(const Eigen::Vector3d& f_T_W) {
+  f_T_W_ = f_T_W;
+  loop_->tick(never_);
+  return last_;
+}
+
+void LoneArm::activate() {
+  if (const auto activated = device_->activate(); !activated) {
+    throw Trouble(activated.error().message);
+  }
+}
+
+}  // namespace thimble::python

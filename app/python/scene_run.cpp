@@ -1,0 +1,147 @@
+#include "scene_run.h"
+
+#include <cmath>
+#include <cstdio>
+
+#include "meshes.h"
+#include "quality.h"
+#include "real_arm.h"
+#include "recording/write_black_box.h"
+#include "session_report.h"
+#include "shipped_files.h"
+#include "trouble.h"
+
+namespace thimble::python {
+namespace {
+
+constexpr int kTicksBetweenQuestions = 1024;  // 1 ms of work in virtual time; chosen
+constexpr double kSecondsMax = 86400;         // as in `thimble run --duration`
+
+/// Makes of a flag a claim that ends with the scope: two Python threads, or a force law that steps
+/// its own run, may not be in one session.
+class Claim {
+ public:
+  explicit Claim(bool& busy) : busy_(busy) {
+    if (busy_) throw Trouble("This run is already being stepped.");
+    busy_ = true;
+  }
+  ~Claim() { busy_ = false; }
+  Claim(const Claim&) = delete;
+  Claim& operator=(const Claim&) = delete;
+
+ private:
+  bool& busy_;
+};
+
+app::SessionOptions session_options(const RunOptions& options) {
+  app::SessionOptions asked;
+  if (options.seconds && !(*options.seconds >= 1e-3 && *options.seconds <= kSecondsMax)) {
+    throw Trouble("seconds: expected 0.001 to 86400, found " + std::to_string(*options.seconds) +
+                  ".");
+  }
+  if (options.quality != "draft" && options.quality != "normal" && options.quality != "reference") {
+    throw Trouble("quality: expected draft, normal or reference, found \"" + options.quality +
+                  "\".");
+  }
+  const auto plugged_in =
+      options.device == "sim"
+          ? driver::Result<std::vector<driver::FoundArm>>(std::vector<driver::FoundArm>())
+          : driver::find_arms();
+  asked.real_arm = value_of(
+      app::choose_arm(plugged_in ? *plugged_in : std::vector<driver::FoundArm>(), options.device));
+  const bool real_time = options.real_time || asked.real_arm;
+  asked.clock = real_time ? app::ClockKind::kWall : app::ClockKind::kVirtual;
+  asked.duration = options.seconds;
+  asked.seed = options.seed;
+  asked.mesh_folder = app::mesh_folder();
+  if (!options.arm_file.empty()) asked.arm_file = value_of(app::find_arm_file(options.arm_file));
+  asked.firmware = options.firmware;
+  asked.record = options.record;
+  asked.adjust = [&options](app::Scene& scene) {
+    app::apply_quality(app::quality_named(options.quality), scene);
+  };
+  return asked;
+}
+
+}  // namespace
+
+SceneRun::SceneRun(const RunOptions& options)
+    : session_(value_of(app::Session::open(value_of(app::find_scene(options.scene)),
+                                           session_options(options)))) {}
+
+SceneRun::~SceneRun() {
+  stop_.store(true);
+  if (servo_.joinable()) servo_.join();
+}
+
+bool SceneRun::step() {
+  if (session_->real_time()) throw Trouble("A run in real time is not stepped by hand.");
+  const Claim claim(busy_);
+  return take_step();
+}
+
+bool SceneRun::take_step() {
+  if (end_) return false;
+  end_ = session_->step(stop_);
+  if (!end_) return true;
+  finish();
+  return false;
+}
+
+void SceneRun::run(const std::function<bool()>& stop_asked) {
+  if (session_->real_time()) throw Trouble("A run in real time runs by start().");
+  const Claim claim(busy_);
+  for (int ticks = 1; take_step(); ++ticks) {
+    if (ticks % kTicksBetweenQuestions == 0 && stop_asked()) ask_to_stop();
+  }
+}
+
+void SceneRun::start() {
+  if (!session_->real_time()) throw Trouble("A run in virtual time has no thread.");
+  if (servo_.joinable() || end_) throw Trouble("This run has begun before.");
+  running_.store(true);
+  servo_ = std::thread([this] {
+    grant_ = driver::enter_real_time();
+    end_ = session_->run(stop_);
+    running_.store(false);
+  });
+}
+
+void SceneRun::stop() {
+  ask_to_stop();
+  if (servo_.joinable()) servo_.join();
+  if (!session_->real_time() && !end_) {
+    const Claim claim(busy_);
+    take_step();
+  } else if (end_) {
+    finish();
+  }
+}
+
+void SceneRun::finish() {
+  if (finished_) return;
+  finished_ = true;
+  if (const auto ticks = session_->black_box().take(); !ticks.empty()) {
+    const auto written = app::write_black_box(ticks, session_->recording_info());
+    if (written) {
+      std::fprintf(stderr, "thimble: the last seconds before the fault are in %s\n",
+                   written->c_str());
+    }
+  }
+  if (session_->recording().recorder() == nullptr) return;
+  if (const auto stopped = session_->recording().stop(); !stopped) {
+    throw Trouble(stopped.error().message);
+  }
+}
+
+std::span<const driver::TickRecord> SceneRun::ticks() const {
+  if (running()) throw Trouble("The run goes on; stop() it to see its ticks.");
+  return session_->trace().rows();
+}
+
+app::RunReport SceneRun::report() const {
+  if (!end_ || running()) throw Trouble("The run is not over: nothing to sum up yet.");
+  return app::report_of(*session_, *end_, grant_);
+}
+
+}  // namespace thimble::python

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "report.h"
+#include "session.h"
+#include "thimble/driver/real_time.h"
+#include "thimble/driver/servo_loop.h"
+
+namespace thimble::python {
+
+/// Says what a run of a scene is asked for, as Python names it.
+struct RunOptions {
+  std::string scene;           ///< File or name.
+  std::string arm_file;        ///< File or name; empty: the scene's own.
+  std::string device = "sim";  ///< "sim", "auto" or a name (choose_arm).
+  bool real_time = false;      ///< By the time of the world; always so on a real arm.
+  std::optional<double> seconds;
+  std::optional<std::uint64_t> seed;
+  std::string quality = "normal";
+  std::string record;    ///< HDF5 file; empty: none.
+  std::string firmware;  ///< For a real arm that needs some.
+};
+
+/// Is a session as Python holds it: all at once, tick by tick, or in real time on a thread of its
+/// own. Every function but those of `driver::` throws Trouble with a sentence for the
+/// user. Real-time: never from the servo thread, all of it.
+class SceneRun {
+ public:
+  explicit SceneRun(const RunOptions& options);
+  /// Stops and joins the servo, which leaves the arm with zero force.
+  ~SceneRun();
+  SceneRun(const SceneRun&) = delete;
+  SceneRun& operator=(const SceneRun&) = delete;
+
+  app::Session& session() { return *session_; }
+  const app::Session& session() const { return *session_; }
+
+  /// Runs the next tick of virtual time; false if the run is over.
+  bool step();
+  /// Runs all that are left, and asks every 1024 ticks whether to stop early.
+  void run(const std::function<bool()>& stop_asked);
+  /// Runs the session in real time on a thread of its own, which asks for real-time priority.
+  void start();
+  /// Ends the run early, or after its time; waits for its last tick. Nothing if it is over.
+  void stop();
+  /// Asks the run to end with its next tick, and waits for nothing. Safe from any thread.
+  void ask_to_stop() noexcept { stop_.store(true); }
+  /// Tells whether a thread runs it.
+  bool running() const noexcept { return running_.load(); }
+
+  /// Tells why it ended; empty while it has not.
+  std::optional<driver::ServoEnd> end() const noexcept { return running() ? std::nullopt : end_; }
+  /// Tells what was recorded, unless the thread runs.
+  std::span<const driver::TickRecord> ticks() const;
+  /// Sums up a run that is over.
+  app::RunReport report() const;
+
+ private:
+  bool take_step();
+  void finish();
+
+  std::unique_ptr<app::Session> session_;
+  std::atomic<bool> stop_{false};
+  std::atomic<bool> running_{false};
+  bool busy_ = false;  // a step or a run is under way; guarded by Python's own lock
+  bool finished_ = false;
+  std::optional<driver::ServoEnd> end_;
+  driver::RealTimeGrant grant_;
+  std::thread servo_;
+};
+
+}  // namespace thimble::python

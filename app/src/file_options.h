@@ -1,0 +1,21 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <string>
+
+namespace thimble::app {
+
+/// Adds the scene that a command is about: a file, or a name that `thimble run --list` knows,
+/// of which `scene` becomes the file. Real-time: never from the servo thread.
+CLI::Option* add_scene_option(CLI::App& command, std::string& scene,
+                              const std::string& name = "SCENE",
+                              const std::string& about = "Scene file (YAML)");
+
+/// Adds --arm: an arm file, or a name that `thimble run --list` knows, of which `arm_file` becomes
+/// the file. Real-time: never from the servo thread.
+CLI::Option* add_arm_option(CLI::App& command, std::string& arm_file, const std::string& about);
+CLI::Option* add_arm_option(CLI::App& command, std::filesystem::path& arm_file,
+                            const std::string& about);
+
+}  // namespace thimble::app

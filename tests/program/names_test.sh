@@ -1,0 +1,61 @@
+#!/usr/bin/env bash
+# Scenes and arms are found by name: in ./app, the user's folder, beside the program, in XDG_DATA_DIRS,
+# in this order; and what is not found is answered with what there is.
+source "$(dirname "$0")/expect.sh" "$@"
+export HOME=$work/home XDG_DATA_DIRS=$work/other/share
+unset XDG_DATA_HOME
+
+# box_at FILE DURATION: the box, as a scene that lasts so long.
+box_at() {
+  mkdir -p "$(dirname "$1")"
+  sed "s#\.\./arms#$source_dir/app/arms#; s/^duration:.*/duration: $2/" "$source_dir/app/scenes/box.yaml" >"$1"
+}
+
+# From a folder without scenes: those of the source, for the program lies below it.
+expect 0 '^Loop +200 ticks' "$thimble" run box --duration 0.2
+expect 0 '^Loop +200 ticks' "$thimble" run box.yaml --duration 0.2 --arm vintage_phantom
+expect 0 '^  elephant .*/elephant\.yaml$' "$thimble" run --list
+expect 0 '^  vintage_phantom .*/vintage_phantom\.yaml$' "$thimble" run --list
+expect 0 "strokes an elephant's back" "$thimble" run --list
+expect 0 'carr|N/m' "$thimble" tune box
+expect 2 'elefant: there is no such file, and no scene of that name.*box, .*elephant' "$thimble" run elefant
+expect 2 'vintage: there is no such file, and no arm file of that name.*vintage_phantom' "$thimble" run box --arm vintage
+expect 2 'folder/elephant' "$thimble" run folder/elephant
+expect 2 'SCENE is required' "$thimble" run --duration 1
+
+# Nearer ones go before: other folders of the system, the user's own, ./app, a file of that name.
+expect 2 'only_there: there is no such file' "$thimble" run only_there
+box_at other/share/thimble/scenes/only_there.yaml 0.02
+expect 0 '^Loop +20 ticks' "$thimble" run only_there
+box_at home/.local/share/thimble/scenes/only_there.yaml 0.03
+expect 0 '^Loop +30 ticks' "$thimble" run only_there
+box_at xdg/thimble/scenes/only_there.yaml 0.04
+expect 0 '^Loop +40 ticks' env XDG_DATA_HOME="$work/xdg" "$thimble" run only_there
+box_at app/scenes/only_there.yaml 0.05
+expect 0 '^Loop +50 ticks' "$thimble" run only_there
+expect 0 '^  only_there +app/scenes/only_there\.yaml$' "$thimble" run --list
+box_at only_there 0.06
+expect 0 '^Loop +60 ticks' "$thimble" run only_there
+rm only_there && mkdir only_there  # a folder is no scene
+expect 0 '^Loop +50 ticks' "$thimble" run only_there
+
+# What is broken is listed without its words, and says why when it is run.
+printf '{[' >app/scenes/broken.yaml
+expect 0 '^  broken +app/scenes/broken\.yaml$' "$thimble" run --list
+expect 2 'broken\.yaml:1' "$thimble" run broken
+# A program that lies alone knows nothing by name, and says so.
+mkdir -p alone && cp "$thimble" alone/thimble
+(
+  cd alone
+  export XDG_DATA_DIRS=$work/none HOME=$work/none
+  # Below the source it would find that; so it stands where nothing is above.
+  away=$(mktemp -d)
+  cp thimble "$away/"
+  cd "$away"
+  expect 2 'None is known by name here; give the path of a file' ./thimble run box
+  expect 0 'none is known by name here' ./thimble run --list
+  rm -rf "$away"
+  exit "$failures"
+)
+failures=$((failures + $?))
+finish

@@ -1,0 +1,44 @@
+#!/usr/bin/env bash
+# Writes the reference, and fails for each public member without a word. Then a header with such a
+# member must be found out.
+#   reference_test.sh DOXYFILE SOURCE_FOLDER WORK_FOLDER
+set -euo pipefail
+doxyfile=$1 source=$2 work=$3
+command -v doxygen >/dev/null || {
+  echo "NOT TESTED: the reference of the public headers; install doxygen."
+  exit 77
+}
+rm -rf "$work"
+mkdir -p "$work"
+cd "$work"
+write() {  # FOLDER [SETTING...]: what doxygen warns of, if it is written there
+  mkdir -p "$1"
+  { cat "$doxyfile"; echo "OUTPUT_DIRECTORY = $1"; echo "WARN_LOGFILE = $1/warnings.txt"; printf '%s\n' "${@:2}"; } >"$1/Doxyfile"
+  doxygen "$1/Doxyfile" >"$1/log" 2>&1 || { cat "$1/log" >&2; exit 1; }
+}
+
+write "$work/whole"
+if [ -s whole/warnings.txt ]; then
+  sort -u whole/warnings.txt >&2
+  echo "FAILED: the lines above name what has no words, or wrong ones." >&2
+  exit 1
+fi
+for page in index.html classthimble_1_1driver_1_1SafetyGate.html; do
+  [ -s "whole/$page" ] || { echo "FAILED: no $page" >&2; exit 1; }
+done
+grep -q 'what the force law asked for' whole/structthimble_1_1driver_1_1TickRecord.html || { echo "FAILED: an empty page" >&2; exit 1; }
+
+cat >wordless.h <<'EOF'
+#pragma once
+/// Is a thing.
+struct Thing {
+  double told = 0;    ///< m
+  double untold = 0;
+};
+EOF
+write "$work/gap" "INPUT = $work/wordless.h" "USE_MDFILE_AS_MAINPAGE ="
+grep -q 'untold.*not documented' gap/warnings.txt && ! grep -q ' told' gap/warnings.txt || {
+  echo "FAILED: a member without a word was not found" >&2
+  exit 1
+}
+echo "$(find whole -name '*.html' | wc -l) pages without a gap."

@@ -1,0 +1,29 @@
+"""Where things are: the package as it was built (PYTHONPATH), the program, the sources."""
+
+import os
+import subprocess
+from pathlib import Path
+
+import pytest
+
+
+@pytest.fixture
+def program() -> str:
+    return os.environ["THIMBLE_PROGRAM"]
+
+
+@pytest.fixture
+def source() -> Path:
+    return Path(os.environ["THIMBLE_SOURCE"])
+
+
+@pytest.fixture
+def told(program, tmp_path):
+    """Runs the program in a folder of its own, and gives what it printed."""
+
+    def tell(*arguments: str) -> str:
+        return subprocess.run(
+            [program, *arguments], cwd=tmp_path, check=True, capture_output=True, text=True
+        ).stdout
+
+    return tell

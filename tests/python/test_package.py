@@ -1,0 +1,198 @@
+"""What the package answers beside a run: names, mistakes, arms, real time, studies."""
+
+import signal
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+import thimble
+
+
+def test_knows_scenes_and_arms_by_name(source):
+    scenes = {scene.name: scene for scene in thimble.scenes()}
+    assert {"elephant", "box", "clay"} <= set(scenes)
+    assert scenes["elephant"].path.is_file() and "elephant" in scenes["elephant"].description
+    assert "vintage_phantom" in {arm.name for arm in thimble.arms()}
+    by_path = thimble.run(source / "app/scenes/box.yaml", seconds=0.1)
+    assert by_path.columns.tobytes() == thimble.run("box", seconds=0.1).columns.tobytes()
+
+
+@pytest.mark.parametrize(
+    "wrong, said",
+    [
+        (lambda: thimble.run("elefant"), "Known by name: .*elephant"),
+        (lambda: thimble.run("./no_such.yaml"), "no_such"),
+        (lambda: thimble.run("box", arm="no_such_arm"), "vintage_phantom"),
+        (lambda: thimble.run("box", seconds=-1), "seconds: expected"),
+        (lambda: thimble.run("box", seconds=float("nan")), "seconds: expected"),
+        (lambda: thimble.run("box", quality="best"), "draft, normal or reference"),
+        (lambda: thimble.run("box", record="/no/such/folder/a.h5"), "/no/such/folder"),
+        (lambda: thimble.read_recording("no_such.h5"), "no such file"),
+        (lambda: thimble.Simulator("box"), "no arm file of that name"),
+        (lambda: thimble.Simulator(hand=(1, 1, 1)), "does not reach"),
+        (lambda: thimble.Simulator(rate=0), "rate: expected"),
+        (lambda: thimble.Stepper("box").mesh("no_such_object"), "no object"),
+        (lambda: thimble.Stepper("box").summary(), "not over"),
+        (lambda: thimble.open("box", "WH99", agree=True), "WH99"),
+        (lambda: thimble.study("no_such_study"), "no_such_study"),
+    ],
+)
+def test_mistakes_are_answered_with_a_sentence(wrong, said):
+    with pytest.raises(thimble.Error, match=said):
+        wrong()
+
+
+def test_wrong_types_are_told_before_anything_runs():
+    stepper = thimble.Stepper("box")
+    with pytest.raises(ValueError, match="hand: expected three numbers"):
+        stepper.step(hand=(0, 0))
+    with pytest.raises(ValueError, match="hand: expected three numbers"):
+        stepper.step(hand=(0, 0, float("nan")))
+    with pytest.raises(TypeError):
+        thimble.run("box", law=3)
+    assert stepper.tick is None
+
+
+def test_bad_scenes_name_file_and_line(tmp_path, source):
+    text = (source / "app/scenes/box.yaml").read_text().replace("../arms", str(source / "app/arms"))
+    bad = tmp_path / "bad.yaml"
+    bad.write_text(text.replace("stiffness:", "stifness:"))
+    with pytest.raises(thimble.Error, match=r"bad\.yaml:\d+: .*stifness"):
+        thimble.run(bad)
+
+
+def test_a_wall_that_is_too_stiff_is_warned_of(tmp_path, source):
+    text = (source / "app/scenes/box.yaml").read_text().replace("../arms", str(source / "app/arms"))
+    lines = ["    stiffness: 50000" if "stiffness:" in line else line for line in text.splitlines()]
+    (tmp_path / "stiff.yaml").write_text("\n".join(lines))
+    with pytest.warns(RuntimeWarning, match="N/m"):
+        thimble.run(tmp_path / "stiff.yaml", seconds=0.01)
+
+
+def test_a_simulated_arm_is_pushed_by_hand():
+    arm = thimble.Simulator("vintage_phantom", hand=(0, 0, 0))
+    rest = [arm.step() for _ in range(300)][-1]
+    pushed = [arm.step(force=(0.5, 0, 0)) for _ in range(600)][-1]
+    assert pushed.time == pytest.approx(0.899) and pushed.fault == ""
+    # The hand's spring gives way to the force, in its direction most.
+    way = pushed.tip - rest.tip
+    assert way[0] > 5e-4 and abs(way[0]) > 2 * max(abs(way[1]), abs(way[2]))
+    np.testing.assert_allclose(arm.true_force, [0.5, 0, 0], atol=0.05)
+    again = thimble.Simulator("vintage_phantom", hand=(0, 0, 0))
+    assert [again.step().tip.tobytes() for _ in range(300)][-1] == rest.tip.tobytes()
+
+
+def test_a_force_that_is_no_number_switches_the_arm_off_until_somebody_says_so():
+    arm = thimble.Simulator()
+    arm.step(force=(float("nan"), 0, 0))
+    assert arm.step(force=(0.5, 0, 0)).fault == "force_not_finite"
+    for _ in range(100):
+        assert (arm.step(force=(0.5, 0, 0)).force == 0).all()
+    arm.activate()
+    assert [arm.step(force=(0.5, 0, 0)) for _ in range(300)][-1].force[0] > 0.4
+
+
+def test_every_arm_can_be_simulated():
+    for arm in thimble.arms():
+        simulator = thimble.Simulator(arm.path, hand=_middle(arm.name))
+        assert simulator.step().fault == ""
+
+
+def _middle(name):
+    lower, upper = thimble.Simulator(name).workspace if name == "vintage_phantom" else (0, 0)
+    return (0.0, 0.0, 0.0) if name == "vintage_phantom" else _reached(name)
+
+
+def _reached(name):
+    for x in np.arange(-0.2, 0.21, 0.05):
+        for z in np.arange(-0.2, 0.21, 0.05):
+            try:
+                thimble.Simulator(name, hand=(x, 0, z))
+                return (x, 0, z)
+            except thimble.Error:
+                pass
+    raise AssertionError(f"{name} reaches nothing")
+
+
+def test_real_time_is_watched_from_the_side():
+    with thimble.open("elephant", "sim", seconds=30) as live:
+        begin = time.monotonic()
+        while (live.tick is None or live.tick.time < 0.05) and time.monotonic() < begin + 20:
+            time.sleep(0.005)
+        assert live.running and live.tick.time >= 0.05
+        with pytest.raises(thimble.Error, match="goes on"):
+            live.ticks()
+    assert not live.running and live.end == "stopped"
+    assert live.ticks()[-1].time >= 0.05
+    assert "zero force" in live.summary()
+    live.stop()  # again is nothing
+
+
+def test_real_time_takes_no_law_and_no_steps():
+    core = thimble._core
+    with pytest.raises(thimble.Error, match="virtual time alone"):
+        core.Run("box", real_time=True, law=lambda tick: None)
+    with pytest.raises(thimble.Error, match="not stepped by hand"):
+        core.Run("box", real_time=True).step()
+
+
+def test_nobody_is_surprised_by_a_real_arm():
+    with pytest.raises(thimble.Error, match="agree=True"):
+        thimble.open("box", "WH02")
+
+
+def _python(script):
+    """Starts a Python that hears SIGINT even if the tests run in the background."""
+    return subprocess.Popen(
+        [sys.executable, "-c", script],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        text=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+    )
+
+
+@pytest.mark.parametrize("way_out", ["end", "exception", "SIGTERM", "SIGINT"])
+def test_every_way_out_of_python_ends_with_zero_force(way_out, tmp_path):
+    record = tmp_path / "left.h5"
+    last = {"end": "", "exception": "raise SystemExit(3)"}.get(way_out, "time.sleep(60)")
+    script = f"""
+import time, thimble
+live = thimble.open("elephant", "sim", seconds=60, record={str(record)!r})
+while live.tick is None or live.tick.time < 0.1: time.sleep(0.005)
+print("on", flush=True)
+{last}
+"""
+    with _python(script) as python:
+        assert python.stdout.readline() == "on\n"
+        if way_out.startswith("SIG"):
+            python.send_signal(getattr(signal, way_out))
+        code = python.wait(timeout=60)
+    assert code == {"end": 0, "exception": 3, "SIGTERM": -signal.SIGTERM, "SIGINT": -signal.SIGINT}[way_out]
+    # Closed after the loop had ended, which is by zero force.
+    assert thimble.read_recording(record).complete
+
+
+def test_ctrl_c_ends_a_run_in_virtual_time():
+    script = """
+import thimble
+print("on", flush=True)
+try:
+    thimble.run("elephant", seconds=86400, quality="reference")
+except KeyboardInterrupt:
+    print("interrupted", flush=True)
+"""
+    with _python(script) as python:
+        assert python.stdout.readline() == "on\n"
+        time.sleep(0.3)
+        python.send_signal(signal.SIGINT)
+        assert python.stdout.readline() == "interrupted\n"
+        assert python.wait(timeout=60) == 0
+
+
+def test_a_study_gives_its_figures(tmp_path):
+    figures = thimble.study("box", out=tmp_path / "box")
+    assert figures and all(figure.met for figure in figures)
+    assert (tmp_path / "box/figures.json").is_file()

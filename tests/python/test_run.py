@@ -1,0 +1,185 @@
+"""A run from Python is a run of the program."""
+
+import math
+import threading
+
+import numpy as np
+import pytest
+import thimble
+
+SCENES = ["elephant", "tin_can", "rubber", "charges"]
+
+
+@pytest.mark.parametrize("scene", SCENES)
+def test_feels_the_same_to_the_bit_as_the_program(scene, told, tmp_path):
+    told("run", scene, "--duration", "1.5", "--record", "program.h5")
+    program = thimble.read_recording(tmp_path / "program.h5")
+    python = thimble.run(scene, seconds=1.5)
+    assert len(python) == 1500
+    for column in thimble.units():
+        if column != "work":
+            assert python.columns[column].tobytes() == program.columns[column].tobytes(), column
+
+
+def test_stepping_is_running():
+    stepper = thimble.Stepper("elephant", seconds=2)
+    steps = 0
+    while stepper.step():
+        steps += 1
+    run = thimble.run("elephant", seconds=2)
+    assert steps == 2000 and stepper.end == run.end == "done"
+    assert stepper.ticks().columns.tobytes() == run.columns.tobytes()
+    assert not stepper.step() and len(stepper.ticks()) == 2000
+
+
+def test_another_seed_is_another_tremor():
+    runs = [thimble.run("elephant", seconds=0.5, seed=seed) for seed in (5, 5, 6)]
+    assert runs[0].columns.tobytes() == runs[1].columns.tobytes()
+    assert runs[0].columns.tobytes() != runs[2].columns.tobytes()
+
+
+def test_gives_arrays_with_shapes_and_units():
+    run = thimble.run("elephant", seconds=4)
+    n = len(run)
+    assert n == 4000 and run.stride == 1
+    for array in (run.time, run.depth, run.in_contact, run.object):
+        assert array.shape == (n,)
+    for array in (run.tip, run.velocity, run.force, run.force_wanted, run.proxy, run.normal, run.joints):
+        assert array.shape == (n, 3) and array.dtype == np.float64
+    assert run.in_contact.dtype == np.bool_ and run.in_contact.any() and not run.in_contact.all()
+    np.testing.assert_allclose(np.diff(run.time), 1e-3, rtol=1e-9)  # s
+    assert np.abs(run.tip).max() < 0.3  # m, an arm on a desk
+    assert 0.1 < np.linalg.norm(run.force, axis=1).max() < 9  # N
+    # The velocity is that of the tip: its integral is the way, but for the lag of the estimate.
+    way = np.cumsum(run.velocity, axis=0) * 1e-3
+    assert np.abs(way - (run.tip - run.tip[0])).max() < 2e-3
+    # A spring of the scene's 500 N/m or less on the depth, along the normal, while nothing moves.
+    held = run.in_contact & (np.linalg.norm(run.velocity, axis=1) < 2e-3) & (run.depth > 1e-3)
+    assert (np.einsum("ij,ij->i", run.force[held], run.normal[held]) > 0).all()
+    units = thimble.units()
+    assert units["p_WT"][0] == "m" and units["f_sent_W"][0] == "N" and units["time"][0] == "ns"
+    assert set(units) == set(run.columns.dtype.names)
+
+
+def test_a_run_tells_itself_as_the_program_does(told, tmp_path):
+    run = thimble.run("rubber", seconds=1)
+    assert run.summary() in told("run", "rubber", "--duration", "1")
+    figures = {figure.name: figure for figure in run.figures()}
+    assert figures["lost_contacts"].met and figures["ticks"].value == 1000
+    assert figures["force_max"].value == pytest.approx(np.linalg.norm(run.force, axis=1).max())
+    assert run.info["clock"] == "virtual" and run.info["rate"] == 1000
+
+
+def test_records_what_it_returns(tmp_path):
+    run = thimble.run("honey", seconds=0.5, record=tmp_path / "honey.h5")
+    read = thimble.read_recording(tmp_path / "honey.h5")
+    assert read.complete and read.info["scene"] == run.info["scene"]
+    assert read.columns["f_sent_W"].tobytes() == run.columns["f_sent_W"].tobytes()
+    stepper = thimble.Stepper("honey", record=tmp_path / "cut.h5")
+    for _ in range(100):
+        stepper.step()
+    stepper.stop()
+    assert stepper.end == "stopped" and len(thimble.read_recording(tmp_path / "cut.h5")) == 100
+
+
+def test_meshes_are_as_they_are_now(source):
+    stepper = thimble.Stepper("clay")
+    vertices, triangles = stepper.mesh()
+    assert vertices.shape[1] == triangles.shape[1] == 3
+    assert 0 <= triangles.min() and triangles.max() < len(vertices)
+    while stepper.step():
+        pass
+    sculpted, _ = stepper.mesh(stepper.objects[0])
+    assert 1e-4 < np.abs(sculpted - vertices).max() < 0.05  # m
+
+
+def test_a_hand_is_led():
+    stepper = thimble.Stepper("box", seconds=1)
+    stepper.step()
+    goal = stepper.tick.tip + [0.0, 0.0, 0.02]
+    while stepper.step(hand=goal):
+        pass
+    # The arm's own weight and friction hang on the hand's spring.
+    assert np.linalg.norm(stepper.tick.tip - goal) < 5e-3
+
+
+def test_a_law_of_ones_own_goes_through_the_gate():
+    asked = []
+
+    def push(tick):
+        asked.append(tick.time)
+        return [0.0, 0.0, 0.4]
+
+    run = thimble.run("box", seconds=0.3, law=push)
+    assert len(asked) == 300 and np.diff(asked).min() > 0
+    assert (run.force_wanted == [0.0, 0.0, 0.4]).all()
+    assert np.linalg.norm(run.force[0]) < 0.01  # soft start
+    np.testing.assert_allclose(run.force[-1], [0.0, 0.0, 0.4], atol=0.01)  # steps of the currents
+    strong = thimble.run("box", seconds=0.3, law=lambda tick: (0, 0, 1000.0))
+    assert np.linalg.norm(strong.force, axis=1).max() <= thimble.Simulator().force_max * 1.001
+
+
+def test_a_law_that_answers_none_leaves_the_scenes_force():
+    own = thimble.run("elephant", seconds=2, law=lambda tick: None)
+    assert own.columns.tobytes() == thimble.run("elephant", seconds=2).columns.tobytes()
+
+
+def test_a_law_that_fails_is_zero_force_and_its_own_error():
+    def fail(tick):
+        if tick.time > 0.05:
+            raise ZeroDivisionError("mine")
+        return (0, 0, 0.3)
+
+    stepper = thimble.Stepper("box", law=fail)
+    with pytest.raises(ZeroDivisionError, match="mine"):
+        while stepper.step():
+            pass
+    assert stepper.tick.time == pytest.approx(0.051)
+    assert (stepper.tick.force == 0).all()
+    with pytest.raises(ValueError, match="three numbers"):
+        thimble.run("box", law=lambda tick: (1.0, 2.0))
+    not_finite = thimble.run("box", law=lambda tick: (math.nan, 0, 0))
+    assert not_finite.end == "fault" and not_finite[-1].fault == "force_not_finite"
+
+
+def test_a_law_may_not_step_its_own_run():
+    held = []
+    stepper = thimble.Stepper("box", law=lambda tick: held[0].step() and None)
+    held.append(stepper)
+    with pytest.raises(thimble.Error, match="already being stepped"):
+        stepper.step()
+
+
+def test_other_threads_of_python_go_on_meanwhile():
+    counted = [0]
+    done = threading.Event()
+
+    def count():
+        while not done.is_set():
+            counted[0] += 1
+
+    thread = threading.Thread(target=count)
+    thread.start()
+    while counted[0] == 0:
+        pass
+    before = counted[0]
+    thimble.run("elephant")
+    between = counted[0]
+    done.set()
+    thread.join()
+    assert between > before
+
+
+def test_runs_in_threads_do_not_disturb_each_other():
+    alone = thimble.run("tin_can", seconds=1).columns.tobytes()
+    felt = [b""] * 3
+
+    def feel(i):
+        felt[i] = thimble.run("tin_can", seconds=1).columns.tobytes()
+
+    threads = [threading.Thread(target=feel, args=(i,)) for i in range(len(felt))]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert felt == [alone] * len(felt)
