@@ -97,6 +97,15 @@ TEST(YamlReader, RefusesASecondDocument) {
             std::string::npos);
 }
 
+TEST(YamlReader, EndsWhereTheParserStandsStill) {
+  // Before such a comma yaml-cpp finds one empty document after the other.
+  for (const char* text : {",", ",nv", "a: 1\n---\n,b", "a: 1\n,b"}) {
+    const auto file = YamlFile::parse(text, "arm.yaml");
+    ASSERT_FALSE(file.ok()) << text;
+    EXPECT_TRUE(file.error().message.starts_with("arm.yaml")) << file.error().message;
+  }
+}
+
 TEST(YamlReader, ChecksEachNumberOfAVector) {
   EXPECT_EQ(mistakes_in("stiffness: 1\nplace: [0, 1]\n"),
             "arm.yaml:2: place: expected a list of three numbers in m, found a list of 2.");

@@ -10,7 +10,7 @@ namespace thimble::app {
 namespace {
 
 constexpr double kStart = 1e-3;  // m
-constexpr double kMost = 1e6;    // N/m
+constexpr double kStiffest = 1e6;    // N/m
 constexpr int kHalvings = 40;
 constexpr double kNearEnough = 1e-3;
 
@@ -59,7 +59,7 @@ bool grows(const RestedWall& wall, double stiffness) {
 
 double stiffest(const RestedWall& wall) {
   double holds = 1;
-  double fails = kMost;
+  double fails = kStiffest;
   if (grows(wall, holds)) return 0;
   for (int i = 0; i < kHalvings && fails > (1 + kNearEnough) * holds; ++i) {
     const double middle = std::sqrt(holds * fails);
