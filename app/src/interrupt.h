@@ -4,9 +4,9 @@
 
 namespace thimble::app {
 
-/// Makes Ctrl-C (SIGINT), SIGTERM and a closed terminal (SIGHUP) set a flag that every loop looks
-/// at in each tick, so that the program leaves by zero force. A second Ctrl-C ends the process at
-/// once; the arm's own watchdog is then what stops the motors.
+/// Makes Ctrl-C (SIGINT), SIGTERM and a closed terminal (SIGHUP; not under nohup) set a flag that
+/// every loop looks at in each tick, so that the program leaves by zero force. A second Ctrl-C ends
+/// the process at once; the arm's own watchdog is then what stops the motors.
 const std::atomic<bool>& catch_interrupts();
 
 /// Lets a reader of our output that is gone, and a file that may not grow, be errors of the write
