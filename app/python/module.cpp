@@ -287,13 +287,14 @@ py::list devices() {
 void bind_run(py::module_& core) {
   py::class_<HeldRun>(core, "Run")
       .def(py::init([](const std::string& scene, const std::string& arm, const std::string& device,
-                       bool real_time, std::optional<double> seconds,
+                       bool agreed, bool real_time, std::optional<double> seconds,
                        std::optional<std::uint64_t> seed, const std::string& quality,
                        const std::string& record, const std::string& firmware,
                        const py::object& law) {
              return std::make_unique<HeldRun>(RunOptions{.scene = scene,
                                                          .arm_file = arm,
                                                          .device = device,
+                                                         .agreed = agreed,
                                                          .real_time = real_time,
                                                          .seconds = seconds,
                                                          .seed = seed,
@@ -303,7 +304,7 @@ void bind_run(py::module_& core) {
                                               law);
            }),
            py::arg("scene"), py::kw_only(), py::arg("arm") = "", py::arg("device") = "sim",
-           py::arg("real_time") = false, py::arg("seconds") = py::none(),
+           py::arg("agreed") = false, py::arg("real_time") = false, py::arg("seconds") = py::none(),
            py::arg("seed") = py::none(), py::arg("quality") = "normal", py::arg("record") = "",
            py::arg("firmware") = "", py::arg("law") = py::none())
       .def("run", &run_all)

@@ -49,6 +49,12 @@ app::SessionOptions session_options(const RunOptions& options) {
           : driver::find_arms();
   asked.real_arm = value_of(
       app::choose_arm(plugged_in ? *plugged_in : std::vector<driver::FoundArm>(), options.device));
+  if (asked.real_arm && !options.agreed) {
+    throw Trouble(
+        asked.real_arm->arm + " " + asked.real_arm->name() +
+        " would get forces. Keep clear of it, hold its grip, keep its switch at hand, and "
+        "say agree=True.");
+  }
   const bool real_time = options.real_time || asked.real_arm;
   asked.clock = real_time ? app::ClockKind::kWall : app::ClockKind::kVirtual;
   asked.duration = options.seconds;

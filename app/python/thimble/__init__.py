@@ -291,6 +291,7 @@ def _begin(
     record: Optional[PathOrName],
     law: Optional[Law] = None,
     device: str = "sim",
+    agreed: bool = False,
     real_time: bool = False,
     firmware: Optional[PathOrName] = None,
 ) -> _core.Run:
@@ -298,6 +299,7 @@ def _begin(
         os.fspath(scene),
         arm=os.fspath(arm) if arm is not None else "",
         device=device,
+        agreed=agreed,
         real_time=real_time,
         seconds=seconds,
         seed=seed,
@@ -500,13 +502,11 @@ def open(
     Keep clear of it, hold its grip, have its switch at hand, and say so with ``agree=True``. firmware:
     image for an arm that needs one. Raises Error with what to do.
     """
-    if device != "sim" and not agree:
-        plugged_in = [one["name"] for one in devices()] if device == "auto" else [device]
-        if plugged_in:
-            raise Error(
-                f"{', '.join(plugged_in)} would get forces. Keep clear of it, hold its grip, keep its "
-                "switch at hand, and say agree=True."
-            )
+    if device not in ("sim", "auto") and not agree:  # what "auto" finds is asked about beneath
+        raise Error(
+            f"{device} would get forces. Keep clear of it, hold its grip, keep its switch at hand, and "
+            "say agree=True."
+        )
     held = _begin(
         scene,
         seconds=seconds,
@@ -515,6 +515,7 @@ def open(
         quality=quality,
         record=record,
         device=device,
+        agreed=agree,
         real_time=True,
         firmware=firmware,
     )

@@ -17,6 +17,7 @@ class Run:
         *,
         arm: str = "",
         device: str = "sim",
+        agreed: bool = False,
         real_time: bool = False,
         seconds: Optional[float] = None,
         seed: Optional[int] = None,
