@@ -14,9 +14,9 @@ namespace thimble::driver {
 /// Real-time: safe if the law is; one indirect call.
 class ForceLaw {
  public:
+  /// Takes the law to refer to; of a ForceLaw it is a copy. Real-time: safe.
   template <class Law>
-  requires(!std::same_as<std::remove_const_t<Law>, ForceLaw>)  // a copy is a copy
-      explicit ForceLaw(Law& law) noexcept
+  requires(!std::same_as<std::remove_const_t<Law>, ForceLaw>) explicit ForceLaw(Law& law) noexcept
       : law_(const_cast<void*>(static_cast<const void*>(&law))),
         call_([](void* self, const DeviceState& state) noexcept -> ForceCommand {
           static_assert(noexcept((*static_cast<Law*>(self))(state)),

@@ -17,9 +17,10 @@ namespace thimble::driver {
 /// noexcept` on the servo thread. Does not own it. Real-time: safe if the sink is.
 class TickSink {
  public:
+  /// Takes the sink to refer to; of a TickSink it is a copy. Real-time: safe.
   template <class Sink>
-  requires(!std::same_as<std::remove_const_t<Sink>, TickSink>)  // a copy is a copy
-      explicit TickSink(Sink& sink) noexcept
+  requires(!std::same_as<std::remove_const_t<Sink>, TickSink>) explicit TickSink(
+      Sink& sink) noexcept
       : sink_(const_cast<void*>(static_cast<const void*>(&sink))),
         call_([](void* self, const TickRecord& record) noexcept {
           static_assert(noexcept((*static_cast<Sink*>(self))(record)),
