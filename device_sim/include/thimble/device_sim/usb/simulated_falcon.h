@@ -35,9 +35,9 @@ class SimulatedFalcon {
 
   /// Gives the hand, to be led or held by whoever lets time pass. Real-time: safe.
   Hand& hand() noexcept { return falcon_.hand(); }
-  /// Gives the arm to another bus than `wire` makes, and tells the arm's own time (ns) at which its
-  /// hand begins. Real-time: safe.
+  /// Gives the arm to another bus than `wire` makes. Real-time: safe.
   UsbArm& on_bus() noexcept { return falcon_; }
+  /// Tells the arm's own time (ns) at which its hand begins. Real-time: safe.
   std::int64_t begin_ns() const noexcept { return begin_ns_; }
   const FalconOnUsb& arm() const noexcept { return falcon_; }  ///< Shows the arm.
 
