@@ -68,10 +68,15 @@ inside 'apt-get update -q'
 inside 'apt-get install -y -q --no-install-recommends ./root/thimble_*.deb'
 inside 'thimble run /usr/share/thimble/scenes/tin_can.yaml && thimble devices'
 echo "  the program: $(grep -m 1 touched log || head -n 1 log)"
+if ls "$bare"/root/python3-thimble_*.deb >/dev/null 2>&1; then
+  inside 'apt-get install -y -q --no-install-recommends ./root/python3-thimble_*.deb'
+  inside 'python3 -c "import thimble; print(len(thimble.run(\"tin_can\", seconds=2).time), \"ticks\")"'
+  echo "  Python: $(tail -n 1 log)"
+fi
 inside 'apt-get install -y -q --no-install-recommends ./root/libthimble-dev_*.deb g++ cmake make'
 inside 'cmake -S /usr/share/doc/thimble/examples -B /root/built && cmake --build /root/built'
 inside 'cd /root && for example in built/0?_*; do
           [ -x $example ] && [ -f $example ] || continue; $example || exit 1; done'
 echo "  the examples: $(tail -n 1 log)"
-inside 'apt-get purge -y -q thimble libthimble-dev && ! ls /usr/share/thimble'
+inside 'apt-get purge -y -q thimble libthimble-dev python3-thimble && ! ls /usr/share/thimble'
 echo "Done."
