@@ -66,6 +66,7 @@ class DeskArm {
   static thimble::device_sim::HandPath way(
       const std::vector<std::pair<double, Eigen::Vector3d>>& hand_W) {
     std::vector<thimble::device_sim::HandPath::Point> points;
+    points.reserve(hand_W.size());
     for (const auto& [time, p_WH] : hand_W) points.push_back({time, p_WH + home()});
     return thimble::device_sim::HandPath(points);
   }
