@@ -26,7 +26,7 @@ packages=(
 # What the program alone does not need.
 [ ${#targets[@]} -gt 0 ] || packages+=(
   libopenmpi-dev openmpi-bin             # sweeps over several machines
-  dpkg-dev                               # Debian packages
+  dpkg-dev file                          # Debian packages
   doxygen                                # the reference of the public headers
   python3-dev pybind11-dev               # the Python package ...
   python3-numpy python3-pytest           # ... and its tests

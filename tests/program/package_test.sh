@@ -17,10 +17,12 @@ fail() {
 }
 
 cd "$work"
-command -v dpkg-shlibdeps >/dev/null || {
-  echo "NOT TESTED: Debian packages; install dpkg-dev."
-  exit 77
-}
+for tool in dpkg-shlibdeps file; do
+  command -v $tool >/dev/null || {
+    echo "NOT TESTED: Debian packages; install dpkg-dev and file."
+    exit 77
+  }
+done
 cpack -G DEB --config "$build/CPackConfig.cmake" -B "$work" >log 2>&1 || fail "$(tail -n 40 log)"
 program=$(ls "$work"/thimble_*.deb) development=$(ls "$work"/libthimble-dev_*.deb)
 holds() {  # PACKAGE FILE

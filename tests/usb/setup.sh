@@ -7,6 +7,7 @@ packages=(
   linux-image-amd64   # its kernel, with vhci-hcd, usbhid and hid-generic as modules
   busybox-static cpio # its small system
   udev                # the real systemd-udevd, which reads udev/70-thimble.rules
+  systemd             # the rules that make uaccess give a device to who sits at it
 )
 exec "$(dirname "$0")/../optional_packages.sh" "the test of USB arms through a real kernel" \
   "${packages[@]}"

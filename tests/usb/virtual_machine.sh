@@ -27,6 +27,10 @@ for tool in qemu-system-x86_64 cpio; do
 done
 udevd=/lib/systemd/systemd-udevd
 [ -x $udevd ] || skip "systemd-udevd is missing"
+rules="50-udev-default 70-uaccess 71-seat 73-seat-late"
+for rule in $rules; do
+  [ -f "/lib/udev/rules.d/$rule.rules" ] || skip "udev's rule $rule is missing (Debian: udev, systemd)"
+done
 busybox=$(command -v busybox || true)
 [ -n "$busybox" ] && ! ldd "$busybox" >/dev/null 2>&1 || skip "a static busybox is missing"
 kernel=
@@ -73,7 +77,7 @@ for module in ../fs/configfs/configfs usb/gadget/udc/udc-core usb/gadget/libcomp
   echo "SKIPPED: arms as HID gadgets: this kernel has no module $module" >&2
   gadgets=
 done
-for rule in 50-udev-default 70-uaccess 71-seat 73-seat-late; do
+for rule in $rules; do
   cp "/lib/udev/rules.d/$rule.rules" "$root/lib/udev/rules.d/"
 done
 cp "$source/udev/70-thimble.rules" "$root/lib/udev/rules.d/"

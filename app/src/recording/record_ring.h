@@ -13,7 +13,7 @@ namespace thimble::app {
 
 /// Hands ticks from the servo to one writer: neither waits for the other, nothing is lost while
 /// there is room. All memory is there and touched when it is made.
-class RecordRing {
+class RecordRing {  // NOLINT(clang-analyzer-optin.performance.Padding): lines of their own below
  public:
   /// Makes room for `capacity` ticks (> 0). Real-time: never from the servo thread.
   explicit RecordRing(std::size_t capacity) : slots_(capacity) {}

@@ -203,14 +203,14 @@ Error ends_in(const Element& element, std::int64_t number) {
 // Reads one property and hands each of its numbers to `take`.
 template <class Take>
 bool read_property(const Property& property, Numbers& numbers, Take&& take) {
-  double count = 1;
+  std::size_t count = 1;
   if (property.count != nullptr) {
     const auto counted = numbers.next(*property.count);
     if (!counted || !(*counted >= 0 && *counted == std::floor(*counted))) return false;
     if (!numbers.may_hold(*counted)) return false;
-    count = *counted;
+    count = static_cast<std::size_t>(*counted);
   }
-  for (double i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < count; ++i) {
     const auto value = numbers.next(*property.type);
     if (!value) return false;
     take(*value);
