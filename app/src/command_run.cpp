@@ -224,11 +224,12 @@ int run_scene(const RunOptions& options) {
   keep_black_box(session);
   if (!grant.advice.empty()) spdlog::warn("{}", grant.advice);
 
+  // The touch went on, whatever became of the recording; who asked for one shall hear of it.
+  int exit_code_when_done = kExitDone;
   if (Recorder* recorder = session.recording().recorder()) {
     const std::string path = recorder->path();
-    // The touch went on, whatever became of the recording: the exit code is the touch's.
     if (const auto finished = session.recording().stop(); !finished) {
-      complain(finished.error(), kExitTrouble);
+      exit_code_when_done = complain(finished.error(), kExitTrouble);
     } else {
       std::printf("Recording: %s\n", path.c_str());
     }
@@ -265,9 +266,9 @@ int run_scene(const RunOptions& options) {
   switch (end) {
     case driver::ServoEnd::kDone:
       // A loop with a real arm outlives its faults.
-      return report.fault == driver::Fault::kNone ? kExitDone : kExitFault;
+      return report.fault == driver::Fault::kNone ? exit_code_when_done : kExitFault;
     case driver::ServoEnd::kStopped:
-      return desk && desk->ended() ? kExitDone : kExitInterrupted;
+      return desk && desk->ended() ? exit_code_when_done : kExitInterrupted;
     case driver::ServoEnd::kFault:
       return kExitFault;
   }
