@@ -117,6 +117,7 @@ driver::Result<void> write_map(const std::vector<StabilityRow>& rows,
                                const std::function<double(double)>& value,
                                const std::filesystem::path& file) {
   std::vector<std::vector<double>> lines;
+  lines.reserve(rows.size());
   for (const StabilityRow& row : rows) {
     lines.push_back({std::log10(row.cell.b), std::log10(row.cell.a), value(row.found[0])});
   }

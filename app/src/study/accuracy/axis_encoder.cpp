@@ -42,6 +42,7 @@ double error_of(const Wall& wall, double step) {
 Stroke work_of(const Wall& wall, double step) {
   const std::shared_ptr<VelocityEstimate> speed = product_estimate(wall.corner, kTick);
   std::vector<double> places;
+  places.reserve(kTicks);
   for (int i = 0; i < kTicks; ++i) places.push_back(counted(hand_signal(i * kTick).x, step));
   return [speed, places, wall] {
     double sum = 0;

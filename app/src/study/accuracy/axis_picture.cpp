@@ -53,7 +53,7 @@ std::vector<std::string> filled(const std::vector<std::string>& words, std::size
 // can be.
 std::vector<std::string> broken(const std::string& text, std::size_t width) {
   const std::vector<std::string> words = words_of(text);
-  const std::vector<std::string> fewest = filled(words, width);
+  std::vector<std::string> fewest = filled(words, width);
   for (std::size_t narrow = text.size() / fewest.size(); narrow < width; ++narrow) {
     std::vector<std::string> lines = filled(words, narrow);
     if (lines.size() == fewest.size()) return lines;
@@ -83,7 +83,10 @@ std::string tics_of(char axis, double low, double high) {
   std::string text = "set ";
   text.append(1, axis).append("tics (");
   bool first = true;
-  for (double power = std::pow(10, std::floor(std::log10(low))); power <= high; power *= 10) {
+  const int last_decade = static_cast<int>(std::floor(std::log10(high)));
+  for (int decade = static_cast<int>(std::floor(std::log10(low))); decade <= last_decade;
+       ++decade) {
+    const double power = std::pow(10, decade);
     for (const double factor : {1.0, 2.0, 3.0, 5.0}) {
       if (factor > 1 && (high / low > 300 || (factor == 3) != high_numbers)) continue;
       if (factor * power < low || factor * power > high) continue;

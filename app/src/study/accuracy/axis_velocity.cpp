@@ -48,6 +48,7 @@ double give_of(const Make& make) {
 Stroke work_of(const Make& make) {
   const std::shared_ptr<VelocityEstimate> estimate = make();
   std::vector<double> places;
+  places.reserve(kTicks);
   for (int i = 0; i < kTicks; ++i) places.push_back(counted(hand_signal(i * kTick).x, kStep));
   return [estimate, places] {
     double sum = 0;
