@@ -219,7 +219,7 @@ py::tuple mesh_of(const HeldRun& held, const std::optional<std::string>& object)
       {static_cast<py::ssize_t>(mesh.triangles.size()), py::ssize_t{3}});
   static_assert(sizeof(Eigen::Vector3d) == 3 * sizeof(double));
   if (!mesh.vertices.empty()) {
-    std::memcpy(vertices.mutable_data(), mesh.vertices.data(),
+    std::memcpy(vertices.mutable_data(), mesh.vertices.front().data(),
                 mesh.vertices.size() * sizeof(Eigen::Vector3d));
   }
   if (!mesh.triangles.empty()) {

@@ -209,7 +209,7 @@ class Examination {
     const fs::path interface = arm.sysfs / (arm.sysfs.filename().string() + ":1.0");
     std::error_code ignored;
     for (const auto& entry : fs::directory_iterator(interface, ignored)) {
-      const std::string latency = read_line(entry.path() / "latency_timer");
+      std::string latency = read_line(entry.path() / "latency_timer");
       if (!latency.empty()) return latency;
     }
     return {};

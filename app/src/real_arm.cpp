@@ -100,7 +100,7 @@ Result<std::optional<FoundArm>> choose_arm(const std::vector<FoundArm>& plugged_
   std::string names;
   for (const FoundArm& arm : plugged_in) {
     if (arm.kind == ArmKind::kUnsupported) continue;
-    names += (names.empty() ? "" : ", ") + arm.name();
+    names.append(names.empty() ? "" : ", ").append(arm.name());
     if (wanted != "auto" && arm.name() != wanted) continue;
     if (found) {
       return Error{"Several arms answer to '" + wanted + "': " + names +

@@ -25,12 +25,19 @@ struct Turn {
   double cosine, sine, wave_cosine, wave_sine;
 };
 
+/// Is the place of (row, column) in a table that is stored row by row.
+std::size_t index(std::int32_t row, std::int32_t columns, std::int32_t column) noexcept {
+  return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
+         static_cast<std::size_t>(column);
+}
+
 Turn turn_of(double angle, int waves) noexcept {
   return {std::cos(angle), std::sin(angle), std::cos(waves * angle), std::sin(waves * angle)};
 }
 
 std::vector<Turn> turns(std::int32_t count, int waves) {
   std::vector<Turn> all;
+  all.reserve(static_cast<std::size_t>(count));
   for (std::int32_t i = 0; i < count; ++i) {
     all.push_back(turn_of(2 * std::numbers::pi * i / count, waves));
   }
@@ -74,8 +81,8 @@ class RingNumbers {
     const std::int32_t patches = grid.around / kPatchAround * patches_across_;
     std::vector<std::uint64_t> keys;
     for (std::int32_t patch = 0; patch < patches; ++patch) {
-      const double u =
-          2 * std::numbers::pi * (patch / patches_across_ + 0.5) * kPatchAround / grid.around;
+      const std::int32_t row = patch / patches_across_;
+      const double u = 2 * std::numbers::pi * (row + 0.5) * kPatchAround / grid.around;
       const double v =
           2 * std::numbers::pi * (patch % patches_across_ + 0.5) * kPatchAcross / grid.across;
       std::uint64_t key = 0;
@@ -104,7 +111,7 @@ class RingNumbers {
           place |= ((i >> bit) & 1) << (2 * bit);
           if (bit < 4) place |= ((j >> bit) & 1) << (2 * bit + 1);
         }
-        place_[static_cast<std::size_t>(i * kPatchAcross + j)] = place;
+        place_[index(i, kPatchAcross, j)] = place;
       }
     }
   }
@@ -129,7 +136,7 @@ class RingNumbers {
 
   /// Tells which place square (i, j) of a patch has in its page.
   std::int32_t place(std::int32_t i, std::int32_t j) const {
-    return place_[static_cast<std::size_t>(i * kPatchAcross + j)];
+    return place_[index(i, kPatchAcross, j)];
   }
 
  private:
@@ -190,7 +197,7 @@ driver::Result<void> write_ring(const BumpyRing& ring, const RingGrid& grid,
   constexpr std::int32_t kCornersAcross = kPatchAcross + 1;
   std::vector<Corner> corners(static_cast<std::size_t>((kPatchAround + 1) * kCornersAcross));
   const auto corner = [&corners](std::int32_t i, std::int32_t j) -> Corner& {
-    return corners[static_cast<std::size_t>(i * kCornersAcross + j)];
+    return corners[index(i, kCornersAcross, j)];
   };
   std::vector<render::CompactTriangle> page(render::kPageRecords);
   for (std::int32_t number = 0; number < numbers.pages(); ++number) {
@@ -209,7 +216,7 @@ driver::Result<void> write_ring(const BumpyRing& ring, const RingGrid& grid,
     }
     for (std::int32_t i = 0; i < kPatchAround; ++i) {
       for (std::int32_t j = 0; j < kPatchAcross; ++j) {
-        const auto at = static_cast<std::size_t>(2 * numbers.place(i, j));
+        const auto at = 2 * static_cast<std::size_t>(numbers.place(i, j));
         const std::int32_t gi = i0 + i, gj = j0 + j;
         page[at] = record_of(corner(i, j), corner(i + 1, j), corner(i + 1, j + 1));
         page[at].neighbours = {numbers.triangle(gi, gj - 1, true),

@@ -221,7 +221,12 @@ driver::Result<Scene> read_scene(const std::filesystem::path& file,
   }
   if (!other_arm.empty()) scene.arm_file = other_arm;
   auto arm = read_arm_file(scene.arm_file);
-  if (arm) scene.arm = std::move(arm).value();
+  std::optional<driver::Error> arm_error;
+  if (arm) {
+    scene.arm = std::move(arm).value();
+  } else {
+    arm_error = arm.error();
+  }
   const render::EffectSurroundings surroundings = surroundings_of(scene.arm, scene.rate);
   for (YamlMap& object : root.require_maps("objects")) {
     scene.objects.push_back(read_object(object, folder, mesh_folder, surroundings));
@@ -237,7 +242,7 @@ driver::Result<Scene> read_scene(const std::filesystem::path& file,
   scene.hand = read_hand(root.require_map("hand"), scene.objects, scene.arm.simulated.hand);
   root.finish();
   if (auto done = yaml->finish(); !done) return done.error();
-  if (!arm) return arm.error();
+  if (arm_error) return *arm_error;
   return scene;
 }
 

@@ -20,7 +20,7 @@ fs::path own_file() {
   std::error_code status;
   Dl_info info{};
   if (dladdr(reinterpret_cast<const void*>(&own_file), &info) != 0 && info.dli_fname != nullptr) {
-    const fs::path file = fs::canonical(info.dli_fname, status);
+    fs::path file = fs::canonical(info.dli_fname, status);
     // Of a program it is told as it was called: without a folder if the shell found it.
     if (!status && file.extension() == ".so") return file;
   }
@@ -64,6 +64,7 @@ std::vector<ShippedFile> list(const char* kind) {
     }
   }
   std::vector<ShippedFile> files;
+  files.reserve(found.size());
   for (const auto& [name, path] : found) files.push_back({name, path});
   return files;
 }

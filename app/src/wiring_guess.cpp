@@ -59,20 +59,20 @@ std::string describe_wiring(const WiringGuess& guess, const std::string& what,
                             const std::string& backwards, const std::string& dead) {
   std::string text;
   const auto say = [&text](const std::string& sentence) {
-    text += (text.empty() ? "" : " ") + sentence;
+    text.append(text.empty() ? "" : " ").append(sentence);
   };
   for (int i = 0; i < 3; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    const std::string number = std::to_string(i + 1);
+    const std::string name = what + ' ' + std::to_string(i + 1);
     if (guess.sign[k] == 0) {
-      say(what + " " + number + " " + dead + ".");
+      say(name + ' ' + dead + '.');
       continue;
     }
     if (guess.source[k] != i) {
-      say(what + " " + number + " does what " + std::to_string(guess.source[k] + 1) +
+      say(name + " does what " + std::to_string(guess.source[k] + 1) +
           " should: they are swapped.");
     }
-    if (guess.sign[k] < 0) say(what + " " + number + " " + backwards + ".");
+    if (guess.sign[k] < 0) say(name + ' ' + backwards + '.');
   }
   return text;
 }

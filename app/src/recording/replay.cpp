@@ -2,7 +2,8 @@
 
 #include <Eigen/Core>
 #include <algorithm>
-#include <cstring>
+#include <bit>
+#include <cstdint>
 
 #include "thimble/driver/device_state.h"
 #include "thimble/driver/force_command.h"
@@ -40,7 +41,8 @@ ReplayComparison replay(std::span<const driver::TickRecord> recorded, SceneObjec
 
     ++comparison.ticks;
     const auto f_W = plain(command.f_T_W);
-    if (std::memcmp(f_W.data(), then.f_wanted_W.data(), sizeof f_W) != 0) {
+    using Bits = std::array<std::uint64_t, 3>;
+    if (std::bit_cast<Bits>(f_W) != std::bit_cast<Bits>(then.f_wanted_W)) {
       ++comparison.differing;
       if (!comparison.first) comparison.first = then.tick;
       const double difference = (command.f_T_W - vector(then.f_wanted_W)).norm();

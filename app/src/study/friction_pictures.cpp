@@ -1,5 +1,6 @@
 #include "friction_pictures.h"
 
+#include <cmath>
 #include <cstdio>
 #include <span>
 #include <sstream>
@@ -41,7 +42,7 @@ std::string stop_table(const RigRun& run) {
 
 std::string spectrum_table(const RigRun& run) {
   const double rate = 1 / run.period;
-  const auto second = static_cast<std::size_t>(rate + 0.5);
+  const auto second = static_cast<std::size_t>(std::lround(rate));
   std::ostringstream text;
   text << "# frequency Hz, amplitude of the force N\n";
   for (const SpectralLine& line : spectrum(std::span<const double>(run.force).last(second), rate)) {

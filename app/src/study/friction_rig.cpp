@@ -99,6 +99,7 @@ RigRun rub(render::AnyStage& friction, const std::vector<RigPoint>& way, double 
   const auto model = model_with_step(settings.encoder_step);
   const Eigen::Vector3d p_WB(-kUpperLink, 0, kLowerLink);  // the world's origin is the tip at home
   std::vector<device_sim::HandPath::Point> path;
+  path.reserve(way.size());
   for (const RigPoint& point : way) {
     path.push_back({point.time, Eigen::Vector3d(point.x, 0, 0) - p_WB});
   }

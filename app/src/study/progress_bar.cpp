@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <cmath>
 #include <cstdio>
 #include <string>
 
@@ -35,7 +36,7 @@ void ProgressBar::show(std::size_t done) {
   if (done > first_) {
     const double more =
         passed / static_cast<double>(done - first_) * static_cast<double>(all_ - done);
-    const auto seconds = static_cast<long>(more + 0.5);
+    const long seconds = std::lround(more);
     std::snprintf(rest, sizeof rest, ", %ld:%02ld left", seconds / 60, seconds % 60);
   }
   std::fprintf(stderr, "\r[%s%s] %zu of %zu%s\033[K", full.c_str(), left.c_str(), done, all_, rest);

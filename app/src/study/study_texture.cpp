@@ -54,8 +54,7 @@ Force wall_with(const Stage& stage) {
     render::SurfaceFeel feel;
     feel.contact = {.touching = true, .triangle = 0, .depth = -p_W.z(), .n_W = Vector3d::UnitZ()};
     render::SpringDamper spring{kStiffness, 0};
-    auto texture = stage;
-    texture.touch(state, feel);
+    stage.touch(state, feel);
     spring.touch(state, feel);
     return feel.f_T_W;
   };
@@ -78,6 +77,7 @@ render::Sines::Settings three_waves(render::TextureForm form) {
 /// Is a picture of sine stripes, 16 pixels each.
 render::HeightMap::Settings stripes(render::TextureForm form) {
   std::vector<float> values;
+  values.reserve(16);
   for (int k = 0; k < 16; ++k) {
     values.push_back(static_cast<float>(0.5 + 0.5 * std::sin(kTurn * k / 16)));
   }
@@ -131,6 +131,7 @@ std::vector<double> spectrum_of(const Force& force, double step, bool noise) {
     push.emplace_back(window * force({x, 0, -kDepth}).z());
   }
   std::vector<std::complex<double>> turn;
+  turn.reserve(kTicks);
   for (int k = 0; k < kTicks; ++k) turn.push_back(std::polar(1.0, -kTurn * k / kTicks));
   std::vector<double> amplitude;
   for (std::size_t line = 0; line < kTicks / 2; ++line) {

@@ -184,7 +184,8 @@ std::vector<std::int64_t> spread_ticks(std::int64_t period_ns, double spread, st
                                        std::uint64_t seed) {
   constexpr std::size_t kCount = 2000;
   std::vector<std::int64_t> gaps;
-  const auto grains = static_cast<double>(period_ns / grain_ns);
+  const std::int64_t whole_grains = period_ns / grain_ns;
+  const auto grains = static_cast<double>(whole_grains);
   for (std::size_t i = 0; i < kCount; ++i) {
     const double u = (static_cast<double>(i) + 0.5) / kCount;
     gaps.push_back(grain_ns * std::llround(grains * (1 + spread * (2 * u - 1))));

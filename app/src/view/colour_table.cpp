@@ -1,6 +1,7 @@
 #include "view/colour_table.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <unordered_map>
@@ -60,6 +61,7 @@ ColourTable::ColourTable(const std::vector<const Picture*>& pictures)
     }
   }
   std::vector<Counted> list;
+  list.reserve(counts.size());
   for (const auto& [rgb, count] : counts) {
     list.push_back({{static_cast<std::uint8_t>(rgb >> 16U), static_cast<std::uint8_t>(rgb >> 8U),
                      static_cast<std::uint8_t>(rgb)},
@@ -107,9 +109,10 @@ ColourTable::ColourTable(const std::vector<const Picture*>& pictures)
       count += static_cast<double>(list[i].count);
     }
     if (count == 0) continue;
-    colours_.push_back({static_cast<std::uint8_t>(sum[0] / count + 0.5),
-                        static_cast<std::uint8_t>(sum[1] / count + 0.5),
-                        static_cast<std::uint8_t>(sum[2] / count + 0.5)});
+    const auto mean = [&](std::size_t k) {
+      return static_cast<std::uint8_t>(std::lround(sum[k] / count));
+    };
+    colours_.push_back({mean(0), mean(1), mean(2)});
   }
 }
 

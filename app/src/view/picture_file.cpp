@@ -164,6 +164,7 @@ driver::Result<void> write_png(const Picture& picture, const std::filesystem::pa
 driver::Result<void> write_animated_png(const std::vector<Picture>& pictures, double frame_time,
                                         const std::filesystem::path& file) {
   std::vector<const Picture*> all;
+  all.reserve(pictures.size());
   for (const Picture& picture : pictures) all.push_back(&picture);
   const ColourTable table(all);
   PngChunks chunks(file);

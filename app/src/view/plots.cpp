@@ -144,8 +144,8 @@ void Plots::draw_periods(ImDrawList& list, const ScreenPart& part, std::int64_t 
   for (const Sample& sample : samples_) {
     if (!(sample.period > 0)) continue;
     const double share = 0.5 + 0.5 * (sample.period - wanted) / reach;
-    ++count[static_cast<std::size_t>(
-        std::clamp(share * (kBins - 1), 0.0, static_cast<double>(kBins - 1)) + 0.5)];
+    const double last = kBins - 1;
+    ++count[static_cast<std::size_t>(std::lround(std::clamp(share * last, 0.0, last)))];
   }
   char range[64];
   std::snprintf(range, sizeof range, "%g +/- %g", wanted, reach);

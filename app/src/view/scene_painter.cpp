@@ -276,6 +276,7 @@ void ScenePainter::paint_panes(const std::vector<Pane>& panes, const Camera& cam
   if (panes.empty()) return;
   // The farthest first, so that each is seen through those before it.
   std::vector<const Pane*> order;
+  order.reserve(panes.size());
   for (const Pane& pane : panes) order.push_back(&pane);
   const auto distance = [&](const Pane* pane) {
     const auto& c = pane->corners_W;

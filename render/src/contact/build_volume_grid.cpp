@@ -204,7 +204,8 @@ VolumeGrid build_volume_grid(const Surface& surface, const SearchFrame& frame) {
       }
       const std::size_t bit = (x & 3) + 4 * (y & 3) + 16 * (z & 3);
       parts.all_blocks[word].occupied |= std::uint64_t{1} << bit;
-      listed.push_back({static_cast<std::uint32_t>(64 * word + bit), static_cast<std::int32_t>(t)});
+      listed.push_back(
+          {static_cast<std::uint32_t>(std::size_t{64} * word + bit), static_cast<std::int32_t>(t)});
     });
   }
   parts.all_blocks.shrink_to_fit();

@@ -189,7 +189,7 @@ std::vector<std::int32_t> close_seams(TriangleMesh& mesh, double tolerance,
     const auto t = static_cast<std::size_t>(use.triangle);
     // A triangle with several long edges has its turn again in the next round.
     if (touched[t]) continue;
-    const auto corner = static_cast<std::size_t>(use.corner);
+    const auto corner = static_cast<std::size_t>(static_cast<unsigned char>(use.corner));
     const std::int32_t from = mesh.triangles[t][corner];
     const std::int32_t to = mesh.triangles[t][(corner + 1) % 3];
     const std::int32_t third = mesh.triangles[t][(corner + 2) % 3];
