@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# Fuzzes the readers of each kind of file for 2 s (a fifth of THIMBLE_FUZZ_SECONDS, if that is set),
-# or with THIMBLE_LONG for 60 s each, as many at once as there are processors. Skipped where the
-# fuzzer was not built.
+# Fuzzes what reads scenes and arms, what reads meshes, what reads pages and what reads recordings for 4 s
+# each (THIMBLE_FUZZ_SECONDS says another time), which the kinds of such a file share; or with
+# THIMBLE_LONG each kind for 60 s, as many at once as there are processors. Skipped where the fuzzer was
+# not built.
 #   tests/fuzz/run_files.sh BUILD_DIR CORPUS
 set -euo pipefail
 fuzzer=$(realpath "$1")/fuzz_files
@@ -10,8 +11,15 @@ if [ ! -x "$fuzzer" ]; then
   echo "FUZZING SKIPPED: build it with: cmake --build --preset release --target fuzz"
   exit 77
 fi
-seconds=$((${THIMBLE_FUZZ_SECONDS:-10} / 5))
-[ -z "${THIMBLE_LONG:-}" ] || seconds=60
+seconds_of() {  # seconds_of KIND
+  local all=${THIMBLE_FUZZ_SECONDS:-4}
+  [ -z "${THIMBLE_LONG:-}" ] || { echo 60; return; }
+  case $1 in
+    scene | arm) echo $((all / 2)) ;;
+    off | obj | stl | ply) echo $((all / 4)) ;;
+    *) echo "$all" ;;
+  esac
+}
 [ -n "${TMPDIR:-}" ] || [ ! -w /dev/shm ] || export TMPDIR=/dev/shm  # some disks are slow
 work=$(mktemp -d)
 export TMPDIR=$work  # the files that are read
@@ -24,7 +32,7 @@ cd "$work"
 # A crash is shown: copy it into the corpus of its kind, named after the fault.
 fuzz() {  # fuzz KIND
   mkdir "found_$1"
-  THIMBLE_FILE_KIND=$1 "$fuzzer" -max_total_time="$seconds" -max_len=2000 -timeout=20 \
+  THIMBLE_FILE_KIND=$1 "$fuzzer" -max_total_time="$(seconds_of "$1")" -max_len=2000 -timeout=20 \
     -malloc_limit_mb=65536 -rss_limit_mb=4096 -seed=1 -print_final_stats=1 \
     -artifact_prefix="$work/$1_" "found_$1" "$corpus/$1" >"$1.log" 2>&1 || {
     tail -n 40 "$1.log"
@@ -35,8 +43,8 @@ fuzz() {  # fuzz KIND
   }
   echo "$1: $(grep -oE 'number_of_executed_units: *[0-9]+' "$1.log")"
 }
-export -f fuzz
-export fuzzer corpus work seconds
+export -f fuzz seconds_of
+export fuzzer corpus work
 for kind in "$corpus"/*; do basename "$kind"; done |
   xargs -P "$([ -z "${THIMBLE_LONG:-}" ] && echo 1 || nproc)" -I{} \
     bash -c 'set -euo pipefail; fuzz {}'

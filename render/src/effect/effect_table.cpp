@@ -22,7 +22,8 @@ namespace {
 // others cost a scene nothing which does not name them (tests/arch).
 constexpr bool kept([[maybe_unused]] std::string_view name) {
 #ifdef THIMBLE_ONLY_EFFECT
-  return name == THIMBLE_ONLY_EFFECT;
+  constexpr std::string_view only = THIMBLE_ONLY_EFFECT;
+  return name == only;
 #else
   return true;
 #endif

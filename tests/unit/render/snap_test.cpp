@@ -174,7 +174,7 @@ TEST(SnapBase, RunsNoFasterThanItMayAndReleasesTheSame) {
   for (double load = 0; load < 0.9949; load += 1e-4) base.pull_by_load(load, 1e-3);
   EXPECT_EQ(base.snaps(), 0);
   int ticks = 0;
-  double before = base.way();
+  double before = 0;
   do {
     before = base.way();
     base.pull_by_load(0.99500, 1e-3);
