@@ -77,8 +77,12 @@ void LoweredTriangle::unpack(const CompactTriangle& r) noexcept {
   if (wide_lanes()) {
     unpack_wide(r);
   } else {
-    unpack_here(r);
+    unpack_plain(r);
   }
+}
+
+void LoweredTriangle::unpack_plain(const CompactTriangle& r) noexcept {
+  unpack_here(r);
 }
 
 void LoweredTriangle::unpack_wide(const CompactTriangle& r) noexcept {

@@ -36,8 +36,9 @@ class alignas(64) LoweredTriangle {
  public:
   /// Unpacks a record; the same bits give the same answers ever after.
   void unpack(const CompactTriangle& record) noexcept;
-  /// Does the same. Precondition: `wide_lanes` says yes.
+  /// Do the same, for who knows what `wide_lanes` says; the first where it says yes only.
   THIMBLE_FOR_AVX2 void unpack_wide(const CompactTriangle& record) noexcept;
+  void unpack_plain(const CompactTriangle& record) noexcept;
 
   /// Finds where `p` belongs; the answer depends on `p` and the record alone.
   LoweredPlace locate(const Eigen::Vector3d& p) const noexcept;
@@ -104,7 +105,13 @@ inline LoweredPlace LoweredTriangle::locate(const Eigen::Vector3d& p) const noex
   const double change = place.depth - d;
   // Written so that NaN asks for no more rounds.
   if (change * change * tilt_squared_ > kPlaced * kPlaced) [[unlikely]] {
-    place = locate_far(ab, h, place.depth);
+    // Number by number, so that a place stays in registers where this is not done.
+    const LoweredPlace far = locate_far(ab, h, place.depth);
+    place.l0 = far.l0;
+    place.l1 = far.l1;
+    place.l2 = far.l2;
+    place.depth = far.depth;
+    place.valid = far.valid;
   }
   return place;
 }
@@ -155,12 +162,13 @@ inline LoweredFeel LoweredTriangle::feel_within(const LoweredPlace& place) const
       _mm_add_ps(row(n_[0]), _mm_add_ps(_mm_mul_ps(row(n_[1]), _mm_shuffle_ps(l, l, 0x00)),
                                         _mm_mul_ps(row(n_[2]), _mm_shuffle_ps(l, l, 0x55))));
   const __m128d xy = _mm_cvtps_pd(normal);
-  const double z = _mm_cvtsd_f64(_mm_cvtps_pd(_mm_movehl_ps(normal, normal)));
+  const __m128d z = _mm_cvtps_pd(_mm_movehl_ps(normal, normal));
   const __m128d squares = _mm_mul_pd(xy, xy);
-  const double squared =
-      _mm_cvtsd_f64(_mm_add_sd(squares, _mm_unpackhi_pd(squares, squares))) + z * z;
+  const __m128d sum =
+      _mm_add_sd(_mm_add_sd(squares, _mm_unpackhi_pd(squares, squares)), _mm_mul_sd(z, z));
+  const double squared = low(sum);
   // The bare instruction: nothing here is negative, and nobody reads errno.
-  const double size = _mm_cvtsd_f64(_mm_sqrt_sd(_mm_setzero_pd(), _mm_set_sd(squared)));
+  const double size = low(_mm_sqrt_sd(sum, sum));
   const double rise =
       place.l1 * (place.l0 * bulge_[0] + place.l2 * bulge_[1]) + place.l2 * place.l0 * bulge_[2];
   // Divided by 1 + size in place of 2 the bend is exact on a sphere, however coarse. One division
@@ -168,7 +176,7 @@ inline LoweredFeel LoweredTriangle::feel_within(const LoweredPlace& place) const
   const double both = 1 / (size + squared);
   const double per_size = (1 + size) * both;
   const __m128d n = _mm_mul_pd(xy, _mm_set1_pd(per_size));
-  return {{_mm_cvtsd_f64(n), _mm_cvtsd_f64(_mm_unpackhi_pd(n, n)), z * per_size},
+  return {{low(n), high(n), low(z) * per_size},
           place.depth * size + rise * (size * both)};
 }
 

@@ -140,7 +140,11 @@ bool RecordContact<Store>::activate(std::int32_t triangle) noexcept {
   const CompactTriangle* record = store_.find(triangle);
   if (absent(record)) return false;
   active_ = triangle;
-  lowered_.unpack(*record);
+  if (wide_) {
+    lowered_.unpack_wide(*record);
+  } else {
+    lowered_.unpack_plain(*record);
+  }
   if constexpr (Store::kComplete) {
     // The tip goes to one of these, now or in a later tick.
     for (const std::int32_t t : record->neighbours) __builtin_prefetch(store_.find(t));
