@@ -101,6 +101,7 @@ class RecordContact {
   Outcome edge_to_hop(const Eigen::Vector3d& p, const LoweredPlace& place,
                       int& edge) const noexcept;
   bool activate(std::int32_t triangle) noexcept;
+  void fetch_around(const CompactTriangle& record) const noexcept;
   void report(const Eigen::Vector3d& p_WT, const LoweredFeel& felt) noexcept;
   void measure(const Eigen::Vector3d& p_WT, const LoweredFeel& felt) noexcept;
   void end() noexcept;

@@ -152,6 +152,23 @@ bool RecordContact<Store>::activate(std::int32_t triangle) noexcept {
   return true;
 }
 
+// Asks for the records that the tip may go to next. Which it is, is known only when this one has
+// been looked at: who waits for that waits for one line of far memory after another. Records that
+// are near in space are near in memory, so most of the way comes with what lies around.
+template <RecordStore Store>
+inline void RecordContact<Store>::fetch_around(const CompactTriangle& record) const noexcept {
+  if constexpr (Store::kComplete) {
+    for (const std::int32_t t : record.neighbours) __builtin_prefetch(store_.find(t));
+  }
+  // Addresses, since some may lie outside of all records: asking for those does nothing.
+  constexpr std::uintptr_t kAround = 4, kLine = sizeof(CompactTriangle);
+  const auto here = reinterpret_cast<std::uintptr_t>(&record);
+  for (std::uintptr_t i = 1; i <= kAround; ++i) {
+    __builtin_prefetch(reinterpret_cast<const void*>(here + i * kLine));
+    __builtin_prefetch(reinterpret_cast<const void*>(here - i * kLine));
+  }
+}
+
 // Tells the edge that the tip is farthest outside of, as a share of the triangle's height; -1 if
 // the triangle holds it.
 template <RecordStore Store>
@@ -178,12 +195,12 @@ typename RecordContact<Store>::Outcome RecordContact<Store>::edge_to_hop(const E
   return Outcome::kYes;
 }
 
-// Walks over the triangles as they lie, seen along the last tick's normal; stops at creases and at
-// the last record at hand.
+// Walks over the triangles as they lie, seen along the normal of the active one, which is known long
+// before what the last tick felt; stops at creases and at the last record at hand.
 template <RecordStore Store>
 typename RecordContact<Store>::Outcome RecordContact<Store>::walk(const Eigen::Vector3d& p,
                                                                   std::int32_t& triangle) noexcept {
-  const RecordWalk way(p, state_.n_W);
+  const RecordWalk way(p, lowered_.face());
   const CompactTriangle* record = store_.find(triangle);
   if (absent(record)) return Outcome::kUnknown;
   for (; state_.hops < kWalkMax; ++state_.hops) {
@@ -193,6 +210,7 @@ typename RecordContact<Store>::Outcome RecordContact<Store>::walk(const Eigen::V
     record = store_.find(next);
     if (absent(record)) return Outcome::kUnknown;
     triangle = next;
+    fetch_around(*record);
   }
   return Outcome::kYes;
 }
