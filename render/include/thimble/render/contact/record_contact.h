@@ -89,22 +89,24 @@ class RecordContact {
   [[gnu::noinline]] bool begin(const Eigen::Vector3d& p_WT) noexcept;
   bool begin_above(const Eigen::Vector3d& p_WT) noexcept requires TellsRise<Store>;
   Outcome follow(const Eigen::Vector3d& p_WT) noexcept;
-  [[gnu::noinline]] Outcome seek(const Eigen::Vector3d& p_WT, const Eigen::Vector3d& p,
+  [[gnu::noinline, gnu::cold]] Outcome seek(const Eigen::Vector3d& p_WT, const Eigen::Vector3d& p,
                                  std::int32_t before, Outcome settled,
                                  const LoweredPlace& place) noexcept;
-  Outcome settle(const Eigen::Vector3d& p, bool walked, LoweredPlace& place) noexcept;
-  [[gnu::noinline]] Outcome find_again(const Eigen::Vector3d& p_WT, const Eigen::Vector3d& p,
+  [[gnu::noinline]] Outcome settle(const Eigen::Vector3d& p, bool walked,
+                                   LoweredPlace& place) noexcept;
+  [[gnu::noinline, gnu::cold]] Outcome find_again(const Eigen::Vector3d& p_WT, const Eigen::Vector3d& p,
                                        std::int32_t before) noexcept;
-  [[gnu::noinline]] Outcome resume(const Eigen::Vector3d& p_WT, const ContactState& last) noexcept;
+  [[gnu::noinline, gnu::cold]] Outcome resume(const Eigen::Vector3d& p_WT, const ContactState& last) noexcept;
   Outcome find_near(const Eigen::Vector3d& p, std::int32_t before) noexcept;
-  Outcome walk(const Eigen::Vector3d& p, std::int32_t& triangle) noexcept;
+  Outcome walk(const Eigen::Vector3d& p, const Eigen::Vector3d& n,
+               std::int32_t& triangle) noexcept;
   Outcome edge_to_hop(const Eigen::Vector3d& p, const LoweredPlace& place,
                       int& edge) const noexcept;
   bool activate(std::int32_t triangle) noexcept;
   void fetch_around(const CompactTriangle& record) const noexcept;
   void report(const Eigen::Vector3d& p_WT, const LoweredFeel& felt) noexcept;
   void measure(const Eigen::Vector3d& p_WT, const LoweredFeel& felt) noexcept;
-  void end() noexcept;
+  [[gnu::noinline]] void end() noexcept;
 
   static bool absent(const CompactTriangle* record) noexcept {
     return !Store::kComplete && record == nullptr;

@@ -35,7 +35,8 @@ typename RecordContact<Store>::Outcome RecordContact<Store>::follow(
   // triangle that is left at once.
   if (sliding) {
     std::int32_t next = active_;
-    const Outcome walked = walk(p, next);
+    // The face is known long before what the last tick felt.
+    const Outcome walked = walk(p, lowered_.face(), next);
     if (next != active_) activate(next);
     if (walked == Outcome::kUnknown) return Outcome::kUnknown;
   }
@@ -121,7 +122,7 @@ typename RecordContact<Store>::Outcome RecordContact<Store>::settle(const Eigen:
     }
     if (!walked) {
       std::int32_t far = next;
-      const Outcome arrived = walk(p, far);
+      const Outcome arrived = walk(p, state_.n_W, far);
       if (!visited.has(far)) next = far;
       if (arrived == Outcome::kUnknown) {
         activate(next);
@@ -195,12 +196,13 @@ typename RecordContact<Store>::Outcome RecordContact<Store>::edge_to_hop(const E
   return Outcome::kYes;
 }
 
-// Walks over the triangles as they lie, seen along the normal of the active one, which is known long
-// before what the last tick felt; stops at creases and at the last record at hand.
+// Walks over the triangles as they lie, seen along `n`; stops at creases and at the last record at
+// hand.
 template <RecordStore Store>
 typename RecordContact<Store>::Outcome RecordContact<Store>::walk(const Eigen::Vector3d& p,
+                                                                  const Eigen::Vector3d& n,
                                                                   std::int32_t& triangle) noexcept {
-  const RecordWalk way(p, lowered_.face());
+  const RecordWalk way(p, n);
   const CompactTriangle* record = store_.find(triangle);
   if (absent(record)) return Outcome::kUnknown;
   for (; state_.hops < kWalkMax; ++state_.hops) {
