@@ -93,10 +93,10 @@ inline constexpr double kPlaced = 64;
 // Solves p = sum l_i (x_i - d n_i). In the triangle's own axes that is a pair of linear equations
 // for the weights once d is known, and d = h / sum l_i w_i, where the w_i are nearly 1.
 inline LoweredPlace LoweredTriangle::locate(const Eigen::Vector3d& p) const noexcept {
-  const __m128d ab = _mm_add_pd(_mm_add_pd(_mm_mul_pd(pair(ab_[0]), _mm_set1_pd(p.x())),
-                                           _mm_mul_pd(pair(ab_[1]), _mm_set1_pd(p.y()))),
-                                _mm_add_pd(_mm_mul_pd(pair(ab_[2]), _mm_set1_pd(p.z())),
-                                           pair(ab_[3])));
+  const __m128d ab =
+      _mm_add_pd(_mm_add_pd(_mm_mul_pd(pair(ab_[0]), _mm_set1_pd(p.x())),
+                            _mm_mul_pd(pair(ab_[1]), _mm_set1_pd(p.y()))),
+                 _mm_add_pd(_mm_mul_pd(pair(ab_[2]), _mm_set1_pd(p.z())), pair(ab_[3])));
   const double h = (h_[0] * p.x() + h_[1] * p.y()) + (h_[2] * p.z() + h_[3]);
   // h / w without a division, good to (1 - w)^2: on most meshes one round is enough then.
   const __m128d rise = _mm_mul_pd(ab, pair(dw_));
@@ -176,8 +176,7 @@ inline LoweredFeel LoweredTriangle::feel_within(const LoweredPlace& place) const
   const double both = 1 / (size + squared);
   const double per_size = (1 + size) * both;
   const __m128d n = _mm_mul_pd(xy, _mm_set1_pd(per_size));
-  return {{low(n), high(n), low(z) * per_size},
-          place.depth * size + rise * (size * both)};
+  return {{low(n), high(n), low(z) * per_size}, place.depth * size + rise * (size * both)};
 }
 
 }  // namespace thimble::render

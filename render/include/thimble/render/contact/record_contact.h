@@ -90,16 +90,17 @@ class RecordContact {
   bool begin_above(const Eigen::Vector3d& p_WT) noexcept requires TellsRise<Store>;
   Outcome follow(const Eigen::Vector3d& p_WT) noexcept;
   [[gnu::noinline, gnu::cold]] Outcome seek(const Eigen::Vector3d& p_WT, const Eigen::Vector3d& p,
-                                 std::int32_t before, Outcome settled,
-                                 const LoweredPlace& place) noexcept;
+                                            std::int32_t before, Outcome settled,
+                                            const LoweredPlace& place) noexcept;
   [[gnu::noinline]] Outcome settle(const Eigen::Vector3d& p, bool walked,
                                    LoweredPlace& place) noexcept;
-  [[gnu::noinline, gnu::cold]] Outcome find_again(const Eigen::Vector3d& p_WT, const Eigen::Vector3d& p,
-                                       std::int32_t before) noexcept;
-  [[gnu::noinline, gnu::cold]] Outcome resume(const Eigen::Vector3d& p_WT, const ContactState& last) noexcept;
+  [[gnu::noinline, gnu::cold]] Outcome find_again(const Eigen::Vector3d& p_WT,
+                                                  const Eigen::Vector3d& p,
+                                                  std::int32_t before) noexcept;
+  [[gnu::noinline, gnu::cold]] Outcome resume(const Eigen::Vector3d& p_WT,
+                                              const ContactState& last) noexcept;
   Outcome find_near(const Eigen::Vector3d& p, std::int32_t before) noexcept;
-  Outcome walk(const Eigen::Vector3d& p, const Eigen::Vector3d& n,
-               std::int32_t& triangle) noexcept;
+  Outcome walk(const Eigen::Vector3d& p, const Eigen::Vector3d& n, std::int32_t& triangle) noexcept;
   Outcome edge_to_hop(const Eigen::Vector3d& p, const LoweredPlace& place,
                       int& edge) const noexcept;
   bool activate(std::int32_t triangle) noexcept;
@@ -115,13 +116,13 @@ class RecordContact {
   // What a tick needs lies together, the rest behind it.
   Store store_;
   bool wide_ = wide_lanes();
-  bool steady_ = false;     // in contact, where there is no crease and hops are rare
+  bool steady_ = false;  // in contact, where there is no crease and hops are rare
   bool has_before_ = false;
   bool path_kept_ = false;  // whether the path began before the last tick
   bool above_ = false;      // free, and known to be above the smooth surface
   int haste_ = 0;           // counts up to 3 with ticks that hop, and down with the others
   std::int32_t active_ = -1;
-  double deepest_;          // steps: who is in a triangle and no deeper is within range
+  double deepest_;  // steps: who is in a triangle and no deeper is within range
   Eigen::Vector3d p_WT_before_{0, 0, 0};
   ContactState state_;
   LoweredTriangle lowered_;

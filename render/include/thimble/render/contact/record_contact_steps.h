@@ -82,8 +82,8 @@ bool RecordContact<Store>::step_over_plain(const Eigen::Vector3d& p_WT, double x
 }
 
 template <RecordStore Store>
-bool RecordContact<Store>::step_over_wide(const Eigen::Vector3d& p_WT, double x, double y,
-                                          double z, std::size_t edge) noexcept {
+bool RecordContact<Store>::step_over_wide(const Eigen::Vector3d& p_WT, double x, double y, double z,
+                                          std::size_t edge) noexcept {
   return step_over(p_WT, {x, y, z}, edge);
 }
 

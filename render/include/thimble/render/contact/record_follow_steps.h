@@ -35,8 +35,10 @@ typename RecordContact<Store>::Outcome RecordContact<Store>::follow(
   // triangle that is left at once.
   if (sliding) {
     std::int32_t next = active_;
-    // The face is known long before what the last tick felt.
-    const Outcome walked = walk(p, lowered_.face(), next);
+    // The face is known long before what the last tick felt. Where there are creases cells overlap,
+    // and where the walk ends is part of the answer.
+    const bool smooth = lowered_.creases() == 0;
+    const Outcome walked = walk(p, smooth ? lowered_.face() : state_.n_W, next);
     if (next != active_) activate(next);
     if (walked == Outcome::kUnknown) return Outcome::kUnknown;
   }
