@@ -7,9 +7,12 @@
 namespace thimble::render {
 
 CompactStore::CompactStore(CompactSurface surface, std::optional<SearchChoice> search)
-    : surface_(std::make_shared<const CompactSurface>(std::move(surface))),
-      search_(make_search(*surface_, search)),
-      records_(surface_->records().data()) {}
+    : records_(surface.records().data()),
+      origin_(surface.origin()),
+      per_step_(surface.per_step()),
+      step_(surface.step()),
+      surface_(std::make_shared<const CompactSurface>(std::move(surface))),
+      search_(make_search(*surface_, search)) {}
 
 template class RecordContact<CompactStore>;
 

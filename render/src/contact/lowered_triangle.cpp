@@ -49,14 +49,17 @@ inline void LoweredTriangle::unpack_here(const CompactTriangle& r) noexcept {
   const auto single = [](double a) noexcept { return _mm_set1_ps(static_cast<float>(a)); };
   const __m128 w = dot(single(face_x), single(face_y), single(face_z), n);
   const __m128 du = _mm_sub_ps(u, all<0>(u)), dv = _mm_sub_ps(v, all<0>(v));
-  const __m128 uv_1 = _mm_unpacklo_ps(du, dv);
-  _mm_store_pd(uv_[0].data(), _mm_cvtps_pd(_mm_unpacklo_ps(u, v)));
-  _mm_store_pd(uv_[1].data(), _mm_cvtps_pd(_mm_movehl_ps(uv_1, uv_1)));
-  _mm_store_pd(uv_[2].data(), _mm_cvtps_pd(_mm_unpackhi_ps(du, dv)));
+  _mm_store_pd(uv_.data(), _mm_cvtps_pd(_mm_unpacklo_ps(u, v)));
+  // (Du_1, Dv_2) and (Du_2, Dv_1).
+  const __m128 duv = _mm_shuffle_ps(du, dv, _MM_SHUFFLE(1, 2, 2, 1));
+  const __m128 crossed = _mm_shuffle_ps(duv, duv, _MM_SHUFFLE(3, 1, 2, 0));
+  _mm_store_pd(along_.data(), _mm_cvtps_pd(crossed));
+  _mm_store_pd(across_.data(), _mm_cvtps_pd(_mm_movehl_ps(crossed, crossed)));
   // Differences of numbers near 1 are exact in single precision.
   const __m128 dw = _mm_sub_ps(w, all<0>(w));
-  w_ = {first(w), first(all<1>(dw)), first(all<2>(dw))};
-  const double least = w_[0] + std::min(std::min(w_[1], w_[2]), 0.0);
+  _mm_store_pd(dw_.data(), _mm_cvtps_pd(_mm_shuffle_ps(dw, dw, _MM_SHUFFLE(2, 1, 2, 1))));
+  w_ = first(w);
+  const double least = w_ + std::min(std::min(dw_[0], dw_[1]), 0.0);
   tilt_squared_ = std::max(1 - least * least, 0.0);
 
   const __m128 dx = _mm_sub_ps(n.x, all<0>(n.x));
@@ -74,8 +77,12 @@ void LoweredTriangle::unpack(const CompactTriangle& r) noexcept {
   if (wide_lanes()) {
     unpack_wide(r);
   } else {
-    unpack_here(r);
+    unpack_plain(r);
   }
+}
+
+void LoweredTriangle::unpack_plain(const CompactTriangle& r) noexcept {
+  unpack_here(r);
 }
 
 void LoweredTriangle::unpack_wide(const CompactTriangle& r) noexcept {
@@ -83,11 +90,11 @@ void LoweredTriangle::unpack_wide(const CompactTriangle& r) noexcept {
 }
 
 // Goes on where one round does not suffice: the most bent triangles that are no creases take four.
-LoweredPlace LoweredTriangle::locate_far(double a, double b, double h, double d) const noexcept {
+LoweredPlace LoweredTriangle::locate_far(__m128d ab, double h, double d) const noexcept {
   constexpr int kRoundsMax = 5;
   LoweredPlace place;
   for (int round = 0; round < kRoundsMax; ++round) {
-    place = solve(a, b, h, d);
+    place = solve(ab, h, d);
     const double change = place.depth - d;
     d = place.depth;
     if (!place.valid || change * change * tilt_squared_ <= kPlaced * kPlaced) break;

@@ -295,6 +295,30 @@ TEST(CompactContact, TouchesNothingUntilATipThatStartsInsideHasBeenOutsideAndAft
   }
 }
 
+// The tick that stays in its triangle tells by the depth alone that the position is within range.
+TEST(CompactContact, EndsContactAtEveryPositionBeyondRangeInWhicheverDirection) {
+  CompactContact contact = CompactContact::build(support::icosphere(4, 0.05)).value();
+  support::Random random(21);
+  for (int i = 0; i < 3000; ++i) {
+    const Vector3d n = random.direction();
+    enter(contact, 0.049 * n, n, 0.01);
+    // Some ticks at the same place, so that the contact is steady there.
+    for (int k = 0; k < 3; ++k) ASSERT_TRUE(move(contact, 0.049 * n).touching);
+    Vector3d far = 0.049 * n;
+    const double value = i % 3 == 0   ? std::numeric_limits<double>::quiet_NaN()
+                         : i % 3 == 1 ? std::numeric_limits<double>::infinity()
+                                      : 2 * kPositionMax;
+    if (i % 2 == 0) {
+      far[i / 2 % 3] = i % 4 == 0 ? value : -value;
+    } else {
+      far = (i % 4 == 1 ? value : -value) * n;
+    }
+    ASSERT_FALSE(move(contact, far).touching) << far.transpose();
+    ASSERT_FALSE(move(contact, 0.049 * n).touching) << "the next tick is a first one";
+    move(contact, 0.06 * n);
+  }
+}
+
 TEST(CompactContact, LeavesTheHeapAlone) {
   CompactContact contact = CompactContact::build(support::bumpy_sphere(3, 0.05, 0.3, 6)).value();
   support::Random random(71);

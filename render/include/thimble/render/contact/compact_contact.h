@@ -27,9 +27,9 @@ class CompactStore {
 
   const CompactTriangle* find(std::int32_t triangle) const noexcept { return records_ + triangle; }
   Eigen::Vector3d to_lattice(const Eigen::Vector3d& p_W) const noexcept {
-    return surface_->to_lattice(p_W);
+    return (p_W - origin_) * per_step_;  // as the surface does, from this line of the cache
   }
-  double step() const noexcept { return surface_->step(); }
+  double step() const noexcept { return step_; }
   double reach() const noexcept { return std::numeric_limits<double>::infinity(); }
   /// Tells how far the surface rises above its triangles, m (CompactSurface::rise).
   double rise() const noexcept { return surface_->rise(); }
@@ -48,10 +48,13 @@ class CompactStore {
   const ContactSearch& search() const noexcept { return *search_; }
 
  private:
+  // What each tick needs comes first.
+  const CompactTriangle* records_;
+  Eigen::Vector3d origin_;
+  double per_step_, step_;
   // On the heap, so that the search keeps pointing at the surface when the contact moves.
   std::shared_ptr<const CompactSurface> surface_;
   std::shared_ptr<const ContactSearch> search_;
-  const CompactTriangle* records_;
   mutable FreeSpace free_space_;  // changes what a question costs, never its answer
 };
 

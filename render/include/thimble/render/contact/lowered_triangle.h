@@ -32,10 +32,13 @@ namespace thimble::render {
 /// What says where the tip is stands in double precision. What is multiplied by the depth or by a
 /// weight is made in single precision: of the depth it costs up to 3e-7, of a triangle's height
 /// 1e-6 where an edge is (lowered_triangle_test.cpp).
-class LoweredTriangle {
+class alignas(64) LoweredTriangle {
  public:
   /// Unpacks a record; the same bits give the same answers ever after.
   void unpack(const CompactTriangle& record) noexcept;
+  /// Do the same, for who knows what `wide_lanes` says; the first where it says yes only.
+  THIMBLE_FOR_AVX2 void unpack_wide(const CompactTriangle& record) noexcept;
+  void unpack_plain(const CompactTriangle& record) noexcept;
 
   /// Finds where `p` belongs; the answer depends on `p` and the record alone.
   LoweredPlace locate(const Eigen::Vector3d& p) const noexcept;
@@ -55,22 +58,30 @@ class LoweredTriangle {
   Eigen::Vector3d face() const noexcept { return {-h_[0], -h_[1], -h_[2]}; }
 
  private:
-  LoweredPlace solve(double a, double b, double h, double d) const noexcept;
+  LoweredPlace solve(__m128d ab, double h, double d) const noexcept;
   void unpack_here(const CompactTriangle& record) noexcept;
-  THIMBLE_FOR_AVX2 void unpack_wide(const CompactTriangle& record) noexcept;
-  LoweredPlace locate_far(double a, double b, double h, double d) const noexcept;
+  LoweredPlace locate_far(__m128d ab, double h, double d) const noexcept;
 
   using Pair = std::array<double, 2>;
   using Lanes = std::array<float, 4>;
 
+  static __m128d pair(const Pair& v) noexcept { return _mm_load_pd(v.data()); }
+  static __m128d swapped(__m128d v) noexcept { return _mm_shuffle_pd(v, v, 1); }
+  static double low(__m128d v) noexcept { return _mm_cvtsd_f64(v); }
+  static double high(__m128d v) noexcept { return _mm_cvtsd_f64(_mm_unpackhi_pd(v, v)); }
+
   // With the sides e_1, e_2 and the unit normal f a point is p - x_0 = a e_1 + b e_2 - h f, and the
-  // corner normals are n_i = u_i e_1 + v_i e_2 + w_i f. Differences are those to corner 0.
+  // corner normals are n_i = u_i e_1 + v_i e_2 + w_i f. Differences (D) are those to corner 0. A
+  // pair is read as it was written: the processor hands it on before it is in the cache.
   alignas(16) std::array<Pair, 4> ab_{};  // (a, b) per x, y, z and 1
-  std::array<Pair, 3> uv_{};              // (u, v) at corner 0, differences at 1 and 2
+  Pair uv_{};                             // (u, v) at corner 0
+  Pair along_{};                          // (Du_1, Dv_2)
+  Pair across_{};                         // (Du_2, Dv_1)
+  Pair dw_{};                             // (Dw_1, Dw_2)
   std::array<Lanes, 3> n_{};              // normal at corner 0, differences at 1 and 2
-  std::array<double, 3> bulge_{};         // (x_i - x_j) . (n_i - n_j) of the edges 01, 12, 20
   std::array<double, 4> h_{};             // h per x, y, z and 1
-  std::array<double, 3> w_{};             // w at corner 0, differences at 1 and 2
+  std::array<double, 3> bulge_{};         // (x_i - x_j) . (n_i - n_j) of the edges 01, 12, 20
+  double w_ = 0;                          // at corner 0
   double tilt_squared_ = 0;               // of the normals against the face, at most
   std::uint32_t creases_ = 0;
   std::int32_t source_ = -1;
@@ -82,44 +93,52 @@ inline constexpr double kPlaced = 64;
 // Solves p = sum l_i (x_i - d n_i). In the triangle's own axes that is a pair of linear equations
 // for the weights once d is known, and d = h / sum l_i w_i, where the w_i are nearly 1.
 inline LoweredPlace LoweredTriangle::locate(const Eigen::Vector3d& p) const noexcept {
-  const auto row = [](const Pair& v) noexcept { return _mm_load_pd(v.data()); };
   const __m128d ab =
-      _mm_add_pd(_mm_add_pd(_mm_mul_pd(row(ab_[0]), _mm_set1_pd(p.x())),
-                            _mm_mul_pd(row(ab_[1]), _mm_set1_pd(p.y()))),
-                 _mm_add_pd(_mm_mul_pd(row(ab_[2]), _mm_set1_pd(p.z())), row(ab_[3])));
-  const double a = _mm_cvtsd_f64(ab);
-  const double b = _mm_cvtsd_f64(_mm_unpackhi_pd(ab, ab));
+      _mm_add_pd(_mm_add_pd(_mm_mul_pd(pair(ab_[0]), _mm_set1_pd(p.x())),
+                            _mm_mul_pd(pair(ab_[1]), _mm_set1_pd(p.y()))),
+                 _mm_add_pd(_mm_mul_pd(pair(ab_[2]), _mm_set1_pd(p.z())), pair(ab_[3])));
   const double h = (h_[0] * p.x() + h_[1] * p.y()) + (h_[2] * p.z() + h_[3]);
   // h / w without a division, good to (1 - w)^2: on most meshes one round is enough then.
-  const double d = h * (2 - (w_[0] + a * w_[1] + b * w_[2]));
-  LoweredPlace place = solve(a, b, h, d);
+  const __m128d rise = _mm_mul_pd(ab, pair(dw_));
+  const double d = h * (2 - (w_ + low(rise) + high(rise)));
+  LoweredPlace place = solve(ab, h, d);
   const double change = place.depth - d;
   // Written so that NaN asks for no more rounds.
   if (change * change * tilt_squared_ > kPlaced * kPlaced) [[unlikely]] {
-    place = locate_far(a, b, h, place.depth);
+    // Number by number, so that a place stays in registers where this is not done.
+    const LoweredPlace far = locate_far(ab, h, place.depth);
+    place.l0 = far.l0;
+    place.l1 = far.l1;
+    place.l2 = far.l2;
+    place.depth = far.depth;
+    place.valid = far.valid;
   }
   return place;
 }
 
-inline LoweredPlace LoweredTriangle::solve(double a, double b, double h, double d) const noexcept {
-  const double m11 = 1 - d * uv_[1][0], m12 = d * uv_[2][0];
-  const double m21 = d * uv_[1][1], m22 = 1 - d * uv_[2][1];
-  const double r1 = a + d * uv_[0][0], r2 = b + d * uv_[0][1];
-  const double area = m11 * m22 - m12 * m21;
-  const double a1 = r1 * m22 + m12 * r2, a2 = r2 * m11 + m21 * r1;
-  const double upright = area * w_[0] + (a1 * w_[1] + a2 * w_[2]);
+inline LoweredPlace LoweredTriangle::solve(__m128d ab, double h, double d) const noexcept {
+  // The matrix (m11 m12; m21 m22) and its determinant.
+  const __m128d dd = _mm_set1_pd(d);
+  const __m128d m11_m22 = _mm_sub_pd(_mm_set1_pd(1), _mm_mul_pd(dd, pair(along_)));
+  const __m128d m12_m21 = _mm_mul_pd(dd, pair(across_));
+  const __m128d m22_m11 = swapped(m11_m22);
+  const double area = low(m11_m22) * low(m22_m11) - low(m12_m21) * high(m12_m21);
+  const __m128d r = _mm_add_pd(ab, _mm_mul_pd(dd, pair(uv_)));
+  const __m128d a12 = _mm_add_pd(_mm_mul_pd(r, m22_m11), _mm_mul_pd(m12_m21, swapped(r)));
+  const __m128d aw = _mm_mul_pd(a12, pair(dw_));
+  const double upright = area * w_ + (low(aw) + high(aw));
   // One division for the weights and the depth.
   const double both = 1 / (area * upright);
-  const double per_area = upright * both;
+  const __m128d l12 = _mm_mul_pd(a12, _mm_set1_pd(upright * both));
   LoweredPlace place;
-  place.l1 = a1 * per_area;
-  place.l2 = a2 * per_area;
+  place.l1 = low(l12);
+  place.l2 = high(l12);
   place.l0 = 1 - place.l1 - place.l2;
   place.depth = h * area * area * both;
   // Folded over along one axis the area is negative, along both the sum is. Written so that NaN is
-  // folded over.
-  place.valid =
-      area > 0 && m11 + m22 > 0 && upright > 0 && place.depth <= std::numeric_limits<double>::max();
+  // folded over: any of these makes the depth NaN.
+  const double least = std::min(std::min(area, upright), low(m11_m22) + low(m22_m11));
+  place.valid = least > 0 && place.depth <= std::numeric_limits<double>::max();
   return place;
 }
 
@@ -143,12 +162,13 @@ inline LoweredFeel LoweredTriangle::feel_within(const LoweredPlace& place) const
       _mm_add_ps(row(n_[0]), _mm_add_ps(_mm_mul_ps(row(n_[1]), _mm_shuffle_ps(l, l, 0x00)),
                                         _mm_mul_ps(row(n_[2]), _mm_shuffle_ps(l, l, 0x55))));
   const __m128d xy = _mm_cvtps_pd(normal);
-  const double z = _mm_cvtsd_f64(_mm_cvtps_pd(_mm_movehl_ps(normal, normal)));
+  const __m128d z = _mm_cvtps_pd(_mm_movehl_ps(normal, normal));
   const __m128d squares = _mm_mul_pd(xy, xy);
-  const double squared =
-      _mm_cvtsd_f64(_mm_add_sd(squares, _mm_unpackhi_pd(squares, squares))) + z * z;
+  const __m128d sum =
+      _mm_add_sd(_mm_add_sd(squares, _mm_unpackhi_pd(squares, squares)), _mm_mul_sd(z, z));
+  const double squared = low(sum);
   // The bare instruction: nothing here is negative, and nobody reads errno.
-  const double size = _mm_cvtsd_f64(_mm_sqrt_sd(_mm_setzero_pd(), _mm_set_sd(squared)));
+  const double size = low(_mm_sqrt_sd(sum, sum));
   const double rise =
       place.l1 * (place.l0 * bulge_[0] + place.l2 * bulge_[1]) + place.l2 * place.l0 * bulge_[2];
   // Divided by 1 + size in place of 2 the bend is exact on a sphere, however coarse. One division
@@ -156,8 +176,7 @@ inline LoweredFeel LoweredTriangle::feel_within(const LoweredPlace& place) const
   const double both = 1 / (size + squared);
   const double per_size = (1 + size) * both;
   const __m128d n = _mm_mul_pd(xy, _mm_set1_pd(per_size));
-  return {{_mm_cvtsd_f64(n), _mm_cvtsd_f64(_mm_unpackhi_pd(n, n)), z * per_size},
-          place.depth * size + rise * (size * both)};
+  return {{low(n), high(n), low(z) * per_size}, place.depth * size + rise * (size * both)};
 }
 
 }  // namespace thimble::render

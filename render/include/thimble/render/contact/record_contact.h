@@ -40,7 +40,10 @@ template <RecordStore Store>
 class RecordContact {
  public:
   /// Takes the store. Real-time: never from the servo thread.
-  explicit RecordContact(Store store) : store_(std::move(store)) {}
+  explicit RecordContact(Store store)
+      : store_(std::move(store)),
+        deepest_(kPositionMax / store_.step() - 2 * kLatticeHalf -
+                 store_.to_lattice(Eigen::Vector3d::Zero()).cwiseAbs().maxCoeff()) {}
 
   /// Finds the contact at `state.p_WT` (W, m) and keeps it until the next call; `triangle` is the
   /// number of the input's triangle. A tip that is inside on the first tick touches nothing until
@@ -70,50 +73,62 @@ class RecordContact {
   // Says what a tick in contact came to: kUnknown where a record that decides it is absent.
   using Outcome = Known;
 
-  // The tick, made twice for different processors; see wide_lanes.
-  void tick(const Eigen::Vector3d& p_WT) noexcept;
-  THIMBLE_FOR_AVX2 void tick_wide(const Eigen::Vector3d& p_WT) noexcept;
-
+  // The tick in three pieces, so that the first, all of most ticks, is short and straight; each is
+  // made twice for different processors (wide_lanes). The first two tell whether the tick is done.
   bool stay(const Eigen::Vector3d& p_WT) noexcept;
-  bool step_over(const Eigen::Vector3d& p, const LoweredPlace& place, LoweredFeel& felt) noexcept;
+  [[gnu::noinline]] THIMBLE_FOR_AVX2 bool stay_wide(const Eigen::Vector3d& p_WT) noexcept;
+  bool step_over(const Eigen::Vector3d& p_WT, const Eigen::Vector3d& p, std::size_t edge) noexcept;
+  [[gnu::noinline]] bool step_over_plain(const Eigen::Vector3d& p_WT, double x, double y, double z,
+                                         std::size_t edge) noexcept;
+  [[gnu::noinline]] THIMBLE_FOR_AVX2 bool step_over_wide(const Eigen::Vector3d& p_WT, double x,
+                                                         double y, double z,
+                                                         std::size_t edge) noexcept;
   void move(const Eigen::Vector3d& p_WT) noexcept;
+  [[gnu::noinline]] THIMBLE_FOR_AVX2 void move_wide(const Eigen::Vector3d& p_WT) noexcept;
   // What seldom happens is not made twice.
   [[gnu::noinline]] bool begin(const Eigen::Vector3d& p_WT) noexcept;
   bool begin_above(const Eigen::Vector3d& p_WT) noexcept requires TellsRise<Store>;
   Outcome follow(const Eigen::Vector3d& p_WT) noexcept;
-  [[gnu::noinline]] Outcome seek(const Eigen::Vector3d& p_WT, const Eigen::Vector3d& p,
-                                 std::int32_t before, Outcome settled,
-                                 const LoweredPlace& place) noexcept;
-  Outcome settle(const Eigen::Vector3d& p, bool walked, LoweredPlace& place) noexcept;
-  [[gnu::noinline]] Outcome find_again(const Eigen::Vector3d& p_WT, const Eigen::Vector3d& p,
-                                       std::int32_t before) noexcept;
-  [[gnu::noinline]] Outcome resume(const Eigen::Vector3d& p_WT, const ContactState& last) noexcept;
+  [[gnu::noinline, gnu::cold]] Outcome seek(const Eigen::Vector3d& p_WT, const Eigen::Vector3d& p,
+                                            std::int32_t before, Outcome settled,
+                                            const LoweredPlace& place) noexcept;
+  [[gnu::noinline]] Outcome settle(const Eigen::Vector3d& p, bool walked,
+                                   LoweredPlace& place) noexcept;
+  [[gnu::noinline, gnu::cold]] Outcome find_again(const Eigen::Vector3d& p_WT,
+                                                  const Eigen::Vector3d& p,
+                                                  std::int32_t before) noexcept;
+  [[gnu::noinline, gnu::cold]] Outcome resume(const Eigen::Vector3d& p_WT,
+                                              const ContactState& last) noexcept;
   Outcome find_near(const Eigen::Vector3d& p, std::int32_t before) noexcept;
-  Outcome walk(const Eigen::Vector3d& p, std::int32_t& triangle) noexcept;
+  Outcome walk(const Eigen::Vector3d& p, const Eigen::Vector3d& n, std::int32_t& triangle) noexcept;
   Outcome edge_to_hop(const Eigen::Vector3d& p, const LoweredPlace& place,
                       int& edge) const noexcept;
   bool activate(std::int32_t triangle) noexcept;
+  void fetch_around(const CompactTriangle& record) const noexcept;
   void report(const Eigen::Vector3d& p_WT, const LoweredFeel& felt) noexcept;
-  void end() noexcept;
+  void measure(const Eigen::Vector3d& p_WT, const LoweredFeel& felt) noexcept;
+  [[gnu::noinline]] void end() noexcept;
 
   static bool absent(const CompactTriangle* record) noexcept {
     return !Store::kComplete && record == nullptr;
   }
 
+  // What a tick needs lies together, the rest behind it.
   Store store_;
   bool wide_ = wide_lanes();
-  std::int32_t active_ = -1;
-  LoweredTriangle lowered_;
-  ContactState state_;
-  ContactState felt_;   // of a store that lacks records: as held or fading
-  ContactState begun_;  // where the contact began, likewise
-  TrackerCounters counters_;
-  Eigen::Vector3d p_WT_before_{0, 0, 0};
+  bool steady_ = false;  // in contact, where there is no crease and hops are rare
   bool has_before_ = false;
   bool path_kept_ = false;  // whether the path began before the last tick
   bool above_ = false;      // free, and known to be above the smooth surface
-  bool steady_ = false;     // in contact, where there is no crease and hops are rare
   int haste_ = 0;           // counts up to 3 with ticks that hop, and down with the others
+  std::int32_t active_ = -1;
+  double deepest_;  // steps: who is in a triangle and no deeper is within range
+  Eigen::Vector3d p_WT_before_{0, 0, 0};
+  ContactState state_;
+  LoweredTriangle lowered_;
+  ContactState felt_;   // of a store that lacks records: as held or fading
+  ContactState begun_;  // where the contact began, likewise
+  TrackerCounters counters_;
   HeldPlane held_;
   std::uint64_t ticks_held_ = 0;
 };

@@ -14,23 +14,23 @@ namespace thimble::render {
 
 template <RecordStore Store>
 const ContactState& RecordContact<Store>::update(const driver::DeviceState& state) noexcept {
+  const Eigen::Vector3d& p_WT = state.p_WT;
   if (wide_) {
-    tick_wide(state.p_WT);
+    if (!stay_wide(p_WT)) move_wide(p_WT);
   } else {
-    tick(state.p_WT);
+    if (!stay(p_WT)) move(p_WT);
   }
   return this->state();
 }
 
 template <RecordStore Store>
-inline void RecordContact<Store>::tick(const Eigen::Vector3d& p_WT) noexcept {
-  // Most ticks are spent in the triangle of the last one.
-  if (!stay(p_WT)) move(p_WT);
+bool RecordContact<Store>::stay_wide(const Eigen::Vector3d& p_WT) noexcept {
+  return stay(p_WT);
 }
 
 template <RecordStore Store>
-void RecordContact<Store>::tick_wide(const Eigen::Vector3d& p_WT) noexcept {
-  tick(p_WT);
+void RecordContact<Store>::move_wide(const Eigen::Vector3d& p_WT) noexcept {
+  move(p_WT);
 }
 
 // Fills in the state from what is felt in the active triangle.
@@ -39,6 +39,12 @@ inline void RecordContact<Store>::report(const Eigen::Vector3d& p_WT,
                                          const LoweredFeel& felt) noexcept {
   state_.touching = true;
   state_.triangle = lowered_.source();
+  measure(p_WT, felt);
+}
+
+template <RecordStore Store>
+inline void RecordContact<Store>::measure(const Eigen::Vector3d& p_WT,
+                                          const LoweredFeel& felt) noexcept {
   state_.n_W = felt.n_W;
   state_.depth = store_.step() * felt.depth;
   state_.p_WP = p_WT + state_.depth * felt.n_W;
@@ -48,43 +54,58 @@ inline void RecordContact<Store>::report(const Eigen::Vector3d& p_WT,
 // answers alone.
 template <RecordStore Store>
 inline bool RecordContact<Store>::stay(const Eigen::Vector3d& p_WT) noexcept {
-  if (!steady_ || !within_range(p_WT)) return false;
+  if (!steady_) return false;
   const Eigen::Vector3d p = store_.to_lattice(p_WT);
   const LoweredPlace place = lowered_.locate(p);
-  const double least = std::min(std::min(place.l0, place.l1), place.l2);
-  if (!place.valid) return false;
-  LoweredFeel felt;
-  if (least >= 0) {
-    felt = lowered_.feel_within(place);
-    if (!(felt.depth >= 0)) return false;
-    state_.hops = 0;
-    haste_ = 0;
-  } else {
-    if (!step_over(p, place, felt)) return false;
-    state_.hops = 1;
-    steady_ = ++haste_ < 2;
+  if (!(place.valid && place.depth <= deepest_)) return false;
+  if (!(std::min(std::min(place.l1, place.l2), place.l0) >= 0)) [[unlikely]] {
+    std::size_t edge = place.l2 <= place.l0 ? 0 : 1;
+    if (place.l1 < std::min(place.l0, place.l2)) edge = 2;
+    return wide_ ? step_over_wide(p_WT, p.x(), p.y(), p.z(), edge)
+                 : step_over_plain(p_WT, p.x(), p.y(), p.z(), edge);
   }
+  const LoweredFeel felt = lowered_.feel_within(place);
+  if (!(felt.depth >= 0)) return false;
+  state_.hops = 0;
+  haste_ = 0;
   p_WT_before_ = p_WT;
-  report(p_WT, felt);
+  // Which triangle it is, is known since the tip came there.
+  measure(p_WT, felt);
   if constexpr (!Store::kComplete) felt_ = state_;
   return true;
+}
+
+template <RecordStore Store>
+bool RecordContact<Store>::step_over_plain(const Eigen::Vector3d& p_WT, double x, double y,
+                                           double z, std::size_t edge) noexcept {
+  return step_over(p_WT, {x, y, z}, edge);
+}
+
+template <RecordStore Store>
+bool RecordContact<Store>::step_over_wide(const Eigen::Vector3d& p_WT, double x, double y, double z,
+                                          std::size_t edge) noexcept {
+  return step_over(p_WT, {x, y, z}, edge);
 }
 
 // Makes the triangle active that lies over the edge that the tip is outside of; true if it answers
 // alone. If not, the way goes on from there.
 template <RecordStore Store>
-inline bool RecordContact<Store>::step_over(const Eigen::Vector3d& p, const LoweredPlace& place,
-                                            LoweredFeel& felt) noexcept {
+inline bool RecordContact<Store>::step_over(const Eigen::Vector3d& p_WT, const Eigen::Vector3d& p,
+                                            std::size_t edge) noexcept {
   const CompactTriangle* record = store_.find(active_);
   if (absent(record)) return false;
-  std::size_t edge = place.l2 <= place.l0 ? 0 : 1;
-  if (place.l1 < std::min(place.l0, place.l2)) edge = 2;
   if (!activate(record->neighbours[edge]) || lowered_.creases() != 0) return false;
   const LoweredPlace there = lowered_.locate(p);
   const double least = std::min(std::min(there.l0, there.l1), there.l2);
   if (!(there.valid && least >= kOutside)) return false;
-  felt = lowered_.feel(there);
-  return felt.depth >= 0;
+  const LoweredFeel felt = lowered_.feel(there);
+  if (!(felt.depth >= 0)) return false;
+  state_.hops = 1;
+  steady_ = ++haste_ < 2;
+  p_WT_before_ = p_WT;
+  report(p_WT, felt);
+  if constexpr (!Store::kComplete) felt_ = state_;
+  return true;
 }
 
 template <RecordStore Store>

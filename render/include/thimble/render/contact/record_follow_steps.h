@@ -35,7 +35,10 @@ typename RecordContact<Store>::Outcome RecordContact<Store>::follow(
   // triangle that is left at once.
   if (sliding) {
     std::int32_t next = active_;
-    const Outcome walked = walk(p, next);
+    // The face is known long before what the last tick felt. Where there are creases cells overlap,
+    // and where the walk ends is part of the answer.
+    const bool smooth = lowered_.creases() == 0;
+    const Outcome walked = walk(p, smooth ? lowered_.face() : state_.n_W, next);
     if (next != active_) activate(next);
     if (walked == Outcome::kUnknown) return Outcome::kUnknown;
   }
@@ -121,7 +124,7 @@ typename RecordContact<Store>::Outcome RecordContact<Store>::settle(const Eigen:
     }
     if (!walked) {
       std::int32_t far = next;
-      const Outcome arrived = walk(p, far);
+      const Outcome arrived = walk(p, state_.n_W, far);
       if (!visited.has(far)) next = far;
       if (arrived == Outcome::kUnknown) {
         activate(next);
@@ -140,12 +143,33 @@ bool RecordContact<Store>::activate(std::int32_t triangle) noexcept {
   const CompactTriangle* record = store_.find(triangle);
   if (absent(record)) return false;
   active_ = triangle;
-  lowered_.unpack(*record);
+  if (wide_) {
+    lowered_.unpack_wide(*record);
+  } else {
+    lowered_.unpack_plain(*record);
+  }
   if constexpr (Store::kComplete) {
     // The tip goes to one of these, now or in a later tick.
     for (const std::int32_t t : record->neighbours) __builtin_prefetch(store_.find(t));
   }
   return true;
+}
+
+// Asks for the records that the tip may go to next. Which it is, is known only when this one has
+// been looked at: who waits for that waits for one line of far memory after another. Records that
+// are near in space are near in memory, so most of the way comes with what lies around.
+template <RecordStore Store>
+inline void RecordContact<Store>::fetch_around(const CompactTriangle& record) const noexcept {
+  if constexpr (Store::kComplete) {
+    for (const std::int32_t t : record.neighbours) __builtin_prefetch(store_.find(t));
+  }
+  // Addresses, since some may lie outside of all records: asking for those does nothing.
+  constexpr std::uintptr_t kAround = 4, kLine = sizeof(CompactTriangle);
+  const auto here = reinterpret_cast<std::uintptr_t>(&record);
+  for (std::uintptr_t i = 1; i <= kAround; ++i) {
+    __builtin_prefetch(reinterpret_cast<const void*>(here + i * kLine));
+    __builtin_prefetch(reinterpret_cast<const void*>(here - i * kLine));
+  }
 }
 
 // Tells the edge that the tip is farthest outside of, as a share of the triangle's height; -1 if
@@ -174,12 +198,13 @@ typename RecordContact<Store>::Outcome RecordContact<Store>::edge_to_hop(const E
   return Outcome::kYes;
 }
 
-// Walks over the triangles as they lie, seen along the last tick's normal; stops at creases and at
-// the last record at hand.
+// Walks over the triangles as they lie, seen along `n`; stops at creases and at the last record at
+// hand.
 template <RecordStore Store>
 typename RecordContact<Store>::Outcome RecordContact<Store>::walk(const Eigen::Vector3d& p,
+                                                                  const Eigen::Vector3d& n,
                                                                   std::int32_t& triangle) noexcept {
-  const RecordWalk way(p, state_.n_W);
+  const RecordWalk way(p, n);
   const CompactTriangle* record = store_.find(triangle);
   if (absent(record)) return Outcome::kUnknown;
   for (; state_.hops < kWalkMax; ++state_.hops) {
@@ -189,6 +214,7 @@ typename RecordContact<Store>::Outcome RecordContact<Store>::walk(const Eigen::V
     record = store_.find(next);
     if (absent(record)) return Outcome::kUnknown;
     triangle = next;
+    fetch_around(*record);
   }
   return Outcome::kYes;
 }
