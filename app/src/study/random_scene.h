@@ -31,8 +31,8 @@ struct RandomScene {
 };
 
 /// Draws a scene and a hand: one to three objects (shapes, small meshes in every way of contact,
-/// fields), stiffness, damping, friction, texture, bodies of every kind, and two seconds of a hand
-/// of random firmness that strokes, presses, crosses and leaves them, and rests at the end.
+/// fields), stiffness, damping, friction, texture, bodies of every kind, and 1.6 s of a hand
+/// of random firmness that strokes, presses, crosses and leaves them, and then rests for as long.
 /// The same seed gives the same scene on every machine. Real-time: never from the servo thread.
 RandomScene random_scene(std::uint64_t seed, const RandomSceneLimits& limits);
 
