@@ -291,7 +291,7 @@ std::vector<std::string> energy_warnings(const Scene& scene) {
     double push = 0;
     if (field) {
       push = try_field(object, scene.arm).push;
-    } else if (object.body.motion) {
+    } else if (object.body.motion && object.body.motion->grip) {  // on the floor it gives nothing
       push = object.body.motion->mass * object.body.motion->gravity_W.norm();
     }
     if (!(push * way > kEnergyAllowance + kEnergyOnset)) continue;
