@@ -8,8 +8,10 @@
 
 namespace thimble::app {
 
-/// Says between what limits random scenes are drawn. All of them lie within what an arm and a loop
-/// can carry by the laws, so that any trouble is a mistake of the program or of a law.
+/// Says between what limits random scenes are drawn. Stiffness lies within what an arm and a loop
+/// can carry by the laws, so that any trouble is a mistake of the program or of a law. What a law
+/// foretells to tremble a little (facets, textures, light bodies) is drawn all the same, and
+/// rest_warnings.h must name it.
 struct RandomSceneLimits {
   ArmFile arm;
   /// Where the scene will say that the arm's file and the folder of the small meshes are.
