@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "arm_file.h"
 #include "stability_laws.h"
+#include "worst_direction.h"
 
 namespace thimble::app {
 
@@ -26,6 +28,10 @@ driver::EnergyGuardSettings energy_settings(const ArmFile& arm, double rate,
   settings.reservoir = choice.reservoir.value_or(arm.declared.force * arm.declared.force /
                                                  (2 * arm.declared.stiffness));
   settings.onset = kEnergyOnset;
+  // One count moves the estimate by its gain times step over period.
+  const double corner = 2 * std::numbers::pi * arm.velocity_corner_frequency;
+  const double gain = corner > 0 ? -std::expm1(-corner / rate) : 1;
+  settings.speed_floor = gain * rate * worst_over_workspace(arm, 3).encoder_step;
   settings.slope = choice.slope.value_or(stiffness_limit(arm.simulated.plant.viscous, latency));
   // Nothing but a ring of torques depends on it: beyond the ring's end the last one stands.
   settings.delay_ticks = static_cast<int>(

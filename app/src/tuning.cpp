@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "energy_choice.h"
+#include "rest_warnings.h"
 #include "wall_trial.h"
 
 namespace thimble::app {
@@ -152,6 +153,7 @@ std::vector<std::string> stability_warnings(const Scene& scene) {
       warnings.push_back(advice(scene, object, carried));
     }
   }
+  for (std::string& warning : energy_warnings(scene)) warnings.push_back(std::move(warning));
   return warnings;
 }
 
@@ -236,6 +238,9 @@ TuneResult tune(const Scene& scene, const TuneOptions& options) {
   for (const std::string& warning : stability_warnings(scene)) {
     result.text += "Warning   " + warning + "\n";
   }
+  const std::vector<std::string> at_rest = rest_warnings(scene);
+  for (const std::string& warning : at_rest) result.text += "Warning   " + warning + "\n";
+  result.figures.push_back({"rest_warnings", static_cast<double>(at_rest.size()), "", ""});
   return result;
 }
 

@@ -251,7 +251,9 @@ void Device::write_guarded(const ForceCommand& command) noexcept {
   if (booked_) {
     flow = {.work = tau_sent_[delay].dot(pose_.q - q_booked_),
             .move_W = state_.p_WT - p_booked_W_,
-            .f_sent_W = f_sent_W_};
+            .f_sent_W = f_sent_W_,
+            // Of a linear spring; what the gate cuts off a force holds no more than this.
+            .held = 0.5 * command.f_T_W.norm() * command.touch.depth};
   }
   booked_ = true;
   q_booked_ = pose_.q;

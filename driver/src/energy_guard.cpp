@@ -3,9 +3,28 @@
 #include <algorithm>
 
 namespace thimble::driver {
+namespace {
 
-void PassivityObserver::book(double work) noexcept {
-  energy_ = std::min(energy_ - work, settings_.reservoir);
+/// Is more than any surface holds that a hand can press, J: 10 N over the workspace of an arm.
+constexpr double kHeldMost = 2;
+
+}  // namespace
+
+void PassivityObserver::book(double work, double held) noexcept {
+  // Written so that NaN and infinity hold nothing.
+  const double more = held > 0 && held < kHeldMost ? held : 0;
+  energy_ = std::min(energy_ - work, settings_.reservoir + more);
+}
+
+double PassivityObserver::share(double dt) noexcept {
+  if (!(settings_.onset > 0)) return 1;
+  const double beyond = -energy_ - settings_.allowance - settings_.onset;
+  if (beyond > 0) {
+    share_ = std::min(share_, std::max(0.0, 1 - beyond / settings_.onset));
+  } else if (energy_ >= 0 && share_ < 1) {
+    share_ = std::min(1.0, share_ + dt / kReturn);
+  }
+  return share_;
 }
 
 Eigen::Vector3d PassivityObserver::damping(const Eigen::Vector3d& v_WT, double dt) const noexcept {
@@ -14,7 +33,9 @@ Eigen::Vector3d PassivityObserver::damping(const Eigen::Vector3d& v_WT, double d
   if (!(debt > 0) || !(paid_per_damping > 0)) return {0, 0, 0};
   const double most = settings_.mass / (dt * (1 + 2 * settings_.delay_ticks)) *
                       (debt < settings_.onset ? debt / settings_.onset : 1);
-  return -std::min(debt / paid_per_damping, most) * v_WT;
+  const double felt = 1 - settings_.speed_floor / v_WT.norm();
+  if (!(felt > 0)) return {0, 0, 0};
+  return -std::min(debt / paid_per_damping, most) * felt * v_WT;
 }
 
 double bounded_force(const EnergyFlow& flow, double slope) noexcept {

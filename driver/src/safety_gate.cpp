@@ -68,7 +68,7 @@ GatedForce SafetyGate::pass(const Eigen::Vector3d& f_T_W, const Eigen::Vector3d&
 GatedForce SafetyGate::pass_guarded(const Eigen::Vector3d& f_T_W, const Eigen::Vector3d& v_WT,
                                     double dt, const EnergyFlow& flow) noexcept {
   // What was given is given, whatever becomes of this tick.
-  observer_.book(flow.work);
+  observer_.book(flow.work, flow.held);
   if (!(std::abs(flow.work) + flow.move_W.squaredNorm() < HUGE_VAL)) trip(Fault::kStateNotFinite);
   GatedForce limited = pass(f_T_W, v_WT, dt);
   if (fault_ != Fault::kNone) return limited;
@@ -85,11 +85,9 @@ GatedForce SafetyGate::pass_guarded(const Eigen::Vector3d& f_T_W, const Eigen::V
     // A damper within its bounds cannot hold a wall that pushes on and on, slowly. So beyond the
     // onset the force fades with the debt, whatever the velocity seems to be, and at twice the
     // onset there is none left that could give energy. What the hand brings in brings it back.
-    const double beyond = -observer_.energy() - energy_.allowance - energy_.onset;
-    const bool fades = energy_.onset > 0 && beyond > 0;
-    if (!fades && damping_W.isZero(0)) return limited;
-    if (fades) f_W *= 1 - std::min(1.0, beyond / energy_.onset);
-    f_W += damping_W;
+    const double share = observer_.share(dt);
+    if (!(share < 1) && damping_W.isZero(0)) return limited;
+    f_W = share * f_W + damping_W;
     ++counters_.damped;
     const double open = limits_.force_max * std::min(1.0, since_start_ / opening_);
     const double magnitude = f_W.norm();

@@ -8,8 +8,10 @@
 
 namespace thimble::app {
 
-/// Says between what limits random scenes are drawn. All of them lie within what an arm and a loop
-/// can carry by the laws, so that any trouble is a mistake of the program or of a law.
+/// Says between what limits random scenes are drawn. Stiffness lies within what an arm and a loop
+/// can carry by the laws, so that any trouble is a mistake of the program or of a law. What a law
+/// foretells to tremble a little (facets, textures, light bodies) is drawn all the same, and
+/// rest_warnings.h must name it.
 struct RandomSceneLimits {
   ArmFile arm;
   /// Where the scene will say that the arm's file and the folder of the small meshes are.
@@ -31,8 +33,8 @@ struct RandomScene {
 };
 
 /// Draws a scene and a hand: one to three objects (shapes, small meshes in every way of contact,
-/// fields), stiffness, damping, friction, texture, bodies of every kind, and two seconds of a hand
-/// of random firmness that strokes, presses, crosses and leaves them, and rests at the end.
+/// fields), stiffness, damping, friction, texture, bodies of every kind, and 1.6 s of a hand
+/// of random firmness that strokes, presses, crosses and leaves them, and then rests for as long.
 /// The same seed gives the same scene on every machine. Real-time: never from the servo thread.
 RandomScene random_scene(std::uint64_t seed, const RandomSceneLimits& limits);
 

@@ -19,10 +19,9 @@
 namespace thimble::app {
 namespace {
 
-constexpr int kTries = 12;             // a scene that the loader refuses is drawn anew
-constexpr std::size_t kWorst = 10;     // kept
-constexpr double kGivenMuch = 1e-3;    // J, told
-constexpr double kTrembleMost = 0.02;  // N RMS [STABILITY 6]
+constexpr int kTries = 12;           // a scene that the loader refuses is drawn anew
+constexpr std::size_t kWorst = 10;   // kept
+constexpr double kGivenMuch = 1e-3;  // J, told
 
 /// Is a folder for scene files of this process; it goes with the object.
 class SceneFolder {
@@ -77,15 +76,15 @@ std::vector<double> measure(std::size_t cell, std::uint64_t seed, const RandomSc
 std::string table_of(const CellNumbers& cells, std::uint64_t seed) {
   std::string csv =
       "cell,seed,refused,not_finite_ticks,fault,force_share,energy_excess_J,tremble_N,speed_m_s,"
-      "given_J,contact_share,must_tremble\n";
+      "given_J,contact_share,must_tremble,unforetold\n";
   char line[300];
   for (std::size_t cell = 0; cell < cells.size(); ++cell) {
     const TroubleFound f = trouble_of(cells[cell]);
     const auto attempt = static_cast<int>(cells[cell].back());
-    std::snprintf(line, sizeof line, "%zu,%s,%d,%.17g,%.17g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%d\n",
+    std::snprintf(line, sizeof line, "%zu,%s,%d,%.17g,%.17g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%d,%d\n",
                   cell, seed_name(try_seed(seed, cell, attempt)).c_str(), attempt, f.not_finite,
                   f.fault, f.force_share, f.excess, f.tremble, f.speed, f.given, f.contact,
-                  f.must_tremble ? 1 : 0);
+                  f.must_tremble ? 1 : 0, f.unforetold ? 1 : 0);
     csv += line;
   }
   return csv;
@@ -152,7 +151,7 @@ driver::Result<TroubleReport> study_trouble(const TroubleOptions& options,
   if (report.end != SweepEnd::kDone) return report;
 
   double refused = 0, given_up = 0, not_finite = 0, faults = 0, over = 0, grown = 0;
-  double given_scenes = 0, trembling = 0;
+  double given_scenes = 0, trembling = 0, unforetold = 0;
   double excess = 0, given = 0, share = 0, tremble = 0, known = 0, contact = 0;
   for (const auto& cell : result->numbers) {
     const TroubleFound f = trouble_of(cell);
@@ -166,6 +165,7 @@ driver::Result<TroubleReport> study_trouble(const TroubleOptions& options,
     given = std::max(given, f.given);
     given_scenes += f.given > kGivenMuch ? 1 : 0;
     trembling += !f.must_tremble && f.tremble > kTrembleMost ? 1 : 0;
+    unforetold += f.unforetold ? 1 : 0;
     share = std::max(share, f.force_share);
     (f.must_tremble ? known : tremble) = std::max(f.must_tremble ? known : tremble, f.tremble);
     contact += f.contact;
@@ -184,6 +184,7 @@ driver::Result<TroubleReport> study_trouble(const TroubleOptions& options,
                     {"largest_force_share", share, "", ""},
                     {"largest_tremble_at_rest", tremble, "N", ""},
                     {"scenes_that_tremble_at_rest_over_20_mN", trembling, "", ""},
+                    {"of_those_no_warning_foretold", unforetold, "", "== 0"},
                     {"largest_tremble_of_naive_and_paper_friction", known, "N", ""}};
   const std::filesystem::path& folder = sweep_options.folder;
   if (auto done = write_text(table_of(result->numbers, options.seed), folder / "trouble.csv");

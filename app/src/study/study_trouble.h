@@ -25,7 +25,7 @@ struct TroubleReport {
   std::vector<Figure> figures;
 };
 
-/// Touches `count` random scenes by random hands for 2 s each (random_scene.h), and writes
+/// Touches `count` random scenes by random hands (random_scene.h), and writes
 /// trouble.csv and the ten worst scenes into `worst/` of the sweep's folder. The promises: no
 /// number that is none, no force above the arm's limit, no fault, no energy beyond what the hand
 /// put in. Real-time: never from the servo thread.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <span>
 
+#include "rest_warnings.h"
 #include "session.h"
 #include "study/signal.h"
 
@@ -129,6 +130,8 @@ TroubleFound run_for_trouble(const std::filesystem::path& scene_file, const Rand
                     {.period_ns = session.period_ns(), .ticks = session.ticks_planned()}, stop);
   found = account.close();
   found.must_tremble = scene.trembles;
+  found.unforetold =
+      !found.must_tremble && found.tremble > kTrembleMost && rest_warnings(session.scene()).empty();
   return found;
 }
 
@@ -142,12 +145,13 @@ std::vector<double> numbers_of(const TroubleFound& found) {
           found.speed,
           found.given,
           found.contact,
-          found.must_tremble ? 1.0 : 0.0};
+          found.must_tremble ? 1.0 : 0.0,
+          found.unforetold ? 1.0 : 0.0};
 }
 
 TroubleFound trouble_of(const std::vector<double>& numbers) {
   TroubleFound found;
-  if (numbers.size() < 10) return found;
+  if (numbers.size() < 11) return found;
   found.refused = numbers[0] > 0;
   found.not_finite = numbers[1];
   found.fault = numbers[2];
@@ -158,6 +162,7 @@ TroubleFound trouble_of(const std::vector<double>& numbers) {
   found.given = numbers[7];
   found.contact = numbers[8];
   found.must_tremble = numbers[9] > 0;
+  found.unforetold = numbers[10] > 0;
   return found;
 }
 

@@ -17,10 +17,12 @@ struct TroubleFound {
   double excess = 0;          ///< See energy_excess below, J.
   double tremble = 0;         ///< Force above 50 Hz in the last quarter of a second, N RMS.
   bool must_tremble = false;  ///< As RandomScene::trembles.
-  double speed = 0;           ///< Largest of the tip, m/s.
-  double given = 0;           ///< Most that the motors had ever given to the tip, beyond what the
-                              ///< scene may give by itself, J; 0 of a passive scene.
-  double contact = 0;         ///< Share of ticks in contact.
+  /// Whether it trembles by more than kTrembleMost and no warning of `thimble tune` foretold it.
+  bool unforetold = false;
+  double speed = 0;    ///< Largest of the tip, m/s.
+  double given = 0;    ///< Most that the motors had ever given to the tip, beyond what the
+                       ///< scene may give by itself, J; 0 of a passive scene.
+  double contact = 0;  ///< Share of ticks in contact.
 
   /// Tells whether the scene broke one of the promises.
   bool bad() const;
@@ -32,6 +34,9 @@ struct TroubleFound {
 /// Is how much energy (J) a run may show beyond what the hand put in: what hard case 11 allows a
 /// guarded wall, and the gate's energy stage lets go before it acts [STABILITY 7].
 inline constexpr double kEnergyAllowed = 2e-3;
+
+/// Is how much force above 50 Hz counts as trembling at rest, N RMS [STABILITY 6].
+inline constexpr double kTrembleMost = 0.02;
 
 /// Runs a scene's file and keeps the account.
 ///

@@ -17,7 +17,8 @@ driver::ForceCommand DentedTouch::update(const driver::DeviceState& state) noexc
   dent_.touch(triangle, within_triangle(edge_plane_weights(dent_.mesh(), triangle, state.p_WT)),
               state.p_WT);
   if (dent_.motion().settings().pull > 0) {
-    command.f_T_W += pull_.force(dent_.f_T_W(), state.p_WT, state.v_WT, command.touch.n_W);
+    command.f_T_W +=
+        pull_.force(dent_.f_T_W(), state.p_WT, state.v_WT, command.touch.n_W, command.touch.depth);
   }
   return command;
 }

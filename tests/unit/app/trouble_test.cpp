@@ -3,13 +3,17 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <numbers>
 #include <string>
 #include <vector>
 
 #include "figure.h"
+#include "rest_warnings.h"
 #include "stability_laws.h"
 #include "study/random_scene.h"
+#include "study/small_meshes.h"
 #include "study/trouble_run.h"
 #include "study/wall_measures.h"
 #include "support/scratch.h"
@@ -66,6 +70,101 @@ TEST(Trouble, IsSeenWhereAWallIsFarTooStiffForItsHand) {
   EXPECT_GT(found.excess, 10 * kEnergyAllowed);
   EXPECT_GT(found.given, 10 * kEnergyAllowed);
   EXPECT_GT(found.tremble, 0.1);
+}
+
+/// Draws the scene of a seed, changes its text, and runs it.
+TroubleFound run_seed(std::uint64_t seed, const std::string& what = "", const std::string& by = "",
+                      std::vector<std::string>* warnings = nullptr) {
+  const auto folder = support::scratch_folder();
+  EXPECT_TRUE(write_small_meshes(folder / "meshes"));
+  RandomScene scene = random_scene(seed, limits());
+  if (!what.empty()) {
+    const std::size_t at = scene.text.find(what);
+    EXPECT_NE(at, std::string::npos) << what;
+    if (at != std::string::npos) scene.text.replace(at, what.size(), by);
+  }
+  const auto file = folder / "scene.yaml";
+  EXPECT_TRUE(write_text(scene.text, file));
+  if (warnings != nullptr) {
+    const auto read = read_scene(file, {});
+    EXPECT_TRUE(read);
+    if (read) *warnings = rest_warnings(*read);
+  }
+  return run_for_trouble(file, scene);
+}
+
+bool any_has(const std::vector<std::string>& warnings, const std::string& word) {
+  return std::any_of(warnings.begin(), warnings.end(), [&](const std::string& warning) {
+    return warning.find(word) != std::string::npos;
+  });
+}
+
+// Seeds of a search through 100,000 scenes, of which 552 trembled; by cause. What each one showed
+// before stands behind it.
+
+TEST(Trouble, RestsWhereTheEnergyStageTrembledByItself) {
+  for (const std::uint64_t seed : {0x9fdca176d19cc5a4u,     // 2.0 N: the fade as a spring
+                                   0x0ba1cf68047f62f8u,     // 1.2 N: a deep soft wall let go
+                                   0x9d31e7a72db18a0cu,     // 1.7 N
+                                   0xe8e7f42db1d78623u}) {  // 0.11 N: jolts of single counts
+    const TroubleFound found = run_seed(seed);
+    EXPECT_FALSE(found.refused);
+    EXPECT_FALSE(found.bad());
+    EXPECT_LE(found.tremble, kTrembleMost) << std::hex << seed;
+  }
+}
+
+TEST(Trouble, RestsWhereThePullOfADentWasASwitch) {
+  for (const std::uint64_t seed : {0x397910a12f34a399u,     // 0.31 N
+                                   0x8caa046a37ca9eeeu,     // 0.34 N
+                                   0x4ef4be767faa6f60u}) {  // 0.14 N
+    const TroubleFound found = run_seed(seed);
+    EXPECT_GT(found.contact, 0.2);
+    EXPECT_LE(found.tremble, kTrembleMost) << std::hex << seed;
+  }
+}
+
+TEST(Trouble, OfFacetsInAHollowIsForetoldAndCuredByBlending) {
+  constexpr std::uint64_t kSeed = 0x8836b4fd9b78a8ec;  // a ring, nothing on it
+  std::vector<std::string> warnings;
+  EXPECT_GT(run_seed(kSeed, "", "", &warnings).tremble, kTrembleMost);
+  EXPECT_TRUE(any_has(warnings, "facets"));
+  const std::string plain = "    size: 0.0425869\n";
+  const std::string blended = plain + "    contact: {blending: sized_band}\n";
+  EXPECT_LE(run_seed(kSeed, plain, blended, &warnings).tremble, 1e-3);
+  EXPECT_FALSE(any_has(warnings, "facets"));
+}
+
+TEST(Trouble, OfATextureThatIsTooShortIsForetold) {
+  std::vector<std::string> warnings;
+  EXPECT_GT(run_seed(0x9e0ae1da2e824ea6, "", "", &warnings).tremble, kTrembleMost);
+  EXPECT_TRUE(any_has(warnings, "texture"));
+}
+
+TEST(Trouble, OfALightBodyInTheGripOfAFrictionIsForetold) {
+  std::vector<std::string> warnings;
+  EXPECT_GT(run_seed(0x84aec02417858bab, "", "", &warnings).tremble, kTrembleMost);
+  EXPECT_TRUE(any_has(warnings, "so light"));
+}
+
+TEST(RestWarnings, FindTheCurvatureOfASineAndTheGrainOfAVelocityInCounts) {
+  // Hollows of a cube: none; its texture and friction as a scene names them.
+  EXPECT_NEAR(grain_of(2, 3e-5, 3e-3, 0, 1e-3), 2 * 0.03 * std::sqrt(0.1 * 0.9), 1e-12);
+  EXPECT_EQ(grain_of(2, 0, 3e-3, 0, 1e-3), 0);
+  const auto file = support::scratch_folder() / "wave.yaml";
+  ASSERT_TRUE(write_text(
+      "name: wave\narm: " + kArm.string() +
+          "\nduration: 1\nobjects:\n  - name: wall\n    plane: {normal: [0, 0, 1]}\n"
+          "    stiffness: 500\n    effects:\n      - texture: sines\n"
+          "        waves: [{amplitude: 0.0001, wavelength: 0.004, direction: [1, 0, 0]}]\n"
+          "      - {friction: bristle, coefficient: 0.5, stiffness: 700}\n"
+          "hand:\n  path:\n    - {t: 0, at: [0, 0, 0.02]}\n",
+      file));
+  const auto scene = read_scene(file, {});
+  ASSERT_TRUE(scene) << scene.error().message;
+  const double exact = 1e-4 * std::pow(2 * std::numbers::pi / 0.004, 2);
+  EXPECT_NEAR(curvature_of(scene->objects[0].effects[0]) / exact, 0.99, 0.02);
+  EXPECT_NEAR(hold_of(scene->objects[0].effects[1]), 700, 1);
 }
 
 TEST(RandomScene, IsDrawnAgainByItsSeedAndByNoOther) {

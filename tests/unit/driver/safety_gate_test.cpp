@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -200,7 +201,55 @@ TEST(EnergyGuard, FadesTheForceOfADebtBeyondItsOnsetEvenAtRest) {
   EXPECT_EQ(sent(0.002), 2);           // at the onset
   EXPECT_NEAR(sent(0.001), 1, 1e-9);   // half-way beyond
   EXPECT_NEAR(sent(0.002), 0, 1e-12);  // and no more at twice the onset
-  EXPECT_NEAR(sent(-0.004), 2, 1e-9);  // the hand has brought it back
+}
+
+TEST(EnergyGuard, BringsAFadedForceBackSlowlyAndOnlyWhenNothingIsOwed) {
+  EnergyGuardSettings settings = passivity();
+  settings.onset = 0.002;
+  SafetyGate gate(limits(), settings);
+  for (int k = 0; k < 400; ++k) gate.pass_guarded({0, 0, 0}, kStill, kPeriod, {});
+  const auto sent = [&](double work) {
+    return gate.pass_guarded({2, 0, 0}, kStill, kPeriod, {.work = work}).f_T_W().x();
+  };
+  EXPECT_NEAR(sent(0.003), 1, 1e-9);
+  // A force that followed its debt back would be a spring of F^2 / onset.
+  EXPECT_NEAR(sent(-0.002), 1, 1e-9);
+  EXPECT_NEAR(sent(-0.002), 1, 2e-3);
+  double last = sent(0), most = 0;
+  for (int k = 0; k < 1000; ++k) {
+    const double now = sent(0);
+    most = std::max(most, now - last);
+    last = now;
+  }
+  EXPECT_NEAR(most, 2 * kPeriod / PassivityObserver::kReturn, 1e-9);
+  EXPECT_NEAR(last, 2, 2e-3);
+}
+
+TEST(EnergyGuard, DampsNothingOfWhatOneCountMayBe) {
+  EnergyGuardSettings settings = passivity();
+  settings.speed_floor = 0.02;
+  SafetyGate gate(limits(), settings);
+  for (int k = 0; k < 400; ++k) gate.pass_guarded({0, 0, 0}, kStill, kPeriod, {});
+  const auto damped = [&](double v) {
+    return gate.pass_guarded({0, 0, 0}, {v, 0, 0}, kPeriod, {.work = 1}).f_T_W().x();
+  };
+  EXPECT_EQ(damped(0.0199), 0);
+  EXPECT_NEAR(damped(0.021), -75 * 0.001, 1e-9);  // and then no jump
+  EXPECT_NEAR(damped(-0.04), 75 * 0.02, 1e-9);
+}
+
+TEST(EnergyGuard, KeepsTheCreditOfSpringsThatArePressedNowAndNoLonger) {
+  SafetyGate gate(limits(), passivity());
+  for (int k = 0; k < 400; ++k) gate.pass_guarded({0, 0, 0}, kStill, kPeriod, {});
+  gate.pass_guarded({0, 0, 0}, kStill, kPeriod, {.work = -0.09, .held = 0.08});
+  EXPECT_NEAR(gate.energy(), 0.09, 1e-12);
+  // What they hold does not give credit that nobody brought.
+  gate.pass_guarded({0, 0, 0}, kStill, kPeriod, {.work = 0.05, .held = 0.5});
+  EXPECT_NEAR(gate.energy(), 0.04, 1e-12);
+  for (const double held : {0.0, -1.0, std::nan(""), HUGE_VAL}) {
+    gate.pass_guarded({0, 0, 0}, kStill, kPeriod, {.held = held});
+    EXPECT_LE(gate.energy(), 0.02) << held;
+  }
 }
 
 TEST(EnergyGuard, HoldsItsDampingBackWithTheSoftStart) {

@@ -1,4 +1,5 @@
 #include "thimble/render/body/bendable_polygon.h"
+#include "thimble/render/body/body_pull.h"
 
 #include <gtest/gtest.h>
 
@@ -476,6 +477,32 @@ TEST(DentedTouch, ChangesNoForceWithoutPullAndIsTheSameInEveryRun) {
     }
     EXPECT_GT(dents, 50);
   }
+}
+
+TEST(BodyPull, FadesWithWhatTheHandHasPutByAndDoesNotSwitch) {
+  BodyPull pull(1, 1e-3);
+  const Eigen::Vector3d n(0, 0, 1);
+  double depth = 0, last = 0, given = 0, most = 0, step = 0, felt = 0;
+  const auto move = [&](double way, double stiffness) {
+    depth += way;
+    given -= last * way;  // of the hand's, against the force before
+    felt =
+        pull.force(stiffness * depth * n, -depth * n, Eigen::Vector3d(0, 0, -way / 1e-3), n, depth)
+            .z();
+    step = std::max(step, std::abs(felt - last));
+    most = std::max(most, given);
+    last = felt;
+  };
+  for (int k = 0; k < 100; ++k) move(5e-5, 50);
+  EXPECT_NEAR(felt, 50 * 5e-3, 1e-9);
+  // The springs have stiffened to more than the hand paid for. It trembles, and goes out slowly.
+  move(0, 150);
+  step = 0;
+  for (int k = 0; k < 800; ++k) move(k % 2 == 0 ? -1.5e-5 : 5e-6, 150);
+  // A switch would have moved all of the force, 0.75 N, to and fro. The spring's own 150 N/m and
+  // four times that over 15 um, and a tick's delay of the account:
+  EXPECT_LE(step, 1.2 * 5 * 150 * 1.5e-5);
+  EXPECT_LE(most, 5e-6);
 }
 
 }  // namespace

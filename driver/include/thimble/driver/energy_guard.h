@@ -23,6 +23,10 @@ struct EnergyGuardSettings {
   /// Debt at which the controller damps as hard as it may, J; in proportion before; beyond, the
   /// force fades and is gone at twice that. 0: at once, in jolts (2 N on 1 N were seen), no fading.
   double onset = 0;
+  /// Speed that a tip at rest may seem to have when one count of its encoders flickers, m/s; slower
+  /// is not damped, and what is above it only by the rest. 0: everything is damped, and each count
+  /// is a jolt of damping times step over period (0.6 N were seen).
+  double speed_floor = 0;
   double slope = 0;     ///< c1 of the bound, N/m. Bounding: must be > 0; 2 b / T makes it passive.
   int delay_ticks = 0;  ///< Ticks from sampling to force beyond the hold, 0 to kDelayMost.
   static constexpr int kDelayMost = 15;  ///< Most ticks of delay that it can count.
@@ -33,6 +37,9 @@ struct EnergyFlow {
   double work = 0;  ///< Done on the hand by what was truly sent, after all clamps and rounding, J.
   Eigen::Vector3d move_W{0, 0, 0};    ///< Way of the tip, m.
   Eigen::Vector3d f_sent_W{0, 0, 0};  ///< What was sent in the tick before, N.
+  /// What the springs that are pressed hold now, J: the hand's, and to be given back. It only moves
+  /// the end of the credit; a wrong one gives nobody energy that he did not bring.
+  double held = 0;
 };
 
 /// Books the energy that the arm took from the hand and finds the damping that gets back what went
@@ -46,16 +53,26 @@ class PassivityObserver {
   explicit PassivityObserver(const EnergyGuardSettings& settings) noexcept : settings_(settings) {}
 
   /// Forgets the past.
-  void restart() noexcept { energy_ = 0; }
+  void restart() noexcept {
+    energy_ = 0;
+    share_ = 1;
+  }
 
-  /// Books `work` done on the hand, J.
-  void book(double work) noexcept;
+  /// Books `work` done on the hand, J. Credit ends at the reservoir and what springs `held` beyond.
+  void book(double work, double held = 0) noexcept;
 
   /// Finds the damping for the tip's velocity (m/s): -alpha v, N, with alpha the least that pays
   /// the debt within a tick of `dt` (s), and never above m / (T (1 + 2 delay)): a damper on a mass
   /// swings up by itself beyond m / T, earlier when late. Up to the debt `onset` that end rises in
-  /// proportion.
+  /// proportion. What of v is below the speed floor is not damped.
   Eigen::Vector3d damping(const Eigen::Vector3d& v_WT, double dt) const noexcept;
+
+  /// Finds the share of a force that may stand, after `dt` (s): 1, and less from a debt beyond the
+  /// onset on, 0 at twice that. It falls with the debt and does not rise with it: a force that
+  /// followed its debt both ways would be a spring of F^2 / onset, 8 N/mm for 4 N, which no arm
+  /// carries (it swung by 0.1 mm at 60 Hz). It comes back when nothing is owed, over kReturn.
+  double share(double dt) noexcept;
+  static constexpr double kReturn = 2;  ///< Time from none to all, s [chosen: no hand is startled].
 
   /// Tells the energy on the account, J; below 0 the arm gave more than it took.
   double energy() const noexcept { return energy_; }
@@ -63,6 +80,7 @@ class PassivityObserver {
  private:
   EnergyGuardSettings settings_;
   double energy_ = 0;  // J
+  double share_ = 1;   // of the force
 };
 
 /// Finds how long a force may be so that storage |f|^2 / (2 c1) and the arm's friction pay for all

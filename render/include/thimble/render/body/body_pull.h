@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 
 namespace thimble::render {
 
@@ -9,6 +10,8 @@ namespace thimble::render {
 ///
 /// What the hand does against the pull is put by, what the pull does for the hand is taken from
 /// that; where it is used up, as the springs' fading may do, the pull does not help the hand along.
+/// It goes softly: a pull that is cut where the last of it is spent, and whole where the hand moves
+/// in again, is a switch, and trembled by all of its force.
 /// It never pulls into the surface, so that leaving does not stick. What is left to chance is the
 /// move of one tick, as for every wall [STABILITY 1.6].
 class BodyPull {
@@ -19,14 +22,20 @@ class BodyPull {
   // All of the following are Real-time: safe.
 
   /// Finds what the hand feels (N in W) of the pull `f_T_W`, with the tip at `p_WT` (m), going at
-  /// `v_WT` (m/s), below a surface whose unit normal is `n_W`. NaN: none.
+  /// `v_WT` (m/s), `depth` (m) below a surface whose unit normal is `n_W`. NaN: none.
   Eigen::Vector3d force(const Eigen::Vector3d& f_T_W, const Eigen::Vector3d& p_WT,
-                        const Eigen::Vector3d& v_WT, const Eigen::Vector3d& n_W) noexcept {
+                        const Eigen::Vector3d& v_WT, const Eigen::Vector3d& n_W,
+                        double depth) noexcept {
     account(p_WT);
     sent_.setZero();
+    const double normal = f_T_W.dot(n_W);
     // Written so that NaN means no force.
-    if (f_T_W.dot(n_W) > 0 && f_T_W.squaredNorm() < kForceMax * kForceMax) {
-      sent_ = share_ * f_T_W;
+    if (normal > 0 && depth >= 0 && f_T_W.squaredNorm() < kForceMax * kForceMax) {
+      // A spring would hold F x / 2. Below half of that the pull fades with what is left, so it is
+      // at most four times as stiff there as it is by itself.
+      const double half = 0.25 * share_ * normal * depth;
+      const double left = std::max(stored_, 0.0) + kLittle;
+      sent_ = share_ * std::min(1.0, left / (half + kLittle)) * f_T_W;
       const double given = sent_.dot(v_WT) * step_;
       if (!(given <= stored_)) sent_ *= stored_ > 0 && given > 0 ? stored_ / given : 0;
     }
@@ -43,6 +52,7 @@ class BodyPull {
 
  private:
   static constexpr double kForceMax = 1e6;  // N; as SpringMotion::push
+  static constexpr double kLittle = 5e-6;  // J, so that a touch can begin [chosen: 0.1 mm of 50 mN]
 
   void account(const Eigen::Vector3d& p_WT) noexcept {
     if (has_before_) stored_ -= sent_.dot(p_WT - p_WT_before_);
