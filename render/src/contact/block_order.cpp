@@ -14,8 +14,8 @@ using Items = std::span<PlacedIndex>;
 
 constexpr std::size_t kBlock = 8;
 // Below this size sampling a pivot takes longer than what it saves.
-constexpr std::size_t kFewItems = 96;
-constexpr std::size_t kSamples = 31;
+constexpr std::size_t kFewItems = 48;
+constexpr std::size_t kSamples = 9;
 
 std::size_t longest_side(Items items) noexcept {
   __m128 low = _mm_set1_ps(std::numeric_limits<float>::infinity());
@@ -32,8 +32,8 @@ std::size_t longest_side(Items items) noexcept {
   return static_cast<std::size_t>(std::max_element(side.begin(), side.begin() + 3) - side.begin());
 }
 
+template <std::size_t axis>
 struct Before {
-  std::size_t axis;
   bool operator()(const PlacedIndex& a, const PlacedIndex& b) const noexcept {
     const float u = a.at[axis], v = b.at[axis];
     // Bitwise: which is less is beyond prediction.
@@ -43,20 +43,30 @@ struct Before {
 };
 
 // Puts the items before a pivot to the front without a branch, and gives their number.
-std::size_t part(Items items, const PlacedIndex& pivot, Before before) noexcept {
-  std::size_t count = 0;
-  for (PlacedIndex& item : items) {
-    const PlacedIndex one = item;
-    item = items[count];
-    items[count] = one;
-    count += static_cast<std::size_t>(before(one, pivot));
+template <std::size_t kAxis>
+std::size_t part(Items items, const PlacedIndex& pivot) noexcept {
+  PlacedIndex* const begin = items.data();
+  PlacedIndex* const end = begin + items.size();
+  PlacedIndex* front = begin;
+  const float u = pivot.at[kAxis];
+  const std::int32_t index = pivot.index;
+  for (PlacedIndex* item = begin; item != end; ++item) {
+    const bool before = static_cast<bool>(
+        static_cast<int>(item->at[kAxis] < u) |
+        (static_cast<int>(item->at[kAxis] == u) & static_cast<int>(item->index < index)));
+    const __m128 one = _mm_load_ps(item->at.data());
+    _mm_store_ps(item->at.data(), _mm_load_ps(front->at.data()));
+    _mm_store_ps(front->at.data(), one);
+    front += before;
   }
-  return count;
+  return static_cast<std::size_t>(front - begin);
 }
 
 // Puts the `rank` least items to the front: parts by pivots whose rank among a few samples is a
 // little above or below what is asked for, so that what is left is short.
-void select(Items items, std::size_t rank, Before before) noexcept {
+template <std::size_t kAxis>
+void select(Items items, std::size_t rank) noexcept {
+  constexpr Before<kAxis> before;
   for (int round = 0; round < 8 && items.size() > kFewItems; ++round) {
     std::array<PlacedIndex, kSamples> samples;
     for (std::size_t i = 0; i < kSamples; ++i) {
@@ -64,7 +74,7 @@ void select(Items items, std::size_t rank, Before before) noexcept {
     }
     const auto near = samples.begin() + static_cast<std::ptrdiff_t>(rank * kSamples / items.size());
     std::nth_element(samples.begin(), near, samples.end(), before);
-    const std::size_t count = part(items, *near, before);
+    const std::size_t count = part<kAxis>(items, *near);
     if (count == rank) return;
     if (count < rank) {
       items = items.subspan(count);
@@ -85,7 +95,16 @@ void order_in_blocks(Items items) {
     while (8 * unit < items.size()) unit *= 8;
     const std::size_t units = (items.size() + unit - 1) / unit;
     const std::size_t first = (units + 1) / 2 * unit;
-    select(items, first, {longest_side(items)});
+    switch (longest_side(items)) {
+      case 0:
+        select<0>(items, first);
+        break;
+      case 1:
+        select<1>(items, first);
+        break;
+      default:
+        select<2>(items, first);
+    }
     order_in_blocks(items.first(first));
     items = items.subspan(first);
   }

@@ -28,6 +28,26 @@ std::size_t index(std::int32_t i) noexcept {
   return static_cast<std::size_t>(i);
 }
 
+// Tells which is the first triangle without a neighbour of its own over each edge. Precondition:
+// there is one.
+driver::Error first_unpaired(std::span<const CompactTriangle> records,
+                             std::span<const std::array<std::int32_t, 3>> triangles,
+                             const HalfEdges& half_edges) {
+  std::size_t t = 0, k = 0;
+  for (;; k = 0, ++t) {
+    const auto paired = [&](std::size_t edge) {
+      const std::int32_t from = triangles[t][edge], to = triangles[t][(edge + 1) % 3];
+      return half_edges.opposite(to, from) >= 0 && half_edges.opposite(from, to) >= 0;
+    };
+    while (k < 3 && paired(k)) ++k;
+    if (k < 3) break;
+  }
+  return refusal(index(records[t].source()),
+                 "lacks a neighbour of its own, wound like itself, over its edge from vertex " +
+                     std::to_string(triangles[t][k]) + " to vertex " +
+                     std::to_string(triangles[t][(k + 1) % 3]) + ".");
+}
+
 // A corner or a vertex on the lattice.
 struct LatticePoint {
   std::int32_t x, y, z;
@@ -148,20 +168,16 @@ driver::Result<CompactSurface> CompactSurface::build(const TriangleMesh& mesh,
   }
 
   const HalfEdges half_edges(triangles, mesh.vertices.size());
+  // Who runs an edge besides another is found by the one behind that edge, who sees two.
+  bool all_paired = true;
   for (std::size_t t = 0; t < count; ++t) {
-    CompactTriangle& record = surface.records_[t];
     for (std::size_t k = 0; k < 3; ++k) {
-      record.neighbours[k] = half_edges.opposite(triangles[t][(k + 1) % 3], triangles[t][k]);
-      const bool alone = half_edges.opposite(triangles[t][k], triangles[t][(k + 1) % 3]) >= 0;
-      if (record.neighbours[k] < 0 || !alone) {
-        return refusal(
-            index(record.source()),
-            "lacks a neighbour of its own, wound like itself, over its edge from vertex " +
-                std::to_string(triangles[t][k]) + " to vertex " +
-                std::to_string(triangles[t][(k + 1) % 3]) + ".");
-      }
+      const std::int32_t behind = half_edges.opposite(triangles[t][(k + 1) % 3], triangles[t][k]);
+      surface.records_[t].neighbours[k] = behind;
+      all_paired &= behind >= 0;
     }
   }
+  if (!all_paired) return first_unpaired(surface.records_, triangles, half_edges);
   const std::ptrdiff_t flat = assign_corner_normals(mesh.vertices, triangles, half_edges,
                                                     options.crease_angle, surface.records_);
   if (flat >= 0) {

@@ -49,6 +49,8 @@ class TreeNodes {
 
   /// Tells how many levels there are. Real-time: safe.
   std::size_t levels() const noexcept { return levels_; }
+  /// Tells how many nodes a level has. Real-time: safe.
+  std::size_t width(std::size_t level) const noexcept { return counts_[level + 1]; }
   /// Shows the nodes of a level. Real-time: safe.
   const BoxNode* row(std::size_t level) const noexcept { return nodes_.data() + begins_[level]; }
 
