@@ -1,3 +1,4 @@
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -17,7 +18,16 @@ void TreeSearch<Surface>::keep_places() {
 template <class Surface>
 bool TreeSearch<Surface>::refit(std::span<const std::int32_t> triangles) noexcept {
   if (places_.empty()) return false;
+  // Neighbours stand in the same eights, each of which is made anew once; of those with the same
+  // last digits one is remembered, another is made again.
+  constexpr std::size_t kRemembered = 32;
+  std::array<std::uint32_t, kRemembered> done;
+  done.fill(0xffffffffu);
   for (const std::int32_t t : triangles) {
+    const std::uint32_t eight =
+        places_[static_cast<std::size_t>(t)] / static_cast<std::uint32_t>(BoxNode::kChildrenMax);
+    if (done[eight % kRemembered] == eight) continue;
+    done[eight % kRemembered] = eight;
     nodes_.refit(places_[static_cast<std::size_t>(t)],
                  [this](std::size_t place) noexcept { return box_of(place); });
   }
