@@ -24,10 +24,19 @@ void TreeSearch<Surface>::visit_reached(const Vector3d& from, const Vector3d& wa
     return (visit(list) - part.begin) / part.length;
   };
   const std::int32_t* const order = order_.empty() ? nullptr : order_.data();
+  NearList near;
+  if (wide_ ? lanes_avx2::list_near(nodes_, part, near)
+            : lanes_plain::list_near(nodes_, part, near)) {
+    if (near.count == 0) return;
+    std::array<std::int32_t, NearList::kMost> list;
+    for (std::size_t i = 0; i < near.count; ++i) list[i] = triangle_at(near.numbers[i]);
+    visit(std::span<const std::int32_t>(list.data(), near.count));
+    return;
+  }
   if (wide_) {
-    lanes_avx2::walk_along(nodes_.data(), order, part, visit_part);
+    lanes_avx2::walk_along(nodes_, order, part, visit_part);
   } else {
-    lanes_plain::walk_along(nodes_.data(), order, part, visit_part);
+    lanes_plain::walk_along(nodes_, order, part, visit_part);
   }
 }
 
@@ -65,12 +74,16 @@ SurfacePoint TreeSearch<Surface>::closest(const Vector3d& p_W, double radius) co
   // Twice what turning a point and its distance to a node into single precision may be wrong by.
   const auto room = static_cast<float>(0x1p-21 * std::max(p.cwiseAbs().maxCoeff(), kLatticeHalf));
   const std::int32_t* const order = order_.empty() ? nullptr : order_.data();
+  if (wide_ ? lanes_avx2::find_nearest(nodes_, order, *surface_, frame_, p.data(), room,
+                                       best.so_far())
+            : lanes_plain::find_nearest(nodes_, order, *surface_, frame_, p.data(), room,
+                                        best.so_far())) {
+    return best.point();
+  }
   if (wide_) {
-    lanes_avx2::walk_to_nearest(nodes_.data(), order, *surface_, frame_, p.data(), room,
-                                best.so_far());
+    lanes_avx2::walk_to_nearest(nodes_, order, *surface_, frame_, p.data(), room, best.so_far());
   } else {
-    lanes_plain::walk_to_nearest(nodes_.data(), order, *surface_, frame_, p.data(), room,
-                                 best.so_far());
+    lanes_plain::walk_to_nearest(nodes_, order, *surface_, frame_, p.data(), room, best.so_far());
   }
   return best.point();
 }

@@ -1,5 +1,7 @@
 #include "thimble/render/contact/compact_surface.h"
 
+#include <emmintrin.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -7,28 +9,15 @@
 #include <string>
 #include <utility>
 
+#include "contact/block_order.h"
 #include "contact/corner_normals.h"
 #include "contact/half_edges.h"
-#include "contact/radix_sort.h"
 #include "thimble/render/contact/surface_rise.h"
 
 namespace thimble::render {
 namespace {
 
 using Eigen::Vector3d;
-
-std::uint64_t spread_bits(std::uint64_t v) noexcept {
-  v = (v | (v << 32)) & 0x0000ffff00000000ffffu;
-  v = (v | (v << 16)) & 0x00ff0000ff0000ffu;
-  v = (v | (v << 8)) & 0xf00f00f00f00f00fu;
-  v = (v | (v << 4)) & 0x30c30c30c30c30c3u;
-  return (v | (v << 2)) & 0x9249249249249249u;
-}
-
-std::uint64_t cell_of(std::int32_t a, std::int32_t b, std::int32_t c) noexcept {
-  const std::int64_t middle = (std::int64_t{a} + b + c) / 3 + (std::int64_t{1} << 30);
-  return std::min<std::uint64_t>(static_cast<std::uint64_t>(middle) >> 15, 0xffff);
-}
 
 driver::Error refusal(std::size_t triangle, const std::string& why) {
   return driver::Error{"The mesh cannot be touched: triangle " + std::to_string(triangle) + " " +
@@ -39,13 +28,52 @@ std::size_t index(std::int32_t i) noexcept {
   return static_cast<std::size_t>(i);
 }
 
-// Says that the record of triangle t stands at place[t] once the keys are sorted.
-std::vector<KeyedIndex> sorted_by_place(std::span<const CompactTriangle> records) {
-  std::vector<KeyedIndex> order(records.size());
-  for (std::size_t t = 0; t < records.size(); ++t) {
-    order[t] = {morton_key(records[t]), static_cast<std::int32_t>(t)};
+// Tells which is the first triangle without a neighbour of its own over each edge. Precondition:
+// there is one.
+driver::Error first_unpaired(std::span<const CompactTriangle> records,
+                             std::span<const std::array<std::int32_t, 3>> triangles,
+                             const HalfEdges& half_edges) {
+  std::size_t t = 0, k = 0;
+  for (;; k = 0, ++t) {
+    const auto paired = [&](std::size_t edge) {
+      const std::int32_t from = triangles[t][edge], to = triangles[t][(edge + 1) % 3];
+      return half_edges.opposite(to, from) >= 0 && half_edges.opposite(from, to) >= 0;
+    };
+    while (k < 3 && paired(k)) ++k;
+    if (k < 3) break;
   }
-  radix_sort(order);
+  return refusal(index(records[t].source()),
+                 "lacks a neighbour of its own, wound like itself, over its edge from vertex " +
+                     std::to_string(triangles[t][k]) + " to vertex " +
+                     std::to_string(triangles[t][(k + 1) % 3]) + ".");
+}
+
+// A corner or a vertex on the lattice.
+struct LatticePoint {
+  std::int32_t x, y, z;
+};
+
+LatticePoint on_lattice(const Vector3d& p) noexcept {
+  const auto whole = [](double u) noexcept {
+    // Rounds to the nearest, halves to the even one.
+    return _mm_cvtsd_si32(_mm_set_sd(std::clamp(u, -kLatticeHalf, kLatticeHalf)));
+  };
+  return {whole(p.x()), whole(p.y()), whole(p.z())};
+}
+
+// Gives the triangles in the order in which their records shall stand.
+std::vector<PlacedIndex> order_of(const TriangleMesh& mesh, std::span<const LatticePoint> points) {
+  std::vector<PlacedIndex> order(mesh.triangles.size());
+  for (std::size_t t = 0; t < order.size(); ++t) {
+    const auto& [i, j, k] = mesh.triangles[t];
+    const LatticePoint &a = points[index(i)], &b = points[index(j)], &c = points[index(k)];
+    const auto middle = [](std::int32_t u, std::int32_t v, std::int32_t w) noexcept {
+      return static_cast<float>(u) + static_cast<float>(v) + static_cast<float>(w);
+    };
+    order[t] = {{middle(a.x, b.x, c.x), middle(a.y, b.y, c.y), middle(a.z, b.z, c.z)},
+                static_cast<std::int32_t>(t)};
+  }
+  order_in_blocks(order);
   return order;
 }
 
@@ -74,12 +102,6 @@ Vector3d unpack_normal(std::uint32_t packed) noexcept {
   const double fold = std::max(-z, 0.0);
   const Vector3d n(x - std::copysign(fold, x), y - std::copysign(fold, y), z);
   return n / std::sqrt(n.squaredNorm());
-}
-
-std::uint64_t morton_key(const CompactTriangle& r) noexcept {
-  return spread_bits(cell_of(r.x[0], r.x[1], r.x[2])) |
-         (spread_bits(cell_of(r.y[0], r.y[1], r.y[2])) << 1) |
-         (spread_bits(cell_of(r.z[0], r.z[1], r.z[2])) << 2);
 }
 
 driver::Result<CompactSurface> CompactSurface::build(const ContactMesh& mesh,
@@ -124,45 +146,38 @@ driver::Result<CompactSurface> CompactSurface::build(const TriangleMesh& mesh,
     return driver::Error{"The mesh has no extent that can be told from zero."};
   }
 
-  const auto on_lattice = [](double u) noexcept {
-    return static_cast<std::int32_t>(std::lrint(std::clamp(u, -kLatticeHalf, kLatticeHalf)));
-  };
-  const auto place = [&](CompactTriangle& record, const std::array<std::int32_t, 3>& corners) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Vector3d p = surface.to_lattice(mesh.vertices[index(corners[k])]);
-      record.x[k] = on_lattice(p.x());
-      record.y[k] = on_lattice(p.y());
-      record.z[k] = on_lattice(p.z());
-    }
-  };
-  surface.records_.resize(count);
-  for (std::size_t t = 0; t < count; ++t) place(surface.records_[t], mesh.triangles[t]);
   std::vector<std::array<std::int32_t, 3>> triangles(count);
+  surface.records_.resize(count);
   {
-    const std::vector<KeyedIndex> order = sorted_by_place(surface.records_);
+    std::vector<LatticePoint> points(mesh.vertices.size());
+    for (std::size_t v = 0; v < points.size(); ++v) {
+      points[v] = on_lattice(surface.to_lattice(mesh.vertices[v]));
+    }
+    const std::vector<PlacedIndex> order = order_of(mesh, points);
     for (std::size_t t = 0; t < count; ++t) {
+      CompactTriangle& record = surface.records_[t];
       triangles[t] = mesh.triangles[index(order[t].index)];
-      place(surface.records_[t], triangles[t]);
-      surface.records_[t].flags = static_cast<std::uint32_t>(order[t].index)
-                                  << CompactTriangle::kSourceShift;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const LatticePoint& p = points[index(triangles[t][k])];
+        record.x[k] = p.x;
+        record.y[k] = p.y;
+        record.z[k] = p.z;
+      }
+      record.flags = static_cast<std::uint32_t>(order[t].index) << CompactTriangle::kSourceShift;
     }
   }
 
   const HalfEdges half_edges(triangles, mesh.vertices.size());
+  // Who runs an edge besides another is found by the one behind that edge, who sees two.
+  bool all_paired = true;
   for (std::size_t t = 0; t < count; ++t) {
-    CompactTriangle& record = surface.records_[t];
     for (std::size_t k = 0; k < 3; ++k) {
-      record.neighbours[k] = half_edges.opposite(triangles[t][(k + 1) % 3], triangles[t][k]);
-      const bool alone = half_edges.opposite(triangles[t][k], triangles[t][(k + 1) % 3]) >= 0;
-      if (record.neighbours[k] < 0 || !alone) {
-        return refusal(
-            index(record.source()),
-            "lacks a neighbour of its own, wound like itself, over its edge from vertex " +
-                std::to_string(triangles[t][k]) + " to vertex " +
-                std::to_string(triangles[t][(k + 1) % 3]) + ".");
-      }
+      const std::int32_t behind = half_edges.opposite(triangles[t][(k + 1) % 3], triangles[t][k]);
+      surface.records_[t].neighbours[k] = behind;
+      all_paired &= behind >= 0;
     }
   }
+  if (!all_paired) return first_unpaired(surface.records_, triangles, half_edges);
   const std::ptrdiff_t flat = assign_corner_normals(mesh.vertices, triangles, half_edges,
                                                     options.crease_angle, surface.records_);
   if (flat >= 0) {

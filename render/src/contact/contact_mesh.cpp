@@ -21,7 +21,7 @@ constexpr double kDepthRounding = 64 * 0x1p-53;
 // The sum of two unit normals below which the faces lie back to back: the direction of their
 // average is then rounding, and the plane is put along the faces instead. At 1e-7 the direction
 // would still be good to 1e-9.
-constexpr double kBackToBack = 1e-7;
+constexpr double kOpposite = 1e-7;
 
 Vector3d unit_normal(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
   return (b - a).cross(c - a).stableNormalized();
@@ -34,7 +34,7 @@ Plane edge_plane(const Vector3d& from, const Vector3d& edge, const Vector3d& n_f
                  const Vector3d& n_second) {
   const Vector3d average = n_first + n_second;
   Plane plane;
-  plane.n = average.norm() > kBackToBack ? average.cross(edge).stableNormalized() : n_first;
+  plane.n = average.norm() > kOpposite ? average.cross(edge).stableNormalized() : n_first;
   plane.d = -plane.n.dot(from);
   return plane;
 }

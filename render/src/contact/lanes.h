@@ -13,6 +13,7 @@
 #include <cstring>
 #include <span>
 
+#include "contact/near_list.h"
 #include "contact/nearest_so_far.h"
 #include "contact/node_stack.h"
 #include "contact/record_tests.h"
@@ -20,6 +21,8 @@
 #include "thimble/render/contact/compact_surface.h"
 #include "thimble/render/contact/contact_mesh.h"
 #include "thimble/render/contact/search_frame.h"
+#include "thimble/render/contact/tree_nodes.h"
+#include "thimble/render/contact/volume_grid.h"
 
 // The same code for every processor, in lanes_plain, and for those with AVX2, in lanes_avx2
 // (lanes.inc). wide_lanes says which to call. Attributes stand at each function, not at a file, so
@@ -31,6 +34,10 @@
 #define THIMBLE_LANES_FAR inline
 #include "contact/lanes.inc"
 #include "contact/tree_lanes.inc"
+
+#include "contact/segment_lanes.inc"
+
+#include "contact/nearest_lanes.inc"
 #undef THIMBLE_LANES_NAMESPACE
 #undef THIMBLE_LANES_AVX2
 #undef THIMBLE_LANES
@@ -43,6 +50,10 @@
 #define THIMBLE_LANES_FAR [[gnu::target("avx2")]] inline
 #include "contact/lanes.inc"
 #include "contact/tree_lanes.inc"
+
+#include "contact/segment_lanes.inc"
+
+#include "contact/nearest_lanes.inc"
 #undef THIMBLE_LANES_NAMESPACE
 #undef THIMBLE_LANES_AVX2
 #undef THIMBLE_LANES

@@ -47,7 +47,7 @@ std::shared_ptr<ContactSearch> make_moving_search(const ContactMesh& mesh,
                                                   std::optional<SearchChoice> choice) {
   if (choice == SearchChoice::kLinear) return std::make_shared<LinearSearch>(mesh);
   auto tree = std::make_shared<TreeSearch<ContactMesh>>(mesh);
-  tree->keep_parents();
+  tree->keep_places();
   return tree;
 }
 

@@ -4,13 +4,13 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "thimble/render/contact/box_node.h"
+#include "thimble/render/contact/tree_nodes.h"
 
 namespace thimble::render {
 
 /// Is a part of a tree that a question still has to look at.
 struct Waiting {
-  std::uint32_t child;
+  TreeNodes::Name node;
   float near;  ///< Parameter of the segment, or squared distance in steps.
 };
 
@@ -24,10 +24,8 @@ class NodeStack {
   Waiting pop() noexcept { return items_[--size_]; }
 
  private:
-  // A path from the root passes at most 48 splits of a key and 28 of equal keys, and leaves seven
-  // others waiting at each.
-  static constexpr std::size_t kStackMax =
-      (BoxNode::kChildrenMax - 1) * (48 + 28) + BoxNode::kChildrenMax;
+  // A path from the root leaves at most seven others waiting at each level.
+  static constexpr std::size_t kStackMax = (BoxNode::kChildrenMax - 1) * TreeNodes::kLevelsMax;
   // Not filled: it is larger than all that most questions read.
   std::array<Waiting, kStackMax> items_;
   std::size_t size_ = 0;

@@ -71,9 +71,10 @@ class SegmentTest {
 double kept_in_box(double parameter, const Eigen::Vector3d& way, const Eigen::Vector3d& a,
                    const Eigen::Vector3d& b, const Eigen::Vector3d& c) noexcept;
 
-/// Is the room around boxes, in steps, that covers the rounding of a segment within the lattice
-/// (2^-24 of 2^31 steps, a few times).
-inline constexpr float kBoxRoom = 1024;
+/// Is the room around boxes, in steps, that covers the rounding of a segment within the lattice: of
+/// its begin, of the way to a node, of that divided by its own way, and of the sum with a side (at
+/// most 2^-24 of 2^31 steps each), several times.
+inline constexpr float kBoxRoom = 2048;
 
 /// Is a segment cut to the part that can reach a surface, in steps of the lattice and single
 /// precision.

@@ -2,13 +2,18 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <vector>
 
 #include "support/random.h"
 #include "support/shapes.h"
 #include "thimble/render/contact/bvh.h"
+#include "thimble/render/contact/tree_nodes.h"
 
 namespace thimble::render {
 namespace {
@@ -17,7 +22,7 @@ using Eigen::Vector3d;
 
 double side_of(const BoxNode& node, std::size_t side, std::size_t child) {
   return static_cast<double>(node.origin[side % 3]) +
-         static_cast<double>(node.scale) * node.sides[side][child];
+         static_cast<double>(node.scale()) * node.sides[side][child];
 }
 
 TEST(BoxNode, HoldsItsChildrensBoxesAndLittleMore) {
@@ -44,27 +49,117 @@ TEST(BoxNode, HoldsItsChildrensBoxesAndLittleMore) {
     }
     // 1/127 of the node's size for each side, and what a float of 2^30 cannot tell.
     const double room = longest / 127 + 130;
+    EXPECT_EQ(node.children(), (1u << count) - 1);
+    EXPECT_GE(node.scale(), 1);
+    const StepBox around = node.box();
     int exponent = 0;
-    EXPECT_EQ(std::frexp(node.scale, &exponent), 0.5f);
+    EXPECT_EQ(std::frexp(node.scale(), &exponent), 0.5f);
     for (std::size_t i = 0; i < count; ++i) {
       for (std::size_t axis = 0; axis < 3; ++axis) {
         ASSERT_LE(side_of(node, axis, i), boxes[i].min[axis]);
         ASSERT_GE(side_of(node, axis, i), boxes[i].min[axis] - room);
         ASSERT_GE(side_of(node, 3 + axis, i), boxes[i].max[axis]);
         ASSERT_LE(side_of(node, 3 + axis, i), boxes[i].max[axis] + room);
+        ASSERT_LE(around.min[axis], side_of(node, axis, i));
+        ASSERT_GE(around.max[axis], side_of(node, 3 + axis, i));
+      }
+    }
+    // Places without a child repeat the last one's box, so that bounds over all eight are true.
+    for (std::size_t i = count; i < BoxNode::kChildrenMax; ++i) {
+      for (std::size_t side = 0; side < 6; ++side) {
+        ASSERT_EQ(node.sides[side][i], node.sides[side][count - 1]);
       }
     }
   }
 }
 
-TEST(BoxNode, NamesLeaves) {
-  for (const std::size_t place : {std::size_t{0}, std::size_t{5}, (std::size_t{1} << 28) - 4}) {
-    for (std::size_t size = 1; size <= BoxNode::kLeafMax; ++size) {
-      const std::uint32_t leaf = leaf_of(place, size);
-      EXPECT_NE(leaf & BoxNode::kLeaf, 0u);
-      EXPECT_EQ(first_place(leaf), place);
-      EXPECT_EQ(end_place(leaf), place + size);
+// Every thing is reached from the root by the names alone, once, at any size; and a box that
+// changes leaves the tree that would have been built.
+TEST(TreeNodes, HoldEveryThingOnceInBoxesAboveIt) {
+  support::Random random(3);
+  for (const std::size_t things : {1, 2, 7, 8, 9, 63, 64, 65, 512, 1000, 4097}) {
+    std::vector<StepBox> boxes(things);
+    const auto fill = [&](StepBox& box) {
+      box = StepBox();
+      const Vector3d p = random.in_box(0x1p29), q = p + random.in_box(0x1p24);
+      box.add(p.x(), p.y(), p.z());
+      box.add(q.x(), q.y(), q.z());
+    };
+    for (StepBox& box : boxes) fill(box);
+    const auto box_of = [&](std::size_t place) { return boxes[place]; };
+    TreeNodes nodes;
+    nodes.build(things, box_of);
+    std::vector<int> seen(things, 0);
+    const auto visit = [&](auto& self, TreeNodes::Name name) -> StepBox {
+      const BoxNode& node = nodes.node(name);
+      StepBox all;
+      for (std::size_t i = 0; i < BoxNode::kChildrenMax; ++i) {
+        if (((node.children() >> i) & 1u) == 0) continue;
+        StepBox below;
+        if (TreeNodes::lowest(name)) {
+          const std::size_t place = TreeNodes::first_thing(name) + i;
+          ++seen.at(place);
+          below = boxes.at(place);
+        } else {
+          below = self(self, TreeNodes::first_child(name) + static_cast<TreeNodes::Name>(i));
+        }
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          EXPECT_LE(side_of(node, axis, i), below.min[axis]);
+          EXPECT_GE(side_of(node, 3 + axis, i), below.max[axis]);
+        }
+        all.add(below);
+      }
+      return all;
+    };
+    visit(visit, nodes.root());
+    for (const int times : seen) EXPECT_EQ(times, 1);
+
+    for (int change = 0; change < 20; ++change) {
+      const std::size_t place = random.bits() % things;
+      fill(boxes[place]);
+      nodes.refit(place, box_of);
     }
+    TreeNodes anew;
+    anew.build(things, box_of);
+    ASSERT_EQ(nodes.levels(), anew.levels());
+    std::size_t width = things;
+    for (std::size_t level = 0; level < nodes.levels(); ++level) {
+      width = (width + 7) / 8;
+      for (std::size_t i = 0; i < width; ++i) {
+        ASSERT_TRUE(nodes.row(level)[i] == anew.row(level)[i]);
+      }
+    }
+    EXPECT_EQ(width, 1u);
+  }
+}
+
+// Eight records, 64 and so on that follow each other lie about in a square, from the first on: the
+// nodes of the tree are no larger than they must be.
+TEST(CompactSurface, KeepsEightsTogether) {
+  const CompactSurface surface =
+      CompactSurface::build(support::bumpy_sphere(5, 0.05, 0.1, 4)).value();
+  const auto count = static_cast<std::size_t>(surface.triangle_count());
+  double area = 0;
+  for (std::int32_t t = 0; t < surface.triangle_count(); ++t) {
+    const Vector3d a = surface.position(t, 0);
+    area += (surface.position(t, 1) - a).cross(surface.position(t, 2) - a).norm() / 2;
+  }
+  for (const std::size_t block : {std::size_t{8}, std::size_t{64}, std::size_t{512}}) {
+    double sizes = 0;
+    for (std::size_t begin = 0; begin + block <= count; begin += block) {
+      Vector3d low = Vector3d::Constant(1), high = -low;
+      for (std::size_t i = begin; i < begin + block; ++i) {
+        for (std::size_t k = 0; k < 3; ++k) {
+          const Vector3d p = surface.position(static_cast<std::int32_t>(i), k);
+          low = low.cwiseMin(p);
+          high = high.cwiseMax(p);
+        }
+      }
+      sizes += (high - low).norm();
+    }
+    const double side = std::sqrt(area * static_cast<double>(block) / static_cast<double>(count));
+    // The diagonal of such a square is 1.41, and triangles stand out of it.
+    EXPECT_LE(sizes / static_cast<double>(count / block), 2.2 * side) << block;
   }
 }
 

@@ -154,6 +154,31 @@ TEST(Bvh, FindsTheNearestPointLikeBruteForce) {
   }
 }
 
+// More boxes on a level than are asked side by side: near the middle of a ball all are as near, and
+// a chord through the crowded fan of a needle's tip, or along its side, meets very many.
+TEST(Bvh, GivesTheSameAnswersWhereVeryManyBoxesAreMet) {
+  support::Random random(12);
+  Scene ball(support::icosphere(4, 0.05));
+  const LinearSearchOver<CompactSurface> brute(ball.surface);
+  for (int i = 0; i < 60; ++i) {
+    const Vector3d p = random.in_box(i < 20 ? 0 : i < 40 ? 1e-6 : 1e-3);
+    const SurfacePoint found = ball.bvh.closest(p, 1), wanted = brute.closest(p, 1);
+    ASSERT_EQ(found.triangle, wanted.triangle);
+    ASSERT_EQ(found.distance, wanted.distance);
+    ASSERT_EQ(found.p_W, wanted.p_W);
+  }
+  Scene needle(support::needle(1024, 0.08, 0.01));
+  const LinearSearchOver<CompactSurface> all(needle.surface);
+  for (int i = 0; i < 200; ++i) {
+    const Vector3d from = random.in_box(0.09);
+    const Vector3d to = i % 2 == 0 ? Vector3d(-from + random.in_box(1e-3)) : random.in_box(0.01);
+    needle.expect_same(from, to);
+    const Vector3d p = random.in_box(0.08);
+    ASSERT_EQ(needle.bvh.inside(p), all.inside(p));
+  }
+  EXPECT_GT(needle.entries, 5);
+}
+
 TEST(Bvh, FindsNothingForNaNAndHugeNumbers) {
   Scene scene(support::icosphere(1, 1));
   const double nan = std::numeric_limits<double>::quiet_NaN();

@@ -177,7 +177,7 @@ TEST(MovingMesh, HasNoGrid) {
   TreeSearch<ContactMesh> tree(mesh);
   EXPECT_FALSE(tree.refit(first));
   const std::size_t bytes = tree.bytes();
-  tree.keep_parents();
+  tree.keep_places();
   EXPECT_TRUE(tree.refit(first));
   EXPECT_LE(tree.bytes(), bytes + 90 * static_cast<std::size_t>(mesh.triangle_count()));
   for (const auto choice : {SearchChoice::kGrid, SearchChoice::kTree, SearchChoice::kLinear}) {

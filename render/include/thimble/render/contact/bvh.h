@@ -6,24 +6,25 @@
 #include <span>
 #include <vector>
 
-#include "thimble/render/contact/box_node.h"
 #include "thimble/render/contact/compact_surface.h"
 #include "thimble/render/contact/contact_mesh.h"
 #include "thimble/render/contact/contact_search.h"
-#include "thimble/render/contact/large_pages.h"
 #include "thimble/render/contact/search_frame.h"
+#include "thimble/render/contact/tree_nodes.h"
 #include "thimble/render/contact/wide_lanes.h"
 
 namespace thimble::render {
 
-/// Looks for contact in a tree of boxes with eight children per node, built along the Morton order
-/// of the triangles [Lauterbach]: leaves are a few triangles that follow each other in it.
+/// Looks for contact in a tree of boxes with eight children per node (TreeNodes) over the triangles
+/// as they lie together (order_in_blocks); each triangle has its own box in it.
 ///
 /// Boxes are compared in single precision with room for its rounding, eight at a time where the
-/// processor can (wide_lanes); triangles are decided in double precision and, where that leaves
-/// doubt, without rounding (segment_crossing.h), so that every processor gives the same answers.
-/// Built in linear time. Its time grows with the logarithm of the size however unevenly the
-/// triangles lie. All questions are Real-time: safe; about a microsecond at 10^6 triangles.
+/// processor can (wide_lanes), level by level, so that what is far in memory is waited for once per
+/// level; questions that meet more than a few dozen boxes of a level go from one to the next
+/// instead. Triangles are decided in double precision and, where that leaves doubt, without
+/// rounding (segment_crossing.h), so that every processor gives the same answers. Its time grows
+/// with the logarithm of the size however unevenly the triangles lie. All questions are Real-time:
+/// safe; about a microsecond at 10^6 triangles.
 ///
 /// `Surface` is ContactMesh or CompactSurface; Bvh stands for the second.
 template <class Surface>
@@ -41,45 +42,34 @@ class TreeSearch final : public ContactSearch {
   double clearance(const Eigen::Vector3d& p_W) const noexcept override;
   bool refit(std::span<const std::int32_t> triangles) noexcept override;
   std::size_t bytes() const noexcept override {
-    return nodes_.capacity() * sizeof(BoxNode) + order_.capacity() * sizeof(std::int32_t) +
-           (parents_.capacity() + leaves_.capacity()) * sizeof(std::uint32_t) +
-           boxes_.capacity() * sizeof(StepBox);
+    return nodes_.bytes() + order_.capacity() * sizeof(std::int32_t) +
+           places_.capacity() * sizeof(std::uint32_t);
   }
 
-  /// Makes `refit` possible: some 60 bytes more per triangle, for who stands above whom and for
-  /// boxes that are not rounded. The tree keeps
+  /// Makes `refit` possible: four bytes more per triangle, for where each stands. The tree keeps
   /// the order it was built in, so that triangles that wander far from their neighbours make it
   /// slower, never wrong. Real-time: never from the servo thread.
-  void keep_parents();
+  void keep_places();
 
   const Surface& surface() const noexcept { return *surface_; }
 
  private:
-  struct Range {
-    std::size_t begin, end;
-  };
-
-  Range split(const std::vector<std::uint64_t>& keys, Range range, Range& second) const;
-  StepBox build_node(const std::vector<std::uint64_t>& keys, Range range, std::uint32_t node);
-  StepBox box_of(Range places) const noexcept;
+  StepBox box_of(std::size_t place) const noexcept;
   template <class Visit>
   void visit_reached(const Eigen::Vector3d& from, const Eigen::Vector3d& way,
                      Visit visit) const noexcept;
 
-  // Tells which triangle stands at a place of the Morton order.
+  // Tells which triangle stands at a place of the order.
   std::int32_t triangle_at(std::size_t place) const noexcept {
     return order_.empty() ? static_cast<std::int32_t>(place) : order_[place];
   }
 
   const Surface* surface_;
   SearchFrame frame_;
-  bool wide_;                        // whether the processor compares eight boxes at a time
-  std::vector<std::int32_t> order_;  // empty where the triangles stand in it already
-  std::vector<BoxNode, LargePages<BoxNode>> nodes_;
-  // Of each node and of the leaf of each triangle: node above << 3 | place in it. Empty unless
-  // kept.
-  std::vector<std::uint32_t> parents_, leaves_;
-  std::vector<StepBox> boxes_;  // of each child place, not rounded; empty unless kept
+  bool wide_;                          // whether the processor compares eight boxes at a time
+  std::vector<std::int32_t> order_;    // empty where the triangles stand in it already
+  std::vector<std::uint32_t> places_;  // of each triangle in the order; empty unless kept
+  TreeNodes nodes_;
 };
 
 using Bvh = TreeSearch<CompactSurface>;

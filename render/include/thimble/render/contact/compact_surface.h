@@ -63,8 +63,8 @@ struct CompactSurfaceOptions {
   double crease_angle = 0.75;
 };
 
-/// Is a closed surface as records of 64 bytes, sorted along a Morton curve [Morton] so that what is
-/// near in space is near in memory. Frame W, m.
+/// Is a closed surface as records of 64 bytes, sorted such that each eight, each 64 and so on that
+/// follow each other lie close together: what is near in space is near in memory. Frame W, m.
 ///
 /// Corner normals are averages of the faces around, weighted by their angles [Thuermer]; a fan of
 /// faces is split at its creases. Two triangles that share a smooth edge hold the same bits for its
@@ -128,9 +128,5 @@ class CompactSurface {
   double per_step_ = 0;
   double rise_ = 0;
 };
-
-/// Tells where a record's middle lies along the Morton curve: 16 bits per axis, interleaved.
-/// Records of a CompactSurface stand in this order. Real-time: safe.
-std::uint64_t morton_key(const CompactTriangle& record) noexcept;
 
 }  // namespace thimble::render

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace thimble::render {
+
+/// Lists numbers of nodes or triangles that a question came upon on one level of a tree.
+struct NearList {
+  static constexpr std::size_t kMost = 64;  ///< Most.
+  std::array<std::uint32_t, kMost> numbers;
+  std::array<float, kMost> nears;  ///< Squared distances, of a question for the nearest.
+  std::size_t count = 0;
+};
+
+/// Holds for each of the 256 sets of eight bits the numbers of those that are set, one per byte,
+/// the lowest first.
+inline constexpr std::array<std::uint64_t, 256> kSetBits = [] {
+  std::array<std::uint64_t, 256> all{};
+  for (std::size_t set = 0; set < all.size(); ++set) {
+    int place = 0;
+    for (std::uint64_t bit = 0; bit < 8; ++bit) {
+      if (((set >> bit) & 1u) != 0) all[set] |= bit << (8 * place++);
+    }
+  }
+  return all;
+}();
+
+/// Holds for each set of eight bits the lowest four of those that are set.
+inline constexpr std::array<std::uint8_t, 256> kFirstFour = [] {
+  std::array<std::uint8_t, 256> all{};
+  for (unsigned set = 0; set < all.size(); ++set) {
+    unsigned left = set;
+    for (int i = 0; i < 4; ++i) left &= left - (left != 0 ? 1 : 0);
+    all[set] = static_cast<std::uint8_t>(set & ~left);
+  }
+  return all;
+}();
+
+}  // namespace thimble::render
