@@ -33,9 +33,10 @@ const ContactState& move(CompactContact& contact, const Vector3d& p_WT) {
   return contact.update(state);
 }
 
-// Brings the tip from outside along `n` to `p`.
+// Brings the tip from outside along `n` to `p`. A tip that is thrown there through the body is
+// followed over a bounded number of triangles per tick, and let go when it is seen to be outside.
 void enter(CompactContact& contact, const Vector3d& p, const Vector3d& n, double reach) {
-  move(contact, p + reach * n);
+  for (int tick = 0; tick < 10 && move(contact, p + reach * n).touching; ++tick) continue;
   move(contact, p);
 }
 
