@@ -1,26 +1,17 @@
 #include "report.h"
 
-#include <cstdarg>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <string_view>
 #include <system_error>
 
 #include "build_info.h"
+#include "printed.h"
 
 namespace thimble::app {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-[[gnu::format(printf, 1, 2)]] std::string text(const char* format, ...) {
-  char buffer[512];
-  std::va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(buffer, sizeof buffer, format, arguments);
-  va_end(arguments);
-  return buffer;
-}
 
 std::string_view end_name(driver::ServoEnd end) {
   switch (end) {
@@ -105,7 +96,7 @@ Json to_json(const RunReport& report) {
 }
 
 std::string goal(const char* comparison, double bound) {
-  return text("%s %g", comparison, bound);
+  return printed("%s %g", comparison, bound);
 }
 
 }  // namespace
@@ -142,46 +133,47 @@ std::string summary(const RunReport& report) {
   const RunStatistics& run = report.statistics;
   const double period_us = report.rate_asked > 0 ? 1e6 / report.rate_asked : 0;
   std::string s;
-  s += text("The %s hand reached for %s for %.1f s with the %s %s and touched it %llu time%s,\n",
-            report.simulated_arm ? "simulated" : "user's", report.object.c_str(), run.duration(),
-            report.simulated_arm ? "simulated arm" : "arm", report.arm.c_str(),
-            static_cast<unsigned long long>(run.contacts()), run.contacts() == 1 ? "" : "s");
-  s += text("%.1f s in all. ", run.contact_time());
+  s += printed("The %s hand reached for %s for %.1f s with the %s %s and touched it %llu time%s,\n",
+               report.simulated_arm ? "simulated" : "user's", report.object.c_str(), run.duration(),
+               report.simulated_arm ? "simulated arm" : "arm", report.arm.c_str(),
+               static_cast<unsigned long long>(run.contacts()), run.contacts() == 1 ? "" : "s");
+  s += printed("%.1f s in all. ", run.contact_time());
   s += report.lost_contacts == 0
            ? "No contact was lost on the way.\n"
-           : text("%llu time%s the tip was inside without a force: a lost contact.\n",
-                  static_cast<unsigned long long>(report.lost_contacts),
-                  report.lost_contacts == 1 ? "" : "s");
-  s += text("Force     %.2f N at most (limit %.2f N), %.2f N on average (rms) while touching.\n",
-            run.force_max(), report.force_limit, run.force_rms());
+           : printed("%llu time%s the tip was inside without a force: a lost contact.\n",
+                     static_cast<unsigned long long>(report.lost_contacts),
+                     report.lost_contacts == 1 ? "" : "s");
+  s += printed("Force     %.2f N at most (limit %.2f N), %.2f N on average (rms) while touching.\n",
+               run.force_max(), report.force_limit, run.force_rms());
   s += report.triangles == 0
-           ? text("Depth     %.2f mm at most; no triangles, all shapes are exact.\n",
-                  1e3 * run.depth_max())
-           : text("Depth     %.2f mm at most; %u triangle%s crossed in one tick at most, of %zu.\n",
-                  1e3 * run.depth_max(), unsigned{run.hops_max()}, run.hops_max() == 1 ? "" : "s",
-                  report.triangles);
+           ? printed("Depth     %.2f mm at most; no triangles, all shapes are exact.\n",
+                     1e3 * run.depth_max())
+           : printed(
+                 "Depth     %.2f mm at most; %u triangle%s crossed in one tick at most, of %zu.\n",
+                 1e3 * run.depth_max(), unsigned{run.hops_max()}, run.hops_max() == 1 ? "" : "s",
+                 report.triangles);
   const double energy = 1e3 * run.energy_to_hand();
-  s += text("Energy    the arm %s %.2f mJ in all%s\n", energy > 0 ? "gave the hand" : "took",
-            energy > 0 ? energy : -energy,
-            energy > 0 ? ": more than it took." : " from the hand, as a passive surface does.");
-  s += text("Loop      %llu ticks, %.1f of %.1f per second asked; %s.\n",
-            static_cast<unsigned long long>(run.ticks()), run.rate(), report.rate_asked,
-            report.virtual_time
-                ? "in virtual time, so every run is the same"
-                : text("a tick came %.0f us after the last at most, %.0f us wanted",
-                       microseconds(static_cast<double>(run.period().max_ns())), period_us)
-                      .c_str());
+  s += printed("Energy    the arm %s %.2f mJ in all%s\n", energy > 0 ? "gave the hand" : "took",
+               energy > 0 ? energy : -energy,
+               energy > 0 ? ": more than it took." : " from the hand, as a passive surface does.");
+  s += printed("Loop      %llu ticks, %.1f of %.1f per second asked; %s.\n",
+               static_cast<unsigned long long>(run.ticks()), run.rate(), report.rate_asked,
+               report.virtual_time
+                   ? "in virtual time, so every run is the same"
+                   : printed("a tick came %.0f us after the last at most, %.0f us wanted",
+                             microseconds(static_cast<double>(run.period().max_ns())), period_us)
+                         .c_str());
   s +=
       report.virtual_time
           ? std::string("Tick      not timed: on the virtual clock no time passes within a tick.\n")
-          : text(
+          : printed(
                 "Tick      %.1f us of work in half of the ticks, %.1f us in 999 of 1000; there is "
                 "time for "
                 "%.0f us.\n",
                 microseconds(run.work().percentile(0.5)),
                 microseconds(run.work().percentile(0.999)), period_us);
   if (report.paging) {
-    s += text(
+    s += printed(
         "Pages     %llu read from the disk, %llu given up, %llu damaged; one was missing in "
         "%llu ticks%s.\n",
         static_cast<unsigned long long>(report.paging->loads),
@@ -190,29 +182,30 @@ std::string summary(const RunReport& report) {
         static_cast<unsigned long long>(report.paging->misses),
         report.paging->misses > 0 ? ", and the last plane was held" : "");
   }
-  s += text("Wire      %llu reports, %llu not understood, %llu ticks without a new one.\n",
-            static_cast<unsigned long long>(report.wire.reports),
-            static_cast<unsigned long long>(report.wire.rejected),
-            static_cast<unsigned long long>(report.wire.missing));
-  s += text(
+  s += printed("Wire      %llu reports, %llu not understood, %llu ticks without a new one.\n",
+               static_cast<unsigned long long>(report.wire.reports),
+               static_cast<unsigned long long>(report.wire.rejected),
+               static_cast<unsigned long long>(report.wire.missing));
+  s += printed(
       "Safety    force cut to the limit in %llu ticks, rise held back in %llu, soft start in "
       "%llu.\n",
       static_cast<unsigned long long>(report.gate.limited),
       static_cast<unsigned long long>(report.gate.rise_limited),
       static_cast<unsigned long long>(report.gate.soft_started));
   if (report.energy_stage == driver::EnergyStage::kPassivity) {
-    s += text(
+    s += printed(
         "Energy    watched by the gate: %.2f mJ given at most beyond what it took; damped in "
         "%llu ticks.\n",
         -1e3 * report.gate.energy_least, static_cast<unsigned long long>(report.gate.damped));
   } else if (report.energy_stage == driver::EnergyStage::kBounding) {
-    s += text("Energy    bounded by the gate: force cut in %llu ticks.\n",
-              static_cast<unsigned long long>(report.gate.bounded));
+    s += printed("Energy    bounded by the gate: force cut in %llu ticks.\n",
+                 static_cast<unsigned long long>(report.gate.bounded));
   }
   if (report.gate.stalls > 0) {
-    s += text("Stalls    the loop stood still %llu time%s; the force came back within %.0f ms.\n",
-              static_cast<unsigned long long>(report.gate.stalls),
-              report.gate.stalls == 1 ? "" : "s", 1e3 * report.reopen);
+    s +=
+        printed("Stalls    the loop stood still %llu time%s; the force came back within %.0f ms.\n",
+                static_cast<unsigned long long>(report.gate.stalls),
+                report.gate.stalls == 1 ? "" : "s", 1e3 * report.reopen);
   }
   switch (report.end) {
     case driver::ServoEnd::kDone:

@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
 #include <numbers>
 
+#include "printed.h"
 #include "study/draw.h"
 #include "thimble/render/mesh/adjacency.h"
 #include "thimble/render/mesh/load_mesh.h"
@@ -23,15 +22,6 @@ constexpr double kCreep = 1e-3;  // m/s: slower, a count takes 30 ms and more
 constexpr double kStroke = 0.1;  // m/s; slower swings are always there [chosen]
 constexpr double kProbe = 1e-6;  // m
 constexpr int kTries = 4000;     // places of a texture; finds a sine's curvature within 2 %
-
-[[gnu::format(printf, 1, 2)]] std::string sentence(const char* format, ...) {
-  char buffer[600];
-  std::va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(buffer, sizeof buffer, format, arguments);
-  va_end(arguments);
-  return buffer;
-}
 
 /// Is what a field does, found by trying it.
 struct FieldTried {
@@ -70,7 +60,7 @@ void warn_of_facets(const SceneObject& object, std::vector<std::string>& warning
   const bool god_object = object.contact.tracker == render::TrackerChoice::kGodObject;
   const bool flat = is_flat(object);
   if (bends(object) && (flat || god_object)) {
-    warnings.push_back(sentence(
+    warnings.push_back(printed(
         "%s is felt by flat facets and gives way, so there are hollows where it is pressed; a "
         "tip that rests on an edge in one jumps from facet to facet: set contact: {blending: "
         "phong}, or tracker: compact.",
@@ -85,7 +75,7 @@ void warn_of_facets(const SceneObject& object, std::vector<std::string>& warning
   const double smooth_up_to = object.contact.crease_angle.value_or(std::numbers::pi);
   const double hollow = sharpest_hollow(*mesh, flat ? felt : std::max(felt, smooth_up_to));
   if (!(hollow > 0)) return;
-  warnings.push_back(sentence(
+  warnings.push_back(printed(
       "%s has hollows with edges of up to %.0f degrees and is felt by flat facets there: a tip "
       "that rests on such an edge jumps sideways by %.2g N for each newton pressed, at every "
       "count of an encoder: set contact: {blending: sized_band}, or tracker: compact.",
@@ -110,7 +100,7 @@ void warn_of_effects(const SceneObject& object, const Loop& loop, double bare_ed
       const double curvature = curvature_of(effect);
       const double from = bare_edge / curvature;
       if (!(from < force)) continue;
-      warnings.push_back(sentence(
+      warnings.push_back(printed(
           "%s has a texture whose waves add %.0f N/m along the surface for each newton pressed; "
           "from %.2g N on that is more than the %.0f N/m that arm, loop and hand carry, and the "
           "tip buzzes in its grooves: make them lower or longer (amplitude / wavelength^2).",
@@ -122,11 +112,11 @@ void warn_of_effects(const SceneObject& object, const Loop& loop, double bare_ed
       const double held_speed = swing_speed_limit(
           hold, carried.damping, loop.scene.arm.simulated.plant.coulomb, carried.latency);
       if (!(hold > bare_edge && held_speed < kStroke)) continue;
-      warnings.push_back(sentence(
-          "%s has a friction that holds with %.0f N/m, but with this hand (%.3g N s/m) the "
-          "loop carries %.0f N/m: set its stiffness to %.0f N/m or less.",
-          object.name.c_str(), hold, loop.scene.arm.simulated.hand.damping, bare_edge,
-          0.7 * bare_edge));
+      warnings.push_back(
+          printed("%s has a friction that holds with %.0f N/m, but with this hand (%.3g N s/m) the "
+                  "loop carries %.0f N/m: set its stiffness to %.0f N/m or less.",
+                  object.name.c_str(), hold, loop.scene.arm.simulated.hand.damping, bare_edge,
+                  0.7 * bare_edge));
     }
   }
 }
@@ -150,7 +140,7 @@ void warn_of_light_body(const SceneObject& object, const Loop& loop,
   const double damping =
       carried.damping * share * share + motion.damping * (1 - share) * (1 - share);
   if (!(hold * carried.latency > damping)) return;
-  warnings.push_back(sentence(
+  warnings.push_back(printed(
       "%s weighs %.3g kg and has a friction that holds with %.0f N/m: the hand hardly damps how so "
       "light a body swings on it, and the loop carries %.0f N/m: give it more mass or damping, or "
       "set the friction's stiffness lower.",
@@ -168,7 +158,7 @@ void warn_of_sum(const Loop& loop, std::vector<std::string>& warnings) {
     ++count;
   }
   if (count < 2 || !(sum > loop.edge(damping))) return;
-  warnings.push_back(sentence(
+  warnings.push_back(printed(
       "Together the %d surfaces are as stiff as %.0f N/m, more than the %.0f N/m that arm, "
       "loop and hand carry: where a tip is within all of them it trembles. Keep them apart, "
       "or lower their stiffness.",
@@ -193,7 +183,7 @@ void warn_of_grain(const Loop& loop, std::vector<std::string>& warnings) {
   const double grain =
       grain_of(fields + surfaces, step, speed, arm.velocity_corner_frequency, loop.times.period);
   if (!(grain > kFelt)) return;
-  warnings.push_back(sentence(
+  warnings.push_back(printed(
       "The damping of this scene, up to %.2g N s/m, grates on encoder steps of %.0f um: at %.1f "
       "mm/s, as the hand's tremor moves the tip or a hand comes to rest, that is %.0f mN of grain. "
       "Lower the damping, or the arm's velocity_corner_frequency.",
@@ -295,12 +285,12 @@ std::vector<std::string> energy_warnings(const Scene& scene) {
       push = object.body.motion->mass * object.body.motion->gravity_W.norm();
     }
     if (!(push * way > kEnergyAllowance + kEnergyOnset)) continue;
-    warnings.push_back(sentence(
-        "%s %s (up to %.2g N) and gives energy by right, but the gate's energy stage takes "
-        "back what is more than %.0f mJ: it brakes the hand and lets all forces fade. Set "
-        "gate: {energy: none} in the scene.",
-        object.name.c_str(), field ? "pushes a hand that rests" : "has weight", push,
-        1e3 * kEnergyAllowance));
+    warnings.push_back(
+        printed("%s %s (up to %.2g N) and gives energy by right, but the gate's energy stage takes "
+                "back what is more than %.0f mJ: it brakes the hand and lets all forces fade. Set "
+                "gate: {energy: none} in the scene.",
+                object.name.c_str(), field ? "pushes a hand that rests" : "has weight", push,
+                1e3 * kEnergyAllowance));
   }
   return warnings;
 }

@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
 #include <limits>
 
 #include "energy_choice.h"
+#include "printed.h"
 #include "rest_warnings.h"
 #include "wall_trial.h"
 
@@ -20,15 +19,6 @@ constexpr double kShare = 0.7;
 /// Is the part of what the worst of those hands carries: there swings die within a second
 /// [measured, tests/sim/hand_constants_test].
 constexpr double kShareAnyHand = 0.8;
-
-[[gnu::format(printf, 1, 2)]] std::string text(const char* format, ...) {
-  char buffer[600];
-  std::va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(buffer, sizeof buffer, format, arguments);
-  va_end(arguments);
-  return buffer;
-}
 
 /// Is the worst of what simulated walls could carry.
 struct Edges {
@@ -79,7 +69,7 @@ Edges try_walls(const ArmFile& file, double rate, double damping, const Carried&
 std::string advice(const Scene& scene, const SceneObject& object, const Carried& carried) {
   const double limit = carried.stiffness_safe;
   const double rate = scene.rate * std::ceil(object.stiffness / carried.stiffness_exact);
-  return text(
+  return printed(
       "%s asks for %.0f N/m, but arm, loop and hand carry %.0f N/m (damping of %.3g N s/m over a "
       "latency of %.2f ms): set its stiffness to %.0f N/m or less, or run at %.0f Hz if the arm's "
       "delay of %.1f ms falls with it.",
@@ -162,23 +152,24 @@ TuneResult tune(const Scene& scene, const TuneOptions& options) {
   const ArmFile& arm = scene.arm;
   const LoopTimes times = loop_times(arm, scene.rate, options.period_spread);
   const Carried bare = carried_by(arm, times, 1000, 0);
-  result.text += text("%s at %.0f Hz, with the hand of its file (%.3g kg, %.3g N/m, %.3g N s/m):\n",
-                      arm.name.c_str(), scene.rate, arm.simulated.hand.mass,
-                      arm.simulated.hand.stiffness, arm.simulated.hand.damping);
-  result.text += text("Latency   %.3f ms: half a period %.3f, jitter %.3f, wire %.3f.\n",
-                      1e3 * bare.latency, 0.5e3 * times.period,
-                      1e3 * (bare.latency - times.period / 2 - times.delay), 1e3 * times.delay);
-  result.text += text(
+  result.text +=
+      printed("%s at %.0f Hz, with the hand of its file (%.3g kg, %.3g N/m, %.3g N s/m):\n",
+              arm.name.c_str(), scene.rate, arm.simulated.hand.mass, arm.simulated.hand.stiffness,
+              arm.simulated.hand.damping);
+  result.text += printed("Latency   %.3f ms: half a period %.3f, jitter %.3f, wire %.3f.\n",
+                         1e3 * bare.latency, 0.5e3 * times.period,
+                         1e3 * (bare.latency - times.period / 2 - times.delay), 1e3 * times.delay);
+  result.text += printed(
       "Tip       %.3g kg, %.3g N s/m, %.3g N of dry friction; one step of the encoders is up to "
       "%.0f um.\n",
       bare.tip.mass, bare.tip.damping, arm.simulated.plant.coulomb, 1e6 * bare.tip.encoder_step);
-  result.text += text(
+  result.text += printed(
       "Passive   for any hand up to %.3g N/m (no arm of this kind is used there); without a hand "
       "dry friction holds 1000 N/m up to swings of %.3f m/s.\n",
       bare.passive, bare.held_speed);
   result.text +=
-      text("Friction  a bristle of up to %.0f N/m is quiet: z_max >= %.3g mm for each newton.\n",
-           bare.bristle_stiffness, 1e3 / bare.bristle_stiffness);
+      printed("Friction  a bristle of up to %.0f N/m is quiet: z_max >= %.3g mm for each newton.\n",
+              bare.bristle_stiffness, 1e3 / bare.bristle_stiffness);
   result.figures = {{"latency", 1e3 * bare.latency, "ms", ""},
                     {"encoder_step", 1e6 * bare.tip.encoder_step, "um", ""},
                     {"passive_stiffness", bare.passive, "N/m", ""},
@@ -187,10 +178,10 @@ TuneResult tune(const Scene& scene, const TuneOptions& options) {
   for (const SceneObject& object : scene.objects) {
     if (object.build_field || !(object.stiffness > 0)) continue;
     const Carried carried = carried_by(arm, times, object.stiffness, object.damping);
-    result.text += text("%s: %.0f N/m and %.3g N s/m are asked for.\n", object.name.c_str(),
-                        object.stiffness, object.damping);
-    result.text += text("  law       (b + B) / L = %.0f N/m; the exact linear loop %.0f N/m\n",
-                        carried.stiffness_law, carried.stiffness_exact);
+    result.text += printed("%s: %.0f N/m and %.3g N s/m are asked for.\n", object.name.c_str(),
+                           object.stiffness, object.damping);
+    result.text += printed("  law       (b + B) / L = %.0f N/m; the exact linear loop %.0f N/m\n",
+                           carried.stiffness_law, carried.stiffness_exact);
     const std::string name = object.name;
     result.figures.push_back({name + ".asked", object.stiffness, "N/m", ""});
     result.figures.push_back({name + ".law", carried.stiffness_law, "N/m", ""});
@@ -203,7 +194,7 @@ TuneResult tune(const Scene& scene, const TuneOptions& options) {
           try_walls(arm, scene.rate, object.damping, carried, options.places_per_side);
       if (edges.walls > 0) {
         edge = std::min(edge, edges.as_is);
-        result.text += text(
+        result.text += printed(
             "  simulated %.0f N/m without dry friction and steps, %.0f N/m as the arm is; the "
             "worst of %d walls all over the workspace, through wire and gate\n",
             edges.linear, edges.as_is, edges.walls);
@@ -214,7 +205,7 @@ TuneResult tune(const Scene& scene, const TuneOptions& options) {
       }
     }
     const device_sim::HandSettings& hand = carried.worst_hand;
-    result.text += text(
+    result.text += printed(
         "  hands     of a third to three times these constants: %.0f N/m; the worst has %.3g kg, "
         "%.3g N/m, %.3g N s/m\n",
         carried.stiffness_any_hand, hand.mass, hand.stiffness, hand.damping);
@@ -223,7 +214,7 @@ TuneResult tune(const Scene& scene, const TuneOptions& options) {
         {name + ".margin_any_hand", carried.stiffness_any_hand / object.stiffness, "1", ">= 1"});
     if (object.stiffness > carried.stiffness_any_hand &&
         object.stiffness <= carried.stiffness_exact) {
-      result.text += text(
+      result.text += printed(
           "Warning   %s is carried by the hand of the arm's file, but a looser one (%.3g N s/m) "
           "may "
           "tremble on it: set its stiffness to %.0f N/m or less, or its damping higher.\n",
@@ -231,9 +222,9 @@ TuneResult tune(const Scene& scene, const TuneOptions& options) {
     }
     const double safe = std::min(kShare * edge, carried.stiffness_safe);
     const double margin = edge / object.stiffness;
-    result.figures.push_back({name + ".margin", margin, "1", text(">= %g", 1 / kShare)});
-    result.text += text("  margin    %.2f; up to %.0f N/m is safe to ask for here%s\n", margin,
-                        safe, object.stiffness <= safe ? "." : ", so ask for less.");
+    result.figures.push_back({name + ".margin", margin, "1", printed(">= %g", 1 / kShare)});
+    result.text += printed("  margin    %.2f; up to %.0f N/m is safe to ask for here%s\n", margin,
+                           safe, object.stiffness <= safe ? "." : ", so ask for less.");
   }
   for (const std::string& warning : stability_warnings(scene)) {
     result.text += "Warning   " + warning + "\n";

@@ -190,27 +190,31 @@ TEST(EnergyGuard, KeepsNoMoreToOnesCreditThanTheReservoirAndAllowsWhatItIsTold) 
   EXPECT_TRUE(damped(0.0002));
 }
 
-TEST(EnergyGuard, FadesTheForceOfADebtBeyondItsOnsetEvenAtRest) {
+/// Is a gate that fades forces from a debt of 2 mJ beyond its allowance on, its soft start over.
+SafetyGate open_gate_with_onset() {
   EnergyGuardSettings settings = passivity();
   settings.onset = 0.002;
   SafetyGate gate(limits(), settings);
   for (int k = 0; k < 400; ++k) gate.pass_guarded({0, 0, 0}, kStill, kPeriod, {});
-  const auto sent = [&](double work) {
-    return gate.pass_guarded({2, 0, 0}, kStill, kPeriod, {.work = work}).f_T_W().x();
-  };
+  return gate;
+}
+
+/// Tells what of 2 N passes after the arm did `work` (J) on the hand.
+double sent_at_rest(SafetyGate& gate, double work) {
+  return gate.pass_guarded({2, 0, 0}, kStill, kPeriod, {.work = work}).f_T_W().x();
+}
+
+TEST(EnergyGuard, FadesTheForceOfADebtBeyondItsOnsetEvenAtRest) {
+  SafetyGate gate = open_gate_with_onset();
+  const auto sent = [&](double work) { return sent_at_rest(gate, work); };
   EXPECT_EQ(sent(0.002), 2);           // at the onset
   EXPECT_NEAR(sent(0.001), 1, 1e-9);   // half-way beyond
   EXPECT_NEAR(sent(0.002), 0, 1e-12);  // and no more at twice the onset
 }
 
 TEST(EnergyGuard, BringsAFadedForceBackSlowlyAndOnlyWhenNothingIsOwed) {
-  EnergyGuardSettings settings = passivity();
-  settings.onset = 0.002;
-  SafetyGate gate(limits(), settings);
-  for (int k = 0; k < 400; ++k) gate.pass_guarded({0, 0, 0}, kStill, kPeriod, {});
-  const auto sent = [&](double work) {
-    return gate.pass_guarded({2, 0, 0}, kStill, kPeriod, {.work = work}).f_T_W().x();
-  };
+  SafetyGate gate = open_gate_with_onset();
+  const auto sent = [&](double work) { return sent_at_rest(gate, work); };
   EXPECT_NEAR(sent(0.003), 1, 1e-9);
   // A force that followed its debt back would be a spring of F^2 / onset.
   EXPECT_NEAR(sent(-0.002), 1, 1e-9);
