@@ -36,8 +36,9 @@ class alignas(64) LoweredTriangle {
  public:
   /// Unpacks a record; the same bits give the same answers ever after.
   void unpack(const CompactTriangle& record) noexcept;
-  /// Do the same, for who knows what `wide_lanes` says; the first where it says yes only.
+  /// Does the same in eight lanes. Precondition: `wide_lanes` says yes.
   THIMBLE_FOR_AVX2 void unpack_wide(const CompactTriangle& record) noexcept;
+  /// Does the same on any processor, for who knows what `wide_lanes` says.
   void unpack_plain(const CompactTriangle& record) noexcept;
 
   /// Finds where `p` belongs; the answer depends on `p` and the record alone.
