@@ -103,8 +103,11 @@ Result<std::optional<FoundArm>> choose_arm(const std::vector<FoundArm>& plugged_
     names.append(names.empty() ? "" : ", ").append(arm.name());
     if (wanted != "auto" && arm.name() != wanted) continue;
     if (found) {
-      return Error{"Several arms answer to '" + wanted + "': " + names +
-                   ". Name one with --device NAME."};
+      return Error{std::string("Several arms answer to '")
+                       .append(wanted)
+                       .append("': ")
+                       .append(names)
+                       .append(". Name one with --device NAME.")};
     }
     found = arm;
   }

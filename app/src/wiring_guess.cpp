@@ -58,21 +58,20 @@ WiringGuess guess_wiring(const Eigen::Matrix3d& seen,
 std::string describe_wiring(const WiringGuess& guess, const std::string& what,
                             const std::string& backwards, const std::string& dead) {
   std::string text;
-  const auto say = [&text](const std::string& sentence) {
-    text.append(text.empty() ? "" : " ").append(sentence);
+  const auto say = [&](const std::string& name, const std::string& does) {
+    text.append(text.empty() ? "" : " ").append(name).append(" ").append(does);
   };
   for (int i = 0; i < 3; ++i) {
     const auto k = static_cast<std::size_t>(i);
     const std::string name = what + ' ' + std::to_string(i + 1);
     if (guess.sign[k] == 0) {
-      say(name + ' ' + dead + '.');
+      say(name, dead + '.');
       continue;
     }
     if (guess.source[k] != i) {
-      say(name + " does what " + std::to_string(guess.source[k] + 1) +
-          " should: they are swapped.");
+      say(name, "does what " + std::to_string(guess.source[k] + 1) + " should: they are swapped.");
     }
-    if (guess.sign[k] < 0) say(name + ' ' + backwards + '.');
+    if (guess.sign[k] < 0) say(name, backwards + '.');
   }
   return text;
 }

@@ -39,9 +39,9 @@ void find_on_edges(const Corners& corner, const Vector3d& p_OT, Foot& foot) noex
 
 Foot foot_on(const ContactMesh& mesh, std::int32_t triangle, const Vector3d& p_OT) noexcept {
   const auto& vertices = mesh.corners(triangle);
-  const Vector3d a = mesh.position(vertices[0]);
-  const Vector3d b = mesh.position(vertices[1]);
-  const Vector3d c = mesh.position(vertices[2]);
+  const Vector3d& a = mesh.position(vertices[0]);
+  const Vector3d& b = mesh.position(vertices[1]);
+  const Vector3d& c = mesh.position(vertices[2]);
   const Vector3d ab = b - a;
   const Vector3d bc = c - b;
   const Vector3d ca = a - c;

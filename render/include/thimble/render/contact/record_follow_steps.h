@@ -163,13 +163,15 @@ inline void RecordContact<Store>::fetch_around(const CompactTriangle& record) co
   if constexpr (Store::kComplete) {
     for (const std::int32_t t : record.neighbours) __builtin_prefetch(store_.find(t));
   }
-  // Addresses, since some may lie outside of all records: asking for those does nothing.
+  // Addresses, since some may lie outside of all records: asking for those does nothing, and no
+  // pointer may be moved there. NOLINTBEGIN(performance-no-int-to-ptr)
   constexpr std::uintptr_t kAround = 4, kLine = sizeof(CompactTriangle);
   const auto here = reinterpret_cast<std::uintptr_t>(&record);
   for (std::uintptr_t i = 1; i <= kAround; ++i) {
     __builtin_prefetch(reinterpret_cast<const void*>(here + i * kLine));
     __builtin_prefetch(reinterpret_cast<const void*>(here - i * kLine));
   }
+  // NOLINTEND(performance-no-int-to-ptr)
 }
 
 // Tells the edge that the tip is farthest outside of, as a share of the triangle's height; -1 if
