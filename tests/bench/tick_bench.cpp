@@ -193,7 +193,7 @@ void statistics_and_trace(benchmark::State& state) {
 BENCHMARK(statistics_and_trace);
 
 void free_tick(benchmark::State& state) {
-  // The linear search of a segment that touches nothing: what a tick costs while free.
+  // Nothing near: the ball without triangles around the tip is remembered, and no search is asked.
   const auto session = open_stroke();
   if (!session) return state.SkipWithError("no scene");
   render::MeshTouch law = mesh_touch(*session);
