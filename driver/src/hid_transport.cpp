@@ -23,11 +23,15 @@ class HidTransport final : public Transport {
                             std::int64_t deadline_ns) noexcept override {
     TransportRead read;
     if (lost_) return {.status = TransportStatus::kLost};
-    // The kernel keeps 64 reports (HIDRAW_BUFFER_SIZE, linux/drivers/hid/hidraw.c); an arm that
-    // sends faster than they are read is left after two rounds of them.
-    constexpr std::uint32_t kReportsMax = 128;
+    // The kernel keeps 63 reports for whoever has the arm open (a ring of HIDRAW_BUFFER_SIZE, 64,
+    // linux/drivers/hid/hidraw.c) and drops those that come later: when nobody has read for 63 ms
+    // they are the oldest, and the tip may be anywhere by now. Then the next one is waited for, two
+    // frames at the longest. An arm that sends faster than it is read is left after two rounds.
+    constexpr std::uint32_t kReportsKept = 63, kReportsMax = 128;
+    constexpr int kNext_ms = 2;
     std::uint32_t reports = 0;
     int wait_ms = 0;
+    bool waited_for_next = false;
     while (reports < kReportsMax) {
       const int count = hid_read_timeout(device_, reinterpret_cast<unsigned char*>(buffer.data()),
                                          buffer.size(), wait_ms);
@@ -39,6 +43,11 @@ class HidTransport final : public Transport {
         read.size = static_cast<std::size_t>(count);
         ++reports;
         wait_ms = 0;
+        continue;
+      }
+      if (reports >= kReportsKept && !waited_for_next) {
+        waited_for_next = true;
+        wait_ms = kNext_ms;
         continue;
       }
       if (reports > 0 || wait_ms > 0) break;

@@ -30,8 +30,9 @@ int hid_read_timeout(hid_device*, unsigned char* data, std::size_t length, int m
   auto& hid = fake_hidapi();
   hid.last_timeout_ms = milliseconds;
   if (hid.gone) return -1;
-  if (hid.reports == 0) return 0;
-  --hid.reports;
+  int& left = hid.reports == 0 && milliseconds > 0 ? hid.coming : hid.reports;
+  if (left == 0) return 0;
+  --left;
   const std::size_t size = std::min<std::size_t>(length, 8);
   std::fill_n(data, size, static_cast<unsigned char>(0));
   data[0] = ++hid.number;

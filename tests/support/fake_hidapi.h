@@ -10,6 +10,7 @@ namespace thimble::support {
 /// for the library's. Nothing here asks the heap for anything.
 struct FakeHidapi {
   int reports = 0;           ///< Waiting to be read; each holds its number.
+  int coming = 0;            ///< Arrive when somebody waits.
   std::uint8_t number = 0;   ///< Of the last report that was read.
   bool gone = false;         ///< Reads fail.
   int write_error = 0;       ///< errno of a write; 0: it goes well.

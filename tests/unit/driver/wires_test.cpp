@@ -217,6 +217,24 @@ TEST_F(HidWire, TakesTheNewestReportAndCountsTheOlder) {
   EXPECT_EQ(buffer_[0], std::byte{5});
 }
 
+TEST_F(HidWire, WaitsForTheNextReportWhereTheKernelHadNoPlaceForTheNewest) {
+  hid_.reports = 63;
+  hid_.coming = 2;
+  TransportRead read = wire_->read_latest(buffer_, 0);
+  EXPECT_EQ(read.status, TransportStatus::kOk);
+  EXPECT_EQ(read.skipped, 63u);
+  EXPECT_EQ(buffer_[0], std::byte{64});
+
+  hid_.reports = 62;
+  read = wire_->read_latest(buffer_, 0);
+  EXPECT_EQ(read.skipped, 61u);
+  EXPECT_EQ(hid_.coming, 1);
+
+  hid_.reports = 63;
+  hid_.coming = 0;
+  EXPECT_EQ(wire_->read_latest(buffer_, 0).status, TransportStatus::kOk);
+}
+
 TEST_F(HidWire, WaitsForWholeMillisecondsWithinTheDeadline) {
   EXPECT_EQ(wire_->read_latest(buffer_, 2'900'000).status, TransportStatus::kNothing);
   EXPECT_EQ(hid_.last_timeout_ms, 2);

@@ -19,8 +19,9 @@ namespace thimble::driver {
 /// Opens an arm on USB HID by its node (/dev/hidraw3). Messages are filled up with zeros to
 /// `message_size` bytes (0: sent as they are), with report id 0 in front.
 ///
-/// Reading takes the newest report and counts older ones; the kernel keeps 64. Nothing allocates
-/// while the arm is there (hidapi makes an error text when it is not). Writing returns when the arm
+/// Reading takes the newest report and counts older ones. The kernel keeps 63 and drops what comes
+/// after them; when so many wait, reading waits for the next, at most 2 ms. Nothing allocates while
+/// the arm is there (hidapi makes an error text when it is not). Writing returns when the arm
 /// has taken the message, one USB frame as a rule; the kernel itself waits up to 5 s for an arm
 /// that refuses messages without an answer, during which the loop stands still and the arm's own
 /// watchdog switches it off (Fault::kLoopStalled names it afterwards).
