@@ -18,17 +18,24 @@ cmake --preset release -B "$build" -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON >"build
 found=$(mktemp -d)
 trap 'rm -rf "$found"' EXIT
 ask() {  # ask FILE: prints what there is to say, once per place
-  local said config=.clang-tidy
+  local said status=0 config=.clang-tidy
   [[ $1 != */tests/* ]] || config=tests/.clang-tidy
   said=$(clang-tidy -p "$build" --config-file="$config" --quiet --extra-arg=-Wno-unknown-warning-option \
-    --checks=-bugprone-suspicious-include "$1" 2>/dev/null) || true
-  grep -qE '(warning|error):' <<<"$said" || return 0
+    --checks=-bugprone-suspicious-include "$1" 2>/dev/null) || status=$?
+  if ! grep -qE '(warning|error):' <<<"$said"; then
+    [ $status != 0 ] || return 0
+    said="$1: error: clang-tidy ended with $status and said nothing"
+  fi
   printf '%s\n' "$said" | tee -a "$found/findings"
 }
 export -f ask
 export build found
 sed -n 's/^ *"file": "\(.*\)",*$/\1/p' "$build/compile_commands.json" | sort -u |
   { grep -E "${1:-.}" || true; } >"$found/files"
+[ -s "$found/files" ] || {
+  echo "tests/tidy.sh: no compiled file has a name like '$1'." >&2
+  exit 2
+}
 echo "clang-tidy reads $(wc -l <"$found/files") files, most of them eight sources joined ..."
 xargs -P "${THIMBLE_TIDY_JOBS:-$(nproc)}" -I{} bash -c 'ask {}' <"$found/files"
 if [ -s "$found/findings" ]; then

@@ -32,6 +32,7 @@ Result<void> check(const DeviceSettings& settings) {
     if (!is_limit(energy.mass)) return wrong("tip mass, which its passivity stage needs,");
     if (!is_limit(energy.reservoir)) return wrong("energy reservoir");
     if (!(energy.allowance >= 0)) return wrong("energy allowance");
+    if (!(energy.speed_floor >= 0 && energy.speed_floor < HUGE_VAL)) return wrong("speed floor");
   }
   if (energy.stage == EnergyStage::kBounding && !is_limit(energy.slope)) {
     return wrong("slope of the energy bound");

@@ -1,6 +1,7 @@
 #include "thimble/driver/energy_guard.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace thimble::driver {
 namespace {
@@ -12,7 +13,7 @@ constexpr double kHeldMost = 2;
 
 void PassivityObserver::book(double work, double held) noexcept {
   // Written so that NaN and infinity hold nothing.
-  const double more = held > 0 && held < kHeldMost ? held : 0;
+  const double more = held > 0 && held < HUGE_VAL ? std::min(held, kHeldMost) : 0;
   energy_ = std::min(energy_ - work, settings_.reservoir + more);
 }
 
@@ -21,7 +22,7 @@ double PassivityObserver::share(double dt) noexcept {
   const double beyond = -energy_ - settings_.allowance - settings_.onset;
   if (beyond > 0) {
     share_ = std::min(share_, std::max(0.0, 1 - beyond / settings_.onset));
-  } else if (energy_ >= 0 && share_ < 1) {
+  } else if (beyond <= -settings_.onset / 2 && share_ < 1) {
     share_ = std::min(1.0, share_ + dt / kReturn);
   }
   return share_;

@@ -15,8 +15,8 @@ seconds_of() {  # seconds_of KIND
   local all=${THIMBLE_FUZZ_SECONDS:-4}
   [ -z "${THIMBLE_LONG:-}" ] || { echo 60; return; }
   case $1 in
-    scene | arm) echo $((all / 2)) ;;
-    off | obj | stl | ply) echo $((all / 4)) ;;
+    scene | arm) echo $(((all + 1) / 2)) ;;  # 0 s would be for ever
+    off | obj | stl | ply) echo $(((all + 3) / 4)) ;;
     *) echo "$all" ;;
   esac
 }
