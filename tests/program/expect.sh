@@ -29,6 +29,15 @@ expect() {
   fi
 }
 
+# expect_plot STEM...: there are STEM.png and STEM.svg, and they are what their names say.
+expect_plot() {
+  local stem
+  for stem; do
+    expect 0 'PNG' head -c 4 "$stem.png"
+    expect 0 '<svg' head -c 2000 "$stem.svg"
+  done
+}
+
 finish() {
   echo "$((checks - failures)) passed, $failures failed"
   [ "$failures" = 0 ]

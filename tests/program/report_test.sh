@@ -10,10 +10,7 @@ done
 expect 0 '"lost": 0,' cat out/report.json
 expect 0 '"touch_downs": [1-9]' cat out/report.json
 expect 0 '"met": true' cat out/figures.json
-for picture in force_and_depth path_on_mesh period_histogram; do
-  expect 0 'PNG' head -c 4 out/$picture.png
-  expect 0 '<svg' head -c 2000 out/$picture.svg
-done
+expect_plot out/{force_and_depth,path_on_mesh,period_histogram}
 expect 0 'watched by the gate' "$thimble" run "$source_dir/app/scenes/elephant.yaml"
 expect 0 'simulated [0-9]+ N/m' "$thimble" tune "$source_dir/app/scenes/elephant.yaml" --out tuned
 expect 0 '"elephant.margin"' cat tuned/figures.json

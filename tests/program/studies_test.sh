@@ -3,36 +3,33 @@
 # their goals, pictures.
 source "$(dirname "$0")/expect.sh" "$@"
 
-picture() {  # picture STUDY NAME: drawn both ways, where there is something to draw with
-  command -v gnuplot >/dev/null || return 0
-  expect 0 'PNG' head -c 4 "$1/$2.png"
-  expect 0 '<svg' head -c 2000 "$1/$2.svg"
+plots() {  # plots STEM...: they are there, where there is something to draw with
+  ! command -v gnuplot >/dev/null || expect_plot "$@"
 }
 
 expect 0 '^sines_line_error +[0-9.e-]+ % +goal <= 0.1: met' "$thimble" study texture --out texture
 expect 1 '' grep -q '"met": false' texture/figures.json
 expect 0 '.' head -1 texture/spectra.csv
 expect 0 '.' head -1 texture/lines.csv
-picture texture texture_spectra
+plots texture/texture_spectra
 
 # A plate of 2 mm and 1 N/mm lets a tip through at 1 N if it is felt in wedges, and never by the face
 # that the tip came in by.
 expect 0 'plate_2mm_pops_at_in_wedges +1(\.00[01]*)? N' "$thimble" study box --out box
 expect 1 '' grep -q '"met": false' box/figures.json
 expect 0 '^# x mm, z mm' head -1 box/box.csv
-picture box box
+plots box/box
 
 [ -n "${THIMBLE_LONG:-}" ] || finish
 
 expect 0 'order off by +[0-9.e-]+ +goal <= 0.2: met' "$thimble" study integrators --out integrators
 expect 1 '' grep -q '"met": false' integrators/figures.json
 expect 0 '.' head -1 integrators/integrators.csv
-picture integrators integrators_membrane
+plots integrators/integrators_membrane
 
 # How long a tick takes is told and never judged; instructions are counted where valgrind is.
 expect 0 ': force error +[0-9.e-]+ %' "$thimble" study cost --out cost
 expect 0 ': memory' cat cost/figures.json
 expect 0 '.' head -1 cost/cost.csv
-picture cost cost_of_contact
-picture cost cost_of_effects
+plots cost/cost_of_contact cost/cost_of_effects
 finish

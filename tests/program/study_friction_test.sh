@@ -9,11 +9,8 @@ expect 0 '^friction,delay_ticks,' head -1 out/friction.csv
 expect 0 '^bristle,3,' cat out/friction.csv
 expect 0 '^49 ' wc -l out/friction.csv
 if command -v gnuplot >/dev/null; then
-  for picture in naive naive_hold paper_direction paper_velocity paper_twice stiction_point bristle dahl lugre \
-    karnopp implicit_coulomb bristle_one_count overview; do
-    expect 0 'PNG' head -c 4 "out/$picture.png"
-    expect 0 '<svg' head -c 2000 "out/$picture.svg"
-  done
+  expect_plot out/{naive,naive_hold,paper_direction,paper_velocity,paper_twice,stiction_point,bristle,dahl} \
+    out/{lugre,karnopp,implicit_coulomb,bristle_one_count,overview}
 else
   expect 0 'NO PICTURES' "$thimble" study friction --out out
 fi

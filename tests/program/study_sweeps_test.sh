@@ -21,10 +21,7 @@ expect 1 '' grep -q '"met": false' laws/figures.json
 expect 0 '"z_width.area"' cat laws/summary.json
 expect 0 '^damping_Ns_m,stiffness_N_m,law_N_m,exact_N_m' head -1 laws/kb_edge_linear.csv
 if command -v gnuplot >/dev/null; then
-  for picture in kb_map restitution limit_cycles stiffness; do
-    expect 0 'PNG' head -c 4 "laws/$picture.png"
-    expect 0 '<svg' head -c 2000 "laws/$picture.svg"
-  done
+  expect_plot laws/{kb_map,restitution,limit_cycles,stiffness}
 fi
 
 # Random scenes: none may break a promise.
