@@ -151,9 +151,15 @@ EnergyGuardSettings passivity() {
   return {.stage = EnergyStage::kPassivity, .mass = 0.075, .allowance = 0, .reservoir = 0.02};
 }
 
-TEST(EnergyGuard, LeavesAForceAloneWhileTheHandHasPaidForIt) {
-  SafetyGate gate(limits(), passivity());
+/// Makes a gate with an energy stage whose soft start is over and whose account is empty.
+SafetyGate open_guarded_gate(const EnergyGuardSettings& settings) {
+  SafetyGate gate(limits(), settings);
   for (int k = 0; k < 400; ++k) gate.pass_guarded({0, 0, 0}, kStill, kPeriod, {});
+  return gate;
+}
+
+TEST(EnergyGuard, LeavesAForceAloneWhileTheHandHasPaidForIt) {
+  SafetyGate gate = open_guarded_gate(passivity());
   const Eigen::Vector3d f{0.5, -1, 0.3};
   // The hand gives 1 mJ, and gets a part of it back.
   EXPECT_EQ(gate.pass_guarded(f, {0.1, 0, 0}, kPeriod, {.work = -1e-3}).f_T_W(), f);
@@ -163,8 +169,7 @@ TEST(EnergyGuard, LeavesAForceAloneWhileTheHandHasPaidForIt) {
 }
 
 TEST(EnergyGuard, DampsAgainstTheVelocityWithAsMuchAsPaysTheDebtAndNoMore) {
-  SafetyGate gate(limits(), passivity());
-  for (int k = 0; k < 400; ++k) gate.pass_guarded({0, 0, 0}, kStill, kPeriod, {});
+  SafetyGate gate = open_guarded_gate(passivity());
   const Eigen::Vector3d v{0.1, -0.2, 0.1};
   const Eigen::Vector3d f = gate.pass_guarded({0, 0, 0}, v, kPeriod, {.work = 1e-4}).f_T_W();
   EXPECT_NEAR(-f.dot(v) * kPeriod, 1e-4, 1e-12);
@@ -195,9 +200,7 @@ TEST(EnergyGuard, KeepsNoMoreToOnesCreditThanTheReservoirAndAllowsWhatItIsTold) 
 SafetyGate open_gate_with_onset() {
   EnergyGuardSettings settings = passivity();
   settings.onset = 0.002;
-  SafetyGate gate(limits(), settings);
-  for (int k = 0; k < 400; ++k) gate.pass_guarded({0, 0, 0}, kStill, kPeriod, {});
-  return gate;
+  return open_guarded_gate(settings);
 }
 
 /// Tells what of 2 N passes after the arm did `work` (J) on the hand.
@@ -236,10 +239,10 @@ TEST(EnergyGuard, GivesAForceBackToAHandThatGoesOnAfterTheTrouble) {
     EnergyGuardSettings settings = passivity();
     settings.allowance = settings.onset = 0.002;
     settings.speed_floor = 0.014;
-    SafetyGate gate(limits(), settings);
-    for (int k = 0; k < 400; ++k) gate.pass_guarded({0, 0, 0}, kStill, kPeriod, {});
+    SafetyGate gate = open_guarded_gate(settings);
     sent_at_rest(gate, debt);
-    // Now the hand presses 4 mm into 1 N/mm, once a second; the work is what was sent, times the way.
+    // Now the hand presses 4 mm into 1 N/mm, once a second; the work is what was sent, times the
+    // way.
     double f = 0, x = 0, most = 0;
     for (int k = 0; k < 20000; ++k) {
       const double to = -0.004 * std::sin(2 * std::numbers::pi * k * kPeriod);
@@ -257,8 +260,7 @@ TEST(EnergyGuard, GivesAForceBackToAHandThatGoesOnAfterTheTrouble) {
 TEST(EnergyGuard, DampsNothingOfWhatOneCountMayBe) {
   EnergyGuardSettings settings = passivity();
   settings.speed_floor = 0.02;
-  SafetyGate gate(limits(), settings);
-  for (int k = 0; k < 400; ++k) gate.pass_guarded({0, 0, 0}, kStill, kPeriod, {});
+  SafetyGate gate = open_guarded_gate(settings);
   const auto damped = [&](double v) {
     return gate.pass_guarded({0, 0, 0}, {v, 0, 0}, kPeriod, {.work = 1}).f_T_W().x();
   };
@@ -268,8 +270,7 @@ TEST(EnergyGuard, DampsNothingOfWhatOneCountMayBe) {
 }
 
 TEST(EnergyGuard, KeepsTheCreditOfSpringsThatArePressedNowAndNoLonger) {
-  SafetyGate gate(limits(), passivity());
-  for (int k = 0; k < 400; ++k) gate.pass_guarded({0, 0, 0}, kStill, kPeriod, {});
+  SafetyGate gate = open_guarded_gate(passivity());
   gate.pass_guarded({0, 0, 0}, kStill, kPeriod, {.work = -0.09, .held = 0.08});
   EXPECT_NEAR(gate.energy(), 0.09, 1e-12);
   // What they hold does not give credit that nobody brought.
@@ -292,8 +293,7 @@ TEST(EnergyGuard, HoldsItsDampingBackWithTheSoftStart) {
 }
 
 TEST(EnergyGuard, BoundsAForceByWhatTheSpringOfItsSlopeWouldHold) {
-  SafetyGate gate(limits(), {.stage = EnergyStage::kBounding, .slope = 10});
-  for (int k = 0; k < 400; ++k) gate.pass_guarded({0, 0, 0}, kStill, kPeriod, {});
+  SafetyGate gate = open_guarded_gate({.stage = EnergyStage::kBounding, .slope = 10});
   // From nothing, 1 mm of way carries 10 mN; held at 2 N, 1 mm back costs at least 10 mN.
   EXPECT_NEAR(gate.pass_guarded({3, 0, 0}, kStill, kPeriod, {.move_W = {-1e-3, 0, 0}}).f_T_W().x(),
               0.01, 1e-15);
@@ -306,8 +306,7 @@ TEST(EnergyGuard, BoundsAForceByWhatTheSpringOfItsSlopeWouldHold) {
 TEST(EnergyGuard, FindsNoForceForEnergyThatIsNotANumber) {
   for (const EnergyGuardSettings& settings :
        {passivity(), EnergyGuardSettings{.stage = EnergyStage::kBounding, .slope = 10}}) {
-    SafetyGate gate(limits(), settings);
-    for (int k = 0; k < 400; ++k) gate.pass_guarded({0, 0, 0}, kStill, kPeriod, {});
+    SafetyGate gate = open_guarded_gate(settings);
     const EnergyFlow bad{.work = NAN, .move_W = {NAN, 0, 0}};
     EXPECT_EQ(gate.pass_guarded({1, 0, 0}, {1, 0, 0}, kPeriod, bad).f_T_W().norm(), 0);
     EXPECT_EQ(gate.fault(), Fault::kStateNotFinite);
