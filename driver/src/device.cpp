@@ -15,9 +15,9 @@ bool is_limit(double value) noexcept {
 
 Result<void> check(const DeviceSettings& settings) {
   const GateLimits& limits = settings.limits;
-  const auto wrong = [](const char* what) {
-    return Error{std::string("The arm's ") + what +
-                 " must be a finite number above zero; set it in the arm file."};
+  const auto wrong = [](const char* what, const char* least = "above zero") {
+    return Error{std::string("The arm's ") + what + " must be a finite number " + least +
+                 "; set it in the arm file."};
   };
   if (!is_limit(limits.force_max)) return wrong("force_max");
   if (!is_limit(limits.speed_max)) return wrong("speed_max");
@@ -31,8 +31,10 @@ Result<void> check(const DeviceSettings& settings) {
   if (energy.stage == EnergyStage::kPassivity) {
     if (!is_limit(energy.mass)) return wrong("tip mass, which its passivity stage needs,");
     if (!is_limit(energy.reservoir)) return wrong("energy reservoir");
-    if (!(energy.allowance >= 0)) return wrong("energy allowance");
-    if (!(energy.speed_floor >= 0 && energy.speed_floor < HUGE_VAL)) return wrong("speed floor");
+    if (!(energy.allowance >= 0)) return wrong("energy allowance", "of zero or more");
+    if (!(energy.speed_floor >= 0 && energy.speed_floor < HUGE_VAL)) {
+      return wrong("speed floor", "of zero or more");
+    }
   }
   if (energy.stage == EnergyStage::kBounding && !is_limit(energy.slope)) {
     return wrong("slope of the energy bound");

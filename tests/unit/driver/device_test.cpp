@@ -86,6 +86,21 @@ TEST_F(DeviceTest, RefusesLimitsThatAreNotPositiveNumbers) {
   EXPECT_NE(opened.error().message.find("force_max"), std::string::npos);
 }
 
+TEST_F(DeviceTest, RefusesASpeedFloorThatWouldSwitchTheDampingOffOrTurnItUp) {
+  DeviceSettings settings = support::vintage_settings();
+  settings.energy = {.stage = EnergyStage::kPassivity, .mass = 0.075, .reservoir = 0.02};
+  for (const double floor : {-0.01, static_cast<double>(NAN), HUGE_VAL}) {
+    settings.energy.speed_floor = floor;
+    wire_.to_host.push_back(report());
+    const auto opened =
+        Device::open(std::make_unique<support::ScriptedTransport>(wire_),
+                     std::make_unique<hfab::HfabArm>(support::vintage_model()), settings, 0);
+    ASSERT_FALSE(opened) << floor;
+    EXPECT_NE(opened.error().message.find("speed floor must be a finite number of zero or more"),
+              std::string::npos);
+  }
+}
+
 TEST_F(DeviceTest, SendsZeroWhenOpenedAndWhileIdle) {
   wire_.to_host.push_back(report());
   auto opened = open();
