@@ -33,7 +33,7 @@ export build found
 sed -n 's/^ *"file": "\(.*\)",*$/\1/p' "$build/compile_commands.json" | sort -u |
   { grep -E "${1:-.}" || true; } >"$found/files"
 [ -s "$found/files" ] || {
-  echo "tests/tidy.sh: no compiled file has a name like '$1'." >&2
+  echo "tests/tidy.sh: no compiled file has a name like '${1:-}'." >&2
   exit 2
 }
 echo "clang-tidy reads $(wc -l <"$found/files") files, most of them eight sources joined ..."

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "printed.h"
 #include "thimble/driver/arms/falcon/falcon_arm.h"
 #include "thimble/driver/arms/falcon/falcon_boot.h"
 #include "thimble/driver/arms/hfab/hfab_models.h"
@@ -103,11 +104,8 @@ Result<std::optional<FoundArm>> choose_arm(const std::vector<FoundArm>& plugged_
     names.append(names.empty() ? "" : ", ").append(arm.name());
     if (wanted != "auto" && arm.name() != wanted) continue;
     if (found) {
-      return Error{std::string("Several arms answer to '")
-                       .append(wanted)
-                       .append("': ")
-                       .append(names)
-                       .append(". Name one with --device NAME.")};
+      return Error{printed("Several arms answer to '%s': %s. Name one with --device NAME.",
+                           wanted.c_str(), names.c_str())};
     }
     found = arm;
   }
