@@ -7,13 +7,13 @@
 
 #include "commands.h"
 #include "complain.h"
+#include "mesh/contact_mesh.h"
+#include "page/page_file.h"
 #include "pictures.h"
-#include "thimble/render/contact/contact_mesh.h"
 #include "thimble/render/mesh/check_mesh.h"
 #include "thimble/render/mesh/load_mesh.h"
 #include "thimble/render/mesh/repair_mesh.h"
 #include "thimble/render/mesh/save_mesh.h"
-#include "thimble/render/page/page_file.h"
 
 namespace thimble::app {
 namespace {

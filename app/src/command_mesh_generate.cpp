@@ -4,9 +4,9 @@
 
 #include "commands.h"
 #include "complain.h"
+#include "page/page_file.h"
 #include "resident_memory.h"
 #include "ring_pages.h"
-#include "thimble/render/page/page_file.h"
 
 namespace thimble::app {
 namespace {

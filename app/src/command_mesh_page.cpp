@@ -4,10 +4,10 @@
 
 #include "commands.h"
 #include "complain.h"
-#include "thimble/render/contact/compact_surface.h"
-#include "thimble/render/contact/contact_mesh.h"
+#include "mesh/contact_mesh.h"
+#include "packed/compact_surface.h"
+#include "page/page_file.h"
 #include "thimble/render/mesh/load_mesh.h"
-#include "thimble/render/page/page_file.h"
 
 namespace thimble::app {
 namespace {

@@ -6,7 +6,7 @@
 #include "mesh_place.h"
 #include "thimble/driver/snapshot.h"
 #include "thimble/driver/tick_record.h"
-#include "thimble/render/body/body_patch.h"
+#include "thimble/render/body_patch.h"
 #include "thimble/render/mesh/triangle_mesh.h"
 #include "thimble/render/scene_touch.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "thimble/render/mesh/vertex_normals.h"
+#include "mesh/vertex_normals.h"
 
 namespace thimble::app {
 namespace {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "figure.h"
+#include "page/paged_surface.h"
 #include "run_statistics.h"
 #include "thimble/driver/device.h"
 #include "thimble/driver/fault.h"
@@ -14,7 +15,6 @@
 #include "thimble/driver/result.h"
 #include "thimble/driver/safety_gate.h"
 #include "thimble/driver/servo_loop.h"
-#include "thimble/render/page/paged_surface.h"
 
 namespace thimble::app {
 

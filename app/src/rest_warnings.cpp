@@ -4,9 +4,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "mesh/adjacency.h"
 #include "printed.h"
 #include "study/draw.h"
-#include "thimble/render/mesh/adjacency.h"
 #include "thimble/render/mesh/load_mesh.h"
 #include "tuning.h"
 

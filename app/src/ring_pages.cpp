@@ -8,7 +8,7 @@
 #include <numeric>
 #include <vector>
 
-#include "thimble/render/page/page_file.h"
+#include "page/page_file.h"
 
 namespace thimble::app {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "thimble/render/surface/friction/friction_settings.h"
+#include "surface/friction/friction_settings.h"
 #include "yaml_settings.h"
 
 namespace thimble::app {

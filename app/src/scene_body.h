@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <optional>
 
+#include "body/motion/move_object.h"
 #include "thimble/render/body/dent_settings.h"
-#include "thimble/render/body/move_object.h"
 #include "thimble/render/body/shape_choice.h"
 #include "thimble/render/effect/effect_surroundings.h"
 #include "yaml_reader.h"

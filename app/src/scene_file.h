@@ -9,6 +9,7 @@
 
 #include "arm_file.h"
 #include "hand_route.h"
+#include "page/paged_contact.h"
 #include "scene_body.h"
 #include "scene_shapes.h"
 #include "thimble/driver/result.h"
@@ -16,7 +17,6 @@
 #include "thimble/render/effect/effect_table.h"
 #include "thimble/render/field/field_table.h"
 #include "thimble/render/mesh/triangle_mesh.h"
-#include "thimble/render/page/paged_contact.h"
 
 namespace thimble::app {
 

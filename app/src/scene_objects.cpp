@@ -3,10 +3,11 @@
 #include <string>
 #include <utility>
 
-#include "thimble/render/body/move_object.h"
+#include "body/motion/move_object.h"
+#include "build_paged_touch.h"
+#include "mesh/repair/orient_mesh.h"
 #include "thimble/render/build_object_touch.h"
 #include "thimble/render/mesh/load_mesh.h"
-#include "thimble/render/mesh/orient_mesh.h"
 
 namespace thimble::app {
 namespace {

@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "mesh_place.h"
+#include "page/paged_surface.h"
 #include "scene_file.h"
 #include "thimble/driver/result.h"
 #include "thimble/render/mesh/triangle_mesh.h"
-#include "thimble/render/page/paged_surface.h"
 #include "thimble/render/scene_touch.h"
 
 namespace thimble::app {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <type_traits>
 
-#include "thimble/render/body/body_pose.h"
+#include "thimble/render/body_pose.h"
 
 namespace thimble::app {
 

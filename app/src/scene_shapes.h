@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "thimble/render/field/build_primitive_touch.h"
+#include "thimble/render/build_primitive_touch.h"
 #include "thimble/render/mesh/triangle_mesh.h"
 #include "yaml_reader.h"
 

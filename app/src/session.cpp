@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "body/shape/body_shape.h"
 #include "build_info.h"
 #include "calibration.h"
 #include "energy_choice.h"
@@ -14,7 +15,6 @@
 #include "real_arm.h"
 #include "share/describe_scene.h"
 #include "text_file.h"
-#include "thimble/render/body/body_shape.h"
 
 namespace thimble::app {
 namespace {

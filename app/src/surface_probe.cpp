@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "thimble/render/mesh/vertex_normals.h"
+#include "mesh/vertex_normals.h"
 
 namespace thimble::app {
 namespace {

@@ -5,19 +5,19 @@
 #include <type_traits>
 #include <utility>
 
-#include "body/shape_object.h"
-#include "thimble/render/body/bendable_polygon.h"
-#include "thimble/render/body/dented_touch.h"
-#include "thimble/render/contact/blended.h"
-#include "thimble/render/contact/compact_contact.h"
-#include "thimble/render/contact/curved_depth.h"
-#include "thimble/render/contact/edge_blending.h"
-#include "thimble/render/contact/god_object.h"
-#include "thimble/render/contact/mesh_contact.h"
-#include "thimble/render/contact/normal_projection_tracker.h"
-#include "thimble/render/contact/offset_tracker.h"
-#include "thimble/render/contact/smooth_normals.h"
+#include "body/dent/bendable_polygon.h"
+#include "body/dent/dented_touch.h"
+#include "mesh/smooth_normals.h"
+#include "shape_object.h"
 #include "touch_of.h"
+#include "track/blended.h"
+#include "track/compact_contact.h"
+#include "track/curved_depth.h"
+#include "track/edge_blending.h"
+#include "track/god_object.h"
+#include "track/mesh_contact.h"
+#include "track/normal_projection_tracker.h"
+#include "track/offset_tracker.h"
 
 namespace thimble::render {
 namespace {
@@ -156,12 +156,6 @@ Built build_object_touch(const TriangleMesh& mesh_W, const ContactChoice& choice
   auto dent = BendablePolygon::build(std::move(mesh), *surface.dent);
   if (!dent) return dent.error();
   return Built(std::make_unique<DentedTouch>(std::move(touch).value(), std::move(dent).value()));
-}
-
-std::unique_ptr<ObjectTouch> build_paged_touch(std::shared_ptr<PagedSurface> pages,
-                                               const PagedPlace& place,
-                                               const SurfaceChoice& surface) {
-  return touch_of(PagedContact(std::move(pages), place), surface);
 }
 
 }  // namespace thimble::render

@@ -9,19 +9,19 @@
 #include <vector>
 
 #include "bench/figures_reporter.h"
+#include "body/dent/bendable_polygon.h"
+#include "body/motion/rigid_body.h"
+#include "body/shape/plastic_base.h"
+#include "body/shape/snap_base.h"
+#include "body/spring/mesh_springs.h"
+#include "body/spring/modal_motion.h"
+#include "body/spring/ring_patch.h"
+#include "body/spring/spring_motion.h"
 #include "figure.h"
+#include "mesh/surface_weights.h"
 #include "support/body_meshes.h"
 #include "support/shapes.h"
-#include "thimble/render/body/bendable_polygon.h"
-#include "thimble/render/body/mesh_springs.h"
-#include "thimble/render/body/modal_motion.h"
-#include "thimble/render/body/plastic_base.h"
-#include "thimble/render/body/rigid_body.h"
-#include "thimble/render/body/ring_patch.h"
-#include "thimble/render/body/snap_base.h"
-#include "thimble/render/body/spring_motion.h"
 #include "thimble/render/build_object_touch.h"
-#include "thimble/render/contact/surface_weights.h"
 
 // What the dynamics of bodies cost: per node and step, or per step of one body.
 
@@ -85,8 +85,7 @@ void touch_torus(benchmark::State& state, bool dented) {
   const int across =
       static_cast<int>(std::lround(std::sqrt(static_cast<double>(state.range(0)) / 4)));
   const auto mesh = support::torus(0.05, 0.02, 2 * across, across);
-  render::SurfaceChoice surface{
-      .spring = {.stiffness = 500, .damping = 0}, .effects = {}};
+  render::SurfaceChoice surface{.spring = {.stiffness = 500, .damping = 0}, .effects = {}};
   if (dented) surface.dent.emplace().pull = 0.2;
   render::ContactChoice choice;
   choice.tracker = render::TrackerChoice::kCompact;

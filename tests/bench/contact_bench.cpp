@@ -13,10 +13,10 @@
 
 #include "bench/peers.h"
 #include "figure.h"
+#include "search/make_search.h"
 #include "support/bench_meshes.h"
 #include "support/random.h"
-#include "thimble/render/contact/compact_contact.h"
-#include "thimble/render/contact/make_search.h"
+#include "track/compact_contact.h"
 
 // Contact on closed shapes of 0.1 m from 10^3 to 10^7 triangles, against other libraries in the
 // same run. Every time is the least of several rounds in which the contenders take turns, stretch

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "bench/peers.h"
-#include "thimble/render/contact/closest_point.h"
+#include "mesh/closest_point.h"
 
 namespace thimble::bench {
 namespace {

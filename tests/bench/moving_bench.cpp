@@ -8,7 +8,7 @@
 
 #include "support/bench_meshes.h"
 #include "support/random.h"
-#include "thimble/render/contact/moving_mesh.h"
+#include "track/moving_mesh.h"
 
 // What it costs to move vertices of a mesh together with all that is built over it: a patch of 37
 // vertices (three rings) at random places, pressed in by a fifth of an edge and let out again. Must

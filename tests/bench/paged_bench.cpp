@@ -15,10 +15,10 @@
 #include <vector>
 
 #include "figure.h"
+#include "page/paged_contact.h"
 #include "resident_memory.h"
 #include "ring_pages.h"
-#include "thimble/render/contact/compact_contact.h"
-#include "thimble/render/page/paged_contact.h"
+#include "track/compact_contact.h"
 
 // A tip that slides at 0.5 m/s over a ring of 10^7 (--long: 10^8) triangles on the disk, in a loop
 // of 1 kHz that sleeps, a thread loading for it; beside it the same over 10^6 triangles in memory,

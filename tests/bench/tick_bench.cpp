@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "bench/figures_reporter.h"
+#include "mesh_touch.h"
 #include "session.h"
 #include "support/random.h"
 #include "support/vintage_arm.h"
 #include "thimble/driver/snapshot.h"
-#include "thimble/render/mesh_touch.h"
 
 // One whole tick on the virtual clock in contact with elephant.off, and each part of it alone.
 

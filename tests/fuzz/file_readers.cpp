@@ -16,13 +16,13 @@
 
 #include "arm_file.h"
 #include "page/checksum.h"
+#include "page/page_file.h"
 #include "recording/read_recording.h"
 #include "recording/recording_file.h"
 #include "scene_file.h"
 #include "scene_objects.h"
 #include "thimble/render/mesh/check_mesh.h"
 #include "thimble/render/mesh/load_mesh.h"
-#include "thimble/render/page/page_file.h"
 
 namespace thimble::fuzz {
 namespace {

@@ -7,11 +7,11 @@
 #include <fstream>
 #include <string>
 
+#include "body/shape/body_shape.h"
+#include "mesh/contact_mesh.h"
 #include "session.h"
 #include "support/scratch.h"
 #include "support/shipped_scene.h"
-#include "thimble/render/body/body_shape.h"
-#include "thimble/render/contact/contact_mesh.h"
 #include "thimble/render/mesh/load_mesh.h"
 #include "thimble/render/mesh/save_mesh.h"
 

@@ -19,8 +19,8 @@
 #include "study/signal.h"
 #include "support/hard_case.h"
 #include "support/rubbing.h"
-#include "thimble/render/surface/friction/bristle.h"
-#include "thimble/render/surface/friction/friction_settings.h"
+#include "surface/friction/bristle.h"
+#include "surface/friction/friction_settings.h"
 
 namespace thimble::app {
 namespace {

@@ -22,8 +22,8 @@
 #include "support/shapes.h"
 #include "support/smooth_surfaces.h"
 #include "thimble/render/build_object_touch.h"
-#include "thimble/render/contact/surface_tracker.h"
 #include "thimble/render/mesh/placed_mesh.h"
+#include "track/surface_tracker.h"
 
 namespace thimble::render {
 namespace {

@@ -13,6 +13,7 @@
 #include <numbers>
 #include <vector>
 
+#include "body/shape/snap_base.h"
 #include "support/hard_case.h"
 #include "support/random.h"
 #include "support/vintage_arm.h"
@@ -20,7 +21,6 @@
 #include "thimble/device_sim/sim_transport.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/servo_loop.h"
-#include "thimble/render/body/snap_base.h"
 
 namespace thimble {
 namespace {

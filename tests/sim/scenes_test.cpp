@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "lost_contacts.h"
+#include "mesh/adjacency.h"
 #include "session.h"
 #include "support/heap_guard.h"
 #include "support/run_hash.h"
 #include "support/shipped_scene.h"
-#include "thimble/render/mesh/adjacency.h"
 
 // Every scene without a scanned mesh that comes with the program, from the wire up.
 

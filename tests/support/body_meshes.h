@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "body/spring/spring_motion.h"
+#include "body/spring/spring_network.h"
 #include "support/random.h"
-#include "thimble/render/body/spring_motion.h"
-#include "thimble/render/body/spring_network.h"
 #include "thimble/render/mesh/triangle_mesh.h"
 
 namespace thimble::support {

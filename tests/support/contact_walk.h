@@ -6,7 +6,7 @@
 
 #include "support/random.h"
 #include "thimble/driver/device_state.h"
-#include "thimble/render/contact/contact_state.h"
+#include "thimble/render/contact_state.h"
 #include "thimble/render/mesh/triangle_mesh.h"
 
 namespace thimble::support {

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "mesh/contact_mesh.h"
 #include "support/random.h"
-#include "thimble/render/contact/contact_mesh.h"
 
 namespace thimble::support {
 

@@ -9,7 +9,7 @@
 #include "scene_poses.h"
 #include "thimble/driver/snapshot.h"
 #include "thimble/driver/tick_record.h"
-#include "thimble/render/body/body_patch.h"
+#include "thimble/render/body_patch.h"
 
 namespace thimble::app {
 

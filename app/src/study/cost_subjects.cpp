@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "scene_effects.h"
+#include "surface/texture/height_map.h"
 #include "thimble/render/build_object_touch.h"
-#include "thimble/render/surface/texture/height_map.h"
 #include "yaml_reader.h"
 
 namespace thimble::app {

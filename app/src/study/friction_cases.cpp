@@ -6,9 +6,9 @@
 #include <stdexcept>
 
 #include "signal.h"
+#include "surface/friction/bristle.h"
 #include "thimble/render/effect/effect_table.h"
 #include "thimble/render/effect/given_settings.h"
-#include "thimble/render/surface/friction/bristle.h"
 
 namespace thimble::app {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "thimble/render/body/oscillator.h"
+#include "body/spring/oscillator.h"
 
 namespace thimble::app {
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "thimble/render/body/spring_network.h"
+#include "body/spring/spring_network.h"
 
 namespace thimble::app {
 

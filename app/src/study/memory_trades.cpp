@@ -6,13 +6,13 @@
 #include <cstdint>
 #include <utility>
 
+#include "mesh/adjacency.h"
+#include "mesh/contact_mesh.h"
+#include "mesh/repair/out_array.h"
+#include "search/make_search.h"
 #include "study/cost_subjects.h"
 #include "study/ring_surface.h"
-#include "thimble/render/contact/contact_mesh.h"
-#include "thimble/render/contact/make_search.h"
 #include "thimble/render/contact_choice.h"
-#include "thimble/render/mesh/adjacency.h"
-#include "thimble/render/mesh/out_array.h"
 
 namespace thimble::app {
 namespace {

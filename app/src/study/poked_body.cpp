@@ -5,7 +5,7 @@
 #include <ctime>
 #include <limits>
 
-#include "thimble/render/body/modal_motion.h"
+#include "body/spring/modal_motion.h"
 
 namespace thimble::app {
 namespace {

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "body/spring/spring_motion.h"
+#include "body/spring/spring_network.h"
 #include "thimble/driver/result.h"
-#include "thimble/render/body/spring_motion.h"
-#include "thimble/render/body/spring_network.h"
 
 namespace thimble::app {
 

@@ -5,10 +5,10 @@
 #include <sstream>
 #include <string>
 
+#include "field/entry_face_contact.h"
+#include "field/primitive_contact.h"
 #include "gnuplot.h"
 #include "picture_parts.h"
-#include "thimble/render/field/entry_face_contact.h"
-#include "thimble/render/field/primitive_contact.h"
 #include "thimble/render/surface/spring_damper.h"
 #include "thimble/render/touch.h"
 

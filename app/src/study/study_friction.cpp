@@ -11,7 +11,7 @@
 #include "picture_parts.h"
 #include "signal.h"
 #include "study_friction.h"
-#include "thimble/render/surface/friction/friction_settings.h"
+#include "surface/friction/friction_settings.h"
 
 namespace thimble::app {
 namespace {

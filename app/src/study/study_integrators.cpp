@@ -9,12 +9,12 @@
 #include <string>
 #include <utility>
 
+#include "body/spring/mesh_springs.h"
 #include "gnuplot.h"
 #include "meshes.h"
 #include "picture_parts.h"
 #include "study/membrane.h"
 #include "study/poked_body.h"
-#include "thimble/render/body/mesh_springs.h"
 #include "thimble/render/mesh/load_mesh.h"
 
 namespace thimble::app {

@@ -11,11 +11,11 @@
 
 #include "gnuplot.h"
 #include "picture_parts.h"
+#include "surface/texture/height_map.h"
+#include "surface/texture/sandpaper.h"
+#include "surface/texture/sines.h"
 #include "thimble/render/field/half_space.h"
 #include "thimble/render/surface/spring_damper.h"
-#include "thimble/render/surface/texture/height_map.h"
-#include "thimble/render/surface/texture/sandpaper.h"
-#include "thimble/render/surface/texture/sines.h"
 #include "thimble/render/touch.h"
 
 namespace thimble::app {

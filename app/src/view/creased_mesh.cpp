@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <numeric>
 
-#include "thimble/render/mesh/vertex_normals.h"
+#include "mesh/vertex_normals.h"
 
 namespace thimble::app::view {
 namespace {

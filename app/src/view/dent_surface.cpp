@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "thimble/render/mesh/vertex_normals.h"
+#include "mesh/vertex_normals.h"
 
 namespace thimble::app::view {
 namespace {

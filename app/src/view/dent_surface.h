@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "thimble/render/body/body_patch.h"
+#include "thimble/render/body_patch.h"
 #include "thimble/render/mesh/triangle_mesh.h"
 #include "view/creased_mesh.h"
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "thimble/driver/tick_record.h"
-#include "thimble/render/body/body_patch.h"
-#include "thimble/render/body/body_pose.h"
+#include "thimble/render/body_patch.h"
+#include "thimble/render/body_pose.h"
 #include "thimble/render/mesh/triangle_mesh.h"
 
 namespace thimble::app::view {

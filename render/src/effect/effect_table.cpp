@@ -3,17 +3,17 @@
 #include <array>
 #include <cstddef>
 
-#include "thimble/render/surface/friction/bristle.h"
-#include "thimble/render/surface/friction/dahl.h"
-#include "thimble/render/surface/friction/implicit_coulomb.h"
-#include "thimble/render/surface/friction/karnopp.h"
-#include "thimble/render/surface/friction/lugre.h"
-#include "thimble/render/surface/friction/naive.h"
-#include "thimble/render/surface/friction/paper.h"
-#include "thimble/render/surface/friction/stiction_point.h"
-#include "thimble/render/surface/texture/height_map.h"
-#include "thimble/render/surface/texture/sandpaper.h"
-#include "thimble/render/surface/texture/sines.h"
+#include "surface/friction/bristle.h"
+#include "surface/friction/dahl.h"
+#include "surface/friction/implicit_coulomb.h"
+#include "surface/friction/karnopp.h"
+#include "surface/friction/lugre.h"
+#include "surface/friction/naive.h"
+#include "surface/friction/paper.h"
+#include "surface/friction/stiction_point.h"
+#include "surface/texture/height_map.h"
+#include "surface/texture/sandpaper.h"
+#include "surface/texture/sines.h"
 
 namespace thimble::render {
 namespace {

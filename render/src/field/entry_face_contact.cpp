@@ -1,7 +1,9 @@
-#include "thimble/render/field/entry_face_contact.h"
+#include "field/entry_face_contact.h"
 
 #include <cmath>
 #include <limits>
+
+#include "mesh/position_range.h"
 
 namespace thimble::render {
 

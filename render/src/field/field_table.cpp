@@ -2,10 +2,10 @@
 
 #include <array>
 
-#include "thimble/render/field/gravity.h"
-#include "thimble/render/field/magnetic_snap.h"
-#include "thimble/render/field/point_charges.h"
-#include "thimble/render/field/viscous.h"
+#include "field/gravity.h"
+#include "field/magnetic_snap.h"
+#include "field/point_charges.h"
+#include "field/viscous.h"
 
 namespace thimble::render {
 namespace {

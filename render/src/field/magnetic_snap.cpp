@@ -1,4 +1,4 @@
-#include "thimble/render/field/magnetic_snap.h"
+#include "field/magnetic_snap.h"
 
 #include <algorithm>
 #include <numbers>

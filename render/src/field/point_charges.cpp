@@ -1,4 +1,4 @@
-#include "thimble/render/field/point_charges.h"
+#include "field/point_charges.h"
 
 #include <numbers>
 

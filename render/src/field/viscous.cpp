@@ -1,4 +1,4 @@
-#include "thimble/render/field/viscous.h"
+#include "field/viscous.h"
 
 #include <cstdio>
 #include <limits>

@@ -1,4 +1,4 @@
-#include "thimble/render/mesh/adjacency.h"
+#include "mesh/adjacency.h"
 
 #include <string>
 

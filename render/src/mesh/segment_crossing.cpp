@@ -1,4 +1,4 @@
-#include "thimble/render/mesh/segment_crossing.h"
+#include "mesh/segment_crossing.h"
 
 #include "mesh/exact_sign.h"
 

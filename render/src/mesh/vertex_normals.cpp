@@ -1,4 +1,4 @@
-#include "thimble/render/mesh/vertex_normals.h"
+#include "mesh/vertex_normals.h"
 
 #include <Eigen/Geometry>
 #include <array>

@@ -1,4 +1,4 @@
-#include "thimble/render/page/page_file.h"
+#include "page/page_file.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -14,8 +14,8 @@
 #include <type_traits>
 #include <utility>
 
+#include "packed/surface_rise.h"
 #include "page/checksum.h"
-#include "thimble/render/contact/surface_rise.h"
 
 namespace thimble::render {
 namespace {

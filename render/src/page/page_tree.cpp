@@ -1,4 +1,4 @@
-#include "thimble/render/page/page_tree.h"
+#include "page/page_tree.h"
 
 #include <algorithm>
 #include <bit>

@@ -1,9 +1,9 @@
-#include "thimble/render/page/paged_contact.h"
+#include "page/paged_contact.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "thimble/render/contact/record_contact_steps.h"
+#include "track/record_contact_steps.h"
 
 namespace thimble::render {
 namespace {

@@ -1,4 +1,4 @@
-#include "thimble/render/page/paged_surface.h"
+#include "page/paged_surface.h"
 
 #include <sys/resource.h>
 #include <unistd.h>
@@ -10,9 +10,9 @@
 #include <string>
 #include <utility>
 
-#include "contact/record_tests.h"
+#include "mesh/closest_point.h"
 #include "page/record_segment.h"
-#include "thimble/render/contact/closest_point.h"
+#include "search/record_tests.h"
 
 namespace thimble::render {
 namespace {

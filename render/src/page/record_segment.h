@@ -7,8 +7,8 @@
 #include <cmath>
 #include <cstddef>
 
-#include "thimble/render/mesh/segment_crossing.h"
-#include "thimble/render/page/page_file.h"
+#include "mesh/segment_crossing.h"
+#include "page/page_file.h"
 
 namespace thimble::render {
 

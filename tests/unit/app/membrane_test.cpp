@@ -6,9 +6,9 @@
 #include <cmath>
 #include <vector>
 
+#include "body/spring/modal_motion.h"
+#include "body/spring/spring_motion.h"
 #include "support/hard_case.h"
-#include "thimble/render/body/modal_motion.h"
-#include "thimble/render/body/spring_motion.h"
 
 namespace thimble::app {
 namespace {

@@ -7,12 +7,12 @@
 #include <map>
 #include <numbers>
 
+#include "page/paged_surface.h"
 #include "resident_memory.h"
+#include "search/bvh.h"
 #include "support/contact_walk.h"
 #include "support/random.h"
 #include "support/scratch.h"
-#include "thimble/render/contact/bvh.h"
-#include "thimble/render/page/paged_surface.h"
 
 namespace thimble::app {
 namespace {

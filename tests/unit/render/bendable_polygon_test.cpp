@@ -1,5 +1,5 @@
-#include "thimble/render/body/bendable_polygon.h"
-#include "thimble/render/body/body_pull.h"
+#include "body/dent/bendable_polygon.h"
+#include "body/dent/body_pull.h"
 
 #include <gtest/gtest.h>
 

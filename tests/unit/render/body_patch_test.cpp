@@ -1,4 +1,4 @@
-#include "thimble/render/body/body_patch.h"
+#include "thimble/render/body_patch.h"
 
 #include <gtest/gtest.h>
 
@@ -15,11 +15,11 @@
 #include <vector>
 
 #include "dent_shapes.h"
+#include "mesh/vertex_normals.h"
 #include "support/body_meshes.h"
 #include "support/contact_walk.h"
 #include "thimble/render/mesh/load_mesh.h"
 #include "thimble/render/mesh/placed_mesh.h"
-#include "thimble/render/mesh/vertex_normals.h"
 
 namespace thimble::render {
 namespace {

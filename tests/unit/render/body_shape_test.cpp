@@ -1,4 +1,4 @@
-#include "thimble/render/body/body_shape.h"
+#include "body/shape/body_shape.h"
 
 #include <gtest/gtest.h>
 

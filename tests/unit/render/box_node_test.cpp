@@ -1,4 +1,4 @@
-#include "thimble/render/contact/box_node.h"
+#include "search/box_node.h"
 
 #include <gtest/gtest.h>
 
@@ -10,10 +10,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "search/bvh.h"
+#include "search/tree_nodes.h"
 #include "support/random.h"
 #include "support/shapes.h"
-#include "thimble/render/contact/bvh.h"
-#include "thimble/render/contact/tree_nodes.h"
 
 namespace thimble::render {
 namespace {

@@ -1,17 +1,17 @@
-#include "thimble/render/contact/bvh.h"
+#include "search/bvh.h"
 
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 #include <limits>
 
+#include "mesh/file/weld_mesh.h"
+#include "search/linear_search.h"
 #include "support/bench_meshes.h"
 #include "support/random.h"
 #include "support/reference_geometry.h"
 #include "support/shapes.h"
-#include "thimble/render/contact/linear_search.h"
 #include "thimble/render/mesh/placed_mesh.h"
-#include "thimble/render/mesh/weld_mesh.h"
 
 namespace thimble::render {
 namespace {

@@ -5,8 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "mesh/repair/orient_mesh.h"
 #include "support/shapes.h"
-#include "thimble/render/mesh/orient_mesh.h"
 
 namespace thimble::render {
 namespace {

@@ -1,4 +1,4 @@
-#include "thimble/render/contact/closest_point.h"
+#include "mesh/closest_point.h"
 
 #include <gtest/gtest.h>
 

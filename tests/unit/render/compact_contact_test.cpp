@@ -1,4 +1,4 @@
-#include "thimble/render/contact/compact_contact.h"
+#include "track/compact_contact.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "thimble/render/contact/compact_surface.h"
+#include "packed/compact_surface.h"
 
 #include <gtest/gtest.h>
 
@@ -7,11 +7,11 @@
 #include <limits>
 #include <map>
 
+#include "search/bvh.h"
 #include "support/bench_meshes.h"
 #include "support/random.h"
 #include "support/reference_geometry.h"
 #include "support/shapes.h"
-#include "thimble/render/contact/bvh.h"
 
 namespace thimble::render {
 namespace {

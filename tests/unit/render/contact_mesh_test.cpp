@@ -1,4 +1,4 @@
-#include "thimble/render/contact/contact_mesh.h"
+#include "mesh/contact_mesh.h"
 
 #include <gtest/gtest.h>
 

@@ -7,10 +7,10 @@
 #include <memory>
 #include <utility>
 
+#include "body/dent/bendable_polygon.h"
+#include "mesh/surface_weights.h"
 #include "support/random.h"
 #include "support/shapes.h"
-#include "thimble/render/body/bendable_polygon.h"
-#include "thimble/render/contact/surface_weights.h"
 
 namespace thimble::support {
 

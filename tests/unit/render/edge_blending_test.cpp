@@ -1,4 +1,4 @@
-#include "thimble/render/contact/edge_blending.h"
+#include "track/edge_blending.h"
 
 #include <gtest/gtest.h>
 
@@ -9,10 +9,10 @@
 #include "support/reference_geometry.h"
 #include "support/shapes.h"
 #include "support/smooth_surfaces.h"
-#include "thimble/render/contact/blended.h"
-#include "thimble/render/contact/mesh_contact.h"
 #include "thimble/render/surface/spring_damper.h"
 #include "thimble/render/touch.h"
+#include "track/blended.h"
+#include "track/mesh_contact.h"
 
 namespace thimble::render {
 namespace {

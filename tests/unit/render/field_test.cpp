@@ -8,14 +8,14 @@
 #include <set>
 #include <string>
 
+#include "field/gravity.h"
+#include "field/magnetic_snap.h"
+#include "field/point_charges.h"
+#include "field/viscous.h"
 #include "support/heap_guard.h"
 #include "support/map_settings.h"
 #include "support/random.h"
 #include "thimble/render/field/field_table.h"
-#include "thimble/render/field/gravity.h"
-#include "thimble/render/field/magnetic_snap.h"
-#include "thimble/render/field/point_charges.h"
-#include "thimble/render/field/viscous.h"
 
 namespace thimble::render {
 namespace {

@@ -10,8 +10,8 @@
 #include "support/hard_case.h"
 #include "support/random.h"
 #include "support/rubbing.h"
-#include "thimble/render/surface/friction/friction_settings.h"
-#include "thimble/render/surface/friction/friction_stage.h"
+#include "surface/friction/friction_settings.h"
+#include "surface/friction/friction_stage.h"
 
 namespace thimble::render {
 namespace {

@@ -9,10 +9,10 @@
 #include "support/hard_case.h"
 #include "support/random.h"
 #include "support/rubbing.h"
-#include "thimble/render/surface/friction/bristle.h"
-#include "thimble/render/surface/friction/dahl.h"
-#include "thimble/render/surface/friction/lugre.h"
-#include "thimble/render/surface/friction/stiction_point.h"
+#include "surface/friction/bristle.h"
+#include "surface/friction/dahl.h"
+#include "surface/friction/lugre.h"
+#include "surface/friction/stiction_point.h"
 
 namespace thimble::render {
 namespace {

@@ -11,7 +11,7 @@
 #include "support/heap_guard.h"
 #include "support/random.h"
 #include "support/rubbing.h"
-#include "thimble/render/surface/friction/friction_settings.h"
+#include "surface/friction/friction_settings.h"
 
 namespace thimble::render {
 namespace {

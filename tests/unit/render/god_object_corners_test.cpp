@@ -4,7 +4,7 @@
 
 #include "god_object_shapes.h"
 #include "support/hard_case.h"
-#include "thimble/render/contact/surface_tracker.h"
+#include "track/surface_tracker.h"
 
 namespace thimble::render {
 namespace {

@@ -8,7 +8,7 @@
 #include "support/random.h"
 #include "support/reference_geometry.h"
 #include "support/shapes.h"
-#include "thimble/render/contact/god_object.h"
+#include "track/god_object.h"
 
 namespace thimble::support {
 

@@ -1,4 +1,4 @@
-#include "thimble/render/contact/god_object.h"
+#include "track/god_object.h"
 
 #include <gtest/gtest.h>
 

@@ -1,13 +1,13 @@
-#include "thimble/render/contact/linear_search.h"
+#include "search/linear_search.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 #include <random>
 
+#include "mesh/segment_crossing.h"
 #include "support/reference_geometry.h"
 #include "support/shapes.h"
-#include "thimble/render/mesh/segment_crossing.h"
 
 namespace thimble::render {
 namespace {

@@ -1,4 +1,4 @@
-#include "thimble/render/contact/lowered_triangle.h"
+#include "packed/lowered_triangle.h"
 
 #include <gtest/gtest.h>
 

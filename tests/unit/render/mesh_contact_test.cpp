@@ -1,4 +1,4 @@
-#include "thimble/render/contact/mesh_contact.h"
+#include "track/mesh_contact.h"
 
 #include <gtest/gtest.h>
 

@@ -2,11 +2,11 @@
 
 #include <Eigen/Geometry>
 
+#include "mesh/adjacency.h"
+#include "mesh/file/weld_mesh.h"
 #include "support/shapes.h"
-#include "thimble/render/mesh/adjacency.h"
 #include "thimble/render/mesh/check_mesh.h"
 #include "thimble/render/mesh/placed_mesh.h"
-#include "thimble/render/mesh/weld_mesh.h"
 
 namespace thimble::render {
 namespace {

@@ -9,10 +9,10 @@
 #include "support/heap_guard.h"
 #include "support/random.h"
 #include "support/shapes.h"
-#include "thimble/render/contact/blended.h"
-#include "thimble/render/contact/god_object.h"
-#include "thimble/render/contact/mesh_contact.h"
-#include "thimble/render/contact/moving_contact.h"
+#include "track/blended.h"
+#include "track/god_object.h"
+#include "track/mesh_contact.h"
+#include "track/moving_contact.h"
 
 // Contact with a surface that changes shape.
 

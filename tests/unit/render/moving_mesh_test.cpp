@@ -5,12 +5,12 @@
 #include <optional>
 #include <vector>
 
+#include "mesh/contact_mesh.h"
+#include "search/linear_search.h"
 #include "support/random.h"
 #include "support/reference_geometry.h"
 #include "support/shapes.h"
-#include "thimble/render/contact/contact_mesh.h"
-#include "thimble/render/contact/linear_search.h"
-#include "thimble/render/contact/surface_tracker.h"
+#include "track/surface_tracker.h"
 
 namespace thimble::render {
 namespace {

@@ -1,4 +1,4 @@
-#include "thimble/render/body/moving_touch.h"
+#include "body/motion/moving_touch.h"
 
 #include <gtest/gtest.h>
 
@@ -8,13 +8,13 @@
 #include <memory>
 #include <vector>
 
+#include "body/motion/body_motions.h"
+#include "body/motion/move_object.h"
 #include "support/hard_case.h"
 #include "support/heap_guard.h"
 #include "support/random.h"
 #include "support/shapes.h"
 #include "support/stylus.h"
-#include "thimble/render/body/body_motions.h"
-#include "thimble/render/body/move_object.h"
 #include "thimble/render/build_object_touch.h"
 #include "thimble/render/effect/given_settings.h"
 

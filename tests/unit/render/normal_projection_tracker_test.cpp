@@ -1,4 +1,4 @@
-#include "thimble/render/contact/normal_projection_tracker.h"
+#include "track/normal_projection_tracker.h"
 
 #include <gtest/gtest.h>
 
@@ -6,11 +6,11 @@
 #include <cmath>
 #include <iostream>
 
+#include "search/linear_search.h"
 #include "support/contact_walk.h"
 #include "support/reference_geometry.h"
 #include "support/shapes.h"
-#include "thimble/render/contact/linear_search.h"
-#include "thimble/render/contact/mesh_contact.h"
+#include "track/mesh_contact.h"
 
 namespace thimble::render {
 namespace {

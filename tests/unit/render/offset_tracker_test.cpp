@@ -1,4 +1,4 @@
-#include "thimble/render/contact/offset_tracker.h"
+#include "track/offset_tracker.h"
 
 #include <gtest/gtest.h>
 
@@ -13,11 +13,11 @@
 #include "support/heap_guard.h"
 #include "support/reference_geometry.h"
 #include "support/shapes.h"
-#include "thimble/render/contact/blended.h"
-#include "thimble/render/contact/mesh_contact.h"
 #include "thimble/render/mesh/check_mesh.h"
 #include "thimble/render/mesh/load_mesh.h"
 #include "thimble/render/mesh/placed_mesh.h"
+#include "track/blended.h"
+#include "track/mesh_contact.h"
 
 namespace thimble::render {
 namespace {

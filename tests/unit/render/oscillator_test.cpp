@@ -1,4 +1,4 @@
-#include "thimble/render/body/oscillator.h"
+#include "body/spring/oscillator.h"
 
 #include <gtest/gtest.h>
 

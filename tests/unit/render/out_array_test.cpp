@@ -1,4 +1,4 @@
-#include "thimble/render/mesh/out_array.h"
+#include "mesh/repair/out_array.h"
 
 #include <gtest/gtest.h>
 
@@ -11,14 +11,14 @@
 #include <string>
 #include <utility>
 
+#include "mesh/adjacency.h"
+#include "mesh/contact_mesh.h"
+#include "mesh/repair/orient_mesh.h"
 #include "support/random.h"
 #include "support/reference_geometry.h"
 #include "support/shapes.h"
-#include "thimble/render/contact/contact_mesh.h"
-#include "thimble/render/mesh/adjacency.h"
 #include "thimble/render/mesh/check_mesh.h"
 #include "thimble/render/mesh/load_mesh.h"
-#include "thimble/render/mesh/orient_mesh.h"
 
 namespace thimble::render {
 namespace {

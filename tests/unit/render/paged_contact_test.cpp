@@ -1,4 +1,4 @@
-#include "thimble/render/page/paged_contact.h"
+#include "page/paged_contact.h"
 
 #include <gtest/gtest.h>
 
@@ -10,14 +10,14 @@
 #include <numbers>
 #include <thread>
 
+#include "page/page_file.h"
+#include "search/bvh.h"
 #include "support/contact_walk.h"
 #include "support/heap_guard.h"
 #include "support/random.h"
 #include "support/scratch.h"
 #include "support/shapes.h"
-#include "thimble/render/contact/bvh.h"
-#include "thimble/render/contact/compact_contact.h"
-#include "thimble/render/page/page_file.h"
+#include "track/compact_contact.h"
 
 namespace thimble::render {
 namespace {

@@ -8,12 +8,12 @@
 #include <iterator>
 #include <thread>
 
+#include "mesh/closest_point.h"
+#include "page/paged_surface.h"
+#include "search/bvh.h"
 #include "support/random.h"
 #include "support/scratch.h"
 #include "support/shapes.h"
-#include "thimble/render/contact/bvh.h"
-#include "thimble/render/contact/closest_point.h"
-#include "thimble/render/page/paged_surface.h"
 
 namespace thimble::render {
 namespace {

@@ -6,11 +6,11 @@
 #include <limits>
 #include <vector>
 
+#include "body/shape/movement_limits.h"
+#include "body/shape/plastic_base.h"
 #include "support/hard_case.h"
 #include "support/random.h"
 #include "support/shapes.h"
-#include "thimble/render/body/movement_limits.h"
-#include "thimble/render/body/plastic_base.h"
 
 namespace thimble::render {
 namespace {

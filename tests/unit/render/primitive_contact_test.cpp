@@ -1,15 +1,15 @@
-#include "thimble/render/field/primitive_contact.h"
+#include "field/primitive_contact.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 #include <limits>
 
+#include "field/entry_face_contact.h"
 #include "support/heap_guard.h"
 #include "support/random.h"
+#include "thimble/render/build_primitive_touch.h"
 #include "thimble/render/field/box.h"
-#include "thimble/render/field/build_primitive_touch.h"
-#include "thimble/render/field/entry_face_contact.h"
 #include "thimble/render/field/half_space.h"
 #include "thimble/render/field/sphere.h"
 #include "thimble/render/touch.h"

@@ -1,4 +1,4 @@
-#include "thimble/render/contact/record_contact.h"
+#include "track/record_contact.h"
 
 #include <gtest/gtest.h>
 
@@ -8,11 +8,11 @@
 #include <memory>
 #include <utility>
 
+#include "search/bvh.h"
 #include "support/heap_guard.h"
 #include "support/shapes.h"
-#include "thimble/render/contact/bvh.h"
-#include "thimble/render/contact/compact_contact.h"
-#include "thimble/render/contact/record_contact_steps.h"
+#include "track/compact_contact.h"
+#include "track/record_contact_steps.h"
 
 namespace thimble::render {
 namespace {

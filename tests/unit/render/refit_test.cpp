@@ -6,15 +6,15 @@
 #include <optional>
 #include <vector>
 
+#include "search/bvh.h"
+#include "search/grid_search.h"
+#include "search/linear_search.h"
 #include "support/contact_walk.h"
 #include "support/dents.h"
 #include "support/heap_guard.h"
 #include "support/random.h"
 #include "support/shapes.h"
-#include "thimble/render/contact/bvh.h"
-#include "thimble/render/contact/grid_search.h"
-#include "thimble/render/contact/linear_search.h"
-#include "thimble/render/contact/moving_mesh.h"
+#include "track/moving_mesh.h"
 
 // A mesh that has moved, with all that is built over it, is the same as one built anew there.
 

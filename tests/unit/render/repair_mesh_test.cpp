@@ -15,10 +15,10 @@
 #include "support/reference_geometry.h"
 #include "support/scratch.h"
 #include "support/shapes.h"
-#include "thimble/render/contact/mesh_contact.h"
 #include "thimble/render/mesh/check_mesh.h"
 #include "thimble/render/mesh/load_mesh.h"
 #include "thimble/render/mesh/save_mesh.h"
+#include "track/mesh_contact.h"
 
 namespace thimble::render {
 namespace {

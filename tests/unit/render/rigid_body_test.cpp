@@ -1,4 +1,4 @@
-#include "thimble/render/body/rigid_body.h"
+#include "body/motion/rigid_body.h"
 
 #include <gtest/gtest.h>
 
@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
+#include "body/motion/mass_properties.h"
+#include "body/motion/translating_body.h"
 #include "support/hard_case.h"
 #include "support/heap_guard.h"
 #include "support/random.h"
 #include "support/shapes.h"
-#include "thimble/render/body/mass_properties.h"
-#include "thimble/render/body/translating_body.h"
 
 namespace thimble::render {
 namespace {

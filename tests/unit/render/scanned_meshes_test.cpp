@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "support/reference_geometry.h"
-#include "thimble/render/contact/mesh_contact.h"
 #include "thimble/render/mesh/check_mesh.h"
 #include "thimble/render/mesh/load_mesh.h"
 #include "thimble/render/mesh/placed_mesh.h"
+#include "track/mesh_contact.h"
 
 namespace thimble::render {
 namespace {

@@ -8,20 +8,20 @@
 #include <string>
 #include <vector>
 
+#include "search/bvh.h"
+#include "search/free_space.h"
+#include "search/grid_search.h"
+#include "search/linear_search.h"
+#include "search/make_search.h"
 #include "support/contact_walk.h"
 #include "support/heap_guard.h"
 #include "support/random.h"
 #include "support/reference_geometry.h"
 #include "support/shapes.h"
-#include "thimble/render/contact/bvh.h"
-#include "thimble/render/contact/free_space.h"
-#include "thimble/render/contact/god_object.h"
-#include "thimble/render/contact/grid_search.h"
-#include "thimble/render/contact/linear_search.h"
-#include "thimble/render/contact/make_search.h"
-#include "thimble/render/contact/mesh_contact.h"
 #include "thimble/render/mesh/load_mesh.h"
 #include "thimble/render/mesh/placed_mesh.h"
+#include "track/god_object.h"
+#include "track/mesh_contact.h"
 
 // Every search over the same surface gives the same answers.
 

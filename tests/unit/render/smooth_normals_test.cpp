@@ -1,4 +1,4 @@
-#include "thimble/render/contact/smooth_normals.h"
+#include "mesh/smooth_normals.h"
 
 #include <gtest/gtest.h>
 
@@ -7,10 +7,10 @@
 #include <numbers>
 #include <utility>
 
+#include "mesh/vertex_normals.h"
 #include "support/reference_geometry.h"
 #include "support/shapes.h"
 #include "support/smooth_surfaces.h"
-#include "thimble/render/mesh/vertex_normals.h"
 
 namespace thimble::render {
 namespace {

@@ -4,10 +4,10 @@
 #include <limits>
 #include <vector>
 
+#include "body/shape/snap_base.h"
+#include "body/shape/snap_truss.h"
 #include "support/hard_case.h"
 #include "support/random.h"
-#include "thimble/render/body/snap_base.h"
-#include "thimble/render/body/snap_truss.h"
 
 namespace thimble::render {
 namespace {

@@ -7,8 +7,8 @@
 #include <random>
 #include <utility>
 
+#include "mesh_touch.h"
 #include "support/shapes.h"
-#include "thimble/render/mesh_touch.h"
 
 namespace thimble::render {
 namespace {

@@ -1,4 +1,4 @@
-#include "thimble/render/body/spring_motion.h"
+#include "body/spring/spring_motion.h"
 
 #include <gtest/gtest.h>
 
@@ -10,14 +10,14 @@
 #include <numeric>
 #include <vector>
 
+#include "body/spring/mesh_springs.h"
+#include "body/spring/modal_motion.h"
+#include "body/spring/ring_patch.h"
 #include "support/body_meshes.h"
 #include "support/contact_walk.h"
 #include "support/hard_case.h"
 #include "support/heap_guard.h"
 #include "support/shapes.h"
-#include "thimble/render/body/mesh_springs.h"
-#include "thimble/render/body/modal_motion.h"
-#include "thimble/render/body/ring_patch.h"
 
 namespace thimble::render {
 namespace {

@@ -1,4 +1,4 @@
-#include "thimble/render/body/spring_network.h"
+#include "body/spring/spring_network.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <limits>
 #include <vector>
 
+#include "body/spring/mesh_springs.h"
 #include "support/body_meshes.h"
 #include "support/shapes.h"
-#include "thimble/render/body/mesh_springs.h"
 #include "thimble/render/body/spring_scheme.h"
 
 namespace thimble::render {

@@ -1,4 +1,4 @@
-#include "thimble/render/contact/surface_tracker.h"
+#include "track/surface_tracker.h"
 
 #include <gtest/gtest.h>
 
@@ -7,13 +7,13 @@
 #include <numbers>
 #include <random>
 
+#include "mesh/closest_point.h"
+#include "search/make_search.h"
 #include "support/hard_case.h"
 #include "support/random.h"
 #include "support/reference_geometry.h"
 #include "support/shapes.h"
-#include "thimble/render/contact/closest_point.h"
-#include "thimble/render/contact/make_search.h"
-#include "thimble/render/contact/mesh_contact.h"
+#include "track/mesh_contact.h"
 
 namespace thimble::render {
 namespace {

@@ -11,12 +11,12 @@
 #include "support/map_settings.h"
 #include "support/random.h"
 #include "support/scratch.h"
+#include "surface/texture/height_map.h"
+#include "surface/texture/sandpaper.h"
+#include "surface/texture/sines.h"
 #include "thimble/render/field/half_space.h"
 #include "thimble/render/field/sphere.h"
 #include "thimble/render/surface/spring_damper.h"
-#include "thimble/render/surface/texture/height_map.h"
-#include "thimble/render/surface/texture/sandpaper.h"
-#include "thimble/render/surface/texture/sines.h"
 #include "thimble/render/touch.h"
 
 namespace thimble::render {

@@ -14,11 +14,11 @@
 #include "support/shapes.h"
 #include "support/smooth_surfaces.h"
 #include "support/surface_nets.h"
-#include "thimble/render/contact/blended.h"
-#include "thimble/render/contact/mesh_contact.h"
 #include "thimble/render/mesh/check_mesh.h"
 #include "thimble/render/surface/spring_damper.h"
 #include "thimble/render/touch.h"
+#include "track/blended.h"
+#include "track/mesh_contact.h"
 
 namespace thimble::render {
 namespace {

@@ -8,9 +8,9 @@
 #include <limits>
 #include <set>
 
+#include "mesh/vertex_normals.h"
 #include "support/random.h"
 #include "support/shapes.h"
-#include "thimble/render/mesh/vertex_normals.h"
 
 namespace thimble::app::view {
 namespace {

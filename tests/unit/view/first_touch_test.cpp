@@ -4,11 +4,11 @@
 #include <cstdio>
 #include <memory>
 
+#include "body/dent/bendable_polygon.h"
 #include "gl_or_skip.h"
+#include "mesh/surface_weights.h"
 #include "picture_difference.h"
 #include "support/shapes.h"
-#include "thimble/render/body/bendable_polygon.h"
-#include "thimble/render/contact/surface_weights.h"
 #include "view/scene_painter.h"
 
 namespace thimble::app::view {

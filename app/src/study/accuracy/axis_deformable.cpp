@@ -3,10 +3,10 @@
 #include <string>
 #include <utility>
 
+#include "body/spring/modal_motion.h"
+#include "body/spring/spring_motion.h"
 #include "study/accuracy/axes.h"
 #include "study/membrane.h"
-#include "thimble/render/body/modal_motion.h"
-#include "thimble/render/body/spring_motion.h"
 
 namespace thimble::app {
 namespace {

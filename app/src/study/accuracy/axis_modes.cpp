@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "body/spring/oscillator.h"
 #include "study/accuracy/axes.h"
 #include "study/membrane.h"
-#include "thimble/render/body/oscillator.h"
 
 namespace thimble::app {
 namespace {

@@ -7,9 +7,9 @@
 #include <string>
 #include <utility>
 
+#include "body/motion/rigid_body.h"
 #include "study/accuracy/axes.h"
 #include "study/accuracy/free_spin.h"
-#include "thimble/render/body/rigid_body.h"
 
 namespace thimble::app {
 namespace {

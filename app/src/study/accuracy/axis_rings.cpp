@@ -3,9 +3,9 @@
 #include <stdexcept>
 #include <string>
 
+#include "body/dent/bendable_polygon.h"
 #include "study/accuracy/axes.h"
 #include "study/cost_subjects.h"
-#include "thimble/render/body/bendable_polygon.h"
 
 namespace thimble::app {
 namespace {

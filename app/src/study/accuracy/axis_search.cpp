@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
+#include "mesh/contact_mesh.h"
+#include "search/make_search.h"
 #include "study/accuracy/axes.h"
 #include "study/cost_subjects.h"
-#include "thimble/render/contact/contact_mesh.h"
-#include "thimble/render/contact/make_search.h"
 #include "thimble/render/contact_choice.h"
 
 namespace thimble::app {

@@ -10,12 +10,12 @@
 #include <utility>
 #include <vector>
 
+#include "mesh/closest_point.h"
+#include "search/make_search.h"
 #include "study/accuracy/axes.h"
 #include "study/accuracy/follower.h"
 #include "study/cost_subjects.h"
 #include "study/draw.h"
-#include "thimble/render/contact/closest_point.h"
-#include "thimble/render/contact/make_search.h"
 
 namespace thimble::app {
 namespace {

@@ -4,13 +4,13 @@
 #include <stdexcept>
 #include <utility>
 
-#include "thimble/render/contact/closest_point.h"
-#include "thimble/render/contact/compact_contact.h"
-#include "thimble/render/contact/god_object.h"
-#include "thimble/render/contact/mesh_contact.h"
-#include "thimble/render/contact/normal_projection_tracker.h"
-#include "thimble/render/contact/smooth_normals.h"
-#include "thimble/render/contact/triangle_set.h"
+#include "mesh/closest_point.h"
+#include "mesh/smooth_normals.h"
+#include "mesh/triangle_set.h"
+#include "track/compact_contact.h"
+#include "track/god_object.h"
+#include "track/mesh_contact.h"
+#include "track/normal_projection_tracker.h"
 
 namespace thimble::app {
 namespace {

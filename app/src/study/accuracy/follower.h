@@ -5,8 +5,8 @@
 #include <memory>
 #include <optional>
 
-#include "thimble/render/contact/contact_mesh.h"
-#include "thimble/render/contact/contact_search.h"
+#include "mesh/contact_mesh.h"
+#include "search/contact_search.h"
 #include "thimble/render/contact_choice.h"
 
 namespace thimble::app {

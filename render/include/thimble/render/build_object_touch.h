@@ -11,7 +11,6 @@
 #include "thimble/render/effect/effect_table.h"
 #include "thimble/render/mesh/triangle_mesh.h"
 #include "thimble/render/object_touch.h"
-#include "thimble/render/page/paged_contact.h"
 #include "thimble/render/surface/spring_damper.h"
 
 namespace thimble::render {
@@ -31,12 +30,5 @@ struct SurfaceChoice {
 driver::Result<std::unique_ptr<ObjectTouch>> build_object_touch(const TriangleMesh& mesh_W,
                                                                 const ContactChoice& choice,
                                                                 const SurfaceChoice& surface);
-
-/// Builds the force law of one object whose mesh is on the disk. Whoever keeps `pages` starts its
-/// loader, or serves it between ticks. Its question `inside` reads the disk.
-/// Real-time: never from the servo thread.
-std::unique_ptr<ObjectTouch> build_paged_touch(std::shared_ptr<PagedSurface> pages,
-                                               const PagedPlace& place,
-                                               const SurfaceChoice& surface);
 
 }  // namespace thimble::render

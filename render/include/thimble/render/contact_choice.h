@@ -4,8 +4,8 @@
 #include <optional>
 #include <string_view>
 
-#include "thimble/render/contact/make_search.h"
-#include "thimble/render/contact/smooth_normals.h"
+#include "thimble/render/mesh/normal_weights.h"
+#include "thimble/render/search/search_choice.h"
 
 namespace thimble::render {
 

@@ -7,14 +7,14 @@
 
 #include "thimble/driver/device_state.h"
 #include "thimble/driver/force_command.h"
-#include "thimble/render/body/body_patch.h"
-#include "thimble/render/body/body_pose.h"
-#include "thimble/render/contact/contact_mesh.h"
+#include "thimble/render/body_patch.h"
+#include "thimble/render/body_pose.h"
 #include "thimble/render/effect/live_settings.h"
 
 namespace thimble::render {
 
 class BodyShape;
+class ContactMesh;
 
 /// Is the force law of one object of a scene, whatever stages it is made of: one indirect call per
 /// tick stands for all of them (see object_touch_of).

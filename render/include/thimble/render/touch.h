@@ -5,7 +5,7 @@
 
 #include "thimble/driver/device_state.h"
 #include "thimble/driver/force_command.h"
-#include "thimble/render/contact/contact_state.h"
+#include "thimble/render/contact_state.h"
 #include "thimble/render/effect/live_settings.h"
 #include "thimble/render/surface/surface_feel.h"
 

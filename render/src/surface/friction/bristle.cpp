@@ -1,4 +1,4 @@
-#include "thimble/render/surface/friction/bristle.h"
+#include "surface/friction/bristle.h"
 
 namespace thimble::render {
 namespace {

@@ -1,4 +1,4 @@
-#include "thimble/render/surface/friction/dahl.h"
+#include "surface/friction/dahl.h"
 
 #include <cmath>
 

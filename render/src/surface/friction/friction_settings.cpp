@@ -1,4 +1,4 @@
-#include "thimble/render/surface/friction/friction_settings.h"
+#include "surface/friction/friction_settings.h"
 
 #include <algorithm>
 #include <cstdio>

@@ -1,4 +1,4 @@
-#include "thimble/render/surface/friction/implicit_coulomb.h"
+#include "surface/friction/implicit_coulomb.h"
 
 namespace thimble::render {
 

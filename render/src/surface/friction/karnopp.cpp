@@ -1,4 +1,4 @@
-#include "thimble/render/surface/friction/karnopp.h"
+#include "surface/friction/karnopp.h"
 
 #include <algorithm>
 

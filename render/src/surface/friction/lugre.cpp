@@ -1,4 +1,4 @@
-#include "thimble/render/surface/friction/lugre.h"
+#include "surface/friction/lugre.h"
 
 #include <cmath>
 #include <cstdio>

@@ -1,4 +1,4 @@
-#include "thimble/render/surface/friction/naive.h"
+#include "surface/friction/naive.h"
 
 namespace thimble::render {
 

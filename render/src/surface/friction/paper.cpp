@@ -1,4 +1,4 @@
-#include "thimble/render/surface/friction/paper.h"
+#include "surface/friction/paper.h"
 
 #include <cmath>
 

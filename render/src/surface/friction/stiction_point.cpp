@@ -1,4 +1,4 @@
-#include "thimble/render/surface/friction/stiction_point.h"
+#include "surface/friction/stiction_point.h"
 
 namespace thimble::render {
 

@@ -1,4 +1,4 @@
-#include "thimble/render/surface/texture/height_image.h"
+#include "surface/texture/height_image.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "thimble/render/surface/texture/height_map.h"
+#include "surface/texture/height_map.h"
 
 #include <utility>
 

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "thimble/render/surface/texture/height_image.h"
+#include "surface/texture/height_image.h"
 
 namespace thimble::render {
 namespace {

@@ -1,4 +1,4 @@
-#include "thimble/render/surface/texture/sandpaper.h"
+#include "surface/texture/sandpaper.h"
 
 #include <cmath>
 #include <cstdint>

@@ -1,4 +1,4 @@
-#include "thimble/render/surface/texture/sines.h"
+#include "surface/texture/sines.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "thimble/render/surface/texture/texture_limits.h"
+#include "surface/texture/texture_limits.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,10 +4,11 @@
 #include <optional>
 
 #include "thimble/driver/result.h"
-#include "thimble/render/body/snap_base.h"
 #include "thimble/render/effect/settings_reader.h"
 
 namespace thimble::render {
+
+struct SnapSettings;
 
 /// Sets how an object keeps what it gave way [BP 4.3].
 struct ClayChoice {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "thimble/render/field/primitive_contact.h"
+#include "thimble/render/field/primitive_place.h"
 
 namespace thimble::render {
 

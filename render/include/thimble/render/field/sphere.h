@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "thimble/render/field/primitive_contact.h"
+#include "thimble/render/field/primitive_place.h"
 
 namespace thimble::render {
 

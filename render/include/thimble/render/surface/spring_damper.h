@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 
 #include "thimble/driver/device_state.h"
-#include "thimble/render/contact/contact_state.h"
+#include "thimble/render/contact_state.h"
 #include "thimble/render/effect/live_settings.h"
 #include "thimble/render/surface/surface_feel.h"
 

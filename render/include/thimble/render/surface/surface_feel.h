@@ -4,7 +4,7 @@
 #include <concepts>
 
 #include "thimble/driver/device_state.h"
-#include "thimble/render/contact/contact_state.h"
+#include "thimble/render/contact_state.h"
 
 namespace thimble::render {
 

@@ -1,0 +1,177 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "body/dent/vertex_links.h"
+#include "thimble/driver/result.h"
+#include "thimble/render/body/dent_settings.h"
+#include "thimble/render/body/network_bounds.h"
+
+namespace thimble::render {
+
+/// Moves the vertices of a dent: those within some rings of the touched triangle, and those that
+/// still swing. All others stand on their base points. Nothing that a tick does grows with the
+/// mesh.
+///
+/// `u` is the way of a vertex from its base point (m, in the frame the mesh is given in). Springs
+/// and dampers are those of SpringNetwork, alike at all vertices and edges (vertex_links.h), with
+/// up to three cursor springs that change from tick to tick. Those act at the end of the step in
+/// every scheme, so that they may be as stiff as they like: at infinity the vertex is where the
+/// cursor is. The implicit schemes are those of SpringMotion, scaled in the same way: whatever the
+/// rounds, without the cursor they never gain energy, and with it no more than it puts in. So the
+/// rounds may be few and in single precision; what is scaled is in double.
+class DentMotion {
+ public:
+  using Vector = Eigen::Vector3d;  ///< In W.
+  /// Most vertices that move at once: 8 rings of a regular mesh are 243.
+  static constexpr std::size_t kNodesMax = 512;
+  static constexpr std::size_t kLinksMax = 8 * kNodesMax;  ///< Most springs at once.
+
+  /// Makes the vertices of a mesh ready to move, all on their base points. The error says what
+  /// makes no sense, or which limit of the integrator the step breaks and what would help. More
+  /// substeps are taken where they help. Real-time: never from the servo thread.
+  static driver::Result<DentMotion> build(std::shared_ptr<const VertexLinks> links,
+                                          const DentSettings& settings);
+
+  // A copy would not have the room that was reserved for what moves, and nothing would.
+  DentMotion(const DentMotion&) = delete;
+  DentMotion& operator=(const DentMotion&) = delete;
+  DentMotion(DentMotion&&) = default;
+  DentMotion& operator=(DentMotion&&) = default;
+
+  // All of the following are Real-time: safe. Precondition: numbers name vertices that exist.
+
+  /// Lets what lies within the rings of `first` move (all of a whole body), and what still swings;
+  /// the rest is put on its base points. Where room ends, what swings is stopped.
+  void gather(std::span<const std::int32_t> first) noexcept;
+  /// Lets nothing new move: what swings goes on until it has settled.
+  void release() noexcept;
+
+  /// Is a spring and a damper from the cursor to a vertex.
+  struct CursorSpring {
+    double stiffness = 0;    ///< N/m, 0 to infinity
+    double damping = 0;      ///< N s/m, >= 0
+    Vector target{0, 0, 0};  ///< Displacement at which it is at rest, m.
+    Vector rate{0, 0, 0};    ///< How that changes, m/s.
+  };
+  /// Pulls `vertex` by cursor spring `k` (0 to 2) during the next step. A vertex that does not move
+  /// is not pulled, nor one by a spring with NaN in it.
+  void pull(std::size_t k, std::int32_t vertex, const CursorSpring& spring) noexcept;
+  /// Moves on by one step; the cursor springs are then gone. Costs nothing while nothing moves.
+  void step() noexcept;
+  /// Tells the mean force (N) of cursor spring `k` on its vertex over the last step.
+  const Vector& force(std::size_t k) const noexcept { return grips_[k].force; }
+
+  /// Tells the displacement (m) and velocity (m/s) of any vertex.
+  Vector u(std::int32_t vertex) const noexcept {
+    const std::int32_t s = places_[at(vertex)].slot;
+    return s < 0 ? Vector(0, 0, 0) : Vector(u_[at(s)].head<3>());
+  }
+  /// Tells the velocity of any vertex, m/s. Real-time: safe.
+  Vector v(std::int32_t vertex) const noexcept {
+    const std::int32_t s = places_[at(vertex)].slot;
+    return s < 0 ? Vector(0, 0, 0) : Vector(v_[at(s)].head<3>());
+  }
+  /// Tells whether a vertex moves at all.
+  bool moves(std::int32_t vertex) const noexcept { return places_[at(vertex)].slot >= 0; }
+  /// Tells the force (N) with which a vertex pulls its base point.
+  Vector force_on_base(std::int32_t vertex) const noexcept {
+    return settings_.stiffness * u(vertex) + settings_.damping * v(vertex);
+  }
+  /// Leaves a vertex where it is while its base point goes `way` (m), if it moves at all.
+  void keep_place(std::int32_t vertex, const Vector& way) noexcept {
+    const std::int32_t s = places_[at(vertex)].slot;
+    if (s >= 0) u_[at(s)].head<3>() -= way;
+  }
+
+  /// Lists the vertices that move.
+  std::span<const std::int32_t> vertices() const noexcept { return vertices_; }
+  bool resting() const noexcept { return vertices_.empty(); }  ///< Tells whether none moves.
+  /// Tells the stiffness (N/m) of a vertex of valence 6 while its neighbours stand still.
+  double stiffness() const noexcept {
+    return settings_.stiffness + 6 * settings_.neighbour_stiffness;
+  }
+  /// Tells the energy of springs and masses, without the cursor's springs, J.
+  double energy() const noexcept;
+  /// Counts vertices that were stopped while they still swung, for want of room.
+  std::uint64_t cut() const noexcept { return cut_; }
+  const DentSettings& settings() const noexcept { return settings_; }
+  int substeps() const noexcept { return substeps_; }  ///< Tells how many steps make a tick.
+
+ private:
+  // A vector and a zero: four numbers go through the processor two or four at a time.
+  using Lane = Eigen::Vector4d;
+  using Lanef = Eigen::Vector4f;
+
+  struct Place {
+    std::int32_t slot = -1;   // in the arrays below; -1: on its base point
+    std::uint32_t round = 0;  // in which gather() has seen it
+  };
+  struct Link {
+    std::int32_t slot = 0;
+    float weight = 0;
+  };
+  struct Grip {
+    std::int32_t slot = -1;
+    double stiffness = 0;
+    double damping = 0;
+    Lane target{0, 0, 0, 0};
+    Lane rate{0, 0, 0, 0};
+    Vector force{0, 0, 0};
+  };
+  // One matrix of the network's pattern: `node` on the diagonal, `link` per weight of an edge.
+  struct Weights {
+    double node = 0;
+    double link = 0;
+  };
+
+  DentMotion(std::shared_ptr<const VertexLinks> links, const DentSettings& settings);
+  static std::size_t at(std::int32_t i) noexcept { return static_cast<std::size_t>(i); }
+  NetworkBounds bounds() const noexcept;
+  bool add(std::int32_t vertex) noexcept;
+  void add_swinging() noexcept;
+  void prune() noexcept;
+  void take_over() noexcept;
+  void link_up() noexcept;
+  bool swings(std::size_t slot) const noexcept;
+  template <class Value>
+  Value row(const Weights& weights, std::size_t i, const std::vector<Value>& x) const noexcept;
+  Lane cursor_force(const Grip& grip, std::size_t i) const noexcept;
+  void accelerate() noexcept;
+  void drift(double time) noexcept;
+  void reach_out() noexcept;
+  void verlet() noexcept;
+  void implicit(double share) noexcept;
+  void solve(const Weights& system) noexcept;
+
+  std::shared_ptr<const VertexLinks> links_;
+  DentSettings settings_;
+  Weights stiffness_, damping_;
+  int substeps_ = 1;
+  double h_ = 0;               // s per substep
+  std::vector<Place> places_;  // of all vertices
+  std::uint32_t round_ = 0;
+  std::vector<std::int32_t> vertices_, gathered_;
+  std::size_t wanted_ = 0;  // of them, the first so many are those that the cursor calls for
+  std::size_t links_gathered_ = 0;
+  std::vector<std::uint32_t> link_begin_;
+  std::vector<Link> link_list_;
+  std::vector<double> sum_;    // of all weights around a vertex, moving or not
+  std::vector<double> extra_;  // what the cursor's springs add to the diagonal of the system
+  std::vector<Lane> u_, v_, b_, w_, q_;
+  std::vector<Lanef> wf_, rf_, pf_, qf_;  // of the rounds
+  std::vector<float> inverse_, extraf_;
+  std::array<Grip, 3> grips_;
+  double largest_ = 0;  // displacement that the cursor asked for since it touched, m
+  int until_look_ = 0;
+  std::uint64_t cut_ = 0;
+};
+
+}  // namespace thimble::render

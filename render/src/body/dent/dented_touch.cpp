@@ -1,0 +1,26 @@
+#include "body/dent/dented_touch.h"
+
+#include "mesh/surface_weights.h"
+
+namespace thimble::render {
+
+driver::ForceCommand DentedTouch::update(const driver::DeviceState& state) noexcept {
+  driver::ForceCommand command = inner_->update(state);
+  const std::int32_t triangle = command.touch.feature;
+  if (!command.touch.in_contact || triangle < 0) {
+    if (dent_.triangle() >= 0) pull_.leave();
+    dent_.rest();
+    return command;
+  }
+  // Weights that vanish on the planes between triangles, so that the foot does not jump there; a
+  // tracker with other cells may be a little beyond one.
+  dent_.touch(triangle, within_triangle(edge_plane_weights(dent_.mesh(), triangle, state.p_WT)),
+              state.p_WT);
+  if (dent_.motion().settings().pull > 0) {
+    command.f_T_W +=
+        pull_.force(dent_.f_T_W(), state.p_WT, state.v_WT, command.touch.n_W, command.touch.depth);
+  }
+  return command;
+}
+
+}  // namespace thimble::render

@@ -1,0 +1,92 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <limits>
+#include <optional>
+
+#include "body/motion/rigid_body.h"
+#include "body/motion/translating_body.h"
+
+namespace thimble::render {
+
+// The two ways in which an object moves as a whole [BP 4.3]; see BodyMotion (moving_touch.h).
+
+/// Moves an object three ways: a TranslatingBody with gravity, a floor and a reach.
+class TranslatingMotion {
+ public:
+  /// Sets what acts on the body besides what touches it.
+  struct Settings {
+    double mass = 1;                     ///< kg
+    Eigen::Vector3d gravity_W{0, 0, 0};  ///< m/s^2
+    std::optional<Floor> floor{};        ///< Where it cannot go below.
+    double lowest =
+        0;  ///< m along the floor's normal: where the object's lowest point was at first
+    double reach = std::numeric_limits<double>::infinity();  ///< m; see RigidBody::keep_within
+  };
+
+  TranslatingMotion(const TranslatingBody& body, const Settings& settings) noexcept
+      : body_(body), settings_(settings) {}
+
+  Eigen::Matrix3d R_WB() const noexcept { return Eigen::Matrix3d::Identity(); }
+  Eigen::Vector3d p_WB() const noexcept { return body_.p_W(); }
+  Eigen::Vector3d velocity_at(const Eigen::Vector3d&) const noexcept { return body_.velocity(); }
+  Eigen::Vector3d gain_at(const Eigen::Vector3d&, const Eigen::Vector3d& impulse) const noexcept {
+    return body_.gain() * impulse;
+  }
+  void push(const Eigen::Vector3d& f_W, const Eigen::Vector3d&) noexcept { body_.push(f_W); }
+  /// Moves on by the step that the body was made for.
+  void step(double) noexcept {
+    body_.push(settings_.mass * settings_.gravity_W);
+    body_.step();
+    if (settings_.floor) {
+      const Floor& floor = *settings_.floor;
+      body_.keep_above(floor.n_W, floor.height - settings_.lowest, floor.friction);
+    }
+    const double far = body_.p_W().norm();
+    if (far > settings_.reach) body_.keep_above(-body_.p_W() / far, -settings_.reach, 0);
+  }
+  const TranslatingBody& body() const noexcept { return body_; }
+
+ private:
+  TranslatingBody body_;
+  Settings settings_;
+};
+
+/// Moves an object six ways: a RigidBody with a reach.
+class RigidMotion {
+ public:
+  /// Takes a body at rest where its mesh stands, and how far it may go (m).
+  RigidMotion(const RigidBody& body, double reach) noexcept : body_(body), reach_(reach) {}
+
+  const Eigen::Matrix3d& R_WB() const noexcept { return R_WB_; }
+  const Eigen::Vector3d& p_WB() const noexcept { return p_WB_; }
+  Eigen::Vector3d velocity_at(const Eigen::Vector3d& p_W) const noexcept {
+    return body_.velocity_at(p_W);
+  }
+  Eigen::Vector3d gain_at(const Eigen::Vector3d& p_W,
+                          const Eigen::Vector3d& impulse) const noexcept {
+    return body_.gain_at(p_W, impulse);
+  }
+  void push(const Eigen::Vector3d& f_W, const Eigen::Vector3d& p_W) noexcept {
+    body_.push(f_W, p_W);
+  }
+  void step(double step) noexcept {
+    body_.step(step);
+    body_.keep_within(reach_);
+    const MassProperties& first = body_.settings().mass;
+    R_WB_ = (body_.q_WB() * first.q_WB.conjugate()).normalized().toRotationMatrix();
+    p_WB_ = body_.p_WC() - R_WB_ * first.p_WC;
+  }
+  const RigidBody& body() const noexcept { return body_; }
+  /// Gives the body, to set it in motion before the first tick.
+  RigidBody& body() noexcept { return body_; }
+
+ private:
+  RigidBody body_;
+  double reach_;
+  Eigen::Matrix3d R_WB_ = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d p_WB_{0, 0, 0};
+};
+
+}  // namespace thimble::render

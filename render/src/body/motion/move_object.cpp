@@ -1,0 +1,144 @@
+#include "body/motion/move_object.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "body/motion/body_motions.h"
+#include "body/motion/moving_touch.h"
+#include "body/motion/support_points.h"
+
+namespace thimble::render {
+namespace {
+
+using Moved = driver::Result<std::unique_ptr<ObjectTouch>>;
+
+// Bounds of a scene's numbers catch slipped decimal points and values in g or mm.
+constexpr double kMassMin = 1e-4;         // kg
+constexpr double kMassMax = 1e3;          // kg
+constexpr double kAccelerationMax = 100;  // m/s^2
+constexpr double kDampingMax = 1e3;       // N s/m, N m s
+constexpr double kTimeScaleMin = 1e-3;
+constexpr double kTimeScaleMax = 100;
+constexpr double kPositionMax = 2;   // m
+constexpr double kSpeedMax = 10;     // m/s
+constexpr double kTurningMax = 100;  // rad/s
+constexpr double kFrictionMax = 10;
+constexpr double kHoldMax = 1e5;       // N/m
+constexpr double kHoldForceMax = 100;  // N
+
+// A round rim of half of them rolls over sides of 11 degrees.
+constexpr std::size_t kStandOn = RigidBody::kSupportMax;
+
+template <class Motion>
+Moved held(std::unique_ptr<MovingTouch<Motion>> object, const MotionChoice& choice,
+           const BodyCoupling& coupling) {
+  if (!choice.grip) return Moved(std::move(object));
+  const Grip& grip = *choice.grip;
+  // Written so that NaN is refused.
+  if (!(grip.stiffness > 0 && grip.damping >= 0 && grip.force_max > 0) ||
+      !std::isfinite(grip.stiffness + grip.damping + grip.force_max)) {
+    return driver::Error{"A hand that holds needs a stiffness and a force above 0, and a damping."};
+  }
+  return Moved(std::make_unique<HeldTouch<Motion>>(std::move(object), grip, coupling.step));
+}
+
+Moved move_three_ways(std::unique_ptr<ObjectTouch> surface, const TriangleMesh& mesh_W,
+                      const MotionChoice& choice, const BodyCoupling& coupling) {
+  TranslatingBody body(choice.mass, choice.damping, choice.time_scale, coupling.step);
+  body.set_velocity(choice.v_W / choice.time_scale);
+  TranslatingMotion::Settings settings{.mass = choice.mass,
+                                       .gravity_W = choice.gravity_W,
+                                       .floor = choice.floor,
+                                       .reach = choice.reach};
+  if (choice.floor) {
+    settings.lowest = std::numeric_limits<double>::infinity();
+    for (const Eigen::Vector3d& p : mesh_W.vertices) {
+      settings.lowest = std::min(settings.lowest, choice.floor->n_W.dot(p));
+    }
+  }
+  return held(std::make_unique<MovingTouch<TranslatingMotion>>(
+                  std::move(surface), TranslatingMotion(body, settings), coupling),
+              choice, coupling);
+}
+
+}  // namespace
+
+void MotionChoice::read(SettingsReader& reader) {
+  std::size_t ways = 0;
+  reader.choice("kind", ways, {"translate", "rigid"});
+  kind = static_cast<MotionKind>(ways);
+  reader.number("mass", mass,
+                {.unit = "kg", .least = kMassMin, .most = kMassMax, .required = true});
+  reader.vector("gravity", gravity_W,
+                {.unit = "m/s^2", .least = -kAccelerationMax, .most = kAccelerationMax});
+  reader.number("damping", damping, {.unit = "N s/m", .least = 0, .most = kDampingMax});
+  reader.number("time_scale", time_scale,
+                {.unit = "", .least = kTimeScaleMin, .most = kTimeScaleMax});
+  reader.vector("velocity", v_W, {.unit = "m/s", .least = -kSpeedMax, .most = kSpeedMax});
+  if (reader.has("reach")) {
+    reach = 0;
+    reader.number("reach", reach, {.unit = "m", .least = 0, .most = kPositionMax});
+  }
+  if (reader.has("floor")) {
+    floor.emplace();
+    reader.number("floor", floor->height,
+                  {.unit = "m", .least = -kPositionMax, .most = kPositionMax});
+    reader.number("floor_friction", floor->friction,
+                  {.unit = "", .least = 0, .most = kFrictionMax});
+  } else if (reader.has("floor_friction")) {
+    reader.reject("floor_friction", "needs a floor: its height in m");
+  }
+  if (reader.has("hold")) {
+    grip.emplace();
+    reader.number("hold", grip->stiffness, {.unit = "N/m", .least = 1, .most = kHoldMax});
+    reader.number("hold_damping", grip->damping,
+                  {.unit = "N s/m", .least = 0, .most = kDampingMax});
+    reader.number("hold_force", grip->force_max,
+                  {.unit = "N", .least = 0.01, .most = kHoldForceMax});
+  }
+  for (const char* key : {"angular_damping", "turning"}) {
+    if (kind == MotionKind::kTranslate && reader.has(key)) {
+      reader.reject(key, "is for what turns; say kind: rigid");
+    }
+  }
+  reader.number("angular_damping", angular_damping,
+                {.unit = "N m s", .least = 0, .most = kDampingMax});
+  reader.vector("turning", omega_W, {.unit = "rad/s", .least = -kTurningMax, .most = kTurningMax});
+}
+
+Moved move_object(std::unique_ptr<ObjectTouch> surface, const TriangleMesh& mesh_W,
+                  const MotionChoice& choice, const BodyCoupling& coupling) {
+  if (!(choice.reach >= 0)) return driver::Error{"A body's reach must be 0 m or more."};
+  if (!choice.v_W.allFinite() || !choice.omega_W.allFinite()) {
+    return driver::Error{"A body's speed at first must be finite."};
+  }
+  const auto mass = mass_properties(mesh_W, choice.mass);
+  if (!mass) return mass.error();
+  RigidBodySettings settings{.mass = *mass,
+                             .gravity_W = choice.gravity_W,
+                             .damping = choice.damping,
+                             .angular_damping = choice.angular_damping,
+                             .time_scale = choice.time_scale,
+                             .floor = choice.floor,
+                             .support_B = {}};
+  if (choice.floor) {
+    for (const Eigen::Vector3d& p : support_points(mesh_W, kStandOn)) {
+      settings.support_B.push_back(mass->q_WB.conjugate() * (p - mass->p_WC));
+    }
+  }
+  auto body = RigidBody::build(settings);
+  if (!body) return body.error();
+  // The numbers have been found right for both kinds.
+  if (choice.kind == MotionKind::kTranslate) {
+    return move_three_ways(std::move(surface), mesh_W, choice, coupling);
+  }
+  const Eigen::Vector3d omega_B = mass->q_WB.conjugate() * choice.omega_W;
+  body->set_momentum(choice.mass * choice.v_W / choice.time_scale,
+                     mass->q_WB * mass->inertia.cwiseProduct(omega_B) / choice.time_scale);
+  return held(std::make_unique<MovingTouch<RigidMotion>>(
+                  std::move(surface), RigidMotion(*body, choice.reach), coupling),
+              choice, coupling);
+}
+
+}  // namespace thimble::render

@@ -1,0 +1,132 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <concepts>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <utility>
+
+#include "body/motion/body_coupling.h"
+#include "thimble/driver/device_state.h"
+#include "thimble/driver/force_command.h"
+#include "thimble/render/body_pose.h"
+#include "thimble/render/object_touch.h"
+
+namespace thimble::render {
+
+/// Is how all base points of an object move together [BP 4.3]. All of it is Real-time: safe.
+///
+/// `R_WB` and `p_WB` tell where the frame B that the mesh stands in is now (W before the first
+/// tick), `velocity_at` how fast a point of the body moves (m/s, our time), `gain_at` which
+/// velocity it gains per impulse given there (our time, m/s per N s), `push` takes a force for the
+/// next step, `step` moves on by s of our time.
+template <class Motion>
+concept BodyMotion = requires(Motion motion, const Motion& now, const Eigen::Vector3d& v) {
+  { now.R_WB() }
+  noexcept->std::convertible_to<Eigen::Matrix3d>;
+  { now.p_WB() }
+  noexcept->std::convertible_to<Eigen::Vector3d>;
+  { now.velocity_at(v) }
+  noexcept->std::convertible_to<Eigen::Vector3d>;
+  { now.gain_at(v, v) }
+  noexcept->std::convertible_to<Eigen::Vector3d>;
+  { motion.push(v, v) }
+  noexcept;
+  { motion.step(1e-3) }
+  noexcept;
+};
+
+/// Is the force law of an object that moves: the tip is taken into the frame B of the object's
+/// mesh, touches there what stands still, and the force comes back; the opposite acts on the body
+/// at the tip, in the same tick and to the bit.
+///
+/// Contact, texture, friction and dent see the tip move against the surface, whoever of the two
+/// moves: a path of the tip in B covers the body's way since the last tick as well, so a body
+/// cannot pass through a resting tip. What part of a force is shared is told by shared_force():
+/// stable for any mass. The body moves on by the loop's period in every tick, so a loop that
+/// stalled lets it wait, and every run is repeatable.
+template <BodyMotion Motion>
+class MovingTouch final : public ObjectTouch {
+ public:
+  /// Wraps an object's force law, made for the mesh as it stands at first.
+  /// Real-time: never from the servo thread.
+  MovingTouch(std::unique_ptr<ObjectTouch> surface, Motion motion, const BodyCoupling& coupling)
+      : surface_(std::move(surface)), motion_(std::move(motion)), coupling_(coupling) {}
+
+  driver::ForceCommand update(const driver::DeviceState& state) noexcept override {
+    const Eigen::Matrix3d R_WB = motion_.R_WB();
+    const Eigen::Vector3d p_WB = motion_.p_WB();
+    driver::DeviceState in_B = state;
+    in_B.p_WT = R_WB.transpose() * (state.p_WT - p_WB);
+    in_B.v_WT = R_WB.transpose() * (state.v_WT - motion_.velocity_at(state.p_WT));
+    driver::ForceCommand command = surface_->update(in_B);
+    count_lost(command.touch.in_contact, in_B.p_WT);
+    command.f_T_W = share(R_WB * command.f_T_W, state.p_WT);
+    if (command.touch.in_contact) {
+      command.touch.p_WP = p_WB + R_WB * command.touch.p_WP;
+      command.touch.n_W = R_WB * command.touch.n_W;
+    }
+    motion_.step(coupling_.step);
+    return command;
+  }
+
+  bool inside(const Eigen::Vector3d& p_W) const noexcept override {
+    return surface_->inside(motion_.R_WB().transpose() * (p_W - motion_.p_WB()));
+  }
+  bool stands_still() const noexcept override { return false; }
+  std::uint64_t lost_contacts() const noexcept override { return lost_; }
+  BodyPose pose() const noexcept override {
+    const Eigen::Quaterniond q(motion_.R_WB());
+    const Eigen::Vector3d p = motion_.p_WB();
+    return {.p_WB = {p.x(), p.y(), p.z()}, .q_WB = {q.w(), q.x(), q.y(), q.z()}};
+  }
+  const ContactMesh* mesh() const noexcept override { return surface_->mesh(); }
+  /// Draws in B: whoever draws moves it to `pose`.
+  bool draw(BodyPatch& patch) noexcept override { return surface_->draw(patch); }
+  const BodyShape* shape() const noexcept override { return surface_->shape(); }
+  void place_now(std::span<Eigen::Vector3d> vertices) const noexcept override {
+    surface_->place_now(vertices);
+    for (Eigen::Vector3d& p : vertices) p = motion_.p_WB() + motion_.R_WB() * p;
+  }
+
+  /// The coupling to the body counts on a surface no stiffer than it was built with.
+  void list_settings(LiveSettings& settings) override {
+    LiveSettings own(0, 0);
+    surface_->list_settings(own);
+    settings.take(own);
+  }
+
+  const Motion& motion() const noexcept { return motion_; }
+  /// Gives the motion to who holds the body otherwise than by its surface. Real-time: safe.
+  Motion& motion() noexcept { return motion_; }
+  const ObjectTouch& surface() const noexcept { return *surface_; }
+
+ private:
+  // Gives the share of the surface's force to the hand and the opposite to the body.
+  Eigen::Vector3d share(const Eigen::Vector3d& f_W, const Eigen::Vector3d& p_WT) noexcept {
+    const double size = f_W.norm();
+    // Written so that NaN means no force.
+    if (!(size > 0)) return Eigen::Vector3d::Zero();
+    const Eigen::Vector3d u = f_W / size;
+    Eigen::Vector3d shared = shared_force(coupling_, u, motion_.gain_at(p_WT, u)) * f_W;
+    if (!shared.allFinite()) return Eigen::Vector3d::Zero();
+    motion_.push(-shared, p_WT);
+    return shared;
+  }
+
+  // A contact that ends while the tip is inside has been lost.
+  void count_lost(bool touching, const Eigen::Vector3d& p_BT) noexcept {
+    if (was_touching_ && !touching && surface_->inside(p_BT)) ++lost_;
+    was_touching_ = touching;
+  }
+
+  std::unique_ptr<ObjectTouch> surface_;
+  Motion motion_;
+  BodyCoupling coupling_;
+  bool was_touching_ = false;
+  std::uint64_t lost_ = 0;
+};
+
+}  // namespace thimble::render

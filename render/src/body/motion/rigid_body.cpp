@@ -1,0 +1,237 @@
+#include "body/motion/rigid_body.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+
+namespace thimble::render {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kForceMax = 1e6;  // N or N m; no arm pushes with more
+
+bool is_force(const Vector3d& f) {
+  // Written so that NaN means no force.
+  return f.squaredNorm() <= kForceMax * kForceMax;
+}
+
+bool usable(double x) {
+  return x >= 0 && std::isfinite(x);
+}
+
+// Turns by `angle` about axis k, from the frame before to the frame after.
+Eigen::Quaterniond about(int k, double angle) {
+  Vector3d v(0, 0, 0);
+  v[k] = std::sin(angle / 2);
+  return {std::cos(angle / 2), v.x(), v.y(), v.z()};
+}
+
+}  // namespace
+
+driver::Result<RigidBody> RigidBody::build(const RigidBodySettings& settings) {
+  if (!settings.mass.valid()) {
+    return driver::Error{
+        "A body needs a mass and three inertias above 0, none of them larger than the other two "
+        "together: take them from the mesh (mass_properties)."};
+  }
+  if (!settings.gravity_W.allFinite() || !usable(settings.damping) ||
+      !usable(settings.angular_damping)) {
+    return driver::Error{"A body needs gravity and dampings that are finite, dampings 0 or more."};
+  }
+  if (!(settings.time_scale > 0) || !std::isfinite(settings.time_scale)) {
+    return driver::Error{"A body needs a time_scale above 0; 1 is as in nature."};
+  }
+  if (settings.floor &&
+      (!usable(settings.floor->friction) || !std::isfinite(settings.floor->height) ||
+       !(std::abs(settings.floor->n_W.norm() - 1) < 1e-9))) {
+    return driver::Error{
+        "A floor needs a normal of length 1, a height, and friction of 0 or more."};
+  }
+  if (settings.support_B.size() > kSupportMax) {
+    return driver::Error{"A body may stand on " + std::to_string(kSupportMax) +
+                         " points at most: name the corners of its hull."};
+  }
+  for (const Vector3d& p : settings.support_B) {
+    if (!p.allFinite()) return driver::Error{"A point that a body stands on is not finite."};
+  }
+  return RigidBody(settings);
+}
+
+void RigidBody::push(const Vector3d& f_W, const Vector3d& p_W) noexcept {
+  const Vector3d tau = (p_W - p_WC_).cross(f_W);
+  if (!is_force(f_W) || !is_force(tau)) return;
+  f_W_ += f_W;
+  tau_W_ += tau;
+}
+
+void RigidBody::turn(const Vector3d& tau_W) noexcept {
+  if (is_force(tau_W)) tau_W_ += tau_W;
+}
+
+Vector3d RigidBody::omega_W() const noexcept {
+  const Vector3d angular_B = q_WB_.conjugate() * angular_W_;
+  return q_WB_ * angular_B.cwiseQuotient(settings_.mass.inertia);
+}
+
+Vector3d RigidBody::velocity_at(const Vector3d& p_W) const noexcept {
+  return settings_.time_scale * (v_WC() + omega_W().cross(p_W - p_WC_));
+}
+
+// Tells how the point at `arm` from C gains speed by an impulse f there.
+Vector3d RigidBody::give(const Vector3d& arm, const Vector3d& f) const noexcept {
+  const Vector3d turn_B = (q_WB_.conjugate() * arm.cross(f)).cwiseQuotient(settings_.mass.inertia);
+  return f / settings_.mass.mass + (q_WB_ * turn_B).cross(arm);
+}
+
+double RigidBody::press(const BodyPress& press, double step) noexcept {
+  // With closing speed c now, after the step it is c - s^2 h w f (s the time scale, w the give),
+  // and f = k (depth + h c+) + b c+.
+  const double s = settings_.time_scale;
+  const double closing = press.speed - press.n_W.dot(velocity_at(press.p_W));
+  const double grip = press.stiffness * step + press.damping;
+  const double w = press.n_W.dot(give(press.p_W - p_WC_, press.n_W));
+  const double f = (press.stiffness * press.depth + grip * closing) / (1 + grip * s * s * step * w);
+  // Written so that NaN means no force.
+  if (!(f > 0) || !(press.depth > 0) || !(f <= kForceMax)) return 0;
+  push(f * press.n_W, press.p_W);
+  return f;
+}
+
+void RigidBody::kick(double time) noexcept {
+  momentum_W_ += time * (f_W_ + settings_.mass.mass * settings_.gravity_W);
+  angular_W_ += time * tau_W_;
+}
+
+// Turns freely for `time`: the energy is the sum of L_k^2 / 2 I_k, and each term alone turns the
+// body about its axis k by a rate that stays [Touma]; five such turns in a palindrome are
+// of order 2, three palindromes of order 4 [Yoshida].
+void RigidBody::rotate(double time) noexcept {
+  const double root = std::cbrt(2.0);
+  const double outer = 1 / (2 - root);
+  struct Turn {
+    int axis;
+    double share;
+  };
+  constexpr std::array<Turn, 5> kPalindrome{{{0, 0.5}, {1, 0.5}, {2, 1.0}, {1, 0.5}, {0, 0.5}}};
+  Vector3d angular_B = q_WB_.conjugate() * angular_W_;
+  for (const double part : {outer, 1 - 2 * outer, outer}) {
+    for (const Turn& turn : kPalindrome) {
+      const double rate = angular_B[turn.axis] / settings_.mass.inertia[turn.axis];
+      const Eigen::Quaterniond by = about(turn.axis, part * turn.share * time * rate);
+      q_WB_ = q_WB_ * by;
+      angular_B = by.conjugate() * angular_B;
+    }
+  }
+  q_WB_.normalize();
+}
+
+void RigidBody::step(double step) noexcept {
+  // Written so that NaN moves nothing.
+  const double time = settings_.time_scale * step;
+  if (time > 0 && std::isfinite(time)) {
+    const double slow = std::exp(-settings_.damping / settings_.mass.mass * time / 2);
+    // About an axis of inertia I the rate falls by exp(-c t / I); the least I gives the share of
+    // all.
+    const double calm = std::exp(-settings_.angular_damping / settings_.mass.inertia[2] * time / 2);
+    kick(time / 2);
+    momentum_W_ *= slow;
+    angular_W_ *= calm;
+    const Vector3d way = time * v_WC();
+    p_WC_ += way;
+    rotate(time);
+    momentum_W_ *= slow;
+    angular_W_ *= calm;
+    // Forces stay at their points in W while C moves: so what the body gains about any point is
+    // what they give, to rounding.
+    tau_W_ -= way.cross(f_W_);
+    kick(time / 2);
+    if (settings_.floor) stand_on_floor(time);
+  }
+  f_W_.setZero();
+  tau_W_.setZero();
+}
+
+// Takes the speed into the floor from points that are below it or would be after the next step,
+// without rebound, and friction. Each impulse ends at rest in its direction or before, so each
+// takes energy. To look ahead lets a side come to lie flat: all its corners count at once.
+void RigidBody::stand_on_floor(double time) noexcept {
+  const Floor& floor = *settings_.floor;
+  constexpr int kRounds = 16;     // a block at rest on a side then creeps below 1 um/s
+  constexpr double kCalm = 1e-9;  // of all impulses: what a round adds less than is rounding
+  // Points that the next step cannot bring to the floor, at four times the speed, are left out.
+  constexpr double kAhead = 4;
+  constexpr double kNear = 1e-3;  // of the farthest point's distance from C
+  std::array<Vector3d, kSupportMax> arms;
+  std::array<double, kSupportMax> allowed, pressed{};
+  std::size_t near = 0;
+  double deepest = 0;
+  const double turning = omega_W().norm();
+  const double height = floor.n_W.dot(p_WC_) - floor.height;
+  for (const Vector3d& p_B : settings_.support_B) {
+    const Vector3d arm = q_WB_ * p_B;
+    const double gap = height + floor.n_W.dot(arm);
+    const double far = p_B.norm();
+    if (!(gap <= kAhead * time * (v_WC().norm() + turning * far) + kNear * far)) continue;
+    deepest = std::max(deepest, -gap);
+    arms[near] = arm;
+    allowed[near++] = std::max(gap, 0.0) / time;
+  }
+  double sum = 0;
+  for (int round = 0; round < kRounds; ++round) {
+    double given = 0;
+    for (std::size_t i = 0; i < near; ++i) given += stop_at(arms[i], allowed[i], pressed[i]);
+    sum += given;
+    if (!(given > kCalm * sum)) break;
+  }
+  p_WC_ += deepest * floor.n_W;
+}
+
+// Slows the point at `arm` down to `allowed` m/s into the floor; `pressed` sums up the impulses.
+// Tells the size of what it gave.
+double RigidBody::stop_at(const Vector3d& arm, double allowed, double& pressed) noexcept {
+  const Floor& floor = *settings_.floor;
+  const auto speed = [&] { return (v_WC() + omega_W().cross(arm)).eval(); };
+  const auto hit = [&](const Vector3d& impulse) {
+    momentum_W_ += impulse;
+    angular_W_ += arm.cross(impulse);
+  };
+  double given = 0;
+  const double beyond = -floor.n_W.dot(speed()) - allowed;
+  if (beyond > 0) {
+    const double impulse = beyond / floor.n_W.dot(give(arm, floor.n_W));
+    pressed += impulse;
+    given += impulse;
+    hit(impulse * floor.n_W);
+  }
+  if (!(pressed > 0)) return given;
+  const Vector3d v = speed();
+  const Vector3d slip = v - floor.n_W.dot(v) * floor.n_W;
+  const double fast = slip.norm();
+  if (!(fast > 0)) return given;
+  const Vector3d along = slip / fast;
+  const double drag = std::min(fast / along.dot(give(arm, along)), floor.friction * pressed);
+  hit(-drag * along);
+  return given + drag;
+}
+
+void RigidBody::keep_within(double reach) noexcept {
+  const Vector3d away = p_WC_ - settings_.mass.p_WC;
+  const double far = away.norm();
+  // Written so that NaN moves nothing.
+  if (!(far > reach) || !(reach >= 0)) return;
+  const Vector3d n = away / far;
+  p_WC_ = settings_.mass.p_WC + reach * n;
+  momentum_W_ -= std::max(momentum_W_.dot(n), 0.0) * n;
+}
+
+double RigidBody::kinetic_energy() const noexcept {
+  return momentum_W_.squaredNorm() / (2 * settings_.mass.mass) + angular_W_.dot(omega_W()) / 2;
+}
+
+double RigidBody::potential_energy() const noexcept {
+  return -settings_.mass.mass * settings_.gravity_W.dot(p_WC_);
+}
+
+}  // namespace thimble::render

@@ -1,0 +1,129 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "body/motion/mass_properties.h"
+#include "thimble/driver/result.h"
+
+namespace thimble::render {
+
+/// Is a plane that bodies lie on: they are held out of n . x < height.
+struct Floor {
+  Eigen::Vector3d n_W{0, 0, 1};  ///< Unit, away from the floor.
+  double height = 0;             ///< m
+  double friction = 0.5;         ///< Coulomb, >= 0
+};
+
+/// Sets what acts on a body besides what touches it, as data.
+struct RigidBodySettings {
+  MassProperties mass;                 ///< Mass, centre, inertia.
+  Eigen::Vector3d gravity_W{0, 0, 0};  ///< m/s^2
+  double damping = 0;                  ///< N s/m, >= 0
+  /// N m s, >= 0: angular momentum fades by this over the largest inertia, 1/s.
+  double angular_damping = 0;
+  /// Is the body's time over ours, > 0: smaller feels heavier, as 1 / time_scale^2 times the mass,
+  /// and as if in a thick liquid [BP 4.3].
+  double time_scale = 1;
+  std::optional<Floor> floor{};  ///< Where it cannot go below.
+  /// Points that stand on the floor, m in B; kSupportMax at most. Corners of the hull do.
+  std::vector<Eigen::Vector3d> support_B;
+};
+
+/// Is something that presses on a body at one point through a spring and a damper.
+struct BodyPress {
+  Eigen::Vector3d p_W{0, 0, 0};  ///< m, where it presses
+  Eigen::Vector3d n_W{0, 0, 1};  ///< Unit, the way that it pushes the body.
+  double depth = 0;              ///< m, how far the spring is pressed in
+  double speed = 0;              ///< m/s, of the tip along n_W
+  double stiffness = 0;          ///< N/m, >= 0
+  double damping = 0;            ///< N s/m, >= 0
+};
+
+/// Moves and turns a rigid body in time [BP 4.3].
+///
+/// Momentum and angular momentum are what is stored, in W, so that nothing but forces changes them.
+/// Turning is split into turns about the three principal axes, each exact, in an order of 4 in
+/// time: the length of the angular momentum is kept to rounding whatever the step is, so a body
+/// cannot spin itself up.
+class RigidBody {
+ public:
+  static constexpr std::size_t kSupportMax = 64;  ///< Most points of its hull on the floor.
+
+  /// Makes a body at rest where its mass properties put it. The error says which number a body
+  /// cannot have. Real-time: never from the servo thread.
+  static driver::Result<RigidBody> build(const RigidBodySettings& settings);
+
+  // All of the following are Real-time: safe.
+
+  /// Pushes with `f_W` (N) at the point `p_W` (m), and turns with `tau_W` (N m), during the next
+  /// step. What is NaN, or beyond 10^6, is left out.
+  void push(const Eigen::Vector3d& f_W, const Eigen::Vector3d& p_W) noexcept;
+  /// Turns the body by a torque, N m, during the next step; as `push` for what is NaN or too large.
+  void turn(const Eigen::Vector3d& tau_W) noexcept;
+
+  /// Pushes through a spring and a damper, and tells the force (N, >= 0), which acts on what
+  /// presses with the opposite sign. The spring is taken at the end of the step of `step` s, with
+  /// the body already given way: stable however light the body is. Never pulls; 0 for NaN.
+  double press(const BodyPress& press, double step) noexcept;
+
+  /// Moves on by `step` s under what was pushed, which is then gone. Nonsense: stays.
+  void step(double step) noexcept;
+
+  /// Gives momentum (kg m/s) and angular momentum about C (kg m^2/s) at once.
+  void set_momentum(const Eigen::Vector3d& momentum_W, const Eigen::Vector3d& angular_W) noexcept {
+    momentum_W_ = momentum_W;
+    angular_W_ = angular_W;
+  }
+
+  const Eigen::Vector3d& p_WC() const noexcept { return p_WC_; }     ///< Tells where C is, m.
+  const Eigen::Quaterniond& q_WB() const noexcept { return q_WB_; }  ///< Tells how it is turned.
+  /// Tells the momentum, kg m/s, in the body's own time.
+  const Eigen::Vector3d& momentum_W() const noexcept { return momentum_W_; }
+  /// Tells the angular momentum about C, kg m^2/s, in the body's own time.
+  const Eigen::Vector3d& angular_momentum_W() const noexcept { return angular_W_; }
+  const RigidBodySettings& settings() const noexcept { return settings_; }
+  /// Tells the velocity of C (m/s) and the turning rate (rad/s), in the body's own time.
+  Eigen::Vector3d v_WC() const noexcept { return momentum_W_ / settings_.mass.mass; }
+  Eigen::Vector3d omega_W() const noexcept;  ///< Tells the turning rate, rad/s.
+  /// Tells the velocity (m/s, in our time) of the body's point at `p_W`.
+  Eigen::Vector3d velocity_at(const Eigen::Vector3d& p_W) const noexcept;
+  /// Tells which velocity (m/s, in our time) the body's point at `p_W` gains by an impulse (N s, in
+  /// our time) given there.
+  Eigen::Vector3d gain_at(const Eigen::Vector3d& p_W,
+                          const Eigen::Vector3d& impulse) const noexcept {
+    return settings_.time_scale * settings_.time_scale * give(p_W - p_WC_, impulse);
+  }
+  /// Keeps C within `reach` m of where it was at first: puts it back and takes the momentum that
+  /// leads away, so that energy only falls. Nonsense: nothing.
+  void keep_within(double reach) noexcept;
+  /// Tells where a point of the body that was at `p_W` at first is now, m.
+  Eigen::Vector3d moved(const Eigen::Vector3d& p_W) const noexcept {
+    return p_WC_ + q_WB_ * (settings_.mass.q_WB.conjugate() * (p_W - settings_.mass.p_WC));
+  }
+  /// Tells the energy of motion, and of height over the origin where there is gravity, J.
+  double kinetic_energy() const noexcept;
+  double potential_energy() const noexcept;  ///< Tells that of height, J.
+
+ private:
+  explicit RigidBody(const RigidBodySettings& settings)
+      : settings_(settings), p_WC_(settings.mass.p_WC), q_WB_(settings.mass.q_WB) {}
+  Eigen::Vector3d give(const Eigen::Vector3d& arm, const Eigen::Vector3d& f) const noexcept;
+  void kick(double time) noexcept;
+  void rotate(double time) noexcept;
+  void stand_on_floor(double time) noexcept;
+  double stop_at(const Eigen::Vector3d& arm, double allowed, double& pressed) noexcept;
+
+  RigidBodySettings settings_;
+  Eigen::Vector3d p_WC_;
+  Eigen::Quaterniond q_WB_;
+  Eigen::Vector3d momentum_W_{0, 0, 0};
+  Eigen::Vector3d angular_W_{0, 0, 0};
+  Eigen::Vector3d f_W_{0, 0, 0};
+  Eigen::Vector3d tau_W_{0, 0, 0};
+};
+
+}  // namespace thimble::render

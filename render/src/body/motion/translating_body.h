@@ -1,0 +1,73 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+
+#include "body/spring/oscillator.h"
+
+namespace thimble::render {
+
+/// Is a body that moves but does not turn: all base points relative to one mass point [BP 4.3].
+/// Exact under forces that are held over a step, with damping; so it cannot diverge.
+class TranslatingBody {
+ public:
+  /// Makes a body of `mass` kg (> 0) at rest at 0, with `damping` N s/m (>= 0), and `time_scale`
+  /// (> 0) the body's time over ours: smaller feels heavier, as 1 / time_scale^2 times the mass,
+  /// and as if in a thick liquid. Numbers that make no sense: it stays where it is. Steps of `step`
+  /// s.
+  TranslatingBody(double mass, double damping, double time_scale, double step) noexcept
+      : flow_(OscillatorStep::of(mass, 0, damping, time_scale * step)),
+        mass_(mass),
+        time_scale_(time_scale) {}
+
+  // All of the following are Real-time: safe.
+
+  /// Pushes by `f_W` (N) during the next step: the opposite of what the hand feels. NaN or beyond
+  /// 10^6 N is left out.
+  void push(const Eigen::Vector3d& f_W) noexcept {
+    constexpr double kForceMax = 1e6;  // N; no arm pushes with more
+    if (f_W.squaredNorm() <= kForceMax * kForceMax) f_W_ += f_W;
+  }
+  /// Gives the velocity (m/s, the body's own time) at once.
+  void set_velocity(const Eigen::Vector3d& v_W) noexcept { v_W_ = v_W; }
+  /// Moves on by one step under what was pushed, which is then gone.
+  void step() noexcept {
+    flow_.apply(p_W_, v_W_, f_W_);
+    f_W_.setZero();
+  }
+
+  /// Keeps the body where n . p >= height (`n_W` unit; m): puts it back, takes the velocity that
+  /// leads out, and of that along the bound up to `friction` times as much. Energy only falls.
+  void keep_above(const Eigen::Vector3d& n_W, double height, double friction) noexcept {
+    const double below = height - n_W.dot(p_W_);
+    // Written so that NaN moves nothing.
+    if (!(below > 0)) return;
+    p_W_ += below * n_W;
+    const double into = std::max(-n_W.dot(v_W_), 0.0);
+    v_W_ += into * n_W;
+    const Eigen::Vector3d slip = v_W_ - n_W.dot(v_W_) * n_W;
+    const double fast = slip.norm();
+    if (fast > 0) v_W_ -= std::min(1.0, friction * into / fast) * slip;
+  }
+
+  /// Tells the velocity (m/s, in our time), and which of it is gained per impulse (N s, our time).
+  Eigen::Vector3d velocity() const noexcept { return time_scale_ * v_W_; }
+  /// Tells the velocity gained per impulse, 1/kg, in our time. Real-time: safe.
+  double gain() const noexcept { return time_scale_ * time_scale_ / mass_; }
+
+  /// Tells how far all base points have moved, m; the velocity (m/s) and momentum (kg m/s) are in
+  /// the body's own time.
+  const Eigen::Vector3d& p_W() const noexcept { return p_W_; }
+  const Eigen::Vector3d& v_W() const noexcept { return v_W_; }          ///< Tells it, m/s.
+  Eigen::Vector3d momentum_W() const noexcept { return mass_ * v_W_; }  ///< Tells it.
+
+ private:
+  OscillatorStep flow_;
+  double mass_;
+  double time_scale_;
+  Eigen::Vector3d p_W_{0, 0, 0};
+  Eigen::Vector3d v_W_{0, 0, 0};
+  Eigen::Vector3d f_W_{0, 0, 0};
+};
+
+}  // namespace thimble::render

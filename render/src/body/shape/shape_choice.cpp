@@ -1,0 +1,89 @@
+#include "thimble/render/body/shape_choice.h"
+
+#include <cmath>
+#include <string>
+
+#include "body/shape/snap_base.h"
+
+namespace thimble::render {
+namespace {
+
+// Bounds of a scene's numbers catch slipped decimal points; they are far outside of what a desk-top
+// arm can show [DEVICES 3].
+constexpr double kForceMax = 100;    // N
+constexpr double kSpeedMax = 100;    // m/s
+constexpr double kLengthMax = 1;     // m
+constexpr double kLengthMin = 1e-5;  // m
+
+bool positive(double x) {
+  return x > 0 && std::isfinite(x);
+}
+
+}  // namespace
+
+// All comparisons are written so that NaN is refused.
+
+void ClayChoice::read(SettingsReader& reader) {
+  reader.number("yield_force", yield_force, {.unit = "N", .least = 0, .most = kForceMax});
+  reader.number("radius", radius, {.unit = "m", .least = kLengthMin, .most = kLengthMax});
+  if (reader.has("flow_rate")) {
+    flow_rate = 0;
+    reader.number("flow_rate", flow_rate, {.unit = "m/s", .least = 1e-6, .most = kSpeedMax});
+  }
+  if (reader.has("movement_limit")) {
+    movement_limit = 0;
+    reader.number("movement_limit", movement_limit, {.unit = "m", .least = 0, .most = kLengthMax});
+  }
+}
+
+driver::Result<void> ClayChoice::check() const {
+  // What has no limit may be infinite.
+  if (!(yield_force >= 0) || !std::isfinite(yield_force)) {
+    return driver::Error{"Clay needs a yield_force of 0 N or more."};
+  }
+  if (!(flow_rate > 0)) return driver::Error{"Clay needs a flow_rate above 0 m/s."};
+  if (!(movement_limit >= 0)) return driver::Error{"Clay needs a movement_limit of 0 m or more."};
+  if (!(radius > 0) || !std::isfinite(radius)) {
+    return driver::Error{"Clay needs a radius above 0 m."};
+  }
+  return {};
+}
+
+void SnapChoice::read(SettingsReader& reader) {
+  reader.number("force", force, {.unit = "N", .least = 1e-3, .most = kForceMax});
+  reader.number("depth", depth, {.unit = "m", .least = kLengthMin, .most = kLengthMax});
+  reader.number("radius", radius, {.unit = "m", .least = kLengthMin, .most = kLengthMax});
+  reader.number("speed", speed, {.unit = "m/s", .least = 1e-3, .most = kSpeedMax});
+  double count = panels;
+  reader.number("panels", count, {.unit = "", .least = 1, .most = kPanelsMax});
+  if (count != std::floor(count)) reader.reject("panels", "expected a whole number");
+  panels = static_cast<int>(count);
+  if (!(radius > depth / 2)) {
+    reader.reject("radius", "must be more than half the depth, or the wall would fold");
+  }
+}
+
+driver::Result<void> SnapChoice::check() const {
+  if (!positive(force)) return driver::Error{"A wall that snaps needs a force above 0 N."};
+  if (!positive(depth)) return driver::Error{"A wall that snaps needs a depth above 0 m."};
+  if (!positive(radius) || !(radius > depth / 2)) {
+    return driver::Error{
+        "A wall that snaps needs a radius of more than half its depth, or it would fold."};
+  }
+  if (!positive(speed)) return driver::Error{"A wall that snaps needs a speed above 0 m/s."};
+  if (panels < 1 || panels > kPanelsMax) {
+    return driver::Error{"A wall may have 1 to " + std::to_string(kPanelsMax) + " panels in."};
+  }
+  return {};
+}
+
+SnapSettings SnapChoice::truss() const {
+  // The load is in proportion to the bars' stiffness.
+  const double per_stiffness = SnapTruss(radius, depth / 2, 1).limit_load();
+  return {.half_span = radius,
+          .rise = depth / 2,
+          .bar_stiffness = force / per_stiffness,
+          .speed_max = speed};
+}
+
+}  // namespace thimble::render

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <utility>
+
+#include "body/shape/body_shape.h"
+#include "thimble/driver/device_state.h"
+#include "thimble/driver/force_command.h"
+#include "thimble/render/object_touch.h"
+
+namespace thimble::render {
+
+/// Is the force law of an object whose base points move by themselves: clay, a tin can.
+///
+/// `Stages` is a Touch over a MovingContact. The force of a tick is that of the surface as it
+/// stands; then the surface gives way, and the next tick finds it there. So what gives way takes
+/// energy and never gives any.
+template <class Stages>
+class ShapedTouch final : public ObjectTouch {
+ public:
+  /// Takes the stages and the shape of the same mesh. Real-time: never from the servo thread.
+  ShapedTouch(Stages stages, BodyShape shape)
+      : stages_(std::move(stages)), shape_(std::move(shape)) {}
+
+  driver::ForceCommand update(const driver::DeviceState& state) noexcept override {
+    driver::ForceCommand command = stages_(state);
+    if (was_touching_ && !command.touch.in_contact && inside(state.p_WT)) ++lost_;
+    was_touching_ = command.touch.in_contact;
+    const auto moves = shape_.follow(stages_.contact().mesh(), command.touch);
+    if (!moves.empty()) stages_.contact().move_vertices(moves);
+    return command;
+  }
+  bool inside(const Eigen::Vector3d& p_W) const noexcept override {
+    return stages_.contact().search().inside(p_W);
+  }
+  const ContactMesh* mesh() const noexcept override { return &stages_.contact().mesh(); }
+  bool stands_still() const noexcept override { return false; }
+  std::uint64_t lost_contacts() const noexcept override { return lost_; }
+  void place_now(std::span<Eigen::Vector3d> vertices) const noexcept override {
+    const auto& mesh = stages_.contact().mesh();
+    for (std::size_t v = 0; v < vertices.size(); ++v) {
+      vertices[v] = mesh.position(static_cast<std::int32_t>(v));
+    }
+  }
+
+  void list_settings(LiveSettings& settings) override { list_settings_of(stages_, settings); }
+
+  const Stages& stages() const noexcept { return stages_; }
+  const BodyShape* shape() const noexcept override { return &shape_; }
+
+ private:
+  Stages stages_;
+  BodyShape shape_;
+  bool was_touching_ = false;
+  std::uint64_t lost_ = 0;
+};
+
+}  // namespace thimble::render

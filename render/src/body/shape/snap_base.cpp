@@ -1,0 +1,45 @@
+#include "body/shape/snap_base.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace thimble::render {
+
+void SnapBase::follow(double load, double spring, double step) noexcept {
+  // Written so that NaN moves nothing.
+  if (!(step > 0) || !(speed_max_ > 0)) return;
+  const auto first = truss_.settle(load, spring, false);
+  const auto second = truss_.settle(load, spring, true);
+  if (!first && !second) return;
+  double target = first ? *first : *second;
+  bool snapped = snapped_;
+  if (!truss_.limit_point(spring)) {
+    // A spring so stiff that nothing jumps has one resting place. It is called snapped from where
+    // it would stay in, and again not from where it would go back, were it let go.
+    const double limit = truss_.limit_point().value_or(truss_.rise());
+    if (target > 2 * truss_.rise() - limit) snapped = true;
+    if (target < limit) snapped = false;
+    running_ = running_ && snapped == snapped_;
+  } else {
+    // Of two resting places the one that the forces lead to from here: where the load is more than
+    // the bars bear it goes on inwards, and stops at the first shape only if that is still ahead.
+    const bool inwards = truss_.force(u_) + spring * u_ < load;
+    snapped = !first || (second && (inwards ? *first < u_ : *second <= u_));
+    if (snapped && second) target = *second;
+    running_ = running_ || snapped != snapped_;
+  }
+  if (snapped != snapped_) {
+    snapped_ = snapped;
+    ++snaps_;
+  }
+  const double most = speed_max_ * step;
+  const double from = u_;
+  u_ += std::clamp(target - from, -most, most);
+  if (!running_) return;
+  // The load and the spring's pull over the way gone, less what the bars took up.
+  const double work = load * (u_ - from) - spring * (u_ * u_ - from * from) / 2;
+  released_ += work - (truss_.energy(u_) - truss_.energy(from));
+  running_ = u_ != target;
+}
+
+}  // namespace thimble::render

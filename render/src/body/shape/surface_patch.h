@@ -1,0 +1,38 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "mesh/contact_mesh.h"
+
+namespace thimble::render {
+
+/// Collects the vertices of a mesh within a distance of a place, going over the surface from a
+/// triangle there: what lies behind a thin wall is not reached. Distances are those of the mesh as
+/// it was at first, so that they stay the same in a deep pit.
+class SurfacePatch {
+ public:
+  /// Keeps the first places of the vertices (m; they must outlive the patch). Sets memory aside for
+  /// `capacity` vertices. Real-time: never from the servo thread.
+  SurfacePatch(std::span<const Eigen::Vector3d> first_places, std::size_t capacity);
+
+  /// Collects what lies within `radius` m of `place`, beginning with the corners of `triangle`,
+  /// which are in it in any case; nearest over the surface first, until the capacity ends. Valid
+  /// until the next call. Real-time: safe; bounded by the capacity times the valence.
+  std::span<const std::int32_t> around(const ContactMesh& mesh, std::int32_t triangle,
+                                       const Eigen::Vector3d& place, double radius) noexcept;
+
+  std::span<const std::int32_t> vertices() const noexcept { return patch_; }  ///< Lists it.
+
+ private:
+  std::span<const Eigen::Vector3d> first_places_;
+  std::vector<std::uint32_t> seen_in_;
+  std::vector<std::int32_t> patch_;
+  std::size_t capacity_;
+  std::uint32_t round_ = 0;
+};
+
+}  // namespace thimble::render

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "mesh/contact_mesh.h"
+
+namespace thimble::render {
+
+/// Keeps the triangles of a mesh from turning over while their corners move, however far: seen
+/// along its first normal each keeps a share of its first area [BP 4.3: "problems when the model
+/// was deformed too much"]. movement_limits() gives each vertex a ball in which no neighbour minds;
+/// this asks the neighbours as they are, so that a pit may be deeper than a triangle is wide.
+class TurnGuard {
+ public:
+  /// Takes the mesh as it is at first. 32 bytes per triangle.
+  /// Real-time: never from the servo thread.
+  explicit TurnGuard(const ContactMesh& mesh);
+
+  // All of the following are Real-time: safe; one area per triangle around the vertex.
+
+  /// Finds which share (0 to 1) of the way from where `vertex` is to `p_W` (m) it may go, with all
+  /// vertices at `places` (m). 0 for NaN.
+  double allowed(const ContactMesh& mesh, std::span<const Eigen::Vector3d> places,
+                 std::int32_t vertex, const Eigen::Vector3d& p_W) const noexcept;
+
+  /// Tells a triangle's first outward normal; zero if it had no area.
+  Eigen::Vector3d first_normal(std::int32_t triangle) const noexcept {
+    return seen_along_[static_cast<std::size_t>(triangle)].stableNormalized();
+  }
+
+  /// Tells a triangle's area seen along its first normal, over its first area: 1 at first, above 0
+  /// as long as it has not turned over.
+  double seen_area(const ContactMesh& mesh, std::int32_t triangle) const noexcept;
+
+ private:
+  // Is the first normal over the first area doubled: its product with twice the area's vector now
+  // is the share that is seen.
+  std::vector<Eigen::Vector3d> seen_along_;
+};
+
+}  // namespace thimble::render

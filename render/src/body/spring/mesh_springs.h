@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "body/spring/spring_network.h"
+#include "thimble/driver/result.h"
+#include "thimble/render/mesh/triangle_mesh.h"
+
+namespace thimble::render {
+
+/// Sets the springs of a mesh: alike at all vertices and along all edges.
+struct MeshSpringSettings {
+  double mass = 1e-3;              ///< kg per vertex, > 0
+  double base_stiffness = 0;       ///< N/m, vertex to its base point
+  double base_damping = 0;         ///< N s/m
+  double neighbour_stiffness = 0;  ///< N/m, along each edge
+  double neighbour_damping = 0;    ///< N s/m
+  /// True: springs pull along their edges only, as springs do. False: alike in all directions.
+  bool directed = false;
+};
+
+/// Joins the vertices of a mesh (m) along its edges, each vertex free in three directions. A
+/// vertex that no triangle names has its base spring alone. The error is that of
+/// SpringNetwork::build, or names an edge with no length. Real-time: never from the servo thread.
+driver::Result<SpringNetwork<3>> join_vertices(const TriangleMesh& mesh,
+                                               const MeshSpringSettings& settings);
+
+/// Does the same with each vertex free along its normal alone: a third of the work, for dents.
+driver::Result<SpringNetwork<1>> join_heights(const TriangleMesh& mesh,
+                                              const MeshSpringSettings& settings);
+
+}  // namespace thimble::render

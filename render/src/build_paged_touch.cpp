@@ -1,0 +1,15 @@
+#include "build_paged_touch.h"
+
+#include <utility>
+
+#include "touch_of.h"
+
+namespace thimble::render {
+
+std::unique_ptr<ObjectTouch> build_paged_touch(std::shared_ptr<PagedSurface> pages,
+                                               const PagedPlace& place,
+                                               const SurfaceChoice& surface) {
+  return touch_of(PagedContact(std::move(pages), place), surface);
+}
+
+}  // namespace thimble::render

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <memory>
+
+#include "page/paged_contact.h"
+#include "thimble/render/build_object_touch.h"
+#include "thimble/render/object_touch.h"
+
+namespace thimble::render {
+
+/// Builds the force law of one object whose mesh is on the disk. Whoever keeps `pages` starts its
+/// loader, or serves it between ticks. Its question `inside` reads the disk.
+/// Real-time: never from the servo thread.
+std::unique_ptr<ObjectTouch> build_paged_touch(std::shared_ptr<PagedSurface> pages,
+                                               const PagedPlace& place,
+                                               const SurfaceChoice& surface);
+
+}  // namespace thimble::render

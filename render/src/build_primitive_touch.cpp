@@ -1,0 +1,25 @@
+#include "thimble/render/build_primitive_touch.h"
+
+#include <type_traits>
+
+#include "field/entry_face_contact.h"
+#include "field/primitive_contact.h"
+#include "touch_of.h"
+
+namespace thimble::render {
+
+std::unique_ptr<ObjectTouch> build_primitive_touch(const Primitive& shape_W,
+                                                   const SurfaceChoice& surface) {
+  return std::visit(
+      [&surface](const auto& shape) {
+        using Shape = std::decay_t<decltype(shape)>;
+        if constexpr (std::is_same_v<Shape, EntryFaceBox>) {
+          return touch_of(EntryFaceContact(shape), surface);
+        } else {
+          return touch_of(PrimitiveContact<Shape>(shape), surface);
+        }
+      },
+      shape_W);
+}
+
+}  // namespace thimble::render

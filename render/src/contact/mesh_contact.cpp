@@ -1,8 +1,0 @@
-#include "thimble/render/contact/mesh_contact.h"
-
-namespace thimble::render {
-
-template class TrackedContact<SurfaceTracker>;
-template class TrackedContact<OffsetTracker>;
-
-}  // namespace thimble::render

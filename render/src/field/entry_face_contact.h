@@ -1,0 +1,49 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+
+#include "thimble/driver/device_state.h"
+#include "thimble/render/contact_state.h"
+#include "thimble/render/field/box.h"
+
+namespace thimble::render {
+
+/// Finds what the tip touches on a box whose force depends on the path: the face through which the
+/// tip came in pushes it back, however deep it is [BP Fig. 2a]. The `Contact` stage of Touch.
+///
+/// The face is found on the straight way since the last tick, however fast. It holds the tip as
+/// long as that is below the face's plane and within its outline, also beyond the back of a thin
+/// plate: nothing pops through. Contact ends above the plane, or where the tip leaves sideways; so
+/// a tip that comes out of another face is let go at once, without a pull.
+class EntryFaceContact {
+ public:
+  explicit EntryFaceContact(const Box& box) : box_(box) {}
+
+  /// Finds the contact at `state.p_WT` (W, m) and keeps it until the next call.
+  ///
+  /// A path that ends inside has entered; one that goes in and out again within the tick counts if
+  /// it ends behind the face it entered by. Through an edge or a corner, the face that the path
+  /// meets most squarely counts. A tip that is inside on the first tick touches nothing until it
+  /// has been outside. A position that is NaN or beyond `kPositionMax` ends the contact and makes
+  /// the next tick a first one. Real-time: safe; a few ns.
+  const ContactState& update(const driver::DeviceState& state) noexcept;
+
+  /// Gives the result of the last `update`. Real-time: safe.
+  const ContactState& state() const noexcept { return state_; }
+
+  const Box& shape() const noexcept { return box_; }
+  /// Gives what answers `inside`, as the searches of meshes do. Real-time: safe.
+  const Box& search() const noexcept { return box_; }
+
+ private:
+  bool behind(const Eigen::Vector3d& p_O, std::int32_t face) const noexcept;
+  std::int32_t entry(const Eigen::Vector3d& from_O, const Eigen::Vector3d& to_O) const noexcept;
+
+  Box box_;
+  ContactState state_;
+  Eigen::Vector3d p_O_before_{0, 0, 0};
+  bool has_before_ = false;
+};
+
+}  // namespace thimble::render

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <concepts>
+#include <cstdint>
+#include <utility>
+
+#include "mesh/position_range.h"
+#include "thimble/driver/device_state.h"
+#include "thimble/render/contact_state.h"
+#include "thimble/render/field/primitive_place.h"
+
+namespace thimble::render {
+
+/// Is a solid whose force depends on the place of the tip alone [BP 2]: a plane, a sphere, a box in
+/// wedges. `n_before_W` is the last normal felt (zero if none), for places that have none of their
+/// own.
+template <class Shape>
+concept PrimitiveShape = requires(const Shape& shape, const Eigen::Vector3d& p_W,
+                                  const Eigen::Vector3d& n_before_W) {
+  { shape.place(p_W, n_before_W) }
+  noexcept->std::same_as<PrimitivePlace>;
+  { shape.inside(p_W) }
+  noexcept->std::same_as<bool>;
+};
+
+/// Finds what the tip touches on an analytic shape: the `Contact` stage of Touch in place of
+/// MeshContact, so that every texture and friction works on it. `ContactState::triangle` is the
+/// number of the face.
+///
+/// Such a shape knows no past: a tip that passes through a thin one feels the far side [BP 2,
+/// "thin objects can be unintentionally penetrated"]. EntryFaceContact does not.
+template <PrimitiveShape Shape>
+class PrimitiveContact {
+ public:
+  explicit PrimitiveContact(Shape shape) : shape_(std::move(shape)) {}
+
+  /// Finds the contact at `state.p_WT` (W, m) and keeps it until the next call.
+  ///
+  /// A tip that is inside on the first tick touches nothing until it has been outside: it would be
+  /// thrown out otherwise. A position that is NaN or beyond `kPositionMax` ends the contact and
+  /// makes the next tick a first one. Real-time: safe; a few ns.
+  const ContactState& update(const driver::DeviceState& state) noexcept {
+    const Eigen::Vector3d& p_WT = state.p_WT;
+    // Written so that NaN is out of range.
+    if (!(p_WT.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= kPositionMax)) {
+      state_ = {};
+      was_outside_ = false;
+      return state_;
+    }
+    const PrimitivePlace place = shape_.place(p_WT, state_.n_W);
+    const bool outside = !(place.depth > 0);
+    was_outside_ = was_outside_ || outside;
+    if (outside || !was_outside_) {
+      state_ = {};
+      return state_;
+    }
+    state_.hops = state_.touching && state_.triangle != place.face ? 1 : 0;
+    state_.touching = true;
+    state_.triangle = place.face;
+    state_.depth = place.depth;
+    state_.n_W = place.n_W;
+    state_.p_WP = p_WT + place.depth * place.n_W;
+    return state_;
+  }
+
+  /// Gives the result of the last `update`. Real-time: safe.
+  const ContactState& state() const noexcept { return state_; }
+
+  const Shape& shape() const noexcept { return shape_; }
+  /// Gives what answers `inside`, as the searches of meshes do. Real-time: safe.
+  const Shape& search() const noexcept { return shape_; }
+
+ private:
+  Shape shape_;
+  ContactState state_;
+  bool was_outside_ = false;
+};
+
+}  // namespace thimble::render

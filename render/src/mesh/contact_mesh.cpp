@@ -1,0 +1,145 @@
+#include "mesh/contact_mesh.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "mesh/adjacency.h"
+#include "mesh/repair/orient_mesh.h"
+#include "thimble/render/mesh/check_mesh.h"
+
+namespace thimble::render {
+namespace {
+
+using Eigen::Vector3d;
+
+// A distance is three products and three sums of numbers no larger than the mesh, each wrong by
+// 2^-53 of it, from a normal wrong by a few 2^-53: 64 x 2^-53 of the size covers them with room.
+constexpr double kDepthRounding = 64 * 0x1p-53;
+
+// The sum of two unit normals below which the faces lie back to back: the direction of their
+// average is then rounding, and the plane is put along the faces instead. At 1e-7 the direction
+// would still be good to 1e-9.
+constexpr double kOpposite = 1e-7;
+
+Vector3d unit_normal(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
+  return (b - a).cross(c - a).stableNormalized();
+}
+
+// Finds the edge plane of two triangles, positive on the side of the first, which runs the edge
+// from `from` along `edge`. Of faces back to back with no matter between, the first keeps all
+// outside its face; a gap of no width is not told apart from that.
+Plane edge_plane(const Vector3d& from, const Vector3d& edge, const Vector3d& n_first,
+                 const Vector3d& n_second) {
+  const Vector3d average = n_first + n_second;
+  Plane plane;
+  plane.n = average.norm() > kOpposite ? average.cross(edge).stableNormalized() : n_first;
+  plane.d = -plane.n.dot(from);
+  return plane;
+}
+
+}  // namespace
+
+driver::Result<ContactMesh> ContactMesh::build(const TriangleMesh& mesh,
+                                               const ContactMeshOptions& options) {
+  const MeshFindings findings = check_mesh(mesh);
+  if (findings.triangles == 0) return driver::Error{"The mesh has no triangles."};
+  std::string refusal;
+  bool wrongly_wound = false;
+  bool broken = false;
+  for (const MeshFault& fault : findings.faults) {
+    const bool winding_only =
+        fault.kind == MeshFault::Kind::kInsideOut || fault.kind == MeshFault::Kind::kFlippedEdge;
+    if (winding_only && options.orient) {
+      wrongly_wound = true;
+      // Turned without the user's help in any case; a flipped edge may need a closed mesh first.
+      if (fault.kind == MeshFault::Kind::kInsideOut) continue;
+    } else {
+      broken = true;
+    }
+    refusal += ' ';
+    refusal += describe(fault);
+  }
+  if (broken) return driver::Error{"The mesh cannot be touched:" + refusal};
+
+  ContactMesh contact;
+  TriangleMesh oriented = mesh;
+  if (wrongly_wound) contact.orientation_ = orient_mesh(oriented);
+  if (contact.orientation_.one_sided_components > 0) {
+    return driver::Error{"The mesh cannot be touched: " + describe(contact.orientation_)};
+  }
+  const auto neighbours = find_adjacency(oriented);
+  if (!neighbours) return neighbours.error();
+
+  contact.vertices_ = std::move(oriented.vertices);
+  contact.triangles_ = std::move(oriented.triangles);
+  contact.cells_.resize(contact.triangles_.size());
+  for (std::size_t t = 0; t < contact.cells_.size(); ++t) {
+    contact.cells_[t].neighbours = (*neighbours)[t];
+  }
+  const Vector3d size = findings.box_max - findings.box_min;
+  const Vector3d room = Vector3d::Constant(std::max(options.room, 0.0) * size.maxCoeff());
+  contact.box_min_ = findings.box_min - room;
+  contact.box_max_ = findings.box_max + room;
+  contact.origin_ = findings.box_min + size / 2;
+  // Far from the world's origin the vertices themselves carry the rounding of their place.
+  contact.depth_rounding_ = kDepthRounding * ((size + 2 * room).norm() + contact.origin_.norm());
+  for (std::int32_t t = 0; t < contact.triangle_count(); ++t) contact.compute_face(t);
+  for (std::int32_t t = 0; t < contact.triangle_count(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      // Each edge is done once, by the triangle that runs it upwards.
+      if (contact.corners(t)[k] < contact.corners(t)[(k + 1) % 3]) contact.compute_edge(t, k);
+    }
+  }
+  contact.collect_fans();
+  return contact;
+}
+
+void ContactMesh::move_vertex(std::int32_t vertex, const Vector3d& p_W) noexcept {
+  vertices_[static_cast<std::size_t>(vertex)] = p_W;
+  for (const std::int32_t t : fan(vertex)) compute_face(t);
+  for (const std::int32_t t : fan(vertex)) {
+    for (std::size_t k = 0; k < 3; ++k) compute_edge(t, k);
+  }
+}
+
+void ContactMesh::compute_face(std::int32_t triangle) noexcept {
+  Plane& face = cells_[static_cast<std::size_t>(triangle)].face;
+  face.n = unit_normal(position(triangle, 0), position(triangle, 1), position(triangle, 2));
+  face.d = -face.n.dot(position(triangle, 0) - origin_);
+}
+
+// Finds the plane over an edge and gives both its triangles the same numbers, whichever asks.
+void ContactMesh::compute_edge(std::int32_t triangle, std::size_t k) noexcept {
+  TriangleCell& asking = cells_[static_cast<std::size_t>(triangle)];
+  const std::int32_t other = asking.neighbours[k];
+  TriangleCell& asked = cells_[static_cast<std::size_t>(other)];
+  const std::int32_t from = corners(triangle)[k];
+  const std::int32_t to = corners(triangle)[(k + 1) % 3];
+  std::size_t j = 0;
+  while (j < 2 && !(corners(other)[j] == to && corners(other)[(j + 1) % 3] == from)) ++j;
+  const bool upwards = from < to;
+  Plane& mine = upwards ? asking.edges[k] : asked.edges[j];
+  Plane& theirs = upwards ? asked.edges[j] : asking.edges[k];
+  const std::int32_t low = upwards ? from : to;
+  const std::int32_t high = upwards ? to : from;
+  mine = edge_plane(position(low) - origin_, position(high) - position(low),
+                    upwards ? asking.face.n : asked.face.n, upwards ? asked.face.n : asking.face.n);
+  theirs = {-mine.n, -mine.d};
+}
+
+void ContactMesh::collect_fans() {
+  fan_begin_.assign(vertices_.size() + 1, 0);
+  for (const auto& triangle : triangles_) {
+    for (const std::int32_t v : triangle) ++fan_begin_[static_cast<std::size_t>(v) + 1];
+  }
+  for (std::size_t v = 0; v < vertices_.size(); ++v) fan_begin_[v + 1] += fan_begin_[v];
+  fans_.resize(3 * triangles_.size());
+  std::vector<std::size_t> next(fan_begin_.begin(), fan_begin_.end() - 1);
+  for (std::int32_t t = 0; t < triangle_count(); ++t) {
+    for (const std::int32_t v : corners(t)) fans_[next[static_cast<std::size_t>(v)]++] = t;
+  }
+}
+
+}  // namespace thimble::render

@@ -1,0 +1,297 @@
+#include "mesh/file/read_ply.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mesh/file/read_off.h"  // kCoordinateMax
+#include "mesh/file/triangulate_polygon.h"
+
+namespace thimble::render {
+namespace {
+
+using driver::Error;
+
+enum class Form { kText, kLittle, kBig };
+
+// The types of PLY, by their first names and by those that say their size [Turk, the PLY format].
+struct NumberType {
+  std::string_view name, other_name;
+  std::size_t size;
+  char kind;  // i: signed, u: unsigned, f: floating
+};
+constexpr std::array<NumberType, 8> kTypes{{{"char", "int8", 1, 'i'},
+                                            {"uchar", "uint8", 1, 'u'},
+                                            {"short", "int16", 2, 'i'},
+                                            {"ushort", "uint16", 2, 'u'},
+                                            {"int", "int32", 4, 'i'},
+                                            {"uint", "uint32", 4, 'u'},
+                                            {"float", "float32", 4, 'f'},
+                                            {"double", "float64", 8, 'f'}}};
+
+const NumberType* type_of(std::string_view name) {
+  const auto* found = std::find_if(kTypes.begin(), kTypes.end(), [&](const NumberType& type) {
+    return type.name == name || type.other_name == name;
+  });
+  return found == kTypes.end() ? nullptr : found;
+}
+
+struct Property {
+  std::string_view name;
+  const NumberType* type = nullptr;
+  const NumberType* count = nullptr;  // of a list
+};
+
+struct Element {
+  std::string_view name;
+  std::int64_t count = 0;
+  std::vector<Property> properties;
+};
+
+struct Header {
+  std::optional<Form> form;
+  std::vector<Element> elements;
+};
+
+std::string shown(std::string_view word) {
+  std::string text = "\"";
+  for (const char c : word.substr(0, 40)) text += c >= ' ' && c < 127 ? c : '?';
+  return text + '"';
+}
+
+bool is_space(char c) {
+  return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\v' || c == '\f';
+}
+
+std::string_view next_word(std::string_view& text) {
+  std::size_t begin = 0;
+  while (begin < text.size() && is_space(text[begin])) ++begin;
+  std::size_t end = begin;
+  while (end < text.size() && !is_space(text[end])) ++end;
+  const std::string_view word = text.substr(begin, end - begin);
+  text.remove_prefix(end);
+  return word;
+}
+
+template <class Number>
+std::optional<Number> to_number(std::string_view word) {
+  if (word.size() > 1 && word[0] == '+') word.remove_prefix(1);
+  Number number{};
+  const auto [end, status] = std::from_chars(word.data(), word.data() + word.size(), number);
+  if (status != std::errc() || end != word.data() + word.size()) return std::nullopt;
+  return number;
+}
+
+std::optional<Error> take_line(std::string_view line, std::size_t bytes, Header& header) {
+  const std::string_view whole = line;
+  const std::string_view keyword = next_word(line);
+  if (keyword.empty() || keyword == "comment" || keyword == "obj_info") return std::nullopt;
+  if (keyword == "format") {
+    const std::string_view form = next_word(line);
+    if (form == "ascii") header.form = Form::kText;
+    if (form == "binary_little_endian") header.form = Form::kLittle;
+    if (form == "binary_big_endian") header.form = Form::kBig;
+    if (!header.form) return Error{"its header has an unknown format " + shown(form) + "."};
+    return std::nullopt;
+  }
+  if (keyword == "element") {
+    const std::string_view name = next_word(line);
+    const auto count = to_number<std::int64_t>(next_word(line));
+    if (!count || *count < 0) {
+      return Error{"its header has no valid count in " + shown(whole) + "."};
+    }
+    // The smallest of anything is a byte.
+    if (static_cast<std::uint64_t>(*count) > bytes) {
+      return Error{"its header promises " + std::to_string(*count) + " of " + shown(name) +
+                   " but the file has only " + std::to_string(bytes) + " bytes: it is truncated."};
+    }
+    header.elements.push_back({name, *count, {}});
+    return std::nullopt;
+  }
+  if (keyword == "property" && !header.elements.empty()) {
+    Property property;
+    std::string_view type = next_word(line);
+    if (type == "list") {
+      property.count = type_of(next_word(line));
+      type = next_word(line);
+      if (property.count == nullptr || property.count->kind == 'f') {
+        return Error{"its header has a list without a count in " + shown(whole) + "."};
+      }
+    }
+    property.type = type_of(type);
+    property.name = next_word(line);
+    if (property.type == nullptr || property.name.empty()) {
+      return Error{"its header has an unknown property " + shown(whole) + "."};
+    }
+    header.elements.back().properties.push_back(property);
+    return std::nullopt;
+  }
+  return Error{"its header has a line that PLY does not know: " + shown(whole) + "."};
+}
+
+// Reads the header and leaves what follows it in `rest`.
+driver::Result<Header> read_header(std::string_view& rest) {
+  const std::size_t bytes = rest.size();
+  Header header;
+  bool first = true;
+  while (!rest.empty()) {
+    const std::size_t end = rest.find('\n');
+    std::string_view line = rest.substr(0, end);
+    rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
+    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+    if (first && line != "ply") break;
+    if (line == "end_header" && header.form) return header;
+    if (!first) {
+      if (auto error = take_line(line, bytes, header)) return *error;
+    }
+    first = false;
+  }
+  return Error{"this is no PLY file that can be read (its header does not reach end_header)."};
+}
+
+// Gives one number after the other; nothing where the file ends or has something else.
+class Numbers {
+ public:
+  Numbers(std::string_view rest, Form form) : rest_(rest), form_(form) {}
+
+  std::optional<double> next(const NumberType& type) {
+    if (form_ == Form::kText) return to_number<double>(next_word(rest_));
+    if (rest_.size() < type.size) return std::nullopt;
+    std::array<unsigned char, 8> bytes{};
+    std::memcpy(bytes.data(), rest_.data(), type.size);
+    rest_.remove_prefix(type.size);
+    const bool little = std::endian::native == std::endian::little;
+    if ((form_ == Form::kLittle) != little) {
+      std::reverse(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(type.size));
+    }
+    if (type.kind == 'f') return type.size == 8 ? as<double>(bytes) : as<float>(bytes);
+    const bool with_sign = type.kind == 'i';
+    if (type.size == 1) return with_sign ? as<std::int8_t>(bytes) : as<std::uint8_t>(bytes);
+    if (type.size == 2) return with_sign ? as<std::int16_t>(bytes) : as<std::uint16_t>(bytes);
+    return with_sign ? as<std::int32_t>(bytes) : as<std::uint32_t>(bytes);
+  }
+
+  // Tells whether so many numbers can still come.
+  bool may_hold(double count) const { return count <= static_cast<double>(rest_.size()); }
+
+ private:
+  template <class Number>
+  static double as(const std::array<unsigned char, 8>& bytes) {
+    Number number;
+    std::memcpy(&number, bytes.data(), sizeof number);
+    return static_cast<double>(number);
+  }
+
+  std::string_view rest_;
+  Form form_;
+};
+
+Error ends_in(const Element& element, std::int64_t number) {
+  return Error{"the file ends, or has something else than a number, in " +
+               std::string(element.name.substr(0, 20)) + " " + std::to_string(number) + " of " +
+               std::to_string(element.count) + ": it is truncated or damaged."};
+}
+
+// Reads one property and hands each of its numbers to `take`.
+template <class Take>
+bool read_property(const Property& property, Numbers& numbers, Take&& take) {
+  std::size_t count = 1;
+  if (property.count != nullptr) {
+    const auto counted = numbers.next(*property.count);
+    if (!counted || !(*counted >= 0 && *counted == std::floor(*counted))) return false;
+    if (!numbers.may_hold(*counted)) return false;
+    count = static_cast<std::size_t>(*counted);
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto value = numbers.next(*property.type);
+    if (!value) return false;
+    take(*value);
+  }
+  return true;
+}
+
+std::optional<Error> read_vertex(const Element& element, std::int64_t number, Numbers& numbers,
+                                 TriangleMesh& mesh) {
+  Eigen::Vector3d vertex(0, 0, 0);
+  for (const Property& property : element.properties) {
+    const std::size_t axis = std::string_view("xyz").find(property.name);
+    const bool wanted = property.name.size() == 1 && axis != std::string_view::npos;
+    const auto take = [&](double value) {
+      if (wanted) vertex[static_cast<Eigen::Index>(axis)] = value;
+    };
+    if (!read_property(property, numbers, take)) return ends_in(element, number);
+  }
+  for (const double x : vertex) {
+    if (!(std::abs(x) <= kCoordinateMax)) {
+      return Error{"vertex " + std::to_string(number) +
+                   " has a coordinate that is not a number between -1e15 and 1e15."};
+    }
+  }
+  mesh.vertices.push_back(vertex);
+  return std::nullopt;
+}
+
+std::optional<Error> read_face(const Element& element, std::int64_t number, Numbers& numbers,
+                               std::vector<std::int32_t>& corners, TriangleMesh& mesh) {
+  corners.clear();
+  bool there = true;
+  const auto most = static_cast<double>(mesh.vertices.size());
+  for (const Property& property : element.properties) {
+    const bool wanted = property.name == "vertex_indices" || property.name == "vertex_index";
+    const auto take = [&](double value) {
+      if (!wanted) return;
+      const bool whole = value >= 0 && value < most && value == std::floor(value);
+      there = there && whole;
+      corners.push_back(whole ? static_cast<std::int32_t>(value) : 0);
+    };
+    if (!read_property(property, numbers, take)) return ends_in(element, number);
+  }
+  if (!there) {
+    return Error{"face " + std::to_string(number) + " names a vertex that does not exist."};
+  }
+  if (corners.size() >= 3) triangulate_polygon(mesh.vertices, corners, mesh.triangles);
+  return std::nullopt;
+}
+
+}  // namespace
+
+driver::Result<TriangleMesh> read_ply(std::string_view bytes) {
+  if (bytes.empty()) return Error{"the file is empty."};
+  std::string_view rest = bytes;
+  const auto header = read_header(rest);
+  if (!header) return header.error();
+  TriangleMesh mesh;
+  std::vector<std::int32_t> corners;
+  Numbers numbers(rest, *header->form);
+  for (const Element& element : header->elements) {
+    if (element.name == "vertex" && element.count > std::numeric_limits<std::int32_t>::max()) {
+      return Error{"it has more than 2^31 - 1 vertices."};
+    }
+    if (element.properties.empty()) continue;  // has no bytes
+    for (std::int64_t i = 0; i < element.count; ++i) {
+      std::optional<Error> error;
+      if (element.name == "vertex") {
+        error = read_vertex(element, i, numbers, mesh);
+      } else if (element.name == "face") {
+        error = read_face(element, i, numbers, corners, mesh);
+      } else {
+        for (const Property& property : element.properties) {
+          if (!read_property(property, numbers, [](double) {})) return ends_in(element, i);
+        }
+      }
+      if (error) return *error;
+    }
+  }
+  if (mesh.triangles.empty()) return Error{"it has no face with three corners."};
+  return mesh;
+}
+
+}  // namespace thimble::render

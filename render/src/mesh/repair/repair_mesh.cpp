@@ -1,0 +1,300 @@
+#include "thimble/render/mesh/repair_mesh.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numeric>
+#include <set>
+#include <sstream>
+#include <utility>
+
+#include "mesh/mesh_edges.h"
+#include "mesh/repair/open_edges.h"
+#include "mesh/repair/orient_mesh.h"
+#include "thimble/render/mesh/check_mesh.h"
+
+namespace thimble::render {
+namespace {
+
+using Eigen::Vector3d;
+using Kind = RepairChange::Kind;
+
+// Wider, whole fingers of a scanned hand would be welded together.
+constexpr double kToleranceMax = 0.01;
+
+// Dropping a triangle may open a seam whose closing makes another one: what is not done after so
+// many rounds does not converge.
+constexpr int kRoundsMax = 16;
+
+// Repairs one mesh; each function does what it is named after and tells of it.
+class Repair {
+ public:
+  Repair(const TriangleMesh& mesh, const RepairOptions& options)
+      : options_(options), before_(mesh), origin_(mesh.triangles.size()) {
+    done_.mesh = mesh;
+    std::iota(origin_.begin(), origin_.end(), 0);
+    Eigen::AlignedBox3d box;
+    for (const Vector3d& p : mesh.vertices) {
+      if (p.allFinite()) box.extend(p);
+    }
+    const double share = options.tolerance > 0 ? std::min(options.tolerance, kToleranceMax) : 0;
+    tolerance_ = box.isEmpty() ? 0 : share * box.diagonal().norm();
+  }
+
+  RepairedMesh run() {
+    if (options_.drop) drop_broken();
+    for (int round = 0; round < kRoundsMax; ++round) {
+      const std::size_t before = changes();
+      if (options_.weld && tolerance_ > 0) weld();
+      if (options_.drop) drop_degenerate();
+      if (options_.drop) drop_duplicates();
+      if (options_.close_seams && tolerance_ > 0) close();
+      if (changes() == before) break;
+    }
+    if (options_.split_vertices) split_vertices();
+    if (options_.orient) orient();
+    if (options_.drop) drop_unused();
+    std::sort(done_.changes.begin(), done_.changes.end(),
+              [](const RepairChange& a, const RepairChange& b) { return a.kind < b.kind; });
+    return std::move(done_);
+  }
+
+ private:
+  const Vector3d& at(std::int32_t vertex) const {
+    return done_.mesh.vertices[static_cast<std::size_t>(vertex)];
+  }
+
+  static std::string text(const Vector3d& p) {
+    std::ostringstream stream;
+    stream << "(" << p.x() << ", " << p.y() << ", " << p.z() << ")";
+    return stream.str();
+  }
+
+  std::string vertex_text(std::int32_t vertex) const {
+    return "vertex " + std::to_string(vertex) + " at " + text(at(vertex));
+  }
+
+  std::string triangle_text(std::size_t t) const {
+    std::string words = "triangle " + std::to_string(origin_[t]);
+    const auto old = static_cast<std::size_t>(origin_[t]);
+    if (has_three_vertices(before_, old)) {
+      const auto& [a, b, c] = before_.triangles[old];
+      words += " near " + text((at(a) + at(b) + at(c)) / 3);
+    }
+    return words;
+  }
+
+  template <class Where>
+  void tell(Kind kind, Where where) {
+    for (RepairChange& change : done_.changes) {
+      if (change.kind == kind) {
+        ++change.count;
+        return;
+      }
+    }
+    done_.changes.push_back({kind, 1, where()});
+  }
+
+  std::size_t changes() const {
+    std::size_t sum = 0;
+    for (const RepairChange& change : done_.changes) sum += change.count;
+    return sum;
+  }
+
+  // Drops the triangles for which `is_bad` holds; it is asked once each, in order.
+  template <class IsBad>
+  void drop(Kind kind, IsBad is_bad) {
+    std::size_t kept = 0;
+    for (std::size_t t = 0; t < done_.mesh.triangles.size(); ++t) {
+      if (is_bad(t)) {
+        tell(kind, [&] { return triangle_text(t); });
+        continue;
+      }
+      done_.mesh.triangles[kept] = done_.mesh.triangles[t];
+      origin_[kept++] = origin_[t];
+    }
+    done_.mesh.triangles.resize(kept);
+    origin_.resize(kept);
+  }
+
+  void drop_broken() {
+    const auto size = static_cast<std::int64_t>(done_.mesh.vertices.size());
+    drop(Kind::kDroppedBroken, [&](std::size_t t) {
+      const auto& triangle = done_.mesh.triangles[t];
+      return std::any_of(triangle.begin(), triangle.end(),
+                         [&](std::int32_t v) { return v < 0 || v >= size || !at(v).allFinite(); });
+    });
+  }
+
+  void weld() {
+    for (const std::int32_t vertex : weld_open_edges(done_.mesh, tolerance_)) {
+      tell(Kind::kWeldedVertex, [&] { return vertex_text(vertex); });
+    }
+  }
+
+  void drop_degenerate() {
+    drop(Kind::kDroppedDegenerate, [&](std::size_t t) {
+      if (!has_three_vertices(done_.mesh, t)) return true;
+      const auto& [a, b, c] = done_.mesh.triangles[t];
+      const Vector3d ab = at(b) - at(a);
+      const Vector3d ac = at(c) - at(a);
+      const double longest = std::max({ab.stableNorm(), ac.stableNorm(), (ac - ab).stableNorm()});
+      // As check_mesh decides it.
+      return !(ab.cross(ac).stableNorm() > kFlatness * longest * longest);
+    });
+  }
+
+  void drop_duplicates() {
+    std::set<std::array<std::int32_t, 3>> seen;
+    drop(Kind::kDroppedDuplicate, [&](std::size_t t) {
+      auto sorted = done_.mesh.triangles[t];
+      std::sort(sorted.begin(), sorted.end());
+      return !seen.insert(sorted).second;
+    });
+  }
+
+  void close() {
+    for (const std::int32_t t : close_seams(done_.mesh, tolerance_, origin_)) {
+      tell(Kind::kClosedSeam, [&] { return triangle_text(static_cast<std::size_t>(t)); });
+    }
+  }
+
+  // Gives every fan of triangles around a vertex but the first a vertex of its own.
+  void split_vertices() {
+    TriangleMesh& mesh = done_.mesh;
+    Groups corners(3 * mesh.triangles.size());
+    const auto corner_at = [&mesh](std::int32_t t, std::int32_t vertex) {
+      const auto& triangle = mesh.triangles[static_cast<std::size_t>(t)];
+      const auto place = std::find(triangle.begin(), triangle.end(), vertex) - triangle.begin();
+      return 3 * t + static_cast<std::int32_t>(place);
+    };
+    const std::vector<EdgeUse> uses = sorted_edge_uses(mesh);
+    for (std::size_t i = 1; i < uses.size(); ++i) {
+      const EdgeUse& one = uses[i - 1];
+      const EdgeUse& two = uses[i];
+      if (one.low != two.low || one.high != two.high) continue;
+      for (const std::int32_t vertex : {one.low, one.high}) {
+        corners.join(corner_at(one.triangle, vertex), corner_at(two.triangle, vertex));
+      }
+    }
+    std::vector<int> fans(mesh.vertices.size(), 0);
+    std::vector<std::int32_t> vertex_of(3 * mesh.triangles.size(), -1);
+    for (std::size_t corner = 0; corner < vertex_of.size(); ++corner) {
+      if (!has_three_vertices(mesh, corner / 3)) continue;
+      std::int32_t& vertex = mesh.triangles[corner / 3][corner % 3];
+      const auto root = static_cast<std::size_t>(corners.find(static_cast<std::int32_t>(corner)));
+      if (root == corner) {
+        const int earlier = fans[static_cast<std::size_t>(vertex)]++;
+        vertex_of[corner] = earlier == 0 ? vertex : moved_copy(vertex, corner / 3, earlier);
+      }
+      // A group's root is its smallest corner, so it has been here before.
+      vertex = vertex_of[root];
+    }
+  }
+
+  // Adds a copy of a vertex, `steps` roundings towards the middle of a triangle that will use it.
+  std::int32_t moved_copy(std::int32_t vertex, std::size_t triangle, int steps) {
+    tell(Kind::kSplitVertex, [&] { return vertex_text(vertex); });
+    TriangleMesh& mesh = done_.mesh;
+    Vector3d p = at(vertex);
+    Vector3d way(0, 0, 0);
+    for (const std::int32_t v : mesh.triangles[triangle]) way += at(v) - p;
+    Eigen::Index axis = 0;
+    way.cwiseAbs().maxCoeff(&axis);
+    const double far = way[axis] > 0 ? HUGE_VAL : -HUGE_VAL;
+    for (int i = 0; i < steps; ++i) p[axis] = std::nextafter(p[axis], far);
+    mesh.vertices.push_back(p);
+    return static_cast<std::int32_t>(mesh.vertices.size() - 1);
+  }
+
+  void orient() {
+    const OrientReport report = orient_mesh(done_.mesh);
+    if (report.turned_triangles == 0) return;
+    done_.changes.push_back({Kind::kTurnedTriangle, report.turned_triangles,
+                             triangle_text(static_cast<std::size_t>(report.first_turned))});
+  }
+
+  void drop_unused() {
+    TriangleMesh& mesh = done_.mesh;
+    std::vector<std::int32_t> number(mesh.vertices.size(), -1);
+    for (const auto& triangle : mesh.triangles) {
+      for (const std::int32_t v : triangle) number[static_cast<std::size_t>(v)] = 0;
+    }
+    // Vertices that were welded away have been told already.
+    std::vector<bool> used_before(number.size(), false);
+    for (const auto& triangle : before_.triangles) {
+      for (const std::int32_t v : triangle) {
+        if (v >= 0 && static_cast<std::size_t>(v) < number.size()) {
+          used_before[static_cast<std::size_t>(v)] = true;
+        }
+      }
+    }
+    std::size_t kept = 0;
+    for (std::size_t v = 0; v < number.size(); ++v) {
+      if (number[v] < 0) {
+        if (!used_before[v]) {
+          tell(Kind::kDroppedVertex, [&] { return vertex_text(static_cast<std::int32_t>(v)); });
+        }
+        continue;
+      }
+      number[v] = static_cast<std::int32_t>(kept);
+      mesh.vertices[kept++] = mesh.vertices[v];
+    }
+    mesh.vertices.resize(kept);
+    for (auto& triangle : mesh.triangles) {
+      for (std::int32_t& v : triangle) v = number[static_cast<std::size_t>(v)];
+    }
+  }
+
+  const RepairOptions options_;
+  const TriangleMesh& before_;
+  std::vector<std::int32_t> origin_;  // the number that each triangle, or its whole, came with
+  double tolerance_ = 0;              // in the mesh's unit
+  RepairedMesh done_;
+};
+
+}  // namespace
+
+RepairedMesh repair_mesh(const TriangleMesh& mesh, const RepairOptions& options) {
+  return Repair(mesh, options).run();
+}
+
+std::string describe(const RepairChange& change) {
+  const auto words = [&change]() -> std::pair<const char*, const char*> {
+    switch (change.kind) {
+      case Kind::kDroppedBroken:
+        return {"triangle without three finite vertices was dropped",
+                "triangles without three finite vertices were dropped"};
+      case Kind::kWeldedVertex:
+        return {"vertex was joined with one within the tolerance",
+                "vertices were joined with ones within the tolerance"};
+      case Kind::kDroppedDegenerate:
+        return {"triangle with no area was dropped", "triangles with no area were dropped"};
+      case Kind::kDroppedDuplicate:
+        return {"triangle that repeats another one was dropped",
+                "triangles that repeat others were dropped"};
+      case Kind::kClosedSeam:
+        return {"open edge was split to meet the vertices beside it",
+                "open edges were split to meet the vertices beside them"};
+      case Kind::kSplitVertex:
+        return {"vertex that joined parts was doubled", "vertices that joined parts were doubled"};
+      case Kind::kTurnedTriangle:
+        return {"triangle was turned round", "triangles were turned round"};
+      case Kind::kDroppedVertex:
+        return {"vertex that no triangle uses was dropped",
+                "vertices that no triangle uses were dropped"};
+    }
+    return {"change of an unknown kind", "changes of an unknown kind"};
+  }();
+  std::string sentence = std::to_string(change.count) + " ";
+  sentence += change.count == 1 ? words.first : words.second;
+  if (!change.where.empty()) {
+    sentence += (change.count == 1 ? " (" : " (the first: ") + change.where + ")";
+  }
+  return sentence + ".";
+}
+
+}  // namespace thimble::render

@@ -1,0 +1,87 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <numbers>
+#include <span>
+#include <vector>
+
+#include "mesh/contact_mesh.h"
+#include "thimble/render/mesh/normal_weights.h"
+
+namespace thimble::render {
+
+/// Is the angle between two faces' normals (rad) above which their edge is felt as a crease: the
+/// right angles of made things stay sharp, the steps of a scan do not. A default; scenes may say
+/// another.
+inline constexpr double kCreaseAngle = std::numbers::pi / 3;
+
+/// Holds the normals that a mesh is shaded with, at each corner of each triangle, and says which
+/// edges are creases.
+///
+/// Triangles around a vertex that are joined over edges which are no creases form a smooth group.
+/// A corner's normal is the weighted mean of its group's face normals, or fitted to its group's
+/// vertices. So two triangles agree, to
+/// the bit, on the normals at both ends of an edge that is no crease, and nothing is ever averaged
+/// over a crease. W, unit length. 73 bytes per triangle.
+class SmoothNormals {
+ public:
+  /// Finds the normals of a mesh. At `crease_angle` = 0 all edges between faces that are not in one
+  /// plane are creases, at pi none are. Real-time: never from the servo thread.
+  explicit SmoothNormals(const ContactMesh& mesh, double crease_angle = kCreaseAngle,
+                         NormalWeights weights = NormalWeights::kFitted);
+
+  /// Makes `refit` possible: 3 bytes more per triangle. Real-time: never from the servo thread.
+  void prepare_refit(const ContactMesh& mesh);
+
+  // All of the following are Real-time: safe. Precondition: numbers name what exists.
+
+  /// Finds again what depends on triangles of the mesh whose corners have moved (all around these):
+  /// normals and creases are those of the mesh built anew, to the bit. Precondition:
+  /// `prepare_refit` was called with the same mesh. Its time does not grow with the mesh.
+  void refit(const ContactMesh& mesh, std::span<const std::int32_t> triangles) noexcept;
+
+  /// Gives the normals at the three corners of a triangle.
+  const std::array<Eigen::Vector3d, 3>& corners(std::int32_t triangle) const noexcept {
+    return corners_[static_cast<std::size_t>(triangle)];
+  }
+
+  /// Tells whether the edge from corner `k` to the next one is a crease.
+  bool crease(std::int32_t triangle, std::size_t k) const noexcept {
+    return ((creases_[static_cast<std::size_t>(triangle)] >> k) & 1U) != 0;
+  }
+
+ private:
+  // Is a corner of a triangle: one place in the fan of its vertex.
+  struct Corner {
+    std::int32_t triangle;
+    std::size_t k;
+
+    bool operator==(const Corner&) const = default;
+  };
+  // What one group needs while its normal is found; kept, so that `refit` asks nothing of the heap.
+  struct Group {
+    std::vector<Corner> corners;
+    std::vector<std::int32_t> vertices;
+    std::vector<Eigen::Vector3d> points;
+  };
+
+  static Corner across(const ContactMesh& mesh, const Corner& at, std::size_t edge) noexcept;
+  void find_crease(const ContactMesh& mesh, std::int32_t triangle, std::size_t k) noexcept;
+  void average_group(const ContactMesh& mesh, const Corner& start, Group& group) noexcept;
+  void collect_points(const ContactMesh& mesh, Group& group) const noexcept;
+  void refit_vertex(const ContactMesh& mesh, std::int32_t vertex) noexcept;
+
+  double crease_angle_;
+  double crease_cosine_;
+  NormalWeights weights_;
+  std::vector<std::array<Eigen::Vector3d, 3>> corners_;
+  std::vector<std::uint8_t> creases_;  // bit k for edge k
+  std::vector<bool> done_;             // per corner; empty unless refits are prepared
+  std::vector<std::uint32_t> seen_;    // per vertex: the number of the last refit that found it
+  std::uint32_t refits_ = 0;
+  Group group_;
+};
+
+}  // namespace thimble::render

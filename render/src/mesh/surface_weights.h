@@ -1,0 +1,41 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+
+#include "mesh/contact_mesh.h"
+
+namespace thimble::render {
+
+// Weights of a triangle's corners say where on it a tip belongs: they sum to 1, weight k is 0 on
+// the side opposite corner k, and all are at least 0 in the triangle.
+
+/// Finds the weights of a tip (W, m) from its distances to the edge planes of a triangle, so that a
+/// weight vanishes exactly on the edge plane that both neighbours share [BP 4b]. On the surface
+/// they are the barycentric weights. Negative beyond an edge plane; all 1/3 where three planes
+/// leave no room. Real-time: safe.
+Eigen::Vector3d edge_plane_weights(const ContactMesh& mesh, std::int32_t triangle,
+                                   const Eigen::Vector3d& p_WT) noexcept;
+
+/// Finds the weights of the foot of the face's normal through a tip (W, m) [BP 4a]. Negative where
+/// the foot lies outside the triangle. Real-time: safe.
+Eigen::Vector3d projected_weights(const ContactMesh& mesh, std::int32_t triangle,
+                                  const Eigen::Vector3d& p_WT) noexcept;
+
+/// Brings weights back into the triangle: negative ones become 0, the others grow to sum 1.
+/// Real-time: safe.
+inline Eigen::Vector3d within_triangle(const Eigen::Vector3d& weights) noexcept {
+  if (weights.minCoeff() >= 0) return weights;
+  const Eigen::Vector3d positive = weights.cwiseMax(0);
+  return positive / positive.sum();
+}
+
+/// Finds the point of a triangle that has these weights, m in W. Real-time: safe.
+inline Eigen::Vector3d point_at(const ContactMesh& mesh, std::int32_t triangle,
+                                const Eigen::Vector3d& weights) noexcept {
+  const Eigen::Vector3d& a = mesh.position(triangle, 0);
+  return a + weights[1] * (mesh.position(triangle, 1) - a) +
+         weights[2] * (mesh.position(triangle, 2) - a);
+}
+
+}  // namespace thimble::render

@@ -1,0 +1,105 @@
+#include "packed/corner_normals.h"
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <numbers>
+#include <span>
+
+namespace thimble::render {
+namespace {
+
+using Eigen::Vector3d;
+
+struct Faces {
+  std::vector<Vector3d> normals;
+  std::vector<std::array<float, 3>> angles;  // at the corners, rad
+};
+
+std::size_t index(std::int32_t i) noexcept {
+  return static_cast<std::size_t>(i);
+}
+
+std::size_t corner_of(const std::array<std::int32_t, 3>& corners, std::int32_t vertex) noexcept {
+  return corners[0] == vertex ? 0 : corners[1] == vertex ? 1 : 2;
+}
+
+// Sums the faces that are reached from a triangle around one of its vertices without crossing a
+// crease, first one way round, then the other.
+Vector3d fan_normal(const std::vector<std::array<std::int32_t, 3>>& triangles,
+                    std::span<const CompactTriangle> records, const Faces& faces,
+                    std::int32_t vertex, std::int32_t first) {
+  Vector3d sum{0, 0, 0};
+  const auto add = [&](std::int32_t t) {
+    const std::size_t k = corner_of(triangles[index(t)], vertex);
+    sum += static_cast<double>(faces.angles[index(t)][k]) * faces.normals[index(t)];
+  };
+  add(first);
+  for (const std::size_t side : {std::size_t{0}, std::size_t{2}}) {
+    std::int32_t t = first;
+    for (;;) {
+      const std::size_t edge = (corner_of(triangles[index(t)], vertex) + side) % 3;
+      if (records[index(t)].crease(edge)) break;
+      t = records[index(t)].neighbours[edge];
+      // Round the whole vertex over a single crease or none: everything is in already.
+      if (t == first) return sum;
+      add(t);
+    }
+  }
+  return sum;
+}
+
+}  // namespace
+
+std::ptrdiff_t assign_corner_normals(const std::vector<Vector3d>& vertices,
+                                     const std::vector<std::array<std::int32_t, 3>>& triangles,
+                                     const HalfEdges& half_edges, double crease_angle,
+                                     std::span<CompactTriangle> records) {
+  Faces faces;
+  faces.normals.resize(triangles.size());
+  faces.angles.resize(triangles.size());
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    const Vector3d& a = vertices[index(triangles[t][0])];
+    const Vector3d ab = vertices[index(triangles[t][1])] - a;
+    const Vector3d ac = vertices[index(triangles[t][2])] - a;
+    const Vector3d area = ab.cross(ac);
+    const double twice_area = area.stableNorm();
+    if (!(twice_area > 0)) return static_cast<std::ptrdiff_t>(t);
+    faces.normals[t] = area / twice_area;
+    const double at_a = std::atan2(twice_area, ab.dot(ac));
+    const double at_b = std::atan2(twice_area, -ab.dot(ac - ab));
+    faces.angles[t] = {static_cast<float>(at_a), static_cast<float>(at_b),
+                       static_cast<float>(std::numbers::pi - at_a - at_b)};
+  }
+  const double crease_cosine = std::cos(crease_angle);
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    std::uint32_t flags = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vector3d& other = faces.normals[index(records[t].neighbours[k])];
+      if (!(faces.normals[t].dot(other) >= crease_cosine)) flags |= 1u << k;
+    }
+    records[t].flags |= flags;
+  }
+  for (std::size_t v = 0; v < vertices.size(); ++v) {
+    const auto vertex = static_cast<std::int32_t>(v);
+    const auto fan = half_edges.around(vertex);
+    bool smooth = true;
+    Vector3d sum{0, 0, 0};
+    for (const auto& side : fan) {
+      const std::size_t t = index(side.triangle);
+      const std::size_t k = corner_of(triangles[t], vertex);
+      smooth &= !records[t].crease(k);
+      sum += static_cast<double>(faces.angles[t][k]) * faces.normals[t];
+    }
+    const std::uint32_t packed = smooth && sum.norm() > 0 ? pack_normal(sum) : 0;
+    for (const auto& side : fan) {
+      const std::size_t t = index(side.triangle);
+      Vector3d own = sum;
+      if (!smooth) own = fan_normal(triangles, records, faces, vertex, side.triangle);
+      if (!(own.norm() > 0)) own = faces.normals[t];
+      records[t].normals[corner_of(triangles[t], vertex)] = packed != 0 ? packed : pack_normal(own);
+    }
+  }
+  return -1;
+}
+
+}  // namespace thimble::render

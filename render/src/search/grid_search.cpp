@@ -1,0 +1,248 @@
+#include "search/grid_search.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <span>
+
+#include "search/build_volume_grid.h"
+#include "search/mesh_segment_test.h"
+#include "search/search_answers.h"
+
+namespace thimble::render {
+namespace {
+
+using Eigen::Vector3d;
+using List = std::span<const std::int32_t>;
+
+// A path whose box is this many volumes wide at most is asked about in one go.
+constexpr double kShortVolumes = 6;
+
+// Lists as long as these may take longer to ask than the levels of a tree: on the mean as a
+// triangle sees it, and at worst (a vertex of valence 64 fills one of 64).
+constexpr double kMeanListMax = 24;
+constexpr std::size_t kListMax = 192;
+
+// Remembers triangles that have been asked, as neighbouring volumes list the same ones. Of those
+// with the same last digits it remembers one: another may be asked again.
+class Asked {
+ public:
+  Asked() noexcept { triangles_.fill(-1); }
+  bool first_time(std::int32_t t) noexcept {
+    std::int32_t& place = triangles_[static_cast<std::uint32_t>(t) % kPlaces];
+    if (place == t) return false;
+    place = t;
+    return true;
+  }
+
+ private:
+  static constexpr std::uint32_t kPlaces = 64;
+  std::array<std::int32_t, kPlaces> triangles_;
+};
+
+// Is a straight piece of a path, to tell the volumes beside it from those on it.
+class Piece {
+ public:
+  Piece(const Vector3d& from, const Vector3d& to, double room, double side) noexcept
+      : middle_((from + to) / 2 - Vector3d::Constant(side / 2)), half_((to - from) / 2) {
+    // What the cross product with the way is at most, over a cube grown by the room.
+    const double grown = side / 2 + room;
+    const Vector3d size = half_.cwiseAbs();
+    const double rounding = kRounding * (size.maxCoeff() + side) * (size.maxCoeff() + side);
+    reach_ = grown * Vector3d(size.y() + size.z(), size.z() + size.x(), size.x() + size.y()) +
+             Vector3d::Constant(rounding);
+  }
+
+  bool meets(const Vector3d& corner) const noexcept {
+    const Vector3d d = corner - middle_;
+    // Written so that NaN meets.
+    return !(std::abs(d.y() * half_.z() - d.z() * half_.y()) > reach_.x()) &&
+           !(std::abs(d.z() * half_.x() - d.x() * half_.z()) > reach_.y()) &&
+           !(std::abs(d.x() * half_.y() - d.y() * half_.x()) > reach_.z());
+  }
+
+ private:
+  // Coordinates are at most 2^14 volumes, and so wrong by less than 2^-38 of a piece and a volume.
+  static constexpr double kRounding = 0x1p-36;
+  Vector3d middle_, half_, reach_;
+};
+
+Vector3d gap_to_box(const Vector3d& p, const Vector3d& corner, double side) noexcept {
+  return (corner - p).cwiseMax(p - corner - Vector3d::Constant(side)).cwiseMax(0.0);
+}
+
+}  // namespace
+
+template <class Surface>
+GridSearch<Surface>::GridSearch(const Surface& surface)
+    : surface_(&surface), frame_(frame_of(surface)), grid_(build_volume_grid(surface, frame_)) {}
+
+template <class Surface>
+bool GridSearch<Surface>::even() const noexcept {
+  const auto& begins = grid_.parts().begins;
+  double squares = 0;
+  std::size_t longest = 0;
+  for (std::size_t v = 0; v + 1 < begins.size(); ++v) {
+    const std::size_t length = begins[v + 1] - begins[v];
+    longest = std::max(longest, length);
+    squares += static_cast<double>(length) * static_cast<double>(length);
+  }
+  const auto all = static_cast<double>(grid_.parts().triangles.size());
+  return squares <= kMeanListMax * all && longest <= kListMax;
+}
+
+// Calls visit(list) for all volumes near the segment.
+template <class Surface>
+template <class Test, class Visit>
+void GridSearch<Surface>::visit_reached(const Test& segment, Visit visit) const noexcept {
+  const Vector3d low = segment.low();
+  const Vector3d high = segment.high();
+  const double side = grid_.side();
+  const double width = (high - low).maxCoeff();
+  if (width <= 0.5 * side) {
+    grid_.visit_box(
+        low, high, [](const Vector3d&) noexcept { return true; },
+        [&visit](List list) noexcept { visit(list); });
+    return;
+  }
+  const Vector3d& from = segment.from();
+  const Vector3d& way = segment.way();
+  const double size = std::max(from.cwiseAbs().maxCoeff(), (from + way).cwiseAbs().maxCoeff());
+  const double room = kGridRoom * side + 0x1p-48 * size;
+  const auto visit_piece = [&](const Vector3d& a, const Vector3d& b, const Vector3d& piece_low,
+                               const Vector3d& piece_high) noexcept {
+    const Piece piece(a, b, room, side);
+    grid_.visit_box(
+        piece_low, piece_high,
+        [&piece](const Vector3d& corner) noexcept { return piece.meets(corner); },
+        [&](List list) noexcept { visit(list); });
+  };
+  if (width <= kShortVolumes * side) {
+    visit_piece(from, from + way, low, high);
+    return;
+  }
+  // Longer: in pieces of a few volumes, or as long as empty space allows.
+  const ReachedPart part = reached_part(from, way);
+  if (!part.any) return;
+  const double length = way.cwiseAbs().maxCoeff();
+  const double end = part.begin + part.length;
+  const double least = std::max(kShortVolumes * side, 4 * room);
+  for (double s = part.begin; s <= end;) {
+    const Vector3d a = from + s * way;
+    const double clear = grid_.clearance(a) - 2 * room;
+    // The way is no longer than sqrt(3) of its longest side.
+    const double step = std::max(clear * 0.577, least);
+    const double next = s + step / length;
+    const double e = std::min(next, end);
+    const Vector3d b = from + e * way;
+    if (step <= least) {
+      const Vector3d grown = Vector3d::Constant(room);
+      visit_piece(a, b, a.cwiseMin(b) - grown, a.cwiseMax(b) + grown);
+    }
+    // A step too small to be seen would go on for ever.
+    if (!(next > s)) return;
+    s = next;
+  }
+}
+
+template <class Surface>
+Entry GridSearch<Surface>::first_entry(const Vector3d& p_from,
+                                       const Vector3d& p_to) const noexcept {
+  if (!within_range(p_from) || !within_range(p_to)) return {};
+  const auto segment = segment_test(*surface_, frame_, p_from, p_to);
+  FirstEntry first(segment);
+  visit_reached(segment, [&first](List list) noexcept { first.consider(list); });
+  return first.entry();
+}
+
+template <class Surface>
+bool GridSearch<Surface>::inside(const Vector3d& p_W) const noexcept {
+  if (!within_range(p_W) || !in_frame(frame_.to_steps(p_W))) return false;
+  const Vector3d p_far = far_along_x(frame_, p_W);
+  const auto segment = segment_test(*surface_, frame_, p_W, p_far);
+  // Each triangle crossed must count once, in however many volumes it is listed.
+  std::array<std::int32_t, 64> crossed;
+  std::size_t crossings = 0;
+  bool all_kept = true;
+  visit_reached(segment, [&](List list) noexcept {
+    visit_near(segment, list, [&](std::int32_t t) noexcept {
+      double parameter = 0;
+      if (segment.cross(t, parameter) == Crossing::kNone) return;
+      const auto kept_end = crossed.begin() + static_cast<std::ptrdiff_t>(crossings);
+      if (std::find(crossed.begin(), kept_end, t) != kept_end) return;
+      if (crossings == crossed.size()) {
+        all_kept = false;
+        return;
+      }
+      crossed[crossings++] = t;
+    });
+  });
+  if (all_kept) return crossings % 2 == 1;
+  // More layers than anyone keeps in mind: every triangle once.
+  unsigned all = 0;
+  for (std::int32_t t = 0; t < surface_->triangle_count(); ++t) {
+    all += count_crossings(segment, {&t, 1});
+  }
+  return all % 2 == 1;
+}
+
+template <class Surface>
+SurfacePoint GridSearch<Surface>::closest(const Vector3d& p_W, double radius) const noexcept {
+  if (!within_range(p_W) || !(radius >= 0)) return {};
+  const Vector3d p = frame_.to_steps(p_W);
+  const double reach = reach_of(frame_, radius);
+  const double side = grid_.side();
+  const double room = kGridRoom * side + 0x1p-48 * p.cwiseAbs().maxCoeff();
+  NearestPoint<Surface> best(*surface_, frame_, p, reach);
+  Asked asked;
+  double limit = (reach + room) * (reach + room);
+  const auto wanted = [&](const Vector3d& corner) noexcept {
+    return gap_to_box(p, corner, side).squaredNorm() <= limit;
+  };
+  const auto visit = [&](List list) noexcept {
+    constexpr std::size_t kAtOnce = 32;
+    std::array<std::int32_t, kAtOnce> fresh;
+    std::size_t count = 0;
+    for (const std::int32_t t : list) {
+      fresh[count] = t;
+      count += asked.first_time(t) ? 1 : 0;
+      if (count < kAtOnce) continue;
+      best.consider(fresh);
+      count = 0;
+    }
+    best.consider({fresh.data(), count});
+    const double ball = std::sqrt(best.squared()) + room;
+    limit = ball * ball;
+  };
+  const auto ask_within = [&](double r) noexcept {
+    const Vector3d grown = Vector3d::Constant(r + room);
+    grid_.visit_box(p - grown, p + grown, wanted, visit);
+  };
+  // The volume that the point is in, then wider and wider boxes until one has a triangle within
+  // reach; then the ball up to that one.
+  const double clear = grid_.clearance(p);
+  double width = clear > 0 ? clear + side : 0;
+  ask_within(std::min(width, reach));
+  while (!best.found() && width < reach) {
+    width = std::max(2 * width, side);
+    ask_within(std::min(width, reach));
+  }
+  const double distance = std::sqrt(best.squared());
+  if (!best.found() || distance <= width) return best.point();
+  // Near in the middle of a large volume everything else is farther.
+  if (width > 0 || distance + room > grid_.within_volume(p)) ask_within(distance);
+  return best.point();
+}
+
+template <class Surface>
+double GridSearch<Surface>::clearance(const Vector3d& p_W) const noexcept {
+  if (!within_range(p_W)) return 0;
+  const Vector3d p = frame_.to_steps(p_W);
+  return std::max(0.0, grid_.clearance(p) - 0x1p-48 * p.cwiseAbs().maxCoeff()) * frame_.step;
+}
+
+template class GridSearch<ContactMesh>;
+template class GridSearch<CompactSurface>;
+
+}  // namespace thimble::render

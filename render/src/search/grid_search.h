@@ -1,0 +1,56 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+
+#include "mesh/contact_mesh.h"
+#include "packed/compact_surface.h"
+#include "search/contact_search.h"
+#include "search/search_frame.h"
+#include "search/volume_grid.h"
+
+namespace thimble::render {
+
+/// Looks for contact in space cut into volumes, of which only those around the question are looked
+/// at [BP 4.1]. Volumes are as wide as a mean triangle, so a tick's path meets few of them. The
+/// fastest search up to some 10^4 triangles of like size; beyond, lists and records that are not in
+/// the cache take what the volumes save. Where a few volumes hold most of the triangles it is no
+/// better than a linear search: see `even`.
+///
+/// All questions are Real-time: safe. Paths of a tick and nearest points nearby take time that does
+/// not grow with the mesh but by what memory is far; longer paths skip empty space in long steps.
+///
+/// `Surface` is ContactMesh or CompactSurface.
+template <class Surface>
+class GridSearch final : public ContactSearch {
+ public:
+  /// Builds the grid. Keeps a reference: the surface must outlive the search.
+  /// Real-time: never from the servo thread.
+  explicit GridSearch(const Surface& surface);
+
+  Entry first_entry(const Eigen::Vector3d& p_from,
+                    const Eigen::Vector3d& p_to) const noexcept override;
+  bool inside(const Eigen::Vector3d& p_W) const noexcept override;
+  SurfacePoint closest(const Eigen::Vector3d& p_W, double radius) const noexcept override;
+  double clearance(const Eigen::Vector3d& p_W) const noexcept override;
+  std::size_t bytes() const noexcept override { return grid_.bytes(); }
+
+  /// Tells whether the triangles lie evenly enough for the grid to be the search of choice.
+  /// Real-time: never from the servo thread.
+  bool even() const noexcept;
+
+  const VolumeGrid& grid() const noexcept { return grid_; }  ///< Shows its grid.
+
+ private:
+  template <class Test, class Visit>
+  void visit_reached(const Test& segment, Visit visit) const noexcept;
+
+  const Surface* surface_;
+  SearchFrame frame_;
+  VolumeGrid grid_;
+};
+
+extern template class GridSearch<ContactMesh>;
+extern template class GridSearch<CompactSurface>;
+
+}  // namespace thimble::render

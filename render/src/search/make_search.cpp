@@ -1,0 +1,54 @@
+#include "search/make_search.h"
+
+#include <cstdint>
+
+#include "search/bvh.h"
+#include "search/grid_search.h"
+#include "search/linear_search.h"
+
+namespace thimble::render {
+namespace {
+
+// Up to here the grid answers both questions sooner than the tree (10^4: 0.6 and 0.7 of its time);
+// from 10^5 on memory decides, and the tree reads less of it (tests/bench/contact_bench, --cold).
+constexpr std::int32_t kGridTrianglesMax = 30000;
+
+template <class Surface>
+std::shared_ptr<const ContactSearch> build_search(const Surface& surface,
+                                                  std::optional<SearchChoice> choice) {
+  if (!choice && surface.triangle_count() <= kGridTrianglesMax) {
+    auto grid = std::make_shared<const GridSearch<Surface>>(surface);
+    if (grid->even()) return grid;
+  }
+  switch (choice.value_or(SearchChoice::kTree)) {
+    case SearchChoice::kLinear:
+      return std::make_shared<const LinearSearchOver<Surface>>(surface);
+    case SearchChoice::kGrid:
+      return std::make_shared<const GridSearch<Surface>>(surface);
+    case SearchChoice::kTree:
+      break;
+  }
+  return std::make_shared<const TreeSearch<Surface>>(surface);
+}
+
+}  // namespace
+
+std::shared_ptr<const ContactSearch> make_search(const ContactMesh& mesh,
+                                                 std::optional<SearchChoice> choice) {
+  return build_search(mesh, choice);
+}
+
+std::shared_ptr<const ContactSearch> make_search(const CompactSurface& surface,
+                                                 std::optional<SearchChoice> choice) {
+  return build_search(surface, choice);
+}
+
+std::shared_ptr<ContactSearch> make_moving_search(const ContactMesh& mesh,
+                                                  std::optional<SearchChoice> choice) {
+  if (choice == SearchChoice::kLinear) return std::make_shared<LinearSearch>(mesh);
+  auto tree = std::make_shared<TreeSearch<ContactMesh>>(mesh);
+  tree->keep_places();
+  return tree;
+}
+
+}  // namespace thimble::render

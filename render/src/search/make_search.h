@@ -1,0 +1,28 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "mesh/contact_mesh.h"
+#include "packed/compact_surface.h"
+#include "search/contact_search.h"
+#include "thimble/render/search/search_choice.h"
+
+namespace thimble::render {
+
+/// Builds the search that is named; if none is, a grid for up to 30,000 triangles that lie evenly
+/// (GridSearch), else a tree. Keeps a reference: the surface must outlive the search.
+/// Real-time: never from the servo thread.
+std::shared_ptr<const ContactSearch> make_search(const ContactMesh& mesh,
+                                                 std::optional<SearchChoice> choice = {});
+std::shared_ptr<const ContactSearch> make_search(const CompactSurface& surface,
+                                                 std::optional<SearchChoice> choice = {});
+
+/// Builds a search that can be told that triangles have moved (ContactSearch::refit): linear if
+/// that is named, else a tree. A grid cannot: triangles that come into new volumes would need room
+/// in lists that stand close together. Keeps a reference: the mesh must outlive the search.
+/// Real-time: never from the servo thread.
+std::shared_ptr<ContactSearch> make_moving_search(const ContactMesh& mesh,
+                                                  std::optional<SearchChoice> choice = {});
+
+}  // namespace thimble::render

@@ -1,0 +1,116 @@
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "packed/large_pages.h"
+#include "search/box_node.h"
+
+namespace thimble::render {
+
+/// Is a tree of boxes over things that stand in a row, where each node but the last of its level
+/// has eight children: the nodes of the lowest level hold eight things that follow each other,
+/// those above eight nodes that do. So nobody needs to say who is whose child, and a node is one
+/// line of the cache.
+class TreeNodes {
+ public:
+  /// Names a node: its level, counted from the lowest one, above its number in it.
+  using Name = std::uint32_t;
+  static constexpr int kNumberBits = 26;                                          ///< Of a name.
+  static constexpr Name kNumber = (Name{1} << kNumberBits) - 1;                   ///< Of a name.
+  static constexpr std::size_t kLevelsMax = 10;                                   ///< 8^10 things.
+  static constexpr std::size_t kThingsMax = std::size_t{1} << (kNumberBits + 2);  ///< Most.
+
+  /// Builds the tree in linear time. `box_of(place)` gives the StepBox of a thing. Precondition:
+  /// one to `kThingsMax` things. Real-time: never from the servo thread.
+  template <class BoxOf>
+  void build(std::size_t things, BoxOf box_of);
+
+  /// Takes in that the box of one thing has changed, upwards as far as that changes anything: the
+  /// tree is what `build` would make. Real-time: safe.
+  template <class BoxOf>
+  void refit(std::size_t place, BoxOf box_of) noexcept;
+
+  /// Names the node above all. Real-time: safe.
+  Name root() const noexcept { return static_cast<Name>(levels_ - 1) << kNumberBits; }
+  /// Gives a node. Real-time: safe.
+  const BoxNode& node(Name name) const noexcept { return nodes_[place_of(name)]; }
+  /// Tells whether the children of a node are things, not nodes. Real-time: safe.
+  static bool lowest(Name name) noexcept { return name <= kNumber; }
+  /// Names the first child of a node that is not lowest; the others follow. Real-time: safe.
+  static Name first_child(Name name) noexcept {
+    return (name - (Name{1} << kNumberBits)) + 7 * (name & kNumber);
+  }
+  /// Tells the place of the first thing of a lowest node; the others follow. Real-time: safe.
+  static std::size_t first_thing(Name name) noexcept { return std::size_t{8} * name; }
+
+  /// Tells how many levels there are. Real-time: safe.
+  std::size_t levels() const noexcept { return levels_; }
+  /// Tells how many nodes a level has. Real-time: safe.
+  std::size_t width(std::size_t level) const noexcept { return counts_[level + 1]; }
+  /// Shows the nodes of a level. Real-time: safe.
+  const BoxNode* row(std::size_t level) const noexcept { return nodes_.data() + begins_[level]; }
+
+  /// Counts the bytes of memory held.
+  std::size_t bytes() const noexcept { return nodes_.capacity() * sizeof(BoxNode); }
+
+ private:
+  std::size_t place_of(Name name) const noexcept {
+    return begins_[name >> kNumberBits] + (name & kNumber);
+  }
+
+  template <class BoxOf>
+  BoxNode made(std::size_t level, std::size_t number, BoxOf box_of) const noexcept;
+
+  std::vector<BoxNode, LargePages<BoxNode>> nodes_;  // the highest level first
+  std::array<std::uint32_t, kLevelsMax> begins_{};   // of each level in them
+  std::array<std::uint32_t, kLevelsMax + 1>
+      counts_{};  // of what stands on each level, things first
+  std::size_t levels_ = 1;
+};
+
+template <class BoxOf>
+BoxNode TreeNodes::made(std::size_t level, std::size_t number, BoxOf box_of) const noexcept {
+  constexpr std::size_t kMost = BoxNode::kChildrenMax;
+  std::array<StepBox, kMost> boxes;
+  std::size_t count = 0;
+  for (std::size_t i = kMost * number; count < kMost && i < counts_[level]; ++i) {
+    boxes[count++] = level == 0 ? box_of(i) : nodes_[begins_[level - 1] + i].box();
+  }
+  BoxNode node;
+  node.set_boxes({boxes.data(), count});
+  return node;
+}
+
+template <class BoxOf>
+void TreeNodes::build(std::size_t things, BoxOf box_of) {
+  counts_[0] = static_cast<std::uint32_t>(things);
+  std::size_t all = 0;
+  levels_ = 0;
+  do {
+    counts_[levels_ + 1] = (counts_[levels_] + 7) / 8;
+    all += counts_[++levels_];
+  } while (counts_[levels_] > 1);
+  nodes_.resize(all);
+  for (std::size_t level = 0; level < levels_; ++level) {
+    all -= counts_[level + 1];
+    begins_[level] = static_cast<std::uint32_t>(all);
+    for (std::size_t i = 0; i < counts_[level + 1]; ++i) nodes_[all + i] = made(level, i, box_of);
+  }
+}
+
+template <class BoxOf>
+void TreeNodes::refit(std::size_t place, BoxOf box_of) noexcept {
+  for (std::size_t level = 0; level < levels_; ++level) {
+    place /= BoxNode::kChildrenMax;
+    const BoxNode node = made(level, place, box_of);
+    BoxNode& old = nodes_[begins_[level] + place];
+    if (node == old) return;
+    old = node;
+  }
+}
+
+}  // namespace thimble::render

@@ -1,0 +1,74 @@
+#include "shape_object.h"
+
+#include <string>
+#include <utility>
+
+#include "body/shape/body_shape.h"
+#include "body/shape/shaped_touch.h"
+#include "touch_of.h"
+#include "track/blended.h"
+#include "track/edge_blending.h"
+#include "track/god_object.h"
+#include "track/mesh_contact.h"
+#include "track/moving_contact.h"
+
+namespace thimble::render {
+namespace {
+
+using Built = driver::Result<std::unique_ptr<ObjectTouch>>;
+
+// Vertices near the box's sides may be pushed out of it a little, by panels that go in askew.
+constexpr double kRoom = 0.25;  // of the longest side [chosen]
+
+template <class Contact>
+Built shaped(std::shared_ptr<MovingMesh> mesh, Contact contact, const SurfaceChoice& surface,
+             BodyShape shape) {
+  Touch touch(MovingContact<Contact>(std::move(mesh), std::move(contact)), stage_list(surface));
+  return Built(std::make_unique<ShapedTouch<decltype(touch)>>(std::move(touch), std::move(shape)));
+}
+
+}  // namespace
+
+Built shaped_touch(const TriangleMesh& mesh_W, const ContactChoice& choice,
+                   const SurfaceChoice& surface) {
+  const bool smooth = choice.tracker == TrackerChoice::kOffset;
+  const BlendingChoice blending =
+      choice.blending.value_or(smooth ? BlendingChoice::kPhong : BlendingChoice::kFlat);
+  const bool god_object = choice.tracker == TrackerChoice::kGodObject;
+  const bool known = choice.tracker == TrackerChoice::kEdgePlanes || smooth || god_object;
+  const bool goes = (blending == BlendingChoice::kPhong && !god_object) ||
+                    (blending == BlendingChoice::kFlat && !smooth);
+  if (!known || !goes || choice.curved_depth.value_or(false)) {
+    return driver::Error{
+        "A surface that changes shape is touched by the tracker \"edge_planes\" (blending flat or "
+        "phong), \"offset\" or \"god_object\", without curved_depth; name one of these in "
+        "contact."};
+  }
+  auto prepared = ContactMesh::build(mesh_W, {.room = kRoom});
+  if (!prepared) return prepared.error();
+  auto body = BodyShape::build(*prepared, surface.shape, surface.spring.stiffness);
+  if (!body) return body.error();
+  MovingMeshOptions options{.search = choice.search};
+  // Means of faces unless said: to fit them anew at each move costs seven times as much.
+  if (blending == BlendingChoice::kPhong) {
+    options.normals = choice.normals.value_or(NormalWeights::kAngle);
+  }
+  options.crease_angle = choice.crease_angle.value_or(kCreaseAngle);
+  const auto mesh = std::make_shared<MovingMesh>(std::move(prepared).value(), options);
+  if (god_object) {
+    return shaped(mesh, GodObjectContact(mesh_of(mesh), search_of(mesh)), surface,
+                  std::move(body).value());
+  }
+  if (smooth) {
+    return shaped(mesh, OffsetContact(mesh_of(mesh), search_of(mesh), normals_of(mesh)), surface,
+                  std::move(body).value());
+  }
+  MeshContact flat(mesh_of(mesh), search_of(mesh));
+  if (blending == BlendingChoice::kFlat) {
+    return shaped(mesh, std::move(flat), surface, std::move(body).value());
+  }
+  return shaped(mesh, Blended(std::move(flat), Phong(), normals_of(mesh)), surface,
+                std::move(body).value());
+}
+
+}  // namespace thimble::render

@@ -1,0 +1,93 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <concepts>
+#include <string_view>
+
+#include "surface/friction/tangent_motion.h"
+#include "thimble/driver/device_state.h"
+#include "thimble/render/effect/effect_surroundings.h"
+#include "thimble/render/effect/effect_table.h"
+#include "thimble/render/surface/surface_feel.h"
+
+namespace thimble::render {
+
+/// Is how one kind of friction answers a way along the surface.
+///
+/// `pull` gives the force (N in W) along the surface with which the surface holds back, in the
+/// direction in which the tip moved: the hand feels its opposite. `turn` carries what is remembered
+/// along when the normal turns; `forget` ends the contact. All Real-time: safe.
+template <class Law>
+concept FrictionLaw = requires(Law law, const SlideTick& tick, const Turn& turn) {
+  { law.pull(tick) }
+  noexcept->std::same_as<Eigen::Vector3d>;
+  { law.turn(turn) }
+  noexcept->std::same_as<void>;
+  { law.forget() }
+  noexcept->std::same_as<void>;
+};
+
+/// Is a friction on a surface: a SurfaceStage around a FrictionLaw.
+///
+/// It acts along the surface only, and only as far as the surface presses back, so that it ends
+/// with the contact: leaving neither pulls nor sticks. It stands after the surface's spring and
+/// takes the normal force from there; so it follows textures and damping too. All positions and
+/// forces are in W; what is not finite gives no friction. Real-time: safe.
+template <class Law>
+class FrictionStage {
+ public:
+  static constexpr std::string_view kGroup = "friction";
+  static constexpr std::string_view kName = Law::kName;
+  static constexpr EffectOrder kOrder = EffectOrder::kTangential;
+  using Settings = typename Law::Settings;  ///< Of the law.
+
+  /// Takes settings that Settings::read found right. Real-time: never from the servo thread.
+  FrictionStage(const Settings& settings, const EffectSurroundings& surroundings)
+      : law_(settings), motion_(surroundings.tick) {
+    static_assert(FrictionLaw<Law>);
+  }
+
+  void touch(const driver::DeviceState& state, SurfaceFeel& feel) noexcept {
+    SlideTick tick;
+    Turn turn;
+    if (!motion_.follow(state, feel, tick, turn)) {
+      law_.forget();
+      return;
+    }
+    law_.turn(turn);
+    const Eigen::Vector3d pull = law_.pull(tick);
+    // Written so that NaN means no force.
+    if (!(pull.squaredNorm() < HUGE_VAL)) {
+      law_.forget();
+      return;
+    }
+    feel.f_T_W -= pull - pull.dot(tick.n_W) * tick.n_W;
+  }
+
+  void leave() noexcept {
+    motion_.leave();
+    law_.forget();
+  }
+
+  /// Tells of the coefficient; how stiff friction holds hangs on arm and loop, and stays.
+  /// Real-time: never from the servo thread.
+  void list_settings(LiveSettings& settings) {
+    settings.add<[](FrictionStage& stage, double mu) noexcept {
+      stage.law_.coulomb().set_sliding(mu);
+    }>(*this, {.name = "coefficient",
+               .unit = "",
+               .least = kLeastCoefficient,
+               .most = kMostCoefficient,
+               .value = law_.coulomb().sliding,
+               .lever = {.per_force = law_.coulomb().ratio()}});
+  }
+
+ private:
+  // What a hand may choose from: less is not felt, more is not met [chosen].
+  static constexpr double kLeastCoefficient = 0.01, kMostCoefficient = 1.5;
+
+  Law law_;
+  TangentMotion motion_;
+};
+
+}  // namespace thimble::render

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <optional>
+#include <string_view>
+
+#include "surface/friction/friction_settings.h"
+#include "surface/friction/friction_stage.h"
+
+namespace thimble::render {
+
+/// Is the paper's cure: friction that depends on velocity, its direction smoothed, dry friction
+/// (depth times stiffness times coefficient) and viscous friction in any proportion [BP 4.2]. It is
+/// quiet, but holds nothing at rest: under any load it creeps. [STABILITY 2.2, D, E and F]
+class PaperFrictionLaw {
+ public:
+  static constexpr std::string_view kName = "paper";
+
+  /// Says what is smoothed.
+  enum class Smooth : std::size_t {
+    kVelocity,   ///< The velocity; force in proportion to it up to `speed` (D).
+    kDirection,  ///< The direction of the last move only: the force is calmer, the hand is not (E).
+    kTwice,      ///< Velocity and then direction, rounded by tanh: quietest, slowest (F).
+  };
+
+  struct Settings {
+    CoulombSettings coulomb;
+    ViscousSettings viscous;
+    Smooth smooth = Smooth::kVelocity;  ///< What is smoothed.
+    double corner_frequency = 30;       ///< Hz [STABILITY 2.2]; 10 for kTwice.
+    double speed = 0.01;                ///< Dry friction is full from here on, m/s [STABILITY 2.2].
+
+    void read(SettingsReader& reader, const EffectSurroundings& surroundings);
+  };
+
+  explicit PaperFrictionLaw(const Settings& settings) noexcept
+      : settings_(settings),
+        velocity_(settings.corner_frequency),
+        direction_(settings.corner_frequency) {}
+
+  Eigen::Vector3d pull(const SlideTick& tick) noexcept;
+  void turn(const Turn& turn) noexcept;
+  void forget() noexcept;
+
+  /// Gives the coefficients, to be changed between two ticks. Real-time: safe.
+  CoulombSettings& coulomb() noexcept { return settings_.coulomb; }
+
+ private:
+  Eigen::Vector3d dry(const SlideTick& tick) noexcept;
+
+  Settings settings_;
+  VectorLowPass velocity_, direction_;
+  Eigen::Vector3d last_move_{0, 0, 0};
+};
+
+using PaperFriction = FrictionStage<PaperFrictionLaw>;
+
+}  // namespace thimble::render

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <string_view>
+
+#include "surface/texture/texture_limits.h"
+#include "surface/texture/wave_sum.h"
+#include "thimble/driver/device_state.h"
+#include "thimble/render/effect/effect_table.h"
+
+namespace thimble::render {
+
+/// Makes a rough surface that catches the tip sideways, by the slope of a random height [BP 4.2:
+/// the sandpaper system]. A SurfaceStage.
+///
+/// The height is a sum of plane waves in random directions with lengths in one octave around the
+/// grain, the same for the same seed on every machine. So it holds no waves shorter than
+/// grain / sqrt 2 and is smooth. All textures: texture_height.h.
+class Sandpaper {
+ public:
+  static constexpr std::string_view kGroup = "texture";
+  static constexpr std::string_view kName = "sandpaper";
+  static constexpr EffectOrder kOrder = EffectOrder::kDepth;
+
+  struct Settings : TextureSettings {
+    double grain = 0.002;        ///< Middle wavelength, m.
+    double roughness = 0.00003;  ///< Root mean square of the height, m.
+    double seed = 1;             ///< A whole number; another one, another piece of sandpaper.
+
+    /// Reads `form`, `hand_speed`, `grain`, `roughness`, `seed`.
+    /// Real-time: never from the servo thread.
+    void read(SettingsReader& reader, const EffectSurroundings& surroundings);
+    /// Tells how high and steep it is. Real-time: safe.
+    TextureExtent extent() const noexcept;
+  };
+
+  /// Real-time: never from the servo thread.
+  Sandpaper(const Settings& settings, const EffectSurroundings& surroundings);
+
+  void touch(const driver::DeviceState& state, SurfaceFeel& feel) const noexcept {
+    feel_height(height_.at(state.p_WT), form_, feel);
+  }
+  void leave() const noexcept {}
+
+  /// Tells of the roughness. Real-time: never from the servo thread.
+  void list_settings(LiveSettings& settings);
+
+  const WaveSum& height() const noexcept { return height_; }  ///< Shows its waves.
+
+ private:
+  void set_roughness(double roughness) noexcept;
+
+  WaveSum height_;
+  TextureForm form_;
+  double roughness_;       // m
+  double roughness_most_;  // m
+  TextureExtent extent_;   // of the first roughness
+};
+
+}  // namespace thimble::render

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string_view>
+#include <vector>
+
+#include "surface/texture/texture_limits.h"
+#include "surface/texture/wave_sum.h"
+#include "thimble/driver/device_state.h"
+#include "thimble/render/effect/effect_table.h"
+
+namespace thimble::render {
+
+/// Makes a surface of sine waves of several amplitudes, lengths and directions, which change the
+/// effective depth [BP 4.2]. A SurfaceStage.
+///
+/// Sliding at speed v along a wave of length L the force has a line at v / L with the amplitude
+/// stiffness * amplitude. All textures: texture_height.h.
+class Sines {
+ public:
+  static constexpr std::string_view kGroup = "texture";
+  static constexpr std::string_view kName = "sines";
+  static constexpr EffectOrder kOrder = EffectOrder::kDepth;
+
+  struct Settings : TextureSettings {
+    /// Is one wave.
+    struct One {
+      double amplitude = 0;                ///< Half from valley to peak, m.
+      double wavelength = 0;               ///< m
+      Eigen::Vector3d direction{1, 0, 0};  ///< In which it changes, in the object's frame.
+      double phase = 0;                    ///< At the object's place, rad.
+    };
+    std::vector<One> waves;  ///< All of them.
+
+    /// Reads `form`, `hand_speed` and the list `waves`: amplitude, wavelength or frequency (waves
+    /// per metre), direction, phase. Real-time: never from the servo thread.
+    void read(SettingsReader& reader, const EffectSurroundings& surroundings);
+    /// Tells how high and steep they are together. Precondition: each has a length.
+    /// Real-time: safe.
+    TextureExtent extent() const noexcept;
+  };
+
+  /// Real-time: never from the servo thread.
+  Sines(const Settings& settings, const EffectSurroundings& surroundings);
+
+  void touch(const driver::DeviceState& state, SurfaceFeel& feel) const noexcept {
+    feel_height(height_.at(state.p_WT), form_, feel);
+  }
+  void leave() const noexcept {}
+
+  /// Tells of the height of all waves, as a factor. Real-time: never from the servo thread.
+  void list_settings(LiveSettings& settings);
+
+  const WaveSum& height() const noexcept { return height_; }  ///< Shows them.
+
+ private:
+  void set_gain(double gain) noexcept;
+
+  WaveSum height_;
+  TextureForm form_;
+  double gain_ = 1;
+  double gain_most_;
+  TextureExtent extent_;  // at a gain of 1
+};
+
+}  // namespace thimble::render

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+#include <vector>
+
+#include "surface/texture/texture_height.h"
+
+namespace thimble::render {
+
+/// Is one plane wave through space: amplitude * sin(k . p + phase).
+struct Wave {
+  double amplitude = 0;          ///< m
+  Eigen::Vector3d k_W{0, 0, 0};  ///< Wave vector, rad/m.
+  double phase = 0;              ///< rad
+};
+
+/// Is a height made of plane waves, lowered so that its highest possible peak is 0. The waves run
+/// through the whole space, and the object is cut out of them like wood out of its grain.
+class WaveSum {
+ public:
+  /// Takes any number of waves. Real-time: never from the servo thread.
+  explicit WaveSum(std::vector<Wave> waves) : waves_(std::move(waves)) {
+    for (const Wave& wave : waves_) peak_ += wave.amplitude;
+  }
+
+  /// Finds the height at a place (W, m). NaN gives NaN. Real-time: safe; 180 instructions per wave.
+  TextureHeight at(const Eigen::Vector3d& p_W) const noexcept {
+    TextureHeight texture{.height = -peak_};
+    for (const Wave& wave : waves_) {
+      const double angle = wave.k_W.dot(p_W) + wave.phase;
+      texture.height += wave.amplitude * std::sin(angle);
+      texture.slope_W += wave.amplitude * std::cos(angle) * wave.k_W;
+    }
+    return texture;
+  }
+
+  /// Makes all waves higher or lower by a factor (> 0). Real-time: safe.
+  void scale(double factor) noexcept {
+    for (Wave& wave : waves_) wave.amplitude *= factor;
+    peak_ *= factor;
+  }
+
+  /// Tells how far the height goes down from 0 at most, m. Real-time: safe.
+  double relief() const noexcept { return 2 * peak_; }
+
+ private:
+  std::vector<Wave> waves_;
+  double peak_ = 0;
+};
+
+}  // namespace thimble::render

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <memory>
+#include <utility>
+
+#include "mesh/contact_mesh.h"
+#include "mesh/smooth_normals.h"
+#include "thimble/driver/device_state.h"
+#include "thimble/render/contact_state.h"
+#include "track/curved_depth.h"
+#include "track/edge_blending.h"
+
+namespace thimble::render {
+
+/// Smooths what a contact stage finds: a `Contact` stage of Touch around another one, joined at
+/// compile time, as in `Touch<Blended<MeshContact, FixedBand>, SpringDamper>`.
+///
+/// `Contact` is any TrackedContact. `Shading` says which normal is felt (edge_blending.h), `Depth`
+/// how deep the tip is (curved_depth.h). Over OffsetContact the result is continuous over smooth
+/// edges and vertices at any depth. Over MeshContact it is so across each edge plane; where the
+/// edge planes of a vertex overlap or leave gaps, below the surface, it may jump by about depth /
+/// edge length of the angle between the faces. Real-time: `update` is safe if the contact's is.
+template <class Contact, class Shading, class Depth = MeshDepth>
+class Blended {
+ public:
+  /// Takes a contact stage and finds the mesh's normals, with creases where faces meet at more than
+  /// `crease_angle` (rad). Real-time: never from the servo thread.
+  explicit Blended(Contact contact, Shading shading = {}, double crease_angle = kCreaseAngle)
+      : Blended(std::move(contact), std::move(shading), nullptr, crease_angle) {}
+
+  /// Takes the normals that somebody has already found of the same mesh.
+  /// Real-time: never from the servo thread.
+  Blended(Contact contact, Shading shading, std::shared_ptr<const SmoothNormals> normals)
+      : Blended(std::move(contact), std::move(shading), std::move(normals), kCreaseAngle) {}
+
+  /// Finds the contact at `state.p_WT` (W, m) and keeps it until the next call.
+  const ContactState& update(const driver::DeviceState& state) noexcept {
+    state_ = contact_.update(state);
+    if (!state_.touching) return state_;
+    const auto weights = contact_.weights(state.p_WT);
+    state_.n_W = shading_.normal(mesh(), *normals_, state_.triangle, weights);
+    state_.depth = depth_.depth(mesh(), *normals_, state_.triangle, weights, state_.depth);
+    state_.p_WP = state.p_WT + state_.depth * state_.n_W;
+    return state_;
+  }
+
+  /// Passes on that the surface has moved (TrackedContact). Real-time: safe.
+  void surface_moved(std::int32_t swept_over) noexcept {
+    contact_.surface_moved(swept_over);
+    state_ = contact_.state();
+  }
+  /// Passes on where the free tip is examined from (TrackedContact). Real-time: safe.
+  Eigen::Vector3d free_tip() const noexcept { return contact_.free_tip(); }
+
+  /// Gives the result of the last `update`. Real-time: safe.
+  const ContactState& state() const noexcept { return state_; }
+
+  const Contact& contact() const noexcept { return contact_; }
+  const ContactMesh& mesh() const noexcept { return contact_.mesh(); }
+  const auto& search() const noexcept { return contact_.search(); }
+  /// Shows the normals that it blends. Real-time: safe.
+  const std::shared_ptr<const SmoothNormals>& smooth_normals() const noexcept { return normals_; }
+  auto counters() const noexcept { return contact_.counters(); }
+
+ private:
+  Blended(Contact contact, Shading shading, std::shared_ptr<const SmoothNormals> normals,
+          double crease_angle)
+      : contact_(std::move(contact)),
+        normals_(normals ? std::move(normals)
+                         : std::make_shared<const SmoothNormals>(contact_.mesh(), crease_angle)),
+        shading_(std::move(shading)) {}
+
+  Contact contact_;
+  std::shared_ptr<const SmoothNormals> normals_;
+  Shading shading_;
+  [[no_unique_address]] Depth depth_;
+  ContactState state_;
+};
+
+}  // namespace thimble::render

@@ -1,0 +1,29 @@
+#include "track/curved_depth.h"
+
+#include <algorithm>
+
+#include "mesh/surface_weights.h"
+
+namespace thimble::render {
+
+double height_above(const ContactMesh& mesh, const SmoothNormals& normals, std::int32_t triangle,
+                    const Eigen::Vector3d& weights) noexcept {
+  const Eigen::Vector3d q = point_at(mesh, triangle, weights);
+  const auto& n = normals.corners(triangle);
+  double sum = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    sum += weights[static_cast<Eigen::Index>(k)] * (mesh.position(triangle, k) - q).dot(n[k]);
+  }
+  return sum / 2;
+}
+
+double CurvedDepth::depth(const ContactMesh& mesh, const SmoothNormals& normals,
+                          std::int32_t triangle, const Eigen::Vector3d& weights,
+                          double below_mesh) const noexcept {
+  const double height = height_above(mesh, normals, triangle, weights);
+  const double corrected = below_mesh + std::min(height, below_mesh);
+  // Written so that NaN means no depth.
+  return corrected > 0 ? corrected : 0;
+}
+
+}  // namespace thimble::render

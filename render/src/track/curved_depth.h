@@ -1,0 +1,41 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+
+#include "mesh/contact_mesh.h"
+#include "mesh/smooth_normals.h"
+
+namespace thimble::render {
+
+/// Finds how far the smooth surface that the corners' normals tell of stands above a place on a
+/// triangle (surface_weights.h), m along the normal; negative where it is hollow:
+/// 1/2 sum of w_k (x_k - q) . n_k with q the place. Exact to second order; L^2 / 8R in the middle
+/// of an edge of length L on a sphere of radius R. 0 on flat ground, and continuous over edges that
+/// are no creases. Real-time: safe.
+double height_above(const ContactMesh& mesh, const SmoothNormals& normals, std::int32_t triangle,
+                    const Eigen::Vector3d& weights) noexcept;
+
+/// Leaves the depth below the triangles as it is. A `Depth` stage of Blended.
+struct MeshDepth {
+  double depth(const ContactMesh&, const SmoothNormals&, std::int32_t, const Eigen::Vector3d&,
+               double below_mesh) const noexcept {
+    return below_mesh;
+  }
+};
+
+/// Turns the depth below the triangles into the depth below the smooth surface they stand for
+/// [STABILITY 3]. A `Depth` stage of Blended.
+///
+/// With the smooth surface at height h above the place and the tip at depth d below the mesh it is
+/// d + min(h, d), at least 0. Contact still begins where the tip enters the mesh, so where h > 0 a
+/// plain d + h would begin with a jump of the force; this rises twice as steeply for the first h
+/// and is exact from there on. Whoever has a mesh so coarse that h is felt should halve the
+/// stiffness that is just stable, or take a finer mesh. Where h < 0 there is contact without force
+/// until the tip has come through the hollow.
+struct CurvedDepth {
+  double depth(const ContactMesh& mesh, const SmoothNormals& normals, std::int32_t triangle,
+               const Eigen::Vector3d& weights, double below_mesh) const noexcept;
+};
+
+}  // namespace thimble::render

@@ -1,0 +1,70 @@
+#include "track/foot_point.h"
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cstddef>
+#include <limits>
+
+namespace thimble::render {
+namespace {
+
+using Eigen::Vector3d;
+using Corners = std::array<Vector3d, 3>;
+
+// Finds the foot of a tip that is not over the triangle. The nearest point then lies on an edge
+// that the tip is beside of, and on the nearest of those.
+void find_on_edges(const Corners& corner, const Vector3d& p_OT, Foot& foot) noexcept {
+  foot.distance_squared = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (foot.beside[k] >= 0) continue;
+    const std::size_t next = k == 2 ? 0 : k + 1;
+    const Vector3d edge = corner[next] - corner[k];
+    const double along = edge.dot(p_OT - corner[k]);
+    const double length_squared = edge.squaredNorm();
+    const bool at_begin = !(along > 0);
+    const bool at_end = !at_begin && along >= length_squared;
+    const Vector3d p_OP = at_begin ? corner[k]
+                          : at_end ? corner[next]
+                                   : corner[k] + (along / length_squared) * edge;
+    const double distance_squared = (p_OT - p_OP).squaredNorm();
+    if (distance_squared >= foot.distance_squared) continue;
+    foot.p_OP = p_OP;
+    foot.distance_squared = distance_squared;
+    foot.place.on = at_begin || at_end ? SurfacePlace::On::kCorner : SurfacePlace::On::kEdge;
+    foot.place.k = static_cast<std::uint8_t>(at_end ? next : k);
+  }
+}
+
+}  // namespace
+
+Foot foot_on(const ContactMesh& mesh, std::int32_t triangle, const Vector3d& p_OT) noexcept {
+  const auto& vertices = mesh.corners(triangle);
+  const Vector3d& a = mesh.position(vertices[0]);
+  const Vector3d& b = mesh.position(vertices[1]);
+  const Vector3d& c = mesh.position(vertices[2]);
+  const Vector3d ab = b - a;
+  const Vector3d bc = c - b;
+  const Vector3d ca = a - c;
+  const Vector3d n = ca.cross(ab);
+  const double beside_ab = n.dot(ab.cross(p_OT - a));
+  const double beside_bc = n.dot(bc.cross(p_OT - b));
+  const double beside_ca = n.dot(ca.cross(p_OT - c));
+  Foot foot;
+  foot.place.triangle = triangle;
+  foot.normal = n;
+  foot.beside = {beside_ab, beside_bc, beside_ca};
+  foot.edges_squared = ab.squaredNorm() + bc.squaredNorm() + ca.squaredNorm();
+
+  if (beside_ab >= 0 && beside_bc >= 0 && beside_ca >= 0) {
+    // A mean of the corners, not the tip's projection: it stays in the plane of the vertices
+    // however wrong the normal of a thin triangle is.
+    const double share = 1 / (beside_ab + beside_bc + beside_ca);
+    foot.p_OP = a + (beside_ca * share) * ab - (beside_ab * share) * ca;
+    foot.distance_squared = (p_OT - foot.p_OP).squaredNorm();
+    return foot;
+  }
+  find_on_edges({a, b, c}, p_OT, foot);
+  return foot;
+}
+
+}  // namespace thimble::render

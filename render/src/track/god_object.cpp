@@ -1,0 +1,111 @@
+#include "track/god_object.h"
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "track/surface_descent.h"
+#include "track/way_out.h"
+
+namespace thimble::render {
+namespace {
+
+using Eigen::Vector3d;
+
+// Distance between tip and proxy, in roundings of the mesh, from which their difference gives the
+// direction: both are wrong by a few 2^-53 of the mesh's size, a rounding is 64 of them, so the
+// direction is good to 2^-10 rad at worst, a hundredth of what a hand can tell [STABILITY 6].
+constexpr double kDirectionMin = 64;
+
+}  // namespace
+
+GodObjectContact::GodObjectContact(ContactMesh mesh, std::optional<SearchChoice> search)
+    : mesh_(std::make_shared<const ContactMesh>(std::move(mesh))),
+      search_(make_search(*mesh_, search)) {}
+
+driver::Result<GodObjectContact> GodObjectContact::build(const TriangleMesh& mesh,
+                                                         const ContactMeshOptions& options,
+                                                         std::optional<SearchChoice> search) {
+  auto prepared = ContactMesh::build(mesh, options);
+  if (!prepared) return prepared.error();
+  return GodObjectContact(std::move(prepared).value(), search);
+}
+
+const ContactState& GodObjectContact::update(const driver::DeviceState& state) noexcept {
+  const Vector3d p_OT = R_WO_.transpose() * (state.p_WT - p_WO_);
+  if (!within_range(p_OT)) {
+    state_ = {};
+    has_before_ = false;
+    return state_;
+  }
+  if (!state_.touching) {
+    place_ = {};
+    if (has_before_) {
+      place_.triangle = free_space_.first_entry(*search_, p_OP_, p_OT).triangle;
+    }
+  }
+  has_before_ = true;
+  state_ = {};
+  if (place_.triangle >= 0) follow(p_OT);
+  if (!state_.touching) p_OP_ = p_OT;
+  return state_;
+}
+
+void GodObjectContact::follow(const Vector3d& p_OT) noexcept {
+  Rest rest;
+  WayOut way;
+  bool pressed = false;
+  double nearest = std::numeric_limits<double>::infinity();
+  std::uint16_t hops = 0;
+  for (int lift = 0; lift <= kLiftsMax; ++lift) {
+    rest = descend(*mesh_, place_, p_OT);
+    hops = static_cast<std::uint16_t>(hops + rest.hops);
+    way = way_out(*mesh_, rest);
+    pressed = rest.settled && below(*mesh_, rest, p_OT);
+    // A lift that ended no nearer: tip and surface are one but for rounding.
+    if (pressed || !(rest.foot.distance_squared < nearest)) break;
+    nearest = rest.foot.distance_squared;
+    ++counters_.lifts;
+    const Entry entry = search_->first_entry(rest.foot.p_OP + way.length * way.n_O, p_OT);
+    if (entry.triangle < 0) {
+      state_.hops = hops;
+      return;
+    }
+    ++counters_.stopped;
+    // A slide that its bound has ended goes on from there in the next tick.
+    if (!rest.settled) {
+      ++counters_.long_walks;
+      pressed = true;
+      break;
+    }
+    place_ = {.triangle = entry.triangle};
+  }
+
+  const Vector3d p_OP = rest.foot.p_OP + way.length * way.n_O;
+  // Held only where no direction is known to lead out, and where the exact answer is "inside".
+  if (way.sure || !search_->inside(p_OP)) {
+    p_OP_ = p_OP;
+  } else {
+    ++counters_.held;
+  }
+  Vector3d n_O = way.n_O;
+  if (pressed) {
+    const Vector3d p_TP_O = rest.foot.p_OP - p_OT;
+    if (rest.settled && rest.foot.place.on == SurfacePlace::On::kFace) {
+      // In a face's outermost hair the way out leads away from the faces beside it, too.
+      if (!way.from_face) n_O = rest.foot.normal.normalized();
+      state_.depth = n_O.dot(p_TP_O);
+    } else {
+      state_.depth = std::sqrt(rest.foot.distance_squared);
+      if (state_.depth > kDirectionMin * mesh_->depth_rounding()) n_O = p_TP_O / state_.depth;
+    }
+  }
+  place_ = rest.foot.place;
+  state_.touching = true;
+  state_.triangle = rest.foot.place.triangle;
+  state_.n_W = R_WO_ * n_O;
+  state_.p_WP = R_WO_ * p_OP_ + p_WO_;
+  state_.hops = hops;
+}
+
+}  // namespace thimble::render

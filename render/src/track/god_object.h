@@ -1,0 +1,128 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "mesh/contact_mesh.h"
+#include "mesh/surface_place.h"
+#include "search/free_space.h"
+#include "search/make_search.h"
+#include "thimble/driver/device_state.h"
+#include "thimble/driver/result.h"
+#include "thimble/render/contact_state.h"
+
+namespace thimble::render {
+
+/// Is the most times the proxy leaves the surface for the tip within one tick and is stopped again
+/// by another part of it. Each time brings it nearer; one suffices to cross a room from wall to
+/// wall and into its corner. Where eight do not, the next tick goes on.
+inline constexpr int kLiftsMax = 8;
+
+/// Counts what a god-object met besides sliding.
+struct GodObjectCounters {
+  std::uint64_t lifts = 0;       ///< Times the proxy left the surface for a tip it could see.
+  std::uint64_t stopped = 0;     ///< Lifts that ended on another part of the surface.
+  std::uint64_t long_walks = 0;  ///< Ticks whose bound ended the slide before its goal.
+  std::uint64_t held = 0;        ///< Ticks that kept the proxy's last place: see `update`.
+};
+
+/// Finds what the tip touches with a god-object: a proxy that follows the tip and never enters the
+/// mesh [ZS]. The `Contact` stage of Touch, in place of MeshContact.
+///
+/// While the tip is inside, the proxy slides over the surface to the point that is nearest to the
+/// tip among all around it: one face holds it, or two in a concave edge, or three and more in a
+/// corner, all within one tick. As it stays on the surface, nothing can pass it, however thin the
+/// part: the tip may come out at the back, the proxy does not. Where the straight way to the tip is
+/// free the proxy leaves; that way is searched along its whole length, without rounding.
+///
+/// The mesh may move as a whole (`move_mesh`). A touching proxy is carried along with the triangle
+/// it rests on; a surface that sweeps over a free tip catches it.
+///
+/// Frames: W world, O mesh, T tip, P proxy. No length is compared with a constant in scene units.
+class GodObjectContact {
+ public:
+  /// Takes a prepared mesh and how it is searched (make_search). Real-time: never from the servo
+  /// thread.
+  explicit GodObjectContact(ContactMesh mesh, std::optional<SearchChoice> search = {});
+
+  /// Takes a mesh and a search over it that somebody else moves (moving_mesh.h).
+  /// Real-time: never from the servo thread.
+  GodObjectContact(std::shared_ptr<const ContactMesh> mesh,
+                   std::shared_ptr<const ContactSearch> search)
+      : mesh_(std::move(mesh)), search_(std::move(search)) {}
+
+  /// Prepares a mesh (O, m); the error is that of ContactMesh::build.
+  /// Real-time: never from the servo thread.
+  static driver::Result<GodObjectContact> build(const TriangleMesh& mesh,
+                                                const ContactMeshOptions& options = {},
+                                                std::optional<SearchChoice> search = {});
+
+  /// Places the mesh for the next `update`: p_WV = R_WO * p_OV + p_WO for each vertex V, m. `R_WO`
+  /// must be a rotation; NaN ends the contact. Where it is never called O is W. Real-time: safe.
+  void move_mesh(const Eigen::Matrix3d& R_WO, const Eigen::Vector3d& p_WO) noexcept {
+    R_WO_ = R_WO;
+    p_WO_ = p_WO;
+  }
+
+  /// Finds the contact at `state.p_WT` (W, m) and keeps it until the next call.
+  ///
+  /// `p_WP` is the proxy: outside the mesh by about its rounding (exactly outside while O is W).
+  /// `depth` is its distance from the tip, `n_W` points from the tip to it, or along the surface's
+  /// normal where the distance is rounding. `triangle` is one that the proxy rests on; where those
+  /// around it leave no way out (narrower than 0.5 degrees) the proxy may stay where it was, and
+  /// that is counted.
+  ///
+  /// Contact begins when the path since the last tick, relative to the mesh, enters it. A tip that
+  /// is inside on the first tick touches nothing until it has been outside. A position that is NaN
+  /// or beyond `kPositionMax` ends the contact and makes the next tick a first one. Real-time:
+  /// safe; one triangle or a few while touching; one question to the search for each lift, and
+  /// while free near the mesh.
+  const ContactState& update(const driver::DeviceState& state) noexcept;
+
+  /// Takes in that vertices have moved since the last `update`, and which triangle has swept over
+  /// the free tip from outside, -1 for none: the proxy rests on it from then on. Real-time: safe.
+  void surface_moved(std::int32_t swept_over) noexcept {
+    free_space_ = {};
+    if (swept_over < 0 || state_.touching || !has_before_) return;
+    place_ = {.triangle = swept_over};
+    state_.touching = true;
+    state_.triangle = swept_over;
+    state_.n_W = R_WO_ * mesh_->cell(swept_over).face.n;
+    state_.p_WP = R_WO_ * p_OP_ + p_WO_;
+  }
+
+  /// Tells where a free tip was in the last `update`, m in O; NaN if there was none, or it touches.
+  /// Real-time: safe.
+  Eigen::Vector3d free_tip() const noexcept {
+    if (has_before_ && !state_.touching) return p_OP_;
+    return Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
+  }
+
+  /// Gives the result of the last `update`. Real-time: safe.
+  const ContactState& state() const noexcept { return state_; }
+
+  const GodObjectCounters& counters() const noexcept { return counters_; }
+  const ContactMesh& mesh() const noexcept { return *mesh_; }
+  const ContactSearch& search() const noexcept { return *search_; }
+
+ private:
+  void follow(const Eigen::Vector3d& p_OT) noexcept;
+
+  // On the heap, so that the search keeps pointing at the mesh when the contact moves.
+  std::shared_ptr<const ContactMesh> mesh_;
+  std::shared_ptr<const ContactSearch> search_;
+  Eigen::Matrix3d R_WO_ = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d p_WO_{0, 0, 0};
+  ContactState state_;
+  FreeSpace free_space_;  // O
+  GodObjectCounters counters_;
+  Eigen::Vector3d p_OP_{0, 0, 0};  // The proxy; a free proxy is at the tip.
+  SurfacePlace place_;             // What a touching proxy rests on.
+  bool has_before_ = false;
+};
+
+}  // namespace thimble::render

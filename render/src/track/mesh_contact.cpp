@@ -1,0 +1,8 @@
+#include "track/mesh_contact.h"
+
+namespace thimble::render {
+
+template class TrackedContact<SurfaceTracker>;
+template class TrackedContact<OffsetTracker>;
+
+}  // namespace thimble::render

@@ -1,0 +1,160 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "mesh/contact_mesh.h"
+#include "search/free_space.h"
+#include "search/make_search.h"
+#include "thimble/driver/device_state.h"
+#include "thimble/driver/result.h"
+#include "thimble/render/contact_state.h"
+#include "track/offset_tracker.h"
+#include "track/surface_tracker.h"
+
+namespace thimble::render {
+
+/// Finds what the tip touches on one mesh: a search along the tip's path while it is free, tracking
+/// over the surface while it touches [BP 3.1]. The `Contact` stage of Touch.
+///
+/// `Tracker` is how it is followed: SurfaceTracker, OffsetTracker or NormalProjectionTracker; see
+/// there for what each promises. The names MeshContact and OffsetContact below stand for the first
+/// two.
+template <class Tracker>
+class TrackedContact {
+ public:
+  /// Takes a prepared mesh, how it is searched (make_search), and what the tracker's constructor
+  /// takes after mesh and search. Real-time: never from the servo thread.
+  template <class... TrackerOptions>
+  TrackedContact(ContactMesh mesh, std::optional<SearchChoice> search, TrackerOptions... options)
+      : mesh_(std::make_shared<const ContactMesh>(std::move(mesh))),
+        search_(make_search(*mesh_, search)),
+        tracker_(*mesh_, *search_, options...) {}
+
+  /// Takes a mesh and a search over it that somebody else moves (moving_mesh.h), and what the
+  /// tracker's constructor takes after them. Real-time: never from the servo thread.
+  template <class... TrackerOptions>
+  TrackedContact(std::shared_ptr<const ContactMesh> mesh,
+                 std::shared_ptr<const ContactSearch> search, TrackerOptions... options)
+      : mesh_(std::move(mesh)),
+        search_(std::move(search)),
+        tracker_(*mesh_, *search_, options...) {}
+
+  /// Takes a prepared mesh, searched in the way that suits it. Real-time: never from the servo
+  /// thread.
+  explicit TrackedContact(ContactMesh mesh) : TrackedContact(std::move(mesh), std::nullopt) {}
+
+  /// Prepares a mesh (W, m); the error is that of ContactMesh::build.
+  /// Real-time: never from the servo thread.
+  static driver::Result<TrackedContact> build(const TriangleMesh& mesh,
+                                              const ContactMeshOptions& options = {},
+                                              std::optional<SearchChoice> search = {}) {
+    auto prepared = ContactMesh::build(mesh, options);
+    if (!prepared) return prepared.error();
+    return TrackedContact(std::move(prepared).value(), search);
+  }
+
+  /// Finds the contact at `state.p_WT` (W, m) and keeps it until the next call.
+  ///
+  /// Contact begins when the path since the last tick enters the mesh, however fast, and the
+  /// tracker runs in the same tick. A tip that is inside on the first tick touches nothing until it
+  /// has been outside: it would be thrown out otherwise. A position that is NaN or beyond
+  /// `kPositionMax` ends the contact and makes the next tick a first one. In the tick that ends a
+  /// contact no new one begins, unless the tip is inside. Real-time: safe; a few ns in contact and
+  /// far from the mesh, else one question to the search.
+  const ContactState& update(const driver::DeviceState& state) noexcept;
+
+  /// Gives the result of the last `update`. Real-time: safe.
+  const ContactState& state() const noexcept { return state_; }
+
+  /// Takes in that the surface has moved since the last `update`, and which triangle has swept over
+  /// the free tip from outside, -1 for none: it is touched from then on. Real-time: safe.
+  void surface_moved(std::int32_t swept_over) noexcept {
+    free_space_ = {};
+    if (swept_over < 0 || state_.touching || !has_before_) return;
+    tracker_.start(swept_over);
+    state_.touching = true;
+    state_.triangle = swept_over;
+    state_.n_W = mesh_->cell(swept_over).face.n;
+    state_.p_WP = p_WT_before_;
+  }
+
+  /// Tells where a free tip was in the last `update`, m in W; NaN if there was none, or it touches:
+  /// what a surface that moves may sweep over. Real-time: safe.
+  Eigen::Vector3d free_tip() const noexcept {
+    if (has_before_ && !state_.touching) return p_WT_before_;
+    return Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
+  }
+
+  /// Tells where on the active triangle the tip belongs (surface_weights.h). Precondition: the last
+  /// `update` was at `p_WT` (W, m) and touches. Real-time: safe.
+  Eigen::Vector3d weights(const Eigen::Vector3d& p_WT) const noexcept {
+    return tracker_.weights(p_WT);
+  }
+
+  TrackerCounters counters() const noexcept { return tracker_.counters(); }
+  const Tracker& tracker() const noexcept { return tracker_; }
+  const ContactMesh& mesh() const noexcept { return *mesh_; }
+  const ContactSearch& search() const noexcept { return *search_; }
+
+ private:
+  // On the heap, so that search and tracker keep pointing at them when the contact moves.
+  std::shared_ptr<const ContactMesh> mesh_;
+  std::shared_ptr<const ContactSearch> search_;
+  Tracker tracker_;
+  ContactState state_;
+  FreeSpace free_space_;
+  Eigen::Vector3d p_WT_before_{0, 0, 0};
+  bool has_before_ = false;
+};
+
+template <class Tracker>
+const ContactState& TrackedContact<Tracker>::update(const driver::DeviceState& state) noexcept {
+  const Eigen::Vector3d& p_WT = state.p_WT;
+  if (!within_range(p_WT)) {
+    state_ = {};
+    has_before_ = false;
+    return state_;
+  }
+  bool follow = state_.touching;
+  if (!follow && has_before_) {
+    const Entry entry = free_space_.first_entry(*search_, p_WT_before_, p_WT);
+    follow = entry.triangle >= 0;
+    if (follow) tracker_.start(entry.triangle);
+  }
+  p_WT_before_ = p_WT;
+  has_before_ = true;
+  if (!follow) {
+    state_ = {};
+    return state_;
+  }
+  const TrackerStep step = tracker_.follow(p_WT);
+  if (!step.touching) {
+    state_ = {};
+    state_.hops = step.hops;
+    return state_;
+  }
+  state_.touching = true;
+  state_.triangle = tracker_.active();
+  state_.depth = step.depth;
+  state_.n_W = tracker_.normal();
+  state_.p_WP = p_WT + step.depth * state_.n_W;
+  state_.hops = step.hops;
+  return state_;
+}
+
+/// Follows the surface over edge planes [BP 4b]: flat faces, the least work per tick.
+using MeshContact = TrackedContact<SurfaceTracker>;
+
+/// Follows the smooth surface: Phong's normal and the depth along it, continuous over smooth edges
+/// and vertices at every depth.
+using OffsetContact = TrackedContact<OffsetTracker>;
+
+extern template class TrackedContact<SurfaceTracker>;
+extern template class TrackedContact<OffsetTracker>;
+
+}  // namespace thimble::render

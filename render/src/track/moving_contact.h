@@ -1,0 +1,60 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <utility>
+
+#include "mesh/contact_mesh.h"
+#include "search/contact_search.h"
+#include "thimble/driver/device_state.h"
+#include "thimble/render/contact_state.h"
+#include "track/moving_mesh.h"
+
+namespace thimble::render {
+
+/// Is the `Contact` stage of Touch over a surface that changes shape: another contact stage
+/// (MeshContact, OffsetContact, Blended over either, GodObjectContact) made over a MovingMesh, with
+/// the one door through which the surface moves. Frame W, m.
+///
+/// Who touches stays in touch while the surface is pressed in below the tip, and lets go when it
+/// falls away faster than the tip follows. A surface that sweeps over a free tip takes it along:
+/// the next `update` touches the triangle that has passed, however fast it was and however thin the
+/// part.
+template <class Contact>
+class MovingContact {
+ public:
+  /// Takes a surface and the stage made from mesh_of, search_of and normals_of it.
+  /// Real-time: never from the servo thread.
+  MovingContact(std::shared_ptr<MovingMesh> surface, Contact contact)
+      : surface_(std::move(surface)), contact_(std::move(contact)) {}
+
+  /// Finds the contact at `state.p_WT` and keeps it until the next call; see the stage.
+  const ContactState& update(const driver::DeviceState& state) noexcept {
+    return contact_.update(state);
+  }
+
+  /// Moves vertices of the surface, between two updates; gives the number of those refused
+  /// (MovingMesh::move_vertices). Real-time: safe.
+  std::int32_t move_vertices(std::span<const VertexMove> moves) noexcept {
+    const SurfaceMoved moved = surface_->move_vertices(moves, contact_.free_tip());
+    contact_.surface_moved(moved.swept_over);
+    return moved.refused;
+  }
+
+  // All Real-time: safe.
+  const ContactState& state() const noexcept { return contact_.state(); }
+  /// Tells the weights of the corners at the place that is touched. Real-time: safe.
+  auto weights(const Eigen::Vector3d& p_WT) const noexcept { return contact_.weights(p_WT); }
+  auto counters() const noexcept { return contact_.counters(); }
+  const Contact& contact() const noexcept { return contact_; }
+  const ContactMesh& mesh() const noexcept { return surface_->mesh(); }
+  const ContactSearch& search() const noexcept { return surface_->search(); }
+
+ private:
+  std::shared_ptr<MovingMesh> surface_;
+  Contact contact_;
+};
+
+}  // namespace thimble::render

@@ -1,0 +1,96 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "mesh/contact_mesh.h"
+#include "mesh/smooth_normals.h"
+#include "search/contact_search.h"
+#include "search/make_search.h"
+
+namespace thimble::render {
+
+/// Sets what is kept along with a mesh whose vertices move.
+struct MovingMeshOptions {
+  std::optional<SearchChoice> search = {};  ///< See make_moving_search: a grid becomes a tree.
+  /// How corner normals are found, for trackers and blendings that need them; if empty, none are
+  /// kept and moves cost the least. Means cost a fraction of fitted ones.
+  std::optional<NormalWeights> normals = {};
+  double crease_angle = kCreaseAngle;  ///< rad
+};
+
+/// Says what moving vertices has met.
+struct SurfaceMoved {
+  std::int32_t swept_over =
+      -1;                    ///< Triangle that has swept over the tip from outside, -1 for none.
+  std::int32_t refused = 0;  ///< Vertices that stayed: their place is NaN or outside the box.
+};
+
+/// Owns a mesh whose vertices move, with everything that is built over it: planes, boxes of the
+/// search, smooth normals. `move_vertices` is the one door through which it changes shape, and
+/// afterwards all of it is as if built anew over the same mesh.
+///
+/// Trackers take mesh, search and normals from here and stay true while they move; contact stages
+/// are told by MovingContact. 13 bytes per triangle for keeping them. Vertices may go anywhere in
+/// the mesh's box (ContactMeshOptions::room). That no triangle turns over or loses its area is for
+/// the caller to see to (movement_limits): in such places the surface cuts through itself, and
+/// contact is what parity makes of it.
+class MovingMesh {
+ public:
+  /// Takes a prepared mesh. Real-time: never from the servo thread.
+  explicit MovingMesh(ContactMesh mesh, const MovingMeshOptions& options = {});
+  // The search keeps pointing at the mesh.
+  MovingMesh(const MovingMesh&) = delete;
+  MovingMesh& operator=(const MovingMesh&) = delete;
+
+  /// Moves vertices, one after the other, and tells whether the surface has swept over a free tip
+  /// at `p_WT` (W, m; NaN for none): then a triangle has passed over it inwards, however fast, and
+  /// even if another has passed over it outwards since. Decided without rounding, in accord with
+  /// ContactSearch::inside: a tip that was outside and lies inside now is always told.
+  ///
+  /// Precondition: vertices exist. One whose place is NaN or outside the box stays, and is counted.
+  /// Real-time: safe; no heap; its time grows with the vertices moved and hardly with the mesh.
+  SurfaceMoved move_vertices(std::span<const VertexMove> moves,
+                             const Eigen::Vector3d& p_WT) noexcept;
+
+  const ContactMesh& mesh() const noexcept { return mesh_; }
+  const ContactSearch& search() const noexcept { return *search_; }
+  /// Gives the normals; null if none are kept.
+  const SmoothNormals* normals() const noexcept { return normals_ ? &*normals_ : nullptr; }
+
+ private:
+  bool place(const VertexMove& move, const Eigen::Vector3d& p_WT, const Eigen::Vector3d& p_far,
+             std::int32_t& swept_over) noexcept;
+  bool marked(std::int32_t triangle) const noexcept {
+    return marks_[static_cast<std::size_t>(triangle)] == round_;
+  }
+  void fit_planes() noexcept;
+
+  ContactMesh mesh_;
+  // The triangles around the vertices of this call, each once.
+  std::vector<std::int32_t> around_;
+  std::vector<std::uint32_t> marks_;
+  std::uint32_t round_ = 0;
+  std::shared_ptr<ContactSearch> search_;
+  std::optional<SmoothNormals> normals_;
+};
+
+// What stages hold of a moving mesh; each keeps all of it alive. Real-time: never from the servo
+// thread.
+
+inline std::shared_ptr<const ContactMesh> mesh_of(const std::shared_ptr<MovingMesh>& surface) {
+  return {surface, &surface->mesh()};
+}
+inline std::shared_ptr<const ContactSearch> search_of(const std::shared_ptr<MovingMesh>& surface) {
+  return {surface, &surface->search()};
+}
+inline std::shared_ptr<const SmoothNormals> normals_of(const std::shared_ptr<MovingMesh>& surface) {
+  return {surface, surface->normals()};
+}
+
+}  // namespace thimble::render

@@ -1,0 +1,184 @@
+#include "track/offset_tracker.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include "mesh/triangle_set.h"
+
+namespace thimble::render {
+namespace {
+
+using Eigen::Vector3d;
+
+// Newton's iteration doubles the digits each round: 2 or 3 from the last tick's depth; 9 were the
+// most seen on a scanned mesh pressed deep, and more than 12 mean that there is no answer.
+constexpr int kRoundsMax = 12;
+
+// Rounding of a weight (2^-53 times products of a few sides) that is no reason to hop: neighbours
+// whose shared side runs through the tip would hand it to and fro.
+constexpr double kWeightRounding = 1e-13;
+
+Vector3d weighted(const std::array<Vector3d, 3>& corners, const Vector3d& weights) noexcept {
+  return weights[0] * corners[0] + weights[1] * corners[1] + weights[2] * corners[2];
+}
+
+// How far the tip is beyond each edge, as a share of the triangle's height over it; negative means
+// beyond.
+std::array<double, 3> edge_shares(const ContactMesh& mesh, const SmoothNormals& normals,
+                                  std::int32_t triangle, const OffsetFoot& foot,
+                                  const Vector3d& p_WT) noexcept {
+  std::array<double, 3> shares{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t opposite = (k + 2) % 3;
+    if (normals.crease(triangle, k) || !foot.found) {
+      const Plane& plane = mesh.cell(triangle).edges[k];
+      const double height = plane.distance(mesh.position(triangle, opposite) - mesh.origin());
+      shares[k] = plane.distance(p_WT - mesh.origin()) / std::abs(height);
+    } else {
+      shares[k] = foot.weights[static_cast<Eigen::Index>(opposite)];
+    }
+  }
+  return shares;
+}
+
+}  // namespace
+
+OffsetFoot find_offset_foot(const ContactMesh& mesh, const SmoothNormals& normals,
+                            std::int32_t triangle, const Vector3d& p_WT,
+                            double depth_near) noexcept {
+  const auto& n = normals.corners(triangle);
+  const Vector3d& face_n = mesh.cell(triangle).face.n;
+  // Relative to a corner: far from the world's origin the differences are still exact.
+  const Vector3d& x = mesh.position(triangle, 0);
+  const Vector3d side_1 = mesh.position(triangle, 1) - x;
+  const Vector3d side_2 = mesh.position(triangle, 2) - x;
+  const Vector3d p = p_WT - x;
+  OffsetFoot foot;
+  foot.depth = depth_near;
+  for (int round = 0; round < kRoundsMax; ++round) {
+    const Vector3d e_1 = side_1 - foot.depth * (n[1] - n[0]);
+    const Vector3d e_2 = side_2 - foot.depth * (n[2] - n[0]);
+    const Vector3d r = p + foot.depth * n[0];
+    const Vector3d area = e_1.cross(e_2);
+    const double scale = 1 / area.squaredNorm();
+    foot.weights[1] = r.cross(e_2).dot(area) * scale;
+    foot.weights[2] = e_1.cross(r).dot(area) * scale;
+    foot.weights[0] = 1 - foot.weights[1] - foot.weights[2];
+    // Moving along the sunken plane changes no height, so only the sinking itself counts.
+    const double sinking = weighted(n, foot.weights).dot(area);
+    // A triangle that has shrunk to a point and grown again faces as before, with its sides turned.
+    const bool turned_over =
+        !(sinking > 0 && area.dot(face_n) > 0 && e_1.dot(side_1) > 0 && e_2.dot(side_2) > 0);
+    if (turned_over) return foot;
+    const double change = -r.dot(area) / sinking;
+    foot.depth += change;
+    if (std::abs(change) <= mesh.depth_rounding()) {
+      foot.found = true;
+      return foot;
+    }
+  }
+  return foot;
+}
+
+OffsetTracker::OffsetTracker(const ContactMesh& mesh, const ContactSearch& search,
+                             double crease_angle)
+    : OffsetTracker(mesh, search, std::make_shared<const SmoothNormals>(mesh, crease_angle)) {}
+
+OffsetTracker::OffsetTracker(const ContactMesh& mesh, const ContactSearch& search,
+                             std::shared_ptr<const SmoothNormals> normals)
+    : mesh_(&mesh), search_(&search), normals_(std::move(normals)), edge_planes_(mesh, search) {}
+
+void OffsetTracker::start(std::int32_t triangle) noexcept {
+  active_ = triangle;
+  foot_ = {};
+}
+
+TrackerCounters OffsetTracker::counters() const noexcept {
+  TrackerCounters sum = edge_planes_.counters();
+  sum.cycles += counters_.cycles;
+  sum.long_walks += counters_.long_walks;
+  return sum;
+}
+
+TrackerStep OffsetTracker::follow(const Vector3d& p_WT) noexcept {
+  TrackerStep step;
+  step.hops = walk(p_WT);
+  // Written so that NaN means no contact.
+  if (!(foot_.depth >= 0) && !find_again(p_WT)) return step;
+  step.touching = true;
+  weights_ = within_triangle(foot_.weights);
+  const Vector3d sum = weighted(normals_->corners(active_), weights_);
+  const double length = sum.norm();
+  n_W_ = length > 0 ? Vector3d(sum / length) : mesh_->cell(active_).face.n;
+  // The corners sink along unit normals; in between, the mean of those is shorter.
+  step.depth = foot_.found ? foot_.depth * length : foot_.depth;
+  return step;
+}
+
+OffsetFoot OffsetTracker::foot_on(std::int32_t triangle, const Vector3d& p_WT) const noexcept {
+  OffsetFoot foot = find_offset_foot(*mesh_, *normals_, triangle, p_WT, foot_.depth);
+  // Once more from the surface: a depth that fits one triangle may turn the next one over.
+  if (!foot.found) foot = find_offset_foot(*mesh_, *normals_, triangle, p_WT, 0);
+  if (!foot.found) {
+    foot.weights = edge_plane_weights(*mesh_, triangle, p_WT);
+    foot.depth = mesh_->depth(triangle, p_WT);
+  }
+  return foot;
+}
+
+std::uint16_t OffsetTracker::walk(const Vector3d& p_WT) noexcept {
+  TriangleSet<kHopsMax> visited;
+  std::int32_t best = active_;
+  OffsetFoot best_foot;
+  double best_share = -std::numeric_limits<double>::infinity();
+  for (std::uint16_t hops = 0; hops < kHopsMax; ++hops) {
+    foot_ = foot_on(active_, p_WT);
+    const auto shares = edge_shares(*mesh_, *normals_, active_, foot_, p_WT);
+    const double least = std::min({shares[0], shares[1], shares[2]});
+    if (!(least < -kWeightRounding)) return hops;
+    if (least > best_share) {
+      best = active_;
+      best_foot = foot_;
+      best_share = least;
+    }
+    visited.add(active_);
+    std::int32_t next = -1;
+    double next_share = -kWeightRounding;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::int32_t neighbour = mesh_->cell(active_).neighbours[k];
+      if (shares[k] < next_share && !visited.has(neighbour)) {
+        next = neighbour;
+        next_share = shares[k];
+      }
+    }
+    if (next < 0) {
+      ++counters_.cycles;
+      active_ = best;
+      foot_ = best_foot;
+      return hops;
+    }
+    active_ = next;
+  }
+  ++counters_.long_walks;
+  active_ = best;
+  foot_ = best_foot;
+  return kHopsMax;
+}
+
+bool OffsetTracker::find_again(const Vector3d& p_WT) noexcept {
+  if (!search_->inside(p_WT)) return false;
+  edge_planes_.start(active_);
+  const TrackerStep step = edge_planes_.follow(p_WT);
+  if (!step.touching) return false;
+  active_ = edge_planes_.active();
+  foot_.depth = step.depth;
+  foot_ = foot_on(active_, p_WT);
+  // Inside, and above the smooth cell by what its sides lean: on the surface.
+  if (!(foot_.depth >= 0)) foot_.depth = 0;
+  return true;
+}
+
+}  // namespace thimble::render

@@ -1,0 +1,97 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <memory>
+
+#include "mesh/contact_mesh.h"
+#include "mesh/smooth_normals.h"
+#include "mesh/surface_weights.h"
+#include "search/contact_search.h"
+#include "track/surface_tracker.h"
+
+namespace thimble::render {
+
+/// Says where a tip belongs on a triangle whose corners sink along their normals.
+struct OffsetFoot {
+  Eigen::Vector3d weights{0, 0, 0};  ///< Of the corners; negative beyond a side.
+  double depth = 0;                  ///< How far the corners have sunk, m; negative outside.
+  bool found = false;  ///< False where the sunken triangle has turned over: too deep for its bend.
+};
+
+/// Finds weights w and depth d with p = sum of w_k (x_k - d n_k), where x are the corners and n
+/// their normals: the place of the tip (W, m) on the triangle that is sunk by d.
+///
+///        x_0 ---- q ----- x_1      surface; q = sum w_k x_k
+///         |       |        |       the three ways down are straight
+///        y_0 ---- p ----- y_1      sunk by d; y = x - d n
+///
+/// Newton's iteration in d alone, from `depth_near`: for given d the sunken triangle is plane, and
+/// the slope of the height above it is known in closed form. Real-time: safe; 2 or 3 rounds from a
+/// depth near by, at worst 12.
+OffsetFoot find_offset_foot(const ContactMesh& mesh, const SmoothNormals& normals,
+                            std::int32_t triangle, const Eigen::Vector3d& p_WT,
+                            double depth_near) noexcept;
+
+/// Follows the tip over a smooth surface, with depth and direction continuous over edges and
+/// vertices at every depth up to the surface's radius of curvature.
+///
+/// The cell of a triangle is what it sweeps when its corners sink along their normals. Neighbours
+/// share the swept side to the bit, so cells neither overlap nor leave gaps, at vertices neither:
+/// that is what edge planes cannot do. The normal is that of the corners, weighted; the proxy is
+/// the point q of the surface, and the depth is the distance from it. Over creases there is one
+/// normal on each side, and the edge plane between the two faces decides [BP 4b].
+///
+/// Where a sunken triangle has turned over, the edge planes stand in. If the depth turns negative
+/// while the tip is inside, SurfaceTracker finds the contact again. Deterministic. All but the
+/// constructors is Real-time: safe; usually one or two feet per tick, at worst `kHopsMax` and what
+/// SurfaceTracker needs.
+class OffsetTracker {
+ public:
+  /// Keeps references: mesh and search must outlive the tracker.
+  /// Real-time: never from the servo thread.
+  OffsetTracker(const ContactMesh& mesh, const ContactSearch& search,
+                double crease_angle = kCreaseAngle);
+
+  /// Takes the normals that somebody has already found of the same mesh.
+  /// Real-time: never from the servo thread.
+  OffsetTracker(const ContactMesh& mesh, const ContactSearch& search,
+                std::shared_ptr<const SmoothNormals> normals);
+
+  /// Makes a triangle active, where the tip has just entered.
+  void start(std::int32_t triangle) noexcept;
+
+  /// Follows the tip to `p_WT` (W, m; finite). Precondition: `start` was called and the last step
+  /// was touching.
+  TrackerStep follow(const Eigen::Vector3d& p_WT) noexcept;
+
+  std::int32_t active() const noexcept { return active_; }
+
+  /// Gives the unit normal at the tip's place on the surface, W, as of the last step.
+  const Eigen::Vector3d& normal() const noexcept { return n_W_; }
+
+  /// Tells where on the active triangle the tip belongs (surface_weights.h), as of the last step.
+  const Eigen::Vector3d& weights(const Eigen::Vector3d&) const noexcept { return weights_; }
+
+  TrackerCounters counters() const noexcept;
+
+  /// Gives the normals of the mesh, for stages that share them.
+  const std::shared_ptr<const SmoothNormals>& smooth_normals() const noexcept { return normals_; }
+
+ private:
+  OffsetFoot foot_on(std::int32_t triangle, const Eigen::Vector3d& p_WT) const noexcept;
+  std::uint16_t walk(const Eigen::Vector3d& p_WT) noexcept;
+  bool find_again(const Eigen::Vector3d& p_WT) noexcept;
+
+  const ContactMesh* mesh_;
+  const ContactSearch* search_;
+  std::shared_ptr<const SmoothNormals> normals_;
+  SurfaceTracker edge_planes_;
+  std::int32_t active_ = -1;
+  OffsetFoot foot_;
+  Eigen::Vector3d weights_{0, 0, 0};
+  Eigen::Vector3d n_W_{0, 0, 0};
+  TrackerCounters counters_;
+};
+
+}  // namespace thimble::render

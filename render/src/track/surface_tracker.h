@@ -1,0 +1,98 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+
+#include "mesh/contact_mesh.h"
+#include "mesh/surface_weights.h"
+#include "search/contact_search.h"
+
+namespace thimble::render {
+
+/// Is the most triangles a tracker crosses in one tick. At 2 m/s and 1 kHz the tip moves 2 mm; over
+/// triangles of 0.3 mm that is 7 hops [STABILITY 3: vT/L], and a walk around a vertex of valence 64
+/// needs 32. Reaching the bound is counted.
+inline constexpr std::uint16_t kHopsMax = 64;
+
+/// Is the most triangles looked at when contact is sought again nearby: the third ring around a
+/// triangle of a regular mesh holds about 75.
+inline constexpr std::int32_t kPatchMax = 128;
+
+/// Counts what a tracker met that a plain walk cannot settle.
+struct TrackerCounters {
+  std::uint64_t cycles = 0;       ///< Walks that came back to a triangle: no cell holds the tip.
+  std::uint64_t long_walks = 0;   ///< Walks that reached `kHopsMax`.
+  std::uint64_t found_near = 0;   ///< Contact found again over the surface nearby.
+  std::uint64_t called_back = 0;  ///< Of those, walks undone because they ended too deep.
+  std::uint64_t found_far = 0;    ///< Contact found again only by asking the search.
+};
+
+/// Says where the tip stands with respect to the surface after one tick.
+struct TrackerStep {
+  bool touching = false;   ///< Whether it still touches.
+  double depth = 0;        ///< Below the active triangle's plane, m; at least 0 if touching.
+  std::uint16_t hops = 0;  ///< Edge planes crossed.
+};
+
+/// Follows the tip over the surface of a mesh from triangle to triangle [BP 3.1].
+///
+/// A tip outside an edge plane of the active triangle hops to the neighbour behind the plane it
+/// violates most, until a cell holds it. Contact stays while the depth is positive, even when the
+/// tip has come out at the back of a thin part: that is what the memory is for.
+///
+/// Near vertices the cells overlap or leave gaps. If a walk would come back to a triangle, or gets
+/// too long, the least violated triangle visited stays active. Cells of faces far apart overlap
+/// too: where a walk has made the tip deeper by more than twice its move, it has left for such a
+/// cell, and the nearest triangle over the surface that has the tip below it becomes active
+/// instead, if it is less deep. If the depth turns negative while the tip is still inside, the
+/// nearest triangle that can be reached over the surface and has the tip below it becomes active,
+/// so contact is never lost inside. Deterministic. All but the constructor is Real-time: safe;
+/// usually one cell per tick, at worst `kHopsMax` cells, twice `kPatchMax` triangles and two
+/// questions to the search.
+class SurfaceTracker {
+ public:
+  /// Keeps references: mesh and search must outlive the tracker.
+  SurfaceTracker(const ContactMesh& mesh, const ContactSearch& search) noexcept
+      : mesh_(&mesh), search_(&search) {}
+
+  /// Makes a triangle active, where the tip has just entered.
+  void start(std::int32_t triangle) noexcept {
+    active_ = triangle;
+    has_before_ = false;
+  }
+
+  /// Follows the tip to `p_WT` (W, m; finite). Precondition: `start` was called and the last step
+  /// was touching.
+  TrackerStep follow(const Eigen::Vector3d& p_WT) noexcept;
+
+  /// Tells the active triangle.
+  std::int32_t active() const noexcept { return active_; }
+
+  /// Gives the unit normal of the active triangle, W.
+  const Eigen::Vector3d& normal() const noexcept { return mesh_->cell(active_).face.n; }
+
+  /// Finds where on the active triangle the tip belongs (surface_weights.h).
+  Eigen::Vector3d weights(const Eigen::Vector3d& p_WT) const noexcept {
+    return within_triangle(edge_plane_weights(*mesh_, active_, p_WT));
+  }
+
+  const TrackerCounters& counters() const noexcept { return counters_; }
+
+ private:
+  std::uint16_t walk(const Eigen::Vector3d& p) noexcept;
+  std::uint16_t settle(const Eigen::Vector3d& p) noexcept;
+  bool find_near(const Eigen::Vector3d& p_WT, std::int32_t before) noexcept;
+  void find_far(const Eigen::Vector3d& p_WT) noexcept;
+  double call_back(const Eigen::Vector3d& p_WT, std::int32_t before, double depth_walked) noexcept;
+  bool too_deep(const Eigen::Vector3d& p_WT, std::int32_t before, double depth) const noexcept;
+
+  const ContactMesh* mesh_;
+  const ContactSearch* search_;
+  std::int32_t active_ = -1;
+  bool has_before_ = false;  // whether the two below are those of the last tick
+  Eigen::Vector3d p_WT_before_{0, 0, 0};
+  double depth_before_ = 0;
+  TrackerCounters counters_;
+};
+
+}  // namespace thimble::render
