@@ -22,19 +22,19 @@ class Hum {
   struct Settings {
     double amplitude = 2e-4;  // m
     double frequency = 100;   // Hz
-    void read(render::SettingsReader& reader, const render::EffectSurroundings&) {
+    void read(render::SettingsReader& reader, const render::EffectContext&) {
       reader.number("amplitude", amplitude, {.unit = "m", .least = 0, .most = 0.001});
       reader.number("frequency", frequency, {.unit = "Hz", .least = 1, .most = 400});
     }
   };
-  Hum(const Settings& settings, const render::EffectSurroundings&) : settings_(settings) {}
+  Hum(const Settings& settings, const render::EffectContext&) : settings_(settings) {}
 
   // Runs in every tick of contact, before the surface's spring; the depth it leaves is what is
   // felt.
-  void touch(const DeviceState& state, render::SurfaceFeel& feel) noexcept {
+  void touch(const DeviceState& state, render::SurfaceResponse& response) noexcept {
     time_ += state.dt;
     const double phase = 2 * std::numbers::pi * settings_.frequency * time_;
-    feel.contact.depth += settings_.amplitude * std::sin(phase);
+    response.contact.depth += settings_.amplitude * std::sin(phase);
   }
   void leave() noexcept { time_ = 0; }
 

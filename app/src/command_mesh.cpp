@@ -101,11 +101,11 @@ int tell_pages(const MeshOptions& options) {
   const Eigen::Vector3d size = high - low;
   std::printf(
       "%s (a mesh in pages, lengths in m)\n  triangles   %d\n  pages       %zu of up to %d\n",
-      options.file.c_str(), pages->triangle_count(), pages->boxes().size(), render::kPageRecords);
+      options.file.c_str(), pages->triangle_count(), pages->boxes().size(), render::kPageTriangles);
   std::printf("  box         (%.4g, %.4g, %.4g) to (%.4g, %.4g, %.4g), %.4g x %.4g x %.4g\n",
               low.x(), low.y(), low.z(), high.x(), high.y(), high.z(), size.x(), size.y(),
               size.z());
-  std::vector<render::CompactTriangle> records(render::kPageRecords);
+  std::vector<render::PackedTriangle> records(render::kPageTriangles);
   std::size_t damaged = 0;
   for (std::size_t page = 0; page < pages->boxes().size(); ++page) {
     damaged += pages->read_page(static_cast<std::int32_t>(page), records) == 0;

@@ -28,7 +28,7 @@ int generate_mesh(const GenerateOptions& options) {
   }
   std::printf("%s: a bumpy ring of %d triangles in %d pages; %.0f MiB of memory at most.\n",
               options.out.c_str(), grid.triangle_count(),
-              grid.triangle_count() / render::kPageRecords,
+              grid.triangle_count() / render::kPageTriangles,
               static_cast<double>(resident_memory().most) / (1 << 20));
   return kExitDone;
 }

@@ -5,7 +5,7 @@
 #include "commands.h"
 #include "complain.h"
 #include "mesh/contact_mesh.h"
-#include "packed/compact_surface.h"
+#include "packed/packed_surface.h"
 #include "page/page_file.h"
 #include "thimble/render/mesh/load_mesh.h"
 
@@ -21,13 +21,13 @@ int page_mesh(const PageOptions& options) {
   if (!mesh) return complain(mesh.error(), kExitBadInput);
   const auto checked = render::ContactMesh::build(*mesh);
   if (!checked) return complain({options.in + ": " + checked.error().message}, kExitBadInput);
-  const auto surface = render::CompactSurface::build(*checked);
+  const auto surface = render::PackedSurface::build(*checked);
   if (!surface) return complain({options.in + ": " + surface.error().message}, kExitBadInput);
   if (const auto written = render::write_page_file(*surface, options.out); !written) {
     return complain(written.error(), kExitTrouble);
   }
   std::printf("%s: %d triangles in %d pages.\n", options.out.c_str(), surface->triangle_count(),
-              (surface->triangle_count() + render::kPageRecords - 1) / render::kPageRecords);
+              (surface->triangle_count() + render::kPageTriangles - 1) / render::kPageTriangles);
   return kExitDone;
 }
 

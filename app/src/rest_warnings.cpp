@@ -200,7 +200,7 @@ double curvature_of(const render::EffectPlan& texture) {
   const auto force = [&stage](const Vector3d& p_W, const Vector3d& n_W) -> Vector3d {
     driver::DeviceState state;
     state.p_WT = p_W;
-    render::SurfaceFeel feel{
+    render::SurfaceResponse feel{
         .contact = {.touching = true, .triangle = 0, .depth = 1, .n_W = n_W, .p_WP = p_W + n_W}};
     stage->touch(state, feel);
     return feel.contact.depth * feel.contact.n_W;
@@ -223,7 +223,7 @@ double hold_of(const render::EffectPlan& friction) {
     state.dt = 1e-3;
     state.p_WT = {x, 0, -1e-3};
     state.fresh = true;
-    render::SurfaceFeel feel{
+    render::SurfaceResponse feel{
         .contact = {.touching = true, .triangle = 0, .depth = 1e-3, .n_W = {0, 0, 1}}};
     feel.contact.p_WP = {x, 0, 0};
     feel.f_T_W = {0, 0, 10};  // so that nothing slips

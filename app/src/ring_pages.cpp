@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 constexpr std::int32_t kPatchAround = 32;
 constexpr std::int32_t kPatchAcross = 16;
 constexpr std::int32_t kPatchSquares = kPatchAround * kPatchAcross;
-static_assert(2 * kPatchSquares == render::kPageRecords);
+static_assert(2 * kPatchSquares == render::kPageTriangles);
 
 /// Is what the ring needs to know of one angle: itself and its waves.
 struct Turn {
@@ -130,7 +130,7 @@ class RingNumbers {
     i = (i + grid_.around) % grid_.around;
     j = (j + grid_.across) % grid_.across;
     const std::int32_t patch = i / kPatchAround * patches_across_ + j / kPatchAcross;
-    return page_of_patch_[static_cast<std::size_t>(patch)] * render::kPageRecords +
+    return page_of_patch_[static_cast<std::size_t>(patch)] * render::kPageTriangles +
            2 * place(i % kPatchAround, j % kPatchAcross) + (above ? 1 : 0);
   }
 
@@ -153,9 +153,9 @@ struct Corner {
 };
 
 /// Fills in everything but the neighbours.
-render::CompactTriangle record_of(const Corner& a, const Corner& b, const Corner& c) {
+render::PackedTriangle record_of(const Corner& a, const Corner& b, const Corner& c) {
   const std::array<const Corner*, 3> corners{&a, &b, &c};
-  render::CompactTriangle record{};
+  render::PackedTriangle record{};
   for (std::size_t k = 0; k < 3; ++k) {
     record.x[k] = corners[k]->position[0];
     record.y[k] = corners[k]->position[1];
@@ -199,7 +199,7 @@ driver::Result<void> write_ring(const BumpyRing& ring, const RingGrid& grid,
   const auto corner = [&corners](std::int32_t i, std::int32_t j) -> Corner& {
     return corners[index(i, kCornersAcross, j)];
   };
-  std::vector<render::CompactTriangle> page(render::kPageRecords);
+  std::vector<render::PackedTriangle> page(render::kPageTriangles);
   for (std::int32_t number = 0; number < numbers.pages(); ++number) {
     const std::int32_t i0 = numbers.first_around(number), j0 = numbers.first_across(number);
     for (std::int32_t i = 0; i <= kPatchAround; ++i) {
@@ -230,8 +230,8 @@ driver::Result<void> write_ring(const BumpyRing& ring, const RingGrid& grid,
     // What a touch tells of: there is no other file that it could be counted in.
     for (std::size_t i = 0; i < page.size(); ++i) {
       page[i].flags =
-          static_cast<std::uint32_t>(number * render::kPageRecords + static_cast<std::int32_t>(i))
-          << render::CompactTriangle::kSourceShift;
+          static_cast<std::uint32_t>(number * render::kPageTriangles + static_cast<std::int32_t>(i))
+          << render::PackedTriangle::kSourceShift;
     }
     if (auto done = writer->append(page); !done) return done;
   }

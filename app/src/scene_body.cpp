@@ -9,7 +9,7 @@
 namespace thimble::app {
 
 SceneBody read_body(YamlMap& object, const std::filesystem::path& folder,
-                    const render::EffectSurroundings& surroundings) {
+                    const render::EffectContext& context) {
   SceneBody body;
   YamlMap map = object.require_map("body");
   const auto read = [&](const char* key, auto read_settings) {
@@ -18,23 +18,23 @@ SceneBody read_body(YamlMap& object, const std::filesystem::path& folder,
     read_settings(settings);
     settings.finish();
   };
-  read("dent", [&](auto& settings) { body.dent.emplace().read(settings, surroundings); });
+  read("dent", [&](auto& settings) { body.dent.emplace().read(settings, context); });
   read("plastic", [&](auto& settings) { body.shape.clay.emplace().read(settings); });
   read("snap", [&](auto& settings) { body.shape.snap.emplace().read(settings); });
   read("motion", [&](auto& settings) { body.motion.emplace().read(settings); });
-  body.shape.step = surroundings.tick;
+  body.shape.step = context.tick;
   map.finish();
   return body;
 }
 
-render::BodyCoupling coupling_of(const render::EffectSurroundings& surroundings, bool texture,
+render::BodyCoupling coupling_of(const render::EffectContext& context, bool texture,
                                  bool friction) {
-  render::BodyCoupling coupling{.stiffness = surroundings.surface_stiffness,
-                                .damping = surroundings.surface_damping,
-                                .step = surroundings.tick};
+  render::BodyCoupling coupling{.stiffness = context.surface_stiffness,
+                                .damping = context.surface_damping,
+                                .step = context.tick};
   if (texture) coupling.stiffness *= 2;
   if (!friction) return coupling;
-  const double hold = render::stick_stiffness_max(surroundings);
+  const double hold = render::stick_stiffness_max(context);
   if (std::isfinite(hold)) coupling.stiffness = std::max(coupling.stiffness, hold);
   return coupling;
 }

@@ -6,7 +6,7 @@
 #include "body/motion/move_object.h"
 #include "thimble/render/body/dent_settings.h"
 #include "thimble/render/body/shape_choice.h"
-#include "thimble/render/effect/effect_surroundings.h"
+#include "thimble/render/effect/effect_context.h"
 #include "yaml_reader.h"
 
 namespace thimble::app {
@@ -21,12 +21,11 @@ struct SceneBody {
 /// Reads `body: {dent: {...}, plastic: {...}, snap: {...}, motion: {...}}` of an object; files are
 /// looked for in `folder`. Mistakes are noted by `object`. Real-time: never from the servo thread.
 SceneBody read_body(YamlMap& object, const std::filesystem::path& folder,
-                    const render::EffectSurroundings& surroundings);
+                    const render::EffectContext& context);
 
 /// Tells how stiff a surface may answer a body that it is on: its own spring, twice with a texture
 /// (whose slopes are at most 1), and what friction may hold with on this arm.
 /// Real-time: never from the servo thread.
-render::BodyCoupling coupling_of(const render::EffectSurroundings& surroundings, bool texture,
-                                 bool friction);
+render::BodyCoupling coupling_of(const render::EffectContext& context, bool texture, bool friction);
 
 }  // namespace thimble::app

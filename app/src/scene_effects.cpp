@@ -48,26 +48,26 @@ const render::EffectKind* named_effect(YamlMap& entry) {
 
 }  // namespace
 
-render::EffectSurroundings surroundings_of(const ArmFile& arm, double rate) {
-  render::EffectSurroundings surroundings;
-  surroundings.tick = 1 / rate;
-  surroundings.delay = loop_delay(arm);
-  surroundings.force_max = arm.limits.force_max;
-  surroundings.tip_mass = arm.simulated.plant.mass;
-  surroundings.tip_damping = arm.simulated.plant.viscous;
-  surroundings.tip_coulomb = arm.simulated.plant.coulomb;
-  surroundings.encoder_step = worst_over_workspace(arm).encoder_step;
-  return surroundings;
+render::EffectContext effect_context_of(const ArmFile& arm, double rate) {
+  render::EffectContext context;
+  context.tick = 1 / rate;
+  context.delay = loop_delay(arm);
+  context.force_max = arm.limits.force_max;
+  context.tip_mass = arm.simulated.plant.mass;
+  context.tip_damping = arm.simulated.plant.viscous;
+  context.tip_coulomb = arm.simulated.plant.coulomb;
+  context.encoder_step = worst_over_workspace(arm).encoder_step;
+  return context;
 }
 
 std::vector<render::EffectPlan> read_effects(YamlMap& object, const std::filesystem::path& folder,
-                                             const render::EffectSurroundings& surroundings) {
+                                             const render::EffectContext& context) {
   std::vector<render::EffectPlan> plans;
   for (YamlMap& entry : object.require_maps("effects")) {
     const render::EffectKind* kind = named_effect(entry);
     if (kind == nullptr) continue;
     YamlSettings settings(entry, folder);
-    plans.push_back({kind, kind->read(settings, surroundings)});
+    plans.push_back({kind, kind->read(settings, context)});
     settings.finish();
   }
   std::stable_sort(plans.begin(), plans.end(),
@@ -76,12 +76,12 @@ std::vector<render::EffectPlan> read_effects(YamlMap& object, const std::filesys
 }
 
 render::FieldBuilder read_field(YamlMap& object, const std::filesystem::path& folder,
-                                const render::EffectSurroundings& surroundings) {
+                                const render::EffectContext& context) {
   std::vector<std::string_view> names;
   for (const render::FieldKind& kind : render::field_table()) names.push_back(kind.name);
   const render::FieldKind& kind = render::field_table()[object.require_choice("field", names)];
   YamlSettings settings(object, folder);
-  render::FieldBuilder build = kind.read(settings, surroundings);
+  render::FieldBuilder build = kind.read(settings, context);
   settings.finish();
   return build;
 }

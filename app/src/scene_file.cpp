@@ -81,8 +81,7 @@ void read_mesh(YamlMap& map, const std::filesystem::path& folder,
 }
 
 SceneObject read_object(YamlMap map, const std::filesystem::path& folder,
-                        const std::filesystem::path& mesh_folder,
-                        render::EffectSurroundings surroundings) {
+                        const std::filesystem::path& mesh_folder, render::EffectContext context) {
   SceneObject object;
   object.name = map.require_string("name");
   int forms = 0;
@@ -94,10 +93,10 @@ SceneObject read_object(YamlMap map, const std::filesystem::path& folder,
   object.R_WO = map.optional_rotation("rotate_degrees");
   object.p_WO =
       map.optional_vector3("position", Eigen::Vector3d::Zero(), "m", -kPositionMax, kPositionMax);
-  surroundings.R_WO = object.R_WO;
-  surroundings.p_WO = object.p_WO;
+  context.R_WO = object.R_WO;
+  context.p_WO = object.p_WO;
   if (map.has("field")) {
-    object.build_field = read_field(map, folder, surroundings);
+    object.build_field = read_field(map, folder, context);
     return object;
   }
   object.shape = read_shape(map, object.R_WO, object.p_WO);
@@ -110,27 +109,27 @@ SceneObject read_object(YamlMap map, const std::filesystem::path& folder,
   }
   if (object.paged) {
     const render::ContactChoice& c = object.contact;
-    const bool as_it_is = c.tracker == render::TrackerChoice::kCompact && !c.search &&
-                          !c.blending && !c.normals && !c.curved_depth && !c.crease_angle;
+    const bool as_it_is = c.tracker == render::TrackerChoice::kPacked && !c.search && !c.blending &&
+                          !c.normals && !c.curved_depth && !c.crease_angle;
     if (map.has("contact") && !as_it_is) {
       map.reject("contact",
                  "a mesh in pages is touched in one way, \"tracker: compact\", and has its creases "
                  "in the file; keep nothing else");
     }
-    object.contact.tracker = render::TrackerChoice::kCompact;
+    object.contact.tracker = render::TrackerChoice::kPacked;
   }
-  surroundings.surface_stiffness = object.stiffness;
-  surroundings.surface_damping = object.damping;
+  context.surface_stiffness = object.stiffness;
+  context.surface_damping = object.damping;
   if (map.has("effects")) {
-    object.effects = read_effects(map, folder, surroundings);
+    object.effects = read_effects(map, folder, context);
   }
   if (map.has("body")) {
-    object.body = read_body(map, folder, surroundings);
+    object.body = read_body(map, folder, context);
     const auto names = [&object](std::string_view group) {
       return std::any_of(object.effects.begin(), object.effects.end(),
                          [&](const auto& effect) { return effect.kind->group == group; });
     };
-    object.coupling = coupling_of(surroundings, names("texture"), names("friction"));
+    object.coupling = coupling_of(context, names("texture"), names("friction"));
     if (object.paged) {
       map.reject("body", "only what is in memory has a body; put it on another object");
     } else if (object.shape && (object.body.dent || object.body.shape.named())) {
@@ -227,9 +226,9 @@ driver::Result<Scene> read_scene(const std::filesystem::path& file,
   } else {
     arm_error = arm.error();
   }
-  const render::EffectSurroundings surroundings = surroundings_of(scene.arm, scene.rate);
+  const render::EffectContext context = effect_context_of(scene.arm, scene.rate);
   for (YamlMap& object : root.require_maps("objects")) {
-    scene.objects.push_back(read_object(object, folder, mesh_folder, surroundings));
+    scene.objects.push_back(read_object(object, folder, mesh_folder, context));
   }
   for (std::size_t i = 1; i < scene.objects.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {

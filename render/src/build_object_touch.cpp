@@ -11,10 +11,10 @@
 #include "shape_object.h"
 #include "touch_of.h"
 #include "track/blended.h"
-#include "track/compact_contact.h"
 #include "track/curved_depth.h"
 #include "track/edge_blending.h"
 #include "track/god_object.h"
+#include "track/memory_contact.h"
 #include "track/mesh_contact.h"
 #include "track/normal_projection_tracker.h"
 #include "track/offset_tracker.h"
@@ -62,8 +62,8 @@ Built tracked_touch(Contact contact, const ContactChoice& choice, BlendingChoice
   return apart(choice, "does not know this blending.");
 }
 
-Built compact_touch(const TriangleMesh& mesh_W, const ContactChoice& choice,
-                    const SurfaceChoice& surface) {
+Built packed_touch(const TriangleMesh& mesh_W, const ContactChoice& choice,
+                   const SurfaceChoice& surface) {
   if (choice.blending.value_or(BlendingChoice::kPhong) != BlendingChoice::kPhong ||
       !choice.curved_depth.value_or(true)) {
     return apart(choice,
@@ -78,11 +78,11 @@ Built compact_touch(const TriangleMesh& mesh_W, const ContactChoice& choice,
   // Looks at the whole mesh first, so that faults are told as for every other way.
   const auto checked = ContactMesh::build(mesh_W);
   if (!checked) return checked.error();
-  CompactSurfaceOptions options;
+  PackedSurfaceOptions options;
   if (choice.crease_angle) options.crease_angle = *choice.crease_angle;
-  auto compact = CompactSurface::build(*checked, options);
-  if (!compact) return compact.error();
-  return touch_of(CompactContact(std::move(compact).value(), choice.search), surface);
+  auto packed = PackedSurface::build(*checked, options);
+  if (!packed) return packed.error();
+  return touch_of(MemoryContact(std::move(packed).value(), choice.search), surface);
 }
 
 template <class Contact>
@@ -130,8 +130,8 @@ Built stiff_touch(const TriangleMesh& mesh_W, const ContactChoice& choice,
       if (!contact) return contact.error();
       return touch_of(std::move(contact).value(), surface);
     }
-    case TrackerChoice::kCompact:
-      return compact_touch(mesh_W, choice, surface);
+    case TrackerChoice::kPacked:
+      return packed_touch(mesh_W, choice, surface);
   }
   return apart(choice, "is not known.");
 }
@@ -148,7 +148,7 @@ Built build_object_touch(const TriangleMesh& mesh_W, const ContactChoice& choice
     // Belongs to the contact, which lives as long as the dent around it.
     mesh = std::shared_ptr<const ContactMesh>(std::shared_ptr<const ContactMesh>(), touched);
   } else {
-    // Contact on records keeps none; base points are read from here.
+    // Contact on packed triangles keeps none; base points are read from here.
     auto own = ContactMesh::build(mesh_W);
     if (!own) return own.error();
     mesh = std::make_shared<const ContactMesh>(std::move(own).value());

@@ -11,11 +11,9 @@
 #include "bench/figures_reporter.h"
 #include "body/dent/bendable_polygon.h"
 #include "body/motion/rigid_body.h"
-#include "body/shape/plastic_base.h"
 #include "body/shape/snap_base.h"
 #include "body/spring/mesh_springs.h"
 #include "body/spring/modal_motion.h"
-#include "body/spring/ring_patch.h"
 #include "body/spring/spring_motion.h"
 #include "figure.h"
 #include "mesh/surface_weights.h"
@@ -58,27 +56,6 @@ BENCHMARK_CAPTURE(step_nodes, verlet, SpringScheme::kVerlet);
 BENCHMARK_CAPTURE(step_nodes, implicit_euler, SpringScheme::kImplicitEuler);
 BENCHMARK_CAPTURE(step_nodes, trapezoid, SpringScheme::kTrapezoid);
 
-// A patch of 3 rings on meshes of 642 to 163,842 vertices: must not depend on the mesh.
-void step_patch(benchmark::State& state, SpringScheme scheme) {
-  const auto mesh = support::icosphere(static_cast<int>(state.range(0)), 0.05);
-  render::SpringMotionOptions options;
-  options.scheme = scheme;
-  auto motion =
-      render::SpringMotion<3>::build(
-          render::join_vertices(mesh, {1e-3, 20, 0.002, 100, 0.01, false}).value(), options)
-          .value();
-  render::RingPatch rings(motion.network().node_count(), 128);
-  const std::vector<std::int32_t> first(mesh.triangles[0].begin(), mesh.triangles[0].end());
-  for (auto _ : state) {
-    motion.set_active(rings.around(motion.network(), first, 3));
-    motion.push(first[0], {0, 0, 0.1});
-    motion.step();
-    benchmark::DoNotOptimize(motion.u().data());
-  }
-}
-BENCHMARK_CAPTURE(step_patch, verlet, SpringScheme::kVerlet)->Arg(3)->Arg(5)->Arg(7);
-BENCHMARK_CAPTURE(step_patch, implicit_euler, SpringScheme::kImplicitEuler)->Arg(3)->Arg(5)->Arg(7);
-
 // One tick of touch on a torus of `range(0)` triangles, with or without a dent of 3 rings: the tip
 // strokes along at `range(1)` um per tick, 0.5 mm deep.
 void touch_torus(benchmark::State& state, bool dented) {
@@ -88,7 +65,7 @@ void touch_torus(benchmark::State& state, bool dented) {
   render::SurfaceChoice surface{.spring = {.stiffness = 500, .damping = 0}, .effects = {}};
   if (dented) surface.dent.emplace().pull = 0.2;
   render::ContactChoice choice;
-  choice.tracker = render::TrackerChoice::kCompact;
+  choice.tracker = render::TrackerChoice::kPacked;
   auto touch = render::build_object_touch(mesh, choice, surface).value();
   // Forth and back over 60 mm, so that the way is closed.
   const double step = static_cast<double>(state.range(1)) * 1e-6;
@@ -178,17 +155,6 @@ void press_snap(benchmark::State& state) {
 }
 BENCHMARK(press_snap);
 
-void press_clay(benchmark::State& state) {
-  render::PlasticBase base({.stiffness = 1000, .yield_force = 1, .movement_limit = 5e-3});
-  double way = 0;
-  for (auto _ : state) {
-    way = way > 8e-3 ? -8e-3 : way + 1e-5;
-    base.pull({0, 0, way}, kTick);
-    benchmark::DoNotOptimize(base.displacement());
-  }
-}
-BENCHMARK(press_clay);
-
 void step_rigid(benchmark::State& state) {
   const auto mesh = support::icosphere(1, 0.05);
   render::RigidBodySettings settings;
@@ -202,7 +168,7 @@ void step_rigid(benchmark::State& state) {
   auto body = render::RigidBody::build(settings).value();
   body.set_momentum({0, 0, 0}, {1e-3, 2e-3, 3e-3});
   for (auto _ : state) {
-    body.press({.depth = 1e-3, .stiffness = 800}, kTick);
+    body.push({0, 0, 0.8}, {0, 0, 0});
     body.step(kTick);
     benchmark::DoNotOptimize(body.p_WC());
   }

@@ -16,7 +16,7 @@
 #include "search/make_search.h"
 #include "support/bench_meshes.h"
 #include "support/random.h"
-#include "track/compact_contact.h"
+#include "track/memory_contact.h"
 
 // Contact on closed shapes of 0.1 m from 10^3 to 10^7 triangles, against other libraries in the
 // same run. Every time is the least of several rounds in which the contenders take turns, stretch
@@ -154,13 +154,13 @@ class Bench {
   void run_shape(const std::string& name, const render::TriangleMesh& mesh, const Shape& shape,
                  std::size_t triangles) {
     const auto begin = Clock::now();
-    auto surface = render::CompactSurface::build(mesh);
+    auto surface = render::PackedSurface::build(mesh);
     if (!surface) {
       std::fprintf(stderr, "%s\n", surface.error().message.c_str());
       return;
     }
     const std::size_t surface_bytes = surface.value().bytes();
-    render::CompactContact contact(std::move(surface).value());
+    render::MemoryContact contact(std::move(surface).value());
     add(name + ": build", seconds_since(begin), "s", triangles == 1000000 ? "<= 0.5" : "");
     add(name + ": memory",
         static_cast<double>(surface_bytes + contact.search().bytes()) /
@@ -217,7 +217,7 @@ class Bench {
   }
 
   void run_cold(const std::string& name, const render::TriangleMesh& mesh,
-                const render::CompactSurface& surface, Peer* embree, std::size_t triangles) {
+                const render::PackedSurface& surface, Peer* embree, std::size_t triangles) {
     constexpr std::size_t kQueries = 20000;
     support::Random random(9);
     std::vector<Vector3d> from, to, near;

@@ -18,7 +18,7 @@
 #include "page/paged_contact.h"
 #include "resident_memory.h"
 #include "ring_pages.h"
-#include "track/compact_contact.h"
+#include "track/memory_contact.h"
 
 // A tip that slides at 0.5 m/s over a ring of 10^7 (--long: 10^8) triangles on the disk, in a loop
 // of 1 kHz that sleeps, a thread loading for it; beside it the same over 10^6 triangles in memory,
@@ -160,7 +160,7 @@ class Bench {
     add(size + ": generate, memory", megabytes(app::resident_memory().now), "MiB");
     add(size + ": page file", static_cast<double>(std::filesystem::file_size(file)) / 1e6, "MB");
     begin = Clock::now();
-    auto reference = render::CompactContact::build(ring_mesh(1'000'000));
+    auto reference = render::MemoryContact::build(ring_mesh(1'000'000));
     if (!reference) return false;
     for (const bool cold : {false, true}) {
       if (!slide(size + (cold ? ", disk cache emptied" : ""), file, *reference, cold)) return false;
@@ -182,7 +182,7 @@ class Bench {
   }
 
   bool slide(const std::string& name, const std::filesystem::path& file,
-             render::CompactContact& reference, bool cold) {
+             render::MemoryContact& reference, bool cold) {
     if (cold) forget(file);
     auto opened = render::PagedSurface::open(file);
     if (!opened) {

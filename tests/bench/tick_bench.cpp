@@ -8,11 +8,13 @@
 #include <vector>
 
 #include "bench/figures_reporter.h"
-#include "mesh_touch.h"
 #include "session.h"
 #include "support/random.h"
 #include "support/vintage_arm.h"
 #include "thimble/driver/snapshot.h"
+#include "thimble/render/surface/spring_damper.h"
+#include "thimble/render/touch.h"
+#include "track/mesh_contact.h"
 
 // One whole tick on the virtual clock in contact with elephant.off, and each part of it alone.
 
@@ -75,7 +77,7 @@ driver::DeviceState state_of(const driver::TickRecord& record) {
 }
 
 /// The force law of the session's only object, as a copy that may be called.
-render::MeshTouch mesh_touch(const app::Session& session) {
+MeshTouch mesh_touch(const app::Session& session) {
   const auto& object = session.scene().objects.front();
   return {render::MeshContact::build(session.mesh_W()).value(),
           {.stiffness = object.stiffness, .damping = object.damping}};
@@ -86,7 +88,7 @@ void touch(benchmark::State& state) {
   if (!session || stroke_records().empty()) return state.SkipWithError("no scene");
   std::vector<driver::DeviceState> states;
   for (const auto& record : stroke_records()) states.push_back(state_of(record));
-  render::MeshTouch law = mesh_touch(*session);
+  MeshTouch law = mesh_touch(*session);
   std::size_t i = 0;
   for (auto _ : state) {
     benchmark::DoNotOptimize(law(states[i]));
@@ -196,7 +198,7 @@ void free_tick(benchmark::State& state) {
   // Nothing near: the ball without triangles around the tip is remembered, and no search is asked.
   const auto session = open_stroke();
   if (!session) return state.SkipWithError("no scene");
-  render::MeshTouch law = mesh_touch(*session);
+  MeshTouch law = mesh_touch(*session);
   support::Random random(1);
   driver::DeviceState at;
   at.p_WT = {0, 0, 0.2};

@@ -139,7 +139,7 @@ std::vector<std::byte> damaged(std::vector<std::byte> file, Bytes orders) {
 std::vector<std::byte> sound_pages() {
   const auto mesh = render::load_mesh(THIMBLE_SOURCE_DIR "/tests/data/meshes/box.off");
   promise(static_cast<bool>(mesh), "a sound mesh is read");
-  const auto surface = render::CompactSurface::build(*mesh, {});
+  const auto surface = render::PackedSurface::build(*mesh, {});
   promise(static_cast<bool>(surface), "a sound mesh is packed");
   const std::filesystem::path path = folder() / "sound.pages";
   promise(static_cast<bool>(render::write_page_file(*surface, path)), "pages can be written");
@@ -169,7 +169,7 @@ void touch_pages(const std::filesystem::path& pages) {
   object.mesh_file = pages;
   object.paged = true;
   object.stiffness = 100;
-  object.contact.tracker = render::TrackerChoice::kCompact;
+  object.contact.tracker = render::TrackerChoice::kPacked;
   scene.objects.push_back(object);
   const auto objects = app::SceneObjects::build(scene);
   if (!told(objects)) return;
@@ -193,11 +193,11 @@ bool read_pages(Bytes bytes) {
   const auto file = render::PageFile::open(path);
   if (!told(file)) return false;
   promise(file->triangle_count() > 0, "a page file has triangles");
-  std::vector<render::CompactTriangle> records(render::kPageRecords);
+  std::vector<render::PackedTriangle> records(render::kPageTriangles);
   std::int64_t in_all = 0;
   for (std::size_t page = 0; page < file->boxes().size(); ++page) {
     const std::int32_t count = file->read_page(static_cast<std::int32_t>(page), records);
-    promise(count >= 0 && count <= render::kPageRecords, "a page fits its buffer");
+    promise(count >= 0 && count <= render::kPageTriangles, "a page fits its buffer");
     in_all += count;
   }
   promise(in_all <= file->triangle_count(), "pages hold no more than was told");

@@ -44,7 +44,7 @@ struct Impact {
 /// period after the entry.
 Impact impact(std::string_view name, double speed, double phase, bool held, double stiffness,
               driver::SafetyGate* gate, bool symmetric) {
-  const auto friction = support::make_friction(name, render::GivenSettings({{"coefficient", 0.5}}));
+  const auto friction = support::make_friction(name, render::MapSettings({{"coefficient", 0.5}}));
   const render::SpringDamper surface{.stiffness = stiffness, .damping = 0};
   const device_sim::PlantSettings plant{.mass = 0.075, .viscous = 0.005, .coulomb = 0.04};
   device_sim::HandSettings hand;
@@ -67,7 +67,7 @@ Impact impact(std::string_view name, double speed, double phase, bool held, doub
     state.dt = 1e-3;
     state.p_WT = {seen(x.x), 0, seen(z.x)};
     state.v_WT = {x.v, 0, z.v};
-    render::SurfaceFeel feel;
+    render::SurfaceResponse feel;
     if (state.p_WT.z() < 0) {
       feel.contact = {.touching = true, .triangle = 0, .depth = -state.p_WT.z(), .n_W = {0, 0, 1}};
       surface.touch(state, feel);

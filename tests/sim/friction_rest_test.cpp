@@ -25,15 +25,15 @@
 namespace thimble::app {
 namespace {
 
-using render::GivenSettings;
+using render::MapSettings;
 using support::make_friction;
 using support::record_hard_case;
 
 /// Builds a friction with the table's coefficient of 0.5.
 std::unique_ptr<render::AnyStage> friction(std::string_view name, const FrictionRigSettings& rig,
                                            std::map<std::string, std::string> words = {}) {
-  return make_friction(name, GivenSettings({{"coefficient", 0.5}}, std::move(words)),
-                       surroundings_of(rig));
+  return make_friction(name, MapSettings({{"coefficient", 0.5}}, std::move(words)),
+                       effect_context_of(rig));
 }
 
 struct Rest {
@@ -141,11 +141,11 @@ TEST(HardCase14, DefaultFrictionFlickersByTwoCountsAtMostOnAnArmWithoutDryFricti
     for (int i = 0; i < 40; ++i) {
       FrictionRigSettings rig;
       rig.delay_ns = delay * 1'000'000;
-      const double stiffness = render::stick_stiffness_max(surroundings_of(rig));
+      const double stiffness = render::stick_stiffness_max(effect_context_of(rig));
       rig.arm_coulomb = 0;
       const render::BristleFriction stage(
           {.coulomb = {.sliding = 0.5, .holding = 0.5}, .stiffness = stiffness},
-          surroundings_of(rig));
+          effect_context_of(rig));
       render::AnyStageOf<render::BristleFriction> bristle(stage);
       const Rest rest = rest_after_stop(bristle, rig, 0.01 + i * 3e-5 / 40);
       EXPECT_LE(rest.force_hf, 0.5 * stiffness * 3e-5) << delay << " " << i;
@@ -201,7 +201,7 @@ TEST(HardCase20, BristleThatBendsByOneCountWouldTremble) {
   const FrictionRigSettings rig;
   render::AnyStageOf<render::BristleFriction> bristle(render::BristleFriction(
       {.coulomb = {.sliding = 0.5, .holding = 0.5}, .stiffness = 0.5 / 3e-5},
-      surroundings_of(rig)));
+      effect_context_of(rig)));
   const double force_hf = rest_after_stop(bristle, rig, 0.01).force_hf;
   EXPECT_GT(force_hf, 0.1);
   record_hard_case(20, "guard: z_max of one count, after a stop", "> force above 50 Hz, RMS",
@@ -228,11 +228,11 @@ TEST(HardCase15, DefaultFrictionSlidesSlowlyWithAllItsForceAndQuietly) {
 // The arm's own dry friction is away, so that nothing else holds.
 TEST(HardCase16, DefaultFrictionHoldsALoadWithoutDrift) {
   FrictionRigSettings rig;
-  const auto surroundings = surroundings_of(rig);
+  const auto context = effect_context_of(rig);
   rig.arm_coulomb = 0;
   for (const double holding : {0.5, 0.6}) {
     const auto bristle = make_friction(
-        "bristle", GivenSettings({{"coefficient", 0.5}, {"static_coefficient", holding}}),
+        "bristle", MapSettings({{"coefficient", 0.5}, {"static_coefficient", holding}}),
         surroundings);
     // The hand pulls with 0.9 of F_s: it stands that far ahead of the tip, which gives a little.
     const double load = 0.9 * holding;
@@ -250,14 +250,14 @@ TEST(HardCase16, DefaultFrictionHoldsALoadWithoutDrift) {
 
 TEST(HardCase16, DefaultFrictionDoesNotCreepUnderALoadThatSwings) {
   FrictionRigSettings rig;
-  const auto surroundings = surroundings_of(rig);
+  const auto context = effect_context_of(rig);
   rig.arm_coulomb = 0;
   const bool full = std::getenv("THIMBLE_LONG") != nullptr;
   const int cycles = full ? 1000 : 200;
   for (const double step : {0.0, 3e-5}) {
     rig.encoder_step = step;
     const auto bristle =
-        make_friction("bristle", GivenSettings({{"coefficient", 0.5}}), surroundings);
+        make_friction("bristle", MapSettings({{"coefficient", 0.5}}), surroundings);
     std::vector<RigPoint> way{{0, 0}, {0.4, 0}};
     constexpr int kCorners = 20;
     for (int i = 0; i <= cycles * kCorners; ++i) {

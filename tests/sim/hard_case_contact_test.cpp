@@ -35,7 +35,7 @@ constexpr double kStiffness = 1000;  // N/m
 
 // `normal_projection` is what the paper had before, known to fail, and kept for comparison.
 constexpr std::array kTrackers{TrackerChoice::kEdgePlanes, TrackerChoice::kOffset,
-                               TrackerChoice::kCompact, TrackerChoice::kGodObject};
+                               TrackerChoice::kPacked, TrackerChoice::kGodObject};
 
 std::string name_of(TrackerChoice tracker) {
   std::string name(kTrackerNames[static_cast<std::size_t>(tracker)]);
@@ -50,7 +50,7 @@ class Touched {
           std::optional<NormalWeights> normals = {}) {
     ContactChoice contact;
     contact.tracker = tracker;
-    if (tracker != TrackerChoice::kCompact) contact.normals = normals;  // it knows angles only
+    if (tracker != TrackerChoice::kPacked) contact.normals = normals;  // it knows angles only
     auto built =
         build_object_touch(mesh, contact, {.spring = {.stiffness = kStiffness, .damping = 0}});
     if (!built) throw std::runtime_error(built.error().message);
@@ -106,7 +106,7 @@ std::pair<int, double> slide(Touched& touched, const Surface& surface, Vector3d 
 
 TEST(HardCase22, SmoothTrackersSlideOverConvexAndHollowTrianglesWithoutLossOrJump) {
   const int crossings = support::long_form() ? 100'000 : 1000;
-  for (const TrackerChoice tracker : {TrackerChoice::kOffset, TrackerChoice::kCompact}) {
+  for (const TrackerChoice tracker : {TrackerChoice::kOffset, TrackerChoice::kPacked}) {
     Touched ball(support::icosphere(4, 0.03), tracker);
     Touched torus(support::torus(0.05, 0.02, 96, 48), tracker);
     const auto [lost_ball, jump_ball] =
@@ -211,7 +211,7 @@ TEST(HardCase25, TrackersSettleInOneTickAndDoNotCycleInSharpPlaces) {
 // border, would be (L/2)^2 / 2R = 1.4 um off.
 TEST(HardCase26, CompactTrackerHasTheOffsetTrackersProxyInAFastStroke) {
   const TriangleMesh ball = support::icosphere(5, 0.008);  // edges of 0.3 mm
-  Touched compact(ball, TrackerChoice::kCompact, NormalWeights::kAngle);
+  Touched compact(ball, TrackerChoice::kPacked, NormalWeights::kAngle);
   Touched offset(ball, TrackerChoice::kOffset, NormalWeights::kAngle);
   support::Random random(26);
   Vector3d p(0.0075, 0.0001, 0.0002), axis = random.direction();

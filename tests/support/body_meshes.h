@@ -4,8 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <set>
+#include <utility>
 #include <vector>
 
+#include "body/spring/mesh_springs.h"
 #include "body/spring/spring_motion.h"
 #include "body/spring/spring_network.h"
 #include "support/random.h"
@@ -54,7 +57,26 @@ render::SpringNetwork<kDof> wild_network(std::int32_t n, double stiffness_max, b
   return render::SpringNetwork<kDof>::build(nodes, springs).value();
 }
 
-/// Throws every active node somewhere, up to `u` (m) away and with up to `v` (m/s).
+/// Joins the vertices of a mesh along its edges, each vertex free along its normal alone: the
+/// smallest network whose limits and motion are known in closed form.
+inline render::SpringNetwork<1> join_heights(const render::TriangleMesh& mesh,
+                                             const render::MeshSpringSettings& settings) {
+  std::set<std::pair<std::int32_t, std::int32_t>> edges;
+  for (const auto& triangle : mesh.triangles) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      edges.insert(std::minmax(triangle[k], triangle[(k + 1) % 3]));
+    }
+  }
+  std::vector<render::BodySpring<1>> springs;
+  for (const auto& [low, high] : edges) {
+    springs.push_back({low, high, settings.neighbour_stiffness, settings.neighbour_damping});
+  }
+  const std::vector<render::BodyNode> nodes(
+      mesh.vertices.size(), {settings.mass, settings.base_stiffness, settings.base_damping});
+  return render::SpringNetwork<1>::build(nodes, springs).value();
+}
+
+/// Throws every node somewhere, up to `u` (m) away and with up to `v` (m/s).
 template <int kDof>
 void throw_nodes(render::SpringMotion<kDof>& motion, double u, double v, std::uint64_t seed) {
   Random random(seed);
@@ -64,8 +86,7 @@ void throw_nodes(render::SpringMotion<kDof>& motion, double u, double v, std::ui
     for (int k = 0; k < kDof; ++k) x[k] = random.uniform(-size, size);
     return x;
   };
-  const std::vector<std::int32_t> nodes(motion.active().begin(), motion.active().end());
-  for (const std::int32_t i : nodes) {
+  for (std::int32_t i = 0; i < motion.network().node_count(); ++i) {
     const Vector place = draw(u);
     motion.place(i, place, draw(v));
   }

@@ -7,22 +7,22 @@
 #include <vector>
 
 #include "thimble/render/effect/effect_table.h"
-#include "thimble/render/effect/given_settings.h"
+#include "thimble/render/effect/map_settings.h"
 
 namespace thimble::support {
 
-using render::GivenSettings;
+using render::MapSettings;
 
 /// Is the PHANTOM-like arm at 1 kHz, as effects know it [STABILITY, heading].
-inline render::EffectSurroundings phantom_surroundings() {
-  render::EffectSurroundings surroundings;
-  surroundings.encoder_step = 3e-5;
-  surroundings.force_max = 8.5;
-  surroundings.tip_mass = 0.075;
-  surroundings.tip_damping = 0.005;
-  surroundings.tip_coulomb = 0.04;
-  surroundings.surface_stiffness = 1000;
-  return surroundings;
+inline render::EffectContext phantom_context() {
+  render::EffectContext context;
+  context.encoder_step = 3e-5;
+  context.force_max = 8.5;
+  context.tip_mass = 0.075;
+  context.tip_damping = 0.005;
+  context.tip_coulomb = 0.04;
+  context.surface_stiffness = 1000;
+  return context;
 }
 
 inline const render::EffectKind* friction_kind(std::string_view name) {
@@ -34,11 +34,11 @@ inline const render::EffectKind* friction_kind(std::string_view name) {
 
 /// Builds a friction of the table; empty if its settings were refused.
 inline std::unique_ptr<render::AnyStage> make_friction(
-    std::string_view name, GivenSettings settings,
-    const render::EffectSurroundings& surroundings = phantom_surroundings()) {
+    std::string_view name, MapSettings settings,
+    const render::EffectContext& context = phantom_context()) {
   const render::EffectKind* kind = friction_kind(name);
   if (kind == nullptr) return nullptr;
-  const render::StageBuilder build = kind->read(settings, surroundings);
+  const render::StageBuilder build = kind->read(settings, context);
   if (!settings.mistakes().empty()) return nullptr;
   return build();
 }
@@ -54,9 +54,9 @@ inline std::vector<std::string> friction_names() {
 
 /// Gives the complaints about the settings of a friction.
 inline std::vector<std::string> complaints_of(
-    std::string_view name, GivenSettings settings,
-    const render::EffectSurroundings& surroundings = phantom_surroundings()) {
-  friction_kind(name)->read(settings, surroundings);
+    std::string_view name, MapSettings settings,
+    const render::EffectContext& context = phantom_context()) {
+  friction_kind(name)->read(settings, context);
   return settings.mistakes();
 }
 
@@ -67,19 +67,19 @@ struct Rubbing {
   Eigen::Vector3d n_W{0, 0, 1};
   double load = 1;       // N
   double depth = 0.001;  // m
-  render::SurfaceFeel feel{};
+  render::SurfaceResponse response{};
 
   /// Touches at a point (m) and gives the friction's force on the hand, N.
   Eigen::Vector3d at(const Eigen::Vector3d& p_WT) {
     driver::DeviceState state;
     state.dt = dt;
     state.p_WT = p_WT;
-    feel = {};
-    feel.contact = {
+    response = {};
+    response.contact = {
         .touching = true, .triangle = 0, .depth = depth, .n_W = n_W, .p_WP = p_WT + depth * n_W};
-    feel.f_T_W = load * n_W;
-    friction.touch(state, feel);
-    return feel.f_T_W - load * n_W;
+    response.f_T_W = load * n_W;
+    friction.touch(state, response);
+    return response.f_T_W - load * n_W;
   }
 
   /// The same along x; gives the force along x.

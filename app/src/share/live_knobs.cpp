@@ -64,15 +64,15 @@ void LiveKnobs::step(SharedRun& shared, const driver::TickRecord& last, double d
     Knob& knob = knobs_[i];
     const double wanted = shared.knob_wanted(i).value_or(knob.now);
     if (wanted == knob.now) continue;
-    const render::ForceLever& lever = knob.setting.lever;
+    const render::ForceSensitivity& sensitivity = knob.setting.sensitivity;
     const double stiffness =
         knob.stiffness >= 0 && static_cast<std::size_t>(knob.stiffness) < knobs_.size()
             ? knobs_[static_cast<std::size_t>(knob.stiffness)].now
             : 0;
-    const double newtons = std::abs(lever.per_depth * last.depth) +
-                           lever.per_speed * length(last.v_WT) +
-                           lever.per_force * length(last.f_wanted_W) +
-                           (last.in_contact ? lever.per_stiffness * stiffness : 0) + lever.always;
+    const double newtons =
+        std::abs(sensitivity.per_depth * last.depth) + sensitivity.per_speed * length(last.v_WT) +
+        sensitivity.per_force * length(last.f_wanted_W) +
+        (last.in_contact ? sensitivity.per_stiffness * stiffness : 0) + sensitivity.always;
     double most = (knob.setting.most - knob.setting.least) * dt / kTurnTime;
     // Written so that NaN turns nothing.
     if (!(newtons >= 0)) continue;

@@ -16,9 +16,9 @@ namespace thimble::app {
 /// ticks, without a step of force.
 ///
 /// A setting goes from end to end of its bounds in kTurnTime at the quickest. While it is felt it
-/// goes no faster than changes the force by kForceRate: its ForceLever, with the touch of the last
-/// tick, tells how fast that is. Half of that is kept for the friction that follows the force of
-/// the surface.
+/// goes no faster than changes the force by kForceRate: its ForceSensitivity, with the touch of the
+/// last tick, tells how fast that is. Half of that is kept for the friction that follows the force
+/// of the surface.
 class LiveKnobs {
  public:
   static constexpr double kTurnTime = 0.05;  ///< s. [chosen: a hand takes longer]

@@ -47,7 +47,7 @@ std::unique_ptr<render::AnyStage> striped_map() {
   settings.width = 0.002;
   settings.height = 0.0002;
   return std::make_unique<render::AnyStageOf<render::HeightMap>>(
-      render::HeightMap(settings, render::EffectSurroundings()));
+      render::HeightMap(settings, render::EffectContext()));
 }
 
 Built build_effect(const render::EffectKind& kind) {
@@ -67,15 +67,15 @@ Built build_effect(const render::EffectKind& kind) {
   if (!yaml) return yaml.error();
   render::SurfaceChoice surface{.spring = kCostSpring, .effects = {}};
   // The PHANTOM-like set of [STABILITY].
-  const render::EffectSurroundings surroundings{.tick = 0.001,
-                                                .delay = 0.001,
-                                                .encoder_step = 0.03e-3,
-                                                .force_max = 8.5,
-                                                .tip_mass = 0.075,
-                                                .tip_damping = 0.005,
-                                                .surface_stiffness = kCostSpring.stiffness,
-                                                .surface_damping = kCostSpring.damping};
-  surface.effects = read_effects(yaml->root(), {}, surroundings);
+  const render::EffectContext context{.tick = 0.001,
+                                      .delay = 0.001,
+                                      .encoder_step = 0.03e-3,
+                                      .force_max = 8.5,
+                                      .tip_mass = 0.075,
+                                      .tip_damping = 0.005,
+                                      .surface_stiffness = kCostSpring.stiffness,
+                                      .surface_damping = kCostSpring.damping};
+  surface.effects = read_effects(yaml->root(), {}, context);
   if (auto right = yaml->finish(); !right) return right.error();
   return render::build_object_touch(kCostRing.mesh(kCostAround, kCostAcross),
                                     choice_of(render::TrackerChoice::kOffset), surface);
@@ -97,7 +97,7 @@ std::vector<CostSubject> cost_subjects() {
     const auto tracker = static_cast<render::TrackerChoice>(i);
     // These two have one way to be felt.
     render::ContactChoice choice = choice_of(tracker);
-    if (tracker == kGodObject || tracker == kCompact) {
+    if (tracker == kGodObject || tracker == kPacked) {
       add(std::string(render::kTrackerNames[i]), choice);
       continue;
     }

@@ -8,7 +8,7 @@
 #include "signal.h"
 #include "surface/friction/bristle.h"
 #include "thimble/render/effect/effect_table.h"
-#include "thimble/render/effect/given_settings.h"
+#include "thimble/render/effect/map_settings.h"
 
 namespace thimble::app {
 namespace {
@@ -59,7 +59,7 @@ std::unique_ptr<render::AnyStage> build_friction(const FrictionCase& which,
     return std::make_unique<render::AnyStageOf<render::BristleFriction>>(
         render::BristleFriction({.coulomb = {.sliding = kCoefficient, .holding = kCoefficient},
                                  .stiffness = which.stiffness},
-                                surroundings_of(rig)));
+                                effect_context_of(rig)));
   }
   std::map<std::string, double> numbers{{"coefficient", kCoefficient}};
   if (which.static_coefficient > 0) numbers["static_coefficient"] = which.static_coefficient;
@@ -67,8 +67,8 @@ std::unique_ptr<render::AnyStage> build_friction(const FrictionCase& which,
   if (!which.word_key.empty()) words[which.word_key] = which.word;
   for (const render::EffectKind& kind : render::effect_table()) {
     if (kind.group != "friction" || kind.name != which.kind) continue;
-    render::GivenSettings settings(numbers, words);
-    const render::StageBuilder build = kind.read(settings, surroundings_of(rig));
+    render::MapSettings settings(numbers, words);
+    const render::StageBuilder build = kind.read(settings, effect_context_of(rig));
     if (!settings.mistakes().empty()) throw std::invalid_argument(settings.mistakes().front());
     return build();
   }

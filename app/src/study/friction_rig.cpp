@@ -81,7 +81,7 @@ device_sim::SimulatedArmSettings arm_settings(const FrictionRigSettings& setting
 
 driver::ForceCommand EvenSurface::operator()(const driver::DeviceState& state) noexcept {
   const Eigen::Vector3d n_W(0, 0, 1);
-  render::SurfaceFeel feel;
+  render::SurfaceResponse feel;
   feel.contact = {.touching = true,
                   .triangle = 0,
                   .depth = depth_,
@@ -135,16 +135,16 @@ RigRun rub(render::AnyStage& friction, const std::vector<RigPoint>& way, double 
   return run;
 }
 
-render::EffectSurroundings surroundings_of(const FrictionRigSettings& settings) {
-  render::EffectSurroundings surroundings;
-  surroundings.tick = static_cast<double>(settings.period_ns) * 1e-9;
-  surroundings.delay = static_cast<double>(settings.delay_ns) * 1e-9;
-  surroundings.encoder_step = settings.encoder_step;
-  surroundings.force_max = kForceMax;
-  surroundings.tip_mass = settings.arm_mass;
-  surroundings.tip_damping = settings.arm_viscous;
-  surroundings.tip_coulomb = settings.arm_coulomb;
-  return surroundings;
+render::EffectContext effect_context_of(const FrictionRigSettings& settings) {
+  render::EffectContext context;
+  context.tick = static_cast<double>(settings.period_ns) * 1e-9;
+  context.delay = static_cast<double>(settings.delay_ns) * 1e-9;
+  context.encoder_step = settings.encoder_step;
+  context.force_max = kForceMax;
+  context.tip_mass = settings.arm_mass;
+  context.tip_damping = settings.arm_viscous;
+  context.tip_coulomb = settings.arm_coulomb;
+  return context;
 }
 
 }  // namespace thimble::app

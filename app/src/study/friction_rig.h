@@ -5,7 +5,7 @@
 
 #include "thimble/driver/device_state.h"
 #include "thimble/driver/force_command.h"
-#include "thimble/render/effect/effect_surroundings.h"
+#include "thimble/render/effect/effect_context.h"
 #include "thimble/render/effect/stage_list.h"
 
 namespace thimble::app {
@@ -68,6 +68,6 @@ RigRun rub(render::AnyStage& friction, const std::vector<RigPoint>& way, double 
            const FrictionRigSettings& settings);
 
 /// Tells what an effect may know of the rig. Real-time: never from the servo thread.
-render::EffectSurroundings surroundings_of(const FrictionRigSettings& settings);
+render::EffectContext effect_context_of(const FrictionRigSettings& settings);
 
 }  // namespace thimble::app

@@ -208,7 +208,7 @@ class Drawing {
     };
     lines_.add(4, "contact", "");
     lines_.add(6, "tracker", render::kTrackerNames[tracker]);
-    if (is(render::TrackerChoice::kCompact)) return true;
+    if (is(render::TrackerChoice::kPacked)) return true;
     if (draw_.chance(0.5)) {
       lines_.add(6, "search", render::kSearchNames[draw_.one_of(render::kSearchNames.size())]);
     }

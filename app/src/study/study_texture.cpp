@@ -51,7 +51,7 @@ Force wall_with(const Stage& stage) {
   return [stage](const Vector3d& p_W) {
     driver::DeviceState state;
     state.p_WT = p_W;
-    render::SurfaceFeel feel;
+    render::SurfaceResponse feel;
     feel.contact = {.touching = true, .triangle = 0, .depth = -p_W.z(), .n_W = Vector3d::UnitZ()};
     render::SpringDamper spring{kStiffness, 0};
     stage.touch(state, feel);
@@ -91,7 +91,7 @@ render::HeightMap::Settings stripes(render::TextureForm form) {
 }
 
 std::vector<Subject> subjects(render::TextureForm form) {
-  const render::EffectSurroundings known;
+  const render::EffectContext known;
   std::vector<Subject> all;
   const auto waves = three_waves(form);
   Subject sines{"sines",

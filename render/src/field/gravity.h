@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "thimble/driver/device_state.h"
-#include "thimble/render/effect/effect_surroundings.h"
+#include "thimble/render/effect/effect_context.h"
 #include "thimble/render/effect/settings_reader.h"
 
 namespace thimble::render {
@@ -19,13 +19,13 @@ class Gravity {
     Eigen::Vector3d acceleration{0, 0, -9.80665};  ///< W, m/s^2; standard gravity [CGPM 1901].
 
     /// Reads `mass` and `acceleration`. Real-time: never from the servo thread.
-    void read(SettingsReader& reader, const EffectSurroundings&) {
+    void read(SettingsReader& reader, const EffectContext&) {
       reader.number("mass", mass, {.unit = "kg", .least = 0, .most = 10, .required = true});
       reader.vector("acceleration", acceleration, {.unit = "m/s^2", .least = -100, .most = 100});
     }
   };
 
-  Gravity(const Settings& settings, const EffectSurroundings&)
+  Gravity(const Settings& settings, const EffectContext&)
       : weight_W_(settings.mass * settings.acceleration) {}
 
   /// Gives the force on the hand, N in W. Real-time: safe.

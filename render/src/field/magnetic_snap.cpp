@@ -29,7 +29,7 @@ void read_target(SettingsReader& reader, MagneticSnap::Settings::Target& target)
 
 }  // namespace
 
-void MagneticSnap::Settings::read(SettingsReader& reader, const EffectSurroundings&) {
+void MagneticSnap::Settings::read(SettingsReader& reader, const EffectContext&) {
   reader.list("targets",
               [this](SettingsReader& entry) { read_target(entry, targets.emplace_back()); });
   if (targets.size() > kTargetsMax) {
@@ -38,13 +38,13 @@ void MagneticSnap::Settings::read(SettingsReader& reader, const EffectSurroundin
   }
 }
 
-MagneticSnap::MagneticSnap(const Settings& settings, const EffectSurroundings& surroundings) {
+MagneticSnap::MagneticSnap(const Settings& settings, const EffectContext& context) {
   for (const Settings::Target& target : settings.targets) {
-    const Eigen::Vector3d way_W = surroundings.R_WO * (target.to_O - target.from_O);
+    const Eigen::Vector3d way_W = context.R_WO * (target.to_O - target.from_O);
     const double square = way_W.squaredNorm();
     // The energy's gradient is stiffness * r * (1 - (r/R)^2), which peaks at
     // stiffness * R * 2 / (3 sqrt 3).
-    targets_.push_back({.from_W = surroundings.p_WO + surroundings.R_WO * target.from_O,
+    targets_.push_back({.from_W = context.p_WO + context.R_WO * target.from_O,
                         .way_W = way_W,
                         .per_square = square > 0 ? 1 / square : 0,
                         .stiffness = 1.5 * std::numbers::sqrt3 * target.force / target.radius,

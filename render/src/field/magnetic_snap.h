@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "thimble/driver/device_state.h"
-#include "thimble/render/effect/effect_surroundings.h"
+#include "thimble/render/effect/effect_context.h"
 #include "thimble/render/effect/settings_reader.h"
 
 namespace thimble::render {
@@ -33,11 +33,11 @@ class MagneticSnap {
 
     /// Reads the list `targets`: point, or from and to; force, capture_radius.
     /// Real-time: never from the servo thread.
-    void read(SettingsReader& reader, const EffectSurroundings& surroundings);
+    void read(SettingsReader& reader, const EffectContext& context);
   };
 
   /// Real-time: never from the servo thread.
-  MagneticSnap(const Settings& settings, const EffectSurroundings& surroundings);
+  MagneticSnap(const Settings& settings, const EffectContext& context);
 
   /// Finds the force on the hand, N in W; zero where the tip is NaN or infinite. Real-time: safe; a
   /// few ns per target.

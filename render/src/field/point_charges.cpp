@@ -9,7 +9,7 @@ constexpr std::size_t kChargesMax = 64;  // [chosen: below a microsecond per tic
 
 }  // namespace
 
-void PointCharges::Settings::read(SettingsReader& reader, const EffectSurroundings&) {
+void PointCharges::Settings::read(SettingsReader& reader, const EffectContext&) {
   reader.list("charges", [this](SettingsReader& entry) {
     One& one = charges.emplace_back();
     entry.vector("position", one.p_O, {.unit = "m", .least = -2, .most = 2, .required = true});
@@ -23,9 +23,9 @@ void PointCharges::Settings::read(SettingsReader& reader, const EffectSurroundin
   }
 }
 
-PointCharges::PointCharges(const Settings& settings, const EffectSurroundings& surroundings) {
+PointCharges::PointCharges(const Settings& settings, const EffectContext& context) {
   for (const Settings::One& one : settings.charges) {
-    charges_.push_back({.p_W = surroundings.p_WO + surroundings.R_WO * one.p_O,
+    charges_.push_back({.p_W = context.p_WO + context.R_WO * one.p_O,
                         .strength = 1.5 * std::numbers::sqrt3 * one.force * one.radius * one.radius,
                         .radius = one.radius});
   }

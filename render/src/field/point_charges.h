@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "thimble/driver/device_state.h"
-#include "thimble/render/effect/effect_surroundings.h"
+#include "thimble/render/effect/effect_context.h"
 #include "thimble/render/effect/settings_reader.h"
 
 namespace thimble::render {
@@ -32,11 +32,11 @@ class PointCharges {
     std::vector<One> charges;  ///< All of them.
 
     /// Reads the list `charges`: position, force, radius. Real-time: never from the servo thread.
-    void read(SettingsReader& reader, const EffectSurroundings& surroundings);
+    void read(SettingsReader& reader, const EffectContext& context);
   };
 
   /// Real-time: never from the servo thread.
-  PointCharges(const Settings& settings, const EffectSurroundings& surroundings);
+  PointCharges(const Settings& settings, const EffectContext& context);
 
   /// Finds the force on the hand, N in W; zero where the tip is NaN or infinite. Real-time: safe; a
   /// few ns per charge.

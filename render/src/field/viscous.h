@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "thimble/driver/device_state.h"
-#include "thimble/render/effect/effect_surroundings.h"
+#include "thimble/render/effect/effect_context.h"
 #include "thimble/render/effect/live_settings.h"
 #include "thimble/render/effect/settings_reader.h"
 
@@ -24,15 +24,15 @@ class Viscous {
     /// acts late by L swings up beyond pi m / (2 L) [Nyquist's criterion for -b exp(-L s) / (m s)].
     /// L is period + delay: the velocity is half a period old, and the force is held for another
     /// half. The filter of the velocity comes on top. Real-time: never from the servo thread.
-    void read(SettingsReader& reader, const EffectSurroundings& surroundings);
+    void read(SettingsReader& reader, const EffectContext& context);
   };
 
-  Viscous(const Settings& settings, const EffectSurroundings& surroundings)
-      : damping_(settings.damping), damping_most_(most_damping(surroundings)) {}
+  Viscous(const Settings& settings, const EffectContext& context)
+      : damping_(settings.damping), damping_most_(most_damping(context)) {}
 
   /// Tells what the loop can hold, N s/m: see Settings::read; infinite where the arm's mass is not
   /// known. Real-time: never from the servo thread.
-  static double most_damping(const EffectSurroundings& surroundings);
+  static double most_damping(const EffectContext& context);
 
   /// Tells of the damping: up to two thirds of what the loop can hold, for the filter of the
   /// velocity comes on top. Real-time: never from the servo thread.
@@ -44,7 +44,7 @@ class Viscous {
                 .unit = "N s/m",
                 .most = most,
                 .value = damping_,
-                .lever = {.per_speed = 1}});
+                .sensitivity = {.per_speed = 1}});
   }
 
   /// Finds the force on the hand, N in W; zero where the velocity is NaN or infinite.

@@ -26,8 +26,8 @@ std::size_t corner_of(const std::array<std::int32_t, 3>& corners, std::int32_t v
 // Sums the faces that are reached from a triangle around one of its vertices without crossing a
 // crease, first one way round, then the other.
 Vector3d fan_normal(const std::vector<std::array<std::int32_t, 3>>& triangles,
-                    std::span<const CompactTriangle> records, const Faces& faces,
-                    std::int32_t vertex, std::int32_t first) {
+                    std::span<const PackedTriangle> packed, const Faces& faces, std::int32_t vertex,
+                    std::int32_t first) {
   Vector3d sum{0, 0, 0};
   const auto add = [&](std::int32_t t) {
     const std::size_t k = corner_of(triangles[index(t)], vertex);
@@ -38,8 +38,8 @@ Vector3d fan_normal(const std::vector<std::array<std::int32_t, 3>>& triangles,
     std::int32_t t = first;
     for (;;) {
       const std::size_t edge = (corner_of(triangles[index(t)], vertex) + side) % 3;
-      if (records[index(t)].crease(edge)) break;
-      t = records[index(t)].neighbours[edge];
+      if (packed[index(t)].crease(edge)) break;
+      t = packed[index(t)].neighbours[edge];
       // Round the whole vertex over a single crease or none: everything is in already.
       if (t == first) return sum;
       add(t);
@@ -53,7 +53,7 @@ Vector3d fan_normal(const std::vector<std::array<std::int32_t, 3>>& triangles,
 std::ptrdiff_t assign_corner_normals(const std::vector<Vector3d>& vertices,
                                      const std::vector<std::array<std::int32_t, 3>>& triangles,
                                      const HalfEdges& half_edges, double crease_angle,
-                                     std::span<CompactTriangle> records) {
+                                     std::span<PackedTriangle> packed) {
   Faces faces;
   faces.normals.resize(triangles.size());
   faces.angles.resize(triangles.size());
@@ -74,10 +74,10 @@ std::ptrdiff_t assign_corner_normals(const std::vector<Vector3d>& vertices,
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     std::uint32_t flags = 0;
     for (std::size_t k = 0; k < 3; ++k) {
-      const Vector3d& other = faces.normals[index(records[t].neighbours[k])];
+      const Vector3d& other = faces.normals[index(packed[t].neighbours[k])];
       if (!(faces.normals[t].dot(other) >= crease_cosine)) flags |= 1u << k;
     }
-    records[t].flags |= flags;
+    packed[t].flags |= flags;
   }
   for (std::size_t v = 0; v < vertices.size(); ++v) {
     const auto vertex = static_cast<std::int32_t>(v);
@@ -87,16 +87,16 @@ std::ptrdiff_t assign_corner_normals(const std::vector<Vector3d>& vertices,
     for (const auto& side : fan) {
       const std::size_t t = index(side.triangle);
       const std::size_t k = corner_of(triangles[t], vertex);
-      smooth &= !records[t].crease(k);
+      smooth &= !packed[t].crease(k);
       sum += static_cast<double>(faces.angles[t][k]) * faces.normals[t];
     }
-    const std::uint32_t packed = smooth && sum.norm() > 0 ? pack_normal(sum) : 0;
+    const std::uint32_t code = smooth && sum.norm() > 0 ? pack_normal(sum) : 0;
     for (const auto& side : fan) {
       const std::size_t t = index(side.triangle);
       Vector3d own = sum;
-      if (!smooth) own = fan_normal(triangles, records, faces, vertex, side.triangle);
+      if (!smooth) own = fan_normal(triangles, packed, faces, vertex, side.triangle);
       if (!(own.norm() > 0)) own = faces.normals[t];
-      records[t].normals[corner_of(triangles[t], vertex)] = packed != 0 ? packed : pack_normal(own);
+      packed[t].normals[corner_of(triangles[t], vertex)] = code != 0 ? code : pack_normal(own);
     }
   }
   return -1;

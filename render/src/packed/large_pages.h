@@ -8,7 +8,7 @@
 namespace thimble::render {
 
 /// Allocates arrays that are read here and there in pages of 2 MiB where the system has them, so
-/// that a far record costs one miss and no walk through page tables beside it.
+/// that a far packed triangle costs one miss and no walk through page tables beside it.
 /// Real-time: never from the servo thread.
 template <class T>
 struct LargePages {

@@ -2,12 +2,13 @@
 
 #include <span>
 
-#include "packed/compact_surface.h"
+#include "packed/packed_surface.h"
 
 namespace thimble::render {
 
-/// Finds how far the surface rises above some records at most, in steps; 0 where that is less than
-/// 1e-5 of the size of the lattice and nobody would feel it. Real-time: safe; some ns each.
-double rise_above(std::span<const CompactTriangle> records) noexcept;
+/// Finds how far the surface rises above some packed triangles at most, in steps; 0 where that is
+/// less than 1e-5 of the size of the lattice and nobody would feel it. Real-time: safe; some ns
+/// each.
+double rise_above(std::span<const PackedTriangle> triangles) noexcept;
 
 }  // namespace thimble::render

@@ -21,17 +21,18 @@ namespace thimble::render {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "Page files are little endian.");
-static_assert(std::is_trivially_copyable_v<CompactTriangle>);
+static_assert(std::is_trivially_copyable_v<PackedTriangle>);
 
 constexpr std::array<char, 8> kMagic{'T', 'H', 'M', 'B', 'P', 'A', 'G', 'E'};
 constexpr std::uint32_t kVersion = 2;
-constexpr std::int64_t kAlignment = 4096;  // of the records, so that a page covers whole disk pages
+constexpr std::int64_t kAlignment =
+    4096;  // of the packed triangles, so that a page covers whole disk pages
 
 struct Header {
   std::array<char, 8> magic = kMagic;
   std::uint32_t version = kVersion;
-  std::uint32_t record_bytes = sizeof(CompactTriangle);
-  std::uint32_t page_records = kPageRecords;
+  std::uint32_t triangle_bytes = sizeof(PackedTriangle);
+  std::uint32_t page_triangles = kPageTriangles;
   std::uint32_t sum = 0;  // of all that stands before the pages, taken while this is 0
   std::int64_t triangle_count = 0;
   std::array<double, 3> origin{};
@@ -49,12 +50,12 @@ std::uint32_t sum_of(Header header, const std::vector<PageBox>& boxes,
   return static_cast<std::uint32_t>(sum ^ (sum >> 32));
 }
 
-std::uint64_t sum_of(std::span<const CompactTriangle> records) {
-  return checksum(std::as_bytes(records));
+std::uint64_t sum_of(std::span<const PackedTriangle> triangles) {
+  return checksum(std::as_bytes(triangles));
 }
 
 std::int64_t pages_of(std::int64_t triangles) {
-  return (triangles + kPageRecords - 1) / kPageRecords;
+  return (triangles + kPageTriangles - 1) / kPageTriangles;
 }
 
 std::int64_t records_begin(std::int64_t pages) {
@@ -102,7 +103,7 @@ float up(double value) noexcept {
   return std::nextafter(static_cast<float>(value), std::numeric_limits<float>::infinity());
 }
 
-/// Tells whether a box can be one of records, whose corners are whole numbers of 32 bits.
+/// Tells whether a box can be one of packed triangles, whose corners are whole numbers of 32 bits.
 bool can_be(const PageBox& box) {
   constexpr float kFarthest = 0x1p31F;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -116,11 +117,11 @@ bool can_be(const PageBox& box) {
 
 }  // namespace
 
-PageBox box_of(std::span<const CompactTriangle> records) noexcept {
+PageBox box_of(std::span<const PackedTriangle> triangles) noexcept {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   PageBox box{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
-  for (const CompactTriangle& record : records) {
-    const std::array<const std::array<std::int32_t, 3>*, 3> axes{&record.x, &record.y, &record.z};
+  for (const PackedTriangle& packed : triangles) {
+    const std::array<const std::array<std::int32_t, 3>*, 3> axes{&packed.x, &packed.y, &packed.z};
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const auto [low, high] = std::minmax({(*axes[axis])[0], (*axes[axis])[1], (*axes[axis])[2]});
       box.min[axis] = std::min(box.min[axis], down(low));
@@ -135,7 +136,7 @@ struct PageFileWriter::State {
   int descriptor = -1;
   Header header;
   std::int64_t written = 0;
-  std::vector<CompactTriangle> page;
+  std::vector<PackedTriangle> page;
   std::vector<PageBox> boxes;
   std::vector<std::uint64_t> sums;
 
@@ -150,8 +151,8 @@ struct PageFileWriter::State {
     header.rise = std::max(header.rise, header.step * rise_above(page));
     const std::int64_t at = records_begin(pages_of(header.triangle_count)) +
                             (written - static_cast<std::int64_t>(page.size())) *
-                                static_cast<std::int64_t>(sizeof(CompactTriangle));
-    const bool done = write_all(descriptor, page.data(), page.size() * sizeof(CompactTriangle), at);
+                                static_cast<std::int64_t>(sizeof(PackedTriangle));
+    const bool done = write_all(descriptor, page.data(), page.size() * sizeof(PackedTriangle), at);
     page.clear();
     return done;
   }
@@ -174,7 +175,7 @@ driver::Result<PageFileWriter> PageFileWriter::create(const std::filesystem::pat
   state->header.triangle_count = triangle_count;
   state->header.origin = {lattice.origin.x(), lattice.origin.y(), lattice.origin.z()};
   state->header.step = lattice.step;
-  state->page.reserve(kPageRecords);
+  state->page.reserve(kPageTriangles);
   state->descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (state->descriptor < 0) {
     return trouble(file, std::string("it cannot be written (") + std::strerror(errno) + ").");
@@ -182,11 +183,11 @@ driver::Result<PageFileWriter> PageFileWriter::create(const std::filesystem::pat
   return PageFileWriter(std::move(state));
 }
 
-driver::Result<void> PageFileWriter::append(std::span<const CompactTriangle> records) {
-  for (const CompactTriangle& record : records) {
-    state_->page.push_back(record);
+driver::Result<void> PageFileWriter::append(std::span<const PackedTriangle> triangles) {
+  for (const PackedTriangle& packed : triangles) {
+    state_->page.push_back(packed);
     ++state_->written;
-    if (state_->page.size() == static_cast<std::size_t>(kPageRecords) && !state_->flush()) {
+    if (state_->page.size() == static_cast<std::size_t>(kPageTriangles) && !state_->flush()) {
       return trouble(state_->file, std::string("writing failed (") + std::strerror(errno) + ").");
     }
   }
@@ -212,12 +213,12 @@ driver::Result<void> PageFileWriter::finish() {
   return {};
 }
 
-driver::Result<void> write_page_file(const CompactSurface& surface,
+driver::Result<void> write_page_file(const PackedSurface& surface,
                                      const std::filesystem::path& file) {
   auto writer =
       PageFileWriter::create(file, {surface.origin(), surface.step()}, surface.triangle_count());
   if (!writer) return writer.error();
-  if (auto done = writer->append(surface.records()); !done) return done;
+  if (auto done = writer->append(surface.triangles()); !done) return done;
   return writer->finish();
 }
 
@@ -246,8 +247,8 @@ driver::Result<PageFile> PageFile::open(const std::filesystem::path& file) {
     return trouble(file, "this is no page file; write one with `thimble mesh page IN OUT`.");
   }
   const Header expected;
-  if (header.version != kVersion || header.record_bytes != expected.record_bytes ||
-      header.page_records != expected.page_records) {
+  if (header.version != kVersion || header.triangle_bytes != expected.triangle_bytes ||
+      header.page_triangles != expected.page_triangles) {
     return trouble(file, "it was written by another version; write it again.");
   }
   const bool numbers_can_be = header.triangle_count > 0 &&
@@ -262,7 +263,7 @@ driver::Result<PageFile> PageFile::open(const std::filesystem::path& file) {
   opened.records_at_ = records_begin(pages);
   const std::int64_t size =
       opened.records_at_ +
-      header.triangle_count * static_cast<std::int64_t>(sizeof(CompactTriangle));
+      header.triangle_count * static_cast<std::int64_t>(sizeof(PackedTriangle));
   if (status.st_size < size) {
     return trouble(file, "it ends after " + std::to_string(status.st_size) + " of " +
                              std::to_string(size) + " bytes; write it again.");
@@ -316,23 +317,23 @@ PageFile::~PageFile() {
 }
 
 std::int32_t PageFile::read_page(std::int32_t page,
-                                 std::span<CompactTriangle> records) const noexcept {
-  const std::int32_t first = page * kPageRecords;
-  const std::int32_t count = std::min(kPageRecords, triangle_count_ - first);
-  if (page < 0 || count <= 0 || records.size() < static_cast<std::size_t>(count)) return 0;
+                                 std::span<PackedTriangle> triangles) const noexcept {
+  const std::int32_t first = page * kPageTriangles;
+  const std::int32_t count = std::min(kPageTriangles, triangle_count_ - first);
+  if (page < 0 || count <= 0 || triangles.size() < static_cast<std::size_t>(count)) return 0;
   const std::int64_t at =
-      records_at_ + std::int64_t{first} * static_cast<std::int64_t>(sizeof(CompactTriangle));
-  if (!read_all(descriptor_, records.data(),
-                static_cast<std::size_t>(count) * sizeof(CompactTriangle), at)) {
+      records_at_ + std::int64_t{first} * static_cast<std::int64_t>(sizeof(PackedTriangle));
+  if (!read_all(descriptor_, triangles.data(),
+                static_cast<std::size_t>(count) * sizeof(PackedTriangle), at)) {
     return 0;
   }
-  if (sum_of(records.first(static_cast<std::size_t>(count))) !=
+  if (sum_of(triangles.first(static_cast<std::size_t>(count))) !=
       sums_[static_cast<std::size_t>(page)]) {
     return 0;
   }
   // The servo follows neighbours without asking: none may lead out of the file.
   for (std::int32_t i = 0; i < count; ++i) {
-    for (const std::int32_t neighbour : records[static_cast<std::size_t>(i)].neighbours) {
+    for (const std::int32_t neighbour : triangles[static_cast<std::size_t>(i)].neighbours) {
       if (neighbour < 0 || neighbour >= triangle_count_) return 0;
     }
   }
@@ -340,7 +341,7 @@ std::int32_t PageFile::read_page(std::int32_t page,
 }
 
 void PageFile::announce_page(std::int32_t page) const noexcept {
-  constexpr off_t kPageBytes = kPageRecords * sizeof(CompactTriangle);
+  constexpr off_t kPageBytes = kPageTriangles * sizeof(PackedTriangle);
   posix_fadvise(descriptor_, records_at_ + page * kPageBytes, kPageBytes, POSIX_FADV_WILLNEED);
 }
 

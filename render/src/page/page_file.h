@@ -9,22 +9,23 @@
 #include <span>
 #include <vector>
 
-#include "packed/compact_surface.h"
+#include "packed/packed_surface.h"
 #include "thimble/driver/result.h"
 
 namespace thimble::render {
 
 // Page files: a closed surface cut into volumes, so that only what lies around the tip need be in
-// memory [BP 4.1]. A volume is a run of kPageRecords records that lie near each other in space.
+// memory [BP 4.1]. A volume is a run of kPageTriangles packed triangles that lie near each other in
+// space.
 //
 //   header | one box per page | one checksum per page | padding to a page of the disk | pages
 //
-// Little endian, as the machine is; records as CompactTriangle lays them out. A file of another
-// version, byte order or record is refused, and so is damage: on opening that of what stands before
-// the pages, on reading that of a page.
+// Little endian, as the machine is; packed triangles as PackedTriangle lays them out. A file of
+// another version, byte order or packed triangle is refused, and so is damage: on opening that of
+// what stands before the pages, on reading that of a page.
 
-/// Is how many records a page holds: 64 KiB, a size that disks read at full speed.
-inline constexpr std::int32_t kPageRecords = 1024;
+/// Is how many packed triangles a page holds: 64 KiB, a size that disks read at full speed.
+inline constexpr std::int32_t kPageTriangles = 1024;
 
 /// Is the box of a page's triangles, in steps of the lattice, rounded outwards.
 struct PageBox {
@@ -32,8 +33,8 @@ struct PageBox {
   std::array<float, 3> max;  ///< Upper corner.
 };
 
-/// Finds the box of some records. Real-time: safe.
-PageBox box_of(std::span<const CompactTriangle> records) noexcept;
+/// Finds the box of some packed triangles. Real-time: safe.
+PageBox box_of(std::span<const PackedTriangle> triangles) noexcept;
 
 /// Tells whether two boxes share a point; `low` and `high` in steps. NaN shares none.
 /// Real-time: safe.
@@ -74,18 +75,18 @@ struct Lattice {
   Eigen::Vector3d origin{0, 0, 0};  ///< Of the lattice.
   double step = 0;                  ///< Of the lattice.
 
-  /// Tells where corner `k` of a record is, m in W; the same as CompactSurface::position.
-  Eigen::Vector3d position(const CompactTriangle& record, std::size_t k) const noexcept {
-    return origin + step * record.corner(k);
+  /// Tells where corner `k` of a packed triangle is, m in W; the same as PackedSurface::position.
+  Eigen::Vector3d position(const PackedTriangle& packed, std::size_t k) const noexcept {
+    return origin + step * packed.corner(k);
   }
 };
 
-/// Writes a page file record by record, for surfaces that fit no memory.
+/// Writes a page file packed triangle by packed triangle, for surfaces that fit no memory.
 /// Real-time: never from the servo thread.
 class PageFileWriter {
  public:
-  /// Begins a file for `triangle_count` records (> 0). Fails, naming the file, if it cannot be
-  /// written.
+  /// Begins a file for `triangle_count` packed triangles (> 0). Fails, naming the file, if it
+  /// cannot be written.
   static driver::Result<PageFileWriter> create(const std::filesystem::path& file,
                                                const Lattice& lattice, std::int64_t triangle_count);
 
@@ -93,10 +94,11 @@ class PageFileWriter {
   PageFileWriter& operator=(PageFileWriter&&) noexcept;  ///< Takes it over.
   ~PageFileWriter();
 
-  /// Adds records in the order of their numbers. Fails when the disk is full.
-  driver::Result<void> append(std::span<const CompactTriangle> records);
+  /// Adds packed triangles in the order of their numbers. Fails when the disk is full.
+  driver::Result<void> append(std::span<const PackedTriangle> triangles);
 
-  /// Writes what is left and the boxes. Fails if the number of records is not the one promised.
+  /// Writes what is left and the boxes. Fails if the number of packed triangles is not the one
+  /// promised.
   driver::Result<void> finish();
 
  private:
@@ -107,14 +109,14 @@ class PageFileWriter {
 
 /// Writes a whole surface. Fails, naming the file, if it cannot be written.
 /// Real-time: never from the servo thread.
-driver::Result<void> write_page_file(const CompactSurface& surface,
+driver::Result<void> write_page_file(const PackedSurface& surface,
                                      const std::filesystem::path& file);
 
 /// Tells whether a file begins as a page file does; false if it cannot be read.
 /// Real-time: never from the servo thread.
 bool is_page_file(const std::filesystem::path& file);
 
-/// Is an open page file: what stands before the records, in memory.
+/// Is an open page file: what stands before the packed triangles, in memory.
 /// Real-time: never from the servo thread.
 class PageFile {
  public:
@@ -126,17 +128,17 @@ class PageFile {
   PageFile& operator=(PageFile&& other) noexcept;  ///< Takes it over.
   ~PageFile();
 
-  /// Reads a page's records; `records` must have room for `kPageRecords`. Returns how many it
-  /// holds, or 0 if the disk failed, the page is damaged, or a record names a neighbour that cannot
-  /// be.
-  std::int32_t read_page(std::int32_t page, std::span<CompactTriangle> records) const noexcept;
+  /// Reads a page's packed triangles; `triangles` must have room for `kPageTriangles`. Returns
+  /// how many it holds, or 0 if the disk failed, the page is damaged, or a packed triangle names a
+  /// neighbour that cannot be.
+  std::int32_t read_page(std::int32_t page, std::span<PackedTriangle> triangles) const noexcept;
 
   /// Asks the kernel to bring a page near, for a `read_page` soon: so the disk works on several.
   void announce_page(std::int32_t page) const noexcept;
 
   const Lattice& lattice() const noexcept { return lattice_; }  ///< Tells the lattice.
   std::int32_t triangle_count() const noexcept { return triangle_count_; }
-  /// Tells how far the smooth surface rises above its triangles, m in W; as CompactSurface::rise.
+  /// Tells how far the smooth surface rises above its triangles, m in W; as PackedSurface::rise.
   double rise() const noexcept { return rise_; }
   /// Tells the box around the whole surface, in steps.
   const PageBox& whole() const noexcept { return whole_; }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "track/record_contact_steps.h"
+#include "track/packed_contact_steps.h"
 
 namespace thimble::render {
 namespace {
@@ -16,7 +16,7 @@ constexpr double kSideways = 0.5;
 
 }  // namespace
 
-template class RecordContact<PagedStore>;
+template class PackedContact<PagedStore>;
 
 PagedContact::PagedContact(std::shared_ptr<PagedSurface> surface, const PagedPlace& place)
     : contact_(PagedStore(std::move(surface))), place_(place), per_scale_(1 / place.scale) {}

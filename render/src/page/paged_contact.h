@@ -7,21 +7,21 @@
 
 #include "page/paged_surface.h"
 #include "thimble/driver/device_state.h"
-#include "track/record_contact.h"
+#include "track/packed_contact.h"
 
 namespace thimble::render {
 
-/// Is a store whose records come from a page file: what is not near the tip is absent.
+/// Is a store whose packed triangles come from a page file: what is not near the tip is absent.
 class PagedStore {
  public:
   static constexpr bool kComplete = false;
 
   explicit PagedStore(std::shared_ptr<PagedSurface> surface) : surface_(std::move(surface)) {}
 
-  // As RecordStore says. Real-time: safe.
+  // As PackedStore says. Real-time: safe.
 
-  // Who asks for one record walks on to those around it.
-  const CompactTriangle* find(std::int32_t triangle) const noexcept {
+  // Who asks for one packed triangle walks on to those around it.
+  const PackedTriangle* find(std::int32_t triangle) const noexcept {
     const std::int32_t group = triangle / PagedSurface::kGroup;
     if (group != group_) {
       group_ = group;
@@ -44,8 +44,8 @@ class PagedStore {
     const bool inside = surface_->inside(p, complete);
     return !complete ? Known::kUnknown : inside ? Known::kYes : Known::kNo;
   }
-  FoundRecord closest(const Eigen::Vector3d& p, double radius) const noexcept {
-    FoundRecord found;
+  FoundTriangle closest(const Eigen::Vector3d& p, double radius) const noexcept {
+    FoundTriangle found;
     found.triangle = surface_->closest(p, radius, found.complete);
     return found;
   }
@@ -54,10 +54,10 @@ class PagedStore {
 
  private:
   std::shared_ptr<PagedSurface> surface_;
-  mutable std::int32_t group_ = -1;  // of the last record
+  mutable std::int32_t group_ = -1;  // of the last packed triangle
 };
 
-extern template class RecordContact<PagedStore>;
+extern template class PackedContact<PagedStore>;
 
 /// Says where a paged mesh M stands in the world: a point of it is at p_WM + scale R_WM p_M.
 struct PagedPlace {
@@ -68,9 +68,9 @@ struct PagedPlace {
 
 /// Finds what the tip touches on a surface of which only the volumes around the tip are in memory
 /// [BP 4.1]. The `Contact` stage of Touch for meshes that fit no memory; what it measures is what
-/// CompactContact would.
+/// MemoryContact would.
 ///
-/// The servo never waits for the disk. What it lacks is held (record_contact.h), and the depth that
+/// The servo never waits for the disk. What it lacks is held (packed_contact.h), and the depth that
 /// is felt never grows faster than the tip sinks in, by more than `kRiseSpeed`: a tip that came in
 /// unseen is let out slowly and not thrown out. What the mesh has and the tip met is felt as it is.
 class PagedContact {
@@ -84,7 +84,7 @@ class PagedContact {
   explicit PagedContact(std::shared_ptr<PagedSurface> surface, const PagedPlace& place = {});
 
   /// Finds the contact at `state.p_WT` (W, m) and keeps it until the next call, as
-  /// RecordContact::update. Real-time: safe; never waits.
+  /// PackedContact::update. Real-time: safe; never waits.
   const ContactState& update(const driver::DeviceState& state) noexcept;
 
   /// Gives the result of the last `update`. Real-time: safe.
@@ -116,7 +116,7 @@ class PagedContact {
   }
   double allowed_depth(const driver::DeviceState& state, const Eigen::Vector3d& n_W) const noexcept;
 
-  RecordContact<PagedStore> contact_;
+  PackedContact<PagedStore> contact_;
   PagedPlace place_;
   double per_scale_ = 1;
   ContactState state_;

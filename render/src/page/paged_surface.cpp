@@ -11,8 +11,8 @@
 #include <utility>
 
 #include "mesh/closest_point.h"
-#include "page/record_segment.h"
-#include "search/record_tests.h"
+#include "page/page_segment.h"
+#include "search/segment_test.h"
 
 namespace thimble::render {
 namespace {
@@ -55,7 +55,7 @@ PagedSurface::PagedSurface(PageFile file, const PagingSettings& settings)
       page_in_frame_(frames_.size(), -1),
       wanted_at_(frames_.size(), 0),
       wanted_in_(table_.size(), 0),
-      incoming_(kPageRecords) {
+      incoming_(kPageTriangles) {
   for (auto& frame : table_) frame.store(kAbsent, std::memory_order_relaxed);
   wanted_.reserve(table_.size());
 }
@@ -80,7 +80,7 @@ void PagedSurface::end_tick() noexcept {
 }
 
 template <class Visit>
-bool PagedSurface::visit_crossings(const RecordSegment& segment, Visit visit) const noexcept {
+bool PagedSurface::visit_crossings(const PageSegment& segment, Visit visit) const noexcept {
   bool complete = true;
   tree_.visit_reached(segment.low, segment.high, [&](std::int32_t page) noexcept {
     if (!segment.reaches(file_.boxes()[static_cast<std::size_t>(page)])) return true;
@@ -93,8 +93,9 @@ bool PagedSurface::visit_crossings(const RecordSegment& segment, Visit visit) co
       if (!segment.reaches(frame->boxes[static_cast<std::size_t>(begin / kGroup)])) continue;
       for (std::int32_t i = begin; i < std::min(begin + kGroup, frame->count); ++i) {
         double parameter = 0;
-        const Crossing way = segment.cross(frame->records[static_cast<std::size_t>(i)], parameter);
-        if (way != Crossing::kNone) visit(page * kPageRecords + i, way, parameter);
+        const Crossing way =
+            segment.cross(frame->triangles[static_cast<std::size_t>(i)], parameter);
+        if (way != Crossing::kNone) visit(page * kPageTriangles + i, way, parameter);
       }
     }
     return true;
@@ -106,7 +107,7 @@ FoundEntry PagedSurface::first_entry(const Vector3d& p_from, const Vector3d& p_t
   FoundEntry found;
   if (!within_range(p_from) || !within_range(p_to)) return found;
   int crossings = 0;
-  found.complete = visit_crossings(RecordSegment(file_.lattice(), p_from, p_to),
+  found.complete = visit_crossings(PageSegment(file_.lattice(), p_from, p_to),
                                    [&](std::int32_t t, Crossing way, double parameter) noexcept {
                                      ++crossings;
                                      if (way != Crossing::kEnters) return;
@@ -142,10 +143,10 @@ std::int32_t PagedSurface::closest(const Vector3d& p_W, double radius,
     }
     const auto look = [&](std::int32_t begin) noexcept {
       for (std::int32_t i = begin; i < std::min(begin + kGroup, frame->count); ++i) {
-        const CompactTriangle& r = frame->records[static_cast<std::size_t>(i)];
+        const PackedTriangle& r = frame->triangles[static_cast<std::size_t>(i)];
         const double away =
             (closest_point(p, r.corner(0), r.corner(1), r.corner(2)) - p).squaredNorm();
-        const std::int32_t t = page * kPageRecords + i;
+        const std::int32_t t = page * kPageTriangles + i;
         if (!(away < best_squared || (away == best_squared && best >= 0 && t < best))) continue;
         best_squared = away;
         best = t;
@@ -174,12 +175,12 @@ std::int32_t PagedSurface::closest(const Vector3d& p_W, double radius,
 bool PagedSurface::inside(const Vector3d& p_W, bool& complete) const noexcept {
   const std::int32_t near = closest(p_W, HUGE_VAL, complete);
   if (!complete || near < 0) return false;
-  const CompactTriangle* const nearest = find(near);
+  const PackedTriangle* const nearest = find(near);
   if (nearest == nullptr) {  // The loader has taken its page back meanwhile.
     complete = false;
     return false;
   }
-  const CompactTriangle& r = *nearest;
+  const PackedTriangle& r = *nearest;
   const Vector3d a = r.corner(0);
   const Vector3d side = r.corner(1) - a, other = r.corner(2) - a;
   const Vector3d n = side.cross(other);
@@ -190,7 +191,7 @@ bool PagedSurface::inside(const Vector3d& p_W, bool& complete) const noexcept {
   const Vector3d under = a + (side + other) / 3 - height / n.norm() * n;
   int crossings = 0;
   complete = visit_crossings(
-      RecordSegment(file_.lattice(), p_W, file_.lattice().origin + file_.lattice().step * under),
+      PageSegment(file_.lattice(), p_W, file_.lattice().origin + file_.lattice().step * under),
       [&crossings](std::int32_t, Crossing, double) noexcept { ++crossings; });
   return complete && crossings % 2 == 0;
 }
@@ -199,16 +200,16 @@ bool PagedSurface::inside_by_reading(const Vector3d& p_W) const {
   if (!within_range(p_W)) return false;
   Vector3d p_out = p_W;
   p_out.x() = file_.lattice().origin.x() + 4 * kLatticeHalf * file_.lattice().step;
-  const RecordSegment way(file_.lattice(), p_W, p_out);
-  std::vector<CompactTriangle> records(kPageRecords);
+  const PageSegment way(file_.lattice(), p_W, p_out);
+  std::vector<PackedTriangle> triangles(kPageTriangles);
   int crossings = 0;
   bool read = true;
   tree_.visit_reached(way.low, way.high, [&](std::int32_t page) {
-    const std::int32_t count = file_.read_page(page, records);
+    const std::int32_t count = file_.read_page(page, triangles);
     read = read && count > 0;
     for (std::int32_t i = 0; i < count; ++i) {
       double parameter = 0;
-      if (way.cross(records[static_cast<std::size_t>(i)], parameter) != Crossing::kNone) {
+      if (way.cross(triangles[static_cast<std::size_t>(i)], parameter) != Crossing::kNone) {
         ++crossings;
       }
     }
@@ -342,12 +343,12 @@ bool PagedSurface::load(std::int32_t page, std::int32_t frame_number) {
     }
     return false;
   }
-  std::copy_n(incoming_.begin(), count, frame.records.begin());
+  std::copy_n(incoming_.begin(), count, frame.triangles.begin());
   frame.count = count;
   for (std::int32_t begin = 0; begin < count; begin += kGroup) {
     const auto size = static_cast<std::size_t>(std::min(kGroup, count - begin));
     frame.boxes[static_cast<std::size_t>(begin / kGroup)] =
-        box_of({frame.records.data() + begin, size});
+        box_of({frame.triangles.data() + begin, size});
   }
   page_in_frame_[static_cast<std::size_t>(frame_number)] = page;
   wanted_at_[static_cast<std::size_t>(frame_number)] = round_;

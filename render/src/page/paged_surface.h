@@ -10,18 +10,18 @@
 #include <thread>
 #include <vector>
 
-#include "packed/compact_surface.h"
 #include "packed/large_pages.h"
+#include "packed/packed_surface.h"
 #include "page/page_file.h"
 #include "page/page_tree.h"
 #include "search/contact_search.h"
 #include "thimble/driver/result.h"
 #include "thimble/driver/snapshot.h"
-#include "track/record_store.h"
+#include "track/packed_store.h"
 
 namespace thimble::render {
 
-class RecordSegment;
+class PageSegment;
 
 /// Sets how much of a paged surface is kept in memory around the tip.
 struct PagingSettings {
@@ -67,40 +67,41 @@ class PagedSurface {
   void begin_tick(const Eigen::Vector3d& p_tip, const Eigen::Vector3d& v_W) noexcept {
     begin_tick(p_tip, p_tip, v_W);
   }
-  /// Ends a tick: records found in it may go.
+  /// Ends a tick: packed triangles found in it may go.
   void end_tick() noexcept;
   /// Notes how many ticks up to now needed a page that was absent, for `counters`.
   void note_misses(std::uint64_t misses) noexcept {
     misses_.store(misses, std::memory_order_relaxed);
   }
 
-  /// Finds a record, or nullptr if its page is not in memory. Good until `end_tick`.
-  const CompactTriangle* find(std::int32_t triangle) const noexcept {
-    const Frame* const frame = frame_of(triangle / kPageRecords);
-    return frame == nullptr ? nullptr
-                            : &frame->records[static_cast<std::size_t>(triangle % kPageRecords)];
+  /// Finds a packed triangle, or nullptr if its page is not in memory. Good until `end_tick`.
+  const PackedTriangle* find(std::int32_t triangle) const noexcept {
+    const Frame* const frame = frame_of(triangle / kPageTriangles);
+    return frame == nullptr
+               ? nullptr
+               : &frame->triangles[static_cast<std::size_t>(triangle % kPageTriangles)];
   }
 
-  /// Asks the processor to bring the records around one near, all at once: a walk to them would
-  /// wait for each in turn. Nothing happens if its page is absent.
+  /// Asks the processor to bring the packed triangles around one near, all at once: a walk to them
+  /// would wait for each in turn. Nothing happens if its page is absent.
   void announce(std::int32_t triangle) const noexcept {
-    const Frame* const frame = frame_of(triangle / kPageRecords);
+    const Frame* const frame = frame_of(triangle / kPageTriangles);
     if (frame == nullptr) return;
-    const std::int32_t first = triangle % kPageRecords / kGroup * kGroup;
+    const std::int32_t first = triangle % kPageTriangles / kGroup * kGroup;
     for (std::int32_t i = first; i < first + kGroup; ++i) {
-      __builtin_prefetch(&frame->records[static_cast<std::size_t>(i)]);
+      __builtin_prefetch(&frame->triangles[static_cast<std::size_t>(i)]);
     }
   }
-  /// Is how many records stand together: numbers that differ by less are likely near.
+  /// Is how many packed triangles stand together: numbers that differ by less are likely near.
   static constexpr std::int32_t kGroup = 16;
 
-  // Answers of the following are about the records in memory; `complete` tells whether they are
-  // those about the whole surface.
+  // Answers of the following are about the packed triangles in memory; `complete` tells whether
+  // they are those about the whole surface.
 
-  /// Finds the first record that the segment (W, m) crosses from outside to inside.
+  /// Finds the first packed triangle that the segment (W, m) crosses from outside to inside.
   FoundEntry first_entry(const Eigen::Vector3d& p_from, const Eigen::Vector3d& p_to) const noexcept;
 
-  /// Finds the record nearest to a point (W, m) and nearer than `radius` (m), -1 for none.
+  /// Finds the packed triangle nearest to a point (W, m) and nearer than `radius` (m), -1 for none.
   std::int32_t closest(const Eigen::Vector3d& p_W, double radius, bool& complete) const noexcept;
 
   /// Tells whether a point (W, m) is inside; false if not `complete`. Needs the pages between the
@@ -132,10 +133,10 @@ class PagedSurface {
  private:
   static constexpr std::int32_t kAbsent = -1;
   static constexpr std::int32_t kDamaged = -2;  // could not be read; is not asked for again
-  static constexpr std::int32_t kGroups = kPageRecords / kGroup;
+  static constexpr std::int32_t kGroups = kPageTriangles / kGroup;
 
   struct Frame {
-    std::array<CompactTriangle, kPageRecords> records;
+    std::array<PackedTriangle, kPageTriangles> triangles;
     std::array<PageBox, kGroups> boxes;  // of each group, in steps
     std::int32_t count = 0;
   };
@@ -145,7 +146,7 @@ class PagedSurface {
     return frame < 0 ? nullptr : &frames_[static_cast<std::size_t>(frame)];
   }
   template <class Visit>
-  bool visit_crossings(const RecordSegment& segment, Visit visit) const noexcept;
+  bool visit_crossings(const PageSegment& segment, Visit visit) const noexcept;
 
   struct Cursor {
     std::array<double, 3> p_tip{};
@@ -174,7 +175,7 @@ class PagedSurface {
   std::vector<std::uint64_t> wanted_at_;     // round in which a frame's page was last wanted
   std::vector<std::uint64_t> wanted_in_;     // round in which a page was last wanted
   std::vector<std::pair<double, std::int32_t>> wanted_;
-  std::vector<CompactTriangle> incoming_;
+  std::vector<PackedTriangle> incoming_;
   std::uint64_t round_ = 0;
   std::atomic<std::uint64_t> loads_{0}, evictions_{0}, failures_{0}, short_of_frames_{0};
   std::atomic<std::uint64_t> misses_{0};

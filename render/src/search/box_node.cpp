@@ -6,12 +6,12 @@
 
 namespace thimble::render {
 
-StepBox::StepBox() noexcept {
+LatticeAabb::LatticeAabb() noexcept {
   min.fill(std::numeric_limits<double>::infinity());
   max.fill(-std::numeric_limits<double>::infinity());
 }
 
-void StepBox::add(double x, double y, double z) noexcept {
+void LatticeAabb::add(double x, double y, double z) noexcept {
   const std::array<double, 3> p{x, y, z};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     min[axis] = std::min(min[axis], p[axis]);
@@ -19,16 +19,16 @@ void StepBox::add(double x, double y, double z) noexcept {
   }
 }
 
-void StepBox::add(const StepBox& box) noexcept {
+void LatticeAabb::add(const LatticeAabb& box) noexcept {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     min[axis] = std::min(min[axis], box.min[axis]);
     max[axis] = std::max(max[axis], box.max[axis]);
   }
 }
 
-void BoxNode::set_boxes(std::span<const StepBox> boxes) noexcept {
-  StepBox whole;
-  for (const StepBox& box : boxes) whole.add(box);
+void BoxNode::set_boxes(std::span<const LatticeAabb> boxes) noexcept {
+  LatticeAabb whole;
+  for (const LatticeAabb& box : boxes) whole.add(box);
   double size = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     origin[axis] = static_cast<float>(whole.min[axis]);
@@ -47,7 +47,7 @@ void BoxNode::set_boxes(std::span<const StepBox> boxes) noexcept {
   scale_and_children = std::bit_cast<std::uint32_t>(scale) | there;
   const double per_unit = 1 / static_cast<double>(scale);
   for (std::size_t i = 0; i < kChildrenMax; ++i) {
-    const StepBox& box = boxes[std::min(i, boxes.size() - 1)];
+    const LatticeAabb& box = boxes[std::min(i, boxes.size() - 1)];
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const auto units = [&](double u) noexcept {
         return std::clamp((u - static_cast<double>(origin[axis])) * per_unit, 0.0, kUnits);
@@ -61,8 +61,8 @@ void BoxNode::set_boxes(std::span<const StepBox> boxes) noexcept {
   }
 }
 
-StepBox BoxNode::box() const noexcept {
-  StepBox box;
+LatticeAabb BoxNode::box() const noexcept {
+  LatticeAabb box;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto steps = [&](std::uint8_t units) noexcept {
       return static_cast<double>(origin[axis]) + static_cast<double>(scale()) * units;

@@ -9,12 +9,12 @@
 namespace thimble::render {
 
 /// Is an upright box in steps of a SearchFrame; empty until something is added.
-struct StepBox {
-  StepBox() noexcept;
+struct LatticeAabb {
+  LatticeAabb() noexcept;
   /// Makes the box hold a point. Real-time: safe.
   void add(double x, double y, double z) noexcept;
   /// Makes the box hold another. Real-time: safe.
-  void add(const StepBox& box) noexcept;
+  void add(const LatticeAabb& box) noexcept;
 
   std::array<double, 3> min, max;  ///< Its corners, steps.
 };
@@ -43,9 +43,9 @@ struct alignas(64) BoxNode {
 
   /// Sets the boxes of the first children. Precondition: one to `kChildrenMax`, none empty.
   /// Real-time: safe.
-  void set_boxes(std::span<const StepBox> boxes) noexcept;
+  void set_boxes(std::span<const LatticeAabb> boxes) noexcept;
   /// Gives the box around all children, as rounded. Real-time: safe.
-  StepBox box() const noexcept;
+  LatticeAabb box() const noexcept;
 
   bool operator==(const BoxNode&) const noexcept = default;  ///< Compares all. Real-time: safe.
 

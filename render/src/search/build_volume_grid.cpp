@@ -13,7 +13,7 @@ using Eigen::Vector3d;
 using Corners = std::array<Vector3d, 3>;
 
 // Side of a volume in edges of the equilateral triangle that is as large as the mean one: narrower
-// costs memory, wider costs triangles per question (measured; render/README.md).
+// costs memory, wider costs triangles per question (measured; README.md).
 constexpr double kSideInEdges = 1;
 
 // Words of the top and entries of lists per triangle that a surface of whatever shape may take.
@@ -239,6 +239,6 @@ VolumeGrid build_volume_grid(const Surface& surface, const SearchFrame& frame) {
 }
 
 template VolumeGrid build_volume_grid(const ContactMesh&, const SearchFrame&);
-template VolumeGrid build_volume_grid(const CompactSurface&, const SearchFrame&);
+template VolumeGrid build_volume_grid(const PackedSurface&, const SearchFrame&);
 
 }  // namespace thimble::render

@@ -243,6 +243,6 @@ double GridSearch<Surface>::clearance(const Vector3d& p_W) const noexcept {
 }
 
 template class GridSearch<ContactMesh>;
-template class GridSearch<CompactSurface>;
+template class GridSearch<PackedSurface>;
 
 }  // namespace thimble::render

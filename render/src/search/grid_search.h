@@ -4,7 +4,7 @@
 #include <cstddef>
 
 #include "mesh/contact_mesh.h"
-#include "packed/compact_surface.h"
+#include "packed/packed_surface.h"
 #include "search/contact_search.h"
 #include "search/search_frame.h"
 #include "search/volume_grid.h"
@@ -13,14 +13,14 @@ namespace thimble::render {
 
 /// Looks for contact in space cut into volumes, of which only those around the question are looked
 /// at [BP 4.1]. Volumes are as wide as a mean triangle, so a tick's path meets few of them. The
-/// fastest search up to some 10^4 triangles of like size; beyond, lists and records that are not in
-/// the cache take what the volumes save. Where a few volumes hold most of the triangles it is no
-/// better than a linear search: see `even`.
+/// fastest search up to some 10^4 triangles of like size; beyond, lists and packed triangles that
+/// are not in the cache take what the volumes save. Where a few volumes hold most of the triangles
+/// it is no better than a linear search: see `even`.
 ///
 /// All questions are Real-time: safe. Paths of a tick and nearest points nearby take time that does
 /// not grow with the mesh but by what memory is far; longer paths skip empty space in long steps.
 ///
-/// `Surface` is ContactMesh or CompactSurface.
+/// `Surface` is ContactMesh or PackedSurface.
 template <class Surface>
 class GridSearch final : public ContactSearch {
  public:
@@ -51,6 +51,6 @@ class GridSearch final : public ContactSearch {
 };
 
 extern template class GridSearch<ContactMesh>;
-extern template class GridSearch<CompactSurface>;
+extern template class GridSearch<PackedSurface>;
 
 }  // namespace thimble::render

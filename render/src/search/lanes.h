@@ -14,13 +14,13 @@
 #include <span>
 
 #include "mesh/contact_mesh.h"
-#include "packed/compact_surface.h"
+#include "packed/packed_surface.h"
 #include "search/box_node.h"
 #include "search/near_list.h"
 #include "search/nearest_so_far.h"
 #include "search/node_stack.h"
-#include "search/record_tests.h"
 #include "search/search_frame.h"
+#include "search/segment_test.h"
 #include "search/tree_nodes.h"
 #include "search/volume_grid.h"
 

@@ -130,6 +130,6 @@ double LinearSearchOver<Surface>::clearance(const Vector3d&) const noexcept {
 }
 
 template class LinearSearchOver<ContactMesh>;
-template class LinearSearchOver<CompactSurface>;
+template class LinearSearchOver<PackedSurface>;
 
 }  // namespace thimble::render

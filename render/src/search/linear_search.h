@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "mesh/contact_mesh.h"
-#include "packed/compact_surface.h"
+#include "packed/packed_surface.h"
 #include "search/contact_search.h"
 #include "search/search_frame.h"
 
@@ -20,7 +20,7 @@ namespace thimble::render {
 /// are out of reach (rounding is monotone, so it never drops one too many); what is left is decided
 /// without rounding. All questions are Real-time: safe; time grows with the number of triangles.
 ///
-/// `Surface` is ContactMesh or CompactSurface; LinearSearch stands for the first.
+/// `Surface` is ContactMesh or PackedSurface; LinearSearch stands for the first.
 template <class Surface>
 class LinearSearchOver final : public ContactSearch {
  public:
@@ -52,6 +52,6 @@ class LinearSearchOver final : public ContactSearch {
 using LinearSearch = LinearSearchOver<ContactMesh>;
 
 extern template class LinearSearchOver<ContactMesh>;
-extern template class LinearSearchOver<CompactSurface>;
+extern template class LinearSearchOver<PackedSurface>;
 
 }  // namespace thimble::render

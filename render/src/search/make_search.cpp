@@ -2,9 +2,9 @@
 
 #include <cstdint>
 
-#include "search/bvh.h"
 #include "search/grid_search.h"
 #include "search/linear_search.h"
+#include "search/tree_search.h"
 
 namespace thimble::render {
 namespace {
@@ -38,7 +38,7 @@ std::shared_ptr<const ContactSearch> make_search(const ContactMesh& mesh,
   return build_search(mesh, choice);
 }
 
-std::shared_ptr<const ContactSearch> make_search(const CompactSurface& surface,
+std::shared_ptr<const ContactSearch> make_search(const PackedSurface& surface,
                                                  std::optional<SearchChoice> choice) {
   return build_search(surface, choice);
 }

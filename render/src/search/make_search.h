@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "mesh/contact_mesh.h"
-#include "packed/compact_surface.h"
+#include "packed/packed_surface.h"
 #include "search/contact_search.h"
 #include "thimble/render/search/search_choice.h"
 
@@ -15,7 +15,7 @@ namespace thimble::render {
 /// Real-time: never from the servo thread.
 std::shared_ptr<const ContactSearch> make_search(const ContactMesh& mesh,
                                                  std::optional<SearchChoice> choice = {});
-std::shared_ptr<const ContactSearch> make_search(const CompactSurface& surface,
+std::shared_ptr<const ContactSearch> make_search(const PackedSurface& surface,
                                                  std::optional<SearchChoice> choice = {});
 
 /// Builds a search that can be told that triangles have moved (ContactSearch::refit): linear if

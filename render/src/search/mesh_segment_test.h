@@ -8,13 +8,13 @@
 
 #include "mesh/contact_mesh.h"
 #include "mesh/segment_crossing.h"
-#include "search/record_tests.h"
 #include "search/search_frame.h"
+#include "search/segment_test.h"
 
 namespace thimble::render {
 
 /// Decides how one segment passes the triangles of a ContactMesh: the same questions as SegmentTest
-/// answers for a CompactSurface. Real-time: safe; tens of ns for a triangle that is near.
+/// answers for a PackedSurface. Real-time: safe; tens of ns for a triangle that is near.
 class MeshSegmentTest {
  public:
   /// Precondition: both points (W, m) are `within_range`.
@@ -87,7 +87,7 @@ inline MeshSegmentTest segment_test(const ContactMesh& mesh, const SearchFrame& 
                                     const Eigen::Vector3d& p_to) noexcept {
   return {mesh, frame, p_from, p_to};
 }
-inline SegmentTest segment_test(const CompactSurface& surface, const SearchFrame&,
+inline SegmentTest segment_test(const PackedSurface& surface, const SearchFrame&,
                                 const Eigen::Vector3d& p_from,
                                 const Eigen::Vector3d& p_to) noexcept {
   return {surface, p_from, p_to};

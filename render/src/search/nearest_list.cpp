@@ -19,7 +19,7 @@ void consider_any(const Surface& surface, const SearchFrame& frame,
 
 }  // namespace
 
-void consider(const CompactSurface& surface, const SearchFrame& frame,
+void consider(const PackedSurface& surface, const SearchFrame& frame,
               std::span<const std::int32_t> list, const Eigen::Vector3d& p,
               NearestSoFar& best) noexcept {
   consider_any(surface, frame, list, p, best);

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "mesh/contact_mesh.h"
-#include "packed/compact_surface.h"
+#include "packed/packed_surface.h"
 #include "search/nearest_so_far.h"
 #include "search/search_frame.h"
 
@@ -14,7 +14,7 @@ namespace thimble::render {
 /// Looks whether a triangle of a list is nearer to `p` (steps) than the nearest one so far; of
 /// several equally near the one with the lowest number counts, in whatever order they are shown.
 /// Real-time: safe; some 20 ns for four triangles.
-void consider(const CompactSurface& surface, const SearchFrame& frame,
+void consider(const PackedSurface& surface, const SearchFrame& frame,
               std::span<const std::int32_t> list, const Eigen::Vector3d& p,
               NearestSoFar& best) noexcept;
 void consider(const ContactMesh& mesh, const SearchFrame& frame, std::span<const std::int32_t> list,

@@ -4,7 +4,7 @@
 
 namespace thimble::render {
 
-SearchFrame frame_of(const CompactSurface& surface) noexcept {
+SearchFrame frame_of(const PackedSurface& surface) noexcept {
   return {surface.origin(), surface.step(), kLatticeHalf / (surface.step() * kLatticeHalf)};
 }
 

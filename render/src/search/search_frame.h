@@ -4,12 +4,12 @@
 #include <cstdint>
 
 #include "mesh/contact_mesh.h"
-#include "packed/compact_surface.h"
+#include "packed/packed_surface.h"
 
 namespace thimble::render {
 
 /// Is the frame that searches count in: steps of 2^-31 of the surface's longest side from the
-/// middle of its box, so that nothing in them depends on scale or place. For a CompactSurface its
+/// middle of its box, so that nothing in them depends on scale or place. For a PackedSurface its
 /// lattice. Turning W into it is monotone on each axis, rounding included. Real-time: safe.
 struct SearchFrame {
   Eigen::Vector3d origin{0, 0, 0};  ///< m, W
@@ -23,14 +23,14 @@ struct SearchFrame {
 };
 
 /// Gives the frame of a surface. Real-time: safe.
-SearchFrame frame_of(const CompactSurface& surface) noexcept;
+SearchFrame frame_of(const PackedSurface& surface) noexcept;
 SearchFrame frame_of(const ContactMesh& mesh) noexcept;
 
 /// Tells where corner `k` of triangle `t` is in steps of the frame: the one accessor that searches
 /// read positions through. Real-time: safe.
-inline Eigen::Vector3d corner_in(const SearchFrame&, const CompactSurface& surface, std::int32_t t,
+inline Eigen::Vector3d corner_in(const SearchFrame&, const PackedSurface& surface, std::int32_t t,
                                  std::size_t k) noexcept {
-  return surface.record(t).corner(k);
+  return surface.triangle(t).corner(k);
 }
 inline Eigen::Vector3d corner_in(const SearchFrame& frame, const ContactMesh& mesh, std::int32_t t,
                                  std::size_t k) noexcept {

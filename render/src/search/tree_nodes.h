@@ -24,8 +24,8 @@ class TreeNodes {
   static constexpr std::size_t kLevelsMax = 10;                                   ///< 8^10 things.
   static constexpr std::size_t kThingsMax = std::size_t{1} << (kNumberBits + 2);  ///< Most.
 
-  /// Builds the tree in linear time. `box_of(place)` gives the StepBox of a thing. Precondition:
-  /// one to `kThingsMax` things. Real-time: never from the servo thread.
+  /// Builds the tree in linear time. `box_of(place)` gives the LatticeAabb of a thing.
+  /// Precondition: one to `kThingsMax` things. Real-time: never from the servo thread.
   template <class BoxOf>
   void build(std::size_t things, BoxOf box_of);
 
@@ -75,7 +75,7 @@ class TreeNodes {
 template <class BoxOf>
 BoxNode TreeNodes::made(std::size_t level, std::size_t number, BoxOf box_of) const noexcept {
   constexpr std::size_t kMost = BoxNode::kChildrenMax;
-  std::array<StepBox, kMost> boxes;
+  std::array<LatticeAabb, kMost> boxes;
   std::size_t count = 0;
   for (std::size_t i = kMost * number; count < kMost && i < counts_[level]; ++i) {
     boxes[count++] = level == 0 ? box_of(i) : nodes_[begins_[level - 1] + i].box();

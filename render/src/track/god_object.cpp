@@ -32,7 +32,7 @@ driver::Result<GodObjectContact> GodObjectContact::build(const TriangleMesh& mes
 }
 
 const ContactState& GodObjectContact::update(const driver::DeviceState& state) noexcept {
-  const Vector3d p_OT = R_WO_.transpose() * (state.p_WT - p_WO_);
+  const Vector3d p_OT = state.p_WT;
   if (!within_range(p_OT)) {
     state_ = {};
     has_before_ = false;
@@ -103,8 +103,8 @@ void GodObjectContact::follow(const Vector3d& p_OT) noexcept {
   place_ = rest.foot.place;
   state_.touching = true;
   state_.triangle = rest.foot.place.triangle;
-  state_.n_W = R_WO_ * n_O;
-  state_.p_WP = R_WO_ * p_OP_ + p_WO_;
+  state_.n_W = n_O;
+  state_.p_WP = p_OP_;
   state_.hops = hops;
 }
 

@@ -39,10 +39,8 @@ struct GodObjectCounters {
 /// part: the tip may come out at the back, the proxy does not. Where the straight way to the tip is
 /// free the proxy leaves; that way is searched along its whole length, without rounding.
 ///
-/// The mesh may move as a whole (`move_mesh`). A touching proxy is carried along with the triangle
-/// it rests on; a surface that sweeps over a free tip catches it.
-///
-/// Frames: W world, O mesh, T tip, P proxy. No length is compared with a constant in scene units.
+/// Frames: W world, T tip, P proxy; O, the mesh's own, is W. No length is compared with a constant
+/// in scene units.
 class GodObjectContact {
  public:
   /// Takes a prepared mesh and how it is searched (make_search). Real-time: never from the servo
@@ -61,22 +59,15 @@ class GodObjectContact {
                                                 const ContactMeshOptions& options = {},
                                                 std::optional<SearchChoice> search = {});
 
-  /// Places the mesh for the next `update`: p_WV = R_WO * p_OV + p_WO for each vertex V, m. `R_WO`
-  /// must be a rotation; NaN ends the contact. Where it is never called O is W. Real-time: safe.
-  void move_mesh(const Eigen::Matrix3d& R_WO, const Eigen::Vector3d& p_WO) noexcept {
-    R_WO_ = R_WO;
-    p_WO_ = p_WO;
-  }
-
   /// Finds the contact at `state.p_WT` (W, m) and keeps it until the next call.
   ///
-  /// `p_WP` is the proxy: outside the mesh by about its rounding (exactly outside while O is W).
+  /// `p_WP` is the proxy: outside the mesh by about its rounding.
   /// `depth` is its distance from the tip, `n_W` points from the tip to it, or along the surface's
   /// normal where the distance is rounding. `triangle` is one that the proxy rests on; where those
   /// around it leave no way out (narrower than 0.5 degrees) the proxy may stay where it was, and
   /// that is counted.
   ///
-  /// Contact begins when the path since the last tick, relative to the mesh, enters it. A tip that
+  /// Contact begins when the path since the last tick enters the mesh. A tip that
   /// is inside on the first tick touches nothing until it has been outside. A position that is NaN
   /// or beyond `kPositionMax` ends the contact and makes the next tick a first one. Real-time:
   /// safe; one triangle or a few while touching; one question to the search for each lift, and
@@ -91,8 +82,8 @@ class GodObjectContact {
     place_ = {.triangle = swept_over};
     state_.touching = true;
     state_.triangle = swept_over;
-    state_.n_W = R_WO_ * mesh_->cell(swept_over).face.n;
-    state_.p_WP = R_WO_ * p_OP_ + p_WO_;
+    state_.n_W = mesh_->cell(swept_over).face.n;
+    state_.p_WP = p_OP_;
   }
 
   /// Tells where a free tip was in the last `update`, m in O; NaN if there was none, or it touches.
@@ -115,8 +106,6 @@ class GodObjectContact {
   // On the heap, so that the search keeps pointing at the mesh when the contact moves.
   std::shared_ptr<const ContactMesh> mesh_;
   std::shared_ptr<const ContactSearch> search_;
-  Eigen::Matrix3d R_WO_ = Eigen::Matrix3d::Identity();
-  Eigen::Vector3d p_WO_{0, 0, 0};
   ContactState state_;
   FreeSpace free_space_;  // O
   GodObjectCounters counters_;

@@ -38,7 +38,7 @@ struct SurfaceMoved {
 /// Trackers take mesh, search and normals from here and stay true while they move; contact stages
 /// are told by MovingContact. 13 bytes per triangle for keeping them. Vertices may go anywhere in
 /// the mesh's box (ContactMeshOptions::room). That no triangle turns over or loses its area is for
-/// the caller to see to (movement_limits): in such places the surface cuts through itself, and
+/// the caller to see to (TurnGuard): in such places the surface cuts through itself, and
 /// contact is what parity makes of it.
 class MovingMesh {
  public:

@@ -67,7 +67,7 @@ OffsetFoot find_offset_foot(const ContactMesh& mesh, const SmoothNormals& normal
     foot.weights[1] = r.cross(e_2).dot(area) * scale;
     foot.weights[2] = e_1.cross(r).dot(area) * scale;
     foot.weights[0] = 1 - foot.weights[1] - foot.weights[2];
-    // Moving along the sunken plane changes no height, so only the sinking itself counts.
+    // Moving along the offset plane changes no height, so only the sinking itself counts.
     const double sinking = weighted(n, foot.weights).dot(area);
     // A triangle that has shrunk to a point and grown again faces as before, with its sides turned.
     const bool turned_over =

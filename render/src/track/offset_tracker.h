@@ -16,7 +16,7 @@ namespace thimble::render {
 struct OffsetFoot {
   Eigen::Vector3d weights{0, 0, 0};  ///< Of the corners; negative beyond a side.
   double depth = 0;                  ///< How far the corners have sunk, m; negative outside.
-  bool found = false;  ///< False where the sunken triangle has turned over: too deep for its bend.
+  bool found = false;  ///< False where the offset triangle has turned over: too deep for its bend.
 };
 
 /// Finds weights w and depth d with p = sum of w_k (x_k - d n_k), where x are the corners and n
@@ -26,7 +26,7 @@ struct OffsetFoot {
 ///         |       |        |       the three ways down are straight
 ///        y_0 ---- p ----- y_1      sunk by d; y = x - d n
 ///
-/// Newton's iteration in d alone, from `depth_near`: for given d the sunken triangle is plane, and
+/// Newton's iteration in d alone, from `depth_near`: for given d the offset triangle is plane, and
 /// the slope of the height above it is known in closed form. Real-time: safe; 2 or 3 rounds from a
 /// depth near by, at worst 12.
 OffsetFoot find_offset_foot(const ContactMesh& mesh, const SmoothNormals& normals,
@@ -42,7 +42,7 @@ OffsetFoot find_offset_foot(const ContactMesh& mesh, const SmoothNormals& normal
 /// the point q of the surface, and the depth is the distance from it. Over creases there is one
 /// normal on each side, and the edge plane between the two faces decides [BP 4b].
 ///
-/// Where a sunken triangle has turned over, the edge planes stand in. If the depth turns negative
+/// Where an offset triangle has turned over, the edge planes stand in. If the depth turns negative
 /// while the tip is inside, SurfaceTracker finds the contact again. Deterministic. All but the
 /// constructors is Real-time: safe; usually one or two feet per tick, at worst `kHopsMax` and what
 /// SurfaceTracker needs.

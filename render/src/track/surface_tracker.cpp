@@ -74,7 +74,7 @@ TrackerStep SurfaceTracker::follow(const Vector3d& p_WT) noexcept {
   TrackerStep step;
   step.hops = walk(p_WT - mesh_->origin());
   double depth = mesh_->depth(active_, p_WT);
-  if (step.hops > 0 && too_deep(p_WT, before, depth)) depth = call_back(p_WT, before, depth);
+  if (step.hops > 0 && too_deep(p_WT, before, depth)) depth = reject_hop(p_WT, before, depth);
   if (!(depth >= 0)) {
     if (!search_->inside(p_WT)) return step;
     // Inside, with the plane above by no more than rounding: the tip is on the surface.
@@ -82,7 +82,7 @@ TrackerStep SurfaceTracker::follow(const Vector3d& p_WT) noexcept {
       if (find_near(p_WT, before)) {
         ++counters_.found_near;
       } else {
-        find_far(p_WT);
+        reacquire(p_WT);
         ++counters_.found_far;
       }
       depth = mesh_->depth(active_, p_WT);
@@ -96,8 +96,8 @@ TrackerStep SurfaceTracker::follow(const Vector3d& p_WT) noexcept {
   return step;
 }
 
-double SurfaceTracker::call_back(const Vector3d& p_WT, std::int32_t before,
-                                 double depth_walked) noexcept {
+double SurfaceTracker::reject_hop(const Vector3d& p_WT, std::int32_t before,
+                                  double depth_walked) noexcept {
   // Around the triangle left only: the other end of the walk is what is in doubt.
   const std::int32_t walked_to = std::exchange(active_, before);
   double depth = find_near(p_WT, before) ? mesh_->depth(active_, p_WT) : depth_walked;
@@ -174,7 +174,7 @@ bool SurfaceTracker::find_near(const Vector3d& p_WT, std::int32_t before) noexce
   return true;
 }
 
-void SurfaceTracker::find_far(const Vector3d& p_WT) noexcept {
+void SurfaceTracker::reacquire(const Vector3d& p_WT) noexcept {
   const SurfacePoint hit = search_->closest(p_WT, std::numeric_limits<double>::infinity());
   if (hit.triangle < 0) return;
   // Where the nearest point lies on an edge or at a vertex, one of the triangles there has a tip

@@ -82,8 +82,8 @@ class SurfaceTracker {
   std::uint16_t walk(const Eigen::Vector3d& p) noexcept;
   std::uint16_t settle(const Eigen::Vector3d& p) noexcept;
   bool find_near(const Eigen::Vector3d& p_WT, std::int32_t before) noexcept;
-  void find_far(const Eigen::Vector3d& p_WT) noexcept;
-  double call_back(const Eigen::Vector3d& p_WT, std::int32_t before, double depth_walked) noexcept;
+  void reacquire(const Eigen::Vector3d& p_WT) noexcept;
+  double reject_hop(const Eigen::Vector3d& p_WT, std::int32_t before, double depth_walked) noexcept;
   bool too_deep(const Eigen::Vector3d& p_WT, std::int32_t before, double depth) const noexcept;
 
   const ContactMesh* mesh_;

@@ -9,7 +9,7 @@
 
 #include "page/paged_surface.h"
 #include "resident_memory.h"
-#include "search/bvh.h"
+#include "search/tree_search.h"
 #include "support/contact_walk.h"
 #include "support/random.h"
 #include "support/scratch.h"
@@ -18,7 +18,7 @@ namespace thimble::app {
 namespace {
 
 using Eigen::Vector3d;
-using render::CompactTriangle;
+using render::PackedTriangle;
 
 constexpr BumpyRing kRing;
 
@@ -30,14 +30,14 @@ std::filesystem::path ring_of(std::int64_t triangles) {
   return file;
 }
 
-std::array<std::int32_t, 3> corner(const CompactTriangle& t, std::size_t k) {
+std::array<std::int32_t, 3> corner(const PackedTriangle& t, std::size_t k) {
   return {t.x[k], t.y[k], t.z[k]};
 }
 
 /// Tells whether the edge from corner k of `t` runs backwards along one edge of `other` whose
 /// neighbour is `number`, with the same normals at its ends.
-bool shares_edge(const CompactTriangle& t, std::size_t k, std::int32_t number,
-                 const CompactTriangle& other) {
+bool shares_edge(const PackedTriangle& t, std::size_t k, std::int32_t number,
+                 const PackedTriangle& other) {
   for (std::size_t m = 0; m < 3; ++m) {
     if (other.neighbours[m] == number && corner(other, m) == corner(t, (k + 1) % 3) &&
         corner(other, (m + 1) % 3) == corner(t, k) && other.normals[m] == t.normals[(k + 1) % 3] &&
@@ -54,10 +54,10 @@ TEST(RingPages, AreAClosedSurfaceWhoseNeighboursAreMutualAndBoxesRight) {
     ASSERT_TRUE(file.ok()) << file.error().message;
     const auto wanted = static_cast<double>(triangles);
     EXPECT_NEAR(file->triangle_count(), wanted, 0.25 * wanted + 100);
-    std::vector<CompactTriangle> all;
-    std::vector<CompactTriangle> page(render::kPageRecords);
+    std::vector<PackedTriangle> all;
+    std::vector<PackedTriangle> page(render::kPageTriangles);
     for (std::size_t p = 0; p < file->boxes().size(); ++p) {
-      ASSERT_EQ(file->read_page(static_cast<std::int32_t>(p), page), render::kPageRecords);
+      ASSERT_EQ(file->read_page(static_cast<std::int32_t>(p), page), render::kPageTriangles);
       const render::PageBox around = render::box_of(page);
       EXPECT_EQ(around.min, file->boxes()[p].min);
       EXPECT_EQ(around.max, file->boxes()[p].max);
@@ -86,10 +86,10 @@ TEST(RingPages, GiveTheSameEntriesAsTheSameMeshCutByTheUsualWay) {
   ASSERT_TRUE(pages.ok());
   render::TriangleMesh mesh;
   std::map<std::array<std::int32_t, 3>, std::int32_t> vertices;
-  std::vector<CompactTriangle> page(render::kPageRecords);
+  std::vector<PackedTriangle> page(render::kPageTriangles);
   for (std::size_t p = 0; p < pages->boxes().size(); ++p) {
     ASSERT_GT(pages->read_page(static_cast<std::int32_t>(p), page), 0);
-    for (const CompactTriangle& t : page) {
+    for (const PackedTriangle& t : page) {
       std::array<std::int32_t, 3> corners{};
       for (std::size_t k = 0; k < 3; ++k) {
         const auto [place, is_new] =
@@ -100,18 +100,18 @@ TEST(RingPages, GiveTheSameEntriesAsTheSameMeshCutByTheUsualWay) {
       mesh.triangles.push_back(corners);
     }
   }
-  const auto surface = render::CompactSurface::build(mesh);
+  const auto surface = render::PackedSurface::build(mesh);
   ASSERT_TRUE(surface.ok()) << surface.error().message;
-  const render::Bvh tree(*surface);
+  const render::TreeSearch<PackedSurface> tree(*surface);
   // Corner normals of the mesh are averages, those of the ring are exact.
   for (std::int32_t t = 0; t < surface->triangle_count(); ++t) {
     const std::int32_t source = surface->source(t);
-    if (source / render::kPageRecords != 3) continue;
+    if (source / render::kPageTriangles != 3) continue;
     ASSERT_GT(pages->read_page(3, page), 0);
-    const CompactTriangle& ours = page[static_cast<std::size_t>(source % render::kPageRecords)];
+    const PackedTriangle& ours = page[static_cast<std::size_t>(source % render::kPageTriangles)];
     for (std::size_t k = 0; k < 3; ++k) {
       EXPECT_GT(render::unpack_normal(ours.normals[k])
-                    .dot(render::unpack_normal(surface->record(t).normals[k])),
+                    .dot(render::unpack_normal(surface->triangle(t).normals[k])),
                 0.999);
     }
   }

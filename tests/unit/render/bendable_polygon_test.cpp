@@ -446,7 +446,7 @@ TEST(DentedTouch, GivesTheHandNoMoreThanItHasPutInToThePull) {
 TEST(DentedTouch, ChangesNoForceWithoutPullAndIsTheSameInEveryRun) {
   const TriangleMesh ball = support::icosphere(2, 0.05);
   for (const TrackerChoice tracker : {TrackerChoice::kEdgePlanes, TrackerChoice::kOffset,
-                                      TrackerChoice::kGodObject, TrackerChoice::kCompact}) {
+                                      TrackerChoice::kGodObject, TrackerChoice::kPacked}) {
     SurfaceChoice surface{.spring = {.stiffness = 600, .damping = 0}, .effects = {}};
     ContactChoice choice;
     choice.tracker = tracker;

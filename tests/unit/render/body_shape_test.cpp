@@ -15,7 +15,7 @@
 #include "support/shapes.h"
 #include "support/stylus.h"
 #include "thimble/render/build_object_touch.h"
-#include "thimble/render/effect/given_settings.h"
+#include "thimble/render/effect/map_settings.h"
 
 // Clay and snapping walls through the whole of an object: contact, surface, shape, mesh.
 
@@ -428,7 +428,7 @@ TEST(Shape, RefusesOrSurvivesNonsense) {
     }
     EXPECT_TRUE(refused(clay, bad));
   }
-  EXPECT_TRUE(refused(clay, kStiffness, by(TrackerChoice::kCompact)));
+  EXPECT_TRUE(refused(clay, kStiffness, by(TrackerChoice::kPacked)));
   ContactChoice curved;
   curved.curved_depth = true;
   EXPECT_TRUE(refused(clay, kStiffness, curved));

@@ -10,8 +10,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "search/bvh.h"
 #include "search/tree_nodes.h"
+#include "search/tree_search.h"
 #include "support/random.h"
 #include "support/shapes.h"
 
@@ -31,9 +31,9 @@ TEST(BoxNode, HoldsItsChildrensBoxesAndLittleMore) {
     // From a point to the whole lattice, anywhere on it.
     const double size = std::exp2(random.uniform(-2, 30));
     const Vector3d middle = random.in_box(0x1p30 - size);
-    std::array<StepBox, BoxNode::kChildrenMax> boxes;
+    std::array<LatticeAabb, BoxNode::kChildrenMax> boxes;
     const std::size_t count = 1 + random.bits() % boxes.size();
-    StepBox whole;
+    LatticeAabb whole;
     for (std::size_t i = 0; i < count; ++i) {
       for (int corner = 0; corner < 3; ++corner) {
         const Vector3d p = middle + random.in_box(round % 10 == 0 ? 0 : size);
@@ -51,7 +51,7 @@ TEST(BoxNode, HoldsItsChildrensBoxesAndLittleMore) {
     const double room = longest / 127 + 130;
     EXPECT_EQ(node.children(), (1u << count) - 1);
     EXPECT_GE(node.scale(), 1);
-    const StepBox around = node.box();
+    const LatticeAabb around = node.box();
     int exponent = 0;
     EXPECT_EQ(std::frexp(node.scale(), &exponent), 0.5f);
     for (std::size_t i = 0; i < count; ++i) {
@@ -78,24 +78,24 @@ TEST(BoxNode, HoldsItsChildrensBoxesAndLittleMore) {
 TEST(TreeNodes, HoldEveryThingOnceInBoxesAboveIt) {
   support::Random random(3);
   for (const std::size_t things : {1, 2, 7, 8, 9, 63, 64, 65, 512, 1000, 4097}) {
-    std::vector<StepBox> boxes(things);
-    const auto fill = [&](StepBox& box) {
-      box = StepBox();
+    std::vector<LatticeAabb> boxes(things);
+    const auto fill = [&](LatticeAabb& box) {
+      box = LatticeAabb();
       const Vector3d p = random.in_box(0x1p29), q = p + random.in_box(0x1p24);
       box.add(p.x(), p.y(), p.z());
       box.add(q.x(), q.y(), q.z());
     };
-    for (StepBox& box : boxes) fill(box);
+    for (LatticeAabb& box : boxes) fill(box);
     const auto box_of = [&](std::size_t place) { return boxes[place]; };
     TreeNodes nodes;
     nodes.build(things, box_of);
     std::vector<int> seen(things, 0);
-    const auto visit = [&](auto& self, TreeNodes::Name name) -> StepBox {
+    const auto visit = [&](auto& self, TreeNodes::Name name) -> LatticeAabb {
       const BoxNode& node = nodes.node(name);
-      StepBox all;
+      LatticeAabb all;
       for (std::size_t i = 0; i < BoxNode::kChildrenMax; ++i) {
         if (((node.children() >> i) & 1u) == 0) continue;
-        StepBox below;
+        LatticeAabb below;
         if (TreeNodes::lowest(name)) {
           const std::size_t place = TreeNodes::first_thing(name) + i;
           ++seen.at(place);
@@ -133,11 +133,11 @@ TEST(TreeNodes, HoldEveryThingOnceInBoxesAboveIt) {
   }
 }
 
-// Eight records, 64 and so on that follow each other lie about in a square, from the first on: the
-// nodes of the tree are no larger than they must be.
-TEST(CompactSurface, KeepsEightsTogether) {
-  const CompactSurface surface =
-      CompactSurface::build(support::bumpy_sphere(5, 0.05, 0.1, 4)).value();
+// Eight packed triangles, 64 and so on that follow each other lie about in a square, from the first
+// on: the nodes of the tree are no larger than they must be.
+TEST(PackedSurface, KeepsEightsTogether) {
+  const PackedSurface surface =
+      PackedSurface::build(support::bumpy_sphere(5, 0.05, 0.1, 4)).value();
   const auto count = static_cast<std::size_t>(surface.triangle_count());
   double area = 0;
   for (std::int32_t t = 0; t < surface.triangle_count(); ++t) {
@@ -167,8 +167,8 @@ TEST(CompactSurface, KeepsEightsTogether) {
 TEST(WideLanes, GiveTheAnswersOfPlainOnesToTheBit) {
   for (const TriangleMesh& shape :
        {support::bumpy_sphere(3, 0.05, 0.3, 6), support::needle(64, 0.08, 0.01)}) {
-    const CompactSurface surface = CompactSurface::build(shape).value();
-    const Bvh wide(surface), plain(surface, false);
+    const PackedSurface surface = PackedSurface::build(shape).value();
+    const TreeSearch<PackedSurface> wide(surface), plain(surface, false);
     support::Random random(2);
     int entries = 0;
     for (int i = 0; i < 5000; ++i) {

@@ -124,7 +124,7 @@ TEST(CheckMesh, TellsCavitiesFromComponentsThatAreInsideOut) {
   TriangleMesh wrong = support::icosphere(2, 3);
   append(wrong, support::icosphere(2, 2));
   EXPECT_EQ(count(check_mesh(wrong), Kind::kInsideOut), 1u);
-  EXPECT_EQ(orient_components(wrong), 1u);
+  EXPECT_EQ(orient_mesh(wrong).turned_components, 1u);
   EXPECT_TRUE(check_mesh(wrong).touchable());
 }
 

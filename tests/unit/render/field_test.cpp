@@ -33,8 +33,8 @@ driver::DeviceState at(const Vector3d& p_WT, const Vector3d& v_WT = Vector3d::Ze
   return state;
 }
 
-EffectSurroundings turned() {
-  EffectSurroundings known;
+EffectContext turned() {
+  EffectContext known;
   known.R_WO = Eigen::AngleAxisd(1.1, Vector3d(3, -1, 2).normalized()).toRotationMatrix();
   known.p_WO = {0.004, -0.003, 0.002};
   return known;
@@ -178,7 +178,7 @@ double speed_left(double damping, double mass, int late) {
 
 TEST(Viscous, RefusesWhatTheLoopCannotHold) {
   for (const int late : {0, 1, 3}) {
-    EffectSurroundings known;
+    EffectContext known;
     known.tip_mass = 0.075;
     known.delay = 0.001 * late;
     const double most = std::numbers::pi / 2 * 0.075 / (0.001 * (1 + late));

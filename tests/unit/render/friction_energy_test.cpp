@@ -76,7 +76,7 @@ TEST(HardCase18, EveryFrictionButTheNaiveGivesARandomHandNoEnergyInAnyWindowFrom
   for (const std::string& name : support::friction_names()) {
     if (name == "naive") continue;
     for (const double step : {0.0, 3e-5}) {
-      const auto friction = make_friction(name, GivenSettings({{"coefficient", 0.5}}));
+      const auto friction = make_friction(name, MapSettings({{"coefficient", 0.5}}));
       const double work = most_energy_to_the_hand(*friction, step);
       EXPECT_LE(work, 0) << name << " " << step;
       most = std::max(most, work);
@@ -131,7 +131,7 @@ TEST(FrictionWithASpring, MakesNoEnergyOnAnyWayUnderAnyLoad) {
   for (const char* name :
        {"bristle", "dahl", "implicit_coulomb", "karnopp", "lugre", "stiction_point"}) {
     for (const double size : {1e-6, 2e-5, 2e-4, 5e-3}) {
-      const auto friction = make_friction(name, GivenSettings({{"coefficient", 0.5}}));
+      const auto friction = make_friction(name, MapSettings({{"coefficient", 0.5}}));
       EXPECT_LE(most_energy_on_any_way(*friction, size), 1e-12) << name << " " << size;
     }
   }
@@ -157,18 +157,18 @@ double most_energy_by_pressing(AnyStage& friction) {
 TEST(FrictionWithASpring, MakesNoEnergyOutOfPressingHarderOnTheWayBack) {
   for (const char* name :
        {"bristle", "dahl", "implicit_coulomb", "karnopp", "lugre", "stiction_point"}) {
-    const auto friction = make_friction(name, GivenSettings({{"coefficient", 0.5}}));
+    const auto friction = make_friction(name, MapSettings({{"coefficient", 0.5}}));
     EXPECT_LE(most_energy_by_pressing(*friction), 1e-12) << name;
   }
   // The guard, and the reason why the bristle's spring is the same at every load.
-  AnyStageOf<FrictionStage<LoadStiffenedLaw>> pumping({{}, support::phantom_surroundings()});
+  AnyStageOf<FrictionStage<LoadStiffenedLaw>> pumping({{}, support::phantom_context()});
   EXPECT_GT(most_energy_by_pressing(pumping), 1e-4);
 }
 
 TEST(TheBristle, MakesNoEnergyRollingAroundABall) {
   support::Random random(3);
   for (const double size : {1e-5, 3e-4}) {
-    const auto friction = make_friction("bristle", GivenSettings({{"coefficient", 0.5}}));
+    const auto friction = make_friction("bristle", MapSettings({{"coefficient", 0.5}}));
     Rubbing rubbing{*friction};
     rubbing.n_W = Vector3d(0, 0, 1);
     Vector3d p_WT = 0.02 * rubbing.n_W;

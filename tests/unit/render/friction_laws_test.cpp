@@ -30,14 +30,14 @@ double counted(double x) {
 
 template <class Law>
 AnyStageOf<FrictionStage<Law>> stage(const typename Law::Settings& settings) {
-  return AnyStageOf<FrictionStage<Law>>({settings, support::phantom_surroundings()});
+  return AnyStageOf<FrictionStage<Law>>({settings, support::phantom_context()});
 }
 
 // [STABILITY 2.1]: p = v T / step.
 TEST(HardCase13, NaiveFrictionIsOnlyADamperBelowOneCountPerTick) {
   double worst = 0;
   for (const double speed : {0.005, 0.02}) {
-    const auto friction = make_friction("naive", GivenSettings({{"coefficient", 0.5}}));
+    const auto friction = make_friction("naive", MapSettings({{"coefficient", 0.5}}));
     Rubbing rubbing{*friction};
     const int ticks = 60'000;  // whole numbers of counts
     double sum = 0, squares = 0;
@@ -169,7 +169,7 @@ double loop_area(AnyStage& friction) {
 TEST(HardCase19, FrictionTakesTheEnergyOfItsHysteresisLoop) {
   const double full = 4 * 0.01 * 0.5;
   for (const char* name : {"bristle", "dahl", "implicit_coulomb", "lugre"}) {
-    const auto friction = make_friction(name, GivenSettings({{"coefficient", 0.5}}));
+    const auto friction = make_friction(name, MapSettings({{"coefficient", 0.5}}));
     const double area = loop_area(*friction);
     EXPECT_NEAR(area, full, 0.03 * full) << name;
     record_hard_case(19, name, "<= error of the loop's area", std::abs(area / full - 1), 0.03, "1");
@@ -196,14 +196,14 @@ TEST(BristleFriction, CarriesItsBendAroundACurveWithoutStretchingIt) {
     before = 0.005 * rubbing.n_W;
   }
   EXPECT_NEAR(along_y, -0.2, 1e-12);
-  const Vector3d f_W = rubbing.feel.f_T_W - rubbing.n_W;
+  const Vector3d f_W = rubbing.response.f_T_W - rubbing.n_W;
   const Vector3d around_W(rubbing.n_W.z(), 0, -rubbing.n_W.x());
   EXPECT_NEAR(f_W.dot(around_W), -2000 * way, 2000 * way * 1e-5);
 }
 
 TEST(ViscousFriction, FadesTowardsTheSurface) {
   const auto friction = make_friction(
-      "paper", GivenSettings({{"coefficient", 0}, {"viscous", 5}, {"fade_depth", 0.001}}));
+      "paper", MapSettings({{"coefficient", 0}, {"viscous", 5}, {"fade_depth", 0.001}}));
   Rubbing rubbing{*friction};
   double x = 0;
   for (int k = 0; k < 300; ++k) rubbing.at_x(x += 1e-4);

@@ -21,8 +21,8 @@ using support::complaints_of;
 using support::make_friction;
 using support::Rubbing;
 
-GivenSettings half() {
-  return GivenSettings({{"coefficient", 0.5}});
+MapSettings half() {
+  return MapSettings({{"coefficient", 0.5}});
 }
 
 TEST(EveryFriction, IsInTheTable) {
@@ -50,7 +50,7 @@ TEST(EveryFriction, StaysFiniteTangentialAndBelowItsLimitInAnyState) {
       const Vector3d f_W = rubbing.at(p_WT);
       ASSERT_TRUE(f_W.allFinite()) << name << " " << k;
       worst_normal =
-          std::max(worst_normal, std::abs(rubbing.feel.f_T_W.dot(rubbing.n_W) - rubbing.load));
+          std::max(worst_normal, std::abs(rubbing.response.f_T_W.dot(rubbing.n_W) - rubbing.load));
       // Static friction of the stiction point is 1.25 times the sliding one.
       const double limit =
           (name == "stiction_point" ? 1.25 : 1) * 0.5 * std::max(0.0, rubbing.load);
@@ -145,31 +145,30 @@ TEST(EveryFriction, RefusesSettingsThatMakeNoSense) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const std::string& name : support::friction_names()) {
     EXPECT_TRUE(complaints_of(name, half()).empty()) << name;
-    EXPECT_TRUE(complaints_of(name, GivenSettings()).empty()) << name;
+    EXPECT_TRUE(complaints_of(name, MapSettings()).empty()) << name;
     for (const double wrong : {-0.1, nan, 1e9}) {
-      EXPECT_EQ(complaints_of(name, GivenSettings({{"coefficient", wrong}})).size(), 1U) << name;
+      EXPECT_EQ(complaints_of(name, MapSettings({{"coefficient", wrong}})).size(), 1U) << name;
     }
   }
   for (const char* name : {"bristle", "karnopp", "lugre", "stiction_point"}) {
-    EXPECT_EQ(
-        complaints_of(name, GivenSettings({{"coefficient", 0.5}, {"static_coefficient", 0.4}}))
-            .size(),
-        1U)
+    EXPECT_EQ(complaints_of(name, MapSettings({{"coefficient", 0.5}, {"static_coefficient", 0.4}}))
+                  .size(),
+              1U)
         << name;
   }
   EXPECT_FALSE(
-      complaints_of("paper", GivenSettings({{"coefficient", 0.5}, {"corner_frequency", 600}}))
+      complaints_of("paper", MapSettings({{"coefficient", 0.5}, {"corner_frequency", 600}}))
           .empty());
   EXPECT_FALSE(
-      complaints_of("paper", GivenSettings({{"coefficient", 0.5}, {"viscous", -1}})).empty());
+      complaints_of("paper", MapSettings({{"coefficient", 0.5}, {"viscous", -1}})).empty());
   EXPECT_FALSE(
-      complaints_of("naive", GivenSettings({{"coefficient", 0.5}}, {{"at_rest", "x"}})).empty());
+      complaints_of("naive", MapSettings({{"coefficient", 0.5}}, {{"at_rest", "x"}})).empty());
   // sigma2 >= sigma1 (F_s - F_c) / F_c [STABILITY 2.4].
   const auto damped = [](double viscous) {
-    return complaints_of("lugre", GivenSettings({{"coefficient", 0.5},
-                                                 {"static_coefficient", 0.6},
-                                                 {"damping", 1},
-                                                 {"viscous", viscous}}));
+    return complaints_of("lugre", MapSettings({{"coefficient", 0.5},
+                                               {"static_coefficient", 0.6},
+                                               {"damping", 1},
+                                               {"viscous", viscous}}));
   };
   EXPECT_EQ(damped(0.19).size(), 1U);
   EXPECT_TRUE(damped(0.21).empty());
@@ -179,30 +178,28 @@ TEST(HardCase20, EveryFrictionRefusesToHoldStifferThanTheArmCanKeepQuiet) {
   int refused = 0;
   for (const char* name :
        {"bristle", "dahl", "implicit_coulomb", "karnopp", "lugre", "stiction_point"}) {
-    const auto count = complaints_of(name, GivenSettings({{"coefficient", 0.5}, {"z_max", 3e-5}}));
+    const auto count = complaints_of(name, MapSettings({{"coefficient", 0.5}, {"z_max", 3e-5}}));
     ASSERT_EQ(count.size(), 1U) << name;
     EXPECT_NE(count[0].find("z_max: friction would hold with"), std::string::npos) << count[0];
     EXPECT_NE(count[0].find("expected z_max >= "), std::string::npos) << count[0];
     ++refused;
-    EXPECT_EQ(
-        complaints_of(name, GivenSettings({{"coefficient", 0.5}, {"stiffness", 2700}})).size(), 1U);
+    EXPECT_EQ(complaints_of(name, MapSettings({{"coefficient", 0.5}, {"stiffness", 2700}})).size(),
+              1U);
     EXPECT_TRUE(
-        complaints_of(name, GivenSettings({{"coefficient", 0.5}, {"stiffness", 2600}})).empty());
+        complaints_of(name, MapSettings({{"coefficient", 0.5}, {"stiffness", 2600}})).empty());
     // 0.5 (1.25 for the point) of 8.5 N over 2 mm.
-    EXPECT_TRUE(
-        complaints_of(name, GivenSettings({{"coefficient", 0.5}, {"z_max", 0.002}})).empty());
-    EXPECT_EQ(
-        complaints_of(name,
-                      GivenSettings({{"coefficient", 0.5}, {"z_max", 0.002}, {"stiffness", 1000}}))
-            .size(),
-        1U);
+    EXPECT_TRUE(complaints_of(name, MapSettings({{"coefficient", 0.5}, {"z_max", 0.002}})).empty());
+    EXPECT_EQ(complaints_of(
+                  name, MapSettings({{"coefficient", 0.5}, {"z_max", 0.002}, {"stiffness", 1000}}))
+                  .size(),
+              1U);
   }
   support::record_hard_case(20, "frictions with a spring, z_max of one count",
                             "== refused with the least z_max that is allowed", refused, 6, "1");
 }
 
 TEST(StickStiffness, IsBoundByLatencyAndByTheEncoder) {
-  EffectSurroundings arm = support::phantom_surroundings();
+  EffectContext arm = support::phantom_context();
   EXPECT_NEAR(stick_stiffness_max(arm), 2 * 0.04 / 3e-5, 1e-9);
   arm.encoder_step = 0;
   EXPECT_NEAR(stick_stiffness_max(arm), 3.005 / (1.5 * 0.0005), 1e-9);

@@ -16,7 +16,7 @@
 #include "support/shapes.h"
 #include "support/stylus.h"
 #include "thimble/render/build_object_touch.h"
-#include "thimble/render/effect/given_settings.h"
+#include "thimble/render/effect/map_settings.h"
 
 namespace thimble::render {
 namespace {
@@ -30,7 +30,7 @@ SurfaceChoice surface_of(double stiffness, double damping, bool friction = false
   SurfaceChoice surface{.spring = {.stiffness = stiffness, .damping = damping}};
   for (const EffectKind& kind : effect_table()) {
     if (!friction || kind.name != "bristle") continue;
-    GivenSettings settings({{"coefficient", 0.6}, {"stiffness", stiffness}});
+    MapSettings settings({{"coefficient", 0.6}, {"stiffness", stiffness}});
     surface.effects.push_back({&kind, kind.read(settings, {})});
   }
   return surface;

@@ -228,7 +228,10 @@ TEST(OrientMesh, OrientsTheShuffledFilesAsTheParityOfRaysDoes) {
     // Where a mesh passes through itself, rays see the matter that is there, and winding does not.
     if (std::string(name) == "boeing.off") continue;
     TriangleMesh by_rays = file;
-    apply_out_array(by_rays, compute_out_array(file));
+    const OutArray out = compute_out_array(file);
+    for (std::size_t t = 0; t < out.size(); ++t) {
+      if (out[t] < 0) std::swap(by_rays.triangles[t][1], by_rays.triangles[t][2]);
+    }
     EXPECT_EQ(by_winding.triangles, by_rays.triangles) << name;
   }
 }

@@ -11,13 +11,13 @@
 #include <thread>
 
 #include "page/page_file.h"
-#include "search/bvh.h"
+#include "search/tree_search.h"
 #include "support/contact_walk.h"
 #include "support/heap_guard.h"
 #include "support/random.h"
 #include "support/scratch.h"
 #include "support/shapes.h"
-#include "track/compact_contact.h"
+#include "track/memory_contact.h"
 
 namespace thimble::render {
 namespace {
@@ -29,9 +29,9 @@ constexpr double kRadius = 0.05;     // m
 constexpr double kStiffness = 1000;  // N/m
 
 /// A bumpy ball of 81,920 triangles: 80 pages.
-const CompactSurface& ball() {
-  static const CompactSurface surface =
-      CompactSurface::build(support::bumpy_sphere(6, kRadius, 0.05, 6)).value();
+const PackedSurface& ball() {
+  static const PackedSurface surface =
+      PackedSurface::build(support::bumpy_sphere(6, kRadius, 0.05, 6)).value();
   return surface;
 }
 
@@ -53,7 +53,7 @@ std::shared_ptr<PagedSurface> open(const PagingSettings& settings,
 
 /// As support::bumpy_sphere: found from the surface itself, by the tree's answer.
 double radius_at(const Vector3d& direction) {
-  static const Bvh tree(ball());
+  static const TreeSearch<PackedSurface> tree(ball());
   const Entry entry = tree.first_entry(2 * kRadius * direction, Vector3d::Zero());
   return 2 * kRadius * (1 - entry.parameter);
 }
@@ -112,7 +112,7 @@ class Way {
 
 TEST(PagedContact, FeelsWhatTheContactInMemoryFeels) {
   Hand hand(PagedContact(open({.frames = 24, .reach = 0.003, .horizon = 0.02})));
-  CompactContact reference((CompactSurface(ball())));
+  MemoryContact reference((PackedSurface(ball())));
   Way way(1);
   int touching = 0;
   for (int i = 0; i < 20'000; ++i) {
@@ -224,17 +224,18 @@ TEST(PagedContact, DoesNotThrowOutATipThatCameInUnseen) {
 
 TEST(PagedContact, ComesBackSlowlyToATipThatWentIntoABulgeUnseen) {
   // A coarse ball: over the middle of a triangle its smooth surface stands 3 mm above it.
-  const CompactSurface coarse = CompactSurface::build(support::icosphere(1, kRadius)).value();
+  const PackedSurface coarse = PackedSurface::build(support::icosphere(1, kRadius)).value();
   const auto file = support::scratch_folder() / "coarse.pages";
   ASSERT_TRUE(write_page_file(coarse, file).ok());
   const Vector3d middle =
-      (coarse.record(0).corner(0) + coarse.record(0).corner(1) + coarse.record(0).corner(2)) / 3;
+      (coarse.triangle(0).corner(0) + coarse.triangle(0).corner(1) + coarse.triangle(0).corner(2)) /
+      3;
   const double triangles = middle.norm() * coarse.step();
   ASSERT_GT(coarse.rise(), 0.002);
   for (const double share : {0.2, 0.8}) {
     // Hand watches that the depth never grows by more than the tip sinks and 20 um per tick.
     Hand hand(PagedContact(open({.frames = 4, .reach = 0.003, .horizon = 0.01}, file)));
-    CompactContact whole = CompactContact::build(support::icosphere(1, kRadius)).value();
+    MemoryContact whole = MemoryContact::build(support::icosphere(1, kRadius)).value();
     support::move_tip(whole, 0.06 * middle.normalized());
     const double seen = triangles + share * coarse.rise();
     double height = 0.06;
@@ -322,7 +323,7 @@ TEST(PagedContact, HoldsOverAPageThatIsDamaged) {
   std::filesystem::copy_file(ball_file(), path, std::filesystem::copy_options::overwrite_existing);
   const auto size = static_cast<std::int64_t>(std::filesystem::file_size(path));
   const std::int64_t records_at =
-      size - std::int64_t{ball().triangle_count()} * std::int64_t{sizeof(CompactTriangle)};
+      size - std::int64_t{ball().triangle_count()} * std::int64_t{sizeof(PackedTriangle)};
   support::Random random(12);
   {
     std::fstream stream(path, std::ios::binary | std::ios::in | std::ios::out);
@@ -352,9 +353,9 @@ TEST(PagedContact, EndsEveryTickOnRecordsOfNonsense) {
   // anywhere and round in circles, corners and normals of any bits.
   support::Random random(13);
   for (int round = 0; round < (support::long_form() ? 200 : 12); ++round) {
-    std::vector<CompactTriangle> records(ball().records().begin(), ball().records().end());
+    std::vector<PackedTriangle> records(ball().triangles().begin(), ball().triangles().end());
     const auto count = static_cast<std::uint64_t>(records.size());
-    for (CompactTriangle& r : records) {
+    for (PackedTriangle& r : records) {
       if (random.bits() % 8 != 0) continue;
       const auto k = static_cast<std::size_t>(random.bits() % 3);
       switch ((random.bits() + static_cast<std::uint64_t>(round)) % 5) {

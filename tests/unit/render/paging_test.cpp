@@ -10,7 +10,7 @@
 
 #include "mesh/closest_point.h"
 #include "page/paged_surface.h"
-#include "search/bvh.h"
+#include "search/tree_search.h"
 #include "support/random.h"
 #include "support/scratch.h"
 #include "support/shapes.h"
@@ -20,14 +20,14 @@ namespace {
 
 using Eigen::Vector3d;
 
-bool same(const CompactTriangle& a, const CompactTriangle& b) {
-  return std::memcmp(&a, &b, sizeof(CompactTriangle)) == 0;
+bool same(const PackedTriangle& a, const PackedTriangle& b) {
+  return std::memcmp(&a, &b, sizeof(PackedTriangle)) == 0;
 }
 
 /// A bumpy sphere of 0.1 m and 20,480 triangles: 20 pages.
-const CompactSurface& bumpy() {
-  static const CompactSurface surface =
-      CompactSurface::build(support::bumpy_sphere(5, 0.05, 0.1, 6)).value();
+const PackedSurface& bumpy() {
+  static const PackedSurface surface =
+      PackedSurface::build(support::bumpy_sphere(5, 0.05, 0.1, 6)).value();
   return surface;
 }
 
@@ -81,27 +81,27 @@ TEST(PageFile, GivesBackEveryRecordAndABoxAroundEachPage) {
   ASSERT_EQ(file->triangle_count(), bumpy().triangle_count());
   EXPECT_GT(file->rise(), 0);
   EXPECT_EQ(file->rise(), bumpy().rise());
-  std::vector<CompactTriangle> records(kPageRecords);
+  std::vector<PackedTriangle> triangles(kPageTriangles);
   std::int32_t next = 0;
   for (std::size_t page = 0; page < file->boxes().size(); ++page) {
-    const std::int32_t count = file->read_page(static_cast<std::int32_t>(page), records);
+    const std::int32_t count = file->read_page(static_cast<std::int32_t>(page), triangles);
     ASSERT_GT(count, 0);
     for (std::int32_t i = 0; i < count; ++i, ++next) {
-      const CompactTriangle& record = records[static_cast<std::size_t>(i)];
-      EXPECT_TRUE(same(record, bumpy().record(next)));
+      const PackedTriangle& packed = triangles[static_cast<std::size_t>(i)];
+      EXPECT_TRUE(same(packed, bumpy().triangle(next)));
       for (std::size_t k = 0; k < 3; ++k) {
-        const Vector3d x = record.corner(k);
+        const Vector3d x = packed.corner(k);
         for (std::size_t axis = 0; axis < 3; ++axis) {
           EXPECT_LE(file->boxes()[page].min[axis], x[static_cast<Eigen::Index>(axis)]);
           EXPECT_GE(file->boxes()[page].max[axis], x[static_cast<Eigen::Index>(axis)]);
         }
-        EXPECT_EQ(file->lattice().position(record, k), bumpy().position(next, k));
+        EXPECT_EQ(file->lattice().position(packed, k), bumpy().position(next, k));
       }
     }
   }
   EXPECT_EQ(next, bumpy().triangle_count());
-  EXPECT_EQ(file->read_page(static_cast<std::int32_t>(file->boxes().size()), records), 0);
-  EXPECT_EQ(file->read_page(-1, records), 0);
+  EXPECT_EQ(file->read_page(static_cast<std::int32_t>(file->boxes().size()), triangles), 0);
+  EXPECT_EQ(file->read_page(-1, triangles), 0);
 }
 
 TEST(PageFile, IsRefusedWithAReasonWhenItIsNoneOrDamaged) {
@@ -127,7 +127,7 @@ TEST(PageFile, GivesNoPageThatIsDamagedInAnyBit) {
   support::Random random(5);
   const std::string good = bytes_of(page_file());
   const std::size_t records_at =
-      good.size() - static_cast<std::size_t>(bumpy().triangle_count()) * sizeof(CompactTriangle);
+      good.size() - static_cast<std::size_t>(bumpy().triangle_count()) * sizeof(PackedTriangle);
   for (int k = 0; k < 200; ++k) {
     std::string damaged = good;
     const std::size_t at = random.bits() % (64 * 1024);
@@ -137,9 +137,9 @@ TEST(PageFile, GivesNoPageThatIsDamagedInAnyBit) {
     std::ofstream(path, std::ios::binary) << damaged;
     const auto file = PageFile::open(path);
     ASSERT_TRUE(file.ok());
-    std::vector<CompactTriangle> records(kPageRecords);
-    EXPECT_EQ(file->read_page(0, records), 0) << "byte " << at;
-    EXPECT_GT(file->read_page(1, records), 0);
+    std::vector<PackedTriangle> triangles(kPageTriangles);
+    EXPECT_EQ(file->read_page(0, triangles), 0) << "byte " << at;
+    EXPECT_GT(file->read_page(1, triangles), 0);
   }
 }
 
@@ -159,7 +159,7 @@ TEST(PageFile, RefusesToEndWithAnotherNumberOfTrianglesThanPromised) {
   const auto path = support::scratch_folder() / "short.pages";
   auto writer = PageFileWriter::create(path, {{0, 0, 0}, 1}, 10);
   ASSERT_TRUE(writer.ok());
-  ASSERT_TRUE(writer->append(bumpy().records().first(9)).ok());
+  ASSERT_TRUE(writer->append(bumpy().triangles().first(9)).ok());
   const auto done = writer->finish();
   ASSERT_FALSE(done.ok());
   EXPECT_NE(done.error().message.find("9 triangles were written, but 10 promised"),
@@ -185,9 +185,9 @@ TEST(PagedSurface, HoldsEverythingWithinReachOfTheTipAndAheadOfIt) {
       for (const double ahead : {0.0, 0.25, 0.5, 0.75, 1.0}) {
         const Vector3d place = p_W + ahead * settings.horizon * v_W;
         if ((bumpy().position(t, 0) - place).norm() > settings.reach) continue;
-        const CompactTriangle* found = surface->find(t);
+        const PackedTriangle* found = surface->find(t);
         ASSERT_TRUE(found) << "triangle " << t << " in step " << step;
-        EXPECT_TRUE(same(*found, bumpy().record(t)));
+        EXPECT_TRUE(same(*found, bumpy().triangle(t)));
       }
     }
   }
@@ -202,14 +202,14 @@ TEST(PagedSurface, KeepsTheNearestPagesWhenItHasTooFewFrames) {
   serve_all(*surface);
   EXPECT_GT(surface->counters().short_of_frames, 0u);
   EXPECT_EQ(surface->counters().loads, 2u);
-  const SurfacePoint under = Bvh(bumpy()).closest({0, 0, 0.05}, 1);
+  const SurfacePoint under = TreeSearch<PackedSurface>(bumpy()).closest({0, 0, 0.05}, 1);
   ASSERT_GE(under.triangle, 0);
   EXPECT_TRUE(surface->find(under.triangle));
 }
 
 TEST(PagedSurface, FindsTheSameEntriesAsATreeInMemoryAndSaysWhenItCannotKnow) {
   const auto surface = open({.frames = 64, .reach = 1, .horizon = 0});
-  const Bvh tree(bumpy());
+  const TreeSearch<PackedSurface> tree(bumpy());
   support::Random random(7);
   EXPECT_FALSE(surface->first_entry({0, 0, 0.08}, {0, 0, 0.03}).complete);  // nothing is there yet
   tick(*surface, {0, 0, 0.05});
@@ -233,7 +233,7 @@ TEST(PagedSurface, FindsTheSameEntriesAsATreeInMemoryAndSaysWhenItCannotKnow) {
 
 TEST(PagedSurface, KnowsInsideAndNearestAsATreeInMemoryDoes) {
   const auto surface = open({.frames = 64, .reach = 1, .horizon = 0});
-  const Bvh tree(bumpy());
+  const TreeSearch<PackedSurface> tree(bumpy());
   support::Random random(9);
   bool complete = true;
   surface->inside({0, 0, 0}, complete);
@@ -269,7 +269,7 @@ TEST(PagedSurface, KnowsInsideAndNearestAsATreeInMemoryDoes) {
 TEST(PagedSurface, SaysThatItCannotKnowRatherThanAnythingWrong) {
   // A few pages of many: every answer that claims to be complete must be right.
   const auto surface = open({.frames = 5, .reach = 0.006, .horizon = 0});
-  const Bvh tree(bumpy());
+  const TreeSearch<PackedSurface> tree(bumpy());
   support::Random random(10);
   int known = 0, unknown = 0;
   for (int place = 0; place < 40; ++place) {
@@ -307,8 +307,8 @@ TEST(PagedSurface, SaysThatItCannotKnowRatherThanAnythingWrong) {
 }
 
 TEST(PagedSurface, NeverShowsAWrongRecordWhileALoaderChangesItsFrames) {
-  // A fast tip, few frames, and a servo that looks at records as long as a tick lasts: what the
-  // thread sanitizer and the comparison would catch is a frame that is reused too early.
+  // A fast tip, few frames, and a servo that looks at packed triangles as long as a tick lasts:
+  // what the thread sanitizer and the comparison would catch is a frame that is reused too early.
   const auto surface = open({.frames = 6, .reach = 0.003, .horizon = 0.01});
   surface->start_loader();
   support::Random random(8);
@@ -320,10 +320,10 @@ TEST(PagedSurface, NeverShowsAWrongRecordWhileALoaderChangesItsFrames) {
     for (int look = 0; look < 200; ++look) {
       const auto t = static_cast<std::int32_t>(
           random.bits() % static_cast<std::uint64_t>(bumpy().triangle_count()));
-      const CompactTriangle* found = surface->find(t);
+      const PackedTriangle* found = surface->find(t);
       if (!found) continue;
       ++seen;
-      if (!same(*found, bumpy().record(t))) ++wrong;
+      if (!same(*found, bumpy().triangle(t))) ++wrong;
     }
     surface->end_tick();
     if (step % 16 == 0) std::this_thread::sleep_for(std::chrono::microseconds(200));

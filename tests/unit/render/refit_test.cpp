@@ -6,9 +6,9 @@
 #include <optional>
 #include <vector>
 
-#include "search/bvh.h"
 #include "search/grid_search.h"
 #include "search/linear_search.h"
+#include "search/tree_search.h"
 #include "support/contact_walk.h"
 #include "support/dents.h"
 #include "support/heap_guard.h"

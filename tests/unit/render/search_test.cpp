@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "search/bvh.h"
 #include "search/free_space.h"
 #include "search/grid_search.h"
 #include "search/linear_search.h"
 #include "search/make_search.h"
+#include "search/tree_search.h"
 #include "support/contact_walk.h"
 #include "support/heap_guard.h"
 #include "support/random.h"
@@ -117,7 +117,7 @@ TEST(EverySearch, GivesTheSameAnswersOnRandomSegments) {
   for (const TriangleMesh& shape : shapes()) {
     const ContactMesh mesh = ContactMesh::build(shape).value();
     expect_same_on_random_segments(mesh, mesh.origin(), 0.05, scaled(100000, 6000), ++seed);
-    const CompactSurface surface = CompactSurface::build(shape).value();
+    const PackedSurface surface = PackedSurface::build(shape).value();
     expect_same_on_random_segments(surface, mesh.origin(), 0.05, scaled(100000, 6000), ++seed);
   }
 }
@@ -125,7 +125,7 @@ TEST(EverySearch, GivesTheSameAnswersOnRandomSegments) {
 TEST(EverySearch, GivesTheSameAnswersOnSlivers) {
   const ContactMesh mesh = ContactMesh::build(slivers()).value();
   expect_same_on_random_segments(mesh, mesh.origin(), 0.05, scaled(100000, 6000), 30);
-  const CompactSurface surface = CompactSurface::build(slivers()).value();
+  const PackedSurface surface = PackedSurface::build(slivers()).value();
   expect_same_on_random_segments(surface, mesh.origin(), 0.05, scaled(100000, 6000), 31);
 }
 
@@ -150,7 +150,7 @@ TEST(EverySearch, GivesTheSameAnswersAtEveryScaleAndFarFromTheOrigin) {
                                         Eigen::Matrix3d::Identity(), middle);
       const ContactMesh mesh = ContactMesh::build(shape).value();
       expect_same_on_random_segments(mesh, middle, 0.05 * scale, scaled(20000, 2000), 50);
-      const CompactSurface surface = CompactSurface::build(shape).value();
+      const PackedSurface surface = PackedSurface::build(shape).value();
       expect_same_on_random_segments(surface, middle, 0.05 * scale, scaled(20000, 2000), 51);
     }
   }
@@ -162,18 +162,18 @@ TEST(EverySearch, GivesTheSameAnswersWhereEverythingIsDegenerate) {
   for (const bool compact : {false, true}) {
     const TriangleMesh shape = support::plate(1, 0.5, 4);
     const ContactMesh mesh = ContactMesh::build(shape).value();
-    const CompactSurface surface = CompactSurface::build(shape).value();
+    const PackedSurface surface = PackedSurface::build(shape).value();
     Searches<ContactMesh> doubles(mesh);
-    Searches<CompactSurface> records(surface);
+    Searches<PackedSurface> triangles(surface);
     support::Random random(60);
     const auto any = [&random] { return static_cast<double>(random.bits() % 11) / 8 - 0.625; };
     Vector3d before(any(), any(), any());
     for (int i = 0; i < scaled(50000, 3000); ++i) {
       const Vector3d now = i % 7 == 0 ? before : Vector3d(any(), any(), any());
       if (compact) {
-        records.expect_same_entry(before, now);
-        records.expect_same_side(now);
-        records.expect_same_closest(now, 1);
+        triangles.expect_same_entry(before, now);
+        triangles.expect_same_side(now);
+        triangles.expect_same_closest(now, 1);
       } else {
         doubles.expect_same_entry(before, now);
         doubles.expect_same_side(now);
@@ -182,8 +182,8 @@ TEST(EverySearch, GivesTheSameAnswersWhereEverythingIsDegenerate) {
       if (HasFatalFailure()) return;
       before = now;
     }
-    EXPECT_GT(doubles.entries + records.entries, 100);
-    EXPECT_GT(doubles.insides + records.insides, 100);
+    EXPECT_GT(doubles.entries + triangles.entries, 100);
+    EXPECT_GT(doubles.insides + triangles.insides, 100);
   }
 }
 

@@ -7,8 +7,9 @@
 #include <random>
 #include <utility>
 
-#include "mesh_touch.h"
 #include "support/shapes.h"
+#include "thimble/render/touch.h"
+#include "track/mesh_contact.h"
 
 namespace thimble::render {
 namespace {
@@ -53,10 +54,10 @@ TEST(SpringDamper, GivesNoForceForNaN) {
   EXPECT_EQ(spring.force(contact_at(0.001, {0, 0, 1}), state), Vector3d::Zero());
 }
 
-TEST(MeshTouch, PushesBackWithStiffnessTimesDepthOnABox) {
+TEST(Touch, PushesBackWithStiffnessTimesDepthOnABox) {
   auto contact = MeshContact::build(support::box({0.05, 0.05, 0.05}));
   ASSERT_TRUE(contact.ok());
-  MeshTouch touch(std::move(contact).value(), SpringDamper{1000, 0});
+  Touch<MeshContact, SpringDamper> touch(std::move(contact).value(), SpringDamper{1000, 0});
   driver::DeviceState state;
   for (const double z : {0.06, 0.051, 0.049, 0.047}) {
     state.p_WT = {0.011, 0.007, z};

@@ -12,7 +12,6 @@
 
 #include "body/spring/mesh_springs.h"
 #include "body/spring/modal_motion.h"
-#include "body/spring/ring_patch.h"
 #include "support/body_meshes.h"
 #include "support/contact_walk.h"
 #include "support/hard_case.h"
@@ -36,7 +35,7 @@ SpringMotionOptions with(SpringScheme scheme, double step, Beyond beyond = Beyon
 SpringNetwork<1> sheet(std::int32_t n, double relaxation) {
   const double k = 1000;
   const MeshSpringSettings settings{1e-3, k, relaxation * k, k, relaxation * k};
-  return join_heights(support::triangle_sheet(n, 5e-3), settings).value();
+  return support::join_heights(support::triangle_sheet(n, 5e-3), settings);
 }
 
 double growth(const SpringNetwork<1>& network, SpringScheme scheme, double step, int steps) {
@@ -317,68 +316,15 @@ TEST(ModalMotion, RefusesWhatItCannotDoExactly) {
   EXPECT_FALSE(ModalMotion<1>::build(sheet(41, 0), 1e-3));
 }
 
-TEST(SpringMotion, MovesAPatchLikeABodyOfItsNodesWithinAFrameThatIsHeld) {
-  const SpringNetwork<1> whole = sheet(12, 2e-5);
-  RingPatch rings(whole.node_count(), 64);
-  const std::vector<std::int32_t> first{66};
-  const auto found = rings.around(whole, first, 3);
-  ASSERT_EQ(found.size(), 37u);  // 1 + 6 + 12 + 18
-  const std::vector<std::int32_t> patch(found.begin(), found.end());
-  for (const SpringScheme scheme : {SpringScheme::kSymplecticEuler, SpringScheme::kVerlet,
-                                    SpringScheme::kImplicitEuler, SpringScheme::kTrapezoid}) {
-    auto motion = SpringMotion<1>::build(whole, with(scheme, 2e-4)).value();
-    support::throw_nodes(motion, 1e-3, 0.1, 8);
-    for (int i = 0; i < 5; ++i) motion.step();
-    motion.set_active(patch);
-    // The frame: nodes so heavy that they do not move.
-    std::vector<BodyNode> nodes(144, {1e9, 1000, 0.02});
-    std::vector<BodySpring<1>> springs;
-    for (const std::int32_t i : patch) nodes[static_cast<std::size_t>(i)].mass = 1e-3;
-    for (std::int32_t i = 0; i < 144; ++i) {
-      for (const std::int32_t j : whole.neighbours(i)) {
-        if (i < j) springs.push_back({i, j, 1000, 0.02});
-      }
-    }
-    SpringMotionOptions options = with(scheme, 2e-4);
-    options.rounds_max = 200;
-    options.remainder = 1e-13;
-    auto framed =
-        SpringMotion<1>::build(SpringNetwork<1>::build(nodes, springs).value(), options).value();
-    motion = SpringMotion<1>::build(whole, options).value();
-    motion.set_active(patch);
-    for (int i = 0; i < 50; ++i) {
-      motion.push(66, SpringMotion<1>::Vector(0.3));
-      framed.push(66, SpringMotion<1>::Vector(0.3));
-      motion.step();
-      framed.step();
-    }
-    for (std::size_t i = 0; i < 144; ++i) {
-      EXPECT_NEAR(motion.u()[i][0], framed.u()[i][0], 1e-9) << name_of(scheme) << " " << i;
-    }
-  }
-}
-
-TEST(RingPatch, StopsAtItsCapacity) {
-  const SpringNetwork<1> whole = sheet(12, 0);
-  RingPatch rings(whole.node_count(), 10);
-  const std::vector<std::int32_t> first{66, 66, 67};
-  EXPECT_EQ(rings.around(whole, first, 0).size(), 2u);
-  EXPECT_EQ(rings.around(whole, first, 5).size(), 10u);
-}
-
 TEST(SpringMotion, AsksTheHeapForNothing) {
   const auto network =
       join_vertices(support::icosphere(2, 0.03), {1e-3, 40, 0.002, 300, 0.015, true}).value();
-  RingPatch rings(network.node_count(), 100);
-  const std::vector<std::int32_t> first{0, 1, 2};
-  const std::vector<std::int32_t> second{50};
   for (const SpringScheme scheme :
        {SpringScheme::kExplicitEuler, SpringScheme::kSymplecticEuler, SpringScheme::kVerlet,
         SpringScheme::kImplicitEuler, SpringScheme::kTrapezoid}) {
     auto motion = SpringMotion<3>::build(network, with(scheme, 1e-4)).value();
     const int calls = support::heap_calls_of([&] {
       for (int i = 0; i < 20; ++i) {
-        motion.set_active(rings.around(network, i % 2 == 0 ? first : second, 2));
         motion.push(50, {0, 0, 1});
         motion.step();
       }
@@ -392,7 +338,7 @@ TEST(SpringMotion, AsksTheHeapForNothing) {
               modal.add(4, modal.u(3), modal.v(3));
             }),
             0);
-  EXPECT_GT(support::heap_calls_of([] { return RingPatch(10, 10); }), 0);
+  EXPECT_GT(support::heap_calls_of([] { return std::vector<int>(10); }), 0);
 }
 
 }  // namespace

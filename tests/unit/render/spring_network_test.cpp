@@ -54,7 +54,7 @@ void expect_bounds_of_the_dense_matrix(const SpringNetwork<kDof>& network) {
 TEST(SpringNetwork, FindsTheHighestFrequencyOfMeshesAndWildNetworks) {
   const MeshSpringSettings settings{1e-3, 50, 0.1, 1000, 0.2, true};
   expect_bounds_of_the_dense_matrix(join_vertices(support::icosphere(1, 0.03), settings).value());
-  expect_bounds_of_the_dense_matrix(join_heights(support::icosphere(2, 0.03), settings).value());
+  expect_bounds_of_the_dense_matrix(support::join_heights(support::icosphere(2, 0.03), settings));
   for (std::uint64_t seed = 0; seed < 6; ++seed) {
     expect_bounds_of_the_dense_matrix(support::wild_network<3>(40, 1e5, true, seed));
     expect_bounds_of_the_dense_matrix(support::wild_network<1>(60, 1e5, false, seed));
@@ -68,7 +68,7 @@ TEST(SpringNetwork, KnowsTheLimitsOfTriangleGrids) {
   const TriangleMesh sheet = support::triangle_sheet(24, 5e-3);
   const double unit = settings.neighbour_stiffness / settings.mass;
   const NetworkBounds directed = join_vertices(sheet, settings)->bounds();
-  const NetworkBounds heights = join_heights(sheet, settings)->bounds();
+  const NetworkBounds heights = support::join_heights(sheet, settings).bounds();
   EXPECT_NEAR(directed.omega_max * directed.omega_max / unit, 5.92, 0.08);
   EXPECT_NEAR(heights.omega_max * heights.omega_max / unit, 8.91, 0.08);
   EXPECT_NEAR(heights.omega_gershgorin * heights.omega_gershgorin / unit, 12, 1e-9);
@@ -111,15 +111,6 @@ TEST(SpringNetwork, RefusesWhatIsNoBody) {
   EXPECT_FALSE(build({1e-3, 10, 0}, {0, 1, 100, 0, {2, 0, 0}}));
   EXPECT_FALSE(build({1e-3, 10, 0}, {0, 1, 100, 0, {nan, 0, 0}}));
   EXPECT_FALSE(SpringNetwork<3>::build({}, {}));
-}
-
-TEST(SpringScheme, KnowsItsNamesBackAndForth) {
-  for (const SpringScheme scheme : kSpringSchemes) {
-    ASSERT_TRUE(scheme_named(name_of(scheme)));
-    EXPECT_EQ(*scheme_named(name_of(scheme)), scheme);
-  }
-  ASSERT_FALSE(scheme_named("rk4"));
-  EXPECT_NE(scheme_named("rk4").error().message.find("implicit_euler"), std::string::npos);
 }
 
 }  // namespace

@@ -35,8 +35,8 @@ driver::DeviceState at(const Vector3d& p_WT) {
   return state;
 }
 
-EffectSurroundings surroundings() {
-  EffectSurroundings known;
+EffectContext context() {
+  EffectContext known;
   known.force_max = 5;
   known.surface_stiffness = kStiffness;
   known.R_WO = Eigen::AngleAxisd(0.7, Vector3d(1, 2, 3).normalized()).toRotationMatrix();
@@ -125,10 +125,10 @@ TEST(Textures, DoNoWorkAroundAClosedWayUnlessTheyChangeTheDepthOnly) {
   Sandpaper::Settings rough;
   rough.roughness = 0.00005;
   rough.grain = 0.0015;
-  const EffectSurroundings known = surroundings();
+  const EffectContext known = context();
   expect_work_around(Sines(two_waves(TextureForm::kConservative), known), true, "sines");
   expect_work_around(Sandpaper(rough, known), true, "sandpaper");
-  EffectSurroundings straight = known;
+  EffectContext straight = known;
   straight.R_WO.setIdentity();
   expect_work_around(
       HeightMap(egg_box_map(TextureForm::kConservative, HeightMap::Along::kAll), straight), true,
@@ -146,7 +146,7 @@ TEST(Textures, DoNoWorkAroundAClosedWayUnlessTheyChangeTheDepthOnly) {
 
 TEST(Textures, DoNoWorkAroundAClosedWayInASphereEither) {
   const Sphere ball{.p_WO = {0, 0, 0}, .radius = 0.02};
-  const Sines waves(two_waves(TextureForm::kConservative), surroundings());
+  const Sines waves(two_waves(TextureForm::kConservative), context());
   const auto way = [](double s) -> Vector3d {
     return (0.018 + 0.0007 * std::sin(2 * s)) *
            Vector3d(std::cos(s), std::sin(s), 0.5 * std::sin(s + 1)).normalized();
@@ -160,7 +160,7 @@ TEST(Textures, DoNoWorkAroundAClosedWayInASphereEither) {
 
 TEST(Textures, PushWithTheGradientOfTheSpringsEnergy) {
   support::Random random(1);
-  const EffectSurroundings known = surroundings();
+  const EffectContext known = context();
   const Sines waves(two_waves(TextureForm::kConservative), known);
   const auto energy = [&](const Vector3d& p) {
     const double depth = -p.z() + waves.height().at(p).height;
@@ -180,7 +180,7 @@ TEST(Textures, PushWithTheGradientOfTheSpringsEnergy) {
 }
 
 TEST(Textures, AreCutIntoTheSurfaceSoThatContactBeginsWithoutAStep) {
-  const EffectSurroundings known = surroundings();
+  const EffectContext known = context();
   const Sines waves(two_waves(TextureForm::kConservative), known);
   const Sandpaper rough({}, known);
   const HeightMap map(egg_box_map(TextureForm::kConservative, HeightMap::Along::kAll), known);
@@ -200,15 +200,15 @@ TEST(Textures, AreCutIntoTheSurfaceSoThatContactBeginsWithoutAStep) {
 }
 
 TEST(Textures, GiveNoForceForNaNAndNeverPull) {
-  const EffectSurroundings known = surroundings();
+  const EffectContext known = context();
   const Sines waves(two_waves(TextureForm::kConservative), known);
   const Sandpaper rough({}, known);
   const HeightMap map(egg_box_map(TextureForm::kConservative, HeightMap::Along::kAll), known);
   const SpringDamper spring{kStiffness, 1};
   const auto felt = [&](auto stage, const ContactState& contact, const Vector3d& p_W) {
-    SurfaceFeel feel{.contact = contact};
-    stage.touch(at(p_W), feel);
-    return spring.force(feel.contact, at(p_W));
+    SurfaceResponse response{.contact = contact};
+    stage.touch(at(p_W), response);
+    return spring.force(response.contact, at(p_W));
   };
   support::Random random(3);
   for (int i = 0; i < 10000; ++i) {
@@ -239,7 +239,7 @@ TEST(Textures, GiveNoForceForNaNAndNeverPull) {
 }
 
 TEST(Textures, AskTheHeapForNothing) {
-  const EffectSurroundings known = surroundings();
+  const EffectContext known = context();
   Touch touch{PrimitiveContact(HalfSpace()), Sines(two_waves(TextureForm::kConservative), known),
               Sandpaper({}, known),
               HeightMap(egg_box_map(TextureForm::kConservative, HeightMap::Along::kAll), known),
@@ -256,7 +256,7 @@ TEST(Sines, GiveTheForceTheLinesOfTheirWaves) {
   settings.waves = {
       {.amplitude = 0.0001, .wavelength = 0.002, .direction = {1, 0, 0}, .phase = 0.4},
       {.amplitude = 0.00004, .wavelength = 0.001, .direction = {1, 0, 0}, .phase = 2}};
-  const Sines waves(settings, EffectSurroundings{});
+  const Sines waves(settings, EffectContext{});
   Touch touch{PrimitiveContact(HalfSpace()), waves, SpringDamper{kStiffness, 0}};
   touch(at({0, 0, 0.01}));
   constexpr int kTicks = 1000;
@@ -285,9 +285,9 @@ TEST(Sines, GiveTheForceTheLinesOfTheirWaves) {
 TEST(Sandpaper, IsTheSameForTheSameSeedAndHasTheRoughnessAskedFor) {
   Sandpaper::Settings settings;
   settings.roughness = 0.00004;
-  const Sandpaper one(settings, EffectSurroundings{}), again(settings, EffectSurroundings{});
+  const Sandpaper one(settings, EffectContext{}), again(settings, EffectContext{});
   settings.seed = 2;
-  const Sandpaper other(settings, EffectSurroundings{});
+  const Sandpaper other(settings, EffectContext{});
   support::Random random(4);
   double mean = 0, square = 0, different = 0;
   constexpr int kPlaces = 40000;
@@ -306,7 +306,7 @@ TEST(Sandpaper, IsTheSameForTheSameSeedAndHasTheRoughnessAskedFor) {
 
 TEST(Sandpaper, HoldsNoWavesShorterThanItsBand) {
   // Along a straight line: the spectrum ends at sqrt 2 / grain.
-  const Sandpaper rough({}, EffectSurroundings{});  // grain 2 mm: 707 waves per metre
+  const Sandpaper rough({}, EffectContext{});  // grain 2 mm: 707 waves per metre
   constexpr int kPlaces = 4096;
   constexpr double kStep = 0.0001;
   std::vector<double> heights;
@@ -394,7 +394,7 @@ TEST(HeightImage, HasTheSlopeOfItsValueAndNeverLeavesItsPixels) {
 }
 
 template <class Stage>
-std::string mistakes_of(MapSettings reader, EffectSurroundings known = surroundings()) {
+std::string mistakes_of(MapSettings reader, EffectContext known = context()) {
   typename Stage::Settings settings;
   settings.read(reader, known);
   return reader.mistakes;

@@ -88,7 +88,7 @@ AccuracyAxis float_axis() {
   };
   for (const Line& one : {Line{"double", "double: edge planes", TrackerChoice::kEdgePlanes},
                           Line{"offset", "double: offset", TrackerChoice::kOffset},
-                          Line{"compact", "64-byte records: compact", TrackerChoice::kCompact}}) {
+                          Line{"compact", "64-byte records: compact", TrackerChoice::kPacked}}) {
     AccuracyLine line{.name = one.name, .title = one.title};
     const TrackerChoice tracker = one.tracker;
     for (const double place : kPlaces) {

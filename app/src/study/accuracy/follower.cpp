@@ -7,8 +7,8 @@
 #include "mesh/closest_point.h"
 #include "mesh/smooth_normals.h"
 #include "mesh/triangle_set.h"
-#include "track/compact_contact.h"
 #include "track/god_object.h"
+#include "track/memory_contact.h"
 #include "track/mesh_contact.h"
 #include "track/normal_projection_tracker.h"
 
@@ -177,11 +177,11 @@ std::unique_ptr<Follower> make_tracked(const FollowedSurface& surface, TrackerCh
     }
     case TrackerChoice::kGodObject:
       return followed_by(render::GodObjectContact(surface.mesh, surface.tree));
-    case TrackerChoice::kCompact: {
-      auto compact = render::CompactSurface::build(*surface.mesh);
-      if (!compact) throw std::invalid_argument(compact.error().message);
+    case TrackerChoice::kPacked: {
+      auto packed = render::PackedSurface::build(*surface.mesh);
+      if (!packed) throw std::invalid_argument(packed.error().message);
       return followed_by(
-          render::CompactContact(std::move(compact).value(), render::SearchChoice::kTree));
+          render::MemoryContact(std::move(packed).value(), render::SearchChoice::kTree));
     }
   }
   throw std::invalid_argument("This tracker is not known.");

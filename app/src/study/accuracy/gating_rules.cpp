@@ -52,12 +52,12 @@ std::vector<GateDecision> decide(const Scene& scene, const SeenInRun& seen) {
     damping = std::max(damping, object.damping);
     for (const auto& plan : object.effects) friction = friction || plan.kind->group == "friction";
   }
-  const auto surroundings = surroundings_of(scene.arm, scene.rate);
+  const auto context = effect_context_of(scene.arm, scene.rate);
   const auto& simulated = scene.arm.simulated;
   std::vector<GateDecision> all;
-  const double step = surroundings.encoder_step;
+  const double step = context.encoder_step;
   const double by_spring = stiffness * step;
-  const double by_damper = damping * step / surroundings.tick;
+  const double by_damper = damping * step / context.tick;
   all.push_back({.effect = "steps of the encoders",
                  .name = "quantisation",
                  .rule = numbers("K step = %.1f mN and B step / T = %.1f mN, to be at most 20 mN, "
@@ -65,7 +65,7 @@ std::vector<GateDecision> decide(const Scene& scene, const SeenInRun& seen) {
                                  1e3 * by_spring, 1e3 * by_damper) +
                          (friction ? " (there is one)" : " (there is none)"),
                  .left_out = by_spring <= kForceFelt && by_damper <= kForceFelt && !friction});
-  const double delay = surroundings.delay;
+  const double delay = context.delay;
   const double holds = simulated.plant.viscous + damping + simulated.hand.damping;
   all.push_back({.effect = "delay and jitter",
                  .name = "delay",

@@ -10,7 +10,7 @@
 namespace thimble::render {
 
 // Every way to follow and feel a surface, by name, so that a scene or a study can swap them.
-// render/README.md says what each is good for.
+// render/src/track/README.md and render/src/search/README.md say what each is good for.
 
 /// Says how the tip is followed over the surface while it touches.
 enum class TrackerChoice {
@@ -18,7 +18,7 @@ enum class TrackerChoice {
   kNormalProjection,  ///< What the paper had before [BP 4a]; for comparison.
   kOffset,            ///< Smooth cells without gaps, in double precision.
   kGodObject,         ///< A proxy that no face lets through [ZS].
-  kCompact,           ///< Smooth cells on 64-byte records.
+  kPacked,            ///< Smooth cells on 64-byte packed triangles.
 };
 inline constexpr std::array<std::string_view, 5> kTrackerNames{"edge_planes", "normal_projection",
                                                                "offset", "god_object", "compact"};

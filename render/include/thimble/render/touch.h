@@ -7,7 +7,7 @@
 #include "thimble/driver/force_command.h"
 #include "thimble/render/contact_state.h"
 #include "thimble/render/effect/live_settings.h"
-#include "thimble/render/surface/surface_feel.h"
+#include "thimble/render/surface/surface_response.h"
 
 namespace thimble::render {
 
@@ -15,8 +15,8 @@ namespace thimble::render {
 /// a stage that is not named costs nothing.
 ///
 /// `Contact` finds what the tip touches: `const ContactState& update(const DeviceState&) noexcept`.
-/// The surface stages say how that feels, one after the other (surface_feel.h). Real-time: safe if
-/// its stages are.
+/// The surface stages say how that feels, one after the other (surface_response.h). Real-time: safe
+/// if its stages are.
 template <class Contact, SurfaceStage... Stages>
 class Touch {
  public:
@@ -29,15 +29,15 @@ class Touch {
     const ContactState& contact = contact_.update(state);
     // Written so that a NaN depth means no contact and no force.
     if (contact.touching && contact.depth > 0) {
-      SurfaceFeel feel{.contact = contact};
-      std::apply([&](auto&... stage) { (stage.touch(state, feel), ...); }, stages_);
-      command.f_T_W = feel.f_T_W;
+      SurfaceResponse response{.contact = contact};
+      std::apply([&](auto&... stage) { (stage.touch(state, response), ...); }, stages_);
+      command.f_T_W = response.f_T_W;
       command.touch = {.in_contact = true,
                        .object = 0,
                        .feature = contact.triangle,
-                       .depth = feel.contact.depth,
-                       .p_WP = feel.contact.p_WP,
-                       .n_W = feel.contact.n_W,
+                       .depth = response.contact.depth,
+                       .p_WP = response.contact.p_WP,
+                       .n_W = response.contact.n_W,
                        .hops = contact.hops};
       touching_ = true;
     } else if (touching_) {

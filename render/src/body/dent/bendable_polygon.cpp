@@ -5,8 +5,8 @@
 #include <string>
 #include <utility>
 
+#include "mesh/position_range.h"
 #include "mesh/surface_weights.h"
-#include "search/contact_search.h"
 
 namespace thimble::render {
 namespace {

@@ -32,7 +32,7 @@ namespace thimble::render {
 ///     neighbours add a few hundredths: bendable_polygon_test.cpp.)
 ///
 /// Frame: the one the mesh is given in, called W here. Where base points move, the vertices go with
-/// them (see base_moved).
+/// them.
 class BendablePolygon {
  public:
   /// Makes a mesh (m) ready to dent; `mesh` is shared with who moves its base points. The error is
@@ -66,13 +66,6 @@ class BendablePolygon {
   /// Draws all that has left its base points, or is touched. Some 10 us for 3 rings: for the rate
   /// of a picture. Bounded by what fits into `patch`.
   void draw(BodyPatch& patch) noexcept;
-
-  /// Hears that the mesh has moved a base point by `way` (m). If `keep_place`, the vertex stays
-  /// where it is.
-  void base_moved(std::int32_t vertex, const Eigen::Vector3d& way, bool keep_place) noexcept {
-    if (keep_place) motion_.keep_place(vertex, way);
-    drawing_.base_moved(vertex);
-  }
 
   const DentMotion& motion() const noexcept { return motion_; }
   const ContactMesh& mesh() const noexcept { return *mesh_; }

@@ -85,12 +85,6 @@ class DentMotion {
   Vector force_on_base(std::int32_t vertex) const noexcept {
     return settings_.stiffness * u(vertex) + settings_.damping * v(vertex);
   }
-  /// Leaves a vertex where it is while its base point goes `way` (m), if it moves at all.
-  void keep_place(std::int32_t vertex, const Vector& way) noexcept {
-    const std::int32_t s = places_[at(vertex)].slot;
-    if (s >= 0) u_[at(s)].head<3>() -= way;
-  }
-
   /// Lists the vertices that move.
   std::span<const std::int32_t> vertices() const noexcept { return vertices_; }
   bool resting() const noexcept { return vertices_.empty(); }  ///< Tells whether none moves.

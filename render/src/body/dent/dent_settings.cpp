@@ -36,8 +36,8 @@ void read_whole(SettingsReader& reader, std::string_view key, int& value, double
 
 }  // namespace
 
-void DentSettings::read(SettingsReader& reader, const EffectSurroundings& surroundings) {
-  step = surroundings.tick;
+void DentSettings::read(SettingsReader& reader, const EffectContext& context) {
+  step = context.tick;
   reader.number("mass", mass, {.unit = "kg", .least = kMassMin, .most = kMassMax});
   reader.number("stiffness", stiffness, {.unit = "N/m", .least = 0.001, .most = kStiffnessMax});
   reader.number("damping", damping, {.unit = "N s/m", .least = 0, .most = kDampingMax});

@@ -43,13 +43,6 @@ void PatchDrawing::find_normal(std::int32_t vertex) noexcept {
   normals_[static_cast<std::size_t>(vertex)] = sum.stableNormalized();
 }
 
-void PatchDrawing::base_moved(std::int32_t vertex) noexcept {
-  find_normal(vertex);
-  for (const std::int32_t t : mesh_->fan(vertex)) {
-    for (const std::int32_t v : mesh_->corners(t)) find_normal(v);
-  }
-}
-
 void PatchDrawing::begin() noexcept {
   ++round_;
   points_.clear();

@@ -48,8 +48,6 @@ class PatchDrawing {
   /// Gives what was drawn.
   void finish(BodyPatch& patch) noexcept;
 
-  /// Hears that a base point has moved.
-  void base_moved(std::int32_t vertex) noexcept;
   /// Gives the unit normal of the untouched surface at a vertex: faces weighted by their angles.
   const Eigen::Vector3d& normal(std::int32_t vertex) const noexcept {
     return normals_[static_cast<std::size_t>(vertex)];

@@ -66,10 +66,6 @@ void RigidBody::push(const Vector3d& f_W, const Vector3d& p_W) noexcept {
   tau_W_ += tau;
 }
 
-void RigidBody::turn(const Vector3d& tau_W) noexcept {
-  if (is_force(tau_W)) tau_W_ += tau_W;
-}
-
 Vector3d RigidBody::omega_W() const noexcept {
   const Vector3d angular_B = q_WB_.conjugate() * angular_W_;
   return q_WB_ * angular_B.cwiseQuotient(settings_.mass.inertia);
@@ -83,20 +79,6 @@ Vector3d RigidBody::velocity_at(const Vector3d& p_W) const noexcept {
 Vector3d RigidBody::give(const Vector3d& arm, const Vector3d& f) const noexcept {
   const Vector3d turn_B = (q_WB_.conjugate() * arm.cross(f)).cwiseQuotient(settings_.mass.inertia);
   return f / settings_.mass.mass + (q_WB_ * turn_B).cross(arm);
-}
-
-double RigidBody::press(const BodyPress& press, double step) noexcept {
-  // With closing speed c now, after the step it is c - s^2 h w f (s the time scale, w the give),
-  // and f = k (depth + h c+) + b c+.
-  const double s = settings_.time_scale;
-  const double closing = press.speed - press.n_W.dot(velocity_at(press.p_W));
-  const double grip = press.stiffness * step + press.damping;
-  const double w = press.n_W.dot(give(press.p_W - p_WC_, press.n_W));
-  const double f = (press.stiffness * press.depth + grip * closing) / (1 + grip * s * s * step * w);
-  // Written so that NaN means no force.
-  if (!(f > 0) || !(press.depth > 0) || !(f <= kForceMax)) return 0;
-  push(f * press.n_W, press.p_W);
-  return f;
 }
 
 void RigidBody::kick(double time) noexcept {

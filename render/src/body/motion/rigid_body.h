@@ -33,16 +33,6 @@ struct RigidBodySettings {
   std::vector<Eigen::Vector3d> support_B;
 };
 
-/// Is something that presses on a body at one point through a spring and a damper.
-struct BodyPress {
-  Eigen::Vector3d p_W{0, 0, 0};  ///< m, where it presses
-  Eigen::Vector3d n_W{0, 0, 1};  ///< Unit, the way that it pushes the body.
-  double depth = 0;              ///< m, how far the spring is pressed in
-  double speed = 0;              ///< m/s, of the tip along n_W
-  double stiffness = 0;          ///< N/m, >= 0
-  double damping = 0;            ///< N s/m, >= 0
-};
-
 /// Moves and turns a rigid body in time [BP 4.3].
 ///
 /// Momentum and angular momentum are what is stored, in W, so that nothing but forces changes them.
@@ -62,14 +52,6 @@ class RigidBody {
   /// Pushes with `f_W` (N) at the point `p_W` (m), and turns with `tau_W` (N m), during the next
   /// step. What is NaN, or beyond 10^6, is left out.
   void push(const Eigen::Vector3d& f_W, const Eigen::Vector3d& p_W) noexcept;
-  /// Turns the body by a torque, N m, during the next step; as `push` for what is NaN or too large.
-  void turn(const Eigen::Vector3d& tau_W) noexcept;
-
-  /// Pushes through a spring and a damper, and tells the force (N, >= 0), which acts on what
-  /// presses with the opposite sign. The spring is taken at the end of the step of `step` s, with
-  /// the body already given way: stable however light the body is. Never pulls; 0 for NaN.
-  double press(const BodyPress& press, double step) noexcept;
-
   /// Moves on by `step` s under what was pushed, which is then gone. Nonsense: stays.
   void step(double step) noexcept;
 

@@ -27,11 +27,6 @@ TurnGuard::TurnGuard(const ContactMesh& mesh) {
   }
 }
 
-double TurnGuard::seen_area(const ContactMesh& mesh, std::int32_t triangle) const noexcept {
-  return seen_along_[static_cast<std::size_t>(triangle)].dot(twice_area(
-      mesh.position(triangle, 0), mesh.position(triangle, 1), mesh.position(triangle, 2)));
-}
-
 double TurnGuard::allowed(const ContactMesh& mesh, std::span<const Vector3d> places,
                           std::int32_t vertex, const Vector3d& p_W) const noexcept {
   const Vector3d& place = places[static_cast<std::size_t>(vertex)];

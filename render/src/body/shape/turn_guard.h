@@ -11,8 +11,8 @@ namespace thimble::render {
 
 /// Keeps the triangles of a mesh from turning over while their corners move, however far: seen
 /// along its first normal each keeps a share of its first area [BP 4.3: "problems when the model
-/// was deformed too much"]. movement_limits() gives each vertex a ball in which no neighbour minds;
-/// this asks the neighbours as they are, so that a pit may be deeper than a triangle is wide.
+/// was deformed too much"]. It asks the neighbours
+/// as they are, so that a pit may be deeper than a triangle is wide.
 class TurnGuard {
  public:
   /// Takes the mesh as it is at first. 32 bytes per triangle.
@@ -30,10 +30,6 @@ class TurnGuard {
   Eigen::Vector3d first_normal(std::int32_t triangle) const noexcept {
     return seen_along_[static_cast<std::size_t>(triangle)].stableNormalized();
   }
-
-  /// Tells a triangle's area seen along its first normal, over its first area: 1 at first, above 0
-  /// as long as it has not turned over.
-  double seen_area(const ContactMesh& mesh, std::int32_t triangle) const noexcept;
 
  private:
   // Is the first normal over the first area doubled: its product with twice the area's vector now

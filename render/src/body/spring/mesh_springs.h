@@ -26,8 +26,4 @@ struct MeshSpringSettings {
 driver::Result<SpringNetwork<3>> join_vertices(const TriangleMesh& mesh,
                                                const MeshSpringSettings& settings);
 
-/// Does the same with each vertex free along its normal alone: a third of the work, for dents.
-driver::Result<SpringNetwork<1>> join_heights(const TriangleMesh& mesh,
-                                              const MeshSpringSettings& settings);
-
 }  // namespace thimble::render

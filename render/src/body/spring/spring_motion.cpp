@@ -73,12 +73,10 @@ template <int kDof>
 void SpringMotion<kDof>::prepare() {
   const std::size_t n = at(network_.node_count());
   h_ = options_.step / substeps_;
-  active_.resize(n);
-  std::iota(active_.begin(), active_.end(), 0);
-  is_active_.assign(n, 1);
+  count_ = network_.node_count();
   for (auto* each : {&u_, &v_, &f_, &q_, &b_, &w_, &p_}) each->assign(n, Vector::Zero());
   if (options_.scheme == SpringScheme::kExponential) {
-    for (const std::int32_t i : active_) {
+    for (std::int32_t i = 0; i < count_; ++i) {
       oscillators_.push_back(OscillatorStep::of(network_.mass(i), network_.stiffness().node[at(i)],
                                                 network_.damping().node[at(i)], h_));
     }
@@ -93,7 +91,7 @@ void SpringMotion<kDof>::prepare() {
     system_.half.push_back(share * c.half[e] + share * share * k.half[e]);
   }
   std::size_t e = 0;
-  for (const std::int32_t i : active_) {
+  for (std::int32_t i = 0; i < count_; ++i) {
     double diagonal = network_.mass(i) + share * c.node[at(i)] + share * share * k.node[at(i)];
     system_.node.push_back(diagonal);
     for (std::size_t s = 0; s < network_.neighbours(i).size(); ++s) diagonal += system_.half[e++];
@@ -126,21 +124,6 @@ void SpringMotion<kDof>::push(std::int32_t node, const Vector& f) noexcept {
 }
 
 template <int kDof>
-void SpringMotion<kDof>::set_active(std::span<const std::int32_t> nodes) noexcept {
-  for (const std::int32_t i : active_) is_active_[at(i)] = 0;
-  for (const std::int32_t i : nodes) is_active_[at(i)] = 1;
-  for (const std::int32_t i : active_) {
-    if (is_active_[at(i)] == 0) {
-      // Rows of their neighbours go on reading them, so all that is read must be 0.
-      for (auto* each : {&u_, &v_, &f_, &q_, &w_, &p_}) (*each)[at(i)].setZero();
-    }
-  }
-  // Within the capacity of all nodes, so that nothing is allocated.
-  active_.resize(std::min(nodes.size(), u_.size()));
-  std::copy_n(nodes.begin(), active_.size(), active_.begin());
-}
-
-template <int kDof>
 void SpringMotion<kDof>::step() noexcept {
   for (int i = 0; i < substeps_; ++i) {
     switch (options_.scheme) {
@@ -166,17 +149,17 @@ void SpringMotion<kDof>::step() noexcept {
         break;  // build() refuses it
     }
   }
-  for (const std::int32_t i : active_) f_[at(i)].setZero();
+  for (std::int32_t i = 0; i < count_; ++i) f_[at(i)].setZero();
 }
 
 template <int kDof>
 void SpringMotion<kDof>::explicit_euler() noexcept {
-  for (const std::int32_t i : active_) {
+  for (std::int32_t i = 0; i < count_; ++i) {
     Vector force = f_[at(i)] - network_.row(network_.stiffness(), i, u_);
     if (network_.damped()) force -= network_.row(network_.damping(), i, v_);
     q_[at(i)] = force / network_.mass(i);
   }
-  for (const std::int32_t i : active_) {
+  for (std::int32_t i = 0; i < count_; ++i) {
     u_[at(i)] += h_ * v_[at(i)];
     v_[at(i)] += h_ * q_[at(i)];
   }
@@ -184,12 +167,12 @@ void SpringMotion<kDof>::explicit_euler() noexcept {
 
 template <int kDof>
 void SpringMotion<kDof>::symplectic_euler() noexcept {
-  for (const std::int32_t i : active_) {
+  for (std::int32_t i = 0; i < count_; ++i) {
     Vector force = f_[at(i)] - network_.row(network_.stiffness(), i, u_);
     if (network_.damped()) force -= network_.row(network_.damping(), i, v_);
     q_[at(i)] = force / network_.mass(i);
   }
-  for (const std::int32_t i : active_) {
+  for (std::int32_t i = 0; i < count_; ++i) {
     v_[at(i)] += h_ * q_[at(i)];
     u_[at(i)] += h_ * v_[at(i)];
   }
@@ -199,18 +182,18 @@ void SpringMotion<kDof>::symplectic_euler() noexcept {
 // the whole stays of order 2 with a force of the springs that is found once.
 template <int kDof>
 void SpringMotion<kDof>::verlet() noexcept {
-  for (const std::int32_t i : active_) u_[at(i)] += h_ / 2 * v_[at(i)];
-  for (const std::int32_t i : active_) {
+  for (std::int32_t i = 0; i < count_; ++i) u_[at(i)] += h_ / 2 * v_[at(i)];
+  for (std::int32_t i = 0; i < count_; ++i) {
     b_[at(i)] = f_[at(i)] - network_.row(network_.stiffness(), i, u_);
   }
   if (network_.damped()) {
-    for (const std::int32_t i : active_) {
+    for (std::int32_t i = 0; i < count_; ++i) {
       const Vector force = b_[at(i)] - network_.row(network_.damping(), i, v_);
       q_[at(i)] = v_[at(i)] + h_ / 2 / network_.mass(i) * force;
     }
-    for (const std::int32_t i : active_) b_[at(i)] -= network_.row(network_.damping(), i, q_);
+    for (std::int32_t i = 0; i < count_; ++i) b_[at(i)] -= network_.row(network_.damping(), i, q_);
   }
-  for (const std::int32_t i : active_) {
+  for (std::int32_t i = 0; i < count_; ++i) {
     v_[at(i)] += h_ / network_.mass(i) * b_[at(i)];
     u_[at(i)] += h_ / 2 * v_[at(i)];
   }
@@ -220,13 +203,13 @@ void SpringMotion<kDof>::verlet() noexcept {
 template <int kDof>
 void SpringMotion<kDof>::implicit(double share) noexcept {
   const double h = share * h_;
-  for (const std::int32_t i : active_) {
+  for (std::int32_t i = 0; i < count_; ++i) {
     b_[at(i)] =
         network_.mass(i) * v_[at(i)] + h * (f_[at(i)] - network_.row(network_.stiffness(), i, u_));
   }
   solve();
   const bool euler = share == 1;
-  for (const std::int32_t i : active_) {
+  for (std::int32_t i = 0; i < count_; ++i) {
     u_[at(i)] += h_ * w_[at(i)];
     if (euler) {
       v_[at(i)] = w_[at(i)];
@@ -241,11 +224,11 @@ template <int kDof>
 void SpringMotion<kDof>::solve() noexcept {
   double start = 0;  // b.D^-1 b, which remainders are measured against
   double rz = 0;
-  for (const std::int32_t i : active_) {
+  for (std::int32_t i = 0; i < count_; ++i) {
     w_[at(i)] = v_[at(i)];
     p_[at(i)].setZero();
   }
-  for (const std::int32_t i : active_) {
+  for (std::int32_t i = 0; i < count_; ++i) {
     const double d = inverse_diagonal_[at(i)];
     r_[at(i)] = b_[at(i)] - network_.row(system_, i, w_);
     start += d * b_[at(i)].squaredNorm();
@@ -254,18 +237,18 @@ void SpringMotion<kDof>::solve() noexcept {
   const double end = options_.remainder * options_.remainder * start;
   double beta = 0;
   for (int round = 0; round < options_.rounds_max && rz > end; ++round) {
-    for (const std::int32_t i : active_) {
+    for (std::int32_t i = 0; i < count_; ++i) {
       p_[at(i)] = inverse_diagonal_[at(i)] * r_[at(i)] + beta * p_[at(i)];
     }
     double pq = 0;
-    for (const std::int32_t i : active_) {
+    for (std::int32_t i = 0; i < count_; ++i) {
       q_[at(i)] = network_.row(system_, i, p_);
       pq += p_[at(i)].dot(q_[at(i)]);
     }
     if (!(pq > 0)) break;
     const double alpha = rz / pq;
     double rz_next = 0;
-    for (const std::int32_t i : active_) {
+    for (std::int32_t i = 0; i < count_; ++i) {
       w_[at(i)] += alpha * p_[at(i)];
       r_[at(i)] -= alpha * q_[at(i)];
       rz_next += inverse_diagonal_[at(i)] * r_[at(i)].squaredNorm();
@@ -275,17 +258,17 @@ void SpringMotion<kDof>::solve() noexcept {
   }
   double wb = 0;
   double waw = 0;
-  for (const std::int32_t i : active_) {
+  for (std::int32_t i = 0; i < count_; ++i) {
     wb += w_[at(i)].dot(b_[at(i)]);
     waw += w_[at(i)].dot(network_.row(system_, i, w_));
   }
   const double scale = waw > 0 ? wb / waw : 0;
-  for (const std::int32_t i : active_) w_[at(i)] *= scale;
+  for (std::int32_t i = 0; i < count_; ++i) w_[at(i)] *= scale;
 }
 
 template <int kDof>
 void SpringMotion<kDof>::exponential() noexcept {
-  for (const std::int32_t i : active_) {
+  for (std::int32_t i = 0; i < count_; ++i) {
     oscillators_[at(i)].apply(u_[at(i)], v_[at(i)], f_[at(i)]);
   }
 }

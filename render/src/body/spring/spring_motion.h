@@ -45,7 +45,7 @@ class SpringMotion {
  public:
   using Vector = typename SpringNetwork<kDof>::Vector;  ///< Numbers of a node.
 
-  /// Makes a network ready to move, at rest, all nodes active. The error says which limit the step
+  /// Makes a network ready to move, at rest. The error says which limit the step
   /// breaks and what would help. Real-time: never from the servo thread.
   static driver::Result<SpringMotion> build(SpringNetwork<kDof> network,
                                             const SpringMotionOptions& options = {});
@@ -67,11 +67,6 @@ class SpringMotion {
   /// no force and is left out.
   void push(std::int32_t node, const Vector& f) noexcept;
 
-  /// Lets only `nodes` (each once) move from now on, so that a tick costs what a patch costs. The
-  /// others are put on their base points, at rest: hand over nodes that have settled.
-  void set_active(std::span<const std::int32_t> nodes) noexcept;
-  std::span<const std::int32_t> active() const noexcept { return active_; }  ///< Lists what moves.
-
   /// Moves on by one step under the forces pushed, which are then gone.
   void step() noexcept;
 
@@ -92,10 +87,9 @@ class SpringMotion {
   SpringMotionOptions options_;
   double h_ = 0;  // s per substep
   int substeps_ = 1;
-  std::vector<std::int32_t> active_;
-  std::vector<std::uint8_t> is_active_;
+  std::int32_t count_ = 0;  // nodes
   std::vector<Vector> u_, v_, f_;
-  std::vector<Vector> b_, w_, r_, p_, q_;  // what a step needs; 0 at nodes that are not active
+  std::vector<Vector> b_, w_, r_, p_, q_;  // what a step needs
   // Of the implicit schemes: A, and the diagonal it is preconditioned by.
   NetworkWeights system_;
   std::vector<double> inverse_diagonal_;

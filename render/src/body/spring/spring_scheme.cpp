@@ -59,16 +59,6 @@ std::string_view name_of(SpringScheme scheme) noexcept {
   return "unknown";
 }
 
-driver::Result<SpringScheme> scheme_named(std::string_view name) {
-  std::string known;
-  for (const SpringScheme scheme : kSpringSchemes) {
-    if (name_of(scheme) == name) return scheme;
-    known += (known.empty() ? "" : ", ") + std::string(name_of(scheme));
-  }
-  return driver::Error{"There is no integrator \"" + std::string(name) + "\": use one of " + known +
-                       "."};
-}
-
 double largest_step(SpringScheme scheme, const NetworkBounds& bounds) noexcept {
   switch (scheme) {
     case SpringScheme::kExplicitEuler:

@@ -122,15 +122,4 @@ MeshComponents find_components(const TriangleMesh& mesh) {
   return found;
 }
 
-std::size_t orient_components(TriangleMesh& mesh) {
-  const MeshComponents found = find_components(mesh);
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    if (found.inside_out[static_cast<std::size_t>(found.component_of[t])]) {
-      std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
-    }
-  }
-  return static_cast<std::size_t>(
-      std::count(found.inside_out.begin(), found.inside_out.end(), true));
-}
-
 }  // namespace thimble::render

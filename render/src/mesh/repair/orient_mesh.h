@@ -26,10 +26,6 @@ struct MeshComponents {
 /// servo thread.
 MeshComponents find_components(const TriangleMesh& mesh);
 
-/// Turns the triangles of all components that are inside out round, and returns how many components
-/// those were. Open components stay as they are. Real-time: never from the servo thread.
-std::size_t orient_components(TriangleMesh& mesh);
-
 /// Tells what was done to wind the triangles of a mesh alike.
 struct OrientReport {
   std::size_t turned_triangles = 0;      ///< Triangles that stand the other way round now.

@@ -272,14 +272,4 @@ OutArray compute_out_array(const TriangleMesh& mesh) {
   return out;
 }
 
-std::size_t apply_out_array(TriangleMesh& mesh, const OutArray& out) {
-  std::size_t turned = 0;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    if (out[t] >= 0) continue;
-    std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
-    ++turned;
-  }
-  return turned;
-}
-
 }  // namespace thimble::render

@@ -46,8 +46,4 @@ class OutFinder {
 /// that a ray meets few; about 1 us per triangle. Real-time: never from the servo thread.
 OutArray compute_out_array(const TriangleMesh& mesh);
 
-/// Turns the triangles with sign -1 round and returns how many those were. Precondition: one sign
-/// per triangle. Real-time: never from the servo thread.
-std::size_t apply_out_array(TriangleMesh& mesh, const OutArray& out);
-
 }  // namespace thimble::render

@@ -7,9 +7,9 @@ constexpr double kHoldAgain = 0.5;  // of the sliding force: many counts, so noi
 
 }  // namespace
 
-void BristleLaw::Settings::read(SettingsReader& reader, const EffectSurroundings& surroundings) {
+void BristleLaw::Settings::read(SettingsReader& reader, const EffectContext& context) {
   coulomb.read(reader);
-  stiffness = read_stick_stiffness(reader, surroundings, coulomb.holding);
+  stiffness = read_stick_stiffness(reader, context, coulomb.holding);
 }
 
 Eigen::Vector3d BristleLaw::pull(const SlideTick& tick) noexcept {

@@ -24,7 +24,7 @@ class BristleLaw {
     CoulombSettings coulomb;
     double stiffness = 1000;  ///< N/m; F / z_max of [STABILITY 2.3].
 
-    void read(SettingsReader& reader, const EffectSurroundings& surroundings);
+    void read(SettingsReader& reader, const EffectContext& context);
   };
 
   explicit BristleLaw(const Settings& settings) noexcept : settings_(settings) {}

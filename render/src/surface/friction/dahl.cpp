@@ -4,9 +4,9 @@
 
 namespace thimble::render {
 
-void DahlLaw::Settings::read(SettingsReader& reader, const EffectSurroundings& surroundings) {
+void DahlLaw::Settings::read(SettingsReader& reader, const EffectContext& context) {
   coulomb.read_sliding(reader);
-  stiffness = read_stick_stiffness(reader, surroundings, coulomb.holding);
+  stiffness = read_stick_stiffness(reader, context, coulomb.holding);
 }
 
 Eigen::Vector3d DahlLaw::pull(const SlideTick& tick) noexcept {

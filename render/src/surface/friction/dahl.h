@@ -19,7 +19,7 @@ class DahlLaw {
     CoulombSettings coulomb;
     double stiffness = 1000;  ///< At the first move, N/m.
 
-    void read(SettingsReader& reader, const EffectSurroundings& surroundings);
+    void read(SettingsReader& reader, const EffectContext& context);
   };
 
   explicit DahlLaw(const Settings& settings) noexcept : settings_(settings) {}

@@ -46,18 +46,17 @@ void ViscousSettings::read(SettingsReader& reader) {
   reader.number("fade_depth", fade_depth, {.unit = "m", .most = 0.1});
 }
 
-double stick_stiffness_max(const EffectSurroundings& surroundings) {
-  const double latency = surroundings.tick / 2 + surroundings.delay;
-  const double sampled = (surroundings.tip_damping + kHandDamping) / (kSafety * latency);
-  const double counted = surroundings.encoder_step > 0 && surroundings.tip_coulomb > 0
-                             ? 2 * surroundings.tip_coulomb / surroundings.encoder_step
+double stick_stiffness_max(const EffectContext& context) {
+  const double latency = context.tick / 2 + context.delay;
+  const double sampled = (context.tip_damping + kHandDamping) / (kSafety * latency);
+  const double counted = context.encoder_step > 0 && context.tip_coulomb > 0
+                             ? 2 * context.tip_coulomb / context.encoder_step
                              : std::numeric_limits<double>::infinity();
   return std::min({sampled, counted, kStiffnessMax});
 }
 
-double read_stick_stiffness(SettingsReader& reader, const EffectSurroundings& surroundings,
-                            double holding) {
-  const double most = stick_stiffness_max(surroundings);
+double read_stick_stiffness(SettingsReader& reader, const EffectContext& context, double holding) {
+  const double most = stick_stiffness_max(context);
   constexpr double kRounding = 1 + 1e-9;
   double stiffness = most;
   if (reader.has("stiffness") && reader.has("z_max")) {
@@ -70,7 +69,7 @@ double read_stick_stiffness(SettingsReader& reader, const EffectSurroundings& su
   } else if (reader.has("z_max")) {
     double bend = kBendMax;
     reader.number("z_max", bend, {.unit = "m", .least = 1e-9, .most = kBendMax});
-    const double force = holding * surroundings.force_max;
+    const double force = holding * context.force_max;
     stiffness = force / bend;
     if (!(force > 0)) {
       reader.reject("z_max", "needs friction and an arm with a largest force; give stiffness");

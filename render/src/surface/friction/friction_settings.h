@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "surface/friction/tangent_motion.h"
-#include "thimble/render/effect/effect_surroundings.h"
+#include "thimble/render/effect/effect_context.h"
 #include "thimble/render/effect/settings_reader.h"
 
 namespace thimble::render {
@@ -53,14 +53,13 @@ struct ViscousSettings {
 /// [STABILITY 2.3], with a hand of 3 N s/m [STABILITY, heading]. Without known dry friction of the
 /// arm only the first bound is kept, and a flicker of a count at rest may remain.
 /// Real-time: never from the servo thread.
-double stick_stiffness_max(const EffectSurroundings& surroundings);
+double stick_stiffness_max(const EffectContext& context);
 
 /// Reads how stiff a friction holds: `stiffness` (N/m), or `z_max` (m), the way it gives before it
 /// slides where the arm pushes with all its force. Without either it is as stiff as the arm can
 /// hold still. What is stiffer is refused. `holding` is the coefficient before sliding. Real-time:
 /// never from the servo thread.
-double read_stick_stiffness(SettingsReader& reader, const EffectSurroundings& surroundings,
-                            double holding);
+double read_stick_stiffness(SettingsReader& reader, const EffectContext& context, double holding);
 
 /// Smooths a vector by one pole. Real-time: safe.
 class VectorLowPass {

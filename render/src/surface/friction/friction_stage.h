@@ -6,9 +6,9 @@
 
 #include "surface/friction/tangent_motion.h"
 #include "thimble/driver/device_state.h"
-#include "thimble/render/effect/effect_surroundings.h"
+#include "thimble/render/effect/effect_context.h"
 #include "thimble/render/effect/effect_table.h"
-#include "thimble/render/surface/surface_feel.h"
+#include "thimble/render/surface/surface_response.h"
 
 namespace thimble::render {
 
@@ -42,15 +42,15 @@ class FrictionStage {
   using Settings = typename Law::Settings;  ///< Of the law.
 
   /// Takes settings that Settings::read found right. Real-time: never from the servo thread.
-  FrictionStage(const Settings& settings, const EffectSurroundings& surroundings)
-      : law_(settings), motion_(surroundings.tick) {
+  FrictionStage(const Settings& settings, const EffectContext& context)
+      : law_(settings), motion_(context.tick) {
     static_assert(FrictionLaw<Law>);
   }
 
-  void touch(const driver::DeviceState& state, SurfaceFeel& feel) noexcept {
+  void touch(const driver::DeviceState& state, SurfaceResponse& response) noexcept {
     SlideTick tick;
     Turn turn;
-    if (!motion_.follow(state, feel, tick, turn)) {
+    if (!motion_.follow(state, response, tick, turn)) {
       law_.forget();
       return;
     }
@@ -61,7 +61,7 @@ class FrictionStage {
       law_.forget();
       return;
     }
-    feel.f_T_W -= pull - pull.dot(tick.n_W) * tick.n_W;
+    response.f_T_W -= pull - pull.dot(tick.n_W) * tick.n_W;
   }
 
   void leave() noexcept {
@@ -79,7 +79,7 @@ class FrictionStage {
                .least = kLeastCoefficient,
                .most = kMostCoefficient,
                .value = law_.coulomb().sliding,
-               .lever = {.per_force = law_.coulomb().ratio()}});
+               .sensitivity = {.per_force = law_.coulomb().ratio()}});
   }
 
  private:

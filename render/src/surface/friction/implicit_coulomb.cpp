@@ -2,10 +2,9 @@
 
 namespace thimble::render {
 
-void ImplicitCoulombLaw::Settings::read(SettingsReader& reader,
-                                        const EffectSurroundings& surroundings) {
+void ImplicitCoulombLaw::Settings::read(SettingsReader& reader, const EffectContext& context) {
   coulomb.read_sliding(reader);
-  stiffness = read_stick_stiffness(reader, surroundings, coulomb.holding);
+  stiffness = read_stick_stiffness(reader, context, coulomb.holding);
   reader.number("damping", damping, {.unit = "N s/m", .most = 3});
 }
 

@@ -20,7 +20,7 @@ class ImplicitCoulombLaw {
     double stiffness = 1000;  ///< N/m
     double damping = 1;       ///< N s/m [STABILITY 2.2]; each count adds damping * step / tick.
 
-    void read(SettingsReader& reader, const EffectSurroundings& surroundings);
+    void read(SettingsReader& reader, const EffectContext& context);
   };
 
   explicit ImplicitCoulombLaw(const Settings& settings) noexcept : settings_(settings) {}

@@ -4,9 +4,9 @@
 
 namespace thimble::render {
 
-void KarnoppLaw::Settings::read(SettingsReader& reader, const EffectSurroundings& surroundings) {
+void KarnoppLaw::Settings::read(SettingsReader& reader, const EffectContext& context) {
   coulomb.read(reader);
-  stiffness = read_stick_stiffness(reader, surroundings, coulomb.holding);
+  stiffness = read_stick_stiffness(reader, context, coulomb.holding);
   // Not stiffer than published unless asked for: the damper adds its own latency.
   if (!reader.has("stiffness") && !reader.has("z_max")) stiffness = std::min(stiffness, 1000.0);
   reader.number("damping", damping, {.unit = "N s/m", .most = 3});

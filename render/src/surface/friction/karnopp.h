@@ -24,7 +24,7 @@ class KarnoppLaw {
     double damping = 1;       ///< Beside it, N s/m [STABILITY 2.2].
     double speed = 0.02;      ///< It slides above this, m/s [chosen: 4 times one smoothed count].
 
-    void read(SettingsReader& reader, const EffectSurroundings& surroundings);
+    void read(SettingsReader& reader, const EffectContext& context);
   };
 
   explicit KarnoppLaw(const Settings& settings) noexcept

@@ -5,10 +5,10 @@
 
 namespace thimble::render {
 
-void LugreLaw::Settings::read(SettingsReader& reader, const EffectSurroundings& surroundings) {
+void LugreLaw::Settings::read(SettingsReader& reader, const EffectContext& context) {
   coulomb.read(reader);
   viscous.read(reader);
-  stiffness = read_stick_stiffness(reader, surroundings, coulomb.holding);
+  stiffness = read_stick_stiffness(reader, context, coulomb.holding);
   reader.number("damping", damping, {.unit = "N s/m", .most = 20});
   reader.number("stribeck_speed", stribeck_speed, {.unit = "m/s", .least = 1e-4, .most = 10});
   const double least =

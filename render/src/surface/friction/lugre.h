@@ -27,7 +27,7 @@ class LugreLaw {
     double stribeck_speed = 0.01;  ///< m/s [chosen: the knee of STABILITY 2.2]
 
     /// Refuses what is not passive: sigma2 >= sigma1 (F_s - F_c) / F_c [STABILITY 2.4].
-    void read(SettingsReader& reader, const EffectSurroundings& surroundings);
+    void read(SettingsReader& reader, const EffectContext& context);
   };
 
   explicit LugreLaw(const Settings& settings) noexcept

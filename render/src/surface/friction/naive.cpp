@@ -2,7 +2,7 @@
 
 namespace thimble::render {
 
-void NaiveFrictionLaw::Settings::read(SettingsReader& reader, const EffectSurroundings&) {
+void NaiveFrictionLaw::Settings::read(SettingsReader& reader, const EffectContext&) {
   coulomb.read_sliding(reader);
   auto chosen = static_cast<std::size_t>(at_rest);
   reader.choice("at_rest", chosen, {"zero", "hold"});

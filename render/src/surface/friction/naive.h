@@ -25,7 +25,7 @@ class NaiveFrictionLaw {
     CoulombSettings coulomb;
     AtRest at_rest = AtRest::kZero;  ///< What it does at rest.
 
-    void read(SettingsReader& reader, const EffectSurroundings& surroundings);
+    void read(SettingsReader& reader, const EffectContext& context);
   };
 
   explicit NaiveFrictionLaw(const Settings& settings) noexcept : settings_(settings) {}

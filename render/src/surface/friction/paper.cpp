@@ -4,8 +4,7 @@
 
 namespace thimble::render {
 
-void PaperFrictionLaw::Settings::read(SettingsReader& reader,
-                                      const EffectSurroundings& surroundings) {
+void PaperFrictionLaw::Settings::read(SettingsReader& reader, const EffectContext& context) {
   coulomb.read_sliding(reader);
   viscous.read(reader);
   auto chosen = static_cast<std::size_t>(smooth);
@@ -14,7 +13,7 @@ void PaperFrictionLaw::Settings::read(SettingsReader& reader,
   corner_frequency = smooth == Smooth::kTwice ? 10 : 30;  // [STABILITY 2.2]
   // Above half the rate there is nothing left to smooth.
   reader.number("corner_frequency", corner_frequency,
-                {.unit = "Hz", .least = 0.5, .most = 0.5 / surroundings.tick});
+                {.unit = "Hz", .least = 0.5, .most = 0.5 / context.tick});
   reader.number("speed", speed, {.unit = "m/s", .least = 1e-4, .most = 10});
 }
 

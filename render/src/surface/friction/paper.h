@@ -31,7 +31,7 @@ class PaperFrictionLaw {
     double corner_frequency = 30;       ///< Hz [STABILITY 2.2]; 10 for kTwice.
     double speed = 0.01;                ///< Dry friction is full from here on, m/s [STABILITY 2.2].
 
-    void read(SettingsReader& reader, const EffectSurroundings& surroundings);
+    void read(SettingsReader& reader, const EffectContext& context);
   };
 
   explicit PaperFrictionLaw(const Settings& settings) noexcept

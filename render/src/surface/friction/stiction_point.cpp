@@ -2,10 +2,9 @@
 
 namespace thimble::render {
 
-void StictionPointLaw::Settings::read(SettingsReader& reader,
-                                      const EffectSurroundings& surroundings) {
+void StictionPointLaw::Settings::read(SettingsReader& reader, const EffectContext& context) {
   coulomb.read(reader, kRatio);
-  stiffness = read_stick_stiffness(reader, surroundings, coulomb.holding);
+  stiffness = read_stick_stiffness(reader, context, coulomb.holding);
 }
 
 Eigen::Vector3d StictionPointLaw::pull(const SlideTick& tick) noexcept {

@@ -20,7 +20,7 @@ class StictionPointLaw {
     CoulombSettings coulomb;
     double stiffness = 1000;  ///< Of the spring, N/m.
 
-    void read(SettingsReader& reader, const EffectSurroundings& surroundings);
+    void read(SettingsReader& reader, const EffectContext& context);
   };
 
   explicit StictionPointLaw(const Settings& settings) noexcept : settings_(settings) {}

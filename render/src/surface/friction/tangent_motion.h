@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "thimble/driver/device_state.h"
-#include "thimble/render/surface/surface_feel.h"
+#include "thimble/render/surface/surface_response.h"
 
 namespace thimble::render {
 
@@ -67,10 +67,10 @@ class TangentMotion {
   /// Takes one tick of contact. False, with the past forgotten, if position, normal or force is not
   /// finite: there is no friction then. In the first tick of a contact the way is zero.
   /// Real-time: safe.
-  bool follow(const driver::DeviceState& state, const SurfaceFeel& feel, SlideTick& tick,
+  bool follow(const driver::DeviceState& state, const SurfaceResponse& response, SlideTick& tick,
               Turn& turn) noexcept {
-    const Eigen::Vector3d& n_W = feel.contact.n_W;
-    const double load = feel.f_T_W.dot(n_W);
+    const Eigen::Vector3d& n_W = response.contact.n_W;
+    const double load = response.f_T_W.dot(n_W);
     // Written so that NaN is not usable.
     if (!(std::abs(n_W.squaredNorm() - 1) < 1e-6) || !(std::abs(load) < kLoadMax) ||
         !(state.p_WT.squaredNorm() < HUGE_VAL)) {
@@ -79,7 +79,7 @@ class TangentMotion {
     }
     tick.n_W = n_W;
     tick.load = load > 0 ? load : 0;
-    tick.depth = feel.contact.depth > 0 ? feel.contact.depth : 0;
+    tick.depth = response.contact.depth > 0 ? response.contact.depth : 0;
     tick.dt = state.dt > 0 && state.dt < kPauseMax ? state.dt : period_;
     if (following_) {
       const Eigen::Vector3d way = state.p_WT - p_WT_before_;

@@ -4,7 +4,7 @@
 
 namespace thimble::render {
 
-void HeightMap::Settings::read(SettingsReader& reader, const EffectSurroundings& surroundings) {
+void HeightMap::Settings::read(SettingsReader& reader, const EffectContext& context) {
   TextureSettings::read(reader);
   std::filesystem::path file;
   reader.file("image", file);
@@ -21,7 +21,7 @@ void HeightMap::Settings::read(SettingsReader& reader, const EffectSurroundings&
   }
   image = std::make_shared<const HeightImage>(std::move(loaded).value());
   if (!(width > 0)) return;
-  check_texture(reader, "height", extent(), *this, surroundings);
+  check_texture(reader, "height", extent(), *this, context);
 }
 
 TextureExtent HeightMap::Settings::extent() const noexcept {
@@ -30,27 +30,30 @@ TextureExtent HeightMap::Settings::extent() const noexcept {
   return {.relief = height, .slope = height * image->slope_max() / pixel, .wavelength = 2 * pixel};
 }
 
-HeightMap::HeightMap(const Settings& settings, const EffectSurroundings& surroundings)
+HeightMap::HeightMap(const Settings& settings, const EffectContext& context)
     : image_(settings.image),
-      R_WO_(surroundings.R_WO),
-      p_WO_(surroundings.p_WO),
+      R_WO_(context.R_WO),
+      p_WO_(context.p_WO),
       pixels_per_metre_(image_ ? static_cast<double>(image_->width()) / settings.width : 0),
       height_(settings.height),
       along_(settings.along),
       form_(settings.form) {
   if (!image_) return;
   extent_ = settings.extent();
-  height_most_ = height_ * texture_headroom(extent_, surroundings);
+  height_most_ = height_ * texture_headroom(extent_, context);
 }
 
 void HeightMap::list_settings(LiveSettings& settings) {
   if (!(height_ > 0)) return;
-  ForceLever lever = texture_lever(extent_);
-  lever.per_force /= height_;
-  lever.per_stiffness /= height_;
+  ForceSensitivity sensitivity = texture_lever(extent_);
+  sensitivity.per_force /= height_;
+  sensitivity.per_stiffness /= height_;
   settings.add<[](HeightMap& map, double height) noexcept { map.height_ = height; }>(
-      *this,
-      {.name = "height", .unit = "m", .most = height_most_, .value = height_, .lever = lever});
+      *this, {.name = "height",
+              .unit = "m",
+              .most = height_most_,
+              .value = height_,
+              .sensitivity = sensitivity});
 }
 
 TextureHeight HeightMap::at(const Eigen::Vector3d& p_W, const Eigen::Vector3d& n_W) const noexcept {

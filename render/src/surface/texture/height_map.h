@@ -37,16 +37,16 @@ class HeightMap {
 
     /// Reads `form`, `hand_speed`, `image`, `width`, `height`, `along`.
     /// Real-time: never from the servo thread.
-    void read(SettingsReader& reader, const EffectSurroundings& surroundings);
+    void read(SettingsReader& reader, const EffectContext& context);
     /// Tells how high and steep it is. Precondition: it has an image and a width. Real-time: safe.
     TextureExtent extent() const noexcept;
   };
 
   /// Precondition: there is an image. Real-time: never from the servo thread.
-  HeightMap(const Settings& settings, const EffectSurroundings& surroundings);
+  HeightMap(const Settings& settings, const EffectContext& context);
 
-  void touch(const driver::DeviceState& state, SurfaceFeel& feel) const noexcept {
-    feel_height(at(state.p_WT, feel.contact.n_W), form_, feel);
+  void touch(const driver::DeviceState& state, SurfaceResponse& response) const noexcept {
+    feel_height(at(state.p_WT, response.contact.n_W), form_, response);
   }
   void leave() const noexcept {}
 

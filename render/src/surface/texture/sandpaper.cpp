@@ -11,8 +11,7 @@ namespace {
 // Enough for heights that are spread like noise, at 2,900 instructions per tick. [chosen]
 constexpr int kWaves = 16;
 
-std::vector<Wave> random_waves(const Sandpaper::Settings& settings,
-                               const EffectSurroundings& surroundings) {
+std::vector<Wave> random_waves(const Sandpaper::Settings& settings, const EffectContext& context) {
   // Only the raw bits of the twister are the same with every standard library.
   std::mt19937_64 bits(static_cast<std::uint64_t>(settings.seed));
   const auto uniform = [&bits] { return static_cast<double>(bits() >> 11) * 0x1p-53; };
@@ -24,25 +23,24 @@ std::vector<Wave> random_waves(const Sandpaper::Settings& settings,
     const double across = std::sqrt(1 - z * z);
     const Eigen::Vector3d direction_O(across * std::cos(turn), across * std::sin(turn), z);
     const double wavelength = settings.grain * std::exp2(uniform() - 0.5);
-    const Eigen::Vector3d k_W =
-        2 * std::numbers::pi / wavelength * (surroundings.R_WO * direction_O);
+    const Eigen::Vector3d k_W = 2 * std::numbers::pi / wavelength * (context.R_WO * direction_O);
     const double phase = 2 * std::numbers::pi * uniform();
     // A sine's mean square is half its amplitude's; those of different waves add.
     waves.push_back(
-        {settings.roughness * std::sqrt(2.0 / kWaves), k_W, phase - k_W.dot(surroundings.p_WO)});
+        {settings.roughness * std::sqrt(2.0 / kWaves), k_W, phase - k_W.dot(context.p_WO)});
   }
   return waves;
 }
 
 }  // namespace
 
-void Sandpaper::Settings::read(SettingsReader& reader, const EffectSurroundings& surroundings) {
+void Sandpaper::Settings::read(SettingsReader& reader, const EffectContext& context) {
   TextureSettings::read(reader);
   reader.number("grain", grain, {.unit = "m", .least = 1e-5, .most = 0.1});
   reader.number("roughness", roughness, {.unit = "m", .least = 0, .most = 0.01});
   reader.number("seed", seed, {.unit = "", .least = 0, .most = 0x1p53});
   if (!(grain > 0)) return;
-  check_texture(reader, "roughness", extent(), *this, surroundings);
+  check_texture(reader, "roughness", extent(), *this, context);
 }
 
 TextureExtent Sandpaper::Settings::extent() const noexcept {
@@ -52,11 +50,11 @@ TextureExtent Sandpaper::Settings::extent() const noexcept {
           .wavelength = grain / std::numbers::sqrt2};
 }
 
-Sandpaper::Sandpaper(const Settings& settings, const EffectSurroundings& surroundings)
-    : height_(random_waves(settings, surroundings)),
+Sandpaper::Sandpaper(const Settings& settings, const EffectContext& context)
+    : height_(random_waves(settings, context)),
       form_(settings.form),
       roughness_(settings.roughness),
-      roughness_most_(settings.roughness * texture_headroom(settings.extent(), surroundings)),
+      roughness_most_(settings.roughness * texture_headroom(settings.extent(), context)),
       extent_(settings.extent()) {}
 
 void Sandpaper::set_roughness(double roughness) noexcept {
@@ -66,9 +64,9 @@ void Sandpaper::set_roughness(double roughness) noexcept {
 
 void Sandpaper::list_settings(LiveSettings& settings) {
   // By factors, which zero would lose: a fiftieth is not felt any more.
-  ForceLever lever = texture_lever(extent_);
-  lever.per_force /= roughness_;
-  lever.per_stiffness /= roughness_;
+  ForceSensitivity sensitivity = texture_lever(extent_);
+  sensitivity.per_force /= roughness_;
+  sensitivity.per_stiffness /= roughness_;
   if (!(roughness_ > 0)) return;
   settings.add<[](Sandpaper& paper, double roughness) noexcept { paper.set_roughness(roughness); }>(
       *this, {.name = "roughness",
@@ -76,7 +74,7 @@ void Sandpaper::list_settings(LiveSettings& settings) {
               .least = roughness_ / 50,
               .most = roughness_most_,
               .value = roughness_,
-              .lever = lever});
+              .sensitivity = sensitivity});
 }
 
 }  // namespace thimble::render

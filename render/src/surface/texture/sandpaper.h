@@ -28,16 +28,16 @@ class Sandpaper {
 
     /// Reads `form`, `hand_speed`, `grain`, `roughness`, `seed`.
     /// Real-time: never from the servo thread.
-    void read(SettingsReader& reader, const EffectSurroundings& surroundings);
+    void read(SettingsReader& reader, const EffectContext& context);
     /// Tells how high and steep it is. Real-time: safe.
     TextureExtent extent() const noexcept;
   };
 
   /// Real-time: never from the servo thread.
-  Sandpaper(const Settings& settings, const EffectSurroundings& surroundings);
+  Sandpaper(const Settings& settings, const EffectContext& context);
 
-  void touch(const driver::DeviceState& state, SurfaceFeel& feel) const noexcept {
-    feel_height(height_.at(state.p_WT), form_, feel);
+  void touch(const driver::DeviceState& state, SurfaceResponse& response) const noexcept {
+    feel_height(height_.at(state.p_WT), form_, response);
   }
   void leave() const noexcept {}
 

@@ -12,14 +12,13 @@ constexpr double kAmplitudeMax = 0.05;                       // m
 constexpr double kWavelengthMin = 1e-5, kWavelengthMax = 1;  // m
 constexpr std::size_t kWavesMax = 64;  // 12,000 instructions per tick [chosen: a few us]
 
-std::vector<Wave> waves_of(const Sines::Settings& settings,
-                           const EffectSurroundings& surroundings) {
+std::vector<Wave> waves_of(const Sines::Settings& settings, const EffectContext& context) {
   std::vector<Wave> waves;
   for (const Sines::Settings::One& one : settings.waves) {
-    const Eigen::Vector3d k_W = 2 * std::numbers::pi / one.wavelength *
-                                (surroundings.R_WO * one.direction.stableNormalized());
+    const Eigen::Vector3d k_W =
+        2 * std::numbers::pi / one.wavelength * (context.R_WO * one.direction.stableNormalized());
     // Waves begin at the object's place, so that it can be moved without a change.
-    waves.push_back({one.amplitude, k_W, one.phase - k_W.dot(surroundings.p_WO)});
+    waves.push_back({one.amplitude, k_W, one.phase - k_W.dot(context.p_WO)});
   }
   return waves;
 }
@@ -48,7 +47,7 @@ void read_wave(SettingsReader& reader, Sines::Settings::One& wave) {
 
 }  // namespace
 
-void Sines::Settings::read(SettingsReader& reader, const EffectSurroundings& surroundings) {
+void Sines::Settings::read(SettingsReader& reader, const EffectContext& context) {
   TextureSettings::read(reader);
   reader.list("waves", [this](SettingsReader& entry) {
     waves.emplace_back();
@@ -60,7 +59,7 @@ void Sines::Settings::read(SettingsReader& reader, const EffectSurroundings& sur
   for (const One& wave : waves) {
     if (!(wave.wavelength > 0)) return;  // was refused already
   }
-  check_texture(reader, "waves", extent(), *this, surroundings);
+  check_texture(reader, "waves", extent(), *this, context);
 }
 
 TextureExtent Sines::Settings::extent() const noexcept {
@@ -73,10 +72,10 @@ TextureExtent Sines::Settings::extent() const noexcept {
   return extent;
 }
 
-Sines::Sines(const Settings& settings, const EffectSurroundings& surroundings)
-    : height_(waves_of(settings, surroundings)),
+Sines::Sines(const Settings& settings, const EffectContext& context)
+    : height_(waves_of(settings, context)),
       form_(settings.form),
-      gain_most_(texture_headroom(settings.extent(), surroundings)),
+      gain_most_(texture_headroom(settings.extent(), context)),
       extent_(settings.extent()) {}
 
 void Sines::set_gain(double gain) noexcept {
@@ -92,7 +91,7 @@ void Sines::list_settings(LiveSettings& settings) {
               .least = 0.02,
               .most = gain_most_,
               .value = 1,
-              .lever = texture_lever(extent_)});
+              .sensitivity = texture_lever(extent_)});
 }
 
 }  // namespace thimble::render

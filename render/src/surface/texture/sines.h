@@ -34,17 +34,17 @@ class Sines {
 
     /// Reads `form`, `hand_speed` and the list `waves`: amplitude, wavelength or frequency (waves
     /// per metre), direction, phase. Real-time: never from the servo thread.
-    void read(SettingsReader& reader, const EffectSurroundings& surroundings);
+    void read(SettingsReader& reader, const EffectContext& context);
     /// Tells how high and steep they are together. Precondition: each has a length.
     /// Real-time: safe.
     TextureExtent extent() const noexcept;
   };
 
   /// Real-time: never from the servo thread.
-  Sines(const Settings& settings, const EffectSurroundings& surroundings);
+  Sines(const Settings& settings, const EffectContext& context);
 
-  void touch(const driver::DeviceState& state, SurfaceFeel& feel) const noexcept {
-    feel_height(height_.at(state.p_WT), form_, feel);
+  void touch(const driver::DeviceState& state, SurfaceResponse& response) const noexcept {
+    feel_height(height_.at(state.p_WT), form_, response);
   }
   void leave() const noexcept {}
 

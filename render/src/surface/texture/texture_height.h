@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "thimble/render/surface/surface_feel.h"
+#include "thimble/render/surface/surface_response.h"
 
 namespace thimble::render {
 
@@ -35,8 +35,8 @@ inline constexpr std::array<std::string_view, 2> kTextureFormNames{"conservative
 /// Where the tip is above the texture, and for NaN, the depth becomes 0. The force never points
 /// into the object. The proxy stays on the object's own surface. Real-time: safe.
 inline void feel_height(const TextureHeight& texture, TextureForm form,
-                        SurfaceFeel& feel) noexcept {
-  ContactState& contact = feel.contact;
+                        SurfaceResponse& response) noexcept {
+  ContactState& contact = response.contact;
   const double depth = contact.depth + texture.height;
   if (form == TextureForm::kDepthOnly) {
     contact.depth = depth > 0 ? depth : 0;  // written so that NaN gives 0

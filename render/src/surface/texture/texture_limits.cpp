@@ -14,35 +14,32 @@ void TextureSettings::read(SettingsReader& reader) {
   reader.number("hand_speed", hand_speed, {.unit = "m/s", .least = 1e-3, .most = 5});
 }
 
-double texture_headroom(const TextureExtent& extent, const EffectSurroundings& surroundings) {
+double texture_headroom(const TextureExtent& extent, const EffectContext& context) {
   constexpr double kMost = 3;  // chosen
   double headroom = kMost;
   if (extent.slope > 0) headroom = std::min(headroom, kTextureSlopeMax / extent.slope);
-  if (extent.relief > 0 && surroundings.surface_stiffness > 0) {
-    headroom =
-        std::min(headroom, surroundings.force_max / surroundings.surface_stiffness / extent.relief);
+  if (extent.relief > 0 && context.surface_stiffness > 0) {
+    headroom = std::min(headroom, context.force_max / context.surface_stiffness / extent.relief);
   }
   return std::max(headroom, 1.0);
 }
 
-ForceLever texture_lever(const TextureExtent& extent) {
+ForceSensitivity texture_lever(const TextureExtent& extent) {
   return {.per_force = extent.slope,
           .per_stiffness = extent.relief * std::hypot(1, kTextureSlopeMax)};
 }
 
 void check_texture(SettingsReader& reader, std::string_view key, const TextureExtent& extent,
-                   const TextureSettings& settings, const EffectSurroundings& surroundings) {
+                   const TextureSettings& settings, const EffectContext& context) {
   char text[250];
-  const double deepest = surroundings.surface_stiffness > 0
-                             ? surroundings.force_max / surroundings.surface_stiffness
-                             : 0;
+  const double deepest =
+      context.surface_stiffness > 0 ? context.force_max / context.surface_stiffness : 0;
   // Where arm or spring is not known there is nothing to compare with.
   if (deepest > 0 && !(extent.relief <= deepest)) {
     std::snprintf(text, sizeof text,
                   "is %.3g mm from peak to valley, but the arm's %.3g N press no deeper than "
                   "%.3g mm into %.4g N/m: make it flatter, or the surface softer",
-                  1e3 * extent.relief, surroundings.force_max, 1e3 * deepest,
-                  surroundings.surface_stiffness);
+                  1e3 * extent.relief, context.force_max, 1e3 * deepest, context.surface_stiffness);
     reader.reject(key, text);
   }
   if (!(extent.slope <= kTextureSlopeMax)) {
@@ -52,13 +49,13 @@ void check_texture(SettingsReader& reader, std::string_view key, const TextureEx
     reader.reject(key, text);
   }
   const double frequency = settings.hand_speed / extent.wavelength;
-  const double highest = 0.5 / surroundings.tick;
+  const double highest = 0.5 / context.tick;
   if (!(frequency <= highest)) {
     std::snprintf(text, sizeof text,
                   "has waves of %.3g mm, which a hand at %.3g m/s feels as %.4g Hz; a loop of %.4g "
                   "Hz shows %.4g Hz at most: make the waves longer, the loop faster or hand_speed "
                   "smaller",
-                  1e3 * extent.wavelength, settings.hand_speed, frequency, 1 / surroundings.tick,
+                  1e3 * extent.wavelength, settings.hand_speed, frequency, 1 / context.tick,
                   highest);
     reader.reject(key, text);
   }

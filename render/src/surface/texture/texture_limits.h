@@ -3,7 +3,7 @@
 #include <string_view>
 
 #include "surface/texture/texture_height.h"
-#include "thimble/render/effect/effect_surroundings.h"
+#include "thimble/render/effect/effect_context.h"
 #include "thimble/render/effect/live_settings.h"
 #include "thimble/render/effect/settings_reader.h"
 
@@ -35,17 +35,17 @@ struct TextureExtent {
 
 /// Tells by which factor (>= 1) a texture that was found right may be made higher, until it would
 /// be refused or three times as high. Real-time: never from the servo thread.
-double texture_headroom(const TextureExtent& extent, const EffectSurroundings& surroundings);
+double texture_headroom(const TextureExtent& extent, const EffectContext& context);
 
 /// Bounds how the force changes with the factor by which a texture is made higher. With the depth
 /// d + g h it is k (d + g h) (n - g grad h), so its change is at most k |h| |n - g grad h| and
 /// k (d + g h) |grad h| together. Real-time: never from the servo thread.
-ForceLever texture_lever(const TextureExtent& extent);
+ForceSensitivity texture_lever(const TextureExtent& extent);
 
 /// Refuses, in a sentence at `key`, a texture that is deeper than the arm's whole force can press
 /// into the surface, steeper than kTextureSlopeMax, or so fine that a hand at `hand_speed` runs
 /// over more than half a wave per tick. Real-time: never from the servo thread.
 void check_texture(SettingsReader& reader, std::string_view key, const TextureExtent& extent,
-                   const TextureSettings& settings, const EffectSurroundings& surroundings);
+                   const TextureSettings& settings, const EffectContext& context);
 
 }  // namespace thimble::render

@@ -2,7 +2,7 @@
 
 #include "thimble/driver/result.h"
 #include "thimble/render/body/spring_scheme.h"
-#include "thimble/render/effect/effect_surroundings.h"
+#include "thimble/render/effect/effect_context.h"
 #include "thimble/render/effect/settings_reader.h"
 
 namespace thimble::render {
@@ -34,7 +34,7 @@ struct DentSettings {
 
   /// Reads the settings of a scene; `step` is that of the loop. Real-time: never from the servo
   /// thread.
-  void read(SettingsReader& reader, const EffectSurroundings& surroundings);
+  void read(SettingsReader& reader, const EffectContext& context);
 
   /// Says what about the settings is beyond all sense: a mass or stiffness that is not positive, a
   /// number that is negative or not finite. Real-time: never from the servo thread.

@@ -32,10 +32,6 @@ inline constexpr std::array kSpringSchemes{
 /// Tells the name of a scheme as scenes spell it ("implicit_euler"). Real-time: safe.
 std::string_view name_of(SpringScheme scheme) noexcept;
 
-/// Finds the scheme that a scene names; the error lists the names there are. Real-time: never from
-/// the servo thread.
-driver::Result<SpringScheme> scheme_named(std::string_view name);
-
 /// Finds the largest step (s) at which the scheme stays bounded on a network with these bounds;
 /// infinity for the schemes that always are. Sufficient for any springs and dampers; also
 /// necessary where there are no dampers or, for symplectic Euler, where the fastest mode is the

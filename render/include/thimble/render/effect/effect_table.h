@@ -6,7 +6,7 @@
 #include <span>
 #include <string_view>
 
-#include "thimble/render/effect/effect_surroundings.h"
+#include "thimble/render/effect/effect_context.h"
 #include "thimble/render/effect/settings_reader.h"
 #include "thimble/render/effect/stage_list.h"
 
@@ -29,7 +29,7 @@ struct EffectKind {
   EffectOrder order;       ///< Where in a tick.
   /// Reads the settings. Mistakes are told to the reader; what comes back is then not to be used.
   /// Real-time: never from the servo thread.
-  StageBuilder (*read)(SettingsReader& settings, const EffectSurroundings& surroundings);
+  StageBuilder (*read)(SettingsReader& settings, const EffectContext& context);
 };
 
 /// Is one effect with the settings that a scene gives it.
@@ -39,16 +39,16 @@ struct EffectPlan {
 };
 
 /// Makes the table's line of an effect: a SurfaceStage with `kGroup`, `kName`, `kOrder`, a struct
-/// `Settings` with `read(SettingsReader&, const EffectSurroundings&)`, and a constructor from
-/// `(const Settings&, const EffectSurroundings&)`.
+/// `Settings` with `read(SettingsReader&, const EffectContext&)`, and a constructor from
+/// `(const Settings&, const EffectContext&)`.
 template <SurfaceStage Stage>
 constexpr EffectKind effect_kind() {
   return {Stage::kGroup, Stage::kName, Stage::kOrder,
-          [](SettingsReader& reader, const EffectSurroundings& surroundings) -> StageBuilder {
+          [](SettingsReader& reader, const EffectContext& context) -> StageBuilder {
             typename Stage::Settings settings;
-            settings.read(reader, surroundings);
-            return [settings, surroundings]() -> std::unique_ptr<AnyStage> {
-              return std::make_unique<AnyStageOf<Stage>>(Stage(settings, surroundings));
+            settings.read(reader, context);
+            return [settings, context]() -> std::unique_ptr<AnyStage> {
+              return std::make_unique<AnyStageOf<Stage>>(Stage(settings, context));
             };
           }};
 }

@@ -10,7 +10,7 @@ namespace thimble::render {
 
 /// Bounds by how much a force changes with a setting: the sum of these times what they are named
 /// after, N per unit of the setting.
-struct ForceLever {
+struct ForceSensitivity {
   double per_depth = 0;      ///< Times the depth, m.
   double per_speed = 0;      ///< Times the speed of the tip, m/s.
   double per_force = 0;      ///< Times the object's force, N.
@@ -25,8 +25,9 @@ struct LiveSetting {
   std::string unit;            ///< SI.
   double least = 0, most = 0;  ///< Its bounds.
   double value = 0;            ///< As the scene has it.
-  ForceLever lever{};          ///< How fast it may be turned while it is felt follows from that.
-  void* stage = nullptr;       ///< Whose it is.
+  ForceSensitivity
+      sensitivity{};      ///< How fast it may be turned while it is felt follows from that.
+  void* stage = nullptr;  ///< Whose it is.
   /// Sets the value, which must be within its bounds. Real-time: safe.
   void (*set)(void* stage, double value) noexcept = nullptr;
 };

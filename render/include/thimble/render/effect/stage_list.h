@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "thimble/render/effect/live_settings.h"
-#include "thimble/render/surface/surface_feel.h"
+#include "thimble/render/surface/surface_response.h"
 
 namespace thimble::render {
 
@@ -18,7 +18,7 @@ class AnyStage {
   virtual ~AnyStage() = default;
 
   /// See SurfaceStage. Real-time: safe.
-  virtual void touch(const driver::DeviceState& state, SurfaceFeel& feel) noexcept = 0;
+  virtual void touch(const driver::DeviceState& state, SurfaceResponse& response) noexcept = 0;
   virtual void leave() noexcept = 0;
   /// See LiveSettings. Real-time: never from the servo thread.
   virtual void list_settings(LiveSettings& settings) = 0;
@@ -30,8 +30,8 @@ class AnyStageOf final : public AnyStage {
  public:
   explicit AnyStageOf(Stage stage) : stage_(std::move(stage)) {}
 
-  void touch(const driver::DeviceState& state, SurfaceFeel& feel) noexcept override {
-    stage_.touch(state, feel);
+  void touch(const driver::DeviceState& state, SurfaceResponse& response) noexcept override {
+    stage_.touch(state, response);
   }
   void leave() noexcept override { stage_.leave(); }
   void list_settings(LiveSettings& settings) override {
@@ -52,8 +52,8 @@ class StageList {
  public:
   explicit StageList(std::vector<std::unique_ptr<AnyStage>> stages) : stages_(std::move(stages)) {}
 
-  void touch(const driver::DeviceState& state, SurfaceFeel& feel) noexcept {
-    for (const auto& stage : stages_) stage->touch(state, feel);
+  void touch(const driver::DeviceState& state, SurfaceResponse& response) noexcept {
+    for (const auto& stage : stages_) stage->touch(state, response);
   }
   void leave() noexcept {
     for (const auto& stage : stages_) stage->leave();

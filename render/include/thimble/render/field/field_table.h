@@ -5,7 +5,7 @@
 #include <span>
 #include <string_view>
 
-#include "thimble/render/effect/effect_surroundings.h"
+#include "thimble/render/effect/effect_context.h"
 #include "thimble/render/effect/settings_reader.h"
 #include "thimble/render/field/field_touch.h"
 
@@ -20,19 +20,18 @@ struct FieldKind {
   std::string_view name;  ///< As scenes name it.
   /// Reads the settings. Mistakes are told to the reader; what comes back is then not to be used.
   /// Real-time: never from the servo thread.
-  FieldBuilder (*read)(SettingsReader& settings, const EffectSurroundings& surroundings);
+  FieldBuilder (*read)(SettingsReader& settings, const EffectContext& context);
 };
 
 /// Makes the table's line of a field: a Field with `kName`, a struct `Settings` with
-/// `read(SettingsReader&, const EffectSurroundings&)`, and a constructor from both.
+/// `read(SettingsReader&, const EffectContext&)`, and a constructor from both.
 template <Field F>
 constexpr FieldKind field_kind() {
-  return {F::kName,
-          [](SettingsReader& reader, const EffectSurroundings& surroundings) -> FieldBuilder {
+  return {F::kName, [](SettingsReader& reader, const EffectContext& context) -> FieldBuilder {
             typename F::Settings settings;
-            settings.read(reader, surroundings);
-            return [settings, surroundings]() -> std::unique_ptr<ObjectTouch> {
-              return std::make_unique<FieldTouch<F>>(F(settings, surroundings));
+            settings.read(reader, context);
+            return [settings, context]() -> std::unique_ptr<ObjectTouch> {
+              return std::make_unique<FieldTouch<F>>(F(settings, context));
             };
           }};
 }

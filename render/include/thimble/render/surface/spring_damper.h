@@ -5,7 +5,7 @@
 #include "thimble/driver/device_state.h"
 #include "thimble/render/contact_state.h"
 #include "thimble/render/effect/live_settings.h"
-#include "thimble/render/surface/surface_feel.h"
+#include "thimble/render/surface/surface_response.h"
 
 namespace thimble::render {
 
@@ -27,8 +27,8 @@ struct SpringDamper {
     return magnitude * contact.n_W;
   }
 
-  void touch(const driver::DeviceState& state, SurfaceFeel& feel) const noexcept {
-    feel.f_T_W += force(feel.contact, state);
+  void touch(const driver::DeviceState& state, SurfaceResponse& response) const noexcept {
+    response.f_T_W += force(response.contact, state);
   }
   void leave() const noexcept {}
 
@@ -39,13 +39,13 @@ struct SpringDamper {
                 .unit = "N/m",
                 .most = settings.stiffness_max(),
                 .value = stiffness,
-                .lever = {.per_depth = 1}});
+                .sensitivity = {.per_depth = 1}});
     settings.add<[](SpringDamper& spring, double b) noexcept { spring.damping = b; }>(
         *this, {.name = "damping",
                 .unit = "N s/m",
                 .most = settings.damping_max(),
                 .value = damping,
-                .lever = {.per_speed = 1}});
+                .sensitivity = {.per_speed = 1}});
   }
 };
 

@@ -1,0 +1,105 @@
+#include "packed/offset_triangle.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "packed/unpack_triangle.h"
+
+namespace thimble::render {
+
+using namespace unpacked;
+
+// Everything is made for two or three vectors at once; (a, b) stands for a pair of them.
+inline void OffsetTriangle::unpack_here(const PackedTriangle& r) noexcept {
+  creases_ = r.flags & 7u;
+  source_ = r.source();
+  // Corner 0 twice, and the two sides from it; differences may need 33 bits.
+  const Sides x(r.x.data()), y(r.y.data()), z(r.z.data());
+  const double area_x = x_times_y(y.both, z.both);
+  const double area_y = x_times_y(z.both, x.both);
+  const double area_z = x_times_y(x.both, y.both);
+  const double per_size = 1 / std::sqrt(area_x * area_x + area_y * area_y + area_z * area_z);
+  const double face_x = area_x * per_size, face_y = area_y * per_size, face_z = area_z * per_size;
+  // The duals are side_2 x face / size and face x side_1 / size.
+  const __m128d scale = _mm_set_pd(-per_size, per_size);
+  const auto dual = [scale](__m128d u, double face_v, __m128d v, double face_u) noexcept {
+    const __m128d across = _mm_sub_pd(_mm_mul_pd(swapped(u), _mm_set1_pd(face_v)),
+                                      _mm_mul_pd(swapped(v), _mm_set1_pd(face_u)));
+    return _mm_mul_pd(across, scale);
+  };
+  const __m128d dual_x = dual(y.both, face_z, z.both, face_y);
+  const __m128d dual_y = dual(z.both, face_x, x.both, face_z);
+  const __m128d dual_z = dual(x.both, face_y, y.both, face_x);
+  _mm_store_pd(ab_[0].data(), dual_x);
+  _mm_store_pd(ab_[1].data(), dual_y);
+  _mm_store_pd(ab_[2].data(), dual_z);
+  const __m128d at_corner =
+      _mm_add_pd(_mm_add_pd(_mm_mul_pd(dual_x, x.corner), _mm_mul_pd(dual_y, y.corner)),
+                 _mm_mul_pd(dual_z, z.corner));
+  _mm_store_pd(ab_[3].data(), _mm_sub_pd(_mm_setzero_pd(), at_corner));
+  h_ = {-face_x, -face_y, -face_z,
+        face_x * _mm_cvtsd_f64(x.corner) + face_y * _mm_cvtsd_f64(y.corner) +
+            face_z * _mm_cvtsd_f64(z.corner)};
+
+  const Vectors n = unpack_normals(r);
+  const __m128 dual_xf = _mm_cvtpd_ps(dual_x), dual_yf = _mm_cvtpd_ps(dual_y),
+               dual_zf = _mm_cvtpd_ps(dual_z);
+  const __m128 u = dot(all<0>(dual_xf), all<0>(dual_yf), all<0>(dual_zf), n);
+  const __m128 v = dot(all<1>(dual_xf), all<1>(dual_yf), all<1>(dual_zf), n);
+  const auto single = [](double a) noexcept { return _mm_set1_ps(static_cast<float>(a)); };
+  const __m128 w = dot(single(face_x), single(face_y), single(face_z), n);
+  const __m128 du = _mm_sub_ps(u, all<0>(u)), dv = _mm_sub_ps(v, all<0>(v));
+  _mm_store_pd(uv_.data(), _mm_cvtps_pd(_mm_unpacklo_ps(u, v)));
+  // (Du_1, Dv_2) and (Du_2, Dv_1).
+  const __m128 duv = _mm_shuffle_ps(du, dv, _MM_SHUFFLE(1, 2, 2, 1));
+  const __m128 crossed = _mm_shuffle_ps(duv, duv, _MM_SHUFFLE(3, 1, 2, 0));
+  _mm_store_pd(along_.data(), _mm_cvtps_pd(crossed));
+  _mm_store_pd(across_.data(), _mm_cvtps_pd(_mm_movehl_ps(crossed, crossed)));
+  // Differences of numbers near 1 are exact in single precision.
+  const __m128 dw = _mm_sub_ps(w, all<0>(w));
+  _mm_store_pd(dw_.data(), _mm_cvtps_pd(_mm_shuffle_ps(dw, dw, _MM_SHUFFLE(2, 1, 2, 1))));
+  w_ = first(w);
+  const double least = w_ + std::min(std::min(dw_[0], dw_[1]), 0.0);
+  tilt_squared_ = std::max(1 - least * least, 0.0);
+
+  const __m128 dx = _mm_sub_ps(n.x, all<0>(n.x));
+  const __m128 dy = _mm_sub_ps(n.y, all<0>(n.y));
+  const __m128 dz = _mm_sub_ps(n.z, all<0>(n.z));
+  const __m128 low = _mm_unpacklo_ps(dx, dy), high = _mm_unpackhi_ps(dx, dy);
+  _mm_store_ps(n_[0].data(), _mm_movelh_ps(_mm_unpacklo_ps(n.x, n.y), n.z));
+  _mm_store_ps(n_[1].data(), _mm_shuffle_ps(low, dz, _MM_SHUFFLE(1, 1, 3, 2)));
+  _mm_store_ps(n_[2].data(), _mm_shuffle_ps(high, dz, _MM_SHUFFLE(2, 2, 1, 0)));
+  const __m128 bulge = bulges(x, y, z, n);
+  bulge_ = {first(bulge), first(all<1>(bulge)), first(all<2>(bulge))};
+}
+
+void OffsetTriangle::unpack(const PackedTriangle& r) noexcept {
+  if (wide_lanes()) {
+    unpack_wide(r);
+  } else {
+    unpack_plain(r);
+  }
+}
+
+void OffsetTriangle::unpack_plain(const PackedTriangle& r) noexcept {
+  unpack_here(r);
+}
+
+void OffsetTriangle::unpack_wide(const PackedTriangle& r) noexcept {
+  unpack_here(r);
+}
+
+// Goes on where one round does not suffice: the most bent triangles that are no creases take four.
+OffsetPlace OffsetTriangle::locate_far(__m128d ab, double h, double d) const noexcept {
+  constexpr int kRoundsMax = 5;
+  OffsetPlace place;
+  for (int round = 0; round < kRoundsMax; ++round) {
+    place = solve(ab, h, d);
+    const double change = place.depth - d;
+    d = place.depth;
+    if (!place.valid || change * change * tilt_squared_ <= kPlaced * kPlaced) break;
+  }
+  return place;
+}
+
+}  // namespace thimble::render

@@ -1,0 +1,149 @@
+#include "search/segment_test.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "packed/wide_lanes.h"
+#include "search/lanes.h"
+
+namespace thimble::render {
+namespace {
+
+using Eigen::Vector3d;
+
+// Sums of products of three factors as below are wrong by less than 2^-48 of the product of the
+// largest factors, and by less than eight times what one factor is wrong by.
+constexpr double kRounding = 0x1p-48;
+constexpr double kSpread = 16;
+
+double largest(const Vector3d& v) noexcept {
+  return std::max(std::max(std::abs(v.x()), std::abs(v.y())), std::abs(v.z()));
+}
+
+// Two coordinates of a vector of three: x and y, or z and 0.
+__m128d half_of(const double* v, std::size_t half) noexcept {
+  return half == 0 ? _mm_loadu_pd(v) : _mm_load_sd(v + 2);
+}
+
+void store_whole(__m128d u, std::size_t half, std::array<std::int32_t, 4>& to) noexcept {
+  const __m128d most = _mm_set1_pd(2 * kLatticeHalf - 1), least = _mm_set1_pd(-2 * kLatticeHalf);
+  const __m128i whole = _mm_cvttpd_epi32(_mm_max_pd(_mm_min_pd(u, most), least));
+  _mm_storel_epi64(reinterpret_cast<__m128i*>(to.data() + 2 * half), whole);
+}
+
+int sign_beyond(double value, double bound) noexcept {
+  return value > bound ? 1 : value < -bound ? -1 : 0;
+}
+
+}  // namespace
+
+SegmentTest::SegmentTest(const PackedSurface& surface, const Vector3d& p_from,
+                         const Vector3d& p_to) noexcept
+    : surface_(surface),
+      p_from_(p_from),
+      p_to_(p_to),
+      from_(surface.to_lattice(p_from)),
+      way_(surface.to_lattice(p_to) - from_),
+      way_size_(largest(way_)) {
+  // What `crossing` sees are positions in W, rounded at the size of their coordinates.
+  const double size = std::max(std::max(largest(p_from), largest(p_to)), largest(surface.origin()));
+  position_rounding_ = 0x1p-50 * (size * surface.per_step() + kLatticeHalf);
+  const __m128d room = _mm_set1_pd(2 + 4 * position_rounding_);
+  for (std::size_t half = 0; half < 2; ++half) {
+    const __m128d begin = half_of(from_.data(), half);
+    const __m128d end = _mm_add_pd(begin, half_of(way_.data(), half));
+    store_whole(_mm_sub_pd(_mm_min_pd(begin, end), room), half, bounds_.low);
+    store_whole(_mm_add_pd(_mm_max_pd(begin, end), room), half, bounds_.high);
+    store_whole(begin, half, bounds_.from);
+  }
+  bounds_.way = {static_cast<float>(way_.x()), static_cast<float>(way_.y()),
+                 static_cast<float>(way_.z())};
+  bounds_.way_size = static_cast<float>(way_size_);
+  bounds_.from_wrong = static_cast<float>(position_rounding_ + 1);
+  // Differences of corners and begin fit into 32 bits, and triple products into a float.
+  bounds_.single = largest(from_) < kLatticeHalf && way_size_ <= 4 * kLatticeHalf;
+}
+
+std::size_t SegmentTest::select_near(std::span<const std::int32_t> list,
+                                     std::int32_t* near) const noexcept {
+  const PackedTriangle* const triangles = surface_.triangles().data();
+  return wide_lanes() ? lanes_avx2::select_near(bounds_, triangles, list, near)
+                      : lanes_plain::select_near(bounds_, triangles, list, near);
+}
+
+Crossing SegmentTest::cross(std::int32_t t, double& parameter) const noexcept {
+  const PackedTriangle& packed = surface_.triangle(t);
+  const Vector3d a = packed.corner(0) - from_;
+  const Vector3d b = packed.corner(1) - from_;
+  const Vector3d c = packed.corner(2) - from_;
+  const double size = std::max(std::max(largest(a), largest(b)), largest(c));
+  const double reach = size + way_size_;
+  const double bound = kSpread * (position_rounding_ + kRounding * reach) * size * reach;
+  const int s0 = sign_beyond(way_.dot(a.cross(b)), bound);
+  const int s1 = sign_beyond(way_.dot(b.cross(c)), bound);
+  const int s2 = sign_beyond(way_.dot(c.cross(a)), bound);
+  if (s0 * s1 < 0 || s1 * s2 < 0 || s2 * s0 < 0) return Crossing::kNone;
+  const Vector3d n = (b - a).cross(c - a);
+  const double above = -n.dot(a);
+  const double below = n.dot(a - way_);
+  const bool sure = s0 != 0 && s1 != 0 && s2 != 0;
+  const int from = sign_beyond(above, 8 * bound);
+  const int to = -sign_beyond(below, 8 * bound);
+  if (from * to > 0) return Crossing::kNone;
+  Crossing way = from > 0 ? Crossing::kEnters : Crossing::kLeaves;
+  if (!sure || from == 0 || to == 0) {
+    way = crossing(p_from_, p_to_, surface_.position(t, 0), surface_.position(t, 1),
+                   surface_.position(t, 2));
+  }
+  if (way == Crossing::kNone) return way;
+  // Rounding may make either end seem to lie on the other side: such a crossing is at that end.
+  const double sign = way == Crossing::kEnters ? 1 : -1;
+  parameter = 0;
+  if (sign * above > 0) parameter = sign * below > 0 ? above / (above + below) : 1;
+  parameter = kept_in_box(parameter, way_, a, b, c);
+  return way;
+}
+
+double kept_in_box(double parameter, const Vector3d& way, const Vector3d& a, const Vector3d& b,
+                   const Vector3d& c) noexcept {
+  double begin = 0, end = 1;
+  for (int i = 0; i < 3; ++i) {
+    if (way[i] == 0) continue;
+    const double one = std::min({a[i], b[i], c[i]}) / way[i];
+    const double other = std::max({a[i], b[i], c[i]}) / way[i];
+    begin = std::max(begin, std::min(one, other));
+    end = std::min(end, std::max(one, other));
+  }
+  return std::max(begin, std::min(parameter, end));
+}
+
+ReachedPart reached_part(const Vector3d& from, const Vector3d& way) noexcept {
+  const double size = std::max(largest(from), largest(from + way));
+  if (size <= kLatticeHalf) {
+    return {.any = true, .from = from.cast<float>(), .way = way.cast<float>(), .length = 1};
+  }
+  const double half = kLatticeHalf + 0x1p12 + 0x1p-48 * size;
+  double begin = 0, end = 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (way[axis] == 0) {
+      if (!(std::abs(from[axis]) <= half)) return {};
+      continue;
+    }
+    const double one = (-half - from[axis]) / way[axis];
+    const double other = (half - from[axis]) / way[axis];
+    begin = std::max(begin, std::min(one, other));
+    end = std::min(end, std::max(one, other));
+  }
+  if (!(begin <= end)) return {};
+  ReachedPart part;
+  part.any = true;
+  part.begin = begin;
+  part.length = end - begin;
+  part.from = (from + begin * way).cast<float>();
+  part.way = (part.length * way).cast<float>();
+  part.room = kBoxRoom + static_cast<float>(0x1p-48 * size);
+  return part;
+}
+
+}  // namespace thimble::render

@@ -1,0 +1,29 @@
+#include "track/memory_contact.h"
+
+#include <utility>
+
+#include "track/packed_contact_steps.h"
+
+namespace thimble::render {
+
+MemoryStore::MemoryStore(PackedSurface surface, std::optional<SearchChoice> search)
+    : triangles_(surface.triangles().data()),
+      origin_(surface.origin()),
+      per_step_(surface.per_step()),
+      step_(surface.step()),
+      surface_(std::make_shared<const PackedSurface>(std::move(surface))),
+      search_(make_search(*surface_, search)) {}
+
+template class PackedContact<MemoryStore>;
+
+MemoryContact::MemoryContact(PackedSurface surface, std::optional<SearchChoice> search)
+    : PackedContact(MemoryStore(std::move(surface), search)) {}
+
+driver::Result<MemoryContact> MemoryContact::build(const TriangleMesh& mesh,
+                                                   const PackedSurfaceOptions& options) {
+  auto surface = PackedSurface::build(mesh, options);
+  if (!surface) return surface.error();
+  return MemoryContact(std::move(surface).value());
+}
+
+}  // namespace thimble::render

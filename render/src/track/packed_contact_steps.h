@@ -1,0 +1,244 @@
+#pragma once
+
+// The bodies of PackedContact: included where it is instantiated for a store, and nowhere else.
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cstddef>
+
+#include "track/packed_contact.h"
+#include "track/packed_find_steps.h"
+#include "track/packed_follow_steps.h"
+
+namespace thimble::render {
+
+template <PackedStore Store>
+const ContactState& PackedContact<Store>::update(const driver::DeviceState& state) noexcept {
+  const Eigen::Vector3d& p_WT = state.p_WT;
+  if (wide_) {
+    if (!stay_wide(p_WT)) move_wide(p_WT);
+  } else {
+    if (!stay(p_WT)) move(p_WT);
+  }
+  return this->state();
+}
+
+template <PackedStore Store>
+bool PackedContact<Store>::stay_wide(const Eigen::Vector3d& p_WT) noexcept {
+  return stay(p_WT);
+}
+
+template <PackedStore Store>
+void PackedContact<Store>::move_wide(const Eigen::Vector3d& p_WT) noexcept {
+  move(p_WT);
+}
+
+// Fills in the state from what is felt in the active triangle.
+template <PackedStore Store>
+inline void PackedContact<Store>::report(const Eigen::Vector3d& p_WT,
+                                         const OffsetResponse& felt) noexcept {
+  state_.touching = true;
+  state_.triangle = offset_.source();
+  measure(p_WT, felt);
+}
+
+template <PackedStore Store>
+inline void PackedContact<Store>::measure(const Eigen::Vector3d& p_WT,
+                                          const OffsetResponse& felt) noexcept {
+  state_.n_W = felt.n_W;
+  state_.depth = store_.step() * felt.depth;
+  state_.p_WP = p_WT + state_.depth * felt.n_W;
+}
+
+// Ends the tick if the tip is where the active triangle, or the one over the edge it has crossed,
+// answers alone.
+template <PackedStore Store>
+inline bool PackedContact<Store>::stay(const Eigen::Vector3d& p_WT) noexcept {
+  if (!steady_) return false;
+  const Eigen::Vector3d p = store_.to_lattice(p_WT);
+  const OffsetPlace place = offset_.locate(p);
+  if (!(place.valid && place.depth <= deepest_)) return false;
+  if (!(std::min(std::min(place.l1, place.l2), place.l0) >= 0)) [[unlikely]] {
+    std::size_t edge = place.l2 <= place.l0 ? 0 : 1;
+    if (place.l1 < std::min(place.l0, place.l2)) edge = 2;
+    return wide_ ? step_over_wide(p_WT, p.x(), p.y(), p.z(), edge)
+                 : step_over_plain(p_WT, p.x(), p.y(), p.z(), edge);
+  }
+  const OffsetResponse felt = offset_.feel_within(place);
+  if (!(felt.depth >= 0)) return false;
+  state_.hops = 0;
+  recent_hops_ = 0;
+  p_WT_before_ = p_WT;
+  // Which triangle it is, is known since the tip came there.
+  measure(p_WT, felt);
+  if constexpr (!Store::kComplete) felt_ = state_;
+  return true;
+}
+
+template <PackedStore Store>
+bool PackedContact<Store>::step_over_plain(const Eigen::Vector3d& p_WT, double x, double y,
+                                           double z, std::size_t edge) noexcept {
+  return step_over(p_WT, {x, y, z}, edge);
+}
+
+template <PackedStore Store>
+bool PackedContact<Store>::step_over_wide(const Eigen::Vector3d& p_WT, double x, double y, double z,
+                                          std::size_t edge) noexcept {
+  return step_over(p_WT, {x, y, z}, edge);
+}
+
+// Makes the triangle active that lies over the edge that the tip is outside of; true if it answers
+// alone. If not, the way goes on from there.
+template <PackedStore Store>
+inline bool PackedContact<Store>::step_over(const Eigen::Vector3d& p_WT, const Eigen::Vector3d& p,
+                                            std::size_t edge) noexcept {
+  const PackedTriangle* packed = store_.find(active_);
+  if (absent(packed)) return false;
+  if (!activate(packed->neighbours[edge]) || offset_.creases() != 0) return false;
+  const OffsetPlace there = offset_.locate(p);
+  const double least = std::min(std::min(there.l0, there.l1), there.l2);
+  if (!(there.valid && least >= kOutside)) return false;
+  const OffsetResponse felt = offset_.feel(there);
+  if (!(felt.depth >= 0)) return false;
+  state_.hops = 1;
+  steady_ = ++recent_hops_ < 2;
+  p_WT_before_ = p_WT;
+  report(p_WT, felt);
+  if constexpr (!Store::kComplete) felt_ = state_;
+  return true;
+}
+
+template <PackedStore Store>
+void PackedContact<Store>::move(const Eigen::Vector3d& p_WT) noexcept {
+  if (!within_range(p_WT)) {
+    end();
+    has_before_ = path_kept_ = false;
+    return;
+  }
+  [[maybe_unused]] const Eigen::Vector3d from = p_WT_before_;
+  if (!state_.touching && !begin(p_WT)) return;
+  p_WT_before_ = p_WT;
+  // Where the tip was out of sight the way from the last triangle says nothing.
+  const bool late = !Store::kComplete && path_kept_;
+  const bool lost = late || (!Store::kComplete && held_.holding());
+  Outcome outcome = lost ? Outcome::kUnknown : follow(p_WT);
+  recent_hops_ = state_.hops > 0 ? std::min(recent_hops_ + 1, 3) : std::max(recent_hops_ - 1, 0);
+  steady_ = recent_hops_ < 2 && outcome == Outcome::kYes && offset_.creases() == 0;
+  if constexpr (!Store::kComplete) {
+    // The one place where an absent packed triangle is felt. What the surface tells stays in
+    // `state_`, for the walk to go on from.
+    if (outcome == Outcome::kUnknown) {
+      const ContactState last = felt_.touching ? felt_ : begun_;
+      felt_ = last;
+      held_.hold(p_WT, felt_);
+      felt_.touching = true;
+      outcome = resume(p_WT, last);
+      if (!lost || outcome == Outcome::kUnknown) ++ticks_held_;
+      state_.touching = true;
+      if (outcome == Outcome::kUnknown && late) {
+        end();
+        p_WT_before_ = from;
+        return;
+      }
+    }
+    path_kept_ = false;
+    if (outcome == Outcome::kUnknown) return;
+    if (outcome == Outcome::kYes) {
+      felt_ = state_;
+      held_.fade(p_WT, felt_);
+      steady_ = steady_ && !held_.fading();
+      return;
+    }
+    if (held_.fade_out(p_WT, felt_)) return;
+  }
+  if (outcome != Outcome::kYes) {
+    const std::uint16_t hops = state_.hops;
+    end();
+    state_.hops = hops;
+    if constexpr (!Store::kComplete) felt_.hops = hops;
+    above_ = true;
+  }
+}
+
+template <PackedStore Store>
+void PackedContact<Store>::end() noexcept {
+  state_ = {};
+  steady_ = false;
+  above_ = false;
+  recent_hops_ = 0;
+  if constexpr (!Store::kComplete) {
+    felt_ = {};
+    held_.drop();
+  }
+}
+
+// Looks for the triangle through which the path since the last tick enters, and makes it active.
+template <PackedStore Store>
+bool PackedContact<Store>::begin(const Eigen::Vector3d& p_WT) noexcept {
+  FoundEntry found;
+  const Eigen::Vector3d from = p_WT_before_;
+  if (has_before_) found = store_.first_entry(from, p_WT);
+  state_ = {};
+  bool free = found.complete;
+  if constexpr (!Store::kComplete) {
+    felt_ = {};
+    // Who was out of sight may have gone round what the straight way passes through.
+    if (path_kept_ && (found.leaves || !found.complete)) found.entry = {};
+    if (!found.complete) ++ticks_held_;
+    if (found.entry.triangle < 0) {
+      // A long path may never be at hand as a whole; who is outside by what is near begins anew.
+      free = free || store_.inside(p_WT) == Known::kNo;
+      path_kept_ = !free;
+    }
+  }
+  if (free) p_WT_before_ = p_WT;
+  has_before_ = true;
+  if (found.entry.triangle < 0) {
+    if constexpr (TellsRise<Store>) {
+      if (found.complete) return begin_above(p_WT);
+      above_ = false;  // for all that is known
+    }
+    return false;
+  }
+  if (!activate(found.entry.triangle)) return false;
+  state_.n_W = offset_.face();
+  state_.triangle = offset_.source();
+  state_.p_WP = from + found.entry.parameter * (p_WT - from);
+  if constexpr (!Store::kComplete) begun_ = state_;
+  return true;
+}
+
+// Looks whether the tip has come from above into where the smooth surface bulges beyond its
+// triangles, and makes the triangle below it active: there contact begins with depth 0.
+template <PackedStore Store>
+bool PackedContact<Store>::begin_above(
+    const Eigen::Vector3d& p_WT) noexcept requires TellsRise<Store> {
+  const double rise = store_.rise();
+  if (!(rise > 0)) return false;
+  const bool was_above = above_;
+  const FoundTriangle nearest = store_.closest(p_WT, rise);
+  above_ = nearest.complete;
+  if (!nearest.complete || nearest.triangle < 0 || !activate(nearest.triangle)) return false;
+  state_.n_W = offset_.face();
+  const Eigen::Vector3d p = store_.to_lattice(p_WT);
+  OffsetPlace place = offset_.locate(p);
+  const Outcome settled = settle(p, true, place);
+  if (!Store::kComplete && settled == Outcome::kUnknown) {
+    above_ = false;
+    state_ = {};
+    return false;
+  }
+  const bool bulges = settled == Outcome::kYes && place.depth < 0 && offset_.feel(place).depth >= 0;
+  // Who is below the triangles has not come from above, nor has who came up through them.
+  above_ = place.depth < 0 && (was_above || !bulges);
+  if (!bulges || !was_above) {
+    state_ = {};
+    return false;
+  }
+  state_.triangle = offset_.source();
+  state_.p_WP = p_WT;
+  if constexpr (!Store::kComplete) begun_ = state_;
+  return true;
+}
+
+}  // namespace thimble::render
