@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
-# Fails if a room includes what it must not know (the table in README.md).
+# Fails if a module includes what it must not know (the table in README.md), if a layer of render
+# includes one above it (the table in render/README.md), or if a folder of render is too full.
 #   tests/arch/layering.sh [SOURCE_DIR]
 set -euo pipefail
 cd "${1:-$(dirname "$0")/../..}"
 bad=0
 
-# forbid ROOM PATTERN WHY: no include in ROOM may match PATTERN (an extended regular expression).
+# forbid FOLDER PATTERN WHY: no include in FOLDER may match PATTERN (an extended regular expression).
 forbid() {
   local found
   if found=$(grep -rnE "^[[:space:]]*#[[:space:]]*include[[:space:]]*[<\"]($2)" "$1"); then
@@ -27,5 +28,66 @@ forbid render "thimble/(device_sim|app)/|$graphics|spdlog/|yaml-cpp/|CLI/" \
   "device_sim, app, graphics, logging or scene files"
 forbid render 'thimble/driver/(transport|device|arm|arms/.*|clock|servo_loop|real_time)\.h|thimble/driver/arms/' \
   "the wire or the arm: a force law knows state and force only"
+forbid render/include '(mesh|packed|search|track|body|page|multirate|field|surface|effect)/|[a-z_]*\.h"' \
+  "a header beside the sources: it is not installed"
+
+# The layers of render: LAYER: what it may include. Some headers are no part of the folder they lie
+# in: what all layers hand on (state), what an effect is told (settings), what a scene runs (touch),
+# and what builds it out of everything (build).
+layers='
+  state:
+  settings:
+  mesh:
+  packed: mesh
+  search: mesh packed
+  track: state mesh packed search
+  touch: state settings
+  effect: state settings
+  surface: state settings effect
+  field: state settings touch mesh
+  body: state settings touch mesh
+  page: state mesh packed search track
+  multirate: touch
+'
+upward=$(grep -rnE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"' render | awk -v layers="$layers" '
+  function layer(path) {
+    sub(/^render\/include\//, "", path)
+    sub(/^(render\/src|thimble\/render)\//, "", path)
+    sub(/\.(h|inc)$/, "", path)
+    if (path ~ /^(contact_state|body_patch|body_pose|surface\/surface_response)$/) return "state"
+    if (path ~ /^effect\/(effect_context|live_settings|map_settings|settings_reader)$/) return "settings"
+    if (path ~ /^(touch|object_touch|scene_touch)$/) return "touch"
+    if (path !~ /\// || path == "effect/effect_table.cpp") return "build"
+    sub(/\/.*/, "", path)
+    return path
+  }
+  BEGIN {
+    count = split(layers, lines, "\n")
+    for (i = 1; i <= count; ++i) {
+      words = split(lines[i], word, /[: ]+/)
+      for (k = 3; k <= words; ++k) may[word[2], word[k]] = 1
+    }
+  }
+  {
+    file = $0; sub(/:.*/, "", file)
+    header = $0; sub(/^[^"]*"/, "", header); sub(/".*/, "", header)
+    if (header ~ /^thimble\// && header !~ /^thimble\/render\//) next
+    from = layer(file); to = layer(header)
+    if (from != to && from != "build" && !((from, to) in may)) print file ": " from " must not know " to " (" header ")"
+  }')
+if [ -n "$upward" ]; then
+  echo "An include of render runs upwards or to the side:"
+  echo "$upward" | sed 's/^/  /'
+  bad=1
+fi
+
+# Who looks for something reads a folder from end to end: headers and sources of one count together.
+full=$(find render -name '*.h' -o -name '*.cpp' -o -name '*.inc' |
+  sed -E 's#^render/(include/thimble/render|src)/?##; s#/?[^/]*$##' | sort | uniq -c |
+  awk '$1 > 40 {print "render/" $2 ": " $1 " files, more than 40"}')
+if [ -n "$full" ]; then
+  echo "$full"
+  bad=1
+fi
 
 exit $bad

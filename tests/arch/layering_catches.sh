@@ -24,3 +24,33 @@ plant "$1" device_sim/include/thimble/device_sim/settings.h '"thimble/driver/dev
 plant "$1" render/include/thimble/render/touch.h '"thimble/driver/transport.h"'
 plant "$1" render/include/thimble/render/touch.h '"thimble/driver/arms/hfab/hfab_arm.h"'
 plant "$1" render/include/thimble/render/touch.h '"thimble/device_sim/settings.h"'
+# A header that is not installed, in one that is.
+plant "$1" render/include/thimble/render/build_object_touch.h '"touch_of.h"'
+plant "$1" render/include/thimble/render/build_object_touch.h '"track/god_object.h"'
+# One forbidden include for each layer of render.
+plant "$1" render/include/thimble/render/contact_state.h '"thimble/render/mesh/triangle_mesh.h"'
+plant "$1" render/include/thimble/render/contact_state.h '"thimble/render/object_touch.h"'
+plant "$1" render/include/thimble/render/effect/live_settings.h '"thimble/render/effect/effect_table.h"'
+plant "$1" render/src/mesh/contact_mesh.cpp '"packed/packed_surface.h"'
+plant "$1" render/src/packed/packed_surface.cpp '"search/contact_search.h"'
+plant "$1" render/src/search/tree_search.cpp '"track/surface_tracker.h"'
+plant "$1" render/src/search/segment_lanes.inc '"track/packed_store.h"'
+plant "$1" render/src/track/surface_tracker.cpp '"body/motion/rigid_body.h"'
+plant "$1" render/src/track/surface_tracker.cpp '"thimble/render/object_touch.h"'
+plant "$1" render/include/thimble/render/touch.h '"thimble/render/surface/spring_damper.h"'
+plant "$1" render/include/thimble/render/effect/stage_list.h '"thimble/render/surface/spring_damper.h"'
+plant "$1" render/src/surface/friction/bristle.cpp '"field/viscous.h"'
+plant "$1" render/src/field/viscous.cpp '"track/god_object.h"'
+plant "$1" render/src/body/motion/rigid_body.cpp '"track/god_object.h"'
+plant "$1" render/src/body/motion/rigid_body.cpp '"touch_of.h"'
+plant "$1" render/src/page/page_file.cpp '"thimble/render/object_touch.h"'
+plant "$1" render/src/multirate/model_slot.cpp '"track/god_object.h"'
+plant "$1" render/src/track/packed_contact.h '"page/page_file.h"'
+# And a folder that is too full.
+rm -rf "${copy:?}"/*
+(cd "$1" && tar -c driver/include driver/src device_sim render) | tar -x -C "$copy"
+for i in $(seq 41); do touch "$copy/render/src/search/one_more_$i.h"; done
+if bash "$here/layering.sh" "$copy" >/dev/null; then
+  echo "layering.sh did not notice a folder of more than 40 files"
+  exit 1
+fi

@@ -10,7 +10,7 @@ all=$1 none=$2 only_bristle=$3 source=$4
 bad=0
 
 # Nobody but the table (and an effect itself) may include an effect.
-known=$(grep -rlE '#include "thimble/render/surface/(friction|texture)/' "$source/render" |
+known=$(grep -rlE '#include "(thimble/render/)?surface/(friction|texture)/' "$source/render" |
   grep -vE '/surface/(friction|texture)/|/effect/effect_table.cpp$' || true)
 if [ -n "$known" ]; then
   echo "These know an effect by name; only render/src/effect/effect_table.cpp may:"
