@@ -7,7 +7,7 @@
 function know(name, sentence) { sentences[name] = sentence; headers[name] = where }
 BEGIN {
   where = "render/.*(surface|field|effect)/"
-  # SurfaceStage (surface_feel.h), FrictionLaw (friction_stage.h), effects and fields (effect_table.h).
+  # SurfaceStage (surface_response.h), FrictionLaw (friction_stage.h), effects and fields (effect_table.h).
   know("touch(", "Changes what is felt, in every tick of contact (SurfaceStage). Real-time: safe.")
   know("leave(", "Forgets what belongs to a contact that has ended (SurfaceStage). Real-time: safe.")
   know("pull(const", "Gives the force with which the surface holds back, N in W (FrictionLaw). Real-time: safe.")
@@ -26,30 +26,6 @@ BEGIN {
   # WireArm (wire_arm.h).
   know("decode(", "Understands a report; false, and `reading` is left alone, if it cannot. Real-time: safe.")
   know("encode(", "Writes motor values into a message and tells its length. Real-time: safe.")
-  where = "render/body/"
-  # Motions (moving_touch.h), W and our time.
-  know("R_WB(", "Tells how the frame of the body is turned now. Real-time: safe.")
-  know("p_WB(", "Tells where the frame of the body is now, m. Real-time: safe.")
-  know("velocity_at(", "Tells how fast a point of the body moves, m/s. Real-time: safe.")
-  know("gain_at(", "Tells which velocity a point gains by an impulse there, m/s. Real-time: safe.")
-  know("push(", "Pushes with a force (N) at a point (m) during the next step. Real-time: safe.")
-  know("step(double", "Moves on by a step, s. Real-time: safe.")
-  where = "render/(page|contact)/"
-  # Where a RecordContact takes its records from (record_store.h).
-  know("kComplete", "Says whether no record is ever absent (RecordStore).")
-  know("find(", "Gives a record, or nullptr if it is absent (RecordStore). Real-time: safe.")
-  know("to_lattice(", "Turns a point of W (m) into steps of the lattice (RecordStore). Real-time: safe.")
-  know("step() const", "Tells the step of the lattice, m (RecordStore). Real-time: safe.")
-  know("reach(", "Tells how far from a tip records are asked for, m (RecordStore). Real-time: safe.")
-  know("rise(", "Tells how far the surface rises above its triangles, m (RecordStore). Real-time: safe.")
-  know("first_entry(", "Finds where a path (W, m) first goes in (RecordStore). Real-time: safe.")
-  know("inside(", "Tells whether a point (W, m) lies inside (RecordStore). Real-time: safe; time grows with the surface.")
-  know("closest(", "Finds the record nearest to a point (W, m) within a radius, m (RecordStore). Real-time: safe.")
-  where = "render/contact/"
-  # Shadings and depths of Blended (edge_blending.h, curved_depth.h).
-  know("normal(", "Gives the normal that is felt at a place of a triangle, W. Real-time: safe.")
-  know("depth(", "Gives the depth that is felt below a place of a triangle, m. Real-time: safe.")
-  where = "render/"
   # What is made of parts shows them.
   where = ""
   know("counters() const", "Counts what went otherwise than it should. Real-time: safe.")
