@@ -21,6 +21,8 @@
 namespace thimble {
 namespace {
 
+using MeshTouch = render::Touch<render::MeshContact, render::SpringDamper>;
+
 std::unique_ptr<app::Session> open_stroke() {
   app::SessionOptions options;
   options.mesh_folder = THIMBLE_MESHES;

@@ -4,6 +4,7 @@
 #include <limits>
 #include <numbers>
 
+#include "field/primitive_contact.h"
 #include "support/vintage_arm.h"
 #include "thimble/device_sim/sim_transport.h"
 #include "thimble/driver/clock.h"

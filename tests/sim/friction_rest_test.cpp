@@ -232,8 +232,7 @@ TEST(HardCase16, DefaultFrictionHoldsALoadWithoutDrift) {
   rig.arm_coulomb = 0;
   for (const double holding : {0.5, 0.6}) {
     const auto bristle = make_friction(
-        "bristle", MapSettings({{"coefficient", 0.5}, {"static_coefficient", holding}}),
-        surroundings);
+        "bristle", MapSettings({{"coefficient", 0.5}, {"static_coefficient", holding}}), context);
     // The hand pulls with 0.9 of F_s: it stands that far ahead of the tip, which gives a little.
     const double load = 0.9 * holding;
     const double ahead = load / 300 + load / 2667;
@@ -256,8 +255,7 @@ TEST(HardCase16, DefaultFrictionDoesNotCreepUnderALoadThatSwings) {
   const int cycles = full ? 1000 : 200;
   for (const double step : {0.0, 3e-5}) {
     rig.encoder_step = step;
-    const auto bristle =
-        make_friction("bristle", MapSettings({{"coefficient", 0.5}}), surroundings);
+    const auto bristle = make_friction("bristle", MapSettings({{"coefficient", 0.5}}), context);
     std::vector<RigPoint> way{{0, 0}, {0.4, 0}};
     constexpr int kCorners = 20;
     for (int i = 0; i <= cycles * kCorners; ++i) {

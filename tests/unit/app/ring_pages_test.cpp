@@ -102,7 +102,7 @@ TEST(RingPages, GiveTheSameEntriesAsTheSameMeshCutByTheUsualWay) {
   }
   const auto surface = render::PackedSurface::build(mesh);
   ASSERT_TRUE(surface.ok()) << surface.error().message;
-  const render::TreeSearch<PackedSurface> tree(*surface);
+  const render::TreeSearch<render::PackedSurface> tree(*surface);
   // Corner normals of the mesh are averages, those of the ring are exact.
   for (std::int32_t t = 0; t < surface->triangle_count(); ++t) {
     const std::int32_t source = surface->source(t);

@@ -13,15 +13,15 @@
 #include "field/point_charges.h"
 #include "field/viscous.h"
 #include "support/heap_guard.h"
-#include "support/map_settings.h"
 #include "support/random.h"
+#include "support/variant_settings.h"
 #include "thimble/render/field/field_table.h"
 
 namespace thimble::render {
 namespace {
 
 using Eigen::Vector3d;
-using support::MapSettings;
+using support::VariantSettings;
 
 constexpr double kTurn = 2 * std::numbers::pi;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -183,7 +183,7 @@ TEST(Viscous, RefusesWhatTheLoopCannotHold) {
     known.delay = 0.001 * late;
     const double most = std::numbers::pi / 2 * 0.075 / (0.001 * (1 + late));
     const auto mistakes = [&](double damping) {
-      MapSettings reader({{"damping", damping}});
+      VariantSettings reader({{"damping", damping}});
       Viscous::Settings settings;
       settings.read(reader, known);
       return reader.mistakes;
@@ -202,7 +202,7 @@ TEST(FieldTable, BuildsEveryFieldFromSettingsAndTouchesWithoutTheHeap) {
   std::set<std::string_view> names;
   for (const FieldKind& kind : field_table()) {
     EXPECT_TRUE(names.insert(kind.name).second);
-    MapSettings reader(
+    VariantSettings reader(
         {{"mass", 0.1}, {"damping", 2.0}},
         {{"charges", {{{"position", Vector3d(0, 0, 0.01)}, {"force", 1.0}, {"radius", 0.01}}}},
          {"targets",
@@ -222,9 +222,9 @@ TEST(FieldTable, BuildsEveryFieldFromSettingsAndTouchesWithoutTheHeap) {
 }
 
 TEST(FieldTable, RefusesBadSettingsWithTheReason) {
-  const auto mistakes = [](std::string_view name, const MapSettings::Values& values,
-                           const MapSettings::Lists& lists) {
-    MapSettings reader(values, lists);
+  const auto mistakes = [](std::string_view name, const VariantSettings::Values& values,
+                           const VariantSettings::Lists& lists) {
+    VariantSettings reader(values, lists);
     for (const FieldKind& kind : field_table()) {
       if (kind.name == name) kind.read(reader, {});
     }

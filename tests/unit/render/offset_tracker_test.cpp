@@ -99,8 +99,8 @@ TEST(OffsetFoot, SaysSoWhereTheSunkenTriangleHasTurnedOver) {
 
 // Is the most by which the normal over a triangle, sunk by `depth`, turns per metre of the tip's
 // path. The normal is S / |S| with S = sum w_k n_k; along a path dS = sum dw_k n_k with sum dw_k =
-// 0, and w_k grows by at most 1 / h_k per metre across, h_k the sunken triangle's height, more by
-// 1 / cos where the way down leans against the sunken plane. So |dS| <= 3/2 max|n_i - n_j| / (h
+// 0, and w_k grows by at most 1 / h_k per metre across, h_k the offset triangle's height, more by
+// 1 / cos where the way down leans against the offset plane. So |dS| <= 3/2 max|n_i - n_j| / (h
 // cos).
 double turn_per_metre(const ContactMesh& mesh, const SmoothNormals& normals, std::int32_t t,
                       double depth) {

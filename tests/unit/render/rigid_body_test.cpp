@@ -383,7 +383,7 @@ TEST(RigidBody, AsksTheHeapForNothing) {
   RigidBody body = RigidBody::build(settings).value();
   EXPECT_EQ(support::heap_calls_of([&] {
               for (int i = 0; i < 10; ++i) {
-                body.press({.depth = 1e-3, .stiffness = 100}, kTick);
+                body.push({0, 0, 0.1}, {0, 0, 0});
                 body.step(kTick);
               }
             }),

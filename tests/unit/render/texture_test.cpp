@@ -7,10 +7,11 @@
 #include <limits>
 #include <numbers>
 
+#include "field/primitive_contact.h"
 #include "support/heap_guard.h"
-#include "support/map_settings.h"
 #include "support/random.h"
 #include "support/scratch.h"
+#include "support/variant_settings.h"
 #include "surface/texture/height_map.h"
 #include "surface/texture/sandpaper.h"
 #include "surface/texture/sines.h"
@@ -23,7 +24,7 @@ namespace thimble::render {
 namespace {
 
 using Eigen::Vector3d;
-using support::MapSettings;
+using support::VariantSettings;
 
 constexpr double kTurn = 2 * std::numbers::pi;
 constexpr double kStiffness = 800;
@@ -394,32 +395,32 @@ TEST(HeightImage, HasTheSlopeOfItsValueAndNeverLeavesItsPixels) {
 }
 
 template <class Stage>
-std::string mistakes_of(MapSettings reader, EffectContext known = context()) {
+std::string mistakes_of(VariantSettings reader, EffectContext known = context()) {
   typename Stage::Settings settings;
   settings.read(reader, known);
   return reader.mistakes;
 }
 
-MapSettings::Values wave(double amplitude, double wavelength) {
+VariantSettings::Values wave(double amplitude, double wavelength) {
   return {{"amplitude", amplitude}, {"wavelength", wavelength}};
 }
 
 TEST(TextureSettings, AreTakenWhenTheyCanBeFelt) {
-  EXPECT_EQ(mistakes_of<Sines>(MapSettings({}, {{"waves", {wave(0.0001, 0.002)}}})), "");
+  EXPECT_EQ(mistakes_of<Sines>(VariantSettings({}, {{"waves", {wave(0.0001, 0.002)}}})), "");
   EXPECT_EQ(
-      mistakes_of<Sines>(MapSettings({{"form", "depth_only"}},
-                                     {{"waves", {{{"amplitude", 0.0001}, {"frequency", 500.0}}}}})),
+      mistakes_of<Sines>(VariantSettings(
+          {{"form", "depth_only"}}, {{"waves", {{{"amplitude", 0.0001}, {"frequency", 500.0}}}}})),
       "");
-  EXPECT_EQ(mistakes_of<Sandpaper>(MapSettings({})), "");
+  EXPECT_EQ(mistakes_of<Sandpaper>(VariantSettings({})), "");
   const auto flat = write_png("even.png", 8, 8, std::vector<unsigned char>(64, 100));
   EXPECT_EQ(mistakes_of<HeightMap>(
-                MapSettings({{"image", flat.string()}, {"width", 0.01}, {"height", 0.0002}})),
+                VariantSettings({{"image", flat.string()}, {"width", 0.01}, {"height", 0.0002}})),
             "");
 }
 
 TEST(TextureSettings, AreRefusedWithTheReason) {
-  const auto sines = [](const MapSettings::Values& one) {
-    return mistakes_of<Sines>(MapSettings({}, {{"waves", {one}}}));
+  const auto sines = [](const VariantSettings::Values& one) {
+    return mistakes_of<Sines>(VariantSettings({}, {{"waves", {one}}}));
   };
   // 5 N press 6.25 mm into 800 N/m.
   EXPECT_NE(sines(wave(0.0035, 0.1)).find("5 N press no deeper than 6.25 mm"), std::string::npos);
@@ -433,20 +434,20 @@ TEST(TextureSettings, AreRefusedWithTheReason) {
   EXPECT_NE(sines({{"amplitude", 0.0001}, {"wavelength", 0.01}, {"direction", Vector3d(0, 0, 0)}})
                 .find("direction expected a direction"),
             std::string::npos);
-  EXPECT_NE(mistakes_of<Sines>(MapSettings({})).find("waves"), std::string::npos);
-  EXPECT_NE(mistakes_of<Sandpaper>(MapSettings({{"roughness", 0.002}})).find("peak to valley"),
+  EXPECT_NE(mistakes_of<Sines>(VariantSettings({})).find("waves"), std::string::npos);
+  EXPECT_NE(mistakes_of<Sandpaper>(VariantSettings({{"roughness", 0.002}})).find("peak to valley"),
             std::string::npos);
-  EXPECT_NE(mistakes_of<Sandpaper>(MapSettings({{"grain", 0.0001}})).find("Hz at most"),
+  EXPECT_NE(mistakes_of<Sandpaper>(VariantSettings({{"grain", 0.0001}})).find("Hz at most"),
             std::string::npos);
-  EXPECT_NE(mistakes_of<Sandpaper>(MapSettings({{"grain", kNan}})).find("grain"),
+  EXPECT_NE(mistakes_of<Sandpaper>(VariantSettings({{"grain", kNan}})).find("grain"),
             std::string::npos);
-  EXPECT_NE(mistakes_of<HeightMap>(MapSettings({{"width", 0.01}, {"height", 0.0002}}))
+  EXPECT_NE(mistakes_of<HeightMap>(VariantSettings({{"width", 0.01}, {"height", 0.0002}}))
                 .find("image is missing"),
             std::string::npos);
   const auto noise = support::scratch_folder() / "noise.png";
   std::ofstream(noise) << "nothing";
   EXPECT_NE(mistakes_of<HeightMap>(
-                MapSettings({{"image", noise.string()}, {"width", 0.01}, {"height", 0.0}}))
+                VariantSettings({{"image", noise.string()}, {"width", 0.01}, {"height", 0.0}}))
                 .find("not a picture"),
             std::string::npos);
 }

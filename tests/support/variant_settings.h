@@ -11,13 +11,13 @@
 namespace thimble::support {
 
 /// Answers an effect's questions from a map in the test, and gathers what it refuses.
-class MapSettings final : public render::SettingsReader {
+class VariantSettings final : public render::SettingsReader {
  public:
   using Value = std::variant<double, Eigen::Vector3d, std::string>;
   using Values = std::map<std::string, Value, std::less<>>;
   using Lists = std::map<std::string, std::vector<Values>, std::less<>>;
 
-  explicit MapSettings(Values values, Lists lists = {})
+  explicit VariantSettings(Values values, Lists lists = {})
       : values_(std::move(values)), lists_(std::move(lists)) {}
 
   bool has(std::string_view key) override { return values_.contains(key) || lists_.contains(key); }
@@ -50,7 +50,7 @@ class MapSettings final : public render::SettingsReader {
             const std::function<void(render::SettingsReader&)>& read) override {
     if (!lists_.contains(key)) return reject(key, "expected a list");
     for (const Values& values : lists_.find(key)->second) {
-      MapSettings entry(values);
+      VariantSettings entry(values);
       read(entry);
       mistakes += entry.mistakes;
     }
