@@ -47,14 +47,18 @@ bool FeltAnchor::lag(const Vector3d& p_WT, const Vector3d& path, const Vector3d&
   credit_ += kGift * found.depth * (tip_path + surface_path);
   const double before = (p_WA_ - p_WT).squaredNorm();
   const double after = (next - p_WT).squaredNorm();
-  double rise = 0.5 * (after - before);
-  if (rise > credit_) {
-    // Turns only; a step to a ball around the tip that holds the anchor already is no longer one.
-    next = p_WT + std::sqrt((before + 2 * credit_) / after) * (next - p_WT);
-    rise = credit_;
+  const double rise = 0.5 * (after - before);
+  // What a surface that comes towards the tip puts in by itself.
+  const double surface_work = surface_path * (std::sqrt(before) + 0.5 * surface_path);
+  if (rise > credit_ + surface_work) {
+    // Turns as far as it can and tightens as far as it may. The anchor lies within this ball around
+    // the tip already, so that a point drawn onto the ball comes no farther from it.
+    next = p_WT + std::sqrt((before + 2 * (credit_ + surface_work)) / after) * (next - p_WT);
+    credit_ = 0;
     there = false;
+  } else {
+    credit_ -= rise > 0 ? std::max(0.0, rise - surface_work) : rise;
   }
-  credit_ -= rise;
   if (there) {
     lagging_ = false;
     p_WA_ = goal;

@@ -21,7 +21,8 @@ namespace thimble::render {
 /// While the anchor lags behind g it gives the hand no energy that the hand has not put in:
 /// - It may go nearer to the tip freely. Farther away, which tightens the spring, only as far as is
 ///   paid for by what it lost before by going nearer, and by `kGift` of the found force over its
-///   path. What is not paid for is missing from the depth, never added to it.
+///   path. What is not paid for is missing from the depth, never added to it. A surface that comes
+///   towards the tip by itself puts in what that takes.
 /// - What counts is the tip's way out of a ball that the tip drags along, as wide as the lag and
 /// not
 ///   wider than the tip has gone: a tip that goes to and fro about an edge moves the anchor once
