@@ -179,8 +179,7 @@ std::vector<std::pair<std::string, TriangleMesh>> collection(std::size_t every) 
     const auto mesh = load_mesh(file);
     if (!mesh) continue;
     TriangleMesh shape = scaled(*mesh);
-    const auto built = ContactMesh::build(shape);
-    if (!built || built->orientation().turned_triangles > 0) continue;
+    if (!ContactMesh::build(shape)) continue;
     if (whole++ % every == 0) meshes.emplace_back(file.filename().string(), std::move(shape));
   }
   return meshes;
@@ -192,7 +191,7 @@ TEST(PathBounded, ChangesTheForceByNoMoreThanThePathOnEveryScannedMeshAtAnyDepth
   }
   const bool all = support::long_form();
   const auto meshes = collection(all ? 1 : 6);
-  EXPECT_GE(meshes.size(), all ? 85u : 14u);
+  EXPECT_GE(meshes.size(), all ? 91u : 15u);
   std::array<Jumps, 4> sum;
   std::array<std::size_t, 4> over{}, strong{};
   for (const auto& [name, shape] : meshes) {
@@ -248,12 +247,12 @@ TEST(PathBounded, IsWhatWasFoundToTheBitOnSmoothShapes) {
     const ContactMesh mesh = ContactMesh::build(shape).value();
     support::Random random(5);
     std::uint64_t ticks = 0;
-    // From above each of some places along a circle into the depth and over the surface.
+    // In from so far above that contact begins where the smooth surface does.
     Vector3d p = (mesh.position(0, 0) + mesh.position(0, 1) + mesh.position(0, 2)) / 3;
-    Vector3d n = mesh.cell(0).face.n, heading = random.direction();
-    support::move_tip(contact, p + 1e-5 * n);
-    p -= 1e-5 * n;
-    support::move_tip(contact, p);
+    Vector3d heading = random.direction();
+    const Vector3d n = mesh.cell(0).face.n;
+    for (int step = 20; step >= -10; --step) support::move_tip(contact, p + 5e-5 * step * n);
+    p -= 5e-4 * n;
     for (int tick = 0; tick < 20000 && contact.state().touching; ++tick) {
       const ContactState now = contact.state();
       heading = (heading + 0.1 * random.direction()).normalized();
@@ -278,14 +277,16 @@ TEST(PathBounded, StandsStillWhileTheHandRests) {
   // Over the edge of a box, deep inside: the nearest face changes and the anchor is on its way.
   PathBounded contact(edge_planes(support::box({0.05, 0.05, 0.05})));
   support::move_tip(contact, {0.039, 0, 0.051});
-  for (int i = 0; i <= 140; ++i) support::move_tip(contact, {0.039, 0, 0.05 - 1e-4 * i});
+  for (int i = 0; i < 140; ++i) support::move_tip(contact, {0.039, 0, 0.05 - 1e-4 * i});
+  const Vector3d rest(0.039, 0, 0.036);
+  support::move_tip(contact, rest);
   ASSERT_TRUE(contact.state().touching);
   ASSERT_EQ(contact.contact().state().n_W, Vector3d(1, 0, 0));
   const ContactState before = contact.state();
   ASSERT_GT(before.n_W.z(), 0.2);
   ASSERT_GT(before.n_W.x(), 0.2);
   for (int i = 0; i < 1000; ++i) {
-    const ContactState& now = support::move_tip(contact, {0.039, 0, 0.036});
+    const ContactState& now = support::move_tip(contact, rest);
     EXPECT_EQ(now.n_W, before.n_W);
     EXPECT_EQ(now.depth, before.depth);
   }
@@ -313,12 +314,13 @@ TEST(PathBounded, BeginsWithoutAStepHoweverDeepAContactIsFound) {
   anchor.follow({0, 0, 0.001}, {});
   const ContactState deep = found(0.01, {0, 0, 1});
   EXPECT_FALSE(anchor.follow({0, 0, 0.0009}, deep));
-  EXPECT_LE(anchor.felt().depth, 0.0001 + 1e-12);
+  EXPECT_LE(anchor.felt().depth, kBound * 1e-4);
   EXPECT_EQ(anchor.felt().triangle, 7);
   // And lets nobody be thrown out: what the hand has not put in stays away.
   for (int i = 1; i < 20; ++i) {
     EXPECT_FALSE(anchor.follow({0, 0, 0.0009 + 1e-5 * i}, deep));
-    EXPECT_LT(anchor.felt().depth, 3e-4);
+    // 2 % of 10 mm over 0.3 mm of path, in energy.
+    EXPECT_LT(anchor.felt().depth, 4e-4);
   }
 }
 
