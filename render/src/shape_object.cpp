@@ -11,6 +11,7 @@
 #include "track/god_object.h"
 #include "track/mesh_contact.h"
 #include "track/moving_contact.h"
+#include "track/path_bounded.h"
 
 namespace thimble::render {
 namespace {
@@ -23,7 +24,9 @@ constexpr double kRoom = 0.25;  // of the longest side [chosen]
 template <class Contact>
 Built shaped(std::shared_ptr<MovingMesh> mesh, Contact contact, const SurfaceChoice& surface,
              BodyShape shape) {
-  Touch touch(MovingContact<Contact>(std::move(mesh), std::move(contact)), stage_list(surface));
+  using Bounded = PathBounded<Contact>;
+  Touch touch(MovingContact<Bounded>(std::move(mesh), Bounded(std::move(contact))),
+              stage_list(surface));
   return Built(std::make_unique<ShapedTouch<decltype(touch)>>(std::move(touch), std::move(shape)));
 }
 

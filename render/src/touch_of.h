@@ -7,6 +7,7 @@
 #include "thimble/render/build_object_touch.h"
 #include "thimble/render/effect/stage_list.h"
 #include "thimble/render/touch.h"
+#include "track/path_bounded.h"
 
 namespace thimble::render {
 
@@ -31,13 +32,14 @@ std::unique_ptr<ObjectTouch> object_of(Stages stages) {
   return std::make_unique<ObjectTouchOf<Stages>>(std::move(stages));
 }
 
-/// Builds the force law of one object from a contact stage and a surface.
-/// Real-time: never from the servo thread.
+/// Builds the force law of one object from a contact stage and a surface. Every contact is bounded
+/// by the tip's path (path_bounded.h). Real-time: never from the servo thread.
 template <class Contact>
 std::unique_ptr<ObjectTouch> touch_of(Contact contact, const SurfaceChoice& surface) {
+  PathBounded bounded(std::move(contact));
   // A bare surface, by far the most frequent, is joined wholly at compile time.
-  if (surface.effects.empty()) return object_of(Touch(std::move(contact), surface.spring));
-  return object_of(Touch(std::move(contact), stage_list(surface)));
+  if (surface.effects.empty()) return object_of(Touch(std::move(bounded), surface.spring));
+  return object_of(Touch(std::move(bounded), stage_list(surface)));
 }
 
 }  // namespace thimble::render

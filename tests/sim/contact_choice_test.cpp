@@ -1,13 +1,10 @@
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <fstream>
-#include <iterator>
+#include <memory>
 #include <string>
 
 #include "lost_contacts.h"
 #include "support/elephant.h"
-#include "support/scratch.h"
 
 // The demo's stroke with every way of contact that a scene can name, from the wire up.
 
@@ -16,20 +13,7 @@ namespace {
 
 /// Opens the demo's scene with a `contact:` section; the error is empty if it could be opened.
 std::unique_ptr<app::Session> open_with(const std::string& contact, std::string& error) {
-  const std::filesystem::path folder = support::elephant_scene().parent_path();
-  std::ifstream stream(support::elephant_scene());
-  std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-  const std::string arm = "../arms/";
-  text.replace(text.find(arm), arm.size(), (folder.parent_path() / "arms").string() + "/");
-  const std::string damping = "    damping: 1 ";
-  text.insert(text.find(damping), "    contact: {" + contact + "}\n");
-  const auto file = support::scratch_folder() / "contact.yaml";
-  std::ofstream(file) << text;
-  app::SessionOptions options;
-  options.mesh_folder = THIMBLE_MESHES;
-  auto session = app::Session::open(file, options);
-  error = session ? "" : session.error().message;
-  return session ? std::move(session).value() : nullptr;
+  return support::open_elephant_text(support::elephant_text(contact), &error);
 }
 
 class EveryWayOfContact : public ::testing::TestWithParam<const char*> {};

@@ -4,9 +4,14 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <memory>
+#include <string>
+#include <utility>
 
 #include "session.h"
+#include "support/scratch.h"
 
 namespace thimble::support {
 
@@ -30,6 +35,35 @@ inline std::unique_ptr<app::Session> open_elephant(std::optional<double> duratio
   auto session = app::Session::open(elephant_scene(), options);
   if (!session) {
     ADD_FAILURE() << session.error().message;
+    return nullptr;
+  }
+  return std::move(session).value();
+}
+
+/// Returns the demo's scene as text, to be put anywhere, with a `contact:` section.
+inline std::string elephant_text(const std::string& contact) {
+  const std::filesystem::path folder = elephant_scene().parent_path();
+  std::ifstream stream(elephant_scene());
+  std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  const std::string arm = "../arms/";
+  text.replace(text.find(arm), arm.size(), (folder.parent_path() / "arms").string() + "/");
+  const std::string damping = "    damping: 1 ";
+  text.insert(text.find(damping), "    contact: {" + contact + "}\n");
+  return text;
+}
+
+/// Opens a scene out of its text; nothing if that cannot be done. Why goes to `error`, or fails the
+/// test without one.
+inline std::unique_ptr<app::Session> open_elephant_text(const std::string& text,
+                                                        std::string* error = nullptr) {
+  const auto file = scratch_folder() / "elephant.yaml";
+  std::ofstream(file) << text;
+  app::SessionOptions options;
+  options.mesh_folder = THIMBLE_MESHES;
+  auto session = app::Session::open(file, options);
+  if (error != nullptr) *error = session ? "" : session.error().message;
+  if (!session) {
+    if (error == nullptr) ADD_FAILURE() << session.error().message;
     return nullptr;
   }
   return std::move(session).value();

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -38,8 +40,15 @@ class MovingContact {
   /// Moves vertices of the surface, between two updates; gives the number of those refused
   /// (MovingMesh::move_vertices). Real-time: safe.
   std::int32_t move_vertices(std::span<const VertexMove> moves) noexcept {
+    // Vertices that are refused count as well: the bound on the force is then wider, never tighter
+    // than the surface's own path.
+    [[maybe_unused]] const double path = longest_path(moves);
     const SurfaceMoved moved = surface_->move_vertices(moves, contact_.free_tip());
-    contact_.surface_moved(moved.swept_over);
+    if constexpr (requires { contact_.surface_moved(moved.swept_over, path); }) {
+      contact_.surface_moved(moved.swept_over, path);
+    } else {
+      contact_.surface_moved(moved.swept_over);
+    }
     return moved.refused;
   }
 
@@ -53,6 +62,14 @@ class MovingContact {
   const ContactSearch& search() const noexcept { return surface_->search(); }
 
  private:
+  double longest_path(std::span<const VertexMove> moves) const noexcept {
+    double squared = 0;
+    for (const VertexMove& move : moves) {
+      squared = std::max(squared, (move.p_W - mesh().position(move.vertex)).squaredNorm());
+    }
+    return std::sqrt(squared);
+  }
+
   std::shared_ptr<MovingMesh> surface_;
   Contact contact_;
 };

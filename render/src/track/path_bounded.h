@@ -1,0 +1,58 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <utility>
+
+#include "thimble/driver/device_state.h"
+#include "thimble/render/contact_state.h"
+#include "track/felt_anchor.h"
+
+namespace thimble::render {
+
+/// A `Contact` stage of Touch around another one, of any kind: what is felt changes by no more than
+/// the tip's path implies, at any depth (felt_anchor.h). Depth, normal and proxy are those that are
+/// felt; triangle and hops are those that were found.
+///
+/// Contact begins and ends with the stage inside. It begins without a step of the force, however
+/// deep it is found; where it ends the force is zero at once.
+template <class Contact>
+class PathBounded {
+ public:
+  explicit PathBounded(Contact contact) : contact_(std::move(contact)) {}
+
+  /// Finds the contact at `state.p_WT` (W, m) and keeps it until the next call.
+  /// Real-time: safe if the stage inside is; some ns more.
+  const ContactState& update(const driver::DeviceState& state) noexcept {
+    const ContactState& found = contact_.update(state);
+    as_found_ = anchor_.follow(state.p_WT, found);
+    return as_found_ ? found : anchor_.felt();
+  }
+
+  /// Returns the result of the last `update`. Real-time: safe.
+  const ContactState& state() const noexcept {
+    return as_found_ ? contact_.state() : anchor_.felt();
+  }
+
+  /// Passes on that the surface has moved, and which triangle has swept over the free tip
+  /// (TrackedContact). `path` is how far a vertex near the tip has moved, m. Real-time: safe.
+  void surface_moved(std::int32_t swept_over, double path) noexcept {
+    contact_.surface_moved(swept_over);
+    anchor_.surface_moved(path);
+  }
+  /// Returns where the free tip is examined from (TrackedContact). Real-time: safe.
+  Eigen::Vector3d free_tip() const noexcept { return contact_.free_tip(); }
+
+  const Contact& contact() const noexcept { return contact_; }
+  const FeltAnchor& anchor() const noexcept { return anchor_; }
+  decltype(auto) search() const noexcept { return contact_.search(); }
+  decltype(auto) mesh() const noexcept requires requires(const Contact& contact) { contact.mesh(); }
+  { return contact_.mesh(); }
+
+ private:
+  Contact contact_;
+  FeltAnchor anchor_;
+  bool as_found_ = true;
+};
+
+}  // namespace thimble::render
