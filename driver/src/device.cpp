@@ -9,6 +9,19 @@
 namespace thimble::driver {
 namespace {
 
+// Beyond these a limit protects nobody.
+/// Shortest soft start, s [chosen: below 50 ms a hand feels no ramp but a knock; it reacts to a
+/// push after 100 ms and more].
+constexpr double kSoftStartLeast = 0.05;
+/// Fastest rise, N/s [chosen: 100 N in a tick of 1 ms, beyond what any arm here can push at all].
+constexpr double kRiseMost = 1e5;
+/// Longest gap that is no fault, ns [chosen: twice the longest watchdog of a board, 0.5 s of the
+/// mbed one (woody_report.h)].
+constexpr std::int64_t kWatchdogMost_ns = 1'000'000'000;
+
+/// Time between two tries to have the zero force taken, ns: a frame of a full-speed bus.
+constexpr std::int64_t kZeroAgain_ns = 1'000'000;
+
 bool is_limit(double value) noexcept {
   return value > 0 && value < HUGE_VAL;
 }
@@ -19,13 +32,20 @@ Result<void> check(const DeviceSettings& settings) {
     return Error{std::string("The arm's ") + what + " must be a finite number " + least +
                  "; set it in the arm file."};
   };
+  const auto loose = [](const char* what, const char* bound) {
+    return Error{std::string("The arm's ") + what + " protects nobody as it is set: it must be " +
+                 bound + "; set it in the arm file."};
+  };
   if (!is_limit(limits.force_max)) return wrong("force_max");
   if (!is_limit(limits.speed_max)) return wrong("speed_max");
   if (!is_limit(limits.rise_max)) return wrong("rise_max");
   if (!is_limit(limits.soft_start)) return wrong("soft_start");
   if (!is_limit(limits.reopen)) return wrong("reopen time");
+  if (limits.soft_start < kSoftStartLeast) return loose("soft_start", "at least 0.05 s");
+  if (limits.rise_max > kRiseMost) return loose("rise_max", "at most 100,000 N/s");
   if (limits.stall_ns <= 0) return wrong("stall time");
   if (limits.watchdog_ns <= 0) return wrong("watchdog time");
+  if (limits.watchdog_ns > kWatchdogMost_ns) return loose("watchdog time", "at most 1 s");
   if (settings.silence_limit_ns <= 0) return wrong("silence limit");
   const EnergyGuardSettings& energy = settings.energy;
   if (energy.stage == EnergyStage::kPassivity) {
@@ -58,6 +78,10 @@ Device::Device(std::unique_ptr<Transport> transport, std::unique_ptr<const Arm> 
 
 Device::~Device() {
   deactivate();
+  if (!insisted_ && !f_sent_W_.isZero(0)) {
+    WallClock clock(0);
+    insist_on_zero(clock);
+  }
   delete offered_.exchange(nullptr);
   delete retired_.exchange(nullptr);
 }
@@ -74,7 +98,7 @@ Result<std::unique_ptr<Device>> Device::open(std::unique_ptr<Transport> transpor
   constexpr int kAttempts = 100;  // reports of a form nobody knows, before giving up
   int attempt = 0;
   for (int greeting = 1; greeting <= kGreetings && !device->lost_; ++greeting) {
-    device->send(MotorCurrents());
+    device->send_zero();
     const std::int64_t deadline_ns = clock_now_ns + timeout_ns * greeting / kGreetings;
     for (; attempt < kAttempts && !device->lost_; ++attempt) {
       const std::uint64_t rejected = device->wire_.rejected;
@@ -103,6 +127,7 @@ void Device::begin_activity() noexcept {
   velocity_.reset();
   refused_in_a_row_ = 0;
   active_ = true;
+  insisted_ = false;
   started_ = false;
   booked_ = false;
   tau_sent_.fill(Eigen::Vector3d::Zero());
@@ -135,14 +160,30 @@ void Device::take_offer(std::int64_t now_ns) noexcept {
   refused_in_a_row_ = 0;
   last_report_ns_ = now_ns;
   velocity_.reset();
-  send(MotorCurrents());
+  known_to_stand_ = insisted_ = false;  // of this wire nothing is known
+  send_zero();
 }
 
 void Device::deactivate() noexcept {
   active_ = false;
   choose_way();
-  send(MotorCurrents());
-  f_sent_W_.setZero();
+  send_zero();
+  // A converter tells of the message before, so that the next one may well go through.
+  if (!zero_assured()) send_zero();
+}
+
+bool Device::insist_on_zero(Clock& clock) noexcept {
+  insisted_ = true;
+  const std::int64_t begin_ns = clock.now_ns();
+  // Counted, so that it ends with any clock.
+  const std::int64_t tries = settings_.limits.watchdog_ns / kZeroAgain_ns + 1;
+  for (std::int64_t i = 0; i < tries && !zero_assured() && !lost_; ++i) {
+    if (clock.now_ns() - begin_ns > settings_.limits.watchdog_ns) break;
+    clock.sleep_until_ns(clock.now_ns() + kZeroAgain_ns);
+    send_zero();
+  }
+  if (!zero_assured()) gate_.trip(Fault::kRefused);
+  return zero_assured();
 }
 
 DeviceStage Device::stage() const noexcept {
@@ -156,6 +197,8 @@ const DeviceState& Device::read(std::int64_t now_ns, std::int64_t deadline_ns) n
     begin_activity();
   }
   if (started_) {
+    // What would follow is a force that grows the wrong way, and a silence that nobody notices.
+    if (now_ns < state_.time_ns) gate_.trip(Fault::kTimeNotMonotonic);
     state_.dt = static_cast<double>(now_ns - state_.time_ns) * 1e-9;
     ++state_.tick;
   } else {
@@ -236,14 +279,29 @@ void Device::write(const ForceCommand& command) noexcept {
   if (!plain_) return write_otherwise(command);
   const GatedForce force = gate_.pass(command.f_T_W, state_.v_WT, state_.dt);
   const MotorCurrents currents(force, settings_.R_WB, pose_.J_BT, arm_->drives());
-  send(currents);
+  if (!send(currents)) return keep_standing();
   f_sent_W_ = currents.scale() * force.f_T_W();
 }
 
 void Device::write_otherwise(const ForceCommand& command) noexcept {
   if (active_ && !lost_) return write_guarded(command);
-  send(MotorCurrents());
+  send_zero();
+}
+
+void Device::send_zero() noexcept {
+  if (!send(MotorCurrents())) return keep_standing();
   f_sent_W_.setZero();
+  known_to_stand_ = true;
+  insisted_ = false;
+}
+
+void Device::keep_standing() noexcept {
+  if (lost_ && !f_sent_W_.isZero(0)) {
+    // An arm that is gone is the business of its own watchdog, and gets nothing from us any more.
+    f_sent_W_.setZero();
+    known_to_stand_ = false;
+  }
+  gate_.resume_from(f_sent_W_);
 }
 
 // Work is booked at the joints, tau . dq, with the torques as the message holds them: exact for
@@ -263,10 +321,12 @@ void Device::write_guarded(const ForceCommand& command) noexcept {
   p_booked_W_ = state_.p_WT;
   const GatedForce force = gate_.pass_guarded(command.f_T_W, state_.v_WT, state_.dt, flow);
   const MotorCurrents currents(force, settings_.R_WB, pose_.J_BT, arm_->drives());
-  send(currents);
-  f_sent_W_ = currents.scale() * force.f_T_W();
+  const bool taken = send(currents);
   for (std::size_t i = delay; i > 0; --i) tau_sent_[i] = tau_sent_[i - 1];
+  // Torques that were not taken move nothing: those before stand.
+  if (!taken) return keep_standing();
   tau_sent_[0] = torque_of(currents);
+  f_sent_W_ = currents.scale() * force.f_T_W();
 }
 
 Eigen::Vector3d Device::torque_of(const MotorCurrents& currents) const noexcept {
@@ -280,8 +340,8 @@ Eigen::Vector3d Device::torque_of(const MotorCurrents& currents) const noexcept 
   return tau;
 }
 
-void Device::send(const MotorCurrents& currents) noexcept {
-  if (lost_) return;
+bool Device::send(const MotorCurrents& currents) noexcept {
+  if (lost_) return false;
   std::array<std::byte, kReportCapacity> report;
   const std::size_t size = arm_->encode(currents, report);
   const auto status = transport_->write(std::span<const std::byte>(report).first(size));
@@ -292,11 +352,12 @@ void Device::send(const MotorCurrents& currents) noexcept {
   }
   if (status != TransportStatus::kRefused) {
     refused_in_a_row_ = 0;
-    return;
+    return status == TransportStatus::kOk;
   }
   ++wire_.refused;
   if (refused_in_a_row_++ == 0) refused_since_ns_ = state_.time_ns;
   if (state_.time_ns - refused_since_ns_ > settings_.silence_limit_ns) gate_.trip(Fault::kRefused);
+  return false;
 }
 
 }  // namespace thimble::driver

@@ -27,6 +27,9 @@ std::string_view describe(Fault fault) noexcept {
     case Fault::kRefused:
       return "The arm takes no messages any more, so its own watchdog must switch the motors off. "
              "Switch it off and on, and plug it in again.";
+    case Fault::kTimeNotMonotonic:
+      return "The servo loop's clock stepped back, or gave a time that is not a number. Use a "
+             "monotonic clock (CLOCK_MONOTONIC), and activate the arm again.";
   }
   return "Unknown fault.";
 }
@@ -49,6 +52,8 @@ std::string_view name(Fault fault) noexcept {
       return "loop_stalled";
     case Fault::kRefused:
       return "messages_refused";
+    case Fault::kTimeNotMonotonic:
+      return "time_not_monotonic";
   }
   return "unknown";
 }

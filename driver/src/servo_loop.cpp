@@ -69,6 +69,7 @@ std::optional<ServoEnd> ServoLoop::tick(const std::atomic<bool>& stop) noexcept 
 
 std::optional<ServoEnd> ServoLoop::end_with(ServoEnd end) noexcept {
   device_.deactivate();
+  if (!device_.zero_assured() && !device_.lost()) device_.insist_on_zero(clock_);
   return end_ = end;
 }
 

@@ -29,7 +29,7 @@ using support::WallRig;
 GateLimits limits(double force_max = 8.5) {
   return {.force_max = force_max,
           .speed_max = 50,
-          .rise_max = 1e6,
+          .rise_max = 2000,  // as shipped
           .soft_start = 1e-9,
           .stall_ns = 20'000'000,
           .watchdog_ns = 100'000'000};

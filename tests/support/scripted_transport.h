@@ -13,6 +13,7 @@ struct Wire {
   std::deque<std::vector<std::byte>> to_host;  ///< Reports not read yet, oldest first.
   std::vector<std::vector<std::byte>> to_arm;  ///< Everything written, oldest first.
   bool lost = false;
+  int refusals = 0;  ///< So many messages from now on are not taken.
 };
 
 /// Is a wire whose far side is written by the test.
@@ -33,6 +34,10 @@ class ScriptedTransport final : public driver::Transport {
 
   driver::TransportStatus write(std::span<const std::byte> report) noexcept override {
     if (wire_.lost) return driver::TransportStatus::kLost;
+    if (wire_.refusals > 0) {
+      --wire_.refusals;
+      return driver::TransportStatus::kRefused;
+    }
     wire_.to_arm.emplace_back(report.begin(), report.end());
     return driver::TransportStatus::kOk;
   }

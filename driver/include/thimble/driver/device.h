@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "thimble/driver/arm.h"
+#include "thimble/driver/clock.h"
 #include "thimble/driver/device_state.h"
 #include "thimble/driver/force_command.h"
 #include "thimble/driver/result.h"
@@ -42,7 +43,8 @@ struct WireCounters {
 /// Is one open arm, from its bytes to its tip: idle -> active -> (fault ->) idle, until destroyed.
 ///
 /// Every way out sends zero force: `deactivate`, a fault, the destructor. A fault latches until
-/// `activate` is called again. Used by one thread at a time, but for `offer` and `ask_to_activate`.
+/// `activate` is called again; a clock that steps back is one. Used by one thread at a time, but
+/// for `offer` and `ask_to_activate`.
 ///
 /// An arm that was pulled and plugged in again: the loop goes on with zero force and the fault
 /// kTransportLost; somebody at the side finds the arm by its serial number, opens a wire and offers
@@ -54,7 +56,8 @@ class Device {
   /// Takes an open wire and the arm at its other end; waits up to `timeout_ns` of `clock_now_ns`
   /// time for the first report by way of the transport's deadline, and sends zero force meanwhile,
   /// because some arms speak only when spoken to. Fails if none arrives or none can be understood,
-  /// or if a limit is not a positive finite number. Real-time: never from the servo thread.
+  /// if a limit is not a positive finite number, or if one protects nobody: a soft start below 0.05
+  /// s, a rise above 100,000 N/s, a watchdog above 1 s. Real-time: never from the servo thread.
   static Result<std::unique_ptr<Device>> open(std::unique_ptr<Transport> transport,
                                               std::unique_ptr<const Arm> arm,
                                               const DeviceSettings& settings,
@@ -63,15 +66,28 @@ class Device {
 
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
-  /// Sends zero force, then closes the wire.
+  /// Sends zero force, then closes the wire. Where a force stands and the arm does not take the
+  /// zero, it insists in real time as `insist_on_zero` does, unless that has been done.
   ~Device();
 
   /// Lets forces through from the next tick on, with a soft start; clears a fault. Fails if the
   /// wire is lost. Real-time: never from the servo thread.
   Result<void> activate();
 
-  /// Sends zero force now and in every later tick. Real-time: safe.
+  /// Sends zero force now, once more if the arm does not take it, and in every later tick.
+  /// `zero_assured` says whether it was taken. Real-time: safe.
   void deactivate() noexcept;
+
+  /// Sends zero force again, each millisecond of `clock`, until the arm takes it or the wire is
+  /// lost: for as long as the arm's own watchdog waits (`GateLimits::watchdog_ns`), after which the
+  /// arm must have switched itself off. Returns whether it was taken; if not, that is the fault
+  /// kRefused. For the end of a loop. Real-time: safe; waits, and a write may wait as well.
+  bool insist_on_zero(Clock& clock) noexcept;
+
+  /// Returns whether the force that stands is known to be zero: the last message that the arm took
+  /// said so. False: another force may stand until the arm's own watchdog switches it off. Taken
+  /// means handed over: a serial port or a converter may still have it on the way. Real-time: safe.
+  bool zero_assured() const noexcept { return known_to_stand_ && f_sent_W_.isZero(0); }
 
   /// Begins a tick: reads the newest report and finds where the tip is. A report after which the
   /// tip would have changed its speed by 1 m/s within 1 ms is dropped, once: no hand does that, but
@@ -81,7 +97,8 @@ class Device {
   const DeviceState& read(std::int64_t now_ns, std::int64_t deadline_ns) noexcept;
 
   /// Ends a tick: passes the command through the gate and sends what is left of it, or zero if the
-  /// device is not active. Real-time: safe.
+  /// device is not active. What the arm does not take leaves the force before it standing, and the
+  /// next one rises from that. Real-time: safe.
   void write(const ForceCommand& command) noexcept;
 
   /// Makes a fault that somebody above found (it latches, the force goes off). Real-time: safe.
@@ -103,7 +120,8 @@ class Device {
   Fault fault() const noexcept { return gate_.fault(); }  ///< Names what switched the force off.
   /// Shows what was read last. Real-time: safe.
   const DeviceState& state() const noexcept { return state_; }
-  /// Tells the force that was sent in the last tick, N in the world.
+  /// Returns the force that stands, N in the world: of the last message that the arm took, and zero
+  /// once the wire is lost. Real-time: safe.
   const Eigen::Vector3d& f_sent_W() const noexcept { return f_sent_W_; }
   /// Counts what came over the wire. Real-time: safe.
   const WireCounters& wire_counters() const noexcept { return wire_; }
@@ -119,7 +137,9 @@ class Device {
   bool came_before(const ArmReading& reading) noexcept;
   void take_offer(std::int64_t now_ns) noexcept;
   void begin_activity() noexcept;
-  void send(const MotorCurrents& currents) noexcept;
+  bool send(const MotorCurrents& currents) noexcept;
+  void send_zero() noexcept;
+  void keep_standing() noexcept;
   void choose_way() noexcept;
   void write_otherwise(const ForceCommand& command) noexcept;
   void write_guarded(const ForceCommand& command) noexcept;
@@ -149,6 +169,8 @@ class Device {
   Eigen::Vector3d q_booked_{0, 0, 0};
   Eigen::Vector3d p_booked_W_{0, 0, 0};
   bool booked_ = false;
+  bool known_to_stand_ = false;  // f_sent_W_ is what the arm took last, over this wire
+  bool insisted_ = false;        // on a zero that was not taken
   int refused_in_a_row_ = 0;
   std::int64_t refused_since_ns_ = 0;
   std::atomic<Transport*> offered_{nullptr}, retired_{nullptr};

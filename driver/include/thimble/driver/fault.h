@@ -15,7 +15,11 @@ enum class Fault : std::uint8_t {
   kOverSpeed,       ///< The tip moved faster than `GateLimits::speed_max`.
   kLoopStalled,     ///< The loop stood still longer than the arm's own watchdog waits.
   kRefused,         ///< The arm took no message for longer than `DeviceSettings::silence_limit_ns`.
+  kTimeNotMonotonic,  ///< The loop's clock stepped back, or the time of a tick is no number.
 };
+
+/// The last of the faults: what is beyond it in a file or in shared memory is damaged.
+inline constexpr Fault kLastFault = Fault::kTimeNotMonotonic;
 
 /// Tells what a fault means and what to do, in one or two sentences for the user.
 /// Real-time: safe.

@@ -26,9 +26,11 @@ class GatedForce {
 
 /// Sets what an arm may do to a hand. There is no "off": a limit is raised, never left out.
 struct GateLimits {
-  double force_max = 0;   ///< Largest force, N. Must be finite and > 0.
-  double speed_max = 0;   ///< Tip speed above which the force goes off and stays off, m/s.
-  double rise_max = 0;    ///< Fastest rise of the force's magnitude, N/s. A fall is never slowed.
+  double force_max = 0;  ///< Largest force, N. Must be finite and > 0.
+  double speed_max = 0;  ///< Tip speed above which the force goes off and stays off, m/s.
+  /// Fastest change of the force's vector, N/s. A fall of its length is never slowed, and an old
+  /// force that would push the hand on goes at once (rise_limit.h).
+  double rise_max = 0;
   double soft_start = 0;  ///< Time over which the limit opens from 0 to `force_max`, s.
   /// The same after a gap, for somebody who is touching already, s; a hand feels a surface as gone
   /// if it is away for longer [STABILITY 7, case 9: back within 50 ms].
@@ -40,7 +42,7 @@ struct GateLimits {
 /// Counts the ticks in which each stage of the gate changed the force.
 struct GateCounters {
   std::uint64_t limited = 0;       ///< Cut to `force_max`.
-  std::uint64_t rise_limited = 0;  ///< Held back by `rise_max`.
+  std::uint64_t rise_limited = 0;  ///< Held back by `rise_max`, in length or direction.
   std::uint64_t soft_started = 0;  ///< Cut by the soft start.
   std::uint64_t stalls = 0;        ///< Gaps after which the limit opened anew.
   std::uint64_t damped = 0;        ///< Damped by the passivity controller.
@@ -48,11 +50,15 @@ struct GateCounters {
   double energy_least = 0;         ///< Lowest energy that the observer saw, J; never above 0.
 };
 
-/// Stands between every force law and the motors: finite -> the arm's limit -> speed limit -> rise
-/// limit -> soft start -> energy stage, if one is named.
+/// Stands between every force law and the motors: finite -> speed limit -> time -> the arm's limit
+/// -> soft start -> energy stage, if one is named -> rise limit.
 ///
-/// The rise limit is one-sided. A limit on the fall as well would turn a passive wall into an
-/// active one (restitution up to 2.7) [STABILITY 1.6].
+/// The rise limit comes last, so that it holds for whatever the energy stage adds. It is one-sided:
+/// a limit on the fall as well would turn a passive wall into an active one (restitution up to 2.7)
+/// [STABILITY 1.6]. No stage behind the arm's limit makes a force longer than the limit, as far as
+/// the soft start has opened it.
+///
+/// The time of a tick must be a finite number of zero or more: all limits in time follow from it.
 ///
 /// A fault latches: from then on the gate gives zero force until `restart`.
 /// All functions are Real-time: safe.
@@ -63,15 +69,21 @@ class SafetyGate {
   /// Forgets the fault and the past, and begins the soft start.
   void restart() noexcept;
 
-  /// Turns a wish into a force that may reach the motors. `f_T_W` in N, `v_WT` in m/s, both in the
-  /// world; `dt` is the time since the previous call, s (0 on the first after `restart`).
+  /// Turns a requested force into one that may reach the motors. `f_T_W` in N, `v_WT` in m/s, both
+  /// in the world; `dt` is the time since the previous call, s (0 on the first after `restart`; in
+  /// such a tick nothing rises). A `dt` below zero, or not finite, is the fault kTimeNotMonotonic.
   GatedForce pass(const Eigen::Vector3d& f_T_W, const Eigen::Vector3d& v_WT, double dt) noexcept;
 
   /// Does the same, and then keeps the energy in bounds: what the energy stage is for. `flow` tells
   /// what came of the call before. The stage may cut the force, or add damping to it, but never
-  /// beyond the arm's limit as far as the soft start has opened it.
+  /// beyond the arm's limit as far as the soft start has opened it, nor faster than the rise limit
+  /// allows.
   GatedForce pass_guarded(const Eigen::Vector3d& f_T_W, const Eigen::Vector3d& v_WT, double dt,
                           const EnergyFlow& flow) noexcept;
+
+  /// Counts the next rise from `f_W` (N, in the world): the arm did not take what passed last, and
+  /// this is the force that stands.
+  void resume_from(const Eigen::Vector3d& f_W) noexcept { f_last_W_ = f_W; }
 
   /// Latches a fault that somebody else found; the first one stays.
   void trip(Fault fault) noexcept;
@@ -84,12 +96,18 @@ class SafetyGate {
   double energy() const noexcept { return observer_.energy(); }
 
  private:
+  bool admit(double magnitude, const Eigen::Vector3d& v_WT, double dt) noexcept;
+  Eigen::Vector3d limit_length(const Eigen::Vector3d& f_T_W, double magnitude) noexcept;
+  GatedForce limit_change(const Eigen::Vector3d& f_W, const Eigen::Vector3d& v_WT) noexcept;
+  double force_open() const noexcept;
+
   GateLimits limits_;
   GateCounters counters_;
   Fault fault_ = Fault::kNone;
-  double since_start_ = 0;     // s of active time since the limit began to open
-  double opening_ = 0;         // s that it takes
-  double last_magnitude_ = 0;  // N
+  double since_start_ = 0;             // s of active time since the limit began to open
+  double opening_ = 0;                 // s that it takes
+  double rise_ = 0;                    // N that may be added in this tick
+  Eigen::Vector3d f_last_W_{0, 0, 0};  // N
   EnergyGuardSettings energy_;
   PassivityObserver observer_;
 };

@@ -66,7 +66,8 @@ class ServoLoop {
 
   /// Runs the next tick. Tells why there is none any more, once the periods are used up, `stop` is
   /// set, or this tick ended in a fault; then the device has been left idle (or in fault) with zero
-  /// force sent, and later calls do nothing but tell the same. Real-time: safe; waits until the
+  /// force sent, insistently if the arm did not take it (`Device::insist_on_zero`), and later calls
+  /// do nothing but tell the same. Real-time: safe; waits until the
   /// tick is due.
   std::optional<ServoEnd> tick(const std::atomic<bool>& stop) noexcept;
 
