@@ -123,7 +123,7 @@ bool sound(const driver::TickRecord& tick) {
          byte_at(offsetof(driver::TickRecord, stage)) <=
              static_cast<unsigned>(driver::DeviceStage::kFault) &&
          byte_at(offsetof(driver::TickRecord, fault)) <=
-             static_cast<unsigned>(driver::Fault::kRefused);
+             static_cast<unsigned>(driver::kLastFault);
 }
 
 }  // namespace

@@ -74,7 +74,7 @@ bool write_number(const H5Handle& file, const char* name, hid_t in_file, hid_t i
 
 bool write_info(const H5Handle& file, const RecordingInfo& info) {
   std::string faults;
-  for (int i = 0; i <= static_cast<int>(driver::Fault::kRefused); ++i) {
+  for (int i = 0; i <= static_cast<int>(driver::kLastFault); ++i) {
     faults += std::to_string(i);
     faults += ' ';
     faults += name(static_cast<driver::Fault>(i));

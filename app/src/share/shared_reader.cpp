@@ -238,7 +238,7 @@ bool SharedReader::sound(driver::TickRecord& record) const noexcept {
   }
   if (!std::isfinite(record.depth)) record.depth = 0;
   const bool known = record.stage <= driver::DeviceStage::kFault &&
-                     record.fault <= driver::Fault::kRefused && record.object >= -1 &&
+                     record.fault <= driver::kLastFault && record.object >= -1 &&
                      record.object < static_cast<int>(scene_.objects.size());
   if (!known) ++rejected_;
   return known;

@@ -321,7 +321,7 @@ TEST(SafetyGate, KeepsTheFirstFault) {
 }
 
 TEST(Fault, SaysWhatToDo) {
-  for (int i = 0; i <= static_cast<int>(Fault::kLoopStalled); ++i) {
+  for (int i = 0; i <= static_cast<int>(kLastFault); ++i) {
     const auto fault = static_cast<Fault>(i);
     EXPECT_NE(name(fault), "unknown");
     EXPECT_EQ(describe(fault).back(), '.');

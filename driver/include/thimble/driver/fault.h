@@ -15,7 +15,13 @@ enum class Fault : std::uint8_t {
   kOverSpeed,       ///< The tip moved faster than `GateLimits::speed_max`.
   kLoopStalled,     ///< The loop stood still longer than the arm's own watchdog waits.
   kRefused,         ///< The arm took no message for longer than `DeviceSettings::silence_limit_ns`.
+  kMotorsReversed,  ///< The tip gained speed against the force that was sent (motion_watch.h).
+  kEncoderFrozen,   ///< A joint did not move under a changing force while others did.
+  kCountsUnchanged,  ///< No encoder counted while a force was held (motion_watch.h).
 };
+
+/// The last of the faults, for whoever goes through all of them.
+inline constexpr Fault kLastFault = Fault::kCountsUnchanged;
 
 /// Tells what a fault means and what to do, in one or two sentences for the user.
 /// Real-time: safe.
