@@ -34,6 +34,8 @@ constexpr int kProof = 3, kDoubt = 1, kProofMost = 15;
 // A joint that stands still while the force along it changes by this much (N), and the tip moves so
 // far (m): the softest hand gives way by 1 mm, the stiffest arm of ours counts every 0.06 mm.
 constexpr double kStillForce = 1, kStillWay = 0.002;
+// A stroke so long (m) in which one joint under force never counts is no person's [chosen].
+constexpr double kLongWay = 0.02;
 constexpr std::uint32_t kStillBlocks = 5;  // in which a light tip answers by several counts
 
 // Below this force nothing is held, N [chosen: dry friction holds it].
@@ -82,11 +84,12 @@ Fault MotionWatch::judge(const DeviceState& state, const Eigen::Matrix3d& J_WT,
   }
   Fault fault = Fault::kNone;
   if (!gap && full_ > kStillBlocks) {
-    if (frozen_reports(1e-9 * static_cast<double>(lasted_ns), numbered)) {
+    const double lasted = 1e-9 * static_cast<double>(lasted_ns);
+    if (frozen_reports(lasted, numbered)) {
       fault = Fault::kCountsUnchanged;
     } else {
       const Eigen::Matrix3d directions_W = J_WT.colwise().normalized();
-      if (frozen_joint(directions_W)) fault = Fault::kEncoderFrozen;
+      if (frozen_joint(directions_W, lasted)) fault = Fault::kEncoderFrozen;
       if (reversed(directions_W)) fault = Fault::kMotorsReversed;
     }
   }
@@ -189,7 +192,7 @@ bool MotionWatch::believed(const Pairs& pairs, int& proof) const noexcept {
   return proof > -kProof;
 }
 
-bool MotionWatch::frozen_joint(const Eigen::Matrix3d& directions_W) noexcept {
+bool MotionWatch::frozen_joint(const Eigen::Matrix3d& directions_W, double time) noexcept {
   // The mean force of some blocks ago, since the joint needs time to answer it.
   const Eigen::Vector3d f_W = (block(2).f + block(3).f + block(4).f + block(5).f) / 4;
   const double step = (block(0).p - block(1).p).norm();
@@ -204,7 +207,9 @@ bool MotionWatch::frozen_joint(const Eigen::Matrix3d& directions_W) noexcept {
     still.f_least = first ? f : std::min(still.f_least, f);
     still.f_most = first ? f : std::max(still.f_most, f);
     still.way += step;
+    still.held = std::abs(f) >= kStillForce ? still.held + time : 0;
     fault |= still.f_most - still.f_least >= kStillForce && still.way >= kStillWay;
+    fault |= still.held >= settings_.hold_most && still.way >= kLongWay;
   }
   return fault;
 }

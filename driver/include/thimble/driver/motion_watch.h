@@ -15,7 +15,9 @@ struct MotionWatchSettings {
   double mass = 0;
   int delay_ticks = 0;  ///< Ticks from sampling to force beyond the hold.
   /// Longest time a force is held while no encoder counts, s, for an arm that does not number its
-  /// reports. Must be > 0.
+  /// reports; and, for any arm, while the joint it acts on does not count and the tip moves. Must
+  /// be > 0. [chosen: a hand that rests on a surface leaves every count alone for seconds, since
+  /// dry friction holds the arm; a tip that stops dead is noticed within 32 ms]
   double hold_most = 10;
 };
 
@@ -76,8 +78,9 @@ class MotionWatch {
   struct Stillness {
     double f_least = 0;  // along the joint's direction, N
     double f_most = 0;
-    double way = 0;  // of the tip, m
-    int blocks = 0;  // since then
+    double way = 0;   // of the tip, m
+    double held = 0;  // under force, s
+    int blocks = 0;   // since then
   };
   /// Accelerations and the forces that belong to them, along one direction.
   struct Pairs {
@@ -91,7 +94,7 @@ class MotionWatch {
   bool some_force() const noexcept;
   bool reversed(const Eigen::Matrix3d& directions_W) noexcept;
   bool believed(const Pairs& pairs, int& proof) const noexcept;
-  bool frozen_joint(const Eigen::Matrix3d& directions_W) noexcept;
+  bool frozen_joint(const Eigen::Matrix3d& directions_W, double time) noexcept;
   bool frozen_reports(double time, bool numbered) noexcept;
   void begin_block(const DeviceState& state) noexcept;
 
