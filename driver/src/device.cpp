@@ -251,7 +251,7 @@ void Device::write(const ForceCommand& command) noexcept {
 
 void Device::watch() noexcept {
   if (!motion_.take(state_, f_sent_W_)) return;
-  const Fault fault = motion_.judge(state_, settings_.R_WB * pose_.J_BT, numbered_);
+  const Fault fault = motion_.judge(state_, settings_.R_WB, pose_.J_BT, numbered_);
   if (fault != Fault::kNone) gate_.trip(fault);
 }
 

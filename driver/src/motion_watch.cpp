@@ -62,11 +62,12 @@ void MotionWatch::begin_block(const DeviceState& state) noexcept {
   begin_ns_ = state.time_ns;
   time_sum_ns_ = 0;
   reports_ = ticks_ = 0;
-  changed_.fill(0);
 }
 
-Fault MotionWatch::judge(const DeviceState& state, const Eigen::Matrix3d& J_WT,
-                         bool numbered) noexcept {
+Fault MotionWatch::judge(const DeviceState& state, const Eigen::Matrix3d& R_WB,
+                         const Eigen::Matrix3d& J_BT, bool numbered) noexcept {
+  for (std::size_t i = 0; i < 3; ++i) changed_[i] = state.counts[i] != counts_[i];
+  counts_ = state.counts;
   const std::int64_t lasted_ns = state.time_ns - begin_ns_;
   const bool gap = lasted_ns > kLongest_ns || reports_ == 0;
   if (gap) {
@@ -88,9 +89,8 @@ Fault MotionWatch::judge(const DeviceState& state, const Eigen::Matrix3d& J_WT,
     if (frozen_reports(lasted, numbered)) {
       fault = Fault::kCountsUnchanged;
     } else {
-      const Eigen::Matrix3d directions_W = J_WT.colwise().normalized();
-      if (frozen_joint(directions_W, lasted)) fault = Fault::kEncoderFrozen;
-      if (reversed(directions_W)) fault = Fault::kMotorsReversed;
+      if (frozen_joint(R_WB, J_BT, lasted)) fault = Fault::kEncoderFrozen;
+      if (reversed(R_WB, J_BT)) fault = Fault::kMotorsReversed;
     }
   }
   begin_block(state);
@@ -103,28 +103,27 @@ Eigen::Vector3d MotionWatch::late_force(std::uint32_t back) const noexcept {
   return (1 - rest) * block(back + whole).f + rest * block(back + whole + 1).f;
 }
 
-bool MotionWatch::some_force() const noexcept {
+bool MotionWatch::force_changes() const noexcept {
+  const Eigen::Vector3d& newest = block(0).f;
   double most = 0;
-  for (std::uint32_t back = 0; back < kAccelerations + 3; ++back) {
-    most = std::max(most, block(back).f_squared);
+  for (std::uint32_t back = 1; back < kAccelerations + 4; ++back) {
+    most = std::max(most, (block(back).f - newest).squaredNorm());
   }
   return most > kProofChange * kProofChange / 4;
 }
 
 // The second difference of block means sees the force through a window of three blocks, with the
 // weights 1, 4, 1 (a quadratic B-spline).
-bool MotionWatch::reversed(const Eigen::Matrix3d& directions_W) noexcept {
+bool MotionWatch::reversed(const Eigen::Matrix3d& R_WB, const Eigen::Matrix3d& J_BT) noexcept {
+  if (!(settings_.mass > 0) || !force_changes()) return false;
   const auto needed = static_cast<std::uint32_t>(kAccelerations + 4 + late_blocks_);
-  if (!(settings_.mass > 0) || full_ < needed || needed > kBlocks || !some_force()) return false;
+  if (full_ < needed || needed > kBlocks) return false;
   std::array<Eigen::Vector3d, kAccelerations> a, f;
   Eigen::Vector3d sum(0, 0, 0);
   for (std::uint32_t i = 0; i < kAccelerations; ++i) {
     f[i] = (late_force(i) + 4 * late_force(i + 1) + late_force(i + 2)) / 6;
     sum += f[i];
   }
-  double most = 0;
-  for (const Eigen::Vector3d& each : f) most = std::max(most, (each - f[0]).squaredNorm());
-  if (!(most > kProofChange * kProofChange / 4)) return false;
   for (std::uint32_t i = 0; i < kAccelerations; ++i) {
     const Block &after = block(i), &now = block(i + 1), &before = block(i + 2);
     const Eigen::Vector3d v_after = (after.p - now.p) / (after.time - now.time);
@@ -132,6 +131,7 @@ bool MotionWatch::reversed(const Eigen::Matrix3d& directions_W) noexcept {
     a[i] = (v_after - v_before) * (2 / (after.time - before.time));
   }
   bool fault = false;
+  const Eigen::Matrix3d directions_W = (R_WB * J_BT).colwise().normalized();
   for (std::size_t direction = 0; direction < 4; ++direction) {
     const Eigen::Vector3d along =
         direction < 3 ? directions_W.col(static_cast<Eigen::Index>(direction)).eval()
@@ -192,22 +192,30 @@ bool MotionWatch::believed(const Pairs& pairs, int& proof) const noexcept {
   return proof > -kProof;
 }
 
-bool MotionWatch::frozen_joint(const Eigen::Matrix3d& directions_W, double time) noexcept {
-  // The mean force of some blocks ago, since the joint needs time to answer it.
-  const Eigen::Vector3d f_W = (block(2).f + block(3).f + block(4).f + block(5).f) / 4;
-  const double step = (block(0).p - block(1).p).norm();
-  bool fault = false;
+bool MotionWatch::frozen_joint(const Eigen::Matrix3d& R_WB, const Eigen::Matrix3d& J_BT,
+                               double time) noexcept {
+  bool fault = false, known = false;
+  Eigen::Vector3d f_B;
   for (std::size_t i = 0; i < 3; ++i) {
     Stillness& still = still_[i];
-    if (changed_[i] != 0) still = Stillness();
-    ++still.blocks;
-    if (still.blocks <= static_cast<int>(kStillBlocks)) continue;
-    const double f = directions_W.col(static_cast<Eigen::Index>(i)).dot(f_W);
+    if (changed_[i]) {
+      still = Stillness();
+      continue;
+    }
+    if (++still.blocks <= static_cast<int>(kStillBlocks)) continue;
+    if (!known) {
+      // The mean force of some blocks ago, since the joint needs time to answer it.
+      const Eigen::Vector3d f_W = (block(2).f + block(3).f + block(4).f + block(5).f) / 4;
+      f_B = R_WB.transpose() * f_W;
+      known = true;
+    }
+    const Eigen::Vector3d along_B = J_BT.col(static_cast<Eigen::Index>(i));
+    const double f = along_B.dot(f_B) / along_B.norm();
     const bool first = still.blocks == static_cast<int>(kStillBlocks) + 1;
     still.f_least = first ? f : std::min(still.f_least, f);
     still.f_most = first ? f : std::max(still.f_most, f);
-    still.way += step;
-    still.held = std::abs(f) >= kStillForce ? still.held + time : 0;
+    still.way += (block(0).p - block(1).p).norm();
+    still.held = std::abs(f) >= kHeldForce ? still.held + time : 0;
     fault |= still.f_most - still.f_least >= kStillForce && still.way >= kStillWay;
     fault |= still.held >= settings_.hold_most && still.way >= kLongWay;
   }
@@ -215,7 +223,7 @@ bool MotionWatch::frozen_joint(const Eigen::Matrix3d& directions_W, double time)
 }
 
 bool MotionWatch::frozen_reports(double time, bool numbered) noexcept {
-  const bool counted = (changed_[0] | changed_[1] | changed_[2]) != 0;
+  const bool counted = changed_[0] || changed_[1] || changed_[2];
   if (counted || !(block(0).f_squared > kHeldForce * kHeldForce)) {
     held_ = 0;
     speed_before_ =

@@ -48,8 +48,6 @@ class MotionWatch {
       p_sum_ += state.p_WT;
       time_sum_ns_ += state.time_ns - begin_ns_;
       ++reports_;
-      for (std::size_t i = 0; i < 3; ++i) changed_[i] |= state.counts[i] ^ counts_[i];
-      counts_ = state.counts;
     }
     f_sum_ += f_sent_W;
     ++ticks_;
@@ -57,9 +55,10 @@ class MotionWatch {
   }
 
   /// Closes the block that `take` has filled, and returns the fault that motion shows, or kNone.
-  /// Columns of `J_WT`: how the tip moves with each joint, in the world, m/rad. `numbered` says
-  /// that the arm numbers its reports, so that old ones are known by that.
-  Fault judge(const DeviceState& state, const Eigen::Matrix3d& J_WT, bool numbered) noexcept;
+  /// Columns of `J_BT`: how the tip moves with each joint, in the arm's base, m/rad. `numbered`
+  /// says that the arm numbers its reports, so that old ones are known by that.
+  Fault judge(const DeviceState& state, const Eigen::Matrix3d& R_WB, const Eigen::Matrix3d& J_BT,
+              bool numbered) noexcept;
 
  private:
   static constexpr std::int64_t kBlock_ns = 3'950'000;    // 4 ms, less the jitter of a loop
@@ -91,10 +90,10 @@ class MotionWatch {
     return blocks_[(newest_ - back) % kBlocks];
   }
   Eigen::Vector3d late_force(std::uint32_t back) const noexcept;
-  bool some_force() const noexcept;
-  bool reversed(const Eigen::Matrix3d& directions_W) noexcept;
+  bool force_changes() const noexcept;
+  bool reversed(const Eigen::Matrix3d& R_WB, const Eigen::Matrix3d& J_BT) noexcept;
   bool believed(const Pairs& pairs, int& proof) const noexcept;
-  bool frozen_joint(const Eigen::Matrix3d& directions_W, double time) noexcept;
+  bool frozen_joint(const Eigen::Matrix3d& R_WB, const Eigen::Matrix3d& J_BT, double time) noexcept;
   bool frozen_reports(double time, bool numbered) noexcept;
   void begin_block(const DeviceState& state) noexcept;
 
@@ -103,7 +102,8 @@ class MotionWatch {
   Eigen::Vector3d p_sum_{0, 0, 0}, f_sum_{0, 0, 0};
   std::int64_t begin_ns_ = 0, time_sum_ns_ = 0;
   int reports_ = 0, ticks_ = 0;
-  std::array<std::int32_t, 3> counts_{}, changed_{};
+  std::array<std::int32_t, 3> counts_{};  // at the end of the last block
+  std::array<bool, 3> changed_{};         // since then
   // The full ones.
   std::array<Block, kBlocks> blocks_{};
   std::uint32_t newest_ = 0;
