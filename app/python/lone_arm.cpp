@@ -6,6 +6,7 @@
 #include "energy_choice.h"
 #include "shipped_files.h"
 #include "trouble.h"
+#include "watch_choice.h"
 
 namespace thimble::python {
 LoneArm::LoneArm(const std::string& arm, const Eigen::Vector3d& p_WH, double rate,
@@ -25,6 +26,8 @@ LoneArm::LoneArm(const std::string& arm, const Eigen::Vector3d& p_WH, double rat
                                      .p_WB = file_.p_WB,
                                      .limits = file_.limits,
                                      .energy = app::energy_settings(file_, rate, {}),
+                                     .motion = app::motion_settings(file_, rate),
+                                     .heat = file_.heat,
                                      .velocity_corner_frequency = file_.velocity_corner_frequency},
                                     clock_.now_ns()));
   activate();

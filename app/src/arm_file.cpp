@@ -29,7 +29,24 @@ driver::SerialArm read_geometry(YamlMap map) {
   return geometry;
 }
 
-void read_joints(YamlMap map, driver::hfab::HfabModel& model) {
+/// Reads what the motors carry for long: both keys or none.
+driver::HeatSettings read_heat(YamlMap& map) {
+  driver::HeatSettings heat;
+  const bool current = map.has("continuous_current"), time = map.has("thermal_time_constant");
+  if (!current && !time) return heat;
+  if (!current) map.reject("thermal_time_constant", "expected continuous_current beside it");
+  if (!time) map.reject("continuous_current", "expected thermal_time_constant beside it");
+  if (!current || !time) return heat;
+  const Eigen::Vector3d amperes = map.require_vector3("continuous_current", "A", 0.01, 32);
+  const Eigen::Vector3d seconds = map.require_vector3("thermal_time_constant", "s", 1, 1e5);
+  for (std::size_t i = 0; i < 3; ++i) {
+    heat.continuous_current[i] = amperes[static_cast<Eigen::Index>(i)];
+    heat.time_constant[i] = seconds[static_cast<Eigen::Index>(i)];
+  }
+  return heat;
+}
+
+void read_joints(YamlMap map, driver::hfab::HfabModel& model, driver::HeatSettings& heat) {
   const Eigen::Vector3d ratio = map.require_vector3("ratio", "motor turns per joint turn", 1, 1000);
   const Eigen::Vector3d torque = map.require_vector3("torque_constant", "N m/A", 1e-4, 10);
   const Eigen::Vector3d current = map.require_vector3("current_max", "A", 0.01, 32);
@@ -45,6 +62,7 @@ void read_joints(YamlMap map, driver::hfab::HfabModel& model) {
     model.drives[i] = {motor_sign[k], ratio[k], torque[k], current[k]};
     model.encoders[i] = {encoder_sign[k], counts[k], static_cast<std::int32_t>(home[k])};
   }
+  heat = read_heat(map);
   map.finish();
 }
 
@@ -61,7 +79,7 @@ std::optional<double> number_if_there(YamlMap& map, std::string_view key, std::s
   return map.require_number(key, unit, least, most);
 }
 
-driver::GateLimits read_gate(YamlMap map, EnergyChoice& energy) {
+driver::GateLimits read_gate(YamlMap map, EnergyChoice& energy, std::optional<double>& hold) {
   driver::GateLimits limits;
   limits.force_max = map.require_number("force_max", "N", 0.01, 100);
   limits.speed_max = map.require_number("speed_max", "m/s", 0.01, 20);
@@ -74,6 +92,7 @@ driver::GateLimits read_gate(YamlMap map, EnergyChoice& energy) {
     energy.stage =
         static_cast<driver::EnergyStage>(map.require_choice("energy", kEnergyStageNames));
   }
+  hold = number_if_there(map, "hold_unchanged", "s", 0.05, 600);
   energy.mass = number_if_there(map, "tip_mass", "kg", 1e-3, 10);
   energy.allowance = number_if_there(map, "energy_allowance", "J", 0, 1);
   energy.reservoir = number_if_there(map, "energy_reservoir", "J", 1e-6, 10);
@@ -184,7 +203,12 @@ driver::Result<ArmFile> read_arm_file(const std::filesystem::path& file) {
   if (arm.shape == ArmShape::kFalcon) take_joints(driver::falcon::falcon_model(), arm.model);
   if (arm.shape == ArmShape::kSerial) {
     arm.model.geometry = read_geometry(root.require_map("geometry"));
-    read_joints(root.require_map("joints"), arm.model);
+    read_joints(root.require_map("joints"), arm.model, arm.heat);
+  } else if (root.has("joints")) {
+    // Drives and encoders of these shapes are code.
+    YamlMap joints = root.require_map("joints");
+    arm.heat = read_heat(joints);
+    joints.finish();
   }
   if ((arm.protocol == ArmProtocol::kFalconPacket) != (arm.shape == ArmShape::kFalcon)) {
     root.reject("protocol", "expected falcon_packet with the shape falcon, and only with it");
@@ -195,7 +219,7 @@ driver::Result<ArmFile> read_arm_file(const std::filesystem::path& file) {
   base.finish();
   arm.workspace = read_workspace(root.require_map("workspace"));
   arm.declared = read_declared(root.require_map("declared"));
-  arm.limits = read_gate(root.require_map("gate"), arm.energy);
+  arm.limits = read_gate(root.require_map("gate"), arm.energy, arm.hold_unchanged);
   arm.velocity_corner_frequency = root.require_number("velocity_corner_frequency", "Hz", 0, 1e5);
   if (arm.shape == ArmShape::kSerial || root.has("simulation")) {
     arm.simulated =

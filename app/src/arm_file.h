@@ -2,11 +2,13 @@
 
 #include <Eigen/Core>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "energy_choice.h"
 #include "thimble/device_sim/settings.h"
 #include "thimble/driver/arms/hfab/hfab_arm.h"
+#include "thimble/driver/heat_guard.h"
 #include "thimble/driver/result.h"
 #include "thimble/driver/safety_gate.h"
 
@@ -43,6 +45,9 @@ struct ArmFile {
   driver::hfab::HfabModel model;
   driver::GateLimits limits;
   EnergyChoice energy;
+  /// Longest time a force is held while no encoder counts, s; none: the driver's own.
+  std::optional<double> hold_unchanged{};
+  driver::HeatSettings heat{};  ///< What the motors carry for long; none: not known.
   DeclaredLimits declared;
   double velocity_corner_frequency = 0;                ///< Hz
   Eigen::Matrix3d R_WB = Eigen::Matrix3d::Identity();  ///< Rotation of the base in the world.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "real_arm.h"
+#include "watch_choice.h"
 
 namespace thimble::app {
 namespace {
@@ -35,14 +36,22 @@ driver::Result<std::unique_ptr<BenchArm>> BenchArm::open(
   }
   driver::GateLimits limits = file.limits;
   limits.force_max = std::min(limits.force_max, force_max);
+  driver::HeatSettings heat = file.heat;
+  if (real_arm && heat.named())
+    heat.at_start = load_heat(real_arm->name(), heat, world_time()).heat;
   auto device = driver::Device::open(std::move(wire), std::move(protocol),
                                      {.R_WB = file.R_WB,
                                       .p_WB = file.p_WB,
                                       .limits = limits,
+                                      .motion = motion_settings(file, 1e9 / kPeriod_ns),
+                                      .heat = heat,
                                       .velocity_corner_frequency = file.velocity_corner_frequency},
                                      bench->clock_->now_ns());
   if (!device) return device.error();
   bench->device_ = std::move(device).value();
+  if (real_arm && heat.named()) {
+    bench->heat_keeper_ = std::make_unique<HeatKeeper>(real_arm->name(), *bench->device_);
+  }
   return bench;
 }
 

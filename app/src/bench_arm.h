@@ -9,6 +9,7 @@
 
 #include "arm_file.h"
 #include "arm_simulation.h"
+#include "heat_keeper.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/device.h"
 #include "thimble/driver/discovery.h"
@@ -51,7 +52,8 @@ class BenchArm {
   std::unique_ptr<driver::Clock> clock_;
   std::unique_ptr<ArmSimulation> simulation_;
   double true_force_max_ = 0;
-  std::unique_ptr<driver::Device> device_;  // holds the wire to the simulation, so it goes first
+  std::unique_ptr<driver::Device> device_;   // holds the wire to the simulation, so it goes first
+  std::unique_ptr<HeatKeeper> heat_keeper_;  // of a real arm whose file names its heat
 };
 
 }  // namespace thimble::app

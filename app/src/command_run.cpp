@@ -1,6 +1,7 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -27,6 +28,7 @@
 #include "share/request_desk.h"
 #include "share/viewer_process.h"
 #include "shipped_files.h"
+#include "thimble/driver/heat_guard.h"
 #include "thimble/driver/real_time.h"
 #include "thimble/render/mesh/save_mesh.h"
 #include "tuning.h"
@@ -73,6 +75,7 @@ void keep_black_box(Session& session) {
 void show_progress(Session& session, const std::atomic<bool>& ended, ReplugWatch* watch,
                    RequestDesk* desk) {
   const bool on_terminal = isatty(STDERR_FILENO) != 0;
+  bool warned_of_heat = false;
   const double total = static_cast<double>(session.ticks_planned()) *
                        static_cast<double>(session.period_ns()) * 1e-9;
   while (!ended.load()) {
@@ -81,7 +84,17 @@ void show_progress(Session& session, const std::atomic<bool>& ended, ReplugWatch
     if (desk != nullptr) desk->step();
     if (session.black_box().full()) keep_black_box(session);
     driver::TickRecord record;
-    if (!on_terminal || !session.snapshot().load(record)) continue;
+    if (!session.snapshot().load(record)) continue;
+    const double heat = *std::max_element(record.heat.begin(), record.heat.end());
+    if (heat >= driver::HeatGuard::kWarning && !warned_of_heat) {
+      warned_of_heat = true;
+      std::fprintf(
+          stderr,
+          "thimble: A motor is at %.0f %% of the heat it bears; the force is lowered until "
+          "it cools. Press less hard or rest.\n",
+          100 * heat);
+    }
+    if (!on_terminal) continue;
     const double force = Eigen::Map<const Eigen::Vector3d>(record.f_sent_W.data()).norm();
     char of_total[32] = "";
     if (total > 0) std::snprintf(of_total, sizeof of_total, "of %.1f ", total);

@@ -7,6 +7,7 @@
 
 #include "build_info.h"
 #include "printed.h"
+#include "thimble/driver/heat_guard.h"
 
 namespace thimble::app {
 namespace {
@@ -85,6 +86,11 @@ Json to_json(const RunReport& report) {
                   {"damped", report.gate.damped},
                   {"bounded", report.gate.bounded},
                   {"energy_least_J", report.gate.energy_least}};
+  if (report.heat_known) {
+    json["heat"] = {{"motors", report.heat},
+                    {"most", report.heat_most},
+                    {"ticks_lowered", report.heat_lowered}};
+  }
   json["real_time"] = {{"fifo", report.real_time.fifo},
                        {"memory_locked", report.real_time.memory_locked},
                        {"advice", report.real_time.advice}};
@@ -200,6 +206,10 @@ std::string summary(const RunReport& report) {
   } else if (report.energy_stage == driver::EnergyStage::kBounding) {
     s += printed("Energy    bounded by the gate: force cut in %llu ticks.\n",
                  static_cast<unsigned long long>(report.gate.bounded));
+  }
+  if (report.heat_known && report.heat_most >= driver::HeatGuard::kWarning) {
+    s += printed("Heat      a motor reached %.0f %% of its limit; force lowered in %llu ticks.\n",
+                 100 * report.heat_most, static_cast<unsigned long long>(report.heat_lowered));
   }
   if (report.gate.stalls > 0) {
     s +=

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -37,7 +38,11 @@ struct RunReport {
   driver::WireCounters wire;
   driver::GateCounters gate;
   driver::EnergyStage energy_stage = driver::EnergyStage::kNone;
-  double reopen = 0;  ///< The gate's, s.
+  double reopen = 0;               ///< The gate's, s.
+  bool heat_known = false;         ///< The arm file says what the motors carry for long.
+  std::array<double, 3> heat{};    ///< Of the motors at the end; 1: the winding's limit.
+  double heat_most = 0;            ///< The most that any motor reached.
+  std::uint64_t heat_lowered = 0;  ///< Ticks in which a force was lowered because of heat.
   driver::RealTimeGrant real_time;
   driver::ServoEnd end = driver::ServoEnd::kDone;
   driver::Fault fault = driver::Fault::kNone;

@@ -15,6 +15,7 @@
 #include "real_arm.h"
 #include "share/describe_scene.h"
 #include "text_file.h"
+#include "watch_choice.h"
 
 namespace thimble::app {
 namespace {
@@ -108,16 +109,32 @@ driver::Result<std::unique_ptr<Session>> Session::open(const std::filesystem::pa
     wire = session->simulation_->wire(*session->clock_);
     protocol = session->simulation_->protocol();
   }
+  driver::MotionWatchSettings motion = motion_settings(arm, session->scene_.rate);
+  // A simulated hand that a mouse holds does not tremble, and its arm sends no old positions.
+  constexpr double kAnyTime = 1e9;  // s
+  if (options.hand_by_mouse) motion.hold_most = kAnyTime;
+  driver::HeatSettings heat = arm.heat;
+  if (options.real_arm && heat.named()) {
+    const KnownHeat known = load_heat(options.real_arm->name(), heat, world_time());
+    if (!known.note.empty()) std::fprintf(stderr, "thimble: %s\n", known.note.c_str());
+    heat.at_start = known.heat;
+  }
   auto device = driver::Device::open(
       std::move(wire), std::move(protocol),
       {.R_WB = arm.R_WB,
        .p_WB = arm.p_WB,
        .limits = arm.limits,
        .energy = energy_settings(arm, session->scene_.rate, session->scene_.energy),
+       .motion = motion,
+       .heat = heat,
        .velocity_corner_frequency = arm.velocity_corner_frequency},
       session->clock_->now_ns());
   if (!device) return device.error();
   session->device_ = std::move(device).value();
+  if (options.real_arm && heat.named()) {
+    session->heat_keeper_ =
+        std::make_unique<HeatKeeper>(options.real_arm->name(), *session->device_);
+  }
   if (auto activated = session->device_->activate(); !activated) return activated.error();
   session->by_thread_ = options.clock == ClockKind::kWall || options.real_arm.has_value();
   if (session->by_thread_) session->objects_->start_loaders();

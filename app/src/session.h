@@ -11,6 +11,7 @@
 
 #include "arm_simulation.h"
 #include "dent_record.h"
+#include "heat_keeper.h"
 #include "recording/black_box.h"
 #include "recording/recording_info.h"
 #include "recording/recording_switch.h"
@@ -154,8 +155,9 @@ class Session {
   std::string device_name_;
   std::unique_ptr<driver::Clock> clock_;
   std::unique_ptr<ArmSimulation> simulation_;
-  std::unique_ptr<driver::Device> device_;  // holds the wire to the simulation, so it goes first
-  bool by_thread_ = false;                  // whether threads load pages and write recordings
+  std::unique_ptr<driver::Device> device_;   // holds the wire to the simulation, so it goes first
+  std::unique_ptr<HeatKeeper> heat_keeper_;  // of a real arm whose file names its heat
+  bool by_thread_ = false;                   // whether threads load pages and write recordings
   std::unique_ptr<SceneObjects> objects_;
   std::unique_ptr<RunStatistics> statistics_;
   std::unique_ptr<Trace> trace_;

@@ -25,6 +25,10 @@ RunReport report_of(const Session& session, driver::ServoEnd end,
   report.gate = session.device().gate_counters();
   report.energy_stage = session.device().gate().energy_stage();
   report.reopen = session.device().gate().limits().reopen;
+  report.heat_known = session.device().heat().named();
+  report.heat = session.device().heat().heat();
+  report.heat_most = session.device().heat().heat_most();
+  report.heat_lowered = session.device().heat().lowered();
   report.real_time = grant;
   report.end = end;
   report.fault = session.device().fault();

@@ -47,6 +47,11 @@ Result<void> check(const DeviceSettings& settings) {
   if (limits.watchdog_ns <= 0) return wrong("watchdog time");
   if (limits.watchdog_ns > kWatchdogMost_ns) return loose("watchdog time", "at most 1 s");
   if (settings.silence_limit_ns <= 0) return wrong("silence limit");
+  if (!is_limit(settings.motion.hold_most)) return wrong("hold_unchanged time");
+  for (std::size_t i = 0; settings.heat.named() && i < 3; ++i) {
+    if (!is_limit(settings.heat.continuous_current[i])) return wrong("continuous_current");
+    if (!is_limit(settings.heat.time_constant[i])) return wrong("thermal_time_constant");
+  }
   const EnergyGuardSettings& energy = settings.energy;
   if (energy.stage == EnergyStage::kPassivity) {
     if (!is_limit(energy.mass)) return wrong("tip mass, which its passivity stage needs,");
@@ -74,6 +79,8 @@ Device::Device(std::unique_ptr<Transport> transport, std::unique_ptr<const Arm> 
       arm_(std::move(arm)),
       settings_(settings),
       gate_(settings.limits, settings.energy),
+      motion_(settings.motion),
+      heat_(settings.heat, arm_->drives(), 1e-9 * static_cast<double>(settings.limits.watchdog_ns)),
       velocity_(settings.velocity_corner_frequency) {}
 
 Device::~Device() {
@@ -124,6 +131,7 @@ Result<void> Device::activate() {
 
 void Device::begin_activity() noexcept {
   gate_.restart();
+  motion_.restart();
   velocity_.reset();
   refused_in_a_row_ = 0;
   active_ = true;
@@ -135,7 +143,7 @@ void Device::begin_activity() noexcept {
 }
 
 void Device::choose_way() noexcept {
-  plain_ = active_ && !lost_ && gate_.energy_stage() == EnergyStage::kNone;
+  plain_ = active_ && !lost_ && gate_.energy_stage() == EnergyStage::kNone && !heat_.named();
 }
 
 void Device::offer(std::unique_ptr<Transport> transport) {
@@ -277,13 +285,21 @@ bool Device::came_before(const ArmReading& reading) noexcept {
 
 void Device::write(const ForceCommand& command) noexcept {
   if (!plain_) return write_otherwise(command);
+  watch();
   const GatedForce force = gate_.pass(command.f_T_W, state_.v_WT, state_.dt);
   const MotorCurrents currents(force, settings_.R_WB, pose_.J_BT, arm_->drives());
   if (!send(currents)) return keep_standing();
   f_sent_W_ = currents.scale() * force.f_T_W();
 }
 
+void Device::watch() noexcept {
+  if (!motion_.take(state_, f_sent_W_)) return;
+  const Fault fault = motion_.judge(state_, settings_.R_WB, pose_.J_BT, numbered_);
+  if (fault != Fault::kNone) gate_.trip(fault);
+}
+
 void Device::write_otherwise(const ForceCommand& command) noexcept {
+  if (heat_.named()) heat_.advance(state_.dt);
   if (active_ && !lost_) return write_guarded(command);
   send_zero();
 }
@@ -291,6 +307,7 @@ void Device::write_otherwise(const ForceCommand& command) noexcept {
 void Device::send_zero() noexcept {
   if (!send(MotorCurrents())) return keep_standing();
   f_sent_W_.setZero();
+  if (heat_.named()) heat_.sent({}, false);
   known_to_stand_ = true;
   insisted_ = false;
 }
@@ -300,6 +317,7 @@ void Device::keep_standing() noexcept {
     // An arm that is gone is the business of its own watchdog, and gets nothing from us any more.
     f_sent_W_.setZero();
     known_to_stand_ = false;
+    if (heat_.named()) heat_.sent({}, false);
   }
   gate_.resume_from(f_sent_W_);
 }
@@ -307,6 +325,7 @@ void Device::keep_standing() noexcept {
 // Work is booked at the joints, tau . dq, with the torques as the message holds them: exact for
 // motors that hold their torque, where f . dx would take the Jacobian of one end of the way.
 void Device::write_guarded(const ForceCommand& command) noexcept {
+  watch();
   EnergyFlow flow;
   const auto delay = static_cast<std::size_t>(settings_.energy.delay_ticks);
   if (booked_) {
@@ -320,12 +339,14 @@ void Device::write_guarded(const ForceCommand& command) noexcept {
   q_booked_ = pose_.q;
   p_booked_W_ = state_.p_WT;
   const GatedForce force = gate_.pass_guarded(command.f_T_W, state_.v_WT, state_.dt, flow);
-  const MotorCurrents currents(force, settings_.R_WB, pose_.J_BT, arm_->drives());
+  const MotorCurrents currents(force, settings_.R_WB, pose_.J_BT,
+                               heat_.named() ? heat_.drives() : arm_->drives());
   const bool taken = send(currents);
   for (std::size_t i = delay; i > 0; --i) tau_sent_[i] = tau_sent_[i - 1];
   // Torques that were not taken move nothing: those before stand.
   if (!taken) return keep_standing();
   tau_sent_[0] = torque_of(currents);
+  if (heat_.named()) heat_.sent(whole_mA(currents), currents.scale() < 1);
   f_sent_W_ = currents.scale() * force.f_T_W();
 }
 

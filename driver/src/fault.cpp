@@ -30,6 +30,21 @@ std::string_view describe(Fault fault) noexcept {
     case Fault::kTimeNotMonotonic:
       return "The servo loop's clock stepped back, or gave a time that is not a number. Use a "
              "monotonic clock (CLOCK_MONOTONIC), and activate the arm again.";
+    case Fault::kMotorsReversed:
+      return "The tip gained speed against the force that was sent, so a motor pulls the wrong "
+             "way. "
+             "Do not hold the arm; check the motors' wires and motor_sign with `thimble "
+             "feel-check`.";
+    case Fault::kEncoderFrozen:
+      return "One joint's encoder stood still while the force on that joint changed and the others "
+             "moved. Check that encoder's cable with `thimble feel-check`; an arm that leans on "
+             "its "
+             "stop looks the same.";
+    case Fault::kCountsUnchanged:
+      return "No encoder counted while a force was held, so the arm may be sending old positions. "
+             "Move the arm and activate it again; if nothing counts, check its cable and power. An "
+             "arm that lies still on an object for long looks the same (hold_unchanged in the arm "
+             "file).";
   }
   return "Unknown fault.";
 }
@@ -54,6 +69,12 @@ std::string_view name(Fault fault) noexcept {
       return "messages_refused";
     case Fault::kTimeNotMonotonic:
       return "time_not_monotonic";
+    case Fault::kMotorsReversed:
+      return "motors_reversed";
+    case Fault::kEncoderFrozen:
+      return "encoder_frozen";
+    case Fault::kCountsUnchanged:
+      return "counts_unchanged";
   }
   return "unknown";
 }

@@ -20,6 +20,7 @@ TickRecord record_of(const DeviceState& state, const ForceCommand& command,
   record.n_W = plain(command.touch.n_W);
   record.f_wanted_W = plain(command.f_T_W);
   record.f_sent_W = plain(device.f_sent_W());
+  if (device.heat().named()) record.heat = device.heat().heat();
   record.depth = command.touch.depth;
   record.feature = command.touch.feature;
   record.object = command.touch.object;

@@ -31,9 +31,9 @@ class SwingingWire final : public driver::Transport {
 
 }  // namespace
 
-// Runs ticks of a device whose gate has one energy stage or none, so that somebody else can count
+// Runs ticks of a device whose gate has one energy stage, a heat guard or neither, so that somebody else can count
 // what they execute:
-//   gate_ticks none|passivity|bounding TICKS
+//   gate_ticks none|passivity|bounding|heat TICKS
 int main(int argc, char** argv) {
   if (argc != 3) return 2;
   driver::DeviceSettings settings = support::vintage_settings();
@@ -45,6 +45,11 @@ int main(int argc, char** argv) {
                        .delay_ticks = 1};
   } else if (std::strcmp(argv[1], "bounding") == 0) {
     settings.energy = {.stage = driver::EnergyStage::kBounding, .slope = 1e4};
+  }
+  // The watch over motors is always on.
+  settings.motion = {.mass = 0.075, .delay_ticks = 1};
+  if (std::strcmp(argv[1], "heat") == 0) {
+    settings.heat = {.continuous_current = {1, 1, 1}, .time_constant = {60, 60, 60}};
   }
   auto device = driver::Device::open(
       std::make_unique<SwingingWire>(),

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Shows that an energy stage which no file names costs a device nothing: no function of it is ever
+# Shows that an energy stage or a heat guard which no file names costs a device nothing: no function of it is ever
 # called; the one test of a tick (plain_ in device.h) stands in place of two that were there before.
 #   unnamed_gate_stage_costs_nothing.sh GATE_TICKS
 set -euo pipefail
@@ -11,6 +11,7 @@ command -v valgrind >/dev/null || {
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 stages='pass_guarded|write_guarded|write_otherwise|PassivityObserver|bounded_force'
+heat='HeatGuard::(advance|sent|limit)'
 
 # instructions STAGE TICKS: all that the run executes; the functions that it called are in STAGE.out.
 instructions() {
@@ -19,12 +20,21 @@ instructions() {
 }
 
 bad=0
-for stage in none passivity bounding; do
+for stage in none passivity bounding heat; do
   one=$(instructions "$stage" 1000)
   three=$(instructions "$stage" 3000)
   echo "$stage: $(((three - one) / 2000)) instructions per tick of the device"
   # Before the device is active it sends zero the other way; after that nobody calls it.
   calls=$(grep -E "^fn=.*($stages)" "$folder/$stage.out" | grep -vc 'write_otherwise' || true)
+  warm=$(grep -cE "^fn=.*$heat" "$folder/$stage.out" || true)
+  if [ "$stage" != heat ] && [ "$warm" -ne 0 ]; then
+    echo "  the heat guard ran though nobody named it"
+    bad=1
+  fi
+  if [ "$stage" = heat ] && [ "$warm" -eq 0 ]; then
+    echo "  the heat guard did not run: this test could not fail"
+    bad=1
+  fi
   if [ "$stage" = none ] && [ "$calls" -ne 0 ]; then
     echo "  a stage that was not named ran"
     bad=1

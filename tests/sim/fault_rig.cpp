@@ -21,6 +21,7 @@
 #include "thimble/driver/arms/falcon/falcon_packet.h"
 #include "thimble/driver/arms/hfab/hfab_models.h"
 #include "thimble/driver/arms/woody/woody_report.h"
+#include "watch_choice.h"
 
 namespace thimble::fault_test {
 namespace {
@@ -160,6 +161,8 @@ driver::Result<void> FaultRig::open() {
                                       .p_WB = file_.p_WB,
                                       .limits = file_.limits,
                                       .energy = app::energy_settings(file_, 1000, {}),
+                                      .motion = app::motion_settings(file_, 1000),
+                                      .heat = file_.heat,
                                       .velocity_corner_frequency = file_.velocity_corner_frequency},
                                      clock_.now_ns());
   if (!device) return device.error();

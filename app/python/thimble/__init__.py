@@ -139,6 +139,11 @@ class _Columns:
         return self._of("f_wanted_W")
 
     @property
+    def heat(self) -> Any:
+        """Heat of each motor; 1 is its winding's limit, 0 if the arm file does not name it."""
+        return self._of("heat")
+
+    @property
     def proxy(self) -> Any:
         """Point of the surface that the tip is held at, p_WP, in the world, m; while in contact."""
         return self._of("p_WP")

@@ -122,8 +122,7 @@ bool sound(const driver::TickRecord& tick) {
          byte_at(offsetof(driver::TickRecord, fresh)) <= 1 &&
          byte_at(offsetof(driver::TickRecord, stage)) <=
              static_cast<unsigned>(driver::DeviceStage::kFault) &&
-         byte_at(offsetof(driver::TickRecord, fault)) <=
-             static_cast<unsigned>(driver::kLastFault);
+         byte_at(offsetof(driver::TickRecord, fault)) <= static_cast<unsigned>(driver::kLastFault);
 }
 
 }  // namespace
@@ -166,6 +165,7 @@ driver::Result<Recording> read_recording(const std::filesystem::path& path) {
   recording.complete = complete == 1;
   recording.ticks.resize(rows);
   for (const RecordingColumn& column : recording_columns()) {
+    if (column.later && H5Lexists(file.id(), column.name, H5P_DEFAULT) <= 0) continue;
     if (!read_column(file, column, recording.ticks)) {
       return wrong("the column " + std::string(column.name) + " is missing or damaged.");
     }

@@ -36,6 +36,8 @@ constexpr std::array kColumns{
                     offsetof(TickRecord, f_wanted_W)},
     RecordingColumn{"f_sent_W", "N", "force that went through the gate to the motors", Type::kF64,
                     3, offsetof(TickRecord, f_sent_W)},
+    RecordingColumn{"heat", "1", "of each motor; 1 is its winding's limit, 0 if the arm names none",
+                    Type::kF64, 3, offsetof(TickRecord, heat), true},
     RecordingColumn{"depth", "m", "of the tip below the surface", Type::kF64, 1,
                     offsetof(TickRecord, depth)},
     RecordingColumn{"feature", "1", "active triangle, -1 for none", Type::kI32, 1,

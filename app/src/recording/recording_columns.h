@@ -16,6 +16,7 @@ struct RecordingColumn {
   Type type;
   std::size_t width;   ///< Numbers per tick: 1 or 3.
   std::size_t offset;  ///< Of the first in driver::TickRecord, bytes.
+  bool later = false;  ///< Older recordings do not have it; there its numbers are 0.
 
   /// Tells the bytes of one number.
   std::size_t element() const noexcept;

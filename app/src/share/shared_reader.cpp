@@ -233,7 +233,7 @@ bool SharedReader::sound(driver::TickRecord& record) const noexcept {
   mend(record.fresh);
   // A faulty arm may tell of places that are no numbers; its fault must be seen, they must not.
   for (auto* numbers : {&record.q, &record.p_WT, &record.v_WT, &record.p_WP, &record.n_W,
-                        &record.f_wanted_W, &record.f_sent_W}) {
+                        &record.f_wanted_W, &record.f_sent_W, &record.heat}) {
     for (double& x : *numbers) x = std::isfinite(x) ? x : 0;
   }
   if (!std::isfinite(record.depth)) record.depth = 0;

@@ -60,6 +60,13 @@ void draw_head(const SharedReader& reader, const driver::TickRecord& tick) {
   ImGui::SameLine(0, 2 * ImGui::GetFontSize());
   ImGui::TextDisabled("%.1f s, %s", static_cast<double>(tick.time_ns) * 1e-9,
                       name_of(reader.state()));
+  const double heat = *std::max_element(tick.heat.begin(), tick.heat.end());
+  if (heat >= driver::HeatGuard::kWarning) {
+    ImGui::TextColored(vec(kForceColour), "motors %.0f %% of their heat limit, force lowered",
+                       100 * heat);
+  } else if (heat > 0) {
+    ImGui::TextDisabled("motors %.0f %% of their heat limit", 100 * heat);
+  }
   if (tick.fault != driver::Fault::kNone) {
     ImGui::TextColored(vec(kForceColour), "%s", std::string(driver::describe(tick.fault)).c_str());
   }

@@ -9,7 +9,7 @@
 namespace thimble::driver::hfab {
 namespace {
 
-std::int16_t any_word(support::Random& random) {
+std::int16_t any_int16(support::Random& random) {
   return static_cast<std::int16_t>(static_cast<std::uint16_t>(random.bits() >> 48));
 }
 
@@ -17,14 +17,14 @@ TEST(HfabReport, ComesBackUnchangedFromTheWireBothWays) {
   support::Random random(1);
   for (int i = 0; i < 10'000; ++i) {
     InputReport input;
-    for (auto& count : input.counts) count = any_word(random);
-    input.info = any_word(random);
+    for (auto& count : input.counts) count = any_int16(random);
+    input.info = any_int16(random);
     EXPECT_EQ(decode_input(encode_input(input)), input);
 
     OutputReport output;
-    for (auto& current : output.current_mA) current = any_word(random);
-    output.command = any_word(random);
-    for (auto& attribute : output.attributes) attribute = any_word(random);
+    for (auto& current : output.current_mA) current = any_int16(random);
+    output.command = any_int16(random);
+    for (auto& attribute : output.attributes) attribute = any_int16(random);
     EXPECT_EQ(decode_output(encode_output(output)), output);
   }
 }

@@ -9,6 +9,8 @@
 #include "thimble/driver/clock.h"
 #include "thimble/driver/device_state.h"
 #include "thimble/driver/force_command.h"
+#include "thimble/driver/heat_guard.h"
+#include "thimble/driver/motion_watch.h"
 #include "thimble/driver/result.h"
 #include "thimble/driver/safety_gate.h"
 #include "thimble/driver/tick_record.h"
@@ -23,6 +25,8 @@ struct DeviceSettings {
   Eigen::Vector3d p_WB{0, 0, 0};                       ///< Position of the arm's base, m.
   GateLimits limits;                                   ///< Of force, rise and speed.
   EnergyGuardSettings energy{};                ///< Which energy stage the gate has; none: free.
+  MotionWatchSettings motion{};                ///< What motors and encoders are watched by.
+  HeatSettings heat{};                         ///< Of the motors; none: not known.
   double velocity_corner_frequency = 0;        ///< Pole of the velocity estimate, Hz; 0: none.
   std::int64_t silence_limit_ns = 20'000'000;  ///< Silence of the arm that is a fault, ns (20
                                                ///< reports of a full-speed USB arm; chosen).
@@ -128,6 +132,8 @@ class Device {
   /// Counts what the gate did. Real-time: safe.
   const GateCounters& gate_counters() const noexcept { return gate_.counters(); }
   const SafetyGate& gate() const noexcept { return gate_; }  ///< Shows the gate. Real-time: safe.
+  /// Returns the thermal model of its motors. Real-time: safe.
+  const HeatGuard& heat() const noexcept { return heat_; }
 
  private:
   Device(std::unique_ptr<Transport> transport, std::unique_ptr<const Arm> arm,
@@ -141,6 +147,7 @@ class Device {
   void send_zero() noexcept;
   void keep_standing() noexcept;
   void choose_way() noexcept;
+  void watch() noexcept;
   void write_otherwise(const ForceCommand& command) noexcept;
   void write_guarded(const ForceCommand& command) noexcept;
   Eigen::Vector3d torque_of(const MotorCurrents& currents) const noexcept;
@@ -149,13 +156,16 @@ class Device {
   std::unique_ptr<const Arm> arm_;
   DeviceSettings settings_;
   SafetyGate gate_;
+  MotionWatch motion_;
+  HeatGuard heat_;
   VelocityEstimator velocity_;
   WireCounters wire_;
   ArmPose pose_;
   DeviceState state_;
   Eigen::Vector3d f_sent_W_{0, 0, 0};
   std::int64_t last_report_ns_ = 0;
-  bool plain_ = false;  // active, with a wire, and no energy stage: the one test of a usual tick
+  // Active, with a wire, and neither energy stage nor heat guard: the one test of a usual tick.
+  bool plain_ = false;
   bool active_ = false;
   bool started_ = false;  // a tick has been read
   bool lost_ = false;

@@ -1,0 +1,68 @@
+#include "thimble/driver/heat_guard.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace thimble::driver {
+namespace {
+
+// A message holds whole mA, rounded: a current may be larger than was asked for by so much, A.
+constexpr double kRounding = 0.0005;
+
+}  // namespace
+
+// Why the heat never passes 1: the largest squared load at the heat h is u(h) = 1 + s (1 - h). Held
+// for dt it leaves 1 - h' = (1 - h) (1 - g (1 + s)) with g = 1 - exp(-dt / tau), which is not
+// negative as long as g (1 + s) <= 1. The slope s is the smaller of the one for which the current
+// begins to fall at kWarning, and of what that asks at the longest hold.
+HeatGuard::HeatGuard(const HeatSettings& settings, const std::array<MotorDrive, 3>& drives,
+                     double longest_hold) noexcept
+    : settings_(settings), drives_(drives), named_(settings.named()), heat_(settings.at_start) {
+  if (!named_) return;
+  for (std::size_t i = 0; i < 3; ++i) {
+    current_max_[i] = drives[i].current_max;
+    const double peak = current_max_[i] / settings.continuous_current[i];
+    const double fall = std::max(0.0, (peak * peak - 1) / (1 - kWarning));
+    const double hold = -std::expm1(-longest_hold / settings.time_constant[i]);
+    slope_[i] = std::min(fall, 1 / hold - 1);
+    // A heat that nobody can know is the limit.
+    if (!(heat_[i] >= 0 && heat_[i] <= 1)) heat_[i] = 1;
+    heat_most_ = std::max(heat_most_, heat_[i]);
+  }
+  limit();
+}
+
+void HeatGuard::advance(double dt) noexcept {
+  if (!(dt > 0 && dt < HUGE_VAL)) return;
+  if (dt != gain_dt_) {
+    gain_dt_ = dt;
+    for (std::size_t i = 0; i < 3; ++i) gain_[i] = -std::expm1(-dt / settings_.time_constant[i]);
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    heat_[i] += gain_[i] * (load_[i] - heat_[i]);
+    heat_most_ = std::max(heat_most_, heat_[i]);
+  }
+  limit();
+}
+
+void HeatGuard::sent(const std::array<std::int16_t, 3>& mA, bool scaled) noexcept {
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double share = 1e-3 * mA[i] / settings_.continuous_current[i];
+    load_[i] = share * share;
+  }
+  if (scaled && limiting_) ++lowered_;
+}
+
+void HeatGuard::limit() noexcept {
+  limiting_ = false;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double load = 1 + slope_[i] * (1 - heat_[i]);
+    // Written so that NaN allows no current.
+    const double most =
+        load > 0 ? settings_.continuous_current[i] * std::sqrt(load) - kRounding : 0;
+    drives_[i].current_max = most > 0 ? std::min(most, current_max_[i]) : 0;
+    limiting_ = limiting_ || drives_[i].current_max < current_max_[i];
+  }
+}
+
+}  // namespace thimble::driver

@@ -1,0 +1,207 @@
+// Motors and encoders watched by the motion of the tip (driver/motion_watch.h): what is found, how
+// early, and that no hand on a sound arm is taken for a fault.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "support/motion_rig.h"
+
+namespace thimble {
+namespace {
+
+using driver::Fault;
+using support::kMotionArmNames;
+using support::kMotionArms;
+using support::MotionArm;
+using support::MotionRun;
+
+std::string name_of(MotionArm arm) {
+  return std::string(kMotionArmNames[static_cast<std::size_t>(arm)]);
+}
+
+/// The shipped hand, which strokes into the wall at this speed, again and again, from 0.5 s on.
+MotionRun strokes(MotionArm arm, double speed) {
+  MotionRun run;
+  run.arm = arm;
+  Eigen::Vector3d p(0, 0, 0.01);
+  double time = 0.5;
+  run.way = {{0, p}, {time, p}};
+  support::Random random(3);
+  while (time < 4) {
+    const Eigen::Vector3d to(random.uniform(-0.02, 0.02), random.uniform(-0.02, 0.02),
+                             random.uniform(-0.02, 0.004));
+    time += std::max((to - p).norm() / speed, 0.01);
+    run.way.emplace_back(time, to);
+    p = to;
+  }
+  return run;
+}
+
+TEST(ReversedMotors, AreFoundInTheFirstMillimetresOfAStiffTouch) {
+  for (const MotionArm arm : kMotionArms) {
+    for (const double speed : {0.05, 0.1, 0.2, 0.3, 0.6}) {
+      MotionRun sound = strokes(arm, speed);
+      sound.run(4);
+      EXPECT_EQ(sound.fault, Fault::kNone) << name_of(arm) << ' ' << speed;
+      EXPECT_GT(sound.force_most, 2) << "it was a touch";
+
+      MotionRun reversed = strokes(arm, speed);
+      reversed.wiring.motor_gain = {-1, -1, -1};
+      reversed.run(4);
+      std::printf("%-16s %.2f m/s: %s at %.1f mm, %.2f m/s\n", name_of(arm).c_str(), speed,
+                  std::string(name(reversed.fault)).c_str(), 1e3 * reversed.depth, reversed.speed);
+      // A hand that turns round every 40 ms does more than the wall.
+      if (speed > 0.5 && reversed.fault == Fault::kNone) continue;
+      EXPECT_EQ(reversed.fault, Fault::kMotorsReversed) << name_of(arm) << ' ' << speed;
+      EXPECT_LT(reversed.depth, 0.016) << "it went 40 mm deep";
+      EXPECT_LT(reversed.speed, speed + 0.55) << "it went at 1.15 m/s";
+    }
+  }
+}
+
+TEST(ReversedMotors, AreFoundWhereOneJointOfThoseThatCarryTheForceIsWrong) {
+  // At home of the PHANTOM link B alone moves the tip up and down; of the others, C more than B.
+  constexpr std::array<int, 3> kJoints{1, 2, 2};
+  for (const MotionArm arm : kMotionArms) {
+    const int joint = kJoints[static_cast<std::size_t>(arm)];
+    int found = 0;
+    for (const double speed : {0.1, 0.2, 0.3, 0.6}) {
+      MotionRun run = strokes(arm, speed);
+      run.wiring.motor_gain[joint] = -1;
+      run.run(4);
+      if (run.fault == Fault::kMotorsReversed) ++found;
+      std::printf("%-16s joint %d, %.2f m/s: %s at %.1f mm, %.2f m/s\n", name_of(arm).c_str(),
+                  joint + 1, speed, std::string(name(run.fault)).c_str(), 1e3 * run.depth,
+                  run.speed);
+    }
+    EXPECT_GE(found, 2) << name_of(arm) << " of 4";
+  }
+}
+
+TEST(MotionWatch, TakesNoHandOnASoundArmForAFault) {
+  int touches = 0;
+  for (std::uint64_t seed = 0; seed < 600; ++seed) {
+    MotionRun run = support::any_hand(seed, 2);
+    run.run(2);
+    touches += run.force_most > 1.5 ? 1 : 0;
+    // A hand that throws the tip may be too fast for the gate, and nothing else.
+    if (run.fault == Fault::kOverSpeed) continue;
+    EXPECT_EQ(run.fault, Fault::kNone) << "seed " << seed << ": " << name(run.fault);
+  }
+  EXPECT_GT(touches, 400);
+}
+
+/// A hand on the wall that presses more and less and strokes to and fro.
+MotionRun rubbing(MotionArm arm) {
+  MotionRun run;
+  run.arm = arm;
+  run.way = {{0, {0, 0, 0.005}}, {0.5, {0, 0, 0.005}}};
+  for (int i = 0; i < 60; ++i) {
+    const double turn = 2 * M_PI * i / 15;
+    run.way.emplace_back(0.7 + 0.05 * i,
+                         Eigen::Vector3d(0.015 * std::sin(turn), 0.01 * std::sin(0.7 * turn),
+                                         -0.008 - 0.006 * std::sin(1.3 * turn)));
+  }
+  return run;
+}
+
+/// Lets an encoder stand still from a read on.
+void freeze(MotionRun& run, std::size_t joint, int from) {
+  auto last = std::make_shared<std::int16_t>();
+  run.tamper = [=](int read, std::array<std::int16_t, 6>& counts) {
+    if (read < from) *last = counts[joint];
+    counts[joint] = *last;
+  };
+}
+
+TEST(FrozenEncoder, IsFoundWhereTheForceOnItsJointChanges) {
+  constexpr std::array<std::size_t, 3> kJoints{1, 2, 2};  // that carry the wall's force
+  for (const MotionArm arm : kMotionArms) {
+    const std::size_t joint = kJoints[static_cast<std::size_t>(arm)];
+    constexpr int kFrom = 1200;
+    MotionRun run = rubbing(arm);
+    freeze(run, joint, kFrom);
+    // At home the PHANTOM's link B alone tells the depth, so that the force stays as it was.
+    const bool steady = arm == MotionArm::kVintage;
+    run.hold_most = steady ? 1.5 : 10;
+    run.run(4);
+    std::printf("%-16s joint %zu: %s after %d ms\n", name_of(arm).c_str(), joint + 1,
+                std::string(name(run.fault)).c_str(), static_cast<int>(run.ticks) - kFrom);
+    EXPECT_EQ(run.fault, Fault::kEncoderFrozen) << name_of(arm) << ' ' << joint;
+    EXPECT_LT(run.ticks, kFrom + (steady ? 1700u : 600u));
+    MotionRun sound = rubbing(arm);
+    sound.run(4);
+    EXPECT_EQ(sound.fault, Fault::kNone) << name_of(arm);
+  }
+}
+
+/// The tip goes round the PHANTOM's own axis at one height, pressing: two joints hardly count.
+MotionRun yaw_strokes() {
+  MotionRun run;
+  run.hand.tremor_amplitude = 0;
+  run.scene.friction = 0;
+  constexpr double kRadius = 0.138;  // m
+  run.way = {{0, {0, 0, -0.006}}, {0.5, {0, 0, -0.006}}};
+  for (int i = 0; i <= 700; ++i) {
+    const double turn = 0.3 * std::sin(2 * M_PI * i / 200.0);
+    run.way.emplace_back(0.6 + 0.005 * i, Eigen::Vector3d(kRadius * (std::cos(turn) - 1),
+                                                          kRadius * std::sin(turn), -0.006));
+  }
+  return run;
+}
+
+TEST(FrozenEncoder, IsNotSeenInAPureYawStroke) {
+  MotionRun run = yaw_strokes();
+  run.run(4);
+  EXPECT_EQ(run.fault, Fault::kNone);
+  EXPECT_GT(run.force_most, 1.2);
+}
+
+TEST(FrozenEncoder, HoldsASteadyForceForABoundedTimeWhileTheTipMoves) {
+  MotionRun run = yaw_strokes();
+  freeze(run, 1, 1000);
+  MotionRun patient = run;
+  run.hold_most = 1.5;
+  run.run(4);
+  EXPECT_EQ(run.fault, Fault::kEncoderFrozen);
+  EXPECT_LT(run.ticks, 2700u);
+  patient.hold_most = 10;
+  patient.run(4);
+  EXPECT_EQ(patient.fault, Fault::kNone);
+}
+
+TEST(UnchangedCounts, EndAForceThatIsHeldForTooLong) {
+  MotionRun run;
+  run.hand.tremor_amplitude = 0;
+  run.hold_most = 2;
+  run.way = {{0, {0, 0, 0.005}}, {0.5, {0, 0, 0.005}}, {0.7, {0, 0, -0.01}}};
+  MotionRun short_of_it = run;
+  run.run(5);
+  EXPECT_EQ(run.fault, Fault::kCountsUnchanged);
+  EXPECT_GT(run.force_most, 1.5);
+  EXPECT_GT(run.ticks, 2700u);
+  EXPECT_LT(run.ticks, 3100u) << "it comes to rest within 0.3 s, and 2 s later the force is off";
+  short_of_it.hold_most = 10;
+  short_of_it.run(5);
+  EXPECT_EQ(short_of_it.fault, Fault::kNone);
+}
+
+TEST(UnchangedCounts, AreFoundAtOnceWhereAMovingTipSeemsToStopDead) {
+  MotionRun run = rubbing(MotionArm::kVintage);
+  constexpr int kFrom = 1380;
+  std::array<std::int16_t, 6> last{};
+  run.tamper = [&](int read, std::array<std::int16_t, 6>& counts) {
+    if (read < kFrom) last = counts;
+    counts = last;
+  };
+  for (auto& [time, p_WH] : run.way) time = time < 0.7 ? time : 0.7 + (time - 0.7) / 3;
+  run.run(4);
+  EXPECT_EQ(run.fault, Fault::kCountsUnchanged);
+  EXPECT_LT(run.ticks, kFrom + 60u);
+}
+
+}  // namespace
+}  // namespace thimble
