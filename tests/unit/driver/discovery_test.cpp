@@ -1,6 +1,10 @@
 #include "thimble/driver/discovery.h"
 
+#include <fnmatch.h>
 #include <gtest/gtest.h>
+
+#include <fstream>
+#include <sstream>
 
 #include "support/fake_usb.h"
 
@@ -99,6 +103,34 @@ TEST(Discovery, TakesABoardForAnArmOnlyByWhatIsTheArmsOwn) {
     EXPECT_EQ(arms->front().certainty, board.certainty) << board.product << board.hid_bytes;
     EXPECT_EQ(arms->front().board, board.board) << board.product << board.hid_bytes;
   }
+}
+
+// The rule gives access to the boards that discovery takes for arms by their product string, and to
+// no other Teensy: in udev's globs, alternatives stand between bars.
+TEST(Discovery, AgreesWithTheUdevRuleAboutTheTeensiesThatAreArms) {
+  std::ifstream rules(std::filesystem::path(THIMBLE_SOURCE_DIR) / "udev/70-thimble.rules");
+  int lines = 0;
+  for (std::string line; std::getline(rules, line);) {
+    if (line.find("==\"16c0\"") == std::string::npos) continue;
+    ++lines;
+    const std::size_t begin = line.find("{product}==\"");
+    ASSERT_NE(begin, std::string::npos) << line;
+    std::istringstream globs(line.substr(begin + 12, line.find('"', begin + 12) - begin - 12));
+    std::vector<std::string> alternatives;
+    for (std::string glob; std::getline(globs, glob, '|');) alternatives.push_back(glob);
+    for (const char* product : {"WoodenHaptics", "Polhem v3", "my polhem", "Haptikfabriken",
+                                "Teensyduino RawHID", "USB Serial", "Haply inverse3", "Phantom"}) {
+      const bool allowed = std::any_of(
+          alternatives.begin(), alternatives.end(),
+          [&](const std::string& glob) { return fnmatch(glob.c_str(), product, 0) == 0; });
+      const support::FakeUsb usb(std::string("discovery_rule_") + product);
+      usb.plug("1-1", "16c0", "0483", "7654321", 1, 2);
+      usb.call("1-1", product);
+      usb.add_tty("1-1", 0, "ttyACM0");
+      EXPECT_EQ(allowed, find_arms(usb.root())->front().certainty == Certainty::kKnown) << product;
+    }
+  }
+  EXPECT_EQ(lines, 3);
 }
 
 TEST(Discovery, NamesBoardsByTheirSocketWhereTheSerialNumberNamesNoneOrSeveral) {
