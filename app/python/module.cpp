@@ -278,7 +278,8 @@ py::list devices() {
     one["bus"] = arm.bus;
     one["where"] = arm.address;
     one["node"] = arm.node;
-    one["ready"] = arm.kind != driver::ArmKind::kUnsupported && arm.accessible;
+    one["ready"] = arm.accessible && (arm.certainty == driver::Certainty::kKnown ||
+                                      arm.certainty == driver::Certainty::kProvesItself);
     list.append(one);
   }
   return list;

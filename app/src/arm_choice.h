@@ -24,7 +24,7 @@ struct ArmChoice {
 struct ChosenArm {
   ArmFile file;
   std::optional<driver::FoundArm> real_arm;  ///< empty: the simulated one
-  std::string name;                          ///< serial number, or "sim"
+  std::string name;                          ///< FoundArm::name, or "sim"
 };
 
 /// Finds the arm that a choice means and reads its file, without its calibration. The error says

@@ -1,9 +1,11 @@
 #include "arm_file.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "thimble/driver/arms/falcon/falcon_arm.h"
@@ -185,6 +187,43 @@ device_sim::SimulatedArmSettings read_simulation(YamlMap map, ArmShape shape,
   return settings;
 }
 
+constexpr std::array<std::string_view, 4> kProtocolNames = {"hfab_14_byte", "woody_8_byte",
+                                                            "falcon_packet", "text_lines"};
+
+/// Gives the boards that speak a protocol, the usual one first; the text lines carry all that the
+/// 14-byte reports do.
+std::vector<driver::BoardKind> boards_of(ArmProtocol protocol) {
+  using driver::BoardKind;
+  switch (protocol) {
+    case ArmProtocol::kHfab14Byte:
+      return {BoardKind::kMbedHid14, BoardKind::kTeensyRawHid64, BoardKind::kTextLines};
+    case ArmProtocol::kWoody8Byte:
+      return {BoardKind::kMbedHid8};
+    case ArmProtocol::kFalconPacket:
+      return {BoardKind::kFalconFtdi};
+    case ArmProtocol::kTextLines:
+      break;
+  }
+  return {BoardKind::kTextLines};
+}
+
+std::vector<driver::BoardKind> read_boards(YamlMap& root, ArmProtocol protocol) {
+  const std::vector<driver::BoardKind> fitting = boards_of(protocol);
+  std::vector<driver::BoardKind> boards;
+  for (const std::size_t index :
+       root.optional_choices("board", {static_cast<std::size_t>(fitting.front())},
+                             {driver::kBoardNames.begin(), driver::kBoardNames.end()})) {
+    const auto board = static_cast<driver::BoardKind>(index);
+    if (std::find(fitting.begin(), fitting.end(), board) == fitting.end()) {
+      root.reject("board", "the board " + std::string(name(board)) + " does not speak " +
+                               std::string(kProtocolNames[static_cast<std::size_t>(protocol)]));
+    }
+    boards.push_back(board);
+  }
+  if (boards.empty()) boards.push_back(fitting.front());  // a mistake that is told
+  return boards;
+}
+
 }  // namespace
 
 driver::Result<ArmFile> read_arm_file(const std::filesystem::path& file) {
@@ -195,7 +234,8 @@ driver::Result<ArmFile> read_arm_file(const std::filesystem::path& file) {
   arm.name = root.require_string("name");
   arm.description = root.optional_string("description", "");
   arm.protocol = static_cast<ArmProtocol>(
-      root.require_choice("protocol", {"hfab_14_byte", "woody_8_byte", "falcon_packet"}));
+      root.require_choice("protocol", {kProtocolNames.begin(), kProtocolNames.end()}));
+  arm.boards = read_boards(root, arm.protocol);
   arm.shape =
       static_cast<ArmShape>(root.optional_choice("shape", 0, {"serial", "polhem", "falcon"}));
   arm.board_model = static_cast<int>(root.optional_number("board_model", 0, "", 0, 1000));

@@ -4,10 +4,12 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "energy_choice.h"
 #include "thimble/device_sim/settings.h"
 #include "thimble/driver/arms/hfab/hfab_arm.h"
+#include "thimble/driver/board.h"
 #include "thimble/driver/heat_guard.h"
 #include "thimble/driver/result.h"
 #include "thimble/driver/safety_gate.h"
@@ -27,9 +29,8 @@ struct DeclaredLimits {
   double damping = 0;    ///< N s/m
 };
 
-/// Says what the arm speaks; the text lines of Haptikfabriken boards are understood with either of
-/// the first two, for the board's firmware decides.
-enum class ArmProtocol { kHfab14Byte, kWoody8Byte, kFalconPacket };
+/// What the simulated arm speaks, and the real one on the first of its boards.
+enum class ArmProtocol { kHfab14Byte, kWoody8Byte, kFalconPacket, kTextLines };
 
 /// Says how the arm is built.
 enum class ArmShape { kSerial, kPolhem, kFalcon };
@@ -40,6 +41,9 @@ struct ArmFile {
   std::string description;
   ArmProtocol protocol = ArmProtocol::kHfab14Byte;
   ArmShape shape = ArmShape::kSerial;
+  /// The boards that this arm may have, with these signs and currents; never empty. A board of
+  /// unknown kind is used with no other file than one that names it here.
+  std::vector<driver::BoardKind> boards = {driver::BoardKind::kMbedHid14};
   int board_model = 0;  ///< What its board calls itself in text lines; 0: not known.
   /// Drives, encoders and, for a serial arm, the geometry. The other shapes have theirs in code.
   driver::hfab::HfabModel model;

@@ -13,8 +13,9 @@
 namespace thimble::app {
 
 // What differs from one arm to the next of its kind: where its encoders have their zero, and which
-// way they and the motors count. Kept per serial number under $XDG_CONFIG_HOME/thimble/arms (or
-// ~/.config/thimble/arms). Real-time: never from the servo thread.
+// way they and the motors count. Kept per name of the arm (FoundArm::name) under
+// $XDG_CONFIG_HOME/thimble/arms (or ~/.config/thimble/arms). Real-time: never from the servo
+// thread.
 
 /// Is the calibration of one arm.
 struct Calibration {

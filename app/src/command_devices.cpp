@@ -5,14 +5,19 @@
 #include "commands.h"
 #include "exit_code.h"
 #include "thimble/driver/discovery.h"
+#include "thimble/driver/node_lock.h"
 
 namespace thimble::app {
 namespace {
 
-const char* state_of(const driver::FoundArm& arm) {
-  if (arm.kind == driver::ArmKind::kUnsupported) return "its protocol is not public";
+std::string state_of(const driver::FoundArm& arm, const std::string& root) {
+  if (arm.certainty == driver::Certainty::kUnsupported) return "its protocol is not public";
   if (arm.node.empty()) return "no driver has it: thimble doctor";
+  if (arm.certainty == driver::Certainty::kUnknown) return "board of unknown kind: thimble doctor";
   if (!arm.accessible) return "no access: thimble doctor";
+  if (const auto holder = driver::find_holder(arm.node, root)) {
+    return "in use by " + holder->program + " (process " + std::to_string(holder->pid) + ")";
+  }
   return "ready";
 }
 
@@ -27,7 +32,7 @@ int list_devices(const std::string& root) {
   }
   for (const driver::FoundArm& arm : *arms) {
     std::printf(kRow, arm.name().c_str(), arm.arm.c_str(), arm.bus.c_str(), arm.address.c_str(),
-                arm.node.empty() ? "-" : arm.node.c_str(), state_of(arm));
+                arm.node.empty() ? "-" : arm.node.c_str(), state_of(arm, root).c_str());
   }
   if (arms->empty()) std::printf("No arm that Thimble knows is plugged in on USB.\n");
   return kExitDone;

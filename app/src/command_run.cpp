@@ -188,7 +188,11 @@ int run_scene(const RunOptions& options) {
         choose_arm(plugged_in ? *plugged_in : std::vector<driver::FoundArm>(), options.device);
     if (!chosen) return complain(chosen.error(), kExitNoDevice);
     real_arm = *chosen;
-    if (!real_arm) std::printf("No arm is plugged in: the simulated one is used.\n");
+    if (!real_arm) {
+      std::printf("No arm is plugged in: the simulated one is used.\n");
+      const std::string left = plugged_in ? boards_left_out(*plugged_in) : "";
+      if (!left.empty()) std::printf("%s\n", left.c_str());
+    }
   }
   SessionOptions session_options;
   // A person who watches or leads does so in real time, unless he says otherwise.

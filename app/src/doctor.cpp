@@ -8,13 +8,15 @@
 #include <cstdlib>
 #include <system_error>
 
+#include "board_advice.h"
 #include "thimble/driver/discovery.h"
+#include "thimble/driver/node_lock.h"
 
 namespace thimble::app {
 namespace {
 
 namespace fs = std::filesystem;
-using driver::ArmKind;
+using driver::BoardKind;
 using driver::FoundArm;
 using driver::read_line;
 
@@ -70,22 +72,29 @@ class Examination {
 
   void look_at(const FoundArm& arm) {
     const std::string name = arm.arm + " " + arm.name() + ": ";
-    if (arm.kind == ArmKind::kUnsupported) {
+    if (arm.certainty == driver::Certainty::kUnsupported) {
       note(Health::kAdvice, name + "plugged in, but its protocol is not public.",
            "Use its vendor's own library; Thimble cannot drive it.");
       return;
     }
     look_at_driver(arm, name);
-    look_at_access(arm, name);
+    if (arm.certainty == driver::Certainty::kUnknown) {
+      note(Health::kAdvice, name + what_it_may_be(arm), how_to_use(arm));
+    } else {
+      look_at_access(arm, name);
+    }
+    look_at_holder(arm, name);
     look_at_power(arm, name);
     look_at_hub(arm, name);
   }
 
   void look_at_driver(const FoundArm& arm, const std::string& name) {
     const std::string bound = bound_driver(arm);
-    switch (arm.kind) {
-      case ArmKind::kWoody:
-      case ArmKind::kPolhem:
+    switch (arm.board) {
+      case BoardKind::kMbedHid8:
+      case BoardKind::kMbedHid14:
+      case BoardKind::kTeensyRawHid64:
+      case BoardKind::kOther:
         if (!arm.node.empty()) {
           note(Health::kGood, name + "the kernel's HID driver has it as " + arm.node + ".");
         } else if (bound.empty()) {
@@ -97,7 +106,7 @@ class Examination {
                "Use a kernel with CONFIG_HIDRAW (Debian's has it), and plug it in again");
         }
         return;
-      case ArmKind::kHfabLine:
+      case BoardKind::kTextLines:
         if (!arm.node.empty()) {
           note(Health::kGood, name + "the kernel's serial driver has it as " + arm.node + ".");
         } else {
@@ -105,10 +114,8 @@ class Examination {
                "sudo modprobe cdc_acm, then plug it in again");
         }
         return;
-      case ArmKind::kFalcon:
+      case BoardKind::kFalconFtdi:
         look_at_falcon(arm, bound, name);
-        return;
-      case ArmKind::kUnsupported:
         return;
     }
   }
@@ -149,6 +156,16 @@ class Examination {
       note(Health::kProblem,
            name + "you may not open " + arm.node + " though rule and group are right.",
            "Plug it in again, or: sudo udevadm trigger");
+    }
+  }
+
+  void look_at_holder(const FoundArm& arm, const std::string& name) {
+    if (arm.node.empty()) return;
+    if (const auto holder = driver::find_holder(arm.node, patient_.root)) {
+      note(Health::kProblem,
+           name + "the program " + holder->program + " (process " + std::to_string(holder->pid) +
+               ") has it open.",
+           "Close that program; only one may send forces");
     }
   }
 

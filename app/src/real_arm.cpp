@@ -1,6 +1,8 @@
 #include "real_arm.h"
 
+#include <algorithm>
 #include <cstdio>
+#include <string>
 #include <utility>
 
 #include "printed.h"
@@ -8,6 +10,7 @@
 #include "thimble/driver/arms/falcon/falcon_boot.h"
 #include "thimble/driver/arms/hfab/hfab_models.h"
 #include "thimble/driver/arms/hfab/hfab_wire.h"
+#include "thimble/driver/arms/woody/woody_proof.h"
 #include "thimble/driver/arms/woody/woody_wire.h"
 #include "thimble/driver/transports.h"
 
@@ -17,6 +20,8 @@ namespace {
 namespace falcon = driver::falcon;
 namespace hfab = driver::hfab;
 using driver::ArmKind;
+using driver::BoardKind;
+using driver::Certainty;
 using driver::Error;
 using driver::FoundArm;
 using driver::Result;
@@ -92,66 +97,93 @@ Result<std::unique_ptr<driver::Transport>> open_falcon(const FoundArm& arm,
   return (*line)->into_transport(falcon::kPacketFraming, clock);
 }
 
+/// Says why a board is never opened.
+Error cannot_drive(const FoundArm& arm) {
+  if (arm.certainty == Certainty::kUnsupported) {
+    return Error{"The protocol of the " + arm.arm + " (" + arm.name() +
+                 ") is not public, so Thimble does not open it."};
+  }
+  return Error{
+      "The board " + arm.name() + " (" + arm.arm +
+      ") has reports of a form that no arm has, or no driver, so Thimble does not open it. "
+      "See `thimble doctor`."};
+}
+
 }  // namespace
 
 Result<std::optional<FoundArm>> choose_arm(const std::vector<FoundArm>& plugged_in,
                                            const std::string& wanted) {
   if (wanted == "sim") return std::optional<FoundArm>();
+  const bool by_itself = wanted == "auto";
   std::optional<FoundArm> found;
   std::string names;
   for (const FoundArm& arm : plugged_in) {
-    if (arm.kind == ArmKind::kUnsupported) continue;
+    if (arm.kind == ArmKind::kUnsupported) {
+      if (arm.name() == wanted) return cannot_drive(arm);
+      continue;
+    }
+    if (by_itself && arm.certainty == Certainty::kUnknown) continue;
     names.append(names.empty() ? "" : ", ").append(arm.name());
-    if (wanted != "auto" && arm.name() != wanted) continue;
+    if (!by_itself && arm.name() != wanted) continue;
     if (found) {
       return Error{printed("Several arms answer to '%s': %s. Name one with --device NAME.",
                            wanted.c_str(), names.c_str())};
     }
     found = arm;
   }
-  if (!found && wanted != "auto") {
+  if (!found && !by_itself) {
     return Error{"No arm is called '" + wanted + "'. " +
                  (names.empty() ? "None is plugged in that Thimble can drive."
                                 : "There is: " + names + ".") +
                  " See `thimble devices`."};
   }
   if (found && !found->accessible) {
+    if (found->certainty == Certainty::kUnknown) {
+      return Error{"No access to " + found->name() + " (" + found->arm +
+                   "): the installed rule is for arms alone. `thimble doctor` prints the line to "
+                   "add for this board."};
+    }
     return Error{"No access to " + found->arm + " " + found->name() +
                  ": install udev/70-thimble.rules and plug it in again (see `thimble doctor`)."};
   }
   return found;
 }
 
+std::string boards_left_out(const std::vector<FoundArm>& plugged_in) {
+  std::string boards;
+  for (const FoundArm& arm : plugged_in) {
+    if (arm.certainty != Certainty::kUnknown) continue;
+    boards.append(boards.empty() ? "" : ", ").append(arm.name()).append(": ").append(arm.arm);
+  }
+  if (boards.empty()) return {};
+  return "Left out, because they may be anything: " + boards +
+         ". If one is your arm, use it by --device NAME with an arm file that names its board "
+         "(`thimble doctor` tells).";
+}
+
 std::optional<FoundArm> find_again(const std::vector<FoundArm>& plugged_in, const FoundArm& lost) {
   for (const FoundArm& arm : plugged_in) {
-    if (arm.vendor_id != lost.vendor_id || arm.product_id != lost.product_id) continue;
-    const bool same = lost.serial.empty() ? arm.sysfs == lost.sysfs : arm.serial == lost.serial;
-    if (same && arm.accessible) return arm;
+    // Another board with the same ids, or other firmware on the same one, is not the same arm.
+    const bool same_kind = arm.vendor_id == lost.vendor_id && arm.product_id == lost.product_id &&
+                           arm.board == lost.board && arm.product == lost.product &&
+                           arm.serial == lost.serial;
+    if (same_kind && arm.name() == lost.name() && arm.accessible) return arm;
   }
   return std::nullopt;
 }
 
 Result<void> check_fits(const ArmFile& file, const FoundArm& arm) {
-  bool fits = false;
-  switch (arm.kind) {
-    case ArmKind::kWoody:
-      fits = file.protocol == ArmProtocol::kWoody8Byte;
-      break;
-    case ArmKind::kPolhem:
-      fits = file.protocol == ArmProtocol::kHfab14Byte;
-      break;
-    case ArmKind::kHfabLine:
-      fits = file.protocol != ArmProtocol::kFalconPacket;
-      break;
-    case ArmKind::kFalcon:
-      fits = file.protocol == ArmProtocol::kFalconPacket;
-      break;
-    case ArmKind::kUnsupported:
-      break;
+  if (arm.kind == ArmKind::kUnsupported) return cannot_drive(arm);
+  if (std::find(file.boards.begin(), file.boards.end(), arm.board) != file.boards.end()) return {};
+  std::string boards;
+  for (const driver::BoardKind board : file.boards) {
+    boards.append(boards.empty() ? "" : ", ").append(name(board));
   }
-  if (fits) return {};
-  return Error{"The arm file " + file.name + " is not for a " + arm.arm +
-               ". Choose its own with --arm FILE (app/arms has them)."};
+  const std::string board(name(arm.board));
+  return Error{"The arm file " + file.name + " is for the board " + boards + ", but " + arm.name() +
+               " (" + arm.arm + ") is a " + board +
+               ". Choose its own with --arm FILE (app/arms has them); signs and currents of one "
+               "board are dangerous on another."};
 }
 
 std::unique_ptr<const driver::Arm> make_arm(const ArmFile& file, ArmKind kind) {
@@ -173,24 +205,31 @@ Result<std::unique_ptr<driver::Transport>> open_wire(const FoundArm& arm, const 
                                                      const std::filesystem::path& firmware,
                                                      driver::Clock& clock) {
   if (auto fits = check_fits(file, arm); !fits) return fits.error();
-  switch (arm.kind) {
-    case ArmKind::kWoody:
-      // The mbed board takes messages of exactly 8 bytes.
-      return driver::open_hid_transport(arm.node, 0, clock);
-    case ArmKind::kPolhem:
-      return driver::open_hid_transport(arm.node, 64, clock);
-    case ArmKind::kHfabLine: {
+  switch (arm.board) {
+    case BoardKind::kMbedHid8: {
+      auto wire = driver::open_hid_transport(arm.node, driver::woody::kReportSize, clock);
+      if (!wire) return wire;
+      if (auto right = driver::woody::listen_for_board(**wire, clock); !right) {
+        return Error{arm.node + ": " + right.error().message};
+      }
+      return wire;
+    }
+    case BoardKind::kMbedHid14:
+      return driver::open_hid_transport(arm.node, hfab::kReportSize, clock);
+    case BoardKind::kTeensyRawHid64:
+      return driver::open_hid_transport(arm.node, hfab::kPaddedReportSize, clock);
+    case BoardKind::kTextLines: {
       auto wire = driver::open_serial_transport(arm.node, hfab::kLineFraming, clock);
       if (!wire) return wire;
       if (auto right = check_board(**wire, file, arm, clock); !right) return right.error();
       return wire;
     }
-    case ArmKind::kFalcon:
+    case BoardKind::kFalconFtdi:
       return open_falcon(arm, firmware, clock);
-    case ArmKind::kUnsupported:
+    case BoardKind::kOther:
       break;
   }
-  return Error{"The protocol of the " + arm.arm + " is not public, so Thimble cannot drive it."};
+  return cannot_drive(arm);
 }
 
 }  // namespace thimble::app

@@ -79,6 +79,23 @@ std::optional<double> to_number(const YAML::Node& node) {
   return number;
 }
 
+/// Gives the number of the word that a node holds; nothing if it is none of them.
+std::optional<std::size_t> choice_of(const YAML::Node& node,
+                                     const std::vector<std::string_view>& choices) {
+  if (!node.IsScalar()) return std::nullopt;
+  const auto found = std::find(choices.begin(), choices.end(), node.Scalar());
+  if (found == choices.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - choices.begin());
+}
+
+std::string any_of(const std::vector<std::string_view>& choices) {
+  std::string what;
+  for (std::size_t i = 0; i < choices.size(); ++i) {
+    what.append(i == 0 ? "" : i + 1 == choices.size() ? " or " : ", ").append(choices[i]);
+  }
+  return what;
+}
+
 /// Hears where documents begin, and nothing else.
 class DocumentStarts final : public YAML::EventHandler {
  public:
@@ -289,13 +306,31 @@ std::size_t YamlMap::require_choice(std::string_view key,
                                     const std::vector<std::string_view>& choices) {
   const Entry* entry = find(key, true);
   if (entry == nullptr) return 0;
-  std::string what;
-  for (std::size_t i = 0; i < choices.size(); ++i) {
-    if (entry->value.IsScalar() && entry->value.Scalar() == choices[i]) return i;
-    what.append(i == 0 ? "" : i + 1 == choices.size() ? " or " : ", ").append(choices[i]);
-  }
-  expected(*entry, what);
+  if (const auto chosen = choice_of(entry->value, choices)) return *chosen;
+  expected(*entry, any_of(choices));
   return 0;
+}
+
+std::vector<std::size_t> YamlMap::optional_choices(std::string_view key,
+                                                   const std::vector<std::size_t>& fallback,
+                                                   const std::vector<std::string_view>& choices) {
+  const Entry* entry = find(key, false);
+  if (entry == nullptr) return fallback;
+  std::vector<std::size_t> chosen;
+  if (entry->value.IsScalar()) {
+    if (const auto one = choice_of(entry->value, choices)) chosen.push_back(*one);
+  } else if (entry->value.IsSequence()) {
+    for (const YAML::Node& node : entry->value) {
+      const auto one = choice_of(node, choices);
+      if (!one) {
+        chosen.clear();
+        break;
+      }
+      chosen.push_back(*one);
+    }
+  }
+  if (chosen.empty()) expected(*entry, any_of(choices) + ", or a list of such");
+  return chosen;
 }
 
 std::size_t YamlMap::optional_choice(std::string_view key, std::size_t fallback,

@@ -88,6 +88,12 @@ class YamlMap {
   std::size_t optional_choice(std::string_view key, std::size_t fallback,
                               const std::vector<std::string_view>& choices);
 
+  /// Reads one of the words of `choices`, or a list of several, and gives their numbers in the
+  /// order of the file; `fallback` if the key is absent. A mistake gives none.
+  std::vector<std::size_t> optional_choices(std::string_view key,
+                                            const std::vector<std::size_t>& fallback,
+                                            const std::vector<std::string_view>& choices);
+
   /// Reads `true` or `false`, or gives `fallback` if the key is absent or wrong.
   bool optional_bool(std::string_view key, bool fallback);
 

@@ -3,46 +3,19 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cstdio>
 #include <fstream>
+#include <span>
 #include <system_error>
+
+#include "board_identity.h"
 
 namespace thimble::driver {
 namespace {
 
 namespace fs = std::filesystem;
-
-struct KnownArm {
-  std::uint16_t vendor_id;
-  std::uint16_t first_product_id, last_product_id;
-  ArmKind kind;
-  const char* arm;
-  const char* bus;
-};
-
-// All [S]: read in the arms' open-source drivers and firmware, or in their vendors' udev rules.
-// 16c0:0480 to 048f are the ids that a Teensy takes by what its program does; 0486 is raw HID, and
-// those with a serial port may be a Haptikfabriken arm or any other Teensy.
-constexpr KnownArm kKnownArms[] = {
-    {0x1234, 0x0006, 0x0006, ArmKind::kWoody, "WoodenHaptics", "USB HID"},
-    {0x16c0, 0x0486, 0x0486, ArmKind::kPolhem, "Polhem v2", "USB HID"},
-    {0x16c0, 0x0480, 0x048f, ArmKind::kHfabLine, "hfab (Teensy)", "USB serial"},
-    {0x0403, 0xcb48, 0xcb48, ArmKind::kFalcon, "Novint Falcon", "USB FTDI"},
-    {0x2988, 0x0302, 0x0302, ArmKind::kUnsupported, "Touch", "USB serial"},
-    {0x2988, 0x0304, 0x0304, ArmKind::kUnsupported, "Touch X", "USB HID"},
-    {0x1451, 0x0402, 0x0402, ArmKind::kUnsupported, "Force Dimension", "USB"},
-};
-
-const KnownArm* known_arm(std::uint16_t vendor_id, std::uint16_t product_id) noexcept {
-  for (const KnownArm& known : kKnownArms) {
-    if (known.vendor_id == vendor_id && known.first_product_id <= product_id &&
-        product_id <= known.last_product_id) {
-      return &known;
-    }
-  }
-  return nullptr;
-}
 
 template <class Number>
 Number number_in(const fs::path& file, int base) {
@@ -50,6 +23,14 @@ Number number_in(const fs::path& file, int base) {
   Number number{};
   std::from_chars(text.data(), text.data() + text.size(), number, base);
   return number;
+}
+
+/// Reads a string that a device tells of itself; signs that a terminal would obey become '?'.
+std::string device_string(const fs::path& file) {
+  std::string text = read_line(file);
+  std::replace_if(
+      text.begin(), text.end(), [](char sign) { return sign < ' ' || sign > '~'; }, '?');
+  return text;
 }
 
 /// Lists a folder in the order of names; nothing if it is none.
@@ -61,16 +42,39 @@ std::vector<fs::path> entries(const fs::path& folder) {
   return found;
 }
 
-/// Finds the first hidraw node of a device: interface/bus:vendor:product.n/hidraw/hidrawN. The
-/// first interface is the one that carries reports; a Teensy's second is its debug output.
-std::string hidraw_node(const fs::path& device) {
+HidReports descriptor_of(const fs::path& hid) {
+  constexpr std::size_t kDescriptorMax =
+      4096;  // HID_MAX_DESCRIPTOR_SIZE, linux/include/linux/hid.h
+  std::array<char, kDescriptorMax> bytes{};
+  std::ifstream stream(hid / "report_descriptor", std::ios::binary);
+  stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  return read_hid_descriptor(
+      std::as_bytes(std::span(bytes).first(static_cast<std::size_t>(stream.gcount()))));
+}
+
+/// A hidraw node with what its device says of its reports.
+struct HidNode {
+  std::string node;
+  HidReports reports;
+};
+
+/// Finds a device's raw HID node: interface/bus:vendor:product.n/hidraw/hidrawN. A Teensy has a
+/// second one, its debug output, and nobody promises their order; so the usage page chooses, and
+/// the first stands in where none has it.
+HidNode hidraw_node(const fs::path& device) {
+  HidNode found;
   for (const fs::path& interface : entries(device)) {
     for (const fs::path& hid : entries(interface)) {
-      for (const fs::path& node : entries(hid / "hidraw"))
-        return "/dev/" + node.filename().string();
+      for (const fs::path& node : entries(hid / "hidraw")) {
+        const HidReports reports = descriptor_of(hid);
+        const bool raw = reports.usage_page == kRawHidPage && reports.usage == kRawHidUsage;
+        if (!raw && !found.node.empty()) continue;
+        found = {"/dev/" + node.filename().string(), reports};
+        if (raw) return found;
+      }
     }
   }
-  return {};
+  return found;
 }
 
 /// Finds the first serial port of a device: interface/tty/ttyACM0.
@@ -83,13 +87,13 @@ std::string tty_node(const fs::path& device) {
   return {};
 }
 
+}  // namespace
+
 std::string usb_node(const UsbAddress& address) {
   char text[40];
   std::snprintf(text, sizeof text, "/dev/bus/usb/%03d/%03d", address.bus, address.device);
   return text;
 }
-
-}  // namespace
 
 std::string read_line(const fs::path& file) {
   std::ifstream stream(file);
@@ -98,14 +102,20 @@ std::string read_line(const fs::path& file) {
   return line;
 }
 
-std::string FoundArm::name() const {
-  if (!serial.empty()) return serial;
-  return "usb-" + std::to_string(usb.bus) + "-" + std::to_string(usb.device);
+bool is_placeholder(std::string_view serial) noexcept {
+  // What boards carry whose makers gave them none: mbed's USB library has 0123456789 [S mbed
+  // USBDevice.cpp, stringIserialDesc]; the others are what such libraries and examples do alike.
+  constexpr std::string_view kCounted = "0123456789ABCDEF";
+  const auto same = [&serial](char sign) { return sign == serial.front(); };
+  return serial.empty() || std::all_of(serial.begin(), serial.end(), same) ||
+         kCounted.starts_with(serial) || kCounted.substr(1).starts_with(serial) ||
+         serial == "1234567890" || serial == "0123456789abcdef";
 }
 
-const char* arm_of_usb_id(std::uint16_t vendor_id, std::uint16_t product_id) noexcept {
-  const KnownArm* known = known_arm(vendor_id, product_id);
-  return known ? known->arm : nullptr;
+std::string FoundArm::name() const {
+  if (!serial_is_shared && !is_placeholder(serial)) return serial;
+  if (!sysfs.empty()) return "usb-" + sysfs.filename().string();
+  return "usb-" + std::to_string(usb.bus) + "-" + std::to_string(usb.device);
 }
 
 Result<std::vector<FoundArm>> find_arms(const fs::path& root) {
@@ -119,38 +129,42 @@ Result<std::vector<FoundArm>> find_arms(const fs::path& root) {
   for (const fs::path& device : entries(devices)) {
     const auto vendor_id = number_in<std::uint16_t>(device / "idVendor", 16);
     const auto product_id = number_in<std::uint16_t>(device / "idProduct", 16);
-    const KnownArm* known = known_arm(vendor_id, product_id);
-    if (!known) continue;
+    const std::string product = device_string(device / "product");
+    const HidNode hid = hidraw_node(device);
+    const std::string tty = tty_node(device);
+    const auto identity = identify({.vendor_id = vendor_id,
+                                    .product_id = product_id,
+                                    .product = product,
+                                    .has_hidraw = !hid.node.empty(),
+                                    .hid = hid.reports,
+                                    .has_tty = !tty.empty()});
+    if (!identity) continue;
     FoundArm arm;
-    arm.kind = known->kind;
-    arm.arm = known->arm;
-    arm.bus = known->bus;
+    arm.kind = identity->kind;
+    arm.board = identity->board;
+    arm.certainty = identity->certainty;
+    arm.arm = identity->arm;
+    arm.bus = identity->bus;
     arm.vendor_id = vendor_id;
     arm.product_id = product_id;
-    arm.serial = read_line(device / "serial");
+    arm.serial = device_string(device / "serial");
+    arm.product = product;
+    arm.manufacturer = device_string(device / "manufacturer");
+    arm.release = number_in<std::uint16_t>(device / "bcdDevice", 16);
+    arm.hid = hid.reports;
     arm.usb = {.bus = number_in<int>(device / "busnum", 10),
                .device = number_in<int>(device / "devnum", 10)};
     arm.address =
         "bus " + std::to_string(arm.usb.bus) + ", device " + std::to_string(arm.usb.device);
     arm.sysfs = device;
-    switch (known->kind) {
-      case ArmKind::kWoody:
-      case ArmKind::kPolhem:
-        arm.node = hidraw_node(device);
-        break;
-      case ArmKind::kHfabLine:
-        arm.node = tty_node(device);
-        // A Teensy without a serial port (a keyboard, say) is no arm.
-        if (arm.node.empty() && product_id != 0x0483) continue;
-        break;
-      case ArmKind::kFalcon:
-      case ArmKind::kUnsupported:
-        arm.node = usb_node(arm.usb);
-        break;
-    }
+    arm.node = arm.bus == kHidBus ? hid.node : arm.bus == kSerialBus ? tty : usb_node(arm.usb);
     const fs::path node = root / fs::path(arm.node).relative_path();
     arm.accessible = !arm.node.empty() && access(node.c_str(), R_OK | W_OK) == 0;
     found.push_back(std::move(arm));
+  }
+  for (FoundArm& arm : found) {
+    const auto same = [&arm](const FoundArm& other) { return other.serial == arm.serial; };
+    arm.serial_is_shared = std::count_if(found.begin(), found.end(), same) > 1;
   }
   return found;
 }

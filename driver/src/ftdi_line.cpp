@@ -7,6 +7,7 @@
 
 #include "ftdi_transport.h"
 #include "thimble/driver/ftdi_packet.h"
+#include "thimble/driver/node_lock.h"
 #include "thimble/driver/transports.h"
 
 namespace thimble::driver {
@@ -105,7 +106,7 @@ Error cannot_open(const UsbAddress& address, int code) {
                  "doctor`)."};
   }
   if (code == LIBUSB_ERROR_BUSY) {
-    return Error{where + " is in use by another program. Close it and try again."};
+    return Error{in_use(usb_node(address))};
   }
   return Error{where + " cannot be opened (" + libusb_strerror(code) + ")."};
 }
@@ -132,6 +133,7 @@ Result<std::unique_ptr<FtdiLine>> FtdiLine::open(const UsbAddress& address) {
   if (devices != nullptr) libusb_free_device_list(devices, 1);
   if (code != 0) return cannot_open(address, code);
   libusb_set_auto_detach_kernel_driver(usb.handle.get(), 1);
+  // Only one program can have an interface: to claim it is the lock.
   code = libusb_claim_interface(usb.handle.get(), kFtdiInterface);
   if (code != 0) return cannot_open(address, code);
   // An endpoint that stalled under the program before stays halted until somebody says this. A

@@ -1,13 +1,17 @@
-#include <fcntl.h>
 #include <hidapi.h>
-#include <unistd.h>
+#include <linux/hidraw.h>
+#include <sys/ioctl.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <optional>
+#include <utility>
 
 #include "thimble/driver/arm.h"
+#include "thimble/driver/hid_descriptor.h"
+#include "thimble/driver/node_lock.h"
 #include "thimble/driver/transports.h"
 
 namespace thimble::driver {
@@ -15,8 +19,13 @@ namespace {
 
 class HidTransport final : public Transport {
  public:
-  HidTransport(hid_device* device, std::size_t message_size, const Clock& clock) noexcept
-      : clock_(clock), device_(device), message_size_(std::min(message_size, kReportCapacity)) {}
+  HidTransport(hid_device* device, NodeLock lock, std::size_t message_size, std::size_t out_bytes,
+               const Clock& clock) noexcept
+      : clock_(clock),
+        device_(device),
+        lock_(std::move(lock)),
+        message_size_(message_size),
+        out_bytes_(out_bytes) {}
   ~HidTransport() override { hid_close(device_); }
 
   TransportRead read_latest(std::span<std::byte> buffer,
@@ -69,6 +78,8 @@ class HidTransport final : public Transport {
     const std::size_t used = std::min(report.size(), kReportCapacity);
     std::memcpy(message.data() + 1, report.data(), used);
     const std::size_t size = 1 + std::max(used, message_size_);
+    // The kernel would send it, and the arm would throw it away without a word.
+    if (size != 1 + out_bytes_) return TransportStatus::kRefused;
     errno = 0;
     if (hid_write(device_, message.data(), size) >= 0) return TransportStatus::kOk;
     // A stalled or silent endpoint is an arm that refuses; only a missing device is a lost one.
@@ -82,30 +93,44 @@ class HidTransport final : public Transport {
  private:
   const Clock& clock_;
   hid_device* device_;
+  NodeLock lock_;
   std::size_t message_size_;
+  std::size_t out_bytes_;  // what the arm's descriptor says a message is long
   bool lost_ = false;
 };
+
+/// Asks an open node for its report descriptor; nothing if it is no HID device.
+std::optional<HidReports> ask_for_reports(int file) {
+  int size = 0;
+  hidraw_report_descriptor descriptor{};
+  if (ioctl(file, HIDIOCGRDESCSIZE, &size) < 0 || size <= 0) return std::nullopt;
+  descriptor.size = std::min<__u32>(static_cast<__u32>(size), HID_MAX_DESCRIPTOR_SIZE);
+  if (ioctl(file, HIDIOCGRDESC, &descriptor) < 0) return std::nullopt;
+  return read_hid_descriptor(
+      std::as_bytes(std::span(descriptor.value)
+                        .first(std::min<std::size_t>(descriptor.size, HID_MAX_DESCRIPTOR_SIZE))));
+}
 
 }  // namespace
 
 Result<std::unique_ptr<Transport>> open_hid_transport(const std::string& node,
                                                       std::size_t message_size,
                                                       const Clock& clock) {
-  // hidapi says only that it failed; the kernel says why.
-  const int probe = ::open(node.c_str(), O_RDWR | O_CLOEXEC);
-  if (probe < 0) {
-    if (errno == EACCES || errno == EPERM) {
-      return Error{"No access to " + node +
-                   ": install udev/70-thimble.rules and plug the arm in again (see `thimble "
-                   "doctor`)."};
-    }
-    return Error{node + " cannot be opened (" + std::strerror(errno) +
-                 "). Check that the arm is plugged in."};
+  auto lock = NodeLock::take(node);
+  if (!lock) return lock.error();
+  const auto reports = ask_for_reports(lock->file());
+  if (!reports) return Error{node + " is no HID device that can be used."};
+  if (message_size > 0 && reports->out_bytes != message_size) {
+    return Error{node + " takes messages of " + std::to_string(reports->out_bytes) +
+                 " bytes, but this arm's are " + std::to_string(message_size) +
+                 " long, so that it would throw all away. It is another board than the arm file "
+                 "says; see `thimble devices`."};
   }
-  ::close(probe);
   hid_device* device = hid_open_path(node.c_str());
   if (device == nullptr) return Error{node + " is no HID device that can be used."};
-  return std::unique_ptr<Transport>(std::make_unique<HidTransport>(device, message_size, clock));
+  return std::unique_ptr<Transport>(std::make_unique<HidTransport>(
+      device, std::move(lock).value(), std::min(message_size, kReportCapacity), reports->out_bytes,
+      clock));
 }
 
 }  // namespace thimble::driver

@@ -1,4 +1,3 @@
-#include <fcntl.h>
 #include <poll.h>
 #include <sys/ioctl.h>
 #include <termios.h>
@@ -8,7 +7,9 @@
 #include <cerrno>
 #include <cstring>
 #include <ctime>
+#include <utility>
 
+#include "thimble/driver/node_lock.h"
 #include "thimble/driver/stream_transport.h"
 #include "thimble/driver/transports.h"
 
@@ -17,8 +18,8 @@ namespace {
 
 class SerialTransport final : public StreamTransport {
  public:
-  SerialTransport(int file, const Framing& framing, const Clock& clock) noexcept
-      : StreamTransport(clock, framing), file_(file) {}
+  SerialTransport(NodeLock lock, const Framing& framing, const Clock& clock) noexcept
+      : StreamTransport(clock, framing), lock_(std::move(lock)), file_(lock_.file()) {}
   ~SerialTransport() override {
     // The last message is the zero force: let it out before the port closes, but do not hang on an
     // arm that takes nothing (tcdrain would, and so would close).
@@ -28,7 +29,6 @@ class SerialTransport final : public StreamTransport {
       nanosleep(&time, nullptr);
     }
     tcflush(file_, TCOFLUSH);
-    close(file_);
   }
 
  private:
@@ -61,44 +61,32 @@ class SerialTransport final : public StreamTransport {
     return TransportStatus::kLost;
   }
 
+  NodeLock lock_;  // the port itself, which it closes
   int file_;
 };
-
-Error cannot_open(const std::string& node, int error) {
-  if (error == EACCES || error == EPERM) {
-    return Error{
-        "No access to " + node +
-        ": install udev/70-thimble.rules and plug the arm in again (see `thimble doctor`)."};
-  }
-  if (error == EBUSY) {
-    return Error{node + " is in use by another program. Close it and try again."};
-  }
-  return Error{node + " cannot be opened (" + std::strerror(error) +
-               "). Check that the arm is plugged in."};
-}
 
 }  // namespace
 
 Result<std::unique_ptr<Transport>> open_serial_transport(const std::string& node,
                                                          const Framing& framing,
                                                          const Clock& clock) {
-  const int file = ::open(node.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
-  if (file < 0) return cannot_open(node, errno);
-  // From here on the transport closes the port. TIOCEXCL keeps a second program from sending
-  // currents of its own.
-  std::unique_ptr<Transport> transport = std::make_unique<SerialTransport>(file, framing, clock);
+  // The lock keeps out programs that look for it, TIOCEXCL those that do not (unless root runs
+  // them).
+  auto lock = NodeLock::take(node);
+  if (!lock) return lock.error();
+  const int file = lock->file();
   termios settings{};
-  if (tcgetattr(file, &settings) != 0) {
-    return Error{node + " is no serial port."};
-  }
+  if (tcgetattr(file, &settings) != 0) return Error{node + " is no serial port."};
   cfmakeraw(&settings);
   settings.c_cflag |= CLOCAL | CREAD;
   cfsetspeed(&settings, B115200);  // USB serial boards ignore it [S woodenhaptics firmware]
   if (tcsetattr(file, TCSANOW, &settings) != 0 || ioctl(file, TIOCEXCL) != 0) {
-    return cannot_open(node, errno);
+    return Error{node + " cannot be set up (" + std::strerror(errno) +
+                 "). Check that the arm is plugged in."};
   }
   tcflush(file, TCIOFLUSH);
-  return transport;
+  return std::unique_ptr<Transport>(
+      std::make_unique<SerialTransport>(std::move(lock).value(), framing, clock));
 }
 
 }  // namespace thimble::driver

@@ -13,6 +13,7 @@
 #include "thimble/driver/arms/woody/woody_wire.h"
 #include "thimble/driver/frame_finder.h"
 #include "thimble/driver/ftdi_packet.h"
+#include "thimble/driver/hid_descriptor.h"
 
 namespace thimble::fuzz {
 namespace {
@@ -167,6 +168,15 @@ bool usbip_session(Bytes bytes) {
   return session.state() == usb::UsbipSession::State::kAttached && counters.completed > 1;
 }
 
+/// A report descriptor comes from a device that nobody knows yet.
+bool hid_descriptor(Bytes bytes) {
+  constexpr std::size_t kLengthMax = 1U << 16;
+  const driver::HidReports reports = driver::read_hid_descriptor(bytes);
+  promise(reports.in_bytes <= kLengthMax && reports.out_bytes <= kLengthMax,
+          "a report has a length that a report may have");
+  return reports.in_bytes > 0;
+}
+
 }  // namespace
 
 bool decode_anything(Bytes bytes) {
@@ -205,6 +215,8 @@ bool decode_anything(Bytes bytes) {
       return usbip_decode(rest);
     case 10:
       return usbip_session(rest);
+    case 12:
+      return hid_descriptor(rest);
     default:
       return read_shared_memory(rest);
   }

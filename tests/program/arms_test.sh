@@ -14,7 +14,8 @@ echo 1 >busnum
 echo 4 >devnum
 echo auto >power/control
 cd "$work"
-expect 0 '^WH01 +WoodenHaptics +USB HID +bus 1, device 4 +- +no driver has it' \
+# Without a driver nobody knows what its reports are, so it may be anything.
+expect 0 '^WH01 +mbed HID +USB HID +bus 1, device 4 +- +no driver has it' \
   "$thimble" devices --root root
 expect 3 'PROBLEM The udev rule is not installed' "$thimble" doctor --root root
 expect 3 '-> sudo modprobe usbhid' "$thimble" doctor --root root
@@ -22,7 +23,22 @@ expect 3 'power/control' "$thimble" doctor --root root
 mkdir -p root/etc/udev/rules.d
 cp "$source_dir/udev/70-thimble.rules" root/etc/udev/rules.d/
 expect 3 'ok +The udev rule is installed in /etc/udev/rules.d' "$thimble" doctor --root root
-rm -r root/sys/bus/usb/devices/1-1
+# With one it is a board with reports of 8 bytes, which proves itself when it is opened; of 14, which may be
+# anything; and a second one of the same serial number is named by its socket.
+hid=root/sys/bus/usb/devices/1-1/1-1:1.0/0003:1234:0006.0001
+mkdir -p $hid/hidraw/hidraw3 root/dev
+: >root/dev/hidraw3
+descriptor() { # of the raw HID examples, with reports of $1 (octal) bytes
+  printf "\\006\\253\\377\\012\\000\\002\\241\\001\\165\\010\\225\\$1\\011\\001\\201\\002\\011\\002\\221\\002\\300"
+}
+descriptor 010 >$hid/report_descriptor
+expect 0 '^WH01 +WoodenHaptics +USB HID +bus 1, device 4 +/dev/hidraw3 +ready' "$thimble" devices --root root
+descriptor 016 >$hid/report_descriptor
+expect 0 '^WH01 +mbed HID, 14 byt.*board of unknown kind: thimble doctor' "$thimble" devices --root root
+expect 0 'board: mbed_hid_14' "$thimble" doctor --root root
+cp -r root/sys/bus/usb/devices/1-1 root/sys/bus/usb/devices/1-2
+expect 0 '^usb-1-2 +mbed HID' "$thimble" devices --root root
+rm -r root/sys/bus/usb/devices/1-[12]
 expect 0 'No arm that Thimble knows is plugged in' "$thimble" doctor --root root
 
 expect 3 "No arm is called 'WH02'" \

@@ -30,7 +30,7 @@ inline constexpr std::array<TestedArm, 6> kTestedArms{{
     {"vintage_phantom", "vintage_phantom", driver::ArmKind::kPolhem},
     {"vintage_text", "vintage_phantom", driver::ArmKind::kHfabLine},
     {"woodenhaptics", "woodenhaptics", driver::ArmKind::kWoody},
-    {"woodenhaptics_text", "woodenhaptics", driver::ArmKind::kHfabLine},
+    {"woodenhaptics_text", "woodenhaptics_teensy", driver::ArmKind::kHfabLine},
     {"polhem", "polhem", driver::ArmKind::kPolhem},
     {"falcon", "falcon", driver::ArmKind::kFalcon},
 }};

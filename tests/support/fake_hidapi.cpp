@@ -1,9 +1,16 @@
 #include "support/fake_hidapi.h"
 
 #include <hidapi.h>
+#include <linux/hidraw.h>
+#include <sys/ioctl.h>
+#include <sys/syscall.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdarg>
+
+#include "support/raw_hid.h"
 
 namespace thimble::support {
 
@@ -35,7 +42,9 @@ int hid_read_timeout(hid_device*, unsigned char* data, std::size_t length, int m
   --left;
   const std::size_t size = std::min<std::size_t>(length, 8);
   std::fill_n(data, size, static_cast<unsigned char>(0));
-  data[0] = ++hid.number;
+  hid.number = static_cast<std::uint16_t>(hid.number + hid.number_step);
+  data[hid.numbered_last ? 6 : 0] = static_cast<unsigned char>(hid.number);
+  if (hid.numbered_last) data[7] = static_cast<unsigned char>(hid.number >> 8);
   return static_cast<int>(size);
 }
 int hid_write(hid_device*, const unsigned char* data, std::size_t length) {
@@ -48,6 +57,25 @@ int hid_write(hid_device*, const unsigned char* data, std::size_t length) {
   std::copy_n(data, hid.last_message_size, hid.last_message.begin());
   ++hid.messages;
   return static_cast<int>(length);
+}
+
+int ioctl(int file, unsigned long request, ...) noexcept {
+  va_list arguments;
+  va_start(arguments, request);
+  void* const argument = va_arg(arguments, void*);
+  va_end(arguments);
+  const auto bytes = static_cast<unsigned char>(fake_hidapi().report_bytes);
+  const auto descriptor = thimble::support::raw_hid_descriptor(bytes, bytes);
+  if (bytes > 0 && request == HIDIOCGRDESCSIZE) {
+    *static_cast<int*>(argument) = static_cast<int>(descriptor.size());
+    return 0;
+  }
+  if (bytes > 0 && request == HIDIOCGRDESC) {
+    std::copy(descriptor.begin(), descriptor.end(),
+              static_cast<hidraw_report_descriptor*>(argument)->value);
+    return 0;
+  }
+  return static_cast<int>(syscall(SYS_ioctl, file, request, argument));
 }
 
 }  // extern "C"

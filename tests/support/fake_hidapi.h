@@ -6,12 +6,20 @@
 
 namespace thimble::support {
 
-/// Is hidapi with one scripted arm, for programs that link fake_hidapi.cpp: its functions stand in
-/// for the library's. Nothing here asks the heap for anything.
+/// hidapi with one scripted arm, for programs that link fake_hidapi.cpp: its functions stand in for
+/// the library's, and so does its ioctl for the kernel's questions about the report descriptor (all
+/// others go on to the kernel). Nothing here asks the heap for anything.
 struct FakeHidapi {
+  /// The descriptor of the raw HID examples with reports of `bytes` each way is what it tells; 0:
+  /// it is no HID device.
+  int report_bytes = 8;
+  /// Reports are the 8 bytes of a WoodenHaptics board: zeros, and in the last word a number that
+  /// rises by `number_step` from one to the next. Otherwise the first byte has the number.
+  bool numbered_last = false;
+  int number_step = 1;
   int reports = 0;           ///< Waiting to be read; each holds its number.
   int coming = 0;            ///< Arrive when somebody waits.
-  std::uint8_t number = 0;   ///< Of the last report that was read.
+  std::uint16_t number = 0;  ///< Of the last report that was read.
   bool gone = false;         ///< Reads fail.
   int write_error = 0;       ///< errno of a write; 0: it goes well.
   int last_timeout_ms = -1;  ///< Of the last read.

@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "support/raw_hid.h"
 #include "support/scratch.h"
 
 namespace thimble::support {
@@ -53,11 +54,23 @@ class FakeUsb {
     std::filesystem::create_directory_symlink(drivers, folder / "driver");
   }
 
-  /// Gives an interface a hidraw node.
-  void add_hidraw(const std::string& port, int interface, const std::string& node) const {
+  /// Gives an interface a hidraw node whose reports have `bytes` each way (0: no descriptor).
+  void add_hidraw(const std::string& port, int interface, const std::string& node,
+                  unsigned char bytes = 8, unsigned page = 0xffab) const {
     const auto hid = interface_folder(port, interface) / "0003:0000:0000.0001";
     std::filesystem::create_directories(root_ / hid / "hidraw" / node);
+    if (bytes > 0) {
+      const auto descriptor = raw_hid_descriptor(bytes, bytes, page);
+      std::ofstream(root_ / hid / "report_descriptor", std::ios::binary)
+          .write(reinterpret_cast<const char*>(descriptor.data()),
+                 static_cast<std::streamsize>(descriptor.size()));
+    }
     write("dev/" + node, "");
+  }
+
+  /// Gives a device its product string.
+  void call(const std::string& port, std::string_view product) const {
+    write(device_folder(port) / "product", product);
   }
 
   /// Gives an interface a serial port.

@@ -95,6 +95,30 @@ TEST(ArmFile, NamesTheGatesEnergyStageAndWhatItLeavesOpenFollowsFromTheArm) {
             std::string::npos);
 }
 
+TEST(ArmFile, NamesTheBoardsThatTheArmMayHave) {
+  using driver::BoardKind;
+  const auto boards = [](const char* name) {
+    const auto arm = read_arm_file(std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms" / name);
+    return arm ? arm->boards : std::vector<BoardKind>();
+  };
+  EXPECT_EQ(boards("woodenhaptics.yaml"), std::vector{BoardKind::kMbedHid8});
+  EXPECT_EQ(boards("woodenhaptics_teensy.yaml"), std::vector{BoardKind::kTextLines});
+  EXPECT_EQ(boards("falcon.yaml"), std::vector{BoardKind::kFalconFtdi});
+  EXPECT_EQ(boards("polhem.yaml"), (std::vector{BoardKind::kMbedHid14, BoardKind::kTeensyRawHid64,
+                                                BoardKind::kTextLines}));
+  EXPECT_EQ(boards("vintage_phantom.yaml"), std::vector{BoardKind::kTextLines});
+  EXPECT_EQ(mistake_with("board: text_lines", "board: [mbed_hid_14, text_lines]"), "");
+  EXPECT_EQ(mistake_with("board: text_lines", ""), "");  // the protocol's usual one
+  EXPECT_NE(mistake_with("board: text_lines", "board: teensy").find("or a list of such"),
+            std::string::npos);
+  EXPECT_NE(mistake_with("board: text_lines", "board: [text_lines, teensy]").find("or a list"),
+            std::string::npos);
+  EXPECT_NE(mistake_with("board: text_lines", "board: []").find("or a list"), std::string::npos);
+  EXPECT_NE(mistake_with("board: text_lines", "board: mbed_hid_8")
+                .find("the board mbed_hid_8 does not speak hfab_14_byte"),
+            std::string::npos);
+}
+
 TEST(ArmFile, ChoosesIdealEncoders) {
   EXPECT_EQ(mistake_with("encoders: quantised", "encoders: ideal"), "");
   EXPECT_NE(mistake_with("encoders: quantised", "encoders: perfect").find("quantised or ideal"),

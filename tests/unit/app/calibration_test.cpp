@@ -177,7 +177,8 @@ const Miswired kMiswired[] = {
      },
      "they are swapped"},
 };
-const char* const kArmFiles[] = {"vintage_phantom", "woodenhaptics", "polhem", "falcon"};
+const char* const kArmFiles[] = {"vintage_phantom", "woodenhaptics", "woodenhaptics_teensy",
+                                 "polhem", "falcon"};
 
 /// Each arm with each mistake.
 class FeelCheckOfAMiswiredArm : public testing::TestWithParam<std::tuple<const char*, Miswired>> {};

@@ -106,10 +106,59 @@ TEST_F(DoctorTest, SeesTheKernelsRealTimeLimits) {
   EXPECT_EQ(troubles(), 1u);
 }
 
+TEST_F(DoctorTest, SaysOfABoardOfUnknownKindHowToUseItAndHowToGiveAccessToItAlone) {
+  usb_.plug("1-3", "16c0", "0486", "7654321", 1, 4);
+  usb_.call("1-3", "Teensyduino RawHID");
+  usb_.bind("1-3", 0, "usbhid");
+  usb_.add_hidraw("1-3", 0, "hidraw5", 64);
+  Finding unknown = finding("board of unknown kind");
+  EXPECT_EQ(unknown.health, Health::kAdvice);
+  EXPECT_NE(unknown.what.find("16c0:0486, \"Teensyduino RawHID\""), std::string::npos);
+  EXPECT_NE(unknown.mend.find("--device 7654321"), std::string::npos);
+  EXPECT_NE(unknown.mend.find("board: teensy_raw_hid_64"), std::string::npos);
+  EXPECT_EQ(unknown.mend.find("udev"), std::string::npos) << "it may be opened already";
+  std::filesystem::remove(usb_.root() / "dev/hidraw5");
+  unknown = finding("board of unknown kind");
+  EXPECT_NE(unknown.mend.find("echo 'SUBSYSTEM==\"hidraw\", ATTRS{idVendor}==\"16c0\", "
+                              "ATTRS{idProduct}==\"0486\", ATTRS{serial}==\"7654321\", "
+                              "TAG+=\"uaccess\""),
+            std::string::npos)
+      << unknown.mend;
+  EXPECT_NE(unknown.mend.find("/etc/udev/rules.d/71-"), std::string::npos);
+}
+
+TEST_F(DoctorTest, NamesABoardWithoutANameOfItsOwnByItsSocket) {
+  usb_.plug("1-1.4", "1234", "0006", "0123456789", 1, 4);
+  usb_.bind("1-1.4", 0, "usbhid");
+  usb_.add_hidraw("1-1.4", 0, "hidraw5", 14);
+  std::filesystem::remove(usb_.root() / "dev/hidraw5");
+  const Finding unknown = finding("board of unknown kind");
+  EXPECT_NE(unknown.mend.find("--device usb-1-1.4"), std::string::npos);
+  EXPECT_NE(unknown.mend.find("KERNELS==\"1-1.4\""), std::string::npos);
+}
+
+TEST_F(DoctorTest, SaysThatABoardOfAFormNoArmHasIsNeverOpened) {
+  usb_.plug("1-3", "1234", "0006", "X1", 1, 4);
+  usb_.bind("1-3", 0, "usbhid");
+  usb_.add_hidraw("1-3", 0, "hidraw5", 64);
+  EXPECT_NE(finding("64 bytes in and 64 out").what.find("never opened"), std::string::npos);
+}
+
+TEST_F(DoctorTest, NamesTheProgramThatHasTheArm) {
+  plug_woody();
+  usb_.write("proc/77/comm", "steam");
+  std::filesystem::create_directories(usb_.root() / "proc/77/fd");
+  std::filesystem::create_symlink("/dev/hidraw3", usb_.root() / "proc/77/fd/12");
+  EXPECT_EQ(finding("steam (process 77)").health, Health::kProblem);
+}
+
 TEST_F(DoctorTest, SaysSoWhenNothingIsPluggedInOrItsProtocolIsSecret) {
   EXPECT_EQ(finding("No arm that Thimble knows").health, Health::kAdvice);
   usb_.plug("1-5", "1451", "0402", "FD", 1, 6);
   EXPECT_EQ(finding("not public").health, Health::kAdvice);
+  usb_.plug("1-6", "16c0", "0483", "H1", 1, 7);
+  usb_.call("1-6", "Haply inverse3");
+  EXPECT_NE(finding("Haply Inverse3").what.find("not public"), std::string::npos);
 }
 
 }  // namespace

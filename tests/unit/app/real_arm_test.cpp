@@ -4,11 +4,14 @@
 
 #include "support/fake_usb.h"
 #include "thimble/driver/arms/falcon/falcon_arm.h"
+#include "thimble/driver/arms/hfab/hfab_models.h"
 
 namespace thimble::app {
 namespace {
 
 using driver::ArmKind;
+using driver::BoardKind;
+using driver::Certainty;
 
 ArmFile file_of(const std::string& name) {
   auto file = read_arm_file(std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms" / name);
@@ -22,6 +25,26 @@ driver::FoundArm found(ArmKind kind, const std::string& serial) {
   arm.arm = "arm";
   arm.serial = serial;
   arm.accessible = true;
+  switch (kind) {
+    case ArmKind::kWoody:
+      arm.board = BoardKind::kMbedHid8;
+      arm.certainty = Certainty::kProvesItself;
+      break;
+    case ArmKind::kPolhem:
+      arm.board = BoardKind::kMbedHid14;
+      arm.certainty = Certainty::kUnknown;
+      break;
+    case ArmKind::kHfabLine:
+      arm.board = BoardKind::kTextLines;
+      arm.certainty = Certainty::kUnknown;
+      break;
+    case ArmKind::kFalcon:
+      arm.board = BoardKind::kFalconFtdi;
+      break;
+    case ArmKind::kUnsupported:
+      arm.certainty = Certainty::kUnsupported;
+      break;
+  }
   return arm;
 }
 
@@ -37,7 +60,29 @@ TEST(RealArm, IsChosenByNameOrAsTheOnlyOne) {
   EXPECT_EQ((*choose_arm({arms[0], arms[1]}, "auto"))->serial, "W1");
   EXPECT_FALSE(choose_arm({}, "auto")->has_value());
   EXPECT_NE(choose_arm({}, "W1").error().message.find("None is plugged in"), std::string::npos);
-  EXPECT_NE(choose_arm(arms, "T1").error().message.find("No arm is called"), std::string::npos);
+  EXPECT_NE(choose_arm(arms, "T1").error().message.find("not public"), std::string::npos);
+}
+
+TEST(RealArm, OfUnknownKindIsTakenByItsNameAloneAndToldOf) {
+  const std::vector<driver::FoundArm> arms = {found(ArmKind::kPolhem, "P1"),
+                                              found(ArmKind::kHfabLine, "L1")};
+  EXPECT_FALSE(choose_arm(arms, "auto")->has_value());
+  EXPECT_EQ((*choose_arm(arms, "L1"))->serial, "L1");
+  const std::string told = boards_left_out(arms);
+  EXPECT_NE(told.find("P1: arm, L1: arm"), std::string::npos) << told;
+  EXPECT_EQ(boards_left_out({found(ArmKind::kFalcon, "F1")}), "");
+  // Beside an arm it is not what "auto" means.
+  EXPECT_EQ((*choose_arm({arms[0], arms[1], found(ArmKind::kFalcon, "F1")}, "auto"))->serial, "F1");
+  driver::FoundArm closed = arms[1];
+  closed.accessible = false;
+  EXPECT_NE(choose_arm({closed}, "L1").error().message.find("line to add"), std::string::npos);
+}
+
+TEST(RealArm, OfAFormThatNoArmHasIsNeverChosen) {
+  driver::FoundArm odd = found(ArmKind::kUnsupported, "O1");
+  odd.certainty = Certainty::kUnknown;
+  EXPECT_FALSE(choose_arm({odd}, "auto")->has_value());
+  EXPECT_NE(choose_arm({odd}, "O1").error().message.find("does not open it"), std::string::npos);
 }
 
 TEST(RealArm, MustBeAccessible) {
@@ -61,11 +106,30 @@ TEST(RealArm, IsFoundAgainBySerialNumberInAnySocketElseBySocket) {
   ASSERT_TRUE(again);
   EXPECT_EQ(again->usb.device, 8);
 
-  driver::FoundArm nameless = before;
-  nameless.serial.clear();
-  EXPECT_FALSE(find_again(*driver::find_arms(usb.root()), nameless));  // its socket is empty
-  usb.plug("1-1", "0403", "cb48", "", 1, 9);
-  EXPECT_EQ(find_again(*driver::find_arms(usb.root()), nameless)->usb.device, 9);
+  usb.plug("1-5", "0403", "cb48", "F1", 1, 9);  // a second of that name: which is it?
+  EXPECT_FALSE(find_again(*driver::find_arms(usb.root()), before));
+}
+
+TEST(RealArm, WithoutANameOfItsOwnIsFoundAgainInItsSocketAloneAndAsTheSameBoard) {
+  const support::FakeUsb usb("find_again_socket");
+  const auto plug = [&usb](const std::string& port, unsigned char bytes, int device) {
+    usb.plug(port, "1234", "0006", "0123456789", 1, device);
+    usb.add_hidraw(port, 0, "hidraw3", bytes);
+  };
+  plug("1-1.4", 8, 2);
+  const auto before = driver::find_arms(usb.root())->front();
+  EXPECT_EQ(before.name(), "usb-1-1.4");
+  usb.unplug("1-1.4");
+  plug("1-3", 8, 3);  // another socket: it may be another arm
+  EXPECT_FALSE(find_again(*driver::find_arms(usb.root()), before));
+  plug("1-1.4", 14, 4);  // the same socket, but other firmware
+  EXPECT_FALSE(find_again(*driver::find_arms(usb.root()), before));
+  usb.unplug("1-1.4");
+  plug("1-1.4", 8, 5);
+  const auto again = find_again(*driver::find_arms(usb.root()), before);
+  ASSERT_TRUE(again);
+  EXPECT_EQ(again->usb.device, 5);
+  EXPECT_EQ(again->name(), before.name());
 }
 
 TEST(RealArm, TakesOnlyItsOwnFile) {
@@ -77,10 +141,38 @@ TEST(RealArm, TakesOnlyItsOwnFile) {
   EXPECT_FALSE(check_fits(vintage, found(ArmKind::kWoody, "")));
   EXPECT_FALSE(check_fits(woody, found(ArmKind::kPolhem, "")));
   EXPECT_TRUE(check_fits(polhem, found(ArmKind::kPolhem, "")));
-  EXPECT_TRUE(check_fits(woody, found(ArmKind::kHfabLine, "")));
+  // The same arm on another board counts joint A the other way.
+  EXPECT_FALSE(check_fits(woody, found(ArmKind::kHfabLine, "")));
+  EXPECT_TRUE(check_fits(file_of("woodenhaptics_teensy.yaml"), found(ArmKind::kHfabLine, "")));
+  EXPECT_FALSE(check_fits(file_of("woodenhaptics_teensy.yaml"), found(ArmKind::kWoody, "")));
+  EXPECT_TRUE(check_fits(vintage, found(ArmKind::kHfabLine, "")));
+  EXPECT_FALSE(check_fits(vintage, found(ArmKind::kPolhem, "")));
   EXPECT_TRUE(check_fits(falcon, found(ArmKind::kFalcon, "")));
   EXPECT_FALSE(check_fits(falcon, found(ArmKind::kHfabLine, "")));
   EXPECT_FALSE(check_fits(woody, found(ArmKind::kFalcon, "")));
+}
+
+// Counts of encoder a grow: both published clients of the mbed board put the tip on the other side
+// of it [S CHAI3D CWoodenDevice.cpp, haptikfabrikenapi]; on text lines it goes with them [S
+// hfabapi].
+TEST(RealArm, HasTheSignsOfItsBoard) {
+  driver::ArmReading reading;
+  reading.counts = {1000, 0, 0};
+  const ArmFile mbed = file_of("woodenhaptics.yaml");
+  const ArmFile teensy = file_of("woodenhaptics_teensy.yaml");
+  EXPECT_LT(make_arm(mbed, ArmKind::kWoody)->pose(reading).p_BT.y(), -0.01);
+  EXPECT_GT(make_arm(teensy, ArmKind::kHfabLine)->pose(reading).p_BT.y(), 0.01);
+  for (const ArmFile& file : {mbed, teensy}) EXPECT_EQ(file.model.drives[0].sign, 1);
+  // The files and the driver's own data are one.
+  const auto same = [](const ArmFile& file, const auto& model) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_EQ(file.model.drives[i].sign, model.drives[i].sign);
+      EXPECT_EQ(file.model.encoders[i].sign, model.encoders[i].sign);
+      EXPECT_EQ(file.model.drives[i].current_max, model.drives[i].current_max);
+    }
+  };
+  same(mbed, driver::hfab::woody_model(driver::hfab::WoodyBoard::kMbed));
+  same(teensy, driver::hfab::woody_model(driver::hfab::WoodyBoard::kTextLines));
 }
 
 TEST(RealArm, StandsInTheMiddleOfItsWorldAsItsFileSays) {

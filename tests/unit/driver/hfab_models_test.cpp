@@ -141,6 +141,36 @@ TEST(HfabModels, WoodenHapticsHasItsPublishedHomeAndResolution) {
   EXPECT_NEAR(0.245 * arm.model().step(2) * 1e3, 0.064, 0.0005);
 }
 
+// A board of the mbed generation, as both published clients of its 8-byte reports read and drive
+// it: CHAI3D's CWoodenDevice.cpp (encoder values {-a, b, c}, gear ratios {+16, -12, +12}, C from a
+// right angle downwards, motor torques {+A, -B, -C}) and haptikfabrikenapi (all encoders reversed,
+// motor A positive).
+TEST(HfabModels, WoodenHapticsOnItsMbedBoardTurnsToTheLeftWhenEncoderAGrows) {
+  const woody::WoodyArm arm(woody_model(WoodyBoard::kMbed));
+  const double step_a = 2 * std::numbers::pi / (2000 * 16);
+  const double step_b = 2 * std::numbers::pi / (2000 * 12);
+  const double a = -1000 * step_a, b = -500 * step_b, c = std::numbers::pi / 2 - 300 * step_b;
+  const double r = 0.205 * std::sin(b) + 0.245 * std::sin(c);
+  const Eigen::Vector3d published(r * std::cos(a), r * std::sin(a),
+                                  0.080 + 0.205 * std::cos(b) - 0.245 * std::cos(c));
+  ArmReading reading;
+  reading.counts = {1000, 500, 300};
+  EXPECT_LT((arm.pose(reading).p_BT - published).norm(), 1e-12);
+  EXPECT_LT(arm.pose(reading).p_BT.y(), -0.01);
+  EXPECT_EQ(arm.drives()[0].sign, 1);
+  EXPECT_EQ(arm.drives()[1].sign, -1);
+  EXPECT_EQ(arm.drives()[2].sign, -1);
+  EXPECT_EQ(arm.drives()[0].current_max, 3);
+}
+
+TEST(HfabModels, WoodenHapticsOnTextLinesTurnsToTheRightWhenEncoderAGrows) {
+  const auto arm = make_line_arm(3);
+  ArmReading reading;
+  reading.counts = {1000, 0, 0};
+  EXPECT_GT(arm->pose(reading).p_BT.y(), 0.01);
+  EXPECT_EQ(arm->drives()[0].sign, 1);
+}
+
 TEST(HfabModels, ChooseTheGeometryByTheModelNumber) {
   for (const std::int32_t number : {1, 2, 3}) {
     const auto arm = make_line_arm(number);

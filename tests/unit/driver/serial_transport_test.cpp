@@ -3,9 +3,11 @@
 #include <stdlib.h>
 #include <unistd.h>
 
+#include <fstream>
 #include <string>
 #include <string_view>
 
+#include "support/scratch.h"
 #include "support/vintage_arm.h"
 #include "thimble/driver/arms/hfab/hfab_wire.h"
 #include "thimble/driver/device.h"
@@ -96,9 +98,27 @@ TEST_F(SerialTransportTest, NamesWhatIsWrongWithANode) {
   const auto missing = open_serial_transport("/dev/no_such_arm", hfab::kLineFraming, clock_);
   ASSERT_FALSE(missing);
   EXPECT_NE(missing.error().message.find("plugged in"), std::string::npos);
-  const auto no_port = open_serial_transport("/dev/null", hfab::kLineFraming, clock_);
+  const std::string file = (support::scratch_folder() / "no_port").string();
+  std::ofstream(file) << "";
+  const auto no_port = open_serial_transport(file, hfab::kLineFraming, clock_);
   ASSERT_FALSE(no_port);
   EXPECT_NE(no_port.error().message.find("no serial port"), std::string::npos);
+}
+
+TEST_F(SerialTransportTest, BelongsToOneUserAtATime) {
+  open();
+  const auto second = open_serial_transport(ptsname(far_), hfab::kLineFraming, clock_);
+  ASSERT_FALSE(second);
+  EXPECT_NE(second.error().message.find("in use"), std::string::npos);
+  wire_.reset();
+  open();
+}
+
+TEST_F(SerialTransportTest, SendsNothingByBeingOpened) {
+  open();
+  EXPECT_EQ(hear(), "");
+  wire_.reset();
+  EXPECT_EQ(hear(), "");
 }
 
 TEST_F(SerialTransportTest, CarriesAWholeArm) {

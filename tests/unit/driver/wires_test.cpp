@@ -7,12 +7,15 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <fstream>
 #include <string>
 #include <string_view>
 
 #include "support/fake_hidapi.h"
 #include "support/fake_libusb.h"
 #include "support/heap_guard.h"
+#include "support/scratch.h"
+#include "thimble/driver/arms/woody/woody_proof.h"
 #include "thimble/driver/transports.h"
 
 namespace thimble::driver {
@@ -173,7 +176,7 @@ TEST_F(FtdiWire, NamesWhatKeepsItFromOpening) {
     return line ? std::string() : line.error().message;
   };
   EXPECT_NE(message(LIBUSB_ERROR_ACCESS).find("70-thimble.rules"), std::string::npos);
-  EXPECT_NE(message(LIBUSB_ERROR_BUSY).find("another program"), std::string::npos);
+  EXPECT_NE(message(LIBUSB_ERROR_BUSY).find("in use"), std::string::npos);
   EXPECT_FALSE(FtdiLine::open({.bus = 2, .device = 7}));
   EXPECT_EQ(usb_.contexts, 0);
 }
@@ -182,11 +185,23 @@ class HidWire : public ::testing::Test {
  protected:
   void SetUp() override {
     hid_ = {};
-    auto wire = open_hid_transport("/dev/null", 14, clock_);
+    hid_.report_bytes = 14;
+    node_ = (support::scratch_folder() / "hid_wire_node").string();
+    std::ofstream(node_) << "";
+    open(14);
+  }
+  void open(std::size_t message_size) {
+    wire_.reset();
+    auto wire = open_hid_transport(node_, message_size, clock_);
     ASSERT_TRUE(wire) << wire.error().message;
     wire_ = std::move(wire).value();
   }
+  std::string refusal(std::size_t message_size) {
+    const auto wire = open_hid_transport(node_, message_size, clock_);
+    return wire ? "" : wire.error().message;
+  }
 
+  std::string node_;
   support::FakeHidapi& hid_ = support::fake_hidapi();
   VirtualClock clock_;
   std::unique_ptr<Transport> wire_;
@@ -260,6 +275,42 @@ TEST_F(HidWire, TellsARefusalFromALostArm) {
   hid_.write_error = ENODEV;
   EXPECT_EQ(wire_->write(bytes_of("12345678")), TransportStatus::kLost);
   EXPECT_EQ(wire_->read_latest(buffer_, 0).status, TransportStatus::kLost);
+}
+
+TEST_F(HidWire, IsNotOpenedWithMessagesOfALengthThatTheArmThrowsAway) {
+  wire_.reset();
+  EXPECT_NE(refusal(64).find("takes messages of 14 bytes, but this arm's are 64"),
+            std::string::npos);
+  EXPECT_NE(refusal(8), "");
+  hid_.report_bytes = 0;
+  EXPECT_NE(refusal(14).find("no HID device"), std::string::npos);
+  EXPECT_EQ(hid_.open, 0);
+  EXPECT_EQ(hid_.messages, 0u);
+}
+
+TEST_F(HidWire, RefusesAMessageOfALengthThatTheArmThrowsAway) {
+  open(0);  // messages as they are
+  EXPECT_EQ(wire_->write(bytes_of("12345678")), TransportStatus::kRefused);
+  EXPECT_EQ(hid_.messages, 0u);
+  EXPECT_EQ(wire_->write(bytes_of("12345678901234")), TransportStatus::kOk);
+}
+
+TEST_F(HidWire, BelongsToOneProgramAtATime) {
+  EXPECT_NE(refusal(14).find("in use"), std::string::npos);
+  EXPECT_EQ(hid_.open, 1);
+  wire_.reset();
+  EXPECT_EQ(refusal(14), "");
+}
+
+TEST_F(HidWire, ListensToAWoodenHapticsBoardBeforeItSendsAnything) {
+  hid_.report_bytes = 8;
+  open(8);
+  hid_.coming = 1000;
+  EXPECT_FALSE(woody::listen_for_board(*wire_, WallClock()));  // numbers in the wrong place
+  hid_.coming = 1000;
+  hid_.numbered_last = true;
+  EXPECT_TRUE(woody::listen_for_board(*wire_, WallClock()));
+  EXPECT_EQ(hid_.messages, 0u);
 }
 
 TEST_F(HidWire, ClosesItsDevice) {

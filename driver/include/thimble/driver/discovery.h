@@ -3,8 +3,11 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "thimble/driver/board.h"
+#include "thimble/driver/hid_descriptor.h"
 #include "thimble/driver/result.h"
 #include "thimble/driver/transports.h"
 
@@ -16,10 +19,20 @@ enum class ArmKind : std::uint8_t {
   kPolhem,       ///< Polhem or another Haptikfabriken arm on HID: 14-byte reports.
   kHfabLine,     ///< A Teensy on USB serial, which may be a Haptikfabriken arm: text lines.
   kFalcon,       ///< Novint Falcon: packets through an FTDI converter.
-  kUnsupported,  ///< Known, but its protocol is not public.
+  kUnsupported,  ///< Nothing that Thimble can drive.
 };
 
-/// Is one arm that is plugged in.
+/// How sure it is that a board belongs to an arm. USB ids alone say little: 16c0:0480 to 048f are
+/// what a Teensy takes for any program, 1234:0006 is what mbed's USB library takes by itself.
+enum class Certainty : std::uint8_t {
+  kKnown,         ///< Its USB id or product string is an arm's.
+  kProvesItself,  ///< Looks like an arm; at opening it must show by what it sends unasked that it
+                  ///< is.
+  kUnknown,      ///< May be an arm or anything else, and can prove nothing before it is written to.
+  kUnsupported,  ///< Known, and nothing that Thimble can drive.
+};
+
+/// A board that is plugged in and may belong to an arm.
 struct FoundArm {
   ArmKind kind = ArmKind::kUnsupported;  ///< How it is reached, and its language.
   std::string arm;                       ///< What it is ("WoodenHaptics").
@@ -32,19 +45,27 @@ struct FoundArm {
   std::string node;             ///< What a program opens ("/dev/hidraw3"); empty if there is none.
   std::filesystem::path sysfs;  ///< The kernel's folder about it.
   bool accessible = false;      ///< This user may open the node.
+  BoardKind board = BoardKind::kOther;      ///< What kind of board it is.
+  Certainty certainty = Certainty::kKnown;  ///< How sure it is that it is an arm.
+  std::string manufacturer, product;        ///< Its USB strings; empty where it has none.
+  std::uint16_t release = 0;                ///< bcdDevice.
+  HidReports hid;                           ///< Its reports, if it is on HID and has a driver.
+  bool serial_is_shared = false;            ///< Another one has the same serial number.
 
-  /// Tells what the user calls it by: the serial number, or the place if it has none
-  /// ("usb-1-4" for bus 1, device 4).
+  /// Returns what the user calls it by, which is also the name of its calibration: the serial
+  /// number if only this board has it, else the socket it is plugged into ("usb-1-1.4", the
+  /// kernel's name; the same after each replug into that socket).
   std::string name() const;
 };
 
-/// Lists the arms on USB whose ids are known (driver/README.md names the sources), from what the
-/// kernel tells under `root`/sys. Needs no right to open them. Fails if USB cannot be listed at
-/// all. Real-time: never from the servo thread.
-Result<std::vector<FoundArm>> find_arms(const std::filesystem::path& root = "/");
+/// Returns whether a serial number is one that many boards carry, such as the 0123456789 of every
+/// mbed board, and so names none. Real-time: safe.
+bool is_placeholder(std::string_view serial) noexcept;
 
-/// Tells which arm a USB id belongs to, or nullptr. Real-time: safe.
-const char* arm_of_usb_id(std::uint16_t vendor_id, std::uint16_t product_id) noexcept;
+/// Lists the boards on USB that may be arms (driver/README.md names the sources), from what the
+/// kernel tells under `root`/sys: ids, strings and report descriptors. Opens nothing and needs no
+/// right to. Fails if USB cannot be listed at all. Real-time: never from the servo thread.
+Result<std::vector<FoundArm>> find_arms(const std::filesystem::path& root = "/");
 
 /// Reads a small text file of the kernel without its newline; empty if it cannot be read.
 /// Real-time: never from the servo thread.

@@ -16,8 +16,11 @@ namespace thimble::driver {
 // must outlive the transport. Opening is for set-up; the transports themselves are Real-time: safe,
 // with what their libraries do beneath said at each. driver/README.md has the table.
 
-/// Opens an arm on USB HID by its node (/dev/hidraw3). Messages are filled up with zeros to
-/// `message_size` bytes (0: sent as they are), with report id 0 in front.
+/// Opens an arm on USB HID by its node (/dev/hidraw3), for this program alone (NodeLock). Messages
+/// are filled up with zeros to `message_size` bytes (0: sent as they are), with report id 0 in
+/// front. Fails if the device's report descriptor says that its messages have another length;
+/// later, a message of another length is refused, because boards throw such messages away without a
+/// word. Nothing is sent.
 ///
 /// Reading takes the newest report and counts older ones. The kernel keeps 63 and drops what comes
 /// after them; when so many wait, reading waits for the next, at most 2 ms. Nothing allocates while
@@ -28,8 +31,9 @@ namespace thimble::driver {
 Result<std::unique_ptr<Transport>> open_hid_transport(const std::string& node,
                                                       std::size_t message_size, const Clock& clock);
 
-/// Opens an arm on a serial port by its node (/dev/serial/by-id/...), for this program alone.
-/// Neither allocates nor locks. A message that the port has no room for is refused, not waited for.
+/// Opens an arm on a serial port by its node (/dev/serial/by-id/...), for this program alone
+/// (NodeLock). Nothing is sent. Neither allocates nor locks. A message that the port has no room
+/// for is refused, not waited for.
 Result<std::unique_ptr<Transport>> open_serial_transport(const std::string& node,
                                                          const Framing& framing,
                                                          const Clock& clock);
@@ -40,10 +44,15 @@ struct UsbAddress {
   int device = 0;  ///< Number of the device on it.
 };
 
+/// Returns the node of a USB device ("/dev/bus/usb/001/004"). Real-time: never from the servo
+/// thread.
+std::string usb_node(const UsbAddress& address);
+
 /// Is an arm behind an FTDI converter: a serial line for the set-up, then a transport.
 class FtdiLine : public SerialLine {
  public:
-  /// Opens the converter, takes it from the kernel's serial driver if that has it, and claims it.
+  /// Opens the converter, takes it from the kernel's serial driver if that has it, and claims it,
+  /// which only one program can. Fails with the name of the program that has it.
   static Result<std::unique_ptr<FtdiLine>> open(const UsbAddress& address);
 
   /// Turns the line into a transport; the line is of no use afterwards. All transfers are made here

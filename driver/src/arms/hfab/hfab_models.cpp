@@ -45,9 +45,13 @@ JointModel<SerialArm> vintage_model() noexcept {
                   {0.117 / 0.013, 7.7, 7.7}, {0.0234, 0.0234, 0.0234}, 3, 4000, {0, 7700, 0});
 }
 
-JointModel<SerialArm> woody_model(double current_max) noexcept {
-  return model_of(SerialArm{.height = 0.080, .length_b = 0.205, .length_c = 0.245}, {1, -1, -1},
-                  {16, 12, 12}, {0.0259, 0.0259, 0.0259}, current_max, 2000, {0, 0, -6000});
+JointModel<SerialArm> woody_model(WoodyBoard board) noexcept {
+  const double current_max = board == WoodyBoard::kMbed ? 3 : 6;
+  auto model =
+      model_of(SerialArm{.height = 0.080, .length_b = 0.205, .length_c = 0.245}, {1, -1, -1},
+               {16, 12, 12}, {0.0259, 0.0259, 0.0259}, current_max, 2000, {0, 0, -6000});
+  if (board == WoodyBoard::kMbed) model.encoders[0].sign = -1;
+  return model;
 }
 
 std::unique_ptr<const Arm> make_line_arm(std::int32_t model_number) {
@@ -57,7 +61,7 @@ std::unique_ptr<const Arm> make_line_arm(std::int32_t model_number) {
     case LineModel::kVintage:
       return std::make_unique<WireArm<LineWire, SerialArm>>(vintage_model());
     case LineModel::kWoody:
-      return std::make_unique<WireArm<LineWire, SerialArm>>(woody_model(6));
+      return std::make_unique<WireArm<LineWire, SerialArm>>(woody_model(WoodyBoard::kTextLines));
   }
   return nullptr;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 
 #include "thimble/driver/arm.h"
@@ -19,9 +20,22 @@ JointModel<LinkageArm> polhem_model() noexcept;
 /// Gives the data of the vintage PHANTOM refit ("vintage").
 JointModel<SerialArm> vintage_model() noexcept;
 
-/// Gives the data of the WoodenHaptics ("woodenhaptics_v2015"); the same arm on its older mbed
-/// board has 3 A instead of 6 [S woody-experimental].
-JointModel<SerialArm> woody_model(double current_max = 3) noexcept;
+/// A generation of the WoodenHaptics' board. The generations count joint A in opposite directions
+/// and differ in current.
+enum class WoodyBoard : std::uint8_t {
+  kMbed,       ///< 8-byte HID reports, 3 A [S woody-experimental main.cpp].
+  kTextLines,  ///< Text lines from a Teensy, 6 A [S hfabapi, woodenhaptics_v2015].
+};
+
+/// Returns the data of the WoodenHaptics on one of its boards.
+///
+/// Joint A of the mbed board is minus its encoder, and its motor is positive: both published
+/// clients of the 8-byte reports agree on that [S CHAI3D CWoodenDevice.cpp, haptikfabrikenapi
+/// fsusbhapticdevicethread.cpp and kinematics.cpp]. On text lines both are positive [S hfabapi].
+/// Encoders B and C are reversed everywhere. Motors B and C are reversed as CHAI3D and hfabapi have
+/// them; haptikfabrikenapi drives them positive on the mbed board, so that sources contradict each
+/// other there and only `thimble feel-check` can tell. Real-time: safe.
+JointModel<SerialArm> woody_model(WoodyBoard board = WoodyBoard::kMbed) noexcept;
 
 /// Makes the arm of a text line's model number, or nothing for a number that nobody knows.
 /// Real-time: never from the servo thread.

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+namespace thimble::driver {
+
+/// A kind of controller board, told by how it looks on USB. One arm may have one of several boards,
+/// and one kind of board may be anything: see Certainty (discovery.h).
+enum class BoardKind : std::uint8_t {
+  kMbedHid8,        ///< mbed, raw HID, 8 bytes each way: WoodenHaptics' firmware, among others.
+  kMbedHid14,       ///< mbed, raw HID, 14 bytes each way: Haptikfabriken's firmware, among others.
+  kTeensyRawHid64,  ///< Teensy, raw HID, 64 bytes each way: any program may run on it.
+  kTextLines,       ///< Teensy with a serial port: any program may run on it.
+  kFalconFtdi,      ///< The FTDI converter of a Novint Falcon.
+  kOther,           ///< A form that no arm is known to have; never opened.
+};
+
+/// The names of the kinds in arm files and messages, in the order of BoardKind; kOther has none.
+inline constexpr std::array<std::string_view, 5> kBoardNames = {
+    "mbed_hid_8", "mbed_hid_14", "teensy_raw_hid_64", "text_lines", "falcon_ftdi"};
+
+/// Returns the name of a kind of board, "other" for kOther. Real-time: safe.
+constexpr std::string_view name(BoardKind board) noexcept {
+  const auto index = static_cast<std::size_t>(board);
+  return index < kBoardNames.size() ? kBoardNames[index] : "other";
+}
+
+}  // namespace thimble::driver

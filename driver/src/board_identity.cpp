@@ -1,0 +1,117 @@
+#include "board_identity.h"
+
+#include <algorithm>
+#include <cctype>
+#include <string>
+
+#include "thimble/driver/arms/hfab/hfab_report.h"
+#include "thimble/driver/arms/woody/woody_report.h"
+
+namespace thimble::driver {
+namespace {
+
+/// Returns whether a string has a word in it, whatever the case of the letters; `word` is in small
+/// letters.
+bool has_word(std::string_view text, std::string_view word) {
+  const auto same = [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == b; };
+  return std::search(text.begin(), text.end(), word.begin(), word.end(), same) != text.end();
+}
+
+/// Returns whether a product string names one of our arms. No published firmware sets one: boards
+/// come with their makers' examples. Whoever builds a board's firmware may set it (Teensyduino's
+/// usb_names.h), and then needs no other proof. [chosen]
+bool is_ours(std::string_view product) {
+  return has_word(product, "woodenhaptics") || has_word(product, "polhem") ||
+         has_word(product, "haptikfabriken");
+}
+
+/// Tells an arm on Haptikfabriken's protocols by its product string.
+const char* arm_named(std::string_view product) {
+  if (has_word(product, "woodenhaptics")) return "WoodenHaptics";
+  return has_word(product, "polhem") ? "Polhem" : "Haptikfabriken arm";
+}
+
+// mbed's USB library takes 1234:0006 for every HID program [S mbed USBHID.h]; the report descriptor
+// tells the arms' firmware apart [S woody-experimental mbed-code/WoodenHapticsHID/main.cpp,
+// USBHID hid(8, 8); haptikfabrikenapi firmware/main.cpp, USBHID hid(14, 14)].
+BoardIdentity identify_mbed(const UsbFacts& facts) {
+  // The 8-byte firmware sends by itself and numbers what it sends: it proves itself at opening.
+  if (is_raw_hid(facts.hid, woody::kReportSize)) {
+    return {ArmKind::kWoody, BoardKind::kMbedHid8, Certainty::kProvesItself, "WoodenHaptics",
+            kHidBus};
+  }
+  // The 14-byte firmware speaks only after it was written to.
+  if (is_raw_hid(facts.hid, hfab::kReportSize)) {
+    const bool ours = is_ours(facts.product);
+    return {ArmKind::kPolhem, BoardKind::kMbedHid14, ours ? Certainty::kKnown : Certainty::kUnknown,
+            ours ? arm_named(facts.product) : "mbed HID, 14 bytes", kHidBus};
+  }
+  return {ArmKind::kUnsupported, BoardKind::kOther, Certainty::kUnknown, "mbed HID", kHidBus};
+}
+
+// A Teensy's id tells only which sort of USB its program asked for [S Teensyduino usb_desc.h].
+std::optional<BoardIdentity> identify_teensy(const UsbFacts& facts) {
+  constexpr std::uint16_t kSerialId = 0x0483, kRawHidId = 0x0486;
+  // Haply's arm is a Teensy with this product string [S lerobot_teleoperator_inverse3].
+  if (has_word(facts.product, "haply") || has_word(facts.product, "inverse3")) {
+    return BoardIdentity{ArmKind::kUnsupported, BoardKind::kOther, Certainty::kUnsupported,
+                         "Haply Inverse3", kSerialBus};
+  }
+  const bool ours = is_ours(facts.product);
+  const Certainty certainty = ours ? Certainty::kKnown : Certainty::kUnknown;
+  if (facts.has_tty || facts.product_id == kSerialId) {
+    return BoardIdentity{ArmKind::kHfabLine, BoardKind::kTextLines, certainty,
+                         ours ? arm_named(facts.product) : "Teensy, serial", kSerialBus};
+  }
+  if (facts.product_id != kRawHidId) return std::nullopt;  // a keyboard, say
+  if (is_raw_hid(facts.hid, hfab::kPaddedReportSize)) {
+    return BoardIdentity{ArmKind::kPolhem, BoardKind::kTeensyRawHid64, certainty,
+                         ours ? arm_named(facts.product) : "Teensy, raw HID", kHidBus};
+  }
+  return BoardIdentity{ArmKind::kUnsupported, BoardKind::kOther, Certainty::kUnknown,
+                       "Teensy, raw HID", kHidBus};
+}
+
+constexpr std::uint16_t kMbedVendor = 0x1234, kMbedProduct = 0x0006;
+constexpr std::uint16_t kTeensyVendor = 0x16c0, kTeensyFirst = 0x0480, kTeensyLast = 0x048f;
+
+/// An id that belongs to one maker's arm alone [S the arms' open drivers, their vendors' udev
+/// rules].
+struct OwnId {
+  std::uint16_t vendor_id, product_id;
+  BoardIdentity identity;
+};
+constexpr OwnId kOwnIds[] = {
+    {0x0403,
+     0xcb48,
+     {ArmKind::kFalcon, BoardKind::kFalconFtdi, Certainty::kKnown, "Novint Falcon", "USB FTDI"}},
+    {0x2988,
+     0x0302,
+     {ArmKind::kUnsupported, BoardKind::kOther, Certainty::kUnsupported, "Touch", kSerialBus}},
+    {0x2988,
+     0x0304,
+     {ArmKind::kUnsupported, BoardKind::kOther, Certainty::kUnsupported, "Touch X", kHidBus}},
+    {0x1451,
+     0x0402,
+     {ArmKind::kUnsupported, BoardKind::kOther, Certainty::kUnsupported, "Force Dimension", "USB"}},
+};
+
+}  // namespace
+
+std::optional<BoardIdentity> identify(const UsbFacts& facts) {
+  for (const OwnId& own : kOwnIds) {
+    if (own.vendor_id == facts.vendor_id && own.product_id == facts.product_id) {
+      return own.identity;
+    }
+  }
+  if (facts.vendor_id == kMbedVendor && facts.product_id == kMbedProduct) {
+    return identify_mbed(facts);
+  }
+  if (facts.vendor_id == kTeensyVendor && kTeensyFirst <= facts.product_id &&
+      facts.product_id <= kTeensyLast) {
+    return identify_teensy(facts);
+  }
+  return std::nullopt;
+}
+
+}  // namespace thimble::driver
