@@ -119,12 +119,12 @@ void FaultRig::build_arm() {
     auto polhem = driver::hfab::polhem_model();
     polhem.drives = file_.model.drives;
     polhem.encoders = file_.model.encoders;
-    own_arm_ = std::make_unique<usb::HidArm>(usb::HidLayout::kPolhem, usb::UsbDescription(), polhem,
+    own_arm_ = std::make_unique<usb::HidArm>(usb::kMbed14Board, usb::UsbDescription(), polhem,
                                              file_.simulated, std::move(path));
   } else {
-    const auto layout = tested_.kind == driver::ArmKind::kWoody ? usb::HidLayout::kWoodenHaptics
-                                                                : usb::HidLayout::kPolhem;
-    own_arm_ = std::make_unique<usb::HidArm>(layout, usb::UsbDescription(), model, file_.simulated,
+    const auto& board =
+        tested_.kind == driver::ArmKind::kWoody ? usb::kWoodenHapticsBoard : usb::kMbed14Board;
+    own_arm_ = std::make_unique<usb::HidArm>(board, usb::UsbDescription(), model, file_.simulated,
                                              std::move(path));
   }
   arm_ = own_arm_.get();
