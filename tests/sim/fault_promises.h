@@ -77,6 +77,10 @@ inline Promised promised(std::string_view fault, driver::ArmKind arm) {
   const bool answers = arm != driver::ArmKind::kWoody;
   const Promised unheard{Promise::kOff, kNoticed, Fault::kNoReports};
   const Promised unknown{Promise::kArmOff, kWatchdog, Fault::kNone};
+  // A HID board that answers only does not listen as long as nobody takes its report: the zero does
+  // not reach it, and its own watchdog switches the motors off.
+  const Promised deaf{Promise::kOff, kWatchdog, Fault::kNoReports};
+  if (hid && answers && (fault == "stall in" || fault == "silence in")) return deaf;
   if (fault == "stall in" || fault == "short in" || fault == "silence in" || fault == "lost in") {
     return unheard;
   }
@@ -116,9 +120,9 @@ inline std::optional<bool> refused_at_opening(std::string_view fault, driver::Ar
   if (fault == "unplug" || fault == "lost in") return true;
   if (fault == "bit errors in, 1 in 30") return std::nullopt;
   if (fault == "long in") return hid;
-  // Without a first message there is no first answer, but for the report that a HID board sent when
-  // it started.
-  if (fault == "stall out" || fault == "short out" || fault == "lost out") return !hid;
+  // Without a first message there is no first answer.
+  if (fault == "stall out" || fault == "lost out") return arm != driver::ArmKind::kWoody;
+  if (fault == "short out") return !hid;
   return false;
 }
 

@@ -108,6 +108,7 @@ void FaultRig::build_arm() {
     auto falcon = usb::SimulatedFalcon::make(file_.simulated, std::move(path), {});
     ASSERT_TRUE(falcon) << falcon.error().message;
     falcon_ = std::move(falcon).value();
+    falcon_->home_when_asked();
     arm_ = &falcon_->on_bus();
     return;
   }
@@ -154,6 +155,8 @@ support::BusWire::Way FaultRig::way() const {
 }
 
 driver::Result<void> FaultRig::open() {
+  // A Falcon that lost its home by a fault is homed by its hand, which takes up to two seconds.
+  const std::int64_t timeout_ns = falcon_ ? 4'000'000'000 : 1'000'000'000;
   auto device = driver::Device::open(std::make_unique<support::BusWire>(*cable_, clock_, way()),
                                      app::make_arm(file_, tested_.kind),
                                      {.R_WB = file_.R_WB,
@@ -161,7 +164,7 @@ driver::Result<void> FaultRig::open() {
                                       .limits = file_.limits,
                                       .energy = app::energy_settings(file_, 1000, {}),
                                       .velocity_corner_frequency = file_.velocity_corner_frequency},
-                                     clock_.now_ns());
+                                     clock_.now_ns(), timeout_ns);
   if (!device) return device.error();
   device_ = std::move(device).value();
   return device_->activate();
