@@ -33,7 +33,7 @@ struct PlugOptions {
   std::uint16_t port = usb::kUsbipPort;
   bool attach = false;
   std::string motion = "tap";
-  std::string serial = "SIM0001";
+  std::string serial;
   std::uint64_t seed = 0;
   std::string firmware, faults, control, trace;
 };
@@ -298,14 +298,15 @@ void add_plug_command(CLI::App& app, int& exit_code) {
   command->add_option("--hand", options->motion, "What the simulated hand does")
       ->check(CLI::IsMember({"rest", "tap", "stroke"}))
       ->capture_default_str();
-  command->add_option("--serial", options->serial, "Serial number")->capture_default_str();
+  command->add_option("--serial", options->serial,
+                      "Serial number; without it that of the board (all mbed boards: 0123456789)");
   command->add_option("--seed", options->seed, "Seed of everything random")->capture_default_str();
   command->add_option("--firmware", options->firmware,
                       "The only firmware that a simulated Falcon runs; without it any will do");
   command->add_option("--faults", options->faults,
                       "File of faults, one a line: KIND [in|out] [after=FRAMES] [for=FRAMES] "
                       "[rate=CHANCE];\nKIND: stall, short, long, torn, stale, duplicate, silence, "
-                      "bit_errors, unplug");
+                      "bit_errors, unplug, lost");
   command->add_option("--control", options->control,
                       "Make a named pipe that takes such lines, and 'heal', while it runs");
   command->add_option("--trace", options->trace,

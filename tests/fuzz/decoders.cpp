@@ -114,10 +114,11 @@ class Obliging final : public device_sim::usb::UsbDevice {
  public:
   Obliging() {
     using device_sim::usb::TransferKind;
-    description_.endpoints = {{0x81, TransferKind::kInterrupt, 8, 1},
-                              {0x01, TransferKind::kInterrupt, 8, 1},
-                              {0x82, TransferKind::kBulk, 64, 0},
-                              {0x02, TransferKind::kBulk, 64, 0}};
+    description_.interfaces.resize(1);
+    description_.interfaces[0].endpoints = {{0x81, TransferKind::kInterrupt, 8, 1},
+                                            {0x01, TransferKind::kInterrupt, 8, 1},
+                                            {0x82, TransferKind::kBulk, 64, 0},
+                                            {0x02, TransferKind::kBulk, 64, 0}};
   }
   const device_sim::usb::UsbDescription& description() const noexcept override {
     return description_;

@@ -26,7 +26,7 @@ struct TestedFault {
   Place place = Place::kCable;
   std::string_view order;  ///< for the cable: device_sim/usb/usb_fault.h says how it reads
 };
-inline constexpr std::array<TestedFault, 27> kTestedFaults{{
+inline constexpr std::array<TestedFault, 29> kTestedFaults{{
     {"stall in", Place::kCable, "stall in"},
     {"stall out", Place::kCable, "stall out"},
     {"short in", Place::kCable, "short in"},
@@ -54,6 +54,8 @@ inline constexpr std::array<TestedFault, 27> kTestedFaults{{
     {"host stands still for 50 ms", Place::kHost, {}},
     {"host stands still for 150 ms", Place::kHost, {}},
     {"host dies", Place::kHost, {}},
+    {"lost in", Place::kCable, "lost in"},
+    {"lost out", Place::kCable, "lost out"},
 }};
 
 /// Is what is promised, and in how many ms, which are ticks, the motors have no current.
@@ -71,17 +73,27 @@ inline Promised promised(std::string_view fault, driver::ArmKind arm) {
   // The arm's watchdog of 100 ms after the last good message, whose way may take three frames.
   constexpr int kWatchdog = 104;
   const bool hid = arm == driver::ArmKind::kPolhem || arm == driver::ArmKind::kWoody;
+  // An arm that answers only says nothing to a message that it did not hear.
+  const bool answers = arm != driver::ArmKind::kWoody;
   const Promised unheard{Promise::kOff, kNoticed, Fault::kNoReports};
   const Promised unknown{Promise::kArmOff, kWatchdog, Fault::kNone};
-  if (fault == "stall in" || fault == "short in" || fault == "silence in") return unheard;
+  // A HID board that answers only does not listen as long as nobody takes its report: the zero does
+  // not reach it, and its own watchdog switches the motors off.
+  const Promised deaf{Promise::kOff, kWatchdog, Fault::kNoReports};
+  if (hid && answers && (fault == "stall in" || fault == "silence in")) return deaf;
+  if (fault == "stall in" || fault == "short in" || fault == "silence in" || fault == "lost in") {
+    return unheard;
+  }
   if (fault == "long in" && hid) return unheard;  // babble; a stream skips what is no message
   // Its reports are numbered, so that an old one is known.
   if (fault == "stale in" && arm == driver::ArmKind::kWoody) return unheard;
-  if (!hid && (fault == "stall out" || fault == "short out" || fault == "silence out")) {
-    // An arm that speaks only when spoken to answers nothing to what it did not hear or understand,
-    // and its silence is noticed a tick before the messages count as refused.
-    return {Promise::kOff, kWatchdog, Fault::kNoReports};
-  }
+  // Its silence is noticed a tick before the messages count as refused.
+  const Promised unanswered{Promise::kOff, kWatchdog, Fault::kNoReports};
+  if (answers && (fault == "stall out" || fault == "lost out")) return unanswered;
+  // To what they do not understand, text boards and the Falcon say nothing either; a HID board
+  // answers a message of any length.
+  if (!hid && (fault == "short out" || fault == "silence out")) return unanswered;
+  if (fault == "lost out") return unknown;
   if (fault == "stall out") return {Promise::kOff, kWatchdog, Fault::kRefused};
   if (fault == "short out") return unknown;
   if (fault == "long out" && hid) return unknown;
@@ -105,11 +117,12 @@ inline Promised promised(std::string_view fault, driver::ArmKind arm) {
 inline std::optional<bool> refused_at_opening(std::string_view fault, driver::ArmKind arm) {
   const bool hid = arm == driver::ArmKind::kPolhem || arm == driver::ArmKind::kWoody;
   if (fault == "stall in" || fault == "short in" || fault == "silence in") return true;
-  if (fault == "unplug") return true;
+  if (fault == "unplug" || fault == "lost in") return true;
   if (fault == "bit errors in, 1 in 30") return std::nullopt;
   if (fault == "long in") return hid;
   // Without a first message there is no first answer.
-  if (fault == "stall out" || fault == "short out") return !hid;
+  if (fault == "stall out" || fault == "lost out") return arm != driver::ArmKind::kWoody;
+  if (fault == "short out") return !hid;
   return false;
 }
 

@@ -109,6 +109,7 @@ void FaultRig::build_arm() {
     auto falcon = usb::SimulatedFalcon::make(file_.simulated, std::move(path), {});
     ASSERT_TRUE(falcon) << falcon.error().message;
     falcon_ = std::move(falcon).value();
+    falcon_->home_when_asked();
     arm_ = &falcon_->on_bus();
     return;
   }
@@ -120,12 +121,12 @@ void FaultRig::build_arm() {
     auto polhem = driver::hfab::polhem_model();
     polhem.drives = file_.model.drives;
     polhem.encoders = file_.model.encoders;
-    own_arm_ = std::make_unique<usb::HidArm>(usb::HidLayout::kPolhem, usb::UsbDescription(), polhem,
+    own_arm_ = std::make_unique<usb::HidArm>(usb::kMbed14Board, usb::UsbDescription(), polhem,
                                              file_.simulated, std::move(path));
   } else {
-    const auto layout = tested_.kind == driver::ArmKind::kWoody ? usb::HidLayout::kWoodenHaptics
-                                                                : usb::HidLayout::kPolhem;
-    own_arm_ = std::make_unique<usb::HidArm>(layout, usb::UsbDescription(), model, file_.simulated,
+    const auto& board =
+        tested_.kind == driver::ArmKind::kWoody ? usb::kWoodenHapticsBoard : usb::kMbed14Board;
+    own_arm_ = std::make_unique<usb::HidArm>(board, usb::UsbDescription(), model, file_.simulated,
                                              std::move(path));
   }
   arm_ = own_arm_.get();
@@ -155,6 +156,8 @@ support::BusWire::Way FaultRig::way() const {
 }
 
 driver::Result<void> FaultRig::open() {
+  // A Falcon that lost its home by a fault is homed by its hand, which takes up to two seconds.
+  const std::int64_t timeout_ns = falcon_ ? 4'000'000'000 : 1'000'000'000;
   auto device = driver::Device::open(std::make_unique<support::BusWire>(*cable_, clock_, way()),
                                      app::make_arm(file_, tested_.kind),
                                      {.R_WB = file_.R_WB,
@@ -164,7 +167,7 @@ driver::Result<void> FaultRig::open() {
                                       .motion = app::motion_settings(file_, 1000),
                                       .heat = file_.heat,
                                       .velocity_corner_frequency = file_.velocity_corner_frequency},
-                                     clock_.now_ns());
+                                     clock_.now_ns(), timeout_ns);
   if (!device) return device.error();
   device_ = std::move(device).value();
   return device_->activate();

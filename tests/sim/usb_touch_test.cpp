@@ -66,7 +66,9 @@ class UsbTouch : public testing::TestWithParam<usb::ShelfEntry> {
     const std::size_t size = virtual_arm_.name == "woodenhaptics" ? 8
                              : virtual_arm_.name == "polhem"      ? 14
                                                                   : 64;
-    return std::make_unique<support::UsbHostTransport>(*host_, clock_, size);
+    const bool teensy = virtual_arm_.name == "polhem-64";
+    return std::make_unique<support::UsbHostTransport>(*host_, clock_, size, std::nullopt,
+                                                       teensy ? 3 : 1, teensy ? 4 : 1);
   }
 
   void tick() {
@@ -114,6 +116,7 @@ TEST_P(UsbTouch, BringsEveryPositionAndForceOverWithinAQuantum) {
   int in_contact = 0, fresh = 0;
   Eigen::Vector3d wanted(0, 0, 0);
   std::int64_t sampled_ns = 0;
+  bool was_fresh = false;
   for (int i = 0; i < ticks; ++i) {
     tick();
     const usb::ArmTruth truth = arm_->truth();
@@ -123,7 +126,9 @@ TEST_P(UsbTouch, BringsEveryPositionAndForceOverWithinAQuantum) {
         ASSERT_LE(std::abs(truth.motor_values[static_cast<std::size_t>(k)] - wanted[k]), 0.5001);
       }
       // Encoders were sampled, read, answered, and the motors heard of it two frames later at most.
-      ASSERT_LE(truth.message_ns - sampled_ns, 2 * kTick_ns);
+      if (was_fresh) {
+        ASSERT_LE(truth.message_ns - sampled_ns, 2 * kTick_ns) << i;
+      }
     }
     wanted = motor_values();
     if (device_->state().fresh) {
@@ -135,6 +140,7 @@ TEST_P(UsbTouch, BringsEveryPositionAndForceOverWithinAQuantum) {
       }
     }
     sampled_ns = truth.report_ns;
+    was_fresh = device_->state().fresh;
     in_contact += force_ > 0 ? 1 : 0;
   }
   EXPECT_EQ(device_->fault(), driver::Fault::kNone);
@@ -143,10 +149,16 @@ TEST_P(UsbTouch, BringsEveryPositionAndForceOverWithinAQuantum) {
 }
 
 TEST_P(UsbTouch, KeepsTheForceWithinItsLimitUnderEveryFault) {
+  std::vector<usb::FaultKind> kinds;
   for (std::size_t kind = 0; kind < usb::kFaultKinds; ++kind) {
+    kinds.push_back(static_cast<usb::FaultKind>(kind));
+  }
+  std::erase(kinds, usb::FaultKind::kUnplug);
+  // Bits that flip on the way out may preset the counters of a board or unhome a Falcon for good.
+  std::erase(kinds, usb::FaultKind::kBitErrors);
+  kinds.push_back(usb::FaultKind::kBitErrors);
+  for (const usb::FaultKind fault : kinds) {
     for (const char* way : {" in", " out"}) {
-      const auto fault = static_cast<usb::FaultKind>(kind);
-      if (fault == usb::FaultKind::kUnplug) continue;
       const std::string line = std::string(usb::name(fault)) + way + " for=100 rate=0.01";
       SCOPED_TRACE(line);
       ASSERT_TRUE(touch_until_contact());
@@ -154,11 +166,13 @@ TEST_P(UsbTouch, KeepsTheForceWithinItsLimitUnderEveryFault) {
       // Behind a converter there is room for more bytes, which are no message and are skipped.
       const bool babbles = fault == usb::FaultKind::kLong && !virtual_arm_.is_falcon();
       const bool stops =
-          std::string_view(way) == " in" &&
-          (fault == usb::FaultKind::kStall || fault == usb::FaultKind::kShort || babbles ||
-           fault == usb::FaultKind::kSilence ||
-           // Its reports are numbered, so that an old one is known.
-           (fault == usb::FaultKind::kStale && virtual_arm_.name == "woodenhaptics"));
+          std::string_view(way) == " in"
+              ? fault == usb::FaultKind::kStall || fault == usb::FaultKind::kShort || babbles ||
+                    fault == usb::FaultKind::kSilence || fault == usb::FaultKind::kLost ||
+                    // Its reports are numbered, so that an old one is known.
+                    (fault == usb::FaultKind::kStale && virtual_arm_.name == "woodenhaptics")
+              // An arm that answers only is silent when its messages are lost.
+              : fault == usb::FaultKind::kLost && virtual_arm_.name != "woodenhaptics";
       for (int i = 0; i < 150; ++i) {
         tick();
         ASSERT_TRUE(std::isfinite(force_));

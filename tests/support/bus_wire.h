@@ -22,7 +22,9 @@ namespace thimble::support {
 /// - a HID write waits as long as the arm neither takes nor refuses it, 5 s at most;
 /// - an endpoint that stalled refuses everything until it is healed;
 /// - a port or converter that takes nothing refuses at once;
-/// - a device that left the bus is lost for good.
+/// - a device that left the bus is lost for good;
+/// - a report that waited in a HID board when it was opened is dropped (the kernel drops what comes
+///   in the first 50 ms, linux/drivers/hid/usbhid/hid-core.c, usbhid_open).
 class BusWire final : public driver::Transport {
  public:
   /// Says how bytes come over.
@@ -38,6 +40,8 @@ class BusWire final : public driver::Transport {
   BusWire(device_sim::usb::UsbDevice& device, driver::VirtualClock& clock, const Way& way)
       : device_(device), clock_(clock), way_(way), frame_(clock.now_ns() / kFrame_ns) {
     if (way.framing) finder_.emplace(*way.framing);
+    std::array<std::byte, 2 * device_sim::usb::UsbDevice::kPacketMax> packet{};
+    if (way.report_size > 0) device_.in(way_.in, packet);
   }
 
   driver::TransportRead read_latest(std::span<std::byte> buffer,

@@ -19,11 +19,24 @@ namespace thimble::support {
 class UsbHostTransport final : public driver::Transport {
  public:
   /// Takes a configured host. `size` is a report's length; with a framing the arm is behind an FTDI
-  /// converter. Moves the clock to the bus's time.
+  /// converter. `in` and `out` are the endpoints' numbers. What waits in a HID board is dropped, as
+  /// the kernel does when it opens one. Moves the clock to the bus's time.
   UsbHostTransport(UsbHost& host, driver::VirtualClock& clock, std::size_t size,
-                   std::optional<driver::Framing> framing = {})
-      : host_(host), clock_(clock), size_(static_cast<std::uint32_t>(size)) {
-    if (framing) finder_.emplace(*framing);
+                   std::optional<driver::Framing> framing = {}, std::uint8_t in = 1,
+                   std::uint8_t out = 1)
+      : host_(host),
+        clock_(clock),
+        size_(static_cast<std::uint32_t>(size)),
+        in_(in),
+        out_(framing ? std::uint8_t{2} : out) {
+    if (framing) {
+      finder_.emplace(*framing);
+    } else {
+      ask();
+      host_.frames(2);
+      collect();
+      reports_.clear();
+    }
     clock_.sleep_until_ns(host_.frame() * kFrame_ns);
   }
 
@@ -61,9 +74,9 @@ class UsbHostTransport final : public driver::Transport {
       const auto done = host_.done(told_);
       refused = !done || done->status != 0;
       if (!done) return driver::TransportStatus::kRefused;
-      if (done->status != 0) clear_halt(finder_ ? 0x02 : 0x01);
+      if (done->status != 0) clear_halt(out_);
     }
-    told_ = host_.tell(finder_ ? 2 : 1, bytes);
+    told_ = host_.tell(out_, bytes);
     if (finder_) host_.send_bulk(clock_.now_ns());
     return refused ? driver::TransportStatus::kRefused : driver::TransportStatus::kOk;
   }
@@ -75,7 +88,7 @@ class UsbHostTransport final : public driver::Transport {
 
   void ask() {
     for (std::uint32_t& asked : asked_) {
-      if (asked == 0) asked = host_.ask(1, finder_ ? 64 : size_);
+      if (asked == 0) asked = host_.ask(in_, finder_ ? 64 : size_);
     }
   }
   void collect() {
@@ -83,7 +96,7 @@ class UsbHostTransport final : public driver::Transport {
       const auto done = host_.done(asked);
       if (!done) continue;
       asked = 0;
-      if (done->status == -32) clear_halt(0x81);
+      if (done->status == -32) clear_halt(static_cast<std::uint8_t>(0x80U | in_));
       if (done->status != 0) continue;
       if (finder_) {
         driver::for_each_ftdi_packet(done->data, [&](auto part) { finder_->push(part); });
@@ -100,6 +113,7 @@ class UsbHostTransport final : public driver::Transport {
   UsbHost& host_;
   driver::VirtualClock& clock_;
   std::uint32_t size_;
+  std::uint8_t in_, out_;
   std::optional<driver::FrameFinder> finder_;
   std::array<std::uint32_t, 2> asked_{};
   std::uint32_t told_ = 0;

@@ -19,7 +19,7 @@ constexpr std::int64_t kFrame_ns = 1'000'000;
 int print_report_descriptor(const std::string& arm) {
   const auto made = device_sim::usb::make_usb_arm(arm, {});
   if (!made) return 1;
-  const auto& bytes = (*made)->description().report_descriptor;
+  const auto& bytes = (*made)->description().interfaces[0].report_descriptor;
   return std::fwrite(bytes.data(), 1, bytes.size(), stdout) == bytes.size() ? 0 : 1;
 }
 

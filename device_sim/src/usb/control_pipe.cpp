@@ -61,9 +61,12 @@ PacketResult ControlPipe::standard(const SetupPacket& setup, std::span<std::byte
   switch (setup.request) {
     case kGetDescriptor: {
       if (!setup.to_host()) return stall();
+      // For a string the index is its language; there is one.
+      const bool of_interface = recipient == kRecipientInterface;
       const std::vector<std::byte> descriptor =
           build_descriptor(device_.description(), static_cast<std::uint8_t>(setup.value >> 8),
-                           static_cast<std::uint8_t>(setup.value & 0xffU));
+                           static_cast<std::uint8_t>(setup.value & 0xffU),
+                           static_cast<std::uint8_t>(of_interface ? setup.index & 0xffU : 0));
       return descriptor.empty() ? stall() : reply(descriptor, data);
     }
     case kGetStatus: {
@@ -88,7 +91,10 @@ PacketResult ControlPipe::standard(const SetupPacket& setup, std::span<std::byte
       halted_ = 0;
       return done();
     case kSetInterface:
-      return !setup.to_host() && setup.value == 0 && setup.index == 0 ? done() : stall();
+      return !setup.to_host() && setup.value == 0 &&
+                     setup.index < device_.description().interfaces.size()
+                 ? done()
+                 : stall();
     case kSetAddress:  // the host's controller does that itself over usbip; harmless
       return setup.to_host() ? stall() : done();
     case kClearFeature:

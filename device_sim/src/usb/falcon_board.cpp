@@ -21,13 +21,26 @@ constexpr double kRateTolerance = 0.03;
 // Whether a real Falcon has a watchdog is not known; 100 ms is a guess.
 constexpr std::int64_t kWatchdog_ns = 100'000'000;
 
+// A host that has been silent for so long asks for nothing any more. [chosen]
+constexpr std::int64_t kAsked_ns = 500'000'000;
+
 // Where the encoders begin before they are homed; any value would do.
 constexpr std::array<std::int32_t, 3> kUnhomed{911, -1733, 402};
 
 }  // namespace
 
-FalconBoard::FalconBoard(std::vector<std::byte> image)
-    : image_(std::move(image)), offset_(kUnhomed) {}
+FalconBoard::FalconBoard(std::vector<std::byte> image, FalconHoming homing)
+    : image_(std::move(image)), homing_(homing), offset_(kUnhomed) {}
+
+void FalconBoard::forget_homes() noexcept {
+  homed_ = 0;
+  offset_ = kUnhomed;
+}
+
+bool FalconBoard::wants_homing() const noexcept {
+  return running_ && (asked_.lights & driver::falcon::kHomingMode) != 0 &&
+         homed_ != driver::falcon::kAllHomed && now_ns_ - last_packet_ns_ < kAsked_ns;
+}
 
 double FalconBoard::rate() const noexcept {
   if (running_) return kRunRate;
@@ -41,8 +54,7 @@ void FalconBoard::wires(bool dtr, bool /*rts*/) noexcept {
     running_ = false;
     image_right_ = true;
     greeted_ = uploaded_ = frame_size_ = 0;
-    homed_ = 0;
-    offset_ = kUnhomed;
+    forget_homes();
     motors_on_ = false;
     asked_ = {};
   }
@@ -118,6 +130,8 @@ void FalconBoard::run(std::byte byte, ByteQueue& says) noexcept {
   asked_ = *packet;
   motors_on_ = true;
   last_packet_ns_ = now_ns_;
+  const bool homing = (asked_.lights & driver::falcon::kHomingMode) != 0;
+  if (!homing && homing_ == FalconHoming::kForgets) forget_homes();
   answer(says);
 }
 
@@ -126,7 +140,8 @@ void FalconBoard::answer(ByteQueue& says) noexcept {
     const auto count = static_cast<std::int32_t>(std::lround(exact_[leg])) + offset_[leg];
     answered_.counts[leg] = static_cast<std::int16_t>(static_cast<std::uint16_t>(count & 0xffff));
   }
-  answered_.homed = homed_;
+  const bool homing = (asked_.lights & driver::falcon::kHomingMode) != 0;
+  answered_.homed = homing || homing_ == FalconHoming::kKeeps ? homed_ : std::uint8_t{0};
   for (const std::byte letter : driver::falcon::encode_arm_packet(answered_)) says.push(letter);
 }
 

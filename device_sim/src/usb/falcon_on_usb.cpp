@@ -20,6 +20,7 @@ FalconOnUsb::FalconOnUsb(UsbDescription description, const PlantSettings& plant,
     : description_(std::move(description)),
       tremor_(hand, seed),
       hand_(std::move(path), tremor_),
+      homing_hand_(driver::falcon::falcon_geometry().p_BM),
       wiring_(wiring),
       plant_(driver::falcon::falcon_model(), plant, hand,
              MotorSettings{.current_max = kMotorValueMax / kMotorValuesPerAmpere},
@@ -35,7 +36,12 @@ void FalconOnUsb::lead(HandPath path) {
 
 void FalconOnUsb::move_to(std::int64_t time_ns) noexcept {
   if (time_ns <= time_ns_) return;
-  plant_.step(hand_.at(time_ns), time_ns - time_ns_);
+  Eigen::Vector3d p_BH = hand_.at(time_ns);
+  if (homes_) {
+    p_BH = homing_hand_.at(p_BH, time_ns, board_.wants_homing());
+    hand_.hold(homing_hand_.busy());
+  }
+  plant_.step(p_BH, time_ns - time_ns_);
   time_ns_ = time_ns;
 }
 

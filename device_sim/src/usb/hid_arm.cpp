@@ -4,8 +4,6 @@
 #include <utility>
 
 #include "thimble/device_sim/usb/usbip_session.h"
-#include "thimble/driver/arms/hfab/hfab_report.h"
-#include "thimble/driver/arms/woody/woody_report.h"
 #include "thimble/driver/little_endian.h"
 
 namespace thimble::device_sim::usb {
@@ -14,57 +12,49 @@ namespace {
 using driver::get_word;
 using driver::put_word;
 
-constexpr std::uint8_t kInEndpoint = 0x81;
-
-// Requests of the HID class [HID 1.11, 7.2].
+// Requests of the HID class that a board may take [HID 1.11, 7.2].
 enum HidRequest : std::uint8_t {
-  kGetReport = 0x01,
-  kGetIdle = 0x02,
   kSetReport = 0x09,
   kSetIdle = 0x0a,
 };
-constexpr std::uint8_t kInputReport = 1;
-constexpr std::uint8_t kOutputReport = 2;
 
 }  // namespace
 
-HidArm::HidArm(HidLayout layout, UsbDescription description, const driver::hfab::HfabModel& model,
-               const SimulatedArmSettings& settings, HandPath path, std::uint64_t seed)
-    : layout_(layout),
+HidArm::HidArm(const HidBoard& board, UsbDescription description,
+               const driver::hfab::HfabModel& model, const SimulatedArmSettings& settings,
+               HandPath path, std::uint64_t seed)
+    : board_(board),
       description_(std::move(description)),
       model_(model),
       report_age_ns_(settings.wire.delay_in_ns),
       arm_(model, settings, std::move(path), seed) {
-  keep_sample();
+  begin();
 }
 
-HidArm::HidArm(HidLayout layout, UsbDescription description,
+HidArm::HidArm(const HidBoard& board, UsbDescription description,
                const driver::JointModel<driver::LinkageArm>& model,
                const SimulatedArmSettings& settings, HandPath path, std::uint64_t seed)
-    : layout_(layout),
+    : board_(board),
       description_(std::move(description)),
       report_age_ns_(settings.wire.delay_in_ns),
       arm_(model, settings, std::move(path), seed) {
   model_.drives = model.drives;
   model_.encoders = model.encoders;
-  keep_sample();
+  begin();
 }
 
-std::size_t HidArm::report_size() const noexcept {
-  switch (layout_) {
-    case HidLayout::kWoodenHaptics:
-      return driver::woody::kReportSize;
-    case HidLayout::kPolhem:
-      return driver::hfab::kReportSize;
-    case HidLayout::kPolhemPadded:
-      return driver::hfab::kPaddedReportSize;
-  }
-  return 0;
+void HidArm::begin() noexcept {
+  keep_sample();
+  if (board_.speech == HidSpeech::kAnswers) offer();
+}
+
+HidArm::Sample HidArm::sample_now() const noexcept {
+  return {arm_.time_ns(), model_.exact_counts(arm_.plant().q())};
 }
 
 void HidArm::keep_sample() noexcept {
   const auto slot = static_cast<std::size_t>(arm_.time_ns() / UsbipSession::kFrame_ns) % kSamples;
-  samples_[slot] = {arm_.time_ns(), model_.exact_counts(arm_.plant().q())};
+  samples_[slot] = sample_now();
 }
 
 void HidArm::advance_to(std::int64_t time_ns) noexcept {
@@ -81,7 +71,7 @@ std::size_t HidArm::lay_out(std::span<const std::byte> report,
                             std::span<std::byte> packet) noexcept {
   const std::size_t size = report_size();
   std::fill_n(packet.begin(), size, std::byte{0});
-  if (layout_ == HidLayout::kWoodenHaptics) {
+  if (board_.layout == HidLayout::kWoodenHaptics) {
     for (std::size_t i = 0; i < 3; ++i) put_word(packet, i, get_word(report, i));
     put_word(packet, 3, static_cast<std::int16_t>(counter_));
   } else {
@@ -90,30 +80,61 @@ std::size_t HidArm::lay_out(std::span<const std::byte> report,
   return size;
 }
 
-PacketResult HidArm::in(std::uint8_t address, std::span<std::byte> packet) noexcept {
-  if (address != kInEndpoint) return {Answer::kStall, 0};
-  std::array<std::byte, driver::hfab::kReportSize> report{};
+// A free-running board gives what it sampled last.
+bool HidArm::newest(Report& report) noexcept {
   std::uint32_t skipped = 0;
-  if (arm_.take_report(report, skipped) == 0) return {Answer::kNak, 0};
-  ++counter_;  // the board counts what it sends [S woody-experimental main.cpp]
-  const std::size_t size = lay_out(report, packet);
-  std::copy_n(packet.begin(), size, last_report_.begin());
-  ++truth_.reports;
+  if (arm_.take_report(report, skipped) == 0) return false;
   truth_.report_ns = arm_.time_ns() - report_age_ns_;
-  for (std::size_t i = 0; i < 3; ++i) truth_.counts[i] = get_word(report, i);
   for (const Sample& sample : samples_) {
     if (sample.time_ns == truth_.report_ns) truth_.exact_counts = sample.exact_counts;
   }
-  return {Answer::kDone, size};
+  return true;
 }
 
-bool HidArm::message(std::span<const std::byte> bytes) noexcept {
+// Samples the encoders; the report then waits until the host takes it.
+void HidArm::offer() noexcept {
+  report_ = arm_.firmware().sample(arm_.plant().q());
+  report_sample_ = sample_now();
+  offers_ = true;
+}
+
+// A board that answers gives the report that waits, and then reads the message that came meanwhile.
+bool HidArm::offered(Report& report) noexcept {
+  if (!offers_) return false;
+  report = report_;
+  truth_.report_ns = report_sample_.time_ns;
+  truth_.exact_counts = report_sample_.exact_counts;
+  offers_ = false;
+  if (message_waits_) {
+    message_waits_ = false;
+    use_message(std::span<const std::byte>(message_).first(message_size_));
+    offer();
+  }
+  return true;
+}
+
+PacketResult HidArm::in(std::uint8_t address, std::span<std::byte> packet) noexcept {
+  if (address != board_.in) {
+    // An interface for debug output has nothing to say.
+    return {description_.endpoint(address) != nullptr ? Answer::kNak : Answer::kStall, 0};
+  }
+  Report report{};
+  const bool any = board_.speech == HidSpeech::kFreeRunning ? newest(report) : offered(report);
+  if (!any) return {Answer::kNak, 0};
+  ++counter_;  // the WoodenHaptics board counts what it sends [S]
+  ++truth_.reports;
+  for (std::size_t i = 0; i < 3; ++i) truth_.counts[i] = get_word(report, i);
+  return {Answer::kDone, lay_out(report, packet)};
+}
+
+// A message of another length moves nothing and does not keep the motors on.
+void HidArm::use_message(std::span<const std::byte> bytes) noexcept {
   if (bytes.size() != report_size()) {
     ++malformed_;
-    return false;
+    return;
   }
-  std::array<std::byte, driver::hfab::kReportSize> message{};
-  if (layout_ == HidLayout::kWoodenHaptics) {
+  Report message{};
+  if (board_.layout == HidLayout::kWoodenHaptics) {
     driver::hfab::OutputReport output;
     for (std::size_t i = 0; i < 3; ++i) output.current_mA[i] = get_word(bytes, i);
     message = driver::hfab::encode_output(output);
@@ -124,40 +145,38 @@ bool HidArm::message(std::span<const std::byte> bytes) noexcept {
   ++truth_.messages;
   truth_.message_ns = arm_.time_ns();
   for (std::size_t i = 0; i < 3; ++i) truth_.motor_values[i] = get_word(message, i);
-  return true;
 }
 
 PacketResult HidArm::out(std::uint8_t address, std::span<const std::byte> packet) noexcept {
-  if (address == kInEndpoint) return {Answer::kStall, 0};
-  message(packet);
-  return {Answer::kDone, packet.size()};
+  if (address != board_.out) {
+    const bool known = description_.endpoint(address) != nullptr;
+    return {known ? Answer::kDone : Answer::kStall, known ? packet.size() : 0};
+  }
+  const PacketResult taken{Answer::kDone, packet.size()};
+  if (board_.speech == HidSpeech::kFreeRunning) {
+    use_message(packet);
+    return taken;
+  }
+  if (!offers_) {
+    use_message(packet);
+    offer();
+    return taken;
+  }
+  if (message_waits_) return {Answer::kNak, 0};
+  message_size_ = std::min(packet.size(), message_.size());
+  std::copy_n(packet.begin(), message_size_, message_.begin());
+  message_waits_ = true;
+  return taken;
 }
 
 PacketResult HidArm::control(const SetupPacket& setup, std::span<std::byte> data) noexcept {
   const bool for_hid = (setup.request_type & kKindMask) == kKindClass &&
-                       (setup.request_type & 0x1fU) == kRecipientInterface && setup.index == 0;
-  if (!for_hid) return {Answer::kStall, 0};
-  const auto kind = static_cast<std::uint8_t>(setup.value >> 8);
-  switch (setup.request) {
-    case kGetReport: {
-      if (!setup.to_host() || kind != kInputReport) return {Answer::kStall, 0};
-      const std::size_t size = std::min(report_size(), data.size());
-      std::copy_n(last_report_.begin(), size, data.begin());
-      return {Answer::kDone, size};
-    }
-    case kSetReport:
-      if (setup.to_host() || kind != kOutputReport) return {Answer::kStall, 0};
-      return {message(data) ? Answer::kDone : Answer::kStall, data.size()};
-    case kSetIdle:
-      idle_ = static_cast<std::uint8_t>(setup.value >> 8);
-      return {Answer::kDone, 0};
-    case kGetIdle:
-      if (data.empty()) return {Answer::kStall, 0};
-      data[0] = std::byte{idle_};
-      return {Answer::kDone, 1};
-    default:
-      return {Answer::kStall, 0};
-  }
+                       (setup.request_type & 0x1fU) == kRecipientInterface && !setup.to_host();
+  if (!for_hid || !board_.takes_set_idle) return {Answer::kStall, 0};
+  // A Teensy takes both and does nothing for it [S teensy3/usb_dev.c].
+  if (setup.request == kSetIdle) return {Answer::kDone, 0};
+  if (setup.request == kSetReport) return {Answer::kDone, data.size()};
+  return {Answer::kStall, 0};
 }
 
 ArmTruth HidArm::truth() const noexcept {

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "ftdi_bus.h"
-#include "thimble/device_sim/usb/arm_shelf.h"
+#include "thimble/device_sim/usb/board_descriptions.h"
 #include "thimble/driver/arms/falcon/falcon_arm.h"
 #include "thimble/driver/arms/falcon/falcon_boot.h"
 

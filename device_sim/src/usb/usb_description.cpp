@@ -10,7 +10,6 @@ using Bytes = std::vector<std::byte>;
 
 constexpr std::uint8_t kControlPacketSize = 64;
 constexpr std::uint8_t kSelfPowered = 0xc0;  // bit 7 is always set; an arm has its own supply
-constexpr std::uint8_t kPower_2mA = 50;      // 100 mA, the most before configuration
 constexpr std::uint16_t kEnglish = 0x0409;
 constexpr std::size_t kStringMax = 126;  // a descriptor's length is one byte
 
@@ -35,32 +34,38 @@ Bytes device_descriptor(const UsbDescription& d) {
   return bytes;
 }
 
-Bytes hid_descriptor(const UsbDescription& d) {
+Bytes hid_descriptor(const InterfaceDescription& interface) {
   Bytes bytes;
   put(bytes, {9, kHidDescriptor, 0x11, 0x01, 0, 1, kReportDescriptor});
-  put_word(bytes, static_cast<unsigned>(d.report_descriptor.size()));
+  put_word(bytes, static_cast<unsigned>(interface.report_descriptor.size()));
   return bytes;
+}
+
+// Interface, HID and endpoint descriptors, in the order that the HID class asks for
+// [HID 1.11, 7.1].
+void put_interface(Bytes& bytes, const InterfaceDescription& interface, std::size_t number) {
+  put(bytes, {9, kInterfaceDescriptor, static_cast<unsigned>(number), 0,
+              static_cast<unsigned>(interface.endpoints.size()), interface.interface_class,
+              interface.interface_subclass, interface.interface_protocol, interface.string_index});
+  if (!interface.report_descriptor.empty()) {
+    const Bytes hid = hid_descriptor(interface);
+    bytes.insert(bytes.end(), hid.begin(), hid.end());
+  }
+  for (const EndpointDescription& endpoint : interface.endpoints) {
+    put(bytes,
+        {7, kEndpointDescriptor, endpoint.address, static_cast<std::uint8_t>(endpoint.kind)});
+    put_word(bytes, endpoint.packet_size);
+    put(bytes, {endpoint.interval});
+  }
 }
 
 Bytes configuration_descriptor(const UsbDescription& d) {
   Bytes inner;
-  put(inner,
-      {9, kInterfaceDescriptor, 0, 0, static_cast<unsigned>(d.endpoints.size()), d.interface_class,
-       d.interface_subclass, d.interface_protocol, d.product.empty() ? 0U : 2U});
-  if (!d.report_descriptor.empty()) {
-    const Bytes hid = hid_descriptor(d);
-    inner.insert(inner.end(), hid.begin(), hid.end());
-  }
-  for (const EndpointDescription& endpoint : d.endpoints) {
-    put(inner,
-        {7, kEndpointDescriptor, endpoint.address, static_cast<std::uint8_t>(endpoint.kind)});
-    put_word(inner, endpoint.packet_size);
-    put(inner, {endpoint.interval});
-  }
+  for (std::size_t i = 0; i < d.interfaces.size(); ++i) put_interface(inner, d.interfaces[i], i);
   Bytes bytes;
   put(bytes, {9, kConfigurationDescriptor});
   put_word(bytes, static_cast<unsigned>(9 + inner.size()));
-  put(bytes, {1, 1, 0, kSelfPowered, kPower_2mA});
+  put(bytes, {static_cast<unsigned>(d.interfaces.size()), 1, 0, kSelfPowered, d.power_2mA});
   bytes.insert(bytes.end(), inner.begin(), inner.end());
   return bytes;
 }
@@ -96,14 +101,18 @@ Bytes string_by_index(const UsbDescription& d, std::uint8_t index) {
 }  // namespace
 
 const EndpointDescription* UsbDescription::endpoint(std::uint8_t address) const noexcept {
-  for (const EndpointDescription& found : endpoints) {
-    if (found.address == address) return &found;
+  for (const InterfaceDescription& interface : interfaces) {
+    for (const EndpointDescription& found : interface.endpoints) {
+      if (found.address == address) return &found;
+    }
   }
   return nullptr;
 }
 
 std::vector<std::byte> build_descriptor(const UsbDescription& description, std::uint8_t kind,
-                                        std::uint8_t index) {
+                                        std::uint8_t index, std::uint8_t interface) {
+  const InterfaceDescription* const asked =
+      interface < description.interfaces.size() ? &description.interfaces[interface] : nullptr;
   switch (kind) {
     case kDeviceDescriptor:
       return index == 0 ? device_descriptor(description) : Bytes{};
@@ -112,9 +121,10 @@ std::vector<std::byte> build_descriptor(const UsbDescription& description, std::
     case kStringDescriptor:
       return string_by_index(description, index);
     case kHidDescriptor:
-      return description.report_descriptor.empty() ? Bytes{} : hid_descriptor(description);
+      if (asked == nullptr || asked->report_descriptor.empty()) return {};
+      return hid_descriptor(*asked);
     case kReportDescriptor:
-      return description.report_descriptor;
+      return asked == nullptr ? Bytes{} : asked->report_descriptor;
     default:
       return {};
   }
@@ -128,9 +138,9 @@ std::vector<std::byte> build_raw_report_descriptor(std::uint16_t usage_page, std
   put(bytes, {0x0a});  // usage
   put_word(bytes, usage);
   put(bytes, {0xa1, 0x01});                               // application collection
+  put(bytes, {0x75, 0x08});                               // report size 8 bits
   put(bytes, {0x15, 0x00});                               // logical minimum 0
   put(bytes, {0x26, 0xff, 0x00});                         // logical maximum 255
-  put(bytes, {0x75, 0x08});                               // report size 8 bits
   put(bytes, {0x95, in_bytes, 0x09, 0x01, 0x81, 0x02});   // so many inputs: data, variable
   put(bytes, {0x95, out_bytes, 0x09, 0x02, 0x91, 0x02});  // so many outputs
   put(bytes, {0xc0});

@@ -11,7 +11,8 @@ namespace thimble::device_sim::usb {
 namespace {
 
 constexpr std::array<std::string_view, kFaultKinds> kNames{
-    "stall", "short", "long", "torn", "stale", "duplicate", "silence", "bit_errors", "unplug"};
+    "stall",     "short",   "long",       "torn",   "stale",
+    "duplicate", "silence", "bit_errors", "unplug", "lost"};
 constexpr std::size_t kTooMany = 8;  // bytes of a long packet beyond the good ones
 
 std::string_view next_word(std::string_view& line) {
@@ -34,7 +35,7 @@ driver::Error bad(std::string_view word, const char* why) {
   text.append(word).append("' ").append(why);
   text.append(
       ". A fault is: KIND [in|out] [after=FRAMES] [for=FRAMES] [rate=CHANCE], KIND one of stall, "
-      "short, long, torn, stale, duplicate, silence, bit_errors, unplug.");
+      "short, long, torn, stale, duplicate, silence, bit_errors, unplug, lost.");
   return {text};
 }
 
@@ -175,6 +176,7 @@ PacketResult FaultyDevice::in(std::uint8_t address, std::span<std::byte> packet)
     std::copy_n(packet.begin(), last_in_.size, last_in_.bytes.begin());
   }
   if (open == nullptr) return result;
+  if (open->order.kind == FaultKind::kLost) return {Answer::kNak, 0};
   repeat_in_ = open->order.kind == FaultKind::kDuplicate;
   spoil(open->order, packet, result.size, before);
   return result;
@@ -186,6 +188,7 @@ PacketResult FaultyDevice::out(std::uint8_t address, std::span<const std::byte> 
     if (open->order.kind == FaultKind::kUnplug) return {Answer::kGone, 0};
     if (open->order.kind == FaultKind::kStall) return {Answer::kStall, 0};
     if (open->order.kind == FaultKind::kSilence) return {Answer::kNak, 0};
+    if (open->order.kind == FaultKind::kLost) return {Answer::kDone, packet.size()};
   }
   std::array<std::byte, kPacketMax + kTooMany> bytes{};
   std::size_t size = std::min(packet.size(), kPacketMax);

@@ -48,10 +48,10 @@ void put_device(Bytes& bytes, const UsbDescription& device, const std::string& b
   put(bytes, device.vendor_id, 2);
   put(bytes, device.product_id, 2);
   put(bytes, device.release, 2);
-  put(bytes, 0, 3);  // class, subclass and protocol are those of the interface
+  put(bytes, 0, 3);  // class, subclass and protocol are those of the interfaces
   put(bytes, 1, 1);  // configuration
   put(bytes, 1, 1);  // of so many
-  put(bytes, 1, 1);  // interfaces
+  put(bytes, static_cast<std::uint32_t>(device.interfaces.size()), 1);
 }
 
 void put_header(Bytes& bytes, std::uint32_t command, std::uint32_t sequence, std::uint32_t device,
@@ -128,10 +128,12 @@ std::vector<std::byte> encode_list(const UsbDescription* device, const std::stri
   put(bytes, device != nullptr ? 1 : 0, 4);
   if (device == nullptr) return bytes;
   put_device(bytes, *device, bus_id);
-  put(bytes, device->interface_class, 1);
-  put(bytes, device->interface_subclass, 1);
-  put(bytes, device->interface_protocol, 1);
-  put(bytes, 0, 1);
+  for (const InterfaceDescription& interface : device->interfaces) {
+    put(bytes, interface.interface_class, 1);
+    put(bytes, interface.interface_subclass, 1);
+    put(bytes, interface.interface_protocol, 1);
+    put(bytes, 0, 1);
+  }
   return bytes;
 }
 

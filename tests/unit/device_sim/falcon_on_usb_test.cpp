@@ -122,6 +122,105 @@ TEST_F(FalconOnUsbTest, KnowsWhereItIsOnlyAfterHoming) {
   }
 }
 
+TEST_F(FalconOnUsbTest, IsHomedByItsHandWhateverElseTheHandDoes) {
+  const Eigen::Vector3d p_BM = driver::falcon::falcon_geometry().p_BM;
+  for (const HandMotion motion : {HandMotion::kRest, HandMotion::kTap, HandMotion::kStroke}) {
+    for (const int late_ms : {0, 1300}) {  // the driver may come while the hand is on its way
+      SCOPED_TRACE(std::to_string(static_cast<int>(motion)) + ", " + std::to_string(late_ms));
+      ShelfOptions options;
+      options.motion = motion;
+      TearDown();
+      line_.reset();
+      plug(options);
+      host_->frames(late_ms);
+      ASSERT_TRUE(driver::falcon::upload_firmware(*line_, image_, quick_).ok());
+      const Eigen::Vector3d before = falcon_->plant().p_BT();
+      driver::falcon::HomingState state;
+      const std::int64_t begin = host_->frame();
+      while (!state.done() && host_->frame() - begin < 2500) {
+        state = driver::falcon::home_once(*line_, state.homed, quick_);
+      }
+      ASSERT_TRUE(state.done());
+      EXPECT_LT((falcon_->plant().p_BT() - p_BM).norm(), 0.045);
+      // The hand comes back to where it was, and goes its way from there.
+      host_->frames(600);
+      if (motion == HandMotion::kRest) {
+        EXPECT_LT((falcon_->plant().p_BT() - p_BM).norm(), 5e-4);
+        host_->frames(2000);
+        EXPECT_LT((falcon_->plant().p_BT() - p_BM).norm(), 5e-4) << "it homes once";
+      } else {
+        host_->frames(1000);
+        EXPECT_GT((falcon_->plant().p_BT() - before).norm(), 5e-4);
+      }
+      driver::falcon::home_once(*line_, state.homed, quick_);
+      const ArmTruth truth = falcon_->truth();
+      for (int leg = 0; leg < 3; ++leg) {
+        const auto count = truth.counts[static_cast<std::size_t>(leg)];
+        EXPECT_LE(std::abs(count - truth.exact_counts[leg]), 0.5);
+      }
+    }
+  }
+}
+
+TEST_F(FalconOnUsbTest, LosesItsHomeByOnePacketWithoutTheHomingBit) {
+  ShelfOptions options;
+  options.motion = HandMotion::kRest;
+  plug(options);
+  ASSERT_TRUE(driver::falcon::upload_firmware(*line_, image_, quick_).ok());
+  driver::falcon::HomingState state;
+  for (int i = 0; i < 3000 && !state.done(); ++i) {
+    state = driver::falcon::home_once(*line_, state.homed, quick_);
+  }
+  ASSERT_TRUE(state.done());
+  driver::falcon::HostPacket packet;
+  packet.lights = driver::falcon::kGreenLight;
+  ASSERT_TRUE(line_->write(driver::falcon::encode_host_packet(packet)));
+  host_->frames(3);
+  EXPECT_EQ(falcon_->board().answered().homed, 0);
+  state = driver::falcon::home_once(*line_, driver::falcon::kAllHomed, quick_);
+  ASSERT_TRUE(state.answered);
+  EXPECT_FALSE(state.done()) << "the bit alone does not bring the home back";
+}
+
+/// Is a board that runs some firmware, homed, and what it says to one packet.
+struct HomedBoard {
+  explicit HomedBoard(FalconHoming homing) : board({}, homing) {
+    for (const bool dtr : {false, true}) board.wires(dtr, false);
+    for (const char letter : {'\x0a', '\x43', '\x0d', 'A', 'x'}) hear(letter);
+    board.host_rate(1'500'000);
+    board.set_encoders({5, 5, 5});
+    say(driver::falcon::kHomingMode);
+    board.set_encoders({-5, -5, -5});
+  }
+  void hear(char letter) { board.hear(static_cast<std::byte>(letter), says); }
+  driver::falcon::ArmPacket say(std::uint8_t lights) {
+    driver::falcon::HostPacket packet;
+    packet.lights = lights;
+    for (const std::byte byte : driver::falcon::encode_host_packet(packet)) board.hear(byte, says);
+    return board.answered();
+  }
+  FalconBoard board;
+  ByteQueue says;
+};
+
+TEST(FalconBoard, MakesOfAPacketWithoutTheHomingBitWhatItsDataSay) {
+  using driver::falcon::kAllHomed;
+  using driver::falcon::kHomingMode;
+  for (const FalconHoming homing :
+       {FalconHoming::kForgets, FalconHoming::kHidesFlags, FalconHoming::kKeeps}) {
+    HomedBoard homed(homing);
+    ASSERT_TRUE(homed.board.running());
+    ASSERT_EQ(homed.say(kHomingMode).homed, kAllHomed);
+    ASSERT_EQ(homed.say(kHomingMode).counts[0], -5);
+    const auto without = homed.say(0);
+    EXPECT_EQ(without.homed, homing == FalconHoming::kKeeps ? kAllHomed : 0);
+    EXPECT_EQ(without.counts[0] == -5, homing != FalconHoming::kForgets);
+    const auto with = homed.say(kHomingMode);
+    EXPECT_EQ(with.homed, homing == FalconHoming::kForgets ? 0 : kAllHomed);
+    EXPECT_EQ(with.counts[0] == -5, homing != FalconHoming::kForgets);
+  }
+}
+
 TEST_F(FalconOnUsbTest, LosesItsFirmwareWhenDtrRises) {
   plug({});
   ASSERT_TRUE(driver::falcon::upload_firmware(*line_, image_, quick_).ok());
@@ -268,6 +367,81 @@ TEST(SimulatedFalcon, IsHomedBeforeItsHandBeginsAndSaysWhereItIs) {
   }
   EXPECT_GE(fresh, 1198);
   EXPECT_LT((run.device->state().p_WT - p_BM - run.p_MH).norm(), 5e-4);
+}
+
+TEST(SimulatedFalcon, HearsTheHomingBitInEveryMessageOfTheDriver) {
+  InProgram run;
+  ASSERT_TRUE(run.device->activate());
+  const FalconBoard& board = run.falcon->arm().board();
+  std::uint64_t packets = 0;
+  const auto look = [&] {
+    EXPECT_NE(board.asked().lights & driver::falcon::kHomingMode, 0);
+    packets = board.counters().packets;
+  };
+  for (int k = 0; k < 300; ++k) {
+    run.tick({0, k % 2 == 0 ? 0.3 : 0.0, 0});
+    EXPECT_LE(board.counters().packets - packets, k == 0 ? board.counters().packets : 1);
+    look();
+  }
+  EXPECT_GT(packets, 250U);
+  run.device->trip(driver::Fault::kOverSpeed);
+  for (int k = 0; k < 20; ++k) {
+    run.tick({0, 0.3, 0});
+    look();
+  }
+  run.device->deactivate();
+  for (int k = 0; k < 20; ++k) {
+    run.tick({0, 0.3, 0});
+    look();
+  }
+}
+
+/// Is a Falcon whose answers say at some time that a leg is not homed.
+class LegLost final : public driver::Transport {
+ public:
+  explicit LegLost(std::unique_ptr<driver::Transport> wire) : wire_(std::move(wire)) {}
+  driver::TransportRead read_latest(std::span<std::byte> buffer,
+                                    std::int64_t deadline_ns) noexcept override {
+    const auto read = wire_->read_latest(buffer, deadline_ns);
+    if (lost && read.size == driver::falcon::kPacketSize) {
+      buffer[13] = static_cast<std::byte>(std::to_integer<unsigned>(buffer[13]) - (1U << 5));
+    }
+    return read;
+  }
+  driver::TransportStatus write(std::span<const std::byte> report) noexcept override {
+    return wire_->write(report);
+  }
+  bool lost = false;
+
+ private:
+  std::unique_ptr<driver::Transport> wire_;
+};
+
+TEST(SimulatedFalcon, IsLeftAloneOnceALegIsNotHomedAnyMore) {
+  InProgram run;
+  run.device.reset();
+  auto made = std::make_unique<LegLost>(run.falcon->wire(run.clock));
+  LegLost& wire = *made;
+  driver::DeviceSettings limits;
+  limits.limits = {.force_max = 2,
+                   .speed_max = 3,
+                   .rise_max = 2000,
+                   .soft_start = 0.01,
+                   .stall_ns = 20'000'000,
+                   .watchdog_ns = 100'000'000};
+  auto opened = driver::Device::open(
+      std::move(made), std::make_unique<driver::falcon::FalconArm>(driver::falcon::falcon_model()),
+      limits, run.clock.now_ns());
+  ASSERT_TRUE(opened) << opened.error().message;
+  run.device = std::move(opened).value();
+  ASSERT_TRUE(run.device->activate());
+  for (int k = 0; k < 100; ++k) run.tick({0, 0.5, 0});
+  ASSERT_GT(run.device->f_sent_W().norm(), 0.4);
+  wire.lost = true;
+  for (int k = 0; k < 22; ++k) run.tick({0, 0.5, 0});
+  EXPECT_EQ(run.device->fault(), driver::Fault::kNoReports);
+  EXPECT_EQ(run.device->f_sent_W().norm(), 0);
+  EXPECT_GT(run.device->wire_counters().rejected, 19U);
 }
 
 TEST(SimulatedFalcon, PushesItsHandAndRepeatsItself) {

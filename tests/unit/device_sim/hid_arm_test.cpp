@@ -56,9 +56,16 @@ class HidArmTest : public testing::TestWithParam<const char*> {
     }
     return counts;
   }
+  std::uint32_t ask() {
+    return host_->ask(hid_->board().in & 0x0fU, static_cast<std::uint32_t>(size()));
+  }
+  void tell(const std::vector<std::byte>& bytes) { host_->tell(hid_->board().out, bytes); }
+  bool answers() const { return hid_->board().speech == HidSpeech::kAnswers; }
+  /// Sends a message and takes a report in the same frame; a board that answers gives that of the
+  /// message before.
   std::optional<support::UsbHost::Done> exchange(std::int16_t mA) {
-    const std::uint32_t asked = host_->ask(1, static_cast<std::uint32_t>(size()));
-    host_->tell(1, message({mA, 0, 0}));
+    const std::uint32_t asked = ask();
+    tell(message({mA, 0, 0}));
     host_->frames();
     return host_->done(asked);
   }
@@ -80,7 +87,10 @@ TEST_P(HidArmTest, SaysWhereItIsWithinHalfACount) {
     const auto counts = counts_in(done->data);
     const ArmTruth truth = arm_->truth();
     EXPECT_EQ(counts, truth.counts);
-    EXPECT_EQ(truth.report_ns, (host_->frame() - 1) * 1'000'000);  // sampled a frame before
+    // Sampled a frame before: a free-running board sends on, the other answered then.
+    if (i > 0) {
+      EXPECT_EQ(truth.report_ns, (host_->frame() - 1) * 1'000'000);
+    }
     for (int k = 0; k < 3; ++k) {
       EXPECT_LE(std::abs(counts[static_cast<std::size_t>(k)] - truth.exact_counts[k]), 0.5);
     }
@@ -118,35 +128,61 @@ TEST_P(HidArmTest, SwitchesOffHalfASecondAfterTheLastMessage) {
 TEST_P(HidArmTest, IgnoresMessagesOfAnotherLengthAndCountsThem) {
   exchange(500);
   for (const std::size_t wrong : {std::size_t{1}, size() - 1, size() / 2}) {
-    host_->tell(1, std::vector<std::byte>(wrong, std::byte{0x11}));
-    host_->frames();
+    ask();
+    tell(std::vector<std::byte>(wrong, std::byte{0x11}));
+    host_->frames(2);
   }
   EXPECT_EQ(hid_->malformed(), 3U);
   EXPECT_EQ(arm_->truth().currents[0], 0.5);
+  EXPECT_EQ(arm_->truth().messages, 1U);
 }
 
-TEST_P(HidArmTest, AnswersTheRequestsOfTheHidClass) {
-  const auto done = exchange(0);
-  ASSERT_TRUE(done.has_value());
+TEST_P(HidArmTest, IsNotKeptOnByMessagesOfAnotherLength) {
+  exchange(500);
+  ASSERT_TRUE(arm_->truth().motors_on);
+  for (int i = 0; i < 510; ++i) {
+    ask();
+    tell(std::vector<std::byte>(size() - 1, std::byte{0x11}));
+    host_->frames();
+  }
+  EXPECT_FALSE(arm_->truth().motors_on);
+  EXPECT_EQ(arm_->truth().currents[0], 0);
+}
+
+TEST_P(HidArmTest, ServesOnlyTheRequestsOfTheHidClassThatItsLibraryServes) {
+  const bool teensy = size() == driver::hfab::kPaddedReportSize;
   const auto length = static_cast<std::uint16_t>(size());
-  const auto got = host_->control(
-      {.request_type = 0xa1, .request = 1, .value = 0x0100, .index = 0, .length = length});
-  ASSERT_TRUE(got.has_value());
-  EXPECT_EQ(got->data, done->data);
-  const auto set = host_->control(
-      {.request_type = 0x21, .request = 9, .value = 0x0200, .index = 0, .length = length},
-      message({777, 0, 0}));
-  ASSERT_TRUE(set.has_value());
-  EXPECT_EQ(set->status, 0);
-  EXPECT_EQ(arm_->truth().motor_values[0], 777);
-  ASSERT_EQ(host_->control({.request_type = 0x21, .request = 0x0a, .value = 0x0500})->status, 0);
-  EXPECT_EQ(host_->control({.request_type = 0xa1, .request = 2, .length = 1})->data[0],
-            std::byte{5});
+  const auto status = [&](const SetupPacket& setup, const std::vector<std::byte>& data = {}) {
+    const auto done = host_->control(setup, data);
+    return done ? done->status : 1;
+  };
+  EXPECT_LT(status({.request_type = 0xa1, .request = 1, .value = 0x0100, .length = length}), 0);
+  EXPECT_LT(status({.request_type = 0xa1, .request = 2, .length = 1}), 0);
+  const auto set_idle = status({.request_type = 0x21, .request = 0x0a, .value = 0x0500});
+  EXPECT_EQ(set_idle == 0, teensy);
+  // A message through the control pipe moves no motor of any board.
+  const auto set_report =
+      status({.request_type = 0x21, .request = 9, .value = 0x0200, .length = length},
+             message({777, 0, 0}));
+  EXPECT_EQ(set_report == 0, teensy);
+  EXPECT_EQ(arm_->truth().motor_values[0], 0);
+  EXPECT_LT(status({.request_type = 0x21, .request = 0x77}), 0);
   const auto descriptor = host_->control(
       {.request_type = 0x81, .request = 6, .value = 0x2200, .index = 0, .length = 256});
   ASSERT_TRUE(descriptor.has_value());
-  EXPECT_EQ(descriptor->data, arm_->description().report_descriptor);
-  EXPECT_LT(host_->control({.request_type = 0x21, .request = 0x77})->status, 0);
+  EXPECT_EQ(descriptor->data, arm_->description().interfaces[0].report_descriptor);
+}
+
+TEST_P(HidArmTest, SpeaksUnaskedOnlyIfItIsFreeRunning) {
+  int reports = 0;
+  for (int i = 0; i < 200; ++i) {
+    const std::uint32_t asked = ask();
+    host_->frames();
+    reports += host_->done(asked) ? 1 : 0;
+    host_->take_back(asked);
+  }
+  // The report that a board sends when it starts has waited since then.
+  EXPECT_EQ(reports, answers() ? 1 : 200);
 }
 
 INSTANTIATE_TEST_SUITE_P(Boards, HidArmTest,
@@ -156,6 +192,91 @@ INSTANTIATE_TEST_SUITE_P(Boards, HidArmTest,
                            std::erase(name, '-');
                            return name;
                          });
+
+/// A board that answers, without a bus.
+struct Board {
+  explicit Board(const char* name, const HidBoard& kind) : in(kind.in), out(kind.out) {
+    auto made = make_usb_arm(name, {});
+    EXPECT_TRUE(made.ok());
+    arm = std::move(*made);
+    size = kind.report_size();
+  }
+  std::optional<std::int64_t> report() {
+    std::array<std::byte, UsbDevice::kPacketMax> packet{};
+    if (arm->in(in, packet).answer != Answer::kDone) return std::nullopt;
+    return arm->truth().report_ns;
+  }
+  Answer tell(std::int16_t mA) {
+    std::vector<std::byte> bytes(size);
+    const auto message = driver::hfab::encode_output({.current_mA = {mA, 0, 0}});
+    std::copy(message.begin(), message.end(), bytes.begin());
+    return arm->out(out, bytes).answer;
+  }
+  std::unique_ptr<UsbArm> arm;
+  std::uint8_t in, out;
+  std::size_t size = 0;
+};
+
+class BoardThatAnswers : public testing::TestWithParam<std::pair<const char*, HidBoard>> {};
+
+TEST_P(BoardThatAnswers, SamplesWhenAMessageComesAndSendsOneReportForIt) {
+  Board board(GetParam().first, GetParam().second);
+  board.arm->advance_to(40'000'000);
+  // That of its start comes first, however late it is taken, and it is as old as that.
+  EXPECT_EQ(board.report(), 0);
+  EXPECT_FALSE(board.report());
+  for (std::int64_t ms = 50; ms < 150; ms += 7) {
+    board.arm->advance_to(ms * 1'000'000);
+    EXPECT_EQ(board.tell(100), Answer::kDone);
+    board.arm->advance_to((ms + 3) * 1'000'000);
+    EXPECT_EQ(board.report(), ms * 1'000'000);
+    EXPECT_FALSE(board.report());
+  }
+}
+
+TEST_P(BoardThatAnswers, DoesNotListenWhileItsReportWaits) {
+  Board board(GetParam().first, GetParam().second);
+  board.arm->advance_to(1'000'000);
+  EXPECT_EQ(board.tell(700), Answer::kDone);  // waits in the endpoint
+  EXPECT_EQ(board.arm->truth().messages, 0U);
+  EXPECT_EQ(board.tell(800), Answer::kNak);
+  board.arm->advance_to(5'000'000);
+  EXPECT_EQ(board.report(), 0);
+  EXPECT_EQ(board.arm->truth().messages, 1U);
+  EXPECT_EQ(board.arm->truth().motor_values[0], 700);
+  EXPECT_EQ(board.report(), 5'000'000);
+  EXPECT_FALSE(board.report());
+}
+
+TEST_P(BoardThatAnswers, AnswersAMessageOfAnotherLengthWithoutTakingIt) {
+  Board board(GetParam().first, GetParam().second);
+  board.report();
+  board.arm->advance_to(9'000'000);
+  const std::size_t wrong = board.size == 14 ? 64 : 14;
+  EXPECT_EQ(board.arm->out(board.out, std::vector<std::byte>(wrong)).answer, Answer::kDone);
+  EXPECT_EQ(board.report(), 9'000'000);
+  EXPECT_EQ(board.arm->truth().messages, 0U);
+  EXPECT_FALSE(board.arm->truth().motors_on);
+}
+
+INSTANTIATE_TEST_SUITE_P(Boards, BoardThatAnswers,
+                         testing::Values(std::pair("polhem", kMbed14Board),
+                                         std::pair("polhem-64", kTeensy64Board)),
+                         [](const auto& param_info) {
+                           return param_info.param.second.layout == HidLayout::kPolhem ? "mbed"
+                                                                                       : "teensy";
+                         });
+
+TEST(HidArm, HasADebugInterfaceOnATeensyThatStaysSilent) {
+  auto arm = make_usb_arm("polhem-64", {});
+  ASSERT_TRUE(arm.ok());
+  std::array<std::byte, UsbDevice::kPacketMax> packet{};
+  EXPECT_EQ((*arm)->in(0x81, packet).answer, Answer::kNak);
+  EXPECT_EQ((*arm)->out(0x02, packet).answer, Answer::kDone);
+  EXPECT_EQ((*arm)->truth().messages, 0U);
+  EXPECT_EQ((*arm)->in(0x82, packet).answer, Answer::kStall);
+  EXPECT_EQ((*arm)->out(0x01, packet).answer, Answer::kStall);
+}
 
 TEST(HidArm, CountsTheReportsOfAWoodenHapticsBoard) {
   auto arm = make_usb_arm("woodenhaptics", {});

@@ -80,10 +80,15 @@ TEST_P(EveryArm, DescribesItselfWithoutContradiction) {
   ASSERT_EQ(at(configuration, 2) | (at(configuration, 3) << 8), configuration.size());
   std::size_t i = 0;
   unsigned interfaces = 0, endpoints = 0, endpoints_promised = 0, hid_report_size = 0;
+  std::size_t reports_of_all = 0;
+  for (const InterfaceDescription& interface : d.interfaces) {
+    reports_of_all += interface.report_descriptor.size();
+  }
   while (i < configuration.size()) {
     ASSERT_GE(at(configuration, i), 2U);
     switch (at(configuration, i + 1)) {
       case kInterfaceDescriptor:
+        EXPECT_EQ(at(configuration, i + 2), interfaces);
         ++interfaces;
         endpoints_promised += at(configuration, i + 4);
         break;
@@ -93,7 +98,7 @@ TEST_P(EveryArm, DescribesItselfWithoutContradiction) {
         EXPECT_LE(at(configuration, i + 4), 64U);
         break;
       case kHidDescriptor:
-        hid_report_size = at(configuration, i + 7) | (at(configuration, i + 8) << 8);
+        hid_report_size += at(configuration, i + 7) | (at(configuration, i + 8) << 8);
         break;
       default:
         break;
@@ -103,7 +108,8 @@ TEST_P(EveryArm, DescribesItselfWithoutContradiction) {
   EXPECT_EQ(i, configuration.size());
   EXPECT_EQ(interfaces, at(configuration, 4));
   EXPECT_EQ(endpoints, endpoints_promised);
-  EXPECT_EQ(hid_report_size, d.report_descriptor.size());
+  EXPECT_EQ(hid_report_size, reports_of_all);
+  EXPECT_EQ(interfaces, d.interfaces.size());
 }
 
 TEST_P(EveryArm, NamesItselfInTheStringsItPromises) {
@@ -123,10 +129,11 @@ TEST_P(EveryArm, NamesItselfInTheStringsItPromises) {
 TEST_P(EveryArm, HasAReportDescriptorOfTheSizeOfItsReports) {
   const auto* hid = dynamic_cast<const HidArm*>(arm_.get());
   if (hid == nullptr) {
-    EXPECT_TRUE(arm_->description().report_descriptor.empty());
+    EXPECT_TRUE(arm_->description().interfaces[0].report_descriptor.empty());
     return;
   }
-  const ReportSizes sizes = read_report_descriptor(arm_->description().report_descriptor);
+  const ReportSizes sizes =
+      read_report_descriptor(arm_->description().interfaces[0].report_descriptor);
   EXPECT_TRUE(sizes.well_formed);
   EXPECT_EQ(sizes.in_bits, 8 * hid->report_size());
   EXPECT_EQ(sizes.out_bits, 8 * hid->report_size());

@@ -137,6 +137,19 @@ TEST_F(Faulty, SendsEveryPacketTwiceWhenDuplicating) {
   EXPECT_EQ(inner_.taken, (std::vector<Packet>{of(9), of(9)}));
 }
 
+TEST_F(Faulty, LosesPacketsThatWereTaken) {
+  order("lost in for=3");
+  EXPECT_EQ(poll().answer, Answer::kNak);
+  EXPECT_EQ(poll().answer, Answer::kNak);
+  EXPECT_EQ(poll().answer, Answer::kDone);
+  EXPECT_EQ(packet_, of(3));  // the first two are gone
+  order("lost out");
+  EXPECT_EQ(tell(5).answer, Answer::kDone);  // the host does not notice
+  EXPECT_EQ(tell(6).size, 8U);
+  EXPECT_TRUE(inner_.taken.empty());
+  EXPECT_EQ(device_.hits(FaultKind::kLost), 4U);
+}
+
 TEST_F(Faulty, FlipsAsManyBitsAsTheRateSays) {
   order("bit_errors in rate=0.1");
   int flipped = 0;

@@ -19,11 +19,12 @@ class CountingDevice final : public UsbDevice {
     description_.vendor_id = 0x1234;
     description_.product_id = 6;
     description_.product = "counter";
-    description_.endpoints = {{0x81, TransferKind::kInterrupt, 8, 1},
-                              {0x01, TransferKind::kInterrupt, 8, 1},
-                              {0x82, TransferKind::kBulk, 64, 0},
-                              {0x02, TransferKind::kBulk, 64, 0},
-                              {0x83, TransferKind::kInterrupt, 8, 4}};
+    description_.interfaces.resize(1);
+    description_.interfaces[0].endpoints = {{0x81, TransferKind::kInterrupt, 8, 1},
+                                            {0x01, TransferKind::kInterrupt, 8, 1},
+                                            {0x82, TransferKind::kBulk, 64, 0},
+                                            {0x02, TransferKind::kBulk, 64, 0},
+                                            {0x83, TransferKind::kInterrupt, 8, 4}};
   }
   const UsbDescription& description() const noexcept override { return description_; }
   void advance_to(std::int64_t) noexcept override {}

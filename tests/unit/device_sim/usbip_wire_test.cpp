@@ -98,16 +98,19 @@ TEST(UsbipWire, LaysOutListAndImportAsDocumented) {
   device.vendor_id = 0x1234;
   device.product_id = 0x0006;
   device.release = 0x0102;
-  device.interface_class = 3;
+  device.interfaces.resize(2);
+  device.interfaces[0].interface_class = 3;
+  device.interfaces[1].interface_class = 7;
   const auto list = encode_list(&device, "1-1");
-  ASSERT_EQ(list.size(), 0x0cU + 0x138U + 4U);
+  ASSERT_EQ(list.size(), 0x0cU + 0x138U + 2 * 4U);
   EXPECT_EQ(list[11], std::byte{1});         // one device
   EXPECT_EQ(list[0x10c], std::byte{'1'});    // bus id
   EXPECT_EQ(list[0x134 + 3], std::byte{2});  // full speed
   EXPECT_EQ(list[0x138], std::byte{0x12});   // vendor
   EXPECT_EQ(list[0x13a + 1], std::byte{6});  // product
-  EXPECT_EQ(list[0x143], std::byte{1});      // interfaces
+  EXPECT_EQ(list[0x143], std::byte{2});      // interfaces
   EXPECT_EQ(list[0x144], std::byte{3});      // class of the first
+  EXPECT_EQ(list[0x148], std::byte{7});      // class of the second
   EXPECT_EQ(encode_list(nullptr, "1-1").size(), 12U);
   const auto import = encode_import(&device, std::string(99, 'x'));  // too long: cut, still closed
   ASSERT_EQ(import.size(), kImportReplySize);

@@ -4,7 +4,9 @@ namespace thimble::driver::falcon {
 
 bool PacketWire::decode(std::span<const std::byte> bytes, ArmReading& reading) noexcept {
   const auto packet = decode_arm_packet(bytes);
-  if (!packet) return false;
+  // A leg that is not homed counts from anywhere. The arm was homed before it was opened, so it has
+  // lost its home since, and where its tip is nobody knows.
+  if (!packet || packet->homed != kAllHomed) return false;
   for (std::size_t i = 0; i < 3; ++i) reading.counts[i] = packet->counts[i];
   reading.auxiliary = {packet->homed, 0, 0};
   reading.buttons = packet->buttons;

@@ -23,7 +23,7 @@ enum class HandMotion : std::uint8_t {
 /// Says how an arm from the shelf is to be.
 struct ShelfOptions {
   HandMotion motion = HandMotion::kTap;  ///< What the hand does.
-  std::string serial = "SIM0001";        ///< Serial number that it tells.
+  std::string serial;                    ///< Serial number that it tells; empty: its board's own.
   std::uint64_t seed = 0;                ///< Of everything random.
   std::vector<std::byte> firmware;       ///< The only image that a Falcon runs; empty: any.
 };
@@ -34,17 +34,15 @@ struct ShelfEntry {
   std::string_view what;  ///< What it is, for people.
 };
 inline constexpr std::array<ShelfEntry, 4> kShelf{{
-    {"woodenhaptics", "WoodenHaptics, HID 1234:0006, 8-byte reports"},
-    {"polhem", "Polhem v2, HID 16c0:0486, 14-byte reports"},
+    {"woodenhaptics", "WoodenHaptics on its mbed board, HID 1234:0006, 8-byte reports"},
+    {"polhem", "Polhem on its mbed board, HID 1234:0006, 14-byte reports, answers only"},
     {"polhem-64", "Polhem on a Teensy, HID 16c0:0486, the same reports in 64 bytes"},
     {"falcon", "Novint Falcon, FTDI 0403:cb48, boots, takes firmware, homes"},
 }};
 
-/// Tells the kernel what a simulated Falcon is. Real-time: never from the servo thread.
-UsbDescription falcon_description(std::string serial);
-
 /// Makes an arm by its name. Fails with the list of names. The hand moves for ten minutes, then
-/// rests. Real-time: never from the servo thread.
+/// rests. That of a Falcon homes it whenever the arm is asked to home and is not (homing_hand.h).
+/// Real-time: never from the servo thread.
 driver::Result<std::unique_ptr<UsbArm>> make_usb_arm(std::string_view name,
                                                      const ShelfOptions& options);
 

@@ -18,6 +18,16 @@ struct FalconCounters {
   std::uint64_t resets = 0;     ///< Times the boot loader began anew.
 };
 
+/// What a Falcon makes of a packet without the homing bit. libnifalcon's header says of the flags
+/// of the homed legs "if homing mode on", and its users who need the encoders keep the bit in every
+/// packet [S FalconFirmwareNovintSDK.h; "keep track of encoders" in programs on top of it]. What
+/// becomes of the counts is not known.
+enum class FalconHoming : std::uint8_t {
+  kForgets,     ///< Flags and homes are lost; the arm must be homed anew. The hardest for a driver.
+  kHidesFlags,  ///< No leg counts as homed in the answer; the homes are kept.
+  kKeeps,       ///< Nothing.
+};
+
 /// Is the processor of a Novint Falcon, as a host meets it [S libnifalcon FalconCommLibUSB.cpp,
 /// FalconFirmware.cpp]: a boot loader that a rising DTR resets (firmware is then lost), that
 /// answers a greeting at 9600 baud, echoes the firmware at 140 kbaud, and then the firmware, which
@@ -34,7 +44,7 @@ class FalconBoard final : public SerialBoard {
 
   /// `image` is the firmware that this board can run; empty if any will do.
   /// Real-time: never from the servo thread.
-  explicit FalconBoard(std::vector<std::byte> image);
+  explicit FalconBoard(std::vector<std::byte> image, FalconHoming homing = FalconHoming::kForgets);
 
   // All functions below are Real-time: safe.
 
@@ -61,13 +71,17 @@ class FalconBoard final : public SerialBoard {
   /// Shows the last message to the host.
   const driver::falcon::ArmPacket& answered() const noexcept { return answered_; }
   bool motors_on() const noexcept { return motors_on_; }  ///< Tells whether it has them on.
+  /// Returns whether a host asks it to home now and some leg has not passed its home.
+  bool wants_homing() const noexcept;
   const FalconCounters& counters() const noexcept { return counters_; }
 
  private:
   void run(std::byte byte, ByteQueue& says) noexcept;
   void answer(ByteQueue& says) noexcept;
+  void forget_homes() noexcept;
 
   std::vector<std::byte> image_;
+  FalconHoming homing_;
   Stage stage_ = Stage::kBoot;
   bool running_ = false, image_right_ = true;
   bool dtr_ = false;

@@ -10,6 +10,7 @@
 #include "thimble/device_sim/tremor.h"
 #include "thimble/device_sim/usb/falcon_board.h"
 #include "thimble/device_sim/usb/ftdi_chip.h"
+#include "thimble/device_sim/usb/homing_hand.h"
 #include "thimble/device_sim/usb/usb_arm.h"
 
 namespace thimble::device_sim::usb {
@@ -27,6 +28,9 @@ class FalconOnUsb final : public UsbArm {
 
   /// Gives the hand another way, whose time 0 is now. Real-time: never from the servo thread.
   void lead(HandPath path);
+  /// Lets the hand home the arm from now on whenever a host asks for it; its own way waits
+  /// meanwhile. Real-time: safe.
+  void home_when_asked() noexcept { homes_ = true; }
   /// Gives the hand, to be led or held by whoever lets time pass. Real-time: safe.
   Hand& hand() noexcept { return hand_; }
 
@@ -49,6 +53,8 @@ class FalconOnUsb final : public UsbArm {
   UsbDescription description_;
   Tremor tremor_;
   Hand hand_;
+  HomingHand homing_hand_;
+  bool homes_ = false;
   WiringSettings wiring_;
   DeltaPlant plant_;
   FalconBoard board_;

@@ -33,6 +33,8 @@ class SimulatedFalcon {
   /// Lets time pass up to `time_ns` of the clock with nobody on the bus. Real-time: safe.
   void advance_to(std::int64_t time_ns) noexcept { falcon_.advance_to(begin_ns_ + time_ns); }
 
+  /// Lets the hand home the arm from now on whenever a host asks for it. Real-time: safe.
+  void home_when_asked() noexcept { falcon_.home_when_asked(); }
   /// Gives the hand, to be led or held by whoever lets time pass. Real-time: safe.
   Hand& hand() noexcept { return falcon_.hand(); }
   /// Gives the arm to another bus than `wire` makes. Real-time: safe.

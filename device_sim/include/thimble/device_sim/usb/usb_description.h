@@ -22,20 +22,27 @@ struct EndpointDescription {
   std::uint8_t number() const noexcept { return address & 0x0fU; }  ///< Tells its number.
 };
 
-/// Describes a full-speed USB device with one configuration of one interface: what a host reads
-/// before it talks to the device's endpoints.
-struct UsbDescription {
-  std::uint16_t vendor_id = 0;                 ///< USB's, of the maker.
-  std::uint16_t product_id = 0;                ///< The maker's.
-  std::uint16_t release = 0x0100;              ///< bcdDevice; some hosts tell chips apart by it.
-  std::string manufacturer, product, serial;   ///< ASCII; empty ones get no string descriptor.
+/// One interface of a device: a host binds a driver to each.
+struct InterfaceDescription {
   std::uint8_t interface_class = 0xff;         ///< 3 for HID, 0xff for the vendor's own.
   std::uint8_t interface_subclass = 0;         ///< Of its class (0: none).
   std::uint8_t interface_protocol = 0;         ///< Of its subclass (0: none).
+  std::uint8_t string_index = 0;               ///< String that names it (0: none).
   std::vector<std::byte> report_descriptor;    ///< For HID: what the reports hold.
   std::vector<EndpointDescription> endpoints;  ///< But for the control endpoint.
+};
 
-  /// Finds an endpoint by its address, or nullptr. Real-time: safe.
+/// A full-speed USB device with one configuration: what a host reads before it talks to the
+/// device's endpoints. Interfaces are numbered from 0 in their order.
+struct UsbDescription {
+  std::uint16_t vendor_id = 0;                   ///< USB's, of the maker.
+  std::uint16_t product_id = 0;                  ///< The maker's.
+  std::uint16_t release = 0x0100;                ///< bcdDevice; some hosts tell chips apart by it.
+  std::uint8_t power_2mA = 50;                   ///< bMaxPower: current from the bus, in 2 mA.
+  std::string manufacturer, product, serial;     ///< ASCII; empty ones get no string descriptor.
+  std::vector<InterfaceDescription> interfaces;  ///< At least one.
+
+  /// Returns the endpoint of this address in any interface, or nullptr. Real-time: safe.
   const EndpointDescription* endpoint(std::uint8_t address) const noexcept;
 };
 
@@ -51,13 +58,15 @@ enum DescriptorKind : std::uint8_t {
 };
 
 /// Builds the descriptor that a host asks for by GET_DESCRIPTOR with this kind and index; empty if
-/// the device has none. Strings are cut at 126 characters. Real-time: never from the servo thread.
+/// the device has none. `interface` says whose HID or report descriptor it is. Strings are cut at
+/// 126 characters. Real-time: never from the servo thread.
 std::vector<std::byte> build_descriptor(const UsbDescription& description, std::uint8_t kind,
-                                        std::uint8_t index);
+                                        std::uint8_t index, std::uint8_t interface = 0);
 
 /// Builds the report descriptor of a device that exchanges plain bytes: one report of `in_bytes` to
-/// the host and one of `out_bytes` from it, no report ids, on a vendor's usage page
-/// [HID 1.11, 6.2.2]. Real-time: never from the servo thread.
+/// the host and one of `out_bytes` from it, no report ids, on a vendor's usage page, item by item
+/// in the order of mbed's USBHID class and of Teensy's raw HID, which are the same [S mbed
+/// USBHID.cpp; PaulStoffregen/cores teensy3/usb_desc.c]. Real-time: never from the servo thread.
 std::vector<std::byte> build_raw_report_descriptor(std::uint16_t usage_page, std::uint16_t usage,
                                                    std::uint8_t in_bytes, std::uint8_t out_bytes);
 

@@ -23,8 +23,9 @@ enum class FaultKind : std::uint8_t {
   kSilence,    ///< Nothing: the endpoint asks the host to wait.
   kBitErrors,  ///< Bits flip, each with the fault's rate.
   kUnplug,     ///< The device leaves the bus.
+  kLost,       ///< The packet is taken, and nothing comes of it.
 };
-inline constexpr std::size_t kFaultKinds = 9;
+inline constexpr std::size_t kFaultKinds = 10;
 
 /// Gives the name of a fault in scripts ("bit_errors"). Real-time: safe.
 std::string_view name(FaultKind kind) noexcept;

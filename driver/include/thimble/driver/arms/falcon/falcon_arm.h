@@ -7,6 +7,8 @@
 namespace thimble::driver::falcon {
 
 /// Is the Falcon's wire as an arm sees it: counts and buttons in, motor values out, lights green.
+/// Every message has the homing bit, without which the arm does not say whether it is homed [S
+/// libnifalcon FalconFirmwareNovintSDK.h]; an answer in which a leg is not homed is rejected.
 /// Real-time: safe.
 struct PacketWire {
   static bool decode(std::span<const std::byte> bytes, ArmReading& reading) noexcept;
