@@ -96,8 +96,9 @@ driver::GateLimits read_gate(YamlMap map, ArmFile& arm) {
   energy.allowance = number_if_there(map, "energy_allowance", "J", 0, 1);
   energy.reservoir = number_if_there(map, "energy_reservoir", "J", 1e-6, 10);
   energy.slope = number_if_there(map, "energy_slope", "N/m", 0.1, 1e6);
-  for (const char* key : {"force_max", "speed_max", "rise_max", "soft_start", "stall", "watchdog",
-                          "reopen", "energy", "energy_allowance"}) {
+  for (const char* key :
+       {"force_max", "speed_max", "rise_max", "soft_start", "stall", "watchdog", "reopen", "energy",
+        "tip_mass", "energy_allowance", "energy_reservoir", "energy_slope"}) {
     arm.gate_lines[key] = map.key_line(key);
   }
   map.finish();

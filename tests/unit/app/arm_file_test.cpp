@@ -129,7 +129,7 @@ TEST(ArmFile, RefusesLimitsThatProtectNobodyWithTheirLine) {
       {"soft_start: 0.3", "soft_start: 1e-9", ":44: soft_start: expected a number from 0.05"},
       {"soft_start: 0.3", "soft_start: 0.049", ":44: soft_start: expected a number from 0.05"},
       {"watchdog: 0.1 ", "watchdog: 10 ", ":46: watchdog: expected a number from 0.001 to 1 s"},
-      {"rise_max: 2000", "rise_max: 1e6", ":43: rise_max: expected a number from 1 to 1e+05 N/s"},
+      {"rise_max: 2000", "rise_max: 1e6", ":43: rise_max: expected a number from 1 to 100000 N/s"},
       {"stall: 0.02 ", "stall: 0.1 ", ":45: stall: expected a shorter time than that of watchdog"},
       {"force_max: 5 ", "force_max: .nan ", ":41: force_max: expected a number"},
   };
