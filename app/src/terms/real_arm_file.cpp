@@ -69,7 +69,7 @@ Result<Choice> installed_for_model(const FoundArm& arm, int model) {
   std::optional<Choice> found;
   for (const ShippedFile& installed : installed_arms()) {
     const auto file = read_arm_file(installed.path);
-    if (!file || file->board_model != model) continue;
+    if (!file || file->board_model != model || !check_fits(*file, arm)) continue;
     if (found) {
       return say_which(arm, "The board " + arm.name() + " answers as model " + number +
                                 ", for which several arm files are installed.");

@@ -13,7 +13,9 @@
 #include "feel_check.h"
 #include "meshes.h"
 #include "session.h"
+#include "session_report.h"
 #include "shipped_files.h"
+#include "support/line_board.h"
 #include "support/scratch.h"
 #include "terms/feel_check_record.h"
 #include "terms/limits_policy.h"
@@ -377,6 +379,49 @@ TEST_F(RealArmTermsTest, ARunWithARealArmNeedsTerms) {
   const auto session = Session::open(file, options);
   ASSERT_FALSE(session);
   EXPECT_TRUE(holds(session.error().message, "terms")) << session.error().message;
+}
+
+TEST_F(RealArmTermsTest, ABoardWithAnArmsNameIsAskedForItsModel) {
+  const support::LineBoard board(2);
+  if (board.node().empty()) GTEST_SKIP() << "this machine has no pseudo-terminals";
+  FoundArm arm = plug(ArmKind::kHfabLine, "V1", "0279", "Haptikfabriken vintage");
+  arm.node = board.node();
+  const auto found = find_real_arm_file(arm);
+  ASSERT_TRUE(found) << found.error().message;
+  EXPECT_EQ(found->path.stem(), "vintage_phantom");
+  EXPECT_TRUE(holds(found->why, "model 2")) << found->why;
+  EXPECT_GT(board.messages(), 0);
+}
+
+TEST_F(RealArmTermsTest, TheGateOfASessionStandsOnTheTerms) {
+  const support::LineBoard board(2);
+  if (board.node().empty()) GTEST_SKIP() << "this machine has no pseudo-terminals";
+  FoundArm arm = plug(ArmKind::kHfabLine, "V1", "0279", "Haptikfabriken vintage");
+  arm.node = board.node();
+  const fs::path file = home_ / "scene" / "ball.yaml";
+  write(home_ / "scene" / "own.yaml",
+        with(text_of(kArms / "polhem.yaml"), "speed_max: 3 ", "speed_max: 0.5 "));
+  write(file, ball("own.yaml", "gate:\n  energy: none\n"));
+  for (const bool unchecked : {false, true}) {
+    SessionOptions options;
+    options.real_arm = arm;
+    auto terms = terms_for(
+        arm, {.arm_file = kArms / "vintage_phantom.yaml", .firmware = {}, .unchecked = unchecked});
+    ASSERT_TRUE(terms) << terms.error().message;
+    options.terms = std::move(terms).value();
+    const auto session = Session::open(file, options);
+    ASSERT_TRUE(session) << session.error().message;
+    const driver::SafetyGate& gate = (*session)->device().gate();
+    EXPECT_EQ(gate.limits().force_max, unchecked ? 5 : 0.5);
+    EXPECT_EQ(gate.limits().speed_max, 0.5);
+    EXPECT_EQ(gate.energy_stage(), EnergyStage::kPassivity);
+    EXPECT_EQ((*session)->scene().arm.name, "vintage_phantom");
+    EXPECT_TRUE(holds(all_of((*session)->told()), "energy: none is ignored"));
+    const RunReport report = report_of(**session, driver::ServoEnd::kStopped, {});
+    EXPECT_EQ(report.feel_check, unchecked ? FeelCheckState::kUnchecked : FeelCheckState::kNone);
+    EXPECT_EQ(holds(summary(report), "UNCHECKED"), unchecked);
+    EXPECT_EQ(holds(summary(report), "at most 0.50 N"), !unchecked);
+  }
 }
 
 TEST_F(RealArmTermsTest, WithoutAPassedFeelCheckTheForceStaysBelowHalfANewton) {
