@@ -125,6 +125,8 @@ TEST(ArmFile, RefusesLimitsThatProtectNobodyWithTheirLine) {
   const Case cases[] = {
       {"force_max: 5 ", "force_max: 100 ",
        ":41: force_max: expected at most what the arm declares, 5 N, found 100"},
+      {"force_max: 5 ", "force_max: 5.01 ",
+       ":41: force_max: expected at most what the arm declares"},
       {"soft_start: 0.3", "soft_start: 0", ":44: soft_start: expected a number from 0.05 to 10 s"},
       {"soft_start: 0.3", "soft_start: 1e-9", ":44: soft_start: expected a number from 0.05"},
       {"soft_start: 0.3", "soft_start: 0.049", ":44: soft_start: expected a number from 0.05"},
