@@ -288,13 +288,14 @@ py::list devices() {
 void bind_run(py::module_& core) {
   py::class_<HeldRun>(core, "Run")
       .def(py::init([](const std::string& scene, const std::string& arm, const std::string& device,
-                       bool agreed, bool real_time, std::optional<double> seconds,
+                       bool agreed, bool unchecked, bool real_time, std::optional<double> seconds,
                        std::optional<std::uint64_t> seed, const std::string& quality,
                        const std::string& record, const std::string& firmware,
                        const py::object& law) {
              return std::make_unique<HeldRun>(RunOptions{.scene = scene,
                                                          .arm_file = arm,
                                                          .device = device,
+                                                         .unchecked = unchecked,
                                                          .agreed = agreed,
                                                          .real_time = real_time,
                                                          .seconds = seconds,
@@ -305,9 +306,10 @@ void bind_run(py::module_& core) {
                                               law);
            }),
            py::arg("scene"), py::kw_only(), py::arg("arm") = "", py::arg("device") = "sim",
-           py::arg("agreed") = false, py::arg("real_time") = false, py::arg("seconds") = py::none(),
-           py::arg("seed") = py::none(), py::arg("quality") = "normal", py::arg("record") = "",
-           py::arg("firmware") = "", py::arg("law") = py::none())
+           py::arg("agreed") = false, py::arg("unchecked") = false, py::arg("real_time") = false,
+           py::arg("seconds") = py::none(), py::arg("seed") = py::none(),
+           py::arg("quality") = "normal", py::arg("record") = "", py::arg("firmware") = "",
+           py::arg("law") = py::none())
       .def("run", &run_all)
       .def("step", &step_once, py::arg("hand") = py::none())
       .def("start", [](HeldRun& held) { held.run->start(); })

@@ -33,6 +33,13 @@ class Claim {
   bool& busy_;
 };
 
+/// Says on stderr, where a program's warnings go, on which terms a real arm is used.
+void tell(const std::vector<std::string>& sentences) {
+  for (const std::string& sentence : sentences) {
+    std::fprintf(stderr, "thimble: %s\n", sentence.c_str());
+  }
+}
+
 app::SessionOptions session_options(const RunOptions& options) {
   app::SessionOptions asked;
   if (options.seconds && !(*options.seconds >= 1e-3 && *options.seconds <= kSecondsMax)) {
@@ -55,12 +62,18 @@ app::SessionOptions session_options(const RunOptions& options) {
         " would get forces. Keep clear of it, hold its grip, keep its switch at hand, and "
         "say agree=True.");
   }
+  if (!options.arm_file.empty()) asked.arm_file = value_of(app::find_arm_file(options.arm_file));
+  if (asked.real_arm) {
+    asked.terms = value_of(app::terms_for(*asked.real_arm, {.arm_file = asked.arm_file,
+                                                            .firmware = options.firmware,
+                                                            .unchecked = options.unchecked}));
+    tell(asked.terms->told);
+  }
   const bool real_time = options.real_time || asked.real_arm;
   asked.clock = real_time ? app::ClockKind::kWall : app::ClockKind::kVirtual;
   asked.duration = options.seconds;
   asked.seed = options.seed;
   asked.mesh_folder = app::mesh_folder();
-  if (!options.arm_file.empty()) asked.arm_file = value_of(app::find_arm_file(options.arm_file));
   asked.firmware = options.firmware;
   asked.record = options.record;
   asked.adjust = [&options](app::Scene& scene) {
@@ -72,8 +85,10 @@ app::SessionOptions session_options(const RunOptions& options) {
 }  // namespace
 
 SceneRun::SceneRun(const RunOptions& options)
-    : session_(value_of(app::Session::open(value_of(app::find_scene(options.scene)),
-                                           session_options(options)))) {}
+    : session_(value_of(
+          app::Session::open(value_of(app::find_scene(options.scene)), session_options(options)))) {
+  tell(session_->told());
+}
 
 SceneRun::~SceneRun() {
   stop_.store(true);

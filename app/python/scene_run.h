@@ -19,6 +19,7 @@ struct RunOptions {
   std::string scene;           ///< File or name.
   std::string arm_file;        ///< File or name; empty: the scene's own.
   std::string device = "sim";  ///< "sim", "auto" or a name (choose_arm).
+  bool unchecked = false;      ///< Whole force on a real arm without a passed feel check.
   bool agreed = false;         ///< Whether the user agreed that a real arm gets forces.
   bool real_time = false;      ///< By the time of the world; always so on a real arm.
   std::optional<double> seconds;

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "arm_file.h"
 #include "thimble/driver/discovery.h"
@@ -12,7 +13,7 @@ namespace thimble::app {
 
 /// Is which arm a command is about, as the user said it.
 struct ArmChoice {
-  std::string device = "sim";
+  std::string device = "auto";
   std::string arm_file;
   std::string firmware;
 
@@ -22,13 +23,32 @@ struct ArmChoice {
 
 /// Is the arm that a choice means.
 struct ChosenArm {
-  ArmFile file;
+  ArmFile file;                              ///< Of a real arm with its calibration, if wanted.
+  std::filesystem::path path;                ///< Where `file` was read.
+  std::vector<std::string> told;             ///< Which file a real arm has and why.
   std::optional<driver::FoundArm> real_arm;  ///< empty: the simulated one
   std::string name;                          ///< FoundArm::name, or "sim"
 };
 
-/// Finds the arm that a choice means and reads its file, without its calibration. The error says
-/// what to do. Real-time: never from the servo thread.
-driver::Result<ChosenArm> resolve(const ArmChoice& choice);
+/// Finds the arm that a choice means and reads its file: a plugged one if there is one, with its
+/// calibration unless it is chosen `for_calibration`; else the simulated one of --arm. The error
+/// says what to do. Real-time: never from the servo thread.
+driver::Result<ChosenArm> resolve(const ArmChoice& choice, bool for_calibration);
+
+/// Says on the first and the last line that an arm is simulated, so that nobody takes what was
+/// found for the arm on the desk.
+class SimulatedNote {
+ public:
+  /// Prints the first line if `arm` is simulated. `kept` names what is not kept ("calibration").
+  SimulatedNote(const ChosenArm& arm, const char* kept);
+  ~SimulatedNote();
+  SimulatedNote(const SimulatedNote&) = delete;
+  SimulatedNote& operator=(const SimulatedNote&) = delete;
+
+ private:
+  void print() const;
+
+  std::string line_;  // empty: the arm is real
+};
 
 }  // namespace thimble::app

@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "printed.h"
 #include "thimble/driver/arms/falcon/falcon_arm.h"
 #include "thimble/driver/arms/hfab/hfab_models.h"
 #include "yaml_reader.h"
@@ -17,6 +18,14 @@ namespace {
 
 // The bounds below are no limits of any arm: they are far outside of what a desk-top arm can be
 // [DEVICES 3], so that a slipped decimal point or a value in mm is caught at its line.
+
+// The loosest limits that a gate may have, of a real arm and of a simulated one. A limit beyond
+// them is there by name only.
+constexpr double kSoftStartLeast = 0.05;  // s [chosen: a stretch reflex answers after 30 to 50 ms
+                                          // [M], so a hand can answer before the force is whole]
+constexpr double kRiseMost = 1e5;    // N/s [chosen: lets 100 N, the largest force_max that can be
+                                     // written, rise within one tick of 1 kHz]
+constexpr double kWatchdogMost = 1;  // s [chosen: twice that of the slowest board, DEVICES 1]
 
 std::int64_t to_ns(double seconds) {
   return std::llround(seconds * 1e9);
@@ -81,24 +90,38 @@ std::optional<double> number_if_there(YamlMap& map, std::string_view key, std::s
   return map.require_number(key, unit, least, most);
 }
 
-driver::GateLimits read_gate(YamlMap map, EnergyChoice& energy, std::optional<double>& hold) {
+driver::GateLimits read_gate(YamlMap map, ArmFile& arm) {
   driver::GateLimits limits;
   limits.force_max = map.require_number("force_max", "N", 0.01, 100);
   limits.speed_max = map.require_number("speed_max", "m/s", 0.01, 20);
-  limits.rise_max = map.require_number("rise_max", "N/s", 1, 1e6);
-  limits.soft_start = map.require_number("soft_start", "s", 0, 10);
+  limits.rise_max = map.require_number("rise_max", "N/s", 1, kRiseMost);
+  limits.soft_start = map.require_number("soft_start", "s", kSoftStartLeast, 10);
   limits.stall_ns = to_ns(map.require_number("stall", "s", 0.001, 10));
-  limits.watchdog_ns = to_ns(map.require_number("watchdog", "s", 0.001, 10));
+  limits.watchdog_ns = to_ns(map.require_number("watchdog", "s", 0.001, kWatchdogMost));
   limits.reopen = map.optional_number("reopen", limits.reopen, "s", 0.001, 10);
+  if (limits.force_max > arm.declared.force) {
+    map.reject("force_max", printed("expected at most what the arm declares, %g N, found %g",
+                                    arm.declared.force, limits.force_max));
+  }
+  // A mistake in either has been told, and left its least value.
+  if (limits.stall_ns >= limits.watchdog_ns && limits.watchdog_ns > to_ns(0.001)) {
+    map.reject("stall", "expected a shorter time than that of watchdog");
+  }
+  EnergyChoice& energy = arm.energy;
   if (map.has("energy")) {
     energy.stage =
         static_cast<driver::EnergyStage>(map.require_choice("energy", kEnergyStageNames));
   }
-  hold = number_if_there(map, "hold_unchanged", "s", 0.05, 600);
+  arm.hold_unchanged = number_if_there(map, "hold_unchanged", "s", 0.05, 600);
   energy.mass = number_if_there(map, "tip_mass", "kg", 1e-3, 10);
   energy.allowance = number_if_there(map, "energy_allowance", "J", 0, 1);
   energy.reservoir = number_if_there(map, "energy_reservoir", "J", 1e-6, 10);
   energy.slope = number_if_there(map, "energy_slope", "N/m", 0.1, 1e6);
+  for (const char* key :
+       {"force_max", "speed_max", "rise_max", "soft_start", "stall", "watchdog", "reopen", "energy",
+        "tip_mass", "energy_allowance", "energy_reservoir", "energy_slope", "hold_unchanged"}) {
+    arm.gate_lines[key] = map.key_line(key);
+  }
   map.finish();
   return limits;
 }
@@ -259,7 +282,7 @@ driver::Result<ArmFile> read_arm_file(const std::filesystem::path& file) {
   base.finish();
   arm.workspace = read_workspace(root.require_map("workspace"));
   arm.declared = read_declared(root.require_map("declared"));
-  arm.limits = read_gate(root.require_map("gate"), arm.energy, arm.hold_unchanged);
+  arm.limits = read_gate(root.require_map("gate"), arm);
   arm.velocity_corner_frequency = root.require_number("velocity_corner_frequency", "Hz", 0, 1e5);
   if (arm.shape == ArmShape::kSerial || root.has("simulation")) {
     arm.simulated =

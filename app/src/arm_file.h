@@ -2,6 +2,8 @@
 
 #include <Eigen/Core>
 #include <filesystem>
+#include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -48,6 +50,7 @@ struct ArmFile {
   /// Drives, encoders and, for a serial arm, the geometry. The other shapes have theirs in code.
   driver::hfab::HfabModel model;
   driver::GateLimits limits;
+  std::map<std::string, int, std::less<>> gate_lines;  ///< Line of each key of the section `gate`.
   EnergyChoice energy;
   /// Longest time a force is held while no encoder counts, s; none: the driver's own.
   std::optional<double> hold_unchanged{};
@@ -62,7 +65,9 @@ struct ArmFile {
 };
 
 /// Reads an arm file (see app/arms/vintage_phantom.yaml for the form). The error tells up to five
-/// mistakes, one per line, with file and line. Real-time: never from the servo thread.
+/// mistakes, one per line, with file and line; a limit of the gate that protects nobody is one:
+/// force_max above the declared force, soft_start below 0.05 s, rise_max above 1e5 N/s, watchdog
+/// above 1 s, stall not below watchdog. Real-time: never from the servo thread.
 driver::Result<ArmFile> read_arm_file(const std::filesystem::path& file);
 
 }  // namespace thimble::app

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <iomanip>
 #include <ostream>
 #include <system_error>
 
@@ -52,6 +53,7 @@ driver::Result<std::optional<Calibration>> load_calibration(const std::string& n
   }
   calibration.encoder_sign = read_signs(root, "encoder_sign");
   calibration.motor_sign = read_signs(root, "motor_sign");
+  calibration.arm_file = root.optional_string("arm_file", "");
   root.finish();
   if (auto done = yaml->finish(); !done) return done.error();
   return std::optional<Calibration>(calibration);
@@ -67,6 +69,9 @@ driver::Result<void> save_calibration(const std::string& name, const Calibration
   put(stream, "home_counts", calibration.home_counts);
   put(stream, "encoder_sign", calibration.encoder_sign);
   put(stream, "motor_sign", calibration.motor_sign);
+  if (!calibration.arm_file.empty()) {
+    stream << "arm_file: " << std::quoted(calibration.arm_file) << "\n";
+  }
   stream.close();
   if (stream) fs::rename(fresh, file, trouble);
   if (!stream || trouble) {

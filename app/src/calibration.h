@@ -22,6 +22,9 @@ struct Calibration {
   std::array<std::int32_t, 3> home_counts{};
   std::array<int, 3> encoder_sign{1, 1, 1};
   std::array<int, 3> motor_sign{1, 1, 1};
+  /// Name of the installed arm file that it was found with; it is the arm's from then on. Empty:
+  /// not known.
+  std::string arm_file{};
 
   friend bool operator==(const Calibration&, const Calibration&) = default;
 };

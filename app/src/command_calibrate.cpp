@@ -36,8 +36,10 @@ Eigen::Vector3d home_of(const ArmFile& file) {
 }
 
 int calibrate(const ArmChoice& choice, bool dry_run) {
-  auto chosen = resolve(choice);
+  auto chosen = resolve(choice, true);
   if (!chosen) return complain(chosen.error(), kExitNoDevice);
+  const SimulatedNote simulated(*chosen, "calibration");
+  for (const std::string& sentence : chosen->told) std::printf("%s\n", sentence.c_str());
   const auto way =
       chosen->real_arm ? decltype(simulated_hand({})){} : simulated_hand(home_of(chosen->file));
   // Zero force throughout: the limit is only what the device asks for.
@@ -66,18 +68,21 @@ int calibrate(const ArmChoice& choice, bool dry_run) {
   }
   const driver::ArmKind kind =
       chosen->real_arm ? chosen->real_arm->kind : simulated_kind(chosen->file);
-  const auto found =
+  auto found =
       find_calibration(chosen->file, kind, readings[0], {readings[1], readings[2], readings[3]});
   if (!found) return complain(found.error(), kExitTrouble);
   std::printf("home_counts  %d %d %d\nencoder_sign %d %d %d\nmotor_sign   %d %d %d\n",
               found->home_counts[0], found->home_counts[1], found->home_counts[2],
               found->encoder_sign[0], found->encoder_sign[1], found->encoder_sign[2],
               found->motor_sign[0], found->motor_sign[1], found->motor_sign[2]);
-  if (dry_run) return kExitDone;
+  if (dry_run || !chosen->real_arm) return kExitDone;
+  found->arm_file = chosen->path.stem().string();
   if (auto saved = save_calibration(chosen->name, *found); !saved) {
     return complain(saved.error(), kExitTrouble);
   }
-  std::printf("Kept in %s. Check it: thimble feel-check\n", calibration_file(chosen->name).c_str());
+  std::printf("Kept in %s, with the arm file %s. Check it: thimble feel-check --device %s\n",
+              calibration_file(chosen->name).c_str(), found->arm_file.c_str(),
+              chosen->name.c_str());
   return kExitDone;
 }
 

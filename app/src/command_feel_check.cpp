@@ -3,12 +3,12 @@
 #include <string>
 
 #include "arm_choice.h"
-#include "calibration.h"
 #include "commands.h"
 #include "complain.h"
 #include "enter_key.h"
 #include "feel_check.h"
 #include "interrupt.h"
+#include "terms/feel_check_record.h"
 
 namespace thimble::app {
 namespace {
@@ -36,16 +36,27 @@ int listen_to(BenchArm& bench, double duration, const std::atomic<bool>& stop) {
   return good ? kExitDone : kExitFault;
 }
 
+/// Keeps that a real arm passed, so that `thimble run` gives it its whole force; takes back what an
+/// earlier check said of one that failed.
+driver::Result<void> keep_result(const ChosenArm& chosen, const std::string& firmware,
+                                 bool passed) {
+  if (!passed) return forget_passed(chosen.name);
+  const RealArmFile file{.path = chosen.path, .file = chosen.file, .why = {}, .told = {}};
+  auto kept = keep_passed(describe_checked(*chosen.real_arm, file, firmware));
+  if (kept) {
+    std::printf("Kept in %s: `thimble run` gives this arm its whole force from now on.\n",
+                feel_check_file(chosen.name).c_str());
+  }
+  return kept;
+}
+
 int check_arm(const ArmChoice& choice, double listen) {
-  auto chosen = resolve(choice);
+  auto chosen = resolve(choice, false);
   if (!chosen) {
     return complain(chosen.error(), kExitNoDevice);
   }
-  const auto calibration = load_calibration(chosen->name);
-  if (!calibration) {
-    return complain(calibration.error(), kExitBadInput);
-  }
-  if (*calibration) apply(**calibration, chosen->file);
+  const SimulatedNote simulated(*chosen, "record of this check");
+  for (const std::string& sentence : chosen->told) std::printf("%s\n", sentence.c_str());
   auto bench = BenchArm::open(chosen->file, chosen->real_arm, choice.firmware,
                               feel_check_hand({0, 0, 0}), kFeelCheckForceMax);
   if (!bench) {
@@ -73,7 +84,14 @@ int check_arm(const ArmChoice& choice, double listen) {
     all = all && result.passed;
   }
   if (stop.load()) return kExitInterrupted;
-  return all && results.size() == 8 ? kExitDone : kExitFault;
+  const bool passed = all && results.size() == kFeelChecks;
+  // A check that was left says nothing.
+  if (chosen->real_arm && (passed || !all)) {
+    if (const auto kept = keep_result(*chosen, choice.firmware, passed); !kept) {
+      return complain(kept.error(), kExitTrouble);
+    }
+  }
+  return passed ? kExitDone : kExitFault;
 }
 
 }  // namespace

@@ -53,6 +53,7 @@ struct RunOptions {
   bool view = false, no_view = false;
   std::string quality = "normal";
   bool yes = false;
+  bool unchecked = false;
 
   bool led() const { return hand == "mouse"; }
 };
@@ -119,6 +120,12 @@ driver::ServoEnd run_session(Session& session, ClockKind clock, driver::RealTime
   show_progress(session, ended, watch, desk);
   servo.join();
   return end;
+}
+
+/// Prints sentences, a line each.
+void tell(const std::vector<std::string>& sentences) {
+  for (const std::string& sentence : sentences) std::printf("%s\n", sentence.c_str());
+  std::fflush(stdout);  // before a person is asked something
 }
 
 /// Lets nobody be surprised by a force: asks before a real arm gets any.
@@ -194,6 +201,15 @@ int run_scene(const RunOptions& options) {
       if (!left.empty()) std::printf("%s\n", left.c_str());
     }
   }
+  std::optional<RealArmTerms> terms;
+  if (real_arm) {
+    auto found = terms_for(*real_arm, {.arm_file = options.arm_file,
+                                       .firmware = options.firmware,
+                                       .unchecked = options.unchecked});
+    if (!found) return complain(found.error(), kExitNoDevice);
+    terms = std::move(found).value();
+    tell(terms->told);
+  }
   SessionOptions session_options;
   // A person who watches or leads does so in real time, unless he says otherwise.
   const bool for_a_person = options.view || options.led();
@@ -205,6 +221,7 @@ int run_scene(const RunOptions& options) {
   session_options.mesh_folder = mesh_folder();
   session_options.arm_file = options.arm_file;
   session_options.real_arm = real_arm;
+  session_options.terms = terms;
   session_options.firmware = options.firmware;
   session_options.record = options.record;
   session_options.adjust = [&](Scene& scene) {
@@ -224,6 +241,7 @@ int run_scene(const RunOptions& options) {
     return complain(opened.error(), real_arm ? kExitNoDevice : kExitBadInput);
   }
   Session& session = **opened;
+  tell(session.told());
   for (const std::string& warning : stability_warnings(session.scene())) {
     std::fprintf(stderr, "thimble: %s See thimble tune.\n", warning.c_str());
   }
@@ -326,10 +344,15 @@ void add_run_command(CLI::App& app, int& exit_code) {
       ->add_option("--device", options->device,
                    "Arm to use: sim, auto, or a name that `thimble devices` lists")
       ->capture_default_str();
-  add_arm_option(*command, options->arm_file, "Arm file in place of the scene's own");
+  add_arm_option(
+      *command, options->arm_file,
+      "Arm file in place of the scene's own; of a real arm, in place of the one it brings");
   command->add_option("--firmware", options->firmware, "Firmware image for an arm that needs one")
       ->check(CLI::ExistingFile);
   command->add_flag("--yes", options->yes, "Give a real arm forces without asking");
+  command->add_flag("--unchecked", options->unchecked,
+                    "Give a real arm its whole force though `thimble feel-check` was not passed; "
+                    "without it such an arm gets at most 0.5 N");
   command->add_option("--duration", options->duration, "Seconds to run; the scene's own if absent")
       ->check(CLI::Validator(
           [](const std::string& text) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstddef>
 #include <functional>
 #include <string>
 #include <utility>
@@ -12,6 +13,10 @@ namespace thimble::app {
 
 /// Is the largest force that the check lets through, N: enough to feel, too little to hurt.
 inline constexpr double kFeelCheckForceMax = 0.5;
+
+/// Number of results of a check in which all steps passed: encoders, three directions, three
+/// forces, watchdog.
+inline constexpr std::size_t kFeelChecks = 8;
 
 /// Is what one step of the check found.
 struct CheckResult {

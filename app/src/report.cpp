@@ -49,6 +49,7 @@ Json to_json(const RunReport& report) {
   json["object"] = report.object;
   json["triangles"] = report.triangles;
   json["arm"] = {{"name", report.arm}, {"simulated", report.simulated_arm}};
+  if (!report.simulated_arm) json["arm"]["feel_check"] = name(report.feel_check);
   json["build"] = {{"version", build.version},
                    {"compiler", build.compiler},
                    {"type", build.type},
@@ -216,6 +217,12 @@ std::string summary(const RunReport& report) {
         printed("Stalls    the loop stood still %llu time%s; the force came back within %.0f ms.\n",
                 static_cast<unsigned long long>(report.gate.stalls),
                 report.gate.stalls == 1 ? "" : "s", 1e3 * report.reopen);
+  }
+  if (report.feel_check == FeelCheckState::kUnchecked) {
+    s += "Arm       UNCHECKED: it had its whole force without a passed feel check.\n";
+  } else if (report.feel_check == FeelCheckState::kNone) {
+    s += printed("Arm       without a passed feel check; its force was at most %.2f N.\n",
+                 report.force_limit);
   }
   switch (report.end) {
     case driver::ServoEnd::kDone:

@@ -10,6 +10,7 @@
 #include "figure.h"
 #include "page/paged_surface.h"
 #include "run_statistics.h"
+#include "terms/real_arm_terms.h"
 #include "thimble/driver/device.h"
 #include "thimble/driver/fault.h"
 #include "thimble/driver/real_time.h"
@@ -25,6 +26,7 @@ struct RunReport {
   std::string object;  ///< What was touched.
   std::string arm;
   bool simulated_arm = true;
+  FeelCheckState feel_check = FeelCheckState::kSimulated;  ///< What it had passed before the run.
   bool virtual_time = true;
   std::uint64_t seed = 0;
   double rate_asked = 0;   ///< Hz

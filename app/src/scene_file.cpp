@@ -216,8 +216,10 @@ driver::Result<Scene> read_scene(const std::filesystem::path& file,
     YamlMap gate = root.require_map("gate");
     scene.energy =
         static_cast<driver::EnergyStage>(gate.optional_choice("energy", 0, kEnergyStageNames));
+    scene.energy_line = gate.key_line("energy");
     gate.finish();
   }
+  scene.own_arm_file = scene.arm_file;
   if (!other_arm.empty()) scene.arm_file = other_arm;
   auto arm = read_arm_file(scene.arm_file);
   std::optional<driver::Error> arm_error;

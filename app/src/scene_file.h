@@ -43,12 +43,14 @@ struct SceneObject {
 struct Scene {
   std::string name;
   std::string description;
-  std::filesystem::path arm_file;
+  std::filesystem::path arm_file;      ///< Whence `arm` comes.
+  std::filesystem::path own_arm_file;  ///< What the scene itself names; a wish for the simulation.
   ArmFile arm;
   double rate = 1000;                         ///< Ticks per second, Hz.
   double duration = 0;                        ///< s
   std::uint64_t seed = 0;                     ///< Of everything random in the simulation.
   std::optional<driver::EnergyStage> energy;  ///< In place of the arm's own, if named.
+  int energy_line = 0;                        ///< Where in the scene's file; 0 if not named.
   std::vector<SceneObject> objects;
   std::vector<HandWaypoint> hand;
 };

@@ -9,7 +9,6 @@
 
 #include "body/shape/body_shape.h"
 #include "build_info.h"
-#include "calibration.h"
 #include "energy_choice.h"
 #include "hand_route.h"
 #include "real_arm.h"
@@ -49,16 +48,21 @@ driver::Result<void> check_reach(const HandRoute& route, const ArmFile& arm) {
 
 driver::Result<std::unique_ptr<Session>> Session::open(const std::filesystem::path& scene_file,
                                                        const SessionOptions& options) {
-  auto scene = read_scene(scene_file, options.mesh_folder, options.arm_file);
+  if (options.real_arm && !options.terms) {
+    return driver::Error{"A real arm is used on terms only (terms_for)."};
+  }
+  auto scene = read_scene(scene_file, options.mesh_folder,
+                          options.real_arm ? options.terms->arm.path : options.arm_file);
   if (!scene) return scene.error();
 
   std::unique_ptr<Session> session(new Session);
   session->scene_ = std::move(scene).value();
   if (options.adjust) options.adjust(session->scene_);
   if (options.real_arm) {
-    const auto calibration = load_calibration(options.real_arm->name());
-    if (!calibration) return calibration.error();
-    if (*calibration) apply(**calibration, session->scene_.arm);
+    auto told = put_on_terms(session->scene_, scene_file, *options.terms);
+    if (!told) return told.error();
+    session->told_ = std::move(told).value();
+    session->feel_check_ = options.terms->feel_check;
   }
   const ArmFile& arm = session->scene_.arm;
 

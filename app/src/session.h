@@ -21,6 +21,7 @@
 #include "scene_poses.h"
 #include "share/live_control.h"
 #include "share/shared_run.h"
+#include "terms/real_arm_terms.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/device.h"
 #include "thimble/driver/discovery.h"
@@ -41,6 +42,7 @@ struct SessionOptions {
   std::filesystem::path mesh_folder;         ///< where `cgal:` meshes lie
   std::filesystem::path arm_file;            ///< in place of the scene's own; empty: the scene's
   std::optional<driver::FoundArm> real_arm;  ///< in place of the simulated one
+  std::optional<RealArmTerms> terms;         ///< on which it may be used; needed with a real arm
   std::filesystem::path firmware;            ///< for a real arm that needs some (Falcon)
   std::filesystem::path record;              ///< where every tick is written; empty: nowhere
   bool share = false;                        ///< lets a viewer in this process see the run
@@ -81,6 +83,10 @@ class Session {
   bool lead_hand(const Eigen::Vector3d& p_WH) noexcept { return simulation_->lead(p_WH); }
 
   const Scene& scene() const { return scene_; }
+  /// Returns what became of limits that the scene names, where the arm is real: a sentence each.
+  const std::vector<std::string>& told() const { return told_; }
+  /// Returns what is known of the arm's feel check.
+  FeelCheckState feel_check() const { return feel_check_; }
   /// Gives the meshes of all objects in the world as one (m), for pictures: those that are touched,
   /// and those that stand for shapes; those on the disk are not in it.
   const render::TriangleMesh& mesh_W() const { return objects_->mesh_W(); }
@@ -148,6 +154,8 @@ class Session {
                                        const std::filesystem::path& firmware);
 
   Scene scene_;
+  std::vector<std::string> told_;
+  FeelCheckState feel_check_ = FeelCheckState::kSimulated;
   std::uint64_t seed_ = 0;
   std::uint64_t ticks_ = 0;
   std::int64_t period_ns_ = 0;

@@ -13,6 +13,7 @@ RunReport report_of(const Session& session, driver::ServoEnd end,
   }
   report.arm = session.scene().arm.name;
   report.simulated_arm = session.simulation() != nullptr;
+  report.feel_check = session.feel_check();
   report.virtual_time = !session.real_time();
   report.seed = session.seed();
   report.rate_asked = session.scene().rate;

@@ -51,12 +51,19 @@ std::vector<fs::path> folders() {
   return folders;
 }
 
-std::vector<ShippedFile> list(const char* kind) {
+/// Returns the folders of arm files that set the limits of a real arm, the first first.
+std::vector<fs::path> installed_arm_folders() {
+  std::vector<fs::path> folders{own_arm_folder()};
+  if (const fs::path own = own_folder(); !own.empty()) folders.push_back(own / "arms");
+  return folders;
+}
+
+/// Lists the files in folders, of each name the first.
+std::vector<ShippedFile> list_in(const std::vector<fs::path>& folders) {
   std::map<std::string, fs::path> found;
-  for (const fs::path& folder : folders()) {
-    if (folder.empty()) continue;
+  for (const fs::path& folder : folders) {
     std::error_code status;
-    for (fs::directory_iterator entry(folder / kind, status), end; !status && entry != end;
+    for (fs::directory_iterator entry(folder, status), end; !status && entry != end;
          entry.increment(status)) {
       if (entry->path().extension() == ".yaml") {
         found.try_emplace(entry->path().stem().string(), entry->path());
@@ -67,6 +74,15 @@ std::vector<ShippedFile> list(const char* kind) {
   files.reserve(found.size());
   for (const auto& [name, path] : found) files.push_back({name, path});
   return files;
+}
+
+std::vector<ShippedFile> list(std::string_view kind) {
+  std::vector<fs::path> places;
+  for (const fs::path& folder : folders()) {
+    if (!folder.empty()) places.push_back(folder / kind);
+    if (kind == "arms" && folder == "app") places.push_back(own_arm_folder());
+  }
+  return list_in(places);
 }
 
 driver::Result<fs::path> find(const std::string& meant, const char* kind, const char* noun) {
@@ -93,6 +109,21 @@ std::vector<ShippedFile> shipped_scenes() {
 
 std::vector<ShippedFile> shipped_arms() {
   return list("arms");
+}
+
+std::vector<ShippedFile> installed_arms() {
+  return list_in(installed_arm_folders());
+}
+
+bool is_installed_arm(const fs::path& file) {
+  for (const ShippedFile& installed : installed_arms()) {
+    std::error_code missing;
+    if (installed.path.filename() == file.filename() &&
+        fs::equivalent(installed.path.parent_path(), fs::absolute(file).parent_path(), missing)) {
+      return true;
+    }
+  }
+  return false;
 }
 
 std::string description_of(const fs::path& file) {

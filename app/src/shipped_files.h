@@ -12,7 +12,11 @@ namespace thimble::app {
 // it. Folders, in this order: app/ below the working folder; the user's own,
 // $XDG_DATA_HOME/thimble; what came with this program or library, found from where it lies; and
 // thimble/ below each folder of $XDG_DATA_DIRS [XDG Base Directory Specification]. Each has scenes/
-// and arms/. Real-time: never from the servo thread.
+// and arms/. Arm files are looked for in own_arm_folder() as well, after app/.
+//
+// Two of these folders count as installed: own_arm_folder(), and arms/ of what came with this
+// program. Only arm files there set the limits of a real arm (terms/limits_policy.h).
+// Real-time: never from the servo thread.
 
 /// Is a scene or arm file that is known by name.
 struct ShippedFile {
@@ -24,6 +28,12 @@ struct ShippedFile {
 std::vector<ShippedFile> shipped_scenes();
 /// Lists the arm files that are known by name, as above.
 std::vector<ShippedFile> shipped_arms();
+
+/// Returns the installed arm files, each name once; the user's own replace those that came with the
+/// program.
+std::vector<ShippedFile> installed_arms();
+/// Returns whether an arm file is one of `installed_arms`. One that the user's own replaces is not.
+bool is_installed_arm(const std::filesystem::path& file);
 
 /// Reads what a scene or arm file says of itself under `description`; empty if it says nothing, or
 /// cannot be read.

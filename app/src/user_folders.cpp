@@ -29,6 +29,10 @@ fs::path data_folder() {
   return folder("XDG_DATA_HOME", ".local/share");
 }
 
+fs::path own_arm_folder() {
+  return config_folder() / "arm_files";
+}
+
 std::string as_file_name(const std::string& name) {
   std::string safe = name;
   for (char& c : safe) {

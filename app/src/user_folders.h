@@ -17,6 +17,11 @@ std::filesystem::path state_folder();
 /// ~/.local/share/thimble [XDG Base Directory Specification].
 std::filesystem::path data_folder();
 
+/// Returns the folder of arm files that this user installed: config_folder()/arm_files. As those
+/// that come with the program, they set the limits of a real arm, so a file is put there only by
+/// whoever checked it for that arm. Calibrations lie elsewhere (config_folder()/arms).
+std::filesystem::path own_arm_folder();
+
 /// Turns any name into one that is safe as a file's: other signs than letters, digits, - and _
 /// become _.
 std::string as_file_name(const std::string& name);

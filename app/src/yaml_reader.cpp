@@ -201,6 +201,13 @@ const YamlMap::Entry* YamlMap::find(std::string_view key, bool required) {
   return nullptr;
 }
 
+int YamlMap::key_line(std::string_view key) const {
+  for (const Entry& entry : entries_) {
+    if (entry.key == key) return entry.line;
+  }
+  return 0;
+}
+
 void YamlMap::expected(const Entry& entry, const std::string& what) {
   mistakes_->add(line_of(entry.value, entry.line),
                  entry.key + ": expected " + what + ", found " + found(entry.value));

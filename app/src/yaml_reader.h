@@ -109,6 +109,9 @@ class YamlMap {
   /// Notes each key that nobody asked for, with the nearest known key as a suggestion.
   void finish();
 
+  /// Returns the line (from 1) at which a key stands, or 0 if it is absent.
+  int key_line(std::string_view key) const;
+
   /// Tells the line (from 1) at which this map begins.
   int line() const { return line_; }
 

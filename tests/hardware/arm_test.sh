@@ -13,5 +13,10 @@ firmware=()
 "$thimble" devices
 "$thimble" doctor
 for attempt in 1 2 3; do # a wire that is not closed properly shows when it is opened again
-  "$thimble" feel-check --device "${THIMBLE_DEVICE:-auto}" --arm "$THIMBLE_ARM" "${firmware[@]}" --listen 10
+  said=$("$thimble" feel-check --device "${THIMBLE_DEVICE:-auto}" --arm "$THIMBLE_ARM" "${firmware[@]}" --listen 10)
+  echo "$said"
+  if grep -q '^SIMULATED' <<<"$said"; then
+    echo "FAILED: no arm was found, so the simulated one was read"
+    exit 1
+  fi
 done

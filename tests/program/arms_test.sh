@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # What the program says of arms that are not there, and what it does with the simulated one.
 source "$(dirname "$0")/expect.sh" "$@"
-export XDG_CONFIG_HOME=$work/config
+export XDG_CONFIG_HOME=$work/config XDG_STATE_HOME=$work/state
 vintage=$source_dir/app/arms/vintage_phantom.yaml
 
 # A machine below a folder: one WoodenHaptics arm without rule and without node.
@@ -56,10 +56,35 @@ expect 2 "no section 'simulation'" "$thimble" run "$source_dir/tests/data/scenes
 expect 2 'no Falcon firmware' "$thimble" run "$source_dir/tests/data/scenes/two_boxes.yaml" \
   --arm "$source_dir/app/arms/falcon.yaml" --firmware empty.bin
 
-expect 0 '^home_counts +0 7700 0$' "$thimble" calibrate --arm "$vintage"
-expect 0 '^encoder_sign: \[-1, 1, -1\]$' cat config/thimble/arms/sim.yaml
-expect 0 '^ok +watchdog' "$thimble" feel-check --arm "$vintage"
-echo 'home_counts: nonsense' >config/thimble/arms/sim.yaml
-expect 2 'sim.yaml:1' "$thimble" feel-check --arm "$vintage"
+# Where no arm is plugged in, that the simulated one is used stands in the first and the last line,
+# whether all went well or not, and nothing is kept.
+for options in "" "--device sim"; do
+  expect 0 '^home_counts +0 7700 0$' "$thimble" calibrate $options --arm "$vintage"
+  expect 0 '^ok +watchdog' "$thimble" feel-check $options --arm "$vintage"
+done
+sed 's/^simulation:/&\n  wiring: {motor_gain: [-1, 1, 1]}/' "$vintage" >reversed.yaml
+simulated='SIMULATED: no arm is used but the simulated vintage_phantom; no'
+"$thimble" calibrate --arm "$vintage" >calibrate.txt 2>&1
+"$thimble" feel-check --arm "$vintage" >check.txt 2>&1
+"$thimble" feel-check --arm reversed.yaml >reversed.txt 2>&1
+for said in calibrate.txt check.txt reversed.txt; do
+  for end in head tail; do
+    expect 0 "^$simulated (calibration|record of this check) is kept.\$" "$end" -n 1 "$said"
+  done
+done
+expect 0 '^FAILED' cat reversed.txt
+expect 1 '' test -e config/thimble/arms/sim.yaml
+expect 1 '' test -e state/thimble/feel_checks
+expect 3 'No arm is plugged in .*--arm NAME' "$thimble" feel-check
+expect 3 'No arm is plugged in .*--arm NAME' "$thimble" calibrate --device auto
+
+# Limits that protect nobody: an error with file and line, whoever names them.
+for wrong in 's/force_max: 5 /force_max: 100 /' 's/soft_start: 0.3/soft_start: 0/' \
+  's/soft_start: 0.3/soft_start: 1e-9/' 's/watchdog: 0.1 /watchdog: 10 /' \
+  's/rise_max: 2000/rise_max: 1e6/' 's/stall: 0.02 /stall: 0.1 /'; do
+  sed "$wrong" "$vintage" >wrong.yaml
+  expect 2 'wrong\.yaml:4[1-6]: (force_max|soft_start|watchdog|rise_max|stall): expected' \
+    "$thimble" run "$source_dir/tests/data/scenes/two_boxes.yaml" --arm wrong.yaml
+done
 expect 3 "No arm is called 'WH02'" "$thimble" feel-check --arm "$vintage" --device WH02
 finish

@@ -9,7 +9,7 @@ for command in run view devices doctor calibrate feel-check mesh plug bench; do
   expect 0 "$command" "$thimble" "$command" --help
   expect 0 '^thimble [0-9]' "$thimble" "$command" --version
 done
-for option in device clock duration report seed quality view hand name; do
+for option in device clock duration report seed quality view hand name unchecked; do
   expect 0 "--$option" "$thimble" run --help
 done
 expect 0 '^sim +simulated arm' "$thimble" devices

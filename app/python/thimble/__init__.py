@@ -297,6 +297,7 @@ def _begin(
     law: Optional[Law] = None,
     device: str = "sim",
     agreed: bool = False,
+    unchecked: bool = False,
     real_time: bool = False,
     firmware: Optional[PathOrName] = None,
 ) -> _core.Run:
@@ -305,6 +306,7 @@ def _begin(
         arm=os.fspath(arm) if arm is not None else "",
         device=device,
         agreed=agreed,
+        unchecked=unchecked,
         real_time=real_time,
         seconds=seconds,
         seed=seed,
@@ -493,6 +495,7 @@ def open(
     device: str = "auto",
     *,
     agree: bool = False,
+    unchecked: bool = False,
     seconds: Optional[float] = None,
     seed: Optional[int] = None,
     arm: Optional[PathOrName] = None,
@@ -504,8 +507,11 @@ def open(
 
     device: "sim" for the simulated arm, a name that :func:`devices` tells, or "auto" for the only arm
     that is plugged in (the simulated one if there is none). agree: **a real arm moves by itself.**
-    Keep clear of it, hold its grip, have its switch at hand, and say so with ``agree=True``. firmware:
-    image for an arm that needs one. Raises Error with what to do.
+    Keep clear of it, hold its grip, have its switch at hand, and say so with ``agree=True``. unchecked: a
+    real arm that has not passed ``thimble feel-check`` gets at most 0.5 N; ``unchecked=True`` gives it
+    its whole force all the same. A real arm brings its own arm file; what the scene or ``arm`` say of
+    limits may only tighten them, and stderr says what became of it. firmware: image for an arm that
+    needs one. Raises Error with what to do.
     """
     if device not in ("sim", "auto") and not agree:  # what "auto" finds is asked about beneath
         raise Error(
@@ -521,6 +527,7 @@ def open(
         record=record,
         device=device,
         agreed=agree,
+        unchecked=unchecked,
         real_time=True,
         firmware=firmware,
     )

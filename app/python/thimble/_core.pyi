@@ -18,6 +18,7 @@ class Run:
         arm: str = "",
         device: str = "sim",
         agreed: bool = False,
+        unchecked: bool = False,
         real_time: bool = False,
         seconds: Optional[float] = None,
         seed: Optional[int] = None,

@@ -142,5 +142,32 @@ TEST(ArmFile, RefusesAWorkspaceTurnedInsideOut) {
             std::string::npos);
 }
 
+TEST(ArmFile, RefusesLimitsThatProtectNobodyWithTheirLine) {
+  struct Case {
+    const char *piece, *by, *mistake;
+  };
+  const Case cases[] = {
+      {"force_max: 5 ", "force_max: 100 ",
+       ":41: force_max: expected at most what the arm declares, 5 N, found 100"},
+      {"force_max: 5 ", "force_max: 5.01 ",
+       ":41: force_max: expected at most what the arm declares"},
+      {"soft_start: 0.3", "soft_start: 0", ":44: soft_start: expected a number from 0.05 to 10 s"},
+      {"soft_start: 0.3", "soft_start: 1e-9", ":44: soft_start: expected a number from 0.05"},
+      {"soft_start: 0.3", "soft_start: 0.049", ":44: soft_start: expected a number from 0.05"},
+      {"watchdog: 0.1 ", "watchdog: 10 ", ":46: watchdog: expected a number from 0.001 to 1 s"},
+      {"rise_max: 2000", "rise_max: 1e6", ":43: rise_max: expected a number from 1 to 100000 N/s"},
+      {"stall: 0.02 ", "stall: 0.1 ", ":45: stall: expected a shorter time than that of watchdog"},
+      {"force_max: 5 ", "force_max: .nan ", ":41: force_max: expected a number"},
+  };
+  for (const Case& wrong : cases) {
+    EXPECT_NE(mistake_with(wrong.piece, wrong.by).find(wrong.mistake), std::string::npos)
+        << wrong.by << " gave: " << mistake_with(wrong.piece, wrong.by);
+  }
+  // The bounds themselves are good.
+  EXPECT_EQ(mistake_with("soft_start: 0.3", "soft_start: 0.05"), "");
+  EXPECT_EQ(mistake_with("watchdog: 0.1 ", "watchdog: 1 "), "");
+  EXPECT_EQ(mistake_with("rise_max: 2000", "rise_max: 1e5"), "");
+}
+
 }  // namespace
 }  // namespace thimble::app
