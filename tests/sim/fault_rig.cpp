@@ -108,6 +108,7 @@ void FaultRig::build_arm() {
     auto falcon = usb::SimulatedFalcon::make(file_.simulated, std::move(path), {});
     ASSERT_TRUE(falcon) << falcon.error().message;
     falcon_ = std::move(falcon).value();
+    falcon_->set_watchdog(0);  // none is known, so nothing may be promised that hangs on one
     arm_ = &falcon_->on_bus();
     return;
   }
