@@ -61,6 +61,10 @@ const std::atomic<bool>& catch_interrupts() {
   return interrupted;
 }
 
+bool stop_asked() noexcept {
+  return interrupted.load();
+}
+
 void leave_rather_than_stop() {
   install(SIGTSTP, true);
   std::signal(SIGTTIN, SIG_IGN);

@@ -30,6 +30,10 @@ constexpr bool ends_at_once(std::int64_t since_first_ns, bool at_stake) noexcept
 /// else has caught stays with him. Returns the flag. Real-time: never from the servo thread.
 const std::atomic<bool>& catch_interrupts();
 
+/// Returns whether such a signal came, or `ask_to_stop` was called: for what takes its time while
+/// an arm is opened. Real-time: safe.
+bool stop_asked() noexcept;
+
 /// Makes Ctrl-Z (SIGTSTP) such a signal too, and lets a background job that reads or writes its
 /// terminal get an error instead of being stopped: a program that is stopped sends no zero.
 /// For whoever opens a real arm. Real-time: never from the servo thread.

@@ -48,6 +48,19 @@ driver::Result<void> check_reach(const HandRoute& route, const ArmFile& arm) {
 
 driver::Result<std::unique_ptr<Session>> Session::open(const std::filesystem::path& scene_file,
                                                        const SessionOptions& options) {
+  auto session = prepare(scene_file, options);
+  if (!session) return session;
+  if (auto opened = (*session)->open_arm(); !opened) return opened.error();
+  if (!options.real_arm) return session;
+  const std::string trouble =
+      (*session)->start_pose().trouble((*session)->device().state().p_WT, !options.homed);
+  if (!trouble.empty()) return driver::Error{trouble};
+  if (auto activated = (*session)->activate(); !activated) return activated.error();
+  return session;
+}
+
+driver::Result<std::unique_ptr<Session>> Session::prepare(const std::filesystem::path& scene_file,
+                                                          const SessionOptions& options) {
   auto scene = read_scene(scene_file, options.mesh_folder, options.arm_file);
   if (!scene) return scene.error();
 
@@ -55,11 +68,11 @@ driver::Result<std::unique_ptr<Session>> Session::open(const std::filesystem::pa
   session->scene_ = std::move(scene).value();
   if (options.adjust) options.adjust(session->scene_);
   if (options.real_arm) {
+    session->start_pose_ = StartPose::of(session->scene_.arm, options.real_arm->kind);
     const auto calibration = load_calibration(options.real_arm->name());
     if (!calibration) return calibration.error();
     if (*calibration) apply(**calibration, session->scene_.arm);
   }
-  const ArmFile& arm = session->scene_.arm;
 
   auto objects = SceneObjects::build(session->scene_);
   if (!objects) return objects.error();
@@ -90,38 +103,12 @@ driver::Result<std::unique_ptr<Session>> Session::open(const std::filesystem::pa
       return planned.error();
     }
   }
-  // The clock starts last, so that the arm's time begins with the session's. A real arm knows only
-  // the time of the world.
-  if (options.clock == ClockKind::kWall || options.real_arm) {
-    session->clock_ = std::make_unique<driver::WallClock>();
-  } else {
-    session->clock_ = std::make_unique<driver::VirtualClock>();
-  }
-  std::unique_ptr<driver::Transport> wire;
-  std::unique_ptr<const driver::Arm> protocol;
-  if (options.real_arm) {
-    auto opened = open_wire(*options.real_arm, arm, options.firmware, *session->clock_);
-    if (!opened) return opened.error();
-    wire = std::move(opened).value();
-    protocol = make_arm(arm, options.real_arm->kind);
-  } else {
-    wire = session->simulation_->wire(*session->clock_);
-    protocol = session->simulation_->protocol();
-  }
-  auto device = driver::Device::open(
-      std::move(wire), std::move(protocol),
-      {.R_WB = arm.R_WB,
-       .p_WB = arm.p_WB,
-       .limits = arm.limits,
-       .energy = energy_settings(arm, session->scene_.rate, session->scene_.energy),
-       .velocity_corner_frequency = arm.velocity_corner_frequency},
-      session->clock_->now_ns());
-  if (!device) return device.error();
-  session->device_ = std::move(device).value();
-  if (auto activated = session->device_->activate(); !activated) return activated.error();
   session->by_thread_ = options.clock == ClockKind::kWall || options.real_arm.has_value();
   if (session->by_thread_) session->objects_->start_loaders();
   session->scene_file_ = scene_file;
+  session->real_arm_ = options.real_arm;
+  session->firmware_ = options.firmware;
+  session->open_wire_ = options.open_wire;
   session->device_name_ = options.real_arm ? options.real_arm->name() : "sim";
   session->black_box_ = std::make_unique<BlackBox>(session->scene_.rate);
   if (!options.record.empty()) {
@@ -136,6 +123,39 @@ driver::Result<std::unique_ptr<Session>> Session::open(const std::filesystem::pa
     }
   }
   return session;
+}
+
+driver::Result<void> Session::open_arm() {
+  const ArmFile& arm = scene_.arm;
+  // The clock starts last, so that the arm's time begins with the session's. A real arm knows only
+  // the time of the world.
+  if (by_thread_) {
+    clock_ = std::make_unique<driver::WallClock>();
+  } else {
+    clock_ = std::make_unique<driver::VirtualClock>();
+  }
+  std::unique_ptr<driver::Transport> wire;
+  std::unique_ptr<const driver::Arm> protocol;
+  if (real_arm_) {
+    auto opened =
+        open_wire_ ? open_wire_(arm, *clock_) : open_wire(*real_arm_, arm, firmware_, *clock_);
+    if (!opened) return opened.error();
+    wire = std::move(opened).value();
+    protocol = make_arm(arm, real_arm_->kind);
+  } else {
+    wire = simulation_->wire(*clock_);
+    protocol = simulation_->protocol();
+  }
+  auto device = driver::Device::open(std::move(wire), std::move(protocol),
+                                     {.R_WB = arm.R_WB,
+                                      .p_WB = arm.p_WB,
+                                      .limits = arm.limits,
+                                      .energy = energy_settings(arm, scene_.rate, scene_.energy),
+                                      .velocity_corner_frequency = arm.velocity_corner_frequency},
+                                     clock_->now_ns());
+  if (!device) return device.error();
+  device_ = std::move(device).value();
+  return real_arm_ ? driver::Result<void>() : device_->activate();
 }
 
 driver::Result<void> Session::begin_recording(const std::filesystem::path& path) {

@@ -103,5 +103,5 @@ kill -s TERM $pid
 wait $pid
 expect 0 '^143$' echo $?
 expect 0 'Recording: run.h5' cat out
-expect 0 'ticks of rubber at 1000 Hz$' bash -c '"$0" export run.h5 --csv run.csv | head -1' "$thimble"
+expect 0 'ticks of rubber at 1000 Hz[.]$' bash -c '"$0" export run.h5 --csv run.csv | head -1' "$thimble"
 finish

@@ -294,6 +294,8 @@ def _begin(
     agreed: bool = False,
     real_time: bool = False,
     firmware: Optional[PathOrName] = None,
+    homed: bool = False,
+    no_real_time: bool = False,
 ) -> _core.Run:
     run = _core.Run(
         os.fspath(scene),
@@ -307,6 +309,8 @@ def _begin(
         record=os.fspath(record) if record is not None else "",
         firmware=os.fspath(firmware) if firmware is not None else "",
         law=None if law is None else lambda columns: law(Tick(columns)),
+        homed=homed,
+        no_real_time=no_real_time,
     )
     for warning in run.warnings():
         warnings.warn(warning, RuntimeWarning, stacklevel=3)
@@ -494,13 +498,17 @@ def open(
     quality: str = "normal",
     record: Optional[PathOrName] = None,
     firmware: Optional[PathOrName] = None,
+    homed: bool = False,
+    no_real_time: bool = False,
 ) -> Live:
     """Touch a scene in real time, and begin at once. Other options as of :func:`run`.
 
     device: "sim" for the simulated arm, a name that :func:`devices` tells, or "auto" for the only arm
     that is plugged in (the simulated one if there is none). agree: **a real arm moves by itself.**
     Keep clear of it, hold its grip, have its switch at hand, and say so with ``agree=True``. firmware:
-    image for an arm that needs one. Raises Error with what to do.
+    image for an arm that needs one. homed: a real arm was in its home pose when it got power, so
+    that only its workspace is checked before it gets a force. no_real_time: use a real arm though
+    the loop gets no real-time priority. Raises Error with what to do.
     """
     if device not in ("sim", "auto") and not agree:  # what "auto" finds is asked about beneath
         raise Error(
@@ -518,6 +526,8 @@ def open(
         agreed=agree,
         real_time=True,
         firmware=firmware,
+        homed=homed,
+        no_real_time=no_real_time,
     )
     live = Live(held)
     _live.add(live)
