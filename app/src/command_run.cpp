@@ -215,36 +215,42 @@ int run_scene(const RunOptions& options) {
   auto prepared = Session::prepare(options.scene, session_options);
   if (!prepared) return complain(prepared.error(), kExitBadInput);
   Session& session = **prepared;
+  // Whoever leaves before the run leaves a recording that is whole, with no tick in it.
+  const auto leave = [&session](int code) {
+    if (const auto ended = session.recording().stop(); !ended) complain(ended.error(), kExitTrouble);
+    return code;
+  };
   for (const std::string& warning : stability_warnings(session.scene())) {
     std::fprintf(stderr, "thimble: %s See thimble tune.\n", warning.c_str());
   }
   const auto saved = object_to_save(session.scene(), options.save_object);
   if (!saved) {
-    return complain({"--save-object: the scene has no object \"" + options.save_object + "\"."},
-                    kExitBadInput);
+    return leave(
+        complain({"--save-object: the scene has no object \"" + options.save_object + "\"."},
+                 kExitBadInput));
   }
   const auto desk = open_desk(session, options, real_time);
   ServoThread servo(real_time);
   if (real_arm) {
     if (auto granted = check_real_time(servo.grant(), options.no_real_time); !granted) {
-      return complain(granted.error(), kExitBadInput);
+      return leave(complain(granted.error(), kExitBadInput));
     }
   }
   if (!servo.grant().advice.empty()) spdlog::warn("{}", servo.grant().advice);
-  if (stop.load()) return kExitInterrupted;
+  if (stop.load()) return leave(kExitInterrupted);
   if (real_arm) {
     const bool at_home = !options.homed && session.start_pose().has_home();
     if (!may_begin(*real_arm, at_home, options.yes, stop)) {
-      return stop.load() ? kExitInterrupted : kExitBadInput;
+      return leave(stop.load() ? kExitInterrupted : kExitBadInput);
     }
   }
   auto guard = std::make_optional<LeavingGuard>();
   const auto open = open_arm(session, options, real_arm.has_value(), stop);
   if (!open) {
     const int code = complain(open.error(), real_arm ? kExitNoDevice : kExitBadInput);
-    return stop.load() ? kExitInterrupted : code;
+    return leave(stop.load() ? kExitInterrupted : code);
   }
-  if (!*open) return kExitInterrupted;
+  if (!*open) return leave(kExitInterrupted);
   std::optional<ReplugWatch> watch;
   if (real_arm) watch.emplace(replug_watch_of(session, *real_arm, options.firmware));
 

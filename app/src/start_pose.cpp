@@ -26,9 +26,10 @@ std::string StartPose::trouble(const Eigen::Vector3d& p_WT, bool at_home) const 
   if (!p_WT.allFinite()) {
     return printed("The arm reports no position that can be: %s.", kMend);
   }
-  if (at_home && p_WHome_) {
+  if (p_WHome_) {
     const double distance = (p_WT - *p_WHome_).norm();
-    if (!(distance <= kHomeMargin)) {
+    if (distance <= kHomeMargin) return {};
+    if (at_home) {
       return printed(
           "The arm reports its tip %.0f mm away from its home pose. Put it into its home pose. If "
           "it stands there already, its counters began elsewhere: %s.",

@@ -15,10 +15,11 @@
 
 namespace thimble::app {
 
-/// The place where a real arm's tip must be before a force may come: inside the arm file's
-/// workspace, and at the home pose if the arm's counters began at zero where it stood when it got
-/// power. A pose that disagrees with what the user sees means that the counters are wrong, and with
-/// them every position and the direction of every force.
+/// The place where a real arm's tip must be before a force may come: at the home pose if the arm's
+/// counters began at zero where it stood when it got power, else inside the arm file's workspace.
+/// Some arms are parked outside of their workspace, so the home pose is always a good place. A pose
+/// that disagrees with what the user sees means that the counters are wrong, and with them every
+/// position and the direction of every force.
 class StartPose {
  public:
   /// How far outside of the box a tip still counts as inside, m. [chosen: the boxes lie 20 mm and

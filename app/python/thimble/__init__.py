@@ -531,7 +531,7 @@ def open(
     )
     live = Live(held)
     _live.add(live)
-    _stop_on_sigterm()
+    _stop_on_signals()
     held.start()
     return live
 
@@ -541,19 +541,25 @@ def _stop_all() -> None:
         live.stop()
 
 
-def _stop_on_sigterm() -> None:
-    """Let SIGTERM, which would end Python at once, leave by zero force first."""
+# Signals that would end Python at once and can be caught; SIGINT comes as KeyboardInterrupt.
+_ENDING = ("TERM", "HUP", "QUIT", "USR1", "USR2", "ALRM", "VTALRM", "PROF", "XCPU", "IO", "PWR")
+
+
+def _stop_on_signals() -> None:
+    """Let each signal that would end Python at once leave by zero force first."""
     if threading.current_thread() is not threading.main_thread():
         return
-    if signal.getsignal(signal.SIGTERM) is not signal.SIG_DFL:
-        return  # somebody else's; his way out runs what is at exit
 
     def leave(number: int, _: Any) -> None:
         _stop_all()
         signal.signal(number, signal.SIG_DFL)
         os.kill(os.getpid(), number)
 
-    signal.signal(signal.SIGTERM, leave)
+    for name in _ENDING:
+        number = getattr(signal, "SIG" + name, None)
+        # Somebody else's stays: his way out runs what is at exit.
+        if number is not None and signal.getsignal(number) is signal.SIG_DFL:
+            signal.signal(number, leave)
 
 
 atexit.register(_stop_all)

@@ -100,9 +100,10 @@ TEST(ServoThread, KnowsItsGrantBeforeItRunsAndMayLeaveWithoutRunning) {
               unused.grant().advice.empty());
     EXPECT_FALSE(unused.ended());
   }
-  auto session =
-      Session::open(std::filesystem::path(THIMBLE_SOURCE_DIR) / "tests/data/scenes/two_boxes.yaml",
-                    {.duration = 0.5});
+  SessionOptions options;
+  options.duration = 0.5;
+  auto session = Session::open(
+      std::filesystem::path(THIMBLE_SOURCE_DIR) / "tests/data/scenes/two_boxes.yaml", options);
   ASSERT_TRUE(session) << session.error().message;
   const std::atomic<bool> stop{false};
   ServoThread servo(false);

@@ -27,7 +27,7 @@ bool has(const std::string& text, const std::string& words) {
   return text.find(words) != std::string::npos;
 }
 
-TEST(StartPose, OfEveryShippedArmIsInsideOfItsWorkspace) {
+TEST(StartPose, OfEveryShippedArmIsAtItsHomePose) {
   struct Case {
     const char* name;
     ArmKind kind;
@@ -41,6 +41,10 @@ TEST(StartPose, OfEveryShippedArmIsInsideOfItsWorkspace) {
     EXPECT_TRUE(place.has_home()) << arm.name;
     const Eigen::Vector3d p_WHome = file.p_WB + file.R_WB * make_arm(file, arm.kind)->pose({}).p_BT;
     EXPECT_EQ(place.trouble(p_WHome, true), "") << arm.name;
+    EXPECT_EQ(place.trouble(p_WHome, false), "") << arm.name << " is parked outside of its box";
+    EXPECT_NE(place.trouble(p_WHome + Eigen::Vector3d(0, 0.021, 0), true), "") << arm.name;
+    const Eigen::Vector3d p_WMiddle = 0.5 * (file.workspace.min_W + file.workspace.max_W);
+    EXPECT_EQ(place.trouble(p_WMiddle, false), "") << arm.name;
   }
   EXPECT_FALSE(StartPose::of(file_of("falcon"), ArmKind::kFalcon).has_home());
 }
