@@ -291,7 +291,7 @@ void bind_run(py::module_& core) {
                        bool agreed, bool unchecked, bool real_time, std::optional<double> seconds,
                        std::optional<std::uint64_t> seed, const std::string& quality,
                        const std::string& record, const std::string& firmware,
-                       const py::object& law) {
+                       const py::object& law, bool homed, bool no_real_time) {
              return std::make_unique<HeldRun>(RunOptions{.scene = scene,
                                                          .arm_file = arm,
                                                          .device = device,
@@ -302,14 +302,16 @@ void bind_run(py::module_& core) {
                                                          .seed = seed,
                                                          .quality = quality,
                                                          .record = record,
-                                                         .firmware = firmware},
+                                                         .firmware = firmware,
+                                                         .homed = homed,
+                                                         .no_real_time = no_real_time},
                                               law);
            }),
            py::arg("scene"), py::kw_only(), py::arg("arm") = "", py::arg("device") = "sim",
            py::arg("agreed") = false, py::arg("unchecked") = false, py::arg("real_time") = false,
            py::arg("seconds") = py::none(), py::arg("seed") = py::none(),
            py::arg("quality") = "normal", py::arg("record") = "", py::arg("firmware") = "",
-           py::arg("law") = py::none())
+           py::arg("law") = py::none(), py::arg("homed") = false, py::arg("no_real_time") = false)
       .def("run", &run_all)
       .def("step", &step_once, py::arg("hand") = py::none())
       .def("start", [](HeldRun& held) { held.run->start(); })

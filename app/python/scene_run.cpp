@@ -7,6 +7,7 @@
 #include "quality.h"
 #include "real_arm.h"
 #include "recording/write_black_box.h"
+#include "servo_thread.h"
 #include "session_report.h"
 #include "shipped_files.h"
 #include "trouble.h"
@@ -69,6 +70,11 @@ app::SessionOptions session_options(const RunOptions& options) {
                                                             .unchecked = options.unchecked}));
     tell(asked.terms->told);
   }
+  if (asked.real_arm) {  // asked on a thread that goes again, before the arm is opened
+    const auto allowed = app::check_real_time(app::ServoThread(true).grant(), options.no_real_time);
+    if (!allowed) throw Trouble(allowed.error().message + " In Python: no_real_time=True.");
+  }
+  asked.homed = options.homed;
   const bool real_time = options.real_time || asked.real_arm;
   asked.clock = real_time ? app::ClockKind::kWall : app::ClockKind::kVirtual;
   asked.duration = options.seconds;
@@ -121,6 +127,7 @@ void SceneRun::start() {
   if (!session_->real_time()) throw Trouble("A run in virtual time has no thread.");
   if (servo_.joinable() || end_) throw Trouble("This run has begun before.");
   running_.store(true);
+  awake_ = std::make_unique<driver::CpuLatencyRequest>();
   servo_ = std::thread([this] {
     grant_ = driver::enter_real_time();
     end_ = session_->run(stop_);
@@ -142,6 +149,7 @@ void SceneRun::stop() {
 void SceneRun::finish() {
   if (finished_) return;
   finished_ = true;
+  awake_.reset();
   if (const auto ticks = session_->black_box().take(); !ticks.empty()) {
     const auto written = app::write_black_box(ticks, session_->recording_info());
     if (written) {

@@ -27,6 +27,8 @@ struct RunOptions {
   std::string quality = "normal";
   std::string record;    ///< HDF5 file; empty: none.
   std::string firmware;  ///< For a real arm that needs some.
+  bool homed = false;    ///< A real arm was in its home pose when it got power: do not ask for it.
+  bool no_real_time = false;  ///< Use a real arm though the loop gets no real-time priority.
 };
 
 /// Is a session as Python holds it: all at once, tick by tick, or in real time on a thread of its
@@ -74,6 +76,7 @@ class SceneRun {
   bool finished_ = false;
   std::optional<driver::ServoEnd> end_;
   driver::RealTimeGrant grant_;
+  std::unique_ptr<driver::CpuLatencyRequest> awake_;  // while the thread runs
   std::thread servo_;
 };
 

@@ -42,10 +42,12 @@ int calibrate(const ArmChoice& choice, bool dry_run) {
   for (const std::string& sentence : chosen->told) std::printf("%s\n", sentence.c_str());
   const auto way =
       chosen->real_arm ? decltype(simulated_hand({})){} : simulated_hand(home_of(chosen->file));
+  const std::atomic<bool>& stop = catch_interrupts();
+  if (chosen->real_arm) leave_rather_than_stop();
+  const LeavingGuard guard;
   // Zero force throughout: the limit is only what the device asks for.
   auto bench = BenchArm::open(chosen->file, chosen->real_arm, choice.firmware, way, 0.1);
   if (!bench) return complain(bench.error(), kExitNoDevice);
-  const std::atomic<bool>& stop = catch_interrupts();
 
   constexpr std::array<const char*, 4> kAsks = {
       "Put the arm into its home pose.", "From there, move the grip about 5 cm towards you.",

@@ -57,12 +57,14 @@ int check_arm(const ArmChoice& choice, double listen) {
   }
   const SimulatedNote simulated(*chosen, "record of this check");
   for (const std::string& sentence : chosen->told) std::printf("%s\n", sentence.c_str());
+  const std::atomic<bool>& stop = catch_interrupts();
+  if (chosen->real_arm) leave_rather_than_stop();
+  const LeavingGuard guard;
   auto bench = BenchArm::open(chosen->file, chosen->real_arm, choice.firmware,
                               feel_check_hand({0, 0, 0}), kFeelCheckForceMax);
   if (!bench) {
     return complain(bench.error(), kExitNoDevice);
   }
-  const std::atomic<bool>& stop = catch_interrupts();
   if (listen > 0) return listen_to(**bench, listen, stop);
   const bool person = !(*bench)->simulated();
   if (person) {

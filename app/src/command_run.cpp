@@ -14,6 +14,7 @@
 
 #include "commands.h"
 #include "complain.h"
+#include "enter_key.h"
 #include "file_options.h"
 #include "interrupt.h"
 #include "meshes.h"
@@ -23,13 +24,14 @@
 #include "recording/write_black_box.h"
 #include "replug_watch.h"
 #include "report.h"
+#include "servo_thread.h"
 #include "session.h"
 #include "session_report.h"
 #include "share/request_desk.h"
 #include "share/viewer_process.h"
 #include "shipped_files.h"
+#include "start_pose.h"
 #include "thimble/driver/heat_guard.h"
-#include "thimble/driver/real_time.h"
 #include "thimble/render/mesh/save_mesh.h"
 #include "tuning.h"
 
@@ -54,6 +56,8 @@ struct RunOptions {
   std::string quality = "normal";
   bool yes = false;
   bool unchecked = false;
+  bool homed = false;
+  bool no_real_time = false;
 
   bool led() const { return hand == "mouse"; }
 };
@@ -73,13 +77,13 @@ void keep_black_box(Session& session) {
 
 /// Tells a person on a terminal how far the run is, until it ends.
 /// Watches over a real arm meanwhile, and hears what viewers ask.
-void show_progress(Session& session, const std::atomic<bool>& ended, ReplugWatch* watch,
+void show_progress(Session& session, const ServoThread& servo, ReplugWatch* watch,
                    RequestDesk* desk) {
   const bool on_terminal = isatty(STDERR_FILENO) != 0;
   bool warned_of_heat = false;
   const double total = static_cast<double>(session.ticks_planned()) *
                        static_cast<double>(session.period_ns()) * 1e-9;
-  while (!ended.load()) {
+  while (!servo.ended()) {
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
     if (watch != nullptr) watch->step();
     if (desk != nullptr) desk->step();
@@ -106,32 +110,16 @@ void show_progress(Session& session, const std::atomic<bool>& ended, ReplugWatch
   if (on_terminal) std::fprintf(stderr, "\r%*s\r", 70, "");
 }
 
-/// Runs the servo on a thread of its own; on the wall clock it asks for real-time priority first.
-driver::ServoEnd run_session(Session& session, ClockKind clock, driver::RealTimeGrant& grant,
-                             ReplugWatch* watch, RequestDesk* desk) {
-  const std::atomic<bool>& stop = catch_interrupts();
-  std::atomic<bool> ended{false};
-  driver::ServoEnd end = driver::ServoEnd::kDone;
-  std::thread servo([&] {
-    if (clock == ClockKind::kWall) grant = driver::enter_real_time();
-    end = session.run(stop);
-    ended.store(true);
-  });
-  show_progress(session, ended, watch, desk);
-  servo.join();
-  return end;
-}
-
 /// Prints sentences, a line each.
 void tell(const std::vector<std::string>& sentences) {
   for (const std::string& sentence : sentences) std::printf("%s\n", sentence.c_str());
   std::fflush(stdout);  // before a person is asked something
 }
 
-/// Lets nobody be surprised by a force: asks before a real arm gets any.
-bool may_begin(const driver::FoundArm& arm, bool yes) {
-  std::fprintf(stderr, "%s %s is about to get forces. Keep clear of it, hold its grip, keep its ",
-               arm.arm.c_str(), arm.name().c_str());
+/// Lets nobody be surprised by a force: asks before a real arm is opened.
+bool may_begin(const driver::FoundArm& arm, bool at_home, bool yes, const std::atomic<bool>& stop) {
+  std::fprintf(stderr, "%s %s is about to get forces. Keep clear of it, hold its grip%s, keep its ",
+               arm.arm.c_str(), arm.name().c_str(), at_home ? " in the home pose" : "");
   std::fprintf(stderr, "switch at hand.\n");
   if (yes) return true;
   if (isatty(STDIN_FILENO) == 0) {
@@ -139,7 +127,25 @@ bool may_begin(const driver::FoundArm& arm, bool yes) {
     return false;
   }
   std::fprintf(stderr, "Press Enter to begin, Ctrl-C to leave. ");
-  return std::getchar() != EOF;
+  while (!stop.load()) {
+    const EnterKey key = look_for_enter();
+    if (key != EnterKey::kNothing) return key == EnterKey::kPressed;
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  return false;
+}
+
+/// Opens the arm of a session on which all else is ready; a real one may have forces only once its
+/// tip is where it must be. Returns false if `stop` was set before.
+driver::Result<bool> open_arm(Session& session, const RunOptions& options, bool real,
+                              const std::atomic<bool>& stop) {
+  if (auto opened = session.open_arm(); !opened) return opened.error();
+  if (!real) return true;
+  auto placed = wait_for_start_pose(session.device(), session.clock(), session.start_pose(),
+                                    !options.homed, user_terminal(), stop);
+  if (!placed || !*placed) return placed;
+  if (auto activated = session.activate(); !activated) return activated.error();
+  return true;
 }
 
 /// Finds which object's mesh is to be saved: -1 for all. Nothing if the scene has no such object.
@@ -235,29 +241,59 @@ int run_scene(const RunOptions& options) {
       !options.name.empty() || options.view || options.led() || (real_time && !options.no_view);
   session_options.share_name = options.name;
   session_options.share_if_possible = options.name.empty() && !for_a_person;
-  if (real_arm && !may_begin(*real_arm, options.yes)) return kExitBadInput;
-  auto opened = Session::open(options.scene, session_options);
-  if (!opened) {
-    return complain(opened.error(), real_arm ? kExitNoDevice : kExitBadInput);
-  }
-  Session& session = **opened;
+  session_options.homed = options.homed;
+
+  // All that takes time comes before the arm is opened: an open arm is served in every millisecond.
+  const std::atomic<bool>& stop = catch_interrupts();
+  if (real_arm) leave_rather_than_stop();
+  auto prepared = Session::prepare(options.scene, session_options);
+  if (!prepared) return complain(prepared.error(), kExitBadInput);
+  Session& session = **prepared;
   tell(session.told());
+  // Whoever leaves before the run leaves a recording that is whole, with no tick in it.
+  const auto leave = [&session](int code) {
+    if (const auto ended = session.recording().stop(); !ended)
+      complain(ended.error(), kExitTrouble);
+    return code;
+  };
   for (const std::string& warning : stability_warnings(session.scene())) {
     std::fprintf(stderr, "thimble: %s See thimble tune.\n", warning.c_str());
   }
   const auto saved = object_to_save(session.scene(), options.save_object);
   if (!saved) {
-    return complain({"--save-object: the scene has no object \"" + options.save_object + "\"."},
-                    kExitBadInput);
+    return leave(
+        complain({"--save-object: the scene has no object \"" + options.save_object + "\"."},
+                 kExitBadInput));
   }
-  std::unique_ptr<ReplugWatch> watch;
-  if (real_arm) watch = std::make_unique<ReplugWatch>(session, *real_arm, options.firmware);
   const auto desk = open_desk(session, options, real_time);
-  driver::RealTimeGrant grant;
-  const driver::ServoEnd end =
-      run_session(session, session_options.clock, grant, watch.get(), desk.get());
+  ServoThread servo(real_time);
+  if (real_arm) {
+    if (auto granted = check_real_time(servo.grant(), options.no_real_time); !granted) {
+      return leave(complain(granted.error(), kExitBadInput));
+    }
+  }
+  if (!servo.grant().advice.empty()) spdlog::warn("{}", servo.grant().advice);
+  if (stop.load()) return leave(kExitInterrupted);
+  if (real_arm) {
+    const bool at_home = !options.homed && session.start_pose().has_home();
+    if (!may_begin(*real_arm, at_home, options.yes, stop)) {
+      return leave(stop.load() ? kExitInterrupted : kExitBadInput);
+    }
+  }
+  auto guard = std::make_optional<LeavingGuard>();
+  const auto open = open_arm(session, options, real_arm.has_value(), stop);
+  if (!open) {
+    const int code = complain(open.error(), real_arm ? kExitNoDevice : kExitBadInput);
+    return leave(stop.load() ? kExitInterrupted : code);
+  }
+  if (!*open) return leave(kExitInterrupted);
+  std::optional<ReplugWatch> watch;
+  if (real_arm) watch.emplace(replug_watch_of(session, *real_arm, options.firmware));
+
+  servo.begin(session, stop);
+  show_progress(session, servo, watch ? &*watch : nullptr, desk.get());
+  const driver::ServoEnd end = servo.join();
   keep_black_box(session);
-  if (!grant.advice.empty()) spdlog::warn("{}", grant.advice);
 
   // The touch went on, whatever became of the recording; who asked for one shall hear of it.
   int exit_code_when_done = kExitDone;
@@ -269,7 +305,9 @@ int run_scene(const RunOptions& options) {
       std::printf("Recording: %s\n", path.c_str());
     }
   }
-  const RunReport report = report_of(session, end, grant);
+  std::fflush(stdout);
+  guard.reset();  // zero force is out and the recording closed
+  const RunReport report = report_of(session, end, servo.grant());
   std::printf("%s", summary(report).c_str());
   if (!options.report.empty()) {
     const std::filesystem::path folder = options.report;
@@ -353,6 +391,11 @@ void add_run_command(CLI::App& app, int& exit_code) {
   command->add_flag("--unchecked", options->unchecked,
                     "Give a real arm its whole force though `thimble feel-check` was not passed; "
                     "without it such an arm gets at most 0.5 N");
+  command->add_flag("--homed", options->homed,
+                    "A real arm was in its home pose when it got power: check only that its tip is "
+                    "in the workspace");
+  command->add_flag("--no-real-time", options->no_real_time,
+                    "Use a real arm though the loop gets no real-time priority");
   command->add_option("--duration", options->duration, "Seconds to run; the scene's own if absent")
       ->check(CLI::Validator(
           [](const std::string& text) {

@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "board_advice.h"
+#include "doctor_timing.h"
 #include "thimble/driver/discovery.h"
 #include "thimble/driver/node_lock.h"
 
@@ -32,7 +33,7 @@ class Examination {
   std::vector<Finding> run() {
     look_for_rule();
     look_at_arms();
-    look_at_real_time();
+    for (Finding& found : examine_timing(patient_)) findings_.push_back(std::move(found));
     return std::move(findings_);
   }
 
@@ -192,26 +193,6 @@ class Examination {
     } else {
       note(Health::kAdvice, name + "it hangs on a hub; a socket of the computer is safer.",
            "Plug it into the computer itself");
-    }
-  }
-
-  void look_at_real_time() {
-    if (patient_.real_time_priority_max >= 80) {
-      note(Health::kGood, "You may run at real-time priority.");
-    } else {
-      note(
-          Health::kAdvice,
-          "You may not run at real-time priority 80, so the loop waits behind other programs.",
-          "echo '@plugdev - rtprio 80' | sudo tee /etc/security/limits.d/thimble.conf, then log in "
-          "again");
-    }
-    const std::string runtime = read_line(below_root("/proc/sys/kernel/sched_rt_runtime_us"));
-    // The default leaves a real-time thread 950 ms of each second, far more than the loop takes.
-    if (!runtime.empty() && std::atol(runtime.c_str()) >= 0 &&
-        std::atol(runtime.c_str()) < 500000) {
-      note(Health::kAdvice,
-           "The kernel stops real-time threads after " + runtime + " us of each second.",
-           "sudo sysctl -w kernel.sched_rt_runtime_us=950000");
     }
   }
 

@@ -31,7 +31,7 @@ struct Patient {
 Patient this_machine();
 
 /// Examines why an arm cannot be used or touch may suffer: the udev rule, each arm's node, access,
-/// driver, hub, power saving and latency timer, and the kernel's real-time limits. Opens and
+/// driver, hub, power saving and latency timer, and how evenly a loop can run. Opens and
 /// changes nothing. Real-time: never from the servo thread.
 std::vector<Finding> examine(const Patient& patient);
 

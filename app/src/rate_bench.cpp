@@ -5,11 +5,10 @@
 #include <cstdio>
 #include <memory>
 #include <string>
-#include <thread>
 
 #include "meshes.h"
+#include "servo_thread.h"
 #include "session.h"
-#include "thimble/driver/real_time.h"
 
 namespace thimble::app {
 namespace {
@@ -91,19 +90,15 @@ driver::Result<RateBench> bench_rate(const std::filesystem::path& scene, double 
   Session& session = **opened;
   RateBench bench;
   bench.rate = rate;
-  driver::RealTimeGrant grant;
-  driver::ServoEnd end = driver::ServoEnd::kDone;
   const std::atomic<bool> stop{false};
-  std::thread servo([&] {
-    grant = driver::enter_real_time();
-    end = session.run(stop);
-  });
-  servo.join();
+  ServoThread servo(true);
+  servo.begin(session, stop);
+  const driver::ServoEnd end = servo.join();
   bench.period = session.statistics().period();
   bench.lateness = session.statistics().lateness();
   bench.work = session.statistics().work();
-  bench.priority = grant.fifo;
-  bench.advice = grant.advice;
+  bench.priority = servo.grant().fifo;
+  bench.advice = servo.grant().advice;
   if (end == driver::ServoEnd::kFault) {
     bench.trouble = "a fault ended the run: ticks came too late for the arm's safety.";
   }

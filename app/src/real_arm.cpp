@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "interrupt.h"
 #include "printed.h"
 #include "thimble/driver/arms/falcon/falcon_arm.h"
 #include "thimble/driver/arms/falcon/falcon_boot.h"
@@ -74,6 +75,7 @@ Result<void> home(driver::SerialLine& line) {
   bool told = false;
   int silent = 0;
   for (int i = 0; i < kAsksMax; ++i) {
+    if (stop_asked()) return Error{"Ended before the Falcon was homed; it got no force."};
     const falcon::HomingState state = falcon::home_once(line, homed);
     silent = state.answered ? 0 : silent + 1;
     if (silent > 20) return Error{"The Falcon stopped answering while it was homed."};

@@ -94,6 +94,7 @@ Json to_json(const RunReport& report) {
   }
   json["real_time"] = {{"fifo", report.real_time.fifo},
                        {"memory_locked", report.real_time.memory_locked},
+                       {"cpu_awake", report.real_time.cpu_awake},
                        {"advice", report.real_time.advice}};
   json["end"] = {{"reason", end_name(report.end)},
                  {"fault", driver::name(report.fault)},

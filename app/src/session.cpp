@@ -48,6 +48,19 @@ driver::Result<void> check_reach(const HandRoute& route, const ArmFile& arm) {
 
 driver::Result<std::unique_ptr<Session>> Session::open(const std::filesystem::path& scene_file,
                                                        const SessionOptions& options) {
+  auto session = prepare(scene_file, options);
+  if (!session) return session;
+  if (auto opened = (*session)->open_arm(); !opened) return opened.error();
+  if (!options.real_arm) return session;
+  const std::string trouble =
+      (*session)->start_pose().trouble((*session)->device().state().p_WT, !options.homed);
+  if (!trouble.empty()) return driver::Error{trouble};
+  if (auto activated = (*session)->activate(); !activated) return activated.error();
+  return session;
+}
+
+driver::Result<std::unique_ptr<Session>> Session::prepare(const std::filesystem::path& scene_file,
+                                                          const SessionOptions& options) {
   if (options.real_arm && !options.terms) {
     return driver::Error{"A real arm is used on terms only (terms_for)."};
   }
@@ -59,12 +72,12 @@ driver::Result<std::unique_ptr<Session>> Session::open(const std::filesystem::pa
   session->scene_ = std::move(scene).value();
   if (options.adjust) options.adjust(session->scene_);
   if (options.real_arm) {
+    session->start_pose_ = StartPose::of(session->scene_.arm, options.real_arm->kind);
     auto told = put_on_terms(session->scene_, scene_file, *options.terms);
     if (!told) return told.error();
     session->told_ = std::move(told).value();
     session->feel_check_ = options.terms->feel_check;
   }
-  const ArmFile& arm = session->scene_.arm;
 
   auto objects = SceneObjects::build(session->scene_);
   if (!objects) return objects.error();
@@ -95,54 +108,12 @@ driver::Result<std::unique_ptr<Session>> Session::open(const std::filesystem::pa
       return planned.error();
     }
   }
-  // The clock starts last, so that the arm's time begins with the session's. A real arm knows only
-  // the time of the world.
-  if (options.clock == ClockKind::kWall || options.real_arm) {
-    session->clock_ = std::make_unique<driver::WallClock>();
-  } else {
-    session->clock_ = std::make_unique<driver::VirtualClock>();
-  }
-  std::unique_ptr<driver::Transport> wire;
-  std::unique_ptr<const driver::Arm> protocol;
-  if (options.real_arm) {
-    auto opened = open_wire(*options.real_arm, arm, options.firmware, *session->clock_);
-    if (!opened) return opened.error();
-    wire = std::move(opened).value();
-    protocol = make_arm(arm, options.real_arm->kind);
-  } else {
-    wire = session->simulation_->wire(*session->clock_);
-    protocol = session->simulation_->protocol();
-  }
-  driver::MotionWatchSettings motion = motion_settings(arm, session->scene_.rate);
-  // A simulated hand that a mouse holds does not tremble, and its arm sends no old positions.
-  constexpr double kAnyTime = 1e9;  // s
-  if (options.hand_by_mouse) motion.hold_most = kAnyTime;
-  driver::HeatSettings heat = arm.heat;
-  if (options.real_arm && heat.named()) {
-    const KnownHeat known = load_heat(options.real_arm->name(), heat, world_time());
-    if (!known.note.empty()) std::fprintf(stderr, "thimble: %s\n", known.note.c_str());
-    heat.at_start = known.heat;
-  }
-  auto device = driver::Device::open(
-      std::move(wire), std::move(protocol),
-      {.R_WB = arm.R_WB,
-       .p_WB = arm.p_WB,
-       .limits = arm.limits,
-       .energy = energy_settings(arm, session->scene_.rate, session->scene_.energy),
-       .motion = motion,
-       .heat = heat,
-       .velocity_corner_frequency = arm.velocity_corner_frequency},
-      session->clock_->now_ns());
-  if (!device) return device.error();
-  session->device_ = std::move(device).value();
-  if (options.real_arm && heat.named()) {
-    session->heat_keeper_ =
-        std::make_unique<HeatKeeper>(options.real_arm->name(), *session->device_);
-  }
-  if (auto activated = session->device_->activate(); !activated) return activated.error();
   session->by_thread_ = options.clock == ClockKind::kWall || options.real_arm.has_value();
   if (session->by_thread_) session->objects_->start_loaders();
   session->scene_file_ = scene_file;
+  session->real_arm_ = options.real_arm;
+  session->firmware_ = options.firmware;
+  session->open_wire_ = options.open_wire;
   session->device_name_ = options.real_arm ? options.real_arm->name() : "sim";
   session->black_box_ = std::make_unique<BlackBox>(session->scene_.rate);
   if (!options.record.empty()) {
@@ -157,6 +128,54 @@ driver::Result<std::unique_ptr<Session>> Session::open(const std::filesystem::pa
     }
   }
   return session;
+}
+
+driver::Result<void> Session::open_arm() {
+  const ArmFile& arm = scene_.arm;
+  // The clock starts last, so that the arm's time begins with the session's. A real arm knows only
+  // the time of the world.
+  if (by_thread_) {
+    clock_ = std::make_unique<driver::WallClock>();
+  } else {
+    clock_ = std::make_unique<driver::VirtualClock>();
+  }
+  std::unique_ptr<driver::Transport> wire;
+  std::unique_ptr<const driver::Arm> protocol;
+  if (real_arm_) {
+    auto opened =
+        open_wire_ ? open_wire_(arm, *clock_) : open_wire(*real_arm_, arm, firmware_, *clock_);
+    if (!opened) return opened.error();
+    wire = std::move(opened).value();
+    protocol = make_arm(arm, real_arm_->kind);
+  } else {
+    wire = simulation_->wire(*clock_);
+    protocol = simulation_->protocol();
+  }
+  driver::MotionWatchSettings motion = motion_settings(arm, scene_.rate);
+  // A simulated hand that a mouse holds does not tremble, and its arm sends no old positions.
+  constexpr double kAnyTime = 1e9;  // s
+  if (hand_by_mouse_) motion.hold_most = kAnyTime;
+  driver::HeatSettings heat = arm.heat;
+  if (real_arm_ && heat.named()) {
+    const KnownHeat known = load_heat(real_arm_->name(), heat, world_time());
+    if (!known.note.empty()) std::fprintf(stderr, "thimble: %s\n", known.note.c_str());
+    heat.at_start = known.heat;
+  }
+  auto device = driver::Device::open(std::move(wire), std::move(protocol),
+                                     {.R_WB = arm.R_WB,
+                                      .p_WB = arm.p_WB,
+                                      .limits = arm.limits,
+                                      .energy = energy_settings(arm, scene_.rate, scene_.energy),
+                                      .motion = motion,
+                                      .heat = heat,
+                                      .velocity_corner_frequency = arm.velocity_corner_frequency},
+                                     clock_->now_ns());
+  if (!device) return device.error();
+  device_ = std::move(device).value();
+  if (real_arm_ && heat.named()) {
+    heat_keeper_ = std::make_unique<HeatKeeper>(real_arm_->name(), *device_);
+  }
+  return real_arm_ ? driver::Result<void>() : device_->activate();
 }
 
 driver::Result<void> Session::begin_recording(const std::filesystem::path& path) {

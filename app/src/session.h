@@ -21,6 +21,7 @@
 #include "scene_poses.h"
 #include "share/live_control.h"
 #include "share/shared_run.h"
+#include "start_pose.h"
 #include "terms/real_arm_terms.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/device.h"
@@ -52,14 +53,31 @@ struct SessionOptions {
       false;               ///< a viewer leads the simulated hand; the run ends when it is asked to
   std::string share_name;  ///< under which name; empty: the scene's, with a number if it is taken
   std::function<void(Scene&)> adjust = {};  ///< changes the scene before anything is built of it
+  bool homed = false;  ///< a real arm was in its home pose when it got power: do not ask for it
+  /// Opens the wire to the real arm in place of `app::open_wire`, for tests.
+  std::function<driver::Result<std::unique_ptr<driver::Transport>>(const ArmFile&, driver::Clock&)>
+      open_wire = {};
 };
 
 /// Is one scene, loaded and joined: clock, simulated arm, wire, device, touch, and who keeps the
 /// records. The servo runs in `run`, on the caller's thread; `snapshot` may be read by others.
 class Session {
  public:
-  /// Reads the scene, its arm and its mesh, plans the hand's way and opens the arm. The error names
-  /// the file and what to mend. Real-time: never from the servo thread.
+  /// Does everything that takes time and needs no arm: reads the scene, its arm and its mesh, plans
+  /// the hand's way, builds the objects, begins the recording and lets viewers see the run. The
+  /// error names the file and what to mend. Real-time: never from the servo thread.
+  static driver::Result<std::unique_ptr<Session>> prepare(const std::filesystem::path& scene_file,
+                                                          const SessionOptions& options);
+  /// Opens the arm of a prepared session. A simulated one may get forces from then on; a real one
+  /// is idle, with zero force, until `activate`. Once. Real-time: never from the servo thread.
+  driver::Result<void> open_arm();
+  /// Lets forces through to the arm that was opened. Of a real arm the caller has looked before
+  /// whether its tip is where it must be (`wait_for_start_pose`). Real-time: never from the servo
+  /// thread.
+  driver::Result<void> activate() { return device_->activate(); }
+
+  /// Does all of it at once, for whoever can ask nobody: a real arm whose tip is not where it must
+  /// be (`start_pose`) is an error. Real-time: never from the servo thread.
   static driver::Result<std::unique_ptr<Session>> open(const std::filesystem::path& scene_file,
                                                        const SessionOptions& options);
 
@@ -100,6 +118,9 @@ class Session {
   ArmSimulation* simulation() { return simulation_.get(); }
   /// Gives the simulated arm. Precondition: it is simulated, and no Falcon.
   const device_sim::SimulatedArm& arm() const { return *simulation_->board_arm(); }
+  /// Returns where the tip of the real arm must be before it gets a force.
+  /// Precondition: the arm is real.
+  const StartPose& start_pose() const { return *start_pose_; }
   /// Gives the clock that a new wire to a real arm must use.
   driver::Clock& clock() { return *clock_; }
   const render::SceneTouch& touch() const { return objects_->touch(); }
@@ -161,6 +182,10 @@ class Session {
   std::int64_t period_ns_ = 0;
   std::filesystem::path scene_file_;
   std::string device_name_;
+  std::optional<driver::FoundArm> real_arm_;  // with what it takes to open it
+  std::filesystem::path firmware_;
+  std::optional<StartPose> start_pose_;
+  decltype(SessionOptions::open_wire) open_wire_;
   std::unique_ptr<driver::Clock> clock_;
   std::unique_ptr<ArmSimulation> simulation_;
   std::unique_ptr<driver::Device> device_;   // holds the wire to the simulation, so it goes first

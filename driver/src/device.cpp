@@ -223,6 +223,15 @@ const DeviceState& Device::read(std::int64_t now_ns, std::int64_t deadline_ns) n
   return state_;
 }
 
+const DeviceState& Device::idle(std::int64_t now_ns, std::int64_t deadline_ns) noexcept {
+  started_ = false;  // the next tick is the first one again
+  state_.time_ns = now_ns;
+  state_.fresh = take_report(now_ns, deadline_ns);
+  send(MotorCurrents());
+  f_sent_W_.setZero();
+  return state_;
+}
+
 bool Device::take_report(std::int64_t now_ns, std::int64_t deadline_ns) noexcept {
   std::array<std::byte, kReportCapacity> buffer;
   const TransportRead read = transport_->read_latest(buffer, deadline_ns);

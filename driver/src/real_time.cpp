@@ -1,5 +1,6 @@
 #include "thimble/driver/real_time.h"
 
+#include <fcntl.h>
 #include <pthread.h>
 #include <sched.h>
 #include <sys/mman.h>
@@ -7,6 +8,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdint>
 #include <cstring>
 
 namespace thimble::driver {
@@ -33,6 +35,23 @@ RealTimeGrant enter_real_time(int priority) {
   }
   if (!grant.advice.empty()) grant.advice.pop_back();
   return grant;
+}
+
+CpuLatencyRequest::CpuLatencyRequest(const std::filesystem::path& root) {
+  const std::filesystem::path path = root / "dev/cpu_dma_latency";
+  file_ = open(path.c_str(), O_WRONLY | O_CLOEXEC);
+  const std::int32_t most_us = 0;
+  if (file_ >= 0 && write(file_, &most_us, sizeof most_us) == sizeof most_us) return;
+  const int error = errno;
+  if (file_ >= 0) close(file_);
+  file_ = -1;
+  advice_ = path.string() + " was refused (" + std::strerror(error) +
+            "), so the processors may sleep between ticks and wake late; `thimble doctor` says "
+            "what to do.";
+}
+
+CpuLatencyRequest::~CpuLatencyRequest() {
+  if (file_ >= 0) close(file_);
 }
 
 }  // namespace thimble::driver

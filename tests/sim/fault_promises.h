@@ -15,6 +15,8 @@ enum class Promise {
   kArmOff,  ///< The arm's own watchdog switches the motors off; the driver may not know.
   kBound,   ///< It looks like a touch: every force stays within the arm's limit, and if it goes off
             ///< it stays off, with its cause.
+  kNotKnown,  ///< Only the arm could switch its motors off, and nobody knows whether it does. The
+              ///< driver names the cause if it can see one; of the motors nothing is promised.
 };
 
 /// Says where a fault comes from.
@@ -75,6 +77,18 @@ inline Promised promised(std::string_view fault, driver::ArmKind arm) {
   const bool hid = arm == driver::ArmKind::kPolhem || arm == driver::ArmKind::kWoody;
   // An arm that answers only says nothing to a message that it did not hear.
   const bool answers = arm != driver::ArmKind::kWoody;
+  if (arm == driver::ArmKind::kFalcon) {
+    // Whether a Falcon has a watchdog is not known: the rig's has none.
+    if (fault == "stall out" || fault == "short out" || fault == "silence out") {
+      return {Promise::kNotKnown, 0, Fault::kNoReports};
+    }
+    if (fault == "unplug") return {Promise::kNotKnown, 0, Fault::kTransportLost};
+    if (fault == "host dies") return {Promise::kNotKnown, 0, Fault::kNone};
+    // The loop's own zero, two frames after it goes on.
+    if (fault == "host stands still for 150 ms") {
+      return {Promise::kOff, 150 + 3, Fault::kLoopStalled};
+    }
+  }
   const Promised unheard{Promise::kOff, kNoticed, Fault::kNoReports};
   const Promised unknown{Promise::kArmOff, kWatchdog, Fault::kNone};
   // A HID board that answers only does not listen as long as nobody takes its report: the zero does

@@ -110,6 +110,7 @@ void FaultRig::build_arm() {
     ASSERT_TRUE(falcon) << falcon.error().message;
     falcon_ = std::move(falcon).value();
     falcon_->home_when_asked();
+    falcon_->set_watchdog(0);  // none is known, so nothing may be promised that hangs on one
     arm_ = &falcon_->on_bus();
     return;
   }

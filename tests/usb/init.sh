@@ -65,7 +65,7 @@ for arm in $arms; do
     plug $arm /tmp/run.trace
     program="thimble run /data/tests/data/scenes/two_boxes.yaml --arm /data/app/arms/${arm%-64}.yaml"
     [ -z "$image" ] || program="$program --firmware $image"
-    if as tester "thimble devices && HOME=/tmp $program --device SIM0001 --yes --duration 0.5" \
+    if as tester "thimble devices && HOME=/tmp $program --device SIM0001 --yes --homed --no-real-time --duration 0.5" \
       >/tmp/run.log 2>&1 && grep -q 'SIM0001.*ready' /tmp/run.log; then
       echo "PASS $arm with thimble devices and thimble run"
     else

@@ -300,6 +300,8 @@ def _begin(
     unchecked: bool = False,
     real_time: bool = False,
     firmware: Optional[PathOrName] = None,
+    homed: bool = False,
+    no_real_time: bool = False,
 ) -> _core.Run:
     run = _core.Run(
         os.fspath(scene),
@@ -314,6 +316,8 @@ def _begin(
         record=os.fspath(record) if record is not None else "",
         firmware=os.fspath(firmware) if firmware is not None else "",
         law=None if law is None else lambda columns: law(Tick(columns)),
+        homed=homed,
+        no_real_time=no_real_time,
     )
     for warning in run.warnings():
         warnings.warn(warning, RuntimeWarning, stacklevel=3)
@@ -502,6 +506,8 @@ def open(
     quality: str = "normal",
     record: Optional[PathOrName] = None,
     firmware: Optional[PathOrName] = None,
+    homed: bool = False,
+    no_real_time: bool = False,
 ) -> Live:
     """Touch a scene in real time, and begin at once. Other options as of :func:`run`.
 
@@ -511,7 +517,9 @@ def open(
     real arm that has not passed ``thimble feel-check`` gets at most 0.5 N; ``unchecked=True`` gives it
     its whole force all the same. A real arm brings its own arm file; what the scene or ``arm`` say of
     limits may only tighten them, and stderr says what became of it. firmware: image for an arm that
-    needs one. Raises Error with what to do.
+    needs one. homed: a real arm was in its home pose when it got power, so
+    that only its workspace is checked before it gets a force. no_real_time: use a real arm though
+    the loop gets no real-time priority. Raises Error with what to do.
     """
     if device not in ("sim", "auto") and not agree:  # what "auto" finds is asked about beneath
         raise Error(
@@ -530,10 +538,12 @@ def open(
         unchecked=unchecked,
         real_time=True,
         firmware=firmware,
+        homed=homed,
+        no_real_time=no_real_time,
     )
     live = Live(held)
     _live.add(live)
-    _stop_on_sigterm()
+    _stop_on_signals()
     held.start()
     return live
 
@@ -543,19 +553,25 @@ def _stop_all() -> None:
         live.stop()
 
 
-def _stop_on_sigterm() -> None:
-    """Let SIGTERM, which would end Python at once, leave by zero force first."""
+# Signals that would end Python at once and can be caught; SIGINT comes as KeyboardInterrupt.
+_ENDING = ("TERM", "HUP", "QUIT", "USR1", "USR2", "ALRM", "VTALRM", "PROF", "XCPU", "IO", "PWR")
+
+
+def _stop_on_signals() -> None:
+    """Let each signal that would end Python at once leave by zero force first."""
     if threading.current_thread() is not threading.main_thread():
         return
-    if signal.getsignal(signal.SIGTERM) is not signal.SIG_DFL:
-        return  # somebody else's; his way out runs what is at exit
 
     def leave(number: int, _: Any) -> None:
         _stop_all()
         signal.signal(number, signal.SIG_DFL)
         os.kill(os.getpid(), number)
 
-    signal.signal(signal.SIGTERM, leave)
+    for name in _ENDING:
+        number = getattr(signal, "SIG" + name, None)
+        # Somebody else's stays: his way out runs what is at exit.
+        if number is not None and signal.getsignal(number) is signal.SIG_DFL:
+            signal.signal(number, leave)
 
 
 atexit.register(_stop_all)

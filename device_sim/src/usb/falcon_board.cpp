@@ -18,9 +18,6 @@ constexpr double kUploadRate = 140'000;
 constexpr double kRunRate = 1'500'000;
 constexpr double kRateTolerance = 0.03;
 
-// Whether a real Falcon has a watchdog is not known; 100 ms is a guess.
-constexpr std::int64_t kWatchdog_ns = 100'000'000;
-
 // A host that has been silent for so long asks for nothing any more. [chosen]
 constexpr std::int64_t kAsked_ns = 500'000'000;
 
@@ -82,7 +79,7 @@ void FalconBoard::set_encoders(const std::array<double, 3>& exact_counts) noexce
 
 void FalconBoard::watch(std::int64_t time_ns) noexcept {
   now_ns_ = time_ns;
-  if (motors_on_ && now_ns_ - last_packet_ns_ >= kWatchdog_ns) motors_on_ = false;
+  if (watchdog_ns_ > 0 && now_ns_ - last_packet_ns_ >= watchdog_ns_) motors_on_ = false;
 }
 
 void FalconBoard::hear(std::byte byte, ByteQueue& says) noexcept {

@@ -14,6 +14,13 @@ class DoctorTest : public ::testing::Test {
       : usb_(std::string("doctor_") +
              testing::UnitTest::GetInstance()->current_test_info()->name()) {
     usb_.write("etc/udev/rules.d/70-thimble.rules", "#");
+    usb_.write("proc/sys/kernel/version", "#1 SMP PREEMPT_RT Debian 6.1");
+    for (const std::string cpu : {"cpu0", "cpu1"}) {
+      usb_.write(kCpus + cpu + "/cpufreq/scaling_governor", "performance");
+      usb_.write(kCpus + cpu + "/cpuidle/state0/latency", "0");
+      usb_.write(kCpus + cpu + "/cpuidle/state1/latency", "200");
+    }
+    usb_.write("dev/cpu_dma_latency", "");
     patient_.root = usb_.root();
     patient_.real_time_priority_max = 99;
     patient_.in_plugdev = true;
@@ -45,6 +52,7 @@ class DoctorTest : public ::testing::Test {
     return count;
   }
 
+  static inline const std::string kCpus = "sys/devices/system/cpu/";
   support::FakeUsb usb_;
   Patient patient_;
 };
@@ -150,6 +158,44 @@ TEST_F(DoctorTest, NamesTheProgramThatHasTheArm) {
   std::filesystem::create_directories(usb_.root() / "proc/77/fd");
   std::filesystem::create_symlink("/dev/hidraw3", usb_.root() / "proc/77/fd/12");
   EXPECT_EQ(finding("steam (process 77)").health, Health::kProblem);
+}
+
+TEST_F(DoctorTest, KnowsARealTimeKernelByEitherOfItsSigns) {
+  plug_woody();
+  EXPECT_EQ(finding("PREEMPT_RT").health, Health::kGood);
+  usb_.write("proc/sys/kernel/version", "#1 SMP PREEMPT_DYNAMIC Debian 6.1");
+  EXPECT_EQ(finding("PREEMPT_RT").health, Health::kAdvice);
+  EXPECT_EQ(troubles(), 1u);
+  usb_.write("sys/kernel/realtime", "1");
+  EXPECT_EQ(finding("PREEMPT_RT").health, Health::kGood);
+}
+
+TEST_F(DoctorTest, SeesAGovernorThatSlowsAProcessorDown) {
+  plug_woody();
+  EXPECT_EQ(finding("full speed").health, Health::kGood);
+  usb_.write(kCpus + "cpu1/cpufreq/scaling_governor", "powersave");
+  EXPECT_EQ(finding("governor powersave").health, Health::kAdvice);
+  EXPECT_NE(finding("governor").mend.find("performance"), std::string::npos);
+  EXPECT_EQ(troubles(), 1u);
+}
+
+TEST_F(DoctorTest, SeesProcessorsThatSleepTooDeepAndWhatKeepsThemAwake) {
+  plug_woody();
+  EXPECT_EQ(finding("take 200 us to wake; you may ask for less").health, Health::kGood);
+  std::filesystem::remove(usb_.root() / "dev/cpu_dma_latency");  // root may write all that exists
+  EXPECT_EQ(finding("take 200 us to wake").health, Health::kAdvice);
+  EXPECT_EQ(troubles(), 1u);
+  usb_.write(kCpus + "cpu0/cpuidle/state1/disable", "1");
+  EXPECT_EQ(troubles(), 1u) << "the other one still sleeps";
+  usb_.write(kCpus + "cpu1/cpuidle/state1/disable", "1");
+  EXPECT_EQ(troubles(), 0u);
+}
+
+TEST_F(DoctorTest, PassesOverWhatTheKernelDoesNotTell) {
+  plug_woody();
+  std::filesystem::remove_all(usb_.root() / kCpus);
+  std::filesystem::remove(usb_.root() / "proc/sys/kernel/version");
+  EXPECT_EQ(troubles(), 0u);
 }
 
 TEST_F(DoctorTest, SaysSoWhenNothingIsPluggedInOrItsProtocolIsSecret) {

@@ -100,6 +100,10 @@ class Device {
   /// safe; waits no longer than `deadline_ns`.
   const DeviceState& read(std::int64_t now_ns, std::int64_t deadline_ns) noexcept;
 
+  /// Reads the newest report as `read` does and sends zero force: for whoever looks at the arm
+  /// before a run. It counts no tick, and notices no silence. Real-time: safe.
+  const DeviceState& idle(std::int64_t now_ns, std::int64_t deadline_ns) noexcept;
+
   /// Ends a tick: passes the command through the gate and sends what is left of it, or zero if the
   /// device is not active. What the arm does not take leaves the force before it standing, and the
   /// next one rises from that. Real-time: safe.

@@ -60,6 +60,9 @@ class FalconBoard final : public SerialBoard {
 
   /// Switches the motors off if no packet came for the watchdog's time.
   void watch(std::int64_t time_ns) noexcept;
+  /// Sets the watchdog's time, ns; 0: it has none. Whether a real Falcon has one is not known, so
+  /// nothing may be promised that hangs on it.
+  void set_watchdog(std::int64_t time_ns) noexcept { watchdog_ns_ = time_ns; }
 
   Stage stage() const noexcept { return stage_; }  ///< Tells what it waits for.
   /// Tells whether firmware runs.
@@ -96,6 +99,7 @@ class FalconBoard final : public SerialBoard {
   driver::falcon::HostPacket asked_;
   driver::falcon::ArmPacket answered_;
   bool motors_on_ = false;
+  std::int64_t watchdog_ns_ = 100'000'000;  // a guess: whether a real one has any is not known
   std::int64_t now_ns_ = 0, last_packet_ns_ = 0;
   FalconCounters counters_;
 };

@@ -33,6 +33,8 @@ class FalconOnUsb final : public UsbArm {
   void home_when_asked() noexcept { homes_ = true; }
   /// Gives the hand, to be led or held by whoever lets time pass. Real-time: safe.
   Hand& hand() noexcept { return hand_; }
+  /// Sets the guessed watchdog of the board, ns; 0: none (FalconBoard). Real-time: safe.
+  void set_watchdog(std::int64_t time_ns) noexcept { board_.set_watchdog(time_ns); }
 
   const UsbDescription& description() const noexcept override { return description_; }
   void advance_to(std::int64_t time_ns) noexcept override;

@@ -1,0 +1,149 @@
+#include "interrupt.h"
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <ctime>
+#include <functional>
+
+namespace thimble::app {
+namespace {
+
+constexpr std::int64_t kMs = 1'000'000;
+
+TEST(Interrupt, TakesSeveralSignalsWithinHalfASecondForOneRequest) {
+  for (const std::int64_t since_ms : {0, 1, 10, 100, 499}) {
+    EXPECT_FALSE(ends_at_once(since_ms * kMs, false)) << since_ms;
+    EXPECT_FALSE(ends_at_once(since_ms * kMs, true)) << since_ms;
+  }
+}
+
+TEST(Interrupt, ObeysAFurtherSignalOnceNothingIsAtStakeOrTheProgramHangs) {
+  EXPECT_TRUE(ends_at_once(500 * kMs, false));
+  EXPECT_FALSE(ends_at_once(500 * kMs, true));
+  EXPECT_FALSE(ends_at_once(1999 * kMs, true));
+  EXPECT_TRUE(ends_at_once(2000 * kMs, true));
+}
+
+/// Runs `body` in a process of its own and returns how that ended: 0 to 99 its exit code, 100 + n
+/// by signal n.
+int outcome_of(const std::function<void()>& body) {
+  const pid_t child = fork();
+  if (child == 0) {
+    body();
+    _exit(0);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  return WIFSIGNALED(status) ? 100 + WTERMSIG(status) : WEXITSTATUS(status);
+}
+
+void rest(std::int64_t time_ns) {
+  timespec left{.tv_sec = time_ns / 1'000'000'000, .tv_nsec = time_ns % 1'000'000'000};
+  while (nanosleep(&left, &left) != 0) {
+  }
+}
+
+TEST(Interrupt, SetsTheFlagForEverySignalThatEndsAProgramAndCanBeCaught) {
+  for (int number = 1; number <= SIGRTMAX; ++number) {
+    switch (number) {
+      case SIGKILL:
+      case SIGSTOP:  // cannot be caught
+      case SIGSEGV:
+      case SIGBUS:
+      case SIGFPE:
+      case SIGILL:
+      case SIGABRT:
+      case SIGTRAP:
+      case SIGSYS:  // of a crash
+      case SIGPIPE:
+      case SIGXFSZ:  // are errors of a write
+      case SIGCHLD:
+      case SIGCONT:
+      case SIGURG:
+      case SIGWINCH:  // end nothing
+      case SIGTSTP:
+      case SIGTTIN:
+      case SIGTTOU:  // stop
+        continue;
+      default:
+        break;
+    }
+    if (number >= 32 && number < SIGRTMIN) continue;  // the C library's own
+    EXPECT_EQ(outcome_of([number] {
+                std::signal(number, SIG_DFL);
+                const auto& flag = catch_interrupts();
+                raise(number);
+                _exit(flag.load() && stop_asked() ? 7 : 8);
+              }),
+              7)
+        << "signal " << number;
+  }
+}
+
+TEST(Interrupt, OutlivesTheTerminalUnderNohupAndLeavesOthersHandlersAlone) {
+  EXPECT_EQ(outcome_of([] {
+              std::signal(SIGHUP, SIG_IGN);
+              const auto& flag = catch_interrupts();
+              raise(SIGHUP);
+              _exit(flag.load() ? 8 : 7);
+            }),
+            7);
+  EXPECT_EQ(outcome_of([] {
+              std::signal(SIGUSR1, [](int) { _exit(7); });
+              catch_interrupts();
+              raise(SIGUSR1);
+            }),
+            7);
+  // What a script runs beside itself ignores these, and leaves by them all the same.
+  EXPECT_EQ(outcome_of([] {
+              std::signal(SIGINT, SIG_IGN);
+              const auto& flag = catch_interrupts();
+              raise(SIGINT);
+              _exit(flag.load() ? 7 : 8);
+            }),
+            7);
+}
+
+TEST(Interrupt, KeepsAnArmAtStakeAliveThroughABurstAndEndsAProgramThatHangs) {
+  EXPECT_EQ(outcome_of([] {
+              catch_interrupts();
+              const LeavingGuard guard;
+              for (int i = 0; i < 1000; ++i) raise(i % 2 == 0 ? SIGINT : SIGTERM);
+            }),
+            0);
+  EXPECT_EQ(outcome_of([] {
+              catch_interrupts();
+              const LeavingGuard guard;
+              raise(SIGINT);
+              rest(kLeavingMost_ns + kMs);
+              raise(SIGTERM);
+            }),
+            100 + SIGTERM);
+  EXPECT_EQ(outcome_of([] {
+              catch_interrupts();
+              { const LeavingGuard guard; }
+              raise(SIGINT);
+              rest(kOneRequest_ns + kMs);
+              raise(SIGINT);
+            }),
+            100 + SIGINT);
+}
+
+TEST(Interrupt, TakesCtrlZForARequestToLeaveWhereAnArmIsOpen) {
+  EXPECT_EQ(outcome_of([] {
+              const auto& flag = catch_interrupts();
+              leave_rather_than_stop();
+              raise(SIGTSTP);
+              raise(SIGTTIN);
+              raise(SIGTTOU);
+              _exit(flag.load() ? 7 : 8);
+            }),
+            7);
+}
+
+}  // namespace
+}  // namespace thimble::app

@@ -1,0 +1,197 @@
+#include "replug_watch.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "support/vintage_arm.h"
+#include "thimble/driver/servo_loop.h"
+
+namespace thimble::app {
+namespace {
+
+using driver::Fault;
+
+/// A loop over an arm that pushes all the time, watched over ten times a second of its own time.
+class ReplugWatchTest : public ::testing::Test {
+ protected:
+  /// What is true of one wire.
+  struct Wire {
+    std::array<std::int16_t, 6> counts{};
+    bool lost = false;
+  };
+
+  class OnWire final : public driver::Transport {
+   public:
+    explicit OnWire(Wire& wire) : wire_(wire) {}
+    driver::TransportRead read_latest(std::span<std::byte> buffer, std::int64_t) noexcept override {
+      if (wire_.lost) return {.status = driver::TransportStatus::kLost};
+      const auto bytes = driver::hfab::encode_input({.counts = wire_.counts});
+      std::copy(bytes.begin(), bytes.end(), buffer.begin());
+      return {.status = driver::TransportStatus::kOk, .size = bytes.size(), .skipped = 0};
+    }
+    driver::TransportStatus write(std::span<const std::byte>) noexcept override {
+      return wire_.lost ? driver::TransportStatus::kLost : driver::TransportStatus::kOk;
+    }
+
+   private:
+    Wire& wire_;
+  };
+
+  void SetUp() override {
+    auto opened =
+        driver::Device::open(std::make_unique<OnWire>(first_),
+                             std::make_unique<driver::hfab::HfabArm>(support::vintage_model()),
+                             support::vintage_settings(), 0);
+    ASSERT_TRUE(opened) << opened.error().message;
+    device_ = std::move(opened).value();
+    ASSERT_TRUE(device_->activate());
+    make_watch(Eigen::Vector3d(0, 0, 0));
+  }
+
+  void make_watch(const std::optional<Eigen::Vector3d>& p_WHome) {
+    watch_.emplace(
+        *device_, snapshot_,
+        StartPose({.min_W = {-0.1, -0.1, -0.1}, .max_W = {0.1, 0.1, 0.1}}, p_WHome),
+        driver::FoundArm{},
+        ReplugWatch::Ways{
+            .find = [this](const driver::FoundArm& arm) -> std::optional<driver::FoundArm> {
+              return plugged_ ? std::optional(arm) : std::nullopt;
+            },
+            .open = [this](const driver::FoundArm&)
+                -> driver::Result<std::unique_ptr<driver::Transport>> {
+              ++opened_;
+              second_.lost = false;
+              return std::unique_ptr<driver::Transport>(std::make_unique<OnWire>(second_));
+            }},
+        Terminal{.there = true,
+                 .key =
+                     [this] {
+                       const bool pressed = enter_;
+                       enter_ = false;
+                       return pressed ? EnterKey::kPressed : EnterKey::kNothing;
+                     },
+                 .tell = [this](const std::string& line) { told_.push_back(line); }});
+  }
+
+  /// Runs 100 ticks of a millisecond, then lets the watch look once; `times` times.
+  void pass(int times) {
+    struct Push {
+      driver::ForceCommand operator()(const driver::DeviceState&) noexcept {
+        return {.f_T_W = {0, 0.5, 0}, .touch = {}};
+      }
+    } push;
+    struct Show {
+      ReplugWatchTest& test;
+      void operator()(const driver::TickRecord& record) noexcept {
+        test.snapshot_.store(record);
+        test.last_ = record;
+      }
+    } show{*this};
+    const std::atomic<bool> stop{false};
+    for (int i = 0; i < times; ++i) {
+      driver::ServoLoop loop(*device_, clock_, driver::ForceLaw(push), driver::TickSink(show),
+                             {.outlive_faults = true});
+      for (int tick = 0; tick < 100; ++tick) loop.tick(stop);
+      watch_->step();
+    }
+  }
+
+  double force() const { return Eigen::Map<const Eigen::Vector3d>(last_.f_sent_W.data()).norm(); }
+  bool told(const std::string& words) const {
+    for (const std::string& line : told_) {
+      if (line.find(words) != std::string::npos) return true;
+    }
+    return false;
+  }
+
+  Wire first_, second_;
+  bool plugged_ = false, enter_ = false;
+  int opened_ = 0;
+  driver::VirtualClock clock_;
+  std::unique_ptr<driver::Device> device_;
+  driver::Snapshot<driver::TickRecord> snapshot_;
+  driver::TickRecord last_;
+  std::optional<ReplugWatch> watch_;
+  std::vector<std::string> told_;
+};
+
+TEST_F(ReplugWatchTest, AsksForTheHomePoseAndGivesForceOnlyThere) {
+  pass(5);
+  EXPECT_GT(force(), 0.4);
+  first_.lost = true;
+  pass(2);
+  EXPECT_TRUE(told("Force is off (transport_lost)"));
+  EXPECT_EQ(force(), 0);
+  second_.counts = {1500, 0, 0, 0, 0, 0};  // plugged in where it was not at home, then put there
+  plugged_ = true;
+  pass(12);
+  EXPECT_EQ(opened_, 1);
+  EXPECT_TRUE(told("Put it into its home pose and press Enter"));
+  EXPECT_FALSE(told("as before"));
+  enter_ = true;
+  pass(3);
+  EXPECT_TRUE(told("mm away from its home pose"));
+  EXPECT_EQ(force(), 0) << "its counters say that it is not at home";
+  EXPECT_EQ(last_.fault, Fault::kTransportLost);
+  second_.counts = {50, 0, 0, 0, 0, 0};
+  pass(3);
+  EXPECT_EQ(force(), 0) << "nobody pressed Enter";
+  enter_ = true;
+  pass(6);
+  EXPECT_GT(force(), 0.4);
+  EXPECT_EQ(last_.fault, Fault::kNone);
+}
+
+TEST_F(ReplugWatchTest, AsksAnArmThatFindsItsOwnHomeOnlyForTheWorkspace) {
+  make_watch(std::nullopt);
+  pass(5);
+  first_.lost = true;
+  plugged_ = true;
+  second_.counts = {1500, 0, 0, 0, 0, 0};
+  pass(12);
+  EXPECT_TRUE(told("homed anew"));
+  enter_ = true;
+  pass(6);
+  EXPECT_GT(force(), 0.4);
+}
+
+TEST_F(ReplugWatchTest, ChecksTheWorkspaceAfterAnyFault) {
+  pass(5);
+  device_->trip(Fault::kOverSpeed);
+  first_.counts = {12000, 0, 0, 0, 0, 0};  // far to the side
+  pass(2);
+  enter_ = true;
+  pass(3);
+  EXPECT_TRUE(told("outside of the workspace"));
+  EXPECT_EQ(force(), 0);
+  first_.counts = {1500, 0, 0, 0, 0, 0};  // inside, and not at home: it kept its counters
+  pass(2);
+  enter_ = true;
+  pass(6);
+  EXPECT_GT(force(), 0.4);
+}
+
+TEST_F(ReplugWatchTest, FindsAnArmThatIsPulledAgainBeforeItGotAForce) {
+  pass(5);
+  first_.lost = true;
+  plugged_ = true;
+  pass(12);
+  EXPECT_EQ(opened_, 1);
+  second_.lost = true;
+  plugged_ = false;
+  pass(15);
+  EXPECT_TRUE(told("gone again"));
+  enter_ = true;
+  pass(3);
+  EXPECT_EQ(force(), 0);
+  plugged_ = true;
+  pass(20);
+  EXPECT_EQ(opened_, 2);
+  enter_ = true;
+  pass(6);
+  EXPECT_GT(force(), 0.4);
+}
+
+}  // namespace
+}  // namespace thimble::app

@@ -1,0 +1,129 @@
+// The order of a start with a real arm, whose wire is written here: all that takes time is done
+// before the arm is opened, and no force comes before its pose was looked at.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "servo_thread.h"
+#include "session.h"
+#include "share/shared_run.h"
+#include "support/scratch.h"
+
+namespace thimble::app {
+namespace {
+
+class SessionStart : public ::testing::Test {
+ protected:
+  class Answering final : public driver::Transport {
+   public:
+    explicit Answering(SessionStart& test) : test_(test) {}
+    driver::TransportRead read_latest(std::span<std::byte> buffer, std::int64_t) noexcept override {
+      const auto bytes = driver::hfab::encode_input({.counts = test_.counts_});
+      std::copy(bytes.begin(), bytes.end(), buffer.begin());
+      return {.status = driver::TransportStatus::kOk, .size = bytes.size(), .skipped = 0};
+    }
+    driver::TransportStatus write(std::span<const std::byte> report) noexcept override {
+      const auto message = driver::hfab::decode_output(report);
+      test_.forced_ += !message || message->current_mA != std::array<std::int16_t, 3>{};
+      return driver::TransportStatus::kOk;
+    }
+
+   private:
+    SessionStart& test_;
+  };
+
+  SessionStart() {
+    setenv("XDG_CONFIG_HOME", (support::scratch_folder() / "start").c_str(), 1);
+    options_.real_arm = driver::FoundArm{};
+    options_.real_arm->kind = driver::ArmKind::kPolhem;
+    options_.real_arm->serial = "S1";
+    options_.record = support::scratch_folder() / "start.h5";
+    options_.share = true;
+    options_.open_wire = [this](
+                             const ArmFile&,
+                             driver::Clock&) -> driver::Result<std::unique_ptr<driver::Transport>> {
+      ++opened_;
+      ready_ = session_ != nullptr && session_->triangles() > 0 && session_->shared() != nullptr &&
+               session_->recording().on() && session_->mesh_W().triangles.size() > 0;
+      return std::unique_ptr<driver::Transport>(std::make_unique<Answering>(*this));
+    };
+  }
+
+  std::filesystem::path scene() const {
+    return std::filesystem::path(THIMBLE_SOURCE_DIR) / "tests/data/scenes/two_boxes.yaml";
+  }
+
+  SessionOptions options_;
+  std::unique_ptr<Session> session_;
+  std::array<std::int16_t, 6> counts_{};
+  int opened_ = 0, forced_ = 0;
+  bool ready_ = false;
+};
+
+TEST_F(SessionStart, OpensTheArmAfterAllThatTakesTimeAndLeavesItIdle) {
+  auto prepared = Session::prepare(scene(), options_);
+  ASSERT_TRUE(prepared) << prepared.error().message;
+  session_ = std::move(prepared).value();
+  EXPECT_EQ(opened_, 0);
+  ASSERT_TRUE(session_->open_arm());
+  EXPECT_EQ(opened_, 1);
+  EXPECT_TRUE(ready_) << "something was not there yet when the arm was opened";
+  EXPECT_EQ(session_->device().stage(), driver::DeviceStage::kIdle);
+  // Whoever runs it without letting forces through gets none.
+  std::atomic<bool> stop{false};
+  for (int tick = 0; tick < 20; ++tick) session_->step(stop);
+  EXPECT_EQ(forced_, 0);
+  EXPECT_EQ(session_->device().stage(), driver::DeviceStage::kIdle);
+}
+
+TEST_F(SessionStart, WithNobodyToAskRefusesAnArmThatIsNotAtHome) {
+  counts_ = {2000, 0, 0, 0, 0, 0};
+  const auto refused = Session::open(scene(), options_);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("away from its home pose"), std::string::npos);
+  options_.homed = true;
+  EXPECT_TRUE(Session::open(scene(), options_)) << "its counters are known to be right";
+  counts_ = {12000, 0, 0, 0, 0, 0};
+  const auto outside = Session::open(scene(), options_);
+  ASSERT_FALSE(outside);
+  EXPECT_NE(outside.error().message.find("outside of the workspace"), std::string::npos);
+  options_.homed = false;
+  counts_ = {};
+  EXPECT_TRUE(Session::open(scene(), options_));
+  EXPECT_EQ(forced_, 0);
+}
+
+TEST(ServoThread, KnowsItsGrantBeforeItRunsAndMayLeaveWithoutRunning) {
+  {
+    const ServoThread unused(true);
+    EXPECT_EQ(unused.grant().fifo && unused.grant().memory_locked && unused.grant().cpu_awake,
+              unused.grant().advice.empty());
+    EXPECT_FALSE(unused.ended());
+  }
+  SessionOptions options;
+  options.duration = 0.5;
+  auto session = Session::open(
+      std::filesystem::path(THIMBLE_SOURCE_DIR) / "tests/data/scenes/two_boxes.yaml", options);
+  ASSERT_TRUE(session) << session.error().message;
+  const std::atomic<bool> stop{false};
+  ServoThread servo(false);
+  servo.begin(**session, stop);
+  EXPECT_EQ(servo.join(), driver::ServoEnd::kDone);
+  EXPECT_TRUE(servo.ended());
+  EXPECT_EQ((*session)->trace().rows().size(), 500u);
+}
+
+TEST(CheckRealTime, RefusesARealArmWithoutPriorityUnlessTheUserSaysSo) {
+  driver::RealTimeGrant grant;
+  grant.advice = "Add your user to a group.";
+  const auto refused = check_real_time(grant, false);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("--no-real-time"), std::string::npos);
+  EXPECT_NE(refused.error().message.find("Add your user"), std::string::npos);
+  EXPECT_TRUE(check_real_time(grant, true));
+  grant.fifo = true;
+  EXPECT_TRUE(check_real_time(grant, false));
+}
+
+}  // namespace
+}  // namespace thimble::app
