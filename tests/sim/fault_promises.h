@@ -26,7 +26,7 @@ struct TestedFault {
   Place place = Place::kCable;
   std::string_view order;  ///< for the cable: device_sim/usb/usb_fault.h says how it reads
 };
-inline constexpr std::array<TestedFault, 27> kTestedFaults{{
+inline constexpr std::array<TestedFault, 30> kTestedFaults{{
     {"stall in", Place::kCable, "stall in"},
     {"stall out", Place::kCable, "stall out"},
     {"short in", Place::kCable, "short in"},
@@ -54,6 +54,9 @@ inline constexpr std::array<TestedFault, 27> kTestedFaults{{
     {"host stands still for 50 ms", Place::kHost, {}},
     {"host stands still for 150 ms", Place::kHost, {}},
     {"host dies", Place::kHost, {}},
+    {"clock steps back 10 ms", Place::kHost, {}},
+    {"stall out of 30 ms at the end", Place::kHost, "stall out for=30"},
+    {"stall out at the end", Place::kHost, "stall out"},
 }};
 
 /// Is what is promised, and in how many ms, which are ticks, the motors have no current.
@@ -97,6 +100,10 @@ inline Promised promised(std::string_view fault, driver::ArmKind arm) {
     return {Promise::kOff, kWatchdog, Fault::kLoopStalled};
   }
   if (fault == "host dies") return unknown;
+  if (fault == "clock steps back 10 ms") return {Promise::kOff, 3, Fault::kTimeNotMonotonic};
+  // The zero is sent again each millisecond, and taken in the first in which it can be.
+  if (fault == "stall out of 30 ms at the end") return {Promise::kOff, 30 + 3, Fault::kNone};
+  if (fault == "stall out at the end") return {Promise::kArmOff, kWatchdog, Fault::kRefused};
   return {};
 }
 
