@@ -21,6 +21,7 @@ struct Seen {
   std::int64_t off_after = 0;  ///< ms until the motors had no current, for good; -1: never
   driver::Fault cause = driver::Fault::kNone;
   bool named_late = false;  ///< the driver sent a force after it had named a cause
+  bool told = true;         ///< of an end: the driver knows whether the arm took the zero
 };
 
 device_sim::WiringSettings wiring_of(const TestedFault& fault) {
@@ -38,7 +39,9 @@ std::string in_words(const Promised& promised) {
     case Promise::kOff:
       return "off: " + std::string(name(promised.cause));
     case Promise::kArmOff:
-      return "the arm switches off";
+      return "the arm switches off" + (promised.cause == driver::Fault::kNone
+                                           ? ""
+                                           : ": " + std::string(name(promised.cause)));
     case Promise::kNotKnown:
       return promised.cause == driver::Fault::kNone
                  ? "not known; nothing is promised"
@@ -62,19 +65,29 @@ void note(const TestedFault& fault, const TestedArm& arm, Phase phase, const Pro
 Seen watch(FaultRig& rig, const TestedFault& fault) {
   Seen seen;
   const std::int64_t begin_ns = rig.watch().time_ns();
-  const bool dies = fault.name == "host dies";
+  const bool dies = fault.name == "host dies", ends = fault.name.ends_with("at the end");
   if (fault.place == Place::kCable) {
     rig.cable().order(*device_sim::usb::parse_fault(fault.order));
   }
   if (fault.name == "host stands still for 50 ms") rig.stall(50'000'000);
   if (fault.name == "host stands still for 150 ms") rig.stall(150'000'000);
+  if (fault.name == "clock steps back 10 ms") rig.step_back(10'000'000);
+  if (ends) {
+    rig.cable().order(*device_sim::usb::parse_fault(fault.order));
+    rig.end();
+    seen.told = rig.device().zero_assured() ? rig.device().f_sent_W().norm() == 0
+                                            : rig.device().fault() != driver::Fault::kNone;
+  }
   for (int i = 0; i < kAfter; ++i) {
     const bool named = rig.device().fault() != driver::Fault::kNone;
-    if (dies) {
+    const Eigen::Vector3d stands_W = rig.device().f_sent_W();
+    if (dies || ends) {
       rig.pass_frame();
     } else {
       rig.tick(i == 0 && fault.name == "force law without a number");
-      seen.named_late |= named && rig.device().f_sent_W().norm() != 0;
+      // What stands because the arm takes no message may stay; nothing new may come.
+      const Eigen::Vector3d sent_W = rig.device().f_sent_W();
+      seen.named_late |= named && sent_W.norm() != 0 && sent_W != stands_W;
     }
   }
   const std::int64_t last_on_ns = rig.watch().last_on_ns();
@@ -102,8 +115,9 @@ void check_opening(const TestedFault& fault, const TestedArm& arm) {
   if (!opened) {
     EXPECT_GT(opened.error().message.size(), 20U) << "a refusal tells what to do";
   } else {
-    const Seen seen =
-        watch(rig, {fault.name, fault.place == Place::kHost ? Place::kHost : Place::kWiring, {}});
+    const Seen seen = watch(
+        rig,
+        {fault.name, fault.place == Place::kHost ? Place::kHost : Place::kWiring, fault.order});
     EXPECT_FALSE(seen.named_late);
     what = "opened, " + measured(seen);
     if (fault.name == "stall out") {
@@ -139,11 +153,16 @@ void check_touch(const TestedFault& fault, const TestedArm& arm, Phase phase) {
 
   EXPECT_TRUE(rig.within_limit());
   EXPECT_FALSE(seen.named_late) << "a force went out after its cause was named";
+  EXPECT_TRUE(seen.told) << "the arm took no zero, and nobody was told";
   if (promise.promise == Promise::kOff || promise.promise == Promise::kArmOff) {
     EXPECT_GE(seen.off_after, 0) << "the motors still pull";
     EXPECT_LE(seen.off_after, promise.ticks);
   }
-  if (promise.cause != driver::Fault::kNone) {
+  // In free motion zero stands already, so that nothing is amiss with an end that is not taken.
+  const bool stands =
+      (promise.promise == Promise::kArmOff || promise.promise == Promise::kNotKnown) &&
+      fault.name.ends_with("at the end") && phase == Phase::kFree;
+  if (promise.cause != driver::Fault::kNone && !stands) {
     EXPECT_EQ(name(seen.cause), name(promise.cause));
   }
   if (recording) {

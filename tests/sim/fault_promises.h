@@ -28,7 +28,7 @@ struct TestedFault {
   Place place = Place::kCable;
   std::string_view order;  ///< for the cable: device_sim/usb/usb_fault.h says how it reads
 };
-inline constexpr std::array<TestedFault, 29> kTestedFaults{{
+inline constexpr std::array<TestedFault, 32> kTestedFaults{{
     {"stall in", Place::kCable, "stall in"},
     {"stall out", Place::kCable, "stall out"},
     {"short in", Place::kCable, "short in"},
@@ -58,6 +58,9 @@ inline constexpr std::array<TestedFault, 29> kTestedFaults{{
     {"host dies", Place::kHost, {}},
     {"lost in", Place::kCable, "lost in"},
     {"lost out", Place::kCable, "lost out"},
+    {"clock steps back 10 ms", Place::kHost, {}},
+    {"stall out of 30 ms at the end", Place::kHost, "stall out for=30"},
+    {"stall out at the end", Place::kHost, "stall out"},
 }};
 
 /// Is what is promised, and in how many ms, which are ticks, the motors have no current.
@@ -79,9 +82,11 @@ inline Promised promised(std::string_view fault, driver::ArmKind arm) {
   const bool answers = arm != driver::ArmKind::kWoody;
   if (arm == driver::ArmKind::kFalcon) {
     // Whether a Falcon has a watchdog is not known: the rig's has none.
-    if (fault == "stall out" || fault == "short out" || fault == "silence out") {
+    if (fault == "stall out" || fault == "short out" || fault == "silence out" ||
+        fault == "lost out") {
       return {Promise::kNotKnown, 0, Fault::kNoReports};
     }
+    if (fault == "stall out at the end") return {Promise::kNotKnown, 0, Fault::kRefused};
     if (fault == "unplug") return {Promise::kNotKnown, 0, Fault::kTransportLost};
     if (fault == "host dies") return {Promise::kNotKnown, 0, Fault::kNone};
     // The loop's own zero, two frames after it goes on.
@@ -123,6 +128,10 @@ inline Promised promised(std::string_view fault, driver::ArmKind arm) {
     return {Promise::kOff, kWatchdog, Fault::kLoopStalled};
   }
   if (fault == "host dies") return unknown;
+  if (fault == "clock steps back 10 ms") return {Promise::kOff, 3, Fault::kTimeNotMonotonic};
+  // The zero is sent again each millisecond, and taken in the first in which it can be.
+  if (fault == "stall out of 30 ms at the end") return {Promise::kOff, 30 + 3, Fault::kNone};
+  if (fault == "stall out at the end") return {Promise::kArmOff, kWatchdog, Fault::kRefused};
   return {};
 }
 

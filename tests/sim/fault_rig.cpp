@@ -195,7 +195,7 @@ std::uint64_t FaultRig::recorded() {
 
 void FaultRig::tick(bool law_broken) {
   clock_.sleep_until_ns((clock_.now_ns() / kPeriod_ns + 1) * kPeriod_ns);
-  const std::int64_t now_ns = clock_.now_ns();
+  const std::int64_t now_ns = clock_.now_ns() - stepped_back_ns_;
   const driver::DeviceState& state = device_->read(now_ns, now_ns);
   driver::ForceCommand command = objects_->touch()(state);
   depth_ = command.touch.in_contact ? command.touch.depth : 0;
@@ -212,6 +212,11 @@ void FaultRig::tick(bool law_broken) {
     record.fault = device_->fault();
     (*recorder_)(record);
   }
+}
+
+void FaultRig::end() {
+  device_->deactivate();
+  if (!device_->zero_assured()) device_->insist_on_zero(clock_);
 }
 
 void FaultRig::pass_frame() {

@@ -101,6 +101,11 @@ class FaultRig {
   /// Lets the host stand still.
   void stall(std::int64_t time_ns) { clock_.sleep_until_ns(clock_.now_ns() + time_ns); }
 
+  /// Lets the clock that the driver reads step back; mechanics and board go on.
+  void step_back(std::int64_t time_ns) { stepped_back_ns_ += time_ns; }
+  /// Ends the touch as a servo loop does.
+  void end();
+
   device_sim::usb::FaultyDevice& cable() { return *cable_; }
   driver::Device& device() { return *device_; }
   bool is_open() const { return device_ != nullptr; }
@@ -132,6 +137,7 @@ class FaultRig {
   std::unique_ptr<app::Recorder> recorder_;
   std::filesystem::path recording_;
   std::uint64_t ticks_ = 0;
+  std::int64_t stepped_back_ns_ = 0;
   double depth_ = 0;
   bool within_limit_ = true;
 };

@@ -45,9 +45,9 @@ struct FreeArm {
     arm = std::make_unique<device_sim::SimulatedArm>(
         model, settings, device_sim::HandPath({{.time = 0, .p_BH = home}}));
     driver::DeviceSettings loose = support::vintage_settings();
-    loose.limits.force_max = 100;
-    loose.limits.rise_max = 1e9;
-    loose.limits.soft_start = 1e-9;
+    loose.limits.force_max = 1e5;  // the soft start of 50 ms is not felt
+    loose.limits.rise_max = 1e5;
+    loose.limits.soft_start = 0.05;
     auto opened =
         driver::Device::open(std::make_unique<device_sim::SimTransport>(clock, *arm),
                              std::make_unique<driver::hfab::HfabArm>(model), loose, clock.now_ns());

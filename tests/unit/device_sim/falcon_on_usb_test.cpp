@@ -331,7 +331,7 @@ struct InProgram {
     limits.limits = {.force_max = 2,
                      .speed_max = 3,
                      .rise_max = 2000,
-                     .soft_start = 0.01,
+                     .soft_start = 0.05,
                      .stall_ns = 20'000'000,
                      .watchdog_ns = 100'000'000};
     auto opened = driver::Device::open(
