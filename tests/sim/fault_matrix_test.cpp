@@ -31,6 +31,7 @@ device_sim::WiringSettings wiring_of(const TestedFault& fault) {
   if (fault.name == "dead motor") wiring.motor_gain[1] = 0;
   if (fault.name == "motor turned round") wiring.motor_gain[1] = -1;
   if (fault.name == "two motors swapped") wiring.motor_of = {0, 2, 1};
+  if (fault.name == "all motors turned round") wiring.motor_gain = {-1, -1, -1};
   return wiring;
 }
 
@@ -148,7 +149,7 @@ void check_touch(const TestedFault& fault, const TestedArm& arm, Phase phase) {
     ASSERT_EQ(rig.depth() > 0, phase != Phase::kFree) << "the phase is not what it should be";
     ASSERT_EQ(rig.motors() > 0, phase != Phase::kFree);
   }
-  const Promised promise = promised(fault.name, arm.kind);
+  const Promised promise = promised(fault.name, arm.kind, phase);
   const Seen seen = watch(rig, fault);
 
   EXPECT_TRUE(rig.within_limit());

@@ -28,7 +28,7 @@ struct TestedFault {
   Place place = Place::kCable;
   std::string_view order;  ///< for the cable: device_sim/usb/usb_fault.h says how it reads
 };
-inline constexpr std::array<TestedFault, 32> kTestedFaults{{
+inline constexpr std::array<TestedFault, 33> kTestedFaults{{
     {"stall in", Place::kCable, "stall in"},
     {"stall out", Place::kCable, "stall out"},
     {"short in", Place::kCable, "short in"},
@@ -52,6 +52,7 @@ inline constexpr std::array<TestedFault, 32> kTestedFaults{{
     {"dead motor", Place::kWiring, {}},
     {"motor turned round", Place::kWiring, {}},
     {"two motors swapped", Place::kWiring, {}},
+    {"all motors turned round", Place::kWiring, {}},  // on a plate of 800 N/m
     {"force law without a number", Place::kHost, {}},
     {"host stands still for 50 ms", Place::kHost, {}},
     {"host stands still for 150 ms", Place::kHost, {}},
@@ -71,7 +72,7 @@ struct Promised {
 };
 
 /// Finds what is promised of a fault that comes while an arm is touched.
-inline Promised promised(std::string_view fault, driver::ArmKind arm) {
+inline Promised promised(std::string_view fault, driver::ArmKind arm, Phase phase) {
   using driver::Fault;
   // 20 ms of silence, the tick that notices it, two frames until the zero has come.
   constexpr int kNoticed = 24;
@@ -121,6 +122,12 @@ inline Promised promised(std::string_view fault, driver::ArmKind arm) {
     // off meanwhile; when it takes messages again, after 140 ms, the one that waited moves them
     // until the zero of the loop that stood still has come.
     return {Promise::kOff, 140 + 3, Fault::kLoopStalled};
+  }
+  // Surfaces as soft as the hand's grip, and one motor of three, are no matter of promises: there a
+  // reversed arm stays where the hand holds it. A stiff one is found while the hand goes in, before
+  // the phase begins.
+  if (fault == "all motors turned round" && phase != Phase::kFree && phase != Phase::kDeforming) {
+    return {Promise::kOff, 1, Fault::kMotorsReversed};
   }
   if (fault == "unplug") return {Promise::kOff, kWatchdog, Fault::kTransportLost};
   if (fault == "force law without a number") return {Promise::kOff, 3, Fault::kForceNotFinite};

@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <tuple>
 #include <vector>
 
 #include "energy_choice.h"
@@ -33,6 +34,10 @@ using Eigen::Vector3d;
 constexpr std::string_view kPlane =
     "  - {name: plate, plane: {normal: [0, 0, 1]}, stiffness: 300, damping: 1,\n"
     "     effects: [{friction: bristle, coefficient: 0.5}]}\n";
+// As stiff as the softest of the arms is declared to carry.
+constexpr std::string_view kStiffPlane =
+    "  - {name: plate, plane: {normal: [0, 0, 1]}, stiffness: 800, damping: 1,\n"
+    "     effects: [{friction: bristle, coefficient: 0.5}]}\n";
 constexpr std::string_view kDent =
     "  - {name: ball, mesh: soft_coarse.off, position: [0, 0, -0.04], stiffness: 60, damping: "
     "0.5,\n"
@@ -40,7 +45,7 @@ constexpr std::string_view kDent =
     "     body: {dent: {mass: 0.002, stiffness: 30, neighbour_stiffness: 15, damping: 0.1,\n"
     "                   region: whole, pull: 0.5}}}\n";
 
-app::Scene read(const TestedArm& tested, Phase phase) {
+app::Scene read(const TestedArm& tested, Phase phase, bool stiff) {
   const auto folder = support::scratch_folder();
   const auto source = std::filesystem::path(THIMBLE_SOURCE_DIR) / "app";
   std::filesystem::copy_file(source / "scenes/soft_coarse.off", folder / "soft_coarse.off",
@@ -49,7 +54,10 @@ app::Scene read(const TestedArm& tested, Phase phase) {
   std::ofstream(folder / "fault.yaml")
       << "name: fault\narm: " << std::filesystem::relative(arm, folder).string()
       << "\nduration: 1\nobjects:\n"
-      << (phase == Phase::kDeforming ? kDent : kPlane) << "hand: {path: [{t: 0, at: [0, 0, 0]}]}\n";
+      << (phase == Phase::kDeforming ? kDent
+          : stiff                    ? kStiffPlane
+                                     : kPlane)
+      << "hand: {path: [{t: 0, at: [0, 0, 0]}]}\n";
   auto scene = app::read_scene(folder / "fault.yaml", {});
   if (!scene) {
     ADD_FAILURE() << scene.error().message;
@@ -81,9 +89,10 @@ std::vector<device_sim::HandPath::Point> hand_way(Phase phase, const app::ArmFil
 FaultRig::FaultRig(const TestedArm& tested, Phase phase, const device_sim::WiringSettings& wiring)
     : tested_(tested), phase_(phase) {
   // Reading a scene takes longer than a run of it.
-  static std::map<std::pair<std::string_view, bool>, app::Scene> read_before;
-  const std::pair key(tested.file, phase == Phase::kDeforming);
-  if (!read_before.contains(key)) read_before.emplace(key, read(tested, phase));
+  static std::map<std::tuple<std::string_view, bool, bool>, app::Scene> read_before;
+  const bool stiff = wiring.motor_gain == Vector3d(-1, -1, -1);
+  const std::tuple key(tested.file, phase == Phase::kDeforming, stiff);
+  if (!read_before.contains(key)) read_before.emplace(key, read(tested, phase, stiff));
   app::Scene& scene = read_before.at(key);
   file_ = scene.arm;
   file_.simulated.firmware.wiring = wiring;

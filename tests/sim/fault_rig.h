@@ -82,8 +82,8 @@ class FaultRig {
  public:
   static constexpr std::int64_t kPeriod_ns = 1'000'000;
 
-  /// Builds arm and scene; `wiring` says how the arm's encoders and motors are plugged in. Fails
-  /// the test if that cannot be done.
+  /// Builds arm and scene; `wiring` says how the arm's encoders and motors are plugged in. With all
+  /// motors turned round the plate is stiff. Fails the test if that cannot be done.
   FaultRig(const TestedArm& tested, Phase phase, const device_sim::WiringSettings& wiring = {});
   ~FaultRig();
 

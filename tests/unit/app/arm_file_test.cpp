@@ -7,6 +7,7 @@
 #include <string>
 
 #include "support/scratch.h"
+#include "watch_choice.h"
 
 namespace thimble::app {
 namespace {
@@ -117,6 +118,51 @@ TEST(ArmFile, NamesTheBoardsThatTheArmMayHave) {
   EXPECT_NE(mistake_with("board: text_lines", "board: mbed_hid_8")
                 .find("the board mbed_hid_8 does not speak hfab_14_byte"),
             std::string::npos);
+}
+
+TEST(ArmFile, SaysWhatTheMotorsCarryForLongOrNothingOfIt) {
+  const auto read = read_arm_file(kArm);
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  ASSERT_TRUE(read->heat.named());
+  // 1.4 N at the home pose's tip through link and capstan, the data sheet's continuous force.
+  const double arms[] = {0.138, 0.138, 0.112};  // m
+  for (std::size_t i = 0; i < 3; ++i) {
+    const driver::MotorDrive& drive = read->model.drives[i];
+    EXPECT_NEAR(read->heat.continuous_current[i],
+                1.4 * arms[i] / (drive.ratio * drive.torque_constant), 0.01);
+    EXPECT_LT(read->heat.continuous_current[i], drive.current_max);
+    EXPECT_EQ(read->heat.time_constant[i], 60);
+  }
+  EXPECT_NE(mistake_with("  continuous_current: [0.91, 1.07, 0.87]", "")
+                .find("expected continuous_current beside it"),
+            std::string::npos);
+  EXPECT_NE(mistake_with("continuous_current: [0.91", "continuous_current: [-0.91")
+                .find("continuous_current"),
+            std::string::npos);
+  const auto folder = std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms";
+  for (const char* name : {"polhem", "woodenhaptics", "woodenhaptics_teensy"}) {
+    const auto arm = read_arm_file(folder / (std::string(name) + ".yaml"));
+    ASSERT_TRUE(arm.ok()) << arm.error().message;
+    EXPECT_TRUE(arm->heat.named()) << name;
+  }
+  const auto falcon = read_arm_file(folder / "falcon.yaml");
+  ASSERT_TRUE(falcon.ok());
+  EXPECT_FALSE(falcon->heat.named());
+}
+
+TEST(ArmFile, SaysHowLongAForceIsHeldUnchangedAndHowHeavyTheTipIs) {
+  ArmFile arm = *read_arm_file(kArm);
+  EXPECT_EQ(motion_settings(arm, 1000).hold_most, 10);
+  EXPECT_EQ(motion_settings(arm, 1000).mass, 0.075);
+  EXPECT_EQ(motion_settings(arm, 1000).delay_ticks, 1);
+  EXPECT_EQ(motion_settings(arm, 4000).delay_ticks, 4);
+  arm.hold_unchanged = 2.5;
+  arm.energy.mass = 0.06;
+  EXPECT_EQ(motion_settings(arm, 1000).hold_most, 2.5);
+  EXPECT_EQ(motion_settings(arm, 1000).mass, 0.06);
+  EXPECT_NE(
+      mistake_with("  stall: 0.02 ", "  hold_unchanged: 0\n  stall: 0.02 ").find("hold_unchanged"),
+      std::string::npos);
 }
 
 TEST(ArmFile, ChoosesIdealEncoders) {

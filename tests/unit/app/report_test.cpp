@@ -129,6 +129,17 @@ TEST(Figure, MeetsItsGoalOrNot) {
   }
 }
 
+TEST(Report, TellsOfMotorsThatGotHotAndOnlyOfThose) {
+  RunReport report = example();
+  report.heat_known = true;
+  report.heat_most = 0.7;
+  EXPECT_EQ(summary(report).find("Heat"), std::string::npos);
+  report.heat_most = 0.93;
+  report.heat_lowered = 412;
+  EXPECT_NE(summary(report).find("a motor reached 93 % of its limit; force lowered in 412 ticks"),
+            std::string::npos);
+}
+
 TEST(Report, TellsWhatTheEnergyStageDidIfThereIsOne) {
   RunReport report = example();
   EXPECT_EQ(summary(report).find("by the gate"), std::string::npos);
