@@ -25,7 +25,7 @@ double allowance_of(const ArmFile& arm) {
 
 /// Returns how long a force is held while no encoder counts, as the driver would use it, s.
 double hold_of(const ArmFile& arm) {
-  return arm.hold_unchanged.value_or(driver::MotionSettings{}.hold_most);
+  return arm.hold_unchanged.value_or(driver::MotionWatchSettings{}.hold_most);
 }
 
 constexpr std::array<LimitRule, 9> kRules{{
