@@ -240,7 +240,7 @@ class ElephantPressedDeep : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(ElephantPressedDeep, SixtyMillimetresChangesTheForceByNoMoreThanThePathImplies) {
   THIMBLE_NEEDS_MESHES();
-  // The demo's stroke, pressed so deep that the tip goes in by up to 16 mm, between other faces.
+  // The demo's stroke, pressed so that the tip goes in by 6 to 9 mm, among other faces.
   const std::string text = std::regex_replace(support::elephant_text(GetParam()),
                                               std::regex("press: 0[.]00[0-9]"), "press: 0.06");
   const auto session = support::open_elephant_text(text);
