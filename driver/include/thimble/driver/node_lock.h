@@ -31,7 +31,9 @@ class NodeLock {
  public:
   /// Holds nothing.
   NodeLock() = default;
+  /// Takes the lock over.
   NodeLock(NodeLock&& other) noexcept : file_(std::exchange(other.file_, -1)) {}
+  /// Exchanges the locks.
   NodeLock& operator=(NodeLock&& other) noexcept {
     std::swap(file_, other.file_);
     return *this;
