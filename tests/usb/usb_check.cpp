@@ -1,5 +1,11 @@
 // Drives a plugged arm through the kernel and says PASS or FAIL. Runs inside the virtual machine:
 //   usb_check find ARM
+//   usb_check name ARM                            what `thimble run --device` calls it
+//   usb_check kernel ARM                          what the kernel made of its descriptors
+//   usb_check vector ARM                          fixed reports, and where the tip then is
+//   usb_check listen ARM                          what it sends unasked
+//   usb_check wrong ARM                           messages of another length
+//   usb_check fresh ARM [FIRMWARE]                is its first position of now?
 //   usb_check denied ARM
 //   usb_check touch ARM TICKS TRACE [FIRMWARE]
 //   usb_check hang ARM [FIRMWARE]                 touches, says so, until it is killed
@@ -16,13 +22,18 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "support/heap_guard.h"
+#include "thimble/device_sim/usb/arm_shelf.h"
 #include "thimble/driver/servo_loop.h"
+#include "thimble/driver/transports.h"
+#include "usb/board_vectors.h"
 #include "usb/hid_gadget.h"
 #include "usb/trace_compare.h"
 #include "usb/virtual_arm.h"
@@ -84,7 +95,7 @@ double force_of(const driver::TickRecord& record) {
 int find(const VirtualArm& arm) {
   const auto found = arm.find();
   if (!found) return verdict(false, arm.name + " listed", found.error().message);
-  return verdict(found->serial == "SIM0001", arm.name + " listed",
+  return verdict(found->serial == arm.serial(), arm.name + " listed",
                  found->arm + " at " + found->node + ", serial " + found->serial);
 }
 
@@ -96,6 +107,143 @@ int denied(const VirtualArm& arm) {
   const bool told = !wire && wire.error().message.find("70-thimble.rules") != std::string::npos;
   return verdict(told && !found->accessible, arm.name + " closed to strangers",
                  wire ? "it was opened" : wire.error().message);
+}
+
+std::string line_of(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  std::string line;
+  std::getline(in, line);
+  return line;
+}
+
+/// Compares ids, strings, interfaces and report descriptors, as the kernel shows them, with those
+/// that the board sent, and says which node it got.
+int kernel(const VirtualArm& arm) {
+  const auto found = arm.find();
+  if (!found) return verdict(false, arm.name + " in the kernel", found.error().message);
+  const auto made = device_sim::usb::make_usb_arm(arm.name, {});
+  if (!made) return verdict(false, arm.name + " in the kernel", made.error().message);
+  const device_sim::usb::UsbDescription& d = (*made)->description();
+  char release[8];
+  std::snprintf(release, sizeof release, "%04x", static_cast<unsigned>(d.release));
+  const std::filesystem::path& device = found->sysfs;
+  std::string wrong;
+  const auto same = [&](const char* what, const std::string& wanted) {
+    const std::string shown = line_of(device / what);
+    if (shown != wanted) wrong += std::string(" ") + what + " is '" + shown + "',";
+  };
+  same("bcdDevice", release);
+  same("manufacturer", d.manufacturer);
+  same("product", d.product);
+  same("serial", d.serial);
+  std::string interfaces = std::to_string(d.interfaces.size());
+  interfaces.insert(0, 2 - interfaces.size(), ' ');  // the kernel prints two places
+  same("bNumInterfaces", interfaces);
+  std::string nodes;
+  for (std::size_t i = 0; i < d.interfaces.size(); ++i) {
+    const auto& wanted = d.interfaces[i].report_descriptor;
+    if (wanted.empty()) continue;
+    const auto folder = device / (device.filename().string() + ":1." + std::to_string(i));
+    bool matches = false;
+    std::error_code ignored;
+    for (const auto& hid : std::filesystem::directory_iterator(folder, ignored)) {
+      std::ifstream in(hid.path() / "report_descriptor", std::ios::binary);
+      const std::string shown((std::istreambuf_iterator<char>(in)), {});
+      if (shown.empty()) continue;
+      matches = std::equal(shown.begin(), shown.end(), wanted.begin(), wanted.end(),
+                           [](char a, std::byte b) { return static_cast<std::byte>(a) == b; });
+      for (const auto& node : std::filesystem::directory_iterator(hid.path() / "hidraw", ignored)) {
+        const std::string path = "/dev/" + node.path().filename().string();
+        nodes += " " + path + " of interface " + std::to_string(i) + ",";
+        if ((path == found->node) != (i == 0)) wrong += " the arm's node is " + found->node + ",";
+      }
+    }
+    if (!matches) wrong += " report descriptor of interface " + std::to_string(i) + ",";
+  }
+  return verdict(wrong.empty(), arm.name + " in the kernel",
+                 wrong.empty() ? "bcdDevice " + std::string(release) + "," + nodes +
+                                     " descriptors byte for byte"
+                               : "other than the board said:" + wrong);
+}
+
+int vector(const VirtualArm& arm) {
+  int count = 0, bad = 0;
+  for (const BoardVector& vector : kBoardVectors) {
+    if (vector.board != arm.name) continue;
+    const auto protocol = arm.protocol();
+    driver::ArmReading reading;
+    if (!protocol->decode(vector.report(), reading)) return verdict(false, arm.name, "no report");
+    const Eigen::Vector3d p_BT = protocol->pose(reading).p_BT;
+    const Eigen::Vector3d wanted(vector.tip[0], vector.tip[1], vector.tip[2]);
+    bad += (p_BT - wanted).norm() < 1e-8 ? 0 : 1;
+    ++count;
+  }
+  if (count == 0) return 0;
+  return verdict(bad == 0, arm.name + " signs",
+                 std::to_string(count) + " published poses, " + std::to_string(bad) + " elsewhere");
+}
+
+/// Opens the wire, says nothing and counts what comes.
+int listen(const VirtualArm& arm) {
+  const driver::WallClock clock(0);
+  const auto found = arm.find();
+  if (!found || arm.is_falcon()) return 0;
+  const auto wire = arm.open(*found, clock);
+  if (!wire) return verdict(false, arm.name + " listened to", wire.error().message);
+  std::uint64_t reports = 0;
+  const std::int64_t end_ns = clock.now_ns() + 300'000'000;
+  while (clock.now_ns() < end_ns) {
+    std::array<std::byte, driver::kReportCapacity> buffer{};
+    const auto read = (*wire)->read_latest(buffer, clock.now_ns() + 10'000'000);
+    if (read.status == driver::TransportStatus::kOk) reports += 1 + read.skipped;
+  }
+  return verdict(arm.answers() ? reports == 0 : reports > 250, arm.name + " listened to",
+                 std::to_string(reports) + " reports in 300 ms without a message");
+}
+
+/// Sends messages of another board's length. Either nobody opens the arm that way, or the run ends
+/// with a named fault.
+int wrong(const VirtualArm& arm) {
+  const driver::WallClock clock(0);
+  const auto found = arm.find();
+  if (!found || arm.is_falcon()) return 0;
+  const std::size_t size = arm.message_size() == 64 ? 14 : 64;
+  auto wire = driver::open_hid_transport(found->node, size, clock);
+  if (!wire)
+    return verdict(true, arm.name + " with messages of another length",
+                   "refused: " + wire.error().message);
+  auto device =
+      driver::Device::open(std::move(*wire), arm.protocol(), check_settings(), clock.now_ns());
+  if (!device)
+    return verdict(true, arm.name + " with messages of another length",
+                   "refused: " + device.error().message);
+  if (!(*device)->activate()) return 1;
+  for (int i = 0; i < 100; ++i) {
+    (*device)->read(clock.now_ns(), clock.now_ns() + kPeriod_ns);
+    (*device)->write({});
+  }
+  const driver::Fault fault = (*device)->fault();
+  return verdict(fault != driver::Fault::kNone, arm.name + " with messages of another length",
+                 "fault '" + std::string(driver::name(fault)) + "'");
+}
+
+/// Opens an arm whose hand moved on since the last program left. A report that waited in the board
+/// since then would show the tip where it was.
+int fresh(const VirtualArm& arm) {
+  constexpr double kMost = 0.002;  // m; the hand goes 0.13 mm in a tick
+  auto opened = open_bench(arm);
+  if (!opened) return verdict(false, arm.name + " opened", opened.error().message);
+  Bench& bench = **opened;
+  const Eigen::Vector3d first = bench.device->state().p_WT;
+  Eigen::Vector3d last = first;
+  for (int i = 0; i < 4; ++i) {
+    const std::int64_t now_ns = bench.clock.now_ns();
+    last = bench.device->read(now_ns, now_ns + 2 * kPeriod_ns).p_WT;
+    bench.device->write({});
+  }
+  const double moved = (last - first).norm();
+  return verdict(moved < kMost, arm.name + " opened again",
+                 "its first position is " + std::to_string(1e3 * moved) + " mm from the fifth");
 }
 
 int touch(const VirtualArm& arm, std::uint64_t ticks, const std::string& trace) {
@@ -224,7 +372,7 @@ int replug(const VirtualArm& arm, const std::string& pipe) {
     // The old entry may still be listed for a moment; take one that opens.
     for (int i = 0; i < 300 && !offered; ++i) {
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
-      const auto again = arm.find("SIM0001", 1000);
+      const auto again = arm.find(arm.serial(), 1000);
       if (!again) continue;
       auto wire = arm.open(*again, bench.clock);
       if (!wire) {
@@ -257,7 +405,10 @@ int replug(const VirtualArm& arm, const std::string& pipe) {
 
 /// Says whether a fault leaves the driver without reports, so that it must stop.
 bool must_stop(const VirtualArm& arm, const std::string& fault) {
+  // An arm that answers only is silent when its messages are lost.
+  if (fault.starts_with("lost out")) return arm.answers();
   if (fault.find(" out") != std::string::npos) return false;
+  if (fault.starts_with("lost")) return true;
   // Behind a converter there is room for more bytes, which are no message and are skipped.
   if (fault.starts_with("long")) return !arm.is_falcon();
   // The mbed board numbers its reports, so that an old one is known.
@@ -319,6 +470,19 @@ int run(const std::vector<std::string>& words) {
   VirtualArm arm{.name = word(1), .firmware = {}};
   const std::string& what = words[0];
   if (what == "find") return find(arm);
+  if (what == "name") {
+    const auto found = arm.find();
+    std::printf("%s\n", found ? found->name().c_str() : "");
+    return found ? 0 : 1;
+  }
+  if (what == "kernel") return kernel(arm);
+  if (what == "vector") return vector(arm);
+  if (what == "listen") return listen(arm);
+  if (what == "wrong") return wrong(arm);
+  if (what == "fresh") {
+    arm.firmware = word(2);
+    return fresh(arm);
+  }
   if (what == "denied") return denied(arm);
   if (what == "hang") {
     arm.firmware = word(2);
