@@ -5,6 +5,9 @@ source "$(dirname "$0")/expect.sh" "$@"
 for arm in woodenhaptics polhem polhem-64 falcon; do
   expect 0 "$arm" "$thimble" plug --help
 done
+expect 0 'mbed board, HID 1234:0006, 14-byte reports' "$thimble" plug --help
+expect 0 'all mbed boards: 0123456789' "$thimble" plug --help
+expect 0 'bit_errors, unplug, lost' "$thimble" plug --help
 expect 2 'there are: woodenhaptics, polhem, polhem-64, falcon' "$thimble" plug excalibur --port 0
 expect 2 'hand' "$thimble" plug polhem --hand fist
 expect 2 '70000' "$thimble" plug polhem --port 70000
@@ -24,6 +27,7 @@ for _ in $(seq 100); do
   sleep 0.1
 done
 echo 'short in for=5' >pipe
+echo 'lost out for=5' >pipe
 echo 'quake' >pipe
 for _ in $(seq 100); do
   grep -q 'is not a kind of fault' out.txt && break

@@ -31,6 +31,9 @@ int be_gadget(const std::string& arm, const std::string& node) {
     return 1;
   }
   device_sim::usb::UsbArm& device = **made;
+  // The kernel's gadget has endpoints of its own; the board has those of its first interface.
+  const auto& endpoints = device.description().interfaces[0].endpoints;
+  const std::uint8_t in = endpoints[0].address, out = endpoints[1].address;
   driver::WallClock clock(0);
   const std::int64_t begin_ns = clock.now_ns();
   std::array<std::byte, device_sim::usb::UsbDevice::kPacketMax> report{}, message{};
@@ -41,10 +44,10 @@ int be_gadget(const std::string& arm, const std::string& node) {
     for (;;) {
       const ssize_t count = read(file, message.data(), message.size());
       if (count <= 0) break;
-      device.out(0x01, std::span<const std::byte>(message).first(static_cast<std::size_t>(count)));
+      device.out(out, std::span<const std::byte>(message).first(static_cast<std::size_t>(count)));
     }
     if (size == 0) {
-      const auto result = device.in(0x81, report);
+      const auto result = device.in(in, report);
       size = result.answer == device_sim::usb::Answer::kDone ? result.size : 0;
     }
     if (size > 0 && write(file, report.data(), size) > 0) size = 0;

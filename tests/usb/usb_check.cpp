@@ -1,5 +1,11 @@
 // Drives a plugged arm through the kernel and says PASS or FAIL. Runs inside the virtual machine:
 //   usb_check find ARM
+//   usb_check name ARM                            what `thimble run --device` calls it
+//   usb_check kernel ARM                          what the kernel made of its descriptors
+//   usb_check vector ARM                          fixed reports, and where the tip then is
+//   usb_check listen ARM                          what it sends unasked
+//   usb_check wrong ARM                           messages of another length
+//   usb_check fresh ARM [FIRMWARE]                is its first position of now?
 //   usb_check denied ARM
 //   usb_check touch ARM TICKS TRACE [FIRMWARE]
 //   usb_check hang ARM [FIRMWARE]                 touches, says so, until it is killed
@@ -23,6 +29,7 @@
 
 #include "support/heap_guard.h"
 #include "thimble/driver/servo_loop.h"
+#include "usb/board_checks.h"
 #include "usb/hid_gadget.h"
 #include "usb/trace_compare.h"
 #include "usb/virtual_arm.h"
@@ -31,12 +38,6 @@ namespace thimble::usb_test {
 namespace {
 
 constexpr std::int64_t kPeriod_ns = 1'000'000;
-
-int verdict(bool pass, const std::string& what, const std::string& detail) {
-  std::printf("%s %s: %s\n", pass ? "PASS" : "FAIL", what.c_str(), detail.c_str());
-  std::fflush(stdout);
-  return pass ? 0 : 1;
-}
 
 int open_descriptors() {
   int count = 0;
@@ -84,7 +85,7 @@ double force_of(const driver::TickRecord& record) {
 int find(const VirtualArm& arm) {
   const auto found = arm.find();
   if (!found) return verdict(false, arm.name + " listed", found.error().message);
-  return verdict(found->serial == "SIM0001", arm.name + " listed",
+  return verdict(found->serial == arm.serial(), arm.name + " listed",
                  found->arm + " at " + found->node + ", serial " + found->serial);
 }
 
@@ -96,6 +97,25 @@ int denied(const VirtualArm& arm) {
   const bool told = !wire && wire.error().message.find("70-thimble.rules") != std::string::npos;
   return verdict(told && !found->accessible, arm.name + " closed to strangers",
                  wire ? "it was opened" : wire.error().message);
+}
+
+/// Opens an arm whose hand moved on since the last program left. A report that waited in the board
+/// since then would show the tip where it was.
+int fresh(const VirtualArm& arm) {
+  constexpr double kMost = 0.002;  // m; the hand goes 0.13 mm in a tick
+  auto opened = open_bench(arm);
+  if (!opened) return verdict(false, arm.name + " opened", opened.error().message);
+  Bench& bench = **opened;
+  const Eigen::Vector3d first = bench.device->state().p_WT;
+  Eigen::Vector3d last = first;
+  for (int i = 0; i < 4; ++i) {
+    const std::int64_t now_ns = bench.clock.now_ns();
+    last = bench.device->read(now_ns, now_ns + 2 * kPeriod_ns).p_WT;
+    bench.device->write({});
+  }
+  const double moved = (last - first).norm();
+  return verdict(moved < kMost, arm.name + " opened again",
+                 "its first position is " + std::to_string(1e3 * moved) + " mm from the fifth");
 }
 
 int touch(const VirtualArm& arm, std::uint64_t ticks, const std::string& trace) {
@@ -224,7 +244,7 @@ int replug(const VirtualArm& arm, const std::string& pipe) {
     // The old entry may still be listed for a moment; take one that opens.
     for (int i = 0; i < 300 && !offered; ++i) {
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
-      const auto again = arm.find("SIM0001", 1000);
+      const auto again = arm.find(arm.serial(), 1000);
       if (!again) continue;
       auto wire = arm.open(*again, bench.clock);
       if (!wire) {
@@ -257,7 +277,10 @@ int replug(const VirtualArm& arm, const std::string& pipe) {
 
 /// Says whether a fault leaves the driver without reports, so that it must stop.
 bool must_stop(const VirtualArm& arm, const std::string& fault) {
+  // An arm that answers only is silent when its messages are lost.
+  if (fault.starts_with("lost out")) return arm.answers();
   if (fault.find(" out") != std::string::npos) return false;
+  if (fault.starts_with("lost")) return true;
   // Behind a converter there is room for more bytes, which are no message and are skipped.
   if (fault.starts_with("long")) return !arm.is_falcon();
   // The mbed board numbers its reports, so that an old one is known.
@@ -319,6 +342,19 @@ int run(const std::vector<std::string>& words) {
   VirtualArm arm{.name = word(1), .firmware = {}};
   const std::string& what = words[0];
   if (what == "find") return find(arm);
+  if (what == "name") {
+    const auto found = arm.find();
+    std::printf("%s\n", found ? found->name().c_str() : "");
+    return found ? 0 : 1;
+  }
+  if (what == "kernel") return check_kernel(arm);
+  if (what == "vector") return check_vectors(arm);
+  if (what == "listen") return check_unasked(arm);
+  if (what == "wrong") return check_wrong_length(arm);
+  if (what == "fresh") {
+    arm.firmware = word(2);
+    return fresh(arm);
+  }
   if (what == "denied") return denied(arm);
   if (what == "hang") {
     arm.firmware = word(2);

@@ -36,15 +36,23 @@ std::unique_ptr<const driver::Arm> VirtualArm::protocol() const {
       driver::hfab::polhem_model());
 }
 
+std::size_t VirtualArm::message_size() const {
+  if (is_falcon()) return 0;
+  return name == "woodenhaptics" ? 8 : name == "polhem" ? 14 : 64;
+}
+
+std::string VirtualArm::serial() const {
+  return is_falcon() ? "SIM0001" : name == "polhem-64" ? "1234560" : "0123456789";
+}
+
+// Only one board is plugged in at a time, so the product id tells which it is.
 driver::Result<driver::FoundArm> VirtualArm::find(const std::string& serial, int timeout_ms) const {
-  const auto kind = is_falcon()               ? driver::ArmKind::kFalcon
-                    : name == "woodenhaptics" ? driver::ArmKind::kWoody
-                                              : driver::ArmKind::kPolhem;
+  const std::uint16_t product = is_falcon() ? 0xcb48 : name == "polhem-64" ? 0x0486 : 0x0006;
   for (int waited_ms = 0; waited_ms < timeout_ms; waited_ms += 10) {
     const auto arms = driver::find_arms();
     if (!arms) return arms.error();
     for (const driver::FoundArm& arm : *arms) {
-      const bool wanted = arm.kind == kind && (serial.empty() || arm.serial == serial);
+      const bool wanted = arm.product_id == product && (serial.empty() || arm.serial == serial);
       if (wanted && !arm.node.empty()) return arm;
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
@@ -56,7 +64,7 @@ driver::Result<driver::FoundArm> VirtualArm::find(const std::string& serial, int
 driver::Result<std::unique_ptr<driver::Transport>> VirtualArm::open(
     const driver::FoundArm& found, const driver::Clock& clock) const {
   if (!is_falcon()) {
-    return driver::open_hid_transport(found.node, name == "polhem-64" ? 64 : 0, clock);
+    return driver::open_hid_transport(found.node, message_size(), clock);
   }
   auto line = driver::FtdiLine::open(found.usb);
   if (!line) return line.error();

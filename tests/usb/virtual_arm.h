@@ -19,6 +19,12 @@ struct VirtualArm {
   std::string firmware;  ///< For the Falcon: the file to upload.
 
   bool is_falcon() const { return name == "falcon"; }
+  /// Tells whether it sends reports only after messages.
+  bool answers() const { return name != "woodenhaptics"; }
+  /// Returns the bytes of its messages, 0 for a Falcon.
+  std::size_t message_size() const;
+  /// Returns the serial number that its board tells.
+  std::string serial() const;
   std::unique_ptr<const driver::Arm> protocol() const;
 
   /// Waits for the arm to be listed with this serial number (or any, if empty).

@@ -66,7 +66,7 @@ for module in usb/common/usb-common usb/core/usbcore hid/hid usb/usbip/usbip-cor
   cp "$drivers/$module.ko" "$root/lib/modules/"
 done
 # What a gadget takes is not in every kernel; without it that part is left out.
-gadgets=woodenhaptics,polhem-64
+gadgets=woodenhaptics,polhem,polhem-64
 for module in ../fs/configfs/configfs usb/gadget/udc/udc-core usb/gadget/libcomposite \
   usb/gadget/function/usb_f_hid usb/gadget/udc/dummy_hcd; do
   cp "$drivers/$module.ko" "$root/lib/modules/" 2>/dev/null && continue
