@@ -217,7 +217,8 @@ int run_scene(const RunOptions& options) {
   Session& session = **prepared;
   // Whoever leaves before the run leaves a recording that is whole, with no tick in it.
   const auto leave = [&session](int code) {
-    if (const auto ended = session.recording().stop(); !ended) complain(ended.error(), kExitTrouble);
+    if (const auto ended = session.recording().stop(); !ended)
+      complain(ended.error(), kExitTrouble);
     return code;
   };
   for (const std::string& warning : stability_warnings(session.scene())) {
