@@ -78,10 +78,10 @@ ArmFile arm_of(const ArmFile& file, const WallCase& wall) {
   }
   if (!wall.own_step && !(wall.step > 0)) arm.model.fractional_counts = true;
   if (!wall.own_limits) {
-    // The loosest that a device takes; the soft start lets 20 N through in a microsecond.
+    // No limit is felt: the soft start lets 20 N through in a microsecond.
     arm.limits = {.force_max = 1e6,
                   .speed_max = 1e4,
-                  .rise_max = 1e5,
+                  .rise_max = 1e9,
                   .soft_start = 0.05,
                   .stall_ns = 1'000'000'000,
                   .watchdog_ns = 1'000'000'000};

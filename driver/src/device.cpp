@@ -1,5 +1,6 @@
 #include "thimble/driver/device.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -13,8 +14,11 @@ namespace {
 /// Shortest soft start, s [chosen: below 50 ms a hand feels no ramp but a knock; it reacts to a
 /// push after 100 ms and more].
 constexpr double kSoftStartLeast = 0.05;
-/// Fastest rise, N/s [chosen: 100 N in a tick of 1 ms, beyond what any arm here can push at all].
+/// Fastest rise, N/s [chosen: 100 N in a tick of 1 ms, beyond what any arm here can push at all],
 constexpr double kRiseMost = 1e5;
+/// or shortest time to the whole force, s, for a force so large that only a bench asks for it
+/// [chosen: a tick of the fastest loop here, 20 kHz].
+constexpr double kRiseTimeLeast = 5e-5;
 /// Longest gap that is no fault, ns [chosen: twice the longest watchdog of a board, 0.5 s of the
 /// mbed one (woody_report.h)].
 constexpr std::int64_t kWatchdogMost_ns = 1'000'000'000;
@@ -42,7 +46,8 @@ Result<void> check(const DeviceSettings& settings) {
   if (!is_limit(limits.soft_start)) return wrong("soft_start");
   if (!is_limit(limits.reopen)) return wrong("reopen time");
   if (limits.soft_start < kSoftStartLeast) return loose("soft_start", "at least 0.05 s");
-  if (limits.rise_max > kRiseMost) return loose("rise_max", "at most 100,000 N/s");
+  if (limits.rise_max > std::max(kRiseMost, limits.force_max / kRiseTimeLeast))
+    return loose("rise_max", "at most 100,000 N/s");
   if (limits.stall_ns <= 0) return wrong("stall time");
   if (limits.watchdog_ns <= 0) return wrong("watchdog time");
   if (limits.watchdog_ns > kWatchdogMost_ns) return loose("watchdog time", "at most 1 s");

@@ -61,7 +61,8 @@ class Device {
   /// time for the first report by way of the transport's deadline, and sends zero force meanwhile,
   /// because some arms speak only when spoken to. Fails if none arrives or none can be understood,
   /// if a limit is not a positive finite number, or if one protects nobody: a soft start below 0.05
-  /// s, a rise above 100,000 N/s, a watchdog above 1 s. Real-time: never from the servo thread.
+  /// s, a rise above 100,000 N/s and above force_max in 50 us, a watchdog above 1 s. Real-time:
+  /// never from the servo thread.
   static Result<std::unique_ptr<Device>> open(std::unique_ptr<Transport> transport,
                                               std::unique_ptr<const Arm> arm,
                                               const DeviceSettings& settings,
