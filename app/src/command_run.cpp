@@ -306,7 +306,9 @@ int run_scene(const RunOptions& options) {
     }
   }
   std::fflush(stdout);
-  guard.reset();  // zero force is out and the recording closed
+  // Zero force is out and the recording closed; who is impatient may kill what follows. Not so
+  // where the arm took no zero.
+  if (session.device().zero_assured()) guard.reset();
   const RunReport report = report_of(session, end, servo.grant());
   std::printf("%s", summary(report).c_str());
   if (!options.report.empty()) {

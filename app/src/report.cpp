@@ -97,6 +97,7 @@ Json to_json(const RunReport& report) {
                        {"cpu_awake", report.real_time.cpu_awake},
                        {"advice", report.real_time.advice}};
   json["end"] = {{"reason", end_name(report.end)},
+                 {"zero_force_taken", report.zero_assured},
                  {"fault", driver::name(report.fault)},
                  {"motor_current_A", report.current_at_exit}};
   json["trace"] = {{"every", report.trace_stride}, {"dropped", report.trace_dropped}};
@@ -105,6 +106,13 @@ Json to_json(const RunReport& report) {
 
 std::string goal(const char* comparison, double bound) {
   return printed("%s %g", comparison, bound);
+}
+
+/// Returns how the arm was left, to stand behind why the run ended.
+std::string left_with_zero(const RunReport& report) {
+  if (report.zero_assured) return "; the arm was left with zero force.\n";
+  return ", and the arm did NOT take the zero force: its own watchdog must switch its motors off. "
+         "Use its power switch.\n";
 }
 
 }  // namespace
@@ -227,10 +235,10 @@ std::string summary(const RunReport& report) {
   }
   switch (report.end) {
     case driver::ServoEnd::kDone:
-      s += "End       the scene was over; the arm was left with zero force.\n";
+      s += "End       the scene was over" + left_with_zero(report);
       break;
     case driver::ServoEnd::kStopped:
-      s += "End       it was stopped early; the arm was left with zero force.\n";
+      s += "End       it was stopped early" + left_with_zero(report);
       break;
     case driver::ServoEnd::kFault:
       s += "End       the force went off: " + std::string(driver::describe(report.fault)) + "\n";

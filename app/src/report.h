@@ -35,6 +35,7 @@ struct RunReport {
   RunStatistics statistics;
   std::uint64_t lost_contacts =
       0;                       ///< Stretches inside the object without a force (checked after).
+  bool zero_assured = true;    ///< The arm took the zero at the end.
   double current_at_exit = 0;  ///< Largest motor current after the end, A (simulated arm).
   std::optional<render::PagingCounters> paging;  ///< Of objects on the disk, if there are any.
   driver::WireCounters wire;

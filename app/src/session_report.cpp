@@ -31,6 +31,7 @@ RunReport report_of(const Session& session, driver::ServoEnd end,
   report.heat_most = session.device().heat().heat_most();
   report.heat_lowered = session.device().heat().lowered();
   report.real_time = grant;
+  report.zero_assured = session.device().zero_assured() || session.device().lost();
   report.end = end;
   report.fault = session.device().fault();
   if (const auto* arm = session.simulation()) {

@@ -232,8 +232,7 @@ const DeviceState& Device::idle(std::int64_t now_ns, std::int64_t deadline_ns) n
   started_ = false;  // the next tick is the first one again
   state_.time_ns = now_ns;
   state_.fresh = take_report(now_ns, deadline_ns);
-  send(MotorCurrents());
-  f_sent_W_.setZero();
+  send_zero();
   return state_;
 }
 
