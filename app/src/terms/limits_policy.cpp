@@ -3,6 +3,7 @@
 #include <array>
 
 #include "printed.h"
+#include "thimble/driver/motion_watch.h"
 
 namespace thimble::app {
 namespace {
