@@ -143,6 +143,29 @@ TEST_F(ZeroForce, IsInsistedOnNoLongerWithAClockThatStandsStill) {
   EXPECT_EQ(device_->fault(), Fault::kRefused);
 }
 
+/// A clock of a wire on which each message takes 60 ms to be refused.
+class SlowClock final : public Clock {
+ public:
+  std::int64_t now_ns() const noexcept override { return now_ns_; }
+  void sleep_until_ns(std::int64_t) noexcept override {
+    now_ns_ += 60'000'000;
+    ++sleeps;
+  }
+  int sleeps = 0;
+
+ private:
+  std::int64_t now_ns_ = 0;
+};
+
+TEST_F(ZeroForce, IsInsistedOnNoLongerWhereEachMessageWaits) {
+  open();
+  wire_.refusals = kForGood;
+  device_->deactivate();
+  SlowClock clock;
+  EXPECT_FALSE(device_->insist_on_zero(clock));
+  EXPECT_EQ(clock.sleeps, 2);  // after them 120 ms are over
+}
+
 TEST_F(ZeroForce, IsInsistedOnByADeviceThatGoes) {
   open();
   wire_.refusals = 7;
