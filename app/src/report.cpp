@@ -97,8 +97,8 @@ Json to_json(const RunReport& report) {
                        {"cpu_awake", report.real_time.cpu_awake},
                        {"advice", report.real_time.advice}};
   json["end"] = {{"reason", end_name(report.end)},
-                 {"zero_force_taken", report.zero_assured},
                  {"fault", driver::name(report.fault)},
+                 {"zero_assured", report.zero_assured},
                  {"motor_current_A", report.current_at_exit}};
   json["trace"] = {{"every", report.trace_stride}, {"dropped", report.trace_dropped}};
   return json;
@@ -106,13 +106,6 @@ Json to_json(const RunReport& report) {
 
 std::string goal(const char* comparison, double bound) {
   return printed("%s %g", comparison, bound);
-}
-
-/// Returns how the arm was left, to stand behind why the run ended.
-std::string left_with_zero(const RunReport& report) {
-  if (report.zero_assured) return "; the arm was left with zero force.\n";
-  return ", and the arm did NOT take the zero force: its own watchdog must switch its motors off. "
-         "Use its power switch.\n";
 }
 
 }  // namespace
@@ -233,16 +226,28 @@ std::string summary(const RunReport& report) {
     s += printed("Arm       without a passed feel check; its force was at most %.2f N.\n",
                  report.force_limit);
   }
+  const std::string left = report.zero_assured ? "the arm was left with zero force.\n"
+                                               : "the arm did not take the last zero force.\n";
   switch (report.end) {
     case driver::ServoEnd::kDone:
-      s += "End       the scene was over" + left_with_zero(report);
+      s += "End       the scene was over; " + left;
       break;
     case driver::ServoEnd::kStopped:
-      s += "End       it was stopped early" + left_with_zero(report);
+      s += "End       it was stopped early; " + left;
       break;
     case driver::ServoEnd::kFault:
       s += "End       the force went off: " + std::string(driver::describe(report.fault)) + "\n";
       break;
+  }
+  // A loop with a real arm outlives its faults.
+  if (report.end != driver::ServoEnd::kFault && report.fault != driver::Fault::kNone) {
+    s += "Fault     the force was off at the end: " + std::string(driver::describe(report.fault)) +
+         "\n";
+  }
+  if (!report.zero_assured) {
+    s += "DANGER    A force may still stand at the arm: its own watchdog must switch the motors "
+         "off. "
+         "See that nothing pulls any more, and switch it off.\n";
   }
   if (!report.virtual_time && !report.real_time.advice.empty()) {
     s += "Advice    " + report.real_time.advice + "\n";

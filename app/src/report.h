@@ -35,7 +35,6 @@ struct RunReport {
   RunStatistics statistics;
   std::uint64_t lost_contacts =
       0;                       ///< Stretches inside the object without a force (checked after).
-  bool zero_assured = true;    ///< The arm took the zero at the end.
   double current_at_exit = 0;  ///< Largest motor current after the end, A (simulated arm).
   std::optional<render::PagingCounters> paging;  ///< Of objects on the disk, if there are any.
   driver::WireCounters wire;
@@ -49,6 +48,7 @@ struct RunReport {
   driver::RealTimeGrant real_time;
   driver::ServoEnd end = driver::ServoEnd::kDone;
   driver::Fault fault = driver::Fault::kNone;
+  bool zero_assured = true;         ///< Whether the arm took the last zero force.
   std::uint64_t trace_stride = 1;   ///< Every n-th tick is in the pictures.
   std::uint64_t trace_dropped = 0;  ///< Rows that found no room.
 };

@@ -31,9 +31,9 @@ RunReport report_of(const Session& session, driver::ServoEnd end,
   report.heat_most = session.device().heat().heat_most();
   report.heat_lowered = session.device().heat().lowered();
   report.real_time = grant;
-  report.zero_assured = session.device().zero_assured() || session.device().lost();
   report.end = end;
   report.fault = session.device().fault();
+  report.zero_assured = session.device().zero_assured();
   if (const auto* arm = session.simulation()) {
     report.current_at_exit = arm->currents().cwiseAbs().maxCoeff();
   }

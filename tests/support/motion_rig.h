@@ -180,7 +180,7 @@ inline void MotionRun::run(double duration) {
         std::make_unique<driver::WireArm<driver::hfab::ReportWire, driver::LinkageArm>>(model);
   } else {
     const auto built =
-        arm == MotionArm::kVintage ? driver::hfab::vintage_model() : driver::hfab::woody_model(3);
+        arm == MotionArm::kVintage ? driver::hfab::vintage_model() : driver::hfab::woody_model();
     driver::hfab::HfabModel model;
     model.geometry = built.geometry;
     model.drives = built.drives;
