@@ -90,6 +90,7 @@ Json to_json(const RunReport& report) {
                        {"advice", report.real_time.advice}};
   json["end"] = {{"reason", end_name(report.end)},
                  {"fault", driver::name(report.fault)},
+                 {"zero_assured", report.zero_assured},
                  {"motor_current_A", report.current_at_exit}};
   json["trace"] = {{"every", report.trace_stride}, {"dropped", report.trace_dropped}};
   return json;
@@ -207,16 +208,28 @@ std::string summary(const RunReport& report) {
                 static_cast<unsigned long long>(report.gate.stalls),
                 report.gate.stalls == 1 ? "" : "s", 1e3 * report.reopen);
   }
+  const std::string left = report.zero_assured ? "the arm was left with zero force.\n"
+                                               : "the arm did not take the last zero force.\n";
   switch (report.end) {
     case driver::ServoEnd::kDone:
-      s += "End       the scene was over; the arm was left with zero force.\n";
+      s += "End       the scene was over; " + left;
       break;
     case driver::ServoEnd::kStopped:
-      s += "End       it was stopped early; the arm was left with zero force.\n";
+      s += "End       it was stopped early; " + left;
       break;
     case driver::ServoEnd::kFault:
       s += "End       the force went off: " + std::string(driver::describe(report.fault)) + "\n";
       break;
+  }
+  // A loop with a real arm outlives its faults.
+  if (report.end != driver::ServoEnd::kFault && report.fault != driver::Fault::kNone) {
+    s += "Fault     the force was off at the end: " + std::string(driver::describe(report.fault)) +
+         "\n";
+  }
+  if (!report.zero_assured) {
+    s += "DANGER    A force may still stand at the arm: its own watchdog must switch the motors "
+         "off. "
+         "See that nothing pulls any more, and switch it off.\n";
   }
   if (!report.virtual_time && !report.real_time.advice.empty()) {
     s += "Advice    " + report.real_time.advice + "\n";

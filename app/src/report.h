@@ -41,6 +41,7 @@ struct RunReport {
   driver::RealTimeGrant real_time;
   driver::ServoEnd end = driver::ServoEnd::kDone;
   driver::Fault fault = driver::Fault::kNone;
+  bool zero_assured = true;         ///< Whether the arm took the last zero force.
   std::uint64_t trace_stride = 1;   ///< Every n-th tick is in the pictures.
   std::uint64_t trace_dropped = 0;  ///< Rows that found no room.
 };

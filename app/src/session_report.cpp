@@ -28,6 +28,7 @@ RunReport report_of(const Session& session, driver::ServoEnd end,
   report.real_time = grant;
   report.end = end;
   report.fault = session.device().fault();
+  report.zero_assured = session.device().zero_assured();
   if (const auto* arm = session.simulation()) {
     report.current_at_exit = arm->currents().cwiseAbs().maxCoeff();
   }

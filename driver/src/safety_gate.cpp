@@ -18,6 +18,10 @@ void SafetyGate::restart() noexcept {
   observer_.restart();
 }
 
+void SafetyGate::resume_from(const Eigen::Vector3d& f_W) noexcept {
+  f_last_W_ = f_W.squaredNorm() < HUGE_VAL ? f_W : Eigen::Vector3d(0, 0, 0);
+}
+
 void SafetyGate::trip(Fault fault) noexcept {
   if (fault_ == Fault::kNone) fault_ = fault;
 }

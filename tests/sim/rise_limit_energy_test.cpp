@@ -191,7 +191,7 @@ TEST(RiseLimitEnergy, OneFaceGivesBackWhatItGaveWithALimitOfTheLengthAlone) {
 TEST(HardCase10, WedgesAndPlatesGiveBackNoMoreThanWithoutTheRiseLimit) {
   // Faces at random: the force turns from one tick to the next where the nearest face changes.
   support::Random random(5);
-  double mean = 0, most = 0, guard = 0;
+  double mean = 0, most = 0;
   int acted = 0;
   for (const bool plate : {false, true}) {
     for (const double stiffness : {300.0, 1000.0}) {

@@ -101,6 +101,26 @@ TEST(Report, NamesTheFaultThatEndedIt) {
   EXPECT_NE(summary(report).find(driver::describe(driver::Fault::kOverSpeed)), std::string::npos);
 }
 
+TEST(Report, WarnsOfAnArmThatDidNotTakeTheLastZeroForce) {
+  RunReport report = example();
+  report.end = driver::ServoEnd::kDone;
+  EXPECT_NE(summary(report).find("the arm was left with zero force."), std::string::npos);
+  EXPECT_EQ(summary(report).find("DANGER"), std::string::npos);
+  report.zero_assured = false;
+  report.fault = driver::Fault::kRefused;
+  for (const auto end :
+       {driver::ServoEnd::kDone, driver::ServoEnd::kStopped, driver::ServoEnd::kFault}) {
+    report.end = end;
+    const std::string text = summary(report);
+    EXPECT_EQ(text.find("left with zero force"), std::string::npos);
+    EXPECT_NE(text.find("A force may still stand at the arm"), std::string::npos);
+    EXPECT_NE(text.find(driver::describe(driver::Fault::kRefused)), std::string::npos);
+  }
+  const std::filesystem::path folder = support::scratch_folder() / "thimble_report_danger";
+  ASSERT_TRUE(write_report(report, folder).ok());
+  EXPECT_EQ(read(folder / "report.json")["end"]["zero_assured"], false);
+}
+
 TEST(Report, SaysWhereItCannotWrite) {
   const auto done = write_report(example(), "/proc/no_such_folder");
   ASSERT_FALSE(done.ok());

@@ -80,6 +80,18 @@ TEST(RiseLimit, HoldsForDampingToo) {
   EXPECT_NEAR(gate.pass_guarded({0, 0, 0}, {-1, 0, 0}, kPeriod, {}).f_T_W().x(), 2, 1e-12);
 }
 
+TEST(RiseLimit, CountsFromTheForceThatStandsIfTheArmDidNotTakeTheLastOne) {
+  SafetyGate gate = support::open_gate();
+  gate.pass({2, 0, 0}, kStill, kPeriod);
+  gate.pass({4, 0, 0}, kStill, kPeriod);  // refused
+  gate.resume_from({2, 0, 0});
+  EXPECT_NEAR(gate.pass({5, 0, 0}, kStill, kPeriod).f_T_W().x(), 4, 1e-12);
+  for (const double bad : {std::nan(""), HUGE_VAL}) {
+    gate.resume_from({0, bad, 0});
+    EXPECT_NEAR(gate.pass({5, 0, 0}, kStill, kPeriod).f_T_W().x(), 2, 1e-12);
+  }
+}
+
 /// Returns the distance of a point from the segment between the origin and `end`.
 double distance_from_segment(const Vector3d& point, const Vector3d& end) {
   const double square = end.squaredNorm();

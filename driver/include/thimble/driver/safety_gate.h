@@ -82,8 +82,8 @@ class SafetyGate {
                           const EnergyFlow& flow) noexcept;
 
   /// Counts the next rise from `f_W` (N, in the world): the arm did not take what passed last, and
-  /// this is the force that stands.
-  void resume_from(const Eigen::Vector3d& f_W) noexcept { f_last_W_ = f_W; }
+  /// this is the force that stands. A force that is not finite counts as none.
+  void resume_from(const Eigen::Vector3d& f_W) noexcept;
 
   /// Latches a fault that somebody else found; the first one stays.
   void trip(Fault fault) noexcept;

@@ -28,7 +28,7 @@ struct TickRecord {
   std::array<double, 3> p_WP{};            ///< m
   std::array<double, 3> n_W{};             ///< unit normal
   std::array<double, 3> f_wanted_W{};      ///< N, what the force law asked for
-  std::array<double, 3> f_sent_W{};        ///< N, what went through the gate and the current limits
+  std::array<double, 3> f_sent_W{};        ///< N, what stands: `Device::f_sent_W`
   double depth = 0;                        ///< m
   std::int32_t feature = -1;               ///< active triangle
   std::int16_t object = -1;                ///< which of the scene's objects
