@@ -148,6 +148,8 @@ WallRun run_wall(const ArmFile& file, const WallCase& wall) {
                                       .p_WB = arm.p_WB,
                                       .limits = arm.limits,
                                       .energy = wall.energy,
+                                      // A wall at rest is what it looks at.
+                                      .motion = {.hold_most = 1e9},
                                       .velocity_corner_frequency = arm.velocity_corner_frequency,
                                       .silence_limit_ns = 1'000'000'000},
                                      clock.now_ns());

@@ -58,6 +58,7 @@ def test_gives_arrays_with_shapes_and_units():
     assert (np.einsum("ij,ij->i", run.force[held], run.normal[held]) > 0).all()
     units = thimble.units()
     assert units["p_WT"][0] == "m" and units["f_sent_W"][0] == "N" and units["time"][0] == "ns"
+    assert units["heat"][0] == "1" and 0 < run.heat.max() < 0.8
     assert set(units) == set(run.columns.dtype.names)
 
 

@@ -113,6 +113,8 @@ RigRun rub(render::AnyStage& friction, const std::vector<RigPoint>& way, double 
                             .soft_start = 0.3,
                             .stall_ns = 20'000'000,
                             .watchdog_ns = 100'000'000};
+  // It looks at rests of any length, and its reports are never old.
+  device_settings.motion.hold_most = 1e9;
   auto opened = driver::Device::open(std::make_unique<device_sim::SimTransport>(clock, arm),
                                      std::make_unique<driver::hfab::HfabArm>(model),
                                      device_settings, clock.now_ns());

@@ -50,8 +50,8 @@ TickRecord tick_number(std::uint64_t number) {
   tick.time_ns = static_cast<std::int64_t>(number * 1'000'000 + random() % 1000);
   tick.due_ns = static_cast<std::int64_t>(number * 1'000'000);
   tick.work_ns = static_cast<std::int64_t>(random() % 100'000);
-  for (auto* vector :
-       {&tick.q, &tick.p_WT, &tick.v_WT, &tick.p_WP, &tick.n_W, &tick.f_wanted_W, &tick.f_sent_W}) {
+  for (auto* vector : {&tick.q, &tick.p_WT, &tick.v_WT, &tick.p_WP, &tick.n_W, &tick.f_wanted_W,
+                       &tick.f_sent_W, &tick.heat}) {
     for (double& x : *vector) x = value(random);
   }
   for (auto& count : tick.counts) count = static_cast<std::int32_t>(random());
@@ -63,7 +63,7 @@ TickRecord tick_number(std::uint64_t number) {
   tick.in_contact = random() % 2 == 0;
   tick.fresh = random() % 2 == 0;
   tick.stage = static_cast<driver::DeviceStage>(random() % 3);
-  tick.fault = static_cast<driver::Fault>(random() % 8);
+  tick.fault = static_cast<driver::Fault>(random() % (static_cast<int>(driver::kLastFault) + 1));
   return tick;
 }
 
@@ -81,8 +81,8 @@ bool same(const TickRecord& a, const TickRecord& b) {
 TEST(RecordingColumns, HoldEveryByteOfATickButPadding) {
   std::size_t bytes = 0;
   for (const RecordingColumn& column : recording_columns()) bytes += column.bytes();
-  // 4 long counters, 3 counts, 21 + 1 doubles, a triangle, 3 short numbers, 4 flags.
-  EXPECT_EQ(bytes, 4 * 8 + 3 * 4 + 22 * 8 + 4 + 3 * 2 + 4U);
+  // 4 long counters, 3 counts, 24 + 1 doubles, a triangle, 3 short numbers, 4 flags.
+  EXPECT_EQ(bytes, 4 * 8 + 3 * 4 + 25 * 8 + 4 + 3 * 2 + 4U);
   EXPECT_LE(sizeof(TickRecord) - bytes, 8U) << "a field of TickRecord is in no column";
 }
 
@@ -107,6 +107,27 @@ TEST(Recording, ReadsBackToTheBit) {
   EXPECT_EQ(read->info.program, kInfo.program);
   EXPECT_EQ(read->info.rate, kInfo.rate);
   EXPECT_EQ(read->info.seed, kInfo.seed);
+}
+
+TEST(Recording, OfAnOlderProgramHasNoHeat) {
+  const auto path = scratch("older.h5");
+  auto recorder = Recorder::open(path, kInfo, 10);
+  ASSERT_TRUE(recorder) << recorder.error().message;
+  for (std::uint64_t i = 0; i < 10; ++i) (**recorder)(tick_number(i));
+  ASSERT_TRUE((*recorder)->finish());
+  // The column under another name is one that nobody knows.
+  std::ifstream in(path, std::ios::binary);
+  std::string bytes((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+  const std::string name("\0heat\0", 6);
+  const std::size_t at = bytes.find(name);
+  ASSERT_NE(at, std::string::npos);
+  bytes[at + 4] = 'x';
+  std::ofstream(path, std::ios::binary) << bytes;
+  const auto read = read_recording(path);
+  ASSERT_TRUE(read) << read.error().message;
+  ASSERT_EQ(read->ticks.size(), 10U);
+  EXPECT_EQ(read->ticks[3].heat, (std::array<double, 3>{}));
+  EXPECT_EQ(read->ticks[3].p_WT, tick_number(3).p_WT);
 }
 
 TEST(Recording, IsAsShortAsTheRunWas) {
