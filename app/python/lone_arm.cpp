@@ -3,30 +3,30 @@
 #include <cmath>
 #include <utility>
 
-#include "energy_choice.h"
-#include "shipped_files.h"
+#include "thimble/scene/energy_choice.h"
+#include "thimble/scene/shipped_files.h"
+#include "thimble/scene/watch_choice.h"
 #include "trouble.h"
-#include "watch_choice.h"
 
 namespace thimble::python {
 LoneArm::LoneArm(const std::string& arm, const Eigen::Vector3d& p_WH, double rate,
                  std::uint64_t seed)
-    : file_(value_of(app::read_arm_file(value_of(app::find_arm_file(arm))))) {
+    : file_(value_of(scene::read_arm_file(value_of(scene::find_arm_file(arm))))) {
   if (!(rate >= 10 && rate <= 1e5)) {
     throw Trouble("rate: expected 10 to 100000 Hz, found " + std::to_string(rate) + ".");
   }
-  if (!p_WH.allFinite() || !app::joint_angles_at(file_, p_WH)) {
+  if (!p_WH.allFinite() || !scene::joint_angles_at(file_, p_WH)) {
     throw Trouble("hand: the arm " + file_.name + " does not reach that point of the world (m).");
   }
-  simulation_ = value_of(app::ArmSimulation::make(file_, {{0.0, p_WH}}, {}, seed));
+  simulation_ = value_of(scene::ArmSimulation::make(file_, {{0.0, p_WH}}, {}, seed));
   auto protocol = simulation_->protocol();
   device_ =
       value_of(driver::Device::open(simulation_->wire(clock_), std::move(protocol),
                                     {.R_WB = file_.R_WB,
                                      .p_WB = file_.p_WB,
                                      .limits = file_.limits,
-                                     .energy = app::energy_settings(file_, rate, {}),
-                                     .motion = app::motion_settings(file_, rate),
+                                     .energy = scene::energy_settings(file_, rate, {}),
+                                     .motion = scene::motion_settings(file_, rate),
                                      .heat = file_.heat,
                                      .velocity_corner_frequency = file_.velocity_corner_frequency},
                                     clock_.now_ns()));

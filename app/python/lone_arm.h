@@ -5,12 +5,12 @@
 #include <memory>
 #include <string>
 
-#include "arm_file.h"
-#include "arm_simulation.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/device.h"
 #include "thimble/driver/servo_loop.h"
 #include "thimble/driver/tick_record.h"
+#include "thimble/scene/arm_file.h"
+#include "thimble/scene/arm_simulation.h"
 
 namespace thimble::python {
 
@@ -30,7 +30,7 @@ class LoneArm {
   /// Lets forces through again after a fault.
   void activate();
 
-  const app::ArmFile& file() const { return file_; }
+  const scene::ArmFile& file() const { return file_; }
   const driver::TickRecord& last() const { return last_; }
   /// Tells the force of the motors on the tip, N in the world: what is true.
   Eigen::Vector3d true_force() const { return simulation_->f_T_W(); }
@@ -42,9 +42,9 @@ class LoneArm {
   void operator()(const driver::TickRecord& record) noexcept { last_ = record; }
 
  private:
-  app::ArmFile file_;
+  scene::ArmFile file_;
   driver::VirtualClock clock_;
-  std::unique_ptr<app::ArmSimulation> simulation_;
+  std::unique_ptr<scene::ArmSimulation> simulation_;
   std::unique_ptr<driver::Device> device_;  // holds the wire to the simulation, so it goes first
   std::unique_ptr<driver::ServoLoop> loop_;
   std::atomic<bool> never_{false};

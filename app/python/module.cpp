@@ -17,11 +17,11 @@
 #include "recording/read_recording.h"
 #include "recording/recording_columns.h"
 #include "scene_run.h"
-#include "shipped_files.h"
+#include "stability/tuning.h"
 #include "thimble/driver/discovery.h"
 #include "thimble/driver/fault.h"
+#include "thimble/scene/shipped_files.h"
 #include "trouble.h"
-#include "tuning.h"
 
 namespace py = pybind11;
 
@@ -29,9 +29,9 @@ namespace thimble::python {
 namespace {
 
 using driver::TickRecord;
-using Type = app::RecordingColumn::Type;
+using Type = session::RecordingColumn::Type;
 
-const char* numpy_type(const app::RecordingColumn& column) {
+const char* numpy_type(const session::RecordingColumn& column) {
   switch (column.type) {
     case Type::kU8:
       return "u1";
@@ -54,7 +54,7 @@ const char* numpy_type(const app::RecordingColumn& column) {
 /// Gives numpy's type of a tick: the columns of a recording, by the same names.
 py::dtype tick_type() {
   py::list names, formats, offsets;
-  for (const app::RecordingColumn& column : app::recording_columns()) {
+  for (const session::RecordingColumn& column : session::recording_columns()) {
     names.append(column.name);
     const py::str format = numpy_type(column);
     formats.append(column.width == 1 ? py::object(format)
@@ -193,7 +193,7 @@ void run_all(HeldRun& held) {
 }
 
 bool step_once(HeldRun& held, const std::optional<Eigen::Vector3d>& hand) {
-  app::Session& session = held.run->session();
+  session::Session& session = held.run->session();
   if (hand && session.simulation() != nullptr && !session.lead_hand(*hand)) {
     throw Trouble("The arm does not reach that point of the world (m); move the hand.");
   }
@@ -204,7 +204,7 @@ bool step_once(HeldRun& held, const std::optional<Eigen::Vector3d>& hand) {
 
 py::tuple mesh_of(const HeldRun& held, const std::optional<std::string>& object) {
   if (held.run->running()) throw Trouble("The run goes on; stop() it to see its meshes.");
-  const app::Session& session = held.run->session();
+  const session::Session& session = held.run->session();
   int number = -1;
   if (object) {
     const auto& objects = session.scene().objects;
@@ -229,7 +229,7 @@ py::tuple mesh_of(const HeldRun& held, const std::optional<std::string>& object)
   return py::make_tuple(vertices, triangles);
 }
 
-py::dict info_of(const app::RecordingInfo& info) {
+py::dict info_of(const session::RecordingInfo& info) {
   py::dict told;
   told["scene"] = info.scene;
   told["scene_file"] = info.scene_file;
@@ -261,10 +261,10 @@ py::list figures_of(const HeldRun& held) {
   return figures;
 }
 
-py::list named(const std::vector<app::ShippedFile>& files) {
+py::list named(const std::vector<scene::ShippedFile>& files) {
   py::list list;
-  for (const app::ShippedFile& file : files) {
-    list.append(py::make_tuple(file.name, file.path.string(), app::description_of(file.path)));
+  for (const scene::ShippedFile& file : files) {
+    list.append(py::make_tuple(file.name, file.path.string(), scene::description_of(file.path)));
   }
   return list;
 }
@@ -380,18 +380,18 @@ PYBIND11_MODULE(_core, core) {
   using namespace thimble;
   using namespace thimble::python;
   py::register_exception<Trouble>(core, "Error", PyExc_RuntimeError);
-  core.attr("version") = std::string(app::build_info().version);
-  core.attr("program") = app::program_name();
-  core.def("scenes", [] { return named(app::shipped_scenes()); });
-  core.def("arms", [] { return named(app::shipped_arms()); });
+  core.attr("version") = std::string(scene::build_info().version);
+  core.attr("program") = scene::program_name();
+  core.def("scenes", [] { return named(scene::shipped_scenes()); });
+  core.def("arms", [] { return named(scene::shipped_arms()); });
   core.def("find_scene",
-           [](const std::string& name) { return value_of(app::find_scene(name)).string(); });
+           [](const std::string& name) { return value_of(scene::find_scene(name)).string(); });
   core.def("find_arm",
-           [](const std::string& name) { return value_of(app::find_arm_file(name)).string(); });
+           [](const std::string& name) { return value_of(scene::find_arm_file(name)).string(); });
   core.def("devices", &devices);
   core.def("columns", [] {
     py::list list;
-    for (const auto& column : app::recording_columns()) {
+    for (const auto& column : session::recording_columns()) {
       list.append(py::make_tuple(column.name, column.unit, column.about));
     }
     return list;
@@ -401,7 +401,7 @@ PYBIND11_MODULE(_core, core) {
     return py::make_tuple(std::string(driver::name(fault)), std::string(driver::describe(fault)));
   });
   core.def("read_recording", [](const std::string& path) {
-    const app::Recording recording = value_of(app::read_recording(path));
+    const session::Recording recording = value_of(session::read_recording(path));
     return py::make_tuple(info_of(recording.info), array_of(recording.ticks), recording.complete);
   });
   bind_run(core);

@@ -3,13 +3,13 @@
 #include <cmath>
 #include <cstdio>
 
-#include "meshes.h"
-#include "quality.h"
-#include "real_arm.h"
 #include "recording/write_black_box.h"
+#include "report/session_report.h"
 #include "servo_thread.h"
-#include "session_report.h"
-#include "shipped_files.h"
+#include "thimble/scene/meshes.h"
+#include "thimble/scene/quality.h"
+#include "thimble/scene/real_arm.h"
+#include "thimble/scene/shipped_files.h"
 #include "trouble.h"
 
 namespace thimble::python {
@@ -41,8 +41,8 @@ void tell(const std::vector<std::string>& sentences) {
   }
 }
 
-app::SessionOptions session_options(const RunOptions& options) {
-  app::SessionOptions asked;
+session::SessionOptions session_options(const RunOptions& options) {
+  session::SessionOptions asked;
   if (options.seconds && !(*options.seconds >= 1e-3 && *options.seconds <= kSecondsMax)) {
     throw Trouble("seconds: expected 0.001 to 86400, found " + std::to_string(*options.seconds) +
                   ".");
@@ -55,35 +55,36 @@ app::SessionOptions session_options(const RunOptions& options) {
       options.device == "sim"
           ? driver::Result<std::vector<driver::FoundArm>>(std::vector<driver::FoundArm>())
           : driver::find_arms();
-  asked.real_arm = value_of(
-      app::choose_arm(plugged_in ? *plugged_in : std::vector<driver::FoundArm>(), options.device));
+  asked.real_arm = value_of(scene::choose_arm(
+      plugged_in ? *plugged_in : std::vector<driver::FoundArm>(), options.device));
   if (asked.real_arm && !options.agreed) {
     throw Trouble(
         asked.real_arm->arm + " " + asked.real_arm->name() +
         " would get forces. Keep clear of it, hold its grip, keep its switch at hand, and "
         "say agree=True.");
   }
-  if (!options.arm_file.empty()) asked.arm_file = value_of(app::find_arm_file(options.arm_file));
+  if (!options.arm_file.empty()) asked.arm_file = value_of(scene::find_arm_file(options.arm_file));
   if (asked.real_arm) {
-    asked.terms = value_of(app::terms_for(*asked.real_arm, {.arm_file = asked.arm_file,
-                                                            .firmware = options.firmware,
-                                                            .unchecked = options.unchecked}));
+    asked.terms = value_of(scene::terms_for(*asked.real_arm, {.arm_file = asked.arm_file,
+                                                              .firmware = options.firmware,
+                                                              .unchecked = options.unchecked}));
     tell(asked.terms->told);
   }
   if (asked.real_arm) {  // asked on a thread that goes again, before the arm is opened
-    const auto allowed = app::check_real_time(app::ServoThread(true).grant(), options.no_real_time);
+    const auto allowed =
+        session::check_real_time(session::ServoThread(true).grant(), options.no_real_time);
     if (!allowed) throw Trouble(allowed.error().message + " In Python: no_real_time=True.");
   }
   asked.homed = options.homed;
   const bool real_time = options.real_time || asked.real_arm;
-  asked.clock = real_time ? app::ClockKind::kWall : app::ClockKind::kVirtual;
+  asked.clock = real_time ? session::ClockKind::kWall : session::ClockKind::kVirtual;
   asked.duration = options.seconds;
   asked.seed = options.seed;
-  asked.mesh_folder = app::mesh_folder();
+  asked.mesh_folder = scene::mesh_folder();
   asked.firmware = options.firmware;
   asked.record = options.record;
-  asked.adjust = [&options](app::Scene& scene) {
-    app::apply_quality(app::quality_named(options.quality), scene);
+  asked.adjust = [&options](scene::Scene& scene) {
+    scene::apply_quality(scene::quality_named(options.quality), scene);
   };
   return asked;
 }
@@ -91,8 +92,8 @@ app::SessionOptions session_options(const RunOptions& options) {
 }  // namespace
 
 SceneRun::SceneRun(const RunOptions& options)
-    : session_(value_of(
-          app::Session::open(value_of(app::find_scene(options.scene)), session_options(options)))) {
+    : session_(value_of(session::Session::open(value_of(scene::find_scene(options.scene)),
+                                               session_options(options)))) {
   tell(session_->told());
 }
 
@@ -151,7 +152,7 @@ void SceneRun::finish() {
   finished_ = true;
   awake_.reset();
   if (const auto ticks = session_->black_box().take(); !ticks.empty()) {
-    const auto written = app::write_black_box(ticks, session_->recording_info());
+    const auto written = session::write_black_box(ticks, session_->recording_info());
     if (written) {
       std::fprintf(stderr, "thimble: the last seconds before the fault are in %s\n",
                    written->c_str());

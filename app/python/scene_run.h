@@ -7,10 +7,10 @@
 #include <string>
 #include <thread>
 
-#include "report.h"
-#include "session.h"
+#include "report/report.h"
 #include "thimble/driver/real_time.h"
 #include "thimble/driver/servo_loop.h"
+#include "thimble/session/session.h"
 
 namespace thimble::python {
 
@@ -42,8 +42,8 @@ class SceneRun {
   SceneRun(const SceneRun&) = delete;
   SceneRun& operator=(const SceneRun&) = delete;
 
-  app::Session& session() { return *session_; }
-  const app::Session& session() const { return *session_; }
+  session::Session& session() { return *session_; }
+  const session::Session& session() const { return *session_; }
 
   /// Runs the next tick of virtual time; false if the run is over.
   bool step();
@@ -69,7 +69,7 @@ class SceneRun {
   bool take_step();
   void finish();
 
-  std::unique_ptr<app::Session> session_;
+  std::unique_ptr<session::Session> session_;
   std::atomic<bool> stop_{false};
   std::atomic<bool> running_{false};
   bool busy_ = false;  // a step or a run is under way; guarded by Python's own lock

@@ -6,8 +6,8 @@
 #include <new>
 #include <string>
 
-#include "study/cost_subjects.h"
-#include "study/ring_surface.h"
+#include "studies/cost/cost_subjects.h"
+#include "studies/cost/ring_surface.h"
 
 namespace {
 

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Fails if a module includes what it must not know (the table in README.md), if a layer of render
-# includes one above it (the table in render/README.md), or if a folder of render is too full.
+# includes one above it (the table in render/README.md), if a library of app includes one above it
+# (app/CMakeLists.txt), or if a folder of render or app is too full.
 #   tests/arch/layering.sh [SOURCE_DIR]
 set -euo pipefail
 cd "${1:-$(dirname "$0")/../..}"
@@ -81,10 +82,30 @@ if [ -n "$upward" ]; then
   bad=1
 fi
 
+# The libraries of app, the lowest first: FOLDER: what it must not know.
+forbid_app() {
+  forbid "app/$1" "$2" "a library above it or beside it"
+}
+forbid_app scene 'thimble/session/|(recording|share|report|stability|studies|view|bringup|cli)/'
+forbid_app session '(report|stability|studies|view|bringup|cli)/'
+forbid_app report '(stability|studies|view|bringup|cli)/'
+forbid_app stability '(studies|view|bringup|cli)/'
+forbid_app studies '(view|bringup|cli)/'
+forbid_app view '(report|stability|studies|bringup|cli)/'
+forbid_app bringup 'thimble/session/|(recording|share|report|stability|studies|view|cli)/'
+for folder in scene session report stability studies bringup cli python; do
+  forbid "app/$folder" "$graphics" "graphics: they are app/view's"
+done
+for folder in scene session report stability studies bringup view python; do
+  forbid "app/$folder" 'CLI/' "arguments: they are app/cli's"
+done
+
 # Who looks for something reads a folder from end to end: headers and sources of one count together.
 full=$(find render -name '*.h' -o -name '*.cpp' -o -name '*.inc' |
   sed -E 's#^render/(include/thimble/render|src)/?##; s#/?[^/]*$##' | sort | uniq -c |
   awk '$1 > 40 {print "render/" $2 ": " $1 " files, more than 40"}')
+full+=$(find app -name '*.h' -o -name '*.cpp' -o -name '*.inc' | sed -E 's#/[^/]*$##' | sort | uniq -c |
+  awk '$1 > 40 {print $2 ": " $1 " files, more than 40"}')
 if [ -n "$full" ]; then
   echo "$full"
   bad=1

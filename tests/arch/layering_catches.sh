@@ -8,7 +8,7 @@ trap 'rm -rf "$copy"' EXIT
 
 plant() {
   rm -rf "${copy:?}"/*
-  (cd "$1" && tar -c driver/include driver/src device_sim render) | tar -x -C "$copy"
+  (cd "$1" && tar -c driver/include driver/src device_sim render app) | tar -x -C "$copy"
   echo "#include $3" >>"$copy/$2"
   if bash "$here/layering.sh" "$copy" >/dev/null; then
     echo "layering.sh did not notice '#include $3' in $2"
@@ -46,11 +46,28 @@ plant "$1" render/src/body/motion/rigid_body.cpp '"touch_of.h"'
 plant "$1" render/src/page/page_file.cpp '"thimble/render/object_touch.h"'
 plant "$1" render/src/multirate/model_slot.cpp '"track/god_object.h"'
 plant "$1" render/src/track/packed_contact.h '"page/page_file.h"'
+# One forbidden include for each library of app.
+plant "$1" app/scene/include/thimble/scene/arm_file.h '"thimble/session/session.h"'
+plant "$1" app/scene/src/meshes.cpp '"report/figure.h"'
+plant "$1" app/session/src/session.cpp '"report/report.h"'
+plant "$1" app/session/src/share/live_control.h '"cli/exit_code.h"'
+plant "$1" app/report/figure.cpp '"stability/tuning.h"'
+plant "$1" app/stability/tuning.h '"studies/study.h"'
+plant "$1" app/studies/study.h '"view/window.h"'
+plant "$1" app/view/window.h '"report/report.h"'
+plant "$1" app/bringup/doctor.h '"thimble/session/session.h"'
+plant "$1" app/report/report.h '<epoxy/gl.h>'
+plant "$1" app/bringup/doctor.h '<CLI/CLI.hpp>'
 # And a folder that is too full.
 rm -rf "${copy:?}"/*
-(cd "$1" && tar -c driver/include driver/src device_sim render) | tar -x -C "$copy"
+(cd "$1" && tar -c driver/include driver/src device_sim render app) | tar -x -C "$copy"
 for i in $(seq 41); do touch "$copy/render/src/search/one_more_$i.h"; done
 if bash "$here/layering.sh" "$copy" >/dev/null; then
   echo "layering.sh did not notice a folder of more than 40 files"
+  exit 1
+fi
+for i in $(seq 41); do rm "$copy/render/src/search/one_more_$i.h"; touch "$copy/app/view/one_more_$i.h"; done
+if bash "$here/layering.sh" "$copy" >/dev/null; then
+  echo "layering.sh did not notice a folder of app of more than 40 files"
   exit 1
 fi

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "session.h"
+#include "thimble/session/session.h"
 
 // What one tick of a whole scene with bodies takes, 99 of 100 of them: the force law alone, driven
 // over the way that a simulated hand went. Of five rounds the least per tick, so that what else the
@@ -18,13 +18,13 @@ namespace {
 
 constexpr int kRounds = 5;
 
-std::unique_ptr<app::Session> open(const std::string& name) {
+std::unique_ptr<session::Session> open(const std::string& name) {
   auto session =
-      app::Session::open(std::string(THIMBLE_SOURCE_DIR) + "/app/scenes/" + name + ".yaml", {});
+      session::Session::open(std::string(THIMBLE_SOURCE_DIR) + "/app/scenes/" + name + ".yaml", {});
   return session ? std::move(session).value() : nullptr;
 }
 
-std::vector<driver::DeviceState> way_of_hand(app::Session& session) {
+std::vector<driver::DeviceState> way_of_hand(session::Session& session) {
   session.run(std::atomic<bool>{false});
   std::vector<driver::DeviceState> way;
   for (const auto& row : session.trace().rows()) {

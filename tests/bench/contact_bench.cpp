@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "bench/peers.h"
-#include "figure.h"
+#include "report/figure.h"
 #include "search/make_search.h"
 #include "support/bench_meshes.h"
 #include "support/random.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "figure.h"
+#include "report/figure.h"
 
 namespace thimble::bench {
 

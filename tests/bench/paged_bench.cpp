@@ -14,10 +14,10 @@
 #include <thread>
 #include <vector>
 
-#include "figure.h"
 #include "page/paged_contact.h"
-#include "resident_memory.h"
-#include "ring_pages.h"
+#include "report/figure.h"
+#include "studies/resident_memory.h"
+#include "studies/ring_pages.h"
 #include "track/memory_contact.h"
 
 // A tip that slides at 0.5 m/s over a ring of 10^7 (--long: 10^8) triangles on the disk, in a loop

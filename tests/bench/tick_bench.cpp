@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "bench/figures_reporter.h"
-#include "session.h"
 #include "support/random.h"
 #include "support/vintage_arm.h"
 #include "thimble/driver/snapshot.h"
 #include "thimble/render/surface/spring_damper.h"
 #include "thimble/render/touch.h"
+#include "thimble/session/session.h"
 #include "track/mesh_contact.h"
 
 // One whole tick on the virtual clock in contact with elephant.off, and each part of it alone.
@@ -23,10 +23,10 @@ namespace {
 
 using MeshTouch = render::Touch<render::MeshContact, render::SpringDamper>;
 
-std::unique_ptr<app::Session> open_stroke() {
-  app::SessionOptions options;
+std::unique_ptr<session::Session> open_stroke() {
+  session::SessionOptions options;
   options.mesh_folder = THIMBLE_MESHES;
-  auto session = app::Session::open(
+  auto session = session::Session::open(
       std::string(THIMBLE_SOURCE_DIR) + "/tests/data/scenes/stroke.yaml", options);
   if (!session) {
     std::fprintf(stderr, "%s\n", session.error().message.c_str());
@@ -79,7 +79,7 @@ driver::DeviceState state_of(const driver::TickRecord& record) {
 }
 
 /// The force law of the session's only object, as a copy that may be called.
-MeshTouch mesh_touch(const app::Session& session) {
+MeshTouch mesh_touch(const session::Session& session) {
   const auto& object = session.scene().objects.front();
   return {render::MeshContact::build(session.mesh_W()).value(),
           {.stiffness = object.stiffness, .damping = object.damping}};
@@ -185,8 +185,8 @@ BENCHMARK(snapshot);
 void statistics_and_trace(benchmark::State& state) {
   const auto& records = stroke_records();
   if (records.empty()) return state.SkipWithError("no scene");
-  app::RunStatistics statistics;
-  app::Trace trace(20'000);
+  session::RunStatistics statistics;
+  session::Trace trace(20'000);
   std::size_t i = 0;
   for (auto _ : state) {
     statistics(records[i]);

@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "support/shapes.h"
-#include "view/offscreen_context.h"
+#include "view/gl/offscreen_context.h"
 #include "view/scene_painter.h"
 
 // How long one picture of 960 x 640 takes, by triangles: wall time, and time of all processors

@@ -14,15 +14,15 @@
 #include <string>
 #include <vector>
 
-#include "arm_file.h"
 #include "page/checksum.h"
 #include "page/page_file.h"
 #include "recording/read_recording.h"
 #include "recording/recording_file.h"
-#include "scene_file.h"
-#include "scene_objects.h"
 #include "thimble/render/mesh/check_mesh.h"
 #include "thimble/render/mesh/load_mesh.h"
+#include "thimble/scene/arm_file.h"
+#include "thimble/scene/scene_file.h"
+#include "thimble/scene/scene_objects.h"
 
 namespace thimble::fuzz {
 namespace {
@@ -72,13 +72,13 @@ bool read_scene_file(Bytes bytes) {
       THIMBLE_SOURCE_DIR "/app/arms/vintage_phantom.yaml", folder() / "arm.yaml");
   promise(arm_beside, "an arm stands beside the scene");
   const auto scene =
-      app::read_scene(store(bytes, "any.yaml"), THIMBLE_SOURCE_DIR "/tests/data/meshes");
+      scene::read_scene(store(bytes, "any.yaml"), THIMBLE_SOURCE_DIR "/tests/data/meshes");
   if (!told(scene)) return false;
   promise(std::isfinite(scene->duration) && scene->duration > 0, "a scene has an end");
   promise(std::isfinite(scene->rate) && scene->rate > 0, "a scene has a rate");
   // Patches of a body may take long to build; scenes made by chance are kept small.
   if (scene->objects.size() > 4) return true;
-  const auto objects = app::SceneObjects::build(*scene);
+  const auto objects = scene::SceneObjects::build(*scene);
   if (!told(objects)) return true;
   render::SceneTouch& touch = (*objects)->touch();
   driver::DeviceState state;
@@ -162,16 +162,16 @@ void put_checksums_right(std::vector<std::byte>& file) {
 
 /// Touches the pages as a scene does.
 void touch_pages(const std::filesystem::path& pages) {
-  app::Scene scene;
+  scene::Scene scene;
   scene.rate = 1000;
-  app::SceneObject object;
+  scene::SceneObject object;
   object.name = "pages";
   object.mesh_file = pages;
   object.paged = true;
   object.stiffness = 100;
   object.contact.tracker = render::TrackerChoice::kPacked;
   scene.objects.push_back(object);
-  const auto objects = app::SceneObjects::build(scene);
+  const auto objects = scene::SceneObjects::build(scene);
   if (!told(objects)) return;
   driver::DeviceState state;
   state.dt = 1e-3;
@@ -210,11 +210,11 @@ bool read_pages(Bytes bytes) {
 std::vector<std::byte> recording_of(int byte, bool whole) {
   std::vector<driver::TickRecord> ticks(8);
   std::memset(static_cast<void*>(ticks.data()), byte, ticks.size() * sizeof ticks[0]);
-  app::RecordingInfo info;
+  session::RecordingInfo info;
   info.scene = "fuzz";
   info.rate = 1000;
   const std::filesystem::path path = folder() / "sound.h5";
-  auto file = app::RecordingFile::create(path, info, ticks.size());
+  auto file = session::RecordingFile::create(path, info, ticks.size());
   promise(static_cast<bool>(file), "a recording can be begun");
   const auto some = std::span<const driver::TickRecord>(ticks).first(whole ? 8 : 7);
   promise(static_cast<bool>(file->append(some)), "a recording can be written");
@@ -240,7 +240,7 @@ bool read_recording(Bytes bytes) {
   data = damaged(std::move(data), bytes);
   std::vector<std::byte> file = sound;
   for (std::size_t i = 0; i < places.size(); ++i) file[places[i]] = data[i];
-  const auto recording = app::read_recording(store(file, "any.h5"));
+  const auto recording = session::read_recording(store(file, "any.h5"));
   if (!told(recording)) return false;
   promise(recording->info.rate > 0, "a recording has a rate");
   for (const driver::TickRecord& tick : recording->ticks) {
@@ -253,7 +253,7 @@ bool read_recording(Bytes bytes) {
 
 bool read_any_file(std::string_view kind, Bytes bytes) {
   if (kind == "scene") return read_scene_file(bytes);
-  if (kind == "arm") return told(app::read_arm_file(store(bytes, "any.yaml")));
+  if (kind == "arm") return told(scene::read_arm_file(store(bytes, "any.yaml")));
   if (kind == "off") return read_mesh(bytes, "any.off");
   if (kind == "obj") return read_mesh(bytes, "any.obj");
   if (kind == "stl") return read_mesh(bytes, "any.stl");

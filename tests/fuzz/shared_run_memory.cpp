@@ -22,11 +22,11 @@ void promise(bool kept, const char* what) {
 
 /// Makes the memory of a run with a bit of everything.
 std::vector<std::byte> sound_memory() {
-  app::SharedScene scene;
+  session::SharedScene scene;
   scene.name = "fuzz";
   scene.period_ns = 1'000'000;
   scene.force_max = 5;
-  scene.arm.shape = app::SharedArmShape::kDelta;
+  scene.arm.shape = session::SharedArmShape::kDelta;
   scene.arm.numbers.fill(0.05);
   scene.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
   scene.triangles = {{0, 1, 2}, {3, 4, 5}};
@@ -39,11 +39,11 @@ std::vector<std::byte> sound_memory() {
                            .first_triangle = 1,
                            .triangle_count = 1});
   scene.knobs.push_back({"a: stiffness", "N/m", 0, 800, 400});
-  const auto run = app::SharedRun::create("", scene, 8).value();
-  run->set_state(app::RunState::kRunning);
+  const auto run = session::SharedRun::create("", scene, 8).value();
+  run->set_state(session::RunState::kRunning);
   driver::TickRecord tick;
   for (tick.tick = 0; tick.tick < 12; ++tick.tick) run->store_tick(tick);
-  app::ScenePoses poses;
+  scene::ScenePoses poses;
   poses.count = 1;
   run->store_poses(poses);
   render::BodyPatch patch{};
@@ -58,21 +58,22 @@ std::vector<std::byte> sound_memory() {
 }
 
 void put_checksum_right(std::span<std::byte> memory) {
-  auto& head = *reinterpret_cast<app::SharedHead*>(memory.data());
-  const auto table = [&]<class T>(const app::SharedTable& t, T*) {
+  auto& head = *reinterpret_cast<session::SharedHead*>(memory.data());
+  const auto table = [&]<class T>(const session::SharedTable& t, T*) {
     const bool lies_in = t.offset % 64 == 0 && t.offset <= memory.size() &&
                          t.count <= (memory.size() - t.offset) / sizeof(T);
     return lies_in ? std::span(reinterpret_cast<const T*>(memory.data() + t.offset), t.count)
                    : std::span<const T>();
   };
-  head.hash = app::shared_hash(head, table(head.objects, static_cast<app::SharedObject*>(nullptr)),
-                               table(head.knobs, static_cast<app::SharedKnob*>(nullptr)),
-                               table(head.vertices, static_cast<app::SharedVertex*>(nullptr)),
-                               table(head.triangles, static_cast<app::SharedTriangle*>(nullptr)));
+  head.hash =
+      session::shared_hash(head, table(head.objects, static_cast<session::SharedObject*>(nullptr)),
+                           table(head.knobs, static_cast<session::SharedKnob*>(nullptr)),
+                           table(head.vertices, static_cast<session::SharedVertex*>(nullptr)),
+                           table(head.triangles, static_cast<session::SharedTriangle*>(nullptr)));
 }
 
-void read_everything(app::SharedReader& reader) {
-  const app::SharedScene& scene = reader.scene();
+void read_everything(session::SharedReader& reader) {
+  const session::SharedScene& scene = reader.scene();
   for (const auto& triangle : scene.triangles) {
     for (const std::uint32_t vertex : triangle) {
       promise(vertex < scene.vertices.size(), "a triangle has vertices");
@@ -103,11 +104,11 @@ void read_everything(app::SharedReader& reader) {
   for (const auto& one : ticks) {
     promise(one.object < static_cast<int>(scene.objects.size()), "a tick names an object");
     promise(std::isfinite(one.p_WT[0]) && std::isfinite(one.depth), "a tick is somewhere");
-    static_cast<void>(app::arm_lines(scene.arm, one));
+    static_cast<void>(session::arm_lines(scene.arm, one));
   }
-  app::ScenePoses poses;
+  scene::ScenePoses poses;
   if (reader.poses(poses)) {
-    promise(poses.count <= app::ScenePoses::kMost, "poses are as many as fit");
+    promise(poses.count <= scene::ScenePoses::kMost, "poses are as many as fit");
     for (std::size_t i = 0; i < poses.count; ++i) {
       promise(
           poses.object[i] >= 0 && static_cast<std::size_t>(poses.object[i]) < scene.objects.size(),
@@ -158,7 +159,7 @@ bool read_shared_memory(std::span<const std::byte> bytes) {
     orders = orders.subspan(count);
   }
   if (rehash) put_checksum_right(memory);
-  auto reader = app::SharedReader::over(memory);
+  auto reader = session::SharedReader::over(memory);
   if (!reader) {
     promise(!reader.error().message.empty(), "a refusal is a sentence");
     return false;

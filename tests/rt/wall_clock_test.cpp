@@ -15,13 +15,13 @@ namespace {
 
 TEST(WallClockRun, ShowsItsTicksToReadersThatNeverStopIt) {
   THIMBLE_NEEDS_MESHES();
-  app::SessionOptions options;
-  options.clock = app::ClockKind::kWall;
+  session::SessionOptions options;
+  options.clock = session::ClockKind::kWall;
   options.duration = 2;
   options.mesh_folder = THIMBLE_MESHES;
-  auto opened = app::Session::open(support::elephant_scene(), options);
+  auto opened = session::Session::open(support::elephant_scene(), options);
   ASSERT_TRUE(opened) << opened.error().message;
-  app::Session& session = **opened;
+  session::Session& session = **opened;
 
   const std::atomic<bool> stop{false};
   std::atomic<bool> ended{false};

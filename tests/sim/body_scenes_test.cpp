@@ -9,11 +9,11 @@
 
 #include "body/shape/body_shape.h"
 #include "mesh/contact_mesh.h"
-#include "session.h"
 #include "support/scratch.h"
 #include "support/shipped_scene.h"
 #include "thimble/render/mesh/load_mesh.h"
 #include "thimble/render/mesh/save_mesh.h"
+#include "thimble/session/session.h"
 
 // The scenes with bodies that move, keep what they gave way, and snap, from the wire up.
 
@@ -22,7 +22,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-double farthest(const app::Session& session) {
+double farthest(const session::Session& session) {
   double far = 0;
   const auto now = session.mesh_now();
   for (std::size_t v = 0; v < now.vertices.size(); ++v) {
@@ -56,7 +56,7 @@ std::string refusal(const std::string& what, const std::string& body) {
                       << "/../arms/vintage_phantom.yaml\nduration: 1\nobjects:\n"
                       << "  - {name: o, " << what << ", stiffness: 500, body: " << body << "}\n"
                       << "hand: {path: [{t: 0, at: [0, 0, 0.05]}, {t: 1, at: [0, 0, 0.06]}]}\n";
-  const auto session = app::Session::open(file, {});
+  const auto session = session::Session::open(file, {});
   return session ? "" : session.error().message;
 }
 
@@ -95,7 +95,7 @@ TEST(TinCanScene, SnapsTwiceAndRollsMeanwhile) {
   ASSERT_TRUE(session);
   ASSERT_EQ(session->run(std::atomic<bool>{false}), driver::ServoEnd::kDone);
   EXPECT_EQ(session->touch().object(0).shape()->snap()->snaps(), 2);
-  app::ScenePoses poses;
+  scene::ScenePoses poses;
   ASSERT_TRUE(session->poses().load(poses));
   ASSERT_EQ(poses.count, 1u);
   EXPECT_EQ(poses.object[0], 0);
@@ -107,7 +107,7 @@ TEST(FloatingBlockScene, DriftsAndTurns) {
   const auto session = support::open_shipped("floating_block");
   ASSERT_TRUE(session);
   ASSERT_EQ(session->run(std::atomic<bool>{false}), driver::ServoEnd::kDone);
-  app::ScenePoses poses;
+  scene::ScenePoses poses;
   ASSERT_TRUE(session->poses().load(poses));
   ASSERT_EQ(poses.count, 1u);
   const auto& [p, q] = poses.pose[0];

@@ -12,7 +12,7 @@ namespace thimble {
 namespace {
 
 /// Opens the demo's scene with a `contact:` section; the error is empty if it could be opened.
-std::unique_ptr<app::Session> open_with(const std::string& contact, std::string& error) {
+std::unique_ptr<session::Session> open_with(const std::string& contact, std::string& error) {
   return support::open_elephant_text(support::elephant_text(contact), &error);
 }
 
@@ -24,7 +24,7 @@ TEST_P(EveryWayOfContact, TouchesTheElephantAndLosesItNever) {
   const auto session = open_with(GetParam(), error);
   ASSERT_TRUE(session) << error;
   ASSERT_EQ(session->run(std::atomic<bool>{false}), driver::ServoEnd::kDone);
-  EXPECT_EQ(app::count_lost_contacts(session->trace().rows(), session->touch()), 0u);
+  EXPECT_EQ(session::count_lost_contacts(session->trace().rows(), session->touch()), 0u);
   EXPECT_GE(session->statistics().contacts(), 2u);
   EXPECT_GT(session->statistics().contact_time(), 5.0);
   EXPECT_GT(session->statistics().force_max(), 0.5);

@@ -43,10 +43,10 @@ TEST(Determinism, TheRunIsTheOneThatWasStored) {
 
 /// Runs two seconds of a scene that needs no scanned mesh; 0 if it cannot, or touches nothing.
 std::uint64_t hash_of_scene(const std::string& name) {
-  app::SessionOptions options;
+  session::SessionOptions options;
   options.duration = 2;
   options.seed = 41;
-  auto session = app::Session::open(
+  auto session = session::Session::open(
       std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/scenes" / (name + ".yaml"), options);
   if (!session || (*session)->run(std::atomic<bool>{false}) != driver::ServoEnd::kDone) return 0;
   support::RunHash hash;
@@ -116,9 +116,9 @@ TEST(Determinism, ALawFromOutsideRunsInVirtualTimeAlone) {
   EXPECT_EQ(session->trace().rows().back().f_wanted_W, (std::array<double, 3>{0, 0, 0.4}));
   EXPECT_FALSE(session->set_law(driver::ForceLaw(law))) << "it has begun";
 
-  app::SessionOptions in_real_time;
-  in_real_time.clock = app::ClockKind::kWall;
-  const auto real = app::Session::open(
+  session::SessionOptions in_real_time;
+  in_real_time.clock = session::ClockKind::kWall;
+  const auto real = session::Session::open(
       std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/scenes/box.yaml", in_real_time);
   ASSERT_TRUE(real);
   EXPECT_FALSE((*real)->set_law(driver::ForceLaw(law)));

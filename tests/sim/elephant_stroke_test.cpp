@@ -58,10 +58,10 @@ class ElephantStroke : public ::testing::Test {
   static std::span<const driver::TickRecord> rows() { return session_->trace().rows(); }
   static const render::TriangleMesh& mesh() { return session_->mesh_W(); }
 
-  static app::Session* session_;
+  static session::Session* session_;
   static std::vector<render::ContactState> found_;  // per row
 };
-app::Session* ElephantStroke::session_ = nullptr;
+session::Session* ElephantStroke::session_ = nullptr;
 std::vector<render::ContactState> ElephantStroke::found_;
 
 TEST_F(ElephantStroke, TouchesForMostOfItsTimeAndMoreThanOnce) {
@@ -88,7 +88,7 @@ TEST_F(ElephantStroke, LosesNoContactWhileTheTipIsInside) {
   EXPECT_EQ(lost, 0u);
   EXPECT_EQ(felt_outside, 0u);
   // The report's own count says the same.
-  EXPECT_EQ(app::count_lost_contacts(rows(), session_->touch()), 0u);
+  EXPECT_EQ(session::count_lost_contacts(rows(), session_->touch()), 0u);
 }
 
 TEST_F(ElephantStroke, KeepsTheTriangleWhoseCellHoldsTheTip) {
@@ -214,7 +214,7 @@ TEST_F(ElephantStroke, PushesWithStiffnessTimesDepthPlusDampingTimesSpeedAlongTh
 // Gives the greatest change of the wanted force per tick beyond what stiffness times (1 + path
 // ratio) times the tip's path and the damping explain, N; negative where it never does.
 double excess_over_the_path(std::span<const driver::TickRecord> rows,
-                            const app::SceneObject& object) {
+                            const scene::SceneObject& object) {
   double worst = -1e9;
   for (std::size_t i = 1; i < rows.size(); ++i) {
     const auto &now = rows[i], &before = rows[i - 1];

@@ -11,10 +11,7 @@
 #include <tuple>
 #include <vector>
 
-#include "energy_choice.h"
-#include "real_arm.h"
 #include "recording/read_recording.h"
-#include "scene_file.h"
 #include "support/line_arm.h"
 #include "support/scratch.h"
 #include "thimble/device_sim/usb/ftdi_chip.h"
@@ -22,7 +19,10 @@
 #include "thimble/driver/arms/falcon/falcon_packet.h"
 #include "thimble/driver/arms/hfab/hfab_models.h"
 #include "thimble/driver/arms/woody/woody_report.h"
-#include "watch_choice.h"
+#include "thimble/scene/energy_choice.h"
+#include "thimble/scene/real_arm.h"
+#include "thimble/scene/scene_file.h"
+#include "thimble/scene/watch_choice.h"
 
 namespace thimble::fault_test {
 namespace {
@@ -45,7 +45,7 @@ constexpr std::string_view kDent =
     "     body: {dent: {mass: 0.002, stiffness: 30, neighbour_stiffness: 15, damping: 0.1,\n"
     "                   region: whole, pull: 0.5}}}\n";
 
-app::Scene read(const TestedArm& tested, Phase phase, bool stiff) {
+scene::Scene read(const TestedArm& tested, Phase phase, bool stiff) {
   const auto folder = support::scratch_folder();
   const auto source = std::filesystem::path(THIMBLE_SOURCE_DIR) / "app";
   std::filesystem::copy_file(source / "scenes/soft_coarse.off", folder / "soft_coarse.off",
@@ -58,7 +58,7 @@ app::Scene read(const TestedArm& tested, Phase phase, bool stiff) {
           : stiff                    ? kStiffPlane
                                      : kPlane)
       << "hand: {path: [{t: 0, at: [0, 0, 0]}]}\n";
-  auto scene = app::read_scene(folder / "fault.yaml", {});
+  auto scene = scene::read_scene(folder / "fault.yaml", {});
   if (!scene) {
     ADD_FAILURE() << scene.error().message;
     return {};
@@ -68,7 +68,7 @@ app::Scene read(const TestedArm& tested, Phase phase, bool stiff) {
 
 /// Plans the hand's way in the world: down in 0.15 s, unless it stays free, and from 0.2 s on to
 /// and fro at 0.2 m/s, unless it shall rest.
-std::vector<device_sim::HandPath::Point> hand_way(Phase phase, const app::ArmFile& file) {
+std::vector<device_sim::HandPath::Point> hand_way(Phase phase, const scene::ArmFile& file) {
   constexpr double kStep = 0.005, kEnd = 2;  // s
   std::vector<device_sim::HandPath::Point> points;
   for (int i = 0; i * kStep <= kEnd; ++i) {
@@ -89,15 +89,15 @@ std::vector<device_sim::HandPath::Point> hand_way(Phase phase, const app::ArmFil
 FaultRig::FaultRig(const TestedArm& tested, Phase phase, const device_sim::WiringSettings& wiring)
     : tested_(tested), phase_(phase) {
   // Reading a scene takes longer than a run of it.
-  static std::map<std::tuple<std::string_view, bool, bool>, app::Scene> read_before;
+  static std::map<std::tuple<std::string_view, bool, bool>, scene::Scene> read_before;
   const bool stiff = wiring.motor_gain == Vector3d(-1, -1, -1);
   const std::tuple key(tested.file, phase == Phase::kDeforming, stiff);
   if (!read_before.contains(key)) read_before.emplace(key, read(tested, phase, stiff));
-  app::Scene& scene = read_before.at(key);
+  scene::Scene& scene = read_before.at(key);
   file_ = scene.arm;
   file_.simulated.firmware.wiring = wiring;
   file_.limits.soft_start = 0.05;  // what is tested is what comes after
-  auto objects = app::SceneObjects::build(scene);
+  auto objects = scene::SceneObjects::build(scene);
   if (!objects) {
     ADD_FAILURE() << objects.error().message;
     return;
@@ -127,7 +127,7 @@ void FaultRig::build_arm() {
     own_arm_ =
         std::make_unique<support::LineArm>(model, file_.simulated, std::move(path),
                                            static_cast<driver::hfab::LineModel>(file_.board_model));
-  } else if (file_.shape == app::ArmShape::kPolhem) {
+  } else if (file_.shape == scene::ArmShape::kPolhem) {
     auto polhem = driver::hfab::polhem_model();
     polhem.drives = file_.model.drives;
     polhem.encoders = file_.model.encoders;
@@ -169,12 +169,12 @@ driver::Result<void> FaultRig::open() {
   // A Falcon that lost its home by a fault is homed by its hand, which takes up to two seconds.
   const std::int64_t timeout_ns = falcon_ ? 4'000'000'000 : 1'000'000'000;
   auto device = driver::Device::open(std::make_unique<support::BusWire>(*cable_, clock_, way()),
-                                     app::make_arm(file_, tested_.kind),
+                                     scene::make_arm(file_, tested_.kind),
                                      {.R_WB = file_.R_WB,
                                       .p_WB = file_.p_WB,
                                       .limits = file_.limits,
-                                      .energy = app::energy_settings(file_, 1000, {}),
-                                      .motion = app::motion_settings(file_, 1000),
+                                      .energy = scene::energy_settings(file_, 1000, {}),
+                                      .motion = scene::motion_settings(file_, 1000),
                                       .heat = file_.heat,
                                       .velocity_corner_frequency = file_.velocity_corner_frequency},
                                      clock_.now_ns(), timeout_ns);
@@ -184,10 +184,10 @@ driver::Result<void> FaultRig::open() {
 }
 
 void FaultRig::record(const std::filesystem::path& path) {
-  app::RecordingInfo info;
+  session::RecordingInfo info;
   info.scene = "fault";
   info.rate = 1000;
-  auto recorder = app::Recorder::open(path, info, 10'000);
+  auto recorder = session::Recorder::open(path, info, 10'000);
   ASSERT_TRUE(recorder) << recorder.error().message;
   recorder_ = std::move(recorder).value();
   recording_ = path;
@@ -197,7 +197,7 @@ std::uint64_t FaultRig::recorded() {
   if (!recorder_) return 0;
   EXPECT_TRUE(recorder_->finish());
   recorder_.reset();
-  const auto recording = app::read_recording(recording_);
+  const auto recording = session::read_recording(recording_);
   EXPECT_TRUE(recording) << recording.error().message;
   return recording ? recording->ticks.size() : 0;
 }

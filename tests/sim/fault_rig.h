@@ -7,9 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "arm_file.h"
 #include "recording/recorder.h"
-#include "scene_objects.h"
 #include "support/bus_wire.h"
 #include "thimble/device_sim/usb/simulated_falcon.h"
 #include "thimble/device_sim/usb/usb_arm.h"
@@ -17,6 +15,8 @@
 #include "thimble/driver/clock.h"
 #include "thimble/driver/device.h"
 #include "thimble/driver/discovery.h"
+#include "thimble/scene/arm_file.h"
+#include "thimble/scene/scene_objects.h"
 
 namespace thimble::fault_test {
 
@@ -109,7 +109,7 @@ class FaultRig {
   device_sim::usb::FaultyDevice& cable() { return *cable_; }
   driver::Device& device() { return *device_; }
   bool is_open() const { return device_ != nullptr; }
-  const app::ArmFile& file() const { return file_; }
+  const scene::ArmFile& file() const { return file_; }
   /// Tells the current in all motors together: what is true, whatever the driver believes; A
   /// (Falcon: motor values).
   double motors() const { return arm_->truth().currents.norm(); }
@@ -125,8 +125,8 @@ class FaultRig {
 
   TestedArm tested_;
   Phase phase_;
-  app::ArmFile file_;
-  std::unique_ptr<app::SceneObjects> objects_;
+  scene::ArmFile file_;
+  std::unique_ptr<scene::SceneObjects> objects_;
   driver::VirtualClock clock_;
   std::unique_ptr<device_sim::usb::UsbArm> own_arm_;
   std::unique_ptr<device_sim::usb::SimulatedFalcon> falcon_;
@@ -134,7 +134,7 @@ class FaultRig {
   std::optional<MotorWatch> watch_;
   std::optional<device_sim::usb::FaultyDevice> cable_;
   std::unique_ptr<driver::Device> device_;
-  std::unique_ptr<app::Recorder> recorder_;
+  std::unique_ptr<session::Recorder> recorder_;
   std::filesystem::path recording_;
   std::uint64_t ticks_ = 0;
   std::int64_t stepped_back_ns_ = 0;

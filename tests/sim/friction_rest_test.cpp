@@ -14,9 +14,9 @@
 #include <string>
 #include <vector>
 
-#include "study/friction_cases.h"
-#include "study/friction_rig.h"
-#include "study/signal.h"
+#include "studies/friction/friction_cases.h"
+#include "studies/friction/friction_rig.h"
+#include "studies/signal.h"
 #include "support/hard_case.h"
 #include "support/rubbing.h"
 #include "surface/friction/bristle.h"
@@ -33,7 +33,7 @@ using support::record_hard_case;
 std::unique_ptr<render::AnyStage> friction(std::string_view name, const FrictionRigSettings& rig,
                                            std::map<std::string, std::string> words = {}) {
   return make_friction(name, MapSettings({{"coefficient", 0.5}}, std::move(words)),
-                       effect_context_of(rig));
+                       app::effect_context_of(rig));
 }
 
 struct Rest {
@@ -141,11 +141,11 @@ TEST(HardCase14, DefaultFrictionFlickersByTwoCountsAtMostOnAnArmWithoutDryFricti
     for (int i = 0; i < 40; ++i) {
       FrictionRigSettings rig;
       rig.delay_ns = delay * 1'000'000;
-      const double stiffness = render::stick_stiffness_max(effect_context_of(rig));
+      const double stiffness = render::stick_stiffness_max(app::effect_context_of(rig));
       rig.arm_coulomb = 0;
       const render::BristleFriction stage(
           {.coulomb = {.sliding = 0.5, .holding = 0.5}, .stiffness = stiffness},
-          effect_context_of(rig));
+          app::effect_context_of(rig));
       render::AnyStageOf<render::BristleFriction> bristle(stage);
       const Rest rest = rest_after_stop(bristle, rig, 0.01 + i * 3e-5 / 40);
       EXPECT_LE(rest.force_hf, 0.5 * stiffness * 3e-5) << delay << " " << i;
@@ -201,7 +201,7 @@ TEST(HardCase20, BristleThatBendsByOneCountWouldTremble) {
   const FrictionRigSettings rig;
   render::AnyStageOf<render::BristleFriction> bristle(render::BristleFriction(
       {.coulomb = {.sliding = 0.5, .holding = 0.5}, .stiffness = 0.5 / 3e-5},
-      effect_context_of(rig)));
+      app::effect_context_of(rig)));
   const double force_hf = rest_after_stop(bristle, rig, 0.01).force_hf;
   EXPECT_GT(force_hf, 0.1);
   record_hard_case(20, "guard: z_max of one count, after a stop", "> force above 50 Hz, RMS",
@@ -228,7 +228,7 @@ TEST(HardCase15, DefaultFrictionSlidesSlowlyWithAllItsForceAndQuietly) {
 // The arm's own dry friction is away, so that nothing else holds.
 TEST(HardCase16, DefaultFrictionHoldsALoadWithoutDrift) {
   FrictionRigSettings rig;
-  const auto context = effect_context_of(rig);
+  const auto context = app::effect_context_of(rig);
   rig.arm_coulomb = 0;
   for (const double holding : {0.5, 0.6}) {
     const auto bristle = make_friction(
@@ -249,7 +249,7 @@ TEST(HardCase16, DefaultFrictionHoldsALoadWithoutDrift) {
 
 TEST(HardCase16, DefaultFrictionDoesNotCreepUnderALoadThatSwings) {
   FrictionRigSettings rig;
-  const auto context = effect_context_of(rig);
+  const auto context = app::effect_context_of(rig);
   rig.arm_coulomb = 0;
   const bool full = std::getenv("THIMBLE_LONG") != nullptr;
   const int cycles = full ? 1000 : 200;

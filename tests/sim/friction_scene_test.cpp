@@ -35,10 +35,10 @@ std::filesystem::path scene_with(const std::string& settings) {
 TEST(SceneWithFriction, StrokesTheElephantWithEveryFrictionAndAllocatesNothing) {
   THIMBLE_NEEDS_MESHES();
   for (const std::string& name : support::friction_names()) {
-    app::SessionOptions options;
+    session::SessionOptions options;
     options.mesh_folder = THIMBLE_MESHES;
     auto session =
-        app::Session::open(scene_with("friction: " + name + ", coefficient: 0.4"), options);
+        session::Session::open(scene_with("friction: " + name + ", coefficient: 0.4"), options);
     ASSERT_TRUE(session) << session.error().message;
     const std::atomic<bool> stop{false};
     driver::ServoEnd end{};
@@ -64,10 +64,10 @@ TEST(SceneWithFriction, StrokesTheElephantWithEveryFrictionAndAllocatesNothing) 
 
 TEST(SceneWithFriction, IsToldWhatTheArmCannotKeepQuiet) {
   THIMBLE_NEEDS_MESHES();
-  app::SessionOptions options;
+  session::SessionOptions options;
   options.mesh_folder = THIMBLE_MESHES;
   const auto said = [&](const std::string& settings) {
-    const auto session = app::Session::open(scene_with(settings), options);
+    const auto session = session::Session::open(scene_with(settings), options);
     return session ? std::string() : session.error().message;
   };
   EXPECT_NE(said("friction: bristle, coefficient: 0.4, z_max: 0.00003")

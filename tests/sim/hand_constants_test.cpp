@@ -12,26 +12,26 @@
 #include <utility>
 #include <vector>
 
-#include "energy_choice.h"
-#include "scene_file.h"
+#include "stability/tuning.h"
+#include "stability/wall_trial.h"
 #include "support/hard_case.h"
 #include "support/wall_rig.h"
-#include "tuning.h"
-#include "wall_trial.h"
+#include "thimble/scene/energy_choice.h"
+#include "thimble/scene/scene_file.h"
 
 namespace thimble {
 namespace {
 
 /// Gives the distinct walls (N/m, N s/m) of all scenes that ship, each with its arm and rate.
-std::vector<std::pair<app::Scene, app::SceneObject>> shipped_walls() {
-  std::vector<std::pair<app::Scene, app::SceneObject>> walls;
+std::vector<std::pair<scene::Scene, scene::SceneObject>> shipped_walls() {
+  std::vector<std::pair<scene::Scene, scene::SceneObject>> walls;
   std::set<std::array<double, 3>> seen;
   for (const auto& entry :
        std::filesystem::directory_iterator(std::string(THIMBLE_SOURCE_DIR) + "/app/scenes")) {
     if (entry.path().extension() != ".yaml") continue;
-    auto scene = app::read_scene(entry.path(), THIMBLE_MESHES);
+    auto scene = scene::read_scene(entry.path(), THIMBLE_MESHES);
     if (!scene) continue;  // a mesh is not installed; the walls of other scenes are the same
-    for (const app::SceneObject& object : scene->objects) {
+    for (const scene::SceneObject& object : scene->objects) {
       if (object.build_field || !(object.stiffness > 0)) continue;
       if (!seen.insert({object.stiffness, object.damping, scene->rate}).second) continue;
       walls.emplace_back(*scene, object);
@@ -89,7 +89,7 @@ TEST(HandConstants, NoHandIsThrownBackFasterByAnyShippedWall) {
       wall.encoder_step = 3e-5;
       wall.velocity_corner = scene.arm.velocity_corner_frequency;
       wall.period_ns = std::llround(1e9 / scene.rate);
-      wall.delay_ns = std::llround(1e9 * app::loop_delay(scene.arm));
+      wall.delay_ns = std::llround(1e9 * scene::loop_delay(scene.arm));
       for (const double speed : {0.05, 0.2, 1.0}) {
         for (int i = 0; i < 20; ++i) {
           const double e = thrown_back(wall, speed, (i + 0.5) / 20);
@@ -114,10 +114,10 @@ struct Unrest {
   std::string who;
 };
 
-Unrest unrest_of(const app::ArmFile& file, double rate, double stiffness, double damping) {
+Unrest unrest_of(const scene::ArmFile& file, double rate, double stiffness, double damping) {
   Unrest found;
   for (const device_sim::HandSettings& hand : hands_around(file.simulated.hand)) {
-    app::ArmFile arm = file;
+    scene::ArmFile arm = file;
     arm.simulated.hand = hand;
     for (int axis = 0; axis < 3; ++axis) {
       const auto touch = app::press_on_wall(arm, {.p_W = {0, 0, 0},
@@ -158,7 +158,7 @@ TEST(HandConstants, EveryHandRestsOnWhatTuneCallsSafe) {
   double most = 0;
   for (const char* const name : {"vintage_phantom", "woodenhaptics", "polhem"}) {
     const auto arm =
-        app::read_arm_file(std::string(THIMBLE_SOURCE_DIR) + "/app/arms/" + name + ".yaml");
+        scene::read_arm_file(std::string(THIMBLE_SOURCE_DIR) + "/app/arms/" + name + ".yaml");
     ASSERT_TRUE(arm);
     for (const double damping : {0.0, 1.0}) {
       const app::Carried carried = app::carried_by(*arm, app::loop_times(*arm, 1000), 800, damping);
@@ -176,7 +176,7 @@ TEST(HandConstants, EveryHandRestsOnWhatTuneCallsSafe) {
 
 TEST(HandConstants, GuardALooseHandTremblesOnWhatAnotherCarries) {
   const auto arm =
-      app::read_arm_file(std::string(THIMBLE_SOURCE_DIR) + "/app/arms/vintage_phantom.yaml");
+      scene::read_arm_file(std::string(THIMBLE_SOURCE_DIR) + "/app/arms/vintage_phantom.yaml");
   ASSERT_TRUE(arm);
   const app::Carried carried = app::carried_by(*arm, app::loop_times(*arm, 1000), 800, 0);
   // Seven tenths of the edge with the hand of the file: a third of its damping does not do.

@@ -7,12 +7,12 @@
 #include <cmath>
 #include <vector>
 
-#include "arm_file.h"
-#include "energy_choice.h"
+#include "stability/wall_trial.h"
 #include "support/hard_case.h"
 #include "support/wall_rig.h"
 #include "thimble/driver/safety_gate.h"
-#include "wall_trial.h"
+#include "thimble/scene/arm_file.h"
+#include "thimble/scene/energy_choice.h"
 
 namespace thimble {
 namespace {
@@ -232,19 +232,20 @@ TEST(HardCase10, SymmetricSlewLimiterThrowsTheTipBack) {
 
 // Through the whole way: arm, board, wire, device and gate.
 
-app::ArmFile vintage() {
-  auto arm = app::read_arm_file(std::string(THIMBLE_SOURCE_DIR) + "/app/arms/vintage_phantom.yaml");
+scene::ArmFile vintage() {
+  auto arm =
+      scene::read_arm_file(std::string(THIMBLE_SOURCE_DIR) + "/app/arms/vintage_phantom.yaml");
   if (!arm) throw std::runtime_error(arm.error().message);
   arm->simulated.hand.tremor_amplitude = 0;
   return *arm;
 }
 
 TEST(HardCase11, ControllerOfTheArmFileStopsAWallThatIsFarTooStiffThroughTheWholeWay) {
-  app::ArmFile arm = vintage();
+  scene::ArmFile arm = vintage();
   arm.simulated.hand.damping = 0.3;  // a hand that hardly helps
   app::WallTrial trial{.p_W = {0, 0, 0}, .n_W = {1, 0, 0}, .stiffness = 2500};
   const auto wild = app::press_on_wall(arm, trial);
-  trial.energy = app::energy_settings(arm, 1000, EnergyStage::kPassivity);
+  trial.energy = scene::energy_settings(arm, 1000, EnergyStage::kPassivity);
   const auto tamed = app::press_on_wall(arm, trial);
   ASSERT_TRUE(wild);
   ASSERT_TRUE(tamed);
@@ -263,10 +264,10 @@ TEST(HardCase11, ControllerOfTheArmFileStopsAWallThatIsFarTooStiffThroughTheWhol
 
 TEST(HardCase11, BookedEnergyIsThatOfTheTrueMotors) {
   // What the observer sees through counts, mA and a late wire against what the motors did.
-  app::ArmFile arm = vintage();
+  scene::ArmFile arm = vintage();
   app::WallTrial trial{.p_W = {0, 0, 0}, .n_W = {1, 0, 0}, .stiffness = 2500};
   arm.simulated.hand.damping = 0.3;
-  trial.energy = app::energy_settings(arm, 1000, EnergyStage::kPassivity);
+  trial.energy = scene::energy_settings(arm, 1000, EnergyStage::kPassivity);
   trial.energy.allowance = 100;  // watches only
   trial.energy.reservoir = 100;
   const auto touch = app::press_on_wall(arm, trial);
@@ -280,10 +281,10 @@ TEST(HardCase11, BookedEnergyIsThatOfTheTrueMotors) {
 }
 
 TEST(HardCase12, BoundedWallOfTwentyNewtonsPerMillimetreRestsThroughTheWholeWay) {
-  const app::ArmFile arm = vintage();
+  const scene::ArmFile arm = vintage();
   app::WallTrial trial{.p_W = {0, 0, 0}, .n_W = {1, 0, 0}, .stiffness = 20'000};
   const auto wild = app::press_on_wall(arm, trial);
-  trial.energy = app::energy_settings(arm, 1000, EnergyStage::kBounding);
+  trial.energy = scene::energy_settings(arm, 1000, EnergyStage::kBounding);
   // The hand's damping is part of what may be spent: a third of it is sure to be there.
   trial.energy.slope = (0.005 + 1) / 0.0015;
   const auto tamed = app::press_on_wall(arm, trial);

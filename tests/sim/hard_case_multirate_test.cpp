@@ -14,16 +14,16 @@
 #include <utility>
 #include <vector>
 
-#include "arm_file.h"
-#include "arm_simulation.h"
-#include "stability_laws.h"
+#include "stability/stability_laws.h"
+#include "stability/tuning.h"
 #include "support/hard_case.h"
 #include "support/slow_surface.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/device.h"
 #include "thimble/driver/servo_loop.h"
 #include "thimble/render/multirate/model_touch.h"
-#include "tuning.h"
+#include "thimble/scene/arm_file.h"
+#include "thimble/scene/arm_simulation.h"
 
 namespace thimble {
 namespace {
@@ -36,8 +36,9 @@ using Shape = SlowSurface::Shape;
 using Feel = SlowSurface::Feel;
 using Way = std::vector<std::pair<double, Vector3d>>;
 
-app::ArmFile phantom() {
-  auto arm = app::read_arm_file(std::string(THIMBLE_SOURCE_DIR) + "/app/arms/vintage_phantom.yaml");
+scene::ArmFile phantom() {
+  auto arm =
+      scene::read_arm_file(std::string(THIMBLE_SOURCE_DIR) + "/app/arms/vintage_phantom.yaml");
   if (!arm) throw std::runtime_error(arm.error().message);
   arm->simulated.hand.tremor_amplitude = 0;
   return *arm;
@@ -68,12 +69,12 @@ struct Felt {
   bool fault = false;
 };
 
-double carried(const app::ArmFile& arm) {
+double carried(const scene::ArmFile& arm) {
   return app::carried_by(arm, app::loop_times(arm, 1000), 800, 0).stiffness_exact;
 }
 
-Felt run(const app::ArmFile& arm, SlowSide& slow, Law law, const Way& way, double duration) {
-  auto simulation = app::ArmSimulation::make(arm, way);
+Felt run(const scene::ArmFile& arm, SlowSide& slow, Law law, const Way& way, double duration) {
+  auto simulation = scene::ArmSimulation::make(arm, way);
   if (!simulation) throw std::runtime_error(simulation.error().message);
   driver::VirtualClock clock;
   auto device = driver::Device::open((*simulation)->wire(clock), (*simulation)->protocol(),
@@ -131,7 +132,7 @@ struct Throw {
 
 /// Lets the hand wish itself onto the surface from `height` (m) above, by its spring; as in hard
 /// case 7 it stays there, so that spring and damper act during the impact.
-Throw throw_from(double height, const app::ArmFile& arm, const SlowSurface& surface, double phase,
+Throw throw_from(double height, const scene::ArmFile& arm, const SlowSurface& surface, double phase,
                  Law law, double silent_from = 0, double silent_to = 0) {
   SlowSide slow(surface, phase);
   slow.silent_from_ns = static_cast<std::int64_t>(1e9 * silent_from);
@@ -162,8 +163,8 @@ Throw throw_from(double height, const app::ArmFile& arm, const SlowSurface& surf
 constexpr std::array kHeights{0.001, 0.003, 0.01, 0.03};  // m: 0.03 to 1.1 m/s
 
 TEST(HardCase40, ThrownAtItTheTipNeverComesBackFaster) {
-  const app::ArmFile arm = phantom();
-  app::ArmFile loose = arm;
+  const scene::ArmFile arm = phantom();
+  scene::ArmFile loose = arm;
   loose.simulated.hand.damping /= 10;
   double most = 0, most_over_direct = 0, fastest = 0;
   for (const Feel feel : {Feel::kEven, Feel::kStiffening, Feel::kSoftening}) {
@@ -196,7 +197,7 @@ TEST(HardCase40, ThrownAtItTheTipNeverComesBackFaster) {
 }
 
 TEST(HardCase40, NorIfTheSlowSideFallsSilentInTheMiddle) {
-  const app::ArmFile arm = phantom();
+  const scene::ArmFile arm = phantom();
   double most = 0;
   for (const Feel feel : {Feel::kEven, Feel::kStiffening, Feel::kSoftening}) {
     for (const double height : kHeights) {
@@ -215,7 +216,7 @@ TEST(HardCase40, NorIfTheSlowSideFallsSilentInTheMiddle) {
 }
 
 TEST(HardCase40, GuardHeldForceComesBackFaster) {
-  const app::ArmFile arm = phantom();
+  const scene::ArmFile arm = phantom();
   double most = 0;
   for (const double height : kHeights) {
     for (int phase = 0; phase < 4; ++phase) {
@@ -229,7 +230,7 @@ TEST(HardCase40, GuardHeldForceComesBackFaster) {
 
 /// Presses on a plane of this stiffness and tells how far the tip swings in the last 0.3 s, m.
 double pressed_swing(double stiffness, Law law) {
-  const app::ArmFile arm = phantom();
+  const scene::ArmFile arm = phantom();
   SlowSide slow({.stiffness = stiffness});
   const Way way{{0, {0, 0, 0.002}}, {kBegin, {0, 0, 0.002}}, {0.5, {0, 0, -0.006}}};
   const Felt done = run(arm, slow, law, way, 2.5);
@@ -243,7 +244,7 @@ double pressed_swing(double stiffness, Law law) {
 }
 
 TEST(HardCase40, GuardHeldForceObeysTheSlowPeriodAndAModelTheServos) {
-  const app::ArmFile arm = phantom();
+  const scene::ArmFile arm = phantom();
   const auto& simulated = arm.simulated;
   // Computed for a whole period, then held for one: a delay of T, and the wire's.
   const double period = 1.0 / 60;

@@ -11,12 +11,12 @@
 #include <limits>
 #include <string>
 
-#include "energy_choice.h"
-#include "scene_file.h"
-#include "stability_laws.h"
+#include "stability/stability_laws.h"
 #include "support/hard_case.h"
 #include "support/random.h"
 #include "support/wall_rig.h"
+#include "thimble/scene/energy_choice.h"
+#include "thimble/scene/scene_file.h"
 
 namespace thimble {
 namespace {
@@ -62,9 +62,10 @@ TEST(HardCase01, StiffnessLimitIsTheLatencyBudgetAtAnyRateAndDelay) {
       wall.two_sided = true;
       wall.period_ns = period_ns;
       wall.delay_ns = half_periods * period_ns / 2;
-      const double latency = app::latency_of({.period = static_cast<double>(period_ns) * 1e-9,
-                                              .delay = static_cast<double>(wall.delay_ns) * 1e-9});
-      const double plain = app::stiffness_limit(1, latency);
+      const double latency =
+          scene::latency_of({.period = static_cast<double>(period_ns) * 1e-9,
+                             .delay = static_cast<double>(wall.delay_ns) * 1e-9});
+      const double plain = scene::stiffness_limit(1, latency);
       const double law = app::late_stiffness_limit(1, latency, kMass);
       std::array<double, 2> grown{};
       for (int i = 0; i < 2; ++i) {
@@ -137,8 +138,8 @@ TEST(HardCase02, JitterCostsWhatTheMeanSquareOfThePeriodSays) {
     // Seldom long gaps of a stiff wall are beyond the law (K T_gap^2 / m <= 0.5): there b is less.
     const double viscous = jitter == Jitter::kDropouts ? 0.1 : 0.5;
     const double latency =
-        app::latency_of({.period = mean, .period_spread = std::sqrt(square - mean * mean)});
-    const double law = app::stiffness_limit(viscous, latency);
+        scene::latency_of({.period = mean, .period_spread = std::sqrt(square - mean * mean)});
+    const double law = scene::stiffness_limit(viscous, latency);
     const double low = jittered_growth(jitter, 0.94 * law, viscous, ticks);
     const double high = jittered_growth(jitter, 1.06 * law, viscous, ticks);
     const double edge = edge_between(0.94, low, 1.06, high);
@@ -364,8 +365,8 @@ TEST(HardCase07, AFreeMassComesBackFromAWallAsTheLawSays) {
         wall.period_ns = period_ns;
         wall.delay_ns = delay * period_ns;
         const double latency =
-            app::latency_of({.period = static_cast<double>(period_ns) * 1e-9,
-                             .delay = static_cast<double>(wall.delay_ns) * 1e-9});
+            scene::latency_of({.period = static_cast<double>(period_ns) * 1e-9,
+                               .delay = static_cast<double>(wall.delay_ns) * 1e-9});
         double sum = 0;
         for (int i = 0; i < 200; ++i) sum += restitution(wall, 0.1, (i + 0.5) / 200);
         const double law = app::late_restitution(stiffness, 0.005, kMass, latency);
@@ -390,10 +391,10 @@ TEST(HardCase07, ImpactOnAnyShippedSurfaceNeverGainsSpeedAtAnyPhase) {
   for (const auto& entry :
        std::filesystem::directory_iterator(std::string(THIMBLE_SOURCE_DIR) + "/app/scenes")) {
     if (entry.path().extension() != ".yaml") continue;
-    const auto scene = app::read_scene(entry.path(), THIMBLE_MESHES);
+    const auto scene = scene::read_scene(entry.path(), THIMBLE_MESHES);
     if (!scene) continue;  // a mesh is not installed; the walls of other scenes are the same
-    const app::ArmFile& arm = scene->arm;
-    for (const app::SceneObject& object : scene->objects) {
+    const scene::ArmFile& arm = scene->arm;
+    for (const scene::SceneObject& object : scene->objects) {
       if (object.build_field) continue;
       ++surfaces;
       Wall wall{.plant = arm.simulated.plant, .hand = arm.simulated.hand};
@@ -403,7 +404,7 @@ TEST(HardCase07, ImpactOnAnyShippedSurfaceNeverGainsSpeedAtAnyPhase) {
       wall.encoder_step = kStep;
       wall.velocity_corner = arm.velocity_corner_frequency;
       wall.period_ns = std::llround(1e9 / scene->rate);
-      wall.delay_ns = std::llround(1e9 * app::loop_delay(arm));
+      wall.delay_ns = std::llround(1e9 * scene::loop_delay(arm));
       for (const double speed : {0.05, 0.1, 0.3, 1.0}) {
         for (int i = 0; i < 200; ++i) {
           most = std::max(most, restitution(wall, speed, (i + 0.5) / 200));

@@ -10,7 +10,6 @@
 
 #include <gtest/gtest.h>
 
-#include "session.h"
 #include "share/describe_scene.h"
 #include "share/live_control.h"
 #include "share/live_knobs.h"
@@ -19,11 +18,12 @@
 #include "support/run_hash.h"
 #include "support/scratch.h"
 #include "support/shipped_scene.h"
+#include "thimble/session/session.h"
 
 namespace thimble {
 namespace {
 
-using app::SessionOptions;
+using session::SessionOptions;
 
 std::filesystem::path shipped(const std::string& name) {
   return std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/scenes" / (name + ".yaml");
@@ -43,9 +43,9 @@ std::filesystem::path rubber_that_does_not_jump() {
   return path;
 }
 
-std::unique_ptr<app::Session> open(const std::filesystem::path& scene,
-                                   const SessionOptions& options) {
-  auto opened = app::Session::open(scene, options);
+std::unique_ptr<session::Session> open(const std::filesystem::path& scene,
+                                       const SessionOptions& options) {
+  auto opened = session::Session::open(scene, options);
   if (!opened) {
     ADD_FAILURE() << opened.error().message;
     return nullptr;
@@ -53,11 +53,11 @@ std::unique_ptr<app::Session> open(const std::filesystem::path& scene,
   return std::move(opened).value();
 }
 
-std::unique_ptr<app::SharedReader> reader_of(app::Session& session) {
-  return app::SharedReader::over(session.shared()->memory().again().value()).value();
+std::unique_ptr<session::SharedReader> reader_of(session::Session& session) {
+  return session::SharedReader::over(session.shared()->memory().again().value()).value();
 }
 
-std::uint64_t hash_of(const app::Session& session) {
+std::uint64_t hash_of(const session::Session& session) {
   support::RunHash hash;
   for (const auto& row : session.trace().rows()) hash.add(row);
   return hash.value();
@@ -65,10 +65,10 @@ std::uint64_t hash_of(const app::Session& session) {
 
 /// Is one copy of a scene's force law with its knobs.
 struct Copy {
-  explicit Copy(const app::Scene& scene)
-      : objects(app::SceneObjects::build(scene).value()), knobs(scene, objects->touch()) {}
-  std::unique_ptr<app::SceneObjects> objects;
-  app::LiveKnobs knobs;
+  explicit Copy(const scene::Scene& scene)
+      : objects(scene::SceneObjects::build(scene).value()), knobs(scene, objects->touch()) {}
+  std::unique_ptr<scene::SceneObjects> objects;
+  session::LiveKnobs knobs;
 };
 
 driver::DeviceState state_of(const driver::TickRecord& row, double dt) {
@@ -106,14 +106,14 @@ Turned turn(const std::filesystem::path& scene_file, const std::string& knob_nam
   const auto session = open(scene_file, options);
   if (!session) return turned;
   session->run(std::atomic<bool>{false});
-  const app::Scene& scene = session->scene();
+  const scene::Scene& scene = session->scene();
   Copy now(scene), before(scene), plain(scene);
 
-  app::SharedScene described = app::describe_scene(scene, *now.objects, "test");
+  session::SharedScene described = session::describe_scene(scene, *now.objects, "test");
   described.period_ns = session->period_ns();
   described.knobs = now.knobs.described();
-  const auto shared = app::SharedRun::create("", described, 10).value();
-  const auto reader = app::SharedReader::over(shared->memory().again().value()).value();
+  const auto shared = session::SharedRun::create("", described, 10).value();
+  const auto reader = session::SharedReader::over(shared->memory().again().value()).value();
   std::size_t knob = described.knobs.size();
   for (std::size_t i = 0; i < described.knobs.size(); ++i) {
     if (described.knobs[i].name == knob_name) knob = i;
@@ -148,7 +148,7 @@ TEST(LiveKnobs, NeverStepTheForceWhileTheyAreTurnedFromEndToEnd) {
 #if defined(__SANITIZE_THREAD__)
   GTEST_SKIP() << "no threads meet in it";
 #endif
-  const double most = app::LiveKnobs::kForceRate * 1e-3;  // N in a tick of 1 kHz
+  const double most = session::LiveKnobs::kForceRate * 1e-3;  // N in a tick of 1 kHz
   const std::filesystem::path rubber = rubber_that_does_not_jump();
   for (const auto& [scene, knob] :
        {std::pair(rubber, "ball: stiffness"), std::pair(rubber, "ball: damping"),
@@ -263,7 +263,7 @@ TEST(LiveControl, ShowsShapedAndMovedObjectsWhereTheyAre) {
   const auto block = open(shipped("floating_block"), options);
   const auto watcher = reader_of(*block);
   block->run(std::atomic<bool>{false});
-  app::ScenePoses seen, real;
+  scene::ScenePoses seen, real;
   ASSERT_TRUE(watcher->poses(seen));
   ASSERT_TRUE(block->poses().load(real));
   EXPECT_EQ(seen.tick, real.tick);
@@ -280,7 +280,7 @@ TEST(LiveControl, APauseInVirtualTimeChangesNoBit) {
   const auto reader = reader_of(*paused);
   reader->ask_pause(true);
   std::thread servo([&] { paused->run(std::atomic<bool>{false}); });
-  while (reader->state() != app::RunState::kPaused) {
+  while (reader->state() != session::RunState::kPaused) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   const std::uint64_t ticks = reader->counters().ticks;
@@ -340,7 +340,7 @@ TEST(LiveControl, APauseFadesTheForceOutAndInWithoutAStep) {
   const auto session = open(shipped("rubber"), options);
   const auto reader = reader_of(*session);
   Copy copy(session->scene());
-  app::LiveControl control(session->scene(), copy.objects->touch(), nullptr, true);
+  session::LiveControl control(session->scene(), copy.objects->touch(), nullptr, true);
   std::atomic<bool> never{false};
   control.join(*session->shared(), false, never);
   // A tip that has come into the ball from above and rests there.
@@ -359,7 +359,7 @@ TEST(LiveControl, APauseFadesTheForceOutAndInWithoutAStep) {
   };
   for (int i = 0; i < 100; ++i) full = before = tick(0.02 - 1.5e-4 * i);
   ASSERT_GT(full, 1);
-  const double most = 1.001 * full * state.dt / app::LiveControl::kFade;
+  const double most = 1.001 * full * state.dt / session::LiveControl::kFade;
   for (const bool pause : {true, false}) {
     reader->ask_pause(pause);
     for (int i = 0; i < 310; ++i) {
@@ -368,13 +368,13 @@ TEST(LiveControl, APauseFadesTheForceOutAndInWithoutAStep) {
       before = force;
     }
     EXPECT_EQ(before, pause ? 0 : full);
-    EXPECT_EQ(reader->state(), pause ? app::RunState::kPaused : app::RunState::kRunning);
+    EXPECT_EQ(reader->state(), pause ? session::RunState::kPaused : session::RunState::kRunning);
   }
 }
 
 TEST(LiveControl, APauseInRealTimeLetsTheHandStandStillWithoutForce) {
-  app::SessionOptions options;
-  options.clock = app::ClockKind::kWall;
+  session::SessionOptions options;
+  options.clock = session::ClockKind::kWall;
   options.share = true;
   options.duration = 30;
   const auto session = open(shipped("rubber"), options);
@@ -388,14 +388,14 @@ TEST(LiveControl, APauseInRealTimeLetsTheHandStandStillWithoutForce) {
   };
   // Wall time is waited for here, and never judged: a fault by a machine that pauses ends the run.
   const auto wait_for = [&](auto condition) {
-    for (int i = 0; i < 2000 && !condition() && reader->state() != app::RunState::kEnded; ++i) {
+    for (int i = 0; i < 2000 && !condition() && reader->state() != session::RunState::kEnded; ++i) {
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
   };
   wait_for([&] { return force() > 0.3; });
   reader->ask_pause(true);
-  wait_for([&] { return reader->state() == app::RunState::kPaused && force() == 0; });
-  const bool faulty = reader->state() == app::RunState::kEnded;
+  wait_for([&] { return reader->state() == session::RunState::kPaused && force() == 0; });
+  const bool faulty = reader->state() == session::RunState::kEnded;
   if (!faulty) {
     EXPECT_EQ(force(), 0);
     driver::TickRecord held;

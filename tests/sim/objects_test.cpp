@@ -4,16 +4,16 @@
 #include <filesystem>
 
 #include "lost_contacts.h"
-#include "session.h"
+#include "thimble/session/session.h"
 
 namespace thimble {
 namespace {
 
 TEST(SeveralObjects, AreTouchedOneAfterTheOtherEachWithItsOwnStiffness) {
-  const auto opened = app::Session::open(
+  const auto opened = session::Session::open(
       std::filesystem::path(THIMBLE_SOURCE_DIR) / "tests/data/scenes/two_boxes.yaml", {});
   ASSERT_TRUE(opened) << opened.error().message;
-  app::Session& session = **opened;
+  session::Session& session = **opened;
   ASSERT_EQ(session.run(std::atomic<bool>{false}), driver::ServoEnd::kDone);
 
   std::size_t ticks_on[2] = {0, 0};
@@ -34,7 +34,7 @@ TEST(SeveralObjects, AreTouchedOneAfterTheOtherEachWithItsOwnStiffness) {
   }
   EXPECT_GT(ticks_on[0], 300u);
   EXPECT_GT(ticks_on[1], 300u);
-  EXPECT_EQ(app::count_lost_contacts(session.trace().rows(), session.touch()), 0u);
+  EXPECT_EQ(session::count_lost_contacts(session.trace().rows(), session.touch()), 0u);
 }
 
 }  // namespace

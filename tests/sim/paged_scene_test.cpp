@@ -8,10 +8,10 @@
 #include <string>
 
 #include "lost_contacts.h"
-#include "report.h"
-#include "ring_pages.h"
-#include "session.h"
+#include "report/report.h"
+#include "studies/ring_pages.h"
 #include "support/scratch.h"
+#include "thimble/session/session.h"
 
 namespace thimble {
 namespace {
@@ -37,22 +37,22 @@ std::filesystem::path scene(const std::string& object_lines, const std::string& 
 }
 
 std::string refusal(const std::string& object_lines, const std::string& station) {
-  const auto opened = app::Session::open(scene(object_lines, station), {});
+  const auto opened = session::Session::open(scene(object_lines, station), {});
   return opened ? "" : opened.error().message;
 }
 
 TEST(PagedScene, IsTouchedFromTheDiskTheSameInEveryRun) {
   std::vector<std::array<double, 3>> forces;
   for (int run = 0; run < 2; ++run) {
-    const auto opened = app::Session::open(scene("", ""), {});
+    const auto opened = session::Session::open(scene("", ""), {});
     ASSERT_TRUE(opened) << opened.error().message;
-    app::Session& session = **opened;
+    session::Session& session = **opened;
     ASSERT_EQ(session.run(std::atomic<bool>{false}), driver::ServoEnd::kDone);
     const auto rows = session.trace().rows();
     const auto touching =
         std::count_if(rows.begin(), rows.end(), [](const auto& row) { return row.in_contact; });
     EXPECT_GT(touching, 1000);
-    EXPECT_EQ(app::count_lost_contacts(rows, session.touch()), 0u);
+    EXPECT_EQ(session::count_lost_contacts(rows, session.touch()), 0u);
     ASSERT_TRUE(session.paging().has_value());
     EXPECT_EQ(session.paging()->misses, 0u);
     EXPECT_GE(session.paging()->loads, 4u);
@@ -83,12 +83,12 @@ TEST(PagedScene, RefusesWhatNeedsTheWholeMeshWithASentence) {
 }
 
 TEST(PagedScene, IsTouchedOnTheWallClockWithALoaderOfItsOwn) {
-  app::SessionOptions options;
-  options.clock = app::ClockKind::kWall;
+  session::SessionOptions options;
+  options.clock = session::ClockKind::kWall;
   options.duration = 1.2;
-  const auto opened = app::Session::open(scene("", ""), options);
+  const auto opened = session::Session::open(scene("", ""), options);
   ASSERT_TRUE(opened) << opened.error().message;
-  app::Session& session = **opened;
+  session::Session& session = **opened;
   const driver::ServoEnd end = session.run(std::atomic<bool>{false});
   // A machine may be too busy for the loop; nothing else may end it.
   EXPECT_TRUE(end == driver::ServoEnd::kDone || end == driver::ServoEnd::kFault);

@@ -11,10 +11,10 @@
 
 #include "lost_contacts.h"
 #include "mesh/adjacency.h"
-#include "session.h"
 #include "support/heap_guard.h"
 #include "support/run_hash.h"
 #include "support/shipped_scene.h"
+#include "thimble/session/session.h"
 
 // Every scene without a scanned mesh that comes with the program, from the wire up.
 
@@ -33,7 +33,7 @@ void PrintTo(const SceneRun& scene, std::ostream* out) {
   *out << scene.name;
 }
 
-std::uint64_t hash_of(const app::Session& session) {
+std::uint64_t hash_of(const session::Session& session) {
   support::RunHash hash;
   for (const auto& row : session.trace().rows()) hash.add(row);
   for (const Eigen::Vector3d& p : session.mesh_now().vertices) {
@@ -60,7 +60,7 @@ TEST_P(ShippedScene, RunsForItsWholeTimeAlikeEachTimeWithoutAFaultALostContactOr
     EXPECT_EQ(support::heap_calls_of([&] { end = session->run(std::atomic<bool>{false}); }), 0);
     EXPECT_EQ(end, driver::ServoEnd::kDone);
     EXPECT_EQ(session->device().fault(), driver::Fault::kNone);
-    EXPECT_EQ(app::count_lost_contacts(session->trace().rows(), session->touch()), 0u);
+    EXPECT_EQ(session::count_lost_contacts(session->trace().rows(), session->touch()), 0u);
     EXPECT_GT(session->statistics().force_max(), 0.3);
     EXPECT_LT(session->statistics().force_max(), session->scene().arm.limits.force_max);
     // What an ideal texture or field does not do, a loop of 1 kHz with a delay does a little
@@ -145,10 +145,10 @@ TEST(SoftCoarse, IsBoundedAtATenthAndAtTenTimesItsStiffness) {
         std::filesystem::temp_directory_path() /
         ("thimble_soft_" + std::string(times) + "_" + std::to_string(getpid()) + ".yaml");
     std::ofstream(file) << changed;
-    auto opened = app::Session::open(file, {});
+    auto opened = session::Session::open(file, {});
     std::filesystem::remove(file);
     ASSERT_TRUE(opened) << opened.error().message;
-    app::Session& session = **opened;
+    session::Session& session = **opened;
     EXPECT_EQ(session.run(std::atomic<bool>{false}), driver::ServoEnd::kDone);
     EXPECT_EQ(session.device().fault(), driver::Fault::kNone);
     const render::BodyPatch& dent = session.dents()->deepest();

@@ -13,10 +13,10 @@
 #include <thread>
 #include <vector>
 
-#include "resident_memory.h"
-#include "session.h"
+#include "studies/resident_memory.h"
 #include "support/random.h"
 #include "support/run_hash.h"
+#include "thimble/session/session.h"
 
 namespace thimble {
 namespace {
@@ -52,12 +52,13 @@ class Wanderer {
  public:
   static constexpr std::uint64_t kTicksPerPlace = 300;
 
-  Wanderer(app::Session& session, std::uint64_t seed) : session_(session), random_(seed) {
-    for (const app::HandWaypoint& waypoint : session.scene().hand) places_.push_back(waypoint.p_W);
+  Wanderer(session::Session& session, std::uint64_t seed) : session_(session), random_(seed) {
+    for (const scene::HandWaypoint& waypoint : session.scene().hand)
+      places_.push_back(waypoint.p_W);
   }
   driver::ForceCommand operator()(const driver::DeviceState& state) noexcept {
     if (state.tick % kTicksPerPlace == 0) {
-      const app::ArmFile& arm = session_.scene().arm;
+      const scene::ArmFile& arm = session_.scene().arm;
       const Vector3d place = places_[random_.bits() % places_.size()] + random_.in_box(0.012);
       const Vector3d inside =
           place.cwiseMax(0.9 * arm.workspace.min_W).cwiseMin(0.9 * arm.workspace.max_W);
@@ -67,7 +68,7 @@ class Wanderer {
   }
 
  private:
-  app::Session& session_;
+  session::Session& session_;
   support::Random random_;
   std::vector<Vector3d> places_;
 };
@@ -101,17 +102,17 @@ class Witness {
 };
 
 Soaked soak(const std::string& scene, std::uint64_t ticks) {
-  app::SessionOptions options;
+  session::SessionOptions options;
   options.mesh_folder = THIMBLE_MESHES;
   options.hand_by_mouse = true;  // waits to be led
   options.duration = 1;
-  auto opened = app::Session::open(
+  auto opened = session::Session::open(
       std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/scenes" / (scene + ".yaml"), options);
   if (!opened) {
     ADD_FAILURE() << opened.error().message;
     return {};
   }
-  app::Session& session = **opened;
+  session::Session& session = **opened;
   Wanderer wanderer(session, 404);
   Witness witness(ticks, session.scene().arm.limits.force_max);
   driver::run_servo(session.device(), session.clock(), driver::ForceLaw(wanderer),

@@ -173,13 +173,17 @@ TEST_P(UsbTouch, KeepsTheForceWithinItsLimitUnderEveryFault) {
                     (fault == usb::FaultKind::kStale && virtual_arm_.name == "woodenhaptics")
               // An arm that answers only is silent when its messages are lost.
               : fault == usb::FaultKind::kLost && virtual_arm_.name != "woodenhaptics";
+      // A HID board that answers only does not listen as long as nobody takes its report: the zero
+      // does not reach it, and what it took before stands until its own watchdog acts.
+      const bool deaf = virtual_arm_.name.starts_with("polhem") &&
+                        (fault == usb::FaultKind::kStall || fault == usb::FaultKind::kSilence);
       for (int i = 0; i < 150; ++i) {
         tick();
         ASSERT_TRUE(std::isfinite(force_));
         ASSERT_LE(force_, usb_test::check_settings().limits.force_max + 1e-9);
         // 20 ms of silence and the tick in which it is noticed.
         if (stops && i > 22 && i < 100) {
-          ASSERT_EQ(force_, 0) << i;
+          ASSERT_TRUE(force_ == 0 || (deaf && !device_->zero_assured())) << i << " " << force_;
         }
       }
       if (stops) {

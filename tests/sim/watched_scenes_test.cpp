@@ -10,8 +10,8 @@
 #include <memory>
 #include <string>
 
-#include "session.h"
 #include "support/scratch.h"
+#include "thimble/session/session.h"
 
 namespace thimble {
 namespace {
@@ -27,8 +27,8 @@ TEST_P(WatchedScene, IsTakenForABrokenArmWithNoHand) {
   for (const Grip& grip :
        {Grip{"soft", 0.01, 100, 1, 5e-5}, Grip{"firm", 0.05, 1000, 10, 5e-5},
         Grip{"stiff and without damping", 0.025, 1000, 1, 0}, Grip{"heavy", 0.1, 300, 3, 0}}) {
-    app::SessionOptions options;
-    options.adjust = [&](app::Scene& scene) {
+    session::SessionOptions options;
+    options.adjust = [&](scene::Scene& scene) {
       device_sim::HandSettings& hand = scene.arm.simulated.hand;
       hand.mass = grip.mass;
       hand.stiffness = grip.stiffness;
@@ -36,9 +36,9 @@ TEST_P(WatchedScene, IsTakenForABrokenArmWithNoHand) {
       hand.tremor_amplitude = grip.tremor;
     };
     const auto file = std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/scenes" / GetParam();
-    auto opened = app::Session::open(file.string() + ".yaml", options);
+    auto opened = session::Session::open(file.string() + ".yaml", options);
     ASSERT_TRUE(opened) << opened.error().message;
-    app::Session& session = **opened;
+    session::Session& session = **opened;
     session.run(std::atomic<bool>{false});
     const driver::Fault fault = session.device().fault();
     EXPECT_TRUE(fault == driver::Fault::kNone || fault == driver::Fault::kOverSpeed)
@@ -58,7 +58,7 @@ INSTANTIATE_TEST_SUITE_P(ByName, WatchedScene,
 /// A plate of 800 N/m under a hand that presses at 0.1 m/s, with an arm file and its own motors.
 class PressedPlate : public ::testing::TestWithParam<const char*> {
  protected:
-  static std::unique_ptr<app::Session> open(bool reversed) {
+  static std::unique_ptr<session::Session> open(bool reversed) {
     const auto folder = support::scratch_folder();
     const auto arm = std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms" /
                      (std::string(GetParam()) + ".yaml");
@@ -67,11 +67,11 @@ class PressedPlate : public ::testing::TestWithParam<const char*> {
         << "\nduration: 2\nobjects:\n  - {name: plate, plane: {normal: [0, 0, 1]}, stiffness: 800, "
            "damping: 0}\nhand:\n  path: [{t: 0, at: [0, 0, 0.01]}, {t: 0.5, at: [0, 0, 0.01]}, "
            "{t: 0.7, at: [0, 0, -0.01]}]\n";
-    app::SessionOptions options;
-    options.adjust = [reversed](app::Scene& scene) {
+    session::SessionOptions options;
+    options.adjust = [reversed](scene::Scene& scene) {
       if (reversed) scene.arm.simulated.firmware.wiring.motor_gain = {-1, -1, -1};
     };
-    auto opened = app::Session::open(folder / "plate.yaml", options);
+    auto opened = session::Session::open(folder / "plate.yaml", options);
     if (!opened) {
       ADD_FAILURE() << opened.error().message;
       return nullptr;

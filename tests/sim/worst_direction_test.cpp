@@ -8,11 +8,11 @@
 #include <cmath>
 #include <string>
 
-#include "arm_simulation.h"
-#include "stability_laws.h"
+#include "stability/stability_laws.h"
+#include "stability/tuning.h"
 #include "support/hard_case.h"
 #include "support/random.h"
-#include "tuning.h"
+#include "thimble/scene/arm_simulation.h"
 
 // The rule for three dimensions [STABILITY 9] against simulation on the real kinematics, at poses
 // all over the workspace.
@@ -23,22 +23,22 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-ArmFile shipped(const std::string& name) {
-  auto arm = read_arm_file(std::string(THIMBLE_SOURCE_DIR) + "/app/arms/" + name + ".yaml");
+scene::ArmFile shipped(const std::string& name) {
+  auto arm = scene::read_arm_file(std::string(THIMBLE_SOURCE_DIR) + "/app/arms/" + name + ".yaml");
   if (!arm) throw std::runtime_error(arm.error().message);
   return *arm;
 }
 
-Vector3d joint_steps(const ArmFile& arm) {
+Vector3d joint_steps(const scene::ArmFile& arm) {
   return {arm.model.step(0), arm.model.step(1), arm.model.step(2)};
 }
 
 /// Finds the largest 2 c / K at which somebody who steps from `p_W` along `n_W` across one edge of
 /// each encoder and back gains energy, m: the step that the law must know of. The arm reads joint
 /// angles rounded down, and the wall answers where it reads the tip.
-double adversary_step(const ArmFile& arm, const Vector3d& p_W, const Vector3d& n_W) {
-  const auto q = joint_angles_at(arm, p_W);
-  const auto J = jacobian_at(arm, p_W);
+double adversary_step(const scene::ArmFile& arm, const Vector3d& p_W, const Vector3d& n_W) {
+  const auto q = scene::joint_angles_at(arm, p_W);
+  const auto J = scene::jacobian_at(arm, p_W);
   if (!q || !J) return 0;
   // A short step along n turns each joint one way; each encoder stands just before the edge that it
   // meets on that way.
@@ -55,14 +55,14 @@ double adversary_step(const ArmFile& arm, const Vector3d& p_W, const Vector3d& n
 
 TEST(HardCase04, NoAdversaryFindsALongerStepThanTheRuleInThreeDimensions) {
   for (const char* const name : {"vintage_phantom", "woodenhaptics"}) {
-    const ArmFile arm = shipped(name);
+    const scene::ArmFile arm = shipped(name);
     support::Random random(9);
     double worst = 0, worst_column = 0, tightest = 0;
     int poses = 0;
-    for (const Vector3d& p_W : points_of_workspace(arm, 5)) {
-      const auto J = jacobian_at(arm, p_W);
+    for (const Vector3d& p_W : scene::points_of_workspace(arm, 5)) {
+      const auto J = scene::jacobian_at(arm, p_W);
       ASSERT_TRUE(J);
-      const double rule = tip_step(*J, joint_steps(arm));
+      const double rule = scene::tip_step(*J, joint_steps(arm));
       const double column =
           (J->cwiseAbs() * joint_steps(arm).asDiagonal()).colwise().sum().maxCoeff();
       double longest = 0;
@@ -116,15 +116,15 @@ TEST(HardCase01, StiffnessTimesLatencyUpToTheLeastDampingIsStableInThreeDimensio
   double lowest = 1e9, highest = 0;
   int poses = 0;
   for (const char* const name : {"vintage_phantom", "woodenhaptics"}) {
-    const ArmFile arm = shipped(name);
+    const scene::ArmFile arm = shipped(name);
     // Inertia and friction at the joints as different as a factor of ten.
     for (const Vector3d& mass : {Vector3d(1e-3, 1e-3, 1e-3), Vector3d(3e-3, 1e-3, 5e-4)}) {
       for (const Vector3d& damping : {Vector3d(4e-3, 4e-3, 4e-3), Vector3d(1e-3, 3e-3, 1e-2)}) {
-        for (const Vector3d& p_W : points_of_workspace(arm, 4)) {
-          const auto J = jacobian_at(arm, p_W);
+        for (const Vector3d& p_W : scene::points_of_workspace(arm, 4)) {
+          const auto J = scene::jacobian_at(arm, p_W);
           ASSERT_TRUE(J);
-          const TipLimits tip =
-              tip_limits(*J, mass.asDiagonal(), damping.asDiagonal(), joint_steps(arm));
+          const scene::TipLimits tip =
+              scene::tip_limits(*J, mass.asDiagonal(), damping.asDiagonal(), joint_steps(arm));
           double low = 0.1 * tip.damping / (period / 2), high = 100 * low;
           while (high > 1.001 * low) {
             const double middle = std::sqrt(low * high);
@@ -149,13 +149,13 @@ TEST(HardCase01, StiffnessTimesLatencyUpToTheLeastDampingIsStableInThreeDimensio
 TEST(WorstDirection, SingularPoseHasNoLimitsToOffer) {
   Matrix3d J = Matrix3d::Zero();
   J(0, 0) = J(1, 1) = 0.1;
-  EXPECT_EQ(tip_limits(J, Matrix3d::Identity(), Matrix3d::Identity(), {1, 1, 1}).damping, 0);
+  EXPECT_EQ(scene::tip_limits(J, Matrix3d::Identity(), Matrix3d::Identity(), {1, 1, 1}).damping, 0);
 }
 
 TEST(Tuning, FindsByLawWhatTheWholeWaySimulates) {
-  Scene scene;
+  scene::Scene scene;
   scene.arm = shipped("vintage_phantom");
-  SceneObject wall;
+  scene::SceneObject wall;
   wall.name = "wall";
   wall.stiffness = 800;
   wall.damping = 1;

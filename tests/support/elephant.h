@@ -10,8 +10,8 @@
 #include <string>
 #include <utility>
 
-#include "session.h"
 #include "support/scratch.h"
+#include "thimble/session/session.h"
 
 namespace thimble::support {
 
@@ -26,13 +26,13 @@ inline bool have_meshes() {
 }
 
 /// Opens the demo's scene on the virtual clock; fails the test if that cannot be done.
-inline std::unique_ptr<app::Session> open_elephant(std::optional<double> duration = {},
-                                                   std::optional<std::uint64_t> seed = {}) {
-  app::SessionOptions options;
+inline std::unique_ptr<session::Session> open_elephant(std::optional<double> duration = {},
+                                                       std::optional<std::uint64_t> seed = {}) {
+  session::SessionOptions options;
   options.duration = duration;
   options.seed = seed;
   options.mesh_folder = THIMBLE_MESHES;
-  auto session = app::Session::open(elephant_scene(), options);
+  auto session = session::Session::open(elephant_scene(), options);
   if (!session) {
     ADD_FAILURE() << session.error().message;
     return nullptr;
@@ -54,13 +54,13 @@ inline std::string elephant_text(const std::string& contact) {
 
 /// Opens a scene out of its text; nothing if that cannot be done. Why goes to `error`, or fails the
 /// test without one.
-inline std::unique_ptr<app::Session> open_elephant_text(const std::string& text,
-                                                        std::string* error = nullptr) {
+inline std::unique_ptr<session::Session> open_elephant_text(const std::string& text,
+                                                            std::string* error = nullptr) {
   const auto file = scratch_folder() / "elephant.yaml";
   std::ofstream(file) << text;
-  app::SessionOptions options;
+  session::SessionOptions options;
   options.mesh_folder = THIMBLE_MESHES;
-  auto session = app::Session::open(file, options);
+  auto session = session::Session::open(file, options);
   if (error != nullptr) *error = session ? "" : session.error().message;
   if (!session) {
     if (error == nullptr) ADD_FAILURE() << session.error().message;

@@ -7,14 +7,14 @@
 #include <string>
 #include <utility>
 
-#include "session.h"
+#include "thimble/session/session.h"
 
 namespace thimble::support {
 
 /// Opens a scene that comes with the program, on the virtual clock; fails the test if that cannot
 /// be done.
-inline std::unique_ptr<app::Session> open_shipped(const std::string& name) {
-  auto opened = app::Session::open(
+inline std::unique_ptr<session::Session> open_shipped(const std::string& name) {
+  auto opened = session::Session::open(
       std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/scenes" / (name + ".yaml"), {});
   if (!opened) {
     ADD_FAILURE() << opened.error().message;

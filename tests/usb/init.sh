@@ -47,6 +47,10 @@ unplug() {
   udevadm settle --timeout=20
 }
 
+# What a real arm may do stands in an installed arm file: here in the tester's own folder.
+mkdir -p /tmp/.config/thimble
+cp -r /data/app/arms /tmp/.config/thimble/arm_files
+
 for arm in $arms; do
   image=
   [ $arm = falcon ] && image=/etc/falcon.bin
@@ -88,7 +92,7 @@ for arm in $arms; do
     >/tmp/run.log 2>&1 && grep -qE "^$name .*(ready|unknown kind)" /tmp/run.log; then
     echo "PASS $arm as $name with thimble devices and thimble run"
   else
-    echo "FAIL $arm as $name with thimble devices and thimble run: $(cat /tmp/run.log)"
+    echo "FAIL $arm as $name with thimble devices and thimble run: $(tr '\n' ' ' </tmp/run.log)"
   fi
   usleep 300000
   as tester "usb_check fresh $arm $image"

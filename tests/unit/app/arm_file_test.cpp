@@ -1,4 +1,4 @@
-#include "arm_file.h"
+#include "thimble/scene/arm_file.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <string>
 
 #include "support/scratch.h"
-#include "watch_choice.h"
+#include "thimble/scene/watch_choice.h"
 
 namespace thimble::app {
 namespace {
@@ -29,14 +29,14 @@ std::string mistake_with(const std::string& piece, const std::string& by) {
   text.replace(at, piece.size(), by);
   const std::filesystem::path file = support::scratch_folder() / "thimble_arm_test.yaml";
   std::ofstream(file) << text;
-  const auto arm = read_arm_file(file);
+  const auto arm = scene::read_arm_file(file);
   return arm ? "" : arm.error().message;
 }
 
 TEST(ArmFile, ReadsTheShippedArmToTheLastConstant) {
-  const auto read = read_arm_file(kArm);
+  const auto read = scene::read_arm_file(kArm);
   ASSERT_TRUE(read.ok()) << read.error().message;
-  const ArmFile& arm = *read;
+  const scene::ArmFile& arm = *read;
   EXPECT_EQ(arm.name, "vintage_phantom");
   EXPECT_EQ(arm.model.geometry.length_b, 0.138);
   EXPECT_EQ(arm.model.geometry.length_c, 0.112);
@@ -63,7 +63,7 @@ TEST(ArmFile, ReadsTheShippedArmToTheLastConstant) {
 }
 
 TEST(ArmFile, HasItsHomeAtTheOriginOfTheWorld) {
-  const auto arm = read_arm_file(kArm);
+  const auto arm = scene::read_arm_file(kArm);
   ASSERT_TRUE(arm.ok());
   const driver::SerialArm& geometry = arm->model.geometry;
   // Home: A = 0, B = 90 degrees, C = 0, by the drawing in serial_arm.h.
@@ -72,23 +72,23 @@ TEST(ArmFile, HasItsHomeAtTheOriginOfTheWorld) {
 }
 
 TEST(ArmFile, CountsAQuarterTurnAsItsHomeCounts) {
-  const auto arm = read_arm_file(kArm);
+  const auto arm = scene::read_arm_file(kArm);
   ASSERT_TRUE(arm.ok());
   EXPECT_EQ(arm->model.encoders[1].counts_per_motor_turn * arm->model.drives[1].ratio / 4,
             arm->model.encoders[1].home_counts);
 }
 
 TEST(ArmFile, NamesTheGatesEnergyStageAndWhatItLeavesOpenFollowsFromTheArm) {
-  const auto arm = read_arm_file(kArm);
+  const auto arm = scene::read_arm_file(kArm);
   ASSERT_TRUE(arm.ok());
-  const auto own = energy_settings(*arm, 1000, {});
+  const auto own = scene::energy_settings(*arm, 1000, {});
   EXPECT_EQ(own.stage, driver::EnergyStage::kPassivity);
   EXPECT_EQ(own.mass, 0.075);
   EXPECT_EQ(own.delay_ticks, 1);
   EXPECT_DOUBLE_EQ(own.reservoir, 5.0 * 5 / (2 * 800));
   EXPECT_DOUBLE_EQ(own.slope, 0.005 / 0.0015);
-  EXPECT_EQ(energy_settings(*arm, 4000, {}).delay_ticks, 4);
-  EXPECT_EQ(energy_settings(*arm, 1000, driver::EnergyStage::kNone).stage,
+  EXPECT_EQ(scene::energy_settings(*arm, 4000, {}).delay_ticks, 4);
+  EXPECT_EQ(scene::energy_settings(*arm, 1000, driver::EnergyStage::kNone).stage,
             driver::EnergyStage::kNone);
   EXPECT_EQ(mistake_with("energy: passivity", "energy: none"), "");
   EXPECT_EQ(mistake_with("energy: passivity", "energy: bounding\n  energy_slope: 700"), "");
@@ -99,7 +99,8 @@ TEST(ArmFile, NamesTheGatesEnergyStageAndWhatItLeavesOpenFollowsFromTheArm) {
 TEST(ArmFile, NamesTheBoardsThatTheArmMayHave) {
   using driver::BoardKind;
   const auto boards = [](const char* name) {
-    const auto arm = read_arm_file(std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms" / name);
+    const auto arm =
+        scene::read_arm_file(std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms" / name);
     return arm ? arm->boards : std::vector<BoardKind>();
   };
   EXPECT_EQ(boards("woodenhaptics.yaml"), std::vector{BoardKind::kMbedHid8});
@@ -121,7 +122,7 @@ TEST(ArmFile, NamesTheBoardsThatTheArmMayHave) {
 }
 
 TEST(ArmFile, SaysWhatTheMotorsCarryForLongOrNothingOfIt) {
-  const auto read = read_arm_file(kArm);
+  const auto read = scene::read_arm_file(kArm);
   ASSERT_TRUE(read.ok()) << read.error().message;
   ASSERT_TRUE(read->heat.named());
   // 1.4 N at the home pose's tip through link and capstan, the data sheet's continuous force.
@@ -141,25 +142,25 @@ TEST(ArmFile, SaysWhatTheMotorsCarryForLongOrNothingOfIt) {
             std::string::npos);
   const auto folder = std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms";
   for (const char* name : {"polhem", "woodenhaptics", "woodenhaptics_teensy"}) {
-    const auto arm = read_arm_file(folder / (std::string(name) + ".yaml"));
+    const auto arm = scene::read_arm_file(folder / (std::string(name) + ".yaml"));
     ASSERT_TRUE(arm.ok()) << arm.error().message;
     EXPECT_TRUE(arm->heat.named()) << name;
   }
-  const auto falcon = read_arm_file(folder / "falcon.yaml");
+  const auto falcon = scene::read_arm_file(folder / "falcon.yaml");
   ASSERT_TRUE(falcon.ok());
   EXPECT_FALSE(falcon->heat.named());
 }
 
 TEST(ArmFile, SaysHowLongAForceIsHeldUnchangedAndHowHeavyTheTipIs) {
-  ArmFile arm = *read_arm_file(kArm);
-  EXPECT_EQ(motion_settings(arm, 1000).hold_most, 10);
-  EXPECT_EQ(motion_settings(arm, 1000).mass, 0.075);
-  EXPECT_EQ(motion_settings(arm, 1000).delay_ticks, 1);
-  EXPECT_EQ(motion_settings(arm, 4000).delay_ticks, 4);
+  scene::ArmFile arm = *scene::read_arm_file(kArm);
+  EXPECT_EQ(scene::motion_settings(arm, 1000).hold_most, 10);
+  EXPECT_EQ(scene::motion_settings(arm, 1000).mass, 0.075);
+  EXPECT_EQ(scene::motion_settings(arm, 1000).delay_ticks, 1);
+  EXPECT_EQ(scene::motion_settings(arm, 4000).delay_ticks, 4);
   arm.hold_unchanged = 2.5;
   arm.energy.mass = 0.06;
-  EXPECT_EQ(motion_settings(arm, 1000).hold_most, 2.5);
-  EXPECT_EQ(motion_settings(arm, 1000).mass, 0.06);
+  EXPECT_EQ(scene::motion_settings(arm, 1000).hold_most, 2.5);
+  EXPECT_EQ(scene::motion_settings(arm, 1000).mass, 0.06);
   EXPECT_NE(
       mistake_with("  stall: 0.02 ", "  hold_unchanged: 0\n  stall: 0.02 ").find("hold_unchanged"),
       std::string::npos);
@@ -194,16 +195,16 @@ TEST(ArmFile, RefusesLimitsThatProtectNobodyWithTheirLine) {
   };
   const Case cases[] = {
       {"force_max: 5 ", "force_max: 100 ",
-       ":41: force_max: expected at most what the arm declares, 5 N, found 100"},
+       ":45: force_max: expected at most what the arm declares, 5 N, found 100"},
       {"force_max: 5 ", "force_max: 5.01 ",
-       ":41: force_max: expected at most what the arm declares"},
-      {"soft_start: 0.3", "soft_start: 0", ":44: soft_start: expected a number from 0.05 to 10 s"},
-      {"soft_start: 0.3", "soft_start: 1e-9", ":44: soft_start: expected a number from 0.05"},
-      {"soft_start: 0.3", "soft_start: 0.049", ":44: soft_start: expected a number from 0.05"},
-      {"watchdog: 0.1 ", "watchdog: 10 ", ":46: watchdog: expected a number from 0.001 to 1 s"},
-      {"rise_max: 2000", "rise_max: 1e6", ":43: rise_max: expected a number from 1 to 100000 N/s"},
-      {"stall: 0.02 ", "stall: 0.1 ", ":45: stall: expected a shorter time than that of watchdog"},
-      {"force_max: 5 ", "force_max: .nan ", ":41: force_max: expected a number"},
+       ":45: force_max: expected at most what the arm declares"},
+      {"soft_start: 0.3", "soft_start: 0", ":48: soft_start: expected a number from 0.05 to 10 s"},
+      {"soft_start: 0.3", "soft_start: 1e-9", ":48: soft_start: expected a number from 0.05"},
+      {"soft_start: 0.3", "soft_start: 0.049", ":48: soft_start: expected a number from 0.05"},
+      {"watchdog: 0.1 ", "watchdog: 10 ", ":50: watchdog: expected a number from 0.001 to 1 s"},
+      {"rise_max: 2000", "rise_max: 1e6", ":47: rise_max: expected a number from 1 to 100000 N/s"},
+      {"stall: 0.02 ", "stall: 0.1 ", ":49: stall: expected a shorter time than that of watchdog"},
+      {"force_max: 5 ", "force_max: .nan ", ":45: force_max: expected a number"},
   };
   for (const Case& wrong : cases) {
     EXPECT_NE(mistake_with(wrong.piece, wrong.by).find(wrong.mistake), std::string::npos)

@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include "arm_file.h"
-#include "arm_simulation.h"
 #include "share/describe_scene.h"
+#include "thimble/scene/arm_file.h"
+#include "thimble/scene/arm_simulation.h"
 
 namespace thimble::app {
 namespace {
@@ -12,26 +12,26 @@ namespace {
 TEST(ArmLines, EndAtTheTipWithBarsOfTheirLengthInEveryPose) {
   for (const char* name : {"vintage_phantom", "woodenhaptics", "polhem", "falcon"}) {
     SCOPED_TRACE(name);
-    const auto arm = read_arm_file(std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms" /
-                                   (std::string(name) + ".yaml"));
+    const auto arm = scene::read_arm_file(std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms" /
+                                          (std::string(name) + ".yaml"));
     ASSERT_TRUE(arm) << arm.error().message;
-    const SharedScene::Arm described = describe_arm(*arm, "sim");
+    const session::SharedScene::Arm described = session::describe_arm(*arm, "sim");
     const Eigen::Vector3d middle = 0.5 * (arm->workspace.min_W + arm->workspace.max_W);
     std::vector<std::vector<double>> lengths;
     int poses = 0;
     for (int i = 0; i < 27; ++i) {
       const Eigen::Vector3d corner(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
       const Eigen::Vector3d p_WT = middle + 0.01 * corner;
-      const auto q = joint_angles_at(*arm, p_WT);
+      const auto q = scene::joint_angles_at(*arm, p_WT);
       if (!q) continue;
       ++poses;
       driver::TickRecord tick;
       tick.q = {q->x(), q->y(), q->z()};
       tick.p_WT = {p_WT.x(), p_WT.y(), p_WT.z()};
-      const auto lines = arm_lines(described, tick);
+      const auto lines = session::arm_lines(described, tick);
       EXPECT_LT((lines.front().back() - p_WT).norm(), 1e-9);
       std::vector<std::vector<double>> now;
-      for (const ArmLine& line : lines) {
+      for (const session::ArmLine& line : lines) {
         now.emplace_back();
         for (std::size_t k = 1; k < line.size(); ++k) {
           now.back().push_back((line[k] - line[k - 1]).norm());
@@ -39,7 +39,7 @@ TEST(ArmLines, EndAtTheTipWithBarsOfTheirLengthInEveryPose) {
       }
       if (lengths.empty()) lengths = now;
       // Bars are stiff. A leg of the Falcon ends on short links that are not drawn (delta_arm.h).
-      const double slack = described.shape == SharedArmShape::kDelta ? 0.03 : 1e-9;
+      const double slack = described.shape == session::SharedArmShape::kDelta ? 0.03 : 1e-9;
       ASSERT_EQ(now.size(), lengths.size());
       for (std::size_t line = 0; line < now.size(); ++line) {
         ASSERT_EQ(now[line].size(), lengths[line].size());

@@ -1,4 +1,4 @@
-#include "calibration.h"
+#include "thimble/scene/calibration.h"
 
 #include <gtest/gtest.h>
 
@@ -6,17 +6,17 @@
 #include <fstream>
 #include <tuple>
 
-#include "feel_check.h"
-#include "real_arm.h"
+#include "bringup/feel_check.h"
 #include "support/random.h"
 #include "support/scratch.h"
+#include "thimble/scene/real_arm.h"
 
 namespace thimble::app {
 namespace {
 
-ArmFile vintage() {
-  auto file =
-      read_arm_file(std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms/vintage_phantom.yaml");
+scene::ArmFile vintage() {
+  auto file = scene::read_arm_file(std::filesystem::path(THIMBLE_SOURCE_DIR) /
+                                   "app/arms/vintage_phantom.yaml");
   EXPECT_TRUE(file) << file.error().message;
   return std::move(file).value();
 }
@@ -28,7 +28,7 @@ class CalibrationTest : public ::testing::Test {
   }
 
   /// What an arm with this calibration reports with its tip at p_WT.
-  static driver::ArmReading reading_at(const ArmFile& truth, const Eigen::Vector3d& p_WT) {
+  static driver::ArmReading reading_at(const scene::ArmFile& truth, const Eigen::Vector3d& p_WT) {
     const auto q = truth.model.geometry.inverse(truth.R_WB.transpose() * (p_WT - truth.p_WB));
     EXPECT_TRUE(q);
     const Eigen::Vector3d counts = truth.model.exact_counts(*q);
@@ -42,19 +42,19 @@ class CalibrationTest : public ::testing::Test {
 };
 
 TEST_F(CalibrationTest, FindsHomeAndSignsOfAnyArmFromThreeMovements) {
-  const ArmFile file = vintage();
+  const scene::ArmFile file = vintage();
   support::Random random(111);
   for (int i = 0; i < 200; ++i) {
     // An arm whose encoders and motors are wired any way, switched on with its counters anywhere.
-    Calibration truth;
+    scene::Calibration truth;
     for (std::size_t k = 0; k < 3; ++k) {
       const int flip = random.bits() % 2 == 0 ? 1 : -1;
       truth.encoder_sign[k] = flip * static_cast<int>(file.model.encoders[k].sign);
       truth.motor_sign[k] = flip * static_cast<int>(file.model.drives[k].sign);
       truth.home_counts[k] = static_cast<std::int32_t>(random.uniform(-9000, 9000));
     }
-    ArmFile true_file = file;
-    apply(truth, true_file);
+    scene::ArmFile true_file = file;
+    scene::apply(truth, true_file);
     const Eigen::Vector3d home(0, 0, 0);  // the tip at home is the world's origin
     std::array<driver::ArmReading, 3> moved;
     for (int axis = 0; axis < 3; ++axis) {
@@ -64,7 +64,7 @@ TEST_F(CalibrationTest, FindsHomeAndSignsOfAnyArmFromThreeMovements) {
       moved[static_cast<std::size_t>(axis)] = reading_at(true_file, home + step);
     }
     const auto found =
-        find_calibration(file, driver::ArmKind::kPolhem, reading_at(true_file, home), moved);
+        scene::find_calibration(file, driver::ArmKind::kPolhem, reading_at(true_file, home), moved);
     ASSERT_TRUE(found) << found.error().message;
     EXPECT_EQ(found->encoder_sign, truth.encoder_sign);
     EXPECT_EQ(found->motor_sign, truth.motor_sign);
@@ -75,35 +75,37 @@ TEST_F(CalibrationTest, FindsHomeAndSignsOfAnyArmFromThreeMovements) {
 }
 
 TEST_F(CalibrationTest, RefusesMovementsThatSayNothing) {
-  const ArmFile file = vintage();
+  const scene::ArmFile file = vintage();
   const auto home = reading_at(file, {0, 0, 0});
-  const auto still = find_calibration(file, driver::ArmKind::kPolhem, home, {home, home, home});
+  const auto still =
+      scene::find_calibration(file, driver::ArmKind::kPolhem, home, {home, home, home});
   ASSERT_FALSE(still);
   EXPECT_NE(still.error().message.find("too little"), std::string::npos);
   const auto same = reading_at(file, {0.04, 0, 0});
-  const auto unclear = find_calibration(file, driver::ArmKind::kPolhem, home, {same, same, same});
+  const auto unclear =
+      scene::find_calibration(file, driver::ArmKind::kPolhem, home, {same, same, same});
   ASSERT_FALSE(unclear);
   EXPECT_NE(unclear.error().message.find("do not tell"), std::string::npos);
 }
 
 TEST_F(CalibrationTest, IsKeptPerArmAndComesBackUnchanged) {
-  const Calibration kept{
+  const scene::Calibration kept{
       .home_counts = {12, -7700, 0}, .encoder_sign = {-1, 1, -1}, .motor_sign = {1, -1, -1}};
-  EXPECT_FALSE(load_calibration("A/../B 1")->has_value());
-  ASSERT_TRUE(save_calibration("A/../B 1", kept));
-  EXPECT_EQ(calibration_file("A/../B 1").filename(), "A____B_1.yaml");
-  EXPECT_EQ(load_calibration("A/../B 1")->value(), kept);
-  EXPECT_FALSE(load_calibration("another")->has_value());
-  std::ofstream(calibration_file("A/../B 1")) << "home_counts: [1, 2]\n";
-  const auto wrong = load_calibration("A/../B 1");
+  EXPECT_FALSE(scene::load_calibration("A/../B 1")->has_value());
+  ASSERT_TRUE(scene::save_calibration("A/../B 1", kept));
+  EXPECT_EQ(scene::calibration_file("A/../B 1").filename(), "A____B_1.yaml");
+  EXPECT_EQ(scene::load_calibration("A/../B 1")->value(), kept);
+  EXPECT_FALSE(scene::load_calibration("another")->has_value());
+  std::ofstream(scene::calibration_file("A/../B 1")) << "home_counts: [1, 2]\n";
+  const auto wrong = scene::load_calibration("A/../B 1");
   ASSERT_FALSE(wrong);
   EXPECT_NE(wrong.error().message.find(":1"), std::string::npos);
 }
 
 /// The check of a simulated arm whose driver believes `believed` of it.
-std::vector<CheckResult> check_with(const ArmFile& believed, bool& prompted_all) {
-  auto bench =
-      BenchArm::open(believed, std::nullopt, "", feel_check_hand({0, 0, 0}), kFeelCheckForceMax);
+std::vector<CheckResult> check_with(const scene::ArmFile& believed, bool& prompted_all) {
+  auto bench = BenchArm::open(believed, std::nullopt, "", feel_check_hand({0, 0, 0}),
+                              scene::kFeelCheckForceMax);
   EXPECT_TRUE(bench) << bench.error().message;
   int prompts = 0;
   const std::atomic<bool> stop{false};
@@ -125,8 +127,8 @@ TEST_F(CalibrationTest, FeelCheckPassesAGoodArmAndTimesItsWatchdog) {
 }
 
 TEST_F(CalibrationTest, FeelCheckEndsAtTheFirstStepThatIsLeft) {
-  auto bench =
-      BenchArm::open(vintage(), std::nullopt, "", feel_check_hand({0, 0, 0}), kFeelCheckForceMax);
+  auto bench = BenchArm::open(vintage(), std::nullopt, "", feel_check_hand({0, 0, 0}),
+                              scene::kFeelCheckForceMax);
   ASSERT_TRUE(bench);
   const std::atomic<bool> stop{false};
   int prompts = 0;
@@ -136,7 +138,7 @@ TEST_F(CalibrationTest, FeelCheckEndsAtTheFirstStepThatIsLeft) {
 }
 
 TEST_F(CalibrationTest, FeelCheckSeesAWatchdogThatIsLaterThanTheFileSays) {
-  ArmFile slow = vintage();
+  scene::ArmFile slow = vintage();
   slow.simulated.firmware.watchdog_ns = 700'000'000;
   bool prompted_all = false;
   const auto results = check_with(slow, prompted_all);
@@ -185,13 +187,13 @@ class FeelCheckOfAMiswiredArm : public testing::TestWithParam<std::tuple<const c
 
 TEST_P(FeelCheckOfAMiswiredArm, NamesTheWireAndPushesNoHarder) {
   const auto& [arm, mistake] = GetParam();
-  auto read = read_arm_file(std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms" /
-                            (std::string(arm) + ".yaml"));
+  auto read = scene::read_arm_file(std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms" /
+                                   (std::string(arm) + ".yaml"));
   ASSERT_TRUE(read) << read.error().message;
-  ArmFile file = std::move(read).value();
+  scene::ArmFile file = std::move(read).value();
   mistake.break_it(file.simulated.firmware);
   auto bench =
-      BenchArm::open(file, std::nullopt, "", feel_check_hand({0, 0, 0}), kFeelCheckForceMax);
+      BenchArm::open(file, std::nullopt, "", feel_check_hand({0, 0, 0}), scene::kFeelCheckForceMax);
   ASSERT_TRUE(bench) << bench.error().message;
   const std::atomic<bool> stop{false};
   const auto results = feel_check(
@@ -204,7 +206,7 @@ TEST_P(FeelCheckOfAMiswiredArm, NamesTheWireAndPushesNoHarder) {
   }
   EXPECT_FALSE(passed);
   EXPECT_NE(said.find(mistake.sentence), std::string::npos) << said;
-  EXPECT_LE((*bench)->true_force_max(), kFeelCheckForceMax) << said;
+  EXPECT_LE((*bench)->true_force_max(), scene::kFeelCheckForceMax) << said;
   EXPECT_EQ((*bench)->device().f_sent_W().norm(), 0);
 }
 
@@ -219,24 +221,24 @@ INSTANTIATE_TEST_SUITE_P(Arms, FeelCheckOfAMiswiredArm,
 TEST_F(CalibrationTest, FeelCheckPassesEveryGoodArmAndPushesNoHarder) {
   for (const char* arm : kArmFiles) {
     SCOPED_TRACE(arm);
-    const auto file = read_arm_file(std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms" /
-                                    (std::string(arm) + ".yaml"));
+    const auto file = scene::read_arm_file(std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms" /
+                                           (std::string(arm) + ".yaml"));
     ASSERT_TRUE(file);
-    auto bench =
-        BenchArm::open(*file, std::nullopt, "", feel_check_hand({0, 0, 0}), kFeelCheckForceMax);
+    auto bench = BenchArm::open(*file, std::nullopt, "", feel_check_hand({0, 0, 0}),
+                                scene::kFeelCheckForceMax);
     ASSERT_TRUE(bench) << bench.error().message;
     const std::atomic<bool> stop{false};
     for (const CheckResult& result : feel_check(
              **bench, *file, [](const std::string&) { return true; }, stop)) {
       EXPECT_TRUE(result.passed) << result.name << ": " << result.text;
     }
-    EXPECT_LE((*bench)->true_force_max(), kFeelCheckForceMax);
+    EXPECT_LE((*bench)->true_force_max(), scene::kFeelCheckForceMax);
     EXPECT_GT((*bench)->true_force_max(), 0.3);
   }
 }
 
 TEST_F(CalibrationTest, FeelCheckSaysThatAnArmHasNoWatchdog) {
-  ArmFile careless = vintage();
+  scene::ArmFile careless = vintage();
   careless.simulated.firmware.watchdog_ns = INT64_MAX / 4;
   bool prompted_all = false;
   const auto results = check_with(careless, prompted_all);

@@ -1,4 +1,4 @@
-#include "doctor.h"
+#include "bringup/doctor.h"
 
 #include <gtest/gtest.h>
 

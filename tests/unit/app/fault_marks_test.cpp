@@ -1,4 +1,4 @@
-#include "fault_marks.h"
+#include "report/fault_marks.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <sstream>
 #include <string>
 
-#include "gnuplot.h"
-#include "pictures.h"
+#include "report/gnuplot.h"
+#include "report/pictures.h"
 #include "support/scratch.h"
 #include "support/shapes.h"
 

@@ -1,4 +1,4 @@
-#include "hand_route.h"
+#include "thimble/scene/hand_route.h"
 
 #include <gtest/gtest.h>
 
@@ -45,8 +45,8 @@ render::TriangleMesh sphere(int splits) {
   return mesh;
 }
 
-HandWaypoint on(double time, const Vector3d& near, double press) {
-  HandWaypoint waypoint;
+scene::HandWaypoint on(double time, const Vector3d& near, double press) {
+  scene::HandWaypoint waypoint;
   waypoint.time = time;
   waypoint.on = "sphere";
   waypoint.p_W = near;
@@ -54,28 +54,28 @@ HandWaypoint on(double time, const Vector3d& near, double press) {
   return waypoint;
 }
 
-HandWaypoint at(double time, const Vector3d& p_W) {
-  HandWaypoint waypoint;
+scene::HandWaypoint at(double time, const Vector3d& p_W) {
+  scene::HandWaypoint waypoint;
   waypoint.time = time;
   waypoint.p_W = p_W;
   return waypoint;
 }
 
-driver::Result<HandRoute> plan_on_sphere(const std::vector<HandWaypoint>& waypoints,
-                                         const render::TriangleMesh& mesh_W) {
-  return plan_hand(waypoints, {{"sphere", &mesh_W}});
+driver::Result<scene::HandRoute> plan_on_sphere(const std::vector<scene::HandWaypoint>& waypoints,
+                                                const render::TriangleMesh& mesh_W) {
+  return scene::plan_hand(waypoints, {{"sphere", &mesh_W}});
 }
 
 TEST(SurfaceProbe, FindsTheSamePointAsALookAtEveryTriangle) {
   const render::TriangleMesh mesh = sphere(3);
-  SurfaceProbe probe(mesh);
+  scene::SurfaceProbe probe(mesh);
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> step(-0.002, 0.002);
   Vector3d p(0.01, 0.02, 0.03);
   for (int i = 0; i < 500; ++i) {
     p += Vector3d(step(random), step(random), step(random));
     // A fresh probe gathers anew and so cannot miss anything that the walk left behind.
-    SurfaceProbe fresh(mesh);
+    scene::SurfaceProbe fresh(mesh);
     EXPECT_NEAR((probe.closest(p).p_WS - p).norm(), (fresh.closest(p).p_WS - p).norm(), 1e-15);
   }
 }
@@ -158,17 +158,17 @@ TEST(HandRoute, GoesStraightFromOneObjectToAnotherAndFollowsEach) {
   const render::TriangleMesh left = sphere(3);
   render::TriangleMesh right = left;
   for (Vector3d& vertex : right.vertices) vertex += Vector3d(0.2, 0, 0);
-  HandWaypoint there = on(1, {0.2, 0, 0.04}, 0);
+  scene::HandWaypoint there = on(1, {0.2, 0, 0.04}, 0);
   there.on = "other";
   const auto route =
-      plan_hand({on(0, {0, 0, 0.04}, 0), there}, {{"sphere", &left}, {"other", &right}});
+      scene::plan_hand({on(0, {0, 0, 0.04}, 0), there}, {{"sphere", &left}, {"other", &right}});
   ASSERT_TRUE(route.ok()) << route.error().message;
   EXPECT_NEAR(route->front().second.z(), kRadius, 1e-3);
   EXPECT_NEAR(route->back().second.x(), 0.2, 1e-3);
   for (const auto& [time, p_W] : *route) EXPECT_NEAR(p_W.z(), kRadius, 1e-3);
   // And a station on nothing is told.
   there.on = "moon";
-  const auto lost = plan_hand({there}, {{"sphere", &left}});
+  const auto lost = scene::plan_hand({there}, {{"sphere", &left}});
   ASSERT_FALSE(lost.ok());
   EXPECT_NE(lost.error().message.find("\"moon\""), std::string::npos);
 }

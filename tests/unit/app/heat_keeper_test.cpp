@@ -23,29 +23,29 @@ class HeatKeeperTest : public ::testing::Test {
 };
 
 TEST_F(HeatKeeperTest, TakesAnArmThatNeverRanForCold) {
-  const KnownHeat known = load_heat("never", kSettings, kNow);
+  const scene::KnownHeat known = scene::load_heat("never", kSettings, kNow);
   EXPECT_EQ(known.heat, (std::array<double, 3>{}));
   EXPECT_EQ(known.note, "");
 }
 
 TEST_F(HeatKeeperTest, CoolsByTheTimeThatHasPassed) {
-  ASSERT_TRUE(save_heat("arm/1", kHeat, kNow, false));
-  const KnownHeat known = load_heat("arm/1", kSettings, kNow + 45);
+  ASSERT_TRUE(scene::save_heat("arm/1", kHeat, kNow, false));
+  const scene::KnownHeat known = scene::load_heat("arm/1", kSettings, kNow + 45);
   EXPECT_EQ(known.note, "");
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_NEAR(known.heat[i], kHeat[i] * std::exp(-45 / kSettings.time_constant[i]), 1e-9);
   }
-  EXPECT_EQ(load_heat("arm_2", kSettings, kNow).heat[0], 0) << "each arm has its own";
+  EXPECT_EQ(scene::load_heat("arm_2", kSettings, kNow).heat[0], 0) << "each arm has its own";
 }
 
 TEST_F(HeatKeeperTest, CountsAClockThatWentBackAsNoTime) {
-  ASSERT_TRUE(save_heat("arm", kHeat, kNow, false));
-  EXPECT_EQ(load_heat("arm", kSettings, kNow - 86400).heat, kHeat);
+  ASSERT_TRUE(scene::save_heat("arm", kHeat, kNow, false));
+  EXPECT_EQ(scene::load_heat("arm", kSettings, kNow - 86400).heat, kHeat);
 }
 
 TEST_F(HeatKeeperTest, TakesARunThatDidNotEndForHotAndSaysSo) {
-  ASSERT_TRUE(save_heat("arm", kHeat, kNow, true));
-  const KnownHeat known = load_heat("arm", kSettings, kNow + 5);
+  ASSERT_TRUE(scene::save_heat("arm", kHeat, kNow, true));
+  const scene::KnownHeat known = scene::load_heat("arm", kSettings, kNow + 5);
   EXPECT_EQ(known.heat, kHot);
   EXPECT_NE(known.note.find("did not end properly"), std::string::npos);
 }
@@ -55,9 +55,9 @@ TEST_F(HeatKeeperTest, TakesADamagedFileForHotAndSaysSo) {
                            "heat: [.nan, 0, 0]\ntime: 1\nrunning: \"no\"\n",
                            "heat: [-1, 0, 0]\ntime: 1\nrunning: \"no\"\n", "\x01\x02{[",
                            "heat: [0, 0, 0]\ntime: .inf\nrunning: \"no\"\n"}) {
-    ASSERT_TRUE(save_heat("arm", kHeat, kNow, false));
-    std::ofstream(heat_file("arm")) << text;
-    const KnownHeat known = load_heat("arm", kSettings, kNow);
+    ASSERT_TRUE(scene::save_heat("arm", kHeat, kNow, false));
+    std::ofstream(scene::heat_file("arm")) << text;
+    const scene::KnownHeat known = scene::load_heat("arm", kSettings, kNow);
     EXPECT_EQ(known.heat, kHot) << text;
     EXPECT_NE(known.note.find("cannot be understood"), std::string::npos) << text;
   }

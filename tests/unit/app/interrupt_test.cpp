@@ -16,16 +16,16 @@ constexpr std::int64_t kMs = 1'000'000;
 
 TEST(Interrupt, TakesSeveralSignalsWithinHalfASecondForOneRequest) {
   for (const std::int64_t since_ms : {0, 1, 10, 100, 499}) {
-    EXPECT_FALSE(ends_at_once(since_ms * kMs, false)) << since_ms;
-    EXPECT_FALSE(ends_at_once(since_ms * kMs, true)) << since_ms;
+    EXPECT_FALSE(scene::ends_at_once(since_ms * kMs, false)) << since_ms;
+    EXPECT_FALSE(scene::ends_at_once(since_ms * kMs, true)) << since_ms;
   }
 }
 
 TEST(Interrupt, ObeysAFurtherSignalOnceNothingIsAtStakeOrTheProgramHangs) {
-  EXPECT_TRUE(ends_at_once(500 * kMs, false));
-  EXPECT_FALSE(ends_at_once(500 * kMs, true));
-  EXPECT_FALSE(ends_at_once(1999 * kMs, true));
-  EXPECT_TRUE(ends_at_once(2000 * kMs, true));
+  EXPECT_TRUE(scene::ends_at_once(500 * kMs, false));
+  EXPECT_FALSE(scene::ends_at_once(500 * kMs, true));
+  EXPECT_FALSE(scene::ends_at_once(1999 * kMs, true));
+  EXPECT_TRUE(scene::ends_at_once(2000 * kMs, true));
 }
 
 /// Runs `body` in a process of its own and returns how that ended: 0 to 99 its exit code, 100 + n
@@ -75,9 +75,9 @@ TEST(Interrupt, SetsTheFlagForEverySignalThatEndsAProgramAndCanBeCaught) {
     if (number >= 32 && number < SIGRTMIN) continue;  // the C library's own
     EXPECT_EQ(outcome_of([number] {
                 std::signal(number, SIG_DFL);
-                const auto& flag = catch_interrupts();
+                const auto& flag = scene::catch_interrupts();
                 raise(number);
-                _exit(flag.load() && stop_asked() ? 7 : 8);
+                _exit(flag.load() && scene::stop_asked() ? 7 : 8);
               }),
               7)
         << "signal " << number;
@@ -87,21 +87,21 @@ TEST(Interrupt, SetsTheFlagForEverySignalThatEndsAProgramAndCanBeCaught) {
 TEST(Interrupt, OutlivesTheTerminalUnderNohupAndLeavesOthersHandlersAlone) {
   EXPECT_EQ(outcome_of([] {
               std::signal(SIGHUP, SIG_IGN);
-              const auto& flag = catch_interrupts();
+              const auto& flag = scene::catch_interrupts();
               raise(SIGHUP);
               _exit(flag.load() ? 8 : 7);
             }),
             7);
   EXPECT_EQ(outcome_of([] {
               std::signal(SIGUSR1, [](int) { _exit(7); });
-              catch_interrupts();
+              scene::catch_interrupts();
               raise(SIGUSR1);
             }),
             7);
   // What a script runs beside itself ignores these, and leaves by them all the same.
   EXPECT_EQ(outcome_of([] {
               std::signal(SIGINT, SIG_IGN);
-              const auto& flag = catch_interrupts();
+              const auto& flag = scene::catch_interrupts();
               raise(SIGINT);
               _exit(flag.load() ? 7 : 8);
             }),
@@ -110,24 +110,24 @@ TEST(Interrupt, OutlivesTheTerminalUnderNohupAndLeavesOthersHandlersAlone) {
 
 TEST(Interrupt, KeepsAnArmAtStakeAliveThroughABurstAndEndsAProgramThatHangs) {
   EXPECT_EQ(outcome_of([] {
-              catch_interrupts();
-              const LeavingGuard guard;
+              scene::catch_interrupts();
+              const scene::LeavingGuard guard;
               for (int i = 0; i < 1000; ++i) raise(i % 2 == 0 ? SIGINT : SIGTERM);
             }),
             0);
   EXPECT_EQ(outcome_of([] {
-              catch_interrupts();
-              const LeavingGuard guard;
+              scene::catch_interrupts();
+              const scene::LeavingGuard guard;
               raise(SIGINT);
-              rest(kLeavingMost_ns + kMs);
+              rest(scene::kLeavingMost_ns + kMs);
               raise(SIGTERM);
             }),
             100 + SIGTERM);
   EXPECT_EQ(outcome_of([] {
-              catch_interrupts();
-              { const LeavingGuard guard; }
+              scene::catch_interrupts();
+              { const scene::LeavingGuard guard; }
               raise(SIGINT);
-              rest(kOneRequest_ns + kMs);
+              rest(scene::kOneRequest_ns + kMs);
               raise(SIGINT);
             }),
             100 + SIGINT);
@@ -135,8 +135,8 @@ TEST(Interrupt, KeepsAnArmAtStakeAliveThroughABurstAndEndsAProgramThatHangs) {
 
 TEST(Interrupt, TakesCtrlZForARequestToLeaveWhereAnArmIsOpen) {
   EXPECT_EQ(outcome_of([] {
-              const auto& flag = catch_interrupts();
-              leave_rather_than_stop();
+              const auto& flag = scene::catch_interrupts();
+              scene::leave_rather_than_stop();
               raise(SIGTSTP);
               raise(SIGTTIN);
               raise(SIGTTOU);

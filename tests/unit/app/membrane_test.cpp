@@ -1,4 +1,4 @@
-#include "study/membrane.h"
+#include "studies/integrators/membrane.h"
 
 #include <gtest/gtest.h>
 

@@ -8,18 +8,18 @@
 
 #include <thread>
 
-#include "real_arm.h"
 #include "support/fake_hidapi.h"
 #include "support/fake_usb.h"
+#include "thimble/scene/real_arm.h"
 
 namespace thimble::app {
 namespace {
 
-ArmFile file_of(const std::string& name) {
-  auto file =
-      read_arm_file(std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms" / (name + ".yaml"));
+scene::ArmFile file_of(const std::string& name) {
+  auto file = scene::read_arm_file(std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms" /
+                                   (name + ".yaml"));
   EXPECT_TRUE(file) << file.error().message;
-  return file ? std::move(file).value() : ArmFile{};
+  return file ? std::move(file).value() : scene::ArmFile{};
 }
 
 const char* const kFiles[] = {"woodenhaptics", "woodenhaptics_teensy", "polhem", "vintage_phantom",
@@ -56,10 +56,10 @@ class OpenWireTest : public ::testing::Test {
 
   /// Opens the board with an arm file; the error's sentence, or "" if it went well.
   std::string open(const std::string& file, const std::string& device = "B1") {
-    const auto chosen = choose_arm(plugged_in(), device);
+    const auto chosen = scene::choose_arm(plugged_in(), device);
     if (!chosen) return chosen.error().message;
     if (!*chosen) return "none chosen";
-    const auto wire = open_wire(**chosen, file_of(file), "", clock_);
+    const auto wire = scene::open_wire(**chosen, file_of(file), "", clock_);
     return wire ? "" : wire.error().message;
   }
 

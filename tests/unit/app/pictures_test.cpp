@@ -1,4 +1,4 @@
-#include "pictures.h"
+#include "report/pictures.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "gnuplot.h"
-#include "mesh_view.h"
+#include "report/gnuplot.h"
+#include "report/mesh_view.h"
 #include "support/scratch.h"
 
 namespace thimble::app {

@@ -1,5 +1,5 @@
 // Which arm file a real arm has, that nobody loosens its limits, and how much force it gets.
-#include "terms/real_arm_terms.h"
+#include "thimble/scene/real_arm_terms.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -9,17 +9,17 @@
 #include <functional>
 #include <sstream>
 
-#include "calibration.h"
-#include "feel_check.h"
-#include "meshes.h"
-#include "session.h"
-#include "session_report.h"
-#include "shipped_files.h"
+#include "bringup/feel_check.h"
+#include "report/session_report.h"
 #include "support/line_board.h"
 #include "support/scratch.h"
 #include "terms/feel_check_record.h"
 #include "terms/limits_policy.h"
-#include "user_folders.h"
+#include "thimble/scene/calibration.h"
+#include "thimble/scene/meshes.h"
+#include "thimble/scene/shipped_files.h"
+#include "thimble/scene/user_folders.h"
+#include "thimble/session/session.h"
 
 namespace thimble::app {
 namespace {
@@ -99,7 +99,7 @@ class RealArmTermsTest : public ::testing::Test {
 
   /// Returns the file that an arm gets when its board answers as `model`, or the error.
   static std::string file_for(const FoundArm& arm, int model = 0) {
-    const auto found = find_real_arm_file(
+    const auto found = scene::find_real_arm_file(
         arm, {.arm_file = {}, .for_calibration = false, .ask_model = [model](const FoundArm&) {
                 return driver::Result<int>(model);
               }});
@@ -131,7 +131,7 @@ TEST_F(RealArmTermsTest, ABoardThatMayBeAnythingIsNotAskedForItsModel) {
     FoundArm arm = plug(ArmKind::kHfabLine, "T1", "0279", product);
     arm.node = home_ / "port";
     write(arm.node, "");
-    const auto found = find_real_arm_file(arm);
+    const auto found = scene::find_real_arm_file(arm);
     ASSERT_FALSE(found) << product;
     EXPECT_TRUE(holds(found.error().message, "which may be anything")) << found.error().message;
     EXPECT_EQ(fs::file_size(arm.node), 0u) << "something was written to " << product;
@@ -139,78 +139,82 @@ TEST_F(RealArmTermsTest, ABoardThatMayBeAnythingIsNotAskedForItsModel) {
 }
 
 TEST_F(RealArmTermsTest, AFileThatTheUserNamesHoldsBeforeWhatTheCalibrationKept) {
-  const FoundArm arm = plug(ArmKind::kPolhem, "P1");
-  ASSERT_TRUE(save_calibration("P1", {.arm_file = "polhem"}));
-  const auto kept = find_real_arm_file(arm);
+  const FoundArm arm = plug(ArmKind::kHfabLine, "P1");
+  ASSERT_TRUE(scene::save_calibration("P1", {.arm_file = "polhem"}));
+  const auto kept = scene::find_real_arm_file(arm);
   ASSERT_TRUE(kept) << kept.error().message;
   EXPECT_EQ(kept->path.stem(), "polhem");
   EXPECT_TRUE(holds(kept->why, "P1.yaml")) << kept->why;
   EXPECT_EQ(kept->file.model.encoders[1].home_counts, 0) << "its calibration is in it";
 
   // The signs of one arm in another arm's file would drive the motors the wrong way.
-  const RealArmSearch vintage{.arm_file = kArms / "vintage_phantom.yaml"};
-  const auto other = find_real_arm_file(arm, vintage);
+  const scene::RealArmSearch vintage{.arm_file = kArms / "vintage_phantom.yaml"};
+  const auto other = scene::find_real_arm_file(arm, vintage);
   ASSERT_FALSE(other);
   EXPECT_TRUE(holds(other.error().message, "thimble calibrate --device P1 --arm vintage_phantom"));
-  RealArmSearch anew = vintage;
+  scene::RealArmSearch anew = vintage;
   anew.for_calibration = true;
-  const auto calibrated = find_real_arm_file(arm, anew);
+  const auto calibrated = scene::find_real_arm_file(arm, anew);
   ASSERT_TRUE(calibrated);
   EXPECT_EQ(calibrated->path.stem(), "vintage_phantom");
   EXPECT_EQ(calibrated->why, "named by --arm");
   EXPECT_EQ(calibrated->file.model.encoders[1].home_counts, 7700);
 
-  ASSERT_TRUE(save_calibration("P1", {.arm_file = "gone"}));
+  ASSERT_TRUE(scene::save_calibration("P1", {.arm_file = "gone"}));
   EXPECT_TRUE(holds(file_for(arm), "No installed arm file is called gone"));
 }
 
 TEST_F(RealArmTermsTest, AFileOfAnotherWireIsRefused) {
   const auto found =
-      find_real_arm_file(plug(ArmKind::kWoody, "W1"), {.arm_file = kArms / "falcon.yaml"});
+      scene::find_real_arm_file(plug(ArmKind::kWoody, "W1"), {.arm_file = kArms / "falcon.yaml"});
   ASSERT_FALSE(found);
-  EXPECT_TRUE(holds(found.error().message, "is not for a")) << found.error().message;
+  EXPECT_TRUE(holds(found.error().message, "is for the board falcon_ftdi"))
+      << found.error().message;
 }
 
 TEST_F(RealArmTermsTest, AFileFromElsewhereTightensEachLimitAndLoosensNone) {
   struct Case {
     const char *key, *was, *tighter, *looser;
-    double (*value)(const ArmFile&);
+    double (*value)(const scene::ArmFile&);
   };
   const auto seconds = [](std::int64_t ns) { return 1e-9 * static_cast<double>(ns); };
   static const auto in_seconds = seconds;
   const Case cases[] = {
       {"force_max", "force_max: 5 ", "force_max: 4 ", nullptr,
-       [](const ArmFile& arm) { return arm.limits.force_max; }},
+       [](const scene::ArmFile& arm) { return arm.limits.force_max; }},
       {"speed_max", "speed_max: 3 ", "speed_max: 2 ", "speed_max: 20 ",
-       [](const ArmFile& arm) { return arm.limits.speed_max; }},
+       [](const scene::ArmFile& arm) { return arm.limits.speed_max; }},
       {"rise_max", "rise_max: 2000", "rise_max: 1000", "rise_max: 1e5",
-       [](const ArmFile& arm) { return arm.limits.rise_max; }},
+       [](const scene::ArmFile& arm) { return arm.limits.rise_max; }},
       {"soft_start", "soft_start: 0.3", "soft_start: 1", "soft_start: 0.05",
-       [](const ArmFile& arm) { return arm.limits.soft_start; }},
+       [](const scene::ArmFile& arm) { return arm.limits.soft_start; }},
       {"reopen", "soft_start: 0.3", "reopen: 0.1\n  soft_start: 0.3",
-       "reopen: 0.001\n  soft_start: 0.3", [](const ArmFile& arm) { return arm.limits.reopen; }},
+       "reopen: 0.001\n  soft_start: 0.3",
+       [](const scene::ArmFile& arm) { return arm.limits.reopen; }},
       {"stall", "stall: 0.02 ", "stall: 0.01 ", "stall: 0.05 ",
-       [](const ArmFile& arm) { return in_seconds(arm.limits.stall_ns); }},
+       [](const scene::ArmFile& arm) { return in_seconds(arm.limits.stall_ns); }},
       {"watchdog", "watchdog: 0.1 ", "watchdog: 0.05 ", "watchdog: 1 ",
-       [](const ArmFile& arm) { return in_seconds(arm.limits.watchdog_ns); }},
+       [](const scene::ArmFile& arm) { return in_seconds(arm.limits.watchdog_ns); }},
       {"energy", "energy: passivity", "energy: bounding", "energy: none",
-       [](const ArmFile& arm) { return static_cast<double>(arm.energy.stage); }},
+       [](const scene::ArmFile& arm) { return static_cast<double>(arm.energy.stage); }},
       {"energy_allowance", "energy: passivity", "energy: passivity\n  energy_allowance: 0.001",
        "energy: passivity\n  energy_allowance: 1",
-       [](const ArmFile& arm) { return arm.energy.allowance.value_or(kEnergyAllowance); }},
+       [](const scene::ArmFile& arm) {
+         return arm.energy.allowance.value_or(scene::kEnergyAllowance);
+       }},
   };
   const FoundArm arm = plug(ArmKind::kWoody, "W1");
-  const auto installed = find_real_arm_file(arm);
+  const auto installed = scene::find_real_arm_file(arm);
   ASSERT_TRUE(installed);
   for (const Case& one : cases) {
     for (const bool tighter : {true, false}) {
       const char* by = tighter ? one.tighter : one.looser;
       if (by == nullptr) continue;
       const fs::path file = copy_of("woodenhaptics", one.was, by);
-      const auto wanted = read_arm_file(file);
+      const auto wanted = scene::read_arm_file(file);
       ASSERT_TRUE(wanted) << wanted.error().message;
       ASSERT_NE(one.value(*wanted), one.value(installed->file));
-      const auto found = find_real_arm_file(arm, {.arm_file = file});
+      const auto found = scene::find_real_arm_file(arm, {.arm_file = file});
       ASSERT_TRUE(found) << found.error().message;
       EXPECT_EQ(found->path, installed->path);
       EXPECT_EQ(one.value(found->file), one.value(tighter ? *wanted : installed->file)) << by;
@@ -234,7 +238,7 @@ TEST_F(RealArmTermsTest, AFileFromElsewhereMaySayNothingElseOfTheArm) {
       {"torque_constant: [0.0259", "torque_constant: [0.013", "joints"},
       {"current_max: [3, 3, 3]", "current_max: [30, 30, 30]", "joints"},
       {"ratio: [16", "ratio: [8", "joints"},
-      {"encoder_sign: [1", "encoder_sign: [-1", "joints"},
+      {"encoder_sign: [-1", "encoder_sign: [1", "joints"},
       {"position: [-0.220", "position: [-0.120", "base"},
       {"min: [-0.1", "min: [-0.5", "workspace"},
       // With it a force_max of 50 N would be within what is declared.
@@ -244,7 +248,7 @@ TEST_F(RealArmTermsTest, AFileFromElsewhereMaySayNothingElseOfTheArm) {
   };
   for (const Case& one : cases) {
     const fs::path file = copy_of("woodenhaptics", one.was, one.by);
-    const auto found = find_real_arm_file(arm, {.arm_file = file});
+    const auto found = scene::find_real_arm_file(arm, {.arm_file = file});
     ASSERT_FALSE(found) << one.by;
     EXPECT_TRUE(holds(found.error().message, "section \"" + std::string(one.section) + '"'))
         << found.error().message;
@@ -255,27 +259,27 @@ TEST_F(RealArmTermsTest, AFileFromElsewhereMaySayNothingElseOfTheArm) {
 TEST_F(RealArmTermsTest, AnArmOfOnesOwnIsInstalledOnce) {
   const FoundArm arm = plug(ArmKind::kPolhem, "P1");
   const fs::path file = copy_of("polhem", "name: polhem", "name: my_arm");
-  const auto before = find_real_arm_file(arm, {.arm_file = file});
+  const auto before = scene::find_real_arm_file(arm, {.arm_file = file});
   ASSERT_FALSE(before);
   EXPECT_TRUE(
-      holds(before.error().message, "cp " + file.string() + ' ' + own_arm_folder().string()))
+      holds(before.error().message, "cp " + file.string() + ' ' + scene::own_arm_folder().string()))
       << before.error().message;
-  const fs::path mine = own_arm_folder() / "mine.yaml";
+  const fs::path mine = scene::own_arm_folder() / "mine.yaml";
   write(mine, with(text_of(file), "force_max: 5 ", "force_max: 3 "));
-  const auto after = find_real_arm_file(arm, {.arm_file = mine});
+  const auto after = scene::find_real_arm_file(arm, {.arm_file = mine});
   ASSERT_TRUE(after) << after.error().message;
   EXPECT_EQ(after->file.limits.force_max, 3);
   EXPECT_TRUE(after->told.empty());
-  EXPECT_EQ(find_arm_file("mine")->string(), mine.string()) << "it is known by name";
+  EXPECT_EQ(scene::find_arm_file("mine")->string(), mine.string()) << "it is known by name";
 }
 
 TEST_F(RealArmTermsTest, AUsersOwnFileReplacesTheOneThatCameWithTheProgram) {
   const FoundArm arm = plug(ArmKind::kWoody, "W1");
-  write(own_arm_folder() / "woodenhaptics.yaml",
+  write(scene::own_arm_folder() / "woodenhaptics.yaml",
         with(text_of(kArms / "woodenhaptics.yaml"), "force_max: 5 ", "force_max: 2 "));
-  EXPECT_EQ(find_real_arm_file(arm)->file.limits.force_max, 2);
+  EXPECT_EQ(scene::find_real_arm_file(arm)->file.limits.force_max, 2);
   // The one that came with the program counts as a file from elsewhere then, and loosens nothing.
-  const auto named = find_real_arm_file(arm, {.arm_file = kArms / "woodenhaptics.yaml"});
+  const auto named = scene::find_real_arm_file(arm, {.arm_file = kArms / "woodenhaptics.yaml"});
   ASSERT_TRUE(named) << named.error().message;
   EXPECT_EQ(named->file.limits.force_max, 2);
   EXPECT_TRUE(holds(all_of(named->told), "force_max 5 N is ignored")) << all_of(named->told);
@@ -290,22 +294,22 @@ std::string ball(const std::string& arm, const std::string& gate) {
 
 TEST_F(RealArmTermsTest, NoShippedSceneChangesTheArmOrLoosensItsLimits) {
   const auto terms =
-      terms_for(plug(ArmKind::kPolhem, "P1"),
-                {.arm_file = kArms / "polhem.yaml", .firmware = {}, .unchecked = true});
+      scene::terms_for(plug(ArmKind::kPolhem, "P1"),
+                       {.arm_file = kArms / "polhem.yaml", .firmware = {}, .unchecked = true});
   ASSERT_TRUE(terms) << terms.error().message;
   int scenes = 0;
   for (const auto& entry : fs::directory_iterator(kSource / "app/scenes")) {
     if (entry.path().extension() != ".yaml") continue;
-    auto scene = read_scene(entry.path(), mesh_folder(), terms->arm.path);
+    auto scene = scene::read_scene(entry.path(), scene::mesh_folder(), terms->arm.path);
     if (!scene) continue;  // its scanned mesh is not here
     ++scenes;
-    const auto told = put_on_terms(*scene, entry.path(), *terms);
+    const auto told = scene::put_on_terms(*scene, entry.path(), *terms);
     ASSERT_TRUE(told) << told.error().message;
     EXPECT_EQ(scene->arm.name, "polhem") << entry.path();
-    EXPECT_EQ(scene->arm.shape, ArmShape::kPolhem) << entry.path();
+    EXPECT_EQ(scene->arm.shape, scene::ArmShape::kPolhem) << entry.path();
     EXPECT_EQ(scene->arm.limits.force_max, terms->arm.file.limits.force_max) << entry.path();
     EXPECT_EQ(scene->arm.limits.soft_start, terms->arm.file.limits.soft_start) << entry.path();
-    EXPECT_EQ(energy_settings(scene->arm, scene->rate, scene->energy).stage,
+    EXPECT_EQ(scene::energy_settings(scene->arm, scene->rate, scene->energy).stage,
               EnergyStage::kPassivity)
         << entry.path();
   }
@@ -314,8 +318,8 @@ TEST_F(RealArmTermsTest, NoShippedSceneChangesTheArmOrLoosensItsLimits) {
 
 TEST_F(RealArmTermsTest, ASceneThatWantsNoEnergyStageLeavesARealArmItsOwn) {
   const fs::path file = home_ / "scene" / "ball.yaml";
-  const auto terms =
-      terms_for(plug(ArmKind::kWoody, "W1"), {.arm_file = {}, .firmware = {}, .unchecked = true});
+  const auto terms = scene::terms_for(plug(ArmKind::kWoody, "W1"),
+                                      {.arm_file = {}, .firmware = {}, .unchecked = true});
   ASSERT_TRUE(terms);
   const std::string arm = (kArms / "vintage_phantom.yaml").string();
   const struct {
@@ -327,18 +331,19 @@ TEST_F(RealArmTermsTest, ASceneThatWantsNoEnergyStageLeavesARealArmItsOwn) {
                {"bounding", EnergyStage::kBounding, "energy: bounding is kept"}};
   for (const auto& one : cases) {
     write(file, ball(arm, std::string("gate:\n  energy: ") + one.wanted + '\n'));
-    auto scene = read_scene(file, {}, terms->arm.path);
+    auto scene = scene::read_scene(file, {}, terms->arm.path);
     ASSERT_TRUE(scene) << scene.error().message;
-    const auto told = put_on_terms(*scene, file, *terms);
+    const auto told = scene::put_on_terms(*scene, file, *terms);
     ASSERT_TRUE(told);
-    EXPECT_EQ(energy_settings(scene->arm, 1000, scene->energy).stage, one.gets) << one.wanted;
+    EXPECT_EQ(scene::energy_settings(scene->arm, 1000, scene->energy).stage, one.gets)
+        << one.wanted;
     const std::string text = all_of(*told);
     EXPECT_TRUE(holds(text, one.said)) << text;
     EXPECT_EQ(holds(text, "ball.yaml:5: "), one.said[0] != 0) << text;
     EXPECT_TRUE(holds(text, "its arm, vintage_phantom, is what it is simulated with")) << text;
   }
   // In simulation a scene may still do without.
-  auto simulated = read_scene(file, {});
+  auto simulated = scene::read_scene(file, {});
   ASSERT_TRUE(simulated);
   EXPECT_EQ(simulated->energy, EnergyStage::kBounding);
 }
@@ -354,12 +359,12 @@ TEST_F(RealArmTermsTest, AScenesOwnArmFileTightensOnly) {
   own = with(own, "speed_max: 3 ", "speed_max: 0.5 ");
   write(folder / "own.yaml", own);
   write(file, ball("own.yaml", ""));
-  const auto terms =
-      terms_for(plug(ArmKind::kWoody, "W1"), {.arm_file = {}, .firmware = {}, .unchecked = true});
+  const auto terms = scene::terms_for(plug(ArmKind::kWoody, "W1"),
+                                      {.arm_file = {}, .firmware = {}, .unchecked = true});
   ASSERT_TRUE(terms);
-  auto scene = read_scene(file, {}, terms->arm.path);
+  auto scene = scene::read_scene(file, {}, terms->arm.path);
   ASSERT_TRUE(scene) << scene.error().message;
-  const auto told = put_on_terms(*scene, file, *terms);
+  const auto told = scene::put_on_terms(*scene, file, *terms);
   ASSERT_TRUE(told);
   const std::string text = all_of(*told);
   EXPECT_EQ(scene->arm.name, "woodenhaptics");
@@ -368,22 +373,22 @@ TEST_F(RealArmTermsTest, AScenesOwnArmFileTightensOnly) {
   EXPECT_EQ(scene->arm.limits.watchdog_ns, 100'000'000);
   EXPECT_EQ(scene->arm.limits.speed_max, 0.5);
   EXPECT_EQ(scene->arm.energy.stage, EnergyStage::kPassivity);
-  EXPECT_TRUE(holds(text, "own.yaml:41: force_max 100 N is ignored")) << text;
-  EXPECT_TRUE(holds(text, "own.yaml:42: speed_max 0.5 m/s is kept")) << text;
-  EXPECT_TRUE(holds(text, "own.yaml:44: soft_start 0.05 s is ignored")) << text;
-  EXPECT_TRUE(holds(text, "own.yaml:46: watchdog 1 s is ignored")) << text;
-  EXPECT_TRUE(holds(text, "own.yaml:47: energy: none is ignored")) << text;
+  EXPECT_TRUE(holds(text, "own.yaml:45: force_max 100 N is ignored")) << text;
+  EXPECT_TRUE(holds(text, "own.yaml:46: speed_max 0.5 m/s is kept")) << text;
+  EXPECT_TRUE(holds(text, "own.yaml:48: soft_start 0.05 s is ignored")) << text;
+  EXPECT_TRUE(holds(text, "own.yaml:50: watchdog 1 s is ignored")) << text;
+  EXPECT_TRUE(holds(text, "own.yaml:51: energy: none is ignored")) << text;
   // A file that is wrong is no reason to go on.
   write(folder / "own.yaml", with(own, "force_max: 100", "force_max: much"));
-  EXPECT_FALSE(put_on_terms(*scene, file, *terms));
+  EXPECT_FALSE(scene::put_on_terms(*scene, file, *terms));
 }
 
 TEST_F(RealArmTermsTest, ARunWithARealArmNeedsTerms) {
   const fs::path file = home_ / "scene" / "ball.yaml";
   write(file, ball((kArms / "vintage_phantom.yaml").string(), ""));
-  SessionOptions options;
+  session::SessionOptions options;
   options.real_arm = plug(ArmKind::kPolhem, "P1");
-  const auto session = Session::open(file, options);
+  const auto session = session::Session::open(file, options);
   ASSERT_FALSE(session);
   EXPECT_TRUE(holds(session.error().message, "terms")) << session.error().message;
 }
@@ -392,8 +397,9 @@ TEST_F(RealArmTermsTest, ABoardWithAnArmsNameIsAskedForItsModel) {
   const support::LineBoard board(2);
   if (board.node().empty()) GTEST_SKIP() << "this machine has no pseudo-terminals";
   FoundArm arm = plug(ArmKind::kHfabLine, "V1", "0279", "Haptikfabriken vintage");
+  arm.certainty = driver::Certainty::kKnown;
   arm.node = board.node();
-  const auto found = find_real_arm_file(arm);
+  const auto found = scene::find_real_arm_file(arm);
   ASSERT_TRUE(found) << found.error().message;
   EXPECT_EQ(found->path.stem(), "vintage_phantom");
   EXPECT_TRUE(holds(found->why, "model 2")) << found->why;
@@ -410,13 +416,13 @@ TEST_F(RealArmTermsTest, TheGateOfASessionStandsOnTheTerms) {
         with(text_of(kArms / "polhem.yaml"), "speed_max: 3 ", "speed_max: 0.5 "));
   write(file, ball("own.yaml", "gate:\n  energy: none\n"));
   for (const bool unchecked : {false, true}) {
-    SessionOptions options;
+    session::SessionOptions options;
     options.real_arm = arm;
-    auto terms = terms_for(
+    auto terms = scene::terms_for(
         arm, {.arm_file = kArms / "vintage_phantom.yaml", .firmware = {}, .unchecked = unchecked});
     ASSERT_TRUE(terms) << terms.error().message;
     options.terms = std::move(terms).value();
-    const auto session = Session::open(file, options);
+    const auto session = session::Session::open(file, options);
     ASSERT_TRUE(session) << session.error().message;
     const driver::SafetyGate& gate = (*session)->device().gate();
     EXPECT_EQ(gate.limits().force_max, unchecked ? 5 : 0.5);
@@ -425,7 +431,8 @@ TEST_F(RealArmTermsTest, TheGateOfASessionStandsOnTheTerms) {
     EXPECT_EQ((*session)->scene().arm.name, "vintage_phantom");
     EXPECT_TRUE(holds(all_of((*session)->told()), "energy: none is ignored"));
     const RunReport report = report_of(**session, driver::ServoEnd::kStopped, {});
-    EXPECT_EQ(report.feel_check, unchecked ? FeelCheckState::kUnchecked : FeelCheckState::kNone);
+    EXPECT_EQ(report.feel_check,
+              unchecked ? scene::FeelCheckState::kUnchecked : scene::FeelCheckState::kNone);
     EXPECT_EQ(holds(summary(report), "UNCHECKED"), unchecked);
     EXPECT_EQ(holds(summary(report), "at most 0.50 N"), !unchecked);
   }
@@ -435,55 +442,55 @@ TEST_F(RealArmTermsTest, WithoutAPassedFeelCheckTheForceStaysBelowHalfANewton) {
   const FoundArm arm = plug(ArmKind::kWoody, "W1");
   const fs::path file = home_ / "scene" / "ball.yaml";
   write(file, ball((kArms / "vintage_phantom.yaml").string(), ""));
-  const auto force_of = [&](const RealArmTerms& terms) {
-    auto scene = read_scene(file, {}, terms.arm.path);
-    EXPECT_TRUE(scene && put_on_terms(*scene, file, terms));
+  const auto force_of = [&](const scene::RealArmTerms& terms) {
+    auto scene = scene::read_scene(file, {}, terms.arm.path);
+    EXPECT_TRUE(scene && scene::put_on_terms(*scene, file, terms));
     return scene->arm.limits.force_max;
   };
-  const auto none = terms_for(arm, {});
+  const auto none = scene::terms_for(arm, {});
   ASSERT_TRUE(none);
-  EXPECT_EQ(none->feel_check, FeelCheckState::kNone);
+  EXPECT_EQ(none->feel_check, scene::FeelCheckState::kNone);
   EXPECT_EQ(force_of(*none), 0.5);
   EXPECT_TRUE(holds(all_of(none->told), "at most 0.5 N")) << all_of(none->told);
   EXPECT_TRUE(holds(all_of(none->told), "thimble feel-check --device W1\n")) << all_of(none->told);
   EXPECT_TRUE(holds(all_of(none->told), "Arm file: ")) << all_of(none->told);
 
-  const auto unchecked = terms_for(arm, {.arm_file = {}, .firmware = {}, .unchecked = true});
+  const auto unchecked = scene::terms_for(arm, {.arm_file = {}, .firmware = {}, .unchecked = true});
   ASSERT_TRUE(unchecked);
-  EXPECT_EQ(unchecked->feel_check, FeelCheckState::kUnchecked);
+  EXPECT_EQ(unchecked->feel_check, scene::FeelCheckState::kUnchecked);
   EXPECT_EQ(force_of(*unchecked), 5);
   EXPECT_TRUE(holds(all_of(unchecked->told), "UNCHECKED: W1 gets up to 5 N"));
 
-  ASSERT_TRUE(keep_passed(describe_checked(arm, none->arm, {})));
-  const auto passed = terms_for(arm, {});
+  ASSERT_TRUE(scene::keep_passed(scene::describe_checked(arm, none->arm, {})));
+  const auto passed = scene::terms_for(arm, {});
   ASSERT_TRUE(passed);
-  EXPECT_EQ(passed->feel_check, FeelCheckState::kPassed);
+  EXPECT_EQ(passed->feel_check, scene::FeelCheckState::kPassed);
   EXPECT_EQ(force_of(*passed), 5);
   EXPECT_FALSE(holds(all_of(passed->told), "feel-check"));
 
-  ASSERT_TRUE(forget_passed("W1"));
-  EXPECT_EQ(terms_for(arm, {})->feel_check, FeelCheckState::kNone);
+  ASSERT_TRUE(scene::forget_passed("W1"));
+  EXPECT_EQ(scene::terms_for(arm, {})->feel_check, scene::FeelCheckState::kNone);
 }
 
 /// Asks whether an arm that passed counts as passed after something was done.
 class FeelCheckRecordTest : public RealArmTermsTest {
  protected:
   FeelCheckRecordTest() {
-    write(own_arm_folder() / "woodenhaptics.yaml", text_of(kArms / "woodenhaptics.yaml"));
-    EXPECT_TRUE(save_calibration("W1", calibration_));
-    const auto file = find_real_arm_file(arm_);
-    EXPECT_TRUE(file && keep_passed(describe_checked(arm_, *file, {})));
+    write(scene::own_arm_folder() / "woodenhaptics.yaml", text_of(kArms / "woodenhaptics.yaml"));
+    EXPECT_TRUE(scene::save_calibration("W1", calibration_));
+    const auto file = scene::find_real_arm_file(arm_);
+    EXPECT_TRUE(file && scene::keep_passed(scene::describe_checked(arm_, *file, {})));
   }
 
   static bool passed(const FoundArm& arm) {
-    const auto terms = terms_for(arm, {});
+    const auto terms = scene::terms_for(arm, {});
     EXPECT_TRUE(terms) << terms.error().message;
-    return terms && terms->feel_check == FeelCheckState::kPassed;
+    return terms && terms->feel_check == scene::FeelCheckState::kPassed;
   }
 
   const FoundArm arm_ = plug(ArmKind::kWoody, "W1");
-  const Calibration calibration_{{3, 0, -6000}, {1, -1, -1}, {1, -1, -1}, "woodenhaptics"};
-  const fs::path record_ = feel_check_file("W1");
+  const scene::Calibration calibration_{{3, 0, -6000}, {1, -1, -1}, {1, -1, -1}, "woodenhaptics"};
+  const fs::path record_ = scene::feel_check_file("W1");
 };
 
 TEST_F(FeelCheckRecordTest, HoldsAsLongAsNothingChanges) {
@@ -493,14 +500,14 @@ TEST_F(FeelCheckRecordTest, HoldsAsLongAsNothingChanges) {
 
 TEST_F(FeelCheckRecordTest, CountsAsNoneOnceAnythingChanges) {
   const std::string record = text_of(record_), file = text_of(kArms / "woodenhaptics.yaml");
-  const fs::path installed = own_arm_folder() / "woodenhaptics.yaml";
+  const fs::path installed = scene::own_arm_folder() / "woodenhaptics.yaml";
   const auto change = [&](const std::string& piece, const std::string& by) {
     return [=] { write(installed, with(file, piece, by)); };
   };
-  const auto calibrate = [](const Calibration& calibration) {
-    return [=] { EXPECT_TRUE(save_calibration("W1", calibration)); };
+  const auto calibrate = [](const scene::Calibration& calibration) {
+    return [=] { EXPECT_TRUE(scene::save_calibration("W1", calibration)); };
   };
-  Calibration motor = calibration_, encoder = calibration_, home = calibration_;
+  scene::Calibration motor = calibration_, encoder = calibration_, home = calibration_;
   motor.motor_sign[0] = -1;
   encoder.encoder_sign[2] = 1;
   home.home_counts[1] = 1;
@@ -514,7 +521,7 @@ TEST_F(FeelCheckRecordTest, CountsAsNoneOnceAnythingChanges) {
       {"a motor's sign", calibrate(motor)},
       {"an encoder's sign", calibrate(encoder)},
       {"the home pose", calibrate(home)},
-      {"no calibration", [] { fs::remove(calibration_file("W1")); }},
+      {"no calibration", [] { fs::remove(scene::calibration_file("W1")); }},
       {"the firmware's number", [this] { plug(ArmKind::kWoody, "W1", "0101"); }},
       {"the board's own name", [this] { plug(ArmKind::kWoody, "W1", "0100", "another"); }},
       {"a firmware that tells nothing", [this] { plug(ArmKind::kWoody, "W1", ""); }},
@@ -538,7 +545,7 @@ TEST_F(FeelCheckRecordTest, CountsAsNoneOnceAnythingChanges) {
     write(record_, record);
     chmod(record_.c_str(), 0644);
     write(installed, file);
-    ASSERT_TRUE(save_calibration("W1", calibration_));
+    ASSERT_TRUE(scene::save_calibration("W1", calibration_));
     plug(ArmKind::kWoody, "W1");
   }
   EXPECT_FALSE(passed(plug(ArmKind::kWoody, "W3"))) << "another arm of the kind";
@@ -549,15 +556,15 @@ TEST_F(FeelCheckRecordTest, OfAFalconHoldsForTheImageThatIsNamed) {
   const fs::path image = home_ / "image", other = home_ / "other";
   write(image, "one");
   write(other, "two");
-  const auto file = find_real_arm_file(falcon);
+  const auto file = scene::find_real_arm_file(falcon);
   ASSERT_TRUE(file) << file.error().message;
-  const auto unknown = keep_passed(describe_checked(falcon, *file, {}));
+  const auto unknown = scene::keep_passed(scene::describe_checked(falcon, *file, {}));
   ASSERT_FALSE(unknown);
   EXPECT_TRUE(holds(unknown.error().message, "--firmware")) << unknown.error().message;
-  ASSERT_TRUE(keep_passed(describe_checked(falcon, *file, image)));
-  EXPECT_TRUE(has_passed(describe_checked(falcon, *file, image)));
-  EXPECT_FALSE(has_passed(describe_checked(falcon, *file, other)));
-  EXPECT_FALSE(has_passed(describe_checked(falcon, *file, {})));
+  ASSERT_TRUE(scene::keep_passed(scene::describe_checked(falcon, *file, image)));
+  EXPECT_TRUE(scene::has_passed(scene::describe_checked(falcon, *file, image)));
+  EXPECT_FALSE(scene::has_passed(scene::describe_checked(falcon, *file, other)));
+  EXPECT_FALSE(scene::has_passed(scene::describe_checked(falcon, *file, {})));
 }
 
 }  // namespace

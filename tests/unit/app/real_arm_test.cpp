@@ -1,4 +1,4 @@
-#include "real_arm.h"
+#include "thimble/scene/real_arm.h"
 
 #include <gtest/gtest.h>
 
@@ -13,10 +13,10 @@ using driver::ArmKind;
 using driver::BoardKind;
 using driver::Certainty;
 
-ArmFile file_of(const std::string& name) {
-  auto file = read_arm_file(std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms" / name);
+scene::ArmFile file_of(const std::string& name) {
+  auto file = scene::read_arm_file(std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms" / name);
   EXPECT_TRUE(file) << file.error().message;
-  return file ? std::move(file).value() : ArmFile{};
+  return file ? std::move(file).value() : scene::ArmFile{};
 }
 
 driver::FoundArm found(ArmKind kind, const std::string& serial) {
@@ -52,43 +52,47 @@ TEST(RealArm, IsChosenByNameOrAsTheOnlyOne) {
   const std::vector<driver::FoundArm> arms = {found(ArmKind::kWoody, "W1"),
                                               found(ArmKind::kUnsupported, "T1"),
                                               found(ArmKind::kFalcon, "F1")};
-  EXPECT_FALSE(choose_arm(arms, "sim")->has_value());
-  EXPECT_EQ((*choose_arm(arms, "F1"))->serial, "F1");
-  const auto two = choose_arm(arms, "auto");
+  EXPECT_FALSE(scene::choose_arm(arms, "sim")->has_value());
+  EXPECT_EQ((*scene::choose_arm(arms, "F1"))->serial, "F1");
+  const auto two = scene::choose_arm(arms, "auto");
   ASSERT_FALSE(two);
   EXPECT_NE(two.error().message.find("W1, F1"), std::string::npos);
-  EXPECT_EQ((*choose_arm({arms[0], arms[1]}, "auto"))->serial, "W1");
-  EXPECT_FALSE(choose_arm({}, "auto")->has_value());
-  EXPECT_NE(choose_arm({}, "W1").error().message.find("None is plugged in"), std::string::npos);
-  EXPECT_NE(choose_arm(arms, "T1").error().message.find("not public"), std::string::npos);
+  EXPECT_EQ((*scene::choose_arm({arms[0], arms[1]}, "auto"))->serial, "W1");
+  EXPECT_FALSE(scene::choose_arm({}, "auto")->has_value());
+  EXPECT_NE(scene::choose_arm({}, "W1").error().message.find("None is plugged in"),
+            std::string::npos);
+  EXPECT_NE(scene::choose_arm(arms, "T1").error().message.find("not public"), std::string::npos);
 }
 
 TEST(RealArm, OfUnknownKindIsTakenByItsNameAloneAndToldOf) {
   const std::vector<driver::FoundArm> arms = {found(ArmKind::kPolhem, "P1"),
                                               found(ArmKind::kHfabLine, "L1")};
-  EXPECT_FALSE(choose_arm(arms, "auto")->has_value());
-  EXPECT_EQ((*choose_arm(arms, "L1"))->serial, "L1");
-  const std::string told = boards_left_out(arms);
+  EXPECT_FALSE(scene::choose_arm(arms, "auto")->has_value());
+  EXPECT_EQ((*scene::choose_arm(arms, "L1"))->serial, "L1");
+  const std::string told = scene::boards_left_out(arms);
   EXPECT_NE(told.find("P1: arm, L1: arm"), std::string::npos) << told;
-  EXPECT_EQ(boards_left_out({found(ArmKind::kFalcon, "F1")}), "");
+  EXPECT_EQ(scene::boards_left_out({found(ArmKind::kFalcon, "F1")}), "");
   // Beside an arm it is not what "auto" means.
-  EXPECT_EQ((*choose_arm({arms[0], arms[1], found(ArmKind::kFalcon, "F1")}, "auto"))->serial, "F1");
+  EXPECT_EQ((*scene::choose_arm({arms[0], arms[1], found(ArmKind::kFalcon, "F1")}, "auto"))->serial,
+            "F1");
   driver::FoundArm closed = arms[1];
   closed.accessible = false;
-  EXPECT_NE(choose_arm({closed}, "L1").error().message.find("line to add"), std::string::npos);
+  EXPECT_NE(scene::choose_arm({closed}, "L1").error().message.find("line to add"),
+            std::string::npos);
 }
 
 TEST(RealArm, OfAFormThatNoArmHasIsNeverChosen) {
   driver::FoundArm odd = found(ArmKind::kUnsupported, "O1");
   odd.certainty = Certainty::kUnknown;
-  EXPECT_FALSE(choose_arm({odd}, "auto")->has_value());
-  EXPECT_NE(choose_arm({odd}, "O1").error().message.find("does not open it"), std::string::npos);
+  EXPECT_FALSE(scene::choose_arm({odd}, "auto")->has_value());
+  EXPECT_NE(scene::choose_arm({odd}, "O1").error().message.find("does not open it"),
+            std::string::npos);
 }
 
 TEST(RealArm, MustBeAccessible) {
   driver::FoundArm arm = found(ArmKind::kWoody, "W1");
   arm.accessible = false;
-  const auto chosen = choose_arm({arm}, "auto");
+  const auto chosen = scene::choose_arm({arm}, "auto");
   ASSERT_FALSE(chosen);
   EXPECT_NE(chosen.error().message.find("70-thimble.rules"), std::string::npos);
 }
@@ -98,16 +102,16 @@ TEST(RealArm, IsFoundAgainBySerialNumberInAnySocketElseBySocket) {
   usb.plug("1-1", "0403", "cb48", "F1", 1, 2);
   const auto before = driver::find_arms(usb.root())->front();
   usb.unplug("1-1");
-  EXPECT_FALSE(find_again(*driver::find_arms(usb.root()), before));
+  EXPECT_FALSE(scene::find_again(*driver::find_arms(usb.root()), before));
   usb.plug("1-3", "0403", "cb48", "F2", 1, 7);
-  EXPECT_FALSE(find_again(*driver::find_arms(usb.root()), before));
+  EXPECT_FALSE(scene::find_again(*driver::find_arms(usb.root()), before));
   usb.plug("1-4", "0403", "cb48", "F1", 1, 8);
-  const auto again = find_again(*driver::find_arms(usb.root()), before);
+  const auto again = scene::find_again(*driver::find_arms(usb.root()), before);
   ASSERT_TRUE(again);
   EXPECT_EQ(again->usb.device, 8);
 
   usb.plug("1-5", "0403", "cb48", "F1", 1, 9);  // a second of that name: which is it?
-  EXPECT_FALSE(find_again(*driver::find_arms(usb.root()), before));
+  EXPECT_FALSE(scene::find_again(*driver::find_arms(usb.root()), before));
 }
 
 TEST(RealArm, WithoutANameOfItsOwnIsFoundAgainInItsSocketAloneAndAsTheSameBoard) {
@@ -121,35 +125,36 @@ TEST(RealArm, WithoutANameOfItsOwnIsFoundAgainInItsSocketAloneAndAsTheSameBoard)
   EXPECT_EQ(before.name(), "usb-1-1.4");
   usb.unplug("1-1.4");
   plug("1-3", 8, 3);  // another socket: it may be another arm
-  EXPECT_FALSE(find_again(*driver::find_arms(usb.root()), before));
+  EXPECT_FALSE(scene::find_again(*driver::find_arms(usb.root()), before));
   plug("1-1.4", 14, 4);  // the same socket, but other firmware
-  EXPECT_FALSE(find_again(*driver::find_arms(usb.root()), before));
+  EXPECT_FALSE(scene::find_again(*driver::find_arms(usb.root()), before));
   usb.unplug("1-1.4");
   plug("1-1.4", 8, 5);
-  const auto again = find_again(*driver::find_arms(usb.root()), before);
+  const auto again = scene::find_again(*driver::find_arms(usb.root()), before);
   ASSERT_TRUE(again);
   EXPECT_EQ(again->usb.device, 5);
   EXPECT_EQ(again->name(), before.name());
 }
 
 TEST(RealArm, TakesOnlyItsOwnFile) {
-  const ArmFile vintage = file_of("vintage_phantom.yaml");
-  const ArmFile woody = file_of("woodenhaptics.yaml");
-  const ArmFile falcon = file_of("falcon.yaml");
-  const ArmFile polhem = file_of("polhem.yaml");
-  EXPECT_TRUE(check_fits(woody, found(ArmKind::kWoody, "")));
-  EXPECT_FALSE(check_fits(vintage, found(ArmKind::kWoody, "")));
-  EXPECT_FALSE(check_fits(woody, found(ArmKind::kPolhem, "")));
-  EXPECT_TRUE(check_fits(polhem, found(ArmKind::kPolhem, "")));
+  const scene::ArmFile vintage = file_of("vintage_phantom.yaml");
+  const scene::ArmFile woody = file_of("woodenhaptics.yaml");
+  const scene::ArmFile falcon = file_of("falcon.yaml");
+  const scene::ArmFile polhem = file_of("polhem.yaml");
+  EXPECT_TRUE(scene::check_fits(woody, found(ArmKind::kWoody, "")));
+  EXPECT_FALSE(scene::check_fits(vintage, found(ArmKind::kWoody, "")));
+  EXPECT_FALSE(scene::check_fits(woody, found(ArmKind::kPolhem, "")));
+  EXPECT_TRUE(scene::check_fits(polhem, found(ArmKind::kPolhem, "")));
   // The same arm on another board counts joint A the other way.
-  EXPECT_FALSE(check_fits(woody, found(ArmKind::kHfabLine, "")));
-  EXPECT_TRUE(check_fits(file_of("woodenhaptics_teensy.yaml"), found(ArmKind::kHfabLine, "")));
-  EXPECT_FALSE(check_fits(file_of("woodenhaptics_teensy.yaml"), found(ArmKind::kWoody, "")));
-  EXPECT_TRUE(check_fits(vintage, found(ArmKind::kHfabLine, "")));
-  EXPECT_FALSE(check_fits(vintage, found(ArmKind::kPolhem, "")));
-  EXPECT_TRUE(check_fits(falcon, found(ArmKind::kFalcon, "")));
-  EXPECT_FALSE(check_fits(falcon, found(ArmKind::kHfabLine, "")));
-  EXPECT_FALSE(check_fits(woody, found(ArmKind::kFalcon, "")));
+  EXPECT_FALSE(scene::check_fits(woody, found(ArmKind::kHfabLine, "")));
+  EXPECT_TRUE(
+      scene::check_fits(file_of("woodenhaptics_teensy.yaml"), found(ArmKind::kHfabLine, "")));
+  EXPECT_FALSE(scene::check_fits(file_of("woodenhaptics_teensy.yaml"), found(ArmKind::kWoody, "")));
+  EXPECT_TRUE(scene::check_fits(vintage, found(ArmKind::kHfabLine, "")));
+  EXPECT_FALSE(scene::check_fits(vintage, found(ArmKind::kPolhem, "")));
+  EXPECT_TRUE(scene::check_fits(falcon, found(ArmKind::kFalcon, "")));
+  EXPECT_FALSE(scene::check_fits(falcon, found(ArmKind::kHfabLine, "")));
+  EXPECT_FALSE(scene::check_fits(woody, found(ArmKind::kFalcon, "")));
 }
 
 // Counts of encoder a grow: both published clients of the mbed board put the tip on the other side
@@ -158,13 +163,13 @@ TEST(RealArm, TakesOnlyItsOwnFile) {
 TEST(RealArm, HasTheSignsOfItsBoard) {
   driver::ArmReading reading;
   reading.counts = {1000, 0, 0};
-  const ArmFile mbed = file_of("woodenhaptics.yaml");
-  const ArmFile teensy = file_of("woodenhaptics_teensy.yaml");
-  EXPECT_LT(make_arm(mbed, ArmKind::kWoody)->pose(reading).p_BT.y(), -0.01);
-  EXPECT_GT(make_arm(teensy, ArmKind::kHfabLine)->pose(reading).p_BT.y(), 0.01);
-  for (const ArmFile& file : {mbed, teensy}) EXPECT_EQ(file.model.drives[0].sign, 1);
+  const scene::ArmFile mbed = file_of("woodenhaptics.yaml");
+  const scene::ArmFile teensy = file_of("woodenhaptics_teensy.yaml");
+  EXPECT_LT(scene::make_arm(mbed, ArmKind::kWoody)->pose(reading).p_BT.y(), -0.01);
+  EXPECT_GT(scene::make_arm(teensy, ArmKind::kHfabLine)->pose(reading).p_BT.y(), 0.01);
+  for (const scene::ArmFile& file : {mbed, teensy}) EXPECT_EQ(file.model.drives[0].sign, 1);
   // The files and the driver's own data are one.
-  const auto same = [](const ArmFile& file, const auto& model) {
+  const auto same = [](const scene::ArmFile& file, const auto& model) {
     for (std::size_t i = 0; i < 3; ++i) {
       EXPECT_EQ(file.model.drives[i].sign, model.drives[i].sign);
       EXPECT_EQ(file.model.encoders[i].sign, model.encoders[i].sign);
@@ -176,8 +181,8 @@ TEST(RealArm, HasTheSignsOfItsBoard) {
 }
 
 TEST(RealArm, StandsInTheMiddleOfItsWorldAsItsFileSays) {
-  const ArmFile falcon = file_of("falcon.yaml");
-  const auto arm = make_arm(falcon, ArmKind::kFalcon);
+  const scene::ArmFile falcon = file_of("falcon.yaml");
+  const auto arm = scene::make_arm(falcon, ArmKind::kFalcon);
   // Push the grip to the middle of the workspace: all legs at the angle of p_BM.
   const auto q = driver::falcon::falcon_geometry().inverse(driver::falcon::falcon_geometry().p_BM);
   driver::ArmReading reading;
@@ -196,12 +201,12 @@ TEST(RealArm, StandsInTheMiddleOfItsWorldAsItsFileSays) {
 
 TEST(RealArm, SpeaksTheWireOfItsKind) {
   std::array<std::byte, driver::kReportCapacity> bytes{};
-  const ArmFile woody = file_of("woodenhaptics.yaml");
-  EXPECT_EQ(make_arm(woody, ArmKind::kWoody)->encode({}, bytes), 8u);
-  EXPECT_EQ(make_arm(woody, ArmKind::kHfabLine)->encode({}, bytes), 8u);  // "[0,0,0]\n"
+  const scene::ArmFile woody = file_of("woodenhaptics.yaml");
+  EXPECT_EQ(scene::make_arm(woody, ArmKind::kWoody)->encode({}, bytes), 8u);
+  EXPECT_EQ(scene::make_arm(woody, ArmKind::kHfabLine)->encode({}, bytes), 8u);  // "[0,0,0]\n"
   EXPECT_EQ(bytes[0], std::byte{'['});
-  EXPECT_EQ(make_arm(file_of("polhem.yaml"), ArmKind::kPolhem)->encode({}, bytes), 14u);
-  EXPECT_EQ(make_arm(file_of("falcon.yaml"), ArmKind::kFalcon)->encode({}, bytes), 16u);
+  EXPECT_EQ(scene::make_arm(file_of("polhem.yaml"), ArmKind::kPolhem)->encode({}, bytes), 14u);
+  EXPECT_EQ(scene::make_arm(file_of("falcon.yaml"), ArmKind::kFalcon)->encode({}, bytes), 16u);
   EXPECT_EQ(bytes[0], std::byte{'<'});
 }
 

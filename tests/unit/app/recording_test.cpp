@@ -25,17 +25,17 @@ namespace {
 
 using driver::TickRecord;
 
-const RecordingInfo kInfo{.scene = "elephant",
-                          .scene_file = "scenes/elephant.yaml",
-                          .scene_text = "name: elephant\n# \xc3\xa4\n",
-                          .arm = "vintage",
-                          .arm_file = "arms/vintage.yaml",
-                          .arm_text = "name: vintage\n",
-                          .device = "sim",
-                          .clock = "virtual",
-                          .program = "test",
-                          .rate = 1000,
-                          .seed = 0xfedcba9876543210U};
+const session::RecordingInfo kInfo{.scene = "elephant",
+                                   .scene_file = "scenes/elephant.yaml",
+                                   .scene_text = "name: elephant\n# \xc3\xa4\n",
+                                   .arm = "vintage",
+                                   .arm_file = "arms/vintage.yaml",
+                                   .arm_text = "name: vintage\n",
+                                   .device = "sim",
+                                   .clock = "virtual",
+                                   .program = "test",
+                                   .rate = 1000,
+                                   .seed = 0xfedcba9876543210U};
 
 std::filesystem::path scratch(const char* name) {
   return support::scratch_folder() / name;
@@ -68,7 +68,7 @@ TickRecord tick_number(std::uint64_t number) {
 }
 
 bool same(const TickRecord& a, const TickRecord& b) {
-  for (const RecordingColumn& column : recording_columns()) {
+  for (const session::RecordingColumn& column : session::recording_columns()) {
     if (std::memcmp(reinterpret_cast<const unsigned char*>(&a) + column.offset,
                     reinterpret_cast<const unsigned char*>(&b) + column.offset,
                     column.bytes()) != 0) {
@@ -80,7 +80,8 @@ bool same(const TickRecord& a, const TickRecord& b) {
 
 TEST(RecordingColumns, HoldEveryByteOfATickButPadding) {
   std::size_t bytes = 0;
-  for (const RecordingColumn& column : recording_columns()) bytes += column.bytes();
+  for (const session::RecordingColumn& column : session::recording_columns())
+    bytes += column.bytes();
   // 4 long counters, 3 counts, 24 + 1 doubles, a triangle, 3 short numbers, 4 flags.
   EXPECT_EQ(bytes, 4 * 8 + 3 * 4 + 25 * 8 + 4 + 3 * 2 + 4U);
   EXPECT_LE(sizeof(TickRecord) - bytes, 8U) << "a field of TickRecord is in no column";
@@ -88,7 +89,7 @@ TEST(RecordingColumns, HoldEveryByteOfATickButPadding) {
 
 TEST(Recording, ReadsBackToTheBit) {
   const auto path = scratch("whole.h5");
-  auto recorder = Recorder::open(path, kInfo, 3000);
+  auto recorder = session::Recorder::open(path, kInfo, 3000);
   ASSERT_TRUE(recorder) << recorder.error().message;
   for (std::uint64_t i = 0; i < 3000; ++i) {
     (**recorder)(tick_number(i));
@@ -96,7 +97,7 @@ TEST(Recording, ReadsBackToTheBit) {
   }
   ASSERT_TRUE((*recorder)->finish());
 
-  const auto read = read_recording(path);
+  const auto read = session::read_recording(path);
   ASSERT_TRUE(read) << read.error().message;
   EXPECT_TRUE(read->complete);
   ASSERT_EQ(read->ticks.size(), 3000U);
@@ -111,7 +112,7 @@ TEST(Recording, ReadsBackToTheBit) {
 
 TEST(Recording, OfAnOlderProgramHasNoHeat) {
   const auto path = scratch("older.h5");
-  auto recorder = Recorder::open(path, kInfo, 10);
+  auto recorder = session::Recorder::open(path, kInfo, 10);
   ASSERT_TRUE(recorder) << recorder.error().message;
   for (std::uint64_t i = 0; i < 10; ++i) (**recorder)(tick_number(i));
   ASSERT_TRUE((*recorder)->finish());
@@ -123,7 +124,7 @@ TEST(Recording, OfAnOlderProgramHasNoHeat) {
   ASSERT_NE(at, std::string::npos);
   bytes[at + 4] = 'x';
   std::ofstream(path, std::ios::binary) << bytes;
-  const auto read = read_recording(path);
+  const auto read = session::read_recording(path);
   ASSERT_TRUE(read) << read.error().message;
   ASSERT_EQ(read->ticks.size(), 10U);
   EXPECT_EQ(read->ticks[3].heat, (std::array<double, 3>{}));
@@ -133,11 +134,11 @@ TEST(Recording, OfAnOlderProgramHasNoHeat) {
 TEST(Recording, IsAsShortAsTheRunWas) {
   for (const std::uint64_t ticks : {0U, 1U, 999U}) {
     const auto path = scratch("short.h5");
-    auto recorder = Recorder::open(path, kInfo, 1'000'000);
+    auto recorder = session::Recorder::open(path, kInfo, 1'000'000);
     ASSERT_TRUE(recorder);
     for (std::uint64_t i = 0; i < ticks; ++i) (**recorder)(tick_number(i));
     ASSERT_TRUE((*recorder)->finish());
-    const auto read = read_recording(path);
+    const auto read = session::read_recording(path);
     ASSERT_TRUE(read) << read.error().message;
     EXPECT_TRUE(read->complete);
     ASSERT_EQ(read->ticks.size(), ticks);
@@ -157,7 +158,7 @@ TEST(Recording, KilledInTheMiddleOpensAndLacksLessThanATenthOfASecond) {
     ASSERT_EQ(pipe(pipe_ends), 0);
     const pid_t child = fork();
     if (child == 0) {
-      auto recorder = Recorder::open(path, kInfo, 36'000'000);
+      auto recorder = session::Recorder::open(path, kInfo, 36'000'000);
       if (!recorder) _exit(1);
       (*recorder)->start_thread();
       for (std::uint64_t i = 0;; ++i) {
@@ -182,7 +183,7 @@ TEST(Recording, KilledInTheMiddleOpensAndLacksLessThanATenthOfASecond) {
     for (std::int64_t told = 0; read(pipe_ends[0], &told, sizeof told) == sizeof told;) last = told;
     close(pipe_ends[0]);
 
-    const auto read = read_recording(path);
+    const auto read = session::read_recording(path);
     ASSERT_TRUE(read) << read.error().message;
     EXPECT_FALSE(read->complete);
     ASSERT_GT(read->ticks.size(), 0U);
@@ -200,7 +201,7 @@ TEST(Recording, OnAFullDiskEndsWithItsReasonAndKeepsWhatItHas) {
   const auto path = scratch("full.h5");
   const pid_t child = fork();
   if (child == 0) {
-    auto recorder = Recorder::open(path, kInfo, 100'000);
+    auto recorder = session::Recorder::open(path, kInfo, 100'000);
     if (!recorder) _exit(2);
     for (std::uint64_t i = 0; i < 1000; ++i) (**recorder)(tick_number(i));
     (*recorder)->serve();
@@ -222,16 +223,17 @@ TEST(Recording, OnAFullDiskEndsWithItsReasonAndKeepsWhatItHas) {
   waitpid(child, &status, 0);
   ASSERT_TRUE(WIFEXITED(status));
   EXPECT_EQ(WEXITSTATUS(status), 0);
-  const auto read = read_recording(path);
+  const auto read = session::read_recording(path);
   ASSERT_TRUE(read) << read.error().message;
   ASSERT_EQ(read->ticks.size(), 1000U);
   EXPECT_TRUE(same(read->ticks.back(), tick_number(999)));
 }
 
 TEST(Recording, CountsTicksThatFindNoRoomAndNeverWaits) {
-  auto recorder = Recorder::open(scratch("slow.h5"), kInfo, 100'000);
+  auto recorder = session::Recorder::open(scratch("slow.h5"), kInfo, 100'000);
   ASSERT_TRUE(recorder);
-  for (std::uint64_t i = 0; i < Recorder::kRingTicks + 10; ++i) (**recorder)(tick_number(i));
+  for (std::uint64_t i = 0; i < session::Recorder::kRingTicks + 10; ++i)
+    (**recorder)(tick_number(i));
   EXPECT_EQ((*recorder)->dropped(), 10U);
   const auto finished = (*recorder)->finish();
   ASSERT_FALSE(finished);
@@ -239,16 +241,16 @@ TEST(Recording, CountsTicksThatFindNoRoomAndNeverWaits) {
 }
 
 TEST(Recording, ThatCannotBeWrittenSaysWhere) {
-  const auto refused = Recorder::open("/proc/no/such/place.h5", kInfo, 10);
+  const auto refused = session::Recorder::open("/proc/no/such/place.h5", kInfo, 10);
   ASSERT_FALSE(refused);
   EXPECT_NE(refused.error().message.find("/proc/no/such/place.h5"), std::string::npos);
 }
 
 TEST(Recording, SaysWhatAFileIsNot) {
-  EXPECT_NE(read_recording(scratch("none.h5")).error().message.find("no such file"),
+  EXPECT_NE(session::read_recording(scratch("none.h5")).error().message.find("no such file"),
             std::string::npos);
   std::ofstream(scratch("text.h5")) << "not a recording";
-  EXPECT_NE(read_recording(scratch("text.h5")).error().message.find("not a recording"),
+  EXPECT_NE(session::read_recording(scratch("text.h5")).error().message.find("not a recording"),
             std::string::npos);
 }
 
@@ -258,7 +260,7 @@ TEST(Recording, WithAnyByteDamagedIsReadOrRefused) {
   GTEST_SKIP() << "no threads meet here, and damaged files ask for more memory than it can give";
 #endif
   const auto path = scratch("damaged.h5");
-  auto recorder = Recorder::open(path, kInfo, 4);
+  auto recorder = session::Recorder::open(path, kInfo, 4);
   ASSERT_TRUE(recorder);
   for (std::uint64_t i = 0; i < 4; ++i) (**recorder)(tick_number(i));
   ASSERT_TRUE((*recorder)->finish());
@@ -271,7 +273,7 @@ TEST(Recording, WithAnyByteDamagedIsReadOrRefused) {
     std::string bad = good;
     bad[random() % bad.size()] = static_cast<char>(random());
     std::ofstream(path, std::ios::binary) << bad;
-    const auto read = read_recording(path);
+    const auto read = session::read_recording(path);
     if (!read) {
       ++refused;
       EXPECT_FALSE(read.error().message.empty());
@@ -284,14 +286,14 @@ TEST(Recording, WithAnyByteDamagedIsReadOrRefused) {
 
 TEST(Recording, CutShortAnywhereIsReadOrRefused) {
   const auto path = scratch("cut.h5");
-  auto recorder = Recorder::open(path, kInfo, 100);
+  auto recorder = session::Recorder::open(path, kInfo, 100);
   ASSERT_TRUE(recorder);
   for (std::uint64_t i = 0; i < 100; ++i) (**recorder)(tick_number(i));
   ASSERT_TRUE((*recorder)->finish());
   for (auto size = std::filesystem::file_size(path); size > 0;
        size -= std::min<std::uintmax_t>(size, 511)) {
     std::filesystem::resize_file(path, size);
-    const auto read = read_recording(path);
+    const auto read = session::read_recording(path);
     if (read) {
       EXPECT_LE(read->ticks.size(), 100U);
     }
@@ -299,20 +301,21 @@ TEST(Recording, CutShortAnywhereIsReadOrRefused) {
 }
 
 TEST(Csv, HoldsEveryNumberToTheBit) {
-  Recording recording;
+  session::Recording recording;
   recording.info = kInfo;
   TickRecord tick = tick_number(7);
   tick.p_WT = {1.0 / 3, -std::numbers::pi * 1e-9, std::numeric_limits<double>::denorm_min()};
   recording.ticks = {tick_number(6), tick};
   const auto path = scratch("table.csv");
-  ASSERT_TRUE(write_csv(recording, path));
+  ASSERT_TRUE(session::write_csv(recording, path));
   std::ifstream in(path);
   std::string heading, row;
   std::getline(in, heading);
   std::getline(in, row);
   std::getline(in, row);
   std::size_t columns = 0;
-  for (const RecordingColumn& column : recording_columns()) columns += column.width;
+  for (const session::RecordingColumn& column : session::recording_columns())
+    columns += column.width;
   std::vector<std::string> names, cells;
   for (auto* into : {&names, &cells}) {
     std::istringstream line(into == &names ? heading : row);
@@ -330,7 +333,7 @@ TEST(Csv, HoldsEveryNumberToTheBit) {
 }
 
 TEST(BlackBox, KeepsTheSecondsBeforeAFaultUntilTheyAreTaken) {
-  BlackBox box(1000);
+  session::BlackBox box(1000);
   TickRecord tick;
   const auto run = [&](int ticks, driver::Fault fault) {
     for (int i = 0; i < ticks; ++i) {
@@ -361,9 +364,9 @@ TEST(BlackBox, KeepsTheSecondsBeforeAFaultUntilTheyAreTaken) {
 }
 
 TEST(Recording, AsksTheHeapForNothingPerTick) {
-  auto recorder = Recorder::open(scratch("quiet.h5"), kInfo, 1000);
+  auto recorder = session::Recorder::open(scratch("quiet.h5"), kInfo, 1000);
   ASSERT_TRUE(recorder);
-  BlackBox box(1000);
+  session::BlackBox box(1000);
   const TickRecord tick = tick_number(1);
   EXPECT_EQ(support::heap_calls_of([&] {
               for (int i = 0; i < 1000; ++i) {

@@ -52,9 +52,9 @@ class ReplugWatchTest : public ::testing::Test {
   void make_watch(const std::optional<Eigen::Vector3d>& p_WHome) {
     watch_.emplace(
         *device_, snapshot_,
-        StartPose({.min_W = {-0.1, -0.1, -0.1}, .max_W = {0.1, 0.1, 0.1}}, p_WHome),
+        session::StartPose({.min_W = {-0.1, -0.1, -0.1}, .max_W = {0.1, 0.1, 0.1}}, p_WHome),
         driver::FoundArm{},
-        ReplugWatch::Ways{
+        session::ReplugWatch::Ways{
             .find = [this](const driver::FoundArm& arm) -> std::optional<driver::FoundArm> {
               return plugged_ ? std::optional(arm) : std::nullopt;
             },
@@ -64,14 +64,15 @@ class ReplugWatchTest : public ::testing::Test {
               second_.lost = false;
               return std::unique_ptr<driver::Transport>(std::make_unique<OnWire>(second_));
             }},
-        Terminal{.there = true,
-                 .key =
-                     [this] {
-                       const bool pressed = enter_;
-                       enter_ = false;
-                       return pressed ? EnterKey::kPressed : EnterKey::kNothing;
-                     },
-                 .tell = [this](const std::string& line) { told_.push_back(line); }});
+        session::Terminal{.there = true,
+                          .key =
+                              [this] {
+                                const bool pressed = enter_;
+                                enter_ = false;
+                                return pressed ? session::EnterKey::kPressed
+                                               : session::EnterKey::kNothing;
+                              },
+                          .tell = [this](const std::string& line) { told_.push_back(line); }});
   }
 
   /// Runs 100 ticks of a millisecond, then lets the watch look once; `times` times.
@@ -112,7 +113,7 @@ class ReplugWatchTest : public ::testing::Test {
   std::unique_ptr<driver::Device> device_;
   driver::Snapshot<driver::TickRecord> snapshot_;
   driver::TickRecord last_;
-  std::optional<ReplugWatch> watch_;
+  std::optional<session::ReplugWatch> watch_;
   std::vector<std::string> told_;
 };
 

@@ -1,4 +1,4 @@
-#include "ring_pages.h"
+#include "studies/ring_pages.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <numbers>
 
 #include "page/paged_surface.h"
-#include "resident_memory.h"
 #include "search/tree_search.h"
+#include "studies/resident_memory.h"
 #include "support/contact_walk.h"
 #include "support/random.h"
 #include "support/scratch.h"

@@ -1,4 +1,4 @@
-#include "run_statistics.h"
+#include "thimble/session/run_statistics.h"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@ namespace {
 TEST(Histogram, FindsPercentilesWithinItsBinWidth) {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> exponent(0, std::log(1e10));
-  Histogram histogram;
+  session::Histogram histogram;
   std::vector<std::int64_t> values;
   for (int i = 0; i < 20000; ++i) {
     values.push_back(static_cast<std::int64_t>(std::exp(exponent(random))));
@@ -31,11 +31,11 @@ TEST(Histogram, FindsPercentilesWithinItsBinWidth) {
 }
 
 TEST(Histogram, HoldsEachValueInABinNarrowerThanOnePercent) {
-  for (std::int64_t value = 1; value < Histogram::kMax_ns; value += 1 + value / 37) {
-    Histogram histogram;
+  for (std::int64_t value = 1; value < session::Histogram::kMax_ns; value += 1 + value / 37) {
+    session::Histogram histogram;
     histogram.add(value);
     ASSERT_EQ(histogram.bins().size(), 1U);
-    const Histogram::Bin bin = histogram.bins().front();
+    const session::Histogram::Bin bin = histogram.bins().front();
     EXPECT_LE(bin.lower_ns, value);
     EXPECT_LT(value, bin.upper_ns);
     EXPECT_LE(bin.upper_ns - bin.lower_ns, std::max<std::int64_t>(1, value / 100));
@@ -43,17 +43,17 @@ TEST(Histogram, HoldsEachValueInABinNarrowerThanOnePercent) {
 }
 
 TEST(Histogram, ClampsWhatIsOutOfItsRange) {
-  Histogram histogram;
+  session::Histogram histogram;
   histogram.add(-5);
-  histogram.add(Histogram::kMax_ns + 1);
+  histogram.add(session::Histogram::kMax_ns + 1);
   histogram.add(INT64_MAX);
   EXPECT_EQ(histogram.count(), 3U);
   EXPECT_EQ(histogram.min_ns(), 0);
-  EXPECT_EQ(histogram.max_ns(), Histogram::kMax_ns);
+  EXPECT_EQ(histogram.max_ns(), session::Histogram::kMax_ns);
 }
 
 TEST(Histogram, IsZeroWithoutValues) {
-  const Histogram histogram;
+  const session::Histogram histogram;
   EXPECT_EQ(histogram.percentile(0.5), 0);
   EXPECT_EQ(histogram.min_ns(), 0);
   EXPECT_EQ(histogram.max_ns(), 0);
@@ -70,7 +70,7 @@ driver::TickRecord tick(std::int64_t time_ns, bool in_contact) {
 }
 
 TEST(RunStatistics, CountsTouchDownsAndTimeInContact) {
-  RunStatistics statistics;
+  session::RunStatistics statistics;
   for (int i = 0; i < 1000; ++i) {
     const bool touching = (i >= 100 && i < 300) || (i >= 500 && i < 600) || (i >= 605 && i < 700);
     statistics(tick(i * 1'000'000LL, touching));
@@ -84,7 +84,7 @@ TEST(RunStatistics, CountsTouchDownsAndTimeInContact) {
 }
 
 TEST(RunStatistics, CountsAContactFromTheFirstTickOn) {
-  RunStatistics statistics;
+  session::RunStatistics statistics;
   statistics(tick(0, true));
   statistics(tick(1'000'000, true));
   EXPECT_EQ(statistics.contacts(), 1U);
@@ -94,7 +94,7 @@ TEST(RunStatistics, CountsAContactFromTheFirstTickOn) {
 TEST(RunStatistics, GivesEnergyByTheForceThatActedDuringEachStep) {
   // f = (1, 2, 0) N in tick 0 acts while the tip moves by (3, 4, 5) mm: 11 mJ to the hand; the
   // force of tick 1 acts while it moves back by half: -(1.5 * 4) mJ.
-  RunStatistics statistics;
+  session::RunStatistics statistics;
   driver::TickRecord record = tick(0, true);
   record.f_sent_W = {1, 2, 0};
   statistics(record);
@@ -114,7 +114,7 @@ TEST(RunStatistics, GivesEnergyByTheForceThatActedDuringEachStep) {
 TEST(RunStatistics, AgreesWithPlainSumsOverRandomRecords) {
   std::mt19937_64 random(11);
   std::normal_distribution<double> normal;
-  RunStatistics statistics;
+  session::RunStatistics statistics;
   double force_max = 0, squares = 0, depth_max = 0, energy = 0;
   std::uint64_t touching = 0, missing = 0;
   driver::TickRecord last;
@@ -144,7 +144,7 @@ TEST(RunStatistics, AgreesWithPlainSumsOverRandomRecords) {
 }
 
 TEST(RunStatistics, KeepsTheFirstFault) {
-  RunStatistics statistics;
+  session::RunStatistics statistics;
   driver::TickRecord record = tick(0, false);
   statistics(record);
   record.fault = driver::Fault::kOverSpeed;

@@ -1,4 +1,4 @@
-#include "scene_effects.h"
+#include "thimble/scene/scene_effects.h"
 
 #include <gtest/gtest.h>
 
@@ -18,25 +18,25 @@ std::vector<std::string> names_of(const std::vector<render::EffectPlan>& plans) 
 
 // Reads a list of effects and tells what was wrong with it.
 std::string mistake(const std::string& effects) {
-  auto yaml = YamlFile::parse("effects:\n" + effects, "scene");
+  auto yaml = scene::YamlFile::parse("effects:\n" + effects, "scene");
   if (!yaml) return yaml.error().message;
   render::EffectContext context;
   context.force_max = 5;
   context.surface_stiffness = 800;
-  read_effects(yaml->root(), {}, context);
+  scene::read_effects(yaml->root(), {}, context);
   yaml->root().finish();
   const auto done = yaml->finish();
   return done ? "" : done.error().message;
 }
 
 TEST(SceneEffects, RunInTheOrderOfATickWhateverOrderASceneNamesThemIn) {
-  auto yaml = YamlFile::parse(
+  auto yaml = scene::YamlFile::parse(
       "effects:\n  - {friction: bristle, coefficient: 0.4}\n  - {texture: sandpaper}\n", "scene");
   ASSERT_TRUE(yaml.ok());
   render::EffectContext context;
   context.force_max = 5;
   context.surface_stiffness = 800;
-  const auto plans = read_effects(yaml->root(), {}, context);
+  const auto plans = scene::read_effects(yaml->root(), {}, context);
   EXPECT_EQ(names_of(plans), (std::vector<std::string>{"sandpaper", "bristle"}));
   for (const render::EffectPlan& plan : plans) EXPECT_NE(plan.build(), nullptr);
 }
@@ -62,14 +62,14 @@ TEST(Surroundings, OfEveryArmThatComesAlongAreThoseOfADeskTopArm) {
   int arms = 0;
   for (const auto& file : std::filesystem::directory_iterator(
            std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms")) {
-    const auto arm = read_arm_file(file.path());
+    const auto arm = scene::read_arm_file(file.path());
     ASSERT_TRUE(arm.ok()) << arm.error().message;
-    const render::EffectContext context = effect_context_of(*arm, 1000);
+    const render::EffectContext context = scene::effect_context_of(*arm, 1000);
     // Steps of the arms we know lie between 0.02 and 0.07 mm [DEVICES 2]; row sums above that.
     EXPECT_GT(context.encoder_step, 0.01e-3) << file.path();
     EXPECT_LT(context.encoder_step, 0.3e-3) << file.path();
     // One place computes it, and the laws are told the same.
-    EXPECT_EQ(context.encoder_step, worst_over_workspace(*arm).encoder_step);
+    EXPECT_EQ(context.encoder_step, scene::worst_over_workspace(*arm).encoder_step);
     EXPECT_EQ(context.tick, 0.001);
     EXPECT_GE(context.delay, 0.001) << file.path();
     EXPECT_GT(context.force_max, 0) << file.path();

@@ -1,4 +1,4 @@
-#include "scene_file.h"
+#include "thimble/scene/scene_file.h"
 
 #include <gtest/gtest.h>
 
@@ -14,8 +14,8 @@ namespace {
 const std::filesystem::path kFolder = support::scratch_folder() / "thimble_scene";
 
 // Writes a scene beside an arm and a mesh that exist, and tells what was wrong with it.
-driver::Result<Scene> read(const std::string& objects, const std::string& path,
-                           const std::string& more = "") {
+driver::Result<scene::Scene> read(const std::string& objects, const std::string& path,
+                                  const std::string& more = "") {
   std::filesystem::create_directories(kFolder / "meshes");
   std::filesystem::copy_file(
       std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms/vintage_phantom.yaml",
@@ -23,7 +23,7 @@ driver::Result<Scene> read(const std::string& objects, const std::string& path,
   std::ofstream(kFolder / "meshes/ball.off") << "OFF\n";
   std::ofstream(kFolder / "scene.yaml") << "name: test\narm: arm.yaml\nduration: 2\n" + more +
                                                "objects:\n" + objects + "hand:\n  path:\n" + path;
-  return read_scene(kFolder / "scene.yaml", kFolder / "meshes");
+  return scene::read_scene(kFolder / "scene.yaml", kFolder / "meshes");
 }
 
 const std::string kBall = "  - {name: ball, mesh: cgal:ball.off, size: 0.1, stiffness: 500}\n";
@@ -163,11 +163,11 @@ TEST(PlaceMesh, GivesTheBoxItsSizeAndCentre) {
   render::TriangleMesh mesh;
   mesh.vertices = {{10, 0, 0}, {14, 1, 0}, {10, 2, 3}};
   mesh.triangles = {{0, 1, 2}};
-  SceneObject object;
+  scene::SceneObject object;
   object.size = 0.1;
   object.p_WO = {0.01, 0.02, 0.03};
   object.R_WO = Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-  const render::TriangleMesh placed = place_mesh(mesh, object);
+  const render::TriangleMesh placed = scene::place_mesh(mesh, object);
   Eigen::AlignedBox3d box;
   for (const Eigen::Vector3d& vertex : placed.vertices) box.extend(vertex);
   EXPECT_LT((box.center() - object.p_WO).norm(), 1e-15);
@@ -213,7 +213,7 @@ TEST(SceneFile, DrawsShapesWhereTheyAre) {
       "  - {name: wall, plane: {normal: [1, 1, 0], drawn_side: 0.2}, stiffness: 400}\n",
       kWait);
   ASSERT_TRUE(scene.ok()) << scene.error().message;
-  for (const SceneObject& object : scene->objects) {
+  for (const scene::SceneObject& object : scene->objects) {
     const auto& mesh = object.shape->mesh_W;
     ASSERT_FALSE(mesh.triangles.empty());
     double volume = 0;

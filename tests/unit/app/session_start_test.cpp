@@ -5,9 +5,9 @@
 #include <filesystem>
 
 #include "servo_thread.h"
-#include "session.h"
 #include "share/shared_run.h"
 #include "support/scratch.h"
+#include "thimble/session/session.h"
 
 namespace thimble::app {
 namespace {
@@ -37,10 +37,15 @@ class SessionStart : public ::testing::Test {
     options_.real_arm = driver::FoundArm{};
     options_.real_arm->kind = driver::ArmKind::kPolhem;
     options_.real_arm->serial = "S1";
+    const std::filesystem::path file =
+        std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms/vintage_phantom.yaml";
+    options_.terms = scene::RealArmTerms{};
+    options_.terms->arm.path = file;
+    options_.terms->arm.file = *scene::read_arm_file(file);
     options_.record = support::scratch_folder() / "start.h5";
     options_.share = true;
     options_.open_wire = [this](
-                             const ArmFile&,
+                             const scene::ArmFile&,
                              driver::Clock&) -> driver::Result<std::unique_ptr<driver::Transport>> {
       ++opened_;
       ready_ = session_ != nullptr && session_->triangles() > 0 && session_->shared() != nullptr &&
@@ -53,15 +58,15 @@ class SessionStart : public ::testing::Test {
     return std::filesystem::path(THIMBLE_SOURCE_DIR) / "tests/data/scenes/two_boxes.yaml";
   }
 
-  SessionOptions options_;
-  std::unique_ptr<Session> session_;
+  session::SessionOptions options_;
+  std::unique_ptr<session::Session> session_;
   std::array<std::int16_t, 6> counts_{};
   int opened_ = 0, forced_ = 0;
   bool ready_ = false;
 };
 
 TEST_F(SessionStart, OpensTheArmAfterAllThatTakesTimeAndLeavesItIdle) {
-  auto prepared = Session::prepare(scene(), options_);
+  auto prepared = session::Session::prepare(scene(), options_);
   ASSERT_TRUE(prepared) << prepared.error().message;
   session_ = std::move(prepared).value();
   EXPECT_EQ(opened_, 0);
@@ -78,35 +83,35 @@ TEST_F(SessionStart, OpensTheArmAfterAllThatTakesTimeAndLeavesItIdle) {
 
 TEST_F(SessionStart, WithNobodyToAskRefusesAnArmThatIsNotAtHome) {
   counts_ = {2000, 0, 0, 0, 0, 0};
-  const auto refused = Session::open(scene(), options_);
+  const auto refused = session::Session::open(scene(), options_);
   ASSERT_FALSE(refused);
   EXPECT_NE(refused.error().message.find("away from its home pose"), std::string::npos);
   options_.homed = true;
-  EXPECT_TRUE(Session::open(scene(), options_)) << "its counters are known to be right";
+  EXPECT_TRUE(session::Session::open(scene(), options_)) << "its counters are known to be right";
   counts_ = {12000, 0, 0, 0, 0, 0};
-  const auto outside = Session::open(scene(), options_);
+  const auto outside = session::Session::open(scene(), options_);
   ASSERT_FALSE(outside);
   EXPECT_NE(outside.error().message.find("outside of the workspace"), std::string::npos);
   options_.homed = false;
   counts_ = {};
-  EXPECT_TRUE(Session::open(scene(), options_));
+  EXPECT_TRUE(session::Session::open(scene(), options_));
   EXPECT_EQ(forced_, 0);
 }
 
 TEST(ServoThread, KnowsItsGrantBeforeItRunsAndMayLeaveWithoutRunning) {
   {
-    const ServoThread unused(true);
+    const session::ServoThread unused(true);
     EXPECT_EQ(unused.grant().fifo && unused.grant().memory_locked && unused.grant().cpu_awake,
               unused.grant().advice.empty());
     EXPECT_FALSE(unused.ended());
   }
-  SessionOptions options;
+  session::SessionOptions options;
   options.duration = 0.5;
-  auto session = Session::open(
+  auto session = session::Session::open(
       std::filesystem::path(THIMBLE_SOURCE_DIR) / "tests/data/scenes/two_boxes.yaml", options);
   ASSERT_TRUE(session) << session.error().message;
   const std::atomic<bool> stop{false};
-  ServoThread servo(false);
+  session::ServoThread servo(false);
   servo.begin(**session, stop);
   EXPECT_EQ(servo.join(), driver::ServoEnd::kDone);
   EXPECT_TRUE(servo.ended());
@@ -116,13 +121,13 @@ TEST(ServoThread, KnowsItsGrantBeforeItRunsAndMayLeaveWithoutRunning) {
 TEST(CheckRealTime, RefusesARealArmWithoutPriorityUnlessTheUserSaysSo) {
   driver::RealTimeGrant grant;
   grant.advice = "Add your user to a group.";
-  const auto refused = check_real_time(grant, false);
+  const auto refused = session::check_real_time(grant, false);
   ASSERT_FALSE(refused);
   EXPECT_NE(refused.error().message.find("--no-real-time"), std::string::npos);
   EXPECT_NE(refused.error().message.find("Add your user"), std::string::npos);
-  EXPECT_TRUE(check_real_time(grant, true));
+  EXPECT_TRUE(session::check_real_time(grant, true));
   grant.fifo = true;
-  EXPECT_TRUE(check_real_time(grant, false));
+  EXPECT_TRUE(session::check_real_time(grant, false));
 }
 
 }  // namespace

@@ -25,15 +25,15 @@ namespace {
 using driver::TickRecord;
 
 /// Makes a scene of two triangles, one of them shaped, and a knob.
-SharedScene small_scene() {
-  SharedScene scene;
+session::SharedScene small_scene() {
+  session::SharedScene scene;
   scene.name = "small";
   scene.file = "scenes/small.yaml";
   scene.period_ns = 1'000'000;
   scene.force_max = 6;
   scene.arm.name = "vintage";
   scene.arm.device = "sim";
-  scene.arm.shape = SharedArmShape::kSerial;
+  scene.arm.shape = session::SharedArmShape::kSerial;
   scene.arm.numbers = {0.1, 0.13, 0.16};
   scene.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
   scene.triangles = {{0, 1, 2}, {3, 4, 5}};
@@ -79,29 +79,29 @@ bool whole(const TickRecord& tick) {
 }
 
 struct Pair {
-  std::unique_ptr<SharedRun> run;
-  std::unique_ptr<SharedReader> reader;
+  std::unique_ptr<session::SharedRun> run;
+  std::unique_ptr<session::SharedReader> reader;
 };
 
 /// Joins a run and a reader over memory without a name.
-Pair joined(const SharedScene& scene, std::size_t ring_ticks = 100) {
+Pair joined(const session::SharedScene& scene, std::size_t ring_ticks = 100) {
   Pair pair;
-  pair.run = SharedRun::create("", scene, ring_ticks).value();
-  pair.reader = SharedReader::over(pair.run->memory().again().value()).value();
+  pair.run = session::SharedRun::create("", scene, ring_ticks).value();
+  pair.reader = session::SharedReader::over(pair.run->memory().again().value()).value();
   return pair;
 }
 
 TEST(Share, ShowsTheSceneAsItWasDescribed) {
-  const SharedScene scene = small_scene();
+  const session::SharedScene scene = small_scene();
   const Pair pair = joined(scene);
-  const SharedScene& seen = pair.reader->scene();
+  const session::SharedScene& seen = pair.reader->scene();
   EXPECT_EQ(seen.name, scene.name);
   EXPECT_EQ(seen.file, scene.file);
   EXPECT_EQ(seen.period_ns, scene.period_ns);
   EXPECT_EQ(seen.force_max, scene.force_max);
   EXPECT_EQ(seen.pid, getpid());
   EXPECT_EQ(seen.arm.name, "vintage");
-  EXPECT_EQ(seen.arm.shape, SharedArmShape::kSerial);
+  EXPECT_EQ(seen.arm.shape, session::SharedArmShape::kSerial);
   EXPECT_EQ(seen.arm.numbers, scene.arm.numbers);
   EXPECT_EQ(seen.vertices, scene.vertices);
   EXPECT_EQ(seen.triangles, scene.triangles);
@@ -113,7 +113,7 @@ TEST(Share, ShowsTheSceneAsItWasDescribed) {
   ASSERT_EQ(seen.knobs.size(), 1U);
   EXPECT_EQ(seen.knobs[0].name, "stiff: stiffness");
   EXPECT_EQ(seen.knobs[0].unit, "N/m");
-  EXPECT_EQ(pair.reader->state(), RunState::kLoading);
+  EXPECT_EQ(pair.reader->state(), session::RunState::kLoading);
 }
 
 TEST(Share, ShowsTheNewestTickAndThoseBefore) {
@@ -157,11 +157,11 @@ TEST(Share, TearsNoReadWhileTheWriterRunsAtFullSpeed) {
   for (int i = 0; i < 3; ++i) {
     readers.emplace_back([&] {
       // Over the same mapping, so that the thread sanitizer sees both sides.
-      const auto reader = SharedReader::over(pair.run->memory().bytes()).value();
+      const auto reader = session::SharedReader::over(pair.run->memory().bytes()).value();
       std::uint64_t serial = 0;
       std::vector<TickRecord> ticks;
       render::BodyPatch patch{};
-      ScenePoses poses;
+      scene::ScenePoses poses;
       while (!stop.load()) {
         ticks.clear();
         TickRecord tick;
@@ -186,7 +186,7 @@ TEST(Share, TearsNoReadWhileTheWriterRunsAtFullSpeed) {
   render::BodyPatch patch{};
   patch.object = 0;
   patch.point_count = 300;
-  ScenePoses poses;
+  scene::ScenePoses poses;
   poses.count = 1;
   for (std::uint64_t i = 0; i < rounds || reads.load() < 1000; ++i) {
     pair.run->store_tick(tick_number(i));
@@ -208,7 +208,7 @@ TEST(Share, TearsNoReadWhileTheWriterRunsAtFullSpeed) {
 TEST(Share, StoresWithoutTheHeap) {
   const Pair pair = joined(small_scene());
   render::BodyPatch patch{};
-  SharedHand hand;
+  session::SharedHand hand;
   const int calls = support::heap_calls_of([&] {
     for (std::uint64_t i = 0; i < 300; ++i) {
       pair.run->store_tick(tick_number(i));
@@ -272,7 +272,7 @@ TEST(Share, CarriesWhatViewersAskFor) {
   EXPECT_FALSE(order->record);
   EXPECT_FALSE(pair.run->record_order_after(order->number));
 
-  SharedHand hand;
+  session::SharedHand hand;
   EXPECT_FALSE(pair.run->hand(hand)) << "nobody has led it";
   ASSERT_TRUE(pair.reader->lead_hand({0.01, 0.02, 0.03}, true));
   ASSERT_TRUE(pair.run->hand(hand));
@@ -297,7 +297,7 @@ void in_a_viewer_that_is_killed(Work work) {
 TEST(Share, LetsTheHandGoWhenTheViewerThatHoldsItDies) {
   const Pair pair = joined(small_scene());
   in_a_viewer_that_is_killed([&] { pair.reader->lead_hand({0, 0, 0}, true); });
-  SharedHand hand;
+  session::SharedHand hand;
   ASSERT_TRUE(pair.run->hand(hand));
   EXPECT_EQ(hand.active, 1U);
   pair.run->watch_viewers();
@@ -312,14 +312,15 @@ TEST(Share, LetsTheHandGoWhenTheViewerThatHoldsItDies) {
 
 TEST(Share, HearsTheNextViewerAfterOneWasKilledWhileItWrote) {
   const Pair pair = joined(small_scene());
-  auto* live = reinterpret_cast<SharedLive*>(pair.run->memory().bytes().data() + kSharedLiveOffset);
+  auto* live = reinterpret_cast<session::SharedLive*>(pair.run->memory().bytes().data() +
+                                                      session::kSharedLiveOffset);
   ASSERT_TRUE(pair.reader->lead_hand({1, 1, 1}, true));
   // What such a death leaves: its turn, and a snapshot half written (its first word is odd).
   in_a_viewer_that_is_killed(
       [&] { live->requests.writer.store(static_cast<std::uint64_t>(getpid())); });
   auto& sequence = *reinterpret_cast<std::atomic<std::uint64_t>*>(&live->requests.hand);
   sequence.store(sequence.load() + 1);
-  SharedHand hand;
+  session::SharedHand hand;
   EXPECT_FALSE(pair.run->hand(hand)) << "half of it must not be taken";
   ASSERT_TRUE(pair.reader->lead_hand({2, 2, 2}, true));
   ASSERT_TRUE(pair.run->hand(hand));
@@ -331,21 +332,21 @@ TEST(Share, IsForThisUserAloneAndGoneAfterwards) {
   const std::string name = name_for("private");
   const std::string path = "/dev/shm/thimble-" + std::to_string(geteuid()) + "-" + name;
   {
-    const auto run = SharedRun::create(name, small_scene(), 10).value();
+    const auto run = session::SharedRun::create(name, small_scene(), 10).value();
     struct stat status {};
     ASSERT_EQ(stat(path.c_str(), &status), 0);
     EXPECT_EQ(status.st_mode & 0777, 0600U);
-    EXPECT_EQ(SharedReader::attach(name).value()->name(), name);
-    const auto second = SharedRun::create(name, small_scene(), 10);
+    EXPECT_EQ(session::SharedReader::attach(name).value()->name(), name);
+    const auto second = session::SharedRun::create(name, small_scene(), 10);
     ASSERT_FALSE(second);
     EXPECT_NE(second.error().message.find("already shown"), std::string::npos);
     bool listed = false;
-    for (const RunningRun& one : running_runs()) listed |= one.name == name;
+    for (const session::RunningRun& one : session::running_runs()) listed |= one.name == name;
     EXPECT_TRUE(listed);
   }
   struct stat status {};
   EXPECT_NE(stat(path.c_str(), &status), 0);
-  const auto gone = SharedReader::attach(name);
+  const auto gone = session::SharedReader::attach(name);
   ASSERT_FALSE(gone);
   EXPECT_NE(gone.error().message.find("--list"), std::string::npos) << gone.error().message;
 }
@@ -356,23 +357,23 @@ TEST(Share, TellsThatARunWasKilledAndClearsItAway) {
   ASSERT_EQ(pipe(pipe_ends.data()), 0);
   const pid_t child = fork();
   if (child == 0) {
-    const auto run = SharedRun::create(name, small_scene(), 10).value();
-    run->set_state(RunState::kRunning);
+    const auto run = session::SharedRun::create(name, small_scene(), 10).value();
+    run->set_state(session::RunState::kRunning);
     static_cast<void>(write(pipe_ends[1], "x", 1));
     for (;;) pause();
   }
   char ready = 0;
   ASSERT_EQ(read(pipe_ends[0], &ready, 1), 1);
-  const auto reader = SharedReader::attach(name).value();
-  EXPECT_EQ(reader->state(), RunState::kRunning);
+  const auto reader = session::SharedReader::attach(name).value();
+  EXPECT_EQ(reader->state(), session::RunState::kRunning);
   EXPECT_FALSE(reader->died());
   kill(child, SIGKILL);
   waitpid(child, nullptr, 0);
   EXPECT_TRUE(reader->died());
-  EXPECT_EQ(reader->state(), RunState::kEnded);
-  for (const RunningRun& one : running_runs()) EXPECT_NE(one.name, name);
+  EXPECT_EQ(reader->state(), session::RunState::kEnded);
+  for (const session::RunningRun& one : session::running_runs()) EXPECT_NE(one.name, name);
   // Its name is free again.
-  EXPECT_TRUE(SharedRun::create(name, small_scene(), 10));
+  EXPECT_TRUE(session::SharedRun::create(name, small_scene(), 10));
 }
 
 /// Gives a copy of a run's memory, aligned as the real one.
@@ -390,13 +391,13 @@ struct Copy {
 };
 
 /// Asks a reader everything there is to ask.
-void read_all(SharedReader& reader) {
+void read_all(session::SharedReader& reader) {
   TickRecord tick;
   static_cast<void>(reader.newest(tick));
   std::uint64_t serial = 0;
   std::vector<TickRecord> ticks;
   reader.ticks_since(serial, ticks);
-  ScenePoses poses;
+  scene::ScenePoses poses;
   static_cast<void>(reader.poses(poses));
   render::BodyPatch patch{};
   static_cast<void>(reader.patch(patch));
@@ -411,15 +412,15 @@ void read_all(SharedReader& reader) {
   static_cast<void>(reader.counters());
   static_cast<void>(reader.recording_path());
   static_cast<void>(reader.state());
-  static_cast<void>(arm_lines(reader.scene().arm, tick));
+  static_cast<void>(session::arm_lines(reader.scene().arm, tick));
 }
 
 TEST(Share, RefusesAnotherVersionWithASentence) {
   const Pair pair = joined(small_scene());
   Copy copy(pair.run->memory().bytes());
-  const std::uint32_t other = kSharedVersion + 1;
-  std::memcpy(copy.bytes.data() + offsetof(SharedHead, version), &other, sizeof other);
-  const auto reader = SharedReader::over(copy.bytes);
+  const std::uint32_t other = session::kSharedVersion + 1;
+  std::memcpy(copy.bytes.data() + offsetof(session::SharedHead, version), &other, sizeof other);
+  const auto reader = session::SharedReader::over(copy.bytes);
   ASSERT_FALSE(reader);
   EXPECT_NE(reader.error().message.find("different builds"), std::string::npos);
 }
@@ -427,24 +428,24 @@ TEST(Share, RefusesAnotherVersionWithASentence) {
 TEST(Share, RefusesEveryFlippedByteOfWhatDoesNotChange) {
   const Pair pair = joined(small_scene());
   Copy copy(pair.run->memory().bytes());
-  const auto& head = *reinterpret_cast<const SharedHead*>(copy.bytes.data());
+  const auto& head = *reinterpret_cast<const session::SharedHead*>(copy.bytes.data());
   const auto refused = [&](std::size_t at) {
     copy.bytes[at] ^= std::byte{0x41};
-    EXPECT_FALSE(SharedReader::over(copy.bytes)) << "byte " << at;
+    EXPECT_FALSE(session::SharedReader::over(copy.bytes)) << "byte " << at;
     copy.bytes[at] ^= std::byte{0x41};
   };
-  for (std::size_t at = 0; at < sizeof(SharedHead); ++at) refused(at);
+  for (std::size_t at = 0; at < sizeof(session::SharedHead); ++at) refused(at);
   for (std::size_t at = head.objects.offset;
-       at < head.triangles.offset + head.triangles.count * sizeof(SharedTriangle); ++at) {
+       at < head.triangles.offset + head.triangles.count * sizeof(session::SharedTriangle); ++at) {
     // Between two tables there are bytes that nobody reads.
-    for (const auto& [table, size] :
-         {std::pair(head.objects, sizeof(SharedObject)), std::pair(head.knobs, sizeof(SharedKnob)),
-          std::pair(head.vertices, sizeof(SharedVertex)),
-          std::pair(head.triangles, sizeof(SharedTriangle))}) {
+    for (const auto& [table, size] : {std::pair(head.objects, sizeof(session::SharedObject)),
+                                      std::pair(head.knobs, sizeof(session::SharedKnob)),
+                                      std::pair(head.vertices, sizeof(session::SharedVertex)),
+                                      std::pair(head.triangles, sizeof(session::SharedTriangle))}) {
       if (at >= table.offset && at < table.offset + table.count * size) refused(at);
     }
   }
-  EXPECT_TRUE(SharedReader::over(copy.bytes)) << "as it was";
+  EXPECT_TRUE(session::SharedReader::over(copy.bytes)) << "as it was";
 }
 
 TEST(Share, ReadsAnyNonsenseInWhatChangesWithoutHarm) {
@@ -453,12 +454,12 @@ TEST(Share, ReadsAnyNonsenseInWhatChangesWithoutHarm) {
   pair.run->store_patch({});
   pair.run->store_poses({});
   Copy copy(pair.run->memory().bytes());
-  const auto reader = SharedReader::over(copy.bytes).value();
+  const auto reader = session::SharedReader::over(copy.bytes).value();
   read_all(*reader);
   EXPECT_EQ(reader->rejected(), 0U);
   std::mt19937_64 random(1);
-  const std::size_t begin = kSharedLiveOffset;
-  const auto& tables = *reinterpret_cast<const SharedHead*>(copy.bytes.data());
+  const std::size_t begin = session::kSharedLiveOffset;
+  const auto& tables = *reinterpret_cast<const session::SharedHead*>(copy.bytes.data());
   for (int round = 0; round < 200; ++round) {
     const int flips = 1 << random() % 12;
     for (int i = 0; i < flips; ++i) {
@@ -475,25 +476,25 @@ TEST(Share, RefusesMemoryThatWasCutShort) {
   const Pair pair = joined(small_scene());
   for (std::size_t bytes = 0; bytes < pair.run->memory().bytes().size(); bytes += 613) {
     Copy copy(pair.run->memory().bytes().first(bytes));
-    EXPECT_FALSE(SharedReader::over(copy.bytes)) << bytes;
+    EXPECT_FALSE(session::SharedReader::over(copy.bytes)) << bytes;
   }
 }
 
 TEST(Share, OutlivesMemoryThatIsCutShortUnderIt) {
   const std::string name = name_for("cut");
-  const auto run = SharedRun::create(name, small_scene(), 100).value();
+  const auto run = session::SharedRun::create(name, small_scene(), 100).value();
   for (std::uint64_t i = 0; i < 150; ++i) run->store_tick(tick_number(i));
-  const auto reader = SharedReader::attach(name).value();
+  const auto reader = session::SharedReader::attach(name).value();
   read_all(*reader);
   EXPECT_FALSE(reader->died());
   const std::string path = "/dev/shm/thimble-" + std::to_string(geteuid()) + "-" + name;
   ASSERT_EQ(truncate(path.c_str(), 100), 0);
   read_all(*reader);
   EXPECT_TRUE(reader->died());
-  EXPECT_EQ(reader->state(), RunState::kEnded);
+  EXPECT_EQ(reader->state(), session::RunState::kEnded);
   run->store_tick(tick_number(150));  // nor does the servo die of it
   EXPECT_TRUE(run->memory().broken());
-  EXPECT_FALSE(SharedReader::attach(name)) << "nobody else attaches to it";
+  EXPECT_FALSE(session::SharedReader::attach(name)) << "nobody else attaches to it";
 }
 
 }  // namespace

@@ -1,15 +1,15 @@
 #include <gtest/gtest.h>
 
-#include "run_statistics.h"
 #include "support/heap_guard.h"
-#include "trace.h"
+#include "thimble/session/run_statistics.h"
+#include "thimble/session/trace.h"
 
 namespace thimble::app {
 namespace {
 
 TEST(Sinks, AllocateNothingPerTick) {
-  RunStatistics statistics;
-  Trace trace(500, 100);
+  session::RunStatistics statistics;
+  session::Trace trace(500, 100);
   driver::TickRecord record;
   EXPECT_EQ(support::heap_calls_of([&] {
               for (int i = 0; i < 1000; ++i) {

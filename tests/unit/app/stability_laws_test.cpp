@@ -1,4 +1,4 @@
-#include "stability_laws.h"
+#include "stability/stability_laws.h"
 
 #include <gtest/gtest.h>
 
@@ -14,23 +14,24 @@ namespace {
 constexpr double kMass = 0.075, kViscous = 0.005, kCoulomb = 0.04, kStep = 3e-5;
 
 TEST(StabilityLaws, SumUpTheLatencyBudget) {
-  EXPECT_DOUBLE_EQ(latency_of({.period = 0.001}), 0.0005);
-  EXPECT_DOUBLE_EQ(latency_of({.period = 0.001, .delay = 0.002, .amplifier_lag = 0.0003}), 0.0028);
+  EXPECT_DOUBLE_EQ(scene::latency_of({.period = 0.001}), 0.0005);
+  EXPECT_DOUBLE_EQ(scene::latency_of({.period = 0.001, .delay = 0.002, .amplifier_lag = 0.0003}),
+                   0.0028);
   // Exponential periods have a spread as large as their mean: half the stiffness.
-  EXPECT_DOUBLE_EQ(latency_of({.period = 0.001, .period_spread = 0.001}), 0.001);
+  EXPECT_DOUBLE_EQ(scene::latency_of({.period = 0.001, .period_spread = 0.001}), 0.001);
   // Of 1000 ticks, 10 take 10 ms: 396 -> 221 N/m, 44 % lost (b = 0.2 gives the 396).
   const double mean = 0.99e-3 + 0.01 * 10e-3, square = 0.99e-6 + 0.01 * 100e-6;
   const double spread = std::sqrt(square - mean * mean);
-  const double jittered = latency_of({.period = mean, .period_spread = spread});
+  const double jittered = scene::latency_of({.period = mean, .period_spread = spread});
   EXPECT_NEAR(0.0005 / jittered, 221.0 / 396, 0.03);
 }
 
 TEST(StabilityLaws, GiveAFilterTheLagThatItsPoleHas) {
-  EXPECT_EQ(low_pass_lag(0, 0.001), 0);
+  EXPECT_EQ(scene::low_pass_lag(0, 0.001), 0);
   const double a = 1 - std::exp(-2 * M_PI * 100 * 0.001);
-  EXPECT_NEAR(low_pass_lag(100, 0.001), 0.001 * (1 - a) / a, 1e-12);
+  EXPECT_NEAR(scene::low_pass_lag(100, 0.001), 0.001 * (1 - a) / a, 1e-12);
   // A slow pole lags by its time constant.
-  EXPECT_NEAR(low_pass_lag(1, 1e-5), 1 / (2 * M_PI), 1e-5);
+  EXPECT_NEAR(scene::low_pass_lag(1, 1e-5), 1 / (2 * M_PI), 1e-5);
 }
 
 TEST(StabilityLaws, AskForTheFrictionThatColgateAndSchenkelDo) {
@@ -98,12 +99,13 @@ TEST(SampledWall, HasTheEdgeOfTheLatencyBudgetWhereItsLawHolds) {
     for (const double delay : {0.0, 0.5, 1.0, 2.0}) {
       const SampledWall wall{
           .mass = kMass, .viscous = 0.2, .period = period, .delay = delay * period};
-      const double law = stiffness_limit(0.2, latency_of({.period = period, .delay = wall.delay}));
+      const double law =
+          scene::stiffness_limit(0.2, scene::latency_of({.period = period, .delay = wall.delay}));
       EXPECT_NEAR(stiffness_edge(wall) / law, 1, 0.03) << period << " " << delay;
     }
   }
   const SampledWall lagging{.mass = kMass, .viscous = 0.2, .period = 0.001, .amplifier_lag = 0.001};
-  EXPECT_NEAR(stiffness_edge(lagging) / stiffness_limit(0.2, 0.0015), 1, 0.03);
+  EXPECT_NEAR(stiffness_edge(lagging) / scene::stiffness_limit(0.2, 0.0015), 1, 0.03);
 }
 
 TEST(SampledWall, LosesWhatALowPassOnItsVelocityCosts) {

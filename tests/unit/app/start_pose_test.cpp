@@ -1,4 +1,4 @@
-#include "start_pose.h"
+#include "thimble/session/start_pose.h"
 
 #include <gtest/gtest.h>
 
@@ -6,21 +6,21 @@
 #include <deque>
 #include <limits>
 
-#include "calibration.h"
-#include "real_arm.h"
 #include "support/scripted_transport.h"
 #include "support/vintage_arm.h"
+#include "thimble/scene/calibration.h"
+#include "thimble/scene/real_arm.h"
 
 namespace thimble::app {
 namespace {
 
 using driver::ArmKind;
 
-ArmFile file_of(const std::string& name) {
-  auto file =
-      read_arm_file(std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms" / (name + ".yaml"));
+scene::ArmFile file_of(const std::string& name) {
+  auto file = scene::read_arm_file(std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms" /
+                                   (name + ".yaml"));
   EXPECT_TRUE(file) << file.error().message;
-  return file ? std::move(file).value() : ArmFile{};
+  return file ? std::move(file).value() : scene::ArmFile{};
 }
 
 bool has(const std::string& text, const std::string& words) {
@@ -36,8 +36,8 @@ TEST(StartPose, OfEveryShippedArmIsAtItsHomePose) {
        {Case{"vintage_phantom", ArmKind::kPolhem}, Case{"vintage_phantom", ArmKind::kHfabLine},
         Case{"woodenhaptics", ArmKind::kWoody}, Case{"woodenhaptics", ArmKind::kHfabLine},
         Case{"polhem", ArmKind::kPolhem}, Case{"polhem", ArmKind::kHfabLine}}) {
-    const ArmFile file = file_of(arm.name);
-    const StartPose place = StartPose::of(file, arm.kind);
+    const scene::ArmFile file = file_of(arm.name);
+    const session::StartPose place = session::StartPose::of(file, arm.kind);
     EXPECT_TRUE(place.has_home()) << arm.name;
     const Eigen::Vector3d p_WHome = file.p_WB + file.R_WB * make_arm(file, arm.kind)->pose({}).p_BT;
     EXPECT_EQ(place.trouble(p_WHome, true), "") << arm.name;
@@ -46,12 +46,12 @@ TEST(StartPose, OfEveryShippedArmIsAtItsHomePose) {
     const Eigen::Vector3d p_WMiddle = 0.5 * (file.workspace.min_W + file.workspace.max_W);
     EXPECT_EQ(place.trouble(p_WMiddle, false), "") << arm.name;
   }
-  EXPECT_FALSE(StartPose::of(file_of("falcon"), ArmKind::kFalcon).has_home());
+  EXPECT_FALSE(session::StartPose::of(file_of("falcon"), ArmKind::kFalcon).has_home());
 }
 
 TEST(StartPose, TellsHowFarTheTipIsFromHomeAndFromTheWorkspace) {
-  const StartPose place({.min_W = {-0.1, -0.1, -0.1}, .max_W = {0.1, 0.1, 0.1}},
-                        Eigen::Vector3d(0.05, 0, 0));
+  const session::StartPose place({.min_W = {-0.1, -0.1, -0.1}, .max_W = {0.1, 0.1, 0.1}},
+                                 Eigen::Vector3d(0.05, 0, 0));
   EXPECT_EQ(place.trouble({0.05, 0.0199, 0}, true), "");
   const std::string far_off = place.trouble({0.05, 0.03, 0.04}, true);
   EXPECT_TRUE(has(far_off, "50 mm away from its home pose")) << far_off;
@@ -61,14 +61,16 @@ TEST(StartPose, TellsHowFarTheTipIsFromHomeAndFromTheWorkspace) {
   const std::string outside = place.trouble({-0.13, 0, 0.14}, false);
   EXPECT_TRUE(has(outside, "50 mm outside of the workspace")) << outside;
 
-  const StartPose homeless({.min_W = {-0.1, -0.1, -0.1}, .max_W = {0.1, 0.1, 0.1}}, std::nullopt);
+  const session::StartPose homeless({.min_W = {-0.1, -0.1, -0.1}, .max_W = {0.1, 0.1, 0.1}},
+                                    std::nullopt);
   EXPECT_EQ(homeless.trouble({0.09, 0.09, 0.09}, true), "");
   EXPECT_NE(homeless.trouble({0.2, 0, 0}, true), "");
 }
 
 TEST(StartPose, NeverLetsThroughWhatIsNoNumber) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  const StartPose place({.min_W = {-1, -1, -1}, .max_W = {1, 1, 1}}, Eigen::Vector3d(0, 0, 0));
+  const session::StartPose place({.min_W = {-1, -1, -1}, .max_W = {1, 1, 1}},
+                                 Eigen::Vector3d(0, 0, 0));
   for (const Eigen::Vector3d& p_WT :
        {Eigen::Vector3d(nan, 0, 0), Eigen::Vector3d(0, nan, 0), Eigen::Vector3d(0, 0, HUGE_VAL)}) {
     EXPECT_NE(place.trouble(p_WT, true), "");
@@ -110,7 +112,7 @@ class WaitForStartPose : public ::testing::Test {
   }
 
   driver::Result<bool> wait(bool at_home = true) {
-    return wait_for_start_pose(*device_, clock_, place_, at_home, terminal_, stop_);
+    return session::wait_for_start_pose(*device_, clock_, place_, at_home, terminal_, stop_);
   }
 
   std::array<std::int16_t, 6> counts_{};
@@ -118,15 +120,17 @@ class WaitForStartPose : public ::testing::Test {
   int zeros_ = 0, messages_ = 0;
   driver::VirtualClock clock_;
   std::unique_ptr<driver::Device> device_;
-  StartPose place_{{.min_W = {-0.1, -0.1, -0.1}, .max_W = {0.1, 0.1, 0.1}},
-                   Eigen::Vector3d(0, 0, 0)};
+  session::StartPose place_{{.min_W = {-0.1, -0.1, -0.1}, .max_W = {0.1, 0.1, 0.1}},
+                            Eigen::Vector3d(0, 0, 0)};
   std::atomic<bool> stop_{false};
   std::vector<std::string> told_;
   int looks_ = 0;
-  std::function<EnterKey(int look)> user_ = [](int) { return EnterKey::kNothing; };
-  Terminal terminal_{.there = true,
-                     .key = [this] { return user_(++looks_); },
-                     .tell = [this](const std::string& line) { told_.push_back(line); }};
+  std::function<session::EnterKey(int look)> user_ = [](int) {
+    return session::EnterKey::kNothing;
+  };
+  session::Terminal terminal_{.there = true,
+                              .key = [this] { return user_(++looks_); },
+                              .tell = [this](const std::string& line) { told_.push_back(line); }};
 };
 
 TEST_F(WaitForStartPose, GoesOnAtOnceIfTheTipIsThere) {
@@ -142,7 +146,7 @@ TEST_F(WaitForStartPose, AsksUntilTheTipIsThereAndSendsZeroForceMeanwhile) {
   open();
   user_ = [this](int look) {
     if (look == 60) counts_ = {100, 0, 0, 0, 0, 0};
-    return look == 50 || look == 70 ? EnterKey::kPressed : EnterKey::kNothing;
+    return look == 50 || look == 70 ? session::EnterKey::kPressed : session::EnterKey::kNothing;
   };
   EXPECT_TRUE(*wait());
   EXPECT_EQ(looks_, 70);
@@ -165,7 +169,7 @@ TEST_F(WaitForStartPose, GivesUpWhereNobodyCanBeAsked) {
   EXPECT_TRUE(has(waited.error().message, "home pose"));
   EXPECT_TRUE(*wait(false)) << "inside of the workspace";
   terminal_.there = true;
-  user_ = [](int) { return EnterKey::kClosed; };
+  user_ = [](int) { return session::EnterKey::kClosed; };
   EXPECT_FALSE(wait());
 }
 
@@ -174,7 +178,7 @@ TEST_F(WaitForStartPose, EndsWhenItIsToldToAndWhenTheArmGoes) {
   open();
   user_ = [this](int look) {
     stop_ = look == 5;
-    return EnterKey::kNothing;
+    return session::EnterKey::kNothing;
   };
   const auto stopped = wait();
   ASSERT_TRUE(stopped);
@@ -182,7 +186,7 @@ TEST_F(WaitForStartPose, EndsWhenItIsToldToAndWhenTheArmGoes) {
   stop_ = false;
   user_ = [this](int look) {
     lost_ = look == 10;
-    return EnterKey::kNothing;
+    return session::EnterKey::kNothing;
   };
   const auto lost = wait();
   ASSERT_FALSE(lost);

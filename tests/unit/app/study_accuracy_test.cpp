@@ -8,18 +8,18 @@
 #include <utility>
 #include <vector>
 
-#include "histogram.h"
-#include "quality.h"
-#include "rate_bench.h"
-#include "study/accuracy/accuracy_axis.h"
-#include "study/accuracy/axis_words.h"
-#include "study/accuracy/free_spin.h"
-#include "study/accuracy/gating.h"
-#include "study/accuracy/guarded_wall.h"
-#include "study/accuracy/held_motion.h"
-#include "study/accuracy/measure_axis.h"
-#include "study/accuracy/stiffest_wall.h"
-#include "study/accuracy/velocity_estimates.h"
+#include "studies/accuracy/accuracy_axis.h"
+#include "studies/accuracy/axis_words.h"
+#include "studies/accuracy/free_spin.h"
+#include "studies/accuracy/gating.h"
+#include "studies/accuracy/guarded_wall.h"
+#include "studies/accuracy/held_motion.h"
+#include "studies/accuracy/measure_axis.h"
+#include "studies/accuracy/stiffest_wall.h"
+#include "studies/accuracy/velocity_estimates.h"
+#include "studies/rate_bench.h"
+#include "thimble/scene/quality.h"
+#include "thimble/session/histogram.h"
 
 namespace thimble::app {
 namespace {
@@ -255,16 +255,16 @@ TEST(MeasuredAxis, RunsWhatIsBesideAPointAsOftenAsThePoint) {
 }
 
 TEST(Quality, LeavesANormalSceneAloneAndSaysWhatItChoosesElse) {
-  Scene scene;
+  scene::Scene scene;
   scene.objects.resize(2);
   scene.objects[0].name = "round";
   scene.objects[1].name = "soft";
   scene.objects[1].body.dent.emplace();
-  EXPECT_TRUE(apply_quality(Quality::kNormal, scene).empty());
+  EXPECT_TRUE(scene::apply_quality(scene::Quality::kNormal, scene).empty());
   EXPECT_FALSE(scene.objects[0].contact.blending);
   EXPECT_EQ(scene.objects[1].body.dent->rings, render::DentSettings{}.rings);
 
-  const auto said = apply_quality(quality_named("reference"), scene);
+  const auto said = scene::apply_quality(scene::quality_named("reference"), scene);
   ASSERT_EQ(said.size(), 3U);
   EXPECT_NE(said[0].find("round: Phong"), std::string::npos);
   EXPECT_EQ(scene.objects[0].contact.blending, render::BlendingChoice::kPhong);
@@ -273,10 +273,10 @@ TEST(Quality, LeavesANormalSceneAloneAndSaysWhatItChoosesElse) {
   EXPECT_GE(scene.objects[1].body.dent->substeps, 8);
 
   // What the scene names itself stays.
-  Scene named;
+  scene::Scene named;
   named.objects.resize(1);
   named.objects[0].contact.blending = render::BlendingChoice::kFixedBand;
-  apply_quality(Quality::kReference, named);
+  scene::apply_quality(scene::Quality::kReference, named);
   EXPECT_EQ(named.objects[0].contact.blending, render::BlendingChoice::kFixedBand);
 }
 
@@ -294,7 +294,7 @@ TEST(RateBench, AnswersByTheLateOnesAndByWhatUnevenTicksCost) {
   EXPECT_EQ(verdict_of(bench).sentence.rfind("Enough", 0), 0U);
 
   // One tick in a hundred takes 10 ms: 44 % of the stiffness are gone [STABILITY 1.1].
-  Histogram gaps;
+  session::Histogram gaps;
   for (int i = 0; i < 9900; ++i) gaps.add(1'000'000);
   for (int i = 0; i < 100; ++i) gaps.add(10'000'000);
   const double mean = 1.09;

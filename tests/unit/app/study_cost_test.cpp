@@ -1,12 +1,12 @@
-#include "study/study_cost.h"
+#include "studies/cost/study_cost.h"
 
 #include <gtest/gtest.h>
 
 #include <set>
 
-#include "study/cost_subjects.h"
-#include "study/instruction_count.h"
-#include "study/ring_surface.h"
+#include "studies/cost/cost_subjects.h"
+#include "studies/cost/instruction_count.h"
+#include "studies/cost/ring_surface.h"
 #include "thimble/render/effect/effect_table.h"
 
 namespace thimble::app {

@@ -1,4 +1,4 @@
-#include "study/sweep.h"
+#include "studies/sweep/sweep.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -9,7 +9,7 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "study/sweep_journal.h"
+#include "studies/sweep/sweep_journal.h"
 #include "support/hard_case.h"
 #include "support/scratch.h"
 #include "text_file.h"
@@ -51,7 +51,7 @@ std::string journal_after(const std::filesystem::path& folder, int jobs, bool re
   EXPECT_EQ(done->end, SweepEnd::kDone);
   EXPECT_EQ(done->numbers[49][0], 7);
   EXPECT_TRUE(std::signbit(done->numbers[3][1]));
-  return text_of(folder / "plain.journal");
+  return scene::text_of(folder / "plain.journal");
 }
 
 TEST(HardCase41, SweepGivesTheSameBytesWithAnyNumberOfThreads) {
@@ -93,7 +93,7 @@ TEST(Sweep, KeepsAnOlderJournalBesideANewOne) {
   const Folder scratch;
   const std::string first = journal_after(scratch.path(), 2, false);
   journal_after(scratch.path(), 2, false);
-  EXPECT_EQ(text_of(scratch.path() / "plain.journal.old"), first);
+  EXPECT_EQ(scene::text_of(scratch.path() / "plain.journal.old"), first);
 }
 
 TEST(Sweep, RefusesAFolderThatIsBeingWrittenAndSaysByWhom) {

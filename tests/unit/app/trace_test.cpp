@@ -1,17 +1,17 @@
-#include "trace.h"
+#include "thimble/session/trace.h"
 
 #include <gtest/gtest.h>
 
 namespace thimble::app {
 namespace {
 
-void run(Trace& trace, std::uint64_t ticks) {
+void run(session::Trace& trace, std::uint64_t ticks) {
   driver::TickRecord record;
   for (record.tick = 0; record.tick < ticks; ++record.tick) trace(record);
 }
 
 TEST(Trace, KeepsEveryTickOfARunThatFits) {
-  Trace trace(100, 100);
+  session::Trace trace(100, 100);
   run(trace, 100);
   ASSERT_EQ(trace.rows().size(), 100U);
   for (std::size_t i = 0; i < 100; ++i) EXPECT_EQ(trace.rows()[i].tick, i);
@@ -21,7 +21,7 @@ TEST(Trace, KeepsEveryTickOfARunThatFits) {
 
 TEST(Trace, KeepsEveryNthTickOfALongRunWithinItsRoom) {
   for (const std::uint64_t ticks : {101U, 199U, 200U, 201U, 1000U, 12345U}) {
-    Trace trace(ticks, 100);
+    session::Trace trace(ticks, 100);
     run(trace, ticks);
     EXPECT_LE(trace.rows().size(), 100U);
     EXPECT_GT(trace.rows().size(), 100U / 2);
@@ -33,14 +33,14 @@ TEST(Trace, KeepsEveryNthTickOfALongRunWithinItsRoom) {
 }
 
 TEST(Trace, CountsWhatComesAfterTheExpectedEnd) {
-  Trace trace(50, 100);
+  session::Trace trace(50, 100);
   run(trace, 80);
   EXPECT_EQ(trace.rows().size(), 50U);
   EXPECT_EQ(trace.dropped(), 30U);
 }
 
 TEST(Trace, FillsItsRoomWhenTheLengthIsUnknown) {
-  Trace trace(0, 10);
+  session::Trace trace(0, 10);
   run(trace, 25);
   EXPECT_EQ(trace.rows().size(), 10U);
   EXPECT_EQ(trace.dropped(), 15U);

@@ -7,8 +7,8 @@
 
 #include "recording/replay_trajectory.h"
 #include "recording/trajectory_file.h"
-#include "scene_file.h"
 #include "support/scratch.h"
+#include "thimble/scene/scene_file.h"
 
 namespace thimble::app {
 namespace {
@@ -20,24 +20,24 @@ std::filesystem::path file_of(const std::string& text) {
 }
 
 TEST(Trajectory, ReadsColumnsInAnyOrderAndUnit) {
-  const auto read =
-      read_trajectory(file_of("number time x y z force\n# a remark\n1, 0, 10, 20, 30, 1, 2, "
-                              "3\n\n2\t500 11 21 31 4 5 6 7\n"),
-                      {.columns = "- t z y x fx fy fz", .metres = 1e-3, .seconds = 1e-3});
+  const auto read = session::read_trajectory(
+      file_of("number time x y z force\n# a remark\n1, 0, 10, 20, 30, 1, 2, "
+              "3\n\n2\t500 11 21 31 4 5 6 7\n"),
+      {.columns = "- t z y x fx fy fz", .metres = 1e-3, .seconds = 1e-3});
   ASSERT_TRUE(read) << read.error().message;
   ASSERT_EQ(read->size(), 2u);
   EXPECT_EQ((*read)[0].p, Eigen::Vector3d(0.030, 0.020, 0.010));
   EXPECT_EQ((*read)[1].time, 0.5);
   EXPECT_EQ((*read)[1].f, Eigen::Vector3d(4, 5, 6));
   std::size_t hint = 0;
-  EXPECT_NEAR(trajectory_at(*read, 0.25, hint).p.x(), 0.0305, 1e-12);
-  EXPECT_EQ(trajectory_at(*read, 9, hint).p, (*read)[1].p);
-  EXPECT_EQ(trajectory_at(*read, -1, hint).p, (*read)[0].p);
+  EXPECT_NEAR(session::trajectory_at(*read, 0.25, hint).p.x(), 0.0305, 1e-12);
+  EXPECT_EQ(session::trajectory_at(*read, 9, hint).p, (*read)[1].p);
+  EXPECT_EQ(session::trajectory_at(*read, -1, hint).p, (*read)[0].p);
 }
 
 TEST(Trajectory, TellsWhichLineIsWrongAndWhatToDo) {
-  const auto mistake = [](const std::string& text, const TrajectoryForm& form = {}) {
-    const auto read = read_trajectory(file_of(text), form);
+  const auto mistake = [](const std::string& text, const session::TrajectoryForm& form = {}) {
+    const auto read = session::read_trajectory(file_of(text), form);
     return read ? "" : read.error().message;
   };
   EXPECT_NE(mistake("0 0 0 0\n1 0 0\n").find("line 2: expected 4 columns"), std::string::npos);
@@ -53,15 +53,15 @@ TEST(Trajectory, TellsWhichLineIsWrongAndWhatToDo) {
 /// Makes what a device would do on a ball of 400 N/m whose surface gives the forces: the pipeline
 /// of measured data, with truth in place of the measurement.
 TEST(Trajectory, AnAnalyticProbeFeelsTheForcesThatItWasMadeOf) {
-  const auto scene =
-      read_scene(std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/scenes/rubber.yaml", {}, {});
+  const auto scene = scene::read_scene(
+      std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/scenes/rubber.yaml", {}, {});
   ASSERT_TRUE(scene) << scene.error().message;
-  Scene plain = *scene;
+  scene::Scene plain = *scene;
   plain.objects[0].effects.clear();
   plain.objects[0].damping = 0;
   const double k = plain.objects[0].stiffness;
   const Eigen::Vector3d centre = plain.objects[0].p_WO;
-  std::vector<TrajectoryPoint> way;
+  std::vector<session::TrajectoryPoint> way;
   for (int i = 0; i <= 2000; ++i) {
     const double t = i * 1e-3;
     const Eigen::Vector3d n =
@@ -69,9 +69,9 @@ TEST(Trajectory, AnAnalyticProbeFeelsTheForcesThatItWasMadeOf) {
     const double force = std::max(0.0, 1.5 * std::sin(2 * t));
     way.push_back({.time = t, .p = centre + (0.04 - force / k) * n, .f = force * n});
   }
-  auto objects = SceneObjects::build(plain);
+  auto objects = scene::SceneObjects::build(plain);
   ASSERT_TRUE(objects);
-  const TrajectoryComparison compared = replay_trajectory(way, 1000, **objects);
+  const session::TrajectoryComparison compared = session::replay_trajectory(way, 1000, **objects);
   EXPECT_EQ(compared.ticks, 2001u);
   EXPECT_GT(compared.recorded_rms, 0.5);
   EXPECT_LT(compared.error_rms, 1e-6);
@@ -79,9 +79,9 @@ TEST(Trajectory, AnAnalyticProbeFeelsTheForcesThatItWasMadeOf) {
   EXPECT_GT(compared.directions, 1000u);
   EXPECT_EQ(compared.contact_disagrees, 0u);
   // Forces that are not these are told apart.
-  for (TrajectoryPoint& point : way) point.f = 2 * Eigen::Vector3d(point.f.z(), 0, 0);
-  auto again = SceneObjects::build(plain);
-  const TrajectoryComparison wrong = replay_trajectory(way, 1000, **again);
+  for (session::TrajectoryPoint& point : way) point.f = 2 * Eigen::Vector3d(point.f.z(), 0, 0);
+  auto again = scene::SceneObjects::build(plain);
+  const session::TrajectoryComparison wrong = session::replay_trajectory(way, 1000, **again);
   EXPECT_GT(wrong.error_rms, 0.5);
   EXPECT_GT(wrong.direction_p99, 0.5);
 }

@@ -9,13 +9,13 @@
 #include <string>
 #include <vector>
 
-#include "figure.h"
-#include "rest_warnings.h"
-#include "stability_laws.h"
-#include "study/random_scene.h"
-#include "study/small_meshes.h"
-#include "study/trouble_run.h"
-#include "study/wall_measures.h"
+#include "report/figure.h"
+#include "stability/rest_warnings.h"
+#include "stability/stability_laws.h"
+#include "studies/stability/wall_measures.h"
+#include "studies/trouble/random_scene.h"
+#include "studies/trouble/small_meshes.h"
+#include "studies/trouble/trouble_run.h"
 #include "support/scratch.h"
 #include "text_file.h"
 
@@ -26,7 +26,7 @@ const std::filesystem::path kArm =
     std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms/vintage_phantom.yaml";
 
 RandomSceneLimits limits() {
-  return {.arm = *read_arm_file(kArm), .arm_path = kArm.string(), .mesh_path = "meshes"};
+  return {.arm = *scene::read_arm_file(kArm), .arm_path = kArm.string(), .mesh_path = "meshes"};
 }
 
 std::vector<std::filesystem::path> worst_scenes() {
@@ -86,7 +86,7 @@ TroubleFound run_seed(std::uint64_t seed, const std::string& what = "", const st
   const auto file = folder / "scene.yaml";
   EXPECT_TRUE(write_text(scene.text, file));
   if (warnings != nullptr) {
-    const auto read = read_scene(file, {});
+    const auto read = scene::read_scene(file, {});
     EXPECT_TRUE(read);
     if (read) *warnings = rest_warnings(*read);
   }
@@ -124,10 +124,12 @@ TEST(Trouble, RestsWhereThePullOfADentWasASwitch) {
   }
 }
 
-TEST(Trouble, OfFacetsInAHollowIsForetoldAndCuredByBlending) {
+TEST(Trouble, OfFacetsInAHollowIsCuredByAForceThatDoesNotJumpAndWarnedOfWithoutBlending) {
   constexpr std::uint64_t kSeed = 0x8836b4fd9b78a8ec;  // a ring, nothing on it
   std::vector<std::string> warnings;
-  EXPECT_GT(run_seed(kSeed, "", "", &warnings).tremble, kTrembleMost);
+  // Above 20 mN before what is felt followed what is found no faster than the tip's path allows.
+  EXPECT_LE(run_seed(kSeed, "", "", &warnings).tremble, 1e-3);
+  // The rule still warns: a steeper hollow may flicker by counts of the encoder.
   EXPECT_TRUE(any_has(warnings, "facets"));
   const std::string plain = "    size: 0.0425869\n";
   const std::string blended = plain + "    contact: {blending: sized_band}\n";
@@ -160,7 +162,7 @@ TEST(RestWarnings, FindTheCurvatureOfASineAndTheGrainOfAVelocityInCounts) {
           "      - {friction: bristle, coefficient: 0.5, stiffness: 700}\n"
           "hand:\n  path:\n    - {t: 0, at: [0, 0, 0.02]}\n",
       file));
-  const auto scene = read_scene(file, {});
+  const auto scene = scene::read_scene(file, {});
   ASSERT_TRUE(scene) << scene.error().message;
   const double exact = 1e-4 * std::pow(2 * std::numbers::pi / 0.004, 2);
   EXPECT_NEAR(curvature_of(scene->objects[0].effects[0]) / exact, 0.99, 0.02);
@@ -199,7 +201,7 @@ TEST(TroubleFound, SurvivesItsWayThroughASweep) {
 }
 
 TEST(WallMeasures, FindTheEdgeThatTheExactMapOfATickHas) {
-  const auto arm = read_arm_file(kArm);
+  const auto arm = scene::read_arm_file(kArm);
   for (const double delay : {0.0, 0.001}) {
     WallCase wall;
     wall.direction = *worst_direction_at_home(*arm);
@@ -212,7 +214,7 @@ TEST(WallMeasures, FindTheEdgeThatTheExactMapOfATickHas) {
 }
 
 TEST(WallMeasures, FindRestOnlyWhereDryFrictionHoldsHalfAStep) {
-  const auto arm = read_arm_file(kArm);
+  const auto arm = scene::read_arm_file(kArm);
   WallCase wall;
   wall.direction = *worst_direction_at_home(*arm);
   wall.stiffness = 1000;
@@ -229,7 +231,7 @@ TEST(WallMeasures, FindRestOnlyWhereDryFrictionHoldsHalfAStep) {
 }
 
 TEST(WallMeasures, ThrowBackAsTheLawOfRestitutionSays) {
-  const auto arm = read_arm_file(kArm);
+  const auto arm = scene::read_arm_file(kArm);
   WallCase wall;
   wall.direction = *worst_direction_at_home(*arm);
   wall.tip = {.mass = 0.075, .viscous = 0.005, .coulomb = 0};

@@ -1,4 +1,4 @@
-#include "yaml_reader.h"
+#include "thimble/scene/yaml_reader.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@ namespace {
 
 // Reads `text` as a small file with one number and one word, and tells what was wrong with it.
 std::string mistakes_in(const std::string& text) {
-  auto file = YamlFile::parse(text, "arm.yaml");
+  auto file = scene::YamlFile::parse(text, "arm.yaml");
   if (!file) return file.error().message;
   file->root().require_number("stiffness", "N/m", 0, 1e5);
   file->root().optional_string("name", "");
@@ -17,7 +17,7 @@ std::string mistakes_in(const std::string& text) {
   file->root().optional_rotation("rotate_degrees");
   if (file->root().has("kind")) file->root().require_choice("kind", {"quantised", "ideal"});
   if (file->root().has("parts")) {
-    for (YamlMap& part : file->root().require_maps("parts")) {
+    for (scene::YamlMap& part : file->root().require_maps("parts")) {
       part.require_number("mass", "kg", 0, 1);
       part.finish();
     }
@@ -100,7 +100,7 @@ TEST(YamlReader, RefusesASecondDocument) {
 TEST(YamlReader, EndsWhereTheParserStandsStill) {
   // Before such a comma yaml-cpp finds one empty document after the other.
   for (const char* text : {",", ",nv", "a: 1\n---\n,b", "a: 1\n,b"}) {
-    const auto file = YamlFile::parse(text, "arm.yaml");
+    const auto file = scene::YamlFile::parse(text, "arm.yaml");
     ASSERT_FALSE(file.ok()) << text;
     EXPECT_TRUE(file.error().message.starts_with("arm.yaml")) << file.error().message;
   }
@@ -128,7 +128,7 @@ TEST(YamlReader, ChecksMapsInLists) {
 }
 
 TEST(YamlReader, TurnsAboutTheFixedAxesInOrder) {
-  auto file = YamlFile::parse("r: [[x, 90], [z, 90]]\n", "arm.yaml");
+  auto file = scene::YamlFile::parse("r: [[x, 90], [z, 90]]\n", "arm.yaml");
   ASSERT_TRUE(file.ok());
   const Eigen::Matrix3d R = file->root().optional_rotation("r");
   // y -> z by the first turn, and z stays z in the second; z -> -y -> x.
@@ -150,7 +150,7 @@ TEST(YamlReader, KeepsTheFirstFiveMistakesAndCountsTheRest) {
 }
 
 TEST(YamlReader, NamesAFileThatIsNotThere) {
-  const auto file = YamlFile::load("no/such/file.yaml");
+  const auto file = scene::YamlFile::load("no/such/file.yaml");
   ASSERT_FALSE(file.ok());
   EXPECT_EQ(file.error().message, "no/such/file.yaml: there is no such file.");
 }

@@ -1,4 +1,4 @@
-#include "view/creased_mesh.h"
+#include "view/gl/creased_mesh.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "view/dent_surface.h"
+#include "view/gl/dent_surface.h"
 
 #include <gtest/gtest.h>
 

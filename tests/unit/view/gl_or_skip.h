@@ -7,7 +7,7 @@
 #include <memory>
 #include <utility>
 
-#include "view/offscreen_context.h"
+#include "view/gl/offscreen_context.h"
 
 namespace thimble::support {
 

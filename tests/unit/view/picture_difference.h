@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdlib>
 
-#include "view/canvas.h"
+#include "view/gl/canvas.h"
 
 namespace thimble::support {
 

@@ -1,4 +1,4 @@
-#include "view/picture_file.h"
+#include "view/gl/picture_file.h"
 
 #include <gtest/gtest.h>
 

@@ -11,7 +11,7 @@
 
 #include "gl_or_skip.h"
 #include "picture_difference.h"
-#include "view/picture_file.h"
+#include "view/gl/picture_file.h"
 #include "view/shot.h"
 
 namespace thimble::app::view {
@@ -41,7 +41,7 @@ ShotChoice small_choice() {
 /// Plays a scene up to a time and hands over the moment; false if the scene's mesh is not there.
 bool play(const fs::path& scene, double time,
           const std::function<void(const DrawnScene&, DrawnMoment&, const Plots&)>& look) {
-  SessionOptions options;
+  session::SessionOptions options;
   options.mesh_folder = THIMBLE_MESHES;
   options.duration = time + 0.05;
   auto played = PlayedScene::open(scene, options);

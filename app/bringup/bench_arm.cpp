@@ -1,0 +1,83 @@
+#include "bringup/bench_arm.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "thimble/scene/real_arm.h"
+#include "thimble/scene/watch_choice.h"
+
+namespace thimble::app {
+namespace {
+
+constexpr std::int64_t kPeriod_ns = 1'000'000;
+
+}  // namespace
+
+driver::Result<std::unique_ptr<BenchArm>> BenchArm::open(
+    const scene::ArmFile& file, const std::optional<driver::FoundArm>& real_arm,
+    const std::filesystem::path& firmware,
+    const std::vector<std::pair<double, Eigen::Vector3d>>& hand_W, double force_max) {
+  std::unique_ptr<BenchArm> bench(new BenchArm);
+  std::unique_ptr<driver::Transport> wire;
+  std::unique_ptr<const driver::Arm> protocol;
+  if (real_arm) {
+    bench->clock_ = std::make_unique<driver::WallClock>();
+    auto opened = scene::open_wire(*real_arm, file, firmware, *bench->clock_);
+    if (!opened) return opened.error();
+    wire = std::move(opened).value();
+    protocol = scene::make_arm(file, real_arm->kind);
+  } else {
+    bench->clock_ = std::make_unique<driver::VirtualClock>();
+    auto simulation = scene::ArmSimulation::make(file, hand_W, firmware);
+    if (!simulation) return simulation.error();
+    bench->simulation_ = std::move(simulation).value();
+    wire = bench->simulation_->wire(*bench->clock_);
+    protocol = bench->simulation_->protocol();
+  }
+  driver::GateLimits limits = file.limits;
+  limits.force_max = std::min(limits.force_max, force_max);
+  driver::HeatSettings heat = file.heat;
+  if (real_arm && heat.named())
+    heat.at_start = scene::load_heat(real_arm->name(), heat, scene::world_time()).heat;
+  auto device = driver::Device::open(std::move(wire), std::move(protocol),
+                                     {.R_WB = file.R_WB,
+                                      .p_WB = file.p_WB,
+                                      .limits = limits,
+                                      .motion = scene::motion_settings(file, 1e9 / kPeriod_ns),
+                                      .heat = heat,
+                                      .velocity_corner_frequency = file.velocity_corner_frequency},
+                                     bench->clock_->now_ns());
+  if (!device) return device.error();
+  bench->device_ = std::move(device).value();
+  if (real_arm && heat.named()) {
+    bench->heat_keeper_ = std::make_unique<scene::HeatKeeper>(real_arm->name(), *bench->device_);
+  }
+  return bench;
+}
+
+bool BenchArm::run(double duration, const Law& law, const std::atomic<bool>& stop, bool silent) {
+  const bool active = device_->stage() == driver::DeviceStage::kActive;
+  std::int64_t due_ns = clock_->now_ns();
+  const std::int64_t end_ns = due_ns + std::llround(duration * 1e9);
+  for (; due_ns < end_ns; due_ns += kPeriod_ns) {
+    if (stop.load(std::memory_order_relaxed)) return false;
+    clock_->sleep_until_ns(due_ns);
+    const std::int64_t now_ns = clock_->now_ns();
+    const Eigen::Vector3d f_T_W = law(device_->read(now_ns, now_ns));
+    if (!silent) device_->write({.f_T_W = f_T_W, .touch = {}});
+    if (simulation_) true_force_max_ = std::max(true_force_max_, simulation_->f_T_W().norm());
+    const bool seen_only = !active && device_->fault() == driver::Fault::kStateNotFinite;
+    if (device_->fault() != driver::Fault::kNone && !seen_only) return false;
+  }
+  return true;
+}
+
+bool BenchArm::hold(const std::function<bool()>& done, const std::atomic<bool>& stop) {
+  const auto rest = [](const driver::DeviceState&) { return Eigen::Vector3d(0, 0, 0); };
+  while (!done()) {
+    if (!run(0.02, rest, stop)) return false;
+  }
+  return true;
+}
+
+}  // namespace thimble::app

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "heat_keeper.h"
+#include "thimble/driver/clock.h"
+#include "thimble/driver/device.h"
+#include "thimble/driver/discovery.h"
+#include "thimble/scene/arm_file.h"
+#include "thimble/scene/arm_simulation.h"
+
+namespace thimble::app {
+
+/// Is one arm on the bench, real or simulated: for commands that try an arm out rather than touch
+/// a scene with it. A simulated one runs on the virtual clock, with a hand that follows a path.
+class BenchArm {
+ public:
+  /// Is called in each tick; answers the force it wishes, N in the world.
+  using Law = std::function<Eigen::Vector3d(const driver::DeviceState&)>;
+
+  /// Opens a real arm, or, without one, a simulated arm of the file whose hand follows `hand_W`
+  /// (seconds and points in the world, m). Forces stay below `force_max` (N) whatever the file
+  /// allows. Real-time: never from the servo thread.
+  static driver::Result<std::unique_ptr<BenchArm>> open(
+      const scene::ArmFile& file, const std::optional<driver::FoundArm>& real_arm,
+      const std::filesystem::path& firmware,
+      const std::vector<std::pair<double, Eigen::Vector3d>>& hand_W, double force_max);
+
+  /// Runs the loop at 1 kHz for `duration` (s), until `stop` is set, or a fault; with `silent` it
+  /// reads and sends nothing, so that the arm's watchdog can be seen. Answers false on a fault or a
+  /// stop. A pose that cannot be is none as long as the device is idle: a check wants to see it.
+  bool run(double duration, const Law& law, const std::atomic<bool>& stop, bool silent = false);
+
+  /// Runs with zero force until `done` answers true or `stop` is set.
+  bool hold(const std::function<bool()>& done, const std::atomic<bool>& stop);
+
+  driver::Device& device() { return *device_; }
+  /// Tells whether the arm is simulated.
+  bool simulated() const { return simulation_ != nullptr; }
+  /// Tells the largest force that the motors made on the tip in any run, N: what was true of a
+  /// simulated arm, whatever its driver believes; 0 for a real one.
+  double true_force_max() const { return true_force_max_; }
+  /// Tells the time, s.
+  double now() const { return static_cast<double>(clock_->now_ns()) * 1e-9; }
+
+ private:
+  std::unique_ptr<driver::Clock> clock_;
+  std::unique_ptr<scene::ArmSimulation> simulation_;
+  double true_force_max_ = 0;
+  std::unique_ptr<driver::Device> device_;  // holds the wire to the simulation, so it goes first
+  std::unique_ptr<scene::HeatKeeper> heat_keeper_;  // of a real arm whose file names its heat
+};
+
+}  // namespace thimble::app

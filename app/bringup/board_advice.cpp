@@ -1,0 +1,66 @@
+#include "bringup/board_advice.h"
+
+#include "printed.h"
+
+namespace thimble::app {
+namespace {
+
+using driver::BoardKind;
+using driver::FoundArm;
+
+/// Keeps a device's own string from ending the quotes it is put into.
+std::string unquoted(const std::string& text) {
+  std::string safe = text;
+  for (char& sign : safe) {
+    if (sign == '"' || sign == '\\' || sign == '\'') sign = '?';
+  }
+  return safe;
+}
+
+}  // namespace
+
+std::string what_it_may_be(const FoundArm& board) {
+  const std::string product =
+      board.product.empty() ? "no product string" : "\"" + board.product + "\"";
+  const std::string ids = scene::printed("%04x:%04x", board.vendor_id, board.product_id);
+  if (board.board != BoardKind::kOther) {
+    return "a board of unknown kind (" + ids + ", " + product +
+           "): any program may run on it, and an arm could prove nothing before it is written to. "
+           "It is used only by name.";
+  }
+  if (board.node.empty()) return "its reports cannot be seen without a driver.";
+  return scene::printed(
+      "a board of unknown kind (%s, %s): its reports have %d bytes in and %d out, as no "
+      "arm's do. It is never opened.",
+      ids.c_str(), product.c_str(), static_cast<int>(board.hid.in_bytes),
+      static_cast<int>(board.hid.out_bytes));
+}
+
+std::string how_to_use(const FoundArm& board) {
+  if (board.board == BoardKind::kOther) return "If it should be an arm, look at its firmware.";
+  const std::string kind(name(board.board));
+  std::string advice;
+  if (!board.accessible) {
+    advice = "If it is your arm: echo '" + udev_line(board) +
+             "' | sudo tee -a /etc/udev/rules.d/71-my-arm.rules && sudo udevadm control --reload, "
+             "plug it in again, and then ";
+  } else {
+    advice = "If it is your arm: ";
+  }
+  return advice + "thimble run SCENE --device " + board.name() +
+         " --arm FILE, where the file says `board: " + kind + "`";
+}
+
+std::string udev_line(const FoundArm& board) {
+  const bool tty = board.board == BoardKind::kTextLines;
+  const bool by_serial = board.name() == board.serial;
+  const std::string which = by_serial ? "ATTRS{serial}==\"" + unquoted(board.serial) + "\""
+                                      : "KERNELS==\"" + board.sysfs.filename().string() + "\"";
+  return scene::printed(
+             "SUBSYSTEM==\"%s\", ATTRS{idVendor}==\"%04x\", ATTRS{idProduct}==\"%04x\", ",
+             tty ? "tty" : "hidraw", board.vendor_id, board.product_id) +
+         which + ", TAG+=\"uaccess\", GROUP=\"plugdev\", MODE=\"0660\"" +
+         (tty ? ", ENV{ID_MM_DEVICE_IGNORE}=\"1\"" : "");
+}
+
+}  // namespace thimble::app

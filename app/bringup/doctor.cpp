@@ -1,0 +1,244 @@
+#include "bringup/doctor.h"
+
+#include <grp.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <system_error>
+
+#include "bringup/board_advice.h"
+#include "bringup/doctor_timing.h"
+#include "thimble/driver/discovery.h"
+#include "thimble/driver/node_lock.h"
+
+namespace thimble::app {
+namespace {
+
+namespace fs = std::filesystem;
+using driver::BoardKind;
+using driver::FoundArm;
+using driver::read_line;
+
+constexpr const char* kRule = "70-thimble.rules";
+constexpr const char* kInstallRule =
+    "sudo cp udev/70-thimble.rules /etc/udev/rules.d/ && sudo udevadm control --reload && "
+    "sudo udevadm trigger";
+
+class Examination {
+ public:
+  explicit Examination(const Patient& patient) : patient_(patient) {}
+
+  std::vector<Finding> run() {
+    look_for_rule();
+    look_at_arms();
+    for (Finding& found : examine_timing(patient_)) findings_.push_back(std::move(found));
+    return std::move(findings_);
+  }
+
+ private:
+  void note(Health health, std::string what, std::string mend = {}) {
+    findings_.push_back({health, std::move(what), std::move(mend)});
+  }
+
+  fs::path below_root(const fs::path& path) const { return patient_.root / path.relative_path(); }
+
+  void look_for_rule() {
+    for (const char* folder : {"/etc/udev/rules.d", "/usr/lib/udev/rules.d", "/lib/udev/rules.d",
+                               "/usr/local/lib/udev/rules.d", "/run/udev/rules.d"}) {
+      std::error_code missing;
+      if (fs::exists(below_root(fs::path(folder) / kRule), missing)) {
+        rule_ = true;
+        note(Health::kGood, std::string("The udev rule is installed in ") + folder + ".");
+        return;
+      }
+    }
+    note(Health::kProblem, "The udev rule is not installed, so only root may open an arm.",
+         kInstallRule);
+  }
+
+  void look_at_arms() {
+    const auto arms = driver::find_arms(patient_.root);
+    if (!arms) {
+      note(Health::kProblem, arms.error().message, "sudo modprobe usbcore");
+      return;
+    }
+    if (arms->empty()) {
+      note(Health::kAdvice, "No arm that Thimble knows is plugged in on USB.",
+           "Plug it in and switch it on; `lsusb` shows whether the computer sees it at all.");
+    }
+    for (const FoundArm& arm : *arms) look_at(arm);
+  }
+
+  void look_at(const FoundArm& arm) {
+    const std::string name = arm.arm + " " + arm.name() + ": ";
+    if (arm.certainty == driver::Certainty::kUnsupported) {
+      note(Health::kAdvice, name + "plugged in, but its protocol is not public.",
+           "Use its vendor's own library; Thimble cannot drive it.");
+      return;
+    }
+    look_at_driver(arm, name);
+    if (arm.certainty == driver::Certainty::kUnknown) {
+      note(Health::kAdvice, name + what_it_may_be(arm), how_to_use(arm));
+    } else {
+      look_at_access(arm, name);
+    }
+    look_at_holder(arm, name);
+    look_at_power(arm, name);
+    look_at_hub(arm, name);
+  }
+
+  void look_at_driver(const FoundArm& arm, const std::string& name) {
+    const std::string bound = bound_driver(arm);
+    switch (arm.board) {
+      case BoardKind::kMbedHid8:
+      case BoardKind::kMbedHid14:
+      case BoardKind::kTeensyRawHid64:
+      case BoardKind::kOther:
+        if (!arm.node.empty()) {
+          note(Health::kGood, name + "the kernel's HID driver has it as " + arm.node + ".");
+        } else if (bound.empty()) {
+          note(Health::kProblem, name + "no kernel driver has it, so it has no hidraw node.",
+               "sudo modprobe usbhid && sudo modprobe hid-generic, then plug it in again");
+        } else {
+          note(Health::kProblem,
+               name + "the kernel's driver " + bound + " has it, but it has no hidraw node.",
+               "Use a kernel with CONFIG_HIDRAW (Debian's has it), and plug it in again");
+        }
+        return;
+      case BoardKind::kTextLines:
+        if (!arm.node.empty()) {
+          note(Health::kGood, name + "the kernel's serial driver has it as " + arm.node + ".");
+        } else {
+          note(Health::kProblem, name + "no kernel driver has it, so it has no serial port.",
+               "sudo modprobe cdc_acm, then plug it in again");
+        }
+        return;
+      case BoardKind::kFalconFtdi:
+        look_at_falcon(arm, bound, name);
+        return;
+    }
+  }
+
+  void look_at_falcon(const FoundArm& arm, const std::string& bound, const std::string& name) {
+    if (bound == "ftdi_sio") {
+      const std::string latency = falcon_latency(arm);
+      note(Health::kAdvice,
+           name + "the kernel's serial driver ftdi_sio has it" +
+               (latency.empty() ? "" : " with a latency timer of " + latency + " ms") +
+               "; Thimble takes it over (and sets 1 ms), other programs may be in the way.",
+           "echo " + arm.sysfs.filename().string() +
+               ":1.0 | sudo tee /sys/bus/usb/drivers/ftdi_sio/unbind");
+    } else if (!bound.empty() && bound != "usbfs") {
+      note(Health::kProblem, name + "the kernel's driver " + bound + " has it.",
+           "echo " + arm.sysfs.filename().string() + ":1.0 | sudo tee /sys/bus/usb/drivers/" +
+               bound + "/unbind");
+    } else if (bound == "usbfs") {
+      note(Health::kAdvice, name + "another program has it open.", "Close that program");
+    } else {
+      note(Health::kGood, name + "no kernel driver is in the way.");
+    }
+  }
+
+  void look_at_access(const FoundArm& arm, const std::string& name) {
+    if (arm.node.empty()) return;  // said above
+    if (arm.accessible) {
+      note(Health::kGood, name + "you may open " + arm.node + ".");
+    } else if (!rule_) {
+      note(Health::kProblem, name + "you may not open " + arm.node + ": the rule is missing.",
+           kInstallRule);
+    } else if (!patient_.in_plugdev) {
+      note(Health::kProblem,
+           name + "you may not open " + arm.node +
+               ": it was plugged in before the rule, or you are not the user at the screen.",
+           "Plug it in again; without a screen: sudo usermod -aG plugdev $USER, then log in again");
+    } else {
+      note(Health::kProblem,
+           name + "you may not open " + arm.node + " though rule and group are right.",
+           "Plug it in again, or: sudo udevadm trigger");
+    }
+  }
+
+  void look_at_holder(const FoundArm& arm, const std::string& name) {
+    if (arm.node.empty()) return;
+    if (const auto holder = driver::find_holder(arm.node, patient_.root)) {
+      note(Health::kProblem,
+           name + "the program " + holder->program + " (process " + std::to_string(holder->pid) +
+               ") has it open.",
+           "Close that program; only one may send forces");
+    }
+  }
+
+  void look_at_power(const FoundArm& arm, const std::string& name) {
+    if (read_line(arm.sysfs / "power/control") == "auto") {
+      note(Health::kAdvice, name + "the kernel may put it to sleep to save power.",
+           "echo on | sudo tee /sys/bus/usb/devices/" + arm.sysfs.filename().string() +
+               "/power/control");
+    }
+  }
+
+  /// A full-speed arm behind a full-speed hub shares 12 Mbit/s with all that hang there; behind a
+  /// high-speed hub it has a translator that may add a frame.
+  void look_at_hub(const FoundArm& arm, const std::string& name) {
+    const std::string port = arm.sysfs.filename().string();
+    const std::size_t dot = port.rfind('.');
+    if (dot == std::string::npos) return;
+    const std::string hub = port.substr(0, dot);
+    const std::string speed = read_line(arm.sysfs.parent_path() / hub / "speed");
+    if (speed == "12" || speed == "1.5") {
+      note(Health::kAdvice,
+           name + "it hangs on a full-speed hub, whose other devices take its bus time.",
+           "Plug it into the computer itself");
+    } else {
+      note(Health::kAdvice, name + "it hangs on a hub; a socket of the computer is safer.",
+           "Plug it into the computer itself");
+    }
+  }
+
+  static std::string bound_driver(const FoundArm& arm) {
+    const fs::path link = arm.sysfs / (arm.sysfs.filename().string() + ":1.0") / "driver";
+    std::error_code missing;
+    const fs::path target = fs::read_symlink(link, missing);
+    return missing ? std::string() : target.filename().string();
+  }
+
+  static std::string falcon_latency(const FoundArm& arm) {
+    const fs::path interface = arm.sysfs / (arm.sysfs.filename().string() + ":1.0");
+    std::error_code ignored;
+    for (const auto& entry : fs::directory_iterator(interface, ignored)) {
+      std::string latency = read_line(entry.path() / "latency_timer");
+      if (!latency.empty()) return latency;
+    }
+    return {};
+  }
+
+  const Patient& patient_;
+  std::vector<Finding> findings_;
+  bool rule_ = false;
+};
+
+}  // namespace
+
+Patient this_machine() {
+  Patient patient;
+  rlimit limit{};
+  if (getrlimit(RLIMIT_RTPRIO, &limit) == 0) {
+    patient.real_time_priority_max =
+        limit.rlim_cur == RLIM_INFINITY ? 99 : static_cast<long>(limit.rlim_cur);
+  }
+  if (geteuid() == 0) patient.real_time_priority_max = 99;
+  if (const group* plugdev = getgrnam("plugdev")) {
+    std::vector<gid_t> groups(static_cast<std::size_t>(std::max(getgroups(0, nullptr), 0)));
+    const int count = getgroups(static_cast<int>(groups.size()), groups.data());
+    groups.resize(static_cast<std::size_t>(std::max(count, 0)));
+    patient.in_plugdev = std::find(groups.begin(), groups.end(), plugdev->gr_gid) != groups.end();
+  }
+  return patient;
+}
+
+std::vector<Finding> examine(const Patient& patient) {
+  return Examination(patient).run();
+}
+
+}  // namespace thimble::app

@@ -1,0 +1,150 @@
+#include "bringup/doctor_timing.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <set>
+#include <string>
+#include <system_error>
+
+#include "thimble/driver/discovery.h"
+
+namespace thimble::app {
+namespace {
+
+namespace fs = std::filesystem;
+using driver::read_line;
+
+// Waking up may cost a twentieth of a period of 1 kHz before a hand could feel it. [chosen]
+constexpr long kWakeMost_us = 50;
+
+fs::path below(const Patient& patient, const char* path) {
+  return patient.root / fs::path(path).relative_path();
+}
+
+/// Returns the folders of the processors ("cpu0", "cpu1", ...).
+std::vector<fs::path> processors(const Patient& patient) {
+  std::vector<fs::path> found;
+  std::error_code ignored;
+  for (const auto& entry :
+       fs::directory_iterator(below(patient, "/sys/devices/system/cpu"), ignored)) {
+    const std::string name = entry.path().filename().string();
+    const bool numbered = name.size() > 3 && name.compare(0, 3, "cpu") == 0 &&
+                          std::all_of(name.begin() + 3, name.end(),
+                                      [](unsigned char c) { return c >= '0' && c <= '9'; });
+    if (numbered) found.push_back(entry.path());
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+void look_at_priority(const Patient& patient, std::vector<Finding>& findings) {
+  if (patient.real_time_priority_max >= 80) {
+    findings.push_back({Health::kGood, "You may run at real-time priority.", {}});
+  } else {
+    findings.push_back(
+        {Health::kAdvice,
+         "You may not run at real-time priority 80, so the loop waits behind other programs, and "
+         "`thimble run` refuses a real arm unless you say --no-real-time.",
+         "echo '@plugdev - rtprio 80' | sudo tee /etc/security/limits.d/thimble.conf, then log in "
+         "again"});
+  }
+  const std::string runtime = read_line(below(patient, "/proc/sys/kernel/sched_rt_runtime_us"));
+  // The default leaves a real-time thread 950 ms of each second, far more than the loop takes.
+  if (!runtime.empty() && std::atol(runtime.c_str()) >= 0 && std::atol(runtime.c_str()) < 500000) {
+    findings.push_back(
+        {Health::kAdvice,
+         "The kernel stops real-time threads after " + runtime + " us of each second.",
+         "sudo sysctl -w kernel.sched_rt_runtime_us=950000"});
+  }
+}
+
+void look_at_preemption(const Patient& patient, std::vector<Finding>& findings) {
+  // PREEMPT_RT kernels say 1 there [S kernel/ksysfs.c of the RT patches]; all name it in `uname
+  // -v`, which is this file.
+  const std::string version = read_line(below(patient, "/proc/sys/kernel/version"));
+  if (read_line(below(patient, "/sys/kernel/realtime")) == "1" ||
+      version.find("PREEMPT_RT") != std::string::npos) {
+    findings.push_back({Health::kGood, "The kernel is a real-time one (PREEMPT_RT).", {}});
+  } else if (!version.empty()) {
+    findings.push_back({Health::kAdvice,
+                        "The kernel is no real-time one (PREEMPT_RT): now and then a tick comes "
+                        "late by a millisecond or more.",
+                        "sudo apt install linux-image-rt-amd64, then start that kernel; `thimble "
+                        "bench` says whether this one is good enough"});
+  }
+}
+
+void look_at_governor(const Patient& patient, std::vector<Finding>& findings) {
+  std::set<std::string> others;
+  bool any = false;
+  for (const fs::path& cpu : processors(patient)) {
+    const std::string governor = read_line(cpu / "cpufreq/scaling_governor");
+    any |= !governor.empty();
+    if (!governor.empty() && governor != "performance") others.insert(governor);
+  }
+  if (!any) return;  // most virtual machines
+  if (others.empty()) {
+    findings.push_back({Health::kGood, "The processors run at full speed (performance).", {}});
+    return;
+  }
+  std::string names;
+  for (const std::string& name : others) names.append(names.empty() ? "" : ", ").append(name);
+  findings.push_back({Health::kAdvice,
+                      "The processors change their speed by the governor " + names +
+                          ": a loop that mostly waits gets a slow processor.",
+                      "echo performance | sudo tee "
+                      "/sys/devices/system/cpu/cpu*/cpufreq/scaling_governor"});
+}
+
+/// Returns how long the deepest sleep that is not switched off takes to wake from, us.
+long deepest_wake_us(const Patient& patient) {
+  long most = 0;
+  for (const fs::path& cpu : processors(patient)) {
+    std::error_code ignored;
+    for (const auto& state : fs::directory_iterator(cpu / "cpuidle", ignored)) {
+      if (read_line(state.path() / "disable") == "1") continue;
+      most = std::max(most, std::atol(read_line(state.path() / "latency").c_str()));
+    }
+  }
+  return most;
+}
+
+void look_at_sleep(const Patient& patient, std::vector<Finding>& findings) {
+  const long wake_us = deepest_wake_us(patient);
+  if (wake_us <= kWakeMost_us) return;
+  const fs::path latency = below(patient, "/dev/cpu_dma_latency");
+  if (access(latency.c_str(), W_OK) == 0) {
+    findings.push_back({Health::kGood,
+                        "Processors at rest take " + std::to_string(wake_us) +
+                            " us to wake; you may ask for less (/dev/cpu_dma_latency), and a run "
+                            "does.",
+                        {}});
+    return;
+  }
+  std::error_code missing;
+  const bool there = fs::exists(latency, missing);
+  findings.push_back(
+      {Health::kAdvice,
+       "Processors at rest take " + std::to_string(wake_us) + " us to wake, and " +
+           (there ? "you may not write /dev/cpu_dma_latency, which would keep them awake."
+                  : "the kernel has no /dev/cpu_dma_latency to keep them awake."),
+       there ? "echo 'KERNEL==\"cpu_dma_latency\", GROUP=\"plugdev\", MODE=\"0660\"' | sudo tee "
+               "/etc/udev/rules.d/71-thimble-latency.rules && sudo udevadm control --reload && "
+               "sudo udevadm trigger /dev/cpu_dma_latency"
+             : "sudo cpupower idle-set -D " + std::to_string(kWakeMost_us)});
+}
+
+}  // namespace
+
+std::vector<Finding> examine_timing(const Patient& patient) {
+  std::vector<Finding> findings;
+  look_at_priority(patient, findings);
+  look_at_preemption(patient, findings);
+  look_at_governor(patient, findings);
+  look_at_sleep(patient, findings);
+  return findings;
+}
+
+}  // namespace thimble::app

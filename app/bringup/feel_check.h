@@ -1,0 +1,42 @@
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bringup/bench_arm.h"
+#include "thimble/scene/real_arm_terms.h"
+
+namespace thimble::app {
+
+/// Number of results of a check in which all steps passed: encoders, three directions, three
+/// forces, watchdog.
+inline constexpr std::size_t kFeelChecks = 8;
+
+/// Is what one step of the check found.
+struct CheckResult {
+  std::string name;
+  bool passed = false;
+  std::string text;  ///< One sentence with figures.
+};
+
+/// Is called before each step with what the user shall do; returns false to end the check.
+using Prompt = std::function<bool(const std::string& what)>;
+
+/// Checks an arm step by step: do all encoders count, do the directions agree with the world, does
+/// a force push the way it should (at most 0.4 N along x, y and z, and so little that no
+/// swapped motors make it more than kFeelCheckForceMax), and do the motors go off by themselves
+/// when nobody speaks to the arm. A wire that is wrong is named: an encoder or motor that is dead,
+/// turned round, or swapped with another. The device must be idle; it is idle afterwards, with zero
+/// force. Real-time: never from the servo thread.
+std::vector<CheckResult> feel_check(BenchArm& bench, const scene::ArmFile& file,
+                                    const Prompt& prompt, const std::atomic<bool>& stop);
+
+/// Gives the way of a simulated hand that does what the prompts ask, without pauses between them
+/// (seconds and points in the world, m). `p_WT` is where it begins.
+std::vector<std::pair<double, Eigen::Vector3d>> feel_check_hand(const Eigen::Vector3d& p_WT);
+
+}  // namespace thimble::app

@@ -1,0 +1,83 @@
+#include "cli/arm_choice.h"
+
+#include <cstdio>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "cli/file_options.h"
+#include "thimble/scene/real_arm.h"
+#include "thimble/scene/real_arm_file.h"
+
+namespace thimble::app {
+
+void ArmChoice::add_options(CLI::App& command) {
+  command
+      .add_option("--device", device,
+                  "Arm: auto, the plugged one, or the simulated one if there is none; a name that "
+                  "`thimble devices` lists; sim")
+      ->capture_default_str();
+  add_arm_option(command, arm_file,
+                 "Its arm file; needed for a simulated arm, and for one that does not tell its "
+                 "model");
+  command.add_option("--firmware", firmware, "Firmware image for an arm that needs one")
+      ->check(CLI::ExistingFile);
+}
+
+driver::Result<ChosenArm> resolve(const ArmChoice& choice, bool for_calibration) {
+  ChosenArm chosen;
+  std::string left;  // boards that may be arms
+  if (choice.device != "sim") {
+    const auto plugged_in = driver::find_arms();
+    auto real = scene::choose_arm(plugged_in ? *plugged_in : std::vector<driver::FoundArm>(),
+                                  choice.device);
+    if (!real) return real.error();
+    chosen.real_arm = *real;
+    if (plugged_in && !chosen.real_arm) left = scene::boards_left_out(*plugged_in);
+  }
+  if (!chosen.real_arm) {
+    if (choice.arm_file.empty()) {
+      return driver::Error{
+          std::string("No arm is plugged in that can be told for sure (thimble devices). Plug it "
+                      "in, or say "
+                      "which one is to be simulated: --arm NAME (thimble run --list).") +
+          (left.empty() ? "" : " " + left)};
+    }
+    auto file = scene::read_arm_file(choice.arm_file);
+    if (!file) return file.error();
+    chosen.file = std::move(file).value();
+    chosen.path = choice.arm_file;
+    chosen.name = "sim";
+    if (!left.empty()) chosen.told.push_back(left);
+    return chosen;
+  }
+  auto found = scene::find_real_arm_file(
+      *chosen.real_arm, {.arm_file = choice.arm_file, .for_calibration = for_calibration});
+  if (!found) return found.error();
+  chosen.file = std::move(found->file);
+  chosen.path = found->path;
+  chosen.name = chosen.real_arm->name();
+  chosen.told.push_back("Arm " + chosen.name + ", arm file: " + found->path.string() + " (" +
+                        found->why + ").");
+  chosen.told.insert(chosen.told.end(), found->told.begin(), found->told.end());
+  return chosen;
+}
+
+SimulatedNote::SimulatedNote(const ChosenArm& arm, const char* kept) {
+  if (arm.real_arm) return;
+  line_ =
+      "SIMULATED: no arm is used but the simulated " + arm.file.name + "; no " + kept + " is kept.";
+  print();
+}
+
+SimulatedNote::~SimulatedNote() {
+  if (!line_.empty()) print();
+}
+
+void SimulatedNote::print() const {
+  std::fflush(stderr);
+  std::printf("%s\n", line_.c_str());
+  std::fflush(stdout);
+}
+
+}  // namespace thimble::app

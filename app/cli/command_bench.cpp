@@ -1,0 +1,71 @@
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "cli/commands.h"
+#include "cli/complain.h"
+#include "cli/file_options.h"
+#include "report/figure.h"
+#include "studies/rate_bench.h"
+#include "thimble/scene/shipped_files.h"
+
+namespace thimble::app {
+namespace {
+
+struct BenchOptions {
+  std::string scene = "elephant";
+  std::vector<double> rates{1000, 4000, 8000};
+  double seconds = 4;
+  std::string out;
+  std::string quality = "normal";
+};
+
+int run_bench(const BenchOptions& options) {
+  const auto scene = scene::find_scene(options.scene);  // the default has not been looked for
+  if (!scene) return complain(scene.error(), kExitBadInput);
+  std::vector<Figure> figures;
+  std::string advice;
+  for (const double rate : options.rates) {
+    const auto bench =
+        bench_rate(*scene, rate, options.seconds, scene::quality_named(options.quality));
+    if (!bench) return complain(bench.error(), kExitBadInput);
+    const RateVerdict verdict = verdict_of(*bench);
+    std::printf("%5.0f Hz  %s\n", rate, verdict.sentence.c_str());
+    std::fflush(stdout);
+    for (Figure& figure : figures_of(*bench, verdict)) figures.push_back(std::move(figure));
+    advice = bench->advice;
+  }
+  if (!advice.empty()) std::printf("%s\n", advice.c_str());
+  std::printf("The simulated arm is in these times; a real one has its wire in its place.\n\n%s",
+              figure_table(figures).c_str());
+  if (options.out.empty()) return kExitDone;
+  std::error_code status;
+  std::filesystem::create_directories(options.out, status);
+  const auto written = write_figures(figures, std::filesystem::path(options.out) / "figures.json");
+  return written ? kExitDone : complain(written.error(), kExitTrouble);
+}
+
+}  // namespace
+
+void add_bench_command(CLI::App& app, int& exit_code) {
+  CLI::App* command =
+      app.add_subcommand("bench", "Is this machine good enough for a scene at 1, 4 and 8 kHz?");
+  auto options = std::make_shared<BenchOptions>();
+  add_scene_option(*command, options->scene)->capture_default_str();
+  command->add_option("--rate", options->rates, "Ticks per second to try, Hz")
+      ->check(CLI::Range(100, 50'000))
+      ->capture_default_str();
+  command->add_option("--seconds", options->seconds, "How long to touch at each rate, s")
+      ->check(CLI::Range(0.1, 600.0))
+      ->capture_default_str();
+  command
+      ->add_option("--quality", options->quality, "draft, normal or reference, as in `thimble run`")
+      ->check(CLI::IsMember({"draft", "normal", "reference"}))
+      ->capture_default_str();
+  command->add_option("--out", options->out, "Folder for figures.json");
+  command->callback([options, &exit_code] { exit_code = run_bench(*options); });
+}
+
+}  // namespace thimble::app

@@ -1,0 +1,104 @@
+#include <array>
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "bringup/bench_arm.h"
+#include "cli/arm_choice.h"
+#include "cli/commands.h"
+#include "cli/complain.h"
+#include "enter_key.h"
+#include "interrupt.h"
+#include "thimble/scene/arm_simulation.h"
+#include "thimble/scene/calibration.h"
+#include "thimble/scene/real_arm.h"
+
+namespace thimble::app {
+namespace {
+
+/// Is where the simulated hand goes: each pose is reached after a second and held for a second.
+std::vector<std::pair<double, Eigen::Vector3d>> simulated_hand(const Eigen::Vector3d& p_home) {
+  std::vector<std::pair<double, Eigen::Vector3d>> way{{0, p_home}};
+  for (int axis = 0; axis < 3; ++axis) {
+    const double begin = 2 + 4 * axis;
+    // Only moves that a vintage arm can make from its home pose.
+    const Eigen::Vector3d there = p_home + 0.04 * Eigen::Vector3d::Unit(axis);
+    way.emplace_back(begin, p_home);
+    way.emplace_back(begin + 1, there);
+    way.emplace_back(begin + 2, there);
+    way.emplace_back(begin + 3, p_home);
+  }
+  return way;
+}
+
+Eigen::Vector3d home_of(const scene::ArmFile& file) {
+  return file.p_WB + file.R_WB * make_arm(file, scene::simulated_kind(file))->pose({}).p_BT;
+}
+
+int calibrate(const ArmChoice& choice, bool dry_run) {
+  auto chosen = resolve(choice, true);
+  if (!chosen) return complain(chosen.error(), kExitNoDevice);
+  const SimulatedNote simulated(*chosen, "calibration");
+  for (const std::string& sentence : chosen->told) std::printf("%s\n", sentence.c_str());
+  const auto way =
+      chosen->real_arm ? decltype(simulated_hand({})){} : simulated_hand(home_of(chosen->file));
+  const std::atomic<bool>& stop = scene::catch_interrupts();
+  if (chosen->real_arm) scene::leave_rather_than_stop();
+  const scene::LeavingGuard guard;
+  // Zero force throughout: the limit is only what the device asks for.
+  auto bench = BenchArm::open(chosen->file, chosen->real_arm, choice.firmware, way, 0.1);
+  if (!bench) return complain(bench.error(), kExitNoDevice);
+
+  constexpr std::array<const char*, 4> kAsks = {
+      "Put the arm into its home pose.", "From there, move the grip about 5 cm towards you.",
+      "Back home, then about 5 cm to your right.", "Back home, then about 5 cm up."};
+  constexpr std::array<double, 4> kSimulatedTimes = {1, 3.5, 7.5, 11.5};  // s
+  std::array<driver::ArmReading, 4> readings;
+  for (std::size_t i = 0; i < kAsks.size(); ++i) {
+    std::printf("%s%s\n", kAsks[i], chosen->real_arm ? " Hold it there and press Enter." : "");
+    session::EnterKey key = session::EnterKey::kNothing;
+    const auto done = [&] {
+      if (!chosen->real_arm) return (*bench)->now() >= kSimulatedTimes[i];
+      return (key = session::look_for_enter()) != session::EnterKey::kNothing;
+    };
+    if (!(*bench)->hold(done, stop)) {
+      if (stop.load()) return kExitInterrupted;
+      return complain({std::string(driver::describe((*bench)->device().fault()))}, kExitFault);
+    }
+    if (key == session::EnterKey::kClosed)
+      return complain({"Nobody is at the terminal."}, kExitBadInput);
+    readings[i].counts = (*bench)->device().state().counts;
+  }
+  const driver::ArmKind kind =
+      chosen->real_arm ? chosen->real_arm->kind : scene::simulated_kind(chosen->file);
+  auto found = scene::find_calibration(chosen->file, kind, readings[0],
+                                       {readings[1], readings[2], readings[3]});
+  if (!found) return complain(found.error(), kExitTrouble);
+  std::printf("home_counts  %d %d %d\nencoder_sign %d %d %d\nmotor_sign   %d %d %d\n",
+              found->home_counts[0], found->home_counts[1], found->home_counts[2],
+              found->encoder_sign[0], found->encoder_sign[1], found->encoder_sign[2],
+              found->motor_sign[0], found->motor_sign[1], found->motor_sign[2]);
+  if (dry_run || !chosen->real_arm) return kExitDone;
+  found->arm_file = chosen->path.stem().string();
+  if (auto saved = scene::save_calibration(chosen->name, *found); !saved) {
+    return complain(saved.error(), kExitTrouble);
+  }
+  std::printf("Kept in %s, with the arm file %s. Check it: thimble feel-check --device %s\n",
+              scene::calibration_file(chosen->name).c_str(), found->arm_file.c_str(),
+              chosen->name.c_str());
+  return kExitDone;
+}
+
+}  // namespace
+
+void add_calibrate_command(CLI::App& app, int& exit_code) {
+  CLI::App* command =
+      app.add_subcommand("calibrate", "Find an arm's home pose and the signs of its encoders");
+  auto choice = std::make_shared<ArmChoice>();
+  auto dry_run = std::make_shared<bool>(false);
+  choice->add_options(*command);
+  command->add_flag("--dry-run", *dry_run, "Show what was found, keep nothing");
+  command->callback([choice, dry_run, &exit_code] { exit_code = calibrate(*choice, *dry_run); });
+}
+
+}  // namespace thimble::app

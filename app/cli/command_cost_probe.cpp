@@ -1,0 +1,63 @@
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "cli/commands.h"
+#include "cli/complain.h"
+#include "studies/accuracy/gating.h"
+#include "studies/accuracy/probed_stroke.h"
+#include "studies/cost/cost_subjects.h"
+#include "studies/cost/instruction_count.h"
+
+namespace thimble::app {
+namespace {
+
+struct ProbeOptions {
+  std::string subject;
+  int strokes = 1;
+};
+
+// Points of the diagrams of `thimble study accuracy`, each one stroke.
+constexpr std::string_view kAccuracy = "accuracy/";
+// Scenes of `thimble study gating`, with all effects of the arm or without some.
+constexpr std::string_view kGating = "gating/";
+
+int probe(const ProbeOptions& options) {
+  if (options.subject.compare(0, kAccuracy.size(), kAccuracy) == 0 &&
+      probe_strokes(options.subject.substr(kAccuracy.size())) > 0) {
+    return kExitDone;
+  }
+  if (options.subject.compare(0, kGating.size(), kGating) == 0 &&
+      probe_gating(options.subject.substr(kGating.size()))) {
+    return kExitDone;
+  }
+  for (const CostSubject& subject : cost_subjects()) {
+    if (subject.name != options.subject) continue;
+    const auto touch = subject.build();
+    if (!touch) {
+      return complain(touch.error(), kExitBadInput);
+    }
+    const auto states = ring_stroke(kCostRing, kStrokeTicks, 0.001);
+    double sum = 0;
+    for (int i = 0; i < options.strokes; ++i) {
+      for (const auto& state : states) sum += (*touch)->update(state).f_T_W.x();
+    }
+    std::printf("%.17g\n", sum);
+    return kExitDone;
+  }
+  return complain({"cost-probe knows no \"" + options.subject + "\"."}, kExitBadInput);
+}
+
+}  // namespace
+
+void add_cost_probe_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("cost-probe", "Run strokes of one cost subject");
+  command->group("");  // for `thimble study cost`, not for people
+  auto options = std::make_shared<ProbeOptions>();
+  command->add_option("SUBJECT", options->subject)->required();
+  command->add_option("STROKES", options->strokes)->required()->check(CLI::Range(1, 100000));
+  command->callback([options, &exit_code] { exit_code = probe(*options); });
+}
+
+}  // namespace thimble::app

@@ -1,0 +1,52 @@
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "cli/commands.h"
+#include "cli/exit_code.h"
+#include "thimble/driver/discovery.h"
+#include "thimble/driver/node_lock.h"
+
+namespace thimble::app {
+namespace {
+
+std::string state_of(const driver::FoundArm& arm, const std::string& root) {
+  if (arm.certainty == driver::Certainty::kUnsupported) return "its protocol is not public";
+  if (arm.node.empty()) return "no driver has it: thimble doctor";
+  if (arm.certainty == driver::Certainty::kUnknown) return "board of unknown kind: thimble doctor";
+  if (!arm.accessible) return "no access: thimble doctor";
+  if (const auto holder = driver::find_holder(arm.node, root)) {
+    return "in use by " + holder->program + " (process " + std::to_string(holder->pid) + ")";
+  }
+  return "ready";
+}
+
+int list_devices(const std::string& root) {
+  constexpr const char* kRow = "%-14s %-16s %-10s %-18s %-22s %s\n";
+  std::printf(kRow, "name", "arm", "bus", "where", "node", "state");
+  std::printf(kRow, "sim", "simulated arm", "-", "-", "-", "ready");
+  const auto arms = driver::find_arms(root);
+  if (!arms) {
+    std::printf("%s\n", arms.error().message.c_str());
+    return kExitDone;  // the simulated arm needs no USB
+  }
+  for (const driver::FoundArm& arm : *arms) {
+    std::printf(kRow, arm.name().c_str(), arm.arm.c_str(), arm.bus.c_str(), arm.address.c_str(),
+                arm.node.empty() ? "-" : arm.node.c_str(), state_of(arm, root).c_str());
+  }
+  if (arms->empty()) std::printf("No arm that Thimble knows is plugged in on USB.\n");
+  return kExitDone;
+}
+
+}  // namespace
+
+void add_devices_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("devices", "List the arms: simulated, and plugged in");
+  auto root = std::make_shared<std::string>("/");
+  command->add_option("--root", *root, "List the machine below this folder")
+      ->check(CLI::ExistingDirectory)
+      ->capture_default_str();
+  command->callback([root, &exit_code] { exit_code = list_devices(*root); });
+}
+
+}  // namespace thimble::app

@@ -1,0 +1,43 @@
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "bringup/doctor.h"
+#include "cli/commands.h"
+#include "cli/exit_code.h"
+
+namespace thimble::app {
+namespace {
+
+int show_findings(const std::string& root) {
+  Patient patient = this_machine();
+  patient.root = root;
+  int problems = 0;
+  for (const Finding& finding : examine(patient)) {
+    const char* mark = "ok      ";
+    if (finding.health == Health::kAdvice) mark = "advice  ";
+    if (finding.health == Health::kProblem) {
+      mark = "PROBLEM ";
+      ++problems;
+    }
+    std::printf("%s%s\n", mark, finding.what.c_str());
+    if (!finding.mend.empty()) std::printf("          -> %s\n", finding.mend.c_str());
+  }
+  if (problems == 0) return kExitDone;
+  std::printf("%d problem%s.\n", problems, problems == 1 ? "" : "s");
+  return kExitNoDevice;
+}
+
+}  // namespace
+
+void add_doctor_command(CLI::App& app, int& exit_code) {
+  CLI::App* command =
+      app.add_subcommand("doctor", "Say why an arm cannot be used, and what mends it");
+  auto root = std::make_shared<std::string>("/");
+  command->add_option("--root", *root, "Examine the machine below this folder")
+      ->check(CLI::ExistingDirectory)
+      ->capture_default_str();
+  command->callback([root, &exit_code] { exit_code = show_findings(*root); });
+}
+
+}  // namespace thimble::app

@@ -1,0 +1,114 @@
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "bringup/feel_check.h"
+#include "cli/arm_choice.h"
+#include "cli/commands.h"
+#include "cli/complain.h"
+#include "enter_key.h"
+#include "interrupt.h"
+#include "terms/feel_check_record.h"
+
+namespace thimble::app {
+namespace {
+
+/// Reads the arm with zero force, and tells how well its reports arrive.
+int listen_to(BenchArm& bench, double duration, const std::atomic<bool>& stop) {
+  const auto rest = [](const driver::DeviceState&) { return Eigen::Vector3d(0, 0, 0); };
+  const driver::WireCounters before = bench.device().wire_counters();
+  const bool whole = bench.run(duration, rest, stop);
+  const driver::WireCounters& after = bench.device().wire_counters();
+  const std::uint64_t reports = after.reports - before.reports;
+  const std::uint64_t missing = after.missing - before.missing;
+  std::printf(
+      "%.0f reports per second; %llu ticks without one, %llu skipped, %llu rejected, %llu "
+      "messages refused.\n",
+      static_cast<double>(reports) / duration, static_cast<unsigned long long>(missing),
+      static_cast<unsigned long long>(after.skipped - before.skipped),
+      static_cast<unsigned long long>(after.rejected - before.rejected),
+      static_cast<unsigned long long>(after.refused - before.refused));
+  if (!whole && !stop.load()) {
+    std::printf("%s\n", std::string(driver::describe(bench.device().fault())).c_str());
+  }
+  // One tick in twenty without a report is what a loop without real-time priority may cost.
+  const bool good = whole && missing * 20 <= reports && after.rejected == before.rejected;
+  return good ? kExitDone : kExitFault;
+}
+
+/// Keeps that a real arm passed, so that `thimble run` gives it its whole force; takes back what an
+/// earlier check said of one that failed.
+driver::Result<void> keep_result(const ChosenArm& chosen, const std::string& firmware,
+                                 bool passed) {
+  if (!passed) return scene::forget_passed(chosen.name);
+  const scene::RealArmFile file{.path = chosen.path, .file = chosen.file, .why = {}, .told = {}};
+  auto kept = scene::keep_passed(scene::describe_checked(*chosen.real_arm, file, firmware));
+  if (kept) {
+    std::printf("Kept in %s: `thimble run` gives this arm its whole force from now on.\n",
+                scene::feel_check_file(chosen.name).c_str());
+  }
+  return kept;
+}
+
+int check_arm(const ArmChoice& choice, double listen) {
+  auto chosen = resolve(choice, false);
+  if (!chosen) {
+    return complain(chosen.error(), kExitNoDevice);
+  }
+  const SimulatedNote simulated(*chosen, "record of this check");
+  for (const std::string& sentence : chosen->told) std::printf("%s\n", sentence.c_str());
+  const std::atomic<bool>& stop = scene::catch_interrupts();
+  if (chosen->real_arm) scene::leave_rather_than_stop();
+  const scene::LeavingGuard guard;
+  auto bench = BenchArm::open(chosen->file, chosen->real_arm, choice.firmware,
+                              feel_check_hand({0, 0, 0}), scene::kFeelCheckForceMax);
+  if (!bench) {
+    return complain(bench.error(), kExitNoDevice);
+  }
+  if (listen > 0) return listen_to(**bench, listen, stop);
+  const bool person = !(*bench)->simulated();
+  if (person) {
+    std::printf("No force above %.1f N. Keep the arm's switch at hand; Ctrl-C ends the check.\n",
+                scene::kFeelCheckForceMax);
+  }
+  const Prompt prompt = [&](const std::string& what) {
+    std::printf("%s%s\n", what.c_str(), person ? " Press Enter to begin." : "");
+    if (!person) return true;
+    session::EnterKey key = session::EnterKey::kNothing;
+    const auto done = [&key] {
+      return (key = session::look_for_enter()) != session::EnterKey::kNothing;
+    };
+    return (*bench)->hold(done, stop) && key == session::EnterKey::kPressed;
+  };
+  bool all = true;
+  const auto results = feel_check(**bench, chosen->file, prompt, stop);
+  for (const CheckResult& result : results) {
+    std::printf("%-7s %-12s %s\n", result.passed ? "ok" : "FAILED", result.name.c_str(),
+                result.text.c_str());
+    all = all && result.passed;
+  }
+  if (stop.load()) return kExitInterrupted;
+  const bool passed = all && results.size() == kFeelChecks;
+  // A check that was left says nothing.
+  if (chosen->real_arm && (passed || !all)) {
+    if (const auto kept = keep_result(*chosen, choice.firmware, passed); !kept) {
+      return complain(kept.error(), kExitTrouble);
+    }
+  }
+  return passed ? kExitDone : kExitFault;
+}
+
+}  // namespace
+
+void add_feel_check_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand(
+      "feel-check", "Check an arm by hand: encoders, directions, forces, watchdog");
+  auto choice = std::make_shared<ArmChoice>();
+  auto listen = std::make_shared<double>(0);
+  choice->add_options(*command);
+  command->add_option("--listen", *listen, "Only read for so many seconds, with zero force")
+      ->check(CLI::Range(0.1, 3600.0));
+  command->callback([choice, listen, &exit_code] { exit_code = check_arm(*choice, *listen); });
+}
+
+}  // namespace thimble::app

@@ -1,0 +1,70 @@
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "build_info.h"
+#include "cli/commands.h"
+#include "cli/exit_code.h"
+
+namespace thimble::app {
+namespace {
+
+/// Makes text safe for roff: dashes that stay dashes, no line that begins as a request.
+std::string roff(const std::string& text) {
+  std::string safe;
+  for (const char c : text) {
+    if (c == '-' || c == '\\') safe += '\\';
+    if ((c == '.' || c == '\'') && (safe.empty() || safe.back() == '\n')) safe += "\\&";
+    safe += c;
+  }
+  return safe;
+}
+
+void print_options(const CLI::App& command) {
+  for (const CLI::Option* option : command.get_options()) {
+    if (option->get_group().empty()) continue;
+    const std::string name =
+        option->get_positional() ? option->get_name(true) : option->get_name(false, true);
+    std::printf(".TP\n\\fB%s\\fR", roff(name).c_str());
+    if (option->get_items_expected_max() > 0 && !option->get_positional()) {
+      std::printf(" \\fI%s\\fR", roff(option->get_type_name()).c_str());
+    }
+    std::printf("\n%s\n", roff(option->get_description()).c_str());
+  }
+}
+
+void print_commands(const CLI::App& above, const std::string& prefix) {
+  for (const CLI::App* command : above.get_subcommands([](const CLI::App*) { return true; })) {
+    if (command->get_group().empty()) continue;  // not for people
+    const std::string name = prefix + command->get_name();
+    std::printf(".SS %s\n%s\n", roff(name).c_str(), roff(command->get_description()).c_str());
+    print_options(*command);
+    print_commands(*command, name + " ");
+  }
+}
+
+/// Prints the manual page of the whole program, so that it says what `--help` says.
+void print_manual(const CLI::App& program) {
+  std::printf(".TH THIMBLE 1 \"\" \"thimble %s\" \"User Commands\"\n",
+              std::string(scene::build_info().version).c_str());
+  std::printf(".SH NAME\nthimble \\- touch virtual objects by a force\\-feedback arm\n");
+  std::printf(".SH SYNOPSIS\n.B thimble\n.I COMMAND\n.RI [ OPTIONS ]\n");
+  std::printf(".SH DESCRIPTION\n%s\n", roff(program.get_description()).c_str());
+  std::printf("Scenes and arms that came with it lie in the folder share/thimble beside the\n");
+  std::printf("folder of the program.\n.SH COMMANDS\n");
+  print_commands(program, "");
+  std::printf(".SH NOTES\n.nf\n%s\n.fi\n", roff(program.get_footer()).c_str());
+}
+
+}  // namespace
+
+void add_manual_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("manual", "Print the manual page (roff)");
+  command->group("");  // for the installation, not for people
+  command->callback([&app, &exit_code] {
+    print_manual(app);
+    exit_code = kExitDone;
+  });
+}
+
+}  // namespace thimble::app

@@ -1,0 +1,164 @@
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cli/commands.h"
+#include "cli/complain.h"
+#include "mesh/contact_mesh.h"
+#include "page/page_file.h"
+#include "report/pictures.h"
+#include "thimble/render/mesh/check_mesh.h"
+#include "thimble/render/mesh/load_mesh.h"
+#include "thimble/render/mesh/repair_mesh.h"
+#include "thimble/render/mesh/save_mesh.h"
+
+namespace thimble::app {
+namespace {
+
+struct MeshOptions {
+  std::string file;
+  std::string picture;
+  std::string repair;
+};
+
+void print(const render::MeshFindings& found) {
+  const Eigen::Vector3d size = found.box_max - found.box_min;
+  std::printf("  triangles   %zu\n  vertices    %zu", found.triangles, found.vertices);
+  if (found.unused_vertices > 0) std::printf(" (%zu unused)", found.unused_vertices);
+  std::printf("\n  edges       %zu, %.4g to %.4g long, %.4g on average\n", found.edges,
+              found.edge_min, found.edge_max, found.edge_mean);
+  std::printf("  components  %zu, Euler characteristic %ld\n", found.components,
+              found.euler_characteristic);
+  std::printf("  box         (%.4g, %.4g, %.4g) to (%.4g, %.4g, %.4g), %.4g x %.4g x %.4g\n",
+              found.box_min.x(), found.box_min.y(), found.box_min.z(), found.box_max.x(),
+              found.box_max.y(), found.box_max.z(), size.x(), size.y(), size.z());
+  std::printf("  area        %.4g\n", found.area);
+  if (found.touchable()) std::printf("  volume      %.4g\n", found.volume);
+}
+
+// Tells whether a mesh can be touched, and if not, why.
+int tell_verdict(const render::TriangleMesh& mesh, const render::MeshFindings& found) {
+  if (found.touchable()) {
+    std::printf("The mesh is closed and wound alike: it can be touched.\n");
+    return kExitDone;
+  }
+  const auto contact = render::ContactMesh::build(mesh);
+  std::printf(contact ? "The mesh can be touched; in a scene it is put right:\n"
+                      : "The mesh cannot be touched:\n");
+  for (const render::MeshFault& fault : found.faults) {
+    std::printf("  - %s\n", render::describe(fault).c_str());
+  }
+  if (contact) {
+    std::printf("  %s\n", render::describe(contact->orientation()).c_str());
+    return kExitDone;
+  }
+  // A surface with one side only shows no other fault than edges wound two ways.
+  const bool only_winding =
+      std::all_of(found.faults.begin(), found.faults.end(), [](const render::MeshFault& fault) {
+        return fault.kind == render::MeshFault::Kind::kFlippedEdge ||
+               fault.kind == render::MeshFault::Kind::kInsideOut;
+      });
+  if (only_winding) std::printf("  %s\n", contact.error().message.c_str());
+  return kExitBadInput;
+}
+
+int repair(const render::TriangleMesh& mesh, const std::string& file) {
+  const render::RepairedMesh repaired = render::repair_mesh(mesh);
+  if (auto saved = render::save_mesh(repaired.mesh, file); !saved) {
+    return complain(saved.error(), kExitTrouble);
+  }
+  std::printf("Repaired: %s\n", file.c_str());
+  if (repaired.changes.empty()) std::printf("  Nothing was changed.\n");
+  for (const render::RepairChange& change : repaired.changes) {
+    std::printf("  - %s\n", render::describe(change).c_str());
+  }
+  const render::MeshFindings found = render::check_mesh(repaired.mesh);
+  print(found);
+  return tell_verdict(repaired.mesh, found);
+}
+
+// Tells what a page file is; its triangles are looked at one page at a time, if at all.
+int tell_pages(const MeshOptions& options) {
+  const auto pages = render::PageFile::open(options.file);
+  if (!pages) return complain(pages.error(), kExitBadInput);
+  if (!options.picture.empty() || !options.repair.empty()) {
+    return complain(
+        {options.file + ": a mesh in pages is neither drawn nor repaired; take the mesh "
+                        "that it was cut from."},
+        kExitBadInput);
+  }
+  const double step = pages->lattice().step;
+  Eigen::Vector3d low, high;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    low[static_cast<Eigen::Index>(axis)] = double{pages->whole().min[axis]};
+    high[static_cast<Eigen::Index>(axis)] = double{pages->whole().max[axis]};
+  }
+  low = pages->lattice().origin + step * low;
+  high = pages->lattice().origin + step * high;
+  const Eigen::Vector3d size = high - low;
+  std::printf(
+      "%s (a mesh in pages, lengths in m)\n  triangles   %d\n  pages       %zu of up to %d\n",
+      options.file.c_str(), pages->triangle_count(), pages->boxes().size(), render::kPageTriangles);
+  std::printf("  box         (%.4g, %.4g, %.4g) to (%.4g, %.4g, %.4g), %.4g x %.4g x %.4g\n",
+              low.x(), low.y(), low.z(), high.x(), high.y(), high.z(), size.x(), size.y(),
+              size.z());
+  std::vector<render::PackedTriangle> records(render::kPageTriangles);
+  std::size_t damaged = 0;
+  for (std::size_t page = 0; page < pages->boxes().size(); ++page) {
+    damaged += pages->read_page(static_cast<std::int32_t>(page), records) == 0;
+  }
+  if (damaged > 0) {
+    std::printf(
+        "%zu pages are damaged: they would be holes that nothing is felt of. Write the file "
+        "again.\n",
+        damaged);
+    return kExitBadInput;
+  }
+  std::printf("All pages are whole: it can be touched, with few of them in memory.\n");
+  return kExitDone;
+}
+
+int tell_mesh(const MeshOptions& options) {
+  if (render::is_page_file(options.file)) return tell_pages(options);
+  const auto mesh = render::load_mesh(options.file);
+  if (!mesh) return complain(mesh.error(), kExitBadInput);
+  const render::MeshFindings found = render::check_mesh(*mesh);
+  std::printf("%s (lengths in the file's unit)\n", options.file.c_str());
+  print(found);
+  if (!options.picture.empty()) {
+    const std::string title = std::filesystem::path(options.file).filename().string();
+    if (const auto drawn = draw_mesh(*mesh, options.picture, title, "unit of the file", &found);
+        !drawn) {
+      return complain(drawn.error(), kExitTrouble);
+    }
+    std::printf("Picture: %s\n", options.picture.c_str());
+  }
+  const int verdict = tell_verdict(*mesh, found);
+  return options.repair.empty() ? verdict : repair(*mesh, options.repair);
+}
+
+}  // namespace
+
+void add_mesh_command(CLI::App& app, int& exit_code) {
+  CLI::App* command =
+      app.add_subcommand("mesh", "Tell what a mesh is and what is wrong with it (exit code 2)");
+  auto options = std::make_shared<MeshOptions>();
+  command->add_option("FILE", options->file, "Mesh: OFF, OBJ, STL, PLY, or one in pages");
+  command->add_option("--picture", options->picture,
+                      "Draw the mesh from three sides, its faults marked (PNG, SVG)");
+  command->add_option("--repair", options->repair,
+                      "Write the mesh repaired (OFF): welded within 1e-5 of its size, no triangles "
+                      "without area or twice, seams closed, wound outwards");
+  add_mesh_page_command(*command, exit_code);
+  add_mesh_generate_command(*command, exit_code);
+  command->callback([command, options, &exit_code] {
+    if (!command->get_subcommands().empty()) return;
+    if (options->file.empty()) throw CLI::RequiredError("FILE");
+    exit_code = tell_mesh(*options);
+  });
+}
+
+}  // namespace thimble::app

@@ -1,0 +1,54 @@
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "cli/commands.h"
+#include "cli/complain.h"
+#include "page/page_file.h"
+#include "studies/resident_memory.h"
+#include "studies/ring_pages.h"
+
+namespace thimble::app {
+namespace {
+
+struct GenerateOptions {
+  std::string out;
+  double triangles = 1e6;
+  double size = 0.1;
+};
+
+int generate_mesh(const GenerateOptions& options) {
+  BumpyRing ring;
+  const double scale = options.size / (2 * ring.half_size());
+  ring.ring_radius *= scale;
+  ring.tube_radius *= scale;
+  const RingGrid grid = ring_grid(ring, static_cast<std::int64_t>(options.triangles));
+  if (const auto written = write_ring(ring, grid, options.out); !written) {
+    return complain(written.error(), kExitTrouble);
+  }
+  std::printf("%s: a bumpy ring of %d triangles in %d pages; %.0f MiB of memory at most.\n",
+              options.out.c_str(), grid.triangle_count(),
+              grid.triangle_count() / render::kPageTriangles,
+              static_cast<double>(resident_memory().most) / (1 << 20));
+  return kExitDone;
+}
+
+}  // namespace
+
+void add_mesh_generate_command(CLI::App& mesh_command, int& exit_code) {
+  CLI::App* command = mesh_command.add_subcommand(
+      "generate", "Write a bumpy ring of any number of triangles as a page file, to try paging");
+  auto options = std::make_shared<GenerateOptions>();
+  command->add_option("OUT", options->out, "Page file to write")->required();
+  command
+      ->add_option("--triangles", options->triangles,
+                   "About how many; a triangle takes 64 bytes on the disk")
+      ->check(CLI::Range(1024.0, 2.5e8))
+      ->capture_default_str();
+  command->add_option("--size", options->size, "Width of the ring, m")
+      ->check(CLI::Range(1e-3, 2.0))
+      ->capture_default_str();
+  command->callback([options, &exit_code] { exit_code = generate_mesh(*options); });
+}
+
+}  // namespace thimble::app

@@ -1,0 +1,45 @@
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "cli/commands.h"
+#include "cli/complain.h"
+#include "mesh/contact_mesh.h"
+#include "packed/packed_surface.h"
+#include "page/page_file.h"
+#include "thimble/render/mesh/load_mesh.h"
+
+namespace thimble::app {
+namespace {
+
+struct PageOptions {
+  std::string in, out;
+};
+
+int page_mesh(const PageOptions& options) {
+  const auto mesh = render::load_mesh(options.in);
+  if (!mesh) return complain(mesh.error(), kExitBadInput);
+  const auto checked = render::ContactMesh::build(*mesh);
+  if (!checked) return complain({options.in + ": " + checked.error().message}, kExitBadInput);
+  const auto surface = render::PackedSurface::build(*checked);
+  if (!surface) return complain({options.in + ": " + surface.error().message}, kExitBadInput);
+  if (const auto written = render::write_page_file(*surface, options.out); !written) {
+    return complain(written.error(), kExitTrouble);
+  }
+  std::printf("%s: %d triangles in %d pages.\n", options.out.c_str(), surface->triangle_count(),
+              (surface->triangle_count() + render::kPageTriangles - 1) / render::kPageTriangles);
+  return kExitDone;
+}
+
+}  // namespace
+
+void add_mesh_page_command(CLI::App& mesh_command, int& exit_code) {
+  CLI::App* command = mesh_command.add_subcommand(
+      "page", "Cut a mesh into volumes on disk, of which few are in memory while touching");
+  auto options = std::make_shared<PageOptions>();
+  command->add_option("IN", options->in, "Mesh: OFF, OBJ, STL or PLY")->required();
+  command->add_option("OUT", options->out, "Page file to write")->required();
+  command->callback([options, &exit_code] { exit_code = page_mesh(*options); });
+}
+
+}  // namespace thimble::app

@@ -1,0 +1,317 @@
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <cstdio>
+#include <fstream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include "cli/commands.h"
+#include "cli/complain.h"
+#include "interrupt.h"
+#include "thimble/device_sim/usb/arm_shelf.h"
+#include "thimble/device_sim/usb/usb_fault.h"
+#include "thimble/device_sim/usb/usbip_server.h"
+#include "thimble/device_sim/usb/vhci.h"
+#include "thimble/driver/arms/falcon/falcon_boot.h"
+
+namespace thimble::app {
+namespace {
+
+namespace usb = device_sim::usb;
+
+struct PlugOptions {
+  std::string arm;
+  std::string address = "127.0.0.1";
+  std::uint16_t port = usb::kUsbipPort;
+  bool attach = false;
+  std::string motion = "tap";
+  std::string serial;
+  std::uint64_t seed = 0;
+  std::string firmware, faults, control, trace;
+};
+
+/// Hands the device to the kernel from a thread of its own, because the server answers meanwhile;
+/// again whenever it is plugged in again.
+class KernelAttachment {
+ public:
+  KernelAttachment(std::uint16_t port, std::string bus_id)
+      : port_(port), bus_id_(std::move(bus_id)) {}
+  KernelAttachment(const KernelAttachment&) = delete;
+  KernelAttachment& operator=(const KernelAttachment&) = delete;
+  ~KernelAttachment() {
+    if (thread_.joinable()) thread_.join();
+  }
+
+  /// Begins, unless an attempt is under way.
+  void begin() {
+    if (busy_.load()) return;
+    if (thread_.joinable()) thread_.join();
+    busy_.store(true);
+    thread_ = std::thread([this] {
+      const auto attached = usb::attach_to_kernel(port_, bus_id_);
+      if (attached) {
+        std::printf("Attached to this kernel, port %d of its virtual USB host.\n", *attached);
+      } else {
+        std::fprintf(stderr, "thimble: %s\n", attached.error().message.c_str());
+        failed_.store(true);
+      }
+      std::fflush(stdout);
+      busy_.store(false);
+    });
+  }
+  bool busy() const { return busy_.load(); }
+  bool failed() const { return failed_.load(); }
+
+ private:
+  std::uint16_t port_;
+  std::string bus_id_;
+  std::thread thread_;
+  std::atomic<bool> busy_{false}, failed_{false};
+};
+
+/// Carries out one line of a script; a mistake is told and changes nothing.
+bool obey(usb::FaultyDevice& device, const std::string& line) {
+  if (line.empty() || line[0] == '#') return true;
+  if (line == "heal") {
+    device.heal();
+    return true;
+  }
+  const auto order = usb::parse_fault(line);
+  if (!order) {
+    std::fprintf(stderr, "thimble: %s\n", order.error().message.c_str());
+    return false;
+  }
+  device.order(*order);
+  return true;
+}
+
+/// Is the pipe that orders faults while the arm is plugged in.
+class ControlPipeFile {
+ public:
+  ControlPipeFile() = default;
+  ControlPipeFile(const ControlPipeFile&) = delete;
+  ControlPipeFile& operator=(const ControlPipeFile&) = delete;
+  ~ControlPipeFile() {
+    if (file_ < 0) return;
+    close(file_);
+    unlink(path_.c_str());
+  }
+
+  bool open(const std::string& path) {
+    path_ = path;
+    // Open for writing too, so that the pipe stays open when a writer leaves.
+    if (mkfifo(path.c_str(), 0600) != 0) return false;
+    file_ = ::open(path.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
+    return file_ >= 0;
+  }
+
+  void poll(usb::FaultyDevice& device) {
+    if (file_ < 0) return;
+    std::array<char, 512> bytes;
+    const ssize_t size = read(file_, bytes.data(), bytes.size());
+    for (ssize_t i = 0; i < size; ++i) {
+      const char letter = bytes[static_cast<std::size_t>(i)];
+      if (letter != '\n') {
+        line_ += letter;
+      } else {
+        obey(device, line_);
+        line_.clear();
+      }
+    }
+  }
+
+ private:
+  std::string path_, line_;
+  int file_ = -1;
+};
+
+/// Writes what was true of the arm in each frame in which a packet moved, as tests want it.
+class TruthTrace {
+ public:
+  explicit TruthTrace(const std::string& path) : file_(std::fopen(path.c_str(), "we")) {
+    if (file_ != nullptr) {
+      std::fprintf(file_,
+                   "# frame reports sampled_frame c0 c1 c2 exact0 exact1 exact2 messages m0 m1 m2 "
+                   "amp0 amp1 amp2 x y z motors_on\n");
+    }
+  }
+  TruthTrace(const TruthTrace&) = delete;
+  TruthTrace& operator=(const TruthTrace&) = delete;
+  ~TruthTrace() {
+    if (file_ != nullptr) std::fclose(file_);
+  }
+  bool open() const { return file_ != nullptr; }
+
+  void add(std::int64_t frame, const usb::ArmTruth& truth) {
+    const bool moved =
+        truth.reports != reports_ || truth.messages != messages_ || truth.motors_on != motors_on_;
+    if (!moved) return;
+    reports_ = truth.reports;
+    messages_ = truth.messages;
+    motors_on_ = truth.motors_on;
+    std::fprintf(file_, "%lld %llu %lld %d %d %d %.4f %.4f %.4f %llu %d %d %d %.6f %.6f %.6f ",
+                 static_cast<long long>(frame), static_cast<unsigned long long>(truth.reports),
+                 static_cast<long long>(truth.report_ns / usb::UsbipSession::kFrame_ns),
+                 truth.counts[0], truth.counts[1], truth.counts[2], truth.exact_counts[0],
+                 truth.exact_counts[1], truth.exact_counts[2],
+                 static_cast<unsigned long long>(truth.messages), truth.motor_values[0],
+                 truth.motor_values[1], truth.motor_values[2], truth.currents[0], truth.currents[1],
+                 truth.currents[2]);
+    std::fprintf(file_, "%.7f %.7f %.7f %d\n", truth.p_BT[0], truth.p_BT[1], truth.p_BT[2],
+                 truth.motors_on ? 1 : 0);
+  }
+
+ private:
+  std::FILE* file_;
+  std::uint64_t reports_ = 0, messages_ = 0;
+  bool motors_on_ = false;
+};
+
+usb::HandMotion motion_of(const std::string& name) {
+  if (name == "rest") return usb::HandMotion::kRest;
+  return name == "tap" ? usb::HandMotion::kTap : usb::HandMotion::kStroke;
+}
+
+bool obey_file(usb::FaultyDevice& device, const std::string& path) {
+  std::ifstream file(path);
+  if (!file) {
+    std::fprintf(stderr, "thimble: cannot read the fault script %s.\n", path.c_str());
+    return false;
+  }
+  for (std::string line; std::getline(file, line);) {
+    if (!obey(device, line)) return false;
+  }
+  return true;
+}
+
+void say_what_to_do(const usb::UsbipServer& server, const PlugOptions& options) {
+  std::printf("The simulated arm '%s' waits on port %u as USB device %s.\n", options.arm.c_str(),
+              static_cast<unsigned>(server.port()), server.bus_id().c_str());
+  if (!options.attach) {
+    std::printf(
+        "Plug it in, as root: modprobe vhci-hcd; usbip --tcp-port %u attach -r 127.0.0.1 "
+        "-b %s\n",
+        static_cast<unsigned>(server.port()), server.bus_id().c_str());
+  }
+  std::printf("Ctrl-C unplugs it.\n");
+  std::fflush(stdout);
+}
+
+int plug(const PlugOptions& options) {
+  usb::ShelfOptions shelf;
+  shelf.motion = motion_of(options.motion);
+  shelf.serial = options.serial;
+  shelf.seed = options.seed;
+  if (!options.firmware.empty()) {
+    auto image = driver::falcon::read_firmware(options.firmware);
+    if (!image) {
+      return complain(image.error(), kExitBadInput);
+    }
+    shelf.firmware = std::move(*image);
+  }
+  auto arm = usb::make_usb_arm(options.arm, shelf);
+  if (!arm) {
+    return complain(arm.error(), kExitBadInput);
+  }
+  usb::FaultyDevice device(**arm, options.seed);
+  if (!options.faults.empty() && !obey_file(device, options.faults)) return kExitBadInput;
+  ControlPipeFile control;
+  if (!options.control.empty() && !control.open(options.control)) {
+    std::fprintf(stderr, "thimble: cannot make the control pipe %s; does it exist already?\n",
+                 options.control.c_str());
+    return kExitBadInput;
+  }
+  std::optional<TruthTrace> trace;
+  if (!options.trace.empty() && !trace.emplace(options.trace).open()) {
+    std::fprintf(stderr, "thimble: cannot write %s.\n", options.trace.c_str());
+    return kExitBadInput;
+  }
+  auto server = usb::UsbipServer::open(device, {.address = options.address, .port = options.port});
+  if (!server) {
+    return complain(server.error(), kExitTrouble);
+  }
+  say_what_to_do(**server, options);
+
+  // Set by Ctrl-C, or when the kernel refused.
+  const std::atomic<bool>& interrupted = scene::catch_interrupts();
+  std::atomic<bool> stop{false};
+  KernelAttachment attachment((*server)->port(), (*server)->bus_id());
+  if (options.attach) attachment.begin();
+  bool was_plugged = true;
+  (*server)->run(stop, [&](std::int64_t frame) {
+    if (trace) trace->add(frame, (*arm)->truth());
+    control.poll(device);
+    if (options.attach && device.plugged() && !was_plugged) attachment.begin();
+    was_plugged = device.plugged();
+    if (interrupted.load() || attachment.failed()) stop.store(true);
+  });
+  const usb::UsbipCounters counters = (*server)->counters();
+  std::printf(
+      "Unplugged. Transfers: %llu asked, %llu done, %llu stalled, %llu too long, %llu taken "
+      "back. Frames left out: %llu.\n",
+      static_cast<unsigned long long>(counters.submitted),
+      static_cast<unsigned long long>(counters.completed),
+      static_cast<unsigned long long>(counters.stalled),
+      static_cast<unsigned long long>(counters.babbled),
+      static_cast<unsigned long long>(counters.unlinked),
+      static_cast<unsigned long long>((*server)->late_frames()));
+  for (std::size_t kind = 0; kind < usb::kFaultKinds; ++kind) {
+    const auto fault = static_cast<usb::FaultKind>(kind);
+    if (device.hits(fault) == 0) continue;
+    std::printf("Fault %s hit %llu packets.\n", std::string(usb::name(fault)).c_str(),
+                static_cast<unsigned long long>(device.hits(fault)));
+  }
+  return attachment.failed() ? kExitTrouble : kExitDone;
+}
+
+std::string arm_list() {
+  std::string list = "Which arm:";
+  for (const usb::ShelfEntry& entry : usb::kShelf) {
+    list += "\n  " + std::string(entry.name) + ": " + std::string(entry.what);
+  }
+  return list;
+}
+
+}  // namespace
+
+void add_plug_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand(
+      "plug", "Export a simulated arm as a USB device that this kernel can plug in (USB/IP)");
+  auto options = std::make_shared<PlugOptions>();
+  command->add_option("ARM", options->arm, arm_list())->required();
+  command->add_option("--port", options->port, "TCP port; 0 takes any free one")
+      ->capture_default_str();
+  command
+      ->add_option("--listen", options->address,
+                   "Address to listen on; 0.0.0.0 lets other machines plug the arm in")
+      ->capture_default_str();
+  command->add_flag("--attach", options->attach,
+                    "Plug it into this kernel too (root; module vhci-hcd)");
+  command->add_option("--hand", options->motion, "What the simulated hand does")
+      ->check(CLI::IsMember({"rest", "tap", "stroke"}))
+      ->capture_default_str();
+  command->add_option("--serial", options->serial,
+                      "Serial number; without it that of the board (all mbed boards: 0123456789)");
+  command->add_option("--seed", options->seed, "Seed of everything random")->capture_default_str();
+  command->add_option("--firmware", options->firmware,
+                      "The only firmware that a simulated Falcon runs; without it any will do");
+  command->add_option("--faults", options->faults,
+                      "File of faults, one a line: KIND [in|out] [after=FRAMES] [for=FRAMES] "
+                      "[rate=CHANCE];\nKIND: stall, short, long, torn, stale, duplicate, silence, "
+                      "bit_errors, unplug, lost");
+  command->add_option("--control", options->control,
+                      "Make a named pipe that takes such lines, and 'heal', while it runs");
+  command->add_option("--trace", options->trace,
+                      "Write what was true of the arm, a line for each frame with packets");
+  command->callback([options, &exit_code] { exit_code = plug(*options); });
+}
+
+}  // namespace thimble::app

@@ -1,0 +1,161 @@
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/commands.h"
+#include "cli/complain.h"
+#include "cli/file_options.h"
+#include "thimble/scene/meshes.h"
+#include "view/gl/offscreen_context.h"
+#include "view/gl/picture_file.h"
+#include "view/shot.h"
+
+namespace thimble::app {
+namespace {
+
+struct ShotOptions {
+  std::string scene;
+  std::string out;
+  std::string animate;
+  std::string arm_file;
+  std::optional<double> at;
+  double until = -1;
+  double pace = 25;
+  std::string size = "960x640";
+  std::vector<double> camera;
+  std::string shading = "phong";
+  std::string edges = "auto";
+  bool edge_planes = false;
+  bool plots = false;
+  bool no_arm = false;
+  bool no_caption = false;
+  bool all_colours = false;
+};
+
+/// Reads WIDTHxHEIGHT; false if it is none, or no picture.
+bool read_size(const std::string& text, int& width, int& height) {
+  int used = 0;
+  return std::sscanf(text.c_str(), "%dx%d%n", &width, &height, &used) == 2 &&
+         used == static_cast<int>(text.size()) && width >= 64 && height >= 64 && width <= 8192 &&
+         height <= 8192;
+}
+
+constexpr double kDegree = 0.017453292519943295;  // rad
+
+/// Turns the camera that was framed as the user asked: yaw and pitch, and how much closer.
+void turn(view::Camera& camera, const std::vector<double>& wanted) {
+  camera.yaw = wanted[0] * kDegree;
+  camera.pitch = 0;
+  camera.orbit(0, wanted[1] * kDegree);
+  if (wanted.size() > 2) camera.zoom(wanted[2]);
+}
+
+int take_shot(const ShotOptions& options) {
+  view::ShotChoice choice;
+  if (!read_size(options.size, choice.width, choice.height)) {
+    return complain(
+        {"--size: expected WIDTHxHEIGHT of 64 to 8192 pixels, found " + options.size + "."},
+        kExitBadInput);
+  }
+  if (options.out.empty() && options.animate.empty()) {
+    return complain({"Say where the picture goes: --out FILE.png, or --animate FILE.png."},
+                    kExitBadInput);
+  }
+  choice.paint.shading =
+      options.shading == "gouraud" ? view::Shading::kGouraud : view::Shading::kPhong;
+  choice.paint.edges = options.edges == "on"    ? view::Edges::kOn
+                       : options.edges == "off" ? view::Edges::kOff
+                                                : view::Edges::kAuto;
+  choice.paint.marks.edge_planes = options.edge_planes;
+  choice.paint.marks.arm = !options.no_arm;
+  choice.plots = options.plots;
+  choice.caption = !options.no_caption;
+
+  session::SessionOptions session;
+  session.mesh_folder = scene::mesh_folder();
+  session.arm_file = options.arm_file;
+  double at = 0;
+  if (options.at) {
+    at = *options.at;
+  } else {
+    const auto found = view::strongest_moment(options.scene, session);
+    if (!found) return complain(found.error(), kExitBadInput);
+    at = *found;
+  }
+  const bool animated = !options.animate.empty();
+  std::vector<double> times = {at};
+  for (int i = 1; animated && at + i / options.pace < options.until; ++i) {
+    times.push_back(at + i / options.pace);
+  }
+  session.duration = times.back() + 0.1;
+  auto played = view::PlayedScene::open(options.scene, session);
+  if (!played) return complain(played.error(), kExitBadInput);
+  const auto context = view::OffscreenContext::open();
+  if (!context) return complain(context.error(), kExitTrouble);
+  view::ShotPainter painter((*played)->drawn(), choice);
+  std::vector<view::Picture> pictures;
+  (*played)->play(times, [&](view::DrawnMoment& moment, const view::Plots& plots) {
+    if (pictures.empty()) {
+      painter.frame_at(moment);
+      if (!options.camera.empty()) turn(*painter.choice().camera, options.camera);
+    }
+    pictures.push_back(painter.paint(moment, plots));
+  });
+  if (!options.out.empty()) {
+    const auto written =
+        view::write_png(pictures.front(), options.out,
+                        options.all_colours ? view::PngColours::kAll : view::PngColours::k256);
+    if (!written) return complain(written.error(), kExitTrouble);
+    std::printf("Picture: %s\n", options.out.c_str());
+  }
+  if (animated) {
+    const auto written = view::write_animated_png(pictures, 1 / options.pace, options.animate);
+    if (!written) return complain(written.error(), kExitTrouble);
+    std::printf("Animated picture: %s\n", options.animate.c_str());
+  }
+  return kExitDone;
+}
+
+}  // namespace
+
+void add_shot_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("shot", "Draw a moment of a scene");
+  auto options = std::make_shared<ShotOptions>();
+  add_scene_option(*command, options->scene)->required();
+  command->add_option("--out", options->out, "PNG file to write");
+  command->add_option("--at", options->at, "Second to draw; when most is felt if absent")
+      ->check(CLI::Range(0.0, 86400.0));
+  CLI::Option* animate =
+      command->add_option("--animate", options->animate, "Animated PNG to write, from --at");
+  command->add_option("--until", options->until, "Second at which the animation ends")
+      ->needs(animate)
+      ->check(CLI::Range(0.0, 86400.0));
+  command->add_option("--pace", options->pace, "Pictures a second of the animation")
+      ->needs(animate)
+      ->check(CLI::Range(1.0, 60.0))
+      ->capture_default_str();
+  command->add_option("--size", options->size, "WIDTHxHEIGHT in pixels")->capture_default_str();
+  command
+      ->add_option("--camera", options->camera,
+                   "YAW PITCH [CLOSER]: degrees about z from the user, degrees above the horizon, "
+                   "factor; framed by itself if absent")
+      ->expected(2, 3);
+  add_arm_option(*command, options->arm_file, "Arm file in place of the scene's own");
+  command->add_option("--shading", options->shading, "phong: per pixel; gouraud: per corner")
+      ->check(CLI::IsMember({"phong", "gouraud"}))
+      ->capture_default_str();
+  command->add_option("--edges", options->edges, "Outlines of polygons: auto where they are few")
+      ->check(CLI::IsMember({"auto", "on", "off"}))
+      ->capture_default_str();
+  command->add_flag("--edge-planes", options->edge_planes,
+                    "Show the active triangle and the planes that bound its touch");
+  command->add_flag("--plots", options->plots, "Show force and depth over time below");
+  command->add_flag("--no-arm", options->no_arm, "Leave the arm out");
+  command->add_flag("--no-caption", options->no_caption, "Leave the words below out");
+  command->add_flag("--all-colours", options->all_colours, "Write all colours, not the best 256");
+  command->callback([options, &exit_code] { exit_code = take_shot(*options); });
+}
+
+}  // namespace thimble::app

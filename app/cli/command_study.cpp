@@ -1,0 +1,49 @@
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <system_error>
+
+#include "cli/commands.h"
+#include "cli/complain.h"
+#include "studies/study.h"
+
+namespace thimble::app {
+namespace {
+
+int run_study(const Study& study, const std::filesystem::path& folder) {
+  std::error_code status;
+  std::filesystem::create_directories(folder, status);
+  if (!std::filesystem::is_directory(folder, status)) {
+    return complain({"Cannot make the folder " + folder.string() +
+                     "; name one that may be written with --out."},
+                    kExitBadInput);
+  }
+  const auto figures = study.run(folder);
+  if (!figures) return complain(figures.error(), kExitTrouble);
+  if (const auto written = write_figures(*figures, folder / "figures.json"); !written) {
+    return complain(written.error(), kExitTrouble);
+  }
+  std::printf("%s\nWritten to %s.\n", figure_table(*figures).c_str(), folder.string().c_str());
+  return kExitDone;
+}
+
+}  // namespace
+
+void add_study_command(CLI::App& app, int& exit_code) {
+  CLI::App* group =
+      app.add_subcommand("study", "Measure, draw and tell in figures; each study says what");
+  group->require_subcommand(1);
+  for (const Study& study : studies()) {
+    CLI::App* command = group->add_subcommand(std::string(study.name), std::string(study.about));
+    auto folder = std::make_shared<std::string>("study-" + std::string(study.name));
+    command->add_option("--out", *folder, "Folder for pictures, tables and figures.json")
+        ->capture_default_str();
+    command->callback([&study, folder, &exit_code] { exit_code = run_study(study, *folder); });
+  }
+  add_accuracy_study(*group, exit_code);
+  add_gating_study(*group, exit_code);
+  add_stability_study(*group, exit_code);
+  add_trouble_study(*group, exit_code);
+}
+
+}  // namespace thimble::app

@@ -1,0 +1,91 @@
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "cli/commands.h"
+#include "cli/complain.h"
+#include "cli/file_options.h"
+#include "report/figure.h"
+#include "studies/accuracy/gating.h"
+#include "studies/accuracy/study_accuracy.h"
+
+namespace thimble::app {
+namespace {
+
+struct AccuracyOptions {
+  std::vector<std::string> axes;
+  std::string out = "study-accuracy";
+  bool no_count = false;
+};
+
+int run_accuracy(const AccuracyOptions& options) {
+  const std::filesystem::path folder = options.out;
+  std::error_code status;
+  std::filesystem::create_directories(folder, status);
+  if (!std::filesystem::is_directory(folder, status)) {
+    return complain({"Cannot make the folder " + folder.string() +
+                     "; name one that may be written with --out."},
+                    kExitBadInput);
+  }
+  const auto figures = study_accuracy(options.axes, !options.no_count, folder);
+  if (!figures) return complain(figures.error(), kExitBadInput);
+  if (const auto written = write_figures(*figures, folder / "figures.json"); !written) {
+    return complain(written.error(), kExitTrouble);
+  }
+  std::printf("%s\nWritten to %s; the page is index.html there.\n", figure_table(*figures).c_str(),
+              folder.c_str());
+  return kExitDone;
+}
+
+struct GatingOptions {
+  std::string scene;
+  std::string out = "study-gating";
+  bool no_count = false;
+};
+
+int run_gating(const GatingOptions& options) {
+  const std::filesystem::path folder = options.out;
+  std::error_code status;
+  std::filesystem::create_directories(folder, status);
+  const auto report = decide_gating(options.scene, !options.no_count);
+  if (!report) return complain(report.error(), kExitBadInput);
+  const std::string text = gating_text(*report);
+  std::printf("%s", text.c_str());
+  for (const auto& written : {write_figures(figures_of(*report), folder / "figures.json"),
+                              write_text(text, folder / "gating.txt")}) {
+    if (!written) return complain(written.error(), kExitTrouble);
+  }
+  std::printf("Written to %s.\n", folder.c_str());
+  return kExitDone;
+}
+
+}  // namespace
+
+void add_gating_study(CLI::App& study_command, int& exit_code) {
+  CLI::App* command = study_command.add_subcommand(
+      "gating", "which effects of the simulated arm a scene could do without, and what that saves");
+  auto options = std::make_shared<GatingOptions>();
+  add_scene_option(*command, options->scene)->required();
+  command->add_option("--out", options->out, "Folder for gating.txt and figures.json")
+      ->capture_default_str();
+  command->add_flag("--no-count", options->no_count, "Do not count instructions");
+  command->callback([options, &exit_code] { exit_code = run_gating(*options); });
+}
+
+void add_accuracy_study(CLI::App& study_command, int& exit_code) {
+  CLI::App* command = study_command.add_subcommand(
+      "accuracy", "what accuracy costs in time: a diagram for every knob, on one page");
+  auto options = std::make_shared<AccuracyOptions>();
+  command->add_option("--axis", options->axes,
+                      "Axes to measure, such as tessellation or velocity; all, if none is named");
+  command->add_option("--out", options->out, "Folder for the page, pictures, tables, figures.json")
+      ->capture_default_str();
+  command->add_flag(
+      "--no-count", options->no_count,
+      "Do not count instructions, which takes minutes; time alone says what is cheaper");
+  command->callback([options, &exit_code] { exit_code = run_accuracy(*options); });
+}
+
+}  // namespace thimble::app

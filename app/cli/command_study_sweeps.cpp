@@ -1,0 +1,117 @@
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <system_error>
+
+#include "cli/commands.h"
+#include "cli/complain.h"
+#include "cli/file_options.h"
+#include "interrupt.h"
+#include "studies/stability/study_stability.h"
+#include "studies/trouble/study_trouble.h"
+
+namespace thimble::app {
+namespace {
+
+/// Is what every study by a sweep asks for.
+struct SweepChoice {
+  std::string out;
+  int jobs = 0;
+  bool resume = false;
+
+  void add_options(CLI::App& command) {
+    command.add_option("--out", out, "Folder for pictures, tables, figures.json and the journal")
+        ->capture_default_str();
+    command.add_option("--jobs", jobs, "Threads in each process; 0: one per core")
+        ->check(CLI::Range(0, 1024))
+        ->capture_default_str();
+    command.add_flag("--resume", resume,
+                     "Go on where an interrupted run of the same options ended");
+  }
+};
+
+/// Runs a study by a sweep, alone or as one of the processes that mpirun started; the process that
+/// leads writes the figures.
+template <class Run>
+int run_by_sweep(const SweepChoice& choice, const Run& run) {
+  const std::atomic<bool>& stop = scene::catch_interrupts();
+  const auto team = SweepTeam::join();
+  if (!team) return complain(team.error(), kExitBadInput);
+  const bool leads = *team == nullptr || (*team)->rank() == 0;
+  std::error_code status;
+  if (leads) std::filesystem::create_directories(choice.out, status);
+  if (leads && !std::filesystem::is_directory(choice.out, status)) {
+    return complain(
+        {"Cannot make the folder " + choice.out + "; name one that may be written with --out."},
+        kExitBadInput);
+  }
+  const auto report = run(
+      SweepOptions{
+          .folder = choice.out, .jobs = choice.jobs, .resume = choice.resume, .team = team->get()},
+      stop);
+  if (!report) return complain(report.error(), kExitBadInput);
+  if (report->end == SweepEnd::kHelped) return kExitDone;
+  if (report->end == SweepEnd::kStopped) {
+    std::printf("Stopped early; the same command with --resume goes on.\n");
+    return kExitInterrupted;
+  }
+  const std::filesystem::path folder = choice.out;
+  if (const auto written = write_figures(report->figures, folder / "figures.json"); !written) {
+    return complain(written.error(), kExitTrouble);
+  }
+  std::printf("%s\nWritten to %s.\n", figure_table(report->figures).c_str(), choice.out.c_str());
+  return kExitDone;
+}
+
+}  // namespace
+
+void add_stability_study(CLI::App& study_command, int& exit_code) {
+  CLI::App* command = study_command.add_subcommand(
+      "stability", "where walls are stable on an arm: the laws against the whole way, simulated");
+  auto choice = std::make_shared<SweepChoice>();
+  auto options = std::make_shared<StabilityOptions>();
+  choice->out = "study-stability";
+  choice->add_options(*command);
+  add_arm_option(*command, options->arm_file, "Arm file (app/arms)")->required();
+  command->add_option("--rate", options->rate, "Ticks per second, Hz")
+      ->check(CLI::Range(100, 20'000))
+      ->capture_default_str();
+  command
+      ->add_option("--hand", options->hand,
+                   "arm (as its file says), none, or MASS,STIFFNESS,DAMPING (kg, N/m, N s/m)")
+      ->capture_default_str();
+  command
+      ->add_option("--direction", options->direction,
+                   "X Y Z in the world, along which the wall stands; else the worst of the "
+                   "base's axes")
+      ->expected(3);
+  command->add_flag("--coarse", options->coarse, "Few points: seconds instead of a minute");
+  command->callback([choice, options, &exit_code] {
+    exit_code =
+        run_by_sweep(*choice, [&](const SweepOptions& sweep, const std::atomic<bool>& stop) {
+          return study_stability(*options, sweep, stop);
+        });
+  });
+}
+
+void add_trouble_study(CLI::App& study_command, int& exit_code) {
+  CLI::App* command = study_command.add_subcommand(
+      "trouble", "random scenes and hands by the thousand: nothing may go wrong in any");
+  auto choice = std::make_shared<SweepChoice>();
+  auto options = std::make_shared<TroubleOptions>();
+  choice->out = "study-trouble";
+  choice->add_options(*command);
+  add_arm_option(*command, options->arm_file, "Arm file (app/arms)")->required();
+  command->add_option("--count", options->count, "Scenes")
+      ->check(CLI::Range(1, 100'000'000))
+      ->capture_default_str();
+  command->add_option("--seed", options->seed, "Of all scenes")->capture_default_str();
+  command->callback([choice, options, &exit_code] {
+    exit_code =
+        run_by_sweep(*choice, [&](const SweepOptions& sweep, const std::atomic<bool>& stop) {
+          return study_trouble(*options, sweep, stop);
+        });
+  });
+}
+
+}  // namespace thimble::app

@@ -1,0 +1,94 @@
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <system_error>
+
+#include "cli/commands.h"
+#include "cli/complain.h"
+#include "cli/file_options.h"
+#include "stability/tuning.h"
+#include "thimble/driver/clock.h"
+#include "thimble/scene/meshes.h"
+
+namespace thimble::app {
+namespace {
+
+struct TuneCommand {
+  std::string scene;
+  std::string arm_file;
+  std::string folder;
+  double spread_us = 0;
+  double measure = 0;  // s
+};
+
+/// Measures how far this computer's periods spread while it only waits, s.
+double measured_spread(double rate, double duration) {
+  driver::WallClock clock;
+  const auto period_ns = static_cast<std::int64_t>(std::llround(1e9 / rate));
+  const auto ticks = static_cast<int>(duration * rate);
+  std::int64_t due_ns = clock.now_ns(), last_ns = due_ns;
+  double square = 0;
+  for (int i = 0; i < ticks; ++i) {
+    due_ns += period_ns;
+    clock.sleep_until_ns(due_ns);
+    const std::int64_t now_ns = clock.now_ns();
+    const double off = 1e-9 * static_cast<double>(now_ns - last_ns - period_ns);
+    square += off * off;
+    last_ns = now_ns;
+  }
+  return ticks > 0 ? std::sqrt(square / ticks) : 0;
+}
+
+int tune_scene(const TuneCommand& command) {
+  const auto scene = scene::read_scene(command.scene, scene::mesh_folder(), command.arm_file);
+  if (!scene) return complain(scene.error(), kExitBadInput);
+  if (!scene->arm.can_simulate) {
+    return complain({"The arm file has no section simulation: mass, friction and hand are not "
+                     "known. Add one (app/arms/vintage_phantom.yaml shows the form)."},
+                    kExitBadInput);
+  }
+  TuneOptions options{.period_spread = 1e-6 * command.spread_us};
+  if (command.measure > 0) {
+    options.period_spread = measured_spread(scene->rate, command.measure);
+    std::printf("Measured  periods of this computer spread by %.1f us (standard deviation).\n",
+                1e6 * options.period_spread);
+  }
+  const TuneResult result = tune(*scene, options);
+  std::printf("%s\n%s", result.text.c_str(), figure_table(result.figures).c_str());
+  if (command.folder.empty()) return kExitDone;
+  std::error_code status;
+  std::filesystem::create_directories(command.folder, status);
+  const std::filesystem::path file = std::filesystem::path(command.folder) / "figures.json";
+  if (const auto written = write_figures(result.figures, file); !written) {
+    return complain(written.error(), kExitTrouble);
+  }
+  std::printf("Written to %s.\n", file.c_str());
+  return kExitDone;
+}
+
+}  // namespace
+
+void add_tune_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand(
+      "tune", "Tell what stiffness, damping and friction this arm, loop and hand can carry");
+  auto options = std::make_shared<TuneCommand>();
+  add_scene_option(*command, options->scene)->required();
+  add_arm_option(*command, options->arm_file, "Arm file in place of the scene's own");
+  command->add_option("--out", options->folder, "Folder for figures.json");
+  CLI::Option* spread = command
+                            ->add_option("--spread", options->spread_us,
+                                         "Standard deviation of the loop's period, in microseconds")
+                            ->check(CLI::Range(0.0, 1e6))
+                            ->capture_default_str();
+  command
+      ->add_option("--measure", options->measure,
+                   "Measure that on this computer for so many seconds instead")
+      ->check(CLI::Range(0.1, 600.0))
+      ->excludes(spread);
+  command->callback([options, &exit_code] { exit_code = tune_scene(*options); });
+}
+
+}  // namespace thimble::app

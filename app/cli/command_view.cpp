@@ -1,0 +1,176 @@
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "cli/commands.h"
+#include "cli/complain.h"
+#include "interrupt.h"
+#include "share/run_attachment.h"
+#include "share/shared_memory.h"
+
+namespace thimble::app {
+namespace {
+
+struct ViewOptions {
+  std::string run;
+  bool list = false;
+  bool text = false;
+  bool follow = false;
+  std::vector<std::string> turn;
+  bool pause = false, resume = false, stop = false;
+  std::string record;
+  bool record_stop = false;
+
+  bool asks() const {
+    return !turn.empty() || pause || resume || stop || !record.empty() || record_stop;
+  }
+};
+
+int list_runs() {
+  const auto runs = session::running_runs();
+  for (const session::RunningRun& run : runs) {
+    const auto reader = session::SharedReader::attach(run.name);
+    if (!reader) {
+      std::printf("%s: %s\n", run.name.c_str(), reader.error().message.c_str());
+      continue;
+    }
+    const session::SharedScene& scene = (*reader)->scene();
+    std::printf("%s: %s, %s (%s), process %lld\n", run.name.c_str(), scene.name.c_str(),
+                scene.arm.name.c_str(), scene.arm.device.c_str(),
+                static_cast<long long>(scene.pid));
+    for (std::size_t i = 0; i < scene.knobs.size(); ++i) {
+      const session::SharedScene::Knob& knob = scene.knobs[i];
+      std::printf("    %s = %.4g %s (%.4g to %.4g)\n", knob.name.c_str(), (*reader)->knob(i),
+                  knob.unit.c_str(), knob.least, knob.most);
+    }
+  }
+  if (runs.empty()) std::printf("No run is shown; start one with `thimble run SCENE --view`.\n");
+  return kExitDone;
+}
+
+/// Turns the knob of an order "NAME=VALUE"; the error names the knobs that there are.
+driver::Result<void> turn_knob(session::SharedReader& reader, const std::string& order) {
+  const std::size_t equals = order.rfind('=');
+  const std::string name = order.substr(0, equals);
+  char* end = nullptr;
+  const char* text = equals == std::string::npos ? "" : order.c_str() + equals + 1;
+  const double value = std::strtod(text, &end);
+  if (end == text || *end != 0 || !std::isfinite(value)) {
+    return driver::Error{"--turn: expected NAME=VALUE, found \"" + order + "\"."};
+  }
+  std::string known;
+  for (std::size_t i = 0; i < reader.scene().knobs.size(); ++i) {
+    if (reader.scene().knobs[i].name == name) {
+      reader.turn_knob(i, value);
+      return {};
+    }
+    known += "\n    " + reader.scene().knobs[i].name;
+  }
+  return driver::Error{"--turn: the run has no knob \"" + name + "\"" +
+                       (known.empty() ? "." : "; it has" + known)};
+}
+
+int ask(const ViewOptions& options) {
+  auto attached = session::SharedReader::attach(options.run);
+  if (!attached) return complain(attached.error(), kExitBadInput);
+  session::SharedReader& reader = **attached;
+  for (const std::string& order : options.turn) {
+    if (auto turned = turn_knob(reader, order); !turned) {
+      return complain(turned.error(), kExitBadInput);
+    }
+  }
+  if (options.pause || options.resume) reader.ask_pause(options.pause);
+  const bool heard = (options.record.empty() || reader.ask_record(options.record)) &&
+                     (!options.record_stop || reader.ask_record_stop());
+  if (options.stop) reader.ask_stop();
+  if (!heard) return complain({"Another viewer is just asking for something."}, kExitTrouble);
+  return kExitDone;
+}
+
+void print_line(const session::SharedReader& reader) {
+  driver::TickRecord tick;
+  const bool any = reader.newest(tick);
+  const session::SharedReader::Counters counters = reader.counters();
+  const double force = Eigen::Map<const Eigen::Vector3d>(tick.f_sent_W.data()).norm();
+  std::printf("%s %s: ", reader.name().c_str(), session::name_of(reader.state()));
+  if (any) {
+    std::printf("%.3f s, force %.2f N, depth %.2f mm, ", 1e-9 * static_cast<double>(tick.time_ns),
+                force, 1e3 * tick.depth);
+  }
+  std::printf("%llu ticks, %llu missed%s%s\n", static_cast<unsigned long long>(counters.ticks),
+              static_cast<unsigned long long>(counters.missed),
+              counters.recording ? ", recording to " : "",
+              counters.recording ? reader.recording_path().c_str() : "");
+  std::fflush(stdout);
+}
+
+/// Tells of a run once a second, without a screen.
+int tell(const ViewOptions& options) {
+  const std::atomic<bool>& stop = scene::catch_interrupts();
+  session::RunAttachment runs(options.run);
+  std::string told;
+  auto next_line = std::chrono::steady_clock::now();
+  while (!stop.load()) {
+    if (runs.step()) {
+      std::printf("Watching %s: %s\n", runs.name().c_str(), runs.reader()->scene().name.c_str());
+      told.clear();
+    }
+    const std::string notice = runs.notice();
+    const bool ended =
+        runs.reader() != nullptr && runs.reader()->state() == session::RunState::kEnded;
+    const auto now = std::chrono::steady_clock::now();
+    if (runs.reader() != nullptr && told != notice && ended) print_line(*runs.reader());
+    if (runs.reader() != nullptr && !ended && now >= next_line) {
+      print_line(*runs.reader());
+      next_line = now + std::chrono::seconds(1);
+    }
+    if (!notice.empty() && notice != told) std::printf("%s\n", notice.c_str());
+    std::fflush(stdout);
+    told = notice;
+    if (ended && !options.follow) return kExitDone;
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  return kExitInterrupted;
+}
+
+int view_run(const ViewOptions& options, const ShowWindow& show_window) {
+  if (options.list) return list_runs();
+  if (options.asks()) return ask(options);
+  if (options.text) return tell(options);
+  if (!show_window) {
+    return complain({"This thimble was built without a window; use `thimble view --text`."},
+                    kExitBadInput);
+  }
+  session::RunAttachment runs(options.run);
+  return show_window(runs);
+}
+
+}  // namespace
+
+void add_view_command(CLI::App& app, int& exit_code, const ShowWindow& show_window) {
+  CLI::App* command = app.add_subcommand("view", "Show a run that goes on in another process");
+  auto options = std::make_shared<ViewOptions>();
+  command->add_option("RUN", options->run, "Name of the run; the newest if absent");
+  command->add_flag("--list", options->list, "List the runs and their knobs, and leave");
+  command->add_flag("--text", options->text, "Print a line a second in place of a window");
+  command->add_flag("--follow", options->follow,
+                    "With --text: wait for the next run of that name when one ends");
+  command->add_option("--turn", options->turn, "Turn a knob of the run, NAME=VALUE, and leave");
+  CLI::Option* pause = command->add_flag("--pause", options->pause, "Pause the run, and leave");
+  command->add_flag("--resume", options->resume, "Let a paused run go on, and leave")
+      ->excludes(pause);
+  CLI::Option* record =
+      command->add_option("--record", options->record, "Record the run from now on, and leave");
+  command->add_flag("--record-stop", options->record_stop, "End the recording, and leave")
+      ->excludes(record);
+  command->add_flag("--stop", options->stop, "End the run, and leave");
+  command->callback(
+      [options, show_window, &exit_code] { exit_code = view_run(*options, show_window); });
+}
+
+}  // namespace thimble::app

@@ -1,0 +1,44 @@
+#include "cli/file_options.h"
+
+#include <filesystem>
+
+#include "thimble/scene/shipped_files.h"
+
+namespace thimble::app {
+namespace {
+
+/// Makes the file of a name: what `find` finds, or its error.
+template <class Find>
+CLI::Validator file_by(Find find, const char* kind) {
+  return CLI::Validator(
+      [find](std::string& text) {
+        const auto found = find(text);
+        if (!found) return found.error().message;
+        text = found->string();
+        return std::string();
+      },
+      kind);
+}
+
+CLI::Option* by_name(CLI::Option* arm) {
+  return arm->transform(file_by(scene::find_arm_file, "FILE or NAME"))->check(CLI::ExistingFile);
+}
+
+}  // namespace
+
+CLI::Option* add_scene_option(CLI::App& command, std::string& scene, const std::string& name,
+                              const std::string& about) {
+  return command.add_option(name, scene, about)
+      ->transform(file_by(scene::find_scene, "FILE or NAME"));
+}
+
+CLI::Option* add_arm_option(CLI::App& command, std::string& arm_file, const std::string& about) {
+  return by_name(command.add_option("--arm", arm_file, about));
+}
+
+CLI::Option* add_arm_option(CLI::App& command, std::filesystem::path& arm_file,
+                            const std::string& about) {
+  return by_name(command.add_option("--arm", arm_file, about));
+}
+
+}  // namespace thimble::app

@@ -1,0 +1,68 @@
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <string>
+
+#include "build_info.h"
+#include "cli/commands.h"
+#include "cli/exit_code.h"
+#include "interrupt.h"
+
+namespace {
+
+constexpr const char* kFooter =
+    "Exit codes: 0 done, 1 unexpected trouble, 2 wrong arguments or input, 3 no arm,\n"
+    "4 the force went off with a fault, 130 ended early by Ctrl-C.\n"
+    "A physical arm moves by itself: keep clear of it, and keep its power switch at hand.";
+
+int run(int argc, char** argv) {
+  CLI::App app("Thimble makes virtual objects touchable.", "thimble");
+  const thimble::scene::BuildInfo build = thimble::scene::build_info();
+  app.set_version_flag("--version", "thimble " + std::string(build.version) + " (" +
+                                        std::string(build.type) + ", " +
+                                        std::string(build.compiler) + ")");
+  app.require_subcommand(1);
+  app.footer(kFooter);
+  int exit_code = thimble::app::kExitDone;
+  thimble::app::add_run_command(app, exit_code);
+  thimble::app::add_shot_command(app, exit_code);
+  thimble::app::add_window_command(app, exit_code);
+  thimble::app::add_devices_command(app, exit_code);
+  thimble::app::add_doctor_command(app, exit_code);
+  thimble::app::add_calibrate_command(app, exit_code);
+  thimble::app::add_feel_check_command(app, exit_code);
+  thimble::app::add_export_command(app, exit_code);
+  thimble::app::add_replay_command(app, exit_code);
+  thimble::app::add_mesh_command(app, exit_code);
+  thimble::app::add_study_command(app, exit_code);
+  thimble::app::add_tune_command(app, exit_code);
+  thimble::app::add_bench_command(app, exit_code);
+  thimble::app::add_cost_probe_command(app, exit_code);
+  thimble::app::add_plug_command(app, exit_code);
+  thimble::app::add_manual_command(app, exit_code);
+  for (CLI::App* command : app.get_subcommands({})) {
+    command->set_version_flag("--version", app.version());
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& stop) {
+    // --help and --version arrive here too, as success.
+    return app.exit(stop) == 0 ? thimble::app::kExitDone : thimble::app::kExitBadInput;
+  }
+  return exit_code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  thimble::scene::outlive_trouble_with_files();
+  // Every exception ends here, so that destructors run and the arm is left with zero force.
+  try {
+    return run(argc, argv);
+  } catch (const std::exception& trouble) {
+    std::fprintf(stderr, "thimble: unexpected trouble: %s\n", trouble.what());
+  } catch (...) {
+    std::fprintf(stderr, "thimble: unexpected trouble.\n");
+  }
+  return thimble::app::kExitTrouble;
+}

@@ -1,0 +1,69 @@
+#include "report/figure.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+namespace thimble::app {
+
+bool Figure::met() const {
+  if (goal.empty()) return true;
+  std::istringstream text(goal);
+  std::string comparison;
+  double bound = 0;
+  if (!(text >> comparison >> bound)) return false;
+  if (comparison == ">=") return value >= bound;
+  if (comparison == "<=") return value <= bound;
+  if (comparison == "==") return value == bound;
+  if (comparison == ">") return value > bound;
+  if (comparison == "<") return value < bound;
+  return false;
+}
+
+driver::Result<void> write_figures(const std::vector<Figure>& figures,
+                                   const std::filesystem::path& file) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const Figure& figure : figures) {
+    nlohmann::ordered_json entry{
+        {"name", figure.name}, {"value", figure.value}, {"unit", figure.unit}};
+    if (!figure.goal.empty()) {
+      entry["goal"] = figure.goal;
+      entry["met"] = figure.met();
+    }
+    list.push_back(std::move(entry));
+  }
+  return write_text(list.dump(2) + "\n", file);
+}
+
+std::string figure_table(const std::vector<Figure>& figures) {
+  std::size_t width = 0;
+  for (const Figure& figure : figures) width = std::max(width, figure.name.size());
+  std::string table;
+  for (const Figure& figure : figures) {
+    char value[32];
+    std::snprintf(value, sizeof value, "%12.6g", figure.value);
+    std::string line = figure.name + std::string(width - figure.name.size(), ' ') + value;
+    line += " " + figure.unit;
+    if (!figure.goal.empty()) {
+      if (line.size() < width + 20) line.resize(width + 20, ' ');
+      line += "  goal " + figure.goal + (figure.met() ? ": met" : ": NOT MET");
+    }
+    table += line + "\n";
+  }
+  return table;
+}
+
+driver::Result<void> write_text(const std::string& text, const std::filesystem::path& file) {
+  std::ofstream stream(file, std::ios::binary | std::ios::trunc);
+  stream << text;
+  stream.close();
+  if (!stream) {
+    return driver::Error{"Cannot write " + file.string() +
+                         ": check that the folder exists, may be written and has room."};
+  }
+  return {};
+}
+
+}  // namespace thimble::app

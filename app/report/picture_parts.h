@@ -1,0 +1,64 @@
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "report/pictures.h"
+
+namespace thimble::app {
+
+// What the pictures share: colours, quoting, contact intervals; and one function per picture.
+
+/// Is the ink of the pictures. Force is blue and depth orange: apart for colour-blind eyes too
+/// [M Okabe and Ito].
+inline constexpr const char* kInk = "#30343b";
+inline constexpr const char* kFaintInk = "#8a919c";
+inline constexpr const char* kGridInk = "#e4e7eb";
+inline constexpr const char* kForceInk = "#0072b2";
+inline constexpr const char* kDepthInk = "#d55e00";
+inline constexpr const char* kContactFill = "#eef3f8";
+
+/// Quotes a text for gnuplot, which then takes it as it is.
+std::string quote(const std::string& text);
+
+/// Gives a number the way gnuplot reads it.
+std::string number(double value);
+
+/// Sets borders, tics and grid to the quiet style of all pictures.
+std::string quiet_style();
+
+/// Finds a tic distance (1, 2 or 5 times a power of ten) that cuts `range` (> 0) in about `count`.
+double tic_step(double range, int count);
+
+/// Finds the intervals of contact, s from the first row; gaps shorter than `gap` (s) are closed.
+std::vector<std::pair<double, double>> contact_intervals(std::span<const driver::TickRecord> rows,
+                                                         double gap);
+
+/// Tells the length of a vector.
+double length_of(const std::array<double, 3>& vector);
+
+/// Tells the time of a row in s from the first row's.
+double time_of(const driver::TickRecord& row, const driver::TickRecord& first);
+
+/// Draws force and depth over time.
+driver::Result<void> draw_force_and_depth(std::span<const driver::TickRecord> rows,
+                                          const PictureInfo& info,
+                                          const std::filesystem::path& folder);
+
+/// Draws the way of the tip over the mesh.
+driver::Result<void> draw_path_on_mesh(std::span<const driver::TickRecord> rows,
+                                       const render::TriangleMesh& mesh_W, const PictureInfo& info,
+                                       const std::filesystem::path& folder);
+
+/// Draws how regular the loop was.
+driver::Result<void> draw_period_histogram(const PictureInfo& info,
+                                           const std::filesystem::path& folder);
+
+/// Makes the folder and its data/.
+driver::Result<void> make_picture_folder(const std::filesystem::path& folder);
+
+}  // namespace thimble::app

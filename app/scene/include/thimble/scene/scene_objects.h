@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "page/paged_surface.h"
+#include "thimble/driver/result.h"
+#include "thimble/render/mesh/triangle_mesh.h"
+#include "thimble/render/scene_touch.h"
+#include "thimble/scene/mesh_place.h"
+#include "thimble/scene/scene_file.h"
+
+namespace thimble::scene {
+
+/// Is what stands in a scene, loaded and ready to be touched.
+class SceneObjects {
+ public:
+  /// Reads the meshes and builds the force law that the scene calls for. The error names the object
+  /// and what to mend. Real-time: never from the servo thread.
+  static driver::Result<std::unique_ptr<SceneObjects>> build(const Scene& scene);
+
+  /// Gives the force law of the whole scene.
+  render::SceneTouch& touch() const { return *touch_; }
+  /// Gives the meshes of all objects in the world as one (m), as they are at first: those that are
+  /// touched, and those that stand for shapes; those on the disk are not in it.
+  const render::TriangleMesh& mesh_W() const { return mesh_W_; }
+  /// Gives the mesh of one object alone; empty for a field and for one on the disk.
+  render::TriangleMesh mesh_W(std::size_t object) const;
+  /// Tells where an object begins in `mesh_W`.
+  const MeshPlace& place(std::size_t object) const { return places_[object]; }
+  /// Gives the mesh of one object, or of all as one if `object` is negative, where it is now: moved
+  /// and bent (W, m). Not beside a running servo.
+  render::TriangleMesh mesh_now(int object = -1) const;
+  /// Tells how many triangles can be touched, in memory and on the disk.
+  std::size_t triangles() const { return triangles_; }
+  /// Lists the objects that move.
+  std::span<const std::size_t> moving() const { return moving_; }
+
+  /// Lets threads load pages from now on. Real-time: never from the servo thread.
+  void start_loaders();
+  /// Loads every page that is asked for, on the caller's thread: for virtual time. Real-time: no.
+  void serve_pages() noexcept;
+  /// Sums up what paging did for all objects on the disk; nothing if there are none.
+  std::optional<render::PagingCounters> paging() const;
+
+ private:
+  SceneObjects() = default;
+
+  std::vector<std::shared_ptr<render::PagedSurface>> pages_;  // of the objects on the disk
+  std::unique_ptr<render::SceneTouch> touch_;
+  render::TriangleMesh mesh_W_;
+  std::vector<MeshPlace> places_;  // of each object in mesh_W_, and of its end
+  std::vector<std::size_t> moving_;
+  std::size_t triangles_ = 0;
+};
+
+}  // namespace thimble::scene

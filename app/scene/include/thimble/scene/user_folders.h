@@ -1,0 +1,29 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace thimble::scene {
+
+/// Tells where a user's settings for Thimble lie: $XDG_CONFIG_HOME/thimble, or
+/// ~/.config/thimble [XDG Base Directory Specification].
+std::filesystem::path config_folder();
+
+/// Tells where what Thimble keeps on a user's behalf lies: $XDG_STATE_HOME/thimble, or
+/// ~/.local/state/thimble [XDG Base Directory Specification].
+std::filesystem::path state_folder();
+
+/// Tells where a user's own scenes and arm files lie: $XDG_DATA_HOME/thimble, or
+/// ~/.local/share/thimble [XDG Base Directory Specification].
+std::filesystem::path data_folder();
+
+/// Returns the folder of arm files that this user installed: config_folder()/arm_files. As those
+/// that come with the program, they set the limits of a real arm, so a file is put there only by
+/// whoever checked it for that arm. Calibrations lie elsewhere (config_folder()/arms).
+std::filesystem::path own_arm_folder();
+
+/// Turns any name into one that is safe as a file's: other signs than letters, digits, - and _
+/// become _.
+std::string as_file_name(const std::string& name);
+
+}  // namespace thimble::scene

@@ -1,0 +1,297 @@
+#include "thimble/scene/arm_file.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "printed.h"
+#include "thimble/driver/arms/falcon/falcon_arm.h"
+#include "thimble/driver/arms/hfab/hfab_models.h"
+#include "thimble/scene/yaml_reader.h"
+
+namespace thimble::scene {
+namespace {
+
+// The bounds below are no limits of any arm: they are far outside of what a desk-top arm can be
+// [DEVICES 3], so that a slipped decimal point or a value in mm is caught at its line.
+
+// The loosest limits that a gate may have, of a real arm and of a simulated one. A limit beyond
+// them is there by name only.
+constexpr double kSoftStartLeast = 0.05;  // s [chosen: a stretch reflex answers after 30 to 50 ms
+                                          // [M], so a hand can answer before the force is whole]
+constexpr double kRiseMost = 1e5;    // N/s [chosen: lets 100 N, the largest force_max that can be
+                                     // written, rise within one tick of 1 kHz]
+constexpr double kWatchdogMost = 1;  // s [chosen: twice that of the slowest board, DEVICES 1]
+
+std::int64_t to_ns(double seconds) {
+  return std::llround(seconds * 1e9);
+}
+
+driver::SerialArm read_geometry(YamlMap map) {
+  driver::SerialArm geometry;
+  geometry.height = map.require_number("height", "m", -1, 1);
+  geometry.length_b = map.require_number("length_b", "m", 0.01, 1);
+  geometry.length_c = map.require_number("length_c", "m", 0.01, 1);
+  map.finish();
+  return geometry;
+}
+
+/// Reads what the motors carry for long: both keys or none.
+driver::HeatSettings read_heat(YamlMap& map) {
+  driver::HeatSettings heat;
+  const bool current = map.has("continuous_current"), time = map.has("thermal_time_constant");
+  if (!current && !time) return heat;
+  if (!current) map.reject("thermal_time_constant", "expected continuous_current beside it");
+  if (!time) map.reject("continuous_current", "expected thermal_time_constant beside it");
+  if (!current || !time) return heat;
+  const Eigen::Vector3d amperes = map.require_vector3("continuous_current", "A", 0.01, 32);
+  const Eigen::Vector3d seconds = map.require_vector3("thermal_time_constant", "s", 1, 1e5);
+  for (std::size_t i = 0; i < 3; ++i) {
+    heat.continuous_current[i] = amperes[static_cast<Eigen::Index>(i)];
+    heat.time_constant[i] = seconds[static_cast<Eigen::Index>(i)];
+  }
+  return heat;
+}
+
+void read_joints(YamlMap map, driver::hfab::HfabModel& model, driver::HeatSettings& heat) {
+  const Eigen::Vector3d ratio = map.require_vector3("ratio", "motor turns per joint turn", 1, 1000);
+  const Eigen::Vector3d torque = map.require_vector3("torque_constant", "N m/A", 1e-4, 10);
+  const Eigen::Vector3d current = map.require_vector3("current_max", "A", 0.01, 32);
+  const Eigen::Vector3d counts = map.require_vector3("counts_per_motor_turn", "counts", 1, 1e6);
+  const Eigen::Vector3d home = map.require_vector3("home_counts", "counts", -1e6, 1e6);
+  const Eigen::Vector3d motor_sign = map.require_vector3("motor_sign", "", -1, 1);
+  const Eigen::Vector3d encoder_sign = map.require_vector3("encoder_sign", "", -1, 1);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    if (std::abs(motor_sign[k]) != 1) map.reject("motor_sign", "expected each to be 1 or -1");
+    if (std::abs(encoder_sign[k]) != 1) map.reject("encoder_sign", "expected each to be 1 or -1");
+    if (home[k] != std::round(home[k])) map.reject("home_counts", "expected whole numbers");
+    model.drives[i] = {motor_sign[k], ratio[k], torque[k], current[k]};
+    model.encoders[i] = {encoder_sign[k], counts[k], static_cast<std::int32_t>(home[k])};
+  }
+  heat = read_heat(map);
+  map.finish();
+}
+
+/// Takes drives and encoders of an arm whose data are code.
+template <class Geometry>
+void take_joints(const driver::JointModel<Geometry>& built_in, driver::hfab::HfabModel& model) {
+  model.drives = built_in.drives;
+  model.encoders = built_in.encoders;
+}
+
+std::optional<double> number_if_there(YamlMap& map, std::string_view key, std::string_view unit,
+                                      double least, double most) {
+  if (!map.has(key)) return {};
+  return map.require_number(key, unit, least, most);
+}
+
+driver::GateLimits read_gate(YamlMap map, ArmFile& arm) {
+  driver::GateLimits limits;
+  limits.force_max = map.require_number("force_max", "N", 0.01, 100);
+  limits.speed_max = map.require_number("speed_max", "m/s", 0.01, 20);
+  limits.rise_max = map.require_number("rise_max", "N/s", 1, kRiseMost);
+  limits.soft_start = map.require_number("soft_start", "s", kSoftStartLeast, 10);
+  limits.stall_ns = to_ns(map.require_number("stall", "s", 0.001, 10));
+  limits.watchdog_ns = to_ns(map.require_number("watchdog", "s", 0.001, kWatchdogMost));
+  limits.reopen = map.optional_number("reopen", limits.reopen, "s", 0.001, 10);
+  if (limits.force_max > arm.declared.force) {
+    map.reject("force_max", printed("expected at most what the arm declares, %g N, found %g",
+                                    arm.declared.force, limits.force_max));
+  }
+  // A mistake in either has been told, and left its least value.
+  if (limits.stall_ns >= limits.watchdog_ns && limits.watchdog_ns > to_ns(0.001)) {
+    map.reject("stall", "expected a shorter time than that of watchdog");
+  }
+  EnergyChoice& energy = arm.energy;
+  if (map.has("energy")) {
+    energy.stage =
+        static_cast<driver::EnergyStage>(map.require_choice("energy", kEnergyStageNames));
+  }
+  arm.hold_unchanged = number_if_there(map, "hold_unchanged", "s", 0.05, 600);
+  energy.mass = number_if_there(map, "tip_mass", "kg", 1e-3, 10);
+  energy.allowance = number_if_there(map, "energy_allowance", "J", 0, 1);
+  energy.reservoir = number_if_there(map, "energy_reservoir", "J", 1e-6, 10);
+  energy.slope = number_if_there(map, "energy_slope", "N/m", 0.1, 1e6);
+  for (const char* key :
+       {"force_max", "speed_max", "rise_max", "soft_start", "stall", "watchdog", "reopen", "energy",
+        "tip_mass", "energy_allowance", "energy_reservoir", "energy_slope", "hold_unchanged"}) {
+    arm.gate_lines[key] = map.key_line(key);
+  }
+  map.finish();
+  return limits;
+}
+
+WorkspaceBox read_workspace(YamlMap map) {
+  const Eigen::Vector3d min_W = map.require_vector3("min", "m", -2, 2);
+  const Eigen::Vector3d max_W = map.require_vector3("max", "m", -2, 2);
+  if (!(min_W.array() <= max_W.array()).all()) {
+    map.reject("max", "expected no coordinate below that of min");
+  }
+  map.finish();
+  return {min_W, max_W};
+}
+
+DeclaredLimits read_declared(YamlMap map) {
+  DeclaredLimits declared;
+  declared.force = map.require_number("force", "N", 0.01, 100);
+  declared.stiffness = map.require_number("stiffness", "N/m", 1, 1e5);
+  declared.damping = map.require_number("damping", "N s/m", 0, 1000);
+  map.finish();
+  return declared;
+}
+
+std::array<std::uint8_t, 3> joints_of(YamlMap& map, std::string_view key) {
+  const Eigen::Vector3d named = map.optional_vector3(key, {1, 2, 3}, "", 1, 3);
+  std::array<std::uint8_t, 3> joints{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double joint = named[static_cast<Eigen::Index>(i)];
+    if (joint != std::round(joint)) map.reject(key, "expected whole numbers");
+    joints[i] = static_cast<std::uint8_t>(std::lround(joint) - 1);
+  }
+  return joints;
+}
+
+device_sim::WiringSettings read_wiring(YamlMap map) {
+  device_sim::WiringSettings wiring;
+  wiring.encoder_of = joints_of(map, "encoder_of");
+  wiring.encoder_gain = map.optional_vector3("encoder_gain", wiring.encoder_gain, "", -1, 1);
+  wiring.motor_of = joints_of(map, "motor_of");
+  wiring.motor_gain = map.optional_vector3("motor_gain", wiring.motor_gain, "", -1, 1);
+  map.finish();
+  return wiring;
+}
+
+void read_board(YamlMap& map, device_sim::SimulatedArmSettings& settings) {
+  YamlMap motors = map.require_map("motors");
+  settings.motors.current_max = motors.require_number("current_max", "A", 0.01, 32);
+  motors.finish();
+  YamlMap firmware = map.require_map("firmware");
+  settings.firmware.report_period_ns =
+      to_ns(firmware.require_number("report_period", "s", 1e-5, 0.1));
+  settings.firmware.watchdog_ns = to_ns(firmware.require_number("watchdog", "s", 1e-3, 10));
+  // The wire carries 16-bit mA [DEVICES 1].
+  settings.firmware.current_range_mA = static_cast<std::int16_t>(
+      std::lround(1000 * firmware.require_number("current_range", "A", 0.01, 32.767)));
+  firmware.finish();
+  YamlMap wire = map.require_map("wire");
+  settings.wire.delay_in_ns = to_ns(wire.require_number("delay_in", "s", 0, 1));
+  settings.wire.delay_out_ns = to_ns(wire.require_number("delay_out", "s", 0, 1));
+  wire.finish();
+}
+
+/// Reads how an arm is simulated. A Falcon's converter and board are code, so that its file has
+/// nothing to say of them.
+device_sim::SimulatedArmSettings read_simulation(YamlMap map, ArmShape shape,
+                                                 bool& ideal_encoders) {
+  device_sim::SimulatedArmSettings settings;
+  if (shape == ArmShape::kSerial) {
+    ideal_encoders = map.require_choice("encoders", {"quantised", "ideal"}) == 1;
+  }
+  if (map.has("wiring")) settings.firmware.wiring = read_wiring(map.require_map("wiring"));
+  YamlMap tip = map.require_map("tip");
+  settings.plant.mass = tip.require_number("mass", "kg", 1e-3, 10);
+  settings.plant.viscous = tip.require_number("viscous", "N s/m", 0, 100);
+  settings.plant.coulomb = tip.require_number("coulomb", "N", 0, 10);
+  tip.finish();
+  if (shape != ArmShape::kFalcon) read_board(map, settings);
+  YamlMap hand = map.require_map("hand");
+  settings.hand.mass = hand.require_number("mass", "kg", 0, 10);
+  settings.hand.stiffness = hand.require_number("stiffness", "N/m", 0, 1e5);
+  settings.hand.damping = hand.require_number("damping", "N s/m", 0, 1000);
+  settings.hand.tremor_amplitude = hand.require_number("tremor_amplitude", "m", 0, 0.01);
+  settings.hand.tremor_frequency = hand.require_number("tremor_frequency", "Hz", 0.1, 100);
+  hand.finish();
+  map.finish();
+  return settings;
+}
+
+constexpr std::array<std::string_view, 4> kProtocolNames = {"hfab_14_byte", "woody_8_byte",
+                                                            "falcon_packet", "text_lines"};
+
+/// Gives the boards that speak a protocol, the usual one first; the text lines carry all that the
+/// 14-byte reports do.
+std::vector<driver::BoardKind> boards_of(ArmProtocol protocol) {
+  using driver::BoardKind;
+  switch (protocol) {
+    case ArmProtocol::kHfab14Byte:
+      return {BoardKind::kMbedHid14, BoardKind::kTeensyRawHid64, BoardKind::kTextLines};
+    case ArmProtocol::kWoody8Byte:
+      return {BoardKind::kMbedHid8};
+    case ArmProtocol::kFalconPacket:
+      return {BoardKind::kFalconFtdi};
+    case ArmProtocol::kTextLines:
+      break;
+  }
+  return {BoardKind::kTextLines};
+}
+
+std::vector<driver::BoardKind> read_boards(YamlMap& root, ArmProtocol protocol) {
+  const std::vector<driver::BoardKind> fitting = boards_of(protocol);
+  std::vector<driver::BoardKind> boards;
+  for (const std::size_t index :
+       root.optional_choices("board", {static_cast<std::size_t>(fitting.front())},
+                             {driver::kBoardNames.begin(), driver::kBoardNames.end()})) {
+    const auto board = static_cast<driver::BoardKind>(index);
+    if (std::find(fitting.begin(), fitting.end(), board) == fitting.end()) {
+      root.reject("board", "the board " + std::string(name(board)) + " does not speak " +
+                               std::string(kProtocolNames[static_cast<std::size_t>(protocol)]));
+    }
+    boards.push_back(board);
+  }
+  if (boards.empty()) boards.push_back(fitting.front());  // a mistake that is told
+  return boards;
+}
+
+}  // namespace
+
+driver::Result<ArmFile> read_arm_file(const std::filesystem::path& file) {
+  driver::Result<YamlFile> yaml = YamlFile::load(file);
+  if (!yaml) return yaml.error();
+  YamlMap& root = yaml->root();
+  ArmFile arm;
+  arm.name = root.require_string("name");
+  arm.description = root.optional_string("description", "");
+  arm.protocol = static_cast<ArmProtocol>(
+      root.require_choice("protocol", {kProtocolNames.begin(), kProtocolNames.end()}));
+  arm.boards = read_boards(root, arm.protocol);
+  arm.shape =
+      static_cast<ArmShape>(root.optional_choice("shape", 0, {"serial", "polhem", "falcon"}));
+  arm.board_model = static_cast<int>(root.optional_number("board_model", 0, "", 0, 1000));
+  if (arm.shape == ArmShape::kPolhem) take_joints(driver::hfab::polhem_model(), arm.model);
+  if (arm.shape == ArmShape::kFalcon) take_joints(driver::falcon::falcon_model(), arm.model);
+  if (arm.shape == ArmShape::kSerial) {
+    arm.model.geometry = read_geometry(root.require_map("geometry"));
+    read_joints(root.require_map("joints"), arm.model, arm.heat);
+  } else if (root.has("joints")) {
+    // Drives and encoders of these shapes are code.
+    YamlMap joints = root.require_map("joints");
+    arm.heat = read_heat(joints);
+    joints.finish();
+  }
+  if ((arm.protocol == ArmProtocol::kFalconPacket) != (arm.shape == ArmShape::kFalcon)) {
+    root.reject("protocol", "expected falcon_packet with the shape falcon, and only with it");
+  }
+  YamlMap base = root.require_map("base");
+  arm.p_WB = base.require_vector3("position", "m", -2, 2);
+  arm.R_WB = base.optional_rotation("rotate_degrees");
+  base.finish();
+  arm.workspace = read_workspace(root.require_map("workspace"));
+  arm.declared = read_declared(root.require_map("declared"));
+  arm.limits = read_gate(root.require_map("gate"), arm);
+  arm.velocity_corner_frequency = root.require_number("velocity_corner_frequency", "Hz", 0, 1e5);
+  if (arm.shape == ArmShape::kSerial || root.has("simulation")) {
+    arm.simulated =
+        read_simulation(root.require_map("simulation"), arm.shape, arm.model.fractional_counts);
+    arm.can_simulate = true;
+  }
+  root.finish();
+  if (auto done = yaml->finish(); !done) return done.error();
+  return arm;
+}
+
+}  // namespace thimble::scene

@@ -1,0 +1,145 @@
+#include "thimble/scene/calibration.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iomanip>
+#include <ostream>
+#include <system_error>
+
+#include "thimble/scene/real_arm.h"
+#include "thimble/scene/user_folders.h"
+#include "thimble/scene/yaml_reader.h"
+
+namespace thimble::scene {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::array<int, 3> read_signs(YamlMap& map, std::string_view key) {
+  const Eigen::Vector3d signs = map.require_vector3(key, "", -1, 1);
+  std::array<int, 3> whole{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double sign = signs[static_cast<Eigen::Index>(i)];
+    if (std::abs(sign) != 1) map.reject(key, "expected each to be 1 or -1");
+    whole[i] = sign < 0 ? -1 : 1;
+  }
+  return whole;
+}
+
+template <class Number>
+void put(std::ostream& stream, const char* key, const std::array<Number, 3>& numbers) {
+  stream << key << ": [" << numbers[0] << ", " << numbers[1] << ", " << numbers[2] << "]\n";
+}
+
+}  // namespace
+
+fs::path calibration_file(const std::string& name) {
+  return config_folder() / "arms" / (as_file_name(name) + ".yaml");
+}
+
+driver::Result<std::optional<Calibration>> load_calibration(const std::string& name) {
+  const fs::path file = calibration_file(name);
+  std::error_code missing;
+  if (!fs::exists(file, missing)) return std::optional<Calibration>();
+  auto yaml = YamlFile::load(file);
+  if (!yaml) return yaml.error();
+  YamlMap& root = yaml->root();
+  Calibration calibration;
+  const Eigen::Vector3d home = root.require_vector3("home_counts", "counts", -1e6, 1e6);
+  for (std::size_t i = 0; i < 3; ++i) {
+    calibration.home_counts[i] =
+        static_cast<std::int32_t>(std::lround(home[static_cast<Eigen::Index>(i)]));
+  }
+  calibration.encoder_sign = read_signs(root, "encoder_sign");
+  calibration.motor_sign = read_signs(root, "motor_sign");
+  calibration.arm_file = root.optional_string("arm_file", "");
+  root.finish();
+  if (auto done = yaml->finish(); !done) return done.error();
+  return std::optional<Calibration>(calibration);
+}
+
+driver::Result<void> save_calibration(const std::string& name, const Calibration& calibration) {
+  const fs::path file = calibration_file(name);
+  const fs::path fresh = file.string() + ".new";
+  std::error_code trouble;
+  fs::create_directories(file.parent_path(), trouble);
+  std::ofstream stream(fresh);
+  stream << "# Calibration of the arm " << name << ", written by `thimble calibrate`.\n";
+  put(stream, "home_counts", calibration.home_counts);
+  put(stream, "encoder_sign", calibration.encoder_sign);
+  put(stream, "motor_sign", calibration.motor_sign);
+  if (!calibration.arm_file.empty()) {
+    stream << "arm_file: " << std::quoted(calibration.arm_file) << "\n";
+  }
+  stream.close();
+  if (stream) fs::rename(fresh, file, trouble);
+  if (!stream || trouble) {
+    return driver::Error{"The calibration cannot be written to " + file.string() +
+                         ". Check that the folder may be written to."};
+  }
+  return {};
+}
+
+void apply(const Calibration& calibration, ArmFile& file) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    file.model.encoders[i].home_counts = calibration.home_counts[i];
+    file.model.encoders[i].sign = calibration.encoder_sign[i];
+    file.model.drives[i].sign = calibration.motor_sign[i];
+  }
+}
+
+driver::Result<Calibration> find_calibration(const ArmFile& file, driver::ArmKind kind,
+                                             const driver::ArmReading& home,
+                                             const std::array<driver::ArmReading, 3>& moved) {
+  constexpr double kMoveMin = 0.020;  // m
+  // Each of the eight sets of signs gives the three movements a direction; the right one gives them
+  // the directions that the user was asked for.
+  double best = -4, second = -4;
+  bool moved_enough = false;
+  Calibration found;
+  for (unsigned set = 0; set < 8; ++set) {
+    Calibration tried;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const int in_file = file.model.encoders[i].sign < 0 ? -1 : 1;
+      const int flip = (set >> i) & 1U ? -1 : 1;
+      tried.encoder_sign[i] = flip * in_file;
+      tried.motor_sign[i] = flip * (file.model.drives[i].sign < 0 ? -1 : 1);
+      // In the home pose the joint angle is the file's, whichever way the encoder counts.
+      tried.home_counts[i] = flip * file.model.encoders[i].home_counts - home.counts[i];
+    }
+    ArmFile as_tried = file;
+    apply(tried, as_tried);
+    const auto arm = make_arm(as_tried, kind);
+    const Eigen::Vector3d p_home = arm->pose(home).p_BT;
+    double score = 0;
+    bool enough = true;
+    for (int axis = 0; axis < 3; ++axis) {
+      const Eigen::Vector3d step =
+          file.R_WB * (arm->pose(moved[static_cast<std::size_t>(axis)]).p_BT - p_home);
+      if (!(step.norm() > kMoveMin)) enough = false;
+      if (step.norm() > 0) score += step[axis] / step.norm();
+    }
+    moved_enough = moved_enough || enough;
+    if (!(score < HUGE_VAL)) continue;
+    if (score > best) {
+      second = best;
+      best = score;
+      found = tried;
+    } else if (score > second) {
+      second = score;
+    }
+  }
+  if (!moved_enough) {
+    return driver::Error{"The grip moved too little. Move it by 5 cm or more each time."};
+  }
+  // Three movements within 37 degrees of what was asked for, and clearly better than any other set.
+  if (best < 2.4 || best - second < 0.5) {
+    return driver::Error{
+        "The movements do not tell which way the encoders count. Begin in the home pose, and move "
+        "the grip straight towards you, to the right and up, back home in between."};
+  }
+  return found;
+}
+
+}  // namespace thimble::scene

@@ -1,0 +1,99 @@
+#include "heat_keeper.h"
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <system_error>
+#include <utility>
+
+#include "thimble/scene/user_folders.h"
+#include "thimble/scene/yaml_reader.h"
+
+namespace thimble::scene {
+namespace {
+
+namespace fs = std::filesystem;
+
+void complain_of(const std::string& name) {
+  std::fprintf(stderr,
+               "thimble: The heat of the motors cannot be kept in %s, so the next run takes them "
+               "for cold. Let them cool before it; check that the folder may be written to.\n",
+               heat_file(name).c_str());
+}
+
+}  // namespace
+
+fs::path heat_file(const std::string& name) {
+  return state_folder() / "heat" / (as_file_name(name) + ".yaml");
+}
+
+double world_time() {
+  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+KnownHeat load_heat(const std::string& name, const driver::HeatSettings& settings, double now) {
+  const fs::path file = heat_file(name);
+  std::error_code missing;
+  KnownHeat known;
+  const fs::file_status status = fs::status(file, missing);
+  if (status.type() == fs::file_type::not_found) return known;
+  known.heat.fill(1);
+  auto yaml = YamlFile::load(file);
+  bool sound = false, running = false;
+  double kept_at = 0;
+  Eigen::Vector3d heat(0, 0, 0);
+  if (yaml) {
+    YamlMap& root = yaml->root();
+    heat = root.require_vector3("heat", "", 0, 1);
+    kept_at = root.require_number("time", "s since 1970", 0, 1e12);
+    running = root.require_choice("running", {"no", "yes"}) == 1;
+    root.finish();
+    sound = yaml->finish().ok();
+  }
+  if (!sound) {
+    known.note = "The motors count as hot: " + file.string() +
+                 " cannot be understood. If they are cold, delete it.";
+    return known;
+  }
+  if (running) {
+    known.note =
+        "The motors count as hot: the last run with this arm did not end properly. If "
+        "they are cold, delete " +
+        file.string() + ".";
+    return known;
+  }
+  const double passed = std::max(0.0, now - kept_at);
+  for (std::size_t i = 0; i < 3; ++i) {
+    known.heat[i] =
+        heat[static_cast<Eigen::Index>(i)] * std::exp(-passed / settings.time_constant[i]);
+  }
+  return known;
+}
+
+bool save_heat(const std::string& name, const std::array<double, 3>& heat, double now,
+               bool running) {
+  const fs::path file = heat_file(name);
+  const fs::path fresh = file.string() + ".new";
+  std::error_code trouble;
+  fs::create_directories(file.parent_path(), trouble);
+  std::ofstream stream(fresh);
+  stream.precision(17);
+  stream << "# Heat of the motors of " << name << " after a run: 0 as cold as the room, 1 the "
+         << "winding's limit.\nheat: [" << heat[0] << ", " << heat[1] << ", " << heat[2]
+         << "]\ntime: " << now << "\nrunning: \"" << (running ? "yes" : "no") << "\"\n";
+  stream.close();
+  if (stream) fs::rename(fresh, file, trouble);
+  return stream && !trouble;
+}
+
+HeatKeeper::HeatKeeper(std::string name, const driver::Device& device)
+    : name_(std::move(name)), device_(device) {
+  if (!save_heat(name_, device_.heat().heat(), world_time(), true)) complain_of(name_);
+}
+
+HeatKeeper::~HeatKeeper() {
+  if (!save_heat(name_, device_.heat().heat(), world_time(), false)) complain_of(name_);
+}
+
+}  // namespace thimble::scene

@@ -1,0 +1,237 @@
+#include "thimble/scene/real_arm.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <string>
+#include <utility>
+
+#include "interrupt.h"
+#include "printed.h"
+#include "thimble/driver/arms/falcon/falcon_arm.h"
+#include "thimble/driver/arms/falcon/falcon_boot.h"
+#include "thimble/driver/arms/hfab/hfab_models.h"
+#include "thimble/driver/arms/hfab/hfab_wire.h"
+#include "thimble/driver/arms/woody/woody_proof.h"
+#include "thimble/driver/arms/woody/woody_wire.h"
+#include "thimble/driver/transports.h"
+
+namespace thimble::scene {
+namespace {
+
+namespace falcon = driver::falcon;
+namespace hfab = driver::hfab;
+using driver::ArmKind;
+using driver::BoardKind;
+using driver::Certainty;
+using driver::Error;
+using driver::FoundArm;
+using driver::Result;
+
+template <class Wire, class Geometry>
+std::unique_ptr<const driver::Arm> arm_of(const Geometry& geometry, const ArmFile& file) {
+  driver::JointModel<Geometry> model;
+  model.geometry = geometry;
+  model.drives = file.model.drives;
+  model.encoders = file.model.encoders;
+  return std::make_unique<driver::WireArm<Wire, Geometry>>(model);
+}
+
+template <class Wire>
+std::unique_ptr<const driver::Arm> arm_on(const ArmFile& file) {
+  if (file.shape == ArmShape::kPolhem) {
+    return arm_of<Wire>(hfab::polhem_model().geometry, file);
+  }
+  return arm_of<Wire>(file.model.geometry, file);
+}
+
+/// Asks a board on USB serial who it is, with zero currents.
+Result<void> check_board(driver::Transport& wire, const ArmFile& file, const FoundArm& arm,
+                         driver::Clock& clock) {
+  constexpr int kAttempts = 20;
+  constexpr std::int64_t kWait_ns = 100'000'000;  // as often as the published library asks [S]
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    std::array<std::byte, hfab::kLineCapacity> message{};
+    const std::size_t size = hfab::encode_host_line({}, message);
+    wire.write(std::span<const std::byte>(message).first(size));
+    std::array<std::byte, driver::kReportCapacity> buffer{};
+    const auto read = wire.read_latest(buffer, clock.now_ns() + kWait_ns);
+    if (read.status == driver::TransportStatus::kLost) break;
+    const auto line = hfab::decode_arm_line(std::span<const std::byte>(buffer).first(read.size));
+    if (!line) continue;
+    if (file.board_model == 0 || line->model == file.board_model) return {};
+    return Error{arm.node + " answers as model " + std::to_string(line->model) +
+                 ", but the arm file " + file.name + " is for model " +
+                 std::to_string(file.board_model) + ". Choose the right file with --arm."};
+  }
+  return Error{
+      arm.node +
+      " does not answer as a Haptikfabriken arm. Check its power; if it is another Teensy, "
+      "choose your arm by name (thimble devices)."};
+}
+
+Result<void> home(driver::SerialLine& line) {
+  constexpr int kAsksMax = 60'000;  // a minute at a millisecond each, much longer with a slow hand
+  std::uint8_t homed = 0;
+  bool told = false;
+  int silent = 0;
+  for (int i = 0; i < kAsksMax; ++i) {
+    if (stop_asked()) return Error{"Ended before the Falcon was homed; it got no force."};
+    const falcon::HomingState state = falcon::home_once(line, homed);
+    silent = state.answered ? 0 : silent + 1;
+    if (silent > 20) return Error{"The Falcon stopped answering while it was homed."};
+    if (state.done()) return {};
+    homed = state.homed;
+    if (!told && state.answered) {
+      std::fprintf(stderr, "Pull the Falcon's grip all the way out, then push it in.\n");
+      told = true;
+    }
+  }
+  return Error{"The Falcon was not homed. Pull its grip all the way out, push it in, and retry."};
+}
+
+Result<std::unique_ptr<driver::Transport>> open_falcon(const FoundArm& arm,
+                                                       const std::filesystem::path& firmware,
+                                                       driver::Clock& clock) {
+  auto line = driver::FtdiLine::open(arm.usb);
+  if (!line) return line.error();
+  if (auto prepared = falcon::prepare(**line, firmware); !prepared) return prepared.error();
+  if (auto homed = home(**line); !homed) return homed.error();
+  return (*line)->into_transport(falcon::kPacketFraming, clock);
+}
+
+/// Says why a board is never opened.
+Error cannot_drive(const FoundArm& arm) {
+  if (arm.certainty == Certainty::kUnsupported) {
+    return Error{"The protocol of the " + arm.arm + " (" + arm.name() +
+                 ") is not public, so Thimble does not open it."};
+  }
+  return Error{
+      "The board " + arm.name() + " (" + arm.arm +
+      ") has reports of a form that no arm has, or no driver, so Thimble does not open it. "
+      "See `thimble doctor`."};
+}
+
+}  // namespace
+
+Result<std::optional<FoundArm>> choose_arm(const std::vector<FoundArm>& plugged_in,
+                                           const std::string& wanted) {
+  if (wanted == "sim") return std::optional<FoundArm>();
+  const bool by_itself = wanted == "auto";
+  std::optional<FoundArm> found;
+  std::string names;
+  for (const FoundArm& arm : plugged_in) {
+    if (arm.kind == ArmKind::kUnsupported) {
+      if (arm.name() == wanted) return cannot_drive(arm);
+      continue;
+    }
+    if (by_itself && arm.certainty == Certainty::kUnknown) continue;
+    names.append(names.empty() ? "" : ", ").append(arm.name());
+    if (!by_itself && arm.name() != wanted) continue;
+    if (found) {
+      return Error{printed("Several arms answer to '%s': %s. Name one with --device NAME.",
+                           wanted.c_str(), names.c_str())};
+    }
+    found = arm;
+  }
+  if (!found && !by_itself) {
+    return Error{"No arm is called '" + wanted + "'. " +
+                 (names.empty() ? "None is plugged in that Thimble can drive."
+                                : "There is: " + names + ".") +
+                 " See `thimble devices`."};
+  }
+  if (found && !found->accessible) {
+    if (found->certainty == Certainty::kUnknown) {
+      return Error{"No access to " + found->name() + " (" + found->arm +
+                   "): the installed rule is for arms alone. `thimble doctor` prints the line to "
+                   "add for this board."};
+    }
+    return Error{"No access to " + found->arm + " " + found->name() +
+                 ": install udev/70-thimble.rules and plug it in again (see `thimble doctor`)."};
+  }
+  return found;
+}
+
+std::string boards_left_out(const std::vector<FoundArm>& plugged_in) {
+  std::string boards;
+  for (const FoundArm& arm : plugged_in) {
+    if (arm.certainty != Certainty::kUnknown) continue;
+    boards.append(boards.empty() ? "" : ", ").append(arm.name()).append(": ").append(arm.arm);
+  }
+  if (boards.empty()) return {};
+  return "Left out, because they may be anything: " + boards +
+         ". If one is your arm, use it by --device NAME with an arm file that names its board "
+         "(`thimble doctor` tells).";
+}
+
+std::optional<FoundArm> find_again(const std::vector<FoundArm>& plugged_in, const FoundArm& lost) {
+  for (const FoundArm& arm : plugged_in) {
+    // Another board with the same ids, or other firmware on the same one, is not the same arm.
+    const bool same_kind = arm.vendor_id == lost.vendor_id && arm.product_id == lost.product_id &&
+                           arm.board == lost.board && arm.product == lost.product &&
+                           arm.serial == lost.serial;
+    if (same_kind && arm.name() == lost.name() && arm.accessible) return arm;
+  }
+  return std::nullopt;
+}
+
+Result<void> check_fits(const ArmFile& file, const FoundArm& arm) {
+  if (arm.kind == ArmKind::kUnsupported) return cannot_drive(arm);
+  if (std::find(file.boards.begin(), file.boards.end(), arm.board) != file.boards.end()) return {};
+  std::string boards;
+  for (const driver::BoardKind board : file.boards) {
+    boards.append(boards.empty() ? "" : ", ").append(name(board));
+  }
+  const std::string board(name(arm.board));
+  return Error{"The arm file " + file.name + " is for the board " + boards + ", but " + arm.name() +
+               " (" + arm.arm + ") is a " + board +
+               ". Choose its own with --arm FILE (app/arms has them); signs and currents of one "
+               "board are dangerous on another."};
+}
+
+std::unique_ptr<const driver::Arm> make_arm(const ArmFile& file, ArmKind kind) {
+  switch (kind) {
+    case ArmKind::kFalcon:
+      return arm_of<falcon::PacketWire>(falcon::falcon_geometry(), file);
+    case ArmKind::kWoody:
+      return arm_on<driver::woody::ReportWire>(file);
+    case ArmKind::kHfabLine:
+      return arm_on<hfab::LineWire>(file);
+    case ArmKind::kPolhem:
+    case ArmKind::kUnsupported:
+      break;
+  }
+  return arm_on<hfab::ReportWire>(file);
+}
+
+Result<std::unique_ptr<driver::Transport>> open_wire(const FoundArm& arm, const ArmFile& file,
+                                                     const std::filesystem::path& firmware,
+                                                     driver::Clock& clock) {
+  if (auto fits = check_fits(file, arm); !fits) return fits.error();
+  switch (arm.board) {
+    case BoardKind::kMbedHid8: {
+      auto wire = driver::open_hid_transport(arm.node, driver::woody::kReportSize, clock);
+      if (!wire) return wire;
+      if (auto right = driver::woody::listen_for_board(**wire, clock); !right) {
+        return Error{arm.node + ": " + right.error().message};
+      }
+      return wire;
+    }
+    case BoardKind::kMbedHid14:
+      return driver::open_hid_transport(arm.node, hfab::kReportSize, clock);
+    case BoardKind::kTeensyRawHid64:
+      return driver::open_hid_transport(arm.node, hfab::kPaddedReportSize, clock);
+    case BoardKind::kTextLines: {
+      auto wire = driver::open_serial_transport(arm.node, hfab::kLineFraming, clock);
+      if (!wire) return wire;
+      if (auto right = check_board(**wire, file, arm, clock); !right) return right.error();
+      return wire;
+    }
+    case BoardKind::kFalconFtdi:
+      return open_falcon(arm, firmware, clock);
+    case BoardKind::kOther:
+      break;
+  }
+  return cannot_drive(arm);
+}
+
+}  // namespace thimble::scene

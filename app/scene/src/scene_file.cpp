@@ -1,0 +1,283 @@
+#include "thimble/scene/scene_file.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <numbers>
+#include <span>
+#include <system_error>
+#include <utility>
+
+#include "thimble/render/mesh/placed_mesh.h"
+#include "thimble/scene/scene_effects.h"
+#include "thimble/scene/yaml_reader.h"
+
+namespace thimble::scene {
+namespace {
+
+// Bounds catch slipped decimal points and values in mm; they are far outside of what a desk-top arm
+// can use [DEVICES 3].
+constexpr double kPositionMax = 2;      // m
+constexpr double kStiffnessMax = 1e5;   // N/m
+constexpr double kDampingMax = 1000;    // N s/m
+constexpr double kPressMax = 0.1;       // m
+constexpr double kDurationMax = 86400;  // s
+constexpr std::string_view kMeshScheme = "cgal:";
+
+std::filesystem::path find_file(YamlMap& map, std::string_view key,
+                                const std::filesystem::path& folder,
+                                const std::filesystem::path& mesh_folder) {
+  const std::string text = map.require_string(key);
+  if (text.empty()) return {};
+  const bool in_collection = text.starts_with(kMeshScheme) && !mesh_folder.empty();
+  if (text.starts_with(kMeshScheme) && mesh_folder.empty()) {
+    map.reject(
+        key, "expected a file beside the scene: no folder of meshes is known for \"" + text + "\"");
+    return {};
+  }
+  const std::filesystem::path path =
+      in_collection ? mesh_folder / text.substr(kMeshScheme.size()) : folder / text;
+  std::error_code status;
+  if (!std::filesystem::is_regular_file(path, status)) {
+    map.reject(key, "expected a file, found none at " + path.lexically_normal().string());
+  }
+  return path.lexically_normal();
+}
+
+render::ContactChoice read_contact(YamlMap map) {
+  render::ContactChoice choice;
+  const auto choose = [&map](std::string_view key, std::span<const std::string_view> names) {
+    return map.optional_choice(key, 0, {names.begin(), names.end()});
+  };
+  choice.tracker = static_cast<render::TrackerChoice>(choose("tracker", render::kTrackerNames));
+  if (map.has("search")) {
+    choice.search = static_cast<render::SearchChoice>(choose("search", render::kSearchNames));
+  }
+  if (map.has("blending")) {
+    choice.blending =
+        static_cast<render::BlendingChoice>(choose("blending", render::kBlendingNames));
+  }
+  if (map.has("normals")) {
+    choice.normals = static_cast<render::NormalWeights>(choose("normals", render::kNormalNames));
+  }
+  if (map.has("curved_depth")) choice.curved_depth = map.optional_bool("curved_depth", false);
+  if (map.has("crease_degrees")) {
+    choice.crease_angle =
+        map.require_number("crease_degrees", "degrees", 0, 180) * std::numbers::pi / 180;
+  }
+  choice.band = map.optional_number("band", choice.band, "m", 0, kPressMax);
+  map.finish();
+  return choice;
+}
+
+void read_mesh(YamlMap& map, const std::filesystem::path& folder,
+               const std::filesystem::path& mesh_folder, SceneObject& object) {
+  object.mesh_file = find_file(map, "mesh", folder, mesh_folder);
+  if (map.has("size")) object.size = map.require_number("size", "m", 1e-4, kPositionMax);
+  if (object.size && map.has("scale")) {
+    map.reject("scale", "cannot stand together with size; keep one of them");
+  } else {
+    object.scale = map.optional_number("scale", 1, "m per unit of the file", 1e-9, 1e9);
+  }
+}
+
+SceneObject read_object(YamlMap map, const std::filesystem::path& folder,
+                        const std::filesystem::path& mesh_folder, render::EffectContext context) {
+  SceneObject object;
+  object.name = map.require_string("name");
+  int forms = 0;
+  for (const char* form : {"mesh", "plane", "sphere", "box", "field"}) forms += map.has(form);
+  if (forms > 1) {
+    map.reject("", "expected one of mesh, plane, sphere, box and field, found several");
+    return object;
+  }
+  object.R_WO = map.optional_rotation("rotate_degrees");
+  object.p_WO =
+      map.optional_vector3("position", Eigen::Vector3d::Zero(), "m", -kPositionMax, kPositionMax);
+  context.R_WO = object.R_WO;
+  context.p_WO = object.p_WO;
+  if (map.has("field")) {
+    object.build_field = read_field(map, folder, context);
+    return object;
+  }
+  object.shape = read_shape(map, object.R_WO, object.p_WO);
+  if (!object.shape) read_mesh(map, folder, mesh_folder, object);
+  object.stiffness = map.require_number("stiffness", "N/m", 0, kStiffnessMax);
+  object.damping = map.optional_number("damping", 0, "N s/m", 0, kDampingMax);
+  object.paged = !object.mesh_file.empty() && render::is_page_file(object.mesh_file);
+  if (!object.shape && map.has("contact")) {
+    object.contact = read_contact(map.require_map("contact"));
+  }
+  if (object.paged) {
+    const render::ContactChoice& c = object.contact;
+    const bool as_it_is = c.tracker == render::TrackerChoice::kPacked && !c.search && !c.blending &&
+                          !c.normals && !c.curved_depth && !c.crease_angle;
+    if (map.has("contact") && !as_it_is) {
+      map.reject("contact",
+                 "a mesh in pages is touched in one way, \"tracker: compact\", and has its creases "
+                 "in the file; keep nothing else");
+    }
+    object.contact.tracker = render::TrackerChoice::kPacked;
+  }
+  context.surface_stiffness = object.stiffness;
+  context.surface_damping = object.damping;
+  if (map.has("effects")) {
+    object.effects = read_effects(map, folder, context);
+  }
+  if (map.has("body")) {
+    object.body = read_body(map, folder, context);
+    const auto names = [&object](std::string_view group) {
+      return std::any_of(object.effects.begin(), object.effects.end(),
+                         [&](const auto& effect) { return effect.kind->group == group; });
+    };
+    object.coupling = coupling_of(context, names("texture"), names("friction"));
+    if (object.paged) {
+      map.reject("body", "only what is in memory has a body; put it on another object");
+    } else if (object.shape && (object.body.dent || object.body.shape.named())) {
+      map.reject("body",
+                 "a shape can move, but only a mesh gives way; keep motion, or name a mesh");
+    }
+  }
+  map.finish();
+  return object;
+}
+
+HandWaypoint read_waypoint(YamlMap map, const std::vector<SceneObject>& objects) {
+  HandWaypoint waypoint;
+  waypoint.time = map.require_number("t", "s", 0, kDurationMax);
+  waypoint.stop = map.optional_bool("stop", false);
+  if (map.has("at") == map.has("on")) {
+    map.reject("", "expected either at: [x, y, z] or on: OBJECT with near: [x, y, z]");
+  } else if (map.has("at")) {
+    waypoint.p_W = map.require_vector3("at", "m", -kPositionMax, kPositionMax);
+  } else {
+    waypoint.on = map.require_string("on");
+    waypoint.p_W = map.require_vector3("near", "m", -kPositionMax, kPositionMax);
+    waypoint.press = map.optional_number("press", 0, "m", -kPressMax, kPressMax);
+    bool known = false, is_field = false;
+    for (const SceneObject& object : objects) {
+      if (object.name != *waypoint.on) continue;
+      known = true;
+      is_field = object.build_field != nullptr;
+      if (object.paged) {
+        map.reject("on",
+                   "the surface of a mesh in pages is not in memory to plan on; give points "
+                   "of the way by at: [x, y, z]");
+      }
+    }
+    if (!known) map.reject("on", "expected an object of this scene, found \"" + *waypoint.on + '"');
+    if (is_field) map.reject("on", "a field has no surface to be on; use at: [x, y, z]");
+  }
+  map.finish();
+  return waypoint;
+}
+
+/// Reads how the simulated hand holds the arm, where the scene wants another one than the arm's
+/// file; limits as there.
+void read_grip(YamlMap map, device_sim::HandSettings& hand) {
+  hand.mass = map.optional_number("mass", hand.mass, "kg", 0, 10);
+  hand.stiffness = map.optional_number("stiffness", hand.stiffness, "N/m", 0, 1e5);
+  hand.damping = map.optional_number("damping", hand.damping, "N s/m", 0, 1000);
+  hand.tremor_amplitude = map.optional_number("tremor", hand.tremor_amplitude, "m", 0, 0.01);
+  map.finish();
+}
+
+std::vector<HandWaypoint> read_hand(YamlMap map, const std::vector<SceneObject>& objects,
+                                    device_sim::HandSettings& grip) {
+  std::vector<HandWaypoint> hand;
+  if (map.has("grip")) read_grip(map.require_map("grip"), grip);
+  for (YamlMap& entry : map.require_maps("path")) {
+    hand.push_back(read_waypoint(entry, objects));
+    if (hand.size() > 1 && !(hand.back().time > hand[hand.size() - 2].time)) {
+      entry.reject("t", "expected a time after that of the station before");
+    }
+  }
+  map.finish();
+  return hand;
+}
+
+}  // namespace
+
+driver::Result<Scene> read_scene(const std::filesystem::path& file,
+                                 const std::filesystem::path& mesh_folder,
+                                 const std::filesystem::path& other_arm) {
+  driver::Result<YamlFile> yaml = YamlFile::load(file);
+  if (!yaml) return yaml.error();
+  YamlMap& root = yaml->root();
+  const std::filesystem::path folder = file.parent_path();
+  Scene scene;
+  scene.name = root.require_string("name");
+  scene.description = root.optional_string("description", "");
+  scene.arm_file = find_file(root, "arm", folder, {});
+  scene.rate = root.optional_number("rate", 1000, "Hz", 10, 1e5);
+  scene.duration = root.require_number("duration", "s", 0.001, kDurationMax);
+  // 2^53: every whole number up to here is a double.
+  scene.seed = static_cast<std::uint64_t>(root.optional_number("seed", 0, "", 0, 0x1p53));
+  if (root.has("gate")) {
+    YamlMap gate = root.require_map("gate");
+    scene.energy =
+        static_cast<driver::EnergyStage>(gate.optional_choice("energy", 0, kEnergyStageNames));
+    scene.energy_line = gate.key_line("energy");
+    gate.finish();
+  }
+  scene.own_arm_file = scene.arm_file;
+  if (!other_arm.empty()) scene.arm_file = other_arm;
+  auto arm = read_arm_file(scene.arm_file);
+  std::optional<driver::Error> arm_error;
+  if (arm) {
+    scene.arm = std::move(arm).value();
+  } else {
+    arm_error = arm.error();
+  }
+  const render::EffectContext context = effect_context_of(scene.arm, scene.rate);
+  for (YamlMap& object : root.require_maps("objects")) {
+    scene.objects.push_back(read_object(object, folder, mesh_folder, context));
+  }
+  for (std::size_t i = 1; i < scene.objects.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (scene.objects[i].name == scene.objects[j].name) {
+        root.reject("objects",
+                    "expected different names, found \"" + scene.objects[i].name + "\" twice");
+      }
+    }
+  }
+  scene.hand = read_hand(root.require_map("hand"), scene.objects, scene.arm.simulated.hand);
+  root.finish();
+  if (auto done = yaml->finish(); !done) return done.error();
+  if (arm_error) return *arm_error;
+  return scene;
+}
+
+MeshPlacement placement_of(const render::TriangleMesh& mesh, const SceneObject& object) {
+  // The box of the mesh as it lies in its file gives the size: turning an object must not change
+  // it.
+  Eigen::AlignedBox3d file_box;
+  Eigen::AlignedBox3d turned_box;
+  for (const Eigen::Vector3d& vertex : mesh.vertices) {
+    file_box.extend(vertex);
+    turned_box.extend(object.R_WO * vertex);
+  }
+  const double largest = file_box.sizes().maxCoeff();
+  const double scale = object.size && largest > 0 ? *object.size / largest : object.scale;
+  return {.scale = scale, .p_WM = object.p_WO - scale * turned_box.center()};
+}
+
+render::TriangleMesh place_mesh(const render::TriangleMesh& mesh, const SceneObject& object) {
+  const MeshPlacement place = placement_of(mesh, object);
+  return render::placed(mesh, place.scale, object.R_WO, place.p_WM);
+}
+
+render::PagedPlace place_pages(const render::PageFile& file, const SceneObject& object) {
+  Eigen::Vector3d low, high;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    low[static_cast<Eigen::Index>(axis)] = double{file.whole().min[axis]};
+    high[static_cast<Eigen::Index>(axis)] = double{file.whole().max[axis]};
+  }
+  const double step = file.lattice().step;
+  const Eigen::Vector3d center = file.lattice().origin + step * 0.5 * (low + high);
+  const double largest = step * (high - low).maxCoeff();
+  const double scale = object.size && largest > 0 ? *object.size / largest : object.scale;
+  return {
+      .scale = scale, .R_WM = object.R_WO, .p_WM = object.p_WO - scale * (object.R_WO * center)};
+}
+
+}  // namespace thimble::scene

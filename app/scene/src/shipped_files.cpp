@@ -1,0 +1,145 @@
+#include "thimble/scene/shipped_files.h"
+
+#include <dlfcn.h>
+#include <yaml-cpp/yaml.h>
+
+#include <cstdlib>
+#include <map>
+#include <string_view>
+#include <system_error>
+
+#include "thimble/scene/user_folders.h"
+
+namespace thimble::scene {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Tells where the program lies, or the library, if this code is in one (Python's module).
+fs::path own_file() {
+  std::error_code status;
+  Dl_info info{};
+  if (dladdr(reinterpret_cast<const void*>(&own_file), &info) != 0 && info.dli_fname != nullptr) {
+    fs::path file = fs::canonical(info.dli_fname, status);
+    // Of a program it is told as it was called: without a folder if the shell found it.
+    if (!status && file.extension() == ".so") return file;
+  }
+  return fs::read_symlink("/proc/self/exe", status);
+}
+
+/// Finds what came with this program: PREFIX/share/thimble, or app/ of the sources it was built in.
+fs::path own_folder() {
+  std::error_code status;
+  for (fs::path above = own_file().parent_path();; above = above.parent_path()) {
+    for (const fs::path& folder : {above / "share" / "thimble", above / "app"}) {
+      if (fs::is_directory(folder / "scenes", status) && fs::is_directory(folder / "arms", status))
+        return folder;
+    }
+    if (!above.has_relative_path()) return {};
+  }
+}
+
+std::vector<fs::path> folders() {
+  std::vector<fs::path> folders{"app", data_folder(), own_folder()};
+  const char* named = std::getenv("XDG_DATA_DIRS");
+  std::string_view rest = named != nullptr && *named != 0 ? named : "/usr/local/share:/usr/share";
+  while (!rest.empty()) {
+    const std::string_view one = rest.substr(0, rest.find(':'));
+    if (!one.empty()) folders.push_back(fs::path(one) / "thimble");
+    rest.remove_prefix(std::min(rest.size(), one.size() + 1));
+  }
+  return folders;
+}
+
+/// Returns the folders of arm files that set the limits of a real arm, the first first.
+std::vector<fs::path> installed_arm_folders() {
+  std::vector<fs::path> folders{own_arm_folder()};
+  if (const fs::path own = own_folder(); !own.empty()) folders.push_back(own / "arms");
+  return folders;
+}
+
+/// Lists the files in folders, of each name the first.
+std::vector<ShippedFile> list_in(const std::vector<fs::path>& folders) {
+  std::map<std::string, fs::path> found;
+  for (const fs::path& folder : folders) {
+    std::error_code status;
+    for (fs::directory_iterator entry(folder, status), end; !status && entry != end;
+         entry.increment(status)) {
+      if (entry->path().extension() == ".yaml") {
+        found.try_emplace(entry->path().stem().string(), entry->path());
+      }
+    }
+  }
+  std::vector<ShippedFile> files;
+  files.reserve(found.size());
+  for (const auto& [name, path] : found) files.push_back({name, path});
+  return files;
+}
+
+std::vector<ShippedFile> list(std::string_view kind) {
+  std::vector<fs::path> places;
+  for (const fs::path& folder : folders()) {
+    if (!folder.empty()) places.push_back(folder / kind);
+    if (kind == "arms" && folder == "app") places.push_back(own_arm_folder());
+  }
+  return list_in(places);
+}
+
+driver::Result<fs::path> find(const std::string& meant, const char* kind, const char* noun) {
+  std::error_code status;
+  const bool there = fs::exists(meant, status) && !fs::is_directory(meant, status);
+  if (there || meant.find('/') != std::string::npos) return fs::path(meant);
+  const auto files = list(kind);
+  std::string names;
+  for (const ShippedFile& file : files) {
+    if (meant == file.name || meant == file.name + ".yaml") return file.path;
+    names += (names.empty() ? "" : ", ") + file.name;
+  }
+  return driver::Error{meant + ": there is no such file, and no " + noun + " of that name. " +
+                       (names.empty()
+                            ? "None is known by name here; give the path of a file."
+                            : "Known by name: " + names + ". `thimble run --list` tells more.")};
+}
+
+}  // namespace
+
+std::vector<ShippedFile> shipped_scenes() {
+  return list("scenes");
+}
+
+std::vector<ShippedFile> shipped_arms() {
+  return list("arms");
+}
+
+std::vector<ShippedFile> installed_arms() {
+  return list_in(installed_arm_folders());
+}
+
+bool is_installed_arm(const fs::path& file) {
+  for (const ShippedFile& installed : installed_arms()) {
+    std::error_code missing;
+    if (installed.path.filename() == file.filename() &&
+        fs::equivalent(installed.path.parent_path(), fs::absolute(file).parent_path(), missing)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+std::string description_of(const fs::path& file) {
+  try {
+    return YAML::LoadFile(file.string())["description"].as<std::string>("");
+  } catch (const YAML::Exception&) {
+    return {};  // whoever runs it is told what is wrong with it
+  }
+}
+
+driver::Result<fs::path> find_scene(const std::string& meant) {
+  return find(meant, "scenes", "scene");
+}
+
+driver::Result<fs::path> find_arm_file(const std::string& meant) {
+  return find(meant, "arms", "arm file");
+}
+
+}  // namespace thimble::scene

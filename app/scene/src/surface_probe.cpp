@@ -1,0 +1,115 @@
+#include "surface_probe.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "mesh/vertex_normals.h"
+
+namespace thimble::scene {
+namespace {
+
+using Eigen::Vector3d;
+
+// Weights of the corners at the point of the triangle closest to p. Projects onto the plane and, if
+// that falls outside, onto the sides; a triangle without area is its sides.
+Vector3d closest_weights(const std::array<Vector3d, 3>& corner, const Vector3d& p) {
+  const Vector3d ab = corner[1] - corner[0];
+  const Vector3d ac = corner[2] - corner[0];
+  const Vector3d normal = ab.cross(ac);
+  const double area = normal.squaredNorm();
+  if (area > 0) {
+    const Vector3d ap = p - corner[0];
+    const double v = ap.cross(ac).dot(normal) / area;
+    const double w = ab.cross(ap).dot(normal) / area;
+    if (v >= 0 && w >= 0 && v + w <= 1) return {1 - v - w, v, w};
+  }
+  Vector3d best{1, 0, 0};
+  double best_distance = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t j = (i + 1) % 3;
+    const Vector3d side = corner[j] - corner[i];
+    const double length = side.squaredNorm();
+    const double t = length > 0 ? std::clamp((p - corner[i]).dot(side) / length, 0.0, 1.0) : 0.0;
+    const double distance = (corner[i] + t * side - p).squaredNorm();
+    if (distance < best_distance) {
+      best_distance = distance;
+      best.setZero();
+      best[static_cast<Eigen::Index>(i)] = 1 - t;
+      best[static_cast<Eigen::Index>(j)] = t;
+    }
+  }
+  return best;
+}
+
+std::array<Vector3d, 3> corners(const render::TriangleMesh& mesh, std::size_t triangle) {
+  const auto& t = mesh.triangles[triangle];
+  return {mesh.vertices[static_cast<std::size_t>(t[0])],
+          mesh.vertices[static_cast<std::size_t>(t[1])],
+          mesh.vertices[static_cast<std::size_t>(t[2])]};
+}
+
+}  // namespace
+
+SurfaceProbe::SurfaceProbe(const render::TriangleMesh& mesh)
+    : mesh_(mesh), normals_(render::vertex_normals(mesh)) {
+  Eigen::AlignedBox3d box;
+  for (std::size_t triangle = 0; triangle < mesh.triangles.size(); ++triangle) {
+    const std::array<Vector3d, 3> corner = corners(mesh, triangle);
+    const Vector3d center = (corner[0] + corner[1] + corner[2]) / 3;
+    double radius = 0;
+    for (const Vector3d& c : corner) {
+      radius = std::max(radius, (c - center).norm());
+      box.extend(c);
+    }
+    centers_.push_back(center);
+    radii_.push_back(radius);
+  }
+  slack_ = 0.02 * box.diagonal().norm();  // chosen: some tens of gatherings along a path
+}
+
+SurfacePoint SurfaceProbe::closest(const Vector3d& p_WQ) {
+  if (candidates_.empty() || !((p_WQ - gathered_at_).norm() <= slack_)) gather(p_WQ);
+  return closest_candidate(p_WQ);
+}
+
+void SurfaceProbe::gather(const Vector3d& p_WQ) {
+  // No triangle is farther than its sphere's far side; and while the question moves by `slack_`, a
+  // distance changes by at most `slack_`. So whatever can be closest meanwhile is in this list.
+  double nearest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < centers_.size(); ++i) {
+    nearest = std::min(nearest, (centers_[i] - p_WQ).norm() + radii_[i]);
+  }
+  candidates_.clear();
+  for (std::size_t i = 0; i < centers_.size(); ++i) {
+    if ((centers_[i] - p_WQ).norm() - radii_[i] <= nearest + 2 * slack_) candidates_.push_back(i);
+  }
+  gathered_at_ = p_WQ;
+}
+
+SurfacePoint SurfaceProbe::closest_candidate(const Vector3d& p_WQ) const {
+  SurfacePoint best;
+  double best_distance = std::numeric_limits<double>::infinity();
+  for (const std::size_t i : candidates_) {
+    const double reach = (centers_[i] - p_WQ).norm() - radii_[i];
+    if (reach > 0 && reach * reach > best_distance) continue;
+    const std::array<Vector3d, 3> corner = corners(mesh_, i);
+    const Vector3d weights = closest_weights(corner, p_WQ);
+    const Vector3d p_WS = weights[0] * corner[0] + weights[1] * corner[1] + weights[2] * corner[2];
+    const double distance = (p_WS - p_WQ).squaredNorm();
+    if (!(distance < best_distance)) continue;
+    best_distance = distance;
+    best.p_WS = p_WS;
+    best.triangle = i;
+    best.n_W.setZero();
+    for (std::size_t k = 0; k < 3; ++k) {
+      best.n_W += weights[static_cast<Eigen::Index>(k)] *
+                  normals_[static_cast<std::size_t>(mesh_.triangles[i][k])];
+    }
+  }
+  best.n_W.normalize();
+  return best;
+}
+
+}  // namespace thimble::scene

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace thimble::session {
+
+/// Counts durations in bins that are 1 ns wide below 2048 ns and less than 0.1 % wide above, up to
+/// 10 s; longer ones count as 10 s, negative ones as 0. Its memory is fixed when it is made.
+class Histogram {
+ public:
+  static constexpr std::int64_t kMax_ns = 10'000'000'000;
+
+  /// Is one bin that holds something: values from `lower_ns` up to but not including `upper_ns`.
+  struct Bin {
+    std::int64_t lower_ns = 0;
+    std::int64_t upper_ns = 0;
+    std::uint64_t count = 0;
+  };
+
+  Histogram();
+
+  /// Counts one duration. Real-time: safe.
+  void add(std::int64_t duration_ns) noexcept;
+
+  /// Tells how many durations were counted. Real-time: safe.
+  std::uint64_t count() const noexcept { return count_; }
+
+  /// Tells the duration (ns) that `fraction` (0 to 1) of all do not exceed, to within its bin; 0 if
+  /// nothing was counted. Real-time: never from the servo thread.
+  double percentile(double fraction) const;
+
+  /// Tells the shortest, longest and mean duration, ns; 0 if nothing was counted. Real-time: safe.
+  std::int64_t min_ns() const noexcept { return count_ > 0 ? min_ns_ : 0; }
+  std::int64_t max_ns() const noexcept { return max_ns_; }
+  double mean_ns() const noexcept;
+
+  /// Lists the bins that hold something, shortest first. Real-time: never from the servo thread.
+  std::vector<Bin> bins() const;
+
+ private:
+  static std::size_t index_of(std::int64_t duration_ns) noexcept;
+  static Bin bounds_of(std::size_t index) noexcept;
+
+  std::vector<std::uint64_t> counts_;
+  std::uint64_t count_ = 0;
+  std::int64_t min_ns_ = kMax_ns;
+  std::int64_t max_ns_ = 0;
+  double sum_ns_ = 0;
+};
+
+}  // namespace thimble::session

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <cstdint>
+
+#include "thimble/driver/tick_record.h"
+#include "thimble/session/histogram.h"
+
+namespace thimble::session {
+
+/// Sums up a run tick by tick; a sink for the servo loop. Its memory is fixed when it is made.
+class RunStatistics {
+ public:
+  /// A gap in a contact shorter than this is a break in one touch, not two: a hand that lifts off
+  /// and comes back takes longer. [chosen: half the fastest finger tap, about 10 Hz]
+  static constexpr std::int64_t kInterruption_ns = 20'000'000;
+
+  /// Takes one tick. Real-time: safe.
+  void operator()(const driver::TickRecord& record) noexcept;
+
+  /// Tells how many ticks were taken.
+  std::uint64_t ticks() const noexcept { return ticks_; }
+
+  /// Tells the times between tick starts, how long ticks took on the wall clock, and how late they
+  /// began.
+  const Histogram& period() const noexcept { return period_; }
+  const Histogram& work() const noexcept { return work_; }
+  const Histogram& lateness() const noexcept { return lateness_; }
+
+  /// Tells the time from the first to the last tick, s.
+  double duration() const noexcept;
+
+  /// Tells the ticks per second reached, Hz; 0 for fewer than two ticks.
+  double rate() const noexcept;
+
+  /// Tells how often the tip touched down.
+  std::uint64_t contacts() const noexcept { return contacts_; }
+
+  /// Tells how many contacts began within `kInterruption_ns` of the last one's end.
+  std::uint64_t interruptions() const noexcept { return interruptions_; }
+
+  /// Tells the time in contact, s: a tick in contact counts until the next one.
+  double contact_time() const noexcept { return 1e-9 * static_cast<double>(contact_ns_); }
+
+  /// Tells the largest force sent, and its root mean square over the ticks in contact, N.
+  double force_max() const noexcept { return force_max_; }
+  double force_rms() const noexcept;
+
+  /// Tells the greatest depth, m, and the most features crossed in one tick.
+  double depth_max() const noexcept { return depth_max_; }
+  std::uint16_t hops_max() const noexcept { return hops_max_; }
+
+  /// Tells the energy that the arm gave to the hand, J: the sum of f_k . (p_k+1 - p_k), with f_k
+  /// the force sent in tick k, which acts until the next. Positive: the arm was active. A surface
+  /// with damping takes energy, so the sum over a whole touch is negative.
+  double energy_to_hand() const noexcept { return energy_; }
+
+  /// Tells the most energy that the arm had given at any time since the start, J, never below 0.
+  double energy_to_hand_max() const noexcept { return energy_max_; }
+
+  /// Tells how many ticks had no new report.
+  std::uint64_t missing_reports() const noexcept { return missing_; }
+
+  /// Tells in how many ticks the device was in fault, and the first fault.
+  std::uint64_t fault_ticks() const noexcept { return fault_ticks_; }
+  driver::Fault first_fault() const noexcept { return first_fault_; }
+
+ private:
+  Histogram period_, work_, lateness_;
+  driver::TickRecord last_;
+  std::uint64_t ticks_ = 0;
+  std::int64_t first_ns_ = 0;
+  std::int64_t contact_ns_ = 0;
+  std::int64_t contact_end_ns_ = 0;
+  std::uint64_t contacts_ = 0;
+  std::uint64_t interruptions_ = 0;
+  std::uint64_t contact_ticks_ = 0;
+  double force_max_ = 0;
+  double force_squared_ = 0;
+  double depth_max_ = 0;
+  double energy_ = 0;
+  double energy_max_ = 0;
+  std::uint64_t missing_ = 0;
+  std::uint64_t fault_ticks_ = 0;
+  std::uint16_t hops_max_ = 0;
+  driver::Fault first_fault_ = driver::Fault::kNone;
+};
+
+}  // namespace thimble::session

@@ -1,0 +1,15 @@
+#pragma once
+
+namespace thimble::session {
+
+/// Says what the user did at the terminal since the last look.
+enum class EnterKey {
+  kNothing,
+  kPressed,
+  kClosed,  ///< Nobody is there and nobody will come: the input has ended.
+};
+
+/// Looks, without waiting, whether the user pressed Enter. Real-time: never from the servo thread.
+EnterKey look_for_enter();
+
+}  // namespace thimble::session

@@ -1,0 +1,66 @@
+#include "recording/recorder.h"
+
+#include <chrono>
+#include <string>
+#include <utility>
+
+namespace thimble::session {
+
+driver::Result<std::unique_ptr<Recorder>> Recorder::open(const std::filesystem::path& path,
+                                                         const RecordingInfo& info,
+                                                         std::uint64_t ticks_max) {
+  auto file = RecordingFile::create(path, info, ticks_max);
+  if (!file) return file.error();
+  return std::unique_ptr<Recorder>(new Recorder(std::move(file).value()));
+}
+
+Recorder::~Recorder() {
+  stop_thread();
+}
+
+void Recorder::start_thread() {
+  writer_ = std::thread([this] {
+    while (!stop_.load()) {
+      serve();
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+  });
+}
+
+void Recorder::stop_thread() {
+  stop_.store(true);
+  if (writer_.joinable()) writer_.join();
+}
+
+void Recorder::serve() noexcept {
+  // An end that comes in two pieces takes two rounds; what comes meanwhile waits for the next time.
+  for (int piece = 0; piece < 2; ++piece) {
+    const auto ticks = ring_.front();
+    if (ticks.empty()) return;
+    // After trouble the ticks are let go, so that the servo finds room and nothing piles up.
+    if (!trouble_) {
+      try {
+        if (auto written = file_.append(ticks); !written) trouble_ = written.error();
+      } catch (const std::exception& out_of_memory) {
+        trouble_ = driver::Error{std::string("The recording ends: ") + out_of_memory.what()};
+      }
+    }
+    ring_.drop(ticks.size());
+  }
+}
+
+driver::Result<void> Recorder::finish() {
+  stop_thread();
+  while (ring_.waiting() > 0) serve();
+  auto finished = file_.finish();
+  if (trouble_) return *trouble_;
+  if (!finished) return finished;
+  if (dropped() > 0) {
+    return driver::Error{path().string() + ": the disk was too slow for " +
+                         std::to_string(dropped()) +
+                         " ticks, which are missing; record to a faster one."};
+  }
+  return {};
+}
+
+}  // namespace thimble::session

@@ -1,0 +1,83 @@
+#include "recording/recording_columns.h"
+
+#include <array>
+
+#include "thimble/driver/tick_record.h"
+
+namespace thimble::session {
+namespace {
+
+using driver::TickRecord;
+using Type = RecordingColumn::Type;
+
+// A flag or an enum is one byte in memory and in the file.
+static_assert(sizeof(bool) == 1 && sizeof(driver::DeviceStage) == 1 && sizeof(driver::Fault) == 1);
+
+constexpr std::array kColumns{
+    RecordingColumn{"tick", "1", "number of the tick, from 0; gaps are ticks that were missed",
+                    Type::kU64, 1, offsetof(TickRecord, tick)},
+    RecordingColumn{"time", "ns", "when the tick began, on the loop's clock", Type::kI64, 1,
+                    offsetof(TickRecord, time_ns)},
+    RecordingColumn{"due", "ns", "when it should have begun", Type::kI64, 1,
+                    offsetof(TickRecord, due_ns)},
+    RecordingColumn{"work", "ns", "from wake-up to write; 0 in virtual time", Type::kI64, 1,
+                    offsetof(TickRecord, work_ns)},
+    RecordingColumn{"counts", "1", "encoder counts as they came over the wire", Type::kI32, 3,
+                    offsetof(TickRecord, counts)},
+    RecordingColumn{"q", "rad", "joint angles", Type::kF64, 3, offsetof(TickRecord, q)},
+    RecordingColumn{"p_WT", "m", "tip in the world", Type::kF64, 3, offsetof(TickRecord, p_WT)},
+    RecordingColumn{"v_WT", "m/s", "velocity of the tip in the world, estimated", Type::kF64, 3,
+                    offsetof(TickRecord, v_WT)},
+    RecordingColumn{"p_WP", "m", "proxy: the point of the surface that the tip is held at",
+                    Type::kF64, 3, offsetof(TickRecord, p_WP)},
+    RecordingColumn{"n_W", "1", "outward unit normal there", Type::kF64, 3,
+                    offsetof(TickRecord, n_W)},
+    RecordingColumn{"f_wanted_W", "N", "force on the hand that the scene asked for", Type::kF64, 3,
+                    offsetof(TickRecord, f_wanted_W)},
+    RecordingColumn{"f_sent_W", "N", "force that went through the gate to the motors", Type::kF64,
+                    3, offsetof(TickRecord, f_sent_W)},
+    RecordingColumn{"heat", "1", "of each motor; 1 is its winding's limit, 0 if the arm names none",
+                    Type::kF64, 3, offsetof(TickRecord, heat), true},
+    RecordingColumn{"depth", "m", "of the tip below the surface", Type::kF64, 1,
+                    offsetof(TickRecord, depth)},
+    RecordingColumn{"feature", "1", "active triangle, -1 for none", Type::kI32, 1,
+                    offsetof(TickRecord, feature)},
+    RecordingColumn{"object", "1", "object of the scene, counted from 0, -1 for none", Type::kI16,
+                    1, offsetof(TickRecord, object)},
+    RecordingColumn{"hops", "1", "triangles crossed in the tick", Type::kU16, 1,
+                    offsetof(TickRecord, hops)},
+    RecordingColumn{"buttons", "1", "one bit each", Type::kU16, 1, offsetof(TickRecord, buttons)},
+    RecordingColumn{"in_contact", "1", "1 while the tip is held outside an object", Type::kU8, 1,
+                    offsetof(TickRecord, in_contact)},
+    RecordingColumn{"fresh", "1", "1 if a new report of the arm came for this tick", Type::kU8, 1,
+                    offsetof(TickRecord, fresh)},
+    RecordingColumn{"stage", "1", "0 idle, 1 active, 2 fault", Type::kU8, 1,
+                    offsetof(TickRecord, stage)},
+    RecordingColumn{"fault", "1", "0 none; /faults names the others", Type::kU8, 1,
+                    offsetof(TickRecord, fault)},
+};
+
+}  // namespace
+
+std::size_t RecordingColumn::element() const noexcept {
+  switch (type) {
+    case Type::kU8:
+      return 1;
+    case Type::kU16:
+    case Type::kI16:
+      return 2;
+    case Type::kI32:
+      return 4;
+    case Type::kI64:
+    case Type::kU64:
+    case Type::kF64:
+      return 8;
+  }
+  return 0;
+}
+
+std::span<const RecordingColumn> recording_columns() noexcept {
+  return kColumns;
+}
+
+}  // namespace thimble::session

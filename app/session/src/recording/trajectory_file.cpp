@@ -1,0 +1,120 @@
+#include "recording/trajectory_file.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <optional>
+#include <sstream>
+#include <string_view>
+
+namespace thimble::session {
+namespace {
+
+constexpr std::array<std::string_view, 7> kNames{"t", "x", "y", "z", "fx", "fy", "fz"};
+// Catches a file in other units than was said.
+constexpr double kStrongest = 1e4;  // N
+
+/// Finds which of kNames each column is; -1: left out.
+driver::Result<std::vector<int>> read_columns(const std::string& text) {
+  std::vector<int> columns;
+  std::array<int, kNames.size()> count{};
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    const auto found = std::find(kNames.begin(), kNames.end(), word);
+    if (found == kNames.end() && word != "-") {
+      return driver::Error{"--columns: expected t, x, y, z, fx, fy, fz or -, found \"" + word +
+                           "\"."};
+    }
+    columns.push_back(word == "-" ? -1 : static_cast<int>(found - kNames.begin()));
+    if (columns.back() >= 0) ++count[static_cast<std::size_t>(columns.back())];
+  }
+  const bool places = count[0] == 1 && count[1] == 1 && count[2] == 1 && count[3] == 1;
+  const bool forces = count[4] == count[5] && count[5] == count[6] && count[4] <= 1;
+  if (!places || !forces) {
+    return driver::Error{"--columns: expected t, x, y and z once each, and fx, fy, fz or none."};
+  }
+  return columns;
+}
+
+/// Reads the numbers of a line; empty if something else stands in it.
+std::optional<std::vector<double>> numbers_of(std::string line) {
+  for (char& c : line) {
+    if (c == ',' || c == ';' || c == '\t' || c == '\r') c = ' ';
+  }
+  std::vector<double> numbers;
+  const char* at = line.c_str();
+  for (;;) {
+    while (*at == ' ') ++at;
+    if (*at == 0) return numbers;
+    char* end = nullptr;
+    const double number = std::strtod(at, &end);
+    if (end == at) return {};
+    numbers.push_back(number);
+    at = end;
+  }
+}
+
+}  // namespace
+
+driver::Result<std::vector<TrajectoryPoint>> read_trajectory(const std::filesystem::path& file,
+                                                             const TrajectoryForm& form) {
+  const auto columns = read_columns(form.columns);
+  if (!columns) return columns.error();
+  std::ifstream stream(file);
+  if (!stream) return driver::Error{file.string() + ": no such file."};
+  std::vector<TrajectoryPoint> trajectory;
+  std::size_t number = 0;
+  const auto wrong = [&](const std::string& what) {
+    return driver::Error{file.string() + ", line " + std::to_string(number) + ": " + what};
+  };
+  bool any_line = false;
+  for (std::string line; std::getline(stream, line);) {
+    ++number;
+    const std::size_t begin = line.find_first_not_of(" \t\r");
+    if (begin == std::string::npos || line[begin] == '#' || line[begin] == '%') continue;
+    const auto numbers = numbers_of(line);
+    const bool header = !numbers && !any_line;
+    any_line = true;
+    if (header) continue;
+    if (!numbers) return wrong("expected numbers alone.");
+    if (numbers->size() < columns->size()) {
+      return wrong("expected " + std::to_string(columns->size()) + " columns (" + form.columns +
+                   "), found " + std::to_string(numbers->size()) + "; --columns says others.");
+    }
+    std::array<double, kNames.size()> values{};
+    for (std::size_t i = 0; i < columns->size(); ++i) {
+      if ((*columns)[i] >= 0) values[static_cast<std::size_t>((*columns)[i])] = (*numbers)[i];
+    }
+    const TrajectoryPoint point{.time = form.seconds * values[0],
+                                .p = form.metres * Eigen::Vector3d(values[1], values[2], values[3]),
+                                .f = {values[4], values[5], values[6]}};
+    // Written so that NaN is refused.
+    if (!(point.p.cwiseAbs().maxCoeff() < form.farthest && point.f.norm() < kStrongest &&
+          std::isfinite(point.time))) {
+      return wrong("is too far away (10 m) or too strong (10 kN); --length says the unit.");
+    }
+    if (!trajectory.empty() && point.time < trajectory.back().time) {
+      return wrong("goes back in time.");
+    }
+    if (trajectory.empty() || point.time > trajectory.back().time) trajectory.push_back(point);
+  }
+  if (trajectory.size() < 2) return driver::Error{file.string() + ": holds no two points."};
+  return trajectory;
+}
+
+TrajectoryPoint trajectory_at(const std::vector<TrajectoryPoint>& trajectory, double time,
+                              std::size_t& hint) {
+  if (!(time > trajectory.front().time)) return trajectory.front();
+  if (time >= trajectory.back().time) return trajectory.back();
+  if (hint + 1 >= trajectory.size() || trajectory[hint].time > time) hint = 0;
+  while (trajectory[hint + 1].time <= time) ++hint;
+  const TrajectoryPoint& from = trajectory[hint];
+  const TrajectoryPoint& to = trajectory[hint + 1];
+  const double share = (time - from.time) / (to.time - from.time);
+  return {
+      .time = time, .p = from.p + share * (to.p - from.p), .f = from.f + share * (to.f - from.f)};
+}
+
+}  // namespace thimble::session

@@ -1,0 +1,83 @@
+#include "recording/write_csv.h"
+
+#include <array>
+#include <charconv>
+#include <cstring>
+#include <fstream>
+#include <string>
+
+#include "recording/recording_columns.h"
+
+namespace thimble::session {
+namespace {
+
+template <class T>
+void add_number(std::string& line, const unsigned char* from) {
+  T value;
+  std::memcpy(&value, from, sizeof value);
+  std::array<char, 40> text;  // a double's shortest form has 24 characters at most
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
+  line.append(text.data(), end);
+}
+
+void add_number(std::string& line, RecordingColumn::Type type, const unsigned char* from) {
+  switch (type) {
+    case RecordingColumn::Type::kU8:
+      return add_number<std::uint8_t>(line, from);
+    case RecordingColumn::Type::kU16:
+      return add_number<std::uint16_t>(line, from);
+    case RecordingColumn::Type::kI16:
+      return add_number<std::int16_t>(line, from);
+    case RecordingColumn::Type::kI32:
+      return add_number<std::int32_t>(line, from);
+    case RecordingColumn::Type::kI64:
+      return add_number<std::int64_t>(line, from);
+    case RecordingColumn::Type::kU64:
+      return add_number<std::uint64_t>(line, from);
+    case RecordingColumn::Type::kF64:
+      return add_number<double>(line, from);
+  }
+}
+
+std::string heading() {
+  std::string line;
+  for (const RecordingColumn& column : recording_columns()) {
+    for (std::size_t k = 0; k < column.width; ++k) {
+      if (!line.empty()) line += ',';
+      line += column.name;
+      // Joint angles and counts are numbered as the arm's axes are, vectors have x, y, z.
+      const bool axes =
+          std::strcmp(column.name, "q") == 0 || std::strcmp(column.name, "counts") == 0;
+      if (column.width == 3) line += std::string(".") + (axes ? "123" : "xyz")[k];
+      if (std::strcmp(column.unit, "1") != 0) line += std::string(" [") + column.unit + "]";
+    }
+  }
+  return line;
+}
+
+}  // namespace
+
+driver::Result<void> write_csv(const Recording& recording, const std::filesystem::path& path) {
+  std::ofstream file(path, std::ios::binary);
+  file << heading() << '\n';
+  std::string line;
+  for (const driver::TickRecord& tick : recording.ticks) {
+    line.clear();
+    for (const RecordingColumn& column : recording_columns()) {
+      const auto* from = reinterpret_cast<const unsigned char*>(&tick) + column.offset;
+      for (std::size_t k = 0; k < column.width; ++k) {
+        if (!line.empty()) line += ',';
+        add_number(line, column.type, from + k * column.element());
+      }
+    }
+    file << line << '\n';
+  }
+  file.close();
+  if (!file) {
+    return driver::Error{path.string() +
+                         ": cannot be written. Is the folder there, and room on the disk?"};
+  }
+  return {};
+}
+
+}  // namespace thimble::session

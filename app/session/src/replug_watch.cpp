@@ -1,0 +1,108 @@
+#include "replug_watch.h"
+
+#include <string>
+#include <utility>
+
+#include "thimble/scene/real_arm.h"
+#include "thimble/session/session.h"
+
+namespace thimble::session {
+namespace {
+
+constexpr int kStepsBetweenSearches = 5;  // half a second; chosen
+// A wire that gives nothing for so many steps is taken for pulled again. [chosen: 1 s, ten times
+// the longest start of a board's reports]
+constexpr int kSilentSteps = 10;
+
+}  // namespace
+
+ReplugWatch::ReplugWatch(driver::Device& device,
+                         const driver::Snapshot<driver::TickRecord>& snapshot,
+                         const StartPose& place, const driver::FoundArm& arm, Ways ways,
+                         Terminal terminal)
+    : device_(device),
+      snapshot_(snapshot),
+      place_(place),
+      arm_(arm),
+      ways_(std::move(ways)),
+      terminal_(std::move(terminal)) {}
+
+void ReplugWatch::step() {
+  driver::TickRecord record;
+  if (!snapshot_.load(record)) return;
+  if (record.fault == driver::Fault::kNone) {
+    told_ = offered_ = restarted_ = false;
+    present_ = true;
+    terminal_.key();  // an Enter of before must not count for a fault to come
+    return;
+  }
+  if (!told_) {
+    told_ = true;
+    silent_ = 0;
+    present_ = record.fault != driver::Fault::kTransportLost;
+    terminal_.tell("\nForce is off (" + std::string(name(record.fault)) + "). " +
+                   std::string(describe(record.fault)));
+    if (present_) terminal_.tell("Press Enter to let forces through again.");
+    terminal_.key();
+  }
+  if (record.fault == driver::Fault::kTransportLost) look_after_pull(record);
+  if (present_ && terminal_.key() == EnterKey::kPressed) let_through(record);
+}
+
+void ReplugWatch::look_after_pull(const driver::TickRecord& record) {
+  silent_ = record.fresh ? 0 : silent_ + 1;
+  if (offered_ && !present_ && record.fresh) {
+    present_ = true;
+    restarted_ = true;
+    terminal_.tell(place_.has_home()
+                       ? "The arm is back. Its counters began anew at zero where it stood when it "
+                         "was plugged in, which must have been its home pose. Put it into its home "
+                         "pose and press Enter to let forces through."
+                       : "The arm is back, homed anew. Hold its grip in the workspace and press "
+                         "Enter to let forces through.");
+    terminal_.key();
+  } else if ((offered_ || present_) && silent_ > kSilentSteps) {
+    if (present_) terminal_.tell("The arm is gone again. Plug it in, in its home pose.");
+    present_ = offered_ = false;
+  } else if (!present_ && !offered_) {
+    search();
+  }
+}
+
+void ReplugWatch::search() {
+  if (pause_-- > 0) return;
+  pause_ = kStepsBetweenSearches;
+  const auto found = ways_.find(arm_);
+  if (!found) return;
+  auto wire = ways_.open(*found);
+  if (!wire) return;  // it may still be starting up; the next search tries again
+  arm_ = *found;
+  device_.offer(std::move(wire).value());
+  offered_ = true;
+  silent_ = 0;
+}
+
+void ReplugWatch::let_through(const driver::TickRecord& record) {
+  const Eigen::Map<const Eigen::Vector3d> p_WT(record.p_WT.data());
+  const std::string trouble = place_.trouble(p_WT, restarted_);
+  if (trouble.empty()) {
+    device_.ask_to_activate();
+  } else {
+    terminal_.tell(trouble + " Then press Enter.");
+  }
+}
+
+ReplugWatch replug_watch_of(Session& session, const driver::FoundArm& arm,
+                            const std::filesystem::path& firmware) {
+  const auto find = [](const driver::FoundArm& lost) -> std::optional<driver::FoundArm> {
+    const auto plugged_in = driver::find_arms();
+    return plugged_in ? scene::find_again(*plugged_in, lost) : std::nullopt;
+  };
+  const auto open = [&session, firmware](const driver::FoundArm& found) {
+    return scene::open_wire(found, session.scene().arm, firmware, session.clock());
+  };
+  return {session.device(), session.snapshot(), session.start_pose(), arm,
+          {find, open},     user_terminal()};
+}
+
+}  // namespace thimble::session

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "thimble/driver/device.h"
+#include "thimble/driver/discovery.h"
+#include "thimble/driver/snapshot.h"
+#include "thimble/driver/tick_record.h"
+#include "thimble/session/start_pose.h"
+
+namespace thimble::session {
+
+class Session;
+
+/// A watch over a real arm at the side of the servo: says when its force is off and why, finds it
+/// again by its name after it was pulled, and lets forces through again only when the user presses
+/// Enter and the tip is where it must be. The counters of an arm that was pulled begin at zero, so
+/// it must stand in its home pose then. Real-time: never from the servo thread.
+class ReplugWatch {
+ public:
+  /// How the watch comes to the arm again; tests write their own.
+  struct Ways {
+    /// Returns the same arm if it is plugged in again.
+    std::function<std::optional<driver::FoundArm>(const driver::FoundArm& lost)> find;
+    /// Opens the wire to it.
+    std::function<driver::Result<std::unique_ptr<driver::Transport>>(const driver::FoundArm& arm)>
+        open;
+  };
+
+  /// Watches `arm`, which `device` drives and whose ticks `snapshot` shows.
+  ReplugWatch(driver::Device& device, const driver::Snapshot<driver::TickRecord>& snapshot,
+              const StartPose& place, const driver::FoundArm& arm, Ways ways, Terminal terminal);
+
+  /// Looks once; call it a few times a second.
+  void step();
+
+ private:
+  void look_after_pull(const driver::TickRecord& record);
+  void search();
+  void let_through(const driver::TickRecord& record);
+
+  driver::Device& device_;
+  const driver::Snapshot<driver::TickRecord>& snapshot_;
+  StartPose place_;
+  driver::FoundArm arm_;
+  Ways ways_;
+  Terminal terminal_;
+  bool told_ = false;       // the user knows that the force is off
+  bool present_ = true;     // the arm is on the wire
+  bool offered_ = false;    // a new wire waits for the loop
+  bool restarted_ = false;  // its counters began anew and no force came since
+  int pause_ = 0;           // steps until the next search
+  int silent_ = 0;          // steps since a new wire gave a report
+};
+
+/// Makes the watch over the arm of a session. `arm` and `firmware` are those it was opened with.
+ReplugWatch replug_watch_of(Session& session, const driver::FoundArm& arm,
+                            const std::filesystem::path& firmware);
+
+}  // namespace thimble::session

@@ -1,0 +1,91 @@
+#include "share/describe_scene.h"
+
+#include <numbers>
+
+#include "thimble/driver/arms/falcon/falcon_arm.h"
+#include "thimble/driver/arms/hfab/hfab_models.h"
+
+namespace thimble::session {
+namespace {
+
+// What a viewer shades smooth where the scene names no crease: as much as curved meshes of everyday
+// things have between neighbours. Chosen.
+constexpr double kCreaseDrawn = std::numbers::pi / 4;
+
+}  // namespace
+
+SharedScene::Arm describe_arm(const scene::ArmFile& arm, const std::string& device) {
+  SharedScene::Arm described{.name = arm.name,
+                             .device = device,
+                             .R_WB = arm.R_WB,
+                             .p_WB = arm.p_WB,
+                             .min_W = arm.workspace.min_W,
+                             .max_W = arm.workspace.max_W};
+  switch (arm.shape) {
+    case scene::ArmShape::kSerial: {
+      const driver::SerialArm& g = arm.model.geometry;
+      described.shape = SharedArmShape::kSerial;
+      described.numbers = {g.height, g.length_b, g.length_c};
+      break;
+    }
+    case scene::ArmShape::kPolhem: {
+      const driver::LinkageArm g = driver::hfab::polhem_model().geometry;
+      described.shape = SharedArmShape::kLinkage;
+      described.numbers = {g.length_0, g.length_1, g.length_2, g.length_3, g.length_4, g.length_5};
+      break;
+    }
+    case scene::ArmShape::kFalcon: {
+      const driver::DeltaArm g = driver::falcon::falcon_geometry();
+      described.shape = SharedArmShape::kDelta;
+      described.numbers = {g.a, g.b, g.c,          g.d,          g.e,         g.f,
+                           g.r, g.s, g.azimuth[0], g.azimuth[1], g.azimuth[2]};
+      break;
+    }
+  }
+  return described;
+}
+
+namespace {
+
+SharedKind kind_of(const scene::SceneObject& object) {
+  if (object.build_field) return SharedKind::kField;
+  if (object.shape) return SharedKind::kShape;
+  return object.paged ? SharedKind::kPaged : SharedKind::kMesh;
+}
+
+}  // namespace
+
+SharedScene describe_scene(const scene::Scene& scene, const scene::SceneObjects& objects,
+                           const std::string& device) {
+  SharedScene described;
+  described.name = scene.name;
+  described.force_max = scene.arm.limits.force_max;
+  described.arm = describe_arm(scene.arm, device);
+  const render::TriangleMesh& mesh = objects.mesh_W();
+  described.vertices = mesh.vertices;
+  described.triangles.reserve(mesh.triangles.size());
+  for (const auto& [a, b, c] : mesh.triangles) {
+    described.triangles.push_back({static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b),
+                                   static_cast<std::uint32_t>(c)});
+  }
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    const scene::SceneObject& object = scene.objects[i];
+    const scene::MeshPlace& begin = objects.place(i);
+    const scene::MeshPlace& end = objects.place(i + 1);
+    described.objects.push_back(
+        {.name = object.name,
+         .kind = kind_of(object),
+         .colour = static_cast<std::uint32_t>(i),
+         .moves = object.body.motion.has_value(),
+         .dents = object.body.dent.has_value(),
+         .shaped = object.body.shape.named(),
+         .first_vertex = begin.vertex,
+         .vertex_count = end.vertex - begin.vertex,
+         .first_triangle = begin.triangle,
+         .triangle_count = end.triangle - begin.triangle,
+         .crease_angle = object.contact.crease_angle.value_or(kCreaseDrawn)});
+  }
+  return described;
+}
+
+}  // namespace thimble::session

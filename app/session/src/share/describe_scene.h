@@ -1,0 +1,18 @@
+#pragma once
+
+#include "share/shared_scene.h"
+#include "thimble/scene/arm_file.h"
+#include "thimble/scene/scene_file.h"
+#include "thimble/scene/scene_objects.h"
+
+namespace thimble::session {
+
+/// Says of an arm what a viewer needs to draw it. Real-time: never from the servo thread.
+SharedScene::Arm describe_arm(const scene::ArmFile& arm, const std::string& device);
+
+/// Says of a loaded scene what its viewers need to draw it; the knobs are left out. `device` is
+/// "sim" or the name of the arm on the desk. Real-time: never from the servo thread.
+SharedScene describe_scene(const scene::Scene& scene, const scene::SceneObjects& objects,
+                           const std::string& device);
+
+}  // namespace thimble::session

@@ -1,0 +1,61 @@
+#include "share/live_control.h"
+
+#include <algorithm>
+#include <chrono>
+#include <limits>
+#include <thread>
+
+namespace thimble::session {
+
+LiveControl::LiveControl(const scene::Scene& scene, render::SceneTouch& touch,
+                         scene::ArmSimulation* simulation, bool real_time)
+    : touch_(touch), simulation_(simulation), real_time_(real_time), knobs_(scene, touch) {
+  hand_.p_WH.fill(std::numeric_limits<double>::quiet_NaN());  // equals nothing that is asked for
+}
+
+void LiveControl::join(SharedRun& shared, bool hand_by_mouse, const std::atomic<bool>& stop) {
+  shared_ = &shared;
+  hand_by_mouse_ = hand_by_mouse;
+  stop_ = &stop;
+}
+
+driver::ForceCommand LiveControl::operator()(const driver::DeviceState& state) noexcept {
+  knobs_.step(*shared_, last_, state.dt);
+  driver::ForceCommand command = touch_(state);
+  if (real_time_) {
+    const double way = state.dt / kFade;
+    gain_ = std::clamp(gain_ + (paused_ ? -way : way), 0.0, 1.0);
+    if (gain_ < 1) command.f_T_W *= gain_;
+  }
+  return command;
+}
+
+void LiveControl::take(const driver::TickRecord& record) noexcept {
+  last_ = record;
+  if (shared_ == nullptr) return;  // nobody has joined: the session is driven by hand
+  const bool paused = shared_->pause_asked();
+  if (paused != paused_) {
+    paused_ = paused;
+    shared_->set_state(paused ? RunState::kPaused : RunState::kRunning);
+    if (simulation_ != nullptr && real_time_) simulation_->hand().hold(paused);
+  }
+  if (hand_by_mouse_ && simulation_ != nullptr) lead_hand();
+  if (paused_ && !real_time_) wait_while_paused();
+}
+
+void LiveControl::lead_hand() noexcept {
+  SharedHand asked;
+  if (!shared_->hand(asked) || asked.p_WH == hand_.p_WH) return;
+  hand_ = asked;
+  simulation_->lead(Eigen::Map<const Eigen::Vector3d>(asked.p_WH.data()));
+}
+
+void LiveControl::wait_while_paused() noexcept {
+  while (shared_->pause_asked() && !stop_->load(std::memory_order_relaxed)) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  paused_ = false;
+  shared_->set_state(RunState::kRunning);
+}
+
+}  // namespace thimble::session

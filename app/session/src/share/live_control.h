@@ -1,0 +1,62 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <optional>
+
+#include "share/live_knobs.h"
+#include "share/shared_run.h"
+#include "thimble/driver/device_state.h"
+#include "thimble/driver/force_command.h"
+#include "thimble/driver/tick_record.h"
+#include "thimble/render/scene_touch.h"
+#include "thimble/scene/arm_simulation.h"
+#include "thimble/scene/scene_file.h"
+
+namespace thimble::session {
+
+/// Does on the servo's thread what viewers ask for: knobs, pause, and the hand that the mouse
+/// leads. It is the force law of a run that is shared; one that is not has none of it.
+///
+/// Pause in real time: the loop goes on, the force fades out within kFade, the simulated hand
+/// stands still; afterwards the force fades in again. In virtual time the loop itself stands still.
+class LiveControl {
+ public:
+  static constexpr double kFade = 0.3;  ///< s; 0.02 N per tick of 1 kHz for 6 N. [chosen]
+
+  /// Takes what it controls, all of which must outlive it; `simulation` is null for a real arm.
+  /// Real-time: never from the servo thread.
+  LiveControl(const scene::Scene& scene, render::SceneTouch& touch,
+              scene::ArmSimulation* simulation, bool real_time);
+
+  /// Gives the knobs, to be described. Real-time: never from the servo thread.
+  const LiveKnobs& knobs() const { return knobs_; }
+  /// Joins it to what viewers see. Real-time: never from the servo thread.
+  void join(SharedRun& shared, bool hand_by_mouse, const std::atomic<bool>& stop);
+
+  /// Finds the force of the scene, less while it is paused (the servo loop's force law).
+  /// Real-time: safe.
+  driver::ForceCommand operator()(const driver::DeviceState& state) noexcept;
+
+  /// Takes one tick (the servo loop's sink). Real-time: safe; in virtual time it waits while the
+  /// run is paused.
+  void take(const driver::TickRecord& record) noexcept;
+
+ private:
+  void lead_hand() noexcept;
+  void wait_while_paused() noexcept;
+
+  render::SceneTouch& touch_;
+  scene::ArmSimulation* simulation_;
+  bool real_time_;
+  LiveKnobs knobs_;
+  SharedRun* shared_ = nullptr;
+  const std::atomic<bool>* stop_ = nullptr;
+  bool hand_by_mouse_ = false;
+  bool paused_ = false;
+  double gain_ = 1;
+  driver::TickRecord last_;
+  SharedHand hand_;
+};
+
+}  // namespace thimble::session

@@ -1,0 +1,88 @@
+#include "share/live_knobs.h"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace thimble::session {
+namespace {
+
+// Friction follows the force of the surface by a coefficient of at most sqrt 3: the two together
+// change by no more than twice the first.
+constexpr double kWithFriction = 2;
+
+double length(const std::array<double, 3>& v) noexcept {
+  return Eigen::Map<const Eigen::Vector3d>(v.data()).norm();
+}
+
+}  // namespace
+
+LiveKnobs::LiveKnobs(const scene::Scene& scene, render::SceneTouch& touch) {
+  const scene::DeclaredLimits& declared = scene.arm.declared;
+  for (std::size_t i = 0; i < touch.size(); ++i) {
+    render::LiveSettings settings(declared.stiffness, declared.damping);
+    touch.object(i).list_settings(settings);
+    std::ptrdiff_t stiffness = -1;
+    for (const render::LiveSetting& setting : settings.list()) {
+      if (setting.name == "stiffness") stiffness = static_cast<std::ptrdiff_t>(knobs_.size());
+      Knob knob{.name = scene.objects[i].name + ": " + setting.name,
+                .setting = setting,
+                .now = setting.value};
+      // Two effects of a kind on one object.
+      const auto taken = [&](const std::string& name) {
+        return std::any_of(knobs_.begin(), knobs_.end(),
+                           [&](const Knob& other) { return other.name == name; });
+      };
+      const std::string first = knob.name;
+      for (int number = 2; taken(knob.name); ++number) {
+        knob.name = first + " " + std::to_string(number);
+      }
+      knobs_.push_back(std::move(knob));
+    }
+    for (Knob& knob : knobs_) {
+      if (knob.name.starts_with(scene.objects[i].name + ": ")) knob.stiffness = stiffness;
+    }
+  }
+  if (knobs_.size() > kKnobsMost) knobs_.resize(kKnobsMost);
+}
+
+std::vector<SharedScene::Knob> LiveKnobs::described() const {
+  std::vector<SharedScene::Knob> described;
+  for (const Knob& knob : knobs_) {
+    described.push_back({.name = knob.name,
+                         .unit = knob.setting.unit,
+                         .least = knob.setting.least,
+                         .most = knob.setting.most,
+                         .initial = knob.setting.value});
+  }
+  return described;
+}
+
+void LiveKnobs::step(SharedRun& shared, const driver::TickRecord& last, double dt) noexcept {
+  for (std::size_t i = 0; i < knobs_.size(); ++i) {
+    Knob& knob = knobs_[i];
+    const double wanted = shared.knob_wanted(i).value_or(knob.now);
+    if (wanted == knob.now) continue;
+    const render::ForceSensitivity& sensitivity = knob.setting.sensitivity;
+    const double stiffness =
+        knob.stiffness >= 0 && static_cast<std::size_t>(knob.stiffness) < knobs_.size()
+            ? knobs_[static_cast<std::size_t>(knob.stiffness)].now
+            : 0;
+    const double newtons =
+        std::abs(sensitivity.per_depth * last.depth) + sensitivity.per_speed * length(last.v_WT) +
+        sensitivity.per_force * length(last.f_wanted_W) +
+        (last.in_contact ? sensitivity.per_stiffness * stiffness : 0) + sensitivity.always;
+    double most = (knob.setting.most - knob.setting.least) * dt / kTurnTime;
+    // Written so that NaN turns nothing.
+    if (!(newtons >= 0)) continue;
+    if (newtons > 0) most = std::min(most, kForceRate / kWithFriction * dt / newtons);
+    const double way = wanted - knob.now;
+    // Ends on the very value that is wanted.
+    knob.now = std::abs(way) <= most ? wanted : knob.now + std::copysign(most, way);
+    knob.setting.set(knob.setting.stage, knob.now);
+    shared.store_knob(i, knob.now);
+  }
+}
+
+}  // namespace thimble::session

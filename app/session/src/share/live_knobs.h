@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "share/shared_run.h"
+#include "share/shared_scene.h"
+#include "thimble/driver/tick_record.h"
+#include "thimble/render/effect/live_settings.h"
+#include "thimble/render/scene_touch.h"
+#include "thimble/scene/scene_file.h"
+
+namespace thimble::session {
+
+/// Turns the settings of a scene that viewers want otherwise, on the servo's thread between two
+/// ticks, without a step of force.
+///
+/// A setting goes from end to end of its bounds in kTurnTime at the quickest. While it is felt it
+/// goes no faster than changes the force by kForceRate: its ForceSensitivity, with the touch of the
+/// last tick, tells how fast that is. Half of that is kept for the friction that follows the force
+/// of the surface.
+class LiveKnobs {
+ public:
+  static constexpr double kTurnTime = 0.05;  ///< s. [chosen: a hand takes longer]
+  /// Is the most that a knob changes the force per time, N/s: 0.04 N in a tick of 1 kHz, less than
+  /// a hand tells apart at 1 N [STABILITY 6: 7 %].
+  static constexpr double kForceRate = 40;
+
+  /// Finds the settings of a scene's objects, at most kKnobsMost. Both must outlive it.
+  /// Real-time: never from the servo thread.
+  LiveKnobs(const scene::Scene& scene, render::SceneTouch& touch);
+
+  /// Says what they are. Real-time: never from the servo thread.
+  std::vector<SharedScene::Knob> described() const;
+
+  /// Moves on by a tick of `dt` (s), towards what viewers want; `last` is the tick before.
+  /// Real-time: safe; does next to nothing while no knob turns.
+  void step(SharedRun& shared, const driver::TickRecord& last, double dt) noexcept;
+
+  /// Tells a value as it is felt now. Real-time: safe.
+  double value(std::size_t knob) const noexcept { return knobs_[knob].now; }
+
+ private:
+  struct Knob {
+    std::string name;
+    render::LiveSetting setting;
+    double now = 0;
+    std::ptrdiff_t stiffness = -1;  // the knob of the same surface's stiffness, if it has one
+  };
+
+  std::vector<Knob> knobs_;
+};
+
+}  // namespace thimble::session

@@ -1,0 +1,47 @@
+#include "share/request_desk.h"
+
+#include <cstdio>
+#include <ctime>
+
+#include "interrupt.h"
+
+namespace thimble::session {
+namespace {
+
+/// Names a recording after its scene and the time.
+std::string recording_name(const std::string& scene) {
+  const std::time_t now = std::time(nullptr);
+  std::tm local{};
+  localtime_r(&now, &local);
+  char time[32];
+  std::strftime(time, sizeof time, "-%Y%m%d-%H%M%S.h5", &local);
+  return run_name_of(scene) + time;
+}
+
+}  // namespace
+
+void RequestDesk::record(const SharedRun::RecordOrder& order) {
+  last_order_ = order.number;
+  if (auto stopped = session_.recording().stop(); !stopped) {
+    std::fprintf(stderr, "thimble: %s\n", stopped.error().message.c_str());
+  }
+  if (!order.record) return;
+  const std::string path = order.path.empty() ? recording_name(session_.scene().name) : order.path;
+  if (auto begun = session_.begin_recording(path); !begun) {
+    std::fprintf(stderr, "thimble: %s\n", begun.error().message.c_str());
+  }
+}
+
+void RequestDesk::step() {
+  SharedRun& shared = *session_.shared();
+  shared.watch_viewers();
+  if (const auto order = shared.record_order_after(last_order_)) record(*order);
+  shared.set_recording(session_.recording().on(), session_.recording().dropped());
+  const bool closed = viewer_ && viewer_->closed();
+  if (shared.stop_asked() || (closed && ends_with_viewer_)) {
+    ended_ = true;
+    scene::ask_to_stop();
+  }
+}
+
+}  // namespace thimble::session

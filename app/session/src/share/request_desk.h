@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "share/viewer_process.h"
+#include "thimble/session/session.h"
+
+namespace thimble::session {
+
+/// Does beside the servo what viewers ask of a run: recordings begin and end, a hand that nobody
+/// leads any more is let go, the run ends. Real-time: never from the servo thread.
+class RequestDesk {
+ public:
+  /// Serves `session`, which must be shared. `viewer` is the one that was opened with the run, if
+  /// any; with `ends_with_viewer` the run ends when that is closed.
+  RequestDesk(Session& session, std::unique_ptr<ViewerProcess> viewer, bool ends_with_viewer)
+      : session_(session), viewer_(std::move(viewer)), ends_with_viewer_(ends_with_viewer) {}
+
+  /// Looks once; call it about ten times a second.
+  void step();
+
+  /// Tells whether a viewer has ended the run.
+  bool ended() const noexcept { return ended_; }
+
+ private:
+  void record(const SharedRun::RecordOrder& order);
+
+  Session& session_;
+  std::unique_ptr<ViewerProcess> viewer_;
+  bool ends_with_viewer_;
+  bool ended_ = false;
+  std::uint64_t last_order_ = 0;
+};
+
+}  // namespace thimble::session

@@ -1,0 +1,49 @@
+#include "share/run_attachment.h"
+
+#include <algorithm>
+
+namespace thimble::session {
+namespace {
+
+constexpr std::chrono::milliseconds kBetweenLooks{250};
+
+}  // namespace
+
+bool RunAttachment::step() {
+  if (reader_ && reader_->state() != RunState::kEnded) return false;
+  const auto now = std::chrono::steady_clock::now();
+  if (now < next_look_) return false;
+  next_look_ = now + kBetweenLooks;
+  const auto runs = running_runs();
+  const auto found = std::find_if(runs.begin(), runs.end(), [this](const RunningRun& run) {
+    return name_.empty() || run.name == name_;
+  });
+  if (found == runs.end()) {
+    // One that was killed is shown as it was left, until the next run clears it away.
+    if (reader_ || name_.empty()) return false;
+    auto left = SharedReader::attach(name_);
+    if (left) reader_ = std::move(left).value();
+    return reader_ != nullptr;
+  }
+  if (reader_ && reader_->scene().began_ns == found->began_ns) return false;  // the ended one
+  auto reader = SharedReader::attach(found->name);
+  trouble_ = reader ? "" : reader.error().message;
+  if (!reader) return false;
+  reader_ = std::move(reader).value();
+  name_ = found->name;
+  return true;
+}
+
+std::string RunAttachment::notice() const {
+  if (!trouble_.empty()) return trouble_;
+  if (!reader_) {
+    return name_.empty() ? "Waiting for a run: thimble run SCENE --view"
+                         : "Waiting for a run named " + name_ + ".";
+  }
+  if (reader_->state() != RunState::kEnded) return {};
+  const std::string next = " The next one named " + name_ + " is shown when it begins.";
+  if (reader_->died()) return "The run's process has died." + next;
+  return "The run has ended." + next;
+}
+
+}  // namespace thimble::session

@@ -1,0 +1,195 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+#include "thimble/driver/snapshot.h"
+#include "thimble/driver/tick_record.h"
+#include "thimble/render/body_patch.h"
+#include "thimble/scene/scene_poses.h"
+
+namespace thimble::session {
+
+// What lies in the memory that a run shares with its viewers, in this order:
+//
+//   SharedHead   written once, before `ready` is set; its hash covers the tables marked (*)
+//   SharedLive   changes while the run goes on: lock-free atomics and snapshots only
+//   tables       where the head says: objects*, knobs*, vertices*, triangles*, shaped, ring
+//
+// Offsets count bytes from the head and are whole multiples of 64; nothing in it is a pointer.
+// Frames: W world.
+
+/// Changes with every change of this file. A reader of another version refuses.
+inline constexpr std::uint32_t kSharedVersion = 2;
+/// Stands in `SharedHead::ready` of a segment that is complete: "thimble1" in ASCII.
+inline constexpr std::uint64_t kSharedReady = 0x31656c626d696874;
+
+inline constexpr std::size_t kKnobsMost = 64;      ///< Chosen: more than a person can find.
+inline constexpr std::size_t kObjectsMost = 1024;  ///< Chosen, as a bound for readers.
+/// Is the most bytes that a reader maps: 100 million triangles and a long ring. Chosen.
+inline constexpr std::uint64_t kSharedBytesMost = std::uint64_t{1} << 33;
+
+/// Is a text of at most N - 1 bytes with zeros behind it.
+template <std::size_t N>
+using SharedText = std::array<char, N>;
+
+/// Says where a table lies.
+struct SharedTable {
+  std::uint64_t offset = 0;
+  std::uint64_t count = 0;
+};
+
+/// Says what a run is doing.
+enum class RunState : std::uint32_t { kLoading, kRunning, kPaused, kEnded };
+
+/// Names a state as viewers show it.
+constexpr const char* name_of(RunState state) noexcept {
+  switch (state) {
+    case RunState::kLoading:
+      return "loading";
+    case RunState::kRunning:
+      return "running";
+    case RunState::kPaused:
+      return "paused";
+    case RunState::kEnded:
+      return "ended";
+  }
+  return "unknown";
+}
+
+/// Names the builds of arm that a viewer can draw; `numbers` of SharedArm says how long each part
+/// is.
+enum class SharedArmShape : std::uint32_t {
+  kUnknown,  ///< Only the tip is drawn.
+  kSerial,   ///< height, length_b, length_c of driver::SerialArm.
+  kLinkage,  ///< length_0 to length_5 of driver::LinkageArm.
+  kDelta,    ///< a, b, c, d, e, f, r, s, azimuth of driver::DeltaArm.
+};
+
+/// Is what a viewer needs to draw the arm from its joint angles.
+struct SharedArm {
+  SharedText<64> name{};
+  SharedText<64> device{};  ///< "sim", or the name of the arm on the desk.
+  std::uint32_t shape = 0;  ///< A SharedArmShape.
+  std::uint32_t unused = 0;
+  std::array<double, 12> numbers{};  ///< m, rad
+  std::array<double, 9> R_WB{};      ///< Row by row.
+  std::array<double, 3> p_WB{};      ///< m
+  std::array<double, 3> min_W{};     ///< Of the workspace, m.
+  std::array<double, 3> max_W{};     ///< Of the workspace, m.
+};
+
+/// Is what the segment is. Plain bytes without gaps, so that they can be hashed.
+struct SharedHead {
+  std::atomic<std::uint64_t> ready;  ///< kSharedReady, written last.
+  std::uint32_t version = 0;         ///< kSharedVersion
+  std::uint32_t live_bytes = 0;      ///< sizeof(SharedLive): other builds may lay it out otherwise.
+  std::uint64_t total_bytes = 0;
+  std::uint64_t hash =
+      0;                 ///< Of this head with zeros for `ready` and `hash`, and of the tables (*).
+  std::int64_t pid = 0;  ///< Of the run's process.
+  std::uint64_t pid_start = 0;      ///< When that began, in the kernel's clock ticks since boot.
+  std::int64_t began_ns = 0;        ///< When the run was made, on the system's clock.
+  std::int64_t period_ns = 0;       ///< Of the loop.
+  double force_max = 0;             ///< What the gate lets pass, N.
+  std::uint32_t wall_clock = 0;     ///< 1: in real time; 0: as fast as it computes.
+  std::uint32_t hand_by_mouse = 0;  ///< 1: a viewer leads the simulated hand.
+  SharedText<64> scene{};
+  SharedText<1024> scene_file{};
+  SharedArm arm;
+  SharedTable objects, knobs, vertices, triangles, shaped, ring;
+};
+static_assert(std::is_standard_layout_v<SharedHead>);
+
+/// Names what an object is.
+enum class SharedKind : std::uint32_t { kMesh, kShape, kField, kPaged };
+
+/// Is one object: its part of the tables of vertices and triangles.
+struct SharedObject {
+  SharedText<64> name{};
+  std::uint32_t kind = 0;    ///< A SharedKind.
+  std::uint32_t colour = 0;  ///< Counts through the viewer's colours.
+  std::uint32_t moves = 0;   ///< 1: its pose comes in ScenePoses.
+  std::uint32_t dents = 0;   ///< 1: its dent comes in BodyPatch.
+  std::uint32_t shaped = 0;  ///< 1: its vertices move for good; they come in the table `shaped`.
+  std::uint32_t unused = 0;
+  std::uint64_t first_vertex = 0, vertex_count = 0;
+  std::uint64_t first_triangle = 0, triangle_count = 0;
+  std::uint64_t first_shaped = 0;  ///< In the table `shaped`; as many as vertices.
+  double crease_angle = 0;         ///< Edges sharper than this stay sharp, rad.
+};
+
+/// Is one setting of the scene that can be changed while it is felt.
+struct SharedKnob {
+  SharedText<64> name{};  ///< "OBJECT: stiffness"
+  SharedText<16> unit{};
+  double least = 0, most = 0, initial = 0;
+};
+
+using SharedVertex = std::array<double, 3>;           ///< W, m, as it was before the first tick.
+using SharedTriangle = std::array<std::uint32_t, 3>;  ///< Of the whole table of vertices.
+/// Is where a vertex of a shaped object is now (W, m); not stored before it moves for the first
+/// time.
+using SharedShaped = driver::Snapshot<std::array<double, 3>>;
+
+/// Is one place of the ring of ticks.
+struct SharedTick {
+  std::uint64_t serial = 0;  ///< Counts stored ticks from 1; tells which round of the ring this is.
+  driver::TickRecord record;
+};
+static_assert(std::is_trivially_copyable_v<SharedTick>);
+using SharedRingSlot = driver::Snapshot<SharedTick>;
+
+/// Is one knob as it is turned.
+struct SharedKnobState {
+  std::atomic<double> wanted;  ///< By the viewers. What is not a number in its bounds is ignored.
+  std::atomic<double> now;     ///< What is felt now.
+};
+
+/// Is where a viewer wants the simulated hand.
+struct SharedHand {
+  std::array<double, 3> p_WH{};  ///< m
+  std::uint64_t active = 0;      ///< 1 while the mouse holds it.
+  std::int64_t pid = 0;          ///< Of the viewer; should that die, it holds no longer.
+};
+
+/// Is what viewers ask for. Viewers take turns by `writer`; the run never waits for them.
+struct SharedRequests {
+  std::atomic<std::uint64_t> writer;         ///< pid of the viewer that writes; 0: none.
+  std::atomic<std::uint32_t> pause;          ///< 1: hold the loop.
+  std::atomic<std::uint32_t> stop;           ///< 1: end the run.
+  std::atomic<std::uint64_t> record_number;  ///< Grows with each order; odd: record, even: stop.
+  driver::Snapshot<SharedText<1024>> record_path;  ///< Where to; empty: the run chooses.
+  driver::Snapshot<SharedHand> hand;
+};
+
+/// Is what changes while the run goes on.
+struct SharedLive {
+  std::atomic<std::uint32_t> state;                   ///< A RunState.
+  std::atomic<std::uint32_t> recording;               ///< 1 while ticks are recorded.
+  std::atomic<std::uint64_t> ticks;                   ///< Ticks stored in the ring so far.
+  std::atomic<std::uint64_t> missed;                  ///< Periods of the loop that were skipped.
+  std::atomic<std::uint64_t> record_dropped;          ///< Ticks that a recording lacks.
+  std::atomic<std::uint64_t> shape_moves;             ///< Vertices moved for good so far.
+  driver::Snapshot<SharedText<1024>> recording_path;  ///< Of the current or last recording.
+  driver::Snapshot<scene::ScenePoses> poses;
+  driver::Snapshot<render::BodyPatch> patch;
+  std::array<SharedKnobState, kKnobsMost> knobs;
+  SharedRequests requests;
+};
+
+// Shared by processes: no lock may hide in any of it.
+static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
+static_assert(std::atomic<std::uint32_t>::is_always_lock_free);
+static_assert(std::atomic<double>::is_always_lock_free);
+
+/// Is where SharedLive begins.
+inline constexpr std::uint64_t kSharedLiveOffset = (sizeof(SharedHead) + 63) / 64 * 64;
+/// Is where the first table may begin.
+inline constexpr std::uint64_t kSharedTablesOffset =
+    (kSharedLiveOffset + sizeof(SharedLive) + 63) / 64 * 64;
+
+}  // namespace thimble::session

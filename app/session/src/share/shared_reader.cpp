@@ -1,0 +1,287 @@
+#include "share/shared_reader.h"
+
+#include <signal.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+namespace thimble::session {
+namespace {
+
+/// Makes a bool of whatever byte was copied into one: any but 0 and 1 must never be read as a bool.
+void mend(bool& value) noexcept {
+  unsigned char byte = 0;
+  std::memcpy(&byte, &value, 1);
+  byte = byte == 1 ? 1 : 0;
+  std::memcpy(&value, &byte, 1);
+}
+
+template <std::size_t N>
+bool finite(const std::array<double, N>& numbers) noexcept {
+  return std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); });
+}
+
+template <class T>
+std::span<T> table_in(std::span<std::byte> memory, const SharedTable& table) {
+  return {reinterpret_cast<T*>(memory.data() + table.offset), table.count};
+}
+
+}  // namespace
+
+driver::Result<std::unique_ptr<SharedReader>> SharedReader::attach(const std::string& name) {
+  std::string chosen = name;
+  if (chosen.empty()) {
+    const auto runs = running_runs();
+    if (runs.empty()) {
+      return driver::Error{
+          "No run is shown; start one with `thimble run SCENE --view`, or wait with `thimble view "
+          "NAME`."};
+    }
+    chosen = runs.front().name;
+  }
+  auto memory = SharedMemory::open(chosen);
+  if (!memory) return memory.error();
+  return over(std::move(memory).value());
+}
+
+driver::Result<std::unique_ptr<SharedReader>> SharedReader::over(
+    std::unique_ptr<SharedMemory> memory) {
+  auto scene = read_shared_scene(memory->bytes());
+  if (!scene) return scene.error();
+  const std::span<std::byte> bytes = memory->bytes();
+  return std::unique_ptr<SharedReader>(
+      new SharedReader(std::move(memory), bytes, std::move(scene).value()));
+}
+
+driver::Result<std::unique_ptr<SharedReader>> SharedReader::over(std::span<std::byte> memory) {
+  auto scene = read_shared_scene(memory);
+  if (!scene) return scene.error();
+  return std::unique_ptr<SharedReader>(new SharedReader(nullptr, memory, std::move(scene).value()));
+}
+
+SharedReader::SharedReader(std::unique_ptr<SharedMemory> memory, std::span<std::byte> bytes,
+                           SharedScene scene)
+    : memory_(std::move(memory)),
+      name_(memory_ ? memory_->run() : ""),
+      scene_(std::move(scene)),
+      live_(reinterpret_cast<SharedLive*>(bytes.data() + kSharedLiveOffset)),
+      shaped_(table_in<const SharedShaped>(bytes, scene_.shaped)),
+      ring_(table_in<const SharedRingSlot>(bytes, scene_.ring)) {}
+
+RunState SharedReader::state() const {
+  const std::uint32_t state = live_->state.load(std::memory_order_acquire);
+  if (state > static_cast<std::uint32_t>(RunState::kEnded) || died()) return RunState::kEnded;
+  return static_cast<RunState>(state);
+}
+
+bool SharedReader::died() const {
+  if (memory_ && memory_->broken()) return true;
+  if (live_->state.load() == static_cast<std::uint32_t>(RunState::kEnded)) return false;
+  return start_of_process(scene_.pid) != scene_.pid_start;
+}
+
+bool SharedReader::newest(driver::TickRecord& record) const noexcept {
+  // The writer may overtake this in a short ring; then there is a newer one.
+  for (int attempt = 0; attempt < 100; ++attempt) {
+    const std::uint64_t stored = live_->ticks.load(std::memory_order_acquire);
+    if (stored == 0) return false;
+    SharedTick tick;
+    if (!ring_[(stored - 1) % ring_.size()].load(tick) || tick.serial != stored) continue;
+    if (!sound(tick.record)) return false;
+    record = tick.record;
+    return true;
+  }
+  return false;
+}
+
+std::uint64_t SharedReader::ticks_since(std::uint64_t& serial,
+                                        std::vector<driver::TickRecord>& ticks) const {
+  const std::uint64_t stored = live_->ticks.load(std::memory_order_acquire);
+  if (stored <= serial) return 0;
+  const std::uint64_t oldest = stored > ring_.size() ? stored - ring_.size() : 0;
+  std::uint64_t lost = serial > 0 && oldest > serial ? oldest - serial : 0;
+  for (std::uint64_t i = std::max(serial, oldest); i < stored; ++i) {
+    SharedTick tick;
+    if (ring_[i % ring_.size()].load(tick, 10) && tick.serial == i + 1 && sound(tick.record)) {
+      ticks.push_back(tick.record);
+    } else {
+      ++lost;
+    }
+  }
+  serial = stored;
+  return lost;
+}
+
+bool SharedReader::poses(scene::ScenePoses& poses) const noexcept {
+  scene::ScenePoses seen;
+  if (!live_->poses.load(seen) || !sound(seen)) return false;
+  poses = seen;
+  return true;
+}
+
+bool SharedReader::patch(render::BodyPatch& patch) const noexcept {
+  if (!live_->patch.load(patch)) return false;
+  if (sound(patch)) return true;
+  patch.point_count = 0;
+  patch.triangle_count = 0;
+  patch.object = -1;
+  return false;
+}
+
+void SharedReader::shaped_vertices(std::size_t object,
+                                   std::span<Eigen::Vector3d> vertices) const noexcept {
+  const SharedScene::Object& o = scene_.objects[object];
+  if (!o.shaped) return;
+  const std::size_t count = std::min(vertices.size(), o.vertex_count);
+  for (std::size_t i = 0; i < count; ++i) {
+    std::array<double, 3> p{};
+    if (!shaped_[o.first_shaped + i].load(p, 10)) continue;
+    if (finite(p)) {
+      vertices[i] = {p[0], p[1], p[2]};
+    } else {
+      ++rejected_;
+    }
+  }
+}
+
+SharedReader::Counters SharedReader::counters() const noexcept {
+  return {.ticks = live_->ticks.load(),
+          .missed = live_->missed.load(),
+          .recording = live_->recording.load() == 1,
+          .record_dropped = live_->record_dropped.load()};
+}
+
+std::string SharedReader::recording_path() const {
+  SharedText<1024> path{};
+  if (!live_->recording_path.load(path)) return {};
+  std::string text(path.data(), strnlen(path.data(), path.size() - 1));
+  for (char& c : text) {
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+  }
+  return text;
+}
+
+double SharedReader::knob(std::size_t knob) const noexcept {
+  const double now = live_->knobs[knob].now.load();
+  const SharedScene::Knob& bounds = scene_.knobs[knob];
+  return now >= bounds.least && now <= bounds.most ? now : bounds.initial;
+}
+
+double SharedReader::knob_wanted(std::size_t knob) const noexcept {
+  const double wanted = live_->knobs[knob].wanted.load();
+  const SharedScene::Knob& bounds = scene_.knobs[knob];
+  return wanted >= bounds.least && wanted <= bounds.most ? wanted : bounds.initial;
+}
+
+void SharedReader::turn_knob(std::size_t knob, double value) noexcept {
+  if (std::isnan(value)) return;
+  const SharedScene::Knob& bounds = scene_.knobs[knob];
+  live_->knobs[knob].wanted.store(std::clamp(value, bounds.least, bounds.most));
+}
+
+void SharedReader::ask_pause(bool pause) noexcept {
+  live_->requests.pause.store(pause ? 1 : 0);
+}
+
+bool SharedReader::take_turn() noexcept {
+  const auto self = static_cast<std::uint64_t>(getpid());
+  std::uint64_t holder = 0;
+  auto& writer = live_->requests.writer;
+  if (writer.compare_exchange_strong(holder, self)) return true;
+  // A viewer that died in its turn has none any more [kill(2): signal 0 only asks].
+  const bool dead = holder > INT32_MAX || kill(static_cast<pid_t>(holder), 0) != 0;
+  return dead && writer.compare_exchange_strong(holder, self);
+}
+
+void SharedReader::end_turn() noexcept {
+  live_->requests.writer.store(0);
+}
+
+bool SharedReader::ask_record(const std::string& path) noexcept {
+  if (!take_turn()) return false;
+  SharedText<1024> text{};
+  std::copy_n(path.begin(), std::min(path.size(), text.size() - 1), text.begin());
+  live_->requests.record_path.store(text);
+  const std::uint64_t number = live_->requests.record_number.load();
+  live_->requests.record_number.store(number + (number % 2 == 0 ? 1 : 2));
+  end_turn();
+  return true;
+}
+
+bool SharedReader::ask_record_stop() noexcept {
+  if (!take_turn()) return false;
+  const std::uint64_t number = live_->requests.record_number.load();
+  live_->requests.record_number.store(number + (number % 2 == 0 ? 2 : 1));
+  end_turn();
+  return true;
+}
+
+bool SharedReader::lead_hand(const Eigen::Vector3d& p_WH, bool holds) noexcept {
+  if (!p_WH.allFinite() || !take_turn()) return false;
+  live_->requests.hand.store({.p_WH = {p_WH.x(), p_WH.y(), p_WH.z()},
+                              .active = holds ? std::uint64_t{1} : 0,
+                              .pid = getpid()});
+  end_turn();
+  return true;
+}
+
+bool SharedReader::sound(driver::TickRecord& record) const noexcept {
+  mend(record.in_contact);
+  mend(record.fresh);
+  // A faulty arm may tell of places that are no numbers; its fault must be seen, they must not.
+  for (auto* numbers : {&record.q, &record.p_WT, &record.v_WT, &record.p_WP, &record.n_W,
+                        &record.f_wanted_W, &record.f_sent_W, &record.heat}) {
+    for (double& x : *numbers) x = std::isfinite(x) ? x : 0;
+  }
+  if (!std::isfinite(record.depth)) record.depth = 0;
+  const bool known = record.stage <= driver::DeviceStage::kFault &&
+                     record.fault <= driver::kLastFault && record.object >= -1 &&
+                     record.object < static_cast<int>(scene_.objects.size());
+  if (!known) ++rejected_;
+  return known;
+}
+
+bool SharedReader::sound(scene::ScenePoses& poses) const noexcept {
+  bool good = poses.count <= scene::ScenePoses::kMost;
+  for (std::size_t i = 0; good && i < poses.count; ++i) {
+    good = poses.object[i] >= 0 &&
+           static_cast<std::size_t>(poses.object[i]) < scene_.objects.size() &&
+           finite(poses.pose[i].p_WB) && finite(poses.pose[i].q_WB);
+  }
+  if (!good) ++rejected_;
+  return good;
+}
+
+bool SharedReader::sound(render::BodyPatch& patch) const noexcept {
+  mend(patch.complete);
+  if (patch.triangle_count == 0 && patch.point_count == 0) {
+    patch.object = -1;
+    return true;
+  }
+  bool good = patch.point_count <= render::BodyPatch::kPointsMax &&
+              patch.triangle_count <= render::BodyPatch::kTrianglesMax && patch.object >= 0 &&
+              static_cast<std::size_t>(patch.object) < scene_.objects.size();
+  if (good) {
+    const SharedScene::Object& object = scene_.objects[static_cast<std::size_t>(patch.object)];
+    const auto below = [](std::int32_t number, std::size_t count) {
+      return number >= 0 && static_cast<std::size_t>(number) < count;
+    };
+    for (std::size_t i = 0; good && i < patch.point_count; ++i) {
+      const render::BodyPatch::Point& point = patch.points[i];
+      good = finite(point.p) && std::isfinite(point.n[0]) && std::isfinite(point.n[1]) &&
+             std::isfinite(point.n[2]) &&
+             (point.vertex == -1 || below(point.vertex, object.vertex_count));
+    }
+    for (std::size_t t = 0; good && t < patch.triangle_count; ++t) {
+      good = below(patch.source[t], object.triangle_count);
+      for (const std::uint16_t corner : patch.triangles[t]) good &= corner < patch.point_count;
+    }
+  }
+  if (!good) ++rejected_;
+  return good;
+}
+
+}  // namespace thimble::session

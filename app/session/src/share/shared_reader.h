@@ -1,0 +1,110 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "share/shared_layout.h"
+#include "share/shared_memory.h"
+#include "share/shared_scene.h"
+#include "thimble/driver/result.h"
+
+namespace thimble::session {
+
+/// Is a viewer's side of the memory that a run shares: what happens, and what to ask for.
+///
+/// Whatever the memory holds, nothing here crashes, and what it hands out is within bounds and
+/// whole: from one tick, not from two. Used by one thread; Real-time: never from the servo thread.
+class SharedReader {
+ public:
+  /// Attaches to a run by name, or to the newest one if `name` is empty. The error says what to
+  /// do.
+  static driver::Result<std::unique_ptr<SharedReader>> attach(const std::string& name);
+  /// Reads memory that this process has mapped, such as `SharedRun::memory().again()`.
+  static driver::Result<std::unique_ptr<SharedReader>> over(std::unique_ptr<SharedMemory> memory);
+  /// Reads memory that somebody else keeps, aligned to 64, for tests.
+  static driver::Result<std::unique_ptr<SharedReader>> over(std::span<std::byte> memory);
+
+  /// Gives what does not change.
+  const SharedScene& scene() const noexcept { return scene_; }
+  /// Tells the name of the run; empty if it has none.
+  const std::string& name() const noexcept { return name_; }
+
+  /// Tells what the run is doing; kEnded too if its process has died or the memory is gone.
+  RunState state() const;
+  /// Tells whether the run ended without saying so: killed, or crashed.
+  bool died() const;
+
+  /// Copies the newest tick; false if there is none yet, or if the memory holds nonsense.
+  bool newest(driver::TickRecord& record) const noexcept;
+  /// Appends the ticks after number `serial` (0: from the oldest that is kept), oldest first, and
+  /// moves `serial` to the last one. Tells how many were overwritten before they could be read.
+  std::uint64_t ticks_since(std::uint64_t& serial, std::vector<driver::TickRecord>& ticks) const;
+  /// Copies where the objects that move are; false if nothing was stored.
+  bool poses(scene::ScenePoses& poses) const noexcept;
+  /// Copies the newest dent; false if nothing was stored. No triangles: nothing is dented.
+  bool patch(render::BodyPatch& patch) const noexcept;
+  /// Counts the patches so far: a viewer need only draw anew if it has grown.
+  std::uint64_t patch_count() const noexcept { return live_->patch.count(); }
+  /// Puts the vertices of a shaped object, as many as it has, where they are now (W, m).
+  /// Vertices that never moved are left alone, so begin with those of `scene`.
+  void shaped_vertices(std::size_t object, std::span<Eigen::Vector3d> vertices) const noexcept;
+  /// Counts vertices moved for good so far: a viewer need only look if it has grown.
+  std::uint64_t shape_moves() const noexcept { return live_->shape_moves.load(); }
+
+  /// Is what a run counts.
+  struct Counters {
+    std::uint64_t ticks = 0;
+    std::uint64_t missed = 0;  ///< Periods of the loop that were skipped.
+    bool recording = false;
+    std::uint64_t record_dropped = 0;  ///< Ticks that the recording lacks.
+  };
+  Counters counters() const noexcept;
+  /// Tells where ticks are, or were last, recorded to; empty if nowhere.
+  std::string recording_path() const;
+
+  /// Tells what a knob is now; its first value if the memory holds nonsense. Precondition: the
+  /// scene has it; as for all of these.
+  double knob(std::size_t knob) const noexcept;
+  /// Tells what it was turned to.
+  double knob_wanted(std::size_t knob) const noexcept;
+  /// Turns a knob; what is outside its bounds is brought within, NaN is ignored.
+  void turn_knob(std::size_t knob, double value) noexcept;
+
+  void ask_pause(bool pause) noexcept;
+  bool pause_asked() const noexcept { return live_->requests.pause.load() == 1; }
+  /// Asks the run to end.
+  void ask_stop() noexcept { live_->requests.stop.store(1); }
+  /// Asks for a recording to `path` (HDF5); empty: beside where the run was started, by name and
+  /// time. False if another viewer is just asking for something.
+  bool ask_record(const std::string& path = {}) noexcept;
+  bool ask_record_stop() noexcept;
+  /// Says where the hand shall be (W, m), and whether the mouse holds it. The run brings it into
+  /// the workspace and bounds its speed. False as above, and if it is not finite.
+  bool lead_hand(const Eigen::Vector3d& p_WH, bool holds) noexcept;
+
+  /// Counts what was read from the memory and made no sense.
+  std::uint64_t rejected() const noexcept { return rejected_; }
+
+ private:
+  SharedReader(std::unique_ptr<SharedMemory> memory, std::span<std::byte> bytes, SharedScene scene);
+  bool sound(driver::TickRecord& record) const noexcept;
+  bool sound(scene::ScenePoses& poses) const noexcept;
+  bool sound(render::BodyPatch& patch) const noexcept;
+  bool take_turn() noexcept;
+  void end_turn() noexcept;
+
+  std::unique_ptr<SharedMemory> memory_;  // null if somebody else keeps it
+  std::string name_;
+  SharedScene scene_;
+  SharedLive* live_;
+  std::span<const SharedShaped> shaped_;
+  std::span<const SharedRingSlot> ring_;
+  mutable std::uint64_t rejected_ = 0;
+};
+
+}  // namespace thimble::session

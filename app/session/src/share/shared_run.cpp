@@ -1,0 +1,227 @@
+#include "share/shared_run.h"
+
+#include <signal.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <ctime>
+#include <new>
+#include <span>
+#include <string_view>
+
+namespace thimble::session {
+namespace {
+
+template <std::size_t N>
+void put(const std::string& text, SharedText<N>& to) {
+  to.fill(0);
+  std::copy_n(text.begin(), std::min(text.size(), N - 1), to.begin());
+}
+
+/// Finds where every table goes, and how long the whole is.
+std::uint64_t lay_out(const SharedScene& scene, std::size_t ring_ticks, SharedHead& head) {
+  std::uint64_t end = kSharedTablesOffset;
+  const auto lay = [&end](SharedTable& table, std::size_t count, std::size_t size) {
+    table = {.offset = end, .count = count};
+    end = (end + count * size + 63) / 64 * 64;
+  };
+  std::size_t shaped = 0;
+  for (const auto& object : scene.objects) {
+    if (object.shaped) shaped += object.vertex_count;
+  }
+  lay(head.objects, scene.objects.size(), sizeof(SharedObject));
+  lay(head.knobs, scene.knobs.size(), sizeof(SharedKnob));
+  lay(head.vertices, scene.vertices.size(), sizeof(SharedVertex));
+  lay(head.triangles, scene.triangles.size(), sizeof(SharedTriangle));
+  lay(head.shaped, shaped, sizeof(SharedShaped));
+  lay(head.ring, ring_ticks, sizeof(SharedRingSlot));
+  return end;
+}
+
+template <class T>
+std::span<T> table_in(std::span<std::byte> memory, const SharedTable& table) {
+  return {reinterpret_cast<T*>(memory.data() + table.offset), table.count};
+}
+
+std::array<double, 3> plain(const Eigen::Vector3d& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+void put_arm(const SharedScene::Arm& arm, SharedArm& to) {
+  put(arm.name, to.name);
+  put(arm.device, to.device);
+  to.shape = static_cast<std::uint32_t>(arm.shape);
+  to.numbers = arm.numbers;
+  Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(to.R_WB.data()) = arm.R_WB;
+  to.p_WB = plain(arm.p_WB);
+  to.min_W = plain(arm.min_W);
+  to.max_W = plain(arm.max_W);
+}
+
+}  // namespace
+
+driver::Result<std::unique_ptr<SharedRun>> SharedRun::create(const std::string& name,
+                                                             const SharedScene& scene,
+                                                             std::size_t ring_ticks) {
+  if (scene.objects.size() > kObjectsMost) {
+    return driver::Error{"A scene of more than " + std::to_string(kObjectsMost) +
+                         " objects cannot be shown; run it with --no-view."};
+  }
+  SharedHead head{};
+  const std::uint64_t bytes = lay_out(scene, ring_ticks, head);
+  if (!name.empty()) remove_dead_runs();
+  auto memory =
+      name.empty() ? SharedMemory::create_nameless(bytes) : SharedMemory::create(name, bytes);
+  if (!memory) return memory.error();
+  std::unique_ptr<SharedRun> run(new SharedRun(std::move(memory).value()));
+  run->write(scene, ring_ticks);
+  return run;
+}
+
+void SharedRun::write(const SharedScene& scene, std::size_t ring_ticks) {
+  const std::span<std::byte> memory = memory_->bytes();
+  // Every page is there and touched before the first tick.
+  std::memset(memory.data(), 0, memory.size());
+  head_ = new (memory.data()) SharedHead{};
+  head_->pid = getpid();
+  head_->pid_start = start_of_process(getpid());
+  live_ = new (memory.data() + kSharedLiveOffset) SharedLive{};
+
+  head_->version = kSharedVersion;
+  head_->live_bytes = sizeof(SharedLive);
+  head_->total_bytes = lay_out(scene, ring_ticks, *head_);
+  std::timespec now{};
+  clock_gettime(CLOCK_REALTIME, &now);
+  head_->began_ns = now.tv_sec * 1'000'000'000 + now.tv_nsec;
+  head_->period_ns = period_ns_ = scene.period_ns;
+  head_->force_max = scene.force_max;
+  head_->wall_clock = scene.wall_clock ? 1 : 0;
+  head_->hand_by_mouse = scene.hand_by_mouse ? 1 : 0;
+  put(scene.name, head_->scene);
+  put(scene.file, head_->scene_file);
+  put_arm(scene.arm, head_->arm);
+
+  const auto objects = table_in<SharedObject>(memory, head_->objects);
+  std::uint64_t shaped = 0;
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    const SharedScene::Object& object = scene.objects[i];
+    SharedObject& to = objects[i];
+    put(object.name, to.name);
+    to.kind = static_cast<std::uint32_t>(object.kind);
+    to.colour = object.colour;
+    to.moves = object.moves ? 1 : 0;
+    to.dents = object.dents ? 1 : 0;
+    to.shaped = object.shaped ? 1 : 0;
+    to.first_vertex = object.first_vertex;
+    to.vertex_count = object.vertex_count;
+    to.first_triangle = object.first_triangle;
+    to.triangle_count = object.triangle_count;
+    to.first_shaped = shaped;
+    if (object.shaped) shaped += object.vertex_count;
+    to.crease_angle = object.crease_angle;
+  }
+  const auto knobs = table_in<SharedKnob>(memory, head_->knobs);
+  knobs_.assign(scene.knobs.begin(),
+                scene.knobs.begin() + static_cast<std::ptrdiff_t>(knobs.size()));
+  for (std::size_t i = 0; i < knobs.size(); ++i) {
+    put(knobs_[i].name, knobs[i].name);
+    put(knobs_[i].unit, knobs[i].unit);
+    knobs[i].least = knobs_[i].least;
+    knobs[i].most = knobs_[i].most;
+    knobs[i].initial = knobs_[i].initial;
+    live_->knobs[i].wanted.store(knobs_[i].initial);
+    live_->knobs[i].now.store(knobs_[i].initial);
+  }
+  const auto vertices = table_in<SharedVertex>(memory, head_->vertices);
+  for (std::size_t i = 0; i < vertices.size(); ++i) vertices[i] = plain(scene.vertices[i]);
+  const auto triangles = table_in<SharedTriangle>(memory, head_->triangles);
+  std::copy(scene.triangles.begin(), scene.triangles.end(), triangles.begin());
+  shaped_ = table_in<SharedShaped>(memory, head_->shaped).data();
+  shaped_count_ = head_->shaped.count;
+  ring_ = table_in<SharedRingSlot>(memory, head_->ring).data();
+  ring_count_ = head_->ring.count;
+
+  head_->hash = shared_hash(*head_, objects, knobs, vertices, triangles);
+  head_->ready.store(kSharedReady, std::memory_order_release);
+}
+
+SharedRun::~SharedRun() {
+  set_state(RunState::kEnded);
+}
+
+void SharedRun::store_tick(const driver::TickRecord& record) noexcept {
+  if (stored_ > 0) {
+    const std::int64_t skipped = (record.due_ns - last_due_ns_) / period_ns_ - 1;
+    if (skipped > 0) {
+      live_->missed.store(
+          live_->missed.load(std::memory_order_relaxed) + static_cast<std::uint64_t>(skipped),
+          std::memory_order_relaxed);
+    }
+  }
+  last_due_ns_ = record.due_ns;
+  ring_[stored_ % ring_count_].store({.serial = stored_ + 1, .record = record});
+  live_->ticks.store(++stored_, std::memory_order_release);
+}
+
+void SharedRun::store_vertex(std::size_t shaped, const Eigen::Vector3d& p_W) noexcept {
+  if (shaped >= shaped_count_) return;
+  shaped_[shaped].store(plain(p_W));
+  live_->shape_moves.store(live_->shape_moves.load(std::memory_order_relaxed) + 1,
+                           std::memory_order_release);
+}
+
+void SharedRun::set_recording(bool on, std::uint64_t dropped) noexcept {
+  live_->recording.store(on ? 1 : 0, std::memory_order_relaxed);
+  live_->record_dropped.store(dropped, std::memory_order_relaxed);
+}
+
+void SharedRun::set_recording_path(const std::string& path) noexcept {
+  SharedText<1024> text{};
+  put(path, text);
+  live_->recording_path.store(text);
+}
+
+std::optional<double> SharedRun::knob_wanted(std::size_t knob) const noexcept {
+  const double wanted = live_->knobs[knob].wanted.load(std::memory_order_relaxed);
+  // Written so that NaN is no wish.
+  if (wanted >= knobs_[knob].least && wanted <= knobs_[knob].most) return wanted;
+  return {};
+}
+
+bool SharedRun::hand(SharedHand& hand) const noexcept {
+  SharedHand seen;
+  if (!live_->requests.hand.load(seen, 1)) return false;
+  for (const double x : seen.p_WH) {
+    if (!std::isfinite(x)) return false;
+  }
+  hand = seen;
+  return true;
+}
+
+std::optional<SharedRun::RecordOrder> SharedRun::record_order_after(std::uint64_t number) const {
+  const std::uint64_t newest = live_->requests.record_number.load(std::memory_order_acquire);
+  if (newest <= number) return {};
+  RecordOrder order{.number = newest, .record = newest % 2 == 1, .path = {}};
+  SharedText<1024> path{};
+  if (order.record && live_->requests.record_path.load(path)) {
+    order.path.assign(path.data(), strnlen(path.data(), path.size() - 1));
+  }
+  return order;
+}
+
+void SharedRun::watch_viewers() noexcept {
+  SharedHand seen;
+  if (!live_->requests.hand.load(seen, 1) || seen.active != 1) return;
+  // Signal 0 asks whether there is such a process and sends nothing [kill(2)].
+  if (seen.pid > 0 && kill(static_cast<pid_t>(seen.pid), 0) == 0) return;
+  std::uint64_t nobody = 0;
+  auto& writer = live_->requests.writer;
+  if (!writer.compare_exchange_strong(nobody, static_cast<std::uint64_t>(getpid()))) return;
+  seen.active = 0;
+  live_->requests.hand.store(seen);
+  writer.store(0);
+}
+
+}  // namespace thimble::session

@@ -1,0 +1,100 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "share/shared_layout.h"
+#include "share/shared_memory.h"
+#include "share/shared_scene.h"
+#include "thimble/driver/result.h"
+
+namespace thimble::session {
+
+/// Is the run's side of the memory that it shares with its viewers: the servo stores what happens
+/// and looks at what is asked for, and never waits for anybody.
+class SharedRun {
+ public:
+  /// Makes the memory under `name`, or without a name for a viewer in this process if it is empty,
+  /// and writes what does not change of the scene; pid, times and tables of `scene` are filled in
+  /// here. The ring keeps `ring_ticks` ticks (> 0). The error is that of SharedMemory.
+  /// Real-time: never from the servo thread.
+  static driver::Result<std::unique_ptr<SharedRun>> create(const std::string& name,
+                                                           const SharedScene& scene,
+                                                           std::size_t ring_ticks);
+  SharedRun(const SharedRun&) = delete;
+  SharedRun& operator=(const SharedRun&) = delete;
+  /// Tells the viewers that the run has ended, and removes the name.
+  ~SharedRun();
+
+  /// Gives the memory, for a reader in this process.
+  const SharedMemory& memory() const noexcept { return *memory_; }
+  /// Tells the name; empty if it has none.
+  const std::string& name() const noexcept { return memory_->run(); }
+
+  // What the servo stores. One thread; Real-time: safe.
+  void store_tick(const driver::TickRecord& record) noexcept;
+  void store_poses(const scene::ScenePoses& poses) noexcept { live_->poses.store(poses); }
+  void store_patch(const render::BodyPatch& patch) noexcept { live_->patch.store(patch); }
+  /// Stores where a vertex of a shaped object has gone for good (W, m). `shaped` counts through
+  /// the table; one outside is ignored.
+  void store_vertex(std::size_t shaped, const Eigen::Vector3d& p_W) noexcept;
+  void store_knob(std::size_t knob, double now) noexcept {
+    live_->knobs[knob].now.store(now, std::memory_order_relaxed);
+  }
+
+  // What any thread of the run may tell. Real-time: safe.
+  void set_state(RunState state) noexcept {
+    live_->state.store(static_cast<std::uint32_t>(state), std::memory_order_release);
+  }
+  void set_recording(bool on, std::uint64_t dropped) noexcept;
+  /// Tells where ticks are recorded to; one thread.
+  void set_recording_path(const std::string& path) noexcept;
+
+  // What viewers ask for. Nothing of it can be trusted: it is checked here. Real-time: safe.
+  bool pause_asked() const noexcept {
+    return live_->requests.pause.load(std::memory_order_relaxed) == 1;
+  }
+  bool stop_asked() const noexcept {
+    return live_->requests.stop.load(std::memory_order_relaxed) == 1;
+  }
+  /// Tells what a knob shall be: within its bounds, or empty if a viewer wrote nonsense.
+  std::optional<double> knob_wanted(std::size_t knob) const noexcept;
+  std::size_t knob_count() const noexcept { return knobs_.size(); }
+  /// Looks where a viewer wants the hand (W, m, finite); false if none ever did, or one is writing
+  /// just now.
+  bool hand(SharedHand& hand) const noexcept;
+
+  /// Is an order to record or to stop that.
+  struct RecordOrder {
+    std::uint64_t number = 0;  ///< Grows with each order.
+    bool record = false;
+    std::string path;  ///< Empty: the run chooses.
+  };
+  /// Gives the newest order, if there is one after `number`. Real-time: never from the servo
+  /// thread.
+  std::optional<RecordOrder> record_order_after(std::uint64_t number) const;
+  /// Lets the hand go if the viewer that holds it has died. Real-time: never from the servo thread.
+  void watch_viewers() noexcept;
+
+ private:
+  explicit SharedRun(std::unique_ptr<SharedMemory> memory) : memory_(std::move(memory)) {}
+  void write(const SharedScene& scene, std::size_t ring_ticks);
+
+  std::unique_ptr<SharedMemory> memory_;
+  SharedHead* head_ = nullptr;
+  SharedLive* live_ = nullptr;
+  SharedShaped* shaped_ = nullptr;
+  std::size_t shaped_count_ = 0;
+  SharedRingSlot* ring_ = nullptr;
+  std::size_t ring_count_ = 0;
+  std::vector<SharedScene::Knob> knobs_;
+  std::uint64_t stored_ = 0;
+  std::int64_t last_due_ns_ = 0;
+  std::int64_t period_ns_ = 0;
+};
+
+}  // namespace thimble::session

@@ -1,0 +1,228 @@
+#include "share/shared_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <string_view>
+
+namespace thimble::session {
+namespace {
+
+driver::Error broken(const std::string& what) {
+  return driver::Error{"The run's shared memory is damaged (" + what +
+                       "); end the run and start it again."};
+}
+
+template <std::size_t N>
+std::string text_of(const SharedText<N>& text) {
+  // Whatever is not to be printed would let a name speak to the terminal.
+  std::string result(text.data(), strnlen(text.data(), N - 1));
+  for (char& c : result) {
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+  }
+  return result;
+}
+
+bool within(std::uint64_t first, std::uint64_t count, std::uint64_t all) {
+  return first <= all && count <= all - first;
+}
+
+/// Tells whether a table of things of `size` lies whole in the memory, behind what is fixed.
+bool lies_in(const SharedTable& table, std::size_t size, std::uint64_t total) {
+  return table.offset % 64 == 0 && table.offset >= kSharedTablesOffset && table.offset <= total &&
+         table.count <= (total - table.offset) / size;
+}
+
+/// Copies a table. Precondition: it lies in the memory.
+template <class T>
+std::vector<T> copy_of(std::span<const std::byte> memory, const SharedTable& table) {
+  std::vector<T> copy(table.count);
+  if (!copy.empty()) {
+    std::memcpy(copy.data(), memory.data() + table.offset, table.count * sizeof(T));
+  }
+  return copy;
+}
+
+/// Mixes bytes into a hash: FNV-1a, but eight bytes a step, so that a mesh of a million triangles
+/// takes milliseconds [Fowler, Noll, Vo; RFC 9923].
+std::uint64_t mix_bytes(std::uint64_t hash, std::span<const std::byte> bytes) noexcept {
+  constexpr std::uint64_t kPrime = 0x100000001b3;
+  std::size_t i = 0;
+  for (; i + 8 <= bytes.size(); i += 8) {
+    std::uint64_t word = 0;
+    std::memcpy(&word, bytes.data() + i, 8);
+    hash = (hash ^ word) * kPrime;
+    hash ^= hash >> 32;  // so that high bits reach low ones too
+  }
+  for (; i < bytes.size(); ++i) hash = (hash ^ std::to_integer<std::uint64_t>(bytes[i])) * kPrime;
+  return hash;
+}
+
+bool all_finite(std::span<const double> numbers) {
+  return std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); });
+}
+
+Eigen::Vector3d vector_of(const std::array<double, 3>& a) {
+  return {a[0], a[1], a[2]};
+}
+
+bool take_arm(const SharedArm& shared, SharedScene::Arm& arm) {
+  if (shared.shape > static_cast<std::uint32_t>(SharedArmShape::kDelta)) return false;
+  if (!all_finite(shared.numbers) || !all_finite(shared.R_WB) || !all_finite(shared.p_WB) ||
+      !all_finite(shared.min_W) || !all_finite(shared.max_W)) {
+    return false;
+  }
+  arm.name = text_of(shared.name);
+  arm.device = text_of(shared.device);
+  arm.shape = static_cast<SharedArmShape>(shared.shape);
+  arm.numbers = shared.numbers;
+  arm.R_WB = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(shared.R_WB.data());
+  arm.p_WB = vector_of(shared.p_WB);
+  arm.min_W = vector_of(shared.min_W);
+  arm.max_W = vector_of(shared.max_W);
+  return true;
+}
+
+/// Checks an object against the tables that it has parts of.
+bool take_object(const SharedObject& shared, const SharedHead& head,
+                 const std::vector<SharedTriangle>& triangles, SharedScene::Object& object) {
+  if (shared.kind > static_cast<std::uint32_t>(SharedKind::kPaged) || shared.moves > 1 ||
+      shared.dents > 1 || shared.shaped > 1 || !std::isfinite(shared.crease_angle) ||
+      !within(shared.first_vertex, shared.vertex_count, head.vertices.count) ||
+      !within(shared.first_triangle, shared.triangle_count, head.triangles.count)) {
+    return false;
+  }
+  if (shared.shaped == 1 && !within(shared.first_shaped, shared.vertex_count, head.shaped.count)) {
+    return false;
+  }
+  for (std::uint64_t t = 0; t < shared.triangle_count; ++t) {
+    for (const std::uint32_t vertex : triangles[shared.first_triangle + t]) {
+      if (vertex < shared.first_vertex || vertex - shared.first_vertex >= shared.vertex_count) {
+        return false;
+      }
+    }
+  }
+  object = {.name = text_of(shared.name),
+            .kind = static_cast<SharedKind>(shared.kind),
+            .colour = shared.colour,
+            .moves = shared.moves == 1,
+            .dents = shared.dents == 1,
+            .shaped = shared.shaped == 1,
+            .first_vertex = shared.first_vertex,
+            .vertex_count = shared.vertex_count,
+            .first_triangle = shared.first_triangle,
+            .triangle_count = shared.triangle_count,
+            .first_shaped = shared.first_shaped,
+            .crease_angle = shared.crease_angle};
+  return true;
+}
+
+bool take_knob(const SharedKnob& shared, SharedScene::Knob& knob) {
+  // Written so that NaN is refused.
+  if (!(shared.least < shared.most && shared.initial >= shared.least &&
+        shared.initial <= shared.most && std::isfinite(shared.most - shared.least))) {
+    return false;
+  }
+  knob = {text_of(shared.name), text_of(shared.unit), shared.least, shared.most, shared.initial};
+  return true;
+}
+
+/// Copies the head byte by byte, but for `ready`, which others may write at this moment.
+void copy_head(std::span<const std::byte> memory, SharedHead& head) {
+  constexpr std::size_t kAfter = sizeof head.ready;
+  auto* to = reinterpret_cast<std::byte*>(&head);
+  std::memcpy(to + kAfter, memory.data() + kAfter, sizeof head - kAfter);
+  head.ready.store(0, std::memory_order_relaxed);
+}
+
+}  // namespace
+
+std::uint64_t shared_hash(const SharedHead& head, std::span<const SharedObject> objects,
+                          std::span<const SharedKnob> knobs, std::span<const SharedVertex> vertices,
+                          std::span<const SharedTriangle> triangles) noexcept {
+  constexpr std::uint64_t kBegin = 0xcbf29ce484222325;
+  SharedHead counted{};
+  copy_head(std::as_bytes(std::span(&head, 1)), counted);
+  counted.hash = 0;
+  std::uint64_t hash = mix_bytes(kBegin, std::as_bytes(std::span(&counted, 1)));
+  hash = mix_bytes(hash, std::as_bytes(objects));
+  hash = mix_bytes(hash, std::as_bytes(knobs));
+  hash = mix_bytes(hash, std::as_bytes(vertices));
+  return mix_bytes(hash, std::as_bytes(triangles));
+}
+
+driver::Result<SharedScene> read_shared_scene(std::span<const std::byte> memory) {
+  if (memory.size() < sizeof(SharedHead)) return broken("it is too short");
+  const auto& in_memory = *reinterpret_cast<const SharedHead*>(memory.data());
+  const std::uint64_t ready = in_memory.ready.load(std::memory_order_acquire);
+  if (ready == 0) return driver::Error{"The run is still loading; try again in a moment."};
+  if (ready != kSharedReady) return broken("it does not begin as a run does");
+  SharedHead head{};
+  copy_head(memory, head);
+  if (head.version != kSharedVersion || head.live_bytes != sizeof(SharedLive)) {
+    return driver::Error{"The run shares layout " + std::to_string(head.version) + "." +
+                         std::to_string(head.live_bytes) + ", this viewer reads layout " +
+                         std::to_string(kSharedVersion) + "." + std::to_string(sizeof(SharedLive)) +
+                         ": they come from different builds of thimble; start both from the same."};
+  }
+  const std::uint64_t total = memory.size();
+  if (head.total_bytes != total) return broken("its size is not what it says");
+  if (!lies_in(head.objects, sizeof(SharedObject), total) ||
+      !lies_in(head.knobs, sizeof(SharedKnob), total) ||
+      !lies_in(head.vertices, sizeof(SharedVertex), total) ||
+      !lies_in(head.triangles, sizeof(SharedTriangle), total) ||
+      !lies_in(head.shaped, sizeof(SharedShaped), total) ||
+      !lies_in(head.ring, sizeof(SharedRingSlot), total)) {
+    return broken("a table lies outside");
+  }
+  if (head.objects.count > kObjectsMost || head.knobs.count > kKnobsMost || head.ring.count == 0 ||
+      head.vertices.count > UINT32_MAX) {
+    return broken("a count is out of bounds");
+  }
+  const auto objects = copy_of<SharedObject>(memory, head.objects);
+  const auto knobs = copy_of<SharedKnob>(memory, head.knobs);
+  const auto vertices = copy_of<SharedVertex>(memory, head.vertices);
+  SharedScene scene;
+  scene.triangles = copy_of<SharedTriangle>(memory, head.triangles);
+  if (shared_hash(head, objects, knobs, vertices, scene.triangles) != head.hash) {
+    return broken("its checksum is wrong");
+  }
+
+  // What is right by its checksum may still have been written wrong.
+  if (!(head.period_ns > 0) || !(head.force_max >= 0) || !std::isfinite(head.force_max)) {
+    return broken("its loop has no period or no limit");
+  }
+  if (!take_arm(head.arm, scene.arm)) return broken("its arm makes no sense");
+  for (const SharedTriangle& triangle : scene.triangles) {
+    for (const std::uint32_t vertex : triangle) {
+      if (vertex >= head.vertices.count) return broken("a triangle has no vertex");
+    }
+  }
+  for (const SharedObject& object : objects) {
+    if (!take_object(object, head, scene.triangles, scene.objects.emplace_back())) {
+      return broken("an object makes no sense");
+    }
+  }
+  for (const SharedKnob& knob : knobs) {
+    if (!take_knob(knob, scene.knobs.emplace_back())) return broken("a knob makes no sense");
+  }
+  scene.vertices.reserve(vertices.size());
+  for (const SharedVertex& vertex : vertices) {
+    if (!all_finite(vertex)) return broken("a vertex is nowhere");
+    scene.vertices.push_back(vector_of(vertex));
+  }
+  scene.name = text_of(head.scene);
+  scene.file = text_of(head.scene_file);
+  scene.pid = head.pid;
+  scene.pid_start = head.pid_start;
+  scene.began_ns = head.began_ns;
+  scene.period_ns = head.period_ns;
+  scene.force_max = head.force_max;
+  scene.wall_clock = head.wall_clock == 1;
+  scene.hand_by_mouse = head.hand_by_mouse == 1;
+  scene.shaped = head.shaped;
+  scene.ring = head.ring;
+  return scene;
+}
+
+}  // namespace thimble::session

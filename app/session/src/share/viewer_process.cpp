@@ -1,0 +1,48 @@
+#include "share/viewer_process.h"
+
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdlib>
+#include <cstring>
+
+namespace thimble::session {
+
+bool has_display() {
+  for (const char* name : {"DISPLAY", "WAYLAND_DISPLAY"}) {
+    const char* value = std::getenv(name);
+    if (value != nullptr && *value != 0) return true;
+  }
+  return false;
+}
+
+driver::Result<std::unique_ptr<ViewerProcess>> ViewerProcess::start(const std::string& run) {
+  std::string program = "thimble", command = "view", name = run;
+  const std::array<char*, 4> arguments{program.data(), command.data(), name.data(), nullptr};
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  // A process group of its own: Ctrl-C in the run's terminal ends the run, and the viewer says so.
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+  pid_t pid = 0;
+  const int status =
+      posix_spawn(&pid, "/proc/self/exe", nullptr, &attributes, arguments.data(), environ);
+  posix_spawnattr_destroy(&attributes);
+  if (status != 0) {
+    return driver::Error{"The viewer cannot be started: " + std::string(std::strerror(status)) +
+                         "; start it by hand: thimble view " + run};
+  }
+  return std::unique_ptr<ViewerProcess>(new ViewerProcess(pid));
+}
+
+bool ViewerProcess::closed() {
+  int status = 0;
+  if (alive_ && waitpid(pid_, &status, WNOHANG) == pid_) {
+    alive_ = false;
+    closed_ = WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  }
+  return closed_;
+}
+
+}  // namespace thimble::session

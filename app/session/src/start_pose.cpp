@@ -1,0 +1,85 @@
+#include "thimble/session/start_pose.h"
+
+#include <unistd.h>
+
+#include <cstdio>
+
+#include "printed.h"
+#include "thimble/scene/real_arm.h"
+
+namespace thimble::session {
+namespace {
+
+constexpr std::int64_t kPeriod_ns = 1'000'000;  // as often as an arm expects a message
+constexpr int kTicksBetweenLooks = 20;          // at the terminal; chosen
+
+}  // namespace
+
+StartPose StartPose::of(const scene::ArmFile& file, driver::ArmKind kind) {
+  if (kind == driver::ArmKind::kFalcon) return {file.workspace, std::nullopt};
+  return {file.workspace, file.p_WB + file.R_WB * make_arm(file, kind)->pose({}).p_BT};
+}
+
+std::string StartPose::trouble(const Eigen::Vector3d& p_WT, bool at_home) const {
+  constexpr const char* kMend =
+      "switch it off, put it into its home pose, and switch it on again there";
+  if (!p_WT.allFinite()) {
+    return scene::printed("The arm reports no position that can be: %s.", kMend);
+  }
+  if (p_WHome_) {
+    const double distance = (p_WT - *p_WHome_).norm();
+    if (distance <= kHomeMargin) return {};
+    if (at_home) {
+      return scene::printed(
+          "The arm reports its tip %.0f mm away from its home pose. Put it into its home pose. If "
+          "it stands there already, its counters began elsewhere: %s.",
+          1e3 * distance, kMend);
+    }
+  }
+  const Eigen::Vector3d nearest = p_WT.cwiseMax(workspace_.min_W).cwiseMin(workspace_.max_W);
+  const double outside = (p_WT - nearest).norm();
+  if (!(outside <= kWorkspaceMargin)) {
+    return scene::printed(
+        "The arm reports its tip %.0f mm outside of the workspace that its arm file names. Bring "
+        "it "
+        "inside. If it is inside already, its counters are wrong: %s.",
+        1e3 * outside, has_home() ? kMend : "start the program again, which homes it anew");
+  }
+  return {};
+}
+
+Terminal user_terminal() {
+  return {.there = isatty(STDIN_FILENO) != 0,
+          .key = look_for_enter,
+          .tell = [](const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); }};
+}
+
+driver::Result<bool> wait_for_start_pose(driver::Device& device, driver::Clock& clock,
+                                         const StartPose& place, bool at_home,
+                                         const Terminal& terminal, const std::atomic<bool>& stop) {
+  std::string trouble = place.trouble(device.state().p_WT, at_home);
+  if (trouble.empty()) return true;
+  if (!terminal.there) return driver::Error{trouble + " Then start again."};
+  const auto ask = [&] { terminal.tell(trouble + " Hold it there and press Enter."); };
+  ask();
+  std::int64_t due_ns = clock.now_ns();
+  for (int tick = 1; !stop.load(std::memory_order_relaxed); ++tick) {
+    due_ns += kPeriod_ns;
+    clock.sleep_until_ns(due_ns);
+    const std::int64_t now_ns = clock.now_ns();
+    device.idle(now_ns, now_ns);
+    if (device.fault() != driver::Fault::kNone) {
+      return driver::Error{std::string(driver::describe(device.fault()))};
+    }
+    if (tick % kTicksBetweenLooks != 0) continue;
+    const EnterKey key = terminal.key();
+    if (key == EnterKey::kClosed) return driver::Error{trouble + " Nobody is at the terminal."};
+    if (key != EnterKey::kPressed) continue;
+    trouble = place.trouble(device.state().p_WT, at_home);
+    if (trouble.empty()) return true;
+    ask();
+  }
+  return false;
+}
+
+}  // namespace thimble::session

@@ -1,0 +1,314 @@
+#include "stability/rest_warnings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "mesh/adjacency.h"
+#include "printed.h"
+#include "stability/draw.h"
+#include "stability/tuning.h"
+#include "thimble/render/mesh/load_mesh.h"
+
+namespace thimble::app {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kFelt = 0.02;  // N RMS [STABILITY 6]
+constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kPressed = 1;   // N, with which a hand rests on something [chosen]
+constexpr double kCreep = 1e-3;  // m/s: slower, a count takes 30 ms and more
+constexpr double kStroke = 0.1;  // m/s; slower swings are always there [chosen]
+constexpr double kProbe = 1e-6;  // m
+constexpr int kTries = 4000;     // places of a texture; finds a sine's curvature within 2 %
+
+/// Is what a field does, found by trying it.
+struct FieldTried {
+  double push = 0;     // N, on a tip at rest
+  double damping = 0;  // N s/m
+};
+
+FieldTried try_field(const scene::SceneObject& object, const scene::ArmFile& arm) {
+  FieldTried found;
+  const auto field = object.build_field();
+  for (const Vector3d& p_W : scene::points_of_workspace(arm, 7)) {
+    driver::DeviceState state;
+    state.p_WT = p_W;
+    const Vector3d at_rest = field->update(state).f_T_W;
+    found.push = std::max(found.push, at_rest.norm());
+    state.v_WT = {0.01, 0, 0};
+    found.damping = std::max(found.damping, -(field->update(state).f_T_W - at_rest).x() / 0.01);
+  }
+  return found;
+}
+
+bool bends(const scene::SceneObject& object) {
+  return object.body.dent || object.body.shape.named();
+}
+
+bool is_flat(const scene::SceneObject& object) {
+  const render::ContactChoice& contact = object.contact;
+  if (contact.blending) return *contact.blending == render::BlendingChoice::kFlat;
+  return contact.tracker == render::TrackerChoice::kEdgePlanes ||
+         contact.tracker == render::TrackerChoice::kNormalProjection;
+}
+
+void warn_of_facets(const scene::SceneObject& object, std::vector<std::string>& warnings) {
+  if (object.mesh_file.empty() || object.paged) return;
+  // Facets that the body bends are hollow wherever it gives way, whatever the tracker.
+  const bool god_object = object.contact.tracker == render::TrackerChoice::kGodObject;
+  const bool flat = is_flat(object);
+  if (bends(object) && (flat || god_object)) {
+    warnings.push_back(scene::printed(
+        "%s is felt by flat facets and gives way, so there are hollows where it is pressed; a "
+        "tip that rests on an edge in one jumps from facet to facet: set contact: {blending: "
+        "phong}, or tracker: compact.",
+        object.name.c_str()));
+    return;
+  }
+  if (god_object) return;
+  const auto mesh = render::load_mesh(object.mesh_file);
+  if (!mesh) return;
+  // A jump of 2 F sin(angle / 2), to and fro, has half of it as its RMS.
+  const double felt = 2 * std::asin(kFelt / kPressed);
+  const double smooth_up_to = object.contact.crease_angle.value_or(std::numbers::pi);
+  const double hollow = sharpest_hollow(*mesh, flat ? felt : std::max(felt, smooth_up_to));
+  if (!(hollow > 0)) return;
+  warnings.push_back(scene::printed(
+      "%s has hollows with edges of up to %.0f degrees and is felt by flat facets there: a tip "
+      "that rests on such an edge jumps sideways by %.2g N for each newton pressed, at every "
+      "count of an encoder: set contact: {blending: sized_band}, or tracker: compact.",
+      object.name.c_str(), hollow / kDegree, 2 * std::sin(hollow / 2)));
+}
+
+/// Is what lies over what a loop carries, with the hand of the scene.
+struct Loop {
+  const scene::Scene& scene;
+  scene::LoopTimes times;
+
+  double edge(double damping) const {
+    return carried_by(scene.arm, times, 0, damping).stiffness_exact;
+  }
+};
+
+void warn_of_effects(const scene::SceneObject& object, const Loop& loop, double bare_edge,
+                     std::vector<std::string>& warnings) {
+  const double force = loop.scene.arm.limits.force_max;
+  for (const render::EffectPlan& effect : object.effects) {
+    if (effect.kind->group == "texture") {
+      const double curvature = curvature_of(effect);
+      const double from = bare_edge / curvature;
+      if (!(from < force)) continue;
+      warnings.push_back(scene::printed(
+          "%s has a texture whose waves add %.0f N/m along the surface for each newton pressed; "
+          "from %.2g N on that is more than the %.0f N/m that arm, loop and hand carry, and the "
+          "tip buzzes in its grooves: make them lower or longer (amplitude / wavelength^2).",
+          object.name.c_str(), curvature, from, bare_edge));
+    } else if (effect.kind->group == "friction") {
+      const double hold = hold_of(effect);
+      // Slow swings the arm's own dry friction holds [STABILITY 1.4].
+      const Carried carried = carried_by(loop.scene.arm, loop.times, 0, 0);
+      const double held_speed = swing_speed_limit(
+          hold, carried.damping, loop.scene.arm.simulated.plant.coulomb, carried.latency);
+      if (!(hold > bare_edge && held_speed < kStroke)) continue;
+      warnings.push_back(scene::printed(
+          "%s has a friction that holds with %.0f N/m, but with this hand (%.3g N s/m) the "
+          "loop carries %.0f N/m: set its stiffness to %.0f N/m or less.",
+          object.name.c_str(), hold, loop.scene.arm.simulated.hand.damping, bare_edge,
+          0.7 * bare_edge));
+    }
+  }
+}
+
+/// Warns of a light body that a friction holds: the tip and the body swing against each other, and
+/// of the hand's damping only the part reaches that swing by which the tip takes part in it.
+///
+/// With s = m / (m + m_tip) the tip's share, K L <= b_tip s^2 + b (1 - s)^2. A friction turns a
+/// free body too; at its rim a ball counts 1 / (1 + 5 / 2) of its mass.
+void warn_of_light_body(const scene::SceneObject& object, const Loop& loop,
+                        std::vector<std::string>& warnings) {
+  if (!object.body.motion) return;
+  const render::MotionChoice& motion = *object.body.motion;
+  double hold = 0;
+  for (const render::EffectPlan& effect : object.effects) {
+    if (effect.kind->group == "friction") hold = std::max(hold, hold_of(effect));
+  }
+  const Carried carried = carried_by(loop.scene.arm, loop.times, 0, 0);
+  const double felt = motion.kind == render::MotionKind::kRigid ? motion.mass / 3.5 : motion.mass;
+  const double share = felt / (felt + carried.tip.mass + loop.scene.arm.simulated.hand.mass);
+  const double damping =
+      carried.damping * share * share + motion.damping * (1 - share) * (1 - share);
+  if (!(hold * carried.latency > damping)) return;
+  warnings.push_back(scene::printed(
+      "%s weighs %.3g kg and has a friction that holds with %.0f N/m: the hand hardly damps how so "
+      "light a body swings on it, and the loop carries %.0f N/m: give it more mass or damping, or "
+      "set the friction's stiffness lower.",
+      object.name.c_str(), motion.mass, hold, damping / carried.latency));
+}
+
+/// Warns of springs that add up where a tip is on all of them: each may be carried by itself.
+void warn_of_sum(const Loop& loop, std::vector<std::string>& warnings) {
+  double sum = 0, damping = 0;
+  int count = 0;
+  for (const scene::SceneObject& object : loop.scene.objects) {
+    if (object.build_field || !(object.stiffness > 0)) continue;
+    sum += object.stiffness;
+    damping += object.damping;
+    ++count;
+  }
+  if (count < 2 || !(sum > loop.edge(damping))) return;
+  warnings.push_back(scene::printed(
+      "Together the %d surfaces are as stiff as %.0f N/m, more than the %.0f N/m that arm, "
+      "loop and hand carry: where a tip is within all of them it trembles. Keep them apart, "
+      "or lower their stiffness.",
+      count, sum, loop.edge(damping)));
+}
+
+void warn_of_grain(const Loop& loop, std::vector<std::string>& warnings) {
+  const scene::ArmFile& arm = loop.scene.arm;
+  const device_sim::HandSettings& hand = arm.simulated.hand;
+  double surfaces = 0, fields = 0;
+  for (const scene::SceneObject& object : loop.scene.objects) {
+    if (object.build_field) {
+      fields += try_field(object, arm).damping;
+    } else {
+      surfaces = std::max(surfaces, object.damping);
+    }
+  }
+  const double step = scene::worst_over_workspace(arm).encoder_step;
+  const double tremor =
+      std::sqrt(2.0) * std::numbers::pi * hand.tremor_frequency * hand.tremor_amplitude;  // RMS
+  const double speed = std::max(kCreep, tremor);
+  const double grain =
+      grain_of(fields + surfaces, step, speed, arm.velocity_corner_frequency, loop.times.period);
+  if (!(grain > kFelt)) return;
+  warnings.push_back(scene::printed(
+      "The damping of this scene, up to %.2g N s/m, grates on encoder steps of %.0f um: at %.1f "
+      "mm/s, as the hand's tremor moves the tip or a hand comes to rest, that is %.0f mN of grain. "
+      "Lower the damping, or the arm's velocity_corner_frequency.",
+      fields + surfaces, 1e6 * step, 1e3 * speed, 1e3 * grain));
+}
+
+}  // namespace
+
+double curvature_of(const render::EffectPlan& texture) {
+  const auto stage = texture.build();
+  Draw draw(1);
+  double most = 0;
+  // Pressed by so much that the height itself counts for nothing: the force for each newton.
+  const auto force = [&stage](const Vector3d& p_W, const Vector3d& n_W) -> Vector3d {
+    driver::DeviceState state;
+    state.p_WT = p_W;
+    render::SurfaceResponse feel{
+        .contact = {.touching = true, .triangle = 0, .depth = 1, .n_W = n_W, .p_WP = p_W + n_W}};
+    stage->touch(state, feel);
+    return feel.contact.depth * feel.contact.n_W;
+  };
+  for (int i = 0; i < kTries; ++i) {
+    const Vector3d p_W = draw.in_box(0.05), n_W = draw.direction();
+    const Vector3d u_W = n_W.cross(draw.direction()).normalized();
+    const Vector3d change = force(p_W + kProbe * u_W, n_W) - force(p_W - kProbe * u_W, n_W);
+    most = std::max(most, std::abs(change.dot(u_W)) / (2 * kProbe));
+  }
+  return most;
+}
+
+double hold_of(const render::EffectPlan& friction) {
+  const auto stage = friction.build();
+  const auto force_at = [&stage](double x, std::int64_t tick) {
+    driver::DeviceState state;
+    state.tick = static_cast<std::uint64_t>(tick);
+    state.time_ns = tick * 1'000'000;
+    state.dt = 1e-3;
+    state.p_WT = {x, 0, -1e-3};
+    state.fresh = true;
+    render::SurfaceResponse feel{
+        .contact = {.touching = true, .triangle = 0, .depth = 1e-3, .n_W = {0, 0, 1}}};
+    feel.contact.p_WP = {x, 0, 0};
+    feel.f_T_W = {0, 0, 10};  // so that nothing slips
+    stage->touch(state, feel);
+    return feel.f_T_W.x();
+  };
+  for (int tick = 0; tick < 20; ++tick) force_at(0, tick);
+  return std::max(0.0, (force_at(0, 20) - force_at(kProbe, 21)) / kProbe);
+}
+
+double sharpest_hollow(const render::TriangleMesh& mesh, double from) {
+  const auto neighbours = render::find_adjacency(mesh);
+  if (!neighbours) return 0;
+  const auto corner = [&mesh](std::int32_t triangle, std::size_t k) -> const Vector3d& {
+    return mesh
+        .vertices[static_cast<std::size_t>(mesh.triangles[static_cast<std::size_t>(triangle)][k])];
+  };
+  const auto normal = [&corner](std::int32_t t) {
+    return (corner(t, 1) - corner(t, 0)).cross(corner(t, 2) - corner(t, 0)).normalized();
+  };
+  double most = 0;
+  for (std::int32_t t = 0; t < static_cast<std::int32_t>(mesh.triangles.size()); ++t) {
+    const Vector3d n = normal(t);
+    for (const std::int32_t other : (*neighbours)[static_cast<std::size_t>(t)]) {
+      if (other < t) continue;  // each edge once
+      double above = 0;
+      for (std::size_t k = 0; k < 3; ++k) {
+        above = std::max(above, n.dot(corner(other, k) - corner(t, 0)));
+      }
+      const Vector3d m = normal(other);
+      const double angle = std::atan2(n.cross(m).norm(), n.dot(m));
+      if (above > 1e-9 * (corner(t, 1) - corner(t, 0)).norm() && angle > from) {
+        most = std::max(most, angle);
+      }
+    }
+  }
+  return most;
+}
+
+double grain_of(double damping, double step, double speed, double corner, double period) {
+  if (!(step > 0)) return 0;
+  const double p = std::min(0.5, speed * period / step);
+  const double gain = corner > 0 ? -std::expm1(-2 * std::numbers::pi * corner * period) : 1;
+  return damping * step / period * std::sqrt(p * (1 - p) * gain / (2 - gain));
+}
+
+std::vector<std::string> energy_warnings(const scene::Scene& scene) {
+  std::vector<std::string> warnings;
+  const driver::EnergyStage stage = scene.energy.value_or(scene.arm.energy.stage);
+  if (stage == driver::EnergyStage::kNone) return warnings;
+  // Over the workspace that is more than the stage lets go [kEnergyAllowance].
+  const double way = (scene.arm.workspace.max_W - scene.arm.workspace.min_W).maxCoeff();
+  for (const scene::SceneObject& object : scene.objects) {
+    const bool field = static_cast<bool>(object.build_field);
+    double push = 0;
+    if (field) {
+      push = try_field(object, scene.arm).push;
+    } else if (object.body.motion && object.body.motion->grip) {  // on the floor it gives nothing
+      push = object.body.motion->mass * object.body.motion->gravity_W.norm();
+    }
+    if (!(push * way > scene::kEnergyAllowance + scene::kEnergyOnset)) continue;
+    warnings.push_back(scene::printed(
+        "%s %s (up to %.2g N) and gives energy by right, but the gate's energy stage takes "
+        "back what is more than %.0f mJ: it brakes the hand and lets all forces fade. Set "
+        "gate: {energy: none} in the scene.",
+        object.name.c_str(), field ? "pushes a hand that rests" : "has weight", push,
+        1e3 * scene::kEnergyAllowance));
+  }
+  return warnings;
+}
+
+std::vector<std::string> rest_warnings(const scene::Scene& scene) {
+  std::vector<std::string> warnings;
+  if (!scene.arm.can_simulate) return warnings;  // nothing is known of its tip
+  const Loop loop{scene, loop_times(scene.arm, scene.rate)};
+  const double bare_edge = loop.edge(0);
+  for (const scene::SceneObject& object : scene.objects) {
+    if (object.build_field) continue;
+    warn_of_facets(object, warnings);
+    warn_of_effects(object, loop, bare_edge, warnings);
+    warn_of_light_body(object, loop, warnings);
+  }
+  warn_of_sum(loop, warnings);
+  warn_of_grain(loop, warnings);
+  return warnings;
+}
+
+}  // namespace thimble::app

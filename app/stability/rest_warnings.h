@@ -1,0 +1,45 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "thimble/render/mesh/triangle_mesh.h"
+#include "thimble/scene/scene_file.h"
+
+namespace thimble::app {
+
+// What `thimble study trouble` found to tremble under a hand that rests, though no wall is stiffer
+// than the loop carries. Each has a law, and each law a sentence that names the object, the number
+// and the remedy. What counts as trembling: 20 mN above 50 Hz [STABILITY 6]. Real-time: never from
+// the servo thread.
+
+/// Says of each field and weight that gives energy by right what the gate's energy stage will do to
+/// it; nothing where there is no such stage.
+std::vector<std::string> energy_warnings(const scene::Scene& scene);
+
+/// Says what in a scene may tremble under the hand of its arm or of its grip: facets, textures,
+/// frictions, springs that add up, light bodies, damping on coarse encoders. Reads the meshes that
+/// lie in memory; what cannot be read is passed over, for the loader tells.
+std::vector<std::string> rest_warnings(const scene::Scene& scene);
+
+/// Tells the stiffness (N/m) that a texture's waves add along the surface for each newton of
+/// pressing: the largest curvature of its height, 1/m; for sines a (2 pi / L)^2 [STABILITY 1.1].
+double curvature_of(const render::EffectPlan& texture);
+
+/// Tells how stiff (N/m) a friction holds what sticks to it, by a micrometre of way; 0 if it does
+/// not hold.
+double hold_of(const render::EffectPlan& friction);
+
+/// Finds the sharpest hollow edge of a mesh, rad: by so much the normal turns where a tip that
+/// rests in the hollow goes from one facet to the next. Edges up to `from` (rad) are passed over.
+double sharpest_hollow(const render::TriangleMesh& mesh, double from);
+
+/// Finds the force (N RMS) by which damping `damping` (N s/m) grates on encoders of `step` (m) at a
+/// `speed` (m/s), through a velocity filter of `corner` (Hz; 0: none) in a loop of `period` (s).
+///
+/// A count is a pulse of b d / T in the unfiltered velocity; at p = v T / d counts per tick their
+/// RMS about the mean is b d / T sqrt(p (1 - p)), of which a pole of gain g leaves g / (2 - g) of
+/// the power.
+double grain_of(double damping, double step, double speed, double corner, double period);
+
+}  // namespace thimble::app

@@ -1,0 +1,243 @@
+#include "stability/tuning.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "printed.h"
+#include "stability/rest_warnings.h"
+#include "stability/wall_trial.h"
+#include "thimble/scene/energy_choice.h"
+
+namespace thimble::app {
+namespace {
+
+/// Is the part of the limit that is safe to ask for: tightening a grip brings stiffness as well as
+/// damping [chosen]. It is not enough for hands that differ by three, which are looked at apart.
+constexpr double kShare = 0.7;
+
+/// Is the part of what the worst of those hands carries: there swings die within a second
+/// [measured, tests/sim/hand_constants_test].
+constexpr double kShareAnyHand = 0.8;
+
+/// Is the worst of what simulated walls could carry.
+struct Edges {
+  double linear = std::numeric_limits<double>::infinity();  // without dry friction and steps, N/m
+  double as_is = std::numeric_limits<double>::infinity();   // N/m
+  int walls = 0;
+};
+
+/// Takes dry friction, encoder steps and tremor from an arm: what is left is what the law is about.
+scene::ArmFile without_friction(scene::ArmFile arm) {
+  arm.simulated.plant.coulomb = 0;
+  // Only this wire has fractions of counts; the others keep their steps.
+  if (arm.shape == scene::ArmShape::kSerial && arm.protocol == scene::ArmProtocol::kHfab14Byte) {
+    arm.model.fractional_counts = true;
+  }
+  return arm;
+}
+
+Edges try_walls(const scene::ArmFile& file, double rate, double damping, const Carried& carried,
+                int per_side) {
+  scene::ArmFile arm = file;
+  arm.simulated.hand.tremor_amplitude = 0;
+  // Room for the hand's way within the workspace.
+  const Eigen::Vector3d room =
+      (0.02 * Eigen::Vector3d::Ones()).cwiseMin(0.25 * (arm.workspace.max_W - arm.workspace.min_W));
+  arm.workspace.min_W += room;
+  arm.workspace.max_W -= room;
+  const scene::ArmFile smooth = without_friction(arm);
+  // What swings by less than that is count-level flicker or the end of a slow creep [chosen].
+  const double quiet = 2e-4 + 5 * carried.tip.encoder_step;
+  Edges edges;
+  for (const Eigen::Vector3d& p_W : scene::points_of_workspace(arm, per_side)) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const WallTrial trial{
+          .p_W = p_W, .n_W = Eigen::Vector3d::Unit(axis), .damping = damping, .rate = rate};
+      const auto linear = simulated_edge(smooth, trial, carried.stiffness_exact, quiet);
+      const auto as_is = simulated_edge(arm, trial, carried.stiffness_exact, quiet);
+      if (!linear || !as_is) continue;
+      edges.linear = std::min(edges.linear, *linear);
+      edges.as_is = std::min(edges.as_is, *as_is);
+      ++edges.walls;
+    }
+  }
+  return edges;
+}
+
+/// Says what to change about a wall that is too stiff.
+std::string advice(const scene::Scene& scene, const scene::SceneObject& object,
+                   const Carried& carried) {
+  const double limit = carried.stiffness_safe;
+  const double rate = scene.rate * std::ceil(object.stiffness / carried.stiffness_exact);
+  return scene::printed(
+      "%s asks for %.0f N/m, but arm, loop and hand carry %.0f N/m (damping of %.3g N s/m over a "
+      "latency of %.2f ms): set its stiffness to %.0f N/m or less, or run at %.0f Hz if the arm's "
+      "delay of %.1f ms falls with it.",
+      object.name.c_str(), object.stiffness, carried.stiffness_exact,
+      carried.damping + object.damping, 1e3 * carried.latency, limit, rate,
+      1e3 * carried.times.delay);
+}
+
+}  // namespace
+
+scene::LoopTimes loop_times(const scene::ArmFile& arm, double rate, double period_spread) {
+  return {.period = 1 / rate, .period_spread = period_spread, .delay = scene::loop_delay(arm)};
+}
+
+Carried carried_by(const scene::ArmFile& arm, const scene::LoopTimes& times, double stiffness,
+                   double damping) {
+  Carried carried;
+  carried.times = times;
+  carried.latency = scene::latency_of(times);
+  carried.tip = scene::worst_over_workspace(arm);
+  carried.damping = carried.tip.damping + arm.simulated.hand.damping;
+  carried.stiffness_law = scene::stiffness_limit(carried.damping + damping, carried.latency);
+  // Jitter acts as so much more delay [STABILITY 1.1].
+  const double more = carried.latency - times.period / 2;
+  const auto edge_with = [&](const device_sim::HandSettings& hand) {
+    return stiffness_edge({.mass = carried.tip.mass + hand.mass,
+                           .viscous = carried.tip.damping + hand.damping,
+                           .hand_stiffness = hand.stiffness,
+                           .damping = damping,
+                           .velocity_corner = arm.velocity_corner_frequency,
+                           .period = times.period,
+                           .delay = more});
+  };
+  carried.stiffness_exact = edge_with(arm.simulated.hand);
+  carried.stiffness_any_hand = carried.stiffness_exact;
+  carried.worst_hand = arm.simulated.hand;
+  for (int corner = 0; corner < 8; ++corner) {
+    const auto times_of = [corner](int bit) { return (corner >> bit & 1) != 0 ? 3.0 : 1.0 / 3; };
+    device_sim::HandSettings hand = arm.simulated.hand;
+    hand.mass *= times_of(0);
+    hand.stiffness *= times_of(1);
+    hand.damping *= times_of(2);
+    const double edge = edge_with(hand);
+    if (edge < carried.stiffness_any_hand) {
+      carried.stiffness_any_hand = edge;
+      carried.worst_hand = hand;
+    }
+  }
+  carried.stiffness_safe =
+      std::min(kShare * carried.stiffness_exact, kShareAnyHand * carried.stiffness_any_hand);
+  const double step = carried.tip.encoder_step;
+  carried.passive =
+      std::min(passive_stiffness(carried.tip.damping, 0, times.period, more),
+               passive_stiffness_quantised(carried.tip.damping, arm.simulated.plant.coulomb, step,
+                                           times.period));
+  carried.held_speed = swing_speed_limit(stiffness, carried.tip.damping,
+                                         arm.simulated.plant.coulomb, carried.latency);
+  // The length that a bristle needs goes with its force, so their quotient is the arm's.
+  carried.bristle_stiffness =
+      1 / bristle_length(1, carried.latency, carried.damping, step, arm.simulated.plant.coulomb);
+  return carried;
+}
+
+std::vector<std::string> stability_warnings(const scene::Scene& scene) {
+  std::vector<std::string> warnings;
+  if (!scene.arm.can_simulate) return warnings;  // nothing is known of its tip
+  for (const scene::SceneObject& object : scene.objects) {
+    if (object.build_field || !(object.stiffness > 0)) continue;
+    const Carried carried =
+        carried_by(scene.arm, loop_times(scene.arm, scene.rate), object.stiffness, object.damping);
+    if (object.stiffness > carried.stiffness_exact) {
+      warnings.push_back(advice(scene, object, carried));
+    }
+  }
+  for (std::string& warning : energy_warnings(scene)) warnings.push_back(std::move(warning));
+  return warnings;
+}
+
+TuneResult tune(const scene::Scene& scene, const TuneOptions& options) {
+  TuneResult result;
+  const scene::ArmFile& arm = scene.arm;
+  const scene::LoopTimes times = loop_times(arm, scene.rate, options.period_spread);
+  const Carried bare = carried_by(arm, times, 1000, 0);
+  result.text +=
+      scene::printed("%s at %.0f Hz, with the hand of its file (%.3g kg, %.3g N/m, %.3g N s/m):\n",
+                     arm.name.c_str(), scene.rate, arm.simulated.hand.mass,
+                     arm.simulated.hand.stiffness, arm.simulated.hand.damping);
+  result.text +=
+      scene::printed("Latency   %.3f ms: half a period %.3f, jitter %.3f, wire %.3f.\n",
+                     1e3 * bare.latency, 0.5e3 * times.period,
+                     1e3 * (bare.latency - times.period / 2 - times.delay), 1e3 * times.delay);
+  result.text += scene::printed(
+      "Tip       %.3g kg, %.3g N s/m, %.3g N of dry friction; one step of the encoders is up to "
+      "%.0f um.\n",
+      bare.tip.mass, bare.tip.damping, arm.simulated.plant.coulomb, 1e6 * bare.tip.encoder_step);
+  result.text += scene::printed(
+      "Passive   for any hand up to %.3g N/m (no arm of this kind is used there); without a hand "
+      "dry friction holds 1000 N/m up to swings of %.3f m/s.\n",
+      bare.passive, bare.held_speed);
+  result.text += scene::printed(
+      "Friction  a bristle of up to %.0f N/m is quiet: z_max >= %.3g mm for each newton.\n",
+      bare.bristle_stiffness, 1e3 / bare.bristle_stiffness);
+  result.figures = {{"latency", 1e3 * bare.latency, "ms", ""},
+                    {"encoder_step", 1e6 * bare.tip.encoder_step, "um", ""},
+                    {"passive_stiffness", bare.passive, "N/m", ""},
+                    {"bristle_stiffness", bare.bristle_stiffness, "N/m", ""},
+                    {"bristle_length_per_newton", 1e3 / bare.bristle_stiffness, "mm/N", ""}};
+  for (const scene::SceneObject& object : scene.objects) {
+    if (object.build_field || !(object.stiffness > 0)) continue;
+    const Carried carried = carried_by(arm, times, object.stiffness, object.damping);
+    result.text += scene::printed("%s: %.0f N/m and %.3g N s/m are asked for.\n",
+                                  object.name.c_str(), object.stiffness, object.damping);
+    result.text +=
+        scene::printed("  law       (b + B) / L = %.0f N/m; the exact linear loop %.0f N/m\n",
+                       carried.stiffness_law, carried.stiffness_exact);
+    const std::string name = object.name;
+    result.figures.push_back({name + ".asked", object.stiffness, "N/m", ""});
+    result.figures.push_back({name + ".law", carried.stiffness_law, "N/m", ""});
+    result.figures.push_back({name + ".exact", carried.stiffness_exact, "N/m", ""});
+    double edge = carried.stiffness_exact;
+    if (arm.shape == scene::ArmShape::kFalcon) {
+      result.text += "  simulated not: a Falcon's simulation is for whole scenes only\n";
+    } else {
+      const Edges edges =
+          try_walls(arm, scene.rate, object.damping, carried, options.places_per_side);
+      if (edges.walls > 0) {
+        edge = std::min(edge, edges.as_is);
+        result.text += scene::printed(
+            "  simulated %.0f N/m without dry friction and steps, %.0f N/m as the arm is; the "
+            "worst of %d walls all over the workspace, through wire and gate\n",
+            edges.linear, edges.as_is, edges.walls);
+        result.figures.push_back({name + ".simulated_linear", edges.linear, "N/m", ""});
+        result.figures.push_back({name + ".simulated", edges.as_is, "N/m", ""});
+        result.figures.push_back(
+            {name + ".simulated_over_exact", edges.linear / carried.stiffness_exact, "1", ""});
+      }
+    }
+    const device_sim::HandSettings& hand = carried.worst_hand;
+    result.text += scene::printed(
+        "  hands     of a third to three times these constants: %.0f N/m; the worst has %.3g kg, "
+        "%.3g N/m, %.3g N s/m\n",
+        carried.stiffness_any_hand, hand.mass, hand.stiffness, hand.damping);
+    result.figures.push_back({name + ".any_hand", carried.stiffness_any_hand, "N/m", ""});
+    result.figures.push_back(
+        {name + ".margin_any_hand", carried.stiffness_any_hand / object.stiffness, "1", ">= 1"});
+    if (object.stiffness > carried.stiffness_any_hand &&
+        object.stiffness <= carried.stiffness_exact) {
+      result.text += scene::printed(
+          "Warning   %s is carried by the hand of the arm's file, but a looser one (%.3g N s/m) "
+          "may "
+          "tremble on it: set its stiffness to %.0f N/m or less, or its damping higher.\n",
+          name.c_str(), hand.damping, carried.stiffness_safe);
+    }
+    const double safe = std::min(kShare * edge, carried.stiffness_safe);
+    const double margin = edge / object.stiffness;
+    result.figures.push_back({name + ".margin", margin, "1", scene::printed(">= %g", 1 / kShare)});
+    result.text +=
+        scene::printed("  margin    %.2f; up to %.0f N/m is safe to ask for here%s\n", margin, safe,
+                       object.stiffness <= safe ? "." : ", so ask for less.");
+  }
+  for (const std::string& warning : stability_warnings(scene)) {
+    result.text += "Warning   " + warning + "\n";
+  }
+  const std::vector<std::string> at_rest = rest_warnings(scene);
+  for (const std::string& warning : at_rest) result.text += "Warning   " + warning + "\n";
+  result.figures.push_back({"rest_warnings", static_cast<double>(at_rest.size()), "", ""});
+  return result;
+}
+
+}  // namespace thimble::app

@@ -1,0 +1,201 @@
+#include "stability/wall_bench.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <stdexcept>
+#include <utility>
+
+#include "thimble/driver/arms/hfab/hfab_models.h"
+#include "thimble/driver/clock.h"
+#include "thimble/driver/device.h"
+#include "thimble/scene/arm_simulation.h"
+
+namespace thimble::app {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+// What a report can carry [DEVICES 1]: no limit is felt below it.
+constexpr double kCurrentMost = 32;  // A
+
+constexpr int kKickTicks = 4;  // so that no kick needs more than the motors' current
+
+/// Is the tip's jumps by one count of each joint at home, m in the world.
+struct HomeSteps {
+  Vector3d p_WT;
+  Matrix3d ways_W;
+};
+
+driver::Result<HomeSteps> home_steps(const scene::ArmFile& arm) {
+  const Vector3d q = arm.model.joint_angles({});
+  Vector3d p_BT;
+  Matrix3d J_BT;
+  switch (arm.shape) {
+    case scene::ArmShape::kSerial:
+      arm.model.geometry.forward(q, p_BT, J_BT);
+      break;
+    case scene::ArmShape::kPolhem:
+      driver::hfab::polhem_model().geometry.forward(q, p_BT, J_BT);
+      break;
+    case scene::ArmShape::kFalcon:
+      return driver::Error{arm.name +
+                           ": the study needs an arm whose board reports by itself, which this one "
+                           "does not; vintage_phantom.yaml is one."};
+  }
+  HomeSteps steps{arm.p_WB + arm.R_WB * p_BT, arm.R_WB * J_BT};
+  for (int i = 0; i < 3; ++i) steps.ways_W.col(i) *= arm.model.step(i);
+  return steps;
+}
+
+ArmDirection along(const Vector3d& way_W, const HomeSteps& home) {
+  const Vector3d n_W = way_W.normalized();
+  return {.n_W = n_W, .p_WT = home.p_WT, .step = (home.ways_W.transpose() * n_W).cwiseAbs().sum()};
+}
+
+/// Makes the arm that the case asks for out of that of the file.
+scene::ArmFile arm_of(const scene::ArmFile& file, const WallCase& wall) {
+  scene::ArmFile arm = file;
+  arm.velocity_corner_frequency = wall.velocity_corner;
+  arm.simulated.plant = wall.tip;
+  arm.simulated.hand = wall.hand;
+  arm.simulated.hand.tremor_amplitude = 0;
+  if (!wall.own_wire) {
+    arm.simulated.firmware.report_period_ns = wall.report_ns > 0 ? wall.report_ns : wall.period_ns;
+    arm.simulated.wire = {.delay_in_ns = 0, .delay_out_ns = wall.delay_ns};
+  }
+  if (!wall.own_step && wall.step > 0) {
+    const double finer = wall.direction.step / wall.step;
+    for (auto& encoder : arm.model.encoders) {
+      // The home pose stays in the middle of a step, as it is with the arm's own encoders; where a
+      // wall stands between two steps decides whether it can rest.
+      const double home = std::round(encoder.home_counts * finer);
+      encoder.counts_per_motor_turn *= home != 0 ? home / encoder.home_counts : finer;
+      encoder.home_counts = static_cast<std::int32_t>(home);
+    }
+  }
+  if (!wall.own_step && !(wall.step > 0)) arm.model.fractional_counts = true;
+  if (!wall.own_limits) {
+    // No limit is felt: the soft start lets 20 N through in a microsecond.
+    arm.limits = {.force_max = 1e6,
+                  .speed_max = 1e4,
+                  .rise_max = 1e9,
+                  .soft_start = 0.05,
+                  .stall_ns = 1'000'000'000,
+                  .watchdog_ns = 1'000'000'000};
+    arm.simulated.motors.current_max = kCurrentMost;
+    arm.simulated.firmware.current_range_mA = 32767;
+    for (auto& drive : arm.model.drives) drive.current_max = kCurrentMost;
+  }
+  return arm;
+}
+
+}  // namespace
+
+driver::Result<ArmDirection> worst_direction_at_home(const scene::ArmFile& arm) {
+  const auto home = home_steps(arm);
+  if (!home) return home.error();
+  ArmDirection worst;
+  for (int axis = 0; axis < 3; ++axis) {
+    const ArmDirection one = along(arm.R_WB.col(axis), *home);
+    if (one.step > worst.step) worst = one;
+  }
+  return worst;
+}
+
+driver::Result<ArmDirection> diagonal_direction_at_home(const scene::ArmFile& arm) {
+  const auto home = home_steps(arm);
+  if (!home) return home.error();
+  const Matrix3d& ways = home->ways_W;
+  // The sum of |n . way_i| is largest along the longest of the sums of the ways with any signs.
+  Vector3d longest = Vector3d::Zero();
+  for (int signs = 0; signs < 4; ++signs) {
+    const Vector3d sum =
+        ways.col(0) + (signs & 1 ? -1 : 1) * ways.col(1) + (signs & 2 ? -1 : 1) * ways.col(2);
+    if (sum.norm() > longest.norm()) longest = sum;
+  }
+  return along(longest, *home);
+}
+
+driver::Result<ArmDirection> direction_at_home(const scene::ArmFile& arm, const Vector3d& way_W) {
+  if (!(way_W.norm() > 0)) return driver::Error{"A direction needs a length above 0."};
+  const auto home = home_steps(arm);
+  if (!home) return home.error();
+  return along(way_W, *home);
+}
+
+WallRun run_wall(const scene::ArmFile& file, const WallCase& wall) {
+  const scene::ArmFile arm = arm_of(file, wall);
+  const Vector3d n_W = wall.direction.n_W;
+  const Vector3d home_W = wall.direction.p_WT;
+  const auto wish = [&](double offset) { return Vector3d(home_W + offset * n_W); };
+  std::vector<std::pair<double, Vector3d>> way{{0.0, wish(wall.hand_from)}};
+  if (wall.hand_end > wall.hand_start) {
+    way.emplace_back(std::max(wall.hand_start, 1e-6), wish(wall.hand_from));
+    way.emplace_back(wall.hand_end, wish(wall.hand_to));
+  }
+  auto simulation = scene::ArmSimulation::make(arm, way);
+  if (!simulation) throw std::invalid_argument(simulation.error().message);
+  const device_sim::SimulatedArm* const board = (*simulation)->board_arm();
+  if (board == nullptr) {
+    throw std::invalid_argument(arm.name + ": its board does not report by itself.");
+  }
+  driver::VirtualClock clock;
+  auto opened = driver::Device::open((*simulation)->wire(clock), (*simulation)->protocol(),
+                                     {.R_WB = arm.R_WB,
+                                      .p_WB = arm.p_WB,
+                                      .limits = arm.limits,
+                                      .energy = wall.energy,
+                                      // A wall at rest is what it looks at.
+                                      .motion = {.hold_most = 1e9},
+                                      .velocity_corner_frequency = arm.velocity_corner_frequency,
+                                      .silence_limit_ns = 1'000'000'000},
+                                     clock.now_ns());
+  if (!opened) throw std::invalid_argument(opened.error().message);
+  driver::Device& device = **opened;
+  if (auto active = device.activate(); !active) {
+    throw std::invalid_argument(active.error().message);
+  }
+
+  WallRun run;
+  const double mass = wall.tip.mass + wall.hand.mass;
+  const double period = static_cast<double>(wall.period_ns) * 1e-9;
+  const auto end_ns = static_cast<std::int64_t>(wall.duration * 1e9);
+  std::size_t gap = 0;
+  // On a late wire the first report has taken its time.
+  std::int64_t tick_ns = clock.now_ns();
+  Vector3d p_last_W = arm.p_WB + arm.R_WB * board->plant().p_BT();
+  double work = 0;
+  for (std::size_t tick = 0; tick_ns < end_ns; ++tick) {
+    clock.sleep_until_ns(tick_ns);
+    const driver::DeviceState& state = device.read(tick_ns, tick_ns);
+    const double depth = n_W.dot(state.p_WT - home_W) - wall.offset;
+    double force = -wall.stiffness * depth - wall.damping * n_W.dot(state.v_WT);
+    // A wall pushes outwards, along the direction, and never pulls.
+    if (wall.one_sided) force = depth < 0 ? std::max(force, 0.0) : 0;
+    if (wall.kick != 0 && tick <= kKickTicks) {
+      // The gate opens within the first tick, so that the kick begins with the second.
+      force = tick > 0 ? -wall.kick * mass / (kKickTicks * period) : 0;
+    }
+    device.write({.f_T_W = force * n_W, .touch = {}});
+    const Vector3d p_WT = arm.p_WB + arm.R_WB * board->plant().p_BT();
+    run.time.push_back(static_cast<double>(tick_ns) * 1e-9);
+    run.x.push_back(n_W.dot(p_WT - home_W));
+    run.v.push_back(n_W.dot(arm.R_WB * board->plant().v_BT()));
+    run.f.push_back(device.f_sent_W().norm());
+    work += (*simulation)->f_T_W().dot(p_WT - p_last_W);
+    p_last_W = p_WT;
+    run.work.push_back(work);
+    run.fault = device.fault() != driver::Fault::kNone;
+    run.gave_up = run.fault || !(std::abs(run.x.back() - wall.offset) < wall.give_up);
+    if (run.gave_up) break;
+    tick_ns += wall.gaps_ns.empty() ? wall.period_ns : wall.gaps_ns[gap];
+    if (++gap >= wall.gaps_ns.size()) gap = 0;
+  }
+  run.gate = device.gate_counters();
+  return run;
+}
+
+}  // namespace thimble::app

@@ -1,0 +1,102 @@
+#include "stability/wall_trial.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "stability/wall_bench.h"
+#include "thimble/scene/arm_simulation.h"
+
+namespace thimble::app {
+namespace {
+
+constexpr double kAway = 0.003;   // m; where the hand waits before it goes in
+constexpr double kBegin = 0.35;   // s; the soft start is over
+constexpr double kEnd = 1.55;     // s
+constexpr double kWatched = 0.2;  // s, the last of it
+constexpr double kBefore = 0.4;   // s; so much earlier it is watched, too
+
+/// Tells how far the tip moved to and fro in a stretch of time, m.
+double swing_between(const WallRun& run, double from, double to) {
+  double least = 1e9, most = -1e9;
+  for (std::size_t i = 0; i < run.x.size(); ++i) {
+    if (run.time[i] < from || run.time[i] >= to) continue;
+    least = std::min(least, run.x[i]);
+    most = std::max(most, run.x[i]);
+  }
+  return std::max(0.0, most - least);
+}
+
+/// Tells how the force differs from its mean from a time on, N, RMS.
+double force_rms(const WallRun& run, double from) {
+  double sum = 0, squares = 0;
+  int seen = 0;
+  for (std::size_t i = 0; i < run.f.size(); ++i) {
+    if (run.time[i] < from) continue;
+    ++seen;
+    sum += run.f[i];
+    squares += run.f[i] * run.f[i];
+  }
+  const double mean = seen > 0 ? sum / seen : 0;
+  return seen > 0 ? std::sqrt(std::max(0.0, squares / seen - mean * mean)) : 0;
+}
+
+}  // namespace
+
+driver::Result<WallTouch> press_on_wall(const scene::ArmFile& arm, const WallTrial& trial) {
+  // The hand's spring presses with `press` when it wants to be that far inside.
+  const double deep = trial.press / std::max(1.0, arm.simulated.hand.stiffness);
+  if (!scene::joint_angles_at(arm, trial.p_W + kAway * trial.n_W) ||
+      !scene::joint_angles_at(arm, trial.p_W - deep * trial.n_W)) {
+    return driver::Error{"The wall stands out of the arm's reach."};
+  }
+  const WallCase wall{.direction = {.n_W = trial.n_W, .p_WT = trial.p_W, .step = 0},
+                      .tip = arm.simulated.plant,
+                      .hand = arm.simulated.hand,
+                      .stiffness = trial.stiffness,
+                      .damping = trial.damping,
+                      .one_sided = true,
+                      .own_step = true,
+                      .energy = trial.energy,
+                      .own_limits = true,
+                      .velocity_corner = arm.velocity_corner_frequency,
+                      .period_ns = std::llround(1e9 / trial.rate),
+                      .own_wire = true,
+                      .gaps_ns = {},
+                      .hand_from = kAway,
+                      .hand_to = -deep,
+                      .hand_start = kBegin,
+                      .hand_end = kBegin + (kAway + deep) / trial.speed,
+                      .duration = kEnd,
+                      .give_up = HUGE_VAL};
+  try {
+    const WallRun run = run_wall(arm, wall);
+    return WallTouch{.swing = swing_between(run, kEnd - kWatched, HUGE_VAL),
+                     .swing_before = swing_between(run, kEnd - kWatched - kBefore, kEnd - kBefore),
+                     .force_max = *std::max_element(run.f.begin(), run.f.end()),
+                     .energy_given = *std::max_element(run.work.begin(), run.work.end()),
+                     .force_rms = force_rms(run, kEnd - kWatched),
+                     .fault = run.fault,
+                     .gate = run.gate};
+  } catch (const std::invalid_argument& error) {
+    return driver::Error{error.what()};
+  }
+}
+
+driver::Result<double> simulated_edge(const scene::ArmFile& arm, WallTrial trial, double guess,
+                                      double quiet) {
+  double low = guess / 10, high = guess * 10;
+  while (high > 1.01 * low) {
+    trial.stiffness = std::sqrt(low * high);
+    const auto touch = press_on_wall(arm, trial);
+    if (!touch) return touch.error();
+    // Near the edge a swing takes long to die, so that it becomes less is enough: 5 % in 0.4 s are
+    // 0.5 % below the edge for 0.1 kg and a latency of 1.5 ms. Written so that NaN is not quiet.
+    const bool rests =
+        !touch->fault && (touch->swing <= quiet || touch->swing < 0.95 * touch->swing_before);
+    (rests ? low : high) = trial.stiffness;
+  }
+  return low;
+}
+
+}  // namespace thimble::app

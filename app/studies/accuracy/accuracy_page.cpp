@@ -1,0 +1,171 @@
+#include "studies/accuracy/accuracy_page.h"
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <utility>
+
+#include "build_info.h"
+#include "report/figure.h"
+#include "studies/accuracy/axis_words.h"
+
+namespace thimble::app {
+namespace {
+
+constexpr const char* kHead = R"(<!doctype html>
+<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width">
+<title>Thimble: what accuracy costs in time</title>
+<style>
+body{font:16px/1.5 system-ui,"DejaVu Sans",sans-serif;color:#22262c;background:#fff;margin:0 auto;
+ padding:1rem;max-width:88rem}
+h1{font-size:1.7rem;line-height:1.25}h2{font-size:1.25rem;margin:3rem 0 .4rem;
+ border-top:1px solid #d5d9de;padding-top:1.2rem}
+p{max-width:48rem;margin:.5rem 0}
+.pictures{display:flex;flex-wrap:wrap;gap:1rem}.pictures svg{flex:1 1 22rem;min-width:0;max-width:46rem;
+ width:100%;height:auto}
+.felt{border-left:4px solid #0072b2;padding-left:.7rem}
+.small{color:#555c66;font-size:.92rem}
+.scroll{overflow-x:auto}table{border-collapse:collapse;font-size:.88rem;font-variant-numeric:tabular-nums}
+th,td{padding:.15rem .7rem;text-align:right;white-space:nowrap;border-bottom:1px solid #e4e7eb}
+th:first-child,td:first-child{text-align:left}tr.default td{font-weight:700}
+summary{cursor:pointer;margin:.6rem 0}nav a{margin-right:.9rem;white-space:nowrap}a{color:#005a8c}
+</style></head><body>
+<h1>What accuracy costs in time</h1>
+<p>Each diagram turns one knob: how wrong the result is against a truth that shares no code with it, and what it
+costs. Lower is truer, farther left is cheaper. Where a diagram is shaded, below the dashed line, nobody can feel the difference.
+The ring marks what Thimble does unless told otherwise.</p>
+<p class="small">Times are medians of this machine, in turn with each other, of the processor time of the work alone,
+with half the distance between the quartiles. Instructions are counted by callgrind and are the same on every machine
+that runs the same binary; they decide what is cheaper. Errors are the same bits in every run.</p>
+)";
+
+std::string escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '&') {
+      out += "&amp;";
+    } else if (c == '<') {
+      out += "&lt;";
+    } else if (c == '>') {
+      out += "&gt;";
+    } else {
+      out += c;
+    }
+  }
+  return out;
+}
+
+// Reads a picture without what stands before <svg, its numbers made its own: ids of several
+// pictures in one page must not be the same.
+std::string inline_picture(const std::filesystem::path& file, const std::string& mark) {
+  std::ostringstream text;
+  text << std::ifstream(file).rdbuf();
+  std::string svg = text.str();
+  const auto begin = svg.find("<svg");
+  if (begin == std::string::npos) return {};
+  svg.erase(0, begin);
+  for (const std::string& key :
+       {std::string("id=\""), std::string("xlink:href=\"#"), std::string("xlink:href='#"),
+        std::string("id='"), std::string("url(#")}) {
+    for (auto at = svg.find(key); at != std::string::npos;
+         at = svg.find(key, at + key.size() + mark.size())) {
+      svg.insert(at + key.size(), mark);
+    }
+  }
+  return svg;
+}
+
+std::string cell(const std::string& text) {
+  return "<td>" + escaped(text) + "</td>";
+}
+
+void add_table(const MeasuredAxis& axis, std::ostringstream& page) {
+  const AccuracyAxis& a = axis.axis;
+  page << "<details><summary>Figures</summary><div class=\"scroll\"><table><tr><th>method</th><th>"
+       << escaped(a.knob) << (a.knob_unit.empty() ? "" : ", ") << escaped(a.knob_unit)
+       << "</th><th>" << escaped(a.unit) << "</th><th>ns " << (a.cost_is_added ? "more " : "")
+       << "per " << a.per << "</th><th>&plusmn;</th><th>instructions</th>"
+       << "<th>best bargain</th></tr>\n";
+  for (const MeasuredLine& line : axis.lines) {
+    for (const MeasuredPoint& point : line.points) {
+      page << "<tr" << (point.point->is_default ? " class=\"default\"" : "") << '>'
+           << cell(line.line->apart ? name_of(axis, point) : line.line->title)
+           << cell(std::isfinite(point.point->knob) ? three_digits(point.point->knob) : "")
+           << cell(point.diverged ? "diverges" : three_digits(point.error))
+           << cell(three_digits(point.ns)) << cell(three_digits(point.ns_spread))
+           << cell(point.instructions ? three_digits(*point.instructions) : "")
+           << cell(point.on_front ? "yes" : "") << "</tr>\n";
+    }
+  }
+  page << "</table></div></details>\n";
+}
+
+}  // namespace
+
+driver::Result<void> write_accuracy_page(const std::vector<AxisSection>& sections,
+                                         const std::filesystem::path& folder) {
+  std::ostringstream page;
+  page << kHead << "<nav>";
+  for (const AxisSection& section : sections) {
+    const AccuracyAxis& a = section.axis->axis;
+    page << "<a href=\"#" << a.name << "\">" << a.name << "</a> ";
+  }
+  page << "</nav>\n";
+  for (const AxisSection& section : sections) {
+    const MeasuredAxis& axis = *section.axis;
+    const AccuracyAxis& a = axis.axis;
+    page << "<h2 id=\"" << a.name << "\">" << escaped(a.title) << "</h2>\n<p class=\"felt\">"
+         << escaped(felt_sentence(axis)) << "</p>\n<div class=\"pictures\">\n";
+    for (const std::string& name : section.pictures) {
+      page << inline_picture(folder / (name + ".svg"), name + "-") << '\n';
+    }
+    page << "</div>\n<p>" << escaped(default_sentence(axis)) << "</p>\n";
+    if (const std::string orders = order_sentence(axis); !orders.empty()) {
+      page << "<p>" << escaped(orders) << "</p>\n";
+    }
+    page << "<p class=\"small\">Truth: " << escaped(a.truth) << " Left out: " << escaped(a.left_out)
+         << "</p>\n";
+    add_table(axis, page);
+  }
+  const scene::BuildInfo build = scene::build_info();
+  page << "<p class=\"small\">thimble " << build.version << ", " << build.type << ", "
+       << build.compiler << ".</p>\n</body></html>\n";
+  return write_text(page.str(), folder / "index.html");
+}
+
+driver::Result<void> write_accuracy_summary(const std::vector<AxisSection>& sections,
+                                            const std::filesystem::path& file) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const AxisSection& section : sections) {
+    const MeasuredAxis& axis = *section.axis;
+    const AccuracyAxis& a = axis.axis;
+    nlohmann::ordered_json entry{{"axis", a.name},
+                                 {"title", a.title},
+                                 {"knob", a.knob},
+                                 {"knob_unit", a.knob_unit},
+                                 {"metric", a.metric},
+                                 {"unit", a.unit},
+                                 {"truth", a.truth},
+                                 {"felt", felt_sentence(axis)},
+                                 {"default", default_sentence(axis)},
+                                 {"orders", order_sentence(axis)},
+                                 {"left_out", a.left_out}};
+    if (a.threshold) entry["threshold"] = *a.threshold;
+    const auto point_of = [&](const MeasuredPoint* point) {
+      nlohmann::ordered_json one{
+          {"point", name_of(axis, *point)}, {"error", point->error}, {"ns", point->ns}};
+      if (point->instructions) one["instructions"] = *point->instructions;
+      one["on_front"] = point->on_front;
+      return one;
+    };
+    if (const auto* point = axis.default_point()) entry["default_point"] = point_of(point);
+    if (const auto* point = a.over_cost ? axis.enough() : nullptr) {
+      entry["enough_point"] = point_of(point);
+    }
+    list.push_back(std::move(entry));
+  }
+  return write_text(list.dump(2) + "\n", file);
+}
+
+}  // namespace thimble::app

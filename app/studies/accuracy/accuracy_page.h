@@ -1,0 +1,28 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "studies/accuracy/measure_axis.h"
+#include "thimble/driver/result.h"
+
+namespace thimble::app {
+
+/// Is one section of the page: an axis, and its pictures' names without ending.
+struct AxisSection {
+  const MeasuredAxis* axis = nullptr;
+  std::vector<std::string> pictures;
+};
+
+/// Writes index.html into `folder`: pictures inside, nothing from anywhere else, readable on a
+/// phone. Fails if it cannot be written. Real-time: never from the servo thread.
+driver::Result<void> write_accuracy_page(const std::vector<AxisSection>& sections,
+                                         const std::filesystem::path& folder);
+
+/// Writes summary.json: per axis what the page says in words and figures. Fails if it cannot be
+/// written.
+driver::Result<void> write_accuracy_summary(const std::vector<AxisSection>& sections,
+                                            const std::filesystem::path& file);
+
+}  // namespace thimble::app

@@ -1,0 +1,38 @@
+#pragma once
+
+#include "studies/accuracy/accuracy_axis.h"
+
+namespace thimble::app {
+
+// One function per axis; each makes it, measuring nothing yet. Real-time: never from the servo
+// thread.
+
+AccuracyAxis tessellation_axis();
+AccuracyAxis tessellation_direction_axis();
+AccuracyAxis tessellation_jump_axis();
+AccuracyAxis deformable_axis();
+AccuracyAxis modes_axis();
+AccuracyAxis rings_axis();
+AccuracyAxis simulator_axis();
+AccuracyAxis simulator_speed_axis();
+AccuracyAxis simulator_smooth_axis();
+AccuracyAxis loop_rate_axis();
+AccuracyAxis loop_rate_stiffness_axis();
+AccuracyAxis latency_axis();
+AccuracyAxis latency_stiffness_axis();
+AccuracyAxis encoder_axis();
+AccuracyAxis encoder_friction_axis();
+AccuracyAxis velocity_axis();
+AccuracyAxis velocity_stiffness_axis();
+AccuracyAxis friction_axis();
+AccuracyAxis friction_stiction_axis();
+AccuracyAxis search_axis();
+AccuracyAxis tracking_axis();
+AccuracyAxis rigid_body_axis();
+AccuracyAxis safety_axis();
+AccuracyAxis safety_stiffness_axis();
+AccuracyAxis safety_noise_axis();
+AccuracyAxis effects_axis();
+AccuracyAxis float_axis();
+
+}  // namespace thimble::app

@@ -1,0 +1,97 @@
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "studies/accuracy/axes/axes.h"
+#include "studies/accuracy/stroked_ring.h"
+#include "studies/cost/cost_subjects.h"
+
+namespace thimble::app {
+namespace {
+
+std::unique_ptr<render::ObjectTouch> built(const CostSubject& subject) {
+  auto touch = subject.build();
+  if (!touch) throw std::invalid_argument(subject.name + ": " + touch.error().message);
+  return std::move(touch).value();
+}
+
+// What is missing without the effect, mN RMS over the ticks of contact.
+double missing(const CostSubject& with, const CostSubject& bare) {
+  const auto full = built(with);
+  const auto plain = built(bare);
+  double squares = 0;
+  int ticks = 0;
+  for (const auto& state : ring_states()) {
+    const Eigen::Vector3d f = full->update(state).f_T_W;
+    const Eigen::Vector3d g = plain->update(state).f_T_W;
+    if (!(g.norm() > 0)) continue;
+    squares += (f - g).squaredNorm();
+    ++ticks;
+  }
+  return 1e3 * std::sqrt(squares / ticks);
+}
+
+Stroke stroke_of(const CostSubject& subject) {
+  const std::shared_ptr<render::ObjectTouch> touch = built(subject);
+  return [touch, states = ring_states()] {
+    double sum = 0;
+    for (const auto& state : states) sum += touch->update(state).f_T_W.x();
+    return sum;
+  };
+}
+
+}  // namespace
+
+AccuracyAxis effects_axis() {
+  AccuracyAxis axis;
+  axis.name = "effects";
+  axis.title = "Each effect on and off: what it adds to the force, and to a tick";
+  axis.metric = "force missing without the effect, RMS";
+  axis.unit = "mN";
+  axis.truth = "The same stroke over the same ring with the effect.";
+  axis.threshold = 20;
+  axis.threshold_words = "the smallest force that is felt (20 mN)";
+  axis.felt_words =
+      "An effect whose force lies below the dashed line could be left out of this stroke "
+      "unnoticed; "
+      "the others are what their scenes are about.";
+  axis.over_knob = false;
+  axis.cost_is_added = true;
+  axis.default_words =
+      "Off: a scene gets the effects that it names, and pays for no others. The cost is what "
+      "leaving "
+      "the effect out saves: a tick with it, less the same tick of the bare ring.";
+  axis.left_out =
+      "What several effects cost together, which is the sum. Fronts say nothing here: who wants a "
+      "texture is not served by a cheaper one.";
+  auto subjects = std::make_shared<std::vector<CostSubject>>();
+  const CostSubject* bare = nullptr;
+  *subjects = cost_subjects();
+  for (const CostSubject& subject : *subjects) {
+    if (subject.name == kBareSubject) bare = &subject;
+  }
+  AccuracyLine line{.name = "effects", .title = "effects", .apart = true};
+  for (const CostSubject& subject : *subjects) {
+    if (subject.kind != CostSubject::Kind::kEffect) continue;
+    std::string name = subject.name;
+    for (char& c : name) c = c == ':' ? '.' : c;
+    AccuracyPoint point{.name = name,
+                        .knob = NAN,
+                        .error = [subjects, &subject, bare] { return missing(subject, *bare); },
+                        .prepare = [subjects, &subject] { return stroke_of(subject); },
+                        .beside = [subjects, bare] { return stroke_of(*bare); }};
+    const auto dot = name.find('.');
+    point.title = name.substr(0, dot) + ": " + name.substr(dot + 1);
+    std::replace(point.title.begin(), point.title.end(), '_', ' ');
+    point.ticks = kRingTicks;
+    line.points.push_back(std::move(point));
+  }
+  axis.lines.push_back(std::move(line));
+  return axis;
+}
+
+}  // namespace thimble::app

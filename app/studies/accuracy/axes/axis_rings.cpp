@@ -1,0 +1,116 @@
+#include <Eigen/Core>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+#include "body/dent/bendable_polygon.h"
+#include "studies/accuracy/axes/axes.h"
+#include "studies/cost/cost_subjects.h"
+
+namespace thimble::app {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr int kAround = 32, kAcross = 16;  // 512 vertices: as many as can move at once
+constexpr int kTicks = 200;
+constexpr std::int32_t kTriangle = 2;
+constexpr double kPress = 0.003;  // m
+
+/// Is a soft ring that is pressed at the middle of a triangle and let go, over and over.
+class SoftRing {
+ public:
+  SoftRing(int rings, bool whole, double reach) : body_(build(rings, whole, reach)) {
+    for (std::size_t k = 0; k < 3; ++k) middle_ += body_.mesh().position(kTriangle, k) / 3;
+    n_ = body_.mesh().cell(kTriangle).face.n;
+  }
+
+  /// Goes on by tick `tick` of the press and tells the pull on the hand, N.
+  Vector3d step(int tick) noexcept {
+    const double share = static_cast<double>(tick % kTicks) / kTicks;
+    const double depth = kPress * (share < 0.5 ? 2 * share : 2 - 2 * share);
+    body_.touch(kTriangle, Vector3d::Constant(1.0 / 3), middle_ - depth * n_);
+    return body_.f_T_W();
+  }
+
+ private:
+  static render::BendablePolygon build(int rings, bool whole, double reach) {
+    auto mesh = render::ContactMesh::build(kCostRing.mesh(kAround, kAcross));
+    if (!mesh) throw std::invalid_argument(mesh.error().message);
+    render::DentSettings settings;
+    settings.rings = rings;
+    settings.whole = whole;
+    settings.reach = reach;
+    settings.remainder = 1e-5;  // so that rounds are not what is seen
+    auto body = render::BendablePolygon::build(
+        std::make_shared<const render::ContactMesh>(*std::move(mesh)), settings);
+    if (!body) throw std::invalid_argument(body.error().message);
+    return std::move(body).value();
+  }
+
+  render::BendablePolygon body_;
+  Vector3d middle_{0, 0, 0};
+  Vector3d n_{0, 0, 1};
+};
+
+double error_of(int rings, double reach) {
+  SoftRing some(rings, false, reach);
+  SoftRing all(0, true, reach);
+  double error = 0;
+  double size = 0;
+  for (int tick = 0; tick < kTicks; ++tick) {
+    const Vector3d truth = all.step(tick);
+    error = std::max(error, (some.step(tick) - truth).norm());
+    size = std::max(size, truth.norm());
+  }
+  return 100 * error / size;
+}
+
+}  // namespace
+
+AccuracyAxis rings_axis() {
+  AccuracyAxis axis;
+  axis.name = "rings";
+  axis.title = "How large the patch of a dent must be: rings of vertices around the hand";
+  axis.knob = "rings that move";
+  axis.metric = "largest force error";
+  axis.unit = "% of the largest force";
+  axis.truth = "The same body with every vertex moving.";
+  axis.threshold = 3.5;
+  axis.threshold_words = "half the change of force that is felt (3.5 %)";
+  axis.default_words =
+      "Three rings draw the dent out to where it fades for the eye; the hand alone would do with "
+      "fewer.";
+  axis.left_out = "What the eye sees of a dent that ends too early: this is the force alone.";
+  struct Reach {
+    const char* name;
+    const char* title;
+    double reach;
+  };
+  for (const Reach& reach : {Reach{"even", "even springs", 1}, Reach{"wide", "wide dent", 4}}) {
+    AccuracyLine line{.name = reach.name, .title = reach.title, .order = {}, .points = {}};
+    for (int rings = 0; rings <= 6; ++rings) {
+      const double by = reach.reach;
+      line.points.push_back({.name = std::to_string(rings),
+                             .knob = static_cast<double>(rings),
+                             .error = [=] { return error_of(rings, by); },
+                             .prepare = [=]() -> Stroke {
+                               const auto ring = std::make_shared<SoftRing>(rings, false, by);
+                               return [ring] {
+                                 double sum = 0;
+                                 for (int tick = 0; tick < kTicks; ++tick) {
+                                   sum += ring->step(tick).x();
+                                 }
+                                 return sum;
+                               };
+                             },
+                             .ticks = kTicks,
+                             .is_default = by == 1 && rings == render::DentSettings{}.rings,
+                             .law = {}});
+    }
+    axis.lines.push_back(std::move(line));
+  }
+  return axis;
+}
+
+}  // namespace thimble::app

@@ -1,0 +1,173 @@
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "studies/accuracy/axes/axes.h"
+#include "studies/accuracy/guarded_wall.h"
+#include "studies/accuracy/hand_signal.h"
+#include "studies/accuracy/held_motion.h"
+#include "thimble/scene/energy_choice.h"
+
+namespace thimble::app {
+namespace {
+
+using driver::EnergyStage;
+
+constexpr double kTick = GuardedArm::kTick;
+constexpr double kSpeed = 0.2;  // m/s, of the impact
+constexpr double kStep = 3e-5;  // m, of the encoder [STABILITY, heading]
+constexpr int kPhases = 40;
+constexpr int kWorkTicks = 4000;
+constexpr double kStiffnesses[] = {250, 500, 1000, 2000, 4000};  // N/m
+constexpr double kUsual = 1000;                                  // N/m
+
+// The speed that a free mass gains in a bounce, in percent; 0 if it loses some.
+double gained(const WallGuard& guard, double stiffness) {
+  double sum = 0;
+  for (int phase = 0; phase < kPhases; ++phase) {
+    GuardedWall wall(guard, stiffness);
+    // Depth and its rate; two free ticks first.
+    LineMotion now{-kSpeed * kTick * (1 + (phase + 0.5) / kPhases), kSpeed};
+    for (int i = 0; i < 20000 && !(now.x < 0 && now.v < 0); ++i) {
+      now = moved_by_held_force(now, GuardedArm::kMass, GuardedArm::kViscous, -wall.force(now.x),
+                                kTick);
+      if (!(std::abs(now.x) < 1)) return NAN;
+    }
+    sum += -now.v / kSpeed;
+  }
+  return std::max(100 * (sum / kPhases - 1), 0.0);
+}
+
+// The stiffness that is missing when a hand presses 1 mm deep within 0.2 s and waits, in percent.
+double softened(const WallGuard& guard, double stiffness) {
+  GuardedWall wall(guard, stiffness);
+  constexpr double kDepth = 0.001;
+  double force = 0;
+  for (int i = 0; i < 400; ++i) force = wall.force(kDepth * std::min(i / 200.0, 1.0));
+  return 100 * std::max(1 - force / (stiffness * kDepth), 0.0);
+}
+
+// The force that the encoder's steps add while a hand presses in and out, mN RMS.
+double shaken(const WallGuard& guard, double stiffness) {
+  GuardedWall stepped(guard, stiffness);
+  GuardedWall smooth(guard, stiffness);
+  constexpr double kShare = 0.1;  // of the hand's strokes: 2 mm
+  double squares = 0;
+  for (int i = 0; i < kWorkTicks; ++i) {
+    const double depth = kShare * hand_signal(i * kTick).x;
+    const double off = stepped.force(counted(depth, kStep)) - smooth.force(depth);
+    squares += off * off;
+  }
+  return 1e3 * std::sqrt(squares / kWorkTicks);
+}
+
+Stroke work_of(const WallGuard& guard, double stiffness) {
+  const auto wall = std::make_shared<GuardedWall>(guard, stiffness);
+  return [wall] {
+    double sum = 0;
+    for (int i = 0; i < kWorkTicks; ++i) sum += wall->force(0.001 * std::sin(0.01 * i));
+    return sum;
+  };
+}
+
+struct Line {
+  const char* name;
+  const char* title;
+  WallGuard guard;
+};
+constexpr Line kLines[] = {
+    {"none", "limits alone", {}},
+    {"passivity",
+     "observer and controller (product)",
+     {.stage = EnergyStage::kPassivity,
+      .allowance = scene::kEnergyAllowance,
+      .onset = scene::kEnergyOnset}},
+    {"at_once", "controller that acts at once", {.stage = EnergyStage::kPassivity}},
+    {"bounding", "energy bound", {.stage = EnergyStage::kBounding}},
+    {"coupling",
+     "virtual coupling for the arm alone (not in the product)",
+     {.counted_on = GuardedArm::kViscous}},
+    {"held_coupling",
+     "virtual coupling for the arm in a hand (not in the product)",
+     {.counted_on = GuardedArm::kViscous + GuardedArm::kHand}}};
+
+AccuracyAxis axis_of(double (*error)(const WallGuard&, double)) {
+  AccuracyAxis axis;
+  axis.knob = "stiffness of the wall";
+  axis.knob_unit = "N/m";
+  axis.unit = std::string("%");
+  axis.over_cost = false;
+  for (const Line& one : kLines) {
+    AccuracyLine line{.name = one.name, .title = one.title};
+    const WallGuard guard = one.guard;
+    for (const double stiffness : kStiffnesses) {
+      AccuracyPoint point{.name = std::to_string(static_cast<int>(stiffness)),
+                          .knob = stiffness,
+                          .error = [=] { return error(guard, stiffness); },
+                          .prepare = [=] { return work_of(guard, stiffness); }};
+      point.ticks = kWorkTicks;
+      point.is_default = line.name == "passivity" && stiffness == kUsual;
+      line.points.push_back(std::move(point));
+    }
+    axis.lines.push_back(std::move(line));
+  }
+  axis.default_words =
+      "What is shipped lets 2 mJ out before it acts, so a single bounce gains as much as without "
+      "it; "
+      "what it ends is the arm that gains at every bounce, and in return nothing is felt of it. At "
+      "once it would stop the first bounce too, and jolt by half a newton with the encoder's "
+      "steps. "
+      "The bound stops it as well, but is felt as a wall of a hundredth of the stiffness, and so "
+      "is "
+      "a virtual coupling that counts on no hand; one that does gives speed back without it, and "
+      "softens stiff walls.";
+  return axis;
+}
+
+}  // namespace
+
+AccuracyAxis safety_axis() {
+  AccuracyAxis axis = axis_of(gained);
+  axis.name = "safety";
+  axis.title = "Energy stages of the safety gate: speed that a wall gives a free arm at 1 kHz";
+  axis.metric = "speed gained by a bounce";
+  axis.truth = "A passive wall, which gives none: e <= 1.";
+  axis.threshold = 3.5;
+  axis.threshold_words = "half the change of impact that is felt (3.5 %)";
+  axis.left_out =
+      "The error over the cost: that is the guard's alone, whatever the stiffness (see the "
+      "figures). "
+      "Bounce after bounce, and loops with delay, which tests of the whole way look at.";
+  return axis;
+}
+
+AccuracyAxis safety_stiffness_axis() {
+  AccuracyAxis axis = axis_of(softened);
+  axis.name = "safety_stiffness";
+  axis.title = "Energy stages of the safety gate: stiffness that is missing under a resting hand";
+  axis.metric = "stiffness missing";
+  axis.truth = "The wall's own stiffness, pressed 1 mm deep.";
+  axis.threshold = 8;  // [STABILITY 6]
+  axis.threshold_words = "half the change of stiffness that is felt (8 %)";
+  axis.left_out = "How long the press takes to be felt in full; walls of moving objects.";
+  return axis;
+}
+
+AccuracyAxis safety_noise_axis() {
+  AccuracyAxis axis = axis_of(shaken);
+  axis.name = "safety_noise";
+  axis.title = "Energy stages of the safety gate: force that encoder steps of 30 um add";
+  axis.metric = "force error, RMS";
+  axis.unit = "mN";
+  axis.truth = "The same guard and wall on places without steps, stroked by the same hand.";
+  axis.threshold = 20;
+  axis.threshold_words = "the smallest force that is felt (20 mN)";
+  axis.left_out =
+      "The loop through hand and arm, in which noise moves the arm that makes it; an encoder "
+      "without steps adds nothing, whatever the guard.";
+  return axis;
+}
+
+}  // namespace thimble::app

@@ -1,0 +1,137 @@
+#include <cmath>
+#include <numbers>
+#include <span>
+#include <string>
+
+#include "studies/accuracy/axes/axes.h"
+#include "studies/accuracy/stroked_ring.h"
+
+namespace thimble::app {
+namespace {
+
+using render::BlendingChoice;
+
+constexpr int kAcross[] = {8, 12, 16, 24, 32, 48, 64};
+// Coarser ones are not touched at all in places, and a force that is not there has no direction.
+constexpr int kAcrossTouched[] = {24, 28, 32, 40, 48, 56, 64};
+constexpr int kDefaultAcross = 32;
+// Orders show where triangles are much smaller than the curvature.
+constexpr int kFitsFrom = 24;
+
+struct Way {
+  const char* name;
+  const char* title;
+  BlendingChoice blending;
+  bool curved;
+  double force_order;  // 0: none is asked for
+  double direction_order;
+};
+
+// The flat normal turns by up to L / R within a triangle, the smooth one and the depth below the
+// triangles are off by (L / R)^2 [STABILITY 3]. The flat force has both in it, and the depth below
+// the smooth surface is better than that where triangles are alike: no order is asked of either.
+// Nor of the 99th percentile of smooth directions, in which few places count.
+constexpr Way kWays[] = {
+    {"flat", "flat", BlendingChoice::kFlat, false, 0, 1},
+    {"band", "blended band", BlendingChoice::kSizedBand, false, 2, 0},
+    {"phong", "Phong", BlendingChoice::kPhong, false, 2, 0},
+    {"curved", "Phong, curved depth", BlendingChoice::kPhong, true, 0, 0},
+};
+
+RingTouch ring_of(const Way& way, int across) {
+  RingTouch ring;
+  ring.choice.blending = way.blending;
+  ring.choice.curved_depth = way.curved;
+  ring.across = across;
+  return ring;
+}
+
+enum class Wrong { kForce, kDirection, kJump };
+
+AccuracyAxis axis_of(Wrong wrong) {
+  const bool direction = wrong != Wrong::kForce;
+  AccuracyAxis axis;
+  axis.knob = "edge length over radius of curvature, L/R";
+  axis.truth =
+      "The ring (torus) itself: depth and normal of each point in closed form, stroked by the same "
+      "states.";
+  axis.default_words =
+      "It is the paper's way, which scenes keep until they name another: on a scan with edges of a "
+      "tenth of the radius it is not distinguishable by direction, and it asks nothing of the "
+      "normals of the mesh. --quality reference takes Phong with curved depth.";
+  for (const Way& way : kWays) {
+    AccuracyLine line{.name = way.name, .title = way.title, .order = {}, .points = {}};
+    const double order = wrong == Wrong::kJump ? 0
+                         : direction           ? way.direction_order
+                                               : way.force_order;
+    if (order > 0) line.order = order;
+    for (const int across : direction ? std::span<const int>(kAcrossTouched) : std::span(kAcross)) {
+      const RingTouch ring = ring_of(way, across);
+      AccuracyPoint point{.name = std::to_string(across),
+                          .knob = edge_over_radius(across),
+                          .error = {},
+                          .prepare = [ring] { return ring_work(ring); }};
+      point.error = [ring, wrong] {
+        const RingErrors errors = ring_errors(ring);
+        if (wrong == Wrong::kForce) return 100 * errors.force;
+        const double angle = wrong == Wrong::kJump ? errors.jump : errors.direction_p99;
+        return angle * 180 / std::numbers::pi;
+      };
+      point.ticks = kRingTicks;
+      point.is_default = way.blending == BlendingChoice::kFlat && across == kDefaultAcross;
+      point.fits = across >= kFitsFrom;
+      line.points.push_back(std::move(point));
+    }
+    axis.lines.push_back(std::move(line));
+  }
+  return axis;
+}
+
+}  // namespace
+
+AccuracyAxis tessellation_axis() {
+  AccuracyAxis axis = axis_of(Wrong::kForce);
+  axis.name = "tessellation";
+  axis.title = "How finely a surface must be cut, by the way it is felt: force";
+  axis.metric = "force error, RMS";
+  axis.unit = std::string("%");
+  axis.threshold = 3.5;  // half of 7 % [STABILITY 6, after Pang, Tan, Durlach 1991]
+  axis.threshold_words = "half the change of force that is felt (3.5 %)";
+  axis.left_out =
+      "One shape alone, the ring, because its truth is exact on hollow and round sides; the "
+      "trackers' differences are in `thimble study cost`.";
+  return axis;
+}
+
+AccuracyAxis tessellation_direction_axis() {
+  AccuracyAxis axis = axis_of(Wrong::kDirection);
+  axis.name = "tessellation_direction";
+  axis.title = "How finely a surface must be cut, by the way it is felt: direction";
+  axis.metric = "direction error, 99th percentile";
+  axis.unit = "degrees";
+  axis.threshold = 5;  // [STABILITY 6]
+  axis.threshold_words = "a quarter of the turn that is felt (5 degrees)";
+  axis.left_out = "Jumps from tick to tick over edges, which are in the next diagram.";
+  return axis;
+}
+
+AccuracyAxis tessellation_jump_axis() {
+  AccuracyAxis axis = axis_of(Wrong::kJump);
+  axis.name = "tessellation_jump";
+  axis.title = "How finely a surface must be cut, by the way it is felt: jumps over edges";
+  axis.metric = "largest turn of the force in a tick";
+  axis.unit = "degrees";
+  axis.truth =
+      "The ring itself, on which the same stroke turns the force by no more than 0.2 degrees in a "
+      "tick, which is taken off.";
+  axis.threshold = 5;  // [STABILITY 6]
+  axis.threshold_words = "a quarter of the turn that is felt (5 degrees)";
+  axis.default_words =
+      "It is the paper's way, which scenes keep until they name another: edges of a tenth of the "
+      "radius turn the force by 6 degrees, a third of what a hand alone can tell (18 degrees). Any "
+      "blending turns it by less than one.";
+  axis.left_out = "Faster strokes, which meet the same edges in fewer ticks.";
+  return axis;
+}
+
+}  // namespace thimble::app

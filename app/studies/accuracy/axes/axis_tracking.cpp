@@ -1,0 +1,206 @@
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "mesh/closest_point.h"
+#include "search/make_search.h"
+#include "stability/draw.h"
+#include "studies/accuracy/axes/axes.h"
+#include "studies/accuracy/follower.h"
+#include "studies/cost/cost_subjects.h"
+
+namespace thimble::app {
+namespace {
+
+using Eigen::Vector3d;
+using render::SearchChoice;
+using render::TrackerChoice;
+
+constexpr int kAcross = 64;                        // 16,384 triangles with edges of about 2 mm
+constexpr double kHills = 4e-4;                    // m, up and down
+constexpr double kDeep = 1e-3;                     // m below the ring without hills
+constexpr double kTick = 1e-3;                     // s
+constexpr int kTicks = 400;                        // of a stroke
+constexpr int kRepeats = 100;                      // of the worst tick
+constexpr double kSpeeds[] = {0.1, 0.3, 1, 2, 4};  // m/s
+constexpr double kUsualSpeed = 0.3;
+// A face is wrong if it is farther from the tip than the nearest one by what the spring of the
+// other studies, 800 N/m, turns into 20 mN [STABILITY 6].
+const double kFelt = 0.02 / kCostSpring.stiffness;
+
+/// Is the ring with hills and hollows of one triangle each, so that there are places at which many
+/// triangles are about as near.
+const FollowedSurface& surface() {
+  static const FollowedSurface one = [] {
+    render::TriangleMesh mesh = kCostRing.mesh(2 * kAcross, kAcross);
+    Draw draw(17);
+    for (Vector3d& p : mesh.vertices) p += draw.uniform(-kHills, kHills) * kCostRing.normal(p);
+    auto built = render::ContactMesh::build(mesh);
+    if (!built) throw std::invalid_argument(built.error().message);
+    FollowedSurface found;
+    found.mesh = std::make_shared<const render::ContactMesh>(*std::move(built));
+    found.tree = render::make_search(*found.mesh, SearchChoice::kTree);
+    found.linear = render::make_search(*found.mesh, SearchChoice::kLinear);
+    return found;
+  }();
+  return one;
+}
+
+// A stroke around ring and tube at once, from outside in: its place at each tick.
+std::vector<Vector3d> course_at(double speed) {
+  std::vector<Vector3d> places;
+  for (int i = 0; i < kTicks; ++i) {
+    // As far around the ring as around the tube in each tick.
+    const double way = speed * kTick * i / std::sqrt(2);
+    const double around = way / (kCostRing.ring_radius + kCostRing.tube_radius);
+    places.push_back(kCostRing.at(around, way / kCostRing.tube_radius, i == 0 ? kDeep : -kDeep));
+  }
+  return places;
+}
+
+// How far the surface is at each of these places, found by looking at every triangle; m.
+const std::vector<double>& nearest_at(double speed) {
+  static std::map<double, std::vector<double>> found;
+  const auto [at, fresh] = found.try_emplace(speed);
+  if (!fresh) return at->second;
+  for (const Vector3d& p : course_at(speed)) {
+    at->second.push_back(
+        surface().linear->closest(p, std::numeric_limits<double>::infinity()).distance);
+  }
+  return at->second;
+}
+
+double distance_to(std::int32_t triangle, const Vector3d& p) {
+  const auto& mesh = *surface().mesh;
+  return (render::closest_point(p, mesh.position(triangle, 0), mesh.position(triangle, 1),
+                                mesh.position(triangle, 2)) -
+          p)
+      .norm();
+}
+
+// Ticks whose triangle is a wrong one, or that have none though the tip is inside; in percent.
+double wrong_faces(const FollowerChoice& choice, double speed) {
+  const std::vector<Vector3d> places = course_at(speed);
+  const std::vector<double>& nearest = nearest_at(speed);
+  const auto follower = make_follower(surface(), choice);
+  follower->follow(places[0]);
+  int wrong = 0;
+  for (std::size_t i = 1; i < places.size(); ++i) {
+    const std::int32_t triangle = follower->follow(places[i]);
+    const bool right = triangle >= 0 && distance_to(triangle, places[i]) <= nearest[i] + kFelt;
+    wrong += right ? 0 : 1;
+  }
+  return 100.0 * wrong / (kTicks - 1);
+}
+
+/// Is the tick of a stroke that is the most work: who follows, as before it, and where it goes.
+struct WorstTick {
+  std::shared_ptr<const Follower> before;
+  Vector3d p_WT{0, 0, 0};
+};
+
+WorstTick worst_tick(const FollowerChoice& choice, double speed) {
+  const std::vector<Vector3d> places = course_at(speed);
+  const auto follower = make_follower(surface(), choice);
+  const auto last = follower->copy();
+  WorstTick worst;
+  double most = -1;
+  follower->follow(places[0]);
+  for (std::size_t i = 1; i < places.size(); ++i) {
+    last->stand_where(*follower);
+    follower->follow(places[i]);
+    // The tick that enters is a search's, whoever follows.
+    if (i == 1 || !(follower->effort() > most)) continue;
+    most = follower->effort();
+    worst = {last->copy(), places[i]};
+  }
+  return worst;
+}
+
+// The worst tick again and again; without `follows` only what it takes to begin anew.
+Stroke work_of(const FollowerChoice& choice, double speed, bool follows) {
+  const WorstTick worst = worst_tick(choice, speed);
+  const std::shared_ptr<Follower> follower = worst.before->copy();
+  return [worst, follower, follows] {
+    double sum = 0;
+    for (int i = 0; i < kRepeats; ++i) {
+      follower->stand_where(*worst.before);
+      if (follows) sum += follower->follow(worst.p_WT);
+    }
+    return sum;
+  };
+}
+
+struct Way {
+  const char* name;
+  const char* title;
+  FollowerChoice choice;
+};
+
+const Way kWays[] = {
+    {"hops", "hops alone", {}},
+    {"hops_ring", "hops, and one ring around", {.rings = 1}},
+    {"edge_planes", "edge planes (product)", {.tracker = TrackerChoice::kEdgePlanes}},
+    {"offset", "offset (product)", {.tracker = TrackerChoice::kOffset}},
+    {"compact", "compact (product)", {.tracker = TrackerChoice::kPacked}},
+    {"god_object", "god-object (product)", {.tracker = TrackerChoice::kGodObject}},
+    {"projection", "normal projection (product)", {.tracker = TrackerChoice::kNormalProjection}},
+    {"tree", "nearest by tree, each tick", {.search = SearchChoice::kTree}},
+    {"linear", "nearest by look at all", {.search = SearchChoice::kLinear}}};
+
+}  // namespace
+
+AccuracyAxis tracking_axis() {
+  AccuracyAxis axis;
+  axis.name = "tracking";
+  axis.title = "Following a fast stroke over 16,384 triangles with hills: wrong triangles";
+  axis.knob = "speed of the stroke";
+  axis.knob_unit = "m/s";
+  axis.metric = "ticks in a wrong triangle";
+  axis.unit = std::string("%");
+  axis.truth =
+      "The nearest triangle by a look at every one, in each tick. A triangle is wrong if it is "
+      "farther away by more than 25 um, which 800 N/m turn into the smallest force that is felt.";
+  axis.felt_words =
+      "What counts here as wrong is what can be felt: below the lower edge nothing is.";
+  axis.per = "worst tick";
+  axis.cost_over_knob = true;
+  axis.left_out =
+      "The mean tick, which is in `thimble study cost`. The worst one is that with the most hops "
+      "and looks around (of searches, the one farthest from the surface), found by counting and "
+      "not by a clock. Thin parts, where the nearest triangle is not the one to be felt: there "
+      "every search without memory falls through, and trackers do not.";
+  for (const Way& way : kWays) {
+    AccuracyLine line{.name = way.name, .title = way.title};
+    for (const double speed : kSpeeds) {
+      const FollowerChoice choice = way.choice;
+      AccuracyPoint point{.name = std::to_string(static_cast<int>(1000 * speed)) + "mm_s",
+                          .knob = speed,
+                          .error = [=] { return wrong_faces(choice, speed); },
+                          .prepare = [=] { return work_of(choice, speed, true); },
+                          .beside = [=] { return work_of(choice, speed, false); }};
+      point.ticks = kRepeats;
+      point.is_default = choice.tracker == TrackerChoice::kEdgePlanes && speed == kUsualSpeed;
+      line.points.push_back(std::move(point));
+    }
+    axis.lines.push_back(std::move(line));
+  }
+  axis.default_words =
+      "Hops alone are as right on this course for less (some of the difference is the contact "
+      "stage "
+      "around the product's tracker). But where cells leave gaps, or a walk has left for the far "
+      "side of a part, they stay wrong, and edge planes look around there alone. Smooth cells "
+      "(offset, compact) and the god-object name another triangle where a hollow makes several as "
+      "near: the one that the smooth surface has there, or that the proxy can slide to.";
+  return axis;
+}
+
+}  // namespace thimble::app

@@ -1,0 +1,156 @@
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "studies/accuracy/axes/axes.h"
+#include "studies/accuracy/hand_signal.h"
+#include "studies/accuracy/stiffest_wall.h"
+#include "studies/accuracy/velocity_estimates.h"
+
+namespace thimble::app {
+namespace {
+
+constexpr double kTick = 1e-3;      // s
+constexpr double kStep = 3e-5;      // m, an encoder's at the tip [STABILITY, heading]
+constexpr double kDamping = 1;      // N s/m, what most scenes' surfaces have
+constexpr double kHand = 1;         // N s/m, a light one
+constexpr double kWallDamping = 2;  // N s/m [STABILITY 1.1]
+constexpr int kTicks = 8000;
+constexpr int kSettle = 500;            // ticks that are not counted
+constexpr double kDefaultCorner = 100;  // Hz, app/arms/vintage_phantom.yaml
+
+using Make = std::function<std::unique_ptr<VelocityEstimate>()>;
+
+// The error of the force of a damper of 1 N s/m, mN RMS.
+double error_of(const Make& make) {
+  const auto estimate = make();
+  double squares = 0;
+  for (int i = 0; i < kTicks; ++i) {
+    const HandSignal hand = hand_signal(i * kTick);
+    const double v = estimate->update(counted(hand.x, kStep));
+    if (i >= kSettle) squares += (v - hand.v) * (v - hand.v);
+  }
+  return 1e3 * kDamping * std::sqrt(squares / (kTicks - kSettle));
+}
+
+// How far the stiffest wall with a damper of 2 N s/m gives in a hand, mm/N: the lag's price.
+double give_of(const Make& make) {
+  RestedWall wall;
+  wall.viscous = kHand;
+  wall.damping = kWallDamping;
+  wall.estimate = make;
+  return 1e3 / stiffest(wall);
+}
+
+Stroke work_of(const Make& make) {
+  const std::shared_ptr<VelocityEstimate> estimate = make();
+  std::vector<double> places;
+  places.reserve(kTicks);
+  for (int i = 0; i < kTicks; ++i) places.push_back(counted(hand_signal(i * kTick).x, kStep));
+  return [estimate, places] {
+    double sum = 0;
+    for (const double x : places) sum += estimate->update(x);
+    return sum;
+  };
+}
+
+enum class Price { kForce, kLag };
+
+AccuracyPoint point_of(const std::string& name, double knob, const Make& make, Price price) {
+  return {.name = name,
+          .knob = knob,
+          .error = [=] { return price == Price::kForce ? error_of(make) : give_of(make); },
+          .prepare = [make] { return work_of(make); },
+          .ticks = kTicks,
+          .law = {}};
+}
+
+std::vector<AccuracyLine> lines_of(Price price) {
+  AccuracyLine pole{
+      .name = "pole", .title = "difference, low-pass (product)", .order = {}, .points = {}};
+  for (const double corner : {500.0, 200.0, 100.0, 50.0, 30.0, 15.0, 8.0}) {
+    const double knob = 1e3 / (2 * M_PI * corner);
+    pole.points.push_back(point_of(
+        std::to_string(static_cast<int>(corner)) + "Hz", knob,
+        [corner] { return product_estimate(corner, kTick); }, price));
+    pole.points.back().is_default = corner == kDefaultCorner;
+  }
+  AccuracyLine window{
+      .name = "window", .title = "difference over a window", .order = {}, .points = {}};
+  AccuracyLine adaptive{.name = "adaptive", .title = "adaptive window", .order = {}, .points = {}};
+  for (const int ticks : {1, 2, 4, 8, 16, 32, 64}) {
+    window.points.push_back(point_of(
+        std::to_string(ticks), ticks, [ticks] { return window_estimate(ticks, kTick); }, price));
+    adaptive.points.push_back(point_of(
+        std::to_string(ticks), ticks, [ticks] { return adaptive_estimate(ticks, kStep, kTick); },
+        price));
+  }
+  AccuracyLine levant{
+      .name = "levant", .title = "Levant's differentiator", .order = {}, .points = {}};
+  for (const double most : {64.0, 16.0, 4.0, 2.0, 1.0, 0.5, 0.25}) {
+    // It answers within about the time in which that acceleration crosses a step.
+    const double knob = 1e3 * std::sqrt(2 * kStep / most);
+    levant.points.push_back(point_of(
+        std::to_string(static_cast<int>(1000 * most)), knob,
+        [most] { return levant_estimate(most, kTick); }, price));
+  }
+  std::vector<AccuracyLine> lines;
+  for (AccuracyLine* line : {&pole, &window, &adaptive, &levant}) lines.push_back(std::move(*line));
+  return lines;
+}
+
+AccuracyAxis axis_of(Price price) {
+  AccuracyAxis axis;
+  axis.knob = "how far back the estimate looks";
+  axis.knob_unit = "ms";
+  axis.lines = lines_of(price);
+  return axis;
+}
+
+}  // namespace
+
+AccuracyAxis velocity_axis() {
+  AccuracyAxis axis = axis_of(Price::kForce);
+  axis.name = "velocity";
+  axis.title = "Estimates of velocity from an encoder of 30 um at 1 kHz";
+  axis.metric = "force error of a damper of 1 N s/m, RMS";
+  axis.unit = "mN";
+  axis.truth = "The hand's velocity in closed form: strokes of 20 mm and 1 mm, and tremor.";
+  axis.threshold = 20;  // [STABILITY 6]
+  axis.threshold_words = "the smallest force that is felt (20 mN)";
+  axis.default_words =
+      "The pole at 100 Hz costs little latency, which stability pays for (13 % of the stiffness "
+      "that "
+      "damping buys); a longer look is truer here and shakier at a wall.";
+  axis.left_out =
+      "What the lag costs at a wall, which is in the next diagram. The difference alone is the "
+      "first point of the window.";
+  return axis;
+}
+
+AccuracyAxis velocity_stiffness_axis() {
+  AccuracyAxis axis = axis_of(Price::kLag);
+  axis.name = "velocity_stiffness";
+  axis.title = "Estimates of velocity: the stiffest wall with a damper that stays still in a hand";
+  axis.metric = "how far the stiffest wall gives";
+  axis.unit = "mm/N";
+  axis.truth =
+      "A wall in continuous time, which may be as stiff as wanted: what is left is half a tick and "
+      "what the estimate lags.";
+  axis.threshold = 1 / 0.8;  // [STABILITY 6, after Choi and Tan 2004]
+  axis.threshold_words = "the give of a wall that is felt as hard (0.8 N/mm)";
+  axis.default_words =
+      "The difference alone lags less, and shakes more than twice as much (diagram before); the "
+      "pole "
+      "at 100 Hz gives up a tenth of the stiffness for that.";
+  axis.left_out =
+      "Steps of the encoder, so that lag alone is seen: the window that adapts to them and "
+      "Levant's "
+      "differentiator answer another motion here than on counts.";
+  return axis;
+}
+
+}  // namespace thimble::app

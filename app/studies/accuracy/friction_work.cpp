@@ -1,0 +1,51 @@
+#include "studies/accuracy/friction_work.h"
+
+#include <cmath>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "studies/accuracy/hand_signal.h"
+#include "studies/signal.h"
+
+namespace thimble::app {
+namespace {
+
+constexpr double kSpeed = 0.001;  // m/s
+constexpr double kCorner = 50;    // Hz [STABILITY 2.5]
+
+}  // namespace
+
+Creep creep_of(const FrictionCase& which, const FrictionRigSettings& rig) {
+  const auto friction = build_friction(which, rig);
+  const RigRun run =
+      rub(*friction, {{0, -1.25 * kSpeed}, {0.5, -1.25 * kSpeed}, {3, 1.25 * kSpeed}}, 3, rig);
+  const double rate = 1 / run.period;
+  const auto second = static_cast<std::size_t>(std::llround(rate));
+  const std::vector<double> fast = high_passed(run.force, rate, kCorner);
+  return {.tremble = root_mean_square(std::span(fast).last(second)),
+          .mean = -mean(std::span<const double>(run.force).last(second))};
+}
+
+Stroke friction_work(const FrictionCase& which, const FrictionRigSettings& rig) {
+  const std::shared_ptr<render::AnyStage> friction = build_friction(which, rig);
+  std::vector<driver::DeviceState> states(kFrictionTicks);
+  for (int i = 0; i < kFrictionTicks; ++i) {
+    driver::DeviceState& state = states[static_cast<std::size_t>(i)];
+    const HandSignal hand = hand_signal(i * 1e-3);
+    state.p_WT = {counted(hand.x, rig.encoder_step), 0, 0};
+    state.v_WT = {hand.v, 0, 0};
+    state.tick = static_cast<std::uint64_t>(i);
+    state.time_ns = std::int64_t{1'000'000} * i;
+    state.dt = i > 0 ? 1e-3 : 0;
+    state.fresh = true;
+  }
+  return [friction, states, load = rig.load, depth = rig.depth] {
+    EvenSurface surface(*friction, load, depth);
+    double sum = 0;
+    for (const auto& state : states) sum += surface(state).f_T_W.x();
+    return sum;
+  };
+}
+
+}  // namespace thimble::app

@@ -1,0 +1,23 @@
+#pragma once
+
+#include "studies/accuracy/accuracy_axis.h"
+#include "studies/friction/friction_cases.h"
+#include "studies/friction/friction_rig.h"
+
+namespace thimble::app {
+
+/// Is what a friction does under a hand that creeps at 1 mm/s, N.
+struct Creep {
+  double tremble = 0;  ///< RMS above 50 Hz.
+  double mean = 0;     ///< Against the motion.
+};
+
+/// Creeps on the rig for 3 s, of which the last second counts. Real-time: never from the servo
+/// thread.
+Creep creep_of(const FrictionCase& which, const FrictionRigSettings& rig);
+
+/// Makes a stroke of the friction alone ready: `kFrictionTicks` ticks of a creeping tip.
+Stroke friction_work(const FrictionCase& which, const FrictionRigSettings& rig);
+inline constexpr int kFrictionTicks = 4000;
+
+}  // namespace thimble::app

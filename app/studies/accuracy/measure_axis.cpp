@@ -1,0 +1,162 @@
+#include "studies/accuracy/measure_axis.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+#include <utility>
+
+#include "studies/accuracy/probed_stroke.h"
+
+namespace thimble::app {
+namespace {
+
+// The time that this thread has worked, s: others that want the processor do not count.
+double worked() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+void measure_times(std::vector<MeasuredPoint*>& points, int rounds) {
+  struct Timed {
+    MeasuredPoint* point = nullptr;
+    Stroke stroke;
+    Stroke beside = {};
+    std::vector<double> ns = {};
+  };
+  std::vector<Timed> all;
+  volatile double seen = 0;
+  for (MeasuredPoint* point : points) {
+    all.push_back({point, point->point->prepare()});
+    if (point->point->beside) all.back().beside = point->point->beside();
+    seen = seen + all.back().stroke();  // the first one reads everything into the caches
+    if (all.back().beside) seen = seen + all.back().beside();
+  }
+  for (int round = 0; round < rounds; ++round) {
+    for (Timed& timed : all) {
+      const double begin = worked();
+      seen = seen + timed.stroke();
+      double spent = worked() - begin;
+      if (timed.beside) {
+        const double begin_beside = worked();
+        seen = seen + timed.beside();
+        spent -= worked() - begin_beside;
+      }
+      timed.ns.push_back(1e9 * spent / timed.point->point->ticks);
+    }
+  }
+  for (Timed& timed : all) {
+    std::sort(timed.ns.begin(), timed.ns.end());
+    const std::size_t n = timed.ns.size();
+    timed.point->ns = timed.ns[n / 2];
+    timed.point->ns_spread = (timed.ns[n * 3 / 4] - timed.ns[n / 4]) / 2;
+  }
+}
+
+// Costs and errors within this share of each other are as good as the same.
+constexpr double kAlike = 0.02;
+
+void find_front(const std::vector<MeasuredPoint*>& points) {
+  for (MeasuredPoint* point : points) {
+    point->on_front = !point->diverged;
+    for (const MeasuredPoint* other : points) {
+      if (other == point || other->diverged || point->diverged) continue;
+      const bool cheaper = other->cost() < (1 - kAlike) * point->cost();
+      const bool better = other->error < (1 - kAlike) * point->error;
+      const bool no_dearer = other->cost() <= point->cost();
+      const bool no_worse = other->error <= point->error;
+      if ((cheaper && no_worse) || (better && no_dearer)) point->on_front = false;
+    }
+  }
+}
+
+}  // namespace
+
+const MeasuredPoint* MeasuredAxis::default_point() const {
+  for (const MeasuredLine& line : lines) {
+    for (const MeasuredPoint& point : line.points) {
+      if (point.point->is_default) return &point;
+    }
+  }
+  return nullptr;
+}
+
+const MeasuredLine* MeasuredAxis::line_of(const MeasuredPoint* point) const {
+  for (const MeasuredLine& line : lines) {
+    for (const MeasuredPoint& other : line.points) {
+      if (&other == point) return &line;
+    }
+  }
+  return nullptr;
+}
+
+const MeasuredPoint* MeasuredAxis::enough() const {
+  const MeasuredPoint* found = nullptr;
+  if (!axis.threshold) return nullptr;
+  for (const MeasuredLine& line : lines) {
+    for (const MeasuredPoint& point : line.points) {
+      // Written so that NaN is never enough.
+      if (point.diverged || !(point.error <= *axis.threshold)) continue;
+      if (found == nullptr || point.cost() < found->cost()) found = &point;
+    }
+  }
+  return found;
+}
+
+std::optional<double> slope_of(const std::vector<MeasuredPoint>& points) {
+  double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
+  for (const MeasuredPoint& point : points) {
+    if (!point.point->fits || point.diverged) continue;
+    if (!(point.error > 0) || !(point.point->knob > 0)) continue;
+    const double x = std::log(point.point->knob);
+    const double y = std::log(point.error);
+    n += 1;
+    sx += x;
+    sy += y;
+    sxx += x * x;
+    sxy += x * y;
+  }
+  if (n < 2) return std::nullopt;
+  return (n * sxy - sx * sy) / (n * sxx - sx * sx);
+}
+
+MeasuredAxis measure_axis(AccuracyAxis axis, const MeasureOptions& options) {
+  MeasuredAxis measured;
+  measured.axis = std::move(axis);
+  for (const AccuracyLine& line : measured.axis.lines) {
+    MeasuredLine found{.line = &line, .slope = {}, .points = {}};
+    for (const AccuracyPoint& point : line.points) {
+      MeasuredPoint one;
+      one.point = &point;
+      one.error = point.error();
+      // Written so that NaN counts as diverged.
+      one.diverged = !(std::abs(one.error) < 1e9);
+      found.points.push_back(one);
+    }
+    found.slope = slope_of(found.points);
+    measured.lines.push_back(std::move(found));
+  }
+  std::vector<MeasuredPoint*> points;
+  for (MeasuredLine& line : measured.lines) {
+    for (MeasuredPoint& point : line.points) points.push_back(&point);
+  }
+  if (options.rounds > 0) measure_times(points, options.rounds);
+  if (options.count) {
+    std::size_t strokes = 0;
+    for (const MeasuredPoint* point : points) strokes += point->point->beside ? 2 : 1;
+    const auto counts = count_strokes(measured.axis.name);
+    if (counts && counts->size() == strokes) {
+      std::size_t next = 0;
+      for (MeasuredPoint* point : points) {
+        double count = (*counts)[next++];
+        if (point->point->beside) count -= (*counts)[next++];
+        point->instructions = count / point->point->ticks;
+      }
+    }
+  }
+  find_front(points);
+  return measured;
+}
+
+}  // namespace thimble::app

@@ -1,0 +1,103 @@
+#include "studies/accuracy/probed_stroke.h"
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <map>
+
+extern "C" [[gnu::noinline]] double thimble_probed_stroke(const thimble::app::Stroke& stroke) {
+  const double sum = stroke();
+  asm volatile("");  // so that the call above is no jump, and the function ends here
+  return sum;
+}
+
+namespace thimble::app {
+namespace {
+
+bool begins_with(const std::string& name, const std::string& prefix) {
+  if (name.compare(0, prefix.size(), prefix) != 0) return false;
+  return name.size() == prefix.size() || name[prefix.size()] == '/';
+}
+
+// Reads what callgrind counted up to one dump: "totals: 12345".
+std::optional<double> totals_of(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  std::optional<double> totals;
+  for (std::string line; std::getline(stream, line);) {
+    if (line.compare(0, 8, "totals: ") == 0) totals = std::strtod(line.c_str() + 8, nullptr);
+  }
+  return totals;
+}
+
+// Makes a folder that goes away with everything in it.
+class ScratchFolder {
+ public:
+  ScratchFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "thimble-XXXXXX").string();
+    if (mkdtemp(name.data()) != nullptr) path_ = name;
+  }
+  ~ScratchFolder() {
+    std::error_code status;
+    if (!path_.empty()) std::filesystem::remove_all(path_, status);
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+}  // namespace
+
+int probe_strokes(const std::string& prefix) {
+  int count = 0;
+  volatile double seen = 0;
+  const std::string axis_name = prefix.substr(0, prefix.find('/'));
+  for (const AxisMaker& maker : accuracy_axes()) {
+    if (maker.name != axis_name) continue;
+    const AccuracyAxis axis = maker.make();
+    for (const AccuracyLine& line : axis.lines) {
+      for (const AccuracyPoint& point : line.points) {
+        std::string name = axis.name;
+        name.append("/").append(line.name).append("/").append(point.name);
+        if (!begins_with(name, prefix)) continue;
+        seen = seen + thimble_probed_stroke(point.prepare());
+        ++count;
+        if (!point.beside) continue;
+        seen = seen + thimble_probed_stroke(point.beside());
+        ++count;
+      }
+    }
+  }
+  return count;
+}
+
+std::optional<std::vector<double>> count_strokes(const std::string& prefix) {
+  return count_subject("accuracy/" + prefix);
+}
+
+std::optional<std::vector<double>> count_subject(const std::string& subject) {
+  if (subject.find('\'') != std::string::npos) return std::nullopt;  // no word for a shell
+  std::error_code error;
+  const std::string program = std::filesystem::read_symlink("/proc/self/exe", error).string();
+  const ScratchFolder folder;
+  if (error || folder.path().empty()) return std::nullopt;
+  const std::string command =
+      "valgrind --tool=callgrind --toggle-collect=thimble_probed_stroke "
+      "--dump-after=thimble_probed_stroke --callgrind-out-file='" +
+      (folder.path() / "out").string() + "' '" + program + "' cost-probe '" + subject +
+      "' 1 >/dev/null 2>&1";
+  if (std::system(command.c_str()) != 0) return std::nullopt;  // NOLINT(cert-env33-c)
+  std::vector<double> counts;
+  for (int i = 1;; ++i) {
+    const auto file = folder.path() / ("out." + std::to_string(i));
+    if (!std::filesystem::exists(file)) break;
+    const auto totals = totals_of(file);
+    if (!totals) return std::nullopt;
+    counts.push_back(*totals);
+  }
+  return counts;
+}
+
+}  // namespace thimble::app

@@ -1,0 +1,79 @@
+#include "studies/accuracy/study_accuracy.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+
+#include "report/gnuplot.h"
+#include "report/picture_parts.h"
+#include "studies/accuracy/accuracy_axis.h"
+#include "studies/accuracy/accuracy_page.h"
+#include "studies/accuracy/axis_picture.h"
+#include "studies/accuracy/axis_words.h"
+#include "studies/accuracy/measure_axis.h"
+
+namespace thimble::app {
+namespace {
+
+driver::Result<std::vector<const AxisMaker*>> named_axes(const std::vector<std::string>& names) {
+  std::vector<const AxisMaker*> found;
+  for (const AxisMaker& maker : accuracy_axes()) {
+    if (names.empty() || std::find(names.begin(), names.end(), maker.name) != names.end()) {
+      found.push_back(&maker);
+    }
+  }
+  if (names.empty() || found.size() == names.size()) return found;
+  std::string message = "--axis: known are";
+  for (const AxisMaker& maker : accuracy_axes()) message.append(" ").append(maker.name);
+  return driver::Error{message + "; each once."};
+}
+
+}  // namespace
+
+driver::Result<std::vector<Figure>> study_accuracy(const std::vector<std::string>& axes, bool count,
+                                                   const std::filesystem::path& folder) {
+  const auto makers = named_axes(axes);
+  if (!makers) return makers.error();
+  const bool draws = has_gnuplot();
+  if (auto made = make_picture_folder(folder); !made) return made.error();
+  std::vector<std::unique_ptr<MeasuredAxis>> measured;
+  std::vector<AxisSection> sections;
+  std::vector<Figure> figures;
+  bool counted = count;
+  for (const AxisMaker* maker : *makers) {
+    std::printf("\rMeasuring %-40s", std::string(maker->name).c_str());
+    std::fflush(stdout);
+    measured.push_back(
+        std::make_unique<MeasuredAxis>(measure_axis(maker->make(), {.count = counted})));
+    const MeasuredAxis& axis = *measured.back();
+    AxisSection section{.axis = &axis, .pictures = {}};
+    if (counted && !axis.lines.front().points.front().instructions) {
+      std::printf("\rInstructions are not counted: valgrind is not installed, or failed.\n");
+      counted = false;
+    }
+    if (auto written = write_text(csv_of(axis), folder / (axis.axis.name + ".csv")); !written) {
+      return written.error();
+    }
+    if (draws) {
+      auto drawn = draw_axis(axis, folder);
+      if (!drawn) return drawn.error();
+      section.pictures = *std::move(drawn);
+    }
+    sections.push_back(std::move(section));
+    for (Figure& figure : figures_of(axis)) figures.push_back(std::move(figure));
+  }
+  std::printf("\r%60s\r", "");
+  if (!draws) std::printf("No pictures: gnuplot is not installed (apt install gnuplot-nox).\n");
+  if (auto written = write_accuracy_page(sections, folder); !written) return written.error();
+  if (auto written = write_accuracy_summary(sections, folder / "summary.json"); !written) {
+    return written.error();
+  }
+  for (const AxisSection& section : sections) {
+    std::printf("%s\n  %s\n  %s\n", section.axis->axis.title.c_str(),
+                felt_sentence(*section.axis).c_str(), default_sentence(*section.axis).c_str());
+  }
+  std::printf("\n");
+  return figures;
+}
+
+}  // namespace thimble::app

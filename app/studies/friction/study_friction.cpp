@@ -1,0 +1,167 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <span>
+#include <string>
+#include <system_error>
+
+#include "report/gnuplot.h"
+#include "report/picture_parts.h"
+#include "studies/friction/friction_cases.h"
+#include "studies/friction/friction_pictures.h"
+#include "studies/friction/study_friction.h"
+#include "studies/signal.h"
+#include "surface/friction/friction_settings.h"
+
+namespace thimble::app {
+namespace {
+
+constexpr int kDelays = 4;  // ticks 0 to 3
+constexpr int kStops = 40;  // places within one count [STABILITY 7, case 14]
+
+std::string table_row(const FrictionCase& which, const FrictionMeasures& found) {
+  char line[200];
+  std::snprintf(line, sizeof line,
+                "%-3s %-31s %7.4f %7.2f %5.0f %6.3f   %7.4f %6.3f %6.3f   %7.4f\n",
+                which.letter.c_str(), which.title.c_str(), found.rest_force, 1e6 * found.rest_way,
+                found.rest_frequency, found.rest_held, found.creep_force, found.creep_mean,
+                found.slow_mean, found.tremor_force);
+  return line;
+}
+
+std::string csv_row(const FrictionCase& which, int delay, const FrictionMeasures& found) {
+  char line[300];
+  std::snprintf(line, sizeof line, "%s,%d,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g\n",
+                which.name.c_str(), delay, found.rest_force, found.rest_way, found.rest_frequency,
+                found.rest_held, found.creep_force, found.creep_mean, found.slow_mean,
+                found.tremor_force);
+  return line;
+}
+
+/// Is the worst of 40 stops at each of four delays.
+struct WorstStop {
+  double force = 0;         // N RMS above 50 Hz
+  double way = 0;           // m RMS above 50 Hz
+  double sign_changes = 0;  // 1/s
+  double held_least = HUGE_VAL;
+};
+
+WorstStop worst_stop(const FrictionCase& which) {
+  WorstStop worst;
+  for (int delay = 0; delay < kDelays; ++delay) {
+    FrictionRigSettings rig;
+    rig.delay_ns = delay * rig.period_ns;
+    for (int i = 0; i < kStops; ++i) {
+      const RigRun run = stop_run(which, rig, kStopPlace + i * rig.encoder_step / kStops);
+      const std::vector<double> force = high_passed(run.force, 1000, 50);
+      const std::vector<double> way = high_passed(run.x, 1000, 50);
+      const std::span<const double> rest = std::span(run.force).last(1000);
+      worst.force = std::max(worst.force, root_mean_square(std::span(force).last(1000)));
+      worst.way = std::max(worst.way, root_mean_square(std::span(way).last(1000)));
+      worst.sign_changes = std::max(worst.sign_changes, sign_changes_per_second(rest, 1000));
+      worst.held_least = std::min(worst.held_least, std::abs(mean(rest)));
+    }
+  }
+  return worst;
+}
+
+/// Adds the naive law's mean and ripple against their closed forms [STABILITY 2.1].
+void add_even_sliding(std::vector<Figure>& figures) {
+  for (const double speed : {0.005, 0.02}) {
+    const FrictionRigSettings rig;
+    const EvenSliding found = slide_evenly(rig, speed);
+    const double p = speed * static_cast<double>(rig.period_ns) * 1e-9 / rig.encoder_step;
+    const double mean_law = p * 0.5;
+    const double ripple_law = 0.5 * std::sqrt(p * (1 - p));
+    const std::string at = "naive.slide_" + std::to_string(std::lround(1e3 * speed)) + "mm_s.";
+    figures.push_back({at + "mean", found.mean, "N", ""});
+    figures.push_back({at + "mean_error", std::abs(found.mean / mean_law - 1), "", "<= 0.01"});
+    figures.push_back({at + "ripple", found.ripple, "N", ""});
+    figures.push_back(
+        {at + "ripple_error", std::abs(found.ripple / ripple_law - 1), "", "<= 0.01"});
+  }
+}
+
+void add_measures(std::vector<Figure>& figures, const FrictionCase& which,
+                  const FrictionMeasures& found) {
+  const std::string name = which.name + ".";
+  // What the default promises, and what the paper's tremble is [STABILITY 2.2 and 7, cases 14, 15].
+  const bool chosen = which.name == "bristle";
+  figures.push_back({name + "rest_force", found.rest_force, "N", chosen ? "<= 0.001" : ""});
+  figures.push_back({name + "rest_way", found.rest_way, "m", chosen ? "<= 5e-08" : ""});
+  figures.push_back({name + "rest_frequency", found.rest_frequency, "Hz", chosen ? "== 0" : ""});
+  figures.push_back({name + "rest_held", found.rest_held, "N", ""});
+  figures.push_back({name + "creep_force", found.creep_force, "N", chosen ? "<= 0.005" : ""});
+  figures.push_back({name + "creep_mean", found.creep_mean, "N", chosen ? ">= 0.45" : ""});
+  figures.push_back({name + "slow_mean", found.slow_mean, "N", chosen ? ">= 0.45" : ""});
+  figures.push_back({name + "tremor_force", found.tremor_force, "N", ""});
+  if (which.name == "naive_hold") {
+    figures.push_back(
+        {name + "rest_force_against_0.49_N", std::abs(found.rest_force / 0.49 - 1), "", "<= 0.2"});
+    figures.push_back(
+        {name + "rest_way_against_15.6_um", std::abs(found.rest_way / 15.6e-6 - 1), "", "<= 0.2"});
+  }
+}
+
+}  // namespace
+
+driver::Result<std::vector<Figure>> study_friction(const std::filesystem::path& folder) {
+  if (auto made = make_picture_folder(folder); !made) return made.error();
+  std::vector<Figure> figures;
+  std::vector<FrictionMeasures> undelayed;
+  std::string csv =
+      "friction,delay_ticks,rest_force_N,rest_way_m,rest_frequency_Hz,rest_held_N,creep_force_N,"
+      "creep_mean_N,slow_mean_N,tremor_force_N\n";
+  std::printf(
+      "Friction of 0.5 N under 1 N from the wire up: vintage arm, encoder cut to 0.03 mm, 1 kHz, "
+      "pinch grip.\nForces N and ways um are RMS above 50 Hz; stop from 50 mm/s, creep at 1 mm/s, "
+      "slow at 5 mm/s,\ntremor of 300 um.\n\n"
+      "                                    after a stop                  creep    mean   slow    "
+      "tremor\n"
+      "    friction                          force     way    Hz   held     force   mean   mean    "
+      " force\n");
+  for (const FrictionCase& which : friction_cases()) {
+    for (int delay = 0; delay < kDelays; ++delay) {
+      FrictionRigSettings rig;
+      rig.delay_ns = delay * rig.period_ns;
+      FrictionMeasures found = measure(which, rig);
+      csv += csv_row(which, delay, found);
+      if (delay > 0) continue;
+      std::printf("%s", table_row(which, found).c_str());
+      add_measures(figures, which, found);
+      undelayed.push_back(std::move(found));
+    }
+  }
+  std::printf("\n");
+  add_even_sliding(figures);
+
+  FrictionRigSettings ideal;
+  ideal.encoder_step = 0;
+  const FrictionMeasures smooth = measure(friction_cases()[1], ideal);
+  figures.push_back({"naive_hold.ideal_encoder.rest_way", smooth.rest_way, "m", "<= 1e-06"});
+  const auto chosen =
+      std::find_if(friction_cases().begin(), friction_cases().end(),
+                   [](const FrictionCase& which) { return which.name == "bristle"; });
+  const WorstStop worst = worst_stop(*chosen);
+  figures.push_back({"bristle.worst_of_160_stops.force", worst.force, "N", "<= 0.001"});
+  figures.push_back({"bristle.worst_of_160_stops.way", worst.way, "m", "<= 5e-08"});
+  figures.push_back({"bristle.worst_of_160_stops.sign_changes", worst.sign_changes, "1/s", "== 0"});
+  figures.push_back({"bristle.worst_of_160_stops.held_least", worst.held_least, "N", ">= 0.25"});
+
+  if (auto done = write_text(csv, folder / "friction.csv"); !done) return done.error();
+  if (!has_gnuplot()) {
+    std::fprintf(stderr,
+                 "thimble: NO PICTURES: gnuplot is not installed (apt install "
+                 "gnuplot-nox). Table, CSV and figures are complete.\n");
+    return figures;
+  }
+  for (std::size_t i = 0; i < undelayed.size(); ++i) {
+    if (auto done = draw_friction(friction_cases()[i], undelayed[i], folder); !done) {
+      return done.error();
+    }
+  }
+  if (auto done = draw_friction_overview(undelayed, folder); !done) return done.error();
+  return figures;
+}
+
+}  // namespace thimble::app

@@ -1,0 +1,140 @@
+#include "studies/rate_bench.h"
+
+#include <atomic>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "servo_thread.h"
+#include "thimble/scene/meshes.h"
+#include "thimble/session/session.h"
+
+namespace thimble::app {
+namespace {
+
+constexpr double kOften = 0.999;         // of all ticks
+constexpr double kStiffnessFelt = 0.08;  // [STABILITY 6: stiffness error]
+
+// Lets the scene run at another rate: what knows the time of a tick is told.
+void change_rate(scene::Scene& scene, double rate) {
+  scene.rate = rate;
+  for (scene::SceneObject& object : scene.objects) {
+    if (object.body.dent) object.body.dent->step = 1 / rate;
+  }
+  scene.arm.simulated.firmware.report_period_ns = std::llround(1e9 / rate);
+}
+
+std::string sentence_of(const RateBench& bench, const RateVerdict& verdict) {
+  char text[400];
+  const double period = 1e6 / bench.rate;
+  if (!bench.trouble.empty()) return "Not enough: " + bench.trouble;
+  if (verdict.enough) {
+    std::snprintf(text, sizeof text,
+                  "Enough: 999 of 1000 ticks wake up within %.1f us and work for %.1f us of their "
+                  "%.0f us; %.0f %% are left, and uneven ticks cost %.1f %% of the stiffness.",
+                  verdict.late_us, verdict.work_us, period, 100 * verdict.headroom,
+                  100 * verdict.stiffness_lost);
+    return text;
+  }
+  if (verdict.work_us >= period) {
+    std::snprintf(text, sizeof text,
+                  "Not enough, because the work alone takes %.1f us of %.0f us in 1 of 1000 ticks: "
+                  "a simpler scene or --quality draft would help.",
+                  verdict.work_us, period);
+  } else if (verdict.headroom < 0) {
+    std::snprintf(text, sizeof text,
+                  "Not enough, because 1 of 1000 ticks wakes up %.0f us late, with %.1f us of work "
+                  "in a tick of %.0f us: %s.",
+                  verdict.late_us, verdict.work_us, period,
+                  bench.priority ? "other work on this machine, or a kernel that is not real-time, "
+                                   "stands in the way"
+                                 : "the loop has no real-time priority (thimble doctor)");
+  } else {
+    std::snprintf(text, sizeof text,
+                  "Not enough, because uneven ticks (the longest %.1f ms) cost %.0f %% of the "
+                  "stiffness that is stable, which can be felt: %s.",
+                  1e-6 * static_cast<double>(bench.period.max_ns()), 100 * verdict.stiffness_lost,
+                  bench.priority ? "leave this machine to the loop alone"
+                                 : "give the loop real-time priority (thimble doctor)");
+  }
+  return text;
+}
+
+}  // namespace
+
+double stiffness_lost(const session::Histogram& period) {
+  double count = 0, sum = 0, squares = 0;
+  for (const session::Histogram::Bin& bin : period.bins()) {
+    const double n = static_cast<double>(bin.count);
+    const double t = 0.5 * static_cast<double>(bin.lower_ns + bin.upper_ns);
+    count += n;
+    sum += n * t;
+    squares += n * t * t;
+  }
+  return squares > 0 ? 1 - sum * sum / (count * squares) : 0;
+}
+
+driver::Result<RateBench> bench_rate(const std::filesystem::path& scene, double rate,
+                                     double seconds, scene::Quality quality) {
+  session::SessionOptions options;
+  options.clock = session::ClockKind::kWall;
+  options.duration = seconds;
+  options.mesh_folder = scene::mesh_folder();
+  options.adjust = [rate, quality](scene::Scene& changed) {
+    scene::apply_quality(quality, changed);
+    change_rate(changed, rate);
+  };
+  auto opened = session::Session::open(scene, options);
+  if (!opened) return opened.error();
+  session::Session& session = **opened;
+  RateBench bench;
+  bench.rate = rate;
+  const std::atomic<bool> stop{false};
+  session::ServoThread servo(true);
+  servo.begin(session, stop);
+  const driver::ServoEnd end = servo.join();
+  bench.period = session.statistics().period();
+  bench.lateness = session.statistics().lateness();
+  bench.work = session.statistics().work();
+  bench.priority = servo.grant().fifo;
+  bench.advice = servo.grant().advice;
+  if (end == driver::ServoEnd::kFault) {
+    bench.trouble = "a fault ended the run: ticks came too late for the arm's safety.";
+  }
+  return bench;
+}
+
+RateVerdict verdict_of(const RateBench& bench) {
+  RateVerdict verdict;
+  verdict.late_us = 1e-3 * bench.lateness.percentile(kOften);
+  verdict.work_us = 1e-3 * bench.work.percentile(kOften);
+  const double period = 1e6 / bench.rate;
+  verdict.headroom = 1 - (verdict.late_us + verdict.work_us) / period;
+  verdict.stiffness_lost = stiffness_lost(bench.period);
+  verdict.enough =
+      bench.trouble.empty() && verdict.headroom >= 0 && verdict.stiffness_lost <= kStiffnessFelt;
+  verdict.sentence = sentence_of(bench, verdict);
+  return verdict;
+}
+
+std::vector<Figure> figures_of(const RateBench& bench, const RateVerdict& verdict) {
+  const std::string rate = std::to_string(std::lround(bench.rate)) + " Hz, ";
+  std::vector<Figure> figures;
+  const auto add = [&](const std::string& name, double value, const std::string& unit) {
+    figures.push_back({.name = rate + name, .value = value, .unit = unit, .goal = {}});
+  };
+  add("wake-up late, median", 1e-3 * bench.lateness.percentile(0.5), "us");
+  add("wake-up late, 99 %", 1e-3 * bench.lateness.percentile(0.99), "us");
+  add("wake-up late, 99.9 %", verdict.late_us, "us");
+  add("wake-up late, longest", 1e-3 * static_cast<double>(bench.lateness.max_ns()), "us");
+  add("work of a tick, median", 1e-3 * bench.work.percentile(0.5), "us");
+  add("work of a tick, 99.9 %", verdict.work_us, "us");
+  add("work of a tick, longest", 1e-3 * static_cast<double>(bench.work.max_ns()), "us");
+  add("headroom", 100 * verdict.headroom, "%");
+  add("stiffness lost to uneven ticks", 100 * verdict.stiffness_lost, "%");
+  add("enough", verdict.enough ? 1 : 0, "");
+  return figures;
+}
+
+}  // namespace thimble::app

@@ -1,0 +1,286 @@
+#include "studies/stability/stability_plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+
+#include "stability/stability_laws.h"
+#include "studies/stability/wall_measures.h"
+#include "thimble/scene/energy_choice.h"
+
+namespace thimble::app {
+namespace {
+
+// The limits of all maps: five decades of each, from what passivity allows to beyond any arm.
+constexpr double kStiffnessLeast = 1, kStiffnessMost = 1e5;  // N/m
+constexpr double kDampingLeast = 1e-3, kDampingMost = 1e2;   // N s/m
+constexpr double kQuiet = 0.25;   // counts: what swings less is taken as at rest
+constexpr double kEdgeRange = 4;  // an edge is looked for within the law divided and times this
+
+/// Gives `count` values from `least` to `most`, evenly on a logarithm.
+std::vector<double> octaves(double least, double most, int count) {
+  std::vector<double> values;
+  values.reserve(static_cast<std::size_t>(count));
+  for (int i = 0; i < count; ++i) {
+    values.push_back(least * std::pow(most / least, static_cast<double>(i) / (count - 1)));
+  }
+  return values;
+}
+
+std::vector<double> even(double least, double most, int count) {
+  std::vector<double> values;
+  values.reserve(static_cast<std::size_t>(count));
+  for (int i = 0; i < count; ++i) values.push_back(least + (most - least) * i / (count - 1));
+  return values;
+}
+
+/// Is the arm as a linear one: no dry friction, ideal encoders, no limits.
+WallCase linear_case(const StabilitySetup& setup) {
+  WallCase wall;
+  wall.direction = setup.direction;
+  wall.tip = setup.arm.simulated.plant;
+  wall.tip.coulomb = 0;
+  wall.hand = setup.hand;
+  wall.velocity_corner = setup.arm.velocity_corner_frequency;
+  wall.period_ns = setup.period_ns;
+  wall.delay_ns = setup.delay_ns();
+  wall.duration = 2;
+  return wall;
+}
+
+/// Is the arm with its friction, encoders and limits, but without the energy stage of its gate, of
+/// which the laws know nothing.
+WallCase arm_case(const StabilitySetup& setup, const ArmDirection& direction) {
+  WallCase wall = linear_case(setup);
+  wall.direction = direction;
+  wall.tip = setup.arm.simulated.plant;
+  wall.own_step = true;
+  wall.own_limits = true;
+  return wall;
+}
+
+/// Is a free linear arm with b = 1, as in case 1 of [STABILITY 7].
+WallCase bare_case(const StabilitySetup& setup) {
+  WallCase wall = linear_case(setup);
+  wall.hand = {};
+  wall.tip.viscous = kBareDamping;
+  wall.velocity_corner = 0;
+  wall.delay_ns = 0;
+  wall.duration = 4;
+  return wall;
+}
+
+std::int64_t to_ns(double seconds) {
+  return std::llround(seconds * 1e9);
+}
+
+double edge_by_law(const StabilitySetup& setup, const WallCase& wall,
+                   const scene::LoopTimes& times) {
+  const double law = scene::stiffness_limit(kBareDamping, scene::latency_of(times));
+  return linear_edge(setup.arm, wall, law / kEdgeRange, law * kEdgeRange);
+}
+
+double arm_swing(const StabilitySetup& setup, const WallCase& wall) {
+  return setup.hand.stiffness > 0 ? pressed_swing(setup.arm, wall)
+                                  : released_swing(setup.arm, wall, kReleaseSpeed, 2);
+}
+
+double arm_edge(const StabilitySetup& setup, const ArmDirection& direction, double damping,
+                bool guarded) {
+  WallCase wall = arm_case(setup, direction);
+  if (guarded) {
+    wall.energy =
+        scene::energy_settings(setup.arm, 1e9 / static_cast<double>(wall.period_ns), std::nullopt);
+  }
+  wall.damping = damping;
+  const double quiet = kQuiet * direction.step;
+  return setup.hand.stiffness > 0
+             ? pressed_edge(setup.arm, wall, quiet, kStiffnessLeast, kStiffnessMost)
+             : released_edge(setup.arm, wall, kReleaseSpeed, 2, quiet, kStiffnessLeast,
+                             kStiffnessMost);
+}
+
+double cycle(const StabilitySetup& setup, const StabilityCell& cell) {
+  WallCase wall = bare_case(setup);
+  const double period = setup.period();
+  wall.stiffness = kCycleStiffness;
+  wall.step = kCycleStep;
+  wall.tip.coulomb = cell.a * kCycleStiffness * kCycleStep;
+  wall.tip.viscous = cell.b * kCycleStiffness * period;
+  wall.delay_ns = to_ns(cell.d * period);
+  return released_swing(setup.arm, wall, cycle_speed(setup, cell.c), setup.coarse ? 3 : 5) /
+         kCycleStep;
+}
+
+/// Tells the largest stiffness that comes to rest with encoders of one step.
+double step_edge(const StabilitySetup& setup, double step) {
+  WallCase wall = linear_case(setup);
+  wall.tip = setup.arm.simulated.plant;
+  wall.velocity_corner = 0;
+  wall.step = step;
+  return released_edge(setup.arm, wall, kReleaseSpeed, 2, 1e-3 * step, 10, kStiffnessMost);
+}
+
+void add_maps(const StabilitySetup& setup, std::vector<StabilityCell>& cells) {
+  const int count = setup.coarse ? 11 : 51;
+  const auto stiffnesses = octaves(kStiffnessLeast, kStiffnessMost, count);
+  const auto dampings = octaves(kDampingLeast, kDampingMost, count);
+  for (const auto part : {StabilityPart::kLinearMap, StabilityPart::kArmMap}) {
+    for (const double damping : dampings) {
+      for (const double stiffness : stiffnesses) cells.push_back({part, stiffness, damping});
+    }
+  }
+  for (const auto part : {StabilityPart::kLinearEdge, StabilityPart::kArmEdge,
+                          StabilityPart::kGuardedEdge, StabilityPart::kDiagonalEdge}) {
+    for (const double damping : octaves(kDampingLeast, kDampingMost, setup.coarse ? 11 : 101)) {
+      cells.push_back({part, 0, damping});
+    }
+  }
+}
+
+void add_restitution(const StabilitySetup& setup, std::vector<StabilityCell>& cells) {
+  struct Series {
+    double period, delay, damping;
+  };
+  const double mass = setup.arm.simulated.plant.mass;
+  for (const Series& s : {Series{0.001, 0, 0}, Series{0.001, 0.001, 0}, Series{0.001, 0.002, 0},
+                          Series{0.00025, 0, 0}, Series{0.000125, 0, 0}, Series{0.001, 0, 2}}) {
+    // Beyond this the law's own condition, K L^2 / m << 1, is broken [STABILITY 1.1].
+    const double latency = s.period / 2 + s.delay;
+    const double most = std::min(0.3 * mass / (latency * latency), 3e4);
+    for (const double stiffness : octaves(100, most, setup.coarse ? 4 : 20)) {
+      cells.push_back({StabilityPart::kRestitution, stiffness, s.damping, s.period, s.delay});
+    }
+  }
+}
+
+void add_cycles(const StabilitySetup& setup, std::vector<StabilityCell>& cells) {
+  // Neither grid falls onto a corner.
+  const auto shares = even(0.05, 1.5, setup.coarse ? 7 : 50);
+  for (const double start : {3.5, 60.5}) {
+    for (const double delay : {0.0, 1.0}) {
+      for (const double sigma : shares) {
+        for (const double beta : shares) {
+          cells.push_back({StabilityPart::kCycle, sigma, beta + delay, start, delay});
+        }
+      }
+    }
+  }
+}
+
+void add_edges(const StabilitySetup& setup, std::vector<StabilityCell>& cells) {
+  const bool coarse = setup.coarse;
+  for (const double delays : {0.0, 1.0}) {
+    for (const double rate : octaves(250, 8000, coarse ? 3 : 11)) {
+      const double period = static_cast<double>(to_ns(1 / rate)) * 1e-9;
+      cells.push_back({StabilityPart::kRateEdge, 0, 0, period, delays * period});
+    }
+  }
+  const double period = setup.period();
+  for (const double delays : even(0, 5, coarse ? 3 : 21)) {
+    cells.push_back({StabilityPart::kDelayEdge, 0, 0, period, delays * period});
+  }
+  for (const double share : even(0, 0.2, coarse ? 3 : 11)) {
+    cells.push_back({StabilityPart::kLateEdge, share});
+  }
+  for (const double spread : even(0, 0.9, coarse ? 3 : 10)) {
+    cells.push_back({StabilityPart::kSpreadEdge, spread});
+  }
+  for (const double step : octaves(3e-6, 3e-4, coarse ? 5 : 31)) {
+    cells.push_back({StabilityPart::kStepEdge, step});
+  }
+}
+
+}  // namespace
+
+double cycle_speed(const StabilitySetup& setup, double counts) {
+  return counts * kCycleStep * std::sqrt(kCycleStiffness / setup.arm.simulated.plant.mass);
+}
+
+std::vector<StabilityCell> stability_cells(const StabilitySetup& setup) {
+  std::vector<StabilityCell> cells;
+  add_maps(setup, cells);
+  add_restitution(setup, cells);
+  add_cycles(setup, cells);
+  add_edges(setup, cells);
+  return cells;
+}
+
+std::vector<double> measure_stability(const StabilitySetup& setup, const StabilityCell& cell) {
+  switch (cell.part) {
+    case StabilityPart::kLinearMap: {
+      WallCase wall = linear_case(setup);
+      wall.stiffness = cell.a;
+      wall.damping = cell.b;
+      return {growth_rate(setup.arm, wall)};
+    }
+    case StabilityPart::kArmMap: {
+      WallCase wall = arm_case(setup, setup.direction);
+      wall.stiffness = cell.a;
+      wall.damping = cell.b;
+      return {arm_swing(setup, wall)};
+    }
+    case StabilityPart::kLinearEdge: {
+      WallCase wall = linear_case(setup);
+      wall.damping = cell.b;
+      return {linear_edge(setup.arm, wall, kStiffnessLeast, kStiffnessMost)};
+    }
+    case StabilityPart::kArmEdge:
+      return {arm_edge(setup, setup.direction, cell.b, false)};
+    case StabilityPart::kGuardedEdge:
+      return {arm_edge(setup, setup.direction, cell.b, true)};
+    case StabilityPart::kDiagonalEdge:
+      return {arm_edge(setup, setup.diagonal, cell.b, false)};
+    case StabilityPart::kRestitution: {
+      WallCase wall = linear_case(setup);
+      wall.hand = {};
+      wall.velocity_corner = 0;
+      wall.stiffness = cell.a;
+      wall.damping = cell.b;
+      wall.period_ns = to_ns(cell.c);
+      wall.delay_ns = to_ns(cell.d);
+      const Restitution found = throw_at_wall(setup.arm, wall, setup.coarse ? 25 : 200);
+      return {found.mean, found.least, found.most};
+    }
+    case StabilityPart::kCycle:
+      return {cycle(setup, cell)};
+    case StabilityPart::kRateEdge:
+    case StabilityPart::kDelayEdge: {
+      WallCase wall = bare_case(setup);
+      wall.period_ns = to_ns(cell.c);
+      wall.delay_ns = to_ns(cell.d);
+      return {edge_by_law(setup, wall, {.period = cell.c, .delay = cell.d})};
+    }
+    case StabilityPart::kLateEdge: {
+      WallCase wall = bare_case(setup);
+      wall.gaps_ns = late_ticks(setup.period_ns, cell.a, kLatePeriods, 1);
+      wall.duration = setup.coarse ? 8 : 20;
+      return {edge_by_law(setup, wall, late_times(setup.period(), cell.a))};
+    }
+    case StabilityPart::kSpreadEdge: {
+      WallCase wall = bare_case(setup);
+      wall.report_ns = setup.period_ns / 20;
+      wall.gaps_ns = spread_ticks(setup.period_ns, cell.a, wall.report_ns, 1);
+      wall.duration = setup.coarse ? 4 : 20;
+      return {edge_by_law(setup, wall, spread_times(setup.period(), cell.a))};
+    }
+    case StabilityPart::kStepEdge:
+      return {step_edge(setup, cell.a)};
+  }
+  throw std::logic_error("a cell of no part");
+}
+
+scene::LoopTimes late_times(double period, double share) {
+  const double mean = period * (1 + share * kLatePeriods);
+  const double spread = period * kLatePeriods * std::sqrt(share * (1 - share));
+  return {.period = mean, .period_spread = spread};
+}
+
+scene::LoopTimes spread_times(double period, double spread) {
+  // Of an even spread [derived: a uniform law of half width w has a standard deviation of
+  // w / sqrt 3].
+  return {.period = period, .period_spread = spread * period / std::sqrt(3.0)};
+}
+
+}  // namespace thimble::app

@@ -1,0 +1,338 @@
+#include "studies/stability/stability_tables.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <iterator>
+#include <limits>
+#include <numbers>
+
+#include "stability/stability_laws.h"
+
+namespace thimble::app {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+/// Is the wall that the exact map knows, of the arm with the hand.
+SampledWall sampled(const StabilitySetup& setup, double damping) {
+  const device_sim::PlantSettings& tip = setup.arm.simulated.plant;
+  return {.mass = tip.mass + setup.hand.mass,
+          .viscous = tip.viscous + setup.hand.damping,
+          .hand_stiffness = setup.hand.stiffness,
+          .damping = damping,
+          .velocity_corner = setup.arm.velocity_corner_frequency,
+          .period = setup.period(),
+          .delay = setup.delay()};
+}
+
+/// Is the free linear arm of case 1 [STABILITY 7].
+SampledWall bare(const StabilitySetup& setup, double period, double delay) {
+  return {.mass = setup.arm.simulated.plant.mass,
+          .viscous = kBareDamping,
+          .period = period,
+          .delay = delay};
+}
+
+/// Tells up to which stiffness a swing that begins at the speed of a touch dies: dry friction holds
+/// it beyond what damping carries, (b + B + 4 c / (pi v)) / L [STABILITY 1.4, solved for K].
+double arm_law(const StabilitySetup& setup, double damping) {
+  const device_sim::PlantSettings& tip = setup.arm.simulated.plant;
+  const double held = 4 * tip.coulomb / (std::numbers::pi * kReleaseSpeed);
+  const double latency = scene::latency_of({.period = setup.period(), .delay = setup.delay()});
+  return scene::stiffness_limit(tip.viscous + setup.hand.damping + damping + held, latency);
+}
+
+double step_law(const StabilitySetup& setup, double step) {
+  return std::min(arm_law(setup, 0), 2 * setup.arm.simulated.plant.coulomb / step);
+}
+
+void add_laws(const StabilitySetup& setup, StabilityRow& row) {
+  const StabilityCell& cell = row.cell;
+  const scene::LoopTimes times{.period = cell.c, .delay = cell.d};
+  row.law = row.exact = kNone;
+  switch (cell.part) {
+    case StabilityPart::kLinearEdge:
+      row.exact = stiffness_edge(sampled(setup, cell.b));
+      row.law = scene::stiffness_limit(
+          sampled(setup, 0).viscous + cell.b,
+          scene::latency_of({.period = setup.period(), .delay = setup.delay()}));
+      break;
+    case StabilityPart::kArmEdge:
+    case StabilityPart::kGuardedEdge:
+    case StabilityPart::kDiagonalEdge:
+      row.law = arm_law(setup, cell.b);
+      break;
+    case StabilityPart::kRestitution: {
+      const device_sim::PlantSettings& tip = setup.arm.simulated.plant;
+      row.law = restitution(cell.a, tip.viscous + cell.b, tip.mass, scene::latency_of(times));
+      break;
+    }
+    case StabilityPart::kRateEdge:
+    case StabilityPart::kDelayEdge:
+      row.law = scene::stiffness_limit(kBareDamping, scene::latency_of(times));
+      row.exact = stiffness_edge(bare(setup, cell.c, cell.d));
+      break;
+    case StabilityPart::kLateEdge:
+      row.law = scene::stiffness_limit(kBareDamping,
+                                       scene::latency_of(late_times(setup.period(), cell.a)));
+      break;
+    case StabilityPart::kSpreadEdge:
+      row.law = scene::stiffness_limit(kBareDamping,
+                                       scene::latency_of(spread_times(setup.period(), cell.a)));
+      break;
+    case StabilityPart::kStepEdge:
+      row.law = step_law(setup, cell.a);
+      break;
+    default:
+      break;
+  }
+}
+
+/// Is one CSV: its file, its heading, and the sweeps in it.
+struct Table {
+  const char* file;
+  const char* heading;
+  std::vector<StabilityPart> parts;
+};
+
+const std::vector<Table>& tables() {
+  using enum StabilityPart;
+  static const std::vector<Table> list{
+      {"kb_map_linear.csv", "stiffness_N_m,damping_Ns_m,growth_1_s", {kLinearMap}},
+      {"kb_map_arm.csv", "stiffness_N_m,damping_Ns_m,swing_m", {kArmMap}},
+      {"kb_edge_linear.csv", "damping_Ns_m,stiffness_N_m,law_N_m,exact_N_m", {kLinearEdge}},
+      {"kb_edge_arm.csv", "damping_Ns_m,stiffness_N_m,law_N_m", {kArmEdge}},
+      {"kb_edge_with_energy_stage.csv", "damping_Ns_m,stiffness_N_m,law_N_m", {kGuardedEdge}},
+      {"kb_edge_diagonal.csv", "damping_Ns_m,stiffness_N_m,law_N_m", {kDiagonalEdge}},
+      {"restitution.csv",
+       "period_s,delay_s,damping_Ns_m,stiffness_N_m,mean,least,most,law",
+       {kRestitution}},
+      {"limit_cycles.csv", "start_counts,delay_periods,sigma,beta,swing_counts", {kCycle}},
+      {"stiffness_by_rate.csv", "period_s,delay_s,stiffness_N_m,law_N_m,exact_N_m", {kRateEdge}},
+      {"stiffness_by_delay.csv", "period_s,delay_s,stiffness_N_m,law_N_m,exact_N_m", {kDelayEdge}},
+      {"stiffness_by_late_ticks.csv", "late_share,stiffness_N_m,law_N_m", {kLateEdge}},
+      {"stiffness_by_spread.csv", "spread_of_period,stiffness_N_m,law_N_m", {kSpreadEdge}},
+      {"stiffness_by_encoder_step.csv", "step_m,stiffness_N_m,law_N_m", {kStepEdge}}};
+  return list;
+}
+
+std::vector<double> columns(const StabilityRow& row) {
+  const StabilityCell& c = row.cell;
+  const double found = row.found.at(0);
+  switch (c.part) {
+    case StabilityPart::kLinearMap:
+    case StabilityPart::kArmMap:
+      return {c.a, c.b, found};
+    case StabilityPart::kLinearEdge:
+      return {c.b, found, row.law, row.exact};
+    case StabilityPart::kArmEdge:
+    case StabilityPart::kGuardedEdge:
+    case StabilityPart::kDiagonalEdge:
+      return {c.b, found, row.law};
+    case StabilityPart::kRestitution:
+      return {c.c, c.d, c.b, c.a, found, row.found.at(1), row.found.at(2), row.law};
+    case StabilityPart::kCycle:
+      return {c.c, c.d, c.a, c.b, found};
+    case StabilityPart::kRateEdge:
+    case StabilityPart::kDelayEdge:
+      return {c.c, c.d, found, row.law, row.exact};
+    case StabilityPart::kLateEdge:
+    case StabilityPart::kSpreadEdge:
+    case StabilityPart::kStepEdge:
+      return {c.a, found, row.law};
+  }
+  return {};
+}
+
+std::string csv_line(const std::vector<double>& values) {
+  std::string line;
+  char text[32];
+  for (const double value : values) {
+    std::snprintf(text, sizeof text, "%s%.9g", line.empty() ? "" : ",", value);
+    line += text;
+  }
+  return line.append("\n");
+}
+
+/// Tells the largest |found / law - 1| of the rows that `holds` keeps.
+template <class Holds>
+double worst_error(const std::vector<StabilityRow>& rows, double StabilityRow::*law,
+                   const Holds& holds) {
+  double worst = 0;
+  for (const StabilityRow& row : rows) {
+    if (holds(row)) worst = std::max(worst, std::abs(row.found[0] / (row.*law) - 1));
+  }
+  return worst;
+}
+
+constexpr auto kAll = [](const StabilityRow&) { return true; };
+
+/// Is how the map of limit cycles agrees with its corners: shares of the cells that are no nearer
+/// to a boundary than 5 % or 0.04.
+struct CycleAgreement {
+  double growing = 0;  ///< Grows or does not, as the speed limit of a swing says.
+  double resting = 0;  ///< Of those that do not grow: rests or flickers, as sigma = 1/2 says.
+  double flicker = 0;  ///< Largest flicker of those that should, without a delay, counts.
+};
+
+CycleAgreement cycle_agreement(const StabilitySetup& setup, const std::vector<StabilityRow>& rows) {
+  CycleAgreement agreement;
+  double judged = 0, right = 0, settled = 0, classed = 0;
+  const double period = setup.period();
+  for (const StabilityRow& row : rows) {
+    const StabilityCell& cell = row.cell;
+    const double viscous = cell.b * kCycleStiffness * period;
+    const double coulomb = cell.a * kCycleStiffness * kCycleStep;
+    const double latency = scene::latency_of({.period = period, .delay = cell.d * period});
+    const double limit = swing_speed_limit(kCycleStiffness, viscous, coulomb, latency);
+    const double speed = cycle_speed(setup, cell.c);
+    const double swing = row.found[0];
+    const bool near_speed = std::abs(speed / limit - 1) < 0.1;
+    // Below one step of speed per tick the describing function knows nothing of the steps.
+    if (near_speed || std::abs(cell.b - 0.5 - cell.d) < 0.04 || std::abs(cell.a - 0.5) < 0.04) {
+      continue;
+    }
+    const bool grows = swing > 2.2 * cell.c;  // from peak to peak, beyond twice the start
+    if (speed > limit || cell.a > 0.5) {
+      ++judged;
+      right += grows == (speed > limit) ? 1 : 0;
+    }
+    if (grows || speed > limit || cell.b < 0.7 + cell.d || swing > 6) continue;
+    ++settled;
+    const bool rests = swing < 1e-4;
+    classed += rests == (cell.a > 0.5) ? 1 : 0;
+    if (cell.d == 0 && cell.a < 0.5) agreement.flicker = std::max(agreement.flicker, swing);
+  }
+  agreement.growing = judged > 0 ? right / judged : 0;
+  agreement.resting = settled > 0 ? classed / settled : 0;
+  return agreement;
+}
+
+}  // namespace
+
+std::vector<StabilityRow> stability_rows(const StabilitySetup& setup, const CellNumbers& numbers) {
+  const std::vector<StabilityCell> cells = stability_cells(setup);
+  std::vector<StabilityRow> rows;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    rows.push_back({.cell = cells[i], .found = numbers.at(i)});
+    add_laws(setup, rows.back());
+  }
+  return rows;
+}
+
+std::vector<StabilityRow> part_of(const std::vector<StabilityRow>& rows, StabilityPart part) {
+  std::vector<StabilityRow> chosen;
+  std::copy_if(rows.begin(), rows.end(), std::back_inserter(chosen),
+               [part](const StabilityRow& row) { return row.cell.part == part; });
+  return chosen;
+}
+
+ZWidth z_width(const std::vector<StabilityRow>& edge) {
+  ZWidth width;
+  for (std::size_t i = 0; i < edge.size(); ++i) {
+    const double stiffness = edge[i].found[0];
+    if (stiffness > width.stiffness_max) {
+      width.stiffness_max = stiffness;
+      width.damping_at = edge[i].cell.b;
+    }
+    if (i == 0) continue;
+    width.area += 0.5 * (stiffness + edge[i - 1].found[0]) * (edge[i].cell.b - edge[i - 1].cell.b);
+  }
+  width.decades = width.stiffness_max > 0 ? std::log10(width.stiffness_max / kStiffnessJnd) : 0;
+  return width;
+}
+
+driver::Result<void> write_stability_tables(const StabilitySetup&,
+                                            const std::vector<StabilityRow>& rows,
+                                            const std::filesystem::path& folder) {
+  for (const Table& table : tables()) {
+    std::string text = std::string(table.heading).append("\n");
+    for (const StabilityPart part : table.parts) {
+      for (const StabilityRow& row : part_of(rows, part)) text += csv_line(columns(row));
+    }
+    if (auto done = write_text(text, folder / table.file); !done) return done;
+  }
+  return {};
+}
+
+std::vector<Figure> stability_figures(const StabilitySetup& setup,
+                                      const std::vector<StabilityRow>& rows) {
+  std::vector<Figure> figures;
+  const auto percent = [&figures](const char* name, double error, const char* goal) {
+    figures.push_back({name, 100 * error, "%", goal});
+  };
+  const auto linear = part_of(rows, StabilityPart::kLinearEdge);
+  const auto arm = part_of(rows, StabilityPart::kArmEdge);
+  const auto diagonal = part_of(rows, StabilityPart::kDiagonalEdge);
+  const ZWidth width = z_width(arm), diagonal_width = z_width(diagonal), ideal = z_width(linear);
+  figures.push_back({"z_width.area", width.area, "N/m N s/m", ""});
+  figures.push_back({"z_width.stiffness_max", width.stiffness_max, "N/m", ""});
+  figures.push_back({"z_width.decades_above_jnd", width.decades, "log10(K_max/K_JND)", ""});
+  const ZWidth guarded = z_width(part_of(rows, StabilityPart::kGuardedEdge));
+  figures.push_back({"z_width.with_energy_stage.area", guarded.area, "N/m N s/m", ""});
+  figures.push_back({"z_width.with_energy_stage.stiffness_max", guarded.stiffness_max, "N/m", ""});
+  figures.push_back({"z_width.diagonal.area", diagonal_width.area, "N/m N s/m", ""});
+  figures.push_back({"z_width.diagonal.stiffness_max", diagonal_width.stiffness_max, "N/m", ""});
+  figures.push_back({"z_width.linear.area", ideal.area, "N/m N s/m", ""});
+  figures.push_back({"z_width.linear.stiffness_max", ideal.stiffness_max, "N/m", ""});
+
+  // Near its tip the region's edge is upright: a hair in B is much in K.
+  const double below_tip = 0.5 * ideal.damping_at;
+  percent("agreement.edge_with_exact_map",
+          worst_error(linear, &StabilityRow::exact,
+                      [&](const StabilityRow& row) { return row.cell.b < below_tip; }),
+          "<= 1");
+  const double latency = scene::latency_of({.period = setup.period(), .delay = setup.delay()});
+  const SampledWall wall = sampled(setup, 0);
+  percent("agreement.edge_with_latency_law",
+          worst_error(linear, &StabilityRow::law,
+                      [&](const StabilityRow& row) {
+                        // The law's own regime [STABILITY 1.1].
+                        // A filtered velocity damps less than the law's B [STABILITY 1.1].
+                        return row.cell.b < 0.03 * wall.viscous &&
+                               wall.viscous * setup.period() / wall.mass < 0.1 &&
+                               row.law * latency * latency / wall.mass < 0.1;
+                      }),
+          "<= 5");
+  percent("agreement.rate_with_law",
+          worst_error(part_of(rows, StabilityPart::kRateEdge), &StabilityRow::law, kAll), "<= 3");
+  percent("agreement.rate_with_exact_map",
+          worst_error(part_of(rows, StabilityPart::kRateEdge), &StabilityRow::exact, kAll), "<= 1");
+  percent("agreement.delay_with_law",
+          worst_error(part_of(rows, StabilityPart::kDelayEdge), &StabilityRow::law, kAll), "<= 3");
+  percent("agreement.late_ticks_with_law",
+          worst_error(part_of(rows, StabilityPart::kLateEdge), &StabilityRow::law, kAll), "<= 3");
+  percent("agreement.spread_with_law",
+          worst_error(part_of(rows, StabilityPart::kSpreadEdge), &StabilityRow::law, kAll), "<= 3");
+  const auto bounces = part_of(rows, StabilityPart::kRestitution);
+  const auto soft = [&setup](const StabilityRow& row, bool damped) {
+    const double l = row.cell.c / 2 + row.cell.d;
+    // The law is of small damping: a wall that stops what hits it within one swing is another.
+    const double ratio = row.cell.b / (2 * std::sqrt(row.cell.a * setup.arm.simulated.plant.mass));
+    return (row.cell.b > 0) == damped && ratio < 0.12 &&
+           row.cell.a * l * l / setup.arm.simulated.plant.mass < 0.05;
+  };
+  percent("agreement.restitution_with_law",
+          worst_error(bounces, &StabilityRow::law,
+                      [&](const StabilityRow& row) { return soft(row, false); }),
+          "<= 1");
+  percent("agreement.restitution_of_damped_wall",
+          worst_error(bounces, &StabilityRow::law,
+                      [&](const StabilityRow& row) { return soft(row, true); }),
+          "<= 5");
+  const CycleAgreement cycles = cycle_agreement(setup, part_of(rows, StabilityPart::kCycle));
+  percent("agreement.limit_cycles_grow_as_predicted", cycles.growing, ">= 95");
+  percent("agreement.limit_cycles_rest_as_predicted", cycles.resting, ">= 95");
+  figures.push_back({"limit_cycles.largest_flicker", cycles.flicker, "counts", "<= 2"});
+  // A step of the motors' current is some percent of what holds here.
+  percent("agreement.encoder_step_with_law",
+          worst_error(part_of(rows, StabilityPart::kStepEdge), &StabilityRow::law, kAll), "<= 10");
+  percent(
+      "agreement.arm_edge_with_law",
+      worst_error(arm, &StabilityRow::law, [&](const StabilityRow& row) { return row.cell.b < 1; }),
+      "");
+  return figures;
+}
+
+}  // namespace thimble::app

@@ -1,0 +1,198 @@
+#include "studies/stability/wall_measures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "stability/draw.h"
+
+namespace thimble::app {
+namespace {
+
+constexpr double kTouchSpeed = 0.1;  // m/s: a light tap [STABILITY 1.5 and 1.6]
+constexpr double kFarthest = 50;     // of its start: a small swing that comes so far grows
+constexpr double kCeiling = 25;      // times its energy at first
+constexpr double kFloor = 1e-3;      // of its energy: a swing below that is seen no more
+constexpr double kStartForce = 0.3;  // N, of a small swing: far above a step of the current
+
+/// Finds where a measure leaves what is good, in equal steps of the logarithm.
+template <class Good>
+double bisect(double least, double most, double share, const Good& good) {
+  if (!good(least)) return 0;
+  if (good(most)) return most;
+  while (most / least > 1 + share) {
+    const double middle = std::sqrt(least * most);
+    (good(middle) ? least : most) = middle;
+  }
+  return std::sqrt(least * most);
+}
+
+/// Tells the energy of a swing at each tick, J.
+std::vector<double> swing_energies(const WallRun& run, const WallCase& wall) {
+  const double mass = wall.tip.mass + wall.hand.mass;
+  const double spring = wall.stiffness + wall.hand.stiffness;
+  std::vector<double> energies;
+  for (std::size_t i = 0; i < run.x.size(); ++i) {
+    energies.push_back(0.5 * (mass * run.v[i] * run.v[i] + spring * run.x[i] * run.x[i]));
+  }
+  return energies;
+}
+
+template <class Times>
+void shuffle(Times& times, std::uint64_t seed) {
+  Draw draw(seed);
+  for (std::size_t i = times.size(); i > 1; --i) std::swap(times[i - 1], times[draw.one_of(i)]);
+}
+
+}  // namespace
+
+double growth_rate(const scene::ArmFile& arm, WallCase wall) {
+  const double start = std::min(0.001, kStartForce / wall.stiffness);
+  const double mass = wall.tip.mass + wall.hand.mass;
+  wall.kick = start * std::sqrt((wall.stiffness + wall.hand.stiffness) / mass);
+  wall.give_up = kFarthest * start;
+  const WallRun run = run_wall(arm, wall);
+  if (run.gave_up) return std::log(kFarthest) / std::max(run.time.back(), 1e-3);
+  const std::vector<double> energies = swing_energies(run, wall);
+  const std::size_t count = energies.size();
+  const auto most = [&](double from, double to) {
+    const auto at = [&](double share) {
+      return energies.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(count));
+    };
+    return *std::max_element(at(from), std::max(at(from) + 1, at(to)));
+  };
+  // What soon grows far or dies down to the steps of the motors' current is timed; the rest is
+  // compared early and late, each long enough for a swing to show all its energy.
+  const double first = 0.5 * mass * wall.kick * wall.kick;
+  const double late = most(0.85, 1);
+  std::size_t last_alive = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (energies[i] > kCeiling * first) return 0.5 * std::log(kCeiling) / run.time[i];
+    if (energies[i] > kFloor * first) last_alive = i;
+  }
+  if (late < kFloor * first) {
+    return 0.5 * std::log(kFloor) / std::max(run.time[last_alive], 1e-3);
+  }
+  return 0.5 * std::log(late / most(0.1, 0.25)) / (0.75 * run.time.back());
+}
+
+double linear_edge(const scene::ArmFile& arm, WallCase wall, double least, double most) {
+  return bisect(least, most, 0.003, [&](double stiffness) {
+    wall.stiffness = stiffness;
+    return growth_rate(arm, wall) <= 0;
+  });
+}
+
+double last_swing(const scene::ArmFile& arm, const WallCase& wall) {
+  const WallRun run = run_wall(arm, wall);
+  if (run.gave_up) return wall.give_up;
+  double low = HUGE_VAL, high = -HUGE_VAL;
+  for (std::size_t i = 0; i < run.x.size(); ++i) {
+    if (run.time[i] < 0.75 * wall.duration) continue;
+    low = std::min(low, run.x[i]);
+    high = std::max(high, run.x[i]);
+  }
+  return std::min(high - low, wall.give_up);
+}
+
+double pressed_swing(const scene::ArmFile& arm, WallCase wall) {
+  constexpr double kWay = 0.005;  // m, to each side of the wall
+  wall.one_sided = true;
+  wall.offset = -kWay;
+  wall.hand_from = 0;
+  wall.hand_to = -2 * kWay;
+  // The soft start is over when the wall is reached.
+  wall.hand_start = arm.limits.soft_start + 0.02;
+  wall.hand_end = wall.hand_start + 2 * kWay / kTouchSpeed;
+  wall.duration = wall.hand_end + 1.4;
+  return last_swing(arm, wall);
+}
+
+double released_swing(const scene::ArmFile& arm, WallCase wall, double speed, double duration) {
+  const double mass = wall.tip.mass + wall.hand.mass;
+  wall.one_sided = false;
+  const double step = wall.own_step ? wall.direction.step : wall.step;
+  // Between two counts the force is never zero: the worst place to come to rest [STABILITY 1.4].
+  // There the tip lies and the hand wants to be when the kick comes.
+  wall.offset = wall.hand_from = wall.hand_to = 0.5 * step;
+  wall.hand_start = wall.hand_end = 0;
+  wall.kick = speed;
+  const double reach = speed * std::sqrt(mass / (wall.stiffness + wall.hand.stiffness));
+  wall.duration = duration;
+  wall.give_up = std::min(20 * reach, 0.05);
+  return last_swing(arm, wall);
+}
+
+double pressed_edge(const scene::ArmFile& arm, WallCase wall, double quiet, double least,
+                    double most) {
+  return bisect(least, most, 0.005, [&](double stiffness) {
+    wall.stiffness = stiffness;
+    return pressed_swing(arm, wall) < quiet;
+  });
+}
+
+double released_edge(const scene::ArmFile& arm, WallCase wall, double speed, double duration,
+                     double quiet, double least, double most) {
+  return bisect(least, most, 0.005, [&](double stiffness) {
+    wall.stiffness = stiffness;
+    return released_swing(arm, wall, speed, duration) < quiet;
+  });
+}
+
+Restitution throw_at_wall(const scene::ArmFile& arm, WallCase wall, int phases) {
+  constexpr double kRunUp = 0.002;  // m
+  const double mass = wall.tip.mass + wall.hand.mass;
+  const double period = static_cast<double>(wall.period_ns) * 1e-9;
+  const double delay = static_cast<double>(wall.delay_ns) * 1e-9;
+  wall.one_sided = true;
+  wall.kick = kTouchSpeed;
+  // There and back, and half a swing in the wall.
+  const double swing = std::numbers::pi * std::sqrt(mass / wall.stiffness);
+  wall.duration = 2.5 * kRunUp / kTouchSpeed + 1.5 * swing + 3 * delay + 10 * period;
+  const auto late = static_cast<std::size_t>(std::ceil(delay / period));
+  Restitution found{0, HUGE_VAL, 0};
+  for (int i = 0; i < phases; ++i) {
+    wall.offset = -kRunUp - (i + 0.5) / phases * kTouchSpeed * period;
+    const WallRun run = run_wall(arm, wall);
+    // In: the last tick before the wall. Out: when the last force has ended, `late` ticks after the
+    // first that is seen outside again.
+    std::size_t k = 0;
+    while (k + 1 < run.x.size() && run.x[k + 1] > wall.offset) ++k;
+    const double in = run.v[k];
+    while (++k < run.x.size() && !(run.x[k] > wall.offset)) {
+    }
+    const double out = run.v[std::min(k + late, run.v.size() - 1)];
+    const double e = in < 0 ? std::abs(out / in) : 0;
+    found.mean += e / phases;
+    found.least = std::min(found.least, e);
+    found.most = std::max(found.most, e);
+  }
+  return found;
+}
+
+std::vector<std::int64_t> late_ticks(std::int64_t period_ns, double share, int late_periods,
+                                     std::uint64_t seed) {
+  constexpr std::size_t kCount = 2000;
+  std::vector<std::int64_t> gaps(kCount, period_ns);
+  const auto late = static_cast<std::size_t>(std::llround(share * kCount));
+  std::fill_n(gaps.begin(), late, period_ns * (1 + late_periods));
+  shuffle(gaps, seed);
+  return gaps;
+}
+
+std::vector<std::int64_t> spread_ticks(std::int64_t period_ns, double spread, std::int64_t grain_ns,
+                                       std::uint64_t seed) {
+  constexpr std::size_t kCount = 2000;
+  std::vector<std::int64_t> gaps;
+  const std::int64_t whole_grains = period_ns / grain_ns;
+  const auto grains = static_cast<double>(whole_grains);
+  for (std::size_t i = 0; i < kCount; ++i) {
+    const double u = (static_cast<double>(i) + 0.5) / kCount;
+    gaps.push_back(grain_ns * std::llround(grains * (1 + spread * (2 * u - 1))));
+  }
+  shuffle(gaps, seed);
+  return gaps;
+}
+
+}  // namespace thimble::app

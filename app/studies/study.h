@@ -1,0 +1,26 @@
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "report/figure.h"
+#include "thimble/driver/result.h"
+
+namespace thimble::app {
+
+/// Is one study: it measures something on the virtual clock, draws it, and says it in figures.
+struct Study {
+  std::string_view name;   ///< `thimble study NAME`.
+  std::string_view about;  ///< What it shows, in one line of the help.
+  /// Writes pictures and tables into `folder`, which exists, and returns the figures; figures.json
+  /// and the printed table are made of them. Fails if a file cannot be written.
+  /// Real-time: never from the servo thread.
+  driver::Result<std::vector<Figure>> (*run)(const std::filesystem::path& folder);
+};
+
+/// Gives every study. To add one: write its file under study/, add its line here.
+std::span<const Study> studies();
+
+}  // namespace thimble::app

@@ -1,0 +1,200 @@
+#include "studies/trouble/study_trouble.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cinttypes>
+#include <cstdio>
+#include <numeric>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include "build_info.h"
+#include "studies/trouble/random_scene.h"
+#include "studies/trouble/small_meshes.h"
+#include "studies/trouble/trouble_run.h"
+#include "text_file.h"
+
+namespace thimble::app {
+namespace {
+
+constexpr int kTries = 12;           // a scene that the loader refuses is drawn anew
+constexpr std::size_t kWorst = 10;   // kept
+constexpr double kGivenMuch = 1e-3;  // J, told
+
+/// Is a folder for scene files of this process; it goes with the object.
+class SceneFolder {
+ public:
+  SceneFolder()
+      : path_(std::filesystem::temp_directory_path() /
+              ("thimble_trouble_" + std::to_string(getpid()))) {}
+  ~SceneFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  SceneFolder(const SceneFolder&) = delete;
+  SceneFolder& operator=(const SceneFolder&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+std::uint64_t try_seed(std::uint64_t seed, std::size_t cell, int attempt) {
+  return cell_seed(cell_seed(seed, cell), static_cast<std::size_t>(attempt));
+}
+
+std::string seed_name(std::uint64_t seed) {
+  char text[17];
+  std::snprintf(text, sizeof text, "%016" PRIx64, seed);
+  return text;
+}
+
+/// Draws and runs scenes until the loader accepts one; adds how many it refused.
+std::vector<double> measure(std::size_t cell, std::uint64_t seed, const RandomSceneLimits& limits,
+                            const std::filesystem::path& folder) {
+  TroubleFound found;
+  int attempt = 0;
+  for (; attempt < kTries; ++attempt) {
+    const std::uint64_t drawn = try_seed(seed, cell, attempt);
+    const RandomScene scene = random_scene(drawn, limits);
+    const std::filesystem::path file = folder / (seed_name(drawn) + ".yaml");
+    if (auto done = write_text(scene.text, file); !done) {
+      throw std::runtime_error(done.error().message);
+    }
+    found = run_for_trouble(file, scene);
+    std::error_code ignored;
+    std::filesystem::remove(file, ignored);
+    if (!found.refused) break;
+  }
+  std::vector<double> numbers = numbers_of(found);
+  numbers.push_back(attempt);
+  return numbers;
+}
+
+std::string table_of(const CellNumbers& cells, std::uint64_t seed) {
+  std::string csv =
+      "cell,seed,refused,not_finite_ticks,fault,force_share,energy_excess_J,tremble_N,speed_m_s,"
+      "given_J,contact_share,must_tremble,unforetold\n";
+  char line[300];
+  for (std::size_t cell = 0; cell < cells.size(); ++cell) {
+    const TroubleFound f = trouble_of(cells[cell]);
+    const auto attempt = static_cast<int>(cells[cell].back());
+    std::snprintf(line, sizeof line, "%zu,%s,%d,%.17g,%.17g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%d,%d\n",
+                  cell, seed_name(try_seed(seed, cell, attempt)).c_str(), attempt, f.not_finite,
+                  f.fault, f.force_share, f.excess, f.tremble, f.speed, f.given, f.contact,
+                  f.must_tremble ? 1 : 0, f.unforetold ? 1 : 0);
+    csv += line;
+  }
+  return csv;
+}
+
+/// Writes the worst scenes with what they showed, so that they can be run by themselves.
+driver::Result<void> keep_worst(const CellNumbers& cells, std::uint64_t seed,
+                                RandomSceneLimits limits, const std::filesystem::path& folder) {
+  std::vector<std::size_t> order(cells.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return trouble_of(cells[a]).badness() > trouble_of(cells[b]).badness();
+  });
+  limits.mesh_path = "meshes";
+  std::error_code status;
+  std::filesystem::remove_all(folder, status);
+  if (auto done = write_small_meshes(folder / "meshes"); !done) return done;
+  order.resize(std::min(order.size(), kWorst));
+  for (std::size_t rank = 0; rank < order.size(); ++rank) {
+    const std::size_t cell = order[rank];
+    const TroubleFound f = trouble_of(cells[cell]);
+    const std::uint64_t drawn = try_seed(seed, cell, static_cast<int>(cells[cell].back()));
+    const RandomScene scene = random_scene(drawn, limits);
+    char heading[300];
+    std::snprintf(heading, sizeof heading,
+                  "# own_energy: %.9g J; showed an excess of %.3g J, a tremble of %.3g N, fault "
+                  "%.0f, %.3g of the arm's force; %.3g J given.\n",
+                  scene.own_energy, f.excess, f.tremble, f.fault, f.force_share, f.given);
+    char name[40];
+    std::snprintf(name, sizeof name, "%02zu_%s.yaml", rank + 1, seed_name(drawn).c_str());
+    if (auto done = write_text(heading + scene.text, folder / name); !done) return done;
+  }
+  return {};
+}
+
+}  // namespace
+
+driver::Result<TroubleReport> study_trouble(const TroubleOptions& options,
+                                            const SweepOptions& sweep_options,
+                                            const std::atomic<bool>& stop) {
+  const auto arm = scene::read_arm_file(options.arm_file);
+  if (!arm) return arm.error();
+  if (!arm->can_simulate || arm->shape == scene::ArmShape::kFalcon) {
+    return driver::Error{arm->name +
+                         ": the search needs a simulated arm whose board reports by "
+                         "itself; vintage_phantom.yaml is one."};
+  }
+  const SceneFolder scratch;
+  if (auto done = write_small_meshes(scratch.path() / "meshes"); !done) return done.error();
+  const RandomSceneLimits limits{
+      .arm = *arm,
+      .arm_path = std::filesystem::absolute(options.arm_file).lexically_normal().string(),
+      .mesh_path = "meshes"};
+  const Sweep sweep{.name = "trouble",
+                    .key = scene::program_name() + "\n" + scene::text_of(options.arm_file) + "\n" +
+                           std::to_string(options.seed),
+                    .cells = options.count,
+                    .measure = [&](std::size_t cell) {
+                      return measure(cell, options.seed, limits, scratch.path());
+                    }};
+  const auto result = run_sweep(sweep, sweep_options, stop);
+  if (!result) return result.error();
+  TroubleReport report{result->end, {}};
+  if (report.end != SweepEnd::kDone) return report;
+
+  double refused = 0, given_up = 0, not_finite = 0, faults = 0, over = 0, grown = 0;
+  double given_scenes = 0, trembling = 0, unforetold = 0;
+  double excess = 0, given = 0, share = 0, tremble = 0, known = 0, contact = 0;
+  for (const auto& cell : result->numbers) {
+    const TroubleFound f = trouble_of(cell);
+    refused += cell.back();
+    given_up += f.refused ? 1 : 0;
+    not_finite += f.not_finite > 0 ? 1 : 0;
+    faults += f.fault > 0 ? 1 : 0;
+    over += f.force_share > 1 + 1e-9 ? 1 : 0;
+    grown += f.excess > kEnergyAllowed ? 1 : 0;
+    excess = std::max(excess, f.excess);
+    given = std::max(given, f.given);
+    given_scenes += f.given > kGivenMuch ? 1 : 0;
+    trembling += !f.must_tremble && f.tremble > kTrembleMost ? 1 : 0;
+    unforetold += f.unforetold ? 1 : 0;
+    share = std::max(share, f.force_share);
+    (f.must_tremble ? known : tremble) = std::max(f.must_tremble ? known : tremble, f.tremble);
+    contact += f.contact;
+  }
+  const auto count = static_cast<double>(options.count);
+  report.figures = {{"scenes", count - given_up, "", ""},
+                    {"scenes_refused_by_the_loader", refused, "", ""},
+                    {"share_of_ticks_in_contact", contact / count, "", ">= 0.2"},
+                    {"scenes_with_numbers_that_are_none", not_finite, "", "== 0"},
+                    {"scenes_with_faults", faults, "", "== 0"},
+                    {"scenes_above_the_arms_force", over, "", "== 0"},
+                    {"scenes_with_energy_beyond_the_hands", grown, "", "== 0"},
+                    {"largest_energy_excess", excess, "J", ""},
+                    {"most_energy_given_by_the_motors", given, "J", ""},
+                    {"scenes_whose_motors_gave_over_1_mJ", given_scenes, "", ""},
+                    {"largest_force_share", share, "", ""},
+                    {"largest_tremble_at_rest", tremble, "N", ""},
+                    {"scenes_that_tremble_at_rest_over_20_mN", trembling, "", ""},
+                    {"of_those_no_warning_foretold", unforetold, "", "== 0"},
+                    {"largest_tremble_of_naive_and_paper_friction", known, "N", ""}};
+  const std::filesystem::path& folder = sweep_options.folder;
+  if (auto done = write_text(table_of(result->numbers, options.seed), folder / "trouble.csv");
+      !done) {
+    return done.error();
+  }
+  if (auto done = keep_worst(result->numbers, options.seed, limits, folder / "worst"); !done) {
+    return done.error();
+  }
+  return report;
+}
+
+}  // namespace thimble::app

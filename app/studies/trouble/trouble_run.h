@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "studies/trouble/random_scene.h"
+
+namespace thimble::app {
+
+/// Is what a scene showed on the virtual clock. All of it is finite, whatever happened.
+struct TroubleFound {
+  bool refused = false;       ///< The loader would not have it; nothing else is said.
+  double not_finite = 0;      ///< Ticks with a place or a force that is no number.
+  double fault = 0;           ///< Of the device, as a number; 0: none.
+  double force_share = 0;     ///< Largest force sent, of the arm's limit.
+  double excess = 0;          ///< See energy_excess below, J.
+  double tremble = 0;         ///< Force above 50 Hz in the last quarter of a second, N RMS.
+  bool must_tremble = false;  ///< As RandomScene::trembles.
+  /// Whether it trembles by more than kTrembleMost and no warning of `thimble tune` foretold it.
+  bool unforetold = false;
+  double speed = 0;    ///< Largest of the tip, m/s.
+  double given = 0;    ///< Most that the motors had ever given to the tip, beyond what the
+                       ///< scene may give by itself, J; 0 of a passive scene.
+  double contact = 0;  ///< Share of ticks in contact.
+
+  /// Tells whether the scene broke one of the promises.
+  bool bad() const;
+  /// Orders scenes by how near they came to trouble; larger is worse. Their tremble counts unless
+  /// it is known that they must.
+  double badness() const;
+};
+
+/// Is how much energy (J) a run may show beyond what the hand put in: what hard case 11 allows a
+/// guarded wall, and the gate's energy stage lets go before it acts [STABILITY 7].
+inline constexpr double kEnergyAllowed = 2e-3;
+
+/// Is how much force above 50 Hz counts as trembling at rest, N RMS [STABILITY 6].
+inline constexpr double kTrembleMost = 0.02;
+
+/// Runs a scene's file and keeps the account.
+///
+/// The account: the energy of arm and hand, (m v^2 + k (x - x_hand)^2) / 2, may grow by the work of
+/// whoever moves the hand, and by the scene's own energy, and by nothing else; friction only takes
+/// away. Its largest excess over that is told. Real-time: never from the servo thread.
+TroubleFound run_for_trouble(const std::filesystem::path& scene_file, const RandomScene& scene);
+
+/// Turns what was found into the numbers of a sweep and back.
+std::vector<double> numbers_of(const TroubleFound& found);
+TroubleFound trouble_of(const std::vector<double>& numbers);
+
+}  // namespace thimble::app

@@ -1,0 +1,254 @@
+#include "view/gl/shaders.h"
+
+namespace thimble::app::view::shaders {
+namespace {
+
+const std::string kHead = R"(#version 330 core
+layout(std140) uniform View {
+  mat4 view_projection;
+  mat4 shadow_from_world;
+  vec4 eye;          // m, W
+  vec4 key;          // towards the light
+  vec4 sky;          // colours of the background, linear
+  vec4 ground;
+  vec4 grid;
+  vec4 ground_place; // centre x, y; height; radius, m
+};
+)";
+
+// Light from a window to the left (the key), from a pale wall to the right (the fill), from the sky
+// above and from the table below.
+const std::string kLight = R"(
+uniform vec3 colour;   // linear
+uniform float gloss;   // share of the key's mirror image
+void light(vec3 n_any, vec3 p, out vec3 around, out vec3 direct) {
+  vec3 n = normalize(n_any);
+  vec3 to_eye = normalize(eye.xyz - p);
+  float up = 0.5 + 0.5 * n.z;
+  vec3 fill = normalize(vec3(0.35, 0.85, 0.15));
+  around = colour * (mix(vec3(0.17, 0.155, 0.15), vec3(0.36, 0.39, 0.43), up) +
+                     0.18 * max(dot(n, fill), 0.0));
+  float facing = max(dot(n, key.xyz), 0.0);
+  // To the 48th power by multiplying, which software does faster.
+  float mirror = max(dot(n, normalize(key.xyz + to_eye)), 0.0);
+  mirror *= mirror;
+  mirror *= mirror;
+  mirror *= mirror;
+  mirror *= mirror;
+  mirror *= mirror * mirror;
+  direct = colour * (0.90 * facing) + vec3(gloss * mirror * smoothstep(0.0, 0.2, facing));
+}
+)";
+
+const std::string kShadow = R"(
+uniform sampler2DShadow shadow_map;
+uniform float shadow_strength;
+uniform int shadow_samples;   // along a side
+float lit(vec3 p) {
+  if (shadow_strength <= 0.0) return 1.0;
+  vec3 at = (shadow_from_world * vec4(p, 1.0)).xyz * 0.5 + 0.5;
+  if (any(lessThan(at, vec3(0.0))) || any(greaterThan(at, vec3(1.0)))) return 1.0;
+  // Of a square of samples, each the mean of four already.
+  vec2 texel = 6.4 / float(shadow_samples) / vec2(textureSize(shadow_map, 0));
+  float middle = 0.5 * float(shadow_samples - 1);
+  float sum = 0.0;
+  for (int i = 0; i < shadow_samples; ++i) {
+    for (int j = 0; j < shadow_samples; ++j) {
+      sum += texture(shadow_map, vec3(at.xy + (vec2(i, j) - middle) * texel, at.z));
+    }
+  }
+  sum /= float(shadow_samples * shadow_samples);
+  // Towards the rim of what the light's map holds, shadows fade: beyond nothing is known.
+  float rim = 2.0 * max(abs(at.x - 0.5), abs(at.y - 0.5));
+  return mix(1.0, sum, shadow_strength * (1.0 - smoothstep(0.8, 0.98, rim)));
+}
+)";
+
+const std::string kToScreen = R"(
+// The screen's 2.2 taken as 2: colours come in by the same, and software is twice as fast.
+vec3 to_screen(vec3 linear) { return sqrt(clamp(linear, 0.0, 1.0)); }
+)";
+
+}  // namespace
+
+std::string surface_vertex() {
+  return kHead + kLight + R"(
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 normal;
+uniform mat4 model;
+uniform mat3 normal_matrix;
+uniform int gouraud;
+out vec3 p_W;
+out vec3 n_W;
+out vec3 around_v;
+out vec3 direct_v;
+void main() {
+  p_W = (model * vec4(position, 1.0)).xyz;
+  n_W = normal_matrix * normal;
+  around_v = vec3(0.0);
+  direct_v = vec3(0.0);
+  if (gouraud != 0) light(n_W, p_W, around_v, direct_v);
+  gl_Position = view_projection * vec4(p_W, 1.0);
+}
+)";
+}
+
+std::string dent_vertex() {
+  return kHead + kLight + R"(
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 normal;
+layout(location = 2) in vec3 weights;
+layout(location = 3) in vec3 p_a;
+layout(location = 4) in vec3 n_a;
+layout(location = 5) in vec3 p_b;
+layout(location = 6) in vec3 n_b;
+layout(location = 7) in vec3 p_c;
+layout(location = 8) in vec3 n_c;
+uniform mat4 model;
+uniform mat3 normal_matrix;
+uniform int gouraud;
+out vec3 p_W;
+out vec3 n_W;
+out vec3 around_v;
+out vec3 direct_v;
+void add(float share, vec3 n, vec3 p, inout vec3 around, inout vec3 direct) {
+  vec3 one_around, one_direct;
+  light(normal_matrix * n, (model * vec4(p, 1.0)).xyz, one_around, one_direct);
+  around += share * one_around;
+  direct += share * one_direct;
+}
+void main() {
+  p_W = (model * vec4(position, 1.0)).xyz;
+  n_W = normal_matrix * normal;
+  around_v = vec3(0.0);
+  direct_v = vec3(0.0);
+  if (gouraud != 0) {
+    // The shade that the whole triangle had here, and what the bending changed.
+    add(weights.x, n_a, p_a, around_v, direct_v);
+    add(weights.y, n_b, p_b, around_v, direct_v);
+    add(weights.z, n_c, p_c, around_v, direct_v);
+    vec3 n_rest = weights.x * n_a + weights.y * n_b + weights.z * n_c;
+    vec3 p_rest = weights.x * p_a + weights.y * p_b + weights.z * p_c;
+    add(-1.0, n_rest, p_rest, around_v, direct_v);
+    add(1.0, normal, position, around_v, direct_v);
+  }
+  gl_Position = view_projection * vec4(p_W, 1.0);
+}
+)";
+}
+
+std::string surface_fragment() {
+  return kHead + kLight + kShadow + kToScreen + R"(
+in vec3 p_W;
+in vec3 n_W;
+in vec3 around_v;
+in vec3 direct_v;
+uniform int gouraud;
+uniform float shadow_offset;  // m
+out vec4 pixel;
+void main() {
+  vec3 around = around_v;
+  vec3 direct = direct_v;
+  if (gouraud == 0) light(n_W, p_W, around, direct);
+  // Asked a little off the surface, or it would cast shadows on itself.
+  float open = lit(p_W + shadow_offset * normalize(n_W));
+  pixel = vec4(to_screen(around * (0.82 + 0.18 * open) + direct * open), 1.0);
+}
+)";
+}
+
+std::string shadow_vertex() {
+  return kHead + R"(
+layout(location = 0) in vec3 position;
+uniform mat4 model;
+void main() { gl_Position = shadow_from_world * model * vec4(position, 1.0); }
+)";
+}
+
+std::string shadow_fragment() {
+  return R"(#version 330 core
+void main() {}
+)";
+}
+
+std::string plain_vertex() {
+  return kHead + R"(
+layout(location = 0) in vec3 position;
+uniform mat4 model;
+uniform float nearer;  // share of the distance that it is drawn before its place
+void main() {
+  vec4 p_W = model * vec4(position, 1.0);
+  p_W.xyz = mix(p_W.xyz, eye.xyz, nearer);
+  gl_Position = view_projection * p_W;
+}
+)";
+}
+
+std::string plain_fragment() {
+  return R"(#version 330 core
+uniform vec4 paint;  // as on the screen
+out vec4 pixel;
+void main() { pixel = paint; }
+)";
+}
+
+std::string backdrop_vertex() {
+  return kHead + R"(
+out float height;
+void main() {
+  vec2 at = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);
+  height = 0.5 * at.y + 0.5;
+  gl_Position = vec4(at, 1.0, 1.0);
+}
+)";
+}
+
+std::string backdrop_fragment() {
+  return kHead + kToScreen + R"(
+in float height;
+out vec4 pixel;
+void main() {
+  pixel = vec4(to_screen(mix(ground.rgb, sky.rgb, smoothstep(0.25, 0.95, height))), 1.0);
+}
+)";
+}
+
+std::string ground_vertex() {
+  return kHead + R"(
+out vec3 p_W;
+void main() {
+  vec2 at = vec2((gl_VertexID & 1) * 2 - 1, (gl_VertexID >> 1) * 2 - 1);
+  p_W = vec3(ground_place.xy + at * ground_place.w, ground_place.z);
+  gl_Position = view_projection * vec4(p_W, 1.0);
+}
+)";
+}
+
+std::string ground_fragment() {
+  return kHead + kShadow + kToScreen + R"(
+in vec3 p_W;
+uniform float grid_strength;
+uniform vec3 colour;   // linear
+out vec4 pixel;
+// How much of the pixel a grid's lines cover, for lines about a pixel wide.
+float lines(float pitch) {
+  vec2 at = p_W.xy / pitch;
+  vec2 width = fwidth(at);
+  vec2 distance = abs(fract(at - 0.5) - 0.5) / max(width, vec2(1e-6));
+  vec2 cover = (1.0 - smoothstep(0.4, 1.3, distance)) * (1.0 - smoothstep(0.2, 0.5, width));
+  return max(cover.x, cover.y);
+}
+void main() {
+  float away = length(p_W.xy - ground_place.xy) / ground_place.w;
+  float fade = 1.0 - smoothstep(0.15, 0.9, away);
+  float grid_cover = max(0.28 * lines(0.01), 0.6 * lines(0.05)) * grid_strength;
+  float open = lit(p_W);
+  vec3 shown = mix(colour, grid.rgb, grid_cover) * mix(vec3(0.52, 0.545, 0.58), vec3(1.0), open);
+  // Seen from below the ground is not in the way.
+  float from_above = smoothstep(0.0, 0.02, eye.z - p_W.z);
+  pixel = vec4(to_screen(shown), fade * from_above);
+}
+)";
+}
+
+}  // namespace thimble::app::view::shaders

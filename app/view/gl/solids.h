@@ -1,0 +1,43 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "view/gl/palette.h"
+#include "view/gl/surface_model.h"
+
+namespace thimble::app::view {
+
+/// Says what a solid is.
+enum class SolidKind { kBall, kRod, kCone };
+
+/// Is one of the simple solids that show arm, tip and force.
+struct Solid {
+  SolidKind kind = SolidKind::kBall;
+  Eigen::Matrix4f model = Eigen::Matrix4f::Identity();  ///< From the unit solid to W, m.
+  Eigen::Matrix3f normal_matrix = Eigen::Matrix3f::Identity();
+  Colour colour{};
+  bool shines_through = false;  ///< Also shown, faintly, where something is before it.
+  bool casts_shadow = true;
+};
+
+/// Make solids: sizes in m, points in W. A rod or cone without length is nowhere to be seen.
+Solid ball(const Eigen::Vector3d& centre, double radius, const Colour& colour);
+Solid rod(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double radius,
+          const Colour& colour);
+Solid cone(const Eigen::Vector3d& base, const Eigen::Vector3d& tip, double radius,
+           const Colour& colour);
+
+/// Is the unit solids where OpenGL can draw them.
+class SolidModels {
+ public:
+  SolidModels();
+  const SurfaceModel& model(SolidKind kind) const {
+    return models_[static_cast<std::size_t>(kind)];
+  }
+
+ private:
+  std::vector<SurfaceModel> models_;
+};
+
+}  // namespace thimble::app::view

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "view/gl/creased_mesh.h"
+#include "view/gl/dent_surface.h"
+#include "view/gl/gl_objects.h"
+
+namespace thimble::app::view {
+
+/// Is one object's surface where OpenGL can draw it: the mesh goes there once, and in a picture
+/// only the dent does.
+class SurfaceModel {
+ public:
+  /// Edges sharper than `crease_angle` (rad) stay sharp.
+  SurfaceModel(const render::TriangleMesh& mesh, double crease_angle,
+               NormalWeights weights = NormalWeights::kAngle);
+
+  /// Takes another mesh with the same triangles in its place: what keeps a dent.
+  void reshape(const render::TriangleMesh& mesh);
+  /// Takes the dent of the next picture; nothing if it has no triangles.
+  void bend(const render::BodyPatch& patch);
+  void unbend();
+
+  /// Draws the mesh's triangles but those that are bent: position at 0, normal at 1.
+  void draw_mesh() const;
+  /// Draws the bent triangles: the attributes of DentVertex.
+  void draw_dent() const;
+  /// Draws the edges of both: position at 0.
+  void draw_edges() const;
+
+  bool empty() const { return triangles_ == 0; }
+  std::size_t triangles() const { return triangles_; }
+
+ private:
+  void upload(const CreasedMesh& drawn);
+  void find_ranges();
+
+  double crease_angle_;
+  NormalWeights weights_;
+  std::size_t triangles_ = 0;
+  std::size_t edges_ = 0;
+  DentSurface dent_;
+  GlVertexArray mesh_array_, edge_array_, dent_array_, dent_edge_array_;
+  GlBuffer vertices_, indices_, edge_indices_, dent_vertices_, dent_edge_indices_;
+  std::vector<GLsizei> range_counts_;      // of the triangles that are not bent
+  std::vector<const void*> range_begins_;  // as offsets in bytes
+  GLsizei dent_edges_ = 0;
+};
+
+}  // namespace thimble::app::view

@@ -1,0 +1,93 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+#include "view/camera.h"
+#include "view/drawn_scene.h"
+#include "view/gl/canvas.h"
+#include "view/gl/gl_objects.h"
+#include "view/gl/solids.h"
+#include "view/gl/surface_model.h"
+#include "view/touch_marks.h"
+
+namespace thimble::app::view {
+
+/// Says where the light on a surface is reckoned.
+enum class Shading {
+  kPhong,    ///< In every pixel, of the interpolated normal.
+  kGouraud,  ///< In every corner, and interpolated.
+};
+
+/// Says whether polygons are outlined.
+enum class Edges {
+  kAuto,  ///< Where they are few enough to be seen one by one.
+  kOff,
+  kOn,
+};
+
+/// Says how dents are drawn.
+enum class DentNormals {
+  kSplit,  ///< New corners keep what was shown at their place (DentSurface).
+  kNaive,  ///< As any mesh is: each vertex has the mean of its polygons. To compare.
+};
+
+/// Says how a scene is drawn.
+struct PaintChoice {
+  Shading shading = Shading::kPhong;
+  Edges edges = Edges::kAuto;
+  DentNormals dent_normals = DentNormals::kSplit;
+  bool shadows = true;
+  bool fine = true;  ///< Soft rims of shadows: 16 samples; else 4, where software draws.
+  bool grid = true;
+  MarkChoice marks;
+};
+
+/// Draws one scene with OpenGL, moment by moment; the same for files and for the window.
+/// Precondition of all: the context it was made in is current. Real-time: never from the servo
+/// thread.
+class ScenePainter {
+ public:
+  explicit ScenePainter(DrawnScene scene);
+
+  const DrawnScene& scene() const { return scene_; }
+
+  /// Paints the picture onto the canvas, pixels and all. Gives the labels, which are text and not
+  /// painted here.
+  std::vector<Label> paint(const DrawnMoment& moment, const Camera& camera,
+                           const PaintChoice& choice, Canvas& canvas);
+
+ private:
+  struct ViewBlock;
+  void set_view(const Camera& camera, double aspect);
+  void paint_shadows(const std::vector<Solid>& solids);
+  void paint_surfaces(const PaintChoice& choice);
+  void paint_solids(const std::vector<Solid>& solids);
+  void paint_what_shines_through(const std::vector<Solid>& solids);
+  void paint_edges(const PaintChoice& choice);
+  void paint_ground(const PaintChoice& choice);
+  void paint_panes(const std::vector<Pane>& panes, const Camera& camera);
+  void place_objects(const DrawnMoment& moment, DentNormals normals);
+  float shadow_offset() const;
+  const SurfaceModel& shown(std::size_t object) const;
+
+  DrawnScene scene_;
+  GlProgram surface_, dent_, shadow_, plain_, backdrop_, ground_;
+  std::vector<SurfaceModel> models_;
+  std::vector<std::shared_ptr<const render::TriangleMesh>> shapes_;  // as they are in models_
+  std::unique_ptr<SurfaceModel> naive_;  // of the object that is bent, if it is drawn so
+  std::size_t naive_object_ = 0;
+  SolidModels solids_;
+  std::vector<Eigen::Matrix4f> places_;  // of the objects in this picture
+  GlBuffer view_block_, pane_vertices_;
+  GlVertexArray nothing_, pane_array_;
+  GlTexture shadow_map_;
+  GlFramebuffer shadow_frame_;
+  Eigen::Vector3d light_centre_{0, 0, 0};
+  double light_radius_ = 0.2;         // m: what is nearer to the centre casts shadows
+  double ground_height_ = 0;          // m
+  std::ptrdiff_t floor_object_ = -1;  // the object that is the ground: a level plane
+};
+
+}  // namespace thimble::app::view

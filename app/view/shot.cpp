@@ -1,0 +1,148 @@
+#include "view/shot.h"
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include "thimble/driver/servo_loop.h"
+
+namespace thimble::app::view {
+namespace {
+
+constexpr std::int64_t kDentFrame = 16'000'000;  // ns: as often dents are drawn (DentRecord)
+
+/// Is who watches a run tick by tick, beside the session's own records.
+struct Watcher {
+  session::Session& session;
+  std::function<void(const driver::TickRecord&)> look;
+  void operator()(const driver::TickRecord& record) noexcept {
+    session(record);
+    look(record);
+  }
+};
+
+void watch(session::Session& session, std::function<void(const driver::TickRecord&)> look) {
+  const std::atomic<bool> stop{false};
+  Watcher watcher{session, std::move(look)};
+  driver::run_servo(session.device(), session.clock(), driver::ForceLaw(session.touch()),
+                    driver::TickSink(watcher),
+                    {.period_ns = session.period_ns(), .ticks = session.ticks_planned()}, stop);
+}
+
+/// Sizes are chosen for a picture as high as this.
+float scale_of(int height) {
+  return std::clamp(static_cast<float>(height) / 640, 0.7F, 4.0F);
+}
+
+int strip_of(const ShotChoice& choice) {
+  return choice.plots ? static_cast<int>(0.24 * choice.height) : 0;
+}
+
+}  // namespace
+
+driver::Result<std::unique_ptr<PlayedScene>> PlayedScene::open(
+    const std::filesystem::path& scene, const session::SessionOptions& options) {
+  session::SessionOptions shared = options;
+  shared.clock = session::ClockKind::kVirtual;
+  shared.share = true;
+  auto session = session::Session::open(scene, shared);
+  if (!session) return session.error();
+  std::unique_ptr<PlayedScene> played(new PlayedScene);
+  played->session_ = std::move(session).value();
+  auto memory = played->session_->shared()->memory().again();
+  if (!memory) return memory.error();
+  auto reader = session::SharedReader::over(std::move(memory).value());
+  if (!reader) return reader.error();
+  played->reader_ = std::move(reader).value();
+  played->live_ = std::make_unique<LiveScene>(*played->reader_);
+  return played;
+}
+
+void PlayedScene::play(const std::vector<double>& times, const Look& look) {
+  const auto every =
+      static_cast<std::uint64_t>(std::max<std::int64_t>(1, kDentFrame / session_->period_ns()));
+  std::vector<std::uint64_t> ticks;
+  for (const double time : times) {
+    const double tick = time * 1e9 / static_cast<double>(session_->period_ns());
+    const auto rounded =
+        static_cast<std::uint64_t>(std::max(0.0, std::round(tick / static_cast<double>(every)))) *
+        every;
+    ticks.push_back(std::min(rounded, (session_->ticks_planned() - 1) / every * every));
+  }
+  const auto moment = std::make_unique<DrawnMoment>();
+  Plots plots;
+  std::size_t next = 0;
+  watch(*session_, [&](const driver::TickRecord& record) {
+    plots.add(record);
+    while (next < ticks.size() && record.tick >= ticks[next]) {
+      if (live_->update(*moment)) look(*moment, plots);
+      ++next;
+    }
+  });
+}
+
+driver::Result<double> strongest_moment(const std::filesystem::path& scene,
+                                        const session::SessionOptions& options) {
+  auto session = session::Session::open(scene, options);
+  if (!session) return session.error();
+  const double duration = static_cast<double>((*session)->ticks_planned()) *
+                          static_cast<double>((*session)->period_ns()) * 1e-9;
+  double most = 0.05;  // N: less is hardly felt
+  double time = duration / 2;
+  watch(**session, [&](const driver::TickRecord& record) {
+    const auto& f = record.f_sent_W;
+    const double force = std::hypot(f[0], f[1], f[2]);
+    if (!(force > most)) return;
+    most = force;
+    time = static_cast<double>(record.tick) * static_cast<double>((*session)->period_ns()) * 1e-9;
+  });
+  return time;
+}
+
+ShotPainter::ShotPainter(const DrawnScene& scene, const ShotChoice& choice)
+    : choice_(choice),
+      painter_(scene),
+      canvas_(choice.width, choice.height, strip_of(choice)),
+      text_(std::make_unique<PictureText>(scale_of(choice.height))),
+      scale_(scale_of(choice.height)) {}
+
+ShotPainter::~ShotPainter() = default;
+
+void ShotPainter::frame_at(const DrawnMoment& moment) {
+  if (!choice_.camera) choice_.camera = frame(painter_.scene(), moment, canvas_.aspect());
+}
+
+Picture ShotPainter::paint(const DrawnMoment& moment, const Plots& plots) {
+  frame_at(moment);
+  const auto labels = painter_.paint(moment, *choice_.camera, choice_.paint, canvas_);
+  glViewport(0, 0, canvas_.width(), canvas_.height());
+  text_->begin(canvas_.width(), canvas_.height());
+  const auto width = static_cast<float>(canvas_.width());
+  const auto strip = static_cast<float>(canvas_.strip());
+  const ScreenPart scene{0, 0, width, static_cast<float>(canvas_.height()) - strip};
+  write_labels(labels, *choice_.camera, scene);
+  if (choice_.caption) {
+    char text[200];
+    std::snprintf(text, sizeof text, "%s, %.2f s%s", painter_.scene().name.c_str(),
+                  static_cast<double>(moment.tick.time_ns) * 1e-9,
+                  choice_.paint.grid ? "; grid 10 mm" : "");
+    write_caption(text, scene);
+  }
+  if (canvas_.strip() > 0) {
+    const float pad = 14 * scale_;
+    const float half = (width - 3 * pad) / 2;
+    fill_part({0, scene.height, width, strip}, kGroundColour);
+    ImDrawList& list = *ImGui::GetBackgroundDrawList();
+    plots.draw_force(list, {pad, scene.height + pad / 2, half, strip - 1.5F * pad},
+                     painter_.scene().force_limit);
+    plots.draw_depth(list, {2 * pad + half, scene.height + pad / 2, half, strip - 1.5F * pad});
+  }
+  text_->end();
+  return canvas_.read();
+}
+
+}  // namespace thimble::app::view

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "share/shared_reader.h"
+#include "thimble/driver/result.h"
+#include "thimble/session/session.h"
+#include "view/gl/offscreen_context.h"
+#include "view/live_scene.h"
+#include "view/plots.h"
+#include "view/scene_painter.h"
+
+namespace thimble::app::view {
+
+/// Is a scene that plays on the virtual clock, to take pictures of: what a viewer sees, by the same
+/// way through shared memory, but stopped at any tick.
+class PlayedScene {
+ public:
+  /// Loads a scene. The error is that of Session::open. Real-time: never from the servo thread.
+  static driver::Result<std::unique_ptr<PlayedScene>> open(const std::filesystem::path& scene,
+                                                           const session::SessionOptions& options);
+
+  /// Says what to do at a moment; `last` is the last tick that was.
+  using Look = std::function<void(DrawnMoment& moment, const Plots& plots)>;
+
+  /// Plays the scene once and looks at each of these times (s, in order), or at the end if one is
+  /// later. Dents are drawn at the rate of a picture: times are rounded to those.
+  void play(const std::vector<double>& times, const Look& look);
+
+  const DrawnScene& drawn() const { return live_->scene(); }
+  std::int64_t period_ns() const { return session_->period_ns(); }
+
+ private:
+  PlayedScene() = default;
+
+  std::unique_ptr<session::Session> session_;
+  std::unique_ptr<session::SharedReader> reader_;
+  std::unique_ptr<LiveScene> live_;
+};
+
+/// Finds the time (s) at which the hand feels the most in a scene; half of its duration if it never
+/// feels anything. The error is that of Session::open. Real-time: never from the servo thread.
+driver::Result<double> strongest_moment(const std::filesystem::path& scene,
+                                        const session::SessionOptions& options);
+
+/// Says what a picture of a scene is like.
+struct ShotChoice {
+  int width = 960, height = 640;  ///< pixels
+  PaintChoice paint;
+  bool plots = false;            ///< Force and depth over time, below.
+  bool caption = true;           ///< Scene, time and grid in words.
+  std::optional<Camera> camera;  ///< Framed by itself if empty.
+};
+
+/// Draws moments of a scene into pictures. Keeps what OpenGL holds from one to the next.
+class ShotPainter {
+ public:
+  /// Precondition: a context of OpenGL 3.3 is current, and outlives this.
+  ShotPainter(const DrawnScene& scene, const ShotChoice& choice);
+  ~ShotPainter();
+
+  /// Frames the scene as it is at this moment, if no camera was chosen.
+  void frame_at(const DrawnMoment& moment);
+  /// Paints a moment. The camera is framed if it was not before.
+  Picture paint(const DrawnMoment& moment, const Plots& plots);
+
+  ShotChoice& choice() { return choice_; }
+  const Camera& camera() const { return *choice_.camera; }
+
+ private:
+  ShotChoice choice_;
+  ScenePainter painter_;
+  Canvas canvas_;
+  std::unique_ptr<PictureText> text_;
+  float scale_;
+};
+
+}  // namespace thimble::app::view

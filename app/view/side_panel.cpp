@@ -1,0 +1,265 @@
+#include "view/side_panel.h"
+
+#include <epoxy/gl.h>
+// After the above, which brings OpenGL.
+#include <GLFW/glfw3.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+namespace thimble::app::view {
+namespace {
+
+/// Is one key and what it does.
+struct Key {
+  const char* key;
+  const char* does;
+};
+
+constexpr std::array kKeys = {Key{"left drag", "turn about the scene"},
+                              Key{"right drag", "move along (also shift + left)"},
+                              Key{"wheel", "nearer, farther"},
+                              Key{"ctrl + left drag", "lead the simulated hand; wheel: push"},
+                              Key{"H", "swap the two left drags"},
+                              Key{"F", "frame the scene"},
+                              Key{"space", "pause, go on"},
+                              Key{"R", "record, stop recording"},
+                              Key{"S", "screenshot"},
+                              Key{"G", "Gouraud or Phong shading"},
+                              Key{"E", "edges of polygons"},
+                              Key{"P", "active triangle and edge planes"},
+                              Key{"A", "arm"},
+                              Key{"F1", "this help"},
+                              Key{"Q", "close; the run goes on"}};
+
+ImVec4 vec(const Colour& colour) {
+  return {colour[0], colour[1], colour[2], 1};
+}
+
+void toggle_record(session::SharedReader& reader) {
+  if (reader.counters().recording) {
+    reader.ask_record_stop();
+  } else {
+    reader.ask_record();
+  }
+}
+
+void draw_head(const session::SharedReader& reader, const driver::TickRecord& tick) {
+  const session::SharedScene& scene = reader.scene();
+  ImGui::TextUnformatted(scene.name.c_str());
+  ImGui::TextDisabled("%s (%s), %.0f Hz%s", scene.arm.name.c_str(), scene.arm.device.c_str(),
+                      1e9 / static_cast<double>(scene.period_ns),
+                      scene.wall_clock ? "" : ", virtual time");
+  const auto& f = tick.f_sent_W;
+  ImGui::TextColored(vec(kForceColour), "%5.2f N", std::hypot(f[0], f[1], f[2]));
+  ImGui::SameLine(0, 2 * ImGui::GetFontSize());
+  ImGui::TextColored(vec(kDepthColour), "%5.2f mm", tick.in_contact ? tick.depth * 1e3 : 0.0);
+  ImGui::SameLine(0, 2 * ImGui::GetFontSize());
+  ImGui::TextDisabled("%.1f s, %s", static_cast<double>(tick.time_ns) * 1e-9,
+                      session::name_of(reader.state()));
+  const double heat = *std::max_element(tick.heat.begin(), tick.heat.end());
+  if (heat >= driver::HeatGuard::kWarning) {
+    ImGui::TextColored(vec(kForceColour), "motors %.0f %% of their heat limit, force lowered",
+                       100 * heat);
+  } else if (heat > 0) {
+    ImGui::TextDisabled("motors %.0f %% of their heat limit", 100 * heat);
+  }
+  if (tick.fault != driver::Fault::kNone) {
+    ImGui::TextColored(vec(kForceColour), "%s", std::string(driver::describe(tick.fault)).c_str());
+  }
+}
+
+void draw_buttons(session::SharedReader& reader, ViewChoice& choice) {
+  const bool paused = reader.pause_asked();
+  if (ImGui::Button(paused ? "Go on" : "Pause")) reader.ask_pause(!paused);
+  ImGui::SameLine();
+  if (ImGui::Button(reader.counters().recording ? "Stop recording" : "Record")) {
+    toggle_record(reader);
+  }
+  ImGui::SameLine();
+  if (ImGui::Button("Picture")) choice.screenshot = true;
+  ImGui::SameLine();
+  if (ImGui::Button("?")) choice.help = !choice.help;
+  if (reader.counters().recording) {
+    ImGui::TextColored(vec(kForceColour), "recording");
+    ImGui::SameLine();
+    ImGui::TextDisabled("%s", reader.recording_path().c_str());
+  }
+}
+
+void draw_plots(const session::SharedReader& reader, const Plots& plots, float height) {
+  const float width = ImGui::GetContentRegionAvail().x;
+  const auto next = [&](float share) {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    ImGui::Dummy({width, share * height});
+    return ScreenPart{at.x, at.y, width, share * height};
+  };
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  plots.draw_force(list, next(0.30F), reader.scene().force_max);
+  plots.draw_depth(list, next(0.26F));
+  plots.draw_work(list, next(0.22F));
+  plots.draw_periods(list, next(0.22F), reader.scene().period_ns);
+}
+
+void draw_knobs(session::SharedReader& reader) {
+  const auto& knobs = reader.scene().knobs;
+  if (knobs.empty()) {
+    ImGui::TextDisabled("This run has no knobs.");
+    return;
+  }
+  for (std::size_t i = 0; i < knobs.size(); ++i) {
+    const session::SharedScene::Knob& knob = knobs[i];
+    ImGui::PushID(static_cast<int>(i));
+    double value = reader.knob_wanted(i);
+    ImGui::TextUnformatted(knob.name.c_str());
+    const float reset = ImGui::CalcTextSize("reset").x + 2 * ImGui::GetStyle().FramePadding.x;
+    ImGui::SetNextItemWidth(-reset - ImGui::GetStyle().ItemSpacing.x);
+    // What reaches over more than two powers of ten is turned by its logarithm.
+    const bool wide = knob.least > 0 && knob.most > 100 * knob.least;
+    const std::string format = "%.4g " + knob.unit;
+    if (ImGui::SliderScalar("##value", ImGuiDataType_Double, &value, &knob.least, &knob.most,
+                            format.c_str(),
+                            ImGuiSliderFlags_AlwaysClamp |
+                                (wide ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None))) {
+      reader.turn_knob(i, value);
+    }
+    ImGui::SameLine();
+    if (ImGui::Button("reset")) reader.turn_knob(i, knob.initial);
+    ImGui::PopID();
+  }
+}
+
+void draw_looks(ViewChoice& choice) {
+  PaintChoice& paint = choice.paint;
+  bool gouraud = paint.shading == Shading::kGouraud;
+  if (ImGui::Checkbox("Gouraud", &gouraud)) {
+    paint.shading = gouraud ? Shading::kGouraud : Shading::kPhong;
+  }
+  ImGui::SameLine();
+  bool edges = paint.edges == Edges::kOn;
+  if (ImGui::Checkbox("edges", &edges)) paint.edges = edges ? Edges::kOn : Edges::kOff;
+  ImGui::SameLine();
+  ImGui::Checkbox("edge planes", &paint.marks.edge_planes);
+  ImGui::SameLine();
+  ImGui::Checkbox("fine", &paint.fine);
+  ImGui::Checkbox("arm", &paint.marks.arm);
+  ImGui::SameLine();
+  ImGui::Checkbox("shadows", &paint.shadows);
+  ImGui::SameLine();
+  ImGui::Checkbox("grid", &paint.grid);
+  ImGui::SameLine();
+  ImGui::Checkbox("mouse is hand", &choice.mouse_is_hand);
+}
+
+}  // namespace
+
+void draw_side_panel(const ScreenPart& part, session::SharedReader* reader,
+                     const driver::TickRecord& tick, const Plots& plots, const ViewNotes& notes,
+                     ViewChoice& choice) {
+  ImGui::SetNextWindowPos({part.x, part.y});
+  ImGui::SetNextWindowSize({part.width, part.height});
+  ImGui::Begin("panel", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
+                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus);
+  if (reader == nullptr) {
+    ImGui::TextDisabled("No run to show.");
+  } else {
+    draw_head(*reader, tick);
+    draw_buttons(*reader, choice);
+    draw_plots(*reader, plots, std::max(0.48F * part.height, 19 * ImGui::GetFontSize()));
+    ImGui::Separator();
+    const float rest = ImGui::GetContentRegionAvail().y - 3.4F * ImGui::GetFrameHeightWithSpacing();
+    ImGui::BeginChild("knobs", {0, std::max(rest, 3 * ImGui::GetFontSize())});
+    draw_knobs(*reader);
+    ImGui::EndChild();
+    ImGui::Separator();
+    draw_looks(choice);
+    const auto counters = reader->counters();
+    ImGui::TextDisabled("%llu ticks, %llu periods missed; %.0f pictures/s",
+                        static_cast<unsigned long long>(counters.ticks),
+                        static_cast<unsigned long long>(counters.missed),
+                        notes.frame_time > 0 ? 1 / notes.frame_time : 0.0);
+  }
+  ImGui::End();
+}
+
+void draw_notices(const ScreenPart& part, const ViewNotes& notes, const ViewChoice& choice) {
+  const auto box = [](const char* name, float x, float y, float pivot_y) {
+    ImGui::SetNextWindowPos({x, y}, ImGuiCond_Always, {0.5F, pivot_y});
+    ImGui::Begin(name, nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize |
+                     ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing |
+                     ImGuiWindowFlags_NoInputs);
+  };
+  const float middle = part.x + part.width / 2;
+  const float margin = ImGui::GetFontSize();
+  if (!notes.notice.empty()) {
+    box("notice", middle, part.y + margin, 0);
+    ImGui::TextColored(vec(kForceColour), "%s", notes.notice.c_str());
+    ImGui::End();
+  }
+  if (!notes.message.empty()) {
+    box("message", middle, part.y + part.height - margin, 1);
+    ImGui::TextUnformatted(notes.message.c_str());
+    ImGui::End();
+  }
+  if (choice.help) {
+    box("help", middle, part.y + part.height / 2, 0.5F);
+    for (const Key& key : kKeys) {
+      ImGui::TextColored(vec(kDepthColour), "%s", key.key);
+      ImGui::SameLine(10 * ImGui::GetFontSize());
+      ImGui::TextUnformatted(key.does);
+    }
+    ImGui::End();
+  }
+}
+
+void take_key(int key, session::SharedReader* reader, ViewChoice& choice) {
+  PaintChoice& paint = choice.paint;
+  switch (key) {
+    case GLFW_KEY_H:
+      choice.mouse_is_hand = !choice.mouse_is_hand;
+      break;
+    case GLFW_KEY_F:
+      choice.frame = true;
+      break;
+    case GLFW_KEY_S:
+      choice.screenshot = true;
+      break;
+    case GLFW_KEY_G:
+      paint.shading = paint.shading == Shading::kPhong ? Shading::kGouraud : Shading::kPhong;
+      break;
+    case GLFW_KEY_E:
+      paint.edges = paint.edges == Edges::kOn ? Edges::kOff : Edges::kOn;
+      break;
+    case GLFW_KEY_P:
+      paint.marks.edge_planes = !paint.marks.edge_planes;
+      break;
+    case GLFW_KEY_A:
+      paint.marks.arm = !paint.marks.arm;
+      break;
+    case GLFW_KEY_F1:
+    case GLFW_KEY_SLASH:
+      choice.help = !choice.help;
+      break;
+    case GLFW_KEY_ESCAPE:
+      choice.help = false;
+      break;
+    case GLFW_KEY_Q:
+      choice.close = true;
+      break;
+    case GLFW_KEY_SPACE:
+      if (reader != nullptr) reader->ask_pause(!reader->pause_asked());
+      break;
+    case GLFW_KEY_R:
+      if (reader != nullptr) toggle_record(*reader);
+      break;
+    default:
+      break;
+  }
+}
+
+}  // namespace thimble::app::view

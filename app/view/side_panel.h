@@ -1,0 +1,42 @@
+#pragma once
+
+#include <string>
+
+#include "share/shared_reader.h"
+#include "view/plots.h"
+#include "view/scene_painter.h"
+
+namespace thimble::app::view {
+
+/// Is what the user chose by panel and keys.
+struct ViewChoice {
+  PaintChoice paint;
+  bool mouse_is_hand = false;  ///< A left drag leads the hand, and not the camera.
+  bool help = false;
+  // Asked for once; whoever does it sets them back.
+  bool frame = true;
+  bool screenshot = false;
+  bool close = false;
+};
+
+/// Is what the panel says of the window itself.
+struct ViewNotes {
+  std::string notice;     ///< Above the scene: that the run has ended, say; empty: none.
+  std::string message;    ///< Of what was just done; empty: none.
+  double frame_time = 0;  ///< s, smoothed
+};
+
+/// Draws the panel at the window's side: how the run is, force, depth and times over time, and the
+/// knobs. `reader` is null while no run is attached. To be called between ImGui's NewFrame and
+/// Render. Real-time: never from the servo thread.
+void draw_side_panel(const ScreenPart& part, session::SharedReader* reader,
+                     const driver::TickRecord& tick, const Plots& plots, const ViewNotes& notes,
+                     ViewChoice& choice);
+
+/// Draws the notice, if there is one, and the help, if it is asked for, over the scene's part.
+void draw_notices(const ScreenPart& part, const ViewNotes& notes, const ViewChoice& choice);
+
+/// Does what a key asks for (a GLFW_KEY_...); lists of them stand in the help.
+void take_key(int key, session::SharedReader* reader, ViewChoice& choice);
+
+}  // namespace thimble::app::view

@@ -1,0 +1,288 @@
+#include "view/window.h"
+
+#include <epoxy/gl.h>
+// After the above, which brings OpenGL.
+#include <GLFW/glfw3.h>
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <ctime>
+#include <memory>
+#include <optional>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "view/gl/picture_file.h"
+#include "view/run_follower.h"
+#include "view/scene_mouse.h"
+#include "view/side_panel.h"
+
+namespace thimble::app::view {
+namespace {
+
+constexpr float kPanelWidth = 380;   // pixels at scale 1
+constexpr double kFrame = 1.0 / 60;  // s
+constexpr double kMessageSeconds = 4;
+
+std::string glfw_words() {
+  const char* words = nullptr;
+  glfwGetError(&words);
+  return words == nullptr ? "GLFW gives no reason" : words;
+}
+
+/// Names a picture by run and time.
+std::string picture_name(const std::string& run) {
+  const std::time_t now = std::time(nullptr);
+  std::tm local{};
+  localtime_r(&now, &local);
+  char text[32];
+  std::strftime(text, sizeof text, "-%Y%m%d-%H%M%S.png", &local);
+  return "thimble-" + (run.empty() ? "view" : run) + text;
+}
+
+/// Is the window with its OpenGL and ImGui; all go with it.
+class Screen {
+ public:
+  static driver::Result<std::unique_ptr<Screen>> open() {
+    std::unique_ptr<Screen> screen(new Screen);
+    if (glfwInit() == GLFW_FALSE) {
+      return driver::Error{"No window: " + glfw_words() +
+                           ". Is there a screen? `thimble view --text` needs none."};
+    }
+    screen->glfw_ = true;
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
+    glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+    glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
+    screen->window_ = glfwCreateWindow(1280, 800, "Thimble", nullptr, nullptr);
+    if (screen->window_ == nullptr) return driver::Error{"No window: " + glfw_words() + "."};
+    glfwMakeContextCurrent(screen->window_);
+    glfwSwapInterval(1);
+    // Heard one by one, so that none is lost where pictures take long.
+    glfwSetWindowUserPointer(screen->window_, screen.get());
+    glfwSetKeyCallback(screen->window_, [](GLFWwindow* window, int key, int, int action, int) {
+      auto* self = static_cast<Screen*>(glfwGetWindowUserPointer(window));
+      if (action == GLFW_PRESS) self->keys_.push_back(key);
+    });
+    ImGui::CreateContext();
+    screen->imgui_ = true;
+    ImGui_ImplGlfw_InitForOpenGL(screen->window_, true);
+    ImGui_ImplOpenGL3_Init("#version 330 core");
+    return screen;
+  }
+  Screen(const Screen&) = delete;
+  Screen& operator=(const Screen&) = delete;
+  ~Screen() {
+    if (imgui_) {
+      ImGui_ImplOpenGL3_Shutdown();
+      ImGui_ImplGlfw_Shutdown();
+      ImGui::DestroyContext();
+    }
+    if (window_ != nullptr) glfwDestroyWindow(window_);
+    if (glfw_) glfwTerminate();
+  }
+
+  GLFWwindow* window() { return window_; }
+  float scale() const { return scale_; }
+  /// Gives the keys pressed since it was asked last, but those typed into a field.
+  std::vector<int> take_keys() {
+    std::vector<int> keys = std::exchange(keys_, {});
+    if (ImGui::GetIO().WantTextInput) keys.clear();
+    return keys;
+  }
+
+  void begin() {
+    glfwPollEvents();
+    float x = 1;
+    float y = 1;
+    glfwGetWindowContentScale(window_, &x, &y);
+    if (std::max(x, y) != scale_) {
+      scale_ = std::max(x, y);
+      ImGui_ImplOpenGL3_DestroyFontsTexture();
+      set_text_style(scale_);
+    }
+    ImGui_ImplOpenGL3_NewFrame();
+    ImGui_ImplGlfw_NewFrame();
+    ImGui::NewFrame();
+  }
+
+  void end() {
+    ImGui::Render();
+    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+  }
+
+ private:
+  Screen() = default;
+
+  bool glfw_ = false;
+  bool imgui_ = false;
+  GLFWwindow* window_ = nullptr;
+  float scale_ = 0;
+  std::vector<int> keys_;
+};
+
+/// Reads what the window shows.
+Picture read_window(GLFWwindow* window) {
+  Picture picture;
+  glfwGetFramebufferSize(window, &picture.width, &picture.height);
+  const auto row = 3 * static_cast<std::size_t>(picture.width);
+  std::vector<std::uint8_t> upward(row * static_cast<std::size_t>(picture.height));
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glReadPixels(0, 0, picture.width, picture.height, GL_RGB, GL_UNSIGNED_BYTE, upward.data());
+  for (auto from = upward.end(); from != upward.begin();) {
+    from -= static_cast<std::ptrdiff_t>(row);
+    picture.rgb.insert(picture.rgb.end(), from, from + static_cast<std::ptrdiff_t>(row));
+  }
+  return picture;
+}
+
+/// Tells whether the processor draws in place of a graphics card: then a picture as fine as can be
+/// takes 2.5 times as long as need be (tests/bench/view_bench).
+bool software_draws() {
+  const auto* words = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+  const std::string name = words == nullptr ? "" : words;
+  return name.find("llvmpipe") != std::string::npos || name.find("softpipe") != std::string::npos;
+}
+
+/// Is the window's content from picture to picture.
+class Content {
+ public:
+  Content(Screen& screen, session::RunAttachment& runs) : screen_(screen), follower_(runs) {
+    choice_.paint.fine = !software_draws();
+  }
+
+  /// Draws one picture into the window.
+  void draw(double frame_time);
+  bool wants_to_close() const { return choice_.close; }
+  /// Tells whether nothing moves by itself: there is no run, or it has ended.
+  bool still() {
+    return follower_.reader() == nullptr ||
+           follower_.reader()->state() == session::RunState::kEnded;
+  }
+
+ private:
+  void draw_scene(const ScreenPart& part, float ratio);
+  void take_picture();
+  void tell(const std::string& message);
+
+  Screen& screen_;
+  RunFollower follower_;
+  std::unique_ptr<ScenePainter> painter_;
+  std::optional<Canvas> canvas_;
+  bool canvas_fine_ = true;
+  Camera camera_;
+  SceneMouse mouse_;
+  bool led_ = false;
+  ViewChoice choice_;
+  ViewNotes notes_;
+  std::chrono::steady_clock::time_point message_until_{};
+};
+
+void Content::tell(const std::string& message) {
+  notes_.message = message;
+  message_until_ = std::chrono::steady_clock::now() +
+                   std::chrono::milliseconds(static_cast<int>(kMessageSeconds * 1000));
+}
+
+void Content::take_picture() {
+  const std::string file = picture_name(follower_.reader()->name());
+  const auto written = write_png(canvas_->read(), file, PngColours::kAll);
+  tell(written ? "Picture: " + file : written.error().message);
+}
+
+void Content::draw_scene(const ScreenPart& part, float ratio) {
+  const int width = std::max(1, static_cast<int>(part.width * ratio));
+  const int height = std::max(1, static_cast<int>(part.height * ratio));
+  if (!canvas_ || canvas_->width() != width || canvas_->height() != height ||
+      canvas_fine_ != choice_.paint.fine) {
+    canvas_fine_ = choice_.paint.fine;
+    canvas_.emplace(width, height, 0, canvas_fine_ ? Canvas::kSamples : 1);
+  }
+  const DrawnMoment& moment = follower_.moment();
+  if (choice_.frame && follower_.has_moment()) {
+    camera_ = frame(follower_.scene(), moment, canvas_->aspect());
+    choice_.frame = false;
+  }
+  const Eigen::Map<const Eigen::Vector3d> p_WT(moment.tick.p_WT.data());
+  mouse_.step(camera_, p_WT, part, choice_.mouse_is_hand);
+  const HandWish& hand = mouse_.hand();
+  if (hand.holds || led_) {
+    follower_.reader()->lead_hand(hand.p_WH, hand.holds);
+    led_ = hand.holds;
+  }
+  const auto labels = painter_->paint(moment, camera_, choice_.paint, *canvas_);
+  canvas_->show(0, 0);
+  write_labels(labels, camera_, part);
+  write_caption(choice_.paint.grid ? "grid 10 mm; F1: help" : "F1: help", part);
+  if (choice_.screenshot) take_picture();
+  choice_.screenshot = false;
+}
+
+void Content::draw(double frame_time) {
+  notes_.frame_time += (notes_.frame_time > 0 ? 0.05 : 1) * (frame_time - notes_.frame_time);
+  if (follower_.step()) {
+    painter_ = std::make_unique<ScenePainter>(follower_.scene());
+    choice_.frame = true;
+    choice_.mouse_is_hand = follower_.reader()->scene().hand_by_mouse;
+    glfwSetWindowTitle(screen_.window(), ("Thimble: " + follower_.scene().name).c_str());
+  }
+  screen_.begin();
+  int pixels_x = 0;
+  int pixels_y = 0;
+  glfwGetFramebufferSize(screen_.window(), &pixels_x, &pixels_y);
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  const float ratio = size.x > 0 ? static_cast<float>(pixels_x) / size.x : 1;
+  const float panel = std::min(kPanelWidth * screen_.scale(), 0.5F * size.x);
+  const ScreenPart scene{0, 0, size.x - panel, size.y};
+  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+  glViewport(0, 0, pixels_x, pixels_y);
+  glClearColor(kGroundColour[0], kGroundColour[1], kGroundColour[2], 1);
+  glClear(GL_COLOR_BUFFER_BIT);
+  for (const int key : screen_.take_keys()) take_key(key, follower_.reader(), choice_);
+  if (painter_ != nullptr && scene.width >= 1 && scene.height >= 1) draw_scene(scene, ratio);
+  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+  glViewport(0, 0, pixels_x, pixels_y);
+  notes_.notice = follower_.notice();
+  if (std::chrono::steady_clock::now() > message_until_) notes_.message.clear();
+  draw_side_panel({scene.width, 0, panel, size.y}, follower_.reader(), follower_.moment().tick,
+                  follower_.plots(), notes_, choice_);
+  draw_notices(scene, notes_, choice_);
+  screen_.end();
+}
+
+}  // namespace
+
+driver::Result<void> show_window(session::RunAttachment& runs, const WindowChoice& choice) {
+  auto screen = Screen::open();
+  if (!screen) return screen.error();
+  GLFWwindow* window = (*screen)->window();
+  Content content(**screen, runs);
+  const double began = glfwGetTime();
+  double last = began;
+  while (glfwWindowShouldClose(window) == GLFW_FALSE && !content.wants_to_close()) {
+    const double now = glfwGetTime();
+    content.draw(now - last);
+    last = now;
+    const bool over = choice.seconds > 0 && now - began > choice.seconds;
+    if (over && !choice.last_picture.empty()) {
+      const auto written = write_png(read_window(window), choice.last_picture, PngColours::kAll);
+      if (!written) return written.error();
+    }
+    if (over) break;
+    glfwSwapBuffers(window);
+    // Waiting for a run takes no processor; the mouse and the keys wake it.
+    if (content.still()) glfwWaitEventsTimeout(0.25);
+    // Where the screen does not set the pace (a remote one, say), this does.
+    const double rest = kFrame - (glfwGetTime() - now);
+    if (rest > 0.002) std::this_thread::sleep_for(std::chrono::duration<double>(rest - 0.001));
+  }
+  return {};
+}
+
+}  // namespace thimble::app::view

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+
+#include "share/run_attachment.h"
+#include "thimble/driver/result.h"
+
+namespace thimble::app::view {
+
+/// Says when a window closes by itself, for tests.
+struct WindowChoice {
+  double seconds = 0;        ///< Closes after so long; 0: when the user closes it.
+  std::string last_picture;  ///< PNG of the whole window, written before it closes so; empty: none.
+};
+
+/// Opens a window on the runs that are watched and shows them until it is closed. Where there is no
+/// run, or it has ended, the window says so and takes the next. The runs never notice.
+/// The error says why there is no window. Real-time: never from the servo thread.
+driver::Result<void> show_window(session::RunAttachment& runs, const WindowChoice& choice);
+
+}  // namespace thimble::app::view
