@@ -1,3 +1,4 @@
+#include <sys/prctl.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -357,6 +358,7 @@ TEST(Share, TellsThatARunWasKilledAndClearsItAway) {
   ASSERT_EQ(pipe(pipe_ends.data()), 0);
   const pid_t child = fork();
   if (child == 0) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);  // a test that fails leaves nobody behind
     const auto run = session::SharedRun::create(name, small_scene(), 10).value();
     run->set_state(session::RunState::kRunning);
     static_cast<void>(write(pipe_ends[1], "x", 1));
@@ -364,7 +366,9 @@ TEST(Share, TellsThatARunWasKilledAndClearsItAway) {
   }
   char ready = 0;
   ASSERT_EQ(read(pipe_ends[0], &ready, 1), 1);
-  const auto reader = session::SharedReader::attach(name).value();
+  auto attached = session::SharedReader::attach(name);
+  ASSERT_TRUE(attached) << attached.error().message;
+  const auto reader = std::move(attached).value();
   EXPECT_EQ(reader->state(), session::RunState::kRunning);
   EXPECT_FALSE(reader->died());
   kill(child, SIGKILL);
