@@ -19,7 +19,7 @@ forbid() {
 
 graphics='GL/|GLFW|imgui|EGL/|epoxy/'
 forbid driver "thimble/(device_sim|render|app)/|$graphics|spdlog/|yaml-cpp/|CLI/" \
-  "other rooms, graphics, logging or files"
+  "other modules, graphics, logging or files"
 forbid driver/include 'libusb|hidapi|termios' "a bus library in a public header"
 forbid device_sim "thimble/(render|app)/|$graphics|spdlog/|yaml-cpp/|CLI/" \
   "render, app, graphics, logging or files"
