@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -14,6 +13,7 @@
 #include <vector>
 
 #include "body/shape/snap_base.h"
+#include "support/dense_algebra.h"
 #include "support/hard_case.h"
 #include "support/random.h"
 #include "support/vintage_arm.h"
@@ -313,12 +313,12 @@ TEST(HardCase37, SingularPosesAndTheEdgeOfReachGiveFiniteClampedCurrents) {
       const auto& drive = model.drives[static_cast<std::size_t>(k)];
       tau[k] = drive.sign * drive.ratio * drive.torque_constant * currents.amperes()[k];
     }
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(J * J.transpose());
+    const support::SymmetricAxes parts = support::symmetric_axes(J * J.transpose());
     Vector3d made(0, 0, 0), asked(0, 0, 0);
     for (int k = 0; k < 3; ++k) {
-      const double squared = solver.eigenvalues()[k];
+      const double squared = parts.values[k];
       if (!(squared > 1e-10)) continue;
-      const Vector3d u = solver.eigenvectors().col(k);
+      const Vector3d u = parts.axes.col(k);
       made += u * u.dot(J * tau) / squared;
       asked += u * u.dot(force.f_T_W());
     }
