@@ -33,7 +33,7 @@ void PrintTo(const SceneRun& scene, std::ostream* out) {
   *out << scene.name;
 }
 
-std::uint64_t hash_of(const session::Session& session) {
+std::uint64_t hash_of_touch(const session::Session& session) {
   support::RunHash hash;
   for (const auto& row : session.trace().rows()) hash.add(row);
   for (const Eigen::Vector3d& p : session.mesh_now().vertices) {
@@ -66,7 +66,7 @@ TEST_P(ShippedScene, RunsForItsWholeTimeAlikeEachTimeWithoutAFaultALostContactOr
     // What an ideal texture or field does not do, a loop of 1 kHz with a delay does a little
     // [STABILITY 1.5]; felt is what exceeds a millijoule.
     EXPECT_LT(session->statistics().energy_to_hand(), 1e-3);
-    const std::uint64_t hash = hash_of(*session);
+    const std::uint64_t hash = hash_of_touch(*session);
     if (time == 0) first = hash;
     EXPECT_EQ(hash, first);
     EXPECT_EQ(hash, GetParam().stored) << "new hash: 0x" << std::hex << hash;

@@ -24,7 +24,7 @@ device_sim::SimulatedArmSettings arm_settings() {
   return settings;
 }
 
-struct Nothing {
+struct NoForce {
   void operator()(const driver::TickRecord&) const noexcept {}
 };
 
@@ -56,8 +56,8 @@ class WaysOut : public ::testing::Test {
       }
       return command;
     };
-    Nothing nothing;
-    return driver::run_servo(*device_, clock_, driver::ForceLaw(law), driver::TickSink(nothing),
+    NoForce no_force;
+    return driver::run_servo(*device_, clock_, driver::ForceLaw(law), driver::TickSink(no_force),
                              {.period_ns = kPeriod_ns, .ticks = ticks}, stop_);
   }
 

@@ -11,7 +11,7 @@ namespace {
 
 using driver::TransportStatus;
 
-constexpr std::int64_t kMillisecond = 1'000'000;
+constexpr std::int64_t kOneMillisecond = 1'000'000;
 
 class SimTransportTest : public ::testing::Test {
  protected:
@@ -22,7 +22,7 @@ class SimTransportTest : public ::testing::Test {
 };
 
 TEST_F(SimTransportTest, ReadsWithoutWaitingWhatIsThere) {
-  const auto read = transport_.read_latest(buffer_, 10 * kMillisecond);
+  const auto read = transport_.read_latest(buffer_, 10 * kOneMillisecond);
   EXPECT_EQ(read.status, TransportStatus::kOk);
   EXPECT_EQ(read.size, driver::hfab::kReportSize);
   EXPECT_EQ(clock_.now_ns(), 0);
@@ -30,10 +30,10 @@ TEST_F(SimTransportTest, ReadsWithoutWaitingWhatIsThere) {
 
 TEST_F(SimTransportTest, WaitsForTheNextReportAndNoLonger) {
   transport_.read_latest(buffer_, 0);
-  const auto read = transport_.read_latest(buffer_, 10 * kMillisecond);
+  const auto read = transport_.read_latest(buffer_, 10 * kOneMillisecond);
   EXPECT_EQ(read.status, TransportStatus::kOk);
   EXPECT_EQ(read.skipped, 0U);
-  EXPECT_EQ(clock_.now_ns(), kMillisecond);
+  EXPECT_EQ(clock_.now_ns(), kOneMillisecond);
 }
 
 TEST_F(SimTransportTest, NeverWaitsBeyondItsDeadline) {
@@ -47,7 +47,7 @@ TEST_F(SimTransportTest, NeverWaitsBeyondItsDeadline) {
 }
 
 TEST_F(SimTransportTest, SkipsToTheNewestReport) {
-  clock_.sleep_until_ns(30 * kMillisecond);
+  clock_.sleep_until_ns(30 * kOneMillisecond);
   const auto read = transport_.read_latest(buffer_, 0);
   EXPECT_EQ(read.status, TransportStatus::kOk);
   EXPECT_EQ(read.skipped, 30U);
@@ -63,12 +63,12 @@ TEST_F(SimTransportTest, WritesAtTheClocksTime) {
 TEST_F(SimTransportTest, LeavesTheFirmwareOnItsOwnWhenUnplugged) {
   transport_.write(drive_message(100, 0, 0));
   transport_.unplug();
-  EXPECT_EQ(transport_.read_latest(buffer_, 5 * kMillisecond).status, TransportStatus::kLost);
+  EXPECT_EQ(transport_.read_latest(buffer_, 5 * kOneMillisecond).status, TransportStatus::kLost);
   EXPECT_EQ(clock_.now_ns(), 0);
-  clock_.sleep_until_ns(50 * kMillisecond);
+  clock_.sleep_until_ns(50 * kOneMillisecond);
   EXPECT_EQ(transport_.write(drive_message(200, 0, 0)), TransportStatus::kLost);
   EXPECT_EQ(arm_.plant().currents().x(), 0.1);
-  clock_.sleep_until_ns(100 * kMillisecond);
+  clock_.sleep_until_ns(100 * kOneMillisecond);
   EXPECT_EQ(transport_.read_latest(buffer_, 0).status, TransportStatus::kLost);
   EXPECT_EQ(arm_.plant().currents().x(), 0);
   EXPECT_EQ(arm_.firmware().counters().watchdog_fired, 1U);

@@ -10,7 +10,7 @@
 namespace thimble::driver {
 namespace {
 
-std::vector<std::byte> report() {
+std::vector<std::byte> sensor_report() {
   const auto bytes = hfab::encode_input({});
   return {bytes.begin(), bytes.end()};
 }
@@ -20,7 +20,7 @@ class AnsweringTransport final : public Transport {
  public:
   explicit AnsweringTransport(support::Wire& wire) : wire_(wire), inner_(wire) {}
   TransportRead read_latest(std::span<std::byte> buffer, std::int64_t until) noexcept override {
-    wire_.to_host.push_back(report());
+    wire_.to_host.push_back(sensor_report());
     return inner_.read_latest(buffer, until);
   }
   TransportStatus write(std::span<const std::byte> bytes) noexcept override {
