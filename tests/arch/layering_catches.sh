@@ -4,18 +4,21 @@
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 copy=$(mktemp -d)
-trap 'rm -rf "$copy"' EXIT
+saved=$(mktemp)
+trap 'rm -rf "$copy" "$saved"' EXIT
 
 plant() {
-  rm -rf "${copy:?}"/*
-  (cd "$1" && tar -c driver/include driver/src device_sim render app) | tar -x -C "$copy"
+  cp "$copy/$2" "$saved"
   echo "#include $3" >>"$copy/$2"
   if bash "$here/layering.sh" "$copy" >/dev/null; then
     echo "layering.sh did not notice '#include $3' in $2"
     exit 1
   fi
+  cp "$saved" "$copy/$2"
 }
 bash "$here/layering.sh" "$1"
+(cd "$1" && find driver/include driver/src device_sim render app -name '*.h' -o -name '*.cpp' -o -name '*.inc') |
+  tar -c -C "$1" -T - | tar -x -C "$copy"
 plant "$1" driver/include/thimble/driver/fault.h '<spdlog/spdlog.h>'
 plant "$1" driver/include/thimble/driver/fault.h '<libusb-1.0/libusb.h>'
 plant "$1" driver/src/fault.cpp '"thimble/render/touch.h"'
@@ -59,8 +62,7 @@ plant "$1" app/bringup/doctor.h '"thimble/session/session.h"'
 plant "$1" app/report/report.h '<epoxy/gl.h>'
 plant "$1" app/bringup/doctor.h '<CLI/CLI.hpp>'
 # And a folder that is too full.
-rm -rf "${copy:?}"/*
-(cd "$1" && tar -c driver/include driver/src device_sim render app) | tar -x -C "$copy"
+bash "$here/layering.sh" "$copy"
 for i in $(seq 41); do touch "$copy/render/src/search/one_more_$i.h"; done
 if bash "$here/layering.sh" "$copy" >/dev/null; then
   echo "layering.sh did not notice a folder of more than 40 files"
