@@ -1,5 +1,6 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -161,7 +162,7 @@ std::optional<int> object_to_save(const scene::Scene& scene, const std::string& 
 /// Says whether the run opens a viewer: if it is asked to, and where a person watches it in real
 /// time.
 bool wants_viewer(const RunOptions& options, bool real_time) {
-  if (options.no_view) return false;
+  if (options.no_view || !has_window()) return false;
   if (options.view || options.led()) return session::has_display();
   return real_time && session::has_display() && isatty(STDERR_FILENO) != 0;
 }
@@ -179,7 +180,9 @@ std::unique_ptr<session::RequestDesk> open_desk(session::Session& session,
       complain(started.error(), kExitTrouble);
     }
   } else if (!options.no_view && (options.view || options.led())) {
-    std::fprintf(stderr, "No screen (DISPLAY, WAYLAND_DISPLAY): watch by `thimble view %s`.\n",
+    std::fprintf(stderr, "%s: watch by `thimble view %s`.\n",
+                 has_window() ? "No screen (DISPLAY, WAYLAND_DISPLAY)"
+                              : "No window in this build (app/setup.sh release thimble makes one)",
                  session.shared()->name().c_str());
   }
   return std::make_unique<session::RequestDesk>(session, std::move(viewer), options.led());
