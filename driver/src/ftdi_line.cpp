@@ -1,3 +1,5 @@
+#include "ftdi_line.h"
+
 #include <libusb-1.0/libusb.h>
 
 #include <algorithm>
@@ -8,7 +10,6 @@
 #include "ftdi_transport.h"
 #include "thimble/driver/ftdi_packet.h"
 #include "thimble/driver/node_lock.h"
-#include "thimble/driver/transports.h"
 
 namespace thimble::driver {
 namespace {
