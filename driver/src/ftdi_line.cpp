@@ -7,9 +7,9 @@
 #include <cstring>
 #include <vector>
 
+#include "ftdi_packet.h"
 #include "ftdi_transport.h"
-#include "thimble/driver/ftdi_packet.h"
-#include "thimble/driver/node_lock.h"
+#include "node_lock.h"
 
 namespace thimble::driver {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <memory>
 
+#include "serial_line.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/result.h"
-#include "thimble/driver/serial_line.h"
 #include "thimble/driver/transport.h"
 #include "thimble/driver/transports.h"
 

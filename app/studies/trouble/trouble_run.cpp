@@ -8,6 +8,7 @@
 
 #include "stability/rest_warnings.h"
 #include "studies/signal.h"
+#include "thimble/device_sim/simulated_arm.h"
 #include "thimble/session/session.h"
 
 namespace thimble::app {
