@@ -10,6 +10,7 @@
 #include "thimble/driver/arms/hfab/hfab_models.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/device.h"
+#include "thimble/device_sim/simulated_arm.h"
 #include "thimble/scene/arm_simulation.h"
 
 namespace thimble::app {

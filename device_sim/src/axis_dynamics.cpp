@@ -1,4 +1,4 @@
-#include "thimble/device_sim/axis_dynamics.h"
+#include "axis_dynamics.h"
 
 #include <cmath>
 #include <limits>

@@ -1,4 +1,4 @@
-#include "thimble/device_sim/inverse_plant.h"
+#include "inverse_plant.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "thimble/device_sim/tremor.h"
+#include "tremor.h"
 
 #include <cmath>
 #include <numbers>

@@ -14,8 +14,6 @@
 #include "recording/read_recording.h"
 #include "support/line_arm.h"
 #include "support/scratch.h"
-#include "thimble/device_sim/usb/ftdi_chip.h"
-#include "thimble/device_sim/usb/hid_arm.h"
 #include "thimble/driver/arms/falcon/falcon_packet.h"
 #include "thimble/driver/arms/hfab/hfab_models.h"
 #include "thimble/driver/arms/woody/woody_report.h"
@@ -23,6 +21,9 @@
 #include "thimble/scene/real_arm.h"
 #include "thimble/scene/scene_file.h"
 #include "thimble/scene/watch_choice.h"
+#include "usb/ftdi_chip.h"
+#include "usb/hid_arm.h"
+#include "usb/usb_description.h"
 
 namespace thimble::fault_test {
 namespace {

@@ -7,9 +7,9 @@
 #include <array>
 #include <cmath>
 
+#include "axis_dynamics.h"
 #include "support/hard_case.h"
 #include "support/random.h"
-#include "thimble/device_sim/axis_dynamics.h"
 #include "thimble/driver/safety_gate.h"
 
 namespace thimble::rise_limit_energy {

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <numbers>
 
-#include "thimble/device_sim/axis_dynamics.h"
+#include "axis_dynamics.h"
 
 namespace thimble::support {
 

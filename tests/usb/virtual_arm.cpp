@@ -3,6 +3,7 @@
 #include <chrono>
 #include <thread>
 
+#include "ftdi_line.h"
 #include "thimble/driver/arms/falcon/falcon_arm.h"
 #include "thimble/driver/arms/falcon/falcon_boot.h"
 #include "thimble/driver/arms/falcon/falcon_packet.h"

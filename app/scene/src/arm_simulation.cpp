@@ -2,10 +2,12 @@
 
 #include <stdexcept>
 
+#include "thimble/device_sim/sim_transport.h"
 #include "thimble/driver/arms/falcon/falcon_arm.h"
 #include "thimble/driver/arms/falcon/falcon_boot.h"
 #include "thimble/driver/arms/hfab/hfab_models.h"
 #include "thimble/scene/real_arm.h"
+#include "usb/simulated_falcon.h"
 
 namespace thimble::scene {
 namespace {
@@ -34,6 +36,9 @@ driver::JointModel<driver::LinkageArm> polhem_of(const ArmFile& file) {
 }
 
 }  // namespace
+
+ArmSimulation::ArmSimulation(const ArmFile& file) : file_(file) {}
+ArmSimulation::~ArmSimulation() = default;
 
 std::optional<Eigen::Vector3d> joint_angles_at(const ArmFile& file, const Eigen::Vector3d& p_WT) {
   const Eigen::Vector3d p_BT = in_base(file, p_WT);
@@ -65,10 +70,12 @@ driver::Result<std::unique_ptr<ArmSimulation>> ArmSimulation::make(
     device_sim::HandPath path = path_in_base(hand_W, file);
     switch (file.shape) {
       case ArmShape::kSerial:
-        simulation->board_arm_.emplace(file.model, file.simulated, std::move(path), seed);
+        simulation->board_arm_ = std::make_unique<device_sim::SimulatedArm>(
+            file.model, file.simulated, std::move(path), seed);
         break;
       case ArmShape::kPolhem:
-        simulation->board_arm_.emplace(polhem_of(file), file.simulated, std::move(path), seed);
+        simulation->board_arm_ = std::make_unique<device_sim::SimulatedArm>(
+            polhem_of(file), file.simulated, std::move(path), seed);
         break;
       case ArmShape::kFalcon: {
         std::vector<std::byte> image;
@@ -98,6 +105,14 @@ std::unique_ptr<driver::Transport> ArmSimulation::wire(driver::Clock& clock) {
 std::unique_ptr<const driver::Arm> ArmSimulation::protocol() const {
   if (file_.shape != ArmShape::kSerial) return make_arm(file_, simulated_kind(file_));
   return std::make_unique<driver::hfab::HfabArm>(file_.model);  // knows ideal encoders too
+}
+
+device_sim::Hand& ArmSimulation::hand() noexcept {
+  return falcon_ ? falcon_->hand() : board_arm_->hand();
+}
+
+void ArmSimulation::hold(bool still) noexcept {
+  hand().hold(still);
 }
 
 void ArmSimulation::settle(std::int64_t now_ns) noexcept {

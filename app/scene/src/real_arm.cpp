@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "ftdi_line.h"
 #include "interrupt.h"
 #include "printed.h"
 #include "thimble/driver/arms/falcon/falcon_arm.h"

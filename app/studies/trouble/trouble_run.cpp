@@ -9,6 +9,7 @@
 #include "stability/rest_warnings.h"
 #include "studies/signal.h"
 #include "studies/trouble/energy_given.h"
+#include "thimble/device_sim/simulated_arm.h"
 #include "thimble/scene/energy_choice.h"
 #include "thimble/session/session.h"
 

@@ -6,11 +6,12 @@
 #include <utility>
 #include <vector>
 
-#include "thimble/device_sim/usb/board_descriptions.h"
-#include "thimble/device_sim/usb/falcon_on_usb.h"
-#include "thimble/device_sim/usb/hid_arm.h"
 #include "thimble/driver/arms/falcon/falcon_arm.h"
 #include "thimble/driver/arms/hfab/hfab_models.h"
+#include "usb/board_descriptions.h"
+#include "usb/falcon_on_usb.h"
+#include "usb/hid_arm.h"
+#include "usb/usb_description.h"
 
 namespace thimble::device_sim::usb {
 namespace {

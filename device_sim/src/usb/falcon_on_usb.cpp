@@ -1,10 +1,12 @@
-#include "thimble/device_sim/usb/falcon_on_usb.h"
+#include "usb/falcon_on_usb.h"
 
 #include <algorithm>
 #include <utility>
 
-#include "thimble/device_sim/usb/usbip_session.h"
 #include "thimble/driver/arms/falcon/falcon_arm.h"
+#include "usb/setup_packet.h"
+#include "usb/usb_description.h"
+#include "usb/usbip_session.h"
 
 namespace thimble::device_sim::usb {
 namespace {
@@ -73,7 +75,7 @@ void FalconOnUsb::hear_line(std::int64_t dt_ns) noexcept {
 
 void FalconOnUsb::advance_to(std::int64_t time_ns) noexcept {
   while (time_ns_ < time_ns) {
-    const std::int64_t dt_ns = std::min(time_ns - time_ns_, UsbipSession::kFrame_ns);
+    const std::int64_t dt_ns = std::min(time_ns - time_ns_, UsbDevice::kFrame_ns);
     const std::int64_t end_ns = time_ns_ + dt_ns;
     move_to(time_ns_ + chip_.line_time_ns(dt_ns));
     hear_line(dt_ns);

@@ -1,10 +1,12 @@
-#include "thimble/device_sim/usb/hid_arm.h"
+#include "usb/hid_arm.h"
 
 #include <algorithm>
 #include <utility>
 
-#include "thimble/device_sim/usb/usbip_session.h"
-#include "thimble/driver/little_endian.h"
+#include "little_endian.h"
+#include "usb/setup_packet.h"
+#include "usb/usb_description.h"
+#include "usb/usbip_session.h"
 
 namespace thimble::device_sim::usb {
 namespace {
@@ -53,7 +55,7 @@ HidArm::Sample HidArm::sample_now() const noexcept {
 }
 
 void HidArm::keep_sample() noexcept {
-  const auto slot = static_cast<std::size_t>(arm_.time_ns() / UsbipSession::kFrame_ns) % kSamples;
+  const auto slot = static_cast<std::size_t>(arm_.time_ns() / UsbDevice::kFrame_ns) % kSamples;
   samples_[slot] = sample_now();
 }
 
@@ -61,7 +63,7 @@ void HidArm::advance_to(std::int64_t time_ns) noexcept {
   // Frame by frame, so that what the encoders really saw is known for each.
   while (arm_.time_ns() < time_ns) {
     const std::int64_t frame_ns =
-        (arm_.time_ns() / UsbipSession::kFrame_ns + 1) * UsbipSession::kFrame_ns;
+        (arm_.time_ns() / UsbDevice::kFrame_ns + 1) * UsbDevice::kFrame_ns;
     arm_.advance_to(std::min(time_ns, frame_ns));
     if (arm_.time_ns() == frame_ns) keep_sample();
   }

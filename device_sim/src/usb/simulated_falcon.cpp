@@ -1,12 +1,12 @@
-#include "thimble/device_sim/usb/simulated_falcon.h"
+#include "usb/simulated_falcon.h"
 
 #include <algorithm>
 #include <utility>
 
-#include "ftdi_bus.h"
-#include "thimble/device_sim/usb/board_descriptions.h"
 #include "thimble/driver/arms/falcon/falcon_arm.h"
 #include "thimble/driver/arms/falcon/falcon_boot.h"
+#include "usb/board_descriptions.h"
+#include "usb/ftdi_bus.h"
 
 namespace thimble::device_sim::usb {
 namespace {

@@ -1,4 +1,4 @@
-#include "thimble/device_sim/arm_plant.h"
+#include "arm_plant.h"
 
 #include <gtest/gtest.h>
 

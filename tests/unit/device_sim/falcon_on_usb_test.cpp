@@ -1,4 +1,4 @@
-#include "thimble/device_sim/usb/falcon_on_usb.h"
+#include "usb/falcon_on_usb.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "thimble/device_sim/hand_path.h"
+#include "hand_path.h"
 
 #include <gtest/gtest.h>
 

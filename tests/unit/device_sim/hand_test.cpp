@@ -1,4 +1,4 @@
-#include "thimble/device_sim/hand.h"
+#include "hand.h"
 
 #include <cmath>
 #include <limits>

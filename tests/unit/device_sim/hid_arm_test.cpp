@@ -1,4 +1,4 @@
-#include "thimble/device_sim/usb/hid_arm.h"
+#include "usb/hid_arm.h"
 
 #include <gtest/gtest.h>
 
@@ -8,6 +8,8 @@
 #include "thimble/device_sim/usb/arm_shelf.h"
 #include "thimble/driver/arms/hfab/hfab_report.h"
 #include "thimble/driver/arms/woody/woody_report.h"
+#include "usb/setup_packet.h"
+#include "usb/usb_description.h"
 
 namespace thimble::device_sim::usb {
 namespace {

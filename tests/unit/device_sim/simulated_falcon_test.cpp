@@ -1,4 +1,4 @@
-#include "thimble/device_sim/usb/simulated_falcon.h"
+#include "usb/simulated_falcon.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "thimble/device_sim/axis_dynamics.h"
+#include "axis_dynamics.h"
 
 namespace thimble::device_sim {
 namespace {

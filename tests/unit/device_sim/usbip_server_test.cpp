@@ -6,6 +6,8 @@
 
 #include "support/usb_host.h"
 #include "thimble/device_sim/usb/vhci.h"
+#include "usb/setup_packet.h"
+#include "usb/usb_description.h"
 
 namespace thimble::device_sim::usb {
 namespace {

@@ -11,6 +11,7 @@
 #include <string>
 #include <string_view>
 
+#include "ftdi_line.h"
 #include "support/fake_hidapi.h"
 #include "support/fake_libusb.h"
 #include "support/heap_guard.h"

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "axis_dynamics.h"
 #include "studies/accuracy/axes/axes.h"
 #include "studies/accuracy/pushed_arm.h"
-#include "thimble/device_sim/axis_dynamics.h"
 
 namespace thimble::app {
 namespace {

@@ -6,15 +6,15 @@
 #include <span>
 #include <variant>
 
-#include "thimble/device_sim/arm_plant.h"
+#include "arm_plant.h"
+#include "hand.h"
+#include "hand_path.h"
+#include "inverse_plant.h"
 #include "thimble/device_sim/firmware.h"
-#include "thimble/device_sim/hand.h"
-#include "thimble/device_sim/hand_path.h"
-#include "thimble/device_sim/inverse_plant.h"
 #include "thimble/device_sim/settings.h"
-#include "thimble/device_sim/tremor.h"
-#include "thimble/device_sim/wire_queue.h"
 #include "thimble/driver/arms/hfab/hfab_arm.h"
+#include "tremor.h"
+#include "wire_queue.h"
 
 namespace thimble::device_sim {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "thimble/driver/little_endian.h"
+#include "little_endian.h"
 
 namespace thimble::driver::hfab {
 namespace {

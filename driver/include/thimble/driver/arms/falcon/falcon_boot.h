@@ -4,9 +4,9 @@
 #include <filesystem>
 #include <vector>
 
+#include "serial_line.h"
 #include "thimble/driver/arms/falcon/falcon_packet.h"
 #include "thimble/driver/result.h"
-#include "thimble/driver/serial_line.h"
 
 namespace thimble::driver::falcon {
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <span>
 
-#include "thimble/driver/frame_finder.h"
+#include "thimble/driver/transport.h"
 
 namespace thimble::driver::falcon {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "thimble/driver/arms/hfab/hfab_line.h"
-#include "thimble/driver/frame_finder.h"
+#include "thimble/driver/transport.h"
 #include "thimble/driver/wire_arm.h"
 
 namespace thimble::driver::hfab {

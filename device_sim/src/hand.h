@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <utility>
 
-#include "thimble/device_sim/hand_path.h"
-#include "thimble/device_sim/tremor.h"
+#include "hand_path.h"
+#include "tremor.h"
 
 namespace thimble::device_sim {
 

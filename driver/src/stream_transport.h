@@ -2,8 +2,8 @@
 
 #include <cstdint>
 
+#include "frame_finder.h"
 #include "thimble/driver/clock.h"
-#include "thimble/driver/frame_finder.h"
 #include "thimble/driver/transport.h"
 
 namespace thimble::driver {

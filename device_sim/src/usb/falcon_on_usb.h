@@ -4,14 +4,16 @@
 #include <cstdint>
 #include <vector>
 
-#include "thimble/device_sim/hand.h"
-#include "thimble/device_sim/hand_path.h"
-#include "thimble/device_sim/inverse_plant.h"
-#include "thimble/device_sim/tremor.h"
-#include "thimble/device_sim/usb/falcon_board.h"
-#include "thimble/device_sim/usb/ftdi_chip.h"
-#include "thimble/device_sim/usb/homing_hand.h"
+#include "hand.h"
+#include "hand_path.h"
+#include "inverse_plant.h"
 #include "thimble/device_sim/usb/usb_arm.h"
+#include "tremor.h"
+#include "usb/falcon_board.h"
+#include "usb/ftdi_chip.h"
+#include "usb/homing_hand.h"
+#include "usb/setup_packet.h"
+#include "usb/usb_description.h"
 
 namespace thimble::device_sim::usb {
 

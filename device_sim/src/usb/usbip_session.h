@@ -7,20 +7,14 @@
 #include <string>
 #include <vector>
 
-#include "thimble/device_sim/usb/control_pipe.h"
 #include "thimble/device_sim/usb/usb_device.h"
-#include "thimble/device_sim/usb/usbip_wire.h"
+#include "thimble/device_sim/usb/usbip_counters.h"
+#include "usb/control_pipe.h"
+#include "usb/setup_packet.h"
+#include "usb/usb_description.h"
+#include "usb/usbip_wire.h"
 
 namespace thimble::device_sim::usb {
-
-/// Counts what happened on one connection.
-struct UsbipCounters {
-  std::uint64_t submitted = 0;  ///< Transfers asked for.
-  std::uint64_t completed = 0;  ///< Transfers answered without error.
-  std::uint64_t stalled = 0;    ///< Transfers answered by a stall.
-  std::uint64_t babbled = 0;    ///< Transfers in which the device sent more than it was asked for.
-  std::uint64_t unlinked = 0;   ///< Transfers taken back while pending.
-};
 
 /// Is one connection of a USB/IP client to a device: bytes in, bytes out, and in between the
 /// schedule of a full-speed bus. It owns no socket and no clock, so that tests feed it by hand.
@@ -35,8 +29,6 @@ class UsbipSession {
   static constexpr int kBulkPackets = 19;
   /// Is how many transfers may wait; a client that hands over more is hung up on.
   static constexpr std::size_t kPendingMax = 256;
-  /// Is the length of a frame, ns [USB 2.0, 5.3.3].
-  static constexpr std::int64_t kFrame_ns = 1'000'000;
 
   /// Says what a connection is good for.
   enum class State : std::uint8_t {

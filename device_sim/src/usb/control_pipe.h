@@ -5,6 +5,7 @@
 #include <span>
 
 #include "thimble/device_sim/usb/usb_device.h"
+#include "usb/setup_packet.h"
 
 namespace thimble::device_sim::usb {
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include "thimble/device_sim/usb/usb_description.h"
+#include "usb/usb_description.h"
 
 namespace thimble::device_sim::usb {
 

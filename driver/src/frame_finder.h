@@ -6,15 +6,9 @@
 #include <span>
 
 #include "thimble/driver/arm.h"
+#include "thimble/driver/transport.h"
 
 namespace thimble::driver {
-
-/// Says how messages stand out of a stream of bytes: by their first and last byte.
-struct Framing {
-  std::byte begin{};         ///< First byte of a message.
-  std::byte end{};           ///< Last byte of a message.
-  std::size_t size_max = 0;  ///< Longest message with both, at most kReportCapacity.
-};
 
 /// Finds whole messages in a stream of bytes and keeps the newest. Total: any bytes in any pieces.
 /// All functions are Real-time: safe.

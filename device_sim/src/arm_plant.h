@@ -4,9 +4,9 @@
 #include <array>
 #include <cstdint>
 
-#include "thimble/device_sim/axis_dynamics.h"
-#include "thimble/device_sim/plant.h"
-#include "thimble/device_sim/serial_pose.h"
+#include "axis_dynamics.h"
+#include "plant.h"
+#include "serial_pose.h"
 #include "thimble/device_sim/settings.h"
 #include "thimble/driver/motor_currents.h"
 #include "thimble/driver/serial_arm.h"

@@ -6,8 +6,10 @@
 #include <span>
 
 #include "thimble/device_sim/simulated_arm.h"
-#include "thimble/device_sim/usb/hid_board.h"
 #include "thimble/device_sim/usb/usb_arm.h"
+#include "usb/hid_board.h"
+#include "usb/setup_packet.h"
+#include "usb/usb_description.h"
 
 namespace thimble::device_sim::usb {
 

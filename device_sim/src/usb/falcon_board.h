@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "thimble/device_sim/usb/ftdi_chip.h"
 #include "thimble/driver/arms/falcon/falcon_packet.h"
+#include "usb/ftdi_chip.h"
 
 namespace thimble::device_sim::usb {
 

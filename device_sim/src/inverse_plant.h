@@ -4,8 +4,8 @@
 #include <array>
 #include <cstdint>
 
-#include "thimble/device_sim/axis_dynamics.h"
-#include "thimble/device_sim/plant.h"
+#include "axis_dynamics.h"
+#include "plant.h"
 #include "thimble/device_sim/settings.h"
 #include "thimble/driver/delta_arm.h"
 #include "thimble/driver/joint_model.h"

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "thimble/device_sim/axis_response.h"
+#include "axis_response.h"
 #include "thimble/device_sim/settings.h"
 
 namespace thimble::device_sim {

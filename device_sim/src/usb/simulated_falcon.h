@@ -5,10 +5,10 @@
 #include <memory>
 #include <vector>
 
-#include "thimble/device_sim/usb/falcon_on_usb.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/result.h"
 #include "thimble/driver/transport.h"
+#include "usb/falcon_on_usb.h"
 
 namespace thimble::device_sim::usb {
 

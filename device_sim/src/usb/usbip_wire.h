@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "thimble/device_sim/usb/usb_description.h"
+#include "usb/usb_description.h"
 
 namespace thimble::device_sim::usb {
 
@@ -18,7 +18,6 @@ namespace thimble::device_sim::usb {
 // Real-time: never from the servo thread (they are socket code).
 
 inline constexpr std::uint16_t kUsbipVersion = 0x0111;
-inline constexpr std::uint16_t kUsbipPort = 3240;      ///< Registered TCP port.
 inline constexpr std::size_t kBusIdSize = 32;          ///< Bytes of a bus id, zero-padded.
 inline constexpr std::size_t kUsbipHeaderSize = 48;    ///< Bytes before a transfer's data.
 inline constexpr std::size_t kTransferMax = 1U << 16;  ///< Larger transfers are refused, bytes.
