@@ -237,6 +237,18 @@ Patient this_machine() {
   return patient;
 }
 
+Finding examine_log(const fs::path& file) {
+  fs::path place = file;
+  std::error_code missing;
+  // The folders that lead there are made when they are needed.
+  while (!fs::exists(place, missing) && place.has_relative_path()) place = place.parent_path();
+  if (access(place.c_str(), W_OK) == 0) {
+    return {Health::kGood, "What happens is logged to " + file.string() + ".", {}};
+  }
+  return {Health::kAdvice, "What happens cannot be logged to " + file.string() + ".",
+          "Make " + place.string() + " writable, or name another file by --log"};
+}
+
 std::vector<Finding> examine(const Patient& patient) {
   return Examination(patient).run();
 }

@@ -16,6 +16,7 @@
 #include "cli/commands.h"
 #include "cli/complain.h"
 #include "interrupt.h"
+#include "log/logger.h"
 #include "thimble/device_sim/usb/arm_shelf.h"
 #include "thimble/device_sim/usb/usb_fault.h"
 #include "thimble/device_sim/usb/usbip_server.h"
@@ -60,7 +61,7 @@ class KernelAttachment {
       if (attached) {
         std::printf("Attached to this kernel, port %d of its virtual USB host.\n", *attached);
       } else {
-        std::fprintf(stderr, "thimble: %s\n", attached.error().message.c_str());
+        scene::logger().error("{}", attached.error().message);
         failed_.store(true);
       }
       std::fflush(stdout);
@@ -86,7 +87,7 @@ bool obey(usb::FaultyDevice& device, const std::string& line) {
   }
   const auto order = usb::parse_fault(line);
   if (!order) {
-    std::fprintf(stderr, "thimble: %s\n", order.error().message.c_str());
+    scene::logger().error("{}", order.error().message);
     return false;
   }
   device.order(*order);
@@ -183,7 +184,7 @@ usb::HandMotion motion_of(const std::string& name) {
 bool obey_file(usb::FaultyDevice& device, const std::string& path) {
   std::ifstream file(path);
   if (!file) {
-    std::fprintf(stderr, "thimble: cannot read the fault script %s.\n", path.c_str());
+    scene::logger().error("cannot read the fault script {}.", path);
     return false;
   }
   for (std::string line; std::getline(file, line);) {
@@ -225,14 +226,13 @@ int plug(const PlugOptions& options) {
   if (!options.faults.empty() && !obey_file(device, options.faults)) return kExitBadInput;
   ControlPipeFile control;
   if (!options.control.empty() && !control.open(options.control)) {
-    std::fprintf(stderr, "thimble: cannot make the control pipe %s; does it exist already?\n",
-                 options.control.c_str());
-    return kExitBadInput;
+    return complain(
+        {"cannot make the control pipe " + options.control + "; does it exist already?"},
+        kExitBadInput);
   }
   std::optional<TruthTrace> trace;
   if (!options.trace.empty() && !trace.emplace(options.trace).open()) {
-    std::fprintf(stderr, "thimble: cannot write %s.\n", options.trace.c_str());
-    return kExitBadInput;
+    return complain({"cannot write " + options.trace + "."}, kExitBadInput);
   }
   auto server = usb::UsbipServer::open(device, {.address = options.address, .port = options.port});
   if (!server) {

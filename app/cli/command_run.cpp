@@ -1,4 +1,4 @@
-#include <spdlog/spdlog.h>
+#include <fmt/core.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -17,6 +17,8 @@
 #include "cli/file_options.h"
 #include "enter_key.h"
 #include "interrupt.h"
+#include "log/console.h"
+#include "log/logger.h"
 #include "recording/write_black_box.h"
 #include "replug_watch.h"
 #include "report/pictures.h"
@@ -68,8 +70,7 @@ void keep_black_box(session::Session& session) {
   if (ticks.empty()) return;
   const auto written = session::write_black_box(ticks, session.recording_info());
   if (written) {
-    std::fprintf(stderr, "thimble: the last seconds before the fault are in %s\n",
-                 written->c_str());
+    scene::logger().warn("the last seconds before the fault are in {}", written->string());
   } else {
     complain(written.error(), kExitTrouble);
   }
@@ -93,21 +94,20 @@ void show_progress(session::Session& session, const session::ServoThread& servo,
     const double heat = *std::max_element(record.heat.begin(), record.heat.end());
     if (heat >= driver::HeatGuard::kWarning && !warned_of_heat) {
       warned_of_heat = true;
-      std::fprintf(
-          stderr,
-          "thimble: A motor is at %.0f %% of the heat it bears; the force is lowered until "
-          "it cools. Press less hard or rest.\n",
+      scene::logger().warn(
+          "A motor is at {:.0f} % of the heat it bears; the force is lowered until it cools. Press "
+          "less hard or rest.",
           100 * heat);
     }
     if (!on_terminal) continue;
     const double force = Eigen::Map<const Eigen::Vector3d>(record.f_sent_W.data()).norm();
-    char of_total[32] = "";
-    if (total > 0) std::snprintf(of_total, sizeof of_total, "of %.1f ", total);
-    std::fprintf(stderr, "\r%6.1f %ss   %-8s  force %5.2f N   depth %5.2f mm ",
-                 static_cast<double>(record.time_ns) * 1e-9, of_total,
-                 record.in_contact ? "touching" : "free", force, record.depth * 1e3);
+    scene::console().show(fmt::format("{:6.1f} {}s   {:<8}  force {:5.2f} N   depth {:5.2f} mm ",
+                                      static_cast<double>(record.time_ns) * 1e-9,
+                                      total > 0 ? fmt::format("of {:.1f} ", total) : "",
+                                      record.in_contact ? "touching" : "free", force,
+                                      record.depth * 1e3));
   }
-  if (on_terminal) std::fprintf(stderr, "\r%*s\r", 70, "");
+  scene::console().show("");
 }
 
 /// Prints sentences, a line each.
@@ -118,15 +118,15 @@ void tell(const std::vector<std::string>& sentences) {
 
 /// Lets nobody be surprised by a force: asks before a real arm is opened.
 bool may_begin(const driver::FoundArm& arm, bool at_home, bool yes, const std::atomic<bool>& stop) {
-  std::fprintf(stderr, "%s %s is about to get forces. Keep clear of it, hold its grip%s, keep its ",
-               arm.arm.c_str(), arm.name().c_str(), at_home ? " in the home pose" : "");
-  std::fprintf(stderr, "switch at hand.\n");
+  scene::terminal().info(
+      "{} {} is about to get forces. Keep clear of it, hold its grip{}, keep its switch at hand.",
+      arm.arm, arm.name(), at_home ? " in the home pose" : "");
   if (yes) return true;
   if (isatty(STDIN_FILENO) == 0) {
-    std::fprintf(stderr, "thimble: Nobody is at the terminal to agree; say so with --yes.\n");
+    scene::logger().error("Nobody is at the terminal to agree; say so with --yes.");
     return false;
   }
-  std::fprintf(stderr, "Press Enter to begin, Ctrl-C to leave. ");
+  scene::terminal().info("Press Enter to begin, Ctrl-C to leave.");
   while (!stop.load()) {
     const session::EnterKey key = session::look_for_enter();
     if (key != session::EnterKey::kNothing) return key == session::EnterKey::kPressed;
@@ -179,8 +179,8 @@ std::unique_ptr<session::RequestDesk> open_desk(session::Session& session,
       complain(started.error(), kExitTrouble);
     }
   } else if (!options.no_view && (options.view || options.led())) {
-    std::fprintf(stderr, "No screen (DISPLAY, WAYLAND_DISPLAY): watch by `thimble view %s`.\n",
-                 session.shared()->name().c_str());
+    scene::terminal().info("No screen (DISPLAY, WAYLAND_DISPLAY): watch by `thimble view {}`.",
+                           session.shared()->name());
   }
   return std::make_unique<session::RequestDesk>(session, std::move(viewer), options.led());
 }
@@ -231,6 +231,7 @@ int run_scene(const RunOptions& options) {
   session_options.terms = terms;
   session_options.firmware = options.firmware;
   session_options.record = options.record;
+  session_options.log = true;
   session_options.adjust = [&](scene::Scene& scene) {
     for (const std::string& choice :
          scene::apply_quality(scene::quality_named(options.quality), scene)) {
@@ -259,7 +260,7 @@ int run_scene(const RunOptions& options) {
     return code;
   };
   for (const std::string& warning : stability_warnings(session.scene())) {
-    std::fprintf(stderr, "thimble: %s See thimble tune.\n", warning.c_str());
+    scene::logger().warn("{} See thimble tune.", warning);
   }
   const auto saved = object_to_save(session.scene(), options.save_object);
   if (!saved) {
@@ -274,7 +275,7 @@ int run_scene(const RunOptions& options) {
       return leave(complain(granted.error(), kExitBadInput));
     }
   }
-  if (!servo.grant().advice.empty()) spdlog::warn("{}", servo.grant().advice);
+  if (!servo.grant().advice.empty()) scene::logger().warn("{}", servo.grant().advice);
   if (stop.load()) return leave(kExitInterrupted);
   if (real_arm) {
     const bool at_home = !options.homed && session.start_pose().has_home();

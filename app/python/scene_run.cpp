@@ -1,8 +1,8 @@
 #include "scene_run.h"
 
 #include <cmath>
-#include <cstdio>
 
+#include "log/logger.h"
 #include "recording/write_black_box.h"
 #include "report/session_report.h"
 #include "servo_thread.h"
@@ -37,7 +37,7 @@ class Claim {
 /// Says on stderr, where a program's warnings go, on which terms a real arm is used.
 void tell(const std::vector<std::string>& sentences) {
   for (const std::string& sentence : sentences) {
-    std::fprintf(stderr, "thimble: %s\n", sentence.c_str());
+    scene::logger().warn("{}", sentence);
   }
 }
 
@@ -154,8 +154,7 @@ void SceneRun::finish() {
   if (const auto ticks = session_->black_box().take(); !ticks.empty()) {
     const auto written = session::write_black_box(ticks, session_->recording_info());
     if (written) {
-      std::fprintf(stderr, "thimble: the last seconds before the fault are in %s\n",
-                   written->c_str());
+      scene::logger().warn("the last seconds before the fault are in {}", written->string());
     }
   }
   if (session_->recording().recorder() == nullptr) return;

@@ -1,12 +1,12 @@
 #include "report/report.h"
 
-#include <cstdio>
+#include <fmt/core.h>
+
 #include <nlohmann/json.hpp>
 #include <string_view>
 #include <system_error>
 
 #include "build_info.h"
-#include "printed.h"
 #include "thimble/driver/heat_guard.h"
 
 namespace thimble::app {
@@ -105,7 +105,7 @@ Json to_json(const RunReport& report) {
 }
 
 std::string goal(const char* comparison, double bound) {
-  return scene::printed("%s %g", comparison, bound);
+  return fmt::format("{} {:g}", comparison, bound);
 }
 
 }  // namespace
@@ -142,95 +142,82 @@ std::string summary(const RunReport& report) {
   const session::RunStatistics& run = report.statistics;
   const double period_us = report.rate_asked > 0 ? 1e6 / report.rate_asked : 0;
   std::string s;
-  s += scene::printed(
-      "The %s hand reached for %s for %.1f s with the %s %s and touched it %llu time%s,\n",
-      report.simulated_arm ? "simulated" : "user's", report.object.c_str(), run.duration(),
-      report.simulated_arm ? "simulated arm" : "arm", report.arm.c_str(),
-      static_cast<unsigned long long>(run.contacts()), run.contacts() == 1 ? "" : "s");
-  s += scene::printed("%.1f s in all. ", run.contact_time());
+  s += fmt::format(
+      "The {} hand reached for {} for {:.1f} s with the {} {} and touched it {} time{},\n",
+      report.simulated_arm ? "simulated" : "user's", report.object, run.duration(),
+      report.simulated_arm ? "simulated arm" : "arm", report.arm, run.contacts(),
+      run.contacts() == 1 ? "" : "s");
+  s += fmt::format("{:.1f} s in all. ", run.contact_time());
   s += report.lost_contacts == 0
            ? "No contact was lost on the way.\n"
-           : scene::printed("%llu time%s the tip was inside without a force: a lost contact.\n",
-                            static_cast<unsigned long long>(report.lost_contacts),
-                            report.lost_contacts == 1 ? "" : "s");
-  s += scene::printed(
-      "Force     %.2f N at most (limit %.2f N), %.2f N on average (rms) while touching.\n",
+           : fmt::format("{} time{} the tip was inside without a force: a lost contact.\n",
+                         report.lost_contacts, report.lost_contacts == 1 ? "" : "s");
+  s += fmt::format(
+      "Force     {:.2f} N at most (limit {:.2f} N), {:.2f} N on average (rms) while touching.\n",
       run.force_max(), report.force_limit, run.force_rms());
   s += report.triangles == 0
-           ? scene::printed("Depth     %.2f mm at most; no triangles, all shapes are exact.\n",
-                            1e3 * run.depth_max())
-           : scene::printed(
-                 "Depth     %.2f mm at most; %u triangle%s crossed in one tick at most, of %zu.\n",
+           ? fmt::format("Depth     {:.2f} mm at most; no triangles, all shapes are exact.\n",
+                         1e3 * run.depth_max())
+           : fmt::format(
+                 "Depth     {:.2f} mm at most; {} triangle{} crossed in one tick at most, of {}.\n",
                  1e3 * run.depth_max(), unsigned{run.hops_max()}, run.hops_max() == 1 ? "" : "s",
                  report.triangles);
   const double energy = 1e3 * run.energy_to_hand();
-  s += scene::printed(
-      "Energy    the arm %s %.2f mJ in all%s\n", energy > 0 ? "gave the hand" : "took",
+  s += fmt::format(
+      "Energy    the arm {} {:.2f} mJ in all{}\n", energy > 0 ? "gave the hand" : "took",
       energy > 0 ? energy : -energy,
       energy > 0 ? ": more than it took." : " from the hand, as a passive surface does.");
-  s += scene::printed(
-      "Loop      %llu ticks, %.1f of %.1f per second asked; %s.\n",
-      static_cast<unsigned long long>(run.ticks()), run.rate(), report.rate_asked,
+  s += fmt::format(
+      "Loop      {} ticks, {:.1f} of {:.1f} per second asked; {}.\n", run.ticks(), run.rate(),
+      report.rate_asked,
       report.virtual_time
           ? "in virtual time, so every run is the same"
-          : scene::printed("a tick came %.0f us after the last at most, %.0f us wanted",
-                           microseconds(static_cast<double>(run.period().max_ns())), period_us)
-                .c_str());
+          : fmt::format("a tick came {:.0f} us after the last at most, {:.0f} us wanted",
+                        microseconds(static_cast<double>(run.period().max_ns())), period_us));
   s +=
       report.virtual_time
           ? std::string("Tick      not timed: on the virtual clock no time passes within a tick.\n")
-          : scene::printed(
-                "Tick      %.1f us of work in half of the ticks, %.1f us in 999 of 1000; there is "
-                "time for "
-                "%.0f us.\n",
+          : fmt::format(
+                "Tick      {:.1f} us of work in half of the ticks, {:.1f} us in 999 of 1000; there "
+                "is time for {:.0f} us.\n",
                 microseconds(run.work().percentile(0.5)),
                 microseconds(run.work().percentile(0.999)), period_us);
   if (report.paging) {
-    s += scene::printed(
-        "Pages     %llu read from the disk, %llu given up, %llu damaged; one was missing in "
-        "%llu ticks%s.\n",
-        static_cast<unsigned long long>(report.paging->loads),
-        static_cast<unsigned long long>(report.paging->evictions),
-        static_cast<unsigned long long>(report.paging->failures),
-        static_cast<unsigned long long>(report.paging->misses),
-        report.paging->misses > 0 ? ", and the last plane was held" : "");
+    s += fmt::format(
+        "Pages     {} read from the disk, {} given up, {} damaged; one was missing in {} "
+        "ticks{}.\n",
+        report.paging->loads, report.paging->evictions, report.paging->failures,
+        report.paging->misses, report.paging->misses > 0 ? ", and the last plane was held" : "");
   }
-  s +=
-      scene::printed("Wire      %llu reports, %llu not understood, %llu ticks without a new one.\n",
-                     static_cast<unsigned long long>(report.wire.reports),
-                     static_cast<unsigned long long>(report.wire.rejected),
-                     static_cast<unsigned long long>(report.wire.missing));
-  s += scene::printed(
-      "Safety    force cut to the limit in %llu ticks, rise held back in %llu, soft start in "
-      "%llu.\n",
-      static_cast<unsigned long long>(report.gate.limited),
-      static_cast<unsigned long long>(report.gate.rise_limited),
-      static_cast<unsigned long long>(report.gate.soft_started));
+  s += fmt::format("Wire      {} reports, {} not understood, {} ticks without a new one.\n",
+                   report.wire.reports, report.wire.rejected, report.wire.missing);
+  s += fmt::format(
+      "Safety    force cut to the limit in {} ticks, rise held back in {}, soft start in {}.\n",
+      report.gate.limited, report.gate.rise_limited, report.gate.soft_started);
   if (report.energy_stage == driver::EnergyStage::kPassivity) {
-    s += scene::printed(
-        "Energy    watched by the gate: %.2f mJ given at most beyond what it took; damped in "
-        "%llu ticks.\n",
-        -1e3 * report.gate.energy_least, static_cast<unsigned long long>(report.gate.damped));
+    s += fmt::format(
+        "Energy    watched by the gate: {:.2f} mJ given at most beyond what it took; damped in {} "
+        "ticks.\n",
+        -1e3 * report.gate.energy_least, report.gate.damped);
   } else if (report.energy_stage == driver::EnergyStage::kBounding) {
-    s += scene::printed("Energy    bounded by the gate: force cut in %llu ticks.\n",
-                        static_cast<unsigned long long>(report.gate.bounded));
+    s +=
+        fmt::format("Energy    bounded by the gate: force cut in {} ticks.\n", report.gate.bounded);
   }
   if (report.heat_known && report.heat_most >= driver::HeatGuard::kWarning) {
-    s += scene::printed(
-        "Heat      a motor reached %.0f %% of its limit; force lowered in %llu ticks.\n",
-        100 * report.heat_most, static_cast<unsigned long long>(report.heat_lowered));
+    s +=
+        fmt::format("Heat      a motor reached {:.0f} % of its limit; force lowered in {} ticks.\n",
+                    100 * report.heat_most, report.heat_lowered);
   }
   if (report.gate.stalls > 0) {
-    s += scene::printed(
-        "Stalls    the loop stood still %llu time%s; the force came back within %.0f ms.\n",
-        static_cast<unsigned long long>(report.gate.stalls), report.gate.stalls == 1 ? "" : "s",
-        1e3 * report.reopen);
+    s += fmt::format(
+        "Stalls    the loop stood still {} time{}; the force came back within {:.0f} ms.\n",
+        report.gate.stalls, report.gate.stalls == 1 ? "" : "s", 1e3 * report.reopen);
   }
   if (report.feel_check == scene::FeelCheckState::kUnchecked) {
     s += "Arm       UNCHECKED: it had its whole force without a passed feel check.\n";
   } else if (report.feel_check == scene::FeelCheckState::kNone) {
-    s += scene::printed("Arm       without a passed feel check; its force was at most %.2f N.\n",
-                        report.force_limit);
+    s += fmt::format("Arm       without a passed feel check; its force was at most {:.2f} N.\n",
+                     report.force_limit);
   }
   const std::string left = report.zero_assured ? "the arm was left with zero force.\n"
                                                : "the arm did not take the last zero force.\n";

@@ -1,11 +1,11 @@
 #include "view/shot.h"
 
+#include <fmt/core.h>
 #include <imgui.h>
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
 #include "thimble/driver/servo_loop.h"
@@ -126,10 +126,9 @@ Picture ShotPainter::paint(const DrawnMoment& moment, const Plots& plots) {
   const ScreenPart scene{0, 0, width, static_cast<float>(canvas_.height()) - strip};
   write_labels(labels, *choice_.camera, scene);
   if (choice_.caption) {
-    char text[200];
-    std::snprintf(text, sizeof text, "%s, %.2f s%s", painter_.scene().name.c_str(),
-                  static_cast<double>(moment.tick.time_ns) * 1e-9,
-                  choice_.paint.grid ? "; grid 10 mm" : "");
+    const std::string text = fmt::format("{}, {:.2f} s{}", painter_.scene().name,
+                                         static_cast<double>(moment.tick.time_ns) * 1e-9,
+                                         choice_.paint.grid ? "; grid 10 mm" : "");
     write_caption(text, scene);
   }
   if (canvas_.strip() > 0) {

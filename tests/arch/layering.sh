@@ -86,13 +86,13 @@ fi
 forbid_app() {
   forbid "app/$1" "$2" "a library above it or beside it"
 }
-forbid_app scene 'thimble/session/|(recording|share|report|stability|studies|view|bringup|cli)/'
+forbid_app scene 'thimble/session/|(recording|share|events|report|stability|studies|view|bringup|cli)/'
 forbid_app session '(report|stability|studies|view|bringup|cli)/'
 forbid_app report '(stability|studies|view|bringup|cli)/'
 forbid_app stability '(studies|view|bringup|cli)/'
 forbid_app studies '(view|bringup|cli)/'
 forbid_app view '(report|stability|studies|bringup|cli)/'
-forbid_app bringup 'thimble/session/|(recording|share|report|stability|studies|view|cli)/'
+forbid_app bringup 'thimble/session/|(recording|share|events|report|stability|studies|view|cli)/'
 for folder in scene session report stability studies bringup cli python; do
   forbid "app/$folder" "$graphics" "graphics: they are app/view's"
 done

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bench/figures_reporter.h"
+#include "events/event_log.h"
 #include "support/random.h"
 #include "support/vintage_arm.h"
 #include "thimble/driver/snapshot.h"
@@ -136,6 +137,23 @@ void decode_and_pose(benchmark::State& state) {
   }
 }
 BENCHMARK(decode_and_pose);
+
+/// What a run's log costs the servo: the counters of a device compared in each tick, and what
+/// happened, if anything, put into the ring; who writes is another thread.
+void event_watch(benchmark::State& state) {
+  const auto session = open_stroke();
+  if (!session || stroke_records().empty()) return state.SkipWithError("no scene");
+  const session::DeviceCounters counters(session->device());
+  session::SpscRing<session::TickEvent> ring(session::EventLog::kRingEvents);
+  session::EventWatch watch(counters, session->period_ns(), ring);
+  std::size_t i = 0;
+  for (auto _ : state) {
+    watch.take(stroke_records()[i]);
+    if (++i == stroke_records().size()) i = 0;
+    ring.drop(ring.waiting());
+  }
+}
+BENCHMARK(event_watch);
 
 void velocity(benchmark::State& state) {
   driver::VelocityEstimator estimator(100);

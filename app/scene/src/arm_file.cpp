@@ -1,5 +1,7 @@
 #include "thimble/scene/arm_file.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,7 +10,6 @@
 #include <string>
 #include <string_view>
 
-#include "printed.h"
 #include "thimble/driver/arms/falcon/falcon_arm.h"
 #include "thimble/driver/arms/hfab/hfab_models.h"
 #include "thimble/scene/yaml_reader.h"
@@ -100,8 +101,9 @@ driver::GateLimits read_gate(YamlMap map, ArmFile& arm) {
   limits.watchdog_ns = to_ns(map.require_number("watchdog", "s", 0.001, kWatchdogMost));
   limits.reopen = map.optional_number("reopen", limits.reopen, "s", 0.001, 10);
   if (limits.force_max > arm.declared.force) {
-    map.reject("force_max", printed("expected at most what the arm declares, %g N, found %g",
-                                    arm.declared.force, limits.force_max));
+    map.reject("force_max",
+               fmt::format("expected at most what the arm declares, {:g} N, found {:g}",
+                           arm.declared.force, limits.force_max));
   }
   // A mistake in either has been told, and left its least value.
   if (limits.stall_ns >= limits.watchdog_ns && limits.watchdog_ns > to_ns(0.001)) {

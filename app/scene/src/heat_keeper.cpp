@@ -2,11 +2,11 @@
 
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <fstream>
 #include <system_error>
 #include <utility>
 
+#include "log/logger.h"
 #include "thimble/scene/user_folders.h"
 #include "thimble/scene/yaml_reader.h"
 
@@ -16,10 +16,10 @@ namespace {
 namespace fs = std::filesystem;
 
 void complain_of(const std::string& name) {
-  std::fprintf(stderr,
-               "thimble: The heat of the motors cannot be kept in %s, so the next run takes them "
-               "for cold. Let them cool before it; check that the folder may be written to.\n",
-               heat_file(name).c_str());
+  logger().warn(
+      "The heat of the motors cannot be kept in {}, so the next run takes them for cold. Let them "
+      "cool before it; check that the folder may be written to.",
+      heat_file(name).string());
 }
 
 }  // namespace

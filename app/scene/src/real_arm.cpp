@@ -1,13 +1,14 @@
 #include "thimble/scene/real_arm.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
-#include <cstdio>
 #include <string>
 #include <utility>
 
 #include "ftdi_line.h"
 #include "interrupt.h"
-#include "printed.h"
+#include "log/logger.h"
 #include "thimble/driver/arms/falcon/falcon_arm.h"
 #include "thimble/driver/arms/falcon/falcon_boot.h"
 #include "thimble/driver/arms/hfab/hfab_models.h"
@@ -83,7 +84,7 @@ Result<void> home(driver::SerialLine& line) {
     if (state.done()) return {};
     homed = state.homed;
     if (!told && state.answered) {
-      std::fprintf(stderr, "Pull the Falcon's grip all the way out, then push it in.\n");
+      terminal().info("Pull the Falcon's grip all the way out, then push it in.");
       told = true;
     }
   }
@@ -129,8 +130,8 @@ Result<std::optional<FoundArm>> choose_arm(const std::vector<FoundArm>& plugged_
     names.append(names.empty() ? "" : ", ").append(arm.name());
     if (!by_itself && arm.name() != wanted) continue;
     if (found) {
-      return Error{printed("Several arms answer to '%s': %s. Name one with --device NAME.",
-                           wanted.c_str(), names.c_str())};
+      return Error{fmt::format("Several arms answer to '{}': {}. Name one with --device NAME.",
+                               wanted, names)};
     }
     found = arm;
   }

@@ -3,6 +3,7 @@
 #include <string>
 #include <utility>
 
+#include "log/logger.h"
 #include "thimble/scene/real_arm.h"
 #include "thimble/session/session.h"
 
@@ -78,6 +79,8 @@ void ReplugWatch::search() {
   if (!wire) return;  // it may still be starting up; the next search tries again
   arm_ = *found;
   device_.offer(std::move(wire).value());
+  scene::logger().info("{} is back on the bus: a new wire to it is offered to the loop.",
+                       arm_.name());
   offered_ = true;
   silent_ = 0;
 }

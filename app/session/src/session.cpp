@@ -1,14 +1,17 @@
 #include "thimble/session/session.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "body/shape/body_shape.h"
 #include "build_info.h"
+#include "events/event_log.h"
+#include "log/logger.h"
 #include "share/describe_scene.h"
 #include "text_file.h"
 #include "thimble/scene/energy_choice.h"
@@ -33,12 +36,10 @@ driver::Result<void> check_reach(const scene::HandRoute& route, const scene::Arm
     const bool in_box = (p_WH.array() >= arm.workspace.min_W.array()).all() &&
                         (p_WH.array() <= arm.workspace.max_W.array()).all();
     if (!in_box || !scene::joint_angles_at(arm, p_WH)) {
-      char text[200];
-      std::snprintf(text, sizeof text,
-                    "At %.3f s the hand would be at (%.3f, %.3f, %.3f) m, outside the arm's "
-                    "workspace; move that waypoint or the object.",
-                    time, p_WH.x(), p_WH.y(), p_WH.z());
-      return driver::Error{text};
+      return driver::Error{fmt::format(
+          "At {:.3f} s the hand would be at ({:.3f}, {:.3f}, {:.3f}) m, outside the arm's "
+          "workspace; move that waypoint or the object.",
+          time, p_WH.x(), p_WH.y(), p_WH.z())};
     }
   }
   return {};
@@ -116,6 +117,7 @@ driver::Result<std::unique_ptr<Session>> Session::prepare(const std::filesystem:
   session->open_wire_ = options.open_wire;
   session->device_name_ = options.real_arm ? options.real_arm->name() : "sim";
   session->black_box_ = std::make_unique<BlackBox>(session->scene_.rate);
+  session->log_ = options.log;
   if (!options.record.empty()) {
     if (auto begun = session->begin_recording(options.record); !begun) return begun.error();
   }
@@ -123,7 +125,7 @@ driver::Result<std::unique_ptr<Session>> Session::prepare(const std::filesystem:
     const auto shared = session->share(options);
     if (!shared && !options.share_if_possible) return shared.error();
     if (!shared) {
-      std::fprintf(stderr, "thimble: nobody can watch: %s\n", shared.error().message.c_str());
+      scene::logger().warn("nobody can watch: {}", shared.error().message);
       session->control_.reset();
     }
   }
@@ -158,7 +160,7 @@ driver::Result<void> Session::open_arm() {
   driver::HeatSettings heat = arm.heat;
   if (real_arm_ && heat.named()) {
     const scene::KnownHeat known = scene::load_heat(real_arm_->name(), heat, scene::world_time());
-    if (!known.note.empty()) std::fprintf(stderr, "thimble: %s\n", known.note.c_str());
+    if (!known.note.empty()) scene::logger().warn("{}", known.note);
     heat.at_start = known.heat;
   }
   auto device =
@@ -176,7 +178,20 @@ driver::Result<void> Session::open_arm() {
   if (real_arm_ && heat.named()) {
     heat_keeper_ = std::make_unique<scene::HeatKeeper>(real_arm_->name(), *device_);
   }
+  if (log_) event_log_ = std::make_unique<EventLog>(logged_run(), *device_);
   return real_arm_ ? driver::Result<void>() : device_->activate();
+}
+
+LoggedRun Session::logged_run() const {
+  LoggedRun run;
+  run.name = scene_.name;
+  run.what = fmt::format("{} ({}) feels {} at {:g} Hz in {} time", scene_.arm.name, device_name_,
+                         scene_.name, scene_.rate, by_thread_ ? "real" : "virtual");
+  run.period_ns = period_ns_;
+  run.now_ns = clock_->now_ns();
+  run.real_time = by_thread_;
+  for (const scene::SceneObject& object : scene_.objects) run.objects.push_back(object.name);
+  return run;
 }
 
 driver::Result<void> Session::begin_recording(const std::filesystem::path& path) {
@@ -303,6 +318,7 @@ void Session::operator()(const driver::TickRecord& record) noexcept {
   (*statistics_)(record);
   (*trace_)(record);
   (*black_box_)(record);
+  if (event_log_) event_log_->take(record);
   const bool drawn = dents_ && dents_->take(record, touch());
   if (!objects_->moving().empty()) store_poses(record.tick);
   if (shared_) {

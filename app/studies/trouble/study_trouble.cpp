@@ -1,10 +1,9 @@
 #include "studies/trouble/study_trouble.h"
 
+#include <fmt/core.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <cinttypes>
-#include <cstdio>
 #include <numeric>
 #include <string>
 #include <system_error>
@@ -46,9 +45,7 @@ std::uint64_t try_seed(std::uint64_t seed, std::size_t cell, int attempt) {
 }
 
 std::string seed_name(std::uint64_t seed) {
-  char text[17];
-  std::snprintf(text, sizeof text, "%016" PRIx64, seed);
-  return text;
+  return fmt::format("{:016x}", seed);
 }
 
 /// Draws and runs scenes until the loader accepts one; adds how many it refused.
@@ -77,15 +74,13 @@ std::string table_of(const CellNumbers& cells, std::uint64_t seed) {
   std::string csv =
       "cell,seed,refused,not_finite_ticks,fault,force_share,tremble_N,speed_m_s,"
       "given_J,given_bound_J,contact_share,must_tremble,unforetold\n";
-  char line[300];
   for (std::size_t cell = 0; cell < cells.size(); ++cell) {
     const TroubleFound f = trouble_of(cells[cell]);
     const auto attempt = static_cast<int>(cells[cell].back());
-    std::snprintf(line, sizeof line, "%zu,%s,%d,%.17g,%.17g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%d,%d\n",
-                  cell, seed_name(try_seed(seed, cell, attempt)).c_str(), attempt, f.not_finite,
-                  f.fault, f.force_share, f.tremble, f.speed, f.given, f.given_bound, f.contact,
-                  f.must_tremble ? 1 : 0, f.unforetold ? 1 : 0);
-    csv += line;
+    csv += fmt::format("{},{},{},{:.17g},{:.17g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{},{}\n",
+                       cell, seed_name(try_seed(seed, cell, attempt)), attempt, f.not_finite,
+                       f.fault, f.force_share, f.tremble, f.speed, f.given, f.given_bound,
+                       f.contact, f.must_tremble ? 1 : 0, f.unforetold ? 1 : 0);
   }
   return csv;
 }
@@ -108,14 +103,12 @@ driver::Result<void> keep_worst(const CellNumbers& cells, std::uint64_t seed,
     const TroubleFound f = trouble_of(cells[cell]);
     const std::uint64_t drawn = try_seed(seed, cell, static_cast<int>(cells[cell].back()));
     const RandomScene scene = random_scene(drawn, limits);
-    char heading[300];
-    std::snprintf(
-        heading, sizeof heading,
-        "# own_energy: %.9g J; showed a tremble of %.3g N, fault %.0f, %.3g of the arm's force; "
-        "%.3g J given in one window, %.3g allowed.\n",
+    const std::string heading = fmt::format(
+        "# own_energy: {:.9g} J; showed a tremble of {:.3g} N, fault {:.0f}, {:.3g} of the arm's "
+        "force; "
+        "{:.3g} J given in one window, {:.3g} allowed.\n",
         scene.own_energy, f.tremble, f.fault, f.force_share, f.given, f.given_bound);
-    char name[40];
-    std::snprintf(name, sizeof name, "%02zu_%s.yaml", rank + 1, seed_name(drawn).c_str());
+    const std::string name = fmt::format("{:02}_{}.yaml", rank + 1, seed_name(drawn));
     if (auto done = write_text(heading + scene.text, folder / name); !done) return done;
   }
   return {};

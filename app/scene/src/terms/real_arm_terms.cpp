@@ -1,10 +1,11 @@
 #include "thimble/scene/real_arm_terms.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <system_error>
 #include <utility>
 
-#include "printed.h"
 #include "terms/feel_check_record.h"
 #include "terms/limits_policy.h"
 #include "thimble/scene/shipped_files.h"
@@ -53,19 +54,18 @@ driver::Result<RealArmTerms> terms_for(const driver::FoundArm& arm, const RealAr
   const std::string command = check_command(arm, wish);
   if (wish.unchecked) {
     terms.feel_check = FeelCheckState::kUnchecked;
-    terms.told.push_back(
-        printed("UNCHECKED: %s gets up to %g N though it has passed no feel check as it is now. To "
-                "check it: ",
-                arm.name().c_str(), terms.arm.file.limits.force_max) +
-        command);
+    terms.told.push_back(fmt::format("UNCHECKED: {} gets up to {:g} N though it has passed no feel "
+                                     "check as it is now. To check it: ",
+                                     arm.name(), terms.arm.file.limits.force_max) +
+                         command);
     return terms;
   }
   terms.feel_check = FeelCheckState::kNone;
   terms.force_most = kFeelCheckForceMax;
   terms.told.push_back(
-      printed("%s has passed no feel check with this arm file, calibration and firmware, so this "
-              "run gives it at most %g N. To check it: ",
-              arm.name().c_str(), kFeelCheckForceMax) +
+      fmt::format("{} has passed no feel check with this arm file, calibration and firmware, so "
+                  "this run gives it at most {:g} N. To check it: ",
+                  arm.name(), kFeelCheckForceMax) +
       command);
   return terms;
 }

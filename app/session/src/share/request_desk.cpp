@@ -1,9 +1,10 @@
 #include "share/request_desk.h"
 
-#include <cstdio>
 #include <ctime>
 
+#include "events/event_words.h"
 #include "interrupt.h"
+#include "log/logger.h"
 
 namespace thimble::session {
 namespace {
@@ -23,22 +24,25 @@ std::string recording_name(const std::string& scene) {
 void RequestDesk::record(const SharedRun::RecordOrder& order) {
   last_order_ = order.number;
   if (auto stopped = session_.recording().stop(); !stopped) {
-    std::fprintf(stderr, "thimble: %s\n", stopped.error().message.c_str());
+    scene::logger().error("{}", stopped.error().message);
   }
   if (!order.record) return;
   const std::string path = order.path.empty() ? recording_name(session_.scene().name) : order.path;
   if (auto begun = session_.begin_recording(path); !begun) {
-    std::fprintf(stderr, "thimble: %s\n", begun.error().message.c_str());
+    scene::logger().error("{}", begun.error().message);
   }
 }
 
 void RequestDesk::step() {
   SharedRun& shared = *session_.shared();
   shared.watch_viewers();
+  driver::TickRecord newest;
+  if (session_.snapshot().load(newest)) watch_.step(at_tick(newest.tick, newest.time_ns));
   if (const auto order = shared.record_order_after(last_order_)) record(*order);
   shared.set_recording(session_.recording().on(), session_.recording().dropped());
   const bool closed = viewer_ && viewer_->closed();
   if (shared.stop_asked() || (closed && ends_with_viewer_)) {
+    if (!ended_) scene::logger().info("The run was ended by a viewer.");
     ended_ = true;
     scene::ask_to_stop();
   }

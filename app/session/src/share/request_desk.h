@@ -3,7 +3,9 @@
 #include <cstdint>
 #include <memory>
 
+#include "log/logger.h"
 #include "share/viewer_process.h"
+#include "share/viewer_watch.h"
 #include "thimble/session/session.h"
 
 namespace thimble::session {
@@ -15,7 +17,10 @@ class RequestDesk {
   /// Serves `session`, which must be shared. `viewer` is the one that was opened with the run, if
   /// any; with `ends_with_viewer` the run ends when that is closed.
   RequestDesk(Session& session, std::unique_ptr<ViewerProcess> viewer, bool ends_with_viewer)
-      : session_(session), viewer_(std::move(viewer)), ends_with_viewer_(ends_with_viewer) {}
+      : session_(session),
+        viewer_(std::move(viewer)),
+        watch_(*session.shared(), scene::run_logger(session.scene().name)),
+        ends_with_viewer_(ends_with_viewer) {}
 
   /// Looks once; call it about ten times a second.
   void step();
@@ -28,6 +33,7 @@ class RequestDesk {
 
   Session& session_;
   std::unique_ptr<ViewerProcess> viewer_;
+  ViewerWatch watch_;
   bool ends_with_viewer_;
   bool ended_ = false;
   std::uint64_t last_order_ = 0;

@@ -23,10 +23,11 @@ namespace thimble::session {
 // Frames: W world.
 
 /// Changes with every change of this file. A reader of another version refuses.
-inline constexpr std::uint32_t kSharedVersion = 2;
+inline constexpr std::uint32_t kSharedVersion = 3;
 /// Stands in `SharedHead::ready` of a segment that is complete: "thimble1" in ASCII.
 inline constexpr std::uint64_t kSharedReady = 0x31656c626d696874;
 
+inline constexpr std::size_t kViewersMost = 16;    ///< Chosen: more than look on at a time.
 inline constexpr std::size_t kKnobsMost = 64;      ///< Chosen: more than a person can find.
 inline constexpr std::size_t kObjectsMost = 1024;  ///< Chosen, as a bound for readers.
 /// Is the most bytes that a reader maps: 100 million triangles and a long ring. Chosen.
@@ -164,6 +165,7 @@ struct SharedRequests {
   std::atomic<std::uint64_t> record_number;  ///< Grows with each order; odd: record, even: stop.
   driver::Snapshot<SharedText<1024>> record_path;  ///< Where to; empty: the run chooses.
   driver::Snapshot<SharedHand> hand;
+  std::array<std::atomic<std::uint64_t>, kViewersMost> viewers;  ///< Their pids; 0: a free place.
 };
 
 /// Is what changes while the run goes on.

@@ -69,7 +69,24 @@ SharedReader::SharedReader(std::unique_ptr<SharedMemory> memory, std::span<std::
       scene_(std::move(scene)),
       live_(reinterpret_cast<SharedLive*>(bytes.data() + kSharedLiveOffset)),
       shaped_(table_in<const SharedShaped>(bytes, scene_.shaped)),
-      ring_(table_in<const SharedRingSlot>(bytes, scene_.ring)) {}
+      ring_(table_in<const SharedRingSlot>(bytes, scene_.ring)) {
+  sign_in();
+}
+
+SharedReader::~SharedReader() {
+  if (place_ == nullptr) return;
+  auto self = static_cast<std::uint64_t>(getpid());
+  place_->compare_exchange_strong(self, 0);
+}
+
+void SharedReader::sign_in() noexcept {
+  for (auto& place : live_->requests.viewers) {
+    std::uint64_t nobody = 0;
+    if (!place.compare_exchange_strong(nobody, static_cast<std::uint64_t>(getpid()))) continue;
+    place_ = &place;
+    return;
+  }
+}
 
 RunState SharedReader::state() const {
   const std::uint32_t state = live_->state.load(std::memory_order_acquire);

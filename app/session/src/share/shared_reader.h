@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -28,6 +29,11 @@ class SharedReader {
   static driver::Result<std::unique_ptr<SharedReader>> over(std::unique_ptr<SharedMemory> memory);
   /// Reads memory that somebody else keeps, aligned to 64, for tests.
   static driver::Result<std::unique_ptr<SharedReader>> over(std::span<std::byte> memory);
+
+  SharedReader(const SharedReader&) = delete;
+  SharedReader& operator=(const SharedReader&) = delete;
+  /// Signs out of the run, which knows by name who looks on.
+  ~SharedReader();
 
   /// Gives what does not change.
   const SharedScene& scene() const noexcept { return scene_; }
@@ -92,6 +98,7 @@ class SharedReader {
 
  private:
   SharedReader(std::unique_ptr<SharedMemory> memory, std::span<std::byte> bytes, SharedScene scene);
+  void sign_in() noexcept;
   bool sound(driver::TickRecord& record) const noexcept;
   bool sound(scene::ScenePoses& poses) const noexcept;
   bool sound(render::BodyPatch& patch) const noexcept;
@@ -104,6 +111,7 @@ class SharedReader {
   SharedLive* live_;
   std::span<const SharedShaped> shaped_;
   std::span<const SharedRingSlot> ring_;
+  std::atomic<std::uint64_t>* place_ = nullptr;  // among the viewers; null if all were taken
   mutable std::uint64_t rejected_ = 0;
 };
 

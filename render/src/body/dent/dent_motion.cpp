@@ -1,8 +1,9 @@
 #include "body/dent/dent_motion.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <string>
 #include <utility>
@@ -80,13 +81,10 @@ driver::Result<DentMotion> DentMotion::build(std::shared_ptr<const VertexLinks> 
   motion.substeps_ = settings.substeps;
   if (!(needed <= motion.substeps_)) {
     if (!(needed <= kSubstepsMax)) {
-      char text[320];
-      std::snprintf(text, sizeof text,
-                    "The integrator %s bears steps up to %.3g ms on this dent, and the tick takes "
-                    "%.3g ms: soften the springs, add mass or dampers, or use implicit_euler.",
-                    std::string(name_of(settings.integrator)).c_str(), limit * 1e3,
-                    settings.step * 1e3);
-      return driver::Error{text};
+      return driver::Error{fmt::format(
+          "The integrator {} bears steps up to {:.3g} ms on this dent, and the tick takes {:.3g} "
+          "ms: soften the springs, add mass or dampers, or use implicit_euler.",
+          name_of(settings.integrator), limit * 1e3, settings.step * 1e3)};
     }
     motion.substeps_ = static_cast<int>(needed);
   }

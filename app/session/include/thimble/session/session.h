@@ -28,9 +28,12 @@
 #include "thimble/session/dent_record.h"
 #include "thimble/session/run_statistics.h"
 #include "thimble/session/start_pose.h"
+#include "thimble/session/tick_observer.h"
 #include "thimble/session/trace.h"
 
 namespace thimble::session {
+
+struct LoggedRun;
 
 /// Says which time a session runs on.
 enum class ClockKind { kVirtual, kWall };
@@ -54,6 +57,7 @@ struct SessionOptions {
   std::string share_name;  ///< under which name; empty: the scene's, with a number if it is taken
   std::function<void(scene::Scene&)> adjust =
       {};              ///< changes the scene before anything is built of it
+  bool log = false;    ///< what happens in the run goes into the log
   bool homed = false;  ///< a real arm was in its home pose when it got power: do not ask for it
   /// Opens the wire to the real arm in place of `app::open_wire`, for tests.
   std::function<driver::Result<std::unique_ptr<driver::Transport>>(const scene::ArmFile&,
@@ -173,6 +177,7 @@ class Session {
   void store_poses(std::uint64_t tick) noexcept;
   void store_shapes() noexcept;
   driver::Result<void> share(const SessionOptions& options);
+  LoggedRun logged_run() const;
   driver::Result<void> plan_simulation(const std::filesystem::path& scene_file,
                                        const std::filesystem::path& firmware);
 
@@ -190,7 +195,9 @@ class Session {
   decltype(SessionOptions::open_wire) open_wire_;
   std::unique_ptr<driver::Clock> clock_;
   std::unique_ptr<scene::ArmSimulation> simulation_;
-  std::unique_ptr<driver::Device> device_;  // holds the wire to the simulation, so it goes first
+  std::unique_ptr<driver::Device> device_;   // holds the wire to the simulation, so it goes first
+  std::unique_ptr<TickObserver> event_log_;  // if what happens is logged
+  bool log_ = false;
   std::unique_ptr<scene::HeatKeeper> heat_keeper_;  // of a real arm whose file names its heat
   bool by_thread_ = false;  // whether threads load pages and write recordings
   std::unique_ptr<scene::SceneObjects> objects_;
