@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "build_info.h"
 #include "cli/commands.h"
 #include "cli/complain.h"
 #include "cli/file_options.h"
+#include "place_mesh.h"
 #include "recording/read_recording.h"
 #include "recording/recording_file.h"
 #include "recording/replay.h"
@@ -18,9 +18,10 @@
 #include "recording/trajectory_file.h"
 #include "text_file.h"
 #include "thimble/render/mesh/load_mesh.h"
-#include "thimble/scene/meshes.h"
+#include "thimble/scene/build_info.h"
 #include "thimble/scene/scene_file.h"
 #include "thimble/scene/scene_objects.h"
+#include "thimble/scene/shipped_files.h"
 
 namespace thimble::app {
 namespace {
@@ -122,7 +123,7 @@ int replay_probe(const ReplayOptions& options) {
   }
   auto trajectory = session::read_trajectory(options.file, form);
   if (!trajectory) return complain(trajectory.error(), kExitBadInput);
-  const auto scene = scene::read_scene(options.scene, scene::mesh_folder(), {});
+  const auto scene = scene::load_scene(options.scene);
   if (!scene) return complain(scene.error(), kExitBadInput);
   if (auto placed = into_world(*trajectory, *scene, options.frame); !placed) {
     return complain(placed.error(), kExitBadInput);
@@ -168,7 +169,7 @@ int replay_recording(const ReplayOptions& options) {
       return complain(same.error(), kExitBadInput);
     }
   }
-  const auto scene = scene::read_scene(scene_file, scene::mesh_folder(), recording->info.arm_file);
+  const auto scene = scene::load_scene(scene_file, {.arm = recording->info.arm_file});
   if (!scene) return complain(scene.error(), kExitBadInput);
   auto objects = scene::SceneObjects::build(*scene);
   if (!objects) return complain(objects.error(), kExitBadInput);

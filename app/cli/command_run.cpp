@@ -28,7 +28,6 @@
 #include "stability/tuning.h"
 #include "thimble/driver/heat_guard.h"
 #include "thimble/render/mesh/save_mesh.h"
-#include "thimble/scene/meshes.h"
 #include "thimble/scene/quality.h"
 #include "thimble/scene/real_arm.h"
 #include "thimble/scene/shipped_files.h"

@@ -3,10 +3,10 @@
 #include <exception>
 #include <string>
 
-#include "build_info.h"
 #include "cli/commands.h"
 #include "cli/exit_code.h"
 #include "interrupt.h"
+#include "thimble/scene/build_info.h"
 
 namespace {
 

@@ -12,16 +12,16 @@
 #include <string>
 #include <vector>
 
-#include "build_info.h"
-#include "lone_arm.h"
 #include "recording/read_recording.h"
 #include "recording/recording_columns.h"
 #include "scene_run.h"
+#include "simulator_session.h"
 #include "stability/tuning.h"
 #include "thimble/driver/discovery.h"
 #include "thimble/driver/fault.h"
+#include "thimble/scene/build_info.h"
 #include "thimble/scene/shipped_files.h"
-#include "trouble.h"
+#include "thimble_error.h"
 
 namespace py = pybind11;
 
@@ -86,7 +86,7 @@ class PythonLaw {
     driver::ForceCommand command = run_.session().touch()(state);
     const py::gil_scoped_acquire python;
     try {
-      if (error_) throw Trouble("The law has failed before.");
+      if (error_) throw ThimbleError("The law has failed before.");
       const py::object answer = law_(one(seen(state, command)));
       if (!answer.is_none()) {
         const auto force = py::array_t<double, py::array::forcecast>::ensure(answer);
@@ -149,7 +149,7 @@ struct HeldRun {
     if (own_law.is_none()) return;
     law = std::make_unique<PythonLaw>(own_law.cast<py::function>(), *run);
     if (const auto set = run->session().set_law(driver::ForceLaw(*law)); !set) {
-      throw Trouble(set.error().message);
+      throw ThimbleError(set.error().message);
     }
   }
   ~HeldRun() {
@@ -195,7 +195,7 @@ void run_all(HeldRun& held) {
 bool step_once(HeldRun& held, const std::optional<Eigen::Vector3d>& hand) {
   session::Session& session = held.run->session();
   if (hand && session.simulation() != nullptr && !session.lead_hand(*hand)) {
-    throw Trouble("The arm does not reach that point of the world (m); move the hand.");
+    throw ThimbleError("The arm does not reach that point of the world (m); move the hand.");
   }
   const bool more = held.run->step();
   held.rethrow();
@@ -203,7 +203,7 @@ bool step_once(HeldRun& held, const std::optional<Eigen::Vector3d>& hand) {
 }
 
 py::tuple mesh_of(const HeldRun& held, const std::optional<std::string>& object) {
-  if (held.run->running()) throw Trouble("The run goes on; stop() it to see its meshes.");
+  if (held.run->running()) throw ThimbleError("The run goes on; stop() it to see its meshes.");
   const session::Session& session = held.run->session();
   int number = -1;
   if (object) {
@@ -211,7 +211,7 @@ py::tuple mesh_of(const HeldRun& held, const std::optional<std::string>& object)
     for (std::size_t i = 0; i < objects.size(); ++i) {
       if (objects[i].name == *object) number = static_cast<int>(i);
     }
-    if (number < 0) throw Trouble("The scene has no object \"" + *object + "\".");
+    if (number < 0) throw ThimbleError("The scene has no object \"" + *object + "\".");
   }
   const render::TriangleMesh mesh = session.mesh_now(number);
   py::array_t<double> vertices({static_cast<py::ssize_t>(mesh.vertices.size()), py::ssize_t{3}});
@@ -349,27 +349,27 @@ void bind_run(py::module_& core) {
       });
 }
 
-void bind_arm(py::module_& core) {
-  py::class_<LoneArm>(core, "Arm")
+void bind_simulator(py::module_& core) {
+  py::class_<SimulatorSession>(core, "SimulatorSession")
       .def(py::init<const std::string&, const Eigen::Vector3d&, double, std::uint64_t>(),
            py::arg("arm"), py::arg("hand"), py::arg("rate"), py::arg("seed"))
       .def(
           "step",
-          [](LoneArm& arm, const Eigen::Vector3d& force,
-             const std::optional<Eigen::Vector3d>& hand) {
-            if (hand && !arm.lead(*hand)) {
-              throw Trouble("The arm does not reach that point of the world (m); move the hand.");
-            }
-            return one(arm.step(force));
-          },
+          [](SimulatorSession& session, const Eigen::Vector3d& force,
+             const std::optional<Eigen::Vector3d>& hand) { return one(session.step(force, hand)); },
           py::arg("force"), py::arg("hand") = py::none())
-      .def("activate", &LoneArm::activate)
-      .def_property_readonly("name", [](const LoneArm& arm) { return arm.file().name; })
-      .def_property_readonly("true_force", &LoneArm::true_force)
-      .def_property_readonly("force_max",
-                             [](const LoneArm& arm) { return arm.file().limits.force_max; })
-      .def_property_readonly("workspace", [](const LoneArm& arm) {
-        return py::make_tuple(arm.file().workspace.min_W, arm.file().workspace.max_W);
+      .def("activate", &SimulatorSession::activate)
+      .def_property_readonly(
+          "name", [](const SimulatorSession& session) { return session.device().arm().name; })
+      .def_property_readonly(
+          "true_force",
+          [](const SimulatorSession& session) { return session.device().simulation().f_T_W(); })
+      .def_property_readonly(
+          "force_max",
+          [](const SimulatorSession& session) { return session.device().arm().limits.force_max; })
+      .def_property_readonly("workspace", [](const SimulatorSession& session) {
+        const scene::WorkspaceBox& box = session.device().arm().workspace;
+        return py::make_tuple(box.min_W, box.max_W);
       });
 }
 
@@ -379,7 +379,7 @@ void bind_arm(py::module_& core) {
 PYBIND11_MODULE(_core, core) {
   using namespace thimble;
   using namespace thimble::python;
-  py::register_exception<Trouble>(core, "Error", PyExc_RuntimeError);
+  py::register_exception<ThimbleError>(core, "Error", PyExc_RuntimeError);
   core.attr("version") = std::string(scene::build_info().version);
   core.attr("program") = scene::program_name();
   core.def("scenes", [] { return named(scene::shipped_scenes()); });
@@ -405,5 +405,5 @@ PYBIND11_MODULE(_core, core) {
     return py::make_tuple(info_of(recording.info), array_of(recording.ticks), recording.complete);
   });
   bind_run(core);
-  bind_arm(core);
+  bind_simulator(core);
 }

@@ -6,11 +6,10 @@
 #include "recording/write_black_box.h"
 #include "report/session_report.h"
 #include "servo_thread.h"
-#include "thimble/scene/meshes.h"
 #include "thimble/scene/quality.h"
 #include "thimble/scene/real_arm.h"
 #include "thimble/scene/shipped_files.h"
-#include "trouble.h"
+#include "thimble_error.h"
 
 namespace thimble::python {
 namespace {
@@ -23,7 +22,7 @@ constexpr double kSecondsMax = 86400;         // as in `thimble run --duration`
 class Claim {
  public:
   explicit Claim(bool& busy) : busy_(busy) {
-    if (busy_) throw Trouble("This run is already being stepped.");
+    if (busy_) throw ThimbleError("This run is already being stepped.");
     busy_ = true;
   }
   ~Claim() { busy_ = false; }
@@ -44,12 +43,12 @@ void tell(const std::vector<std::string>& sentences) {
 session::SessionOptions session_options(const RunOptions& options) {
   session::SessionOptions asked;
   if (options.seconds && !(*options.seconds >= 1e-3 && *options.seconds <= kSecondsMax)) {
-    throw Trouble("seconds: expected 0.001 to 86400, found " + std::to_string(*options.seconds) +
-                  ".");
+    throw ThimbleError("seconds: expected 0.001 to 86400, found " +
+                       std::to_string(*options.seconds) + ".");
   }
   if (options.quality != "draft" && options.quality != "normal" && options.quality != "reference") {
-    throw Trouble("quality: expected draft, normal or reference, found \"" + options.quality +
-                  "\".");
+    throw ThimbleError("quality: expected draft, normal or reference, found \"" + options.quality +
+                       "\".");
   }
   const auto plugged_in =
       options.device == "sim"
@@ -58,7 +57,7 @@ session::SessionOptions session_options(const RunOptions& options) {
   asked.real_arm = value_of(scene::choose_arm(
       plugged_in ? *plugged_in : std::vector<driver::FoundArm>(), options.device));
   if (asked.real_arm && !options.agreed) {
-    throw Trouble(
+    throw ThimbleError(
         asked.real_arm->arm + " " + asked.real_arm->name() +
         " would get forces. Keep clear of it, hold its grip, keep its switch at hand, and "
         "say agree=True.");
@@ -73,7 +72,7 @@ session::SessionOptions session_options(const RunOptions& options) {
   if (asked.real_arm) {  // asked on a thread that goes again, before the arm is opened
     const auto allowed =
         session::check_real_time(session::ServoThread(true).grant(), options.no_real_time);
-    if (!allowed) throw Trouble(allowed.error().message + " In Python: no_real_time=True.");
+    if (!allowed) throw ThimbleError(allowed.error().message + " In Python: no_real_time=True.");
   }
   asked.homed = options.homed;
   const bool real_time = options.real_time || asked.real_arm;
@@ -103,7 +102,7 @@ SceneRun::~SceneRun() {
 }
 
 bool SceneRun::step() {
-  if (session_->real_time()) throw Trouble("A run in real time is not stepped by hand.");
+  if (session_->real_time()) throw ThimbleError("A run in real time is not stepped by hand.");
   const Claim claim(busy_);
   return take_step();
 }
@@ -117,7 +116,7 @@ bool SceneRun::take_step() {
 }
 
 void SceneRun::run(const std::function<bool()>& stop_asked) {
-  if (session_->real_time()) throw Trouble("A run in real time runs by start().");
+  if (session_->real_time()) throw ThimbleError("A run in real time runs by start().");
   const Claim claim(busy_);
   for (int ticks = 1; take_step(); ++ticks) {
     if (ticks % kTicksBetweenQuestions == 0 && stop_asked()) ask_to_stop();
@@ -125,8 +124,8 @@ void SceneRun::run(const std::function<bool()>& stop_asked) {
 }
 
 void SceneRun::start() {
-  if (!session_->real_time()) throw Trouble("A run in virtual time has no thread.");
-  if (servo_.joinable() || end_) throw Trouble("This run has begun before.");
+  if (!session_->real_time()) throw ThimbleError("A run in virtual time has no thread.");
+  if (servo_.joinable() || end_) throw ThimbleError("This run has begun before.");
   running_.store(true);
   awake_ = std::make_unique<driver::CpuLatencyRequest>();
   servo_ = std::thread([this] {
@@ -160,17 +159,17 @@ void SceneRun::finish() {
   }
   if (session_->recording().recorder() == nullptr) return;
   if (const auto stopped = session_->recording().stop(); !stopped) {
-    throw Trouble(stopped.error().message);
+    throw ThimbleError(stopped.error().message);
   }
 }
 
 std::span<const driver::TickRecord> SceneRun::ticks() const {
-  if (running()) throw Trouble("The run goes on; stop() it to see its ticks.");
+  if (running()) throw ThimbleError("The run goes on; stop() it to see its ticks.");
   return session_->trace().rows();
 }
 
 app::RunReport SceneRun::report() const {
-  if (!end_ || running()) throw Trouble("The run is not over: nothing to sum up yet.");
+  if (!end_ || running()) throw ThimbleError("The run is not over: nothing to sum up yet.");
   return app::report_of(*session_, *end_, grant_);
 }
 

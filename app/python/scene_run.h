@@ -32,7 +32,7 @@ struct RunOptions {
 };
 
 /// Is a session as Python holds it: all at once, tick by tick, or in real time on a thread of its
-/// own. Every function but those of `driver::` throws Trouble with a sentence for the
+/// own. Every function but those of `driver::` throws ThimbleError with a sentence for the
 /// user. Real-time: never from the servo thread, all of it.
 class SceneRun {
  public:

@@ -5,9 +5,9 @@
 #include <string_view>
 #include <system_error>
 
-#include "build_info.h"
 #include "printed.h"
 #include "thimble/driver/heat_guard.h"
+#include "thimble/scene/build_info.h"
 
 namespace thimble::app {
 namespace {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "energy_choice.h"
 #include "mesh/adjacency.h"
 #include "printed.h"
 #include "stability/draw.h"

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "servo_thread.h"
-#include "thimble/scene/meshes.h"
+#include "thimble/scene/shipped_files.h"
 #include "thimble/session/session.h"
 
 namespace thimble::app {

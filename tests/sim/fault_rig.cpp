@@ -11,6 +11,7 @@
 #include <tuple>
 #include <vector>
 
+#include "energy_choice.h"
 #include "recording/read_recording.h"
 #include "support/line_arm.h"
 #include "support/scratch.h"
@@ -19,10 +20,9 @@
 #include "thimble/driver/arms/falcon/falcon_packet.h"
 #include "thimble/driver/arms/hfab/hfab_models.h"
 #include "thimble/driver/arms/woody/woody_report.h"
-#include "thimble/scene/energy_choice.h"
 #include "thimble/scene/real_arm.h"
 #include "thimble/scene/scene_file.h"
-#include "thimble/scene/watch_choice.h"
+#include "watch_choice.h"
 
 namespace thimble::fault_test {
 namespace {
@@ -58,7 +58,7 @@ scene::Scene read(const TestedArm& tested, Phase phase, bool stiff) {
           : stiff                    ? kStiffPlane
                                      : kPlane)
       << "hand: {path: [{t: 0, at: [0, 0, 0]}]}\n";
-  auto scene = scene::read_scene(folder / "fault.yaml", {});
+  auto scene = scene::load_scene(folder / "fault.yaml");
   if (!scene) {
     ADD_FAILURE() << scene.error().message;
     return {};

@@ -8,13 +8,13 @@
 #include <vector>
 
 #include "body/shape/body_shape.h"
-#include "build_info.h"
+#include "energy_choice.h"
 #include "share/describe_scene.h"
 #include "text_file.h"
-#include "thimble/scene/energy_choice.h"
+#include "thimble/scene/build_info.h"
 #include "thimble/scene/hand_route.h"
 #include "thimble/scene/real_arm.h"
-#include "thimble/scene/watch_choice.h"
+#include "watch_choice.h"
 
 namespace thimble::session {
 namespace {
@@ -64,8 +64,9 @@ driver::Result<std::unique_ptr<Session>> Session::prepare(const std::filesystem:
   if (options.real_arm && !options.terms) {
     return driver::Error{"A real arm is used on terms only (terms_for)."};
   }
-  auto scene = scene::read_scene(scene_file, options.mesh_folder,
-                                 options.real_arm ? options.terms->arm.path : options.arm_file);
+  auto scene = scene::load_scene(
+      scene_file, {.arm = options.real_arm ? options.terms->arm.path : options.arm_file,
+                   .mesh_folder = options.mesh_folder});
   if (!scene) return scene.error();
 
   std::unique_ptr<Session> session(new Session);

@@ -9,7 +9,7 @@
 
 #include "report/picture_parts.h"
 #include "studies/accuracy/probed_stroke.h"
-#include "thimble/scene/meshes.h"
+#include "thimble/scene/shipped_files.h"
 #include "thimble/session/session.h"
 
 namespace thimble::app {

@@ -6,7 +6,7 @@
 #include <cstdio>
 
 #include "report/picture_parts.h"
-#include "thimble/scene/scene_effects.h"
+#include "scene_effects.h"
 
 namespace thimble::app {
 namespace {

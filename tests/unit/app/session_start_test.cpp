@@ -41,7 +41,7 @@ class SessionStart : public ::testing::Test {
         std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms/vintage_phantom.yaml";
     options_.terms = scene::RealArmTerms{};
     options_.terms->arm.path = file;
-    options_.terms->arm.file = *scene::read_arm_file(file);
+    options_.terms->arm.file = *scene::load_arm(file);
     options_.record = support::scratch_folder() / "start.h5";
     options_.share = true;
     options_.open_wire = [this](

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "energy_choice.h"
 #include "printed.h"
 #include "thimble/driver/motion_watch.h"
 

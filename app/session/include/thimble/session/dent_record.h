@@ -8,7 +8,7 @@
 #include "thimble/render/body_patch.h"
 #include "thimble/render/mesh/triangle_mesh.h"
 #include "thimble/render/scene_touch.h"
-#include "thimble/scene/mesh_place.h"
+#include "thimble/scene/scene_objects.h"
 
 namespace thimble::session {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "thimble/render/effect/settings_reader.h"
-#include "thimble/scene/yaml_reader.h"
+#include "yaml/yaml_reader.h"
 
 namespace thimble::scene {
 

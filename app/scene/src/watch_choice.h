@@ -1,10 +1,9 @@
 #pragma once
 
 #include "thimble/driver/motion_watch.h"
+#include "thimble/scene/arm_file.h"
 
 namespace thimble::scene {
-
-struct ArmFile;
 
 /// Returns what the motion watch of an arm goes by, in a loop of `rate` (Hz): the mass at the tip
 /// (`gate.tip_mass`, else that of the simulation, else 0.1 kg), the delay, and how long a force is

@@ -1,22 +1,12 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 
-#include "body/motion/move_object.h"
-#include "thimble/render/body/dent_settings.h"
-#include "thimble/render/body/shape_choice.h"
 #include "thimble/render/effect/effect_context.h"
-#include "thimble/scene/yaml_reader.h"
+#include "thimble/scene/scene_file.h"
+#include "yaml/yaml_reader.h"
 
 namespace thimble::scene {
-
-/// Is what the matter of an object does: what is left empty the scene does not call for.
-struct SceneBody {
-  std::optional<render::DentSettings> dent;    ///< The surface dents under the cursor.
-  render::ShapeChoice shape;                   ///< Base points keep what they gave way, or snap.
-  std::optional<render::MotionChoice> motion;  ///< All base points move together.
-};
 
 /// Reads `body: {dent: {...}, plastic: {...}, snap: {...}, motion: {...}}` of an object; files are
 /// looked for in `folder`. Mistakes are noted by `object`. Real-time: never from the servo thread.

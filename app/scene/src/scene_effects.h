@@ -7,7 +7,7 @@
 #include "thimble/render/effect/effect_table.h"
 #include "thimble/render/field/field_table.h"
 #include "thimble/scene/arm_file.h"
-#include "thimble/scene/yaml_reader.h"
+#include "yaml/yaml_reader.h"
 
 namespace thimble::scene {
 

@@ -1,4 +1,4 @@
-#include "yaml_settings.h"
+#include "yaml/yaml_settings.h"
 
 #include <system_error>
 
