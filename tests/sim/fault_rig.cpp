@@ -11,7 +11,6 @@
 #include <tuple>
 #include <vector>
 
-#include "recording/read_recording.h"
 #include "support/line_arm.h"
 #include "support/scratch.h"
 #include "thimble/device_sim/usb/ftdi_chip.h"
@@ -23,6 +22,7 @@
 #include "thimble/scene/real_arm.h"
 #include "thimble/scene/scene_file.h"
 #include "thimble/scene/watch_choice.h"
+#include "thimble/session/recording.h"
 
 namespace thimble::fault_test {
 namespace {
