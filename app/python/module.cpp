@@ -12,15 +12,18 @@
 #include <string>
 #include <vector>
 
-#include "recording/read_recording.h"
-#include "recording/recording_columns.h"
+#include "report/report.h"
 #include "scene_run.h"
 #include "simulator_session.h"
 #include "stability/tuning.h"
 #include "thimble/driver/discovery.h"
 #include "thimble/driver/fault.h"
+#include "thimble/render/scene_touch.h"
+#include "thimble/scene/arm_simulation.h"
 #include "thimble/scene/build_info.h"
+#include "thimble/scene/scene_file.h"
 #include "thimble/scene/shipped_files.h"
+#include "thimble/session/recording.h"
 #include "thimble_error.h"
 
 namespace py = pybind11;
@@ -247,7 +250,7 @@ py::dict info_of(const session::RecordingInfo& info) {
 
 py::list figures_of(const HeldRun& held) {
   py::list figures;
-  for (const app::Figure& figure : app::run_figures(held.run->report())) {
+  for (const app::Figure& figure : app::figures_of(held.run->figures())) {
     py::dict one;
     one["name"] = figure.name;
     one["value"] = figure.value;
@@ -324,11 +327,11 @@ void bind_run(py::module_& core) {
       .def("latest",
            [](const HeldRun& held) -> py::object {
              TickRecord tick;
-             if (!held.run->session().snapshot().load(tick)) return py::none();
+             if (!held.run->session().newest().load(tick)) return py::none();
              return one(tick);
            })
       .def("mesh", &mesh_of, py::arg("object") = py::none())
-      .def("summary", [](const HeldRun& held) { return app::summary(held.run->report()); })
+      .def("summary", [](const HeldRun& held) { return app::summary(held.run->figures()); })
       .def("figures", &figures_of)
       .def("warnings",
            [](const HeldRun& held) { return app::stability_warnings(held.run->session().scene()); })
@@ -340,8 +343,8 @@ void bind_run(py::module_& core) {
                                const auto end = held.run->end();
                                return end ? py::object(py::str(name_of(*end))) : py::none();
                              })
-      .def_property_readonly(
-          "stride", [](const HeldRun& held) { return held.run->session().trace().stride(); })
+      .def_property_readonly("stride",
+                             [](const HeldRun& held) { return held.run->session().stride(); })
       .def_property_readonly("objects", [](const HeldRun& held) {
         std::vector<std::string> names;
         for (const auto& object : held.run->session().scene().objects) names.push_back(object.name);

@@ -3,12 +3,10 @@
 #include <cmath>
 #include <cstdio>
 
-#include "recording/write_black_box.h"
-#include "report/session_report.h"
-#include "servo_thread.h"
 #include "thimble/scene/quality.h"
 #include "thimble/scene/real_arm.h"
 #include "thimble/scene/shipped_files.h"
+#include "thimble/session/servo_thread.h"
 #include "thimble_error.h"
 
 namespace thimble::python {
@@ -150,27 +148,22 @@ void SceneRun::finish() {
   if (finished_) return;
   finished_ = true;
   awake_.reset();
-  if (const auto ticks = session_->black_box().take(); !ticks.empty()) {
-    const auto written = session::write_black_box(ticks, session_->recording_info());
-    if (written) {
-      std::fprintf(stderr, "thimble: the last seconds before the fault are in %s\n",
-                   written->c_str());
-    }
+  if (const auto kept = session_->keep_black_box(); kept && *kept) {
+    std::fprintf(stderr, "thimble: the last seconds before the fault are in %s\n",
+                 (*kept)->c_str());
   }
-  if (session_->recording().recorder() == nullptr) return;
-  if (const auto stopped = session_->recording().stop(); !stopped) {
-    throw ThimbleError(stopped.error().message);
-  }
+  if (const auto ended = session_->end_recording(); !ended)
+    throw ThimbleError(ended.error().message);
 }
 
 std::span<const driver::TickRecord> SceneRun::ticks() const {
   if (running()) throw ThimbleError("The run goes on; stop() it to see its ticks.");
-  return session_->trace().rows();
+  return session_->ticks();
 }
 
-app::RunReport SceneRun::report() const {
+session::RunFigures SceneRun::figures() const {
   if (!end_ || running()) throw ThimbleError("The run is not over: nothing to sum up yet.");
-  return app::report_of(*session_, *end_, grant_);
+  return session_->figures(grant_);
 }
 
 }  // namespace thimble::python

@@ -7,7 +7,6 @@
 #include <string>
 #include <thread>
 
-#include "report/report.h"
 #include "thimble/driver/real_time.h"
 #include "thimble/driver/servo_loop.h"
 #include "thimble/session/session.h"
@@ -63,7 +62,7 @@ class SceneRun {
   /// Tells what was recorded, unless the thread runs.
   std::span<const driver::TickRecord> ticks() const;
   /// Sums up a run that is over.
-  app::RunReport report() const;
+  session::RunFigures figures() const;
 
  private:
   bool take_step();

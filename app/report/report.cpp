@@ -41,7 +41,7 @@ Json to_json(const session::Histogram& histogram) {
           {"max", microseconds(static_cast<double>(histogram.max_ns()))}};
 }
 
-Json to_json(const RunReport& report) {
+Json to_json(const session::RunFigures& report) {
   const scene::BuildInfo build = scene::build_info();
   const session::RunStatistics& run = report.statistics;
   Json json;
@@ -110,7 +110,7 @@ std::string goal(const char* comparison, double bound) {
 
 }  // namespace
 
-std::vector<Figure> run_figures(const RunReport& report) {
+std::vector<Figure> figures_of(const session::RunFigures& report) {
   const session::RunStatistics& run = report.statistics;
   std::vector<Figure> figures{
       {"ticks", static_cast<double>(run.ticks()), "", ""},
@@ -138,7 +138,7 @@ std::vector<Figure> run_figures(const RunReport& report) {
   return figures;
 }
 
-std::string summary(const RunReport& report) {
+std::string summary(const session::RunFigures& report) {
   const session::RunStatistics& run = report.statistics;
   const double period_us = report.rate_asked > 0 ? 1e6 / report.rate_asked : 0;
   std::string s;
@@ -261,7 +261,8 @@ std::string summary(const RunReport& report) {
   return s;
 }
 
-driver::Result<void> write_report(const RunReport& report, const std::filesystem::path& folder) {
+driver::Result<void> write_report(const session::RunFigures& report,
+                                  const std::filesystem::path& folder) {
   std::error_code status;
   std::filesystem::create_directories(folder, status);
   if (status) {
@@ -272,7 +273,7 @@ driver::Result<void> write_report(const RunReport& report, const std::filesystem
   const std::string json =
       to_json(report).dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
   if (auto done = write_text(json + "\n", folder / "report.json"); !done) return done;
-  return write_figures(run_figures(report), folder / "figures.json");
+  return write_figures(figures_of(report), folder / "figures.json");
 }
 
 }  // namespace thimble::app

@@ -16,13 +16,13 @@
 
 #include "page/checksum.h"
 #include "page/page_file.h"
-#include "recording/read_recording.h"
 #include "recording/recording_file.h"
 #include "thimble/render/mesh/check_mesh.h"
 #include "thimble/render/mesh/load_mesh.h"
 #include "thimble/scene/arm_file.h"
 #include "thimble/scene/scene_file.h"
 #include "thimble/scene/scene_objects.h"
+#include "thimble/session/recording.h"
 
 namespace thimble::fuzz {
 namespace {

@@ -11,8 +11,6 @@
 #include <tuple>
 #include <vector>
 
-#include "energy_choice.h"
-#include "recording/read_recording.h"
 #include "support/line_arm.h"
 #include "support/scratch.h"
 #include "thimble/device_sim/usb/ftdi_chip.h"
@@ -20,9 +18,10 @@
 #include "thimble/driver/arms/falcon/falcon_packet.h"
 #include "thimble/driver/arms/hfab/hfab_models.h"
 #include "thimble/driver/arms/woody/woody_report.h"
+#include "thimble/scene/device_settings.h"
 #include "thimble/scene/real_arm.h"
 #include "thimble/scene/scene_file.h"
-#include "watch_choice.h"
+#include "thimble/session/recording.h"
 
 namespace thimble::fault_test {
 namespace {
@@ -168,16 +167,10 @@ support::BusWire::Way FaultRig::way() const {
 driver::Result<void> FaultRig::open() {
   // A Falcon that lost its home by a fault is homed by its hand, which takes up to two seconds.
   const std::int64_t timeout_ns = falcon_ ? 4'000'000'000 : 1'000'000'000;
-  auto device = driver::Device::open(std::make_unique<support::BusWire>(*cable_, clock_, way()),
-                                     scene::make_arm(file_, tested_.kind),
-                                     {.R_WB = file_.R_WB,
-                                      .p_WB = file_.p_WB,
-                                      .limits = file_.limits,
-                                      .energy = scene::energy_settings(file_, 1000, {}),
-                                      .motion = scene::motion_settings(file_, 1000),
-                                      .heat = file_.heat,
-                                      .velocity_corner_frequency = file_.velocity_corner_frequency},
-                                     clock_.now_ns(), timeout_ns);
+  auto device =
+      driver::Device::open(std::make_unique<support::BusWire>(*cable_, clock_, way()),
+                           scene::make_arm(file_, tested_.kind),
+                           scene::device_settings(file_, 1000), clock_.now_ns(), timeout_ns);
   if (!device) return device.error();
   device_ = std::move(device).value();
   return device_->activate();

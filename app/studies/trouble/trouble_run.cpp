@@ -1,4 +1,5 @@
 #include "studies/trouble/trouble_run.h"
+#include "setup.h"
 
 #include <algorithm>
 #include <array>
@@ -8,6 +9,9 @@
 
 #include "stability/rest_warnings.h"
 #include "studies/signal.h"
+#include "thimble/render/scene_touch.h"
+#include "thimble/scene/arm_simulation.h"
+#include "thimble/scene/scene_file.h"
 #include "thimble/session/session.h"
 
 namespace thimble::app {
@@ -22,17 +26,17 @@ constexpr double kRestWindow = 0.25;  // s
 class Account {
  public:
   Account(const session::Session& session, double own_energy)
-      : arm_(session.arm()),
+      : arm_(*session.simulation()->board_arm()),
         hand_(session.scene().arm.simulated.hand),
         mass_(session.scene().arm.simulated.plant.mass + hand_.mass),
-        period_(static_cast<double>(session.period_ns()) * 1e-9),
+        period_(static_cast<double>(session.setup().period_ns()) * 1e-9),
         force_max_(session.scene().arm.limits.force_max),
         own_energy_(own_energy) {
     p_ = arm_.plant().p_BT();
     v_ = arm_.plant().v_BT();
     hand_p_ = arm_.p_BH();
     first_ = energy();
-    for (auto& axis : force_) axis.reserve(session.ticks_planned());
+    for (auto& axis : force_) axis.reserve(session.setup().ticks());
   }
 
   void operator()(const driver::TickRecord& record) noexcept {
@@ -125,9 +129,10 @@ TroubleFound run_for_trouble(const std::filesystem::path& scene_file, const Rand
   session::Session& session = **opened;
   Account account(session, scene.own_energy);
   const std::atomic<bool> stop{false};
-  driver::run_servo(session.device(), session.clock(), driver::ForceLaw(session.touch()),
+  driver::run_servo(session.device(), session.setup().clock(), driver::ForceLaw(session.touch()),
                     driver::TickSink(account),
-                    {.period_ns = session.period_ns(), .ticks = session.ticks_planned()}, stop);
+                    {.period_ns = session.setup().period_ns(), .ticks = session.setup().ticks()},
+                    stop);
   found = account.close();
   found.must_tremble = scene.trembles;
   found.unforetold =

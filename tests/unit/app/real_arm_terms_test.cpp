@@ -11,12 +11,13 @@
 
 #include "bringup/feel_check.h"
 #include "energy_choice.h"
-#include "report/session_report.h"
+#include "report/report.h"
 #include "support/line_board.h"
 #include "support/scratch.h"
 #include "terms/feel_check_record.h"
 #include "terms/limits_policy.h"
 #include "thimble/scene/calibration.h"
+#include "thimble/scene/scene_file.h"
 #include "thimble/scene/shipped_files.h"
 #include "thimble/session/session.h"
 #include "user_folders.h"
@@ -430,7 +431,7 @@ TEST_F(RealArmTermsTest, TheGateOfASessionStandsOnTheTerms) {
     EXPECT_EQ(gate.energy_stage(), EnergyStage::kPassivity);
     EXPECT_EQ((*session)->scene().arm.name, "vintage_phantom");
     EXPECT_TRUE(holds(all_of((*session)->told()), "energy: none is ignored"));
-    const RunReport report = report_of(**session, driver::ServoEnd::kStopped, {});
+    const session::RunFigures report = (*session)->figures();
     EXPECT_EQ(report.feel_check,
               unchecked ? scene::FeelCheckState::kUnchecked : scene::FeelCheckState::kNone);
     EXPECT_EQ(holds(summary(report), "UNCHECKED"), unchecked);

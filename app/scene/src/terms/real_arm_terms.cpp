@@ -7,6 +7,7 @@
 #include "printed.h"
 #include "terms/feel_check_record.h"
 #include "terms/limits_policy.h"
+#include "thimble/scene/scene_file.h"
 #include "thimble/scene/shipped_files.h"
 
 namespace thimble::scene {

@@ -9,9 +9,9 @@
 
 #include "recording/record_ring.h"
 #include "recording/recording_file.h"
-#include "recording/recording_info.h"
 #include "thimble/driver/result.h"
 #include "thimble/driver/tick_record.h"
+#include "thimble/session/recording.h"
 
 namespace thimble::session {
 

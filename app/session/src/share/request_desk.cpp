@@ -1,9 +1,13 @@
 #include "share/request_desk.h"
 
+#include <fmt/format.h>
+
 #include <cstdio>
 #include <ctime>
 
 #include "interrupt.h"
+#include "run_records.h"
+#include "thimble/scene/scene_file.h"
 
 namespace thimble::session {
 namespace {
@@ -22,21 +26,22 @@ std::string recording_name(const std::string& scene) {
 
 void RequestDesk::record(const SharedRun::RecordOrder& order) {
   last_order_ = order.number;
-  if (auto stopped = session_.recording().stop(); !stopped) {
-    std::fprintf(stderr, "thimble: %s\n", stopped.error().message.c_str());
+  if (auto stopped = session_.end_recording(); !stopped) {
+    fmt::print(stderr, "thimble: {}\n", stopped.error().message);
   }
   if (!order.record) return;
   const std::string path = order.path.empty() ? recording_name(session_.scene().name) : order.path;
   if (auto begun = session_.begin_recording(path); !begun) {
-    std::fprintf(stderr, "thimble: %s\n", begun.error().message.c_str());
+    fmt::print(stderr, "thimble: {}\n", begun.error().message);
   }
 }
 
 void RequestDesk::step() {
   SharedRun& shared = *session_.shared();
+  const RecordingSwitch& recording = session_.records().recording;
   shared.watch_viewers();
   if (const auto order = shared.record_order_after(last_order_)) record(*order);
-  shared.set_recording(session_.recording().on(), session_.recording().dropped());
+  shared.set_recording(recording.on(), recording.dropped());
   const bool closed = viewer_ && viewer_->closed();
   if (shared.stop_asked() || (closed && ends_with_viewer_)) {
     ended_ = true;

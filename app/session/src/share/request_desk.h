@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "share/shared_run.h"
 #include "share/viewer_process.h"
 #include "thimble/session/session.h"
 

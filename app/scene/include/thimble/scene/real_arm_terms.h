@@ -10,9 +10,10 @@
 #include "thimble/driver/discovery.h"
 #include "thimble/driver/result.h"
 #include "thimble/scene/real_arm_file.h"
-#include "thimble/scene/scene_file.h"
 
 namespace thimble::scene {
+
+struct Scene;
 
 /// The largest force that a feel check lets through, and that an arm gets which has passed none, N:
 /// enough to feel, too little to hurt. [chosen]

@@ -13,7 +13,7 @@ double dot(const std::array<double, 3>& a, const std::array<double, 3>& b) {
 
 }  // namespace
 
-void RunStatistics::operator()(const driver::TickRecord& record) noexcept {
+void RunStatistics::take(const driver::TickRecord& record) noexcept {
   work_.add(record.work_ns);
   lateness_.add(record.time_ns - record.due_ns);
   if (!record.fresh) ++missing_;

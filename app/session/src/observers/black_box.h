@@ -6,29 +6,30 @@
 #include <vector>
 
 #include "thimble/driver/tick_record.h"
+#include "thimble/session/tick_observer.h"
 
 namespace thimble::session {
 
-/// Always keeps the last seconds, and holds them when a fault comes until somebody has taken them;
-/// a sink for the servo loop. All memory is there and touched when it is made.
-class BlackBox {
+/// The last seconds of a run, held when a fault comes until somebody has taken them. All memory is
+/// there and touched when it is made.
+class BlackBox final : public TickObserver {
  public:
-  /// Is how long it looks back and on, s.
+  /// How long it looks back and on, s.
   static constexpr double kBefore = 8, kAfter = 0.5;
 
   /// Makes a box for a loop of `rate` Hz (> 0). Real-time: never from the servo thread.
   explicit BlackBox(double rate);
 
   /// Takes one tick. Real-time: safe.
-  void operator()(const driver::TickRecord& tick) noexcept;
+  void take(const driver::TickRecord& tick) noexcept override;
 
-  /// Tells whether a fault's seconds are ready to be taken. Real-time: safe.
+  /// Returns whether a fault's seconds are ready to be taken. Real-time: safe.
   bool full() const noexcept { return full_.load(std::memory_order_acquire); }
 
-  /// Gives the ticks around the fault, oldest first, and begins anew; none if no fault came. Beside
-  /// a running servo only while `full`; after its end at any time.
+  /// Returns the ticks around the fault, oldest first, and begins anew; none if no fault came.
+  /// Beside a running servo only while `full`; after its end at any time.
   /// Real-time: never from the servo thread.
-  std::vector<driver::TickRecord> take();
+  std::vector<driver::TickRecord> release();
 
  private:
   std::vector<driver::TickRecord> ticks_;

@@ -1,26 +1,9 @@
-#include "thimble/session/dent_record.h"
+#include "bent_mesh.h"
 
-#include <algorithm>
+#include <cstddef>
 #include <vector>
 
 namespace thimble::session {
-namespace {
-
-constexpr std::int64_t kFrame = 16'000'000;  // ns: a screen's 60 pictures a second
-
-}  // namespace
-
-DentRecord::DentRecord(std::int64_t period_ns)
-    : every_(static_cast<std::uint64_t>(std::max<std::int64_t>(1, kFrame / period_ns))) {}
-
-bool DentRecord::take(const driver::TickRecord& tick, render::SceneTouch& touch) noexcept {
-  if (tick.tick % every_ != 0 || !touch.draw(patch_)) return false;
-  newest_.store(patch_);
-  if (patch_.triangle_count == 0 || !(tick.depth > depth_)) return true;
-  depth_ = tick.depth;
-  deepest_ = patch_;
-  return true;
-}
 
 render::TriangleMesh bent(const render::TriangleMesh& mesh, const scene::MeshPlace& place,
                           const render::BodyPatch& patch) {

@@ -5,10 +5,12 @@
 #include <thread>
 
 #include "thimble/driver/real_time.h"
+#include "thimble/driver/result.h"
 #include "thimble/driver/servo_loop.h"
-#include "thimble/session/session.h"
 
 namespace thimble::session {
+
+class Session;
 
 /// The thread on which a run's servo loop runs. It asks for real-time priority when it is made, so
 /// that what the kernel grants is known before an arm is opened, and waits for the run.

@@ -1,4 +1,4 @@
-#include "recording/black_box.h"
+#include "observers/black_box.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@ BlackBox::BlackBox(double rate)
     : ticks_(static_cast<std::size_t>(std::ceil((kBefore + kAfter) * rate))),
       after_(static_cast<std::size_t>(std::ceil(kAfter * rate))) {}
 
-void BlackBox::operator()(const driver::TickRecord& tick) noexcept {
+void BlackBox::take(const driver::TickRecord& tick) noexcept {
   const bool faulty = tick.fault != driver::Fault::kNone;
   const bool begins = faulty && !faulty_;
   faulty_ = faulty;
@@ -24,7 +24,7 @@ void BlackBox::operator()(const driver::TickRecord& tick) noexcept {
   }
 }
 
-std::vector<driver::TickRecord> BlackBox::take() {
+std::vector<driver::TickRecord> BlackBox::release() {
   std::vector<driver::TickRecord> kept;
   if (!fault_came_) return kept;
   const std::uint64_t count = std::min<std::uint64_t>(taken_, ticks_.size());

@@ -6,12 +6,13 @@
 #include <vector>
 
 #include "thimble/driver/tick_record.h"
+#include "thimble/session/tick_observer.h"
 
 namespace thimble::session {
 
-/// Keeps the records of a run for pictures and files; a sink for the servo loop. All memory is
-/// there and touched when it is made, so that no page is missing later.
-class Trace {
+/// The ticks of a run, for pictures and files. All memory is there and touched when it is made, so
+/// that no page is missing later.
+class Trace final : public TickObserver {
  public:
   static constexpr std::size_t kDefaultRowsMax = 1'000'000;
 
@@ -20,15 +21,15 @@ class Trace {
   explicit Trace(std::uint64_t expected_ticks, std::size_t rows_max = kDefaultRowsMax);
 
   /// Keeps a record if its turn has come and there is room. Real-time: safe.
-  void operator()(const driver::TickRecord& record) noexcept;
+  void take(const driver::TickRecord& record) noexcept override;
 
-  /// Tells the records kept, oldest first.
+  /// Returns the records kept, oldest first.
   std::span<const driver::TickRecord> rows() const noexcept { return {rows_.data(), kept_}; }
 
-  /// Tells that every n-th tick is kept.
+  /// Returns n where every n-th tick is kept.
   std::uint64_t stride() const noexcept { return stride_; }
 
-  /// Tells how many records had their turn but found no room, because the run went on for longer
+  /// Returns how many records had their turn but found no room, because the run went on for longer
   /// than expected.
   std::uint64_t dropped() const noexcept { return dropped_; }
 

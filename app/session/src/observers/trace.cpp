@@ -1,4 +1,4 @@
-#include "thimble/session/trace.h"
+#include "observers/trace.h"
 
 #include <algorithm>
 
@@ -14,7 +14,7 @@ Trace::Trace(std::uint64_t expected_ticks, std::size_t rows_max) {
   rows_.resize((expected_ticks + stride_ - 1) / stride_);
 }
 
-void Trace::operator()(const driver::TickRecord& record) noexcept {
+void Trace::take(const driver::TickRecord& record) noexcept {
   if (until_next_ > 0) {
     --until_next_;
     return;
