@@ -27,7 +27,7 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "gnuplot-nox, valgrind")
 string(CONCAT CPACK_DEBIAN_DEV_PACKAGE_DEPENDS
     "thimble (= ${PROJECT_VERSION}), libeigen3-dev, libusb-1.0-0-dev, libhidapi-dev, libassimp-dev, libpng-dev, "
-    "libyaml-cpp-dev, libhdf5-dev, pkg-config")
+    "libyaml-cpp-dev, libhdf5-dev, libfmt-dev, pkg-config")
 set(CPACK_COMPONENT_PROGRAM_DESCRIPTION
 "touch virtual objects by a force-feedback arm, real or simulated
 Thimble drives 3-DOF force-feedback arms on USB, simulates them where there is

@@ -12,7 +12,6 @@
 #include <string>
 #include <vector>
 
-#include "report/report.h"
 #include "scene_run.h"
 #include "simulator_session.h"
 #include "stability/tuning.h"
@@ -54,7 +53,7 @@ const char* numpy_type(const session::RecordingColumn& column) {
   return "";
 }
 
-/// Gives numpy's type of a tick: the columns of a recording, by the same names.
+/// Returns numpy's type of a tick: the columns of a recording, by the same names.
 py::dtype tick_type() {
   py::list names, formats, offsets;
   for (const session::RecordingColumn& column : session::recording_columns()) {
@@ -78,7 +77,7 @@ py::object one(const TickRecord& tick) {
   return array_of({&tick, 1})[py::int_(0)];
 }
 
-/// Is a force law written in Python, on the virtual clock: there a tick may last as long as it
+/// A force law written in Python, on the virtual clock: there a tick may last as long as it
 /// likes. Whatever goes wrong in it is zero force, the end of the run, and that error to whoever
 /// ran it.
 class PythonLaw {
@@ -90,7 +89,7 @@ class PythonLaw {
     const py::gil_scoped_acquire python;
     try {
       if (error_) throw ThimbleError("The law has failed before.");
-      const py::object answer = law_(one(seen(state, command)));
+      const py::object answer = law_(one(driver::record_of(state, command)));
       if (!answer.is_none()) {
         const auto force = py::array_t<double, py::array::forcecast>::ensure(answer);
         if (!force || force.ndim() != 1 || force.shape(0) != 3) {
@@ -116,36 +115,12 @@ class PythonLaw {
   }
 
  private:
-  static TickRecord seen(const driver::DeviceState& state, const driver::ForceCommand& command) {
-    const auto plain = [](const Eigen::Vector3d& v) {
-      return std::array<double, 3>{v.x(), v.y(), v.z()};
-    };
-    TickRecord tick;
-    tick.tick = state.tick;
-    tick.time_ns = tick.due_ns = state.time_ns;
-    tick.counts = state.counts;
-    tick.q = plain(state.q);
-    tick.p_WT = plain(state.p_WT);
-    tick.v_WT = plain(state.v_WT);
-    tick.p_WP = plain(command.touch.p_WP);
-    tick.n_W = plain(command.touch.n_W);
-    tick.f_wanted_W = plain(command.f_T_W);
-    tick.depth = command.touch.depth;
-    tick.feature = command.touch.feature;
-    tick.object = command.touch.object;
-    tick.hops = command.touch.hops;
-    tick.buttons = state.buttons;
-    tick.in_contact = command.touch.in_contact;
-    tick.fresh = state.fresh;
-    return tick;
-  }
-
   py::function law_;
   SceneRun& run_;
   std::exception_ptr error_;
 };
 
-/// Is a run with the law that Python gave it, if it did.
+/// A run with the law that Python gave it, if it did.
 struct HeldRun {
   explicit HeldRun(const RunOptions& options, const py::object& own_law)
       : run((py::gil_scoped_release(), std::make_unique<SceneRun>(options))) {
@@ -169,18 +144,6 @@ struct HeldRun {
   std::unique_ptr<PythonLaw> law;
   std::unique_ptr<SceneRun> run;
 };
-
-const char* name_of(driver::ServoEnd end) {
-  switch (end) {
-    case driver::ServoEnd::kDone:
-      return "done";
-    case driver::ServoEnd::kStopped:
-      return "stopped";
-    case driver::ServoEnd::kFault:
-      return "fault";
-  }
-  return "";
-}
 
 void run_all(HeldRun& held) {
   bool interrupted = false;
@@ -248,9 +211,9 @@ py::dict info_of(const session::RecordingInfo& info) {
   return told;
 }
 
-py::list figures_of(const HeldRun& held) {
+py::list figures_of(HeldRun& held) {
   py::list figures;
-  for (const app::Figure& figure : app::figures_of(held.run->figures())) {
+  for (const session::Figure& figure : session::figures_of(held.run->figures())) {
     py::dict one;
     one["name"] = figure.name;
     one["value"] = figure.value;
@@ -331,7 +294,7 @@ void bind_run(py::module_& core) {
              return one(tick);
            })
       .def("mesh", &mesh_of, py::arg("object") = py::none())
-      .def("summary", [](const HeldRun& held) { return app::summary(held.run->figures()); })
+      .def("summary", [](HeldRun& held) { return session::summary(held.run->figures()); })
       .def("figures", &figures_of)
       .def("warnings",
            [](const HeldRun& held) { return app::stability_warnings(held.run->session().scene()); })
@@ -339,9 +302,10 @@ void bind_run(py::module_& core) {
            [](const HeldRun& held) { return info_of(held.run->session().recording_info()); })
       .def_property_readonly("running", [](const HeldRun& held) { return held.run->running(); })
       .def_property_readonly("end",
-                             [](const HeldRun& held) -> py::object {
+                             [](HeldRun& held) -> py::object {
                                const auto end = held.run->end();
-                               return end ? py::object(py::str(name_of(*end))) : py::none();
+                               return end ? py::object(py::str(std::string(driver::name(*end))))
+                                          : py::none();
                              })
       .def_property_readonly("stride",
                              [](const HeldRun& held) { return held.run->session().stride(); })

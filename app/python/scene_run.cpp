@@ -60,11 +60,13 @@ session::SessionOptions session_options(const RunOptions& options) {
         " would get forces. Keep clear of it, hold its grip, keep its switch at hand, and "
         "say agree=True.");
   }
-  if (!options.arm_file.empty()) asked.arm_file = value_of(scene::find_arm_file(options.arm_file));
+  asked.arm_file = options.arm_file;
   if (asked.real_arm) {
-    asked.terms = value_of(scene::terms_for(*asked.real_arm, {.arm_file = asked.arm_file,
-                                                              .firmware = options.firmware,
-                                                              .unchecked = options.unchecked}));
+    const auto named = options.arm_file.empty() ? std::filesystem::path()
+                                                : value_of(scene::find_arm_file(options.arm_file));
+    asked.terms = value_of(scene::terms_for(
+        *asked.real_arm,
+        {.arm_file = named, .firmware = options.firmware, .unchecked = options.unchecked}));
     tell(asked.terms->told);
   }
   if (asked.real_arm) {  // asked on a thread that goes again, before the arm is opened
@@ -77,7 +79,6 @@ session::SessionOptions session_options(const RunOptions& options) {
   asked.clock = real_time ? session::ClockKind::kWall : session::ClockKind::kVirtual;
   asked.duration = options.seconds;
   asked.seed = options.seed;
-  asked.mesh_folder = scene::mesh_folder();
   asked.firmware = options.firmware;
   asked.record = options.record;
   asked.adjust = [&options](scene::Scene& scene) {
@@ -89,14 +90,23 @@ session::SessionOptions session_options(const RunOptions& options) {
 }  // namespace
 
 SceneRun::SceneRun(const RunOptions& options)
-    : session_(value_of(session::Session::open(value_of(scene::find_scene(options.scene)),
-                                               session_options(options)))) {
+    : session_(value_of(session::Session::open(options.scene, session_options(options)))) {
   tell(session_->told());
 }
 
 SceneRun::~SceneRun() {
   stop_.store(true);
-  if (servo_.joinable()) servo_.join();
+  servo_.reset();
+}
+
+bool SceneRun::running() const noexcept {
+  return servo_ && !servo_->ended();
+}
+
+std::optional<driver::ServoEnd> SceneRun::end() noexcept {
+  if (running()) return {};
+  if (servo_) end_ = servo_->join();
+  return end_;
 }
 
 bool SceneRun::step() {
@@ -123,19 +133,15 @@ void SceneRun::run(const std::function<bool()>& stop_asked) {
 
 void SceneRun::start() {
   if (!session_->real_time()) throw ThimbleError("A run in virtual time has no thread.");
-  if (servo_.joinable() || end_) throw ThimbleError("This run has begun before.");
-  running_.store(true);
-  awake_ = std::make_unique<driver::CpuLatencyRequest>();
-  servo_ = std::thread([this] {
-    grant_ = driver::enter_real_time();
-    end_ = session_->run(stop_);
-    running_.store(false);
-  });
+  if (servo_ || end_) throw ThimbleError("This run has begun before.");
+  servo_ = std::make_unique<session::ServoThread>(true);
+  grant_ = servo_->grant();
+  servo_->begin(*session_, stop_);
 }
 
 void SceneRun::stop() {
   ask_to_stop();
-  if (servo_.joinable()) servo_.join();
+  if (servo_) end_ = servo_->join();
   if (!session_->real_time() && !end_) {
     const Claim claim(busy_);
     take_step();
@@ -147,7 +153,7 @@ void SceneRun::stop() {
 void SceneRun::finish() {
   if (finished_) return;
   finished_ = true;
-  awake_.reset();
+  servo_.reset();  // no longer keeps the processor awake
   if (const auto kept = session_->keep_black_box(); kept && *kept) {
     std::fprintf(stderr, "thimble: the last seconds before the fault are in %s\n",
                  (*kept)->c_str());
@@ -161,8 +167,8 @@ std::span<const driver::TickRecord> SceneRun::ticks() const {
   return session_->ticks();
 }
 
-session::RunFigures SceneRun::figures() const {
-  if (!end_ || running()) throw ThimbleError("The run is not over: nothing to sum up yet.");
+session::RunFigures SceneRun::figures() {
+  if (!end()) throw ThimbleError("The run is not over: nothing to sum up yet.");
   return session_->figures(grant_);
 }
 

@@ -98,7 +98,7 @@ TEST(TinCanScene, SnapsTwiceAndRollsMeanwhile) {
   ASSERT_TRUE(session);
   ASSERT_EQ(session->run(std::atomic<bool>{false}), driver::ServoEnd::kDone);
   EXPECT_EQ(session->touch().object(0).shape()->snap()->snaps(), 2);
-  scene::ScenePoses poses;
+  session::ScenePoses poses;
   ASSERT_TRUE(session->records().poses);
   poses = session->records().poses->now();
   ASSERT_EQ(poses.count, 1u);
@@ -111,7 +111,7 @@ TEST(FloatingBlockScene, DriftsAndTurns) {
   const auto session = support::open_shipped("floating_block");
   ASSERT_TRUE(session);
   ASSERT_EQ(session->run(std::atomic<bool>{false}), driver::ServoEnd::kDone);
-  scene::ScenePoses poses;
+  session::ScenePoses poses;
   ASSERT_TRUE(session->records().poses);
   poses = session->records().poses->now();
   ASSERT_EQ(poses.count, 1u);

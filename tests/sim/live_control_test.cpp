@@ -267,7 +267,7 @@ TEST(LiveControl, ShowsShapedAndMovedObjectsWhereTheyAre) {
   const auto block = open(shipped("floating_block"), options);
   const auto watcher = reader_of(*block);
   block->run(std::atomic<bool>{false});
-  scene::ScenePoses seen, real;
+  session::ScenePoses seen, real;
   ASSERT_TRUE(watcher->poses(seen));
   ASSERT_TRUE(block->records().poses);
   real = block->records().poses->now();

@@ -97,7 +97,7 @@ TEST(PagedScene, IsTouchedOnTheWallClockWithALoaderOfItsOwn) {
   EXPECT_GT(session.setup().objects().paging()->loads, 0u);
   session::RunFigures report;
   report.paging = session.figures().paging;
-  EXPECT_NE(app::summary(report).find("read from the disk"), std::string::npos);
+  EXPECT_NE(session::summary(report).find("read from the disk"), std::string::npos);
 }
 
 }  // namespace

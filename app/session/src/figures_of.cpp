@@ -20,13 +20,7 @@ RunFigures figures_of(const Setup& setup, const RunRecords& records, driver::Ser
   figures.rate_asked = setup.scene().rate;
   figures.force_limit = setup.scene().arm.limits.force_max;
   figures.triangles = setup.objects().triangles();
-  if (const auto paging = setup.objects().paging()) {
-    figures.paging = {.loads = paging->loads,
-                      .evictions = paging->evictions,
-                      .failures = paging->failures,
-                      .misses = paging->misses,
-                      .short_of_frames = paging->short_of_frames};
-  }
+  figures.paging = setup.objects().paging();
   figures.statistics = records.statistics;
   figures.lost_contacts = count_lost_contacts(records.trace.rows(), setup.objects().touch());
   figures.wire = device.wire_counters();

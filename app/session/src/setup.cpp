@@ -6,12 +6,12 @@
 #include <cstdio>
 #include <utility>
 
+#include "scene_poses.h"
 #include "text_file.h"
 #include "thimble/scene/build_info.h"
 #include "thimble/scene/device_settings.h"
 #include "thimble/scene/hand_route.h"
 #include "thimble/scene/real_arm.h"
-#include "thimble/scene/scene_poses.h"
 #include "thimble/scene/shipped_files.h"
 
 namespace thimble::session {
@@ -44,9 +44,9 @@ driver::Result<std::unique_ptr<Setup>> Setup::prepare(const std::filesystem::pat
   auto objects = scene::SceneObjects::build(setup->scene_);
   if (!objects) return objects.error();
   setup->objects_ = std::move(objects).value();
-  if (setup->objects_->moving().size() > scene::ScenePoses::kMost) {
+  if (setup->objects_->moving().size() > ScenePoses::kMost) {
     return driver::Error{fmt::format("{}: at most {} objects may move.",
-                                     setup->scene_file_.string(), scene::ScenePoses::kMost)};
+                                     setup->scene_file_.string(), ScenePoses::kMost)};
   }
   if (!options.real_arm) {
     if (auto simulated = setup->simulate_arm(); !simulated) return simulated.error();

@@ -3,9 +3,9 @@
 #include <cstddef>
 #include <span>
 
+#include "scene_poses.h"
 #include "thimble/driver/tick_record.h"
 #include "thimble/render/scene_touch.h"
-#include "thimble/scene/scene_poses.h"
 #include "thimble/session/tick_observer.h"
 
 namespace thimble::session {
@@ -29,12 +29,12 @@ class PoseRecord final : public TickObserver {
   }
 
   /// Returns the poses. On the servo's thread, or after the run.
-  const scene::ScenePoses& now() const noexcept { return poses_; }
+  const ScenePoses& now() const noexcept { return poses_; }
 
  private:
   const render::SceneTouch& touch_;
   std::span<const std::size_t> moving_;
-  scene::ScenePoses poses_;
+  ScenePoses poses_;
 };
 
 }  // namespace thimble::session

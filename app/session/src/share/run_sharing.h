@@ -6,9 +6,9 @@
 
 #include "body/shape/body_shape.h"
 #include "drawn_dent.h"
+#include "scene_poses.h"
 #include "share/shared_run.h"
 #include "thimble/driver/tick_record.h"
-#include "thimble/scene/scene_poses.h"
 #include "thimble/session/tick_observer.h"
 
 namespace thimble::session {
@@ -25,8 +25,8 @@ class RunSharing final : public TickObserver {
   /// What moves in the scene; all of it must outlive the sharing, and is brought up to a tick by
   /// observers that come before.
   struct Moving {
-    const DrawnDent* dent = nullptr;           ///< Null if no object dents.
-    const scene::ScenePoses* poses = nullptr;  ///< Null if no object moves.
+    const DrawnDent* dent = nullptr;    ///< Null if no object dents.
+    const ScenePoses* poses = nullptr;  ///< Null if no object moves.
     std::vector<Shaped> shaped;
   };
 

@@ -5,25 +5,19 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "thimble/driver/device.h"
 #include "thimble/driver/fault.h"
 #include "thimble/driver/real_time.h"
 #include "thimble/driver/safety_gate.h"
 #include "thimble/driver/servo_loop.h"
+#include "thimble/render/page/paging_counters.h"
 #include "thimble/scene/real_arm_terms.h"
+#include "thimble/session/figure.h"
 #include "thimble/session/run_statistics.h"
 
 namespace thimble::session {
-
-/// What paging did for the objects of a run that lie on the disk.
-struct PagingFigures {
-  std::uint64_t loads = 0;            ///< Pages read from the disk.
-  std::uint64_t evictions = 0;        ///< Pages given up for others.
-  std::uint64_t failures = 0;         ///< Pages that could not be read or are damaged.
-  std::uint64_t misses = 0;           ///< Ticks that needed a page which was absent.
-  std::uint64_t short_of_frames = 0;  ///< Times that more pages were wanted than there are frames.
-};
 
 /// The figures of a run: what ran, how it went and how it ended. Plain data, of which reports,
 /// tables and files are made.
@@ -42,7 +36,7 @@ struct RunFigures {
   RunStatistics statistics;
   std::uint64_t lost_contacts = 0;  ///< Stretches inside an object without a force (checked after).
   double current_at_exit = 0;       ///< Largest motor current after the end, A (simulated arm).
-  std::optional<PagingFigures> paging;  ///< Of objects on the disk, if there are any.
+  std::optional<render::PagingCounters> paging;  ///< Of objects on the disk, if there are any.
   driver::WireCounters wire;
   driver::GateCounters gate;
   driver::EnergyStage energy_stage = driver::EnergyStage::kNone;
@@ -58,5 +52,11 @@ struct RunFigures {
   std::uint64_t trace_stride = 1;              ///< Every n-th tick is in the trace.
   std::uint64_t trace_dropped = 0;             ///< Ticks that found no room there.
 };
+
+/// Returns the figures that a run stands for, with their goals: what figures.json holds.
+std::vector<Figure> figures_of(const RunFigures& run);
+
+/// Returns a run in plain words, about ten lines, for somebody who sees it for the first time.
+std::string summary(const RunFigures& run);
 
 }  // namespace thimble::session

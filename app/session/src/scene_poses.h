@@ -7,7 +7,7 @@
 
 #include "thimble/render/body_pose.h"
 
-namespace thimble::scene {
+namespace thimble::session {
 
 /// Where the moving objects of a scene are after one tick, for readers at the side. The driver's
 /// TickRecord knows no bodies; this stands beside it, and only for scenes that have some.
@@ -21,4 +21,4 @@ struct ScenePoses {
 };
 static_assert(std::is_trivially_copyable_v<ScenePoses>);
 
-}  // namespace thimble::scene
+}  // namespace thimble::session
