@@ -2,9 +2,9 @@
 #include <string>
 #include <vector>
 
-#include "build_info.h"
 #include "cli/commands.h"
 #include "cli/exit_code.h"
+#include "thimble/scene/build_info.h"
 
 namespace thimble::app {
 namespace {

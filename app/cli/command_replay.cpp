@@ -1,4 +1,5 @@
-#include <cinttypes>
+#include <fmt/format.h>
+
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -7,20 +8,19 @@
 #include <string>
 #include <vector>
 
-#include "build_info.h"
 #include "cli/commands.h"
 #include "cli/complain.h"
 #include "cli/file_options.h"
-#include "recording/read_recording.h"
-#include "recording/recording_file.h"
-#include "recording/replay.h"
+#include "place_mesh.h"
 #include "recording/replay_trajectory.h"
 #include "recording/trajectory_file.h"
 #include "text_file.h"
 #include "thimble/render/mesh/load_mesh.h"
-#include "thimble/scene/meshes.h"
+#include "thimble/scene/build_info.h"
 #include "thimble/scene/scene_file.h"
 #include "thimble/scene/scene_objects.h"
+#include "thimble/scene/shipped_files.h"
+#include "thimble/session/recording.h"
 
 namespace thimble::app {
 namespace {
@@ -34,27 +34,6 @@ struct ReplayOptions {
   std::string length = "m", time = "s";
   std::string frame;
 };
-
-/// Says what keeps a replay from being the same run again; nothing if it must be the same.
-driver::Result<void> comparable(const session::Recording& recording,
-                                const std::string& scene_file) {
-  if (session::first_gap(recording.ticks)) {
-    return driver::Error{
-        "--verify: ticks are missing in the recording, because the disk was slow."};
-  }
-  if (!recording.ticks.empty() && recording.ticks.front().tick != 0) {
-    return driver::Error{"--verify: the recording does not begin with the run's first tick."};
-  }
-  if (scene::text_of(scene_file) != recording.info.scene_text) {
-    return driver::Error{"--verify: " + scene_file +
-                         " is not the scene that was recorded; it has been changed since."};
-  }
-  if (scene::program_name() != recording.info.program) {
-    return driver::Error{"--verify: recorded by " + recording.info.program + ", this is " +
-                         scene::program_name() + "; only the same build promises the same bits."};
-  }
-  return {};
-}
 
 /// Tells a recording from a text: by the first byte of an HDF5 file [HDF5 file format, superblock].
 bool is_recording(const std::string& file) {
@@ -122,7 +101,7 @@ int replay_probe(const ReplayOptions& options) {
   }
   auto trajectory = session::read_trajectory(options.file, form);
   if (!trajectory) return complain(trajectory.error(), kExitBadInput);
-  const auto scene = scene::read_scene(options.scene, scene::mesh_folder(), {});
+  const auto scene = scene::load_scene(options.scene);
   if (!scene) return complain(scene.error(), kExitBadInput);
   if (auto placed = into_world(*trajectory, *scene, options.frame); !placed) {
     return complain(placed.error(), kExitBadInput);
@@ -162,39 +141,27 @@ int replay_recording(const ReplayOptions& options) {
   if (!is_recording(options.file)) return replay_probe(options);
   const auto recording = session::read_recording(options.file);
   if (!recording) return complain(recording.error(), kExitBadInput);
-  const std::string scene_file = options.scene.empty() ? recording->info.scene_file : options.scene;
   if (options.verify) {
-    if (auto same = comparable(*recording, scene_file); !same) {
-      return complain(same.error(), kExitBadInput);
+    if (auto same = session::check_repeatable(*recording, options.scene); !same) {
+      return complain({"--verify: " + same.error().message}, kExitBadInput);
     }
   }
-  const auto scene = scene::read_scene(scene_file, scene::mesh_folder(), recording->info.arm_file);
-  if (!scene) return complain(scene.error(), kExitBadInput);
-  auto objects = scene::SceneObjects::build(*scene);
-  if (!objects) return complain(objects.error(), kExitBadInput);
-
-  std::vector<driver::TickRecord> felt;
-  felt.reserve(recording->ticks.size());
-  const session::ReplayComparison compared = session::replay(
-      recording->ticks, **objects, [&](const driver::TickRecord& tick) { felt.push_back(tick); });
-  std::printf("%s: %" PRIu64 " ticks of %s by the recorded hand; ", options.file.c_str(),
-              compared.ticks, scene->name.c_str());
+  auto replay = session::replay(*recording, options.scene);
+  if (!replay) return complain(replay.error(), kExitBadInput);
+  const session::ReplayComparison& compared = replay->compared;
+  fmt::print("{}: {} ticks of {} by the recorded hand; ", options.file, compared.ticks,
+             replay->felt.info.scene);
   if (compared.differing == 0) {
-    std::printf("every force is the recorded one to the bit.\n");
+    fmt::print("every force is the recorded one to the bit.\n");
   } else {
-    std::printf("%" PRIu64 " forces differ from the recorded ones, first in tick %" PRIu64
-                ", by %.3g N at most.\n",
-                compared.differing, *compared.first, compared.largest);
+    fmt::print("{} forces differ from the recorded ones, first in tick {}, by {:.3g} N at most.\n",
+               compared.differing, *compared.first, compared.largest);
   }
   if (!options.record.empty()) {
-    session::RecordingInfo info = recording->info;
-    info.scene = scene->name;
-    info.scene_file = scene_file;
-    info.scene_text = scene::text_of(scene_file);
-    info.program = scene::program_name();
-    info.device = "replay of " + options.file;
-    info.clock = "virtual";
-    if (auto written = session::write_recording(options.record, info, felt); !written) {
+    replay->felt.info.device = "replay of " + options.file;
+    if (auto written =
+            session::write_recording(options.record, replay->felt.info, replay->felt.ticks);
+        !written) {
       return complain(written.error(), kExitTrouble);
     }
   }

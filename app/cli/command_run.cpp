@@ -19,23 +19,23 @@
 #include "interrupt.h"
 #include "log/console.h"
 #include "log/logger.h"
-#include "recording/write_black_box.h"
 #include "replug_watch.h"
 #include "report/pictures.h"
 #include "report/report.h"
-#include "report/session_report.h"
-#include "servo_thread.h"
+#include "run_records.h"
+#include "setup.h"
 #include "share/request_desk.h"
 #include "share/viewer_process.h"
 #include "stability/tuning.h"
+#include "start_pose.h"
 #include "thimble/driver/heat_guard.h"
 #include "thimble/render/mesh/save_mesh.h"
-#include "thimble/scene/meshes.h"
 #include "thimble/scene/quality.h"
 #include "thimble/scene/real_arm.h"
+#include "thimble/scene/scene_file.h"
 #include "thimble/scene/shipped_files.h"
+#include "thimble/session/servo_thread.h"
 #include "thimble/session/session.h"
-#include "thimble/session/start_pose.h"
 
 namespace thimble::app {
 namespace {
@@ -66,13 +66,11 @@ struct RunOptions {
 
 /// Writes the seconds around a fault, if one came, where a person finds them.
 void keep_black_box(session::Session& session) {
-  const auto ticks = session.black_box().take();
-  if (ticks.empty()) return;
-  const auto written = session::write_black_box(ticks, session.recording_info());
-  if (written) {
-    scene::logger().warn("the last seconds before the fault are in {}", written->string());
-  } else {
-    complain(written.error(), kExitTrouble);
+  const auto kept = session.keep_black_box();
+  if (!kept) {
+    complain(kept.error(), kExitTrouble);
+  } else if (*kept) {
+    scene::logger().warn("the last seconds before the fault are in {}", (*kept)->string());
   }
 }
 
@@ -82,15 +80,15 @@ void show_progress(session::Session& session, const session::ServoThread& servo,
                    session::ReplugWatch* watch, session::RequestDesk* desk) {
   const bool on_terminal = isatty(STDERR_FILENO) != 0;
   bool warned_of_heat = false;
-  const double total = static_cast<double>(session.ticks_planned()) *
-                       static_cast<double>(session.period_ns()) * 1e-9;
+  const double total = static_cast<double>(session.setup().ticks()) *
+                       static_cast<double>(session.setup().period_ns()) * 1e-9;
   while (!servo.ended()) {
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
     if (watch != nullptr) watch->step();
     if (desk != nullptr) desk->step();
-    if (session.black_box().full()) keep_black_box(session);
+    if (session.records().black_box.full()) keep_black_box(session);
     driver::TickRecord record;
-    if (!session.snapshot().load(record)) continue;
+    if (!session.newest().load(record)) continue;
     const double heat = *std::max_element(record.heat.begin(), record.heat.end());
     if (heat >= driver::HeatGuard::kWarning && !warned_of_heat) {
       warned_of_heat = true;
@@ -141,9 +139,9 @@ driver::Result<bool> open_arm(session::Session& session, const RunOptions& optio
                               const std::atomic<bool>& stop) {
   if (auto opened = session.open_arm(); !opened) return opened.error();
   if (!real) return true;
-  auto placed =
-      session::wait_for_start_pose(session.device(), session.clock(), session.start_pose(),
-                                   !options.homed, session::user_terminal(), stop);
+  auto placed = session::wait_for_start_pose(session.device(), session.setup().clock(),
+                                             session.setup().start_pose(), !options.homed,
+                                             session::user_terminal(), stop);
   if (!placed || !*placed) return placed;
   if (auto activated = session.activate(); !activated) return activated.error();
   return true;
@@ -255,8 +253,7 @@ int run_scene(const RunOptions& options) {
   tell(session.told());
   // Whoever leaves before the run leaves a recording that is whole, with no tick in it.
   const auto leave = [&session](int code) {
-    if (const auto ended = session.recording().stop(); !ended)
-      complain(ended.error(), kExitTrouble);
+    if (const auto ended = session.end_recording(); !ended) complain(ended.error(), kExitTrouble);
     return code;
   };
   for (const std::string& warning : stability_warnings(session.scene())) {
@@ -278,7 +275,7 @@ int run_scene(const RunOptions& options) {
   if (!servo.grant().advice.empty()) scene::logger().warn("{}", servo.grant().advice);
   if (stop.load()) return leave(kExitInterrupted);
   if (real_arm) {
-    const bool at_home = !options.homed && session.start_pose().has_home();
+    const bool at_home = !options.homed && session.setup().start_pose().has_home();
     if (!may_begin(*real_arm, at_home, options.yes, stop)) {
       return leave(stop.load() ? kExitInterrupted : kExitBadInput);
     }
@@ -291,7 +288,7 @@ int run_scene(const RunOptions& options) {
   }
   if (!*open) return leave(kExitInterrupted);
   std::optional<session::ReplugWatch> watch;
-  if (real_arm) watch.emplace(session::replug_watch_of(session, *real_arm, options.firmware));
+  if (real_arm) watch.emplace(session::replug_watch_of(session));
 
   servo.begin(session, stop);
   show_progress(session, servo, watch ? &*watch : nullptr, desk.get());
@@ -300,19 +297,16 @@ int run_scene(const RunOptions& options) {
 
   // The touch went on, whatever became of the recording; who asked for one shall hear of it.
   int exit_code_when_done = kExitDone;
-  if (session::Recorder* recorder = session.recording().recorder()) {
-    const std::string path = recorder->path();
-    if (const auto finished = session.recording().stop(); !finished) {
-      exit_code_when_done = complain(finished.error(), kExitTrouble);
-    } else {
-      std::printf("Recording: %s\n", path.c_str());
-    }
+  if (const auto recorded = session.end_recording(); !recorded) {
+    exit_code_when_done = complain(recorded.error(), kExitTrouble);
+  } else if (*recorded) {
+    std::printf("Recording: %s\n", (*recorded)->c_str());
   }
   std::fflush(stdout);
   // Zero force is out and the recording closed; who is impatient may kill what follows. Not so
   // where the arm took no zero.
   if (session.device().zero_assured()) guard.reset();
-  const RunReport report = report_of(session, end, servo.grant());
+  const session::RunFigures report = session.figures(servo.grant());
   std::printf("%s", summary(report).c_str());
   if (!options.report.empty()) {
     const std::filesystem::path folder = options.report;
@@ -323,15 +317,15 @@ int run_scene(const RunOptions& options) {
                            .period = 1 / report.rate_asked,
                            .period_times = &report.statistics.period(),
                            .work_times = &report.statistics.work()};
-    const auto drawn = draw_pictures(session.trace().rows(), session.mesh_W(), info, folder);
+    const auto drawn =
+        draw_pictures(session.ticks(), session.setup().objects().mesh_W(), info, folder);
     if (!drawn) {
       return complain(drawn.error(), kExitTrouble);
     }
-    if (session.dents() != nullptr && session.dents()->deepest().triangle_count > 0) {
-      render::TriangleMesh bent = session.bent_mesh_W();
-      for (Eigen::Vector3d& vertex : bent.vertices) vertex *= 1e3;
+    if (auto bent = session.deepest_dent()) {
+      for (Eigen::Vector3d& vertex : bent->vertices) vertex *= 1e3;
       const auto dent =
-          draw_mesh(bent, folder / "dent.png", report.scene + ": the deepest dent", "mm");
+          draw_mesh(*bent, folder / "dent.png", report.scene + ": the deepest dent", "mm");
       if (!dent) return complain(dent.error(), kExitTrouble);
     }
     std::printf("Report and pictures: %s\n", folder.c_str());

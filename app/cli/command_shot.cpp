@@ -7,7 +7,7 @@
 #include "cli/commands.h"
 #include "cli/complain.h"
 #include "cli/file_options.h"
-#include "thimble/scene/meshes.h"
+#include "thimble/scene/shipped_files.h"
 #include "view/gl/animated_picture_file.h"
 #include "view/gl/offscreen_context.h"
 #include "view/gl/picture_file.h"

@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "build_info.h"
+#include "thimble/scene/build_info.h"
 #include "log/logger.h"
 
 namespace thimble::app {

@@ -2,12 +2,12 @@
 #include <exception>
 #include <string>
 
-#include "build_info.h"
 #include "cli/commands.h"
 #include "cli/exit_code.h"
 #include "cli/log_options.h"
 #include "interrupt.h"
 #include "log/logger.h"
+#include "thimble/scene/build_info.h"
 
 namespace {
 

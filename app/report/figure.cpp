@@ -5,23 +5,8 @@
 #include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 namespace thimble::app {
-
-bool Figure::met() const {
-  if (goal.empty()) return true;
-  std::istringstream text(goal);
-  std::string comparison;
-  double bound = 0;
-  if (!(text >> comparison >> bound)) return false;
-  if (comparison == ">=") return value >= bound;
-  if (comparison == "<=") return value <= bound;
-  if (comparison == "==") return value == bound;
-  if (comparison == ">") return value > bound;
-  if (comparison == "<") return value < bound;
-  return false;
-}
 
 driver::Result<void> write_figures(const std::vector<Figure>& figures,
                                    const std::filesystem::path& file) {

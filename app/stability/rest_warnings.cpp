@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "energy_choice.h"
 #include "mesh/adjacency.h"
 #include "stability/draw.h"
 #include "stability/tuning.h"

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <limits>
 
+#include "energy_choice.h"
 #include "stability/rest_warnings.h"
 #include "stability/wall_trial.h"
-#include "thimble/scene/energy_choice.h"
 
 namespace thimble::app {
 namespace {

@@ -7,8 +7,8 @@
 #include <memory>
 #include <string>
 
-#include "servo_thread.h"
-#include "thimble/scene/meshes.h"
+#include "thimble/scene/shipped_files.h"
+#include "thimble/session/servo_thread.h"
 #include "thimble/session/session.h"
 
 namespace thimble::app {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "thimble/session/dent_record.h"
+#include "bent_mesh.h"
 #include "view/gl/shaders.h"
 
 namespace thimble::app::view {

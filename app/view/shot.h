@@ -34,7 +34,6 @@ class PlayedScene {
   void play(const std::vector<double>& times, const Look& look);
 
   const DrawnScene& drawn() const { return live_->scene(); }
-  std::int64_t period_ns() const { return session_->period_ns(); }
 
  private:
   PlayedScene() = default;

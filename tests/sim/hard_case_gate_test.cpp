@@ -7,12 +7,12 @@
 #include <cmath>
 #include <vector>
 
+#include "energy_choice.h"
 #include "stability/wall_trial.h"
 #include "support/hard_case.h"
 #include "support/wall_rig.h"
 #include "thimble/driver/safety_gate.h"
 #include "thimble/scene/arm_file.h"
-#include "thimble/scene/energy_choice.h"
 
 namespace thimble {
 namespace {
@@ -233,8 +233,7 @@ TEST(HardCase10, SymmetricSlewLimiterThrowsTheTipBack) {
 // Through the whole way: arm, board, wire, device and gate.
 
 scene::ArmFile vintage() {
-  auto arm =
-      scene::read_arm_file(std::string(THIMBLE_SOURCE_DIR) + "/app/arms/vintage_phantom.yaml");
+  auto arm = scene::load_arm(std::string(THIMBLE_SOURCE_DIR) + "/app/arms/vintage_phantom.yaml");
   if (!arm) throw std::runtime_error(arm.error().message);
   arm->simulated.hand.tremor_amplitude = 0;
   return *arm;

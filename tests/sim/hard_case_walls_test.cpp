@@ -11,11 +11,11 @@
 #include <limits>
 #include <string>
 
+#include "energy_choice.h"
 #include "stability/stability_laws.h"
 #include "support/hard_case.h"
 #include "support/random.h"
 #include "support/wall_rig.h"
-#include "thimble/scene/energy_choice.h"
 #include "thimble/scene/scene_file.h"
 
 namespace thimble {
@@ -391,7 +391,7 @@ TEST(HardCase07, ImpactOnAnyShippedSurfaceNeverGainsSpeedAtAnyPhase) {
   for (const auto& entry :
        std::filesystem::directory_iterator(std::string(THIMBLE_SOURCE_DIR) + "/app/scenes")) {
     if (entry.path().extension() != ".yaml") continue;
-    const auto scene = scene::read_scene(entry.path(), THIMBLE_MESHES);
+    const auto scene = scene::load_scene(entry.path(), {.mesh_folder = THIMBLE_MESHES});
     if (!scene) continue;  // a mesh is not installed; the walls of other scenes are the same
     const scene::ArmFile& arm = scene->arm;
     for (const scene::SceneObject& object : scene->objects) {

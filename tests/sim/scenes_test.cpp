@@ -11,9 +11,13 @@
 
 #include "lost_contacts.h"
 #include "mesh/adjacency.h"
+#include "run_records.h"
+#include "setup.h"
 #include "support/heap_guard.h"
 #include "support/run_hash.h"
 #include "support/shipped_scene.h"
+#include "thimble/render/scene_touch.h"
+#include "thimble/scene/scene_file.h"
 #include "thimble/session/session.h"
 
 // Every scene without a scanned mesh that comes with the program, from the wire up.
@@ -35,12 +39,12 @@ void PrintTo(const SceneRun& scene, std::ostream* out) {
 
 std::uint64_t hash_of(const session::Session& session) {
   support::RunHash hash;
-  for (const auto& row : session.trace().rows()) hash.add(row);
+  for (const auto& row : session.ticks()) hash.add(row);
   for (const Eigen::Vector3d& p : session.mesh_now().vertices) {
     for (const double x : p) hash.add(x);
   }
-  if (session.dents() != nullptr) {
-    const render::BodyPatch& dent = session.dents()->deepest();
+  if (session.records().dents != nullptr) {
+    const render::BodyPatch& dent = session.records().dents->deepest();
     for (std::size_t i = 0; i < dent.point_count; ++i) hash.add(dent.points[i].p);
     for (std::size_t i = 0; i < dent.point_count; ++i) hash.add(dent.points[i].n);
     for (std::size_t i = 0; i < dent.triangle_count; ++i) hash.add(dent.triangles[i]);
@@ -60,7 +64,7 @@ TEST_P(ShippedScene, RunsForItsWholeTimeAlikeEachTimeWithoutAFaultALostContactOr
     EXPECT_EQ(support::heap_calls_of([&] { end = session->run(std::atomic<bool>{false}); }), 0);
     EXPECT_EQ(end, driver::ServoEnd::kDone);
     EXPECT_EQ(session->device().fault(), driver::Fault::kNone);
-    EXPECT_EQ(session::count_lost_contacts(session->trace().rows(), session->touch()), 0u);
+    EXPECT_EQ(session::count_lost_contacts(session->ticks(), session->touch()), 0u);
     EXPECT_GT(session->statistics().force_max(), 0.3);
     EXPECT_LT(session->statistics().force_max(), session->scene().arm.limits.force_max);
     // What an ideal texture or field does not do, a loop of 1 kHz with a delay does a little
@@ -91,7 +95,7 @@ TEST(BoxScene, TurnsTheForceInWedgesButNotByTheEntryFace) {
   ASSERT_TRUE(session);
   ASSERT_EQ(session->run(std::atomic<bool>{false}), driver::ServoEnd::kDone);
   bool felt[2][6] = {};
-  for (const auto& row : session->trace().rows()) {
+  for (const auto& row : session->ticks()) {
     if (row.in_contact) felt[row.object][row.feature] = true;
   }
   constexpr int kRight = 3, kTop = 5;  // the user's right is y
@@ -107,17 +111,17 @@ TEST_P(DentedScene, ShowsItsDent) {
   const auto session = support::open_shipped(GetParam());
   ASSERT_TRUE(session);
   ASSERT_EQ(session->run(std::atomic<bool>{false}), driver::ServoEnd::kDone);
-  ASSERT_TRUE(session->dents());
-  const render::BodyPatch& dent = session->dents()->deepest();
+  ASSERT_TRUE(session->records().dents);
+  const render::BodyPatch& dent = session->records().dents->deepest();
   EXPECT_GT(dent.triangle_count, 11) << "6 in place of one and 2 of each neighbour, at least";
   EXPECT_EQ(dent.share, 1) << "drawn in full";
   EXPECT_EQ(dent.object, 0);
-  render::BodyPatch newest;
-  EXPECT_TRUE(session->dents()->newest().load(newest));
+  EXPECT_GT(session->records().dents->drawn().drawings, 0u);
   // The bent mesh is as closed as the one it came from.
-  const auto whole = session->bent_mesh_W();
-  EXPECT_GT(whole.triangles.size(), session->mesh_W().triangles.size());
-  EXPECT_TRUE(render::find_adjacency(whole));
+  const auto whole = session->deepest_dent();
+  ASSERT_TRUE(whole);
+  EXPECT_GT(whole->triangles.size(), session->setup().objects().mesh_W().triangles.size());
+  EXPECT_TRUE(render::find_adjacency(*whole));
 }
 
 INSTANTIATE_TEST_SUITE_P(ByName, DentedScene,
@@ -151,7 +155,7 @@ TEST(SoftCoarse, IsBoundedAtATenthAndAtTenTimesItsStiffness) {
     session::Session& session = **opened;
     EXPECT_EQ(session.run(std::atomic<bool>{false}), driver::ServoEnd::kDone);
     EXPECT_EQ(session.device().fault(), driver::Fault::kNone);
-    const render::BodyPatch& dent = session.dents()->deepest();
+    const render::BodyPatch& dent = session.records().dents->deepest();
     EXPECT_GT(dent.triangle_count, 11);
     for (std::size_t i = 0; i < dent.point_count; ++i) {
       for (const double x : dent.points[i].p) EXPECT_LT(std::abs(x), 0.15);

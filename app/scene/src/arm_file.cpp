@@ -10,9 +10,11 @@
 #include <string>
 #include <string_view>
 
+#include "energy_choice.h"
 #include "thimble/driver/arms/falcon/falcon_arm.h"
 #include "thimble/driver/arms/hfab/hfab_models.h"
-#include "thimble/scene/yaml_reader.h"
+#include "thimble/scene/shipped_files.h"
+#include "yaml/yaml_reader.h"
 
 namespace thimble::scene {
 namespace {
@@ -251,8 +253,10 @@ std::vector<driver::BoardKind> read_boards(YamlMap& root, ArmProtocol protocol) 
 
 }  // namespace
 
-driver::Result<ArmFile> read_arm_file(const std::filesystem::path& file) {
-  driver::Result<YamlFile> yaml = YamlFile::load(file);
+driver::Result<ArmFile> load_arm(const std::filesystem::path& meant) {
+  const auto file = find_arm_file(meant.string());
+  if (!file) return file.error();
+  driver::Result<YamlFile> yaml = YamlFile::load(*file);
   if (!yaml) return yaml.error();
   YamlMap& root = yaml->root();
   ArmFile arm;

@@ -1,5 +1,7 @@
 #include "thimble/scene/arm_simulation.h"
 
+#include <fmt/format.h>
+
 #include <stdexcept>
 
 #include "thimble/device_sim/sim_transport.h"
@@ -17,8 +19,7 @@ Eigen::Vector3d in_base(const ArmFile& file, const Eigen::Vector3d& p_W) {
 }
 
 /// Turns the hand's way from the world into the arm's base. Throws what HandPath throws.
-device_sim::HandPath path_in_base(const std::vector<std::pair<double, Eigen::Vector3d>>& hand_W,
-                                  const ArmFile& file) {
+device_sim::HandPath path_in_base(const HandRoute& hand_W, const ArmFile& file) {
   std::vector<device_sim::HandPath::Point> points;
   points.reserve(hand_W.size());
   for (const auto& [time, p_WH] : hand_W) {
@@ -53,13 +54,28 @@ std::optional<Eigen::Vector3d> joint_angles_at(const ArmFile& file, const Eigen:
   return std::nullopt;
 }
 
+driver::Result<void> check_reach(const ArmFile& file, const HandRoute& hand_W) {
+  for (const auto& [time, p_WH] : hand_W) {
+    const bool in_box = (p_WH.array() >= file.workspace.min_W.array()).all() &&
+                        (p_WH.array() <= file.workspace.max_W.array()).all();
+    if (!in_box || !joint_angles_at(file, p_WH)) {
+      return driver::Error{
+          fmt::format("At {:.3f} s the hand would be at ({:.3f}, {:.3f}, {:.3f}) m, where the arm "
+                      "does not reach "
+                      "or may not work; move that waypoint or the object.",
+                      time, p_WH.x(), p_WH.y(), p_WH.z())};
+    }
+  }
+  return {};
+}
+
 driver::ArmKind simulated_kind(const ArmFile& file) {
   return file.shape == ArmShape::kFalcon ? driver::ArmKind::kFalcon : driver::ArmKind::kPolhem;
 }
 
 driver::Result<std::unique_ptr<ArmSimulation>> ArmSimulation::make(
-    const ArmFile& file, const std::vector<std::pair<double, Eigen::Vector3d>>& hand_W,
-    const std::filesystem::path& firmware, std::uint64_t seed) {
+    const ArmFile& file, const HandRoute& hand_W, const std::filesystem::path& firmware,
+    std::uint64_t seed) {
   if (!file.can_simulate) {
     return driver::Error{"The arm file " + file.name +
                          " has no section 'simulation', so the arm cannot be simulated. Add one "

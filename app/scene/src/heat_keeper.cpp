@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "log/logger.h"
-#include "thimble/scene/user_folders.h"
-#include "thimble/scene/yaml_reader.h"
+#include "user_folders.h"
+#include "yaml/yaml_reader.h"
 
 namespace thimble::scene {
 namespace {

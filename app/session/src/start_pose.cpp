@@ -1,4 +1,4 @@
-#include "thimble/session/start_pose.h"
+#include "start_pose.h"
 
 #include <fmt/core.h>
 #include <unistd.h>

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "report/picture_parts.h"
-#include "thimble/scene/scene_effects.h"
+#include "scene_effects.h"
 
 namespace thimble::app {
 namespace {

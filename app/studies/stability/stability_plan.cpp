@@ -5,9 +5,9 @@
 #include <optional>
 #include <stdexcept>
 
+#include "energy_choice.h"
 #include "stability/stability_laws.h"
 #include "studies/stability/wall_measures.h"
-#include "thimble/scene/energy_choice.h"
 
 namespace thimble::app {
 namespace {

@@ -6,13 +6,13 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "build_info.h"
 #include "log/logger.h"
 #include "report/gnuplot.h"
 #include "report/picture_parts.h"
 #include "studies/stability/stability_pictures.h"
 #include "studies/stability/stability_tables.h"
 #include "text_file.h"
+#include "thimble/scene/build_info.h"
 
 namespace thimble::app {
 namespace {
@@ -66,7 +66,7 @@ driver::Result<void> write_summary(const StabilitySetup& setup, const std::vecto
 }  // namespace
 
 driver::Result<StabilitySetup> stability_setup(const StabilityOptions& options) {
-  auto arm = scene::read_arm_file(options.arm_file);
+  auto arm = scene::load_arm(options.arm_file);
   if (!arm) return arm.error();
   if (!arm->can_simulate) {
     return driver::Error{arm->name + ": the file has no section 'simulation'."};

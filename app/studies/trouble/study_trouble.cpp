@@ -9,11 +9,11 @@
 #include <system_error>
 #include <utility>
 
-#include "build_info.h"
 #include "studies/trouble/random_scene.h"
 #include "studies/trouble/small_meshes.h"
 #include "studies/trouble/trouble_run.h"
 #include "text_file.h"
+#include "thimble/scene/build_info.h"
 
 namespace thimble::app {
 namespace {
@@ -119,7 +119,7 @@ driver::Result<void> keep_worst(const CellNumbers& cells, std::uint64_t seed,
 driver::Result<TroubleReport> study_trouble(const TroubleOptions& options,
                                             const SweepOptions& sweep_options,
                                             const std::atomic<bool>& stop) {
-  const auto arm = scene::read_arm_file(options.arm_file);
+  const auto arm = scene::load_arm(options.arm_file);
   if (!arm) return arm.error();
   if (!arm->can_simulate || arm->shape == scene::ArmShape::kFalcon) {
     return driver::Error{arm->name +

@@ -1,4 +1,5 @@
 #include "studies/trouble/trouble_run.h"
+#include "setup.h"
 
 #include <algorithm>
 #include <array>
@@ -6,11 +7,14 @@
 #include <cmath>
 #include <span>
 
+#include "energy_choice.h"
 #include "stability/rest_warnings.h"
 #include "studies/signal.h"
 #include "studies/trouble/energy_given.h"
 #include "thimble/device_sim/simulated_arm.h"
-#include "thimble/scene/energy_choice.h"
+#include "thimble/render/scene_touch.h"
+#include "thimble/scene/arm_simulation.h"
+#include "thimble/scene/scene_file.h"
 #include "thimble/session/session.h"
 
 namespace thimble::app {
@@ -25,11 +29,11 @@ constexpr double kRestWindow = 0.25;  // s
 class Account {
  public:
   explicit Account(const session::Session& session)
-      : arm_(session.arm()),
-        period_(static_cast<double>(session.period_ns()) * 1e-9),
+      : arm_(*session.simulation()->board_arm()),
+        period_(static_cast<double>(session.setup().period_ns()) * 1e-9),
         force_max_(session.scene().arm.limits.force_max),
         p_(arm_.plant().p_BT()) {
-    for (auto& axis : force_) axis.reserve(session.ticks_planned());
+    for (auto& axis : force_) axis.reserve(session.setup().ticks());
   }
 
   void operator()(const driver::TickRecord& record) noexcept {
@@ -105,9 +109,10 @@ TroubleFound run_for_trouble(const std::filesystem::path& scene_file, const Rand
   session::Session& session = **opened;
   Account account(session);
   const std::atomic<bool> stop{false};
-  driver::run_servo(session.device(), session.clock(), driver::ForceLaw(session.touch()),
+  driver::run_servo(session.device(), session.setup().clock(), driver::ForceLaw(session.touch()),
                     driver::TickSink(account),
-                    {.period_ns = session.period_ns(), .ticks = session.ticks_planned()}, stop);
+                    {.period_ns = session.setup().period_ns(), .ticks = session.setup().ticks()},
+                    stop);
   found = account.close();
   found.given_bound = energy_let_go(scene::energy_settings(
                           session.scene().arm, session.scene().rate, session.scene().energy)) +

@@ -10,16 +10,17 @@
 #include <sstream>
 
 #include "bringup/feel_check.h"
-#include "report/session_report.h"
+#include "energy_choice.h"
+#include "report/report.h"
 #include "support/line_board.h"
 #include "support/scratch.h"
 #include "terms/feel_check_record.h"
 #include "terms/limits_policy.h"
 #include "thimble/scene/calibration.h"
-#include "thimble/scene/meshes.h"
+#include "thimble/scene/scene_file.h"
 #include "thimble/scene/shipped_files.h"
-#include "thimble/scene/user_folders.h"
 #include "thimble/session/session.h"
+#include "user_folders.h"
 
 namespace thimble::app {
 namespace {
@@ -211,7 +212,7 @@ TEST_F(RealArmTermsTest, AFileFromElsewhereTightensEachLimitAndLoosensNone) {
       const char* by = tighter ? one.tighter : one.looser;
       if (by == nullptr) continue;
       const fs::path file = copy_of("woodenhaptics", one.was, by);
-      const auto wanted = scene::read_arm_file(file);
+      const auto wanted = scene::load_arm(file);
       ASSERT_TRUE(wanted) << wanted.error().message;
       ASSERT_NE(one.value(*wanted), one.value(installed->file));
       const auto found = scene::find_real_arm_file(arm, {.arm_file = file});
@@ -300,7 +301,7 @@ TEST_F(RealArmTermsTest, NoShippedSceneChangesTheArmOrLoosensItsLimits) {
   int scenes = 0;
   for (const auto& entry : fs::directory_iterator(kSource / "app/scenes")) {
     if (entry.path().extension() != ".yaml") continue;
-    auto scene = scene::read_scene(entry.path(), scene::mesh_folder(), terms->arm.path);
+    auto scene = scene::load_scene(entry.path(), {.arm = terms->arm.path});
     if (!scene) continue;  // its scanned mesh is not here
     ++scenes;
     const auto told = scene::put_on_terms(*scene, entry.path(), *terms);
@@ -331,7 +332,7 @@ TEST_F(RealArmTermsTest, ASceneThatWantsNoEnergyStageLeavesARealArmItsOwn) {
                {"bounding", EnergyStage::kBounding, "energy: bounding is kept"}};
   for (const auto& one : cases) {
     write(file, ball(arm, std::string("gate:\n  energy: ") + one.wanted + '\n'));
-    auto scene = scene::read_scene(file, {}, terms->arm.path);
+    auto scene = scene::load_scene(file, {.arm = terms->arm.path});
     ASSERT_TRUE(scene) << scene.error().message;
     const auto told = scene::put_on_terms(*scene, file, *terms);
     ASSERT_TRUE(told);
@@ -343,7 +344,7 @@ TEST_F(RealArmTermsTest, ASceneThatWantsNoEnergyStageLeavesARealArmItsOwn) {
     EXPECT_TRUE(holds(text, "its arm, vintage_phantom, is what it is simulated with")) << text;
   }
   // In simulation a scene may still do without.
-  auto simulated = scene::read_scene(file, {});
+  auto simulated = scene::load_scene(file);
   ASSERT_TRUE(simulated);
   EXPECT_EQ(simulated->energy, EnergyStage::kBounding);
 }
@@ -362,7 +363,7 @@ TEST_F(RealArmTermsTest, AScenesOwnArmFileTightensOnly) {
   const auto terms = scene::terms_for(plug(ArmKind::kWoody, "W1"),
                                       {.arm_file = {}, .firmware = {}, .unchecked = true});
   ASSERT_TRUE(terms);
-  auto scene = scene::read_scene(file, {}, terms->arm.path);
+  auto scene = scene::load_scene(file, {.arm = terms->arm.path});
   ASSERT_TRUE(scene) << scene.error().message;
   const auto told = scene::put_on_terms(*scene, file, *terms);
   ASSERT_TRUE(told);
@@ -430,7 +431,7 @@ TEST_F(RealArmTermsTest, TheGateOfASessionStandsOnTheTerms) {
     EXPECT_EQ(gate.energy_stage(), EnergyStage::kPassivity);
     EXPECT_EQ((*session)->scene().arm.name, "vintage_phantom");
     EXPECT_TRUE(holds(all_of((*session)->told()), "energy: none is ignored"));
-    const RunReport report = report_of(**session, driver::ServoEnd::kStopped, {});
+    const session::RunFigures report = (*session)->figures();
     EXPECT_EQ(report.feel_check,
               unchecked ? scene::FeelCheckState::kUnchecked : scene::FeelCheckState::kNone);
     EXPECT_EQ(holds(summary(report), "UNCHECKED"), unchecked);
@@ -443,7 +444,7 @@ TEST_F(RealArmTermsTest, WithoutAPassedFeelCheckTheForceStaysBelowHalfANewton) {
   const fs::path file = home_ / "scene" / "ball.yaml";
   write(file, ball((kArms / "vintage_phantom.yaml").string(), ""));
   const auto force_of = [&](const scene::RealArmTerms& terms) {
-    auto scene = scene::read_scene(file, {}, terms.arm.path);
+    auto scene = scene::load_scene(file, {.arm = terms.arm.path});
     EXPECT_TRUE(scene && scene::put_on_terms(*scene, file, terms));
     return scene->arm.limits.force_max;
   };

@@ -4,9 +4,11 @@
 
 #include <filesystem>
 
-#include "servo_thread.h"
+#include "run_records.h"
+#include "setup.h"
 #include "share/shared_run.h"
 #include "support/scratch.h"
+#include "thimble/session/servo_thread.h"
 #include "thimble/session/session.h"
 
 namespace thimble::app {
@@ -41,15 +43,16 @@ class SessionStart : public ::testing::Test {
         std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms/vintage_phantom.yaml";
     options_.terms = scene::RealArmTerms{};
     options_.terms->arm.path = file;
-    options_.terms->arm.file = *scene::read_arm_file(file);
+    options_.terms->arm.file = *scene::load_arm(file);
     options_.record = support::scratch_folder() / "start.h5";
     options_.share = true;
     options_.open_wire = [this](
                              const scene::ArmFile&,
                              driver::Clock&) -> driver::Result<std::unique_ptr<driver::Transport>> {
       ++opened_;
-      ready_ = session_ != nullptr && session_->triangles() > 0 && session_->shared() != nullptr &&
-               session_->recording().on() && session_->mesh_W().triangles.size() > 0;
+      ready_ = session_ != nullptr && session_->setup().objects().triangles() > 0 &&
+               session_->shared() != nullptr && session_->records().recording.on() &&
+               session_->setup().objects().mesh_W().triangles.size() > 0;
       return std::unique_ptr<driver::Transport>(std::make_unique<Answering>(*this));
     };
   }
@@ -115,7 +118,7 @@ TEST(ServoThread, KnowsItsGrantBeforeItRunsAndMayLeaveWithoutRunning) {
   servo.begin(**session, stop);
   EXPECT_EQ(servo.join(), driver::ServoEnd::kDone);
   EXPECT_TRUE(servo.ended());
-  EXPECT_EQ((*session)->trace().rows().size(), 500u);
+  EXPECT_EQ((*session)->ticks().size(), 500u);
 }
 
 TEST(CheckRealTime, RefusesARealArmWithoutPriorityUnlessTheUserSaysSo) {

@@ -162,7 +162,7 @@ TEST(Share, TearsNoReadWhileTheWriterRunsAtFullSpeed) {
       std::uint64_t serial = 0;
       std::vector<TickRecord> ticks;
       render::BodyPatch patch{};
-      scene::ScenePoses poses;
+      session::ScenePoses poses;
       while (!stop.load()) {
         ticks.clear();
         TickRecord tick;
@@ -187,7 +187,7 @@ TEST(Share, TearsNoReadWhileTheWriterRunsAtFullSpeed) {
   render::BodyPatch patch{};
   patch.object = 0;
   patch.point_count = 300;
-  scene::ScenePoses poses;
+  session::ScenePoses poses;
   poses.count = 1;
   for (std::uint64_t i = 0; i < rounds || reads.load() < 1000; ++i) {
     pair.run->store_tick(tick_number(i));
@@ -401,7 +401,7 @@ void read_all(session::SharedReader& reader) {
   std::uint64_t serial = 0;
   std::vector<TickRecord> ticks;
   reader.ticks_since(serial, ticks);
-  scene::ScenePoses poses;
+  session::ScenePoses poses;
   static_cast<void>(reader.poses(poses));
   render::BodyPatch patch{};
   static_cast<void>(reader.patch(patch));

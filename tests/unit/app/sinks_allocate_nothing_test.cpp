@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
+#include "observers/trace.h"
 #include "support/heap_guard.h"
 #include "thimble/session/run_statistics.h"
-#include "thimble/session/trace.h"
 
 namespace thimble::app {
 namespace {
@@ -17,8 +17,8 @@ TEST(Sinks, AllocateNothingPerTick) {
                 record.work_ns = 7LL * i * i;
                 record.in_contact = i % 7 != 0;
                 record.f_sent_W = {1.0 * i, 0, 0};
-                statistics(record);
-                trace(record);
+                statistics.take(record);
+                trace.take(record);
               }
             }),
             0);

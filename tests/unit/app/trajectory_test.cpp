@@ -53,8 +53,8 @@ TEST(Trajectory, TellsWhichLineIsWrongAndWhatToDo) {
 /// Makes what a device would do on a ball of 400 N/m whose surface gives the forces: the pipeline
 /// of measured data, with truth in place of the measurement.
 TEST(Trajectory, AnAnalyticProbeFeelsTheForcesThatItWasMadeOf) {
-  const auto scene = scene::read_scene(
-      std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/scenes/rubber.yaml", {}, {});
+  const auto scene =
+      scene::load_scene(std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/scenes/rubber.yaml");
   ASSERT_TRUE(scene) << scene.error().message;
   scene::Scene plain = *scene;
   plain.objects[0].effects.clear();

@@ -27,7 +27,7 @@ const std::filesystem::path kArm =
     std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms/vintage_phantom.yaml";
 
 RandomSceneLimits limits() {
-  return {.arm = *scene::read_arm_file(kArm), .arm_path = kArm.string(), .mesh_path = "meshes"};
+  return {.arm = *scene::load_arm(kArm), .arm_path = kArm.string(), .mesh_path = "meshes"};
 }
 
 std::vector<std::filesystem::path> worst_scenes() {
@@ -141,7 +141,7 @@ TroubleFound run_seed(std::uint64_t seed, const std::string& what = "", const st
   const auto file = folder / "scene.yaml";
   EXPECT_TRUE(write_text(scene.text, file));
   if (warnings != nullptr) {
-    const auto read = scene::read_scene(file, {});
+    const auto read = scene::load_scene(file);
     EXPECT_TRUE(read);
     if (read) *warnings = rest_warnings(*read);
   }
@@ -217,7 +217,7 @@ TEST(RestWarnings, FindTheCurvatureOfASineAndTheGrainOfAVelocityInCounts) {
           "      - {friction: bristle, coefficient: 0.5, stiffness: 700}\n"
           "hand:\n  path:\n    - {t: 0, at: [0, 0, 0.02]}\n",
       file));
-  const auto scene = scene::read_scene(file, {});
+  const auto scene = scene::load_scene(file);
   ASSERT_TRUE(scene) << scene.error().message;
   const double exact = 1e-4 * std::pow(2 * std::numbers::pi / 0.004, 2);
   EXPECT_NEAR(curvature_of(scene->objects[0].effects[0]) / exact, 0.99, 0.02);
@@ -256,7 +256,7 @@ TEST(TroubleFound, SurvivesItsWayThroughASweep) {
 }
 
 TEST(WallMeasures, FindTheEdgeThatTheExactMapOfATickHas) {
-  const auto arm = scene::read_arm_file(kArm);
+  const auto arm = scene::load_arm(kArm);
   for (const double delay : {0.0, 0.001}) {
     WallCase wall;
     wall.direction = *worst_direction_at_home(*arm);
@@ -269,7 +269,7 @@ TEST(WallMeasures, FindTheEdgeThatTheExactMapOfATickHas) {
 }
 
 TEST(WallMeasures, FindRestOnlyWhereDryFrictionHoldsHalfAStep) {
-  const auto arm = scene::read_arm_file(kArm);
+  const auto arm = scene::load_arm(kArm);
   WallCase wall;
   wall.direction = *worst_direction_at_home(*arm);
   wall.stiffness = 1000;
@@ -286,7 +286,7 @@ TEST(WallMeasures, FindRestOnlyWhereDryFrictionHoldsHalfAStep) {
 }
 
 TEST(WallMeasures, ThrowBackAsTheLawOfRestitutionSays) {
-  const auto arm = scene::read_arm_file(kArm);
+  const auto arm = scene::load_arm(kArm);
   WallCase wall;
   wall.direction = *worst_direction_at_home(*arm);
   wall.tip = {.mass = 0.075, .viscous = 0.005, .coulomb = 0};

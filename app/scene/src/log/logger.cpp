@@ -4,7 +4,7 @@
 
 #include "log/console.h"
 #include "log/log_file.h"
-#include "thimble/scene/user_folders.h"
+#include "user_folders.h"
 
 namespace thimble::scene {
 namespace {

@@ -1,4 +1,4 @@
-#include "thimble/scene/board_model.h"
+#include "terms/board_model.h"
 
 #include <array>
 #include <string>

@@ -14,7 +14,7 @@
 
 #include "thimble/driver/safety_gate.h"
 #include "thimble/scene/real_arm.h"
-#include "thimble/scene/user_folders.h"
+#include "user_folders.h"
 
 namespace thimble::scene {
 namespace {

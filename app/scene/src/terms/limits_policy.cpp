@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "energy_choice.h"
 #include "thimble/driver/motion_watch.h"
 
 namespace thimble::scene {

@@ -8,10 +8,10 @@
 #include <thread>
 
 #include "recording/recording_file.h"
-#include "recording/recording_info.h"
 #include "spsc_ring.h"
 #include "thimble/driver/result.h"
 #include "thimble/driver/tick_record.h"
+#include "thimble/session/recording.h"
 
 namespace thimble::session {
 

@@ -1,10 +1,14 @@
 #include "share/request_desk.h"
 
+#include <fmt/format.h>
+
 #include <ctime>
 
 #include "events/event_words.h"
 #include "interrupt.h"
 #include "log/logger.h"
+#include "run_records.h"
+#include "thimble/scene/scene_file.h"
 
 namespace thimble::session {
 namespace {
@@ -23,7 +27,7 @@ std::string recording_name(const std::string& scene) {
 
 void RequestDesk::record(const SharedRun::RecordOrder& order) {
   last_order_ = order.number;
-  if (auto stopped = session_.recording().stop(); !stopped) {
+  if (auto stopped = session_.end_recording(); !stopped) {
     scene::logger().error("{}", stopped.error().message);
   }
   if (!order.record) return;
@@ -35,11 +39,12 @@ void RequestDesk::record(const SharedRun::RecordOrder& order) {
 
 void RequestDesk::step() {
   SharedRun& shared = *session_.shared();
+  const RecordingSwitch& recording = session_.records().recording;
   shared.watch_viewers();
   driver::TickRecord newest;
-  if (session_.snapshot().load(newest)) watch_.step(at_tick(newest.tick, newest.time_ns));
+  if (session_.newest().load(newest)) watch_.step(at_tick(newest.tick, newest.time_ns));
   if (const auto order = shared.record_order_after(last_order_)) record(*order);
-  shared.set_recording(session_.recording().on(), session_.recording().dropped());
+  shared.set_recording(recording.on(), recording.dropped());
   const bool closed = viewer_ && viewer_->closed();
   if (shared.stop_asked() || (closed && ends_with_viewer_)) {
     if (!ended_) scene::logger().info("The run was ended by a viewer.");

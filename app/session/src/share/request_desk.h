@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "log/logger.h"
+#include "share/shared_run.h"
 #include "share/viewer_process.h"
 #include "share/viewer_watch.h"
 #include "thimble/session/session.h"

@@ -6,10 +6,10 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "scene_poses.h"
 #include "thimble/driver/snapshot.h"
 #include "thimble/driver/tick_record.h"
 #include "thimble/render/body_patch.h"
-#include "thimble/scene/scene_poses.h"
 
 namespace thimble::session {
 
@@ -177,7 +177,7 @@ struct SharedLive {
   std::atomic<std::uint64_t> record_dropped;          ///< Ticks that a recording lacks.
   std::atomic<std::uint64_t> shape_moves;             ///< Vertices moved for good so far.
   driver::Snapshot<SharedText<1024>> recording_path;  ///< Of the current or last recording.
-  driver::Snapshot<scene::ScenePoses> poses;
+  driver::Snapshot<ScenePoses> poses;
   driver::Snapshot<render::BodyPatch> patch;
   std::array<SharedKnobState, kKnobsMost> knobs;
   SharedRequests requests;

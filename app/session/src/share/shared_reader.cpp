@@ -132,8 +132,8 @@ std::uint64_t SharedReader::ticks_since(std::uint64_t& serial,
   return lost;
 }
 
-bool SharedReader::poses(scene::ScenePoses& poses) const noexcept {
-  scene::ScenePoses seen;
+bool SharedReader::poses(ScenePoses& poses) const noexcept {
+  ScenePoses seen;
   if (!live_->poses.load(seen) || !sound(seen)) return false;
   poses = seen;
   return true;
@@ -261,8 +261,8 @@ bool SharedReader::sound(driver::TickRecord& record) const noexcept {
   return known;
 }
 
-bool SharedReader::sound(scene::ScenePoses& poses) const noexcept {
-  bool good = poses.count <= scene::ScenePoses::kMost;
+bool SharedReader::sound(ScenePoses& poses) const noexcept {
+  bool good = poses.count <= ScenePoses::kMost;
   for (std::size_t i = 0; good && i < poses.count; ++i) {
     good = poses.object[i] >= 0 &&
            static_cast<std::size_t>(poses.object[i]) < scene_.objects.size() &&

@@ -51,7 +51,7 @@ class SharedReader {
   /// moves `serial` to the last one. Tells how many were overwritten before they could be read.
   std::uint64_t ticks_since(std::uint64_t& serial, std::vector<driver::TickRecord>& ticks) const;
   /// Copies where the objects that move are; false if nothing was stored.
-  bool poses(scene::ScenePoses& poses) const noexcept;
+  bool poses(ScenePoses& poses) const noexcept;
   /// Copies the newest dent; false if nothing was stored. No triangles: nothing is dented.
   bool patch(render::BodyPatch& patch) const noexcept;
   /// Counts the patches so far: a viewer need only draw anew if it has grown.
@@ -100,7 +100,7 @@ class SharedReader {
   SharedReader(std::unique_ptr<SharedMemory> memory, std::span<std::byte> bytes, SharedScene scene);
   void sign_in() noexcept;
   bool sound(driver::TickRecord& record) const noexcept;
-  bool sound(scene::ScenePoses& poses) const noexcept;
+  bool sound(ScenePoses& poses) const noexcept;
   bool sound(render::BodyPatch& patch) const noexcept;
   bool take_turn() noexcept;
   void end_turn() noexcept;

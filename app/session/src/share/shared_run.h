@@ -38,7 +38,7 @@ class SharedRun {
 
   // What the servo stores. One thread; Real-time: safe.
   void store_tick(const driver::TickRecord& record) noexcept;
-  void store_poses(const scene::ScenePoses& poses) noexcept { live_->poses.store(poses); }
+  void store_poses(const ScenePoses& poses) noexcept { live_->poses.store(poses); }
   void store_patch(const render::BodyPatch& patch) noexcept { live_->patch.store(patch); }
   /// Stores where a vertex of a shaped object has gone for good (W, m). `shaped` counts through
   /// the table; one outside is ignored.

@@ -9,15 +9,9 @@
 #include "body/motion/free_turn.h"
 #include "body/motion/mass_properties.h"
 #include "thimble/driver/result.h"
+#include "thimble/render/body/motion_choice.h"
 
 namespace thimble::render {
-
-/// Is a plane that bodies lie on: they are held out of n . x < height.
-struct Floor {
-  Eigen::Vector3d n_W{0, 0, 1};  ///< Unit, away from the floor.
-  double height = 0;             ///< m
-  double friction = 0.5;         ///< Coulomb, >= 0
-};
 
 /// Sets what acts on a body besides what touches it, as data.
 struct RigidBodySettings {

@@ -4,18 +4,19 @@
 
 #include "thimble/driver/tick_record.h"
 #include "thimble/session/histogram.h"
+#include "thimble/session/tick_observer.h"
 
 namespace thimble::session {
 
-/// Sums up a run tick by tick; a sink for the servo loop. Its memory is fixed when it is made.
-class RunStatistics {
+/// The sums of a run, tick by tick. Its memory is fixed when it is made.
+class RunStatistics final : public TickObserver {
  public:
   /// A gap in a contact shorter than this is a break in one touch, not two: a hand that lifts off
   /// and comes back takes longer. [chosen: half the fastest finger tap, about 10 Hz]
   static constexpr std::int64_t kInterruption_ns = 20'000'000;
 
   /// Takes one tick. Real-time: safe.
-  void operator()(const driver::TickRecord& record) noexcept;
+  void take(const driver::TickRecord& record) noexcept override;
 
   /// Tells how many ticks were taken.
   std::uint64_t ticks() const noexcept { return ticks_; }

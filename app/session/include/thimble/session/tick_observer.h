@@ -4,12 +4,17 @@
 
 namespace thimble::session {
 
-/// Whoever looks on at the ticks of a run: called once per tick on the servo thread, after the
-/// force was sent.
+/// An observer of a run's ticks. A session tells each of its observers of every tick, in the order
+/// in which they were added, once the force of the tick was sent.
+///
+/// `take` runs on the servo's thread and belongs to its tick: no heap, lock, file or waiting, and a
+/// time that does not grow with the run. What it keeps for others it hands on without waiting
+/// (driver::Snapshot, an atomic), or is looked at after the run.
 class TickObserver {
  public:
   virtual ~TickObserver() = default;
-  /// Takes the record of one tick. Real-time: safe.
+
+  /// Takes one tick. Real-time: must be safe.
   virtual void take(const driver::TickRecord& record) noexcept = 0;
 };
 
