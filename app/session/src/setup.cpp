@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "build_info.h"
+#include "print.h"
 #include "text_file.h"
 #include "thimble/scene/energy_choice.h"
 #include "thimble/scene/hand_route.h"
@@ -155,7 +156,7 @@ driver::Result<void> Setup::open_arm() {
   driver::HeatSettings heat = arm.heat;
   if (real_arm_ && heat.named()) {
     const scene::KnownHeat known = scene::load_heat(real_arm_->name(), heat, scene::world_time());
-    if (!known.note.empty()) fmt::print(stderr, "thimble: {}\n", known.note);
+    if (!known.note.empty()) print(stderr, "thimble: {}\n", known.note);
     heat.at_start = known.heat;
   }
   auto device =
