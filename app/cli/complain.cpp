@@ -4,7 +4,7 @@
 
 namespace thimble::app {
 
-int complain(const driver::Error& error, ExitCode exit_code) {
+ExitCode complain(const driver::Error& error, ExitCode exit_code) {
   scene::logger().error("{}", error.message);
   return exit_code;
 }

@@ -7,6 +7,6 @@ namespace thimble::app {
 
 /// Says on the terminal and in the log what keeps a command from going on, and returns `exit_code`
 /// for it to end with. Real-time: never from the servo thread.
-int complain(const driver::Error& error, ExitCode exit_code);
+ExitCode complain(const driver::Error& error, ExitCode exit_code);
 
 }  // namespace thimble::app

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "log/logger.h"
-#include "scene_poses.h"
 #include "text_file.h"
 #include "thimble/scene/build_info.h"
 #include "thimble/scene/device_settings.h"

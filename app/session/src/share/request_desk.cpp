@@ -1,13 +1,15 @@
 #include "share/request_desk.h"
 
-#include <fmt/format.h>
+#include <unistd.h>
 
 #include <ctime>
+#include <utility>
 
 #include "events/event_words.h"
 #include "interrupt.h"
 #include "log/logger.h"
 #include "run_records.h"
+#include "setup.h"
 #include "thimble/scene/scene_file.h"
 
 namespace thimble::session {
@@ -51,6 +53,23 @@ void RequestDesk::step() {
     ended_ = true;
     scene::ask_to_stop();
   }
+}
+
+std::unique_ptr<RequestDesk> open_desk(Session& session, ViewerWish wish) {
+  if (session.shared() == nullptr) return nullptr;
+  std::unique_ptr<ViewerProcess> viewer;
+  if (opens_viewer(wish, session.real_time(), has_display(), isatty(STDERR_FILENO) != 0)) {
+    auto started = ViewerProcess::start(session.shared()->name());
+    if (started) {
+      viewer = std::move(started).value();
+    } else {
+      scene::logger().error("{}", started.error().message);
+    }
+  } else if (wish == ViewerWish::kAsked) {
+    scene::terminal().info("No screen (DISPLAY, WAYLAND_DISPLAY): watch by `thimble view {}`.",
+                           session.shared()->name());
+  }
+  return std::make_unique<RequestDesk>(session, std::move(viewer), session.setup().hand_by_mouse());
 }
 
 }  // namespace thimble::session
