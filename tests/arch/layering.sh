@@ -82,6 +82,13 @@ if [ -n "$upward" ]; then
   bad=1
 fi
 
+# The installed headers of app: nothing beside the sources, and no library that a user need not know.
+forbid app/scene/include '(yaml|terms)/|[a-z_]*\.h"|yaml-cpp/' "a header beside the sources, or yaml-cpp"
+forbid app/session/include '(recording|share|observers)/|[a-z_]*\.h"|hdf5|H5' "a header beside the sources, or HDF5"
+# Python binds what C++ programs link; of the rest it reads the warnings alone.
+forbid app/python '(yaml|terms|recording|share|observers|report|studies|view|bringup|cli)/|stability/(draw|rest|stability|wall)' \
+  "what a C++ program that links thimble::session cannot reach"
+
 # The libraries of app, the lowest first: FOLDER: what it must not know.
 forbid_app() {
   forbid "app/$1" "$2" "a library above it or beside it"

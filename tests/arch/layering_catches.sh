@@ -27,6 +27,12 @@ plant "$1" render/include/thimble/render/touch.h '"thimble/device_sim/settings.h
 # A header that is not installed, in one that is.
 plant "$1" render/include/thimble/render/build_object_touch.h '"touch_of.h"'
 plant "$1" render/include/thimble/render/build_object_touch.h '"track/god_object.h"'
+plant "$1" app/scene/include/thimble/scene/scene_file.h '"yaml/yaml_reader.h"'
+plant "$1" app/scene/include/thimble/scene/arm_file.h '<yaml-cpp/yaml.h>'
+plant "$1" app/session/include/thimble/session/session.h '"run_loop.h"'
+plant "$1" app/session/include/thimble/session/recording.h '<hdf5.h>'
+plant "$1" app/python/module.cpp '"recording/recorder.h"'
+plant "$1" app/python/module.cpp '"report/report.h"'
 # One forbidden include for each layer of render.
 plant "$1" render/include/thimble/render/contact_state.h '"thimble/render/mesh/triangle_mesh.h"'
 plant "$1" render/include/thimble/render/contact_state.h '"thimble/render/object_touch.h"'

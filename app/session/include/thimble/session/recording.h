@@ -33,19 +33,20 @@ struct RecordingInfo {
 
 /// A recording in memory.
 struct Recording {
-  RecordingInfo info;
-  std::vector<driver::TickRecord> ticks;
-  bool complete = false;  ///< False if it was cut off, by a crash or a full disk.
+  RecordingInfo info;                     ///< What it is of.
+  std::vector<driver::TickRecord> ticks;  ///< Every tick, oldest first.
+  bool complete = false;                  ///< False if it was cut off, by a crash or a full disk.
 };
 
 /// One column of a recording: one number, or three, of each tick.
 struct RecordingColumn {
+  /// What a number is in the file: unsigned, signed or floating, and its bits.
   enum class Type : std::uint8_t { kU8, kU16, kI16, kI32, kI64, kU64, kF64 };
 
-  const char* name;   ///< Of the data set in the file.
-  const char* unit;   ///< SI; "1" for numbers and flags.
-  const char* about;  ///< What it is, with its frame.
-  Type type;
+  const char* name;    ///< Of the data set in the file.
+  const char* unit;    ///< SI; "1" for numbers and flags.
+  const char* about;   ///< What it is, with its frame.
+  Type type;           ///< Of each number.
   std::size_t width;   ///< Numbers per tick: 1 or 3.
   std::size_t offset;  ///< Of the first in driver::TickRecord, bytes.
   bool later = false;  ///< Older recordings do not have it; there its numbers are 0.
@@ -74,7 +75,7 @@ driver::Result<void> write_csv(const Recording& recording, const std::filesystem
 /// How the forces of a replayed run compare with the recorded ones: what the scene asked of the
 /// arm, tick by tick.
 struct ReplayComparison {
-  std::uint64_t ticks = 0;
+  std::uint64_t ticks = 0;             ///< That were compared.
   std::uint64_t differing = 0;         ///< Ticks whose force is not the same to the bit.
   std::optional<std::uint64_t> first;  ///< Number of the first of them.
   double largest = 0;                  ///< Of all differences of force, N.

@@ -49,7 +49,7 @@ enum class ClockKind {
 
 /// What the user asks for beyond the scene.
 struct SessionOptions {
-  ClockKind clock = ClockKind::kVirtual;
+  ClockKind clock = ClockKind::kVirtual;   ///< which time it runs on
   std::optional<double> duration = {};     ///< s; the scene's own if empty
   std::optional<std::uint64_t> seed = {};  ///< of everything random; the scene's own if empty
   std::filesystem::path mesh_folder = {};  ///< of `cgal:` meshes; empty: scene::mesh_folder()
@@ -131,13 +131,13 @@ class Session {
   const scene::Scene& scene() const noexcept;
   /// Returns the scene's force law, with its objects (render/scene_touch.h).
   render::SceneTouch& touch() noexcept;
-  const render::SceneTouch& touch() const noexcept;
+  const render::SceneTouch& touch() const noexcept;  ///< As above.
   /// Returns the arm as the loop drives it. Precondition: the arm is open.
   driver::Device& device() noexcept;
-  const driver::Device& device() const noexcept;
+  const driver::Device& device() const noexcept;  ///< As above.
   /// Returns the simulation of the arm (scene/arm_simulation.h); null if the arm is real.
   scene::ArmSimulation* simulation() noexcept;
-  const scene::ArmSimulation* simulation() const noexcept;
+  const scene::ArmSimulation* simulation() const noexcept;  ///< As above.
   /// Returns whether the run goes by the time of the world.
   bool real_time() const noexcept;
   /// Returns what became of limits that the scene names, where the arm is real: a sentence each.
@@ -180,10 +180,10 @@ class Session {
 
   /// Returns what is run.
   Setup& setup() noexcept;
-  const Setup& setup() const noexcept;
+  const Setup& setup() const noexcept;  ///< As above.
   /// Returns the session's own observers.
   RunRecords& records() noexcept;
-  const RunRecords& records() const noexcept;
+  const RunRecords& records() const noexcept;  ///< As above.
   /// Returns what viewers see; null if the run is not shared.
   SharedRun* shared() noexcept;
 
