@@ -3,6 +3,8 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
+#include "report/figure.h"
+#include "text_file.h"
 #include "thimble/scene/build_info.h"
 
 namespace thimble::app {

@@ -6,7 +6,7 @@
 
 namespace thimble::session {
 
-driver::Result<RunArm> choose_run_arm(const std::string& device, const scene::RealArmWish& wish,
+driver::Result<RunArm> choose_run_arm(const std::string& device, const scene::RealArmRequest& wish,
                                       const FindArms& find_arms) {
   RunArm arm;
   if (device == "sim") return arm;

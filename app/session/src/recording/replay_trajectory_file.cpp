@@ -2,11 +2,11 @@
 #include <memory>
 #include <utility>
 
-#include "build_info.h"
+#include "place_mesh.h"
 #include "recording/replay_trajectory.h"
 #include "text_file.h"
 #include "thimble/render/mesh/load_mesh.h"
-#include "thimble/scene/meshes.h"
+#include "thimble/scene/build_info.h"
 #include "thimble/scene/scene_file.h"
 
 namespace thimble::session {
@@ -49,7 +49,7 @@ driver::Result<TrajectoryReplay> replay_trajectory_file(const std::filesystem::p
   }
   auto trajectory = read_trajectory(file, form);
   if (!trajectory) return trajectory.error();
-  const auto scene = scene::read_scene(scene_file, scene::mesh_folder(), {});
+  const auto scene = scene::load_scene(scene_file);
   if (!scene) return scene.error();
   if (auto placed = into_world(*trajectory, *scene, frame); !placed) return placed.error();
   constexpr double kLongest = 86400;  // s

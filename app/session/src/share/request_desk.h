@@ -7,6 +7,7 @@
 #include "share/shared_run.h"
 #include "share/viewer_process.h"
 #include "share/viewer_watch.h"
+#include "thimble/scene/scene_file.h"
 #include "thimble/session/session.h"
 
 namespace thimble::session {
