@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
+#include "report/figure.h"
 #include "thimble/scene/build_info.h"
 
 namespace thimble::app {
