@@ -1,25 +1,15 @@
-#include <fmt/format.h>
-
 #include <cstdio>
-#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <numbers>
 #include <string>
-#include <vector>
 
 #include "cli/commands.h"
 #include "cli/complain.h"
 #include "cli/file_options.h"
-#include "place_mesh.h"
+#include "print.h"
 #include "recording/replay_trajectory.h"
 #include "recording/trajectory_file.h"
-#include "text_file.h"
-#include "thimble/render/mesh/load_mesh.h"
-#include "thimble/scene/build_info.h"
-#include "thimble/scene/scene_file.h"
-#include "thimble/scene/scene_objects.h"
-#include "thimble/scene/shipped_files.h"
 #include "thimble/session/recording.h"
 
 namespace thimble::app {
@@ -41,35 +31,10 @@ bool is_recording(const std::string& file) {
   return !stream || stream.get() == 0x89;
 }
 
-/// Takes a trajectory from the frame of an object's mesh file into the world; one that is in the
-/// world already if no object is named.
-driver::Result<void> into_world(std::vector<session::TrajectoryPoint>& trajectory,
-                                const scene::Scene& scene, const std::string& frame) {
-  if (frame.empty() || frame == "world") return {};
-  for (const scene::SceneObject& object : scene.objects) {
-    if (object.name != frame) continue;
-    if (object.mesh_file.empty() || object.paged) {
-      return driver::Error{"--frame: \"" + frame + "\" has no mesh file in memory; give the " +
-                           "trajectory in the world, in m."};
-    }
-    const auto mesh = render::load_mesh(object.mesh_file);
-    if (!mesh) return mesh.error();
-    const scene::MeshPlacement place = scene::placement_of(*mesh, object);
-    for (session::TrajectoryPoint& point : trajectory) {
-      point.p = place.p_WM + place.scale * (object.R_WO * point.p);
-      point.f = object.R_WO * point.f;
-    }
-    return {};
-  }
-  return driver::Error{"--frame: expected world or an object of the scene, found \"" + frame +
-                       "\"."};
-}
-
 void print_comparison(const std::string& file, const session::TrajectoryComparison& compared,
-                      const scene::Scene& scene, bool forces) {
+                      const std::string& scene, bool forces) {
   std::printf("%s: %zu ticks of %s along the trajectory, %zu of them touching; force %.4g N (rms)",
-              file.c_str(), compared.ticks, scene.name.c_str(), compared.touching,
-              compared.force_rms);
+              file.c_str(), compared.ticks, scene.c_str(), compared.touching, compared.force_rms);
   if (!forces) {
     std::printf(".\n");
     return;
@@ -94,44 +59,14 @@ int replay_probe(const ReplayOptions& options) {
   session::TrajectoryForm form = options.form;
   form.metres = options.length == "mm" ? 1e-3 : 1;
   form.seconds = options.time == "ms" ? 1e-3 : 1;
-  // In the frame of a mesh file its unit is that of the file.
-  if (!options.frame.empty() && options.frame != "world") {
-    form.metres = 1;
-    form.farthest = 1e9;
-  }
-  auto trajectory = session::read_trajectory(options.file, form);
-  if (!trajectory) return complain(trajectory.error(), kExitBadInput);
-  const auto scene = scene::load_scene(options.scene);
-  if (!scene) return complain(scene.error(), kExitBadInput);
-  if (auto placed = into_world(*trajectory, *scene, options.frame); !placed) {
-    return complain(placed.error(), kExitBadInput);
-  }
-  constexpr double kLongest = 86400;  // s
-  if (!(trajectory->back().time - trajectory->front().time < kLongest)) {
-    return complain({options.file + " lasts for more than a day; --time says the unit."},
-                    kExitBadInput);
-  }
-  auto objects = scene::SceneObjects::build(*scene);
-  if (!objects) return complain(objects.error(), kExitBadInput);
-  std::vector<driver::TickRecord> felt;
-  const session::TrajectoryComparison compared = session::replay_trajectory(
-      *trajectory, scene->rate, **objects, [&](const driver::TickRecord& tick) {
-        if (!options.record.empty()) felt.push_back(tick);
-      });
-  print_comparison(options.file, compared, *scene, form.has_forces());
+  const auto replay =
+      session::replay_trajectory_file(options.file, form, options.frame, options.scene);
+  if (!replay) return complain(replay.error(), kExitBadInput);
+  print_comparison(options.file, replay->compared, replay->felt.info.scene, form.has_forces());
   if (options.record.empty()) return kExitDone;
-  const session::RecordingInfo info{.scene = scene->name,
-                                    .scene_file = options.scene,
-                                    .scene_text = scene::text_of(options.scene),
-                                    .arm = scene->arm.name,
-                                    .arm_file = scene->arm_file.string(),
-                                    .arm_text = scene::text_of(scene->arm_file),
-                                    .device = "trajectory " + options.file,
-                                    .clock = "virtual",
-                                    .program = scene::program_name(),
-                                    .rate = scene->rate,
-                                    .seed = scene->seed};
-  if (auto written = session::write_recording(options.record, info, felt); !written) {
+  if (auto written =
+          session::write_recording(options.record, replay->felt.info, replay->felt.ticks);
+      !written) {
     return complain(written.error(), kExitTrouble);
   }
   return kExitDone;
@@ -149,13 +84,14 @@ int replay_recording(const ReplayOptions& options) {
   auto replay = session::replay(*recording, options.scene);
   if (!replay) return complain(replay.error(), kExitBadInput);
   const session::ReplayComparison& compared = replay->compared;
-  fmt::print("{}: {} ticks of {} by the recorded hand; ", options.file, compared.ticks,
-             replay->felt.info.scene);
+  session::print(stdout, "{}: {} ticks of {} by the recorded hand; ", options.file, compared.ticks,
+                 replay->felt.info.scene);
   if (compared.differing == 0) {
-    fmt::print("every force is the recorded one to the bit.\n");
+    session::print(stdout, "every force is the recorded one to the bit.\n");
   } else {
-    fmt::print("{} forces differ from the recorded ones, first in tick {}, by {:.3g} N at most.\n",
-               compared.differing, *compared.first, compared.largest);
+    session::print(
+        stdout, "{} forces differ from the recorded ones, first in tick {}, by {:.3g} N at most.\n",
+        compared.differing, *compared.first, compared.largest);
   }
   if (!options.record.empty()) {
     replay->felt.info.device = "replay of " + options.file;

@@ -173,10 +173,7 @@ py::tuple mesh_of(const HeldRun& held, const std::optional<std::string>& object)
   const session::Session& session = held.run->session();
   int number = -1;
   if (object) {
-    const auto& objects = session.scene().objects;
-    for (std::size_t i = 0; i < objects.size(); ++i) {
-      if (objects[i].name == *object) number = static_cast<int>(i);
-    }
+    number = session.find_object(*object).value_or(-1);
     if (number < 0) throw ThimbleError("The scene has no object \"" + *object + "\".");
   }
   const render::TriangleMesh mesh = session.mesh_now(number);

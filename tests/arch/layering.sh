@@ -95,6 +95,21 @@ forbid_app() {
 }
 forbid_app scene 'thimble/session/|(recording|share|report|stability|studies|view|bringup|cli)/'
 forbid_app session '(report|stability|studies|view|bringup|cli)/'
+# What a program of somebody else's includes needs nothing beside the sources; and observers of a run's
+# ticks know nothing of each other: only who registers them knows them all (run_records.h).
+forbid app/session/include '(observers|recording|share)/|[a-z_0-9]*\.h"|hdf5|yaml-cpp|fmt/' \
+  "a header beside the sources, or a library behind it"
+for observer in observers/black_box observers/dent_record observers/latest_tick observers/page_server \
+    observers/pose_record observers/trace recording/recording_switch share/live_control share/run_sharing; do
+  found=$(grep -nE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"(observers/|recording/recording_switch|share/(live_control|run_sharing))' \
+    app/session/src/"$observer".h app/session/src/"$observer".cpp 2>/dev/null |
+    grep -v "\"$observer\.h\"" || true)
+  if [ -n "$found" ]; then
+    echo "An observer must not know another:"
+    echo "$found" | sed 's/^/  /'
+    bad=1
+  fi
+done
 forbid_app report '(stability|studies|view|bringup|cli)/'
 forbid_app stability '(studies|view|bringup|cli)/'
 forbid_app studies '(view|bringup|cli)/'

@@ -1,7 +1,5 @@
 #include "thimble/session/session.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -10,6 +8,7 @@
 #include "bent_mesh.h"
 #include "figures_of.h"
 #include "observers/page_server.h"
+#include "print.h"
 #include "recording/write_black_box.h"
 #include "run_loop.h"
 #include "run_records.h"
@@ -134,7 +133,7 @@ driver::Result<std::unique_ptr<Session>> Session::prepare(const std::filesystem:
   if (options.share || options.share_out) {
     const auto shared = session->parts_->share(options);
     if (!shared && !options.share_if_possible) return shared.error();
-    if (!shared) fmt::print(stderr, "thimble: nobody can watch: {}\n", shared.error().message);
+    if (!shared) print(stderr, "thimble: nobody can watch: {}\n", shared.error().message);
   }
   return session;
 }
@@ -242,6 +241,14 @@ const RunStatistics& Session::statistics() const noexcept {
 RunFigures Session::figures(const driver::RealTimeGrant& grant) const {
   return figures_of(*parts_->setup, parts_->records,
                     parts_->loop.end().value_or(driver::ServoEnd::kStopped), grant);
+}
+
+std::optional<int> Session::find_object(const std::string& name) const {
+  const auto& objects = scene().objects;
+  const auto found = std::find_if(objects.begin(), objects.end(),
+                                  [&](const auto& object) { return object.name == name; });
+  if (found == objects.end()) return {};
+  return static_cast<int>(found - objects.begin());
 }
 
 render::TriangleMesh Session::mesh_now(int object) const {

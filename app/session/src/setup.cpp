@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "print.h"
 #include "scene_poses.h"
 #include "text_file.h"
 #include "thimble/scene/build_info.h"
@@ -132,7 +133,7 @@ driver::Result<void> Setup::open_arm() {
   driver::HeatSettings& heat = settings.heat;
   if (real_arm_ && heat.named()) {
     const scene::KnownHeat known = scene::load_heat(real_arm_->name(), heat, scene::world_time());
-    if (!known.note.empty()) fmt::print(stderr, "thimble: {}\n", known.note);
+    if (!known.note.empty()) print(stderr, "thimble: {}\n", known.note);
     heat.at_start = known.heat;
   }
   auto device =

@@ -1,9 +1,5 @@
 #include "start_pose.h"
 
-#include <unistd.h>
-
-#include <cstdio>
-
 #include "printed.h"
 #include "thimble/scene/real_arm.h"
 
@@ -46,12 +42,6 @@ std::string StartPose::trouble(const Eigen::Vector3d& p_WT, bool at_home) const 
         1e3 * outside, has_home() ? kMend : "start the program again, which homes it anew");
   }
   return {};
-}
-
-Terminal user_terminal() {
-  return {.there = isatty(STDIN_FILENO) != 0,
-          .key = look_for_enter,
-          .tell = [](const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); }};
 }
 
 driver::Result<bool> wait_for_start_pose(driver::Device& device, driver::Clock& clock,

@@ -2,11 +2,10 @@
 
 #include <Eigen/Core>
 #include <atomic>
-#include <functional>
 #include <optional>
 #include <string>
 
-#include "enter_key.h"
+#include "terminal.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/device.h"
 #include "thimble/driver/discovery.h"
@@ -51,16 +50,6 @@ class StartPose {
   scene::WorkspaceBox workspace_;
   std::optional<Eigen::Vector3d> p_WHome_;
 };
-
-/// The user at the terminal; tests write their own.
-struct Terminal {
-  bool there = false;                            ///< Somebody can be asked.
-  std::function<EnterKey()> key;                 ///< Looks, without waiting, what he did.
-  std::function<void(const std::string&)> tell;  ///< Shows him a line.
-};
-
-/// Returns standard input and error. Real-time: never from the servo thread.
-Terminal user_terminal();
 
 /// Reads the idle arm until its tip is where it must be, asking the user to put it there, and sends
 /// zero force meanwhile. Returns true once forces may come, false if `stop` was set before; the

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "open_arm.h"
 #include "run_records.h"
 #include "setup.h"
 #include "share/shared_run.h"
@@ -98,6 +99,59 @@ TEST_F(SessionStart, WithNobodyToAskRefusesAnArmThatIsNotAtHome) {
   options_.homed = false;
   counts_ = {};
   EXPECT_TRUE(session::Session::open(scene(), options_));
+  EXPECT_EQ(forced_, 0);
+}
+
+TEST_F(SessionStart, AsksBeforeARealArmGetsForces) {
+  auto prepared = session::Session::prepare(scene(), options_);
+  ASSERT_TRUE(prepared) << prepared.error().message;
+  std::vector<std::string> told;
+  std::atomic<bool> stop{false};
+  session::EnterKey answer = session::EnterKey::kPressed;
+  int looks = 0;
+  session::Terminal terminal{
+      .there = true,
+      .key = [&] { return ++looks % 3 == 0 ? answer : session::EnterKey::kNothing; },
+      .tell = [&](const std::string& line) { told.push_back(line); },
+      .ask = [&](const std::string& line) { told.push_back(line); }};
+  EXPECT_TRUE(session::agree_to_forces(**prepared, false, terminal, stop));
+  ASSERT_EQ(told.size(), 2u);
+  EXPECT_NE(told[0].find("S1 is about to get forces."), std::string::npos) << told[0];
+  EXPECT_NE(told[0].find("in the home pose"), std::string::npos) << told[0];
+  EXPECT_EQ(looks, 3) << "it waits for the answer";
+  answer = session::EnterKey::kClosed;
+  EXPECT_FALSE(session::agree_to_forces(**prepared, false, terminal, stop));
+  stop.store(true);
+  EXPECT_FALSE(session::agree_to_forces(**prepared, false, terminal, stop));
+  stop.store(false);
+  looks = 0;
+  EXPECT_TRUE(session::agree_to_forces(**prepared, true, terminal, stop)) << "--yes";
+  terminal.there = false;
+  EXPECT_FALSE(session::agree_to_forces(**prepared, false, terminal, stop));
+  EXPECT_NE(told.back().find("--yes"), std::string::npos);
+  EXPECT_EQ(looks, 0) << "nobody is asked";
+  EXPECT_EQ(opened_, 0);
+}
+
+TEST_F(SessionStart, LetsForcesThroughOnlyToAnArmWhoseTipIsAtHome) {
+  const session::Terminal nobody{
+      .there = false, .key = [] { return session::EnterKey::kClosed; }, .tell = [](const auto&) {}};
+  const std::atomic<bool> stop{false};
+  counts_ = {2000, 0, 0, 0, 0, 0};
+  auto away = session::Session::prepare(scene(), options_);
+  ASSERT_TRUE(away) << away.error().message;
+  const auto refused = session::open_arm(**away, nobody, stop);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("away from its home pose"), std::string::npos);
+  EXPECT_EQ((*away)->device().stage(), driver::DeviceStage::kIdle);
+  away->reset();
+  counts_ = {};
+  auto home = session::Session::prepare(scene(), options_);
+  ASSERT_TRUE(home) << home.error().message;
+  const auto opened = session::open_arm(**home, nobody, stop);
+  ASSERT_TRUE(opened) << opened.error().message;
+  EXPECT_TRUE(*opened);
+  EXPECT_EQ((*home)->device().stage(), driver::DeviceStage::kActive);
   EXPECT_EQ(forced_, 0);
 }
 

@@ -1,12 +1,15 @@
 #include "share/request_desk.h"
 
-#include <fmt/format.h>
+#include <unistd.h>
 
 #include <cstdio>
 #include <ctime>
+#include <utility>
 
 #include "interrupt.h"
+#include "print.h"
 #include "run_records.h"
+#include "setup.h"
 #include "thimble/scene/scene_file.h"
 
 namespace thimble::session {
@@ -27,12 +30,12 @@ std::string recording_name(const std::string& scene) {
 void RequestDesk::record(const SharedRun::RecordOrder& order) {
   last_order_ = order.number;
   if (auto stopped = session_.end_recording(); !stopped) {
-    fmt::print(stderr, "thimble: {}\n", stopped.error().message);
+    print(stderr, "thimble: {}\n", stopped.error().message);
   }
   if (!order.record) return;
   const std::string path = order.path.empty() ? recording_name(session_.scene().name) : order.path;
   if (auto begun = session_.begin_recording(path); !begun) {
-    fmt::print(stderr, "thimble: {}\n", begun.error().message);
+    print(stderr, "thimble: {}\n", begun.error().message);
   }
 }
 
@@ -47,6 +50,23 @@ void RequestDesk::step() {
     ended_ = true;
     scene::ask_to_stop();
   }
+}
+
+std::unique_ptr<RequestDesk> open_desk(Session& session, ViewerWish wish) {
+  if (session.shared() == nullptr) return nullptr;
+  std::unique_ptr<ViewerProcess> viewer;
+  if (opens_viewer(wish, session.real_time(), has_display(), isatty(STDERR_FILENO) != 0)) {
+    auto started = ViewerProcess::start(session.shared()->name());
+    if (started) {
+      viewer = std::move(started).value();
+    } else {
+      print(stderr, "thimble: {}\n", started.error().message);
+    }
+  } else if (wish == ViewerWish::kAsked) {
+    print(stderr, "No screen (DISPLAY, WAYLAND_DISPLAY): watch by `thimble view {}`.\n",
+          session.shared()->name());
+  }
+  return std::make_unique<RequestDesk>(session, std::move(viewer), session.setup().hand_by_mouse());
 }
 
 }  // namespace thimble::session

@@ -34,4 +34,22 @@ class RequestDesk {
   std::uint64_t last_order_ = 0;
 };
 
+/// Whether a run opens a viewer.
+enum class ViewerWish {
+  kIfWatched,  ///< Where a person watches the run in real time.
+  kAsked,      ///< Wherever there is a screen.
+  kNever,
+};
+
+/// Returns whether a run opens a viewer. `terminal`: a person looks at standard error.
+constexpr bool opens_viewer(ViewerWish wish, bool real_time, bool display, bool terminal) noexcept {
+  if (wish == ViewerWish::kNever || !display) return false;
+  return wish == ViewerWish::kAsked || (real_time && terminal);
+}
+
+/// Opens the viewer of a session if one is wished for, or says on standard error how to watch
+/// without, and returns who serves all that come; null if the run is not shared. Real-time: never
+/// from the servo thread.
+std::unique_ptr<RequestDesk> open_desk(Session& session, ViewerWish wish);
+
 }  // namespace thimble::session

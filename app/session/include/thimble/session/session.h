@@ -49,23 +49,23 @@ enum class ClockKind {
 
 /// What the user asks for beyond the scene.
 struct SessionOptions {
-  ClockKind clock = ClockKind::kVirtual;       ///< which time it runs on
-  std::optional<double> duration{};            ///< s; the scene's own if empty
-  std::optional<std::uint64_t> seed{};         ///< of everything random; the scene's own if empty
-  std::filesystem::path mesh_folder{};         ///< of `cgal:` meshes; empty: scene::mesh_folder()
-  std::filesystem::path arm_file{};            ///< file or name, in place of the scene's own
-  std::optional<driver::FoundArm> real_arm{};  ///< in place of the simulated one
-  std::optional<scene::RealArmTerms> terms{};  ///< on which it may be used; needed with a real arm
-  std::filesystem::path firmware{};            ///< for a real arm that needs some (Falcon)
-  std::filesystem::path record{};              ///< where every tick is written; empty: nowhere
-  bool share = false;                          ///< lets a viewer in this process see the run
-  bool share_if_possible = false;              ///< goes on unseen where there is no shared memory
-  bool share_out = false;                      ///< lets viewers of other processes see it
-  bool hand_by_mouse =
-      false;  ///< a viewer leads the simulated hand; the run ends when it is asked to
-  std::string share_name{};  ///< under which name; empty: the scene's, with a number if it is taken
-  std::function<void(scene::Scene&)> adjust =
-      {};              ///< changes the scene before anything is built of it
+  ClockKind clock = ClockKind::kVirtual;   ///< which time it runs on
+  std::optional<double> duration = {};     ///< s; the scene's own if empty
+  std::optional<std::uint64_t> seed = {};  ///< of everything random; the scene's own if empty
+  std::filesystem::path mesh_folder = {};  ///< of `cgal:` meshes; empty: scene::mesh_folder()
+  std::filesystem::path arm_file = {};     ///< file or name, in place of the scene's own
+  std::optional<driver::FoundArm> real_arm = {};  ///< in place of the simulated one
+  std::optional<scene::RealArmTerms> terms = {};  ///< on which it may be used; needed with one
+  std::filesystem::path firmware = {};            ///< for a real arm that needs some (Falcon)
+  std::filesystem::path record = {};              ///< where every tick is written; empty: nowhere
+  bool share = false;                             ///< lets a viewer in this process see the run
+  bool share_if_possible = false;  ///< goes on unseen where there is no shared memory
+  bool share_out = false;          ///< lets viewers of other processes see it
+  /// A viewer leads the simulated hand; the run ends when it is asked to.
+  bool hand_by_mouse = false;
+  std::string share_name = {};  ///< under which; empty: the scene's, with a number if it is taken
+  /// Changes the scene before anything is built of it.
+  std::function<void(scene::Scene&)> adjust = {};
   bool homed = false;  ///< a real arm was in its home pose when it got power: do not ask for it
   /// Opens the wire to the real arm in place of `scene::open_wire`, for tests.
   std::function<driver::Result<std::unique_ptr<driver::Transport>>(const scene::ArmFile&,
@@ -154,6 +154,8 @@ class Session {
   /// ticks for contacts that were lost. `grant`: what the kernel granted the servo's thread.
   /// Real-time: never from the servo thread.
   RunFigures figures(const driver::RealTimeGrant& grant = {}) const;
+  /// Returns the number of the object of this name; empty if the scene has none.
+  std::optional<int> find_object(const std::string& name) const;
   /// Returns the mesh of one object, or of all as one if `object` is negative, where it is now:
   /// moved and bent (W, m). Not beside a running servo. Real-time: never from the servo thread.
   render::TriangleMesh mesh_now(int object = -1) const;
