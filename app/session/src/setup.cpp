@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "log/logger.h"
+#include "scene_poses.h"
 #include "text_file.h"
 #include "thimble/scene/build_info.h"
 #include "thimble/scene/device_settings.h"

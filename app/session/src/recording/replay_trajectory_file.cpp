@@ -8,6 +8,7 @@
 #include "thimble/render/mesh/load_mesh.h"
 #include "thimble/scene/build_info.h"
 #include "thimble/scene/scene_file.h"
+#include "thimble/scene/shipped_files.h"
 
 namespace thimble::session {
 namespace {
