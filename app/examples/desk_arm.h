@@ -22,7 +22,7 @@ class DeskArm {
   /// Takes where the hand wants to be (m) at which time (s). Throws std::runtime_error with a
   /// sentence if the arm cannot be opened.
   explicit DeskArm(const std::vector<std::pair<double, Eigen::Vector3d>>& hand_W)
-      : arm_(model(), settings(), way(hand_W)) {
+      : arm_(thimble::device_sim::SimulatedArm::make(model(), settings(), way(hand_W)).value()) {
     auto opened = thimble::driver::Device::open(
         std::make_unique<thimble::device_sim::SimTransport>(clock_, arm_),
         std::make_unique<thimble::driver::hfab::HfabArm>(model()),
@@ -68,7 +68,7 @@ class DeskArm {
     std::vector<thimble::device_sim::HandPath::Point> points;
     points.reserve(hand_W.size());
     for (const auto& [time, p_WH] : hand_W) points.push_back({time, p_WH + home()});
-    return thimble::device_sim::HandPath(points);
+    return thimble::device_sim::HandPath::make(points).value();
   }
 
   thimble::driver::VirtualClock clock_;

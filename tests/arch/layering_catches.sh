@@ -21,10 +21,13 @@ plant "$1" driver/include/thimble/driver/fault.h '<libusb-1.0/libusb.h>'
 plant "$1" driver/src/fault.cpp '"thimble/render/touch.h"'
 plant "$1" device_sim/include/thimble/device_sim/settings.h '"thimble/render/touch.h"'
 plant "$1" device_sim/include/thimble/device_sim/settings.h '"thimble/driver/device.h"'
+plant "$1" device_sim/src/hand.cpp '"stream_transport.h"'
 plant "$1" render/include/thimble/render/touch.h '"thimble/driver/transport.h"'
 plant "$1" render/include/thimble/render/touch.h '"thimble/driver/arms/hfab/hfab_arm.h"'
 plant "$1" render/include/thimble/render/touch.h '"thimble/device_sim/settings.h"'
 # A header that is not installed, in one that is.
+plant "$1" driver/include/thimble/driver/device.h '"little_endian.h"'
+plant "$1" device_sim/include/thimble/device_sim/usb/usb_arm.h '"usb/usb_description.h"'
 plant "$1" render/include/thimble/render/build_object_touch.h '"touch_of.h"'
 plant "$1" render/include/thimble/render/build_object_touch.h '"track/god_object.h"'
 # One forbidden include for each layer of render.
