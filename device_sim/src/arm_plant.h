@@ -9,6 +9,7 @@
 #include "serial_pose.h"
 #include "thimble/device_sim/settings.h"
 #include "thimble/driver/motor_currents.h"
+#include "thimble/driver/result.h"
 #include "thimble/driver/serial_arm.h"
 
 namespace thimble::device_sim {
@@ -27,12 +28,13 @@ class ArmPlant final : public Plant {
   /// Is the longest sub-step, ns.
   static constexpr std::int64_t kStepMax_ns = 1'000'000;
 
-  /// Rests the arm at p_BT (m), with the hand wanting to be at p_BH (m). Throws
-  /// std::invalid_argument if a constant is out of range or p_BT out of reach.
-  /// Real-time: never from the servo thread.
-  ArmPlant(const driver::SerialArm& arm, const std::array<driver::MotorDrive, 3>& drives,
-           const PlantSettings& plant, const HandSettings& hand, const MotorSettings& motors,
-           const Eigen::Vector3d& p_BT, const Eigen::Vector3d& p_BH);
+  /// Makes the arm at rest at p_BT (m), with the hand wanting to be at p_BH (m). Fails if a
+  /// constant is out of range or p_BT out of reach. Real-time: never from the servo thread.
+  static driver::Result<ArmPlant> make(const driver::SerialArm& arm,
+                                       const std::array<driver::MotorDrive, 3>& drives,
+                                       const PlantSettings& plant, const HandSettings& hand,
+                                       const MotorSettings& motors, const Eigen::Vector3d& p_BT,
+                                       const Eigen::Vector3d& p_BH);
 
   void set_currents(const Eigen::Vector3d& amperes) noexcept override;
   void step(const Eigen::Vector3d& p_BH, std::int64_t dt_ns) noexcept override;
@@ -47,10 +49,11 @@ class ArmPlant final : public Plant {
 
   /// Shows the true pose of the links. Real-time: safe.
   const SerialPose& pose() const noexcept { return pose_; }
-  /// Tells what dry friction did in all axes. Real-time: safe.
-  const AxisCounters& axis_counters() const noexcept { return dynamics_.counters(); }
 
  private:
+  ArmPlant(const driver::SerialArm& arm, const std::array<driver::MotorDrive, 3>& drives,
+           const AxisDynamics& dynamics, double current_max, const Eigen::Vector3d& p_BT,
+           const Eigen::Vector3d& p_BH) noexcept;
   SerialPose pose_after(double time) const noexcept;
 
   driver::SerialArm arm_;

@@ -6,6 +6,7 @@
 
 #include "axis_response.h"
 #include "thimble/device_sim/settings.h"
+#include "thimble/driver/result.h"
 
 namespace thimble::device_sim {
 
@@ -46,9 +47,9 @@ class AxisDynamics {
   /// Is the most events that one piece of a step may hold. A smooth drive has at most a few.
   static constexpr int kMaxEvents = 16;
 
-  /// Throws std::invalid_argument if mass is not > 0 or anything else is negative or not finite.
+  /// Makes the dynamics. Fails if mass is not > 0 or anything else is negative or not finite.
   /// Real-time: never from the servo thread.
-  AxisDynamics(const PlantSettings& plant, const HandSettings& hand);
+  static driver::Result<AxisDynamics> make(const PlantSettings& plant, const HandSettings& hand);
 
   /// Moves `state` by `dt_ns`; a time that is not > 0 does nothing. A drive that is not finite
   /// gives a state that is not finite. Real-time: safe; bounded by 1 + dt sqrt(k/m) / 1.5 pieces.
@@ -60,6 +61,8 @@ class AxisDynamics {
   const AxisCounters& counters() const noexcept { return counters_; }
 
  private:
+  AxisDynamics(const PlantSettings& plant, const HandSettings& hand) noexcept;
+
   // One step length: so many equal pieces, each so short that the acceleration changes its sign at
   // most once in it.
   struct Map {

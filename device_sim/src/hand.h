@@ -10,7 +10,7 @@
 namespace thimble::device_sim {
 
 /// Is where the hand wants the tip over time: along a path that was planned, or led by somebody who
-/// drags it; trembling; and standing still while it is held. Frame B: base of the arm. All
+/// drags it; with its tremor; and standing still while it is held. Frame B: base of the arm. All
 /// functions but the constructor are Real-time: safe.
 class Hand {
  public:

@@ -1,7 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <utility>
 #include <vector>
+
+#include "thimble/driver/result.h"
 
 namespace thimble::device_sim {
 
@@ -15,9 +18,9 @@ class HandPath {
     Eigen::Vector3d p_BH{0, 0, 0};  ///< m
   };
 
-  /// Takes at least one point; times must grow strictly and everything must be finite (throws
-  /// std::invalid_argument otherwise, naming the point). Real-time: never from the servo thread.
-  explicit HandPath(std::vector<Point> points);
+  /// Makes a path of at least one point. Times must grow strictly and everything must be finite;
+  /// the error names the point. Real-time: never from the servo thread.
+  static driver::Result<HandPath> make(std::vector<Point> points);
 
   /// Finds the wanted point (m) at a time (s). Fast when times asked for grow. Real-time: safe.
   Eigen::Vector3d at(double time) noexcept;
@@ -25,6 +28,8 @@ class HandPath {
   const std::vector<Point>& points() const noexcept { return points_; }  ///< Lists its points.
 
  private:
+  explicit HandPath(std::vector<Point> points) : points_(std::move(points)) {}
+
   std::vector<Point> points_;
   std::size_t segment_ = 0;  // where the last question fell
 };

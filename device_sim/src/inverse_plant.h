@@ -10,6 +10,7 @@
 #include "thimble/driver/delta_arm.h"
 #include "thimble/driver/joint_model.h"
 #include "thimble/driver/linkage_arm.h"
+#include "thimble/driver/result.h"
 
 namespace thimble::device_sim {
 
@@ -21,12 +22,12 @@ namespace thimble::device_sim {
 template <class Geometry>
 class InversePlant final : public Plant {
  public:
-  /// Rests the arm at p_BT (m), with the hand wanting to be at p_BH (m). Throws
-  /// std::invalid_argument if a constant is out of range or p_BT out of reach. Real-time: never
-  /// from the servo thread.
-  InversePlant(const driver::JointModel<Geometry>& model, const PlantSettings& plant,
-               const HandSettings& hand, const MotorSettings& motors, const Eigen::Vector3d& p_BT,
-               const Eigen::Vector3d& p_BH);
+  /// Makes the arm at rest at p_BT (m), with the hand wanting to be at p_BH (m). Fails if a
+  /// constant is out of range or p_BT out of reach. Real-time: never from the servo thread.
+  static driver::Result<InversePlant> make(const driver::JointModel<Geometry>& model,
+                                           const PlantSettings& plant, const HandSettings& hand,
+                                           const MotorSettings& motors, const Eigen::Vector3d& p_BT,
+                                           const Eigen::Vector3d& p_BH);
 
   void set_currents(const Eigen::Vector3d& amperes) noexcept override;
   void step(const Eigen::Vector3d& p_BH, std::int64_t dt_ns) noexcept override;
@@ -42,6 +43,10 @@ class InversePlant final : public Plant {
   Eigen::Vector3d exact_counts() const noexcept { return model_.exact_counts(q_); }
 
  private:
+  InversePlant(const driver::JointModel<Geometry>& model, const AxisDynamics& dynamics,
+               double current_max, const Eigen::Vector3d& p_BT, const Eigen::Vector3d& p_BH,
+               const Eigen::Vector3d& q) noexcept;
+
   driver::JointModel<Geometry> model_;
   Eigen::Vector3d torque_per_ampere_;  // at the joints, N m/A
   double current_max_;                 // A

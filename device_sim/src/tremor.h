@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "thimble/device_sim/settings.h"
+#include "thimble/driver/result.h"
 
 namespace thimble::device_sim {
 
@@ -13,14 +14,16 @@ namespace thimble::device_sim {
 /// Hz.
 class Tremor {
  public:
-  /// Draws the phases from `seed`, alike on every machine. Throws std::invalid_argument if
-  /// amplitude or frequency is negative or not finite. Real-time: never from the servo thread.
-  Tremor(const HandSettings& hand, std::uint64_t seed);
+  /// Makes a tremor whose phases are drawn from `seed`, alike on every machine. Fails if amplitude
+  /// or frequency is negative or not finite. Real-time: never from the servo thread.
+  static driver::Result<Tremor> make(const HandSettings& hand, std::uint64_t seed);
 
   /// Finds the displacement (m) at a time (s); exactly zero if the amplitude is. Real-time: safe.
   Eigen::Vector3d at(double time) const noexcept;
 
  private:
+  Tremor(const HandSettings& hand, std::uint64_t seed);
+
   Eigen::Vector3d angular_frequencies_;  // of the three sines, rad/s
   Eigen::Matrix3d sines_, cosines_;      // amplitudes, m: row axis, column frequency
   bool still_;

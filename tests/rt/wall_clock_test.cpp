@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "support/elephant.h"
+#include "thimble/device_sim/simulated_arm.h"
 #include "thimble/driver/real_time.h"
 #include "thimble/scene/arm_simulation.h"
 

@@ -43,7 +43,9 @@ struct FreeArm {
     for (auto& drive : model.drives) drive.current_max = 30;
     const Vector3d home = model.geometry.forward(support::vintage_home());
     arm = std::make_unique<device_sim::SimulatedArm>(
-        model, settings, device_sim::HandPath({{.time = 0, .p_BH = home}}));
+        device_sim::SimulatedArm::make(
+            model, settings, device_sim::HandPath::make({{.time = 0, .p_BH = home}}).value())
+            .value());
     driver::DeviceSettings loose = support::vintage_settings();
     loose.limits.force_max = 1e5;  // the soft start of 50 ms is not felt
     loose.limits.rise_max = 1e5;

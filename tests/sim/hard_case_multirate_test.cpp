@@ -18,6 +18,7 @@
 #include "stability/tuning.h"
 #include "support/hard_case.h"
 #include "support/slow_surface.h"
+#include "thimble/device_sim/simulated_arm.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/device.h"
 #include "thimble/driver/servo_loop.h"

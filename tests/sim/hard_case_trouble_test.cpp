@@ -99,10 +99,13 @@ struct Press {
     arm_settings.hand = {.mass = 0.025, .stiffness = 300, .damping = 3};
     arm_settings.motors.current_max = 6;
     arm_settings.wire.delay_out_ns = 1'000'000;
-    device_sim::SimulatedArm arm(
-        model, arm_settings,
-        device_sim::HandPath(
-            {{0, away}, {kEntry, away}, {kEntry + (0.004 + deep) / speed, inside}}));
+    device_sim::SimulatedArm arm =
+        device_sim::SimulatedArm::make(
+            model, arm_settings,
+            device_sim::HandPath::make(
+                {{0, away}, {kEntry, away}, {kEntry + (0.004 + deep) / speed, inside}})
+                .value())
+            .value();
     driver::VirtualClock clock;
     auto opened = driver::Device::open(std::make_unique<TamperedWire>(clock, arm, tamper),
                                        std::make_unique<driver::hfab::HfabArm>(model), settings,

@@ -26,9 +26,7 @@ class LineArm final : public device_sim::usb::UsbArm {
  public:
   static constexpr std::uint8_t kIn = 0x81, kOut = 0x02;
 
-  LineArm(const driver::hfab::HfabModel& model, const device_sim::SimulatedArmSettings& settings,
-          device_sim::HandPath path, driver::hfab::LineModel number)
-      : arm_(model, settings, std::move(path)) {
+  LineArm(device_sim::SimulatedArm arm, driver::hfab::LineModel number) : arm_(std::move(arm)) {
     answer_.model = static_cast<std::int32_t>(number);
   }
 

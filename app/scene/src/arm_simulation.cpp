@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <stdexcept>
-
 #include "thimble/device_sim/sim_transport.h"
 #include "thimble/driver/arms/falcon/falcon_arm.h"
 #include "thimble/driver/arms/falcon/falcon_boot.h"
@@ -18,14 +16,14 @@ Eigen::Vector3d in_base(const ArmFile& file, const Eigen::Vector3d& p_W) {
   return file.R_WB.transpose() * (p_W - file.p_WB);
 }
 
-/// Turns the hand's way from the world into the arm's base. Throws what HandPath throws.
-device_sim::HandPath path_in_base(const HandRoute& hand_W, const ArmFile& file) {
+/// Returns the hand's path in the arm's base, given in the world.
+driver::Result<device_sim::HandPath> path_in_base(const HandRoute& hand_W, const ArmFile& file) {
   std::vector<device_sim::HandPath::Point> points;
   points.reserve(hand_W.size());
   for (const auto& [time, p_WH] : hand_W) {
     points.push_back({.time = time, .p_BH = in_base(file, p_WH)});
   }
-  return device_sim::HandPath(std::move(points));
+  return device_sim::HandPath::make(std::move(points));
 }
 
 /// Gives the file's motors and encoders to the linkage that is in the code.
@@ -82,34 +80,31 @@ driver::Result<std::unique_ptr<ArmSimulation>> ArmSimulation::make(
                          "(app/arms/vintage_phantom.yaml shows it), or plug the arm in."};
   }
   std::unique_ptr<ArmSimulation> simulation(new ArmSimulation(file));
-  try {
-    device_sim::HandPath path = path_in_base(hand_W, file);
-    switch (file.shape) {
-      case ArmShape::kSerial:
-        simulation->board_arm_ = std::make_unique<device_sim::SimulatedArm>(
-            file.model, file.simulated, std::move(path), seed);
-        break;
-      case ArmShape::kPolhem:
-        simulation->board_arm_ = std::make_unique<device_sim::SimulatedArm>(
-            polhem_of(file), file.simulated, std::move(path), seed);
-        break;
-      case ArmShape::kFalcon: {
-        std::vector<std::byte> image;
-        if (!firmware.empty()) {
-          auto read = driver::falcon::read_firmware(firmware);
-          if (!read) return read.error();
-          image = std::move(read).value();
-        }
-        auto falcon = device_sim::usb::SimulatedFalcon::make(file.simulated, std::move(path),
-                                                             std::move(image), seed);
-        if (!falcon) return falcon.error();
-        simulation->falcon_ = std::move(falcon).value();
-        break;
-      }
+  const auto wrong = [&file](const driver::Error& error) {
+    return driver::Error{file.name + ": " + error.message};
+  };
+  auto path = path_in_base(hand_W, file);
+  if (!path) return wrong(path.error());
+  if (file.shape == ArmShape::kFalcon) {
+    std::vector<std::byte> image;
+    if (!firmware.empty()) {
+      auto read = driver::falcon::read_firmware(firmware);
+      if (!read) return read.error();
+      image = std::move(read).value();
     }
-  } catch (const std::invalid_argument& wrong) {
-    return driver::Error{file.name + ": " + wrong.what()};
+    auto falcon = device_sim::usb::SimulatedFalcon::make(file.simulated, std::move(path).value(),
+                                                         std::move(image), seed);
+    if (!falcon) return wrong(falcon.error());
+    simulation->falcon_ = std::move(falcon).value();
+    return simulation;
   }
+  auto arm = file.shape == ArmShape::kPolhem
+                 ? device_sim::SimulatedArm::make(polhem_of(file), file.simulated,
+                                                  std::move(path).value(), seed)
+                 : device_sim::SimulatedArm::make(file.model, file.simulated,
+                                                  std::move(path).value(), seed);
+  if (!arm) return wrong(arm.error());
+  simulation->board_arm_ = std::make_unique<device_sim::SimulatedArm>(std::move(arm).value());
   return simulation;
 }
 

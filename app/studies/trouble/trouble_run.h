@@ -16,7 +16,8 @@ struct TroubleFound {
   double force_share = 0;     ///< Largest force sent, of the arm's limit.
   double tremble = 0;         ///< Force above 50 Hz in the last quarter of a second, N RMS.
   bool must_tremble = false;  ///< As RandomScene::trembles.
-  /// Whether it trembles by more than kTrembleMost and no warning of `thimble tune` foretold it.
+  /// Whether its limit cycle is larger than kTrembleMost and no warning of `thimble tune` foretold
+  /// it.
   bool unforetold = false;
   double speed = 0;  ///< Largest of the tip, m/s.
   double given = 0;  ///< Most that the motors gave in any window (EnergyGiven), J.
@@ -31,7 +32,7 @@ struct TroubleFound {
   double badness() const;
 };
 
-/// Is how much force above 50 Hz counts as trembling at rest, N RMS [STABILITY 6].
+/// The force above 50 Hz that counts as a limit cycle at rest, N RMS [STABILITY 6].
 inline constexpr double kTrembleMost = 0.02;
 
 /// Runs a scene's file and keeps the account.

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "hand.h"
@@ -22,11 +23,14 @@ namespace thimble::device_sim::usb {
 /// packet is complete, and its answer goes to the host when the latency timer of 1 ms is over.
 class FalconOnUsb final : public UsbArm {
  public:
-  /// Rests the arm at the path's first point. `image` is the firmware that it can run; empty if any
-  /// will do. Throws as DeltaPlant does. Real-time: never from the servo thread.
-  FalconOnUsb(UsbDescription description, const PlantSettings& plant, const HandSettings& hand,
-              HandPath path, std::vector<std::byte> image, const WiringSettings& wiring = {},
-              std::uint64_t seed = 0);
+  /// Makes the arm at rest at the path's first point. `image` is the firmware that it can run;
+  /// empty if any will do. Fails as DeltaPlant::make does. Real-time: never from the servo thread.
+  static driver::Result<std::unique_ptr<FalconOnUsb>> make(UsbDescription description,
+                                                           const PlantSettings& plant,
+                                                           const HandSettings& hand, HandPath path,
+                                                           std::vector<std::byte> image,
+                                                           const WiringSettings& wiring = {},
+                                                           std::uint64_t seed = 0);
 
   /// Gives the hand another way, whose time 0 is now. Real-time: never from the servo thread.
   void lead(HandPath path);
@@ -51,6 +55,8 @@ class FalconOnUsb final : public UsbArm {
   const DeltaPlant& plant() const noexcept { return plant_; }
 
  private:
+  FalconOnUsb(UsbDescription description, const Tremor& tremor, HandPath path,
+              const DeltaPlant& plant, std::vector<std::byte> image, const WiringSettings& wiring);
   void move_to(std::int64_t time_ns) noexcept;
   void hear_line(std::int64_t dt_ns) noexcept;
 

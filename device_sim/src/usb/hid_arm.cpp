@@ -22,30 +22,38 @@ enum HidRequest : std::uint8_t {
 
 }  // namespace
 
+driver::Result<std::unique_ptr<HidArm>> HidArm::make(const HidBoard& board,
+                                                     UsbDescription description,
+                                                     const driver::hfab::HfabModel& model,
+                                                     const SimulatedArmSettings& settings,
+                                                     HandPath path, std::uint64_t seed) {
+  auto arm = SimulatedArm::make(model, settings, std::move(path), seed);
+  if (!arm) return arm.error();
+  return std::unique_ptr<HidArm>(
+      new HidArm(board, std::move(description), model, settings, std::move(arm).value()));
+}
+
+driver::Result<std::unique_ptr<HidArm>> HidArm::make(
+    const HidBoard& board, UsbDescription description,
+    const driver::JointModel<driver::LinkageArm>& model, const SimulatedArmSettings& settings,
+    HandPath path, std::uint64_t seed) {
+  auto arm = SimulatedArm::make(model, settings, std::move(path), seed);
+  if (!arm) return arm.error();
+  driver::hfab::HfabModel board_model;
+  board_model.drives = model.drives;
+  board_model.encoders = model.encoders;
+  return std::unique_ptr<HidArm>(
+      new HidArm(board, std::move(description), board_model, settings, std::move(arm).value()));
+}
+
 HidArm::HidArm(const HidBoard& board, UsbDescription description,
                const driver::hfab::HfabModel& model, const SimulatedArmSettings& settings,
-               HandPath path, std::uint64_t seed)
+               SimulatedArm arm) noexcept
     : board_(board),
       description_(std::move(description)),
       model_(model),
       report_age_ns_(settings.wire.delay_in_ns),
-      arm_(model, settings, std::move(path), seed) {
-  begin();
-}
-
-HidArm::HidArm(const HidBoard& board, UsbDescription description,
-               const driver::JointModel<driver::LinkageArm>& model,
-               const SimulatedArmSettings& settings, HandPath path, std::uint64_t seed)
-    : board_(board),
-      description_(std::move(description)),
-      report_age_ns_(settings.wire.delay_in_ns),
-      arm_(model, settings, std::move(path), seed) {
-  model_.drives = model.drives;
-  model_.encoders = model.encoders;
-  begin();
-}
-
-void HidArm::begin() noexcept {
+      arm_(std::move(arm)) {
   keep_sample();
   if (board_.speech == HidSpeech::kAnswers) offer();
 }

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 
 #include "thimble/device_sim/simulated_arm.h"
@@ -17,13 +18,17 @@ namespace thimble::device_sim::usb {
 /// plant, hand and firmware of SimulatedArm. Each endpoint moves a packet a frame at most.
 class HidArm final : public UsbArm {
  public:
-  /// Throws as SimulatedArm does. Real-time: never from the servo thread.
-  HidArm(const HidBoard& board, UsbDescription description, const driver::hfab::HfabModel& model,
-         const SimulatedArmSettings& settings, HandPath path, std::uint64_t seed = 0);
+  /// Makes the arm; fails as SimulatedArm::make does. Real-time: never from the servo thread.
+  static driver::Result<std::unique_ptr<HidArm>> make(const HidBoard& board,
+                                                      UsbDescription description,
+                                                      const driver::hfab::HfabModel& model,
+                                                      const SimulatedArmSettings& settings,
+                                                      HandPath path, std::uint64_t seed = 0);
   /// Makes an arm with a linkage in the same way.
-  HidArm(const HidBoard& board, UsbDescription description,
-         const driver::JointModel<driver::LinkageArm>& model, const SimulatedArmSettings& settings,
-         HandPath path, std::uint64_t seed = 0);
+  static driver::Result<std::unique_ptr<HidArm>> make(
+      const HidBoard& board, UsbDescription description,
+      const driver::JointModel<driver::LinkageArm>& model, const SimulatedArmSettings& settings,
+      HandPath path, std::uint64_t seed = 0);
 
   const UsbDescription& description() const noexcept override { return description_; }
   void advance_to(std::int64_t time_ns) noexcept override;
@@ -51,9 +56,10 @@ class HidArm final : public UsbArm {
   };
   static constexpr std::size_t kSamples = 8;
 
+  HidArm(const HidBoard& board, UsbDescription description, const driver::hfab::HfabModel& model,
+         const SimulatedArmSettings& settings, SimulatedArm arm) noexcept;
   Sample sample_now() const noexcept;
   void keep_sample() noexcept;
-  void begin() noexcept;
   bool newest(Report& report) noexcept;
   bool offered(Report& report) noexcept;
   void offer() noexcept;

@@ -60,8 +60,6 @@ class UsbipSession {
 
   State state() const noexcept { return state_; }
   const UsbipCounters& counters() const noexcept { return counters_; }
-  /// Tells how many transfers wait. Real-time: safe.
-  std::size_t pending() const noexcept { return pending_.size(); }
 
  private:
   struct Transfer {

@@ -8,6 +8,7 @@
 
 #include "thimble/device_sim/settings.h"
 #include "thimble/driver/arms/hfab/hfab_arm.h"
+#include "thimble/driver/result.h"
 
 namespace thimble::device_sim {
 
@@ -31,10 +32,11 @@ class Firmware {
   /// Is the time of an event that is not going to happen, ns.
   static constexpr std::int64_t kNever_ns = INT64_MAX;
 
-  /// Takes motors and encoders of the model, not its geometry. Throws std::invalid_argument if a
+  /// Makes the board of a model's motors and encoders; its geometry does not matter. Fails if a
   /// period is not above zero, the range negative, an encoder has no counts, or the wiring names a
   /// joint that is not there. Real-time: never from the servo thread.
-  Firmware(const driver::hfab::HfabModel& model, const FirmwareSettings& settings);
+  static driver::Result<Firmware> make(const driver::hfab::HfabModel& model,
+                                       const FirmwareSettings& settings);
 
   /// Samples the encoders of an arm at these true joint angles (rad) into the report the board
   /// would send.
@@ -62,6 +64,7 @@ class Firmware {
   const FirmwareCounters& counters() const noexcept { return counters_; }
 
  private:
+  Firmware(const driver::hfab::HfabModel& model, const FirmwareSettings& settings) noexcept;
   Eigen::Vector3d counts_at(const Eigen::Vector3d& q) const noexcept;
   void preset(const driver::hfab::OutputReport& message, const Eigen::Vector3d& q) noexcept;
 

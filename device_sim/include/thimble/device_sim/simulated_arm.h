@@ -13,6 +13,7 @@
 #include "thimble/device_sim/firmware.h"
 #include "thimble/device_sim/settings.h"
 #include "thimble/driver/arms/hfab/hfab_arm.h"
+#include "thimble/driver/result.h"
 #include "tremor.h"
 #include "wire_queue.h"
 
@@ -31,18 +32,20 @@ namespace thimble::device_sim {
 ///
 /// Between events the plant moves by its exact map, in sub-steps of at most 1 ms during which the
 /// point that the hand wants moves evenly; a corner of the path inside a sub-step is cut.
-/// After construction nothing allocates. All functions but the constructor are Real-time: safe; how
-/// long advance_to takes grows with the time that passes.
+/// Once it is made nothing allocates. All functions but `make` are Real-time: safe; how long
+/// advance_to takes grows with the time that passes.
 class SimulatedArm {
  public:
-  /// Builds the arm at rest at the path's first point, with time 0. `seed` sets the tremor's
-  /// phases. Throws std::invalid_argument if a constant is out of range or the path's start is out
-  /// of reach.
-  SimulatedArm(const driver::hfab::HfabModel& model, const SimulatedArmSettings& settings,
-               HandPath path, std::uint64_t seed = 0);
-  /// Builds an arm with a linkage (Polhem) in the same way; its encoders have steps.
-  SimulatedArm(const driver::JointModel<driver::LinkageArm>& model,
-               const SimulatedArmSettings& settings, HandPath path, std::uint64_t seed = 0);
+  /// Makes the arm at rest at the path's first point, with time 0. `seed` sets the tremor's phases.
+  /// Fails if a constant is out of range or the path's start is out of reach. Real-time: never from
+  /// the servo thread.
+  static driver::Result<SimulatedArm> make(const driver::hfab::HfabModel& model,
+                                           const SimulatedArmSettings& settings, HandPath path,
+                                           std::uint64_t seed = 0);
+  /// Makes an arm with a linkage (Polhem) in the same way; its encoders have steps.
+  static driver::Result<SimulatedArm> make(const driver::JointModel<driver::LinkageArm>& model,
+                                           const SimulatedArmSettings& settings, HandPath path,
+                                           std::uint64_t seed = 0);
 
   /// Lets time pass up to `time_ns`; a time in the past does nothing.
   void advance_to(std::int64_t time_ns) noexcept;
@@ -83,8 +86,12 @@ class SimulatedArm {
  private:
   using AnyPlant = std::variant<ArmPlant, LinkagePlant>;
 
-  SimulatedArm(const driver::hfab::HfabModel& board, AnyPlant plant,
-               const SimulatedArmSettings& settings, HandPath path, const Tremor& tremor);
+  SimulatedArm(const SimulatedArmSettings& settings, Hand hand, AnyPlant plant,
+               const Firmware& firmware) noexcept;
+  template <class MakePlant>
+  static driver::Result<SimulatedArm> make_of(const driver::hfab::HfabModel& board,
+                                              const SimulatedArmSettings& settings, HandPath path,
+                                              std::uint64_t seed, const MakePlant& make_plant);
   Plant& mechanics() noexcept {
     return std::visit([](auto& plant) -> Plant& { return plant; }, plant_);
   }
