@@ -13,6 +13,7 @@
 #include "setup.h"
 #include "support/random.h"
 #include "support/vintage_arm.h"
+#include "thimble/device_sim/simulated_arm.h"
 #include "thimble/driver/snapshot.h"
 #include "thimble/render/surface/spring_damper.h"
 #include "thimble/render/touch.h"
@@ -149,7 +150,7 @@ void event_watch(benchmark::State& state) {
   if (!session || stroke_records().empty()) return state.SkipWithError("no scene");
   const session::DeviceCounters counters(session->device());
   session::SpscRing<session::TickEvent> ring(session::EventLog::kRingEvents);
-  session::EventWatch watch(counters, session->period_ns(), ring);
+  session::EventWatch watch(counters, session->setup().period_ns(), ring);
   std::size_t i = 0;
   for (auto _ : state) {
     watch.take(stroke_records()[i]);

@@ -5,6 +5,8 @@
 #include <array>
 #include <vector>
 
+#include "usb/usb_description.h"
+
 namespace thimble::device_sim::usb {
 namespace {
 

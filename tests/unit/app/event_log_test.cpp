@@ -122,7 +122,7 @@ TEST_F(EventLogTest, StandsInTheWayOfNoForce) {
     auto session = open();
     ASSERT_TRUE(session);
     session->run(stop_);
-    for (const driver::TickRecord& row : session->trace().rows()) {
+    for (const driver::TickRecord& row : session->ticks()) {
       forces[logged ? 1 : 0].push_back(row.f_sent_W);
     }
   }

@@ -12,6 +12,8 @@
 namespace thimble::app {
 namespace {
 
+using session::Figure;
+
 session::RunFigures example() {
   session::RunFigures report;
   report.scene = "elephant";
