@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include "hand.h"
 #include "share/describe_scene.h"
 #include "share/live_control.h"
 #include "share/live_knobs.h"

@@ -304,7 +304,7 @@ TEST_F(RealArmTermsTest, ARunWithARealArmNeedsTerms) {
 TEST_F(RealArmTermsTest, ABoardWithAnArmsNameIsAskedForItsModel) {
   const support::LineBoard board(2);
   if (board.node().empty()) GTEST_SKIP() << "this machine has no pseudo-terminals";
-  FoundArm arm = plug(ArmKind::kHfabLine, "V1", "0279", "Haptikfabriken vintage");
+  FoundArm arm = plug(ArmKind::kHfabLine, "V1", 0x0279, "Haptikfabriken vintage");
   arm.certainty = driver::Certainty::kKnown;
   arm.node = board.node();
   const auto found = scene::find_real_arm_file(arm);
@@ -317,7 +317,7 @@ TEST_F(RealArmTermsTest, ABoardWithAnArmsNameIsAskedForItsModel) {
 TEST_F(RealArmTermsTest, TheGateOfASessionStandsOnTheTerms) {
   const support::LineBoard board(2);
   if (board.node().empty()) GTEST_SKIP() << "this machine has no pseudo-terminals";
-  FoundArm arm = plug(ArmKind::kHfabLine, "V1", "0279", "Haptikfabriken vintage");
+  FoundArm arm = plug(ArmKind::kHfabLine, "V1", 0x0279, "Haptikfabriken vintage");
   arm.node = board.node();
   const fs::path file = home_ / "scene" / "ball.yaml";
   write(home_ / "scene" / "own.yaml",
