@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "thimble/device_sim/sim_transport.h"
-#include "thimble/device_sim/simulated_arm.h"
-#include "thimble/driver/arms/hfab/hfab_models.h"
+#include "arms/hfab/hfab_models.h"
+#include "sim_transport.h"
+#include "simulated_arm.h"
 #include "thimble/driver/device.h"
 #include "thimble/driver/servo_loop.h"
 

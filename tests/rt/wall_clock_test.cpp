@@ -4,8 +4,8 @@
 #include <thread>
 #include <vector>
 
+#include "simulated_arm.h"
 #include "support/elephant.h"
-#include "thimble/device_sim/simulated_arm.h"
 #include "thimble/driver/real_time.h"
 
 // The loop in wall-clock time, beside readers: what the thread sanitizer looks at. Times are not

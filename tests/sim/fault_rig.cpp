@@ -11,12 +11,12 @@
 #include <tuple>
 #include <vector>
 
+#include "arms/falcon/falcon_packet.h"
+#include "arms/hfab/hfab_models.h"
+#include "arms/woody/woody_report.h"
 #include "recording/read_recording.h"
 #include "support/line_arm.h"
 #include "support/scratch.h"
-#include "thimble/driver/arms/falcon/falcon_packet.h"
-#include "thimble/driver/arms/hfab/hfab_models.h"
-#include "thimble/driver/arms/woody/woody_report.h"
 #include "thimble/scene/energy_choice.h"
 #include "thimble/scene/real_arm.h"
 #include "thimble/scene/scene_file.h"

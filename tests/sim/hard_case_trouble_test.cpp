@@ -14,11 +14,11 @@
 #include <vector>
 
 #include "body/shape/snap_base.h"
+#include "sim_transport.h"
 #include "support/hard_case.h"
 #include "support/random.h"
 #include "support/vintage_arm.h"
 #include "support/wall_rig.h"
-#include "thimble/device_sim/sim_transport.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/servo_loop.h"
 

@@ -8,9 +8,9 @@
 #include <string>
 #include <string_view>
 
+#include "arms/falcon/falcon_arm.h"
+#include "arms/hfab/hfab_models.h"
 #include "printed.h"
-#include "thimble/driver/arms/falcon/falcon_arm.h"
-#include "thimble/driver/arms/hfab/hfab_models.h"
 #include "thimble/scene/yaml_reader.h"
 
 namespace thimble::scene {

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <span>
 
+#include "simulated_arm.h"
 #include "stability/rest_warnings.h"
 #include "studies/signal.h"
-#include "thimble/device_sim/simulated_arm.h"
 #include "thimble/session/session.h"
 
 namespace thimble::app {
