@@ -13,6 +13,7 @@
 #include <thread>
 #include <utility>
 
+#include "arms/falcon/falcon_boot.h"
 #include "cli/commands.h"
 #include "cli/complain.h"
 #include "interrupt.h"
@@ -21,7 +22,6 @@
 #include "thimble/device_sim/usb/usb_fault.h"
 #include "thimble/device_sim/usb/usbip_server.h"
 #include "thimble/device_sim/usb/vhci.h"
-#include "thimble/driver/arms/falcon/falcon_boot.h"
 
 namespace thimble::app {
 namespace {

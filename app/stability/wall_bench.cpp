@@ -6,8 +6,8 @@
 #include <numbers>
 #include <utility>
 
-#include "thimble/device_sim/simulated_arm.h"
-#include "thimble/driver/arms/hfab/hfab_models.h"
+#include "arms/hfab/hfab_models.h"
+#include "simulated_arm.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/device.h"
 #include "thimble/scene/arm_simulation.h"

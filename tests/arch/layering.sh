@@ -32,7 +32,7 @@ for module in driver device_sim; do
 done
 forbid render "thimble/(device_sim|app)/|$graphics|spdlog/|yaml-cpp/|CLI/" \
   "device_sim, app, graphics, logging or scene files"
-forbid render 'thimble/driver/(transport|device|arm|arms/.*|clock|servo_loop|real_time)\.h|thimble/driver/arms/' \
+forbid render 'thimble/driver/(transport|device|arm|clock|servo_loop|real_time)\.h|(thimble/driver/)?arms/' \
   "the wire or the arm: a force law knows state and force only"
 forbid render/include '(mesh|packed|search|track|body|page|multirate|field|surface|effect)/|[a-z_]*\.h"' \
   "a header beside the sources: it is not installed"

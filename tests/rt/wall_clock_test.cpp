@@ -4,8 +4,8 @@
 #include <thread>
 #include <vector>
 
+#include "simulated_arm.h"
 #include "support/elephant.h"
-#include "thimble/device_sim/simulated_arm.h"
 #include "thimble/driver/real_time.h"
 #include "thimble/scene/arm_simulation.h"
 

@@ -11,11 +11,11 @@
 #include <tuple>
 #include <vector>
 
+#include "arms/falcon/falcon_packet.h"
+#include "arms/hfab/hfab_models.h"
+#include "arms/woody/woody_report.h"
 #include "support/line_arm.h"
 #include "support/scratch.h"
-#include "thimble/driver/arms/falcon/falcon_packet.h"
-#include "thimble/driver/arms/hfab/hfab_models.h"
-#include "thimble/driver/arms/woody/woody_report.h"
 #include "thimble/scene/device_settings.h"
 #include "thimble/scene/real_arm.h"
 #include "thimble/scene/scene_file.h"

@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "field/primitive_contact.h"
+#include "sim_transport.h"
 #include "support/vintage_arm.h"
-#include "thimble/device_sim/sim_transport.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/servo_loop.h"
 #include "thimble/render/field/field_touch.h"

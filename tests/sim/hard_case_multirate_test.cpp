@@ -14,11 +14,11 @@
 #include <utility>
 #include <vector>
 
+#include "simulated_arm.h"
 #include "stability/stability_laws.h"
 #include "stability/tuning.h"
 #include "support/hard_case.h"
 #include "support/slow_surface.h"
-#include "thimble/device_sim/simulated_arm.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/device.h"
 #include "thimble/driver/servo_loop.h"

@@ -14,11 +14,11 @@
 #include <vector>
 
 #include "body/shape/snap_base.h"
+#include "sim_transport.h"
 #include "support/hard_case.h"
 #include "support/random.h"
 #include "support/vintage_arm.h"
 #include "support/wall_rig.h"
-#include "thimble/device_sim/sim_transport.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/servo_loop.h"
 
@@ -305,8 +305,8 @@ TEST(HardCase37, SingularPosesAndTheEdgeOfReachGiveFiniteClampedCurrents) {
       if (!std::isfinite(q[2])) continue;
     }
     const Eigen::Matrix3d J = model.geometry.jacobian(q);
-    const Vector3d wish = random.uniform(0, 20) * random.direction();
-    const auto force = gate.pass(wish, {0, 0, 0}, 1e-3);
+    const Vector3d requested = random.uniform(0, 20) * random.direction();
+    const auto force = gate.pass(requested, {0, 0, 0}, 1e-3);
     const driver::MotorCurrents currents(force, Eigen::Matrix3d::Identity(), J, model.drives);
     ASSERT_TRUE(currents.amperes().allFinite());
     most = std::max(most, currents.amperes().cwiseAbs().maxCoeff());

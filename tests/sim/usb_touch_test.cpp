@@ -5,12 +5,12 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "arms/falcon/falcon_boot.h"
+#include "arms/falcon/falcon_packet.h"
 #include "support/deaf_board.h"
 #include "support/usb_host_line.h"
 #include "support/usb_host_transport.h"
 #include "thimble/device_sim/usb/arm_shelf.h"
-#include "thimble/driver/arms/falcon/falcon_boot.h"
-#include "thimble/driver/arms/falcon/falcon_packet.h"
 #include "thimble/driver/device.h"
 #include "usb/virtual_arm.h"
 

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "sim_transport.h"
 #include "support/vintage_arm.h"
-#include "thimble/device_sim/sim_transport.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/servo_loop.h"
 

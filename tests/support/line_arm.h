@@ -8,12 +8,12 @@
 #include <span>
 #include <utility>
 
+#include "arms/hfab/hfab_line.h"
+#include "arms/hfab/hfab_report.h"
+#include "arms/hfab/hfab_wire.h"
 #include "frame_finder.h"
-#include "thimble/device_sim/simulated_arm.h"
+#include "simulated_arm.h"
 #include "thimble/device_sim/usb/usb_arm.h"
-#include "thimble/driver/arms/hfab/hfab_line.h"
-#include "thimble/driver/arms/hfab/hfab_report.h"
-#include "thimble/driver/arms/hfab/hfab_wire.h"
 #include "usb/setup_packet.h"
 #include "usb/usb_description.h"
 

@@ -10,11 +10,11 @@
 #include <string_view>
 #include <vector>
 
+#include "arms/hfab/hfab_models.h"
+#include "arms/hfab/hfab_wire.h"
+#include "sim_transport.h"
+#include "simulated_arm.h"
 #include "support/random.h"
-#include "thimble/device_sim/sim_transport.h"
-#include "thimble/device_sim/simulated_arm.h"
-#include "thimble/driver/arms/hfab/hfab_models.h"
-#include "thimble/driver/arms/hfab/hfab_wire.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/device.h"
 #include "thimble/driver/wire_arm.h"

@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include "thimble/device_sim/sim_transport.h"
-#include "thimble/driver/arms/falcon/falcon_arm.h"
-#include "thimble/driver/arms/falcon/falcon_boot.h"
-#include "thimble/driver/arms/hfab/hfab_models.h"
+#include "arms/falcon/falcon_arm.h"
+#include "arms/falcon/falcon_boot.h"
+#include "arms/hfab/hfab_models.h"
+#include "sim_transport.h"
 #include "thimble/scene/real_arm.h"
 #include "usb/simulated_falcon.h"
 

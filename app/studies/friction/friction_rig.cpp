@@ -7,7 +7,7 @@
 #include <numbers>
 #include <utility>
 
-#include "thimble/device_sim/sim_transport.h"
+#include "sim_transport.h"
 #include "thimble/driver/arms/hfab/hfab_arm.h"
 #include "thimble/driver/device.h"
 #include "thimble/driver/servo_loop.h"

@@ -8,10 +8,10 @@
 #include <span>
 
 #include "energy_choice.h"
+#include "simulated_arm.h"
 #include "stability/rest_warnings.h"
 #include "studies/signal.h"
 #include "studies/trouble/energy_given.h"
-#include "thimble/device_sim/simulated_arm.h"
 #include "thimble/render/scene_touch.h"
 #include "thimble/scene/arm_simulation.h"
 #include "thimble/scene/scene_file.h"

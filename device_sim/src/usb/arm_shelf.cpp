@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "thimble/driver/arms/falcon/falcon_arm.h"
-#include "thimble/driver/arms/hfab/hfab_models.h"
+#include "arms/falcon/falcon_arm.h"
+#include "arms/hfab/hfab_models.h"
 #include "usb/board_descriptions.h"
 #include "usb/falcon_on_usb.h"
 #include "usb/hid_arm.h"

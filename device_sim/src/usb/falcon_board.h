@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "thimble/driver/arms/falcon/falcon_packet.h"
+#include "arms/falcon/falcon_packet.h"
 #include "usb/ftdi_chip.h"
 
 namespace thimble::device_sim::usb {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "thimble/driver/arms/falcon/falcon_arm.h"
+#include "arms/falcon/falcon_arm.h"
 #include "usb/setup_packet.h"
 #include "usb/usb_description.h"
 #include "usb/usbip_session.h"

@@ -6,7 +6,7 @@
 #include <memory>
 #include <span>
 
-#include "thimble/device_sim/simulated_arm.h"
+#include "simulated_arm.h"
 #include "thimble/device_sim/usb/usb_arm.h"
 #include "usb/hid_board.h"
 #include "usb/setup_packet.h"

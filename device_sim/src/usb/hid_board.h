@@ -3,8 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "thimble/driver/arms/hfab/hfab_report.h"
-#include "thimble/driver/arms/woody/woody_report.h"
+#include "arms/hfab/hfab_report.h"
+#include "arms/woody/woody_report.h"
 
 namespace thimble::device_sim::usb {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "thimble/driver/arms/falcon/falcon_arm.h"
-#include "thimble/driver/arms/falcon/falcon_boot.h"
+#include "arms/falcon/falcon_arm.h"
+#include "arms/falcon/falcon_boot.h"
 #include "usb/board_descriptions.h"
 #include "usb/ftdi_bus.h"
 

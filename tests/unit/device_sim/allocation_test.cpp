@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
+#include "sim_transport.h"
 #include "support/heap_guard.h"
-#include "thimble/device_sim/sim_transport.h"
 #include "vintage_simulation.h"
 
 namespace thimble::device_sim {

@@ -6,10 +6,10 @@
 
 #include <random>
 
+#include "arms/falcon/falcon_arm.h"
+#include "arms/falcon/falcon_boot.h"
 #include "support/usb_host_line.h"
 #include "thimble/device_sim/usb/arm_shelf.h"
-#include "thimble/driver/arms/falcon/falcon_arm.h"
-#include "thimble/driver/arms/falcon/falcon_boot.h"
 
 namespace thimble::device_sim::usb {
 namespace {

@@ -1,4 +1,4 @@
-#include "thimble/device_sim/firmware.h"
+#include "firmware.h"
 
 #include <gtest/gtest.h>
 

@@ -4,10 +4,10 @@
 
 #include <random>
 
+#include "arms/hfab/hfab_report.h"
+#include "arms/woody/woody_report.h"
 #include "support/usb_host.h"
 #include "thimble/device_sim/usb/arm_shelf.h"
-#include "thimble/driver/arms/hfab/hfab_report.h"
-#include "thimble/driver/arms/woody/woody_report.h"
 #include "usb/setup_packet.h"
 #include "usb/usb_description.h"
 

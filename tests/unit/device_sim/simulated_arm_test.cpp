@@ -1,4 +1,4 @@
-#include "thimble/device_sim/simulated_arm.h"
+#include "simulated_arm.h"
 
 #include <gtest/gtest.h>
 

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "arms/falcon/falcon_arm.h"
 #include "support/refuses.h"
-#include "thimble/driver/arms/falcon/falcon_arm.h"
 #include "thimble/driver/device.h"
 
 namespace thimble::device_sim::usb {

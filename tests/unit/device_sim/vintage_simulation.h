@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <optional>
 
+#include "simulated_arm.h"
 #include "support/vintage_arm.h"
-#include "thimble/device_sim/simulated_arm.h"
 
 namespace thimble::device_sim {
 

@@ -6,9 +6,9 @@
 #include <string_view>
 #include <vector>
 
+#include "arms/falcon/falcon_packet.h"
 #include "ftdi_packet.h"
 #include "support/noise.h"
-#include "thimble/driver/arms/falcon/falcon_packet.h"
 
 namespace thimble::driver {
 namespace {

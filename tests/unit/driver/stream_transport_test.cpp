@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "thimble/driver/arms/hfab/hfab_line.h"
+#include "arms/hfab/hfab_line.h"
 
 namespace thimble::driver {
 namespace {

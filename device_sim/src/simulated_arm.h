@@ -7,10 +7,10 @@
 #include <variant>
 
 #include "arm_plant.h"
+#include "firmware.h"
 #include "hand.h"
 #include "hand_path.h"
 #include "inverse_plant.h"
-#include "thimble/device_sim/firmware.h"
 #include "thimble/device_sim/settings.h"
 #include "thimble/driver/arms/hfab/hfab_arm.h"
 #include "thimble/driver/result.h"

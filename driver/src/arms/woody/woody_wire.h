@@ -1,6 +1,6 @@
 #pragma once
 
-#include "thimble/driver/arms/woody/woody_report.h"
+#include "arms/woody/woody_report.h"
 #include "thimble/driver/serial_arm.h"
 #include "thimble/driver/wire_arm.h"
 

@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <vector>
 
+#include "arms/falcon/falcon_packet.h"
 #include "serial_line.h"
-#include "thimble/driver/arms/falcon/falcon_packet.h"
 #include "thimble/driver/result.h"
 
 namespace thimble::driver::falcon {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "thimble/driver/arms/hfab/hfab_line.h"
+#include "arms/hfab/hfab_line.h"
 #include "thimble/driver/transport.h"
 #include "thimble/driver/wire_arm.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "thimble/driver/arms/falcon/falcon_packet.h"
+#include "arms/falcon/falcon_packet.h"
 #include "thimble/driver/delta_arm.h"
 #include "thimble/driver/wire_arm.h"
 

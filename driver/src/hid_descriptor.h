@@ -4,18 +4,9 @@
 #include <cstdint>
 #include <span>
 
+#include "thimble/driver/board.h"
+
 namespace thimble::driver {
-
-/// What a HID report descriptor says of a device that exchanges one report each way.
-struct HidReports {
-  std::uint16_t usage_page = 0;  ///< Of the first collection.
-  std::uint16_t usage = 0;       ///< Of the first collection.
-  std::size_t in_bytes = 0;      ///< Length of a report to the host; 0: there is none.
-  std::size_t out_bytes = 0;     ///< Length of a report to the device; 0: there is none.
-  bool numbered = false;         ///< Reports have ids, so that there may be several of each.
-
-  friend bool operator==(const HidReports&, const HidReports&) = default;
-};
 
 /// The page and usage of the raw HID examples from which the arms' firmware grew [S mbed
 /// USBHID.cpp; Teensyduino usb_desc.h, RAWHID_USAGE_PAGE]. Many other devices have them too.

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "thimble/device_sim/simulated_arm.h"
+#include "simulated_arm.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/transport.h"
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 
+#include "arms/hfab/hfab_report.h"
 #include "thimble/device_sim/settings.h"
 #include "thimble/driver/arms/hfab/hfab_arm.h"
 #include "thimble/driver/result.h"
