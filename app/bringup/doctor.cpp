@@ -10,8 +10,8 @@
 
 #include "bringup/board_advice.h"
 #include "bringup/doctor_timing.h"
+#include "node_lock.h"
 #include "thimble/driver/discovery.h"
-#include "thimble/driver/node_lock.h"
 
 namespace thimble::app {
 namespace {

@@ -13,6 +13,7 @@
 #include <thread>
 #include <utility>
 
+#include "arms/falcon/falcon_boot.h"
 #include "cli/commands.h"
 #include "cli/complain.h"
 #include "interrupt.h"
@@ -20,7 +21,6 @@
 #include "thimble/device_sim/usb/usb_fault.h"
 #include "thimble/device_sim/usb/usbip_server.h"
 #include "thimble/device_sim/usb/vhci.h"
-#include "thimble/driver/arms/falcon/falcon_boot.h"
 
 namespace thimble::app {
 namespace {
@@ -159,7 +159,7 @@ class TruthTrace {
     motors_on_ = truth.motors_on;
     std::fprintf(file_, "%lld %llu %lld %d %d %d %.4f %.4f %.4f %llu %d %d %d %.6f %.6f %.6f ",
                  static_cast<long long>(frame), static_cast<unsigned long long>(truth.reports),
-                 static_cast<long long>(truth.report_ns / usb::UsbipSession::kFrame_ns),
+                 static_cast<long long>(truth.report_ns / usb::UsbDevice::kFrame_ns),
                  truth.counts[0], truth.counts[1], truth.counts[2], truth.exact_counts[0],
                  truth.exact_counts[1], truth.exact_counts[2],
                  static_cast<unsigned long long>(truth.messages), truth.motor_values[0],

@@ -94,7 +94,9 @@ int take_shot(const ShotOptions& options) {
   if (!played) return complain(played.error(), kExitBadInput);
   const auto context = view::OffscreenContext::open();
   if (!context) return complain(context.error(), kExitTrouble);
-  view::ShotPainter painter((*played)->drawn(), choice);
+  auto programs = view::ScenePrograms::make();
+  if (!programs) return complain(programs.error(), kExitTrouble);
+  view::ShotPainter painter((*played)->drawn(), choice, std::move(programs).value());
   std::vector<view::Picture> pictures;
   (*played)->play(times, [&](view::DrawnMoment& moment, const view::Plots& plots) {
     if (pictures.empty()) {

@@ -100,9 +100,9 @@ driver::Result<double> strongest_moment(const std::filesystem::path& scene,
   return time;
 }
 
-ShotPainter::ShotPainter(const DrawnScene& scene, const ShotChoice& choice)
+ShotPainter::ShotPainter(const DrawnScene& scene, const ShotChoice& choice, ScenePrograms programs)
     : choice_(choice),
-      painter_(scene),
+      painter_(scene, std::move(programs)),
       canvas_(choice.width, choice.height, strip_of(choice)),
       text_(std::make_unique<PictureText>(scale_of(choice.height))),
       scale_(scale_of(choice.height)) {}

@@ -25,9 +25,14 @@ forbid device_sim "thimble/(render|app)/|$graphics|spdlog/|yaml-cpp/|CLI/" \
   "render, app, graphics, logging or files"
 forbid device_sim 'thimble/driver/(device|safety_gate|servo_loop|velocity_estimator|real_time)\.h' \
   "the host's side of the driver: it meets it at the wire only"
+forbid device_sim '(rise_limit|stream_transport|node_lock|ftdi_line)\.h"' \
+  "the host's side of the driver: it meets it at the wire only"
+for module in driver device_sim; do
+  forbid $module/include '[a-z_]*\.h"|(arms|usb)/' "a header beside the sources: it is not installed"
+done
 forbid render "thimble/(device_sim|app)/|$graphics|spdlog/|yaml-cpp/|CLI/" \
   "device_sim, app, graphics, logging or scene files"
-forbid render 'thimble/driver/(transport|device|arm|arms/.*|clock|servo_loop|real_time)\.h|thimble/driver/arms/' \
+forbid render 'thimble/driver/(transport|device|arm|clock|servo_loop|real_time)\.h|(thimble/driver/)?arms/' \
   "the wire or the arm: a force law knows state and force only"
 forbid render/include '(mesh|packed|search|track|body|page|multirate|field|surface|effect)/|[a-z_]*\.h"' \
   "a header beside the sources: it is not installed"

@@ -4,6 +4,7 @@
 #include <thread>
 #include <vector>
 
+#include "simulated_arm.h"
 #include "support/elephant.h"
 #include "thimble/driver/real_time.h"
 #include "thimble/scene/arm_simulation.h"

@@ -11,17 +11,18 @@
 #include <tuple>
 #include <vector>
 
+#include "arms/falcon/falcon_packet.h"
+#include "arms/hfab/hfab_models.h"
+#include "arms/woody/woody_report.h"
 #include "support/line_arm.h"
 #include "support/scratch.h"
-#include "thimble/device_sim/usb/ftdi_chip.h"
-#include "thimble/device_sim/usb/hid_arm.h"
-#include "thimble/driver/arms/falcon/falcon_packet.h"
-#include "thimble/driver/arms/hfab/hfab_models.h"
-#include "thimble/driver/arms/woody/woody_report.h"
 #include "thimble/scene/device_settings.h"
 #include "thimble/scene/real_arm.h"
 #include "thimble/scene/scene_file.h"
 #include "thimble/session/recording.h"
+#include "usb/ftdi_chip.h"
+#include "usb/hid_arm.h"
+#include "usb/usb_description.h"
 
 namespace thimble::fault_test {
 namespace {
@@ -110,7 +111,7 @@ FaultRig::FaultRig(const TestedArm& tested, Phase phase, const device_sim::Wirin
 FaultRig::~FaultRig() = default;
 
 void FaultRig::build_arm() {
-  device_sim::HandPath path(hand_way(phase_, file_));
+  device_sim::HandPath path = device_sim::HandPath::make(hand_way(phase_, file_)).value();
   driver::hfab::HfabModel model = file_.model;
   model.fractional_counts = false;
   if (tested_.kind == driver::ArmKind::kFalcon) {
@@ -123,20 +124,22 @@ void FaultRig::build_arm() {
     return;
   }
   if (tested_.kind == driver::ArmKind::kHfabLine) {
-    own_arm_ =
-        std::make_unique<support::LineArm>(model, file_.simulated, std::move(path),
-                                           static_cast<driver::hfab::LineModel>(file_.board_model));
+    own_arm_ = std::make_unique<support::LineArm>(
+        device_sim::SimulatedArm::make(model, file_.simulated, std::move(path)).value(),
+        static_cast<driver::hfab::LineModel>(file_.board_model));
   } else if (file_.shape == scene::ArmShape::kPolhem) {
     auto polhem = driver::hfab::polhem_model();
     polhem.drives = file_.model.drives;
     polhem.encoders = file_.model.encoders;
-    own_arm_ = std::make_unique<usb::HidArm>(usb::kMbed14Board, usb::UsbDescription(), polhem,
-                                             file_.simulated, std::move(path));
+    own_arm_ = usb::HidArm::make(usb::kMbed14Board, usb::UsbDescription(), polhem, file_.simulated,
+                                 std::move(path))
+                   .value();
   } else {
     const auto& board =
         tested_.kind == driver::ArmKind::kWoody ? usb::kWoodenHapticsBoard : usb::kMbed14Board;
-    own_arm_ = std::make_unique<usb::HidArm>(board, usb::UsbDescription(), model, file_.simulated,
-                                             std::move(path));
+    own_arm_ =
+        usb::HidArm::make(board, usb::UsbDescription(), model, file_.simulated, std::move(path))
+            .value();
   }
   arm_ = own_arm_.get();
 }

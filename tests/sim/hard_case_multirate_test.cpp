@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "simulated_arm.h"
 #include "stability/stability_laws.h"
 #include "stability/tuning.h"
 #include "support/hard_case.h"

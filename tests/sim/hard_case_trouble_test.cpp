@@ -14,11 +14,11 @@
 #include <vector>
 
 #include "body/shape/snap_base.h"
+#include "sim_transport.h"
 #include "support/hard_case.h"
 #include "support/random.h"
 #include "support/vintage_arm.h"
 #include "support/wall_rig.h"
-#include "thimble/device_sim/sim_transport.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/servo_loop.h"
 
@@ -99,10 +99,13 @@ struct Press {
     arm_settings.hand = {.mass = 0.025, .stiffness = 300, .damping = 3};
     arm_settings.motors.current_max = 6;
     arm_settings.wire.delay_out_ns = 1'000'000;
-    device_sim::SimulatedArm arm(
-        model, arm_settings,
-        device_sim::HandPath(
-            {{0, away}, {kEntry, away}, {kEntry + (0.004 + deep) / speed, inside}}));
+    device_sim::SimulatedArm arm =
+        device_sim::SimulatedArm::make(
+            model, arm_settings,
+            device_sim::HandPath::make(
+                {{0, away}, {kEntry, away}, {kEntry + (0.004 + deep) / speed, inside}})
+                .value())
+            .value();
     driver::VirtualClock clock;
     auto opened = driver::Device::open(std::make_unique<TamperedWire>(clock, arm, tamper),
                                        std::make_unique<driver::hfab::HfabArm>(model), settings,

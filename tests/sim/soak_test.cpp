@@ -66,7 +66,7 @@ class Wanderer {
       const Vector3d place = places_[random_.bits() % places_.size()] + random_.in_box(0.012);
       const Vector3d inside =
           place.cwiseMax(0.9 * arm.workspace.min_W).cwiseMin(0.9 * arm.workspace.max_W);
-      session_.simulation()->hand().lead(arm.R_WB.transpose() * (inside - arm.p_WB));
+      session_.simulation()->lead(inside);
     }
     return session_.touch()(state);
   }

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <numbers>
 
-#include "thimble/device_sim/axis_dynamics.h"
+#include "axis_dynamics.h"
 
 namespace thimble::support {
 
@@ -31,7 +31,7 @@ class WallRig {
  public:
   explicit WallRig(const Wall& wall)
       : wall_(wall),
-        axis_(wall.plant, wall.hand),
+        axis_(device_sim::AxisDynamics::make(wall.plant, wall.hand).value()),
         whole_(static_cast<std::size_t>(wall.delay_ns / wall.period_ns)),
         rest_ns_(wall.delay_ns % wall.period_ns),
         period_(static_cast<double>(wall.period_ns) * 1e-9) {

@@ -8,10 +8,10 @@
 #include <string>
 #include <string_view>
 
+#include "arms/falcon/falcon_arm.h"
+#include "arms/hfab/hfab_models.h"
 #include "energy_choice.h"
 #include "printed.h"
-#include "thimble/driver/arms/falcon/falcon_arm.h"
-#include "thimble/driver/arms/hfab/hfab_models.h"
 #include "thimble/scene/shipped_files.h"
 #include "yaml/yaml_reader.h"
 

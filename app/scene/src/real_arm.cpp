@@ -5,14 +5,15 @@
 #include <string>
 #include <utility>
 
+#include "arms/falcon/falcon_arm.h"
+#include "arms/falcon/falcon_boot.h"
+#include "arms/hfab/hfab_models.h"
+#include "arms/hfab/hfab_wire.h"
+#include "arms/woody/woody_proof.h"
+#include "arms/woody/woody_wire.h"
+#include "ftdi_line.h"
 #include "interrupt.h"
 #include "printed.h"
-#include "thimble/driver/arms/falcon/falcon_arm.h"
-#include "thimble/driver/arms/falcon/falcon_boot.h"
-#include "thimble/driver/arms/hfab/hfab_models.h"
-#include "thimble/driver/arms/hfab/hfab_wire.h"
-#include "thimble/driver/arms/woody/woody_proof.h"
-#include "thimble/driver/arms/woody/woody_wire.h"
 #include "thimble/driver/transports.h"
 
 namespace thimble::scene {

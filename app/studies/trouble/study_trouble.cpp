@@ -52,17 +52,16 @@ std::string seed_name(std::uint64_t seed) {
 }
 
 /// Draws and runs scenes until the loader accepts one; adds how many it refused.
-std::vector<double> measure(std::size_t cell, std::uint64_t seed, const RandomSceneLimits& limits,
-                            const std::filesystem::path& folder) {
+driver::Result<std::vector<double>> measure(std::size_t cell, std::uint64_t seed,
+                                            const RandomSceneLimits& limits,
+                                            const std::filesystem::path& folder) {
   TroubleFound found;
   int attempt = 0;
   for (; attempt < kTries; ++attempt) {
     const std::uint64_t drawn = try_seed(seed, cell, attempt);
     const RandomScene scene = random_scene(drawn, limits);
     const std::filesystem::path file = folder / (seed_name(drawn) + ".yaml");
-    if (auto done = write_text(scene.text, file); !done) {
-      throw std::runtime_error(done.error().message);
-    }
+    if (auto done = write_text(scene.text, file); !done) return done.error();
     found = run_for_trouble(file, scene);
     std::error_code ignored;
     std::filesystem::remove(file, ignored);

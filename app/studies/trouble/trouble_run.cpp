@@ -7,6 +7,7 @@
 #include <cmath>
 #include <span>
 
+#include "simulated_arm.h"
 #include "stability/rest_warnings.h"
 #include "studies/signal.h"
 #include "thimble/render/scene_touch.h"

@@ -17,7 +17,8 @@ struct TroubleFound {
   double excess = 0;          ///< See energy_excess below, J.
   double tremble = 0;         ///< Force above 50 Hz in the last quarter of a second, N RMS.
   bool must_tremble = false;  ///< As RandomScene::trembles.
-  /// Whether it trembles by more than kTrembleMost and no warning of `thimble tune` foretold it.
+  /// Whether its limit cycle is larger than kTrembleMost and no warning of `thimble tune` foretold
+  /// it.
   bool unforetold = false;
   double speed = 0;    ///< Largest of the tip, m/s.
   double given = 0;    ///< Most that the motors had ever given to the tip, beyond what the
@@ -35,7 +36,7 @@ struct TroubleFound {
 /// guarded wall, and the gate's energy stage lets go before it acts [STABILITY 7].
 inline constexpr double kEnergyAllowed = 2e-3;
 
-/// Is how much force above 50 Hz counts as trembling at rest, N RMS [STABILITY 6].
+/// The force above 50 Hz that counts as a limit cycle at rest, N RMS [STABILITY 6].
 inline constexpr double kTrembleMost = 0.02;
 
 /// Runs a scene's file and keeps the account.

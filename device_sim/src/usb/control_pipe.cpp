@@ -1,4 +1,5 @@
-#include "thimble/device_sim/usb/control_pipe.h"
+#include "usb/control_pipe.h"
+#include "usb/setup_packet.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "thimble/device_sim/usb/falcon_board.h"
+#include "usb/falcon_board.h"
 
 #include <algorithm>
 #include <cmath>

@@ -176,7 +176,7 @@ struct Shared {
 TEST(RunSharing, StoresEachTickAndWhatMovedInIt) {
   const Shared shared;
   session::DrawnDent dent;
-  scene::ScenePoses poses;
+  session::ScenePoses poses;
   poses.count = 1;
   poses.object[0] = 1;
   session::RunSharing sharing(*shared.run, {.dent = &dent, .poses = &poses, .shaped = {}});
@@ -194,7 +194,7 @@ TEST(RunSharing, StoresEachTickAndWhatMovedInIt) {
   EXPECT_EQ(shared.reader->ticks_since(serial, ticks), 0u);
   EXPECT_EQ(ticks.size(), 90u);
   EXPECT_EQ(shared.reader->patch_count(), 6u) << "once for each drawing";
-  scene::ScenePoses seen;
+  session::ScenePoses seen;
   ASSERT_TRUE(shared.reader->poses(seen));
   EXPECT_EQ(seen.tick, 89u);
   EXPECT_EQ(seen.pose[0].p_WB[0], 89);
@@ -205,7 +205,7 @@ TEST(RunSharing, StoresNothingOfASceneInWhichNothingMoves) {
   const Shared shared;
   session::RunSharing sharing(*shared.run, {});
   feed(sharing, scripted_run(20, 5, 10));
-  scene::ScenePoses poses;
+  session::ScenePoses poses;
   EXPECT_FALSE(shared.reader->poses(poses));
   EXPECT_EQ(shared.reader->patch_count(), 0u);
   EXPECT_EQ(shared.reader->counters().ticks, 20u);

@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "arms/falcon/falcon_arm.h"
+#include "arms/hfab/hfab_models.h"
 #include "support/fake_usb.h"
-#include "thimble/driver/arms/falcon/falcon_arm.h"
-#include "thimble/driver/arms/hfab/hfab_models.h"
 
 namespace thimble::app {
 namespace {

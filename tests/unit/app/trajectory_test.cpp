@@ -95,7 +95,7 @@ TEST(Trajectory, AnAnalyticProbeFeelsTheForcesThatItWasMadeOf) {
 TEST(Trajectory, TouchesASceneInTheFrameOfAMeshOrOfTheWorld) {
   const std::filesystem::path scene_file =
       std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/scenes/clay.yaml";
-  const auto scene = scene::read_scene(scene_file, {}, {});
+  const auto scene = scene::load_scene(scene_file);
   ASSERT_TRUE(scene) << scene.error().message;
   const scene::SceneObject& object = scene->objects.front();
   const auto mesh = render::load_mesh(object.mesh_file);

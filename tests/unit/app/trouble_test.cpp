@@ -209,7 +209,7 @@ TEST(WallMeasures, FindTheEdgeThatTheExactMapOfATickHas) {
     wall.delay_ns = static_cast<std::int64_t>(delay * 1e9);
     wall.duration = 4;
     const double exact = stiffness_edge({.mass = 0.075, .viscous = 1, .delay = delay});
-    EXPECT_NEAR(linear_edge(*arm, wall, exact / 2, exact * 2) / exact, 1, 0.01) << delay;
+    EXPECT_NEAR(linear_edge(*arm, wall, exact / 2, exact * 2).value() / exact, 1, 0.01) << delay;
   }
 }
 
@@ -222,11 +222,11 @@ TEST(WallMeasures, FindRestOnlyWhereDryFrictionHoldsHalfAStep) {
   wall.tip = {.mass = 0.075, .viscous = 1, .coulomb = 0};
   for (const double sigma : {0.4, 0.48}) {
     wall.tip.coulomb = sigma * wall.stiffness * wall.step;
-    EXPECT_GT(released_swing(*arm, wall, 0.08, 3), 0) << sigma;
+    EXPECT_GT(released_swing(*arm, wall, 0.08, 3).value(), 0) << sigma;
   }
   for (const double sigma : {0.52, 0.6}) {
     wall.tip.coulomb = sigma * wall.stiffness * wall.step;
-    EXPECT_EQ(released_swing(*arm, wall, 0.08, 3), 0) << sigma;
+    EXPECT_EQ(released_swing(*arm, wall, 0.08, 3).value(), 0) << sigma;
   }
 }
 
@@ -236,7 +236,7 @@ TEST(WallMeasures, ThrowBackAsTheLawOfRestitutionSays) {
   wall.direction = *worst_direction_at_home(*arm);
   wall.tip = {.mass = 0.075, .viscous = 0.005, .coulomb = 0};
   wall.stiffness = 1000;
-  const Restitution found = throw_at_wall(*arm, wall, 50);
+  const Restitution found = throw_at_wall(*arm, wall, 50).value();
   EXPECT_NEAR(found.mean, restitution(1000, 0.005, 0.075, 0.0005), 0.01);
   EXPECT_LE(found.least, found.mean);
   EXPECT_GE(found.most, found.mean);

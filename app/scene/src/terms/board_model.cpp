@@ -3,8 +3,8 @@
 #include <array>
 #include <string>
 
-#include "thimble/driver/arms/hfab/hfab_line.h"
-#include "thimble/driver/arms/hfab/hfab_wire.h"
+#include "arms/hfab/hfab_line.h"
+#include "arms/hfab/hfab_wire.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/transports.h"
 

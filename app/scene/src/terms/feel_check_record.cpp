@@ -79,11 +79,10 @@ std::string checksum_of_data(const ArmFile& file, driver::ArmKind kind) {
 
 /// Returns what is known of an arm's firmware; empty if that is not enough to know it again.
 std::string firmware_of(const driver::FoundArm& found, const fs::path& image) {
-  const std::string device = driver::read_line(found.sysfs / "bcdDevice");
-  if (device.empty()) return {};
+  if (found.release == 0) return {};  // tells no release
   std::string text =
-      printed("usb %04x:%04x device %s \"", found.vendor_id, found.product_id, device.c_str()) +
-      driver::read_line(found.sysfs / "product") + '"';
+      printed("usb %04x:%04x device %04x \"", found.vendor_id, found.product_id, found.release) +
+      found.product + '"';
   if (found.kind != driver::ArmKind::kFalcon) return text;
   // Whoever loaded a Falcon last decided what runs in it; its USB side is the converter's.
   std::error_code missing;

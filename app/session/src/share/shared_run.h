@@ -63,7 +63,6 @@ class SharedRun {
   }
   /// Tells what a knob shall be: within its bounds, or empty if a viewer wrote nonsense.
   std::optional<double> knob_wanted(std::size_t knob) const noexcept;
-  std::size_t knob_count() const noexcept { return knobs_.size(); }
   /// Looks where a viewer wants the hand (W, m, finite); false if none ever did, or one is writing
   /// just now.
   bool hand(SharedHand& hand) const noexcept;

@@ -6,13 +6,20 @@
 #include <memory>
 #include <optional>
 
-#include "thimble/device_sim/sim_transport.h"
-#include "thimble/device_sim/usb/simulated_falcon.h"
 #include "thimble/driver/arm.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/discovery.h"
+#include "thimble/driver/transport.h"
 #include "thimble/scene/arm_file.h"
 #include "thimble/scene/hand_route.h"
+
+namespace thimble::device_sim {
+class Hand;
+class SimulatedArm;
+namespace usb {
+class SimulatedFalcon;
+}
+}  // namespace thimble::device_sim
 
 namespace thimble::scene {
 
@@ -30,6 +37,10 @@ driver::ArmKind simulated_kind(const ArmFile& file);
 /// The simulated arm of an arm file, of whatever build, with the hand that leads it.
 class ArmSimulation {
  public:
+  ~ArmSimulation();
+  ArmSimulation(const ArmSimulation&) = delete;
+  ArmSimulation& operator=(const ArmSimulation&) = delete;
+
   /// Builds the arm and, if it needs that, boots and homes it. The hand goes along `hand_W`
   /// (seconds and points in the world, m) and begins with the clock. `firmware` may be empty: the
   /// simulated arm runs any. The error says what to do. Real-time: never from the servo thread.
@@ -47,14 +58,14 @@ class ArmSimulation {
   /// safe.
   void settle(std::int64_t now_ns) noexcept;
 
-  /// Returns the hand, which thinks in the arm's base. On the thread that the arm lives on.
-  /// Real-time: safe.
-  device_sim::Hand& hand() noexcept { return falcon_ ? falcon_->hand() : board_arm_->hand(); }
   /// Leads the hand to a point of the world (m) from now on, in place of its path: smoothly, as a
   /// person's. A point beyond the workspace is drawn to its box; where the arm does not reach, the
   /// hand stays where it was led last, and the answer is false. On the thread that the arm lives
   /// on. Real-time: safe.
   bool lead(const Eigen::Vector3d& p_WH) noexcept;
+  /// Lets the hand stand still, or go on where it stood. On the thread that the arm lives on.
+  /// Real-time: safe.
+  void hold(bool still) noexcept;
 
   /// Returns the currents that the motors are asked for, A (Falcon: 1000 motor values).
   Eigen::Vector3d currents() const;
@@ -62,13 +73,14 @@ class ArmSimulation {
   Eigen::Vector3d f_T_W() const;
 
   /// Returns the arm, if it has a board that reports by itself (all but the Falcon).
-  const device_sim::SimulatedArm* board_arm() const { return board_arm_ ? &*board_arm_ : nullptr; }
+  const device_sim::SimulatedArm* board_arm() const { return board_arm_.get(); }
 
  private:
-  explicit ArmSimulation(const ArmFile& file) : file_(file) {}
+  device_sim::Hand& hand() noexcept;
+  explicit ArmSimulation(const ArmFile& file);
 
   ArmFile file_;
-  std::optional<device_sim::SimulatedArm> board_arm_;
+  std::unique_ptr<device_sim::SimulatedArm> board_arm_;
   std::unique_ptr<device_sim::usb::SimulatedFalcon> falcon_;
 };
 
