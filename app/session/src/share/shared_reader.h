@@ -48,6 +48,8 @@ class SharedReader {
   bool poses(ScenePoses& poses) const noexcept;
   /// Copies the newest dent; false if nothing was stored. No triangles: nothing is dented.
   bool patch(render::BodyPatch& patch) const noexcept;
+  /// Returns how many patches there were so far: a viewer need only draw anew if it has grown.
+  std::uint64_t patch_count() const noexcept { return live_->patch.count(); }
   /// Puts the vertices of a shaped object, as many as it has, where they are now (W, m).
   /// Vertices that never moved are left alone, so begin with those of `scene`.
   void shaped_vertices(std::size_t object, std::span<Eigen::Vector3d> vertices) const noexcept;
