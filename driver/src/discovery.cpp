@@ -11,6 +11,7 @@
 #include <system_error>
 
 #include "board_identity.h"
+#include "hid_descriptor.h"
 
 namespace thimble::driver {
 namespace {

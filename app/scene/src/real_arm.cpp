@@ -9,6 +9,7 @@
 #include "arms/falcon/falcon_arm.h"
 #include "arms/falcon/falcon_boot.h"
 #include "arms/hfab/hfab_models.h"
+#include "arms/hfab/hfab_report.h"
 #include "arms/hfab/hfab_wire.h"
 #include "arms/woody/woody_proof.h"
 #include "arms/woody/woody_wire.h"

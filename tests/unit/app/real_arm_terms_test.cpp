@@ -8,6 +8,7 @@
 #include "bringup/feel_check.h"
 #include "energy_choice.h"
 #include "real_arm_terms_home.h"
+#include "report/report.h"
 #include "support/line_board.h"
 #include "terms/limits_policy.h"
 #include "thimble/scene/calibration.h"

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "arms/hfab/hfab_report.h"
 #include "open_arm.h"
 #include "run_records.h"
 #include "setup.h"

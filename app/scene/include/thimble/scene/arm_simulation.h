@@ -58,9 +58,6 @@ class ArmSimulation {
   /// safe.
   void settle(std::int64_t now_ns) noexcept;
 
-  /// Returns the hand, which thinks in the arm's base. On the thread that the arm lives on.
-  /// Real-time: safe.
-  device_sim::Hand& hand() noexcept;
   /// Leads the hand to a point of the world (m) from now on, in place of its path: smoothly, as a
   /// person's. A point beyond the workspace is drawn to its box; where the arm does not reach, the
   /// hand stays where it was led last, and the answer is false. On the thread that the arm lives
@@ -79,6 +76,7 @@ class ArmSimulation {
   const device_sim::SimulatedArm* board_arm() const { return board_arm_.get(); }
 
  private:
+  device_sim::Hand& hand() noexcept;
   explicit ArmSimulation(const ArmFile& file);
 
   ArmFile file_;
