@@ -1,4 +1,5 @@
 #include "firmware.h"
+#include "arms/hfab/hfab_report.h"
 
 #include <cmath>
 #include <cstdlib>

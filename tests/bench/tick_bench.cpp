@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "arms/hfab/hfab_report.h"
 #include "bench/figures_reporter.h"
 #include "events/event_log.h"
 #include "run_records.h"

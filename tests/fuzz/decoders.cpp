@@ -7,6 +7,7 @@
 #include "arms/hfab/hfab_line.h"
 #include "arms/hfab/hfab_report.h"
 #include "arms/hfab/hfab_wire.h"
+#include "arms/woody/woody_report.h"
 #include "arms/woody/woody_wire.h"
 #include "frame_finder.h"
 #include "ftdi_packet.h"

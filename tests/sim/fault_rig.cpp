@@ -13,6 +13,7 @@
 
 #include "arms/falcon/falcon_packet.h"
 #include "arms/hfab/hfab_models.h"
+#include "arms/hfab/hfab_report.h"
 #include "arms/woody/woody_report.h"
 #include "support/line_arm.h"
 #include "support/scratch.h"

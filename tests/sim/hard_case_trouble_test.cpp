@@ -13,6 +13,7 @@
 #include <numbers>
 #include <vector>
 
+#include "arms/hfab/hfab_report.h"
 #include "body/shape/snap_base.h"
 #include "sim_transport.h"
 #include "support/hard_case.h"

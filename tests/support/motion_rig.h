@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "arms/hfab/hfab_models.h"
+#include "arms/hfab/hfab_report.h"
 #include "arms/hfab/hfab_wire.h"
 #include "sim_transport.h"
 #include "simulated_arm.h"

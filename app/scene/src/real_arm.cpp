@@ -12,6 +12,7 @@
 #include "arms/hfab/hfab_report.h"
 #include "arms/hfab/hfab_wire.h"
 #include "arms/woody/woody_proof.h"
+#include "arms/woody/woody_report.h"
 #include "arms/woody/woody_wire.h"
 #include "ftdi_line.h"
 #include "interrupt.h"

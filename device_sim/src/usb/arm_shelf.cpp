@@ -7,6 +7,8 @@
 
 #include "arms/falcon/falcon_arm.h"
 #include "arms/hfab/hfab_models.h"
+#include "arms/hfab/hfab_report.h"
+#include "arms/woody/woody_report.h"
 #include "usb/board_descriptions.h"
 #include "usb/falcon_on_usb.h"
 #include "usb/hid_arm.h"

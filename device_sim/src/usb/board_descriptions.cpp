@@ -3,6 +3,7 @@
 #include <array>
 #include <utility>
 
+#include "arms/hfab/hfab_report.h"
 #include "usb/ftdi_chip.h"
 #include "usb/hid_board.h"
 #include "usb/usb_description.h"

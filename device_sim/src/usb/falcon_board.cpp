@@ -1,4 +1,5 @@
 #include "usb/falcon_board.h"
+#include "arms/falcon/falcon_packet.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "arms/hfab/hfab_report.h"
 #include "little_endian.h"
 #include "usb/setup_packet.h"
 #include "usb/usb_description.h"

@@ -6,6 +6,7 @@
 #include <memory>
 #include <span>
 
+#include "arms/hfab/hfab_report.h"
 #include "simulated_arm.h"
 #include "thimble/device_sim/usb/usb_arm.h"
 #include "usb/hid_board.h"

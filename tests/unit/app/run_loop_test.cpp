@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "arms/hfab/hfab_report.h"
 #include "support/heap_guard.h"
 #include "support/scripted_transport.h"
 #include "support/vintage_arm.h"

@@ -6,6 +6,7 @@
 #include <deque>
 #include <limits>
 
+#include "arms/hfab/hfab_report.h"
 #include "support/scripted_transport.h"
 #include "support/vintage_arm.h"
 #include "thimble/scene/calibration.h"

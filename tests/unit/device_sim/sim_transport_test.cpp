@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "arms/hfab/hfab_report.h"
 #include "vintage_simulation.h"
 
 namespace thimble::device_sim {

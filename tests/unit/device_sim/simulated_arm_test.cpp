@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "arms/hfab/hfab_report.h"
 #include "support/random.h"
 #include "support/refuses.h"
 #include "vintage_simulation.h"

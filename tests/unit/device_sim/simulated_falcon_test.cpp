@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "arms/falcon/falcon_arm.h"
+#include "arms/falcon/falcon_packet.h"
 #include "support/refuses.h"
 #include "thimble/driver/device.h"
 

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <optional>
 
+#include "arms/hfab/hfab_report.h"
 #include "simulated_arm.h"
 #include "support/vintage_arm.h"
 

@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "arms/hfab/hfab_models.h"
+#include "arms/hfab/hfab_report.h"
+#include "arms/woody/woody_report.h"
 #include "arms/woody/woody_wire.h"
 #include "support/scripted_transport.h"
 #include "support/vintage_arm.h"
