@@ -5,8 +5,7 @@
 
 #include "cli/commands.h"
 #include "cli/complain.h"
-#include "recording/read_recording.h"
-#include "recording/write_csv.h"
+#include "thimble/session/recording.h"
 
 namespace thimble::app {
 namespace {

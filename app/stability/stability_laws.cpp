@@ -3,7 +3,6 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <limits>
 #include <numbers>
 
@@ -70,20 +69,6 @@ double late_stiffness_limit(double damping, double latency, double mass) {
   return damping / latency * (u > 1e-9 ? u / std::sin(u) : 1);
 }
 
-double passive_damping(double stiffness, double damping, double period, double delay) {
-  double most = -kNone;
-  for (int i = 0; i <= kAngles; ++i) {
-    const AngleTerms terms = terms_at(kPi * i / kAngles, period, delay);
-    most = std::max(most, stiffness * terms.stiffness + damping * terms.damping);
-  }
-  return most;
-}
-
-double passive_damping_filtered(double stiffness, double damping, double period, double lag) {
-  const double share = damping > 0 ? damping * period / (period + 2 * lag) : std::abs(damping);
-  return stiffness * period / 2 + share;
-}
-
 double passive_stiffness(double viscous, double wall_damping, double period, double delay) {
   // Each angle asks for K s + B w <= b: the least K over all angles with s > 0.
   double least = kNone;
@@ -102,19 +87,6 @@ double passive_stiffness_quantised(double viscous, double coulomb, double encode
   return encoder_step > 0 ? std::min(held, 2 * coulomb / encoder_step) : held;
 }
 
-WallPlace place_of_wall(double stiffness, double viscous, double coulomb, double encoder_step,
-                        double period, double delay) {
-  return {.beta = viscous / (stiffness * period),
-          .sigma = encoder_step > 0 ? coulomb / (stiffness * encoder_step) : kNone,
-          .delay_periods = delay / period};
-}
-
-WallRegion region_of(const WallPlace& place) {
-  const bool damped = place.beta > 0.5 + place.delay_periods;
-  if (place.sigma > 0.5) return damped ? WallRegion::kComesToRest : WallRegion::kHoldsSmallSwings;
-  return damped ? WallRegion::kFlickers : WallRegion::kGrows;
-}
-
 double swing_speed_limit(double stiffness, double viscous, double coulomb, double latency) {
   const double leak = stiffness * latency - viscous;
   return leak > 0 ? 4 / kPi * coulomb / leak : kNone;
@@ -122,15 +94,6 @@ double swing_speed_limit(double stiffness, double viscous, double coulomb, doubl
 
 double restitution(double stiffness, double damping, double mass, double latency) {
   return std::exp(-kPi * (damping - stiffness * latency) / (2 * std::sqrt(stiffness * mass)));
-}
-
-double late_restitution(double stiffness, double damping, double mass, double latency) {
-  std::complex<double> s(0, std::sqrt(stiffness / mass));
-  for (int i = 0; i < 50; ++i) {
-    const std::complex<double> late = stiffness * std::exp(-s * latency);
-    s -= (mass * s * s + damping * s + late) / (2 * mass * s + damping - latency * late);
-  }
-  return std::exp(kPi * s.real() / s.imag());
 }
 
 double bristle_length(double friction_force, double latency, double damping, double encoder_step,

@@ -24,7 +24,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 scene::ArmFile shipped(const std::string& name) {
-  auto arm = scene::read_arm_file(std::string(THIMBLE_SOURCE_DIR) + "/app/arms/" + name + ".yaml");
+  auto arm = scene::load_arm(std::string(THIMBLE_SOURCE_DIR) + "/app/arms/" + name + ".yaml");
   if (!arm) throw std::runtime_error(arm.error().message);
   return *arm;
 }

@@ -1,9 +1,10 @@
-#include "thimble/device_sim/sim_transport.h"
+#include "sim_transport.h"
 
 #include <gtest/gtest.h>
 
 #include <array>
 
+#include "arms/hfab/hfab_report.h"
 #include "vintage_simulation.h"
 
 namespace thimble::device_sim {
@@ -16,7 +17,8 @@ constexpr std::int64_t kOneMillisecond = 1'000'000;
 class SimTransportTest : public ::testing::Test {
  protected:
   driver::VirtualClock clock_;
-  SimulatedArm arm_{support::vintage_model(), phantom_like(), resting_at(home_tip())};
+  SimulatedArm arm_ =
+      SimulatedArm::make(support::vintage_model(), phantom_like(), resting_at(home_tip())).value();
   SimTransport transport_{clock_, arm_};
   std::array<std::byte, driver::kReportCapacity> buffer_{};
 };

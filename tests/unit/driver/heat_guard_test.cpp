@@ -6,6 +6,7 @@
 #include <limits>
 #include <memory>
 
+#include "arms/hfab/hfab_report.h"
 #include "support/random.h"
 #include "support/vintage_arm.h"
 #include "thimble/driver/device.h"

@@ -3,6 +3,7 @@
 #include <functional>
 #include <vector>
 
+#include "arms/hfab/hfab_report.h"
 #include "support/scripted_transport.h"
 #include "support/vintage_arm.h"
 #include "thimble/driver/servo_loop.h"
