@@ -13,6 +13,7 @@
 #include "thimble/driver/arms/hfab/hfab_models.h"
 #include "thimble/driver/device.h"
 #include "thimble/driver/servo_loop.h"
+#include "thimble/driver/wire_link.h"
 
 /// Is a simulated vintage PHANTOM on your desk, with a hand that leads it along a way, and the
 /// device that a program opens. The world's origin is where the tip is at home; x points to the
@@ -24,8 +25,9 @@ class DeskArm {
   explicit DeskArm(const std::vector<std::pair<double, Eigen::Vector3d>>& hand_W)
       : arm_(model(), settings(), way(hand_W)) {
     auto opened = thimble::driver::Device::open(
-        std::make_unique<thimble::device_sim::SimTransport>(clock_, arm_),
-        std::make_unique<thimble::driver::hfab::HfabArm>(model()),
+        std::make_unique<thimble::driver::WireLink>(
+            std::make_unique<thimble::device_sim::SimTransport>(clock_, arm_),
+            std::make_unique<thimble::driver::hfab::HfabArm>(model())),
         {.p_WB = -home(),
          .limits = {.force_max = 5,     // N
                     .speed_max = 3,     // m/s

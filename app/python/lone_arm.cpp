@@ -19,9 +19,8 @@ LoneArm::LoneArm(const std::string& arm, const Eigen::Vector3d& p_WH, double rat
     throw Trouble("hand: the arm " + file_.name + " does not reach that point of the world (m).");
   }
   simulation_ = value_of(scene::ArmSimulation::make(file_, {{0.0, p_WH}}, {}, seed));
-  auto protocol = simulation_->protocol();
   device_ =
-      value_of(driver::Device::open(simulation_->wire(clock_), std::move(protocol),
+      value_of(driver::Device::open(simulation_->link(clock_),
                                     {.R_WB = file_.R_WB,
                                      .p_WB = file_.p_WB,
                                      .limits = file_.limits,

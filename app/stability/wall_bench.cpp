@@ -143,7 +143,7 @@ WallRun run_wall(const scene::ArmFile& file, const WallCase& wall) {
     throw std::invalid_argument(arm.name + ": its board does not report by itself.");
   }
   driver::VirtualClock clock;
-  auto opened = driver::Device::open((*simulation)->wire(clock), (*simulation)->protocol(),
+  auto opened = driver::Device::open((*simulation)->link(clock),
                                      {.R_WB = arm.R_WB,
                                       .p_WB = arm.p_WB,
                                       .limits = arm.limits,

@@ -21,6 +21,14 @@ TickRecord record_of(const DeviceState& state, const ForceCommand& command,
   record.f_wanted_W = plain(command.f_T_W);
   record.f_sent_W = plain(device.f_sent_W());
   if (device.heat().named()) record.heat = device.heat().heat();
+  if (state.has_orientation) {
+    record.q_WT = state.q_WT;
+    record.gimbal = state.gimbal;
+  }
+  if (state.has_gripper) {
+    record.has_gripper = true;
+    record.gripper = state.gripper;
+  }
   record.depth = command.touch.depth;
   record.feature = command.touch.feature;
   record.object = command.touch.object;

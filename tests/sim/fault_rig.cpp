@@ -19,6 +19,7 @@
 #include "thimble/driver/arms/falcon/falcon_packet.h"
 #include "thimble/driver/arms/hfab/hfab_models.h"
 #include "thimble/driver/arms/woody/woody_report.h"
+#include "thimble/driver/wire_link.h"
 #include "thimble/scene/energy_choice.h"
 #include "thimble/scene/real_arm.h"
 #include "thimble/scene/scene_file.h"
@@ -168,16 +169,17 @@ support::BusWire::Way FaultRig::way() const {
 driver::Result<void> FaultRig::open() {
   // A Falcon that lost its home by a fault is homed by its hand, which takes up to two seconds.
   const std::int64_t timeout_ns = falcon_ ? 4'000'000'000 : 1'000'000'000;
-  auto device = driver::Device::open(std::make_unique<support::BusWire>(*cable_, clock_, way()),
-                                     scene::make_arm(file_, tested_.kind),
-                                     {.R_WB = file_.R_WB,
-                                      .p_WB = file_.p_WB,
-                                      .limits = file_.limits,
-                                      .energy = scene::energy_settings(file_, 1000, {}),
-                                      .motion = scene::motion_settings(file_, 1000),
-                                      .heat = file_.heat,
-                                      .velocity_corner_frequency = file_.velocity_corner_frequency},
-                                     clock_.now_ns(), timeout_ns);
+  auto device = driver::Device::open(
+      std::make_unique<driver::WireLink>(std::make_unique<support::BusWire>(*cable_, clock_, way()),
+                                         scene::make_arm(file_, tested_.kind)),
+      {.R_WB = file_.R_WB,
+       .p_WB = file_.p_WB,
+       .limits = file_.limits,
+       .energy = scene::energy_settings(file_, 1000, {}),
+       .motion = scene::motion_settings(file_, 1000),
+       .heat = file_.heat,
+       .velocity_corner_frequency = file_.velocity_corner_frequency},
+      clock_.now_ns(), timeout_ns);
   if (!device) return device.error();
   device_ = std::move(device).value();
   return device_->activate();

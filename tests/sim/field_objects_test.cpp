@@ -9,6 +9,7 @@
 #include "thimble/device_sim/sim_transport.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/servo_loop.h"
+#include "thimble/driver/wire_link.h"
 #include "thimble/render/field/field_touch.h"
 #include "thimble/render/field/half_space.h"
 #include "thimble/render/scene_touch.h"
@@ -48,9 +49,10 @@ struct FreeArm {
     loose.limits.force_max = 1e5;  // the soft start of 50 ms is not felt
     loose.limits.rise_max = 1e5;
     loose.limits.soft_start = 0.05;
-    auto opened =
-        driver::Device::open(std::make_unique<device_sim::SimTransport>(clock, *arm),
-                             std::make_unique<driver::hfab::HfabArm>(model), loose, clock.now_ns());
+    auto opened = driver::Device::open(
+        std::make_unique<driver::WireLink>(std::make_unique<device_sim::SimTransport>(clock, *arm),
+                                           std::make_unique<driver::hfab::HfabArm>(model)),
+        loose, clock.now_ns());
     EXPECT_TRUE(opened) << (opened ? "" : opened.error().message);
     device = std::move(opened).value();
     EXPECT_TRUE(device->activate());

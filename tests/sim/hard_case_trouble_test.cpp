@@ -21,6 +21,7 @@
 #include "thimble/device_sim/sim_transport.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/servo_loop.h"
+#include "thimble/driver/wire_link.h"
 
 namespace thimble {
 namespace {
@@ -104,9 +105,10 @@ struct Press {
         device_sim::HandPath(
             {{0, away}, {kEntry, away}, {kEntry + (0.004 + deep) / speed, inside}}));
     driver::VirtualClock clock;
-    auto opened = driver::Device::open(std::make_unique<TamperedWire>(clock, arm, tamper),
-                                       std::make_unique<driver::hfab::HfabArm>(model), settings,
-                                       clock.now_ns());
+    auto opened = driver::Device::open(
+        std::make_unique<driver::WireLink>(std::make_unique<TamperedWire>(clock, arm, tamper),
+                                           std::make_unique<driver::hfab::HfabArm>(model)),
+        settings, clock.now_ns());
     if (!opened) throw std::runtime_error(opened.error().message);
     driver::Device& device = **opened;
     if (!device.activate()) throw std::runtime_error("not active");

@@ -11,6 +11,7 @@
 #include "thimble/driver/arms/falcon/falcon_boot.h"
 #include "thimble/driver/arms/falcon/falcon_packet.h"
 #include "thimble/driver/device.h"
+#include "thimble/driver/wire_link.h"
 #include "usb/virtual_arm.h"
 
 namespace thimble {
@@ -31,8 +32,9 @@ class UsbTouch : public testing::TestWithParam<usb::ShelfEntry> {
     server_.emplace(*faulty_, "1-1");
     plug();
     auto transport = wire();  // brings the clock to the bus's time
-    auto device = driver::Device::open(std::move(transport), virtual_arm_.protocol(),
-                                       usb_test::check_settings(), clock_.now_ns());
+    auto device = driver::Device::open(
+        std::make_unique<driver::WireLink>(std::move(transport), virtual_arm_.protocol()),
+        usb_test::check_settings(), clock_.now_ns());
     ASSERT_TRUE(device.ok()) << device.error().message;
     device_ = std::move(*device);
     ASSERT_TRUE(device_->activate().ok());

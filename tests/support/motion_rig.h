@@ -18,6 +18,7 @@
 #include "thimble/driver/clock.h"
 #include "thimble/driver/device.h"
 #include "thimble/driver/wire_arm.h"
+#include "thimble/driver/wire_link.h"
 
 namespace thimble::support {
 
@@ -190,8 +191,10 @@ inline void MotionRun::run(double duration) {
   }
   driver::VirtualClock clock;
   auto opened =
-      driver::Device::open(std::make_unique<motion_rig::TamperedWire>(clock, *simulated, *this),
-                           std::move(protocol), settings, clock.now_ns());
+      driver::Device::open(std::make_unique<driver::WireLink>(
+                               std::make_unique<motion_rig::TamperedWire>(clock, *simulated, *this),
+                               std::move(protocol)),
+                           settings, clock.now_ns());
   if (!opened) throw std::runtime_error(opened.error().message);
   driver::Device& device = **opened;
   if (!device.activate()) throw std::runtime_error("not active");

@@ -5,6 +5,7 @@
 #include "thimble/driver/arms/falcon/falcon_arm.h"
 #include "thimble/driver/arms/falcon/falcon_boot.h"
 #include "thimble/driver/arms/hfab/hfab_models.h"
+#include "thimble/driver/wire_link.h"
 #include "thimble/scene/real_arm.h"
 
 namespace thimble::scene {
@@ -90,14 +91,20 @@ driver::Result<std::unique_ptr<ArmSimulation>> ArmSimulation::make(
   return simulation;
 }
 
-std::unique_ptr<driver::Transport> ArmSimulation::wire(driver::Clock& clock) {
-  if (falcon_) return falcon_->wire(clock);
-  return std::make_unique<device_sim::SimTransport>(clock, *board_arm_);
-}
-
-std::unique_ptr<const driver::Arm> ArmSimulation::protocol() const {
-  if (file_.shape != ArmShape::kSerial) return make_arm(file_, simulated_kind(file_));
-  return std::make_unique<driver::hfab::HfabArm>(file_.model);  // knows ideal encoders too
+std::unique_ptr<driver::ArmLink> ArmSimulation::link(driver::Clock& clock) {
+  std::unique_ptr<driver::Transport> wire;
+  if (falcon_) {
+    wire = falcon_->wire(clock);
+  } else {
+    wire = std::make_unique<device_sim::SimTransport>(clock, *board_arm_);
+  }
+  std::unique_ptr<const driver::Arm> arm;
+  if (file_.shape != ArmShape::kSerial) {
+    arm = make_arm(file_, simulated_kind(file_));
+  } else {
+    arm = std::make_unique<driver::hfab::HfabArm>(file_.model);  // knows ideal encoders too
+  }
+  return std::make_unique<driver::WireLink>(std::move(wire), std::move(arm));
 }
 
 void ArmSimulation::settle(std::int64_t now_ns) noexcept {

@@ -14,6 +14,7 @@
 #include "thimble/driver/arms/woody/woody_proof.h"
 #include "thimble/driver/arms/woody/woody_wire.h"
 #include "thimble/driver/transports.h"
+#include "thimble/driver/wire_link.h"
 
 namespace thimble::scene {
 namespace {
@@ -111,6 +112,37 @@ Error cannot_drive(const FoundArm& arm) {
       "See `thimble doctor`."};
 }
 
+/// Opens the wire to an arm and brings the arm up. Precondition: `check_fits`.
+Result<std::unique_ptr<driver::Transport>> open_wire(const FoundArm& arm, const ArmFile& file,
+                                                     const std::filesystem::path& firmware,
+                                                     driver::Clock& clock) {
+  switch (arm.board) {
+    case BoardKind::kMbedHid8: {
+      auto wire = driver::open_hid_transport(arm.node, driver::woody::kReportSize, clock);
+      if (!wire) return wire;
+      if (auto right = driver::woody::listen_for_board(**wire, clock); !right) {
+        return Error{arm.node + ": " + right.error().message};
+      }
+      return wire;
+    }
+    case BoardKind::kMbedHid14:
+      return driver::open_hid_transport(arm.node, hfab::kReportSize, clock);
+    case BoardKind::kTeensyRawHid64:
+      return driver::open_hid_transport(arm.node, hfab::kPaddedReportSize, clock);
+    case BoardKind::kTextLines: {
+      auto wire = driver::open_serial_transport(arm.node, hfab::kLineFraming, clock);
+      if (!wire) return wire;
+      if (auto right = check_board(**wire, file, arm, clock); !right) return right.error();
+      return wire;
+    }
+    case BoardKind::kFalconFtdi:
+      return open_falcon(arm, firmware, clock);
+    case BoardKind::kOther:
+      break;
+  }
+  return cannot_drive(arm);
+}
+
 }  // namespace
 
 Result<std::optional<FoundArm>> choose_arm(const std::vector<FoundArm>& plugged_in,
@@ -203,35 +235,14 @@ std::unique_ptr<const driver::Arm> make_arm(const ArmFile& file, ArmKind kind) {
   return arm_on<hfab::ReportWire>(file);
 }
 
-Result<std::unique_ptr<driver::Transport>> open_wire(const FoundArm& arm, const ArmFile& file,
-                                                     const std::filesystem::path& firmware,
-                                                     driver::Clock& clock) {
+Result<std::unique_ptr<driver::ArmLink>> open_link(const FoundArm& arm, const ArmFile& file,
+                                                   const std::filesystem::path& firmware,
+                                                   driver::Clock& clock) {
   if (auto fits = check_fits(file, arm); !fits) return fits.error();
-  switch (arm.board) {
-    case BoardKind::kMbedHid8: {
-      auto wire = driver::open_hid_transport(arm.node, driver::woody::kReportSize, clock);
-      if (!wire) return wire;
-      if (auto right = driver::woody::listen_for_board(**wire, clock); !right) {
-        return Error{arm.node + ": " + right.error().message};
-      }
-      return wire;
-    }
-    case BoardKind::kMbedHid14:
-      return driver::open_hid_transport(arm.node, hfab::kReportSize, clock);
-    case BoardKind::kTeensyRawHid64:
-      return driver::open_hid_transport(arm.node, hfab::kPaddedReportSize, clock);
-    case BoardKind::kTextLines: {
-      auto wire = driver::open_serial_transport(arm.node, hfab::kLineFraming, clock);
-      if (!wire) return wire;
-      if (auto right = check_board(**wire, file, arm, clock); !right) return right.error();
-      return wire;
-    }
-    case BoardKind::kFalconFtdi:
-      return open_falcon(arm, firmware, clock);
-    case BoardKind::kOther:
-      break;
-  }
-  return cannot_drive(arm);
+  auto wire = open_wire(arm, file, firmware, clock);
+  if (!wire) return wire.error();
+  return std::unique_ptr<driver::ArmLink>(
+      std::make_unique<driver::WireLink>(std::move(wire).value(), make_arm(file, arm.kind)));
 }
 
 }  // namespace thimble::scene

@@ -74,10 +74,13 @@ void ReplugWatch::search() {
   pause_ = kStepsBetweenSearches;
   const auto found = ways_.find(arm_);
   if (!found) return;
-  auto wire = ways_.open(*found);
-  if (!wire) return;  // it may still be starting up; the next search tries again
+  auto link = ways_.open(*found);
+  if (!link) return;  // it may still be starting up; the next search tries again
+  if (const auto taken = device_.offer(std::move(link).value()); !taken) {
+    terminal_.tell(taken.error().message);
+    return;
+  }
   arm_ = *found;
-  device_.offer(std::move(wire).value());
   offered_ = true;
   silent_ = 0;
 }
@@ -99,7 +102,7 @@ ReplugWatch replug_watch_of(Session& session, const driver::FoundArm& arm,
     return plugged_in ? scene::find_again(*plugged_in, lost) : std::nullopt;
   };
   const auto open = [&session, firmware](const driver::FoundArm& found) {
-    return scene::open_wire(found, session.scene().arm, firmware, session.clock());
+    return scene::open_link(found, session.scene().arm, firmware, session.clock());
   };
   return {session.device(), session.snapshot(), session.start_pose(), arm,
           {find, open},     user_terminal()};

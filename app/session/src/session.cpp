@@ -113,7 +113,7 @@ driver::Result<std::unique_ptr<Session>> Session::prepare(const std::filesystem:
   session->scene_file_ = scene_file;
   session->real_arm_ = options.real_arm;
   session->firmware_ = options.firmware;
-  session->open_wire_ = options.open_wire;
+  session->open_link_ = options.open_link;
   session->device_name_ = options.real_arm ? options.real_arm->name() : "sim";
   session->black_box_ = std::make_unique<BlackBox>(session->scene_.rate);
   if (!options.record.empty()) {
@@ -139,17 +139,14 @@ driver::Result<void> Session::open_arm() {
   } else {
     clock_ = std::make_unique<driver::VirtualClock>();
   }
-  std::unique_ptr<driver::Transport> wire;
-  std::unique_ptr<const driver::Arm> protocol;
+  std::unique_ptr<driver::ArmLink> link;
   if (real_arm_) {
-    auto opened = open_wire_ ? open_wire_(arm, *clock_)
-                             : scene::open_wire(*real_arm_, arm, firmware_, *clock_);
+    auto opened = open_link_ ? open_link_(arm, *clock_)
+                             : scene::open_link(*real_arm_, arm, firmware_, *clock_);
     if (!opened) return opened.error();
-    wire = std::move(opened).value();
-    protocol = scene::make_arm(arm, real_arm_->kind);
+    link = std::move(opened).value();
   } else {
-    wire = simulation_->wire(*clock_);
-    protocol = simulation_->protocol();
+    link = simulation_->link(*clock_);
   }
   driver::MotionWatchSettings motion = scene::motion_settings(arm, scene_.rate);
   // A simulated hand that a mouse holds does not tremble, and its arm sends no old positions.
@@ -162,7 +159,7 @@ driver::Result<void> Session::open_arm() {
     heat.at_start = known.heat;
   }
   auto device =
-      driver::Device::open(std::move(wire), std::move(protocol),
+      driver::Device::open(std::move(link),
                            {.R_WB = arm.R_WB,
                             .p_WB = arm.p_WB,
                             .limits = arm.limits,

@@ -11,6 +11,7 @@
 #include "thimble/driver/arms/hfab/hfab_arm.h"
 #include "thimble/driver/device.h"
 #include "thimble/driver/servo_loop.h"
+#include "thimble/driver/wire_link.h"
 
 namespace thimble::app {
 namespace {
@@ -115,9 +116,10 @@ RigRun rub(render::AnyStage& friction, const std::vector<RigPoint>& way, double 
                             .watchdog_ns = 100'000'000};
   // It looks at rests of any length, and its reports are never old.
   device_settings.motion.hold_most = 1e9;
-  auto opened = driver::Device::open(std::make_unique<device_sim::SimTransport>(clock, arm),
-                                     std::make_unique<driver::hfab::HfabArm>(model),
-                                     device_settings, clock.now_ns());
+  auto opened = driver::Device::open(
+      std::make_unique<driver::WireLink>(std::make_unique<device_sim::SimTransport>(clock, arm),
+                                         std::make_unique<driver::hfab::HfabArm>(model)),
+      device_settings, clock.now_ns());
   if (!opened) throw std::invalid_argument(opened.error().message);
   const std::unique_ptr<driver::Device> device = std::move(opened).value();
   if (auto activated = device->activate(); !activated) {

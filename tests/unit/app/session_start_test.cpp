@@ -44,13 +44,15 @@ class SessionStart : public ::testing::Test {
     options_.terms->arm.file = *scene::read_arm_file(file);
     options_.record = support::scratch_folder() / "start.h5";
     options_.share = true;
-    options_.open_wire = [this](
+    options_.open_link = [this](
                              const scene::ArmFile&,
-                             driver::Clock&) -> driver::Result<std::unique_ptr<driver::Transport>> {
+                             driver::Clock&) -> driver::Result<std::unique_ptr<driver::ArmLink>> {
       ++opened_;
       ready_ = session_ != nullptr && session_->triangles() > 0 && session_->shared() != nullptr &&
                session_->recording().on() && session_->mesh_W().triangles.size() > 0;
-      return std::unique_ptr<driver::Transport>(std::make_unique<Answering>(*this));
+      return std::unique_ptr<driver::ArmLink>(std::make_unique<driver::WireLink>(
+          std::make_unique<Answering>(*this),
+          scene::make_arm(options_.terms->arm.file, options_.real_arm->kind)));
     };
   }
 

@@ -104,8 +104,9 @@ class WaitForStartPose : public ::testing::Test {
 
   void open() {
     auto opened =
-        driver::Device::open(std::make_unique<Answering>(*this),
-                             std::make_unique<driver::hfab::HfabArm>(support::vintage_model()),
+        driver::Device::open(std::make_unique<driver::WireLink>(
+                                 std::make_unique<Answering>(*this),
+                                 std::make_unique<driver::hfab::HfabArm>(support::vintage_model())),
                              support::vintage_settings(), 0);
     ASSERT_TRUE(opened) << opened.error().message;
     device_ = std::move(opened).value();

@@ -8,6 +8,7 @@
 
 #include "thimble/driver/arms/falcon/falcon_arm.h"
 #include "thimble/driver/device.h"
+#include "thimble/driver/wire_link.h"
 
 namespace thimble::device_sim::usb {
 namespace {
@@ -32,8 +33,10 @@ struct InProgram {
                      .stall_ns = 20'000'000,
                      .watchdog_ns = 100'000'000};
     auto opened = driver::Device::open(
-        falcon->wire(clock),
-        std::make_unique<driver::falcon::FalconArm>(driver::falcon::falcon_model()), limits, 0);
+        std::make_unique<driver::WireLink>(
+            falcon->wire(clock),
+            std::make_unique<driver::falcon::FalconArm>(driver::falcon::falcon_model())),
+        limits, 0);
     EXPECT_TRUE(opened) << opened.error().message;
     device = std::move(opened).value();
   }
@@ -127,7 +130,9 @@ TEST(SimulatedFalcon, IsLeftAloneOnceALegIsNotHomedAnyMore) {
                    .stall_ns = 20'000'000,
                    .watchdog_ns = 100'000'000};
   auto opened = driver::Device::open(
-      std::move(made), std::make_unique<driver::falcon::FalconArm>(driver::falcon::falcon_model()),
+      std::make_unique<driver::WireLink>(
+          std::move(made),
+          std::make_unique<driver::falcon::FalconArm>(driver::falcon::falcon_model())),
       limits, run.clock.now_ns());
   ASSERT_TRUE(opened) << opened.error().message;
   run.device = std::move(opened).value();

@@ -4,8 +4,10 @@
 #include <array>
 #include <cstdint>
 #include <numbers>
+#include <optional>
 
 #include "thimble/driver/arm.h"
+#include "thimble/driver/gimbal.h"
 #include "thimble/driver/motor_currents.h"
 
 namespace thimble::driver {
@@ -18,13 +20,14 @@ struct JointEncoder {
 };
 
 /// Joins a geometry to its motors and encoders: data of one model of an arm, no state. A geometry
-/// has `void forward(q, p_BT, J_BT) const noexcept` (SerialArm, LinkageArm, DeltaArm).
-/// All functions are Real-time: safe.
+/// has `void forward(q, p_BT, J_BT) const noexcept` and `Matrix3d last_link(q, p_BT) const
+/// noexcept` (SerialArm, LinkageArm, DeltaArm). All functions are Real-time: safe.
 template <class Geometry>
 struct JointModel {
   Geometry geometry;                     ///< Links and home pose.
   std::array<MotorDrive, 3> drives;      ///< Motors.
   std::array<JointEncoder, 3> encoders;  ///< Encoders.
+  std::optional<Gimbal> gimbal{};        ///< Behind the last link, if one is mounted.
 
   /// Tells the joint angle of one encoder step, rad.
   double step(std::size_t joint) const noexcept {

@@ -1,8 +1,9 @@
 #include "thimble/driver/arms/hfab/hfab_arm.h"
 
-#include <algorithm>
-#include <cmath>
 #include <numbers>
+
+#include "thimble/driver/arms/hfab/hfab_wire.h"
+#include "thimble/driver/wire_arm.h"
 
 namespace thimble::driver::hfab {
 
@@ -51,24 +52,19 @@ bool HfabArm::decode(std::span<const std::byte> bytes, ArmReading& reading) cons
 
 std::size_t HfabArm::encode(const MotorCurrents& currents,
                             std::span<std::byte, kReportCapacity> report) const noexcept {
-  OutputReport output;
-  output.command = static_cast<std::int16_t>(Command::kDrive);
-  for (std::size_t i = 0; i < 3; ++i) {
-    // The currents are finite and within +-current_max, and a model with a limit beyond 32 A is
-    // cut.
-    const double mA = std::clamp(currents.amperes()[static_cast<int>(i)] * 1e3, -32767.0, 32767.0);
-    output.current_mA[i] = static_cast<std::int16_t>(std::lround(mA));
-  }
-  const auto bytes = encode_output(output);
-  std::copy(bytes.begin(), bytes.end(), report.begin());
-  return bytes.size();
+  return ReportWire::encode(whole_mA(currents), report);
 }
 
-ArmPose HfabArm::pose(const ArmReading& reading) const noexcept {
-  ArmPose pose;
+void HfabArm::orient(const ArmReading& reading, const ArmPose& pose, Eigen::Vector3d& gimbal,
+                     Eigen::Matrix3d& R_BT) const noexcept {
+  if (!has_gimbal()) return;
+  gimbal = model_.gimbal->angles(reading.auxiliary);
+  R_BT = model_.geometry.last_link(pose.q, pose.p_BT) * model_.gimbal->rotation(gimbal);
+}
+
+void HfabArm::find_pose(const ArmReading& reading, ArmPose& pose) const noexcept {
   pose.q = model_.joint_angles(reading);
   model_.geometry.forward(pose.q, pose.p_BT, pose.J_BT);
-  return pose;
 }
 
 }  // namespace thimble::driver::hfab

@@ -10,7 +10,7 @@
 
 #include "thimble/device_sim/sim_transport.h"
 #include "thimble/device_sim/usb/simulated_falcon.h"
-#include "thimble/driver/arm.h"
+#include "thimble/driver/arm_link.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/discovery.h"
 #include "thimble/scene/arm_file.h"
@@ -34,10 +34,9 @@ class ArmSimulation {
       const ArmFile& file, const std::vector<std::pair<double, Eigen::Vector3d>>& hand_W,
       const std::filesystem::path& firmware = {}, std::uint64_t seed = 0);
 
-  /// Makes the wire to it; keeps neither alive. Real-time: never from the servo thread.
-  std::unique_ptr<driver::Transport> wire(driver::Clock& clock);
-  /// Makes the arm as a driver sees it. Real-time: never from the servo thread.
-  std::unique_ptr<const driver::Arm> protocol() const;
+  /// Makes the link to it, over its own wire; keeps neither arm nor clock alive. Real-time: never
+  /// from the servo thread.
+  std::unique_ptr<driver::ArmLink> link(driver::Clock& clock);
 
   /// Lets the arm live on after the loop: the last message is still on its way to it. Real-time:
   /// safe.

@@ -55,10 +55,10 @@ struct SessionOptions {
   std::function<void(scene::Scene&)> adjust =
       {};              ///< changes the scene before anything is built of it
   bool homed = false;  ///< a real arm was in its home pose when it got power: do not ask for it
-  /// Opens the wire to the real arm in place of `app::open_wire`, for tests.
-  std::function<driver::Result<std::unique_ptr<driver::Transport>>(const scene::ArmFile&,
-                                                                   driver::Clock&)>
-      open_wire = {};
+  /// Opens the link to the real arm in place of `scene::open_link`, for tests.
+  std::function<driver::Result<std::unique_ptr<driver::ArmLink>>(const scene::ArmFile&,
+                                                                 driver::Clock&)>
+      open_link = {};
 };
 
 /// Is one scene, loaded and joined: clock, simulated arm, wire, device, touch, and who keeps the
@@ -187,7 +187,7 @@ class Session {
   std::optional<driver::FoundArm> real_arm_;  // with what it takes to open it
   std::filesystem::path firmware_;
   std::optional<StartPose> start_pose_;
-  decltype(SessionOptions::open_wire) open_wire_;
+  decltype(SessionOptions::open_link) open_link_;
   std::unique_ptr<driver::Clock> clock_;
   std::unique_ptr<scene::ArmSimulation> simulation_;
   std::unique_ptr<driver::Device> device_;  // holds the wire to the simulation, so it goes first

@@ -14,6 +14,8 @@ struct HfabModel {
   SerialArm geometry;                    ///< Links and home pose.
   std::array<MotorDrive, 3> drives;      ///< Motors.
   std::array<JointEncoder, 3> encoders;  ///< Encoders.
+  /// Behind the last link, if one is mounted; not with fractional counts, which take its place.
+  std::optional<Gimbal> gimbal{};
   /// True if encoders d, e, f carry the fractions (1/65536) of counts a, b, c. No real arm does;
   /// the simulated arm uses it for ideal encoders (step below a nanometre), to show what the steps
   /// cost.
@@ -38,8 +40,13 @@ class HfabArm final : public Arm {
   bool decode(std::span<const std::byte> report, ArmReading& reading) const noexcept override;
   std::size_t encode(const MotorCurrents& currents,
                      std::span<std::byte, kReportCapacity> report) const noexcept override;
-  ArmPose pose(const ArmReading& reading) const noexcept override;
+  void find_pose(const ArmReading& reading, ArmPose& pose) const noexcept override;
   const std::array<MotorDrive, 3>& drives() const noexcept override { return model_.drives; }
+  bool has_gimbal() const noexcept override {
+    return model_.gimbal.has_value() && !model_.fractional_counts;
+  }
+  void orient(const ArmReading& reading, const ArmPose& pose, Eigen::Vector3d& gimbal,
+              Eigen::Matrix3d& R_BT) const noexcept override;
 
   const HfabModel& model() const noexcept { return model_; }
 
