@@ -11,6 +11,7 @@
 #include "thimble/device_sim/sim_transport.h"
 #include "thimble/device_sim/simulated_arm.h"
 #include "thimble/driver/arms/hfab/hfab_models.h"
+#include "thimble/driver/arms/hfab/hfab_wire.h"
 #include "thimble/driver/device.h"
 #include "thimble/driver/servo_loop.h"
 #include "thimble/driver/wire_link.h"
@@ -53,10 +54,7 @@ class DeskArm {
   }
 
  private:
-  static thimble::driver::hfab::HfabModel model() {
-    const auto vintage = thimble::driver::hfab::vintage_model();
-    return {.geometry = vintage.geometry, .drives = vintage.drives, .encoders = vintage.encoders};
-  }
+  static auto model() { return thimble::driver::hfab::vintage_model(); }
   static Eigen::Vector3d home() { return model().geometry.forward({0, std::numbers::pi / 2, 0}); }
   static thimble::device_sim::SimulatedArmSettings settings() {
     return {.plant = {.mass = 0.075, .viscous = 0.005, .coulomb = 0.04},

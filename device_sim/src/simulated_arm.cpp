@@ -14,36 +14,33 @@ Eigen::Vector3d wanted_first(const HandPath& path, const Tremor& tremor) {
   return way.at(0) + tremor.at(0);
 }
 
-/// Takes what the board knows of an arm: motors and encoders.
-driver::hfab::HfabModel board_of(const driver::JointModel<driver::LinkageArm>& model) {
-  driver::hfab::HfabModel board;
-  board.drives = model.drives;
-  board.encoders = model.encoders;
-  return board;
-}
-
 }  // namespace
 
-SimulatedArm::SimulatedArm(const driver::hfab::HfabModel& board, AnyPlant plant,
+SimulatedArm::SimulatedArm(const driver::ArmModel& board, AnyPlant plant,
                            const SimulatedArmSettings& settings, HandPath path,
                            const Tremor& tremor)
     : report_period_ns_(settings.firmware.report_period_ns),
       wire_(settings.wire),
       hand_(std::move(path), tremor),
+      gimbal_(settings.gimbal),
       plant_(std::move(plant)),
       firmware_(board, settings.firmware) {
   if (wire_.delay_in_ns < 0 || wire_.delay_out_ns < 0) {
     throw std::invalid_argument("The simulated wire's delays must not be negative (ns).");
   }
+  if (!(gimbal_.period > 0) || !gimbal_.middle.allFinite() || !gimbal_.swing.allFinite()) {
+    throw std::invalid_argument(
+        "The simulated gimbal needs finite angles and a period above zero (s).");
+  }
   sample();
   deliver();
 }
 
-SimulatedArm::SimulatedArm(const driver::hfab::HfabModel& model,
+SimulatedArm::SimulatedArm(const driver::JointModel<driver::SerialArm>& model,
                            const SimulatedArmSettings& settings, HandPath path, std::uint64_t seed)
     // Braces take their arguments in order: the path is moved after its last use.
     : SimulatedArm{
-          model,
+          arm_model(model),
           ArmPlant(model.geometry, model.drives, settings.plant, settings.hand, settings.motors,
                    path.points().front().p_BH, wanted_first(path, Tremor(settings.hand, seed))),
           settings, std::move(path), Tremor(settings.hand, seed)} {}
@@ -51,7 +48,7 @@ SimulatedArm::SimulatedArm(const driver::hfab::HfabModel& model,
 SimulatedArm::SimulatedArm(const driver::JointModel<driver::LinkageArm>& model,
                            const SimulatedArmSettings& settings, HandPath path, std::uint64_t seed)
     : SimulatedArm{
-          board_of(model),
+          arm_model(model),
           LinkagePlant(model, settings.plant, settings.hand, settings.motors,
                        path.points().front().p_BH, wanted_first(path, Tremor(settings.hand, seed))),
           settings, std::move(path), Tremor(settings.hand, seed)} {}
@@ -87,12 +84,16 @@ void SimulatedArm::advance_to(std::int64_t time_ns) noexcept {
 }
 
 void SimulatedArm::sample() noexcept {
-  reports_.push(firmware_.sample(angles()), time_ns_ + wire_.delay_in_ns);
+  reports_.push(sample_now(), time_ns_ + wire_.delay_in_ns);
   next_sample_ns_ += report_period_ns_;
 }
 
+BoardBytes SimulatedArm::sample_now() noexcept {
+  return firmware_.sample(angles(), gimbal(), number_++);
+}
+
 void SimulatedArm::receive(std::span<const std::byte> bytes) noexcept {
-  firmware_.receive(bytes, time_ns_, angles());
+  firmware_.receive(bytes, time_ns_, angles(), gimbal());
   mechanics().set_currents(firmware_.currents());
 }
 

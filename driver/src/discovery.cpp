@@ -11,6 +11,7 @@
 #include <system_error>
 
 #include "board_identity.h"
+#include "thimble/driver/arm_table.h"
 
 namespace thimble::driver {
 namespace {
@@ -140,7 +141,7 @@ Result<std::vector<FoundArm>> find_arms(const fs::path& root) {
                                     .has_tty = !tty.empty()});
     if (!identity) continue;
     FoundArm arm;
-    arm.kind = identity->kind;
+    arm.kind = kind_of(identity->board);
     arm.board = identity->board;
     arm.certainty = identity->certainty;
     arm.arm = identity->arm;

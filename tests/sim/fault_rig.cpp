@@ -16,6 +16,7 @@
 #include "support/scratch.h"
 #include "thimble/device_sim/usb/ftdi_chip.h"
 #include "thimble/device_sim/usb/hid_arm.h"
+#include "thimble/driver/arm_table.h"
 #include "thimble/driver/arms/falcon/falcon_packet.h"
 #include "thimble/driver/arms/hfab/hfab_models.h"
 #include "thimble/driver/arms/woody/woody_report.h"
@@ -113,8 +114,7 @@ FaultRig::~FaultRig() = default;
 
 void FaultRig::build_arm() {
   device_sim::HandPath path(hand_way(phase_, file_));
-  driver::hfab::HfabModel model = file_.model;
-  model.fractional_counts = false;
+  const auto serial = [&] { return driver::model_as<driver::SerialArm>(file_.model); };
   if (tested_.kind == driver::ArmKind::kFalcon) {
     auto falcon = usb::SimulatedFalcon::make(file_.simulated, std::move(path), {});
     ASSERT_TRUE(falcon) << falcon.error().message;
@@ -126,19 +126,17 @@ void FaultRig::build_arm() {
   }
   if (tested_.kind == driver::ArmKind::kHfabLine) {
     own_arm_ =
-        std::make_unique<support::LineArm>(model, file_.simulated, std::move(path),
+        std::make_unique<support::LineArm>(serial(), file_.simulated, std::move(path),
                                            static_cast<driver::hfab::LineModel>(file_.board_model));
-  } else if (file_.shape == scene::ArmShape::kPolhem) {
-    auto polhem = driver::hfab::polhem_model();
-    polhem.drives = file_.model.drives;
-    polhem.encoders = file_.model.encoders;
-    own_arm_ = std::make_unique<usb::HidArm>(usb::kMbed14Board, usb::UsbDescription(), polhem,
+  } else if (file_.is<driver::LinkageArm>()) {
+    own_arm_ = std::make_unique<usb::HidArm>(usb::kMbed14Board, usb::UsbDescription(),
+                                             driver::model_as<driver::LinkageArm>(file_.model),
                                              file_.simulated, std::move(path));
   } else {
     const auto& board =
         tested_.kind == driver::ArmKind::kWoody ? usb::kWoodenHapticsBoard : usb::kMbed14Board;
-    own_arm_ = std::make_unique<usb::HidArm>(board, usb::UsbDescription(), model, file_.simulated,
-                                             std::move(path));
+    own_arm_ = std::make_unique<usb::HidArm>(board, usb::UsbDescription(), serial(),
+                                             file_.simulated, std::move(path));
   }
   arm_ = own_arm_.get();
 }
@@ -171,7 +169,7 @@ driver::Result<void> FaultRig::open() {
   const std::int64_t timeout_ns = falcon_ ? 4'000'000'000 : 1'000'000'000;
   auto device = driver::Device::open(
       std::make_unique<driver::WireLink>(std::make_unique<support::BusWire>(*cable_, clock_, way()),
-                                         scene::make_arm(file_, tested_.kind)),
+                                         driver::make_arm(tested_.kind, file_.model)),
       {.R_WB = file_.R_WB,
        .p_WB = file_.p_WB,
        .limits = file_.limits,

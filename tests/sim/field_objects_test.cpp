@@ -7,6 +7,7 @@
 #include "field/primitive_contact.h"
 #include "support/vintage_arm.h"
 #include "thimble/device_sim/sim_transport.h"
+#include "thimble/driver/arm_table.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/servo_loop.h"
 #include "thimble/driver/wire_link.h"
@@ -33,9 +34,9 @@ struct FreeArm {
   static constexpr double kViscous = 0.005;
 
   explicit FreeArm(std::int64_t period_ns, std::int64_t delay_ns = 0) : period_ns_(period_ns) {
-    driver::hfab::HfabModel model = support::vintage_model();
-    model.fractional_counts = true;  // ideal encoders
+    auto model = support::vintage_model();
     device_sim::SimulatedArmSettings settings;
+    settings.firmware.ideal_encoders = true;
     settings.plant = {.mass = kMass, .viscous = kViscous, .coulomb = 0};
     settings.motors.current_max = 100;
     settings.firmware.report_period_ns = period_ns;
@@ -51,7 +52,7 @@ struct FreeArm {
     loose.limits.soft_start = 0.05;
     auto opened = driver::Device::open(
         std::make_unique<driver::WireLink>(std::make_unique<device_sim::SimTransport>(clock, *arm),
-                                           std::make_unique<driver::hfab::HfabArm>(model)),
+                                           driver::make_ideal_arm(arm_model(model))),
         loose, clock.now_ns());
     EXPECT_TRUE(opened) << (opened ? "" : opened.error().message);
     device = std::move(opened).value();

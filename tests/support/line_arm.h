@@ -24,8 +24,9 @@ class LineArm final : public device_sim::usb::UsbArm {
  public:
   static constexpr std::uint8_t kIn = 0x81, kOut = 0x02;
 
-  LineArm(const driver::hfab::HfabModel& model, const device_sim::SimulatedArmSettings& settings,
-          device_sim::HandPath path, driver::hfab::LineModel number)
+  LineArm(const driver::JointModel<driver::SerialArm>& model,
+          const device_sim::SimulatedArmSettings& settings, device_sim::HandPath path,
+          driver::hfab::LineModel number)
       : arm_(model, settings, std::move(path)) {
     answer_.model = static_cast<std::int32_t>(number);
   }

@@ -182,12 +182,8 @@ inline void MotionRun::run(double duration) {
   } else {
     const auto built =
         arm == MotionArm::kVintage ? driver::hfab::vintage_model() : driver::hfab::woody_model();
-    driver::hfab::HfabModel model;
-    model.geometry = built.geometry;
-    model.drives = built.drives;
-    model.encoders = built.encoders;
-    simulated = std::make_unique<device_sim::SimulatedArm>(model, arm_settings, path, seed);
-    protocol = std::make_unique<driver::hfab::HfabArm>(model);
+    simulated = std::make_unique<device_sim::SimulatedArm>(built, arm_settings, path, seed);
+    protocol = std::make_unique<driver::hfab::HfabArm>(built);
   }
   driver::VirtualClock clock;
   auto opened =

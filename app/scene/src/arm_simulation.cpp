@@ -2,11 +2,9 @@
 
 #include <stdexcept>
 
-#include "thimble/driver/arms/falcon/falcon_arm.h"
+#include "thimble/driver/arm_table.h"
 #include "thimble/driver/arms/falcon/falcon_boot.h"
-#include "thimble/driver/arms/hfab/hfab_models.h"
 #include "thimble/driver/wire_link.h"
-#include "thimble/scene/real_arm.h"
 
 namespace thimble::scene {
 namespace {
@@ -26,31 +24,18 @@ device_sim::HandPath path_in_base(const std::vector<std::pair<double, Eigen::Vec
   return device_sim::HandPath(std::move(points));
 }
 
-/// Gives the file's motors and encoders to the linkage that is in the code.
-driver::JointModel<driver::LinkageArm> polhem_of(const ArmFile& file) {
-  auto model = driver::hfab::polhem_model();
-  model.drives = file.model.drives;
-  model.encoders = file.model.encoders;
-  return model;
+/// Sets what the board of a file's arm speaks.
+device_sim::SimulatedArmSettings settings_of(const ArmFile& file) {
+  device_sim::SimulatedArmSettings settings = file.simulated;
+  settings.firmware.speaks = file.protocol;
+  settings.firmware.line_model = file.board_model;
+  return settings;
 }
 
 }  // namespace
 
 std::optional<Eigen::Vector3d> joint_angles_at(const ArmFile& file, const Eigen::Vector3d& p_WT) {
-  const Eigen::Vector3d p_BT = in_base(file, p_WT);
-  switch (file.shape) {
-    case ArmShape::kSerial:
-      return file.model.geometry.inverse(p_BT);
-    case ArmShape::kPolhem:
-      return driver::hfab::polhem_model().geometry.inverse(p_BT);
-    case ArmShape::kFalcon:
-      return driver::falcon::falcon_geometry().inverse(p_BT);
-  }
-  return std::nullopt;
-}
-
-driver::ArmKind simulated_kind(const ArmFile& file) {
-  return file.shape == ArmShape::kFalcon ? driver::ArmKind::kFalcon : driver::ArmKind::kPolhem;
+  return driver::inverse(file.model.geometry, in_base(file, p_WT));
 }
 
 driver::Result<std::unique_ptr<ArmSimulation>> ArmSimulation::make(
@@ -64,26 +49,23 @@ driver::Result<std::unique_ptr<ArmSimulation>> ArmSimulation::make(
   std::unique_ptr<ArmSimulation> simulation(new ArmSimulation(file));
   try {
     device_sim::HandPath path = path_in_base(hand_W, file);
-    switch (file.shape) {
-      case ArmShape::kSerial:
-        simulation->board_arm_.emplace(file.model, file.simulated, std::move(path), seed);
-        break;
-      case ArmShape::kPolhem:
-        simulation->board_arm_.emplace(polhem_of(file), file.simulated, std::move(path), seed);
-        break;
-      case ArmShape::kFalcon: {
-        std::vector<std::byte> image;
-        if (!firmware.empty()) {
-          auto read = driver::falcon::read_firmware(firmware);
-          if (!read) return read.error();
-          image = std::move(read).value();
-        }
-        auto falcon = device_sim::usb::SimulatedFalcon::make(file.simulated, std::move(path),
-                                                             std::move(image), seed);
-        if (!falcon) return falcon.error();
-        simulation->falcon_ = std::move(falcon).value();
-        break;
+    if (file.is<driver::SerialArm>()) {
+      simulation->board_arm_.emplace(driver::model_as<driver::SerialArm>(file.model),
+                                     settings_of(file), std::move(path), seed);
+    } else if (file.is<driver::LinkageArm>()) {
+      simulation->board_arm_.emplace(driver::model_as<driver::LinkageArm>(file.model),
+                                     settings_of(file), std::move(path), seed);
+    } else {
+      std::vector<std::byte> image;
+      if (!firmware.empty()) {
+        auto read = driver::falcon::read_firmware(firmware);
+        if (!read) return read.error();
+        image = std::move(read).value();
       }
+      auto falcon = device_sim::usb::SimulatedFalcon::make(file.simulated, std::move(path),
+                                                           std::move(image), seed);
+      if (!falcon) return falcon.error();
+      simulation->falcon_ = std::move(falcon).value();
     }
   } catch (const std::invalid_argument& wrong) {
     return driver::Error{file.name + ": " + wrong.what()};
@@ -98,12 +80,9 @@ std::unique_ptr<driver::ArmLink> ArmSimulation::link(driver::Clock& clock) {
   } else {
     wire = std::make_unique<device_sim::SimTransport>(clock, *board_arm_);
   }
-  std::unique_ptr<const driver::Arm> arm;
-  if (file_.shape != ArmShape::kSerial) {
-    arm = make_arm(file_, simulated_kind(file_));
-  } else {
-    arm = std::make_unique<driver::hfab::HfabArm>(file_.model);  // knows ideal encoders too
-  }
+  auto arm = file_.simulated.firmware.ideal_encoders && !falcon_
+                 ? driver::make_ideal_arm(file_.model)
+                 : driver::make_arm(file_.protocol, file_.model);
   return std::make_unique<driver::WireLink>(std::move(wire), std::move(arm));
 }
 

@@ -7,12 +7,12 @@
 
 #include "interrupt.h"
 #include "printed.h"
-#include "thimble/driver/arms/falcon/falcon_arm.h"
+#include "thimble/driver/arm_table.h"
 #include "thimble/driver/arms/falcon/falcon_boot.h"
-#include "thimble/driver/arms/hfab/hfab_models.h"
+#include "thimble/driver/arms/hfab/hfab_report.h"
 #include "thimble/driver/arms/hfab/hfab_wire.h"
 #include "thimble/driver/arms/woody/woody_proof.h"
-#include "thimble/driver/arms/woody/woody_wire.h"
+#include "thimble/driver/arms/woody/woody_report.h"
 #include "thimble/driver/transports.h"
 #include "thimble/driver/wire_link.h"
 
@@ -27,23 +27,6 @@ using driver::Certainty;
 using driver::Error;
 using driver::FoundArm;
 using driver::Result;
-
-template <class Wire, class Geometry>
-std::unique_ptr<const driver::Arm> arm_of(const Geometry& geometry, const ArmFile& file) {
-  driver::JointModel<Geometry> model;
-  model.geometry = geometry;
-  model.drives = file.model.drives;
-  model.encoders = file.model.encoders;
-  return std::make_unique<driver::WireArm<Wire, Geometry>>(model);
-}
-
-template <class Wire>
-std::unique_ptr<const driver::Arm> arm_on(const ArmFile& file) {
-  if (file.shape == ArmShape::kPolhem) {
-    return arm_of<Wire>(hfab::polhem_model().geometry, file);
-  }
-  return arm_of<Wire>(file.model.geometry, file);
-}
 
 /// Asks a board on USB serial who it is, with zero currents.
 Result<void> check_board(driver::Transport& wire, const ArmFile& file, const FoundArm& arm,
@@ -220,21 +203,6 @@ Result<void> check_fits(const ArmFile& file, const FoundArm& arm) {
                "board are dangerous on another."};
 }
 
-std::unique_ptr<const driver::Arm> make_arm(const ArmFile& file, ArmKind kind) {
-  switch (kind) {
-    case ArmKind::kFalcon:
-      return arm_of<falcon::PacketWire>(falcon::falcon_geometry(), file);
-    case ArmKind::kWoody:
-      return arm_on<driver::woody::ReportWire>(file);
-    case ArmKind::kHfabLine:
-      return arm_on<hfab::LineWire>(file);
-    case ArmKind::kPolhem:
-    case ArmKind::kUnsupported:
-      break;
-  }
-  return arm_on<hfab::ReportWire>(file);
-}
-
 Result<std::unique_ptr<driver::ArmLink>> open_link(const FoundArm& arm, const ArmFile& file,
                                                    const std::filesystem::path& firmware,
                                                    driver::Clock& clock) {
@@ -242,7 +210,7 @@ Result<std::unique_ptr<driver::ArmLink>> open_link(const FoundArm& arm, const Ar
   auto wire = open_wire(arm, file, firmware, clock);
   if (!wire) return wire.error();
   return std::unique_ptr<driver::ArmLink>(
-      std::make_unique<driver::WireLink>(std::move(wire).value(), make_arm(file, arm.kind)));
+      std::make_unique<driver::WireLink>(std::move(wire).value(), make_arm(arm.kind, file.model)));
 }
 
 }  // namespace thimble::scene

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "thimble/device_sim/sim_transport.h"
-#include "thimble/driver/arms/hfab/hfab_arm.h"
+#include "thimble/driver/arm_table.h"
 #include "thimble/driver/device.h"
 #include "thimble/driver/servo_loop.h"
 #include "thimble/driver/wire_link.h"
@@ -21,8 +21,8 @@ constexpr double kUpperLink = 0.138;  // m
 constexpr double kLowerLink = 0.112;  // m
 constexpr double kForceMax = 8.5;     // N [STABILITY, heading]
 
-driver::hfab::HfabModel model_with_step(double step) {
-  driver::hfab::HfabModel model;
+driver::JointModel<driver::SerialArm> model_with_step(double step) {
+  driver::JointModel<driver::SerialArm> model;
   model.geometry = {.height = 0, .length_b = kUpperLink, .length_c = kLowerLink};
   const double ratios[] = {9.0, 7.7, 7.7};
   const double signs[] = {-1, 1, -1};
@@ -36,8 +36,6 @@ driver::hfab::HfabModel model_with_step(double step) {
   if (step > 0) {
     model.encoders[2].counts_per_motor_turn =
         2 * std::numbers::pi * kLowerLink / (ratios[2] * step);
-  } else {
-    model.fractional_counts = true;
   }
   return model;
 }
@@ -104,7 +102,9 @@ RigRun rub(render::AnyStage& friction, const std::vector<RigPoint>& way, double 
   for (const RigPoint& point : way) {
     path.push_back({point.time, Eigen::Vector3d(point.x, 0, 0) - p_WB});
   }
-  device_sim::SimulatedArm arm(model, arm_settings(settings), device_sim::HandPath(path));
+  device_sim::SimulatedArmSettings simulated = arm_settings(settings);
+  simulated.firmware.ideal_encoders = !(settings.encoder_step > 0);
+  device_sim::SimulatedArm arm(model, simulated, device_sim::HandPath(path));
   driver::VirtualClock clock;
   driver::DeviceSettings device_settings;
   device_settings.p_WB = p_WB;
@@ -116,10 +116,13 @@ RigRun rub(render::AnyStage& friction, const std::vector<RigPoint>& way, double 
                             .watchdog_ns = 100'000'000};
   // It looks at rests of any length, and its reports are never old.
   device_settings.motion.hold_most = 1e9;
-  auto opened = driver::Device::open(
-      std::make_unique<driver::WireLink>(std::make_unique<device_sim::SimTransport>(clock, arm),
-                                         std::make_unique<driver::hfab::HfabArm>(model)),
-      device_settings, clock.now_ns());
+  auto opened =
+      driver::Device::open(std::make_unique<driver::WireLink>(
+                               std::make_unique<device_sim::SimTransport>(clock, arm),
+                               simulated.firmware.ideal_encoders
+                                   ? driver::make_ideal_arm(arm_model(model))
+                                   : driver::make_arm(driver::ArmKind::kPolhem, arm_model(model))),
+                           device_settings, clock.now_ns());
   if (!opened) throw std::invalid_argument(opened.error().message);
   const std::unique_ptr<driver::Device> device = std::move(opened).value();
   if (auto activated = device->activate(); !activated) {

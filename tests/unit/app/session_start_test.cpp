@@ -7,6 +7,7 @@
 #include "servo_thread.h"
 #include "share/shared_run.h"
 #include "support/scratch.h"
+#include "thimble/driver/arm_table.h"
 #include "thimble/session/session.h"
 
 namespace thimble::app {
@@ -52,7 +53,7 @@ class SessionStart : public ::testing::Test {
                session_->recording().on() && session_->mesh_W().triangles.size() > 0;
       return std::unique_ptr<driver::ArmLink>(std::make_unique<driver::WireLink>(
           std::make_unique<Answering>(*this),
-          scene::make_arm(options_.terms->arm.file, options_.real_arm->kind)));
+          driver::make_arm(options_.real_arm->kind, options_.terms->arm.file.model)));
     };
   }
 

@@ -1,4 +1,5 @@
 #include "thimble/session/start_pose.h"
+#include "thimble/driver/arm_table.h"
 
 #include <gtest/gtest.h>
 
@@ -39,7 +40,8 @@ TEST(StartPose, OfEveryShippedArmIsAtItsHomePose) {
     const scene::ArmFile file = file_of(arm.name);
     const session::StartPose place = session::StartPose::of(file, arm.kind);
     EXPECT_TRUE(place.has_home()) << arm.name;
-    const Eigen::Vector3d p_WHome = file.p_WB + file.R_WB * make_arm(file, arm.kind)->pose({}).p_BT;
+    const Eigen::Vector3d p_WHome =
+        file.p_WB + file.R_WB * driver::make_arm(arm.kind, file.model)->pose({}).p_BT;
     EXPECT_EQ(place.trouble(p_WHome, true), "") << arm.name;
     EXPECT_EQ(place.trouble(p_WHome, false), "") << arm.name << " is parked outside of its box";
     EXPECT_NE(place.trouble(p_WHome + Eigen::Vector3d(0, 0.021, 0), true), "") << arm.name;

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "support/random.h"
+#include "thimble/driver/arm_table.h"
 #include "vintage_simulation.h"
 
 namespace thimble::device_sim {
@@ -34,7 +35,7 @@ driver::hfab::InputReport sampled(const Firmware& firmware, const SerialPose& po
 }
 
 TEST(Firmware, CountsFromZeroAtHomeAndRoundsToTheNearestStep) {
-  const Firmware firmware(support::vintage_model(), {});
+  const Firmware firmware(arm_model(support::vintage_model()), {});
   EXPECT_EQ(sampled(firmware, steps_from_home(0, 0, 0)), driver::hfab::InputReport{});
   const auto report = sampled(firmware, steps_from_home(100.4, -7.6, 2000.1));
   EXPECT_EQ(report.counts, (std::array<std::int16_t, 6>{100, -8, 2000, 0, 0, 0}));
@@ -48,7 +49,7 @@ TEST(Firmware, StepsTheTipAsFarAsTheGeometrySays) {
                              0.138 * 2 * std::numbers::pi / 30800,
                              0.112 * 2 * std::numbers::pi / 30800};
   const double published[] = {0.024e-3, 0.028e-3, 0.023e-3};
-  const Firmware firmware(model, {});
+  const Firmware firmware(arm_model(model), {});
   for (int joint = 0; joint < 3; ++joint) {
     const auto tip = [&](double steps) {
       Eigen::Vector3d counts(0, 0, 0);
@@ -66,21 +67,22 @@ TEST(Firmware, StepsTheTipAsFarAsTheGeometrySays) {
 }
 
 TEST(Firmware, SendsFractionsOfCountsBelowTenNanometres) {
-  auto model = support::vintage_model();
-  model.fractional_counts = true;
-  const driver::hfab::HfabArm arm(model);
-  const Firmware firmware(model, {});
+  const auto model = support::vintage_model();
+  const auto arm = driver::make_ideal_arm(arm_model(model));
+  FirmwareSettings ideal;
+  ideal.ideal_encoders = true;
+  const Firmware firmware(arm_model(model), ideal);
   support::Random random(10);
   for (int i = 0; i < 2000; ++i) {
     const Eigen::Vector3d p_BT = home_tip() + random.in_box(0.05);
     driver::ArmReading reading;
-    ASSERT_TRUE(arm.decode(firmware.sample(SerialPose(model.geometry, p_BT).angles()), reading));
-    ASSERT_LT((arm.pose(reading).p_BT - p_BT).norm(), 1e-9);
+    ASSERT_TRUE(arm->decode(firmware.sample(SerialPose(model.geometry, p_BT).angles()), reading));
+    ASSERT_LT((arm->pose(reading).p_BT - p_BT).norm(), 1e-9);
   }
 }
 
 TEST(Firmware, WrapsItsCountersAtSixteenBits) {
-  Firmware firmware(support::vintage_model(), {});
+  Firmware firmware(arm_model(support::vintage_model()), {});
   const SerialPose home = steps_from_home(0, 0, 0);
   firmware.receive(driver::hfab::encode_output(
                        {.current_mA = {}, .command = 1, .attributes = {32767, -32768, 5}}),
@@ -92,7 +94,7 @@ TEST(Firmware, WrapsItsCountersAtSixteenBits) {
 }
 
 TEST(Firmware, PresetsAllCountersClearsTheButtonAndAsksForNoCurrent) {
-  Firmware firmware(support::vintage_model(), {});
+  Firmware firmware(arm_model(support::vintage_model()), {});
   const SerialPose pose = steps_from_home(10.3, 20.3, 30.3);
   firmware.receive(drive_message(100, 200, 300), 0, pose.angles());
   firmware.press_button();
@@ -116,19 +118,19 @@ TEST(Firmware, SeesAndDrivesWhatIsPluggedIntoIt) {
   settings.wiring.encoder_gain = {1, -1, 0};
   settings.wiring.motor_of = {0, 2, 1};
   settings.wiring.motor_gain = {0, -1, 1};
-  Firmware firmware(support::vintage_model(), settings);
+  Firmware firmware(arm_model(support::vintage_model()), settings);
   EXPECT_EQ(sampled(firmware, steps_from_home(100, 200, 300)).counts,
             (std::array<std::int16_t, 6>{200, -100, 0, 0, 0, 0}));
   firmware.receive(drive_message(1000, 2000, 3000), 0, steps_from_home(0, 0, 0).angles());
   EXPECT_EQ(firmware.currents(), Eigen::Vector3d(0, 3, -2));
   settings.wiring.motor_of = {0, 3, 1};
-  EXPECT_THROW(Firmware(support::vintage_model(), settings), std::invalid_argument);
+  EXPECT_THROW(Firmware(arm_model(support::vintage_model()), settings), std::invalid_argument);
 }
 
 TEST(Firmware, TakesACurrentBeyondItsRangeAsZero) {
   FirmwareSettings settings;
   settings.current_range_mA = 3000;
-  Firmware firmware(support::vintage_model(), settings);
+  Firmware firmware(arm_model(support::vintage_model()), settings);
   firmware.receive(drive_message(3000, 3001, -3000), 0, steps_from_home(0, 0, 0).angles());
   EXPECT_EQ(firmware.currents(), Eigen::Vector3d(3, 0, -3));
   EXPECT_EQ(firmware.counters().over_range, 1U);
@@ -138,7 +140,7 @@ TEST(Firmware, TakesACurrentBeyondItsRangeAsZero) {
 }
 
 TEST(Firmware, IgnoresAndCountsMessagesOfUnknownLength) {
-  Firmware firmware(support::vintage_model(), {});
+  Firmware firmware(arm_model(support::vintage_model()), {});
   const SerialPose home = steps_from_home(0, 0, 0);
   firmware.receive(drive_message(100, 0, 0), 0, home.angles());
   const std::array<std::byte, 65> bytes{};
@@ -155,7 +157,7 @@ TEST(Firmware, IgnoresAndCountsMessagesOfUnknownLength) {
 }
 
 TEST(Firmware, StartsWithItsMotorsOffAndArmsItsWatchdogWithTheFirstMessage) {
-  Firmware firmware(support::vintage_model(), {});
+  Firmware firmware(arm_model(support::vintage_model()), {});
   EXPECT_FALSE(firmware.motors_on());
   EXPECT_EQ(firmware.watchdog_due_ns(), Firmware::kNever_ns);
   firmware.watch(1'000'000'000'000);
@@ -173,10 +175,10 @@ TEST(Firmware, StartsWithItsMotorsOffAndArmsItsWatchdogWithTheFirstMessage) {
 TEST(Firmware, RefusesSettingsThatCannotWork) {
   FirmwareSettings settings;
   settings.report_period_ns = 0;
-  EXPECT_THROW(Firmware(support::vintage_model(), settings), std::invalid_argument);
+  EXPECT_THROW(Firmware(arm_model(support::vintage_model()), settings), std::invalid_argument);
   settings = {};
   settings.watchdog_ns = 0;
-  EXPECT_THROW(Firmware(support::vintage_model(), settings), std::invalid_argument);
+  EXPECT_THROW(Firmware(arm_model(support::vintage_model()), settings), std::invalid_argument);
   auto model = support::vintage_model();
   model.encoders[1].counts_per_motor_turn = 0;
   EXPECT_THROW(Firmware(model, {}), std::invalid_argument);

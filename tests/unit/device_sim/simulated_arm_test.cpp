@@ -163,7 +163,7 @@ TEST(SimulatedArm, IsAnIdealZeroOrderHoldWithoutDelay) {
   SimulatedArm arm(model, settings, resting_at(home_tip()));
   ArmPlant plant(model.geometry, model.drives, settings.plant, settings.hand, settings.motors,
                  home_tip(), home_tip());
-  const Firmware board(model, settings.firmware);
+  const Firmware board(arm_model(model), settings.firmware);
   const auto law = [](const driver::hfab::InputReport& report, int k) {
     const auto kick = static_cast<std::int16_t>(k < 20 ? 900 : 0);
     return drive_message(static_cast<std::int16_t>(kick - report.counts[0] / 2), 0, 0);

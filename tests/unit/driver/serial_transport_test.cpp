@@ -126,7 +126,7 @@ TEST_F(SerialTransportTest, CarriesAWholeArm) {
   open();
   say("[2,100,-50,7,0,0,0,0]\n");
   JointModel<SerialArm> model;
-  const hfab::HfabModel vintage = support::vintage_model();
+  const auto vintage = support::vintage_model();
   model.geometry = vintage.geometry;
   model.drives = vintage.drives;
   model.encoders = vintage.encoders;

@@ -134,12 +134,15 @@ const char* differing_section(const ArmFile& one, const ArmFile& other) {
     }
     return true;
   };
-  const driver::SerialArm &a = one.model.geometry, &b = other.model.geometry;
   if (one.protocol != other.protocol) return "protocol";
-  if (one.shape != other.shape) return "shape";
+  if (one.model.geometry.index() != other.model.geometry.index()) return "shape";
   if (one.board_model != other.board_model) return "board_model";
-  if (a.height != b.height || a.length_b != b.length_b || a.length_c != b.length_c) {
-    return "geometry";
+  if (one.is<driver::SerialArm>()) {
+    const auto& a = std::get<driver::SerialArm>(one.model.geometry);
+    const auto& b = std::get<driver::SerialArm>(other.model.geometry);
+    if (a.height != b.height || a.length_b != b.length_b || a.length_c != b.length_c) {
+      return "geometry";
+    }
   }
   if (!same_joints()) return "joints";
   if (one.R_WB != other.R_WB || one.p_WB != other.p_WB) return "base";

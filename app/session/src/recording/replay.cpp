@@ -36,6 +36,12 @@ ReplayComparison replay(std::span<const driver::TickRecord> recorded, scene::Sce
     state.counts = then.counts;
     state.buttons = then.buttons;
     state.fresh = then.fresh;
+    state.has_orientation = then.q_WT != driver::TipQuaternion{};
+    state.q_WT = then.q_WT;
+    state.R_WT = driver::rotation_of(then.q_WT);
+    state.gimbal = then.gimbal;
+    state.has_gripper = then.has_gripper;
+    state.gripper = then.gripper;
     const driver::ForceCommand command = objects.touch()(state);
     objects.serve_pages();
 

@@ -4,6 +4,9 @@
 #include <array>
 #include <cstdint>
 
+#include "thimble/device_sim/gimbal_motion.h"
+#include "thimble/driver/arm_kind.h"
+
 namespace thimble::device_sim {
 
 // Constants of the simulated arm. All of them are data: app/arms/*.yaml gives each with its unit
@@ -63,6 +66,13 @@ struct FirmwareSettings {
   /// A current beyond this counts as zero [S, DEVICES 1; the value is a guess].
   std::int16_t current_range_mA = 6000;
   WiringSettings wiring;  ///< Which lines are dead or swapped.
+  /// What it speaks: kPolhem, kWoody or kHfabLine.
+  driver::ArmKind speaks = driver::ArmKind::kPolhem;
+  std::int32_t line_model = 1;  ///< What it calls its arm in text lines [S hfabapi].
+  /// Encoders of 65536 times as many steps, below a nanometre at the tip, to see what the real ones
+  /// cost. Their counts need more room than any arm's language has but that of 14 bytes
+  /// (hfab::FineReportWire), which is then spoken in place of `speaks`, and without a gimbal.
+  bool ideal_encoders = false;
 };
 
 /// Describes the way between host and firmware.
@@ -78,6 +88,7 @@ struct SimulatedArmSettings {
   MotorSettings motors;       ///< What the motors make of currents.
   FirmwareSettings firmware;  ///< What the board does, and when it gives up.
   WireSettings wire;          ///< How long messages are on their way.
+  GimbalMotion gimbal;        ///< How the hand turns the stylus, if a gimbal is mounted.
 };
 
 }  // namespace thimble::device_sim

@@ -14,7 +14,7 @@
 #include "thimble/device_sim/settings.h"
 #include "thimble/device_sim/tremor.h"
 #include "thimble/device_sim/wire_queue.h"
-#include "thimble/driver/arms/hfab/hfab_arm.h"
+#include "thimble/driver/arm_model.h"
 
 namespace thimble::device_sim {
 
@@ -38,9 +38,9 @@ class SimulatedArm {
   /// Builds the arm at rest at the path's first point, with time 0. `seed` sets the tremor's
   /// phases. Throws std::invalid_argument if a constant is out of range or the path's start is out
   /// of reach.
-  SimulatedArm(const driver::hfab::HfabModel& model, const SimulatedArmSettings& settings,
-               HandPath path, std::uint64_t seed = 0);
-  /// Builds an arm with a linkage (Polhem) in the same way; its encoders have steps.
+  SimulatedArm(const driver::JointModel<driver::SerialArm>& model,
+               const SimulatedArmSettings& settings, HandPath path, std::uint64_t seed = 0);
+  /// Builds an arm with a linkage (Polhem) in the same way.
   SimulatedArm(const driver::JointModel<driver::LinkageArm>& model,
                const SimulatedArmSettings& settings, HandPath path, std::uint64_t seed = 0);
 
@@ -54,6 +54,10 @@ class SimulatedArm {
 
   /// Tells when the next report can be read, ns; never earlier than the present time.
   std::int64_t next_report_ns() const noexcept;
+
+  /// Samples the encoders at the present time, for a board that speaks when it is spoken to; the
+  /// report does not go over the wire.
+  BoardBytes sample_now() noexcept;
 
   /// Hands the host's bytes to the wire at the present time.
   void put_message(std::span<const std::byte> bytes) noexcept;
@@ -74,6 +78,10 @@ class SimulatedArm {
   }
   /// Shows the board.
   const Firmware& firmware() const noexcept { return firmware_; }
+  /// Returns how the gimbal is turned, rad; whether one is mounted or not.
+  Eigen::Vector3d gimbal() const noexcept {
+    return gimbal_.at(1e-9 * static_cast<double>(time_ns_));
+  }
   /// Tells where the hand wants to be, m.
   const Eigen::Vector3d& p_BH() const noexcept { return plant().p_BH(); }
   /// Tells how many reports or messages were lost because more than WireQueue::kFrames were in
@@ -83,8 +91,8 @@ class SimulatedArm {
  private:
   using AnyPlant = std::variant<ArmPlant, LinkagePlant>;
 
-  SimulatedArm(const driver::hfab::HfabModel& board, AnyPlant plant,
-               const SimulatedArmSettings& settings, HandPath path, const Tremor& tremor);
+  SimulatedArm(const driver::ArmModel& board, AnyPlant plant, const SimulatedArmSettings& settings,
+               HandPath path, const Tremor& tremor);
   Plant& mechanics() noexcept {
     return std::visit([](auto& plant) -> Plant& { return plant; }, plant_);
   }
@@ -96,12 +104,14 @@ class SimulatedArm {
   std::int64_t report_period_ns_;
   WireSettings wire_;
   Hand hand_;
+  GimbalMotion gimbal_;
   AnyPlant plant_;
   Firmware firmware_;
   Eigen::Vector3d q_{0, 0, 0};  // at q_time_ns_; the firmware asks for it twice at one time
   std::int64_t q_time_ns_ = -1;
   std::int64_t time_ns_ = 0;
   std::int64_t next_sample_ns_ = 0;
+  std::uint16_t number_ = 0;  // of the next report
   WireQueue reports_, messages_;
   WireFrame newest_;            // the newest report the host can read
   std::uint32_t readable_ = 0;  // reports that became readable since the last was taken

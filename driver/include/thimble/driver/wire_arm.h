@@ -10,16 +10,21 @@
 
 namespace thimble::driver {
 
+/// Rounds a number to the nearest whole one, halves away from zero, as std::lround does, without a
+/// call. Precondition: |x| < 2^31. Real-time: safe.
+inline std::int32_t round_half_away(double x) noexcept {
+  // The number below one half, so that 0.49999999999999994 stays 0.
+  constexpr double kHalf = 0.49999999999999994;
+  return static_cast<std::int32_t>(x + std::copysign(kHalf, x));
+}
+
 /// Rounds currents to the whole mA of the wire, halves away from zero, within 16 bits.
 /// Precondition: they are finite, which MotorCurrents guarantees. Real-time: safe.
 inline std::array<std::int16_t, 3> whole_mA(const MotorCurrents& currents) noexcept {
   std::array<std::int16_t, 3> mA{};
   for (std::size_t i = 0; i < 3; ++i) {
     const double exact = currents.amperes()[static_cast<Eigen::Index>(i)] * 1e3;
-    const double whole = std::clamp(exact, -32767.0, 32767.0);
-    // std::lround without the call: to the number below one half, so that 0.49999... stays 0.
-    constexpr double kHalf = 0.49999999999999994;
-    mA[i] = static_cast<std::int16_t>(whole + std::copysign(kHalf, whole));
+    mA[i] = static_cast<std::int16_t>(round_half_away(std::clamp(exact, -32767.0, 32767.0)));
   }
   return mA;
 }

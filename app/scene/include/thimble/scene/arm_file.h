@@ -6,10 +6,12 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "thimble/device_sim/settings.h"
-#include "thimble/driver/arms/hfab/hfab_arm.h"
+#include "thimble/driver/arm_kind.h"
+#include "thimble/driver/arm_model.h"
 #include "thimble/driver/board.h"
 #include "thimble/driver/heat_guard.h"
 #include "thimble/driver/result.h"
@@ -31,24 +33,17 @@ struct DeclaredLimits {
   double damping = 0;    ///< N s/m
 };
 
-/// What the simulated arm speaks, and the real one on the first of its boards.
-enum class ArmProtocol { kHfab14Byte, kWoody8Byte, kFalconPacket, kTextLines };
-
-/// Says how the arm is built.
-enum class ArmShape { kSerial, kPolhem, kFalcon };
-
 /// Is one arm, as its file describes it: geometry, motors, limits, place, and how it is simulated.
 struct ArmFile {
   std::string name;
   std::string description;
-  ArmProtocol protocol = ArmProtocol::kHfab14Byte;
-  ArmShape shape = ArmShape::kSerial;
+  /// What the simulated arm speaks, and the real one on the first of its boards.
+  driver::ArmKind protocol = driver::ArmKind::kPolhem;
   /// The boards that this arm may have, with these signs and currents; never empty. A board of
   /// unknown kind is used with no other file than one that names it here.
   std::vector<driver::BoardKind> boards = {driver::BoardKind::kMbedHid14};
-  int board_model = 0;  ///< What its board calls itself in text lines; 0: not known.
-  /// Drives, encoders and, for a serial arm, the geometry. The other shapes have theirs in code.
-  driver::hfab::HfabModel model;
+  int board_model = 0;     ///< What its board calls itself in text lines; 0: not known.
+  driver::ArmModel model;  ///< Build, motors, encoders, and the gimbal if one is mounted.
   driver::GateLimits limits;
   std::map<std::string, int, std::less<>> gate_lines;  ///< Line of each key of the section `gate`.
   EnergyChoice energy;
@@ -62,6 +57,12 @@ struct ArmFile {
   WorkspaceBox workspace;
   bool can_simulate = false;  ///< The file has a section `simulation`.
   device_sim::SimulatedArmSettings simulated;
+
+  /// Returns whether the arm is of one build: `file.is<driver::DeltaArm>()`.
+  template <class Geometry>
+  bool is() const noexcept {
+    return std::holds_alternative<Geometry>(model.geometry);
+  }
 };
 
 /// Reads an arm file (see app/arms/vintage_phantom.yaml for the form). The error tells up to five

@@ -21,9 +21,6 @@ namespace thimble::scene {
 /// if it does not reach it. Real-time: never from the servo thread.
 std::optional<Eigen::Vector3d> joint_angles_at(const ArmFile& file, const Eigen::Vector3d& p_WT);
 
-/// Tells as what kind of arm the simulated one of a file speaks.
-driver::ArmKind simulated_kind(const ArmFile& file);
-
 /// Is the simulated arm of an arm file, of whatever build, with the hand that leads it.
 class ArmSimulation {
  public:

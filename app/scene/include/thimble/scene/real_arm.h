@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "thimble/driver/arm.h"
 #include "thimble/driver/arm_link.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/discovery.h"
@@ -36,9 +35,6 @@ std::optional<driver::FoundArm> find_again(const std::vector<driver::FoundArm>& 
 /// Says whether an arm file may be used with a board, which it must name: currents and signs of one
 /// are dangerous on another.
 driver::Result<void> check_fits(const ArmFile& file, const driver::FoundArm& arm);
-
-/// Makes the arm of a file with the wire that this kind of arm has. Precondition: `check_fits`.
-std::unique_ptr<const driver::Arm> make_arm(const ArmFile& file, driver::ArmKind kind);
 
 /// Opens the link to an arm, for this program alone, and brings the arm up: a Falcon gets its
 /// firmware (from the file the user named, or not at all) and is homed by the user's hand, for
