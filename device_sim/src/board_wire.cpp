@@ -23,7 +23,7 @@ std::int32_t low_half(std::int64_t value) noexcept {
 }
 
 template <std::size_t N, std::size_t M>
-std::size_t put(const std::array<std::byte, N>& report, std::span<std::byte, M> bytes) noexcept {
+std::size_t place(const std::array<std::byte, N>& report, std::span<std::byte, M> bytes) noexcept {
   static_assert(N <= M);
   std::copy(report.begin(), report.end(), bytes.begin());
   return N;
@@ -72,13 +72,13 @@ BoardMessage message_of(const hfab::OutputReport& output) noexcept {
 std::size_t encode_report(const BoardReport& report, const FirmwareSettings& settings,
                           std::span<std::byte, driver::kReportCapacity> bytes) noexcept {
   if (!settings.ideal_encoders && settings.speaks == ArmKind::kWoody) {
-    return put(woody::encode_input(woody_report(report)), bytes);
+    return place(woody::encode_input(woody_report(report)), bytes);
   }
   if (!settings.ideal_encoders && settings.speaks == ArmKind::kHfabLine) {
     return hfab::encode_arm_line(hfab_line(report, settings.line_model),
                                  bytes.first<hfab::kLineCapacity>());
   }
-  return put(hfab::encode_input(hfab_report(report, settings.ideal_encoders)), bytes);
+  return place(hfab::encode_input(hfab_report(report, settings.ideal_encoders)), bytes);
 }
 
 std::optional<BoardMessage> decode_message(std::span<const std::byte> bytes,

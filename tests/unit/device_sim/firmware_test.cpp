@@ -181,7 +181,7 @@ TEST(Firmware, RefusesSettingsThatCannotWork) {
   EXPECT_THROW(Firmware(arm_model(support::vintage_model()), settings), std::invalid_argument);
   auto model = support::vintage_model();
   model.encoders[1].counts_per_motor_turn = 0;
-  EXPECT_THROW(Firmware(model, {}), std::invalid_argument);
+  EXPECT_THROW(Firmware(arm_model(model), {}), std::invalid_argument);
 }
 
 }  // namespace

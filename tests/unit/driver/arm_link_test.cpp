@@ -22,7 +22,7 @@ using Eigen::Vector3d;
 /// Whether a link takes `Force` as the force to send.
 template <class Force>
 constexpr bool takes(const Force* = nullptr) {
-  return requires(ArmLink& link, const Force& force, const ArmSample& sample, const Matrix3d& R) {
+  return requires(ArmLink & link, const Force& force, const ArmSample& sample, const Matrix3d& R) {
     link.write(force, sample, R);
   };
 }
@@ -63,6 +63,11 @@ class PoseArmTest : public ::testing::Test {
     const DeviceState& state = device_->read(clock_.now_ns(), clock_.now_ns());
     device_->write({.f_T_W = f_T_W, .touch = {}});
     return state;
+  }
+  support::PoseArm arm_from_now() const {
+    support::PoseArm arm;
+    arm.time_ns = clock_.now_ns();
+    return arm;
   }
   void ticks(int count, const Vector3d& f_T_W) {
     for (int i = 0; i < count; ++i) tick(f_T_W);
@@ -129,7 +134,7 @@ TEST_F(PoseArmTest, OpensSoftlyAndSendsZeroWheneverItIsIdle) {
 TEST_F(PoseArmTest, GoesOffByNameWhenItIsLostSilentOrRefuses) {
   const auto trouble = [&](bool support::PoseArm::*kind) {
     device_.reset();
-    arm_ = support::PoseArm{.time_ns = clock_.now_ns()};
+    arm_ = arm_from_now();
     open(settings());
     ticks(350, {0, 1, 0});
     EXPECT_EQ(device_->fault(), Fault::kNone);
@@ -197,7 +202,7 @@ TEST_F(PoseArmTest, ComesBackOverANewLinkToTheSameArmAndToNoOther) {
   ASSERT_FALSE(other);
   EXPECT_NE(other.error().message.find("not the one that was pulled"), std::string::npos);
 
-  support::PoseArm again{.time_ns = clock_.now_ns()};
+  support::PoseArm again = arm_from_now();
   ASSERT_TRUE(device_->offer(std::make_unique<support::PoseLink>(again, clock_)));
   ticks(3, {0, 1, 0});
   EXPECT_FALSE(device_->lost());
@@ -244,7 +249,7 @@ TEST_F(PoseArmTest, BooksWhatItsForceDidToTheHand) {
 TEST_F(PoseArmTest, IsDampedByTheEnergyStageAsAnyArm) {
   const auto given = [&](EnergyStage stage) {
     device_.reset();
-    arm_ = support::PoseArm{.time_ns = clock_.now_ns()};
+    arm_ = arm_from_now();
     DeviceSettings guarded = settings();
     guarded.energy = {.stage = stage,
                       .mass = 0.1,

@@ -11,6 +11,8 @@
 #include <span>
 #include <string_view>
 
+#include "share/shared_geometry.h"
+
 namespace thimble::session {
 namespace {
 
