@@ -8,6 +8,8 @@
 #include "share/shared_run.h"
 #include "support/scratch.h"
 #include "thimble/driver/arm_table.h"
+#include "thimble/driver/arms/hfab/hfab_report.h"
+#include "thimble/driver/wire_link.h"
 #include "thimble/session/session.h"
 
 namespace thimble::app {

@@ -145,6 +145,8 @@ const char* differing_section(const ArmFile& one, const ArmFile& other) {
     }
   }
   if (!same_joints()) return "joints";
+  // Files of before there were gimbals say nothing of one; then the installed file does.
+  if (other.model.gimbal && one.model.gimbal != other.model.gimbal) return "gimbal";
   if (one.R_WB != other.R_WB || one.p_WB != other.p_WB) return "base";
   if (one.workspace.min_W != other.workspace.min_W ||
       one.workspace.max_W != other.workspace.max_W) {

@@ -19,11 +19,11 @@ namespace thimble::driver {
 
 /// A language of arms: one row.
 struct ArmRow {
-  ArmKind kind = ArmKind::kUnsupported;
-  std::string_view protocol;          ///< Its name in arm files.
-  std::array<BoardKind, 3> boards{};  ///< Boards that speak it, the usual one first.
-  std::size_t board_count = 0;        ///< Of them.
-  bool carries_gimbal = false;        ///< Its reports have room for the encoders of a gimbal.
+  ArmKind kind = ArmKind::kUnsupported;  ///< Which one.
+  std::string_view protocol;             ///< Its name in arm files.
+  std::array<BoardKind, 3> boards{};     ///< Boards that speak it, the usual one first.
+  std::size_t board_count = 0;           ///< Of them.
+  bool carries_gimbal = false;           ///< Its reports have room for the encoders of a gimbal.
   /// The installed arm file that it means by itself; empty if several arms speak it.
   std::string_view own_file;
   /// Makes the arm of a model that speaks it.

@@ -7,7 +7,11 @@
 namespace thimble::driver {
 
 /// An axis of a frame.
-enum class FrameAxis : std::uint8_t { kX, kY, kZ };
+enum class FrameAxis : std::uint8_t {
+  kX,  ///< x
+  kY,  ///< y
+  kZ,  ///< z
+};
 
 /// A gimbal between the last link of an arm and the stylus that the hand holds: three axes, one
 /// behind the other, each with an encoder and no motor. Data of one model, no state.
@@ -22,6 +26,8 @@ struct Gimbal {
   std::array<double, 3> sign{1, 1, 1};        ///< +1 if counts grow with the angle, else -1.
   std::array<double, 3> counts_per_turn{};    ///< Of each encoder.
   std::array<std::int32_t, 3> home_counts{};  ///< Added to each counter.
+
+  friend bool operator==(const Gimbal&, const Gimbal&) = default;
 
   /// Returns the angles (rad) at these counters.
   Eigen::Vector3d angles(const std::array<std::int32_t, 3>& counters) const noexcept;
