@@ -91,7 +91,7 @@ OrientReport orient_mesh(TriangleMesh& mesh) {
     if (!two_sided) one_sided.push_back(patch.front());
   }
 
-  const MeshComponents parts = find_components(mesh);
+  const MeshComponents parts = find_components(mesh, sorted_edge_uses(mesh));
   const auto part_of = [&parts](std::size_t t) {
     return static_cast<std::size_t>(parts.component_of[t]);
   };
