@@ -1,0 +1,370 @@
+#include "thimble/render/mesh/thicken_sheets.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <numbers>
+#include <span>
+#include <sstream>
+#include <utility>
+#include <vector>
+
+#include "mesh/mesh_edges.h"
+#include "mesh/repair/edge_order.h"
+#include "mesh/repair/orient_mesh.h"
+#include "mesh/vertex_normals.h"
+
+namespace thimble::render {
+namespace {
+
+using Eigen::Vector3d;
+
+// A corner goes out by at most so many half thicknesses to keep the faces around it apart by one.
+constexpr double kMiterMax = 2;
+
+// A face of the thin body may turn against the one that it comes from by at most this cosine.
+constexpr double kTurnedMin = 0.2;
+
+// Corners are pulled back to half as often as this where faces would turn over.
+constexpr int kRoundsMax = 24;
+
+// A triangle t has two sides, 2 t its front and 2 t + 1 its back, and a side s the corners 3 s to
+// 3 s + 2, in the triangle's order for both.
+std::int32_t corner_of(const TriangleMesh& mesh, std::size_t side, std::int32_t vertex) {
+  const auto& corners = mesh.triangles[side / 2];
+  const std::size_t k = corners[0] == vertex ? 0 : corners[1] == vertex ? 1 : 2;
+  return static_cast<std::int32_t>(3 * side + k);
+}
+
+// Calls `take(edge, wedges)` for each edge: its first side, and the pairs of sides of triangles that
+// look at each other over it; none at an open edge.
+template <class Take>
+void for_each_edge(const TriangleMesh& mesh, std::span<const EdgeUse> uses,
+                   std::span<const std::int32_t> sources, Take&& take) {
+  std::vector<std::pair<std::size_t, std::size_t>> wedges;
+  for (std::size_t begin = 0; begin < uses.size();) {
+    std::size_t end = begin + 1;
+    while (end < uses.size() && uses[end].low == uses[begin].low &&
+           uses[end].high == uses[begin].high) {
+      ++end;
+    }
+    wedges.clear();
+    if (end - begin > 1) {
+      const std::vector<EdgeUse> edge = around_edge(mesh, uses.subspan(begin, end - begin), sources);
+      for (std::size_t i = 0; i < edge.size(); ++i) {
+        const EdgeUse& one = edge[i];
+        const EdgeUse& next = edge[(i + 1) % edge.size()];
+        // The front of one that runs upwards looks at the next.
+        wedges.emplace_back(2 * static_cast<std::size_t>(one.triangle) + (one.upward ? 0 : 1),
+                            2 * static_cast<std::size_t>(next.triangle) + (next.upward ? 1 : 0));
+      }
+    }
+    take(uses[begin], wedges);
+    begin = end;
+  }
+}
+
+// Joins the corners of sides that will be one vertex: what hangs together around it.
+Groups join_corners(const TriangleMesh& mesh, std::span<const EdgeUse> uses,
+                    std::span<const std::int32_t> sources) {
+  Groups groups(6 * mesh.triangles.size());
+  for_each_edge(mesh, uses, sources, [&](const EdgeUse& edge, const auto& wedges) {
+    for (const auto& [one, two] : wedges) {
+      for (const std::int32_t v : {edge.low, edge.high}) {
+        groups.join(corner_of(mesh, one, v), corner_of(mesh, two, v));
+      }
+    }
+  });
+  return groups;
+}
+
+// Tells for which edges two wedges, or front and back of an open one, hang together at both ends: the
+// thin body would have one edge there for both.
+bool is_ambiguous(const TriangleMesh& mesh, Groups& groups, const EdgeUse& edge,
+                  const std::vector<std::pair<std::size_t, std::size_t>>& wedges) {
+  std::vector<std::pair<std::int32_t, std::int32_t>> ends;
+  const auto add = [&](std::size_t side) {
+    ends.emplace_back(groups.find(corner_of(mesh, side, edge.low)),
+                      groups.find(corner_of(mesh, side, edge.high)));
+  };
+  if (wedges.empty()) {
+    add(2 * static_cast<std::size_t>(edge.triangle));
+    add(2 * static_cast<std::size_t>(edge.triangle) + 1);
+  }
+  for (const auto& wedge : wedges) add(wedge.first);
+  std::sort(ends.begin(), ends.end());
+  return std::adjacent_find(ends.begin(), ends.end()) != ends.end();
+}
+
+// A mesh of pieces of triangles, and which triangle each comes from.
+struct CutMesh {
+  TriangleMesh mesh;
+  std::vector<std::int32_t> sources;
+};
+
+// Cuts such edges in the middle, where each wedge has a vertex of its own.
+CutMesh with_ambiguous_edges_cut(const TriangleMesh& mesh) {
+  CutMesh done;
+  TriangleMesh& cut = done.mesh;
+  cut.vertices = mesh.vertices;
+  std::vector<std::array<std::int32_t, 3>> middles(mesh.triangles.size(), {-1, -1, -1});
+  const std::vector<EdgeUse> uses = sorted_edge_uses(mesh);
+  Groups groups = join_corners(mesh, uses, {});
+  std::size_t at = 0;
+  for_each_edge(mesh, uses, {}, [&](const EdgeUse& edge, const auto& wedges) {
+    const std::size_t end = end_of_edge(uses, at);
+    if (is_ambiguous(mesh, groups, edge, wedges)) {
+      for (std::size_t i = at; i < end; ++i) {
+        middles[static_cast<std::size_t>(uses[i].triangle)][static_cast<std::size_t>(
+            uses[i].corner)] = static_cast<std::int32_t>(cut.vertices.size());
+      }
+      cut.vertices.push_back((mesh.vertices[static_cast<std::size_t>(edge.low)] +
+                              mesh.vertices[static_cast<std::size_t>(edge.high)]) /
+                             2);
+    }
+    at = end;
+  });
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto& corners = mesh.triangles[t];
+    const auto& middle = middles[t];
+    // Corners in front of a cut edge on both sides go off as triangles of their own; what remains is
+    // a fan from the first middle, or the triangle itself.
+    std::vector<std::int32_t> rest;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t before = (k + 2) % 3;
+      if (middle[before] >= 0 && middle[k] >= 0) {
+        cut.triangles.push_back({middle[before], corners[k], middle[k]});
+      } else {
+        rest.push_back(corners[k]);
+      }
+      if (middle[k] >= 0) rest.push_back(middle[k]);
+    }
+    const auto first = std::find_if(rest.begin(), rest.end(), [&middle](std::int32_t v) {
+      return std::find(middle.begin(), middle.end(), v) != middle.end();
+    });
+    if (first != rest.end()) std::rotate(rest.begin(), first, rest.end());
+    for (std::size_t i = 1; i + 1 < rest.size(); ++i) {
+      cut.triangles.push_back({rest[0], rest[i], rest[i + 1]});
+    }
+    done.sources.resize(cut.triangles.size(), static_cast<std::int32_t>(t));
+  }
+  return done;
+}
+
+// Makes thin bodies of the chosen triangles of a mesh.
+class Thickening {
+ public:
+  Thickening(const CutMesh& cut, std::vector<std::int32_t> chosen, std::span<const EdgeUse> uses,
+             double thickness)
+      : mesh_(cut.mesh), chosen_(std::move(chosen)), half_(thickness / 2),
+        groups_(join_corners(cut.mesh, uses, cut.sources)) {
+    for_each_edge(cut.mesh, uses, cut.sources, [this](const EdgeUse& edge, const auto& wedges) {
+      if (wedges.empty()) open_.push_back(edge);
+    });
+  }
+
+  void run(TriangleMesh& thin, double& thinnest) {
+    make_vertices();
+    make_sides();
+    make_rims();
+    make_caps();
+    pull_back();
+    write(thin);
+    for (const double length : lengths_) thinnest = std::min(thinnest, 2 * length);
+  }
+
+ private:
+  Vector3d face_normal(std::size_t side) const {
+    const auto& [a, b, c] = mesh_.triangles[side / 2];
+    const Vector3d n = (at(b) - at(a)).cross(at(c) - at(a)).stableNormalized();
+    return side % 2 == 0 ? n : Vector3d(-n);
+  }
+
+  const Vector3d& at(std::int32_t v) const { return mesh_.vertices[static_cast<std::size_t>(v)]; }
+
+  // The vertex of the thin body that a corner of a side has become.
+  std::int32_t vertex_at(std::int32_t corner) {
+    return number_[static_cast<std::size_t>(groups_.find(corner))];
+  }
+
+  // Puts a vertex for each group of corners along the mean of its faces.
+  void make_vertices() {
+    number_.assign(6 * mesh_.triangles.size(), -1);
+    for_each_corner([this](std::size_t side, std::size_t k, std::int32_t corner) {
+      const auto root = static_cast<std::size_t>(groups_.find(corner));
+      if (number_[root] < 0) {
+        number_[root] = static_cast<std::int32_t>(from_.size());
+        from_.push_back(at(mesh_.triangles[side / 2][k]));
+        ways_.push_back(Vector3d::Zero());
+        lengths_.push_back(half_);
+        firsts_.push_back(side);
+      }
+      const auto& corners = mesh_.triangles[side / 2];
+      const Vector3d& p = at(corners[k]);
+      const double angle =
+          corner_angle(at(corners[(k + 1) % 3]) - p, at(corners[(k + 2) % 3]) - p);
+      ways_[static_cast<std::size_t>(number_[root])] += angle * face_normal(side);
+    });
+    for (std::size_t v = 0; v < ways_.size(); ++v) {
+      // Faces that lie back to back have no mean: the first leads.
+      const double length = ways_[v].norm();
+      ways_[v] = length > 1e-6 ? Vector3d(ways_[v] / length) : face_normal(firsts_[v]);
+    }
+    std::vector<double> lean(ways_.size(), 1);
+    for_each_corner([&](std::size_t side, std::size_t, std::int32_t corner) {
+      const auto v = static_cast<std::size_t>(vertex_at(corner));
+      lean[v] = std::min(lean[v], face_normal(side).dot(ways_[v]));
+    });
+    for (std::size_t v = 0; v < ways_.size(); ++v) ways_[v] /= std::max(lean[v], 1 / kMiterMax);
+  }
+
+  template <class Do>
+  void for_each_corner(Do do_corner) {
+    for (const std::int32_t t : chosen_) {
+      for (std::size_t side = 2 * static_cast<std::size_t>(t), end = side + 2; side < end; ++side) {
+        for (std::size_t k = 0; k < 3; ++k) {
+          do_corner(side, k, static_cast<std::int32_t>(3 * side + k));
+        }
+      }
+    }
+  }
+
+  void make_sides() {
+    for (const std::int32_t t : chosen_) {
+      const auto front = static_cast<std::int32_t>(6 * t);
+      triangles_.push_back({vertex_at(front), vertex_at(front + 1), vertex_at(front + 2)});
+      triangles_.push_back({vertex_at(front + 3), vertex_at(front + 5), vertex_at(front + 4)});
+    }
+    sides_ = triangles_.size();
+  }
+
+  void add(std::int32_t a, std::int32_t b, std::int32_t c) {
+    if (a != b && b != c && c != a) triangles_.push_back({a, b, c});
+  }
+
+  // Joins front and back along open edges. What a rim leaves open at its ends is noted.
+  void make_rims() {
+    for (const EdgeUse& use : open_) {
+      const std::size_t front = 2 * static_cast<std::size_t>(use.triangle);
+      const std::int32_t from = use.upward ? use.low : use.high;
+      const std::int32_t to = use.upward ? use.high : use.low;
+      const std::int32_t front_from = vertex_at(corner_of(mesh_, front, from));
+      const std::int32_t front_to = vertex_at(corner_of(mesh_, front, to));
+      const std::int32_t back_from = vertex_at(corner_of(mesh_, front + 1, from));
+      const std::int32_t back_to = vertex_at(corner_of(mesh_, front + 1, to));
+      add(front_to, front_from, back_from);
+      add(front_to, back_from, back_to);
+      if (front_from != back_from) ends_[front_from] = back_from;
+      if (front_to != back_to) ends_[back_to] = front_to;
+    }
+  }
+
+  // Where rims of three and more fans meet, their ends go round a polygon: closes it.
+  void make_caps() {
+    while (!ends_.empty()) {
+      std::vector<std::int32_t> ring{ends_.begin()->first};
+      for (auto next = ends_.begin(); next != ends_.end(); next = ends_.find(ring.back())) {
+        const std::int32_t to = next->second;
+        ends_.erase(next);
+        if (to == ring.front()) break;
+        ring.push_back(to);
+      }
+      for (std::size_t i = 1; i + 1 < ring.size(); ++i) add(ring[0], ring[i + 1], ring[i]);
+    }
+  }
+
+  Vector3d place(std::int32_t v) const {
+    const auto i = static_cast<std::size_t>(v);
+    return from_[i] + lengths_[i] * ways_[i];
+  }
+
+  // Halves the way of corners around faces that would turn over, until none does.
+  void pull_back() {
+    for (int round = 0; round < kRoundsMax; ++round) {
+      std::vector<bool> halve(lengths_.size(), false);
+      for (std::size_t i = 0; i < sides_; ++i) {
+        const auto& [a, b, c] = triangles_[i];
+        const Vector3d n = (place(b) - place(a)).cross(place(c) - place(a)).stableNormalized();
+        const std::size_t side = 2 * static_cast<std::size_t>(chosen_[i / 2]) + i % 2;
+        if (n.dot(face_normal(side)) > kTurnedMin) continue;
+        for (const std::int32_t v : triangles_[i]) halve[static_cast<std::size_t>(v)] = true;
+      }
+      if (std::find(halve.begin(), halve.end(), true) == halve.end()) return;
+      for (std::size_t v = 0; v < halve.size(); ++v) {
+        if (halve[v]) lengths_[v] /= 2;
+      }
+    }
+  }
+
+  void write(TriangleMesh& thin) const {
+    const auto first = static_cast<std::int32_t>(thin.vertices.size());
+    for (std::size_t v = 0; v < from_.size(); ++v) {
+      thin.vertices.push_back(place(static_cast<std::int32_t>(v)));
+    }
+    for (const auto& [a, b, c] : triangles_) {
+      thin.triangles.push_back({first + a, first + b, first + c});
+    }
+  }
+
+  const TriangleMesh& mesh_;
+  const std::vector<std::int32_t> chosen_;
+  const double half_;
+  Groups groups_;                     // of corners that become one vertex
+  std::vector<std::int32_t> number_;  // of the vertex, per root of a group
+  std::vector<EdgeUse> open_;
+  // Per vertex: the one it comes from, which way it goes and how far, and a side that it belongs to.
+  std::vector<Vector3d> from_, ways_;
+  std::vector<double> lengths_;
+  std::vector<std::size_t> firsts_;
+  std::vector<std::array<std::int32_t, 3>> triangles_;  // the sides first, front and back by turns
+  std::size_t sides_ = 0;
+  std::map<std::int32_t, std::int32_t> ends_;  // sides of the polygons where rims end
+};
+
+}  // namespace
+
+ThickenedMesh thicken_sheets(const TriangleMesh& whole, double thickness) {
+  ThickenedMesh done;
+  const CutMesh cut = with_ambiguous_edges_cut(whole);
+  const TriangleMesh& mesh = cut.mesh;
+  const std::vector<EdgeUse> uses = sorted_edge_uses(mesh);
+  const MeshComponents parts = find_components(mesh, uses);
+  const auto is_open = [&parts](std::int32_t t) {
+    return !parts.closed[static_cast<std::size_t>(
+        parts.component_of[static_cast<std::size_t>(t)])];
+  };
+  std::vector<std::int32_t> chosen;
+  done.mesh.vertices = mesh.vertices;
+  for (std::int32_t t = 0; t < static_cast<std::int32_t>(mesh.triangles.size()); ++t) {
+    if (is_open(t)) {
+      chosen.push_back(t);
+    } else {
+      done.mesh.triangles.push_back(mesh.triangles[static_cast<std::size_t>(t)]);
+    }
+  }
+  done.report.sheets =
+      static_cast<std::size_t>(std::count(parts.closed.begin(), parts.closed.end(), false));
+  done.report.triangles = chosen.size();
+  done.report.thinnest = thickness;
+  if (chosen.empty()) return done;
+  std::vector<EdgeUse> open_uses;
+  std::copy_if(uses.begin(), uses.end(), std::back_inserter(open_uses),
+               [&is_open](const EdgeUse& use) { return is_open(use.triangle); });
+  Thickening(cut, std::move(chosen), open_uses, thickness).run(done.mesh, done.report.thinnest);
+  return done;
+}
+
+std::string describe(const SheetReport& report) {
+  if (report.sheets == 0) return {};
+  std::ostringstream text;
+  text << report.sheets << (report.sheets == 1 ? " part is" : " parts are")
+       << " no closed body and touched as " << (report.sheets == 1 ? "a sheet" : "sheets") << " of "
+       << report.triangles << (report.triangles == 1 ? " triangle" : " triangles") << ", "
+       << report.thinnest << " m thick at the thinnest place.";
+  return text.str();
+}
+
+}  // namespace thimble::render
