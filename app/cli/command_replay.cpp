@@ -11,13 +11,13 @@
 #include "cli/commands.h"
 #include "cli/complain.h"
 #include "cli/file_options.h"
+#include "object_mesh.h"
 #include "recording/read_recording.h"
 #include "recording/recording_file.h"
 #include "recording/replay.h"
 #include "recording/replay_trajectory.h"
 #include "recording/trajectory_file.h"
 #include "text_file.h"
-#include "thimble/render/mesh/load_mesh.h"
 #include "thimble/scene/meshes.h"
 #include "thimble/scene/scene_file.h"
 #include "thimble/scene/scene_objects.h"
@@ -73,9 +73,9 @@ driver::Result<void> into_world(std::vector<session::TrajectoryPoint>& trajector
       return driver::Error{"--frame: \"" + frame + "\" has no mesh file in memory; give the " +
                            "trajectory in the world, in m."};
     }
-    const auto mesh = render::load_mesh(object.mesh_file);
+    const auto mesh = scene::load_object_mesh(object);
     if (!mesh) return mesh.error();
-    const scene::MeshPlacement place = scene::placement_of(*mesh, object);
+    const scene::MeshPlacement& place = mesh->place;
     for (session::TrajectoryPoint& point : trajectory) {
       point.p = place.p_WM + place.scale * (object.R_WO * point.p);
       point.f = object.R_WO * point.f;

@@ -258,6 +258,9 @@ int run_scene(const RunOptions& options) {
       complain(ended.error(), kExitTrouble);
     return code;
   };
+  for (const std::string& note : session.mesh_notes()) {
+    std::fprintf(stderr, "thimble: %s\n", note.c_str());
+  }
   for (const std::string& warning : stability_warnings(session.scene())) {
     std::fprintf(stderr, "thimble: %s See thimble tune.\n", warning.c_str());
   }

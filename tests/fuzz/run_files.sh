@@ -16,7 +16,7 @@ seconds_of() {  # seconds_of KIND
   [ -z "${THIMBLE_LONG:-}" ] || { echo 60; return; }
   case $1 in
     scene | arm) echo $(((all + 1) / 2)) ;;  # 0 s would be for ever
-    off | obj | stl | ply) echo $(((all + 3) / 4)) ;;
+    off | obj | stl | ply | gltf | glb | 3mf | dae | amf | 3ds) echo $(((all + 3) / 4)) ;;
     *) echo "$all" ;;
   esac
 }

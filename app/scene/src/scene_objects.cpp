@@ -5,27 +5,26 @@
 
 #include "body/motion/move_object.h"
 #include "build_paged_touch.h"
-#include "mesh/repair/orient_mesh.h"
+#include "object_mesh.h"
 #include "thimble/render/build_object_touch.h"
-#include "thimble/render/mesh/load_mesh.h"
 
 namespace thimble::scene {
 namespace {
 
 /// Reads the mesh of every object and puts it into the world (m); a shape has one to be drawn, a
 /// field and a mesh on the disk an empty one.
-driver::Result<std::vector<render::TriangleMesh>> load_meshes(const Scene& scene) {
+driver::Result<std::vector<render::TriangleMesh>> load_meshes(const Scene& scene,
+                                                              std::vector<std::string>& notes) {
   std::vector<render::TriangleMesh> meshes;
   for (const SceneObject& object : scene.objects) {
     if (object.shape || object.build_field || object.paged) {
       meshes.push_back(object.shape ? object.shape->mesh_W : render::TriangleMesh());
       continue;
     }
-    const auto mesh = render::load_mesh(object.mesh_file);
-    if (!mesh) return mesh.error();
-    meshes.push_back(place_mesh(*mesh, object));
-    // What plans and draws must know the same outside as what touches.
-    render::orient_mesh(meshes.back());
+    auto loaded = load_object_mesh(object);
+    if (!loaded) return loaded.error();
+    notes.insert(notes.end(), loaded->notes.begin(), loaded->notes.end());
+    meshes.push_back(std::move(loaded->mesh_W));
   }
   return meshes;
 }
@@ -101,9 +100,9 @@ render::TriangleMesh part_of(const render::TriangleMesh& mesh, const MeshPlace& 
 }  // namespace
 
 driver::Result<std::unique_ptr<SceneObjects>> SceneObjects::build(const Scene& scene) {
-  const auto meshes = load_meshes(scene);
-  if (!meshes) return meshes.error();
   std::unique_ptr<SceneObjects> objects(new SceneObjects);
+  const auto meshes = load_meshes(scene, objects->notes_);
+  if (!meshes) return meshes.error();
   auto touch = build_touch(scene, *meshes, objects->pages_);
   if (!touch) return touch.error();
   objects->touch_ = std::move(touch).value();

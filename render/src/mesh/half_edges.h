@@ -68,14 +68,14 @@ class HalfEdges {
   static bool by_end(const Side& a, const Side& b) noexcept { return a.end < b.end; }
 
   static std::int32_t only_one(std::span<const Side> sorted, std::int32_t to) noexcept {
-    const auto [first, last] =
-        std::equal_range(sorted.begin(), sorted.end(), Side{to, -1}, by_end);
+    const auto [first, last] = std::equal_range(sorted.begin(), sorted.end(), Side{to, -1}, by_end);
     return last - first == 1 ? first->triangle : -1;
   }
 
   std::vector<std::uint32_t> begin_;
   std::vector<Side> sides_;
-  std::unordered_map<std::int32_t, std::vector<Side>> hubs_;  // of vertices with many, by their ends
+  std::unordered_map<std::int32_t, std::vector<Side>>
+      hubs_;  // of vertices with many, by their ends
 };
 
 }  // namespace thimble::render

@@ -32,7 +32,8 @@ std::vector<EdgeUse> sorted_edge_uses(const TriangleMesh& mesh) {
   for (std::size_t v = 1; v < begin.size(); ++v) begin[v] += begin[v - 1];
   std::vector<EdgeUse> uses(begin.back());
   // Afterwards `begin` of a vertex is its end, and so the begin of the next.
-  for_each_side([&](const EdgeUse& use) { uses[begin[static_cast<std::size_t>(use.low)]++] = use; });
+  for_each_side(
+      [&](const EdgeUse& use) { uses[begin[static_cast<std::size_t>(use.low)]++] = use; });
   std::size_t first = 0;
   for (std::size_t v = 0; v + 1 < begin.size(); ++v) {
     std::sort(uses.begin() + static_cast<std::ptrdiff_t>(first),

@@ -53,8 +53,8 @@ Vector3d fan_normal(const std::vector<std::array<std::int32_t, 3>>& triangles,
 // once per triangle would cost the square of them.
 constexpr std::size_t kHub = 64;
 
-// Gives the corners of a smooth group, the triangles reached from `first` without crossing a crease,
-// one normal. Adds them to `done`.
+// Gives the corners of a smooth group, the triangles reached from `first` without crossing a
+// crease, one normal. Adds them to `done`.
 void assign_group(const std::vector<std::array<std::int32_t, 3>>& triangles, const Faces& faces,
                   std::int32_t vertex, std::int32_t first, std::vector<bool>& done,
                   std::span<PackedTriangle> packed) {

@@ -111,7 +111,8 @@ driver::Result<TriangleMesh> mesh_of_scene(const aiScene& scene, std::vector<std
   if (mesh.triangles.empty()) return Error{"it has no face with three corners."};
   if (moved > 0) {
     notes.push_back(std::to_string(moved) + " of " + std::to_string(parts) +
-                    (parts == 1 ? " part was" : " parts were") + " put where the file's nodes say.");
+                    (parts == 1 ? " part was" : " parts were") +
+                    " put where the file's nodes say.");
   }
   tell_what_is_left_out(scene, notes);
   return mesh;

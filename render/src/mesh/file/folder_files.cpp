@@ -1,7 +1,7 @@
 #include "mesh/file/folder_files.h"
 
-#include <algorithm>
 #include <assimp/MemoryIOWrapper.h>
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <fstream>

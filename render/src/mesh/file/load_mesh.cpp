@@ -18,7 +18,7 @@
 namespace thimble::render {
 namespace {
 
-constexpr std::array<std::string_view, 10> kEndings{"off",  "obj", "stl", "ply", "gltf",
+constexpr std::array<std::string_view, 10> kEndings{"off", "obj", "stl", "ply", "gltf",
                                                     "glb", "3mf", "dae", "amf", "3ds"};
 
 std::string ending_of(const std::filesystem::path& file) {
@@ -83,9 +83,10 @@ driver::Result<TriangleMesh> load_mesh(const std::filesystem::path& file, MeshFi
   MeshFileInfo found;
   auto mesh = read(std::move(bytes).value(), ending, file, found);
   // What an OFF file is told of names file and line already.
-  if (!mesh) return ending == "off" && mesh.error().message.starts_with(file.string())
-                        ? mesh.error()
-                        : error(mesh.error().message);
+  if (!mesh)
+    return ending == "off" && mesh.error().message.starts_with(file.string())
+               ? mesh.error()
+               : error(mesh.error().message);
   if (info != nullptr) *info = std::move(found);
   return weld_mesh(std::move(mesh).value());
 }

@@ -80,6 +80,11 @@ driver::Result<TriangleMesh> import_mesh(const std::string& bytes, const std::st
     importer.SetIOHandler(new FolderFiles(bytes, name, beside ? folder : ""));
     const aiScene* const scene = importer.ReadFile(name, 0);
     if (scene == nullptr) return refused(importer.GetErrorString());
+    if (ending == "3ds" && scene->mRootNode != nullptr) {
+      // Assimp lays y upwards; in the file z points there.
+      const aiMatrix4x4 back(1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1);
+      scene->mRootNode->mTransformation = back * scene->mRootNode->mTransformation;
+    }
     return mesh_of_scene(*scene, notes);
   } catch (const std::bad_alloc&) {
     throw;  // too little memory is told by who set the limit
@@ -107,7 +112,8 @@ class Parcel {
     std::memcpy(&size, bytes_.data() + at_, sizeof size);
     at_ += sizeof size;
     std::vector<Item> items(size);
-    if (size > 0) std::memcpy(static_cast<void*>(items.data()), bytes_.data() + at_, size * sizeof(Item));
+    if (size > 0)
+      std::memcpy(static_cast<void*>(items.data()), bytes_.data() + at_, size * sizeof(Item));
     at_ += size * sizeof(Item);
     return items;
   }
@@ -138,6 +144,7 @@ std::string parcel_of(const driver::Result<TriangleMesh>& mesh,
 
 driver::Result<void> read_unit(const std::string& bytes, const std::string& ending,
                                MeshFileInfo& info) {
+  if (ending == "3ds") info.up = 'z';
   if (ending == "gltf" || ending == "glb" || ending == "dae") {
     info.unit = 1;
     info.up = ending == "dae" ? up_axis_of_dae(bytes) : 'y';

@@ -92,7 +92,8 @@ std::string how_it_ended(int status, const ApartLimits& limits) {
   if (WIFSIGNALED(status) && (WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGALRM)) {
     return "takes more than " + std::to_string(limits.seconds) + " s";
   }
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 2) return "needs more memory than its size allows";
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 2)
+    return "needs more memory than its size allows";
   return "breaks its reader";
 }
 

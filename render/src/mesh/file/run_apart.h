@@ -10,7 +10,7 @@ namespace thimble::render {
 
 /// What work in a process of its own may use.
 struct ApartLimits {
-  int seconds = 10;                     ///< Of processor time.
+  int seconds = 10;                          ///< Of processor time.
   std::size_t bytes = std::size_t{1} << 30;  ///< Of memory, above what this process has now.
 };
 

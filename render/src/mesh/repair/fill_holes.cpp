@@ -21,8 +21,8 @@ using Eigen::Vector3d;
 // Triangles flatter than this have no area, as for fill_polygon.
 constexpr double kThin = 100 * kFlatness;
 
-// Places of a rim no farther apart than this share of the mesh's size are one: copies of a vertex that
-// split_fans made.
+// Places of a rim no farther apart than this share of the mesh's size are one: copies of a vertex
+// that split_fans made.
 constexpr double kSamePlace = 1e-12;
 
 // A ring of open edges, and what will close it.
@@ -43,7 +43,10 @@ std::uint64_t key_of(std::int32_t a, std::int32_t b) {
 class Filling {
  public:
   Filling(TriangleMesh& mesh, double share, std::vector<std::int32_t>& origin)
-      : mesh_(mesh), share_(share), origin_(origin), old_triangles_(mesh.triangles.size()),
+      : mesh_(mesh),
+        share_(share),
+        origin_(origin),
+        old_triangles_(mesh.triangles.size()),
         parts_(mesh.triangles.size()) {
     for (const Vector3d& p : mesh.vertices) {
       if (p.allFinite()) size_ = std::max(size_, p.cwiseAbs().maxCoeff());
@@ -200,8 +203,7 @@ class Filling {
     HoleRing hole;
     for (std::size_t i = 0; i < ring.sides.size(); ++i) {
       hole.corners.push_back(at(ring.vertices[i]));
-      const auto& [a, b, c] =
-          mesh_.triangles[static_cast<std::size_t>(ring.sides[i].triangle)];
+      const auto& [a, b, c] = mesh_.triangles[static_cast<std::size_t>(ring.sides[i].triangle)];
       const EdgeUse& side = ring.sides[i];
       const bool against = same_of(side.upward ? side.high : side.low) == ring.vertices[i];
       hole.beside.push_back((against ? 1.0 : -1.0) * area_of(a, b, c).normalized());
@@ -225,7 +227,8 @@ class Filling {
       const Vector3d& next = at(ring.vertices[(i + 1) % ring.vertices.size()]);
       const Vector3d side = next - at(ring.vertices[i]), in = ring.middle - at(ring.vertices[i]);
       const double twice_area = side.cross(in).norm();
-      const double longest = std::max({side.squaredNorm(), in.squaredNorm(), (in - side).squaredNorm()});
+      const double longest =
+          std::max({side.squaredNorm(), in.squaredNorm(), (in - side).squaredNorm()});
       // A slit of no width has nothing to be filled with.
       if (!(twice_area > kThin * longest)) ring.area = std::numeric_limits<double>::infinity();
       ring.area += twice_area / 2;
@@ -250,7 +253,8 @@ class Filling {
       const auto add = [&](const std::array<std::int32_t, 3>& triangle) {
         mesh_.triangles.push_back(triangle);
         origin_.push_back(source);
-        for (std::size_t k = 0; k < 3; ++k) taken_.insert(key_of(triangle[k], triangle[(k + 1) % 3]));
+        for (std::size_t k = 0; k < 3; ++k)
+          taken_.insert(key_of(triangle[k], triangle[(k + 1) % 3]));
       };
       for (const auto& triangle : ring.triangles) add(triangle);
       if (ring.closes_at_middle) {
@@ -273,9 +277,9 @@ class Filling {
   std::unordered_set<std::uint64_t> taken_;
   std::unordered_set<std::int32_t> spoilt_;  // parts that cannot be closed
   std::unordered_map<std::int32_t, double> area_of_;
-  double size_ = 0;                                     // of the mesh's places
+  double size_ = 0;                                      // of the mesh's places
   std::unordered_map<std::int32_t, std::int32_t> same_;  // copies of a vertex that one ring meets
-  std::map<std::int32_t, std::vector<Ring>> rings_of_;  // in the order of the parts
+  std::map<std::int32_t, std::vector<Ring>> rings_of_;   // in the order of the parts
   std::vector<FilledHole> filled_;
 };
 

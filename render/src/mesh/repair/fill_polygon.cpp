@@ -21,8 +21,8 @@ using Taken = std::function<bool(std::int32_t, std::int32_t)>;
 // A ring that leaves its mean plane by less than this share of its size is closed as a flat one.
 constexpr double kFlat = 1e-3;
 
-// Triangles flatter than this have no area (a hundred times what check_mesh lets pass: a mesh that is
-// moved or scaled is rounded again).
+// Triangles flatter than this have no area (a hundred times what check_mesh lets pass: a mesh that
+// is moved or scaled is rounded again).
 constexpr double kThin = 100 * kFlatness;
 
 // All ways to close a ring of so many corners are compared, which takes their number cubed.
@@ -87,9 +87,7 @@ struct Merit {
   bool better_than(const Merit& other) const {
     return bend > other.bend || (bend == other.bend && area < other.area);
   }
-  Merit with(const Merit& other) const {
-    return {std::min(bend, other.bend), area + other.area};
-  }
+  Merit with(const Merit& other) const { return {std::min(bend, other.bend), area + other.area}; }
 };
 
 // The best way to close the part of a ring between two corners, for every two of them.
@@ -97,8 +95,12 @@ class Best {
  public:
   Best(const HoleRing& ring, std::vector<std::int32_t> kept, std::vector<Vector3d> beside,
        const Taken& taken)
-      : ring_(ring), kept_(std::move(kept)), beside_(std::move(beside)), taken_(taken),
-        size_(kept_.size()), ways_(size_ * size_) {}
+      : ring_(ring),
+        kept_(std::move(kept)),
+        beside_(std::move(beside)),
+        taken_(taken),
+        size_(kept_.size()),
+        ways_(size_ * size_) {}
 
   std::vector<Triangle> run() {
     for (std::size_t span = 2; span < size_; ++span) {

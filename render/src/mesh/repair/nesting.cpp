@@ -89,7 +89,10 @@ RayTree tree_of(const TriangleMesh& mesh, std::span<const std::int32_t> triangle
 class Nesting {
  public:
   Nesting(const TriangleMesh& mesh, const Parts& parts)
-      : mesh_(mesh), parts_(parts), nests_(parts.count()), trees_(parts.count()),
+      : mesh_(mesh),
+        parts_(parts),
+        nests_(parts.count()),
+        trees_(parts.count()),
         asked_(parts.count(), -1) {}
 
   void run(std::vector<ClosedPart>& closed) {

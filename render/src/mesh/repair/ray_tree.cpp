@@ -25,9 +25,7 @@ void RayTree::build(std::size_t node, std::size_t begin, std::size_t end) {
   const Eigen::Vector2d size = here.yz.sizes();
   const Eigen::Index axis = size.x() > size.y() ? 0 : 1;
   const std::size_t middle = begin + (end - begin) / 2;
-  const auto at = [this](std::size_t i) {
-    return items_.begin() + static_cast<std::ptrdiff_t>(i);
-  };
+  const auto at = [this](std::size_t i) { return items_.begin() + static_cast<std::ptrdiff_t>(i); };
   std::nth_element(at(begin), at(middle), at(end), [axis](const Item& a, const Item& b) {
     return a.yz.center()[axis] < b.yz.center()[axis];
   });

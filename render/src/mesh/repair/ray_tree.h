@@ -19,8 +19,7 @@ class RayTree {
 
   /// Returns the item of a box.
   static Item item(std::int32_t number, const Eigen::AlignedBox3d& box) {
-    return {number, box.max().x(),
-            Eigen::AlignedBox2d(box.min().tail<2>(), box.max().tail<2>())};
+    return {number, box.max().x(), Eigen::AlignedBox2d(box.min().tail<2>(), box.max().tail<2>())};
   }
 
   /// Takes the items and sorts them into a tree: O(n log n), however they lie.

@@ -167,7 +167,8 @@ class Repair {
 
   void split() {
     const SplitFans done = split_fans(done_.mesh, origin_);
-    for (const std::int32_t v : done.vertices) tell(Kind::kSplitVertex, [&] { return vertex_text(v); });
+    for (const std::int32_t v : done.vertices)
+      tell(Kind::kSplitVertex, [&] { return vertex_text(v); });
     for (const std::int32_t t : done.turned) {
       tell(Kind::kTurnedTriangle, [&] { return triangle_text(static_cast<std::size_t>(t)); });
     }

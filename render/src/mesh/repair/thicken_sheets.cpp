@@ -39,8 +39,8 @@ std::int32_t corner_of(const TriangleMesh& mesh, std::size_t side, std::int32_t 
   return static_cast<std::int32_t>(3 * side + k);
 }
 
-// Calls `take(edge, wedges)` for each edge: its first side, and the pairs of sides of triangles that
-// look at each other over it; none at an open edge.
+// Calls `take(edge, wedges)` for each edge: its first side, and the pairs of sides of triangles
+// that look at each other over it; none at an open edge.
 template <class Take>
 void for_each_edge(const TriangleMesh& mesh, std::span<const EdgeUse> uses,
                    std::span<const std::int32_t> sources, Take&& take) {
@@ -53,7 +53,8 @@ void for_each_edge(const TriangleMesh& mesh, std::span<const EdgeUse> uses,
     }
     wedges.clear();
     if (end - begin > 1) {
-      const std::vector<EdgeUse> edge = around_edge(mesh, uses.subspan(begin, end - begin), sources);
+      const std::vector<EdgeUse> edge =
+          around_edge(mesh, uses.subspan(begin, end - begin), sources);
       for (std::size_t i = 0; i < edge.size(); ++i) {
         const EdgeUse& one = edge[i];
         const EdgeUse& next = edge[(i + 1) % edge.size()];
@@ -81,8 +82,8 @@ Groups join_corners(const TriangleMesh& mesh, std::span<const EdgeUse> uses,
   return groups;
 }
 
-// Tells for which edges two wedges, or front and back of an open one, hang together at both ends: the
-// thin body would have one edge there for both.
+// Tells for which edges two wedges, or front and back of an open one, hang together at both ends:
+// the thin body would have one edge there for both.
 bool is_ambiguous(const TriangleMesh& mesh, Groups& groups, const EdgeUse& edge,
                   const std::vector<std::pair<std::size_t, std::size_t>>& wedges) {
   std::vector<std::pair<std::int32_t, std::int32_t>> ends;
@@ -118,8 +119,9 @@ CutMesh with_ambiguous_edges_cut(const TriangleMesh& mesh) {
     const std::size_t end = end_of_edge(uses, at);
     if (is_ambiguous(mesh, groups, edge, wedges)) {
       for (std::size_t i = at; i < end; ++i) {
-        middles[static_cast<std::size_t>(uses[i].triangle)][static_cast<std::size_t>(
-            uses[i].corner)] = static_cast<std::int32_t>(cut.vertices.size());
+        middles[static_cast<std::size_t>(uses[i].triangle)]
+               [static_cast<std::size_t>(uses[i].corner)] =
+                   static_cast<std::int32_t>(cut.vertices.size());
       }
       cut.vertices.push_back((mesh.vertices[static_cast<std::size_t>(edge.low)] +
                               mesh.vertices[static_cast<std::size_t>(edge.high)]) /
@@ -130,8 +132,8 @@ CutMesh with_ambiguous_edges_cut(const TriangleMesh& mesh) {
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const auto& corners = mesh.triangles[t];
     const auto& middle = middles[t];
-    // Corners in front of a cut edge on both sides go off as triangles of their own; what remains is
-    // a fan from the first middle, or the triangle itself.
+    // Corners in front of a cut edge on both sides go off as triangles of their own; what remains
+    // is a fan from the first middle, or the triangle itself.
     std::vector<std::int32_t> rest;
     for (std::size_t k = 0; k < 3; ++k) {
       const std::size_t before = (k + 2) % 3;
@@ -159,7 +161,9 @@ class Thickening {
  public:
   Thickening(const CutMesh& cut, std::vector<std::int32_t> chosen, std::span<const EdgeUse> uses,
              double thickness)
-      : mesh_(cut.mesh), chosen_(std::move(chosen)), half_(thickness / 2),
+      : mesh_(cut.mesh),
+        chosen_(std::move(chosen)),
+        half_(thickness / 2),
         groups_(join_corners(cut.mesh, uses, cut.sources)) {
     for_each_edge(cut.mesh, uses, cut.sources, [this](const EdgeUse& edge, const auto& wedges) {
       if (wedges.empty()) open_.push_back(edge);
@@ -204,8 +208,7 @@ class Thickening {
       }
       const auto& corners = mesh_.triangles[side / 2];
       const Vector3d& p = at(corners[k]);
-      const double angle =
-          corner_angle(at(corners[(k + 1) % 3]) - p, at(corners[(k + 2) % 3]) - p);
+      const double angle = corner_angle(at(corners[(k + 1) % 3]) - p, at(corners[(k + 2) % 3]) - p);
       ways_[static_cast<std::size_t>(number_[root])] += angle * face_normal(side);
     });
     for (std::size_t v = 0; v < ways_.size(); ++v) {
@@ -315,7 +318,8 @@ class Thickening {
   Groups groups_;                     // of corners that become one vertex
   std::vector<std::int32_t> number_;  // of the vertex, per root of a group
   std::vector<EdgeUse> open_;
-  // Per vertex: the one it comes from, which way it goes and how far, and a side that it belongs to.
+  // Per vertex: the one it comes from, which way it goes and how far, and a side that it belongs
+  // to.
   std::vector<Vector3d> from_, ways_;
   std::vector<double> lengths_;
   std::vector<std::size_t> firsts_;
@@ -333,8 +337,7 @@ ThickenedMesh thicken_sheets(const TriangleMesh& whole, double thickness) {
   const std::vector<EdgeUse> uses = sorted_edge_uses(mesh);
   const MeshComponents parts = find_components(mesh, uses);
   const auto is_open = [&parts](std::int32_t t) {
-    return !parts.closed[static_cast<std::size_t>(
-        parts.component_of[static_cast<std::size_t>(t)])];
+    return !parts.closed[static_cast<std::size_t>(parts.component_of[static_cast<std::size_t>(t)])];
   };
   std::vector<std::int32_t> chosen;
   done.mesh.vertices = mesh.vertices;

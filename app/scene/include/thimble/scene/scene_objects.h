@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "page/paged_surface.h"
@@ -36,6 +37,8 @@ class SceneObjects {
   render::TriangleMesh mesh_now(int object = -1) const;
   /// Tells how many triangles can be touched, in memory and on the disk.
   std::size_t triangles() const { return triangles_; }
+  /// Returns what was put right, left out or guessed of the meshes, a sentence each.
+  const std::vector<std::string>& notes() const { return notes_; }
   /// Lists the objects that move.
   std::span<const std::size_t> moving() const { return moving_; }
 
@@ -55,6 +58,7 @@ class SceneObjects {
   std::vector<MeshPlace> places_;  // of each object in mesh_W_, and of its end
   std::vector<std::size_t> moving_;
   std::size_t triangles_ = 0;
+  std::vector<std::string> notes_;
 };
 
 }  // namespace thimble::scene

@@ -110,6 +110,8 @@ class Session {
   /// Gives the meshes of all objects in the world as one (m), for pictures: those that are touched,
   /// and those that stand for shapes; those on the disk are not in it.
   const render::TriangleMesh& mesh_W() const { return objects_->mesh_W(); }
+  /// Returns what was put right, left out or guessed of the scene's meshes, a sentence each.
+  const std::vector<std::string>& mesh_notes() const { return objects_->notes(); }
   /// Tells how many triangles can be touched, in memory and on the disk.
   std::size_t triangles() const { return objects_->triangles(); }
   const driver::Device& device() const { return *device_; }

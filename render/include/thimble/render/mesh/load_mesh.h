@@ -18,7 +18,8 @@ struct MeshFileInfo {
   /// Metres per unit of the coordinates, where file or format names one: glTF and DAE come in m,
   /// 3MF and AMF in the unit they name (mm if none).
   std::optional<double> unit;
-  char up = 0;  ///< Axis that points up, x, y or z, where file or format names one (glTF, DAE).
+  char up =
+      0;  ///< Axis that points up, x, y or z, where file or format names one (glTF, DAE, 3DS).
   std::vector<std::string> notes;  ///< What was left out or put right, a sentence each.
 };
 

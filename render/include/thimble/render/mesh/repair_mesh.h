@@ -22,7 +22,7 @@ struct RepairOptions {
   /// Close the holes of a part, all of them or none, where what closes them has no more than this
   /// share of the part's area; 0 leaves out. A rim of more than 2,000 edges stays open.
   double hole_share = 0.5;
-  bool orient = true;          ///< Wind triangles alike and outwards (see orient_mesh).
+  bool orient = true;  ///< Wind triangles alike and outwards (see orient_mesh).
 };
 
 /// Is one kind of change that a repair made, how often, and where first.
