@@ -10,9 +10,9 @@ namespace thimble::render {
 namespace {
 
 // Reads whole numbers, least byte first; 0 beyond the end.
-class Numbers {
+class ZipNumbers {
  public:
-  explicit Numbers(std::string_view bytes) : bytes_(bytes) {}
+  explicit ZipNumbers(std::string_view bytes) : bytes_(bytes) {}
   std::uint32_t at(std::size_t place, std::size_t size) const {
     std::uint32_t number = 0;
     for (std::size_t i = size; i-- > 0;) {
@@ -28,21 +28,21 @@ class Numbers {
   std::string_view bytes_;
 };
 
-struct Entry {
+struct ZipEntry {
   std::uint32_t method = 0, packed = 0, place = 0;
 };
 
-std::optional<Entry> find_entry(std::string_view archive, std::string_view ending) {
+std::optional<ZipEntry> find_entry(std::string_view archive, std::string_view ending) {
   const std::size_t end = archive.rfind("PK\5\6");
   if (end == std::string_view::npos) return {};
-  const Numbers numbers(archive);
+  const ZipNumbers numbers(archive);
   std::size_t at = numbers.at(end + 16, 4);
   const std::uint32_t count = numbers.at(end + 10, 2);
   for (std::uint32_t i = 0; i < count; ++i) {
     if (at >= archive.size() || archive.substr(at, 4) != "PK\1\2") return {};
     const std::size_t name = numbers.at(at + 28, 2);
     if (archive.substr(at + 46, name).ends_with(ending)) {
-      return Entry{numbers.at(at + 10, 2), numbers.at(at + 20, 4), numbers.at(at + 42, 4)};
+      return ZipEntry{numbers.at(at + 10, 2), numbers.at(at + 20, 4), numbers.at(at + 42, 4)};
     }
     at += 46 + name + numbers.at(at + 30, 2) + numbers.at(at + 32, 2);
   }
@@ -68,9 +68,9 @@ std::string inflated(std::string_view packed, std::size_t most) {
 std::string begin_of_zip_entry(std::string_view archive, std::string_view ending,
                                std::size_t most) {
   if (archive.size() > UINT32_MAX) return {};
-  const std::optional<Entry> entry = find_entry(archive, ending);
+  const std::optional<ZipEntry> entry = find_entry(archive, ending);
   if (!entry || entry->place >= archive.size()) return {};
-  const Numbers numbers(archive);
+  const ZipNumbers numbers(archive);
   const std::size_t data =
       entry->place + 30 + numbers.at(entry->place + 26, 2) + numbers.at(entry->place + 28, 2);
   if (data >= archive.size()) return {};

@@ -11,15 +11,11 @@
 
 #include "mesh/mesh_edges.h"
 #include "mesh/repair/fill_polygon.h"
-#include "thimble/render/mesh/check_mesh.h"
 
 namespace thimble::render {
 namespace {
 
 using Eigen::Vector3d;
-
-// Triangles flatter than this have no area, as for fill_polygon.
-constexpr double kThin = 100 * kFlatness;
 
 // Places of a rim no farther apart than this share of the mesh's size are one: copies of a vertex
 // that split_fans made.
@@ -230,7 +226,8 @@ class Filling {
       const double longest =
           std::max({side.squaredNorm(), in.squaredNorm(), (in - side).squaredNorm()});
       // A slit of no width has nothing to be filled with.
-      if (!(twice_area > kThin * longest)) ring.area = std::numeric_limits<double>::infinity();
+      if (!(twice_area > kFillFlatness * longest))
+        ring.area = std::numeric_limits<double>::infinity();
       ring.area += twice_area / 2;
     }
   }

@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "mesh/file/triangulate_polygon.h"
-#include "thimble/render/mesh/check_mesh.h"
 
 namespace thimble::render {
 namespace {
@@ -20,10 +19,6 @@ using Taken = std::function<bool(std::int32_t, std::int32_t)>;
 
 // A ring that leaves its mean plane by less than this share of its size is closed as a flat one.
 constexpr double kFlat = 1e-3;
-
-// Triangles flatter than this have no area (a hundred times what check_mesh lets pass: a mesh that
-// is moved or scaled is rounded again).
-constexpr double kThin = 100 * kFlatness;
 
 // All ways to close a ring of so many corners are compared, which takes their number cubed.
 constexpr std::size_t kWholeMax = 64;
@@ -44,7 +39,7 @@ bool has_area(const HoleRing& ring, std::int32_t a, std::int32_t b, std::int32_t
                  &r = ring.corners[index(c)];
   const double longest =
       std::max({(q - p).squaredNorm(), (r - q).squaredNorm(), (p - r).squaredNorm()});
-  return twice_area > kThin * longest;
+  return twice_area > kFillFlatness * longest;
 }
 
 bool is_flat(const HoleRing& ring) {

@@ -7,7 +7,13 @@
 #include <span>
 #include <vector>
 
+#include "thimble/render/mesh/check_mesh.h"
+
 namespace thimble::render {
+
+/// Flatter triangles close no hole: a hundred times what check_mesh lets pass, for a mesh that is
+/// moved or scaled is rounded again.
+inline constexpr double kFillFlatness = 100 * kFlatness;
 
 /// A hole in a surface as a ring of places: corner k is joined to corner k + 1 by an edge whose
 /// triangle on the other side has the unit normal `beside[k]`, seen from the side that the ring

@@ -20,7 +20,7 @@ using Pair = std::pair<EdgeUse, EdgeUse>;
 
 // An edge whose ends its pairs still share is cut in the middle; a mesh that has such edges after
 // so many rounds keeps them.
-constexpr int kRoundsMax = 4;
+constexpr int kCutRoundsMax = 4;
 
 // Returns the pairs of sides between which an edge of many triangles has matter; empty if its
 // triangles do not lie around it by turns.
@@ -185,7 +185,7 @@ SplitFans split_fans(TriangleMesh& mesh, std::vector<std::int32_t>& origin) {
   done.turned = turn_by_rays(mesh, links);
   done.parted_edges = links.parted;
   done.vertices = split_vertices(mesh, links);
-  for (int round = 0; round < kRoundsMax && !done.parted_edges.empty(); ++round) {
+  for (int round = 0; round < kCutRoundsMax && !done.parted_edges.empty(); ++round) {
     if (!cut_shared_edges(mesh, origin)) break;
     split_vertices(mesh, find_links(mesh));
   }

@@ -3,18 +3,17 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <map>
-#include <numbers>
 #include <span>
 #include <sstream>
 #include <utility>
 #include <vector>
 
 #include "mesh/mesh_edges.h"
-#include "mesh/repair/edge_order.h"
 #include "mesh/repair/orient_mesh.h"
+#include "mesh/repair/sheet_wedges.h"
 #include "mesh/vertex_normals.h"
 
 namespace thimble::render {
@@ -29,132 +28,7 @@ constexpr double kMiterMax = 2;
 constexpr double kTurnedMin = 0.2;
 
 // Corners are pulled back to half as often as this where faces would turn over.
-constexpr int kRoundsMax = 24;
-
-// A triangle t has two sides, 2 t its front and 2 t + 1 its back, and a side s the corners 3 s to
-// 3 s + 2, in the triangle's order for both.
-std::int32_t corner_of(const TriangleMesh& mesh, std::size_t side, std::int32_t vertex) {
-  const auto& corners = mesh.triangles[side / 2];
-  const std::size_t k = corners[0] == vertex ? 0 : corners[1] == vertex ? 1 : 2;
-  return static_cast<std::int32_t>(3 * side + k);
-}
-
-// Calls `take(edge, wedges)` for each edge: its first side, and the pairs of sides of triangles
-// that look at each other over it; none at an open edge.
-template <class Take>
-void for_each_edge(const TriangleMesh& mesh, std::span<const EdgeUse> uses,
-                   std::span<const std::int32_t> sources, Take&& take) {
-  std::vector<std::pair<std::size_t, std::size_t>> wedges;
-  for (std::size_t begin = 0; begin < uses.size();) {
-    std::size_t end = begin + 1;
-    while (end < uses.size() && uses[end].low == uses[begin].low &&
-           uses[end].high == uses[begin].high) {
-      ++end;
-    }
-    wedges.clear();
-    if (end - begin > 1) {
-      const std::vector<EdgeUse> edge =
-          around_edge(mesh, uses.subspan(begin, end - begin), sources);
-      for (std::size_t i = 0; i < edge.size(); ++i) {
-        const EdgeUse& one = edge[i];
-        const EdgeUse& next = edge[(i + 1) % edge.size()];
-        // The front of one that runs upwards looks at the next.
-        wedges.emplace_back(2 * static_cast<std::size_t>(one.triangle) + (one.upward ? 0 : 1),
-                            2 * static_cast<std::size_t>(next.triangle) + (next.upward ? 1 : 0));
-      }
-    }
-    take(uses[begin], wedges);
-    begin = end;
-  }
-}
-
-// Joins the corners of sides that will be one vertex: what hangs together around it.
-Groups join_corners(const TriangleMesh& mesh, std::span<const EdgeUse> uses,
-                    std::span<const std::int32_t> sources) {
-  Groups groups(6 * mesh.triangles.size());
-  for_each_edge(mesh, uses, sources, [&](const EdgeUse& edge, const auto& wedges) {
-    for (const auto& [one, two] : wedges) {
-      for (const std::int32_t v : {edge.low, edge.high}) {
-        groups.join(corner_of(mesh, one, v), corner_of(mesh, two, v));
-      }
-    }
-  });
-  return groups;
-}
-
-// Tells for which edges two wedges, or front and back of an open one, hang together at both ends:
-// the thin body would have one edge there for both.
-bool is_ambiguous(const TriangleMesh& mesh, Groups& groups, const EdgeUse& edge,
-                  const std::vector<std::pair<std::size_t, std::size_t>>& wedges) {
-  std::vector<std::pair<std::int32_t, std::int32_t>> ends;
-  const auto add = [&](std::size_t side) {
-    ends.emplace_back(groups.find(corner_of(mesh, side, edge.low)),
-                      groups.find(corner_of(mesh, side, edge.high)));
-  };
-  if (wedges.empty()) {
-    add(2 * static_cast<std::size_t>(edge.triangle));
-    add(2 * static_cast<std::size_t>(edge.triangle) + 1);
-  }
-  for (const auto& wedge : wedges) add(wedge.first);
-  std::sort(ends.begin(), ends.end());
-  return std::adjacent_find(ends.begin(), ends.end()) != ends.end();
-}
-
-// A mesh of pieces of triangles, and which triangle each comes from.
-struct CutMesh {
-  TriangleMesh mesh;
-  std::vector<std::int32_t> sources;
-};
-
-// Cuts such edges in the middle, where each wedge has a vertex of its own.
-CutMesh with_ambiguous_edges_cut(const TriangleMesh& mesh) {
-  CutMesh done;
-  TriangleMesh& cut = done.mesh;
-  cut.vertices = mesh.vertices;
-  std::vector<std::array<std::int32_t, 3>> middles(mesh.triangles.size(), {-1, -1, -1});
-  const std::vector<EdgeUse> uses = sorted_edge_uses(mesh);
-  Groups groups = join_corners(mesh, uses, {});
-  std::size_t at = 0;
-  for_each_edge(mesh, uses, {}, [&](const EdgeUse& edge, const auto& wedges) {
-    const std::size_t end = end_of_edge(uses, at);
-    if (is_ambiguous(mesh, groups, edge, wedges)) {
-      for (std::size_t i = at; i < end; ++i) {
-        middles[static_cast<std::size_t>(uses[i].triangle)]
-               [static_cast<std::size_t>(uses[i].corner)] =
-                   static_cast<std::int32_t>(cut.vertices.size());
-      }
-      cut.vertices.push_back((mesh.vertices[static_cast<std::size_t>(edge.low)] +
-                              mesh.vertices[static_cast<std::size_t>(edge.high)]) /
-                             2);
-    }
-    at = end;
-  });
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const auto& corners = mesh.triangles[t];
-    const auto& middle = middles[t];
-    // Corners in front of a cut edge on both sides go off as triangles of their own; what remains
-    // is a fan from the first middle, or the triangle itself.
-    std::vector<std::int32_t> rest;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::size_t before = (k + 2) % 3;
-      if (middle[before] >= 0 && middle[k] >= 0) {
-        cut.triangles.push_back({middle[before], corners[k], middle[k]});
-      } else {
-        rest.push_back(corners[k]);
-      }
-      if (middle[k] >= 0) rest.push_back(middle[k]);
-    }
-    const auto first = std::find_if(rest.begin(), rest.end(), [&middle](std::int32_t v) {
-      return std::find(middle.begin(), middle.end(), v) != middle.end();
-    });
-    if (first != rest.end()) std::rotate(rest.begin(), first, rest.end());
-    for (std::size_t i = 1; i + 1 < rest.size(); ++i) {
-      cut.triangles.push_back({rest[0], rest[i], rest[i + 1]});
-    }
-    done.sources.resize(cut.triangles.size(), static_cast<std::int32_t>(t));
-  }
-  return done;
-}
+constexpr int kPullBackMax = 24;
 
 // Makes thin bodies of the chosen triangles of a mesh.
 class Thickening {
@@ -286,7 +160,7 @@ class Thickening {
 
   // Halves the way of corners around faces that would turn over, until none does.
   void pull_back() {
-    for (int round = 0; round < kRoundsMax; ++round) {
+    for (int round = 0; round < kPullBackMax; ++round) {
       std::vector<bool> halve(lengths_.size(), false);
       for (std::size_t i = 0; i < sides_; ++i) {
         const auto& [a, b, c] = triangles_[i];
