@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -97,6 +99,19 @@ TEST(FillHoles, ClosesWholePartsOrNoneAndKnowsASheet) {
   }
   const RepairedMesh same = repair_mesh(washer);
   EXPECT_EQ(same.mesh.triangles, washer.triangles);
+}
+
+TEST(FillHoles, TakesALongRimForNoHole) {
+  for (const int edges : {1500, 2500}) {
+    TriangleMesh cup;  // a long cup, whose lid would be a thirtieth of its area
+    cup.vertices = {{0, 0, -3}};
+    for (int i = 0; i < edges; ++i) {
+      const double a = 2 * std::numbers::pi * i / edges;
+      cup.vertices.emplace_back(0.1 * std::cos(a), 0.1 * std::sin(a), 0);
+    }
+    for (int i = 0; i < edges; ++i) cup.triangles.push_back({0, 1 + (i + 1) % edges, 1 + i});
+    EXPECT_EQ(check_mesh(repair_mesh(cup).mesh).touchable(), edges < 2000) << edges;
+  }
 }
 
 TEST(FillHoles, JoinsACornerAgainWhereAHoleComesToItTwice) {

@@ -8,10 +8,8 @@
 #include "mesh/repair/orient_mesh.h"
 #include "mesh/smooth_normals.h"
 #include "packed/packed_surface.h"
-#include "support/random.h"
 #include "support/shapes.h"
 #include "thimble/render/mesh/check_mesh.h"
-#include "thimble/render/mesh/placed_mesh.h"
 
 namespace thimble::render {
 namespace {
@@ -67,39 +65,14 @@ TEST(Nesting, TellsMatterFromCavitiesAmongBubblesAndCrumbs) {
   EXPECT_TRUE(check_mesh(mesh).touchable());
 }
 
-TEST(Nesting, AgreesWithALookAtEveryPairOnPartsThatOverlapAtRandom) {
-  support::Random random(12);
-  for (int round = 0; round < 60; ++round) {
-    TriangleMesh mesh;
-    std::vector<Vector3d> middle;
-    std::vector<double> radius;
-    for (int i = 0; i < 12; ++i) {
-      middle.push_back(random.in_box(1));
-      radius.push_back(random.uniform(0.05, 1.2));
-      append(support::icosphere(2, radius.back()), middle.back(), random.bits() % 2 == 0, mesh);
-    }
-    // Spheres as they are meant, away from where triangles and spheres differ.
-    bool clear = true;
-    std::vector<bool> expected;
-    for (std::size_t i = 0; i < middle.size(); ++i) {
-      std::size_t around = 0;
-      for (std::size_t k = 0; k < middle.size(); ++k) {
-        const double room = radius[k] - radius[i] - (middle[k] - middle[i]).norm();
-        around += k != i && room > 0;
-        clear = clear && (k == i || std::abs(room) > 0.1 * radius[k]);
-        // Who reaches out of another is not in it, but its witnesses may all be: not asked here.
-        const double reach = (middle[k] - middle[i]).norm() + radius[i];
-        clear = clear && (k == i || reach < 0.9 * radius[k] || reach > 1.3 * radius[k]);
-      }
-      const auto first = static_cast<std::size_t>(i) * (mesh.triangles.size() / middle.size());
-      const Vector3d a = mesh.vertices[static_cast<std::size_t>(mesh.triangles[first][0])];
-      const Vector3d b = mesh.vertices[static_cast<std::size_t>(mesh.triangles[first][1])];
-      const Vector3d c = mesh.vertices[static_cast<std::size_t>(mesh.triangles[first][2])];
-      const bool outwards = (b - a).cross(c - a).dot(a - middle[i]) > 0;
-      expected.push_back(outwards == (around % 2 == 1));
-    }
-    if (!clear) continue;
-    EXPECT_EQ(inside_out(mesh), expected) << round;
+// What lies in a part's box need not lie in it: a ray from a ball in a ring's hole leaves the ring
+// as often as it enters.
+TEST(Nesting, KnowsABallInTheHoleOfARingFromOneInTheRing) {
+  for (const bool in_the_tube : {false, true}) {
+    TriangleMesh mesh = support::torus(1, 0.4, 48, 24);
+    append(support::icosphere(2, 0.1), in_the_tube ? Vector3d(0, 1, 0) : Vector3d(0, 0, 0), false,
+           mesh);
+    EXPECT_EQ(inside_out(mesh), (std::vector<bool>{false, in_the_tube}));
   }
 }
 

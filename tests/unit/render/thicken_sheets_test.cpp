@@ -2,9 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <string>
 #include <vector>
 
 #include "support/random.h"
@@ -148,6 +152,50 @@ TEST(ThickenSheets, ClosesTrianglesThatHangTogetherAtRandom) {
     orient_mesh(oriented);
     const auto built = ContactMesh::build(oriented);
     EXPECT_TRUE(built.ok()) << round << ": " << built.error().message;
+  }
+}
+
+// The same on a lattice, where triangles lie in one plane and on top of each other.
+TEST(ThickenSheets, ClosesTrianglesThatLieOnTopOfEachOther) {
+  support::Random random(32);
+  for (int round = 0; round < 300; ++round) {
+    TriangleMesh mesh;
+    for (int i = 0; i < 9; ++i) mesh.vertices.emplace_back(0.01 * (i % 3), 0.01 * (i / 3), 0);
+    mesh.vertices.emplace_back(0.01, 0.01, 0.01);
+    for (int i = 0; i < 10; ++i) {
+      std::array<std::int32_t, 3> t;
+      for (auto& v : t) v = static_cast<std::int32_t>(random.bits() % 10);
+      mesh.triangles.push_back(t);
+    }
+    const RepairedMesh cleaned = repair_mesh(mesh);
+    const ThickenedMesh thick = thicken_sheets(cleaned.mesh, 0.1 * kThickness);
+    for (const MeshFault& fault : check_mesh(thick.mesh).faults) {
+      EXPECT_EQ(fault.kind, MeshFault::Kind::kInsideOut) << round << ": " << describe(fault);
+    }
+  }
+}
+
+TEST(ThickenSheets, MakesASheetThinnerWhereItBendsTooSharply) {
+  TriangleMesh pipe = sheet(0.06, 24);  // half a pipe of 3 mm, in a sheet of 10 mm
+  for (Vector3d& p : pipe.vertices) {
+    const double a = std::numbers::pi * (p.x() / 0.06 + 0.5);
+    p = Vector3d(-0.003 * std::cos(a), p.y(), 0.003 * std::sin(a));
+  }
+  const ThickenedMesh thick = thicken_sheets(pipe, 0.01);
+  EXPECT_TRUE(check_mesh(thick.mesh).touchable());
+  EXPECT_LT(thick.report.thinnest, 0.01);
+  EXPECT_GT(thick.report.thinnest, 0.0005);
+  // No face of it looks the other way: fronts come first, backs beside them.
+  for (std::size_t t = 0; t < pipe.triangles.size(); ++t) {
+    const auto normal = [](const TriangleMesh& mesh, std::size_t i) {
+      const auto& [a, b, c] = mesh.triangles[i];
+      const auto at = [&mesh](std::int32_t v) {
+        return mesh.vertices[static_cast<std::size_t>(v)];
+      };
+      return Vector3d((at(b) - at(a)).cross(at(c) - at(a)).normalized());
+    };
+    EXPECT_GT(normal(pipe, t).dot(normal(thick.mesh, 2 * t)), 0.1) << t;
+    EXPECT_LT(normal(pipe, t).dot(normal(thick.mesh, 2 * t + 1)), -0.1) << t;
   }
 }
 

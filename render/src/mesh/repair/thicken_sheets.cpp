@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "mesh/mesh_edges.h"
+#include "mesh/repair/fill_polygon.h"
 #include "mesh/repair/orient_mesh.h"
 #include "mesh/repair/sheet_wedges.h"
 #include "mesh/vertex_normals.h"
@@ -23,6 +24,11 @@ using Eigen::Vector3d;
 
 // A corner goes out by at most so many half thicknesses to keep the faces around it apart by one.
 constexpr double kMiterMax = 2;
+
+// Vertices of triangles without area are moved by this share of half the thickness, by turns along
+// the axes, until they have one.
+constexpr double kNudge = 1e-3;
+constexpr int kNudgesMax = 6;
 
 // A face of the thin body may turn against the one that it comes from by at most this cosine.
 constexpr double kTurnedMin = 0.2;
@@ -50,6 +56,7 @@ class Thickening {
     make_rims();
     make_caps();
     pull_back();
+    nudge();
     write(thin);
     for (const double length : lengths_) thinnest = std::min(thinnest, 2 * length);
   }
@@ -86,16 +93,24 @@ class Thickening {
       ways_[static_cast<std::size_t>(number_[root])] += angle * face_normal(side);
     });
     for (std::size_t v = 0; v < ways_.size(); ++v) {
-      // Faces that lie back to back have no mean: the first leads.
       const double length = ways_[v].norm();
-      ways_[v] = length > 1e-6 ? Vector3d(ways_[v] / length) : face_normal(firsts_[v]);
+      ways_[v] = length > 1e-6 ? Vector3d(ways_[v] / length) : way_between(v);
     }
-    std::vector<double> lean(ways_.size(), 1);
+    std::vector<double> lean(ways_.size(), 1);  // the cosine of the face that looks away most
     for_each_corner([&](std::size_t side, std::size_t, std::int32_t corner) {
       const auto v = static_cast<std::size_t>(vertex_at(corner));
       lean[v] = std::min(lean[v], face_normal(side).dot(ways_[v]));
     });
-    for (std::size_t v = 0; v < ways_.size(); ++v) ways_[v] /= std::max(lean[v], 1 / kMiterMax);
+    for (std::size_t v = 0; v < ways_.size(); ++v) {
+      ways_[v] /= std::max(lean[v], 1 / kMiterMax);
+    }
+  }
+
+  // Faces that lie on each other have no way out: their vertex goes between them, into the first.
+  Vector3d way_between(std::size_t vertex) const {
+    Vector3d in = Vector3d::Zero();
+    for (const std::int32_t v : mesh_.triangles[firsts_[vertex] / 2]) in += at(v) - from_[vertex];
+    return in.stableNormalized();
   }
 
   template <class Do>
@@ -172,6 +187,27 @@ class Thickening {
       if (std::find(halve.begin(), halve.end(), true) == halve.end()) return;
       for (std::size_t v = 0; v < halve.size(); ++v) {
         if (halve[v]) lengths_[v] /= 2;
+      }
+    }
+  }
+
+  // Faces on top of each other leave rims and caps of no area.
+  void nudge() {
+    for (int round = 0; round < kNudgesMax; ++round) {
+      std::vector<bool> flat(from_.size(), false);
+      for (const auto& [a, b, c] : triangles_) {
+        const Vector3d ab = place(b) - place(a), ac = place(c) - place(a);
+        const double longest =
+            std::max({ab.squaredNorm(), ac.squaredNorm(), (ac - ab).squaredNorm()});
+        if (ab.cross(ac).norm() > kFillFlatness * longest) continue;
+        for (const std::int32_t v : {a, b, c}) flat[static_cast<std::size_t>(v)] = true;
+      }
+      if (std::find(flat.begin(), flat.end(), true) == flat.end()) return;
+      for (std::size_t v = 0; v < flat.size(); ++v) {
+        if (!flat[v]) continue;
+        // Different for any three vertices of a triangle.
+        const auto axis = static_cast<Eigen::Index>((v + static_cast<std::size_t>(round)) % 3);
+        from_[v][axis] += kNudge * half_ * (1 + static_cast<double>(v % 7));
       }
     }
   }
