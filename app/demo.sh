@@ -4,6 +4,6 @@
 #   app/demo.sh [options of `thimble run`]      for example: app/demo.sh --duration 3
 set -euo pipefail
 cd "$(dirname "$0")/.."
-app/setup.sh release thimble
-exec build/release/app/thimble run app/scenes/elephant.yaml --device sim --clock wall \
+app/setup.sh release thimble_demo
+exec build/release/app/demo/thimble run app/scenes/elephant.yaml --device sim --clock wall \
   --report build/demo "$@"

@@ -15,7 +15,8 @@ packages=(
   libpng-dev                             # pictures felt as heights
   libyaml-cpp-dev nlohmann-json3-dev     # scenes in, reports out
   libhdf5-dev                            # recordings
-  libspdlog-dev libcli11-dev             # messages and arguments of the program
+  libfmt-dev libspdlog-dev               # sentences with numbers in them, the log
+  libcli11-dev                           # arguments of the program
   gnuplot-nox fonts-dejavu-core          # pictures
   libepoxy-dev libegl-dev libgl-dev      # scenes drawn with OpenGL ...
   libegl-mesa0 libgl1-mesa-dri           # ... by the processor where there is no graphics card

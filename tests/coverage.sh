@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Prints which share of the lines of each room the tests reach, and the files that they reach least.
+# Prints which share of the lines of each module the tests reach, and the files that they reach least.
 # Builds all of it once more, counting, and runs every test: half an hour. (Debian: gcovr.)
 #   tests/coverage.sh [--target NAME] [CTEST_OPTIONS...]    NAME: this test program alone, to be quick
 set -euo pipefail
@@ -32,15 +32,15 @@ awk -F, '
     lines = $column["line_total"]; reached = $column["line_covered"]
     if (lines == 0) next
     split($column["filename"], part, "/")
-    room[part[1]] += lines; of_room[part[1]] += reached; all += lines; of_all += reached
+    module[part[1]] += lines; of_module[part[1]] += reached; all += lines; of_all += reached
     printf "%6.1f %% %5d  %s\n", 100 * reached / lines, lines - reached, $column["filename"] >"build/coverage/files.txt"
   }
   END {
-    printf "%-12s %7s %7s\n", "room", "lines", "reached"
+    printf "%-12s %7s %7s\n", "module", "lines", "reached"
     order = split("driver device_sim render app", name, " ")
     for (i = 1; i <= order; ++i) {
-      if (room[name[i]] > 0)
-        printf "%-12s %7d %6.1f %%\n", name[i], room[name[i]], 100 * of_room[name[i]] / room[name[i]]
+      if (module[name[i]] > 0)
+        printf "%-12s %7d %6.1f %%\n", name[i], module[name[i]], 100 * of_module[name[i]] / module[name[i]]
     }
     printf "%-12s %7d %6.1f %%\n", "all", all, 100 * of_all / all
   }' build/coverage/lines.csv

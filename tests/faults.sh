@@ -9,7 +9,7 @@ build=${1:-build/release}
 output=${2:-tests/FAULTS.md}
 lines=$(mktemp)
 trap 'rm -f "$lines"' EXIT
-THIMBLE_FAULTS=$lines "$build/tests/sim/test_faults" >/dev/null
+THIMBLE_FAULTS=$lines "$build/tests/sim/test_hard_cases" --gtest_filter="*FaultMatrix*" >/dev/null
 [ ! -e "$build/app/thimble" ] ||
   THIMBLE_FAULTS=$lines bash tests/program/faults_test.sh "$(realpath "$build/app/thimble")" "$PWD" \
     "$(realpath "$build")/tests/program/faults_table" >/dev/null || [ $? = 77 ]

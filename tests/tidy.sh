@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Asks clang-tidy about every source of the tree (checks: .clang-tidy). It reads sources joined, as they
-# are built, so that what eight of them include is read once; nothing needs to be compiled before.
+# are built, so that what sixteen of them include is read once; nothing needs to be compiled before.
 # Forty minutes of one processor. (Debian: clang-tidy.)
 #   tests/tidy.sh [REGEX]      REGEX: only compiled files with such a name, e.g. render/
 set -euo pipefail
@@ -21,6 +21,7 @@ ask() {  # ask FILE: prints what there is to say, once per place
   local said status=0 config=.clang-tidy
   [[ $1 != */tests/* ]] || config=tests/.clang-tidy
   said=$(clang-tidy -p "$build" --config-file="$config" --quiet --extra-arg=-Wno-unknown-warning-option \
+    --extra-arg=-Wno-unused-command-line-argument \
     --checks=-bugprone-suspicious-include "$1" 2>/dev/null) || status=$?
   if ! grep -qE '(warning|error):' <<<"$said"; then
     [ $status != 0 ] || return 0
@@ -36,7 +37,7 @@ sed -n 's/^ *"file": "\(.*\)",*$/\1/p' "$build/compile_commands.json" | sort -u 
   echo "tests/tidy.sh: no compiled file has a name like '${1:-}'." >&2
   exit 2
 }
-echo "clang-tidy reads $(wc -l <"$found/files") files, most of them eight sources joined ..."
+echo "clang-tidy reads $(wc -l <"$found/files") files, most of them many sources joined ..."
 xargs -P "${THIMBLE_TIDY_JOBS:-$(nproc)}" -I{} bash -c 'ask {}' <"$found/files"
 if [ -s "$found/findings" ]; then
   echo "clang-tidy finds $(grep -cE '(warning|error):' "$found/findings") faults." >&2

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "thimble/scene/device_settings.h"
 #include "thimble/scene/real_arm.h"
-#include "thimble/scene/watch_choice.h"
 
 namespace thimble::app {
 namespace {
@@ -34,18 +34,14 @@ driver::Result<std::unique_ptr<BenchArm>> BenchArm::open(
     wire = bench->simulation_->wire(*bench->clock_);
     protocol = bench->simulation_->protocol();
   }
-  driver::GateLimits limits = file.limits;
-  limits.force_max = std::min(limits.force_max, force_max);
-  driver::HeatSettings heat = file.heat;
+  // Without the energy stage: what is tried here must be felt as it is sent.
+  driver::DeviceSettings settings =
+      scene::device_settings(file, 1e9 / kPeriod_ns, driver::EnergyStage::kNone);
+  settings.limits.force_max = std::min(settings.limits.force_max, force_max);
+  driver::HeatSettings& heat = settings.heat;
   if (real_arm && heat.named())
     heat.at_start = scene::load_heat(real_arm->name(), heat, scene::world_time()).heat;
-  auto device = driver::Device::open(std::move(wire), std::move(protocol),
-                                     {.R_WB = file.R_WB,
-                                      .p_WB = file.p_WB,
-                                      .limits = limits,
-                                      .motion = scene::motion_settings(file, 1e9 / kPeriod_ns),
-                                      .heat = heat,
-                                      .velocity_corner_frequency = file.velocity_corner_frequency},
+  auto device = driver::Device::open(std::move(wire), std::move(protocol), settings,
                                      bench->clock_->now_ns());
   if (!device) return device.error();
   bench->device_ = std::move(device).value();

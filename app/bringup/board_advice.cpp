@@ -1,6 +1,6 @@
 #include "bringup/board_advice.h"
 
-#include "printed.h"
+#include <fmt/core.h>
 
 namespace thimble::app {
 namespace {
@@ -22,18 +22,17 @@ std::string unquoted(const std::string& text) {
 std::string what_it_may_be(const FoundArm& board) {
   const std::string product =
       board.product.empty() ? "no product string" : "\"" + board.product + "\"";
-  const std::string ids = scene::printed("%04x:%04x", board.vendor_id, board.product_id);
+  const std::string ids = fmt::format("{:04x}:{:04x}", board.vendor_id, board.product_id);
   if (board.board != BoardKind::kOther) {
     return "a board of unknown kind (" + ids + ", " + product +
            "): any program may run on it, and an arm could prove nothing before it is written to. "
            "It is used only by name.";
   }
   if (board.node.empty()) return "its reports cannot be seen without a driver.";
-  return scene::printed(
-      "a board of unknown kind (%s, %s): its reports have %d bytes in and %d out, as no "
-      "arm's do. It is never opened.",
-      ids.c_str(), product.c_str(), static_cast<int>(board.hid.in_bytes),
-      static_cast<int>(board.hid.out_bytes));
+  return fmt::format(
+      "a board of unknown kind ({}, {}): its reports have {} bytes in and {} out, as no arm's do. "
+      "It is never opened.",
+      ids, product, static_cast<int>(board.hid.in_bytes), static_cast<int>(board.hid.out_bytes));
 }
 
 std::string how_to_use(const FoundArm& board) {
@@ -56,8 +55,8 @@ std::string udev_line(const FoundArm& board) {
   const bool by_serial = board.name() == board.serial;
   const std::string which = by_serial ? "ATTRS{serial}==\"" + unquoted(board.serial) + "\""
                                       : "KERNELS==\"" + board.sysfs.filename().string() + "\"";
-  return scene::printed(
-             "SUBSYSTEM==\"%s\", ATTRS{idVendor}==\"%04x\", ATTRS{idProduct}==\"%04x\", ",
+  return fmt::format(
+             "SUBSYSTEM==\"{}\", ATTRS{{idVendor}}==\"{:04x}\", ATTRS{{idProduct}}==\"{:04x}\", ",
              tty ? "tty" : "hidraw", board.vendor_id, board.product_id) +
          which + ", TAG+=\"uaccess\", GROUP=\"plugdev\", MODE=\"0660\"" +
          (tty ? ", ENV{ID_MM_DEVICE_IGNORE}=\"1\"" : "");

@@ -10,8 +10,8 @@
 
 #include "bringup/board_advice.h"
 #include "bringup/doctor_timing.h"
+#include "node_lock.h"
 #include "thimble/driver/discovery.h"
-#include "thimble/driver/node_lock.h"
 
 namespace thimble::app {
 namespace {
@@ -235,6 +235,18 @@ Patient this_machine() {
     patient.in_plugdev = std::find(groups.begin(), groups.end(), plugdev->gr_gid) != groups.end();
   }
   return patient;
+}
+
+Finding examine_log(const fs::path& file) {
+  fs::path place = file;
+  std::error_code missing;
+  // The folders that lead there are made when they are needed.
+  while (!fs::exists(place, missing) && place.has_relative_path()) place = place.parent_path();
+  if (access(place.c_str(), W_OK) == 0) {
+    return {Health::kGood, "What happens is logged to " + file.string() + ".", {}};
+  }
+  return {Health::kAdvice, "What happens cannot be logged to " + file.string() + ".",
+          "Make " + place.string() + " writable, or name another file by --log"};
 }
 
 std::vector<Finding> examine(const Patient& patient) {

@@ -27,6 +27,10 @@ struct Patient {
   bool in_plugdev = false;           ///< This user is in the group plugdev.
 };
 
+/// Returns where the program logs to, and whether it may write there. Changes nothing.
+/// Real-time: never from the servo thread.
+Finding examine_log(const std::filesystem::path& file);
+
 /// Looks at this machine and user. Real-time: never from the servo thread.
 Patient this_machine();
 

@@ -1,11 +1,12 @@
 #include "bringup/feel_check.h"
 
+#include <fmt/core.h>
+
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 
 #include "bringup/wiring_guess.h"
 #include "thimble/scene/arm_simulation.h"
@@ -19,13 +20,6 @@ constexpr double kMove = 0.03;  // m, what the hand is asked for
 constexpr std::array<const char*, 3> kAxes = {"x (towards you)", "y (to your right)", "z (up)"};
 
 const BenchArm::Law kRest = [](const driver::DeviceState&) { return Eigen::Vector3d(0, 0, 0); };
-
-template <class... Numbers>
-std::string sentence(const char* format, Numbers... numbers) {
-  char text[200];
-  std::snprintf(text, sizeof text, format, numbers...);
-  return text;
-}
 
 class Check {
  public:
@@ -68,11 +62,11 @@ class Check {
     std::string dead;
     for (std::size_t i = 0; i < 3; ++i) {
       if (travel[i] < kTravelMin)
-        dead += sentence(" Encoder %d does not count.", static_cast<int>(i) + 1);
+        dead += fmt::format(" Encoder {} does not count.", static_cast<int>(i) + 1);
     }
     return note("encoders", dead.empty(),
-                sentence("The encoders travelled %d, %d and %d counts%s", travel[0], travel[1],
-                         travel[2], dead.empty() ? "." : "; at least 100 each were expected.") +
+                fmt::format("The encoders travelled {}, {} and {} counts{}", travel[0], travel[1],
+                            travel[2], dead.empty() ? "." : "; at least 100 each were expected.") +
                     dead);
   }
 
@@ -174,7 +168,8 @@ class Check {
   /// Answers false if the check was left; notes whether the movement was right.
   bool direction(int axis, bool& all_right) {
     const auto name = kAxes[static_cast<std::size_t>(axis)];
-    if (!prompt_(sentence("Move the grip about 3 cm along %s and back within two seconds.", name)))
+    if (!prompt_(
+            fmt::format("Move the grip about 3 cm along {} and back within two seconds.", name)))
       return false;
     const Eigen::Vector3d from = bench_.device().state().p_WT;
     const Eigen::Vector3d q_from = bench_.device().state().q;
@@ -190,10 +185,10 @@ class Check {
     moves_.col(axis) = q_farthest;
     const bool right = farthest[axis] > 0.01 && farthest[axis] > 0.7 * farthest.norm();
     all_right = all_right && right;
-    note(sentence("direction %c", "xyz"[axis]), right,
-         sentence("The tip went by (%.1f, %.1f, %.1f) mm when moved along %s%s", farthest.x() * 1e3,
-                  farthest.y() * 1e3, farthest.z() * 1e3, name,
-                  right ? "." : ": run `thimble calibrate`."));
+    note(fmt::format("direction {}", "xyz"[axis]), right,
+         fmt::format("The tip went by ({:.1f}, {:.1f}, {:.1f}) mm when moved along {}{}",
+                     farthest.x() * 1e3, farthest.y() * 1e3, farthest.z() * 1e3, name,
+                     right ? "." : ": run `thimble calibrate`."));
     return true;
   }
 
@@ -203,9 +198,9 @@ class Check {
   bool push(int axis, bool& all_right) {
     constexpr double kFar = 0.02;  // m
     const auto name = kAxes[static_cast<std::size_t>(axis)];
-    if (!prompt_(
-            sentence("Hold the grip loosely and still: it pulls and pushes with %.2f N along %s.",
-                     push_, name)))
+    if (!prompt_(fmt::format(
+            "Hold the grip loosely and still: it pulls and pushes with {:.2f} N along {}.", push_,
+            name)))
       return false;
     if (!bench_.device().activate() || !bench_.run(kSettle_s, kRest, stop_)) return false;
     const Eigen::Vector3d rest = bench_.device().state().p_WT;
@@ -225,10 +220,10 @@ class Check {
     bench_.device().deactivate();
     const bool right = moved[axis] > 0.0002 && moved[axis] > 0.5 * moved.norm();
     all_right = all_right && right;
-    note(sentence("force %c", "xyz"[axis]), right,
-         sentence("%.2f N along %s moved the tip by (%.2f, %.2f, %.2f) mm%s", push_, name,
-                  moved.x() * 1e3, moved.y() * 1e3, moved.z() * 1e3,
-                  right ? "." : ": a motor is wrong, or you held it fast."));
+    note(fmt::format("force {}", "xyz"[axis]), right,
+         fmt::format("{:.2f} N along {} moved the tip by ({:.2f}, {:.2f}, {:.2f}) mm{}", push_,
+                     name, moved.x() * 1e3, moved.y() * 1e3, moved.z() * 1e3,
+                     right ? "." : ": a motor is wrong, or you held it fast."));
     return true;
   }
 
@@ -262,8 +257,8 @@ class Check {
     const bool right = off_after > 0 && off_after < allowed;
     return note("watchdog", right,
                 off_after > 0
-                    ? sentence("The force fell to half %.0f ms after the last message%s",
-                               off_after * 1e3, right ? "." : ", later than the arm file says.")
+                    ? fmt::format("The force fell to half {:.0f} ms after the last message{}",
+                                  off_after * 1e3, right ? "." : ", later than the arm file says.")
                     : std::string("The motors did not go off. Switch the arm off at its switch."));
   }
 

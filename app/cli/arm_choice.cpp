@@ -43,7 +43,7 @@ driver::Result<ChosenArm> resolve(const ArmChoice& choice, bool for_calibration)
                       "which one is to be simulated: --arm NAME (thimble run --list).") +
           (left.empty() ? "" : " " + left)};
     }
-    auto file = scene::read_arm_file(choice.arm_file);
+    auto file = scene::load_arm(choice.arm_file);
     if (!file) return file.error();
     chosen.file = std::move(file).value();
     chosen.path = choice.arm_file;

@@ -1,3 +1,4 @@
+#include <CLI/CLI.hpp>
 #include <array>
 #include <cstdio>
 #include <memory>
@@ -9,6 +10,7 @@
 #include "cli/complain.h"
 #include "enter_key.h"
 #include "interrupt.h"
+#include "log/logger.h"
 #include "thimble/scene/arm_simulation.h"
 #include "thimble/scene/calibration.h"
 #include "thimble/scene/real_arm.h"
@@ -83,6 +85,9 @@ int calibrate(const ArmChoice& choice, bool dry_run) {
   if (auto saved = scene::save_calibration(chosen->name, *found); !saved) {
     return complain(saved.error(), kExitTrouble);
   }
+  scene::logger().info("{} is calibrated: home_counts {} {} {}, kept in {}.", chosen->name,
+                       found->home_counts[0], found->home_counts[1], found->home_counts[2],
+                       scene::calibration_file(chosen->name).string());
   std::printf("Kept in %s, with the arm file %s. Check it: thimble feel-check --device %s\n",
               scene::calibration_file(chosen->name).c_str(), found->arm_file.c_str(),
               chosen->name.c_str());

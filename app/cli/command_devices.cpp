@@ -1,11 +1,12 @@
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
 #include <string>
 
 #include "cli/commands.h"
 #include "cli/exit_code.h"
+#include "node_lock.h"
 #include "thimble/driver/discovery.h"
-#include "thimble/driver/node_lock.h"
 
 namespace thimble::app {
 namespace {

@@ -1,10 +1,13 @@
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "bringup/doctor.h"
 #include "cli/commands.h"
 #include "cli/exit_code.h"
+#include "log/logger.h"
 
 namespace thimble::app {
 namespace {
@@ -13,7 +16,9 @@ int show_findings(const std::string& root) {
   Patient patient = this_machine();
   patient.root = root;
   int problems = 0;
-  for (const Finding& finding : examine(patient)) {
+  std::vector<Finding> findings = examine(patient);
+  findings.push_back(examine_log(scene::default_log_file()));
+  for (const Finding& finding : findings) {
     const char* mark = "ok      ";
     if (finding.health == Health::kAdvice) mark = "advice  ";
     if (finding.health == Health::kProblem) {

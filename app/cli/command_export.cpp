@@ -1,11 +1,11 @@
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
 #include <string>
 
 #include "cli/commands.h"
 #include "cli/complain.h"
-#include "recording/read_recording.h"
-#include "recording/write_csv.h"
+#include "thimble/session/recording.h"
 
 namespace thimble::app {
 namespace {

@@ -1,3 +1,4 @@
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -8,6 +9,7 @@
 #include "cli/complain.h"
 #include "enter_key.h"
 #include "interrupt.h"
+#include "log/logger.h"
 #include "terms/feel_check_record.h"
 
 namespace thimble::app {
@@ -89,6 +91,10 @@ int check_arm(const ArmChoice& choice, double listen) {
   }
   if (stop.load()) return kExitInterrupted;
   const bool passed = all && results.size() == kFeelChecks;
+  scene::logger().info("The feel check of {} was {}.", chosen->name,
+                       passed ? "passed"
+                       : all  ? "left"
+                              : "failed");
   // A check that was left says nothing.
   if (chosen->real_arm && (passed || !all)) {
     if (const auto kept = keep_result(*chosen, choice.firmware, passed); !kept) {

@@ -1,10 +1,11 @@
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <string>
 #include <vector>
 
-#include "build_info.h"
 #include "cli/commands.h"
 #include "cli/exit_code.h"
+#include "thimble/scene/build_info.h"
 
 namespace thimble::app {
 namespace {
@@ -51,7 +52,9 @@ void print_manual(const CLI::App& program) {
   std::printf(".SH SYNOPSIS\n.B thimble\n.I COMMAND\n.RI [ OPTIONS ]\n");
   std::printf(".SH DESCRIPTION\n%s\n", roff(program.get_description()).c_str());
   std::printf("Scenes and arms that came with it lie in the folder share/thimble beside the\n");
-  std::printf("folder of the program.\n.SH COMMANDS\n");
+  std::printf("folder of the program.\n.SH OPTIONS\nOf the program and of every command:\n");
+  print_options(program);
+  std::printf(".SH COMMANDS\n");
   print_commands(program, "");
   std::printf(".SH NOTES\n.nf\n%s\n.fi\n", roff(program.get_footer()).c_str());
 }

@@ -1,3 +1,4 @@
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -43,7 +44,7 @@ void print(const render::MeshFindings& found) {
   if (found.touchable()) std::printf("  volume      %.4g\n", found.volume);
 }
 
-// Tells whether a mesh can be touched, and if not, why.
+// Returns whether a mesh can be touched, and if not, why.
 int tell_verdict(const render::TriangleMesh& mesh, const render::MeshFindings& found) {
   if (found.touchable()) {
     std::printf("The mesh is closed and wound alike: it can be touched.\n");

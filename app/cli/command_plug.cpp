@@ -1,6 +1,7 @@
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
+#include <CLI/CLI.hpp>
 
 #include <array>
 #include <atomic>
@@ -13,14 +14,15 @@
 #include <thread>
 #include <utility>
 
+#include "arms/falcon/falcon_boot.h"
 #include "cli/commands.h"
 #include "cli/complain.h"
 #include "interrupt.h"
+#include "log/logger.h"
 #include "thimble/device_sim/usb/arm_shelf.h"
 #include "thimble/device_sim/usb/usb_fault.h"
 #include "thimble/device_sim/usb/usbip_server.h"
 #include "thimble/device_sim/usb/vhci.h"
-#include "thimble/driver/arms/falcon/falcon_boot.h"
 
 namespace thimble::app {
 namespace {
@@ -60,7 +62,7 @@ class KernelAttachment {
       if (attached) {
         std::printf("Attached to this kernel, port %d of its virtual USB host.\n", *attached);
       } else {
-        std::fprintf(stderr, "thimble: %s\n", attached.error().message.c_str());
+        scene::logger().error("{}", attached.error().message);
         failed_.store(true);
       }
       std::fflush(stdout);
@@ -86,7 +88,7 @@ bool obey(usb::FaultyDevice& device, const std::string& line) {
   }
   const auto order = usb::parse_fault(line);
   if (!order) {
-    std::fprintf(stderr, "thimble: %s\n", order.error().message.c_str());
+    scene::logger().error("{}", order.error().message);
     return false;
   }
   device.order(*order);
@@ -159,7 +161,7 @@ class TruthTrace {
     motors_on_ = truth.motors_on;
     std::fprintf(file_, "%lld %llu %lld %d %d %d %.4f %.4f %.4f %llu %d %d %d %.6f %.6f %.6f ",
                  static_cast<long long>(frame), static_cast<unsigned long long>(truth.reports),
-                 static_cast<long long>(truth.report_ns / usb::UsbipSession::kFrame_ns),
+                 static_cast<long long>(truth.report_ns / usb::UsbDevice::kFrame_ns),
                  truth.counts[0], truth.counts[1], truth.counts[2], truth.exact_counts[0],
                  truth.exact_counts[1], truth.exact_counts[2],
                  static_cast<unsigned long long>(truth.messages), truth.motor_values[0],
@@ -183,7 +185,7 @@ usb::HandMotion motion_of(const std::string& name) {
 bool obey_file(usb::FaultyDevice& device, const std::string& path) {
   std::ifstream file(path);
   if (!file) {
-    std::fprintf(stderr, "thimble: cannot read the fault script %s.\n", path.c_str());
+    scene::logger().error("cannot read the fault script {}.", path);
     return false;
   }
   for (std::string line; std::getline(file, line);) {
@@ -225,14 +227,13 @@ int plug(const PlugOptions& options) {
   if (!options.faults.empty() && !obey_file(device, options.faults)) return kExitBadInput;
   ControlPipeFile control;
   if (!options.control.empty() && !control.open(options.control)) {
-    std::fprintf(stderr, "thimble: cannot make the control pipe %s; does it exist already?\n",
-                 options.control.c_str());
-    return kExitBadInput;
+    return complain(
+        {"cannot make the control pipe " + options.control + "; does it exist already?"},
+        kExitBadInput);
   }
   std::optional<TruthTrace> trace;
   if (!options.trace.empty() && !trace.emplace(options.trace).open()) {
-    std::fprintf(stderr, "thimble: cannot write %s.\n", options.trace.c_str());
-    return kExitBadInput;
+    return complain({"cannot write " + options.trace + "."}, kExitBadInput);
   }
   auto server = usb::UsbipServer::open(device, {.address = options.address, .port = options.port});
   if (!server) {

@@ -1,11 +1,10 @@
-#include <spdlog/spdlog.h>
+#include <fmt/core.h>
 #include <unistd.h>
+#include <CLI/CLI.hpp>
 
-#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -15,25 +14,25 @@
 #include "cli/commands.h"
 #include "cli/complain.h"
 #include "cli/file_options.h"
-#include "enter_key.h"
 #include "interrupt.h"
-#include "recording/write_black_box.h"
+#include "log/logger.h"
+#include "open_arm.h"
+#include "print.h"
 #include "replug_watch.h"
-#include "report/pictures.h"
 #include "report/report.h"
-#include "report/session_report.h"
-#include "servo_thread.h"
+#include "report/run_files.h"
+#include "run_arm.h"
+#include "run_attendance.h"
+#include "setup.h"
 #include "share/request_desk.h"
-#include "share/viewer_process.h"
 #include "stability/tuning.h"
-#include "thimble/driver/heat_guard.h"
+#include "terminal.h"
+#include "thimble/driver/discovery.h"
 #include "thimble/render/mesh/save_mesh.h"
-#include "thimble/scene/meshes.h"
 #include "thimble/scene/quality.h"
-#include "thimble/scene/real_arm.h"
 #include "thimble/scene/shipped_files.h"
+#include "thimble/session/servo_thread.h"
 #include "thimble/session/session.h"
-#include "thimble/session/start_pose.h"
 
 namespace thimble::app {
 namespace {
@@ -62,297 +61,179 @@ struct RunOptions {
   bool led() const { return hand == "mouse"; }
 };
 
-/// Writes the seconds around a fault, if one came, where a person finds them.
-void keep_black_box(session::Session& session) {
-  const auto ticks = session.black_box().take();
-  if (ticks.empty()) return;
-  const auto written = session::write_black_box(ticks, session.recording_info());
-  if (written) {
-    std::fprintf(stderr, "thimble: the last seconds before the fault are in %s\n",
-                 written->c_str());
-  } else {
-    complain(written.error(), kExitTrouble);
-  }
-}
-
-/// Tells a person on a terminal how far the run is, until it ends.
-/// Watches over a real arm meanwhile, and hears what viewers ask.
-void show_progress(session::Session& session, const session::ServoThread& servo,
-                   session::ReplugWatch* watch, session::RequestDesk* desk) {
-  const bool on_terminal = isatty(STDERR_FILENO) != 0;
-  bool warned_of_heat = false;
-  const double total = static_cast<double>(session.ticks_planned()) *
-                       static_cast<double>(session.period_ns()) * 1e-9;
-  while (!servo.ended()) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(100));
-    if (watch != nullptr) watch->step();
-    if (desk != nullptr) desk->step();
-    if (session.black_box().full()) keep_black_box(session);
-    driver::TickRecord record;
-    if (!session.snapshot().load(record)) continue;
-    const double heat = *std::max_element(record.heat.begin(), record.heat.end());
-    if (heat >= driver::HeatGuard::kWarning && !warned_of_heat) {
-      warned_of_heat = true;
-      std::fprintf(
-          stderr,
-          "thimble: A motor is at %.0f %% of the heat it bears; the force is lowered until "
-          "it cools. Press less hard or rest.\n",
-          100 * heat);
-    }
-    if (!on_terminal) continue;
-    const double force = Eigen::Map<const Eigen::Vector3d>(record.f_sent_W.data()).norm();
-    char of_total[32] = "";
-    if (total > 0) std::snprintf(of_total, sizeof of_total, "of %.1f ", total);
-    std::fprintf(stderr, "\r%6.1f %ss   %-8s  force %5.2f N   depth %5.2f mm ",
-                 static_cast<double>(record.time_ns) * 1e-9, of_total,
-                 record.in_contact ? "touching" : "free", force, record.depth * 1e3);
-  }
-  if (on_terminal) std::fprintf(stderr, "\r%*s\r", 70, "");
-}
-
 /// Prints sentences, a line each.
 void tell(const std::vector<std::string>& sentences) {
-  for (const std::string& sentence : sentences) std::printf("%s\n", sentence.c_str());
+  for (const std::string& sentence : sentences) session::print(stdout, "{}\n", sentence);
   std::fflush(stdout);  // before a person is asked something
 }
 
-/// Lets nobody be surprised by a force: asks before a real arm is opened.
-bool may_begin(const driver::FoundArm& arm, bool at_home, bool yes, const std::atomic<bool>& stop) {
-  std::fprintf(stderr, "%s %s is about to get forces. Keep clear of it, hold its grip%s, keep its ",
-               arm.arm.c_str(), arm.name().c_str(), at_home ? " in the home pose" : "");
-  std::fprintf(stderr, "switch at hand.\n");
-  if (yes) return true;
-  if (isatty(STDIN_FILENO) == 0) {
-    std::fprintf(stderr, "thimble: Nobody is at the terminal to agree; say so with --yes.\n");
-    return false;
+/// Fails if the options do not go together.
+driver::Result<void> check(const RunOptions& options) {
+  if (!options.led()) return {};
+  if (options.device != "sim") {
+    return driver::Error{"--hand mouse leads the simulated arm's hand; a real arm has yours."};
   }
-  std::fprintf(stderr, "Press Enter to begin, Ctrl-C to leave. ");
-  while (!stop.load()) {
-    const session::EnterKey key = session::look_for_enter();
-    if (key != session::EnterKey::kNothing) return key == session::EnterKey::kPressed;
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  }
-  return false;
-}
-
-/// Opens the arm of a session on which all else is ready; a real one may have forces only once its
-/// tip is where it must be. Returns false if `stop` was set before.
-driver::Result<bool> open_arm(session::Session& session, const RunOptions& options, bool real,
-                              const std::atomic<bool>& stop) {
-  if (auto opened = session.open_arm(); !opened) return opened.error();
-  if (!real) return true;
-  auto placed =
-      session::wait_for_start_pose(session.device(), session.clock(), session.start_pose(),
-                                   !options.homed, session::user_terminal(), stop);
-  if (!placed || !*placed) return placed;
-  if (auto activated = session.activate(); !activated) return activated.error();
-  return true;
-}
-
-/// Finds which object's mesh is to be saved: -1 for all. Nothing if the scene has no such object.
-std::optional<int> object_to_save(const scene::Scene& scene, const std::string& name) {
-  if (name.empty()) return -1;
-  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
-    if (scene.objects[i].name == name) return static_cast<int>(i);
+  if (options.clock == "virtual" && !options.duration) {
+    return driver::Error{
+        "--hand mouse without an end needs real time: leave --clock away, or give --duration."};
   }
   return {};
 }
 
-/// Says whether the run opens a viewer: if it is asked to, and where a person watches it in real
-/// time.
-bool wants_viewer(const RunOptions& options, bool real_time) {
-  if (options.no_view) return false;
-  if (options.view || options.led()) return session::has_display();
-  return real_time && session::has_display() && isatty(STDERR_FILENO) != 0;
-}
-
-/// Opens the viewer if one is wanted, and serves all that come.
-std::unique_ptr<session::RequestDesk> open_desk(session::Session& session,
-                                                const RunOptions& options, bool real_time) {
-  if (session.shared() == nullptr) return nullptr;
-  std::unique_ptr<session::ViewerProcess> viewer;
-  if (wants_viewer(options, real_time)) {
-    auto started = session::ViewerProcess::start(session.shared()->name());
-    if (started) {
-      viewer = std::move(started).value();
-    } else {
-      complain(started.error(), kExitTrouble);
-    }
-  } else if (!options.no_view && (options.view || options.led())) {
-    std::fprintf(stderr, "No screen (DISPLAY, WAYLAND_DISPLAY): watch by `thimble view %s`.\n",
-                 session.shared()->name().c_str());
-  }
-  return std::make_unique<session::RequestDesk>(session, std::move(viewer), options.led());
-}
-
-int run_scene(const RunOptions& options) {
-  if (options.led() && options.device != "sim") {
-    return complain({"--hand mouse leads the simulated arm's hand; a real arm has yours."},
-                    kExitBadInput);
-  }
-  if (options.led() && options.clock == "virtual" && !options.duration) {
-    return complain({"--hand mouse without an end needs real time: leave --clock away, or give "
-                     "--duration."},
-                    kExitBadInput);
-  }
-  std::optional<driver::FoundArm> real_arm;
-  if (options.device != "sim") {
-    const auto plugged_in = driver::find_arms();
-    auto chosen = scene::choose_arm(plugged_in ? *plugged_in : std::vector<driver::FoundArm>(),
-                                    options.device);
-    if (!chosen) return complain(chosen.error(), kExitNoDevice);
-    real_arm = *chosen;
-    if (!real_arm) {
-      std::printf("No arm is plugged in: the simulated one is used.\n");
-      const std::string left = plugged_in ? scene::boards_left_out(*plugged_in) : "";
-      if (!left.empty()) std::printf("%s\n", left.c_str());
-    }
-  }
-  std::optional<scene::RealArmTerms> terms;
-  if (real_arm) {
-    auto found = scene::terms_for(*real_arm, {.arm_file = options.arm_file,
-                                              .firmware = options.firmware,
-                                              .unchecked = options.unchecked});
-    if (!found) return complain(found.error(), kExitNoDevice);
-    terms = std::move(found).value();
-    tell(terms->told);
-  }
-  session::SessionOptions session_options;
+/// Returns what the session is asked for.
+session::SessionOptions session_options(const RunOptions& options, const session::RunArm& arm) {
   // A person who watches or leads does so in real time, unless he says otherwise.
   const bool for_a_person = options.view || options.led();
   const bool wall = options.clock.empty() ? for_a_person : options.clock == "wall";
-  session_options.clock = wall ? session::ClockKind::kWall : session::ClockKind::kVirtual;
-  session_options.hand_by_mouse = options.led();
-  session_options.duration = options.duration;
-  session_options.seed = options.seed;
-  session_options.mesh_folder = scene::mesh_folder();
-  session_options.arm_file = options.arm_file;
-  session_options.real_arm = real_arm;
-  session_options.terms = terms;
-  session_options.firmware = options.firmware;
-  session_options.record = options.record;
-  session_options.adjust = [&](scene::Scene& scene) {
+  const bool real_time = wall || arm.real;
+  session::SessionOptions asked;
+  asked.clock = real_time ? session::ClockKind::kWall : session::ClockKind::kVirtual;
+  asked.duration = options.duration;
+  asked.seed = options.seed;
+  asked.arm_file = options.arm_file;
+  asked.real_arm = arm.real;
+  asked.terms = arm.terms;
+  asked.firmware = options.firmware;
+  asked.record = options.record;
+  asked.log = true;
+  asked.share_out = !options.name.empty() || for_a_person || (real_time && !options.no_view);
+  asked.share_if_possible = options.name.empty() && !for_a_person;
+  asked.share_name = options.name;
+  asked.hand_by_mouse = options.led();
+  asked.homed = options.homed;
+  asked.adjust = [&options](scene::Scene& scene) {
     for (const std::string& choice :
          scene::apply_quality(scene::quality_named(options.quality), scene)) {
-      std::printf("%s: %s\n", options.quality.c_str(), choice.c_str());
+      session::print(stdout, "{}: {}\n", options.quality, choice);
     }
   };
-  if (real_arm) session_options.clock = session::ClockKind::kWall;
-  const bool real_time = session_options.clock == session::ClockKind::kWall;
-  session_options.share_out =
-      !options.name.empty() || options.view || options.led() || (real_time && !options.no_view);
-  session_options.share_name = options.name;
-  session_options.share_if_possible = options.name.empty() && !for_a_person;
-  session_options.homed = options.homed;
+  return asked;
+}
+
+session::ViewerWish viewer_wish(const RunOptions& options) {
+  const bool asked = options.view || options.led();
+  if (asked && !has_window()) {
+    scene::terminal().info(
+        "No window in this build (app/setup.sh release thimble makes one); `thimble view --text` "
+        "tells of "
+        "the run.");
+  }
+  if (options.no_view || !has_window()) return session::ViewerWish::kNever;
+  return asked ? session::ViewerWish::kAsked : session::ViewerWish::kIfWatched;
+}
+
+/// Ends the recording and tells where it is; who asked for one shall hear of what it lacks.
+ExitCode end_recording(session::Session& session) {
+  const auto recorded = session.end_recording();
+  if (!recorded) return complain(recorded.error(), kExitTrouble);
+  if (*recorded) session::print(stdout, "Recording: {}\n", (*recorded)->string());
+  std::fflush(stdout);
+  return kExitDone;
+}
+
+/// Writes the files that were asked for of a run that is over.
+driver::Result<void> write_files(const session::Session& session,
+                                 const session::RunFigures& figures, const RunOptions& options,
+                                 int object) {
+  if (!options.report.empty()) {
+    if (auto written = write_run_files(session, figures, options.report); !written) return written;
+    session::print(stdout, "Report and pictures: {}\n", options.report);
+  }
+  if (!options.save_mesh.empty()) {
+    if (auto saved = render::save_mesh(session.mesh_now(object), options.save_mesh); !saved) {
+      return saved;
+    }
+    session::print(stdout, "Mesh as it is now: {}\n", options.save_mesh);
+  }
+  return {};
+}
+
+/// Opens the arm of a session that is ready and runs it to its end. `guard` stands while an arm may
+/// hold a force or a recording is not closed.
+ExitCode run_session(session::Session& session, session::ServoThread& servo,
+                     session::RequestDesk* desk, std::optional<scene::LeavingGuard>& guard,
+                     const std::atomic<bool>& stop) {
+  guard.emplace();
+  const bool real = session.setup().real_arm().has_value();
+  const auto open = session::open_arm(session, session::user_terminal(), stop);
+  if (!open) {
+    const ExitCode code = complain(open.error(), real ? kExitNoDevice : kExitBadInput);
+    return stop.load() ? kExitInterrupted : code;
+  }
+  if (!*open) return kExitInterrupted;
+  std::optional<session::ReplugWatch> watch;
+  if (real) watch.emplace(session::replug_watch_of(session));
+
+  servo.begin(session, stop);
+  session::RunAttendance attendance(session, watch ? &*watch : nullptr, desk,
+                                    isatty(STDERR_FILENO) != 0);
+  while (!servo.ended()) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    attendance.step();
+  }
+  attendance.clear();
+  servo.join();
+  session::keep_black_box(session);
+  return kExitDone;
+}
+
+int run_scene(const RunOptions& options) {
+  if (const auto fits = check(options); !fits) return complain(fits.error(), kExitBadInput);
+  const auto arm = session::choose_run_arm(
+      options.device,
+      {.arm_file = options.arm_file, .firmware = options.firmware, .unchecked = options.unchecked});
+  if (!arm) return complain(arm.error(), kExitNoDevice);
+  tell(arm->told);
 
   // All that takes time comes before the arm is opened: an open arm is served in every millisecond.
   const std::atomic<bool>& stop = scene::catch_interrupts();
-  if (real_arm) scene::leave_rather_than_stop();
-  auto prepared = session::Session::prepare(options.scene, session_options);
+  if (arm->real) scene::leave_rather_than_stop();
+  auto prepared = session::Session::prepare(options.scene, session_options(options, *arm));
   if (!prepared) return complain(prepared.error(), kExitBadInput);
   session::Session& session = **prepared;
-  tell(session.told());
   // Whoever leaves before the run leaves a recording that is whole, with no tick in it.
   const auto leave = [&session](int code) {
-    if (const auto ended = session.recording().stop(); !ended)
-      complain(ended.error(), kExitTrouble);
+    if (const auto ended = session.end_recording(); !ended) complain(ended.error(), kExitTrouble);
     return code;
   };
-  for (const std::string& note : session.mesh_notes()) {
-    std::fprintf(stderr, "thimble: %s\n", note.c_str());
-  }
+  tell(session.told());
   for (const std::string& warning : stability_warnings(session.scene())) {
-    std::fprintf(stderr, "thimble: %s See thimble tune.\n", warning.c_str());
+    scene::logger().warn("{} See thimble tune.", warning);
   }
-  const auto saved = object_to_save(session.scene(), options.save_object);
-  if (!saved) {
+  const auto object = options.save_object.empty() ? std::optional<int>(-1)
+                                                  : session.find_object(options.save_object);
+  if (!object) {
     return leave(
         complain({"--save-object: the scene has no object \"" + options.save_object + "\"."},
                  kExitBadInput));
   }
-  const auto desk = open_desk(session, options, real_time);
-  session::ServoThread servo(real_time);
-  if (real_arm) {
+  const auto desk = session::open_desk(session, viewer_wish(options));
+  session::ServoThread servo(session.real_time());
+  if (arm->real) {
     if (auto granted = session::check_real_time(servo.grant(), options.no_real_time); !granted) {
       return leave(complain(granted.error(), kExitBadInput));
     }
   }
-  if (!servo.grant().advice.empty()) spdlog::warn("{}", servo.grant().advice);
+  if (!servo.grant().advice.empty()) scene::logger().warn("{}", servo.grant().advice);
   if (stop.load()) return leave(kExitInterrupted);
-  if (real_arm) {
-    const bool at_home = !options.homed && session.start_pose().has_home();
-    if (!may_begin(*real_arm, at_home, options.yes, stop)) {
-      return leave(stop.load() ? kExitInterrupted : kExitBadInput);
-    }
+  if (!session::agree_to_forces(session, options.yes, session::user_terminal(), stop)) {
+    return leave(stop.load() ? kExitInterrupted : kExitBadInput);
   }
-  auto guard = std::make_optional<scene::LeavingGuard>();
-  const auto open = open_arm(session, options, real_arm.has_value(), stop);
-  if (!open) {
-    const int code = complain(open.error(), real_arm ? kExitNoDevice : kExitBadInput);
-    return leave(stop.load() ? kExitInterrupted : code);
-  }
-  if (!*open) return leave(kExitInterrupted);
-  std::optional<session::ReplugWatch> watch;
-  if (real_arm) watch.emplace(session::replug_watch_of(session, *real_arm, options.firmware));
-
-  servo.begin(session, stop);
-  show_progress(session, servo, watch ? &*watch : nullptr, desk.get());
-  const driver::ServoEnd end = servo.join();
-  keep_black_box(session);
-
-  // The touch went on, whatever became of the recording; who asked for one shall hear of it.
-  int exit_code_when_done = kExitDone;
-  if (session::Recorder* recorder = session.recording().recorder()) {
-    const std::string path = recorder->path();
-    if (const auto finished = session.recording().stop(); !finished) {
-      exit_code_when_done = complain(finished.error(), kExitTrouble);
-    } else {
-      std::printf("Recording: %s\n", path.c_str());
-    }
-  }
-  std::fflush(stdout);
+  std::optional<scene::LeavingGuard> guard;
+  const ExitCode ran = run_session(session, servo, desk.get(), guard, stop);
+  if (ran != kExitDone) return leave(ran);
+  // The touch went on, whatever became of the recording.
+  const ExitCode recorded = end_recording(session);
   // Zero force is out and the recording closed; who is impatient may kill what follows. Not so
   // where the arm took no zero.
   if (session.device().zero_assured()) guard.reset();
-  const RunReport report = report_of(session, end, servo.grant());
-  std::printf("%s", summary(report).c_str());
-  if (!options.report.empty()) {
-    const std::filesystem::path folder = options.report;
-    if (const auto written = write_report(report, folder); !written)
-      return complain(written.error(), kExitTrouble);
-    const PictureInfo info{.title = report.scene + ", " + report.arm,
-                           .virtual_time = report.virtual_time,
-                           .period = 1 / report.rate_asked,
-                           .period_times = &report.statistics.period(),
-                           .work_times = &report.statistics.work()};
-    const auto drawn = draw_pictures(session.trace().rows(), session.mesh_W(), info, folder);
-    if (!drawn) {
-      return complain(drawn.error(), kExitTrouble);
-    }
-    if (session.dents() != nullptr && session.dents()->deepest().triangle_count > 0) {
-      render::TriangleMesh bent = session.bent_mesh_W();
-      for (Eigen::Vector3d& vertex : bent.vertices) vertex *= 1e3;
-      const auto dent =
-          draw_mesh(bent, folder / "dent.png", report.scene + ": the deepest dent", "mm");
-      if (!dent) return complain(dent.error(), kExitTrouble);
-    }
-    std::printf("Report and pictures: %s\n", folder.c_str());
+  const session::RunFigures figures = session.figures(servo.grant());
+  session::print(stdout, "{}", summary(figures));
+  if (const auto written = write_files(session, figures, options, *object); !written) {
+    return complain(written.error(), kExitTrouble);
   }
-  if (!options.save_mesh.empty()) {
-    const auto written = render::save_mesh(session.mesh_now(*saved), options.save_mesh);
-    if (!written) return complain(written.error(), kExitTrouble);
-    std::printf("Mesh as it is now: %s\n", options.save_mesh.c_str());
-  }
-  switch (end) {
-    case driver::ServoEnd::kDone:
-      // A loop with a real arm outlives its faults.
-      return report.fault == driver::Fault::kNone ? exit_code_when_done : kExitFault;
-    case driver::ServoEnd::kStopped:
-      return desk && desk->ended() ? exit_code_when_done : kExitInterrupted;
-    case driver::ServoEnd::kFault:
-      return kExitFault;
-  }
-  return kExitTrouble;
+  const ExitCode ended = exit_code_of(figures.end, figures.fault, desk && desk->ended());
+  return ended == kExitDone ? recorded : ended;
 }
 
 std::string first_sentence(const std::string& text) {
@@ -363,12 +244,13 @@ std::string first_sentence(const std::string& text) {
 /// Prints what is known by name, and ends the program: there is nothing to run.
 void list_shipped() {
   const auto print = [](const char* title, const std::vector<scene::ShippedFile>& files) {
-    std::printf("%s:\n", title);
+    session::print(stdout, "{}:\n", title);
     for (const scene::ShippedFile& file : files) {
-      std::printf("  %-18s %s\n  %-18s   %s\n", file.name.c_str(), file.path.c_str(), "",
-                  first_sentence(scene::description_of(file.path)).c_str());
+      session::print(stdout, "  {:<18} {}\n  {:<18}   {}\n", file.name, file.path.string(), "",
+                     first_sentence(scene::description_of(file.path)));
     }
-    if (files.empty()) std::printf("  none is known by name here; give the path of a file\n");
+    if (files.empty())
+      session::print(stdout, "  none is known by name here; give the path of a file\n");
   };
   print("Scenes", scene::shipped_scenes());
   print("Arms", scene::shipped_arms());

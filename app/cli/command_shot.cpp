@@ -1,3 +1,4 @@
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -7,7 +8,8 @@
 #include "cli/commands.h"
 #include "cli/complain.h"
 #include "cli/file_options.h"
-#include "thimble/scene/meshes.h"
+#include "thimble/scene/shipped_files.h"
+#include "view/gl/animated_picture_file.h"
 #include "view/gl/offscreen_context.h"
 #include "view/gl/picture_file.h"
 #include "view/shot.h"
@@ -94,7 +96,9 @@ int take_shot(const ShotOptions& options) {
   if (!played) return complain(played.error(), kExitBadInput);
   const auto context = view::OffscreenContext::open();
   if (!context) return complain(context.error(), kExitTrouble);
-  view::ShotPainter painter((*played)->drawn(), choice);
+  auto programs = view::ScenePrograms::make();
+  if (!programs) return complain(programs.error(), kExitTrouble);
+  view::ShotPainter painter((*played)->drawn(), choice, std::move(programs).value());
   std::vector<view::Picture> pictures;
   (*played)->play(times, [&](view::DrawnMoment& moment, const view::Plots& plots) {
     if (pictures.empty()) {

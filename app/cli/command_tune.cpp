@@ -11,7 +11,7 @@
 #include "cli/file_options.h"
 #include "stability/tuning.h"
 #include "thimble/driver/clock.h"
-#include "thimble/scene/meshes.h"
+#include "thimble/scene/shipped_files.h"
 
 namespace thimble::app {
 namespace {
@@ -43,7 +43,7 @@ double measured_spread(double rate, double duration) {
 }
 
 int tune_scene(const TuneCommand& command) {
-  const auto scene = scene::read_scene(command.scene, scene::mesh_folder(), command.arm_file);
+  const auto scene = scene::load_scene(command.scene, {.arm = command.arm_file});
   if (!scene) return complain(scene.error(), kExitBadInput);
   if (!scene->arm.can_simulate) {
     return complain({"The arm file has no section simulation: mass, friction and hand are not "

@@ -1,7 +1,6 @@
+#include <CLI/CLI.hpp>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <memory>
 #include <string>
 #include <thread>
@@ -10,6 +9,7 @@
 #include "cli/commands.h"
 #include "cli/complain.h"
 #include "interrupt.h"
+#include "share/knob_order.h"
 #include "share/run_attachment.h"
 #include "share/shared_memory.h"
 
@@ -53,34 +53,12 @@ int list_runs() {
   return kExitDone;
 }
 
-/// Turns the knob of an order "NAME=VALUE"; the error names the knobs that there are.
-driver::Result<void> turn_knob(session::SharedReader& reader, const std::string& order) {
-  const std::size_t equals = order.rfind('=');
-  const std::string name = order.substr(0, equals);
-  char* end = nullptr;
-  const char* text = equals == std::string::npos ? "" : order.c_str() + equals + 1;
-  const double value = std::strtod(text, &end);
-  if (end == text || *end != 0 || !std::isfinite(value)) {
-    return driver::Error{"--turn: expected NAME=VALUE, found \"" + order + "\"."};
-  }
-  std::string known;
-  for (std::size_t i = 0; i < reader.scene().knobs.size(); ++i) {
-    if (reader.scene().knobs[i].name == name) {
-      reader.turn_knob(i, value);
-      return {};
-    }
-    known += "\n    " + reader.scene().knobs[i].name;
-  }
-  return driver::Error{"--turn: the run has no knob \"" + name + "\"" +
-                       (known.empty() ? "." : "; it has" + known)};
-}
-
 int ask(const ViewOptions& options) {
   auto attached = session::SharedReader::attach(options.run);
   if (!attached) return complain(attached.error(), kExitBadInput);
   session::SharedReader& reader = **attached;
   for (const std::string& order : options.turn) {
-    if (auto turned = turn_knob(reader, order); !turned) {
+    if (auto turned = session::turn_knob(reader, order); !turned) {
       return complain(turned.error(), kExitBadInput);
     }
   }

@@ -1,3 +1,4 @@
+#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "cli/commands.h"
@@ -18,6 +19,10 @@ void add_window_command(CLI::App& app, int& exit_code) {
           ->check(CLI::Range(0.1, 86400.0));
   command->add_option("--picture", choice->last_picture, "PNG of the window to write then")
       ->needs(seconds);
+}
+
+bool has_window() {
+  return true;
 }
 
 }  // namespace thimble::app

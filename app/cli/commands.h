@@ -1,7 +1,12 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
+#include <string>
+
+// The argument library, which takes seconds to read.
+namespace CLI {
+class App;
+}
 
 namespace thimble::session {
 class RunAttachment;
@@ -23,6 +28,8 @@ void add_shot_command(CLI::App& app, int& exit_code);
 void add_view_command(CLI::App& app, int& exit_code, const ShowWindow& show_window);
 /// `thimble view RUN` with the window of this program.
 void add_window_command(CLI::App& app, int& exit_code);
+/// Returns whether this program has a window: what app/demo.sh builds has none.
+bool has_window();
 /// `thimble devices`: lists the arms.
 void add_devices_command(CLI::App& app, int& exit_code);
 /// `thimble calibrate`: finds an arm's home pose and the signs of its encoders.
@@ -61,5 +68,9 @@ void add_bench_command(CLI::App& app, int& exit_code);
 void add_cost_probe_command(CLI::App& app, int& exit_code);
 /// `thimble mesh generate OUT`: writes a page file of any number of triangles.
 void add_mesh_generate_command(CLI::App& mesh_command, int& exit_code);
+
+/// A command that is not in this program: it stays in the help, and says how to build the whole.
+void add_absent_command(CLI::App& app, int& exit_code, const std::string& name,
+                        const std::string& about);
 
 }  // namespace thimble::app

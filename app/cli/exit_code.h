@@ -1,5 +1,8 @@
 #pragma once
 
+#include "thimble/driver/fault.h"
+#include "thimble/driver/servo_loop.h"
+
 namespace thimble::app {
 
 /// Tells a script how the program ended; `thimble --help` lists them.
@@ -11,5 +14,22 @@ enum ExitCode : int {
   kExitFault = 4,         ///< The force went off with a fault while running.
   kExitInterrupted = 130  ///< Ended early by Ctrl-C or SIGTERM, with zero force.
 };
+
+/// Returns how a run ends the program that did all it was asked to. `end`: why its loop ended;
+/// `fault`: in which the device was left; `by_viewer`: a viewer asked it to end, which is no
+/// interruption.
+constexpr ExitCode exit_code_of(driver::ServoEnd end, driver::Fault fault,
+                                bool by_viewer) noexcept {
+  switch (end) {
+    case driver::ServoEnd::kDone:
+      // A loop with a real arm outlives its faults.
+      return fault == driver::Fault::kNone ? kExitDone : kExitFault;
+    case driver::ServoEnd::kStopped:
+      return by_viewer ? kExitDone : kExitInterrupted;
+    case driver::ServoEnd::kFault:
+      return kExitFault;
+  }
+  return kExitTrouble;
+}
 
 }  // namespace thimble::app

@@ -1,12 +1,13 @@
 #include <CLI/CLI.hpp>
-#include <cstdio>
 #include <exception>
 #include <string>
 
-#include "build_info.h"
 #include "cli/commands.h"
 #include "cli/exit_code.h"
+#include "cli/log_options.h"
 #include "interrupt.h"
+#include "log/logger.h"
+#include "thimble/scene/build_info.h"
 
 namespace {
 
@@ -40,6 +41,9 @@ int run(int argc, char** argv) {
   thimble::app::add_cost_probe_command(app, exit_code);
   thimble::app::add_plug_command(app, exit_code);
   thimble::app::add_manual_command(app, exit_code);
+  std::string command_line;
+  for (int i = 1; i < argc; ++i) command_line.append(i == 1 ? "" : " ").append(argv[i]);
+  thimble::app::add_log_options(app, command_line);
   for (CLI::App* command : app.get_subcommands({})) {
     command->set_version_flag("--version", app.version());
   }
@@ -60,9 +64,9 @@ int main(int argc, char** argv) {
   try {
     return run(argc, argv);
   } catch (const std::exception& trouble) {
-    std::fprintf(stderr, "thimble: unexpected trouble: %s\n", trouble.what());
+    thimble::scene::logger().critical("unexpected trouble: {}", trouble.what());
   } catch (...) {
-    std::fprintf(stderr, "thimble: unexpected trouble.\n");
+    thimble::scene::logger().critical("unexpected trouble.");
   }
   return thimble::app::kExitTrouble;
 }

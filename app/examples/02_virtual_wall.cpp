@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "desk_arm.h"
+#include "thimble/scene/simulated_device.h"
 
 using thimble::driver::DeviceState;
 using thimble::driver::ForceCommand;
@@ -10,8 +10,14 @@ using thimble::driver::TickRecord;
 
 int main() {
   // The hand presses down through the wall, which stands at z = 0, to 5 mm below it.
-  DeskArm desk({{0.0, {0, 0, 0.02}}, {0.5, {0, 0, -0.005}}, {1.0, {0, 0, -0.005}}});
-  if (auto active = desk.device().activate(); !active) {
+  auto opened = thimble::scene::SimulatedDevice::open(
+      "vintage_phantom", {{0.0, {0, 0, 0.02}}, {0.5, {0, 0, -0.005}}, {1.0, {0, 0, -0.005}}});
+  if (!opened) {
+    std::fprintf(stderr, "%s\n", opened.error().message.c_str());
+    return 1;
+  }
+  thimble::scene::SimulatedDevice& arm = **opened;
+  if (auto active = arm.device().activate(); !active) {
     std::fprintf(stderr, "%s\n", active.error().message.c_str());
     return 1;
   }
@@ -34,7 +40,7 @@ int main() {
     force = tick.f_sent_W[2];
     depth = tick.depth;
   };
-  desk.run(1.0, wall, keep);
+  arm.run(1.0, wall, keep);
   // The hand's spring (300 N/m) and the wall's share the 5 mm that the hand wants.
   std::printf("The wall holds with %.2f N at a depth of %.2f mm.\n", force, depth * 1e3);
   return force > 0.5 ? 0 : 1;

@@ -4,9 +4,9 @@
 #include <cstdio>
 #include <string>
 
-#include "desk_arm.h"
 #include "thimble/render/build_object_touch.h"
 #include "thimble/render/mesh/load_mesh.h"
+#include "thimble/scene/simulated_device.h"
 
 using thimble::driver::DeviceState;
 using thimble::driver::TickRecord;
@@ -34,8 +34,15 @@ int main(int argc, char** argv) {
   }
   render::ObjectTouch& object = **built;
 
-  DeskArm desk({{0.0, {-0.01, 0, 0.02}}, {0.5, {-0.01, 0, -0.002}}, {1.5, {0.01, 0, -0.002}}});
-  if (!desk.device().activate()) return 1;
+  auto opened = thimble::scene::SimulatedDevice::open(
+      "vintage_phantom",
+      {{0.0, {-0.01, 0, 0.02}}, {0.5, {-0.01, 0, -0.002}}, {1.5, {0.01, 0, -0.002}}});
+  if (!opened) {
+    std::fprintf(stderr, "%s\n", opened.error().message.c_str());
+    return 1;
+  }
+  thimble::scene::SimulatedDevice& arm = **opened;
+  if (!arm.device().activate()) return 1;
   auto law = [&](const DeviceState& state) noexcept { return object.update(state); };
   int touching = 0, last = -1, triangles = 0;
   double most = 0;
@@ -46,7 +53,7 @@ int main(int argc, char** argv) {
     last = tick.feature;
     most = std::max(most, Eigen::Map<const Eigen::Vector3d>(tick.f_sent_W.data()).norm());
   };
-  desk.run(1.5, law, watch);
+  arm.run(1.5, law, watch);
   std::printf("%zu triangles; touched for %d ms over %d of them, at most %.2f N.\n",
               mesh->triangles.size(), touching, triangles, most);
   return touching > 0 ? 0 : 1;

@@ -4,15 +4,15 @@
 #include <memory>
 #include <numbers>
 
-#include "desk_arm.h"
 #include "thimble/render/build_object_touch.h"
 #include "thimble/render/mesh/load_mesh.h"
+#include "thimble/scene/simulated_device.h"
 
 using thimble::driver::DeviceState;
 using thimble::driver::TickRecord;
 namespace render = thimble::render;
 
-/// Hums under the finger: the depth swings in time, however still the hand is.
+/// Hums under the finger: the depth oscillates in time, however still the hand is.
 class Hum {
  public:
   static constexpr std::string_view kGroup = "texture";
@@ -60,8 +60,14 @@ int main() {
     std::fprintf(stderr, "%s\n", object.error().message.c_str());
     return 1;
   }
-  DeskArm desk({{0.0, {0, 0, 0.01}}, {0.3, {0, 0, -0.004}}, {1.0, {0, 0, -0.004}}});
-  if (!desk.device().activate()) return 1;
+  auto opened = thimble::scene::SimulatedDevice::open(
+      "vintage_phantom", {{0.0, {0, 0, 0.01}}, {0.3, {0, 0, -0.004}}, {1.0, {0, 0, -0.004}}});
+  if (!opened) {
+    std::fprintf(stderr, "%s\n", opened.error().message.c_str());
+    return 1;
+  }
+  thimble::scene::SimulatedDevice& arm = **opened;
+  if (!arm.device().activate()) return 1;
   auto law = [&](const DeviceState& state) noexcept { return (*object)->update(state); };
   double least = 1e9, most = 0;
   auto watch = [&](const TickRecord& tick) noexcept {
@@ -69,7 +75,7 @@ int main() {
     least = std::min(least, tick.f_sent_W[2]);
     most = std::max(most, tick.f_sent_W[2]);
   };
-  desk.run(1.0, law, watch);
+  arm.run(1.0, law, watch);
   std::printf("The hand holds still, and the force hums between %.2f and %.2f N.\n", least, most);
   return most - least > 0.1 ? 0 : 1;
 }

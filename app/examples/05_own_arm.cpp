@@ -12,7 +12,7 @@
 
 namespace driver = thimble::driver;
 
-/// Is the wire: three counts in, three motor values out, little-endian.
+/// The wire: three counts in, three motor values out, little-endian.
 struct GantryWire {
   static bool decode(std::span<const std::byte> report, driver::ArmReading& reading) noexcept {
     if (report.size() != sizeof reading.counts)
@@ -27,7 +27,7 @@ struct GantryWire {
   }
 };
 
-/// Is the geometry: each motor's pulley moves one rail.
+/// The geometry: each motor's pulley moves one rail.
 struct Gantry {
   double radius = 0.01;  // m, of the pulleys
   void forward(const Eigen::Vector3d& q, Eigen::Vector3d& p_BT,

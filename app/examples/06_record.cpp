@@ -7,7 +7,7 @@
 #include <memory>
 #include <thread>
 
-#include "desk_arm.h"
+#include "thimble/scene/simulated_device.h"
 
 using thimble::driver::DeviceState;
 using thimble::driver::ForceCommand;
@@ -40,6 +40,14 @@ class TickRing {
 };
 
 int main(int argc, char** argv) {
+  auto opened = thimble::scene::SimulatedDevice::open(
+      "vintage_phantom", {{0.0, {0, 0, 0.01}}, {1.0, {0, 0, -0.004}}, {2.0, {0, 0, 0.01}}});
+  if (!opened) {
+    std::fprintf(stderr, "%s\n", opened.error().message.c_str());
+    return 1;
+  }
+  thimble::scene::SimulatedDevice& arm = **opened;
+  if (!arm.device().activate()) return 1;
   const char* name = argc > 1 ? argv[1] : "touch.csv";
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(name, "w"), &std::fclose);
   if (!file) {
@@ -66,15 +74,13 @@ int main(int argc, char** argv) {
     }
   });
 
-  DeskArm desk({{0.0, {0, 0, 0.01}}, {1.0, {0, 0, -0.004}}, {2.0, {0, 0, 0.01}}});
-  if (!desk.device().activate()) return 1;
   auto wall = [](const DeviceState& state) noexcept {
     ForceCommand command;
     if (state.p_WT.z() < 0) command.f_T_W.z() = -800 * state.p_WT.z();
     return command;
   };
   auto keep = [&](const TickRecord& tick) noexcept { ring->put(tick); };
-  desk.run(2.0, wall, keep);
+  arm.run(2.0, wall, keep);
   over.store(true);
   writer.join();
   std::printf("%d ticks in %s, %zu dropped.\n", rows, name, ring->dropped());

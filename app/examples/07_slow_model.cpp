@@ -6,10 +6,10 @@
 #include <cstdio>
 #include <thread>
 
-#include "desk_arm.h"
 #include "thimble/driver/snapshot.h"
 #include "thimble/render/multirate/model_slot.h"
 #include "thimble/render/multirate/model_touch.h"
+#include "thimble/scene/simulated_device.h"
 
 using thimble::driver::DeviceState;
 using thimble::driver::Snapshot;
@@ -40,8 +40,14 @@ render::LocalModel simulate(const TickRecord& tick) {
 }
 
 int main() {
-  DeskArm desk({{0.0, {0, 0, 0.01}}, {0.6, {0, 0, -0.01}}, {2.0, {0, 0, -0.01}}});
-  if (!desk.device().activate()) return 1;
+  auto opened = thimble::scene::SimulatedDevice::open(
+      "vintage_phantom", {{0.0, {0, 0, 0.01}}, {0.6, {0, 0, -0.01}}, {2.0, {0, 0, -0.01}}});
+  if (!opened) {
+    std::fprintf(stderr, "%s\n", opened.error().message.c_str());
+    return 1;
+  }
+  thimble::scene::SimulatedDevice& arm = **opened;
+  if (!arm.device().activate()) return 1;
   Snapshot<TickRecord> tip;  // the servo shows where the tip is ...
   render::ModelSlot slot;    // ... and finds here what it feels
   // What arm, loop and hand carry: (b + B) / L = 3 N s/m / 1.5 ms, and a margin.
@@ -74,7 +80,7 @@ int main() {
     // Virtual time runs ahead of any thread; a real arm's would not. So it waits a little here.
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   };
-  desk.run(2.0, law, show);
+  arm.run(2.0, law, show);
   over.store(true);
   slow.join();
   const double truth = 200 * depth + 5e4 * depth * depth;

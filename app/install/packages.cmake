@@ -25,9 +25,9 @@ set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "gnuplot-nox, valgrind")
-set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS
-    "libeigen3-dev, libusb-1.0-0-dev, libhidapi-dev, libassimp-dev, zlib1g-dev, libpng-dev, pkg-config")
-set(CPACK_DEBIAN_DEV_PACKAGE_SUGGESTS "thimble")
+string(CONCAT CPACK_DEBIAN_DEV_PACKAGE_DEPENDS
+    "thimble (= ${PROJECT_VERSION}), libeigen3-dev, libusb-1.0-0-dev, libhidapi-dev, libassimp-dev, zlib1g-dev, libpng-dev, "
+    "libfmt-dev, libyaml-cpp-dev, libhdf5-dev, libspdlog-dev, pkg-config")
 set(CPACK_COMPONENT_PROGRAM_DESCRIPTION
 "touch virtual objects by a force-feedback arm, real or simulated
 Thimble drives 3-DOF force-feedback arms on USB, simulates them where there is
@@ -35,9 +35,9 @@ none, and renders triangle meshes, shapes and fields to the hand at 1 kHz and
 more, with textures, friction and bodies that dent, move and snap.")
 set(CPACK_COMPONENT_DEV_DESCRIPTION
 "libraries and headers to build on Thimble
-The driver of 3-DOF force-feedback arms, the simulated arm and the haptic
-rendering of Thimble as static libraries, with a CMake package, a pkg-config
-file and small numbered examples.")
+The driver of 3-DOF force-feedback arms, the simulated arm, the haptic
+rendering, the scenes and the runs of Thimble as static libraries, with a
+CMake package, a pkg-config file and small numbered examples.")
 set(CPACK_DEBIAN_PROGRAM_DESCRIPTION "${CPACK_COMPONENT_PROGRAM_DESCRIPTION}")
 set(CPACK_DEBIAN_DEV_DESCRIPTION "${CPACK_COMPONENT_DEV_DESCRIPTION}")
 

@@ -12,16 +12,18 @@
 #include <string>
 #include <vector>
 
-#include "build_info.h"
-#include "lone_arm.h"
-#include "recording/read_recording.h"
-#include "recording/recording_columns.h"
 #include "scene_run.h"
+#include "simulator_session.h"
 #include "stability/tuning.h"
 #include "thimble/driver/discovery.h"
 #include "thimble/driver/fault.h"
+#include "thimble/render/scene_touch.h"
+#include "thimble/scene/arm_simulation.h"
+#include "thimble/scene/build_info.h"
+#include "thimble/scene/scene_file.h"
 #include "thimble/scene/shipped_files.h"
-#include "trouble.h"
+#include "thimble/session/recording.h"
+#include "thimble_error.h"
 
 namespace py = pybind11;
 
@@ -51,7 +53,7 @@ const char* numpy_type(const session::RecordingColumn& column) {
   return "";
 }
 
-/// Gives numpy's type of a tick: the columns of a recording, by the same names.
+/// Returns numpy's type of a tick: the columns of a recording, by the same names.
 py::dtype tick_type() {
   py::list names, formats, offsets;
   for (const session::RecordingColumn& column : session::recording_columns()) {
@@ -75,7 +77,7 @@ py::object one(const TickRecord& tick) {
   return array_of({&tick, 1})[py::int_(0)];
 }
 
-/// Is a force law written in Python, on the virtual clock: there a tick may last as long as it
+/// A force law written in Python, on the virtual clock: there a tick may last as long as it
 /// likes. Whatever goes wrong in it is zero force, the end of the run, and that error to whoever
 /// ran it.
 class PythonLaw {
@@ -86,8 +88,8 @@ class PythonLaw {
     driver::ForceCommand command = run_.session().touch()(state);
     const py::gil_scoped_acquire python;
     try {
-      if (error_) throw Trouble("The law has failed before.");
-      const py::object answer = law_(one(seen(state, command)));
+      if (error_) throw ThimbleError("The law has failed before.");
+      const py::object answer = law_(one(driver::record_of(state, command)));
       if (!answer.is_none()) {
         const auto force = py::array_t<double, py::array::forcecast>::ensure(answer);
         if (!force || force.ndim() != 1 || force.shape(0) != 3) {
@@ -113,43 +115,19 @@ class PythonLaw {
   }
 
  private:
-  static TickRecord seen(const driver::DeviceState& state, const driver::ForceCommand& command) {
-    const auto plain = [](const Eigen::Vector3d& v) {
-      return std::array<double, 3>{v.x(), v.y(), v.z()};
-    };
-    TickRecord tick;
-    tick.tick = state.tick;
-    tick.time_ns = tick.due_ns = state.time_ns;
-    tick.counts = state.counts;
-    tick.q = plain(state.q);
-    tick.p_WT = plain(state.p_WT);
-    tick.v_WT = plain(state.v_WT);
-    tick.p_WP = plain(command.touch.p_WP);
-    tick.n_W = plain(command.touch.n_W);
-    tick.f_wanted_W = plain(command.f_T_W);
-    tick.depth = command.touch.depth;
-    tick.feature = command.touch.feature;
-    tick.object = command.touch.object;
-    tick.hops = command.touch.hops;
-    tick.buttons = state.buttons;
-    tick.in_contact = command.touch.in_contact;
-    tick.fresh = state.fresh;
-    return tick;
-  }
-
   py::function law_;
   SceneRun& run_;
   std::exception_ptr error_;
 };
 
-/// Is a run with the law that Python gave it, if it did.
+/// A run with the law that Python gave it, if it did.
 struct HeldRun {
   explicit HeldRun(const RunOptions& options, const py::object& own_law)
       : run((py::gil_scoped_release(), std::make_unique<SceneRun>(options))) {
     if (own_law.is_none()) return;
     law = std::make_unique<PythonLaw>(own_law.cast<py::function>(), *run);
     if (const auto set = run->session().set_law(driver::ForceLaw(*law)); !set) {
-      throw Trouble(set.error().message);
+      throw ThimbleError(set.error().message);
     }
   }
   ~HeldRun() {
@@ -167,18 +145,6 @@ struct HeldRun {
   std::unique_ptr<SceneRun> run;
 };
 
-const char* name_of(driver::ServoEnd end) {
-  switch (end) {
-    case driver::ServoEnd::kDone:
-      return "done";
-    case driver::ServoEnd::kStopped:
-      return "stopped";
-    case driver::ServoEnd::kFault:
-      return "fault";
-  }
-  return "";
-}
-
 void run_all(HeldRun& held) {
   bool interrupted = false;
   {
@@ -195,7 +161,7 @@ void run_all(HeldRun& held) {
 bool step_once(HeldRun& held, const std::optional<Eigen::Vector3d>& hand) {
   session::Session& session = held.run->session();
   if (hand && session.simulation() != nullptr && !session.lead_hand(*hand)) {
-    throw Trouble("The arm does not reach that point of the world (m); move the hand.");
+    throw ThimbleError("The arm does not reach that point of the world (m); move the hand.");
   }
   const bool more = held.run->step();
   held.rethrow();
@@ -203,15 +169,12 @@ bool step_once(HeldRun& held, const std::optional<Eigen::Vector3d>& hand) {
 }
 
 py::tuple mesh_of(const HeldRun& held, const std::optional<std::string>& object) {
-  if (held.run->running()) throw Trouble("The run goes on; stop() it to see its meshes.");
+  if (held.run->running()) throw ThimbleError("The run goes on; stop() it to see its meshes.");
   const session::Session& session = held.run->session();
   int number = -1;
   if (object) {
-    const auto& objects = session.scene().objects;
-    for (std::size_t i = 0; i < objects.size(); ++i) {
-      if (objects[i].name == *object) number = static_cast<int>(i);
-    }
-    if (number < 0) throw Trouble("The scene has no object \"" + *object + "\".");
+    number = session.find_object(*object).value_or(-1);
+    if (number < 0) throw ThimbleError("The scene has no object \"" + *object + "\".");
   }
   const render::TriangleMesh mesh = session.mesh_now(number);
   py::array_t<double> vertices({static_cast<py::ssize_t>(mesh.vertices.size()), py::ssize_t{3}});
@@ -245,9 +208,9 @@ py::dict info_of(const session::RecordingInfo& info) {
   return told;
 }
 
-py::list figures_of(const HeldRun& held) {
+py::list figures_of(HeldRun& held) {
   py::list figures;
-  for (const app::Figure& figure : app::run_figures(held.run->report())) {
+  for (const session::Figure& figure : session::figures_of(held.run->figures())) {
     py::dict one;
     one["name"] = figure.name;
     one["value"] = figure.value;
@@ -324,11 +287,11 @@ void bind_run(py::module_& core) {
       .def("latest",
            [](const HeldRun& held) -> py::object {
              TickRecord tick;
-             if (!held.run->session().snapshot().load(tick)) return py::none();
+             if (!held.run->session().newest().load(tick)) return py::none();
              return one(tick);
            })
       .def("mesh", &mesh_of, py::arg("object") = py::none())
-      .def("summary", [](const HeldRun& held) { return app::summary(held.run->report()); })
+      .def("summary", [](HeldRun& held) { return session::summary(held.run->figures()); })
       .def("figures", &figures_of)
       .def("warnings",
            [](const HeldRun& held) { return app::stability_warnings(held.run->session().scene()); })
@@ -336,12 +299,13 @@ void bind_run(py::module_& core) {
            [](const HeldRun& held) { return info_of(held.run->session().recording_info()); })
       .def_property_readonly("running", [](const HeldRun& held) { return held.run->running(); })
       .def_property_readonly("end",
-                             [](const HeldRun& held) -> py::object {
+                             [](HeldRun& held) -> py::object {
                                const auto end = held.run->end();
-                               return end ? py::object(py::str(name_of(*end))) : py::none();
+                               return end ? py::object(py::str(std::string(driver::name(*end))))
+                                          : py::none();
                              })
-      .def_property_readonly(
-          "stride", [](const HeldRun& held) { return held.run->session().trace().stride(); })
+      .def_property_readonly("stride",
+                             [](const HeldRun& held) { return held.run->session().stride(); })
       .def_property_readonly("objects", [](const HeldRun& held) {
         std::vector<std::string> names;
         for (const auto& object : held.run->session().scene().objects) names.push_back(object.name);
@@ -349,27 +313,27 @@ void bind_run(py::module_& core) {
       });
 }
 
-void bind_arm(py::module_& core) {
-  py::class_<LoneArm>(core, "Arm")
+void bind_simulator(py::module_& core) {
+  py::class_<SimulatorSession>(core, "SimulatorSession")
       .def(py::init<const std::string&, const Eigen::Vector3d&, double, std::uint64_t>(),
            py::arg("arm"), py::arg("hand"), py::arg("rate"), py::arg("seed"))
       .def(
           "step",
-          [](LoneArm& arm, const Eigen::Vector3d& force,
-             const std::optional<Eigen::Vector3d>& hand) {
-            if (hand && !arm.lead(*hand)) {
-              throw Trouble("The arm does not reach that point of the world (m); move the hand.");
-            }
-            return one(arm.step(force));
-          },
+          [](SimulatorSession& session, const Eigen::Vector3d& force,
+             const std::optional<Eigen::Vector3d>& hand) { return one(session.step(force, hand)); },
           py::arg("force"), py::arg("hand") = py::none())
-      .def("activate", &LoneArm::activate)
-      .def_property_readonly("name", [](const LoneArm& arm) { return arm.file().name; })
-      .def_property_readonly("true_force", &LoneArm::true_force)
-      .def_property_readonly("force_max",
-                             [](const LoneArm& arm) { return arm.file().limits.force_max; })
-      .def_property_readonly("workspace", [](const LoneArm& arm) {
-        return py::make_tuple(arm.file().workspace.min_W, arm.file().workspace.max_W);
+      .def("activate", &SimulatorSession::activate)
+      .def_property_readonly(
+          "name", [](const SimulatorSession& session) { return session.device().arm().name; })
+      .def_property_readonly(
+          "true_force",
+          [](const SimulatorSession& session) { return session.device().simulation().f_T_W(); })
+      .def_property_readonly(
+          "force_max",
+          [](const SimulatorSession& session) { return session.device().arm().limits.force_max; })
+      .def_property_readonly("workspace", [](const SimulatorSession& session) {
+        const scene::WorkspaceBox& box = session.device().arm().workspace;
+        return py::make_tuple(box.min_W, box.max_W);
       });
 }
 
@@ -379,7 +343,7 @@ void bind_arm(py::module_& core) {
 PYBIND11_MODULE(_core, core) {
   using namespace thimble;
   using namespace thimble::python;
-  py::register_exception<Trouble>(core, "Error", PyExc_RuntimeError);
+  py::register_exception<ThimbleError>(core, "Error", PyExc_RuntimeError);
   core.attr("version") = std::string(scene::build_info().version);
   core.attr("program") = scene::program_name();
   core.def("scenes", [] { return named(scene::shipped_scenes()); });
@@ -405,5 +369,5 @@ PYBIND11_MODULE(_core, core) {
     return py::make_tuple(info_of(recording.info), array_of(recording.ticks), recording.complete);
   });
   bind_run(core);
-  bind_arm(core);
+  bind_simulator(core);
 }

@@ -1,16 +1,13 @@
 #include "scene_run.h"
 
 #include <cmath>
-#include <cstdio>
 
-#include "recording/write_black_box.h"
-#include "report/session_report.h"
-#include "servo_thread.h"
-#include "thimble/scene/meshes.h"
+#include "log/logger.h"
 #include "thimble/scene/quality.h"
 #include "thimble/scene/real_arm.h"
 #include "thimble/scene/shipped_files.h"
-#include "trouble.h"
+#include "thimble/session/servo_thread.h"
+#include "thimble_error.h"
 
 namespace thimble::python {
 namespace {
@@ -23,7 +20,7 @@ constexpr double kSecondsMax = 86400;         // as in `thimble run --duration`
 class Claim {
  public:
   explicit Claim(bool& busy) : busy_(busy) {
-    if (busy_) throw Trouble("This run is already being stepped.");
+    if (busy_) throw ThimbleError("This run is already being stepped.");
     busy_ = true;
   }
   ~Claim() { busy_ = false; }
@@ -37,19 +34,19 @@ class Claim {
 /// Says on stderr, where a program's warnings go, on which terms a real arm is used.
 void tell(const std::vector<std::string>& sentences) {
   for (const std::string& sentence : sentences) {
-    std::fprintf(stderr, "thimble: %s\n", sentence.c_str());
+    scene::logger().warn("{}", sentence);
   }
 }
 
 session::SessionOptions session_options(const RunOptions& options) {
   session::SessionOptions asked;
   if (options.seconds && !(*options.seconds >= 1e-3 && *options.seconds <= kSecondsMax)) {
-    throw Trouble("seconds: expected 0.001 to 86400, found " + std::to_string(*options.seconds) +
-                  ".");
+    throw ThimbleError("seconds: expected 0.001 to 86400, found " +
+                       std::to_string(*options.seconds) + ".");
   }
   if (options.quality != "draft" && options.quality != "normal" && options.quality != "reference") {
-    throw Trouble("quality: expected draft, normal or reference, found \"" + options.quality +
-                  "\".");
+    throw ThimbleError("quality: expected draft, normal or reference, found \"" + options.quality +
+                       "\".");
   }
   const auto plugged_in =
       options.device == "sim"
@@ -58,29 +55,30 @@ session::SessionOptions session_options(const RunOptions& options) {
   asked.real_arm = value_of(scene::choose_arm(
       plugged_in ? *plugged_in : std::vector<driver::FoundArm>(), options.device));
   if (asked.real_arm && !options.agreed) {
-    throw Trouble(
+    throw ThimbleError(
         asked.real_arm->arm + " " + asked.real_arm->name() +
         " would get forces. Keep clear of it, hold its grip, keep its switch at hand, and "
         "say agree=True.");
   }
-  if (!options.arm_file.empty()) asked.arm_file = value_of(scene::find_arm_file(options.arm_file));
+  asked.arm_file = options.arm_file;
   if (asked.real_arm) {
-    asked.terms = value_of(scene::terms_for(*asked.real_arm, {.arm_file = asked.arm_file,
-                                                              .firmware = options.firmware,
-                                                              .unchecked = options.unchecked}));
+    const auto named = options.arm_file.empty() ? std::filesystem::path()
+                                                : value_of(scene::find_arm_file(options.arm_file));
+    asked.terms = value_of(scene::terms_for(
+        *asked.real_arm,
+        {.arm_file = named, .firmware = options.firmware, .unchecked = options.unchecked}));
     tell(asked.terms->told);
   }
   if (asked.real_arm) {  // asked on a thread that goes again, before the arm is opened
     const auto allowed =
         session::check_real_time(session::ServoThread(true).grant(), options.no_real_time);
-    if (!allowed) throw Trouble(allowed.error().message + " In Python: no_real_time=True.");
+    if (!allowed) throw ThimbleError(allowed.error().message + " In Python: no_real_time=True.");
   }
   asked.homed = options.homed;
   const bool real_time = options.real_time || asked.real_arm;
   asked.clock = real_time ? session::ClockKind::kWall : session::ClockKind::kVirtual;
   asked.duration = options.seconds;
   asked.seed = options.seed;
-  asked.mesh_folder = scene::mesh_folder();
   asked.firmware = options.firmware;
   asked.record = options.record;
   asked.adjust = [&options](scene::Scene& scene) {
@@ -92,18 +90,27 @@ session::SessionOptions session_options(const RunOptions& options) {
 }  // namespace
 
 SceneRun::SceneRun(const RunOptions& options)
-    : session_(value_of(session::Session::open(value_of(scene::find_scene(options.scene)),
-                                               session_options(options)))) {
+    : session_(value_of(session::Session::open(options.scene, session_options(options)))) {
   tell(session_->told());
 }
 
 SceneRun::~SceneRun() {
   stop_.store(true);
-  if (servo_.joinable()) servo_.join();
+  servo_.reset();
+}
+
+bool SceneRun::running() const noexcept {
+  return servo_ && !servo_->ended();
+}
+
+std::optional<driver::ServoEnd> SceneRun::end() noexcept {
+  if (running()) return {};
+  if (servo_) end_ = servo_->join();
+  return end_;
 }
 
 bool SceneRun::step() {
-  if (session_->real_time()) throw Trouble("A run in real time is not stepped by hand.");
+  if (session_->real_time()) throw ThimbleError("A run in real time is not stepped by hand.");
   const Claim claim(busy_);
   return take_step();
 }
@@ -117,7 +124,7 @@ bool SceneRun::take_step() {
 }
 
 void SceneRun::run(const std::function<bool()>& stop_asked) {
-  if (session_->real_time()) throw Trouble("A run in real time runs by start().");
+  if (session_->real_time()) throw ThimbleError("A run in real time runs by start().");
   const Claim claim(busy_);
   for (int ticks = 1; take_step(); ++ticks) {
     if (ticks % kTicksBetweenQuestions == 0 && stop_asked()) ask_to_stop();
@@ -125,20 +132,16 @@ void SceneRun::run(const std::function<bool()>& stop_asked) {
 }
 
 void SceneRun::start() {
-  if (!session_->real_time()) throw Trouble("A run in virtual time has no thread.");
-  if (servo_.joinable() || end_) throw Trouble("This run has begun before.");
-  running_.store(true);
-  awake_ = std::make_unique<driver::CpuLatencyRequest>();
-  servo_ = std::thread([this] {
-    grant_ = driver::enter_real_time();
-    end_ = session_->run(stop_);
-    running_.store(false);
-  });
+  if (!session_->real_time()) throw ThimbleError("A run in virtual time has no thread.");
+  if (servo_ || end_) throw ThimbleError("This run has begun before.");
+  servo_ = std::make_unique<session::ServoThread>(true);
+  grant_ = servo_->grant();
+  servo_->begin(*session_, stop_);
 }
 
 void SceneRun::stop() {
   ask_to_stop();
-  if (servo_.joinable()) servo_.join();
+  if (servo_) end_ = servo_->join();
   if (!session_->real_time() && !end_) {
     const Claim claim(busy_);
     take_step();
@@ -150,28 +153,22 @@ void SceneRun::stop() {
 void SceneRun::finish() {
   if (finished_) return;
   finished_ = true;
-  awake_.reset();
-  if (const auto ticks = session_->black_box().take(); !ticks.empty()) {
-    const auto written = session::write_black_box(ticks, session_->recording_info());
-    if (written) {
-      std::fprintf(stderr, "thimble: the last seconds before the fault are in %s\n",
-                   written->c_str());
-    }
+  servo_.reset();  // no longer keeps the processor awake
+  if (const auto kept = session_->keep_black_box(); kept && *kept) {
+    scene::logger().warn("the last seconds before the fault are in {}", (*kept)->string());
   }
-  if (session_->recording().recorder() == nullptr) return;
-  if (const auto stopped = session_->recording().stop(); !stopped) {
-    throw Trouble(stopped.error().message);
-  }
+  if (const auto ended = session_->end_recording(); !ended)
+    throw ThimbleError(ended.error().message);
 }
 
 std::span<const driver::TickRecord> SceneRun::ticks() const {
-  if (running()) throw Trouble("The run goes on; stop() it to see its ticks.");
-  return session_->trace().rows();
+  if (running()) throw ThimbleError("The run goes on; stop() it to see its ticks.");
+  return session_->ticks();
 }
 
-app::RunReport SceneRun::report() const {
-  if (!end_ || running()) throw Trouble("The run is not over: nothing to sum up yet.");
-  return app::report_of(*session_, *end_, grant_);
+session::RunFigures SceneRun::figures() {
+  if (!end()) throw ThimbleError("The run is not over: nothing to sum up yet.");
+  return session_->figures(grant_);
 }
 
 }  // namespace thimble::python

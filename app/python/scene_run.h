@@ -5,16 +5,15 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <thread>
 
-#include "report/report.h"
 #include "thimble/driver/real_time.h"
 #include "thimble/driver/servo_loop.h"
+#include "thimble/session/servo_thread.h"
 #include "thimble/session/session.h"
 
 namespace thimble::python {
 
-/// Says what a run of a scene is asked for, as Python names it.
+/// What a run of a scene is asked for, as Python names it.
 struct RunOptions {
   std::string scene;           ///< File or name.
   std::string arm_file;        ///< File or name; empty: the scene's own.
@@ -31,8 +30,8 @@ struct RunOptions {
   bool no_real_time = false;  ///< Use a real arm though the loop gets no real-time priority.
 };
 
-/// Is a session as Python holds it: all at once, tick by tick, or in real time on a thread of its
-/// own. Every function but those of `driver::` throws Trouble with a sentence for the
+/// A session as Python holds it: all at once, tick by tick, or in real time on a thread of its
+/// own. Every function but those of `driver::` throws ThimbleError with a sentence for the
 /// user. Real-time: never from the servo thread, all of it.
 class SceneRun {
  public:
@@ -55,15 +54,15 @@ class SceneRun {
   void stop();
   /// Asks the run to end with its next tick, and waits for nothing. Safe from any thread.
   void ask_to_stop() noexcept { stop_.store(true); }
-  /// Tells whether a thread runs it.
-  bool running() const noexcept { return running_.load(); }
+  /// Returns whether a thread runs it.
+  bool running() const noexcept;
 
-  /// Tells why it ended; empty while it has not.
-  std::optional<driver::ServoEnd> end() const noexcept { return running() ? std::nullopt : end_; }
-  /// Tells what was recorded, unless the thread runs.
+  /// Returns why it ended; empty while it has not.
+  std::optional<driver::ServoEnd> end() noexcept;
+  /// Returns what was recorded, unless the thread runs.
   std::span<const driver::TickRecord> ticks() const;
-  /// Sums up a run that is over.
-  app::RunReport report() const;
+  /// Returns the figures of a run that is over.
+  session::RunFigures figures();
 
  private:
   bool take_step();
@@ -71,13 +70,11 @@ class SceneRun {
 
   std::unique_ptr<session::Session> session_;
   std::atomic<bool> stop_{false};
-  std::atomic<bool> running_{false};
   bool busy_ = false;  // a step or a run is under way; guarded by Python's own lock
   bool finished_ = false;
   std::optional<driver::ServoEnd> end_;
   driver::RealTimeGrant grant_;
-  std::unique_ptr<driver::CpuLatencyRequest> awake_;  // while the thread runs
-  std::thread servo_;
+  std::unique_ptr<session::ServoThread> servo_;  // in real time
 };
 
 }  // namespace thimble::python

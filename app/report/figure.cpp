@@ -1,26 +1,12 @@
 #include "report/figure.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
-#include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 namespace thimble::app {
-
-bool Figure::met() const {
-  if (goal.empty()) return true;
-  std::istringstream text(goal);
-  std::string comparison;
-  double bound = 0;
-  if (!(text >> comparison >> bound)) return false;
-  if (comparison == ">=") return value >= bound;
-  if (comparison == "<=") return value <= bound;
-  if (comparison == "==") return value == bound;
-  if (comparison == ">") return value > bound;
-  if (comparison == "<") return value < bound;
-  return false;
-}
 
 driver::Result<void> write_figures(const std::vector<Figure>& figures,
                                    const std::filesystem::path& file) {
@@ -42,8 +28,7 @@ std::string figure_table(const std::vector<Figure>& figures) {
   for (const Figure& figure : figures) width = std::max(width, figure.name.size());
   std::string table;
   for (const Figure& figure : figures) {
-    char value[32];
-    std::snprintf(value, sizeof value, "%12.6g", figure.value);
+    const std::string value = fmt::format("{:12.6g}", figure.value);
     std::string line = figure.name + std::string(width - figure.name.size(), ' ') + value;
     line += " " + figure.unit;
     if (!figure.goal.empty()) {

@@ -5,20 +5,11 @@
 #include <vector>
 
 #include "thimble/driver/result.h"
+#include "thimble/session/figure.h"
 
 namespace thimble::app {
 
-/// Is one number that a report, study or bench stands for, and what it should be.
-struct Figure {
-  std::string name;
-  double value = 0;
-  std::string unit;
-  std::string goal;  ///< A comparison in text (">= 20", "<= 5", "== 0", "> 1", "< 2"); empty: none.
-
-  /// Tells whether the value meets the goal; a figure without one is met. NaN meets no goal, and
-  /// nothing meets a goal that is no comparison.
-  bool met() const;
-};
+using session::Figure;
 
 /// Writes figures as JSON: a list of {"name", "value", "unit", "goal", "met"}; "goal" and "met" are
 /// left out where there is no goal. Fails if the file cannot be written.

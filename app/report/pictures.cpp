@@ -1,7 +1,8 @@
 #include "report/pictures.h"
 
+#include <fmt/core.h>
+
 #include <cmath>
-#include <cstdio>
 #include <system_error>
 
 #include "report/picture_parts.h"
@@ -20,9 +21,7 @@ std::string quote(const std::string& text) {
 }
 
 std::string number(double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.9g", value);
-  return text;
+  return fmt::format("{:.9g}", value);
 }
 
 std::string quiet_style() {

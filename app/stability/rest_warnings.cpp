@@ -1,12 +1,14 @@
 #include "stability/rest_warnings.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "energy_choice.h"
 #include "mesh/adjacency.h"
 #include "object_mesh.h"
-#include "printed.h"
 #include "stability/draw.h"
 #include "stability/tuning.h"
 
@@ -60,11 +62,11 @@ void warn_of_facets(const scene::SceneObject& object, std::vector<std::string>& 
   const bool god_object = object.contact.tracker == render::TrackerChoice::kGodObject;
   const bool flat = is_flat(object);
   if (bends(object) && (flat || god_object)) {
-    warnings.push_back(scene::printed(
-        "%s is felt by flat facets and gives way, so there are hollows where it is pressed; a "
-        "tip that rests on an edge in one jumps from facet to facet: set contact: {blending: "
-        "phong}, or tracker: compact.",
-        object.name.c_str()));
+    warnings.push_back(
+        fmt::format("{} is felt by flat facets and gives way, so there are hollows where it is "
+                    "pressed; a tip that rests on an edge in one jumps from facet to facet: set "
+                    "contact: {{blending: phong}}, or tracker: compact.",
+                    object.name));
     return;
   }
   if (god_object) return;
@@ -75,11 +77,11 @@ void warn_of_facets(const scene::SceneObject& object, std::vector<std::string>& 
   const double smooth_up_to = object.contact.crease_angle.value_or(std::numbers::pi);
   const double hollow = sharpest_hollow(mesh->mesh_W, flat ? felt : std::max(felt, smooth_up_to));
   if (!(hollow > 0)) return;
-  warnings.push_back(scene::printed(
-      "%s has hollows with edges of up to %.0f degrees and is felt by flat facets there: a tip "
-      "that rests on such an edge jumps sideways by %.2g N for each newton pressed, at every "
-      "count of an encoder: set contact: {blending: sized_band}, or tracker: compact.",
-      object.name.c_str(), hollow / kDegree, 2 * std::sin(hollow / 2)));
+  warnings.push_back(fmt::format(
+      "{} has hollows with edges of up to {:.0f} degrees and is felt by flat facets there: a tip "
+      "that rests on such an edge jumps sideways by {:.2g} N for each newton pressed, at every "
+      "count of an encoder: set contact: {{blending: sized_band}}, or tracker: compact.",
+      object.name, hollow / kDegree, 2 * std::sin(hollow / 2)));
 }
 
 /// Is what lies over what a loop carries, with the hand of the scene.
@@ -100,11 +102,11 @@ void warn_of_effects(const scene::SceneObject& object, const Loop& loop, double 
       const double curvature = curvature_of(effect);
       const double from = bare_edge / curvature;
       if (!(from < force)) continue;
-      warnings.push_back(scene::printed(
-          "%s has a texture whose waves add %.0f N/m along the surface for each newton pressed; "
-          "from %.2g N on that is more than the %.0f N/m that arm, loop and hand carry, and the "
-          "tip buzzes in its grooves: make them lower or longer (amplitude / wavelength^2).",
-          object.name.c_str(), curvature, from, bare_edge));
+      warnings.push_back(fmt::format(
+          "{} has a texture whose waves add {:.0f} N/m along the surface for each newton pressed; "
+          "from {:.2g} N on that is more than the {:.0f} N/m that arm, loop and hand carry, and "
+          "the tip buzzes in its grooves: make them lower or longer (amplitude / wavelength^2).",
+          object.name, curvature, from, bare_edge));
     } else if (effect.kind->group == "friction") {
       const double hold = hold_of(effect);
       // Slow swings the arm's own dry friction holds [STABILITY 1.4].
@@ -112,11 +114,10 @@ void warn_of_effects(const scene::SceneObject& object, const Loop& loop, double 
       const double held_speed = swing_speed_limit(
           hold, carried.damping, loop.scene.arm.simulated.plant.coulomb, carried.latency);
       if (!(hold > bare_edge && held_speed < kStroke)) continue;
-      warnings.push_back(scene::printed(
-          "%s has a friction that holds with %.0f N/m, but with this hand (%.3g N s/m) the "
-          "loop carries %.0f N/m: set its stiffness to %.0f N/m or less.",
-          object.name.c_str(), hold, loop.scene.arm.simulated.hand.damping, bare_edge,
-          0.7 * bare_edge));
+      warnings.push_back(fmt::format(
+          "{} has a friction that holds with {:.0f} N/m, but with this hand ({:.3g} N s/m) the "
+          "loop carries {:.0f} N/m: set its stiffness to {:.0f} N/m or less.",
+          object.name, hold, loop.scene.arm.simulated.hand.damping, bare_edge, 0.7 * bare_edge));
     }
   }
 }
@@ -140,11 +141,11 @@ void warn_of_light_body(const scene::SceneObject& object, const Loop& loop,
   const double damping =
       carried.damping * share * share + motion.damping * (1 - share) * (1 - share);
   if (!(hold * carried.latency > damping)) return;
-  warnings.push_back(scene::printed(
-      "%s weighs %.3g kg and has a friction that holds with %.0f N/m: the hand hardly damps how so "
-      "light a body swings on it, and the loop carries %.0f N/m: give it more mass or damping, or "
-      "set the friction's stiffness lower.",
-      object.name.c_str(), motion.mass, hold, damping / carried.latency));
+  warnings.push_back(
+      fmt::format("{} weighs {:.3g} kg and has a friction that holds with {:.0f} N/m: the hand "
+                  "hardly damps how so light a body swings on it, and the loop carries {:.0f} N/m: "
+                  "give it more mass or damping, or set the friction's stiffness lower.",
+                  object.name, motion.mass, hold, damping / carried.latency));
 }
 
 /// Warns of springs that add up where a tip is on all of them: each may be carried by itself.
@@ -158,11 +159,11 @@ void warn_of_sum(const Loop& loop, std::vector<std::string>& warnings) {
     ++count;
   }
   if (count < 2 || !(sum > loop.edge(damping))) return;
-  warnings.push_back(scene::printed(
-      "Together the %d surfaces are as stiff as %.0f N/m, more than the %.0f N/m that arm, "
-      "loop and hand carry: where a tip is within all of them it trembles. Keep them apart, "
-      "or lower their stiffness.",
-      count, sum, loop.edge(damping)));
+  warnings.push_back(
+      fmt::format("Together the {} surfaces are as stiff as {:.0f} N/m, more than the {:.0f} N/m "
+                  "that arm, loop and hand carry: where a tip is within all of them it trembles. "
+                  "Keep them apart, or lower their stiffness.",
+                  count, sum, loop.edge(damping)));
 }
 
 void warn_of_grain(const Loop& loop, std::vector<std::string>& warnings) {
@@ -183,10 +184,10 @@ void warn_of_grain(const Loop& loop, std::vector<std::string>& warnings) {
   const double grain =
       grain_of(fields + surfaces, step, speed, arm.velocity_corner_frequency, loop.times.period);
   if (!(grain > kFelt)) return;
-  warnings.push_back(scene::printed(
-      "The damping of this scene, up to %.2g N s/m, grates on encoder steps of %.0f um: at %.1f "
-      "mm/s, as the hand's tremor moves the tip or a hand comes to rest, that is %.0f mN of grain. "
-      "Lower the damping, or the arm's velocity_corner_frequency.",
+  warnings.push_back(fmt::format(
+      "The damping of this scene, up to {:.2g} N s/m, grates on encoder steps of {:.0f} um: at "
+      "{:.1f} mm/s, as the hand's tremor moves the tip or a hand comes to rest, that is {:.0f} mN "
+      "of grain. Lower the damping, or the arm's velocity_corner_frequency.",
       fields + surfaces, 1e6 * step, 1e3 * speed, 1e3 * grain));
 }
 
@@ -285,12 +286,12 @@ std::vector<std::string> energy_warnings(const scene::Scene& scene) {
       push = object.body.motion->mass * object.body.motion->gravity_W.norm();
     }
     if (!(push * way > scene::kEnergyAllowance + scene::kEnergyOnset)) continue;
-    warnings.push_back(scene::printed(
-        "%s %s (up to %.2g N) and gives energy by right, but the gate's energy stage takes "
-        "back what is more than %.0f mJ: it brakes the hand and lets all forces fade. Set "
-        "gate: {energy: none} in the scene.",
-        object.name.c_str(), field ? "pushes a hand that rests" : "has weight", push,
-        1e3 * scene::kEnergyAllowance));
+    warnings.push_back(
+        fmt::format("{} {} (up to {:.2g} N) and gives energy by right, but the gate's energy stage "
+                    "takes back what is more than {:.0f} mJ: it brakes the hand and lets all "
+                    "forces fade. Set gate: {{energy: none}} in the scene.",
+                    object.name, field ? "pushes a hand that rests" : "has weight", push,
+                    1e3 * scene::kEnergyAllowance));
   }
   return warnings;
 }

@@ -8,18 +8,18 @@
 
 namespace thimble::app {
 
-// What `thimble study trouble` found to tremble under a hand that rests, though no wall is stiffer
-// than the loop carries. Each has a law, and each law a sentence that names the object, the number
-// and the remedy. What counts as trembling: 20 mN above 50 Hz [STABILITY 6]. Real-time: never from
-// the servo thread.
+// What `thimble study trouble` found in limit cycles under a hand that rests, though no wall is
+// stiffer than the loop carries. Each has a law, and each law a sentence that names the object, the
+// number and the remedy. What counts as a limit cycle: 20 mN above 50 Hz [STABILITY 6]. Real-time:
+// never from the servo thread.
 
 /// Says of each field and weight that gives energy by right what the gate's energy stage will do to
 /// it; nothing where there is no such stage.
 std::vector<std::string> energy_warnings(const scene::Scene& scene);
 
-/// Says what in a scene may tremble under the hand of its arm or of its grip: facets, textures,
-/// frictions, springs that add up, light bodies, damping on coarse encoders. Reads the meshes that
-/// lie in memory; what cannot be read is passed over, for the loader tells.
+/// Says what in a scene may fall into a limit cycle under the hand of its arm or of its grip:
+/// facets, textures, frictions, springs that add up, light bodies, damping on coarse encoders.
+/// Reads the meshes that lie in memory; what cannot be read is passed over, for the loader tells.
 std::vector<std::string> rest_warnings(const scene::Scene& scene);
 
 /// Tells the stiffness (N/m) that a texture's waves add along the surface for each newton of

@@ -1,10 +1,8 @@
 #include "stability/stability_laws.h"
 
 #include <Eigen/Core>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <limits>
 #include <numbers>
 
@@ -71,20 +69,6 @@ double late_stiffness_limit(double damping, double latency, double mass) {
   return damping / latency * (u > 1e-9 ? u / std::sin(u) : 1);
 }
 
-double passive_damping(double stiffness, double damping, double period, double delay) {
-  double most = -kNone;
-  for (int i = 0; i <= kAngles; ++i) {
-    const AngleTerms terms = terms_at(kPi * i / kAngles, period, delay);
-    most = std::max(most, stiffness * terms.stiffness + damping * terms.damping);
-  }
-  return most;
-}
-
-double passive_damping_filtered(double stiffness, double damping, double period, double lag) {
-  const double share = damping > 0 ? damping * period / (period + 2 * lag) : std::abs(damping);
-  return stiffness * period / 2 + share;
-}
-
 double passive_stiffness(double viscous, double wall_damping, double period, double delay) {
   // Each angle asks for K s + B w <= b: the least K over all angles with s > 0.
   double least = kNone;
@@ -103,19 +87,6 @@ double passive_stiffness_quantised(double viscous, double coulomb, double encode
   return encoder_step > 0 ? std::min(held, 2 * coulomb / encoder_step) : held;
 }
 
-WallPlace place_of_wall(double stiffness, double viscous, double coulomb, double encoder_step,
-                        double period, double delay) {
-  return {.beta = viscous / (stiffness * period),
-          .sigma = encoder_step > 0 ? coulomb / (stiffness * encoder_step) : kNone,
-          .delay_periods = delay / period};
-}
-
-WallRegion region_of(const WallPlace& place) {
-  const bool damped = place.beta > 0.5 + place.delay_periods;
-  if (place.sigma > 0.5) return damped ? WallRegion::kComesToRest : WallRegion::kHoldsSmallSwings;
-  return damped ? WallRegion::kFlickers : WallRegion::kGrows;
-}
-
 double swing_speed_limit(double stiffness, double viscous, double coulomb, double latency) {
   const double leak = stiffness * latency - viscous;
   return leak > 0 ? 4 / kPi * coulomb / leak : kNone;
@@ -125,15 +96,6 @@ double restitution(double stiffness, double damping, double mass, double latency
   return std::exp(-kPi * (damping - stiffness * latency) / (2 * std::sqrt(stiffness * mass)));
 }
 
-double late_restitution(double stiffness, double damping, double mass, double latency) {
-  std::complex<double> s(0, std::sqrt(stiffness / mass));
-  for (int i = 0; i < 50; ++i) {
-    const std::complex<double> late = stiffness * std::exp(-s * latency);
-    s -= (mass * s * s + damping * s + late) / (2 * mass * s + damping - latency * late);
-  }
-  return std::exp(kPi * s.real() / s.imag());
-}
-
 double bristle_length(double friction_force, double latency, double damping, double encoder_step,
                       double coulomb) {
   // The factor covers the edge that encoder steps move out by up to 1.29 [STABILITY 2.3].
@@ -141,6 +103,26 @@ double bristle_length(double friction_force, double latency, double damping, dou
   const double coarse = encoder_step > 0 ? friction_force * encoder_step / (2 * coulomb) : 0;
   return std::max(late, coarse);
 }
+
+namespace {
+
+/// Returns the largest absolute value of the matrix' eigenvalues, as the limit of |A^n|^(1/n)
+/// (Gelfand's formula) at n = 2^60; not a number if an entry is none. Eigen's solver says the same,
+/// and takes as long to build as all else here.
+double spectral_radius(Eigen::MatrixXd power) {
+  double exponent = 0, share = 1;
+  for (int squared = 0; squared < 60; ++squared) {
+    const double norm = power.norm();
+    if (!(norm > 0) || !std::isfinite(norm)) return norm;
+    exponent += share * std::log(norm);
+    power /= norm;
+    power = power.lazyProduct(power).eval();
+    share *= 0.5;
+  }
+  return std::exp(exponent);
+}
+
+}  // namespace
 
 double growth_per_tick(const SampledWall& wall) {
   const int whole = static_cast<int>(std::floor(wall.delay / wall.period + 1e-9));
@@ -170,7 +152,11 @@ double growth_per_tick(const SampledWall& wall) {
     state[4] = estimate;
     tick.col(column) = state;
   }
-  return Eigen::EigenSolver<Eigen::MatrixXd>(tick, false).eigenvalues().cwiseAbs().maxCoeff();
+  // The same map of states all in metres, whose entries lie not far apart.
+  const double of_velocity = wall.period, of_force = wall.period * wall.period / wall.mass;
+  Eigen::VectorXd metres = Eigen::VectorXd::Constant(size, of_force);
+  metres.head<5>() << 1, of_velocity, of_force, 1, of_velocity;
+  return spectral_radius(metres.asDiagonal() * tick * metres.cwiseInverse().asDiagonal());
 }
 
 double stiffness_edge(SampledWall wall) {

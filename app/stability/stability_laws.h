@@ -15,45 +15,16 @@ namespace thimble::app {
 /// and K sin u = b w. Above `stiffness_limit` by b L / (6 m) of it, for small ones.
 double late_stiffness_limit(double damping, double latency, double mass);
 
-/// Finds the least viscous friction of a device, N s/m, with which a wall is passive to any passive
-/// hand: max over angles of (K T / 2) sin((d + 1/2) a) / sin(a / 2) - B cos((1 + d) a), with d the
-/// delay in periods [STABILITY 1.2, Colgate and Schenkel; form with delay derived there].
-double passive_damping(double stiffness, double damping, double period, double delay = 0);
-
-/// Does the same for a wall without delay whose velocity comes from a low-pass of time constant
-/// `lag` (s): K T / 2 + B T / (T + 2 lag), or K T / 2 + |B| for B < 0 [STABILITY 1.2].
-double passive_damping_filtered(double stiffness, double damping, double period, double lag);
-
-/// Finds the stiffness that is passive with `wall_damping` in front of `viscous` friction, N/m;
-/// 0 if none is. The inverse of `passive_damping` in K.
+/// Returns the largest stiffness with which a wall is passive to any passive hand, N/m; 0 if none
+/// is. At each angle a it asks for (K T / 2) sin((d + 1/2) a) / sin(a / 2) - B cos((1 + d) a) <= b,
+/// with `wall_damping` B, `viscous` friction b of the device and d the delay in periods
+/// [STABILITY 1.2, Colgate and Schenkel; form with delay derived there].
 double passive_stiffness(double viscous, double wall_damping, double period, double delay = 0);
 
 /// Finds the stiffness that is passive with coarse encoders, min(2 b / T, 2 c / d), N/m
 /// [STABILITY 1.3, Abbott and Okamura]. Without encoder steps the second bound falls away.
 double passive_stiffness_quantised(double viscous, double coulomb, double encoder_step,
                                    double period);
-
-/// Says what a wall does after a start from anywhere [STABILITY 1.4, Diolaiti et al.].
-enum class WallRegion {
-  kComesToRest,       ///< From every start.
-  kFlickers,          ///< Ends in a cycle of a few encoder counts.
-  kHoldsSmallSwings,  ///< Comes to rest from slow starts, grows above `swing_speed_limit`.
-  kGrows,             ///< Flickers, then grows.
-};
-
-/// Is the place of a wall in the map of [STABILITY 1.4]: beta = b / (K T), sigma = c / (K d).
-struct WallPlace {
-  double beta = 0;
-  double sigma = 0;
-  double delay_periods = 0;
-};
-
-/// Finds where a wall lies. Without encoder steps sigma is infinite.
-WallPlace place_of_wall(double stiffness, double viscous, double coulomb, double encoder_step,
-                        double period, double delay = 0);
-
-/// Tells what a wall at this place does; the corners lie at beta = 1/2 + d and sigma = 1/2.
-WallRegion region_of(const WallPlace& place);
 
 /// Finds the speed of a swing above which dry friction holds it no more, m/s:
 /// (4 / pi) c / (K L - b) [STABILITY 1.4]; infinite where K L <= b. `latency` as `latency_of`.
@@ -62,11 +33,6 @@ double swing_speed_limit(double stiffness, double viscous, double coulomb, doubl
 /// Finds the mean restitution of an impact of a free mass, exp(-pi (b + B - K L) / (2 sqrt(K m)))
 /// [STABILITY 1.5]; above 1 the wall gives energy. `damping` is b + B.
 double restitution(double stiffness, double damping, double mass, double latency);
-
-/// Does the same from the slowest root s of m s^2 + b s + K e^{-s L} = 0, as exp(pi Re s / Im s):
-/// what lateness does to the swing's period is in it. For K L^2 / m up to 0.5; the plain law is 1 %
-/// off at 0.08.
-double late_restitution(double stiffness, double damping, double mass, double latency);
 
 /// Finds how far a friction's bristle must give before it slides, m:
 /// max(1.5 F L / b, F d / (2 c)) [STABILITY 2.3]; `damping` b of arm and hand, `coulomb` c of the

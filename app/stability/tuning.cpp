@@ -1,13 +1,14 @@
 #include "stability/tuning.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "printed.h"
+#include "energy_choice.h"
 #include "stability/rest_warnings.h"
 #include "stability/wall_trial.h"
-#include "thimble/scene/energy_choice.h"
 
 namespace thimble::app {
 namespace {
@@ -70,13 +71,12 @@ std::string advice(const scene::Scene& scene, const scene::SceneObject& object,
                    const Carried& carried) {
   const double limit = carried.stiffness_safe;
   const double rate = scene.rate * std::ceil(object.stiffness / carried.stiffness_exact);
-  return scene::printed(
-      "%s asks for %.0f N/m, but arm, loop and hand carry %.0f N/m (damping of %.3g N s/m over a "
-      "latency of %.2f ms): set its stiffness to %.0f N/m or less, or run at %.0f Hz if the arm's "
-      "delay of %.1f ms falls with it.",
-      object.name.c_str(), object.stiffness, carried.stiffness_exact,
-      carried.damping + object.damping, 1e3 * carried.latency, limit, rate,
-      1e3 * carried.times.delay);
+  return fmt::format(
+      "{} asks for {:.0f} N/m, but arm, loop and hand carry {:.0f} N/m (damping of {:.3g} N s/m "
+      "over a latency of {:.2f} ms): set its stiffness to {:.0f} N/m or less, or run at {:.0f} Hz "
+      "if the arm's delay of {:.1f} ms falls with it.",
+      object.name, object.stiffness, carried.stiffness_exact, carried.damping + object.damping,
+      1e3 * carried.latency, limit, rate, 1e3 * carried.times.delay);
 }
 
 }  // namespace
@@ -154,24 +154,24 @@ TuneResult tune(const scene::Scene& scene, const TuneOptions& options) {
   const scene::ArmFile& arm = scene.arm;
   const scene::LoopTimes times = loop_times(arm, scene.rate, options.period_spread);
   const Carried bare = carried_by(arm, times, 1000, 0);
+  result.text += fmt::format(
+      "{} at {:.0f} Hz, with the hand of its file ({:.3g} kg, {:.3g} N/m, {:.3g} N s/m):\n",
+      arm.name, scene.rate, arm.simulated.hand.mass, arm.simulated.hand.stiffness,
+      arm.simulated.hand.damping);
   result.text +=
-      scene::printed("%s at %.0f Hz, with the hand of its file (%.3g kg, %.3g N/m, %.3g N s/m):\n",
-                     arm.name.c_str(), scene.rate, arm.simulated.hand.mass,
-                     arm.simulated.hand.stiffness, arm.simulated.hand.damping);
-  result.text +=
-      scene::printed("Latency   %.3f ms: half a period %.3f, jitter %.3f, wire %.3f.\n",
-                     1e3 * bare.latency, 0.5e3 * times.period,
-                     1e3 * (bare.latency - times.period / 2 - times.delay), 1e3 * times.delay);
-  result.text += scene::printed(
-      "Tip       %.3g kg, %.3g N s/m, %.3g N of dry friction; one step of the encoders is up to "
-      "%.0f um.\n",
+      fmt::format("Latency   {:.3f} ms: half a period {:.3f}, jitter {:.3f}, wire {:.3f}.\n",
+                  1e3 * bare.latency, 0.5e3 * times.period,
+                  1e3 * (bare.latency - times.period / 2 - times.delay), 1e3 * times.delay);
+  result.text += fmt::format(
+      "Tip       {:.3g} kg, {:.3g} N s/m, {:.3g} N of dry friction; one step of the encoders is up "
+      "to {:.0f} um.\n",
       bare.tip.mass, bare.tip.damping, arm.simulated.plant.coulomb, 1e6 * bare.tip.encoder_step);
-  result.text += scene::printed(
-      "Passive   for any hand up to %.3g N/m (no arm of this kind is used there); without a hand "
-      "dry friction holds 1000 N/m up to swings of %.3f m/s.\n",
+  result.text += fmt::format(
+      "Passive   for any hand up to {:.3g} N/m (no arm of this kind is used there); without a hand "
+      "dry friction holds 1000 N/m up to swings of {:.3f} m/s.\n",
       bare.passive, bare.held_speed);
-  result.text += scene::printed(
-      "Friction  a bristle of up to %.0f N/m is quiet: z_max >= %.3g mm for each newton.\n",
+  result.text += fmt::format(
+      "Friction  a bristle of up to {:.0f} N/m is quiet: z_max >= {:.3g} mm for each newton.\n",
       bare.bristle_stiffness, 1e3 / bare.bristle_stiffness);
   result.figures = {{"latency", 1e3 * bare.latency, "ms", ""},
                     {"encoder_step", 1e6 * bare.tip.encoder_step, "um", ""},
@@ -181,11 +181,11 @@ TuneResult tune(const scene::Scene& scene, const TuneOptions& options) {
   for (const scene::SceneObject& object : scene.objects) {
     if (object.build_field || !(object.stiffness > 0)) continue;
     const Carried carried = carried_by(arm, times, object.stiffness, object.damping);
-    result.text += scene::printed("%s: %.0f N/m and %.3g N s/m are asked for.\n",
-                                  object.name.c_str(), object.stiffness, object.damping);
+    result.text += fmt::format("{}: {:.0f} N/m and {:.3g} N s/m are asked for.\n", object.name,
+                               object.stiffness, object.damping);
     result.text +=
-        scene::printed("  law       (b + B) / L = %.0f N/m; the exact linear loop %.0f N/m\n",
-                       carried.stiffness_law, carried.stiffness_exact);
+        fmt::format("  law       (b + B) / L = {:.0f} N/m; the exact linear loop {:.0f} N/m\n",
+                    carried.stiffness_law, carried.stiffness_exact);
     const std::string name = object.name;
     result.figures.push_back({name + ".asked", object.stiffness, "N/m", ""});
     result.figures.push_back({name + ".law", carried.stiffness_law, "N/m", ""});
@@ -198,9 +198,9 @@ TuneResult tune(const scene::Scene& scene, const TuneOptions& options) {
           try_walls(arm, scene.rate, object.damping, carried, options.places_per_side);
       if (edges.walls > 0) {
         edge = std::min(edge, edges.as_is);
-        result.text += scene::printed(
-            "  simulated %.0f N/m without dry friction and steps, %.0f N/m as the arm is; the "
-            "worst of %d walls all over the workspace, through wire and gate\n",
+        result.text += fmt::format(
+            "  simulated {:.0f} N/m without dry friction and steps, {:.0f} N/m as the arm is; the "
+            "worst of {} walls all over the workspace, through wire and gate\n",
             edges.linear, edges.as_is, edges.walls);
         result.figures.push_back({name + ".simulated_linear", edges.linear, "N/m", ""});
         result.figures.push_back({name + ".simulated", edges.as_is, "N/m", ""});
@@ -209,27 +209,25 @@ TuneResult tune(const scene::Scene& scene, const TuneOptions& options) {
       }
     }
     const device_sim::HandSettings& hand = carried.worst_hand;
-    result.text += scene::printed(
-        "  hands     of a third to three times these constants: %.0f N/m; the worst has %.3g kg, "
-        "%.3g N/m, %.3g N s/m\n",
+    result.text += fmt::format(
+        "  hands     of a third to three times these constants: {:.0f} N/m; the worst has {:.3g} "
+        "kg, {:.3g} N/m, {:.3g} N s/m\n",
         carried.stiffness_any_hand, hand.mass, hand.stiffness, hand.damping);
     result.figures.push_back({name + ".any_hand", carried.stiffness_any_hand, "N/m", ""});
     result.figures.push_back(
         {name + ".margin_any_hand", carried.stiffness_any_hand / object.stiffness, "1", ">= 1"});
     if (object.stiffness > carried.stiffness_any_hand &&
         object.stiffness <= carried.stiffness_exact) {
-      result.text += scene::printed(
-          "Warning   %s is carried by the hand of the arm's file, but a looser one (%.3g N s/m) "
-          "may "
-          "tremble on it: set its stiffness to %.0f N/m or less, or its damping higher.\n",
-          name.c_str(), hand.damping, carried.stiffness_safe);
+      result.text += fmt::format(
+          "Warning   {} is carried by the hand of the arm's file, but a looser one ({:.3g} N s/m) "
+          "may tremble on it: set its stiffness to {:.0f} N/m or less, or its damping higher.\n",
+          name, hand.damping, carried.stiffness_safe);
     }
     const double safe = std::min(kShare * edge, carried.stiffness_safe);
     const double margin = edge / object.stiffness;
-    result.figures.push_back({name + ".margin", margin, "1", scene::printed(">= %g", 1 / kShare)});
-    result.text +=
-        scene::printed("  margin    %.2f; up to %.0f N/m is safe to ask for here%s\n", margin, safe,
-                       object.stiffness <= safe ? "." : ", so ask for less.");
+    result.figures.push_back({name + ".margin", margin, "1", fmt::format(">= {:g}", 1 / kShare)});
+    result.text += fmt::format("  margin    {:.2f}; up to {:.0f} N/m is safe to ask for here{}\n",
+                               margin, safe, object.stiffness <= safe ? "." : ", so ask for less.");
   }
   for (const std::string& warning : stability_warnings(scene)) {
     result.text += "Warning   " + warning + "\n";

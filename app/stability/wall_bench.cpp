@@ -4,10 +4,10 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
-#include <stdexcept>
 #include <utility>
 
-#include "thimble/driver/arms/hfab/hfab_models.h"
+#include "arms/hfab/hfab_models.h"
+#include "simulated_arm.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/device.h"
 #include "thimble/scene/arm_simulation.h"
@@ -126,7 +126,7 @@ driver::Result<ArmDirection> direction_at_home(const scene::ArmFile& arm, const 
   return along(way_W, *home);
 }
 
-WallRun run_wall(const scene::ArmFile& file, const WallCase& wall) {
+driver::Result<WallRun> run_wall(const scene::ArmFile& file, const WallCase& wall) {
   const scene::ArmFile arm = arm_of(file, wall);
   const Vector3d n_W = wall.direction.n_W;
   const Vector3d home_W = wall.direction.p_WT;
@@ -137,10 +137,12 @@ WallRun run_wall(const scene::ArmFile& file, const WallCase& wall) {
     way.emplace_back(wall.hand_end, wish(wall.hand_to));
   }
   auto simulation = scene::ArmSimulation::make(arm, way);
-  if (!simulation) throw std::invalid_argument(simulation.error().message);
+  if (!simulation) return simulation.error();
   const device_sim::SimulatedArm* const board = (*simulation)->board_arm();
   if (board == nullptr) {
-    throw std::invalid_argument(arm.name + ": its board does not report by itself.");
+    return driver::Error{arm.name +
+                         ": its board does not report by itself, so no wall can be measured with "
+                         "it; take another arm file (vintage_phantom.yaml is one)."};
   }
   driver::VirtualClock clock;
   auto opened = driver::Device::open((*simulation)->wire(clock), (*simulation)->protocol(),
@@ -153,11 +155,9 @@ WallRun run_wall(const scene::ArmFile& file, const WallCase& wall) {
                                       .velocity_corner_frequency = arm.velocity_corner_frequency,
                                       .silence_limit_ns = 1'000'000'000},
                                      clock.now_ns());
-  if (!opened) throw std::invalid_argument(opened.error().message);
+  if (!opened) return opened.error();
   driver::Device& device = **opened;
-  if (auto active = device.activate(); !active) {
-    throw std::invalid_argument(active.error().message);
-  }
+  if (auto active = device.activate(); !active) return active.error();
 
   WallRun run;
   const double mass = wall.tip.mass + wall.hand.mass;

@@ -68,8 +68,7 @@ struct WallRun {
 };
 
 /// Runs a wall through the whole way: simulated arm, wire, firmware, driver, gate; virtual time.
-/// Throws std::invalid_argument if the arm cannot be simulated so. Real-time: never from the servo
-/// thread.
-WallRun run_wall(const scene::ArmFile& arm, const WallCase& wall);
+/// Fails if the arm cannot be simulated so. Real-time: never from the servo thread.
+driver::Result<WallRun> run_wall(const scene::ArmFile& arm, const WallCase& wall);
 
 }  // namespace thimble::app

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 #include "stability/wall_bench.h"
 #include "thimble/scene/arm_simulation.h"
@@ -69,18 +68,15 @@ driver::Result<WallTouch> press_on_wall(const scene::ArmFile& arm, const WallTri
                       .hand_end = kBegin + (kAway + deep) / trial.speed,
                       .duration = kEnd,
                       .give_up = HUGE_VAL};
-  try {
-    const WallRun run = run_wall(arm, wall);
-    return WallTouch{.swing = swing_between(run, kEnd - kWatched, HUGE_VAL),
-                     .swing_before = swing_between(run, kEnd - kWatched - kBefore, kEnd - kBefore),
-                     .force_max = *std::max_element(run.f.begin(), run.f.end()),
-                     .energy_given = *std::max_element(run.work.begin(), run.work.end()),
-                     .force_rms = force_rms(run, kEnd - kWatched),
-                     .fault = run.fault,
-                     .gate = run.gate};
-  } catch (const std::invalid_argument& error) {
-    return driver::Error{error.what()};
-  }
+  const auto run = run_wall(arm, wall);
+  if (!run) return run.error();
+  return WallTouch{.swing = swing_between(*run, kEnd - kWatched, HUGE_VAL),
+                   .swing_before = swing_between(*run, kEnd - kWatched - kBefore, kEnd - kBefore),
+                   .force_max = *std::max_element(run->f.begin(), run->f.end()),
+                   .energy_given = *std::max_element(run->work.begin(), run->work.end()),
+                   .force_rms = force_rms(*run, kEnd - kWatched),
+                   .fault = run->fault,
+                   .gate = run->gate};
 }
 
 driver::Result<double> simulated_edge(const scene::ArmFile& arm, WallTrial trial, double guess,

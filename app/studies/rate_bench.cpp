@@ -1,13 +1,14 @@
 #include "studies/rate_bench.h"
 
+#include <fmt/core.h>
+
 #include <atomic>
 #include <cmath>
-#include <cstdio>
 #include <memory>
 #include <string>
 
-#include "servo_thread.h"
-#include "thimble/scene/meshes.h"
+#include "thimble/scene/shipped_files.h"
+#include "thimble/session/servo_thread.h"
 #include "thimble/session/session.h"
 
 namespace thimble::app {
@@ -26,39 +27,36 @@ void change_rate(scene::Scene& scene, double rate) {
 }
 
 std::string sentence_of(const RateBench& bench, const RateVerdict& verdict) {
-  char text[400];
   const double period = 1e6 / bench.rate;
   if (!bench.trouble.empty()) return "Not enough: " + bench.trouble;
   if (verdict.enough) {
-    std::snprintf(text, sizeof text,
-                  "Enough: 999 of 1000 ticks wake up within %.1f us and work for %.1f us of their "
-                  "%.0f us; %.0f %% are left, and uneven ticks cost %.1f %% of the stiffness.",
-                  verdict.late_us, verdict.work_us, period, 100 * verdict.headroom,
-                  100 * verdict.stiffness_lost);
-    return text;
+    return fmt::format(
+        "Enough: 999 of 1000 ticks wake up within {:.1f} us and work for {:.1f} us of their {:.0f} "
+        "us; {:.0f} % are left, and uneven ticks cost {:.1f} % of the stiffness.",
+        verdict.late_us, verdict.work_us, period, 100 * verdict.headroom,
+        100 * verdict.stiffness_lost);
   }
   if (verdict.work_us >= period) {
-    std::snprintf(text, sizeof text,
-                  "Not enough, because the work alone takes %.1f us of %.0f us in 1 of 1000 ticks: "
-                  "a simpler scene or --quality draft would help.",
-                  verdict.work_us, period);
-  } else if (verdict.headroom < 0) {
-    std::snprintf(text, sizeof text,
-                  "Not enough, because 1 of 1000 ticks wakes up %.0f us late, with %.1f us of work "
-                  "in a tick of %.0f us: %s.",
-                  verdict.late_us, verdict.work_us, period,
-                  bench.priority ? "other work on this machine, or a kernel that is not real-time, "
-                                   "stands in the way"
-                                 : "the loop has no real-time priority (thimble doctor)");
-  } else {
-    std::snprintf(text, sizeof text,
-                  "Not enough, because uneven ticks (the longest %.1f ms) cost %.0f %% of the "
-                  "stiffness that is stable, which can be felt: %s.",
-                  1e-6 * static_cast<double>(bench.period.max_ns()), 100 * verdict.stiffness_lost,
-                  bench.priority ? "leave this machine to the loop alone"
-                                 : "give the loop real-time priority (thimble doctor)");
+    return fmt::format(
+        "Not enough, because the work alone takes {:.1f} us of {:.0f} us in 1 of 1000 ticks: a "
+        "simpler scene or --quality draft would help.",
+        verdict.work_us, period);
   }
-  return text;
+  if (verdict.headroom < 0) {
+    return fmt::format(
+        "Not enough, because 1 of 1000 ticks wakes up {:.0f} us late, with {:.1f} us of work in a "
+        "tick of {:.0f} us: {}.",
+        verdict.late_us, verdict.work_us, period,
+        bench.priority ? "other work on this machine, or a kernel that is not real-time, "
+                         "stands in the way"
+                       : "the loop has no real-time priority (thimble doctor)");
+  }
+  return fmt::format(
+      "Not enough, because uneven ticks (the longest {:.1f} ms) cost {:.0f} % of the stiffness "
+      "that is stable, which can be felt: {}.",
+      1e-6 * static_cast<double>(bench.period.max_ns()), 100 * verdict.stiffness_lost,
+      bench.priority ? "leave this machine to the loop alone"
+                     : "give the loop real-time priority (thimble doctor)");
 }
 
 }  // namespace

@@ -79,12 +79,4 @@ std::vector<SpectralLine> spectrum(std::span<const double> signal, double rate) 
   return lines;
 }
 
-SpectralLine strongest(std::span<const SpectralLine> lines) {
-  SpectralLine best;
-  for (const SpectralLine& line : lines) {
-    if (line.amplitude > best.amplitude) best = line;
-  }
-  return best;
-}
-
 }  // namespace thimble::app

@@ -28,7 +28,4 @@ struct SpectralLine {
 /// Finds the amplitudes from one line above 0 up to half the rate, mean taken away, no window.
 std::vector<SpectralLine> spectrum(std::span<const double> signal, double rate);
 
-/// Finds the strongest line; of a signal without any, {0, 0}.
-SpectralLine strongest(std::span<const SpectralLine> lines);
-
 }  // namespace thimble::app

@@ -13,7 +13,7 @@ namespace {
 constexpr std::array kStudies{
     Study{"cost", "what each way of contact and each effect costs per tick, and what it buys",
           study_cost},
-    Study{"friction", "how friction trembles on coarse encoders, and which ways cure it",
+    Study{"friction", "limit cycles of friction on coarse encoders, and what cures them",
           study_friction},
     Study{"texture", "whether a stroke over a texture feels the waves that were asked for",
           study_texture},

@@ -59,7 +59,7 @@ bool LiveScene::update(DrawnMoment& moment) {
   moment.poses.resize(scene_.objects.size());
   moment.shapes.resize(scene_.objects.size());
   if (!reader_.newest(moment.tick)) return false;
-  scene::ScenePoses poses;
+  session::ScenePoses poses;
   if (reader_.poses(poses)) {
     for (std::size_t i = 0; i < poses.count; ++i) {
       const auto object = static_cast<std::size_t>(poses.object[i]);

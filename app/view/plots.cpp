@@ -1,12 +1,12 @@
 #include "view/plots.h"
 
+#include <fmt/core.h>
 #include <imgui.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdio>
 #include <vector>
 
 namespace thimble::app::view {
@@ -26,19 +26,18 @@ double round_up(double value) {
 }
 
 /// Draws the box of a plot, its title and the two ends of its axis; gives the inner part.
-ScreenPart draw_box(ImDrawList& list, const ScreenPart& part, const char* title, const char* top,
-                    const char* unit) {
+ScreenPart draw_box(ImDrawList& list, const ScreenPart& part, const char* title,
+                    const std::string& top, const char* unit) {
   const float line = ImGui::GetFontSize();
   const float pad = 0.35F * line;
   const ScreenPart inner = {part.x, part.y + 1.5F * line, part.width, part.height - 1.5F * line};
   list.AddRectFilled({inner.x, inner.y}, {inner.x + inner.width, inner.y + inner.height},
                      packed(kSkyColour));
   list.AddText({part.x, part.y + 0.2F * line}, packed(kTextColour), title);
-  char text[64];
-  std::snprintf(text, sizeof text, "%s %s", top, unit);
-  const ImVec2 size = ImGui::CalcTextSize(text);
+  const std::string text = fmt::format("{} {}", top, unit);
+  const ImVec2 size = ImGui::CalcTextSize(text.c_str());
   list.AddText({part.x + part.width - size.x, part.y + 0.2F * line}, packed(kQuietTextColour),
-               text);
+               text.c_str());
   for (int k = 1; k < 4; ++k) {
     const float y = inner.y + inner.height * static_cast<float>(k) / 4;
     list.AddLine({inner.x, y}, {inner.x + inner.width, y}, packed(kGridColour, 0.25F));
@@ -76,8 +75,7 @@ void Plots::add(const driver::TickRecord& tick) {
 
 void Plots::draw_line(ImDrawList& list, const ScreenPart& part, const Look& look,
                       float Sample::*value) const {
-  char top[32];
-  std::snprintf(top, sizeof top, "%g", look.top);
+  const std::string top = fmt::format("{:g}", look.top);
   const ScreenPart inner = draw_box(list, part, look.title, top, look.unit);
   if (samples_.empty()) return;
   // From the least to the most within each column of pixels, so that no spike is lost.
@@ -147,8 +145,7 @@ void Plots::draw_periods(ImDrawList& list, const ScreenPart& part, std::int64_t 
     const double last = kBins - 1;
     ++count[static_cast<std::size_t>(std::lround(std::clamp(share * last, 0.0, last)))];
   }
-  char range[64];
-  std::snprintf(range, sizeof range, "%g +/- %g", wanted, reach);
+  const std::string range = fmt::format("{:g} +/- {:g}", wanted, reach);
   const ScreenPart inner = draw_box(list, part, "period", range, "us");
   const int most = std::max(1, *std::max_element(count.begin(), count.end()));
   for (std::size_t i = 0; i < kBins; ++i) {

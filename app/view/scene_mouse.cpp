@@ -71,8 +71,6 @@ void SceneMouse::step(Camera& camera, const Eigen::Vector3d& p_WT, const ScreenP
   if (over && io.MouseWheel != 0) {
     camera.zoom(std::pow(kZoom, static_cast<double>(io.MouseWheel)));
   }
-  camera_moved_ |=
-      (drag_ != Drag::kNone && (right != 0 || down != 0)) || (over && io.MouseWheel != 0);
 }
 
 }  // namespace thimble::app::view

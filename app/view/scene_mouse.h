@@ -26,9 +26,6 @@ class SceneMouse {
 
   /// Tells where the hand shall be.
   const HandWish& hand() const { return hand_; }
-  /// Tells whether the user has moved the camera since the last `forget`.
-  bool camera_moved() const { return camera_moved_; }
-  void forget() { camera_moved_ = false; }
 
  private:
   enum class Drag { kNone, kOrbit, kPan, kHand };
@@ -39,7 +36,6 @@ class SceneMouse {
   HandWish hand_;
   Eigen::Vector3d p_WGrip_{0, 0, 0};  // where the hand was taken, with the wheel's way, m
   Eigen::Vector2d grip_{0, 0};        // pixel from which it moves
-  bool camera_moved_ = false;
 };
 
 }  // namespace thimble::app::view

@@ -5,8 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "thimble/session/dent_record.h"
-#include "view/gl/shaders.h"
+#include "bent_mesh.h"
 
 namespace thimble::app::view {
 namespace {
@@ -61,15 +60,10 @@ struct ScenePainter::ViewBlock {
   Eigen::Vector4f eye, key, sky, ground, grid, ground_place;
 };
 
-ScenePainter::ScenePainter(DrawnScene scene)
-    : scene_(std::move(scene)),
-      surface_(shaders::surface_vertex(), shaders::surface_fragment()),
-      dent_(shaders::dent_vertex(), shaders::surface_fragment()),
-      shadow_(shaders::shadow_vertex(), shaders::shadow_fragment()),
-      plain_(shaders::plain_vertex(), shaders::plain_fragment()),
-      backdrop_(shaders::backdrop_vertex(), shaders::backdrop_fragment()),
-      ground_(shaders::ground_vertex(), shaders::ground_fragment()) {
-  for (const GlProgram* program : {&surface_, &dent_, &shadow_, &plain_, &backdrop_, &ground_}) {
+ScenePainter::ScenePainter(DrawnScene scene, ScenePrograms programs)
+    : scene_(std::move(scene)), programs_(std::move(programs)) {
+  for (const GlProgram* program : {&programs_.surface, &programs_.dent, &programs_.shadow,
+                                   &programs_.plain, &programs_.backdrop, &programs_.ground}) {
     const GLuint block = glGetUniformBlockIndex(**program, "View");
     if (block != GL_INVALID_INDEX) glUniformBlockBinding(**program, block, kViewBinding);
   }
@@ -174,19 +168,19 @@ void ScenePainter::paint_shadows(const std::vector<Solid>& solids) {
   glBindFramebuffer(GL_FRAMEBUFFER, *shadow_frame_);
   glViewport(0, 0, kShadowPixels, kShadowPixels);
   glClear(GL_DEPTH_BUFFER_BIT);
-  glUseProgram(*shadow_);
+  glUseProgram(*programs_.shadow);
   // Pushed back a little, or surfaces would cast shadows on themselves.
   glEnable(GL_POLYGON_OFFSET_FILL);
   glPolygonOffset(2.5F, 6.0F);
   for (std::size_t i = 0; i < models_.size(); ++i) {
     if (scene_.objects[i].endless) continue;
-    set(shadow_, "model", places_[i]);
+    set(programs_.shadow, "model", places_[i]);
     shown(i).draw_mesh();
     shown(i).draw_dent();
   }
   for (const Solid& solid : solids) {
     if (!solid.casts_shadow) continue;
-    set(shadow_, "model", solid.model);
+    set(programs_.shadow, "model", solid.model);
     solids_.model(solid.kind).draw_mesh();
   }
   glDisable(GL_POLYGON_OFFSET_FILL);
@@ -198,7 +192,7 @@ float ScenePainter::shadow_offset() const {
 }
 
 void ScenePainter::paint_surfaces(const PaintChoice& choice) {
-  for (const GlProgram* program : {&surface_, &dent_}) {
+  for (const GlProgram* program : {&programs_.surface, &programs_.dent}) {
     glUseProgram(**program);
     glUniform1i(program->at("gouraud"), choice.shading == Shading::kGouraud ? 1 : 0);
     glUniform1f(program->at("shadow_strength"), choice.shadows ? 1.0F : 0.0F);
@@ -209,32 +203,32 @@ void ScenePainter::paint_surfaces(const PaintChoice& choice) {
       set(*program, "model", places_[i]);
       set(*program, "normal_matrix", Eigen::Matrix3f(places_[i].block<3, 3>(0, 0)));
       set_colour(*program, object_colour(i), 0.16F);
-      if (program == &surface_) shown(i).draw_mesh();
-      if (program == &dent_) shown(i).draw_dent();
+      if (program == &programs_.surface) shown(i).draw_mesh();
+      if (program == &programs_.dent) shown(i).draw_dent();
     }
   }
 }
 
 void ScenePainter::paint_solids(const std::vector<Solid>& solids) {
-  glUseProgram(*surface_);
-  glUniform1i(surface_.at("gouraud"), 0);
+  glUseProgram(*programs_.surface);
+  glUniform1i(programs_.surface.at("gouraud"), 0);
   for (const Solid& solid : solids) {
-    set(surface_, "model", solid.model);
-    set(surface_, "normal_matrix", solid.normal_matrix);
-    set_colour(surface_, solid.colour, 0.2F);
+    set(programs_.surface, "model", solid.model);
+    set(programs_.surface, "normal_matrix", solid.normal_matrix);
+    set_colour(programs_.surface, solid.colour, 0.2F);
     solids_.model(solid.kind).draw_mesh();
   }
 }
 
 void ScenePainter::paint_what_shines_through(const std::vector<Solid>& solids) {
-  glUseProgram(*plain_);
-  glUniform1f(plain_.at("nearer"), 0);
+  glUseProgram(*programs_.plain);
+  glUniform1f(programs_.plain.at("nearer"), 0);
   glDepthFunc(GL_GREATER);
   glDepthMask(GL_FALSE);
   for (const Solid& solid : solids) {
     if (!solid.shines_through) continue;
-    set(plain_, "model", solid.model);
-    set_paint(plain_, solid.colour, 0.55F);
+    set(programs_.plain, "model", solid.model);
+    set_paint(programs_.plain, solid.colour, 0.55F);
     // The front only, so that nothing is covered twice.
     glEnable(GL_CULL_FACE);
     solids_.model(solid.kind).draw_mesh();
@@ -246,27 +240,27 @@ void ScenePainter::paint_what_shines_through(const std::vector<Solid>& solids) {
 
 void ScenePainter::paint_edges(const PaintChoice& choice) {
   if (choice.edges == Edges::kOff) return;
-  glUseProgram(*plain_);
-  glUniform1f(plain_.at("nearer"), 0.0008F);
+  glUseProgram(*programs_.plain);
+  glUniform1f(programs_.plain.at("nearer"), 0.0008F);
   glDepthMask(GL_FALSE);
   for (std::size_t i = 0; i < models_.size(); ++i) {
     const bool few = models_[i].triangles() <= kFewTriangles && !scene_.objects[i].stands_for_shape;
     if (scene_.objects[i].endless || (choice.edges == Edges::kAuto && !few)) continue;
-    set(plain_, "model", places_[i]);
-    set_paint(plain_, kTextColour, 0.22F);
+    set(programs_.plain, "model", places_[i]);
+    set_paint(programs_.plain, kTextColour, 0.22F);
     shown(i).draw_edges();
   }
   glDepthMask(GL_TRUE);
 }
 
 void ScenePainter::paint_ground(const PaintChoice& choice) {
-  glUseProgram(*ground_);
+  glUseProgram(*programs_.ground);
   const Eigen::Vector3f colour = linear(
       floor_object_ < 0 ? kGroundColour : object_colour(static_cast<std::size_t>(floor_object_)));
-  glUniform3fv(ground_.at("colour"), 1, colour.data());
-  glUniform1f(ground_.at("shadow_strength"), choice.shadows ? 1.0F : 0.0F);
-  glUniform1i(ground_.at("shadow_samples"), choice.fine ? 4 : 2);
-  glUniform1f(ground_.at("grid_strength"), choice.grid ? 1.0F : 0.0F);
+  glUniform3fv(programs_.ground.at("colour"), 1, colour.data());
+  glUniform1f(programs_.ground.at("shadow_strength"), choice.shadows ? 1.0F : 0.0F);
+  glUniform1i(programs_.ground.at("shadow_samples"), choice.fine ? 4 : 2);
+  glUniform1f(programs_.ground.at("grid_strength"), choice.grid ? 1.0F : 0.0F);
   glBindVertexArray(*nothing_);
   // Its depth counts, so that what is below it is not outlined above.
   glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
@@ -284,9 +278,9 @@ void ScenePainter::paint_panes(const std::vector<Pane>& panes, const Camera& cam
   };
   std::sort(order.begin(), order.end(),
             [&](const Pane* a, const Pane* b) { return distance(a) > distance(b); });
-  glUseProgram(*plain_);
-  glUniform1f(plain_.at("nearer"), 0.0005F);
-  set(plain_, "model", Eigen::Matrix4f(Eigen::Matrix4f::Identity()));
+  glUseProgram(*programs_.plain);
+  glUniform1f(programs_.plain.at("nearer"), 0.0005F);
+  set(programs_.plain, "model", Eigen::Matrix4f(Eigen::Matrix4f::Identity()));
   glDepthMask(GL_FALSE);
   glBindVertexArray(*pane_array_);
   for (const Pane* pane : order) {
@@ -294,9 +288,9 @@ void ScenePainter::paint_panes(const std::vector<Pane>& panes, const Camera& cam
     for (const Eigen::Vector3d& corner : pane->corners_W) corners.push_back(corner.cast<float>());
     glBindBuffer(GL_ARRAY_BUFFER, *pane_vertices_);
     glBufferData(GL_ARRAY_BUFFER, 4 * sizeof(Eigen::Vector3f), corners.data(), GL_STREAM_DRAW);
-    set_paint(plain_, pane->colour, 0.38F);
+    set_paint(programs_.plain, pane->colour, 0.38F);
     glDrawArrays(GL_TRIANGLE_FAN, 0, 4);
-    set_paint(plain_, pane->colour, 0.9F);
+    set_paint(programs_.plain, pane->colour, 0.9F);
     glDrawArrays(GL_LINE_LOOP, 0, 4);
   }
   glDepthMask(GL_TRUE);
@@ -320,7 +314,7 @@ std::vector<Label> ScenePainter::paint(const DrawnMoment& moment, const Camera& 
   glActiveTexture(GL_TEXTURE0);
   glBindTexture(GL_TEXTURE_2D, *shadow_map_);
   glDisable(GL_DEPTH_TEST);
-  glUseProgram(*backdrop_);
+  glUseProgram(*programs_.backdrop);
   glBindVertexArray(*nothing_);
   glDrawArrays(GL_TRIANGLES, 0, 3);
   glEnable(GL_DEPTH_TEST);

@@ -8,6 +8,7 @@
 #include "view/drawn_scene.h"
 #include "view/gl/canvas.h"
 #include "view/gl/gl_objects.h"
+#include "view/gl/scene_programs.h"
 #include "view/gl/solids.h"
 #include "view/gl/surface_model.h"
 #include "view/touch_marks.h"
@@ -49,7 +50,7 @@ struct PaintChoice {
 /// thread.
 class ScenePainter {
  public:
-  explicit ScenePainter(DrawnScene scene);
+  ScenePainter(DrawnScene scene, ScenePrograms programs);
 
   const DrawnScene& scene() const { return scene_; }
 
@@ -73,7 +74,7 @@ class ScenePainter {
   const SurfaceModel& shown(std::size_t object) const;
 
   DrawnScene scene_;
-  GlProgram surface_, dent_, shadow_, plain_, backdrop_, ground_;
+  ScenePrograms programs_;
   std::vector<SurfaceModel> models_;
   std::vector<std::shared_ptr<const render::TriangleMesh>> shapes_;  // as they are in models_
   std::unique_ptr<SurfaceModel> naive_;  // of the object that is bent, if it is drawn so

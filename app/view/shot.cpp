@@ -1,36 +1,33 @@
 #include "view/shot.h"
 
+#include <fmt/core.h>
 #include <imgui.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
-#include "thimble/driver/servo_loop.h"
+#include "observers/dent_record.h"
+#include "setup.h"
+#include "share/shared_run.h"
 
 namespace thimble::app::view {
 namespace {
 
-constexpr std::int64_t kDentFrame = 16'000'000;  // ns: as often dents are drawn (DentRecord)
+/// An observer that looks at a run tick by tick, on its virtual clock.
+class Watcher final : public session::TickObserver {
+ public:
+  explicit Watcher(std::function<void(const driver::TickRecord&)> look) : look_(std::move(look)) {}
+  void take(const driver::TickRecord& record) noexcept override { look_(record); }
 
-/// Is who watches a run tick by tick, beside the session's own records.
-struct Watcher {
-  session::Session& session;
-  std::function<void(const driver::TickRecord&)> look;
-  void operator()(const driver::TickRecord& record) noexcept {
-    session(record);
-    look(record);
-  }
+ private:
+  std::function<void(const driver::TickRecord&)> look_;
 };
 
+/// Runs a session that has not begun; its last observer is `look`.
 void watch(session::Session& session, std::function<void(const driver::TickRecord&)> look) {
-  const std::atomic<bool> stop{false};
-  Watcher watcher{session, std::move(look)};
-  driver::run_servo(session.device(), session.clock(), driver::ForceLaw(session.touch()),
-                    driver::TickSink(watcher),
-                    {.period_ns = session.period_ns(), .ticks = session.ticks_planned()}, stop);
+  Watcher watcher(std::move(look));
+  if (session.add_observer(watcher)) session.run();
 }
 
 /// Sizes are chosen for a picture as high as this.
@@ -63,15 +60,15 @@ driver::Result<std::unique_ptr<PlayedScene>> PlayedScene::open(
 }
 
 void PlayedScene::play(const std::vector<double>& times, const Look& look) {
-  const auto every =
-      static_cast<std::uint64_t>(std::max<std::int64_t>(1, kDentFrame / session_->period_ns()));
+  const std::int64_t period_ns = session_->setup().period_ns();
+  const std::uint64_t every = session::DentRecord::ticks_between(period_ns);
   std::vector<std::uint64_t> ticks;
   for (const double time : times) {
-    const double tick = time * 1e9 / static_cast<double>(session_->period_ns());
+    const double tick = time * 1e9 / static_cast<double>(period_ns);
     const auto rounded =
         static_cast<std::uint64_t>(std::max(0.0, std::round(tick / static_cast<double>(every)))) *
         every;
-    ticks.push_back(std::min(rounded, (session_->ticks_planned() - 1) / every * every));
+    ticks.push_back(std::min(rounded, (session_->setup().ticks() - 1) / every * every));
   }
   const auto moment = std::make_unique<DrawnMoment>();
   Plots plots;
@@ -89,8 +86,8 @@ driver::Result<double> strongest_moment(const std::filesystem::path& scene,
                                         const session::SessionOptions& options) {
   auto session = session::Session::open(scene, options);
   if (!session) return session.error();
-  const double duration = static_cast<double>((*session)->ticks_planned()) *
-                          static_cast<double>((*session)->period_ns()) * 1e-9;
+  const auto period_ns = static_cast<double>((*session)->setup().period_ns());
+  const double duration = static_cast<double>((*session)->setup().ticks()) * period_ns * 1e-9;
   double most = 0.05;  // N: less is hardly felt
   double time = duration / 2;
   watch(**session, [&](const driver::TickRecord& record) {
@@ -98,14 +95,14 @@ driver::Result<double> strongest_moment(const std::filesystem::path& scene,
     const double force = std::hypot(f[0], f[1], f[2]);
     if (!(force > most)) return;
     most = force;
-    time = static_cast<double>(record.tick) * static_cast<double>((*session)->period_ns()) * 1e-9;
+    time = static_cast<double>(record.tick) * period_ns * 1e-9;
   });
   return time;
 }
 
-ShotPainter::ShotPainter(const DrawnScene& scene, const ShotChoice& choice)
+ShotPainter::ShotPainter(const DrawnScene& scene, const ShotChoice& choice, ScenePrograms programs)
     : choice_(choice),
-      painter_(scene),
+      painter_(scene, std::move(programs)),
       canvas_(choice.width, choice.height, strip_of(choice)),
       text_(std::make_unique<PictureText>(scale_of(choice.height))),
       scale_(scale_of(choice.height)) {}
@@ -126,10 +123,9 @@ Picture ShotPainter::paint(const DrawnMoment& moment, const Plots& plots) {
   const ScreenPart scene{0, 0, width, static_cast<float>(canvas_.height()) - strip};
   write_labels(labels, *choice_.camera, scene);
   if (choice_.caption) {
-    char text[200];
-    std::snprintf(text, sizeof text, "%s, %.2f s%s", painter_.scene().name.c_str(),
-                  static_cast<double>(moment.tick.time_ns) * 1e-9,
-                  choice_.paint.grid ? "; grid 10 mm" : "");
+    const std::string text = fmt::format("{}, {:.2f} s{}", painter_.scene().name,
+                                         static_cast<double>(moment.tick.time_ns) * 1e-9,
+                                         choice_.paint.grid ? "; grid 10 mm" : "");
     write_caption(text, scene);
   }
   if (canvas_.strip() > 0) {

@@ -34,7 +34,6 @@ class PlayedScene {
   void play(const std::vector<double>& times, const Look& look);
 
   const DrawnScene& drawn() const { return live_->scene(); }
-  std::int64_t period_ns() const { return session_->period_ns(); }
 
  private:
   PlayedScene() = default;
@@ -62,7 +61,7 @@ struct ShotChoice {
 class ShotPainter {
  public:
   /// Precondition: a context of OpenGL 3.3 is current, and outlives this.
-  ShotPainter(const DrawnScene& scene, const ShotChoice& choice);
+  ShotPainter(const DrawnScene& scene, const ShotChoice& choice, ScenePrograms programs);
   ~ShotPainter();
 
   /// Frames the scene as it is at this moment, if no camera was chosen.

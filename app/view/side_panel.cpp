@@ -10,6 +10,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "thimble/driver/heat_guard.h"
+
 namespace thimble::app::view {
 namespace {
 

@@ -1,10 +1,11 @@
 #include "view/touch_marks.h"
 
+#include <fmt/core.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdio>
 
 namespace thimble::app::view {
 namespace {
@@ -61,9 +62,7 @@ void add_force(const DrawnScene& scene, const DrawnMoment& moment, double thick,
   const Point tip = from + length * along;
   marks.solids.push_back(rod(from, neck, thick, kForceColour));
   marks.solids.push_back(cone(neck, tip, 2.4 * thick, kForceColour));
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.2f N", size);
-  marks.labels.push_back({tip, along, text.data(), kForceColour});
+  marks.labels.push_back({tip, along, fmt::format("{:.2f} N", size), kForceColour});
 }
 
 void add_tip(const DrawnMoment& moment, double thick, TouchMarks& marks) {

@@ -158,7 +158,7 @@ class Content {
   }
 
   /// Draws one picture into the window.
-  void draw(double frame_time);
+  driver::Result<void> draw(double frame_time);
   bool wants_to_close() const { return choice_.close; }
   /// Tells whether nothing moves by itself: there is no run, or it has ended.
   bool still() {
@@ -224,10 +224,12 @@ void Content::draw_scene(const ScreenPart& part, float ratio) {
   choice_.screenshot = false;
 }
 
-void Content::draw(double frame_time) {
+driver::Result<void> Content::draw(double frame_time) {
   notes_.frame_time += (notes_.frame_time > 0 ? 0.05 : 1) * (frame_time - notes_.frame_time);
   if (follower_.step()) {
-    painter_ = std::make_unique<ScenePainter>(follower_.scene());
+    auto programs = ScenePrograms::make();
+    if (!programs) return programs.error();
+    painter_ = std::make_unique<ScenePainter>(follower_.scene(), std::move(programs).value());
     choice_.frame = true;
     choice_.mouse_is_hand = follower_.reader()->scene().hand_by_mouse;
     glfwSetWindowTitle(screen_.window(), ("Thimble: " + follower_.scene().name).c_str());
@@ -254,6 +256,7 @@ void Content::draw(double frame_time) {
                   follower_.plots(), notes_, choice_);
   draw_notices(scene, notes_, choice_);
   screen_.end();
+  return {};
 }
 
 }  // namespace
@@ -267,7 +270,7 @@ driver::Result<void> show_window(session::RunAttachment& runs, const WindowChoic
   double last = began;
   while (glfwWindowShouldClose(window) == GLFW_FALSE && !content.wants_to_close()) {
     const double now = glfwGetTime();
-    content.draw(now - last);
+    if (auto drawn = content.draw(now - last); !drawn) return drawn.error();
     last = now;
     const bool over = choice.seconds > 0 && now - began > choice.seconds;
     if (over && !choice.last_picture.empty()) {

@@ -1,8 +1,7 @@
-#include "thimble/device_sim/arm_plant.h"
+#include "arm_plant.h"
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 namespace thimble::device_sim {
 namespace {
@@ -13,32 +12,46 @@ bool is_positive(double value) {
 
 }  // namespace
 
+driver::Result<ArmPlant> ArmPlant::make(const driver::SerialArm& arm,
+                                        const std::array<driver::MotorDrive, 3>& drives,
+                                        const PlantSettings& plant, const HandSettings& hand,
+                                        const MotorSettings& motors, const Eigen::Vector3d& p_BT,
+                                        const Eigen::Vector3d& p_BH) {
+  const auto dynamics = AxisDynamics::make(plant, hand);
+  if (!dynamics) return dynamics.error();
+  if (!(is_positive(arm.length_b) && is_positive(arm.length_c) && std::isfinite(arm.height))) {
+    return driver::Error{
+        "The simulated arm's links must have finite lengths above zero; set them in its geometry "
+        "(m)."};
+  }
+  if (!is_positive(motors.current_max)) {
+    return driver::Error{"The simulated arm's current_max must be finite and above zero (A)."};
+  }
+  ArmPlant made(arm, drives, *dynamics, motors.current_max, p_BT, p_BH);
+  if (!made.torque_per_ampere_.allFinite()) {
+    return driver::Error{
+        "The simulated arm's motor drives must be finite numbers: sign, ratio and torque constant "
+        "of each joint."};
+  }
+  if (!made.pose_.within_reach()) {
+    return driver::Error{
+        "The simulated arm cannot reach its starting point; start the hand's path within reach."};
+  }
+  return made;
+}
+
 ArmPlant::ArmPlant(const driver::SerialArm& arm, const std::array<driver::MotorDrive, 3>& drives,
-                   const PlantSettings& plant, const HandSettings& hand,
-                   const MotorSettings& motors, const Eigen::Vector3d& p_BT,
-                   const Eigen::Vector3d& p_BH)
+                   const AxisDynamics& dynamics, double current_max, const Eigen::Vector3d& p_BT,
+                   const Eigen::Vector3d& p_BH) noexcept
     : arm_(arm),
-      current_max_(motors.current_max),
-      dynamics_(plant, hand),
+      current_max_(current_max),
+      dynamics_(dynamics),
       axes_{AxisState{p_BT.x(), 0}, AxisState{p_BT.y(), 0}, AxisState{p_BT.z(), 0}},
       pose_(arm, p_BT),
       p_BH_(p_BH) {
   for (int i = 0; i < 3; ++i) {
     const driver::MotorDrive& drive = drives[static_cast<std::size_t>(i)];
     torque_per_ampere_[i] = drive.sign * drive.ratio * drive.torque_constant;
-  }
-  if (!(is_positive(arm.length_b) && is_positive(arm.length_c) && std::isfinite(arm.height))) {
-    throw std::invalid_argument("The simulated arm's links must have finite lengths above zero.");
-  }
-  if (!torque_per_ampere_.allFinite()) {
-    throw std::invalid_argument("The simulated arm's motor drives must be finite numbers.");
-  }
-  if (!is_positive(current_max_)) {
-    throw std::invalid_argument("The simulated arm's current_max must be above zero (A).");
-  }
-  if (!pose_.within_reach()) {
-    throw std::invalid_argument(
-        "The simulated arm cannot reach its starting point; start the hand's path within reach.");
   }
 }
 

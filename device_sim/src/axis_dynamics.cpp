@@ -1,8 +1,7 @@
-#include "thimble/device_sim/axis_dynamics.h"
+#include "axis_dynamics.h"
 
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 #include <string>
 
 namespace thimble::device_sim {
@@ -14,10 +13,6 @@ constexpr double kPieceAngleMax = 1.5;
 
 // Bisection alone halves a bracket down to rounding in so many steps; Newton needs about four.
 constexpr int kMaxIterations = 64;
-
-void require(bool good, const char* what) {
-  if (!good) throw std::invalid_argument(std::string("The simulated arm's ") + what);
-}
 
 bool is_amount(double value) {
   return value >= 0 && value < std::numeric_limits<double>::infinity();
@@ -97,21 +92,36 @@ double time_of_rest(const AxisMotion& m, double direction, double t) noexcept {
 
 }  // namespace
 
-AxisDynamics::AxisDynamics(const PlantSettings& plant, const HandSettings& hand)
+driver::Result<AxisDynamics> AxisDynamics::make(const PlantSettings& plant,
+                                                const HandSettings& hand) {
+  const struct {
+    bool good;
+    const char* name;
+    const char* bounds;
+  } amounts[] = {
+      {is_amount(plant.mass) && plant.mass > 0, "tip mass", "above zero (kg)"},
+      {is_amount(plant.viscous), "viscous friction", "not negative (N s/m)"},
+      {is_amount(plant.coulomb), "Coulomb friction", "not negative (N)"},
+      {is_amount(hand.mass), "hand mass", "not negative (kg)"},
+      {is_amount(hand.stiffness), "hand stiffness", "not negative (N/m)"},
+      {is_amount(hand.damping), "hand damping", "not negative (N s/m)"},
+  };
+  for (const auto& amount : amounts) {
+    if (amount.good) continue;
+    return driver::Error{std::string("The simulated arm's ") + amount.name +
+                         " must be finite and " + amount.bounds + "."};
+  }
+  return AxisDynamics(plant, hand);
+}
+
+AxisDynamics::AxisDynamics(const PlantSettings& plant, const HandSettings& hand) noexcept
     : mass_(plant.mass + hand.mass),
       inverse_mass_(1 / mass_),
       friction_(plant.coulomb),
       hand_stiffness_(hand.stiffness),
       hand_damping_(hand.damping),
       damping_((plant.viscous + hand.damping) / mass_),
-      stiffness_(hand.stiffness / mass_) {
-  require(is_amount(plant.mass) && plant.mass > 0, "mass must be finite and above zero (kg).");
-  require(is_amount(plant.viscous), "viscous friction must be finite and not negative (N s/m).");
-  require(is_amount(plant.coulomb), "Coulomb friction must be finite and not negative (N).");
-  require(is_amount(hand.mass), "hand mass must be finite and not negative (kg).");
-  require(is_amount(hand.stiffness), "hand stiffness must be finite and not negative (N/m).");
-  require(is_amount(hand.damping), "hand damping must be finite and not negative (N s/m).");
-}
+      stiffness_(hand.stiffness / mass_) {}
 
 const AxisDynamics::Map& AxisDynamics::map_for(std::int64_t dt_ns) noexcept {
   if (maps_[last_map_].dt_ns == dt_ns) return maps_[last_map_];

@@ -1,8 +1,8 @@
-#include "thimble/device_sim/firmware.h"
+#include "firmware.h"
+#include "arms/hfab/hfab_report.h"
 
 #include <cmath>
 #include <cstdlib>
-#include <stdexcept>
 
 namespace thimble::device_sim {
 namespace {
@@ -24,28 +24,33 @@ std::int16_t low_word(std::int64_t value) noexcept {
 
 }  // namespace
 
-Firmware::Firmware(const driver::hfab::HfabModel& model, const FirmwareSettings& settings)
-    : settings_(settings), fractional_counts_(model.fractional_counts) {
-  settings.wiring.check();
+driver::Result<Firmware> Firmware::make(const driver::hfab::HfabModel& model,
+                                        const FirmwareSettings& settings) {
+  if (auto wired = settings.wiring.check(); !wired) return wired.error();
   if (settings.report_period_ns <= 0) {
-    throw std::invalid_argument("The simulated firmware's report period must be above zero (ns).");
+    return driver::Error{"The simulated firmware's report period must be above zero (ns)."};
   }
   if (settings.watchdog_ns <= 0) {
-    throw std::invalid_argument("The simulated firmware's watchdog must be above zero (ns).");
+    return driver::Error{"The simulated firmware's watchdog must be above zero (ns)."};
   }
   if (settings.current_range_mA < 0) {
-    throw std::invalid_argument(
-        "The simulated firmware's current range must not be negative (mA).");
+    return driver::Error{"The simulated firmware's current range must not be negative (mA)."};
   }
   for (int joint = 0; joint < 3; ++joint) {
     const double step = model.step(joint);
-    if (!(step > 0 && step < HUGE_VAL)) {
-      throw std::invalid_argument(
-          "The simulated arm's encoders need counts and ratios above zero; set them in the arm "
-          "file.");
-    }
+    if (step > 0 && step < HUGE_VAL) continue;
+    return driver::Error{
+        "The simulated arm's encoders need counts and ratios above zero; set them in the arm "
+        "file."};
+  }
+  return Firmware(model, settings);
+}
+
+Firmware::Firmware(const driver::hfab::HfabModel& model, const FirmwareSettings& settings) noexcept
+    : settings_(settings), fractional_counts_(model.fractional_counts) {
+  for (int joint = 0; joint < 3; ++joint) {
     const driver::hfab::JointEncoder& encoder = model.encoders[static_cast<std::size_t>(joint)];
-    counts_per_radian_[joint] = encoder.sign / step;
+    counts_per_radian_[joint] = encoder.sign / model.step(joint);
     home_counts_[joint] = encoder.home_counts;
   }
 }

@@ -1,24 +1,27 @@
-#include "thimble/device_sim/hand_path.h"
+#include "hand_path.h"
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <string>
 #include <utility>
 
 namespace thimble::device_sim {
 
-HandPath::HandPath(std::vector<Point> points) : points_(std::move(points)) {
-  if (points_.empty()) throw std::invalid_argument("A hand path needs at least one point.");
-  for (std::size_t i = 0; i < points_.size(); ++i) {
-    const std::string which = "Point " + std::to_string(i) + " of the hand path ";
-    if (!std::isfinite(points_[i].time) || !points_[i].p_BH.allFinite()) {
-      throw std::invalid_argument(which + "is not finite.");
+driver::Result<HandPath> HandPath::make(std::vector<Point> points) {
+  if (points.empty()) {
+    return driver::Error{"A hand's path needs at least one point: where the hand begins."};
+  }
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::string which = "Point " + std::to_string(i) + " of the hand's path ";
+    if (!std::isfinite(points[i].time) || !points[i].p_BH.allFinite()) {
+      return driver::Error{which + "is not finite; give its time (s) and place (m) as numbers."};
     }
-    if (i > 0 && !(points_[i].time > points_[i - 1].time)) {
-      throw std::invalid_argument(which + "does not come after the one before it.");
+    if (i > 0 && !(points[i].time > points[i - 1].time)) {
+      return driver::Error{which +
+                           "does not come after the one before it; let its times grow (s)."};
     }
   }
+  return HandPath(std::move(points));
 }
 
 Eigen::Vector3d HandPath::at(double time) noexcept {

@@ -1,8 +1,7 @@
-#include "thimble/device_sim/inverse_plant.h"
+#include "inverse_plant.h"
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 namespace thimble::device_sim {
 namespace {
@@ -12,28 +11,43 @@ constexpr double kDifference = 1e-6;  // m
 }  // namespace
 
 template <class Geometry>
+driver::Result<InversePlant<Geometry>> InversePlant<Geometry>::make(
+    const driver::JointModel<Geometry>& model, const PlantSettings& plant, const HandSettings& hand,
+    const MotorSettings& motors, const Eigen::Vector3d& p_BT, const Eigen::Vector3d& p_BH) {
+  const auto dynamics = AxisDynamics::make(plant, hand);
+  if (!dynamics) return dynamics.error();
+  if (!(motors.current_max > 0 && motors.current_max < HUGE_VAL)) {
+    return driver::Error{"The simulated arm's current_max must be finite and above zero (A)."};
+  }
+  const auto q = model.geometry.inverse(p_BT);
+  if (!q) {
+    return driver::Error{
+        "The simulated arm cannot reach its starting point; start the hand's path within reach."};
+  }
+  InversePlant made(model, *dynamics, motors.current_max, p_BT, p_BH, *q);
+  if (!made.torque_per_ampere_.allFinite()) {
+    return driver::Error{
+        "The simulated arm's motor drives must be finite numbers: sign, ratio and torque constant "
+        "of each joint."};
+  }
+  return made;
+}
+
+template <class Geometry>
 InversePlant<Geometry>::InversePlant(const driver::JointModel<Geometry>& model,
-                                     const PlantSettings& plant, const HandSettings& hand,
-                                     const MotorSettings& motors, const Eigen::Vector3d& p_BT,
-                                     const Eigen::Vector3d& p_BH)
+                                     const AxisDynamics& dynamics, double current_max,
+                                     const Eigen::Vector3d& p_BT, const Eigen::Vector3d& p_BH,
+                                     const Eigen::Vector3d& q) noexcept
     : model_(model),
-      current_max_(motors.current_max),
-      dynamics_(plant, hand),
+      current_max_(current_max),
+      dynamics_(dynamics),
       axes_{AxisState{p_BT.x(), 0}, AxisState{p_BT.y(), 0}, AxisState{p_BT.z(), 0}},
-      p_BH_(p_BH) {
+      p_BH_(p_BH),
+      q_(q) {
   for (int i = 0; i < 3; ++i) {
     const driver::MotorDrive& drive = model.drives[static_cast<std::size_t>(i)];
     torque_per_ampere_[i] = drive.sign * drive.ratio * drive.torque_constant;
   }
-  if (!torque_per_ampere_.allFinite() || !(current_max_ > 0 && current_max_ < HUGE_VAL)) {
-    throw std::invalid_argument(
-        "The simulated arm's motors need finite constants and a current_max above zero (A).");
-  }
-  const auto q = model_.geometry.inverse(p_BT);
-  if (!q)
-    throw std::invalid_argument(
-        "The simulated arm cannot reach its starting point; start the hand's path within reach.");
-  q_ = *q;
 }
 
 template <class Geometry>

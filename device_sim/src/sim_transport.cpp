@@ -1,4 +1,4 @@
-#include "thimble/device_sim/sim_transport.h"
+#include "sim_transport.h"
 
 #include <algorithm>
 

@@ -1,7 +1,6 @@
-#include "thimble/device_sim/simulated_arm.h"
+#include "simulated_arm.h"
 
 #include <algorithm>
-#include <stdexcept>
 #include <utility>
 
 namespace thimble::device_sim {
@@ -24,37 +23,54 @@ driver::hfab::HfabModel board_of(const driver::JointModel<driver::LinkageArm>& m
 
 }  // namespace
 
-SimulatedArm::SimulatedArm(const driver::hfab::HfabModel& board, AnyPlant plant,
-                           const SimulatedArmSettings& settings, HandPath path,
-                           const Tremor& tremor)
+template <class MakePlant>
+driver::Result<SimulatedArm> SimulatedArm::make_of(const driver::hfab::HfabModel& board,
+                                                   const SimulatedArmSettings& settings,
+                                                   HandPath path, std::uint64_t seed,
+                                                   const MakePlant& make_plant) {
+  if (settings.wire.delay_in_ns < 0 || settings.wire.delay_out_ns < 0) {
+    return driver::Error{"The simulated wire's delays must not be negative (ns)."};
+  }
+  const auto tremor = Tremor::make(settings.hand, seed);
+  if (!tremor) return tremor.error();
+  auto plant = make_plant(path.points().front().p_BH, wanted_first(path, *tremor));
+  if (!plant) return plant.error();
+  const auto firmware = Firmware::make(board, settings.firmware);
+  if (!firmware) return firmware.error();
+  return SimulatedArm(settings, Hand(std::move(path), *tremor), std::move(plant).value(),
+                      *firmware);
+}
+
+SimulatedArm::SimulatedArm(const SimulatedArmSettings& settings, Hand hand, AnyPlant plant,
+                           const Firmware& firmware) noexcept
     : report_period_ns_(settings.firmware.report_period_ns),
       wire_(settings.wire),
-      hand_(std::move(path), tremor),
+      hand_(std::move(hand)),
       plant_(std::move(plant)),
-      firmware_(board, settings.firmware) {
-  if (wire_.delay_in_ns < 0 || wire_.delay_out_ns < 0) {
-    throw std::invalid_argument("The simulated wire's delays must not be negative (ns).");
-  }
+      firmware_(firmware) {
   sample();
   deliver();
 }
 
-SimulatedArm::SimulatedArm(const driver::hfab::HfabModel& model,
-                           const SimulatedArmSettings& settings, HandPath path, std::uint64_t seed)
-    // Braces take their arguments in order: the path is moved after its last use.
-    : SimulatedArm{
-          model,
-          ArmPlant(model.geometry, model.drives, settings.plant, settings.hand, settings.motors,
-                   path.points().front().p_BH, wanted_first(path, Tremor(settings.hand, seed))),
-          settings, std::move(path), Tremor(settings.hand, seed)} {}
+driver::Result<SimulatedArm> SimulatedArm::make(const driver::hfab::HfabModel& model,
+                                                const SimulatedArmSettings& settings, HandPath path,
+                                                std::uint64_t seed) {
+  return make_of(model, settings, std::move(path), seed,
+                 [&](const Eigen::Vector3d& p_BT, const Eigen::Vector3d& p_BH) {
+                   return ArmPlant::make(model.geometry, model.drives, settings.plant,
+                                         settings.hand, settings.motors, p_BT, p_BH);
+                 });
+}
 
-SimulatedArm::SimulatedArm(const driver::JointModel<driver::LinkageArm>& model,
-                           const SimulatedArmSettings& settings, HandPath path, std::uint64_t seed)
-    : SimulatedArm{
-          board_of(model),
-          LinkagePlant(model, settings.plant, settings.hand, settings.motors,
-                       path.points().front().p_BH, wanted_first(path, Tremor(settings.hand, seed))),
-          settings, std::move(path), Tremor(settings.hand, seed)} {}
+driver::Result<SimulatedArm> SimulatedArm::make(const driver::JointModel<driver::LinkageArm>& model,
+                                                const SimulatedArmSettings& settings, HandPath path,
+                                                std::uint64_t seed) {
+  return make_of(board_of(model), settings, std::move(path), seed,
+                 [&](const Eigen::Vector3d& p_BT, const Eigen::Vector3d& p_BH) {
+                   return LinkagePlant::make(model, settings.plant, settings.hand, settings.motors,
+                                             p_BT, p_BH);
+                 });
+}
 
 const Eigen::Vector3d& SimulatedArm::angles() noexcept {
   if (q_time_ns_ != time_ns_) {

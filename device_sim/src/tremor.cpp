@@ -1,8 +1,7 @@
-#include "thimble/device_sim/tremor.h"
+#include "tremor.h"
 
 #include <cmath>
 #include <numbers>
-#include <stdexcept>
 
 namespace thimble::device_sim {
 namespace {
@@ -32,16 +31,21 @@ class SplitMix {
 
 }  // namespace
 
+driver::Result<Tremor> Tremor::make(const HandSettings& hand, std::uint64_t seed) {
+  if (!(hand.tremor_amplitude >= 0 && hand.tremor_amplitude < HUGE_VAL)) {
+    return driver::Error{
+        "The tremor amplitude of the simulated hand must be finite and not negative (m)."};
+  }
+  if (!(hand.tremor_frequency >= 0 && hand.tremor_frequency < HUGE_VAL)) {
+    return driver::Error{
+        "The tremor frequency of the simulated hand must be finite and not negative (Hz)."};
+  }
+  return Tremor(hand, seed);
+}
+
 Tremor::Tremor(const HandSettings& hand, std::uint64_t seed)
     : angular_frequencies_(2 * std::numbers::pi * hand.tremor_frequency * kRatios),
       still_(hand.tremor_amplitude == 0) {
-  if (!(hand.tremor_amplitude >= 0 && hand.tremor_amplitude < HUGE_VAL)) {
-    throw std::invalid_argument("The hand's tremor amplitude must be finite and not negative (m).");
-  }
-  if (!(hand.tremor_frequency >= 0 && hand.tremor_frequency < HUGE_VAL)) {
-    throw std::invalid_argument(
-        "The hand's tremor frequency must be finite and not negative (Hz).");
-  }
   SplitMix random(seed);
   for (int axis = 0; axis < 3; ++axis) {
     for (int wave = 0; wave < 3; ++wave) {

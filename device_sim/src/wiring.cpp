@@ -1,18 +1,18 @@
 #include <algorithm>
-#include <stdexcept>
 
 #include "thimble/device_sim/settings.h"
 
 namespace thimble::device_sim {
 
-void WiringSettings::check() const {
+driver::Result<void> WiringSettings::check() const {
   const auto there = [](std::uint8_t joint) { return joint < 3; };
   const bool good = std::all_of(encoder_of.begin(), encoder_of.end(), there) &&
                     std::all_of(motor_of.begin(), motor_of.end(), there) &&
                     encoder_gain.allFinite() && motor_gain.allFinite();
-  if (!good) {
-    throw std::invalid_argument("The simulated arm's wiring needs joints 0 to 2 and finite gains.");
-  }
+  if (good) return {};
+  return driver::Error{
+      "The simulated arm's wiring names a joint that is not there or a gain that is not finite; "
+      "joints are 0, 1 and 2."};
 }
 
 Eigen::Vector3d WiringSettings::inputs(const Eigen::Vector3d& counts) const noexcept {

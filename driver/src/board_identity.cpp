@@ -4,8 +4,9 @@
 #include <cctype>
 #include <string>
 
-#include "thimble/driver/arms/hfab/hfab_report.h"
-#include "thimble/driver/arms/woody/woody_report.h"
+#include "arms/hfab/hfab_report.h"
+#include "arms/woody/woody_report.h"
+#include "hid_descriptor.h"
 
 namespace thimble::driver {
 namespace {

@@ -1,16 +1,17 @@
 #include "thimble/driver/discovery.h"
 
+#include <fmt/core.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <cstdio>
 #include <fstream>
 #include <span>
 #include <system_error>
 
 #include "board_identity.h"
+#include "hid_descriptor.h"
 
 namespace thimble::driver {
 namespace {
@@ -90,9 +91,7 @@ std::string tty_node(const fs::path& device) {
 }  // namespace
 
 std::string usb_node(const UsbAddress& address) {
-  char text[40];
-  std::snprintf(text, sizeof text, "/dev/bus/usb/%03d/%03d", address.bus, address.device);
-  return text;
+  return fmt::format("/dev/bus/usb/{:03}/{:03}", address.bus, address.device);
 }
 
 std::string read_line(const fs::path& file) {

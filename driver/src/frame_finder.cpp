@@ -1,4 +1,4 @@
-#include "thimble/driver/frame_finder.h"
+#include "frame_finder.h"
 
 #include <algorithm>
 

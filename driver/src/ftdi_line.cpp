@@ -1,3 +1,5 @@
+#include "ftdi_line.h"
+
 #include <libusb-1.0/libusb.h>
 
 #include <algorithm>
@@ -5,10 +7,9 @@
 #include <cstring>
 #include <vector>
 
+#include "ftdi_packet.h"
 #include "ftdi_transport.h"
-#include "thimble/driver/ftdi_packet.h"
-#include "thimble/driver/node_lock.h"
-#include "thimble/driver/transports.h"
+#include "node_lock.h"
 
 namespace thimble::driver {
 namespace {

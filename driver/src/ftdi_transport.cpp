@@ -4,9 +4,9 @@
 #include <array>
 #include <cstddef>
 
+#include "ftdi_packet.h"
+#include "stream_transport.h"
 #include "thimble/driver/arm.h"
-#include "thimble/driver/ftdi_packet.h"
-#include "thimble/driver/stream_transport.h"
 
 namespace thimble::driver {
 namespace {

@@ -5,7 +5,6 @@
 #include <memory>
 
 #include "thimble/driver/clock.h"
-#include "thimble/driver/frame_finder.h"
 #include "thimble/driver/result.h"
 #include "thimble/driver/transport.h"
 

@@ -1,4 +1,4 @@
-#include "thimble/driver/hid_descriptor.h"
+#include "hid_descriptor.h"
 
 #include <algorithm>
 #include <array>

@@ -9,9 +9,9 @@
 #include <optional>
 #include <utility>
 
+#include "hid_descriptor.h"
+#include "node_lock.h"
 #include "thimble/driver/arm.h"
-#include "thimble/driver/hid_descriptor.h"
-#include "thimble/driver/node_lock.h"
 #include "thimble/driver/transports.h"
 
 namespace thimble::driver {

@@ -1,4 +1,4 @@
-#include "thimble/driver/node_lock.h"
+#include "node_lock.h"
 
 #include <fcntl.h>
 #include <sys/file.h>

@@ -1,4 +1,4 @@
-#include "thimble/driver/rise_limit.h"
+#include "rise_limit.h"
 
 #include <algorithm>
 #include <cmath>

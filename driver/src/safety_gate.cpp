@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "thimble/driver/rise_limit.h"
+#include "rise_limit.h"
 
 namespace thimble::driver {
 

@@ -9,8 +9,8 @@
 #include <ctime>
 #include <utility>
 
-#include "thimble/driver/node_lock.h"
-#include "thimble/driver/stream_transport.h"
+#include "node_lock.h"
+#include "stream_transport.h"
 #include "thimble/driver/transports.h"
 
 namespace thimble::driver {

@@ -7,11 +7,12 @@ std::array<double, 3> plain(const Eigen::Vector3d& v) noexcept {
   return {v.x(), v.y(), v.z()};
 }
 
-TickRecord record_of(const DeviceState& state, const ForceCommand& command,
-                     const Device& device) noexcept {
+}  // namespace
+
+TickRecord record_of(const DeviceState& state, const ForceCommand& command) noexcept {
   TickRecord record;
   record.tick = state.tick;
-  record.time_ns = state.time_ns;
+  record.time_ns = record.due_ns = state.time_ns;
   record.counts = state.counts;
   record.q = plain(state.q);
   record.p_WT = plain(state.p_WT);
@@ -19,8 +20,6 @@ TickRecord record_of(const DeviceState& state, const ForceCommand& command,
   record.p_WP = plain(command.touch.p_WP);
   record.n_W = plain(command.touch.n_W);
   record.f_wanted_W = plain(command.f_T_W);
-  record.f_sent_W = plain(device.f_sent_W());
-  if (device.heat().named()) record.heat = device.heat().heat();
   record.depth = command.touch.depth;
   record.feature = command.touch.feature;
   record.object = command.touch.object;
@@ -28,12 +27,20 @@ TickRecord record_of(const DeviceState& state, const ForceCommand& command,
   record.buttons = state.buttons;
   record.in_contact = command.touch.in_contact;
   record.fresh = state.fresh;
-  record.stage = device.stage();
-  record.fault = device.fault();
   return record;
 }
 
-}  // namespace
+std::string_view name(ServoEnd end) noexcept {
+  switch (end) {
+    case ServoEnd::kDone:
+      return "done";
+    case ServoEnd::kStopped:
+      return "stopped";
+    case ServoEnd::kFault:
+      return "fault";
+  }
+  return "unknown";
+}
 
 ServoLoop::ServoLoop(Device& device, Clock& clock, ForceLaw law, TickSink sink,
                      const ServoSettings& settings) noexcept
@@ -55,7 +62,11 @@ std::optional<ServoEnd> ServoLoop::tick(const std::atomic<bool>& stop) noexcept 
   const ForceCommand command = law_(state);
   device_.write(command);
 
-  TickRecord record = record_of(state, command, device_);
+  TickRecord record = record_of(state, command);
+  record.f_sent_W = plain(device_.f_sent_W());
+  if (device_.heat().named()) record.heat = device_.heat().heat();
+  record.stage = device_.stage();
+  record.fault = device_.fault();
   record.due_ns = due_ns_;
   record.work_ns = clock_.now_ns() - now_ns;
   sink_(record);

@@ -1,4 +1,4 @@
-#include "thimble/driver/stream_transport.h"
+#include "stream_transport.h"
 
 namespace thimble::driver {
 

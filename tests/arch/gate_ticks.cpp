@@ -3,6 +3,7 @@
 #include <cstring>
 #include <memory>
 
+#include "arms/hfab/hfab_report.h"
 #include "support/vintage_arm.h"
 #include "thimble/driver/device.h"
 
@@ -31,8 +32,8 @@ class SwingingWire final : public driver::Transport {
 
 }  // namespace
 
-// Runs ticks of a device whose gate has one energy stage, a heat guard or neither, so that somebody else can count
-// what they execute:
+// Runs ticks of a device whose gate has one energy stage, a heat guard or neither, so that somebody
+// else can count what they execute:
 //   gate_ticks none|passivity|bounding|heat TICKS
 int main(int argc, char** argv) {
   if (argc != 3) return 2;

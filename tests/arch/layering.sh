@@ -25,9 +25,14 @@ forbid device_sim "thimble/(render|app)/|$graphics|spdlog/|yaml-cpp/|CLI/" \
   "render, app, graphics, logging or files"
 forbid device_sim 'thimble/driver/(device|safety_gate|servo_loop|velocity_estimator|real_time)\.h' \
   "the host's side of the driver: it meets it at the wire only"
+forbid device_sim '(rise_limit|stream_transport|node_lock|ftdi_line)\.h"' \
+  "the host's side of the driver: it meets it at the wire only"
+for module in driver device_sim; do
+  forbid $module/include '[a-z_]*\.h"|(arms|usb)/' "a header beside the sources: it is not installed"
+done
 forbid render "thimble/(device_sim|app)/|$graphics|spdlog/|yaml-cpp/|CLI/" \
   "device_sim, app, graphics, logging or scene files"
-forbid render 'thimble/driver/(transport|device|arm|arms/.*|clock|servo_loop|real_time)\.h|thimble/driver/arms/' \
+forbid render 'thimble/driver/(transport|device|arm|clock|servo_loop|real_time)\.h|(thimble/driver/)?arms/' \
   "the wire or the arm: a force law knows state and force only"
 forbid render/include '(mesh|packed|search|track|body|page|multirate|field|surface|effect)/|[a-z_]*\.h"' \
   "a header beside the sources: it is not installed"
@@ -82,17 +87,39 @@ if [ -n "$upward" ]; then
   bad=1
 fi
 
+# The installed headers of app: nothing beside the sources, and no library that a user need not know.
+forbid app/scene/include '(yaml|terms)/|[a-z_]*\.h"|yaml-cpp/' "a header beside the sources, or yaml-cpp"
+forbid app/session/include '(recording|share|observers)/|[a-z_]*\.h"|hdf5|H5' "a header beside the sources, or HDF5"
+# Python binds what C++ programs link; of the rest it reads the warnings alone.
+forbid app/python '(yaml|terms|recording|share|observers|report|studies|view|bringup|cli)/|stability/(draw|rest|stability|wall)' \
+  "what a C++ program that links thimble::session cannot reach"
+
 # The libraries of app, the lowest first: FOLDER: what it must not know.
 forbid_app() {
   forbid "app/$1" "$2" "a library above it or beside it"
 }
-forbid_app scene 'thimble/session/|(recording|share|report|stability|studies|view|bringup|cli)/'
+forbid_app scene 'thimble/session/|(recording|share|events|report|stability|studies|view|bringup|cli)/'
 forbid_app session '(report|stability|studies|view|bringup|cli)/'
+# What a program of somebody else's includes needs nothing beside the sources; and observers of a run's
+# ticks know nothing of each other: only who registers them knows them all (run_records.h).
+forbid app/session/include '(observers|recording|share)/|[a-z_0-9]*\.h"|hdf5|yaml-cpp|fmt/' \
+  "a header beside the sources, or a library behind it"
+for observer in observers/black_box observers/dent_record observers/latest_tick observers/page_server \
+    observers/pose_record observers/trace recording/recording_switch share/live_control share/run_sharing; do
+  found=$(grep -nE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"(observers/|recording/recording_switch|share/(live_control|run_sharing))' \
+    app/session/src/"$observer".h app/session/src/"$observer".cpp 2>/dev/null |
+    grep -v "\"$observer\.h\"" || true)
+  if [ -n "$found" ]; then
+    echo "An observer must not know another:"
+    echo "$found" | sed 's/^/  /'
+    bad=1
+  fi
+done
 forbid_app report '(stability|studies|view|bringup|cli)/'
 forbid_app stability '(studies|view|bringup|cli)/'
 forbid_app studies '(view|bringup|cli)/'
 forbid_app view '(report|stability|studies|bringup|cli)/'
-forbid_app bringup 'thimble/session/|(recording|share|report|stability|studies|view|cli)/'
+forbid_app bringup 'thimble/session/|(recording|share|events|report|stability|studies|view|cli)/'
 for folder in scene session report stability studies bringup cli python; do
   forbid "app/$folder" "$graphics" "graphics: they are app/view's"
 done

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "thimble/render/scene_touch.h"
 #include "thimble/session/session.h"
 
 // What one tick of a whole scene with bodies takes, 99 of 100 of them: the force law alone, driven
@@ -27,7 +28,7 @@ std::unique_ptr<session::Session> open(const std::string& name) {
 std::vector<driver::DeviceState> way_of_hand(session::Session& session) {
   session.run(std::atomic<bool>{false});
   std::vector<driver::DeviceState> way;
-  for (const auto& row : session.trace().rows()) {
+  for (const auto& row : session.ticks()) {
     driver::DeviceState state;
     state.tick = row.tick;
     state.time_ns = row.time_ns;

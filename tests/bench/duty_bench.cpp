@@ -9,12 +9,14 @@
 #include <span>
 #include <vector>
 
+#include "arms/falcon/falcon_arm.h"
+#include "arms/hfab/hfab_line.h"
+#include "arms/hfab/hfab_models.h"
+#include "arms/hfab/hfab_report.h"
+#include "arms/hfab/hfab_wire.h"
+#include "arms/woody/woody_report.h"
+#include "arms/woody/woody_wire.h"
 #include "support/vintage_arm.h"
-#include "thimble/driver/arms/falcon/falcon_arm.h"
-#include "thimble/driver/arms/hfab/hfab_line.h"
-#include "thimble/driver/arms/hfab/hfab_models.h"
-#include "thimble/driver/arms/hfab/hfab_wire.h"
-#include "thimble/driver/arms/woody/woody_wire.h"
 #include "thimble/driver/device.h"
 
 namespace thimble {

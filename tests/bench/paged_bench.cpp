@@ -18,6 +18,7 @@
 #include "report/figure.h"
 #include "studies/resident_memory.h"
 #include "studies/ring_pages.h"
+#include "studies/tube_mesh.h"
 #include "track/memory_contact.h"
 
 // A tip that slides at 0.5 m/s over a ring of 10^7 (--long: 10^8) triangles on the disk, in a loop
@@ -121,19 +122,8 @@ class Slide {
 
 render::TriangleMesh ring_mesh(std::int64_t triangles) {
   const app::RingGrid grid = app::ring_grid(kRing, triangles);
-  render::TriangleMesh mesh;
-  for (std::int32_t i = 0; i < grid.around; ++i) {
-    for (std::int32_t j = 0; j < grid.across; ++j) {
-      mesh.vertices.push_back(
-          kRing.at(2 * std::numbers::pi * i / grid.around, 2 * std::numbers::pi * j / grid.across));
-      const auto at = [&grid](std::int32_t a, std::int32_t b) {
-        return a % grid.around * grid.across + b % grid.across;
-      };
-      mesh.triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
-      mesh.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
-    }
-  }
-  return mesh;
+  return app::tube_mesh(grid.around, grid.across,
+                        [](double u, double v) { return kRing.at(u, v); });
 }
 
 // Asks the kernel to forget what it has read of a file; it may refuse.

@@ -7,12 +7,19 @@
 #include <string>
 #include <vector>
 
+#include "arms/hfab/hfab_report.h"
 #include "bench/figures_reporter.h"
+#include "events/event_log.h"
+#include "run_records.h"
+#include "setup.h"
+#include "simulated_arm.h"
 #include "support/random.h"
 #include "support/vintage_arm.h"
 #include "thimble/driver/snapshot.h"
 #include "thimble/render/surface/spring_damper.h"
 #include "thimble/render/touch.h"
+#include "thimble/scene/arm_simulation.h"
+#include "thimble/scene/scene_file.h"
 #include "thimble/session/session.h"
 #include "track/mesh_contact.h"
 
@@ -62,7 +69,7 @@ const std::vector<driver::TickRecord>& stroke_records() {
     const auto session = open_stroke();
     if (!session) return std::vector<driver::TickRecord>();
     session->run(std::atomic<bool>{false});
-    const auto rows = session->trace().rows();
+    const auto rows = session->ticks();
     return std::vector<driver::TickRecord>(rows.begin(), rows.end());
   }();
   return records;
@@ -81,7 +88,7 @@ driver::DeviceState state_of(const driver::TickRecord& record) {
 /// The force law of the session's only object, as a copy that may be called.
 MeshTouch mesh_touch(const session::Session& session) {
   const auto& object = session.scene().objects.front();
-  return {render::MeshContact::build(session.mesh_W()).value(),
+  return {render::MeshContact::build(session.setup().objects().mesh_W()).value(),
           {.stiffness = object.stiffness, .damping = object.damping}};
 }
 
@@ -103,7 +110,7 @@ void simulated_arm(benchmark::State& state) {
   const auto session = open_stroke();
   if (!session) return state.SkipWithError("no scene");
   // The arm alone: hand, plant, encoders, firmware and both ends of the wire, 1 ms per iteration.
-  device_sim::SimulatedArm arm = session->arm();
+  device_sim::SimulatedArm arm = *session->simulation()->board_arm();
   std::array<std::byte, 64> buffer;
   std::uint32_t skipped = 0;
   std::int64_t now_ns = 0;
@@ -136,6 +143,23 @@ void decode_and_pose(benchmark::State& state) {
   }
 }
 BENCHMARK(decode_and_pose);
+
+/// What a run's log costs the servo: the counters of a device compared in each tick, and what
+/// happened, if anything, put into the ring; who writes is another thread.
+void event_watch(benchmark::State& state) {
+  const auto session = open_stroke();
+  if (!session || stroke_records().empty()) return state.SkipWithError("no scene");
+  const session::DeviceCounters counters(session->device());
+  session::SpscRing<session::TickEvent> ring(session::EventLog::kRingEvents);
+  session::EventWatch watch(counters, session->setup().period_ns(), ring);
+  std::size_t i = 0;
+  for (auto _ : state) {
+    watch.take(stroke_records()[i]);
+    if (++i == stroke_records().size()) i = 0;
+    ring.drop(ring.waiting());
+  }
+}
+BENCHMARK(event_watch);
 
 void velocity(benchmark::State& state) {
   driver::VelocityEstimator estimator(100);
@@ -189,8 +213,8 @@ void statistics_and_trace(benchmark::State& state) {
   session::Trace trace(20'000);
   std::size_t i = 0;
   for (auto _ : state) {
-    statistics(records[i]);
-    trace(records[i]);
+    statistics.take(records[i]);
+    trace.take(records[i]);
     if (++i == records.size()) i = 0;
   }
 }

@@ -27,7 +27,9 @@ void paint(benchmark::State& state) {
   scene.objects.push_back(
       {.name = "ball",
        .mesh = support::bumpy_sphere(static_cast<int>(state.range(0)), 0.05, 0.002, 40)});
-  app::view::ScenePainter painter(scene);
+  auto programs = app::view::ScenePrograms::make();
+  if (!programs) return state.SkipWithError(programs.error().message.c_str());
+  app::view::ScenePainter painter(scene, std::move(programs).value());
   Canvas canvas(960, 640, 0, state.range(2) == 1 ? Canvas::kSamples : 1);
   const DrawnMoment moment{};
   const auto camera = app::view::frame(scene, moment, canvas.aspect());

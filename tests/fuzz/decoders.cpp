@@ -3,17 +3,20 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "arms/falcon/falcon_arm.h"
+#include "arms/hfab/hfab_line.h"
+#include "arms/hfab/hfab_report.h"
+#include "arms/hfab/hfab_wire.h"
+#include "arms/woody/woody_report.h"
+#include "arms/woody/woody_wire.h"
+#include "frame_finder.h"
+#include "ftdi_packet.h"
 #include "fuzz/shared_run_memory.h"
-#include "thimble/device_sim/usb/usbip_session.h"
-#include "thimble/device_sim/usb/usbip_wire.h"
-#include "thimble/driver/arms/falcon/falcon_arm.h"
-#include "thimble/driver/arms/hfab/hfab_line.h"
-#include "thimble/driver/arms/hfab/hfab_report.h"
-#include "thimble/driver/arms/hfab/hfab_wire.h"
-#include "thimble/driver/arms/woody/woody_wire.h"
-#include "thimble/driver/frame_finder.h"
-#include "thimble/driver/ftdi_packet.h"
-#include "thimble/driver/hid_descriptor.h"
+#include "hid_descriptor.h"
+#include "usb/setup_packet.h"
+#include "usb/usb_description.h"
+#include "usb/usbip_session.h"
+#include "usb/usbip_wire.h"
 
 namespace thimble::fuzz {
 namespace {

@@ -16,7 +16,6 @@
 
 #include "page/checksum.h"
 #include "page/page_file.h"
-#include "recording/read_recording.h"
 #include "recording/recording_file.h"
 #include "thimble/render/mesh/check_mesh.h"
 #include "thimble/render/mesh/load_mesh.h"
@@ -25,6 +24,7 @@
 #include "thimble/scene/arm_file.h"
 #include "thimble/scene/scene_file.h"
 #include "thimble/scene/scene_objects.h"
+#include "thimble/session/recording.h"
 
 namespace thimble::fuzz {
 namespace {
@@ -73,8 +73,8 @@ bool read_scene_file(Bytes bytes) {
   static const bool arm_beside = std::filesystem::copy_file(
       THIMBLE_SOURCE_DIR "/app/arms/vintage_phantom.yaml", folder() / "arm.yaml");
   promise(arm_beside, "an arm stands beside the scene");
-  const auto scene =
-      scene::read_scene(store(bytes, "any.yaml"), THIMBLE_SOURCE_DIR "/tests/data/meshes");
+  const auto scene = scene::load_scene(store(bytes, "any.yaml"),
+                                       {.mesh_folder = THIMBLE_SOURCE_DIR "/tests/data/meshes"});
   if (!told(scene)) return false;
   promise(std::isfinite(scene->duration) && scene->duration > 0, "a scene has an end");
   promise(std::isfinite(scene->rate) && scene->rate > 0, "a scene has a rate");
@@ -259,7 +259,7 @@ bool read_recording(Bytes bytes) {
 
 bool read_any_file(std::string_view kind, Bytes bytes) {
   if (kind == "scene") return read_scene_file(bytes);
-  if (kind == "arm") return told(scene::read_arm_file(store(bytes, "any.yaml")));
+  if (kind == "arm") return told(scene::load_arm(store(bytes, "any.yaml")));
   if (kind == "off") return read_mesh(bytes, "any.off");
   if (kind == "obj") return read_mesh(bytes, "any.obj");
   if (kind == "stl") return read_mesh(bytes, "any.stl");

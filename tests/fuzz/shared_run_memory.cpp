@@ -43,7 +43,7 @@ std::vector<std::byte> sound_memory() {
   run->set_state(session::RunState::kRunning);
   driver::TickRecord tick;
   for (tick.tick = 0; tick.tick < 12; ++tick.tick) run->store_tick(tick);
-  scene::ScenePoses poses;
+  session::ScenePoses poses;
   poses.count = 1;
   run->store_poses(poses);
   render::BodyPatch patch{};
@@ -106,9 +106,9 @@ void read_everything(session::SharedReader& reader) {
     promise(std::isfinite(one.p_WT[0]) && std::isfinite(one.depth), "a tick is somewhere");
     static_cast<void>(session::arm_lines(scene.arm, one));
   }
-  scene::ScenePoses poses;
+  session::ScenePoses poses;
   if (reader.poses(poses)) {
-    promise(poses.count <= scene::ScenePoses::kMost, "poses are as many as fit");
+    promise(poses.count <= session::ScenePoses::kMost, "poses are as many as fit");
     for (std::size_t i = 0; i < poses.count; ++i) {
       promise(
           poses.object[i] >= 0 && static_cast<std::size_t>(poses.object[i]) < scene.objects.size(),

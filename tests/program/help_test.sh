@@ -15,7 +15,7 @@ done
 expect 0 '^sim +simulated arm' "$thimble" devices
 
 expect 2 'subcommand is required' "$thimble"
-expect 0 'friction +how friction trembles' "$thimble" study --help
+expect 0 'friction +limit cycles of friction' "$thimble" study --help
 expect 0 '--out' "$thimble" study friction --help
 
 expect 2 'subcommand is required' "$thimble" touch

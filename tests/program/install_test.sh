@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs the build into a folder of its own, builds the seven examples against it as somebody else's
+# Installs the build into a folder of its own, builds the eight examples against it as somebody else's
 # project would, runs them, and looks at what was installed beside them.
 #   install_test.sh BUILD_FOLDER EXAMPLES_FOLDER
 set -euo pipefail
@@ -25,6 +25,24 @@ for example in "$work"/examples/0?_*; do
   echo "  $(basename "$example"): $(tail -n 1 <<<"$said")"
 done
 [ "$(wc -l <touch.csv)" = 2001 ] || fail "06_record left $(wc -l <touch.csv) lines"
+[ "$("$work/usr/bin/thimble" export touch.h5 --csv same.csv >/dev/null && wc -l <same.csv)" -gt 1000 ] ||
+  fail "09_run_a_scene left no recording that the program reads"
+# Names are found where the libraries were installed, and a name that nobody knows is answered with those.
+mkdir elsewhere
+(cd elsewhere && XDG_DATA_DIRS=/nonexistent "$work/examples/09_run_a_scene" no_such_scene 2>&1) >said &&
+  fail "09_run_a_scene ran a scene that is not there"
+grep -q 'Known by name: .*elephant' said || fail "09_run_a_scene answered: $(cat said)"
+
+echo "Building the program of README.md by pkg-config ..."
+sed -n '/^```cpp$/,/^```$/p' "$examples/../../README.md" | sed '/^```/d' >by_pkg_config.cpp
+sed -i 's/"elephant"/"rubber"/' by_pkg_config.cpp  # whose mesh needs not be fetched
+PKG_CONFIG_PATH=$(dirname "$(find "$work/usr" -name thimble.pc)")
+export PKG_CONFIG_PATH
+"${CXX:-c++}" $(pkg-config --cflags thimble) -Wall -Wextra -Werror by_pkg_config.cpp -o by_pkg_config \
+  $(pkg-config --libs thimble) >log 2>&1 || fail "$(cat log)"
+XDG_DATA_DIRS=$work/usr/share ./by_pkg_config >said 2>&1 || fail "by pkg-config: $(cat said)"
+"$work/examples/09_run_a_scene" rubber third.h5 | diff said - | grep -v Replayed | grep '^[<>]' &&
+  fail "by pkg-config another run"
 
 echo "Looking at the installed program ..."
 program=$work/usr/bin/thimble
@@ -65,6 +83,4 @@ assert all(str(one.path).startswith(sys.argv[1]) for one in thimble.scenes()), t
 assert thimble._program().startswith(sys.argv[1])' "$work/usr" || fail "the package uses files of another place"
 fi
 [ -f "$work/usr/lib/udev/rules.d/70-thimble.rules" ] || fail "no udev rules"
-PKG_CONFIG_PATH=$(dirname "$(find "$work/usr" -name thimble.pc)") pkg-config --cflags thimble >/dev/null ||
-  fail "pkg-config does not find the libraries"
 echo "Done."

@@ -33,8 +33,13 @@ for file in usr/bin/thimble usr/share/man/man1/thimble.1.gz usr/lib/udev/rules.d
   usr/share/bash-completion/completions/thimble usr/share/thimble/scenes/box.yaml; do
   holds "$program" "$file"
 done
-for file in usr/include/thimble/driver/safety_gate.h usr/lib/cmake/thimble/thimbleConfig.cmake; do
+for file in usr/include/thimble/driver/safety_gate.h usr/include/thimble/scene/scene_file.h \
+  usr/include/thimble/session/session.h usr/lib/cmake/thimble/thimbleConfig.cmake; do
   holds "$development" "$file"
+done
+for library in libyaml-cpp-dev libhdf5-dev libfmt-dev thimble; do
+  dpkg-deb --field "$development" Depends >held
+  grep -q "$library" held || fail "libthimble-dev does not ask for $library"
 done
 dpkg-deb --field "$program" Depends | grep -c libusb-1.0-0 >held || fail "$program does not ask for libusb"
 if python=$(ls "$work"/python3-thimble_*.deb 2>/dev/null); then

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Writes the reference, and fails for each public member without a word. Then a header with such a
-# member must be found out.
+# Writes the reference, and fails for each public member without a word and each installed header that it
+# does not name. Then a header with such a member must be found out.
 #   reference_test.sh DOXYFILE SOURCE_FOLDER WORK_FOLDER
 set -euo pipefail
 doxyfile=$1 source=$2 work=$3
@@ -25,6 +25,10 @@ if [ -s whole/warnings.txt ]; then
 fi
 for page in index.html classthimble_1_1driver_1_1SafetyGate.html; do
   [ -s "whole/$page" ] || { echo "FAILED: no $page" >&2; exit 1; }
+done
+# Each header that is installed is named.
+for header in $(cd "$source" && find driver/include device_sim/include render/include app/*/include -name '*.h'); do
+  grep -qF "$(basename "$header")</" whole/files.html || { echo "FAILED: $header is not in the reference" >&2; exit 1; }
 done
 grep -q 'what the force law asked for' whole/structthimble_1_1driver_1_1TickRecord.html || { echo "FAILED: an empty page" >&2; exit 1; }
 

@@ -4,8 +4,10 @@
 #include <thread>
 #include <vector>
 
+#include "simulated_arm.h"
 #include "support/elephant.h"
 #include "thimble/driver/real_time.h"
+#include "thimble/scene/arm_simulation.h"
 
 // The loop in wall-clock time, beside readers: what the thread sanitizer looks at. Times are not
 // judged: this machine may be busy.
@@ -38,7 +40,7 @@ TEST(WallClockRun, ShowsItsTicksToReadersThatNeverStopIt) {
       driver::TickRecord record;
       std::uint64_t last = 0;
       while (!ended.load()) {
-        if (session.snapshot().load(record)) {
+        if (session.newest().load(record)) {
           if (record.tick < last) backwards.fetch_add(1);
           if (record.tick > last) seen.fetch_add(1);
           last = record.tick;
@@ -52,12 +54,12 @@ TEST(WallClockRun, ShowsItsTicksToReadersThatNeverStopIt) {
 
   EXPECT_GT(seen.load(), 0u);
   EXPECT_EQ(backwards.load(), 0u);
-  EXPECT_EQ(session.statistics().ticks(), session.snapshot().count());
+  EXPECT_EQ(session.statistics().ticks(), session.newest().count());
   // A machine that pauses for 100 ms makes the arm's watchdog fire, which the loop must name.
   if (end != driver::ServoEnd::kDone) {
     EXPECT_EQ(session.device().fault(), driver::Fault::kLoopStalled);
   }
-  EXPECT_EQ(session.arm().firmware().currents().cwiseAbs().maxCoeff(), 0);
+  EXPECT_EQ(session.simulation()->board_arm()->firmware().currents().cwiseAbs().maxCoeff(), 0);
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "thimble/device_sim/usb/arm_shelf.h"
-#include "thimble/device_sim/usb/hid_arm.h"
+#include "usb/hid_arm.h"
 #include "usb/virtual_arm.h"
 
 namespace thimble {

@@ -9,10 +9,13 @@
 
 #include "body/shape/body_shape.h"
 #include "mesh/contact_mesh.h"
+#include "run_records.h"
+#include "setup.h"
 #include "support/scratch.h"
 #include "support/shipped_scene.h"
 #include "thimble/render/mesh/load_mesh.h"
 #include "thimble/render/mesh/save_mesh.h"
+#include "thimble/render/scene_touch.h"
 #include "thimble/session/session.h"
 
 // The scenes with bodies that move, keep what they gave way, and snap, from the wire up.
@@ -26,7 +29,7 @@ double farthest(const session::Session& session) {
   double far = 0;
   const auto now = session.mesh_now();
   for (std::size_t v = 0; v < now.vertices.size(); ++v) {
-    far = std::max(far, (now.vertices[v] - session.mesh_W().vertices[v]).norm());
+    far = std::max(far, (now.vertices[v] - session.setup().objects().mesh_W().vertices[v]).norm());
   }
   return far;
 }
@@ -95,8 +98,9 @@ TEST(TinCanScene, SnapsTwiceAndRollsMeanwhile) {
   ASSERT_TRUE(session);
   ASSERT_EQ(session->run(std::atomic<bool>{false}), driver::ServoEnd::kDone);
   EXPECT_EQ(session->touch().object(0).shape()->snap()->snaps(), 2);
-  scene::ScenePoses poses;
-  ASSERT_TRUE(session->poses().load(poses));
+  session::ScenePoses poses;
+  ASSERT_TRUE(session->records().poses);
+  poses = session->records().poses->now();
   ASSERT_EQ(poses.count, 1u);
   EXPECT_EQ(poses.object[0], 0);
   const auto& q = poses.pose[0].q_WB;
@@ -107,8 +111,9 @@ TEST(FloatingBlockScene, DriftsAndTurns) {
   const auto session = support::open_shipped("floating_block");
   ASSERT_TRUE(session);
   ASSERT_EQ(session->run(std::atomic<bool>{false}), driver::ServoEnd::kDone);
-  scene::ScenePoses poses;
-  ASSERT_TRUE(session->poses().load(poses));
+  session::ScenePoses poses;
+  ASSERT_TRUE(session->records().poses);
+  poses = session->records().poses->now();
   ASSERT_EQ(poses.count, 1u);
   const auto& [p, q] = poses.pose[0];
   const double away = Vector3d(p[0], p[1], p[2]).norm();

@@ -5,6 +5,7 @@
 
 #include "lost_contacts.h"
 #include "support/elephant.h"
+#include "thimble/render/scene_touch.h"
 
 // The demo's stroke with every way of contact that a scene can name, from the wire up.
 
@@ -24,7 +25,7 @@ TEST_P(EveryWayOfContact, TouchesTheElephantAndLosesItNever) {
   const auto session = open_with(GetParam(), error);
   ASSERT_TRUE(session) << error;
   ASSERT_EQ(session->run(std::atomic<bool>{false}), driver::ServoEnd::kDone);
-  EXPECT_EQ(session::count_lost_contacts(session->trace().rows(), session->touch()), 0u);
+  EXPECT_EQ(session::count_lost_contacts(session->ticks(), session->touch()), 0u);
   EXPECT_GE(session->statistics().contacts(), 2u);
   EXPECT_GT(session->statistics().contact_time(), 5.0);
   EXPECT_GT(session->statistics().force_max(), 0.5);

@@ -10,9 +10,12 @@
 #include <vector>
 
 #include "lost_contacts.h"
+#include "setup.h"
 #include "support/contact_walk.h"
 #include "support/elephant.h"
 #include "support/reference_geometry.h"
+#include "thimble/render/scene_touch.h"
+#include "thimble/scene/scene_file.h"
 #include "track/felt_anchor.h"
 #include "track/mesh_contact.h"
 
@@ -55,8 +58,8 @@ class ElephantStroke : public ::testing::Test {
     ASSERT_TRUE(session_);
   }
 
-  static std::span<const driver::TickRecord> rows() { return session_->trace().rows(); }
-  static const render::TriangleMesh& mesh() { return session_->mesh_W(); }
+  static std::span<const driver::TickRecord> rows() { return session_->ticks(); }
+  static const render::TriangleMesh& mesh() { return session_->setup().objects().mesh_W(); }
 
   static session::Session* session_;
   static std::vector<render::ContactState> found_;  // per row
@@ -247,17 +250,17 @@ TEST_P(ElephantPressedDeep, SixtyMillimetresChangesTheForceByNoMoreThanThePathIm
   ASSERT_TRUE(session);
   ASSERT_EQ(session->run(std::atomic<bool>{false}), driver::ServoEnd::kDone);
   double depth = 0;
-  for (const auto& row : session->trace().rows()) depth = std::max(depth, row.depth);
+  for (const auto& row : session->ticks()) depth = std::max(depth, row.depth);
   EXPECT_GT(depth, 0.005);
   const auto& object = session->scene().objects.front();
-  EXPECT_LT(excess_over_the_path(session->trace().rows(), object), 1e-10);
+  EXPECT_LT(excess_over_the_path(session->ticks(), object), 1e-10);
 
   // What a bare contact finds on the same path jumps.
-  auto contact = render::MeshContact::build(session->mesh_W()).value();
+  auto contact = render::MeshContact::build(session->setup().objects().mesh_W()).value();
   Vector3d before(0, 0, 0);
   bool touched = false;
   double jump = 0;
-  for (const auto& row : session->trace().rows()) {
+  for (const auto& row : session->ticks()) {
     const render::ContactState found = support::move_tip(contact, vector(row.p_WT));
     const Vector3d f = object.stiffness * found.depth * found.n_W;
     if (found.touching && touched) jump = std::max(jump, (f - before).norm());

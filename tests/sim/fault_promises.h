@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "sim/fault_rig.h"
+#include "support/deaf_board.h"
 #include "thimble/driver/fault.h"
 
 namespace thimble::fault_test {
@@ -97,10 +98,8 @@ inline Promised promised(std::string_view fault, driver::ArmKind arm, Phase phas
   }
   const Promised unheard{Promise::kOff, kNoticed, Fault::kNoReports};
   const Promised unknown{Promise::kArmOff, kWatchdog, Fault::kNone};
-  // A HID board that answers only does not listen as long as nobody takes its report: the zero does
-  // not reach it, and its own watchdog switches the motors off.
   const Promised deaf{Promise::kOff, kWatchdog, Fault::kNoReports};
-  if (hid && answers && (fault == "stall in" || fault == "silence in")) return deaf;
+  if (support::is_deaf(hid, answers, fault)) return deaf;
   if (fault == "stall in" || fault == "short in" || fault == "silence in" || fault == "lost in") {
     return unheard;
   }

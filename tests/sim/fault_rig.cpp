@@ -11,18 +11,19 @@
 #include <tuple>
 #include <vector>
 
-#include "recording/read_recording.h"
+#include "arms/falcon/falcon_packet.h"
+#include "arms/hfab/hfab_models.h"
+#include "arms/hfab/hfab_report.h"
+#include "arms/woody/woody_report.h"
 #include "support/line_arm.h"
 #include "support/scratch.h"
-#include "thimble/device_sim/usb/ftdi_chip.h"
-#include "thimble/device_sim/usb/hid_arm.h"
-#include "thimble/driver/arms/falcon/falcon_packet.h"
-#include "thimble/driver/arms/hfab/hfab_models.h"
-#include "thimble/driver/arms/woody/woody_report.h"
-#include "thimble/scene/energy_choice.h"
+#include "thimble/scene/device_settings.h"
 #include "thimble/scene/real_arm.h"
 #include "thimble/scene/scene_file.h"
-#include "thimble/scene/watch_choice.h"
+#include "thimble/session/recording.h"
+#include "usb/ftdi_chip.h"
+#include "usb/hid_arm.h"
+#include "usb/usb_description.h"
 
 namespace thimble::fault_test {
 namespace {
@@ -58,7 +59,7 @@ scene::Scene read(const TestedArm& tested, Phase phase, bool stiff) {
           : stiff                    ? kStiffPlane
                                      : kPlane)
       << "hand: {path: [{t: 0, at: [0, 0, 0]}]}\n";
-  auto scene = scene::read_scene(folder / "fault.yaml", {});
+  auto scene = scene::load_scene(folder / "fault.yaml");
   if (!scene) {
     ADD_FAILURE() << scene.error().message;
     return {};
@@ -111,7 +112,7 @@ FaultRig::FaultRig(const TestedArm& tested, Phase phase, const device_sim::Wirin
 FaultRig::~FaultRig() = default;
 
 void FaultRig::build_arm() {
-  device_sim::HandPath path(hand_way(phase_, file_));
+  device_sim::HandPath path = device_sim::HandPath::make(hand_way(phase_, file_)).value();
   driver::hfab::HfabModel model = file_.model;
   model.fractional_counts = false;
   if (tested_.kind == driver::ArmKind::kFalcon) {
@@ -124,20 +125,22 @@ void FaultRig::build_arm() {
     return;
   }
   if (tested_.kind == driver::ArmKind::kHfabLine) {
-    own_arm_ =
-        std::make_unique<support::LineArm>(model, file_.simulated, std::move(path),
-                                           static_cast<driver::hfab::LineModel>(file_.board_model));
+    own_arm_ = std::make_unique<support::LineArm>(
+        device_sim::SimulatedArm::make(model, file_.simulated, std::move(path)).value(),
+        static_cast<driver::hfab::LineModel>(file_.board_model));
   } else if (file_.shape == scene::ArmShape::kPolhem) {
     auto polhem = driver::hfab::polhem_model();
     polhem.drives = file_.model.drives;
     polhem.encoders = file_.model.encoders;
-    own_arm_ = std::make_unique<usb::HidArm>(usb::kMbed14Board, usb::UsbDescription(), polhem,
-                                             file_.simulated, std::move(path));
+    own_arm_ = usb::HidArm::make(usb::kMbed14Board, usb::UsbDescription(), polhem, file_.simulated,
+                                 std::move(path))
+                   .value();
   } else {
     const auto& board =
         tested_.kind == driver::ArmKind::kWoody ? usb::kWoodenHapticsBoard : usb::kMbed14Board;
-    own_arm_ = std::make_unique<usb::HidArm>(board, usb::UsbDescription(), model, file_.simulated,
-                                             std::move(path));
+    own_arm_ =
+        usb::HidArm::make(board, usb::UsbDescription(), model, file_.simulated, std::move(path))
+            .value();
   }
   arm_ = own_arm_.get();
 }
@@ -168,16 +171,10 @@ support::BusWire::Way FaultRig::way() const {
 driver::Result<void> FaultRig::open() {
   // A Falcon that lost its home by a fault is homed by its hand, which takes up to two seconds.
   const std::int64_t timeout_ns = falcon_ ? 4'000'000'000 : 1'000'000'000;
-  auto device = driver::Device::open(std::make_unique<support::BusWire>(*cable_, clock_, way()),
-                                     scene::make_arm(file_, tested_.kind),
-                                     {.R_WB = file_.R_WB,
-                                      .p_WB = file_.p_WB,
-                                      .limits = file_.limits,
-                                      .energy = scene::energy_settings(file_, 1000, {}),
-                                      .motion = scene::motion_settings(file_, 1000),
-                                      .heat = file_.heat,
-                                      .velocity_corner_frequency = file_.velocity_corner_frequency},
-                                     clock_.now_ns(), timeout_ns);
+  auto device =
+      driver::Device::open(std::make_unique<support::BusWire>(*cable_, clock_, way()),
+                           scene::make_arm(file_, tested_.kind),
+                           scene::device_settings(file_, 1000), clock_.now_ns(), timeout_ns);
   if (!device) return device.error();
   device_ = std::move(device).value();
   return device_->activate();

@@ -9,7 +9,6 @@
 
 #include "recording/recorder.h"
 #include "support/bus_wire.h"
-#include "thimble/device_sim/usb/simulated_falcon.h"
 #include "thimble/device_sim/usb/usb_arm.h"
 #include "thimble/device_sim/usb/usb_fault.h"
 #include "thimble/driver/clock.h"
@@ -17,6 +16,9 @@
 #include "thimble/driver/discovery.h"
 #include "thimble/scene/arm_file.h"
 #include "thimble/scene/scene_objects.h"
+#include "usb/setup_packet.h"
+#include "usb/simulated_falcon.h"
+#include "usb/usb_description.h"
 
 namespace thimble::fault_test {
 

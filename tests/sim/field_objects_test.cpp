@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "field/primitive_contact.h"
+#include "sim_transport.h"
 #include "support/vintage_arm.h"
-#include "thimble/device_sim/sim_transport.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/servo_loop.h"
 #include "thimble/render/field/field_touch.h"
@@ -43,7 +43,9 @@ struct FreeArm {
     for (auto& drive : model.drives) drive.current_max = 30;
     const Vector3d home = model.geometry.forward(support::vintage_home());
     arm = std::make_unique<device_sim::SimulatedArm>(
-        model, settings, device_sim::HandPath({{.time = 0, .p_BH = home}}));
+        device_sim::SimulatedArm::make(
+            model, settings, device_sim::HandPath::make({{.time = 0, .p_BH = home}}).value())
+            .value());
     driver::DeviceSettings loose = support::vintage_settings();
     loose.limits.force_max = 1e5;  // the soft start of 50 ms is not felt
     loose.limits.rise_max = 1e5;

@@ -7,9 +7,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "axis_dynamics.h"
 #include "support/hard_case.h"
 #include "support/rubbing.h"
-#include "thimble/device_sim/axis_dynamics.h"
 #include "thimble/driver/safety_gate.h"
 #include "thimble/render/surface/spring_damper.h"
 
@@ -53,7 +53,7 @@ Impact impact(std::string_view name, double speed, double phase, bool held, doub
     hand.stiffness = 300;
     hand.damping = 3;
   }
-  device_sim::AxisDynamics axis(plant, hand);
+  device_sim::AxisDynamics axis = device_sim::AxisDynamics::make(plant, hand).value();
   const double each = speed / std::sqrt(2.0);
   device_sim::AxisState x{.x = 0, .v = each}, z{.x = 0, .v = -each};
   const auto entry_ns = static_cast<std::int64_t>(phase * 1e6);

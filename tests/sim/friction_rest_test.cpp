@@ -1,5 +1,5 @@
-// Friction from the wire up: the paper's tremble, and that the default has none. Cases 13 to 16 and
-// 20 of [STABILITY 7] on the table of [STABILITY 2.2]: friction of 0.5 N under 1 N, 0.03 mm
+// Friction from the wire up: the paper's limit cycle, and that the default has none. Cases 13 to 16
+// and 20 of [STABILITY 7] on the table of [STABILITY 2.2]: friction of 0.5 N under 1 N, 0.03 mm
 // encoder.
 
 #include <gtest/gtest.h>
@@ -196,7 +196,7 @@ TEST(DefaultFriction, IsSilentForOtherHandsMassesAndEncoders) {
   }
 }
 
-// What the settings refuse is what trembles.
+// What the settings refuse is what falls into a limit cycle.
 TEST(HardCase20, BristleThatBendsByOneCountWouldTremble) {
   const FrictionRigSettings rig;
   render::AnyStageOf<render::BristleFriction> bristle(render::BristleFriction(

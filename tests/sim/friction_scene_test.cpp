@@ -49,7 +49,7 @@ TEST(SceneWithFriction, StrokesTheElephantWithEveryFrictionAndAllocatesNothing) 
     // by default 1.25 times as much). The gate's rise limit is not at work while stroking.
     double most = 0;
     int rubbed = 0;
-    for (const driver::TickRecord& row : (*session)->trace().rows()) {
+    for (const driver::TickRecord& row : (*session)->ticks()) {
       if (!row.in_contact) continue;
       const Eigen::Map<const Eigen::Vector3d> f_W(row.f_wanted_W.data()), n_W(row.n_W.data());
       const double normal = f_W.dot(n_W);

@@ -12,11 +12,11 @@
 #include <utility>
 #include <vector>
 
+#include "energy_choice.h"
 #include "stability/tuning.h"
 #include "stability/wall_trial.h"
 #include "support/hard_case.h"
 #include "support/wall_rig.h"
-#include "thimble/scene/energy_choice.h"
 #include "thimble/scene/scene_file.h"
 
 namespace thimble {
@@ -29,7 +29,7 @@ std::vector<std::pair<scene::Scene, scene::SceneObject>> shipped_walls() {
   for (const auto& entry :
        std::filesystem::directory_iterator(std::string(THIMBLE_SOURCE_DIR) + "/app/scenes")) {
     if (entry.path().extension() != ".yaml") continue;
-    auto scene = scene::read_scene(entry.path(), THIMBLE_MESHES);
+    auto scene = scene::load_scene(entry.path(), {.mesh_folder = THIMBLE_MESHES});
     if (!scene) continue;  // a mesh is not installed; the walls of other scenes are the same
     for (const scene::SceneObject& object : scene->objects) {
       if (object.build_field || !(object.stiffness > 0)) continue;
@@ -158,7 +158,7 @@ TEST(HandConstants, EveryHandRestsOnWhatTuneCallsSafe) {
   double most = 0;
   for (const char* const name : {"vintage_phantom", "woodenhaptics", "polhem"}) {
     const auto arm =
-        scene::read_arm_file(std::string(THIMBLE_SOURCE_DIR) + "/app/arms/" + name + ".yaml");
+        scene::load_arm(std::string(THIMBLE_SOURCE_DIR) + "/app/arms/" + name + ".yaml");
     ASSERT_TRUE(arm);
     for (const double damping : {0.0, 1.0}) {
       const app::Carried carried = app::carried_by(*arm, app::loop_times(*arm, 1000), 800, damping);
@@ -176,7 +176,7 @@ TEST(HandConstants, EveryHandRestsOnWhatTuneCallsSafe) {
 
 TEST(HandConstants, GuardALooseHandTremblesOnWhatAnotherCarries) {
   const auto arm =
-      scene::read_arm_file(std::string(THIMBLE_SOURCE_DIR) + "/app/arms/vintage_phantom.yaml");
+      scene::load_arm(std::string(THIMBLE_SOURCE_DIR) + "/app/arms/vintage_phantom.yaml");
   ASSERT_TRUE(arm);
   const app::Carried carried = app::carried_by(*arm, app::loop_times(*arm, 1000), 800, 0);
   // Seven tenths of the edge with the hand of the file: a third of its damping does not do.

@@ -7,12 +7,12 @@
 #include <cmath>
 #include <vector>
 
+#include "energy_choice.h"
 #include "stability/wall_trial.h"
 #include "support/hard_case.h"
 #include "support/wall_rig.h"
 #include "thimble/driver/safety_gate.h"
 #include "thimble/scene/arm_file.h"
-#include "thimble/scene/energy_choice.h"
 
 namespace thimble {
 namespace {
@@ -45,12 +45,12 @@ class GatedWall {
       : rig(wall), gate(gate_limits, energy) {}
 
   void tick() {
-    rig.tick([this](double wish, double, double v, double dt) {
+    rig.tick([this](double requested, double, double v, double dt) {
       const EnergyFlow flow{
           .work = sent_ * rig.way(), .move_W = {rig.way(), 0, 0}, .f_sent_W = {sent_, 0, 0}};
-      sent_ = gate.pass_guarded({wish, 0, 0}, {v, 0, 0}, dt, flow).f_T_W().x();
-      wish_ = wish;
-      most_damping = std::max(most_damping, v != 0 ? (wish_ - sent_) / v : 0);
+      sent_ = gate.pass_guarded({requested, 0, 0}, {v, 0, 0}, dt, flow).f_T_W().x();
+      requested_ = requested;
+      most_damping = std::max(most_damping, v != 0 ? (requested_ - sent_) / v : 0);
       most_force = std::max(most_force, std::abs(sent_));
       return sent_;
     });
@@ -61,7 +61,7 @@ class GatedWall {
   double most_damping = 0, most_force = 0;
 
  private:
-  double sent_ = 0, wish_ = 0;
+  double sent_ = 0, requested_ = 0;
 };
 
 /// Lets a hand pull the tip against a wall with 1 N from 5 mm away; tells how far it bounces back
@@ -132,9 +132,9 @@ std::vector<double> bounces_with(Booking booking) {
   WallRig rig(pulled_wall(3000));
   double booked = 0;
   return apexes(rig, 5, [&] {
-    rig.tick([&](double wish, double x, double v, double dt) {
+    rig.tick([&](double requested, double x, double v, double dt) {
       observer.book(booked * rig.way());
-      const double asked = wish + observer.damping({v, 0, 0}, dt).x();
+      const double asked = requested + observer.damping({v, 0, 0}, dt).x();
       const double sent = x < 0 ? std::max(0.0, asked) : 0;
       booked = booking == Booking::kSent ? sent : asked;
       return sent;
@@ -220,8 +220,8 @@ TEST(HardCase10, SymmetricSlewLimiterThrowsTheTipBack) {
   for (int i = 0; i < 50; ++i) {
     double last = 0;
     most = std::max(most, limited_restitution(1000, 0.3, (i + 0.5) / 50,
-                                              [&last](double wish, double, double, double) {
-                                                last += std::clamp(wish - last, -0.1, 0.1);
+                                              [&last](double requested, double, double, double) {
+                                                last += std::clamp(requested - last, -0.1, 0.1);
                                                 return last;
                                               }));
   }
@@ -233,8 +233,7 @@ TEST(HardCase10, SymmetricSlewLimiterThrowsTheTipBack) {
 // Through the whole way: arm, board, wire, device and gate.
 
 scene::ArmFile vintage() {
-  auto arm =
-      scene::read_arm_file(std::string(THIMBLE_SOURCE_DIR) + "/app/arms/vintage_phantom.yaml");
+  auto arm = scene::load_arm(std::string(THIMBLE_SOURCE_DIR) + "/app/arms/vintage_phantom.yaml");
   if (!arm) throw std::runtime_error(arm.error().message);
   arm->simulated.hand.tremor_amplitude = 0;
   return *arm;

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "simulated_arm.h"
 #include "stability/stability_laws.h"
 #include "stability/tuning.h"
 #include "support/hard_case.h"
@@ -37,8 +38,7 @@ using Feel = SlowSurface::Feel;
 using Way = std::vector<std::pair<double, Vector3d>>;
 
 scene::ArmFile phantom() {
-  auto arm =
-      scene::read_arm_file(std::string(THIMBLE_SOURCE_DIR) + "/app/arms/vintage_phantom.yaml");
+  auto arm = scene::load_arm(std::string(THIMBLE_SOURCE_DIR) + "/app/arms/vintage_phantom.yaml");
   if (!arm) throw std::runtime_error(arm.error().message);
   arm->simulated.hand.tremor_amplitude = 0;
   return *arm;

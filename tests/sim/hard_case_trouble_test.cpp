@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -13,12 +12,14 @@
 #include <numbers>
 #include <vector>
 
+#include "arms/hfab/hfab_report.h"
 #include "body/shape/snap_base.h"
+#include "sim_transport.h"
+#include "support/dense_algebra.h"
 #include "support/hard_case.h"
 #include "support/random.h"
 #include "support/vintage_arm.h"
 #include "support/wall_rig.h"
-#include "thimble/device_sim/sim_transport.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/servo_loop.h"
 
@@ -99,10 +100,13 @@ struct Press {
     arm_settings.hand = {.mass = 0.025, .stiffness = 300, .damping = 3};
     arm_settings.motors.current_max = 6;
     arm_settings.wire.delay_out_ns = 1'000'000;
-    device_sim::SimulatedArm arm(
-        model, arm_settings,
-        device_sim::HandPath(
-            {{0, away}, {kEntry, away}, {kEntry + (0.004 + deep) / speed, inside}}));
+    device_sim::SimulatedArm arm =
+        device_sim::SimulatedArm::make(
+            model, arm_settings,
+            device_sim::HandPath::make(
+                {{0, away}, {kEntry, away}, {kEntry + (0.004 + deep) / speed, inside}})
+                .value())
+            .value();
     driver::VirtualClock clock;
     auto opened = driver::Device::open(std::make_unique<TamperedWire>(clock, arm, tamper),
                                        std::make_unique<driver::hfab::HfabArm>(model), settings,
@@ -302,8 +306,8 @@ TEST(HardCase37, SingularPosesAndTheEdgeOfReachGiveFiniteClampedCurrents) {
       if (!std::isfinite(q[2])) continue;
     }
     const Eigen::Matrix3d J = model.geometry.jacobian(q);
-    const Vector3d wish = random.uniform(0, 20) * random.direction();
-    const auto force = gate.pass(wish, {0, 0, 0}, 1e-3);
+    const Vector3d requested = random.uniform(0, 20) * random.direction();
+    const auto force = gate.pass(requested, {0, 0, 0}, 1e-3);
     const driver::MotorCurrents currents(force, Eigen::Matrix3d::Identity(), J, model.drives);
     ASSERT_TRUE(currents.amperes().allFinite());
     most = std::max(most, currents.amperes().cwiseAbs().maxCoeff());
@@ -313,12 +317,12 @@ TEST(HardCase37, SingularPosesAndTheEdgeOfReachGiveFiniteClampedCurrents) {
       const auto& drive = model.drives[static_cast<std::size_t>(k)];
       tau[k] = drive.sign * drive.ratio * drive.torque_constant * currents.amperes()[k];
     }
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(J * J.transpose());
+    const support::SymmetricAxes parts = support::symmetric_axes(J * J.transpose());
     Vector3d made(0, 0, 0), asked(0, 0, 0);
     for (int k = 0; k < 3; ++k) {
-      const double squared = solver.eigenvalues()[k];
+      const double squared = parts.values[k];
       if (!(squared > 1e-10)) continue;
-      const Vector3d u = solver.eigenvectors().col(k);
+      const Vector3d u = parts.axes.col(k);
       made += u * u.dot(J * tau) / squared;
       asked += u * u.dot(force.f_T_W());
     }

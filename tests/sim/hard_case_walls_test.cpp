@@ -11,11 +11,12 @@
 #include <limits>
 #include <string>
 
+#include "energy_choice.h"
 #include "stability/stability_laws.h"
 #include "support/hard_case.h"
 #include "support/random.h"
+#include "support/wall_laws.h"
 #include "support/wall_rig.h"
-#include "thimble/scene/energy_choice.h"
 #include "thimble/scene/scene_file.h"
 
 namespace thimble {
@@ -106,7 +107,8 @@ std::int64_t draw(Jitter jitter, support::Random& random) {
 /// Tells the growth of a swing's energy per tick under jitter, from the same draws for any
 /// stiffness.
 double jittered_growth(Jitter jitter, double stiffness, double viscous, int ticks) {
-  AxisDynamics axis({.mass = kMass, .viscous = viscous, .coulomb = 0}, {});
+  AxisDynamics axis =
+      AxisDynamics::make({.mass = kMass, .viscous = viscous, .coulomb = 0}, {}).value();
   AxisState state{.x = 1e-3, .v = 0};
   support::Random random(2);
   double logarithm = 0;
@@ -178,7 +180,7 @@ TEST(HardCase03, NoPassiveHandMakesAPassiveWallGrow) {
   };
   for (const Set& set :
        {Set{0, 0}, Set{-0.3, 0}, Set{0, 1e-3}, Set{0, 2e-3}, Set{0.3, 0}, Set{0.5, 1e-3}}) {
-    const double needed = app::passive_damping(1000, set.damping, 1e-3, set.delay);
+    const double needed = support::passive_damping(1000, set.damping, 1e-3, set.delay);
     const double passive = worst_operator(1000, set.damping, set.delay, 1.02 * needed) - 1;
     EXPECT_LE(passive, 1e-9) << set.damping << " " << set.delay;
     most = std::max(most, passive);
@@ -275,7 +277,7 @@ TEST(HardCase05, TheFourRegionsMeetWhereTheMapSays) {
         // Half a quantum of push: between two levels of force there is no rest but in friction.
         wall.pull = stiffness * kStep / 2;
         const bool damped = beta_share > 1, holds = sigma_share > 1;
-        const app::WallRegion region = app::region_of(app::place_of_wall(
+        const support::WallRegion region = support::region_of(support::place_of_wall(
             stiffness, wall.plant.viscous, wall.plant.coulomb, kStep, 1e-3, delay * 1e-3));
         bool all_rest = true;
         double cycle = 0;
@@ -292,11 +294,11 @@ TEST(HardCase05, TheFourRegionsMeetWhereTheMapSays) {
         const double fast = damped ? 1 : 2 * limit;
         const Ending thrown = ending(wall, 0, fast, 20);
         const bool grows = thrown.amplitude > 2.2 * fast / std::sqrt(stiffness / kMass);
-        app::WallRegion seen;
+        support::WallRegion seen;
         if (all_rest) {
-          seen = grows ? app::WallRegion::kHoldsSmallSwings : app::WallRegion::kComesToRest;
+          seen = grows ? support::WallRegion::kHoldsSmallSwings : support::WallRegion::kComesToRest;
         } else {
-          seen = grows ? app::WallRegion::kGrows : app::WallRegion::kFlickers;
+          seen = grows ? support::WallRegion::kGrows : support::WallRegion::kFlickers;
         }
         EXPECT_EQ(seen, region) << "delay " << delay << " beta " << beta_share << " sigma "
                                 << sigma_share << " cycle " << cycle << " thrown "
@@ -369,7 +371,7 @@ TEST(HardCase07, AFreeMassComesBackFromAWallAsTheLawSays) {
                                .delay = static_cast<double>(wall.delay_ns) * 1e-9});
         double sum = 0;
         for (int i = 0; i < 200; ++i) sum += restitution(wall, 0.1, (i + 0.5) / 200);
-        const double law = app::late_restitution(stiffness, 0.005, kMass, latency);
+        const double law = support::late_restitution(stiffness, 0.005, kMass, latency);
         EXPECT_NEAR(sum / 200 / law, 1, 0.01) << stiffness << " " << period_ns << " " << delay;
         worst = std::max(worst, std::abs(sum / 200 / law - 1));
         if (stiffness * latency * latency / kMass > 0.05) continue;
@@ -391,7 +393,7 @@ TEST(HardCase07, ImpactOnAnyShippedSurfaceNeverGainsSpeedAtAnyPhase) {
   for (const auto& entry :
        std::filesystem::directory_iterator(std::string(THIMBLE_SOURCE_DIR) + "/app/scenes")) {
     if (entry.path().extension() != ".yaml") continue;
-    const auto scene = scene::read_scene(entry.path(), THIMBLE_MESHES);
+    const auto scene = scene::load_scene(entry.path(), {.mesh_folder = THIMBLE_MESHES});
     if (!scene) continue;  // a mesh is not installed; the walls of other scenes are the same
     const scene::ArmFile& arm = scene->arm;
     for (const scene::SceneObject& object : scene->objects) {

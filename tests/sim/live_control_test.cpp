@@ -10,6 +10,9 @@
 
 #include <gtest/gtest.h>
 
+#include "hand.h"
+#include "run_records.h"
+#include "setup.h"
 #include "share/describe_scene.h"
 #include "share/live_control.h"
 #include "share/live_knobs.h"
@@ -18,6 +21,8 @@
 #include "support/run_hash.h"
 #include "support/scratch.h"
 #include "support/shipped_scene.h"
+#include "thimble/render/scene_touch.h"
+#include "thimble/scene/scene_file.h"
 #include "thimble/session/session.h"
 
 namespace thimble {
@@ -59,7 +64,7 @@ std::unique_ptr<session::SharedReader> reader_of(session::Session& session) {
 
 std::uint64_t hash_of(const session::Session& session) {
   support::RunHash hash;
-  for (const auto& row : session.trace().rows()) hash.add(row);
+  for (const auto& row : session.ticks()) hash.add(row);
   return hash.value();
 }
 
@@ -110,7 +115,7 @@ Turned turn(const std::filesystem::path& scene_file, const std::string& knob_nam
   Copy now(scene), before(scene), plain(scene);
 
   session::SharedScene described = session::describe_scene(scene, *now.objects, "test");
-  described.period_ns = session->period_ns();
+  described.period_ns = session->setup().period_ns();
   described.knobs = now.knobs.described();
   const auto shared = session::SharedRun::create("", described, 10).value();
   const auto reader = session::SharedReader::over(shared->memory().again().value()).value();
@@ -123,10 +128,10 @@ Turned turn(const std::filesystem::path& scene_file, const std::string& knob_nam
     return turned;
   }
   const auto& bounds = described.knobs[knob];
-  const double dt = 1e-9 * static_cast<double>(session->period_ns());
+  const double dt = 1e-9 * static_cast<double>(session->setup().period_ns());
   driver::TickRecord last;
   double lowest = bounds.initial, highest = bounds.initial;
-  for (const auto& row : session->trace().rows()) {
+  for (const auto& row : session->ticks()) {
     reader->turn_knob(knob, row.tick / 400 % 2 == 0 ? bounds.most : bounds.least);
     const driver::DeviceState state = state_of(row, dt);
     now.knobs.step(*shared, last, dt);
@@ -237,7 +242,7 @@ TEST(LiveControl, AViewerThatOnlyWatchesChangesNoBitOfTheRun) {
       }
       driver::TickRecord last;
       EXPECT_TRUE(reader->newest(last));
-      EXPECT_EQ(last.tick, shared->trace().rows().back().tick);
+      EXPECT_EQ(last.tick, shared->ticks().back().tick);
       EXPECT_EQ(reader->rejected(), 0u);
     });
     shared->run(std::atomic<bool>{false});
@@ -263,9 +268,10 @@ TEST(LiveControl, ShowsShapedAndMovedObjectsWhereTheyAre) {
   const auto block = open(shipped("floating_block"), options);
   const auto watcher = reader_of(*block);
   block->run(std::atomic<bool>{false});
-  scene::ScenePoses seen, real;
+  session::ScenePoses seen, real;
   ASSERT_TRUE(watcher->poses(seen));
-  ASSERT_TRUE(block->poses().load(real));
+  ASSERT_TRUE(block->records().poses);
+  real = block->records().poses->now();
   EXPECT_EQ(seen.tick, real.tick);
   EXPECT_EQ(seen.pose[0].p_WB, real.pose[0].p_WB);
 }
@@ -305,11 +311,11 @@ TEST(LiveControl, AHandThatTheMouseLeadsFeelsTheScene) {
   ASSERT_TRUE(reader->lead_hand({0, 0, 0.002}, true));
   session->run(std::atomic<bool>{false});
   double fastest = 0, force = 0;
-  for (const auto& row : session->trace().rows()) {
+  for (const auto& row : session->ticks()) {
     fastest = std::max(fastest, Eigen::Map<const Eigen::Vector3d>(row.v_WT.data()).norm());
     force = std::max(force, Eigen::Map<const Eigen::Vector3d>(row.f_sent_W.data()).norm());
   }
-  const auto& end = session->trace().rows().back();
+  const auto& end = session->ticks().back();
   EXPECT_EQ(end.tick, 1499u);
   EXPECT_TRUE(end.in_contact);
   EXPECT_GT(force, 0.5);
@@ -326,7 +332,7 @@ TEST(LiveControl, KeepsTheHandWithinTheWorkspace) {
   ASSERT_TRUE(reader->lead_hand({5, 5, 5}, true));
   session->run(std::atomic<bool>{false});
   const auto& box = session->scene().arm.workspace;
-  for (const auto& row : session->trace().rows()) {
+  for (const auto& row : session->ticks()) {
     for (int k = 0; k < 3; ++k) {
       ASSERT_LE(row.p_WT[static_cast<std::size_t>(k)], box.max_W[k] + 2e-3) << row.tick;
     }

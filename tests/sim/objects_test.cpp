@@ -4,6 +4,8 @@
 #include <filesystem>
 
 #include "lost_contacts.h"
+#include "thimble/render/scene_touch.h"
+#include "thimble/scene/scene_file.h"
 #include "thimble/session/session.h"
 
 namespace thimble {
@@ -17,7 +19,7 @@ TEST(SeveralObjects, AreTouchedOneAfterTheOtherEachWithItsOwnStiffness) {
   ASSERT_EQ(session.run(std::atomic<bool>{false}), driver::ServoEnd::kDone);
 
   std::size_t ticks_on[2] = {0, 0};
-  for (const auto& row : session.trace().rows()) {
+  for (const auto& row : session.ticks()) {
     if (!row.in_contact) {
       EXPECT_EQ(row.object, -1);
       continue;
@@ -34,7 +36,7 @@ TEST(SeveralObjects, AreTouchedOneAfterTheOtherEachWithItsOwnStiffness) {
   }
   EXPECT_GT(ticks_on[0], 300u);
   EXPECT_GT(ticks_on[1], 300u);
-  EXPECT_EQ(session::count_lost_contacts(session.trace().rows(), session.touch()), 0u);
+  EXPECT_EQ(session::count_lost_contacts(session.ticks(), session.touch()), 0u);
 }
 
 }  // namespace

@@ -9,8 +9,10 @@
 
 #include "lost_contacts.h"
 #include "report/report.h"
+#include "setup.h"
 #include "studies/ring_pages.h"
 #include "support/scratch.h"
+#include "thimble/render/scene_touch.h"
 #include "thimble/session/session.h"
 
 namespace thimble {
@@ -48,15 +50,15 @@ TEST(PagedScene, IsTouchedFromTheDiskTheSameInEveryRun) {
     ASSERT_TRUE(opened) << opened.error().message;
     session::Session& session = **opened;
     ASSERT_EQ(session.run(std::atomic<bool>{false}), driver::ServoEnd::kDone);
-    const auto rows = session.trace().rows();
+    const auto rows = session.ticks();
     const auto touching =
         std::count_if(rows.begin(), rows.end(), [](const auto& row) { return row.in_contact; });
     EXPECT_GT(touching, 1000);
     EXPECT_EQ(session::count_lost_contacts(rows, session.touch()), 0u);
-    ASSERT_TRUE(session.paging().has_value());
-    EXPECT_EQ(session.paging()->misses, 0u);
-    EXPECT_GE(session.paging()->loads, 4u);
-    EXPECT_GT(session.triangles(), 90'000u);
+    ASSERT_TRUE(session.setup().objects().paging().has_value());
+    EXPECT_EQ(session.setup().objects().paging()->misses, 0u);
+    EXPECT_GE(session.setup().objects().paging()->loads, 4u);
+    EXPECT_GT(session.setup().objects().triangles(), 90'000u);
     // On top of the tube, of 0.0127 m with bumps, and beside where the tip slides off.
     for (const auto& row : rows) {
       EXPECT_TRUE(!row.in_contact || std::abs(row.p_WT[2] - 0.0112) < 0.0025) << row.p_WT[2];
@@ -92,10 +94,10 @@ TEST(PagedScene, IsTouchedOnTheWallClockWithALoaderOfItsOwn) {
   const driver::ServoEnd end = session.run(std::atomic<bool>{false});
   // A machine may be too busy for the loop; nothing else may end it.
   EXPECT_TRUE(end == driver::ServoEnd::kDone || end == driver::ServoEnd::kFault);
-  EXPECT_GT(session.paging()->loads, 0u);
-  app::RunReport report;
-  report.paging = session.paging();
-  EXPECT_NE(app::summary(report).find("read from the disk"), std::string::npos);
+  EXPECT_GT(session.setup().objects().paging()->loads, 0u);
+  session::RunFigures report;
+  report.paging = session.figures().paging;
+  EXPECT_NE(session::summary(report).find("read from the disk"), std::string::npos);
 }
 
 }  // namespace

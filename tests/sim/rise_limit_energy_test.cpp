@@ -7,9 +7,9 @@
 #include <array>
 #include <cmath>
 
+#include "axis_dynamics.h"
 #include "support/hard_case.h"
 #include "support/random.h"
-#include "thimble/device_sim/axis_dynamics.h"
 #include "thimble/driver/safety_gate.h"
 
 namespace thimble::rise_limit_energy {
@@ -110,7 +110,8 @@ Throw throw_at(const Faces& body, double speed, support::Random& random) {
 
 /// Returns the kinetic energy after the throw over that before it.
 double energy_back(const Faces& body, const Throw& thrown, Limiter limiter, double rise_max) {
-  device_sim::AxisDynamics axis({.mass = kMass, .viscous = 0.005, .coulomb = 0}, {});
+  device_sim::AxisDynamics axis =
+      device_sim::AxisDynamics::make({.mass = kMass, .viscous = 0.005, .coulomb = 0}, {}).value();
   std::array<device_sim::AxisState, 3> s;
   for (int i = 0; i < 3; ++i) {
     s[static_cast<std::size_t>(i)] = {.x = thrown.p[i], .v = thrown.v[i]};

@@ -13,9 +13,13 @@
 #include <thread>
 #include <vector>
 
+#include "setup.h"
 #include "studies/resident_memory.h"
 #include "support/random.h"
 #include "support/run_hash.h"
+#include "thimble/render/scene_touch.h"
+#include "thimble/scene/arm_simulation.h"
+#include "thimble/scene/scene_file.h"
 #include "thimble/session/session.h"
 
 namespace thimble {
@@ -62,7 +66,7 @@ class Wanderer {
       const Vector3d place = places_[random_.bits() % places_.size()] + random_.in_box(0.012);
       const Vector3d inside =
           place.cwiseMax(0.9 * arm.workspace.min_W).cwiseMin(0.9 * arm.workspace.max_W);
-      session_.simulation()->hand().lead(arm.R_WB.transpose() * (inside - arm.p_WB));
+      session_.simulation()->lead(inside);
     }
     return session_.touch()(state);
   }
@@ -115,8 +119,9 @@ Soaked soak(const std::string& scene, std::uint64_t ticks) {
   session::Session& session = **opened;
   Wanderer wanderer(session, 404);
   Witness witness(ticks, session.scene().arm.limits.force_max);
-  driver::run_servo(session.device(), session.clock(), driver::ForceLaw(wanderer),
-                    driver::TickSink(witness), {.period_ns = session.period_ns(), .ticks = ticks},
+  driver::run_servo(session.device(), session.setup().clock(), driver::ForceLaw(wanderer),
+                    driver::TickSink(witness),
+                    {.period_ns = session.setup().period_ns(), .ticks = ticks},
                     std::atomic<bool>{false});
   return witness.close();
 }

@@ -5,11 +5,12 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "arms/falcon/falcon_boot.h"
+#include "arms/falcon/falcon_packet.h"
+#include "support/deaf_board.h"
 #include "support/usb_host_line.h"
 #include "support/usb_host_transport.h"
 #include "thimble/device_sim/usb/arm_shelf.h"
-#include "thimble/driver/arms/falcon/falcon_boot.h"
-#include "thimble/driver/arms/falcon/falcon_packet.h"
 #include "thimble/driver/device.h"
 #include "usb/virtual_arm.h"
 
@@ -172,11 +173,9 @@ TEST_P(UsbTouch, KeepsTheForceWithinItsLimitUnderEveryFault) {
                     // Its reports are numbered, so that an old one is known.
                     (fault == usb::FaultKind::kStale && virtual_arm_.name == "woodenhaptics")
               // An arm that answers only is silent when its messages are lost.
-              : fault == usb::FaultKind::kLost && virtual_arm_.name != "woodenhaptics";
-      // A HID board that answers only does not listen as long as nobody takes its report: the zero
-      // does not reach it, and what it took before stands until its own watchdog acts.
-      const bool deaf = virtual_arm_.name.starts_with("polhem") &&
-                        (fault == usb::FaultKind::kStall || fault == usb::FaultKind::kSilence);
+              : fault == usb::FaultKind::kLost && virtual_arm_.answers();
+      const bool deaf = support::is_deaf(!virtual_arm_.is_falcon(), virtual_arm_.answers(),
+                                         std::string(usb::name(fault)) + way);
       for (int i = 0; i < 150; ++i) {
         tick();
         ASSERT_TRUE(std::isfinite(force_));

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "support/scratch.h"
+#include "thimble/scene/scene_file.h"
 #include "thimble/session/session.h"
 
 namespace thimble {
@@ -90,7 +91,7 @@ TEST_P(PressedPlate, SwitchesReversedMotorsOffAndLeavesSoundOnesAlone) {
   ASSERT_TRUE(reversed);
   EXPECT_EQ(reversed->run(std::atomic<bool>{false}), driver::ServoEnd::kFault);
   EXPECT_EQ(driver::name(reversed->device().fault()), "motors_reversed");
-  const driver::TickRecord& last = reversed->trace().rows().back();
+  const driver::TickRecord& last = reversed->ticks().back();
   const double speed = std::hypot(last.v_WT[0], last.v_WT[1], last.v_WT[2]);
   std::printf("%-16s off at %.1f mm, %.2f m/s\n", GetParam(), -1e3 * last.p_WT[2], speed);
   EXPECT_GT(last.p_WT[2], -0.012);

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "sim_transport.h"
 #include "support/vintage_arm.h"
-#include "thimble/device_sim/sim_transport.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/servo_loop.h"
 
@@ -24,7 +24,7 @@ device_sim::SimulatedArmSettings arm_settings() {
   return settings;
 }
 
-struct Nothing {
+struct NoForce {
   void operator()(const driver::TickRecord&) const noexcept {}
 };
 
@@ -34,7 +34,9 @@ class WaysOut : public ::testing::Test {
     const auto model = support::vintage_model();
     const Eigen::Vector3d home = model.geometry.forward(support::vintage_home());
     arm_ = std::make_unique<device_sim::SimulatedArm>(
-        model, arm_settings(), device_sim::HandPath({{.time = 0, .p_BH = home}}));
+        device_sim::SimulatedArm::make(
+            model, arm_settings(), device_sim::HandPath::make({{.time = 0, .p_BH = home}}).value())
+            .value());
     auto transport = std::make_unique<device_sim::SimTransport>(clock_, *arm_);
     transport_ = transport.get();
     auto opened =
@@ -56,8 +58,8 @@ class WaysOut : public ::testing::Test {
       }
       return command;
     };
-    Nothing nothing;
-    return driver::run_servo(*device_, clock_, driver::ForceLaw(law), driver::TickSink(nothing),
+    NoForce no_force;
+    return driver::run_servo(*device_, clock_, driver::ForceLaw(law), driver::TickSink(no_force),
                              {.period_ns = kPeriod_ns, .ticks = ticks}, stop_);
   }
 

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -10,6 +9,7 @@
 
 #include "stability/stability_laws.h"
 #include "stability/tuning.h"
+#include "support/dense_algebra.h"
 #include "support/hard_case.h"
 #include "support/random.h"
 #include "thimble/scene/arm_simulation.h"
@@ -24,7 +24,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 scene::ArmFile shipped(const std::string& name) {
-  auto arm = scene::read_arm_file(std::string(THIMBLE_SOURCE_DIR) + "/app/arms/" + name + ".yaml");
+  auto arm = scene::load_arm(std::string(THIMBLE_SOURCE_DIR) + "/app/arms/" + name + ".yaml");
   if (!arm) throw std::runtime_error(arm.error().message);
   return *arm;
 }
@@ -105,10 +105,7 @@ double joint_growth(const Matrix3d& J, const Vector3d& mass, const Vector3d& dam
     tick.block<1, 3>(k, 0) -= to_q * K.row(k);
     tick.block<1, 3>(3 + k, 0) -= to_v * K.row(k);
   }
-  return Eigen::EigenSolver<Eigen::Matrix<double, 6, 6>>(tick, false)
-      .eigenvalues()
-      .cwiseAbs()
-      .maxCoeff();
+  return support::spectral_radius(tick);
 }
 
 TEST(HardCase01, StiffnessTimesLatencyUpToTheLeastDampingIsStableInThreeDimensions) {

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <utility>
 
+#include "support/shapes.h"
 #include "thimble/render/mesh/triangle_mesh.h"
 
 namespace thimble::support {
@@ -119,23 +120,7 @@ inline render::TriangleMesh bench_ring(const Ring& ring, std::size_t triangles) 
   const auto across = static_cast<std::int32_t>(
       std::max(3.0, std::round(std::sqrt(static_cast<double>(triangles) / (2 * ratio)))));
   const auto around = static_cast<std::int32_t>(std::round(across * ratio));
-  render::TriangleMesh mesh;
-  for (std::int32_t i = 0; i < around; ++i) {
-    for (std::int32_t j = 0; j < across; ++j) {
-      mesh.vertices.push_back(
-          ring.at(2 * std::numbers::pi * i / around, 2 * std::numbers::pi * j / across));
-    }
-  }
-  const auto at = [&](std::int32_t i, std::int32_t j) {
-    return (i % around) * across + j % across;
-  };
-  for (std::int32_t i = 0; i < around; ++i) {
-    for (std::int32_t j = 0; j < across; ++j) {
-      mesh.triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
-      mesh.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
-    }
-  }
-  return mesh;
+  return torus(ring.ring_radius, ring.tube_radius, around, across);
 }
 
 }  // namespace thimble::support

@@ -6,12 +6,12 @@
 #include <optional>
 #include <span>
 
+#include "frame_finder.h"
+#include "ftdi_packet.h"
 #include "thimble/device_sim/usb/usb_device.h"
-#include "thimble/device_sim/usb/usbip_session.h"
 #include "thimble/driver/clock.h"
-#include "thimble/driver/frame_finder.h"
-#include "thimble/driver/ftdi_packet.h"
 #include "thimble/driver/transport.h"
+#include "usb/usbip_session.h"
 
 namespace thimble::support {
 
@@ -84,7 +84,7 @@ class BusWire final : public driver::Transport {
   }
 
  private:
-  static constexpr std::int64_t kFrame_ns = device_sim::usb::UsbipSession::kFrame_ns;
+  static constexpr std::int64_t kFrame_ns = device_sim::usb::UsbDevice::kFrame_ns;
 
   bool ready() const noexcept { return finder_ ? finder_->ready() : reports_ > 0; }
 

@@ -8,12 +8,14 @@
 #include <span>
 #include <utility>
 
-#include "thimble/device_sim/simulated_arm.h"
+#include "arms/hfab/hfab_line.h"
+#include "arms/hfab/hfab_report.h"
+#include "arms/hfab/hfab_wire.h"
+#include "frame_finder.h"
+#include "simulated_arm.h"
 #include "thimble/device_sim/usb/usb_arm.h"
-#include "thimble/driver/arms/hfab/hfab_line.h"
-#include "thimble/driver/arms/hfab/hfab_report.h"
-#include "thimble/driver/arms/hfab/hfab_wire.h"
-#include "thimble/driver/frame_finder.h"
+#include "usb/setup_packet.h"
+#include "usb/usb_description.h"
 
 namespace thimble::support {
 
@@ -24,9 +26,7 @@ class LineArm final : public device_sim::usb::UsbArm {
  public:
   static constexpr std::uint8_t kIn = 0x81, kOut = 0x02;
 
-  LineArm(const driver::hfab::HfabModel& model, const device_sim::SimulatedArmSettings& settings,
-          device_sim::HandPath path, driver::hfab::LineModel number)
-      : arm_(model, settings, std::move(path)) {
+  LineArm(device_sim::SimulatedArm arm, driver::hfab::LineModel number) : arm_(std::move(arm)) {
     answer_.model = static_cast<std::int32_t>(number);
   }
 

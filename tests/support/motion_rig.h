@@ -10,11 +10,12 @@
 #include <string_view>
 #include <vector>
 
+#include "arms/hfab/hfab_models.h"
+#include "arms/hfab/hfab_report.h"
+#include "arms/hfab/hfab_wire.h"
+#include "sim_transport.h"
+#include "simulated_arm.h"
 #include "support/random.h"
-#include "thimble/device_sim/sim_transport.h"
-#include "thimble/device_sim/simulated_arm.h"
-#include "thimble/driver/arms/hfab/hfab_models.h"
-#include "thimble/driver/arms/hfab/hfab_wire.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/device.h"
 #include "thimble/driver/wire_arm.h"
@@ -169,13 +170,14 @@ inline void MotionRun::run(double duration) {
   arm_settings.wire.delay_out_ns = 1'000'000;
   std::vector<device_sim::HandPath::Point> points;
   for (const auto& [time, p_WH] : way) points.push_back({time, p_WH - settings.p_WB});
-  const device_sim::HandPath path(points);
+  const device_sim::HandPath path = device_sim::HandPath::make(points).value();
 
   std::unique_ptr<device_sim::SimulatedArm> simulated;
   std::unique_ptr<const driver::Arm> protocol;
   if (arm == MotionArm::kPolhem) {
     const auto model = driver::hfab::polhem_model();
-    simulated = std::make_unique<device_sim::SimulatedArm>(model, arm_settings, path, seed);
+    simulated = std::make_unique<device_sim::SimulatedArm>(
+        device_sim::SimulatedArm::make(model, arm_settings, path, seed).value());
     protocol =
         std::make_unique<driver::WireArm<driver::hfab::ReportWire, driver::LinkageArm>>(model);
   } else {
@@ -185,7 +187,8 @@ inline void MotionRun::run(double duration) {
     model.geometry = built.geometry;
     model.drives = built.drives;
     model.encoders = built.encoders;
-    simulated = std::make_unique<device_sim::SimulatedArm>(model, arm_settings, path, seed);
+    simulated = std::make_unique<device_sim::SimulatedArm>(
+        device_sim::SimulatedArm::make(model, arm_settings, path, seed).value());
     protocol = std::make_unique<driver::hfab::HfabArm>(model);
   }
   driver::VirtualClock clock;

@@ -4,8 +4,8 @@
 #include <deque>
 #include <vector>
 
+#include "arms/falcon/falcon_boot.h"
 #include "support/random.h"
-#include "thimble/driver/arms/falcon/falcon_boot.h"
 
 namespace thimble::support {
 

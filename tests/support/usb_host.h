@@ -12,9 +12,9 @@
 #include <utility>
 #include <vector>
 
-#include "thimble/device_sim/usb/setup_packet.h"
 #include "thimble/device_sim/usb/usbip_server.h"
-#include "thimble/device_sim/usb/usbip_wire.h"
+#include "usb/setup_packet.h"
+#include "usb/usbip_wire.h"
 
 namespace thimble::support {
 
@@ -111,7 +111,7 @@ class UsbHost {
   void frames(int count = 1) {
     for (int i = 0; i < count; ++i) {
       ++frame_;
-      server_.frame(frame_ * device_sim::usb::UsbipSession::kFrame_ns);
+      server_.frame(frame_ * device_sim::usb::UsbDevice::kFrame_ns);
       listen();
     }
   }

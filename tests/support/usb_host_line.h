@@ -4,8 +4,8 @@
 #include <array>
 #include <deque>
 
+#include "serial_line.h"
 #include "support/usb_host.h"
-#include "thimble/driver/serial_line.h"
 
 namespace thimble::support {
 

@@ -5,10 +5,10 @@
 #include <optional>
 #include <vector>
 
+#include "frame_finder.h"
+#include "ftdi_packet.h"
 #include "support/usb_host.h"
 #include "thimble/driver/clock.h"
-#include "thimble/driver/frame_finder.h"
-#include "thimble/driver/ftdi_packet.h"
 #include "thimble/driver/transport.h"
 
 namespace thimble::support {
@@ -82,7 +82,7 @@ class UsbHostTransport final : public driver::Transport {
   }
 
  private:
-  static constexpr std::int64_t kFrame_ns = device_sim::usb::UsbipSession::kFrame_ns;
+  static constexpr std::int64_t kFrame_ns = device_sim::usb::UsbDevice::kFrame_ns;
 
   bool ready() const noexcept { return finder_ ? finder_->ready() : !reports_.empty(); }
 

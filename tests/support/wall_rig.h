@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <numbers>
 
-#include "thimble/device_sim/axis_dynamics.h"
+#include "axis_dynamics.h"
 
 namespace thimble::support {
 
@@ -25,13 +25,13 @@ struct Wall {
   double pull = 0;         ///< Constant force of the hand, N.
 };
 
-/// Runs one wall tick by tick. A Gate is called as `double gate(wish, x_read, v, dt)` and answers
-/// with the force that goes to the motor.
+/// Runs one wall tick by tick. A Gate is called as `double gate(requested, x_read, v, dt)` and
+/// answers with the force that goes to the motor.
 class WallRig {
  public:
   explicit WallRig(const Wall& wall)
       : wall_(wall),
-        axis_(wall.plant, wall.hand),
+        axis_(device_sim::AxisDynamics::make(wall.plant, wall.hand).value()),
         whole_(static_cast<std::size_t>(wall.delay_ns / wall.period_ns)),
         rest_ns_(wall.delay_ns % wall.period_ns),
         period_(static_cast<double>(wall.period_ns) * 1e-9) {
@@ -48,7 +48,7 @@ class WallRig {
 
   /// Reads, asks the wall, lets a period pass. Returns the force that was sent.
   double tick() {
-    return tick([](double wish, double, double, double) { return wish; });
+    return tick([](double requested, double, double, double) { return requested; });
   }
 
   template <class Gate>
@@ -61,13 +61,13 @@ class WallRig {
       x_before_ = x;
     }
     x_read_ = x;
-    double wish = 0;
+    double requested = 0;
     if (wall_.two_sided) {
-      wish = -wall_.stiffness * x - wall_.damping * velocity_;
+      requested = -wall_.stiffness * x - wall_.damping * velocity_;
     } else if (x < 0) {
-      wish = std::max(0.0, -wall_.stiffness * x - wall_.damping * velocity_);
+      requested = std::max(0.0, -wall_.stiffness * x - wall_.damping * velocity_);
     }
-    const double sent = gate(wish, x, velocity_, begun_ ? period_ : 0);
+    const double sent = gate(requested, x, velocity_, begun_ ? period_ : 0);
     begun_ = true;
     forces_[ticks_ % forces_.size()] = sent;
     const double now = late(whole_), before = late(whole_ + 1);

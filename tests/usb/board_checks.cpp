@@ -10,6 +10,7 @@
 #include "thimble/device_sim/usb/arm_shelf.h"
 #include "thimble/driver/transports.h"
 #include "usb/board_vectors.h"
+#include "usb/usb_description.h"
 
 namespace thimble::usb_test {
 namespace {

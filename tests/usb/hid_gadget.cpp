@@ -8,6 +8,7 @@
 
 #include "thimble/device_sim/usb/arm_shelf.h"
 #include "thimble/driver/clock.h"
+#include "usb/usb_description.h"
 
 namespace thimble::usb_test {
 namespace {

@@ -3,12 +3,13 @@
 #include <chrono>
 #include <thread>
 
-#include "thimble/driver/arms/falcon/falcon_arm.h"
-#include "thimble/driver/arms/falcon/falcon_boot.h"
-#include "thimble/driver/arms/falcon/falcon_packet.h"
-#include "thimble/driver/arms/hfab/hfab_models.h"
-#include "thimble/driver/arms/hfab/hfab_wire.h"
-#include "thimble/driver/arms/woody/woody_wire.h"
+#include "arms/falcon/falcon_arm.h"
+#include "arms/falcon/falcon_boot.h"
+#include "arms/falcon/falcon_packet.h"
+#include "arms/hfab/hfab_models.h"
+#include "arms/hfab/hfab_wire.h"
+#include "arms/woody/woody_wire.h"
+#include "ftdi_line.h"
 #include "thimble/driver/transports.h"
 
 namespace thimble::usb_test {

@@ -417,7 +417,7 @@ class Simulator:
         rate: float = 1000,
         seed: int = 0,
     ) -> None:
-        self._arm = _core.Arm(os.fspath(arm), _vector("hand", hand), rate, seed)
+        self._arm = _core.SimulatorSession(os.fspath(arm), _vector("hand", hand), rate, seed)
 
     def step(self, force: ArrayLike = (0.0, 0.0, 0.0), hand: Optional[ArrayLike] = None) -> Tick:
         """Run one tick with a force on the hand, (3,) in the world, N, and give it.

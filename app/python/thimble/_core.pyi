@@ -51,7 +51,7 @@ class Run:
     @property
     def objects(self) -> list[str]: ...
 
-class Arm:
+class SimulatorSession:
     def __init__(self, arm: str, hand: NDArray[np.float64], rate: float, seed: int) -> None: ...
     def step(
         self, force: NDArray[np.float64], hand: Optional[NDArray[np.float64]] = None

@@ -1,5 +1,7 @@
 #include "thimble/scene/arm_file.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,10 +10,11 @@
 #include <string>
 #include <string_view>
 
-#include "printed.h"
-#include "thimble/driver/arms/falcon/falcon_arm.h"
-#include "thimble/driver/arms/hfab/hfab_models.h"
-#include "thimble/scene/yaml_reader.h"
+#include "arms/falcon/falcon_arm.h"
+#include "arms/hfab/hfab_models.h"
+#include "energy_choice.h"
+#include "thimble/scene/shipped_files.h"
+#include "yaml/yaml_reader.h"
 
 namespace thimble::scene {
 namespace {
@@ -100,8 +103,9 @@ driver::GateLimits read_gate(YamlMap map, ArmFile& arm) {
   limits.watchdog_ns = to_ns(map.require_number("watchdog", "s", 0.001, kWatchdogMost));
   limits.reopen = map.optional_number("reopen", limits.reopen, "s", 0.001, 10);
   if (limits.force_max > arm.declared.force) {
-    map.reject("force_max", printed("expected at most what the arm declares, %g N, found %g",
-                                    arm.declared.force, limits.force_max));
+    map.reject("force_max",
+               fmt::format("expected at most what the arm declares, {:g} N, found {:g}",
+                           arm.declared.force, limits.force_max));
   }
   // A mistake in either has been told, and left its least value.
   if (limits.stall_ns >= limits.watchdog_ns && limits.watchdog_ns > to_ns(0.001)) {
@@ -249,8 +253,10 @@ std::vector<driver::BoardKind> read_boards(YamlMap& root, ArmProtocol protocol) 
 
 }  // namespace
 
-driver::Result<ArmFile> read_arm_file(const std::filesystem::path& file) {
-  driver::Result<YamlFile> yaml = YamlFile::load(file);
+driver::Result<ArmFile> load_arm(const std::filesystem::path& meant) {
+  const auto file = find_arm_file(meant.string());
+  if (!file) return file.error();
+  driver::Result<YamlFile> yaml = YamlFile::load(*file);
   if (!yaml) return yaml.error();
   YamlMap& root = yaml->root();
   ArmFile arm;

@@ -1,11 +1,13 @@
 #include "thimble/scene/arm_simulation.h"
 
-#include <stdexcept>
+#include <fmt/format.h>
 
-#include "thimble/driver/arms/falcon/falcon_arm.h"
-#include "thimble/driver/arms/falcon/falcon_boot.h"
-#include "thimble/driver/arms/hfab/hfab_models.h"
+#include "arms/falcon/falcon_arm.h"
+#include "arms/falcon/falcon_boot.h"
+#include "arms/hfab/hfab_models.h"
+#include "sim_transport.h"
 #include "thimble/scene/real_arm.h"
+#include "usb/simulated_falcon.h"
 
 namespace thimble::scene {
 namespace {
@@ -14,15 +16,14 @@ Eigen::Vector3d in_base(const ArmFile& file, const Eigen::Vector3d& p_W) {
   return file.R_WB.transpose() * (p_W - file.p_WB);
 }
 
-/// Turns the hand's way from the world into the arm's base. Throws what HandPath throws.
-device_sim::HandPath path_in_base(const std::vector<std::pair<double, Eigen::Vector3d>>& hand_W,
-                                  const ArmFile& file) {
+/// Returns the hand's path in the arm's base, given in the world.
+driver::Result<device_sim::HandPath> path_in_base(const HandRoute& hand_W, const ArmFile& file) {
   std::vector<device_sim::HandPath::Point> points;
   points.reserve(hand_W.size());
   for (const auto& [time, p_WH] : hand_W) {
     points.push_back({.time = time, .p_BH = in_base(file, p_WH)});
   }
-  return device_sim::HandPath(std::move(points));
+  return device_sim::HandPath::make(std::move(points));
 }
 
 /// Gives the file's motors and encoders to the linkage that is in the code.
@@ -34,6 +35,9 @@ driver::JointModel<driver::LinkageArm> polhem_of(const ArmFile& file) {
 }
 
 }  // namespace
+
+ArmSimulation::ArmSimulation(const ArmFile& file) : file_(file) {}
+ArmSimulation::~ArmSimulation() = default;
 
 std::optional<Eigen::Vector3d> joint_angles_at(const ArmFile& file, const Eigen::Vector3d& p_WT) {
   const Eigen::Vector3d p_BT = in_base(file, p_WT);
@@ -48,45 +52,59 @@ std::optional<Eigen::Vector3d> joint_angles_at(const ArmFile& file, const Eigen:
   return std::nullopt;
 }
 
+driver::Result<void> check_reach(const ArmFile& file, const HandRoute& hand_W) {
+  for (const auto& [time, p_WH] : hand_W) {
+    const bool in_box = (p_WH.array() >= file.workspace.min_W.array()).all() &&
+                        (p_WH.array() <= file.workspace.max_W.array()).all();
+    if (!in_box || !joint_angles_at(file, p_WH)) {
+      return driver::Error{
+          fmt::format("At {:.3f} s the hand would be at ({:.3f}, {:.3f}, {:.3f}) m, where the arm "
+                      "does not reach "
+                      "or may not work; move that waypoint or the object.",
+                      time, p_WH.x(), p_WH.y(), p_WH.z())};
+    }
+  }
+  return {};
+}
+
 driver::ArmKind simulated_kind(const ArmFile& file) {
   return file.shape == ArmShape::kFalcon ? driver::ArmKind::kFalcon : driver::ArmKind::kPolhem;
 }
 
 driver::Result<std::unique_ptr<ArmSimulation>> ArmSimulation::make(
-    const ArmFile& file, const std::vector<std::pair<double, Eigen::Vector3d>>& hand_W,
-    const std::filesystem::path& firmware, std::uint64_t seed) {
+    const ArmFile& file, const HandRoute& hand_W, const std::filesystem::path& firmware,
+    std::uint64_t seed) {
   if (!file.can_simulate) {
     return driver::Error{"The arm file " + file.name +
                          " has no section 'simulation', so the arm cannot be simulated. Add one "
                          "(app/arms/vintage_phantom.yaml shows it), or plug the arm in."};
   }
   std::unique_ptr<ArmSimulation> simulation(new ArmSimulation(file));
-  try {
-    device_sim::HandPath path = path_in_base(hand_W, file);
-    switch (file.shape) {
-      case ArmShape::kSerial:
-        simulation->board_arm_.emplace(file.model, file.simulated, std::move(path), seed);
-        break;
-      case ArmShape::kPolhem:
-        simulation->board_arm_.emplace(polhem_of(file), file.simulated, std::move(path), seed);
-        break;
-      case ArmShape::kFalcon: {
-        std::vector<std::byte> image;
-        if (!firmware.empty()) {
-          auto read = driver::falcon::read_firmware(firmware);
-          if (!read) return read.error();
-          image = std::move(read).value();
-        }
-        auto falcon = device_sim::usb::SimulatedFalcon::make(file.simulated, std::move(path),
-                                                             std::move(image), seed);
-        if (!falcon) return falcon.error();
-        simulation->falcon_ = std::move(falcon).value();
-        break;
-      }
+  const auto wrong = [&file](const driver::Error& error) {
+    return driver::Error{file.name + ": " + error.message};
+  };
+  auto path = path_in_base(hand_W, file);
+  if (!path) return wrong(path.error());
+  if (file.shape == ArmShape::kFalcon) {
+    std::vector<std::byte> image;
+    if (!firmware.empty()) {
+      auto read = driver::falcon::read_firmware(firmware);
+      if (!read) return read.error();
+      image = std::move(read).value();
     }
-  } catch (const std::invalid_argument& wrong) {
-    return driver::Error{file.name + ": " + wrong.what()};
+    auto falcon = device_sim::usb::SimulatedFalcon::make(file.simulated, std::move(path).value(),
+                                                         std::move(image), seed);
+    if (!falcon) return wrong(falcon.error());
+    simulation->falcon_ = std::move(falcon).value();
+    return simulation;
   }
+  auto arm = file.shape == ArmShape::kPolhem
+                 ? device_sim::SimulatedArm::make(polhem_of(file), file.simulated,
+                                                  std::move(path).value(), seed)
+                 : device_sim::SimulatedArm::make(file.model, file.simulated,
+                                                  std::move(path).value(), seed);
+  if (!arm) return wrong(arm.error());
+  simulation->board_arm_ = std::make_unique<device_sim::SimulatedArm>(std::move(arm).value());
   return simulation;
 }
 
@@ -98,6 +116,14 @@ std::unique_ptr<driver::Transport> ArmSimulation::wire(driver::Clock& clock) {
 std::unique_ptr<const driver::Arm> ArmSimulation::protocol() const {
   if (file_.shape != ArmShape::kSerial) return make_arm(file_, simulated_kind(file_));
   return std::make_unique<driver::hfab::HfabArm>(file_.model);  // knows ideal encoders too
+}
+
+device_sim::Hand& ArmSimulation::hand() noexcept {
+  return falcon_ ? falcon_->hand() : board_arm_->hand();
+}
+
+void ArmSimulation::hold(bool still) noexcept {
+  hand().hold(still);
 }
 
 void ArmSimulation::settle(std::int64_t now_ns) noexcept {

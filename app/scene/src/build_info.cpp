@@ -1,4 +1,4 @@
-#include "build_info.h"
+#include "thimble/scene/build_info.h"
 
 namespace thimble::scene {
 

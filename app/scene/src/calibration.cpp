@@ -8,8 +8,8 @@
 #include <system_error>
 
 #include "thimble/scene/real_arm.h"
-#include "thimble/scene/user_folders.h"
-#include "thimble/scene/yaml_reader.h"
+#include "user_folders.h"
+#include "yaml/yaml_reader.h"
 
 namespace thimble::scene {
 namespace {

@@ -1,11 +1,10 @@
-#include "thimble/scene/energy_choice.h"
+#include "energy_choice.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "loop_latency.h"
-#include "thimble/scene/arm_file.h"
 #include "worst_direction.h"
 
 namespace thimble::scene {

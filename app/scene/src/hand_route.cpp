@@ -22,7 +22,7 @@ constexpr double kRunMax = 8;
 constexpr double kJumpMin = 0.002;  // m; a smaller jump is a crease, not another part [chosen]
 
 // A hand cannot follow a kink of the surface faster than it can move at all (about 10 Hz), so the
-// way over the surface is averaged over this time. [chosen]
+// path over the surface is averaged over this time. [chosen]
 constexpr int kSmoothSamples = 15;  // to each side: 60 ms in all
 
 // Where the hand is between the stations: a quintic with given speeds and no acceleration at its
@@ -58,24 +58,23 @@ void smooth(HandRoute& route, std::size_t first, std::size_t last) {
   }
 }
 
-driver::Error no_way_error(const HandWaypoint& from, const HandWaypoint& to) {
+driver::Error no_path_error(const HandWaypoint& from, const HandWaypoint& to) {
   std::ostringstream text;
-  text << "The hand's way from t = " << from.time << " s to " << to.time
-       << " s finds no way over \"" << *from.on
-       << "\", whose parts do not hang together there: put a station between them.";
+  text << "The hand's path from t = " << from.time << " s to " << to.time << " s finds none over \""
+       << *from.on << "\", whose parts do not hang together there: put a station between them.";
   return {text.str()};
 }
 
-// The share of the way that the hand has gone after the share `s` of the time, at rest at both
+// The share of the path that the hand has gone after the share `s` of the time, at rest at both
 // ends.
 double eased(double s) {
   return s * s * s * (10 + s * (6 * s - 15));
 }
 
-// A way of straight pieces, asked by the share of its length.
-class LongWay {
+// A path of straight pieces, asked by the share of its length.
+class LongPath {
  public:
-  explicit LongWay(std::vector<Vector3d> points) : points_(std::move(points)), gone_{0} {
+  explicit LongPath(std::vector<Vector3d> points) : points_(std::move(points)), gone_{0} {
     for (std::size_t i = 1; i < points_.size(); ++i) {
       gone_.push_back(gone_.back() + (points_[i] - points_[i - 1]).norm());
     }
@@ -95,7 +94,7 @@ class LongWay {
   std::vector<double> gone_;  // length up to each point, m
 };
 
-// Plans one route; `routed` says which stretches go the long way, because the straight one jumps.
+// Plans one route; `routed` says which stretches go the long path, because the straight one jumps.
 class Plan {
  public:
   Plan(const std::vector<HandWaypoint>& waypoints, const std::vector<NamedMesh>& objects)
@@ -117,7 +116,7 @@ class Plan {
       const std::size_t jumps_at = try_once();
       if (jumps_at == waypoints_.size()) return std::move(route_);
       if (routed_[jumps_at]) {
-        return no_way_error(waypoints_[jumps_at], waypoints_[jumps_at + 1]);
+        return no_path_error(waypoints_[jumps_at], waypoints_[jumps_at + 1]);
       }
       routed_[jumps_at] = true;
     }
@@ -129,17 +128,17 @@ class Plan {
   }
 
   driver::Result<void> check() const {
-    if (waypoints_.empty()) return driver::Error{"The hand's way has no station."};
+    if (waypoints_.empty()) return driver::Error{"The hand's path has no station."};
     for (std::size_t i = 1; i < waypoints_.size(); ++i) {
       if (waypoints_[i].time > waypoints_[i - 1].time) continue;
       std::ostringstream text;
-      text << "The hand's way has t = " << waypoints_[i].time
+      text << "The hand's path has t = " << waypoints_[i].time
            << " s after t = " << waypoints_[i - 1].time << " s: times must grow.";
       return driver::Error{text.str()};
     }
     for (const HandWaypoint& w : waypoints_) {
       if (w.on && !probes_.contains(*w.on)) {
-        return driver::Error{"The hand's way touches \"" + *w.on + "\", which is no object here."};
+        return driver::Error{"The hand's path touches \"" + *w.on + "\", which is no object here."};
       }
     }
     return {};
@@ -161,7 +160,7 @@ class Plan {
     for (std::size_t i = 0; i + 1 < waypoints_.size(); ++i) {
       const HandWaypoint& to = waypoints_[i + 1];
       const bool on_surface = follows_surface(waypoints_[i], to);
-      if (!(routed_[i] ? go_long_way(i) : go_straight(i))) return i;
+      if (!(routed_[i] ? go_long_path(i) : go_straight(i))) return i;
       const bool goes_on = i + 2 < waypoints_.size() && follows_surface(to, waypoints_[i + 2]);
       if (on_surface && !(goes_on && !to.stop)) smooth(route_, run_begin, route_.size() - 1);
       if (!on_surface || to.stop) run_begin = route_.size() - 1;
@@ -177,18 +176,18 @@ class Plan {
     const HandWaypoint& from = waypoints_[i];
     const HandWaypoint& to = waypoints_[i + 1];
     const bool on_surface = follows_surface(from, to);
-    const Quintic way{on_surface ? from.p_W : stations_[i], on_surface ? to.p_W : stations_[i + 1],
-                      speed_at(i), speed_at(i + 1), to.time - from.time};
-    const int steps = steps_of(way.time);
+    const Quintic path{on_surface ? from.p_W : stations_[i], on_surface ? to.p_W : stations_[i + 1],
+                       speed_at(i), speed_at(i + 1), to.time - from.time};
+    const int steps = steps_of(path.time);
     SurfaceProbe* const probe = on_surface ? &probes_.at(*from.on) : nullptr;
     SurfacePoint last;
-    if (probe) last = probe->closest(way.at(0));
+    if (probe) last = probe->closest(path.at(0));
     for (int step = 1; step <= steps; ++step) {
       const double s = static_cast<double>(step) / steps;
-      const double time = from.time + s * way.time;
-      Vector3d p_WH = way.at(s);
+      const double time = from.time + s * path.time;
+      Vector3d p_WH = path.at(s);
       if (probe) {
-        const double asked = (p_WH - way.at(static_cast<double>(step - 1) / steps)).norm();
+        const double asked = (p_WH - path.at(static_cast<double>(step - 1) / steps)).norm();
         const SurfacePoint point = probe->closest(p_WH);
         if (!((point.p_WS - last.p_WS).norm() <= std::max(kRunMax * asked, kJumpMin))) return false;
         last = point;
@@ -200,7 +199,7 @@ class Plan {
   }
 
   // Goes over the surface where it hangs together, else over what lies between its parts.
-  bool go_long_way(std::size_t i) {
+  bool go_long_path(std::size_t i) {
     const HandWaypoint& from = waypoints_[i];
     const HandWaypoint& to = waypoints_[i + 1];
     SurfaceProbe& probe = probes_.at(*from.on);
@@ -213,11 +212,11 @@ class Plan {
       points.front() = stations_[i];
       points.back() = stations_[i + 1];
     }
-    const LongWay way(std::move(points));
+    const LongPath path(std::move(points));
     const int steps = steps_of(to.time - from.time);
     for (int step = 1; step <= steps; ++step) {
       const double s = static_cast<double>(step) / steps;
-      Vector3d p_WH = way.at(eased(s));
+      Vector3d p_WH = path.at(eased(s));
       if (on_surface) {
         p_WH = pressed(probe.closest(p_WH), from.press + eased(s) * (to.press - from.press));
       }

@@ -2,13 +2,13 @@
 
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <fstream>
 #include <system_error>
 #include <utility>
 
-#include "thimble/scene/user_folders.h"
-#include "thimble/scene/yaml_reader.h"
+#include "log/logger.h"
+#include "user_folders.h"
+#include "yaml/yaml_reader.h"
 
 namespace thimble::scene {
 namespace {
@@ -16,10 +16,10 @@ namespace {
 namespace fs = std::filesystem;
 
 void complain_of(const std::string& name) {
-  std::fprintf(stderr,
-               "thimble: The heat of the motors cannot be kept in %s, so the next run takes them "
-               "for cold. Let them cool before it; check that the folder may be written to.\n",
-               heat_file(name).c_str());
+  logger().warn(
+      "The heat of the motors cannot be kept in {}, so the next run takes them for cold. Let them "
+      "cool before it; check that the folder may be written to.",
+      heat_file(name).string());
 }
 
 }  // namespace

@@ -1,18 +1,22 @@
 #include "thimble/scene/real_arm.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
-#include <cstdio>
 #include <string>
 #include <utility>
 
+#include "arms/falcon/falcon_arm.h"
+#include "arms/falcon/falcon_boot.h"
+#include "arms/hfab/hfab_models.h"
+#include "arms/hfab/hfab_report.h"
+#include "arms/hfab/hfab_wire.h"
+#include "arms/woody/woody_proof.h"
+#include "arms/woody/woody_report.h"
+#include "arms/woody/woody_wire.h"
+#include "ftdi_line.h"
 #include "interrupt.h"
-#include "printed.h"
-#include "thimble/driver/arms/falcon/falcon_arm.h"
-#include "thimble/driver/arms/falcon/falcon_boot.h"
-#include "thimble/driver/arms/hfab/hfab_models.h"
-#include "thimble/driver/arms/hfab/hfab_wire.h"
-#include "thimble/driver/arms/woody/woody_proof.h"
-#include "thimble/driver/arms/woody/woody_wire.h"
+#include "log/logger.h"
 #include "thimble/driver/transports.h"
 
 namespace thimble::scene {
@@ -82,7 +86,7 @@ Result<void> home(driver::SerialLine& line) {
     if (state.done()) return {};
     homed = state.homed;
     if (!told && state.answered) {
-      std::fprintf(stderr, "Pull the Falcon's grip all the way out, then push it in.\n");
+      terminal().info("Pull the Falcon's grip all the way out, then push it in.");
       told = true;
     }
   }
@@ -128,8 +132,8 @@ Result<std::optional<FoundArm>> choose_arm(const std::vector<FoundArm>& plugged_
     names.append(names.empty() ? "" : ", ").append(arm.name());
     if (!by_itself && arm.name() != wanted) continue;
     if (found) {
-      return Error{printed("Several arms answer to '%s': %s. Name one with --device NAME.",
-                           wanted.c_str(), names.c_str())};
+      return Error{fmt::format("Several arms answer to '{}': {}. Name one with --device NAME.",
+                               wanted, names)};
     }
     found = arm;
   }

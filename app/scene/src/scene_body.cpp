@@ -1,10 +1,10 @@
-#include "thimble/scene/scene_body.h"
+#include "scene_body.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "surface/friction/friction_settings.h"
-#include "yaml_settings.h"
+#include "yaml/yaml_settings.h"
 
 namespace thimble::scene {
 

@@ -1,12 +1,12 @@
-#include "thimble/scene/scene_effects.h"
+#include "scene_effects.h"
 
 #include <algorithm>
 #include <string>
 #include <utility>
 
-#include "thimble/scene/energy_choice.h"
+#include "energy_choice.h"
 #include "worst_direction.h"
-#include "yaml_settings.h"
+#include "yaml/yaml_settings.h"
 
 namespace thimble::scene {
 namespace {

@@ -7,9 +7,12 @@
 #include <system_error>
 #include <utility>
 
-#include "thimble/render/mesh/placed_mesh.h"
-#include "thimble/scene/scene_effects.h"
-#include "thimble/scene/yaml_reader.h"
+#include "energy_choice.h"
+#include "page/page_file.h"
+#include "scene_body.h"
+#include "scene_effects.h"
+#include "scene_shapes.h"
+#include "yaml/yaml_reader.h"
 
 namespace thimble::scene {
 namespace {
@@ -224,14 +227,17 @@ std::vector<HandWaypoint> read_hand(YamlMap map, const std::vector<SceneObject>&
 
 }  // namespace
 
-driver::Result<Scene> read_scene(const std::filesystem::path& file,
-                                 const std::filesystem::path& mesh_folder,
-                                 const std::filesystem::path& other_arm) {
+driver::Result<Scene> load_scene(const std::filesystem::path& meant, const SceneReading& reading) {
+  const auto found = find_scene(meant.string());
+  if (!found) return found.error();
+  const std::filesystem::path& file = *found;
+  const std::filesystem::path& mesh_folder = reading.mesh_folder;
   driver::Result<YamlFile> yaml = YamlFile::load(file);
   if (!yaml) return yaml.error();
   YamlMap& root = yaml->root();
   const std::filesystem::path folder = file.parent_path();
   Scene scene;
+  scene.file = file;
   scene.name = root.require_string("name");
   scene.description = root.optional_string("description", "");
   scene.arm_file = find_file(root, "arm", folder, {});
@@ -247,8 +253,12 @@ driver::Result<Scene> read_scene(const std::filesystem::path& file,
     gate.finish();
   }
   scene.own_arm_file = scene.arm_file;
-  if (!other_arm.empty()) scene.arm_file = other_arm;
-  auto arm = read_arm_file(scene.arm_file);
+  if (!reading.arm.empty()) {
+    auto other = find_arm_file(reading.arm.string());
+    if (!other) return other.error();
+    scene.arm_file = std::move(other).value();
+  }
+  auto arm = load_arm(scene.arm_file);
   std::optional<driver::Error> arm_error;
   if (arm) {
     scene.arm = std::move(arm).value();
@@ -272,41 +282,6 @@ driver::Result<Scene> read_scene(const std::filesystem::path& file,
   if (auto done = yaml->finish(); !done) return done.error();
   if (arm_error) return *arm_error;
   return scene;
-}
-
-MeshPlacement placement_of(const render::TriangleMesh& mesh, const SceneObject& object) {
-  // The box of the mesh as it lies in its file gives the size: turning an object must not change
-  // it.
-  Eigen::AlignedBox3d file_box;
-  Eigen::AlignedBox3d turned_box;
-  for (const Eigen::Vector3d& vertex : mesh.vertices) {
-    file_box.extend(vertex);
-    turned_box.extend(object.R_WO * vertex);
-  }
-  const double largest = file_box.sizes().maxCoeff();
-  const double scale =
-      object.size && largest > 0 ? *object.size / largest : object.scale.value_or(1);
-  return {.scale = scale, .p_WM = object.p_WO - scale * turned_box.center()};
-}
-
-render::TriangleMesh place_mesh(const render::TriangleMesh& mesh, const SceneObject& object) {
-  const MeshPlacement place = placement_of(mesh, object);
-  return render::placed(mesh, place.scale, object.R_WO, place.p_WM);
-}
-
-render::PagedPlace place_pages(const render::PageFile& file, const SceneObject& object) {
-  Eigen::Vector3d low, high;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    low[static_cast<Eigen::Index>(axis)] = double{file.whole().min[axis]};
-    high[static_cast<Eigen::Index>(axis)] = double{file.whole().max[axis]};
-  }
-  const double step = file.lattice().step;
-  const Eigen::Vector3d center = file.lattice().origin + step * 0.5 * (low + high);
-  const double largest = step * (high - low).maxCoeff();
-  const double scale =
-      object.size && largest > 0 ? *object.size / largest : object.scale.value_or(1);
-  return {
-      .scale = scale, .R_WM = object.R_WO, .p_WM = object.p_WO - scale * (object.R_WO * center)};
 }
 
 }  // namespace thimble::scene

@@ -6,6 +6,8 @@
 #include "body/motion/move_object.h"
 #include "build_paged_touch.h"
 #include "object_mesh.h"
+#include "page/paged_surface.h"
+#include "place_mesh.h"
 #include "thimble/render/build_object_touch.h"
 
 namespace thimble::scene {

@@ -1,4 +1,4 @@
-#include "thimble/scene/scene_shapes.h"
+#include "scene_shapes.h"
 
 #include <Eigen/Geometry>
 #include <array>

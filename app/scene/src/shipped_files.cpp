@@ -8,7 +8,12 @@
 #include <string_view>
 #include <system_error>
 
-#include "thimble/scene/user_folders.h"
+#include "user_folders.h"
+
+// Where the files lie that came with the installed libraries; the CMake package gives it to each
+// program that is built with them (app/install/installed_files.cpp.in), for a static library cannot
+// know.
+extern "C" __attribute__((weak)) const char* thimble_installed_files();
 
 namespace thimble::scene {
 namespace {
@@ -27,16 +32,25 @@ fs::path own_file() {
   return fs::read_symlink("/proc/self/exe", status);
 }
 
-/// Finds what came with this program: PREFIX/share/thimble, or app/ of the sources it was built in.
-fs::path own_folder() {
+bool has_both(const fs::path& folder) {
   std::error_code status;
+  return fs::is_directory(folder / "scenes", status) && fs::is_directory(folder / "arms", status);
+}
+
+/// Returns what came with this program: PREFIX/share/thimble, or app/ of the sources it was built
+/// in; else, for a program of somebody else, what came with the libraries that it was built with.
+fs::path own_folder() {
   for (fs::path above = own_file().parent_path();; above = above.parent_path()) {
     for (const fs::path& folder : {above / "share" / "thimble", above / "app"}) {
-      if (fs::is_directory(folder / "scenes", status) && fs::is_directory(folder / "arms", status))
-        return folder;
+      if (has_both(folder)) return folder;
     }
-    if (!above.has_relative_path()) return {};
+    if (!above.has_relative_path()) break;
   }
+  const char* told = thimble_installed_files != nullptr ? thimble_installed_files() : "";
+  for (const fs::path& folder : {fs::path(told), fs::path(THIMBLE_INSTALLED_FILES)}) {
+    if (!folder.empty() && has_both(folder)) return folder;
+  }
+  return {};
 }
 
 std::vector<fs::path> folders() {
@@ -132,6 +146,11 @@ std::string description_of(const fs::path& file) {
   } catch (const YAML::Exception&) {
     return {};  // whoever runs it is told what is wrong with it
   }
+}
+
+fs::path mesh_folder() {
+  const char* chosen = std::getenv("THIMBLE_MESHES");
+  return chosen && *chosen ? chosen : THIMBLE_MESH_FOLDER;
 }
 
 driver::Result<fs::path> find_scene(const std::string& meant) {

@@ -22,36 +22,36 @@ using Eigen::Vector3d;
 constexpr double kLongEdge = 1.0 / 16;
 constexpr int kEdgePointsMax = 8;
 
-// A way is drawn in steps of this share of the mesh, and pulled straight so often. [chosen: the
-// ways over a sphere of 2,000 triangles are then within 2 % of great circles]
+// A path is drawn in steps of this share of the mesh, and pulled straight so often. [chosen: the
+// paths over a sphere of 2,000 triangles are then within 2 % of great circles]
 constexpr double kStep = 1.0 / 200;
 constexpr int kPulls = 30;
 
-// A way through the free is looked for on so many places along each axis, around the mesh and a
+// A path through the free is looked for on so many places along each axis, around the mesh and a
 // little beyond its box. [chosen: gaps of a thirtieth of the mesh are found]
 constexpr int kGrid = 40;
 constexpr double kBeyond = 0.1;  // of the box's diagonal
 
-std::vector<Vector3d> resampled(const std::vector<Vector3d>& way, double step) {
-  std::vector<Vector3d> points{way.front()};
-  for (std::size_t i = 1; i < way.size(); ++i) {
+std::vector<Vector3d> resampled(const std::vector<Vector3d>& path, double step) {
+  std::vector<Vector3d> points{path.front()};
+  for (std::size_t i = 1; i < path.size(); ++i) {
     const int pieces =
-        std::max(1, static_cast<int>(std::ceil((way[i] - way[i - 1]).norm() / step)));
+        std::max(1, static_cast<int>(std::ceil((path[i] - path[i - 1]).norm() / step)));
     for (int k = 1; k <= pieces; ++k) {
-      points.push_back(way[i - 1] + (way[i] - way[i - 1]) * (static_cast<double>(k) / pieces));
+      points.push_back(path[i - 1] + (path[i] - path[i - 1]) * (static_cast<double>(k) / pieces));
     }
   }
   return points;
 }
 
-// Places in space, of which only those that a way comes to are looked at.
+// Places in space, of which only those that a path comes to are looked at.
 class FreeGrid {
  public:
   FreeGrid(const Vector3d& origin, const Vector3d& step,
            std::function<bool(const Vector3d&)> is_free)
       : origin_(origin), step_(step), is_free_(std::move(is_free)) {}
 
-  // The shortest way over free places that are neighbours, also over a corner; empty if there is
+  // The shortest path over free places that are neighbours, also over a corner; empty if there is
   // none.
   std::vector<Vector3d> find(const Vector3d& from, const Vector3d& to) {
     constexpr int kCells = kGrid * kGrid * kGrid;
@@ -76,13 +76,13 @@ class FreeGrid {
         open.emplace(reached + (place(next) - place(goal)).norm(), next);
       });
     }
-    std::vector<Vector3d> way;
-    if (goal != start && before[static_cast<std::size_t>(goal)] < 0) return way;
+    std::vector<Vector3d> path;
+    if (goal != start && before[static_cast<std::size_t>(goal)] < 0) return path;
     for (int cell = goal; cell >= 0; cell = before[static_cast<std::size_t>(cell)]) {
-      way.push_back(place(cell));
+      path.push_back(place(cell));
     }
-    std::reverse(way.begin(), way.end());
-    return way;
+    std::reverse(path.begin(), path.end());
+    return path;
   }
 
  private:
@@ -161,7 +161,7 @@ class SurfaceRoute::Graph {
     }
   }
 
-  // The shortest way over the points between two triangles (E. W. Dijkstra, 1959; towards the goal
+  // The shortest path over the points between two triangles (E. W. Dijkstra, 1959; towards the goal
   // by the straight distance: P. Hart, N. Nilsson, B. Raphael, 1968). Empty if there is none.
   std::vector<Vector3d> find(const SurfacePoint& from, const SurfacePoint& to) const {
     std::vector<double> length(points_.size(), std::numeric_limits<double>::infinity());
@@ -184,13 +184,13 @@ class SurfaceRoute::Graph {
       open.pop();
       const auto n = static_cast<std::size_t>(node);
       if (std::find(goals.begin(), goals.end(), node) != goals.end()) {
-        std::vector<Vector3d> way{to.p_WS};
+        std::vector<Vector3d> path{to.p_WS};
         for (std::int32_t at = node; at >= 0; at = before[static_cast<std::size_t>(at)]) {
-          way.push_back(points_[static_cast<std::size_t>(at)]);
+          path.push_back(points_[static_cast<std::size_t>(at)]);
         }
-        way.push_back(from.p_WS);
-        std::reverse(way.begin(), way.end());
-        return way;
+        path.push_back(from.p_WS);
+        std::reverse(path.begin(), path.end());
+        return path;
       }
       if (bound > length[n] + (points_[n] - to.p_WS).norm()) continue;  // reached nearer since
       for (const std::int32_t t : triangles_of_[n]) {
@@ -226,20 +226,20 @@ std::vector<Vector3d> SurfaceRoute::over_surface(const Vector3d& p_from, const V
   const SurfacePoint from = probe_.closest(p_from);
   const SurfacePoint to = probe_.closest(p_to);
   if (from.triangle == to.triangle) return resampled({from.p_WS, to.p_WS}, kStep * size_);
-  std::vector<Vector3d> way = graph_->find(from, to);
-  if (way.empty()) return way;
-  way = resampled(way, kStep * size_);
-  straighten(way);
-  return way;
+  std::vector<Vector3d> path = graph_->find(from, to);
+  if (path.empty()) return path;
+  path = resampled(path, kStep * size_);
+  straighten(path);
+  return path;
 }
 
 // Moves each point to the surface next to the middle of its neighbours, where that is near.
-void SurfaceRoute::straighten(std::vector<Vector3d>& way) {
+void SurfaceRoute::straighten(std::vector<Vector3d>& path) {
   for (int pull = 0; pull < kPulls; ++pull) {
-    for (std::size_t i = 1; i + 1 < way.size(); ++i) {
-      const Vector3d p = probe_.closest((way[i - 1] + way[i + 1]) / 2).p_WS;
+    for (std::size_t i = 1; i + 1 < path.size(); ++i) {
+      const Vector3d p = probe_.closest((path[i - 1] + path[i + 1]) / 2).p_WS;
       const double reach = 2 * kStep * size_;
-      if ((p - way[i - 1]).norm() <= reach && (p - way[i + 1]).norm() <= reach) way[i] = p;
+      if ((p - path[i - 1]).norm() <= reach && (p - path[i + 1]).norm() <= reach) path[i] = p;
     }
   }
 }
@@ -250,16 +250,16 @@ std::vector<Vector3d> SurfaceRoute::over_the_gap(const Vector3d& p_from, const V
   FreeGrid grid(box_.min(), box_.sizes() / kGrid,
                 [this](const Vector3d& p) { return is_outside(p); });
   const double above = box_.sizes().maxCoeff() / kGrid;
-  std::vector<Vector3d> way = grid.find(from.p_WS + above * from.n_W, to.p_WS + above * to.n_W);
-  if (way.empty()) return way;
-  way.insert(way.begin(), from.p_WS);
-  way.push_back(to.p_WS);
+  std::vector<Vector3d> path = grid.find(from.p_WS + above * from.n_W, to.p_WS + above * to.n_W);
+  if (path.empty()) return path;
+  path.insert(path.begin(), from.p_WS);
+  path.push_back(to.p_WS);
   // As few corners as the free allows.
-  std::vector<Vector3d> corners{way.front()};
-  for (std::size_t i = 0; i + 1 < way.size();) {
-    std::size_t next = way.size() - 1;
-    while (next > i + 1 && !is_free(way[i], way[next])) --next;
-    corners.push_back(way[next]);
+  std::vector<Vector3d> corners{path.front()};
+  for (std::size_t i = 0; i + 1 < path.size();) {
+    std::size_t next = path.size() - 1;
+    while (next > i + 1 && !is_free(path[i], path[next])) --next;
+    corners.push_back(path[next]);
     i = next;
   }
   return corners;
@@ -270,7 +270,7 @@ bool SurfaceRoute::is_outside(const Vector3d& p_W) {
   return near.n_W.dot(p_W - near.p_WS) >= -1e-9 * size_;
 }
 
-// Tells whether points along a line lie outside, as seen from the surface next to each.
+// Returns whether points along a line lie outside, as seen from the surface next to each.
 bool SurfaceRoute::is_free(const Vector3d& p_from, const Vector3d& p_to) {
   const std::vector<Vector3d> points = resampled({p_from, p_to}, kStep * size_);
   return std::all_of(points.begin(), points.end(),

@@ -11,7 +11,7 @@
 
 namespace thimble::scene {
 
-/// Finds ways from one point of a surface to another: over the surface where it hangs together,
+/// Finds paths from one point of a surface to another: over the surface where it hangs together,
 /// else in the free over what lies between.
 class SurfaceRoute {
  public:
@@ -20,12 +20,12 @@ class SurfaceRoute {
   SurfaceRoute(const render::TriangleMesh& mesh_W, SurfaceProbe& probe);
   ~SurfaceRoute();
 
-  /// Returns the way as points not far apart, from the one to the other (W, m), nearly the shortest
-  /// over the surface; empty if the surface does not hang together between them.
+  /// Returns the path as points not far apart, from the one to the other (W, m), nearly the
+  /// shortest over the surface; empty if the surface does not hang together between them.
   std::vector<Eigen::Vector3d> over_surface(const Eigen::Vector3d& p_from,
                                             const Eigen::Vector3d& p_to);
 
-  /// Returns the corners of a way that leaves the surface, passes what lies between, and comes
+  /// Returns the corners of a path that leaves the surface, passes what lies between, and comes
   /// back. It stays outside on a grid of some 30 cells across. Empty if there is none: the goal
   /// lies inside another part.
   std::vector<Eigen::Vector3d> over_the_gap(const Eigen::Vector3d& p_from,
@@ -34,7 +34,7 @@ class SurfaceRoute {
  private:
   class Graph;
 
-  void straighten(std::vector<Eigen::Vector3d>& way);
+  void straighten(std::vector<Eigen::Vector3d>& path);
   bool is_outside(const Eigen::Vector3d& p_W);
   bool is_free(const Eigen::Vector3d& p_from, const Eigen::Vector3d& p_to);
 

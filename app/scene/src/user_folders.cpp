@@ -1,4 +1,4 @@
-#include "thimble/scene/user_folders.h"
+#include "user_folders.h"
 
 #include <cctype>
 #include <cstdlib>

@@ -1,10 +1,9 @@
-#include "thimble/scene/watch_choice.h"
+#include "watch_choice.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "thimble/scene/arm_file.h"
-#include "thimble/scene/energy_choice.h"
+#include "energy_choice.h"
 
 namespace thimble::scene {
 

@@ -3,6 +3,8 @@
 #include <string>
 #include <utility>
 
+#include "log/logger.h"
+#include "setup.h"
 #include "thimble/scene/real_arm.h"
 #include "thimble/session/session.h"
 
@@ -78,6 +80,8 @@ void ReplugWatch::search() {
   if (!wire) return;  // it may still be starting up; the next search tries again
   arm_ = *found;
   device_.offer(std::move(wire).value());
+  scene::logger().info("{} is back on the bus: a new wire to it is offered to the loop.",
+                       arm_.name());
   offered_ = true;
   silent_ = 0;
 }
@@ -92,17 +96,17 @@ void ReplugWatch::let_through(const driver::TickRecord& record) {
   }
 }
 
-ReplugWatch replug_watch_of(Session& session, const driver::FoundArm& arm,
-                            const std::filesystem::path& firmware) {
+ReplugWatch replug_watch_of(Session& session) {
+  const Setup& setup = session.setup();
   const auto find = [](const driver::FoundArm& lost) -> std::optional<driver::FoundArm> {
     const auto plugged_in = driver::find_arms();
     return plugged_in ? scene::find_again(*plugged_in, lost) : std::nullopt;
   };
-  const auto open = [&session, firmware](const driver::FoundArm& found) {
-    return scene::open_wire(found, session.scene().arm, firmware, session.clock());
+  const auto open = [&setup](const driver::FoundArm& found) {
+    return scene::open_wire(found, setup.scene().arm, setup.firmware(), setup.clock());
   };
-  return {session.device(), session.snapshot(), session.start_pose(), arm,
-          {find, open},     user_terminal()};
+  return {setup.device(),    session.newest(), setup.start_pose(),
+          *setup.real_arm(), {find, open},     user_terminal()};
 }
 
 }  // namespace thimble::session

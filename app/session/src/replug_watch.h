@@ -4,11 +4,11 @@
 #include <memory>
 #include <optional>
 
+#include "start_pose.h"
 #include "thimble/driver/device.h"
 #include "thimble/driver/discovery.h"
 #include "thimble/driver/snapshot.h"
 #include "thimble/driver/tick_record.h"
-#include "thimble/session/start_pose.h"
 
 namespace thimble::session {
 
@@ -55,8 +55,8 @@ class ReplugWatch {
   int silent_ = 0;          // steps since a new wire gave a report
 };
 
-/// Makes the watch over the arm of a session. `arm` and `firmware` are those it was opened with.
-ReplugWatch replug_watch_of(Session& session, const driver::FoundArm& arm,
-                            const std::filesystem::path& firmware);
+/// Returns the watch over the arm of a session, which must outlive it. Precondition: the arm is
+/// real and open.
+ReplugWatch replug_watch_of(Session& session);
 
 }  // namespace thimble::session

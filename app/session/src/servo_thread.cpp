@@ -1,4 +1,6 @@
-#include "servo_thread.h"
+#include "thimble/session/servo_thread.h"
+
+#include "thimble/session/session.h"
 
 namespace thimble::session {
 

@@ -1,10 +1,7 @@
-#include "thimble/session/start_pose.h"
+#include "start_pose.h"
 
-#include <unistd.h>
+#include <fmt/core.h>
 
-#include <cstdio>
-
-#include "printed.h"
 #include "thimble/scene/real_arm.h"
 
 namespace thimble::session {
@@ -24,34 +21,27 @@ std::string StartPose::trouble(const Eigen::Vector3d& p_WT, bool at_home) const 
   constexpr const char* kMend =
       "switch it off, put it into its home pose, and switch it on again there";
   if (!p_WT.allFinite()) {
-    return scene::printed("The arm reports no position that can be: %s.", kMend);
+    return fmt::format("The arm reports no position that can be: {}.", kMend);
   }
   if (p_WHome_) {
     const double distance = (p_WT - *p_WHome_).norm();
     if (distance <= kHomeMargin) return {};
     if (at_home) {
-      return scene::printed(
-          "The arm reports its tip %.0f mm away from its home pose. Put it into its home pose. If "
-          "it stands there already, its counters began elsewhere: %s.",
+      return fmt::format(
+          "The arm reports its tip {:.0f} mm away from its home pose. Put it into its home pose. "
+          "If it stands there already, its counters began elsewhere: {}.",
           1e3 * distance, kMend);
     }
   }
   const Eigen::Vector3d nearest = p_WT.cwiseMax(workspace_.min_W).cwiseMin(workspace_.max_W);
   const double outside = (p_WT - nearest).norm();
   if (!(outside <= kWorkspaceMargin)) {
-    return scene::printed(
-        "The arm reports its tip %.0f mm outside of the workspace that its arm file names. Bring "
-        "it "
-        "inside. If it is inside already, its counters are wrong: %s.",
+    return fmt::format(
+        "The arm reports its tip {:.0f} mm outside of the workspace that its arm file names. Bring "
+        "it inside. If it is inside already, its counters are wrong: {}.",
         1e3 * outside, has_home() ? kMend : "start the program again, which homes it anew");
   }
   return {};
-}
-
-Terminal user_terminal() {
-  return {.there = isatty(STDIN_FILENO) != 0,
-          .key = look_for_enter,
-          .tell = [](const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); }};
 }
 
 driver::Result<bool> wait_for_start_pose(driver::Device& device, driver::Clock& clock,

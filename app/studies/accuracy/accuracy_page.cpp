@@ -6,9 +6,9 @@
 #include <sstream>
 #include <utility>
 
-#include "build_info.h"
 #include "report/figure.h"
 #include "studies/accuracy/axis_words.h"
+#include "thimble/scene/build_info.h"
 
 namespace thimble::app {
 namespace {

@@ -1,8 +1,9 @@
 #include "studies/accuracy/axis_words.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <sstream>
 
 namespace thimble::app {
@@ -51,15 +52,12 @@ std::string coarsest_sentence(const MeasuredAxis& axis) {
 }  // namespace
 
 std::string three_digits(double value) {
-  char text[40];
   if (value == 0) return "0";
   if (std::abs(value) >= 100 && std::abs(value) < 1e7) {
     const double power = std::pow(10.0, std::floor(std::log10(std::abs(value))) - 2);
-    std::snprintf(text, sizeof text, "%.0f", std::round(value / power) * power);
-  } else {
-    std::snprintf(text, sizeof text, "%.3g", value);
+    return fmt::format("{:.0f}", std::round(value / power) * power);
   }
-  return text;
+  return fmt::format("{:.3g}", value);
 }
 
 std::string name_of(const MeasuredAxis& axis, const MeasuredPoint& point) {
@@ -113,8 +111,8 @@ std::string order_sentence(const MeasuredAxis& axis) {
       text.append(with_unit(largest_error(line), axis.axis.unit)).append(" off, which is rounding");
     }
     if (!line.line->order || !line.slope) continue;
-    char numbers[64];
-    std::snprintf(numbers, sizeof numbers, " %.2f (theory %g)", *line.slope, *line.line->order);
+    const std::string numbers =
+        fmt::format(" {:.2f} (theory {:g})", *line.slope, *line.line->order);
     text.append(text.empty() ? "" : "; ").append(line.line->title).append(numbers);
   }
   return text.empty() ? text : "Slopes of error over the knob: " + text + ".";

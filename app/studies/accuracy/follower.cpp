@@ -1,7 +1,6 @@
 #include "studies/accuracy/follower.h"
 
 #include <limits>
-#include <stdexcept>
 #include <utility>
 
 #include "mesh/closest_point.h"
@@ -177,14 +176,11 @@ std::unique_ptr<Follower> make_tracked(const FollowedSurface& surface, TrackerCh
     }
     case TrackerChoice::kGodObject:
       return followed_by(render::GodObjectContact(surface.mesh, surface.tree));
-    case TrackerChoice::kPacked: {
-      auto packed = render::PackedSurface::build(*surface.mesh);
-      if (!packed) throw std::invalid_argument(packed.error().message);
-      return followed_by(
-          render::MemoryContact(std::move(packed).value(), render::SearchChoice::kTree));
-    }
+    case TrackerChoice::kPacked:
+      break;
   }
-  throw std::invalid_argument("This tracker is not known.");
+  return followed_by(render::MemoryContact(render::PackedSurface::build(*surface.mesh).value(),
+                                           render::SearchChoice::kTree));
 }
 
 }  // namespace

@@ -48,7 +48,8 @@ class Follower {
   virtual void stand_where(const Follower& other) noexcept = 0;
 };
 
-/// Makes a follower. Throws std::invalid_argument if the surface cannot be followed so.
+/// Makes a follower. Precondition: the surface can be followed so (the caller's duty; otherwise
+/// Result::value throws).
 /// Real-time: never from the servo thread.
 std::unique_ptr<Follower> make_follower(const FollowedSurface& surface,
                                         const FollowerChoice& choice);

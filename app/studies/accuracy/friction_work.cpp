@@ -23,7 +23,7 @@ Creep creep_of(const FrictionCase& which, const FrictionRigSettings& rig) {
   const double rate = 1 / run.period;
   const auto second = static_cast<std::size_t>(std::llround(rate));
   const std::vector<double> fast = high_passed(run.force, rate, kCorner);
-  return {.tremble = root_mean_square(std::span(fast).last(second)),
+  return {.limit_cycle = root_mean_square(std::span(fast).last(second)),
           .mean = -mean(std::span<const double>(run.force).last(second))};
 }
 

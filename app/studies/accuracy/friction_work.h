@@ -8,8 +8,8 @@ namespace thimble::app {
 
 /// Is what a friction does under a hand that creeps at 1 mm/s, N.
 struct Creep {
-  double tremble = 0;  ///< RMS above 50 Hz.
-  double mean = 0;     ///< Against the motion.
+  double limit_cycle = 0;  ///< RMS above 50 Hz.
+  double mean = 0;         ///< Against the motion.
 };
 
 /// Creeps on the rig for 3 s, of which the last second counts. Real-time: never from the servo

@@ -1,4 +1,5 @@
 #include "studies/accuracy/gating.h"
+#include "setup.h"
 
 #include <algorithm>
 #include <atomic>
@@ -9,7 +10,9 @@
 
 #include "report/picture_parts.h"
 #include "studies/accuracy/probed_stroke.h"
-#include "thimble/scene/meshes.h"
+#include "thimble/scene/arm_simulation.h"
+#include "thimble/scene/scene_file.h"
+#include "thimble/scene/shipped_files.h"
 #include "thimble/session/session.h"
 
 namespace thimble::app {
@@ -62,7 +65,7 @@ driver::Result<std::pair<double, double>> time_both(const std::filesystem::path&
       clock_gettime(CLOCK_THREAD_CPUTIME_ID, &end);
       const double spent = 1e9 * static_cast<double>(end.tv_sec - begin.tv_sec) +
                            static_cast<double>(end.tv_nsec - begin.tv_nsec);
-      ns[which].push_back(spent / static_cast<double>((*session)->ticks_planned()));
+      ns[which].push_back(spent / static_cast<double>((*session)->setup().ticks()));
     }
   }
   for (auto& list : ns) std::sort(list.begin(), list.end());
@@ -75,7 +78,7 @@ driver::Result<std::vector<driver::TickRecord>> trace_of(const std::filesystem::
   if (!session) return session.error();
   const std::atomic<bool> stop{false};
   (*session)->run(stop);
-  const auto rows = (*session)->trace().rows();
+  const auto rows = (*session)->ticks();
   return std::vector<driver::TickRecord>(rows.begin(), rows.end());
 }
 
@@ -92,10 +95,10 @@ driver::Result<GatingReport> decide_gating(const std::filesystem::path& scene, b
   auto session = open_with(scene, {});
   if (!session) return session.error();
   if ((*session)->simulation() == nullptr) return driver::Error{"The arm is not simulated."};
-  const double ticks = static_cast<double>((*session)->ticks_planned());
+  const double ticks = static_cast<double>((*session)->setup().ticks());
   const std::atomic<bool> stop{false};
   (*session)->run(stop);
-  const auto full = (*session)->trace().rows();
+  const auto full = (*session)->ticks();
   const SeenInRun seen = look_at(full, 1 / (*session)->scene().rate);
   GatingReport report;
   report.force = seen.force_rms;

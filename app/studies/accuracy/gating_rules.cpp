@@ -1,12 +1,13 @@
 #include "studies/accuracy/gating_rules.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 
 #include "report/picture_parts.h"
-#include "thimble/scene/scene_effects.h"
+#include "scene_effects.h"
 
 namespace thimble::app {
 namespace {
@@ -14,12 +15,6 @@ namespace {
 // [STABILITY 6 and 8]
 constexpr double kForceFelt = 0.02;  // N
 constexpr double kLatencyShare = 0.05;
-
-std::string numbers(const char* text, double a, double b) {
-  char line[200];
-  std::snprintf(line, sizeof line, text, a, b);
-  return line;
-}
 
 }  // namespace
 
@@ -60,29 +55,29 @@ std::vector<GateDecision> decide(const scene::Scene& scene, const SeenInRun& see
   const double by_damper = damping * step / context.tick;
   all.push_back({.effect = "steps of the encoders",
                  .name = "quantisation",
-                 .rule = numbers("K step = %.1f mN and B step / T = %.1f mN, to be at most 20 mN, "
-                                 "and no friction",
-                                 1e3 * by_spring, 1e3 * by_damper) +
+                 .rule = fmt::format("K step = {:.1f} mN and B step / T = {:.1f} mN, to be at most "
+                                     "20 mN, and no friction",
+                                     1e3 * by_spring, 1e3 * by_damper) +
                          (friction ? " (there is one)" : " (there is none)"),
                  .left_out = by_spring <= kForceFelt && by_damper <= kForceFelt && !friction});
   const double delay = context.delay;
   const double holds = simulated.plant.viscous + damping + simulated.hand.damping;
   all.push_back({.effect = "delay and jitter",
                  .name = "delay",
-                 .rule = numbers("K (L - T/2) = %.3f N s/m, to be below 5 %% of the damping that "
-                                 "holds the tip, %.3f N s/m",
-                                 stiffness * delay, kLatencyShare * holds),
+                 .rule = fmt::format("K (L - T/2) = {:.3f} N s/m, to be below 5 % of the damping "
+                                     "that holds the tip, {:.3f} N s/m",
+                                     stiffness * delay, kLatencyShare * holds),
                  .left_out = stiffness * delay < kLatencyShare * holds});
   all.push_back({.effect = "dry friction of the arm",
                  .name = "coulomb",
-                 .rule = numbers("c = %.1f mN, to be below %.0f mN", 1e3 * simulated.plant.coulomb,
-                                 1e3 * kForceFelt),
+                 .rule = fmt::format("c = {:.1f} mN, to be below {:.0f} mN",
+                                     1e3 * simulated.plant.coulomb, 1e3 * kForceFelt),
                  .left_out = simulated.plant.coulomb < kForceFelt});
   const double inertia = simulated.plant.mass * seen.acceleration;
   all.push_back({.effect = "inertia of the arm",
                  .name = "inertia",
-                 .rule = numbers("m a = %.3f N, to be below 3.5 %% of the force, %.3f N", inertia,
-                                 kShareFelt * seen.force_rms) +
+                 .rule = fmt::format("m a = {:.3f} N, to be below 3.5 % of the force, {:.3f} N",
+                                     inertia, kShareFelt * seen.force_rms) +
                          "; the exact map costs the same with it, so it stays",
                  .left_out = false,
                  .changes = false});
@@ -93,9 +88,9 @@ std::vector<GateDecision> decide(const scene::Scene& scene, const SeenInRun& see
                  .changes = false});
   all.push_back({.effect = "saturation",
                  .name = "saturation",
-                 .rule = numbers("K x = %.2f N at most, to be below the arm's %.2f N; the limit is "
-                                 "the gate's, which nothing leaves out",
-                                 stiffness * seen.depth_max, scene.arm.limits.force_max),
+                 .rule = fmt::format("K x = {:.2f} N at most, to be below the arm's {:.2f} N; the "
+                                     "limit is the gate's, which nothing leaves out",
+                                     stiffness * seen.depth_max, scene.arm.limits.force_max),
                  .left_out = stiffness * seen.depth_max < scene.arm.limits.force_max,
                  .changes = false});
   all.push_back({.effect = "model of the hand",

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <stdexcept>
 
 #include "studies/cost/cost_subjects.h"
 #include "thimble/render/build_object_touch.h"
@@ -39,9 +38,7 @@ std::vector<driver::DeviceState> ring_states(const Vector3d& p_W) {
 std::unique_ptr<render::ObjectTouch> build_ring(const RingTouch& ring) {
   render::TriangleMesh mesh = kCostRing.mesh(2 * ring.across, ring.across);
   for (Vector3d& p : mesh.vertices) p += ring.p_W;
-  auto touch = render::build_object_touch(mesh, ring.choice, {.spring = kCostSpring});
-  if (!touch) throw std::invalid_argument(touch.error().message);
-  return std::move(touch).value();
+  return render::build_object_touch(mesh, ring.choice, {.spring = kCostSpring}).value();
 }
 
 std::vector<Vector3d> forces_on(const RingTouch& ring) {

@@ -24,7 +24,8 @@ struct RingTouch {
 /// Gives the states of the stroke, one per ms, at 1 kHz.
 std::vector<driver::DeviceState> ring_states(const Eigen::Vector3d& p_W = {0, 0, 0});
 
-/// Builds the force law. Throws std::invalid_argument if the choice does not go together.
+/// Builds the force law. Precondition: the choice goes together (the caller's duty; otherwise
+/// Result::value throws).
 std::unique_ptr<render::ObjectTouch> build_ring(const RingTouch& ring);
 
 /// Gives the force (N) at each state.

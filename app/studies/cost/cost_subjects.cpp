@@ -6,10 +6,10 @@
 #include <memory>
 #include <vector>
 
+#include "scene_effects.h"
 #include "surface/texture/height_map.h"
 #include "thimble/render/build_object_touch.h"
-#include "thimble/scene/scene_effects.h"
-#include "thimble/scene/yaml_reader.h"
+#include "yaml/yaml_reader.h"
 
 namespace thimble::app {
 namespace {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "studies/tube_mesh.h"
+
 namespace thimble::app {
 namespace {
 
@@ -30,19 +32,7 @@ Vector3d RingSurface::at(double around, double across, double height) const noex
 }
 
 render::TriangleMesh RingSurface::mesh(int around, int across) const {
-  render::TriangleMesh mesh;
-  const double turn = 2 * std::numbers::pi;
-  for (int i = 0; i < around; ++i) {
-    for (int j = 0; j < across; ++j) {
-      mesh.vertices.push_back(at(turn * i / around, turn * j / across, 0));
-      const auto vertex = [&](int di, int dj) {
-        return (i + di) % around * across + (j + dj) % across;
-      };
-      mesh.triangles.push_back({vertex(0, 0), vertex(1, 0), vertex(1, 1)});
-      mesh.triangles.push_back({vertex(0, 0), vertex(1, 1), vertex(0, 1)});
-    }
-  }
-  return mesh;
+  return tube_mesh(around, across, [this](double u, double v) { return at(u, v, 0); });
 }
 
 std::vector<driver::DeviceState> ring_stroke(const RingSurface& ring, int ticks, double dt) {

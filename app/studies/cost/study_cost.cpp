@@ -1,5 +1,6 @@
 #include "studies/cost/study_cost.h"
 
+#include <fmt/core.h>
 #include <malloc.h>
 
 #include <algorithm>
@@ -142,9 +143,7 @@ Plot bar_plot(const std::string& name, const std::string& title, const std::stri
 }
 
 std::string rounded(double value, int digits) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.*f", digits, value);
-  return text;
+  return fmt::format("{:.{}f}", value, digits);
 }
 
 driver::Result<void> draw(const std::vector<Cost>& costs, const Cost& bare,

@@ -1,9 +1,10 @@
 #include "studies/friction/friction_cases.h"
 
+#include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <map>
 #include <span>
-#include <stdexcept>
 
 #include "studies/signal.h"
 #include "surface/friction/bristle.h"
@@ -65,14 +66,15 @@ std::unique_ptr<render::AnyStage> build_friction(const FrictionCase& which,
   if (which.static_coefficient > 0) numbers["static_coefficient"] = which.static_coefficient;
   std::map<std::string, std::string> words;
   if (!which.word_key.empty()) words[which.word_key] = which.word;
-  for (const render::EffectKind& kind : render::effect_table()) {
-    if (kind.group != "friction" || kind.name != which.kind) continue;
-    render::MapSettings settings(numbers, words);
-    const render::StageBuilder build = kind.read(settings, effect_context_of(rig));
-    if (!settings.mistakes().empty()) throw std::invalid_argument(settings.mistakes().front());
-    return build();
-  }
-  throw std::invalid_argument("There is no friction \"" + which.kind + "\".");
+  const auto table = render::effect_table();
+  const auto kind = std::find_if(table.begin(), table.end(), [&](const render::EffectKind& one) {
+    return one.group == "friction" && one.name == which.kind;
+  });
+  assert(kind != table.end());
+  render::MapSettings settings(numbers, words);
+  const render::StageBuilder build = kind->read(settings, effect_context_of(rig));
+  assert(settings.mistakes().empty());
+  return build();
 }
 
 RigRun stop_run(const FrictionCase& which, const FrictionRigSettings& rig, double stop) {

@@ -23,7 +23,8 @@ struct FrictionCase {
 /// Gives the frictions of the study, in the order of its table.
 const std::vector<FrictionCase>& friction_cases();
 
-/// Builds a friction for a rig. Throws std::invalid_argument if its settings are refused.
+/// Builds a friction for a rig. Precondition: it is one of friction_cases and the arm of the rig
+/// can carry its settings (the caller's duty).
 /// Real-time: never from the servo thread.
 std::unique_ptr<render::AnyStage> build_friction(const FrictionCase& which,
                                                  const FrictionRigSettings& rig);

@@ -1,7 +1,8 @@
 #include "studies/friction/friction_pictures.h"
 
+#include <fmt/core.h>
+
 #include <cmath>
-#include <cstdio>
 #include <span>
 #include <sstream>
 
@@ -15,17 +16,12 @@ namespace {
 
 /// Tells the state at rest in a few words.
 std::string verdict(const FrictionMeasures& found) {
-  char text[200];
   if (found.rest_force < 0.001) {
-    std::snprintf(text, sizeof text,
-                  found.rest_held >= 0.01 ? "at rest: silent, holds %.2f N"
-                                          : "at rest: silent, but holds nothing",
-                  found.rest_held);
-  } else {
-    std::snprintf(text, sizeof text, "at rest: trembles by %.2f N and %.1f µm RMS at %.0f Hz",
-                  found.rest_force, 1e6 * found.rest_way, found.rest_frequency);
+    return found.rest_held >= 0.01 ? fmt::format("at rest: silent, holds {:.2f} N", found.rest_held)
+                                   : "at rest: silent, but holds nothing";
   }
-  return text;
+  return fmt::format("at rest: trembles by {:.2f} N and {:.1f} µm RMS at {:.0f} Hz",
+                     found.rest_force, 1e6 * found.rest_way, found.rest_frequency);
 }
 
 std::string stop_table(const RigRun& run) {
@@ -125,14 +121,12 @@ driver::Result<void> draw_friction_overview(const std::vector<FrictionMeasures>&
     const bool trembles = found[i].rest_force >= 0.001;
     const bool holds = found[i].rest_held >= 0.01;
     const char* const color = trembles ? kDepthInk : holds ? kForceInk : kFaintInk;
-    char text[120];
+    std::string text = "silent at last, but holds nothing";
     if (trembles) {
-      std::snprintf(text, sizeof text, "trembles: %.2f N, %.1f µm", found[i].rest_force,
-                    1e6 * found[i].rest_way);
-    } else {
-      std::snprintf(text, sizeof text,
-                    holds ? "silent, holds %.2f N" : "silent at last, but holds nothing",
-                    found[i].rest_held);
+      text = fmt::format("trembles: {:.2f} N, {:.1f} µm", found[i].rest_force,
+                         1e6 * found[i].rest_way);
+    } else if (holds) {
+      text = fmt::format("silent, holds {:.2f} N", found[i].rest_held);
     }
     c << panel(left, left + 0.2, top - 0.19, top) << "set format x "
       << (row == kRows - 1 ? "'%g'" : "''") << "\nset format y " << (column == 0 ? "'%g'" : "''")

@@ -1,13 +1,13 @@
 #include "studies/friction/friction_rig.h"
 
 #include <atomic>
+#include <cassert>
 #include <cmath>
 #include <memory>
 #include <numbers>
-#include <stdexcept>
 #include <utility>
 
-#include "thimble/device_sim/sim_transport.h"
+#include "sim_transport.h"
 #include "thimble/driver/arms/hfab/hfab_arm.h"
 #include "thimble/driver/device.h"
 #include "thimble/driver/servo_loop.h"
@@ -103,7 +103,10 @@ RigRun rub(render::AnyStage& friction, const std::vector<RigPoint>& way, double 
   for (const RigPoint& point : way) {
     path.push_back({point.time, Eigen::Vector3d(point.x, 0, 0) - p_WB});
   }
-  device_sim::SimulatedArm arm(model, arm_settings(settings), device_sim::HandPath(path));
+  device_sim::SimulatedArm arm =
+      device_sim::SimulatedArm::make(model, arm_settings(settings),
+                                     device_sim::HandPath::make(path).value())
+          .value();
   driver::VirtualClock clock;
   driver::DeviceSettings device_settings;
   device_settings.p_WB = p_WB;
@@ -115,14 +118,13 @@ RigRun rub(render::AnyStage& friction, const std::vector<RigPoint>& way, double 
                             .watchdog_ns = 100'000'000};
   // It looks at rests of any length, and its reports are never old.
   device_settings.motion.hold_most = 1e9;
-  auto opened = driver::Device::open(std::make_unique<device_sim::SimTransport>(clock, arm),
-                                     std::make_unique<driver::hfab::HfabArm>(model),
-                                     device_settings, clock.now_ns());
-  if (!opened) throw std::invalid_argument(opened.error().message);
-  const std::unique_ptr<driver::Device> device = std::move(opened).value();
-  if (auto activated = device->activate(); !activated) {
-    throw std::invalid_argument(activated.error().message);
-  }
+  const std::unique_ptr<driver::Device> device =
+      driver::Device::open(std::make_unique<device_sim::SimTransport>(clock, arm),
+                           std::make_unique<driver::hfab::HfabArm>(model), device_settings,
+                           clock.now_ns())
+          .value();
+  [[maybe_unused]] const auto activated = device->activate();
+  assert(activated);  // nothing of an arm at rest refuses it
   RigRun run;
   run.period = static_cast<double>(settings.period_ns) * 1e-9;
   const auto ticks = static_cast<std::size_t>(std::llround(duration / run.period));

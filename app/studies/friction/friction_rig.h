@@ -61,9 +61,9 @@ class EvenSurface {
 /// moved by one joint alone, its encoder cut to the asked step; wire, driver, velocity estimate,
 /// safety gate and servo loop as in any session, in virtual time. The surface presses with the same
 /// force all the time; that force is not sent, as if the hand held it exactly, so that only
-/// friction is seen. Begins at rest; forces open softly within the first 0.3 s. Throws
-/// std::invalid_argument if a setting is out of the simulator's range. Real-time: never from the
-/// servo thread.
+/// friction is seen. Begins at rest; forces open softly within the first 0.3 s. Precondition: the
+/// settings are in the simulator's range (the caller's duty; otherwise Result::value throws).
+/// Real-time: never from the servo thread.
 RigRun rub(render::AnyStage& friction, const std::vector<RigPoint>& way, double duration,
            const FrictionRigSettings& settings);
 

@@ -1,10 +1,12 @@
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <span>
 #include <string>
 #include <system_error>
 
+#include "log/logger.h"
 #include "report/gnuplot.h"
 #include "report/picture_parts.h"
 #include "studies/friction/friction_cases.h"
@@ -20,22 +22,16 @@ constexpr int kDelays = 4;  // ticks 0 to 3
 constexpr int kStops = 40;  // places within one count [STABILITY 7, case 14]
 
 std::string table_row(const FrictionCase& which, const FrictionMeasures& found) {
-  char line[200];
-  std::snprintf(line, sizeof line,
-                "%-3s %-31s %7.4f %7.2f %5.0f %6.3f   %7.4f %6.3f %6.3f   %7.4f\n",
-                which.letter.c_str(), which.title.c_str(), found.rest_force, 1e6 * found.rest_way,
-                found.rest_frequency, found.rest_held, found.creep_force, found.creep_mean,
-                found.slow_mean, found.tremor_force);
-  return line;
+  return fmt::format(
+      "{:<3} {:<31} {:7.4f} {:7.2f} {:5.0f} {:6.3f}   {:7.4f} {:6.3f} {:6.3f}   {:7.4f}\n",
+      which.letter, which.title, found.rest_force, 1e6 * found.rest_way, found.rest_frequency,
+      found.rest_held, found.creep_force, found.creep_mean, found.slow_mean, found.tremor_force);
 }
 
 std::string csv_row(const FrictionCase& which, int delay, const FrictionMeasures& found) {
-  char line[300];
-  std::snprintf(line, sizeof line, "%s,%d,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g\n",
-                which.name.c_str(), delay, found.rest_force, found.rest_way, found.rest_frequency,
-                found.rest_held, found.creep_force, found.creep_mean, found.slow_mean,
-                found.tremor_force);
-  return line;
+  return fmt::format("{},{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}\n", which.name,
+                     delay, found.rest_force, found.rest_way, found.rest_frequency, found.rest_held,
+                     found.creep_force, found.creep_mean, found.slow_mean, found.tremor_force);
 }
 
 /// Is the worst of 40 stops at each of four delays.
@@ -150,9 +146,9 @@ driver::Result<std::vector<Figure>> study_friction(const std::filesystem::path& 
 
   if (auto done = write_text(csv, folder / "friction.csv"); !done) return done.error();
   if (!has_gnuplot()) {
-    std::fprintf(stderr,
-                 "thimble: NO PICTURES: gnuplot is not installed (apt install "
-                 "gnuplot-nox). Table, CSV and figures are complete.\n");
+    scene::logger().warn(
+        "NO PICTURES: gnuplot is not installed (apt install gnuplot-nox). Table, CSV and figures "
+        "are complete.");
     return figures;
   }
   for (std::size_t i = 0; i < undelayed.size(); ++i) {

@@ -15,7 +15,7 @@
 #include "studies/integrators/membrane.h"
 #include "studies/integrators/poked_body.h"
 #include "thimble/render/mesh/load_mesh.h"
-#include "thimble/scene/meshes.h"
+#include "thimble/scene/shipped_files.h"
 
 namespace thimble::app {
 namespace {

@@ -1,9 +1,10 @@
 #include "studies/stability/stability_pictures.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <functional>
 #include <numbers>
 #include <sstream>
@@ -49,17 +50,14 @@ std::string axis_labels(const std::string& x, const std::string& y) {
 
 /// Says which arm, hand and loop it is.
 std::string subject(const StabilitySetup& setup, bool with_hand) {
-  char text[240];
   const device_sim::PlantSettings& tip = setup.arm.simulated.plant;
-  int used =
-      std::snprintf(text, sizeof text, "%s at %.4g Hz, force %.3g ms late, tip %.3g kg",
-                    setup.arm.name.c_str(), 1 / setup.period(), 1e3 * setup.delay(), tip.mass);
+  std::string text = fmt::format("{} at {:.4g} Hz, force {:.3g} ms late, tip {:.3g} kg",
+                                 setup.arm.name, 1 / setup.period(), 1e3 * setup.delay(), tip.mass);
   if (with_hand && setup.hand.stiffness > 0) {
-    std::snprintf(text + used, sizeof text - static_cast<std::size_t>(used),
-                  "; hand %.3g kg, %.3g N/m, %.3g N s/m", setup.hand.mass, setup.hand.stiffness,
-                  setup.hand.damping);
+    text += fmt::format("; hand {:.3g} kg, {:.3g} N/m, {:.3g} N s/m", setup.hand.mass,
+                        setup.hand.stiffness, setup.hand.damping);
   } else {
-    std::snprintf(text + used, sizeof text - static_cast<std::size_t>(used), "; no hand");
+    text += "; no hand";
   }
   return text;
 }
@@ -68,11 +66,9 @@ std::string subject(const StabilitySetup& setup, bool with_hand) {
 driver::Result<void> write_data(const std::vector<std::vector<double>>& rows,
                                 const std::filesystem::path& file) {
   std::string text;
-  char word[32];
   for (const auto& row : rows) {
     for (const double value : row) {
-      std::snprintf(word, sizeof word, "%.9g ", value);
-      text += std::isfinite(value) ? word : "? ";
+      text += std::isfinite(value) ? fmt::format("{:.9g} ", value) : "? ";
     }
     text += "\n";
   }
@@ -152,7 +148,7 @@ driver::Result<void> draw_kb_map(const StabilitySetup& setup, const std::vector<
   const double latency = scene::latency_of({.period = setup.period(), .delay = setup.delay()});
   const double quantised =
       passive_stiffness_quantised(tip.viscous, tip.coulomb, step, setup.period());
-  char note[200];
+  std::string note;
   std::ostringstream c;
   c << quiet_style() << "set multiplot\n"
     << heading("Where a wall is stable: stiffness against damping", subject(setup, true))
@@ -175,7 +171,7 @@ driver::Result<void> draw_kb_map(const StabilitySetup& setup, const std::vector<
     << curve("kb_lines.dat", "1:8", kPurpleInk, "with lines lw 3",
              "passive to any hand (Colgate, Schenkel)")
     << "\n";
-  std::snprintf(note, sizeof note, "L = %.3g ms", 1e3 * latency);
+  note = fmt::format("L = {:.3g} ms", 1e3 * latency);
   c << "set key at screen 0.555, screen 0.195\nset ylabel ''\n"
     << panel(0.555, 0.92, 0.29, 0.83)
     << panel_title(setup.hand.stiffness > 0 ? "The arm without energy stage, pressed in by the hand"
@@ -255,15 +251,12 @@ driver::Result<void> draw_restitution(const StabilitySetup& setup,
        "',14' textcolor rgb '"
     << kFaintInk << "'\nplot ";
   for (std::size_t i = 0; i < series.size(); ++i) {
-    char title[80];
-    int used = std::snprintf(title, sizeof title, "%.4g kHz", 1e-3 / series[i].c);
+    std::string title = fmt::format("{:.4g} kHz", 1e-3 / series[i].c);
     if (series[i].d > 0) {
-      used += std::snprintf(title + used, sizeof title - static_cast<std::size_t>(used),
-                            ", %.3g ms late", 1e3 * series[i].d);
+      title += fmt::format(", {:.3g} ms late", 1e3 * series[i].d);
     }
     if (series[i].b > 0) {
-      std::snprintf(title + used, sizeof title - static_cast<std::size_t>(used), ", B = %.3g N s/m",
-                    series[i].b);
+      title += fmt::format(", B = {:.3g} N s/m", series[i].b);
     }
     c << "'data/restitution.dat' every :::" << i << "::" << i
       << " using 1:2:3:4 with yerrorbars pt 7 ps 0.9 lw 1 lc rgb '" << kInks[i % kInks.size()]
@@ -312,10 +305,9 @@ driver::Result<void> draw_cycles(const StabilitySetup& setup, const std::vector<
       }
       const int column = index % 2, row = index / 2;
       const double left = 0.075 + 0.43 * column, top = 0.84 - 0.4 * row;
-      char title[120];
-      std::snprintf(title, sizeof title, "%s start (%.3g steps), force %s",
-                    start < 10 ? "small" : "large", start,
-                    delay > 0 ? "one period late" : "not delayed");
+      const std::string title =
+          fmt::format("{} start ({:.3g} steps), force {}", start < 10 ? "small" : "large", start,
+                      delay > 0 ? "one period late" : "not delayed");
       c << panel(left, left + 0.36, top - 0.3, top) << panel_title(title)
         << axis_labels(row == 1 ? "dry friction σ" : "", column == 0 ? "viscous friction β" : "")
         << "set yrange [" << 0.02 + delay << ":" << 1.53 + delay << "]\n"

@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <stdexcept>
 
+#include "energy_choice.h"
 #include "stability/stability_laws.h"
 #include "studies/stability/wall_measures.h"
-#include "thimble/scene/energy_choice.h"
 
 namespace thimble::app {
 namespace {
@@ -75,19 +74,19 @@ std::int64_t to_ns(double seconds) {
   return std::llround(seconds * 1e9);
 }
 
-double edge_by_law(const StabilitySetup& setup, const WallCase& wall,
-                   const scene::LoopTimes& times) {
+driver::Result<double> edge_by_law(const StabilitySetup& setup, const WallCase& wall,
+                                   const scene::LoopTimes& times) {
   const double law = scene::stiffness_limit(kBareDamping, scene::latency_of(times));
   return linear_edge(setup.arm, wall, law / kEdgeRange, law * kEdgeRange);
 }
 
-double arm_swing(const StabilitySetup& setup, const WallCase& wall) {
+driver::Result<double> arm_swing(const StabilitySetup& setup, const WallCase& wall) {
   return setup.hand.stiffness > 0 ? pressed_swing(setup.arm, wall)
                                   : released_swing(setup.arm, wall, kReleaseSpeed, 2);
 }
 
-double arm_edge(const StabilitySetup& setup, const ArmDirection& direction, double damping,
-                bool guarded) {
+driver::Result<double> arm_edge(const StabilitySetup& setup, const ArmDirection& direction,
+                                double damping, bool guarded) {
   WallCase wall = arm_case(setup, direction);
   if (guarded) {
     wall.energy =
@@ -101,7 +100,7 @@ double arm_edge(const StabilitySetup& setup, const ArmDirection& direction, doub
                              kStiffnessMost);
 }
 
-double cycle(const StabilitySetup& setup, const StabilityCell& cell) {
+driver::Result<double> cycle(const StabilitySetup& setup, const StabilityCell& cell) {
   WallCase wall = bare_case(setup);
   const double period = setup.period();
   wall.stiffness = kCycleStiffness;
@@ -109,17 +108,25 @@ double cycle(const StabilitySetup& setup, const StabilityCell& cell) {
   wall.tip.coulomb = cell.a * kCycleStiffness * kCycleStep;
   wall.tip.viscous = cell.b * kCycleStiffness * period;
   wall.delay_ns = to_ns(cell.d * period);
-  return released_swing(setup.arm, wall, cycle_speed(setup, cell.c), setup.coarse ? 3 : 5) /
-         kCycleStep;
+  const auto swing =
+      released_swing(setup.arm, wall, cycle_speed(setup, cell.c), setup.coarse ? 3 : 5);
+  if (!swing) return swing.error();
+  return *swing / kCycleStep;
 }
 
-/// Tells the largest stiffness that comes to rest with encoders of one step.
-double step_edge(const StabilitySetup& setup, double step) {
+/// Returns the largest stiffness that comes to rest with encoders of one step.
+driver::Result<double> step_edge(const StabilitySetup& setup, double step) {
   WallCase wall = linear_case(setup);
   wall.tip = setup.arm.simulated.plant;
   wall.velocity_corner = 0;
   wall.step = step;
   return released_edge(setup.arm, wall, kReleaseSpeed, 2, 1e-3 * step, 10, kStiffnessMost);
+}
+
+/// Returns the one number of a cell.
+driver::Result<std::vector<double>> alone(const driver::Result<double>& number) {
+  if (!number) return number.error();
+  return std::vector<double>{*number};
 }
 
 void add_maps(const StabilitySetup& setup, std::vector<StabilityCell>& cells) {
@@ -207,31 +214,32 @@ std::vector<StabilityCell> stability_cells(const StabilitySetup& setup) {
   return cells;
 }
 
-std::vector<double> measure_stability(const StabilitySetup& setup, const StabilityCell& cell) {
+driver::Result<std::vector<double>> measure_stability(const StabilitySetup& setup,
+                                                      const StabilityCell& cell) {
   switch (cell.part) {
     case StabilityPart::kLinearMap: {
       WallCase wall = linear_case(setup);
       wall.stiffness = cell.a;
       wall.damping = cell.b;
-      return {growth_rate(setup.arm, wall)};
+      return alone(growth_rate(setup.arm, wall));
     }
     case StabilityPart::kArmMap: {
       WallCase wall = arm_case(setup, setup.direction);
       wall.stiffness = cell.a;
       wall.damping = cell.b;
-      return {arm_swing(setup, wall)};
+      return alone(arm_swing(setup, wall));
     }
     case StabilityPart::kLinearEdge: {
       WallCase wall = linear_case(setup);
       wall.damping = cell.b;
-      return {linear_edge(setup.arm, wall, kStiffnessLeast, kStiffnessMost)};
+      return alone(linear_edge(setup.arm, wall, kStiffnessLeast, kStiffnessMost));
     }
     case StabilityPart::kArmEdge:
-      return {arm_edge(setup, setup.direction, cell.b, false)};
+      return alone(arm_edge(setup, setup.direction, cell.b, false));
     case StabilityPart::kGuardedEdge:
-      return {arm_edge(setup, setup.direction, cell.b, true)};
+      return alone(arm_edge(setup, setup.direction, cell.b, true));
     case StabilityPart::kDiagonalEdge:
-      return {arm_edge(setup, setup.diagonal, cell.b, false)};
+      return alone(arm_edge(setup, setup.diagonal, cell.b, false));
     case StabilityPart::kRestitution: {
       WallCase wall = linear_case(setup);
       wall.hand = {};
@@ -240,35 +248,36 @@ std::vector<double> measure_stability(const StabilitySetup& setup, const Stabili
       wall.damping = cell.b;
       wall.period_ns = to_ns(cell.c);
       wall.delay_ns = to_ns(cell.d);
-      const Restitution found = throw_at_wall(setup.arm, wall, setup.coarse ? 25 : 200);
-      return {found.mean, found.least, found.most};
+      const auto found = throw_at_wall(setup.arm, wall, setup.coarse ? 25 : 200);
+      if (!found) return found.error();
+      return std::vector<double>{found->mean, found->least, found->most};
     }
     case StabilityPart::kCycle:
-      return {cycle(setup, cell)};
+      return alone(cycle(setup, cell));
     case StabilityPart::kRateEdge:
     case StabilityPart::kDelayEdge: {
       WallCase wall = bare_case(setup);
       wall.period_ns = to_ns(cell.c);
       wall.delay_ns = to_ns(cell.d);
-      return {edge_by_law(setup, wall, {.period = cell.c, .delay = cell.d})};
+      return alone(edge_by_law(setup, wall, {.period = cell.c, .delay = cell.d}));
     }
     case StabilityPart::kLateEdge: {
       WallCase wall = bare_case(setup);
       wall.gaps_ns = late_ticks(setup.period_ns, cell.a, kLatePeriods, 1);
       wall.duration = setup.coarse ? 8 : 20;
-      return {edge_by_law(setup, wall, late_times(setup.period(), cell.a))};
+      return alone(edge_by_law(setup, wall, late_times(setup.period(), cell.a)));
     }
     case StabilityPart::kSpreadEdge: {
       WallCase wall = bare_case(setup);
       wall.report_ns = setup.period_ns / 20;
       wall.gaps_ns = spread_ticks(setup.period_ns, cell.a, wall.report_ns, 1);
       wall.duration = setup.coarse ? 4 : 20;
-      return {edge_by_law(setup, wall, spread_times(setup.period(), cell.a))};
+      return alone(edge_by_law(setup, wall, spread_times(setup.period(), cell.a)));
     }
     case StabilityPart::kStepEdge:
-      return {step_edge(setup, cell.a)};
+      return alone(step_edge(setup, cell.a));
   }
-  throw std::logic_error("a cell of no part");
+  return std::vector<double>{};  // of no part: a sweep takes no cell without numbers
 }
 
 scene::LoopTimes late_times(double period, double share) {

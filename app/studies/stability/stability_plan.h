@@ -50,9 +50,10 @@ struct StabilityCell {
 /// Lists all cells, in the order of the parts.
 std::vector<StabilityCell> stability_cells(const StabilitySetup& setup);
 
-/// Measures one cell: a pure function of its arguments. Throws as run_wall. Real-time: never from
+/// Measures one cell: a pure function of its arguments. Fails as run_wall. Real-time: never from
 /// the servo thread.
-std::vector<double> measure_stability(const StabilitySetup& setup, const StabilityCell& cell);
+driver::Result<std::vector<double>> measure_stability(const StabilitySetup& setup,
+                                                      const StabilityCell& cell);
 
 // What pictures and figures must know of the plan.
 

@@ -1,8 +1,9 @@
 #include "studies/stability/stability_tables.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <iterator>
 #include <limits>
 #include <numbers>
@@ -147,10 +148,8 @@ std::vector<double> columns(const StabilityRow& row) {
 
 std::string csv_line(const std::vector<double>& values) {
   std::string line;
-  char text[32];
   for (const double value : values) {
-    std::snprintf(text, sizeof text, "%s%.9g", line.empty() ? "" : ",", value);
-    line += text;
+    line += fmt::format("{}{:.9g}", line.empty() ? "" : ",", value);
   }
   return line.append("\n");
 }

@@ -1,16 +1,18 @@
 #include "studies/stability/study_stability.h"
 
+#include <fmt/core.h>
+
 #include <cmath>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "build_info.h"
+#include "log/logger.h"
 #include "report/gnuplot.h"
 #include "report/picture_parts.h"
 #include "studies/stability/stability_pictures.h"
 #include "studies/stability/stability_tables.h"
 #include "text_file.h"
+#include "thimble/scene/build_info.h"
 
 namespace thimble::app {
 namespace {
@@ -64,7 +66,7 @@ driver::Result<void> write_summary(const StabilitySetup& setup, const std::vecto
 }  // namespace
 
 driver::Result<StabilitySetup> stability_setup(const StabilityOptions& options) {
-  auto arm = scene::read_arm_file(options.arm_file);
+  auto arm = scene::load_arm(options.arm_file);
   if (!arm) return arm.error();
   if (!arm->can_simulate) {
     return driver::Error{arm->name + ": the file has no section 'simulation'."};
@@ -91,9 +93,9 @@ driver::Result<StabilityReport> study_stability(const StabilityOptions& options,
   const auto setup = stability_setup(options);
   if (!setup) return setup.error();
   const std::vector<StabilityCell> cells = stability_cells(*setup);
-  char choices[160];
-  std::snprintf(choices, sizeof choices, "%a %d %a %a %a", options.rate, options.coarse ? 1 : 0,
-                setup->direction.n_W.x(), setup->direction.n_W.y(), setup->direction.n_W.z());
+  const std::string choices =
+      fmt::format("{:a} {} {:a} {:a} {:a}", options.rate, options.coarse ? 1 : 0,
+                  setup->direction.n_W.x(), setup->direction.n_W.y(), setup->direction.n_W.z());
   const Sweep sweep{.name = "stability",
                     .key = scene::program_name() + "\n" + scene::text_of(options.arm_file) + "\n" +
                            options.hand + "\n" + choices,
@@ -111,9 +113,9 @@ driver::Result<StabilityReport> study_stability(const StabilityOptions& options,
   if (auto done = write_stability_tables(*setup, rows, folder); !done) return done.error();
   if (auto done = write_summary(*setup, report.figures, folder); !done) return done.error();
   if (!has_gnuplot()) {
-    std::fprintf(stderr,
-                 "thimble: NO PICTURES: gnuplot is not installed (apt install gnuplot-nox). Tables "
-                 "and figures are complete.\n");
+    scene::logger().warn(
+        "NO PICTURES: gnuplot is not installed (apt install gnuplot-nox). Tables and figures are "
+        "complete.");
     return report;
   }
   if (auto done = draw_stability(*setup, rows, folder); !done) return done.error();

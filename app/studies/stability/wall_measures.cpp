@@ -16,16 +16,28 @@ constexpr double kCeiling = 25;      // times its energy at first
 constexpr double kFloor = 1e-3;      // of its energy: a swing below that is seen no more
 constexpr double kStartForce = 0.3;  // N, of a small swing: far above a step of the current
 
-/// Finds where a measure leaves what is good, in equal steps of the logarithm.
+/// Returns where a measure leaves what is good, in equal steps of the logarithm.
 template <class Good>
-double bisect(double least, double most, double share, const Good& good) {
-  if (!good(least)) return 0;
-  if (good(most)) return most;
+driver::Result<double> bisect(double least, double most, double share, const Good& good) {
+  for (const double end : {least, most}) {
+    const driver::Result<bool> there = good(end);
+    if (!there) return there.error();
+    if (end == least && !*there) return 0.0;
+    if (end == most && *there) return most;
+  }
   while (most / least > 1 + share) {
     const double middle = std::sqrt(least * most);
-    (good(middle) ? least : most) = middle;
+    const driver::Result<bool> there = good(middle);
+    if (!there) return there.error();
+    (*there ? least : most) = middle;
   }
   return std::sqrt(least * most);
+}
+
+/// Returns whether a swing stays below `quiet` (m), or why it was not measured.
+driver::Result<bool> is_quiet(const driver::Result<double>& swing, double quiet) {
+  if (!swing) return swing.error();
+  return *swing < quiet;
 }
 
 /// Tells the energy of a swing at each tick, J.
@@ -47,12 +59,14 @@ void shuffle(Times& times, std::uint64_t seed) {
 
 }  // namespace
 
-double growth_rate(const scene::ArmFile& arm, WallCase wall) {
+driver::Result<double> growth_rate(const scene::ArmFile& arm, WallCase wall) {
   const double start = std::min(0.001, kStartForce / wall.stiffness);
   const double mass = wall.tip.mass + wall.hand.mass;
   wall.kick = start * std::sqrt((wall.stiffness + wall.hand.stiffness) / mass);
   wall.give_up = kFarthest * start;
-  const WallRun run = run_wall(arm, wall);
+  const auto ran = run_wall(arm, wall);
+  if (!ran) return ran.error();
+  const WallRun& run = *ran;
   if (run.gave_up) return std::log(kFarthest) / std::max(run.time.back(), 1e-3);
   const std::vector<double> energies = swing_energies(run, wall);
   const std::size_t count = energies.size();
@@ -77,15 +91,20 @@ double growth_rate(const scene::ArmFile& arm, WallCase wall) {
   return 0.5 * std::log(late / most(0.1, 0.25)) / (0.75 * run.time.back());
 }
 
-double linear_edge(const scene::ArmFile& arm, WallCase wall, double least, double most) {
+driver::Result<double> linear_edge(const scene::ArmFile& arm, WallCase wall, double least,
+                                   double most) {
   return bisect(least, most, 0.003, [&](double stiffness) {
     wall.stiffness = stiffness;
-    return growth_rate(arm, wall) <= 0;
+    const auto rate = growth_rate(arm, wall);
+    if (!rate) return driver::Result<bool>(rate.error());
+    return driver::Result<bool>(*rate <= 0);
   });
 }
 
-double last_swing(const scene::ArmFile& arm, const WallCase& wall) {
-  const WallRun run = run_wall(arm, wall);
+driver::Result<double> last_swing(const scene::ArmFile& arm, const WallCase& wall) {
+  const auto ran = run_wall(arm, wall);
+  if (!ran) return ran.error();
+  const WallRun& run = *ran;
   if (run.gave_up) return wall.give_up;
   double low = HUGE_VAL, high = -HUGE_VAL;
   for (std::size_t i = 0; i < run.x.size(); ++i) {
@@ -96,7 +115,7 @@ double last_swing(const scene::ArmFile& arm, const WallCase& wall) {
   return std::min(high - low, wall.give_up);
 }
 
-double pressed_swing(const scene::ArmFile& arm, WallCase wall) {
+driver::Result<double> pressed_swing(const scene::ArmFile& arm, WallCase wall) {
   constexpr double kWay = 0.005;  // m, to each side of the wall
   wall.one_sided = true;
   wall.offset = -kWay;
@@ -109,7 +128,8 @@ double pressed_swing(const scene::ArmFile& arm, WallCase wall) {
   return last_swing(arm, wall);
 }
 
-double released_swing(const scene::ArmFile& arm, WallCase wall, double speed, double duration) {
+driver::Result<double> released_swing(const scene::ArmFile& arm, WallCase wall, double speed,
+                                      double duration) {
   const double mass = wall.tip.mass + wall.hand.mass;
   wall.one_sided = false;
   const double step = wall.own_step ? wall.direction.step : wall.step;
@@ -124,23 +144,23 @@ double released_swing(const scene::ArmFile& arm, WallCase wall, double speed, do
   return last_swing(arm, wall);
 }
 
-double pressed_edge(const scene::ArmFile& arm, WallCase wall, double quiet, double least,
-                    double most) {
+driver::Result<double> pressed_edge(const scene::ArmFile& arm, WallCase wall, double quiet,
+                                    double least, double most) {
   return bisect(least, most, 0.005, [&](double stiffness) {
     wall.stiffness = stiffness;
-    return pressed_swing(arm, wall) < quiet;
+    return is_quiet(pressed_swing(arm, wall), quiet);
   });
 }
 
-double released_edge(const scene::ArmFile& arm, WallCase wall, double speed, double duration,
-                     double quiet, double least, double most) {
+driver::Result<double> released_edge(const scene::ArmFile& arm, WallCase wall, double speed,
+                                     double duration, double quiet, double least, double most) {
   return bisect(least, most, 0.005, [&](double stiffness) {
     wall.stiffness = stiffness;
-    return released_swing(arm, wall, speed, duration) < quiet;
+    return is_quiet(released_swing(arm, wall, speed, duration), quiet);
   });
 }
 
-Restitution throw_at_wall(const scene::ArmFile& arm, WallCase wall, int phases) {
+driver::Result<Restitution> throw_at_wall(const scene::ArmFile& arm, WallCase wall, int phases) {
   constexpr double kRunUp = 0.002;  // m
   const double mass = wall.tip.mass + wall.hand.mass;
   const double period = static_cast<double>(wall.period_ns) * 1e-9;
@@ -154,7 +174,9 @@ Restitution throw_at_wall(const scene::ArmFile& arm, WallCase wall, int phases) 
   Restitution found{0, HUGE_VAL, 0};
   for (int i = 0; i < phases; ++i) {
     wall.offset = -kRunUp - (i + 0.5) / phases * kTouchSpeed * period;
-    const WallRun run = run_wall(arm, wall);
+    const auto ran = run_wall(arm, wall);
+    if (!ran) return ran.error();
+    const WallRun& run = *ran;
     // In: the last tick before the wall. Out: when the last force has ended, `late` ticks after the
     // first that is seen outside again.
     std::size_t k = 0;

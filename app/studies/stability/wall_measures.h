@@ -3,38 +3,42 @@
 #include <cstdint>
 
 #include "stability/wall_bench.h"
+#include "thimble/driver/result.h"
 
 namespace thimble::app {
 
-// What is measured of a wall. All are pure functions of their arguments. Throw as run_wall.
+// What is measured of a wall. All are pure functions of their arguments and fail as
+// run_wall does.
 // Real-time: never from the servo thread.
 
 /// Measures how fast a small swing about the middle of a two-sided spring grows, 1/s; below 0 it
 /// dies. For a wall whose arm is linear: no dry friction, ideal encoders.
-double growth_rate(const scene::ArmFile& arm, WallCase wall);
+driver::Result<double> growth_rate(const scene::ArmFile& arm, WallCase wall);
 
 /// Finds by bisection the largest stiffness whose swings do not grow, N/m, to 0.3 % between `least`
 /// and `most`; 0 if even the least grows, `most` if nothing does.
-double linear_edge(const scene::ArmFile& arm, WallCase wall, double least, double most);
+driver::Result<double> linear_edge(const scene::ArmFile& arm, WallCase wall, double least,
+                                   double most);
 
 /// Measures how far the tip still swings at the end of a run, from peak to peak in the last quarter
 /// of the time, m; `give_up` of the case if it went too far.
-double last_swing(const scene::ArmFile& arm, const WallCase& wall);
+driver::Result<double> last_swing(const scene::ArmFile& arm, const WallCase& wall);
 
 /// Lets a hand move the tip at 0.1 m/s against a one-sided wall and hold it there: the last swing,
 /// m. Sets how the case begins and how long it lasts.
-double pressed_swing(const scene::ArmFile& arm, WallCase wall);
+driver::Result<double> pressed_swing(const scene::ArmFile& arm, WallCase wall);
 
 /// Lets go of the tip beside the middle of a two-sided spring, so that it swings at `speed` (m/s)
 /// at first: the last swing after `duration` (s), m.
-double released_swing(const scene::ArmFile& arm, WallCase wall, double speed, double duration);
+driver::Result<double> released_swing(const scene::ArmFile& arm, WallCase wall, double speed,
+                                      double duration);
 
 /// Finds by bisection the largest stiffness at which `pressed_swing` or `released_swing` stays
 /// below `quiet` (m), N/m, to 0.5 %; 0 if even the least does not.
-double pressed_edge(const scene::ArmFile& arm, WallCase wall, double quiet, double least,
-                    double most);
-double released_edge(const scene::ArmFile& arm, WallCase wall, double speed, double duration,
-                     double quiet, double least, double most);
+driver::Result<double> pressed_edge(const scene::ArmFile& arm, WallCase wall, double quiet,
+                                    double least, double most);
+driver::Result<double> released_edge(const scene::ArmFile& arm, WallCase wall, double speed,
+                                     double duration, double quiet, double least, double most);
 
 /// Is how fast a tip leaves a wall against how fast it came, over several sampling phases.
 struct Restitution {
@@ -43,7 +47,7 @@ struct Restitution {
 };
 
 /// Throws the free tip against a one-sided wall at 0.1 m/s in `phases` sampling phases.
-Restitution throw_at_wall(const scene::ArmFile& arm, WallCase wall, int phases);
+driver::Result<Restitution> throw_at_wall(const scene::ArmFile& arm, WallCase wall, int phases);
 
 /// Makes times between ticks with the mean of `period_ns` or above, in an order drawn by `seed`:
 /// a share of all ticks that come `late_periods` late, or times spread evenly by +-`spread` of the

@@ -1,10 +1,12 @@
 #include "studies/sweep/progress_bar.h"
 
+#include <fmt/core.h>
 #include <unistd.h>
 
 #include <cmath>
-#include <cstdio>
 #include <string>
+
+#include "log/console.h"
 
 namespace thimble::app {
 namespace {
@@ -22,7 +24,7 @@ ProgressBar::ProgressBar(std::size_t done, std::size_t all)
       last_(start_ - 2 * kEvery) {}
 
 ProgressBar::~ProgressBar() {
-  if (shown_) std::fprintf(stderr, "\r\033[K");
+  if (shown_) scene::console().show("");
 }
 
 void ProgressBar::show(std::size_t done) {
@@ -32,14 +34,14 @@ void ProgressBar::show(std::size_t done) {
   const std::string full(kWidth * done / all_, '#');
   const std::string left(kWidth - full.size(), '.');
   const double passed = std::chrono::duration<double>(now - start_).count();
-  char rest[40] = "";
+  std::string rest;
   if (done > first_) {
     const double more =
         passed / static_cast<double>(done - first_) * static_cast<double>(all_ - done);
     const long seconds = std::lround(more);
-    std::snprintf(rest, sizeof rest, ", %ld:%02ld left", seconds / 60, seconds % 60);
+    rest = fmt::format(", {}:{:02} left", seconds / 60, seconds % 60);
   }
-  std::fprintf(stderr, "\r[%s%s] %zu of %zu%s\033[K", full.c_str(), left.c_str(), done, all_, rest);
+  scene::console().show(fmt::format("[{}{}] {} of {}{}", full, left, done, all_, rest));
 }
 
 }  // namespace thimble::app

@@ -11,7 +11,6 @@
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <thread>
 #include <utility>
@@ -73,12 +72,20 @@ void measure_all(const Sweep& sweep, Work& work, const Keep& keep) {
   while (true) {
     const std::vector<std::size_t> cell = work.take(1);
     if (cell.empty()) return;
+    const auto fail = [&](const std::string& why) {
+      work.fail(sweep.name + ", cell " + std::to_string(cell[0]) + ": " + why);
+    };
     try {
-      std::vector<double> numbers = sweep.measure(cell[0]);
-      if (numbers.empty()) throw std::logic_error("a cell without numbers");
-      keep(cell[0], std::move(numbers));
-    } catch (const std::exception& thrown) {
-      work.fail(sweep.name + ", cell " + std::to_string(cell[0]) + ": " + thrown.what());
+      auto numbers = sweep.measure(cell[0]);
+      if (!numbers) {
+        fail(numbers.error().message);
+      } else if (numbers->empty()) {
+        fail("it gave no numbers; this is a mistake of the program.");
+      } else {
+        keep(cell[0], std::move(numbers).value());
+      }
+    } catch (const std::exception& thrown) {  // out of memory, say: it must not end the program
+      fail(thrown.what());
     }
   }
 }

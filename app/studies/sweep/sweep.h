@@ -23,9 +23,9 @@ struct Sweep {
   /// Tells everything that the numbers depend on, in any form: a journal of another key is refused.
   std::string key;
   std::size_t cells = 0;
-  /// Measures one cell. Is called by several threads at once, and may throw; then the sweep ends
-  /// with what was thrown as its error.
-  std::function<std::vector<double>(std::size_t cell)> measure;
+  /// Measures one cell, by several threads at once: at least one number, or why there is none,
+  /// which ends the sweep.
+  std::function<driver::Result<std::vector<double>>(std::size_t cell)> measure;
 };
 
 /// Says how a sweep is run.
@@ -54,7 +54,7 @@ struct SweepResult {
 /// journal holds the cells in order. Without `resume` an older journal is kept beside the new one
 /// as NAME.journal.old.
 ///
-/// Fails if the journal cannot be written or is one of another sweep, or if a cell throws.
+/// Fails if the journal cannot be written or is one of another sweep, or if a cell fails.
 /// Real-time: never from the servo thread.
 driver::Result<SweepResult> run_sweep(const Sweep& sweep, const SweepOptions& options,
                                       const std::atomic<bool>& stop);

@@ -1,13 +1,12 @@
 #include "studies/sweep/sweep_journal.h"
 
 #include <fcntl.h>
+#include <fmt/core.h>
 #include <unistd.h>
 
 #include <bit>
 #include <cerrno>
 #include <charconv>
-#include <cinttypes>
-#include <cstdio>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -28,9 +27,7 @@ std::uint64_t hash_of(std::string_view text) {
 }
 
 std::string hex(std::uint64_t value) {
-  char text[17];
-  std::snprintf(text, sizeof text, "%016" PRIx64, value);
-  return text;
+  return fmt::format("{:016x}", value);
 }
 
 std::string heading_of(const std::string& key, std::size_t cells) {

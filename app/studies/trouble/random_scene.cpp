@@ -1,9 +1,10 @@
 #include "studies/trouble/random_scene.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <initializer_list>
 #include <string_view>
 #include <vector>
@@ -28,9 +29,7 @@ constexpr double kGravity = 9.81;  // m/s^2
 constexpr double kFall = 0.2;      // m: no weight falls farther within the workspace
 
 std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
+  return fmt::format("{:.6g}", value);
 }
 
 std::string vector(const Vector3d& v) {
@@ -85,8 +84,7 @@ class Drawing {
              .stiffness = draw_.octave(100, 900),
              .damping = draw_.octave(1, 9),
              .tremor = draw_.chance(0.3) ? draw_.uniform(0, 1e-4) : 0};
-    char name[40];
-    std::snprintf(name, sizeof name, "trouble_%016llx", static_cast<unsigned long long>(seed_));
+    const std::string name = fmt::format("trouble_{:016x}", seed_);
     lines_.add(0, "name", name);
     lines_.add(0, "arm", limits_.arm_path);
     lines_.add(0, "duration", kDuration);

@@ -10,7 +10,7 @@ namespace thimble::app {
 
 /// Says between what limits random scenes are drawn. Stiffness lies within what an arm and a loop
 /// can carry by the laws, so that any trouble is a mistake of the program or of a law. What a law
-/// foretells to tremble a little (facets, textures, light bodies) is drawn all the same, and
+/// foretells a small limit cycle of (facets, textures, light bodies) is drawn all the same, and
 /// rest_warnings.h must name it.
 struct RandomSceneLimits {
   scene::ArmFile arm;
@@ -27,8 +27,8 @@ struct RandomScene {
   std::string text;  ///< YAML.
   /// Energy that the scene itself may give to the hand, J: of weights and of fields of force.
   double own_energy = 0;
-  /// Whether a friction of the scene is one that trembles at rest on coarse encoders by its nature:
-  /// naive and paper, kept to compare with [STABILITY 2.2].
+  /// Whether a friction of the scene is one that has a limit cycle at rest on coarse encoders by
+  /// its nature: naive and paper, kept to compare with [STABILITY 2.2].
   bool trembles = false;
 };
 

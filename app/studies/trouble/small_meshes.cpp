@@ -7,6 +7,7 @@
 #include <system_error>
 #include <utility>
 
+#include "studies/tube_mesh.h"
 #include "thimble/render/mesh/save_mesh.h"
 
 namespace thimble::app {
@@ -71,23 +72,10 @@ TriangleMesh box(const Vector3d& half) {
 }
 
 TriangleMesh ring() {
-  constexpr std::int32_t kAround = 24, kTube = 12;
-  TriangleMesh mesh;
-  for (int i = 0; i < kAround; ++i) {
-    for (int k = 0; k < kTube; ++k) {
-      const double u = 2 * kPi * i / kAround, v = 2 * kPi * k / kTube;
-      const double r = 1 + 0.4 * std::cos(v);
-      mesh.vertices.emplace_back(r * std::cos(u), r * std::sin(u), 0.4 * std::sin(v));
-    }
-  }
-  const auto at = [](std::int32_t i, std::int32_t k) { return i % kAround * kTube + k % kTube; };
-  for (std::int32_t i = 0; i < kAround; ++i) {
-    for (std::int32_t k = 0; k < kTube; ++k) {
-      mesh.triangles.push_back({at(i, k), at(i + 1, k), at(i + 1, k + 1)});
-      mesh.triangles.push_back({at(i, k), at(i + 1, k + 1), at(i, k + 1)});
-    }
-  }
-  return mesh;
+  return tube_mesh(24, 12, [](double u, double v) {
+    const double r = 1 + 0.4 * std::cos(v);
+    return Vector3d(r * std::cos(u), r * std::sin(u), 0.4 * std::sin(v));
+  });
 }
 
 /// Is a slim cone: a vertex where many thin triangles meet.

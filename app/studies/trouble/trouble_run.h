@@ -14,14 +14,15 @@ struct TroubleFound {
   double not_finite = 0;      ///< Ticks with a place or a force that is no number.
   double fault = 0;           ///< Of the device, as a number; 0: none.
   double force_share = 0;     ///< Largest force sent, of the arm's limit.
-  double excess = 0;          ///< See energy_excess below, J.
   double tremble = 0;         ///< Force above 50 Hz in the last quarter of a second, N RMS.
   bool must_tremble = false;  ///< As RandomScene::trembles.
-  /// Whether it trembles by more than kTrembleMost and no warning of `thimble tune` foretold it.
+  /// Whether its limit cycle is larger than kTrembleMost and no warning of `thimble tune` foretold
+  /// it.
   bool unforetold = false;
-  double speed = 0;    ///< Largest of the tip, m/s.
-  double given = 0;    ///< Most that the motors had ever given to the tip, beyond what the
-                       ///< scene may give by itself, J; 0 of a passive scene.
+  double speed = 0;  ///< Largest of the tip, m/s.
+  double given = 0;  ///< Most that the motors gave in any window (EnergyGiven), J.
+  /// What the gate's energy stage lets go (`energy_let_go`), and the scene may give by itself, J.
+  double given_bound = 0;
   double contact = 0;  ///< Share of ticks in contact.
 
   /// Tells whether the scene broke one of the promises.
@@ -31,18 +32,13 @@ struct TroubleFound {
   double badness() const;
 };
 
-/// Is how much energy (J) a run may show beyond what the hand put in: what hard case 11 allows a
-/// guarded wall, and the gate's energy stage lets go before it acts [STABILITY 7].
-inline constexpr double kEnergyAllowed = 2e-3;
-
-/// Is how much force above 50 Hz counts as trembling at rest, N RMS [STABILITY 6].
+/// The force above 50 Hz that counts as a limit cycle at rest, N RMS [STABILITY 6].
 inline constexpr double kTrembleMost = 0.02;
 
 /// Runs a scene's file and keeps the account.
 ///
-/// The account: the energy of arm and hand, (m v^2 + k (x - x_hand)^2) / 2, may grow by the work of
-/// whoever moves the hand, and by the scene's own energy, and by nothing else; friction only takes
-/// away. Its largest excess over that is told. Real-time: never from the servo thread.
+/// The account is of the work that the simulated motors did on the tip, not of what the gate
+/// booked. Real-time: never from the servo thread.
 TroubleFound run_for_trouble(const std::filesystem::path& scene_file, const RandomScene& scene);
 
 /// Turns what was found into the numbers of a sweep and back.

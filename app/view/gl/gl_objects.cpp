@@ -1,41 +1,45 @@
 #include "view/gl/gl_objects.h"
 
 #include <array>
-#include <stdexcept>
+#include <optional>
 
 namespace thimble::app::view {
 namespace {
 
-GLuint compile(GLenum kind, const std::string& text) {
+driver::Error refused(const std::string& what, const char* words) {
+  return {"The graphics driver refuses " + what + " of Thimble: " + words +
+          " Try without it (LIBGL_ALWAYS_SOFTWARE=1), and report these words."};
+}
+
+/// Compiles a shader into a program; returns the compiler's words if it does not.
+std::optional<driver::Error> add_shader(GLuint program, GLenum kind, const std::string& text) {
   const GLuint shader = glCreateShader(kind);
   const char* source = text.c_str();
   glShaderSource(shader, 1, &source, nullptr);
   glCompileShader(shader);
   GLint good = 0;
   glGetShaderiv(shader, GL_COMPILE_STATUS, &good);
-  if (good == 0) {
-    std::array<char, 2000> words{};
-    glGetShaderInfoLog(shader, words.size(), nullptr, words.data());
-    throw std::runtime_error(std::string("A shader does not compile: ") + words.data());
-  }
-  return shader;
+  std::array<char, 2000> words{};
+  if (good == 0) glGetShaderInfoLog(shader, words.size(), nullptr, words.data());
+  glAttachShader(program, shader);
+  glDeleteShader(shader);  // lives as long as the program it is attached to
+  if (good != 0) return std::nullopt;
+  return refused("a shader", words.data());
 }
 
 }  // namespace
 
-GlProgram::GlProgram(const std::string& vertex, const std::string& fragment)
-    : name_(glCreateProgram()) {
-  const GLuint parts[] = {compile(GL_VERTEX_SHADER, vertex), compile(GL_FRAGMENT_SHADER, fragment)};
-  for (const GLuint part : parts) glAttachShader(name_, part);
-  glLinkProgram(name_);
-  for (const GLuint part : parts) glDeleteShader(part);
+driver::Result<GlProgram> GlProgram::make(const std::string& vertex, const std::string& fragment) {
+  GlProgram program(glCreateProgram());
+  if (auto error = add_shader(*program, GL_VERTEX_SHADER, vertex)) return *error;
+  if (auto error = add_shader(*program, GL_FRAGMENT_SHADER, fragment)) return *error;
+  glLinkProgram(*program);
   GLint good = 0;
-  glGetProgramiv(name_, GL_LINK_STATUS, &good);
-  if (good == 0) {
-    std::array<char, 2000> words{};
-    glGetProgramInfoLog(name_, words.size(), nullptr, words.data());
-    throw std::runtime_error(std::string("Shaders do not go together: ") + words.data());
-  }
+  glGetProgramiv(*program, GL_LINK_STATUS, &good);
+  if (good != 0) return program;
+  std::array<char, 2000> words{};
+  glGetProgramInfoLog(*program, words.size(), nullptr, words.data());
+  return refused("two shaders", words.data());
 }
 
 }  // namespace thimble::app::view

@@ -5,6 +5,8 @@
 #include <string>
 #include <utility>
 
+#include "thimble/driver/result.h"
+
 namespace thimble::app::view {
 
 /// Owns one name that OpenGL gave; deletes it with the context that is current then.
@@ -64,20 +66,27 @@ using GlTexture = GlName<make_texture, remove_texture>;
 using GlFramebuffer = GlName<make_framebuffer, remove_framebuffer>;
 using GlRenderbuffer = GlName<make_renderbuffer, remove_renderbuffer>;
 
-/// Is a program of a vertex and a fragment shader. Throws std::runtime_error with the compiler's
-/// words if they do not compile, which is a mistake of ours or of the driver.
+/// A program of a vertex and a fragment shader.
 class GlProgram {
  public:
-  GlProgram(const std::string& vertex, const std::string& fragment);
-  GlProgram(const GlProgram&) = delete;
-  GlProgram& operator=(const GlProgram&) = delete;
-  ~GlProgram() { glDeleteProgram(name_); }
+  /// Makes a program. Fails with the compiler's words if the graphics driver refuses it.
+  static driver::Result<GlProgram> make(const std::string& vertex, const std::string& fragment);
+  GlProgram(GlProgram&& other) noexcept : name_(std::exchange(other.name_, 0)) {}
+  GlProgram& operator=(GlProgram&& other) noexcept {
+    std::swap(name_, other.name_);
+    return *this;
+  }
+  ~GlProgram() {
+    if (name_ != 0) glDeleteProgram(name_);
+  }
 
   GLuint operator*() const { return name_; }
   /// Finds a uniform; -1, which OpenGL ignores, if the program does not use it.
   GLint at(const char* uniform) const { return glGetUniformLocation(name_, uniform); }
 
  private:
+  explicit GlProgram(GLuint name) : name_(name) {}
+
   GLuint name_;
 };
 

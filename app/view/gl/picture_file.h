@@ -1,7 +1,6 @@
 #pragma once
 
 #include <filesystem>
-#include <vector>
 
 #include "thimble/driver/result.h"
 #include "view/gl/canvas.h"
@@ -18,12 +17,6 @@ enum class PngColours {
 /// Real-time: never from the servo thread.
 driver::Result<void> write_png(const Picture& picture, const std::filesystem::path& file,
                                PngColours colours = PngColours::k256);
-
-/// Writes pictures of one size as an animated PNG (APNG) that plays for ever, `frame_time` (s)
-/// each, in 256 colours for all. What shows no animations shows the first.
-/// Precondition: there is a picture. Real-time: never from the servo thread.
-driver::Result<void> write_animated_png(const std::vector<Picture>& pictures, double frame_time,
-                                        const std::filesystem::path& file);
 
 /// Reads a PNG. The error names the file. Real-time: never from the servo thread.
 driver::Result<Picture> read_png(const std::filesystem::path& file);

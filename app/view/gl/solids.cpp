@@ -62,6 +62,14 @@ render::TriangleMesh unit_rod(double top) {
   return mesh;
 }
 
+/// Returns the shortest rotation that turns z to a unit vector. Quaternion::FromTwoVectors holds a
+/// singular-value decomposition, which takes as long to build as all else here.
+Eigen::Matrix3d turn_from_z(const Eigen::Vector3d& to) {
+  const double w = 1 + to.z();
+  if (!(w > 1e-12)) return Eigen::Vector3d(1, -1, -1).asDiagonal();
+  return Eigen::Quaterniond(w, -to.y(), to.x(), 0).normalized().toRotationMatrix();
+}
+
 Solid along(SolidKind kind, const Eigen::Vector3d& from, const Eigen::Vector3d& to, double radius,
             const Colour& colour) {
   Solid solid;
@@ -72,8 +80,7 @@ Solid along(SolidKind kind, const Eigen::Vector3d& from, const Eigen::Vector3d& 
     solid.model.setZero();
     return solid;
   }
-  const Eigen::Matrix3d R =
-      Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), to - from).toRotationMatrix();
+  const Eigen::Matrix3d R = turn_from_z((to - from) / length);
   const Eigen::Vector3d sizes(radius, radius, length);
   solid.model.setIdentity();
   solid.model.block<3, 3>(0, 0) = (R * sizes.asDiagonal()).cast<float>();

@@ -2,15 +2,17 @@
 
 #include <cmath>
 #include <numbers>
-#include <stdexcept>
 #include <utility>
 #include <vector>
 
-#include "thimble/device_sim/usb/board_descriptions.h"
-#include "thimble/device_sim/usb/falcon_on_usb.h"
-#include "thimble/device_sim/usb/hid_arm.h"
-#include "thimble/driver/arms/falcon/falcon_arm.h"
-#include "thimble/driver/arms/hfab/hfab_models.h"
+#include "arms/falcon/falcon_arm.h"
+#include "arms/hfab/hfab_models.h"
+#include "arms/hfab/hfab_report.h"
+#include "arms/woody/woody_report.h"
+#include "usb/board_descriptions.h"
+#include "usb/falcon_on_usb.h"
+#include "usb/hid_arm.h"
+#include "usb/usb_description.h"
 
 namespace thimble::device_sim::usb {
 namespace {
@@ -41,14 +43,15 @@ Eigen::Vector3d offset(HandMotion motion, double reach, double time) {
   return {0, 0, 0};
 }
 
+// Its points are finite, and their times grow.
 HandPath hand_path(const Eigen::Vector3d& p_BT, HandMotion motion, double reach = kReach) {
   std::vector<HandPath::Point> points{{0, p_BT}};
-  if (motion == HandMotion::kRest) return HandPath(points);
+  if (motion == HandMotion::kRest) return HandPath::make(points).value();
   for (int i = 0; i * kMotionStep <= kMotionTime; ++i) {
     const double time = i * kMotionStep;
     points.push_back({kQuiet + time, p_BT + offset(motion, reach, time)});
   }
-  return HandPath(points);
+  return HandPath::make(points).value();
 }
 
 // A hand in pinch grip on a PHANTOM-like arm [M DEVICES 3]; the free-running board sends a report
@@ -67,6 +70,12 @@ SimulatedArmSettings settings_of_board(double tip_mass, double current_max) {
   return settings;
 }
 
+template <class AnyArm>
+driver::Result<std::unique_ptr<UsbArm>> plugged(driver::Result<std::unique_ptr<AnyArm>> arm) {
+  if (!arm) return arm.error();
+  return {std::move(arm).value()};
+}
+
 }  // namespace
 
 driver::Result<std::unique_ptr<UsbArm>> make_usb_arm(std::string_view name,
@@ -79,31 +88,31 @@ driver::Result<std::unique_ptr<UsbArm>> make_usb_arm(std::string_view name,
     model.encoders = arm.encoders;
     const Eigen::Vector3d p_BT = model.geometry.forward(model.joint_angles({}));
     // 0.2 kg is about what links of 170 and 110 g weigh at the tip [guess].
-    return {std::make_unique<HidArm>(
+    return plugged(HidArm::make(
         kWoodenHapticsBoard, mbed_hid_description(driver::woody::kReportSize, options.serial),
-        model, settings_of_board(0.2, 3), hand_path(p_BT, options.motion), options.seed)};
+        model, settings_of_board(0.2, 3), hand_path(p_BT, options.motion), options.seed));
   }
   const auto polhem = [&](const HidBoard& board, UsbDescription description) {
     // Its home is where it is parked; the hand works in the middle of its room.
-    return std::make_unique<HidArm>(board, std::move(description), driver::hfab::polhem_model(),
-                                    settings_of_board(kPolhemMass, 3),
-                                    hand_path(polhem_middle(), options.motion), options.seed);
+    return plugged(HidArm::make(board, std::move(description), driver::hfab::polhem_model(),
+                                settings_of_board(kPolhemMass, 3),
+                                hand_path(polhem_middle(), options.motion), options.seed));
   };
   if (name == "polhem") {
-    return {polhem(kMbed14Board, mbed_hid_description(driver::hfab::kReportSize, options.serial))};
+    return polhem(kMbed14Board, mbed_hid_description(driver::hfab::kReportSize, options.serial));
   }
   if (name == "polhem-64") {
-    return {polhem(kTeensy64Board, teensy_raw_hid_description(options.serial))};
+    return polhem(kTeensy64Board, teensy_raw_hid_description(options.serial));
   }
   if (name == "falcon") {
     const Eigen::Vector3d p_BM = driver::falcon::falcon_geometry().p_BM;
     // Tip mass and friction of a Falcon are not known [DEVICES 3]; those of the PHANTOM stand in.
     const SimulatedArmSettings grip = settings_of_board(0.15, 1);
-    auto falcon = std::make_unique<FalconOnUsb>(
-        falcon_description(options.serial), grip.plant, grip.hand,
-        hand_path(p_BM, options.motion, kFalconReach), options.firmware);
-    falcon->home_when_asked();
-    return {std::move(falcon)};
+    auto falcon =
+        FalconOnUsb::make(falcon_description(options.serial), grip.plant, grip.hand,
+                          hand_path(p_BM, options.motion, kFalconReach), options.firmware);
+    if (falcon) (*falcon)->home_when_asked();
+    return plugged(std::move(falcon));
   }
   std::string names;
   for (const ShelfEntry& entry : kShelf) {

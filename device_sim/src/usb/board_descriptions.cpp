@@ -1,10 +1,12 @@
-#include "thimble/device_sim/usb/board_descriptions.h"
+#include "usb/board_descriptions.h"
 
 #include <array>
 #include <utility>
 
-#include "thimble/device_sim/usb/ftdi_chip.h"
-#include "thimble/device_sim/usb/hid_board.h"
+#include "arms/hfab/hfab_report.h"
+#include "usb/ftdi_chip.h"
+#include "usb/hid_board.h"
+#include "usb/usb_description.h"
 
 namespace thimble::device_sim::usb {
 namespace {

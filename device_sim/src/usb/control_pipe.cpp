@@ -1,8 +1,11 @@
-#include "thimble/device_sim/usb/control_pipe.h"
+#include "usb/control_pipe.h"
+#include "usb/setup_packet.h"
 
 #include <algorithm>
 #include <array>
 #include <vector>
+
+#include "usb/usb_description.h"
 
 namespace thimble::device_sim::usb {
 namespace {

@@ -1,4 +1,5 @@
-#include "thimble/device_sim/usb/falcon_board.h"
+#include "usb/falcon_board.h"
+#include "arms/falcon/falcon_packet.h"
 
 #include <algorithm>
 #include <cmath>

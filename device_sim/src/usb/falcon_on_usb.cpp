@@ -1,10 +1,12 @@
-#include "thimble/device_sim/usb/falcon_on_usb.h"
+#include "usb/falcon_on_usb.h"
 
 #include <algorithm>
 #include <utility>
 
-#include "thimble/device_sim/usb/usbip_session.h"
-#include "thimble/driver/arms/falcon/falcon_arm.h"
+#include "arms/falcon/falcon_arm.h"
+#include "usb/setup_packet.h"
+#include "usb/usb_description.h"
+#include "usb/usbip_session.h"
 
 namespace thimble::device_sim::usb {
 namespace {
@@ -14,21 +16,32 @@ constexpr double kMotorValueMax = 4096;         // what users of libnifalcon cla
 
 }  // namespace
 
-FalconOnUsb::FalconOnUsb(UsbDescription description, const PlantSettings& plant,
-                         const HandSettings& hand, HandPath path, std::vector<std::byte> image,
-                         const WiringSettings& wiring, std::uint64_t seed)
+driver::Result<std::unique_ptr<FalconOnUsb>> FalconOnUsb::make(
+    UsbDescription description, const PlantSettings& plant, const HandSettings& hand, HandPath path,
+    std::vector<std::byte> image, const WiringSettings& wiring, std::uint64_t seed) {
+  if (auto wired = wiring.check(); !wired) return wired.error();
+  const auto tremor = Tremor::make(hand, seed);
+  if (!tremor) return tremor.error();
+  const Eigen::Vector3d p_BT = path.points().front().p_BH;
+  const auto mechanics =
+      DeltaPlant::make(driver::falcon::falcon_model(), plant, hand,
+                       {.current_max = kMotorValueMax / kMotorValuesPerAmpere}, p_BT, p_BT);
+  if (!mechanics) return mechanics.error();
+  return std::unique_ptr<FalconOnUsb>(new FalconOnUsb(
+      std::move(description), *tremor, std::move(path), *mechanics, std::move(image), wiring));
+}
+
+FalconOnUsb::FalconOnUsb(UsbDescription description, const Tremor& tremor, HandPath path,
+                         const DeltaPlant& plant, std::vector<std::byte> image,
+                         const WiringSettings& wiring)
     : description_(std::move(description)),
-      tremor_(hand, seed),
-      hand_(std::move(path), tremor_),
+      tremor_(tremor),
+      hand_(std::move(path), tremor),
       homing_hand_(driver::falcon::falcon_geometry().p_BM),
       wiring_(wiring),
-      plant_(driver::falcon::falcon_model(), plant, hand,
-             MotorSettings{.current_max = kMotorValueMax / kMotorValuesPerAmpere},
-             hand_.path().points().front().p_BH, hand_.path().points().front().p_BH),
+      plant_(plant),
       board_(std::move(image)),
-      chip_(board_) {
-  wiring_.check();
-}
+      chip_(board_) {}
 
 void FalconOnUsb::lead(HandPath path) {
   hand_ = Hand(std::move(path), tremor_, time_ns_);
@@ -73,7 +86,7 @@ void FalconOnUsb::hear_line(std::int64_t dt_ns) noexcept {
 
 void FalconOnUsb::advance_to(std::int64_t time_ns) noexcept {
   while (time_ns_ < time_ns) {
-    const std::int64_t dt_ns = std::min(time_ns - time_ns_, UsbipSession::kFrame_ns);
+    const std::int64_t dt_ns = std::min(time_ns - time_ns_, UsbDevice::kFrame_ns);
     const std::int64_t end_ns = time_ns_ + dt_ns;
     move_to(time_ns_ + chip_.line_time_ns(dt_ns));
     hear_line(dt_ns);

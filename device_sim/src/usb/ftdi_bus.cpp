@@ -1,9 +1,10 @@
-#include "ftdi_bus.h"
+#include "usb/ftdi_bus.h"
 
 #include <algorithm>
 
-#include "thimble/device_sim/usb/ftdi_chip.h"
-#include "thimble/driver/ftdi_packet.h"
+#include "ftdi_packet.h"
+#include "usb/ftdi_chip.h"
+#include "usb/setup_packet.h"
 
 namespace thimble::device_sim::usb {
 

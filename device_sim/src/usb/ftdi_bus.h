@@ -5,12 +5,12 @@
 #include <deque>
 #include <span>
 
+#include "frame_finder.h"
+#include "serial_line.h"
 #include "thimble/device_sim/usb/usb_device.h"
-#include "thimble/device_sim/usb/usbip_session.h"
 #include "thimble/driver/clock.h"
-#include "thimble/driver/frame_finder.h"
-#include "thimble/driver/serial_line.h"
 #include "thimble/driver/transport.h"
+#include "usb/usbip_session.h"
 
 namespace thimble::device_sim::usb {
 
@@ -18,7 +18,7 @@ namespace thimble::device_sim::usb {
 /// takes what the converter has. Keeps a reference to the device. Real-time: safe.
 class FtdiBus {
  public:
-  static constexpr std::int64_t kFrame_ns = UsbipSession::kFrame_ns;
+  static constexpr std::int64_t kFrame_ns = UsbDevice::kFrame_ns;
 
   FtdiBus(UsbDevice& device, std::int64_t time_ns) noexcept : device_(device), time_ns_(time_ns) {}
 

@@ -1,4 +1,5 @@
-#include "thimble/device_sim/usb/ftdi_chip.h"
+#include "usb/ftdi_chip.h"
+#include "usb/setup_packet.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,10 +1,13 @@
-#include "thimble/device_sim/usb/hid_arm.h"
+#include "usb/hid_arm.h"
 
 #include <algorithm>
 #include <utility>
 
-#include "thimble/device_sim/usb/usbip_session.h"
-#include "thimble/driver/little_endian.h"
+#include "arms/hfab/hfab_report.h"
+#include "little_endian.h"
+#include "usb/setup_packet.h"
+#include "usb/usb_description.h"
+#include "usb/usbip_session.h"
 
 namespace thimble::device_sim::usb {
 namespace {
@@ -20,30 +23,38 @@ enum HidRequest : std::uint8_t {
 
 }  // namespace
 
+driver::Result<std::unique_ptr<HidArm>> HidArm::make(const HidBoard& board,
+                                                     UsbDescription description,
+                                                     const driver::hfab::HfabModel& model,
+                                                     const SimulatedArmSettings& settings,
+                                                     HandPath path, std::uint64_t seed) {
+  auto arm = SimulatedArm::make(model, settings, std::move(path), seed);
+  if (!arm) return arm.error();
+  return std::unique_ptr<HidArm>(
+      new HidArm(board, std::move(description), model, settings, std::move(arm).value()));
+}
+
+driver::Result<std::unique_ptr<HidArm>> HidArm::make(
+    const HidBoard& board, UsbDescription description,
+    const driver::JointModel<driver::LinkageArm>& model, const SimulatedArmSettings& settings,
+    HandPath path, std::uint64_t seed) {
+  auto arm = SimulatedArm::make(model, settings, std::move(path), seed);
+  if (!arm) return arm.error();
+  driver::hfab::HfabModel board_model;
+  board_model.drives = model.drives;
+  board_model.encoders = model.encoders;
+  return std::unique_ptr<HidArm>(
+      new HidArm(board, std::move(description), board_model, settings, std::move(arm).value()));
+}
+
 HidArm::HidArm(const HidBoard& board, UsbDescription description,
                const driver::hfab::HfabModel& model, const SimulatedArmSettings& settings,
-               HandPath path, std::uint64_t seed)
+               SimulatedArm arm) noexcept
     : board_(board),
       description_(std::move(description)),
       model_(model),
       report_age_ns_(settings.wire.delay_in_ns),
-      arm_(model, settings, std::move(path), seed) {
-  begin();
-}
-
-HidArm::HidArm(const HidBoard& board, UsbDescription description,
-               const driver::JointModel<driver::LinkageArm>& model,
-               const SimulatedArmSettings& settings, HandPath path, std::uint64_t seed)
-    : board_(board),
-      description_(std::move(description)),
-      report_age_ns_(settings.wire.delay_in_ns),
-      arm_(model, settings, std::move(path), seed) {
-  model_.drives = model.drives;
-  model_.encoders = model.encoders;
-  begin();
-}
-
-void HidArm::begin() noexcept {
+      arm_(std::move(arm)) {
   keep_sample();
   if (board_.speech == HidSpeech::kAnswers) offer();
 }
@@ -53,7 +64,7 @@ HidArm::Sample HidArm::sample_now() const noexcept {
 }
 
 void HidArm::keep_sample() noexcept {
-  const auto slot = static_cast<std::size_t>(arm_.time_ns() / UsbipSession::kFrame_ns) % kSamples;
+  const auto slot = static_cast<std::size_t>(arm_.time_ns() / UsbDevice::kFrame_ns) % kSamples;
   samples_[slot] = sample_now();
 }
 
@@ -61,7 +72,7 @@ void HidArm::advance_to(std::int64_t time_ns) noexcept {
   // Frame by frame, so that what the encoders really saw is known for each.
   while (arm_.time_ns() < time_ns) {
     const std::int64_t frame_ns =
-        (arm_.time_ns() / UsbipSession::kFrame_ns + 1) * UsbipSession::kFrame_ns;
+        (arm_.time_ns() / UsbDevice::kFrame_ns + 1) * UsbDevice::kFrame_ns;
     arm_.advance_to(std::min(time_ns, frame_ns));
     if (arm_.time_ns() == frame_ns) keep_sample();
   }

@@ -1,4 +1,4 @@
-#include "thimble/device_sim/usb/homing_hand.h"
+#include "usb/homing_hand.h"
 
 #include <algorithm>
 #include <array>

@@ -1,12 +1,12 @@
-#include "thimble/device_sim/usb/simulated_falcon.h"
+#include "usb/simulated_falcon.h"
 
 #include <algorithm>
 #include <utility>
 
-#include "ftdi_bus.h"
-#include "thimble/device_sim/usb/board_descriptions.h"
-#include "thimble/driver/arms/falcon/falcon_arm.h"
-#include "thimble/driver/arms/falcon/falcon_boot.h"
+#include "arms/falcon/falcon_arm.h"
+#include "arms/falcon/falcon_boot.h"
+#include "usb/board_descriptions.h"
+#include "usb/ftdi_bus.h"
 
 namespace thimble::device_sim::usb {
 namespace {
@@ -17,32 +17,37 @@ constexpr double kHomingReach = 0.020;          // m
 constexpr double kHomingStroke = 0.5;           // s from one end to the other
 constexpr std::int64_t kRest_ns = 500'000'000;  // until the grip stands still again
 
+// These points are finite, and their times grow.
+HandPath resting_at(const Eigen::Vector3d& p_BH) {
+  return HandPath::make({{0, p_BH}}).value();
+}
+
 HandPath homing_path(const Eigen::Vector3d& p_BH) {
   const Eigen::Vector3d p_BM = driver::falcon::falcon_geometry().p_BM;
   const Eigen::Vector3d out = p_BM + kHomingReach * Eigen::Vector3d::UnitZ();
   const Eigen::Vector3d in = p_BM - kHomingReach * Eigen::Vector3d::UnitZ();
-  return HandPath({{0, p_BH},
-                   {kHomingStroke, out},
-                   {2 * kHomingStroke, in},
-                   {3 * kHomingStroke, out},
-                   {4 * kHomingStroke, p_BH}});
+  return HandPath::make({{0, p_BH},
+                         {kHomingStroke, out},
+                         {2 * kHomingStroke, in},
+                         {3 * kHomingStroke, out},
+                         {4 * kHomingStroke, p_BH}})
+      .value();
 }
 
 }  // namespace
 
-SimulatedFalcon::SimulatedFalcon(const SimulatedArmSettings& settings, const HandPath& path,
-                                 std::uint64_t seed)
-    : falcon_(falcon_description("SIM0001"), settings.plant, settings.hand,
-              HandPath({path.points().front()}), {}, settings.firmware.wiring, seed) {}
-
 driver::Result<std::unique_ptr<SimulatedFalcon>> SimulatedFalcon::make(
     const SimulatedArmSettings& settings, HandPath path, std::vector<std::byte> firmware,
     std::uint64_t seed) {
-  std::unique_ptr<SimulatedFalcon> arm(new SimulatedFalcon(settings, path, seed));
-  if (auto up = arm->bring_up(std::move(firmware), path.points().front().p_BH); !up) {
+  const Eigen::Vector3d p_BH = path.points().front().p_BH;
+  auto falcon = FalconOnUsb::make(falcon_description("SIM0001"), settings.plant, settings.hand,
+                                  resting_at(p_BH), {}, settings.firmware.wiring, seed);
+  if (!falcon) return falcon.error();
+  std::unique_ptr<SimulatedFalcon> arm(new SimulatedFalcon(std::move(falcon).value()));
+  if (auto up = arm->bring_up(std::move(firmware), p_BH); !up) {
     return up.error();
   }
-  arm->falcon_.lead(std::move(path));
+  arm->falcon_->lead(std::move(path));
   return arm;
 }
 
@@ -50,7 +55,7 @@ driver::Result<void> SimulatedFalcon::bring_up(std::vector<std::byte> firmware,
                                                const Eigen::Vector3d& p_BH) {
   namespace falcon = driver::falcon;
   if (firmware.empty()) firmware.assign(2 * falcon::kBlockSize, std::byte{0x5a});
-  FtdiBus bus(falcon_, 0);
+  FtdiBus bus(*falcon_, 0);
   FtdiBusLine line(bus);
   const falcon::BootSettings quick{.settle_ms = 0};  // its pauses are of the world's time
   if (auto loaded = falcon::upload_firmware(line, firmware, quick); !loaded) {
@@ -58,7 +63,7 @@ driver::Result<void> SimulatedFalcon::bring_up(std::vector<std::byte> firmware,
   }
   const std::int64_t homing_ns = bus.time_ns();
   const HandPath way = homing_path(p_BH);
-  falcon_.lead(way);
+  falcon_->lead(way);
   const std::int64_t end_ns =
       homing_ns + static_cast<std::int64_t>(way.points().back().time * 1e9) + kRest_ns;
   falcon::HomingState state;
@@ -76,7 +81,7 @@ driver::Result<void> SimulatedFalcon::bring_up(std::vector<std::byte> firmware,
 }
 
 std::unique_ptr<driver::Transport> SimulatedFalcon::wire(driver::Clock& clock) {
-  return std::make_unique<FtdiBusTransport>(falcon_, clock, driver::falcon::kPacketFraming,
+  return std::make_unique<FtdiBusTransport>(*falcon_, clock, driver::falcon::kPacketFraming,
                                             begin_ns_);
 }
 

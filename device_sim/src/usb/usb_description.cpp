@@ -1,4 +1,4 @@
-#include "thimble/device_sim/usb/usb_description.h"
+#include "usb/usb_description.h"
 
 #include <algorithm>
 #include <initializer_list>

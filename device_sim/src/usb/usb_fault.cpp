@@ -5,7 +5,8 @@
 #include <string>
 #include <system_error>
 
-#include "thimble/device_sim/usb/usbip_session.h"
+#include "usb/setup_packet.h"
+#include "usb/usbip_session.h"
 
 namespace thimble::device_sim::usb {
 namespace {
@@ -109,7 +110,7 @@ const FaultyDevice::OpenOrder* FaultyDevice::hit(bool to_host) noexcept {
 }
 
 void FaultyDevice::advance_to(std::int64_t time_ns) noexcept {
-  frame_ = time_ns / UsbipSession::kFrame_ns;
+  frame_ = time_ns / UsbDevice::kFrame_ns;
   const auto* over = std::remove_if(orders_.begin(), orders_.begin() + order_count_,
                                     [&](const OpenOrder& open) { return frame_ >= open.end; });
   order_count_ = static_cast<std::size_t>(over - orders_.begin());

@@ -16,6 +16,8 @@
 #include <ctime>
 #include <utility>
 
+#include "usb/usbip_session.h"
+
 namespace thimble::device_sim::usb {
 namespace {
 
@@ -179,7 +181,7 @@ void UsbipServer::send_bulk(std::int64_t time_ns) {
 
 void UsbipServer::run(const std::atomic<bool>& stop, const FrameObserver& observer) {
   const int timer = timerfd_create(CLOCK_MONOTONIC, TFD_CLOEXEC | TFD_NONBLOCK);
-  const itimerspec every_frame{{0, UsbipSession::kFrame_ns}, {0, UsbipSession::kFrame_ns}};
+  const itimerspec every_frame{{0, UsbDevice::kFrame_ns}, {0, UsbDevice::kFrame_ns}};
   const std::int64_t start_ns = monotonic_ns();
   timerfd_settime(timer, 0, &every_frame, nullptr);
   std::int64_t number = 0;
@@ -189,14 +191,14 @@ void UsbipServer::run(const std::atomic<bool>& stop, const FrameObserver& observ
       late_frames_ += passed - 1;
       number += static_cast<std::int64_t>(passed);
       serve(0);  // what was asked before the frame began belongs to it
-      frame(number * UsbipSession::kFrame_ns);
+      frame(number * UsbDevice::kFrame_ns);
       if (observer) observer(number);
       continue;
     }
     wait_for(timer);
     serve(0);
     // The frame that is running ends when the timer says so, not before.
-    const std::int64_t end_ns = (number + 1) * UsbipSession::kFrame_ns - 1;
+    const std::int64_t end_ns = (number + 1) * UsbDevice::kFrame_ns - 1;
     send_bulk(std::min(monotonic_ns() - start_ns, end_ns));
   }
   close(timer);

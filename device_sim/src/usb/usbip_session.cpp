@@ -1,4 +1,6 @@
-#include "thimble/device_sim/usb/usbip_session.h"
+#include "usb/usbip_session.h"
+#include "usb/setup_packet.h"
+#include "usb/usb_description.h"
 
 #include <algorithm>
 #include <array>
@@ -135,7 +137,7 @@ void UsbipSession::send_bulk() {
 
 void UsbipSession::frame(std::int64_t time_ns) {
   if (state_ != State::kAttached) return;
-  run_chosen(time_ns / kFrame_ns, [](const Transfer&) { return true; });
+  run_chosen(time_ns / UsbDevice::kFrame_ns, [](const Transfer&) { return true; });
 }
 
 UsbipSession::Step UsbipSession::run(Transfer& transfer, std::int64_t frame) {

@@ -14,7 +14,7 @@
 #include <cstring>
 #include <vector>
 
-#include "thimble/device_sim/usb/usbip_wire.h"
+#include "usb/usbip_wire.h"
 
 namespace thimble::device_sim::usb {
 namespace {

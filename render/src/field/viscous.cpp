@@ -1,6 +1,7 @@
 #include "field/viscous.h"
 
-#include <cstdio>
+#include <fmt/core.h>
+
 #include <limits>
 #include <numbers>
 
@@ -11,12 +12,11 @@ void Viscous::Settings::read(SettingsReader& reader, const EffectContext& contex
   const double late = context.tick + context.delay;
   const double most = most_damping(context);
   if (!(damping <= most)) {
-    char text[200];
-    std::snprintf(text, sizeof text,
-                  "is %.4g N s/m, but a force that comes %.3g ms late swings an arm of %.3g kg up "
-                  "beyond %.3g N s/m: make it thinner or the loop faster",
-                  damping, 1e3 * late, context.tip_mass, most);
-    reader.reject("damping", text);
+    reader.reject(
+        "damping",
+        fmt::format("is {:.4g} N s/m, but a force that comes {:.3g} ms late swings an arm of "
+                    "{:.3g} kg up beyond {:.3g} N s/m: make it thinner or the loop faster",
+                    damping, 1e3 * late, context.tip_mass, most));
   }
 }
 

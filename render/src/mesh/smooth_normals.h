@@ -47,7 +47,7 @@ class SmoothNormals {
     return corners_[static_cast<std::size_t>(triangle)];
   }
 
-  /// Tells whether the edge from corner `k` to the next one is a crease.
+  /// Returns whether the edge from corner `k` to the next one is a crease.
   bool crease(std::int32_t triangle, std::size_t k) const noexcept {
     return ((creases_[static_cast<std::size_t>(triangle)] >> k) & 1U) != 0;
   }

@@ -17,6 +17,7 @@
 #include "search/contact_search.h"
 #include "thimble/driver/result.h"
 #include "thimble/driver/snapshot.h"
+#include "thimble/render/page/paging_counters.h"
 #include "track/packed_store.h"
 
 namespace thimble::render {
@@ -28,15 +29,6 @@ struct PagingSettings {
   std::size_t frames = 4096;  ///< Pages in memory at once: 256 MiB. Must be > 0.
   double reach = 0.001;       ///< Everything this near to the tip is wanted, m.
   double horizon = 0.02;      ///< So far ahead of its velocity too, s: twice a disk's worst seek.
-};
-
-/// Counts what paging did.
-struct PagingCounters {
-  std::uint64_t loads = 0;      ///< Pages read from the disk.
-  std::uint64_t evictions = 0;  ///< Pages given up for others.
-  std::uint64_t failures = 0;   ///< Pages that could not be read or are damaged; they stay absent.
-  std::uint64_t misses = 0;     ///< Ticks that needed a page which was absent.
-  std::uint64_t short_of_frames = 0;  ///< Times that more pages were wanted than there are frames.
 };
 
 /// Is a surface of which only the volumes around the tip are in memory [BP 4.1]. A loader brings

@@ -6,8 +6,9 @@
 #include <sstream>
 #include <string>
 
+#include "energy_choice.h"
 #include "support/scratch.h"
-#include "thimble/scene/watch_choice.h"
+#include "watch_choice.h"
 
 namespace thimble::app {
 namespace {
@@ -29,12 +30,12 @@ std::string mistake_with(const std::string& piece, const std::string& by) {
   text.replace(at, piece.size(), by);
   const std::filesystem::path file = support::scratch_folder() / "thimble_arm_test.yaml";
   std::ofstream(file) << text;
-  const auto arm = scene::read_arm_file(file);
+  const auto arm = scene::load_arm(file);
   return arm ? "" : arm.error().message;
 }
 
 TEST(ArmFile, ReadsTheShippedArmToTheLastConstant) {
-  const auto read = scene::read_arm_file(kArm);
+  const auto read = scene::load_arm(kArm);
   ASSERT_TRUE(read.ok()) << read.error().message;
   const scene::ArmFile& arm = *read;
   EXPECT_EQ(arm.name, "vintage_phantom");
@@ -63,7 +64,7 @@ TEST(ArmFile, ReadsTheShippedArmToTheLastConstant) {
 }
 
 TEST(ArmFile, HasItsHomeAtTheOriginOfTheWorld) {
-  const auto arm = scene::read_arm_file(kArm);
+  const auto arm = scene::load_arm(kArm);
   ASSERT_TRUE(arm.ok());
   const driver::SerialArm& geometry = arm->model.geometry;
   // Home: A = 0, B = 90 degrees, C = 0, by the drawing in serial_arm.h.
@@ -72,14 +73,14 @@ TEST(ArmFile, HasItsHomeAtTheOriginOfTheWorld) {
 }
 
 TEST(ArmFile, CountsAQuarterTurnAsItsHomeCounts) {
-  const auto arm = scene::read_arm_file(kArm);
+  const auto arm = scene::load_arm(kArm);
   ASSERT_TRUE(arm.ok());
   EXPECT_EQ(arm->model.encoders[1].counts_per_motor_turn * arm->model.drives[1].ratio / 4,
             arm->model.encoders[1].home_counts);
 }
 
 TEST(ArmFile, NamesTheGatesEnergyStageAndWhatItLeavesOpenFollowsFromTheArm) {
-  const auto arm = scene::read_arm_file(kArm);
+  const auto arm = scene::load_arm(kArm);
   ASSERT_TRUE(arm.ok());
   const auto own = scene::energy_settings(*arm, 1000, {});
   EXPECT_EQ(own.stage, driver::EnergyStage::kPassivity);
@@ -99,8 +100,7 @@ TEST(ArmFile, NamesTheGatesEnergyStageAndWhatItLeavesOpenFollowsFromTheArm) {
 TEST(ArmFile, NamesTheBoardsThatTheArmMayHave) {
   using driver::BoardKind;
   const auto boards = [](const char* name) {
-    const auto arm =
-        scene::read_arm_file(std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms" / name);
+    const auto arm = scene::load_arm(std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms" / name);
     return arm ? arm->boards : std::vector<BoardKind>();
   };
   EXPECT_EQ(boards("woodenhaptics.yaml"), std::vector{BoardKind::kMbedHid8});
@@ -122,7 +122,7 @@ TEST(ArmFile, NamesTheBoardsThatTheArmMayHave) {
 }
 
 TEST(ArmFile, SaysWhatTheMotorsCarryForLongOrNothingOfIt) {
-  const auto read = scene::read_arm_file(kArm);
+  const auto read = scene::load_arm(kArm);
   ASSERT_TRUE(read.ok()) << read.error().message;
   ASSERT_TRUE(read->heat.named());
   // 1.4 N at the home pose's tip through link and capstan, the data sheet's continuous force.
@@ -142,17 +142,17 @@ TEST(ArmFile, SaysWhatTheMotorsCarryForLongOrNothingOfIt) {
             std::string::npos);
   const auto folder = std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms";
   for (const char* name : {"polhem", "woodenhaptics", "woodenhaptics_teensy"}) {
-    const auto arm = scene::read_arm_file(folder / (std::string(name) + ".yaml"));
+    const auto arm = scene::load_arm(folder / (std::string(name) + ".yaml"));
     ASSERT_TRUE(arm.ok()) << arm.error().message;
     EXPECT_TRUE(arm->heat.named()) << name;
   }
-  const auto falcon = scene::read_arm_file(folder / "falcon.yaml");
+  const auto falcon = scene::load_arm(folder / "falcon.yaml");
   ASSERT_TRUE(falcon.ok());
   EXPECT_FALSE(falcon->heat.named());
 }
 
 TEST(ArmFile, SaysHowLongAForceIsHeldUnchangedAndHowHeavyTheTipIs) {
-  scene::ArmFile arm = *scene::read_arm_file(kArm);
+  scene::ArmFile arm = *scene::load_arm(kArm);
   EXPECT_EQ(scene::motion_settings(arm, 1000).hold_most, 10);
   EXPECT_EQ(scene::motion_settings(arm, 1000).mass, 0.075);
   EXPECT_EQ(scene::motion_settings(arm, 1000).delay_ticks, 1);

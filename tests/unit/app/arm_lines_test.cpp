@@ -12,8 +12,8 @@ namespace {
 TEST(ArmLines, EndAtTheTipWithBarsOfTheirLengthInEveryPose) {
   for (const char* name : {"vintage_phantom", "woodenhaptics", "polhem", "falcon"}) {
     SCOPED_TRACE(name);
-    const auto arm = scene::read_arm_file(std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms" /
-                                          (std::string(name) + ".yaml"));
+    const auto arm = scene::load_arm(std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms" /
+                                     (std::string(name) + ".yaml"));
     ASSERT_TRUE(arm) << arm.error().message;
     const session::SharedScene::Arm described = session::describe_arm(*arm, "sim");
     const Eigen::Vector3d middle = 0.5 * (arm->workspace.min_W + arm->workspace.max_W);

@@ -15,8 +15,8 @@ namespace thimble::app {
 namespace {
 
 scene::ArmFile vintage() {
-  auto file = scene::read_arm_file(std::filesystem::path(THIMBLE_SOURCE_DIR) /
-                                   "app/arms/vintage_phantom.yaml");
+  auto file =
+      scene::load_arm(std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms/vintage_phantom.yaml");
   EXPECT_TRUE(file) << file.error().message;
   return std::move(file).value();
 }
@@ -187,8 +187,8 @@ class FeelCheckOfAMiswiredArm : public testing::TestWithParam<std::tuple<const c
 
 TEST_P(FeelCheckOfAMiswiredArm, NamesTheWireAndPushesNoHarder) {
   const auto& [arm, mistake] = GetParam();
-  auto read = scene::read_arm_file(std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms" /
-                                   (std::string(arm) + ".yaml"));
+  auto read = scene::load_arm(std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms" /
+                              (std::string(arm) + ".yaml"));
   ASSERT_TRUE(read) << read.error().message;
   scene::ArmFile file = std::move(read).value();
   mistake.break_it(file.simulated.firmware);
@@ -221,8 +221,8 @@ INSTANTIATE_TEST_SUITE_P(Arms, FeelCheckOfAMiswiredArm,
 TEST_F(CalibrationTest, FeelCheckPassesEveryGoodArmAndPushesNoHarder) {
   for (const char* arm : kArmFiles) {
     SCOPED_TRACE(arm);
-    const auto file = scene::read_arm_file(std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms" /
-                                           (std::string(arm) + ".yaml"));
+    const auto file = scene::load_arm(std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms" /
+                                      (std::string(arm) + ".yaml"));
     ASSERT_TRUE(file);
     auto bench = BenchArm::open(*file, std::nullopt, "", feel_check_hand({0, 0, 0}),
                                 scene::kFeelCheckForceMax);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "support/fake_usb.h"
+#include "support/scratch.h"
 
 namespace thimble::app {
 namespace {
@@ -205,6 +206,20 @@ TEST_F(DoctorTest, SaysSoWhenNothingIsPluggedInOrItsProtocolIsSecret) {
   usb_.plug("1-6", "16c0", "0483", "H1", 1, 7);
   usb_.call("1-6", "Haply inverse3");
   EXPECT_NE(finding("Haply Inverse3").what.find("not public"), std::string::npos);
+}
+
+TEST(DoctorLog, SaysWhereTheLogIsAndWhetherItCanBeWritten) {
+  const auto folder = support::scratch_folder() / "doctor_log";
+  std::filesystem::create_directories(folder);
+  const Finding good = examine_log(folder / "to" / "be" / "made.log");
+  EXPECT_EQ(good.health, Health::kGood);
+  EXPECT_EQ(good.what, "What happens is logged to " + (folder / "to/be/made.log").string() + ".");
+  EXPECT_FALSE(std::filesystem::exists(folder / "to"));
+  const Finding bad = examine_log("/proc/self/log/a.log");  // where nobody makes a folder
+  if (geteuid() != 0) {
+    EXPECT_EQ(bad.health, Health::kAdvice);
+    EXPECT_EQ(bad.what, "What happens cannot be logged to /proc/self/log/a.log.");
+  }
 }
 
 }  // namespace

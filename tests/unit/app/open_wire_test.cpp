@@ -16,8 +16,8 @@ namespace thimble::app {
 namespace {
 
 scene::ArmFile file_of(const std::string& name) {
-  auto file = scene::read_arm_file(std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms" /
-                                   (name + ".yaml"));
+  auto file =
+      scene::load_arm(std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms" / (name + ".yaml"));
   EXPECT_TRUE(file) << file.error().message;
   return file ? std::move(file).value() : scene::ArmFile{};
 }

@@ -1,113 +1,28 @@
-// Which arm file a real arm has, that nobody loosens its limits, and how much force it gets.
+// Which arm file a real arm has, and that nobody loosens its limits.
 #include "thimble/scene/real_arm_terms.h"
 
 #include <gtest/gtest.h>
-#include <sys/stat.h>
 
-#include <cstdlib>
-#include <fstream>
 #include <functional>
-#include <sstream>
 
 #include "bringup/feel_check.h"
-#include "report/session_report.h"
+#include "energy_choice.h"
+#include "real_arm_terms_home.h"
+#include "report/report.h"
 #include "support/line_board.h"
-#include "support/scratch.h"
-#include "terms/feel_check_record.h"
 #include "terms/limits_policy.h"
 #include "thimble/scene/calibration.h"
-#include "thimble/scene/meshes.h"
+#include "thimble/scene/scene_file.h"
 #include "thimble/scene/shipped_files.h"
-#include "thimble/scene/user_folders.h"
 #include "thimble/session/session.h"
+#include "user_folders.h"
 
 namespace thimble::app {
 namespace {
 
-namespace fs = std::filesystem;
 using driver::ArmKind;
 using driver::EnergyStage;
 using driver::FoundArm;
-
-const fs::path kSource = THIMBLE_SOURCE_DIR;
-const fs::path kArms = kSource / "app/arms";
-
-std::string text_of(const fs::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file).rdbuf();
-  return text.str();
-}
-
-void write(const fs::path& file, const std::string& text) {
-  fs::create_directories(file.parent_path());
-  std::ofstream(file) << text;
-}
-
-/// Replaces one piece of a text, which must be there.
-std::string with(std::string text, const std::string& piece, const std::string& by) {
-  const std::size_t at = text.find(piece);
-  EXPECT_NE(at, std::string::npos) << piece;
-  return at == std::string::npos ? text : text.replace(at, piece.size(), by);
-}
-
-bool holds(const std::string& text, const std::string& piece) {
-  return text.find(piece) != std::string::npos;
-}
-
-std::string all_of(const std::vector<std::string>& sentences) {
-  std::string text;
-  for (const std::string& sentence : sentences) text += sentence + '\n';
-  return text;
-}
-
-class RealArmTermsTest : public ::testing::Test {
- protected:
-  RealArmTermsTest() {
-    fs::remove_all(home_);
-    fs::create_directories(home_);
-    setenv("XDG_CONFIG_HOME", (home_ / "config").c_str(), 1);
-    setenv("XDG_STATE_HOME", (home_ / "state").c_str(), 1);
-  }
-
-  /// Plugs an arm in, as far as a folder of the kernel goes.
-  FoundArm plug(ArmKind kind, const std::string& name, const std::string& device = "0100",
-                const std::string& product = "an arm") const {
-    FoundArm arm;
-    arm.kind = kind;
-    arm.arm = "board";
-    arm.serial = name;
-    arm.sysfs = home_ / "sys" / name;
-    arm.accessible = true;
-    // The Haptikfabriken arm of these tests is on a Teensy's raw HID.
-    arm.board = kind == ArmKind::kWoody      ? driver::BoardKind::kMbedHid8
-                : kind == ArmKind::kPolhem   ? driver::BoardKind::kTeensyRawHid64
-                : kind == ArmKind::kHfabLine ? driver::BoardKind::kTextLines
-                                             : driver::BoardKind::kFalconFtdi;
-    arm.certainty = product == "an arm" ? driver::Certainty::kKnown : driver::Certainty::kUnknown;
-    arm.product = product;
-    write(arm.sysfs / "bcdDevice", device + '\n');
-    write(arm.sysfs / "product", product + '\n');
-    return arm;
-  }
-
-  /// Writes a copy of a shipped arm file elsewhere, with one piece replaced.
-  fs::path copy_of(const std::string& name, const std::string& piece, const std::string& by) const {
-    const fs::path file = home_ / "elsewhere" / (name + ".yaml");
-    write(file, with(text_of(kArms / (name + ".yaml")), piece, by));
-    return file;
-  }
-
-  /// Returns the file that an arm gets when its board answers as `model`, or the error.
-  static std::string file_for(const FoundArm& arm, int model = 0) {
-    const auto found = scene::find_real_arm_file(
-        arm, {.arm_file = {}, .for_calibration = false, .ask_model = [model](const FoundArm&) {
-                return driver::Result<int>(model);
-              }});
-    return found ? found->path.stem().string() : found.error().message;
-  }
-
-  const fs::path home_ = support::scratch_folder() / "terms";
-};
 
 TEST_F(RealArmTermsTest, AnArmBringsItsOwnFileByItsKindOrItsBoardsModel) {
   EXPECT_EQ(file_for(plug(ArmKind::kWoody, "W1")), "woodenhaptics");
@@ -128,7 +43,7 @@ TEST_F(RealArmTermsTest, ABoardThatTellsNoModelIsRefusedWithWhatToType) {
 
 TEST_F(RealArmTermsTest, ABoardThatMayBeAnythingIsNotAskedForItsModel) {
   for (const char* product : {"Haply inverse3", "USB Serial", "Teensyduino RawHID", ""}) {
-    FoundArm arm = plug(ArmKind::kHfabLine, "T1", "0279", product);
+    FoundArm arm = plug(ArmKind::kHfabLine, "T1", 0x0279, product);
     arm.node = home_ / "port";
     write(arm.node, "");
     const auto found = scene::find_real_arm_file(arm);
@@ -211,7 +126,7 @@ TEST_F(RealArmTermsTest, AFileFromElsewhereTightensEachLimitAndLoosensNone) {
       const char* by = tighter ? one.tighter : one.looser;
       if (by == nullptr) continue;
       const fs::path file = copy_of("woodenhaptics", one.was, by);
-      const auto wanted = scene::read_arm_file(file);
+      const auto wanted = scene::load_arm(file);
       ASSERT_TRUE(wanted) << wanted.error().message;
       ASSERT_NE(one.value(*wanted), one.value(installed->file));
       const auto found = scene::find_real_arm_file(arm, {.arm_file = file});
@@ -286,12 +201,6 @@ TEST_F(RealArmTermsTest, AUsersOwnFileReplacesTheOneThatCameWithTheProgram) {
 }
 
 // A scene with one ball, its arm and its gate.
-std::string ball(const std::string& arm, const std::string& gate) {
-  return "name: ball\narm: " + arm + "\nduration: 1\n" + gate +
-         "objects:\n  - {name: ball, sphere: {radius: 0.03}, stiffness: 500}\n"
-         "hand:\n  path:\n    - {t: 0, at: [0, 0, 0.05]}\n    - {t: 1, at: [0, 0, 0.05]}\n";
-}
-
 TEST_F(RealArmTermsTest, NoShippedSceneChangesTheArmOrLoosensItsLimits) {
   const auto terms =
       scene::terms_for(plug(ArmKind::kPolhem, "P1"),
@@ -300,7 +209,7 @@ TEST_F(RealArmTermsTest, NoShippedSceneChangesTheArmOrLoosensItsLimits) {
   int scenes = 0;
   for (const auto& entry : fs::directory_iterator(kSource / "app/scenes")) {
     if (entry.path().extension() != ".yaml") continue;
-    auto scene = scene::read_scene(entry.path(), scene::mesh_folder(), terms->arm.path);
+    auto scene = scene::load_scene(entry.path(), {.arm = terms->arm.path});
     if (!scene) continue;  // its scanned mesh is not here
     ++scenes;
     const auto told = scene::put_on_terms(*scene, entry.path(), *terms);
@@ -331,7 +240,7 @@ TEST_F(RealArmTermsTest, ASceneThatWantsNoEnergyStageLeavesARealArmItsOwn) {
                {"bounding", EnergyStage::kBounding, "energy: bounding is kept"}};
   for (const auto& one : cases) {
     write(file, ball(arm, std::string("gate:\n  energy: ") + one.wanted + '\n'));
-    auto scene = scene::read_scene(file, {}, terms->arm.path);
+    auto scene = scene::load_scene(file, {.arm = terms->arm.path});
     ASSERT_TRUE(scene) << scene.error().message;
     const auto told = scene::put_on_terms(*scene, file, *terms);
     ASSERT_TRUE(told);
@@ -343,7 +252,7 @@ TEST_F(RealArmTermsTest, ASceneThatWantsNoEnergyStageLeavesARealArmItsOwn) {
     EXPECT_TRUE(holds(text, "its arm, vintage_phantom, is what it is simulated with")) << text;
   }
   // In simulation a scene may still do without.
-  auto simulated = scene::read_scene(file, {});
+  auto simulated = scene::load_scene(file);
   ASSERT_TRUE(simulated);
   EXPECT_EQ(simulated->energy, EnergyStage::kBounding);
 }
@@ -362,7 +271,7 @@ TEST_F(RealArmTermsTest, AScenesOwnArmFileTightensOnly) {
   const auto terms = scene::terms_for(plug(ArmKind::kWoody, "W1"),
                                       {.arm_file = {}, .firmware = {}, .unchecked = true});
   ASSERT_TRUE(terms);
-  auto scene = scene::read_scene(file, {}, terms->arm.path);
+  auto scene = scene::load_scene(file, {.arm = terms->arm.path});
   ASSERT_TRUE(scene) << scene.error().message;
   const auto told = scene::put_on_terms(*scene, file, *terms);
   ASSERT_TRUE(told);
@@ -396,7 +305,7 @@ TEST_F(RealArmTermsTest, ARunWithARealArmNeedsTerms) {
 TEST_F(RealArmTermsTest, ABoardWithAnArmsNameIsAskedForItsModel) {
   const support::LineBoard board(2);
   if (board.node().empty()) GTEST_SKIP() << "this machine has no pseudo-terminals";
-  FoundArm arm = plug(ArmKind::kHfabLine, "V1", "0279", "Haptikfabriken vintage");
+  FoundArm arm = plug(ArmKind::kHfabLine, "V1", 0x0279, "Haptikfabriken vintage");
   arm.certainty = driver::Certainty::kKnown;
   arm.node = board.node();
   const auto found = scene::find_real_arm_file(arm);
@@ -409,7 +318,7 @@ TEST_F(RealArmTermsTest, ABoardWithAnArmsNameIsAskedForItsModel) {
 TEST_F(RealArmTermsTest, TheGateOfASessionStandsOnTheTerms) {
   const support::LineBoard board(2);
   if (board.node().empty()) GTEST_SKIP() << "this machine has no pseudo-terminals";
-  FoundArm arm = plug(ArmKind::kHfabLine, "V1", "0279", "Haptikfabriken vintage");
+  FoundArm arm = plug(ArmKind::kHfabLine, "V1", 0x0279, "Haptikfabriken vintage");
   arm.node = board.node();
   const fs::path file = home_ / "scene" / "ball.yaml";
   write(home_ / "scene" / "own.yaml",
@@ -430,141 +339,12 @@ TEST_F(RealArmTermsTest, TheGateOfASessionStandsOnTheTerms) {
     EXPECT_EQ(gate.energy_stage(), EnergyStage::kPassivity);
     EXPECT_EQ((*session)->scene().arm.name, "vintage_phantom");
     EXPECT_TRUE(holds(all_of((*session)->told()), "energy: none is ignored"));
-    const RunReport report = report_of(**session, driver::ServoEnd::kStopped, {});
+    const session::RunFigures report = (*session)->figures();
     EXPECT_EQ(report.feel_check,
               unchecked ? scene::FeelCheckState::kUnchecked : scene::FeelCheckState::kNone);
     EXPECT_EQ(holds(summary(report), "UNCHECKED"), unchecked);
     EXPECT_EQ(holds(summary(report), "at most 0.50 N"), !unchecked);
   }
-}
-
-TEST_F(RealArmTermsTest, WithoutAPassedFeelCheckTheForceStaysBelowHalfANewton) {
-  const FoundArm arm = plug(ArmKind::kWoody, "W1");
-  const fs::path file = home_ / "scene" / "ball.yaml";
-  write(file, ball((kArms / "vintage_phantom.yaml").string(), ""));
-  const auto force_of = [&](const scene::RealArmTerms& terms) {
-    auto scene = scene::read_scene(file, {}, terms.arm.path);
-    EXPECT_TRUE(scene && scene::put_on_terms(*scene, file, terms));
-    return scene->arm.limits.force_max;
-  };
-  const auto none = scene::terms_for(arm, {});
-  ASSERT_TRUE(none);
-  EXPECT_EQ(none->feel_check, scene::FeelCheckState::kNone);
-  EXPECT_EQ(force_of(*none), 0.5);
-  EXPECT_TRUE(holds(all_of(none->told), "at most 0.5 N")) << all_of(none->told);
-  EXPECT_TRUE(holds(all_of(none->told), "thimble feel-check --device W1\n")) << all_of(none->told);
-  EXPECT_TRUE(holds(all_of(none->told), "Arm file: ")) << all_of(none->told);
-
-  const auto unchecked = scene::terms_for(arm, {.arm_file = {}, .firmware = {}, .unchecked = true});
-  ASSERT_TRUE(unchecked);
-  EXPECT_EQ(unchecked->feel_check, scene::FeelCheckState::kUnchecked);
-  EXPECT_EQ(force_of(*unchecked), 5);
-  EXPECT_TRUE(holds(all_of(unchecked->told), "UNCHECKED: W1 gets up to 5 N"));
-
-  ASSERT_TRUE(scene::keep_passed(scene::describe_checked(arm, none->arm, {})));
-  const auto passed = scene::terms_for(arm, {});
-  ASSERT_TRUE(passed);
-  EXPECT_EQ(passed->feel_check, scene::FeelCheckState::kPassed);
-  EXPECT_EQ(force_of(*passed), 5);
-  EXPECT_FALSE(holds(all_of(passed->told), "feel-check"));
-
-  ASSERT_TRUE(scene::forget_passed("W1"));
-  EXPECT_EQ(scene::terms_for(arm, {})->feel_check, scene::FeelCheckState::kNone);
-}
-
-/// Asks whether an arm that passed counts as passed after something was done.
-class FeelCheckRecordTest : public RealArmTermsTest {
- protected:
-  FeelCheckRecordTest() {
-    write(scene::own_arm_folder() / "woodenhaptics.yaml", text_of(kArms / "woodenhaptics.yaml"));
-    EXPECT_TRUE(scene::save_calibration("W1", calibration_));
-    const auto file = scene::find_real_arm_file(arm_);
-    EXPECT_TRUE(file && scene::keep_passed(scene::describe_checked(arm_, *file, {})));
-  }
-
-  static bool passed(const FoundArm& arm) {
-    const auto terms = scene::terms_for(arm, {});
-    EXPECT_TRUE(terms) << terms.error().message;
-    return terms && terms->feel_check == scene::FeelCheckState::kPassed;
-  }
-
-  const FoundArm arm_ = plug(ArmKind::kWoody, "W1");
-  const scene::Calibration calibration_{{3, 0, -6000}, {1, -1, -1}, {1, -1, -1}, "woodenhaptics"};
-  const fs::path record_ = scene::feel_check_file("W1");
-};
-
-TEST_F(FeelCheckRecordTest, HoldsAsLongAsNothingChanges) {
-  EXPECT_TRUE(passed(arm_));
-  EXPECT_TRUE(passed(plug(ArmKind::kWoody, "W1")));
-}
-
-TEST_F(FeelCheckRecordTest, CountsAsNoneOnceAnythingChanges) {
-  const std::string record = text_of(record_), file = text_of(kArms / "woodenhaptics.yaml");
-  const fs::path installed = scene::own_arm_folder() / "woodenhaptics.yaml";
-  const auto change = [&](const std::string& piece, const std::string& by) {
-    return [=] { write(installed, with(file, piece, by)); };
-  };
-  const auto calibrate = [](const scene::Calibration& calibration) {
-    return [=] { EXPECT_TRUE(scene::save_calibration("W1", calibration)); };
-  };
-  scene::Calibration motor = calibration_, encoder = calibration_, home = calibration_;
-  motor.motor_sign[0] = -1;
-  encoder.encoder_sign[2] = 1;
-  home.home_counts[1] = 1;
-  const struct {
-    const char* what;
-    std::function<void()> act;
-  } cases[] = {
-      {"a limit of the arm file", change("force_max: 5 ", "force_max: 4 ")},
-      {"a constant of the arm file", change("length_b: 0.205", "length_b: 0.206")},
-      {"a word of the arm file", change("name: woodenhaptics", "name: mine")},
-      {"a motor's sign", calibrate(motor)},
-      {"an encoder's sign", calibrate(encoder)},
-      {"the home pose", calibrate(home)},
-      {"no calibration", [] { fs::remove(scene::calibration_file("W1")); }},
-      {"the firmware's number", [this] { plug(ArmKind::kWoody, "W1", "0101"); }},
-      {"the board's own name", [this] { plug(ArmKind::kWoody, "W1", "0100", "another"); }},
-      {"a firmware that tells nothing", [this] { plug(ArmKind::kWoody, "W1", ""); }},
-      {"a record that was cut off", [&] { write(record_, record.substr(0, record.size() / 2)); }},
-      {"an empty record", [this] { write(record_, ""); }},
-      {"a record with a byte more", [&] { write(record_, record + ' '); }},
-      {"a record of another arm", [&] { write(record_, with(record, "arm: W1", "arm: W2")); }},
-      {"a record that anybody may write", [this] { EXPECT_EQ(chmod(record_.c_str(), 0666), 0); }},
-      {"a folder in its place",
-       [this] {
-         fs::remove(record_);
-         fs::create_directories(record_);
-       }},
-  };
-  for (const auto& one : cases) {
-    ASSERT_TRUE(passed(arm_)) << "before " << one.what;
-    one.act();
-    EXPECT_FALSE(passed(arm_)) << one.what;
-    // Back to what it was.
-    fs::remove_all(record_);
-    write(record_, record);
-    chmod(record_.c_str(), 0644);
-    write(installed, file);
-    ASSERT_TRUE(scene::save_calibration("W1", calibration_));
-    plug(ArmKind::kWoody, "W1");
-  }
-  EXPECT_FALSE(passed(plug(ArmKind::kWoody, "W3"))) << "another arm of the kind";
-}
-
-TEST_F(FeelCheckRecordTest, OfAFalconHoldsForTheImageThatIsNamed) {
-  const FoundArm falcon = plug(ArmKind::kFalcon, "F1");
-  const fs::path image = home_ / "image", other = home_ / "other";
-  write(image, "one");
-  write(other, "two");
-  const auto file = scene::find_real_arm_file(falcon);
-  ASSERT_TRUE(file) << file.error().message;
-  const auto unknown = scene::keep_passed(scene::describe_checked(falcon, *file, {}));
-  ASSERT_FALSE(unknown);
-  EXPECT_TRUE(holds(unknown.error().message, "--firmware")) << unknown.error().message;
-  ASSERT_TRUE(scene::keep_passed(scene::describe_checked(falcon, *file, image)));
-  EXPECT_TRUE(scene::has_passed(scene::describe_checked(falcon, *file, image)));
-  EXPECT_FALSE(scene::has_passed(scene::describe_checked(falcon, *file, other)));
-  EXPECT_FALSE(scene::has_passed(scene::describe_checked(falcon, *file, {})));
 }
 
 }  // namespace

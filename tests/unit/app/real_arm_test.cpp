@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "arms/falcon/falcon_arm.h"
+#include "arms/hfab/hfab_models.h"
 #include "support/fake_usb.h"
-#include "thimble/driver/arms/falcon/falcon_arm.h"
-#include "thimble/driver/arms/hfab/hfab_models.h"
 
 namespace thimble::app {
 namespace {
@@ -14,7 +14,7 @@ using driver::BoardKind;
 using driver::Certainty;
 
 scene::ArmFile file_of(const std::string& name) {
-  auto file = scene::read_arm_file(std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms" / name);
+  auto file = scene::load_arm(std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms" / name);
   EXPECT_TRUE(file) << file.error().message;
   return file ? std::move(file).value() : scene::ArmFile{};
 }

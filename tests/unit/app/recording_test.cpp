@@ -12,13 +12,11 @@
 
 #include <gtest/gtest.h>
 
-#include "recording/black_box.h"
-#include "recording/read_recording.h"
+#include "observers/black_box.h"
 #include "recording/recorder.h"
-#include "recording/recording_columns.h"
-#include "recording/write_csv.h"
 #include "support/heap_guard.h"
 #include "support/scratch.h"
+#include "thimble/session/recording.h"
 
 namespace thimble::app {
 namespace {
@@ -355,16 +353,16 @@ TEST(BlackBox, KeepsTheSecondsBeforeAFaultUntilTheyAreTaken) {
   const auto run = [&](int ticks, driver::Fault fault) {
     for (int i = 0; i < ticks; ++i) {
       tick.fault = fault;
-      box(tick);
+      box.take(tick);
       ++tick.tick;
     }
   };
   run(20'000, driver::Fault::kNone);
   EXPECT_FALSE(box.full());
-  EXPECT_TRUE(box.take().empty());
+  EXPECT_TRUE(box.release().empty());
   run(30'000, driver::Fault::kOverSpeed);  // long after the fault nothing is overwritten
   ASSERT_TRUE(box.full());
-  const auto kept = box.take();
+  const auto kept = box.release();
   ASSERT_EQ(kept.size(), 8500U);
   EXPECT_EQ(kept.front().tick, 20'000 + 501 - 8500U);
   EXPECT_EQ(kept.back().tick, 20'500U);
@@ -375,7 +373,7 @@ TEST(BlackBox, KeepsTheSecondsBeforeAFaultUntilTheyAreTaken) {
   run(1000, driver::Fault::kNone);
   run(10, driver::Fault::kNoReports);  // the run ends soon after a second fault
   EXPECT_FALSE(box.full());
-  const auto second = box.take();
+  const auto second = box.release();
   EXPECT_EQ(second.size(), 2010U);
   EXPECT_EQ(second.back().fault, driver::Fault::kNoReports);
 }
@@ -388,7 +386,7 @@ TEST(Recording, AsksTheHeapForNothingPerTick) {
   EXPECT_EQ(support::heap_calls_of([&] {
               for (int i = 0; i < 1000; ++i) {
                 (**recorder)(tick);
-                box(tick);
+                box.take(tick);
               }
             }),
             0);

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "arms/hfab/hfab_report.h"
 #include "support/vintage_arm.h"
 #include "thimble/driver/servo_loop.h"
 

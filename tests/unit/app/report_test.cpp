@@ -7,13 +7,16 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "report/figure.h"
 #include "support/scratch.h"
 
 namespace thimble::app {
 namespace {
 
-RunReport example() {
-  RunReport report;
+using session::Figure;
+
+session::RunFigures example() {
+  session::RunFigures report;
   report.scene = "elephant";
   report.object = "elephant";
   report.arm = "vintage_phantom";
@@ -30,7 +33,7 @@ RunReport example() {
     record.in_contact = i >= 500 && i < 1500;
     record.depth = record.in_contact ? 0.001 : 0;
     record.f_sent_W = {0, 0, record.in_contact ? 0.8 : 0};
-    report.statistics(record);
+    report.statistics.take(record);
   }
   report.wire.reports = 2001;
   report.gate.limited = 3;
@@ -67,7 +70,7 @@ TEST(Report, HoldsTheValuesOfTheRun) {
 
 TEST(Report, WritesEachFigureWithItsGoal) {
   const std::filesystem::path folder = support::scratch_folder() / "thimble_report";
-  RunReport report = example();
+  session::RunFigures report = example();
   report.lost_contacts = 2;
   ASSERT_TRUE(write_report(report, folder).ok());
   const nlohmann::json figures = read(folder / "figures.json");
@@ -95,14 +98,14 @@ TEST(Report, TellsTheRunInPlainWords) {
 }
 
 TEST(Report, NamesTheFaultThatEndedIt) {
-  RunReport report = example();
+  session::RunFigures report = example();
   report.end = driver::ServoEnd::kFault;
   report.fault = driver::Fault::kOverSpeed;
   EXPECT_NE(summary(report).find(driver::describe(driver::Fault::kOverSpeed)), std::string::npos);
 }
 
 TEST(Report, WarnsOfAnArmThatDidNotTakeTheLastZeroForce) {
-  RunReport report = example();
+  session::RunFigures report = example();
   report.end = driver::ServoEnd::kDone;
   EXPECT_NE(summary(report).find("the arm was left with zero force."), std::string::npos);
   EXPECT_EQ(summary(report).find("DANGER"), std::string::npos);
@@ -128,7 +131,7 @@ TEST(Report, SaysWhereItCannotWrite) {
 }
 
 TEST(Report, SurvivesANameThatIsNotUtf8) {
-  RunReport report = example();
+  session::RunFigures report = example();
   report.scene = "\xff\xfe";
   const std::filesystem::path folder = support::scratch_folder() / "thimble_report";
   EXPECT_TRUE(write_report(report, folder).ok());
@@ -150,7 +153,7 @@ TEST(Figure, MeetsItsGoalOrNot) {
 }
 
 TEST(Report, TellsOfMotorsThatGotHotAndOnlyOfThose) {
-  RunReport report = example();
+  session::RunFigures report = example();
   report.heat_known = true;
   report.heat_most = 0.7;
   EXPECT_EQ(summary(report).find("Heat"), std::string::npos);
@@ -161,7 +164,7 @@ TEST(Report, TellsOfMotorsThatGotHotAndOnlyOfThose) {
 }
 
 TEST(Report, TellsWhatTheEnergyStageDidIfThereIsOne) {
-  RunReport report = example();
+  session::RunFigures report = example();
   EXPECT_EQ(summary(report).find("by the gate"), std::string::npos);
   report.energy_stage = driver::EnergyStage::kPassivity;
   report.gate.energy_least = -0.0031;

@@ -73,7 +73,7 @@ TEST(RunStatistics, CountsTouchDownsAndTimeInContact) {
   session::RunStatistics statistics;
   for (int i = 0; i < 1000; ++i) {
     const bool touching = (i >= 100 && i < 300) || (i >= 500 && i < 600) || (i >= 605 && i < 700);
-    statistics(tick(i * 1'000'000LL, touching));
+    statistics.take(tick(i * 1'000'000LL, touching));
   }
   EXPECT_EQ(statistics.contacts(), 3U);
   EXPECT_EQ(statistics.interruptions(), 1U);  // 5 ms of air are no lifting off
@@ -85,8 +85,8 @@ TEST(RunStatistics, CountsTouchDownsAndTimeInContact) {
 
 TEST(RunStatistics, CountsAContactFromTheFirstTickOn) {
   session::RunStatistics statistics;
-  statistics(tick(0, true));
-  statistics(tick(1'000'000, true));
+  statistics.take(tick(0, true));
+  statistics.take(tick(1'000'000, true));
   EXPECT_EQ(statistics.contacts(), 1U);
   EXPECT_EQ(statistics.interruptions(), 0U);
 }
@@ -97,16 +97,16 @@ TEST(RunStatistics, GivesEnergyByTheForceThatActedDuringEachStep) {
   session::RunStatistics statistics;
   driver::TickRecord record = tick(0, true);
   record.f_sent_W = {1, 2, 0};
-  statistics(record);
+  statistics.take(record);
   record.time_ns = 1'000'000;
   record.p_WT = {0.003, 0.004, 0.005};
   record.f_sent_W = {4, 0, 0};
-  statistics(record);
+  statistics.take(record);
   EXPECT_NEAR(statistics.energy_to_hand(), 0.011, 1e-15);
   record.time_ns = 2'000'000;
   record.p_WT = {0.0015, 0.004, 0.005};
   record.f_sent_W = {100, 100, 100};  // acts after the last tick: not counted
-  statistics(record);
+  statistics.take(record);
   EXPECT_NEAR(statistics.energy_to_hand(), 0.005, 1e-15);
   EXPECT_NEAR(statistics.energy_to_hand_max(), 0.011, 1e-15);
 }
@@ -133,7 +133,7 @@ TEST(RunStatistics, AgreesWithPlainSumsOverRandomRecords) {
     if (record.in_contact) squares += force * force;
     touching += record.in_contact ? 1 : 0;
     missing += record.fresh ? 0 : 1;
-    statistics(record);
+    statistics.take(record);
     last = record;
   }
   EXPECT_NEAR(statistics.force_max(), force_max, 1e-12);
@@ -146,11 +146,11 @@ TEST(RunStatistics, AgreesWithPlainSumsOverRandomRecords) {
 TEST(RunStatistics, KeepsTheFirstFault) {
   session::RunStatistics statistics;
   driver::TickRecord record = tick(0, false);
-  statistics(record);
+  statistics.take(record);
   record.fault = driver::Fault::kOverSpeed;
-  statistics(record);
+  statistics.take(record);
   record.fault = driver::Fault::kTransportLost;
-  statistics(record);
+  statistics.take(record);
   EXPECT_EQ(statistics.fault_ticks(), 2U);
   EXPECT_EQ(statistics.first_fault(), driver::Fault::kOverSpeed);
 }

@@ -1,4 +1,4 @@
-#include "thimble/scene/scene_effects.h"
+#include "scene_effects.h"
 
 #include <gtest/gtest.h>
 
@@ -62,7 +62,7 @@ TEST(Surroundings, OfEveryArmThatComesAlongAreThoseOfADeskTopArm) {
   int arms = 0;
   for (const auto& file : std::filesystem::directory_iterator(
            std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms")) {
-    const auto arm = scene::read_arm_file(file.path());
+    const auto arm = scene::load_arm(file.path());
     ASSERT_TRUE(arm.ok()) << arm.error().message;
     const render::EffectContext context = scene::effect_context_of(*arm, 1000);
     // Steps of the arms we know lie between 0.02 and 0.07 mm [DEVICES 2]; row sums above that.

@@ -1,4 +1,5 @@
 #include "thimble/scene/scene_file.h"
+#include "place_mesh.h"
 
 #include <gtest/gtest.h>
 
@@ -23,7 +24,7 @@ driver::Result<scene::Scene> read(const std::string& objects, const std::string&
   std::ofstream(kFolder / "meshes/ball.off") << "OFF\n";
   std::ofstream(kFolder / "scene.yaml") << "name: test\narm: arm.yaml\nduration: 2\n" + more +
                                                "objects:\n" + objects + "hand:\n  path:\n" + path;
-  return scene::read_scene(kFolder / "scene.yaml", kFolder / "meshes");
+  return scene::load_scene(kFolder / "scene.yaml", {.mesh_folder = kFolder / "meshes"});
 }
 
 const std::string kBall = "  - {name: ball, mesh: cgal:ball.off, size: 0.1, stiffness: 500}\n";

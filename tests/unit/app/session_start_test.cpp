@@ -4,9 +4,13 @@
 
 #include <filesystem>
 
-#include "servo_thread.h"
+#include "arms/hfab/hfab_report.h"
+#include "open_arm.h"
+#include "run_records.h"
+#include "setup.h"
 #include "share/shared_run.h"
 #include "support/scratch.h"
+#include "thimble/session/servo_thread.h"
 #include "thimble/session/session.h"
 
 namespace thimble::app {
@@ -41,15 +45,16 @@ class SessionStart : public ::testing::Test {
         std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms/vintage_phantom.yaml";
     options_.terms = scene::RealArmTerms{};
     options_.terms->arm.path = file;
-    options_.terms->arm.file = *scene::read_arm_file(file);
+    options_.terms->arm.file = *scene::load_arm(file);
     options_.record = support::scratch_folder() / "start.h5";
     options_.share = true;
     options_.open_wire = [this](
                              const scene::ArmFile&,
                              driver::Clock&) -> driver::Result<std::unique_ptr<driver::Transport>> {
       ++opened_;
-      ready_ = session_ != nullptr && session_->triangles() > 0 && session_->shared() != nullptr &&
-               session_->recording().on() && session_->mesh_W().triangles.size() > 0;
+      ready_ = session_ != nullptr && session_->setup().objects().triangles() > 0 &&
+               session_->shared() != nullptr && session_->records().recording.on() &&
+               session_->setup().objects().mesh_W().triangles.size() > 0;
       return std::unique_ptr<driver::Transport>(std::make_unique<Answering>(*this));
     };
   }
@@ -98,6 +103,59 @@ TEST_F(SessionStart, WithNobodyToAskRefusesAnArmThatIsNotAtHome) {
   EXPECT_EQ(forced_, 0);
 }
 
+TEST_F(SessionStart, AsksBeforeARealArmGetsForces) {
+  auto prepared = session::Session::prepare(scene(), options_);
+  ASSERT_TRUE(prepared) << prepared.error().message;
+  std::vector<std::string> told;
+  std::atomic<bool> stop{false};
+  session::EnterKey answer = session::EnterKey::kPressed;
+  int looks = 0;
+  session::Terminal terminal{
+      .there = true,
+      .key = [&] { return ++looks % 3 == 0 ? answer : session::EnterKey::kNothing; },
+      .tell = [&](const std::string& line) { told.push_back(line); },
+      .ask = [&](const std::string& line) { told.push_back(line); }};
+  EXPECT_TRUE(session::agree_to_forces(**prepared, false, terminal, stop));
+  ASSERT_EQ(told.size(), 2u);
+  EXPECT_NE(told[0].find("S1 is about to get forces."), std::string::npos) << told[0];
+  EXPECT_NE(told[0].find("in the home pose"), std::string::npos) << told[0];
+  EXPECT_EQ(looks, 3) << "it waits for the answer";
+  answer = session::EnterKey::kClosed;
+  EXPECT_FALSE(session::agree_to_forces(**prepared, false, terminal, stop));
+  stop.store(true);
+  EXPECT_FALSE(session::agree_to_forces(**prepared, false, terminal, stop));
+  stop.store(false);
+  looks = 0;
+  EXPECT_TRUE(session::agree_to_forces(**prepared, true, terminal, stop)) << "--yes";
+  terminal.there = false;
+  EXPECT_FALSE(session::agree_to_forces(**prepared, false, terminal, stop));
+  EXPECT_NE(told.back().find("--yes"), std::string::npos);
+  EXPECT_EQ(looks, 0) << "nobody is asked";
+  EXPECT_EQ(opened_, 0);
+}
+
+TEST_F(SessionStart, LetsForcesThroughOnlyToAnArmWhoseTipIsAtHome) {
+  const session::Terminal nobody{
+      .there = false, .key = [] { return session::EnterKey::kClosed; }, .tell = [](const auto&) {}};
+  const std::atomic<bool> stop{false};
+  counts_ = {2000, 0, 0, 0, 0, 0};
+  auto away = session::Session::prepare(scene(), options_);
+  ASSERT_TRUE(away) << away.error().message;
+  const auto refused = session::open_arm(**away, nobody, stop);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("away from its home pose"), std::string::npos);
+  EXPECT_EQ((*away)->device().stage(), driver::DeviceStage::kIdle);
+  away->reset();
+  counts_ = {};
+  auto home = session::Session::prepare(scene(), options_);
+  ASSERT_TRUE(home) << home.error().message;
+  const auto opened = session::open_arm(**home, nobody, stop);
+  ASSERT_TRUE(opened) << opened.error().message;
+  EXPECT_TRUE(*opened);
+  EXPECT_EQ((*home)->device().stage(), driver::DeviceStage::kActive);
+  EXPECT_EQ(forced_, 0);
+}
+
 TEST(ServoThread, KnowsItsGrantBeforeItRunsAndMayLeaveWithoutRunning) {
   {
     const session::ServoThread unused(true);
@@ -115,7 +173,7 @@ TEST(ServoThread, KnowsItsGrantBeforeItRunsAndMayLeaveWithoutRunning) {
   servo.begin(**session, stop);
   EXPECT_EQ(servo.join(), driver::ServoEnd::kDone);
   EXPECT_TRUE(servo.ended());
-  EXPECT_EQ((*session)->trace().rows().size(), 500u);
+  EXPECT_EQ((*session)->ticks().size(), 500u);
 }
 
 TEST(CheckRealTime, RefusesARealArmWithoutPriorityUnlessTheUserSaysSo) {

@@ -16,6 +16,7 @@
 #include <gtest/gtest.h>
 
 #include "share/arm_lines.h"
+#include "share/knob_order.h"
 #include "share/shared_reader.h"
 #include "share/shared_run.h"
 #include "support/heap_guard.h"
@@ -162,7 +163,7 @@ TEST(Share, TearsNoReadWhileTheWriterRunsAtFullSpeed) {
       std::uint64_t serial = 0;
       std::vector<TickRecord> ticks;
       render::BodyPatch patch{};
-      scene::ScenePoses poses;
+      session::ScenePoses poses;
       while (!stop.load()) {
         ticks.clear();
         TickRecord tick;
@@ -187,7 +188,7 @@ TEST(Share, TearsNoReadWhileTheWriterRunsAtFullSpeed) {
   render::BodyPatch patch{};
   patch.object = 0;
   patch.point_count = 300;
-  scene::ScenePoses poses;
+  session::ScenePoses poses;
   poses.count = 1;
   for (std::uint64_t i = 0; i < rounds || reads.load() < 1000; ++i) {
     pair.run->store_tick(tick_number(i));
@@ -401,7 +402,7 @@ void read_all(session::SharedReader& reader) {
   std::uint64_t serial = 0;
   std::vector<TickRecord> ticks;
   reader.ticks_since(serial, ticks);
-  scene::ScenePoses poses;
+  session::ScenePoses poses;
   static_cast<void>(reader.poses(poses));
   render::BodyPatch patch{};
   static_cast<void>(reader.patch(patch));
@@ -499,6 +500,23 @@ TEST(Share, OutlivesMemoryThatIsCutShortUnderIt) {
   run->store_tick(tick_number(150));  // nor does the servo die of it
   EXPECT_TRUE(run->memory().broken());
   EXPECT_FALSE(session::SharedReader::attach(name)) << "nobody else attaches to it";
+}
+
+TEST(KnobOrder, TurnsTheKnobItNamesAndTellsWhichThereAre) {
+  const Pair pair = joined(small_scene());
+  ASSERT_TRUE(session::turn_knob(*pair.reader, "stiff: stiffness=300.5"));
+  EXPECT_EQ(pair.run->knob_wanted(0), 300.5);
+  for (const char* order : {"stiff: stiffness", "stiff: stiffness=", "stiff: stiffness=1 N/m",
+                            "stiff: stiffness=nan", ""}) {
+    SCOPED_TRACE(order);
+    const auto wrong = session::turn_knob(*pair.reader, order);
+    ASSERT_FALSE(wrong);
+    EXPECT_NE(wrong.error().message.find("expected NAME=VALUE"), std::string::npos);
+  }
+  const auto unknown = session::turn_knob(*pair.reader, "soft: stiffness=1");
+  ASSERT_FALSE(unknown);
+  EXPECT_NE(unknown.error().message.find("stiff: stiffness"), std::string::npos);
+  EXPECT_EQ(pair.run->knob_wanted(0), 300.5);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "thimble/session/start_pose.h"
+#include "start_pose.h"
 
 #include <gtest/gtest.h>
 
@@ -6,6 +6,7 @@
 #include <deque>
 #include <limits>
 
+#include "arms/hfab/hfab_report.h"
 #include "support/scripted_transport.h"
 #include "support/vintage_arm.h"
 #include "thimble/scene/calibration.h"
@@ -17,8 +18,8 @@ namespace {
 using driver::ArmKind;
 
 scene::ArmFile file_of(const std::string& name) {
-  auto file = scene::read_arm_file(std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms" /
-                                   (name + ".yaml"));
+  auto file =
+      scene::load_arm(std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms" / (name + ".yaml"));
   EXPECT_TRUE(file) << file.error().message;
   return file ? std::move(file).value() : scene::ArmFile{};
 }

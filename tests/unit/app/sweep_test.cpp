@@ -82,7 +82,9 @@ TEST(Sweep, MeasuresNoCellAgainThatItsJournalHolds) {
   const Folder scratch;
   journal_after(scratch.path(), 2, false);
   Sweep sweep = plain_sweep();
-  sweep.measure = [](std::size_t) -> std::vector<double> { throw std::logic_error("again"); };
+  sweep.measure = [](std::size_t) -> driver::Result<std::vector<double>> {
+    return driver::Error{"again"};
+  };
   const auto done =
       run_sweep(sweep, {.folder = scratch.path(), .jobs = 2, .resume = true}, kNoStop);
   ASSERT_TRUE(done) << done.error().message;
@@ -124,13 +126,27 @@ TEST(Sweep, RefusesTheJournalOfAnotherSweep) {
 TEST(Sweep, NamesTheCellThatFailed) {
   const Folder scratch;
   Sweep sweep = plain_sweep();
-  sweep.measure = [](std::size_t cell) {
-    if (cell == 17) throw std::runtime_error("no such wall");
+  sweep.measure = [](std::size_t cell) -> driver::Result<std::vector<double>> {
+    if (cell == 17) return driver::Error{"no such wall"};
     return std::vector<double>{1};
   };
   const auto done = run_sweep(sweep, {.folder = scratch.path(), .jobs = 2}, kNoStop);
   ASSERT_FALSE(done);
   EXPECT_EQ(done.error().message, "plain, cell 17: no such wall");
+}
+
+TEST(Sweep, TakesNoCellWithoutNumbersAndOutlivesAnException) {
+  const Folder scratch;
+  Sweep sweep = plain_sweep();
+  sweep.measure = [](std::size_t) { return std::vector<double>{}; };
+  const auto empty = run_sweep(sweep, {.folder = scratch.path(), .jobs = 1}, kNoStop);
+  ASSERT_FALSE(empty);
+  EXPECT_NE(empty.error().message.find("plain, cell 0: it gave no numbers"), std::string::npos)
+      << empty.error().message;
+  sweep.measure = [](std::size_t) -> std::vector<double> { throw std::bad_alloc(); };
+  const auto thrown = run_sweep(sweep, {.folder = scratch.path(), .jobs = 1}, kNoStop);
+  ASSERT_FALSE(thrown);
+  EXPECT_NE(thrown.error().message.find("bad_alloc"), std::string::npos) << thrown.error().message;
 }
 
 TEST(Sweep, StopsWhenAskedAndLaterGoesOn) {

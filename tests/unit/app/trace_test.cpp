@@ -1,4 +1,4 @@
-#include "thimble/session/trace.h"
+#include "observers/trace.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@ namespace {
 
 void run(session::Trace& trace, std::uint64_t ticks) {
   driver::TickRecord record;
-  for (record.tick = 0; record.tick < ticks; ++record.tick) trace(record);
+  for (record.tick = 0; record.tick < ticks; ++record.tick) trace.take(record);
 }
 
 TEST(Trace, KeepsEveryTickOfARunThatFits) {

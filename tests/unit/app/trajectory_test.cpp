@@ -1,13 +1,18 @@
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <string>
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+
+#include "place_mesh.h"
 #include "recording/replay_trajectory.h"
 #include "recording/trajectory_file.h"
 #include "support/scratch.h"
+#include "thimble/render/mesh/load_mesh.h"
 #include "thimble/scene/scene_file.h"
 
 namespace thimble::app {
@@ -53,8 +58,8 @@ TEST(Trajectory, TellsWhichLineIsWrongAndWhatToDo) {
 /// Makes what a device would do on a ball of 400 N/m whose surface gives the forces: the pipeline
 /// of measured data, with truth in place of the measurement.
 TEST(Trajectory, AnAnalyticProbeFeelsTheForcesThatItWasMadeOf) {
-  const auto scene = scene::read_scene(
-      std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/scenes/rubber.yaml", {}, {});
+  const auto scene =
+      scene::load_scene(std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/scenes/rubber.yaml");
   ASSERT_TRUE(scene) << scene.error().message;
   scene::Scene plain = *scene;
   plain.objects[0].effects.clear();
@@ -84,6 +89,49 @@ TEST(Trajectory, AnAnalyticProbeFeelsTheForcesThatItWasMadeOf) {
   const session::TrajectoryComparison wrong = session::replay_trajectory(way, 1000, **again);
   EXPECT_GT(wrong.error_rms, 0.5);
   EXPECT_GT(wrong.direction_p99, 0.5);
+}
+
+/// A trajectory is told in the frame of a mesh file or in the world, and touches the same.
+TEST(Trajectory, TouchesASceneInTheFrameOfAMeshOrOfTheWorld) {
+  const std::filesystem::path scene_file =
+      std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/scenes/clay.yaml";
+  const auto scene = scene::load_scene(scene_file);
+  ASSERT_TRUE(scene) << scene.error().message;
+  const scene::SceneObject& object = scene->objects.front();
+  const auto mesh = render::load_mesh(object.mesh_file);
+  ASSERT_TRUE(mesh) << mesh.error().message;
+  const scene::MeshPlacement place = scene::placement_of(*mesh, object);
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3d& vertex : mesh->vertices) box.extend(vertex);
+  const Eigen::Vector3d centre = box.center(), side(0.6 * box.sizes().x(), 0, 0);
+  const auto lines = [&](auto&& placed) {
+    std::string text;
+    for (int i = 0; i <= 500; ++i) {
+      const Eigen::Vector3d p = placed(centre + (1 - i / 2000.0) * side);
+      char line[120];
+      std::snprintf(line, sizeof line, "%.3f %.17g %.17g %.17g\n", 1e-3 * i, p.x(), p.y(), p.z());
+      text += line;
+    }
+    return text;
+  };
+  const auto own = session::replay_trajectory_file(
+      file_of(lines([](const Eigen::Vector3d& p) { return p; })), {}, object.name, scene_file);
+  ASSERT_TRUE(own) << own.error().message;
+  EXPECT_GT(own->compared.touching, 20u);
+  EXPECT_EQ(own->felt.ticks.size(), own->compared.ticks);
+  EXPECT_EQ(own->felt.info.scene, "clay");
+  const auto world = session::replay_trajectory_file(
+      file_of(lines([&](const Eigen::Vector3d& p) {
+        return Eigen::Vector3d(place.p_WM + place.scale * (object.R_WO * p));
+      })),
+      {}, "world", scene_file);
+  ASSERT_TRUE(world) << world.error().message;
+  EXPECT_NEAR(world->compared.force_rms, own->compared.force_rms, 1e-6 * own->compared.force_rms);
+  const auto nowhere =
+      session::replay_trajectory_file(file_of(lines([](const Eigen::Vector3d& p) { return p; })),
+                                      {.farthest = 1e9}, "nothing", scene_file);
+  ASSERT_FALSE(nowhere);
+  EXPECT_NE(nowhere.error().message.find("--frame"), std::string::npos);
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "stability/rest_warnings.h"
 #include "stability/stability_laws.h"
 #include "studies/stability/wall_measures.h"
+#include "studies/trouble/energy_given.h"
 #include "studies/trouble/random_scene.h"
 #include "studies/trouble/small_meshes.h"
 #include "studies/trouble/trouble_run.h"
@@ -26,7 +27,7 @@ const std::filesystem::path kArm =
     std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms/vintage_phantom.yaml";
 
 RandomSceneLimits limits() {
-  return {.arm = *scene::read_arm_file(kArm), .arm_path = kArm.string(), .mesh_path = "meshes"};
+  return {.arm = *scene::load_arm(kArm), .arm_path = kArm.string(), .mesh_path = "meshes"};
 }
 
 std::vector<std::filesystem::path> worst_scenes() {
@@ -49,7 +50,7 @@ TEST(Trouble, DoesNotComeBackInTheWorstScenesOfALongSearch) {
     EXPECT_EQ(found.not_finite, 0) << file;
     EXPECT_EQ(found.fault, 0) << file;
     EXPECT_LE(found.force_share, 1 + 1e-9) << file;
-    EXPECT_LE(found.excess, kEnergyAllowed) << file;
+    EXPECT_LE(found.given, found.given_bound) << file;
     EXPECT_GT(found.contact, 0.2) << file;
   }
 }
@@ -67,9 +68,63 @@ TEST(Trouble, IsSeenWhereAWallIsFarTooStiffForItsHand) {
   const TroubleFound found = run_for_trouble(file, {});
   EXPECT_FALSE(found.refused);
   EXPECT_TRUE(found.bad());
-  EXPECT_GT(found.excess, 10 * kEnergyAllowed);
-  EXPECT_GT(found.given, 10 * kEnergyAllowed);
+  EXPECT_GT(found.given, 10 * found.given_bound);
   EXPECT_GT(found.tremble, 0.1);
+}
+
+// What damping and friction took before is no credit: the hand rubs over rubber for two seconds,
+// then leans on a wall that is too stiff for it.
+TEST(Trouble, IsSeenThoughMoreWasTakenBefore) {
+  const auto file = support::scratch_folder() / "rubbed_before.yaml";
+  ASSERT_TRUE(
+      write_text("name: rubbed_before\narm: " + kArm.string() +
+                     "\nduration: 4\ngate: {energy: none}\nobjects:\n"
+                     "  - {name: rubber, plane: {normal: [0, 0, 1]}, stiffness: 400, damping: 2,\n"
+                     "     effects: [{friction: bristle, coefficient: 0.8}]}\n"
+                     "  - {name: wall, box: {sides: [0.1, 0.1, 0.1]}, position: [0.08, 0, 0.03], "
+                     "stiffness: 6000}\n"
+                     "hand:\n  grip: {mass: 0.01, stiffness: 300, damping: 1, tremor: 0}\n  path:\n"
+                     "    - {t: 0, at: [0, 0, 0.02]}\n    - {t: 0.3, at: [0, -0.03, -0.01]}\n"
+                     "    - {t: 0.8, at: [0, 0.03, -0.01]}\n    - {t: 1.3, at: [0, -0.03, -0.01]}\n"
+                     "    - {t: 1.8, at: [0, 0.03, -0.01]}\n    - {t: 2.3, at: [0.02, 0, 0.02]}\n"
+                     "    - {t: 2.8, at: [0.05, 0, 0.02]}\n    - {t: 4, at: [0.05, 0, 0.02]}\n",
+                 file));
+  const TroubleFound found = run_for_trouble(file, {});
+  EXPECT_FALSE(found.refused);
+  EXPECT_EQ(found.fault, 0);
+  EXPECT_GT(found.given, 10 * found.given_bound);
+  EXPECT_TRUE(found.bad());
+}
+
+TEST(EnergyGiven, CountsWhatSpringsHeldAndNothingThatWasTakenBefore) {
+  EnergyGiven passive;
+  for (int press = 0; press < 10; ++press) {
+    passive.book(-5e-3, 4e-3);  // pressed in; a fifth is lost
+    passive.book(4e-3, 0);      // and back
+  }
+  EXPECT_EQ(passive.most(), 0);
+  EnergyGiven active = passive;
+  active.book(-5e-3, 4e-3);
+  active.book(6e-3, 0);  // 2 mJ more than it held
+  EXPECT_NEAR(active.most(), 2e-3, 1e-15);
+  for (int i = 0; i < 4; ++i) {  // and again before anything is taken
+    active.book(-4e-3, 4e-3);
+    active.book(5e-3, 0);
+  }
+  EXPECT_NEAR(active.most(), 6e-3, 1e-15);
+  active.book(-6e-3, 0);  // damping pays
+  active.book(1e-3, 0);
+  EXPECT_NEAR(active.most(), 6e-3, 1e-15);
+}
+
+TEST(EnergyGiven, MayBeWhatTheStageLetsGo) {
+  driver::EnergyGuardSettings stage;
+  EXPECT_EQ(energy_let_go(stage), kLetGoWithoutStage);
+  stage = {.stage = driver::EnergyStage::kPassivity,
+           .allowance = 2e-3,
+           .reservoir = 1e-2,
+           .onset = 2e-3};
+  EXPECT_NEAR(energy_let_go(stage), 16e-3, 1e-15);
 }
 
 /// Draws the scene of a seed, changes its text, and runs it.
@@ -86,7 +141,7 @@ TroubleFound run_seed(std::uint64_t seed, const std::string& what = "", const st
   const auto file = folder / "scene.yaml";
   EXPECT_TRUE(write_text(scene.text, file));
   if (warnings != nullptr) {
-    const auto read = scene::read_scene(file, {});
+    const auto read = scene::load_scene(file);
     EXPECT_TRUE(read);
     if (read) *warnings = rest_warnings(*read);
   }
@@ -162,7 +217,7 @@ TEST(RestWarnings, FindTheCurvatureOfASineAndTheGrainOfAVelocityInCounts) {
           "      - {friction: bristle, coefficient: 0.5, stiffness: 700}\n"
           "hand:\n  path:\n    - {t: 0, at: [0, 0, 0.02]}\n",
       file));
-  const auto scene = scene::read_scene(file, {});
+  const auto scene = scene::load_scene(file);
   ASSERT_TRUE(scene) << scene.error().message;
   const double exact = 1e-4 * std::pow(2 * std::numbers::pi / 0.004, 2);
   EXPECT_NEAR(curvature_of(scene->objects[0].effects[0]) / exact, 0.99, 0.02);
@@ -190,18 +245,18 @@ TEST(TroubleFound, SurvivesItsWayThroughASweep) {
   const TroubleFound found{.not_finite = 2,
                            .fault = 3,
                            .force_share = 0.5,
-                           .excess = 0.01,
                            .tremble = 0.1,
                            .must_tremble = true,
                            .speed = 1,
                            .given = 0.02,
+                           .given_bound = 0.01,
                            .contact = 0.4};
   EXPECT_EQ(numbers_of(trouble_of(numbers_of(found))), numbers_of(found));
   EXPECT_TRUE(found.bad());
 }
 
 TEST(WallMeasures, FindTheEdgeThatTheExactMapOfATickHas) {
-  const auto arm = scene::read_arm_file(kArm);
+  const auto arm = scene::load_arm(kArm);
   for (const double delay : {0.0, 0.001}) {
     WallCase wall;
     wall.direction = *worst_direction_at_home(*arm);
@@ -209,12 +264,12 @@ TEST(WallMeasures, FindTheEdgeThatTheExactMapOfATickHas) {
     wall.delay_ns = static_cast<std::int64_t>(delay * 1e9);
     wall.duration = 4;
     const double exact = stiffness_edge({.mass = 0.075, .viscous = 1, .delay = delay});
-    EXPECT_NEAR(linear_edge(*arm, wall, exact / 2, exact * 2) / exact, 1, 0.01) << delay;
+    EXPECT_NEAR(linear_edge(*arm, wall, exact / 2, exact * 2).value() / exact, 1, 0.01) << delay;
   }
 }
 
 TEST(WallMeasures, FindRestOnlyWhereDryFrictionHoldsHalfAStep) {
-  const auto arm = scene::read_arm_file(kArm);
+  const auto arm = scene::load_arm(kArm);
   WallCase wall;
   wall.direction = *worst_direction_at_home(*arm);
   wall.stiffness = 1000;
@@ -222,21 +277,21 @@ TEST(WallMeasures, FindRestOnlyWhereDryFrictionHoldsHalfAStep) {
   wall.tip = {.mass = 0.075, .viscous = 1, .coulomb = 0};
   for (const double sigma : {0.4, 0.48}) {
     wall.tip.coulomb = sigma * wall.stiffness * wall.step;
-    EXPECT_GT(released_swing(*arm, wall, 0.08, 3), 0) << sigma;
+    EXPECT_GT(released_swing(*arm, wall, 0.08, 3).value(), 0) << sigma;
   }
   for (const double sigma : {0.52, 0.6}) {
     wall.tip.coulomb = sigma * wall.stiffness * wall.step;
-    EXPECT_EQ(released_swing(*arm, wall, 0.08, 3), 0) << sigma;
+    EXPECT_EQ(released_swing(*arm, wall, 0.08, 3).value(), 0) << sigma;
   }
 }
 
 TEST(WallMeasures, ThrowBackAsTheLawOfRestitutionSays) {
-  const auto arm = scene::read_arm_file(kArm);
+  const auto arm = scene::load_arm(kArm);
   WallCase wall;
   wall.direction = *worst_direction_at_home(*arm);
   wall.tip = {.mass = 0.075, .viscous = 0.005, .coulomb = 0};
   wall.stiffness = 1000;
-  const Restitution found = throw_at_wall(*arm, wall, 50);
+  const Restitution found = throw_at_wall(*arm, wall, 50).value();
   EXPECT_NEAR(found.mean, restitution(1000, 0.005, 0.075, 0.0005), 0.01);
   EXPECT_LE(found.least, found.mean);
   EXPECT_GE(found.most, found.mean);

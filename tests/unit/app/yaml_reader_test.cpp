@@ -1,4 +1,4 @@
-#include "thimble/scene/yaml_reader.h"
+#include "yaml/yaml_reader.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
+#include "sim_transport.h"
 #include "support/heap_guard.h"
-#include "thimble/device_sim/sim_transport.h"
 #include "vintage_simulation.h"
 
 namespace thimble::device_sim {
@@ -11,8 +11,12 @@ TEST(SimulatedArm, NeverAllocatesOnceItIsBuilt) {
   SimulatedArmSettings settings = phantom_like();
   settings.hand.tremor_amplitude = 1e-3;
   settings.wire = {.delay_in_ns = 200'000, .delay_out_ns = 300'000};
-  SimulatedArm arm(support::vintage_model(), settings,
-                   HandPath({{0.0, home_tip()}, {0.5, home_tip() + Eigen::Vector3d(0.5, 0, 0)}}));
+  SimulatedArm arm =
+      SimulatedArm::make(
+          support::vintage_model(), settings,
+          HandPath::make({{0.0, home_tip()}, {0.5, home_tip() + Eigen::Vector3d(0.5, 0, 0)}})
+              .value())
+          .value();
   driver::VirtualClock clock;
   SimTransport transport(clock, arm);
 

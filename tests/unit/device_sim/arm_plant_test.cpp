@@ -1,20 +1,28 @@
-#include "thimble/device_sim/arm_plant.h"
+#include "arm_plant.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 
 #include "support/random.h"
+#include "support/refuses.h"
 #include "vintage_simulation.h"
 
 namespace thimble::device_sim {
 namespace {
 
+using support::refuses;
+
+driver::Result<ArmPlant> made_with(
+    const SimulatedArmSettings& settings, const Eigen::Vector3d& p_BT,
+    const driver::hfab::HfabModel& model = support::vintage_model()) {
+  return ArmPlant::make(model.geometry, model.drives, settings.plant, settings.hand,
+                        settings.motors, p_BT, p_BT);
+}
+
 ArmPlant plant_with(const SimulatedArmSettings& settings, const Eigen::Vector3d& p_BT) {
-  const auto model = support::vintage_model();
-  return {model.geometry, model.drives, settings.plant, settings.hand, settings.motors, p_BT, p_BT};
+  return made_with(settings, p_BT).value();
 }
 
 // Currents that make this force in the pose q, A.
@@ -116,11 +124,20 @@ TEST(ArmPlant, StaysFiniteUnderFullCurrentsInAnyDirection) {
   }
 }
 
-TEST(ArmPlant, RefusesAStartOutOfReachAndAMotorWithoutCurrent) {
-  EXPECT_THROW(plant_with(free_arm(), {1, 0, 0}), std::invalid_argument);
+TEST(ArmPlant, RefusesAStartOutOfReachAndMotorsAndLinksThatCannotBe) {
+  EXPECT_TRUE(refuses(made_with(free_arm(), {1, 0, 0}), "starting point"));
   SimulatedArmSettings settings = free_arm();
   settings.motors.current_max = 0;
-  EXPECT_THROW(plant_with(settings, home_tip()), std::invalid_argument);
+  EXPECT_TRUE(refuses(made_with(settings, home_tip()), "current_max"));
+  settings = free_arm();
+  settings.plant.mass = 0;
+  EXPECT_TRUE(refuses(made_with(settings, home_tip()), "tip mass"));
+  auto model = support::vintage_model();
+  model.drives[2].ratio = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(refuses(made_with(free_arm(), home_tip(), model), "motor drives"));
+  model = support::vintage_model();
+  model.geometry.length_b = 0;
+  EXPECT_TRUE(refuses(made_with(free_arm(), home_tip(), model), "links"));
 }
 
 }  // namespace

@@ -1,17 +1,19 @@
-#include "thimble/device_sim/axis_dynamics.h"
+#include "axis_dynamics.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 
 #include "axis_reference.h"
 #include "support/random.h"
+#include "support/refuses.h"
 
 namespace thimble::device_sim {
 namespace {
+
+using support::refuses;
 
 constexpr std::int64_t kMillisecond = 1'000'000;
 
@@ -45,7 +47,7 @@ TEST(AxisDynamics, EqualsAnIndependentTruthThroughAllEvents) {
   std::uint64_t reversals = 0, breakaways = 0;
   for (int i = 0; i < 1000; ++i) {
     const Case c = random_case(random);
-    AxisDynamics axis(c.plant, c.hand);
+    AxisDynamics axis = AxisDynamics::make(c.plant, c.hand).value();
     AxisState state = c.start;
     const std::int64_t dt_ns = i % 2 == 0 ? kMillisecond : 10 * kMillisecond;
     axis.step(state, c.drive, dt_ns);
@@ -68,7 +70,7 @@ TEST(AxisDynamics, GivesTheSameForAWholeStepAndForTwoParts) {
   support::Random random(4);
   for (int i = 0; i < 20000; ++i) {
     const Case c = random_case(random);
-    AxisDynamics axis(c.plant, c.hand);
+    AxisDynamics axis = AxisDynamics::make(c.plant, c.hand).value();
     AxisState whole = c.start, parts = c.start;
     const auto cut_ns = static_cast<std::int64_t>(random.uniform(1, 999'999));
     axis.step(whole, c.drive, kMillisecond);
@@ -86,7 +88,7 @@ TEST(AxisDynamics, FollowsTheClosedFormOfADampedOscillator) {
   HandSettings hand;
   hand.mass = 0.025;
   hand.stiffness = 300;
-  AxisDynamics axis(plant, hand);
+  AxisDynamics axis = AxisDynamics::make(plant, hand).value();
   AxisState state{.x = 0.01, .v = 0};
   const double gamma = 2.5, w = std::sqrt(3000 - gamma * gamma);
   for (int k = 1; k <= 2000; ++k) {
@@ -100,7 +102,7 @@ TEST(AxisDynamics, FollowsTheClosedFormOfADampedOscillator) {
 
 TEST(AxisDynamics, StopsAfterTheWayThatCoulombFrictionAllows) {
   const PlantSettings plant{.mass = 0.075, .viscous = 0, .coulomb = 0.04};
-  AxisDynamics axis(plant, {});
+  AxisDynamics axis = AxisDynamics::make(plant, {}).value();
   for (const double v : {1e-6, 1e-3, 0.01, 0.2, 0.9}) {
     AxisState state{.x = 0, .v = v};
     for (int k = 0; k < 2000; ++k) axis.step(state, {}, kMillisecond);
@@ -114,7 +116,7 @@ TEST(AxisDynamics, KeepsAHeldAxisExactlyAtRest) {
   HandSettings hand;
   hand.stiffness = 300;
   hand.damping = 3;
-  AxisDynamics axis(plant, hand);
+  AxisDynamics axis = AxisDynamics::make(plant, hand).value();
   AxisState state{.x = 0.0123, .v = 0};
   for (int k = 0; k < 1000; ++k) {
     const double force = 0.0399 * std::sin(0.1 * k);
@@ -131,7 +133,7 @@ TEST(AxisDynamics, BreaksLooseAtTheMomentThatTheMovingAnchorSays) {
   const PlantSettings plant{.mass = 0.1, .viscous = 0, .coulomb = 0.04};
   HandSettings hand;
   hand.stiffness = 100;
-  AxisDynamics axis(plant, hand);
+  AxisDynamics axis = AxisDynamics::make(plant, hand).value();
   AxisState state;
   // 100 N/m * 1 m/s * t = 0.04 N at t = 0.4 ms; then v = 1 m/s * (1 - cos w(t - 0.4 ms)).
   axis.step(state, {.anchor_speed = 1}, kMillisecond);
@@ -147,7 +149,7 @@ TEST(AxisDynamics, FindsAReversalThatBothEndsOfAStepHide) {
   const PlantSettings plant{.mass = 0.01, .viscous = 0, .coulomb = 0.05};
   HandSettings hand;
   hand.stiffness = 2000;
-  AxisDynamics axis(plant, hand);
+  AxisDynamics axis = AxisDynamics::make(plant, hand).value();
   const AxisDrive drive{.force = 0, .anchor = -0.0002, .anchor_speed = 1};
   AxisState state{.x = 0, .v = 0.001};
   axis.step(state, drive, kMillisecond);
@@ -164,7 +166,7 @@ TEST(AxisDynamics, NeverGainsEnergyWithoutADrive) {
   for (int i = 0; i < 300; ++i) {
     Case c = random_case(random);
     c.drive = {};
-    AxisDynamics axis(c.plant, c.hand);
+    AxisDynamics axis = AxisDynamics::make(c.plant, c.hand).value();
     AxisState state = c.start;
     const auto energy = [&] {
       return 0.5 * axis.mass() * state.v * state.v + 0.5 * c.hand.stiffness * state.x * state.x;
@@ -182,7 +184,7 @@ TEST(AxisDynamics, IsMirrorSymmetricToTheBit) {
   support::Random random(6);
   for (int i = 0; i < 2000; ++i) {
     const Case c = random_case(random);
-    AxisDynamics axis(c.plant, c.hand);
+    AxisDynamics axis = AxisDynamics::make(c.plant, c.hand).value();
     AxisState right = c.start, left{-c.start.x, -c.start.v};
     axis.step(right, c.drive, kMillisecond);
     axis.step(left, {-c.drive.force, -c.drive.anchor, -c.drive.anchor_speed}, kMillisecond);
@@ -198,7 +200,7 @@ TEST(AxisDynamics, StaysBoundedForVeryStiffAndVeryDampedHands) {
       HandSettings hand;
       hand.stiffness = stiffness;
       hand.damping = damping;
-      AxisDynamics axis(plant, hand);
+      AxisDynamics axis = AxisDynamics::make(plant, hand).value();
       AxisState state{.x = 1e-4, .v = 0.1};
       const double energy = 0.5 * 0.01 * 0.01 + 0.5 * stiffness * 1e-8;
       for (int k = 0; k < 100; ++k) axis.step(state, {}, kMillisecond);
@@ -209,7 +211,7 @@ TEST(AxisDynamics, StaysBoundedForVeryStiffAndVeryDampedHands) {
 }
 
 TEST(AxisDynamics, DoesNothingWithoutTime) {
-  AxisDynamics axis({.mass = 0.1, .viscous = 0, .coulomb = 0}, {});
+  AxisDynamics axis = AxisDynamics::make({.mass = 0.1, .viscous = 0, .coulomb = 0}, {}).value();
   AxisState state{.x = 1, .v = 2};
   axis.step(state, {.force = 3}, 0);
   axis.step(state, {.force = 3}, -5);
@@ -220,14 +222,23 @@ TEST(AxisDynamics, DoesNothingWithoutTime) {
 TEST(AxisDynamics, RefusesConstantsOutOfRange) {
   const PlantSettings good{.mass = 0.1, .viscous = 0, .coulomb = 0};
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THROW(AxisDynamics({.mass = 0, .viscous = 0, .coulomb = 0}, {}), std::invalid_argument);
-  EXPECT_THROW(AxisDynamics({.mass = nan, .viscous = 0, .coulomb = 0}, {}), std::invalid_argument);
-  EXPECT_THROW(AxisDynamics({.mass = 1, .viscous = -1, .coulomb = 0}, {}), std::invalid_argument);
-  EXPECT_THROW(AxisDynamics({.mass = 1, .viscous = 0, .coulomb = nan}, {}), std::invalid_argument);
+  EXPECT_TRUE(refuses(AxisDynamics::make({.mass = 0, .viscous = 0, .coulomb = 0}, {}), "tip mass"));
+  EXPECT_TRUE(
+      refuses(AxisDynamics::make({.mass = nan, .viscous = 0, .coulomb = 0}, {}), "tip mass"));
+  EXPECT_TRUE(refuses(AxisDynamics::make({.mass = 1, .viscous = -1, .coulomb = 0}, {}),
+                      "viscous friction"));
+  EXPECT_TRUE(refuses(AxisDynamics::make({.mass = 1, .viscous = 0, .coulomb = nan}, {}),
+                      "Coulomb friction"));
   HandSettings hand;
+  hand.mass = -1;
+  EXPECT_TRUE(refuses(AxisDynamics::make(good, hand), "hand mass"));
+  hand = {};
   hand.stiffness = -1;
-  EXPECT_THROW(AxisDynamics(good, hand), std::invalid_argument);
-  EXPECT_NO_THROW(AxisDynamics(good, {}));
+  EXPECT_TRUE(refuses(AxisDynamics::make(good, hand), "hand stiffness"));
+  hand = {};
+  hand.damping = nan;
+  EXPECT_TRUE(refuses(AxisDynamics::make(good, hand), "hand damping must be finite"));
+  EXPECT_TRUE(AxisDynamics::make(good, {}));
 }
 
 }  // namespace

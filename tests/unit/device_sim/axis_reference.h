@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "thimble/device_sim/axis_dynamics.h"
+#include "axis_dynamics.h"
 
 namespace thimble::device_sim {
 

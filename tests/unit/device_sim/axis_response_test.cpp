@@ -1,4 +1,4 @@
-#include "thimble/device_sim/axis_response.h"
+#include "axis_response.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // What the boards say of themselves, byte for byte as the sources of their libraries have it. The
 // bytes stand here a second time, typed from those sources and not from the code under test.
-#include "thimble/device_sim/usb/board_descriptions.h"
+#include "usb/board_descriptions.h"
 
 #include <gtest/gtest.h>
 
@@ -11,6 +11,7 @@
 
 #include "support/usb_host.h"
 #include "thimble/device_sim/usb/arm_shelf.h"
+#include "usb/usb_description.h"
 
 namespace thimble::device_sim::usb {
 namespace {

@@ -1,4 +1,4 @@
-#include "thimble/device_sim/usb/falcon_on_usb.h"
+#include "usb/falcon_on_usb.h"
 
 #include <gtest/gtest.h>
 
@@ -6,10 +6,10 @@
 
 #include <random>
 
+#include "arms/falcon/falcon_arm.h"
+#include "arms/falcon/falcon_boot.h"
 #include "support/usb_host_line.h"
 #include "thimble/device_sim/usb/arm_shelf.h"
-#include "thimble/driver/arms/falcon/falcon_arm.h"
-#include "thimble/driver/arms/falcon/falcon_boot.h"
 
 namespace thimble::device_sim::usb {
 namespace {
@@ -275,7 +275,8 @@ TEST(DeltaPlant, ExertsTheForceThatItsTorquesAreWorth) {
   for (int i = 0; i < 500; ++i) {
     const Eigen::Vector3d p_BT =
         model.geometry.p_BM + Eigen::Vector3d(in_ball(random), in_ball(random), in_ball(random));
-    DeltaPlant plant(model, {.mass = 0.1}, {}, {.current_max = 5}, p_BT, p_BT);
+    DeltaPlant plant =
+        DeltaPlant::make(model, {.mass = 0.1}, {}, {.current_max = 5}, p_BT, p_BT).value();
     const Eigen::Vector3d currents(amperes(random), amperes(random), amperes(random));
     plant.set_currents(currents);
     Eigen::Vector3d tau, p;
@@ -293,8 +294,9 @@ TEST(DeltaPlant, ExertsTheForceThatItsTorquesAreWorth) {
 
 TEST(DeltaPlant, FollowsTheHandAndYieldsToTheMotors) {
   const auto model = driver::falcon::falcon_model();
-  DeltaPlant plant(model, {.mass = 0.1}, {.stiffness = 300, .damping = 10}, {.current_max = 5},
-                   model.geometry.p_BM, model.geometry.p_BM);
+  DeltaPlant plant = DeltaPlant::make(model, {.mass = 0.1}, {.stiffness = 300, .damping = 10},
+                                      {.current_max = 5}, model.geometry.p_BM, model.geometry.p_BM)
+                         .value();
   plant.set_currents({0.2, 0.2, 0.2});
   for (int i = 0; i < 2000; ++i) plant.step(model.geometry.p_BM, 1'000'000);
   // At rest the spring of the hand balances the motors.
@@ -305,8 +307,9 @@ TEST(DeltaPlant, FollowsTheHandAndYieldsToTheMotors) {
 
 TEST(DeltaPlant, StopsAtTheEndOfReach) {
   const auto model = driver::falcon::falcon_model();
-  DeltaPlant plant(model, {.mass = 0.1}, {.stiffness = 300, .damping = 3}, {.current_max = 5},
-                   model.geometry.p_BM, model.geometry.p_BM);
+  DeltaPlant plant = DeltaPlant::make(model, {.mass = 0.1}, {.stiffness = 300, .damping = 3},
+                                      {.current_max = 5}, model.geometry.p_BM, model.geometry.p_BM)
+                         .value();
   const Eigen::Vector3d far = model.geometry.p_BM + Eigen::Vector3d(0, 0, 1);
   for (int i = 0; i < 3000; ++i) plant.step(far, 1'000'000);
   EXPECT_TRUE(plant.p_BT().allFinite());

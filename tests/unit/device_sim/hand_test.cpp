@@ -1,4 +1,4 @@
-#include "thimble/device_sim/hand.h"
+#include "hand.h"
 
 #include <cmath>
 #include <limits>
@@ -11,10 +11,10 @@ namespace {
 constexpr std::int64_t kMs = 1'000'000;
 
 HandPath straight() {
-  return HandPath({{0, {0, 0, 0}}, {1, {0.1, 0, 0}}});
+  return HandPath::make({{0, {0, 0, 0}}, {1, {0.1, 0, 0}}}).value();
 }
 
-const Tremor kSteady({}, 0);
+const Tremor kSteady = Tremor::make({}, 0).value();
 
 TEST(Hand, GoesAlongItsPathUntilSomebodyLeadsIt) {
   Hand hand(straight(), kSteady);

@@ -1,13 +1,15 @@
-#include "thimble/device_sim/usb/hid_arm.h"
+#include "usb/hid_arm.h"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
+#include "arms/hfab/hfab_report.h"
+#include "arms/woody/woody_report.h"
 #include "support/usb_host.h"
 #include "thimble/device_sim/usb/arm_shelf.h"
-#include "thimble/driver/arms/hfab/hfab_report.h"
-#include "thimble/driver/arms/woody/woody_report.h"
+#include "usb/setup_packet.h"
+#include "usb/usb_description.h"
 
 namespace thimble::device_sim::usb {
 namespace {

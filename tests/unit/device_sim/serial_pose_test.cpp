@@ -1,4 +1,4 @@
-#include "thimble/device_sim/serial_pose.h"
+#include "serial_pose.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,10 @@
-#include "thimble/device_sim/sim_transport.h"
+#include "sim_transport.h"
 
 #include <gtest/gtest.h>
 
 #include <array>
 
+#include "arms/hfab/hfab_report.h"
 #include "vintage_simulation.h"
 
 namespace thimble::device_sim {
@@ -11,18 +12,19 @@ namespace {
 
 using driver::TransportStatus;
 
-constexpr std::int64_t kMillisecond = 1'000'000;
+constexpr std::int64_t kOneMillisecond = 1'000'000;
 
 class SimTransportTest : public ::testing::Test {
  protected:
   driver::VirtualClock clock_;
-  SimulatedArm arm_{support::vintage_model(), phantom_like(), resting_at(home_tip())};
+  SimulatedArm arm_ =
+      SimulatedArm::make(support::vintage_model(), phantom_like(), resting_at(home_tip())).value();
   SimTransport transport_{clock_, arm_};
   std::array<std::byte, driver::kReportCapacity> buffer_{};
 };
 
 TEST_F(SimTransportTest, ReadsWithoutWaitingWhatIsThere) {
-  const auto read = transport_.read_latest(buffer_, 10 * kMillisecond);
+  const auto read = transport_.read_latest(buffer_, 10 * kOneMillisecond);
   EXPECT_EQ(read.status, TransportStatus::kOk);
   EXPECT_EQ(read.size, driver::hfab::kReportSize);
   EXPECT_EQ(clock_.now_ns(), 0);
@@ -30,10 +32,10 @@ TEST_F(SimTransportTest, ReadsWithoutWaitingWhatIsThere) {
 
 TEST_F(SimTransportTest, WaitsForTheNextReportAndNoLonger) {
   transport_.read_latest(buffer_, 0);
-  const auto read = transport_.read_latest(buffer_, 10 * kMillisecond);
+  const auto read = transport_.read_latest(buffer_, 10 * kOneMillisecond);
   EXPECT_EQ(read.status, TransportStatus::kOk);
   EXPECT_EQ(read.skipped, 0U);
-  EXPECT_EQ(clock_.now_ns(), kMillisecond);
+  EXPECT_EQ(clock_.now_ns(), kOneMillisecond);
 }
 
 TEST_F(SimTransportTest, NeverWaitsBeyondItsDeadline) {
@@ -47,7 +49,7 @@ TEST_F(SimTransportTest, NeverWaitsBeyondItsDeadline) {
 }
 
 TEST_F(SimTransportTest, SkipsToTheNewestReport) {
-  clock_.sleep_until_ns(30 * kMillisecond);
+  clock_.sleep_until_ns(30 * kOneMillisecond);
   const auto read = transport_.read_latest(buffer_, 0);
   EXPECT_EQ(read.status, TransportStatus::kOk);
   EXPECT_EQ(read.skipped, 30U);
@@ -63,12 +65,12 @@ TEST_F(SimTransportTest, WritesAtTheClocksTime) {
 TEST_F(SimTransportTest, LeavesTheFirmwareOnItsOwnWhenUnplugged) {
   transport_.write(drive_message(100, 0, 0));
   transport_.unplug();
-  EXPECT_EQ(transport_.read_latest(buffer_, 5 * kMillisecond).status, TransportStatus::kLost);
+  EXPECT_EQ(transport_.read_latest(buffer_, 5 * kOneMillisecond).status, TransportStatus::kLost);
   EXPECT_EQ(clock_.now_ns(), 0);
-  clock_.sleep_until_ns(50 * kMillisecond);
+  clock_.sleep_until_ns(50 * kOneMillisecond);
   EXPECT_EQ(transport_.write(drive_message(200, 0, 0)), TransportStatus::kLost);
   EXPECT_EQ(arm_.plant().currents().x(), 0.1);
-  clock_.sleep_until_ns(100 * kMillisecond);
+  clock_.sleep_until_ns(100 * kOneMillisecond);
   EXPECT_EQ(transport_.read_latest(buffer_, 0).status, TransportStatus::kLost);
   EXPECT_EQ(arm_.plant().currents().x(), 0);
   EXPECT_EQ(arm_.firmware().counters().watchdog_fired, 1U);

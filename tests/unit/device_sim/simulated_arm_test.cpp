@@ -1,22 +1,25 @@
-#include "thimble/device_sim/simulated_arm.h"
+#include "simulated_arm.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <vector>
 
+#include "arms/hfab/hfab_report.h"
 #include "support/random.h"
+#include "support/refuses.h"
 #include "vintage_simulation.h"
 
 namespace thimble::device_sim {
 namespace {
 
+using support::refuses;
+
 constexpr std::int64_t kMillisecond = 1'000'000;
 
 SimulatedArm free_at_home(const SimulatedArmSettings& settings) {
-  return {support::vintage_model(), settings, resting_at(home_tip())};
+  return SimulatedArm::make(support::vintage_model(), settings, resting_at(home_tip())).value();
 }
 
 TEST(SimulatedArm, BeginsAtRestWithAReportAtTimeZero) {
@@ -160,10 +163,11 @@ TEST(SimulatedArm, IsAnIdealZeroOrderHoldWithoutDelay) {
   // The wall by hand: the same plant, fed by the host's law with no wire in between.
   auto model = support::vintage_model();
   SimulatedArmSettings settings = phantom_like();
-  SimulatedArm arm(model, settings, resting_at(home_tip()));
-  ArmPlant plant(model.geometry, model.drives, settings.plant, settings.hand, settings.motors,
-                 home_tip(), home_tip());
-  const Firmware board(model, settings.firmware);
+  SimulatedArm arm = SimulatedArm::make(model, settings, resting_at(home_tip())).value();
+  ArmPlant plant = ArmPlant::make(model.geometry, model.drives, settings.plant, settings.hand,
+                                  settings.motors, home_tip(), home_tip())
+                       .value();
+  const Firmware board = Firmware::make(model, settings.firmware).value();
   const auto law = [](const driver::hfab::InputReport& report, int k) {
     const auto kick = static_cast<std::int16_t>(k < 20 ? 900 : 0);
     return drive_message(static_cast<std::int16_t>(kick - report.counts[0] / 2), 0, 0);
@@ -187,7 +191,9 @@ TEST(SimulatedArm, IsAnIdealZeroOrderHoldWithoutDelay) {
 TEST(SimulatedArm, FollowsTheHandAlongItsPath) {
   SimulatedArmSettings settings = phantom_like();
   const Eigen::Vector3d there = home_tip() + Eigen::Vector3d(0.02, -0.01, 0.015);
-  SimulatedArm arm(support::vintage_model(), settings, HandPath({{0.1, home_tip()}, {0.6, there}}));
+  SimulatedArm arm = SimulatedArm::make(support::vintage_model(), settings,
+                                        HandPath::make({{0.1, home_tip()}, {0.6, there}}).value())
+                         .value();
   arm.advance_to(350 * kMillisecond);
   EXPECT_LT((arm.p_BH() - 0.5 * (home_tip() + there)).norm(), 1e-12);
   arm.advance_to(2000 * kMillisecond);
@@ -197,9 +203,11 @@ TEST(SimulatedArm, FollowsTheHandAlongItsPath) {
 }
 
 TEST(SimulatedArm, DoesNotDependOnHowTimeIsCutIntoPieces) {
-  const HandPath path({{0.0, home_tip()}, {1.0, home_tip() + Eigen::Vector3d(0.03, 0.02, 0)}});
-  SimulatedArm whole(support::vintage_model(), phantom_like(), path);
-  SimulatedArm pieces(support::vintage_model(), phantom_like(), path);
+  const HandPath path =
+      HandPath::make({{0.0, home_tip()}, {1.0, home_tip() + Eigen::Vector3d(0.03, 0.02, 0)}})
+          .value();
+  SimulatedArm whole = SimulatedArm::make(support::vintage_model(), phantom_like(), path).value();
+  SimulatedArm pieces = SimulatedArm::make(support::vintage_model(), phantom_like(), path).value();
   support::Random random(11);
   whole.advance_to(900 * kMillisecond);
   std::int64_t time_ns = 0;
@@ -223,9 +231,13 @@ std::vector<double> trace(std::uint64_t seed, double tremor) {
   SimulatedArmSettings settings = phantom_like();
   settings.hand.tremor_amplitude = tremor;
   settings.wire = {.delay_in_ns = 300'000, .delay_out_ns = 700'001};
-  SimulatedArm arm(support::vintage_model(), settings,
-                   HandPath({{0.0, home_tip()}, {0.5, home_tip() + Eigen::Vector3d(0.02, 0, 0)}}),
-                   seed);
+  SimulatedArm arm =
+      SimulatedArm::make(
+          support::vintage_model(), settings,
+          HandPath::make({{0.0, home_tip()}, {0.5, home_tip() + Eigen::Vector3d(0.02, 0, 0)}})
+              .value(),
+          seed)
+          .value();
   std::vector<double> values;
   for (int k = 0; k < 1000; ++k) {
     arm.advance_to(k * kMillisecond);
@@ -283,10 +295,27 @@ TEST(SimulatedArm, IgnoresMessagesThatAreTooLong) {
   }
 }
 
+TEST(SimulatedArm, RefusesWhatItsPartsRefuse) {
+  const auto made = [](const SimulatedArmSettings& settings) {
+    return SimulatedArm::make(support::vintage_model(), settings, resting_at(home_tip()));
+  };
+  SimulatedArmSettings settings = phantom_like();
+  settings.hand.tremor_amplitude = -1;
+  EXPECT_TRUE(refuses(made(settings), "tremor amplitude"));
+  settings = phantom_like();
+  settings.plant.mass = -1;
+  EXPECT_TRUE(refuses(made(settings), "tip mass"));
+  settings = phantom_like();
+  settings.firmware.watchdog_ns = 0;
+  EXPECT_TRUE(refuses(made(settings), "watchdog"));
+  EXPECT_TRUE(made(phantom_like()));
+}
+
 TEST(SimulatedArm, RefusesNegativeDelays) {
   SimulatedArmSettings settings = phantom_like();
   settings.wire.delay_in_ns = -1;
-  EXPECT_THROW(free_at_home(settings), std::invalid_argument);
+  EXPECT_TRUE(refuses(
+      SimulatedArm::make(support::vintage_model(), settings, resting_at(home_tip())), "delays"));
 }
 
 }  // namespace

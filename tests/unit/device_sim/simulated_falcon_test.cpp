@@ -1,4 +1,4 @@
-#include "thimble/device_sim/usb/simulated_falcon.h"
+#include "usb/simulated_falcon.h"
 
 #include <gtest/gtest.h>
 
@@ -6,11 +6,15 @@
 #include <utility>
 #include <vector>
 
-#include "thimble/driver/arms/falcon/falcon_arm.h"
+#include "arms/falcon/falcon_arm.h"
+#include "arms/falcon/falcon_packet.h"
+#include "support/refuses.h"
 #include "thimble/driver/device.h"
 
 namespace thimble::device_sim::usb {
 namespace {
+
+using support::refuses;
 
 /// Is a driver of a Falcon inside the program, whose hand goes 10 mm to the side in a second.
 struct InProgram {
@@ -20,8 +24,8 @@ struct InProgram {
     settings.hand.stiffness = 300;
     settings.hand.damping = 3;
     const Eigen::Vector3d p_BM = driver::falcon::falcon_geometry().p_BM;
-    auto made = SimulatedFalcon::make(settings, HandPath({{0, p_BM}, {1, p_BM + p_MH}}),
-                                      std::move(firmware));
+    auto made = SimulatedFalcon::make(
+        settings, HandPath::make({{0, p_BM}, {1, p_BM + p_MH}}).value(), std::move(firmware));
     EXPECT_TRUE(made) << made.error().message;
     falcon = std::move(made).value();
     driver::DeviceSettings limits;
@@ -159,8 +163,12 @@ TEST(SimulatedFalcon, PushesItsHandAndRepeatsItself) {
 TEST(SimulatedFalcon, MustBeginWithinReach) {
   SimulatedArmSettings settings;
   settings.plant.mass = 0.1;
-  EXPECT_THROW((void)SimulatedFalcon::make(settings, HandPath({{0, {1, 0, 0}}}), {}),
-               std::invalid_argument);
+  const auto falcon = SimulatedFalcon::make(settings, HandPath::make({{0, {1, 0, 0}}}).value(), {});
+  EXPECT_TRUE(refuses(falcon, "starting point"));
+  settings.firmware.wiring.encoder_of = {0, 1, 7};
+  const auto miswired = SimulatedFalcon::make(
+      settings, HandPath::make({{0, driver::falcon::falcon_geometry().p_BM}}).value(), {});
+  EXPECT_TRUE(refuses(miswired, "wiring"));
 }
 
 }  // namespace

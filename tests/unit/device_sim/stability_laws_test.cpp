@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "thimble/device_sim/axis_dynamics.h"
+#include "axis_dynamics.h"
 
 namespace thimble::device_sim {
 namespace {
@@ -15,7 +15,8 @@ namespace {
 // Throws a free mass against a one-sided sampled wall; the first sample falls `phase` (0 to 1) of a
 // period after the entry.
 double restitution(double stiffness, std::int64_t period_ns, double phase) {
-  AxisDynamics axis({.mass = 0.075, .viscous = 0.005, .coulomb = 0}, {});
+  AxisDynamics axis =
+      AxisDynamics::make({.mass = 0.075, .viscous = 0.005, .coulomb = 0}, {}).value();
   AxisState state{.x = 0, .v = -0.1};
   axis.step(state, {}, static_cast<std::int64_t>(phase * static_cast<double>(period_ns)));
   for (int k = 0; k < 10000 && state.x <= 0; ++k) {

@@ -1,9 +1,9 @@
-#include "thimble/device_sim/usb/usb_description.h"
+#include "usb/usb_description.h"
 
 #include <gtest/gtest.h>
 
 #include "thimble/device_sim/usb/arm_shelf.h"
-#include "thimble/device_sim/usb/hid_arm.h"
+#include "usb/hid_arm.h"
 
 namespace thimble::device_sim::usb {
 namespace {

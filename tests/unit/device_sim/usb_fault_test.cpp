@@ -1,4 +1,6 @@
 #include "thimble/device_sim/usb/usb_fault.h"
+#include "usb/setup_packet.h"
+#include "usb/usb_description.h"
 
 #include <gtest/gtest.h>
 

@@ -6,6 +6,9 @@
 
 #include "support/usb_host.h"
 #include "thimble/device_sim/usb/vhci.h"
+#include "usb/setup_packet.h"
+#include "usb/usb_description.h"
+#include "usb/usbip_session.h"
 
 namespace thimble::device_sim::usb {
 namespace {

@@ -1,4 +1,5 @@
-#include "thimble/device_sim/usb/usbip_wire.h"
+#include "usb/usbip_wire.h"
+#include "usb/usb_description.h"
 
 #include <gtest/gtest.h>
 

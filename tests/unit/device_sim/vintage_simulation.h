@@ -4,8 +4,9 @@
 #include <cstddef>
 #include <optional>
 
+#include "arms/hfab/hfab_report.h"
+#include "simulated_arm.h"
 #include "support/vintage_arm.h"
-#include "thimble/device_sim/simulated_arm.h"
 
 namespace thimble::device_sim {
 
@@ -33,7 +34,7 @@ inline Eigen::Vector3d home_tip() {
 }
 
 inline HandPath resting_at(const Eigen::Vector3d& p_BH) {
-  return HandPath({{0.0, p_BH}});
+  return HandPath::make({{0.0, p_BH}}).value();
 }
 
 inline auto drive_message(std::int16_t a_mA, std::int16_t b_mA, std::int16_t c_mA) {

@@ -4,10 +4,12 @@
 
 #include <cmath>
 
+#include "arms/hfab/hfab_models.h"
+#include "arms/hfab/hfab_report.h"
+#include "arms/woody/woody_report.h"
+#include "arms/woody/woody_wire.h"
 #include "support/scripted_transport.h"
 #include "support/vintage_arm.h"
-#include "thimble/driver/arms/hfab/hfab_models.h"
-#include "thimble/driver/arms/woody/woody_wire.h"
 
 namespace thimble::driver {
 namespace {

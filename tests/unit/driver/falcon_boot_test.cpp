@@ -1,4 +1,4 @@
-#include "thimble/driver/arms/falcon/falcon_boot.h"
+#include "arms/falcon/falcon_boot.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "thimble/driver/arms/falcon/falcon_packet.h"
+#include "arms/falcon/falcon_packet.h"
 
 #include <gtest/gtest.h>
 

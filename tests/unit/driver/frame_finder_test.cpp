@@ -1,4 +1,4 @@
-#include "thimble/driver/frame_finder.h"
+#include "frame_finder.h"
 
 #include <gtest/gtest.h>
 
@@ -6,9 +6,9 @@
 #include <string_view>
 #include <vector>
 
+#include "arms/falcon/falcon_packet.h"
+#include "ftdi_packet.h"
 #include "support/noise.h"
-#include "thimble/driver/arms/falcon/falcon_packet.h"
-#include "thimble/driver/ftdi_packet.h"
 
 namespace thimble::driver {
 namespace {

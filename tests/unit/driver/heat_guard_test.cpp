@@ -6,6 +6,7 @@
 #include <limits>
 #include <memory>
 
+#include "arms/hfab/hfab_report.h"
 #include "support/random.h"
 #include "support/vintage_arm.h"
 #include "thimble/driver/device.h"
@@ -138,9 +139,9 @@ TEST(HeatOfADevice, LowersAnHourOfFiftyNewtonsToTheContinuousCurrentAndKeepsItsD
   ASSERT_TRUE(device.activate());
   const Eigen::Vector3d wanted(10, 40, -28);
   int most = 0;
-  constexpr std::int64_t kPeriod_ns = 10'000'000;
+  constexpr std::int64_t kLongPeriod_ns = 10'000'000;
   for (std::int64_t tick = 0; tick < 360'000; ++tick) {
-    device.read(tick * kPeriod_ns, tick * kPeriod_ns);
+    device.read(tick * kLongPeriod_ns, tick * kLongPeriod_ns);
     device.write({.f_T_W = wanted, .touch = {}});
     ASSERT_EQ(device.fault(), Fault::kNone);
     for (const double heat : device.heat().heat()) ASSERT_LE(heat, 1) << tick;
@@ -160,7 +161,7 @@ TEST(HeatOfADevice, LowersAnHourOfFiftyNewtonsToTheContinuousCurrentAndKeepsItsD
   // It cools while it is idle, and may give all again.
   device.deactivate();
   for (std::int64_t tick = 360'000; tick < 420'000; ++tick) {
-    device.read(tick * kPeriod_ns, tick * kPeriod_ns);
+    device.read(tick * kLongPeriod_ns, tick * kLongPeriod_ns);
     device.write({});
   }
   EXPECT_LT(*std::max_element(device.heat().heat().begin(), device.heat().heat().end()), 0.01);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <type_traits>
 
+#include "arms/hfab/hfab_report.h"
 #include "support/random.h"
 #include "support/vintage_arm.h"
 

@@ -1,4 +1,4 @@
-#include "thimble/driver/arms/hfab/hfab_line.h"
+#include "arms/hfab/hfab_line.h"
 
 #include <gtest/gtest.h>
 

@@ -1,13 +1,13 @@
-#include "thimble/driver/arms/hfab/hfab_models.h"
+#include "arms/hfab/hfab_models.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
 #include <cmath>
 
+#include "arms/hfab/hfab_wire.h"
+#include "arms/woody/woody_wire.h"
 #include "support/random.h"
-#include "thimble/driver/arms/hfab/hfab_wire.h"
-#include "thimble/driver/arms/woody/woody_wire.h"
 
 namespace thimble::driver::hfab {
 namespace {

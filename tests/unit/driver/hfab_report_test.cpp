@@ -1,4 +1,4 @@
-#include "thimble/driver/arms/hfab/hfab_report.h"
+#include "arms/hfab/hfab_report.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "thimble/driver/node_lock.h"
+#include "node_lock.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -33,12 +33,12 @@ class OtherProgram {
       } else {
         (void)!open(node.c_str(), O_RDWR);
       }
-      (void)!write(ready[1], "x", 1);
+      (void)!::write(ready[1], "x", 1);
       pause();
       _exit(0);
     }
     char sign = 0;
-    (void)!read(ready[0], &sign, 1);
+    (void)!::read(ready[0], &sign, 1);
     close(ready[0]);
     close(ready[1]);
   }

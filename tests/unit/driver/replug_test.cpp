@@ -3,6 +3,7 @@
 #include <functional>
 #include <vector>
 
+#include "arms/hfab/hfab_report.h"
 #include "support/scripted_transport.h"
 #include "support/vintage_arm.h"
 #include "thimble/driver/servo_loop.h"
@@ -10,7 +11,7 @@
 namespace thimble::driver {
 namespace {
 
-std::vector<std::byte> report() {
+std::vector<std::byte> sensor_report() {
   const auto bytes = hfab::encode_input({});
   return {bytes.begin(), bytes.end()};
 }
@@ -20,7 +21,7 @@ class AnsweringTransport final : public Transport {
  public:
   explicit AnsweringTransport(support::Wire& wire) : wire_(wire), inner_(wire) {}
   TransportRead read_latest(std::span<std::byte> buffer, std::int64_t until) noexcept override {
-    wire_.to_host.push_back(report());
+    wire_.to_host.push_back(sensor_report());
     return inner_.read_latest(buffer, until);
   }
   TransportStatus write(std::span<const std::byte> bytes) noexcept override {

@@ -7,9 +7,9 @@
 #include <string>
 #include <string_view>
 
+#include "arms/hfab/hfab_wire.h"
 #include "support/scratch.h"
 #include "support/vintage_arm.h"
-#include "thimble/driver/arms/hfab/hfab_wire.h"
 #include "thimble/driver/device.h"
 #include "thimble/driver/transports.h"
 

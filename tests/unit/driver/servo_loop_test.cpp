@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "arms/hfab/hfab_report.h"
 #include "support/scripted_transport.h"
 #include "support/vintage_arm.h"
 

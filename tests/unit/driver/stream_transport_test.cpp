@@ -1,4 +1,4 @@
-#include "thimble/driver/stream_transport.h"
+#include "stream_transport.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "thimble/driver/arms/hfab/hfab_line.h"
+#include "arms/hfab/hfab_line.h"
 
 namespace thimble::driver {
 namespace {

@@ -8,30 +8,31 @@
 namespace thimble::driver {
 namespace {
 
-constexpr double kPeriod = 1e-3;
+constexpr double kSamplePeriod = 1e-3;
 
 TEST(VelocityEstimator, IsTheBackwardDifferenceWithoutAPole) {
   VelocityEstimator estimator(0);
-  EXPECT_EQ(estimator.update({1, 2, 3}, kPeriod), Eigen::Vector3d(0, 0, 0));
-  EXPECT_LT((estimator.update({1.001, 2, 2.998}, kPeriod) - Eigen::Vector3d(1, 0, -2)).norm(),
+  EXPECT_EQ(estimator.update({1, 2, 3}, kSamplePeriod), Eigen::Vector3d(0, 0, 0));
+  EXPECT_LT((estimator.update({1.001, 2, 2.998}, kSamplePeriod) - Eigen::Vector3d(1, 0, -2)).norm(),
             1e-12);
 }
 
 TEST(VelocityEstimator, SettlesOnAConstantVelocityWithThePolesTimeConstant) {
   constexpr double kCorner = 100;
   VelocityEstimator estimator(kCorner);
-  estimator.update({0, 0, 0}, kPeriod);
+  estimator.update({0, 0, 0}, kSamplePeriod);
   for (int k = 1; k <= 20; ++k) {
-    const Eigen::Vector3d v = estimator.update({0.2 * k * kPeriod, 0, 0}, kPeriod);
-    const double expected = 0.2 * (1 - std::exp(-2 * std::numbers::pi * kCorner * kPeriod * k));
+    const Eigen::Vector3d v = estimator.update({0.2 * k * kSamplePeriod, 0, 0}, kSamplePeriod);
+    const double expected =
+        0.2 * (1 - std::exp(-2 * std::numbers::pi * kCorner * kSamplePeriod * k));
     EXPECT_NEAR(v.x(), expected, 1e-12) << "sample " << k;
   }
 }
 
 TEST(VelocityEstimator, KeepsItsEstimateWhenNoTimePasses) {
   VelocityEstimator estimator(0);
-  estimator.update({0, 0, 0}, kPeriod);
-  estimator.update({1e-3, 0, 0}, kPeriod);
+  estimator.update({0, 0, 0}, kSamplePeriod);
+  estimator.update({1e-3, 0, 0}, kSamplePeriod);
   EXPECT_EQ(estimator.update({5, 5, 5}, 0), Eigen::Vector3d(1, 0, 0));
   EXPECT_EQ(estimator.update({5, 5, 5}, -1), Eigen::Vector3d(1, 0, 0));
   EXPECT_EQ(estimator.update({5, 5, 5}, NAN), Eigen::Vector3d(1, 0, 0));
@@ -42,10 +43,10 @@ TEST(VelocityEstimator, SpreadsOneEncoderStepOverTime) {
   // one.
   constexpr double kStep = 30e-6;
   VelocityEstimator plain(0), smooth(30);
-  for (auto* estimator : {&plain, &smooth}) estimator->update({0, 0, 0}, kPeriod);
-  const double a = 1 - std::exp(-2 * std::numbers::pi * 30 * kPeriod);
-  EXPECT_NEAR(plain.update({kStep, 0, 0}, kPeriod).x(), kStep / kPeriod, 1e-15);
-  EXPECT_NEAR(smooth.update({kStep, 0, 0}, kPeriod).x(), a * kStep / kPeriod, 1e-15);
+  for (auto* estimator : {&plain, &smooth}) estimator->update({0, 0, 0}, kSamplePeriod);
+  const double a = 1 - std::exp(-2 * std::numbers::pi * 30 * kSamplePeriod);
+  EXPECT_NEAR(plain.update({kStep, 0, 0}, kSamplePeriod).x(), kStep / kSamplePeriod, 1e-15);
+  EXPECT_NEAR(smooth.update({kStep, 0, 0}, kSamplePeriod).x(), a * kStep / kSamplePeriod, 1e-15);
 }
 
 }  // namespace

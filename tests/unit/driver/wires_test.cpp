@@ -11,11 +11,12 @@
 #include <string>
 #include <string_view>
 
+#include "arms/woody/woody_proof.h"
+#include "ftdi_line.h"
 #include "support/fake_hidapi.h"
 #include "support/fake_libusb.h"
 #include "support/heap_guard.h"
 #include "support/scratch.h"
-#include "thimble/driver/arms/woody/woody_proof.h"
 #include "thimble/driver/transports.h"
 
 namespace thimble::driver {

@@ -1,11 +1,11 @@
-#include "thimble/driver/arms/woody/woody_proof.h"
+#include "arms/woody/woody_proof.h"
 
 #include <gtest/gtest.h>
 
 #include <functional>
 
+#include "arms/woody/woody_report.h"
 #include "support/random.h"
-#include "thimble/driver/arms/woody/woody_report.h"
 
 namespace thimble::driver::woody {
 namespace {

@@ -1,4 +1,4 @@
-#include "thimble/driver/arms/woody/woody_report.h"
+#include "arms/woody/woody_report.h"
 
 #include <gtest/gtest.h>
 

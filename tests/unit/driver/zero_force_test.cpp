@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "arms/hfab/hfab_report.h"
 #include "support/scripted_transport.h"
 #include "support/vintage_arm.h"
 #include "thimble/driver/servo_loop.h"

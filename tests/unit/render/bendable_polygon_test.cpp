@@ -495,7 +495,7 @@ TEST(BodyPull, FadesWithWhatTheHandHasPutByAndDoesNotSwitch) {
   };
   for (int k = 0; k < 100; ++k) move(5e-5, 50);
   EXPECT_NEAR(felt, 50 * 5e-3, 1e-9);
-  // The springs have stiffened to more than the hand paid for. It trembles, and goes out slowly.
+  // The springs have stiffened to more than the hand paid for. It oscillates, and goes out slowly.
   move(0, 150);
   step = 0;
   for (int k = 0; k < 800; ++k) move(k % 2 == 0 ? -1.5e-5 : 5e-6, 150);

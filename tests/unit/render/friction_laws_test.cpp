@@ -124,7 +124,7 @@ TEST(BristleFriction, HoldsWithStaticAndSlidesWithSlidingFriction) {
   for (int k = 0; k < 1000; ++k) most = std::max(most, -rubbing.at_x(1e-6 * k));
   EXPECT_NEAR(most, 0.6, 2.1e-3);  // one move of 1 um before
   EXPECT_NEAR(-rubbing.at_x(0.001), 0.4, 1e-12);
-  // It stays at the sliding level at rest, and while trembling by a few counts.
+  // It stays at the sliding level at rest, and under a tremor of a few counts.
   for (int k = 0; k < 100; ++k) EXPECT_LE(-rubbing.at_x(0.001 - 3e-5 * (k % 2)), 0.4 + 1e-12);
   // Bent back by more than half, it holds again with static friction.
   rubbing.at_x(0.0008);

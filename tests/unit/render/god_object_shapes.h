@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "support/dense_algebra.h"
 #include "support/random.h"
 #include "support/reference_geometry.h"
 #include "support/shapes.h"
@@ -120,12 +121,12 @@ inline Vector3d project_by_trial(const std::vector<Constraint>& planes, const Ve
       if (along.norm() < 1e-9) continue;
       Eigen::Matrix3d rows;
       rows << a.n.transpose(), b.n.transpose(), along.transpose();
-      consider(rows.partialPivLu().solve(Vector3d(-a.d, -b.d, along.dot(p))));
+      consider(solve(rows, Vector3d(-a.d, -b.d, along.dot(p))));
       for (std::size_t k = j + 1; k < count; ++k) {
         const Constraint& c = planes[k];
         if (std::abs(along.dot(c.n)) < 1e-9) continue;
         rows.row(2) = c.n.transpose();
-        consider(rows.partialPivLu().solve(Vector3d(-a.d, -b.d, -c.d)));
+        consider(solve(rows, Vector3d(-a.d, -b.d, -c.d)));
       }
     }
   }

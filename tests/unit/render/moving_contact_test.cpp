@@ -21,7 +21,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kRadius = 0.05;  // m
+constexpr double kBallRadius = 0.05;  // m
 
 driver::DeviceState at(const Vector3d& p_WT) {
   driver::DeviceState state;
@@ -63,11 +63,11 @@ void for_each_way(const TriangleMesh& shape, Test test) {
 }
 
 TEST(MovingContact, FollowsWhileTheSurfaceIsPressedInAndSpringsBack) {
-  const TriangleMesh shape = support::icosphere(4, kRadius);
+  const TriangleMesh shape = support::icosphere(4, kBallRadius);
   for_each_way(shape, [&](const auto& surface, auto contact) {
     support::Random random(1);
     contact.update(at({0, 0.001, 0.06}));
-    contact.update(at({0, 0.001, kRadius - 0.0005}));
+    contact.update(at({0, 0.001, kBallRadius - 0.0005}));
     ASSERT_TRUE(contact.state().touching);
     const std::int32_t centre = surface->mesh().corners(contact.state().triangle)[0];
     std::vector<VertexMove> dented;
@@ -83,7 +83,7 @@ TEST(MovingContact, FollowsWhileTheSurfaceIsPressedInAndSpringsBack) {
                          p - Vector3d(0, 0, depth * std::pow(1 - share * share, 2))});
       }
       contact.move_vertices(moves);
-      const Vector3d p(0.0005 * std::sin(0.05 * tick), 0.001, kRadius - 0.0005 - depth);
+      const Vector3d p(0.0005 * std::sin(0.05 * tick), 0.001, kBallRadius - 0.0005 - depth);
       const ContactState& state = contact.update(at(p));
       ASSERT_TRUE(state.touching) << tick;
       ASSERT_GT(state.depth, 0.0001) << tick;
@@ -92,7 +92,7 @@ TEST(MovingContact, FollowsWhileTheSurfaceIsPressedInAndSpringsBack) {
     }
     // It springs back in one tick while the tip stays where it is: deeper, and still touching.
     contact.move_vertices(support::back_to(shape.vertices, dented));
-    const ContactState& state = contact.update(at({0, 0.001, kRadius - 0.003}));
+    const ContactState& state = contact.update(at({0, 0.001, kBallRadius - 0.003}));
     EXPECT_TRUE(state.touching);
     EXPECT_NEAR(state.depth, 0.003, 0.0005);
     // It falls away farther than the tip follows.
@@ -102,7 +102,7 @@ TEST(MovingContact, FollowsWhileTheSurfaceIsPressedInAndSpringsBack) {
                                        Vector3d(0, 0, 0.01)});
     }
     contact.move_vertices(gone);
-    EXPECT_FALSE(contact.update(at({0, 0.001, kRadius - 0.003})).touching);
+    EXPECT_FALSE(contact.update(at({0, 0.001, kBallRadius - 0.003})).touching);
   });
 }
 
@@ -110,7 +110,7 @@ TEST(MovingContact, FollowsWhileTheSurfaceIsPressedInAndSpringsBack) {
 // touches, and one that comes to lie outside without a wall having passed does not.
 TEST(MovingContact, LetsNoMovingSurfaceThroughARestingTip) {
   for (const TriangleMesh& shape :
-       {support::icosphere(3, kRadius), support::torus(0.035, 0.015, 30, 16)}) {
+       {support::icosphere(3, kBallRadius), support::torus(0.035, 0.015, 30, 16)}) {
     for_each_way(shape, [&](const auto& surface, auto contact) {
       support::Random random(2);
       const int rounds = support::long_form() ? 1000 : 150;
@@ -176,7 +176,7 @@ TEST(MovingContact, FeelsAPlateThatHasPassedOverTheTipWithinOneTick) {
 
 // A free tip remembers a ball without triangles: a surface that grows into it is felt all the same.
 TEST(MovingContact, ForgetsTheFreeSpaceThatTheSurfaceHasGrownInto) {
-  const TriangleMesh shape = support::icosphere(3, kRadius);
+  const TriangleMesh shape = support::icosphere(3, kBallRadius);
   for_each_way(shape, [&](const auto& surface, auto contact) {
     for (int i = 0; i < 200; ++i) contact.update(at({0, 0, 0.07 + 1e-5 * i}));
     std::vector<VertexMove> grown;
@@ -190,7 +190,7 @@ TEST(MovingContact, ForgetsTheFreeSpaceThatTheSurfaceHasGrownInto) {
 }
 
 TEST(MovingContact, MovesWithoutTheHeap) {
-  for_each_way(support::icosphere(3, kRadius), [&](const auto& surface, auto contact) {
+  for_each_way(support::icosphere(3, kBallRadius), [&](const auto& surface, auto contact) {
     support::Random random(4);
     contact.update(at({0, 0, 0.06}));
     const auto moves = support::dent(surface->mesh(), 5, Vector3d(0, 0, 1), 0.02, 0.04, random);

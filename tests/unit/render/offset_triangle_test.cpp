@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
 #include <array>
 #include <cmath>
 
+#include "support/dense_algebra.h"
 #include "support/random.h"
 #include "support/shapes.h"
 
@@ -35,7 +35,7 @@ class Definition {
       slope.col(0) = x[1] - x[0] - d * (n[1] - n[0]);
       slope.col(1) = x[2] - x[0] - d * (n[2] - n[0]);
       slope.col(2) = -way;
-      l1_l2_d += slope.partialPivLu().solve(p - q + d * way);
+      l1_l2_d += support::solve(slope, p - q + d * way);
     }
     l = {1 - l1_l2_d[0] - l1_l2_d[1], l1_l2_d[0], l1_l2_d[1]};
     const Vector3d q = l[0] * x[0] + l[1] * x[1] + l[2] * x[2];

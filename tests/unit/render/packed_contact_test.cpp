@@ -64,8 +64,8 @@ class ScriptedStore {
 };
 static_assert(PackedStore<ScriptedStore> && PackedStore<MemoryStore>);
 
-struct Scene {
-  explicit Scene(const TriangleMesh& mesh)
+struct PackedScene {
+  explicit PackedScene(const TriangleMesh& mesh)
       : surface(PackedSurface::build(mesh).value()),
         search(surface),
         contact(ScriptedStore(surface, search, absence)) {}
@@ -87,7 +87,7 @@ Vector3d on_stroke(double angle) {
 
 TEST(PackedContact, AnswersAsTheContactInMemoryWhileNothingIsAbsent) {
   const TriangleMesh mesh = support::bumpy_sphere(3, 0.05, 0.2, 4);
-  Scene scene(mesh);
+  PackedScene scene(mesh);
   MemoryContact reference = MemoryContact::build(mesh).value();
   int touched = 0;
   for (int i = 0; i < 20000; ++i) {
@@ -107,7 +107,7 @@ TEST(PackedContact, AnswersAsTheContactInMemoryWhileNothingIsAbsent) {
 }
 
 TEST(PackedContact, HoldsThePlaneWhereRecordsAreAbsentAndNeverJumps) {
-  Scene scene(support::icosphere(4, 0.05));
+  PackedScene scene(support::icosphere(4, 0.05));
   // Nothing is at hand beyond 0.28 rad from the top, until the loader catches up.
   scene.absence.triangles = [&](const PackedTriangle& packed) {
     return packed.corner(0).x() > 0.28 * kLatticeHalf;
@@ -144,7 +144,7 @@ TEST(PackedContact, HoldsThePlaneWhereRecordsAreAbsentAndNeverJumps) {
 }
 
 TEST(PackedContact, KeepsContactInsideWhileTheSearchKnowsNothingAndEndsItWhenItDoes) {
-  Scene scene(support::icosphere(3, 0.05));
+  PackedScene scene(support::icosphere(3, 0.05));
   scene.move({0, 0, 0.06});
   ASSERT_TRUE(scene.move({0, 0, 0.049}).touching);
   scene.absence.searches = true;
@@ -160,7 +160,7 @@ TEST(PackedContact, KeepsContactInsideWhileTheSearchKnowsNothingAndEndsItWhenItD
 }
 
 TEST(PackedContact, ExaminesLaterThePathThatItCouldNotExamine) {
-  Scene scene(support::icosphere(3, 0.05));
+  PackedScene scene(support::icosphere(3, 0.05));
   scene.move({0, 0, 0.06});
   scene.absence.searches = true;
   EXPECT_FALSE(scene.move({0, 0, 0.055}).touching);
@@ -183,13 +183,13 @@ struct Bulge {
     way = middle.normalized();
     triangles = middle.norm() * scene.surface.step();
     // Where contact begins when all is at hand.
-    Scene whole(support::icosphere(1, 0.05));
+    PackedScene whole(support::icosphere(1, 0.05));
     smooth = 0.06;
     while (!whole.move(smooth * way).touching && smooth > triangles) smooth -= 1e-5;
   }
   const ContactState& move(double height) { return scene.move(height * way); }
 
-  Scene scene;
+  PackedScene scene;
   Vector3d way{0, 0, 0};
   double triangles = 0;  // heights over the middle, m: of the triangle,
   double smooth = 0;     // and of the smooth surface above it
@@ -217,7 +217,7 @@ TEST(PackedContact, FeelsABulgeThatItCouldNotSeeOnceItsRecordsAreThere) {
   for (const Absent absent : {Absent::kSearches, Absent::kAllRecords, Absent::kRecordsAround}) {
     for (const double share : {0.1, 0.5, 0.9}) {
       Bulge bulge;
-      Scene whole(support::icosphere(1, 0.05));
+      PackedScene whole(support::icosphere(1, 0.05));
       const PackedTriangle* const own = &bulge.scene.surface.triangle(0);
       bulge.scene.absence.searches = absent == Absent::kSearches;
       bulge.scene.absence.triangles = [=](const PackedTriangle& packed) {
@@ -249,7 +249,7 @@ TEST(PackedContact, FeelsABulgeThatItCouldNotSeeOnceItsRecordsAreThere) {
 }
 
 TEST(PackedContact, LeavesTheHeapAloneWhileItHolds) {
-  Scene scene(support::icosphere(3, 0.05));
+  PackedScene scene(support::icosphere(3, 0.05));
   scene.move({0, 0, 0.06});
   scene.move(on_stroke(0));
   scene.absence.triangles = [](const PackedTriangle&) { return true; };

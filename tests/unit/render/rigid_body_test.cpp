@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "body/motion/free_turn.h"
 #include "body/motion/mass_properties.h"
 #include "body/motion/translating_body.h"
 #include "support/hard_case.h"
@@ -277,6 +278,52 @@ TEST(RigidBody, FallsAndFadesByTheLaws) {
   stuck.set_momentum({1, 0, 0}, {1, 0, 0});
   stuck.step(kTick);
   EXPECT_EQ(stuck.kinetic_energy(), 0);
+}
+
+// The torque is -c omega about every axis, against Euler's equations by small steps of RK4.
+TEST(RigidBody, TumblesToRestAsTheTorqueOfItsDampingSays) {
+  RigidBodySettings settings;
+  settings.mass = mass_properties(block(), 0.3).value();
+  settings.angular_damping = 5e-5;
+  RigidBody body = RigidBody::build(settings).value();
+  const Vector3d inertia = settings.mass.inertia;
+  Vector3d omega(6, 9, -7);
+  body.set_momentum({0, 0, 0}, body.q_WB() * inertia.cwiseProduct(omega));
+  const auto rate = [&](const Vector3d& w) -> Vector3d {
+    const Vector3d torque = -settings.angular_damping * w - w.cross(inertia.cwiseProduct(w));
+    return torque.cwiseQuotient(inertia);
+  };
+  constexpr double kFine = 1e-5;  // s
+  double energy = body.kinetic_energy();
+  for (int tick = 0; tick < 1300; ++tick) {
+    for (int i = 0; i < 100; ++i) {
+      const Vector3d k1 = rate(omega), k2 = rate(omega + kFine / 2 * k1);
+      const Vector3d k3 = rate(omega + kFine / 2 * k2), k4 = rate(omega + kFine * k3);
+      omega += kFine / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
+    }
+    body.step(kTick);
+    const Vector3d found = body.q_WB().conjugate() * body.omega_W();
+    ASSERT_LT((found - omega).norm(), 1e-5 * 13) << tick;
+    ASSERT_LE(body.kinetic_energy(), energy);
+    energy = body.kinetic_energy();
+  }
+}
+
+// Two equal inertias leave one part of the split, and the step no error.
+TEST(FreeTurn, IsExactForABodyWithAnAxisOfSymmetry) {
+  for (const Vector3d& inertia : {Vector3d(1e-4, 2e-4, 2e-4), Vector3d(2e-4, 2e-4, 3e-4)}) {
+    const int odd = inertia[0] < inertia[1] ? 0 : 2;
+    Eigen::Quaterniond q = Eigen::Quaterniond::Identity();
+    const Vector3d angular(2e-3, -1e-3, 1.5e-3);
+    const double step = 7e-3;
+    for (int i = 0; i < 200; ++i) FreeTurn(inertia).turn(step, angular, q);
+    const double time = 200 * step;
+    const double own = (1 / inertia[odd] - 1 / inertia[1]) * angular[odd] * time;
+    const Eigen::Quaterniond truth =
+        Eigen::AngleAxisd(angular.norm() / inertia[1] * time, angular.normalized()) *
+        Eigen::AngleAxisd(own, Vector3d::Unit(odd));
+    EXPECT_LT(q.angularDistance(truth), 1e-12) << inertia.transpose();
+  }
 }
 
 // [BP 4.3]: with less time per tick the same force moves the body as if its mass were 1 / s^2.

@@ -30,7 +30,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-int scaled(int full, int brief) {
+int scaled_count(int full, int brief) {
   return support::long_form() ? full : brief;
 }
 
@@ -116,17 +116,18 @@ TEST(EverySearch, GivesTheSameAnswersOnRandomSegments) {
   std::uint64_t seed = 20;
   for (const TriangleMesh& shape : shapes()) {
     const ContactMesh mesh = ContactMesh::build(shape).value();
-    expect_same_on_random_segments(mesh, mesh.origin(), 0.05, scaled(100000, 6000), ++seed);
+    expect_same_on_random_segments(mesh, mesh.origin(), 0.05, scaled_count(100000, 6000), ++seed);
     const PackedSurface surface = PackedSurface::build(shape).value();
-    expect_same_on_random_segments(surface, mesh.origin(), 0.05, scaled(100000, 6000), ++seed);
+    expect_same_on_random_segments(surface, mesh.origin(), 0.05, scaled_count(100000, 6000),
+                                   ++seed);
   }
 }
 
 TEST(EverySearch, GivesTheSameAnswersOnSlivers) {
   const ContactMesh mesh = ContactMesh::build(slivers()).value();
-  expect_same_on_random_segments(mesh, mesh.origin(), 0.05, scaled(100000, 6000), 30);
+  expect_same_on_random_segments(mesh, mesh.origin(), 0.05, scaled_count(100000, 6000), 30);
   const PackedSurface surface = PackedSurface::build(slivers()).value();
-  expect_same_on_random_segments(surface, mesh.origin(), 0.05, scaled(100000, 6000), 31);
+  expect_same_on_random_segments(surface, mesh.origin(), 0.05, scaled_count(100000, 6000), 31);
 }
 
 TEST(EverySearch, GivesTheSameAnswersOnScans) {
@@ -138,7 +139,7 @@ TEST(EverySearch, GivesTheSameAnswersOnScans) {
     const auto mesh = ContactMesh::build(*loaded);
     if (!mesh) continue;
     const double half = (mesh->box_max() - mesh->origin()).maxCoeff();
-    expect_same_on_random_segments(*mesh, mesh->origin(), half, scaled(100000, 2000), 40);
+    expect_same_on_random_segments(*mesh, mesh->origin(), half, scaled_count(100000, 2000), 40);
   }
 }
 
@@ -149,9 +150,9 @@ TEST(EverySearch, GivesTheSameAnswersAtEveryScaleAndFarFromTheOrigin) {
       const TriangleMesh shape = placed(support::bumpy_sphere(2, 0.05, 0.3, 6), scale,
                                         Eigen::Matrix3d::Identity(), middle);
       const ContactMesh mesh = ContactMesh::build(shape).value();
-      expect_same_on_random_segments(mesh, middle, 0.05 * scale, scaled(20000, 2000), 50);
+      expect_same_on_random_segments(mesh, middle, 0.05 * scale, scaled_count(20000, 2000), 50);
       const PackedSurface surface = PackedSurface::build(shape).value();
-      expect_same_on_random_segments(surface, middle, 0.05 * scale, scaled(20000, 2000), 51);
+      expect_same_on_random_segments(surface, middle, 0.05 * scale, scaled_count(20000, 2000), 51);
     }
   }
 }
@@ -168,7 +169,7 @@ TEST(EverySearch, GivesTheSameAnswersWhereEverythingIsDegenerate) {
     support::Random random(60);
     const auto any = [&random] { return static_cast<double>(random.bits() % 11) / 8 - 0.625; };
     Vector3d before(any(), any(), any());
-    for (int i = 0; i < scaled(50000, 3000); ++i) {
+    for (int i = 0; i < scaled_count(50000, 3000); ++i) {
       const Vector3d now = i % 7 == 0 ? before : Vector3d(any(), any(), any());
       if (compact) {
         triangles.expect_same_entry(before, now);
@@ -245,7 +246,7 @@ TEST(FreeSpace, MissesNothingOnAWalk) {
       support::Random random(71);
       Vector3d p(0.08, 0, 0), heading(-1, 0, 0);
       int entries = 0;
-      for (int i = 0; i < scaled(100000, 5000); ++i) {
+      for (int i = 0; i < scaled_count(100000, 5000); ++i) {
         heading = (heading + 0.05 * random.direction() - 0.5 * p).normalized();
         const Vector3d next = p + step * heading;
         const Entry wanted = search->first_entry(p, next);
@@ -279,7 +280,7 @@ void expect_no_tunnelling(Build build) {
   for (const auto choice : {SearchChoice::kLinear, SearchChoice::kGrid, SearchChoice::kTree}) {
     auto contact = build(shape, choice);
     support::Random random(80);
-    const int phases = scaled(10000, 1000);
+    const int phases = scaled_count(10000, 1000);
     for (int i = 0; i < phases; ++i) {
       const double phase = 2e-3 * i / phases;
       const Vector3d beside(random.uniform(-0.04, 0.04), random.uniform(-0.04, 0.04), 0);
@@ -340,7 +341,7 @@ TEST(MakeSearch, TakesTheTreeWhereMostTrianglesLieInOneCorner) {
   }
   const ContactMesh two = ContactMesh::build(uneven).value();
   EXPECT_NE(dynamic_cast<const TreeSearch<ContactMesh>*>(make_search(two).get()), nullptr);
-  expect_same_on_random_segments(two, Vector3d::Zero(), 0.05, scaled(20000, 1000), 82);
+  expect_same_on_random_segments(two, Vector3d::Zero(), 0.05, scaled_count(20000, 1000), 82);
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-const ContactState& move(MeshContact& contact, const Vector3d& p_WT) {
+const ContactState& slide(MeshContact& contact, const Vector3d& p_WT) {
   driver::DeviceState state;
   state.p_WT = p_WT;
   return contact.update(state);
@@ -43,20 +43,20 @@ Walk wander(const TriangleMesh& mesh, double depth, double step, int crossings_w
   Walk walk;
   Vector3d heading = any();
   Vector3d p = support::corner(mesh, 0, 0) * 1.5;
-  move(contact, p);
+  slide(contact, p);
   p = (support::corner(mesh, 0, 0) + support::corner(mesh, 0, 1) + support::corner(mesh, 0, 2)) /
           3 -
       depth * support::outward_normal(mesh, 0);
-  move(contact, p);
+  slide(contact, p);
   for (int i = 0; walk.crossings < crossings_wanted && i < 20 * crossings_wanted; ++i) {
     const ContactState& state = contact.state();
     if (!state.touching) {
       // Only a tip outside may be free; the walk goes on from the first triangle.
       ++walk.lost;
       p = support::corner(mesh, 0, 0) * 1.5;
-      move(contact, p);
+      slide(contact, p);
       p = support::corner(mesh, 0, 0) * (1 - 1e-3);
-      move(contact, p);
+      slide(contact, p);
       continue;
     }
     heading = (heading + 0.2 * any()).normalized();
@@ -64,13 +64,13 @@ Walk wander(const TriangleMesh& mesh, double depth, double step, int crossings_w
     // Back to the wanted depth along the normal, on along the surface.
     const Vector3d next = p + step * heading.normalized() + (state.depth - depth) * state.n_W * 0.5;
     const std::int32_t before = state.triangle;
-    move(contact, next);
+    slide(contact, next);
     if (!contact.state().touching) {
       if (support::is_inside(mesh, next)) {
         ++walk.lost;
       } else {
         // Left over an edge: the wanted path goes round it, a little deeper.
-        move(contact, p);
+        slide(contact, p);
         if (!contact.state().touching) ++walk.lost;
         heading = any();
         continue;
@@ -134,15 +134,15 @@ TEST(SurfaceTracker, ChangesDepthByNoMoreThanTheTipMovesOverOneEdge) {
   std::mt19937_64 random(4);
   std::normal_distribution<double> normal;
   Vector3d p(0.049, 0.001, 0.002);
-  move(contact, {0.06, 0.001, 0.002});
-  move(contact, p);
+  slide(contact, {0.06, 0.001, 0.002});
+  slide(contact, p);
   int single_hops = 0;
   for (int i = 0; i < 100000; ++i) {
     const double depth = contact.state().depth;
     const Vector3d next =
         0.0485 *
         (p + 0.0003 * Vector3d(normal(random), normal(random), normal(random))).normalized();
-    const ContactState& state = move(contact, next);
+    const ContactState& state = slide(contact, next);
     ASSERT_TRUE(state.touching);
     if (state.hops <= 1) {
       ASSERT_LE(std::abs(state.depth - depth), (next - p).norm() + 1e-16);
@@ -171,12 +171,12 @@ TEST(SurfaceTracker, SettlesWithinItsBoundAtANeedleTipAndInAnAcuteWedge) {
     int touched = 0;
     for (int i = 0; i < 20000; ++i) {
       if (!contact.state().touching) {
-        move(contact, now.entry + Vector3d(0.02, 0.01, 0.02));
-        move(contact, now.entry);
+        slide(contact, now.entry + Vector3d(0.02, 0.01, 0.02));
+        slide(contact, now.entry);
       }
       const Vector3d p =
           now.middle + now.size * Vector3d(normal(random), normal(random), normal(random));
-      const ContactState& state = move(contact, p);
+      const ContactState& state = slide(contact, p);
       ASSERT_LE(state.hops, kHopsMax);
       if (support::is_inside(now.mesh, p)) {
         ASSERT_TRUE(state.touching);
@@ -238,17 +238,17 @@ TEST(SurfaceTracker, NeverPopsThroughAThinPlate) {
     MeshContact contact = MeshContact::build(support::plate(0.1, 0.0002, 8)).value();
     std::mt19937_64 random(8);
     std::normal_distribution<double> tremor(0, 0.0001);
-    move(contact, {0.003, 0.002, side * 0.01});
+    slide(contact, {0.003, 0.002, side * 0.01});
     for (int i = 0; i < 2000; ++i) {
       // Down to 8.5 mm, as deep as 8.5 N at 1 N/mm, and back to the surface.
       const double press = 0.0085 * std::sin(std::numbers::pi * (i + 0.5) / 2000);
       const Vector3d p(0.003 + tremor(random), 0.002 + tremor(random), side * (0.0001 - press));
-      const ContactState& state = move(contact, p);
+      const ContactState& state = slide(contact, p);
       ASSERT_TRUE(state.touching) << i;
       ASSERT_NEAR(state.depth, press, 1e-15);
       ASSERT_EQ(state.n_W, Vector3d(0, 0, side));
     }
-    EXPECT_FALSE(move(contact, {0.003, 0.002, side * 0.0002}).touching);
+    EXPECT_FALSE(slide(contact, {0.003, 0.002, side * 0.0002}).touching);
   }
 }
 

@@ -53,7 +53,7 @@ TEST(FirstTouch, ChangesNoShade) {
   const auto context = support::open_gl();
   if (!context) GTEST_SKIP() << "no OpenGL";
   FirstTouch first;
-  ScenePainter painter(first.scene);
+  ScenePainter painter(first.scene, ScenePrograms::make().value());
   Canvas canvas(480, 480);
   ASSERT_GE(first.touched.patch.triangle_count, 12);
   for (const Shading shading : {Shading::kGouraud, Shading::kPhong}) {

@@ -55,6 +55,10 @@ bool play(const fs::path& scene, double time,
   return true;
 }
 
+ShotPainter painter_of(const DrawnScene& scene, const ShotChoice& choice) {
+  return ShotPainter(scene, choice, ScenePrograms::make().value());
+}
+
 /// Tells at which second a scene is drawn: in touch, where the usual one is not.
 double second_of(const std::string& scene) {
   static const std::map<std::string, double> others = {
@@ -84,44 +88,43 @@ TEST(Shots, OfEveryShippedSceneLookAsTheyDid) {
       continue;
     }
     const fs::path stored_file = stored_folder / (name + ".png");
-    play(
-        scene, second_of(name),
-        [&](const DrawnScene& drawn, DrawnMoment& moment, const Plots& plots) {
-          ShotPainter painter(drawn, small_choice());
-          const Picture picture = painter.paint(moment, plots);
-          if (write) {
-            EXPECT_TRUE(write_png(picture, stored_file));
-            return;
-          }
-          const auto stored = read_png(stored_file);
-          ASSERT_TRUE(stored) << stored.error().message
-                              << " A new scene? Draw it by THIMBLE_WRITE_SHOTS=1 and look at it.";
-          const PictureDifference found = difference(*stored, picture);
-          if (!alike(found)) {
-            const fs::path drawn_file = fs::path(testing::TempDir()) / (name + "_drawn.png");
-            EXPECT_TRUE(write_png(picture, drawn_file));
-            ADD_FAILURE() << name << " looks otherwise: mean " << found.mean
-                          << " of 255, bad blocks " << found.bad_blocks << "; compare "
-                          << stored_file << " with " << drawn_file
-                          << ". If it is better now, store it by THIMBLE_WRITE_SHOTS=1.";
-          }
-          // Controls: what this must find, it finds.
-          ShotChoice armless = small_choice();
-          armless.camera = painter.camera();
-          armless.paint.marks.arm = false;
-          EXPECT_FALSE(alike(difference(*stored, ShotPainter(drawn, armless).paint(moment, plots))))
-              << name << " without its arm passes for the one with it";
-          const bool solid =
-              std::any_of(drawn.objects.begin(), drawn.objects.end(),
-                          [](const auto& o) { return !o.mesh.triangles.empty() && !o.endless; });
-          if (!solid) return;
-          ShotChoice as_before = small_choice();
-          as_before.camera = painter.camera();
-          for (render::BodyPose& pose : moment.poses) pose.p_WB[1] += 0.004;
-          EXPECT_FALSE(
-              alike(difference(*stored, ShotPainter(drawn, as_before).paint(moment, plots))))
-              << name << " 4 mm beside its place passes for the right one";
-        });
+    play(scene, second_of(name),
+         [&](const DrawnScene& drawn, DrawnMoment& moment, const Plots& plots) {
+           ShotPainter painter = painter_of(drawn, small_choice());
+           const Picture picture = painter.paint(moment, plots);
+           if (write) {
+             EXPECT_TRUE(write_png(picture, stored_file));
+             return;
+           }
+           const auto stored = read_png(stored_file);
+           ASSERT_TRUE(stored) << stored.error().message
+                               << " A new scene? Draw it by THIMBLE_WRITE_SHOTS=1 and look at it.";
+           const PictureDifference found = difference(*stored, picture);
+           if (!alike(found)) {
+             const fs::path drawn_file = fs::path(testing::TempDir()) / (name + "_drawn.png");
+             EXPECT_TRUE(write_png(picture, drawn_file));
+             ADD_FAILURE() << name << " looks otherwise: mean " << found.mean
+                           << " of 255, bad blocks " << found.bad_blocks << "; compare "
+                           << stored_file << " with " << drawn_file
+                           << ". If it is better now, store it by THIMBLE_WRITE_SHOTS=1.";
+           }
+           // Controls: what this must find, it finds.
+           ShotChoice armless = small_choice();
+           armless.camera = painter.camera();
+           armless.paint.marks.arm = false;
+           EXPECT_FALSE(alike(difference(*stored, painter_of(drawn, armless).paint(moment, plots))))
+               << name << " without its arm passes for the one with it";
+           const bool solid =
+               std::any_of(drawn.objects.begin(), drawn.objects.end(),
+                           [](const auto& o) { return !o.mesh.triangles.empty() && !o.endless; });
+           if (!solid) return;
+           ShotChoice as_before = small_choice();
+           as_before.camera = painter.camera();
+           for (render::BodyPose& pose : moment.poses) pose.p_WB[1] += 0.004;
+           EXPECT_FALSE(
+               alike(difference(*stored, painter_of(drawn, as_before).paint(moment, plots))))
+               << name << " 4 mm beside its place passes for the right one";
+         });
   }
 }
 
@@ -135,7 +138,7 @@ TEST(Shots, AreTheSameEachTime) {
            ShotChoice choice = small_choice();
            choice.plots = true;
            choice.paint.marks.edge_planes = true;
-           pictures.push_back(ShotPainter(drawn, choice).paint(moment, plots));
+           pictures.push_back(painter_of(drawn, choice).paint(moment, plots));
          });
   }
   ASSERT_EQ(pictures.size(), 2U);

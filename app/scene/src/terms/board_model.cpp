@@ -1,10 +1,10 @@
-#include "thimble/scene/board_model.h"
+#include "terms/board_model.h"
 
 #include <array>
 #include <string>
 
-#include "thimble/driver/arms/hfab/hfab_line.h"
-#include "thimble/driver/arms/hfab/hfab_wire.h"
+#include "arms/hfab/hfab_line.h"
+#include "arms/hfab/hfab_wire.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/transports.h"
 

@@ -1,5 +1,6 @@
 #include "terms/feel_check_record.h"
 
+#include <fmt/core.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -11,10 +12,9 @@
 #include <string_view>
 #include <system_error>
 
-#include "printed.h"
 #include "thimble/driver/safety_gate.h"
 #include "thimble/scene/real_arm.h"
-#include "thimble/scene/user_folders.h"
+#include "user_folders.h"
 
 namespace thimble::scene {
 namespace {
@@ -30,9 +30,9 @@ class Checksum {
   }
   /// Adds a number to a part in 10^9 of `unit`, so that another compiler gives the same sum.
   void add(double number, double unit) {
-    add(std::isfinite(number) ? printed("%.0f", std::round(number / (1e-9 * unit))) : "none");
+    add(std::isfinite(number) ? fmt::format("{:.0f}", std::round(number / (1e-9 * unit))) : "none");
   }
-  std::string text() const { return printed("%016llx", static_cast<unsigned long long>(sum_)); }
+  std::string text() const { return fmt::format("{:016x}", sum_); }
 
  private:
   void add_byte(unsigned char byte) { sum_ = (sum_ ^ byte) * 0x100000001b3u; }
@@ -79,11 +79,10 @@ std::string checksum_of_data(const ArmFile& file, driver::ArmKind kind) {
 
 /// Returns what is known of an arm's firmware; empty if that is not enough to know it again.
 std::string firmware_of(const driver::FoundArm& found, const fs::path& image) {
-  const std::string device = driver::read_line(found.sysfs / "bcdDevice");
-  if (device.empty()) return {};
-  std::string text =
-      printed("usb %04x:%04x device %s \"", found.vendor_id, found.product_id, device.c_str()) +
-      driver::read_line(found.sysfs / "product") + '"';
+  if (found.release == 0) return {};  // tells no release
+  std::string text = fmt::format("usb {:04x}:{:04x} device {:04x} \"", found.vendor_id,
+                                 found.product_id, found.release) +
+                     found.product + '"';
   if (found.kind != driver::ArmKind::kFalcon) return text;
   // Whoever loaded a Falcon last decided what runs in it; its USB side is the converter's.
   std::error_code missing;

@@ -1,8 +1,10 @@
 #include "terms/limits_policy.h"
 
+#include <fmt/core.h>
+
 #include <array>
 
-#include "printed.h"
+#include "energy_choice.h"
 #include "thimble/driver/motion_watch.h"
 
 namespace thimble::scene {
@@ -98,10 +100,10 @@ std::vector<std::string> tighten(ArmFile& arm, const fs::path& arm_path, const A
     const bool tighter = rule.less_is_tighter ? value < own : value > own;
     if (tighter) rule.take(arm, other);
     told.push_back(place(other_path, line) +
-                   printed(": %s %g %s is %s %g %s (", rule.key, value, rule.unit,
-                           tighter ? "kept: it is tighter than the arm's"
-                                   : "ignored: it is looser than the arm's",
-                           own, rule.unit) +
+                   fmt::format(": {} {:g} {} is {} {:g} {} (", rule.key, value, rule.unit,
+                               tighter ? "kept: it is tighter than the arm's"
+                                       : "ignored: it is looser than the arm's",
+                               own, rule.unit) +
                    place(arm_path, line_in(arm, rule.key)) + ").");
   }
   if (const int line = line_in(other, "energy"); line > 0) {

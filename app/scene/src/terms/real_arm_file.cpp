@@ -4,11 +4,12 @@
 #include <string_view>
 #include <utility>
 
+#include "terms/board_model.h"
 #include "terms/limits_policy.h"
 #include "thimble/scene/calibration.h"
 #include "thimble/scene/real_arm.h"
 #include "thimble/scene/shipped_files.h"
-#include "thimble/scene/user_folders.h"
+#include "user_folders.h"
 
 namespace thimble::scene {
 namespace {
@@ -44,7 +45,7 @@ std::string_view file_of_kind(ArmKind kind) {
 std::string fitting_names(const FoundArm& arm) {
   std::string names;
   for (const ShippedFile& installed : installed_arms()) {
-    const auto file = read_arm_file(installed.path);
+    const auto file = load_arm(installed.path);
     if (file && check_fits(*file, arm)) names += (names.empty() ? "" : ", ") + installed.name;
   }
   return names.empty() ? "none is installed that fits it" : "installed are: " + names;
@@ -68,7 +69,7 @@ Result<Choice> installed_for_model(const FoundArm& arm, int model) {
   const std::string number = std::to_string(model);
   std::optional<Choice> found;
   for (const ShippedFile& installed : installed_arms()) {
-    const auto file = read_arm_file(installed.path);
+    const auto file = load_arm(installed.path);
     if (!file || file->board_model != model || !check_fits(*file, arm)) continue;
     if (found) {
       return say_which(arm, "The board " + arm.name() + " answers as model " + number +
@@ -94,7 +95,7 @@ Result<Choice> choose_by_arm(const FoundArm& arm, const Calibration* calibration
   if (arm.kind != ArmKind::kHfabLine) {
     return say_which(arm, "The arm " + arm.name() + " does not tell its model over USB.");
   }
-  const auto model = search.ask_model(arm);
+  const auto model = search.ask_model ? search.ask_model(arm) : ask_board_model(arm);
   if (!model) return say_which(arm, model.error().message);
   return installed_for_model(arm, *model);
 }
@@ -104,7 +105,7 @@ Result<Choice> choose_by_arm(const FoundArm& arm, const Calibration* calibration
 Result<Choice> choose_for(const ArmFile& other, const FoundArm& arm, const Calibration* calibration,
                           const RealArmSearch& search) {
   for (const ShippedFile& installed : installed_arms()) {
-    const auto file = read_arm_file(installed.path);
+    const auto file = load_arm(installed.path);
     if (file && file->name == other.name) {
       return Choice{installed.path, "the installed one of the arm that --arm describes"};
     }
@@ -139,7 +140,7 @@ Result<RealArmFile> find_real_arm_file(const FoundArm& arm, const RealArmSearch&
   const bool from_elsewhere = named && !is_installed_arm(search.arm_file);
   std::optional<ArmFile> other;
   if (from_elsewhere) {
-    auto read = read_arm_file(search.arm_file);
+    auto read = load_arm(search.arm_file);
     if (!read) return read.error();
     other = std::move(read).value();
   }
@@ -148,7 +149,7 @@ Result<RealArmFile> find_real_arm_file(const FoundArm& arm, const RealArmSearch&
                                : choose_by_arm(arm, known, search);
   if (!choice) return choice.error();
 
-  auto file = read_arm_file(choice->path);
+  auto file = load_arm(choice->path);
   if (!file) return file.error();
   RealArmFile found{
       .path = choice->path, .file = std::move(file).value(), .why = choice->why, .told = {}};

@@ -1,12 +1,14 @@
 #include "thimble/scene/real_arm_terms.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <system_error>
 #include <utility>
 
-#include "printed.h"
 #include "terms/feel_check_record.h"
 #include "terms/limits_policy.h"
+#include "thimble/scene/scene_file.h"
 #include "thimble/scene/shipped_files.h"
 
 namespace thimble::scene {
@@ -15,11 +17,12 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Returns what checks this arm, to be typed as it is.
-std::string check_command(const driver::FoundArm& arm, const RealArmWish& wish) {
+std::string check_command(const driver::FoundArm& arm, const RealArmRequest& request) {
   std::string command = "thimble feel-check --device " + arm.name();
-  if (!wish.arm_file.empty()) command += " --arm " + wish.arm_file.string();
-  if (!wish.firmware.empty()) command += " --firmware " + wish.firmware.string();
-  if (wish.firmware.empty() && arm.kind == driver::ArmKind::kFalcon) command += " --firmware FILE";
+  if (!request.arm_file.empty()) command += " --arm " + request.arm_file.string();
+  if (!request.firmware.empty()) command += " --firmware " + request.firmware.string();
+  if (request.firmware.empty() && arm.kind == driver::ArmKind::kFalcon)
+    command += " --firmware FILE";
   return command;
 }
 
@@ -39,33 +42,32 @@ std::string_view name(FeelCheckState state) {
   return "none";
 }
 
-driver::Result<RealArmTerms> terms_for(const driver::FoundArm& arm, const RealArmWish& wish) {
-  auto found = find_real_arm_file(arm, {.arm_file = wish.arm_file});
+driver::Result<RealArmTerms> terms_for(const driver::FoundArm& arm, const RealArmRequest& request) {
+  auto found = find_real_arm_file(arm, {.arm_file = request.arm_file});
   if (!found) return found.error();
   RealArmTerms terms;
   terms.arm = std::move(found).value();
   terms.told.push_back("Arm file: " + terms.arm.path.string() + " (" + terms.arm.why + ").");
   terms.told.insert(terms.told.end(), terms.arm.told.begin(), terms.arm.told.end());
-  if (has_passed(describe_checked(arm, terms.arm, wish.firmware))) {
+  if (has_passed(describe_checked(arm, terms.arm, request.firmware))) {
     terms.feel_check = FeelCheckState::kPassed;
     return terms;
   }
-  const std::string command = check_command(arm, wish);
-  if (wish.unchecked) {
+  const std::string command = check_command(arm, request);
+  if (request.unchecked) {
     terms.feel_check = FeelCheckState::kUnchecked;
-    terms.told.push_back(
-        printed("UNCHECKED: %s gets up to %g N though it has passed no feel check as it is now. To "
-                "check it: ",
-                arm.name().c_str(), terms.arm.file.limits.force_max) +
-        command);
+    terms.told.push_back(fmt::format("UNCHECKED: {} gets up to {:g} N though it has passed no feel "
+                                     "check as it is now. To check it: ",
+                                     arm.name(), terms.arm.file.limits.force_max) +
+                         command);
     return terms;
   }
   terms.feel_check = FeelCheckState::kNone;
   terms.force_most = kFeelCheckForceMax;
   terms.told.push_back(
-      printed("%s has passed no feel check with this arm file, calibration and firmware, so this "
-              "run gives it at most %g N. To check it: ",
-              arm.name().c_str(), kFeelCheckForceMax) +
+      fmt::format("{} has passed no feel check with this arm file, calibration and firmware, so "
+                  "this run gives it at most {:g} N. To check it: ",
+                  arm.name(), kFeelCheckForceMax) +
       command);
   return terms;
 }
@@ -81,7 +83,7 @@ driver::Result<std::vector<std::string>> put_on_terms(Scene& scene, const fs::pa
     told.push_back(scene_file.string() + ": its arm, " + scene.own_arm_file.stem().string() +
                    ", is what it is simulated with; a real arm has its own.");
   } else if (!same) {
-    const auto own = read_arm_file(scene.own_arm_file);
+    const auto own = load_arm(scene.own_arm_file);
     if (!own) return own.error();
     for (std::string& sentence : tighten(scene.arm, terms.arm.path, *own, scene.own_arm_file)) {
       told.push_back(std::move(sentence));

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "recording/h5_handle.h"
-#include "recording/recording_columns.h"
+#include "thimble/session/recording.h"
 
 namespace thimble::session {
 

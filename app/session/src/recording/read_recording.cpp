@@ -1,4 +1,4 @@
-#include "recording/read_recording.h"
+#include "thimble/session/recording.h"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,6 @@
 
 #include "recording/h5_handle.h"
 #include "recording/h5_types.h"
-#include "recording/recording_columns.h"
 
 namespace thimble::session {
 namespace {

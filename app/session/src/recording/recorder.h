@@ -7,11 +7,11 @@
 #include <optional>
 #include <thread>
 
-#include "recording/record_ring.h"
 #include "recording/recording_file.h"
-#include "recording/recording_info.h"
+#include "spsc_ring.h"
 #include "thimble/driver/result.h"
 #include "thimble/driver/tick_record.h"
+#include "thimble/session/recording.h"
 
 namespace thimble::session {
 
@@ -62,7 +62,7 @@ class Recorder {
   void stop_thread();
 
   RecordingFile file_;
-  RecordRing ring_{kRingTicks};
+  SpscRing<driver::TickRecord> ring_{kRingTicks};
   std::atomic<std::uint64_t> dropped_{0};
   std::optional<driver::Error> trouble_;  // of whoever writes
   std::atomic<bool> stop_{false};

@@ -1,4 +1,4 @@
-#include "recording/recording_columns.h"
+#include "thimble/session/recording.h"
 
 #include <array>
 

@@ -13,8 +13,8 @@
 
 #include "recording/h5_handle.h"
 #include "recording/h5_types.h"
-#include "recording/recording_columns.h"
 #include "thimble/driver/fault.h"
+#include "thimble/session/recording.h"
 
 namespace thimble::session {
 namespace {

@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "recording/recording_info.h"
 #include "thimble/driver/result.h"
 #include "thimble/driver/tick_record.h"
+#include "thimble/session/recording.h"
 
 namespace thimble::session {
 
@@ -58,10 +58,5 @@ class RecordingFile {
   std::uint64_t rows_place_ = 0, complete_place_ = 0;
   std::vector<unsigned char> column_;  // of the ticks being written
 };
-
-/// Writes a whole recording at once. The error is that of what cannot be written.
-/// Real-time: never from the servo thread.
-driver::Result<void> write_recording(const std::filesystem::path& path, const RecordingInfo& info,
-                                     std::span<const driver::TickRecord> ticks);
 
 }  // namespace thimble::session

@@ -13,6 +13,7 @@ driver::Result<void> RecordingSwitch::begin(const std::filesystem::path& path,
   auto recorder = Recorder::open(path, info, ticks_max);
   if (!recorder) return recorder.error();
   recorder_ = std::move(recorder).value();
+  by_thread_ = by_thread;
   if (by_thread) recorder_->start_thread();
   current_.store(recorder_.get(), std::memory_order_seq_cst);
   return {};

@@ -6,50 +6,47 @@
 #include <memory>
 
 #include "recording/recorder.h"
+#include "thimble/session/tick_observer.h"
 
 namespace thimble::session {
 
-/// Begins and ends recordings while the servo runs: the servo takes whatever recorder there is in
-/// each tick, and waits for nobody.
-class RecordingSwitch {
+/// The recordings of a run, which begin and end while the servo runs: it hands each tick to
+/// whatever recorder there is, and waits for nobody.
+class RecordingSwitch final : public TickObserver {
  public:
-  /// Takes one tick (the servo loop's sink). Real-time: safe.
-  void operator()(const driver::TickRecord& tick) noexcept {
+  /// Takes one tick. Real-time: safe; of a recording begun without a thread no, it writes.
+  void take(const driver::TickRecord& tick) noexcept override {
+    if (!on()) return;
     // Told before the recorder is looked at, so that nobody takes it away meanwhile.
     busy_.store(true, std::memory_order_seq_cst);
-    if (Recorder* recorder = current_.load(std::memory_order_seq_cst)) (*recorder)(tick);
-    busy_.store(false, std::memory_order_release);
-  }
-
-  /// Writes what has come, on the servo's own thread: for virtual time. Real-time: no.
-  void serve_if_half_full() noexcept {
-    Recorder* recorder = current_.load(std::memory_order_acquire);
-    if (recorder == nullptr || recorder->waiting() < Recorder::kRingTicks / 2) return;
-    busy_.store(true, std::memory_order_seq_cst);
-    recorder = current_.load(std::memory_order_seq_cst);
-    if (recorder != nullptr) recorder->serve();
+    if (Recorder* recorder = current_.load(std::memory_order_seq_cst)) {
+      (*recorder)(tick);
+      if (!by_thread_ && recorder->waiting() >= Recorder::kRingTicks / 2) recorder->serve();
+    }
     busy_.store(false, std::memory_order_release);
   }
 
   /// Begins a recording of at most `ticks_max` ticks; ends the one before. With `by_thread` a
-  /// thread writes, otherwise `serve_if_half_full`. Real-time: never from the servo thread.
+  /// thread writes, otherwise the servo's own, for virtual time. Real-time: never from the servo
+  /// thread.
   driver::Result<void> begin(const std::filesystem::path& path, const RecordingInfo& info,
                              std::uint64_t ticks_max, bool by_thread);
   /// Ends the recording, if there is one. The error is that of Recorder::finish.
   /// Real-time: never from the servo thread.
   driver::Result<void> stop();
 
-  /// Tells whether ticks are recorded. Real-time: safe.
+  /// Returns whether ticks are recorded. Real-time: safe.
   bool on() const noexcept { return current_.load(std::memory_order_relaxed) != nullptr; }
-  /// Tells how many ticks the recording lacks. On the thread that begins and ends.
+  /// Returns how many ticks the recording lacks. On the thread that begins and ends.
   std::uint64_t dropped() const noexcept { return recorder_ ? recorder_->dropped() : 0; }
-  /// Gives the recorder; null if there is none. On the thread that begins and ends.
+  /// Returns the recorder; null if there is none. On the thread that begins and ends.
   Recorder* recorder() noexcept { return recorder_.get(); }
 
  private:
   std::unique_ptr<Recorder> recorder_;
   std::atomic<Recorder*> current_{nullptr};
   std::atomic<bool> busy_{false};
+  bool by_thread_ = false;  // of the current one; written before it is shown
 };
 
 }  // namespace thimble::session

@@ -9,30 +9,6 @@
 namespace thimble::session {
 namespace {
 
-std::array<double, 3> plain(const Eigen::Vector3d& v) {
-  return {v.x(), v.y(), v.z()};
-}
-
-driver::TickRecord record_of(const driver::DeviceState& state,
-                             const driver::ForceCommand& command) {
-  driver::TickRecord record;
-  record.tick = state.tick;
-  record.time_ns = record.due_ns = state.time_ns;
-  record.p_WT = plain(state.p_WT);
-  record.v_WT = plain(state.v_WT);
-  record.p_WP = plain(command.touch.p_WP);
-  record.n_W = plain(command.touch.n_W);
-  record.f_wanted_W = record.f_sent_W = plain(command.f_T_W);
-  record.depth = command.touch.depth;
-  record.feature = command.touch.feature;
-  record.object = command.touch.object;
-  record.hops = command.touch.hops;
-  record.in_contact = command.touch.in_contact;
-  record.fresh = true;
-  record.stage = driver::DeviceStage::kActive;
-  return record;
-}
-
 double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   // Exact for small angles too.
   return std::atan2(a.cross(b).norm(), a.dot(b));
@@ -73,7 +49,11 @@ TrajectoryComparison replay_trajectory(const std::vector<TrajectoryPoint>& traje
                std::min(pressed, recorded) == 0) {
       ++compared.contact_disagrees;
     }
-    if (sink) sink(record_of(state, command));
+    if (!sink) continue;
+    driver::TickRecord record = driver::record_of(state, command);
+    record.f_sent_W = record.f_wanted_W;  // no gate stands between
+    record.stage = driver::DeviceStage::kActive;
+    sink(record);
   }
   compared.ticks = ticks;
   for (double* sum : {&compared.force_rms, &compared.recorded_rms, &compared.error_rms}) {

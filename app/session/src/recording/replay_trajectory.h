@@ -1,12 +1,15 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "recording/trajectory_file.h"
 #include "thimble/driver/tick_record.h"
 #include "thimble/scene/scene_objects.h"
+#include "thimble/session/recording.h"
 
 namespace thimble::session {
 
@@ -32,5 +35,19 @@ struct TrajectoryComparison {
 TrajectoryComparison replay_trajectory(
     const std::vector<TrajectoryPoint>& trajectory_W, double rate, scene::SceneObjects& objects,
     const std::function<void(const driver::TickRecord&)>& sink = {});
+
+/// A trajectory that touched a scene.
+struct TrajectoryReplay {
+  Recording felt;  ///< What the scene answered.
+  TrajectoryComparison compared;
+};
+
+/// Reads a trajectory file and lets its probe touch a scene. `frame`: the object whose mesh file
+/// has the trajectory's frame and unit; "world" or empty: it is told in the world. The error says
+/// what to mend. Real-time: never from the servo thread.
+driver::Result<TrajectoryReplay> replay_trajectory_file(const std::filesystem::path& file,
+                                                        TrajectoryForm form,
+                                                        const std::string& frame,
+                                                        const std::filesystem::path& scene_file);
 
 }  // namespace thimble::session

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "recording/recording_file.h"
-#include "thimble/scene/user_folders.h"
+#include "user_folders.h"
 
 namespace thimble::session {
 namespace {

@@ -3,9 +3,9 @@
 #include <filesystem>
 #include <span>
 
-#include "recording/recording_info.h"
 #include "thimble/driver/result.h"
 #include "thimble/driver/tick_record.h"
+#include "thimble/session/recording.h"
 
 namespace thimble::session {
 

@@ -1,12 +1,10 @@
-#include "recording/write_csv.h"
+#include "thimble/session/recording.h"
 
 #include <array>
 #include <charconv>
 #include <cstring>
 #include <fstream>
 #include <string>
-
-#include "recording/recording_columns.h"
 
 namespace thimble::session {
 namespace {

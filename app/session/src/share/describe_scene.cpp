@@ -2,8 +2,8 @@
 
 #include <numbers>
 
-#include "thimble/driver/arms/falcon/falcon_arm.h"
-#include "thimble/driver/arms/hfab/hfab_models.h"
+#include "arms/falcon/falcon_arm.h"
+#include "arms/hfab/hfab_models.h"
 
 namespace thimble::session {
 namespace {

@@ -37,7 +37,7 @@ void LiveControl::take(const driver::TickRecord& record) noexcept {
   if (paused != paused_) {
     paused_ = paused;
     shared_->set_state(paused ? RunState::kPaused : RunState::kRunning);
-    if (simulation_ != nullptr && real_time_) simulation_->hand().hold(paused);
+    if (simulation_ != nullptr && real_time_) simulation_->hold(paused);
   }
   if (hand_by_mouse_ && simulation_ != nullptr) lead_hand();
   if (paused_ && !real_time_) wait_while_paused();

@@ -12,15 +12,16 @@
 #include "thimble/render/scene_touch.h"
 #include "thimble/scene/arm_simulation.h"
 #include "thimble/scene/scene_file.h"
+#include "thimble/session/tick_observer.h"
 
 namespace thimble::session {
 
-/// Does on the servo's thread what viewers ask for: knobs, pause, and the hand that the mouse
+/// What viewers ask for, done on the servo's thread: knobs, pause, and the hand that the mouse
 /// leads. It is the force law of a run that is shared; one that is not has none of it.
 ///
 /// Pause in real time: the loop goes on, the force fades out within kFade, the simulated hand
 /// stands still; afterwards the force fades in again. In virtual time the loop itself stands still.
-class LiveControl {
+class LiveControl final : public TickObserver {
  public:
   static constexpr double kFade = 0.3;  ///< s; 0.02 N per tick of 1 kHz for 6 N. [chosen]
 
@@ -38,9 +39,8 @@ class LiveControl {
   /// Real-time: safe.
   driver::ForceCommand operator()(const driver::DeviceState& state) noexcept;
 
-  /// Takes one tick (the servo loop's sink). Real-time: safe; in virtual time it waits while the
-  /// run is paused.
-  void take(const driver::TickRecord& record) noexcept;
+  /// Takes one tick. Real-time: safe; in virtual time it waits while the run is paused.
+  void take(const driver::TickRecord& record) noexcept override;
 
  private:
   void lead_hand() noexcept;

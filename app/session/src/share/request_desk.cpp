@@ -1,9 +1,16 @@
 #include "share/request_desk.h"
 
-#include <cstdio>
-#include <ctime>
+#include <unistd.h>
 
+#include <ctime>
+#include <utility>
+
+#include "events/event_words.h"
 #include "interrupt.h"
+#include "log/logger.h"
+#include "run_records.h"
+#include "setup.h"
+#include "thimble/scene/scene_file.h"
 
 namespace thimble::session {
 namespace {
@@ -22,26 +29,47 @@ std::string recording_name(const std::string& scene) {
 
 void RequestDesk::record(const SharedRun::RecordOrder& order) {
   last_order_ = order.number;
-  if (auto stopped = session_.recording().stop(); !stopped) {
-    std::fprintf(stderr, "thimble: %s\n", stopped.error().message.c_str());
+  if (auto stopped = session_.end_recording(); !stopped) {
+    scene::logger().error("{}", stopped.error().message);
   }
   if (!order.record) return;
   const std::string path = order.path.empty() ? recording_name(session_.scene().name) : order.path;
   if (auto begun = session_.begin_recording(path); !begun) {
-    std::fprintf(stderr, "thimble: %s\n", begun.error().message.c_str());
+    scene::logger().error("{}", begun.error().message);
   }
 }
 
 void RequestDesk::step() {
   SharedRun& shared = *session_.shared();
+  const RecordingSwitch& recording = session_.records().recording;
   shared.watch_viewers();
+  driver::TickRecord newest;
+  if (session_.newest().load(newest)) watch_.step(at_tick(newest.tick, newest.time_ns));
   if (const auto order = shared.record_order_after(last_order_)) record(*order);
-  shared.set_recording(session_.recording().on(), session_.recording().dropped());
+  shared.set_recording(recording.on(), recording.dropped());
   const bool closed = viewer_ && viewer_->closed();
   if (shared.stop_asked() || (closed && ends_with_viewer_)) {
+    if (!ended_) scene::logger().info("The run was ended by a viewer.");
     ended_ = true;
     scene::ask_to_stop();
   }
+}
+
+std::unique_ptr<RequestDesk> open_desk(Session& session, ViewerWish wish) {
+  if (session.shared() == nullptr) return nullptr;
+  std::unique_ptr<ViewerProcess> viewer;
+  if (opens_viewer(wish, session.real_time(), has_display(), isatty(STDERR_FILENO) != 0)) {
+    auto started = ViewerProcess::start(session.shared()->name());
+    if (started) {
+      viewer = std::move(started).value();
+    } else {
+      scene::logger().error("{}", started.error().message);
+    }
+  } else if (wish == ViewerWish::kAsked) {
+    scene::terminal().info("No screen (DISPLAY, WAYLAND_DISPLAY): watch by `thimble view {}`.",
+                           session.shared()->name());
+  }
+  return std::make_unique<RequestDesk>(session, std::move(viewer), session.setup().hand_by_mouse());
 }
 
 }  // namespace thimble::session

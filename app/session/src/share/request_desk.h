@@ -3,7 +3,11 @@
 #include <cstdint>
 #include <memory>
 
+#include "log/logger.h"
+#include "share/shared_run.h"
 #include "share/viewer_process.h"
+#include "share/viewer_watch.h"
+#include "thimble/scene/scene_file.h"
 #include "thimble/session/session.h"
 
 namespace thimble::session {
@@ -15,7 +19,10 @@ class RequestDesk {
   /// Serves `session`, which must be shared. `viewer` is the one that was opened with the run, if
   /// any; with `ends_with_viewer` the run ends when that is closed.
   RequestDesk(Session& session, std::unique_ptr<ViewerProcess> viewer, bool ends_with_viewer)
-      : session_(session), viewer_(std::move(viewer)), ends_with_viewer_(ends_with_viewer) {}
+      : session_(session),
+        viewer_(std::move(viewer)),
+        watch_(*session.shared(), scene::run_logger(session.scene().name)),
+        ends_with_viewer_(ends_with_viewer) {}
 
   /// Looks once; call it about ten times a second.
   void step();
@@ -28,9 +35,28 @@ class RequestDesk {
 
   Session& session_;
   std::unique_ptr<ViewerProcess> viewer_;
+  ViewerWatch watch_;
   bool ends_with_viewer_;
   bool ended_ = false;
   std::uint64_t last_order_ = 0;
 };
+
+/// Whether a run opens a viewer.
+enum class ViewerWish {
+  kIfWatched,  ///< Where a person watches the run in real time.
+  kAsked,      ///< Wherever there is a screen.
+  kNever,
+};
+
+/// Returns whether a run opens a viewer. `terminal`: a person looks at standard error.
+constexpr bool opens_viewer(ViewerWish wish, bool real_time, bool display, bool terminal) noexcept {
+  if (wish == ViewerWish::kNever || !display) return false;
+  return wish == ViewerWish::kAsked || (real_time && terminal);
+}
+
+/// Opens the viewer of a session if one is wished for, or says on standard error how to watch
+/// without, and returns who serves all that come; null if the run is not shared. Real-time: never
+/// from the servo thread.
+std::unique_ptr<RequestDesk> open_desk(Session& session, ViewerWish wish);
 
 }  // namespace thimble::session

@@ -6,10 +6,10 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "scene_poses.h"
 #include "thimble/driver/snapshot.h"
 #include "thimble/driver/tick_record.h"
 #include "thimble/render/body_patch.h"
-#include "thimble/scene/scene_poses.h"
 
 namespace thimble::session {
 
@@ -23,10 +23,11 @@ namespace thimble::session {
 // Frames: W world.
 
 /// Changes with every change of this file. A reader of another version refuses.
-inline constexpr std::uint32_t kSharedVersion = 2;
+inline constexpr std::uint32_t kSharedVersion = 3;
 /// Stands in `SharedHead::ready` of a segment that is complete: "thimble1" in ASCII.
 inline constexpr std::uint64_t kSharedReady = 0x31656c626d696874;
 
+inline constexpr std::size_t kViewersMost = 16;    ///< Chosen: more than look on at a time.
 inline constexpr std::size_t kKnobsMost = 64;      ///< Chosen: more than a person can find.
 inline constexpr std::size_t kObjectsMost = 1024;  ///< Chosen, as a bound for readers.
 /// Is the most bytes that a reader maps: 100 million triangles and a long ring. Chosen.
@@ -164,6 +165,7 @@ struct SharedRequests {
   std::atomic<std::uint64_t> record_number;  ///< Grows with each order; odd: record, even: stop.
   driver::Snapshot<SharedText<1024>> record_path;  ///< Where to; empty: the run chooses.
   driver::Snapshot<SharedHand> hand;
+  std::array<std::atomic<std::uint64_t>, kViewersMost> viewers;  ///< Their pids; 0: a free place.
 };
 
 /// Is what changes while the run goes on.
@@ -175,7 +177,7 @@ struct SharedLive {
   std::atomic<std::uint64_t> record_dropped;          ///< Ticks that a recording lacks.
   std::atomic<std::uint64_t> shape_moves;             ///< Vertices moved for good so far.
   driver::Snapshot<SharedText<1024>> recording_path;  ///< Of the current or last recording.
-  driver::Snapshot<scene::ScenePoses> poses;
+  driver::Snapshot<ScenePoses> poses;
   driver::Snapshot<render::BodyPatch> patch;
   std::array<SharedKnobState, kKnobsMost> knobs;
   SharedRequests requests;

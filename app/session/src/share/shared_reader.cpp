@@ -69,7 +69,24 @@ SharedReader::SharedReader(std::unique_ptr<SharedMemory> memory, std::span<std::
       scene_(std::move(scene)),
       live_(reinterpret_cast<SharedLive*>(bytes.data() + kSharedLiveOffset)),
       shaped_(table_in<const SharedShaped>(bytes, scene_.shaped)),
-      ring_(table_in<const SharedRingSlot>(bytes, scene_.ring)) {}
+      ring_(table_in<const SharedRingSlot>(bytes, scene_.ring)) {
+  sign_in();
+}
+
+SharedReader::~SharedReader() {
+  if (place_ == nullptr) return;
+  auto self = static_cast<std::uint64_t>(getpid());
+  place_->compare_exchange_strong(self, 0);
+}
+
+void SharedReader::sign_in() noexcept {
+  for (auto& place : live_->requests.viewers) {
+    std::uint64_t nobody = 0;
+    if (!place.compare_exchange_strong(nobody, static_cast<std::uint64_t>(getpid()))) continue;
+    place_ = &place;
+    return;
+  }
+}
 
 RunState SharedReader::state() const {
   const std::uint32_t state = live_->state.load(std::memory_order_acquire);
@@ -115,8 +132,8 @@ std::uint64_t SharedReader::ticks_since(std::uint64_t& serial,
   return lost;
 }
 
-bool SharedReader::poses(scene::ScenePoses& poses) const noexcept {
-  scene::ScenePoses seen;
+bool SharedReader::poses(ScenePoses& poses) const noexcept {
+  ScenePoses seen;
   if (!live_->poses.load(seen) || !sound(seen)) return false;
   poses = seen;
   return true;
@@ -244,8 +261,8 @@ bool SharedReader::sound(driver::TickRecord& record) const noexcept {
   return known;
 }
 
-bool SharedReader::sound(scene::ScenePoses& poses) const noexcept {
-  bool good = poses.count <= scene::ScenePoses::kMost;
+bool SharedReader::sound(ScenePoses& poses) const noexcept {
+  bool good = poses.count <= ScenePoses::kMost;
   for (std::size_t i = 0; good && i < poses.count; ++i) {
     good = poses.object[i] >= 0 &&
            static_cast<std::size_t>(poses.object[i]) < scene_.objects.size() &&

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -29,6 +30,11 @@ class SharedReader {
   /// Reads memory that somebody else keeps, aligned to 64, for tests.
   static driver::Result<std::unique_ptr<SharedReader>> over(std::span<std::byte> memory);
 
+  SharedReader(const SharedReader&) = delete;
+  SharedReader& operator=(const SharedReader&) = delete;
+  /// Signs out of the run, which knows by name who looks on.
+  ~SharedReader();
+
   /// Gives what does not change.
   const SharedScene& scene() const noexcept { return scene_; }
   /// Tells the name of the run; empty if it has none.
@@ -45,10 +51,10 @@ class SharedReader {
   /// moves `serial` to the last one. Tells how many were overwritten before they could be read.
   std::uint64_t ticks_since(std::uint64_t& serial, std::vector<driver::TickRecord>& ticks) const;
   /// Copies where the objects that move are; false if nothing was stored.
-  bool poses(scene::ScenePoses& poses) const noexcept;
+  bool poses(ScenePoses& poses) const noexcept;
   /// Copies the newest dent; false if nothing was stored. No triangles: nothing is dented.
   bool patch(render::BodyPatch& patch) const noexcept;
-  /// Counts the patches so far: a viewer need only draw anew if it has grown.
+  /// Returns how many patches there were so far: a viewer need only draw anew if it has grown.
   std::uint64_t patch_count() const noexcept { return live_->patch.count(); }
   /// Puts the vertices of a shaped object, as many as it has, where they are now (W, m).
   /// Vertices that never moved are left alone, so begin with those of `scene`.
@@ -92,8 +98,9 @@ class SharedReader {
 
  private:
   SharedReader(std::unique_ptr<SharedMemory> memory, std::span<std::byte> bytes, SharedScene scene);
+  void sign_in() noexcept;
   bool sound(driver::TickRecord& record) const noexcept;
-  bool sound(scene::ScenePoses& poses) const noexcept;
+  bool sound(ScenePoses& poses) const noexcept;
   bool sound(render::BodyPatch& patch) const noexcept;
   bool take_turn() noexcept;
   void end_turn() noexcept;
@@ -104,6 +111,7 @@ class SharedReader {
   SharedLive* live_;
   std::span<const SharedShaped> shaped_;
   std::span<const SharedRingSlot> ring_;
+  std::atomic<std::uint64_t>* place_ = nullptr;  // among the viewers; null if all were taken
   mutable std::uint64_t rejected_ = 0;
 };
 

@@ -20,6 +20,11 @@ void put(const std::string& text, SharedText<N>& to) {
   std::copy_n(text.begin(), std::min(text.size(), N - 1), to.begin());
 }
 
+/// Returns whether there is such a process: signal 0 asks and sends nothing [kill(2)].
+bool is_alive(std::uint64_t pid) noexcept {
+  return pid > 0 && pid <= INT32_MAX && kill(static_cast<pid_t>(pid), 0) == 0;
+}
+
 /// Finds where every table goes, and how long the whole is.
 std::uint64_t lay_out(const SharedScene& scene, std::size_t ring_ticks, SharedHead& head) {
   std::uint64_t end = kSharedTablesOffset;
@@ -211,11 +216,22 @@ std::optional<SharedRun::RecordOrder> SharedRun::record_order_after(std::uint64_
   return order;
 }
 
+std::vector<std::uint64_t> SharedRun::viewers() const {
+  std::vector<std::uint64_t> pids;
+  for (const auto& place : live_->requests.viewers) {
+    if (const std::uint64_t pid = place.load(); pid != 0) pids.push_back(pid);
+  }
+  return pids;
+}
+
 void SharedRun::watch_viewers() noexcept {
+  for (auto& place : live_->requests.viewers) {
+    std::uint64_t pid = place.load();
+    if (pid != 0 && !is_alive(pid)) place.compare_exchange_strong(pid, 0);
+  }
   SharedHand seen;
   if (!live_->requests.hand.load(seen, 1) || seen.active != 1) return;
-  // Signal 0 asks whether there is such a process and sends nothing [kill(2)].
-  if (seen.pid > 0 && kill(static_cast<pid_t>(seen.pid), 0) == 0) return;
+  if (seen.pid > 0 && is_alive(static_cast<std::uint64_t>(seen.pid))) return;
   std::uint64_t nobody = 0;
   auto& writer = live_->requests.writer;
   if (!writer.compare_exchange_strong(nobody, static_cast<std::uint64_t>(getpid()))) return;

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "share/shared_layout.h"
 #include "share/shared_memory.h"
@@ -37,7 +38,7 @@ class SharedRun {
 
   // What the servo stores. One thread; Real-time: safe.
   void store_tick(const driver::TickRecord& record) noexcept;
-  void store_poses(const scene::ScenePoses& poses) noexcept { live_->poses.store(poses); }
+  void store_poses(const ScenePoses& poses) noexcept { live_->poses.store(poses); }
   void store_patch(const render::BodyPatch& patch) noexcept { live_->patch.store(patch); }
   /// Stores where a vertex of a shaped object has gone for good (W, m). `shaped` counts through
   /// the table; one outside is ignored.
@@ -77,7 +78,12 @@ class SharedRun {
   /// Gives the newest order, if there is one after `number`. Real-time: never from the servo
   /// thread.
   std::optional<RecordOrder> record_order_after(std::uint64_t number) const;
-  /// Lets the hand go if the viewer that holds it has died. Real-time: never from the servo thread.
+  /// Returns a knob by its number.
+  const SharedScene::Knob& knob(std::size_t knob) const noexcept { return knobs_[knob]; }
+  /// Returns the pids of the viewers that look on. Real-time: never from the servo thread.
+  std::vector<std::uint64_t> viewers() const;
+  /// Lets the hand go if the viewer that holds it has died, and forgets viewers that died.
+  /// Real-time: never from the servo thread.
   void watch_viewers() noexcept;
 
  private:

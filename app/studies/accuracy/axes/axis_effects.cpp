@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,10 +12,9 @@
 namespace thimble::app {
 namespace {
 
+// The subjects are the program's own; one that is refused is a mistake of theirs.
 std::unique_ptr<render::ObjectTouch> built(const CostSubject& subject) {
-  auto touch = subject.build();
-  if (!touch) throw std::invalid_argument(subject.name + ": " + touch.error().message);
-  return std::move(touch).value();
+  return subject.build().value();
 }
 
 // What is missing without the effect, mN RMS over the ticks of contact.

@@ -103,7 +103,8 @@ AccuracyAxis encoder_axis() {
 AccuracyAxis encoder_friction_axis() {
   AccuracyAxis axis;
   axis.name = "encoder_friction";
-  axis.title = "What the steps of the encoders cost: trembling of friction under a creeping hand";
+  axis.title =
+      "What the steps of the encoders cost: limit cycles of friction under a creeping hand";
   axis.knob = "encoder step at the tip";
   axis.knob_unit = "um";
   axis.metric = "force above 50 Hz at 1 mm/s, RMS";
@@ -122,13 +123,14 @@ AccuracyAxis encoder_friction_axis() {
     for (const double um : kSteps) {
       FrictionRigSettings rig;
       rig.encoder_step = 1e-6 * um;
-      line.points.push_back({.name = std::to_string(static_cast<int>(um)) + "um",
-                             .knob = um,
-                             .error = [&which, rig] { return 1e3 * creep_of(which, rig).tremble; },
-                             .prepare = [&which, rig] { return friction_work(which, rig); },
-                             .ticks = kFrictionTicks,
-                             .is_default = um == kDefaultStep && which.name == "bristle",
-                             .law = {}});
+      line.points.push_back(
+          {.name = std::to_string(static_cast<int>(um)) + "um",
+           .knob = um,
+           .error = [&which, rig] { return 1e3 * creep_of(which, rig).limit_cycle; },
+           .prepare = [&which, rig] { return friction_work(which, rig); },
+           .ticks = kFrictionTicks,
+           .is_default = um == kDefaultStep && which.name == "bristle",
+           .law = {}});
     }
     axis.lines.push_back(std::move(line));
   }

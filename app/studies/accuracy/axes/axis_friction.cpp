@@ -12,12 +12,12 @@ constexpr double kForce = 0.5;  // N, what Coulomb's friction gives
 // How far a stuck bristle gives before it slides, mm.
 constexpr double kLengths[] = {0.05, 0.1, 0.2, 0.4, 0.8, 1.6};
 
-enum class Wrong { kTrembles, kTooLight };
+enum class Wrong { kLimitCycle, kTooLight };
 
 // In mN.
 double error_of(const FrictionCase& which, Wrong wrong) {
   const Creep creep = creep_of(which, {});
-  return 1e3 * (wrong == Wrong::kTrembles ? creep.tremble : std::abs(kForce - creep.mean));
+  return 1e3 * (wrong == Wrong::kLimitCycle ? creep.limit_cycle : std::abs(kForce - creep.mean));
 }
 
 AccuracyPoint point_of(const FrictionCase& which, const std::string& name, double knob,
@@ -58,9 +58,10 @@ AccuracyAxis axis_of(Wrong wrong) {
   }
   axis.lines = {std::move(bristles), std::move(others)};
   axis.default_words =
-      "Cheaper models tremble, or creep under any load; but for the stiction point, which is felt "
-      "as "
-      "little here for a twentieth less. The bristle trembles a quarter as much, and is silent at "
+      "Cheaper models have larger limit cycles, or creep under any load; but for the stiction "
+      "point, "
+      "which is felt as little here for a twentieth less. The bristle has a quarter of it, and "
+      "none at "
       "rest whatever the delay, which `thimble study friction` shows.";
   return axis;
 }
@@ -68,15 +69,14 @@ AccuracyAxis axis_of(Wrong wrong) {
 }  // namespace
 
 AccuracyAxis friction_axis() {
-  AccuracyAxis axis = axis_of(Wrong::kTrembles);
+  AccuracyAxis axis = axis_of(Wrong::kLimitCycle);
   axis.name = "friction";
-  axis.title = "Models of friction under a hand that creeps at 1 mm/s: trembling";
+  axis.title = "Models of friction under a hand that creeps at 1 mm/s: limit cycles";
   axis.metric = "force above 50 Hz, RMS";
   axis.left_out =
       "Rest after a stop, drift and delays, which are in `thimble study friction`. The letters are "
       "those of its table; C, the sign of a smoothed velocity, is not in the product, for it "
-      "trembles as "
-      "B does and lags.";
+      "has the limit cycle of B and lags.";
   return axis;
 }
 

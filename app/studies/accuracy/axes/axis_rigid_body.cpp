@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -86,10 +85,9 @@ class Product {
     render::RigidBodySettings settings;
     settings.mass.mass = 0.1;
     settings.mass.inertia = spin().inertia;
-    auto body = render::RigidBody::build(settings);
-    if (!body) throw std::invalid_argument(body.error().message);
-    body->set_momentum({0, 0, 0}, spin().inertia.cwiseProduct(spin().omega));
-    return *std::move(body);
+    render::RigidBody body = render::RigidBody::build(settings).value();  // a body that may be
+    body.set_momentum({0, 0, 0}, spin().inertia.cwiseProduct(spin().omega));
+    return body;
   }
   render::RigidBody body_;
   double h_;

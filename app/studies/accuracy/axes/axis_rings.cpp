@@ -1,6 +1,5 @@
 #include <Eigen/Core>
 #include <memory>
-#include <stdexcept>
 #include <string>
 
 #include "body/dent/bendable_polygon.h"
@@ -35,17 +34,16 @@ class SoftRing {
 
  private:
   static render::BendablePolygon build(int rings, bool whole, double reach) {
-    auto mesh = render::ContactMesh::build(kCostRing.mesh(kAround, kAcross));
-    if (!mesh) throw std::invalid_argument(mesh.error().message);
+    // A ring is closed and its settings are this file's, so nothing of it can be refused.
+    auto mesh = render::ContactMesh::build(kCostRing.mesh(kAround, kAcross)).value();
     render::DentSettings settings;
     settings.rings = rings;
     settings.whole = whole;
     settings.reach = reach;
     settings.remainder = 1e-5;  // so that rounds are not what is seen
-    auto body = render::BendablePolygon::build(
-        std::make_shared<const render::ContactMesh>(*std::move(mesh)), settings);
-    if (!body) throw std::invalid_argument(body.error().message);
-    return std::move(body).value();
+    return render::BendablePolygon::build(
+               std::make_shared<const render::ContactMesh>(std::move(mesh)), settings)
+        .value();
   }
 
   render::BendablePolygon body_;

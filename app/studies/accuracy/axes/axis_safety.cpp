@@ -4,11 +4,11 @@
 #include <string>
 #include <utility>
 
+#include "energy_choice.h"
 #include "studies/accuracy/axes/axes.h"
 #include "studies/accuracy/guarded_wall.h"
 #include "studies/accuracy/hand_signal.h"
 #include "studies/accuracy/held_motion.h"
-#include "thimble/scene/energy_choice.h"
 
 namespace thimble::app {
 namespace {

@@ -1,6 +1,5 @@
 #include <cmath>
 #include <memory>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -28,9 +27,8 @@ struct Searched {
       : mesh(build(across)), search(render::make_search(mesh, choice)) {}
 
   static render::ContactMesh build(int across) {
-    auto built = render::ContactMesh::build(kCostRing.mesh(2 * across, across));
-    if (!built) throw std::invalid_argument(built.error().message);
-    return *std::move(built);
+    // A ring is closed, so it is not refused.
+    return render::ContactMesh::build(kCostRing.mesh(2 * across, across)).value();
   }
 
   render::ContactMesh mesh;

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "axis_dynamics.h"
 #include "studies/accuracy/axes/axes.h"
 #include "studies/accuracy/pushed_arm.h"
-#include "thimble/device_sim/axis_dynamics.h"
 
 namespace thimble::app {
 namespace {
@@ -91,8 +91,10 @@ class Exact {
  public:
   Exact(int substeps, bool dry)
       : dynamics_(
-            {.mass = Arm::kMass, .viscous = Arm::kViscous, .coulomb = dry ? Arm::kCoulomb : 0},
-            hand_of(dry)),
+            device_sim::AxisDynamics::make(
+                {.mass = Arm::kMass, .viscous = Arm::kViscous, .coulomb = dry ? Arm::kCoulomb : 0},
+                hand_of(dry))
+                .value()),
         substeps_(substeps) {}
 
   LineMotion tick(double force) noexcept {

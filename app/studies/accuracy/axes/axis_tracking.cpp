@@ -5,7 +5,6 @@
 #include <limits>
 #include <map>
 #include <memory>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -43,10 +42,9 @@ const FollowedSurface& surface() {
     render::TriangleMesh mesh = kCostRing.mesh(2 * kAcross, kAcross);
     Draw draw(17);
     for (Vector3d& p : mesh.vertices) p += draw.uniform(-kHills, kHills) * kCostRing.normal(p);
-    auto built = render::ContactMesh::build(mesh);
-    if (!built) throw std::invalid_argument(built.error().message);
     FollowedSurface found;
-    found.mesh = std::make_shared<const render::ContactMesh>(*std::move(built));
+    found.mesh = std::make_shared<const render::ContactMesh>(
+        render::ContactMesh::build(mesh).value());  // closed still, for the hills are low
     found.tree = render::make_search(*found.mesh, SearchChoice::kTree);
     found.linear = render::make_search(*found.mesh, SearchChoice::kLinear);
     return found;

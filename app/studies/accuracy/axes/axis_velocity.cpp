@@ -143,9 +143,9 @@ AccuracyAxis velocity_stiffness_axis() {
   axis.threshold = 1 / 0.8;  // [STABILITY 6, after Choi and Tan 2004]
   axis.threshold_words = "the give of a wall that is felt as hard (0.8 N/mm)";
   axis.default_words =
-      "The difference alone lags less, and shakes more than twice as much (diagram before); the "
-      "pole "
-      "at 100 Hz gives up a tenth of the stiffness for that.";
+      "The difference alone lags less, with more than twice the quantisation noise (diagram "
+      "before); "
+      "the pole at 100 Hz gives up a tenth of the stiffness for that.";
   axis.left_out =
       "Steps of the encoder, so that lag alone is seen: the window that adapts to them and "
       "Levant's "

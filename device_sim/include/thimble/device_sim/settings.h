@@ -4,6 +4,8 @@
 #include <array>
 #include <cstdint>
 
+#include "thimble/driver/result.h"
+
 namespace thimble::device_sim {
 
 // Constants of the simulated arm. All of them are data: app/arms/*.yaml gives each with its unit
@@ -45,9 +47,9 @@ struct WiringSettings {
   /// one for each output.
   Eigen::Vector3d motor_gain{1, 1, 1};
 
-  /// Throws std::invalid_argument if it names a joint that is not there. Real-time: never from the
-  /// servo thread.
-  void check() const;
+  /// Returns an error if it names a joint that is not there or a gain is not finite. Real-time:
+  /// never from the servo thread.
+  driver::Result<void> check() const;
   /// Turns the encoders' counts, joint by joint, into those that the inputs see. Real-time: safe.
   Eigen::Vector3d inputs(const Eigen::Vector3d& counts) const noexcept;
   /// Turns the currents of the outputs into those of the motors, joint by joint, A. Real-time:

@@ -28,4 +28,15 @@ constexpr std::string_view name(BoardKind board) noexcept {
   return index < kBoardNames.size() ? kBoardNames[index] : "other";
 }
 
+/// What a HID report descriptor says of a device that exchanges one report each way.
+struct HidReports {
+  std::uint16_t usage_page = 0;  ///< Of the first collection.
+  std::uint16_t usage = 0;       ///< Of the first collection.
+  std::size_t in_bytes = 0;      ///< Length of a report to the host; 0: there is none.
+  std::size_t out_bytes = 0;     ///< Length of a report to the device; 0: there is none.
+  bool numbered = false;         ///< Reports have ids, so that there may be several of each.
+
+  friend bool operator==(const HidReports&, const HidReports&) = default;
+};
+
 }  // namespace thimble::driver

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "thimble/driver/board.h"
-#include "thimble/driver/hid_descriptor.h"
 #include "thimble/driver/result.h"
 #include "thimble/driver/transports.h"
 

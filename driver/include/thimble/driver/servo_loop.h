@@ -4,6 +4,7 @@
 #include <concepts>
 #include <cstdint>
 #include <optional>
+#include <string_view>
 #include <type_traits>
 
 #include "thimble/driver/clock.h"
@@ -51,6 +52,9 @@ enum class ServoEnd : std::uint8_t {
   kStopped,  ///< Somebody set the stop flag.
   kFault,    ///< The device reported a fault; `Device::fault` names it.
 };
+
+/// Returns how a report names an end ("done"). Real-time: safe.
+std::string_view name(ServoEnd end) noexcept;
 
 /// Is a servo loop, tick by tick, for whoever has something to do of his own between two ticks of
 /// virtual time. `run_servo` is nothing but all its ticks.

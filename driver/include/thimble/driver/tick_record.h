@@ -7,6 +7,9 @@
 
 namespace thimble::driver {
 
+struct DeviceState;
+struct ForceCommand;
+
 /// Says where a device is in its life.
 enum class DeviceStage : std::uint8_t {
   kIdle,    ///< Reports are read, zero force is sent.
@@ -40,5 +43,10 @@ struct TickRecord {
   DeviceStage stage = DeviceStage::kIdle;  ///< of the device, after the tick
   Fault fault = Fault::kNone;              ///< that keeps the force off
 };
+
+/// Returns what a tick is known by before its force went through the gate: what the device read and
+/// what the law answered. What was sent, stage, fault and heat are left as they begin.
+/// Real-time: safe.
+TickRecord record_of(const DeviceState& state, const ForceCommand& command) noexcept;
 
 }  // namespace thimble::driver

@@ -21,6 +21,13 @@ struct TransportRead {
   std::uint32_t skipped = 0;  ///< Older reports that were dropped in favour of the newest.
 };
 
+/// How messages stand out of a stream of bytes: by their first and last byte.
+struct Framing {
+  std::byte begin{};         ///< First byte of a message.
+  std::byte end{};           ///< Last byte of a message.
+  std::size_t size_max = 0;  ///< Longest message with both, at most kReportCapacity (arm.h).
+};
+
 /// Carries reports between the host and one arm; knows bytes, not what they mean.
 ///
 /// Implementations neither allocate nor lock after they are opened. A transport is used by one

@@ -5,16 +5,15 @@
 #include <string>
 
 #include "thimble/driver/clock.h"
-#include "thimble/driver/frame_finder.h"
 #include "thimble/driver/result.h"
-#include "thimble/driver/serial_line.h"
 #include "thimble/driver/transport.h"
 
 namespace thimble::driver {
 
-// The wires to real arms. Each keeps the clock by reference (its deadlines are on it), so the clock
-// must outlive the transport. Opening is for set-up; the transports themselves are Real-time: safe,
-// with what their libraries do beneath said at each. driver/README.md has the table.
+// The wires to real arms on HID and serial ports. Each keeps the clock by reference (its deadlines
+// are on it), so the clock must outlive the transport. Opening is for set-up; the transports
+// themselves are Real-time: safe, with what their libraries do beneath said at each.
+// driver/README.md has the table.
 
 /// Opens an arm on USB HID by its node (/dev/hidraw3), for this program alone (NodeLock). Messages
 /// are filled up with zeros to `message_size` bytes (0: sent as they are), with report id 0 in
@@ -47,19 +46,5 @@ struct UsbAddress {
 /// Returns the node of a USB device ("/dev/bus/usb/001/004"). Real-time: never from the servo
 /// thread.
 std::string usb_node(const UsbAddress& address);
-
-/// Is an arm behind an FTDI converter: a serial line for the set-up, then a transport.
-class FtdiLine : public SerialLine {
- public:
-  /// Opens the converter, takes it from the kernel's serial driver if that has it, and claims it,
-  /// which only one program can. Fails with the name of the program that has it.
-  static Result<std::unique_ptr<FtdiLine>> open(const UsbAddress& address);
-
-  /// Turns the line into a transport; the line is of no use afterwards. All transfers are made here
-  /// and used again and again; libusb itself allocates a request block per transfer and takes its
-  /// own (uncontended) locks. FTDI's two status bytes per packet are taken out.
-  virtual Result<std::unique_ptr<Transport>> into_transport(const Framing& framing,
-                                                            const Clock& clock) = 0;
-};
 
 }  // namespace thimble::driver

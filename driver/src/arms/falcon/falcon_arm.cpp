@@ -1,4 +1,4 @@
-#include "thimble/driver/arms/falcon/falcon_arm.h"
+#include "arms/falcon/falcon_arm.h"
 
 namespace thimble::driver::falcon {
 

@@ -1,4 +1,5 @@
 #include "thimble/driver/arms/hfab/hfab_arm.h"
+#include "arms/hfab/hfab_report.h"
 
 #include <algorithm>
 #include <cmath>

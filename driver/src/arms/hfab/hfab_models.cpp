@@ -1,8 +1,8 @@
-#include "thimble/driver/arms/hfab/hfab_models.h"
+#include "arms/hfab/hfab_models.h"
 
 #include <array>
 
-#include "thimble/driver/arms/hfab/hfab_wire.h"
+#include "arms/hfab/hfab_wire.h"
 
 namespace thimble::driver::hfab {
 namespace {

@@ -1,8 +1,8 @@
-#include "thimble/driver/arms/hfab/hfab_report.h"
+#include "arms/hfab/hfab_report.h"
 
 #include <algorithm>
 
-#include "thimble/driver/little_endian.h"
+#include "little_endian.h"
 
 namespace thimble::driver::hfab {
 namespace {

@@ -1,8 +1,8 @@
-#include "thimble/driver/arms/hfab/hfab_wire.h"
+#include "arms/hfab/hfab_wire.h"
 
 #include <algorithm>
 
-#include "thimble/driver/arms/hfab/hfab_report.h"
+#include "arms/hfab/hfab_report.h"
 
 namespace thimble::driver::hfab {
 

@@ -1,11 +1,11 @@
-#include "thimble/driver/arms/woody/woody_proof.h"
+#include "arms/woody/woody_proof.h"
 
 #include <array>
 #include <cstdint>
 #include <optional>
 
+#include "arms/woody/woody_report.h"
 #include "thimble/driver/arm.h"
-#include "thimble/driver/arms/woody/woody_report.h"
 
 namespace thimble::driver::woody {
 namespace {

@@ -1,6 +1,6 @@
-#include "thimble/driver/arms/woody/woody_report.h"
+#include "arms/woody/woody_report.h"
 
-#include "thimble/driver/little_endian.h"
+#include "little_endian.h"
 
 namespace thimble::driver::woody {
 namespace {

@@ -1,4 +1,4 @@
-#include "thimble/driver/arms/woody/woody_wire.h"
+#include "arms/woody/woody_wire.h"
 
 #include <algorithm>
 

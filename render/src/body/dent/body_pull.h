@@ -11,7 +11,7 @@ namespace thimble::render {
 /// What the hand does against the pull is put by, what the pull does for the hand is taken from
 /// that; where it is used up, as the springs' fading may do, the pull does not help the hand along.
 /// It goes softly: a pull that is cut where the last of it is spent, and whole where the hand moves
-/// in again, is a switch, and trembled by all of its force.
+/// in again, is a switch, and has a limit cycle of all of its force.
 /// It never pulls into the surface, so that leaving does not stick. What is left to chance is the
 /// move of one tick, as for every wall [STABILITY 1.6].
 class BodyPull {

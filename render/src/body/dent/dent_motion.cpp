@@ -1,8 +1,9 @@
 #include "body/dent/dent_motion.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <string>
 #include <utility>
@@ -18,19 +19,12 @@ constexpr int kSubstepsMax = 64;
 // of it end.
 constexpr double kSettled = 1e-3;
 
-// Rounds end where what is left moves no vertex by more than this share of the largest dent.
-constexpr double kStill = 1e-5;
-
 // Ticks between two looks at what has settled.
 constexpr int kLookEvery = 16;
 
 // A cursor spring so much stiffer than the surface is rigid to 1e-6 of the dent; stiffer ones would
 // only cost digits.
 constexpr double kRigid = 1e6;
-
-// Nothing swings faster, m/s: strokes are up to 2 m/s [STABILITY 7]. What the cursor throws farther
-// in one tick, as by a lost contact that is found elsewhere, takes energy out here, never in.
-constexpr double kSpeedMax = 10;
 
 }  // namespace
 
@@ -80,13 +74,10 @@ driver::Result<DentMotion> DentMotion::build(std::shared_ptr<const VertexLinks> 
   motion.substeps_ = settings.substeps;
   if (!(needed <= motion.substeps_)) {
     if (!(needed <= kSubstepsMax)) {
-      char text[320];
-      std::snprintf(text, sizeof text,
-                    "The integrator %s bears steps up to %.3g ms on this dent, and the tick takes "
-                    "%.3g ms: soften the springs, add mass or dampers, or use implicit_euler.",
-                    std::string(name_of(settings.integrator)).c_str(), limit * 1e3,
-                    settings.step * 1e3);
-      return driver::Error{text};
+      return driver::Error{fmt::format(
+          "The integrator {} bears steps up to {:.3g} ms on this dent, and the tick takes {:.3g} "
+          "ms: soften the springs, add mass or dampers, or use implicit_euler.",
+          name_of(settings.integrator), limit * 1e3, settings.step * 1e3)};
     }
     motion.substeps_ = static_cast<int>(needed);
   }
@@ -216,200 +207,6 @@ void DentMotion::pull(std::size_t k, std::int32_t vertex, const CursorSpring& sp
   grip.target.head<3>() = spring.target;
   grip.rate.head<3>() = spring.rate;
   largest_ = std::max(largest_, spring.target.norm());
-}
-
-void DentMotion::step() noexcept {
-  for (Grip& grip : grips_) grip.force.setZero();
-  if (resting()) return;
-  for (int i = 0; i < substeps_; ++i) {
-    switch (settings_.integrator) {
-      case SpringScheme::kSymplecticEuler:
-        accelerate();
-        for (std::size_t n = 0; n < vertices_.size(); ++n) v_[n] += h_ * b_[n];
-        drift(h_);
-        reach_out();
-        break;
-      case SpringScheme::kVerlet:
-        verlet();
-        break;
-      case SpringScheme::kTrapezoid:
-        implicit(0.5);
-        break;
-      case SpringScheme::kImplicitEuler:
-      case SpringScheme::kExplicitEuler:  // build() refuses these three
-      case SpringScheme::kExponential:
-      case SpringScheme::kModal:
-        implicit(1);
-        break;
-    }
-  }
-  for (Grip& grip : grips_) {
-    grip.force /= substeps_;
-    grip.slot = -1;
-  }
-  for (std::size_t i = 0; i < vertices_.size(); ++i) {
-    const double speed = v_[i].squaredNorm();
-    if (speed > kSpeedMax * kSpeedMax) v_[i] *= kSpeedMax / std::sqrt(speed);
-  }
-  if (vertices_.size() > wanted_ && --until_look_ <= 0) prune();
-}
-
-// Five calls per vertex and tick: a call would cost a quarter of it.
-template <class Value>
-[[gnu::always_inline]] inline Value DentMotion::row(const Weights& weights, std::size_t i,
-                                                    const std::vector<Value>& x) const noexcept {
-  using Number = typename Value::Scalar;
-  Value sum = Value::Zero();
-  for (std::uint32_t e = link_begin_[i]; e < link_begin_[i + 1]; ++e) {
-    sum += Number{link_list_[e].weight} * x[at(link_list_[e].slot)];
-  }
-  return static_cast<Number>(weights.node + weights.link * sum_[i]) * x[i] -
-         static_cast<Number>(weights.link) * sum;
-}
-
-// Tells what a cursor spring does to its vertex while that stands where it is, N.
-DentMotion::Lane DentMotion::cursor_force(const Grip& grip, std::size_t i) const noexcept {
-  return grip.stiffness * (grip.target - u_[i]) + grip.damping * grip.rate;
-}
-
-// Finds what springs and dampers do to each vertex, m/s^2, in b_.
-void DentMotion::accelerate() noexcept {
-  for (std::size_t i = 0; i < vertices_.size(); ++i) {
-    b_[i] = -1 / settings_.mass * (row(stiffness_, i, u_) + row(damping_, i, v_));
-  }
-}
-
-void DentMotion::drift(double time) noexcept {
-  for (std::size_t i = 0; i < vertices_.size(); ++i) u_[i] += time * v_[i];
-}
-
-// Lets the cursor's springs act at the end of the step, by an impulse J that moves a vertex by
-// h J / m: J = h (k (target - u) + c (rate - v)) there. However stiff, it neither overshoots nor
-// rings.
-void DentMotion::reach_out() noexcept {
-  for (Grip& grip : grips_) {
-    if (grip.slot < 0) continue;
-    const std::size_t i = at(grip.slot);
-    const double weight = settings_.mass + h_ * (h_ * grip.stiffness + grip.damping);
-    const Lane kick = h_ / weight * (cursor_force(grip, i) - grip.damping * v_[i]);
-    v_[i] += kick;
-    u_[i] += h_ * kick;
-    grip.force += settings_.mass / h_ * kick.head<3>();
-  }
-}
-
-// Half a drift, one kick with dampers by the midpoint rule, half a drift (as SpringMotion).
-void DentMotion::verlet() noexcept {
-  drift(h_ / 2);
-  const std::size_t n = vertices_.size();
-  for (std::size_t i = 0; i < n; ++i) b_[i] = -row(stiffness_, i, u_);
-  for (std::size_t i = 0; i < n; ++i) {
-    q_[i] = v_[i] + h_ / 2 / settings_.mass * (b_[i] - row(damping_, i, v_));
-  }
-  for (std::size_t i = 0; i < n; ++i) v_[i] += h_ / settings_.mass * (b_[i] - row(damping_, i, q_));
-  drift(h_ / 2);
-  reach_out();
-}
-
-// One substep of implicit Euler (share 1) or of the trapezoid rule (share 1/2), w the velocity:
-// (M + sC + s^2 K + s (h k + c)) w = M v - s K u + s (k (target - u) + c rate), with s = share h,
-// and k and c the cursor's springs and dampers: springs act at the end of the step in both rules.
-void DentMotion::implicit(double share) noexcept {
-  const double s = share * h_;
-  const std::size_t n = vertices_.size();
-  // In units of a vertex's own weight, so that no stiffness leaves the range of single precision.
-  Weights system{settings_.mass + s * damping_.node + s * s * stiffness_.node,
-                 s * damping_.link + s * s * stiffness_.link};
-  const double unit = system.node + 6 * system.link;
-  system = {system.node / unit, system.link / unit};
-  const double per_unit = 1 / unit;
-  for (std::size_t i = 0; i < n; ++i) {
-    b_[i] = per_unit * (settings_.mass * v_[i] - s * row(stiffness_, i, u_));
-  }
-  for (const Grip& grip : grips_) {
-    if (grip.slot < 0) continue;
-    const std::size_t i = at(grip.slot);
-    b_[i] += per_unit * s * cursor_force(grip, i);
-    extra_[i] = per_unit * s * (h_ * grip.stiffness + grip.damping);
-  }
-  solve(system);
-  for (Grip& grip : grips_) {
-    if (grip.slot < 0) continue;
-    // What the vertex needed beside its own springs: unlike the stretch of a stiff spring this
-    // loses no digits.
-    const std::size_t i = at(grip.slot);
-    const Lane own = b_[i] - per_unit * s * cursor_force(grip, i);
-    grip.force += unit / s * (row(system, i, w_) - own).head<3>();
-  }
-  for (std::size_t i = 0; i < n; ++i) {
-    u_[i] += h_ * w_[i];
-    if (share == 1) {
-      v_[i] = w_[i];
-    } else {
-      // Beyond the middle of the step by the trapezoid rule; a vertex that the cursor holds does
-      // not swing on.
-      const double held = extra_[i] / (system.node + system.link * sum_[i] + extra_[i]);
-      v_[i] = w_[i] + (1 - held) * (w_[i] - v_[i]);
-    }
-  }
-  for (const Grip& grip : grips_) {
-    if (grip.slot >= 0) extra_[at(grip.slot)] = 0;
-  }
-}
-
-// Solves for w by conjugate gradients from v on, and scales it as SpringMotion does.
-void DentMotion::solve(const Weights& system) noexcept {
-  const std::size_t n = vertices_.size();
-  float start = 0;
-  float rz = 0;
-  for (std::size_t i = 0; i < n; ++i) wf_[i] = v_[i].cast<float>();
-  for (std::size_t i = 0; i < n; ++i) {
-    extraf_[i] = static_cast<float>(extra_[i]);
-    inverse_[i] = static_cast<float>(1 / (system.node + system.link * sum_[i] + extra_[i]));
-    const Lanef b = b_[i].cast<float>();
-    rf_[i] = b - row(system, i, wf_) - extraf_[i] * wf_[i];
-    pf_[i] = inverse_[i] * rf_[i];
-    start += inverse_[i] * b.squaredNorm();
-    rz += rf_[i].dot(pf_[i]);
-  }
-  const double still = kStill * largest_ / h_;
-  const auto end = static_cast<float>(
-      std::max(settings_.remainder * settings_.remainder * double{start}, still * still));
-  for (int round = 0; round < settings_.rounds && rz > end; ++round) {
-    float pq = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-      qf_[i] = row(system, i, pf_) + extraf_[i] * pf_[i];
-      pq += pf_[i].dot(qf_[i]);
-    }
-    if (!(pq > 0)) break;
-    const float alpha = rz / pq;
-    float rz_next = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-      wf_[i] += alpha * pf_[i];
-      rf_[i] -= alpha * qf_[i];
-      rz_next += inverse_[i] * rf_[i].squaredNorm();
-    }
-    const float beta = rz_next / rz;
-    for (std::size_t i = 0; i < n; ++i) pf_[i] = inverse_[i] * rf_[i] + beta * pf_[i];
-    rz = rz_next;
-  }
-  double wb = 0;
-  double waw = 0;
-  for (std::size_t i = 0; i < n; ++i) w_[i] = wf_[i].cast<double>();
-  for (std::size_t i = 0; i < n; ++i) {
-    wb += w_[i].dot(b_[i]);
-    waw += w_[i].dot(row(system, i, w_) + extra_[i] * w_[i]);
-  }
-  const double scale = waw > 0 ? wb / waw : 0;
-  for (std::size_t i = 0; i < n; ++i) w_[i] *= scale;
-}
-
-double DentMotion::energy() const noexcept {
-  double twice = 0;
-  for (std::size_t i = 0; i < vertices_.size(); ++i) {
-    twice += settings_.mass * v_[i].squaredNorm() + u_[i].dot(row(stiffness_, i, u_));
-  }
-  return twice / 2;
 }
 
 }  // namespace thimble::render

@@ -81,10 +81,6 @@ class DentMotion {
   }
   /// Tells whether a vertex moves at all.
   bool moves(std::int32_t vertex) const noexcept { return places_[at(vertex)].slot >= 0; }
-  /// Tells the force (N) with which a vertex pulls its base point.
-  Vector force_on_base(std::int32_t vertex) const noexcept {
-    return settings_.stiffness * u(vertex) + settings_.damping * v(vertex);
-  }
   /// Lists the vertices that move.
   std::span<const std::int32_t> vertices() const noexcept { return vertices_; }
   bool resting() const noexcept { return vertices_.empty(); }  ///< Tells whether none moves.

@@ -2,16 +2,9 @@
 
 #include <Eigen/Core>
 
-namespace thimble::render {
+#include "thimble/render/body/motion_choice.h"
 
-/// Bounds how stiff a surface answers a moved body, whatever its stages are: what the coupling
-/// needs to know of them.
-struct BodyCoupling {
-  double stiffness =
-      0;  ///< N/m, >= 0: the largest of the surface's spring and of what holds along it
-  double damping = 0;  ///< N s/m, >= 0: the surface's
-  double step = 1e-3;  ///< s, > 0: the loop's period, by which the body moves on in each tick
-};
+namespace thimble::render {
 
 /// Finds the share (0 to 1) of a surface force that is given both to the hand and, with the
 /// opposite sign, to the body.

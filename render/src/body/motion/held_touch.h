@@ -6,20 +6,13 @@
 #include <span>
 #include <utility>
 
-#include "body/motion/body_coupling.h"
 #include "body/motion/moving_touch.h"
 #include "thimble/driver/device_state.h"
 #include "thimble/driver/force_command.h"
+#include "thimble/render/body/motion_choice.h"
 #include "thimble/render/object_touch.h"
 
 namespace thimble::render {
-
-/// Sets how a hand holds an object.
-struct Grip {
-  double stiffness = 500;  ///< N/m, > 0
-  double damping = 2;      ///< N s/m, >= 0
-  double force_max = 4;    ///< N, > 0: what pulls harder slips out of the hand, for good
-};
 
 /// Is the force law of an object that the hand holds from the first tick on: a spring and a damper
 /// from the tip to the place of the body that was there then. Its weight, its swing and what it

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "body/motion/body_motions.h"
+#include "body/motion/held_touch.h"
 #include "body/motion/moving_touch.h"
 #include "body/motion/support_points.h"
 

@@ -21,13 +21,6 @@ bool usable(double x) {
   return x >= 0 && std::isfinite(x);
 }
 
-// Turns by `angle` about axis k, from the frame before to the frame after.
-Eigen::Quaterniond about(int k, double angle) {
-  Vector3d v(0, 0, 0);
-  v[k] = std::sin(angle / 2);
-  return {std::cos(angle / 2), v.x(), v.y(), v.z()};
-}
-
 }  // namespace
 
 driver::Result<RigidBody> RigidBody::build(const RigidBodySettings& settings) {
@@ -86,45 +79,38 @@ void RigidBody::kick(double time) noexcept {
   angular_W_ += time * tau_W_;
 }
 
-// Turns freely for `time`: the energy is the sum of L_k^2 / 2 I_k, and each term alone turns the
-// body about its axis k by a rate that stays [Touma]; five such turns in a palindrome are
-// of order 2, three palindromes of order 4 [Yoshida].
-void RigidBody::rotate(double time) noexcept {
-  const double root = std::cbrt(2.0);
-  const double outer = 1 / (2 - root);
-  struct Turn {
-    int axis;
-    double share;
-  };
-  constexpr std::array<Turn, 5> kPalindrome{{{0, 0.5}, {1, 0.5}, {2, 1.0}, {1, 0.5}, {0, 0.5}}};
-  Vector3d angular_B = q_WB_.conjugate() * angular_W_;
-  for (const double part : {outer, 1 - 2 * outer, outer}) {
-    for (const Turn& turn : kPalindrome) {
-      const double rate = angular_B[turn.axis] / settings_.mass.inertia[turn.axis];
-      const Eigen::Quaterniond by = about(turn.axis, part * turn.share * time * rate);
-      q_WB_ = q_WB_ * by;
-      angular_B = by.conjugate() * angular_B;
-    }
+// Half a step of damping: each component of the angular momentum in B falls by the rate c / I of
+// its axis, so that the torque is -c times the turning rate.
+void RigidBody::fade() noexcept {
+  if (settings_.damping > 0) momentum_W_ *= fading_.momentum;
+  if (settings_.angular_damping > 0) {
+    const Vector3d angular_B = q_WB_.conjugate() * angular_W_;
+    angular_W_ = q_WB_ * angular_B.cwiseProduct(fading_.angular);
   }
-  q_WB_.normalize();
+}
+
+// The factors of `fade` in steps of `time`, computed anew where the step changed.
+void RigidBody::prepare_fading(double time) noexcept {
+  if (fading_.time == time) return;
+  fading_.time = time;
+  fading_.momentum = std::exp(-settings_.damping / settings_.mass.mass * time / 2);
+  for (int k = 0; k < 3; ++k) {
+    fading_.angular[k] =
+        std::exp(-settings_.angular_damping / settings_.mass.inertia[k] * time / 2);
+  }
 }
 
 void RigidBody::step(double step) noexcept {
   // Written so that NaN moves nothing.
   const double time = settings_.time_scale * step;
   if (time > 0 && std::isfinite(time)) {
-    const double slow = std::exp(-settings_.damping / settings_.mass.mass * time / 2);
-    // About an axis of inertia I the rate falls by exp(-c t / I); the least I gives the share of
-    // all.
-    const double calm = std::exp(-settings_.angular_damping / settings_.mass.inertia[2] * time / 2);
+    prepare_fading(time);
     kick(time / 2);
-    momentum_W_ *= slow;
-    angular_W_ *= calm;
+    fade();
     const Vector3d way = time * v_WC();
     p_WC_ += way;
-    rotate(time);
-    momentum_W_ *= slow;
-    angular_W_ *= calm;
+    free_turn_.turn(time, angular_W_, q_WB_);
+    fade();
     // Forces stay at their points in W while C moves: so what the body gains about any point is
     // what they give, to rounding.
     tau_W_ -= way.cross(f_W_);

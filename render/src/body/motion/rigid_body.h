@@ -6,25 +6,19 @@
 #include <span>
 #include <vector>
 
+#include "body/motion/free_turn.h"
 #include "body/motion/mass_properties.h"
 #include "thimble/driver/result.h"
+#include "thimble/render/body/motion_choice.h"
 
 namespace thimble::render {
-
-/// Is a plane that bodies lie on: they are held out of n . x < height.
-struct Floor {
-  Eigen::Vector3d n_W{0, 0, 1};  ///< Unit, away from the floor.
-  double height = 0;             ///< m
-  double friction = 0.5;         ///< Coulomb, >= 0
-};
 
 /// Sets what acts on a body besides what touches it, as data.
 struct RigidBodySettings {
   MassProperties mass;                 ///< Mass, centre, inertia.
   Eigen::Vector3d gravity_W{0, 0, 0};  ///< m/s^2
   double damping = 0;                  ///< N s/m, >= 0
-  /// N m s, >= 0: angular momentum fades by this over the largest inertia, 1/s.
-  double angular_damping = 0;
+  double angular_damping = 0;          ///< N m s, >= 0: the torque is this times the turning rate.
   /// Is the body's time over ours, > 0: smaller feels heavier, as 1 / time_scale^2 times the mass,
   /// and as if in a thick liquid [BP 4.3].
   double time_scale = 1;
@@ -36,9 +30,8 @@ struct RigidBodySettings {
 /// Moves and turns a rigid body in time [BP 4.3].
 ///
 /// Momentum and angular momentum are what is stored, in W, so that nothing but forces changes them.
-/// Turning is split into turns about the three principal axes, each exact, in an order of 4 in
-/// time: the length of the angular momentum is kept to rounding whatever the step is, so a body
-/// cannot spin itself up.
+/// It turns by `FreeTurn`: of order 4 in time, and the angular momentum is kept to rounding
+/// whatever the step is, so a body cannot spin itself up.
 class RigidBody {
  public:
   static constexpr std::size_t kSupportMax = 64;  ///< Most points of its hull on the floor.
@@ -92,14 +85,27 @@ class RigidBody {
 
  private:
   explicit RigidBody(const RigidBodySettings& settings)
-      : settings_(settings), p_WC_(settings.mass.p_WC), q_WB_(settings.mass.q_WB) {}
+      : settings_(settings),
+        free_turn_(settings.mass.inertia),
+        p_WC_(settings.mass.p_WC),
+        q_WB_(settings.mass.q_WB) {}
   Eigen::Vector3d give(const Eigen::Vector3d& arm, const Eigen::Vector3d& f) const noexcept;
   void kick(double time) noexcept;
-  void rotate(double time) noexcept;
+  void fade() noexcept;
+  void prepare_fading(double time) noexcept;
   void stand_on_floor(double time) noexcept;
   double stop_at(const Eigen::Vector3d& arm, double allowed, double& pressed) noexcept;
 
+  /// Factors of half a step of damping.
+  struct Fading {
+    double time = 0;  // s, of the step that they are for
+    double momentum = 1;
+    Eigen::Vector3d angular{1, 1, 1};
+  };
+
   RigidBodySettings settings_;
+  FreeTurn free_turn_;
+  Fading fading_;
   Eigen::Vector3d p_WC_;
   Eigen::Quaterniond q_WB_;
   Eigen::Vector3d momentum_W_{0, 0, 0};

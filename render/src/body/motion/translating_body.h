@@ -22,7 +22,7 @@ class TranslatingBody {
 
   // All of the following are Real-time: safe.
 
-  /// Pushes by `f_W` (N) during the next step: the opposite of what the hand feels. NaN or beyond
+  /// Pushes by `f_W` (N), the reaction force of the hand, during the next step. NaN or beyond
   /// 10^6 N is left out.
   void push(const Eigen::Vector3d& f_W) noexcept {
     constexpr double kForceMax = 1e6;  // N; no arm pushes with more

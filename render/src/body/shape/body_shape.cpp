@@ -1,9 +1,10 @@
 #include "body/shape/body_shape.h"
 
+#include <fmt/core.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 #include <string>
 
@@ -32,13 +33,11 @@ driver::Result<void> check_size(const ContactMesh& mesh, const char* what, doubl
                                 double least, std::size_t most) {
   const double within = vertices_within(mesh, radius);
   if (within >= least && within <= static_cast<double>(most)) return {};
-  char text[240];
-  std::snprintf(text, sizeof text,
-                "%s of radius %.3g m would move about %.0f vertices of this mesh, of %.0f to %zu "
-                "that make sense: take a %s mesh, or a %s radius.",
-                what, radius, within, least, most, within < least ? "finer" : "coarser",
-                within < least ? "larger" : "smaller");
-  return driver::Error{text};
+  return driver::Error{
+      fmt::format("{} of radius {:.3g} m would move about {:.0f} vertices of this mesh, of {:.0f} "
+                  "to {} that make sense: take a {} mesh, or a {} radius.",
+                  what, radius, within, least, most, within < least ? "finer" : "coarser",
+                  within < least ? "larger" : "smaller")};
 }
 
 }  // namespace

@@ -9,11 +9,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kPlateau = 0.25;    // of the radius goes in as deep as the middle [chosen]
-constexpr double kApart = 1.2;       // radii between the middles of two panels, so that walls stay
-constexpr double kFollow = 0.05;     // radii that the tip goes before its panel follows [chosen]
-constexpr double kHoldLeast = 0.05;  // of the profile: less does not press a panel [chosen]
-constexpr double kStill = 1e-9;      // of the depth: a smaller way is none
+constexpr double kPlateau = 0.25;     // of the radius goes in as deep as the middle [chosen]
+constexpr double kPanelsApart = 1.2;  // radii between the middles of two panels, so that walls stay
+constexpr double kFollow = 0.05;      // radii that the tip goes before its panel follows [chosen]
+constexpr double kHoldLeast = 0.05;   // of the profile: less does not press a panel [chosen]
+constexpr double kSmallestWay = 1e-9;  // of the depth: a smaller way is none
 
 }  // namespace
 
@@ -58,7 +58,7 @@ bool SnapShape::room_for(const Vector3d& centre) const noexcept {
   int in = 0;
   for (const Panel& panel : panels_) {
     if (!panel.used || &panel == live_) continue;
-    if ((panel.centre - centre).norm() < kApart * choice_.radius) return false;
+    if ((panel.centre - centre).norm() < kPanelsApart * choice_.radius) return false;
     ++in;
   }
   return in < choice_.panels;
@@ -113,7 +113,7 @@ double SnapShape::pull(Panel& panel, double end, double spring, double step) noe
   const double pressed = std::max(end - to, 0.0);
   released_ += spring / 2 * (pressed_before * pressed_before - pressed * pressed) -
                (panel.base.energy() - energy);
-  panel.moved = panel.moved || std::abs(to - from) > kStill * choice_.depth;
+  panel.moved = panel.moved || std::abs(to - from) > kSmallestWay * choice_.depth;
   return to - from;
 }
 
@@ -153,7 +153,7 @@ void SnapShape::rest(double step) noexcept {
     if (!panel.used) continue;
     pull(panel, 0, 0, step);
     const bool flat =
-        !panel.base.snapped() && !(std::abs(panel.base.way()) > kStill * choice_.depth);
+        !panel.base.snapped() && !(std::abs(panel.base.way()) > kSmallestWay * choice_.depth);
     if (!flat) continue;
     panel.used = false;
     panel.moved = true;

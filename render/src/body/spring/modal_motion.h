@@ -30,8 +30,6 @@ class ModalMotion {
 
   // All of the following are Real-time: safe. Precondition: numbers name nodes that exist.
 
-  /// Tells the number of modes. Real-time: safe.
-  std::int32_t mode_count() const noexcept { return static_cast<std::int32_t>(x_.size()); }
   /// Tells the frequency of a mode, rad/s; modes go from slow to fast.
   double omega(std::int32_t mode) const noexcept { return omega_[static_cast<std::size_t>(mode)]; }
 

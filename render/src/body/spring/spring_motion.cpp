@@ -1,8 +1,9 @@
 #include "body/spring/spring_motion.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numeric>
 #include <utility>
 
@@ -14,13 +15,6 @@ constexpr double kShareOfLimit = 0.98;
 
 // No arm pushes with more; it keeps squares far from overflow.
 constexpr double kForceMax = 1e6;
-
-template <class... Numbers>
-std::string text(const char* format, Numbers... numbers) {
-  char line[320];
-  std::snprintf(line, sizeof line, format, numbers...);
-  return line;
-}
 
 std::size_t at(std::int32_t node) {
   return static_cast<std::size_t>(node);
@@ -55,13 +49,12 @@ driver::Result<SpringMotion<kDof>> SpringMotion<kDof>::build(SpringNetwork<kDof>
   if (needed > options.substeps && options.beyond != Beyond::kAllow) {
     if (options.beyond == Beyond::kRefuse || !(needed <= options.substeps_max)) {
       return driver::Error{
-          limit > 0
-              ? text("The integrator %s bears steps up to %.3g ms on this mesh, and the tick "
-                     "takes %.3g ms: soften the springs, add mass, take %.0f substeps, or use "
-                     "implicit_euler.",
-                     name.c_str(), limit * 1e3, options.step * 1e3, needed)
-              : "The integrator " + name +
-                    " bears no step on springs without dampers: use implicit_euler."};
+          limit > 0 ? fmt::format("The integrator {} bears steps up to {:.3g} ms on this mesh, and "
+                                  "the tick takes {:.3g} ms: soften the springs, add mass, take "
+                                  "{:.0f} substeps, or use implicit_euler.",
+                                  name, limit * 1e3, options.step * 1e3, needed)
+                    : "The integrator " + name +
+                          " bears no step on springs without dampers: use implicit_euler."};
     }
     motion.substeps_ = static_cast<int>(needed);
   }
@@ -103,11 +96,12 @@ template <int kDof>
 std::string SpringMotion<kDof>::describe() const {
   const std::string name(name_of(options_.scheme));
   const double limit = largest_step(options_.scheme, network_.bounds());
-  std::string said = std::isfinite(limit) ? text("%s bears steps up to %.3g ms on this mesh",
-                                                 name.c_str(), limit * 1e3)
-                                          : name + " bears any step";
-  said += text(" (highest frequency %.4g rad/s): %d of %.3g ms per tick.",
-               network_.bounds().omega_max, substeps_, h_ * 1e3);
+  std::string said =
+      std::isfinite(limit)
+          ? fmt::format("{} bears steps up to {:.3g} ms on this mesh", name, limit * 1e3)
+          : name + " bears any step";
+  said += fmt::format(" (highest frequency {:.4g} rad/s): {} of {:.3g} ms per tick.",
+                      network_.bounds().omega_max, substeps_, h_ * 1e3);
   return said;
 }
 

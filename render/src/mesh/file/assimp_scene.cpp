@@ -17,7 +17,7 @@ namespace {
 using driver::Error;
 using Eigen::Matrix4d;
 
-// Is a node that is still to be gone through, and where it stands in the file's frame.
+// A node that is still to be visited, and its pose in the file's frame.
 struct Stop {
   const aiNode* node = nullptr;
   Matrix4d place = Matrix4d::Identity();

@@ -42,7 +42,7 @@ std::string capitals(std::string text) {
   return text;
 }
 
-// Tells why Assimp refused a file, without what it says about itself.
+// Returns why Assimp refused a file, without what it says about itself.
 std::string reason_of(std::string reason) {
   if (const auto name = reason.find(" for mesh."); name != std::string::npos) reason.resize(name);
   std::replace(reason.begin(), reason.end(), '\n', ' ');

@@ -59,7 +59,7 @@ void limit(int what, std::uint64_t value) {
   setrlimit(static_cast<__rlimit_resource>(what), &now);
 }
 
-// Is what the child does, from its first instruction to its last.
+// The work of the child, from its first instruction to its last.
 [[noreturn]] void be_child(const std::function<std::string()>& work, const ApartLimits& limits,
                            std::uint64_t space, int result) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);

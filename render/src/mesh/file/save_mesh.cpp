@@ -1,6 +1,7 @@
 #include "thimble/render/mesh/save_mesh.h"
 
-#include <cstdio>
+#include <fmt/core.h>
+
 #include <fstream>
 #include <string>
 #include <system_error>
@@ -12,9 +13,7 @@ bool write_off(const TriangleMesh& mesh, const std::filesystem::path& file) {
   std::ofstream stream(file, std::ios::binary);
   stream << "OFF\n" << mesh.vertices.size() << ' ' << mesh.triangles.size() << " 0\n";
   for (const Eigen::Vector3d& p : mesh.vertices) {
-    char line[96];
-    std::snprintf(line, sizeof line, "%.17g %.17g %.17g\n", p.x(), p.y(), p.z());
-    stream << line;
+    stream << fmt::format("{:.17g} {:.17g} {:.17g}\n", p.x(), p.y(), p.z());
   }
   for (const auto& [a, b, c] : mesh.triangles) stream << "3 " << a << ' ' << b << ' ' << c << '\n';
   stream.close();

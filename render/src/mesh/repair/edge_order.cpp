@@ -21,7 +21,7 @@ struct Side {
   EdgeUse use;
 };
 
-// Tells one of two opposite directions from the other.
+// Returns true for exactly one of two opposite directions.
 bool is_positive(const Vector3d& direction) {
   for (const double x : direction) {
     if (x != 0) return x > 0;

@@ -20,7 +20,7 @@ using Taken = std::function<bool(std::int32_t, std::int32_t)>;
 // A ring that leaves its mean plane by less than this share of its size is closed as a flat one.
 constexpr double kFlat = 1e-3;
 
-// All ways to close a ring of so many corners are compared, which takes their number cubed.
+// All triangulations of a ring of so many corners are compared, which takes their number cubed.
 constexpr std::size_t kWholeMax = 64;
 
 std::size_t index(std::int32_t i) {
@@ -32,7 +32,7 @@ Vector3d normal_of(const HoleRing& ring, std::int32_t a, std::int32_t b, std::in
   return (ring.corners[index(b)] - p).cross(ring.corners[index(c)] - p);
 }
 
-// Tells whether three corners with such a normal (twice the area) make a triangle.
+// Returns whether three corners with such a normal (twice the area) make a triangle.
 bool has_area(const HoleRing& ring, std::int32_t a, std::int32_t b, std::int32_t c,
               double twice_area) {
   const Vector3d &p = ring.corners[index(a)], &q = ring.corners[index(b)],
@@ -74,7 +74,7 @@ bool may_stand(const HoleRing& ring, const std::vector<Triangle>& triangles, con
   return true;
 }
 
-// How good a way to close a ring is: the cosine of its sharpest bend, then its area.
+// How good a triangulation of a ring is: the cosine of its sharpest bend, then its area.
 struct Merit {
   double bend = 1;  // cosine; 1 for none
   double area = 0;
@@ -85,7 +85,7 @@ struct Merit {
   Merit with(const Merit& other) const { return {std::min(bend, other.bend), area + other.area}; }
 };
 
-// The best way to close the part of a ring between two corners, for every two of them.
+// The best triangulation of the part of a ring between two corners, for every two of them.
 class Best {
  public:
   Best(const HoleRing& ring, std::vector<std::int32_t> kept, std::vector<Vector3d> beside,
@@ -116,7 +116,7 @@ class Best {
 
   Way& at(std::size_t from, std::size_t to) { return ways_[from * size_ + to]; }
 
-  // What lies behind a chord: the triangle of the best way to close it, or what is beside the ring.
+  // What lies behind a chord: the triangle of its best triangulation, or what is beside the ring.
   const Vector3d& behind(std::size_t from, std::size_t to) {
     return to == from + 1 ? beside_[from] : at(from, to).normal;
   }
@@ -163,7 +163,8 @@ class Best {
   std::vector<Way> ways_;
 };
 
-// Cuts corners off until few enough are left to compare all ways; what bends least goes first.
+// Cuts corners off until few enough are left to compare all triangulations; what bends least goes
+// first.
 bool cut_corners(const HoleRing& ring, const Taken& taken, std::vector<std::int32_t>& kept,
                  std::vector<Vector3d>& beside, std::vector<Triangle>& triangles) {
   while (kept.size() > kWholeMax) {

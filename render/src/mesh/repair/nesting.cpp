@@ -168,7 +168,7 @@ class Nesting {
     }
   }
 
-  // Tells whether a part lies in another one, by up to eight of its vertices.
+  // Returns whether a part lies in another one, by up to eight of its vertices.
   bool lies_in(std::size_t inner, std::size_t outer) {
     if (!trees_[outer]) trees_[outer].emplace(tree_of(mesh_, parts_.triangles(outer)));
     const std::span<const std::int32_t> triangles = parts_.triangles(inner);

@@ -6,7 +6,7 @@
 namespace thimble::render {
 namespace {
 
-// Tells whether two wedges of an edge have the same groups of corners at both ends.
+// Returns whether two wedges of an edge have the same groups of corners at both ends.
 bool is_ambiguous(const TriangleMesh& mesh, Groups& groups, const EdgeUse& edge,
                   const std::vector<Wedge>& wedges) {
   std::vector<std::pair<std::int32_t, std::int32_t>> ends;

@@ -92,22 +92,23 @@ std::size_t place_of(const TriangleMesh& mesh, std::int32_t triangle, std::int32
 }
 
 // Adds a copy of a vertex, `steps` roundings towards the middle of a triangle that will use it.
-std::int32_t moved_copy(TriangleMesh& mesh, const Vector3d& from, const Vector3d& way, int steps) {
+std::int32_t moved_copy(TriangleMesh& mesh, const Vector3d& from, const Vector3d& towards,
+                        int steps) {
   Vector3d p = from;
   Eigen::Index axis = 0;
-  way.cwiseAbs().maxCoeff(&axis);
-  const double far = way[axis] > 0 ? HUGE_VAL : -HUGE_VAL;
+  towards.cwiseAbs().maxCoeff(&axis);
+  const double far = towards[axis] > 0 ? HUGE_VAL : -HUGE_VAL;
   for (int i = 0; i < steps; ++i) p[axis] = std::nextafter(p[axis], far);
   mesh.vertices.push_back(p);
   return static_cast<std::int32_t>(mesh.vertices.size() - 1);
 }
 
 Vector3d way_in(const TriangleMesh& mesh, std::size_t triangle, const Vector3d& from) {
-  Vector3d way(0, 0, 0);
+  Vector3d towards(0, 0, 0);
   for (const std::int32_t v : mesh.triangles[triangle]) {
-    way += mesh.vertices[static_cast<std::size_t>(v)] - from;
+    towards += mesh.vertices[static_cast<std::size_t>(v)] - from;
   }
-  return way;
+  return towards;
 }
 
 // Gives every fan but the first of each vertex a copy. Returns the vertices, once for each copy.

@@ -1,7 +1,8 @@
 #include "surface/friction/friction_settings.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
-#include <cstdio>
 #include <limits>
 
 namespace thimble::render {
@@ -16,12 +17,10 @@ constexpr double kStiffnessMax = 1e6;  // N/m
 constexpr double kBendMax = 0.05;      // m
 
 std::string refusal(double stiffness, double most, const std::string& remedy) {
-  char text[240];
-  std::snprintf(text, sizeof text,
-                "friction would hold with %.4g N/m, but this arm stays quiet only up to %.4g N/m "
-                "(sampling, delay and encoder steps); %s",
-                stiffness, most, remedy.c_str());
-  return text;
+  return fmt::format(
+      "friction would hold with {:.4g} N/m, but this arm stays quiet only up to {:.4g} N/m "
+      "(sampling, delay and encoder steps); {}",
+      stiffness, most, remedy);
 }
 
 }  // namespace
@@ -74,9 +73,8 @@ double read_stick_stiffness(SettingsReader& reader, const EffectContext& context
     if (!(force > 0)) {
       reader.reject("z_max", "needs friction and an arm with a largest force; give stiffness");
     } else if (stiffness > kRounding * most) {
-      char least[80];
-      std::snprintf(least, sizeof least, "expected z_max >= %.3g m, found %.3g m", force / most,
-                    bend);
+      const std::string least =
+          fmt::format("expected z_max >= {:.3g} m, found {:.3g} m", force / most, bend);
       reader.reject("z_max", refusal(stiffness, most, least));
     }
   }

@@ -1,7 +1,8 @@
 #include "surface/friction/lugre.h"
 
+#include <fmt/core.h>
+
 #include <cmath>
-#include <cstdio>
 
 namespace thimble::render {
 
@@ -14,12 +15,9 @@ void LugreLaw::Settings::read(SettingsReader& reader, const EffectContext& conte
   const double least =
       coulomb.sliding > 0 ? damping * (coulomb.holding - coulomb.sliding) / coulomb.sliding : 0;
   if (viscous.viscous < least) {
-    char text[160];
-    std::snprintf(text, sizeof text,
-                  "damping %.3g N s/m would feed the hand energy: give viscous of at least %.3g "
-                  "N s/m, or less damping",
-                  damping, least);
-    reader.reject("damping", text);
+    reader.reject("damping", fmt::format("damping {:.3g} N s/m would feed the hand energy: give "
+                                         "viscous of at least {:.3g} N s/m, or less damping",
+                                         damping, least));
   }
 }
 

@@ -1,8 +1,9 @@
 #include "surface/texture/texture_limits.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace thimble::render {
 
@@ -31,33 +32,32 @@ ForceSensitivity texture_lever(const TextureExtent& extent) {
 
 void check_texture(SettingsReader& reader, std::string_view key, const TextureExtent& extent,
                    const TextureSettings& settings, const EffectContext& context) {
-  char text[250];
   const double deepest =
       context.surface_stiffness > 0 ? context.force_max / context.surface_stiffness : 0;
   // Where arm or spring is not known there is nothing to compare with.
   if (deepest > 0 && !(extent.relief <= deepest)) {
-    std::snprintf(text, sizeof text,
-                  "is %.3g mm from peak to valley, but the arm's %.3g N press no deeper than "
-                  "%.3g mm into %.4g N/m: make it flatter, or the surface softer",
-                  1e3 * extent.relief, context.force_max, 1e3 * deepest, context.surface_stiffness);
-    reader.reject(key, text);
+    reader.reject(
+        key, fmt::format("is {:.3g} mm from peak to valley, but the arm's {:.3g} N press no deeper "
+                         "than {:.3g} mm into {:.4g} N/m: make it flatter, or the surface softer",
+                         1e3 * extent.relief, context.force_max, 1e3 * deepest,
+                         context.surface_stiffness));
   }
   if (!(extent.slope <= kTextureSlopeMax)) {
-    std::snprintf(text, sizeof text,
-                  "is as steep as %.3g; slopes may reach %.3g: make it flatter or its waves longer",
-                  extent.slope, kTextureSlopeMax);
-    reader.reject(key, text);
+    reader.reject(
+        key,
+        fmt::format(
+            "is as steep as {:.3g}; slopes may reach {:.3g}: make it flatter or its waves longer",
+            extent.slope, kTextureSlopeMax));
   }
   const double frequency = settings.hand_speed / extent.wavelength;
   const double highest = 0.5 / context.tick;
   if (!(frequency <= highest)) {
-    std::snprintf(text, sizeof text,
-                  "has waves of %.3g mm, which a hand at %.3g m/s feels as %.4g Hz; a loop of %.4g "
-                  "Hz shows %.4g Hz at most: make the waves longer, the loop faster or hand_speed "
-                  "smaller",
-                  1e3 * extent.wavelength, settings.hand_speed, frequency, 1 / context.tick,
-                  highest);
-    reader.reject(key, text);
+    reader.reject(key, fmt::format("has waves of {:.3g} mm, which a hand at {:.3g} m/s feels as "
+                                   "{:.4g} Hz; a loop of {:.4g} "
+                                   "Hz shows {:.4g} Hz at most: make the waves longer, the loop "
+                                   "faster or hand_speed smaller",
+                                   1e3 * extent.wavelength, settings.hand_speed, frequency,
+                                   1 / context.tick, highest));
   }
 }
 

@@ -11,63 +11,83 @@
 #include "thimble/device_sim/settings.h"
 #include "thimble/driver/arms/hfab/hfab_arm.h"
 #include "thimble/driver/board.h"
+#include "thimble/driver/energy_guard.h"
 #include "thimble/driver/heat_guard.h"
 #include "thimble/driver/result.h"
 #include "thimble/driver/safety_gate.h"
-#include "thimble/scene/energy_choice.h"
 
 namespace thimble::scene {
 
-/// Is where the tip may work: a box along the axes of the world, m.
+/// Where the tip may work: a box along the axes of the world, m.
 struct WorkspaceBox {
-  Eigen::Vector3d min_W{0, 0, 0};
-  Eigen::Vector3d max_W{0, 0, 0};
+  Eigen::Vector3d min_W{0, 0, 0};  ///< Lowest corner.
+  Eigen::Vector3d max_W{0, 0, 0};  ///< Highest corner.
 };
 
-/// Is what an arm's maker or refitter declares of it; scenes that ask for more are told so.
+/// What an arm's maker or refitter declares of it; scenes that ask for more are told so.
 struct DeclaredLimits {
   double force = 0;      ///< N
   double stiffness = 0;  ///< N/m
   double damping = 0;    ///< N s/m
 };
 
+/// What an arm file says of the gate's energy stage; what it leaves open follows from the arm.
+struct EnergyChoice {
+  driver::EnergyStage stage = driver::EnergyStage::kNone;  ///< Which stage the gate has.
+  std::optional<double> mass{};                            ///< kg
+  std::optional<double> allowance;                         ///< J
+  std::optional<double> reservoir;                         ///< J
+  std::optional<double> slope;                             ///< N/m
+};
+
 /// What the simulated arm speaks, and the real one on the first of its boards.
-enum class ArmProtocol { kHfab14Byte, kWoody8Byte, kFalconPacket, kTextLines };
+enum class ArmProtocol {
+  kHfab14Byte,    ///< Reports of 14 bytes over HID.
+  kWoody8Byte,    ///< Reports of 8 bytes over HID.
+  kFalconPacket,  ///< Packets of 16 bytes over an FTDI chip.
+  kTextLines,     ///< Lines of text over a serial port.
+};
 
-/// Says how the arm is built.
-enum class ArmShape { kSerial, kPolhem, kFalcon };
+/// How the arm is built.
+enum class ArmShape {
+  kSerial,  ///< A yaw and two links.
+  kPolhem,  ///< The Polhem's linkage.
+  kFalcon,  ///< The Falcon's three parallel legs.
+};
 
-/// Is one arm, as its file describes it: geometry, motors, limits, place, and how it is simulated.
+/// One arm, as its file describes it: geometry, motors, limits, place, and how it is simulated.
 struct ArmFile {
-  std::string name;
-  std::string description;
-  ArmProtocol protocol = ArmProtocol::kHfab14Byte;
-  ArmShape shape = ArmShape::kSerial;
+  std::string name;                                 ///< For people.
+  std::string description;                          ///< One line; may be empty.
+  ArmProtocol protocol = ArmProtocol::kHfab14Byte;  ///< What it speaks.
+  ArmShape shape = ArmShape::kSerial;               ///< How it is built.
   /// The boards that this arm may have, with these signs and currents; never empty. A board of
   /// unknown kind is used with no other file than one that names it here.
   std::vector<driver::BoardKind> boards = {driver::BoardKind::kMbedHid14};
   int board_model = 0;  ///< What its board calls itself in text lines; 0: not known.
   /// Drives, encoders and, for a serial arm, the geometry. The other shapes have theirs in code.
   driver::hfab::HfabModel model;
-  driver::GateLimits limits;
+  driver::GateLimits limits;                           ///< Of the safety gate.
   std::map<std::string, int, std::less<>> gate_lines;  ///< Line of each key of the section `gate`.
-  EnergyChoice energy;
+  EnergyChoice energy;                                 ///< Of the safety gate.
   /// Longest time a force is held while no encoder counts, s; none: the driver's own.
   std::optional<double> hold_unchanged{};
-  driver::HeatSettings heat{};  ///< What the motors carry for long; none: not known.
-  DeclaredLimits declared;
-  double velocity_corner_frequency = 0;                ///< Hz
+  driver::HeatSettings heat{};           ///< What the motors carry for long; none: not known.
+  DeclaredLimits declared;               ///< What its maker promises.
+  double velocity_corner_frequency = 0;  ///< Hz
   Eigen::Matrix3d R_WB = Eigen::Matrix3d::Identity();  ///< Rotation of the base in the world.
   Eigen::Vector3d p_WB{0, 0, 0};                       ///< Position of the base, m.
-  WorkspaceBox workspace;
-  bool can_simulate = false;  ///< The file has a section `simulation`.
-  device_sim::SimulatedArmSettings simulated;
+  WorkspaceBox workspace;                              ///< Where the tip may work.
+  bool can_simulate = false;                           ///< The file has a section `simulation`.
+  device_sim::SimulatedArmSettings simulated;          ///< What that section says.
 };
 
-/// Reads an arm file (see app/arms/vintage_phantom.yaml for the form). The error tells up to five
-/// mistakes, one per line, with file and line; a limit of the gate that protects nobody is one:
-/// force_max above the declared force, soft_start below 0.05 s, rise_max above 1e5 N/s, watchdog
-/// above 1 s, stall not below watchdog. Real-time: never from the servo thread.
-driver::Result<ArmFile> read_arm_file(const std::filesystem::path& file);
+/// Reads the arm file that a person means: a name ("vintage_phantom") or a path, as
+/// `find_arm_file` finds it; app/arms/vintage_phantom.yaml shows the form. The error lists the
+/// names that are known, or tells up to five mistakes of the file, one per line, with file and
+/// line; a limit of the gate that protects nobody is one: force_max above the declared force,
+/// soft_start below 0.05 s, rise_max above 1e5 N/s, watchdog above 1 s, stall not below watchdog.
+/// Real-time: never from the servo thread.
+driver::Result<ArmFile> load_arm(const std::filesystem::path& arm);
 
 }  // namespace thimble::scene

@@ -5,66 +5,82 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <utility>
-#include <vector>
 
-#include "thimble/device_sim/sim_transport.h"
-#include "thimble/device_sim/usb/simulated_falcon.h"
 #include "thimble/driver/arm.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/discovery.h"
+#include "thimble/driver/transport.h"
 #include "thimble/scene/arm_file.h"
+#include "thimble/scene/hand_route.h"
+
+namespace thimble::device_sim {
+class Hand;
+class SimulatedArm;
+namespace usb {
+class SimulatedFalcon;
+}
+}  // namespace thimble::device_sim
 
 namespace thimble::scene {
 
-/// Finds the joint angles (rad) that put the tip of a file's arm to a point of the world (m); empty
-/// if it does not reach it. Real-time: never from the servo thread.
+/// Returns the joint angles (rad) that put the tip of a file's arm to a point of the world (m);
+/// empty if it does not reach it. Real-time: never from the servo thread.
 std::optional<Eigen::Vector3d> joint_angles_at(const ArmFile& file, const Eigen::Vector3d& p_WT);
 
-/// Tells as what kind of arm the simulated one of a file speaks.
+/// Returns an error that names the first point of the hand's path (s; m in the world) which is out
+/// of the arm's workspace or reach. Real-time: never from the servo thread.
+driver::Result<void> check_reach(const ArmFile& file, const HandRoute& hand_W);
+
+/// Returns as what kind of arm the simulated one of a file speaks.
 driver::ArmKind simulated_kind(const ArmFile& file);
 
-/// Is the simulated arm of an arm file, of whatever build, with the hand that leads it.
+/// The simulated arm of an arm file, of whatever build, with the hand that leads it.
 class ArmSimulation {
  public:
+  ~ArmSimulation();
+  ArmSimulation(const ArmSimulation&) = delete;
+  ArmSimulation& operator=(const ArmSimulation&) = delete;
+
   /// Builds the arm and, if it needs that, boots and homes it. The hand goes along `hand_W`
   /// (seconds and points in the world, m) and begins with the clock. `firmware` may be empty: the
   /// simulated arm runs any. The error says what to do. Real-time: never from the servo thread.
   static driver::Result<std::unique_ptr<ArmSimulation>> make(
-      const ArmFile& file, const std::vector<std::pair<double, Eigen::Vector3d>>& hand_W,
-      const std::filesystem::path& firmware = {}, std::uint64_t seed = 0);
+      const ArmFile& file, const HandRoute& hand_W, const std::filesystem::path& firmware = {},
+      std::uint64_t seed = 0);
 
-  /// Makes the wire to it; keeps neither alive. Real-time: never from the servo thread.
+  /// Returns a wire to it, which keeps neither of them alive. Real-time: never from the servo
+  /// thread.
   std::unique_ptr<driver::Transport> wire(driver::Clock& clock);
-  /// Makes the arm as a driver sees it. Real-time: never from the servo thread.
+  /// Returns the arm as a driver sees it. Real-time: never from the servo thread.
   std::unique_ptr<const driver::Arm> protocol() const;
 
   /// Lets the arm live on after the loop: the last message is still on its way to it. Real-time:
   /// safe.
   void settle(std::int64_t now_ns) noexcept;
 
-  /// Gives the hand, which thinks in the arm's base. On the thread that the arm lives on.
-  /// Real-time: safe.
-  device_sim::Hand& hand() noexcept { return falcon_ ? falcon_->hand() : board_arm_->hand(); }
-  /// Leads the hand to a point of the world (m) from now on, in place of its way: smoothly, as a
+  /// Leads the hand to a point of the world (m) from now on, in place of its path: smoothly, as a
   /// person's. A point beyond the workspace is drawn to its box; where the arm does not reach, the
   /// hand stays where it was led last, and the answer is false. On the thread that the arm lives
   /// on. Real-time: safe.
   bool lead(const Eigen::Vector3d& p_WH) noexcept;
+  /// Lets the hand stand still, or go on where it stood. On the thread that the arm lives on.
+  /// Real-time: safe.
+  void hold(bool still) noexcept;
 
-  /// Tells the currents that the motors are asked for, A (Falcon: 1000 motor values).
+  /// Returns the currents that the motors are asked for, A (Falcon: 1000 motor values).
   Eigen::Vector3d currents() const;
-  /// Tells the force of the motors on the tip, N in the world: what is true, not what was sent.
+  /// Returns the force of the motors on the tip, N in the world: what is true, not what was sent.
   Eigen::Vector3d f_T_W() const;
 
-  /// Shows the arm, if it has a board that reports by itself (all but the Falcon).
-  const device_sim::SimulatedArm* board_arm() const { return board_arm_ ? &*board_arm_ : nullptr; }
+  /// Returns the arm, if it has a board that reports by itself (all but the Falcon).
+  const device_sim::SimulatedArm* board_arm() const { return board_arm_.get(); }
 
  private:
-  explicit ArmSimulation(const ArmFile& file) : file_(file) {}
+  device_sim::Hand& hand() noexcept;
+  explicit ArmSimulation(const ArmFile& file);
 
   ArmFile file_;
-  std::optional<device_sim::SimulatedArm> board_arm_;
+  std::unique_ptr<device_sim::SimulatedArm> board_arm_;
   std::unique_ptr<device_sim::usb::SimulatedFalcon> falcon_;
 };
 

@@ -11,7 +11,7 @@
 
 namespace thimble::scene {
 
-/// Is one station of the hand's way: a free point, or a point on an object's surface.
+/// One station of the hand's path: a free point, or a point on an object's surface.
 struct HandWaypoint {
   double time = 0;                ///< s
   std::optional<std::string> on;  ///< Object that is touched; empty for a free point.
@@ -20,29 +20,28 @@ struct HandWaypoint {
   bool stop = false;              ///< True if the hand shall come to rest here.
 };
 
-/// Is where the hand wants to be over time: seconds and points in the world (m).
+/// Where the hand wants to be over time: seconds and points in the world (m).
 using HandRoute = std::vector<std::pair<double, Eigen::Vector3d>>;
 
-/// Is one object that the hand may follow: its name and its mesh in the world (m), kept by the
-/// caller.
+/// One object that the hand may follow, kept by the caller.
 struct NamedMesh {
-  std::string name;
-  const render::TriangleMesh* mesh_W = nullptr;
+  std::string name;                              ///< As in the scene.
+  const render::TriangleMesh* mesh_W = nullptr;  ///< In the world, m.
 };
 
-/// Plans the hand's way through its stations, one point every 2 ms or so.
+/// Returns the hand's path through its stations, one point every 2 ms or so.
 ///
-/// Between two stations on the same object the hand follows the surface: points on the way between
+/// Between two stations on the same object the hand follows the surface: points on the path between
 /// are moved to the closest surface point and pressed in along its smooth normal. Where that jumps,
-/// because the straight way leads through the object's middle, the hand goes the nearly shortest
-/// way over the surface, and where the surface does not hang together, leaves it and comes down
-/// beside the goal; it rests at both ends then. Every other stretch is a straight line. The way
+/// because the straight path leads through the object's middle, the hand takes the nearly shortest
+/// path over the surface, and where the surface does not hang together, leaves it and comes down
+/// beside the goal; it rests at both ends then. Every other stretch is a straight line. The path
 /// over the surface is averaged over 60 ms, as by a hand. Position, speed and acceleration are
 /// continuous in time before the move to the surface; the hand rests where the kind of stretch
 /// changes, at the ends, and where `stop` is set.
 ///
 /// Fails, naming the times, if times do not grow, if a station is on an object that is not among
-/// `objects`, or if no way outside leads from one part of an object to another.
+/// `objects`, or if no path outside leads from one part of an object to another.
 /// Real-time: never from the servo thread.
 driver::Result<HandRoute> plan_hand(const std::vector<HandWaypoint>& waypoints,
                                     const std::vector<NamedMesh>& objects);

@@ -8,7 +8,7 @@
 
 namespace thimble::scene {
 
-/// Says how much of what cannot be felt a run shall spend time on: points on the diagrams of
+/// How much of what cannot be felt a run shall spend time on: points on the diagrams of
 /// `thimble study accuracy`.
 enum class Quality {
   kDraft,      ///< The cheapest that still behaves: for looking whether a scene works at all.
@@ -16,10 +16,10 @@ enum class Quality {
   kReference,  ///< Beyond what can be felt, whatever it costs.
 };
 
-/// Finds a quality by its name; kNormal if there is none of that name.
+/// Returns the quality of a name; kNormal if there is none of that name.
 Quality quality_named(std::string_view name);
 
-/// Puts a scene on the points of a quality and tells each choice, and why, in a sentence.
+/// Puts a scene on the points of a quality. Returns each choice, and why, in a sentence.
 /// `kNormal` changes nothing. What a scene names itself (a blending, a tracker) stays as it is.
 /// Real-time: never from the servo thread.
 std::vector<std::string> apply_quality(Quality quality, Scene& scene);

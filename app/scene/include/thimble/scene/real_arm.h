@@ -16,7 +16,7 @@ namespace thimble::scene {
 
 // How a scene comes to a real arm. Real-time: never from the servo thread.
 
-/// Chooses among the boards that are plugged in. `wanted`: "sim" gives none; "auto" the only one
+/// Returns one of the boards that are plugged in. `wanted`: "sim" gives none; "auto" the only one
 /// that is an arm which Thimble can drive, or none if there is none; else the one of that name (see
 /// `thimble devices`), even if it is of unknown kind, as long as it can be driven. The error says
 /// what to do.
@@ -27,17 +27,17 @@ driver::Result<std::optional<driver::FoundArm>> choose_arm(
 /// empty if there are none.
 std::string boards_left_out(const std::vector<driver::FoundArm>& plugged_in);
 
-/// Finds the same arm again after it was pulled, by the name that it had: its serial number, or its
+/// Returns the same arm after it was pulled, by the name that it had: its serial number, or its
 /// socket where that names none. Empty if it is not there, cannot be told from another, or cannot
 /// be opened yet.
 std::optional<driver::FoundArm> find_again(const std::vector<driver::FoundArm>& plugged_in,
                                            const driver::FoundArm& lost);
 
-/// Says whether an arm file may be used with a board, which it must name: currents and signs of one
-/// are dangerous on another.
+/// Returns an error if an arm file may not be used with a board, which it must name: currents and
+/// signs of one are dangerous on another.
 driver::Result<void> check_fits(const ArmFile& file, const driver::FoundArm& arm);
 
-/// Makes the arm of a file with the wire that this kind of arm has. Precondition: `check_fits`.
+/// Returns the arm of a file with the wire that this kind of arm has. Precondition: `check_fits`.
 std::unique_ptr<const driver::Arm> make_arm(const ArmFile& file, driver::ArmKind kind);
 
 /// Opens the wire to an arm, for this program alone, and brings the arm up: a Falcon gets its

@@ -8,7 +8,6 @@
 #include "thimble/driver/discovery.h"
 #include "thimble/driver/result.h"
 #include "thimble/scene/arm_file.h"
-#include "thimble/scene/board_model.h"
 
 namespace thimble::scene {
 
@@ -24,10 +23,11 @@ struct RealArmFile {
 struct RealArmSearch {
   std::filesystem::path arm_file;  ///< What the user named by --arm; empty: nothing.
   bool for_calibration = false;    ///< Leaves the calibration of before out, even a damaged one.
-  std::function<driver::Result<int>(const driver::FoundArm&)> ask_model = ask_board_model;
+  /// Asks a board for its model number, in place of the board itself; for tests.
+  std::function<driver::Result<int>(const driver::FoundArm&)> ask_model = {};
 };
 
-/// Finds the arm file of a real arm: the file that the user named, else the one that its
+/// Returns the arm file of a real arm: the file that the user named, else the one that its
 /// calibration was found with, else the one that its kind or its board's model number means. A
 /// scene has no say.
 ///

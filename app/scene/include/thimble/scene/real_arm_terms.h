@@ -10,9 +10,10 @@
 #include "thimble/driver/discovery.h"
 #include "thimble/driver/result.h"
 #include "thimble/scene/real_arm_file.h"
-#include "thimble/scene/scene_file.h"
 
 namespace thimble::scene {
+
+struct Scene;
 
 /// The largest force that a feel check lets through, and that an arm gets which has passed none, N:
 /// enough to feel, too little to hurt. [chosen]
@@ -32,22 +33,22 @@ std::string_view name(FeelCheckState state);
 /// The terms on which a run may use a real arm: which file is the arm's, and how much force it may
 /// have.
 struct RealArmTerms {
-  RealArmFile arm;
-  FeelCheckState feel_check = FeelCheckState::kNone;
+  RealArmFile arm;                                              ///< Which file is the arm's.
+  FeelCheckState feel_check = FeelCheckState::kNone;            ///< Whether it passed one.
   double force_most = std::numeric_limits<double>::infinity();  ///< N, beside the arm's own limit.
   std::vector<std::string> told;  ///< What the user must know, a sentence each.
 };
 
 /// What a user asked for about a real arm.
-struct RealArmWish {
+struct RealArmRequest {
   std::filesystem::path arm_file;  ///< By --arm; empty: nothing.
   std::filesystem::path firmware;  ///< By --firmware; empty: nothing.
   bool unchecked = false;          ///< Gives the arm its whole force without a passed feel check.
 };
 
-/// Finds the terms for an arm. The error says what to type.
+/// Returns the terms for an arm. The error says what to type.
 /// Real-time: never from the servo thread.
-driver::Result<RealArmTerms> terms_for(const driver::FoundArm& arm, const RealArmWish& wish);
+driver::Result<RealArmTerms> terms_for(const driver::FoundArm& arm, const RealArmRequest& request);
 
 /// Puts the real arm of the terms in place of the scene's: its file, calibration and limits. Of
 /// what the scene itself says of limits (`gate:`, or an arm file of its own that is not installed)

@@ -7,46 +7,56 @@
 #include <string>
 #include <vector>
 
-#include "page/paged_surface.h"
 #include "thimble/driver/result.h"
 #include "thimble/render/mesh/triangle_mesh.h"
+#include "thimble/render/page/paging_counters.h"
 #include "thimble/render/scene_touch.h"
-#include "thimble/scene/mesh_place.h"
 #include "thimble/scene/scene_file.h"
+
+namespace thimble::render {
+class PagedSurface;
+}
 
 namespace thimble::scene {
 
-/// Is what stands in a scene, loaded and ready to be touched.
+/// Where an object begins in a mesh of several.
+struct MeshPlace {
+  std::size_t vertex = 0;    ///< Its first vertex.
+  std::size_t triangle = 0;  ///< Its first triangle.
+};
+
+/// What stands in a scene, loaded and ready to be touched.
 class SceneObjects {
  public:
   /// Reads the meshes and builds the force law that the scene calls for. The error names the object
   /// and what to mend. Real-time: never from the servo thread.
   static driver::Result<std::unique_ptr<SceneObjects>> build(const Scene& scene);
 
-  /// Gives the force law of the whole scene.
+  /// Returns the force law of the whole scene.
   render::SceneTouch& touch() const { return *touch_; }
-  /// Gives the meshes of all objects in the world as one (m), as they are at first: those that are
-  /// touched, and those that stand for shapes; those on the disk are not in it.
+  /// Returns the meshes of all objects in the world as one (m), as they are at first: those that
+  /// are touched, and those that stand for shapes; those on the disk are not in it.
   const render::TriangleMesh& mesh_W() const { return mesh_W_; }
-  /// Gives the mesh of one object alone; empty for a field and for one on the disk.
+  /// Returns the mesh of one object alone; empty for a field and for one on the disk.
   render::TriangleMesh mesh_W(std::size_t object) const;
-  /// Tells where an object begins in `mesh_W`.
+  /// Returns where an object begins in `mesh_W`.
   const MeshPlace& place(std::size_t object) const { return places_[object]; }
-  /// Gives the mesh of one object, or of all as one if `object` is negative, where it is now: moved
-  /// and bent (W, m). Not beside a running servo.
+  /// Returns the mesh of one object, or of all as one if `object` is negative, where it is now:
+  /// moved and bent (W, m). Not beside a running servo.
   render::TriangleMesh mesh_now(int object = -1) const;
-  /// Tells how many triangles can be touched, in memory and on the disk.
+  /// Returns how many triangles can be touched, in memory and on the disk.
   std::size_t triangles() const { return triangles_; }
   /// Returns what was put right, left out or guessed of the meshes, a sentence each.
   const std::vector<std::string>& notes() const { return notes_; }
-  /// Lists the objects that move.
+  /// Returns the objects that move.
   std::span<const std::size_t> moving() const { return moving_; }
 
   /// Lets threads load pages from now on. Real-time: never from the servo thread.
   void start_loaders();
-  /// Loads every page that is asked for, on the caller's thread: for virtual time. Real-time: no.
+  /// Loads every page that is asked for, on the caller's thread: for virtual
+  /// time, between two ticks. Real-time: no.
   void serve_pages() noexcept;
-  /// Sums up what paging did for all objects on the disk; nothing if there are none.
+  /// Returns what paging did for all objects on the disk; nothing if there are none.
   std::optional<render::PagingCounters> paging() const;
 
  private:

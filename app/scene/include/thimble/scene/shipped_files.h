@@ -10,23 +10,24 @@ namespace thimble::scene {
 
 // Scenes and arm files are known by name: "elephant" is elephant.yaml in the first folder that has
 // it. Folders, in this order: app/ below the working folder; the user's own,
-// $XDG_DATA_HOME/thimble; what came with this program or library, found from where it lies; and
-// thimble/ below each folder of $XDG_DATA_DIRS [XDG Base Directory Specification]. Each has scenes/
-// and arms/. Arm files are looked for in own_arm_folder() as well, after app/.
+// $XDG_DATA_HOME/thimble; what came with this program or library, found from where it lies, or for
+// a program of somebody else from where the libraries were installed; and thimble/ below each
+// folder of $XDG_DATA_DIRS [XDG Base Directory Specification]. Each has scenes/ and arms/. Arm
+// files are looked for in own_arm_folder() as well, after app/.
 //
 // Two of these folders count as installed: own_arm_folder(), and arms/ of what came with this
 // program. Only arm files there set the limits of a real arm (terms/limits_policy.h).
 // Real-time: never from the servo thread.
 
-/// Is a scene or arm file that is known by name.
+/// A scene or arm file that is known by name.
 struct ShippedFile {
-  std::string name;
-  std::filesystem::path path;
+  std::string name;            ///< What it is known by.
+  std::filesystem::path path;  ///< The file.
 };
 
-/// Lists the scenes that are known by name, each name once, in the order of the alphabet.
+/// Returns the scenes that are known by name, each name once, in the order of the alphabet.
 std::vector<ShippedFile> shipped_scenes();
-/// Lists the arm files that are known by name, as above.
+/// Returns the arm files that are known by name, as above.
 std::vector<ShippedFile> shipped_arms();
 
 /// Returns the installed arm files, each name once; the user's own replace those that came with the
@@ -35,14 +36,19 @@ std::vector<ShippedFile> installed_arms();
 /// Returns whether an arm file is one of `installed_arms`. One that the user's own replaces is not.
 bool is_installed_arm(const std::filesystem::path& file);
 
-/// Reads what a scene or arm file says of itself under `description`; empty if it says nothing, or
-/// cannot be read.
+/// Returns what a scene or arm file says of itself under `description`; empty if it says nothing,
+/// or cannot be read.
 std::string description_of(const std::filesystem::path& file);
 
-/// Finds the scene that a user means: a file there is, or else one of a name. What has a / is a
-/// path and is given back as it is, whether it is there or not. The error lists the names.
+/// Returns the file of the scene that a user means: a file there is, or else one of a name. What
+/// has a / is a path and is given back as it is, whether it is there or not. The error lists the
+/// names.
 driver::Result<std::filesystem::path> find_scene(const std::string& meant);
-/// Finds the arm file that a user means, as above.
+/// Returns the arm file that a user means, as above.
 driver::Result<std::filesystem::path> find_arm_file(const std::string& meant);
+
+/// Returns where the meshes of Debian's libcgal-demo lie (`cgal:` in scenes): the environment's
+/// THIMBLE_MESHES, or the folder that this build was configured with.
+std::filesystem::path mesh_folder();
 
 }  // namespace thimble::scene

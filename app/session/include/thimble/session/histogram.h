@@ -6,17 +6,17 @@
 
 namespace thimble::session {
 
-/// Counts durations in bins that are 1 ns wide below 2048 ns and less than 0.1 % wide above, up to
+/// Durations counted in bins that are 1 ns wide below 2048 ns and less than 0.1 % wide above, up to
 /// 10 s; longer ones count as 10 s, negative ones as 0. Its memory is fixed when it is made.
 class Histogram {
  public:
-  static constexpr std::int64_t kMax_ns = 10'000'000'000;
+  static constexpr std::int64_t kMax_ns = 10'000'000'000;  ///< The longest that is told apart.
 
-  /// Is one bin that holds something: values from `lower_ns` up to but not including `upper_ns`.
+  /// One bin that holds something: values from `lower_ns` up to but not including `upper_ns`.
   struct Bin {
-    std::int64_t lower_ns = 0;
-    std::int64_t upper_ns = 0;
-    std::uint64_t count = 0;
+    std::int64_t lower_ns = 0;  ///< The least.
+    std::int64_t upper_ns = 0;  ///< Above the largest.
+    std::uint64_t count = 0;    ///< How many were counted.
   };
 
   Histogram();
@@ -24,19 +24,21 @@ class Histogram {
   /// Counts one duration. Real-time: safe.
   void add(std::int64_t duration_ns) noexcept;
 
-  /// Tells how many durations were counted. Real-time: safe.
+  /// Returns how many durations were counted. Real-time: safe.
   std::uint64_t count() const noexcept { return count_; }
 
-  /// Tells the duration (ns) that `fraction` (0 to 1) of all do not exceed, to within its bin; 0 if
-  /// nothing was counted. Real-time: never from the servo thread.
+  /// Returns the duration (ns) that `fraction` (0 to 1) of all do not exceed, to within its bin; 0
+  /// if nothing was counted. Real-time: never from the servo thread.
   double percentile(double fraction) const;
 
-  /// Tells the shortest, longest and mean duration, ns; 0 if nothing was counted. Real-time: safe.
+  /// Returns the shortest duration, ns; 0 if nothing was counted. Real-time: safe.
   std::int64_t min_ns() const noexcept { return count_ > 0 ? min_ns_ : 0; }
+  /// Returns the longest, as above.
   std::int64_t max_ns() const noexcept { return max_ns_; }
+  /// Returns the mean, as above.
   double mean_ns() const noexcept;
 
-  /// Lists the bins that hold something, shortest first. Real-time: never from the servo thread.
+  /// Returns the bins that hold something, shortest first. Real-time: never from the servo thread.
   std::vector<Bin> bins() const;
 
  private:

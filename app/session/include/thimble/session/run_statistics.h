@@ -4,64 +4,69 @@
 
 #include "thimble/driver/tick_record.h"
 #include "thimble/session/histogram.h"
+#include "thimble/session/tick_observer.h"
 
 namespace thimble::session {
 
-/// Sums up a run tick by tick; a sink for the servo loop. Its memory is fixed when it is made.
-class RunStatistics {
+/// The sums of a run, tick by tick. Its memory is fixed when it is made.
+class RunStatistics final : public TickObserver {
  public:
   /// A gap in a contact shorter than this is a break in one touch, not two: a hand that lifts off
   /// and comes back takes longer. [chosen: half the fastest finger tap, about 10 Hz]
   static constexpr std::int64_t kInterruption_ns = 20'000'000;
 
   /// Takes one tick. Real-time: safe.
-  void operator()(const driver::TickRecord& record) noexcept;
+  void take(const driver::TickRecord& record) noexcept override;
 
-  /// Tells how many ticks were taken.
+  /// Returns how many ticks were taken.
   std::uint64_t ticks() const noexcept { return ticks_; }
 
-  /// Tells the times between tick starts, how long ticks took on the wall clock, and how late they
-  /// began.
+  /// Returns the times between tick starts.
   const Histogram& period() const noexcept { return period_; }
+  /// Returns how long ticks took on the wall clock.
   const Histogram& work() const noexcept { return work_; }
+  /// Returns how late ticks began.
   const Histogram& lateness() const noexcept { return lateness_; }
 
-  /// Tells the time from the first to the last tick, s.
+  /// Returns the time from the first to the last tick, s.
   double duration() const noexcept;
 
-  /// Tells the ticks per second reached, Hz; 0 for fewer than two ticks.
+  /// Returns the ticks per second reached, Hz; 0 for fewer than two ticks.
   double rate() const noexcept;
 
-  /// Tells how often the tip touched down.
+  /// Returns how often the tip touched down.
   std::uint64_t contacts() const noexcept { return contacts_; }
 
-  /// Tells how many contacts began within `kInterruption_ns` of the last one's end.
+  /// Returns how many contacts began within `kInterruption_ns` of the last one's end.
   std::uint64_t interruptions() const noexcept { return interruptions_; }
 
-  /// Tells the time in contact, s: a tick in contact counts until the next one.
+  /// Returns the time in contact, s: a tick in contact counts until the next one.
   double contact_time() const noexcept { return 1e-9 * static_cast<double>(contact_ns_); }
 
-  /// Tells the largest force sent, and its root mean square over the ticks in contact, N.
+  /// Returns the largest force sent, N.
   double force_max() const noexcept { return force_max_; }
+  /// Returns its root mean square over the ticks in contact, N.
   double force_rms() const noexcept;
 
-  /// Tells the greatest depth, m, and the most features crossed in one tick.
+  /// Returns the greatest depth, m.
   double depth_max() const noexcept { return depth_max_; }
+  /// Returns the most features crossed in one tick.
   std::uint16_t hops_max() const noexcept { return hops_max_; }
 
-  /// Tells the energy that the arm gave to the hand, J: the sum of f_k . (p_k+1 - p_k), with f_k
+  /// Returns the energy that the arm gave to the hand, J: the sum of f_k . (p_k+1 - p_k), with f_k
   /// the force sent in tick k, which acts until the next. Positive: the arm was active. A surface
   /// with damping takes energy, so the sum over a whole touch is negative.
   double energy_to_hand() const noexcept { return energy_; }
 
-  /// Tells the most energy that the arm had given at any time since the start, J, never below 0.
+  /// Returns the most energy that the arm had given at any time since the start, J, never below 0.
   double energy_to_hand_max() const noexcept { return energy_max_; }
 
-  /// Tells how many ticks had no new report.
+  /// Returns how many ticks had no new report.
   std::uint64_t missing_reports() const noexcept { return missing_; }
 
-  /// Tells in how many ticks the device was in fault, and the first fault.
+  /// Returns in how many ticks the device was in fault.
   std::uint64_t fault_ticks() const noexcept { return fault_ticks_; }
+  /// Returns the first fault.
   driver::Fault first_fault() const noexcept { return first_fault_; }
 
  private:

@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <span>
 
-#include "thimble/device_sim/usb/setup_packet.h"
-#include "thimble/device_sim/usb/usb_description.h"
-
 namespace thimble::device_sim::usb {
+
+struct SetupPacket;
+struct UsbDescription;
 
 /// Says how a device met one packet or one control request.
 enum class Answer : std::uint8_t {
@@ -33,6 +33,8 @@ class UsbDevice {
  public:
   /// Is the largest packet of a full-speed bus, bytes.
   static constexpr std::size_t kPacketMax = 64;
+  /// Is the length of a frame, ns [USB 2.0, 5.3.3].
+  static constexpr std::int64_t kFrame_ns = 1'000'000;
 
   UsbDevice() = default;
   UsbDevice(const UsbDevice&) = delete;

@@ -8,10 +8,15 @@
 #include <vector>
 
 #include "thimble/device_sim/usb/usb_fault.h"
-#include "thimble/device_sim/usb/usbip_session.h"
+#include "thimble/device_sim/usb/usbip_counters.h"
 #include "thimble/driver/result.h"
 
 namespace thimble::device_sim::usb {
+
+class UsbipSession;
+
+/// The registered TCP port of USB/IP.
+inline constexpr std::uint16_t kUsbipPort = 3240;
 
 /// Says where a server listens and what it calls its device.
 struct UsbipServerSettings {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "thimble/driver/arm.h"
-#include "thimble/driver/arms/hfab/hfab_report.h"
 #include "thimble/driver/joint_model.h"
 #include "thimble/driver/serial_arm.h"
 

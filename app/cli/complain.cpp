@@ -1,0 +1,12 @@
+#include "cli/complain.h"
+
+#include "log/logger.h"
+
+namespace thimble::app {
+
+ExitCode complain(const driver::Error& error, ExitCode exit_code) {
+  scene::logger().error("{}", error.message);
+  return exit_code;
+}
+
+}  // namespace thimble::app

@@ -1,0 +1,49 @@
+#include "cli/log_options.h"
+
+#include <memory>
+
+#include "log/logger.h"
+#include "thimble/scene/build_info.h"
+
+namespace thimble::app {
+namespace {
+
+struct LogOptions {
+  int more = 0;
+  bool quiet = false;
+  std::string file;
+
+  scene::Talk talk() const {
+    if (quiet) return scene::Talk::kQuiet;
+    return more == 0 ? scene::Talk::kNormal : more == 1 ? scene::Talk::kDebug : scene::Talk::kTrace;
+  }
+};
+
+/// Lets a command leave the options that it does not know to the program.
+void fall_through(CLI::App& above) {
+  for (CLI::App* command : above.get_subcommands([](const CLI::App*) { return true; })) {
+    command->fallthrough();
+    fall_through(*command);
+  }
+}
+
+}  // namespace
+
+void add_log_options(CLI::App& program, const std::string& command_line) {
+  auto options = std::make_shared<LogOptions>();
+  program.add_flag("-v,--verbose", options->more,
+                   "Tell on the terminal what happens; -vv: all of it");
+  program.add_flag("-q,--quiet", options->quiet, "Tell of errors alone")->excludes("--verbose");
+  program.add_option("--log", options->file,
+                     "File to log to, in place of thimble/log/thimble.log in $XDG_STATE_HOME "
+                     "(~/.local/state), which rotates");
+  fall_through(program);
+  program.parse_complete_callback([options, command_line] {
+    const auto begun = scene::begin_log({.talk = options->talk(),
+                                         .file = options->file,
+                                         .heading = scene::program_name() + ": " + command_line});
+    if (!begun) throw CLI::ValidationError("--log", begun.error().message);
+  });
+}
+
+}  // namespace thimble::app

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "thimble/driver/servo_loop.h"
+#include "thimble/driver/tick_record.h"
+#include "thimble/scene/simulated_device.h"
+
+namespace thimble::python {
+
+/// A simulated arm without a scene, in virtual time: whoever holds it says the force of each tick,
+/// which goes through the same gate and wire as any other. Throws ThimbleError with a sentence for
+/// the user. Real-time: never from the servo thread, all of it.
+class SimulatorSession {
+ public:
+  /// Opens the arm of a file or name, held by a hand at `p_WH` (m), ready for forces.
+  SimulatorSession(const std::string& arm, const Eigen::Vector3d& p_WH, double rate,
+                   std::uint64_t seed);
+
+  /// Runs one tick with a force on the hand (N, world), which is led to `p_WH` (m, world) from now
+  /// on if that is given. Returns what it was: the tip as the driver saw it when the tick began,
+  /// and the force that went to the motors.
+  const driver::TickRecord& step(const Eigen::Vector3d& f_T_W,
+                                 const std::optional<Eigen::Vector3d>& p_WH);
+  /// Lets forces through again after a fault.
+  void activate();
+
+  /// Returns the arm on both sides of the wire.
+  const scene::SimulatedDevice& device() const { return *device_; }
+
+  // The loop's law and sink. Real-time: safe.
+  driver::ForceCommand operator()(const driver::DeviceState&) noexcept {
+    return {.f_T_W = f_T_W_, .touch = {}};
+  }
+  void operator()(const driver::TickRecord& record) noexcept { last_ = record; }
+
+ private:
+  std::unique_ptr<scene::SimulatedDevice> device_;
+  std::optional<driver::ServoLoop> loop_;
+  std::atomic<bool> never_{false};
+  Eigen::Vector3d f_T_W_{0, 0, 0};
+  driver::TickRecord last_;
+};
+
+}  // namespace thimble::python

@@ -1,0 +1,19 @@
+#include "thimble/scene/device_settings.h"
+
+#include "energy_choice.h"
+#include "watch_choice.h"
+
+namespace thimble::scene {
+
+driver::DeviceSettings device_settings(const ArmFile& arm, double rate,
+                                       std::optional<driver::EnergyStage> stage) {
+  return {.R_WB = arm.R_WB,
+          .p_WB = arm.p_WB,
+          .limits = arm.limits,
+          .energy = energy_settings(arm, rate, stage),
+          .motion = motion_settings(arm, rate),
+          .heat = arm.heat,
+          .velocity_corner_frequency = arm.velocity_corner_frequency};
+}
+
+}  // namespace thimble::scene

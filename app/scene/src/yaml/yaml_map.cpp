@@ -1,0 +1,348 @@
+#include "yaml/yaml_reader.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <optional>
+#include <system_error>
+
+namespace thimble::scene {
+namespace {
+
+constexpr std::size_t kFoundLengthMax = 40;  // chosen: what fits beside the rest of a line
+
+int line_of(const YAML::Node& node, int fallback) {
+  // A value left out is marked where the parser noticed it, which may be the line below.
+  if (node.IsNull()) return fallback;
+  const YAML::Mark mark = node.Mark();
+  return mark.is_null() ? fallback : mark.line + 1;
+}
+
+std::string in_quotes(std::string_view text) {
+  std::string result = "\"";
+  for (const char c : text.substr(0, kFoundLengthMax)) {
+    result += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+  }
+  if (text.size() > kFoundLengthMax) result += "...";
+  result += '"';
+  return result;
+}
+
+std::string found(const YAML::Node& node) {
+  switch (node.Type()) {
+    case YAML::NodeType::Undefined:
+    case YAML::NodeType::Null:
+      return "nothing";
+    case YAML::NodeType::Scalar:
+      return in_quotes(node.Scalar());
+    case YAML::NodeType::Sequence:
+      return "a list of " + std::to_string(node.size());
+    case YAML::NodeType::Map:
+      return "a map";
+  }
+  return "nothing";
+}
+
+std::string in_words(double number) {
+  std::ostringstream text;
+  text << number;
+  return text.str();
+}
+
+std::string number_in_words(std::string_view unit, double min, double max) {
+  std::string text = "a number from " + in_words(min) + " to " + in_words(max);
+  if (!unit.empty()) text.append(" ").append(unit);
+  return text;
+}
+
+// yaml-cpp marks a scalar that stood in quotes with the tag "!"; such a one is a text.
+bool is_plain_scalar(const YAML::Node& node) {
+  return node.IsScalar() && node.Tag() != "!";
+}
+
+std::optional<double> to_number(const YAML::Node& node) {
+  if (!is_plain_scalar(node)) return std::nullopt;
+  std::string_view text = node.Scalar();
+  if (text.starts_with('+')) text.remove_prefix(1);
+  double number = 0;
+  const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (status != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return number;
+}
+
+/// Gives the number of the word that a node holds; nothing if it is none of them.
+std::optional<std::size_t> choice_of(const YAML::Node& node,
+                                     const std::vector<std::string_view>& choices) {
+  if (!node.IsScalar()) return std::nullopt;
+  const auto found = std::find(choices.begin(), choices.end(), node.Scalar());
+  if (found == choices.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - choices.begin());
+}
+
+std::string any_of(const std::vector<std::string_view>& choices) {
+  std::string what;
+  for (std::size_t i = 0; i < choices.size(); ++i) {
+    what.append(i == 0 ? "" : i + 1 == choices.size() ? " or " : ", ").append(choices[i]);
+  }
+  return what;
+}
+
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t substituted = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({substituted, row[j] + 1, row[j - 1] + 1});
+    }
+  }
+  return row.back();
+}
+
+}  // namespace
+
+YamlMap::YamlMap(const YAML::Node& node, std::string_view name, int line,
+                 std::shared_ptr<YamlMistakes> mistakes)
+    : mistakes_(std::move(mistakes)), line_(line_of(node, line)) {
+  if (!node.IsMap()) {
+    quiet_ = true;
+    const std::string prefix = name.empty() ? "" : std::string(name) + ": ";
+    mistakes_->add(line_, prefix + "expected a map of keys and values, found " + found(node));
+    return;
+  }
+  for (const auto& pair : node) {
+    const int key_line = line_of(pair.first, line_);
+    if (!pair.first.IsScalar()) {
+      mistakes_->add(key_line, "expected a word as key, found " + found(pair.first));
+      continue;
+    }
+    const std::string key = pair.first.Scalar();
+    const auto same = [&key](const Entry& entry) { return entry.key == key; };
+    const auto first = std::find_if(entries_.begin(), entries_.end(), same);
+    if (first != entries_.end()) {
+      mistakes_->add(key_line, key + ": stands twice, first in line " +
+                                   std::to_string(first->line) + "; keep one of them");
+      continue;
+    }
+    entries_.push_back({key, key_line, pair.second});
+  }
+}
+
+const YamlMap::Entry* YamlMap::find(std::string_view key, bool required) {
+  if (std::find(asked_.begin(), asked_.end(), key) == asked_.end()) asked_.emplace_back(key);
+  for (const Entry& entry : entries_) {
+    if (entry.key == key) return &entry;
+  }
+  if (required && !quiet_) mistakes_->add(line_, std::string(key) + ": is missing here");
+  return nullptr;
+}
+
+int YamlMap::key_line(std::string_view key) const {
+  for (const Entry& entry : entries_) {
+    if (entry.key == key) return entry.line;
+  }
+  return 0;
+}
+
+void YamlMap::expected(const Entry& entry, const std::string& what) {
+  mistakes_->add(line_of(entry.value, entry.line),
+                 entry.key + ": expected " + what + ", found " + found(entry.value));
+}
+
+bool YamlMap::read_number(const Entry& entry, const YAML::Node& node, const std::string& what,
+                          double min, double max, double& number) {
+  const std::optional<double> value = to_number(node);
+  // Written so that NaN is refused.
+  if (value && *value >= min && *value <= max) {
+    number = *value;
+    return true;
+  }
+  mistakes_->add(line_of(node, entry.line),
+                 entry.key + ": expected " + what + ", found " + found(node));
+  return false;
+}
+
+bool YamlMap::has(std::string_view key) {
+  return find(key, false) != nullptr;
+}
+
+double YamlMap::require_number(std::string_view key, std::string_view unit, double min,
+                               double max) {
+  double number = min;
+  if (const Entry* entry = find(key, true)) {
+    read_number(*entry, entry->value, number_in_words(unit, min, max), min, max, number);
+  }
+  return number;
+}
+
+double YamlMap::optional_number(std::string_view key, double fallback, std::string_view unit,
+                                double min, double max) {
+  return has(key) ? require_number(key, unit, min, max) : fallback;
+}
+
+Eigen::Vector3d YamlMap::require_vector3(std::string_view key, std::string_view unit, double min,
+                                         double max) {
+  Eigen::Vector3d vector = Eigen::Vector3d::Zero();
+  const Entry* entry = find(key, true);
+  if (entry == nullptr) return vector;
+  if (!entry->value.IsSequence() || entry->value.size() != 3) {
+    expected(*entry, "a list of three numbers" + (unit.empty() ? "" : " in " + std::string(unit)));
+    return vector;
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    double number = 0;
+    if (!read_number(*entry, entry->value[i], number_in_words(unit, min, max), min, max, number)) {
+      return Eigen::Vector3d::Zero();
+    }
+    vector[static_cast<Eigen::Index>(i)] = number;
+  }
+  return vector;
+}
+
+Eigen::Vector3d YamlMap::optional_vector3(std::string_view key, const Eigen::Vector3d& fallback,
+                                          std::string_view unit, double min, double max) {
+  return has(key) ? require_vector3(key, unit, min, max) : fallback;
+}
+
+Eigen::Matrix3d YamlMap::optional_rotation(std::string_view key) {
+  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
+  const Entry* entry = find(key, false);
+  if (entry == nullptr) return R;
+  const std::string what = "a list of turns such as [[x, 90], [z, -45]], in degrees";
+  if (!entry->value.IsSequence()) {
+    expected(*entry, what);
+    return R;
+  }
+  for (const YAML::Node& turn : entry->value) {
+    const bool is_pair = turn.IsSequence() && turn.size() == 2 && turn[0].IsScalar();
+    const std::string axis = is_pair ? turn[0].Scalar() : "";
+    if (axis != "x" && axis != "y" && axis != "z") {
+      mistakes_->add(line_of(turn, entry->line), entry->key + ": expected " + what + ", found " +
+                                                     (is_pair ? in_quotes(axis) : found(turn)));
+      return Eigen::Matrix3d::Identity();
+    }
+    double degrees = 0;
+    if (!read_number(*entry, turn[1], number_in_words("degrees", -360, 360), -360, 360, degrees)) {
+      return Eigen::Matrix3d::Identity();
+    }
+    const Eigen::Vector3d direction = Eigen::Vector3d::Unit(axis[0] - 'x');
+    R = Eigen::AngleAxisd(degrees * std::numbers::pi / 180, direction).toRotationMatrix() * R;
+  }
+  return R;
+}
+
+std::string YamlMap::require_string(std::string_view key) {
+  const Entry* entry = find(key, true);
+  if (entry == nullptr) return "";
+  if (!entry->value.IsScalar() || entry->value.Scalar().empty()) {
+    expected(*entry, "a text");
+    return "";
+  }
+  return entry->value.Scalar();
+}
+
+std::string YamlMap::optional_string(std::string_view key, std::string_view fallback) {
+  return has(key) ? require_string(key) : std::string(fallback);
+}
+
+std::size_t YamlMap::require_choice(std::string_view key,
+                                    const std::vector<std::string_view>& choices) {
+  const Entry* entry = find(key, true);
+  if (entry == nullptr) return 0;
+  if (const auto chosen = choice_of(entry->value, choices)) return *chosen;
+  expected(*entry, any_of(choices));
+  return 0;
+}
+
+std::vector<std::size_t> YamlMap::optional_choices(std::string_view key,
+                                                   const std::vector<std::size_t>& fallback,
+                                                   const std::vector<std::string_view>& choices) {
+  const Entry* entry = find(key, false);
+  if (entry == nullptr) return fallback;
+  std::vector<std::size_t> chosen;
+  if (entry->value.IsScalar()) {
+    if (const auto one = choice_of(entry->value, choices)) chosen.push_back(*one);
+  } else if (entry->value.IsSequence()) {
+    for (const YAML::Node& node : entry->value) {
+      const auto one = choice_of(node, choices);
+      if (!one) {
+        chosen.clear();
+        break;
+      }
+      chosen.push_back(*one);
+    }
+  }
+  if (chosen.empty()) expected(*entry, any_of(choices) + ", or a list of such");
+  return chosen;
+}
+
+std::size_t YamlMap::optional_choice(std::string_view key, std::size_t fallback,
+                                     const std::vector<std::string_view>& choices) {
+  return has(key) ? require_choice(key, choices) : fallback;
+}
+
+bool YamlMap::optional_bool(std::string_view key, bool fallback) {
+  const Entry* entry = find(key, false);
+  if (entry == nullptr) return fallback;
+  if (is_plain_scalar(entry->value)) {
+    if (entry->value.Scalar() == "true") return true;
+    if (entry->value.Scalar() == "false") return false;
+  }
+  expected(*entry, "true or false");
+  return fallback;
+}
+
+YamlMap YamlMap::require_map(std::string_view key) {
+  if (const Entry* entry = find(key, true)) {
+    return YamlMap(entry->value, key, entry->line, mistakes_);
+  }
+  YamlMap absent(YAML::Node(YAML::NodeType::Map), key, line_, mistakes_);
+  absent.quiet_ = true;
+  return absent;
+}
+
+std::vector<YamlMap> YamlMap::require_maps(std::string_view key) {
+  std::vector<YamlMap> maps;
+  const Entry* entry = find(key, true);
+  if (entry == nullptr) return maps;
+  if (!entry->value.IsSequence() || entry->value.size() == 0) {
+    expected(*entry, "a list with at least one entry");
+    return maps;
+  }
+  for (const YAML::Node& node : entry->value) {
+    maps.emplace_back(node, key, entry->line, mistakes_);
+  }
+  return maps;
+}
+
+void YamlMap::reject(std::string_view key, const std::string& sentence) {
+  const Entry* entry = key.empty() ? nullptr : find(key, false);
+  const std::string prefix = key.empty() ? "" : std::string(key) + ": ";
+  mistakes_->add(entry != nullptr ? line_of(entry->value, entry->line) : line_, prefix + sentence);
+}
+
+void YamlMap::finish() {
+  for (const Entry& entry : entries_) {
+    if (std::find(asked_.begin(), asked_.end(), entry.key) != asked_.end()) continue;
+    std::string sentence = entry.key + ": is no key that is known here";
+    const std::string* nearest = nullptr;
+    std::size_t nearest_distance = std::max<std::size_t>(2, entry.key.size() / 3) + 1;
+    for (const std::string& known : asked_) {
+      const std::size_t distance = edit_distance(entry.key, known);
+      if (distance < nearest_distance) {
+        nearest_distance = distance;
+        nearest = &known;
+      }
+    }
+    if (nearest != nullptr) sentence += "; perhaps " + in_quotes(*nearest) + " was meant";
+    mistakes_->add(entry.line, sentence);
+  }
+}
+
+}  // namespace thimble::scene

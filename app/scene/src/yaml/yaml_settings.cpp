@@ -1,0 +1,48 @@
+#include "yaml/yaml_settings.h"
+
+#include <system_error>
+
+namespace thimble::scene {
+
+void YamlSettings::number(std::string_view key, double& value, const render::NumberLimits& limits) {
+  value = limits.required
+              ? map_.require_number(key, limits.unit, limits.least, limits.most)
+              : map_.optional_number(key, value, limits.unit, limits.least, limits.most);
+}
+
+void YamlSettings::vector(std::string_view key, Eigen::Vector3d& value,
+                          const render::NumberLimits& limits) {
+  value = limits.required
+              ? map_.require_vector3(key, limits.unit, limits.least, limits.most)
+              : map_.optional_vector3(key, value, limits.unit, limits.least, limits.most);
+}
+
+void YamlSettings::choice(std::string_view key, std::size_t& value,
+                          const std::vector<std::string_view>& names) {
+  value = map_.optional_choice(key, value, names);
+}
+
+void YamlSettings::file(std::string_view key, std::filesystem::path& value) {
+  const std::string name = map_.require_string(key);
+  if (name.empty()) return;
+  value = (folder_ / name).lexically_normal();
+  std::error_code status;
+  if (!std::filesystem::is_regular_file(value, status)) {
+    map_.reject(key, "expected a file, found none at " + value.string());
+  }
+}
+
+void YamlSettings::list(std::string_view key,
+                        const std::function<void(render::SettingsReader&)>& read) {
+  for (const YamlMap& entry : map_.require_maps(key)) {
+    YamlSettings settings(entry, folder_);
+    read(settings);
+    settings.finish();
+  }
+}
+
+void YamlSettings::reject(std::string_view key, const std::string& sentence) {
+  map_.reject(key, sentence);
+}
+
+}  // namespace thimble::scene

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+
+namespace thimble::session {
+
+/// One number that a run, report, study or bench stands for, and what it should be.
+struct Figure {
+  std::string name;  ///< In lower_snake_case.
+  double value = 0;  ///< In `unit`.
+  std::string unit;  ///< Empty for numbers of things.
+  std::string goal;  ///< A comparison in text (">= 20", "<= 5", "== 0", "> 1", "< 2"); empty: none.
+
+  /// Returns whether the value meets the goal; a figure without one is met. NaN meets no goal, and
+  /// nothing meets a goal that is no comparison.
+  bool met() const;
+};
+
+}  // namespace thimble::session

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "thimble/render/body_patch.h"
+#include "thimble/render/mesh/triangle_mesh.h"
+#include "thimble/scene/scene_objects.h"
+
+namespace thimble::session {
+
+/// Returns a mesh (m) with the patch of the object that begins at `place` in place of the triangles
+/// it stands for. Real-time: never from the servo thread.
+render::TriangleMesh bent(const render::TriangleMesh& mesh, const scene::MeshPlace& place,
+                          const render::BodyPatch& patch);
+
+}  // namespace thimble::session

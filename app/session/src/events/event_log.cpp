@@ -1,0 +1,82 @@
+#include "events/event_log.h"
+
+#include <exception>
+#include <utility>
+
+#include "events/event_words.h"
+#include "log/logger.h"
+
+namespace thimble::session {
+namespace {
+
+constexpr std::chrono::milliseconds kBetweenLooks(50);  // chosen: soon enough for who reads along
+
+}  // namespace
+
+EventLog::EventLog(LoggedRun run, const driver::Device& device)
+    : run_(std::move(run)),
+      device_(device),
+      log_(scene::run_logger(run_.name)),
+      clock_began_(std::chrono::system_clock::now() - std::chrono::nanoseconds(run_.now_ns)),
+      counters_(device),
+      watch_(counters_, run_.period_ns, ring_) {
+  log_->info("The arm is open: {}.", run_.what);
+  if (!run_.real_time) return;
+  writer_ = std::thread([this] {
+    while (!stop_.load()) {
+      serve();
+      std::this_thread::sleep_for(kBetweenLooks);
+    }
+  });
+}
+
+EventLog::~EventLog() {
+  stop_.store(true);
+  if (writer_.joinable()) writer_.join();
+  serve();  // before more comes, so that there is room
+  watch_.finish();
+  serve();
+  if (device_.zero_assured()) {
+    log_->info("The run is over; the arm took zero force.");
+  } else {
+    log_->warn(
+        "The run is over, and the arm has not taken zero force: its own watchdog must "
+        "switch it off. Keep clear of it.");
+  }
+}
+
+void EventLog::take(const driver::TickRecord& record) noexcept {
+  watch_.take(record);
+  if (!run_.real_time) serve();
+}
+
+void EventLog::serve() noexcept {
+  try {
+    // An end that comes in two pieces takes two rounds.
+    for (int piece = 0; piece < 2; ++piece) {
+      const auto events = ring_.front();
+      if (events.empty()) break;
+      for (const TickEvent& event : events) write(event);
+      ring_.drop(events.size());
+    }
+    const std::uint64_t lost = watch_.lost();
+    if (lost == lost_told_) return;
+    log_->warn("{} events came too quickly and are missing here.", lost - lost_told_);
+    lost_told_ = lost;
+  } catch (const std::exception&) {
+    // Out of memory: an event that cannot be told is no reason to end a touch.
+    ring_.drop(ring_.front().size());
+  }
+}
+
+void EventLog::write(const TickEvent& event) {
+  const auto level = level_of(event);
+  if (!log_->should_log(level)) return;
+  const std::string words = words_of(event, run_.objects);
+  if (!run_.real_time) return log_->log(level, words);
+  using std::chrono::system_clock;
+  const auto when = clock_began_ + std::chrono::nanoseconds(event.time_ns);
+  log_->log(std::chrono::time_point_cast<system_clock::duration>(when), {}, level, words);
+}
+
+}  // namespace thimble::session

@@ -1,0 +1,125 @@
+#include "events/event_watch.h"
+
+namespace thimble::session {
+
+ActivityCounts DeviceCounters::activities() const noexcept {
+  const driver::GateCounters& gate = device_.gate_counters();
+  const driver::WireCounters& wire = device_.wire_counters();
+  ActivityCounts counts{};
+  const auto at = [&counts](Activity activity) -> std::uint64_t& {
+    return counts[static_cast<std::size_t>(activity)];
+  };
+  at(Activity::kSoftStart) = gate.soft_started;
+  at(Activity::kForceCut) = gate.limited;
+  at(Activity::kRiseCut) = gate.rise_limited;
+  at(Activity::kDamped) = gate.damped;
+  at(Activity::kBounded) = gate.bounded;
+  at(Activity::kHeat) = device_.heat().lowered();
+  at(Activity::kStall) = gate.stalls;
+  at(Activity::kRejected) = wire.rejected;
+  at(Activity::kJumped) = wire.jumped;
+  at(Activity::kRefused) = wire.refused;
+  return counts;
+}
+
+std::uint64_t DeviceCounters::wires_taken() const noexcept {
+  return device_.wire_counters().replugged;
+}
+
+EventWatch::EventWatch(const EventCounters& counters, std::int64_t period_ns,
+                       SpscRing<TickEvent>& ring) noexcept
+    : counters_(counters),
+      period_ns_(period_ns),
+      ring_(ring),
+      counts_(counters.activities()),
+      wires_taken_(counters.wires_taken()) {}
+
+void EventWatch::push(const TickEvent& event) noexcept {
+  if (!ring_.push(event)) lost_.fetch_add(1, std::memory_order_relaxed);
+}
+
+void EventWatch::take(const driver::TickRecord& record) noexcept {
+  const std::uint64_t wires_taken = counters_.wires_taken();
+  if (wires_taken != wires_taken_) {
+    wires_taken_ = wires_taken;
+    push({.tick = record.tick, .time_ns = record.time_ns, .kind = EventKind::kWireTaken});
+  }
+  watch_stage(record);
+  if (record.in_contact != touching_) {
+    touching_ = record.in_contact;
+    push({.tick = record.tick,
+          .time_ns = record.time_ns,
+          .kind = touching_ ? EventKind::kTouchBegan : EventKind::kTouchEnded,
+          .object = record.object});
+  }
+  watch_activities(record);
+  begun_ = true;
+  tick_ = record.tick;
+  time_ns_ = record.time_ns;
+  due_ns_ = record.due_ns;
+}
+
+void EventWatch::watch_stage(const driver::TickRecord& record) noexcept {
+  using driver::DeviceStage;
+  if (record.stage != stage_ && record.stage == DeviceStage::kActive) {
+    push({.tick = record.tick, .time_ns = record.time_ns, .kind = EventKind::kActivated});
+  }
+  if (record.stage != stage_ && record.stage == DeviceStage::kIdle) {
+    push({.tick = record.tick, .time_ns = record.time_ns, .kind = EventKind::kDeactivated});
+  }
+  if (record.fault != fault_ && record.fault != driver::Fault::kNone) {
+    push({.tick = record.tick,
+          .time_ns = record.time_ns,
+          .kind = EventKind::kFault,
+          .fault = record.fault});
+  }
+  stage_ = record.stage;
+  fault_ = record.fault;
+}
+
+void EventWatch::watch_activities(const driver::TickRecord& record) noexcept {
+  ActivityCounts counts = counters_.activities();
+  // Ticks are due at whole periods; whoever is late skips some.
+  constexpr auto kMissed = static_cast<std::size_t>(Activity::kMissedTicks);
+  const std::int64_t periods = begun_ ? (record.due_ns - due_ns_) / period_ns_ : 1;
+  counts[kMissed] = counts_[kMissed] + static_cast<std::uint64_t>(periods > 1 ? periods - 1 : 0);
+  for (std::size_t i = 0; i < kActivities; ++i) {
+    Episode& episode = episodes_[i];
+    if (counts[i] == counts_[i]) {
+      if (episode.count > 0 && record.time_ns - episode.newest_ns > kQuiet_ns) {
+        tick_ = record.tick;
+        time_ns_ = record.time_ns;
+        end(static_cast<Activity>(i), episode);
+      }
+      continue;
+    }
+    if (episode.count == 0) {
+      episode.began_ns = record.time_ns;
+      push({.tick = record.tick,
+            .time_ns = record.time_ns,
+            .kind = EventKind::kActivityBegan,
+            .activity = static_cast<Activity>(i)});
+    }
+    episode.newest_ns = record.time_ns;
+    episode.count += counts[i] - counts_[i];
+  }
+  counts_ = counts;
+}
+
+void EventWatch::end(Activity activity, Episode& episode) noexcept {
+  push({.tick = tick_,
+        .time_ns = time_ns_,
+        .count = episode.count,
+        .lasted_ns = episode.newest_ns - episode.began_ns,
+        .kind = EventKind::kActivityEnded,
+        .activity = activity});
+  episode.count = 0;
+}
+
+void EventWatch::finish() noexcept {
+  for (std::size_t i = 0; i < kActivities; ++i) {
+    if (episodes_[i].count > 0) end(static_cast<Activity>(i), episodes_[i]);
+  }
+}
+
+}  // namespace thimble::session

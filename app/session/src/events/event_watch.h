@@ -1,0 +1,85 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+
+#include "events/tick_event.h"
+#include "spsc_ring.h"
+#include "thimble/driver/device.h"
+#include "thimble/session/tick_observer.h"
+
+namespace thimble::session {
+
+/// Counters beside the records of ticks, read on the servo thread at the end of each tick.
+/// Real-time: safe, all of it.
+class EventCounters {
+ public:
+  virtual ~EventCounters() = default;
+  /// Returns how often each activity occurred; that of kMissedTicks is left 0.
+  virtual ActivityCounts activities() const noexcept = 0;
+  /// Returns how often a lost wire was replaced.
+  virtual std::uint64_t wires_taken() const noexcept = 0;
+};
+
+/// The counters of a device, which must outlive it.
+class DeviceCounters final : public EventCounters {
+ public:
+  explicit DeviceCounters(const driver::Device& device) noexcept : device_(device) {}
+  ActivityCounts activities() const noexcept override;
+  std::uint64_t wires_taken() const noexcept override;
+
+ private:
+  const driver::Device& device_;
+};
+
+/// A watch over the ticks of a run that puts what happens into a ring, each event once: an activity
+/// when it begins and when it has been quiet for kQuiet_ns, not in every tick. Real-time: safe.
+class EventWatch final : public TickObserver {
+ public:
+  /// How long an activity must be quiet to have ended, ns. [chosen: what comes and goes faster, as
+  /// the rise limit on a rough surface, is one thing for a person]
+  static constexpr std::int64_t kQuiet_ns = 100'000'000;
+
+  /// Watches ticks due every `period_ns`, with the counters beside them; counts from now on. Both
+  /// must outlive it.
+  EventWatch(const EventCounters& counters, std::int64_t period_ns,
+             SpscRing<TickEvent>& ring) noexcept;
+
+  /// Compares a tick with the one before.
+  void take(const driver::TickRecord& record) noexcept override;
+  /// Ends the activities that go on. After the last tick, on any thread.
+  void finish() noexcept;
+
+  /// Returns how many events found no room in the ring. From any thread.
+  std::uint64_t lost() const noexcept { return lost_.load(std::memory_order_relaxed); }
+
+ private:
+  /// An activity that has not ended.
+  struct Episode {
+    std::int64_t began_ns = 0;
+    std::int64_t newest_ns = 0;
+    std::uint64_t count = 0;  // 0: it does not go on
+  };
+
+  void push(const TickEvent& event) noexcept;
+  void watch_stage(const driver::TickRecord& record) noexcept;
+  void watch_activities(const driver::TickRecord& record) noexcept;
+  void end(Activity activity, Episode& episode) noexcept;
+
+  const EventCounters& counters_;
+  std::int64_t period_ns_;
+  SpscRing<TickEvent>& ring_;
+  ActivityCounts counts_;
+  std::uint64_t wires_taken_;
+  std::array<Episode, kActivities> episodes_{};
+  std::uint64_t tick_ = 0;
+  std::int64_t time_ns_ = 0, due_ns_ = 0;
+  bool begun_ = false;  // a tick has been taken
+  driver::DeviceStage stage_ = driver::DeviceStage::kIdle;
+  driver::Fault fault_ = driver::Fault::kNone;
+  bool touching_ = false;
+  std::atomic<std::uint64_t> lost_{0};
+};
+
+}  // namespace thimble::session

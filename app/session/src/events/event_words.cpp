@@ -1,0 +1,106 @@
+#include "events/event_words.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+
+namespace thimble::session {
+namespace {
+
+using spdlog::level::level_enum;
+
+struct ActivityWords {
+  level_enum level;
+  const char* began;
+  const char* happened;  // what it did, of a number of times
+};
+
+// In the order of Activity.
+constexpr std::array<ActivityWords, kActivities> kWords{{
+    {spdlog::level::debug, "The limit of the force opens.", "The limit of the force was opening"},
+    {spdlog::level::info, "The force is cut to the arm's limit.",
+     "The force was cut to the arm's limit"},
+    {spdlog::level::debug, "The rise of the force is held back.",
+     "The rise of the force was held back"},
+    {spdlog::level::info, "The gate's energy stage damps.", "The gate's energy stage damped"},
+    {spdlog::level::info, "The gate's energy bound cuts the force.",
+     "The gate's energy bound cut the force"},
+    {spdlog::level::warn, "The force is lowered, for a motor is hot: press less hard or rest.",
+     "The force was lowered for a hot motor"},
+    {spdlog::level::warn,
+     "The loop stood still and the force opens anew: close other programs, or see thimble doctor.",
+     "The loop stood still"},
+    {spdlog::level::debug, "Ticks are missed.", "Ticks were missed"},
+    {spdlog::level::warn, "Reports come that the driver does not know: check the arm's cable.",
+     "Reports were not known"},
+    {spdlog::level::warn, "A report was dropped for a jump that no hand makes: check the encoders.",
+     "Reports were dropped for a jump"},
+    {spdlog::level::warn, "The arm takes no message: check its cable and power.",
+     "Messages were not taken"},
+}};
+
+const ActivityWords& words_for(Activity activity) noexcept {
+  return kWords[static_cast<std::size_t>(activity)];
+}
+
+std::string sentence(const TickEvent& event, std::span<const std::string> objects) {
+  switch (event.kind) {
+    case EventKind::kActivated:
+      return "Forces are let through.";
+    case EventKind::kDeactivated:
+      return "Forces are off.";
+    case EventKind::kFault:
+      return fmt::format("Force is off ({}). {}", name(event.fault), describe(event.fault));
+    case EventKind::kWireTaken:
+      return "A new wire to the arm was taken; its force stays off until the user lets it through.";
+    case EventKind::kActivityBegan:
+      return words_for(event.activity).began;
+    case EventKind::kActivityEnded:
+      return fmt::format("{} {} time{} within {:.3f} s.", words_for(event.activity).happened,
+                         event.count, event.count == 1 ? "" : "s",
+                         1e-9 * static_cast<double>(event.lasted_ns));
+    case EventKind::kTouchBegan: {
+      const auto object = static_cast<std::size_t>(event.object);
+      return event.object >= 0 && object < objects.size()
+                 ? fmt::format("The tip touches {}.", objects[object])
+                 : "The tip touches an object.";
+    }
+    case EventKind::kTouchEnded:
+      return "The tip is free.";
+  }
+  return "Something unknown happened.";
+}
+
+}  // namespace
+
+level_enum level_of(const TickEvent& event) noexcept {
+  switch (event.kind) {
+    case EventKind::kActivated:
+    case EventKind::kDeactivated:
+    case EventKind::kWireTaken:
+      return spdlog::level::info;
+    case EventKind::kFault:
+      return spdlog::level::err;
+    case EventKind::kActivityBegan:
+      return words_for(event.activity).level;
+    case EventKind::kActivityEnded:
+      // Once it is over there is nothing to look at.
+      return std::min(words_for(event.activity).level, spdlog::level::info);
+    case EventKind::kTouchBegan:
+    case EventKind::kTouchEnded:
+      return spdlog::level::trace;
+  }
+  return spdlog::level::err;
+}
+
+std::string at_tick(std::uint64_t tick, std::int64_t time_ns) {
+  return fmt::format("tick {}, {:.3f} s: ", tick, 1e-9 * static_cast<double>(time_ns));
+}
+
+std::string words_of(const TickEvent& event, std::span<const std::string> objects) {
+  return at_tick(event.tick, event.time_ns) + sentence(event, objects);
+}
+
+}  // namespace thimble::session

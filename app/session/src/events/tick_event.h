@@ -1,0 +1,56 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "thimble/driver/fault.h"
+
+namespace thimble::session {
+
+/// What can act on a force or get in its way for some ticks: told when it begins and when it ends.
+enum class Activity : std::uint8_t {
+  kSoftStart,    ///< The gate's limit opens (GateCounters::soft_started).
+  kForceCut,     ///< The gate cuts to the arm's limit (limited).
+  kRiseCut,      ///< The gate holds the rise back (rise_limited).
+  kDamped,       ///< The gate's passivity stage adds damping (damped).
+  kBounded,      ///< The gate's energy bound cuts (bounded).
+  kHeat,         ///< The force is lowered because a motor is hot (HeatGuard::lowered).
+  kStall,        ///< The loop stood still (stalls).
+  kMissedTicks,  ///< Periods of the loop were skipped.
+  kRejected,     ///< Reports came that the protocol does not know (WireCounters::rejected).
+  kJumped,       ///< Reports were dropped for a jump that no hand makes (jumped).
+  kRefused,      ///< The arm took no messages (refused).
+};
+inline constexpr std::size_t kActivities = 11;
+
+/// How often each activity occurred since the device was opened.
+using ActivityCounts = std::array<std::uint64_t, kActivities>;
+
+/// What an event is.
+enum class EventKind : std::uint8_t {
+  kActivated,      ///< Forces are let through from this tick on.
+  kDeactivated,    ///< Zero force from this tick on, without a fault.
+  kFault,          ///< `fault` switched the force off.
+  kWireTaken,      ///< A new wire to a lost arm was taken.
+  kActivityBegan,  ///< `activity` occurred first after a quiet time.
+  kActivityEnded,  ///< `activity` has been quiet; it occurred `count` times in `lasted_ns`.
+  kTouchBegan,     ///< The tip touches `object`.
+  kTouchEnded,     ///< The tip touches nothing any more.
+};
+
+/// Something that happened in a run, as plain numbers for the way out of the servo.
+struct TickEvent {
+  std::uint64_t tick = 0;    ///< TickRecord::tick
+  std::int64_t time_ns = 0;  ///< TickRecord::time_ns
+  std::uint64_t count = 0;
+  std::int64_t lasted_ns = 0;
+  EventKind kind = EventKind::kActivated;
+  Activity activity = Activity::kSoftStart;
+  driver::Fault fault = driver::Fault::kNone;
+  std::int16_t object = -1;
+
+  bool operator==(const TickEvent&) const = default;
+};
+
+}  // namespace thimble::session

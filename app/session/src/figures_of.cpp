@@ -1,0 +1,46 @@
+#include "figures_of.h"
+
+#include "lost_contacts.h"
+
+namespace thimble::session {
+
+RunFigures figures_of(const Setup& setup, const RunRecords& records, driver::ServoEnd end,
+                      const driver::RealTimeGrant& grant) {
+  const driver::Device& device = setup.device();
+  RunFigures figures;
+  figures.scene = setup.scene().name;
+  for (const scene::SceneObject& object : setup.scene().objects) {
+    figures.object += (figures.object.empty() ? "" : ", ") + object.name;
+  }
+  figures.arm = setup.scene().arm.name;
+  figures.simulated_arm = setup.simulation() != nullptr;
+  figures.feel_check = setup.feel_check();
+  figures.virtual_time = !setup.real_time();
+  figures.seed = setup.seed();
+  figures.rate_asked = setup.scene().rate;
+  figures.force_limit = setup.scene().arm.limits.force_max;
+  figures.triangles = setup.objects().triangles();
+  figures.paging = setup.objects().paging();
+  figures.statistics = records.statistics;
+  figures.lost_contacts = count_lost_contacts(records.trace.rows(), setup.objects().touch());
+  figures.wire = device.wire_counters();
+  figures.gate = device.gate_counters();
+  figures.energy_stage = device.gate().energy_stage();
+  figures.reopen = device.gate().limits().reopen;
+  figures.heat_known = device.heat().named();
+  figures.heat = device.heat().heat();
+  figures.heat_most = device.heat().heat_most();
+  figures.heat_lowered = device.heat().lowered();
+  figures.real_time = grant;
+  figures.end = end;
+  figures.fault = device.fault();
+  figures.zero_assured = device.zero_assured();
+  if (const auto* arm = setup.simulation()) {
+    figures.current_at_exit = arm->currents().cwiseAbs().maxCoeff();
+  }
+  figures.trace_stride = records.trace.stride();
+  figures.trace_dropped = records.trace.dropped();
+  return figures;
+}
+
+}  // namespace thimble::session

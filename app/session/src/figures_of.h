@@ -1,0 +1,17 @@
+#pragma once
+
+#include "run_records.h"
+#include "setup.h"
+#include "thimble/driver/real_time.h"
+#include "thimble/driver/servo_loop.h"
+#include "thimble/session/run_figures.h"
+
+namespace thimble::session {
+
+/// Returns the figures of a run: `end` is why it ended, `grant` what the kernel granted the servo's
+/// thread. Looks through the trace for contacts that were lost. Real-time: never from the servo
+/// thread.
+RunFigures figures_of(const Setup& setup, const RunRecords& records, driver::ServoEnd end,
+                      const driver::RealTimeGrant& grant);
+
+}  // namespace thimble::session

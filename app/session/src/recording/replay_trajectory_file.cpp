@@ -1,0 +1,80 @@
+#include <filesystem>
+#include <memory>
+#include <utility>
+
+#include "object_mesh.h"
+#include "recording/replay_trajectory.h"
+#include "text_file.h"
+#include "thimble/scene/build_info.h"
+#include "thimble/scene/scene_file.h"
+#include "thimble/scene/shipped_files.h"
+
+namespace thimble::session {
+namespace {
+
+/// Takes a trajectory from the frame of an object's mesh file into the world; one that is in the
+/// world already if no object is named.
+driver::Result<void> into_world(std::vector<TrajectoryPoint>& trajectory, const scene::Scene& scene,
+                                const std::string& frame) {
+  if (frame.empty() || frame == "world") return {};
+  for (const scene::SceneObject& object : scene.objects) {
+    if (object.name != frame) continue;
+    if (object.mesh_file.empty() || object.paged) {
+      return driver::Error{"--frame: \"" + frame + "\" has no mesh file in memory; give the " +
+                           "trajectory in the world, in m."};
+    }
+    const auto mesh = scene::load_object_mesh(object);
+    if (!mesh) return mesh.error();
+    const scene::MeshPlacement& place = mesh->place;
+    for (TrajectoryPoint& point : trajectory) {
+      point.p = place.p_WM + place.scale * (object.R_WO * point.p);
+      point.f = object.R_WO * point.f;
+    }
+    return {};
+  }
+  return driver::Error{"--frame: expected world or an object of the scene, found \"" + frame +
+                       "\"."};
+}
+
+}  // namespace
+
+driver::Result<TrajectoryReplay> replay_trajectory_file(const std::filesystem::path& file,
+                                                        TrajectoryForm form,
+                                                        const std::string& frame,
+                                                        const std::filesystem::path& scene_file) {
+  // In the frame of a mesh file its unit is that of the file.
+  if (!frame.empty() && frame != "world") {
+    form.metres = 1;
+    form.farthest = 1e9;
+  }
+  auto trajectory = read_trajectory(file, form);
+  if (!trajectory) return trajectory.error();
+  const auto scene = scene::load_scene(scene_file);
+  if (!scene) return scene.error();
+  if (auto placed = into_world(*trajectory, *scene, frame); !placed) return placed.error();
+  constexpr double kLongest = 86400;  // s
+  if (!(trajectory->back().time - trajectory->front().time < kLongest)) {
+    return driver::Error{file.string() + " lasts for more than a day; --time says the unit."};
+  }
+  auto objects = scene::SceneObjects::build(*scene);
+  if (!objects) return objects.error();
+  TrajectoryReplay replay;
+  replay.compared =
+      replay_trajectory(*trajectory, scene->rate, **objects,
+                        [&](const driver::TickRecord& tick) { replay.felt.ticks.push_back(tick); });
+  replay.felt.complete = true;
+  replay.felt.info = {.scene = scene->name,
+                      .scene_file = scene_file.string(),
+                      .scene_text = scene::text_of(scene_file),
+                      .arm = scene->arm.name,
+                      .arm_file = scene->arm_file.string(),
+                      .arm_text = scene::text_of(scene->arm_file),
+                      .device = "trajectory " + file.string(),
+                      .clock = "virtual",
+                      .program = scene::program_name(),
+                      .rate = scene->rate,
+                      .seed = scene->seed};
+  return replay;
+}
+
+}  // namespace thimble::session

@@ -1,0 +1,68 @@
+#include "run_attendance.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+
+#include "log/console.h"
+#include "log/logger.h"
+#include "run_records.h"
+#include "setup.h"
+#include "thimble/driver/heat_guard.h"
+
+namespace thimble::session {
+
+std::string progress_line(const driver::TickRecord& record, double total) {
+  const double force = Eigen::Map<const Eigen::Vector3d>(record.f_sent_W.data()).norm();
+  return fmt::format("{:6.1f} {}s   {:<8}  force {:5.2f} N   depth {:5.2f} mm ",
+                     static_cast<double>(record.time_ns) * 1e-9,
+                     total > 0 ? fmt::format("of {:.1f} ", total) : "",
+                     record.in_contact ? "touching" : "free", force, record.depth * 1e3);
+}
+
+std::string HeatWarning::look(const driver::TickRecord& record) {
+  const double heat = *std::max_element(record.heat.begin(), record.heat.end());
+  if (given_ || !(heat >= driver::HeatGuard::kWarning)) return {};
+  given_ = true;
+  return fmt::format(
+      "A motor is at {:.0f} % of the heat it bears; the force is lowered until it cools. Press "
+      "less hard or rest.",
+      100 * heat);
+}
+
+void keep_black_box(Session& session) {
+  const auto kept = session.keep_black_box();
+  if (!kept) {
+    scene::logger().error("{}", kept.error().message);
+  } else if (*kept) {
+    scene::logger().warn("the last seconds before the fault are in {}", (*kept)->string());
+  }
+}
+
+RunAttendance::RunAttendance(Session& session, ReplugWatch* watch, RequestDesk* desk,
+                             bool on_terminal)
+    : session_(session),
+      watch_(watch),
+      desk_(desk),
+      on_terminal_(on_terminal),
+      total_(static_cast<double>(session.setup().ticks()) *
+             static_cast<double>(session.setup().period_ns()) * 1e-9) {}
+
+void RunAttendance::step() {
+  if (watch_ != nullptr) watch_->step();
+  if (desk_ != nullptr) desk_->step();
+  if (session_.records().black_box.full()) keep_black_box(session_);
+  driver::TickRecord record;
+  if (!session_.newest().load(record)) return;
+  if (const std::string hot = heat_.look(record); !hot.empty()) {
+    scene::logger().warn("{}", hot);
+  }
+  if (on_terminal_) scene::console().show(progress_line(record, total_));
+}
+
+void RunAttendance::clear() const {
+  if (on_terminal_) scene::console().show("");
+}
+
+}  // namespace thimble::session

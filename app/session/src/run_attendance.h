@@ -1,0 +1,53 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "replug_watch.h"
+#include "share/request_desk.h"
+#include "thimble/driver/tick_record.h"
+#include "thimble/session/session.h"
+
+namespace thimble::session {
+
+/// Returns how far a run is, in a line for the terminal. `total`: s; 0 if nobody knows.
+std::string progress_line(const driver::TickRecord& record, double total);
+
+/// A warning about the heat of an arm's motors, given once in a run.
+class HeatWarning {
+ public:
+  /// Returns the warning with the first tick that is so hot; empty otherwise.
+  std::string look(const driver::TickRecord& record);
+
+ private:
+  bool given_ = false;
+};
+
+/// Writes the seconds around a fault, if one came, and says on standard error where a person finds
+/// them, or why not. Real-time: never from the servo thread.
+void keep_black_box(Session& session);
+
+/// What is done beside the servo while a run goes on: a pulled arm is watched for, viewers are
+/// heard, the black box is emptied, and the user is told of heat and progress. Real-time: never
+/// from the servo thread.
+class RunAttendance {
+ public:
+  /// Attends a session; `watch` and `desk` may be null, and must outlive it. `on_terminal`: a
+  /// person looks at standard error.
+  RunAttendance(Session& session, ReplugWatch* watch, RequestDesk* desk, bool on_terminal);
+
+  /// Looks once; call it about ten times a second.
+  void step();
+  /// Takes the line of progress away, after the run.
+  void clear() const;
+
+ private:
+  Session& session_;
+  ReplugWatch* watch_;
+  RequestDesk* desk_;
+  bool on_terminal_;
+  double total_;  // s; 0: nobody knows
+  HeatWarning heat_;
+};
+
+}  // namespace thimble::session

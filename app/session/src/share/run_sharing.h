@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "body/shape/body_shape.h"
+#include "drawn_dent.h"
+#include "scene_poses.h"
+#include "share/shared_run.h"
+#include "thimble/driver/tick_record.h"
+#include "thimble/session/tick_observer.h"
+
+namespace thimble::session {
+
+/// What viewers see of a run: each tick, and where its objects are then, stored in the memory that
+/// is shared with them.
+class RunSharing final : public TickObserver {
+ public:
+  /// An object whose vertices move for good.
+  struct Shaped {
+    const render::BodyShape* shape;
+    std::size_t first = 0;  ///< Where its vertices begin in what is shared.
+  };
+  /// What moves in the scene; all of it must outlive the sharing, and is brought up to a tick by
+  /// observers that come before.
+  struct Moving {
+    const DrawnDent* dent = nullptr;    ///< Null if no object dents.
+    const ScenePoses* poses = nullptr;  ///< Null if no object moves.
+    std::vector<Shaped> shaped;
+  };
+
+  /// Stores into `shared`, which must outlive it. Real-time: never from the servo thread.
+  RunSharing(SharedRun& shared, Moving moving) noexcept
+      : shared_(shared), moving_(std::move(moving)) {}
+
+  /// Stores one tick. Real-time: safe.
+  void take(const driver::TickRecord& record) noexcept override;
+
+ private:
+  SharedRun& shared_;
+  Moving moving_;
+  std::uint64_t drawings_ = 0;  // that were stored, or came before
+};
+
+}  // namespace thimble::session

@@ -1,0 +1,43 @@
+#include "share/share_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "share/describe_scene.h"
+
+namespace thimble::session {
+namespace {
+
+// What a viewer's plots can look back on, and how much memory that may take: 32 MB. Chosen.
+constexpr double kShownSeconds = 8;
+constexpr std::size_t kShownTicksMost = 100'000;
+constexpr int kRunsOfAScene = 100;  // at the same time; chosen
+
+}  // namespace
+
+driver::Result<std::unique_ptr<SharedRun>> share_run(const Setup& setup, const LiveKnobs& knobs,
+                                                     const SessionOptions& options) {
+  SharedScene scene = describe_scene(setup.scene(), setup.objects(), setup.device_name());
+  scene.file = setup.scene_path();
+  scene.period_ns = setup.period_ns();
+  scene.wall_clock = setup.real_time();
+  scene.hand_by_mouse = setup.hand_by_mouse();
+  scene.knobs = knobs.described();
+  const auto ring = std::min(
+      static_cast<std::size_t>(std::ceil(kShownSeconds * setup.scene().rate)), kShownTicksMost);
+  const std::string asked = options.share_name.empty() ? setup.scene().name : options.share_name;
+  const std::string name = options.share_out ? run_name_of(asked) : "";
+  auto shared = SharedRun::create(name, scene, ring);
+  // Where the scene gives the name, a second run of it is another one.
+  for (int number = 2; !shared && options.share_name.empty() && number < kRunsOfAScene; ++number) {
+    if (!run_name_taken(name)) break;
+    std::string next = name;
+    next += '-' + std::to_string(number);
+    shared = SharedRun::create(next, scene, ring);
+  }
+  return shared;
+}
+
+}  // namespace thimble::session

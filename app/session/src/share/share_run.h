@@ -1,0 +1,20 @@
+#pragma once
+
+#include <memory>
+
+#include "setup.h"
+#include "share/live_knobs.h"
+#include "share/shared_run.h"
+#include "thimble/driver/result.h"
+#include "thimble/session/session.h"
+
+namespace thimble::session {
+
+/// Makes the memory by which viewers see a run and turn its knobs, as `options` asks: without a
+/// name for viewers in this process, or under a name for all; where the scene gives the name, a
+/// second run of it gets a number. The error is that of SharedRun::create. Real-time: never from
+/// the servo thread.
+driver::Result<std::unique_ptr<SharedRun>> share_run(const Setup& setup, const LiveKnobs& knobs,
+                                                     const SessionOptions& options);
+
+}  // namespace thimble::session

@@ -1,0 +1,170 @@
+#include "view/gl/animated_picture_file.h"
+
+#include <png.h>
+#include <zlib.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <csetjmp>
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+
+#include "view/gl/colour_table.h"
+
+// An animated PNG [PNG 3rd edition, W3C] is a PNG with chunks more: one that says how many pictures
+// follow, and for each picture where it goes and its pixels. The system's libpng writes the file
+// and its chunks, but knows nothing of what is in these.
+
+namespace thimble::app::view {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+
+/// A chunk of the file.
+struct Chunk {
+  std::array<png_byte, 4> name{};
+  Bytes data;
+
+  explicit Chunk(const char* called) { std::copy_n(called, 4, name.begin()); }
+  void add_byte(std::size_t value) { data.push_back(static_cast<std::uint8_t>(value)); }
+  void add_short(std::size_t value) {
+    add_byte(value >> 8U);
+    add_byte(value);
+  }
+  void add(std::size_t value) {
+    add_short(value >> 16U);
+    add_short(value);
+  }
+  void add(const Bytes& bytes) { data.insert(data.end(), bytes.begin(), bytes.end()); }
+};
+
+/// Part of a picture, pixels.
+struct Part {
+  int x = 0, y = 0, width = 0, height = 0;
+};
+
+/// Packs the rows of a part, numbers of colours as they are.
+Bytes pack(const Bytes& numbers, int picture_width, const Part& part) {
+  Bytes rows;
+  for (int y = part.y; y < part.y + part.height; ++y) {
+    rows.push_back(0);  // no filter: neighbouring numbers have nothing in common
+    const auto from = numbers.begin() + static_cast<std::ptrdiff_t>(y) * picture_width + part.x;
+    rows.insert(rows.end(), from, from + part.width);
+  }
+  uLongf size = compressBound(static_cast<uLong>(rows.size()));
+  Bytes packed(size);
+  compress2(packed.data(), &size, rows.data(), static_cast<uLong>(rows.size()), 9);
+  packed.resize(size);
+  return packed;
+}
+
+/// Finds the smallest part outside which two pictures are the same; one pixel if all is.
+Part difference(const Bytes& before, const Bytes& now, int width, int height) {
+  Part part{width, height, 0, 0};
+  int right = -1;
+  int bottom = -1;
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const auto i = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                     static_cast<std::size_t>(x);
+      if (before[i] == now[i]) continue;
+      part.x = std::min(part.x, x);
+      part.y = std::min(part.y, y);
+      right = std::max(right, x);
+      bottom = std::max(bottom, y);
+    }
+  }
+  if (right < 0) return {0, 0, 1, 1};
+  part.width = right - part.x + 1;
+  part.height = bottom - part.y + 1;
+  return part;
+}
+
+std::vector<Chunk> chunks_of(const std::vector<Picture>& pictures, double frame_time,
+                             const ColourTable& table) {
+  std::vector<Chunk> chunks;
+  Chunk& animation = chunks.emplace_back("acTL");
+  animation.add(pictures.size());
+  animation.add(std::size_t{0});  // for ever
+  std::size_t number = 0;
+  Bytes before;
+  for (const Picture& picture : pictures) {
+    Bytes now = table.numbers(picture);
+    const Part part = before.empty() ? Part{0, 0, picture.width, picture.height}
+                                     : difference(before, now, picture.width, picture.height);
+    Chunk& place = chunks.emplace_back("fcTL");
+    place.add(number++);
+    for (const int value : {part.width, part.height, part.x, part.y}) {
+      place.add(static_cast<std::size_t>(value));
+    }
+    place.add_short(static_cast<std::size_t>(std::lround(frame_time * 1000)));
+    place.add_short(1000);
+    place.add_byte(0);  // what was drawn stays ...
+    place.add_byte(0);  // ... and is covered
+    Chunk& pixels = chunks.emplace_back(before.empty() ? "IDAT" : "fdAT");
+    if (!before.empty()) pixels.add(number++);
+    pixels.add(pack(now, picture.width, part));
+    before = std::move(now);
+  }
+  chunks.emplace_back("IEND");
+  return chunks;
+}
+
+/// libpng's own data of a file that is written.
+class PngFile {
+ public:
+  PngFile() : png_(png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, &ignore)) {
+    if (png_ != nullptr) info_ = png_create_info_struct(png_);
+  }
+  PngFile(const PngFile&) = delete;
+  PngFile& operator=(const PngFile&) = delete;
+  ~PngFile() { png_destroy_write_struct(&png_, &info_); }
+
+  /// Writes all there is. libpng leaves by longjmp, so nothing here may need a destructor.
+  bool write(std::FILE* file, const Picture& first, const ColourTable& table,
+             const std::vector<Chunk>& chunks) {
+    if (png_ == nullptr || info_ == nullptr) return false;
+    if (setjmp(png_jmpbuf(png_)) != 0) return false;
+    png_init_io(png_, file);
+    png_set_IHDR(png_, info_, static_cast<png_uint_32>(first.width),
+                 static_cast<png_uint_32>(first.height), 8, PNG_COLOR_TYPE_PALETTE,
+                 PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    std::array<png_color, PNG_MAX_PALETTE_LENGTH> colours;
+    for (std::size_t i = 0; i < table.colours().size(); ++i) {
+      const auto& [red, green, blue] = table.colours()[i];
+      colours[i] = {red, green, blue};
+    }
+    png_set_PLTE(png_, info_, colours.data(), static_cast<int>(table.colours().size()));
+    png_write_info(png_, info_);
+    for (const Chunk& chunk : chunks) {
+      png_write_chunk(png_, chunk.name.data(), chunk.data.data(), chunk.data.size());
+    }
+    return true;
+  }
+
+ private:
+  static void ignore(png_structp, png_const_charp) {}
+
+  png_structp png_;
+  png_infop info_ = nullptr;
+};
+
+}  // namespace
+
+driver::Result<void> write_animated_png(const std::vector<Picture>& pictures, double frame_time,
+                                        const std::filesystem::path& file) {
+  std::vector<const Picture*> all;
+  all.reserve(pictures.size());
+  for (const Picture& picture : pictures) all.push_back(&picture);
+  const ColourTable table(all);
+  const std::vector<Chunk> chunks = chunks_of(pictures, frame_time, table);
+  std::FILE* const out = std::fopen(file.c_str(), "wb");
+  const bool written = out != nullptr && PngFile().write(out, pictures[0], table, chunks);
+  const bool closed = out != nullptr && std::fclose(out) == 0;
+  if (!written || !closed) return driver::Error{file.string() + " cannot be written."};
+  return {};
+}
+
+}  // namespace thimble::app::view

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "thimble/driver/result.h"
+#include "view/gl/canvas.h"
+
+namespace thimble::app::view {
+
+/// Writes pictures of one size as an animated PNG (APNG) that plays for ever, `frame_time` (s)
+/// each, in 256 colours for all. What shows no animations shows the first.
+/// Precondition: there is a picture. Real-time: never from the servo thread.
+driver::Result<void> write_animated_png(const std::vector<Picture>& pictures, double frame_time,
+                                        const std::filesystem::path& file);
+
+}  // namespace thimble::app::view

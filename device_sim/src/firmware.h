@@ -1,0 +1,84 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "arms/hfab/hfab_report.h"
+#include "thimble/device_sim/settings.h"
+#include "thimble/driver/arms/hfab/hfab_arm.h"
+#include "thimble/driver/result.h"
+
+namespace thimble::device_sim {
+
+/// Counts what the firmware met.
+struct FirmwareCounters {
+  std::uint64_t messages = 0;        ///< Valid messages.
+  std::uint64_t malformed = 0;       ///< Messages of a length nobody knows; ignored.
+  std::uint64_t over_range = 0;      ///< Currents beyond the range, taken as zero.
+  std::uint64_t presets = 0;         ///< Messages that set the encoder counters.
+  std::uint64_t watchdog_fired = 0;  ///< Times the motors went off for want of messages.
+};
+
+/// Is what runs on the arm's own board: it samples encoders into reports, and turns messages into
+/// wanted motor currents. It knows no clock; whoever owns it tells it the time.
+///
+/// The motors are off until the first message and after the watchdog fired, until the next message.
+/// A preset message sets the counters, clears the button flag and asks for zero current, as the
+/// published firmware does [S, DEVICES 1]. All functions are Real-time: safe.
+class Firmware {
+ public:
+  /// Is the time of an event that is not going to happen, ns.
+  static constexpr std::int64_t kNever_ns = INT64_MAX;
+
+  /// Makes the board of a model's motors and encoders; its geometry does not matter. Fails if a
+  /// period is not above zero, the range negative, an encoder has no counts, or the wiring names a
+  /// joint that is not there. Real-time: never from the servo thread.
+  static driver::Result<Firmware> make(const driver::hfab::HfabModel& model,
+                                       const FirmwareSettings& settings);
+
+  /// Samples the encoders of an arm at these true joint angles (rad) into the report the board
+  /// would send.
+  std::array<std::byte, driver::hfab::kReportSize> sample(const Eigen::Vector3d& q) const noexcept;
+
+  /// Takes a message that arrived at `time_ns` with the arm at these true joint angles (rad).
+  void receive(std::span<const std::byte> message, std::int64_t time_ns,
+               const Eigen::Vector3d& q) noexcept;
+
+  /// Switches the motors off if no message came for the watchdog's time.
+  void watch(std::int64_t time_ns) noexcept;
+
+  /// Tells when `watch` will act unless a message comes, ns, or kNever_ns while the motors are off.
+  std::int64_t watchdog_due_ns() const noexcept { return watchdog_due_ns_; }
+
+  /// Presses the calibration button; its flag stays set until a preset.
+  void press_button() noexcept { button_ = true; }
+
+  /// Tells the currents the motors are asked for, joint by joint, A.
+  const Eigen::Vector3d& currents() const noexcept { return amperes_; }
+
+  /// Tells whether the amplifiers are enabled.
+  bool motors_on() const noexcept { return watchdog_due_ns_ != kNever_ns; }
+
+  const FirmwareCounters& counters() const noexcept { return counters_; }
+
+ private:
+  Firmware(const driver::hfab::HfabModel& model, const FirmwareSettings& settings) noexcept;
+  Eigen::Vector3d counts_at(const Eigen::Vector3d& q) const noexcept;
+  void preset(const driver::hfab::OutputReport& message, const Eigen::Vector3d& q) noexcept;
+
+  FirmwareSettings settings_;
+  bool fractional_counts_;
+  Eigen::Vector3d counts_per_radian_;  // with the encoder's sign
+  Eigen::Vector3d home_counts_;
+  FirmwareCounters counters_;
+  Eigen::Vector3d preset_counts_{0, 0, 0};       // what presets added to the counters
+  std::array<std::int16_t, 3> gimbal_counts_{};  // d, e, f: no gimbal turns, only presets count
+  Eigen::Vector3d amperes_{0, 0, 0};
+  std::int64_t watchdog_due_ns_ = kNever_ns;
+  bool button_ = false;
+};
+
+}  // namespace thimble::device_sim

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <utility>
+#include <vector>
+
+#include "thimble/driver/result.h"
+
+namespace thimble::device_sim {
+
+/// Is where the hand wants to be over time: points joined by straight lines. Before the first point
+/// it waits at the first, after the last point at the last. Frame B: base of the arm.
+class HandPath {
+ public:
+  /// Is one point of the path.
+  struct Point {
+    double time = 0;                ///< s
+    Eigen::Vector3d p_BH{0, 0, 0};  ///< m
+  };
+
+  /// Makes a path of at least one point. Times must grow strictly and everything must be finite;
+  /// the error names the point. Real-time: never from the servo thread.
+  static driver::Result<HandPath> make(std::vector<Point> points);
+
+  /// Finds the wanted point (m) at a time (s). Fast when times asked for grow. Real-time: safe.
+  Eigen::Vector3d at(double time) noexcept;
+
+  const std::vector<Point>& points() const noexcept { return points_; }  ///< Lists its points.
+
+ private:
+  explicit HandPath(std::vector<Point> points) : points_(std::move(points)) {}
+
+  std::vector<Point> points_;
+  std::size_t segment_ = 0;  // where the last question fell
+};
+
+}  // namespace thimble::device_sim

@@ -1,0 +1,117 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <variant>
+
+#include "arm_plant.h"
+#include "firmware.h"
+#include "hand.h"
+#include "hand_path.h"
+#include "inverse_plant.h"
+#include "thimble/device_sim/settings.h"
+#include "thimble/driver/arms/hfab/hfab_arm.h"
+#include "thimble/driver/result.h"
+#include "tremor.h"
+#include "wire_queue.h"
+
+namespace thimble::device_sim {
+
+/// Is a whole arm on the far side of the wire: plant, encoders, motors, firmware and a hand, driven
+/// by time alone. It speaks the bytes of the real arm and shares no state with the driver.
+///
+/// Events in time order: at each report period (the first at time 0) the firmware samples the
+/// encoders; `delay_in` later the host can read that report; a message of the host reaches the
+/// motors `delay_out` after its write; the watchdog fires when no message came for its time. At
+/// equal times the encoders are sampled first, then messages arrive, then the watchdog looks: a
+/// report shows the state before a message of the same moment, and a message just in time keeps the
+/// motors on. Without delay that makes an ideal zero-order hold: a host that reads at k periods and
+/// writes at once sees the sample of that very moment, and its force acts from there on.
+///
+/// Between events the plant moves by its exact map, in sub-steps of at most 1 ms during which the
+/// point that the hand wants moves evenly; a corner of the path inside a sub-step is cut.
+/// Once it is made nothing allocates. All functions but `make` are Real-time: safe; how long
+/// advance_to takes grows with the time that passes.
+class SimulatedArm {
+ public:
+  /// Makes the arm at rest at the path's first point, with time 0. `seed` sets the tremor's phases.
+  /// Fails if a constant is out of range or the path's start is out of reach. Real-time: never from
+  /// the servo thread.
+  static driver::Result<SimulatedArm> make(const driver::hfab::HfabModel& model,
+                                           const SimulatedArmSettings& settings, HandPath path,
+                                           std::uint64_t seed = 0);
+  /// Makes an arm with a linkage (Polhem) in the same way; its encoders have steps.
+  static driver::Result<SimulatedArm> make(const driver::JointModel<driver::LinkageArm>& model,
+                                           const SimulatedArmSettings& settings, HandPath path,
+                                           std::uint64_t seed = 0);
+
+  /// Lets time pass up to `time_ns`; a time in the past does nothing.
+  void advance_to(std::int64_t time_ns) noexcept;
+
+  /// Copies the newest report that the host can read at the present time; returns its size, or 0 if
+  /// none came since the last call. `skipped` tells how many older ones were dropped. A report
+  /// longer than the buffer is cut.
+  std::size_t take_report(std::span<std::byte> buffer, std::uint32_t& skipped) noexcept;
+
+  /// Tells when the next report can be read, ns; never earlier than the present time.
+  std::int64_t next_report_ns() const noexcept;
+
+  /// Hands the host's bytes to the wire at the present time.
+  void put_message(std::span<const std::byte> bytes) noexcept;
+
+  /// Gives the hand, to be led or held by whoever lets time pass.
+  Hand& hand() noexcept { return hand_; }
+
+  /// Presses the button on the arm, as a hand would.
+  void press_button() noexcept { firmware_.press_button(); }
+
+  // What is true in the simulation, for tests and studies; a driver cannot see it.
+
+  /// Tells the present time, ns.
+  std::int64_t time_ns() const noexcept { return time_ns_; }
+  /// Shows the mechanics.
+  const Plant& plant() const noexcept {
+    return std::visit([](const auto& plant) -> const Plant& { return plant; }, plant_);
+  }
+  /// Shows the board.
+  const Firmware& firmware() const noexcept { return firmware_; }
+  /// Tells where the hand wants to be, m.
+  const Eigen::Vector3d& p_BH() const noexcept { return plant().p_BH(); }
+  /// Tells how many reports or messages were lost because more than WireQueue::kFrames were in
+  /// flight.
+  std::uint64_t wire_overflows() const noexcept { return reports_.dropped() + messages_.dropped(); }
+
+ private:
+  using AnyPlant = std::variant<ArmPlant, LinkagePlant>;
+
+  SimulatedArm(const SimulatedArmSettings& settings, Hand hand, AnyPlant plant,
+               const Firmware& firmware) noexcept;
+  template <class MakePlant>
+  static driver::Result<SimulatedArm> make_of(const driver::hfab::HfabModel& board,
+                                              const SimulatedArmSettings& settings, HandPath path,
+                                              std::uint64_t seed, const MakePlant& make_plant);
+  Plant& mechanics() noexcept {
+    return std::visit([](auto& plant) -> Plant& { return plant; }, plant_);
+  }
+  const Eigen::Vector3d& angles() noexcept;
+  void sample() noexcept;
+  void receive(std::span<const std::byte> bytes) noexcept;
+  void deliver() noexcept;
+
+  std::int64_t report_period_ns_;
+  WireSettings wire_;
+  Hand hand_;
+  AnyPlant plant_;
+  Firmware firmware_;
+  Eigen::Vector3d q_{0, 0, 0};  // at q_time_ns_; the firmware asks for it twice at one time
+  std::int64_t q_time_ns_ = -1;
+  std::int64_t time_ns_ = 0;
+  std::int64_t next_sample_ns_ = 0;
+  WireQueue reports_, messages_;
+  WireFrame newest_;            // the newest report the host can read
+  std::uint32_t readable_ = 0;  // reports that became readable since the last was taken
+};
+
+}  // namespace thimble::device_sim

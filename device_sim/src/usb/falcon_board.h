@@ -1,0 +1,107 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "arms/falcon/falcon_packet.h"
+#include "usb/ftdi_chip.h"
+
+namespace thimble::device_sim::usb {
+
+/// Counts what the board met.
+struct FalconCounters {
+  std::uint64_t packets = 0;    ///< Packets understood and answered.
+  std::uint64_t malformed = 0;  ///< Frames of 16 bytes that are no packet; not answered.
+  std::uint64_t stray = 0;      ///< Bytes outside of any packet.
+  std::uint64_t resets = 0;     ///< Times the boot loader began anew.
+};
+
+/// What a Falcon makes of a packet without the homing bit. libnifalcon's header says of the flags
+/// of the homed legs "if homing mode on", and its users who need the encoders keep the bit in every
+/// packet [S FalconFirmwareNovintSDK.h; "keep track of encoders" in programs on top of it]. What
+/// becomes of the counts is not known.
+enum class FalconHoming : std::uint8_t {
+  kForgets,     ///< Flags and homes are lost; the arm must be homed anew. The hardest for a driver.
+  kHidesFlags,  ///< No leg counts as homed in the answer; the homes are kept.
+  kKeeps,       ///< Nothing.
+};
+
+/// Is the processor of a Novint Falcon, as a host meets it [S libnifalcon FalconCommLibUSB.cpp,
+/// FalconFirmware.cpp]: a boot loader that a rising DTR resets (firmware is then lost), that
+/// answers a greeting at 9600 baud, echoes the firmware at 140 kbaud, and then the firmware, which
+/// answers each packet at 1.5 Mbaud with one packet. Encoders count from an arbitrary value until
+/// their leg passed its home in homing mode.
+class FalconBoard final : public SerialBoard {
+ public:
+  /// Is what the boot loader and the firmware are doing.
+  enum class Stage : std::uint8_t {
+    kBoot,    ///< Waits for the greeting at 9600 baud.
+    kReady,   ///< Greeted; waits for 'A' at 140 kbaud.
+    kUpload,  ///< Echoes firmware.
+  };
+
+  /// `image` is the firmware that this board can run; empty if any will do.
+  /// Real-time: never from the servo thread.
+  explicit FalconBoard(std::vector<std::byte> image, FalconHoming homing = FalconHoming::kForgets);
+
+  // All functions below are Real-time: safe.
+
+  double rate() const noexcept override;
+  void hear(std::byte byte, ByteQueue& says) noexcept override;
+  void wires(bool dtr, bool rts) noexcept override;
+  /// Tells the board at which rate the host talks now: firmware that was uploaded begins to run
+  /// when the host comes to the running rate.
+  void host_rate(double baud) noexcept;
+
+  /// Tells where the encoders really stand, counts. Must be called before `hear`.
+  void set_encoders(const std::array<double, 3>& exact_counts) noexcept;
+
+  /// Switches the motors off if no packet came for the watchdog's time.
+  void watch(std::int64_t time_ns) noexcept;
+  /// Sets the watchdog's time, ns; 0: it has none. Whether a real Falcon has one is not known, so
+  /// nothing may be promised that hangs on it.
+  void set_watchdog(std::int64_t time_ns) noexcept { watchdog_ns_ = time_ns; }
+
+  Stage stage() const noexcept { return stage_; }  ///< Tells what it waits for.
+  /// Tells whether firmware runs.
+  bool running() const noexcept { return running_; }
+  /// Tells how many bytes of firmware came.
+  std::size_t uploaded() const noexcept { return uploaded_; }
+  /// Shows the last message of the host.
+  const driver::falcon::HostPacket& asked() const noexcept { return asked_; }
+  /// Shows the last message to the host.
+  const driver::falcon::ArmPacket& answered() const noexcept { return answered_; }
+  bool motors_on() const noexcept { return motors_on_; }  ///< Tells whether it has them on.
+  /// Returns whether a host asks it to home now and some leg has not passed its home.
+  bool wants_homing() const noexcept;
+  const FalconCounters& counters() const noexcept { return counters_; }
+
+ private:
+  void run(std::byte byte, ByteQueue& says) noexcept;
+  void answer(ByteQueue& says) noexcept;
+  void forget_homes() noexcept;
+
+  std::vector<std::byte> image_;
+  FalconHoming homing_;
+  Stage stage_ = Stage::kBoot;
+  bool running_ = false, image_right_ = true;
+  bool dtr_ = false;
+  std::size_t greeted_ = 0;  // letters of the greeting heard so far
+  std::size_t uploaded_ = 0;
+  std::array<std::byte, driver::falcon::kPacketSize> frame_{};
+  std::size_t frame_size_ = 0;
+  std::array<double, 3> exact_{}, before_{};
+  std::array<std::int32_t, 3> offset_{};  // what an encoder counts too much before it is homed
+  std::uint8_t homed_ = 0;
+  bool seen_ = false;  // encoders have been told
+  driver::falcon::HostPacket asked_;
+  driver::falcon::ArmPacket answered_;
+  bool motors_on_ = false;
+  std::int64_t watchdog_ns_ = 100'000'000;  // a guess: whether a real one has any is not known
+  std::int64_t now_ns_ = 0, last_packet_ns_ = 0;
+  FalconCounters counters_;
+};
+
+}  // namespace thimble::device_sim::usb

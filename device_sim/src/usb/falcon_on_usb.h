@@ -1,0 +1,77 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "hand.h"
+#include "hand_path.h"
+#include "inverse_plant.h"
+#include "thimble/device_sim/usb/usb_arm.h"
+#include "tremor.h"
+#include "usb/falcon_board.h"
+#include "usb/ftdi_chip.h"
+#include "usb/homing_hand.h"
+#include "usb/setup_packet.h"
+#include "usb/usb_description.h"
+
+namespace thimble::device_sim::usb {
+
+/// Is a simulated Novint Falcon on a USB plug: FTDI converter, board, delta mechanics and a hand.
+/// What the host sends reaches the board at the line's rate, the board samples the encoders when a
+/// packet is complete, and its answer goes to the host when the latency timer of 1 ms is over.
+class FalconOnUsb final : public UsbArm {
+ public:
+  /// Makes the arm at rest at the path's first point. `image` is the firmware that it can run;
+  /// empty if any will do. Fails as DeltaPlant::make does. Real-time: never from the servo thread.
+  static driver::Result<std::unique_ptr<FalconOnUsb>> make(UsbDescription description,
+                                                           const PlantSettings& plant,
+                                                           const HandSettings& hand, HandPath path,
+                                                           std::vector<std::byte> image,
+                                                           const WiringSettings& wiring = {},
+                                                           std::uint64_t seed = 0);
+
+  /// Gives the hand another way, whose time 0 is now. Real-time: never from the servo thread.
+  void lead(HandPath path);
+  /// Lets the hand home the arm from now on whenever a host asks for it; its own way waits
+  /// meanwhile. Real-time: safe.
+  void home_when_asked() noexcept { homes_ = true; }
+  /// Gives the hand, to be led or held by whoever lets time pass. Real-time: safe.
+  Hand& hand() noexcept { return hand_; }
+  /// Sets the guessed watchdog of the board, ns; 0: none (FalconBoard). Real-time: safe.
+  void set_watchdog(std::int64_t time_ns) noexcept { board_.set_watchdog(time_ns); }
+
+  const UsbDescription& description() const noexcept override { return description_; }
+  void advance_to(std::int64_t time_ns) noexcept override;
+  PacketResult control(const SetupPacket& setup, std::span<std::byte> data) noexcept override;
+  PacketResult in(std::uint8_t address, std::span<std::byte> packet) noexcept override;
+  PacketResult out(std::uint8_t address, std::span<const std::byte> packet) noexcept override;
+  ArmTruth truth() const noexcept override;
+
+  // For tests. Real-time: safe.
+  const FalconBoard& board() const noexcept { return board_; }  ///< Shows its board.
+  const FtdiChip& chip() const noexcept { return chip_; }       ///< Shows its converter.
+  const DeltaPlant& plant() const noexcept { return plant_; }
+
+ private:
+  FalconOnUsb(UsbDescription description, const Tremor& tremor, HandPath path,
+              const DeltaPlant& plant, std::vector<std::byte> image, const WiringSettings& wiring);
+  void move_to(std::int64_t time_ns) noexcept;
+  void hear_line(std::int64_t dt_ns) noexcept;
+
+  UsbDescription description_;
+  Tremor tremor_;
+  Hand hand_;
+  HomingHand homing_hand_;
+  bool homes_ = false;
+  WiringSettings wiring_;
+  DeltaPlant plant_;
+  FalconBoard board_;
+  FtdiChip chip_;
+  ArmTruth truth_;
+  std::int64_t time_ns_ = 0;
+  std::uint64_t packets_ = 0;
+};
+
+}  // namespace thimble::device_sim::usb

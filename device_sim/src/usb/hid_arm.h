@@ -1,0 +1,89 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "arms/hfab/hfab_report.h"
+#include "simulated_arm.h"
+#include "thimble/device_sim/usb/usb_arm.h"
+#include "usb/hid_board.h"
+#include "usb/setup_packet.h"
+#include "usb/usb_description.h"
+
+namespace thimble::device_sim::usb {
+
+/// A simulated arm on a HID plug: descriptors, reports as its board sends them, and behind them
+/// plant, hand and firmware of SimulatedArm. Each endpoint moves a packet a frame at most.
+class HidArm final : public UsbArm {
+ public:
+  /// Makes the arm; fails as SimulatedArm::make does. Real-time: never from the servo thread.
+  static driver::Result<std::unique_ptr<HidArm>> make(const HidBoard& board,
+                                                      UsbDescription description,
+                                                      const driver::hfab::HfabModel& model,
+                                                      const SimulatedArmSettings& settings,
+                                                      HandPath path, std::uint64_t seed = 0);
+  /// Makes an arm with a linkage in the same way.
+  static driver::Result<std::unique_ptr<HidArm>> make(
+      const HidBoard& board, UsbDescription description,
+      const driver::JointModel<driver::LinkageArm>& model, const SimulatedArmSettings& settings,
+      HandPath path, std::uint64_t seed = 0);
+
+  const UsbDescription& description() const noexcept override { return description_; }
+  void advance_to(std::int64_t time_ns) noexcept override;
+  PacketResult control(const SetupPacket& setup, std::span<std::byte> data) noexcept override;
+  PacketResult in(std::uint8_t address, std::span<std::byte> packet) noexcept override;
+  PacketResult out(std::uint8_t address, std::span<const std::byte> packet) noexcept override;
+  ArmTruth truth() const noexcept override;
+
+  /// Shows the arm behind the plug. Real-time: safe.
+  const SimulatedArm& arm() const noexcept { return arm_; }
+  /// Returns how many messages had a length that the board does not know. Real-time: safe.
+  std::uint64_t malformed() const noexcept { return malformed_; }
+  /// Shows what kind of board it is. Real-time: safe.
+  const HidBoard& board() const noexcept { return board_; }
+  /// Returns the bytes of a report. Real-time: safe.
+  std::size_t report_size() const noexcept { return board_.report_size(); }
+
+ private:
+  using Report = std::array<std::byte, driver::hfab::kReportSize>;
+
+  /// Where the encoders really stood when a report was sampled.
+  struct Sample {
+    std::int64_t time_ns = -1;
+    Eigen::Vector3d exact_counts{0, 0, 0};
+  };
+  static constexpr std::size_t kSamples = 8;
+
+  HidArm(const HidBoard& board, UsbDescription description, const driver::hfab::HfabModel& model,
+         const SimulatedArmSettings& settings, SimulatedArm arm) noexcept;
+  Sample sample_now() const noexcept;
+  void keep_sample() noexcept;
+  bool newest(Report& report) noexcept;
+  bool offered(Report& report) noexcept;
+  void offer() noexcept;
+  void use_message(std::span<const std::byte> bytes) noexcept;
+  std::size_t lay_out(std::span<const std::byte> report, std::span<std::byte> packet) noexcept;
+
+  HidBoard board_;
+  UsbDescription description_;
+  driver::hfab::HfabModel model_;  // motors and encoders of either build
+  std::int64_t report_age_ns_;
+  SimulatedArm arm_;
+  ArmTruth truth_;
+  std::array<Sample, kSamples> samples_;
+  // Of a board that answers only: the report that waits for the host, and the message that came
+  // meanwhile.
+  Report report_{};
+  Sample report_sample_;
+  bool offers_ = false;
+  std::array<std::byte, UsbDevice::kPacketMax> message_{};
+  std::size_t message_size_ = 0;
+  bool message_waits_ = false;
+  std::uint64_t malformed_ = 0;
+  std::uint16_t counter_ = 0;
+};
+
+}  // namespace thimble::device_sim::usb

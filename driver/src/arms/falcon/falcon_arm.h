@@ -1,0 +1,39 @@
+#pragma once
+
+#include "arms/falcon/falcon_packet.h"
+#include "thimble/driver/delta_arm.h"
+#include "thimble/driver/wire_arm.h"
+
+namespace thimble::driver::falcon {
+
+/// Is the Falcon's wire as an arm sees it: counts and buttons in, motor values out, lights green.
+/// Every message has the homing bit, without which the arm does not say whether it is homed [S
+/// libnifalcon FalconFirmwareNovintSDK.h]; an answer in which a leg is not homed is rejected.
+/// Real-time: safe.
+struct PacketWire {
+  static bool decode(std::span<const std::byte> bytes, ArmReading& reading) noexcept;
+  static std::size_t encode(const std::array<std::int16_t, 3>& motors,
+                            std::span<std::byte, kReportCapacity> bytes) noexcept;
+};
+
+/// Is a Novint Falcon. Its packets carry motor values of an unknown unit, about 10,000 per N m at
+/// the leg and reversed in sign [S libnifalcon FalconKinematicStamper.cpp]. The driver thinks in
+/// amperes, so 1000 motor values count as 1 A and the torque constant says the rest.
+using FalconArm = WireArm<PacketWire, DeltaArm>;
+
+/// Gives the geometry of the Falcon [S libnifalcon FalconGeometry.h]. Frame B as there: x to the
+/// user's right, y up, z out of the arm towards the user.
+DeltaArm falcon_geometry() noexcept;
+
+/// Gives the Falcon's data: geometry, encoders (1280 counts per motor turn through 110 : 14.25,
+/// zero near 35 degrees [S]) and drives (limit 4096 motor values, what libnifalcon's users clamp
+/// to [S]).
+JointModel<DeltaArm> falcon_model() noexcept;
+
+/// Is the radius of the ball around `falcon_geometry().p_BM` in which the arm works, m: the
+/// published workspace is about 4 inches wide [M]. All legs reach all of this ball, far from any
+/// singular pose (condition of the Jacobian below 4) [C]; the corners of a cube of that size are
+/// out of reach.
+inline constexpr double kWorkspaceRadius = 0.050;
+
+}  // namespace thimble::driver::falcon

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "arms/falcon/falcon_packet.h"
+#include "serial_line.h"
+#include "thimble/driver/result.h"
+
+namespace thimble::driver::falcon {
+
+// What a Falcon needs between power-on and touch, step by step [S libnifalcon FalconCommLibUSB.cpp,
+// FalconFirmware.cpp]. The steps know a SerialLine and no USB. The arm loses its firmware with its
+// power; the image belongs to the arm's vendor, and the user names a file that holds it.
+// Real-time: never from the servo thread.
+
+// FTDI divisor words: 9600, 140,000 and 1.5 million baud [S]. The last is 3 MHz / 2; the fraction
+// bits of 9600 are 0x4000.
+inline constexpr std::uint16_t kBootDivisor = 0x4138;
+inline constexpr std::uint16_t kUploadDivisor = 0x0015;
+inline constexpr std::uint16_t kRunDivisor = 0x0002;
+
+/// Is how many bytes of firmware go at once: an FTDI packet of 64 less its 2 status bytes, so that
+/// the echo of one block comes back in one packet [S].
+inline constexpr std::size_t kBlockSize = 62;
+
+/// Sets what the boot tolerates.
+struct BootSettings {
+  int greetings_max = 100;      ///< Greetings without the right answer before giving up [S].
+  int answer_timeout_ms = 100;  ///< Wait for each answer (chosen: six latency timers of 16 ms).
+  int block_attempts_max = 5;   ///< Uploads begun anew before giving up (chosen).
+  int upload_latency_ms = 16;   ///< Latency timer while uploading [S].
+  int settle_ms = 10;           ///< Pause after each change of DTR (chosen).
+};
+
+/// Tells what an upload did.
+struct UploadReport {
+  std::size_t size = 0;        ///< Bytes of firmware.
+  int attempts = 0;            ///< Uploads begun, 1 if the first went through.
+  std::size_t resumed_at = 0;  ///< Where the last failed one had come to, bytes; 0 if none failed.
+};
+
+/// Reads a firmware image that the user named. Fails on a file that cannot be read, is empty, or
+/// is larger than any such image (64 kB).
+Result<std::vector<std::byte>> read_firmware(const std::filesystem::path& file);
+
+/// Sets the line for running: latency timer 1 ms (16 ms would cost 33 times the stable stiffness
+/// [C STABILITY 5]), 1.5 Mbaud, empty buffers.
+Result<void> enter_run_mode(SerialLine& line);
+
+/// Asks whether firmware runs: sends zero force and waits for a packet. Needs run mode.
+bool firmware_answers(SerialLine& line, const BootSettings& settings = {});
+
+/// Resets the arm into its boot loader: 9600 8N1, RTS low, DTR low then high; greets it (0A 43 0D)
+/// until it answers 0A 44 2C 0D; DTR low, 140 kbaud, and 'A' must come back.
+Result<void> enter_boot_loader(SerialLine& line, const BootSettings& settings = {});
+
+/// Uploads firmware in blocks and compares each echo. An echo that is wrong or missing means that
+/// the boot loader may hold a wrong image: the loader is reset and the upload begins anew, up to
+/// `block_attempts_max` times ("works day 1, fails day 2" is the complaint of every user of the
+/// open driver, which gives up instead). Ends in run mode with the firmware answering.
+Result<UploadReport> upload_firmware(SerialLine& line, std::span<const std::byte> firmware,
+                                     const BootSettings& settings = {});
+
+/// Does all of it: run mode; if no firmware answers, boot loader and upload of `firmware_file`.
+/// Without a file (empty path) and without firmware in the arm the error says what to do.
+Result<UploadReport> prepare(SerialLine& line, const std::filesystem::path& firmware_file,
+                             const BootSettings& settings = {});
+
+/// Says how far homing has come.
+struct HomingState {
+  bool answered = false;                 ///< A packet came.
+  std::uint8_t homed = 0;                ///< One bit per leg.
+  std::array<std::int16_t, 3> counts{};  ///< Encoder counts of the last packet.
+  /// Tells whether the encoders know where they are.
+  bool done() const { return homed == kAllHomed; }
+};
+
+/// Exchanges one packet in homing mode with zero force: red light while a leg is not homed, green
+/// when all are. The user pulls the grip all the way out and pushes it in; call this until `done`.
+HomingState home_once(SerialLine& line, std::uint8_t homed_before,
+                      const BootSettings& settings = {});
+
+}  // namespace thimble::driver::falcon

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "thimble/driver/arm.h"
+#include "thimble/driver/transport.h"
+
+namespace thimble::driver {
+
+/// Finds whole messages in a stream of bytes and keeps the newest. Total: any bytes in any pieces.
+/// All functions are Real-time: safe.
+class FrameFinder {
+ public:
+  explicit FrameFinder(const Framing& framing) noexcept;
+
+  /// Takes the next bytes of the stream.
+  void push(std::span<const std::byte> bytes) noexcept;
+
+  /// Tells whether a message came that was not taken yet.
+  bool ready() const noexcept { return ready_ > 0; }
+
+  /// Copies the newest message and forgets it; returns its size, 0 if there is none. `skipped`
+  /// tells how many older ones were dropped. A message longer than the buffer is cut.
+  std::size_t take(std::span<std::byte> buffer, std::uint32_t& skipped) noexcept;
+
+  /// Tells how many whole messages came so far.
+  std::uint64_t found() const noexcept { return found_; }
+
+  /// Tells how many messages were torn: begun and never ended, or too long.
+  std::uint64_t torn() const noexcept { return torn_; }
+
+ private:
+  Framing framing_;
+  std::array<std::byte, kReportCapacity> growing_{}, newest_{};
+  std::size_t growing_size_ = 0;  // 0: outside of a message
+  std::size_t newest_size_ = 0;
+  std::uint32_t ready_ = 0;
+  std::uint64_t found_ = 0, torn_ = 0;
+};
+
+}  // namespace thimble::driver

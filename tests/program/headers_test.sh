@@ -1,0 +1,50 @@
+#!/usr/bin/env bash
+# Looks at the headers that are installed: there are few enough for a person to know what to include, each
+# compiles alone with nothing but Eigen beside it, none names a library that a user need not know, and each
+# has its page in the reference.
+#   headers_test.sh BUILD_FOLDER SOURCE_FOLDER
+set -euo pipefail
+build=$1 source=$2
+most=100
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+fail() {
+  echo "FAILED: $*" >&2
+  exit 1
+}
+
+cmake --install "$build" --component dev --prefix "$work/usr" >"$work/log" || fail "$(cat "$work/log")"
+cd "$work/usr/include"
+find thimble -name '*.h' | sort >"$work/headers"
+cut -d/ -f2 "$work/headers" | sort | uniq -c
+count=$(wc -l <"$work/headers")
+[ "$count" -lt "$most" ] || fail "$count headers are installed; there may be fewer than $most"
+
+if grep -nE '#include *[<"](yaml-cpp|YAML|hdf5|H5|fmt|spdlog|nlohmann|CLI|libusb|hidapi|assimp|png)' -r thimble; then
+  fail "the lines above include a library that a user need not know"
+fi
+if grep -nE '#include *"' -r thimble | grep -v '"thimble/'; then
+  fail "the lines above include what is not installed"
+fi
+
+# Each alone, in a program without any other include.
+compile() {  # HEADER
+  echo "#include \"$1\"" | "${CXX:-c++}" -std=c++20 -fsyntax-only -Wall -Wextra -Wpedantic -Wshadow \
+    -Wconversion -Werror -I. -isystem "$eigen" -x c++ - || echo "$1" >>"$work/bad"
+}
+export -f compile
+export work eigen
+eigen=$(pkg-config --variable=prefix eigen3)/include/eigen3
+xargs -a "$work/headers" -P "$(nproc)" -I{} bash -c 'compile {}'
+[ ! -s "$work/bad" ] || fail "do not compile alone: $(sort "$work/bad" | tr '\n' ' ')"
+
+# The reference is made of the same folders.
+while read -r header; do
+  module=$(cut -d/ -f2 <<<"$header")
+  folder=$module/include
+  [ -d "$source/$folder" ] || folder=app/$module/include
+  grep -qF "@PROJECT_SOURCE_DIR@/$folder" "$source/app/guide/Doxyfile.in" ||
+    fail "$header is installed, but the reference does not read $folder"
+  [ -f "$source/$folder/$header" ] || fail "$header is installed, but does not come from $folder"
+done <"$work/headers"
+echo "$count headers, each compiles alone."

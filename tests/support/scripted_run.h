@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "thimble/driver/tick_record.h"
+#include "thimble/session/tick_observer.h"
+
+namespace thimble::support {
+
+/// Returns the ticks of a run of 1 kHz as a test writes them: free, then in contact from tick
+/// `down` up to but not including `up`, deepest half-way, with a force as deep as it is.
+inline std::vector<driver::TickRecord> scripted_run(std::uint64_t ticks, std::uint64_t down,
+                                                    std::uint64_t up) {
+  std::vector<driver::TickRecord> run(ticks);
+  for (std::uint64_t i = 0; i < ticks; ++i) {
+    driver::TickRecord& tick = run[i];
+    tick.tick = i;
+    tick.time_ns = tick.due_ns = static_cast<std::int64_t>(i) * 1'000'000;
+    tick.fresh = true;
+    tick.stage = driver::DeviceStage::kActive;
+    tick.in_contact = i >= down && i < up;
+    if (!tick.in_contact) continue;
+    const auto before = static_cast<double>(i - down), after = static_cast<double>(up - i);
+    tick.depth = 1e-5 * (before < after ? before : after);
+    tick.f_sent_W = tick.f_wanted_W = {0, 0, 800 * tick.depth};
+  }
+  return run;
+}
+
+/// Feeds a run to an observer, as a session does.
+inline void feed(session::TickObserver& observer, const std::vector<driver::TickRecord>& run) {
+  for (const driver::TickRecord& tick : run) observer.take(tick);
+}
+
+}  // namespace thimble::support

@@ -1,0 +1,288 @@
+#include "events/event_watch.h"
+
+#include <gtest/gtest.h>
+
+#include <thread>
+#include <vector>
+
+#include "events/event_words.h"
+#include "support/heap_guard.h"
+
+namespace thimble::session {
+namespace {
+
+using driver::DeviceStage;
+using driver::Fault;
+
+constexpr std::int64_t kPeriod_ns = 1'000'000;
+
+/// Counters that the test counts.
+class ScriptedCounters final : public EventCounters {
+ public:
+  ActivityCounts activities() const noexcept override { return counts; }
+  std::uint64_t wires_taken() const noexcept override { return taken; }
+  std::uint64_t& of(Activity activity) { return counts[static_cast<std::size_t>(activity)]; }
+
+  ActivityCounts counts{};
+  std::uint64_t taken = 0;
+};
+
+/// A run whose ticks the test writes, 1 ms apart.
+class EventWatchTest : public ::testing::Test {
+ protected:
+  /// Lets the tick of `record_` come to pass, and begins the next one.
+  void tick(std::uint64_t periods = 1) {
+    watch_.take(record_);
+    record_.tick += 1;
+    const auto passed = static_cast<std::int64_t>(periods) * kPeriod_ns;
+    record_.time_ns += passed;
+    record_.due_ns += passed;
+  }
+  void ticks(int count) {
+    for (int i = 0; i < count; ++i) tick();
+  }
+
+  /// Returns the events so far and forgets them.
+  std::vector<TickEvent> events() {
+    std::vector<TickEvent> got;
+    while (ring_.waiting() > 0) {
+      const auto front = ring_.front();
+      got.insert(got.end(), front.begin(), front.end());
+      ring_.drop(front.size());
+    }
+    return got;
+  }
+
+  static TickEvent event(std::uint64_t tick, EventKind kind) {
+    return {.tick = tick, .time_ns = static_cast<std::int64_t>(tick) * kPeriod_ns, .kind = kind};
+  }
+  static TickEvent began(std::uint64_t tick, Activity activity) {
+    TickEvent event = EventWatchTest::event(tick, EventKind::kActivityBegan);
+    event.activity = activity;
+    return event;
+  }
+  static TickEvent ended(std::uint64_t tick, Activity activity, std::uint64_t count,
+                         std::int64_t lasted_ns) {
+    TickEvent event = EventWatchTest::event(tick, EventKind::kActivityEnded);
+    event.activity = activity;
+    event.count = count;
+    event.lasted_ns = lasted_ns;
+    return event;
+  }
+  static TickEvent fault(std::uint64_t tick, Fault fault) {
+    TickEvent event = EventWatchTest::event(tick, EventKind::kFault);
+    event.fault = fault;
+    return event;
+  }
+
+  using Events = std::vector<TickEvent>;
+
+  ScriptedCounters counters_;
+  SpscRing<TickEvent> ring_{64};
+  EventWatch watch_{counters_, kPeriod_ns, ring_};
+  driver::TickRecord record_;
+};
+
+TEST_F(EventWatchTest, TellsEachStepOfAnArmsLifeOnce) {
+  ticks(2);
+  EXPECT_EQ(events(), Events());
+  record_.stage = DeviceStage::kActive;
+  ticks(3);
+  EXPECT_EQ(events(), Events({event(2, EventKind::kActivated)}));
+  record_.stage = DeviceStage::kFault;
+  record_.fault = Fault::kOverSpeed;
+  ticks(3);
+  EXPECT_EQ(events(), Events({fault(5, Fault::kOverSpeed)}));
+  record_.fault = Fault::kTransportLost;  // activated and lost again between two ticks
+  ticks(2);
+  EXPECT_EQ(events(), Events({fault(8, Fault::kTransportLost)}));
+  counters_.taken = 1;
+  record_.stage = DeviceStage::kActive;
+  record_.fault = Fault::kNone;
+  ticks(2);
+  EXPECT_EQ(events(), Events({event(10, EventKind::kWireTaken), event(10, EventKind::kActivated)}));
+  record_.stage = DeviceStage::kIdle;
+  ticks(2);
+  EXPECT_EQ(events(), Events({event(12, EventKind::kDeactivated)}));
+}
+
+TEST_F(EventWatchTest, TellsThatAnArmIsActiveFromItsFirstTickOn) {
+  record_.stage = DeviceStage::kActive;
+  tick();
+  EXPECT_EQ(events(), Events({event(0, EventKind::kActivated)}));
+}
+
+TEST_F(EventWatchTest, TellsWhenAnActivityBeginsAndWhenItHasBeenQuiet) {
+  ticks(10);
+  for (int i = 0; i < 50; ++i) {  // every other tick, ten to a tick
+    if (i % 2 == 0) counters_.of(Activity::kRiseCut) += 10;
+    tick();
+  }
+  EXPECT_EQ(events(), Events({began(10, Activity::kRiseCut)}));
+  ticks(99);  // the last was tick 58
+  EXPECT_EQ(events(), Events());
+  tick();
+  EXPECT_EQ(events(), Events({ended(159, Activity::kRiseCut, 250, 48 * kPeriod_ns)}));
+  ticks(300);
+  EXPECT_EQ(events(), Events());
+  counters_.of(Activity::kRiseCut) += 1;
+  tick();
+  EXPECT_EQ(events(), Events({began(460, Activity::kRiseCut)}));
+}
+
+TEST_F(EventWatchTest, KeepsActivitiesApart) {
+  tick();
+  for (std::size_t i = 0; i < kActivities; ++i) {
+    const auto activity = static_cast<Activity>(i);
+    if (activity == Activity::kMissedTicks) continue;
+    counters_.of(activity) += 1 + i;
+    tick();
+    EXPECT_EQ(events(), Events({began(record_.tick - 1, activity)}));
+  }
+  watch_.finish();
+  Events all;
+  for (std::size_t i = 0; i < kActivities; ++i) {
+    const auto activity = static_cast<Activity>(i);
+    if (activity != Activity::kMissedTicks) all.push_back(ended(10, activity, 1 + i, 0));
+  }
+  EXPECT_EQ(events(), all);
+  watch_.finish();
+  EXPECT_EQ(events(), Events());
+}
+
+TEST_F(EventWatchTest, CountsNothingOfBeforeItsTime) {
+  counters_.of(Activity::kForceCut) = 7;
+  counters_.taken = 2;
+  EventWatch late(counters_, kPeriod_ns, ring_);
+  late.take(record_);
+  EXPECT_EQ(events(), Events());
+}
+
+TEST_F(EventWatchTest, CountsTicksThatWereMissed) {
+  tick();
+  tick(4);  // three are missed after it
+  const std::int64_t missed_at = record_.time_ns;
+  tick();
+  tick(3);
+  tick();
+  const auto begun = events();
+  ASSERT_EQ(begun.size(), 1u);
+  EXPECT_EQ(begun[0].kind, EventKind::kActivityBegan);
+  EXPECT_EQ(begun[0].activity, Activity::kMissedTicks);
+  EXPECT_EQ(begun[0].tick, 2u);
+  EXPECT_EQ(begun[0].time_ns, missed_at);
+  watch_.finish();
+  const auto over = events();
+  ASSERT_EQ(over.size(), 1u);
+  EXPECT_EQ(over[0].count, 3u + 2u);
+  EXPECT_EQ(over[0].lasted_ns, 4 * kPeriod_ns);
+}
+
+TEST_F(EventWatchTest, TellsWhatIsTouched) {
+  tick();
+  record_.in_contact = true;
+  record_.object = 1;
+  ticks(2);
+  record_.in_contact = false;
+  record_.object = -1;
+  ticks(2);
+  TickEvent touch = event(1, EventKind::kTouchBegan);
+  touch.object = 1;
+  EXPECT_EQ(events(), Events({touch, event(3, EventKind::kTouchEnded)}));
+}
+
+TEST_F(EventWatchTest, CountsWhatFindsNoRoomAndGoesOnAfterwards) {
+  SpscRing<TickEvent> small(3);
+  EventWatch watch(counters_, kPeriod_ns, small);
+  for (int i = 0; i < 10; ++i) {
+    record_.in_contact = i % 2 == 0;
+    record_.tick = static_cast<std::uint64_t>(i);
+    watch.take(record_);
+  }
+  EXPECT_EQ(watch.lost(), 7u);
+  ASSERT_EQ(small.front().size(), 3u);
+  EXPECT_EQ(small.front()[2].tick, 2u);  // the oldest are kept
+  small.drop(3);
+  record_.in_contact = true;
+  watch.take(record_);
+  EXPECT_EQ(small.waiting(), 1u);
+  EXPECT_EQ(watch.lost(), 7u);
+}
+
+TEST_F(EventWatchTest, AsksTheHeapForNothing) {
+  EXPECT_EQ(support::heap_calls_of([&] {
+              for (int i = 0; i < 1000; ++i) {
+                counters_.of(Activity::kForceCut) += i % 300 == 0 ? 1 : 0;
+                record_.in_contact = i % 200 < 100;
+                record_.stage = i % 400 < 200 ? DeviceStage::kActive : DeviceStage::kFault;
+                record_.fault = i % 400 < 200 ? Fault::kNone : Fault::kNoReports;
+                tick();
+              }
+            }),
+            0);
+  EXPECT_GT(ring_.waiting(), 10u);
+}
+
+TEST(EventRing, HandsEventsFromOneThreadToAnotherInOrderAndWhole) {
+  SpscRing<TickEvent> ring(16);
+  constexpr std::uint64_t kEvents = 20'000;
+  std::thread servo([&ring] {
+    for (std::uint64_t i = 0; i < kEvents;) {
+      const TickEvent event{.tick = i, .time_ns = static_cast<std::int64_t>(3 * i), .count = ~i};
+      if (ring.push(event)) {
+        ++i;
+      } else {
+        std::this_thread::yield();
+      }
+    }
+  });
+  std::uint64_t next = 0;
+  while (next < kEvents) {
+    const auto events = ring.front();
+    for (const TickEvent& event : events) {
+      ASSERT_EQ(event.tick, next);
+      ASSERT_EQ(event.time_ns, static_cast<std::int64_t>(3 * next));
+      ASSERT_EQ(event.count, ~next);
+      ++next;
+    }
+    ring.drop(events.size());
+    if (events.empty()) std::this_thread::yield();
+  }
+  servo.join();
+  EXPECT_EQ(ring.waiting(), 0u);
+}
+
+TEST(EventWords, SayWhatHappenedWithTickAndTime) {
+  const std::vector<std::string> objects{"box", "ball"};
+  TickEvent event{.tick = 1234, .time_ns = 1'234'000'000, .kind = EventKind::kFault};
+  event.fault = Fault::kOverSpeed;
+  EXPECT_EQ(words_of(event, objects), "tick 1234, 1.234 s: Force is off (over_speed). " +
+                                          std::string(describe(Fault::kOverSpeed)));
+  EXPECT_EQ(level_of(event), spdlog::level::err);
+  event.kind = EventKind::kActivityEnded;
+  event.activity = Activity::kForceCut;
+  event.count = 12;
+  event.lasted_ns = 34'000'000;
+  EXPECT_EQ(words_of(event, objects),
+            "tick 1234, 1.234 s: The force was cut to the arm's limit 12 times within 0.034 s.");
+  event.kind = EventKind::kTouchBegan;
+  event.object = 1;
+  EXPECT_EQ(words_of(event, objects), "tick 1234, 1.234 s: The tip touches ball.");
+  event.object = 2;
+  EXPECT_EQ(words_of(event, objects), "tick 1234, 1.234 s: The tip touches an object.");
+}
+
+TEST(EventWords, WarnOfWhatTheUserShouldLookAtWhileItLasts) {
+  TickEvent event{.kind = EventKind::kActivityBegan};
+  for (const Activity activity : {Activity::kHeat, Activity::kStall, Activity::kRejected,
+                                  Activity::kJumped, Activity::kRefused}) {
+    event.activity = activity;
+    event.kind = EventKind::kActivityBegan;
+    EXPECT_EQ(level_of(event), spdlog::level::warn) << words_of(event, {});
+    event.kind = EventKind::kActivityEnded;
+    EXPECT_EQ(level_of(event), spdlog::level::info) << words_of(event, {});
+  }
+}
+
+}  // namespace
+}  // namespace thimble::session

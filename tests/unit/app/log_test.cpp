@@ -1,0 +1,193 @@
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <regex>
+#include <string>
+#include <vector>
+
+#include "log/console.h"
+#include "log/log_file.h"
+#include "log/logger.h"
+#include "support/scratch.h"
+
+namespace thimble::scene {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<std::string> lines_of(const fs::path& file) {
+  std::ifstream in(file);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  return lines;
+}
+
+/// Returns what is said on standard error meanwhile.
+template <class Work>
+std::string said_by(Work&& work) {
+  testing::internal::CaptureStderr();
+  work();
+  return testing::internal::GetCapturedStderr();
+}
+
+class LogTest : public ::testing::Test {
+ protected:
+  LogTest() {
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+    setenv("XDG_STATE_HOME", folder_.c_str(), 1);
+  }
+
+  /// Says a word of each level.
+  static void say_everything(spdlog::logger& logger) {
+    logger.trace("a trace");
+    logger.debug("a detail");
+    logger.info("an event");
+    logger.warn("a warning");
+    logger.error("an error");
+  }
+
+  fs::path folder_ = support::scratch_folder() / "log";
+};
+
+TEST_F(LogTest, ALineHasTimeLevelProcessAndWhoSaysIt) {
+  const fs::path file = folder_ / "named.log";
+  ASSERT_TRUE(begin_log({.file = file, .heading = "thimble 1.2: run box"}));
+  run_logger("box")->info("tick 7, 0.007 s: Forces are let through.");
+  const auto lines = lines_of(file);
+  ASSERT_EQ(lines.size(), 2u);
+  const std::string time = R"(\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d\.\d{3}[+-]\d\d:\d\d )";
+  const std::string process = std::to_string(getpid());
+  EXPECT_TRUE(std::regex_match(
+      lines[0], std::regex(time + "info     " + process + " thimble: thimble 1\\.2: run box")))
+      << lines[0];
+  EXPECT_TRUE(std::regex_match(lines[1], std::regex(time + "info     " + process +
+                                                    " box: tick 7, 0\\.007 s: Forces are let "
+                                                    "through\\.")))
+      << lines[1];
+}
+
+TEST_F(LogTest, TheTerminalHearsWarningsAndErrorsUnlessToldOtherwise) {
+  ASSERT_TRUE(begin_log({}));
+  EXPECT_EQ(said_by([] { say_everything(logger()); }), "thimble: a warning\nthimble: an error\n");
+  ASSERT_TRUE(begin_log({.talk = Talk::kQuiet}));
+  EXPECT_EQ(said_by([] { say_everything(logger()); }), "thimble: an error\n");
+  ASSERT_TRUE(begin_log({.talk = Talk::kDebug}));
+  EXPECT_EQ(said_by([] { say_everything(logger()); }),
+            "thimble: a detail\nthimble: an event\nthimble: a warning\nthimble: an error\n");
+  ASSERT_TRUE(begin_log({.talk = Talk::kTrace}));
+  EXPECT_EQ(said_by([] { say_everything(logger()); }),
+            "thimble: a trace\nthimble: a detail\nthimble: an event\nthimble: a warning\n"
+            "thimble: an error\n");
+}
+
+TEST_F(LogTest, WhatHappensInARunIsOnTheTerminalOnlyWhereItIsWanted) {
+  ASSERT_TRUE(begin_log({}));
+  EXPECT_EQ(said_by([] { say_everything(*run_logger("box")); }), "");
+  ASSERT_TRUE(begin_log({.talk = Talk::kDebug}));
+  EXPECT_NE(said_by([] { say_everything(*run_logger("box")); }).find("thimble: an event\n"),
+            std::string::npos);
+}
+
+TEST_F(LogTest, WhatAPersonIsAskedIsShownWordByWord) {
+  for (const Talk talk : {Talk::kQuiet, Talk::kNormal, Talk::kTrace}) {
+    ASSERT_TRUE(begin_log({.talk = talk}));
+    EXPECT_EQ(said_by([] { terminal().info("Press Enter to begin."); }), "Press Enter to begin.\n");
+  }
+}
+
+TEST_F(LogTest, TheFileHoldsAllButTracesAndThoseIfTheyAreWanted) {
+  ASSERT_TRUE(begin_log({}));
+  said_by([] { say_everything(logger()); });
+  ASSERT_EQ(default_log_file(), folder_ / "thimble" / "log" / "thimble.log");
+  EXPECT_EQ(lines_of(default_log_file()).size(), 1 + 4u);
+  ASSERT_TRUE(begin_log({.talk = Talk::kTrace}));
+  said_by([] { say_everything(logger()); });
+  EXPECT_EQ(lines_of(default_log_file()).size(), 1 + 4u + 1 + 5u);
+}
+
+TEST_F(LogTest, ThereIsNoFileBeforeSomethingIsSaid) {
+  ASSERT_TRUE(begin_log({}));
+  EXPECT_FALSE(fs::exists(default_log_file()));
+}
+
+TEST_F(LogTest, ProgressStaysTheLastLine) {
+  ASSERT_TRUE(begin_log({}));
+  EXPECT_EQ(said_by([] {
+              console().show("50 %");
+              logger().warn("a warning");
+              console().show("51 %");
+              console().show("");
+            }),
+            "\r\033[K50 %"
+            "\r\033[Kthimble: a warning\n50 %"
+            "\r\033[K51 %"
+            "\r\033[K");
+}
+
+TEST_F(LogTest, FilesAreBoundedInSizeAndNumber) {
+  ASSERT_TRUE(begin_log({}));
+  const std::string words(1000, 'x');
+  constexpr std::size_t kLines = (LogFile::kFilesMost + 3) * LogFile::kBytesMost / 1000;
+  for (std::size_t i = 0; i < kLines; ++i) logger().info("{} {}", i, words);
+  std::size_t files = 0;
+  for (const auto& entry : fs::directory_iterator(default_log_file().parent_path())) {
+    ++files;
+    EXPECT_LE(entry.file_size(), LogFile::kBytesMost) << entry.path();
+  }
+  EXPECT_EQ(files, LogFile::kFilesMost);
+  EXPECT_NE(lines_of(default_log_file()).back().find(std::to_string(kLines - 1) + " x"),
+            std::string::npos);
+}
+
+TEST_F(LogTest, AFileThatCannotBeWrittenIsToldOnceAndEndsNothing) {
+  std::ofstream(folder_ / "thimble") << "a file where the folder should be";
+  ASSERT_TRUE(begin_log({}));
+  const std::string said = said_by([] {
+    logger().warn("one");
+    logger().warn("two");
+  });
+  const std::size_t told = said.find("thimble: The log ends, for " + default_log_file().string());
+  ASSERT_NE(told, std::string::npos) << said;
+  EXPECT_EQ(said.find("The log ends", told + 20), std::string::npos) << said;
+  EXPECT_NE(said.find("thimble: one\n"), std::string::npos);
+  EXPECT_NE(said.find("thimble: two\n"), std::string::npos);
+}
+
+TEST_F(LogTest, ADiskThatFillsUpEndsTheLogAlone) {
+  const fs::path file = folder_ / "full.log";
+  ASSERT_TRUE(begin_log({.file = file, .heading = "begin"}));
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  const auto signal_before = signal(SIGXFSZ, SIG_IGN);
+  const rlimit tight{.rlim_cur = 2000, .rlim_max = before.rlim_max};
+  setrlimit(RLIMIT_FSIZE, &tight);
+  const std::string said = said_by([] {
+    for (int i = 0; i < 100; ++i)
+      logger().info("a line of some forty letters and the number {}", i);
+    logger().warn("the last");
+  });
+  setrlimit(RLIMIT_FSIZE, &before);
+  signal(SIGXFSZ, signal_before);
+  EXPECT_TRUE(std::regex_match(said, std::regex("thimble: The log ends, for " + file.string() +
+                                                " cannot be written \\(.*\\)\\. .*\n"
+                                                "thimble: the last\n")))
+      << said;
+  EXPECT_GT(lines_of(file).size(), 10u);
+}
+
+TEST_F(LogTest, AFileThatTheUserNamedMustBeOneThatCanBeWritten) {
+  const auto begun = begin_log({.file = "/dev/full"});
+  ASSERT_FALSE(begun);
+  EXPECT_EQ(begun.error().message.rfind("/dev/full: the log cannot be written there (", 0), 0u)
+      << begun.error().message;
+  EXPECT_FALSE(begin_log({.file = folder_}));
+}
+
+}  // namespace
+}  // namespace thimble::scene

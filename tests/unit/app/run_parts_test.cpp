@@ -1,0 +1,91 @@
+// What `thimble run` does around a run, part by part: which arm, whether a viewer opens, what the
+// user is told, and how the program ends.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "cli/exit_code.h"
+#include "run_arm.h"
+#include "run_attendance.h"
+#include "share/request_desk.h"
+#include "support/scripted_run.h"
+
+namespace thimble {
+namespace {
+
+using session::ViewerWish;
+
+TEST(ChooseRunArm, LooksForNoBoardWhereTheSimulatedArmIsAskedFor) {
+  int looks = 0;
+  const auto find = [&] {
+    ++looks;
+    return driver::Result<std::vector<driver::FoundArm>>(std::vector<driver::FoundArm>());
+  };
+  const auto simulated = session::choose_run_arm("sim", {}, find);
+  ASSERT_TRUE(simulated);
+  EXPECT_FALSE(simulated->real);
+  EXPECT_TRUE(simulated->told.empty());
+  EXPECT_EQ(looks, 0);
+}
+
+TEST(ChooseRunArm, SaysSoWhereTheSimulatedArmStandsInAndFailsForANameThatIsNotThere) {
+  const auto none = [] {
+    return driver::Result<std::vector<driver::FoundArm>>(std::vector<driver::FoundArm>());
+  };
+  const auto cannot_look = [] {
+    return driver::Result<std::vector<driver::FoundArm>>(driver::Error{"no such folder"});
+  };
+  for (const session::FindArms& find : {session::FindArms(none), session::FindArms(cannot_look)}) {
+    const auto automatic = session::choose_run_arm("auto", {}, find);
+    ASSERT_TRUE(automatic) << automatic.error().message;
+    EXPECT_FALSE(automatic->real || automatic->terms);
+    ASSERT_EQ(automatic->told.size(), 1u);
+    EXPECT_EQ(automatic->told[0], "No arm is plugged in: the simulated one is used.");
+    EXPECT_FALSE(session::choose_run_arm("S1", {}, find));
+  }
+}
+
+TEST(OpensViewer, WhereItIsAskedForOrAPersonWatchesInRealTime) {
+  EXPECT_TRUE(session::opens_viewer(ViewerWish::kAsked, false, true, false));
+  EXPECT_FALSE(session::opens_viewer(ViewerWish::kAsked, true, false, true)) << "no screen";
+  EXPECT_TRUE(session::opens_viewer(ViewerWish::kIfWatched, true, true, true));
+  EXPECT_FALSE(session::opens_viewer(ViewerWish::kIfWatched, false, true, true));
+  EXPECT_FALSE(session::opens_viewer(ViewerWish::kIfWatched, true, true, false)) << "a script";
+  EXPECT_FALSE(session::opens_viewer(ViewerWish::kNever, true, true, true));
+}
+
+TEST(ProgressLine, TellsTimeTouchForceAndDepth) {
+  const auto run = support::scripted_run(1000, 100, 300);
+  EXPECT_EQ(session::progress_line(run[200], 20),
+            "   0.2 of 20.0 s   touching  force  0.80 N   depth  1.00 mm ");
+  EXPECT_EQ(session::progress_line(run[50], 0),
+            "   0.1 s   free      force  0.00 N   depth  0.00 mm ");
+}
+
+TEST(HeatWarning, IsGivenOnceWithTheFirstTickThatIsSoHot) {
+  auto run = support::scripted_run(10, 0, 10);
+  for (std::size_t i = 0; i < run.size(); ++i) run[i].heat = {0, 0.1 * static_cast<double>(i), 0};
+  session::HeatWarning warning;
+  std::vector<std::string> given;
+  for (const auto& tick : run) {
+    if (const std::string text = warning.look(tick); !text.empty()) given.push_back(text);
+  }
+  ASSERT_EQ(given.size(), 1u);
+  EXPECT_EQ(given[0].find("A motor is at 80 % of the heat it bears;"), 0u) << given[0];
+  EXPECT_TRUE(warning.look(run.back()).empty());
+}
+
+TEST(ExitCode, TellsHowARunEnded) {
+  using driver::Fault;
+  using driver::ServoEnd;
+  EXPECT_EQ(app::exit_code_of(ServoEnd::kDone, Fault::kNone, false), app::kExitDone);
+  EXPECT_EQ(app::exit_code_of(ServoEnd::kDone, Fault::kTransportLost, false), app::kExitFault)
+      << "a loop with a real arm outlives its faults";
+  EXPECT_EQ(app::exit_code_of(ServoEnd::kStopped, Fault::kNone, false), app::kExitInterrupted);
+  EXPECT_EQ(app::exit_code_of(ServoEnd::kStopped, Fault::kNone, true), app::kExitDone);
+  EXPECT_EQ(app::exit_code_of(ServoEnd::kFault, Fault::kOverSpeed, true), app::kExitFault);
+}
+
+}  // namespace
+}  // namespace thimble

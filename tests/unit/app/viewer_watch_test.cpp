@@ -1,0 +1,116 @@
+#include "share/viewer_watch.h"
+
+#include <gtest/gtest.h>
+#include <spdlog/sinks/ostream_sink.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <memory>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "share/shared_reader.h"
+
+namespace thimble::session {
+namespace {
+
+/// A run with two knobs, whose viewers look on in this process.
+class ViewerWatchTest : public ::testing::Test {
+ protected:
+  ViewerWatchTest() {
+    SharedScene scene;
+    scene.name = "watched";
+    scene.period_ns = 1'000'000;
+    scene.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    scene.triangles = {{0, 1, 2}};
+    scene.objects.push_back({.name = "a", .vertex_count = 3, .triangle_count = 1});
+    scene.knobs.push_back({"a: stiffness", "N/m", 0, 800, 400});
+    scene.knobs.push_back({"a: damping", "N s/m", 0, 2, 1});
+    run_ = SharedRun::create("", scene, 8).value();
+    auto sink = std::make_shared<spdlog::sinks::ostream_sink_st>(said_);
+    sink->set_pattern("%l %v");
+    watch_.emplace(*run_, std::make_shared<spdlog::logger>("watched", sink));
+  }
+
+  std::unique_ptr<SharedReader> view() {
+    return SharedReader::over(run_->memory().again().value()).value();
+  }
+
+  /// Looks `times` and returns what was said.
+  std::string step(int times = 1) {
+    said_.str("");
+    for (int i = 0; i < times; ++i) {
+      run_->watch_viewers();
+      watch_->step("tick 5, 0.005 s: ");
+    }
+    return said_.str();
+  }
+
+  std::unique_ptr<SharedRun> run_;
+  std::ostringstream said_;
+  std::optional<ViewerWatch> watch_;
+};
+
+TEST_F(ViewerWatchTest, TellsWhoLooksOnAndWhoHasLeft) {
+  EXPECT_EQ(step(), "");
+  const std::string self = std::to_string(getpid());
+  auto viewer = view();
+  EXPECT_EQ(step(), "info tick 5, 0.005 s: Viewer " + self + " looks on.\n");
+  EXPECT_EQ(step(10), "");
+  viewer.reset();
+  EXPECT_EQ(step(), "info tick 5, 0.005 s: Viewer " + self + " has left.\n");
+  EXPECT_EQ(step(10), "");
+}
+
+TEST_F(ViewerWatchTest, NoticesThatAViewerDied) {
+  const pid_t child = fork();
+  if (child == 0) {
+    static const auto* const left_open = view().release();
+    _exit(left_open == nullptr ? 1 : 0);
+  }
+  while (step().find("Viewer " + std::to_string(child) + " looks on.") == std::string::npos) {
+  }
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_EQ(step(), "info tick 5, 0.005 s: Viewer " + std::to_string(child) + " has left.\n");
+}
+
+TEST_F(ViewerWatchTest, HasRoomForManyViewersAndHoldsOutWithMore) {
+  std::vector<std::unique_ptr<SharedReader>> viewers;
+  for (std::size_t i = 0; i < kViewersMost + 3; ++i) viewers.push_back(view());
+  EXPECT_EQ(run_->viewers().size(), kViewersMost);
+  viewers.clear();
+  EXPECT_TRUE(run_->viewers().empty());
+}
+
+TEST_F(ViewerWatchTest, TellsOfAKnobOnceItStandsStill) {
+  const auto viewer = view();
+  step();
+  for (int i = 0; i < 20; ++i) {
+    viewer->turn_knob(0, 400 + 10 * i);
+    EXPECT_EQ(step(), "");
+  }
+  EXPECT_EQ(step(ViewerWatch::kSettled - 1), "");
+  EXPECT_EQ(step(), "info tick 5, 0.005 s: A viewer set a: stiffness from 400 to 590 N/m.\n");
+  EXPECT_EQ(step(20), "");
+  viewer->turn_knob(0, 300);
+  step();
+  viewer->turn_knob(0, 590);  // back where it was: nothing was set
+  EXPECT_EQ(step(20), "");
+  viewer->turn_knob(1, 0.5);
+  EXPECT_EQ(step(20), "info tick 5, 0.005 s: A viewer set a: damping from 1 to 0.5 N s/m.\n");
+}
+
+TEST_F(ViewerWatchTest, TellsOfAPause) {
+  const auto viewer = view();
+  step();
+  viewer->ask_pause(true);
+  EXPECT_EQ(step(3), "info tick 5, 0.005 s: A viewer pauses the run.\n");
+  viewer->ask_pause(false);
+  EXPECT_EQ(step(3), "info tick 5, 0.005 s: A viewer lets the run go on.\n");
+}
+
+}  // namespace
+}  // namespace thimble::session
