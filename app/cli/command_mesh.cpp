@@ -70,32 +70,65 @@ int tell_verdict(const render::TriangleMesh& mesh, const render::MeshFindings& f
   return kExitBadInput;
 }
 
+void print(const std::vector<render::RepairChange>& changes) {
+  for (const render::RepairChange& change : changes) {
+    std::printf("  - %s\n", render::describe(change).c_str());
+  }
+}
+
+// Makes thin bodies of what is open. Returns what was done, as a sentence.
+std::string thicken(render::TriangleMesh& mesh, double thickness) {
+  render::ThickenedMesh thick = render::thicken_sheets(mesh, thickness);
+  mesh = std::move(thick.mesh);
+  render::orient_mesh(mesh);
+  return render::describe(thick.report, "(file's unit)");
+}
+
+// Says how a mesh that cannot be touched could be, by trying it out.
+void tell_remedy(const render::TriangleMesh& mesh, const render::MeshFindings& found) {
+  render::RepairedMesh repaired = render::repair_mesh(mesh);
+  if (repaired.mesh.triangles.empty()) {
+    std::printf("No triangle of it has an area: there is nothing to touch.\n");
+    return;
+  }
+  if (render::ContactMesh::build(repaired.mesh)) {
+    std::printf(
+        "A repair makes it touchable: --repair OUT.off here, or repair: true in a scene.\n");
+    print(repaired.changes);
+    return;
+  }
+  const double thickness = 0.01 * (found.box_max - found.box_min).maxCoeff();
+  const std::string sheets = thicken(repaired.mesh, thickness);
+  if (!render::ContactMesh::build(repaired.mesh)) {
+    std::printf("Neither a repair nor sheets make it touchable: mend it in a mesh editor.\n");
+    return;
+  }
+  std::printf(
+      "What is open can be touched as a sheet: --repair OUT.off --thicken %.1g here, or repair: "
+      "true "
+      "and open: {thickness: 0.001} in a scene.\n",
+      thickness);
+  print(repaired.changes);
+  std::printf("  - %s\n", sheets.c_str());
+}
+
 int repair(const render::TriangleMesh& mesh, const MeshOptions& options) {
   render::RepairedMesh repaired = render::repair_mesh(mesh);
   std::string sheets;
   if (options.thicken > 0 && !repaired.mesh.triangles.empty()) {
-    render::ThickenedMesh thick = render::thicken_sheets(repaired.mesh, options.thicken);
-    repaired.mesh = std::move(thick.mesh);
-    render::orient_mesh(repaired.mesh);
-    sheets = render::describe(thick.report);
+    sheets = thicken(repaired.mesh, options.thicken);
   }
   if (auto saved = render::save_mesh(repaired.mesh, options.repair); !saved) {
     return complain(saved.error(), kExitTrouble);
   }
   std::printf("Repaired: %s\n", options.repair.c_str());
   if (repaired.changes.empty() && sheets.empty()) std::printf("  Nothing was changed.\n");
-  for (const render::RepairChange& change : repaired.changes) {
-    std::printf("  - %s\n", render::describe(change).c_str());
-  }
+  print(repaired.changes);
   if (!sheets.empty()) std::printf("  - %s\n", sheets.c_str());
   const render::MeshFindings found = render::check_mesh(repaired.mesh);
   print(found);
   const int verdict = tell_verdict(repaired.mesh, found);
-  if (verdict != kExitDone && options.thicken == 0) {
-    std::printf(
-        "What is open can be touched as a sheet: add --thicken, or in a scene open: {thickness: "
-        "0.001}.\n");
-  }
+  if (verdict != kExitDone) tell_remedy(repaired.mesh, found);
   return verdict;
 }
 
@@ -160,7 +193,9 @@ int tell_mesh(const MeshOptions& options) {
     std::printf("Picture: %s\n", options.picture.c_str());
   }
   const int verdict = tell_verdict(*mesh, found);
-  return options.repair.empty() ? verdict : repair(*mesh, options);
+  if (!options.repair.empty()) return repair(*mesh, options);
+  if (verdict != kExitDone) tell_remedy(*mesh, found);
+  return verdict;
 }
 
 }  // namespace

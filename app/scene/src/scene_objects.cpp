@@ -9,6 +9,7 @@
 #include "page/paged_surface.h"
 #include "place_mesh.h"
 #include "thimble/render/build_object_touch.h"
+#include "thimble/render/mesh/check_mesh.h"
 
 namespace thimble::scene {
 namespace {
@@ -36,6 +37,16 @@ using Touched = driver::Result<std::unique_ptr<render::ObjectTouch>>;
 /// Says which object a sentence is about.
 std::string name_of(const SceneObject& object) {
   return object.mesh_file.empty() ? object.name : object.mesh_file.string();
+}
+
+/// Returns what a scene can do about a mesh that contact refuses, as a sentence to follow another.
+std::string remedy_for(const SceneObject& object, const render::TriangleMesh& mesh_W) {
+  if (object.mesh_file.empty() || object.sheet_thickness) return {};
+  if (render::check_mesh(mesh_W).touchable()) return {};
+  return object.repair
+             ? " Set open: {thickness: 0.001} as well, to touch it as a sheet."
+             : " Set repair: true, and where that is not enough, open: {thickness: 0.001}; "
+               "thimble mesh tells which.";
 }
 
 /// Builds the force law that the scene calls for.
@@ -69,7 +80,10 @@ driver::Result<std::unique_ptr<render::SceneTouch>> build_touch(
       touch = render::move_object(std::move(touch).value(), meshes_W[i], *object.body.motion,
                                   object.coupling);
     }
-    if (!touch) return driver::Error{name_of(object) + ": " + touch.error().message};
+    if (!touch) {
+      return driver::Error{name_of(object) + ": " + touch.error().message +
+                           remedy_for(object, meshes_W[i])};
+    }
     objects.push_back(std::move(touch).value());
   }
   return std::make_unique<render::SceneTouch>(std::move(objects));

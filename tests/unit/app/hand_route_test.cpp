@@ -205,7 +205,7 @@ TEST(HandRoute, LeavesTheSurfaceWhereItsPartsDoNotHangTogether) {
   for (const auto& [a, b, c] : other.triangles) hollow.triangles.push_back({a + 8, c + 8, b + 8});
   const auto none = plan_on_sphere({on(0, {0, 0, 0.02}, 0), on(1, {0, 0, 0.01}, 0)}, hollow);
   ASSERT_FALSE(none.ok());
-  EXPECT_NE(none.error().message.find("from t = 0 s to 1 s finds no way over \"sphere\""),
+  EXPECT_NE(none.error().message.find("from t = 0 s to 1 s finds none over \"sphere\""),
             std::string::npos)
       << none.error().message;
 }

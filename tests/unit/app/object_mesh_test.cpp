@@ -105,6 +105,25 @@ TEST(ObjectMesh, LetsASheetBeTouchedFromBothSides) {
   }
 }
 
+TEST(ObjectMesh, TellsWhatWouldMakeAnOpenMeshTouchable) {
+  scene::Scene scene;
+  scene.rate = 1000;
+  scene.objects.push_back(object_of(write_cube("no_corner.off", 3)));
+  const auto open = scene::SceneObjects::build(scene);
+  ASSERT_FALSE(open.ok());
+  EXPECT_NE(open.error().message.find("Set repair: true"), std::string::npos)
+      << open.error().message;
+  scene.objects[0].repair = true;
+  const auto still_open = scene::SceneObjects::build(scene);
+  ASSERT_FALSE(still_open.ok());
+  EXPECT_NE(still_open.error().message.find("Set open: {thickness: 0.001} as well"),
+            std::string::npos)
+      << still_open.error().message;
+  scene.objects[0].sheet_thickness = 0.001;
+  scene.objects[0].contact.tracker = render::TrackerChoice::kGodObject;
+  EXPECT_TRUE(scene::SceneObjects::build(scene).ok());
+}
+
 TEST(ObjectMesh, TellsWhenNothingIsLeft) {
   const std::filesystem::path file = support::scratch_folder() / "line.off";
   std::ofstream(file) << "OFF\n3 1 0\n0 0 0\n1 0 0\n2 0 0\n3 0 1 2\n";

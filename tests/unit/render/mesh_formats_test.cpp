@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-
+#include <atomic>
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
@@ -189,7 +189,7 @@ TEST(RunApart, SurvivesWorkThatCrashesHangsOrAsksForTooMuch) {
   EXPECT_FALSE(left.ok());
   const auto hung = run_apart(
       []() -> std::string {
-        for (volatile int i = 0;; i = i + 1) {
+        for (std::atomic<int> i = 0;; ++i) {
         }
       },
       {.seconds = 1, .bytes = 1 << 20});

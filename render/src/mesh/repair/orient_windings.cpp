@@ -127,10 +127,9 @@ std::string describe(const OrientReport& report) {
   }
   if (report.one_sided_components > 0) {
     if (!text.empty()) text += ' ';
-    text +=
-        plural(report.one_sided_components, "component has", "components have") +
-        " one side only, like a Moebius strip, so that no way of winding is right; cut the mesh "
-        "there in a mesh editor.";
+    text += plural(report.one_sided_components, "component has", "components have") +
+            " one side only, like a Moebius strip, so that no winding is right; it can be a "
+            "sheet.";
   }
   return text;
 }

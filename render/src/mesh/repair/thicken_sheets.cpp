@@ -270,13 +270,13 @@ ThickenedMesh thicken_sheets(const TriangleMesh& whole, double thickness) {
   return done;
 }
 
-std::string describe(const SheetReport& report) {
+std::string describe(const SheetReport& report, const std::string& unit) {
   if (report.sheets == 0) return {};
   std::ostringstream text;
   text << report.sheets << (report.sheets == 1 ? " part is" : " parts are")
        << " no closed body and touched as " << (report.sheets == 1 ? "a sheet" : "sheets") << " of "
        << report.triangles << (report.triangles == 1 ? " triangle" : " triangles") << ", "
-       << report.thinnest << " m thick at the thinnest place.";
+       << report.thinnest << " " << unit << " thick at the thinnest place.";
   return text.str();
 }
 

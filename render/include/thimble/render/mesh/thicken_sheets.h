@@ -33,7 +33,7 @@ struct ThickenedMesh {
 /// never from the servo thread.
 ThickenedMesh thicken_sheets(const TriangleMesh& mesh, double thickness);
 
-/// Returns the report as one sentence, lengths in m; empty if there was no sheet.
-std::string describe(const SheetReport& report);
+/// Returns the report as one sentence; empty if there was no sheet. `unit`: of the mesh's lengths.
+std::string describe(const SheetReport& report, const std::string& unit = "m");
 
 }  // namespace thimble::render
