@@ -13,8 +13,8 @@
 #include <utility>
 #include <vector>
 
+#include "hand/surface_probe.h"
 #include "support/shapes.h"
-#include "surface_probe.h"
 #include "thimble/render/mesh/load_mesh.h"
 #include "thimble/render/mesh/placed_mesh.h"
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "surface_probe.h"
+#include "hand/surface_probe.h"
 #include "thimble/render/mesh/triangle_mesh.h"
 
 namespace thimble::scene {

@@ -1,4 +1,4 @@
-#include "surface_route.h"
+#include "hand/surface_route.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -6,8 +6,8 @@
 #include <sstream>
 #include <string>
 
-#include "surface_probe.h"
-#include "surface_route.h"
+#include "hand/surface_probe.h"
+#include "hand/surface_route.h"
 
 namespace thimble::scene {
 namespace {
