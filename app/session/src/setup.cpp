@@ -44,6 +44,8 @@ driver::Result<std::unique_ptr<Setup>> Setup::prepare(const std::filesystem::pat
   auto objects = scene::SceneObjects::build(setup->scene_);
   if (!objects) return objects.error();
   setup->objects_ = std::move(objects).value();
+  const std::vector<std::string>& notes = setup->objects_->notes();
+  setup->told_.insert(setup->told_.end(), notes.begin(), notes.end());
   if (setup->objects_->moving().size() > ScenePoses::kMost) {
     return driver::Error{fmt::format("{}: at most {} objects may move.",
                                      setup->scene_file_.string(), ScenePoses::kMost)};

@@ -140,7 +140,8 @@ class Session {
   const scene::ArmSimulation* simulation() const noexcept;  ///< As above.
   /// Returns whether the run goes by the time of the world.
   bool real_time() const noexcept;
-  /// Returns what became of limits that the scene names, where the arm is real: a sentence each.
+  /// Returns what the user must know, a sentence each: what was put right, left out or guessed of
+  /// the meshes, and what became of limits that the scene names, where the arm is real.
   const std::vector<std::string>& told() const noexcept;
 
   /// Returns the newest tick; any thread may load it.
