@@ -4,8 +4,8 @@
 #include <cstdint>
 
 #include "mesh/contact_mesh.h"
+#include "mesh/foot_point.h"
 #include "mesh/surface_place.h"
-#include "track/foot_point.h"
 
 namespace thimble::render {
 

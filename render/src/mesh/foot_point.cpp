@@ -1,4 +1,4 @@
-#include "track/foot_point.h"
+#include "mesh/foot_point.h"
 
 #include <Eigen/Geometry>
 #include <array>
