@@ -60,7 +60,7 @@ plant "$1" render/src/multirate/model_slot.cpp '"track/god_object.h"'
 plant "$1" render/src/track/packed_contact.h '"page/page_file.h"'
 # One forbidden include for each library of app.
 plant "$1" app/scene/include/thimble/scene/arm_file.h '"thimble/session/session.h"'
-plant "$1" app/scene/src/meshes.cpp '"report/figure.h"'
+plant "$1" app/scene/src/place_mesh.cpp '"report/figure.h"'
 plant "$1" app/session/src/session.cpp '"report/report.h"'
 plant "$1" app/session/src/share/live_control.h '"cli/exit_code.h"'
 plant "$1" app/session/include/thimble/session/session.h '"setup.h"'
