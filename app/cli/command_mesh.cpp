@@ -4,17 +4,20 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cli/commands.h"
 #include "cli/complain.h"
 #include "mesh/contact_mesh.h"
+#include "mesh/repair/orient_mesh.h"
 #include "page/page_file.h"
 #include "report/pictures.h"
 #include "thimble/render/mesh/check_mesh.h"
 #include "thimble/render/mesh/load_mesh.h"
 #include "thimble/render/mesh/repair_mesh.h"
 #include "thimble/render/mesh/save_mesh.h"
+#include "thimble/render/mesh/thicken_sheets.h"
 
 namespace thimble::app {
 namespace {
@@ -23,6 +26,7 @@ struct MeshOptions {
   std::string file;
   std::string picture;
   std::string repair;
+  double thicken = 0;  // the file's unit; 0: leave open what is
 };
 
 void print(const render::MeshFindings& found) {
@@ -40,7 +44,7 @@ void print(const render::MeshFindings& found) {
   if (found.touchable()) std::printf("  volume      %.4g\n", found.volume);
 }
 
-// Tells whether a mesh can be touched, and if not, why.
+// Returns whether a mesh can be touched, and if not, why.
 int tell_verdict(const render::TriangleMesh& mesh, const render::MeshFindings& found) {
   if (found.touchable()) {
     std::printf("The mesh is closed and wound alike: it can be touched.\n");
@@ -66,19 +70,66 @@ int tell_verdict(const render::TriangleMesh& mesh, const render::MeshFindings& f
   return kExitBadInput;
 }
 
-int repair(const render::TriangleMesh& mesh, const std::string& file) {
-  const render::RepairedMesh repaired = render::repair_mesh(mesh);
-  if (auto saved = render::save_mesh(repaired.mesh, file); !saved) {
-    return complain(saved.error(), kExitTrouble);
-  }
-  std::printf("Repaired: %s\n", file.c_str());
-  if (repaired.changes.empty()) std::printf("  Nothing was changed.\n");
-  for (const render::RepairChange& change : repaired.changes) {
+void print(const std::vector<render::RepairChange>& changes) {
+  for (const render::RepairChange& change : changes) {
     std::printf("  - %s\n", render::describe(change).c_str());
   }
+}
+
+// Makes thin bodies of what is open. Returns what was done, as a sentence.
+std::string thicken(render::TriangleMesh& mesh, double thickness) {
+  render::ThickenedMesh thick = render::thicken_sheets(mesh, thickness);
+  mesh = std::move(thick.mesh);
+  render::orient_mesh(mesh);
+  return render::describe(thick.report, "(file's unit)");
+}
+
+// Says how a mesh that cannot be touched could be, by trying it out.
+void tell_remedy(const render::TriangleMesh& mesh, const render::MeshFindings& found) {
+  render::RepairedMesh repaired = render::repair_mesh(mesh);
+  if (repaired.mesh.triangles.empty()) {
+    std::printf("No triangle of it has an area: there is nothing to touch.\n");
+    return;
+  }
+  if (render::ContactMesh::build(repaired.mesh)) {
+    std::printf(
+        "A repair makes it touchable: --repair OUT.off here, or repair: true in a scene.\n");
+    print(repaired.changes);
+    return;
+  }
+  const double thickness = 0.01 * (found.box_max - found.box_min).maxCoeff();
+  const std::string sheets = thicken(repaired.mesh, thickness);
+  if (!render::ContactMesh::build(repaired.mesh)) {
+    std::printf("Neither a repair nor sheets make it touchable: mend it in a mesh editor.\n");
+    return;
+  }
+  std::printf(
+      "What is open can be touched as a sheet: --repair OUT.off --thicken %.1g here, or repair: "
+      "true "
+      "and open: {thickness: 0.001} in a scene.\n",
+      thickness);
+  print(repaired.changes);
+  std::printf("  - %s\n", sheets.c_str());
+}
+
+int repair(const render::TriangleMesh& mesh, const MeshOptions& options) {
+  render::RepairedMesh repaired = render::repair_mesh(mesh);
+  std::string sheets;
+  if (options.thicken > 0 && !repaired.mesh.triangles.empty()) {
+    sheets = thicken(repaired.mesh, options.thicken);
+  }
+  if (auto saved = render::save_mesh(repaired.mesh, options.repair); !saved) {
+    return complain(saved.error(), kExitTrouble);
+  }
+  std::printf("Repaired: %s\n", options.repair.c_str());
+  if (repaired.changes.empty() && sheets.empty()) std::printf("  Nothing was changed.\n");
+  print(repaired.changes);
+  if (!sheets.empty()) std::printf("  - %s\n", sheets.c_str());
   const render::MeshFindings found = render::check_mesh(repaired.mesh);
   print(found);
-  return tell_verdict(repaired.mesh, found);
+  const int verdict = tell_verdict(repaired.mesh, found);
+  if (verdict != kExitDone) tell_remedy(repaired.mesh, found);
+  return verdict;
 }
 
 // Tells what a page file is; its triangles are looked at one page at a time, if at all.
@@ -124,11 +175,15 @@ int tell_pages(const MeshOptions& options) {
 
 int tell_mesh(const MeshOptions& options) {
   if (render::is_page_file(options.file)) return tell_pages(options);
-  const auto mesh = render::load_mesh(options.file);
+  render::MeshFileInfo info;
+  const auto mesh = render::load_mesh(options.file, &info);
   if (!mesh) return complain(mesh.error(), kExitBadInput);
   const render::MeshFindings found = render::check_mesh(*mesh);
   std::printf("%s (lengths in the file's unit)\n", options.file.c_str());
   print(found);
+  if (info.unit) std::printf("  unit        %g m\n", *info.unit);
+  if (info.up != 0) std::printf("  up          %c\n", info.up);
+  for (const std::string& note : info.notes) std::printf("  note        %s\n", note.c_str());
   if (!options.picture.empty()) {
     const std::string title = std::filesystem::path(options.file).filename().string();
     if (const auto drawn = draw_mesh(*mesh, options.picture, title, "unit of the file", &found);
@@ -138,7 +193,9 @@ int tell_mesh(const MeshOptions& options) {
     std::printf("Picture: %s\n", options.picture.c_str());
   }
   const int verdict = tell_verdict(*mesh, found);
-  return options.repair.empty() ? verdict : repair(*mesh, options.repair);
+  if (!options.repair.empty()) return repair(*mesh, options);
+  if (verdict != kExitDone) tell_remedy(*mesh, found);
+  return verdict;
 }
 
 }  // namespace
@@ -147,12 +204,21 @@ void add_mesh_command(CLI::App& app, int& exit_code) {
   CLI::App* command =
       app.add_subcommand("mesh", "Tell what a mesh is and what is wrong with it (exit code 2)");
   auto options = std::make_shared<MeshOptions>();
-  command->add_option("FILE", options->file, "Mesh: OFF, OBJ, STL, PLY, or one in pages");
+  command->add_option("FILE", options->file,
+                      std::string("Mesh: ") + render::kMeshEndings + ", or one in pages");
   command->add_option("--picture", options->picture,
                       "Draw the mesh from three sides, its faults marked (PNG, SVG)");
   command->add_option("--repair", options->repair,
                       "Write the mesh repaired (OFF): welded within 1e-5 of its size, no triangles "
-                      "without area or twice, seams closed, wound outwards");
+                      "without area or twice, seams closed, bodies that touch at an edge parted, "
+                      "holes filled where that takes no more than half of a part's area, wound "
+                      "outwards");
+  command
+      ->add_option("--thicken", options->thicken,
+                   "With --repair: make thin bodies of what is still open, so thick, in the "
+                   "file's unit")
+      ->check(CLI::PositiveNumber)
+      ->needs("--repair");
   add_mesh_page_command(*command, exit_code);
   add_mesh_generate_command(*command, exit_code);
   command->callback([command, options, &exit_code] {

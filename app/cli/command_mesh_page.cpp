@@ -38,7 +38,7 @@ void add_mesh_page_command(CLI::App& mesh_command, int& exit_code) {
   CLI::App* command = mesh_command.add_subcommand(
       "page", "Cut a mesh into volumes on disk, of which few are in memory while touching");
   auto options = std::make_shared<PageOptions>();
-  command->add_option("IN", options->in, "Mesh: OFF, OBJ, STL or PLY")->required();
+  command->add_option("IN", options->in, std::string("Mesh: ") + render::kMeshEndings)->required();
   command->add_option("OUT", options->out, "Page file to write")->required();
   command->callback([options, &exit_code] { exit_code = page_mesh(*options); });
 }

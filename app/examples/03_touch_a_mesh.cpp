@@ -1,5 +1,5 @@
 // Touches a mesh of your own: load it, say how its surface feels, let the hand stroke it.
-//   03_touch_a_mesh [FILE]     OFF, OBJ, STL or PLY, in m
+//   03_touch_a_mesh [FILE]     a mesh as `thimble mesh` reads it, in m
 #include <algorithm>
 #include <cstdio>
 #include <string>

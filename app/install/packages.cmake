@@ -26,7 +26,7 @@ set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "gnuplot-nox, valgrind")
 string(CONCAT CPACK_DEBIAN_DEV_PACKAGE_DEPENDS
-    "thimble (= ${PROJECT_VERSION}), libeigen3-dev, libusb-1.0-0-dev, libhidapi-dev, libassimp-dev, libpng-dev, "
+    "thimble (= ${PROJECT_VERSION}), libeigen3-dev, libusb-1.0-0-dev, libhidapi-dev, libassimp-dev, zlib1g-dev, libpng-dev, "
     "libfmt-dev, libyaml-cpp-dev, libhdf5-dev, libspdlog-dev, pkg-config")
 set(CPACK_COMPONENT_PROGRAM_DESCRIPTION
 "touch virtual objects by a force-feedback arm, real or simulated

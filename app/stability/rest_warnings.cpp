@@ -8,9 +8,9 @@
 
 #include "energy_choice.h"
 #include "mesh/adjacency.h"
+#include "object_mesh.h"
 #include "stability/draw.h"
 #include "stability/tuning.h"
-#include "thimble/render/mesh/load_mesh.h"
 
 namespace thimble::app {
 namespace {
@@ -70,12 +70,12 @@ void warn_of_facets(const scene::SceneObject& object, std::vector<std::string>& 
     return;
   }
   if (god_object) return;
-  const auto mesh = render::load_mesh(object.mesh_file);
+  const auto mesh = scene::load_object_mesh(object);
   if (!mesh) return;
   // A jump of 2 F sin(angle / 2), to and fro, has half of it as its RMS.
   const double felt = 2 * std::asin(kFelt / kPressed);
   const double smooth_up_to = object.contact.crease_angle.value_or(std::numbers::pi);
-  const double hollow = sharpest_hollow(*mesh, flat ? felt : std::max(felt, smooth_up_to));
+  const double hollow = sharpest_hollow(mesh->mesh_W, flat ? felt : std::max(felt, smooth_up_to));
   if (!(hollow > 0)) return;
   warnings.push_back(fmt::format(
       "{} has hollows with edges of up to {:.0f} degrees and is felt by flat facets there: a tip "

@@ -19,6 +19,8 @@
 #include "recording/recording_file.h"
 #include "thimble/render/mesh/check_mesh.h"
 #include "thimble/render/mesh/load_mesh.h"
+#include "thimble/render/mesh/repair_mesh.h"
+#include "thimble/render/mesh/thicken_sheets.h"
 #include "thimble/scene/arm_file.h"
 #include "thimble/scene/scene_file.h"
 #include "thimble/scene/scene_objects.h"
@@ -109,8 +111,12 @@ bool read_mesh(Bytes bytes, const char* name) {
               "a triangle has vertices");
     }
   }
-  // The first thing that anybody does with it.
-  if (mesh->triangles.size() <= 2000) static_cast<void>(render::check_mesh(*mesh));
+  if (mesh->triangles.size() > 2000) return true;
+  // What anybody does with it: looks at it, mends it, and makes sheets of what stays open.
+  static_cast<void>(render::check_mesh(*mesh));
+  const render::RepairedMesh repaired = render::repair_mesh(*mesh);
+  const double size = (repaired.mesh.vertices.empty() ? 0 : repaired.mesh.vertices[0].norm()) + 1;
+  static_cast<void>(render::thicken_sheets(repaired.mesh, 0.01 * size));
   return true;
 }
 
@@ -258,6 +264,12 @@ bool read_any_file(std::string_view kind, Bytes bytes) {
   if (kind == "obj") return read_mesh(bytes, "any.obj");
   if (kind == "stl") return read_mesh(bytes, "any.stl");
   if (kind == "ply") return read_mesh(bytes, "any.ply");
+  if (kind == "gltf") return read_mesh(bytes, "any.gltf");
+  if (kind == "glb") return read_mesh(bytes, "any.glb");
+  if (kind == "3mf") return read_mesh(bytes, "any.3mf");
+  if (kind == "dae") return read_mesh(bytes, "any.dae");
+  if (kind == "amf") return read_mesh(bytes, "any.amf");
+  if (kind == "3ds") return read_mesh(bytes, "any.3ds");
   if (kind == "page") return read_pages(bytes);
   if (kind == "recording") return read_recording(bytes);
   promise(false, "the kind of file is known");

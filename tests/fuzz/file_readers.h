@@ -9,8 +9,9 @@ namespace thimble::fuzz {
 
 /// Lists the kinds of files that the program reads. The corpus of each is the folder of its name in
 /// tests/fuzz/files.
-inline constexpr std::array<std::string_view, 8> kFileKinds{"scene", "arm", "off",  "obj",
-                                                            "stl",   "ply", "page", "recording"};
+inline constexpr std::array<std::string_view, 14> kFileKinds{
+    "scene", "arm", "off", "obj", "stl", "ply",  "gltf",
+    "glb",   "3mf", "dae", "amf", "3ds", "page", "recording"};
 
 /// Reads bytes as a file of a kind, by the functions that the program itself calls, and uses what
 /// came out of it as the program would. Every reader must survive any bytes: it refuses them with a

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Fuzzes what reads scenes and arms, what reads meshes, what reads pages and what reads recordings for 4 s
-# each (THIMBLE_FUZZ_SECONDS says another time), which the kinds of such a file share; or with
+# each (THIMBLE_FUZZ_SECONDS says another time), which the kinds of such a file share, 1 s at least; or with
 # THIMBLE_LONG each kind for 60 s, as many at once as there are processors. Skipped where the fuzzer was
 # not built.
 #   tests/fuzz/run_files.sh BUILD_DIR CORPUS
@@ -16,7 +16,7 @@ seconds_of() {  # seconds_of KIND
   [ -z "${THIMBLE_LONG:-}" ] || { echo 60; return; }
   case $1 in
     scene | arm) echo $(((all + 1) / 2)) ;;  # 0 s would be for ever
-    off | obj | stl | ply) echo $(((all + 3) / 4)) ;;
+    off | obj | stl | ply | gltf | glb | 3mf | dae | amf | 3ds) echo $(((all + 9) / 10)) ;;
     *) echo "$all" ;;
   esac
 }

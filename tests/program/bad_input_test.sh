@@ -42,6 +42,10 @@ head -c 4000 /dev/urandom >noise.ply
 expect 2 'noise\.ply' "$thimble" mesh noise.ply
 head -c 4000 /dev/urandom >noise.obj
 expect 2 'noise\.obj' "$thimble" mesh noise.obj
+for ending in gltf glb 3mf dae amf 3ds; do
+  head -c 4000 /dev/urandom >noise.$ending
+  expect 2 "noise\\.$ending" "$thimble" mesh noise.$ending
+done
 cp good.off good.xyz
 expect 2 'good\.xyz' "$thimble" mesh good.xyz
 mkdir folder.off

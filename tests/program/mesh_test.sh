@@ -19,8 +19,25 @@ expect 2 'only one triangle' "$thimble" mesh torn.off
 expect 0 '1 vertex was joined' "$thimble" mesh torn.off --repair joined.off
 expect 0 'closed and wound alike' "$thimble" mesh joined.off
 tetrahedron | sed '$d;s/^4 4 0/4 3 0/' >open.off
-expect 2 'only one triangle' "$thimble" mesh open.off --repair still_open.off
+expect 2 'A repair makes it touchable: .*repair: true in a scene' "$thimble" mesh open.off
+expect 2 '1 hole was filled' "$thimble" mesh open.off
+expect 0 '1 hole was filled' "$thimble" mesh open.off --repair closed.off
+expect 0 'closed and wound alike' "$thimble" mesh closed.off
+# A sheet stays one, until it is made a thin body.
+printf 'OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n' >sheet.off
+expect 2 'touched as a sheet: --repair OUT.off --thicken 0\.01 here' "$thimble" mesh sheet.off --repair still_open.off
 expect 2 'only one triangle' "$thimble" mesh still_open.off
+expect 2 'touched as a sheet: --repair OUT.off --thicken 0\.01 here' "$thimble" mesh sheet.off
+expect 0 'touched as a sheet of 1 triangle' "$thimble" mesh sheet.off --repair thin.off --thicken 0.01
+expect 0 'closed and wound alike' "$thimble" mesh thin.off
+expect 2 '--thicken requires --repair' "$thimble" mesh sheet.off --thicken 0.01
+# What others' programs write.
+for ending in gltf glb 3mf amf dae 3ds; do
+  expect 0 'closed and wound alike' "$thimble" mesh "$source_dir/tests/data/meshes/box.$ending"
+done
+expect 0 'unit +0\.0254 m' "$thimble" mesh "$source_dir/tests/data/meshes/box.3mf"
+expect 0 'up +y' "$thimble" mesh "$source_dir/tests/data/meshes/box.gltf"
+expect 0 'note +1 of 1 part was put where' "$thimble" mesh "$source_dir/tests/data/meshes/placed_box.gltf"
 expect 1 'end in \.off' "$thimble" mesh good.off --repair good.stl
 expect 1 'cannot be written' "$thimble" mesh good.off --repair no_folder/good.off
 # Cutting a mesh into pages.

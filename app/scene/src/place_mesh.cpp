@@ -16,7 +16,8 @@ MeshPlacement placement_of(const render::TriangleMesh& mesh, const SceneObject& 
     turned_box.extend(object.R_WO * vertex);
   }
   const double largest = file_box.sizes().maxCoeff();
-  const double scale = object.size && largest > 0 ? *object.size / largest : object.scale;
+  const double scale =
+      object.size && largest > 0 ? *object.size / largest : object.scale.value_or(1);
   return {.scale = scale, .p_WM = object.p_WO - scale * turned_box.center()};
 }
 
@@ -34,7 +35,8 @@ render::PagedPlace place_pages(const render::PageFile& file, const SceneObject& 
   const double step = file.lattice().step;
   const Eigen::Vector3d center = file.lattice().origin + step * 0.5 * (low + high);
   const double largest = step * (high - low).maxCoeff();
-  const double scale = object.size && largest > 0 ? *object.size / largest : object.scale;
+  const double scale =
+      object.size && largest > 0 ? *object.size / largest : object.scale.value_or(1);
   return {
       .scale = scale, .R_WM = object.R_WO, .p_WM = object.p_WO - scale * (object.R_WO * center)};
 }

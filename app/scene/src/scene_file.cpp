@@ -21,11 +21,12 @@ namespace {
 
 // Bounds catch slipped decimal points and values in mm; they are far outside of what a desk-top arm
 // can use [DEVICES 3].
-constexpr double kPositionMax = 2;      // m
-constexpr double kStiffnessMax = 1e5;   // N/m
-constexpr double kDampingMax = 1000;    // N s/m
-constexpr double kPressMax = 0.1;       // m
-constexpr double kDurationMax = 86400;  // s
+constexpr double kPositionMax = 2;                    // m
+constexpr double kStiffnessMax = 1e5;                 // N/m
+constexpr double kDampingMax = 1000;                  // N s/m
+constexpr double kSheetMin = 1e-5, kSheetMax = 0.02;  // m
+constexpr double kPressMax = 0.1;                     // m
+constexpr double kDurationMax = 86400;                // s
 constexpr std::string_view kMeshScheme = "cgal:";
 
 std::filesystem::path find_file(YamlMap& map, std::string_view key,
@@ -80,9 +81,32 @@ void read_mesh(YamlMap& map, const std::filesystem::path& folder,
   if (map.has("size")) object.size = map.require_number("size", "m", 1e-4, kPositionMax);
   if (object.size && map.has("scale")) {
     map.reject("scale", "cannot stand together with size; keep one of them");
-  } else {
-    object.scale = map.optional_number("scale", 1, "m per unit of the file", 1e-9, 1e9);
+  } else if (map.has("scale")) {
+    object.scale = map.require_number("scale", "m per unit of the file", 1e-9, 1e9);
   }
+  object.repair = map.optional_bool("repair", false);
+  if (map.has("open")) {
+    YamlMap open = map.require_map("open");
+    object.sheet_thickness = open.require_number("thickness", "m", kSheetMin, kSheetMax);
+    open.finish();
+  }
+}
+
+/// Checks what goes with sheets, and chooses their tracker.
+void read_sheets(YamlMap& map, SceneObject& object) {
+  if ((object.repair || object.sheet_thickness) && object.paged) {
+    map.reject(object.repair ? "repair" : "open",
+               "a mesh in pages is taken as it is; put it right before it is cut");
+    return;
+  }
+  if (!object.sheet_thickness) return;
+  const bool named = map.has("contact") && map.require_map("contact").has("tracker");
+  if (named && object.contact.tracker != render::TrackerChoice::kGodObject) {
+    map.reject("open",
+               "only the tracker \"god_object\" cannot be pushed through a sheet; leave "
+               "contact: {tracker: ...} away");
+  }
+  object.contact.tracker = render::TrackerChoice::kGodObject;
 }
 
 SceneObject read_object(YamlMap map, const std::filesystem::path& folder,
@@ -123,6 +147,7 @@ SceneObject read_object(YamlMap map, const std::filesystem::path& folder,
     }
     object.contact.tracker = render::TrackerChoice::kPacked;
   }
+  if (!object.shape) read_sheets(map, object);
   context.surface_stiffness = object.stiffness;
   context.surface_damping = object.damping;
   if (map.has("effects")) {
@@ -137,6 +162,8 @@ SceneObject read_object(YamlMap map, const std::filesystem::path& folder,
     object.coupling = coupling_of(context, names("texture"), names("friction"));
     if (object.paged) {
       map.reject("body", "only what is in memory has a body; put it on another object");
+    } else if (object.sheet_thickness && (object.body.dent || object.body.shape.named())) {
+      map.reject("body", "a sheet can move, but only a closed mesh gives way; keep motion");
     } else if (object.shape && (object.body.dent || object.body.shape.named())) {
       map.reject("body",
                  "a shape can move, but only a mesh gives way; keep motion, or name a mesh");

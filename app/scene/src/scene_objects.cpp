@@ -5,29 +5,29 @@
 
 #include "body/motion/move_object.h"
 #include "build_paged_touch.h"
-#include "mesh/repair/orient_mesh.h"
+#include "object_mesh.h"
 #include "page/paged_surface.h"
 #include "place_mesh.h"
 #include "thimble/render/build_object_touch.h"
-#include "thimble/render/mesh/load_mesh.h"
+#include "thimble/render/mesh/check_mesh.h"
 
 namespace thimble::scene {
 namespace {
 
 /// Reads the mesh of every object and puts it into the world (m); a shape has one to be drawn, a
 /// field and a mesh on the disk an empty one.
-driver::Result<std::vector<render::TriangleMesh>> load_meshes(const Scene& scene) {
+driver::Result<std::vector<render::TriangleMesh>> load_meshes(const Scene& scene,
+                                                              std::vector<std::string>& notes) {
   std::vector<render::TriangleMesh> meshes;
   for (const SceneObject& object : scene.objects) {
     if (object.shape || object.build_field || object.paged) {
       meshes.push_back(object.shape ? object.shape->mesh_W : render::TriangleMesh());
       continue;
     }
-    const auto mesh = render::load_mesh(object.mesh_file);
-    if (!mesh) return mesh.error();
-    meshes.push_back(place_mesh(*mesh, object));
-    // What plans and draws must know the same outside as what touches.
-    render::orient_mesh(meshes.back());
+    auto loaded = load_object_mesh(object);
+    if (!loaded) return loaded.error();
+    notes.insert(notes.end(), loaded->notes.begin(), loaded->notes.end());
+    meshes.push_back(std::move(loaded->mesh_W));
   }
   return meshes;
 }
@@ -37,6 +37,16 @@ using Touched = driver::Result<std::unique_ptr<render::ObjectTouch>>;
 /// Says which object a sentence is about.
 std::string name_of(const SceneObject& object) {
   return object.mesh_file.empty() ? object.name : object.mesh_file.string();
+}
+
+/// Returns what a scene can do about a mesh that contact refuses, as a sentence to follow another.
+std::string remedy_for(const SceneObject& object, const render::TriangleMesh& mesh_W) {
+  if (object.mesh_file.empty() || object.sheet_thickness) return {};
+  if (render::check_mesh(mesh_W).touchable()) return {};
+  return object.repair
+             ? " Set open: {thickness: 0.001} as well, to touch it as a sheet."
+             : " Set repair: true, and where that is not enough, open: {thickness: 0.001}; "
+               "thimble mesh tells which.";
 }
 
 /// Builds the force law that the scene calls for.
@@ -70,7 +80,10 @@ driver::Result<std::unique_ptr<render::SceneTouch>> build_touch(
       touch = render::move_object(std::move(touch).value(), meshes_W[i], *object.body.motion,
                                   object.coupling);
     }
-    if (!touch) return driver::Error{name_of(object) + ": " + touch.error().message};
+    if (!touch) {
+      return driver::Error{name_of(object) + ": " + touch.error().message +
+                           remedy_for(object, meshes_W[i])};
+    }
     objects.push_back(std::move(touch).value());
   }
   return std::make_unique<render::SceneTouch>(std::move(objects));
@@ -103,9 +116,9 @@ render::TriangleMesh part_of(const render::TriangleMesh& mesh, const MeshPlace& 
 }  // namespace
 
 driver::Result<std::unique_ptr<SceneObjects>> SceneObjects::build(const Scene& scene) {
-  const auto meshes = load_meshes(scene);
-  if (!meshes) return meshes.error();
   std::unique_ptr<SceneObjects> objects(new SceneObjects);
+  const auto meshes = load_meshes(scene, objects->notes_);
+  if (!meshes) return meshes.error();
   auto touch = build_touch(scene, *meshes, objects->pages_);
   if (!touch) return touch.error();
   objects->touch_ = std::move(touch).value();

@@ -62,7 +62,8 @@ class Setup {
   /// Returns how many periods the run lasts; 0: until it is stopped.
   std::uint64_t ticks() const noexcept { return ticks_; }
   std::uint64_t seed() const noexcept { return seed_; }  ///< Of everything random.
-  /// Returns what became of limits that the scene names, where the arm is real: a sentence each.
+  /// Returns what the user must know, a sentence each: what was put right, left out or guessed of
+  /// the meshes, and what became of limits that the scene names, where the arm is real.
   const std::vector<std::string>& told() const noexcept { return told_; }
   /// Returns what is known of the arm's feel check.
   scene::FeelCheckState feel_check() const noexcept { return feel_check_; }
@@ -86,7 +87,7 @@ class Setup {
   std::optional<driver::FoundArm> real_arm_;
   std::filesystem::path firmware_;
   std::optional<StartPose> start_pose_;
-  decltype(SessionOptions::open_wire) open_wire_;
+  decltype(SessionOptions::open_link) open_link_;
   bool real_time_ = false;
   bool hand_by_mouse_ = false;
   bool homed_ = false;

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 namespace thimble::render {
@@ -30,6 +32,13 @@ class HalfEdges {
         sides_[begin_[v + 1]++] = {triangles[t][(k + 1) % 3], static_cast<std::int32_t>(t)};
       }
     }
+    for (std::size_t v = 0; v < vertices; ++v) {
+      const std::span<const Side> sides = around(static_cast<std::int32_t>(v));
+      if (sides.size() <= kHub) continue;
+      std::vector<Side>& sorted = hubs_[static_cast<std::int32_t>(v)];
+      sorted.assign(sides.begin(), sides.end());
+      std::sort(sorted.begin(), sorted.end(), by_end);
+    }
   }
 
   /// Lists the sides that begin at a vertex; one per triangle around it.
@@ -40,8 +49,10 @@ class HalfEdges {
 
   /// Finds the one triangle that runs the edge from `from` to `to`; -1 if there is none or several.
   std::int32_t opposite(std::int32_t from, std::int32_t to) const noexcept {
+    const std::span<const Side> sides = around(from);
+    if (sides.size() > kHub) return only_one(hubs_.find(from)->second, to);
     std::int32_t found = -1;
-    for (const Side& side : around(from)) {
+    for (const Side& side : sides) {
       if (side.end != to) continue;
       if (found >= 0) return -1;
       found = side.triangle;
@@ -50,8 +61,21 @@ class HalfEdges {
   }
 
  private:
+  // More sides than this at one vertex are sorted to be looked at: a hub of n triangles would cost
+  // n^2 otherwise.
+  static constexpr std::size_t kHub = 64;
+
+  static bool by_end(const Side& a, const Side& b) noexcept { return a.end < b.end; }
+
+  static std::int32_t only_one(std::span<const Side> sorted, std::int32_t to) noexcept {
+    const auto [first, last] = std::equal_range(sorted.begin(), sorted.end(), Side{to, -1}, by_end);
+    return last - first == 1 ? first->triangle : -1;
+  }
+
   std::vector<std::uint32_t> begin_;
   std::vector<Side> sides_;
+  std::unordered_map<std::int32_t, std::vector<Side>>
+      hubs_;  // of vertices with many, by their ends
 };
 
 }  // namespace thimble::render

@@ -14,20 +14,35 @@ bool has_three_vertices(const TriangleMesh& mesh, std::size_t triangle) {
 }
 
 std::vector<EdgeUse> sorted_edge_uses(const TriangleMesh& mesh) {
-  std::vector<EdgeUse> uses;
-  uses.reserve(3 * mesh.triangles.size());
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    if (!has_three_vertices(mesh, t)) continue;
-    for (std::size_t corner = 0; corner < 3; ++corner) {
-      const std::int32_t from = mesh.triangles[t][corner];
-      const std::int32_t to = mesh.triangles[t][(corner + 1) % 3];
-      uses.push_back({std::min(from, to), std::max(from, to), static_cast<std::int32_t>(t),
-                      static_cast<std::int8_t>(corner), from < to});
+  // Sides are dealt to their smaller vertex first, in the order of the triangles; what remains to
+  // be sorted are the few of one vertex.
+  std::vector<std::size_t> begin(mesh.vertices.size() + 1, 0);
+  const auto for_each_side = [&mesh](auto&& take) {
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+      if (!has_three_vertices(mesh, t)) continue;
+      for (std::size_t corner = 0; corner < 3; ++corner) {
+        const std::int32_t from = mesh.triangles[t][corner];
+        const std::int32_t to = mesh.triangles[t][corner == 2 ? 0 : corner + 1];
+        take(EdgeUse{std::min(from, to), std::max(from, to), static_cast<std::int32_t>(t),
+                     static_cast<std::int8_t>(corner), from < to});
+      }
     }
+  };
+  for_each_side([&begin](const EdgeUse& use) { ++begin[static_cast<std::size_t>(use.low) + 1]; });
+  for (std::size_t v = 1; v < begin.size(); ++v) begin[v] += begin[v - 1];
+  std::vector<EdgeUse> uses(begin.back());
+  // Afterwards `begin` of a vertex is its end, and so the begin of the next.
+  for_each_side(
+      [&](const EdgeUse& use) { uses[begin[static_cast<std::size_t>(use.low)]++] = use; });
+  std::size_t first = 0;
+  for (std::size_t v = 0; v + 1 < begin.size(); ++v) {
+    std::sort(uses.begin() + static_cast<std::ptrdiff_t>(first),
+              uses.begin() + static_cast<std::ptrdiff_t>(begin[v]),
+              [](const EdgeUse& a, const EdgeUse& b) {
+                return std::tie(a.high, a.triangle) < std::tie(b.high, b.triangle);
+              });
+    first = begin[v];
   }
-  std::sort(uses.begin(), uses.end(), [](const EdgeUse& a, const EdgeUse& b) {
-    return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
-  });
   return uses;
 }
 

@@ -32,6 +32,7 @@ SmoothNormals::SmoothNormals(const ContactMesh& mesh, double crease_angle, Norma
     for (std::size_t k = 0; k < 3; ++k) find_crease(mesh, t, k);
   }
   Group group;
+  group.taken.assign(static_cast<std::size_t>(mesh.vertex_count()), 0);
   done_.assign(3 * count, false);
   for (std::int32_t t = 0; t < mesh.triangle_count(); ++t) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -72,11 +73,15 @@ void SmoothNormals::collect_points(const ContactMesh& mesh, Group& group) const 
   vertices.clear();
   const Corner& first = group.corners.front();
   const std::int32_t centre = mesh.corners(first.triangle)[first.k];
+  if (++group.collected == 0) {
+    std::fill(group.taken.begin(), group.taken.end(), 0);
+    group.collected = 1;
+  }
   const auto add = [&](std::int32_t vertex) {
-    if (vertex == centre) return;
-    if (std::find(vertices.begin(), vertices.end(), vertex) == vertices.end()) {
-      vertices.push_back(vertex);
-    }
+    std::uint32_t& taken = group.taken[static_cast<std::size_t>(vertex)];
+    if (vertex == centre || taken == group.collected) return;
+    taken = group.collected;
+    vertices.push_back(vertex);
   };
   for (const Corner& at : group.corners) {
     const auto& corners = mesh.corners(at.triangle);
@@ -144,6 +149,7 @@ void SmoothNormals::prepare_refit(const ContactMesh& mesh) {
   group_.corners.reserve(valence);
   group_.vertices.reserve(3 * valence);
   group_.points.reserve(3 * valence);
+  group_.taken.assign(static_cast<std::size_t>(mesh.vertex_count()), 0);
 }
 
 void SmoothNormals::refit(const ContactMesh& mesh,

@@ -32,7 +32,7 @@ class SmoothNormals {
   explicit SmoothNormals(const ContactMesh& mesh, double crease_angle = kCreaseAngle,
                          NormalWeights weights = NormalWeights::kFitted);
 
-  /// Makes `refit` possible: 3 bytes more per triangle. Real-time: never from the servo thread.
+  /// Makes `refit` possible: 5 bytes more per triangle. Real-time: never from the servo thread.
   void prepare_refit(const ContactMesh& mesh);
 
   // All of the following are Real-time: safe. Precondition: numbers name what exists.
@@ -47,7 +47,7 @@ class SmoothNormals {
     return corners_[static_cast<std::size_t>(triangle)];
   }
 
-  /// Tells whether the edge from corner `k` to the next one is a crease.
+  /// Returns whether the edge from corner `k` to the next one is a crease.
   bool crease(std::int32_t triangle, std::size_t k) const noexcept {
     return ((creases_[static_cast<std::size_t>(triangle)] >> k) & 1U) != 0;
   }
@@ -65,6 +65,8 @@ class SmoothNormals {
     std::vector<Corner> corners;
     std::vector<std::int32_t> vertices;
     std::vector<Eigen::Vector3d> points;
+    std::vector<std::uint32_t> taken;  // per vertex: the number of the last group that took it
+    std::uint32_t collected = 0;
   };
 
   static Corner across(const ContactMesh& mesh, const Corner& at, std::size_t edge) noexcept;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <span>
+#include <vector>
 
 namespace thimble::render {
 namespace {
@@ -48,6 +49,34 @@ Vector3d fan_normal(const std::vector<std::array<std::int32_t, 3>>& triangles,
   return sum;
 }
 
+// A vertex with more triangles than this has the normals of its smooth groups found once per group:
+// once per triangle would cost the square of them.
+constexpr std::size_t kHub = 64;
+
+// Gives the corners of a smooth group, the triangles reached from `first` without crossing a
+// crease, one normal. Adds them to `done`.
+void assign_group(const std::vector<std::array<std::int32_t, 3>>& triangles, const Faces& faces,
+                  std::int32_t vertex, std::int32_t first, std::vector<bool>& done,
+                  std::span<PackedTriangle> packed) {
+  const Vector3d sum = fan_normal(triangles, packed, faces, vertex, first);
+  const auto assign = [&](std::int32_t t) {
+    const Vector3d& own = sum.norm() > 0 ? sum : faces.normals[index(t)];
+    packed[index(t)].normals[corner_of(triangles[index(t)], vertex)] = pack_normal(own);
+    done[index(t)] = true;
+  };
+  assign(first);
+  for (const std::size_t side : {std::size_t{0}, std::size_t{2}}) {
+    std::int32_t t = first;
+    for (;;) {
+      const std::size_t edge = (corner_of(triangles[index(t)], vertex) + side) % 3;
+      if (packed[index(t)].crease(edge)) break;
+      t = packed[index(t)].neighbours[edge];
+      if (t == first) return;
+      assign(t);
+    }
+  }
+}
+
 }  // namespace
 
 std::ptrdiff_t assign_corner_normals(const std::vector<Vector3d>& vertices,
@@ -79,6 +108,7 @@ std::ptrdiff_t assign_corner_normals(const std::vector<Vector3d>& vertices,
     }
     packed[t].flags |= flags;
   }
+  std::vector<bool> done;
   for (std::size_t v = 0; v < vertices.size(); ++v) {
     const auto vertex = static_cast<std::int32_t>(v);
     const auto fan = half_edges.around(vertex);
@@ -89,6 +119,15 @@ std::ptrdiff_t assign_corner_normals(const std::vector<Vector3d>& vertices,
       const std::size_t k = corner_of(triangles[t], vertex);
       smooth &= !packed[t].crease(k);
       sum += static_cast<double>(faces.angles[t][k]) * faces.normals[t];
+    }
+    if (!smooth && fan.size() > kHub) {
+      done.resize(triangles.size(), false);
+      for (const auto& side : fan) {
+        if (done[index(side.triangle)]) continue;
+        assign_group(triangles, faces, vertex, side.triangle, done, packed);
+      }
+      for (const auto& side : fan) done[index(side.triangle)] = false;
+      continue;
     }
     const std::uint32_t code = smooth && sum.norm() > 0 ? pack_normal(sum) : 0;
     for (const auto& side : fan) {

@@ -170,6 +170,27 @@ TEST(SceneFile, RefusesUnknownKeys) {
             std::string::npos);
 }
 
+TEST(SceneFile, ReadsRepairAndSheetsAndRefusesWhatDoesNotGoWithThem) {
+  const std::string mesh = "  - {name: ball, mesh: cgal:ball.off, size: 0.1, stiffness: 500, ";
+  const auto scene = read(mesh + "repair: true, open: {thickness: 0.001}}\n", kWait);
+  ASSERT_TRUE(scene.ok()) << scene.error().message;
+  EXPECT_TRUE(scene->objects[0].repair);
+  EXPECT_EQ(scene->objects[0].sheet_thickness, 0.001);
+  EXPECT_EQ(scene->objects[0].contact.tracker, render::TrackerChoice::kGodObject);
+  const auto plain = read(kBall, kWait);
+  EXPECT_FALSE(plain->objects[0].repair);
+  EXPECT_FALSE(plain->objects[0].sheet_thickness);
+  EXPECT_NE(mistake(mesh + "open: {thickness: 0.001}, contact: {tracker: offset}}\n", kWait)
+                .find("cannot be pushed through a sheet"),
+            std::string::npos);
+  EXPECT_NE(mistake(mesh + "open: {thickness: 0.5}}\n", kWait).find("thickness"),
+            std::string::npos);
+  EXPECT_NE(mistake(mesh + "open: {}}\n", kWait).find("thickness"), std::string::npos);
+  EXPECT_NE(mistake(mesh + "open: {thickness: 0.001}, body: {dent: {}}}\n", kWait)
+                .find("only a closed mesh gives way"),
+            std::string::npos);
+}
+
 TEST(PlaceMesh, GivesTheBoxItsSizeAndCentre) {
   render::TriangleMesh mesh;
   mesh.vertices = {{10, 0, 0}, {14, 1, 0}, {10, 2, 3}};

@@ -2,10 +2,9 @@
 #include <memory>
 #include <utility>
 
-#include "place_mesh.h"
+#include "object_mesh.h"
 #include "recording/replay_trajectory.h"
 #include "text_file.h"
-#include "thimble/render/mesh/load_mesh.h"
 #include "thimble/scene/build_info.h"
 #include "thimble/scene/scene_file.h"
 #include "thimble/scene/shipped_files.h"
@@ -24,9 +23,9 @@ driver::Result<void> into_world(std::vector<TrajectoryPoint>& trajectory, const 
       return driver::Error{"--frame: \"" + frame + "\" has no mesh file in memory; give the " +
                            "trajectory in the world, in m."};
     }
-    const auto mesh = render::load_mesh(object.mesh_file);
+    const auto mesh = scene::load_object_mesh(object);
     if (!mesh) return mesh.error();
-    const scene::MeshPlacement place = scene::placement_of(*mesh, object);
+    const scene::MeshPlacement& place = mesh->place;
     for (TrajectoryPoint& point : trajectory) {
       point.p = place.p_WM + place.scale * (object.R_WO * point.p);
       point.f = object.R_WO * point.f;

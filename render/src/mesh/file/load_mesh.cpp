@@ -1,19 +1,25 @@
 #include "thimble/render/mesh/load_mesh.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <fstream>
-#include <iterator>
 #include <string>
+#include <string_view>
 #include <system_error>
+#include <utility>
 
 #include "mesh/file/read_off.h"
 #include "mesh/file/read_ply.h"
 #include "mesh/file/read_with_assimp.h"
+#include "mesh/file/stl_bytes.h"
 #include "mesh/file/weld_mesh.h"
 
 namespace thimble::render {
 namespace {
+
+constexpr std::array<std::string_view, 10> kEndings{"off", "obj", "stl", "ply", "gltf",
+                                                    "glb", "3mf", "dae", "amf", "3ds"};
 
 std::string ending_of(const std::filesystem::path& file) {
   std::string ending = file.extension().string();
@@ -23,34 +29,66 @@ std::string ending_of(const std::filesystem::path& file) {
   return ending;
 }
 
+driver::Result<std::string> read_bytes(const std::filesystem::path& file) {
+  std::error_code status;
+  if (!std::filesystem::exists(file, status)) return driver::Error{"there is no such file."};
+  if (!std::filesystem::is_regular_file(file, status)) {
+    return driver::Error{"this is not a file; give the mesh file itself."};
+  }
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) return driver::Error{"the file cannot be opened; check its permissions."};
+  std::string bytes(std::filesystem::file_size(file, status), '\0');
+  stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  if (stream.bad() || static_cast<std::size_t>(stream.gcount()) != bytes.size()) {
+    return driver::Error{"reading the file failed."};
+  }
+  return bytes;
+}
+
+// Takes the byte order mark away that editors put before a text.
+driver::Result<void> drop_mark(std::string& bytes) {
+  if (bytes.starts_with("\xEF\xBB\xBF")) bytes.erase(0, 3);
+  if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF")) {
+    return driver::Error{"this is a text of two bytes per letter (UTF-16): save it as UTF-8."};
+  }
+  return {};
+}
+
+driver::Result<TriangleMesh> read(std::string bytes, const std::string& ending,
+                                  const std::filesystem::path& file, MeshFileInfo& info) {
+  const bool is_text = ending == "off" || ending == "obj" || ending == "stl" || ending == "ply";
+  if (is_text) {
+    if (auto done = drop_mark(bytes); !done) return done.error();
+  }
+  if (ending == "off") return read_off(bytes, file.string());
+  if (ending == "ply") return read_ply(bytes);
+  if (ending == "stl") {
+    if (auto done = put_stl_right(bytes, info.notes); !done) return done.error();
+  }
+  return read_with_assimp(bytes, ending, file.parent_path(), info);
+}
+
 }  // namespace
 
-driver::Result<TriangleMesh> load_mesh(const std::filesystem::path& file) {
+driver::Result<TriangleMesh> load_mesh(const std::filesystem::path& file, MeshFileInfo* info) {
   const auto error = [&file](const std::string& sentence) {
     return driver::Error{file.string() + ": " + sentence};
   };
   const std::string ending = ending_of(file);
-  if (ending != "off" && ending != "obj" && ending != "stl" && ending != "ply") {
-    return error("the ending \"" + ending + "\" is not known; give an OFF, OBJ, STL or PLY file.");
+  if (std::find(kEndings.begin(), kEndings.end(), ending) == kEndings.end()) {
+    return error("the ending \"" + ending + "\" is not known; give an " + kMeshEndings + " file.");
   }
-  std::error_code status;
-  if (!std::filesystem::exists(file, status)) return error("there is no such file.");
-  if (!std::filesystem::is_regular_file(file, status)) {
-    return error("this is not a file; give the mesh file itself.");
-  }
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) return error("the file cannot be opened; check its permissions.");
-  const std::string bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-  if (stream.bad()) return error("reading the file failed.");
-
-  if (ending == "off") {
-    const auto mesh = read_off(bytes, file.string());
-    if (!mesh) return mesh.error();
-    return weld_mesh(*mesh);
-  }
-  const auto mesh = ending == "ply" ? read_ply(bytes) : read_with_assimp(bytes, ending);
-  if (!mesh) return error(mesh.error().message);
-  return weld_mesh(*mesh);
+  auto bytes = read_bytes(file);
+  if (!bytes) return error(bytes.error().message);
+  MeshFileInfo found;
+  auto mesh = read(std::move(bytes).value(), ending, file, found);
+  // What an OFF file is told of names file and line already.
+  if (!mesh)
+    return ending == "off" && mesh.error().message.starts_with(file.string())
+               ? mesh.error()
+               : error(mesh.error().message);
+  if (info != nullptr) *info = std::move(found);
+  return weld_mesh(std::move(mesh).value());
 }
 
 }  // namespace thimble::render

@@ -128,19 +128,25 @@ class Inspection {
     }
   }
 
+  // Triangles with the same corners share their edge of the two smaller ones.
   void look_for_duplicates() {
-    std::vector<std::pair<std::array<std::int32_t, 3>, std::size_t>> sorted;
-    for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
-      if (!has_three_vertices(mesh_, t)) continue;
-      sorted.emplace_back(mesh_.triangles[t], t);
-      std::sort(sorted.back().first.begin(), sorted.back().first.end());
-    }
-    std::sort(sorted.begin(), sorted.end());
-    for (std::size_t i = 1; i < sorted.size(); ++i) {
-      if (sorted[i].first == sorted[i - 1].first) {
-        add(Kind::kDuplicateTriangle, mesh_.triangles[sorted[i].second],
-            [&] { return triangle_text(sorted[i].second); });
+    std::vector<std::pair<std::int32_t, std::size_t>> thirds;  // the largest corner, the triangle
+    for (std::size_t begin = 0; begin < uses_.size();) {
+      const std::size_t end = end_of_edge(uses_, begin);
+      thirds.clear();
+      for (std::size_t i = begin; i < end && end - begin > 1; ++i) {
+        const auto t = static_cast<std::size_t>(uses_[i].triangle);
+        const auto third = static_cast<std::size_t>(uses_[i].corner + 2) % 3;
+        const std::int32_t vertex = mesh_.triangles[t][third];
+        if (vertex > uses_[i].high) thirds.emplace_back(vertex, t);
       }
+      std::sort(thirds.begin(), thirds.end());
+      for (std::size_t i = 1; i < thirds.size(); ++i) {
+        if (thirds[i].first != thirds[i - 1].first) continue;
+        const std::size_t t = thirds[i].second;
+        add(Kind::kDuplicateTriangle, mesh_.triangles[t], [&] { return triangle_text(t); });
+      }
+      begin = end;
     }
   }
 
@@ -203,7 +209,7 @@ class Inspection {
   }
 
   void look_at_components() {
-    const MeshComponents parts = find_components(mesh_);
+    const MeshComponents parts = find_components(mesh_, uses_);
     found_.components = parts.count;
     for (std::size_t part = 0; part < parts.count; ++part) {
       if (!parts.inside_out[part]) continue;

@@ -14,23 +14,24 @@ Wording wording_of(MeshFault::Kind kind) {
   switch (kind) {
     case MeshFault::Kind::kNotFinite:
       return {"vertex has a coordinate that is no finite number",
-              "vertices have coordinates that are no finite numbers", "export the mesh again"};
+              "vertices have coordinates that are no finite numbers",
+              "export the mesh again, or let a repair drop what names them"};
     case MeshFault::Kind::kIndexOutOfRange:
       return {"triangle names a vertex that does not exist",
-              "triangles name vertices that do not exist", "export the mesh again"};
+              "triangles name vertices that do not exist",
+              "export the mesh again, or let a repair drop them"};
     case MeshFault::Kind::kDegenerateTriangle:
-      return {"triangle has no area", "triangles have no area",
-              "collapse such triangles in a mesh editor"};
+      return {"triangle has no area", "triangles have no area", "a repair drops such triangles"};
     case MeshFault::Kind::kDuplicateTriangle:
       return {"triangle repeats another one", "triangles repeat others",
-              "remove the copies in a mesh editor"};
+              "a repair drops the copies"};
     case MeshFault::Kind::kOpenEdge:
       return {"edge belongs to only one triangle, so the mesh has a hole",
               "edges belong to only one triangle, so the mesh has a hole",
-              "close the mesh in a mesh editor"};
+              "a repair fills holes, and what stays open can be a sheet"};
     case MeshFault::Kind::kNonManifoldEdge:
       return {"edge belongs to more than two triangles", "edges belong to more than two triangles",
-              "split the mesh there so that each edge has two triangles"};
+              "a repair parts bodies that only touch there"};
     case MeshFault::Kind::kFlippedEdge:
       return {"edge lies between triangles wound against each other",
               "edges lie between triangles wound against each other",
@@ -38,7 +39,7 @@ Wording wording_of(MeshFault::Kind kind) {
     case MeshFault::Kind::kNonManifoldVertex:
       return {"vertex joins parts that share nothing else",
               "vertices join parts that share nothing else",
-              "give each part a vertex of its own, a little apart"};
+              "a repair gives each part a vertex of its own"};
     case MeshFault::Kind::kInsideOut:
       return {"closed component has its normals pointing into its material",
               "closed components have their normals pointing into their material",

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "mesh/mesh_edges.h"
 #include "thimble/render/mesh/triangle_mesh.h"
 
 namespace thimble::render {
@@ -22,9 +23,10 @@ struct MeshComponents {
 /// A component that lies in an even number of others bounds matter from outside, one that lies in
 /// an odd number is a cavity; a point is told to lie in a component by the parity of crossings
 /// [BP 3.1, the OUT array]. Up to eight vertices of a component are asked and all must lie inside,
-/// so that components which merely overlap are not taken for nested. Real-time: never from the
-/// servo thread.
-MeshComponents find_components(const TriangleMesh& mesh);
+/// so that components which merely overlap are not taken for nested. O(n log n) and what the rays
+/// from those vertices cross. `uses` are the mesh's own (sorted_edge_uses). Real-time: never from
+/// the servo thread.
+MeshComponents find_components(const TriangleMesh& mesh, const std::vector<EdgeUse>& uses);
 
 /// Tells what was done to wind the triangles of a mesh alike.
 struct OrientReport {

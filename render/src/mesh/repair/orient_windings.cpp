@@ -91,7 +91,7 @@ OrientReport orient_mesh(TriangleMesh& mesh) {
     if (!two_sided) one_sided.push_back(patch.front());
   }
 
-  const MeshComponents parts = find_components(mesh);
+  const MeshComponents parts = find_components(mesh, sorted_edge_uses(mesh));
   const auto part_of = [&parts](std::size_t t) {
     return static_cast<std::size_t>(parts.component_of[t]);
   };
@@ -127,10 +127,9 @@ std::string describe(const OrientReport& report) {
   }
   if (report.one_sided_components > 0) {
     if (!text.empty()) text += ' ';
-    text +=
-        plural(report.one_sided_components, "component has", "components have") +
-        " one side only, like a Moebius strip, so that no way of winding is right; cut the mesh "
-        "there in a mesh editor.";
+    text += plural(report.one_sided_components, "component has", "components have") +
+            " one side only, like a Moebius strip, so that no winding is right; it can be a "
+            "sheet.";
   }
   return text;
 }

@@ -12,8 +12,10 @@
 #include <utility>
 
 #include "mesh/mesh_edges.h"
+#include "mesh/repair/fill_holes.h"
 #include "mesh/repair/open_edges.h"
 #include "mesh/repair/orient_mesh.h"
+#include "mesh/repair/split_fans.h"
 #include "thimble/render/mesh/check_mesh.h"
 
 namespace thimble::render {
@@ -54,7 +56,8 @@ class Repair {
       if (options_.close_seams && tolerance_ > 0) close();
       if (changes() == before) break;
     }
-    if (options_.split_vertices) split_vertices();
+    if (options_.split_vertices) split();
+    if (options_.hole_share > 0 && options_.drop) fill();
     if (options_.orient) orient();
     if (options_.drop) drop_unused();
     std::sort(done_.changes.begin(), done_.changes.end(),
@@ -162,59 +165,34 @@ class Repair {
     }
   }
 
-  // Gives every fan of triangles around a vertex but the first a vertex of its own.
-  void split_vertices() {
-    TriangleMesh& mesh = done_.mesh;
-    Groups corners(3 * mesh.triangles.size());
-    const auto corner_at = [&mesh](std::int32_t t, std::int32_t vertex) {
-      const auto& triangle = mesh.triangles[static_cast<std::size_t>(t)];
-      const auto place = std::find(triangle.begin(), triangle.end(), vertex) - triangle.begin();
-      return 3 * t + static_cast<std::int32_t>(place);
-    };
-    const std::vector<EdgeUse> uses = sorted_edge_uses(mesh);
-    for (std::size_t i = 1; i < uses.size(); ++i) {
-      const EdgeUse& one = uses[i - 1];
-      const EdgeUse& two = uses[i];
-      if (one.low != two.low || one.high != two.high) continue;
-      for (const std::int32_t vertex : {one.low, one.high}) {
-        corners.join(corner_at(one.triangle, vertex), corner_at(two.triangle, vertex));
-      }
+  void split() {
+    const SplitFans done = split_fans(done_.mesh, origin_);
+    for (const std::int32_t v : done.vertices)
+      tell(Kind::kSplitVertex, [&] { return vertex_text(v); });
+    for (const std::int32_t t : done.turned) {
+      tell(Kind::kTurnedTriangle, [&] { return triangle_text(static_cast<std::size_t>(t)); });
     }
-    std::vector<int> fans(mesh.vertices.size(), 0);
-    std::vector<std::int32_t> vertex_of(3 * mesh.triangles.size(), -1);
-    for (std::size_t corner = 0; corner < vertex_of.size(); ++corner) {
-      if (!has_three_vertices(mesh, corner / 3)) continue;
-      std::int32_t& vertex = mesh.triangles[corner / 3][corner % 3];
-      const auto root = static_cast<std::size_t>(corners.find(static_cast<std::int32_t>(corner)));
-      if (root == corner) {
-        const int earlier = fans[static_cast<std::size_t>(vertex)]++;
-        vertex_of[corner] = earlier == 0 ? vertex : moved_copy(vertex, corner / 3, earlier);
-      }
-      // A group's root is its smallest corner, so it has been here before.
-      vertex = vertex_of[root];
+    for (const std::int32_t t : done.parted_edges) {
+      tell(Kind::kPartedEdge, [&] { return triangle_text(static_cast<std::size_t>(t)); });
     }
   }
 
-  // Adds a copy of a vertex, `steps` roundings towards the middle of a triangle that will use it.
-  std::int32_t moved_copy(std::int32_t vertex, std::size_t triangle, int steps) {
-    tell(Kind::kSplitVertex, [&] { return vertex_text(vertex); });
-    TriangleMesh& mesh = done_.mesh;
-    Vector3d p = at(vertex);
-    Vector3d way(0, 0, 0);
-    for (const std::int32_t v : mesh.triangles[triangle]) way += at(v) - p;
-    Eigen::Index axis = 0;
-    way.cwiseAbs().maxCoeff(&axis);
-    const double far = way[axis] > 0 ? HUGE_VAL : -HUGE_VAL;
-    for (int i = 0; i < steps; ++i) p[axis] = std::nextafter(p[axis], far);
-    mesh.vertices.push_back(p);
-    return static_cast<std::int32_t>(mesh.vertices.size() - 1);
+  void fill() {
+    for (const FilledHole& hole : fill_holes(done_.mesh, options_.hole_share, origin_)) {
+      tell(Kind::kFilledHole, [&] {
+        std::ostringstream words;
+        words << hole.edges << " edges, " << hole.width << " wide, around " << text(hole.middle);
+        return words.str();
+      });
+    }
   }
 
   void orient() {
     const OrientReport report = orient_mesh(done_.mesh);
-    if (report.turned_triangles == 0) return;
-    done_.changes.push_back({Kind::kTurnedTriangle, report.turned_triangles,
-                             triangle_text(static_cast<std::size_t>(report.first_turned))});
+    const auto first = static_cast<std::size_t>(report.first_turned);
+    for (std::size_t i = 0; i < report.turned_triangles; ++i) {
+      tell(Kind::kTurnedTriangle, [&] { return triangle_text(first); });
+    }
   }
 
   void drop_unused() {
@@ -281,6 +259,10 @@ std::string describe(const RepairChange& change) {
                 "open edges were split to meet the vertices beside them"};
       case Kind::kSplitVertex:
         return {"vertex that joined parts was doubled", "vertices that joined parts were doubled"};
+      case Kind::kPartedEdge:
+        return {"edge where bodies touch was parted", "edges where bodies touch were parted"};
+      case Kind::kFilledHole:
+        return {"hole was filled", "holes were filled"};
       case Kind::kTurnedTriangle:
         return {"triangle was turned round", "triangles were turned round"};
       case Kind::kDroppedVertex:

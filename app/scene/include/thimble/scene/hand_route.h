@@ -32,14 +32,16 @@ struct NamedMesh {
 /// Returns the hand's path through its stations, one point every 2 ms or so.
 ///
 /// Between two stations on the same object the hand follows the surface: points on the path between
-/// are moved to the closest surface point and pressed in along its smooth normal. Every other
-/// stretch is a straight line. The path over the surface is averaged over 60 ms, as by a hand.
-/// Position, speed and acceleration are continuous in time before the move to the surface; the hand
-/// rests where the kind of stretch changes, at the ends, and where `stop` is set.
+/// are moved to the closest surface point and pressed in along its smooth normal. Where that jumps,
+/// because the straight path leads through the object's middle, the hand takes the nearly shortest
+/// path over the surface, and where the surface does not hang together, leaves it and comes down
+/// beside the goal; it rests at both ends then. Every other stretch is a straight line. The path
+/// over the surface is averaged over 60 ms, as by a hand. Position, speed and acceleration are
+/// continuous in time before the move to the surface; the hand rests where the kind of stretch
+/// changes, at the ends, and where `stop` is set.
 ///
 /// Fails, naming the times, if times do not grow, if a station is on an object that is not among
-/// `objects`, or if the closest surface point jumps on the
-/// path (the stations then lead through the object's middle and need another one between them).
+/// `objects`, or if no path outside leads from one part of an object to another.
 /// Real-time: never from the servo thread.
 driver::Result<HandRoute> plan_hand(const std::vector<HandWaypoint>& waypoints,
                                     const std::vector<NamedMesh>& objects);

@@ -43,7 +43,10 @@ struct SceneObject {
   std::optional<SceneShape> shape;   ///< A shape instead of a mesh.
   render::FieldBuilder build_field;  ///< A field instead of a mesh; it has no surface.
   std::optional<double> size;        ///< Largest side of the mesh's box, m.
-  double scale = 1;                  ///< Metres per unit of the file, if no size.
+  std::optional<double> scale;       ///< Metres per unit of the file, if no size: as the file
+                                     ///< says, else 1.
+  bool repair = false;               ///< Whether the mesh is repaired first (repair_mesh).
+  std::optional<double> sheet_thickness;  ///< Of the sheets that are made of what is open, m.
   Eigen::Matrix3d R_WO = Eigen::Matrix3d::Identity();  ///< Rotation of the mesh in the world.
   Eigen::Vector3d p_WO{0, 0, 0};            ///< Where the centre of the turned mesh's box lies, m.
   double stiffness = 0;                     ///< N/m

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "thimble/driver/result.h"
@@ -45,6 +46,8 @@ class SceneObjects {
   render::TriangleMesh mesh_now(int object = -1) const;
   /// Returns how many triangles can be touched, in memory and on the disk.
   std::size_t triangles() const { return triangles_; }
+  /// Returns what was put right, left out or guessed of the meshes, a sentence each.
+  const std::vector<std::string>& notes() const { return notes_; }
   /// Returns the objects that move.
   std::span<const std::size_t> moving() const { return moving_; }
 
@@ -65,6 +68,7 @@ class SceneObjects {
   std::vector<MeshPlace> places_;  // of each object in mesh_W_, and of its end
   std::vector<std::size_t> moving_;
   std::size_t triangles_ = 0;
+  std::vector<std::string> notes_;
 };
 
 }  // namespace thimble::scene

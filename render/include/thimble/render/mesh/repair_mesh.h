@@ -17,8 +17,12 @@ struct RepairOptions {
   bool weld = true;         ///< Join vertices on open edges that lie within the tolerance.
   bool drop = true;         ///< Drop broken, degenerate and repeated triangles, unused vertices.
   bool close_seams = true;  ///< Split open edges where the other side has vertices (T-junctions).
-  bool split_vertices = true;  ///< Give parts that share only a vertex one each, a rounding apart.
-  bool orient = true;          ///< Wind triangles alike and outwards (see orient_mesh).
+  /// Give parts that share only a vertex or an edge one each, a rounding apart.
+  bool split_vertices = true;
+  /// Close the holes of a part, all of them or none, where what closes them has no more than this
+  /// share of the part's area; 0 leaves out. A rim of more than 2,000 edges stays open.
+  double hole_share = 0.5;
+  bool orient = true;  ///< Wind triangles alike and outwards (see orient_mesh).
 };
 
 /// Is one kind of change that a repair made, how often, and where first.
@@ -31,6 +35,8 @@ struct RepairChange {
     kDroppedDuplicate,   ///< A triangle with the same three vertices as an earlier one.
     kClosedSeam,         ///< An open edge split at the vertices of the edges opposite.
     kSplitVertex,        ///< A vertex doubled and moved by a rounding.
+    kPartedEdge,         ///< An edge of four or more triangles given to each body that has it.
+    kFilledHole,         ///< A hole closed with new triangles, flat or as it curves around.
     kTurnedTriangle,     ///< A triangle turned round.
     kDroppedVertex,      ///< A vertex that no triangle uses.
   };
@@ -45,10 +51,11 @@ struct RepairedMesh {
   std::vector<RepairChange> changes;  ///< What was done to it.
 };
 
-/// Repairs what can be mended without guessing; total, any mesh gives one. What is whole stays as
-/// it was: a mesh that check_mesh finds nothing wrong with comes back unchanged. Only vertices on
-/// open edges are welded, and none moves by more than the tolerance. Holes wider than that, fins
-/// and one-sided surfaces remain; check_mesh tells what is left. Lengths in the mesh's unit;
+/// Repairs what can be mended with little guessing, and tells where it guessed (filled holes);
+/// total, any mesh gives one. What is whole stays as it was: a mesh that check_mesh finds nothing
+/// wrong with comes back unchanged. Only vertices on open edges are welded, and none moves by more
+/// than the tolerance. Sheets, fins and one-sided surfaces remain; check_mesh tells what is left,
+/// and thicken_sheets makes it touchable. Lengths in the mesh's unit;
 /// scaling a mesh scales the answer. O(n log n). Real-time: never from the servo thread.
 RepairedMesh repair_mesh(const TriangleMesh& mesh, const RepairOptions& options = {});
 

@@ -1,4 +1,4 @@
-#include "surface_probe.h"
+#include "hand/surface_probe.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -1,0 +1,243 @@
+#include "thimble/scene/hand_route.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <sstream>
+#include <string>
+
+#include "hand/surface_probe.h"
+#include "hand/surface_route.h"
+
+namespace thimble::scene {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kSampleTime = 0.002;  // s [chosen: 25 samples in the shortest sway of a tremor]
+
+// A closest point runs faster than its question where the surface is hollow; beyond this ratio it
+// is a jump to another part of the surface. [chosen: loose enough for folds]
+constexpr double kRunMax = 8;
+constexpr double kJumpMin = 0.002;  // m; a smaller jump is a crease, not another part [chosen]
+
+// A hand cannot follow a kink of the surface faster than it can move at all (about 10 Hz), so the
+// path over the surface is averaged over this time. [chosen]
+constexpr int kSmoothSamples = 15;  // to each side: 60 ms in all
+
+// Where the hand is between the stations: a quintic with given speeds and no acceleration at its
+// ends. With no speed either it is the minimum-jerk stroke of human reaching [M Flash, Hogan 1985].
+struct Quintic {
+  Vector3d from, to;
+  Vector3d speed_from, speed_to;
+  double time = 0;
+
+  Vector3d at(double s) const {
+    const double s3 = s * s * s;
+    const double blend = s3 * (10 + s * (6 * s - 15));
+    const double out = s - s3 * (6 + s * (3 * s - 8));
+    const double in = -s3 * (4 + s * (3 * s - 7));
+    return from + blend * (to - from) + time * (out * speed_from + in * speed_to);
+  }
+};
+
+bool follows_surface(const HandWaypoint& from, const HandWaypoint& to) {
+  return from.on && to.on && *from.on == *to.on;
+}
+
+// Averages each point of a stretch over its neighbours, fewer towards the ends, which stay.
+void smooth(HandRoute& route, std::size_t first, std::size_t last) {
+  const HandRoute raw(route.begin() + static_cast<std::ptrdiff_t>(first),
+                      route.begin() + static_cast<std::ptrdiff_t>(last) + 1);
+  for (std::size_t i = 0; i < raw.size(); ++i) {
+    const std::size_t reach =
+        std::min({static_cast<std::size_t>(kSmoothSamples), i, raw.size() - 1 - i});
+    Vector3d sum = Vector3d::Zero();
+    for (std::size_t k = i - reach; k <= i + reach; ++k) sum += raw[k].second;
+    route[first + i].second = sum / static_cast<double>(2 * reach + 1);
+  }
+}
+
+driver::Error no_path_error(const HandWaypoint& from, const HandWaypoint& to) {
+  std::ostringstream text;
+  text << "The hand's path from t = " << from.time << " s to " << to.time << " s finds none over \""
+       << *from.on << "\", whose parts do not hang together there: put a station between them.";
+  return {text.str()};
+}
+
+// The share of the path that the hand has gone after the share `s` of the time, at rest at both
+// ends.
+double eased(double s) {
+  return s * s * s * (10 + s * (6 * s - 15));
+}
+
+// A path of straight pieces, asked by the share of its length.
+class LongPath {
+ public:
+  explicit LongPath(std::vector<Vector3d> points) : points_(std::move(points)), gone_{0} {
+    for (std::size_t i = 1; i < points_.size(); ++i) {
+      gone_.push_back(gone_.back() + (points_[i] - points_[i - 1]).norm());
+    }
+  }
+
+  Vector3d at(double share) const {
+    const double where = share * gone_.back();
+    const auto next = std::upper_bound(gone_.begin() + 1, gone_.end() - 1, where);
+    const auto i = static_cast<std::size_t>(next - gone_.begin());
+    const double length = gone_[i] - gone_[i - 1];
+    const double part = length > 0 ? std::min((where - gone_[i - 1]) / length, 1.0) : 0;
+    return points_[i - 1] + part * (points_[i] - points_[i - 1]);
+  }
+
+ private:
+  std::vector<Vector3d> points_;
+  std::vector<double> gone_;  // length up to each point, m
+};
+
+// Plans one route; `routed` says which stretches go the long path, because the straight one jumps.
+class Plan {
+ public:
+  Plan(const std::vector<HandWaypoint>& waypoints, const std::vector<NamedMesh>& objects)
+      : waypoints_(waypoints), routed_(waypoints.size(), false) {
+    for (const NamedMesh& object : objects) {
+      const auto [at, fresh] = probes_.try_emplace(object.name, *object.mesh_W);
+      if (fresh) routes_.try_emplace(object.name, *object.mesh_W, at->second);
+    }
+  }
+
+  driver::Result<HandRoute> run() {
+    if (auto known = check(); !known) return known.error();
+    // Free stretches that end on the surface lead to the pressed point, not to the one near it.
+    for (const HandWaypoint& w : waypoints_) {
+      stations_.push_back(w.on ? pressed(probes_.at(*w.on).closest(w.p_W), w.press) : w.p_W);
+    }
+    // Each round finds one more stretch that jumps.
+    for (;;) {
+      const std::size_t jumps_at = try_once();
+      if (jumps_at == waypoints_.size()) return std::move(route_);
+      if (routed_[jumps_at]) {
+        return no_path_error(waypoints_[jumps_at], waypoints_[jumps_at + 1]);
+      }
+      routed_[jumps_at] = true;
+    }
+  }
+
+ private:
+  static Vector3d pressed(const SurfacePoint& point, double press) {
+    return point.p_WS - press * point.n_W;
+  }
+
+  driver::Result<void> check() const {
+    if (waypoints_.empty()) return driver::Error{"The hand's path has no station."};
+    for (std::size_t i = 1; i < waypoints_.size(); ++i) {
+      if (waypoints_[i].time > waypoints_[i - 1].time) continue;
+      std::ostringstream text;
+      text << "The hand's path has t = " << waypoints_[i].time
+           << " s after t = " << waypoints_[i - 1].time << " s: times must grow.";
+      return driver::Error{text.str()};
+    }
+    for (const HandWaypoint& w : waypoints_) {
+      if (w.on && !probes_.contains(*w.on)) {
+        return driver::Error{"The hand's path touches \"" + *w.on + "\", which is no object here."};
+      }
+    }
+    return {};
+  }
+
+  // Speed at station `i`: zero where the hand rests, else the mean over its neighbours.
+  Vector3d speed_at(std::size_t i) const {
+    const auto& w = waypoints_;
+    if (i == 0 || i + 1 == w.size() || w[i].stop) return Vector3d::Zero();
+    if (routed_[i - 1] || routed_[i]) return Vector3d::Zero();
+    if (follows_surface(w[i - 1], w[i]) != follows_surface(w[i], w[i + 1])) return Vector3d::Zero();
+    return (w[i + 1].p_W - w[i - 1].p_W) / (w[i + 1].time - w[i - 1].time);
+  }
+
+  // Plans all stretches. Returns the first that cannot be gone as it is, or the number of stations.
+  std::size_t try_once() {
+    route_ = {{waypoints_.front().time, stations_.front()}};
+    std::size_t run_begin = 0;  // where in the route the present stretch on the surface began
+    for (std::size_t i = 0; i + 1 < waypoints_.size(); ++i) {
+      const HandWaypoint& to = waypoints_[i + 1];
+      const bool on_surface = follows_surface(waypoints_[i], to);
+      if (!(routed_[i] ? go_long_path(i) : go_straight(i))) return i;
+      const bool goes_on = i + 2 < waypoints_.size() && follows_surface(to, waypoints_[i + 2]);
+      if (on_surface && !(goes_on && !to.stop)) smooth(route_, run_begin, route_.size() - 1);
+      if (!on_surface || to.stop) run_begin = route_.size() - 1;
+    }
+    return waypoints_.size();
+  }
+
+  static int steps_of(double time) {
+    return std::max(1, static_cast<int>(std::ceil(time / kSampleTime)));
+  }
+
+  bool go_straight(std::size_t i) {
+    const HandWaypoint& from = waypoints_[i];
+    const HandWaypoint& to = waypoints_[i + 1];
+    const bool on_surface = follows_surface(from, to);
+    const Quintic path{on_surface ? from.p_W : stations_[i], on_surface ? to.p_W : stations_[i + 1],
+                       speed_at(i), speed_at(i + 1), to.time - from.time};
+    const int steps = steps_of(path.time);
+    SurfaceProbe* const probe = on_surface ? &probes_.at(*from.on) : nullptr;
+    SurfacePoint last;
+    if (probe) last = probe->closest(path.at(0));
+    for (int step = 1; step <= steps; ++step) {
+      const double s = static_cast<double>(step) / steps;
+      const double time = from.time + s * path.time;
+      Vector3d p_WH = path.at(s);
+      if (probe) {
+        const double asked = (p_WH - path.at(static_cast<double>(step - 1) / steps)).norm();
+        const SurfacePoint point = probe->closest(p_WH);
+        if (!((point.p_WS - last.p_WS).norm() <= std::max(kRunMax * asked, kJumpMin))) return false;
+        last = point;
+        p_WH = pressed(point, from.press + eased(s) * (to.press - from.press));
+      }
+      route_.emplace_back(step == steps ? to.time : time, p_WH);
+    }
+    return true;
+  }
+
+  // Goes over the surface where it hangs together, else over what lies between its parts.
+  bool go_long_path(std::size_t i) {
+    const HandWaypoint& from = waypoints_[i];
+    const HandWaypoint& to = waypoints_[i + 1];
+    SurfaceProbe& probe = probes_.at(*from.on);
+    SurfaceRoute& route = routes_.at(*from.on);
+    std::vector<Vector3d> points = route.over_surface(from.p_W, to.p_W);
+    const bool on_surface = !points.empty();
+    if (!on_surface) points = route.over_the_gap(stations_[i], stations_[i + 1]);
+    if (points.empty()) return false;
+    if (!on_surface) {
+      points.front() = stations_[i];
+      points.back() = stations_[i + 1];
+    }
+    const LongPath path(std::move(points));
+    const int steps = steps_of(to.time - from.time);
+    for (int step = 1; step <= steps; ++step) {
+      const double s = static_cast<double>(step) / steps;
+      Vector3d p_WH = path.at(eased(s));
+      if (on_surface) {
+        p_WH = pressed(probe.closest(p_WH), from.press + eased(s) * (to.press - from.press));
+      }
+      route_.emplace_back(step == steps ? to.time : from.time + s * (to.time - from.time), p_WH);
+    }
+    return true;
+  }
+
+  const std::vector<HandWaypoint>& waypoints_;
+  std::vector<bool> routed_;  // of the stretch that begins at each station
+  std::map<std::string, SurfaceProbe> probes_;
+  std::map<std::string, SurfaceRoute> routes_;
+  std::vector<Vector3d> stations_;
+  HandRoute route_;
+};
+
+}  // namespace
+
+driver::Result<HandRoute> plan_hand(const std::vector<HandWaypoint>& waypoints,
+                                    const std::vector<NamedMesh>& objects) {
+  return Plan(waypoints, objects).run();
+}
+
+}  // namespace thimble::scene

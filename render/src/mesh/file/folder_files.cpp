@@ -1,0 +1,51 @@
+#include "mesh/file/folder_files.h"
+
+#include <assimp/MemoryIOWrapper.h>
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+namespace thimble::render {
+
+FolderFiles::FolderFiles(const std::string& bytes, std::string name, std::filesystem::path folder)
+    : bytes_(bytes), name_(std::move(name)), folder_(std::move(folder)) {}
+
+bool FolderFiles::Exists(const char* file) const {
+  return file == name_ || !find(file).empty();
+}
+
+Assimp::IOStream* FolderFiles::Open(const char* file, const char* mode) {
+  if (std::strpbrk(mode, "wa+") != nullptr) return nullptr;
+  if (file == name_) {
+    return new Assimp::MemoryIOStream(reinterpret_cast<const std::uint8_t*>(bytes_.data()),
+                                      bytes_.size());
+  }
+  const std::filesystem::path path = find(file);
+  if (path.empty()) return nullptr;
+  std::ifstream stream(path, std::ios::binary);
+  const std::string read{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  if (!stream) return nullptr;
+  auto* const owned = new std::uint8_t[read.size() + 1];
+  std::copy(read.begin(), read.end(), owned);
+  return new Assimp::MemoryIOStream(owned, read.size(), true);
+}
+
+std::filesystem::path FolderFiles::find(const std::string& file) const {
+  std::string_view name = file;
+  while (name.starts_with("./")) name.remove_prefix(2);  // Assimp's word for "beside"
+  const std::filesystem::path relative(name);
+  if (folder_.empty() || relative.empty() || relative.is_absolute()) return {};
+  for (const auto& step : relative) {
+    if (step == "..") return {};
+  }
+  std::error_code status;
+  const std::filesystem::path path = folder_ / relative;
+  return std::filesystem::is_regular_file(path, status) ? path : std::filesystem::path();
+}
+
+}  // namespace thimble::render

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <assimp/IOStream.hpp>
+#include <assimp/IOSystem.hpp>
+#include <filesystem>
+#include <string>
+
+namespace thimble::render {
+
+/// The files that Assimp may see: the one that is being read, from memory under the name `name`,
+/// and, if `folder` is not empty, plain files in it and below, by relative names that do not leave
+/// it. Nothing can be written. The bytes must outlive it.
+class FolderFiles final : public Assimp::IOSystem {
+ public:
+  FolderFiles(const std::string& bytes, std::string name, std::filesystem::path folder);
+
+  bool Exists(const char* file) const override;
+  char getOsSeparator() const override { return '/'; }
+  Assimp::IOStream* Open(const char* file, const char* mode) override;
+  void Close(Assimp::IOStream* stream) override { delete stream; }
+
+ private:
+  // Where a file that is named lies; empty if it may not be seen.
+  std::filesystem::path find(const std::string& file) const;
+
+  const std::string& bytes_;
+  const std::string name_;
+  const std::filesystem::path folder_;
+};
+
+}  // namespace thimble::render
