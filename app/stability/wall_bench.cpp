@@ -6,7 +6,6 @@
 #include <numbers>
 #include <utility>
 
-#include "arms/hfab/hfab_models.h"
 #include "simulated_arm.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/device.h"
