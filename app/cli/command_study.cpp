@@ -1,11 +1,11 @@
 #include <CLI/CLI.hpp>
-#include <cstdio>
 #include <memory>
 #include <string>
 #include <system_error>
 
 #include "cli/commands.h"
 #include "cli/complain.h"
+#include "cli/end_study.h"
 #include "studies/study.h"
 
 namespace thimble::app {
@@ -21,11 +21,7 @@ int run_study(const Study& study, const std::filesystem::path& folder) {
   }
   const auto figures = study.run(folder);
   if (!figures) return complain(figures.error(), kExitTrouble);
-  if (const auto written = write_figures(*figures, folder / "figures.json"); !written) {
-    return complain(written.error(), kExitTrouble);
-  }
-  std::printf("%s\nWritten to %s.\n", figure_table(*figures).c_str(), folder.string().c_str());
-  return kExitDone;
+  return end_study(*figures, folder);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "cli/commands.h"
 #include "cli/complain.h"
+#include "cli/end_study.h"
 #include "cli/file_options.h"
 #include "report/figure.h"
 #include "studies/accuracy/gating.h"
@@ -32,12 +33,7 @@ int run_accuracy(const AccuracyOptions& options) {
   }
   const auto figures = study_accuracy(options.axes, !options.no_count, folder);
   if (!figures) return complain(figures.error(), kExitBadInput);
-  if (const auto written = write_figures(*figures, folder / "figures.json"); !written) {
-    return complain(written.error(), kExitTrouble);
-  }
-  std::printf("%s\nWritten to %s; the page is index.html there.\n", figure_table(*figures).c_str(),
-              folder.c_str());
-  return kExitDone;
+  return end_study(*figures, folder, "; the page is index.html there");
 }
 
 struct GatingOptions {

@@ -6,6 +6,7 @@
 
 #include "cli/commands.h"
 #include "cli/complain.h"
+#include "cli/end_study.h"
 #include "cli/file_options.h"
 #include "interrupt.h"
 #include "studies/stability/study_stability.h"
@@ -56,12 +57,7 @@ int run_by_sweep(const SweepChoice& choice, const Run& run) {
     std::printf("Stopped early; the same command with --resume goes on.\n");
     return kExitInterrupted;
   }
-  const std::filesystem::path folder = choice.out;
-  if (const auto written = write_figures(report->figures, folder / "figures.json"); !written) {
-    return complain(written.error(), kExitTrouble);
-  }
-  std::printf("%s\nWritten to %s.\n", figure_table(report->figures).c_str(), choice.out.c_str());
-  return kExitDone;
+  return end_study(report->figures, choice.out);
 }
 
 }  // namespace

@@ -25,6 +25,7 @@ struct ViewOptions {
   bool pause = false, resume = false, stop = false;
   std::string record;
   bool record_stop = false;
+  double seconds = 0;  // 0: without an end
 
   bool asks() const {
     return !turn.empty() || pause || resume || stop || !record.empty() || record_stop;
@@ -93,7 +94,9 @@ int tell(const ViewOptions& options) {
   session::RunAttachment runs(options.run);
   std::string told;
   auto next_line = std::chrono::steady_clock::now();
+  const auto end = next_line + std::chrono::duration<double>(options.seconds);
   while (!stop.load()) {
+    if (options.seconds > 0 && std::chrono::steady_clock::now() >= end) return kExitDone;
     if (runs.step()) {
       std::printf("Watching %s: %s\n", runs.name().c_str(), runs.reader()->scene().name.c_str());
       told.clear();
@@ -125,7 +128,7 @@ int view_run(const ViewOptions& options, const ShowWindow& show_window) {
                     kExitBadInput);
   }
   session::RunAttachment runs(options.run);
-  return show_window(runs);
+  return show_window(runs, options.seconds);
 }
 
 }  // namespace
@@ -147,6 +150,8 @@ void add_view_command(CLI::App& app, int& exit_code, const ShowWindow& show_wind
   command->add_flag("--record-stop", options->record_stop, "End the recording, and leave")
       ->excludes(record);
   command->add_flag("--stop", options->stop, "End the run, and leave");
+  command->add_option("--for", options->seconds, "Stop looking on after so many seconds")
+      ->check(CLI::Range(0.1, 86400.0));
   command->callback(
       [options, show_window, &exit_code] { exit_code = view_run(*options, show_window); });
 }

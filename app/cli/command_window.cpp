@@ -9,16 +9,15 @@ namespace thimble::app {
 
 void add_window_command(CLI::App& app, int& exit_code) {
   auto choice = std::make_shared<view::WindowChoice>();
-  add_view_command(app, exit_code, [choice](session::RunAttachment& runs) {
+  add_view_command(app, exit_code, [choice](session::RunAttachment& runs, double seconds) {
+    choice->seconds = seconds;
     const auto shown = view::show_window(runs, *choice);
     return shown ? static_cast<int>(kExitDone) : complain(shown.error(), kExitTrouble);
   });
   CLI::App* command = app.get_subcommand("view");
-  CLI::Option* seconds =
-      command->add_option("--for", choice->seconds, "Close the window after so many seconds")
-          ->check(CLI::Range(0.1, 86400.0));
   command->add_option("--picture", choice->last_picture, "PNG of the window to write then")
-      ->needs(seconds);
+      ->needs("--for")
+      ->excludes("--text");
 }
 
 bool has_window() {

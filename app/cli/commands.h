@@ -14,8 +14,9 @@ class RunAttachment;
 
 namespace thimble::app {
 
-/// Opens a window on runs until it is closed, and gives the exit code; empty where there is none.
-using ShowWindow = std::function<int(session::RunAttachment& runs)>;
+/// Opens a window on runs until it is closed, or for so many seconds if they are above 0, and gives
+/// the exit code; empty where there is none.
+using ShowWindow = std::function<int(session::RunAttachment& runs, double seconds)>;
 
 // One function per command of the program. Each adds its sub-command with options and help to
 // `app`; when the user chose it, its exit code (exit_code.h) is left in `exit_code`.

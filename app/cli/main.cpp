@@ -1,4 +1,7 @@
+#include <sys/stat.h>
+#include <unistd.h>
 #include <CLI/CLI.hpp>
+#include <cstdio>
 #include <exception>
 #include <string>
 
@@ -13,7 +16,8 @@ namespace {
 
 constexpr const char* kFooter =
     "Exit codes: 0 done, 1 unexpected trouble, 2 wrong arguments or input, 3 no arm,\n"
-    "4 the force went off with a fault, 130 ended early by Ctrl-C.\n"
+    "4 the force went off with a fault, 5 a study has a figure that misses its goal,\n"
+    "130 ended early by Ctrl-C.\n"
     "A physical arm moves by itself: keep clear of it, and keep its power switch at hand.";
 
 int run(int argc, char** argv) {
@@ -56,13 +60,25 @@ int run(int argc, char** argv) {
   return exit_code;
 }
 
+/// Returns the exit code of a program that has printed all it had to, or that of trouble if what it
+/// printed is lost. A reader that has gone (`| head`) has seen all it wanted.
+int with_output(int exit_code) {
+  const bool lost = std::fflush(stdout) != 0 || std::ferror(stdout) != 0;
+  struct stat output {};
+  const bool closed = fstat(STDOUT_FILENO, &output) != 0;
+  if (!lost || closed || S_ISFIFO(output.st_mode) || S_ISSOCK(output.st_mode)) return exit_code;
+  thimble::scene::logger().error(
+      "What was to be printed could not be written: is the disk full that it goes to?");
+  return exit_code == thimble::app::kExitDone ? thimble::app::kExitTrouble : exit_code;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   thimble::scene::outlive_trouble_with_files();
   // Every exception ends here, so that destructors run and the arm is left with zero force.
   try {
-    return run(argc, argv);
+    return with_output(run(argc, argv));
   } catch (const std::exception& trouble) {
     thimble::scene::logger().critical("unexpected trouble: {}", trouble.what());
   } catch (...) {

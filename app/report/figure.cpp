@@ -18,6 +18,7 @@ driver::Result<void> write_figures(const std::vector<Figure>& figures,
       entry["goal"] = figure.goal;
       entry["met"] = figure.met();
     }
+    if (!figure.note.empty()) entry["note"] = figure.note;
     list.push_back(std::move(entry));
   }
   return write_text(list.dump(2) + "\n", file);
@@ -35,9 +36,23 @@ std::string figure_table(const std::vector<Figure>& figures) {
       if (line.size() < width + 20) line.resize(width + 20, ' ');
       line += "  goal " + figure.goal + (figure.met() ? ": met" : ": NOT MET");
     }
+    if (!figure.note.empty()) line += "  (" + figure.note + ")";
     table += line + "\n";
   }
   return table;
+}
+
+std::string unmet_line(const std::vector<Figure>& figures) {
+  std::string line;
+  int count = 0;
+  for (const Figure& figure : figures) {
+    if (figure.met()) continue;
+    ++count;
+    line += fmt::format("{}{} = {:.4g} {} (goal {}", count > 1 ? "; " : "", figure.name,
+                        figure.value, figure.unit, figure.goal);
+    line += figure.note.empty() ? ")" : "; " + figure.note + ")";
+  }
+  return count > 0 ? fmt::format("NOT MET: {} of {} figures: ", count, figures.size()) + line : "";
 }
 
 driver::Result<void> write_text(const std::string& text, const std::filesystem::path& file) {

@@ -6,7 +6,6 @@
 #include <numbers>
 #include <utility>
 
-#include "arms/hfab/hfab_models.h"
 #include "simulated_arm.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/device.h"
@@ -23,10 +22,15 @@ constexpr double kCurrentMost = 32;  // A
 
 constexpr int kKickTicks = 4;  // so that no kick needs more than the motors' current
 
-/// Is the tip's jumps by one count of each joint at home, m in the world.
+constexpr double kCurrentStep = 1e-3;  // A, of the messages [DEVICES 1]
+
+/// The tip at home and what one count of each encoder and one step of each current make of it.
 struct HomeSteps {
   Vector3d p_WT;
-  Matrix3d ways_W;
+  Matrix3d ways_W;  // columns: jumps by one count of each joint, m in the world
+  Matrix3d
+      currents_W;  // columns: currents that a force of 1 N along each axis of the world asks, A
+  Matrix3d R_WB;
 };
 
 driver::Result<HomeSteps> home_steps(const scene::ArmFile& arm) {
@@ -39,16 +43,29 @@ driver::Result<HomeSteps> home_steps(const scene::ArmFile& arm) {
                          "does not; vintage_phantom.yaml is one."};
   }
   std::visit([&](const auto& build) { build.forward(q, p_BT, J_BT); }, arm.model.geometry);
-  HomeSteps steps{arm.p_WB + arm.R_WB * p_BT, arm.R_WB * J_BT};
+  HomeSteps steps{.p_WT = arm.p_WB + arm.R_WB * p_BT,
+                  .ways_W = arm.R_WB * J_BT,
+                  .currents_W = {},
+                  .R_WB = arm.R_WB};
+  steps.currents_W = steps.ways_W.transpose();
   for (int i = 0; i < 3; ++i) {
-    steps.ways_W.col(i) *= arm.model.step(static_cast<std::size_t>(i));
+    const auto joint = static_cast<std::size_t>(i);
+    steps.ways_W.col(i) *= arm.model.step(joint);
+    const driver::MotorDrive& drive = arm.model.drives[joint];
+    steps.currents_W.row(i) /= drive.ratio * drive.torque_constant;
   }
   return steps;
 }
 
 ArmDirection along(const Vector3d& way_W, const HomeSteps& home) {
   const Vector3d n_W = way_W.normalized();
-  return {.n_W = n_W, .p_WT = home.p_WT, .step = (home.ways_W.transpose() * n_W).cwiseAbs().sum()};
+  const Vector3d steps = (home.ways_W.transpose() * n_W).cwiseAbs();
+  return {.n_W = n_W,
+          .p_WT = home.p_WT,
+          .step = steps.sum(),
+          .largest_step = steps.maxCoeff(),
+          .friction_share = (home.R_WB.transpose() * n_W).lpNorm<1>(),
+          .force_step = kCurrentStep / (home.currents_W * n_W).cwiseAbs().maxCoeff()};
 }
 
 /// Makes the arm that the case asks for out of that of the file.
@@ -90,6 +107,11 @@ scene::ArmFile arm_of(const scene::ArmFile& file, const WallCase& wall) {
 }
 
 }  // namespace
+
+bool ArmDirection::is_one_dimensional() const {
+  constexpr double kWithin = 0.01;  // the laws themselves are met to some percent
+  return largest_step >= (1 - kWithin) * step && friction_share <= 1 + kWithin;
+}
 
 driver::Result<ArmDirection> worst_direction_at_home(const scene::ArmFile& arm) {
   const auto home = home_steps(arm);
@@ -160,6 +182,8 @@ driver::Result<WallRun> run_wall(const scene::ArmFile& file, const WallCase& wal
   const double mass = wall.tip.mass + wall.hand.mass;
   const double period = static_cast<double>(wall.period_ns) * 1e-9;
   const auto end_ns = static_cast<std::int64_t>(wall.duration * 1e9);
+  const auto kick_ns = static_cast<std::int64_t>(wall.kick_start * 1e9);
+  int kick_ticks = 0;
   std::size_t gap = 0;
   // On a late wire the first report has taken its time.
   std::int64_t tick_ns = clock.now_ns();
@@ -172,9 +196,11 @@ driver::Result<WallRun> run_wall(const scene::ArmFile& file, const WallCase& wal
     double force = -wall.stiffness * depth - wall.damping * n_W.dot(state.v_WT);
     // A wall pushes outwards, along the direction, and never pulls.
     if (wall.one_sided) force = depth < 0 ? std::max(force, 0.0) : 0;
-    if (wall.kick != 0 && tick <= kKickTicks) {
+    if (wall.kick != 0 && kick_ticks < kKickTicks) {
       // The gate opens within the first tick, so that the kick begins with the second.
-      force = tick > 0 ? -wall.kick * mass / (kKickTicks * period) : 0;
+      const bool kicks = tick > 0 && tick_ns >= kick_ns;
+      force = kicks ? -wall.kick * mass / (kKickTicks * period) : 0;
+      if (kicks) ++kick_ticks;
     }
     device.write({.f_T_W = force * n_W, .touch = {}});
     const Vector3d p_WT = arm.p_WB + arm.R_WB * board->plant().p_BT();

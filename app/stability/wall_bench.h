@@ -16,6 +16,15 @@ struct ArmDirection {
   Eigen::Vector3d n_W{0, 0, 1};   ///< Unit vector.
   Eigen::Vector3d p_WT{0, 0, 0};  ///< The home pose's tip, m.
   double step = 0;  ///< How far the tip seems to jump along it when all encoders step at once, m.
+  double largest_step = 0;  ///< The same when the one encoder steps that moves it farthest, m.
+  /// Dry friction of a straight path along it over that along an axis of the base: the sum of the
+  /// direction's absolute components there, as each axis rubs by itself.
+  double friction_share = 1;
+  double force_step = 0;  ///< Below half of this no motor is sent a current, N.
+
+  /// Returns whether one encoder alone steps along it against the dry friction of one axis, so that
+  /// laws of one dimension hold to the percent; in any other direction they are bounds.
+  bool is_one_dimensional() const;
 };
 
 /// Finds the worst direction for a wall: the axis of the base along which the steps of all encoders
@@ -47,8 +56,9 @@ struct WallCase {
   std::int64_t delay_ns = 0;          ///< From encoder to motor.
   bool own_wire = false;              ///< Keeps the arm's delays and the pace of its reports.
   std::vector<std::int64_t> gaps_ns;  ///< Times between ticks, used in turn; empty: the period.
-  double offset = 0;  ///< Where the wall stands or the spring's middle lies, from home, m.
-  double kick = 0;    ///< Speed that the first ticks give the free tip, against the direction, m/s.
+  double offset = 0;      ///< Where the wall stands or the spring's middle lies, from home, m.
+  double kick = 0;        ///< Speed that four ticks give the free tip, against the direction, m/s.
+  double kick_start = 0;  ///< Time of the first of them, s; there is no wall before.
   double hand_from = 0, hand_to = 0;    ///< The hand's wish moves between them, from home, m,
   double hand_start = 0, hand_end = 0;  ///< between these times, s.
   double duration = 1;                  ///< s

@@ -80,6 +80,20 @@ cp good.off open.off noise.off scenes/
 scene_with 's/^( *)mesh:.*/\1mesh: open.off/'
 expect 2 'open\.off: .*only one triangle' "$thimble" run scenes/changed.yaml
 
+# What was to be printed and is lost; a reader that has seen enough is no trouble.
+expect 1 'could not be written' bash -c '"$0" run --list >/dev/full' "$thimble"
+expect 1 'could not be written' bash -c '"$0" --help >/dev/full' "$thimble"
+expect 0 'Scenes' bash -c 'set -o pipefail; "$0" run --list | head -1' "$thimble"
+# A recording in place of the scene that it is of.
+cp scenes/box.yaml scenes/mine.yaml
+expect 2 'mine\.yaml: this file is no recording' \
+  "$thimble" run scenes/mine.yaml --duration 0.1 --record scenes/mine.yaml
+expect 0 '' cmp scenes/box.yaml scenes/mine.yaml
+sed 's/^seed:.*/rate: 40/' scenes/box.yaml >scenes/slow.yaml
+expect 2 'slow\.yaml:11: rate: expected 50 Hz or more, found 40' "$thimble" run scenes/slow.yaml
+# A viewer that is told when to leave leaves, though there is no run.
+expect 0 'Waiting for a run' timeout 20 "$thimble" view no_such_run --text --for 0.2
+
 # A report that cannot be written.
 if [ -f "$THIMBLE_MESHES/elephant.off" ]; then
   : >a_file

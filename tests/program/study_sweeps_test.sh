@@ -24,6 +24,28 @@ if command -v gnuplot >/dev/null; then
   expect_plot laws/{kb_map,restitution,limit_cycles,stiffness}
 fi
 
+# The same without a hand, where the damping is the arm's alone and slow: also through its own gate.
+expect 0 'edge_with_exact_map .* met' "$thimble" study stability --arm "$arm" --hand none --coarse --out free
+expect 0 '^[1-9][0-9]* of them apart by less than 10 %$' awk -F, 'NR > 1 && $1 < 1 {
+    if ($2 > 1.1 * $3 || $2 < 0.9 * $3) exit 1
+    ++rows
+  } END { print rows + 0, "of them apart by less than 10 %" }' free/kb_edge_arm.csv
+# Across the axes several encoders step, so a law of one dimension is a bound, and is told to be one.
+expect 0 'encoder_step_with_law .*the law of one dimension is a bound here' \
+  "$thimble" study stability --arm "$arm" --direction 1 1 1 --coarse --out across
+expect 0 '"one_dimensional": false' cat across/summary.json
+# A linkage, along whose axes several encoders step; and a high rate, at which swings take longer to die.
+if [ -n "${THIMBLE_LONG:-}" ]; then
+  expect 0 'rate_with_exact_map .* met' "$thimble" study stability \
+    --arm "$source_dir/app/arms/polhem.yaml" --coarse --out linkage
+  expect 0 'largest_flicker .* met' "$thimble" study stability \
+    --arm "$source_dir/app/arms/woodenhaptics.yaml" --rate 4000 --coarse --out fast
+fi
+# Motors whose current has steps of 0.1 N are not those of the laws: the last line and the exit code tell.
+sed 's/torque_constant: .*/torque_constant: [2.34, 2.34, 2.34]/' "$arm" >coarse_motors.yaml
+expect 5 '^NOT MET: .* of 24 figures: agreement.edge_with_exact_map = .*at B = ' \
+  "$thimble" study stability --arm coarse_motors.yaml --coarse --out unmet
+
 # Random scenes: none may break a promise.
 count=${THIMBLE_LONG:+20000}
 trouble=("$thimble" study trouble --arm "$arm" --count "${count:-150}")

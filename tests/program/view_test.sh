@@ -54,6 +54,8 @@ expect 0 'ball: friction coefficient = ' "$thimble" view --list
 expect 0 '' "$thimble" view "$me" --turn 'ball: stiffness=200'
 expect 2 'has no knob "ball: colour"; it has' "$thimble" view "$me" --turn 'ball: colour=2'
 expect 2 'expected NAME=VALUE' "$thimble" view "$me" --turn 'ball: stiffness=nan'
+expect 2 'ball: stiffness may be .* found 1e' "$thimble" view "$me" --turn 'ball: stiffness=1e9'
+expect 0 "$me running" timeout 20 "$thimble" view "$me" --text --for 0.5
 expect 2 'is already shown' "$thimble" run "$scenes/honey.yaml" --name "$me"
 expect 0 '' "$thimble" view "$me" --record ordered.h5
 sleep 1

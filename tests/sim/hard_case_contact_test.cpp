@@ -198,10 +198,11 @@ TEST(HardCase25, TrackersSettleInOneTickAndDoNotCycleInSharpPlaces) {
     EXPECT_GT(touching, 1000) << name_of(tracker);
     EXPECT_EQ(lost, 0) << name_of(tracker);
     EXPECT_EQ(changed, 0) << name_of(tracker);
-    EXPECT_LE(most_hops, kHopsMax) << name_of(tracker);
+    EXPECT_LT(most_hops, kHopsMax)
+        << name_of(tracker);  // that many end a walk that has not settled
     const std::string words = name_of(tracker) + ", wedge, corner and needle, leaps at random";
     record_hard_case(25, words, "== ticks in which a still tip changes its force", changed, 0, "1");
-    record_hard_case(25, words, "<= most hops in a tick", most_hops, kHopsMax, "1");
+    record_hard_case(25, words, "< most hops in a tick", most_hops, kHopsMax, "1");
   }
 }
 
@@ -230,10 +231,10 @@ TEST(HardCase26, CompactTrackerHasTheOffsetTrackersProxyInAFastStroke) {
     p = Eigen::AngleAxisd(0.002 / p.norm(), axis) * p;
   }
   EXPECT_LE(apart, 1e-7);
-  EXPECT_LE(most_hops, kHopsMax);
+  EXPECT_LT(most_hops, kHopsMax);
   const char* const kStroke = "compact tracker, 1e4 ticks of 2 mm";
   record_hard_case(26, kStroke, "<= proxy off the offset tracker's", 1e6 * apart, 0.1, "um");
-  record_hard_case(26, kStroke, "<= most hops in a tick", most_hops, kHopsMax, "1");
+  record_hard_case(26, kStroke, "< most hops in a tick", most_hops, kHopsMax, "1");
 }
 
 /// Moves a place to multiples of 2^-36 m, so that a shift of 1e4 m rounds nothing.

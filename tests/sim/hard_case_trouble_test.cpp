@@ -351,10 +351,13 @@ double largest_step(const std::vector<Press::Row>& rows, std::size_t from) {
   return most;
 }
 
-TEST(HardCase38, GlitchesOfAnEncoderAreDroppedWithinATickAndMoveNoForce) {
+TEST(HardCase38, GlitchesThatATipCannotDoAreDroppedAndOthersMoveAFifthOfTheForceAtMost) {
   constexpr double kAllowed = 0.2 * 5;  // N
-  double most = 0;
-  std::uint64_t dropped = 0;
+  // Beyond this the driver takes a jump for none of the tip's: 1000 m/s^2 for 1 ms, and the rest of
+  // its last movement.
+  constexpr double kJump = 1.5e-3;  // m
+  double most = 0, most_dropped = 0;
+  int drops = 0, missed = 0;
   for (const double step : {1e-6, 3e-6, 1e-5, 3e-5, 1e-4}) {
     for (const int glitch : {-1000, 1000, -32768}) {  // the last: a counter that wraps
       for (const std::size_t axis : {0u, 1u, 2u}) {
@@ -367,18 +370,29 @@ TEST(HardCase38, GlitchesOfAnEncoderAreDroppedWithinATickAndMoveNoForce) {
           return report;
         };
         press.run(900);
-        EXPECT_EQ(press.fault, Fault::kNone) << step << " " << glitch << " " << axis;
-        EXPECT_LE(largest_step(press.rows, 700), kAllowed) << step << " " << glitch << " " << axis;
-        most = std::max(most, largest_step(press.rows, 700));
-        dropped = std::max(dropped, press.wire.jumped);
+        SCOPED_TRACE(testing::Message() << step << " m, " << glitch << " counts, axis " << axis);
+        EXPECT_EQ(press.fault, Fault::kNone);
+        const double moved = largest_step(press.rows, 700);
+        EXPECT_LE(moved, kAllowed);
+        most = std::max(most, moved);
+        // The two other axes have the arm's own encoders, of 14 um and more.
+        const double jump = std::abs(glitch) * (axis == 2 ? step : 14e-6);
+        if (jump < kJump) continue;
+        ++drops;
+        missed += press.wire.jumped == 1 ? 0 : 1;
+        most_dropped = std::max(most_dropped, moved - press.stiffness * step);
       }
     }
   }
-  EXPECT_EQ(dropped, 1u);
+  EXPECT_EQ(drops, 43);
+  EXPECT_EQ(missed, 0);
+  EXPECT_LE(most_dropped, 0.02);
   record_hard_case(38, "steps of 1 to 100 um, one report off by 1000 counts or wrapped, any axis",
                    "<= largest step of force", most, kAllowed, "N");
-  record_hard_case(38, "the same", "<= reports dropped per glitch", static_cast<double>(dropped), 1,
-                   "1");
+  record_hard_case(38, "43 of these, beyond what a tip can do", "== not dropped, or more than one",
+                   missed, 0, "1");
+  record_hard_case(38, "the same", "<= largest step of force beyond that of one count",
+                   most_dropped, 0.02, "N");
 }
 
 TEST(HardCase38, EncoderThatStaysOffIsAFaultAndADeadAxisStaysWithinItsForce) {

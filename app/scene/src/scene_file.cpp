@@ -1,5 +1,7 @@
 #include "thimble/scene/scene_file.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <numbers>
@@ -264,6 +266,14 @@ driver::Result<Scene> load_scene(const std::filesystem::path& meant, const Scene
     scene.arm = std::move(arm).value();
   } else {
     arm_error = arm.error();
+  }
+  const double stall = 1e-9 * static_cast<double>(scene.arm.limits.stall_ns);
+  if (!arm_error && !(1 / scene.rate <= stall)) {
+    root.reject("rate",
+                fmt::format("expected {:.4g} Hz or more, found {:g}: a tick would take longer "
+                            "than the {:.4g} s after which the gate of {} takes the loop for "
+                            "stalled",
+                            1 / stall, scene.rate, stall, scene.arm.name));
   }
   const render::EffectContext context = effect_context_of(scene.arm, scene.rate);
   for (YamlMap& object : root.require_maps("objects")) {

@@ -108,8 +108,11 @@ driver::Result<double> cycle(const StabilitySetup& setup, const StabilityCell& c
   wall.tip.coulomb = cell.a * kCycleStiffness * kCycleStep;
   wall.tip.viscous = cell.b * kCycleStiffness * period;
   wall.delay_ns = to_ns(cell.d * period);
-  const auto swing =
-      released_swing(setup.arm, wall, cycle_speed(setup, cell.c), setup.coarse ? 3 : 5);
+  // A swing dies or grows by (K T / m) times its distance from the corner: so long until it is
+  // told.
+  const double growth_time = wall.tip.mass / (kCycleStiffness * period);
+  const double duration = (setup.coarse ? 40 : 70) * growth_time;
+  const auto swing = released_swing(setup.arm, wall, cycle_speed(setup, cell.c), duration);
   if (!swing) return swing.error();
   return *swing / kCycleStep;
 }

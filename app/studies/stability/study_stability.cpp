@@ -40,7 +40,8 @@ driver::Result<void> write_summary(const StabilitySetup& setup, const std::vecto
   nlohmann::ordered_json summary;
   const auto way = [](const ArmDirection& d) {
     return nlohmann::ordered_json{{"direction", {d.n_W.x(), d.n_W.y(), d.n_W.z()}},
-                                  {"encoder_step_m", d.step}};
+                                  {"encoder_step_m", d.step},
+                                  {"one_dimensional", d.is_one_dimensional()}};
   };
   const device_sim::PlantSettings& tip = setup.arm.simulated.plant;
   summary["arm"] = setup.arm.name;
@@ -56,6 +57,7 @@ driver::Result<void> write_summary(const StabilitySetup& setup, const std::vecto
     auto& entry = summary["figures"][figure.name];
     entry["value"] = figure.value;
     entry["unit"] = figure.unit;
+    if (!figure.note.empty()) entry["note"] = figure.note;
     if (figure.goal.empty()) continue;
     entry["goal"] = figure.goal;
     entry["met"] = figure.met();

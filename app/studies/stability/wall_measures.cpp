@@ -10,11 +10,13 @@
 namespace thimble::app {
 namespace {
 
-constexpr double kTouchSpeed = 0.1;  // m/s: a light tap [STABILITY 1.5 and 1.6]
-constexpr double kFarthest = 50;     // of its start: a small swing that comes so far grows
-constexpr double kCeiling = 25;      // times its energy at first
-constexpr double kFloor = 1e-3;      // of its energy: a swing below that is seen no more
-constexpr double kStartForce = 0.3;  // N, of a small swing: far above a step of the current
+constexpr double kTouchSpeed = 0.1;   // m/s: a light tap [STABILITY 1.5 and 1.6]
+constexpr double kStartMost = 0.008;  // m, of a small swing: no arm reaches the end of its joints
+constexpr double kFarthest = 0.05;    // m from the middle: a small swing that comes so far grows
+constexpr double kCeiling = 25;       // times its energy at first
+constexpr double kFloor = 1e-3;       // of its energy: a swing below that is seen no more
+constexpr double kStartForce = 0.3;   // N, of a small swing: far above a step of the current
+constexpr double kSwings = 20;        // that are waited for, lest a slow one be judged by its phase
 
 /// Returns where a measure leaves what is good, in equal steps of the logarithm.
 template <class Good>
@@ -60,14 +62,16 @@ void shuffle(Times& times, std::uint64_t seed) {
 }  // namespace
 
 driver::Result<double> growth_rate(const scene::ArmFile& arm, WallCase wall) {
-  const double start = std::min(0.001, kStartForce / wall.stiffness);
+  const double start = std::min(kStartMost, kStartForce / wall.stiffness);
   const double mass = wall.tip.mass + wall.hand.mass;
-  wall.kick = start * std::sqrt((wall.stiffness + wall.hand.stiffness) / mass);
-  wall.give_up = kFarthest * start;
+  const double frequency = std::sqrt((wall.stiffness + wall.hand.stiffness) / mass);
+  wall.kick = start * frequency;
+  wall.give_up = kFarthest;
+  wall.duration = std::max(wall.duration, kSwings * 2 * std::numbers::pi / frequency);
   const auto ran = run_wall(arm, wall);
   if (!ran) return ran.error();
   const WallRun& run = *ran;
-  if (run.gave_up) return std::log(kFarthest) / std::max(run.time.back(), 1e-3);
+  if (run.gave_up) return std::log(kFarthest / start) / std::max(run.time.back(), 1e-3);
   const std::vector<double> energies = swing_energies(run, wall);
   const std::size_t count = energies.size();
   const auto most = [&](double from, double to) {
@@ -80,13 +84,18 @@ driver::Result<double> growth_rate(const scene::ArmFile& arm, WallCase wall) {
   // compared early and late, each long enough for a swing to show all its energy.
   const double first = 0.5 * mass * wall.kick * wall.kick;
   const double late = most(0.85, 1);
+  // Where the spring asks for less than a step of the motors' current, the tip may rest beside the
+  // middle: that is no swing.
+  const double asleep =
+      0.5 * wall.direction.force_step * wall.direction.force_step / wall.stiffness;
+  const double floor = std::max(kFloor * first, asleep);
   std::size_t last_alive = 0;
   for (std::size_t i = 0; i < count; ++i) {
     if (energies[i] > kCeiling * first) return 0.5 * std::log(kCeiling) / run.time[i];
-    if (energies[i] > kFloor * first) last_alive = i;
+    if (energies[i] > floor) last_alive = i;
   }
-  if (late < kFloor * first) {
-    return 0.5 * std::log(kFloor) / std::max(run.time[last_alive], 1e-3);
+  if (late < floor) {
+    return 0.5 * std::log(std::min(floor / first, 0.5)) / std::max(run.time[last_alive], 1e-3);
   }
   return 0.5 * std::log(late / most(0.1, 0.25)) / (0.75 * run.time.back());
 }
@@ -138,8 +147,10 @@ driver::Result<double> released_swing(const scene::ArmFile& arm, WallCase wall, 
   wall.offset = wall.hand_from = wall.hand_to = 0.5 * step;
   wall.hand_start = wall.hand_end = 0;
   wall.kick = speed;
+  // Before its soft start is over, the arm's own gate would let no kick through.
+  wall.kick_start = wall.own_limits ? arm.limits.soft_start + 0.02 : 0;
   const double reach = speed * std::sqrt(mass / (wall.stiffness + wall.hand.stiffness));
-  wall.duration = duration;
+  wall.duration = wall.kick_start + duration;
   wall.give_up = std::min(20 * reach, 0.05);
   return last_swing(arm, wall);
 }

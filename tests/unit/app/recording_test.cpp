@@ -252,6 +252,36 @@ TEST(Recording, ThatCannotBeWrittenSaysWhere) {
   EXPECT_NE(refused.error().message.find("/proc/no/such/place.h5"), std::string::npos);
 }
 
+TEST(Recording, OverwritesARecordingAndNothingElse) {
+  const auto scene = scratch("precious.yaml");
+  std::ofstream(scene) << "name: precious\n";
+  const auto refused = session::Recorder::open(scene, kInfo, 10);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("precious.yaml: this file is no recording"),
+            std::string::npos);
+  std::string kept;
+  std::getline(std::ifstream(scene), kept);
+  EXPECT_EQ(kept, "name: precious");
+  const auto again = scratch("again.h5");
+  std::ofstream(again).flush();  // an empty file holds nothing to lose
+  for (int time = 0; time < 2; ++time) EXPECT_TRUE(session::Recorder::open(again, kInfo, 10));
+}
+
+TEST(Recording, TellsNamesThatCannotMoveATerminal) {
+  const auto path = scratch("escapes.h5");
+  session::RecordingInfo info = kInfo;
+  info.scene = "red \x1b[31m bell \a wide \302\23331m \303\244";
+  info.scene_text = "\tname: kept\n";
+  {
+    const auto recorder = session::Recorder::open(path, info, 10);
+    ASSERT_TRUE(recorder);
+  }
+  const auto read = session::read_recording(path);
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->info.scene, "red ?[31m bell ? wide ??31m \303\244");
+  EXPECT_EQ(read->info.scene_text, info.scene_text);
+}
+
 TEST(Recording, SaysWhatAFileIsNot) {
   EXPECT_NE(session::read_recording(scratch("none.h5")).error().message.find("no such file"),
             std::string::npos);

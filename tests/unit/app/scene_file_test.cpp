@@ -155,6 +155,16 @@ TEST(SceneFile, NamesAnEnergyStageInPlaceOfTheArms) {
   EXPECT_NE(mistake(kBall, kWait, "gate: {force_max: 9}\n").find("force_max"), std::string::npos);
 }
 
+TEST(SceneFile, RefusesARateAtWhichTheGateTakesEveryTickForAStall) {
+  EXPECT_EQ(mistake(kBall, kWait, "rate: 50\n"), "");  // the arm's stall is 20 ms
+  for (const char* rate : {"rate: 49.9\n", "rate: 40\n"}) {
+    EXPECT_NE(
+        mistake(kBall, kWait, rate).find("scene.yaml:4: rate: expected 50 Hz or more, found "),
+        std::string::npos)
+        << mistake(kBall, kWait, rate);
+  }
+}
+
 TEST(SceneFile, RefusesUnknownKeys) {
   EXPECT_NE(mistake(kBall, kWait, "rait: 1000\n").find("perhaps \"rate\" was meant"),
             std::string::npos);

@@ -126,7 +126,12 @@ TEST(EdgeBlending, FollowsTheFourPointRuleOfThePaper) {
       for (const double along : {0.2, 0.5, 0.8}) {
         EXPECT_LT((at(weights_of(k, 1 - along, along)) - (own + next).normalized()).norm(), 1e-14);
       }
-      EXPECT_EQ(at(weights_of(k, 1, 0)), on.normals.corners(t)[k]);
+      const Vector3d& vertex = on.normals.corners(t)[k];
+      EXPECT_EQ(at(weights_of(k, 1, 0)), vertex);
+      // Along an edge, half the band from its end: half way between ip2 and ip4.
+      const double length = (on.mesh.position(t, (k + 1) % 3) - on.mesh.position(t, k)).norm();
+      const Vector3d near_end = at(weights_of(k, 1 - 0.0015 / length, 0.0015 / length));
+      EXPECT_LT((near_end - ((own + next).normalized() + vertex).normalized()).norm(), 1e-4);
       // Half the band from an edge: half way between ip1 and ip2.
       const Vector3d edge = on.mesh.position(t, (k + 1) % 3) - on.mesh.position(t, k);
       const Vector3d side = on.mesh.position(t, (k + 2) % 3) - on.mesh.position(t, k);

@@ -94,7 +94,8 @@ TEST(HardCase25, GodObjectEqualsTheQuadraticProgramAfterOneTickFromAnywhere) {
                             worst, 1e-9, "1");
   support::record_hard_case(25, "the same", "== way of the proxy in ten more ticks", moved_later, 0,
                             "m");
-  support::record_hard_case(25, "the same", "<= most hops in a tick", most_hops, kHopsMax, "1");
+  EXPECT_LT(most_hops, kHopsMax);  // that many end a search that has not settled
+  support::record_hard_case(25, "the same", "< most hops in a tick", most_hops, kHopsMax, "1");
 }
 
 TEST(GodObjectCorners, EqualTheQuadraticProgramAllAlongAWay) {

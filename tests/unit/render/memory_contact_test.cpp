@@ -349,7 +349,7 @@ TEST(MemoryContact, StaysWithinItsHopsAroundANeedleAndInAThinPlate) {
       p += 0.02 * (target - p) + random.in_box(0.004);
       const bool was_touching = contact.state().touching;
       const ContactState& state = move(contact, p);
-      ASSERT_LE(state.hops, kHopsMax);
+      ASSERT_LT(state.hops, kHopsMax);  // that many end a walk that has not settled
       if (was_touching && contact.search().inside(p)) {
         ASSERT_TRUE(state.touching);
       }

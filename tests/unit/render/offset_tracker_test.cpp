@@ -336,8 +336,9 @@ TEST(HardCase26, TrackersAreOnTheTriangleThatBruteForceNamesInAFastStroke) {
   }
   EXPECT_LT(hops_max, kHopsMax / 2);
   support::record_hard_case(26, "offset tracker, 300 ticks (long form: 5000): all as brute force",
-                            "<= most hops in a tick", hops_max, kHopsMax, "1");
-  support::record_hard_case(26, "edge planes, the same", "<= most hops in a tick", most_flat_hops,
+                            "< most hops in a tick", hops_max, kHopsMax, "1");
+  EXPECT_LT(most_flat_hops, kHopsMax);
+  support::record_hard_case(26, "edge planes, the same", "< most hops in a tick", most_flat_hops,
                             kHopsMax, "1");
 }
 
@@ -392,7 +393,7 @@ TEST(OffsetTracker, LosesNoContactHoweverDeepThePress) {
         deepest = std::max(deepest, state.depth);
         ASSERT_GE(state.depth, 0);
         ASSERT_NEAR(state.n_W.norm(), 1, 1e-12);
-        ASSERT_LE(state.hops, kHopsMax);
+        ASSERT_LT(state.hops, kHopsMax);  // that many end a walk that has not settled
       }
     };
     walk();

@@ -69,6 +69,17 @@ bool read_one(const H5Handle& file, const char* name, hid_t type, T& value) {
          H5Dread(set.id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, &value) >= 0;
 }
 
+/// Puts a question mark for each character that would move a terminal instead of being shown.
+void make_printable(std::string& text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto c = static_cast<unsigned char>(text[i]);
+    const auto before = static_cast<unsigned char>(i > 0 ? text[i - 1] : 0);
+    const bool second_control = before == 0xC2 && c >= 0x80 && c < 0xA0;  // U+0080 to U+009F
+    if (c < 0x20 || c == 0x7F || second_control) text[i] = '?';
+    if (second_control) text[i - 1] = '?';
+  }
+}
+
 bool read_info(const H5Handle& file, RecordingInfo& info) {
   for (const auto& [name, text] :
        {std::pair{"scene", &info.scene}, std::pair{"scene_file", &info.scene_file},
@@ -79,6 +90,10 @@ bool read_info(const H5Handle& file, RecordingInfo& info) {
     auto read = read_text(file, name);
     if (!read) return false;
     *text = std::move(*read);
+  }
+  // What a person is told of; the texts of files stay as they were.
+  for (std::string* name : {&info.scene, &info.arm, &info.device, &info.clock, &info.program}) {
+    make_printable(*name);
   }
   return read_attribute(file, "rate", H5T_NATIVE_DOUBLE, info.rate) && info.rate > 0 &&
          read_attribute(file, "seed", H5T_NATIVE_UINT64, info.seed);

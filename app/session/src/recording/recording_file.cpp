@@ -8,6 +8,7 @@
 #include <bit>
 #include <cerrno>
 #include <cstring>
+#include <fstream>
 #include <string>
 #include <system_error>
 
@@ -91,6 +92,18 @@ bool write_info(const H5Handle& file, const RecordingInfo& info) {
          write_number(file, "format", H5T_STD_I32LE, H5T_NATIVE_INT, kRecordingFormat);
 }
 
+/// Returns whether there is a file with something in it that is not HDF5.
+bool holds_something_else(const std::filesystem::path& path) {
+  constexpr std::array<char, 8> kSignature{'\x89', 'H', 'D', 'F', '\r', '\n', '\x1a', '\n'};
+  std::error_code status;
+  if (!std::filesystem::is_regular_file(path, status)) return false;
+  const std::uintmax_t size = std::filesystem::file_size(path, status);
+  if (status || size == 0) return false;
+  std::array<char, 8> begin{};
+  std::ifstream(path, std::ios::binary).read(begin.data(), begin.size());
+  return begin != kSignature;
+}
+
 }  // namespace
 
 RecordingFile::RecordingFile(RecordingFile&& other) noexcept
@@ -118,6 +131,11 @@ driver::Result<RecordingFile> RecordingFile::create(const std::filesystem::path&
 
 driver::Result<void> RecordingFile::lay_out() {
   silence_hdf5();
+  if (holds_something_else(path_)) {
+    return driver::Error{path_.string() +
+                         ": this file is no recording, so it is not overwritten by one. Give the "
+                         "recording another name, or remove the file."};
+  }
   const driver::Error refused{path_.string() +
                               ": a recording cannot be written here. Is the folder there, may you "
                               "write to it, and is there room on the disk?"};

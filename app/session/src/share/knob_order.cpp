@@ -1,5 +1,7 @@
 #include "share/knob_order.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <cstdlib>
 
@@ -16,11 +18,18 @@ driver::Result<void> turn_knob(SharedReader& reader, const std::string& order) {
   }
   std::string known;
   for (std::size_t i = 0; i < reader.scene().knobs.size(); ++i) {
-    if (reader.scene().knobs[i].name == name) {
+    const SharedScene::Knob& knob = reader.scene().knobs[i];
+    if (knob.name == name) {
+      if (value < knob.least || value > knob.most) {
+        return driver::Error{
+            fmt::format("--turn: {} may be {:g} to {:g} {}, found {:g}; nothing was "
+                        "turned.",
+                        name, knob.least, knob.most, knob.unit, value)};
+      }
       reader.turn_knob(i, value);
       return {};
     }
-    known += "\n    " + reader.scene().knobs[i].name;
+    known += "\n    " + knob.name;
   }
   return driver::Error{"--turn: the run has no knob \"" + name + "\"" +
                        (known.empty() ? "." : "; it has" + known)};

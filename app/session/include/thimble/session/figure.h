@@ -10,6 +10,7 @@ struct Figure {
   double value = 0;  ///< In `unit`.
   std::string unit;  ///< Empty for numbers of things.
   std::string goal;  ///< A comparison in text (">= 20", "<= 5", "== 0", "> 1", "< 2"); empty: none.
+  std::string note{};  ///< Where the value was found, or why nothing is asked of it; may be empty.
 
   /// Returns whether the value meets the goal; a figure without one is met. NaN meets no goal, and
   /// nothing meets a goal that is no comparison.

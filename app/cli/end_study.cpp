@@ -1,0 +1,22 @@
+#include "cli/end_study.h"
+
+#include <cstdio>
+
+#include "cli/complain.h"
+
+namespace thimble::app {
+
+ExitCode end_study(const std::vector<Figure>& figures, const std::filesystem::path& folder,
+                   const std::string& where_to_look) {
+  if (const auto written = write_figures(figures, folder / "figures.json"); !written) {
+    return complain(written.error(), kExitTrouble);
+  }
+  std::printf("%s\nWritten to %s%s.\n", figure_table(figures).c_str(), folder.c_str(),
+              where_to_look.c_str());
+  const std::string unmet = unmet_line(figures);
+  if (unmet.empty()) return kExitDone;
+  std::printf("%s\n", unmet.c_str());
+  return kExitUnmet;
+}
+
+}  // namespace thimble::app

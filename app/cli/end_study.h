@@ -1,0 +1,19 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "cli/exit_code.h"
+#include "report/figure.h"
+
+namespace thimble::app {
+
+/// Writes a study's figures to figures.json in its folder, prints them as a table, where they are
+/// and `where_to_look` in it, and in the last line what misses its goal. Returns the exit code:
+/// that of unmet figures, or of a file that could not be written. Real-time: never from the servo
+/// thread.
+ExitCode end_study(const std::vector<Figure>& figures, const std::filesystem::path& folder,
+                   const std::string& where_to_look = {});
+
+}  // namespace thimble::app
