@@ -3,17 +3,22 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <random>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "hand/sphere_tree.h"
 #include "hand/surface_probe.h"
+#include "mesh/closest_point.h"
 #include "support/shapes.h"
 #include "thimble/render/mesh/load_mesh.h"
 #include "thimble/render/mesh/placed_mesh.h"
@@ -83,9 +88,43 @@ TEST(SurfaceProbe, FindsTheSamePointAsALookAtEveryTriangle) {
   Vector3d p(0.01, 0.02, 0.03);
   for (int i = 0; i < 500; ++i) {
     p += Vector3d(step(random), step(random), step(random));
-    // A fresh probe gathers anew and so cannot miss anything that the walk left behind.
-    scene::SurfaceProbe fresh(mesh);
-    EXPECT_NEAR((probe.closest(p).p_WS - p).norm(), (fresh.closest(p).p_WS - p).norm(), 1e-15);
+    double nearest = 1;
+    for (const auto& [a, b, c] : mesh.triangles) {
+      const auto at = [&mesh](std::int32_t v) {
+        return mesh.vertices[static_cast<std::size_t>(v)];
+      };
+      nearest = std::min(nearest, (render::closest_point(p, at(a), at(b), at(c)) - p).norm());
+    }
+    EXPECT_NEAR((probe.closest(p).p_WS - p).norm(), nearest, 1e-15);
+  }
+}
+
+TEST(SphereTree, GivesTheAnswersOfALookAtAllSpheres) {
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> place(-0.1, 0.1), size(0, 0.01);
+  for (const int count : {0, 1, 8, 9, 100, 1000}) {
+    std::vector<scene::SphereTree::Sphere> spheres(static_cast<std::size_t>(count));
+    for (auto& sphere : spheres) {
+      // In rows, so that many are as far as others along one axis.
+      sphere.center = {place(random), std::round(50 * place(random)) / 50, 0};
+      sphere.radius = size(random);
+    }
+    const scene::SphereTree tree(spheres);
+    std::vector<std::size_t> found;
+    for (int i = 0; i < 50; ++i) {
+      const Vector3d p(place(random), place(random), place(random));
+      double nearest = std::numeric_limits<double>::infinity();
+      for (const auto& sphere : spheres) {
+        nearest = std::min(nearest, sphere.distance(p) + sphere.radius);
+      }
+      EXPECT_EQ(tree.nearest_far_side(p), nearest);
+      std::vector<std::size_t> expected;
+      for (std::size_t k = 0; k < spheres.size(); ++k) {
+        if (spheres[k].distance(p) - spheres[k].radius <= 0.05) expected.push_back(k);
+      }
+      tree.find_within(p, 0.05, found);
+      EXPECT_EQ(found, expected);
+    }
   }
 }
 

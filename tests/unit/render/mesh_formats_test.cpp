@@ -168,6 +168,20 @@ TEST(MeshFormats, AnswerGarbageWithASentence) {
   }
 }
 
+// Assimp never gets past a letter among the corners, and asks for memory meanwhile.
+TEST(MeshFormats, AreGivenUpSoonWhereTheirReaderNeverEnds) {
+  std::string bytes = bytes_of(kMeshes / "box.dae");
+  const std::size_t corners = bytes.find("<p>");
+  ASSERT_NE(corners, std::string::npos);
+  bytes.replace(corners + 3, 1, "x");
+  const auto mesh = load_bytes("endless.dae", bytes);
+  ASSERT_FALSE(mesh.ok());
+  const std::string& told = mesh.error().message;
+  EXPECT_TRUE(told.find("needs more memory than its size allows") != std::string::npos ||
+              told.find("takes more than 2 s") != std::string::npos)
+      << told;
+}
+
 TEST(RunApart, GivesWhatTheWorkGives) {
   const std::string much(20'000'000, 'x');
   const auto done = run_apart([&] { return much; }, {});

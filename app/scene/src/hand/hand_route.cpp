@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <sstream>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "hand/surface_probe.h"
 #include "hand/surface_route.h"
@@ -94,7 +97,13 @@ class LongPath {
   std::vector<double> gone_;  // length up to each point, m
 };
 
-// Plans one route; `routed` says which stretches go the long path, because the straight one jumps.
+// Where the hand goes where the straight path jumps.
+struct Detour {
+  LongPath path;
+  bool on_surface = false;
+};
+
+// Plans one route; `routed` says which stretches take a detour, because the straight path jumps.
 class Plan {
  public:
   Plan(const std::vector<HandWaypoint>& waypoints, const std::vector<NamedMesh>& objects)
@@ -160,7 +169,7 @@ class Plan {
     for (std::size_t i = 0; i + 1 < waypoints_.size(); ++i) {
       const HandWaypoint& to = waypoints_[i + 1];
       const bool on_surface = follows_surface(waypoints_[i], to);
-      if (!(routed_[i] ? go_long_path(i) : go_straight(i))) return i;
+      if (!(routed_[i] ? take_detour(i) : go_straight(i))) return i;
       const bool goes_on = i + 2 < waypoints_.size() && follows_surface(to, waypoints_[i + 2]);
       if (on_surface && !(goes_on && !to.stop)) smooth(route_, run_begin, route_.size() - 1);
       if (!on_surface || to.stop) run_begin = route_.size() - 1;
@@ -198,27 +207,36 @@ class Plan {
     return true;
   }
 
-  // Goes over the surface where it hangs together, else over what lies between its parts.
-  bool go_long_path(std::size_t i) {
+  // Finds a path over the surface where it hangs together, else over what lies between its parts.
+  std::optional<Detour> find_detour(std::size_t i) {
     const HandWaypoint& from = waypoints_[i];
     const HandWaypoint& to = waypoints_[i + 1];
-    SurfaceProbe& probe = probes_.at(*from.on);
     SurfaceRoute& route = routes_.at(*from.on);
     std::vector<Vector3d> points = route.over_surface(from.p_W, to.p_W);
-    const bool on_surface = !points.empty();
-    if (!on_surface) points = route.over_the_gap(stations_[i], stations_[i + 1]);
-    if (points.empty()) return false;
-    if (!on_surface) {
-      points.front() = stations_[i];
-      points.back() = stations_[i + 1];
+    if (!points.empty()) return Detour{LongPath(std::move(points)), true};
+    points = route.over_the_gap(stations_[i], stations_[i + 1]);
+    if (points.empty()) return {};
+    points.front() = stations_[i];
+    points.back() = stations_[i + 1];
+    return Detour{LongPath(std::move(points)), false};
+  }
+
+  bool take_detour(std::size_t i) {
+    const HandWaypoint& from = waypoints_[i];
+    const HandWaypoint& to = waypoints_[i + 1];
+    if (!detours_.contains(i)) {
+      std::optional<Detour> found = find_detour(i);
+      if (!found) return false;
+      detours_.emplace(i, std::move(*found));
     }
-    const LongPath path(std::move(points));
+    const Detour& detour = detours_.at(i);
     const int steps = steps_of(to.time - from.time);
     for (int step = 1; step <= steps; ++step) {
       const double s = static_cast<double>(step) / steps;
-      Vector3d p_WH = path.at(eased(s));
-      if (on_surface) {
-        p_WH = pressed(probe.closest(p_WH), from.press + eased(s) * (to.press - from.press));
+      Vector3d p_WH = detour.path.at(eased(s));
+      if (detour.on_surface) {
+        const SurfacePoint point = probes_.at(*from.on).closest(p_WH);
+        p_WH = pressed(point, from.press + eased(s) * (to.press - from.press));
       }
       route_.emplace_back(step == steps ? to.time : from.time + s * (to.time - from.time), p_WH);
     }
@@ -229,6 +247,7 @@ class Plan {
   std::vector<bool> routed_;  // of the stretch that begins at each station
   std::map<std::string, SurfaceProbe> probes_;
   std::map<std::string, SurfaceRoute> routes_;
+  std::map<std::size_t, Detour> detours_;  // those found, by the station where they begin
   std::vector<Vector3d> stations_;
   HandRoute route_;
 };

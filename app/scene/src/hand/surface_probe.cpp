@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 
 #include "mesh/vertex_normals.h"
 
@@ -50,21 +52,29 @@ std::array<Vector3d, 3> corners(const render::TriangleMesh& mesh, std::size_t tr
           mesh.vertices[static_cast<std::size_t>(t[2])]};
 }
 
+std::vector<SphereTree::Sphere> spheres_around(const render::TriangleMesh& mesh) {
+  std::vector<SphereTree::Sphere> spheres;
+  for (std::size_t triangle = 0; triangle < mesh.triangles.size(); ++triangle) {
+    const std::array<Vector3d, 3> corner = corners(mesh, triangle);
+    SphereTree::Sphere sphere{.center = (corner[0] + corner[1] + corner[2]) / 3};
+    for (const Vector3d& c : corner) {
+      sphere.radius = std::max(sphere.radius, (c - sphere.center).norm());
+    }
+    spheres.push_back(sphere);
+  }
+  return spheres;
+}
+
 }  // namespace
 
 SurfaceProbe::SurfaceProbe(const render::TriangleMesh& mesh)
-    : mesh_(mesh), normals_(render::vertex_normals(mesh)) {
+    : mesh_(mesh),
+      normals_(render::vertex_normals(mesh)),
+      spheres_(spheres_around(mesh)),
+      tree_(spheres_) {
   Eigen::AlignedBox3d box;
-  for (std::size_t triangle = 0; triangle < mesh.triangles.size(); ++triangle) {
-    const std::array<Vector3d, 3> corner = corners(mesh, triangle);
-    const Vector3d center = (corner[0] + corner[1] + corner[2]) / 3;
-    double radius = 0;
-    for (const Vector3d& c : corner) {
-      radius = std::max(radius, (c - center).norm());
-      box.extend(c);
-    }
-    centers_.push_back(center);
-    radii_.push_back(radius);
+  for (const auto& triangle : mesh.triangles) {
+    for (const std::int32_t v : triangle) box.extend(mesh.vertices[static_cast<std::size_t>(v)]);
   }
   slack_ = 0.02 * box.diagonal().norm();  // chosen: some tens of gatherings along a path
 }
@@ -77,14 +87,7 @@ SurfacePoint SurfaceProbe::closest(const Vector3d& p_WQ) {
 void SurfaceProbe::gather(const Vector3d& p_WQ) {
   // No triangle is farther than its sphere's far side; and while the question moves by `slack_`, a
   // distance changes by at most `slack_`. So whatever can be closest meanwhile is in this list.
-  double nearest = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < centers_.size(); ++i) {
-    nearest = std::min(nearest, (centers_[i] - p_WQ).norm() + radii_[i]);
-  }
-  candidates_.clear();
-  for (std::size_t i = 0; i < centers_.size(); ++i) {
-    if ((centers_[i] - p_WQ).norm() - radii_[i] <= nearest + 2 * slack_) candidates_.push_back(i);
-  }
+  tree_.find_within(p_WQ, tree_.nearest_far_side(p_WQ) + 2 * slack_, candidates_);
   gathered_at_ = p_WQ;
 }
 
@@ -92,7 +95,7 @@ SurfacePoint SurfaceProbe::closest_candidate(const Vector3d& p_WQ) const {
   SurfacePoint best;
   double best_distance = std::numeric_limits<double>::infinity();
   for (const std::size_t i : candidates_) {
-    const double reach = (centers_[i] - p_WQ).norm() - radii_[i];
+    const double reach = spheres_[i].distance(p_WQ) - spheres_[i].radius;
     if (reach > 0 && reach * reach > best_distance) continue;
     const std::array<Vector3d, 3> corner = corners(mesh_, i);
     const Vector3d weights = closest_weights(corner, p_WQ);

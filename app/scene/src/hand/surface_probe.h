@@ -5,6 +5,7 @@
 #include <limits>
 #include <vector>
 
+#include "hand/sphere_tree.h"
 #include "thimble/render/mesh/triangle_mesh.h"
 
 namespace thimble::scene {
@@ -32,10 +33,10 @@ class SurfaceProbe {
   SurfacePoint closest_candidate(const Eigen::Vector3d& p_WQ) const;
 
   const render::TriangleMesh& mesh_;
-  std::vector<Eigen::Vector3d> normals_;  // of the vertices
-  std::vector<Eigen::Vector3d> centers_;  // of spheres that hold one triangle each
-  std::vector<double> radii_;
-  std::vector<std::size_t> candidates_;
+  std::vector<Eigen::Vector3d> normals_;           // of the vertices
+  const std::vector<SphereTree::Sphere> spheres_;  // each holds one triangle
+  const SphereTree tree_;
+  std::vector<std::size_t> candidates_;  // triangles, in rising order
   Eigen::Vector3d gathered_at_{0, 0, 0};
   double slack_ = 0;  // m the question may move before candidates_ is out of date
 };
