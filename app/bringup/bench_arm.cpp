@@ -18,21 +18,18 @@ driver::Result<std::unique_ptr<BenchArm>> BenchArm::open(
     const std::filesystem::path& firmware,
     const std::vector<std::pair<double, Eigen::Vector3d>>& hand_W, double force_max) {
   std::unique_ptr<BenchArm> bench(new BenchArm);
-  std::unique_ptr<driver::Transport> wire;
-  std::unique_ptr<const driver::Arm> protocol;
+  std::unique_ptr<driver::ArmLink> link;
   if (real_arm) {
     bench->clock_ = std::make_unique<driver::WallClock>();
-    auto opened = scene::open_wire(*real_arm, file, firmware, *bench->clock_);
+    auto opened = scene::open_link(*real_arm, file, firmware, *bench->clock_);
     if (!opened) return opened.error();
-    wire = std::move(opened).value();
-    protocol = scene::make_arm(file, real_arm->kind);
+    link = std::move(opened).value();
   } else {
     bench->clock_ = std::make_unique<driver::VirtualClock>();
     auto simulation = scene::ArmSimulation::make(file, hand_W, firmware);
     if (!simulation) return simulation.error();
     bench->simulation_ = std::move(simulation).value();
-    wire = bench->simulation_->wire(*bench->clock_);
-    protocol = bench->simulation_->protocol();
+    link = bench->simulation_->link(*bench->clock_);
   }
   // Without the energy stage: what is tried here must be felt as it is sent.
   driver::DeviceSettings settings =
@@ -41,8 +38,7 @@ driver::Result<std::unique_ptr<BenchArm>> BenchArm::open(
   driver::HeatSettings& heat = settings.heat;
   if (real_arm && heat.named())
     heat.at_start = scene::load_heat(real_arm->name(), heat, scene::world_time()).heat;
-  auto device = driver::Device::open(std::move(wire), std::move(protocol), settings,
-                                     bench->clock_->now_ns());
+  auto device = driver::Device::open(std::move(link), settings, bench->clock_->now_ns());
   if (!device) return device.error();
   bench->device_ = std::move(device).value();
   if (real_arm && heat.named()) {

@@ -136,7 +136,7 @@ class Check {
   Eigen::Vector3d radians_per_count() const {
     Eigen::Vector3d step;
     for (std::size_t i = 0; i < 3; ++i) {
-      step[static_cast<Eigen::Index>(i)] = file_.model.step(static_cast<int>(i));
+      step[static_cast<Eigen::Index>(i)] = file_.model.step(i);
     }
     return step;
   }

@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "arm_table.h"
 #include "bringup/bench_arm.h"
 #include "cli/arm_choice.h"
 #include "cli/commands.h"
@@ -34,7 +35,7 @@ std::vector<std::pair<double, Eigen::Vector3d>> simulated_hand(const Eigen::Vect
 }
 
 Eigen::Vector3d home_of(const scene::ArmFile& file) {
-  return file.p_WB + file.R_WB * make_arm(file, scene::simulated_kind(file))->pose({}).p_BT;
+  return file.p_WB + file.R_WB * driver::make_arm(file.protocol, file.model)->pose({}).p_BT;
 }
 
 int calibrate(const ArmChoice& choice, bool dry_run) {
@@ -71,8 +72,7 @@ int calibrate(const ArmChoice& choice, bool dry_run) {
       return complain({"Nobody is at the terminal."}, kExitBadInput);
     readings[i].counts = (*bench)->device().state().counts;
   }
-  const driver::ArmKind kind =
-      chosen->real_arm ? chosen->real_arm->kind : scene::simulated_kind(chosen->file);
+  const driver::ArmKind kind = chosen->real_arm ? chosen->real_arm->kind : chosen->file.protocol;
   auto found = scene::find_calibration(chosen->file, kind, readings[0],
                                        {readings[1], readings[2], readings[3]});
   if (!found) return complain(found.error(), kExitTrouble);

@@ -22,6 +22,7 @@ struct LogOptions {
 /// Lets a command leave the options that it does not know to the program.
 void fall_through(CLI::App& above) {
   for (CLI::App* command : above.get_subcommands([](const CLI::App*) { return true; })) {
+    if (command->get_prefix_command()) continue;  // it takes anything, and does nothing with it
     command->fallthrough();
     fall_through(*command);
   }

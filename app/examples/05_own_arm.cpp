@@ -9,6 +9,7 @@
 #include "thimble/driver/device.h"
 #include "thimble/driver/servo_loop.h"
 #include "thimble/driver/wire_arm.h"
+#include "thimble/driver/wire_link.h"
 
 namespace driver = thimble::driver;
 
@@ -68,15 +69,16 @@ int main() {
   driver::JointModel<Gantry> model;
   model.drives.fill({.sign = 1, .ratio = 1, .torque_constant = 0.02, .current_max = 2});
   model.encoders.fill({.sign = 1, .counts_per_motor_turn = 4000, .home_counts = 0});
-  auto device = driver::Device::open(std::move(line),
-                                     std::make_unique<driver::WireArm<GantryWire, Gantry>>(model),
-                                     {.limits = {.force_max = 3,
-                                                 .speed_max = 1,
-                                                 .rise_max = 2000,
-                                                 .soft_start = 0.1,
-                                                 .stall_ns = 20'000'000,
-                                                 .watchdog_ns = 100'000'000}},
-                                     clock.now_ns());
+  auto device = driver::Device::open(
+      std::make_unique<driver::WireLink>(
+          std::move(line), std::make_unique<driver::WireArm<GantryWire, Gantry>>(model)),
+      {.limits = {.force_max = 3,
+                  .speed_max = 1,
+                  .rise_max = 2000,
+                  .soft_start = 0.1,
+                  .stall_ns = 20'000'000,
+                  .watchdog_ns = 100'000'000}},
+      clock.now_ns());
   if (!device) {
     std::fprintf(stderr, "%s\n", device.error().message.c_str());
     return 1;

@@ -47,6 +47,8 @@ const char* numpy_type(const session::RecordingColumn& column) {
       return "i8";
     case Type::kU64:
       return "u8";
+    case Type::kF32:
+      return "f4";
     case Type::kF64:
       return "f8";
   }

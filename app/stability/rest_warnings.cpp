@@ -7,7 +7,8 @@
 #include <numbers>
 
 #include "energy_choice.h"
-#include "mesh/adjacency.h"
+#include "mesh/contact_mesh.h"
+#include "mesh/smooth_normals.h"
 #include "object_mesh.h"
 #include "stability/draw.h"
 #include "stability/tuning.h"
@@ -69,18 +70,21 @@ void warn_of_facets(const scene::SceneObject& object, std::vector<std::string>& 
                     object.name));
     return;
   }
-  if (god_object) return;
-  const auto mesh = scene::load_object_mesh(object);
+  // All other trackers are held by both faces of a hollow edge at once.
+  if (object.contact.tracker != render::TrackerChoice::kNormalProjection) return;
+  const auto file = scene::load_object_mesh(object);
+  if (!file) return;
+  const auto mesh = render::ContactMesh::build(file->mesh_W);
   if (!mesh) return;
   // A jump of 2 F sin(angle / 2), to and fro, has half of it as its RMS.
   const double felt = 2 * std::asin(kFelt / kPressed);
-  const double smooth_up_to = object.contact.crease_angle.value_or(std::numbers::pi);
-  const double hollow = sharpest_hollow(mesh->mesh_W, flat ? felt : std::max(felt, smooth_up_to));
+  const double smooth_up_to = object.contact.crease_angle.value_or(render::kCreaseAngle);
+  const double hollow = sharpest_hollow(*mesh, flat ? felt : std::max(felt, smooth_up_to));
   if (!(hollow > 0)) return;
   warnings.push_back(fmt::format(
       "{} has hollows with edges of up to {:.0f} degrees and is felt by flat facets there: a tip "
       "that rests on such an edge jumps sideways by {:.2g} N for each newton pressed, at every "
-      "count of an encoder: set contact: {{blending: sized_band}}, or tracker: compact.",
+      "count of an encoder: take another tracker.",
       object.name, hollow / kDegree, 2 * std::sin(hollow / 2)));
 }
 
@@ -235,30 +239,15 @@ double hold_of(const render::EffectPlan& friction) {
   return std::max(0.0, (force_at(0, 20) - force_at(kProbe, 21)) / kProbe);
 }
 
-double sharpest_hollow(const render::TriangleMesh& mesh, double from) {
-  const auto neighbours = render::find_adjacency(mesh);
-  if (!neighbours) return 0;
-  const auto corner = [&mesh](std::int32_t triangle, std::size_t k) -> const Vector3d& {
-    return mesh
-        .vertices[static_cast<std::size_t>(mesh.triangles[static_cast<std::size_t>(triangle)][k])];
-  };
-  const auto normal = [&corner](std::int32_t t) {
-    return (corner(t, 1) - corner(t, 0)).cross(corner(t, 2) - corner(t, 0)).normalized();
-  };
+double sharpest_hollow(const render::ContactMesh& mesh, double from) {
   double most = 0;
-  for (std::int32_t t = 0; t < static_cast<std::int32_t>(mesh.triangles.size()); ++t) {
-    const Vector3d n = normal(t);
-    for (const std::int32_t other : (*neighbours)[static_cast<std::size_t>(t)]) {
-      if (other < t) continue;  // each edge once
-      double above = 0;
-      for (std::size_t k = 0; k < 3; ++k) {
-        above = std::max(above, n.dot(corner(other, k) - corner(t, 0)));
-      }
-      const Vector3d m = normal(other);
-      const double angle = std::atan2(n.cross(m).norm(), n.dot(m));
-      if (above > 1e-9 * (corner(t, 1) - corner(t, 0)).norm() && angle > from) {
-        most = std::max(most, angle);
-      }
+  for (std::int32_t t = 0; t < mesh.triangle_count(); ++t) {
+    const render::TriangleCell& cell = mesh.cell(t);
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (!cell.hollow_edge(k)) continue;
+      // An edge plane leans back by half the angle.
+      const double angle = 2 * std::asin(std::min(1.0, -cell.edges[k].n.dot(cell.face.n)));
+      if (angle > from) most = std::max(most, angle);
     }
   }
   return most;

@@ -3,8 +3,11 @@
 #include <string>
 #include <vector>
 
-#include "thimble/render/mesh/triangle_mesh.h"
 #include "thimble/scene/scene_file.h"
+
+namespace thimble::render {
+class ContactMesh;
+}
 
 namespace thimble::app {
 
@@ -30,9 +33,10 @@ double curvature_of(const render::EffectPlan& texture);
 /// not hold.
 double hold_of(const render::EffectPlan& friction);
 
-/// Finds the sharpest hollow edge of a mesh, rad: by so much the normal turns where a tip that
-/// rests in the hollow goes from one facet to the next. Edges up to `from` (rad) are passed over.
-double sharpest_hollow(const render::TriangleMesh& mesh, double from);
+/// Finds the sharpest hollow edge of a mesh as it is touched (wound outwards), rad: by so much the
+/// normal turns where a tip that rests in the hollow goes from one facet to the next. Edges up to
+/// `from` (rad) are passed over.
+double sharpest_hollow(const render::ContactMesh& mesh, double from);
 
 /// Finds the force (N RMS) by which damping `damping` (N s/m) grates on encoders of `step` (m) at a
 /// `speed` (m/s), through a velocity filter of `corner` (Hz; 0: none) in a loop of `period` (s).

@@ -31,10 +31,7 @@ struct Edges {
 /// Takes dry friction, encoder steps and tremor from an arm: what is left is what the law is about.
 scene::ArmFile without_friction(scene::ArmFile arm) {
   arm.simulated.plant.coulomb = 0;
-  // Only this wire has fractions of counts; the others keep their steps.
-  if (arm.shape == scene::ArmShape::kSerial && arm.protocol == scene::ArmProtocol::kHfab14Byte) {
-    arm.model.fractional_counts = true;
-  }
+  arm.simulated.firmware.ideal_encoders = !arm.is<driver::DeltaArm>();
   return arm;
 }
 
@@ -191,7 +188,7 @@ TuneResult tune(const scene::Scene& scene, const TuneOptions& options) {
     result.figures.push_back({name + ".law", carried.stiffness_law, "N/m", ""});
     result.figures.push_back({name + ".exact", carried.stiffness_exact, "N/m", ""});
     double edge = carried.stiffness_exact;
-    if (arm.shape == scene::ArmShape::kFalcon) {
+    if (arm.is<driver::DeltaArm>()) {
       result.text += "  simulated not: a Falcon's simulation is for whole scenes only\n";
     } else {
       const Edges edges =

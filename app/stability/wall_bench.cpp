@@ -33,20 +33,16 @@ driver::Result<HomeSteps> home_steps(const scene::ArmFile& arm) {
   const Vector3d q = arm.model.joint_angles({});
   Vector3d p_BT;
   Matrix3d J_BT;
-  switch (arm.shape) {
-    case scene::ArmShape::kSerial:
-      arm.model.geometry.forward(q, p_BT, J_BT);
-      break;
-    case scene::ArmShape::kPolhem:
-      driver::hfab::polhem_model().geometry.forward(q, p_BT, J_BT);
-      break;
-    case scene::ArmShape::kFalcon:
-      return driver::Error{arm.name +
-                           ": the study needs an arm whose board reports by itself, which this one "
-                           "does not; vintage_phantom.yaml is one."};
+  if (arm.is<driver::DeltaArm>()) {
+    return driver::Error{arm.name +
+                         ": the study needs an arm whose board reports by itself, which this one "
+                         "does not; vintage_phantom.yaml is one."};
   }
+  std::visit([&](const auto& build) { build.forward(q, p_BT, J_BT); }, arm.model.geometry);
   HomeSteps steps{arm.p_WB + arm.R_WB * p_BT, arm.R_WB * J_BT};
-  for (int i = 0; i < 3; ++i) steps.ways_W.col(i) *= arm.model.step(i);
+  for (int i = 0; i < 3; ++i) {
+    steps.ways_W.col(i) *= arm.model.step(static_cast<std::size_t>(i));
+  }
   return steps;
 }
 
@@ -71,12 +67,13 @@ scene::ArmFile arm_of(const scene::ArmFile& file, const WallCase& wall) {
     for (auto& encoder : arm.model.encoders) {
       // The home pose stays in the middle of a step, as it is with the arm's own encoders; where a
       // wall stands between two steps decides whether it can rest.
-      const double home = std::round(encoder.home_counts * finer);
-      encoder.counts_per_motor_turn *= home != 0 ? home / encoder.home_counts : finer;
-      encoder.home_counts = static_cast<std::int32_t>(home);
+      const auto own = static_cast<double>(encoder.home_counts);
+      const double home = std::round(own * finer);
+      encoder.counts_per_motor_turn *= home != 0 ? home / own : finer;
+      encoder.home_counts = static_cast<std::int64_t>(home);
     }
   }
-  if (!wall.own_step && !(wall.step > 0)) arm.model.fractional_counts = true;
+  if (!wall.own_step && !(wall.step > 0)) arm.simulated.firmware.ideal_encoders = true;
   if (!wall.own_limits) {
     // No limit is felt: the soft start lets 20 N through in a microsecond.
     arm.limits = {.force_max = 1e6,
@@ -145,7 +142,7 @@ driver::Result<WallRun> run_wall(const scene::ArmFile& file, const WallCase& wal
                          "it; take another arm file (vintage_phantom.yaml is one)."};
   }
   driver::VirtualClock clock;
-  auto opened = driver::Device::open((*simulation)->wire(clock), (*simulation)->protocol(),
+  auto opened = driver::Device::open((*simulation)->link(clock),
                                      {.R_WB = arm.R_WB,
                                       .p_WB = arm.p_WB,
                                       .limits = arm.limits,

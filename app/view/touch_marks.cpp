@@ -42,6 +42,21 @@ void add_arm(const DrawnMoment& moment, TouchMarks& marks) {
   }
 }
 
+// The stylus that a gimbal holds: a pen along its x from the tip on, with a button on its z side,
+// so that a roll is seen.
+void add_stylus(const DrawnMoment& moment, TouchMarks& marks) {
+  constexpr double kPoint = 0.012, kLength = 0.11, kWidth = 0.0045, kButton = 0.0022;  // m
+  const Point tip = point(moment.tick.p_WT);
+  if (moment.tick.q_WT == driver::TipQuaternion{} || !tip.allFinite()) return;
+  const Eigen::Matrix3d R_WT = driver::rotation_of(moment.tick.q_WT);
+  const Point along = R_WT.col(0);
+  const Point grip = tip + kPoint * along;
+  marks.solids.push_back(cone(grip, tip, kWidth, kJointColour));
+  marks.solids.push_back(rod(grip, tip + kLength * along, kWidth, kArmColour));
+  marks.solids.push_back(
+      ball(tip + 3 * kPoint * along + kWidth * R_WT.col(2), kButton, kTipColour));
+}
+
 /// Tells where the touch is seen: the proxy on a stiff surface; on one that is bent, where the tip
 /// has taken it.
 Point touched_point(const DrawnMoment& moment) {
@@ -152,6 +167,7 @@ TouchMarks mark_touch(const DrawnScene& scene, const DrawnMoment& moment, double
   const double thick = 0.0032 * eye_distance;
   TouchMarks marks;
   if (choice.arm) add_arm(moment, marks);
+  if (choice.arm) add_stylus(moment, marks);
   if (choice.force) add_force(scene, moment, thick, marks);
   if (choice.tip) add_tip(moment, thick, marks);
   if (choice.edge_planes) add_edge_planes(scene, moment, marks);

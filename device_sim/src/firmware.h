@@ -4,11 +4,12 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 
-#include "arms/hfab/hfab_report.h"
+#include "board_bytes.h"
 #include "thimble/device_sim/settings.h"
-#include "thimble/driver/arms/hfab/hfab_arm.h"
+#include "thimble/driver/arm_model.h"
 #include "thimble/driver/result.h"
 
 namespace thimble::device_sim {
@@ -34,18 +35,21 @@ class Firmware {
   static constexpr std::int64_t kNever_ns = INT64_MAX;
 
   /// Makes the board of a model's motors and encoders; its geometry does not matter. Fails if a
-  /// period is not above zero, the range negative, an encoder has no counts, or the wiring names a
-  /// joint that is not there. Real-time: never from the servo thread.
-  static driver::Result<Firmware> make(const driver::hfab::HfabModel& model,
+  /// period is not above zero, the range negative, an encoder has no counts, the wiring names a
+  /// joint that is not there, or it cannot speak what it is asked to. Real-time: never from the
+  /// servo thread.
+  static driver::Result<Firmware> make(const driver::ArmModel& model,
                                        const FirmwareSettings& settings);
 
-  /// Samples the encoders of an arm at these true joint angles (rad) into the report the board
-  /// would send.
-  std::array<std::byte, driver::hfab::kReportSize> sample(const Eigen::Vector3d& q) const noexcept;
+  /// Samples the encoders of an arm at these true joint angles, and those of its gimbal (rad), into
+  /// the report with this number that the board would send.
+  BoardBytes sample(const Eigen::Vector3d& q, const Eigen::Vector3d& gimbal = {0, 0, 0},
+                    std::uint16_t number = 0) const noexcept;
 
-  /// Takes a message that arrived at `time_ns` with the arm at these true joint angles (rad).
-  void receive(std::span<const std::byte> message, std::int64_t time_ns,
-               const Eigen::Vector3d& q) noexcept;
+  /// Takes a message that arrived at `time_ns` with the arm and its gimbal at these true angles
+  /// (rad).
+  void receive(std::span<const std::byte> message, std::int64_t time_ns, const Eigen::Vector3d& q,
+               const Eigen::Vector3d& gimbal = {0, 0, 0}) noexcept;
 
   /// Switches the motors off if no message came for the watchdog's time.
   void watch(std::int64_t time_ns) noexcept;
@@ -65,17 +69,19 @@ class Firmware {
   const FirmwareCounters& counters() const noexcept { return counters_; }
 
  private:
-  Firmware(const driver::hfab::HfabModel& model, const FirmwareSettings& settings) noexcept;
+  Firmware(const driver::ArmModel& model, const FirmwareSettings& settings) noexcept;
   Eigen::Vector3d counts_at(const Eigen::Vector3d& q) const noexcept;
-  void preset(const driver::hfab::OutputReport& message, const Eigen::Vector3d& q) noexcept;
+  Eigen::Vector3d gimbal_counts_at(const Eigen::Vector3d& gimbal) const noexcept;
+  void preset(const std::array<std::int32_t, 6>& counters, const Eigen::Vector3d& q,
+              const Eigen::Vector3d& gimbal) noexcept;
 
   FirmwareSettings settings_;
-  bool fractional_counts_;
+  std::optional<driver::Gimbal> gimbal_;
   Eigen::Vector3d counts_per_radian_;  // with the encoder's sign
   Eigen::Vector3d home_counts_;
   FirmwareCounters counters_;
-  Eigen::Vector3d preset_counts_{0, 0, 0};       // what presets added to the counters
-  std::array<std::int16_t, 3> gimbal_counts_{};  // d, e, f: no gimbal turns, only presets count
+  // What presets added to the counters.
+  Eigen::Vector3d preset_counts_{0, 0, 0}, preset_gimbal_{0, 0, 0};
   Eigen::Vector3d amperes_{0, 0, 0};
   std::int64_t watchdog_due_ns_ = kNever_ns;
   bool button_ = false;

@@ -13,23 +13,19 @@ Eigen::Vector3d wanted_first(const HandPath& path, const Tremor& tremor) {
   return way.at(0) + tremor.at(0);
 }
 
-/// Takes what the board knows of an arm: motors and encoders.
-driver::hfab::HfabModel board_of(const driver::JointModel<driver::LinkageArm>& model) {
-  driver::hfab::HfabModel board;
-  board.drives = model.drives;
-  board.encoders = model.encoders;
-  return board;
-}
-
 }  // namespace
 
 template <class MakePlant>
-driver::Result<SimulatedArm> SimulatedArm::make_of(const driver::hfab::HfabModel& board,
+driver::Result<SimulatedArm> SimulatedArm::make_of(const driver::ArmModel& board,
                                                    const SimulatedArmSettings& settings,
                                                    HandPath path, std::uint64_t seed,
                                                    const MakePlant& make_plant) {
   if (settings.wire.delay_in_ns < 0 || settings.wire.delay_out_ns < 0) {
     return driver::Error{"The simulated wire's delays must not be negative (ns)."};
+  }
+  if (!(settings.gimbal.period > 0) || !settings.gimbal.middle.allFinite() ||
+      !settings.gimbal.swing.allFinite()) {
+    return driver::Error{"The simulated gimbal needs finite angles and a period above zero (s)."};
   }
   const auto tremor = Tremor::make(settings.hand, seed);
   if (!tremor) return tremor.error();
@@ -46,16 +42,17 @@ SimulatedArm::SimulatedArm(const SimulatedArmSettings& settings, Hand hand, AnyP
     : report_period_ns_(settings.firmware.report_period_ns),
       wire_(settings.wire),
       hand_(std::move(hand)),
+      gimbal_(settings.gimbal),
       plant_(std::move(plant)),
       firmware_(firmware) {
   sample();
   deliver();
 }
 
-driver::Result<SimulatedArm> SimulatedArm::make(const driver::hfab::HfabModel& model,
+driver::Result<SimulatedArm> SimulatedArm::make(const driver::JointModel<driver::SerialArm>& model,
                                                 const SimulatedArmSettings& settings, HandPath path,
                                                 std::uint64_t seed) {
-  return make_of(model, settings, std::move(path), seed,
+  return make_of(arm_model(model), settings, std::move(path), seed,
                  [&](const Eigen::Vector3d& p_BT, const Eigen::Vector3d& p_BH) {
                    return ArmPlant::make(model.geometry, model.drives, settings.plant,
                                          settings.hand, settings.motors, p_BT, p_BH);
@@ -65,7 +62,7 @@ driver::Result<SimulatedArm> SimulatedArm::make(const driver::hfab::HfabModel& m
 driver::Result<SimulatedArm> SimulatedArm::make(const driver::JointModel<driver::LinkageArm>& model,
                                                 const SimulatedArmSettings& settings, HandPath path,
                                                 std::uint64_t seed) {
-  return make_of(board_of(model), settings, std::move(path), seed,
+  return make_of(arm_model(model), settings, std::move(path), seed,
                  [&](const Eigen::Vector3d& p_BT, const Eigen::Vector3d& p_BH) {
                    return LinkagePlant::make(model, settings.plant, settings.hand, settings.motors,
                                              p_BT, p_BH);
@@ -103,12 +100,16 @@ void SimulatedArm::advance_to(std::int64_t time_ns) noexcept {
 }
 
 void SimulatedArm::sample() noexcept {
-  reports_.push(firmware_.sample(angles()), time_ns_ + wire_.delay_in_ns);
+  reports_.push(sample_now(), time_ns_ + wire_.delay_in_ns);
   next_sample_ns_ += report_period_ns_;
 }
 
+BoardBytes SimulatedArm::sample_now() noexcept {
+  return firmware_.sample(angles(), gimbal(), number_++);
+}
+
 void SimulatedArm::receive(std::span<const std::byte> bytes) noexcept {
-  firmware_.receive(bytes, time_ns_, angles());
+  firmware_.receive(bytes, time_ns_, angles(), gimbal());
   mechanics().set_currents(firmware_.currents());
 }
 

@@ -12,7 +12,7 @@
 #include "hand_path.h"
 #include "inverse_plant.h"
 #include "thimble/device_sim/settings.h"
-#include "thimble/driver/arms/hfab/hfab_arm.h"
+#include "thimble/driver/arm_model.h"
 #include "thimble/driver/result.h"
 #include "tremor.h"
 #include "wire_queue.h"
@@ -39,10 +39,10 @@ class SimulatedArm {
   /// Makes the arm at rest at the path's first point, with time 0. `seed` sets the tremor's phases.
   /// Fails if a constant is out of range or the path's start is out of reach. Real-time: never from
   /// the servo thread.
-  static driver::Result<SimulatedArm> make(const driver::hfab::HfabModel& model,
+  static driver::Result<SimulatedArm> make(const driver::JointModel<driver::SerialArm>& model,
                                            const SimulatedArmSettings& settings, HandPath path,
                                            std::uint64_t seed = 0);
-  /// Makes an arm with a linkage (Polhem) in the same way; its encoders have steps.
+  /// Makes an arm with a linkage (Polhem) in the same way.
   static driver::Result<SimulatedArm> make(const driver::JointModel<driver::LinkageArm>& model,
                                            const SimulatedArmSettings& settings, HandPath path,
                                            std::uint64_t seed = 0);
@@ -57,6 +57,10 @@ class SimulatedArm {
 
   /// Tells when the next report can be read, ns; never earlier than the present time.
   std::int64_t next_report_ns() const noexcept;
+
+  /// Samples the encoders at the present time, for a board that speaks when it is spoken to; the
+  /// report does not go over the wire.
+  BoardBytes sample_now() noexcept;
 
   /// Hands the host's bytes to the wire at the present time.
   void put_message(std::span<const std::byte> bytes) noexcept;
@@ -77,6 +81,10 @@ class SimulatedArm {
   }
   /// Shows the board.
   const Firmware& firmware() const noexcept { return firmware_; }
+  /// Returns how the gimbal is turned, rad; whether one is mounted or not.
+  Eigen::Vector3d gimbal() const noexcept {
+    return gimbal_.at(1e-9 * static_cast<double>(time_ns_));
+  }
   /// Tells where the hand wants to be, m.
   const Eigen::Vector3d& p_BH() const noexcept { return plant().p_BH(); }
   /// Tells how many reports or messages were lost because more than WireQueue::kFrames were in
@@ -89,7 +97,7 @@ class SimulatedArm {
   SimulatedArm(const SimulatedArmSettings& settings, Hand hand, AnyPlant plant,
                const Firmware& firmware) noexcept;
   template <class MakePlant>
-  static driver::Result<SimulatedArm> make_of(const driver::hfab::HfabModel& board,
+  static driver::Result<SimulatedArm> make_of(const driver::ArmModel& board,
                                               const SimulatedArmSettings& settings, HandPath path,
                                               std::uint64_t seed, const MakePlant& make_plant);
   Plant& mechanics() noexcept {
@@ -103,12 +111,14 @@ class SimulatedArm {
   std::int64_t report_period_ns_;
   WireSettings wire_;
   Hand hand_;
+  GimbalMotion gimbal_;
   AnyPlant plant_;
   Firmware firmware_;
   Eigen::Vector3d q_{0, 0, 0};  // at q_time_ns_; the firmware asks for it twice at one time
   std::int64_t q_time_ns_ = -1;
   std::int64_t time_ns_ = 0;
   std::int64_t next_sample_ns_ = 0;
+  std::uint16_t number_ = 0;  // of the next report
   WireQueue reports_, messages_;
   WireFrame newest_;            // the newest report the host can read
   std::uint32_t readable_ = 0;  // reports that became readable since the last was taken

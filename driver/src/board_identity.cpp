@@ -38,16 +38,15 @@ const char* arm_named(std::string_view product) {
 BoardIdentity identify_mbed(const UsbFacts& facts) {
   // The 8-byte firmware sends by itself and numbers what it sends: it proves itself at opening.
   if (is_raw_hid(facts.hid, woody::kReportSize)) {
-    return {ArmKind::kWoody, BoardKind::kMbedHid8, Certainty::kProvesItself, "WoodenHaptics",
-            kHidBus};
+    return {BoardKind::kMbedHid8, Certainty::kProvesItself, "WoodenHaptics", kHidBus};
   }
   // The 14-byte firmware speaks only after it was written to.
   if (is_raw_hid(facts.hid, hfab::kReportSize)) {
     const bool ours = is_ours(facts.product);
-    return {ArmKind::kPolhem, BoardKind::kMbedHid14, ours ? Certainty::kKnown : Certainty::kUnknown,
+    return {BoardKind::kMbedHid14, ours ? Certainty::kKnown : Certainty::kUnknown,
             ours ? arm_named(facts.product) : "mbed HID, 14 bytes", kHidBus};
   }
-  return {ArmKind::kUnsupported, BoardKind::kOther, Certainty::kUnknown, "mbed HID", kHidBus};
+  return {BoardKind::kOther, Certainty::kUnknown, "mbed HID", kHidBus};
 }
 
 // A Teensy's id tells only which sort of USB its program asked for [S Teensyduino usb_desc.h].
@@ -55,22 +54,20 @@ std::optional<BoardIdentity> identify_teensy(const UsbFacts& facts) {
   constexpr std::uint16_t kSerialId = 0x0483, kRawHidId = 0x0486;
   // Haply's arm is a Teensy with this product string [S lerobot_teleoperator_inverse3].
   if (has_word(facts.product, "haply") || has_word(facts.product, "inverse3")) {
-    return BoardIdentity{ArmKind::kUnsupported, BoardKind::kOther, Certainty::kUnsupported,
-                         "Haply Inverse3", kSerialBus};
+    return BoardIdentity{BoardKind::kOther, Certainty::kUnsupported, "Haply Inverse3", kSerialBus};
   }
   const bool ours = is_ours(facts.product);
   const Certainty certainty = ours ? Certainty::kKnown : Certainty::kUnknown;
   if (facts.has_tty || facts.product_id == kSerialId) {
-    return BoardIdentity{ArmKind::kHfabLine, BoardKind::kTextLines, certainty,
+    return BoardIdentity{BoardKind::kTextLines, certainty,
                          ours ? arm_named(facts.product) : "Teensy, serial", kSerialBus};
   }
   if (facts.product_id != kRawHidId) return std::nullopt;  // a keyboard, say
   if (is_raw_hid(facts.hid, hfab::kPaddedReportSize)) {
-    return BoardIdentity{ArmKind::kPolhem, BoardKind::kTeensyRawHid64, certainty,
+    return BoardIdentity{BoardKind::kTeensyRawHid64, certainty,
                          ours ? arm_named(facts.product) : "Teensy, raw HID", kHidBus};
   }
-  return BoardIdentity{ArmKind::kUnsupported, BoardKind::kOther, Certainty::kUnknown,
-                       "Teensy, raw HID", kHidBus};
+  return BoardIdentity{BoardKind::kOther, Certainty::kUnknown, "Teensy, raw HID", kHidBus};
 }
 
 constexpr std::uint16_t kMbedVendor = 0x1234, kMbedProduct = 0x0006;
@@ -83,18 +80,10 @@ struct OwnId {
   BoardIdentity identity;
 };
 constexpr OwnId kOwnIds[] = {
-    {0x0403,
-     0xcb48,
-     {ArmKind::kFalcon, BoardKind::kFalconFtdi, Certainty::kKnown, "Novint Falcon", "USB FTDI"}},
-    {0x2988,
-     0x0302,
-     {ArmKind::kUnsupported, BoardKind::kOther, Certainty::kUnsupported, "Touch", kSerialBus}},
-    {0x2988,
-     0x0304,
-     {ArmKind::kUnsupported, BoardKind::kOther, Certainty::kUnsupported, "Touch X", kHidBus}},
-    {0x1451,
-     0x0402,
-     {ArmKind::kUnsupported, BoardKind::kOther, Certainty::kUnsupported, "Force Dimension", "USB"}},
+    {0x0403, 0xcb48, {BoardKind::kFalconFtdi, Certainty::kKnown, "Novint Falcon", "USB FTDI"}},
+    {0x2988, 0x0302, {BoardKind::kOther, Certainty::kUnsupported, "Touch", kSerialBus}},
+    {0x2988, 0x0304, {BoardKind::kOther, Certainty::kUnsupported, "Touch X", kHidBus}},
+    {0x1451, 0x0402, {BoardKind::kOther, Certainty::kUnsupported, "Force Dimension", "USB"}},
 };
 
 }  // namespace

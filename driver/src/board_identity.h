@@ -23,7 +23,6 @@ struct UsbFacts {
 
 /// What a USB device is, as far as it can be told without opening it.
 struct BoardIdentity {
-  ArmKind kind = ArmKind::kUnsupported;
   BoardKind board = BoardKind::kOther;
   Certainty certainty = Certainty::kUnknown;
   const char* arm = "";  ///< What it is, or what kind of board ("WoodenHaptics").

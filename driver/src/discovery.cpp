@@ -10,6 +10,7 @@
 #include <span>
 #include <system_error>
 
+#include "arm_table.h"
 #include "board_identity.h"
 #include "hid_descriptor.h"
 
@@ -139,7 +140,7 @@ Result<std::vector<FoundArm>> find_arms(const fs::path& root) {
                                     .has_tty = !tty.empty()});
     if (!identity) continue;
     FoundArm arm;
-    arm.kind = identity->kind;
+    arm.kind = kind_of(identity->board);
     arm.board = identity->board;
     arm.certainty = identity->certainty;
     arm.arm = identity->arm;

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "climbing_link.h"
+
 namespace thimble::driver {
 namespace {
 
@@ -48,6 +50,15 @@ void LinkageArm::forward(const Eigen::Vector3d& q, Eigen::Vector3d& p_BT,
            r * cos_0, r_by_1 * sin_0, r_by_2 * sin_0,
                    0, h_by_1,         h_by_2;
   // clang-format on
+}
+
+Eigen::Matrix3d LinkageArm::last_link(const Eigen::Vector3d& q,
+                                      const Eigen::Vector3d& p_BT) const noexcept {
+  const double cos_0 = std::cos(q[0]), sin_0 = std::sin(q[0]);
+  const double r = p_BT.x() * cos_0 + p_BT.y() * sin_0;
+  const double out = r - length_0 / 2 - length_1 * std::cos(q[1]);
+  const double up = p_BT.z() - length_1 * std::sin(q[1]);
+  return climbing_link(cos_0, sin_0, out / length_5, up / length_5);
 }
 
 std::optional<Eigen::Vector3d> LinkageArm::inverse(const Eigen::Vector3d& p_BT) const noexcept {

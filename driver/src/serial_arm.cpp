@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "climbing_link.h"
+
 namespace thimble::driver {
 
 void SerialArm::forward(const Eigen::Vector3d& q, Eigen::Vector3d& p_BT,
@@ -29,6 +31,12 @@ Eigen::Matrix3d SerialArm::jacobian(const Eigen::Vector3d& q) const noexcept {
   Eigen::Matrix3d J_BT;
   forward(q, p_BT, J_BT);
   return J_BT;
+}
+
+Eigen::Matrix3d SerialArm::last_link(const Eigen::Vector3d& q,
+                                     const Eigen::Vector3d&) const noexcept {
+  // Link C climbs by C - 90 degrees.
+  return climbing_link(std::cos(q[0]), std::sin(q[0]), std::sin(q[2]), -std::cos(q[2]));
 }
 
 std::optional<Eigen::Vector3d> SerialArm::inverse(const Eigen::Vector3d& p_BT) const noexcept {

@@ -24,6 +24,14 @@ TickRecord record_of(const DeviceState& state, const ForceCommand& command) noex
   record.feature = command.touch.feature;
   record.object = command.touch.object;
   record.hops = command.touch.hops;
+  if (state.has_orientation) {
+    record.q_WT = state.q_WT;
+    record.gimbal = state.gimbal;
+  }
+  if (state.has_gripper) {
+    record.has_gripper = true;
+    record.gripper = state.gripper;
+  }
   record.buttons = state.buttons;
   record.in_contact = command.touch.in_contact;
   record.fresh = state.fresh;

@@ -97,11 +97,14 @@ Built mesh_touch(const TriangleMesh& mesh_W, const ContactChoice& choice,
   if (!prepared) return prepared.error();
   const auto mesh = std::make_shared<const ContactMesh>(std::move(prepared).value());
   const auto search = make_search(*mesh, choice.search);
+  const bool in_bands =
+      blending == BlendingChoice::kFixedBand || blending == BlendingChoice::kSizedBand;
   Normals normals;
   if (kSmooth || curved || blending != BlendingChoice::kFlat) {
-    normals =
-        std::make_shared<const SmoothNormals>(*mesh, choice.crease_angle.value_or(kCreaseAngle),
-                                              choice.normals.value_or(NormalWeights::kFitted));
+    normals = std::make_shared<const SmoothNormals>(
+        *mesh, choice.crease_angle.value_or(kCreaseAngle),
+        choice.normals.value_or(NormalWeights::kFitted),
+        in_bands ? kHollowCreaseAngleOfBands : kHollowCreaseAngle);
   }
   if constexpr (kSmooth) {
     return tracked_touch(Contact(mesh, search, normals), choice, blending, curved, normals,

@@ -57,6 +57,10 @@ Built shaped_touch(const TriangleMesh& mesh_W, const ContactChoice& choice,
     options.normals = choice.normals.value_or(NormalWeights::kAngle);
   }
   options.crease_angle = choice.crease_angle.value_or(kCreaseAngle);
+  if (choice.blending == BlendingChoice::kFixedBand ||
+      choice.blending == BlendingChoice::kSizedBand) {
+    options.hollow_crease_angle = kHollowCreaseAngleOfBands;
+  }
   const auto mesh = std::make_shared<MovingMesh>(std::move(prepared).value(), options);
   if (god_object) {
     return shaped(mesh, GodObjectContact(mesh_of(mesh), search_of(mesh)), surface,

@@ -6,6 +6,7 @@
 #include "arms/hfab/hfab_report.h"
 #include "support/vintage_arm.h"
 #include "thimble/driver/device.h"
+#include "thimble/driver/wire_link.h"
 
 namespace {
 
@@ -52,9 +53,11 @@ int main(int argc, char** argv) {
   if (std::strcmp(argv[1], "heat") == 0) {
     settings.heat = {.continuous_current = {1, 1, 1}, .time_constant = {60, 60, 60}};
   }
-  auto device = driver::Device::open(
-      std::make_unique<SwingingWire>(),
-      std::make_unique<driver::hfab::HfabArm>(support::vintage_model()), settings, 0);
+  auto device =
+      driver::Device::open(std::make_unique<driver::WireLink>(
+                               std::make_unique<SwingingWire>(),
+                               std::make_unique<driver::hfab::HfabArm>(support::vintage_model())),
+                           settings, 0);
   if (!device || !(*device)->activate()) return 1;
   double sum = 0;
   for (std::int64_t tick = 0; tick < std::atoll(argv[2]); ++tick) {

@@ -18,6 +18,7 @@
 #include "arms/woody/woody_wire.h"
 #include "support/vintage_arm.h"
 #include "thimble/driver/device.h"
+#include "thimble/driver/wire_link.h"
 
 namespace thimble {
 namespace {
@@ -77,8 +78,10 @@ void ticks(benchmark::State& state, std::vector<Report> reports,
   if (reports.empty()) return state.SkipWithError("the arm does not reach the path");
   driver::DeviceSettings settings = support::vintage_settings();
   settings.velocity_corner_frequency = 100;
-  auto device = driver::Device::open(std::make_unique<LoopedWire>(std::move(reports)),
-                                     std::move(arm), settings, 0);
+  auto device =
+      driver::Device::open(std::make_unique<driver::WireLink>(
+                               std::make_unique<LoopedWire>(std::move(reports)), std::move(arm)),
+                           settings, 0);
   if (!device || !(*device)->activate()) return state.SkipWithError("the device does not open");
   std::int64_t now_ns = 0;
   driver::ForceCommand command;

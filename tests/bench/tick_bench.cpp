@@ -22,6 +22,7 @@
 #include "thimble/scene/scene_file.h"
 #include "thimble/session/session.h"
 #include "track/mesh_contact.h"
+#include "velocity_estimator.h"
 
 // One whole tick on the virtual clock in contact with elephant.off, and each part of it alone.
 

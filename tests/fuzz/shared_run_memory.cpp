@@ -26,8 +26,7 @@ std::vector<std::byte> sound_memory() {
   scene.name = "fuzz";
   scene.period_ns = 1'000'000;
   scene.force_max = 5;
-  scene.arm.shape = session::SharedArmShape::kDelta;
-  scene.arm.numbers.fill(0.05);
+  scene.arm.geometry = driver::DeltaArm{.a = 0.05, .b = 0.05, .c = 0.05, .r = 0.05};
   scene.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
   scene.triangles = {{0, 1, 2}, {3, 4, 5}};
   scene.objects.push_back({.name = "a", .moves = true, .vertex_count = 3, .triangle_count = 1});

@@ -62,6 +62,15 @@ def test_gives_arrays_with_shapes_and_units():
     assert set(units) == set(run.columns.dtype.names)
 
 
+def test_tells_how_the_stylus_is_turned_where_the_arm_does():
+    turned = thimble.run("rubber", arm="polhem", seconds=0.5)
+    assert turned.orientation.shape == (500, 4) and turned.gimbal.shape == (500, 3)
+    np.testing.assert_allclose(np.linalg.norm(turned.orientation, axis=1), 1, atol=1e-6)
+    assert np.ptp(turned.gimbal, axis=0).min() > 0.01  # rad
+    assert not turned.columns["has_gripper"].any() and not turned.gripper.any()
+    assert not thimble.run("rubber", seconds=0.1).orientation.any()
+
+
 def test_a_run_tells_itself_as_the_program_does(told, tmp_path):
     run = thimble.run("rubber", seconds=1)
     assert run.summary() in told("run", "rubber", "--duration", "1")

@@ -37,7 +37,7 @@ TEST(Determinism, TheRunIsTheOneThatWasStored) {
   // One hash for every build type: release, sanitizers and debug give the same bits. A change of
   // the scene, the arm's data or any force shows here; store the new hash only if it was meant. It
   // holds for x86-64 with FMA and glibc 2.36, whose sine and cosine it contains.
-  constexpr std::uint64_t kStored = 0x1716a8be5dd5056e;
+  constexpr std::uint64_t kStored = 0x81f9ad3e72c37eb4;
   EXPECT_EQ(hash_of_run(1), kStored) << "new hash: 0x" << std::hex << hash_of_run(1);
 }
 
@@ -67,7 +67,7 @@ TEST(HardCase41, ScenesGiveTheBitsThatWereStoredAloneAndFourAtOnce) {
   };
   int others = 0, runs = 0;
   for (const Stored& stored : {Stored{"box", 0xa23f75401db0979e},
-                               {"clay", 0x8ba9f766a49dfe18},
+                               {"clay", 0x69b3cf6085094106},
                                {"floating_block", 0x5e14def3f8c3a7ef}}) {
     std::array<std::uint64_t, 5> found{};
     found[4] = hash_of_scene(stored.scene);

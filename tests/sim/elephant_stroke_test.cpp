@@ -59,6 +59,13 @@ class ElephantStroke : public ::testing::Test {
   }
 
   static std::span<const driver::TickRecord> rows() { return session_->ticks(); }
+  // Finds the nearest point of the triangle that a tick touches.
+  static Vector3d nearest_on(const driver::TickRecord& row) {
+    const auto active = static_cast<std::size_t>(row.feature);
+    return support::nearest_on_triangle(vector(row.p_WT), support::corner(mesh(), active, 0),
+                                        support::corner(mesh(), active, 1),
+                                        support::corner(mesh(), active, 2));
+  }
   static const render::TriangleMesh& mesh() { return session_->setup().objects().mesh_W(); }
 
   static session::Session* session_;
@@ -119,15 +126,20 @@ TEST_F(ElephantStroke, KeepsTheTriangleWhoseCellHoldsTheTip) {
     }
     return normals[t].dot(p - support::corner(mesh(), t, 0)) <= 1e-12;
   };
-  std::size_t checked = 0, outside_cell = 0, unexplained = 0;
+  std::size_t checked = 0, outside_cell = 0, unexplained = 0, held = 0;
   for (std::size_t i = 0; i < rows().size(); i += 11) {
     const auto& row = rows()[i];
     if (!row.in_contact) continue;
     ++checked;
     const Vector3d p = vector(row.p_WT);
     const auto active = static_cast<std::size_t>(row.feature);
-    EXPECT_NEAR(found_[i].depth, -normals[active].dot(p - support::corner(mesh(), active, 0)),
-                1e-12);
+    const double below = -normals[active].dot(p - support::corner(mesh(), active, 0));
+    // In a hollow the nearest point of the edge or corner holds the tip, so far from it.
+    const double distance = (nearest_on(row) - p).norm();
+    EXPECT_TRUE(std::abs(found_[i].depth - below) <= 1e-12 ||
+                (std::abs(found_[i].depth - distance) <= 1e-12 && distance > below))
+        << found_[i].depth << " m, not " << below << " or " << distance;
+    held += std::abs(found_[i].depth - below) > 1e-12;
     if (holds(active, p)) continue;
     ++outside_cell;
     // Not in its own cell: then no cell near the tip may hold it.
@@ -135,6 +147,7 @@ TEST_F(ElephantStroke, KeepsTheTriangleWhoseCellHoldsTheTip) {
     if (holds(nearest.triangle, p)) ++unexplained;
   }
   EXPECT_GT(checked, 400u);
+  EXPECT_LT(held, checked / 10);
   EXPECT_LT(outside_cell, checked / 50);
   EXPECT_EQ(unexplained, 0u);
 }
@@ -203,8 +216,15 @@ TEST_F(ElephantStroke, PushesWithStiffnessTimesDepthPlusDampingTimesSpeedAlongTh
       Vector3d n = vector(row.n_W);
       EXPECT_NEAR(n.norm(), 1, 1e-12);
       if (n == found_[i].n_W && row.depth == found_[i].depth) {
-        n = support::outward_normal(mesh(), static_cast<std::size_t>(row.feature));
-        ++by_the_face;
+        const Vector3d face =
+            support::outward_normal(mesh(), static_cast<std::size_t>(row.feature));
+        const Vector3d p = vector(row.p_WT);
+        if ((n - face).norm() < 1e-9) {
+          n = face;
+          ++by_the_face;
+        } else {  // held in a hollow
+          n = (nearest_on(row) - p).normalized();
+        }
       }
       const double push = object.stiffness * row.depth - object.damping * n.dot(vector(row.v_WT));
       expected = std::max(push, 0.0) * n;

@@ -11,12 +11,14 @@
 #include <tuple>
 #include <vector>
 
+#include "arm_table.h"
 #include "arms/falcon/falcon_packet.h"
 #include "arms/hfab/hfab_models.h"
 #include "arms/hfab/hfab_report.h"
 #include "arms/woody/woody_report.h"
 #include "support/line_arm.h"
 #include "support/scratch.h"
+#include "thimble/driver/wire_link.h"
 #include "thimble/scene/device_settings.h"
 #include "thimble/scene/real_arm.h"
 #include "thimble/scene/scene_file.h"
@@ -113,8 +115,7 @@ FaultRig::~FaultRig() = default;
 
 void FaultRig::build_arm() {
   device_sim::HandPath path = device_sim::HandPath::make(hand_way(phase_, file_)).value();
-  driver::hfab::HfabModel model = file_.model;
-  model.fractional_counts = false;
+  const auto serial = [&] { return driver::model_as<driver::SerialArm>(file_.model); };
   if (tested_.kind == driver::ArmKind::kFalcon) {
     auto falcon = usb::SimulatedFalcon::make(file_.simulated, std::move(path), {});
     ASSERT_TRUE(falcon) << falcon.error().message;
@@ -126,20 +127,18 @@ void FaultRig::build_arm() {
   }
   if (tested_.kind == driver::ArmKind::kHfabLine) {
     own_arm_ = std::make_unique<support::LineArm>(
-        device_sim::SimulatedArm::make(model, file_.simulated, std::move(path)).value(),
+        device_sim::SimulatedArm::make(serial(), file_.simulated, std::move(path)).value(),
         static_cast<driver::hfab::LineModel>(file_.board_model));
-  } else if (file_.shape == scene::ArmShape::kPolhem) {
-    auto polhem = driver::hfab::polhem_model();
-    polhem.drives = file_.model.drives;
-    polhem.encoders = file_.model.encoders;
-    own_arm_ = usb::HidArm::make(usb::kMbed14Board, usb::UsbDescription(), polhem, file_.simulated,
+  } else if (file_.is<driver::LinkageArm>()) {
+    own_arm_ = usb::HidArm::make(usb::kMbed14Board, usb::UsbDescription(),
+                                 driver::model_as<driver::LinkageArm>(file_.model), file_.simulated,
                                  std::move(path))
                    .value();
   } else {
     const auto& board =
         tested_.kind == driver::ArmKind::kWoody ? usb::kWoodenHapticsBoard : usb::kMbed14Board;
     own_arm_ =
-        usb::HidArm::make(board, usb::UsbDescription(), model, file_.simulated, std::move(path))
+        usb::HidArm::make(board, usb::UsbDescription(), serial(), file_.simulated, std::move(path))
             .value();
   }
   arm_ = own_arm_.get();
@@ -171,10 +170,10 @@ support::BusWire::Way FaultRig::way() const {
 driver::Result<void> FaultRig::open() {
   // A Falcon that lost its home by a fault is homed by its hand, which takes up to two seconds.
   const std::int64_t timeout_ns = falcon_ ? 4'000'000'000 : 1'000'000'000;
-  auto device =
-      driver::Device::open(std::make_unique<support::BusWire>(*cable_, clock_, way()),
-                           scene::make_arm(file_, tested_.kind),
-                           scene::device_settings(file_, 1000), clock_.now_ns(), timeout_ns);
+  auto device = driver::Device::open(
+      std::make_unique<driver::WireLink>(std::make_unique<support::BusWire>(*cable_, clock_, way()),
+                                         driver::make_arm(tested_.kind, file_.model)),
+      scene::device_settings(file_, 1000), clock_.now_ns(), timeout_ns);
   if (!device) return device.error();
   device_ = std::move(device).value();
   return device_->activate();

@@ -4,11 +4,13 @@
 #include <limits>
 #include <numbers>
 
+#include "arm_table.h"
 #include "field/primitive_contact.h"
 #include "sim_transport.h"
 #include "support/vintage_arm.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/servo_loop.h"
+#include "thimble/driver/wire_link.h"
 #include "thimble/render/field/field_touch.h"
 #include "thimble/render/field/half_space.h"
 #include "thimble/render/scene_touch.h"
@@ -32,9 +34,9 @@ struct FreeArm {
   static constexpr double kViscous = 0.005;
 
   explicit FreeArm(std::int64_t period_ns, std::int64_t delay_ns = 0) : period_ns_(period_ns) {
-    driver::hfab::HfabModel model = support::vintage_model();
-    model.fractional_counts = true;  // ideal encoders
+    auto model = support::vintage_model();
     device_sim::SimulatedArmSettings settings;
+    settings.firmware.ideal_encoders = true;
     settings.plant = {.mass = kMass, .viscous = kViscous, .coulomb = 0};
     settings.motors.current_max = 100;
     settings.firmware.report_period_ns = period_ns;
@@ -50,9 +52,10 @@ struct FreeArm {
     loose.limits.force_max = 1e5;  // the soft start of 50 ms is not felt
     loose.limits.rise_max = 1e5;
     loose.limits.soft_start = 0.05;
-    auto opened =
-        driver::Device::open(std::make_unique<device_sim::SimTransport>(clock, *arm),
-                             std::make_unique<driver::hfab::HfabArm>(model), loose, clock.now_ns());
+    auto opened = driver::Device::open(
+        std::make_unique<driver::WireLink>(std::make_unique<device_sim::SimTransport>(clock, *arm),
+                                           driver::make_ideal_arm(arm_model(model))),
+        loose, clock.now_ns());
     EXPECT_TRUE(opened) << (opened ? "" : opened.error().message);
     device = std::move(opened).value();
     EXPECT_TRUE(device->activate());

@@ -77,7 +77,7 @@ Felt run(const scene::ArmFile& arm, SlowSide& slow, Law law, const Way& way, dou
   auto simulation = scene::ArmSimulation::make(arm, way);
   if (!simulation) throw std::runtime_error(simulation.error().message);
   driver::VirtualClock clock;
-  auto device = driver::Device::open((*simulation)->wire(clock), (*simulation)->protocol(),
+  auto device = driver::Device::open((*simulation)->link(clock),
                                      {.R_WB = arm.R_WB,
                                       .p_WB = arm.p_WB,
                                       .limits = arm.limits,

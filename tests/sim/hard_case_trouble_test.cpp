@@ -22,6 +22,7 @@
 #include "support/wall_rig.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/servo_loop.h"
+#include "thimble/driver/wire_link.h"
 
 namespace thimble {
 namespace {
@@ -108,9 +109,10 @@ struct Press {
                 .value())
             .value();
     driver::VirtualClock clock;
-    auto opened = driver::Device::open(std::make_unique<TamperedWire>(clock, arm, tamper),
-                                       std::make_unique<driver::hfab::HfabArm>(model), settings,
-                                       clock.now_ns());
+    auto opened = driver::Device::open(
+        std::make_unique<driver::WireLink>(std::make_unique<TamperedWire>(clock, arm, tamper),
+                                           std::make_unique<driver::hfab::HfabArm>(model)),
+        settings, clock.now_ns());
     if (!opened) throw std::runtime_error(opened.error().message);
     driver::Device& device = **opened;
     if (!device.activate()) throw std::runtime_error("not active");

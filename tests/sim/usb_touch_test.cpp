@@ -12,6 +12,7 @@
 #include "support/usb_host_transport.h"
 #include "thimble/device_sim/usb/arm_shelf.h"
 #include "thimble/driver/device.h"
+#include "thimble/driver/wire_link.h"
 #include "usb/virtual_arm.h"
 
 namespace thimble {
@@ -32,8 +33,9 @@ class UsbTouch : public testing::TestWithParam<usb::ShelfEntry> {
     server_.emplace(*faulty_, "1-1");
     plug();
     auto transport = wire();  // brings the clock to the bus's time
-    auto device = driver::Device::open(std::move(transport), virtual_arm_.protocol(),
-                                       usb_test::check_settings(), clock_.now_ns());
+    auto device = driver::Device::open(
+        std::make_unique<driver::WireLink>(std::move(transport), virtual_arm_.protocol()),
+        usb_test::check_settings(), clock_.now_ns());
     ASSERT_TRUE(device.ok()) << device.error().message;
     device_ = std::move(*device);
     ASSERT_TRUE(device_->activate().ok());

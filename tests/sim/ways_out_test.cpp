@@ -7,6 +7,7 @@
 #include "support/vintage_arm.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/servo_loop.h"
+#include "thimble/driver/wire_link.h"
 
 // Every way out ends with the motors off, seen on the far side of the wire: in the simulated arm's
 // currents, not in what the driver believes.
@@ -39,9 +40,10 @@ class WaysOut : public ::testing::Test {
             .value());
     auto transport = std::make_unique<device_sim::SimTransport>(clock_, *arm_);
     transport_ = transport.get();
-    auto opened =
-        driver::Device::open(std::move(transport), std::make_unique<driver::hfab::HfabArm>(model),
-                             support::vintage_settings(), clock_.now_ns());
+    auto opened = driver::Device::open(
+        std::make_unique<driver::WireLink>(std::move(transport),
+                                           std::make_unique<driver::hfab::HfabArm>(model)),
+        support::vintage_settings(), clock_.now_ns());
     ASSERT_TRUE(opened) << opened.error().message;
     device_ = std::move(opened).value();
     ASSERT_TRUE(device_->activate());

@@ -45,10 +45,10 @@ double adversary_step(const scene::ArmFile& arm, const Vector3d& p_W, const Vect
   const Vector3d turned = J->inverse() * (arm.R_WB.transpose() * n_W);
   Vector3d q_read = *q, q_next = *q;
   for (int k = 0; k < 3; ++k) {
-    q_next[k] += (turned[k] > 0 ? 1 : -1) * arm.model.step(k);
+    q_next[k] += (turned[k] > 0 ? 1 : -1) * arm.model.step(static_cast<std::size_t>(k));
   }
-  const Vector3d jump_W =
-      arm.R_WB * (arm.model.geometry.forward(q_next) - arm.model.geometry.forward(q_read));
+  const auto& geometry = std::get<driver::SerialArm>(arm.model.geometry);
+  const Vector3d jump_W = arm.R_WB * (geometry.forward(q_next) - geometry.forward(q_read));
   // He gains K (jump . n) d and pays 2 c d (|n_x| + |n_y| + |n_z|) in the base's axes.
   return jump_W.dot(n_W) / (arm.R_WB.transpose() * n_W).cwiseAbs().sum();
 }

@@ -19,6 +19,7 @@
 #include "thimble/driver/clock.h"
 #include "thimble/driver/device.h"
 #include "thimble/driver/wire_arm.h"
+#include "thimble/driver/wire_link.h"
 
 namespace thimble::support {
 
@@ -183,18 +184,16 @@ inline void MotionRun::run(double duration) {
   } else {
     const auto built =
         arm == MotionArm::kVintage ? driver::hfab::vintage_model() : driver::hfab::woody_model();
-    driver::hfab::HfabModel model;
-    model.geometry = built.geometry;
-    model.drives = built.drives;
-    model.encoders = built.encoders;
     simulated = std::make_unique<device_sim::SimulatedArm>(
-        device_sim::SimulatedArm::make(model, arm_settings, path, seed).value());
-    protocol = std::make_unique<driver::hfab::HfabArm>(model);
+        device_sim::SimulatedArm::make(built, arm_settings, path, seed).value());
+    protocol = std::make_unique<driver::hfab::HfabArm>(built);
   }
   driver::VirtualClock clock;
   auto opened =
-      driver::Device::open(std::make_unique<motion_rig::TamperedWire>(clock, *simulated, *this),
-                           std::move(protocol), settings, clock.now_ns());
+      driver::Device::open(std::make_unique<driver::WireLink>(
+                               std::make_unique<motion_rig::TamperedWire>(clock, *simulated, *this),
+                               std::move(protocol)),
+                           settings, clock.now_ns());
   if (!opened) throw std::runtime_error(opened.error().message);
   driver::Device& device = **opened;
   if (!device.activate()) throw std::runtime_error("not active");

@@ -2,15 +2,16 @@
 
 #include <numbers>
 
-#include "thimble/driver/arms/hfab/hfab_arm.h"
+#include "arms/hfab/hfab_report.h"
+#include "arms/hfab/hfab_wire.h"
 #include "thimble/driver/device.h"
 
 namespace thimble::support {
 
 /// Is the vintage PHANTOM refit in code (app/arms/vintage_phantom.yaml holds the same with its
 /// sources), so that tests of the lower rooms need no file.
-inline driver::hfab::HfabModel vintage_model() {
-  driver::hfab::HfabModel model;
+inline driver::JointModel<driver::SerialArm> vintage_model() {
+  driver::JointModel<driver::SerialArm> model;
   model.geometry = {.height = 0, .length_b = 0.138, .length_c = 0.112};
   const double ratios[] = {9.0, 7.7, 7.7};
   const double signs[] = {-1, 1, -1};

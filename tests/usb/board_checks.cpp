@@ -9,6 +9,7 @@
 
 #include "thimble/device_sim/usb/arm_shelf.h"
 #include "thimble/driver/transports.h"
+#include "thimble/driver/wire_link.h"
 #include "usb/board_vectors.h"
 #include "usb/usb_description.h"
 
@@ -124,7 +125,8 @@ int check_wrong_length(const VirtualArm& arm) {
     return verdict(true, arm.name + " with messages of another length",
                    "refused: " + wire.error().message);
   auto device =
-      driver::Device::open(std::move(*wire), arm.protocol(), check_settings(), clock.now_ns());
+      driver::Device::open(std::make_unique<driver::WireLink>(std::move(*wire), arm.protocol()),
+                           check_settings(), clock.now_ns());
   if (!device)
     return verdict(true, arm.name + " with messages of another length",
                    "refused: " + device.error().message);

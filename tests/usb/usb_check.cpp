@@ -29,6 +29,7 @@
 
 #include "support/heap_guard.h"
 #include "thimble/driver/servo_loop.h"
+#include "thimble/driver/wire_link.h"
 #include "usb/board_checks.h"
 #include "usb/hid_gadget.h"
 #include "usb/trace_compare.h"
@@ -71,8 +72,9 @@ driver::Result<std::unique_ptr<Bench>> open_bench(const VirtualArm& arm) {
   bench->found = *found;
   auto wire = arm.open(*found, bench->clock);
   if (!wire) return wire.error();
-  auto device = driver::Device::open(std::move(*wire), arm.protocol(), check_settings(),
-                                     bench->clock.now_ns());
+  auto device =
+      driver::Device::open(std::make_unique<driver::WireLink>(std::move(*wire), arm.protocol()),
+                           check_settings(), bench->clock.now_ns());
   if (!device) return device.error();
   bench->device = std::move(*device);
   return bench;
@@ -251,7 +253,12 @@ int replug(const VirtualArm& arm, const std::string& pipe) {
         trouble = wire.error().message;
         continue;
       }
-      bench.device->offer(std::move(*wire));
+      if (const auto taken = bench.device->offer(
+              std::make_unique<driver::WireLink>(std::move(*wire), arm.protocol()));
+          !taken) {
+        trouble = taken.error().message;
+        continue;
+      }
       offered.store(true);
     }
   });

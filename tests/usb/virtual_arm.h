@@ -9,7 +9,7 @@
 #include "thimble/driver/clock.h"
 #include "thimble/driver/device.h"
 #include "thimble/driver/discovery.h"
-#include "thimble/driver/force_command.h"
+#include "thimble/driver/force_law.h"
 
 namespace thimble::usb_test {
 

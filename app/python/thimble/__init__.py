@@ -164,6 +164,21 @@ class _Columns:
         return self._of("q")
 
     @property
+    def orientation(self) -> Any:
+        """Rotation of the stylus in the world as a quaternion w, x, y, z; zeros if the arm tells none."""
+        return self._of("q_WT")
+
+    @property
+    def gimbal(self) -> Any:
+        """Angles of the gimbal's axes, rad; zeros if the arm has none."""
+        return self._of("gimbal")
+
+    @property
+    def gripper(self) -> Any:
+        """Opening of the gripper, m; 0 if it is closed, or if the arm has none (``columns["has_gripper"]``)."""
+        return self._of("gripper")
+
+    @property
     def object(self) -> Any:
         """Number of the object that is touched, from 0 in the scene's order; -1 for none."""
         return self._of("object")

@@ -6,12 +6,13 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
-#include "arms/falcon/falcon_arm.h"
-#include "arms/hfab/hfab_models.h"
+#include "arm_table.h"
 #include "energy_choice.h"
 #include "thimble/scene/shipped_files.h"
 #include "yaml/yaml_reader.h"
@@ -21,14 +22,6 @@ namespace {
 
 // The bounds below are no limits of any arm: they are far outside of what a desk-top arm can be
 // [DEVICES 3], so that a slipped decimal point or a value in mm is caught at its line.
-
-// The loosest limits that a gate may have, of a real arm and of a simulated one. A limit beyond
-// them is there by name only.
-constexpr double kSoftStartLeast = 0.05;  // s [chosen: a stretch reflex answers after 30 to 50 ms
-                                          // [M], so a hand can answer before the force is whole]
-constexpr double kRiseMost = 1e5;    // N/s [chosen: lets 100 N, the largest force_max that can be
-                                     // written, rise within one tick of 1 kHz]
-constexpr double kWatchdogMost = 1;  // s [chosen: twice that of the slowest board, DEVICES 1]
 
 std::int64_t to_ns(double seconds) {
   return std::llround(seconds * 1e9);
@@ -60,7 +53,7 @@ driver::HeatSettings read_heat(YamlMap& map) {
   return heat;
 }
 
-void read_joints(YamlMap map, driver::hfab::HfabModel& model, driver::HeatSettings& heat) {
+void read_joints(YamlMap map, driver::ArmModel& model, driver::HeatSettings& heat) {
   const Eigen::Vector3d ratio = map.require_vector3("ratio", "motor turns per joint turn", 1, 1000);
   const Eigen::Vector3d torque = map.require_vector3("torque_constant", "N m/A", 1e-4, 10);
   const Eigen::Vector3d current = map.require_vector3("current_max", "A", 0.01, 32);
@@ -74,17 +67,37 @@ void read_joints(YamlMap map, driver::hfab::HfabModel& model, driver::HeatSettin
     if (std::abs(encoder_sign[k]) != 1) map.reject("encoder_sign", "expected each to be 1 or -1");
     if (home[k] != std::round(home[k])) map.reject("home_counts", "expected whole numbers");
     model.drives[i] = {motor_sign[k], ratio[k], torque[k], current[k]};
-    model.encoders[i] = {encoder_sign[k], counts[k], static_cast<std::int32_t>(home[k])};
+    model.encoders[i] = {encoder_sign[k], counts[k], static_cast<std::int64_t>(home[k])};
   }
   heat = read_heat(map);
   map.finish();
 }
 
-/// Takes drives and encoders of an arm whose data are code.
-template <class Geometry>
-void take_joints(const driver::JointModel<Geometry>& built_in, driver::hfab::HfabModel& model) {
-  model.drives = built_in.drives;
-  model.encoders = built_in.encoders;
+/// Reads the gimbal that is mounted on this arm.
+driver::Gimbal read_gimbal(YamlMap map) {
+  driver::Gimbal gimbal;
+  const Eigen::Vector3d counts = map.require_vector3("counts_per_turn", "counts", 4, 1e6);
+  const Eigen::Vector3d home = map.optional_vector3("home_counts", {0, 0, 0}, "counts", -1e6, 1e6);
+  const Eigen::Vector3d sign = map.require_vector3("sign", "", -1, 1);
+  const auto axes = map.optional_choices("axes", {0, 1, 0}, {"x", "y", "z"});
+  if (axes.size() == 3) {
+    if (axes[0] == axes[1] || axes[1] == axes[2]) {
+      map.reject("axes", "expected no two neighbours to be the same axis");
+    }
+  } else if (!axes.empty()) {  // what cannot be read at all has been told
+    map.reject("axes", "expected three axes, from the link to the stylus");
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    if (std::abs(sign[k]) != 1) map.reject("sign", "expected each to be 1 or -1");
+    if (home[k] != std::round(home[k])) map.reject("home_counts", "expected whole numbers");
+    if (axes.size() == 3) gimbal.axes[i] = static_cast<driver::FrameAxis>(axes[i]);
+    gimbal.sign[i] = sign[k];
+    gimbal.counts_per_turn[i] = counts[k];
+    gimbal.home_counts[i] = static_cast<std::int32_t>(home[k]);
+  }
+  map.finish();
+  return gimbal;
 }
 
 std::optional<double> number_if_there(YamlMap& map, std::string_view key, std::string_view unit,
@@ -97,10 +110,12 @@ driver::GateLimits read_gate(YamlMap map, ArmFile& arm) {
   driver::GateLimits limits;
   limits.force_max = map.require_number("force_max", "N", 0.01, 100);
   limits.speed_max = map.require_number("speed_max", "m/s", 0.01, 20);
-  limits.rise_max = map.require_number("rise_max", "N/s", 1, kRiseMost);
-  limits.soft_start = map.require_number("soft_start", "s", kSoftStartLeast, 10);
+  limits.rise_max = map.require_number("rise_max", "N/s", 1, driver::GateLimits::kRiseMost);
+  limits.soft_start =
+      map.require_number("soft_start", "s", driver::GateLimits::kSoftStartLeast, 10);
   limits.stall_ns = to_ns(map.require_number("stall", "s", 0.001, 10));
-  limits.watchdog_ns = to_ns(map.require_number("watchdog", "s", 0.001, kWatchdogMost));
+  limits.watchdog_ns = to_ns(
+      map.require_number("watchdog", "s", 0.001, 1e-9 * driver::GateLimits::kWatchdogMost_ns));
   limits.reopen = map.optional_number("reopen", limits.reopen, "s", 0.001, 10);
   if (limits.force_max > arm.declared.force) {
     map.reject("force_max",
@@ -188,13 +203,31 @@ void read_board(YamlMap& map, device_sim::SimulatedArmSettings& settings) {
   wire.finish();
 }
 
+/// Reads how the simulated hand turns the stylus.
+device_sim::GimbalMotion read_gimbal_motion(YamlMap map) {
+  constexpr double kRadians = std::numbers::pi / 180;
+  device_sim::GimbalMotion motion;
+  motion.middle =
+      kRadians * map.optional_vector3("middle_degrees", {0, 0, 0}, "degrees", -180, 180);
+  motion.swing = kRadians * map.require_vector3("swing_degrees", "degrees", 0, 180);
+  motion.period = map.require_number("period", "s", 0.05, 100);
+  map.finish();
+  return motion;
+}
+
 /// Reads how an arm is simulated. A Falcon's converter and board are code, so that its file has
 /// nothing to say of them.
-device_sim::SimulatedArmSettings read_simulation(YamlMap map, ArmShape shape,
-                                                 bool& ideal_encoders) {
+device_sim::SimulatedArmSettings read_simulation(YamlMap map, const ArmFile& arm) {
   device_sim::SimulatedArmSettings settings;
-  if (shape == ArmShape::kSerial) {
-    ideal_encoders = map.require_choice("encoders", {"quantised", "ideal"}) == 1;
+  if (arm.is<driver::SerialArm>()) {
+    settings.firmware.ideal_encoders = map.require_choice("encoders", {"quantised", "ideal"}) == 1;
+  }
+  if (settings.firmware.ideal_encoders && arm.model.gimbal) {
+    map.reject("encoders", "expected quantised with a gimbal: the reports have no room for both");
+  }
+  if (map.has("gimbal")) {
+    if (!arm.model.gimbal) map.reject("gimbal", "expected a section 'gimbal' of the arm beside it");
+    settings.gimbal = read_gimbal_motion(map.require_map("gimbal"));
   }
   if (map.has("wiring")) settings.firmware.wiring = read_wiring(map.require_map("wiring"));
   YamlMap tip = map.require_map("tip");
@@ -202,7 +235,7 @@ device_sim::SimulatedArmSettings read_simulation(YamlMap map, ArmShape shape,
   settings.plant.viscous = tip.require_number("viscous", "N s/m", 0, 100);
   settings.plant.coulomb = tip.require_number("coulomb", "N", 0, 10);
   tip.finish();
-  if (shape != ArmShape::kFalcon) read_board(map, settings);
+  if (!arm.is<driver::DeltaArm>()) read_board(map, settings);
   YamlMap hand = map.require_map("hand");
   settings.hand.mass = hand.require_number("mass", "kg", 0, 10);
   settings.hand.stiffness = hand.require_number("stiffness", "N/m", 0, 1e5);
@@ -214,28 +247,8 @@ device_sim::SimulatedArmSettings read_simulation(YamlMap map, ArmShape shape,
   return settings;
 }
 
-constexpr std::array<std::string_view, 4> kProtocolNames = {"hfab_14_byte", "woody_8_byte",
-                                                            "falcon_packet", "text_lines"};
-
-/// Gives the boards that speak a protocol, the usual one first; the text lines carry all that the
-/// 14-byte reports do.
-std::vector<driver::BoardKind> boards_of(ArmProtocol protocol) {
-  using driver::BoardKind;
-  switch (protocol) {
-    case ArmProtocol::kHfab14Byte:
-      return {BoardKind::kMbedHid14, BoardKind::kTeensyRawHid64, BoardKind::kTextLines};
-    case ArmProtocol::kWoody8Byte:
-      return {BoardKind::kMbedHid8};
-    case ArmProtocol::kFalconPacket:
-      return {BoardKind::kFalconFtdi};
-    case ArmProtocol::kTextLines:
-      break;
-  }
-  return {BoardKind::kTextLines};
-}
-
-std::vector<driver::BoardKind> read_boards(YamlMap& root, ArmProtocol protocol) {
-  const std::vector<driver::BoardKind> fitting = boards_of(protocol);
+std::vector<driver::BoardKind> read_boards(YamlMap& root, const driver::ArmRow& row) {
+  const std::span<const driver::BoardKind> fitting(row.boards.data(), row.board_count);
   std::vector<driver::BoardKind> boards;
   for (const std::size_t index :
        root.optional_choices("board", {static_cast<std::size_t>(fitting.front())},
@@ -243,12 +256,44 @@ std::vector<driver::BoardKind> read_boards(YamlMap& root, ArmProtocol protocol) 
     const auto board = static_cast<driver::BoardKind>(index);
     if (std::find(fitting.begin(), fitting.end(), board) == fitting.end()) {
       root.reject("board", "the board " + std::string(name(board)) + " does not speak " +
-                               std::string(kProtocolNames[static_cast<std::size_t>(protocol)]));
+                               std::string(row.protocol));
     }
     boards.push_back(board);
   }
   if (boards.empty()) boards.push_back(fitting.front());  // a mistake that is told
   return boards;
+}
+
+/// Reads what the arm speaks and how it is built, by the names of the table of arms.
+void read_kind(YamlMap& root, ArmFile& arm) {
+  std::vector<std::string_view> protocols, shapes;
+  for (const driver::ArmRow& row : driver::arm_table()) protocols.push_back(row.protocol);
+  for (const driver::ShapeRow& row : driver::arm_shapes()) shapes.push_back(row.name);
+  const driver::ArmRow& row = driver::arm_table()[root.require_choice("protocol", protocols)];
+  arm.protocol = row.kind;
+  arm.boards = read_boards(root, row);
+  const driver::ShapeRow& shape = driver::arm_shapes()[root.optional_choice("shape", 0, shapes)];
+  arm.board_model = static_cast<int>(root.optional_number("board_model", 0, "", 0, 1000));
+  if (shape.built_in != nullptr) {
+    arm.model = shape.built_in();
+    if (root.has("joints")) {  // its drives and encoders are code
+      YamlMap joints = root.require_map("joints");
+      arm.heat = read_heat(joints);
+      joints.finish();
+    }
+  } else {
+    arm.model.geometry = read_geometry(root.require_map("geometry"));
+    read_joints(root.require_map("joints"), arm.model, arm.heat);
+  }
+  if ((row.kind == driver::ArmKind::kFalcon) != arm.is<driver::DeltaArm>()) {
+    root.reject("protocol", "expected falcon_packet with the shape falcon, and only with it");
+  }
+  if (!root.has("gimbal")) return;
+  if (!row.carries_gimbal) {
+    root.reject("gimbal",
+                "the reports of " + std::string(row.protocol) + " carry no encoders of a gimbal");
+  }
+  arm.model.gimbal = read_gimbal(root.require_map("gimbal"));
 }
 
 }  // namespace
@@ -262,26 +307,7 @@ driver::Result<ArmFile> load_arm(const std::filesystem::path& meant) {
   ArmFile arm;
   arm.name = root.require_string("name");
   arm.description = root.optional_string("description", "");
-  arm.protocol = static_cast<ArmProtocol>(
-      root.require_choice("protocol", {kProtocolNames.begin(), kProtocolNames.end()}));
-  arm.boards = read_boards(root, arm.protocol);
-  arm.shape =
-      static_cast<ArmShape>(root.optional_choice("shape", 0, {"serial", "polhem", "falcon"}));
-  arm.board_model = static_cast<int>(root.optional_number("board_model", 0, "", 0, 1000));
-  if (arm.shape == ArmShape::kPolhem) take_joints(driver::hfab::polhem_model(), arm.model);
-  if (arm.shape == ArmShape::kFalcon) take_joints(driver::falcon::falcon_model(), arm.model);
-  if (arm.shape == ArmShape::kSerial) {
-    arm.model.geometry = read_geometry(root.require_map("geometry"));
-    read_joints(root.require_map("joints"), arm.model, arm.heat);
-  } else if (root.has("joints")) {
-    // Drives and encoders of these shapes are code.
-    YamlMap joints = root.require_map("joints");
-    arm.heat = read_heat(joints);
-    joints.finish();
-  }
-  if ((arm.protocol == ArmProtocol::kFalconPacket) != (arm.shape == ArmShape::kFalcon)) {
-    root.reject("protocol", "expected falcon_packet with the shape falcon, and only with it");
-  }
+  read_kind(root, arm);
   YamlMap base = root.require_map("base");
   arm.p_WB = base.require_vector3("position", "m", -2, 2);
   arm.R_WB = base.optional_rotation("rotate_degrees");
@@ -290,9 +316,8 @@ driver::Result<ArmFile> load_arm(const std::filesystem::path& meant) {
   arm.declared = read_declared(root.require_map("declared"));
   arm.limits = read_gate(root.require_map("gate"), arm);
   arm.velocity_corner_frequency = root.require_number("velocity_corner_frequency", "Hz", 0, 1e5);
-  if (arm.shape == ArmShape::kSerial || root.has("simulation")) {
-    arm.simulated =
-        read_simulation(root.require_map("simulation"), arm.shape, arm.model.fractional_counts);
+  if (arm.is<driver::SerialArm>() || root.has("simulation")) {
+    arm.simulated = read_simulation(root.require_map("simulation"), arm);
     arm.can_simulate = true;
   }
   root.finish();

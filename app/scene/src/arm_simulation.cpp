@@ -2,11 +2,10 @@
 
 #include <fmt/format.h>
 
-#include "arms/falcon/falcon_arm.h"
+#include "arm_table.h"
 #include "arms/falcon/falcon_boot.h"
-#include "arms/hfab/hfab_models.h"
 #include "sim_transport.h"
-#include "thimble/scene/real_arm.h"
+#include "thimble/driver/wire_link.h"
 #include "usb/simulated_falcon.h"
 
 namespace thimble::scene {
@@ -26,12 +25,12 @@ driver::Result<device_sim::HandPath> path_in_base(const HandRoute& hand_W, const
   return device_sim::HandPath::make(std::move(points));
 }
 
-/// Gives the file's motors and encoders to the linkage that is in the code.
-driver::JointModel<driver::LinkageArm> polhem_of(const ArmFile& file) {
-  auto model = driver::hfab::polhem_model();
-  model.drives = file.model.drives;
-  model.encoders = file.model.encoders;
-  return model;
+/// Sets what the board of a file's arm speaks.
+device_sim::SimulatedArmSettings settings_of(const ArmFile& file) {
+  device_sim::SimulatedArmSettings settings = file.simulated;
+  settings.firmware.speaks = file.protocol;
+  settings.firmware.line_model = file.board_model;
+  return settings;
 }
 
 }  // namespace
@@ -40,16 +39,7 @@ ArmSimulation::ArmSimulation(const ArmFile& file) : file_(file) {}
 ArmSimulation::~ArmSimulation() = default;
 
 std::optional<Eigen::Vector3d> joint_angles_at(const ArmFile& file, const Eigen::Vector3d& p_WT) {
-  const Eigen::Vector3d p_BT = in_base(file, p_WT);
-  switch (file.shape) {
-    case ArmShape::kSerial:
-      return file.model.geometry.inverse(p_BT);
-    case ArmShape::kPolhem:
-      return driver::hfab::polhem_model().geometry.inverse(p_BT);
-    case ArmShape::kFalcon:
-      return driver::falcon::falcon_geometry().inverse(p_BT);
-  }
-  return std::nullopt;
+  return driver::inverse(file.model.geometry, in_base(file, p_WT));
 }
 
 driver::Result<void> check_reach(const ArmFile& file, const HandRoute& hand_W) {
@@ -59,16 +49,11 @@ driver::Result<void> check_reach(const ArmFile& file, const HandRoute& hand_W) {
     if (!in_box || !joint_angles_at(file, p_WH)) {
       return driver::Error{
           fmt::format("At {:.3f} s the hand would be at ({:.3f}, {:.3f}, {:.3f}) m, where the arm "
-                      "does not reach "
-                      "or may not work; move that waypoint or the object.",
+                      "does not reach or may not work; move that waypoint or the object.",
                       time, p_WH.x(), p_WH.y(), p_WH.z())};
     }
   }
   return {};
-}
-
-driver::ArmKind simulated_kind(const ArmFile& file) {
-  return file.shape == ArmShape::kFalcon ? driver::ArmKind::kFalcon : driver::ArmKind::kPolhem;
 }
 
 driver::Result<std::unique_ptr<ArmSimulation>> ArmSimulation::make(
@@ -85,7 +70,7 @@ driver::Result<std::unique_ptr<ArmSimulation>> ArmSimulation::make(
   };
   auto path = path_in_base(hand_W, file);
   if (!path) return wrong(path.error());
-  if (file.shape == ArmShape::kFalcon) {
+  if (file.is<driver::DeltaArm>()) {
     std::vector<std::byte> image;
     if (!firmware.empty()) {
       auto read = driver::falcon::read_firmware(firmware);
@@ -98,24 +83,28 @@ driver::Result<std::unique_ptr<ArmSimulation>> ArmSimulation::make(
     simulation->falcon_ = std::move(falcon).value();
     return simulation;
   }
-  auto arm = file.shape == ArmShape::kPolhem
-                 ? device_sim::SimulatedArm::make(polhem_of(file), file.simulated,
-                                                  std::move(path).value(), seed)
-                 : device_sim::SimulatedArm::make(file.model, file.simulated,
-                                                  std::move(path).value(), seed);
+  const device_sim::SimulatedArmSettings settings = settings_of(file);
+  auto arm = file.is<driver::LinkageArm>()
+                 ? device_sim::SimulatedArm::make(driver::model_as<driver::LinkageArm>(file.model),
+                                                  settings, std::move(path).value(), seed)
+                 : device_sim::SimulatedArm::make(driver::model_as<driver::SerialArm>(file.model),
+                                                  settings, std::move(path).value(), seed);
   if (!arm) return wrong(arm.error());
   simulation->board_arm_ = std::make_unique<device_sim::SimulatedArm>(std::move(arm).value());
   return simulation;
 }
 
-std::unique_ptr<driver::Transport> ArmSimulation::wire(driver::Clock& clock) {
-  if (falcon_) return falcon_->wire(clock);
-  return std::make_unique<device_sim::SimTransport>(clock, *board_arm_);
-}
-
-std::unique_ptr<const driver::Arm> ArmSimulation::protocol() const {
-  if (file_.shape != ArmShape::kSerial) return make_arm(file_, simulated_kind(file_));
-  return std::make_unique<driver::hfab::HfabArm>(file_.model);  // knows ideal encoders too
+std::unique_ptr<driver::ArmLink> ArmSimulation::link(driver::Clock& clock) {
+  std::unique_ptr<driver::Transport> wire;
+  if (falcon_) {
+    wire = falcon_->wire(clock);
+  } else {
+    wire = std::make_unique<device_sim::SimTransport>(clock, *board_arm_);
+  }
+  auto arm = file_.simulated.firmware.ideal_encoders && !falcon_
+                 ? driver::make_ideal_arm(file_.model)
+                 : driver::make_arm(file_.protocol, file_.model);
+  return std::make_unique<driver::WireLink>(std::move(wire), std::move(arm));
 }
 
 device_sim::Hand& ArmSimulation::hand() noexcept {

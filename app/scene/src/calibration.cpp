@@ -1,4 +1,5 @@
 #include "thimble/scene/calibration.h"
+#include "arm_table.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +8,7 @@
 #include <ostream>
 #include <system_error>
 
-#include "thimble/scene/real_arm.h"
+#include "arm_table.h"
 #include "user_folders.h"
 #include "yaml/yaml_reader.h"
 
@@ -106,11 +107,12 @@ driver::Result<Calibration> find_calibration(const ArmFile& file, driver::ArmKin
       tried.encoder_sign[i] = flip * in_file;
       tried.motor_sign[i] = flip * (file.model.drives[i].sign < 0 ? -1 : 1);
       // In the home pose the joint angle is the file's, whichever way the encoder counts.
-      tried.home_counts[i] = flip * file.model.encoders[i].home_counts - home.counts[i];
+      tried.home_counts[i] =
+          static_cast<std::int32_t>(flip * file.model.encoders[i].home_counts - home.counts[i]);
     }
     ArmFile as_tried = file;
     apply(tried, as_tried);
-    const auto arm = make_arm(as_tried, kind);
+    const auto arm = driver::make_arm(kind, as_tried.model);
     const Eigen::Vector3d p_home = arm->pose(home).p_BT;
     double score = 0;
     bool enough = true;

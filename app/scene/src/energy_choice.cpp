@@ -10,7 +10,7 @@
 namespace thimble::scene {
 
 double loop_delay(const ArmFile& arm) {
-  if (!arm.can_simulate || arm.shape == ArmShape::kFalcon) return 0.001;
+  if (!arm.can_simulate || arm.is<driver::DeltaArm>()) return 0.001;
   return 1e-9 *
          static_cast<double>(arm.simulated.wire.delay_in_ns + arm.simulated.wire.delay_out_ns);
 }

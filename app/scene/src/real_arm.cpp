@@ -6,18 +6,17 @@
 #include <string>
 #include <utility>
 
-#include "arms/falcon/falcon_arm.h"
+#include "arm_table.h"
 #include "arms/falcon/falcon_boot.h"
-#include "arms/hfab/hfab_models.h"
 #include "arms/hfab/hfab_report.h"
 #include "arms/hfab/hfab_wire.h"
 #include "arms/woody/woody_proof.h"
 #include "arms/woody/woody_report.h"
-#include "arms/woody/woody_wire.h"
 #include "ftdi_line.h"
 #include "interrupt.h"
 #include "log/logger.h"
 #include "thimble/driver/transports.h"
+#include "thimble/driver/wire_link.h"
 
 namespace thimble::scene {
 namespace {
@@ -30,23 +29,6 @@ using driver::Certainty;
 using driver::Error;
 using driver::FoundArm;
 using driver::Result;
-
-template <class Wire, class Geometry>
-std::unique_ptr<const driver::Arm> arm_of(const Geometry& geometry, const ArmFile& file) {
-  driver::JointModel<Geometry> model;
-  model.geometry = geometry;
-  model.drives = file.model.drives;
-  model.encoders = file.model.encoders;
-  return std::make_unique<driver::WireArm<Wire, Geometry>>(model);
-}
-
-template <class Wire>
-std::unique_ptr<const driver::Arm> arm_on(const ArmFile& file) {
-  if (file.shape == ArmShape::kPolhem) {
-    return arm_of<Wire>(hfab::polhem_model().geometry, file);
-  }
-  return arm_of<Wire>(file.model.geometry, file);
-}
 
 /// Asks a board on USB serial who it is, with zero currents.
 Result<void> check_board(driver::Transport& wire, const ArmFile& file, const FoundArm& arm,
@@ -113,6 +95,37 @@ Error cannot_drive(const FoundArm& arm) {
       "The board " + arm.name() + " (" + arm.arm +
       ") has reports of a form that no arm has, or no driver, so Thimble does not open it. "
       "See `thimble doctor`."};
+}
+
+/// Opens the wire to an arm and brings the arm up. Precondition: `check_fits`.
+Result<std::unique_ptr<driver::Transport>> open_wire(const FoundArm& arm, const ArmFile& file,
+                                                     const std::filesystem::path& firmware,
+                                                     driver::Clock& clock) {
+  switch (arm.board) {
+    case BoardKind::kMbedHid8: {
+      auto wire = driver::open_hid_transport(arm.node, driver::woody::kReportSize, clock);
+      if (!wire) return wire;
+      if (auto right = driver::woody::listen_for_board(**wire, clock); !right) {
+        return Error{arm.node + ": " + right.error().message};
+      }
+      return wire;
+    }
+    case BoardKind::kMbedHid14:
+      return driver::open_hid_transport(arm.node, hfab::kReportSize, clock);
+    case BoardKind::kTeensyRawHid64:
+      return driver::open_hid_transport(arm.node, hfab::kPaddedReportSize, clock);
+    case BoardKind::kTextLines: {
+      auto wire = driver::open_serial_transport(arm.node, hfab::kLineFraming, clock);
+      if (!wire) return wire;
+      if (auto right = check_board(**wire, file, arm, clock); !right) return right.error();
+      return wire;
+    }
+    case BoardKind::kFalconFtdi:
+      return open_falcon(arm, firmware, clock);
+    case BoardKind::kOther:
+      break;
+  }
+  return cannot_drive(arm);
 }
 
 }  // namespace
@@ -192,50 +205,14 @@ Result<void> check_fits(const ArmFile& file, const FoundArm& arm) {
                "board are dangerous on another."};
 }
 
-std::unique_ptr<const driver::Arm> make_arm(const ArmFile& file, ArmKind kind) {
-  switch (kind) {
-    case ArmKind::kFalcon:
-      return arm_of<falcon::PacketWire>(falcon::falcon_geometry(), file);
-    case ArmKind::kWoody:
-      return arm_on<driver::woody::ReportWire>(file);
-    case ArmKind::kHfabLine:
-      return arm_on<hfab::LineWire>(file);
-    case ArmKind::kPolhem:
-    case ArmKind::kUnsupported:
-      break;
-  }
-  return arm_on<hfab::ReportWire>(file);
-}
-
-Result<std::unique_ptr<driver::Transport>> open_wire(const FoundArm& arm, const ArmFile& file,
-                                                     const std::filesystem::path& firmware,
-                                                     driver::Clock& clock) {
+Result<std::unique_ptr<driver::ArmLink>> open_link(const FoundArm& arm, const ArmFile& file,
+                                                   const std::filesystem::path& firmware,
+                                                   driver::Clock& clock) {
   if (auto fits = check_fits(file, arm); !fits) return fits.error();
-  switch (arm.board) {
-    case BoardKind::kMbedHid8: {
-      auto wire = driver::open_hid_transport(arm.node, driver::woody::kReportSize, clock);
-      if (!wire) return wire;
-      if (auto right = driver::woody::listen_for_board(**wire, clock); !right) {
-        return Error{arm.node + ": " + right.error().message};
-      }
-      return wire;
-    }
-    case BoardKind::kMbedHid14:
-      return driver::open_hid_transport(arm.node, hfab::kReportSize, clock);
-    case BoardKind::kTeensyRawHid64:
-      return driver::open_hid_transport(arm.node, hfab::kPaddedReportSize, clock);
-    case BoardKind::kTextLines: {
-      auto wire = driver::open_serial_transport(arm.node, hfab::kLineFraming, clock);
-      if (!wire) return wire;
-      if (auto right = check_board(**wire, file, arm, clock); !right) return right.error();
-      return wire;
-    }
-    case BoardKind::kFalconFtdi:
-      return open_falcon(arm, firmware, clock);
-    case BoardKind::kOther:
-      break;
-  }
-  return cannot_drive(arm);
+  auto wire = open_wire(arm, file, firmware, clock);
+  if (!wire) return wire.error();
+  return std::unique_ptr<driver::ArmLink>(
+      std::make_unique<driver::WireLink>(std::move(wire).value(), make_arm(arm.kind, file.model)));
 }
 
 }  // namespace thimble::scene

@@ -25,8 +25,7 @@ Opened SimulatedDevice::open(const ArmFile& arm, const HandRoute& hand_W,
   std::unique_ptr<SimulatedDevice> opened(new SimulatedDevice(arm));
   opened->period_ns_ = std::llround(1e9 / options.rate);
   opened->simulation_ = std::move(simulation).value();
-  auto protocol = opened->simulation_->protocol();
-  auto device = driver::Device::open(opened->simulation_->wire(opened->clock_), std::move(protocol),
+  auto device = driver::Device::open(opened->simulation_->link(opened->clock_),
                                      device_settings(arm, options.rate), opened->clock_.now_ns());
   if (!device) return device.error();
   opened->device_ = std::move(device).value();

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "arm_table.h"
 #include "thimble/scene/arm_simulation.h"
-#include "thimble/scene/real_arm.h"
 
 namespace thimble::scene {
 
@@ -39,7 +39,7 @@ std::optional<Eigen::Matrix3d> jacobian_at(const ArmFile& arm, const Eigen::Vect
     reading.counts[k] =
         static_cast<std::int32_t>(std::lround(counts[static_cast<Eigen::Index>(k)]));
   }
-  return make_arm(arm, simulated_kind(arm))->pose(reading).J_BT;
+  return driver::make_arm(arm.protocol, arm.model)->pose(reading).J_BT;
 }
 
 std::vector<Eigen::Vector3d> points_of_workspace(const ArmFile& arm, int per_side) {
@@ -61,7 +61,7 @@ std::vector<Eigen::Vector3d> points_of_workspace(const ArmFile& arm, int per_sid
 TipLimits worst_over_workspace(const ArmFile& arm, int per_side) {
   TipLimits worst{
       .encoder_step = 0, .damping = arm.simulated.plant.viscous, .mass = arm.simulated.plant.mass};
-  if (arm.model.fractional_counts) return worst;
+  if (arm.simulated.firmware.ideal_encoders) return worst;
   const Eigen::Vector3d steps(arm.model.step(0), arm.model.step(1), arm.model.step(2));
   for (const Eigen::Vector3d& p_W : points_of_workspace(arm, per_side)) {
     if (const auto J_BT = jacobian_at(arm, p_W)) {

@@ -76,11 +76,14 @@ void ReplugWatch::search() {
   pause_ = kStepsBetweenSearches;
   const auto found = ways_.find(arm_);
   if (!found) return;
-  auto wire = ways_.open(*found);
-  if (!wire) return;  // it may still be starting up; the next search tries again
+  auto link = ways_.open(*found);
+  if (!link) return;  // it may still be starting up; the next search tries again
+  if (const auto taken = device_.offer(std::move(link).value()); !taken) {
+    terminal_.tell(taken.error().message);
+    return;
+  }
   arm_ = *found;
-  device_.offer(std::move(wire).value());
-  scene::logger().info("{} is back on the bus: a new wire to it is offered to the loop.",
+  scene::logger().info("{} is back on the bus: a new link to it is offered to the loop.",
                        arm_.name());
   offered_ = true;
   silent_ = 0;
@@ -103,7 +106,7 @@ ReplugWatch replug_watch_of(Session& session) {
     return plugged_in ? scene::find_again(*plugged_in, lost) : std::nullopt;
   };
   const auto open = [&setup](const driver::FoundArm& found) {
-    return scene::open_wire(found, setup.scene().arm, setup.firmware(), setup.clock());
+    return scene::open_link(found, setup.scene().arm, setup.firmware(), setup.clock());
   };
   return {setup.device(),    session.newest(), setup.start_pose(),
           *setup.real_arm(), {find, open},     user_terminal()};

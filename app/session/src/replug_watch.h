@@ -24,8 +24,8 @@ class ReplugWatch {
   struct Ways {
     /// Returns the same arm if it is plugged in again.
     std::function<std::optional<driver::FoundArm>(const driver::FoundArm& lost)> find;
-    /// Opens the wire to it.
-    std::function<driver::Result<std::unique_ptr<driver::Transport>>(const driver::FoundArm& arm)>
+    /// Opens the link to it.
+    std::function<driver::Result<std::unique_ptr<driver::ArmLink>>(const driver::FoundArm& arm)>
         open;
   };
 
@@ -49,10 +49,10 @@ class ReplugWatch {
   Terminal terminal_;
   bool told_ = false;       // the user knows that the force is off
   bool present_ = true;     // the arm is on the wire
-  bool offered_ = false;    // a new wire waits for the loop
+  bool offered_ = false;    // a new link waits for the loop
   bool restarted_ = false;  // its counters began anew and no force came since
   int pause_ = 0;           // steps until the next search
-  int silent_ = 0;          // steps since a new wire gave a report
+  int silent_ = 0;          // steps since a new link gave a report
 };
 
 /// Returns the watch over the arm of a session, which must outlive it. Precondition: the arm is

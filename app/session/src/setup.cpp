@@ -34,7 +34,7 @@ driver::Result<std::unique_ptr<Setup>> Setup::prepare(const std::filesystem::pat
   setup->scene_file_ = std::move(found).value();
   setup->real_arm_ = options.real_arm;
   setup->firmware_ = options.firmware;
-  setup->open_wire_ = options.open_wire;
+  setup->open_link_ = options.open_link;
   setup->device_name_ = options.real_arm ? options.real_arm->name() : "sim";
   setup->hand_by_mouse_ = options.hand_by_mouse;
   setup->homed_ = options.homed;
@@ -115,17 +115,14 @@ driver::Result<void> Setup::open_arm() {
   } else {
     clock_ = std::make_unique<driver::VirtualClock>();
   }
-  std::unique_ptr<driver::Transport> wire;
-  std::unique_ptr<const driver::Arm> protocol;
+  std::unique_ptr<driver::ArmLink> link;
   if (real_arm_) {
-    auto opened = open_wire_ ? open_wire_(arm, *clock_)
-                             : scene::open_wire(*real_arm_, arm, firmware_, *clock_);
+    auto opened = open_link_ ? open_link_(arm, *clock_)
+                             : scene::open_link(*real_arm_, arm, firmware_, *clock_);
     if (!opened) return opened.error();
-    wire = std::move(opened).value();
-    protocol = scene::make_arm(arm, real_arm_->kind);
+    link = std::move(opened).value();
   } else {
-    wire = simulation_->wire(*clock_);
-    protocol = simulation_->protocol();
+    link = simulation_->link(*clock_);
   }
   driver::DeviceSettings settings = scene::device_settings(arm, scene_.rate, scene_.energy);
   // A simulated hand that a mouse holds does not tremble, and its arm sends no old positions.
@@ -137,8 +134,7 @@ driver::Result<void> Setup::open_arm() {
     if (!known.note.empty()) scene::logger().warn("{}", known.note);
     heat.at_start = known.heat;
   }
-  auto device =
-      driver::Device::open(std::move(wire), std::move(protocol), settings, clock_->now_ns());
+  auto device = driver::Device::open(std::move(link), settings, clock_->now_ns());
   if (!device) return device.error();
   device_ = std::move(device).value();
   if (!real_arm_) return device_->activate();

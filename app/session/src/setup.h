@@ -87,7 +87,7 @@ class Setup {
   std::optional<driver::FoundArm> real_arm_;
   std::filesystem::path firmware_;
   std::optional<StartPose> start_pose_;
-  decltype(SessionOptions::open_wire) open_wire_;
+  decltype(SessionOptions::open_link) open_link_;
   bool real_time_ = false;
   bool hand_by_mouse_ = false;
   bool homed_ = false;

@@ -1,5 +1,7 @@
 #include "start_pose.h"
 
+#include "arm_table.h"
+
 #include <fmt/core.h>
 
 #include "thimble/scene/real_arm.h"
@@ -14,7 +16,8 @@ constexpr int kTicksBetweenLooks = 20;          // at the terminal; chosen
 
 StartPose StartPose::of(const scene::ArmFile& file, driver::ArmKind kind) {
   if (kind == driver::ArmKind::kFalcon) return {file.workspace, std::nullopt};
-  return {file.workspace, file.p_WB + file.R_WB * make_arm(file, kind)->pose({}).p_BT};
+  return {file.workspace,
+          file.p_WB + file.R_WB * driver::make_arm(kind, file.model)->pose({}).p_BT};
 }
 
 std::string StartPose::trouble(const Eigen::Vector3d& p_WT, bool at_home) const {

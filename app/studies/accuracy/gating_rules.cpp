@@ -103,7 +103,7 @@ std::vector<GateDecision> decide(const scene::Scene& scene, const SeenInRun& see
 
 void leave_out(const std::string& name, scene::Scene& scene) {
   auto& simulated = scene.arm.simulated;
-  if (name == "quantisation") scene.arm.model.fractional_counts = true;
+  if (name == "quantisation") scene.arm.simulated.firmware.ideal_encoders = true;
   if (name == "delay") simulated.wire.delay_in_ns = simulated.wire.delay_out_ns = 0;
   if (name == "coulomb") simulated.plant.coulomb = 0;
 }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "thimble/driver/velocity_estimator.h"
+#include "velocity_estimator.h"
 
 namespace thimble::app {
 namespace {

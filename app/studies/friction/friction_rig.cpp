@@ -7,10 +7,11 @@
 #include <numbers>
 #include <utility>
 
+#include "arm_table.h"
 #include "sim_transport.h"
-#include "thimble/driver/arms/hfab/hfab_arm.h"
 #include "thimble/driver/device.h"
 #include "thimble/driver/servo_loop.h"
+#include "thimble/driver/wire_link.h"
 
 namespace thimble::app {
 namespace {
@@ -20,8 +21,8 @@ constexpr double kUpperLink = 0.138;  // m
 constexpr double kLowerLink = 0.112;  // m
 constexpr double kForceMax = 8.5;     // N [STABILITY, heading]
 
-driver::hfab::HfabModel model_with_step(double step) {
-  driver::hfab::HfabModel model;
+driver::JointModel<driver::SerialArm> model_with_step(double step) {
+  driver::JointModel<driver::SerialArm> model;
   model.geometry = {.height = 0, .length_b = kUpperLink, .length_c = kLowerLink};
   const double ratios[] = {9.0, 7.7, 7.7};
   const double signs[] = {-1, 1, -1};
@@ -35,8 +36,6 @@ driver::hfab::HfabModel model_with_step(double step) {
   if (step > 0) {
     model.encoders[2].counts_per_motor_turn =
         2 * std::numbers::pi * kLowerLink / (ratios[2] * step);
-  } else {
-    model.fractional_counts = true;
   }
   return model;
 }
@@ -103,9 +102,10 @@ RigRun rub(render::AnyStage& friction, const std::vector<RigPoint>& way, double 
   for (const RigPoint& point : way) {
     path.push_back({point.time, Eigen::Vector3d(point.x, 0, 0) - p_WB});
   }
+  device_sim::SimulatedArmSettings simulated = arm_settings(settings);
+  simulated.firmware.ideal_encoders = !(settings.encoder_step > 0);
   device_sim::SimulatedArm arm =
-      device_sim::SimulatedArm::make(model, arm_settings(settings),
-                                     device_sim::HandPath::make(path).value())
+      device_sim::SimulatedArm::make(model, simulated, device_sim::HandPath::make(path).value())
           .value();
   driver::VirtualClock clock;
   driver::DeviceSettings device_settings;
@@ -118,10 +118,14 @@ RigRun rub(render::AnyStage& friction, const std::vector<RigPoint>& way, double 
                             .watchdog_ns = 100'000'000};
   // It looks at rests of any length, and its reports are never old.
   device_settings.motion.hold_most = 1e9;
+  auto spoken = simulated.firmware.ideal_encoders
+                    ? driver::make_ideal_arm(arm_model(model))
+                    : driver::make_arm(driver::ArmKind::kPolhem, arm_model(model));
   const std::unique_ptr<driver::Device> device =
-      driver::Device::open(std::make_unique<device_sim::SimTransport>(clock, arm),
-                           std::make_unique<driver::hfab::HfabArm>(model), device_settings,
-                           clock.now_ns())
+      driver::Device::open(
+          std::make_unique<driver::WireLink>(std::make_unique<device_sim::SimTransport>(clock, arm),
+                                             std::move(spoken)),
+          device_settings, clock.now_ns())
           .value();
   [[maybe_unused]] const auto activated = device->activate();
   assert(activated);  // nothing of an arm at rest refuses it

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "thimble/driver/device_state.h"
-#include "thimble/driver/force_command.h"
+#include "thimble/driver/force_law.h"
 #include "thimble/render/effect/effect_context.h"
 #include "thimble/render/effect/stage_list.h"
 

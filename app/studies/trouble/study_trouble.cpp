@@ -120,7 +120,7 @@ driver::Result<TroubleReport> study_trouble(const TroubleOptions& options,
                                             const std::atomic<bool>& stop) {
   const auto arm = scene::load_arm(options.arm_file);
   if (!arm) return arm.error();
-  if (!arm->can_simulate || arm->shape == scene::ArmShape::kFalcon) {
+  if (!arm->can_simulate || arm->is<driver::DeltaArm>()) {
     return driver::Error{arm->name +
                          ": the search needs a simulated arm whose board reports by "
                          "itself; vintage_phantom.yaml is one."};

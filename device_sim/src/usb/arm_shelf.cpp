@@ -81,11 +81,7 @@ driver::Result<std::unique_ptr<UsbArm>> plugged(driver::Result<std::unique_ptr<A
 driver::Result<std::unique_ptr<UsbArm>> make_usb_arm(std::string_view name,
                                                      const ShelfOptions& options) {
   if (name == "woodenhaptics") {
-    const auto arm = driver::hfab::woody_model();
-    driver::hfab::HfabModel model;
-    model.geometry = arm.geometry;
-    model.drives = arm.drives;
-    model.encoders = arm.encoders;
+    const auto model = driver::hfab::woody_model();
     const Eigen::Vector3d p_BT = model.geometry.forward(model.joint_angles({}));
     // 0.2 kg is about what links of 170 and 110 g weigh at the tip [guess].
     return plugged(HidArm::make(

@@ -30,7 +30,7 @@ constexpr std::byte kLineByte{0x60};
 
 constexpr double kBitsPerByte = 10;  // 8N1
 constexpr double kClock = 3e6;       // Hz; a divisor of one is 3 MBaud
-constexpr double kRateTolerance = 0.03;
+constexpr double kLineRateTolerance = 0.03;
 
 PacketResult done(std::size_t size = 0) noexcept {
   return {Answer::kDone, size};
@@ -130,7 +130,7 @@ void FtdiChip::deliver(std::int64_t dt_ns) noexcept {
     for (; credit >= 1 && from.size() > 0; --credit) give(from.pop());
   };
   move(to_board_, to_board_credit_, [&](std::byte byte) {
-    const bool heard = std::abs(rate() / board_.rate() - 1) < kRateTolerance;
+    const bool heard = std::abs(rate() / board_.rate() - 1) < kLineRateTolerance;
     if (heard) {
       board_.hear(byte, from_board_);
     } else {

@@ -21,35 +21,38 @@ enum HidRequest : std::uint8_t {
   kSetIdle = 0x0a,
 };
 
+/// Lets the firmware speak what the board does, with encoders that a board can have.
+SimulatedArmSettings on_board(SimulatedArmSettings settings, const HidBoard& board) {
+  settings.firmware.speaks = board.layout == HidLayout::kWoodenHaptics ? driver::ArmKind::kWoody
+                                                                       : driver::ArmKind::kPolhem;
+  settings.firmware.ideal_encoders = false;
+  return settings;
+}
+
 }  // namespace
 
-driver::Result<std::unique_ptr<HidArm>> HidArm::make(const HidBoard& board,
-                                                     UsbDescription description,
-                                                     const driver::hfab::HfabModel& model,
-                                                     const SimulatedArmSettings& settings,
-                                                     HandPath path, std::uint64_t seed) {
-  auto arm = SimulatedArm::make(model, settings, std::move(path), seed);
+driver::Result<std::unique_ptr<HidArm>> HidArm::make(
+    const HidBoard& board, UsbDescription description,
+    const driver::JointModel<driver::SerialArm>& model, const SimulatedArmSettings& settings,
+    HandPath path, std::uint64_t seed) {
+  auto arm = SimulatedArm::make(model, on_board(settings, board), std::move(path), seed);
   if (!arm) return arm.error();
-  return std::unique_ptr<HidArm>(
-      new HidArm(board, std::move(description), model, settings, std::move(arm).value()));
+  return std::unique_ptr<HidArm>(new HidArm(board, std::move(description), arm_model(model),
+                                            settings, std::move(arm).value()));
 }
 
 driver::Result<std::unique_ptr<HidArm>> HidArm::make(
     const HidBoard& board, UsbDescription description,
     const driver::JointModel<driver::LinkageArm>& model, const SimulatedArmSettings& settings,
     HandPath path, std::uint64_t seed) {
-  auto arm = SimulatedArm::make(model, settings, std::move(path), seed);
+  auto arm = SimulatedArm::make(model, on_board(settings, board), std::move(path), seed);
   if (!arm) return arm.error();
-  driver::hfab::HfabModel board_model;
-  board_model.drives = model.drives;
-  board_model.encoders = model.encoders;
-  return std::unique_ptr<HidArm>(
-      new HidArm(board, std::move(description), board_model, settings, std::move(arm).value()));
+  return std::unique_ptr<HidArm>(new HidArm(board, std::move(description), arm_model(model),
+                                            settings, std::move(arm).value()));
 }
 
-HidArm::HidArm(const HidBoard& board, UsbDescription description,
-               const driver::hfab::HfabModel& model, const SimulatedArmSettings& settings,
-               SimulatedArm arm) noexcept
+HidArm::HidArm(const HidBoard& board, UsbDescription description, const driver::ArmModel& model,
+               const SimulatedArmSettings& settings, SimulatedArm arm) noexcept
     : board_(board),
       description_(std::move(description)),
       model_(model),
@@ -82,19 +85,19 @@ std::size_t HidArm::lay_out(std::span<const std::byte> report,
                             std::span<std::byte> packet) noexcept {
   const std::size_t size = report_size();
   std::fill_n(packet.begin(), size, std::byte{0});
+  std::copy(report.begin(), report.end(), packet.begin());
+  // It numbers what it sends [S], and not what the bus had no room for.
   if (board_.layout == HidLayout::kWoodenHaptics) {
-    for (std::size_t i = 0; i < 3; ++i) put_word(packet, i, get_word(report, i));
     put_word(packet, 3, static_cast<std::int16_t>(counter_));
-  } else {
-    std::copy(report.begin(), report.end(), packet.begin());
   }
   return size;
 }
 
 // A free-running board gives what it sampled last.
-bool HidArm::newest(Report& report) noexcept {
+bool HidArm::newest(BoardBytes& report) noexcept {
   std::uint32_t skipped = 0;
-  if (arm_.take_report(report, skipped) == 0) return false;
+  report.size = arm_.take_report(report.bytes, skipped);
+  if (report.size == 0) return false;
   truth_.report_ns = arm_.time_ns() - report_age_ns_;
   for (const Sample& sample : samples_) {
     if (sample.time_ns == truth_.report_ns) truth_.exact_counts = sample.exact_counts;
@@ -104,13 +107,13 @@ bool HidArm::newest(Report& report) noexcept {
 
 // Samples the encoders; the report then waits until the host takes it.
 void HidArm::offer() noexcept {
-  report_ = arm_.firmware().sample(arm_.plant().q());
+  report_ = arm_.sample_now();
   report_sample_ = sample_now();
   offers_ = true;
 }
 
 // A board that answers gives the report that waits, and then reads the message that came meanwhile.
-bool HidArm::offered(Report& report) noexcept {
+bool HidArm::offered(BoardBytes& report) noexcept {
   if (!offers_) return false;
   report = report_;
   truth_.report_ns = report_sample_.time_ns;
@@ -129,10 +132,10 @@ PacketResult HidArm::in(std::uint8_t address, std::span<std::byte> packet) noexc
     // An interface for debug output has nothing to say.
     return {description_.endpoint(address) != nullptr ? Answer::kNak : Answer::kStall, 0};
   }
-  Report report{};
+  BoardBytes report{};
   const bool any = board_.speech == HidSpeech::kFreeRunning ? newest(report) : offered(report);
   if (!any) return {Answer::kNak, 0};
-  ++counter_;  // the WoodenHaptics board counts what it sends [S]
+  ++counter_;
   ++truth_.reports;
   for (std::size_t i = 0; i < 3; ++i) truth_.counts[i] = get_word(report, i);
   return {Answer::kDone, lay_out(report, packet)};
@@ -144,18 +147,10 @@ void HidArm::use_message(std::span<const std::byte> bytes) noexcept {
     ++malformed_;
     return;
   }
-  Report message{};
-  if (board_.layout == HidLayout::kWoodenHaptics) {
-    driver::hfab::OutputReport output;
-    for (std::size_t i = 0; i < 3; ++i) output.current_mA[i] = get_word(bytes, i);
-    message = driver::hfab::encode_output(output);
-  } else {
-    std::copy_n(bytes.begin(), message.size(), message.begin());
-  }
-  arm_.put_message(message);
+  arm_.put_message(bytes);
   ++truth_.messages;
   truth_.message_ns = arm_.time_ns();
-  for (std::size_t i = 0; i < 3; ++i) truth_.motor_values[i] = get_word(message, i);
+  for (std::size_t i = 0; i < 3; ++i) truth_.motor_values[i] = get_word(bytes, i);
 }
 
 PacketResult HidArm::out(std::uint8_t address, std::span<const std::byte> packet) noexcept {

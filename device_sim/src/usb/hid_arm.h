@@ -20,11 +20,10 @@ namespace thimble::device_sim::usb {
 class HidArm final : public UsbArm {
  public:
   /// Makes the arm; fails as SimulatedArm::make does. Real-time: never from the servo thread.
-  static driver::Result<std::unique_ptr<HidArm>> make(const HidBoard& board,
-                                                      UsbDescription description,
-                                                      const driver::hfab::HfabModel& model,
-                                                      const SimulatedArmSettings& settings,
-                                                      HandPath path, std::uint64_t seed = 0);
+  static driver::Result<std::unique_ptr<HidArm>> make(
+      const HidBoard& board, UsbDescription description,
+      const driver::JointModel<driver::SerialArm>& model, const SimulatedArmSettings& settings,
+      HandPath path, std::uint64_t seed = 0);
   /// Makes an arm with a linkage in the same way.
   static driver::Result<std::unique_ptr<HidArm>> make(
       const HidBoard& board, UsbDescription description,
@@ -48,8 +47,6 @@ class HidArm final : public UsbArm {
   std::size_t report_size() const noexcept { return board_.report_size(); }
 
  private:
-  using Report = std::array<std::byte, driver::hfab::kReportSize>;
-
   /// Where the encoders really stood when a report was sampled.
   struct Sample {
     std::int64_t time_ns = -1;
@@ -57,26 +54,26 @@ class HidArm final : public UsbArm {
   };
   static constexpr std::size_t kSamples = 8;
 
-  HidArm(const HidBoard& board, UsbDescription description, const driver::hfab::HfabModel& model,
+  HidArm(const HidBoard& board, UsbDescription description, const driver::ArmModel& model,
          const SimulatedArmSettings& settings, SimulatedArm arm) noexcept;
   Sample sample_now() const noexcept;
   void keep_sample() noexcept;
-  bool newest(Report& report) noexcept;
-  bool offered(Report& report) noexcept;
+  bool newest(BoardBytes& report) noexcept;
+  bool offered(BoardBytes& report) noexcept;
   void offer() noexcept;
   void use_message(std::span<const std::byte> bytes) noexcept;
   std::size_t lay_out(std::span<const std::byte> report, std::span<std::byte> packet) noexcept;
 
   HidBoard board_;
   UsbDescription description_;
-  driver::hfab::HfabModel model_;  // motors and encoders of either build
+  driver::ArmModel model_;
   std::int64_t report_age_ns_;
   SimulatedArm arm_;
   ArmTruth truth_;
   std::array<Sample, kSamples> samples_;
   // Of a board that answers only: the report that waits for the host, and the message that came
   // meanwhile.
-  Report report_{};
+  BoardBytes report_{};
   Sample report_sample_;
   bool offers_ = false;
   std::array<std::byte, UsbDevice::kPacketMax> message_{};

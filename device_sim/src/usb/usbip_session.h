@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "thimble/device_sim/usb/usb_device.h"
-#include "thimble/device_sim/usb/usbip_counters.h"
+#include "thimble/device_sim/usb/usbip_server.h"
 #include "usb/control_pipe.h"
 #include "usb/setup_packet.h"
 #include "usb/usb_description.h"

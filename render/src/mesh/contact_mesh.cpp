@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -25,6 +26,22 @@ constexpr double kOpposite = 1e-7;
 
 Vector3d unit_normal(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
   return (b - a).cross(c - a).stableNormalized();
+}
+
+// An edge plane leans over its face by half the angle there: back if the edge is hollow.
+void measure_edges(TriangleCell& cell) {
+  double hollow = 0, ridge = 0;
+  for (const Plane& edge : cell.edges) {
+    const double lean = edge.n.dot(cell.face.n);
+    if (lean < -TriangleCell::kFlat) hollow = std::max(hollow, -lean);
+    if (lean > TriangleCell::kFlat) ridge = std::max(ridge, lean);
+  }
+  const auto rounded_up = [](double sine) {
+    return static_cast<std::uint16_t>(
+        std::min(std::ceil(sine * TriangleCell::kSineUnit), TriangleCell::kSineUnit));
+  };
+  cell.hollow = rounded_up(hollow);
+  cell.ridge = rounded_up(ridge);
 }
 
 // Finds the edge plane of two triangles, positive on the side of the first, which runs the edge
@@ -127,6 +144,8 @@ void ContactMesh::compute_edge(std::int32_t triangle, std::size_t k) noexcept {
   mine = edge_plane(position(low) - origin_, position(high) - position(low),
                     upwards ? asking.face.n : asked.face.n, upwards ? asked.face.n : asking.face.n);
   theirs = {-mine.n, -mine.d};
+  measure_edges(asking);
+  measure_edges(asked);
 }
 
 void ContactMesh::collect_fans() {

@@ -29,6 +29,19 @@ struct TriangleCell {
   std::array<Plane, 3>
       edges;  ///< Over the edge from corner k to k + 1; positive on this side [BP 4b].
   std::array<std::int32_t, 3> neighbours;  ///< Triangle behind each edge plane.
+  /// How sharp its edges are: sine of half the angle between the normals over the sharpest of its
+  /// hollow edges and of the others, in 1 / kSineUnit, rounded up; 0 if there is none.
+  std::uint16_t hollow = 0, ridge = 0;
+
+  static constexpr double kSineUnit = 65535;
+  /// Sine of half an angle that is rounding: two faces in one plane.
+  static constexpr double kFlat = 1e-9;
+
+  /// Returns whether edge `k` is hollow: whether the faces rise from it. Real-time: safe.
+  bool hollow_edge(std::size_t k) const noexcept { return edges[k].n.dot(face.n) < -kFlat; }
+  /// Returns how far on this side of a hollow edge's plane (m) a tip `depth` (m) below the face may
+  /// be and still be beside the face, not under it; 0 if no edge is hollow. Real-time: safe.
+  double beside_hollow(double depth) const noexcept { return depth * (hollow / kSineUnit); }
 };
 
 /// Sets how a contact mesh is built.

@@ -23,8 +23,12 @@ double weight_of(const ContactMesh& mesh, NormalWeights weights, std::int32_t tr
 
 }  // namespace
 
-SmoothNormals::SmoothNormals(const ContactMesh& mesh, double crease_angle, NormalWeights weights)
-    : crease_angle_(crease_angle), crease_cosine_(std::cos(crease_angle)), weights_(weights) {
+SmoothNormals::SmoothNormals(const ContactMesh& mesh, double crease_angle, NormalWeights weights,
+                             double hollow_crease_angle)
+    : crease_angle_(crease_angle),
+      crease_cosine_(std::cos(crease_angle)),
+      hollow_crease_angle_(std::min(crease_angle, hollow_crease_angle)),
+      weights_(weights) {
   const auto count = static_cast<std::size_t>(mesh.triangle_count());
   corners_.resize(count);
   creases_.assign(count, 0);
@@ -60,8 +64,11 @@ void SmoothNormals::find_crease(const ContactMesh& mesh, std::int32_t triangle,
   // The cosine is wrong by some 2^-53: where it is clear of the limit, that decides.
   constexpr double kClear = 1e-12;
   const double cosine = n.dot(behind);
-  const bool clear = std::abs(cosine - crease_cosine_) > kClear;
-  const bool sharp = clear ? cosine < crease_cosine_ : corner_angle(n, behind) > crease_angle_;
+  const bool hollow = cell.hollow_edge(k);
+  const double limit = hollow ? hollow_crease_angle_ : crease_angle_;
+  const double limit_cosine = hollow ? std::cos(hollow_crease_angle_) : crease_cosine_;
+  const bool clear = std::abs(cosine - limit_cosine) > kClear;
+  const bool sharp = clear ? cosine < limit_cosine : corner_angle(n, behind) > limit;
   const auto bit = static_cast<std::uint8_t>(1U << k);
   std::uint8_t& creases = creases_[static_cast<std::size_t>(triangle)];
   creases = static_cast<std::uint8_t>(sharp ? creases | bit : creases & ~bit);

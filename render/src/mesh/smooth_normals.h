@@ -17,6 +17,14 @@ namespace thimble::render {
 /// another.
 inline constexpr double kCreaseAngle = std::numbers::pi / 3;
 
+/// Is the same of edges in hollows, at most, whatever is said of others: a depth below the faces of
+/// a hollow and a normal that turns over them are the force of a potential only to the square of
+/// the angle, and beyond this one a hand may swing in the hollow (../track/hollows.md).
+inline constexpr double kHollowCreaseAngle = kCreaseAngle;
+
+/// Is the same for shading in bands along the edges, where the normal turns within a band.
+inline constexpr double kHollowCreaseAngleOfBands = std::numbers::pi / 9;
+
 /// Holds the normals that a mesh is shaded with, at each corner of each triangle, and says which
 /// edges are creases.
 ///
@@ -28,9 +36,11 @@ inline constexpr double kCreaseAngle = std::numbers::pi / 3;
 class SmoothNormals {
  public:
   /// Finds the normals of a mesh. At `crease_angle` = 0 all edges between faces that are not in one
-  /// plane are creases, at pi none are. Real-time: never from the servo thread.
+  /// plane are creases, at pi none are but those in hollows above `hollow_crease_angle`.
+  /// Real-time: never from the servo thread.
   explicit SmoothNormals(const ContactMesh& mesh, double crease_angle = kCreaseAngle,
-                         NormalWeights weights = NormalWeights::kFitted);
+                         NormalWeights weights = NormalWeights::kFitted,
+                         double hollow_crease_angle = kHollowCreaseAngle);
 
   /// Makes `refit` possible: 5 bytes more per triangle. Real-time: never from the servo thread.
   void prepare_refit(const ContactMesh& mesh);
@@ -77,6 +87,7 @@ class SmoothNormals {
 
   double crease_angle_;
   double crease_cosine_;
+  double hollow_crease_angle_;  // of edges in hollows
   NormalWeights weights_;
   std::vector<std::array<Eigen::Vector3d, 3>> corners_;
   std::vector<std::uint8_t> creases_;  // bit k for edge k

@@ -14,6 +14,10 @@ using Eigen::Vector3d;
 // Below this the faces lie back to back and the plane between them is rounding (contact_mesh.cpp).
 constexpr double kBackToBack = 1e-7;
 
+// The least weight of a point that counts as within a triangle, not on its border: rounding of
+// weights.
+constexpr double kInTriangle = 1e-9;
+
 Vector3d area_of(const PackedTriangle& r) noexcept {
   const Vector3d corner = r.corner(0);
   return (r.corner(1) - corner).cross(r.corner(2) - corner);
@@ -45,7 +49,13 @@ OffsetResponse feel_nearest(const Vector3d& p, const PackedTriangle& r,
   place.l2 = area.cross(b - a).dot(q - a) * per_squared;
   place.l0 = 1 - place.l1 - place.l2;
   OffsetResponse felt = offset.feel(place);
-  felt.depth = std::max((q - p).dot(felt.n_W), 0.0);
+  const Vector3d out = q - p;
+  const double distance = std::sqrt(out.squaredNorm());
+  const double over = std::min(std::min(place.l0, place.l1), place.l2);
+  // Beside the triangle the nearest point itself holds the tip: the corners' normals may lean away
+  // from it, and would leave who is inside without force.
+  if (!(over > kInTriangle) && distance > kPlaced) return {out / distance, distance};
+  felt.depth = std::max(out.dot(felt.n_W), 0.0);
   return felt;
 }
 

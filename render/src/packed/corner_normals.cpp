@@ -1,10 +1,13 @@
 #include "packed/corner_normals.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <span>
 #include <vector>
+
+#include "mesh/smooth_normals.h"
 
 namespace thimble::render {
 namespace {
@@ -100,11 +103,24 @@ std::ptrdiff_t assign_corner_normals(const std::vector<Vector3d>& vertices,
                        static_cast<float>(std::numbers::pi - at_a - at_b)};
   }
   const double crease_cosine = std::cos(crease_angle);
+  const double hollow_cosine = std::cos(std::min(crease_angle, kHollowCreaseAngle));
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     std::uint32_t flags = 0;
     for (std::size_t k = 0; k < 3; ++k) {
-      const Vector3d& other = faces.normals[index(packed[t].neighbours[k])];
-      if (!(faces.normals[t].dot(other) >= crease_cosine)) flags |= 1u << k;
+      const std::size_t behind = index(packed[t].neighbours[k]);
+      const Vector3d& other = faces.normals[behind];
+      const double cosine = faces.normals[t].dot(other);
+      // The corner behind the edge stands above this face.
+      const auto is_hollow = [&] {
+        const Vector3d& begin = vertices[index(triangles[t][k])];
+        for (const std::int32_t v : triangles[behind]) {
+          if (v == triangles[t][k] || v == triangles[t][(k + 1) % 3]) continue;
+          return faces.normals[t].dot(vertices[index(v)] - begin) > 0;
+        }
+        return false;
+      };
+      const bool sharp = !(cosine >= crease_cosine) || (cosine < hollow_cosine && is_hollow());
+      if (sharp) flags |= 1u << k;
     }
     packed[t].flags |= flags;
   }

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "mesh/depth_below_hollow.h"
 #include "packed/offset_place.h"
 #include "packed/packed_surface.h"
 #include "packed/wide_lanes.h"
@@ -24,6 +25,7 @@ namespace thimble::render {
 ///          \   q    /            depth = (q - p) . n_W + bend, q = sum l_i x_i
 ///           \__p___/             bend = sum l_i (x_i - q) . n_i / (1 + |sum l_i n_i|)
 ///
+/// In a hollow `bend` is negative, and the depth begins softly (depth_below_hollow).
 /// Neighbours share offset edges. `bend` is how far a smooth surface with these normals rises
 /// above the triangle, right to second order [STABILITY 3]; as sums over corners go, it is also
 /// sum over i < j of l_i l_j (x_i - x_j) . (n_i - n_j). All Real-time: safe. Points are in steps of
@@ -177,7 +179,13 @@ inline OffsetResponse OffsetTriangle::feel_within(const OffsetPlace& place) cons
   const double both = 1 / (size + squared);
   const double per_size = (1 + size) * both;
   const __m128d n = _mm_mul_pd(xy, _mm_set1_pd(per_size));
-  return {{low(n), high(n), low(z) * per_size}, place.depth * size + rise * (size * both)};
+  const double below = place.depth * size, bend = rise * (size * both);
+  OffsetResponse felt{{low(n), high(n), low(z) * per_size}, below + bend};
+  // Near the triangles of a hollow. Written so that NaN takes the other way.
+  if (felt.depth < -bend && bend < 0 && below >= 0) [[unlikely]] {
+    felt.depth = depth_below_hollow(below, -bend);
+  }
+  return felt;
 }
 
 }  // namespace thimble::render

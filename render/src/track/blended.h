@@ -9,6 +9,7 @@
 #include "thimble/render/contact_state.h"
 #include "track/curved_depth.h"
 #include "track/edge_blending.h"
+#include "track/hollow_hold.h"
 
 namespace thimble::render {
 
@@ -37,6 +38,8 @@ class Blended {
   const ContactState& update(const driver::DeviceState& state) noexcept {
     state_ = contact_.update(state);
     if (!state_.touching) return state_;
+    const SurfacePlace& held = contact_.held();
+    if (held.triangle >= 0 && on_hollow_crease(mesh(), *normals_, held)) return state_;
     const auto weights = contact_.weights(state.p_WT);
     state_.n_W = shading_.normal(mesh(), *normals_, state_.triangle, weights);
     state_.depth = depth_.depth(mesh(), *normals_, state_.triangle, weights, state_.depth);

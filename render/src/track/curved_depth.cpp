@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "mesh/depth_below_hollow.h"
 #include "mesh/surface_weights.h"
 
 namespace thimble::render {
@@ -21,6 +22,7 @@ double CurvedDepth::depth(const ContactMesh& mesh, const SmoothNormals& normals,
                           std::int32_t triangle, const Eigen::Vector3d& weights,
                           double below_mesh) const noexcept {
   const double height = height_above(mesh, normals, triangle, weights);
+  if (height < 0) return depth_below_hollow(below_mesh, -height);
   const double corrected = below_mesh + std::min(height, below_mesh);
   // Written so that NaN means no depth.
   return corrected > 0 ? corrected : 0;

@@ -31,8 +31,9 @@ struct MeshDepth {
 /// d + min(h, d), at least 0. Contact still begins where the tip enters the mesh, so where h > 0 a
 /// plain d + h would begin with a jump of the force; this rises twice as steeply for the first h
 /// and is exact from there on. Whoever has a mesh so coarse that h is felt should halve the
-/// stiffness that is just stable, or take a finer mesh. Where h < 0 there is contact without force
-/// until the tip has come through the hollow.
+/// stiffness that is just stable, or take a finer mesh. Where h < 0, in a hollow, the force too
+/// begins where the tip enters the mesh, softly: the depth is d^2 / 4|h| up to d = 2|h|, where it
+/// and its slope are those of d + h (`depth_below_hollow`).
 struct CurvedDepth {
   double depth(const ContactMesh& mesh, const SmoothNormals& normals, std::int32_t triangle,
                const Eigen::Vector3d& weights, double below_mesh) const noexcept;

@@ -8,16 +8,7 @@
 #include "track/way_out.h"
 
 namespace thimble::render {
-namespace {
-
 using Eigen::Vector3d;
-
-// Distance between tip and proxy, in roundings of the mesh, from which their difference gives the
-// direction: both are wrong by a few 2^-53 of the mesh's size, a rounding is 64 of them, so the
-// direction is good to 2^-10 rad at worst, a hundredth of what a hand can tell [STABILITY 6].
-constexpr double kDirectionMin = 64;
-
-}  // namespace
 
 GodObjectContact::GodObjectContact(ContactMesh mesh, std::optional<SearchChoice> search)
     : mesh_(std::make_shared<const ContactMesh>(std::move(mesh))),
@@ -55,6 +46,7 @@ void GodObjectContact::follow(const Vector3d& p_OT) noexcept {
   Rest rest;
   WayOut way;
   bool pressed = false;
+  bool through_itself = false;
   double nearest = std::numeric_limits<double>::infinity();
   std::uint16_t hops = 0;
   for (int lift = 0; lift <= kLiftsMax; ++lift) {
@@ -69,7 +61,15 @@ void GodObjectContact::follow(const Vector3d& p_OT) noexcept {
     const Entry entry = search_->first_entry(rest.foot.p_OP + way.length * way.n_O, p_OT);
     if (entry.triangle < 0) {
       state_.hops = hops;
-      return;
+      // Where a surface passes through itself the proxy was within another part of it.
+      if (!search_->inside(p_OT)) return;
+      ++counters_.found_far;
+      place_ = {.triangle =
+                    search_->closest(p_OT, std::numeric_limits<double>::infinity()).triangle};
+      rest = descend(*mesh_, place_, p_OT);
+      way = way_out(*mesh_, rest);
+      pressed = through_itself = true;
+      break;
     }
     ++counters_.stopped;
     // A slide that its bound has ended goes on from there in the next tick.
@@ -91,7 +91,7 @@ void GodObjectContact::follow(const Vector3d& p_OT) noexcept {
   Vector3d n_O = way.n_O;
   if (pressed) {
     const Vector3d p_TP_O = rest.foot.p_OP - p_OT;
-    if (rest.settled && rest.foot.place.on == SurfacePlace::On::kFace) {
+    if (rest.settled && rest.foot.place.on == SurfacePlace::On::kFace && !through_itself) {
       // In a face's outermost hair the way out leads away from the faces beside it, too.
       if (!way.from_face) n_O = rest.foot.normal.normalized();
       state_.depth = n_O.dot(p_TP_O);

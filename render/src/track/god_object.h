@@ -27,6 +27,7 @@ struct GodObjectCounters {
   std::uint64_t lifts = 0;       ///< Times the proxy left the surface for a tip it could see.
   std::uint64_t stopped = 0;     ///< Lifts that ended on another part of the surface.
   std::uint64_t long_walks = 0;  ///< Ticks whose bound ended the slide before its goal.
+  std::uint64_t found_far = 0;   ///< Contact found again where a surface passes through itself.
   std::uint64_t held = 0;        ///< Ticks that kept the proxy's last place: see `update`.
 };
 

@@ -96,6 +96,10 @@ class TrackedContact {
     return tracker_.weights(p_WT);
   }
 
+  /// Returns the edge or corner of a hollow that holds the tip, as of the last `update`; its
+  /// triangle is -1 where a face does. Real-time: safe.
+  decltype(auto) held() const noexcept { return tracker_.held(); }
+
   TrackerCounters counters() const noexcept { return tracker_.counters(); }
   const Tracker& tracker() const noexcept { return tracker_; }
   const ContactMesh& mesh() const noexcept { return *mesh_; }

@@ -22,6 +22,8 @@ struct MovingMeshOptions {
   /// kept and moves cost the least. Means cost a fraction of fitted ones.
   std::optional<NormalWeights> normals = {};
   double crease_angle = kCreaseAngle;  ///< rad
+  /// Of edges in hollows at most, rad (smooth_normals.h).
+  double hollow_crease_angle = kHollowCreaseAngle;
 };
 
 /// Says what moving vertices has met.

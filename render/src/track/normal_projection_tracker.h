@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "mesh/contact_mesh.h"
+#include "mesh/surface_place.h"
 #include "mesh/surface_weights.h"
 #include "search/contact_search.h"
 #include "track/surface_tracker.h"
@@ -41,6 +42,9 @@ class NormalProjectionTracker {
   Eigen::Vector3d weights(const Eigen::Vector3d& p_WT) const noexcept {
     return within_triangle(projected_weights(*mesh_, active_, p_WT));
   }
+
+  /// Returns no place: only faces hold a tip here.
+  static SurfacePlace held() noexcept { return {}; }
 
   const TrackerCounters& counters() const noexcept { return counters_; }
 

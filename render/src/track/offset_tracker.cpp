@@ -6,7 +6,9 @@
 #include <cmath>
 #include <limits>
 #include <utility>
+
 #include "mesh/triangle_set.h"
+#include "track/hollow_hold.h"
 
 namespace thimble::render {
 namespace {
@@ -109,6 +111,9 @@ TrackerStep OffsetTracker::follow(const Vector3d& p_WT) noexcept {
   // Written so that NaN means no contact.
   if (!(foot_.depth >= 0) && !find_again(p_WT)) return step;
   step.touching = true;
+  held_.triangle = -1;
+  // No cell holds the tip: most often it is in the gap below a crease in a hollow.
+  if (foot_.weights.minCoeff() < -kWeightRounding && hold(p_WT, step)) return step;
   weights_ = within_triangle(foot_.weights);
   const Vector3d sum = weighted(normals_->corners(active_), weights_);
   const double length = sum.norm();
@@ -116,6 +121,19 @@ TrackerStep OffsetTracker::follow(const Vector3d& p_WT) noexcept {
   // The corners sink along unit normals; in between, the mean of those is shorter.
   step.depth = foot_.found ? foot_.depth * length : foot_.depth;
   return step;
+}
+
+bool OffsetTracker::hold(const Vector3d& p_WT, TrackerStep& step) noexcept {
+  const HollowHold hold = hold_in_hollow(*mesh_, active_, p_WT);
+  if (!hold.holds || !on_hollow_crease(*mesh_, *normals_, hold.place)) return false;
+  active_ = hold.place.triangle;
+  held_ = hold.place;
+  step.hops = static_cast<std::uint16_t>(step.hops + hold.hops);
+  step.depth = hold.depth;
+  n_W_ = hold.n_W;
+  weights_ = within_triangle(projected_weights(*mesh_, active_, hold.p_WH));
+  foot_.depth = hold.depth;
+  return true;
 }
 
 OffsetFoot OffsetTracker::foot_on(std::int32_t triangle, const Vector3d& p_WT) const noexcept {

@@ -6,6 +6,7 @@
 
 #include "mesh/contact_mesh.h"
 #include "mesh/smooth_normals.h"
+#include "mesh/surface_place.h"
 #include "mesh/surface_weights.h"
 #include "search/contact_search.h"
 #include "track/surface_tracker.h"
@@ -40,7 +41,8 @@ OffsetFoot find_offset_foot(const ContactMesh& mesh, const SmoothNormals& normal
 /// share the swept side to the bit, so cells neither overlap nor leave gaps, at vertices neither:
 /// that is what edge planes cannot do. The normal is that of the corners, weighted; the proxy is
 /// the point q of the surface, and the depth is the distance from it. Over creases there is one
-/// normal on each side, and the edge plane between the two faces decides [BP 4b].
+/// normal on each side, and the edge plane between the two faces decides [BP 4b]; between the cells
+/// of a crease in a hollow the edge or corner itself holds the tip (hollow_hold.h).
 ///
 /// Where an offset triangle has turned over, the edge planes stand in. If the depth turns negative
 /// while the tip is inside, SurfaceTracker finds the contact again. Deterministic. All but the
@@ -70,6 +72,10 @@ class OffsetTracker {
   /// Gives the unit normal at the tip's place on the surface, W, as of the last step.
   const Eigen::Vector3d& normal() const noexcept { return n_W_; }
 
+  /// Returns the edge or corner of a hollow that holds the tip as of the last step; its triangle is
+  /// -1 where a smooth cell does.
+  const SurfacePlace& held() const noexcept { return held_; }
+
   /// Tells where on the active triangle the tip belongs (surface_weights.h), as of the last step.
   const Eigen::Vector3d& weights(const Eigen::Vector3d&) const noexcept { return weights_; }
 
@@ -82,12 +88,14 @@ class OffsetTracker {
   OffsetFoot foot_on(std::int32_t triangle, const Eigen::Vector3d& p_WT) const noexcept;
   std::uint16_t walk(const Eigen::Vector3d& p_WT) noexcept;
   bool find_again(const Eigen::Vector3d& p_WT) noexcept;
+  bool hold(const Eigen::Vector3d& p_WT, TrackerStep& step) noexcept;
 
   const ContactMesh* mesh_;
   const ContactSearch* search_;
   std::shared_ptr<const SmoothNormals> normals_;
   SurfaceTracker edge_planes_;
   std::int32_t active_ = -1;
+  SurfacePlace held_;
   OffsetFoot foot_;
   Eigen::Vector3d weights_{0, 0, 0};
   Eigen::Vector3d n_W_{0, 0, 0};

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "mesh/triangle_set.h"
 #include "packed/offset_triangle.h"
 #include "packed/wide_lanes.h"
 #include "search/contact_search.h"
@@ -23,12 +24,13 @@ namespace thimble::render {
 ///
 /// Depth and direction are continuous over edges and vertices, since neighbours share offset edges
 /// to the bit. Over a crease the tip changes sides at the plane that halves the angle, where both
-/// faces measure the same depth [BP 3.1, Fig. 4b], and the direction jumps.
+/// faces measure the same depth [BP 3.1, Fig. 4b], and the direction jumps. Between the two sides
+/// of a crease in a hollow the edge or corner itself holds the tip (hollow_hold.h).
 ///
 /// Contact begins where the smooth surface does. On a bulge that is above the triangles, by up to
 /// L^2 / 6R for edges of length L on a radius R [STABILITY 3]: there the depth rises from 0, as
 /// long as the store can tell how high the surface rises. In a hollow it is below them: there
-/// contact begins and ends at the triangles, and the depth is 0 in between. So nothing jumps, and
+/// contact begins and ends at the triangles, softly (depth_below_hollow). So nothing jumps, and
 /// no depth is bent towards the triangles as CurvedDepth has to do, which begins at the mesh.
 ///
 /// Where a packed triangle is absent the plane felt last is held (held_plane.h) and the tick is
@@ -75,6 +77,9 @@ class PackedContact {
   // absent.
   using Outcome = Known;
 
+  // The triangles around a corner.
+  using Fan = TriangleSet<kPatchMax>;
+
   // The tick in three pieces, so that the first, all of most ticks, is short and straight; each is
   // made twice for different processors (wide_lanes). The first two tell whether the tick is done.
   bool stay(const Eigen::Vector3d& p_WT) noexcept;
@@ -104,6 +109,9 @@ class PackedContact {
   Outcome find_near(const Eigen::Vector3d& p, std::int32_t before) noexcept;
   Outcome walk(const Eigen::Vector3d& p, const Eigen::Vector3d& n, std::int32_t& triangle) noexcept;
   Outcome edge_to_hop(const Eigen::Vector3d& p, const OffsetPlace& place, int& edge) const noexcept;
+  [[gnu::noinline, gnu::cold]] Outcome hold_in_hollow(const Eigen::Vector3d& p,
+                                                      OffsetResponse& felt) noexcept;
+  Outcome collect_fan(std::int32_t triangle, std::size_t k, Fan& fan) const noexcept;
   bool activate(std::int32_t triangle) noexcept;
   void fetch_around(const PackedTriangle& packed) const noexcept;
   void report(const Eigen::Vector3d& p_WT, const OffsetResponse& felt) noexcept;

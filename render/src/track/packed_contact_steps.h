@@ -9,6 +9,7 @@
 #include "track/packed_contact.h"
 #include "track/packed_find_steps.h"
 #include "track/packed_follow_steps.h"
+#include "track/packed_hollow_steps.h"
 
 namespace thimble::render {
 

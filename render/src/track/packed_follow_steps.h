@@ -47,6 +47,16 @@ typename PackedContact<Store>::Outcome PackedContact<Store>::follow(
                     place.l2 >= kOutside && offset_.creases() == 0;
   const Outcome settled = held ? Outcome::kYes : settle(p, sliding, place);
   if (settled == Outcome::kYes) {
+    // No cell holds the tip: most often it is in the gap below a crease in a hollow.
+    if (!held && std::min(std::min(place.l0, place.l1), place.l2) < kOutside && place.depth > 0) {
+      OffsetResponse felt;
+      const Outcome hold = hold_in_hollow(p, felt);
+      if (hold == Outcome::kUnknown) return hold;
+      if (hold == Outcome::kYes) {
+        report(p_WT, felt);
+        return hold;
+      }
+    }
     // Above the triangle too, where the surface that it stands for bulges beyond the tip.
     const OffsetResponse felt = offset_.feel(place);
     if (felt.depth >= 0) {

@@ -4,8 +4,8 @@
 #include <cstdint>
 
 #include "mesh/contact_mesh.h"
+#include "mesh/foot_point.h"
 #include "mesh/surface_place.h"
-#include "track/foot_point.h"
 
 namespace thimble::render {
 
@@ -14,6 +14,12 @@ namespace thimble::render {
 /// round a sphere of n triangles, once the tip is pushed past its middle, some 1.3 sqrt(n): 400 at
 /// 10^5. At some 30 ns each the bound keeps the worst tick near 30 us.
 inline constexpr std::uint32_t kFeetMax = 1024;
+
+/// Is the distance between tip and rest, in roundings of the mesh, from which their difference
+/// gives the direction: both are wrong by a few 2^-53 of the mesh's size, a rounding is 64 of them,
+/// so the direction is good to 2^-10 rad at worst, a hundredth of what a hand can tell [STABILITY
+/// 6].
+inline constexpr double kDirectionMin = 64;
 
 /// Says where a descent ended.
 struct Rest {

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
 
 #include "mesh/contact_mesh.h"
+#include "mesh/surface_place.h"
 #include "mesh/surface_weights.h"
 #include "search/contact_search.h"
 
@@ -25,6 +27,7 @@ struct TrackerCounters {
   std::uint64_t found_near = 0;   ///< Contact found again over the surface nearby.
   std::uint64_t called_back = 0;  ///< Of those, walks undone because they ended too deep.
   std::uint64_t found_far = 0;    ///< Contact found again only by asking the search.
+  std::uint64_t nearer = 0;       ///< Faces around that were nearer than the cell's own.
 };
 
 /// Says where the tip stands with respect to the surface after one tick.
@@ -46,9 +49,11 @@ struct TrackerStep {
 /// cell, and the nearest triangle over the surface that has the tip below it becomes active
 /// instead, if it is less deep. If the depth turns negative while the tip is still inside, the
 /// nearest triangle that can be reached over the surface and has the tip below it becomes active,
-/// so contact is never lost inside. Deterministic. All but the constructor is Real-time: safe;
-/// usually one cell per tick, at worst `kHopsMax` cells, twice `kPatchMax` triangles and two
-/// questions to the search.
+/// so contact is never lost inside. Beside a face, over a hollow edge, the face alone would push
+/// the tip across, and the next one back: there two faces hold it, and three or more in a corner,
+/// at the nearest point of edge or corner (hollow_hold.h). Deterministic. All but the constructor
+/// is Real-time: safe; usually one cell per tick, at worst `kHopsMax` cells, twice `kPatchMax`
+/// triangles and two questions to the search.
 class SurfaceTracker {
  public:
   /// Keeps references: mesh and search must outlive the tracker.
@@ -58,6 +63,7 @@ class SurfaceTracker {
   /// Makes a triangle active, where the tip has just entered.
   void start(std::int32_t triangle) noexcept {
     active_ = triangle;
+    held_ = {};
     has_before_ = false;
   }
 
@@ -68,8 +74,15 @@ class SurfaceTracker {
   /// Tells the active triangle.
   std::int32_t active() const noexcept { return active_; }
 
-  /// Gives the unit normal of the active triangle, W.
-  const Eigen::Vector3d& normal() const noexcept { return mesh_->cell(active_).face.n; }
+  /// Returns the unit normal of the active triangle, or the direction to what holds the tip in a
+  /// hollow; W.
+  const Eigen::Vector3d& normal() const noexcept {
+    return held_.triangle < 0 ? mesh_->cell(active_).face.n : n_W_;
+  }
+
+  /// Returns the edge or corner that holds the tip as of the last step; its triangle is -1 where a
+  /// face does.
+  const SurfacePlace& held() const noexcept { return held_; }
 
   /// Finds where on the active triangle the tip belongs (surface_weights.h).
   Eigen::Vector3d weights(const Eigen::Vector3d& p_WT) const noexcept {
@@ -79,8 +92,18 @@ class SurfaceTracker {
   const TrackerCounters& counters() const noexcept { return counters_; }
 
  private:
-  std::uint16_t walk(const Eigen::Vector3d& p) noexcept;
-  std::uint16_t settle(const Eigen::Vector3d& p) noexcept;
+  // How far the tip is on this side of the edge planes of a cell, m: the one it violates most
+  // (below 0) or is nearest to, and how far it is from the second.
+  struct EdgeDistances {
+    std::size_t worst = 0;
+    double least = 0;
+    double middle = 0;
+  };
+  static EdgeDistances edge_distances(const TriangleCell& cell, const Eigen::Vector3d& p) noexcept;
+  bool look_around(const Eigen::Vector3d& p_WT, TrackerStep& step) noexcept;
+  void hold(const Eigen::Vector3d& p_WT, TrackerStep& step) noexcept;
+  std::uint16_t walk(const Eigen::Vector3d& p, EdgeDistances& edges) noexcept;
+  std::uint16_t settle(const Eigen::Vector3d& p, EdgeDistances& edges) noexcept;
   bool find_near(const Eigen::Vector3d& p_WT, std::int32_t before) noexcept;
   void reacquire(const Eigen::Vector3d& p_WT) noexcept;
   double reject_hop(const Eigen::Vector3d& p_WT, std::int32_t before, double depth_walked) noexcept;
@@ -89,7 +112,9 @@ class SurfaceTracker {
   const ContactMesh* mesh_;
   const ContactSearch* search_;
   std::int32_t active_ = -1;
-  bool has_before_ = false;  // whether the two below are those of the last tick
+  SurfacePlace held_;
+  Eigen::Vector3d n_W_{0, 0, 0};  // to what holds the tip
+  bool has_before_ = false;       // whether the two below are those of the last tick
   Eigen::Vector3d p_WT_before_{0, 0, 0};
   double depth_before_ = 0;
   TrackerCounters counters_;

@@ -39,15 +39,16 @@ TEST(ArmFile, ReadsTheShippedArmToTheLastConstant) {
   ASSERT_TRUE(read.ok()) << read.error().message;
   const scene::ArmFile& arm = *read;
   EXPECT_EQ(arm.name, "vintage_phantom");
-  EXPECT_EQ(arm.model.geometry.length_b, 0.138);
-  EXPECT_EQ(arm.model.geometry.length_c, 0.112);
+  const auto& geometry = std::get<driver::SerialArm>(arm.model.geometry);
+  EXPECT_EQ(geometry.length_b, 0.138);
+  EXPECT_EQ(geometry.length_c, 0.112);
   EXPECT_EQ(arm.model.drives[0].ratio, 9.0);
   EXPECT_EQ(arm.model.drives[1].sign, 1);
   EXPECT_EQ(arm.model.drives[2].torque_constant, 0.0234);
   EXPECT_EQ(arm.model.drives[2].current_max, 3);
   EXPECT_EQ(arm.model.encoders[1].home_counts, 7700);
   EXPECT_EQ(arm.model.encoders[2].sign, -1);
-  EXPECT_FALSE(arm.model.fractional_counts);
+  EXPECT_FALSE(arm.simulated.firmware.ideal_encoders);
   EXPECT_EQ(arm.limits.force_max, 5);
   EXPECT_EQ(arm.limits.stall_ns, 20'000'000);
   EXPECT_EQ(arm.limits.watchdog_ns, 100'000'000);
@@ -66,7 +67,7 @@ TEST(ArmFile, ReadsTheShippedArmToTheLastConstant) {
 TEST(ArmFile, HasItsHomeAtTheOriginOfTheWorld) {
   const auto arm = scene::load_arm(kArm);
   ASSERT_TRUE(arm.ok());
-  const driver::SerialArm& geometry = arm->model.geometry;
+  const auto& geometry = std::get<driver::SerialArm>(arm->model.geometry);
   // Home: A = 0, B = 90 degrees, C = 0, by the drawing in serial_arm.h.
   const Eigen::Vector3d p_BT(geometry.length_b, 0, geometry.height - geometry.length_c);
   EXPECT_LT((arm->p_WB + arm->R_WB * p_BT).norm(), 1e-15);
@@ -169,6 +170,44 @@ TEST(ArmFile, SaysHowLongAForceIsHeldUnchangedAndHowHeavyTheTipIs) {
 TEST(ArmFile, ChoosesIdealEncoders) {
   EXPECT_EQ(mistake_with("encoders: quantised", "encoders: ideal"), "");
   EXPECT_NE(mistake_with("encoders: quantised", "encoders: perfect").find("quantised or ideal"),
+            std::string::npos);
+}
+
+TEST(ArmFile, DescribesTheGimbalThatIsMounted) {
+  EXPECT_FALSE(scene::load_arm(kArm)->model.gimbal.has_value());
+  const auto polhem = scene::load_arm(kArm.parent_path() / "polhem.yaml");
+  ASSERT_TRUE(polhem.ok()) << polhem.error().message;
+  ASSERT_TRUE(polhem->model.gimbal.has_value());
+  EXPECT_EQ(polhem->model.gimbal->axes[1], driver::FrameAxis::kY);
+  EXPECT_EQ(polhem->model.gimbal->home_counts[1], 30);
+  EXPECT_EQ(polhem->simulated.gimbal.period, 3);
+
+  const std::string good =
+      "gimbal:\n  axes: [z, y, x]\n  counts_per_turn: [2000, 2000, 2000]\n  sign: [-1, 1, 1]\n";
+  const auto mistake = [&](const std::string& gimbal, const std::string& more = "") {
+    return mistake_with("\nbase:", "\n" + gimbal + more + "\nbase:");
+  };
+  EXPECT_EQ(mistake(good), "");
+  EXPECT_NE(
+      mistake(good, "  home_counts: [0.5, 0, 0]\n").find("home_counts: expected whole numbers"),
+      std::string::npos);
+  EXPECT_NE(mistake("gimbal:\n  axes: [x, y]\n  counts_per_turn: [9, 9, 9]\n  sign: [1, 1, 1]\n")
+                .find("axes: expected three axes"),
+            std::string::npos);
+  EXPECT_NE(mistake("gimbal:\n  axes: [x, x, y]\n  counts_per_turn: [9, 9, 9]\n  sign: [1, 1, 1]\n")
+                .find("no two neighbours to be the same"),
+            std::string::npos);
+  EXPECT_NE(mistake("gimbal:\n  counts_per_turn: [9, 9, 9]\n  sign: [1, 0, 1]\n")
+                .find("sign: expected each to be 1 or -1"),
+            std::string::npos);
+  EXPECT_NE(mistake("gimbal:\n  sign: [1, 1, 1]\n").find("counts_per_turn"), std::string::npos);
+  // 8-byte reports have no room for it, and a simulated hand turns only what is there.
+  EXPECT_NE(mistake_with("protocol: hfab_14_byte", "protocol: woody_8_byte\n" + good)
+                .find("carry no encoders of a gimbal"),
+            std::string::npos);
+  EXPECT_NE(mistake_with("  encoders: quantised",
+                         "  gimbal: {swing_degrees: [1, 1, 1], period: 2}\n  encoders: quantised")
+                .find("expected a section 'gimbal' of the arm"),
             std::string::npos);
 }
 

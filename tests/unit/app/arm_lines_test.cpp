@@ -39,7 +39,7 @@ TEST(ArmLines, EndAtTheTipWithBarsOfTheirLengthInEveryPose) {
       }
       if (lengths.empty()) lengths = now;
       // Bars are stiff. A leg of the Falcon ends on short links that are not drawn (delta_arm.h).
-      const double slack = described.shape == session::SharedArmShape::kDelta ? 0.03 : 1e-9;
+      const double slack = arm->is<driver::DeltaArm>() ? 0.03 : 1e-9;
       ASSERT_EQ(now.size(), lengths.size());
       for (std::size_t line = 0; line < now.size(); ++line) {
         ASSERT_EQ(now[line].size(), lengths[line].size());

@@ -29,7 +29,8 @@ class CalibrationTest : public ::testing::Test {
 
   /// What an arm with this calibration reports with its tip at p_WT.
   static driver::ArmReading reading_at(const scene::ArmFile& truth, const Eigen::Vector3d& p_WT) {
-    const auto q = truth.model.geometry.inverse(truth.R_WB.transpose() * (p_WT - truth.p_WB));
+    const auto q =
+        driver::inverse(truth.model.geometry, truth.R_WB.transpose() * (p_WT - truth.p_WB));
     EXPECT_TRUE(q);
     const Eigen::Vector3d counts = truth.model.exact_counts(*q);
     driver::ArmReading reading;

@@ -59,8 +59,8 @@ class OpenWireTest : public ::testing::Test {
     const auto chosen = scene::choose_arm(plugged_in(), device);
     if (!chosen) return chosen.error().message;
     if (!*chosen) return "none chosen";
-    const auto wire = scene::open_wire(**chosen, file_of(file), "", clock_);
-    return wire ? "" : wire.error().message;
+    const auto link = scene::open_link(**chosen, file_of(file), "", clock_);
+    return link ? "" : link.error().message;
   }
 
   support::FakeUsb usb_;

@@ -215,7 +215,7 @@ TEST_F(RealArmTermsTest, NoShippedSceneChangesTheArmOrLoosensItsLimits) {
     const auto told = scene::put_on_terms(*scene, entry.path(), *terms);
     ASSERT_TRUE(told) << told.error().message;
     EXPECT_EQ(scene->arm.name, "polhem") << entry.path();
-    EXPECT_EQ(scene->arm.shape, scene::ArmShape::kPolhem) << entry.path();
+    EXPECT_TRUE(scene->arm.is<driver::LinkageArm>()) << entry.path();
     EXPECT_EQ(scene->arm.limits.force_max, terms->arm.file.limits.force_max) << entry.path();
     EXPECT_EQ(scene->arm.limits.soft_start, terms->arm.file.limits.soft_start) << entry.path();
     EXPECT_EQ(scene::energy_settings(scene->arm, scene->rate, scene->energy).stage,

@@ -1,4 +1,5 @@
 #include "thimble/scene/real_arm.h"
+#include "arm_table.h"
 
 #include <gtest/gtest.h>
 
@@ -165,8 +166,8 @@ TEST(RealArm, HasTheSignsOfItsBoard) {
   reading.counts = {1000, 0, 0};
   const scene::ArmFile mbed = file_of("woodenhaptics.yaml");
   const scene::ArmFile teensy = file_of("woodenhaptics_teensy.yaml");
-  EXPECT_LT(scene::make_arm(mbed, ArmKind::kWoody)->pose(reading).p_BT.y(), -0.01);
-  EXPECT_GT(scene::make_arm(teensy, ArmKind::kHfabLine)->pose(reading).p_BT.y(), 0.01);
+  EXPECT_LT(driver::make_arm(ArmKind::kWoody, mbed.model)->pose(reading).p_BT.y(), -0.01);
+  EXPECT_GT(driver::make_arm(ArmKind::kHfabLine, teensy.model)->pose(reading).p_BT.y(), 0.01);
   for (const scene::ArmFile& file : {mbed, teensy}) EXPECT_EQ(file.model.drives[0].sign, 1);
   // The files and the driver's own data are one.
   const auto same = [](const scene::ArmFile& file, const auto& model) {
@@ -182,7 +183,7 @@ TEST(RealArm, HasTheSignsOfItsBoard) {
 
 TEST(RealArm, StandsInTheMiddleOfItsWorldAsItsFileSays) {
   const scene::ArmFile falcon = file_of("falcon.yaml");
-  const auto arm = scene::make_arm(falcon, ArmKind::kFalcon);
+  const auto arm = driver::make_arm(ArmKind::kFalcon, falcon.model);
   // Push the grip to the middle of the workspace: all legs at the angle of p_BM.
   const auto q = driver::falcon::falcon_geometry().inverse(driver::falcon::falcon_geometry().p_BM);
   driver::ArmReading reading;
@@ -202,11 +203,14 @@ TEST(RealArm, StandsInTheMiddleOfItsWorldAsItsFileSays) {
 TEST(RealArm, SpeaksTheWireOfItsKind) {
   std::array<std::byte, driver::kReportCapacity> bytes{};
   const scene::ArmFile woody = file_of("woodenhaptics.yaml");
-  EXPECT_EQ(scene::make_arm(woody, ArmKind::kWoody)->encode({}, bytes), 8u);
-  EXPECT_EQ(scene::make_arm(woody, ArmKind::kHfabLine)->encode({}, bytes), 8u);  // "[0,0,0]\n"
+  EXPECT_EQ(driver::make_arm(ArmKind::kWoody, woody.model)->encode({}, bytes), 8u);
+  EXPECT_EQ(driver::make_arm(ArmKind::kHfabLine, woody.model)->encode({}, bytes),
+            8u);  // "[0,0,0]\n"
   EXPECT_EQ(bytes[0], std::byte{'['});
-  EXPECT_EQ(scene::make_arm(file_of("polhem.yaml"), ArmKind::kPolhem)->encode({}, bytes), 14u);
-  EXPECT_EQ(scene::make_arm(file_of("falcon.yaml"), ArmKind::kFalcon)->encode({}, bytes), 16u);
+  EXPECT_EQ(driver::make_arm(ArmKind::kPolhem, file_of("polhem.yaml").model)->encode({}, bytes),
+            14u);
+  EXPECT_EQ(driver::make_arm(ArmKind::kFalcon, file_of("falcon.yaml").model)->encode({}, bytes),
+            16u);
   EXPECT_EQ(bytes[0], std::byte{'<'});
 }
 

@@ -52,6 +52,10 @@ TickRecord tick_number(std::uint64_t number) {
                        &tick.f_sent_W, &tick.heat}) {
     for (double& x : *vector) x = value(random);
   }
+  for (float& x : tick.q_WT) x = static_cast<float>(value(random));
+  for (float& x : tick.gimbal) x = static_cast<float>(value(random));
+  tick.gripper = static_cast<float>(value(random));
+  tick.has_gripper = random() % 2 == 0;
   for (auto& count : tick.counts) count = static_cast<std::int32_t>(random());
   tick.depth = value(random);
   tick.feature = static_cast<std::int32_t>(random());
@@ -80,8 +84,8 @@ TEST(RecordingColumns, HoldEveryByteOfATickButPadding) {
   std::size_t bytes = 0;
   for (const session::RecordingColumn& column : session::recording_columns())
     bytes += column.bytes();
-  // 4 long counters, 3 counts, 24 + 1 doubles, a triangle, 3 short numbers, 4 flags.
-  EXPECT_EQ(bytes, 4 * 8 + 3 * 4 + 25 * 8 + 4 + 3 * 2 + 4U);
+  // 4 long counters, 3 counts, 24 + 1 doubles, 8 floats, a triangle, 3 short numbers, 5 flags.
+  EXPECT_EQ(bytes, 4 * 8 + 3 * 4 + 25 * 8 + 8 * 4 + 4 + 3 * 2 + 5U);
   EXPECT_LE(sizeof(TickRecord) - bytes, 8U) << "a field of TickRecord is in no column";
 }
 
@@ -108,7 +112,7 @@ TEST(Recording, ReadsBackToTheBit) {
   EXPECT_EQ(read->info.seed, kInfo.seed);
 }
 
-TEST(Recording, OfAnOlderProgramHasNoHeat) {
+TEST(Recording, OfAnOlderProgramHasNoHeatAndNoOrientation) {
   const auto path = scratch("older.h5");
   auto recorder = session::Recorder::open(path, kInfo, 10);
   ASSERT_TRUE(recorder) << recorder.error().message;
@@ -117,15 +121,19 @@ TEST(Recording, OfAnOlderProgramHasNoHeat) {
   // The column under another name is one that nobody knows.
   std::ifstream in(path, std::ios::binary);
   std::string bytes((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
-  const std::string name("\0heat\0", 6);
-  const std::size_t at = bytes.find(name);
-  ASSERT_NE(at, std::string::npos);
-  bytes[at + 4] = 'x';
+  for (const std::string column : {"heat", "q_WT", "gimbal", "gripper", "has_gripper"}) {
+    const std::size_t at = bytes.find('\0' + column + '\0');
+    ASSERT_NE(at, std::string::npos) << column;
+    bytes[at + column.size()] = 'x';
+  }
   std::ofstream(path, std::ios::binary) << bytes;
   const auto read = session::read_recording(path);
   ASSERT_TRUE(read) << read.error().message;
   ASSERT_EQ(read->ticks.size(), 10U);
   EXPECT_EQ(read->ticks[3].heat, (std::array<double, 3>{}));
+  EXPECT_EQ(read->ticks[3].q_WT, driver::TipQuaternion{});
+  EXPECT_EQ(read->ticks[3].gripper, 0);
+  EXPECT_FALSE(read->ticks[3].has_gripper);
   EXPECT_EQ(read->ticks[3].p_WT, tick_number(3).p_WT);
 }
 

@@ -7,6 +7,7 @@
 #include "arms/hfab/hfab_report.h"
 #include "support/vintage_arm.h"
 #include "thimble/driver/servo_loop.h"
+#include "thimble/driver/wire_link.h"
 
 namespace thimble::app {
 namespace {
@@ -41,8 +42,9 @@ class ReplugWatchTest : public ::testing::Test {
 
   void SetUp() override {
     auto opened =
-        driver::Device::open(std::make_unique<OnWire>(first_),
-                             std::make_unique<driver::hfab::HfabArm>(support::vintage_model()),
+        driver::Device::open(std::make_unique<driver::WireLink>(
+                                 std::make_unique<OnWire>(first_),
+                                 std::make_unique<driver::hfab::HfabArm>(support::vintage_model())),
                              support::vintage_settings(), 0);
     ASSERT_TRUE(opened) << opened.error().message;
     device_ = std::move(opened).value();
@@ -60,10 +62,12 @@ class ReplugWatchTest : public ::testing::Test {
               return plugged_ ? std::optional(arm) : std::nullopt;
             },
             .open = [this](const driver::FoundArm&)
-                -> driver::Result<std::unique_ptr<driver::Transport>> {
+                -> driver::Result<std::unique_ptr<driver::ArmLink>> {
               ++opened_;
               second_.lost = false;
-              return std::unique_ptr<driver::Transport>(std::make_unique<OnWire>(second_));
+              return std::unique_ptr<driver::ArmLink>(std::make_unique<driver::WireLink>(
+                  std::make_unique<OnWire>(second_),
+                  std::make_unique<driver::hfab::HfabArm>(support::vintage_model())));
             }},
         session::Terminal{.there = true,
                           .key =

@@ -12,6 +12,7 @@
 #include "support/heap_guard.h"
 #include "support/scripted_transport.h"
 #include "support/vintage_arm.h"
+#include "thimble/driver/wire_link.h"
 
 namespace thimble {
 namespace {
@@ -59,8 +60,9 @@ class RunLoopTest : public ::testing::Test {
   void SetUp() override {
     told_.reserve(100);
     auto opened =
-        driver::Device::open(std::make_unique<HomeTransport>(messages_),
-                             std::make_unique<driver::hfab::HfabArm>(support::vintage_model()),
+        driver::Device::open(std::make_unique<driver::WireLink>(
+                                 std::make_unique<HomeTransport>(messages_),
+                                 std::make_unique<driver::hfab::HfabArm>(support::vintage_model())),
                              support::vintage_settings(), 0);
     ASSERT_TRUE(opened) << opened.error().message;
     device_ = std::move(opened).value();

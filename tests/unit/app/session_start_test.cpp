@@ -4,12 +4,14 @@
 
 #include <filesystem>
 
+#include "arm_table.h"
 #include "arms/hfab/hfab_report.h"
 #include "open_arm.h"
 #include "run_records.h"
 #include "setup.h"
 #include "share/shared_run.h"
 #include "support/scratch.h"
+#include "thimble/driver/wire_link.h"
 #include "thimble/session/servo_thread.h"
 #include "thimble/session/session.h"
 
@@ -48,14 +50,16 @@ class SessionStart : public ::testing::Test {
     options_.terms->arm.file = *scene::load_arm(file);
     options_.record = support::scratch_folder() / "start.h5";
     options_.share = true;
-    options_.open_wire = [this](
+    options_.open_link = [this](
                              const scene::ArmFile&,
-                             driver::Clock&) -> driver::Result<std::unique_ptr<driver::Transport>> {
+                             driver::Clock&) -> driver::Result<std::unique_ptr<driver::ArmLink>> {
       ++opened_;
       ready_ = session_ != nullptr && session_->setup().objects().triangles() > 0 &&
                session_->shared() != nullptr && session_->records().recording.on() &&
                session_->setup().objects().mesh_W().triangles.size() > 0;
-      return std::unique_ptr<driver::Transport>(std::make_unique<Answering>(*this));
+      return std::unique_ptr<driver::ArmLink>(std::make_unique<driver::WireLink>(
+          std::make_unique<Answering>(*this),
+          driver::make_arm(options_.real_arm->kind, options_.terms->arm.file.model)));
     };
   }
 

@@ -35,8 +35,7 @@ session::SharedScene small_scene() {
   scene.force_max = 6;
   scene.arm.name = "vintage";
   scene.arm.device = "sim";
-  scene.arm.shape = session::SharedArmShape::kSerial;
-  scene.arm.numbers = {0.1, 0.13, 0.16};
+  scene.arm.geometry = driver::SerialArm{.height = 0.1, .length_b = 0.13, .length_c = 0.16};
   scene.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
   scene.triangles = {{0, 1, 2}, {3, 4, 5}};
   scene.objects.push_back({.name = "stiff", .dents = true, .vertex_count = 3, .triangle_count = 1});
@@ -103,8 +102,11 @@ TEST(Share, ShowsTheSceneAsItWasDescribed) {
   EXPECT_EQ(seen.force_max, scene.force_max);
   EXPECT_EQ(seen.pid, getpid());
   EXPECT_EQ(seen.arm.name, "vintage");
-  EXPECT_EQ(seen.arm.shape, session::SharedArmShape::kSerial);
-  EXPECT_EQ(seen.arm.numbers, scene.arm.numbers);
+  ASSERT_TRUE(seen.arm.geometry.has_value());
+  const auto& built = std::get<driver::SerialArm>(*seen.arm.geometry);
+  EXPECT_EQ(built.height, 0.1);
+  EXPECT_EQ(built.length_b, 0.13);
+  EXPECT_EQ(built.length_c, 0.16);
   EXPECT_EQ(seen.vertices, scene.vertices);
   EXPECT_EQ(seen.triangles, scene.triangles);
   ASSERT_EQ(seen.objects.size(), 2U);

@@ -6,9 +6,11 @@
 #include <deque>
 #include <limits>
 
+#include "arm_table.h"
 #include "arms/hfab/hfab_report.h"
 #include "support/scripted_transport.h"
 #include "support/vintage_arm.h"
+#include "thimble/driver/wire_link.h"
 #include "thimble/scene/calibration.h"
 #include "thimble/scene/real_arm.h"
 
@@ -40,7 +42,8 @@ TEST(StartPose, OfEveryShippedArmIsAtItsHomePose) {
     const scene::ArmFile file = file_of(arm.name);
     const session::StartPose place = session::StartPose::of(file, arm.kind);
     EXPECT_TRUE(place.has_home()) << arm.name;
-    const Eigen::Vector3d p_WHome = file.p_WB + file.R_WB * make_arm(file, arm.kind)->pose({}).p_BT;
+    const Eigen::Vector3d p_WHome =
+        file.p_WB + file.R_WB * driver::make_arm(arm.kind, file.model)->pose({}).p_BT;
     EXPECT_EQ(place.trouble(p_WHome, true), "") << arm.name;
     EXPECT_EQ(place.trouble(p_WHome, false), "") << arm.name << " is parked outside of its box";
     EXPECT_NE(place.trouble(p_WHome + Eigen::Vector3d(0, 0.021, 0), true), "") << arm.name;
@@ -105,8 +108,9 @@ class WaitForStartPose : public ::testing::Test {
 
   void open() {
     auto opened =
-        driver::Device::open(std::make_unique<Answering>(*this),
-                             std::make_unique<driver::hfab::HfabArm>(support::vintage_model()),
+        driver::Device::open(std::make_unique<driver::WireLink>(
+                                 std::make_unique<Answering>(*this),
+                                 std::make_unique<driver::hfab::HfabArm>(support::vintage_model())),
                              support::vintage_settings(), 0);
     ASSERT_TRUE(opened) << opened.error().message;
     device_ = std::move(opened).value();

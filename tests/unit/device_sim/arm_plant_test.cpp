@@ -16,7 +16,7 @@ using support::refuses;
 
 driver::Result<ArmPlant> made_with(
     const SimulatedArmSettings& settings, const Eigen::Vector3d& p_BT,
-    const driver::hfab::HfabModel& model = support::vintage_model()) {
+    const driver::JointModel<driver::SerialArm>& model = support::vintage_model()) {
   return ArmPlant::make(model.geometry, model.drives, settings.plant, settings.hand,
                         settings.motors, p_BT, p_BT);
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "arm_table.h"
 #include "arms/hfab/hfab_report.h"
 #include "support/random.h"
 #include "support/refuses.h"
@@ -37,7 +38,7 @@ driver::hfab::InputReport sampled(const Firmware& firmware, const SerialPose& po
 }
 
 TEST(Firmware, CountsFromZeroAtHomeAndRoundsToTheNearestStep) {
-  const Firmware firmware = Firmware::make(support::vintage_model(), {}).value();
+  const Firmware firmware = Firmware::make(arm_model(support::vintage_model()), {}).value();
   EXPECT_EQ(sampled(firmware, steps_from_home(0, 0, 0)), driver::hfab::InputReport{});
   const auto report = sampled(firmware, steps_from_home(100.4, -7.6, 2000.1));
   EXPECT_EQ(report.counts, (std::array<std::int16_t, 6>{100, -8, 2000, 0, 0, 0}));
@@ -51,7 +52,7 @@ TEST(Firmware, StepsTheTipAsFarAsTheGeometrySays) {
                              0.138 * 2 * std::numbers::pi / 30800,
                              0.112 * 2 * std::numbers::pi / 30800};
   const double published[] = {0.024e-3, 0.028e-3, 0.023e-3};
-  const Firmware firmware = Firmware::make(model, {}).value();
+  const Firmware firmware = Firmware::make(arm_model(model), {}).value();
   for (int joint = 0; joint < 3; ++joint) {
     const auto tip = [&](double steps) {
       Eigen::Vector3d counts(0, 0, 0);
@@ -69,21 +70,22 @@ TEST(Firmware, StepsTheTipAsFarAsTheGeometrySays) {
 }
 
 TEST(Firmware, SendsFractionsOfCountsBelowTenNanometres) {
-  auto model = support::vintage_model();
-  model.fractional_counts = true;
-  const driver::hfab::HfabArm arm(model);
-  const Firmware firmware = Firmware::make(model, {}).value();
+  const auto model = support::vintage_model();
+  const auto arm = driver::make_ideal_arm(arm_model(model));
+  FirmwareSettings ideal;
+  ideal.ideal_encoders = true;
+  const Firmware firmware = Firmware::make(arm_model(model), ideal).value();
   support::Random random(10);
   for (int i = 0; i < 2000; ++i) {
     const Eigen::Vector3d p_BT = home_tip() + random.in_box(0.05);
     driver::ArmReading reading;
-    ASSERT_TRUE(arm.decode(firmware.sample(SerialPose(model.geometry, p_BT).angles()), reading));
-    ASSERT_LT((arm.pose(reading).p_BT - p_BT).norm(), 1e-9);
+    ASSERT_TRUE(arm->decode(firmware.sample(SerialPose(model.geometry, p_BT).angles()), reading));
+    ASSERT_LT((arm->pose(reading).p_BT - p_BT).norm(), 1e-9);
   }
 }
 
 TEST(Firmware, WrapsItsCountersAtSixteenBits) {
-  Firmware firmware = Firmware::make(support::vintage_model(), {}).value();
+  Firmware firmware = Firmware::make(arm_model(support::vintage_model()), {}).value();
   const SerialPose home = steps_from_home(0, 0, 0);
   firmware.receive(driver::hfab::encode_output(
                        {.current_mA = {}, .command = 1, .attributes = {32767, -32768, 5}}),
@@ -95,7 +97,7 @@ TEST(Firmware, WrapsItsCountersAtSixteenBits) {
 }
 
 TEST(Firmware, PresetsAllCountersClearsTheButtonAndAsksForNoCurrent) {
-  Firmware firmware = Firmware::make(support::vintage_model(), {}).value();
+  Firmware firmware = Firmware::make(arm_model(support::vintage_model()), {}).value();
   const SerialPose pose = steps_from_home(10.3, 20.3, 30.3);
   firmware.receive(drive_message(100, 200, 300), 0, pose.angles());
   firmware.press_button();
@@ -119,20 +121,20 @@ TEST(Firmware, SeesAndDrivesWhatIsPluggedIntoIt) {
   settings.wiring.encoder_gain = {1, -1, 0};
   settings.wiring.motor_of = {0, 2, 1};
   settings.wiring.motor_gain = {0, -1, 1};
-  Firmware firmware = Firmware::make(support::vintage_model(), settings).value();
+  Firmware firmware = Firmware::make(arm_model(support::vintage_model()), settings).value();
   EXPECT_EQ(sampled(firmware, steps_from_home(100, 200, 300)).counts,
             (std::array<std::int16_t, 6>{200, -100, 0, 0, 0, 0}));
   firmware.receive(drive_message(1000, 2000, 3000), 0, steps_from_home(0, 0, 0).angles());
   EXPECT_EQ(firmware.currents(), Eigen::Vector3d(0, 3, -2));
   settings.wiring.motor_of = {0, 3, 1};
-  EXPECT_TRUE(
-      refuses(Firmware::make(support::vintage_model(), settings), "joint that is not there"));
+  EXPECT_TRUE(refuses(Firmware::make(arm_model(support::vintage_model()), settings),
+                      "joint that is not there"));
 }
 
 TEST(Firmware, TakesACurrentBeyondItsRangeAsZero) {
   FirmwareSettings settings;
   settings.current_range_mA = 3000;
-  Firmware firmware = Firmware::make(support::vintage_model(), settings).value();
+  Firmware firmware = Firmware::make(arm_model(support::vintage_model()), settings).value();
   firmware.receive(drive_message(3000, 3001, -3000), 0, steps_from_home(0, 0, 0).angles());
   EXPECT_EQ(firmware.currents(), Eigen::Vector3d(3, 0, -3));
   EXPECT_EQ(firmware.counters().over_range, 1U);
@@ -142,7 +144,7 @@ TEST(Firmware, TakesACurrentBeyondItsRangeAsZero) {
 }
 
 TEST(Firmware, IgnoresAndCountsMessagesOfUnknownLength) {
-  Firmware firmware = Firmware::make(support::vintage_model(), {}).value();
+  Firmware firmware = Firmware::make(arm_model(support::vintage_model()), {}).value();
   const SerialPose home = steps_from_home(0, 0, 0);
   firmware.receive(drive_message(100, 0, 0), 0, home.angles());
   const std::array<std::byte, 65> bytes{};
@@ -159,7 +161,7 @@ TEST(Firmware, IgnoresAndCountsMessagesOfUnknownLength) {
 }
 
 TEST(Firmware, StartsWithItsMotorsOffAndArmsItsWatchdogWithTheFirstMessage) {
-  Firmware firmware = Firmware::make(support::vintage_model(), {}).value();
+  Firmware firmware = Firmware::make(arm_model(support::vintage_model()), {}).value();
   EXPECT_FALSE(firmware.motors_on());
   EXPECT_EQ(firmware.watchdog_due_ns(), Firmware::kNever_ns);
   firmware.watch(1'000'000'000'000);
@@ -177,16 +179,18 @@ TEST(Firmware, StartsWithItsMotorsOffAndArmsItsWatchdogWithTheFirstMessage) {
 TEST(Firmware, RefusesSettingsThatCannotWork) {
   FirmwareSettings settings;
   settings.report_period_ns = 0;
-  EXPECT_TRUE(refuses(Firmware::make(support::vintage_model(), settings), "report period"));
+  EXPECT_TRUE(
+      refuses(Firmware::make(arm_model(support::vintage_model()), settings), "report period"));
   settings = {};
   settings.watchdog_ns = 0;
-  EXPECT_TRUE(refuses(Firmware::make(support::vintage_model(), settings), "watchdog"));
+  EXPECT_TRUE(refuses(Firmware::make(arm_model(support::vintage_model()), settings), "watchdog"));
   settings = {};
   settings.current_range_mA = -1;
-  EXPECT_TRUE(refuses(Firmware::make(support::vintage_model(), settings), "current range"));
+  EXPECT_TRUE(
+      refuses(Firmware::make(arm_model(support::vintage_model()), settings), "current range"));
   auto model = support::vintage_model();
   model.encoders[1].counts_per_motor_turn = 0;
-  EXPECT_TRUE(refuses(Firmware::make(model, {}), "encoders need counts"));
+  EXPECT_TRUE(refuses(Firmware::make(arm_model(model), {}), "encoders need counts"));
 }
 
 }  // namespace

@@ -167,7 +167,7 @@ TEST(SimulatedArm, IsAnIdealZeroOrderHoldWithoutDelay) {
   ArmPlant plant = ArmPlant::make(model.geometry, model.drives, settings.plant, settings.hand,
                                   settings.motors, home_tip(), home_tip())
                        .value();
-  const Firmware board = Firmware::make(model, settings.firmware).value();
+  const Firmware board = Firmware::make(arm_model(model), settings.firmware).value();
   const auto law = [](const driver::hfab::InputReport& report, int k) {
     const auto kick = static_cast<std::int16_t>(k < 20 ? 900 : 0);
     return drive_message(static_cast<std::int16_t>(kick - report.counts[0] / 2), 0, 0);

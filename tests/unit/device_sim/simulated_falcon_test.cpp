@@ -10,6 +10,7 @@
 #include "arms/falcon/falcon_packet.h"
 #include "support/refuses.h"
 #include "thimble/driver/device.h"
+#include "thimble/driver/wire_link.h"
 
 namespace thimble::device_sim::usb {
 namespace {
@@ -36,8 +37,10 @@ struct InProgram {
                      .stall_ns = 20'000'000,
                      .watchdog_ns = 100'000'000};
     auto opened = driver::Device::open(
-        falcon->wire(clock),
-        std::make_unique<driver::falcon::FalconArm>(driver::falcon::falcon_model()), limits, 0);
+        std::make_unique<driver::WireLink>(
+            falcon->wire(clock),
+            std::make_unique<driver::falcon::FalconArm>(driver::falcon::falcon_model())),
+        limits, 0);
     EXPECT_TRUE(opened) << opened.error().message;
     device = std::move(opened).value();
   }
@@ -131,7 +134,9 @@ TEST(SimulatedFalcon, IsLeftAloneOnceALegIsNotHomedAnyMore) {
                    .stall_ns = 20'000'000,
                    .watchdog_ns = 100'000'000};
   auto opened = driver::Device::open(
-      std::move(made), std::make_unique<driver::falcon::FalconArm>(driver::falcon::falcon_model()),
+      std::make_unique<driver::WireLink>(
+          std::move(made),
+          std::make_unique<driver::falcon::FalconArm>(driver::falcon::falcon_model())),
       limits, run.clock.now_ns());
   ASSERT_TRUE(opened) << opened.error().message;
   run.device = std::move(opened).value();

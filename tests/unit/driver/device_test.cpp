@@ -10,6 +10,7 @@
 #include "arms/woody/woody_wire.h"
 #include "support/scripted_transport.h"
 #include "support/vintage_arm.h"
+#include "thimble/driver/wire_link.h"
 
 namespace thimble::driver {
 namespace {
@@ -27,9 +28,10 @@ std::vector<std::byte> report(std::int16_t a = 0, std::int16_t b = 0, std::int16
 class DeviceTest : public ::testing::Test {
  protected:
   Result<std::unique_ptr<Device>> open() {
-    return Device::open(std::make_unique<support::ScriptedTransport>(wire_),
-                        std::make_unique<hfab::HfabArm>(support::vintage_model()),
-                        support::vintage_settings(), now_ns_);
+    return Device::open(
+        std::make_unique<WireLink>(std::make_unique<support::ScriptedTransport>(wire_),
+                                   std::make_unique<hfab::HfabArm>(support::vintage_model())),
+        support::vintage_settings(), now_ns_);
   }
 
   void open_and_activate() {
@@ -81,9 +83,10 @@ TEST_F(DeviceTest, RefusesLimitsThatAreNotPositiveNumbers) {
   DeviceSettings settings = support::vintage_settings();
   settings.limits.force_max = NAN;
   wire_.to_host.push_back(report());
-  const auto opened =
-      Device::open(std::make_unique<support::ScriptedTransport>(wire_),
-                   std::make_unique<hfab::HfabArm>(support::vintage_model()), settings, 0);
+  const auto opened = Device::open(
+      std::make_unique<WireLink>(std::make_unique<support::ScriptedTransport>(wire_),
+                                 std::make_unique<hfab::HfabArm>(support::vintage_model())),
+      settings, 0);
   ASSERT_FALSE(opened);
   EXPECT_NE(opened.error().message.find("force_max"), std::string::npos);
 }
@@ -94,9 +97,10 @@ TEST_F(DeviceTest, RefusesASpeedFloorThatWouldSwitchTheDampingOffOrTurnItUp) {
   for (const double floor : {-0.01, static_cast<double>(NAN), HUGE_VAL}) {
     settings.energy.speed_floor = floor;
     wire_.to_host.push_back(report());
-    const auto opened =
-        Device::open(std::make_unique<support::ScriptedTransport>(wire_),
-                     std::make_unique<hfab::HfabArm>(support::vintage_model()), settings, 0);
+    const auto opened = Device::open(
+        std::make_unique<WireLink>(std::make_unique<support::ScriptedTransport>(wire_),
+                                   std::make_unique<hfab::HfabArm>(support::vintage_model())),
+        settings, 0);
     ASSERT_FALSE(opened) << floor;
     EXPECT_NE(opened.error().message.find("speed floor must be a finite number of zero or more"),
               std::string::npos);
@@ -243,9 +247,10 @@ class NumberedReports : public ::testing::Test {
  protected:
   void SetUp() override {
     say(0);
-    auto opened = Device::open(std::make_unique<support::ScriptedTransport>(wire_),
-                               std::make_unique<woody::WoodyArm>(hfab::woody_model()),
-                               support::vintage_settings(), 0);
+    auto opened = Device::open(
+        std::make_unique<WireLink>(std::make_unique<support::ScriptedTransport>(wire_),
+                                   std::make_unique<woody::WoodyArm>(hfab::woody_model())),
+        support::vintage_settings(), 0);
     ASSERT_TRUE(opened) << opened.error().message;
     device_ = std::move(opened).value();
     ASSERT_TRUE(device_->activate());

@@ -10,6 +10,7 @@
 #include "support/random.h"
 #include "support/vintage_arm.h"
 #include "thimble/driver/device.h"
+#include "thimble/driver/wire_link.h"
 
 namespace thimble::driver {
 namespace {
@@ -131,9 +132,10 @@ TEST(HeatOfADevice, LowersAnHourOfFiftyNewtonsToTheContinuousCurrentAndKeepsItsD
   settings.limits.force_max = 50;
   settings.heat = kSettings;
   std::array<std::int16_t, 3> mA{};
-  auto opened =
-      Device::open(std::make_unique<SwingingWire>(mA),
-                   std::make_unique<hfab::HfabArm>(support::vintage_model()), settings, 0);
+  auto opened = Device::open(
+      std::make_unique<WireLink>(std::make_unique<SwingingWire>(mA),
+                                 std::make_unique<hfab::HfabArm>(support::vintage_model())),
+      settings, 0);
   ASSERT_TRUE(opened) << opened.error().message;
   Device& device = **opened;
   ASSERT_TRUE(device.activate());
@@ -172,9 +174,10 @@ TEST(HeatOfADevice, RefusesATimeConstantThatIsNone) {
   settings.heat = kSettings;
   settings.heat.time_constant[1] = 0;
   std::array<std::int16_t, 3> mA{};
-  const auto opened =
-      Device::open(std::make_unique<SwingingWire>(mA),
-                   std::make_unique<hfab::HfabArm>(support::vintage_model()), settings, 0);
+  const auto opened = Device::open(
+      std::make_unique<WireLink>(std::make_unique<SwingingWire>(mA),
+                                 std::make_unique<hfab::HfabArm>(support::vintage_model())),
+      settings, 0);
   ASSERT_FALSE(opened);
   EXPECT_NE(opened.error().message.find("thermal_time_constant"), std::string::npos);
 }

@@ -1,4 +1,4 @@
-#include "thimble/driver/arms/hfab/hfab_arm.h"
+#include "arms/hfab/hfab_wire.h"
 
 #include <gtest/gtest.h>
 
@@ -33,36 +33,59 @@ TEST(HfabArm, HasTheTipResolutionOfItsGeometry) {
 
 TEST(HfabArm, TurnsJointAnglesIntoCountsAndBack) {
   support::Random random(21);
-  for (const bool fractional : {false, true}) {
-    HfabModel model = support::vintage_model();
-    model.fractional_counts = fractional;
+  for (const int times : {1, 65536}) {
+    const auto model = with_fine_counts(support::vintage_model(), times);
     for (int i = 0; i < 1000; ++i) {
       const Eigen::Vector3d q = support::vintage_home() + random.in_box(0.7);
       const Eigen::Vector3d exact = model.exact_counts(q);
       ArmReading reading;
       for (std::size_t j = 0; j < 3; ++j) {
-        const double whole = std::floor(exact[static_cast<int>(j)]);
-        reading.counts[j] = static_cast<std::int32_t>(whole);
-        reading.auxiliary[j] =
-            static_cast<std::int32_t>((exact[static_cast<int>(j)] - whole) * 65536);
+        reading.counts[j] =
+            static_cast<std::int32_t>(std::floor(exact[static_cast<Eigen::Index>(j)]));
       }
-      for (int j = 0; j < 3; ++j) {
-        const double step = model.step(j) / (fractional ? 65536 : 1);
-        EXPECT_LE(std::abs(model.joint_angles(reading)[j] - q[j]), step * (1 + 1e-6));
+      for (std::size_t j = 0; j < 3; ++j) {
+        const auto k = static_cast<Eigen::Index>(j);
+        EXPECT_LE(std::abs(model.joint_angles(reading)[k] - q[k]), model.step(j) * (1 + 1e-6));
       }
     }
   }
 }
 
+TEST(HfabArm, FindsTheSameAnglesToTheBitFromWholeCountsOfFineEncoders) {
+  const auto whole = support::vintage_model();
+  const auto fine = with_fine_counts(whole);
+  support::Random random(22);
+  for (int i = 0; i < 1000; ++i) {
+    ArmReading a, b;
+    for (std::size_t j = 0; j < 3; ++j) {
+      a.counts[j] = static_cast<std::int16_t>(random.bits());
+      b.counts[j] = a.counts[j] * 65536;
+    }
+    ASSERT_EQ(whole.joint_angles(a), fine.joint_angles(b));
+  }
+}
+
 TEST(HfabArm, ReadsFractionsOfCountsWithoutASign) {
-  HfabModel model = support::vintage_model();
-  model.fractional_counts = true;
-  const HfabArm arm(model);
   InputReport report;
-  report.counts[3] = static_cast<std::int16_t>(static_cast<std::uint16_t>(65535));
+  report.counts = {-1, 2, 0, static_cast<std::int16_t>(static_cast<std::uint16_t>(65535)), 7, 0};
   ArmReading reading;
-  ASSERT_TRUE(arm.decode(encode_input(report), reading));
-  EXPECT_EQ(reading.auxiliary[0], 65535);
+  ASSERT_TRUE(FineReportWire::decode(encode_input(report), reading));
+  EXPECT_EQ(reading.counts, (std::array<std::int32_t, 3>{-1, 2 * 65536 + 7, 0}));
+}
+
+TEST(HfabArm, RoundsCurrentsAsTheLibraryDoes) {
+  // whole_mA has no call; halves go away from zero, and what is just below stays.
+  EXPECT_EQ(whole_mA(MotorCurrents())[0], 0);
+  support::Random random(23);
+  for (int i = 0; i < 100'000; ++i) {
+    const double half = std::floor(random.uniform(-40'000, 40'000)) + 0.5;
+    for (const double exact :
+         {half, std::nextafter(half, 0.0), std::nextafter(half, 2 * half), 0.49999999999999994,
+          -0.49999999999999994, random.uniform(-40'000, 40'000)}) {
+      const double kept = std::clamp(exact, -32767.0, 32767.0);
+      ASSERT_EQ(round_half_away(kept), std::lround(kept)) << exact;
+    }
+  }
 }
 
 TEST(HfabArm, LeavesTheReadingAloneWhenItRejectsAReport) {

@@ -7,6 +7,7 @@
 #include "support/scripted_transport.h"
 #include "support/vintage_arm.h"
 #include "thimble/driver/servo_loop.h"
+#include "thimble/driver/wire_link.h"
 
 namespace thimble::driver {
 namespace {
@@ -41,9 +42,10 @@ class ReplugTest : public ::testing::Test {
   void SetUp() override {
     auto transport = std::make_unique<AnsweringTransport>(wire_);
     transport_ = transport.get();
-    auto opened = Device::open(std::move(transport),
-                               std::make_unique<hfab::HfabArm>(support::vintage_model()),
-                               support::vintage_settings(), 0);
+    auto opened = Device::open(
+        std::make_unique<WireLink>(std::move(transport),
+                                   std::make_unique<hfab::HfabArm>(support::vintage_model())),
+        support::vintage_settings(), 0);
     ASSERT_TRUE(opened) << opened.error().message;
     device_ = std::move(opened).value();
     ASSERT_TRUE(device_->activate());
@@ -68,6 +70,12 @@ class ReplugTest : public ::testing::Test {
     const std::atomic<bool> stop{false};
     return run_servo(*device_, clock_, ForceLaw(push), TickSink(sink),
                      {.ticks = ticks, .outlive_faults = true}, stop);
+  }
+
+  void offer(support::Wire& wire) {
+    EXPECT_TRUE(device_->offer(
+        std::make_unique<WireLink>(std::make_unique<AnsweringTransport>(wire),
+                                   std::make_unique<hfab::HfabArm>(support::vintage_model()))));
   }
 
   static double force(const TickRecord& record) {
@@ -102,7 +110,7 @@ TEST_F(ReplugTest, FindsTheArmAgainButGivesForceOnlyWhenTheUserSaysSo) {
     const std::size_t tick = records_.size();
     if (tick == 500) wire_.lost = true;
     if (tick == 550) device_->ask_to_activate();  // too early: the arm is not there
-    if (tick == 600) device_->offer(std::make_unique<AnsweringTransport>(second_wire_));
+    if (tick == 600) offer(second_wire_);
     if (tick == 800) device_->ask_to_activate();
   };
   EXPECT_EQ(run(1500), ServoEnd::kDone);
@@ -133,7 +141,7 @@ TEST_F(ReplugTest, SurvivesManyPullsWithoutLosingAWire) {
     }
     if (records_.size() % 50 == 20 && next < wires.size()) {
       wires[next].lost = false;
-      device_->offer(std::make_unique<AnsweringTransport>(wires[next]));
+      offer(wires[next]);
       ++next;
     }
     if (records_.size() % 50 == 30) device_->ask_to_activate();

@@ -12,6 +12,7 @@
 #include "support/vintage_arm.h"
 #include "thimble/driver/device.h"
 #include "thimble/driver/transports.h"
+#include "thimble/driver/wire_link.h"
 
 namespace thimble::driver {
 namespace {
@@ -125,13 +126,14 @@ TEST_F(SerialTransportTest, CarriesAWholeArm) {
   open();
   say("[2,100,-50,7,0,0,0,0]\n");
   JointModel<SerialArm> model;
-  const hfab::HfabModel vintage = support::vintage_model();
+  const auto vintage = support::vintage_model();
   model.geometry = vintage.geometry;
   model.drives = vintage.drives;
   model.encoders = vintage.encoders;
-  auto device =
-      Device::open(std::move(wire_), std::make_unique<WireArm<hfab::LineWire, SerialArm>>(model),
-                   support::vintage_settings(), clock_.now_ns());
+  auto device = Device::open(
+      std::make_unique<WireLink>(std::move(wire_),
+                                 std::make_unique<WireArm<hfab::LineWire, SerialArm>>(model)),
+      support::vintage_settings(), clock_.now_ns());
   ASSERT_TRUE(device) << device.error().message;
   EXPECT_EQ((*device)->state().counts, (std::array<std::int32_t, 3>{100, -50, 7}));
   EXPECT_EQ(hear(), "[0,0,0]\n");

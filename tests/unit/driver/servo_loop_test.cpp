@@ -1,4 +1,5 @@
 #include "thimble/driver/servo_loop.h"
+#include "thimble/driver/wire_link.h"
 
 #include <gtest/gtest.h>
 
@@ -62,9 +63,10 @@ class HomeTransport final : public Transport {
 class ServoLoopTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    auto opened = Device::open(std::make_unique<HomeTransport>(wire_),
-                               std::make_unique<hfab::HfabArm>(support::vintage_model()),
-                               support::vintage_settings(), 0);
+    auto opened = Device::open(
+        std::make_unique<WireLink>(std::make_unique<HomeTransport>(wire_),
+                                   std::make_unique<hfab::HfabArm>(support::vintage_model())),
+        support::vintage_settings(), 0);
     ASSERT_TRUE(opened) << opened.error().message;
     device_ = std::move(opened).value();
     ASSERT_TRUE(device_->activate());

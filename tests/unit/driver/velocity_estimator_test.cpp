@@ -1,4 +1,4 @@
-#include "thimble/driver/velocity_estimator.h"
+#include "velocity_estimator.h"
 
 #include <gtest/gtest.h>
 

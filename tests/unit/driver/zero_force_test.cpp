@@ -9,6 +9,7 @@
 #include "support/scripted_transport.h"
 #include "support/vintage_arm.h"
 #include "thimble/driver/servo_loop.h"
+#include "thimble/driver/wire_link.h"
 
 namespace thimble::driver::zero_force_test {
 namespace {
@@ -31,9 +32,10 @@ class ZeroForce : public ::testing::Test {
  protected:
   void open(const DeviceSettings& settings = support::vintage_settings()) {
     wire_.to_host.push_back(report());
-    auto opened =
-        Device::open(std::make_unique<support::ScriptedTransport>(wire_),
-                     std::make_unique<hfab::HfabArm>(support::vintage_model()), settings, now_ns_);
+    auto opened = Device::open(
+        std::make_unique<WireLink>(std::make_unique<support::ScriptedTransport>(wire_),
+                                   std::make_unique<hfab::HfabArm>(support::vintage_model())),
+        settings, now_ns_);
     ASSERT_TRUE(opened) << opened.error().message;
     device_ = std::move(opened).value();
     EXPECT_TRUE(device_->zero_assured());
@@ -242,9 +244,10 @@ TEST(LooseLimits, AreRefusedByName) {
   const auto refusal = [](const DeviceSettings& settings) {
     support::Wire wire;
     wire.to_host.push_back(report());
-    const auto opened =
-        Device::open(std::make_unique<support::ScriptedTransport>(wire),
-                     std::make_unique<hfab::HfabArm>(support::vintage_model()), settings, 0);
+    const auto opened = Device::open(
+        std::make_unique<WireLink>(std::make_unique<support::ScriptedTransport>(wire),
+                                   std::make_unique<hfab::HfabArm>(support::vintage_model())),
+        settings, 0);
     return opened ? std::string() : opened.error().message;
   };
   const auto with = [&](auto change) {

@@ -44,7 +44,12 @@ class Definition {
     normal = sum / size;
     double bend = 0;
     for (std::size_t k = 0; k < 3; ++k) bend += l[k] * (x[k] - q).dot(n[k]);
-    depth = (q - p).dot(normal) + bend / (1 + size);
+    const double below = (q - p).dot(normal);
+    bend /= 1 + size;
+    depth = below + bend;
+    // A smooth surface below its triangles is felt from those on, by a parabola up to twice as
+    // deep.
+    if (below >= 0 && below < -2 * bend) depth = below * below / (-4 * bend);
   }
 
   std::array<Vector3d, 3> x, n;

@@ -98,11 +98,12 @@ TEST(ScannedMeshes, ElephantIsNeverLostWhileTheTipWandersBelowItsSkin) {
     }
     ++in_contact;
     if (tick % 200 == 0) inside_seen += support::is_inside(mesh, p);
-    // Unless the tracker says that no cell could be had, the tip is in the active triangle's cell.
+    // Unless the tracker says that no cell could be had, or that another face around is nearer, the
+    // tip is in the active triangle's cell.
     const TrackerCounters& now = contact.counters();
     const bool settled = now.cycles != counters.cycles || now.long_walks != counters.long_walks ||
                          now.found_near != counters.found_near ||
-                         now.found_far != counters.found_far;
+                         now.found_far != counters.found_far || now.nearer != counters.nearer;
     if (!settled) {
       const auto t = static_cast<std::size_t>(state.triangle);
       for (std::size_t k = 0; k < 3; ++k) {

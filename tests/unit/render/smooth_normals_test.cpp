@@ -99,7 +99,7 @@ TEST(SmoothNormals, AreTheSameFromBothSidesOfAnEdgeThatIsNoCrease) {
 TEST(SmoothNormals, WeightedByAnglesAreTheNormalsOfTheVertices) {
   const TriangleMesh shape = support::bumpy_sphere(3, 0.05, 0.5, 9);
   const ContactMesh mesh = prepared_mesh(shape);
-  const SmoothNormals normals(mesh, std::numbers::pi, NormalWeights::kAngle);
+  const SmoothNormals normals(mesh, std::numbers::pi, NormalWeights::kAngle, std::numbers::pi);
   const std::vector<Vector3d> wanted = vertex_normals(shape);
   for (std::int32_t t = 0; t < mesh.triangle_count(); ++t) {
     for (std::size_t k = 0; k < 3; ++k) {

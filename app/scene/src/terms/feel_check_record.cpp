@@ -12,8 +12,8 @@
 #include <string_view>
 #include <system_error>
 
+#include "arm_table.h"
 #include "thimble/driver/safety_gate.h"
-#include "thimble/scene/real_arm.h"
 #include "user_folders.h"
 
 namespace thimble::scene {
@@ -57,7 +57,7 @@ std::string checksum_of(const fs::path& file) {
 /// arm's geometry and signs is code.
 std::string checksum_of_data(const ArmFile& file, driver::ArmKind kind) {
   Checksum sum;
-  const auto arm = make_arm(file, kind);
+  const auto arm = driver::make_arm(kind, file.model);
   for (int i = 0; i < 8; ++i) {
     driver::ArmReading reading;
     for (std::size_t k = 0; k < 3; ++k) reading.counts[k] = (i >> k) % 2 == 0 ? 0 : 500;
@@ -71,7 +71,7 @@ std::string checksum_of_data(const ArmFile& file, driver::ArmKind kind) {
     sum.add(drive.torque_constant, 1);
     sum.add(drive.current_max, 1);
     sum.add(file.model.encoders[k].sign, 1);
-    sum.add(file.model.encoders[k].home_counts, 1);
+    sum.add(static_cast<double>(file.model.encoders[k].home_counts), 1);
     sum.add(file.model.encoders[k].counts_per_motor_turn, 1);
   }
   return sum.text();

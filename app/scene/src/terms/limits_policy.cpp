@@ -136,14 +136,19 @@ const char* differing_section(const ArmFile& one, const ArmFile& other) {
     }
     return true;
   };
-  const driver::SerialArm &a = one.model.geometry, &b = other.model.geometry;
   if (one.protocol != other.protocol) return "protocol";
-  if (one.shape != other.shape) return "shape";
+  if (one.model.geometry.index() != other.model.geometry.index()) return "shape";
   if (one.board_model != other.board_model) return "board_model";
-  if (a.height != b.height || a.length_b != b.length_b || a.length_c != b.length_c) {
-    return "geometry";
+  if (one.is<driver::SerialArm>()) {
+    const auto& a = std::get<driver::SerialArm>(one.model.geometry);
+    const auto& b = std::get<driver::SerialArm>(other.model.geometry);
+    if (a.height != b.height || a.length_b != b.length_b || a.length_c != b.length_c) {
+      return "geometry";
+    }
   }
   if (!same_joints()) return "joints";
+  // Files of before there were gimbals say nothing of one; then the installed file does.
+  if (other.model.gimbal && one.model.gimbal != other.model.gimbal) return "gimbal";
   if (one.R_WB != other.R_WB || one.p_WB != other.p_WB) return "base";
   if (one.workspace.min_W != other.workspace.min_W ||
       one.workspace.max_W != other.workspace.max_W) {

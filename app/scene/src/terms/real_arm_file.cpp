@@ -4,6 +4,7 @@
 #include <string_view>
 #include <utility>
 
+#include "arm_table.h"
 #include "terms/board_model.h"
 #include "terms/limits_policy.h"
 #include "thimble/scene/calibration.h"
@@ -25,21 +26,6 @@ struct Choice {
   fs::path path;
   std::string why;
 };
-
-/// Returns the installed file that a kind of arm means by itself; empty if several arms are of it.
-std::string_view file_of_kind(ArmKind kind) {
-  switch (kind) {
-    case ArmKind::kWoody:
-      return "woodenhaptics";
-    case ArmKind::kFalcon:
-      return "falcon";
-    case ArmKind::kPolhem:    // its HID reports carry no model
-    case ArmKind::kHfabLine:  // its board has to be asked
-    case ArmKind::kUnsupported:
-      break;
-  }
-  return {};
-}
 
 /// Lists the installed arm files that may be used with an arm, for a sentence.
 std::string fitting_names(const FoundArm& arm) {
@@ -89,8 +75,9 @@ Result<Choice> choose_by_arm(const FoundArm& arm, const Calibration* calibration
     return installed_named(calibration->arm_file,
                            "kept with its calibration in " + calibration_file(arm.name()).string());
   }
-  if (const std::string_view name = file_of_kind(arm.kind); !name.empty()) {
-    return installed_named(std::string(name), "the arm is a " + arm.arm);
+  const driver::ArmRow* row = driver::row_of(arm.kind);
+  if (row != nullptr && !row->own_file.empty()) {
+    return installed_named(std::string(row->own_file), "the arm is a " + arm.arm);
   }
   if (arm.kind != ArmKind::kHfabLine) {
     return say_which(arm, "The arm " + arm.name() + " does not tell its model over USB.");

@@ -20,6 +20,8 @@ inline hid_t type_in_memory(const RecordingColumn& column) {
       return H5T_NATIVE_INT64;
     case RecordingColumn::Type::kU64:
       return H5T_NATIVE_UINT64;
+    case RecordingColumn::Type::kF32:
+      return H5T_NATIVE_FLOAT;
     case RecordingColumn::Type::kF64:
       return H5T_NATIVE_DOUBLE;
   }

@@ -119,6 +119,7 @@ bool sound(const driver::TickRecord& tick) {
   };
   return byte_at(offsetof(driver::TickRecord, in_contact)) <= 1 &&
          byte_at(offsetof(driver::TickRecord, fresh)) <= 1 &&
+         byte_at(offsetof(driver::TickRecord, has_gripper)) <= 1 &&
          byte_at(offsetof(driver::TickRecord, stage)) <=
              static_cast<unsigned>(driver::DeviceStage::kFault) &&
          byte_at(offsetof(driver::TickRecord, fault)) <= static_cast<unsigned>(driver::kLastFault);

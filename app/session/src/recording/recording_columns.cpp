@@ -38,6 +38,13 @@ constexpr std::array kColumns{
                     3, offsetof(TickRecord, f_sent_W)},
     RecordingColumn{"heat", "1", "of each motor; 1 is its winding's limit, 0 if the arm names none",
                     Type::kF64, 3, offsetof(TickRecord, heat), true},
+    RecordingColumn{"q_WT", "1",
+                    "quaternion w, x, y, z of the stylus in the world, zeros if the arm tells none",
+                    Type::kF32, 4, offsetof(TickRecord, q_WT), true},
+    RecordingColumn{"gimbal", "rad", "angles of the gimbal's axes, zeros if the arm has none",
+                    Type::kF32, 3, offsetof(TickRecord, gimbal), true},
+    RecordingColumn{"gripper", "m", "opening of the gripper, 0 if the arm has none", Type::kF32, 1,
+                    offsetof(TickRecord, gripper), true},
     RecordingColumn{"depth", "m", "of the tip below the surface", Type::kF64, 1,
                     offsetof(TickRecord, depth)},
     RecordingColumn{"feature", "1", "active triangle, -1 for none", Type::kI32, 1,
@@ -51,6 +58,8 @@ constexpr std::array kColumns{
                     offsetof(TickRecord, in_contact)},
     RecordingColumn{"fresh", "1", "1 if a new report of the arm came for this tick", Type::kU8, 1,
                     offsetof(TickRecord, fresh)},
+    RecordingColumn{"has_gripper", "1", "1 if the arm has a gripper", Type::kU8, 1,
+                    offsetof(TickRecord, has_gripper), true},
     RecordingColumn{"stage", "1", "0 idle, 1 active, 2 fault", Type::kU8, 1,
                     offsetof(TickRecord, stage)},
     RecordingColumn{"fault", "1", "0 none; /faults names the others", Type::kU8, 1,
@@ -67,6 +76,7 @@ std::size_t RecordingColumn::element() const noexcept {
     case Type::kI16:
       return 2;
     case Type::kI32:
+    case Type::kF32:
       return 4;
     case Type::kI64:
     case Type::kU64:

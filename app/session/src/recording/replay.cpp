@@ -8,7 +8,7 @@
 
 #include "text_file.h"
 #include "thimble/driver/device_state.h"
-#include "thimble/driver/force_command.h"
+#include "thimble/driver/force_law.h"
 #include "thimble/scene/build_info.h"
 #include "thimble/scene/scene_file.h"
 #include "thimble/scene/scene_objects.h"
@@ -39,6 +39,12 @@ driver::DeviceState state_of(const TickRecord& then, double dt) {
   state.counts = then.counts;
   state.buttons = then.buttons;
   state.fresh = then.fresh;
+  state.has_orientation = then.q_WT != driver::TipQuaternion{};
+  state.q_WT = then.q_WT;
+  state.R_WT = driver::rotation_of(then.q_WT);
+  state.gimbal = then.gimbal;
+  state.has_gripper = then.has_gripper;
+  state.gripper = then.gripper;
   return state;
 }
 

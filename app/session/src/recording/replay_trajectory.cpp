@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "thimble/driver/device_state.h"
-#include "thimble/driver/force_command.h"
+#include "thimble/driver/force_law.h"
 
 namespace thimble::session {
 namespace {

@@ -32,6 +32,8 @@ void add_number(std::string& line, RecordingColumn::Type type, const unsigned ch
       return add_number<std::int64_t>(line, from);
     case RecordingColumn::Type::kU64:
       return add_number<std::uint64_t>(line, from);
+    case RecordingColumn::Type::kF32:
+      return add_number<float>(line, from);
     case RecordingColumn::Type::kF64:
       return add_number<double>(line, from);
   }
@@ -44,9 +46,11 @@ std::string heading() {
       if (!line.empty()) line += ',';
       line += column.name;
       // Joint angles and counts are numbered as the arm's axes are, vectors have x, y, z.
-      const bool axes =
-          std::strcmp(column.name, "q") == 0 || std::strcmp(column.name, "counts") == 0;
+      const bool axes = std::strcmp(column.name, "q") == 0 ||
+                        std::strcmp(column.name, "counts") == 0 ||
+                        std::strcmp(column.name, "gimbal") == 0;
       if (column.width == 3) line += std::string(".") + (axes ? "123" : "xyz")[k];
+      if (column.width == 4) line += std::string(".") + "wxyz"[k];
       if (std::strcmp(column.unit, "1") != 0) line += std::string(" [") + column.unit + "]";
     }
   }

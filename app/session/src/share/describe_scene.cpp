@@ -2,9 +2,6 @@
 
 #include <numbers>
 
-#include "arms/falcon/falcon_arm.h"
-#include "arms/hfab/hfab_models.h"
-
 namespace thimble::session {
 namespace {
 
@@ -15,34 +12,13 @@ constexpr double kCreaseDrawn = std::numbers::pi / 4;
 }  // namespace
 
 SharedScene::Arm describe_arm(const scene::ArmFile& arm, const std::string& device) {
-  SharedScene::Arm described{.name = arm.name,
-                             .device = device,
-                             .R_WB = arm.R_WB,
-                             .p_WB = arm.p_WB,
-                             .min_W = arm.workspace.min_W,
-                             .max_W = arm.workspace.max_W};
-  switch (arm.shape) {
-    case scene::ArmShape::kSerial: {
-      const driver::SerialArm& g = arm.model.geometry;
-      described.shape = SharedArmShape::kSerial;
-      described.numbers = {g.height, g.length_b, g.length_c};
-      break;
-    }
-    case scene::ArmShape::kPolhem: {
-      const driver::LinkageArm g = driver::hfab::polhem_model().geometry;
-      described.shape = SharedArmShape::kLinkage;
-      described.numbers = {g.length_0, g.length_1, g.length_2, g.length_3, g.length_4, g.length_5};
-      break;
-    }
-    case scene::ArmShape::kFalcon: {
-      const driver::DeltaArm g = driver::falcon::falcon_geometry();
-      described.shape = SharedArmShape::kDelta;
-      described.numbers = {g.a, g.b, g.c,          g.d,          g.e,         g.f,
-                           g.r, g.s, g.azimuth[0], g.azimuth[1], g.azimuth[2]};
-      break;
-    }
-  }
-  return described;
+  return {.name = arm.name,
+          .device = device,
+          .geometry = arm.model.geometry,
+          .R_WB = arm.R_WB,
+          .p_WB = arm.p_WB,
+          .min_W = arm.workspace.min_W,
+          .max_W = arm.workspace.max_W};
 }
 
 namespace {

@@ -7,7 +7,7 @@
 #include "share/live_knobs.h"
 #include "share/shared_run.h"
 #include "thimble/driver/device_state.h"
-#include "thimble/driver/force_command.h"
+#include "thimble/driver/force_law.h"
 #include "thimble/driver/tick_record.h"
 #include "thimble/render/scene_touch.h"
 #include "thimble/scene/arm_simulation.h"

@@ -23,7 +23,7 @@ namespace thimble::session {
 // Frames: W world.
 
 /// Changes with every change of this file. A reader of another version refuses.
-inline constexpr std::uint32_t kSharedVersion = 3;
+inline constexpr std::uint32_t kSharedVersion = 4;
 /// Stands in `SharedHead::ready` of a segment that is complete: "thimble1" in ASCII.
 inline constexpr std::uint64_t kSharedReady = 0x31656c626d696874;
 
@@ -61,22 +61,13 @@ constexpr const char* name_of(RunState state) noexcept {
   return "unknown";
 }
 
-/// Names the builds of arm that a viewer can draw; `numbers` of SharedArm says how long each part
-/// is.
-enum class SharedArmShape : std::uint32_t {
-  kUnknown,  ///< Only the tip is drawn.
-  kSerial,   ///< height, length_b, length_c of driver::SerialArm.
-  kLinkage,  ///< length_0 to length_5 of driver::LinkageArm.
-  kDelta,    ///< a, b, c, d, e, f, r, s, azimuth of driver::DeltaArm.
-};
-
 /// Is what a viewer needs to draw the arm from its joint angles.
 struct SharedArm {
   SharedText<64> name{};
   SharedText<64> device{};  ///< "sim", or the name of the arm on the desk.
-  std::uint32_t shape = 0;  ///< A SharedArmShape.
+  std::uint32_t shape = 0;  ///< How it is built: see shared_geometry.h.
   std::uint32_t unused = 0;
-  std::array<double, 12> numbers{};  ///< m, rad
+  std::array<double, 12> numbers{};  ///< Of the build, m, rad.
   std::array<double, 9> R_WB{};      ///< Row by row.
   std::array<double, 3> p_WB{};      ///< m
   std::array<double, 3> min_W{};     ///< Of the workspace, m.

@@ -248,11 +248,15 @@ bool SharedReader::lead_hand(const Eigen::Vector3d& p_WH, bool holds) noexcept {
 bool SharedReader::sound(driver::TickRecord& record) const noexcept {
   mend(record.in_contact);
   mend(record.fresh);
+  mend(record.has_gripper);
   // A faulty arm may tell of places that are no numbers; its fault must be seen, they must not.
   for (auto* numbers : {&record.q, &record.p_WT, &record.v_WT, &record.p_WP, &record.n_W,
                         &record.f_wanted_W, &record.f_sent_W, &record.heat}) {
     for (double& x : *numbers) x = std::isfinite(x) ? x : 0;
   }
+  for (float& x : record.q_WT) x = std::isfinite(x) ? x : 0;
+  for (float& x : record.gimbal) x = std::isfinite(x) ? x : 0;
+  if (!std::isfinite(record.gripper)) record.gripper = 0;
   if (!std::isfinite(record.depth)) record.depth = 0;
   const bool known = record.stage <= driver::DeviceStage::kFault &&
                      record.fault <= driver::kLastFault && record.object >= -1 &&

@@ -11,6 +11,8 @@
 #include <span>
 #include <string_view>
 
+#include "share/shared_geometry.h"
+
 namespace thimble::session {
 namespace {
 
@@ -57,8 +59,7 @@ std::array<double, 3> plain(const Eigen::Vector3d& v) {
 void put_arm(const SharedScene::Arm& arm, SharedArm& to) {
   put(arm.name, to.name);
   put(arm.device, to.device);
-  to.shape = static_cast<std::uint32_t>(arm.shape);
-  to.numbers = arm.numbers;
+  put_geometry(arm.geometry, to);
   Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(to.R_WB.data()) = arm.R_WB;
   to.p_WB = plain(arm.p_WB);
   to.min_W = plain(arm.min_W);

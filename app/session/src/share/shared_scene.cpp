@@ -1,4 +1,5 @@
 #include "share/shared_scene.h"
+#include "share/shared_geometry.h"
 
 #include <algorithm>
 #include <cmath>
@@ -67,15 +68,12 @@ Eigen::Vector3d vector_of(const std::array<double, 3>& a) {
 }
 
 bool take_arm(const SharedArm& shared, SharedScene::Arm& arm) {
-  if (shared.shape > static_cast<std::uint32_t>(SharedArmShape::kDelta)) return false;
-  if (!all_finite(shared.numbers) || !all_finite(shared.R_WB) || !all_finite(shared.p_WB) ||
-      !all_finite(shared.min_W) || !all_finite(shared.max_W)) {
+  if (!take_geometry(shared, arm.geometry) || !all_finite(shared.R_WB) ||
+      !all_finite(shared.p_WB) || !all_finite(shared.min_W) || !all_finite(shared.max_W)) {
     return false;
   }
   arm.name = text_of(shared.name);
   arm.device = text_of(shared.device);
-  arm.shape = static_cast<SharedArmShape>(shared.shape);
-  arm.numbers = shared.numbers;
   arm.R_WB = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(shared.R_WB.data());
   arm.p_WB = vector_of(shared.p_WB);
   arm.min_W = vector_of(shared.min_W);

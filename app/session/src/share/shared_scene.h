@@ -4,11 +4,13 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "share/shared_layout.h"
+#include "thimble/driver/arm_model.h"
 #include "thimble/driver/result.h"
 
 namespace thimble::session {
@@ -39,8 +41,7 @@ struct SharedScene {
   struct Arm {
     std::string name;
     std::string device;
-    SharedArmShape shape = SharedArmShape::kUnknown;
-    std::array<double, 12> numbers{};                    ///< m, rad; see SharedArmShape
+    std::optional<driver::ArmGeometry> geometry{};       ///< How it is built; none: only its tip.
     Eigen::Matrix3d R_WB = Eigen::Matrix3d::Identity();  ///< Rotation of its base in the world.
     Eigen::Vector3d p_WB{0, 0, 0};                       ///< Where its base stands, m.
     Eigen::Vector3d min_W{0, 0, 0}, max_W{0, 0, 0};      ///< Box of its workspace, m.

@@ -2,8 +2,11 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <numbers>
 
+#include "thimble/driver/board.h"
 #include "thimble/driver/result.h"
 
 namespace thimble::device_sim {
@@ -26,6 +29,24 @@ struct HandSettings {
   double damping = 0;            ///< N s/m
   double tremor_amplitude = 0;   ///< Peak displacement of the wanted point per axis, m.
   double tremor_frequency = 10;  ///< Middle of the tremor's band, Hz.
+};
+
+/// How a simulated hand turns the stylus: each axis of the gimbal to and fro, a third of a period
+/// after the one before. It is a script: no force turns the stylus.
+struct GimbalMotion {
+  Eigen::Vector3d middle{0, 0, 0};  ///< Angles about which it swings, rad.
+  Eigen::Vector3d swing{0, 0, 0};   ///< How far to each side, rad.
+  double period = 2;                ///< s. Must be > 0.
+
+  /// Returns the angles of the gimbal at a time (s), rad. Real-time: safe.
+  Eigen::Vector3d at(double time) const noexcept {
+    Eigen::Vector3d angles = middle;
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      const double turns = time / period - static_cast<double>(i) / 3;
+      angles[i] += swing[i] * std::sin(2 * std::numbers::pi * turns);
+    }
+    return angles;
+  }
 };
 
 /// Describes motors and amplifiers.
@@ -65,6 +86,13 @@ struct FirmwareSettings {
   /// A current beyond this counts as zero [S, DEVICES 1; the value is a guess].
   std::int16_t current_range_mA = 6000;
   WiringSettings wiring;  ///< Which lines are dead or swapped.
+  /// What it speaks: kPolhem, kWoody or kHfabLine.
+  driver::ArmKind speaks = driver::ArmKind::kPolhem;
+  std::int32_t line_model = 1;  ///< What it calls its arm in text lines [S hfabapi].
+  /// Encoders of 65536 times as many steps, below a nanometre at the tip, to see what the real ones
+  /// cost. Their counts need more room than any arm's language has but that of 14 bytes
+  /// (hfab::FineReportWire), which is then spoken in place of `speaks`, and without a gimbal.
+  bool ideal_encoders = false;
 };
 
 /// Describes the way between host and firmware.
@@ -80,6 +108,7 @@ struct SimulatedArmSettings {
   MotorSettings motors;       ///< What the motors make of currents.
   FirmwareSettings firmware;  ///< What the board does, and when it gives up.
   WireSettings wire;          ///< How long messages are on their way.
+  GimbalMotion gimbal;        ///< How the hand turns the stylus, if a gimbal is mounted.
 };
 
 }  // namespace thimble::device_sim

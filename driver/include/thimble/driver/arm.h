@@ -50,11 +50,25 @@ class Arm {
   virtual std::size_t encode(const MotorCurrents& currents,
                              std::span<std::byte, kReportCapacity> report) const noexcept = 0;
 
-  /// Finds joint angles, tip position and Jacobian of a reading. Real-time: safe.
-  virtual ArmPose pose(const ArmReading& reading) const noexcept = 0;
+  /// Finds joint angles, tip position and Jacobian of a reading, all of them. Real-time: safe.
+  virtual void find_pose(const ArmReading& reading, ArmPose& pose) const noexcept = 0;
+  /// Returns what `find_pose` finds. Real-time: safe.
+  ArmPose pose(const ArmReading& reading) const noexcept {
+    ArmPose pose;
+    find_pose(reading, pose);
+    return pose;
+  }
 
   /// Tells how torque becomes current in each motor. Real-time: safe.
   virtual const std::array<MotorDrive, 3>& drives() const noexcept = 0;
+
+  /// Returns whether a gimbal is mounted whose encoders come with each reading. Real-time: safe.
+  virtual bool has_gimbal() const noexcept { return false; }
+
+  /// Finds the angles of the gimbal (rad) and the rotation of the stylus in the base, for a reading
+  /// and its pose; without a gimbal it leaves both alone. Real-time: safe.
+  virtual void orient(const ArmReading& /*reading*/, const ArmPose& /*pose*/,
+                      Eigen::Vector3d& /*gimbal*/, Eigen::Matrix3d& /*R_BT*/) const noexcept {}
 };
 
 }  // namespace thimble::driver

@@ -28,6 +28,15 @@ constexpr std::string_view name(BoardKind board) noexcept {
   return index < kBoardNames.size() ? kBoardNames[index] : "other";
 }
 
+/// A language that arms speak; the table of arms (arm_table.h) has a row for each.
+enum class ArmKind : std::uint8_t {
+  kWoody,        ///< WoodenHaptics on its mbed board: 8-byte HID reports.
+  kPolhem,       ///< Polhem or another Haptikfabriken arm on HID: 14-byte reports.
+  kHfabLine,     ///< A Teensy on USB serial, which may be a Haptikfabriken arm: text lines.
+  kFalcon,       ///< Novint Falcon: packets through an FTDI converter.
+  kUnsupported,  ///< Nothing that Thimble can drive.
+};
+
 /// What a HID report descriptor says of a device that exchanges one report each way.
 struct HidReports {
   std::uint16_t usage_page = 0;  ///< Of the first collection.

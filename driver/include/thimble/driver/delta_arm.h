@@ -49,6 +49,11 @@ struct DeltaArm {
   int forward_from(const Eigen::Vector3d& p_begin, const Eigen::Vector3d& q, Eigen::Vector3d& p_BT,
                    Eigen::Matrix3d& J_BT) const noexcept;
 
+  /// Returns the rotation R_BL of the plate at the legs' ends, which never turns: the identity.
+  Eigen::Matrix3d last_link(const Eigen::Vector3d&, const Eigen::Vector3d&) const noexcept {
+    return Eigen::Matrix3d::Identity();
+  }
+
   /// Finds the leg angles that put the tip at p_BT (m), with the elbows outside as the arm is
   /// built. Empty if a leg does not reach the point, or if it is not finite.
   std::optional<Eigen::Vector3d> inverse(const Eigen::Vector3d& p_BT) const noexcept;

@@ -4,6 +4,8 @@
 #include <array>
 #include <cstdint>
 
+#include "thimble/driver/orientation.h"
+
 namespace thimble::driver {
 
 /// Holds what the driver knows of an arm at one tick: the input of every force law.
@@ -17,8 +19,15 @@ struct DeviceState {
   Eigen::Vector3d v_WT{0, 0, 0};  ///< Estimated velocity of the tip in the world, m/s.
   Eigen::Vector3d q{0, 0, 0};     ///< Joint angles, rad (see the arm's geometry for zero and sign).
   std::array<std::int32_t, 3> counts{};  ///< Encoder counts as they came over the wire.
-  std::uint16_t buttons = 0;  ///< Buttons, one bit each; bit 0 is the arm's first button.
-  bool fresh = false;         ///< True if a new report arrived for this tick.
+  std::uint16_t buttons = 0;     ///< Buttons, one bit each; bit 0 is the arm's first button.
+  bool fresh = false;            ///< True if a new report arrived for this tick.
+  bool has_orientation = false;  ///< The arm tells how the stylus is turned.
+  bool has_gripper = false;      ///< The arm has a gripper.
+  float gripper = 0;             ///< Opening of the gripper, m; 0: closed, or none.
+  /// Rotation of the stylus in the world; the identity where the arm has no orientation.
+  Eigen::Matrix3d R_WT = Eigen::Matrix3d::Identity();
+  TipQuaternion q_WT{};           ///< The same as a quaternion, of which R_WT is made; else zeros.
+  std::array<float, 3> gimbal{};  ///< Angles of the gimbal's axes, rad; zeros where it has none.
 };
 
 }  // namespace thimble::driver

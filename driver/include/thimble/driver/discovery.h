@@ -12,15 +12,6 @@
 
 namespace thimble::driver {
 
-/// Says how an arm is reached and what it speaks.
-enum class ArmKind : std::uint8_t {
-  kWoody,        ///< WoodenHaptics on its mbed board: 8-byte HID reports.
-  kPolhem,       ///< Polhem or another Haptikfabriken arm on HID: 14-byte reports.
-  kHfabLine,     ///< A Teensy on USB serial, which may be a Haptikfabriken arm: text lines.
-  kFalcon,       ///< Novint Falcon: packets through an FTDI converter.
-  kUnsupported,  ///< Nothing that Thimble can drive.
-};
-
 /// How sure it is that a board belongs to an arm. USB ids alone say little: 16c0:0480 to 048f are
 /// what a Teensy takes for any program, 1234:0006 is what mbed's USB library takes by itself.
 enum class Certainty : std::uint8_t {
@@ -33,7 +24,7 @@ enum class Certainty : std::uint8_t {
 
 /// A board that is plugged in and may belong to an arm.
 struct FoundArm {
-  ArmKind kind = ArmKind::kUnsupported;  ///< How it is reached, and its language.
+  ArmKind kind = ArmKind::kUnsupported;  ///< What its board speaks (arm_table.h).
   std::string arm;                       ///< What it is ("WoodenHaptics").
   std::string bus;                       ///< How it is reached ("USB HID").
   std::string address;                   ///< Where it is plugged in ("bus 1, device 4").

@@ -30,6 +30,10 @@ struct LinkageArm {
   void forward(const Eigen::Vector3d& q, Eigen::Vector3d& p_BT,
                Eigen::Matrix3d& J_BT) const noexcept;
 
+  /// Returns the rotation R_BL of the forearm: x along it towards the tip, y level [S
+  /// forsslund/hfabapi hfab_api.cpp, getRot]. Not a number where the bars cannot close.
+  Eigen::Matrix3d last_link(const Eigen::Vector3d& q, const Eigen::Vector3d& p_BT) const noexcept;
+
   /// Finds the joint angles that put the tip at p_BT (m), in the way the arm is built: elbow above
   /// the line from the front motor to the tip, crank behind its bar. Empty if the bars do not
   /// reach the point, or if it is not finite.

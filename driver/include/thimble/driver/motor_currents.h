@@ -14,6 +14,8 @@ struct MotorDrive {
   double ratio = 1;  ///< Motor turns per joint turn.
   double torque_constant = 0;  ///< Torque per current at the motor, N m/A.
   double current_max = 0;      ///< Largest current the host may ask for, A.
+
+  friend bool operator==(const MotorDrive&, const MotorDrive&) = default;
 };
 
 /// Holds motor currents that came through the safety gate. There is no way to make one but from a

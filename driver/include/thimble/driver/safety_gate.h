@@ -24,8 +24,21 @@ class GatedForce {
   Eigen::Vector3d f_T_W_{0, 0, 0};
 };
 
-/// Sets what an arm may do to a hand. There is no "off": a limit is raised, never left out.
+/// Sets what an arm may do to a hand. There is no "off": a limit is raised, never left out, and no
+/// further than to where it still protects somebody.
 struct GateLimits {
+  /// Shortest soft start, s [chosen: below 50 ms a hand feels no ramp but a knock: a stretch reflex
+  /// answers after 30 to 50 ms M].
+  static constexpr double kSoftStartLeast = 0.05;
+  /// Fastest rise, N/s [chosen: 100 N in a tick of 1 ms, more than any arm here can push].
+  static constexpr double kRiseMost = 1e5;
+  /// Or shortest time to the whole force, s, for a force so large that only a bench asks for it
+  /// [chosen: a tick of the fastest loop here, 20 kHz].
+  static constexpr double kRiseTimeLeast = 5e-5;
+  /// Longest gap that is no fault, ns [chosen: twice the longest watchdog of a board, 0.5 s of the
+  /// mbed one (woody_report.h)].
+  static constexpr std::int64_t kWatchdogMost_ns = 1'000'000'000;
+
   double force_max = 0;  ///< Largest force, N. Must be finite and > 0.
   double speed_max = 0;  ///< Tip speed above which the force goes off and stays off, m/s.
   /// Fastest change of the force's vector, N/s. A fall of its length is never slowed, and an old

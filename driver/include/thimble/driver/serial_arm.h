@@ -36,6 +36,11 @@ struct SerialArm {
   void forward(const Eigen::Vector3d& q, Eigen::Vector3d& p_BT,
                Eigen::Matrix3d& J_BT) const noexcept;
 
+  /// Returns the rotation R_BL of the second link: x along it towards the tip, y level and to the
+  /// user's right where the arm points at the user [S forsslund/haptikfabrikenapi kinematics.cpp,
+  /// computeRotation: a turn about y by 90 degrees less C, "need verification"].
+  Eigen::Matrix3d last_link(const Eigen::Vector3d& q, const Eigen::Vector3d& p_BT) const noexcept;
+
   /// Finds the joint angles that put the tip at p_BT (m), on the branch in which such an arm works:
   /// 0 < B + C < pi (folded at 0, stretched at pi, isotropic in between). Empty if the point is out
   /// of reach, on the yaw axis, or not finite.

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "thimble/driver/fault.h"
+#include "thimble/driver/orientation.h"
 
 namespace thimble::driver {
 
@@ -33,6 +34,9 @@ struct TickRecord {
   std::array<double, 3> f_wanted_W{};      ///< N, what the force law asked for
   std::array<double, 3> f_sent_W{};        ///< N, what stands: `Device::f_sent_W`
   std::array<double, 3> heat{};            ///< of the motors; 1: the winding's limit
+  TipQuaternion q_WT{};                    ///< of the stylus (w, x, y, z); zeros: not known
+  std::array<float, 3> gimbal{};           ///< rad; zeros where there is none
+  float gripper = 0;                       ///< opening, m; 0: closed, or none
   double depth = 0;                        ///< m
   std::int32_t feature = -1;               ///< active triangle
   std::int16_t object = -1;                ///< which of the scene's objects
@@ -40,6 +44,7 @@ struct TickRecord {
   std::uint16_t buttons = 0;               ///< one bit each; bit 0 is the arm's first
   bool in_contact = false;                 ///< the tip is held outside an object
   bool fresh = false;                      ///< a new report came for this tick
+  bool has_gripper = false;                ///< the arm has a gripper
   DeviceStage stage = DeviceStage::kIdle;  ///< of the device, after the tick
   Fault fault = Fault::kNone;              ///< that keeps the force off
 };

@@ -10,13 +10,21 @@
 
 namespace thimble::driver {
 
-/// Rounds currents to the whole mA of the wire, within 16 bits. Precondition: they are finite,
-/// which MotorCurrents guarantees. Real-time: safe.
+/// Rounds a number to the nearest whole one, halves away from zero, as std::lround does, without a
+/// call. Precondition: |x| < 2^31. Real-time: safe.
+inline std::int32_t round_half_away(double x) noexcept {
+  // The number below one half, so that 0.49999999999999994 stays 0.
+  constexpr double kHalf = 0.49999999999999994;
+  return static_cast<std::int32_t>(x + std::copysign(kHalf, x));
+}
+
+/// Rounds currents to the whole mA of the wire, halves away from zero, within 16 bits.
+/// Precondition: they are finite, which MotorCurrents guarantees. Real-time: safe.
 inline std::array<std::int16_t, 3> whole_mA(const MotorCurrents& currents) noexcept {
   std::array<std::int16_t, 3> mA{};
   for (std::size_t i = 0; i < 3; ++i) {
     const double exact = currents.amperes()[static_cast<Eigen::Index>(i)] * 1e3;
-    mA[i] = static_cast<std::int16_t>(std::lround(std::clamp(exact, -32767.0, 32767.0)));
+    mA[i] = static_cast<std::int16_t>(round_half_away(std::clamp(exact, -32767.0, 32767.0)));
   }
   return mA;
 }
@@ -40,19 +48,32 @@ class WireArm final : public Arm {
     return Wire::encode(whole_mA(currents), report);
   }
 
-  ArmPose pose(const ArmReading& reading) const noexcept override {
-    ArmPose pose;
+  void find_pose(const ArmReading& reading, ArmPose& pose) const noexcept override {
     pose.q = model_.joint_angles(reading);
     model_.geometry.forward(pose.q, pose.p_BT, pose.J_BT);
-    return pose;
   }
 
   const std::array<MotorDrive, 3>& drives() const noexcept override { return model_.drives; }
+
+  bool has_gimbal() const noexcept override { return kCarries && model_.gimbal.has_value(); }
+
+  void orient(const ArmReading& reading, const ArmPose& pose, Eigen::Vector3d& gimbal,
+              Eigen::Matrix3d& R_BT) const noexcept override {
+    if constexpr (kCarries) {
+      if (!model_.gimbal) return;
+      gimbal = model_.gimbal->angles(reading.auxiliary);
+      R_BT = model_.geometry.last_link(pose.q, pose.p_BT) * model_.gimbal->rotation(gimbal);
+    }
+  }
 
   /// Tells geometry, motors and encoders. Real-time: safe.
   const JointModel<Geometry>& model() const noexcept { return model_; }
 
  private:
+  static constexpr bool kCarries = requires(const Geometry& geometry, const Eigen::Vector3d& v) {
+    geometry.last_link(v, v);
+  };
+
   JointModel<Geometry> model_;
 };
 

@@ -37,4 +37,16 @@ std::size_t ReportWire::encode(const std::array<std::int16_t, 3>& mA,
   return report.size();
 }
 
+bool FineReportWire::decode(std::span<const std::byte> bytes, ArmReading& reading) noexcept {
+  const auto report = decode_input(bytes);
+  if (!report) return false;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto low = static_cast<std::uint16_t>(report->counts[3 + i]);
+    reading.counts[i] = report->counts[i] * 65536 + low;
+  }
+  reading.auxiliary = {};
+  reading.buttons = static_cast<std::uint16_t>(report->info & 1);
+  return true;
+}
+
 }  // namespace thimble::driver::hfab

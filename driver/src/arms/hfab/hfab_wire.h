@@ -1,7 +1,8 @@
 #pragma once
 
 #include "arms/hfab/hfab_line.h"
-#include "thimble/driver/transport.h"
+#include "frame_finder.h"
+#include "thimble/driver/serial_arm.h"
 #include "thimble/driver/wire_arm.h"
 
 namespace thimble::driver::hfab {
@@ -19,12 +20,25 @@ struct LineWire {
                             std::span<std::byte, kReportCapacity> bytes) noexcept;
 };
 
-/// Is the 14-byte HID protocol as an arm sees it; HfabArm speaks it too, with the extras of the
-/// simulated arm. Real-time: safe.
+/// Is the 14-byte HID protocol as an arm sees it. Real-time: safe.
 struct ReportWire {
   static bool decode(std::span<const std::byte> bytes, ArmReading& reading) noexcept;
   static std::size_t encode(const std::array<std::int16_t, 3>& mA,
                             std::span<std::byte, kReportCapacity> bytes) noexcept;
 };
+
+/// The same with counts of 32 bits in two words each: encoders d to f carry the lower halves of a
+/// to c. No real arm does; simulated arms with ideal encoders do, whose counts are 1/65536 of the
+/// real ones (`with_fine_counts`). Real-time: safe.
+struct FineReportWire {
+  static bool decode(std::span<const std::byte> bytes, ArmReading& reading) noexcept;
+  static std::size_t encode(const std::array<std::int16_t, 3>& mA,
+                            std::span<std::byte, kReportCapacity> bytes) noexcept {
+    return ReportWire::encode(mA, bytes);
+  }
+};
+
+/// Is a serial arm that speaks the 14-byte reports.
+using HfabArm = WireArm<ReportWire, SerialArm>;
 
 }  // namespace thimble::driver::hfab

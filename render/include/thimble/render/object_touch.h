@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "thimble/driver/device_state.h"
-#include "thimble/driver/force_command.h"
+#include "thimble/driver/force_law.h"
 #include "thimble/render/body_patch.h"
 #include "thimble/render/body_pose.h"
 #include "thimble/render/effect/live_settings.h"

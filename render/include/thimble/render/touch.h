@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "thimble/driver/device_state.h"
-#include "thimble/driver/force_command.h"
+#include "thimble/driver/force_law.h"
 #include "thimble/render/contact_state.h"
 #include "thimble/render/effect/live_settings.h"
 #include "thimble/render/surface/surface_response.h"

@@ -8,7 +8,7 @@
 
 #include "body/motion/moving_touch.h"
 #include "thimble/driver/device_state.h"
-#include "thimble/driver/force_command.h"
+#include "thimble/driver/force_law.h"
 #include "thimble/render/body/motion_choice.h"
 #include "thimble/render/object_touch.h"
 

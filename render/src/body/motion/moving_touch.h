@@ -10,7 +10,7 @@
 
 #include "body/motion/body_coupling.h"
 #include "thimble/driver/device_state.h"
-#include "thimble/driver/force_command.h"
+#include "thimble/driver/force_law.h"
 #include "thimble/render/body_pose.h"
 #include "thimble/render/object_touch.h"
 

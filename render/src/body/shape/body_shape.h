@@ -13,7 +13,7 @@
 #include "body/shape/surface_patch.h"
 #include "body/shape/turn_guard.h"
 #include "mesh/contact_mesh.h"
-#include "thimble/driver/force_command.h"
+#include "thimble/driver/force_law.h"
 #include "thimble/driver/result.h"
 #include "thimble/render/body/shape_choice.h"
 

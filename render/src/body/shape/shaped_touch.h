@@ -7,7 +7,7 @@
 
 #include "body/shape/body_shape.h"
 #include "thimble/driver/device_state.h"
-#include "thimble/driver/force_command.h"
+#include "thimble/driver/force_law.h"
 #include "thimble/render/object_touch.h"
 
 namespace thimble::render {

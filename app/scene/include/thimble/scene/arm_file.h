@@ -6,10 +6,11 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "thimble/device_sim/settings.h"
-#include "thimble/driver/arms/hfab/hfab_arm.h"
+#include "thimble/driver/arm_model.h"
 #include "thimble/driver/board.h"
 #include "thimble/driver/energy_guard.h"
 #include "thimble/driver/heat_guard.h"
@@ -40,34 +41,18 @@ struct EnergyChoice {
   std::optional<double> slope;                             ///< N/m
 };
 
-/// What the simulated arm speaks, and the real one on the first of its boards.
-enum class ArmProtocol {
-  kHfab14Byte,    ///< Reports of 14 bytes over HID.
-  kWoody8Byte,    ///< Reports of 8 bytes over HID.
-  kFalconPacket,  ///< Packets of 16 bytes over an FTDI chip.
-  kTextLines,     ///< Lines of text over a serial port.
-};
-
-/// How the arm is built.
-enum class ArmShape {
-  kSerial,  ///< A yaw and two links.
-  kPolhem,  ///< The Polhem's linkage.
-  kFalcon,  ///< The Falcon's three parallel legs.
-};
-
 /// One arm, as its file describes it: geometry, motors, limits, place, and how it is simulated.
 struct ArmFile {
-  std::string name;                                 ///< For people.
-  std::string description;                          ///< One line; may be empty.
-  ArmProtocol protocol = ArmProtocol::kHfab14Byte;  ///< What it speaks.
-  ArmShape shape = ArmShape::kSerial;               ///< How it is built.
+  std::string name;         ///< For people.
+  std::string description;  ///< One line; may be empty.
+  /// What the simulated arm speaks, and the real one on the first of its boards.
+  driver::ArmKind protocol = driver::ArmKind::kPolhem;
   /// The boards that this arm may have, with these signs and currents; never empty. A board of
   /// unknown kind is used with no other file than one that names it here.
   std::vector<driver::BoardKind> boards = {driver::BoardKind::kMbedHid14};
-  int board_model = 0;  ///< What its board calls itself in text lines; 0: not known.
-  /// Drives, encoders and, for a serial arm, the geometry. The other shapes have theirs in code.
-  driver::hfab::HfabModel model;
-  driver::GateLimits limits;                           ///< Of the safety gate.
+  int board_model = 0;        ///< What its board calls itself in text lines; 0: not known.
+  driver::ArmModel model;     ///< Build, motors, encoders, and the gimbal if one is mounted.
+  driver::GateLimits limits;  ///< Of the safety gate.
   std::map<std::string, int, std::less<>> gate_lines;  ///< Line of each key of the section `gate`.
   EnergyChoice energy;                                 ///< Of the safety gate.
   /// Longest time a force is held while no encoder counts, s; none: the driver's own.
@@ -80,6 +65,12 @@ struct ArmFile {
   WorkspaceBox workspace;                              ///< Where the tip may work.
   bool can_simulate = false;                           ///< The file has a section `simulation`.
   device_sim::SimulatedArmSettings simulated;          ///< What that section says.
+
+  /// Returns whether the arm is of one build: `file.is<driver::DeltaArm>()`. Real-time: safe.
+  template <class Geometry>
+  bool is() const noexcept {
+    return std::holds_alternative<Geometry>(model.geometry);
+  }
 };
 
 /// Reads the arm file that a person means: a name ("vintage_phantom") or a path, as

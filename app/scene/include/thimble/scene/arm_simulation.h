@@ -6,7 +6,7 @@
 #include <memory>
 #include <optional>
 
-#include "thimble/driver/arm.h"
+#include "thimble/driver/arm_link.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/discovery.h"
 #include "thimble/driver/transport.h"
@@ -31,9 +31,6 @@ std::optional<Eigen::Vector3d> joint_angles_at(const ArmFile& file, const Eigen:
 /// of the arm's workspace or reach. Real-time: never from the servo thread.
 driver::Result<void> check_reach(const ArmFile& file, const HandRoute& hand_W);
 
-/// Returns as what kind of arm the simulated one of a file speaks.
-driver::ArmKind simulated_kind(const ArmFile& file);
-
 /// The simulated arm of an arm file, of whatever build, with the hand that leads it.
 class ArmSimulation {
  public:
@@ -48,11 +45,9 @@ class ArmSimulation {
       const ArmFile& file, const HandRoute& hand_W, const std::filesystem::path& firmware = {},
       std::uint64_t seed = 0);
 
-  /// Returns a wire to it, which keeps neither of them alive. Real-time: never from the servo
-  /// thread.
-  std::unique_ptr<driver::Transport> wire(driver::Clock& clock);
-  /// Returns the arm as a driver sees it. Real-time: never from the servo thread.
-  std::unique_ptr<const driver::Arm> protocol() const;
+  /// Makes the link to it, over its own wire; keeps neither arm nor clock alive. Real-time: never
+  /// from the servo thread.
+  std::unique_ptr<driver::ArmLink> link(driver::Clock& clock);
 
   /// Lets the arm live on after the loop: the last message is still on its way to it. Real-time:
   /// safe.

@@ -6,10 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "thimble/driver/arm.h"
+#include "thimble/driver/arm_link.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/discovery.h"
-#include "thimble/driver/transport.h"
 #include "thimble/scene/arm_file.h"
 
 namespace thimble::scene {
@@ -37,16 +36,13 @@ std::optional<driver::FoundArm> find_again(const std::vector<driver::FoundArm>& 
 /// signs of one are dangerous on another.
 driver::Result<void> check_fits(const ArmFile& file, const driver::FoundArm& arm);
 
-/// Returns the arm of a file with the wire that this kind of arm has. Precondition: `check_fits`.
-std::unique_ptr<const driver::Arm> make_arm(const ArmFile& file, driver::ArmKind kind);
-
-/// Opens the wire to an arm, for this program alone, and brings the arm up: a Falcon gets its
+/// Opens the link to an arm, for this program alone, and brings the arm up: a Falcon gets its
 /// firmware (from the file the user named, or not at all) and is homed by the user's hand, for
 /// which it prints what to do; a WoodenHaptics on its mbed board must show by its reports that it
 /// is one before anything is sent; a board on USB serial must be the one that the file is for.
-driver::Result<std::unique_ptr<driver::Transport>> open_wire(const driver::FoundArm& arm,
-                                                             const ArmFile& file,
-                                                             const std::filesystem::path& firmware,
-                                                             driver::Clock& clock);
+driver::Result<std::unique_ptr<driver::ArmLink>> open_link(const driver::FoundArm& arm,
+                                                           const ArmFile& file,
+                                                           const std::filesystem::path& firmware,
+                                                           driver::Clock& clock);
 
 }  // namespace thimble::scene

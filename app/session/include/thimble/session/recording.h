@@ -38,16 +38,16 @@ struct Recording {
   bool complete = false;                  ///< False if it was cut off, by a crash or a full disk.
 };
 
-/// One column of a recording: one number, or three, of each tick.
+/// One column of a recording: one number or some of each tick.
 struct RecordingColumn {
   /// What a number is in the file: unsigned, signed or floating, and its bits.
-  enum class Type : std::uint8_t { kU8, kU16, kI16, kI32, kI64, kU64, kF64 };
+  enum class Type : std::uint8_t { kU8, kU16, kI16, kI32, kI64, kU64, kF32, kF64 };
 
   const char* name;    ///< Of the data set in the file.
   const char* unit;    ///< SI; "1" for numbers and flags.
   const char* about;   ///< What it is, with its frame.
   Type type;           ///< Of each number.
-  std::size_t width;   ///< Numbers per tick: 1 or 3.
+  std::size_t width;   ///< Numbers per tick: 1, 3, or 4 of a quaternion.
   std::size_t offset;  ///< Of the first in driver::TickRecord, bytes.
   bool later = false;  ///< Older recordings do not have it; there its numbers are 0.
 

@@ -68,10 +68,10 @@ struct SessionOptions {
   std::function<void(scene::Scene&)> adjust = {};
   bool log = false;    ///< what happens in the run goes into the log
   bool homed = false;  ///< a real arm was in its home pose when it got power: do not ask for it
-  /// Opens the wire to the real arm in place of `scene::open_wire`, for tests.
-  std::function<driver::Result<std::unique_ptr<driver::Transport>>(const scene::ArmFile&,
-                                                                   driver::Clock&)>
-      open_wire = {};
+  /// Opens the link to the real arm in place of `scene::open_link`, for tests.
+  std::function<driver::Result<std::unique_ptr<driver::ArmLink>>(const scene::ArmFile&,
+                                                                 driver::Clock&)>
+      open_link = {};
 };
 
 /// The stop flag of a run that nobody stops.

@@ -16,8 +16,8 @@ struct SheetReport {
 
 /// A mesh whose open parts are bodies as thin as sheets, and what was done.
 struct ThickenedMesh {
-  TriangleMesh mesh;
-  SheetReport report;
+  TriangleMesh mesh;   ///< Closed.
+  SheetReport report;  ///< What was done.
 };
 
 /// Makes thin bodies of all parts of a mesh that are not closed: every triangle gets a front and a

@@ -27,4 +27,9 @@ struct Foot {
 /// Real-time: safe.
 Foot foot_on(const ContactMesh& mesh, std::int32_t triangle, const Eigen::Vector3d& p_OT) noexcept;
 
+/// Finds the same on a triangle of these corners, counter-clockwise from outside; `place` names no
+/// triangle. Real-time: safe.
+Foot foot_on(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
+             const Eigen::Vector3d& p_OT) noexcept;
+
 }  // namespace thimble::render

@@ -1,4 +1,4 @@
-#include "track/foot_point.h"
+#include "mesh/foot_point.h"
 
 #include <Eigen/Geometry>
 #include <array>
@@ -39,9 +39,14 @@ void find_on_edges(const Corners& corner, const Vector3d& p_OT, Foot& foot) noex
 
 Foot foot_on(const ContactMesh& mesh, std::int32_t triangle, const Vector3d& p_OT) noexcept {
   const auto& vertices = mesh.corners(triangle);
-  const Vector3d& a = mesh.position(vertices[0]);
-  const Vector3d& b = mesh.position(vertices[1]);
-  const Vector3d& c = mesh.position(vertices[2]);
+  Foot foot = foot_on(mesh.position(vertices[0]), mesh.position(vertices[1]),
+                      mesh.position(vertices[2]), p_OT);
+  foot.place.triangle = triangle;
+  return foot;
+}
+
+Foot foot_on(const Vector3d& a, const Vector3d& b, const Vector3d& c,
+             const Vector3d& p_OT) noexcept {
   const Vector3d ab = b - a;
   const Vector3d bc = c - b;
   const Vector3d ca = a - c;
@@ -50,7 +55,6 @@ Foot foot_on(const ContactMesh& mesh, std::int32_t triangle, const Vector3d& p_O
   const double beside_bc = n.dot(bc.cross(p_OT - b));
   const double beside_ca = n.dot(ca.cross(p_OT - c));
   Foot foot;
-  foot.place.triangle = triangle;
   foot.normal = n;
   foot.beside = {beside_ab, beside_bc, beside_ca};
   foot.edges_squared = ab.squaredNorm() + bc.squaredNorm() + ca.squaredNorm();

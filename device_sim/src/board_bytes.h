@@ -1,0 +1,22 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+
+#include "thimble/driver/arm.h"
+
+namespace thimble::device_sim {
+
+/// A report as a board sends it.
+struct BoardBytes {
+  std::size_t size = 0;                                  ///< Bytes that count.
+  std::array<std::byte, driver::kReportCapacity> bytes;  ///< The first `size` count.
+
+  /// Returns the bytes that count. Real-time: safe.
+  operator std::span<const std::byte>() const noexcept {  // NOLINT(*-explicit-*)
+    return std::span<const std::byte>(bytes).first(size);
+  }
+};
+
+}  // namespace thimble::device_sim

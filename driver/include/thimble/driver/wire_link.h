@@ -1,0 +1,40 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "thimble/driver/arm_link.h"
+#include "thimble/driver/transport.h"
+
+namespace thimble::driver {
+
+/// The link to an arm that is bytes on a wire (Transport) and a wire format with a geometry (Arm).
+/// A gated force becomes motor currents here, by tau = J_BT^T f.
+class WireLink final : public ArmLink {
+ public:
+  /// Takes an open wire and the arm at its other end. Real-time: never from the servo thread.
+  WireLink(std::unique_ptr<Transport> transport, std::unique_ptr<const Arm> arm);
+
+  const ArmTraits& traits() const noexcept override { return traits_; }
+  LinkRead read(ArmSample& sample, std::int64_t deadline_ns) noexcept override;
+  LinkWrite write(const GatedForce& force, const ArmSample& sample,
+                  const Eigen::Matrix3d& R_WB) noexcept override;
+  bool numbers_reports() const noexcept override { return numbered_; }
+  MotorCurrents currents() const noexcept override { return currents_; }
+  void limit_currents(const std::array<MotorDrive, 3>& limits) noexcept override;
+
+ private:
+  bool came_before(const ArmReading& reading) noexcept;
+
+  std::unique_ptr<Transport> transport_;
+  std::unique_ptr<const Arm> arm_;
+  ArmTraits traits_;
+  std::array<MotorDrive, 3> drives_;  // with the limits that hold now
+  MotorCurrents currents_;            // of the last write
+  bool numbered_ = false;             // two reports had different numbers
+  std::optional<std::uint16_t> number_;
+};
+
+}  // namespace thimble::driver

@@ -1,0 +1,126 @@
+#pragma once
+
+// What holds a tip between the packed triangles of a hollow's crease: bodies of PackedContact,
+// included by packed_contact_steps.h alone. The same as hollow_hold.h on packed triangles.
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+#include "mesh/foot_point.h"
+#include "mesh/triangle_set.h"
+#include "track/packed_contact.h"
+
+namespace thimble::render {
+
+/// Returns the foot of `p` (steps of the lattice) on a packed triangle. Real-time: safe.
+inline Foot packed_foot(const PackedTriangle& packed, std::int32_t triangle,
+                        const Eigen::Vector3d& p) noexcept {
+  Foot foot = foot_on(packed.corner(0), packed.corner(1), packed.corner(2), p);
+  foot.place.triangle = triangle;
+  return foot;
+}
+
+/// Returns whether edge `k` of `own`, behind which `other` lies, is a crease in a hollow: whether
+/// the corner behind it stands above `own`. Real-time: safe.
+inline bool hollow_crease(const PackedTriangle& own, std::size_t k,
+                          const PackedTriangle& other) noexcept {
+  if (!own.crease(k)) return false;
+  const Eigen::Vector3d begin = own.corner(k), end = own.corner((k + 1) % 3);
+  const Eigen::Vector3d area = (end - begin).cross(own.corner((k + 2) % 3) - begin);
+  for (std::size_t j = 0; j < 3; ++j) {
+    const Eigen::Vector3d x = other.corner(j);
+    if (x == begin || x == end) continue;
+    return area.dot(x - begin) > 0;
+  }
+  return false;
+}
+
+// Lists the packed triangles around corner `k` of one, itself first, as many as there is room for;
+// kUnknown if one is absent.
+template <PackedStore Store>
+typename PackedContact<Store>::Outcome PackedContact<Store>::collect_fan(std::int32_t triangle,
+                                                                         std::size_t k,
+                                                                         Fan& fan) const noexcept {
+  const PackedTriangle* packed = store_.find(triangle);
+  if (absent(packed)) return Outcome::kUnknown;
+  const Eigen::Vector3d vertex = packed->corner(k);
+  std::int32_t t = triangle;
+  while (!fan.full()) {
+    fan.add(t);
+    // On over the edge that begins at the vertex.
+    std::size_t at = 0;
+    while (at < 2 && packed->corner(at) != vertex) ++at;
+    t = packed->neighbours[at];
+    if (fan.has(t)) break;
+    packed = store_.find(t);
+    if (absent(packed)) return Outcome::kUnknown;
+  }
+  return Outcome::kYes;
+}
+
+// Slides from the active triangle over the surface to the point nearest to the tip among all around
+// it. Where that lies on a crease of a hollow, which alone holds the tip there, it is told.
+template <PackedStore Store>
+typename PackedContact<Store>::Outcome PackedContact<Store>::hold_in_hollow(
+    const Eigen::Vector3d& p, OffsetResponse& felt) noexcept {
+  const PackedTriangle* packed = store_.find(active_);
+  if (absent(packed)) return Outcome::kUnknown;
+  Foot foot = packed_foot(*packed, active_, p);
+  Fan fan;
+  for (std::size_t feet = 0; foot.place.on != SurfacePlace::On::kFace;) {
+    const SurfacePlace place = foot.place;
+    packed = store_.find(place.triangle);
+    if (absent(packed)) return Outcome::kUnknown;
+    fan = {};
+    if (place.on == SurfacePlace::On::kEdge) {
+      fan.add(place.triangle);
+      fan.add(packed->neighbours[place.k]);
+    } else if (collect_fan(place.triangle, place.k, fan) == Outcome::kUnknown) {
+      return Outcome::kUnknown;
+    }
+    bool moved = false;
+    for (std::size_t i = 1; i < fan.size(); ++i) {
+      const PackedTriangle* around = store_.find(fan[i]);
+      if (absent(around)) return Outcome::kUnknown;
+      const Foot there = packed_foot(*around, fan[i], p);
+      // Strictly, so that the same point seen from another side is not gone on to.
+      if (!(there.distance_squared < foot.distance_squared)) continue;
+      foot = there;
+      moved = true;
+    }
+    if (!moved) break;
+    ++state_.hops;
+    feet += fan.size();
+    if (feet > kPatchMax) return Outcome::kNo;
+  }
+  if (foot.place.on == SurfacePlace::On::kFace) return Outcome::kNo;
+  // The fan is that of the place: an edge's two triangles, or all around a corner.
+  const auto sharp = [&](const PackedTriangle& own, std::size_t k) noexcept {
+    const PackedTriangle* other = store_.find(own.neighbours[k]);
+    return !absent(other) && hollow_crease(own, k, *other);
+  };
+  bool crease = false;
+  for (std::size_t i = 0; i < fan.size() && !crease; ++i) {
+    const PackedTriangle* around = store_.find(fan[i]);
+    if (absent(around)) return Outcome::kUnknown;
+    if (foot.place.on == SurfacePlace::On::kEdge) {
+      crease = i == 0 && sharp(*around, foot.place.k);
+      continue;
+    }
+    std::size_t at = 0;
+    while (at < 2 && around->corner(at) != foot.p_OP) ++at;
+    crease = sharp(*around, at) || sharp(*around, (at + 2) % 3);
+  }
+  const double distance = std::sqrt(foot.distance_squared);
+  if (!crease || !(distance > kPlaced)) return Outcome::kNo;
+  if (!activate(foot.place.triangle)) return Outcome::kUnknown;
+  felt.n_W = (foot.p_OP - p) / distance;
+  felt.depth = distance;
+  return Outcome::kYes;
+}
+
+}  // namespace thimble::render

@@ -1,0 +1,62 @@
+#include "view/touch_marks.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <numbers>
+
+#include "support/shapes.h"
+
+namespace thimble::app::view {
+namespace {
+
+using Eigen::Vector3d;
+
+DrawnMoment moment_with(const Eigen::Matrix3d& R_WT) {
+  DrawnMoment moment;
+  moment.tick.p_WT = {0.01, 0.02, 0.03};
+  moment.tick.q_WT = driver::quaternion_of(R_WT);
+  return moment;
+}
+
+/// Finds the end of the stylus: where the far end of its longest rod is drawn.
+Vector3d end_of_stylus(const DrawnMoment& moment) {
+  const MarkChoice only_arm{.arm = true, .tip = false, .force = false, .edge_planes = false};
+  Vector3d end(0, 0, 0);
+  double longest = 0;
+  for (const Solid& solid : mark_touch({}, moment, 1, only_arm).solids) {
+    if (solid.kind != SolidKind::kRod) continue;
+    const Vector3d to = (solid.model * Eigen::Vector4f(0, 0, 1, 1)).head<3>().cast<double>();
+    const Vector3d from = (solid.model * Eigen::Vector4f(0, 0, 0, 1)).head<3>().cast<double>();
+    if ((to - from).norm() > longest) {
+      longest = (to - from).norm();
+      end = to;
+    }
+  }
+  return end;
+}
+
+TEST(TouchMarks, ShowAStylusThatPointsAsTheArmTells) {
+  const Vector3d tip(0.01, 0.02, 0.03);
+  for (const double angle : {0.0, 0.7, -2.1}) {
+    const Eigen::Matrix3d R_WT =
+        Eigen::AngleAxisd(angle, Vector3d(1, 1, 0.3).normalized()).toRotationMatrix();
+    const Vector3d along = (end_of_stylus(moment_with(R_WT)) - tip).normalized();
+    EXPECT_LT((along - R_WT.col(0)).norm(), 1e-5) << angle;
+  }
+}
+
+TEST(TouchMarks, ShowNoStylusOfAnArmThatTellsNoOrientation) {
+  DrawnMoment moment;
+  const MarkChoice only_arm{.arm = true, .tip = false, .force = false, .edge_planes = false};
+  EXPECT_TRUE(mark_touch({}, moment, 1, only_arm).solids.empty());
+  // A roll about its own axis is seen: something on it moves.
+  const auto rolled = [&](double angle) {
+    const Eigen::Matrix3d R_WT = Eigen::AngleAxisd(angle, Vector3d::UnitX()).toRotationMatrix();
+    return mark_touch({}, moment_with(R_WT), 1, only_arm).solids.back().model;
+  };
+  EXPECT_GT((rolled(0) - rolled(1)).norm(), 1e-3);
+}
+
+}  // namespace
+}  // namespace thimble::app::view
