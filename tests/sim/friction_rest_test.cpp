@@ -14,9 +14,9 @@
 #include <string>
 #include <vector>
 
+#include "stability/signal.h"
 #include "studies/friction/friction_cases.h"
 #include "studies/friction/friction_rig.h"
-#include "studies/signal.h"
 #include "support/hard_case.h"
 #include "support/rubbing.h"
 #include "surface/friction/bristle.h"

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "stability/signal.h"
 #include "studies/accuracy/hand_signal.h"
-#include "studies/signal.h"
 
 namespace thimble::app {
 namespace {

@@ -6,7 +6,7 @@
 #include <map>
 #include <span>
 
-#include "studies/signal.h"
+#include "stability/signal.h"
 #include "surface/friction/bristle.h"
 #include "thimble/render/effect/effect_table.h"
 #include "thimble/render/effect/map_settings.h"

@@ -9,7 +9,7 @@
 #include "report/figure.h"
 #include "report/gnuplot.h"
 #include "report/picture_parts.h"
-#include "studies/signal.h"
+#include "stability/signal.h"
 
 namespace thimble::app {
 namespace {

@@ -9,10 +9,10 @@
 #include "log/logger.h"
 #include "report/gnuplot.h"
 #include "report/picture_parts.h"
+#include "stability/signal.h"
 #include "studies/friction/friction_cases.h"
 #include "studies/friction/friction_pictures.h"
 #include "studies/friction/study_friction.h"
-#include "studies/signal.h"
 #include "surface/friction/friction_settings.h"
 
 namespace thimble::app {

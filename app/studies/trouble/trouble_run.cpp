@@ -10,7 +10,7 @@
 #include "energy_choice.h"
 #include "simulated_arm.h"
 #include "stability/rest_warnings.h"
-#include "studies/signal.h"
+#include "stability/signal.h"
 #include "studies/trouble/energy_given.h"
 #include "thimble/render/scene_touch.h"
 #include "thimble/scene/arm_simulation.h"

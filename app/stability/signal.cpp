@@ -1,4 +1,4 @@
-#include "studies/signal.h"
+#include "stability/signal.h"
 
 #include <cmath>
 #include <complex>
