@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "energy_choice.h"
 #include "mesh/contact_mesh.h"
@@ -285,19 +286,40 @@ std::vector<std::string> energy_warnings(const scene::Scene& scene) {
   return warnings;
 }
 
-std::vector<std::string> rest_warnings(const scene::Scene& scene) {
-  std::vector<std::string> warnings;
-  if (!scene.arm.can_simulate) return warnings;  // nothing is known of its tip
+std::vector<std::string> rest_causes(const scene::Scene& scene, const std::string& on) {
+  std::vector<std::string> causes;
+  if (!scene.arm.can_simulate) return causes;  // nothing is known of its tip
   const Loop loop{scene, loop_times(scene.arm, scene.rate)};
   const double bare_edge = loop.edge(0);
   for (const scene::SceneObject& object : scene.objects) {
-    if (object.build_field) continue;
-    warn_of_facets(object, warnings);
-    warn_of_effects(object, loop, bare_edge, warnings);
-    warn_of_light_body(object, loop, warnings);
+    if (object.build_field || !(on.empty() || object.name == on)) continue;
+    warn_of_facets(object, causes);
+    warn_of_effects(object, loop, bare_edge, causes);
+    warn_of_light_body(object, loop, causes);
   }
-  warn_of_sum(loop, warnings);
-  warn_of_grain(loop, warnings);
+  warn_of_sum(loop, causes);
+  warn_of_grain(loop, causes);
+  return causes;
+}
+
+std::vector<std::string> rest_warnings(const scene::Scene& scene, const RestTrial& trial) {
+  std::vector<std::string> warnings;
+  for (const Rest& rest : trial.rests) {
+    if (rest.oscillation <= kRestFelt) continue;
+    std::string warning = fmt::format(
+        "At rest{} ({:.2f} s) the force oscillates by {:.3f} N RMS at {:.0f} Hz, of {:.2g} N; from "
+        "{:.2f} N on that is felt.",
+        rest.on.empty() ? "" : " on " + rest.on, rest.time, rest.oscillation, rest.frequency,
+        rest.force, kRestFelt);
+    const std::vector<std::string> causes = rest_causes(scene, rest.on);
+    for (const std::string& cause : causes) warning += " " + cause;
+    if (causes.empty()) warning += " Lower the stiffness there, or give it damping.";
+    warnings.push_back(std::move(warning));
+  }
+  if (trial.fault != driver::Fault::kNone) {
+    warnings.push_back(
+        fmt::format("The simulated run ends with a fault: {}.", driver::describe(trial.fault)));
+  }
   return warnings;
 }
 

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "stability/rest_trial.h"
 #include "thimble/scene/scene_file.h"
 
 namespace thimble::render {
@@ -20,10 +21,16 @@ namespace thimble::app {
 /// it; nothing where there is no such stage.
 std::vector<std::string> energy_warnings(const scene::Scene& scene);
 
-/// Says what in a scene may fall into a limit cycle under the hand of its arm or of its grip:
-/// facets, textures, frictions, springs that add up, light bodies, damping on coarse encoders.
-/// Reads the meshes that lie in memory; what cannot be read is passed over, for the loader tells.
-std::vector<std::string> rest_warnings(const scene::Scene& scene);
+/// Returns what by the laws may be the cause of a limit cycle of a hand that rests on the object of
+/// this name (empty: on any), a sentence each with the remedy: facets, textures, frictions, springs
+/// that add up, light bodies, damping on coarse encoders. No more than causes: arm and hand may
+/// damp what they tell of, so whether there is a limit cycle is for `try_rests` to say. Reads the
+/// meshes that lie in memory; what cannot be read is passed over, for the loader tells.
+std::vector<std::string> rest_causes(const scene::Scene& scene, const std::string& on = {});
+
+/// Returns a sentence for each rest of a trial that is felt to oscillate, with its measure, and the
+/// causes that the laws know for it; and one if a fault ended the trial.
+std::vector<std::string> rest_warnings(const scene::Scene& scene, const RestTrial& trial);
 
 /// Tells the stiffness (N/m) that a texture's waves add along the surface for each newton of
 /// pressing: the largest curvature of its height, 1/m; for sines a (2 pi / L)^2 [STABILITY 1.1].

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "energy_choice.h"
+#include "stability/rest_trial.h"
 #include "stability/rest_warnings.h"
 #include "stability/wall_trial.h"
 
@@ -74,6 +76,60 @@ std::string advice(const scene::Scene& scene, const scene::SceneObject& object,
       "if the arm's delay of {:.1f} ms falls with it.",
       object.name, object.stiffness, carried.stiffness_exact, carried.damping + object.damping,
       1e3 * carried.latency, limit, rate, 1e3 * carried.times.delay);
+}
+
+/// Tells how the hand rests on what the scene has, and how hands of other firmness would.
+void tell_rests(const scene::Scene& scene, TuneResult& result) {
+  const device_sim::HandSettings& own = scene.arm.simulated.hand;
+  const auto trial = try_rests(scene, own);
+  if (!trial) {
+    result.text += fmt::format("Rest      not simulated: {}\n", trial.error().message);
+    return;
+  }
+  for (const Rest& rest : trial->rests) {
+    result.text +=
+        fmt::format("Rest      at {:.2f} s{}: {:.2g} N, oscillates by {:.2g} mN RMS\n", rest.time,
+                    rest.on.empty() ? "" : " on " + rest.on, rest.force, 1e3 * rest.oscillation);
+  }
+  const std::vector<std::string> warnings = rest_warnings(scene, *trial);
+  for (const std::string& warning : warnings) result.text += "Warning   " + warning + "\n";
+  const Rest* const worst = trial->worst();
+  result.figures.push_back(
+      {"rest_oscillation", worst ? worst->oscillation : 0, "N", fmt::format("<= {:g}", kRestFelt)});
+  result.figures.push_back({"rest_warnings", static_cast<double>(warnings.size()), "", ""});
+
+  device_sim::HandSettings low = own, high = own;
+  double safe = std::numeric_limits<double>::infinity();
+  std::vector<std::pair<std::string, device_sim::HandSettings>> others;
+  for (const auto& [hand, times] : {std::pair{&low, 1.0 / 3}, std::pair{&high, 3.0}}) {
+    hand->mass *= times;
+    hand->stiffness *= times;
+    hand->damping *= times;
+  }
+  others.emplace_back("a third of the hand's mass, stiffness and damping", low);
+  others.emplace_back("three times", high);
+  double stiffest = 0;
+  for (const scene::SceneObject& object : scene.objects) {
+    if (object.build_field || !(object.stiffness > stiffest)) continue;
+    stiffest = object.stiffness;
+    const Carried carried =
+        carried_by(scene.arm, loop_times(scene.arm, scene.rate), object.stiffness, object.damping);
+    safe = carried.stiffness_safe;
+    if (others.size() > 2) others.pop_back();
+    others.emplace_back("the worst of those", carried.worst_hand);
+  }
+  for (const auto& [words, hand] : others) {
+    const auto found = try_rests(scene, hand);
+    if (!found) continue;
+    const Rest* const most = found->worst();
+    if (most == nullptr) continue;
+    result.text += fmt::format(
+        "Hands     {} ({:.3g} kg, {:.3g} N/m, {:.3g} N s/m): oscillates by up to {:.2g} mN RMS{}\n",
+        words, hand.mass, hand.stiffness, hand.damping, 1e3 * most->oscillation,
+        most->oscillation > kRestFelt
+            ? fmt::format(", which is felt; up to {:.0f} N/m is safe for any of them", safe)
+            : std::string());
+  }
 }
 
 }  // namespace
@@ -213,13 +269,6 @@ TuneResult tune(const scene::Scene& scene, const TuneOptions& options) {
     result.figures.push_back({name + ".any_hand", carried.stiffness_any_hand, "N/m", ""});
     result.figures.push_back(
         {name + ".margin_any_hand", carried.stiffness_any_hand / object.stiffness, "1", ">= 1"});
-    if (object.stiffness > carried.stiffness_any_hand &&
-        object.stiffness <= carried.stiffness_exact) {
-      result.text += fmt::format(
-          "Warning   {} is carried by the hand of the arm's file, but a looser one ({:.3g} N s/m) "
-          "may tremble on it: set its stiffness to {:.0f} N/m or less, or its damping higher.\n",
-          name, hand.damping, carried.stiffness_safe);
-    }
     const double safe = std::min(kShare * edge, carried.stiffness_safe);
     const double margin = edge / object.stiffness;
     result.figures.push_back({name + ".margin", margin, "1", fmt::format(">= {:g}", 1 / kShare)});
@@ -229,9 +278,7 @@ TuneResult tune(const scene::Scene& scene, const TuneOptions& options) {
   for (const std::string& warning : stability_warnings(scene)) {
     result.text += "Warning   " + warning + "\n";
   }
-  const std::vector<std::string> at_rest = rest_warnings(scene);
-  for (const std::string& warning : at_rest) result.text += "Warning   " + warning + "\n";
-  result.figures.push_back({"rest_warnings", static_cast<double>(at_rest.size()), "", ""});
+  tell_rests(scene, result);
   return result;
 }
 

@@ -11,7 +11,7 @@ namespace thimble::app {
 /// Says between what limits random scenes are drawn. Stiffness lies within what an arm and a loop
 /// can carry by the laws, so that any trouble is a mistake of the program or of a law. What a law
 /// foretells a small limit cycle of (facets, textures, light bodies) is drawn all the same, and
-/// rest_warnings.h must name it.
+/// `rest_causes` must name it.
 struct RandomSceneLimits {
   scene::ArmFile arm;
   /// Where the scene will say that the arm's file and the folder of the small meshes are.

@@ -119,7 +119,7 @@ TroubleFound run_for_trouble(const std::filesystem::path& scene_file, const Rand
                       scene.own_energy;
   found.must_tremble = scene.trembles;
   found.unforetold =
-      !found.must_tremble && found.tremble > kTrembleMost && rest_warnings(session.scene()).empty();
+      !found.must_tremble && found.tremble > kTrembleMost && rest_causes(session.scene()).empty();
   return found;
 }
 

@@ -16,8 +16,7 @@ struct TroubleFound {
   double force_share = 0;     ///< Largest force sent, of the arm's limit.
   double tremble = 0;         ///< Force above 50 Hz in the last quarter of a second, N RMS.
   bool must_tremble = false;  ///< As RandomScene::trembles.
-  /// Whether its limit cycle is larger than kTrembleMost and no warning of `thimble tune` foretold
-  /// it.
+  /// Whether its limit cycle is larger than kTrembleMost and no law names a cause (rest_causes).
   bool unforetold = false;
   double speed = 0;  ///< Largest of the tip, m/s.
   double given = 0;  ///< Most that the motors gave in any window (EnergyGiven), J.

@@ -143,7 +143,7 @@ TroubleFound run_seed(std::uint64_t seed, const std::string& what = "", const st
   if (warnings != nullptr) {
     const auto read = scene::load_scene(file);
     EXPECT_TRUE(read);
-    if (read) *warnings = rest_warnings(*read);
+    if (read) *warnings = rest_causes(*read);
   }
   return run_for_trouble(file, scene);
 }

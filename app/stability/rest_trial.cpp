@@ -1,0 +1,207 @@
+#include "stability/rest_trial.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <utility>
+
+#include "stability/signal.h"
+#include "thimble/scene/arm_simulation.h"
+#include "thimble/session/session.h"
+
+namespace thimble::app {
+namespace {
+
+constexpr double kHeld = 0.3;      // s; a shorter hold of the path is a stroke's turn [chosen]
+constexpr double kSettling = 1.6;  // s; the softest hand creeps on for so long (random_scene.cpp)
+constexpr double kWatched = 0.25;  // s, the last of it
+constexpr double kCorner = 50;     // Hz [STABILITY 2.5]
+
+/// A stretch of a run in which the hand rests, s.
+struct Stretch {
+  double told = 0;   // when it begins by the scene's own time
+  double until = 0;  // when it ends in the run
+};
+
+bool same_place(const scene::HandWaypoint& a, const scene::HandWaypoint& b) {
+  return a.on == b.on && a.p_W == b.p_W && a.press == b.press;
+}
+
+/// Makes every hold of the hand's path last until what settles has settled; lists them.
+std::vector<Stretch> prolong_rests(scene::Scene& scene) {
+  std::vector<Stretch> rests;
+  std::vector<scene::HandWaypoint>& path = scene.hand;
+  double later = 0;
+  for (std::size_t i = 0; i < path.size();) {
+    std::size_t end = i;
+    while (end + 1 < path.size() && same_place(path[end + 1], path[i])) ++end;
+    const bool last = end + 1 == path.size();
+    const double told = path[i].time;
+    double held = path[end].time - told;
+    if (last) held = std::max(held, scene.duration - told);
+    for (std::size_t k = i; k <= end; ++k) path[k].time += later;
+    if (last || held >= kHeld) {
+      const double more = std::max(0.0, kSettling - held);
+      if (last && end == i) {
+        path.push_back(path[i]);
+        ++end;
+      }
+      if (more > 0 || last) path[end].time = told + later + held + more;
+      path[end].stop = path[end].stop || last;
+      later += more;
+      rests.push_back({.told = told, .until = path[end].time});
+    }
+    i = end + 1;
+  }
+  if (!rests.empty()) scene.duration = std::max(scene.duration + later, rests.back().until);
+  return rests;
+}
+
+/// One run of a scene, tick by tick.
+class Run {
+ public:
+  /// Runs the scene; the hand is held still for kSettling at each of `stops` (ticks, growing).
+  static driver::Result<Run> make(const scene::Scene& scene,
+                                  const std::vector<std::size_t>& stops) {
+    session::SessionOptions options{.adjust = [&](scene::Scene& read) { read = scene; }};
+    options.duration = scene.duration + kSettling * static_cast<double>(stops.size());
+    options.arm_file = scene.arm_file;
+    auto opened = session::Session::open(scene.file, options);
+    if (!opened) return opened.error();
+    session::Session& session = **opened;
+    const auto settling = static_cast<std::size_t>(kSettling * scene.rate);
+    std::size_t next = 0, held_until = 0;
+    bool held = false;
+    for (std::size_t tick = 0;; ++tick) {
+      if (held && tick >= held_until) session.simulation()->hold(held = false);
+      if (next < stops.size() && tick >= stops[next] + next * settling) {
+        session.simulation()->hold(held = true);
+        held_until = tick + settling;
+        ++next;
+      }
+      if (session.step()) break;
+    }
+    if (session.stride() != 1) {
+      return driver::Error{scene.name +
+                           " lasts too long for its rests to be watched: give it a "
+                           "duration of fewer than a million ticks."};
+    }
+    Run run(scene);
+    run.fault_ = session.device().fault();
+    const auto rows = session.ticks();
+    run.rows_.assign(rows.begin(), rows.end());
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      std::vector<double> force;
+      force.reserve(rows.size());
+      for (const driver::TickRecord& row : rows) force.push_back(row.f_sent_W[axis]);
+      run.fast_[axis] = high_passed(force, scene.rate, kCorner);
+    }
+    return run;
+  }
+
+  driver::Fault fault() const { return fault_; }
+  std::span<const driver::TickRecord> rows() const { return rows_; }
+
+  /// Returns what the force did in the last kWatched before tick `end`.
+  Rest watch(double told, std::size_t end) const {
+    const auto count = static_cast<std::size_t>(kWatched * scene_->rate);
+    const std::size_t begin = end - std::min(end, count);
+    Rest rest{.time = told, .on = {}};
+    const driver::TickRecord& last = rows_[end - 1];
+    if (last.in_contact && last.object >= 0) {
+      rest.on = scene_->objects[static_cast<std::size_t>(last.object)].name;
+    }
+    Eigen::Vector3d sum(0, 0, 0);
+    for (std::size_t i = begin; i < end; ++i) {
+      sum += Eigen::Vector3d(rows_[i].f_sent_W[0], rows_[i].f_sent_W[1], rows_[i].f_sent_W[2]);
+    }
+    rest.force = sum.norm() / static_cast<double>(end - begin);
+    double squares = 0, most = 0;
+    for (const std::vector<double>& axis : fast_) {
+      const auto watched = std::span(axis).subspan(begin, end - begin);
+      const double rms = root_mean_square(watched);
+      squares += rms * rms;
+      if (!(rms > most)) continue;
+      most = rms;
+      const auto lines = spectrum(watched, scene_->rate);
+      const auto strongest = std::max_element(
+          lines.begin(), lines.end(),
+          [](const SpectralLine& a, const SpectralLine& b) { return a.amplitude < b.amplitude; });
+      if (strongest != lines.end()) rest.frequency = strongest->frequency;
+    }
+    rest.oscillation = std::sqrt(squares);
+    return rest;
+  }
+
+ private:
+  explicit Run(const scene::Scene& scene) : scene_(&scene) {}
+
+  const scene::Scene* scene_;
+  driver::Fault fault_ = driver::Fault::kNone;
+  std::vector<driver::TickRecord> rows_;
+  std::array<std::vector<double>, 3> fast_;
+};
+
+/// Returns the ticks at which the tip was deepest in each object, in order.
+std::vector<std::size_t> deepest_ticks(const scene::Scene& scene,
+                                       std::span<const driver::TickRecord> rows) {
+  std::vector<std::size_t> deepest(scene.objects.size(), rows.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (!rows[i].in_contact || rows[i].object < 0) continue;
+    std::size_t& most = deepest[static_cast<std::size_t>(rows[i].object)];
+    if (most == rows.size() || rows[i].depth > rows[most].depth) most = i;
+  }
+  std::erase(deepest, rows.size());
+  std::sort(deepest.begin(), deepest.end());
+  return deepest;
+}
+
+}  // namespace
+
+const Rest* RestTrial::worst() const {
+  const auto most = std::max_element(rests.begin(), rests.end(), [](const Rest& a, const Rest& b) {
+    return a.oscillation < b.oscillation;
+  });
+  return most == rests.end() ? nullptr : &*most;
+}
+
+driver::Result<RestTrial> try_rests(const scene::Scene& scene,
+                                    const device_sim::HandSettings& hand) {
+  scene::Scene resting = scene;
+  resting.arm.simulated.hand = hand;
+  scene::Scene stopped = resting;
+  const std::vector<Stretch> stretches = prolong_rests(resting);
+  auto run = Run::make(resting, {});
+  if (!run) return run.error();
+  RestTrial trial;
+  const auto tick_of = [&](double time) {
+    return std::min(run->rows().size(), static_cast<std::size_t>(std::llround(time * scene.rate)));
+  };
+  bool touches = false;
+  for (const Stretch& stretch : stretches) {
+    const std::size_t end = tick_of(stretch.until);
+    if (end == 0 || end < tick_of(stretch.told)) break;  // a fault ended the run before
+    trial.rests.push_back(run->watch(stretch.told, end));
+    touches = touches || trial.rests.back().force > 0;
+  }
+  trial.fault = run->fault();
+  if (touches || trial.fault != driver::Fault::kNone) return trial;
+  // Nowhere does the path rest on anything: stop the hand in what it touches.
+  const auto stops = deepest_ticks(scene, run->rows());
+  if (stops.empty()) return trial;
+  auto again = Run::make(stopped, stops);
+  if (!again) return again.error();
+  const auto settling = static_cast<std::size_t>(kSettling * scene.rate);
+  for (std::size_t i = 0; i < stops.size(); ++i) {
+    const std::size_t end = stops[i] + (i + 1) * settling;
+    if (end > again->rows().size()) break;
+    trial.rests.push_back(again->watch(static_cast<double>(stops[i]) / scene.rate, end));
+  }
+  trial.fault = again->fault();
+  return trial;
+}
+
+}  // namespace thimble::app

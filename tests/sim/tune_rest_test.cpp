@@ -1,0 +1,141 @@
+// What `thimble tune` warns of at rest, held to what scenes do: the account that `thimble study
+// trouble` keeps of its random scenes.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "stability/rest_trial.h"
+#include "stability/rest_warnings.h"
+#include "stability/tuning.h"
+#include "studies/trouble/random_scene.h"
+#include "studies/trouble/small_meshes.h"
+#include "studies/trouble/trouble_run.h"
+#include "support/contact_walk.h"
+#include "support/hollows.h"
+#include "support/scratch.h"
+#include "thimble/render/mesh/save_mesh.h"
+
+namespace thimble::app {
+namespace {
+
+const std::filesystem::path kArm =
+    std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms/vintage_phantom.yaml";
+
+/// Returns what `tune` would warn of for the hand of a scene, all but what the energy stage does.
+std::vector<std::string> warnings_of(const scene::Scene& scene) {
+  std::vector<std::string> warnings;
+  const auto trial = try_rests(scene, scene.arm.simulated.hand);
+  EXPECT_TRUE(trial) << trial.error().message;
+  if (trial) warnings = rest_warnings(scene, *trial);
+  const std::size_t by_law = stability_warnings(scene).size() - energy_warnings(scene).size();
+  warnings.resize(warnings.size() + by_law, "a wall is too stiff");
+  return warnings;
+}
+
+TEST(TuneRest, WarnsOfRandomScenesThatOscillateAndOfNoOthers) {
+  const auto folder = support::scratch_folder();
+  ASSERT_TRUE(write_small_meshes(folder / "meshes"));
+  const RandomSceneLimits limits{
+      .arm = *scene::load_arm(kArm), .arm_path = kArm.string(), .mesh_path = "meshes"};
+  // Scenes of the long search in which a texture and a light body oscillate, and then any.
+  std::vector<std::uint64_t> seeds{0x9e0ae1da2e824ea6, 0x84aec02417858bab};
+  const int count = support::long_form() ? 300 : 40;
+  for (int i = 0; i < count; ++i) seeds.push_back(77'000 + static_cast<std::uint64_t>(i));
+  int ran = 0, oscillate = 0, alarms = 0, wrong = 0, missed = 0, by_rules = 0, rules_wrong = 0;
+  for (const std::uint64_t seed : seeds) {
+    const RandomScene drawn = random_scene(seed, limits);
+    const auto file = folder / "scene.yaml";
+    std::ofstream(file) << drawn.text;
+    const TroubleFound found = run_for_trouble(file, drawn);
+    if (found.refused || found.bad()) continue;
+    const auto scene = scene::load_scene(file);
+    ASSERT_TRUE(scene);
+    ++ran;
+    const bool oscillates = found.tremble > kTrembleMost;
+    const bool alarm = !warnings_of(*scene).empty();
+    const bool rule = !rest_causes(*scene).empty();
+    oscillate += oscillates;
+    alarms += alarm;
+    wrong += alarm && !oscillates;
+    missed += oscillates && !alarm;
+    by_rules += rule;
+    rules_wrong += rule && !oscillates;
+    if (alarm != oscillates) {
+      std::printf("  seed %llx: %.4f N RMS, %s\n", static_cast<unsigned long long>(seed),
+                  found.tremble, alarm ? "warned of" : "missed");
+    }
+  }
+  std::printf(
+      "  of %d scenes %d oscillate; %d warned of, %d of them wrongly, %d missed (causes by the "
+      "laws "
+      "alone: %d, %d wrongly)\n",
+      ran, oscillate, alarms, wrong, missed, by_rules, rules_wrong);
+  EXPECT_GT(ran, count * 3 / 4);
+  EXPECT_GT(oscillate, 1);
+  EXPECT_EQ(missed, 0);
+  EXPECT_LT(wrong, 0.05 * alarms + 1e-9);
+}
+
+// One face at a time swings in a groove; two at once do not.
+TEST(TuneRest, WarnsInAGrooveOfTheTrackerThatSwingsThereAndOfNoOther) {
+  const auto folder = support::scratch_folder();
+  const double slope = std::atan2(0.017, 0.03), wall = std::hypot(0.017, 0.03);
+  const support::Hollow hollow = support::groove(slope, slope, wall, wall, {-0.03, 0.03});
+  ASSERT_TRUE(render::save_mesh(hollow.mesh, folder / "hollow.off"));
+  for (const std::string tracker :
+       {"normal_projection", "edge_planes", "offset", "compact", "god_object"}) {
+    const auto file = folder / "groove.yaml";
+    std::ofstream(file)
+        << "name: groove\narm: " << kArm.string()
+        << "\nduration: 1\ngate: {energy: none}\nobjects:\n  - name: groove\n"
+        << "    mesh: hollow.off\n    scale: 1\n    position: [0, 0, -0.014]\n"
+        << "    stiffness: 500\n    damping: 0\n    contact: {tracker: " << tracker
+        << "}\nhand:\n  grip: {tremor: 0}\n  path:\n    - {t: 0, at: [0, 0, 0.03]}\n"
+        << "    - {t: 0.5, at: [0.001, 0, -0.009]}\n"
+        << "    - {t: 0.9, at: [0, 0, -0.009]}\n";
+    const auto scene = scene::load_scene(file);
+    ASSERT_TRUE(scene) << scene.error().message;
+    const auto trial = try_rests(*scene, scene->arm.simulated.hand);
+    ASSERT_TRUE(trial) << trial.error().message;
+    ASSERT_NE(trial->worst(), nullptr);
+    EXPECT_EQ(trial->worst()->on, "groove");
+    EXPECT_GT(trial->worst()->force, 0.5);
+    const auto warnings = rest_warnings(*scene, *trial);
+    std::printf("  %-18s %.4f N RMS\n", tracker.c_str(), trial->worst()->oscillation);
+    EXPECT_EQ(warnings.size(), tracker == "normal_projection" ? 1u : 0u) << tracker;
+    if (!warnings.empty()) {
+      EXPECT_NE(warnings[0].find("facets"), std::string::npos) << warnings[0];
+    }
+  }
+}
+
+// Where a path only strokes, the hand is stopped in what it touches.
+TEST(TuneRest, StopsTheHandInWhatItOnlyStrokes) {
+  const auto folder = support::scratch_folder();
+  const auto file = folder / "stroke.yaml";
+  std::ofstream(file)
+      << "name: stroke\narm: " << kArm.string()
+      << "\nduration: 1.2\ngate: {energy: none}\nobjects:\n"
+      << "  - {name: wall, plane: {normal: [0, 0, 1]}, stiffness: 400}\n"
+      << "hand:\n  path:\n    - {t: 0, at: [0, 0, 0.02]}\n"
+      << "    - {t: 0.6, at: [0.01, 0, -0.01]}\n    - {t: 1, at: [0.02, 0, 0.02]}\n";
+  const auto scene = scene::load_scene(file);
+  ASSERT_TRUE(scene) << scene.error().message;
+  const auto trial = try_rests(*scene, scene->arm.simulated.hand);
+  ASSERT_TRUE(trial) << trial.error().message;
+  ASSERT_EQ(trial->rests.size(), 2u);  // in the air, and on the wall
+  EXPECT_EQ(trial->rests[0].on, "");
+  EXPECT_EQ(trial->rests[1].on, "wall");
+  EXPECT_NEAR(trial->rests[1].time, 0.6, 0.1);
+  EXPECT_GT(trial->rests[1].force, 0.3);
+}
+
+}  // namespace
+}  // namespace thimble::app
