@@ -205,7 +205,7 @@ class EncodedTip {
  public:
   explicit EncodedTip(double step)
       : model_(model_of(step)),
-        firmware_(device_sim::Firmware::make(device_sim::arm_model(model_), {}).value()),
+        firmware_(device_sim::Firmware::make(driver::arm_model(model_), {}).value()),
         arm_(model_) {}
 
   /// Tells how far from home the driver sees a tip that truly is `x` away, m.

@@ -117,7 +117,7 @@ TEST(OutArray, SaysNothingOfWhatHasNoSide) {
   EXPECT_TRUE(compute_out_array({}).empty());
 }
 
-TEST(OutArray, IsTheSameInTheCycleAsPrecomputed) {
+TEST(OutArray, IsTheSameInTheCycleForEightyThousandTriangles) {
   OutArray turns;
   const TriangleMesh mesh = shuffled(support::bumpy_sphere(6, 0.05, 0.3, 6), turns);
   const auto begin = std::chrono::steady_clock::now();
