@@ -68,6 +68,15 @@ render::ContactChoice read_contact(YamlMap map) {
         map.require_number("crease_degrees", "degrees", 0, 180) * std::numbers::pi / 180;
   }
   choice.band = map.optional_number("band", choice.band, "m", 0, kPressMax);
+  if (map.has("profile")) {
+    choice.profile = static_cast<render::BlendProfile>(choose("profile", render::kProfileNames));
+    if (choice.blending != render::BlendingChoice::kFixedBand &&
+        choice.blending != render::BlendingChoice::kSizedBand) {
+      map.reject("profile",
+                 "says how the normal turns within a band: name it with blending: fixed_band or "
+                 "sized_band");
+    }
+  }
   map.finish();
   return choice;
 }
