@@ -9,7 +9,7 @@
 #include "cli/complain.h"
 #include "cli/file_options.h"
 #include "report/figure.h"
-#include "studies/accuracy/gating.h"
+#include "studies/accuracy/gating/gating.h"
 #include "studies/accuracy/study_accuracy.h"
 
 namespace thimble::app {

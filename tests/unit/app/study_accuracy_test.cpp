@@ -14,7 +14,7 @@
 #include "studies/accuracy/accuracy_axis.h"
 #include "studies/accuracy/axis_words.h"
 #include "studies/accuracy/free_spin.h"
-#include "studies/accuracy/gating.h"
+#include "studies/accuracy/gating/gating.h"
 #include "studies/accuracy/guarded_wall.h"
 #include "studies/accuracy/held_motion.h"
 #include "studies/accuracy/measure_axis.h"
