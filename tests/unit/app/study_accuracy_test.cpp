@@ -23,7 +23,6 @@
 #include "studies/accuracy/velocity_estimates.h"
 #include "studies/rate_bench.h"
 #include "support/shapes.h"
-#include "thimble/scene/quality.h"
 #include "thimble/session/histogram.h"
 
 namespace thimble::app {
@@ -360,32 +359,6 @@ TEST(MeasuredAxis, RunsWhatIsBesideAPointAsOftenAsThePoint) {
   measure_axis(std::move(axis), {.rounds = 7, .count = false});
   EXPECT_EQ(with, 8);  // once more, to read everything into the caches
   EXPECT_EQ(beside, 8);
-}
-
-TEST(Quality, LeavesANormalSceneAloneAndSaysWhatItChoosesElse) {
-  scene::Scene scene;
-  scene.objects.resize(2);
-  scene.objects[0].name = "round";
-  scene.objects[1].name = "soft";
-  scene.objects[1].body.dent.emplace();
-  EXPECT_TRUE(scene::apply_quality(scene::Quality::kNormal, scene).empty());
-  EXPECT_FALSE(scene.objects[0].contact.blending);
-  EXPECT_EQ(scene.objects[1].body.dent->rings, render::DentSettings{}.rings);
-
-  const auto said = scene::apply_quality(scene::quality_named("reference"), scene);
-  ASSERT_EQ(said.size(), 3U);
-  EXPECT_NE(said[0].find("round: Phong"), std::string::npos);
-  EXPECT_EQ(scene.objects[0].contact.blending, render::BlendingChoice::kPhong);
-  EXPECT_TRUE(scene.objects[0].contact.curved_depth.value_or(false));
-  EXPECT_EQ(scene.objects[1].body.dent->integrator, render::SpringScheme::kTrapezoid);
-  EXPECT_GE(scene.objects[1].body.dent->substeps, 8);
-
-  // What the scene names itself stays.
-  scene::Scene named;
-  named.objects.resize(1);
-  named.objects[0].contact.blending = render::BlendingChoice::kFixedBand;
-  scene::apply_quality(scene::Quality::kReference, named);
-  EXPECT_EQ(named.objects[0].contact.blending, render::BlendingChoice::kFixedBand);
 }
 
 TEST(RateBench, AnswersByTheLateOnesAndByWhatUnevenTicksCost) {
