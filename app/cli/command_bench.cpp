@@ -26,11 +26,12 @@ struct BenchOptions {
 int run_bench(const BenchOptions& options) {
   const auto scene = scene::find_scene(options.scene);  // the default has not been looked for
   if (!scene) return complain(scene.error(), kExitBadInput);
+  const scene::Quality quality =
+      scene::quality_named(options.quality).value_or(scene::Quality::kNormal);
   std::vector<Figure> figures;
   std::string advice;
   for (const double rate : options.rates) {
-    const auto bench =
-        bench_rate(*scene, rate, options.seconds, scene::quality_named(options.quality));
+    const auto bench = bench_rate(*scene, rate, options.seconds, quality);
     if (!bench) return complain(bench.error(), kExitBadInput);
     const RateVerdict verdict = verdict_of(*bench);
     std::printf("%5.0f Hz  %s\n", rate, verdict.sentence.c_str());
@@ -61,10 +62,9 @@ void add_bench_command(CLI::App& app, int& exit_code) {
   command->add_option("--seconds", options->seconds, "How long to touch at each rate, s")
       ->check(CLI::Range(0.1, 600.0))
       ->capture_default_str();
-  command
-      ->add_option("--quality", options->quality, "draft, normal or reference, as in `thimble run`")
-      ->check(CLI::IsMember({"draft", "normal", "reference"}))
-      ->capture_default_str();
+  add_quality_option(
+      *command, options->quality,
+      "draft, normal, reference or auto, as in `thimble run`; at the rates of --rate");
   command->add_option("--out", options->out, "Folder for figures.json");
   command->callback([options, &exit_code] { exit_code = run_bench(*options); });
 }

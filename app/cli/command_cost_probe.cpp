@@ -6,7 +6,7 @@
 
 #include "cli/commands.h"
 #include "cli/complain.h"
-#include "studies/accuracy/gating.h"
+#include "studies/accuracy/gating/gating.h"
 #include "studies/accuracy/probed_stroke.h"
 #include "studies/cost/cost_subjects.h"
 #include "studies/cost/instruction_count.h"

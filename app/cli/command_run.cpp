@@ -53,6 +53,7 @@ struct RunOptions {
   std::string name;
   bool view = false, no_view = false;
   std::string quality = "normal";
+  std::optional<double> budget;  // ns
   bool yes = false;
   bool unchecked = false;
   bool homed = false;
@@ -69,6 +70,9 @@ void tell(const std::vector<std::string>& sentences) {
 
 /// Fails if the options do not go together.
 driver::Result<void> check(const RunOptions& options) {
+  if (options.budget && options.quality != "auto") {
+    return driver::Error{"--budget says what --quality auto may spend: name both, or neither."};
+  }
   if (!options.led()) return {};
   if (options.device != "sim") {
     return driver::Error{"--hand mouse leads the simulated arm's hand; a real arm has yours."};
@@ -101,9 +105,11 @@ session::SessionOptions session_options(const RunOptions& options, const session
   asked.share_name = options.name;
   asked.hand_by_mouse = options.led();
   asked.homed = options.homed;
-  asked.adjust = [&options](scene::Scene& scene) {
-    for (const std::string& choice :
-         scene::apply_quality(scene::quality_named(options.quality), scene)) {
+  const scene::Quality quality =
+      scene::quality_named(options.quality).value_or(scene::Quality::kNormal);
+  asked.rate_factor = scene::rate_factor_of(quality);
+  asked.adjust = [&options, quality](scene::Scene& scene) {
+    for (const std::string& choice : scene::apply_quality(quality, scene, options.budget)) {
       session::print(stdout, "{}: {}\n", options.quality, choice);
     }
   };
@@ -311,12 +317,15 @@ void add_run_command(CLI::App& app, int& exit_code) {
   command->add_flag("--no-view", options->no_view, "Show the run to nobody")->excludes(view);
   command->add_option("--name", options->name,
                       "Name of the run for `thimble view NAME`; the scene's if absent");
+  add_quality_option(
+      *command, options->quality,
+      "draft, normal (what the scene says), reference or auto (the cheapest at which nothing wrong "
+      "can be felt): points on the diagrams of `thimble study accuracy`; each choice is printed");
   command
-      ->add_option("--quality", options->quality,
-                   "draft, normal (what the scene says) or reference: points on the diagrams of "
-                   "`thimble study accuracy`; each choice is printed")
-      ->check(CLI::IsMember({"draft", "normal", "reference"}))
-      ->capture_default_str();
+      ->add_option("--budget", options->budget,
+                   "With --quality auto: the truest points for so many ns per tick, of all objects "
+                   "together, on the machine that the stored diagrams name")
+      ->check(CLI::Range(1.0, 1e9));
   command->add_option("--report", options->report, "Folder for report.json and pictures");
   command->add_option(
       "--record", options->record,

@@ -10,7 +10,8 @@
 #include "cli/end_study.h"
 #include "cli/file_options.h"
 #include "report/figure.h"
-#include "studies/accuracy/gating.h"
+#include "studies/accuracy/gating/gating.h"
+#include "studies/accuracy/quality_points.h"
 #include "studies/accuracy/study_accuracy.h"
 
 namespace thimble::app {
@@ -19,10 +20,17 @@ namespace {
 struct AccuracyOptions {
   std::vector<std::string> axes;
   std::string out = "study-accuracy";
+  std::string table;
   bool no_count = false;
 };
 
 int run_accuracy(const AccuracyOptions& options) {
+  if (!options.table.empty()) {
+    const auto written = write_text(quality_table_text(), options.table);
+    if (!written) return complain(written.error(), kExitTrouble);
+    std::printf("Points for --quality auto: %s\n", options.table.c_str());
+    return kExitDone;
+  }
   const std::filesystem::path folder = options.out;
   std::error_code status;
   std::filesystem::create_directories(folder, status);
@@ -79,6 +87,10 @@ void add_accuracy_study(CLI::App& study_command, int& exit_code) {
                       "Axes to measure, such as tessellation or velocity; all, if none is named");
   command->add_option("--out", options->out, "Folder for the page, pictures, tables, figures.json")
       ->capture_default_str();
+  command->add_option(
+      "--table", options->table,
+      "Write the points that `thimble run --quality auto` chooses on instead, as they "
+      "are built in (app/scene/src/quality/quality_table.inc), measured on this machine");
   command->add_flag(
       "--no-count", options->no_count,
       "Do not count instructions, which takes minutes; time alone says what is cheaper");

@@ -1,7 +1,9 @@
 #include "cli/file_options.h"
 
 #include <filesystem>
+#include <vector>
 
+#include "thimble/scene/quality.h"
 #include "thimble/scene/shipped_files.h"
 
 namespace thimble::app {
@@ -39,6 +41,13 @@ CLI::Option* add_arm_option(CLI::App& command, std::string& arm_file, const std:
 CLI::Option* add_arm_option(CLI::App& command, std::filesystem::path& arm_file,
                             const std::string& about) {
   return by_name(command.add_option("--arm", arm_file, about));
+}
+
+CLI::Option* add_quality_option(CLI::App& command, std::string& quality, const std::string& about) {
+  return command.add_option("--quality", quality, about)
+      ->check(CLI::IsMember(
+          std::vector<std::string>(scene::kQualityNames.begin(), scene::kQualityNames.end())))
+      ->capture_default_str();
 }
 
 }  // namespace thimble::app

@@ -18,4 +18,7 @@ CLI::Option* add_arm_option(CLI::App& command, std::string& arm_file, const std:
 CLI::Option* add_arm_option(CLI::App& command, std::filesystem::path& arm_file,
                             const std::string& about);
 
+/// Adds --quality: a name of scene::Quality. Real-time: never from the servo thread.
+CLI::Option* add_quality_option(CLI::App& command, std::string& quality, const std::string& about);
+
 }  // namespace thimble::app

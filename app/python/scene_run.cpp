@@ -44,9 +44,10 @@ session::SessionOptions session_options(const RunOptions& options) {
     throw ThimbleError("seconds: expected 0.001 to 86400, found " +
                        std::to_string(*options.seconds) + ".");
   }
-  if (options.quality != "draft" && options.quality != "normal" && options.quality != "reference") {
-    throw ThimbleError("quality: expected draft, normal or reference, found \"" + options.quality +
-                       "\".");
+  const auto quality = scene::quality_named(options.quality);
+  if (!quality) {
+    throw ThimbleError("quality: expected draft, normal, reference or auto, found \"" +
+                       options.quality + "\".");
   }
   const auto plugged_in =
       options.device == "sim"
@@ -81,9 +82,8 @@ session::SessionOptions session_options(const RunOptions& options) {
   asked.seed = options.seed;
   asked.firmware = options.firmware;
   asked.record = options.record;
-  asked.adjust = [&options](scene::Scene& scene) {
-    scene::apply_quality(scene::quality_named(options.quality), scene);
-  };
+  asked.rate_factor = scene::rate_factor_of(*quality);
+  asked.adjust = [quality](scene::Scene& scene) { scene::apply_quality(*quality, scene); };
   return asked;
 }
 

@@ -47,15 +47,17 @@ Built shaded_touch(Contact contact, Shading shading, Normals normals, bool curve
 template <class Contact>
 Built tracked_touch(Contact contact, const ContactChoice& choice, BlendingChoice blending,
                     bool curved, const Normals& normals, const SurfaceChoice& surface) {
+  const BlendProfile profile = choice.profile.value_or(BlendProfile::kLinear);
   switch (blending) {
     case BlendingChoice::kFlat:
       if (!curved) return touch_of(std::move(contact), surface);
       return shaded_touch(std::move(contact), Flat(), normals, curved, surface);
     case BlendingChoice::kFixedBand:
-      return shaded_touch(std::move(contact), FixedBand{.width = choice.band}, normals, curved,
-                          surface);
+      return shaded_touch(std::move(contact), FixedBand{.width = choice.band, .profile = profile},
+                          normals, curved, surface);
     case BlendingChoice::kSizedBand:
-      return shaded_touch(std::move(contact), SizedBand(), normals, curved, surface);
+      return shaded_touch(std::move(contact), SizedBand{.profile = profile}, normals, curved,
+                          surface);
     case BlendingChoice::kPhong:
       return shaded_touch(std::move(contact), Phong(), normals, curved, surface);
   }
@@ -143,6 +145,12 @@ Built stiff_touch(const TriangleMesh& mesh_W, const ContactChoice& choice,
 
 Built build_object_touch(const TriangleMesh& mesh_W, const ContactChoice& choice,
                          const SurfaceChoice& surface) {
+  if (choice.profile && choice.blending != BlendingChoice::kFixedBand &&
+      choice.blending != BlendingChoice::kSizedBand) {
+    return driver::Error{
+        "A profile says how the normal turns within a band: it goes with the blending "
+        "\"fixed_band\" or \"sized_band\" only."};
+  }
   auto touch = surface.shape.named() ? shaped_touch(mesh_W, choice, surface)
                                      : stiff_touch(mesh_W, choice, surface);
   if (!touch || !surface.dent) return touch;

@@ -27,7 +27,7 @@ def test_knows_scenes_and_arms_by_name(source):
         (lambda: thimble.run("box", arm="no_such_arm"), "vintage_phantom"),
         (lambda: thimble.run("box", seconds=-1), "seconds: expected"),
         (lambda: thimble.run("box", seconds=float("nan")), "seconds: expected"),
-        (lambda: thimble.run("box", quality="best"), "draft, normal or reference"),
+        (lambda: thimble.run("box", quality="best"), "draft, normal, reference or auto"),
         (lambda: thimble.run("box", record="/no/such/folder/a.h5"), "/no/such/folder"),
         (lambda: thimble.read_recording("no_such.h5"), "no such file"),
         (lambda: thimble.Simulator("box"), "no arm file of that name"),

@@ -37,6 +37,8 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values("tracker: edge_planes",
                       "tracker: edge_planes, blending: fixed_band, band: 0.0005",
                       "tracker: edge_planes, blending: sized_band",
+                      "tracker: edge_planes, blending: fixed_band, profile: smooth",
+                      "tracker: offset, blending: sized_band, profile: smooth",
                       "tracker: edge_planes, blending: phong, curved_depth: true",
                       "tracker: offset", "tracker: offset, blending: flat, curved_depth: false",
                       "tracker: offset, crease_degrees: 30", "tracker: offset, normals: angle",

@@ -356,7 +356,7 @@ def run(
 
     scene: file, or a name (:func:`scenes`). seconds: how long; the scene's own if absent. seed: of
     everything random; the scene's own if absent. arm: file or name in place of the scene's arm.
-    quality: "draft", "normal" or "reference". record: HDF5 file to write every tick into.
+    quality: "draft", "normal", "reference" or "auto". record: HDF5 file to write every tick into.
 
     law: a force law in place of the scene's: ``law(tick)`` is asked in each tick for the force on the
     hand, three numbers (N, in the world), or None for the scene's own, which is

@@ -4,12 +4,15 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <span>
 #include <system_error>
 #include <utility>
 
 #include "energy_choice.h"
+#include "loop_latency.h"
 #include "page/page_file.h"
 #include "scene_body.h"
 #include "scene_effects.h"
@@ -27,6 +30,9 @@ constexpr double kDampingMax = 1000;                  // N s/m
 constexpr double kSheetMin = 1e-5, kSheetMax = 0.02;  // m
 constexpr double kPressMax = 0.1;                     // m
 constexpr double kDurationMax = 86400;                // s
+constexpr double kRateMin = 10;                       // Hz
+constexpr double kRateMax = 1e5;                      // Hz
+constexpr double kShareBorne = 0.5;  // of the law's stiffness [chosen: hands differ by that]
 constexpr std::string_view kMeshScheme = "cgal:";
 
 std::filesystem::path find_file(YamlMap& map, std::string_view key,
@@ -71,6 +77,15 @@ render::ContactChoice read_contact(YamlMap map) {
         map.require_number("crease_degrees", "degrees", 0, 180) * std::numbers::pi / 180;
   }
   choice.band = map.optional_number("band", choice.band, "m", 0, kPressMax);
+  if (map.has("profile")) {
+    choice.profile = static_cast<render::BlendProfile>(choose("profile", render::kProfileNames));
+    if (choice.blending != render::BlendingChoice::kFixedBand &&
+        choice.blending != render::BlendingChoice::kSizedBand) {
+      map.reject("profile",
+                 "says how the normal turns within a band: name it with blending: fixed_band or "
+                 "sized_band");
+    }
+  }
   map.finish();
   return choice;
 }
@@ -134,7 +149,9 @@ SceneObject read_object(YamlMap map, const std::filesystem::path& folder,
   object.damping = map.optional_number("damping", 0, "N s/m", 0, kDampingMax);
   object.paged = !object.mesh_file.empty() && render::is_page_file(object.mesh_file);
   if (!object.shape && map.has("contact")) {
-    object.contact = read_contact(map.require_map("contact"));
+    YamlMap contact = map.require_map("contact");
+    object.tracker_named = contact.has("tracker");
+    object.contact = read_contact(std::move(contact));
   }
   if (object.paged) {
     const render::ContactChoice& c = object.contact;
@@ -227,9 +244,20 @@ std::vector<HandWaypoint> read_hand(YamlMap map, const std::vector<SceneObject>&
   return hand;
 }
 
-}  // namespace
+/// Returns whether every surface of the scene is well within what its loop holds.
+bool bears_its_rate(const Scene& scene) {
+  const device_sim::SimulatedArmSettings& arm = scene.arm.simulated;
+  const double latency = latency_of(
+      {.period = 1 / scene.rate,
+       .delay = 1e-9 * static_cast<double>(arm.wire.delay_in_ns + arm.wire.delay_out_ns)});
+  return std::all_of(scene.objects.begin(), scene.objects.end(), [&](const SceneObject& object) {
+    const double held = arm.plant.viscous + arm.hand.damping + object.damping;
+    // Written so that NaN is not borne.
+    return object.stiffness <= kShareBorne * stiffness_limit(held, latency);
+  });
+}
 
-driver::Result<Scene> load_scene(const std::filesystem::path& meant, const SceneReading& reading) {
+driver::Result<Scene> read_scene(const std::filesystem::path& meant, const SceneReading& reading) {
   const auto found = find_scene(meant.string());
   if (!found) return found.error();
   const std::filesystem::path& file = *found;
@@ -243,7 +271,10 @@ driver::Result<Scene> load_scene(const std::filesystem::path& meant, const Scene
   scene.name = root.require_string("name");
   scene.description = root.optional_string("description", "");
   scene.arm_file = find_file(root, "arm", folder, {});
-  scene.rate = root.optional_number("rate", 1000, "Hz", 10, 1e5);
+  scene.rate =
+      std::clamp(root.optional_number("rate", 1000, "Hz", kRateMin, kRateMax) * reading.rate_factor,
+                 kRateMin, kRateMax);
+  scene.rate_factor = reading.rate_factor;
   scene.duration = root.require_number("duration", "s", 0.001, kDurationMax);
   // 2^53: every whole number up to here is a double.
   scene.seed = static_cast<std::uint64_t>(root.optional_number("seed", 0, "", 0, 0x1p53));
@@ -292,6 +323,22 @@ driver::Result<Scene> load_scene(const std::filesystem::path& meant, const Scene
   if (auto done = yaml->finish(); !done) return done.error();
   if (arm_error) return *arm_error;
   return scene;
+}
+
+}  // namespace
+
+driver::Result<Scene> load_scene(const std::filesystem::path& meant, const SceneReading& reading) {
+  auto scene = read_scene(meant, reading);
+  if (!(reading.rate_factor < 1) || (scene && bears_its_rate(*scene))) {
+    if (scene && reading.rate_factor > 1) {
+      auto& period_ns = scene->arm.simulated.firmware.report_period_ns;
+      period_ns = std::min<std::int64_t>(period_ns, std::llround(1e9 / scene->rate));
+    }
+    return scene;
+  }
+  SceneReading as_it_says = reading;
+  as_it_says.rate_factor = 1;
+  return read_scene(meant, as_it_says);
 }
 
 }  // namespace thimble::scene

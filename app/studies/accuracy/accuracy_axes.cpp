@@ -9,6 +9,8 @@ constexpr std::array kAxes{
     AxisMaker{"tessellation", tessellation_axis},
     AxisMaker{"tessellation_direction", tessellation_direction_axis},
     AxisMaker{"tessellation_jump", tessellation_jump_axis},
+    AxisMaker{"profile", profile_axis},
+    AxisMaker{"profile_rate", profile_rate_axis},
     AxisMaker{"deformable", deformable_axis},
     AxisMaker{"modes", modes_axis},
     AxisMaker{"rings", rings_axis},

@@ -25,8 +25,8 @@ struct AccuracyPoint {
   /// Makes ready what a stroke does besides, which is no cost of the point and is taken off; empty
   /// if there is nothing.
   std::function<Stroke()> beside = {};
-  double ticks = 1;  ///< What a stroke's cost is divided by: ticks, or ms of touch.
-  bool is_default = false;
+  double ticks = 1;                ///< What a stroke's cost is divided by: ticks, or ms of touch.
+  bool is_default = false;         ///< On a given axis: where a PHANTOM-like arm stands.
   bool fits = false;               ///< Whether the slope of the line is taken from it.
   std::optional<double> law = {};  ///< The error that a published law tells, if there is one.
   std::string title = {};  ///< In words, where the line's title and the knob do not name it.
@@ -53,6 +53,7 @@ struct AccuracyAxis {
   std::string threshold_words;
   std::string felt_words;      ///< In place of the sentence about the point beyond what is felt.
   std::string per = "tick";    ///< What the cost is counted for.
+  bool given = false;          ///< No choice of a program: the arm brings the knob's value.
   bool cost_is_added = false;  ///< The cost is what a point adds to something, and may be negative.
   std::string default_words;   ///< Why the default is where it is, if it is not on the front.
   std::string left_out;        ///< One or two sentences: what this axis does not show, and why.

@@ -34,7 +34,8 @@ summary{cursor:pointer;margin:.6rem 0}nav a{margin-right:.9rem;white-space:nowra
 <h1>What accuracy costs in time</h1>
 <p>Each diagram turns one knob: how wrong the result is against a truth that shares no code with it, and what it
 costs. Lower is truer, farther left is cheaper. Where a diagram is shaded, below the dashed line, nobody can feel the difference.
-The ring marks what Thimble does unless told otherwise.</p>
+The ring marks what Thimble does unless told otherwise, or, where the arm brings the knob's value and nobody chooses it,
+where a PHANTOM-like arm stands.</p>
 <p class="small">Times are medians of this machine, in turn with each other, of the processor time of the work alone,
 with half the distance between the quartiles. Instructions are counted by callgrind and are the same on every machine
 that runs the same binary; they decide what is cheaper. Errors are the same bits in every run.</p>
@@ -80,6 +81,19 @@ std::string cell(const std::string& text) {
   return "<td>" + escaped(text) + "</td>";
 }
 
+// Lists the diagrams of one kind, if there are any.
+void add_contents(const std::vector<AxisSection>& sections, bool given, const char* words,
+                  std::ostringstream& page) {
+  const char* begin = words;
+  for (const AxisSection& section : sections) {
+    const AccuracyAxis& a = section.axis->axis;
+    if (a.given != given) continue;
+    if (begin != nullptr) page << "<nav><b>" << std::exchange(begin, nullptr) << "</b> ";
+    page << "<a href=\"#" << a.name << "\">" << a.name << "</a> ";
+  }
+  if (begin == nullptr) page << "</nav>\n";
+}
+
 void add_table(const MeasuredAxis& axis, std::ostringstream& page) {
   const AccuracyAxis& a = axis.axis;
   page << "<details><summary>Figures</summary><div class=\"scroll\"><table><tr><th>method</th><th>"
@@ -106,12 +120,9 @@ void add_table(const MeasuredAxis& axis, std::ostringstream& page) {
 driver::Result<void> write_accuracy_page(const std::vector<AxisSection>& sections,
                                          const std::filesystem::path& folder) {
   std::ostringstream page;
-  page << kHead << "<nav>";
-  for (const AxisSection& section : sections) {
-    const AccuracyAxis& a = section.axis->axis;
-    page << "<a href=\"#" << a.name << "\">" << a.name << "</a> ";
-  }
-  page << "</nav>\n";
+  page << kHead;
+  add_contents(sections, false, "What can be chosen:", page);
+  add_contents(sections, true, "What the arm brings:", page);
   for (const AxisSection& section : sections) {
     const MeasuredAxis& axis = *section.axis;
     const AccuracyAxis& a = axis.axis;
@@ -144,6 +155,7 @@ driver::Result<void> write_accuracy_summary(const std::vector<AxisSection>& sect
                                  {"title", a.title},
                                  {"knob", a.knob},
                                  {"knob_unit", a.knob_unit},
+                                 {"given_by_the_arm", a.given},
                                  {"metric", a.metric},
                                  {"unit", a.unit},
                                  {"truth", a.truth},
@@ -159,7 +171,9 @@ driver::Result<void> write_accuracy_summary(const std::vector<AxisSection>& sect
       one["on_front"] = point->on_front;
       return one;
     };
-    if (const auto* point = axis.default_point()) entry["default_point"] = point_of(point);
+    if (const auto* point = axis.default_point()) {
+      entry[a.given ? "arm_point" : "default_point"] = point_of(point);
+    }
     if (const auto* point = a.over_cost ? axis.enough() : nullptr) {
       entry["enough_point"] = point_of(point);
     }

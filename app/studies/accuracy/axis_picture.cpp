@@ -18,7 +18,7 @@ constexpr std::array kColours{"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#8a6d
 constexpr std::array kMarks{7, 5, 9, 13, 11, 3};
 constexpr std::array kHollowMarks{6, 4, 8, 12, 10, 2};  // of the same shapes, for the next six
 constexpr const char* kUnfeltFill = "#f0f4ee";          // under what cannot be felt
-constexpr std::size_t kTitleWidth = 56, kKnobWidth = 60, kErrorWidth = 26;  // letters
+constexpr std::size_t kTitleWidth = 50, kKnobWidth = 60, kErrorWidth = 26;  // letters
 
 enum class View { kErrorOverCost, kErrorOverKnob, kCostOverKnob };
 
@@ -98,7 +98,9 @@ std::string tics_of(char axis, double low, double high) {
 }
 
 // Errors below this share of the threshold are drawn there: rounding, which would squeeze all else.
+// Without a threshold they are drawn below all others.
 constexpr double kFloorShare = 1e-4;
+constexpr double kRounding = 1e-9;
 
 /// Is how one view sees a point.
 class Eye {
@@ -106,12 +108,19 @@ class Eye {
   Eye(const MeasuredAxis& axis, View view)
       : view_(view), added_(view == View::kErrorOverCost && axis.axis.cost_is_added) {
     double largest = 0;
+    double smallest = INFINITY;
     for (const MeasuredLine& line : axis.lines) {
       for (const MeasuredPoint& point : line.points) {
-        if (!point.diverged) largest = std::max(largest, std::abs(point.error));
+        if (point.diverged || point.error == 0) continue;
+        largest = std::max(largest, std::abs(point.error));
+        smallest = std::min(smallest, std::abs(point.error));
       }
     }
-    floor_ = kFloorShare * axis.axis.threshold.value_or(largest > 0 ? largest : 1);
+    if (axis.axis.threshold) {
+      floor_ = kFloorShare * *axis.axis.threshold;
+    } else {
+      floor_ = largest > 0 ? std::max(smallest / 2, kRounding * largest) : 1;
+    }
   }
   double floor() const { return floor_; }
   double x(const MeasuredPoint& point) const {
@@ -213,7 +222,7 @@ Plot plot_of(const MeasuredAxis& axis, View view) {
   plots << law_plots.str();
   if (marked != nullptr && eye.sees(*marked)) {
     plots << ", '-' using 1:2 with points pt 6 ps 2.1 lw 2.2 lc rgb '" << kInk
-          << "' title 'default of the product'";
+          << (a.given ? "' title 'a PHANTOM-like arm'" : "' title 'default of the product'");
   }
   text << "set title " << wrapped(a.title, kTitleWidth) << " font ',17'\n";
   const bool over_cost = view == View::kErrorOverCost;

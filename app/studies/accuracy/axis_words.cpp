@@ -90,6 +90,10 @@ std::string felt_sentence(const MeasuredAxis& axis) {
 std::string default_sentence(const MeasuredAxis& axis) {
   const MeasuredPoint* point = axis.default_point();
   if (point == nullptr) return "The product has no default here. " + axis.axis.default_words;
+  if (axis.axis.given) {
+    return "No choice of a program: " + axis.axis.default_words + " A PHANTOM-like arm stands at " +
+           name_of(axis, *point) + ": " + with_unit(point->error, axis.axis.unit) + ".";
+  }
   std::string text = "The default is ";
   text.append(name_of(axis, *point)).append(": ");
   text.append(point->diverged ? std::string("diverged") : with_unit(point->error, axis.axis.unit));
@@ -152,11 +156,13 @@ std::vector<Figure> figures_of(const MeasuredAxis& axis) {
                        .goal = {}});
   };
   if (const auto* point = axis.default_point()) {
-    add("default", *point);
-    figures.push_back({.name = name + ", default on the front",
-                       .value = point->on_front ? 1.0 : 0.0,
-                       .unit = "",
-                       .goal = {}});
+    add(axis.axis.given ? "of a PHANTOM-like arm" : "default", *point);
+    if (!axis.axis.given) {
+      figures.push_back({.name = name + ", default on the front",
+                         .value = point->on_front ? 1.0 : 0.0,
+                         .unit = "",
+                         .goal = {}});
+    }
   }
   if (const auto* point = axis.axis.over_cost ? axis.enough() : nullptr) add("enough", *point);
   if (axis.axis.cost_is_added) {

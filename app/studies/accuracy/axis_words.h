@@ -19,7 +19,8 @@ std::string name_of(const MeasuredAxis& axis, const MeasuredPoint& point);
 /// Says beyond which point more accuracy cannot be felt, and where the default stands to it.
 std::string felt_sentence(const MeasuredAxis& axis);
 
-/// Says whether the default is on the front of its axis, and if not, why it is the default.
+/// Says whether the default is on the front of its axis, and if not, why it is the default; of what
+/// an arm brings, where a PHANTOM-like arm stands.
 std::string default_sentence(const MeasuredAxis& axis);
 
 /// Says which slope each line shows and which theory asks for; empty if none asks for any.

@@ -155,7 +155,7 @@ MeasuredAxis measure_axis(AccuracyAxis axis, const MeasureOptions& options) {
       }
     }
   }
-  find_front(points);
+  if (!measured.axis.given) find_front(points);
   return measured;
 }
 

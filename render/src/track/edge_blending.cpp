@@ -17,8 +17,9 @@ Vector3d unit_or(const Vector3d& v, const Vector3d& otherwise) noexcept {
 }
 
 // Rises from 0 to 1 over `width`; written so that a width of 0 and NaN give 1.
-double ramp(double distance, double width) noexcept {
-  return distance < width ? std::max(distance, 0.0) / width : 1;
+double ramp(double distance, double width, BlendProfile profile) noexcept {
+  const double t = distance < width ? std::max(distance, 0.0) / width : 1;
+  return profile == BlendProfile::kSmooth ? t * t * (3 - 2 * t) : t;
 }
 
 // Is a triangle seen from one of its edges, with a place on it.
@@ -53,7 +54,8 @@ double twice_area(const ContactMesh& mesh, std::int32_t triangle) noexcept {
 // The normal on edge k: the mean of the two faces in the middle, the vertex's at an end. It uses
 // nothing but what both triangles share.
 Vector3d on_edge(const ContactMesh& mesh, const SmoothNormals& normals, std::int32_t triangle,
-                 std::size_t k, const EdgeView& view, double end_width) noexcept {
+                 std::size_t k, const EdgeView& view, double end_width,
+                 BlendProfile profile) noexcept {
   const Vector3d& own = mesh.cell(triangle).face.n;
   Vector3d middle = own;
   if (!normals.crease(triangle, k)) {
@@ -61,19 +63,21 @@ Vector3d on_edge(const ContactMesh& mesh, const SmoothNormals& normals, std::int
   }
   const Vector3d& at_end = normals.corners(triangle)[view.along < 0.5 ? k : (k + 1) % 3];
   const double to_end = std::min(view.along, 1 - view.along) * view.length;
-  return at_end + ramp(to_end, end_width) * (middle - at_end);
+  return at_end + ramp(to_end, end_width, profile) * (middle - at_end);
 }
 
 struct Bands {
   std::array<double, 3> across;  // m from edge k
   std::array<double, 3> along;   // m from the ends of edge k, at most half of it
+  BlendProfile profile;
 };
 
 Vector3d blended(const ContactMesh& mesh, const SmoothNormals& normals, std::int32_t triangle,
                  const Vector3d& weights, const std::array<EdgeView, 3>& views,
                  const Bands& bands) noexcept {
   std::array<double, 3> inner{};  // 0 on edge k, 1 from the band's width on
-  for (std::size_t k = 0; k < 3; ++k) inner[k] = ramp(views[k].distance, bands.across[k]);
+  for (std::size_t k = 0; k < 3; ++k)
+    inner[k] = ramp(views[k].distance, bands.across[k], bands.profile);
   const Vector3d& own = mesh.cell(triangle).face.n;
   const double own_share = inner[0] * inner[1] * inner[2];
   Vector3d sum = own_share * own;
@@ -81,7 +85,7 @@ Vector3d blended(const ContactMesh& mesh, const SmoothNormals& normals, std::int
   for (std::size_t k = 0; k < 3; ++k) {
     const double share = (1 - inner[k]) * inner[(k + 1) % 3] * inner[(k + 2) % 3];
     if (!(share > 0)) continue;
-    sum += share * on_edge(mesh, normals, triangle, k, views[k], bands.along[k]);
+    sum += share * on_edge(mesh, normals, triangle, k, views[k], bands.along[k], bands.profile);
     shares += share;
   }
   if (!(shares > 0)) {
@@ -109,7 +113,7 @@ Vector3d Flat::normal(const ContactMesh& mesh, const SmoothNormals&, std::int32_
 Vector3d FixedBand::normal(const ContactMesh& mesh, const SmoothNormals& normals,
                            std::int32_t triangle, const Vector3d& weights) const noexcept {
   const auto views = edge_views(mesh, triangle, weights, twice_area(mesh, triangle));
-  Bands bands{};
+  Bands bands{.across = {}, .along = {}, .profile = profile};
   for (std::size_t k = 0; k < 3; ++k) {
     bands.across[k] = width;
     bands.along[k] = std::min(width, views[k].length / 2);
@@ -122,7 +126,7 @@ Vector3d SizedBand::normal(const ContactMesh& mesh, const SmoothNormals& normals
   const double area = twice_area(mesh, triangle);
   const auto views = edge_views(mesh, triangle, weights, area);
   const double inscribed = area / (views[0].length + views[1].length + views[2].length);
-  Bands bands{};
+  Bands bands{.across = {}, .along = {}, .profile = profile};
   for (std::size_t k = 0; k < 3; ++k) {
     bands.across[k] = share * inscribed;
     bands.along[k] = share * views[k].length / 2;

@@ -6,6 +6,7 @@
 
 #include "mesh/contact_mesh.h"
 #include "mesh/smooth_normals.h"
+#include "thimble/render/track/blend_profile.h"
 
 namespace thimble::render {
 
@@ -34,11 +35,15 @@ struct Flat {
 /// Along an edge the mean of the two faces goes over to the vertex's normal within the same
 /// distance of an end, at most half the edge: the same from both sides. Between, each edge counts
 /// by b / (1 - b), with b falling from 1 on the edge to 0 at the band's width: on an edge it alone
-/// counts, so bands may overlap and triangles may be smaller than the band.
+/// counts, so bands may overlap and triangles may be smaller than the band. With the smooth profile
+/// b and what goes over along an edge run by 3 t^2 - 2 t^3, whose slope vanishes at both ends: over
+/// an edge, round a vertex and where bands begin or overlap the turning rate is continuous, however
+/// different the triangles are.
 struct FixedBand {
   static constexpr std::string_view kName = "fixed_band";  ///< As scenes name it.
 
-  double width = 0;  ///< m, >= 0; 0 is Flat.
+  double width = 0;                              ///< m, >= 0; 0 is Flat.
+  BlendProfile profile = BlendProfile::kLinear;  ///< How it turns within the band.
 
   Eigen::Vector3d normal(const ContactMesh& mesh, const SmoothNormals& normals,
                          std::int32_t triangle, const Eigen::Vector3d& weights) const noexcept;
@@ -50,7 +55,8 @@ struct FixedBand {
 struct SizedBand {
   static constexpr std::string_view kName = "sized_band";  ///< As scenes name it.
 
-  double share = 1;  ///< 0 to 1; at 1 the bands meet in the middle.
+  double share = 1;                              ///< 0 to 1; at 1 the bands meet in the middle.
+  BlendProfile profile = BlendProfile::kLinear;  ///< How it turns within the band.
 
   Eigen::Vector3d normal(const ContactMesh& mesh, const SmoothNormals& normals,
                          std::int32_t triangle, const Eigen::Vector3d& weights) const noexcept;

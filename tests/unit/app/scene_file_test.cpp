@@ -85,6 +85,24 @@ TEST(SceneFile, NamesTheWayOfContactOrSaysWhichThereAre) {
       std::string::npos);
 }
 
+TEST(SceneFile, NamesTheProfileOfABandAndOfNothingElse) {
+  const auto with = [](const std::string& contact) {
+    return "  - {name: b, mesh: cgal:ball.off, stiffness: 1, contact: {" + contact + "}}\n";
+  };
+  const auto smooth = read(with("blending: sized_band, profile: smooth"), kWait);
+  ASSERT_TRUE(smooth.ok()) << smooth.error().message;
+  EXPECT_EQ(smooth->objects[0].contact.profile, render::BlendProfile::kSmooth);
+  EXPECT_FALSE(read(with("blending: sized_band"), kWait)->objects[0].contact.profile);
+  EXPECT_NE(mistake(with("blending: fixed_band, profile: round"), kWait)
+                .find("profile: expected linear or smooth, found \"round\""),
+            std::string::npos);
+  for (const char* other : {"profile: smooth", "blending: phong, profile: linear"}) {
+    EXPECT_NE(mistake(with(other), kWait).find("profile: says how the normal turns within a band"),
+              std::string::npos)
+        << other;
+  }
+}
+
 TEST(SceneFile, ReadsADentOrSaysWhatIsWrongWithIt) {
   const auto with = [](const std::string& dent) {
     return "  - {name: b, mesh: cgal:ball.off, stiffness: 1, body: {dent: {" + dent + "}}}\n";

@@ -3,22 +3,26 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <set>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
+#include "mesh/surface_weights.h"
 #include "studies/accuracy/accuracy_axis.h"
 #include "studies/accuracy/axis_words.h"
 #include "studies/accuracy/free_spin.h"
-#include "studies/accuracy/gating.h"
+#include "studies/accuracy/gating/gating.h"
 #include "studies/accuracy/guarded_wall.h"
 #include "studies/accuracy/held_motion.h"
 #include "studies/accuracy/measure_axis.h"
 #include "studies/accuracy/stiffest_wall.h"
+#include "studies/accuracy/straight_walk.h"
 #include "studies/accuracy/velocity_estimates.h"
 #include "studies/rate_bench.h"
-#include "thimble/scene/quality.h"
+#include "support/shapes.h"
 #include "thimble/session/histogram.h"
 
 namespace thimble::app {
@@ -159,6 +163,109 @@ double least_counted_on(double stiffness) {
   return none;
 }
 
+const AccuracyLine& line_named(const AccuracyAxis& axis, const std::string& name) {
+  return *std::find_if(axis.lines.begin(), axis.lines.end(),
+                       [&](const AccuracyLine& line) { return line.name == name; });
+}
+
+AccuracyAxis axis_named(std::string_view name) {
+  return std::find_if(accuracy_axes().begin(), accuracy_axes().end(),
+                      [&](const AxisMaker& maker) { return maker.name == name; })
+      ->make();
+}
+
+TEST(AccuracyAxes, MeasureTheCompactTrackerWhereverTrackersDiffer) {
+  for (const char* name :
+       {"tessellation", "tessellation_direction", "tessellation_jump", "tracking", "float"}) {
+    const AccuracyAxis axis = axis_named(name);
+    EXPECT_EQ(line_named(axis, "compact").points.size(), axis.lines.front().points.size()) << name;
+  }
+  // At the default size flat triangles are off by a fifth of the force, compact by a hundredth.
+  const AccuracyAxis force = axis_named("tessellation");
+  const auto error = [&](const char* line) { return line_named(force, line).points[4].error(); };
+  EXPECT_GT(error("flat"), 10);
+  EXPECT_LT(error("compact"), 1.5);
+}
+
+TEST(AccuracyAxes, ShadeDiagramsOfOneMeasureAtOneLimit) {
+  std::map<std::string, double> limits;
+  int shared = 0;
+  for (const AxisMaker& maker : accuracy_axes()) {
+    const AccuracyAxis axis = maker.make();
+    if (!axis.threshold) continue;
+    const auto [at, fresh] = limits.try_emplace(axis.metric + axis.unit, *axis.threshold);
+    shared += fresh ? 0 : 1;
+    EXPECT_EQ(at->second, *axis.threshold) << axis.name;
+  }
+  EXPECT_GE(shared, 5);
+}
+
+TEST(AccuracyAxes, CountNothingAsAChoiceThatTheArmBrings) {
+  for (const AxisMaker& maker : accuracy_axes()) {
+    const AccuracyAxis axis = maker.make();
+    const bool arms = axis.name.starts_with("encoder") || axis.name.starts_with("latency");
+    EXPECT_EQ(axis.given, arms) << axis.name;
+  }
+  AccuracyAxis axis = axis_named("encoder");
+  axis.lines.resize(1);
+  const MeasuredAxis measured = measure_axis(std::move(axis), {.rounds = 0, .count = false});
+  for (const MeasuredPoint& point : measured.lines[0].points) EXPECT_FALSE(point.on_front);
+  AccuracyAxis product = axis_named("encoder");
+  const MeasuredAxis whole = measure_axis(std::move(product), {.rounds = 0, .count = false});
+  EXPECT_EQ(default_sentence(whole).rfind("No choice of a program: the step comes with", 0), 0U);
+  for (const Figure& figure : figures_of(whole)) {
+    EXPECT_EQ(figure.name.find("default"), std::string::npos) << figure.name;
+  }
+}
+
+TEST(AccuracyAxes, TakeTheTwentiethBounceForTheSafetyStages) {
+  const AccuracyAxis axis = axis_named("safety");
+  for (std::size_t i = 1; i < 4; ++i) {  // 500 to 2,000 N/m
+    // Limits alone give speed for ever; the observer gives some in the first bounces only.
+    EXPECT_GT(line_named(axis, "none").points[i].error(), 2);
+    EXPECT_LT(line_named(axis, "passivity").points[i].error(),
+              line_named(axis, "none").points[i].error() / 4)
+        << i;
+  }
+}
+
+TEST(AccuracyAxes, ShowThatOnlyTheSmoothProfileTurnsAtAContinuousRate) {
+  const AccuracyAxis axis = axis_named("profile_rate");
+  const auto at = [&](const char* line, std::size_t i) {
+    return line_named(axis, line).points[i].error();
+  };
+  // Steps of 1 and of 30 um: what jumps keeps its jump.
+  EXPECT_NEAR(at("linear", 0) / at("linear", 3), 1, 0.3);
+  EXPECT_LT(at("smooth", 0), at("linear", 0) / 25);
+  EXPECT_LT(at("smooth", 0), at("smooth", 3) / 20);
+}
+
+TEST(StraightWalk, RoundABlockComesBackToWhereItBegan) {
+  const auto mesh = render::ContactMesh::build(support::box({0.005, 0.005, 0.005})).value();
+  for (std::int32_t t = 0; t < mesh.triangle_count(); ++t) {
+    const Eigen::Vector3d& n = mesh.cell(t).face.n;
+    for (const Eigen::Vector3d& direction :
+         {Eigen::Vector3d(n.y(), n.z(), n.x()), Eigen::Vector3d(-n.z(), -n.x(), -n.y())}) {
+      StraightWalk walk(mesh, t, direction);
+      const Eigen::Vector3d begin = render::point_at(mesh, t, walk.weights());
+      for (int side = 1; side <= 4; ++side) {
+        for (int step = 0; step < 10; ++step) {
+          walk.advance(0.001);
+          ASSERT_GE(walk.weights().minCoeff(), 0);
+        }
+        const Eigen::Vector3d here = render::point_at(mesh, walk.triangle(), walk.weights());
+        // Half-way round it stands opposite, on the other side of the block's middle.
+        if (side == 2) {
+          EXPECT_NEAR((begin - here).dot(n), 0.01, 1e-12) << t;
+        }
+        if (side == 4) {
+          EXPECT_LT((here - begin).norm(), 1e-12) << t;
+        }
+      }
+    }
+  }
+}
+
 TEST(VirtualCoupling, GivesNoSpeedUpToTheLimitItIsSizedByWhateverIsBehindIt) {
   for (const double stiffness : {250.0, 1000.0, 4000.0, 1e6}) {
     // The law asks for no more than the arm has, and wastes less than half.
@@ -252,32 +359,6 @@ TEST(MeasuredAxis, RunsWhatIsBesideAPointAsOftenAsThePoint) {
   measure_axis(std::move(axis), {.rounds = 7, .count = false});
   EXPECT_EQ(with, 8);  // once more, to read everything into the caches
   EXPECT_EQ(beside, 8);
-}
-
-TEST(Quality, LeavesANormalSceneAloneAndSaysWhatItChoosesElse) {
-  scene::Scene scene;
-  scene.objects.resize(2);
-  scene.objects[0].name = "round";
-  scene.objects[1].name = "soft";
-  scene.objects[1].body.dent.emplace();
-  EXPECT_TRUE(scene::apply_quality(scene::Quality::kNormal, scene).empty());
-  EXPECT_FALSE(scene.objects[0].contact.blending);
-  EXPECT_EQ(scene.objects[1].body.dent->rings, render::DentSettings{}.rings);
-
-  const auto said = scene::apply_quality(scene::quality_named("reference"), scene);
-  ASSERT_EQ(said.size(), 3U);
-  EXPECT_NE(said[0].find("round: Phong"), std::string::npos);
-  EXPECT_EQ(scene.objects[0].contact.blending, render::BlendingChoice::kPhong);
-  EXPECT_TRUE(scene.objects[0].contact.curved_depth.value_or(false));
-  EXPECT_EQ(scene.objects[1].body.dent->integrator, render::SpringScheme::kTrapezoid);
-  EXPECT_GE(scene.objects[1].body.dent->substeps, 8);
-
-  // What the scene names itself stays.
-  scene::Scene named;
-  named.objects.resize(1);
-  named.objects[0].contact.blending = render::BlendingChoice::kFixedBand;
-  scene::apply_quality(scene::Quality::kReference, named);
-  EXPECT_EQ(named.objects[0].contact.blending, render::BlendingChoice::kFixedBand);
 }
 
 TEST(RateBench, AnswersByTheLateOnesAndByWhatUnevenTicksCost) {

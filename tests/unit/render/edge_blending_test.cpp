@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "support/contact_walk.h"
@@ -29,8 +30,12 @@ struct Shaded {
 // Asks every shading, at widths from much less than a triangle to more than one.
 template <class Ask>
 void for_each_shading(double edge_length, Ask ask) {
-  for (const double share : {0.02, 0.1, 0.3, 1.0, 3.0}) ask(FixedBand{share * edge_length});
-  for (const double share : {0.1, 0.5, 1.0}) ask(SizedBand{share});
+  for (const BlendProfile profile : {BlendProfile::kLinear, BlendProfile::kSmooth}) {
+    for (const double share : {0.02, 0.1, 0.3, 1.0, 3.0}) {
+      ask(FixedBand{share * edge_length, profile});
+    }
+    for (const double share : {0.1, 0.5, 1.0}) ask(SizedBand{share, profile});
+  }
   ask(Phong{});
 }
 
@@ -110,6 +115,110 @@ TEST(EdgeBlending, ChangesWithinATriangleByNoMoreThanItsBandAllows) {
       ASSERT_LE((to - from).norm(), 4 * 0.15 * path / width + 1e-14);
     }
   }
+}
+
+// A change of weights, of sum 0.
+Vector3d change_of(std::size_t corner, double at_corner, double at_next) {
+  Vector3d change = weights_of(corner, at_corner, at_next);
+  change[static_cast<Eigen::Index>((corner + 2) % 3)] -= 1;
+  return change;
+}
+
+// How far the normal turns per metre just before a place less how far just after it, rad/m: a
+// second difference over the length of one step. `turn` is a change of weights.
+template <class Shading>
+double rate_jump(const Shaded& on, const Shading& shading, std::int32_t t, const Vector3d& weights,
+                 const Vector3d& turn) {
+  const auto at = [&](const Vector3d& w) { return shading.normal(on.mesh, on.normals, t, w); };
+  const double step = (turn[0] * on.mesh.position(t, 0) + turn[1] * on.mesh.position(t, 1) +
+                       turn[2] * on.mesh.position(t, 2))
+                          .norm();
+  return (at(weights + turn) - 2 * at(weights) + at(weights - turn)).norm() / step;
+}
+
+TEST(EdgeBlending, TurnsAtAContinuousRateWithinATriangleIfTheProfileIsSmooth) {
+  support::Random random(5);
+  const Shaded on(support::icosphere(2, 0.05));
+  double linear = 0, smooth = 0;
+  // Places where a rate may jump: at the end of a band beside each edge, half-way along an edge and
+  // anywhere. Triangles are 7 to 8 mm wide.
+  for (std::int32_t t = 0; t < on.mesh.triangle_count(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vector3d edge = on.mesh.position(t, (k + 1) % 3) - on.mesh.position(t, k);
+      const Vector3d side = on.mesh.position(t, (k + 2) % 3) - on.mesh.position(t, k);
+      const double end = 0.001 / (edge.cross(side).norm() / edge.norm());
+      const double along = random.uniform(0.3, 0.7);
+      const Vector3d out = change_of(k, -5e-6, -5e-6);
+      const auto ask = [&](const auto& shading, const Vector3d& weights, const Vector3d& turn) {
+        double& worst = shading.profile == BlendProfile::kSmooth ? smooth : linear;
+        worst = std::max(worst, rate_jump(on, shading, t, weights, turn));
+      };
+      const double rest = 1 - end;
+      const Vector3d anywhere = weights_of(k, random.uniform(0.1, 0.4), random.uniform(0.1, 0.4));
+      for (const BlendProfile profile : {BlendProfile::kLinear, BlendProfile::kSmooth}) {
+        ask(FixedBand{0.001, profile}, weights_of(k, rest * along, rest * (1 - along)), out);
+        ask(SizedBand{1, profile}, weights_of(k, 0.5, 0.5), change_of(k, 1e-5, -1e-5));
+        ask(SizedBand{1, profile}, anywhere, out);
+      }
+    }
+  }
+  // Steps of some 0.1 um: what is continuous changes by its slope, at most 1 rad / mm^2 here.
+  EXPECT_LT(smooth, 1e6 * 2e-7);
+  EXPECT_GT(linear, 50);  // 0.1 rad within a band of 1 mm, or none
+}
+
+TEST(EdgeBlending, TurnsAtTheSameRateOnBothSidesOfAnEdgeIfTheProfileIsSmooth) {
+  support::Random random(6);
+  // Triangles of different sizes on both sides of an edge.
+  const Shaded on(support::torus(0.05, 0.02, 24, 10));
+  double linear = 0, smooth = 0;
+  for (std::int32_t t = 0; t < on.mesh.triangle_count(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double along = random.uniform(0.05, 0.95);
+      const Vector3d edge = on.mesh.position(t, (k + 1) % 3) - on.mesh.position(t, k);
+      const Vector3d side = on.mesh.position(t, (k + 2) % 3) - on.mesh.position(t, k);
+      const double height = edge.cross(side).norm() / edge.norm();
+      const double foot = side.dot(edge) / edge.squaredNorm();
+      const double up = 1e-7 / height;
+      // Straight away from the edge, by 0.1 um.
+      const Vector3d away = weights_of(k, 1 - along - up * (1 - foot), along - up * foot);
+      for (const BlendProfile profile : {BlendProfile::kLinear, BlendProfile::kSmooth}) {
+        for (const double width : {0.0005, 0.002, 0.02}) {
+          const FixedBand shading{width, profile};
+          const double rate =
+              (shading.normal(on.mesh, on.normals, t, away) -
+               shading.normal(on.mesh, on.normals, t, weights_of(k, 1 - along, along)))
+                  .norm() /
+              1e-7;
+          double& worst = profile == BlendProfile::kSmooth ? smooth : linear;
+          worst = std::max(worst, rate);
+        }
+      }
+    }
+  }
+  // It comes to a rest on every edge, so it is the same there from both sides.
+  EXPECT_LT(smooth, 1);
+  EXPECT_GT(linear, 100);
+}
+
+TEST(EdgeBlending, SmoothAndLinearProfilesAreTheSameOnEdgesAtVerticesAndInTheMiddle) {
+  const Shaded on(support::icosphere(1, 0.05));
+  const FixedBand linear{0.003}, smooth{0.003, BlendProfile::kSmooth};
+  double apart = 0;
+  for (std::int32_t t = 0; t < on.mesh.triangle_count(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (const Vector3d& weights :
+           {weights_of(k, 0.5, 0.5), weights_of(k, 1, 0), Vector3d(Vector3d::Constant(1.0 / 3))}) {
+        EXPECT_EQ(linear.normal(on.mesh, on.normals, t, weights),
+                  smooth.normal(on.mesh, on.normals, t, weights));
+      }
+      const Vector3d between = weights_of(k, 0.485, 0.485);
+      apart = std::max(apart, (linear.normal(on.mesh, on.normals, t, between) -
+                               smooth.normal(on.mesh, on.normals, t, between))
+                                  .norm());
+    }
+  }
+  EXPECT_GT(apart, 0.005);
 }
 
 TEST(EdgeBlending, FollowsTheFourPointRuleOfThePaper) {

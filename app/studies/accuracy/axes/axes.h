@@ -4,12 +4,19 @@
 
 namespace thimble::app {
 
+/// How far a wall gives that is felt as rigid (24 N/mm), mm/N: below it no hand tells one from
+/// another, so every diagram of the stiffest wall is shaded there [STABILITY 6, after Tan et al.].
+inline constexpr double kRigidGive = 1 / 24.0;
+inline constexpr const char* kRigidWords = "the give of a wall that is felt as rigid (24 N/mm)";
+
 // One function per axis; each makes it, measuring nothing yet. Real-time: never from the servo
 // thread.
 
 AccuracyAxis tessellation_axis();
 AccuracyAxis tessellation_direction_axis();
 AccuracyAxis tessellation_jump_axis();
+AccuracyAxis profile_axis();
+AccuracyAxis profile_rate_axis();
 AccuracyAxis deformable_axis();
 AccuracyAxis modes_axis();
 AccuracyAxis rings_axis();

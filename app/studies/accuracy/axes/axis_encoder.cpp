@@ -67,7 +67,8 @@ AccuracyAxis encoder_axis() {
   axis.threshold = 20;
   axis.threshold_words = "the smallest force that is felt (20 mN)";
   axis.over_cost = false;
-  axis.default_words = "The step is the arm's: it is bought and not chosen.";
+  axis.given = true;
+  axis.default_words = "the step comes with the encoders.";
   axis.left_out =
       "The error over the cost: a tick costs the same whatever the step. How stiff a wall the "
       "steps "
@@ -113,7 +114,8 @@ AccuracyAxis encoder_friction_axis() {
   axis.threshold = 20;
   axis.threshold_words = "the smallest force that is felt (20 mN)";
   axis.over_cost = false;
-  axis.default_words = "The step is the arm's: it is bought and not chosen.";
+  axis.given = true;
+  axis.default_words = "the step comes with the encoders.";
   axis.left_out = "The error over the cost: a tick costs the same whatever the step.";
   for (const FrictionCase& which : friction_cases()) {
     if (which.name != "naive_hold" && which.name != "paper_velocity" && which.name != "bristle") {

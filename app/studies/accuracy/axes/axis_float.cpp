@@ -101,7 +101,7 @@ AccuracyAxis float_axis() {
                               },
                           .prepare = [=] { return ring_work(ring_at(tracker, place)); }};
       point.ticks = kRingTicks;
-      point.is_default = tracker == TrackerChoice::kEdgePlanes && place == 0.1;
+      point.is_default = tracker == render::ContactChoice{}.tracker && place == 0.1;
       line.points.push_back(std::move(point));
     }
     axis.lines.push_back(std::move(line));

@@ -101,10 +101,10 @@ AccuracyAxis axis_of(Felt felt) {
   axis.knob = "latency L = E[T^2] / 2 E[T] + delay";
   axis.knob_unit = "ms";
   axis.over_cost = false;
+  axis.given = true;
   axis.default_words =
-      "One frame of delay is what a full-speed USB arm costs, whatever the program does: one "
-      "transfer "
-      "in and one out per frame. It is not the program's choice.";
+      "one frame of delay is what a full-speed USB arm costs, whatever the program does: one "
+      "transfer in and one out per frame.";
   axis.left_out =
       "The error over the cost: delay and jitter are simulated at the same price whatever they "
       "are. "
@@ -138,8 +138,8 @@ AccuracyAxis latency_stiffness_axis() {
   axis.truth =
       "A wall in continuous time, which may be as stiff as wanted. Beside it the law "
       "K = (b / L) u / sin u, u tan u = b L / m, for a hand of 3 N s/m.";
-  axis.threshold = 1 / 24.0;  // [STABILITY 6, after Tan et al. 1994]
-  axis.threshold_words = "the give of a wall that is felt as rigid (24 N/mm)";
+  axis.threshold = kRigidGive;
+  axis.threshold_words = kRigidWords;
   return axis;
 }
 

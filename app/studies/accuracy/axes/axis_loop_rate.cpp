@@ -98,8 +98,8 @@ AccuracyAxis loop_rate_stiffness_axis() {
   axis.truth =
       "A wall in continuous time, which may be as stiff as wanted. Beside it the law "
       "K = (b / L) u / sin u, u tan u = b L / m, with L half a tick and the delay.";
-  axis.threshold = 1 / 24.0;  // [STABILITY 6, after Tan et al. 1994]
-  axis.threshold_words = "the give of a wall that is felt as rigid (24 N/mm)";
+  axis.threshold = kRigidGive;
+  axis.threshold_words = kRigidWords;
   axis.default_words =
       "1 kHz is what full-speed USB carries and what textbooks ask for; it renders 6 N/mm in a "
       "hand, which is felt as hard (0.8 N/mm) but not as rigid.";

@@ -18,24 +18,41 @@ using driver::EnergyStage;
 constexpr double kTick = GuardedArm::kTick;
 constexpr double kSpeed = 0.2;  // m/s, of the impact
 constexpr double kStep = 3e-5;  // m, of the encoder [STABILITY, heading]
+constexpr double kPull = 1;     // N, towards the wall [STABILITY 1.6]
+constexpr int kBounces = 20;
+constexpr int kBouncingTicks = 40000;
 constexpr int kPhases = 40;
 constexpr int kWorkTicks = 4000;
 constexpr double kStiffnesses[] = {250, 500, 1000, 2000, 4000};  // N/m
 constexpr double kUsual = 1000;                                  // N/m
 
-// The speed that a free mass gains in a bounce, in percent; 0 if it loses some.
+// The speed that an arm which a hand's pull brings back gains in its 20th bounce, in percent; 0 if
+// it loses some, or does not leave the wall any more. A budget of energy lets the first bounces
+// through, so the 20th tells what goes on for ever.
 double gained(const WallGuard& guard, double stiffness) {
   double sum = 0;
   for (int phase = 0; phase < kPhases; ++phase) {
     GuardedWall wall(guard, stiffness);
     // Depth and its rate; two free ticks first.
     LineMotion now{-kSpeed * kTick * (1 + (phase + 0.5) / kPhases), kSpeed};
-    for (int i = 0; i < 20000 && !(now.x < 0 && now.v < 0); ++i) {
-      now = moved_by_held_force(now, GuardedArm::kMass, GuardedArm::kViscous, -wall.force(now.x),
-                                kTick);
-      if (!(std::abs(now.x) < 1)) return NAN;
+    double in = kSpeed;
+    double last = 1;  // speed out over speed in, of the last bounce
+    int bounces = 0;
+    for (int i = 0; i < kBouncingTicks && bounces < kBounces; ++i) {
+      const LineMotion before = now;
+      now = moved_by_held_force(now, GuardedArm::kMass, GuardedArm::kViscous,
+                                kPull - wall.force(now.x), kTick);
+      if (!(std::abs(now.x) < 1e3)) return NAN;
+      // By energy, what the pull does between the tick and the surface is not the wall's.
+      const double at_surface =
+          std::sqrt(std::max(now.v * now.v - 2 * kPull / GuardedArm::kMass * now.x, 0.0));
+      if (before.x <= 0 && now.x > 0) in = at_surface;
+      if (before.x > 0 && now.x <= 0) {
+        last = in > 0 ? at_surface / in : 1;
+        ++bounces;
+      }
     }
-    sum += -now.v / kSpeed;
+    sum += bounces < kBounces ? 1 : last;
   }
   return std::max(100 * (sum / kPhases - 1), 0.0);
 }
@@ -114,15 +131,14 @@ AccuracyAxis axis_of(double (*error)(const WallGuard&, double)) {
     axis.lines.push_back(std::move(line));
   }
   axis.default_words =
-      "What is shipped lets 2 mJ out before it acts, so a single bounce gains as much as without "
-      "it; "
-      "what it ends is the arm that gains at every bounce, and in return nothing is felt of it. At "
-      "once it would stop the first bounce too, and jolt by half a newton with the encoder's "
-      "steps. "
-      "The bound stops it as well, but is felt as a wall of a hundredth of the stiffness, and so "
-      "is "
-      "a virtual coupling that counts on no hand; one that does gives speed back without it, and "
-      "softens stiff walls.";
+      "What is shipped lets 2 mJ out before it acts, so the first bounces gain as much as without "
+      "it; what it ends is the arm that gains at every bounce, and in return nothing is felt of "
+      "it. "
+      "At once it would stop the first bounce too, and jolt by half a newton with the encoder's "
+      "steps. The bound gives nothing at any stiffness, but is felt as a wall of a hundredth of "
+      "it, "
+      "and so is a virtual coupling that counts on no hand; one that does gives speed back without "
+      "it, and softens stiff walls.";
   return axis;
 }
 
@@ -131,15 +147,16 @@ AccuracyAxis axis_of(double (*error)(const WallGuard&, double)) {
 AccuracyAxis safety_axis() {
   AccuracyAxis axis = axis_of(gained);
   axis.name = "safety";
-  axis.title = "Energy stages of the safety gate: speed that a wall gives a free arm at 1 kHz";
-  axis.metric = "speed gained by a bounce";
+  axis.title =
+      "Energy stages of the safety gate: speed that a wall of 1 kHz gives in the 20th bounce";
+  axis.metric = "speed gained in the 20th bounce";
   axis.truth = "A passive wall, which gives none: e <= 1.";
   axis.threshold = 3.5;
   axis.threshold_words = "half the change of impact that is felt (3.5 %)";
   axis.left_out =
       "The error over the cost: that is the guard's alone, whatever the stiffness (see the "
-      "figures). "
-      "Bounce after bounce, and loops with delay, which tests of the whole way look at.";
+      "figures). The first bounces, which an allowance of energy lets through; loops with delay, "
+      "which tests of the whole way look at.";
   return axis;
 }
 

@@ -85,9 +85,8 @@ AccuracyAxis search_axis() {
   axis.over_knob = false;
   axis.cost_over_knob = true;
   axis.default_words =
-      "Cheaper are smaller meshes alone, and on this one the tree is as good: the grid is chosen "
-      "up to "
-      "30,000 triangles that lie evenly, a tree beyond.";
+      "Cheaper are smaller meshes alone, and on this one the grid is as good: it is chosen below "
+      "4,000 triangles that lie evenly, a tree from there on.";
   axis.left_out =
       "The error, because there is none: all searches give the same answers, ties included. While "
       "the "
@@ -104,7 +103,7 @@ AccuracyAxis search_axis() {
                           .error = [=] { return error_of(across, choice); },
                           .prepare = [=] { return work_of(across, choice); }};
       point.ticks = kQuestions;
-      point.is_default = choice == SearchChoice::kGrid && across == kDefaultAcross;
+      point.is_default = choice == SearchChoice::kTree && across == kDefaultAcross;
       line.points.push_back(std::move(point));
     }
     axis.lines.push_back(std::move(line));

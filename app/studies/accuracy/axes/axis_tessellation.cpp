@@ -1,5 +1,6 @@
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -10,6 +11,7 @@ namespace thimble::app {
 namespace {
 
 using render::BlendingChoice;
+using render::TrackerChoice;
 
 constexpr int kAcross[] = {8, 12, 16, 24, 32, 48, 64};
 // Coarser ones are not touched at all in places, and a force that is not there has no direction.
@@ -21,8 +23,9 @@ constexpr int kFitsFrom = 24;
 struct Way {
   const char* name;
   const char* title;
-  BlendingChoice blending;
-  bool curved;
+  TrackerChoice tracker;
+  std::optional<BlendingChoice> blending;
+  std::optional<bool> curved;
   double force_order;  // 0: none is asked for
   double direction_order;
 };
@@ -32,14 +35,24 @@ struct Way {
 // the smooth surface is better than that where triangles are alike: no order is asked of either.
 // Nor of the 99th percentile of smooth directions, in which few places count.
 constexpr Way kWays[] = {
-    {"flat", "flat", BlendingChoice::kFlat, false, 0, 1},
-    {"band", "blended band", BlendingChoice::kSizedBand, false, 2, 0},
-    {"phong", "Phong", BlendingChoice::kPhong, false, 2, 0},
-    {"curved", "Phong, curved depth", BlendingChoice::kPhong, true, 0, 0},
+    {"flat", "flat", TrackerChoice::kEdgePlanes, BlendingChoice::kFlat, false, 0, 1},
+    {"band", "blended band", TrackerChoice::kEdgePlanes, BlendingChoice::kSizedBand, false, 2, 0},
+    {"phong", "Phong", TrackerChoice::kEdgePlanes, BlendingChoice::kPhong, false, 2, 0},
+    {"curved", "Phong, curved depth", TrackerChoice::kEdgePlanes, BlendingChoice::kPhong, true, 0,
+     0},
+    {"offset", "offset", TrackerChoice::kOffset, {}, {}, 0, 0},
+    {"compact", "compact", TrackerChoice::kPacked, {}, {}, 0, 0},
 };
+
+// What a scene gets that names nothing: each tracker's first line is as it is without blending.
+bool is_product_default(const Way& way) {
+  return way.tracker == render::ContactChoice{}.tracker &&
+         way.blending.value_or(BlendingChoice::kFlat) == BlendingChoice::kFlat;
+}
 
 RingTouch ring_of(const Way& way, int across) {
   RingTouch ring;
+  ring.choice.tracker = way.tracker;
   ring.choice.blending = way.blending;
   ring.choice.curved_depth = way.curved;
   ring.across = across;
@@ -78,7 +91,7 @@ AccuracyAxis axis_of(Wrong wrong) {
         return angle * 180 / std::numbers::pi;
       };
       point.ticks = kRingTicks;
-      point.is_default = way.blending == BlendingChoice::kFlat && across == kDefaultAcross;
+      point.is_default = is_product_default(way) && across == kDefaultAcross;
       point.fits = across >= kFitsFrom;
       line.points.push_back(std::move(point));
     }
@@ -98,8 +111,9 @@ AccuracyAxis tessellation_axis() {
   axis.threshold = 3.5;  // half of 7 % [STABILITY 6, after Pang, Tan, Durlach 1991]
   axis.threshold_words = "half the change of force that is felt (3.5 %)";
   axis.left_out =
-      "One shape alone, the ring, because its truth is exact on hollow and round sides; the "
-      "trackers' differences are in `thimble study cost`.";
+      "One shape alone, the ring, because its truth is exact on hollow and round sides; sharp "
+      "edges "
+      "and deep presses, which tell trackers apart.";
   return axis;
 }
 

@@ -186,7 +186,7 @@ AccuracyAxis tracking_axis() {
                           .prepare = [=] { return work_of(choice, speed, true); },
                           .beside = [=] { return work_of(choice, speed, false); }};
       point.ticks = kRepeats;
-      point.is_default = choice.tracker == TrackerChoice::kEdgePlanes && speed == kUsualSpeed;
+      point.is_default = choice.tracker == render::ContactChoice{}.tracker && speed == kUsualSpeed;
       line.points.push_back(std::move(point));
     }
     axis.lines.push_back(std::move(line));

@@ -140,8 +140,8 @@ AccuracyAxis velocity_stiffness_axis() {
   axis.truth =
       "A wall in continuous time, which may be as stiff as wanted: what is left is half a tick and "
       "what the estimate lags.";
-  axis.threshold = 1 / 0.8;  // [STABILITY 6, after Choi and Tan 2004]
-  axis.threshold_words = "the give of a wall that is felt as hard (0.8 N/mm)";
+  axis.threshold = kRigidGive;
+  axis.threshold_words = kRigidWords;
   axis.default_words =
       "The difference alone lags less, with more than twice the quantisation noise (diagram "
       "before); "

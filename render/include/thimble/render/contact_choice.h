@@ -6,6 +6,7 @@
 
 #include "thimble/render/mesh/normal_weights.h"
 #include "thimble/render/search/search_choice.h"
+#include "thimble/render/track/blend_profile.h"
 
 namespace thimble::render {
 
@@ -31,6 +32,9 @@ enum class BlendingChoice { kFlat, kFixedBand, kSizedBand, kPhong };
 inline constexpr std::array<std::string_view, 4> kBlendingNames{"flat", "fixed_band", "sized_band",
                                                                 "phong"};
 
+/// Names what BlendProfile says.
+inline constexpr std::array<std::string_view, 2> kProfileNames{"linear", "smooth"};
+
 /// Names what NormalWeights says.
 inline constexpr std::array<std::string_view, 3> kNormalNames{"angle", "round", "fitted"};
 
@@ -46,6 +50,8 @@ struct ContactChoice {
   std::optional<bool> curved_depth = {};
   std::optional<double> crease_angle = {};  ///< Edges sharper than this stay sharp, rad.
   double band = 0.001;                      ///< Width of the band of `fixed_band`, m.
+  /// How the normal turns within a band; linear if empty. With `fixed_band` and `sized_band` only.
+  std::optional<BlendProfile> profile = {};
 };
 
 }  // namespace thimble::render

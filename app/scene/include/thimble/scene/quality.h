@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,14 +16,25 @@ enum class Quality {
   kDraft,      ///< The cheapest that still behaves: for looking whether a scene works at all.
   kNormal,     ///< As the scene says.
   kReference,  ///< Beyond what can be felt, whatever it costs.
+  kAuto,       ///< The cheapest below what can be felt, or the truest within a budget.
 };
 
-/// Returns the quality of a name; kNormal if there is none of that name.
-Quality quality_named(std::string_view name);
+/// The names of Quality, as a user spells them.
+inline constexpr std::array<std::string_view, 4> kQualityNames{"draft", "normal", "reference",
+                                                               "auto"};
+
+/// Returns the quality of a name; empty if there is none of that name.
+std::optional<Quality> quality_named(std::string_view name);
+
+/// Returns the rate of the loop that a quality asks for, over the scene's own (SceneReading).
+double rate_factor_of(Quality quality);
 
 /// Puts a scene on the points of a quality. Returns each choice, and why, in a sentence.
 /// `kNormal` changes nothing. What a scene names itself (a blending, a tracker) stays as it is.
-/// Real-time: never from the servo thread.
-std::vector<std::string> apply_quality(Quality quality, Scene& scene);
+/// `budget`: ns per tick for all objects on the machine of the stored diagrams (quality_table.h),
+/// of kAuto alone; empty: as cheap as cannot be felt. The loop's rate is chosen when a scene is
+/// read. Real-time: never from the servo thread.
+std::vector<std::string> apply_quality(Quality quality, Scene& scene,
+                                       std::optional<double> budget = {});
 
 }  // namespace thimble::scene

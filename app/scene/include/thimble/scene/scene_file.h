@@ -52,6 +52,7 @@ struct SceneObject {
   double stiffness = 0;                     ///< N/m
   double damping = 0;                       ///< N s/m
   render::ContactChoice contact;            ///< How the surface is found, followed and felt.
+  bool tracker_named = false;               ///< Whether the scene says how it is followed.
   std::vector<render::EffectPlan> effects;  ///< What is put on it, as a tick runs them.
   SceneBody body;                           ///< Its material.
   render::BodyCoupling coupling;            ///< How stiff its surface answers, if it moves.
@@ -67,6 +68,7 @@ struct Scene {
       own_arm_file;        ///< What the scene itself names; used for the simulation alone.
   ArmFile arm;             ///< The arm that touches.
   double rate = 1000;      ///< Ticks per second, Hz.
+  double rate_factor = 1;  ///< Of that, over what the scene's file says.
   double duration = 0;     ///< s
   std::uint64_t seed = 0;  ///< Of everything random in the simulation.
   std::optional<driver::EnergyStage> energy;  ///< In place of the arm's own, if named.
@@ -80,6 +82,10 @@ struct SceneReading {
   std::filesystem::path
       arm{};  ///< Arm file, by name or path, in place of the scene's; empty: its own.
   std::filesystem::path mesh_folder = scene::mesh_folder();  ///< Where meshes `cgal:NAME` lie.
+  /// The loop's rate over what the file says, > 0. Above 1 the simulated board reports as often.
+  /// Below 1 only where the scene bears it: every stiffness at most half of what the law of the
+  /// latency lets this arm and hand hold [STABILITY 1.1], and no setting refused at that rate.
+  double rate_factor = 1;
 };
 
 /// Reads the scene that a person means: a name ("elephant") or a path, as `find_scene` finds it;

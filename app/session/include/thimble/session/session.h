@@ -64,6 +64,8 @@ struct SessionOptions {
   /// A viewer leads the simulated hand; the run ends when it is asked to.
   bool hand_by_mouse = false;
   std::string share_name = {};  ///< under which; empty: the scene's, with a number if it is taken
+  double rate_factor = 1;  ///< of the loop, over the scene's (scene::SceneReading); not with a real
+                           ///< arm, which has its own
   /// Changes the scene before anything is built of it.
   std::function<void(scene::Scene&)> adjust = {};
   bool log = false;    ///< what happens in the run goes into the log

@@ -1,6 +1,10 @@
 #include "thimble/scene/quality.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
+
+#include "quality/quality_auto.h"
 
 namespace thimble::scene {
 namespace {
@@ -17,21 +21,15 @@ constexpr int kReferenceRings = 6;
 constexpr int kReferenceSubsteps = 8;
 constexpr double kReferenceRemainder = 1e-5;
 
-bool is_mesh(const SceneObject& object) {
-  return !object.paged && !object.shape && !object.build_field;
-}
-
-// Whether the scene left open how the surface is felt, and the tracker leaves a choice.
-bool is_open(const SceneObject& object) {
-  return is_mesh(object) && !object.body.dent && !object.contact.blending &&
-         !object.contact.curved_depth &&
-         (object.contact.tracker == TrackerChoice::kEdgePlanes ||
-          object.contact.tracker == TrackerChoice::kOffset);
-}
+// Of the loop, over the scene's rate: half the ticks, and a loop at which a wall of 800 N/m gives
+// a free arm less than can be felt (axis loop_rate).
+constexpr double kDraftRate = 0.5;
+constexpr double kReferenceRate = 4;
 
 std::string draft(SceneObject& object) {
   std::string text;
-  if (is_open(object) && object.contact.tracker != TrackerChoice::kEdgePlanes) {
+  if (leaves_surface_open(object) && !object.tracker_named &&
+      object.contact.tracker != TrackerChoice::kEdgePlanes) {
     object.contact.tracker = TrackerChoice::kEdgePlanes;
     text += " flat triangles followed by edge planes, the cheapest contact;";
   }
@@ -44,7 +42,7 @@ std::string draft(SceneObject& object) {
 
 std::string reference(SceneObject& object) {
   std::string text;
-  if (is_open(object)) {
+  if (leaves_surface_open(object) && object.contact.tracker == TrackerChoice::kEdgePlanes) {
     object.contact.blending = BlendingChoice::kPhong;
     text += " Phong normals (edges sharper than the crease angle stay sharp),";
     if (object.body.shape.named()) {
@@ -66,27 +64,48 @@ std::string reference(SceneObject& object) {
   return text;
 }
 
-}  // namespace
-
-Quality quality_named(std::string_view name) {
-  if (name == "draft") return Quality::kDraft;
-  return name == "reference" ? Quality::kReference : Quality::kNormal;
+std::string rate_sentence(Quality quality, const Scene& scene) {
+  if (scene.rate_factor == 1) {
+    return quality == Quality::kDraft
+               ? "The loop's rate stays as the scene says: it is a real arm's, or half of it would "
+                 "not hold these surfaces well."
+               : "The loop's rate stays as the scene says: it is the real arm's.";
+  }
+  return fmt::format(
+      "The loop runs at {:g} Hz, {:g} times what the scene says{}; frictions stay as it says.",
+      scene.rate, scene.rate_factor,
+      scene.rate_factor < 1 ? ", which these surfaces bear: half the work per second"
+                            : ", and the simulated board with it, so that a tick's time is felt as "
+                              "little as can be");
 }
 
-std::vector<std::string> apply_quality(Quality quality, Scene& scene) {
+}  // namespace
+
+std::optional<Quality> quality_named(std::string_view name) {
+  const auto* at = std::find(kQualityNames.begin(), kQualityNames.end(), name);
+  if (at == kQualityNames.end()) return {};
+  return static_cast<Quality>(at - kQualityNames.begin());
+}
+
+double rate_factor_of(Quality quality) {
+  if (quality == Quality::kDraft) return kDraftRate;
+  return quality == Quality::kReference ? kReferenceRate : 1;
+}
+
+std::vector<std::string> apply_quality(Quality quality, Scene& scene,
+                                       std::optional<double> budget) {
   if (quality == Quality::kNormal) return {};
+  if (quality == Quality::kAuto) return choose_quality(scene, budget);
   std::vector<std::string> said;
   for (SceneObject& object : scene.objects) {
     std::string text = quality == Quality::kDraft ? draft(object) : reference(object);
     if (text.empty()) {
-      text = " as the scene says: nothing to choose;";
+      text = " as the scene says;";
     }
     text.back() = '.';
     said.push_back(object.name + ":" + text);
   }
-  said.push_back(
-      "The loop's rate and the frictions stay as the scene says: the rate is the arm's, and a "
-      "bristle is below what is felt at the price of the others.");
+  said.push_back(rate_sentence(quality, scene));
   return said;
 }
 

@@ -1,4 +1,4 @@
-#include "studies/accuracy/gating.h"
+#include "studies/accuracy/gating/gating.h"
 #include "setup.h"
 
 #include <algorithm>

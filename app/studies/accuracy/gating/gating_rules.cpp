@@ -1,4 +1,4 @@
-#include "studies/accuracy/gating_rules.h"
+#include "studies/accuracy/gating/gating_rules.h"
 
 #include <fmt/core.h>
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "report/figure.h"
-#include "studies/accuracy/gating_rules.h"
+#include "studies/accuracy/gating/gating_rules.h"
 #include "thimble/driver/result.h"
 
 namespace thimble::app {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "studies/accuracy/axis_words.h"
-#include "studies/accuracy/gating.h"
+#include "studies/accuracy/gating/gating.h"
 
 namespace thimble::app {
 

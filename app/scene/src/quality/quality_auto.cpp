@@ -1,0 +1,237 @@
+#include "quality/quality_auto.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include "mesh/repair/orient_mesh.h"
+#include "place_mesh.h"
+#include "quality/quality_table.h"
+#include "thimble/render/mesh/load_mesh.h"
+
+namespace thimble::scene {
+namespace {
+
+using render::BlendingChoice;
+using render::TrackerChoice;
+
+constexpr double kBeyond = 1.05;  // of the coarsest mesh in the table, from which on it is told
+
+/// One point that a knob of an object can be put on.
+struct Candidate {
+  double error = 0;  // over what can be felt
+  double ns = 0;
+  std::string words;
+  std::function<void(SceneObject&)> choose;
+};
+
+/// One knob of an object, with the points on its diagram.
+struct Knob {
+  std::size_t object = 0;
+  std::string where;  // said after the point: on what it was judged
+  std::vector<Candidate> candidates;
+};
+
+// Between two measured finenesses an error goes by a power of the turn; beyond both ends as at the
+// nearer one.
+double between(double x, const ContactPoint& a, const ContactPoint& b, double of_a, double of_b) {
+  if (!(of_a > 0 && of_b > 0)) return of_a;
+  const double share = std::clamp(std::log(x / a.turn) / std::log(b.turn / a.turn), 0.0, 1.0);
+  return std::exp((1 - share) * std::log(of_a) + share * std::log(of_b));
+}
+
+std::string words_of(const ContactPoint& point) {
+  std::string text(render::kTrackerNames[static_cast<std::size_t>(point.tracker)]);
+  if (point.blending) {
+    text.append(", ").append(render::kBlendingNames[static_cast<std::size_t>(*point.blending)]);
+  }
+  if (point.curved_depth.value_or(false)) text.append(", curved depth");
+  return text;
+}
+
+// What this surface can be felt by, for a mesh whose edges turn by `turn`. The table holds the
+// points of a way one after another, from coarse to fine.
+std::vector<Candidate> contacts_for(const SceneObject& object, double turn) {
+  std::vector<Candidate> all;
+  const auto points = quality_table().contacts;
+  const auto same_way = [](const ContactPoint& a, const ContactPoint& b) {
+    return a.tracker == b.tracker && a.blending == b.blending && a.curved_depth == b.curved_depth;
+  };
+  for (std::size_t begin = 0, end = 0; begin < points.size(); begin = end) {
+    end = begin + 1;
+    while (end < points.size() && same_way(points[begin], points[end])) ++end;
+    const ContactPoint& way = points[begin];
+    if (object.tracker_named && way.tracker != object.contact.tracker) continue;
+    // A surface that changes its shape has neither records nor a depth below triangles.
+    if (object.body.shape.named() &&
+        (way.tracker != TrackerChoice::kEdgePlanes || way.curved_depth.value_or(false) ||
+         way.blending == BlendingChoice::kSizedBand)) {
+      continue;
+    }
+    std::size_t k = begin;
+    while (k + 2 < end && turn < points[k + 1].turn) ++k;
+    const ContactPoint &a = points[k], &b = points[std::min(k + 1, end - 1)];
+    const double error = turn > 0 ? between(turn, a, b, a.error, b.error) : 0;
+    const double ns = turn > 0 ? between(turn, a, b, a.ns, b.ns) : points[end - 1].ns;
+    all.push_back({error, ns, words_of(way), [&way](SceneObject& chosen) {
+                     chosen.contact.tracker = way.tracker;
+                     chosen.contact.blending = way.blending;
+                     chosen.contact.curved_depth = way.curved_depth;
+                   }});
+  }
+  return all;
+}
+
+std::vector<Candidate> dents_for(const SceneObject& object) {
+  std::vector<Candidate> all;
+  const bool whole = object.body.dent->whole;
+  for (const RingsPoint& patch : quality_table().rings) {
+    // All vertices of a whole body move, however many rings are asked for.
+    if (whole && patch.rings != quality_table().rings.back().rings) continue;
+    for (const StepsPoint& steps : quality_table().steps) {
+      std::string words = fmt::format("{} in {} step{} per tick", render::name_of(steps.integrator),
+                                      steps.substeps, steps.substeps == 1 ? "" : "s");
+      if (!whole) {
+        words =
+            fmt::format("a dent of {} ring{}, {}", patch.rings, patch.rings == 1 ? "" : "s", words);
+      }
+      all.push_back({std::max(whole ? 0 : patch.error, steps.error), patch.ns * steps.cost,
+                     std::move(words), [patch, steps](SceneObject& chosen) {
+                       auto& dent = *chosen.body.dent;
+                       if (!dent.whole) dent.rings = patch.rings;
+                       dent.integrator = steps.integrator;
+                       dent.substeps = steps.substeps;
+                     }});
+    }
+  }
+  return all;
+}
+
+std::optional<double> turn_of(const SceneObject& object) {
+  auto mesh = render::load_mesh(object.mesh_file);
+  if (!mesh) return {};
+  render::TriangleMesh placed = place_mesh(*mesh, object);
+  render::orient_mesh(placed);
+  const auto built = render::ContactMesh::build(placed);
+  if (!built) return {};
+  return typical_turn(*built);
+}
+
+std::vector<Knob> knobs_of(const Scene& scene) {
+  std::vector<Knob> knobs;
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    const SceneObject& object = scene.objects[i];
+    if (leaves_surface_open(object)) {
+      // What cannot be touched is told by who builds it.
+      if (const auto turn = turn_of(object)) {
+        knobs.push_back({i,
+                         fmt::format(" (its faces turn by {:.2g} degrees over an edge{})",
+                                     *turn * 180 / std::numbers::pi,
+                                     *turn > kBeyond * quality_table().contacts.front().turn
+                                         ? ", more than any that was measured"
+                                         : ""),
+                         contacts_for(object, *turn)});
+      }
+    }
+    if (object.body.dent) knobs.push_back({i, "", dents_for(object)});
+  }
+  std::erase_if(knobs, [](const Knob& knob) { return knob.candidates.empty(); });
+  return knobs;
+}
+
+// The cheapest point that errs by no more than `error`; nullptr if none does.
+const Candidate* cheapest(const Knob& knob, double error) {
+  const Candidate* found = nullptr;
+  for (const Candidate& one : knob.candidates) {
+    // Written so that NaN is never chosen.
+    if (!(one.error <= error)) continue;
+    if (found == nullptr || one.ns < found->ns) found = &one;
+  }
+  return found;
+}
+
+double least_error(const Knob& knob) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Candidate& one : knob.candidates) least = std::min(least, one.error);
+  return least;
+}
+
+// The cheapest points at which no knob errs by more than `error`, or by more than its truest.
+std::vector<const Candidate*> points_at(const std::vector<Knob>& knobs, double error) {
+  std::vector<const Candidate*> points;
+  for (const Knob& knob : knobs) {
+    points.push_back(cheapest(knob, std::max(error, least_error(knob))));
+  }
+  return points;
+}
+
+double cost_of(const std::vector<const Candidate*>& points) {
+  double ns = 0;
+  for (const Candidate* point : points) ns += point->ns;
+  return ns;
+}
+
+// The points whose largest error is the smallest that the budget pays for; the cheapest if it pays
+// for none.
+std::vector<const Candidate*> best_within(const std::vector<Knob>& knobs, double budget) {
+  std::vector<double> errors;
+  for (const Knob& knob : knobs) {
+    for (const Candidate& one : knob.candidates) errors.push_back(one.error);
+  }
+  std::sort(errors.begin(), errors.end());
+  for (const double error : errors) {
+    auto points = points_at(knobs, error);
+    if (cost_of(points) <= budget) return points;
+  }
+  return points_at(knobs, std::numeric_limits<double>::infinity());
+}
+
+}  // namespace
+
+bool leaves_surface_open(const SceneObject& object) {
+  return !object.paged && !object.shape && !object.build_field && !object.body.dent &&
+         !object.contact.blending && !object.contact.curved_depth && !object.contact.normals &&
+         !(object.tracker_named && (object.contact.tracker == TrackerChoice::kNormalProjection ||
+                                    object.contact.tracker == TrackerChoice::kGodObject));
+}
+
+std::vector<std::string> choose_quality(Scene& scene, std::optional<double> budget) {
+  const std::vector<Knob> knobs = knobs_of(scene);
+  const auto points = budget ? best_within(knobs, *budget) : points_at(knobs, 1);
+  std::vector<std::string> said;
+  for (std::size_t i = 0; i < knobs.size(); ++i) {
+    SceneObject& object = scene.objects[knobs[i].object];
+    points[i]->choose(object);
+    said.push_back(fmt::format("{}: {}{}: {:.0f} ns per tick, wrong by {:.2g} % of what is felt.",
+                               object.name, points[i]->words, knobs[i].where, points[i]->ns,
+                               100 * points[i]->error));
+  }
+  const double ns = cost_of(points);
+  const std::string machine =
+      fmt::format("measured on {}, table {}", quality_table().measured, quality_table().version);
+  if (knobs.empty()) {
+    said.emplace_back(
+        "Nothing to choose: no object leaves open how a mesh is felt or stepped; shapes, fields "
+        "and "
+        "frictions are as the scene says.");
+  } else if (!budget) {
+    said.push_back(fmt::format(
+        "The cheapest points at which nothing wrong can be felt, {:.0f} ns per tick in all ({}).",
+        ns, machine));
+  } else if (ns <= *budget) {
+    said.push_back(fmt::format("The truest points for {:.0f} of the {:.0f} ns per tick ({}).", ns,
+                               *budget, machine));
+  } else {
+    said.push_back(fmt::format(
+        "Nothing fits in {:.0f} ns per tick: these are the cheapest points, {:.0f} ns ({}).",
+        *budget, ns, machine));
+  }
+  return said;
+}
+
+}  // namespace thimble::scene
