@@ -13,7 +13,7 @@
 #include "interrupt.h"
 #include "log/logger.h"
 #include "thimble/scene/arm_simulation.h"
-#include "thimble/scene/calibration.h"
+#include "calibration.h"
 #include "thimble/scene/real_arm.h"
 
 namespace thimble::app {

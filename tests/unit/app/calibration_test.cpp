@@ -1,4 +1,4 @@
-#include "thimble/scene/calibration.h"
+#include "calibration.h"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 
 #include "real_arm_terms_home.h"
 #include "terms/limits_policy.h"
-#include "thimble/scene/calibration.h"
+#include "calibration.h"
 #include "thimble/scene/scene_file.h"
 #include "user_folders.h"
 

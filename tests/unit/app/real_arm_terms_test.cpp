@@ -11,7 +11,7 @@
 #include "report/report.h"
 #include "support/line_board.h"
 #include "terms/limits_policy.h"
-#include "thimble/scene/calibration.h"
+#include "calibration.h"
 #include "thimble/scene/scene_file.h"
 #include "thimble/scene/shipped_files.h"
 #include "thimble/session/session.h"

@@ -11,7 +11,7 @@
 #include "support/scripted_transport.h"
 #include "support/vintage_arm.h"
 #include "thimble/driver/wire_link.h"
-#include "thimble/scene/calibration.h"
+#include "calibration.h"
 #include "thimble/scene/real_arm.h"
 
 namespace thimble::app {

@@ -326,8 +326,15 @@ TEST(EverySearch, AnswersWithoutTheHeap) {
   EXPECT_GT(sum, 0);
 }
 
+TEST(MakeSearch, TakesTheTreeFromFourThousandTriangles) {
+  const ContactMesh fewer = ContactMesh::build(support::icosphere(3, 0.05)).value();  // 1,280
+  EXPECT_NE(dynamic_cast<const GridSearch<ContactMesh>*>(make_search(fewer).get()), nullptr);
+  const ContactMesh more = ContactMesh::build(support::icosphere(4, 0.05)).value();  // 5,120
+  EXPECT_NE(dynamic_cast<const TreeSearch<ContactMesh>*>(make_search(more).get()), nullptr);
+}
+
 TEST(MakeSearch, TakesTheTreeWhereMostTrianglesLieInOneCorner) {
-  const TriangleMesh even = support::icosphere(4, 0.05);
+  const TriangleMesh even = support::icosphere(3, 0.05);
   const ContactMesh mesh = ContactMesh::build(even).value();
   EXPECT_NE(dynamic_cast<const GridSearch<ContactMesh>*>(make_search(mesh).get()), nullptr);
   // The same ball beside one a thousand times larger.

@@ -7,7 +7,7 @@
 #include "arm_table.h"
 #include "terms/board_model.h"
 #include "terms/limits_policy.h"
-#include "thimble/scene/calibration.h"
+#include "calibration.h"
 #include "thimble/scene/real_arm.h"
 #include "thimble/scene/shipped_files.h"
 #include "user_folders.h"
