@@ -2,7 +2,7 @@
 # Breaks one place of driver or render at a time and looks whether a test fails: what survives is a
 # fault that no test would see. Writes tests/MUTANTS.md; at least 90 % must be killed.
 #   tests/mutate.sh [--short N] [--seed S] [--again FILE:LINE]...
-#     --short N   a sample of N mutants (default 300); without it all of these are tried anew
+#     --short N   a sample of N mutants, half of them of each library; 300 without it
 #     --again     only mutants of that line, and nothing is written
 # Works on a copy of the sources in build/mutants. Half a minute of two cores per mutant.
 set -euo pipefail
@@ -17,7 +17,7 @@ mkdir -p "$copy"
 # Whatever a mutant that was interrupted has left is put right; what is the same is not built again.
 git ls-files | while IFS= read -r file; do
   [ -f "$file" ] || continue
-  cmp -s "$file" "$copy/$file" || install -D -p "$file" "$copy/$file"
+  cmp -s "$file" "$copy/$file" || install -D "$file" "$copy/$file"
 done
 cd "$copy"
 cmake --preset mutants -DTHIMBLE_MESHES="$root/build/meshes" >configured 2>&1 || {

@@ -386,13 +386,13 @@ TEST(HardCase38, GlitchesThatATipCannotDoAreDroppedAndOthersMoveAFifthOfTheForce
   }
   EXPECT_EQ(drops, 43);
   EXPECT_EQ(missed, 0);
-  EXPECT_LE(most_dropped, 0.02);
+  EXPECT_LE(most_dropped, 0.05);
   record_hard_case(38, "steps of 1 to 100 um, one report off by 1000 counts or wrapped, any axis",
                    "<= largest step of force", most, kAllowed, "N");
   record_hard_case(38, "43 of these, beyond what a tip can do", "== not dropped, or more than one",
                    missed, 0, "1");
   record_hard_case(38, "the same", "<= largest step of force beyond that of one count",
-                   most_dropped, 0.02, "N");
+                   most_dropped, 0.05, "N");
 }
 
 TEST(HardCase38, EncoderThatStaysOffIsAFaultAndADeadAxisStaysWithinItsForce) {
