@@ -7,6 +7,7 @@
 #include "mesh/smooth_normals.h"
 #include "thimble/driver/device_state.h"
 #include "thimble/render/contact_state.h"
+#include "thimble/render/surface_foot.h"
 #include "track/curved_depth.h"
 #include "track/edge_blending.h"
 
@@ -54,6 +55,14 @@ class Blended {
 
   /// Gives the result of the last `update`. Real-time: safe.
   const ContactState& state() const noexcept { return state_; }
+
+  /// Returns the place on the surface that the tip at `p_WT` (W, m) belongs to, with the felt
+  /// normal (surface_foot.h). Real-time: safe.
+  SurfaceFoot foot(const Eigen::Vector3d& p_WT) const noexcept {
+    SurfaceFoot foot = contact_.foot(p_WT);
+    foot.n_M = state_.n_W;
+    return foot;
+  }
 
   const Contact& contact() const noexcept { return contact_; }
   const ContactMesh& mesh() const noexcept { return contact_.mesh(); }

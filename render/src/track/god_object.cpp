@@ -51,6 +51,19 @@ const ContactState& GodObjectContact::update(const driver::DeviceState& state) n
   return state_;
 }
 
+SurfaceFoot GodObjectContact::foot(const Vector3d&) const noexcept {
+  SurfaceFoot foot = flat_foot(state_);
+  if (place_.on == SurfacePlace::On::kCorner) foot.J_MT.setZero();
+  if (place_.on == SurfacePlace::On::kEdge) {
+    const std::size_t k = place_.k;
+    const Vector3d along =
+        (mesh_->position(place_.triangle, (k + 1) % 3) - mesh_->position(place_.triangle, k))
+            .stableNormalized();
+    foot.J_MT = along * along.transpose();
+  }
+  return foot;
+}
+
 void GodObjectContact::follow(const Vector3d& p_OT) noexcept {
   Rest rest;
   WayOut way;

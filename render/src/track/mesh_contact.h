@@ -13,6 +13,7 @@
 #include "thimble/driver/device_state.h"
 #include "thimble/driver/result.h"
 #include "thimble/render/contact_state.h"
+#include "thimble/render/surface_foot.h"
 #include "track/offset_tracker.h"
 #include "track/surface_tracker.h"
 
@@ -94,6 +95,17 @@ class TrackedContact {
   /// `update` was at `p_WT` (W, m) and touches. Real-time: safe.
   Eigen::Vector3d weights(const Eigen::Vector3d& p_WT) const noexcept {
     return tracker_.weights(p_WT);
+  }
+
+  /// Returns the place on the surface that the tip at `p_WT` (W, m) belongs to (surface_foot.h).
+  /// Precondition: as of `weights`. Real-time: safe.
+  SurfaceFoot foot(const Eigen::Vector3d& p_WT) const noexcept {
+    if constexpr (requires { tracker_.foot(p_WT); }) {
+      const FootPath path = tracker_.foot(p_WT);
+      return {.p_M = path.p_W, .n_M = state_.n_W, .J_MT = path.J};
+    } else {
+      return flat_foot(state_);
+    }
   }
 
   TrackerCounters counters() const noexcept { return tracker_.counters(); }
