@@ -52,7 +52,11 @@ Force wall_with(const Stage& stage) {
     driver::DeviceState state;
     state.p_WT = p_W;
     render::SurfaceResponse feel;
-    feel.contact = {.touching = true, .triangle = 0, .depth = -p_W.z(), .n_W = Vector3d::UnitZ()};
+    feel.contact = {.touching = true,
+                    .triangle = 0,
+                    .depth = -p_W.z(),
+                    .n_W = Vector3d::UnitZ(),
+                    .p_WP = {p_W.x(), p_W.y(), 0}};
     render::SpringDamper spring{kStiffness, 0};
     stage.touch(state, feel);
     spring.touch(state, feel);

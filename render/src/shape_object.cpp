@@ -25,9 +25,15 @@ template <class Contact>
 Built shaped(std::shared_ptr<MovingMesh> mesh, Contact contact, const SurfaceChoice& surface,
              BodyShape shape) {
   using Bounded = PathBounded<Contact>;
-  Touch touch(MovingContact<Bounded>(std::move(mesh), Bounded(std::move(contact))),
-              stage_list(surface));
-  return Built(std::make_unique<ShapedTouch<decltype(touch)>>(std::move(touch), std::move(shape)));
+  MovingContact<Bounded> moving(std::move(mesh), Bounded(std::move(contact)));
+  const auto built = [&shape](auto touch) {
+    return Built(
+        std::make_unique<ShapedTouch<decltype(touch)>>(std::move(touch), std::move(shape)));
+  };
+  StageList stages = stage_list(surface);
+  if (!stages.needs_foot()) return built(Touch(std::move(moving), std::move(stages)));
+  moving.keep_material();
+  return built(Touch(std::move(moving), FootStageList(std::move(stages))));
 }
 
 }  // namespace

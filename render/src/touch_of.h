@@ -39,7 +39,9 @@ std::unique_ptr<ObjectTouch> touch_of(Contact contact, const SurfaceChoice& surf
   PathBounded bounded(std::move(contact));
   // A bare surface, by far the most frequent, is joined wholly at compile time.
   if (surface.effects.empty()) return object_of(Touch(std::move(bounded), surface.spring));
-  return object_of(Touch(std::move(bounded), stage_list(surface)));
+  StageList stages = stage_list(surface);
+  if (!stages.needs_foot()) return object_of(Touch(std::move(bounded), std::move(stages)));
+  return object_of(Touch(std::move(bounded), FootStageList(std::move(stages))));
 }
 
 }  // namespace thimble::render

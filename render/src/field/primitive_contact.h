@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <concepts>
 #include <cstdint>
 #include <utility>
@@ -9,6 +10,7 @@
 #include "thimble/driver/device_state.h"
 #include "thimble/render/contact_state.h"
 #include "thimble/render/field/primitive_place.h"
+#include "thimble/render/surface_foot.h"
 
 namespace thimble::render {
 
@@ -66,6 +68,18 @@ class PrimitiveContact {
 
   /// Gives the result of the last `update`. Real-time: safe.
   const ContactState& state() const noexcept { return state_; }
+
+  /// Returns the place on the surface below the tip and how it moves with the tip (surface_foot.h).
+  /// Precondition: the last `update` touches. Real-time: safe.
+  SurfaceFoot foot(const Eigen::Vector3d&) const noexcept {
+    SurfaceFoot foot = flat_foot(state_);
+    if constexpr (requires { shape_.stretch(state_.depth); }) {
+      const double stretch = shape_.stretch(state_.depth);
+      // At a centre no place is the nearest one.
+      foot.J_MT *= std::isfinite(stretch) ? stretch : 0;
+    }
+    return foot;
+  }
 
   const Shape& shape() const noexcept { return shape_; }
   /// Gives what answers `inside`, as the searches of meshes do. Real-time: safe.

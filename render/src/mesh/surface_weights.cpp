@@ -15,20 +15,28 @@ constexpr double kAlongFace = 1e-6;
 
 }  // namespace
 
-Vector3d edge_plane_weights(const ContactMesh& mesh, std::int32_t triangle,
-                            const Vector3d& p_WT) noexcept {
+EdgePlaneSides edge_plane_sides(const ContactMesh& mesh, std::int32_t triangle,
+                                const Vector3d& p_WT) noexcept {
   const TriangleCell& cell = mesh.cell(triangle);
   const Vector3d p = p_WT - mesh.origin();
-  Vector3d weights;
+  EdgePlaneSides sides;
   for (std::size_t k = 0; k < 3; ++k) {
     const Plane& plane = cell.edges[k];
     // Edge planes lean by half the angle between the faces: a point of the face at distance h from
     // the edge is at h cos(lean) from the plane.
     const double lean = plane.n.dot(cell.face.n);
-    const double distance = plane.distance(p) / std::sqrt(std::max(1 - lean * lean, kAlongFace));
     const Vector3d edge = mesh.position(triangle, (k + 1) % 3) - mesh.position(triangle, k);
-    weights[static_cast<Eigen::Index>((k + 2) % 3)] = distance * edge.norm();
+    const double per_distance = edge.norm() / std::sqrt(std::max(1 - lean * lean, kAlongFace));
+    const auto opposite = static_cast<Eigen::Index>((k + 2) % 3);
+    sides.value[opposite] = per_distance * plane.distance(p);
+    sides.change.row(opposite) = per_distance * plane.n;
   }
+  return sides;
+}
+
+Vector3d edge_plane_weights(const ContactMesh& mesh, std::int32_t triangle,
+                            const Vector3d& p_WT) noexcept {
+  const Vector3d weights = edge_plane_sides(mesh, triangle, p_WT).value;
   const double sum = weights.sum();
   if (!(sum > 0)) return Vector3d::Constant(1.0 / 3);
   return weights / sum;

@@ -10,6 +10,17 @@ namespace thimble::render {
 // Weights of a triangle's corners say where on it a tip belongs: they sum to 1, weight k is 0 on
 // the side opposite corner k, and all are at least 0 in the triangle.
 
+/// How far a tip is from the edge planes of a triangle, in areas: what edge_plane_weights are the
+/// shares of.
+struct EdgePlaneSides {
+  Eigen::Vector3d value{0, 0, 0};                    ///< Twice an area, m^2, opposite of corner k.
+  Eigen::Matrix3d change = Eigen::Matrix3d::Zero();  ///< Row k: its gradient, m in W.
+};
+
+/// Returns them for a tip at `p_WT` (W, m). Real-time: safe.
+EdgePlaneSides edge_plane_sides(const ContactMesh& mesh, std::int32_t triangle,
+                                const Eigen::Vector3d& p_WT) noexcept;
+
 /// Finds the weights of a tip (W, m) from its distances to the edge planes of a triangle, so that a
 /// weight vanishes exactly on the edge plane that both neighbours share [BP 4b]. On the surface
 /// they are the barycentric weights. Negative beyond an edge plane; all 1/3 where three planes

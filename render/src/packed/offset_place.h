@@ -11,6 +11,12 @@ struct OffsetPlace {
   bool valid = false;             ///< False where the offset triangle is folded over.
 };
 
+/// The way from a tip p to the point q of the triangle where it belongs.
+struct OffsetWay {
+  Eigen::Vector3d to_surface{0, 0, 0};          ///< q - p, in steps of the lattice.
+  Eigen::Matrix3d J = Eigen::Matrix3d::Zero();  ///< Derivative of q by p.
+};
+
 /// Is what is felt at a place of an offset triangle.
 struct OffsetResponse {
   Eigen::Vector3d n_W{0, 0, 0};  ///< Outward unit normal.

@@ -1,8 +1,11 @@
 #include "packed/offset_triangle.h"
 
+#include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
+#include "mesh/triangle_foot.h"
 #include "packed/unpack_triangle.h"
 
 namespace thimble::render {
@@ -100,6 +103,26 @@ OffsetPlace OffsetTriangle::locate_far(__m128d ab, double h, double d) const noe
     if (!place.valid || change * change * tilt_squared_ <= kPlaced * kPlaced) break;
   }
   return place;
+}
+
+OffsetWay OffsetTriangle::way_to_surface(const OffsetPlace& place) const noexcept {
+  using Eigen::Vector3d;
+  // Each of these counts along one side or the normal; the sides are what they are dual to.
+  Eigen::Matrix3d along;
+  for (std::size_t i = 0; i < 3; ++i) {
+    along.col(static_cast<Eigen::Index>(i)) = Vector3d(ab_[i][0], ab_[i][1], h_[i]);
+  }
+  const Eigen::Matrix3d sides = along.inverse();
+  const auto vector = [](const Lanes& v) {
+    return Vector3d(double{v[0]}, double{v[1]}, double{v[2]});
+  };
+  const Vector3d n_0 = vector(n_[0]);
+  const std::array<Vector3d, 3> x{Vector3d::Zero(), sides.col(0), sides.col(1)};
+  const std::array<Vector3d, 3> n{n_0, n_0 + vector(n_[1]), n_0 + vector(n_[2])};
+  const Vector3d weights = within_triangle({place.l0, place.l1, place.l2});
+  const TriangleFoot foot = offset_foot(x, n, weights, place.depth);
+  return {.to_surface = place.depth * (weights[0] * n[0] + weights[1] * n[1] + weights[2] * n[2]),
+          .J = x[1] * foot.change.row(1) + x[2] * foot.change.row(2)};
 }
 
 }  // namespace thimble::render

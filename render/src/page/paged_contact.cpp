@@ -48,6 +48,15 @@ const ContactState& PagedContact::update(const driver::DeviceState& state) noexc
   return state_;
 }
 
+SurfaceFoot PagedContact::foot(const Vector3d& p_WT) const noexcept {
+  const Vector3d p_MT = in_mesh(p_WT);
+  SurfaceFoot foot = contact_.foot(p_MT);
+  foot.p_M = p_WT + place_.scale * (place_.R_WM * (foot.p_M - p_MT));
+  foot.n_M = state_.n_W;
+  foot.J_MT = place_.R_WM * foot.J_MT * place_.R_WM.transpose();
+  return foot;
+}
+
 // Tells how deep the tip can be if the surface was met as it should be.
 double PagedContact::allowed_depth(const driver::DeviceState& state,
                                    const Vector3d& n_W) const noexcept {

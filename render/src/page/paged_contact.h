@@ -90,6 +90,10 @@ class PagedContact {
   /// Gives the result of the last `update`. Real-time: safe.
   const ContactState& state() const noexcept { return state_; }
 
+  /// Returns the place on the triangles that the tip at `p_WT` (W, m) belongs to
+  /// (PackedContact::foot). Real-time: safe; never waits.
+  SurfaceFoot foot(const Eigen::Vector3d& p_WT) const noexcept;
+
   const TrackerCounters& counters() const noexcept { return contact_.counters(); }
   /// Counts the ticks in which a page was absent that the answer needed.
   std::uint64_t misses() const noexcept { return contact_.ticks_held(); }

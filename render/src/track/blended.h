@@ -7,6 +7,7 @@
 #include "mesh/smooth_normals.h"
 #include "thimble/driver/device_state.h"
 #include "thimble/render/contact_state.h"
+#include "thimble/render/surface_foot.h"
 #include "track/curved_depth.h"
 #include "track/edge_blending.h"
 #include "track/hollow_hold.h"
@@ -57,6 +58,16 @@ class Blended {
 
   /// Gives the result of the last `update`. Real-time: safe.
   const ContactState& state() const noexcept { return state_; }
+
+  /// Returns the place on the surface that the tip at `p_WT` (W, m) belongs to, with the felt
+  /// normal (surface_foot.h). Real-time: safe.
+  SurfaceFoot foot(const Eigen::Vector3d& p_WT) const noexcept {
+    const SurfacePlace& held = contact_.held();
+    const bool by_crease = held.triangle >= 0 && on_hollow_crease(mesh(), *normals_, held);
+    SurfaceFoot foot = by_crease ? contact_.foot(p_WT) : contact_.foot_on_triangle(p_WT);
+    foot.n_M = state_.n_W;
+    return foot;
+  }
 
   const Contact& contact() const noexcept { return contact_; }
   const ContactMesh& mesh() const noexcept { return contact_.mesh(); }

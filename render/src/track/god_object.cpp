@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include "track/resting_foot.h"
 #include "track/surface_descent.h"
 #include "track/way_out.h"
 
@@ -40,6 +41,10 @@ const ContactState& GodObjectContact::update(const driver::DeviceState& state) n
   if (place_.triangle >= 0) follow(p_OT);
   if (!state_.touching) p_OP_ = p_OT;
   return state_;
+}
+
+SurfaceFoot GodObjectContact::foot(const Vector3d&) const noexcept {
+  return resting_foot(*mesh_, place_, state_);
 }
 
 void GodObjectContact::follow(const Vector3d& p_OT) noexcept {

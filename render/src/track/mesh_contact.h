@@ -13,7 +13,9 @@
 #include "thimble/driver/device_state.h"
 #include "thimble/driver/result.h"
 #include "thimble/render/contact_state.h"
+#include "thimble/render/surface_foot.h"
 #include "track/offset_tracker.h"
+#include "track/resting_foot.h"
 #include "track/surface_tracker.h"
 
 namespace thimble::render {
@@ -99,6 +101,23 @@ class TrackedContact {
   /// Returns the edge or corner of a hollow that holds the tip, as of the last `update`; its
   /// triangle is -1 where a face does. Real-time: safe.
   decltype(auto) held() const noexcept { return tracker_.held(); }
+
+  /// Returns the place on the surface that the tip at `p_WT` (W, m) belongs to (surface_foot.h).
+  /// Precondition: as of `weights`. Real-time: safe.
+  SurfaceFoot foot(const Eigen::Vector3d& p_WT) const noexcept {
+    if (held().triangle >= 0) return resting_foot(mesh(), held(), state_);
+    return foot_on_triangle(p_WT);
+  }
+  /// Returns the place on the active triangle, whether an edge beside it holds the tip or not.
+  /// Precondition: as of `weights`. Real-time: safe.
+  SurfaceFoot foot_on_triangle(const Eigen::Vector3d& p_WT) const noexcept {
+    if constexpr (requires { tracker_.foot(p_WT); }) {
+      const FootPath path = tracker_.foot(p_WT);
+      return {.p_M = path.p_W, .n_M = state_.n_W, .J_MT = path.J};
+    } else {
+      return flat_foot(state_);
+    }
+  }
 
   TrackerCounters counters() const noexcept { return tracker_.counters(); }
   const Tracker& tracker() const noexcept { return tracker_; }

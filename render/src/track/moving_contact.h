@@ -1,17 +1,22 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <memory>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include "mesh/contact_mesh.h"
+#include "mesh/triangle_foot.h"
 #include "search/contact_search.h"
 #include "thimble/driver/device_state.h"
 #include "thimble/render/contact_state.h"
+#include "thimble/render/surface_foot.h"
 #include "track/moving_mesh.h"
 
 namespace thimble::render {
@@ -34,7 +39,35 @@ class MovingContact {
 
   /// Finds the contact at `state.p_WT` and keeps it until the next call; see the stage.
   const ContactState& update(const driver::DeviceState& state) noexcept {
+    path_felt_ = std::exchange(path_to_come_, 0);
     return contact_.update(state);
+  }
+
+  /// Keeps where the material of the surface is now, so that `foot` tells places of it however the
+  /// surface is moved. Real-time: never from the servo thread.
+  void keep_material() {
+    first_places_.clear();
+    for (std::int32_t v = 0; v < mesh().vertex_count(); ++v) {
+      first_places_.push_back(mesh().position(v));
+    }
+  }
+
+  /// Returns the place of the material that the tip at `p_WT` (W, m) belongs to (surface_foot.h).
+  /// Precondition: keep_material() was called, and the last `update` touches. Real-time: safe.
+  SurfaceFoot foot(const Eigen::Vector3d& p_WT) const noexcept {
+    const auto first = [this](std::int32_t vertex) {
+      return first_places_[static_cast<std::size_t>(vertex)];
+    };
+    const std::int32_t triangle = state().triangle;
+    const auto& corners = mesh().corners(triangle);
+    const std::array<Eigen::Vector3d, 3> places{first(corners[0]), first(corners[1]),
+                                                first(corners[2])};
+    const SurfaceFoot now = foot_of(contact_, p_WT);
+    const FootPath path = carried_back(mesh(), triangle, places, {.p_W = now.p_M, .J = now.J_MT});
+    return {.p_M = path.p_W,
+            .n_M = (places[1] - places[0]).cross(places[2] - places[0]).stableNormalized(),
+            .J_MT = path.J,
+            .surface_path = path_felt_};
   }
 
   /// Moves vertices of the surface, between two updates; gives the number of those refused
@@ -42,7 +75,8 @@ class MovingContact {
   std::int32_t move_vertices(std::span<const VertexMove> moves) noexcept {
     // Vertices that are refused count as well: the bound on the force is then wider, never tighter
     // than the surface's own path.
-    [[maybe_unused]] const double path = longest_path(moves);
+    const double path = longest_path(moves);
+    path_to_come_ += path;
     const SurfaceMoved moved = surface_->move_vertices(moves, contact_.free_tip());
     if constexpr (requires { contact_.surface_moved(moved.swept_over, path); }) {
       contact_.surface_moved(moved.swept_over, path);
@@ -72,6 +106,9 @@ class MovingContact {
 
   std::shared_ptr<MovingMesh> surface_;
   Contact contact_;
+  double path_to_come_ = 0;                    // since the last tick, m
+  double path_felt_ = 0;                       // in the tick before, m
+  std::vector<Eigen::Vector3d> first_places_;  // if kept, W, m
 };
 
 }  // namespace thimble::render

@@ -8,6 +8,7 @@
 #include "mesh/smooth_normals.h"
 #include "mesh/surface_place.h"
 #include "mesh/surface_weights.h"
+#include "mesh/triangle_foot.h"
 #include "search/contact_search.h"
 #include "track/surface_tracker.h"
 
@@ -78,6 +79,14 @@ class OffsetTracker {
 
   /// Tells where on the active triangle the tip belongs (surface_weights.h), as of the last step.
   const Eigen::Vector3d& weights(const Eigen::Vector3d&) const noexcept { return weights_; }
+
+  /// Returns the place on the surface and how it moves with the tip, which is at `p_WT` (W, m), as
+  /// of the last step.
+  FootPath foot(const Eigen::Vector3d& p_WT) const noexcept {
+    return path_of(*mesh_, foot_.found
+                               ? offset_foot(*mesh_, *normals_, active_, weights_, foot_.depth)
+                               : edge_plane_foot(*mesh_, active_, p_WT));
+  }
 
   TrackerCounters counters() const noexcept;
 

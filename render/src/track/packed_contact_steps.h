@@ -25,6 +25,14 @@ const ContactState& PackedContact<Store>::update(const driver::DeviceState& stat
 }
 
 template <PackedStore Store>
+SurfaceFoot PackedContact<Store>::foot(const Eigen::Vector3d& p_WT) const noexcept {
+  const OffsetPlace place = offset_.locate(store_.to_lattice(p_WT));
+  if (!place.valid) return flat_foot(this->state());
+  const OffsetWay way = offset_.way_to_surface(place);
+  return {.p_M = p_WT + store_.step() * way.to_surface, .n_M = this->state().n_W, .J_MT = way.J};
+}
+
+template <PackedStore Store>
 bool PackedContact<Store>::stay_wide(const Eigen::Vector3d& p_WT) noexcept {
   return stay(p_WT);
 }

@@ -7,6 +7,7 @@
 #include "mesh/contact_mesh.h"
 #include "mesh/surface_place.h"
 #include "mesh/surface_weights.h"
+#include "mesh/triangle_foot.h"
 #include "search/contact_search.h"
 
 namespace thimble::render {
@@ -87,6 +88,11 @@ class SurfaceTracker {
   /// Finds where on the active triangle the tip belongs (surface_weights.h).
   Eigen::Vector3d weights(const Eigen::Vector3d& p_WT) const noexcept {
     return within_triangle(edge_plane_weights(*mesh_, active_, p_WT));
+  }
+
+  /// Returns the place on the surface and how it moves with the tip, which is at `p_WT` (W, m).
+  FootPath foot(const Eigen::Vector3d& p_WT) const noexcept {
+    return path_of(*mesh_, edge_plane_foot(*mesh_, active_, p_WT));
   }
 
   const TrackerCounters& counters() const noexcept { return counters_; }

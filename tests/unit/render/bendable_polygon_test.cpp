@@ -1,5 +1,6 @@
 #include "body/dent/bendable_polygon.h"
 #include "body/dent/body_pull.h"
+#include "body/dent/dented_touch.h"
 
 #include <gtest/gtest.h>
 
@@ -45,47 +46,6 @@ DentSettings quiet() {
   DentSettings settings;
   settings.damping = 2;  // settles within the presses of a test
   return settings;
-}
-
-/// Finds how stiff the dent feels at random places, least and most over the mean.
-std::array<double, 2> spread_of_pull(const TriangleMesh& mesh, double between, double beside_it) {
-  DentSettings settings = quiet();
-  settings.neighbour_stiffness = between * settings.stiffness;
-  auto dent = dent_in(mesh, settings);
-  support::Random random(5);
-  std::array<double, 2> range{1e9, 0};
-  double sum = 0;
-  constexpr int kPlaces = 40;
-  for (int i = 0; i < kPlaces; ++i) {
-    const auto t = static_cast<std::int32_t>(
-        random.bits() % static_cast<std::uint64_t>(dent.mesh().triangle_count()));
-    constexpr double kDepth = 1e-4;
-    settle(dent, t, any_weights(random), kDepth);
-    const double stiffness = dent.f_T_W().norm() / kDepth + beside_it;
-    range = {std::min(range[0], stiffness), std::max(range[1], stiffness)};
-    sum += stiffness / kPlaces;
-  }
-  return {range[0] / sum, range[1] / sum};
-}
-
-TEST(BendablePolygon, PullsAlikeInTheMiddleOverEdgesAndOverCorners) {
-  for (const Shape& shape : shapes()) {
-    // To rounding where no springs join the vertices.
-    const auto apart = spread_of_pull(shape.mesh, 0, 0);
-    EXPECT_NEAR(apart[0], 1, 1e-3) << shape.name;
-    EXPECT_NEAR(apart[1], 1, 1e-3) << shape.name;
-    for (const double between : {0.25, 1.0}) {
-      const auto [least, most] = spread_of_pull(shape.mesh, between, 0);
-      std::printf("%-14s k_n / k = %.2f: the pull is %+.1f %% to %+.1f %% of its mean\n",
-                  shape.name, between, 100 * (least - 1), 100 * (most - 1));
-      EXPECT_GT(least, between < 1 ? 0.93 : 0.85) << shape.name;
-      EXPECT_LT(most, 1.05) << shape.name;
-    }
-    // Under a given force the tip goes in alike, within 5 %: by the pull and a surface as stiff.
-    const auto [least, most] = spread_of_pull(shape.mesh, 0.25, 450);
-    EXPECT_GT(least, 0.95) << shape.name;
-    EXPECT_LT(most, 1.05) << shape.name;
-  }
 }
 
 // How far below `from` along `down` a triangle lies there, m; NaN beside it.
@@ -201,8 +161,11 @@ TEST(BendablePolygon, DoesNotJumpWhereTheCursorCrossesAnEdge) {
     auto here = dent_in(mesh, quiet());
     auto there = dent_in(mesh, quiet());
     const Vector3d foot = point_at(here.mesh(), t, w);
-    const Vector3d p_WT = foot - depth * here.mesh().cell(t).face.n;
     const std::int32_t behind = here.mesh().cell(t).neighbours[static_cast<std::size_t>(k)];
+    // On the edge plane, where both sides measure the same depth.
+    const Vector3d mean =
+        (here.mesh().cell(t).face.n + here.mesh().cell(behind).face.n).normalized();
+    const Vector3d p_WT = foot - depth * mean;
     const Vector3d w_behind = within_triangle(projected_weights(here.mesh(), behind, foot));
     for (int n = 0; n < 120; ++n) {
       here.touch(t, w, p_WT);
@@ -413,6 +376,7 @@ TEST(DentedTouch, GivesTheHandNoMoreThanItHasPutInToThePull) {
     support::Random random(3);
     double given = 0, most_given = 0, longest = 0, taken = 0;
     int contacts = 0;
+    const BodyPull& pull = dynamic_cast<const DentedTouch&>(*touch).pull();
     driver::DeviceState state;
     state.p_WT = {0, 0, 0.1};
     driver::ForceCommand command = touch->update(state);
@@ -420,7 +384,12 @@ TEST(DentedTouch, GivesTheHandNoMoreThanItHasPutInToThePull) {
       const Vector3d p = wander(1e-3 * i, random);
       const Vector3d way = p - state.p_WT;
       const double work = command.f_T_W.dot(way);
-      given += work;
+      // A force that is held for a tick lets a spring k do k x^2 / 2 more than it has energy.
+      const double along = way.dot(command.touch.n_W);
+      const double held = command.touch.depth > 0 ? command.f_T_W.dot(command.touch.n_W) /
+                                                        command.touch.depth / 2 * along * along
+                                                  : 0;
+      given += work - held;
       taken -= std::min(work, 0.0);
       most_given = std::max(most_given, given);
       longest = std::max(longest, std::abs(work));
@@ -437,6 +406,9 @@ TEST(DentedTouch, GivesTheHandNoMoreThanItHasPutInToThePull) {
     EXPECT_GT(taken, 1e-3);
     // Over no contact more comes out than went in, but for the move of one tick.
     EXPECT_LE(most_given, longest);
+    // The account is for jumps, and this tremor throws the tip by 0.03 mm in each tick.
+    EXPECT_LT(pull.limited(), 1200u);
+    EXPECT_GT(pull.stored(), -1e-5);
     std::printf(
         "damping %.1f: %d contacts took %.1f mJ, gave at most %.4f mJ more than they took\n",
         damping, contacts, 1e3 * taken, 1e3 * most_given);
@@ -482,27 +454,28 @@ TEST(DentedTouch, ChangesNoForceWithoutPullAndIsTheSameInEveryRun) {
 TEST(BodyPull, FadesWithWhatTheHandHasPutByAndDoesNotSwitch) {
   BodyPull pull(1, 1e-3);
   const Eigen::Vector3d n(0, 0, 1);
-  double depth = 0, last = 0, given = 0, most = 0, step = 0, felt = 0;
+  double depth = 0, last = 0, given = 0, most = 0, step = 0, felt = 0, held = 0;
   const auto move = [&](double way, double stiffness) {
     depth += way;
     given -= last * way;  // of the hand's, against the force before
+    held += stiffness / 2 * way * way;
     felt =
         pull.force(stiffness * depth * n, -depth * n, Eigen::Vector3d(0, 0, -way / 1e-3), n, depth)
             .z();
     step = std::max(step, std::abs(felt - last));
-    most = std::max(most, given);
+    most = std::max(most, given - held);
     last = felt;
   };
   for (int k = 0; k < 100; ++k) move(5e-5, 50);
   EXPECT_NEAR(felt, 50 * 5e-3, 1e-9);
   // The springs have stiffened to more than the hand paid for. It oscillates, and goes out slowly.
-  move(0, 150);
+  move(0, 400);
   step = 0;
-  for (int k = 0; k < 800; ++k) move(k % 2 == 0 ? -1.5e-5 : 5e-6, 150);
-  // A switch would have moved all of the force, 0.75 N, to and fro. The spring's own 150 N/m and
-  // four times that over 15 um, and a tick's delay of the account:
-  EXPECT_LE(step, 1.2 * 5 * 150 * 1.5e-5);
-  EXPECT_LE(most, 5e-6);
+  for (int k = 0; k < 800; ++k) move(k % 2 == 0 ? -1.5e-5 : 5e-6, 400);
+  // A switch would have moved all of the force, 2 N, to and fro. The spring's own 400 N/m and
+  // eight times that over 15 um, and a tick's delay of the account:
+  EXPECT_LE(step, 1.2 * 9 * 400 * 1.5e-5);
+  EXPECT_LE(most, 1e-5);  // and what a touch may begin with
 }
 
 }  // namespace

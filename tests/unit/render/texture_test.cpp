@@ -164,7 +164,8 @@ TEST(Textures, PushWithTheGradientOfTheSpringsEnergy) {
   const EffectContext known = context();
   const Sines waves(two_waves(TextureForm::kConservative), known);
   const auto energy = [&](const Vector3d& p) {
-    const double depth = -p.z() + waves.height().at(p).height;
+    const Vector3d foot(p.x(), p.y(), 0);
+    const double depth = -p.z() + waves.height().at(foot).height;
     return depth > 0 ? kStiffness * depth * depth / 2 : 0;
   };
   for (int i = 0; i < 1000; ++i) {
@@ -218,6 +219,7 @@ TEST(Textures, GiveNoForceForNaNAndNeverPull) {
     contact.depth = random.uniform(0, 0.005);
     contact.n_W = random.direction();
     const Vector3d p = random.in_box(0.05);
+    contact.p_WP = p + contact.depth * contact.n_W;
     for (const Vector3d& f :
          {felt(waves, contact, p), felt(rough, contact, p), felt(map, contact, p)}) {
       ASSERT_TRUE(f.allFinite());
@@ -227,11 +229,13 @@ TEST(Textures, GiveNoForceForNaNAndNeverPull) {
       Vector3d q = p;
       q[i % 3] = bad;
       ContactState bad_contact = contact;
+      ContactState far = contact;
+      far.p_WP = q;
       (i % 2 ? bad_contact.depth : bad_contact.n_W[i % 3]) = kNan;
       // A tip far away is never in contact; what counts is that nothing infinite comes out.
-      ASSERT_TRUE(felt(waves, contact, q).allFinite());
-      ASSERT_TRUE(felt(rough, contact, q).allFinite());
-      ASSERT_TRUE(felt(map, contact, q).allFinite());
+      ASSERT_TRUE(felt(waves, far, q).allFinite());
+      ASSERT_TRUE(felt(rough, far, q).allFinite());
+      ASSERT_TRUE(felt(map, far, q).allFinite());
       ASSERT_EQ(felt(waves, bad_contact, p), Vector3d::Zero());
       ASSERT_EQ(felt(rough, bad_contact, p), Vector3d::Zero());
       ASSERT_EQ(felt(map, bad_contact, p), Vector3d::Zero());

@@ -8,6 +8,7 @@
 #include "thimble/render/contact_state.h"
 #include "thimble/render/effect/live_settings.h"
 #include "thimble/render/surface/surface_response.h"
+#include "thimble/render/surface_foot.h"
 
 namespace thimble::render {
 
@@ -30,7 +31,7 @@ class Touch {
     // Written so that a NaN depth means no contact and no force.
     if (contact.touching && contact.depth > 0) {
       SurfaceResponse response{.contact = contact};
-      std::apply([&](auto&... stage) { (stage.touch(state, response), ...); }, stages_);
+      feel(state, response);
       command.f_T_W = response.f_T_W;
       command.touch = {.in_contact = true,
                        .object = 0,
@@ -58,6 +59,22 @@ class Touch {
   Contact& contact() noexcept { return contact_; }
 
  private:
+  void feel(const driver::DeviceState& state, SurfaceResponse& response) noexcept {
+    if constexpr ((FootStage<Stages> || ...)) {
+      const SurfaceFoot foot = foot_of(contact_, state.p_WT);
+      const auto run = [&](auto& stage) {
+        if constexpr (requires { stage.touch_at(foot, state, response); }) {
+          stage.touch_at(foot, state, response);
+        } else {
+          stage.touch(state, response);
+        }
+      };
+      std::apply([&](auto&... stage) { (run(stage), ...); }, stages_);
+    } else {
+      std::apply([&](auto&... stage) { (stage.touch(state, response), ...); }, stages_);
+    }
+  }
+
   Contact contact_;
   [[no_unique_address]] std::tuple<Stages...> stages_;
   bool touching_ = false;

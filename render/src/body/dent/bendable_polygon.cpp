@@ -71,8 +71,13 @@ void BendablePolygon::touch(std::int32_t triangle, const Eigen::Vector3d& weight
   weights_ = weights;
   const Eigen::Vector3d foot = point_at(*mesh_, triangle, weights);
   const Eigen::Vector3d last = cursor_;
-  cursor_ = p_WT - foot;
-  if (!(cursor_.dot(mesh_->cell(triangle).face.n) < 0)) cursor_.setZero();
+  const Eigen::Vector3d way = foot - p_WT;
+  const double distance = way.norm();
+  const double depth = mesh_->depth(triangle, p_WT);
+  const bool below = depth > 0 && distance > 0;
+  up_ = below ? Eigen::Vector3d(way / distance) : Eigen::Vector3d(0, 0, 0);
+  per_way_ = below ? depth / distance : 0;
+  cursor_ = below ? Eigen::Vector3d(-depth * up_) : Eigen::Vector3d(0, 0, 0);
   const DentSettings& settings = motion_.settings();
   const auto& corners = mesh_->corners(triangle);
   DentMotion::CursorSpring spring;
@@ -105,6 +110,27 @@ void BendablePolygon::touch(std::int32_t triangle, const Eigen::Vector3d& weight
          .to = motion_.u(corners[(k + 1) % 3])},
         settings, motion_.stiffness());
   }
+}
+
+Eigen::Vector3d BendablePolygon::pull_at_tip(const Eigen::Matrix3d& change) const noexcept {
+  // Nearer to a corner the stretch of its spring has lost digits, and its force has not.
+  constexpr double kNearCorner = 1e-3;
+  if (triangle_ < 0) return Eigen::Vector3d::Zero();
+  const auto& corners = mesh_->corners(triangle_);
+  const Eigen::Vector3d& a = mesh_->position(corners[0]);
+  const double stiffness = motion_.settings().reach * motion_.stiffness();
+  const double along = f_T_W_.dot(up_);
+  const Eigen::Vector3d turning = per_way_ * (f_T_W_ - along * up_);
+  Eigen::Vector3d aside(0, 0, 0);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double w = weights_[static_cast<Eigen::Index>(k)];
+    const Eigen::Vector3d stretch =
+        1 - w > kNearCorner ? Eigen::Vector3d((cursor_ - motion_.u(corners[k])) / (1 - w))
+                            : Eigen::Vector3d(motion_.force(k) / (stiffness * w));
+    aside[static_cast<Eigen::Index>(k)] =
+        (mesh_->position(corners[k]) - a).dot(turning) + stiffness / 2 * stretch.squaredNorm();
+  }
+  return along * mesh_->cell(triangle_).face.n + turning - change.transpose() * aside;
 }
 
 void BendablePolygon::rest() noexcept {

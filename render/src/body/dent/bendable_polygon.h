@@ -52,11 +52,27 @@ class BendablePolygon {
   /// then.
   void rest() noexcept;
 
-  /// Tells how the cursor's springs pull it in the last step, N in W; all of it, whatever share the
-  /// hand is to feel (body_pull.h).
+  /// Tells how the cursor's springs pull it in the last step, N in W: their sum.
   const Eigen::Vector3d& f_T_W() const noexcept { return f_T_W_; }
-  /// Tells where the cursor is from its base point, the place below which it is, m; 0 if it does
-  /// not touch.
+  /// Returns how the springs pull at the tip that moves the cursor, N in W; all of it, whatever
+  /// share the hand is to feel (body_pull.h). `change` is how the weights of the last `touch`
+  /// change with the tip's place (TriangleFoot).
+  ///
+  /// With springs K_k = K w_k / (1 - w_k) the energy is sum K_k |c - u_k|^2 / 2, and what pulls is
+  /// its gradient in the tip's place p at vertices that stand still: those are at rest where no
+  /// force of theirs is left, so they add nothing [the envelope theorem]. The sum F of the springs
+  /// counts by dc/dp, and where a spring stiffens with w_k it pushes aside:
+  ///
+  ///   f = (dc/dp)^T F - sum K / (1 - w_k)^2 |c - u_k|^2 / 2 grad w_k
+  ///   c = -d m, m = (q - p) / |q - p|, dc/dp = m n^T + d / |q - p| (1 - m m^T) (1 - J)
+  ///
+  /// with q = sum w_k x_k, J = sum x_k grad w_k, n the face's normal. So slow ways that end where
+  /// they began do no work; and as c is as long as the tip is deep, f is K d n wherever the cursor
+  /// is, if no springs join the vertices: on both sides of an edge, on faces of any size.
+  Eigen::Vector3d pull_at_tip(const Eigen::Matrix3d& change) const noexcept;
+  /// Tells where the cursor is from its base point, the place below which it is: as far as the tip
+  /// lies below the face, towards the tip, m; 0 if it does not touch. Both tell the same from both
+  /// sides of an edge plane.
   const Eigen::Vector3d& cursor() const noexcept { return cursor_; }
   /// Tells where a vertex is, m in W.
   Eigen::Vector3d position(std::int32_t vertex) const noexcept {
@@ -82,6 +98,8 @@ class BendablePolygon {
   std::int32_t triangle_ = -1;
   Eigen::Vector3d weights_{0, 0, 0};
   Eigen::Vector3d cursor_{0, 0, 0};
+  Eigen::Vector3d up_{0, 0, 0};  // unit, from the tip to the foot
+  double per_way_ = 0;           // depth below the face per way to the foot
   Eigen::Vector3d f_T_W_{0, 0, 0};
   std::array<EdgePoint, 3> edges_;  // from corner k to k + 1
 };

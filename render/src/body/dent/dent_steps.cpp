@@ -7,8 +7,9 @@
 namespace thimble::render {
 namespace {
 
-// Rounds end where what is left moves no vertex by more than this share of the largest dent.
-constexpr double kStill = 1e-5;
+// Rounds also end where what is left moves no vertex by more than this share of the remainder of
+// the largest dent: 1e-5 of it unless set.
+constexpr double kStill = 1e-3;
 
 // No vertex moves faster, m/s: strokes are up to 2 m/s [STABILITY 7]. What the cursor throws
 // farther in one tick, as by a lost contact that is found elsewhere, takes energy out here, never
@@ -171,7 +172,7 @@ void DentMotion::solve(const Weights& system) noexcept {
     start += inverse_[i] * b.squaredNorm();
     rz += rf_[i].dot(pf_[i]);
   }
-  const double still = kStill * largest_ / h_;
+  const double still = kStill * settings_.remainder * largest_ / h_;
   const auto end = static_cast<float>(
       std::max(settings_.remainder * settings_.remainder * double{start}, still * still));
   for (int round = 0; round < settings_.rounds && rz > end; ++round) {

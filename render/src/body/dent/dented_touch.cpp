@@ -1,6 +1,6 @@
 #include "body/dent/dented_touch.h"
 
-#include "mesh/surface_weights.h"
+#include "mesh/triangle_foot.h"
 
 namespace thimble::render {
 
@@ -14,11 +14,11 @@ driver::ForceCommand DentedTouch::update(const driver::DeviceState& state) noexc
   }
   // Weights that vanish on the planes between triangles, so that the foot does not jump there; a
   // tracker with other cells may be a little beyond one.
-  dent_.touch(triangle, within_triangle(edge_plane_weights(dent_.mesh(), triangle, state.p_WT)),
-              state.p_WT);
+  const TriangleFoot foot = edge_plane_foot(dent_.mesh(), triangle, state.p_WT);
+  dent_.touch(triangle, foot.weights, state.p_WT);
   if (dent_.motion().settings().pull > 0) {
-    command.f_T_W +=
-        pull_.force(dent_.f_T_W(), state.p_WT, state.v_WT, command.touch.n_W, command.touch.depth);
+    command.f_T_W += pull_.force(dent_.pull_at_tip(foot.change), state.p_WT, state.v_WT,
+                                 command.touch.n_W, command.touch.depth);
   }
   return command;
 }

@@ -56,11 +56,11 @@ void HeightMap::list_settings(LiveSettings& settings) {
               .sensitivity = sensitivity});
 }
 
-TextureHeight HeightMap::at(const Eigen::Vector3d& p_W, const Eigen::Vector3d& n_W) const noexcept {
-  const Eigen::Vector3d place = pixels_per_metre_ * (R_WO_.transpose() * (p_W - p_WO_));
+TextureHeight HeightMap::at(const Eigen::Vector3d& p_M, const Eigen::Vector3d& n_M) const noexcept {
+  const Eigen::Vector3d place = pixels_per_metre_ * (R_WO_.transpose() * (p_M - p_WO_));
   Eigen::Vector3d share = Eigen::Vector3d::Zero();
   if (along_ == Along::kAll) {
-    share = (R_WO_.transpose() * n_W).cwiseAbs2();
+    share = (R_WO_.transpose() * n_M).cwiseAbs2();
   } else {
     share[static_cast<Eigen::Index>(along_) - 1] = 1;
   }
@@ -76,7 +76,7 @@ TextureHeight HeightMap::at(const Eigen::Vector3d& p_W, const Eigen::Vector3d& n
     slope_O[up] += share[axis] * sample.dv;
   }
   return {.height = height_ * (value - 1),
-          .slope_W = height_ * pixels_per_metre_ * (R_WO_ * slope_O)};
+          .slope_M = height_ * pixels_per_metre_ * (R_WO_ * slope_O)};
 }
 
 }  // namespace thimble::render

@@ -13,7 +13,7 @@
 namespace thimble::render {
 
 /// Makes a surface of a grey picture: white lies in the object's surface, black deepest below. A
-/// SurfaceStage.
+/// FootStage.
 ///
 /// The picture is laid on in the object's frame, along one axis or along all three at once, each
 /// counting by the square of the normal's part along it; it repeats. On flat faces that is
@@ -45,17 +45,23 @@ class HeightMap {
   /// Precondition: there is an image. Real-time: never from the servo thread.
   HeightMap(const Settings& settings, const EffectContext& context);
 
+  /// See FootStage. Real-time: safe.
+  void touch_at(const SurfaceFoot& foot, const driver::DeviceState&,
+                SurfaceResponse& response) const noexcept {
+    feel_height(at(foot.p_M, foot.n_M), foot, form_, response);
+  }
+  /// The same on a flat surface. Real-time: safe.
   void touch(const driver::DeviceState& state, SurfaceResponse& response) const noexcept {
-    feel_height(at(state.p_WT, response.contact.n_W), form_, response);
+    touch_at(flat_foot(response.contact), state, response);
   }
   void leave() const noexcept {}
 
   /// Tells of the height. Real-time: never from the servo thread.
   void list_settings(LiveSettings& settings);
 
-  /// Finds the height at a place (W, m) of a surface with the normal `n_W`. NaN gives NaN.
+  /// Finds the height at a place (M, m) of a surface with the normal `n_M`. NaN gives NaN.
   /// Real-time: safe; 16 pixels for each axis that counts.
-  TextureHeight at(const Eigen::Vector3d& p_W, const Eigen::Vector3d& n_W) const noexcept;
+  TextureHeight at(const Eigen::Vector3d& p_M, const Eigen::Vector3d& n_M) const noexcept;
 
  private:
   std::shared_ptr<const HeightImage> image_;

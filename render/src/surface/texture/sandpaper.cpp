@@ -23,11 +23,11 @@ std::vector<Wave> random_waves(const Sandpaper::Settings& settings, const Effect
     const double across = std::sqrt(1 - z * z);
     const Eigen::Vector3d direction_O(across * std::cos(turn), across * std::sin(turn), z);
     const double wavelength = settings.grain * std::exp2(uniform() - 0.5);
-    const Eigen::Vector3d k_W = 2 * std::numbers::pi / wavelength * (context.R_WO * direction_O);
+    const Eigen::Vector3d k_M = 2 * std::numbers::pi / wavelength * (context.R_WO * direction_O);
     const double phase = 2 * std::numbers::pi * uniform();
     // A sine's mean square is half its amplitude's; those of different waves add.
     waves.push_back(
-        {settings.roughness * std::sqrt(2.0 / kWaves), k_W, phase - k_W.dot(context.p_WO)});
+        {settings.roughness * std::sqrt(2.0 / kWaves), k_M, phase - k_M.dot(context.p_WO)});
   }
   return waves;
 }

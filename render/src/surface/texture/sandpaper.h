@@ -10,7 +10,7 @@
 namespace thimble::render {
 
 /// Makes a rough surface that catches the tip sideways, by the slope of a random height [BP 4.2:
-/// the sandpaper system]. A SurfaceStage.
+/// the sandpaper system]. A FootStage.
 ///
 /// The height is a sum of plane waves in random directions with lengths in one octave around the
 /// grain, the same for the same seed on every machine. So it holds no waves shorter than
@@ -36,8 +36,14 @@ class Sandpaper {
   /// Real-time: never from the servo thread.
   Sandpaper(const Settings& settings, const EffectContext& context);
 
+  /// See FootStage. Real-time: safe.
+  void touch_at(const SurfaceFoot& foot, const driver::DeviceState&,
+                SurfaceResponse& response) const noexcept {
+    feel_height(height_.at(foot.p_M), foot, form_, response);
+  }
+  /// The same on a flat surface. Real-time: safe.
   void touch(const driver::DeviceState& state, SurfaceResponse& response) const noexcept {
-    feel_height(height_.at(state.p_WT), form_, response);
+    touch_at(flat_foot(response.contact), state, response);
   }
   void leave() const noexcept {}
 

@@ -15,10 +15,10 @@ constexpr std::size_t kWavesMax = 64;  // 12,000 instructions per tick [chosen: 
 std::vector<Wave> waves_of(const Sines::Settings& settings, const EffectContext& context) {
   std::vector<Wave> waves;
   for (const Sines::Settings::One& one : settings.waves) {
-    const Eigen::Vector3d k_W =
+    const Eigen::Vector3d k_M =
         2 * std::numbers::pi / one.wavelength * (context.R_WO * one.direction.stableNormalized());
     // Waves begin at the object's place, so that it can be moved without a change.
-    waves.push_back({one.amplitude, k_W, one.phase - k_W.dot(context.p_WO)});
+    waves.push_back({one.amplitude, k_M, one.phase - k_M.dot(context.p_WO)});
   }
   return waves;
 }

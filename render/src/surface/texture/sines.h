@@ -12,7 +12,7 @@
 namespace thimble::render {
 
 /// Makes a surface of sine waves of several amplitudes, lengths and directions, which change the
-/// effective depth [BP 4.2]. A SurfaceStage.
+/// effective depth [BP 4.2]. A FootStage.
 ///
 /// Sliding at speed v along a wave of length L the force has a line at v / L with the amplitude
 /// stiffness * amplitude. All textures: texture_height.h.
@@ -43,8 +43,14 @@ class Sines {
   /// Real-time: never from the servo thread.
   Sines(const Settings& settings, const EffectContext& context);
 
+  /// See FootStage. Real-time: safe.
+  void touch_at(const SurfaceFoot& foot, const driver::DeviceState&,
+                SurfaceResponse& response) const noexcept {
+    feel_height(height_.at(foot.p_M), foot, form_, response);
+  }
+  /// The same on a flat surface. Real-time: safe.
   void touch(const driver::DeviceState& state, SurfaceResponse& response) const noexcept {
-    feel_height(height_.at(state.p_WT), form_, response);
+    touch_at(flat_foot(response.contact), state, response);
   }
   void leave() const noexcept {}
 

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "thimble/render/surface/surface_response.h"
+#include "thimble/render/surface_foot.h"
 
 namespace thimble::render {
 
@@ -14,7 +15,7 @@ namespace thimble::render {
 /// whoever comes in by a valley and leaves by a peak would take energy with him.
 struct TextureHeight {
   double height = 0;                 ///< m, <= 0
-  Eigen::Vector3d slope_W{0, 0, 0};  ///< Gradient of the height in the place of the tip, W.
+  Eigen::Vector3d slope_M{0, 0, 0};  ///< Its gradient in the place, M.
 };
 
 /// Says what a texture does besides changing the depth.
@@ -26,15 +27,19 @@ inline constexpr std::array<std::string_view, 2> kTextureFormNames{"conservative
 
 /// Makes a height felt, before the surface's spring.
 ///
-/// With depth d (whose gradient is -n) and height h, the spring holds the energy k (d + h)^2 / 2;
-/// so its force is k (d + h) (n - grad h). `kConservative` hands on just that: the normal tilts to
-/// (n - grad h) / |n - grad h| and the depth stretches to (d + h) |n - grad h|. Any spring that is
-/// linear in the depth then does no work around a closed way, and a damper takes out energy only.
-/// `kDepthOnly` leaves the normal alone: going up a slope costs less than going down gives back.
+/// The height h is that of the foot q, the place of the material below the tip p (surface_foot.h),
+/// so it is the same at every depth, and rides on what carries the material. With depth d, whose
+/// gradient is -n, the spring holds the energy k (d(p) + h(q(p)))^2 / 2; so its force is
+/// k (d + h) (n - J^T grad h), with J = dq/dp. `kConservative` hands on just that: the normal tilts
+/// to (n - s) / |n - s|, s = J^T grad h, and the depth stretches to (d + h) |n - s|. Any spring
+/// that is linear in the depth then does no work around a closed way, in depth or along the
+/// surface, and a damper takes out energy only. J is the plane's projection on flat ground, longer
+/// by R / (R - d) on a ball, shorter in a hollow. `kDepthOnly` leaves the normal alone: going up a
+/// slope costs less than going down gives back.
 ///
 /// Where the tip is above the texture, and for NaN, the depth becomes 0. The force never points
 /// into the object. The proxy stays on the object's own surface. Real-time: safe.
-inline void feel_height(const TextureHeight& texture, TextureForm form,
+inline void feel_height(const TextureHeight& texture, const SurfaceFoot& foot, TextureForm form,
                         SurfaceResponse& response) noexcept {
   ContactState& contact = response.contact;
   const double depth = contact.depth + texture.height;
@@ -42,7 +47,7 @@ inline void feel_height(const TextureHeight& texture, TextureForm form,
     contact.depth = depth > 0 ? depth : 0;  // written so that NaN gives 0
     return;
   }
-  const Eigen::Vector3d steep = contact.n_W - texture.slope_W;
+  const Eigen::Vector3d steep = contact.n_W - foot.slope_at_tip(texture.slope_M);
   const double stretch = steep.norm();
   if (!(depth > 0 && steep.dot(contact.n_W) > 0)) {
     contact.depth = 0;

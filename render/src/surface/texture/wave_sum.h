@@ -11,12 +11,12 @@ namespace thimble::render {
 /// Is one plane wave through space: amplitude * sin(k . p + phase).
 struct Wave {
   double amplitude = 0;          ///< m
-  Eigen::Vector3d k_W{0, 0, 0};  ///< Wave vector, rad/m.
+  Eigen::Vector3d k_M{0, 0, 0};  ///< Wave vector, rad/m.
   double phase = 0;              ///< rad
 };
 
 /// Is a height made of plane waves, lowered so that its highest possible peak is 0. The waves run
-/// through the whole space, and the object is cut out of them like wood out of its grain.
+/// through the whole space, and the object's surface is cut out of them.
 class WaveSum {
  public:
   /// Takes any number of waves. Real-time: never from the servo thread.
@@ -24,13 +24,13 @@ class WaveSum {
     for (const Wave& wave : waves_) peak_ += wave.amplitude;
   }
 
-  /// Finds the height at a place (W, m). NaN gives NaN. Real-time: safe; 180 instructions per wave.
-  TextureHeight at(const Eigen::Vector3d& p_W) const noexcept {
+  /// Finds the height at a place (M, m). NaN gives NaN. Real-time: safe; 180 instructions per wave.
+  TextureHeight at(const Eigen::Vector3d& p_M) const noexcept {
     TextureHeight texture{.height = -peak_};
     for (const Wave& wave : waves_) {
-      const double angle = wave.k_W.dot(p_W) + wave.phase;
+      const double angle = wave.k_M.dot(p_M) + wave.phase;
       texture.height += wave.amplitude * std::sin(angle);
-      texture.slope_W += wave.amplitude * std::cos(angle) * wave.k_W;
+      texture.slope_M += wave.amplitude * std::cos(angle) * wave.k_M;
     }
     return texture;
   }

@@ -1,11 +1,14 @@
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <utility>
 #include <vector>
 
+#include "thimble/render/effect/foot_follower.h"
 #include "thimble/render/effect/live_settings.h"
 #include "thimble/render/surface/surface_response.h"
+#include "thimble/render/surface_foot.h"
 
 namespace thimble::render {
 
@@ -20,6 +23,13 @@ class AnyStage {
   /// See SurfaceStage. Real-time: safe.
   virtual void touch(const driver::DeviceState& state, SurfaceResponse& response) noexcept = 0;
   virtual void leave() noexcept = 0;
+  /// Returns true for a FootStage: it is to be run by `touch_at`.
+  virtual bool needs_foot() const noexcept { return false; }
+  /// See FootStage; other stages run as ever. Real-time: safe.
+  virtual void touch_at(const SurfaceFoot&, const driver::DeviceState& state,
+                        SurfaceResponse& response) noexcept {
+    touch(state, response);
+  }
   /// See LiveSettings. Real-time: never from the servo thread.
   virtual void list_settings(LiveSettings& settings) = 0;
 };
@@ -34,6 +44,15 @@ class AnyStageOf final : public AnyStage {
     stage_.touch(state, response);
   }
   void leave() noexcept override { stage_.leave(); }
+  bool needs_foot() const noexcept override { return FootStage<Stage>; }
+  void touch_at(const SurfaceFoot& foot, const driver::DeviceState& state,
+                SurfaceResponse& response) noexcept override {
+    if constexpr (FootStage<Stage>) {
+      stage_.touch_at(foot, state, response);
+    } else {
+      stage_.touch(state, response);
+    }
+  }
   void list_settings(LiveSettings& settings) override {
     if constexpr (requires { Stage::kGroup; }) settings.set_group(Stage::kGroup);
     list_settings_of(stage_, settings);
@@ -62,8 +81,33 @@ class StageList {
     for (const auto& stage : stages_) stage->list_settings(settings);
   }
 
- private:
+  /// Returns true if one of them is a FootStage: make a FootStageList of it then.
+  bool needs_foot() const noexcept {
+    return std::any_of(stages_.begin(), stages_.end(),
+                       [](const auto& stage) { return stage->needs_foot(); });
+  }
+
+ protected:
   std::vector<std::unique_ptr<AnyStage>> stages_;
+};
+
+/// A StageList with textures in it: a FootStage whose place never jumps.
+class FootStageList : public StageList {
+ public:
+  explicit FootStageList(StageList stages) : StageList(std::move(stages)) {}
+
+  void touch_at(const SurfaceFoot& found, const driver::DeviceState& state,
+                SurfaceResponse& response) noexcept {
+    const SurfaceFoot foot = place_.follow(state.p_WT, response.contact.depth, found);
+    for (const auto& stage : stages_) stage->touch_at(foot, state, response);
+  }
+  void leave() noexcept {
+    place_.leave();
+    StageList::leave();
+  }
+
+ private:
+  FootFollower place_;
 };
 
 }  // namespace thimble::render

@@ -27,6 +27,10 @@ struct Sphere {
     return {.depth = radius - largest * length, .n_W = scaled / length};
   }
 
+  /// Returns how much longer a path on the surface is than that of a tip `depth` (m) below it.
+  /// Infinite at the centre. Real-time: safe.
+  double stretch(double depth) const noexcept { return radius / (radius - depth); }
+
   /// Tells whether a point (W, m) lies inside. Real-time: safe.
   bool inside(const Eigen::Vector3d& p_W) const noexcept { return (p_W - p_WO).norm() < radius; }
 };

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+
+#include "mesh/contact_mesh.h"
+#include "mesh/smooth_normals.h"
+#include "mesh/surface_weights.h"
+
+namespace thimble::render {
+
+/// The place of a triangle to which a tip belongs, with its derivatives: what an energy that
+/// depends on the place needs to become a force.
+struct TriangleFoot {
+  std::int32_t triangle = -1;
+  Eigen::Vector3d weights{0, 0, 0};                  ///< Of the corners: at least 0, sum 1.
+  Eigen::Matrix3d change = Eigen::Matrix3d::Zero();  ///< Row k: gradient of weight k, 1/m in W.
+};
+
+/// Returns the place by the distances to the edge planes (edge_plane_weights, brought back into the
+/// triangle) for a tip at `p_WT` (W, m). Its derivatives are exact; they are 0 where three planes
+/// leave no room, and along an edge beyond which the tip is. Real-time: safe.
+TriangleFoot edge_plane_foot(const ContactMesh& mesh, std::int32_t triangle,
+                             const Eigen::Vector3d& p_WT) noexcept;
+
+/// Returns the place that has these `weights` (at least 0, sum 1) at `depth` (m) along the corners'
+/// normals: p = sum w_k (x_k - d n_k) (OffsetFoot). Differentiated, with d unknown as well:
+///
+///   dp = sum dw_k y_k - dd N,  y_k = x_k - d n_k,  N = sum w_k n_k,  sum dw_k = 0
+///
+/// three equations for dw_1, dw_2 and dd. Derivatives are 0 where they have no solution.
+/// Real-time: safe.
+TriangleFoot offset_foot(const ContactMesh& mesh, const SmoothNormals& normals,
+                         std::int32_t triangle, const Eigen::Vector3d& weights,
+                         double depth) noexcept;
+
+/// Returns the same for corners at `x` with normals `n`, in any unit of length.
+TriangleFoot offset_foot(const std::array<Eigen::Vector3d, 3>& x,
+                         const std::array<Eigen::Vector3d, 3>& n, const Eigen::Vector3d& weights,
+                         double depth) noexcept;
+
+/// A point of a mesh that goes along with a tip.
+struct FootPath {
+  Eigen::Vector3d p_W{0, 0, 0};                 ///< m
+  Eigen::Matrix3d J = Eigen::Matrix3d::Zero();  ///< Derivative of `p_W` by the tip's place.
+};
+
+/// Returns the point of a triangle that is such a place. Real-time: safe.
+FootPath path_of(const ContactMesh& mesh, const TriangleFoot& foot) noexcept;
+
+/// Returns where the material at `now` was when the corners of its triangle were at `first` (m),
+/// which are where `mesh` says now, by the linear map that carries the triangle back. One without
+/// area has no material to lie in: its first corner stands for it. Real-time: safe.
+FootPath carried_back(const ContactMesh& mesh, std::int32_t triangle,
+                      const std::array<Eigen::Vector3d, 3>& first, const FootPath& now) noexcept;
+
+}  // namespace thimble::render
