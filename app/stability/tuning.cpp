@@ -88,7 +88,7 @@ void tell_rests(const scene::Scene& scene, TuneResult& result) {
   }
   for (const Rest& rest : trial->rests) {
     result.text +=
-        fmt::format("Rest      at {:.2f} s{}: {:.2g} N, oscillates by {:.2g} mN RMS\n", rest.time,
+        fmt::format("Rest      at {:.2f} s{}: {:.2g} N, oscillates by {:.2f} mN RMS\n", rest.time,
                     rest.on.empty() ? "" : " on " + rest.on, rest.force, 1e3 * rest.oscillation);
   }
   const std::vector<std::string> warnings = rest_warnings(scene, *trial);
@@ -124,7 +124,7 @@ void tell_rests(const scene::Scene& scene, TuneResult& result) {
     const Rest* const most = found->worst();
     if (most == nullptr) continue;
     result.text += fmt::format(
-        "Hands     {} ({:.3g} kg, {:.3g} N/m, {:.3g} N s/m): oscillates by up to {:.2g} mN RMS{}\n",
+        "Hands     {} ({:.3g} kg, {:.3g} N/m, {:.3g} N s/m): oscillates by up to {:.2f} mN RMS{}\n",
         words, hand.mass, hand.stiffness, hand.damping, 1e3 * most->oscillation,
         most->oscillation > kRestFelt
             ? fmt::format(", which is felt; up to {:.0f} N/m is safe for any of them", safe)
