@@ -60,7 +60,7 @@ upward=$(grep -rnE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"' render | awk
     sub(/^render\/include\//, "", path)
     sub(/^(render\/src|thimble\/render)\//, "", path)
     sub(/\.(h|inc)$/, "", path)
-    if (path ~ /^(contact_state|surface_foot|body_patch|body_pose|surface\/surface_response)$/) return "state"
+    if (path ~ /^(contact_state|body_patch|body_pose|surface\/surface_response)$/) return "state"
     if (path ~ /^effect\/(effect_context|live_settings|map_settings|settings_reader)$/) return "settings"
     if (path ~ /^(touch|object_touch|scene_touch)$/) return "touch"
     if (path !~ /\// || path == "effect/effect_table.cpp") return "build"

@@ -10,7 +10,7 @@
 #include "thimble/driver/device_state.h"
 #include "thimble/render/contact_state.h"
 #include "thimble/render/field/primitive_place.h"
-#include "thimble/render/surface_foot.h"
+#include "thimble/render/surface/surface_response.h"
 
 namespace thimble::render {
 
@@ -69,8 +69,8 @@ class PrimitiveContact {
   /// Gives the result of the last `update`. Real-time: safe.
   const ContactState& state() const noexcept { return state_; }
 
-  /// Returns the place on the surface below the tip and how it moves with the tip (surface_foot.h).
-  /// Precondition: the last `update` touches. Real-time: safe.
+  /// Returns the place on the surface below the tip and how it moves with the tip
+  /// (surface_response.h). Precondition: the last `update` touches. Real-time: safe.
   SurfaceFoot foot(const Eigen::Vector3d&) const noexcept {
     SurfaceFoot foot = flat_foot(state_);
     if constexpr (requires { shape_.stretch(state_.depth); }) {

@@ -7,7 +7,7 @@
 #include "mesh/smooth_normals.h"
 #include "thimble/driver/device_state.h"
 #include "thimble/render/contact_state.h"
-#include "thimble/render/surface_foot.h"
+#include "thimble/render/surface/surface_response.h"
 #include "track/curved_depth.h"
 #include "track/edge_blending.h"
 #include "track/hollow_hold.h"
@@ -60,7 +60,7 @@ class Blended {
   const ContactState& state() const noexcept { return state_; }
 
   /// Returns the place on the surface that the tip at `p_WT` (W, m) belongs to, with the felt
-  /// normal (surface_foot.h). Real-time: safe.
+  /// normal (surface_response.h). Real-time: safe.
   SurfaceFoot foot(const Eigen::Vector3d& p_WT) const noexcept {
     const SurfacePlace& held = contact_.held();
     const bool by_crease = held.triangle >= 0 && on_hollow_crease(mesh(), *normals_, held);

@@ -4,7 +4,7 @@
 #include <limits>
 #include <utility>
 
-#include "track/resting_foot.h"
+#include "track/hollow_hold.h"
 #include "track/surface_descent.h"
 #include "track/way_out.h"
 

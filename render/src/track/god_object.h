@@ -14,7 +14,7 @@
 #include "thimble/driver/device_state.h"
 #include "thimble/driver/result.h"
 #include "thimble/render/contact_state.h"
-#include "thimble/render/surface_foot.h"
+#include "thimble/render/surface/surface_response.h"
 
 namespace thimble::render {
 
@@ -99,7 +99,7 @@ class GodObjectContact {
   const ContactState& state() const noexcept { return state_; }
 
   /// Returns the place that the proxy rests on and how it moves with the tip: over a face, along an
-  /// edge, not at all in a corner (surface_foot.h). Real-time: safe.
+  /// edge, not at all in a corner (surface_response.h). Real-time: safe.
   SurfaceFoot foot(const Eigen::Vector3d& p_OT) const noexcept;
 
   const GodObjectCounters& counters() const noexcept { return counters_; }

@@ -13,9 +13,9 @@
 #include "thimble/driver/device_state.h"
 #include "thimble/driver/result.h"
 #include "thimble/render/contact_state.h"
-#include "thimble/render/surface_foot.h"
+#include "thimble/render/surface/surface_response.h"
+#include "track/hollow_hold.h"
 #include "track/offset_tracker.h"
-#include "track/resting_foot.h"
 #include "track/surface_tracker.h"
 
 namespace thimble::render {
@@ -102,8 +102,8 @@ class TrackedContact {
   /// triangle is -1 where a face does. Real-time: safe.
   decltype(auto) held() const noexcept { return tracker_.held(); }
 
-  /// Returns the place on the surface that the tip at `p_WT` (W, m) belongs to (surface_foot.h).
-  /// Precondition: as of `weights`. Real-time: safe.
+  /// Returns the place on the surface that the tip at `p_WT` (W, m) belongs to
+  /// (surface_response.h). Precondition: as of `weights`. Real-time: safe.
   SurfaceFoot foot(const Eigen::Vector3d& p_WT) const noexcept {
     if (held().triangle >= 0) return resting_foot(mesh(), held(), state_);
     return foot_on_triangle(p_WT);

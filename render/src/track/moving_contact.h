@@ -16,7 +16,7 @@
 #include "search/contact_search.h"
 #include "thimble/driver/device_state.h"
 #include "thimble/render/contact_state.h"
-#include "thimble/render/surface_foot.h"
+#include "thimble/render/surface/surface_response.h"
 #include "track/moving_mesh.h"
 
 namespace thimble::render {
@@ -52,8 +52,9 @@ class MovingContact {
     }
   }
 
-  /// Returns the place of the material that the tip at `p_WT` (W, m) belongs to (surface_foot.h).
-  /// Precondition: keep_material() was called, and the last `update` touches. Real-time: safe.
+  /// Returns the place of the material that the tip at `p_WT` (W, m) belongs to
+  /// (surface_response.h). Precondition: keep_material() was called, and the last `update` touches.
+  /// Real-time: safe.
   SurfaceFoot foot(const Eigen::Vector3d& p_WT) const noexcept {
     const auto first = [this](std::int32_t vertex) {
       return first_places_[static_cast<std::size_t>(vertex)];

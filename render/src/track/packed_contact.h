@@ -11,7 +11,7 @@
 #include "search/contact_search.h"
 #include "thimble/driver/device_state.h"
 #include "thimble/render/contact_state.h"
-#include "thimble/render/surface_foot.h"
+#include "thimble/render/surface/surface_response.h"
 #include "track/held_plane.h"
 #include "track/packed_store.h"
 #include "track/surface_tracker.h"
@@ -62,9 +62,9 @@ class PackedContact {
     return felt_;
   }
 
-  /// Returns the place on the triangles that the tip at `p_WT` (W, m) belongs to (surface_foot.h);
-  /// that on the felt plane where no packed triangle tells. Precondition: the last `update` was
-  /// there and touches. Real-time: safe; some 100 ns.
+  /// Returns the place on the triangles that the tip at `p_WT` (W, m) belongs to
+  /// (surface_response.h); that on the felt plane where no packed triangle tells. Precondition: the
+  /// last `update` was there and touches. Real-time: safe; some 100 ns.
   SurfaceFoot foot(const Eigen::Vector3d& p_WT) const noexcept;
 
   const TrackerCounters& counters() const noexcept { return counters_; }

@@ -6,7 +6,7 @@
 
 #include "thimble/driver/device_state.h"
 #include "thimble/render/contact_state.h"
-#include "thimble/render/surface_foot.h"
+#include "thimble/render/surface/surface_response.h"
 #include "track/felt_anchor.h"
 
 namespace thimble::render {
@@ -44,7 +44,7 @@ class PathBounded {
   /// Returns where the free tip is examined from (TrackedContact). Real-time: safe.
   Eigen::Vector3d free_tip() const noexcept { return contact_.free_tip(); }
 
-  /// Returns the place that was found for the tip at `p_WT` (W, m; surface_foot.h).
+  /// Returns the place that was found for the tip at `p_WT` (W, m; surface_response.h).
   /// Real-time: safe.
   SurfaceFoot foot(const Eigen::Vector3d& p_WT) const noexcept { return foot_of(contact_, p_WT); }
 

@@ -17,7 +17,7 @@
 #include "surface/texture/sines.h"
 #include "thimble/render/build_object_touch.h"
 #include "thimble/render/build_primitive_touch.h"
-#include "thimble/render/effect/foot_follower.h"
+#include "thimble/render/surface/surface_response.h"
 
 namespace thimble::render {
 namespace {

@@ -8,7 +8,6 @@
 #include "thimble/render/contact_state.h"
 #include "thimble/render/effect/live_settings.h"
 #include "thimble/render/surface/surface_response.h"
-#include "thimble/render/surface_foot.h"
 
 namespace thimble::render {
 

@@ -6,7 +6,6 @@
 #include <string_view>
 
 #include "thimble/render/surface/surface_response.h"
-#include "thimble/render/surface_foot.h"
 
 namespace thimble::render {
 
@@ -27,15 +26,15 @@ inline constexpr std::array<std::string_view, 2> kTextureFormNames{"conservative
 
 /// Makes a height felt, before the surface's spring.
 ///
-/// The height h is that of the foot q, the place of the material below the tip p (surface_foot.h),
-/// so it is the same at every depth, and rides on what carries the material. With depth d, whose
-/// gradient is -n, the spring holds the energy k (d(p) + h(q(p)))^2 / 2; so its force is
-/// k (d + h) (n - J^T grad h), with J = dq/dp. `kConservative` hands on just that: the normal tilts
-/// to (n - s) / |n - s|, s = J^T grad h, and the depth stretches to (d + h) |n - s|. Any spring
-/// that is linear in the depth then does no work around a closed way, in depth or along the
-/// surface, and a damper takes out energy only. J is the plane's projection on flat ground, longer
-/// by R / (R - d) on a ball, shorter in a hollow. `kDepthOnly` leaves the normal alone: going up a
-/// slope costs less than going down gives back.
+/// The height h is that of the foot q, the place of the material below the tip p
+/// (surface_response.h), so it is the same at every depth, and rides on what carries the material.
+/// With depth d, whose gradient is -n, the spring holds the energy k (d(p) + h(q(p)))^2 / 2; so its
+/// force is k (d + h) (n - J^T grad h), with J = dq/dp. `kConservative` hands on just that: the
+/// normal tilts to (n - s) / |n - s|, s = J^T grad h, and the depth stretches to (d + h) |n - s|.
+/// Any spring that is linear in the depth then does no work around a closed way, in depth or along
+/// the surface, and a damper takes out energy only. J is the plane's projection on flat ground,
+/// longer by R / (R - d) on a ball, shorter in a hollow. `kDepthOnly` leaves the normal alone:
+/// going up a slope costs less than going down gives back.
 ///
 /// Where the tip is above the texture, and for NaN, the depth becomes 0. The force never points
 /// into the object. The proxy stays on the object's own surface. Real-time: safe.

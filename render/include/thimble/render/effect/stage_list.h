@@ -5,10 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "thimble/render/effect/foot_follower.h"
 #include "thimble/render/effect/live_settings.h"
 #include "thimble/render/surface/surface_response.h"
-#include "thimble/render/surface_foot.h"
 
 namespace thimble::render {
 
@@ -88,7 +86,7 @@ class StageList {
   }
 
  protected:
-  std::vector<std::unique_ptr<AnyStage>> stages_;
+  std::vector<std::unique_ptr<AnyStage>> stages_;  ///< In the order in which they run.
 };
 
 /// A StageList with textures in it: a FootStage whose place never jumps.
@@ -96,6 +94,7 @@ class FootStageList : public StageList {
  public:
   explicit FootStageList(StageList stages) : StageList(std::move(stages)) {}
 
+  /// Runs them at the foot that was found, or behind it where it jumped. Real-time: safe.
   void touch_at(const SurfaceFoot& found, const driver::DeviceState& state,
                 SurfaceResponse& response) noexcept {
     const SurfaceFoot foot = place_.follow(state.p_WT, response.contact.depth, found);
