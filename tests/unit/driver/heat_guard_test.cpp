@@ -93,7 +93,7 @@ TEST(HeatGuard, LeavesTheCurrentAloneUpToTheWarningAndThenLowersItWithoutAStep) 
 TEST(HeatGuard, TakesWhatItCannotKnowForHotAndNoTimeForNone) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   HeatSettings settings = kSettings;
-  settings.at_start = {nan, 7, -1};
+  settings.at_start = {nan, 1.5, -1};
   const HeatGuard hot = guard(settings);
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_EQ(hot.heat()[i], 1);
