@@ -157,9 +157,10 @@ TEST(Figure, IsNamedWithItsPlaceInTheLastLineWhereItMissesItsGoal) {
                                     {"rate", 1, "%", "<= 3", "at 250 Hz"},
                                     {"cycles", 90, "%", ">= 95"},
                                     {"area", std::numeric_limits<double>::quiet_NaN(), "", ""}};
-  EXPECT_EQ(unmet_line(figures),
-            "NOT MET: 2 of 4 figures: edge = 2 % (goal <= 1; at B = 3 N s/m); cycles = 90 % (goal >= "
-            "95)");
+  EXPECT_EQ(
+      unmet_line(figures),
+      "NOT MET: 2 of 4 figures: edge = 2 % (goal <= 1; at B = 3 N s/m); cycles = 90 % (goal >= "
+      "95)");
   EXPECT_EQ(unmet_line({figures[1], figures[3]}), "");
   EXPECT_NE(figure_table(figures).find("met  (at 250 Hz)"), std::string::npos);
 }
