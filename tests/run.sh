@@ -2,7 +2,7 @@
 # Runs every test: sets the machine up, builds, and runs the tests as release, under the address and
 # undefined-behaviour sanitizers, and those in which threads meet under the thread sanitizer.
 #   tests/run.sh [--long] [PRESET...]    --long: all tests under all sanitizers, at full length, then
-#                                        clang-tidy, coverage and mutants, if what they need is installed;
+#                                        clang-tidy and coverage, if what they need is installed;
 #                                        PRESET: only these
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -20,7 +20,7 @@ done
 more=()
 if [ ${#presets[@]} = 0 ]; then
   presets=(release asan "tsan${THIMBLE_LONG:+-all}")
-  [ -z "${THIMBLE_LONG:-}" ] || more=(tidy coverage mutate)
+  [ -z "${THIMBLE_LONG:-}" ] || more=(tidy coverage)
 fi
 
 tests/usb/setup.sh || true  # optional: without it the USB arms are not tested through a kernel
