@@ -40,6 +40,7 @@ struct GimbalMotion {
 
   /// Returns the angles of the gimbal at a time (s), rad. Real-time: safe.
   Eigen::Vector3d at(double time) const noexcept {
+    if (swing.isZero(0)) return middle;
     Eigen::Vector3d angles = middle;
     for (Eigen::Index i = 0; i < 3; ++i) {
       const double turns = time / period - static_cast<double>(i) / 3;
