@@ -26,7 +26,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kFelt = 0.02;  // N RMS [STABILITY 6]
+constexpr double kFelt = 0.02;           // N RMS [STABILITY 6]
+constexpr double kHeldByFriction = 0.2;  // N; what dry friction takes of a hand's force at most
 
 // Every way of contact that is recommended somewhere.
 constexpr std::array kContacts{"tracker: edge_planes",
@@ -137,15 +138,17 @@ TEST(HollowRest, OfEveryTrackerInAGrooveOf59Degrees) {
     std::printf("  %-62s %.3f N RMS, %.3f N peak to peak, mean %.2f N\n", contact, rest.rms,
                 rest.peak_to_peak, rest.mean);
     EXPECT_LE(rest.rms, kFelt) << contact;
-    EXPECT_GT(rest.mean, 1) << contact;
+    // The hand's spring and the surface's in a row, from goal to crease. With one face at a time it
+    // was 1.39 N (edge planes, compact) and 1.60 N (blended).
+    EXPECT_NEAR(rest.mean, 1.69, 0.02) << contact;
   }
 }
 
 TEST(HollowRest, OfEveryTrackerInRandomGroovesAndPits) {
   const int count = support::long_form() ? 1000 : 40;
-  std::array<int, kContacts.size()> loud{};
+  std::array<int, kContacts.size()> loud{}, off{};
   std::array<double, kContacts.size()> most{};
-  int pressed_on = 0;
+  int pressed_on = 0, in_crease = 0;
   for (int i = 0; i < count; ++i) {
     support::Random random(1000 + static_cast<std::uint64_t>(i));
     const support::Hollow hollow = support::random_hollow(random);
@@ -170,14 +173,22 @@ TEST(HollowRest, OfEveryTrackerInRandomGroovesAndPits) {
                                  << pressed.stiffness << " N/m, " << pressed.force << " N, "
                                  << pressed.arm << (pressed.bare ? ", bare" : "");
       pressed_on += rest.mean > 0.5 * pressed.force;
+      // The crease itself holds a tip that is pressed between the normals of a groove.
+      if (hollow.turn > 1.1 && hollow.groove && rest.mean > 0.5 * pressed.force) {
+        ++in_crease;
+        off[k] += std::abs(rest.mean - pressed.force) > kHeldByFriction;
+      }
       loud[k] += rest.rms > kFelt;
       most[k] = std::max(most[k], rest.rms);
     }
   }
+  EXPECT_GT(in_crease, count);
   EXPECT_GT(pressed_on, 3 * count * static_cast<int>(kContacts.size()) / 4);
   for (std::size_t k = 0; k < kContacts.size(); ++k) {
-    std::printf("  %-62s %d of %d oscillate, at most %.3f N RMS\n", kContacts[k], loud[k], count,
-                most[k]);
+    std::printf("  %-62s %d of %d oscillate, at most %.3f N RMS; %d have too little force\n",
+                kContacts[k], loud[k], count, most[k], off[k]);
+    // Out of a shallow or short one a tip may slide.
+    EXPECT_LE(off[k], in_crease / static_cast<int>(30 * kContacts.size())) << kContacts[k];
   }
 }
 

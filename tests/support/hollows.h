@@ -18,6 +18,7 @@ struct Hollow {
   Vector3d bottom{0, 0, 0};    ///< Where the planes meet.
   Vector3d pressed{0, 0, -1};  ///< Unit direction that the hand presses in.
   double turn = 0;             ///< Angle between the planes' normals, rad; of a pit the largest.
+  bool groove = false;         ///< Whether it has two planes.
 };
 
 /// Makes a closed prism along y out of a polygon in x and z that runs counter-clockwise seen from
@@ -63,7 +64,7 @@ inline Hollow groove(double left, double right, double left_long, double right_l
       {right_long * std::cos(right), 0, right_long * std::sin(right)},
       {right_long * std::cos(right) + 0.01, 0, -0.045},
       {-left_long * std::cos(left) - 0.01, 0, -0.045}};
-  return {.mesh = prism(around, cuts, 1), .turn = left + right};
+  return {.mesh = prism(around, cuts, 1), .turn = left + right, .groove = true};
 }
 
 /// Makes a pit: a point below the middle of a block's top from which `sides` planes rise to the
