@@ -27,17 +27,13 @@ std::size_t corner_of(const std::array<std::int32_t, 3>& corners, std::int32_t v
   return corners[0] == vertex ? 0 : corners[1] == vertex ? 1 : 2;
 }
 
-// Sums the faces that are reached from a triangle around one of its vertices without crossing a
-// crease, first one way round, then the other.
-Vector3d fan_normal(const std::vector<std::array<std::int32_t, 3>>& triangles,
-                    std::span<const PackedTriangle> packed, const Faces& faces, std::int32_t vertex,
-                    std::int32_t first) {
-  Vector3d sum{0, 0, 0};
-  const auto add = [&](std::int32_t t) {
-    const std::size_t k = corner_of(triangles[index(t)], vertex);
-    sum += static_cast<double>(faces.angles[index(t)][k]) * faces.normals[index(t)];
-  };
-  add(first);
+// Calls `visit` for a triangle and for all that are reached from it around one of its vertices
+// without crossing a crease, first one way round, then the other; each once.
+template <class Visit>
+void visit_group(const std::vector<std::array<std::int32_t, 3>>& triangles,
+                 std::span<const PackedTriangle> packed, std::int32_t vertex, std::int32_t first,
+                 const Visit& visit) {
+  visit(first);
   for (const std::size_t side : {std::size_t{0}, std::size_t{2}}) {
     std::int32_t t = first;
     for (;;) {
@@ -45,10 +41,21 @@ Vector3d fan_normal(const std::vector<std::array<std::int32_t, 3>>& triangles,
       if (packed[index(t)].crease(edge)) break;
       t = packed[index(t)].neighbours[edge];
       // Round the whole vertex over a single crease or none: everything is in already.
-      if (t == first) return sum;
-      add(t);
+      if (t == first) return;
+      visit(t);
     }
   }
+}
+
+// Sums the faces of a group, each by its angle at the vertex.
+Vector3d fan_normal(const std::vector<std::array<std::int32_t, 3>>& triangles,
+                    std::span<const PackedTriangle> packed, const Faces& faces, std::int32_t vertex,
+                    std::int32_t first) {
+  Vector3d sum{0, 0, 0};
+  visit_group(triangles, packed, vertex, first, [&](std::int32_t t) {
+    const std::size_t k = corner_of(triangles[index(t)], vertex);
+    sum += static_cast<double>(faces.angles[index(t)][k]) * faces.normals[index(t)];
+  });
   return sum;
 }
 
@@ -62,22 +69,11 @@ void assign_group(const std::vector<std::array<std::int32_t, 3>>& triangles, con
                   std::int32_t vertex, std::int32_t first, std::vector<bool>& done,
                   std::span<PackedTriangle> packed) {
   const Vector3d sum = fan_normal(triangles, packed, faces, vertex, first);
-  const auto assign = [&](std::int32_t t) {
+  visit_group(triangles, packed, vertex, first, [&](std::int32_t t) {
     const Vector3d& own = sum.norm() > 0 ? sum : faces.normals[index(t)];
     packed[index(t)].normals[corner_of(triangles[index(t)], vertex)] = pack_normal(own);
     done[index(t)] = true;
-  };
-  assign(first);
-  for (const std::size_t side : {std::size_t{0}, std::size_t{2}}) {
-    std::int32_t t = first;
-    for (;;) {
-      const std::size_t edge = (corner_of(triangles[index(t)], vertex) + side) % 3;
-      if (packed[index(t)].crease(edge)) break;
-      t = packed[index(t)].neighbours[edge];
-      if (t == first) return;
-      assign(t);
-    }
-  }
+  });
 }
 
 }  // namespace
