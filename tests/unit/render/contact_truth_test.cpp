@@ -68,6 +68,22 @@ struct Path {
   std::vector<Vector3d> outs;     // unit directions to it
 };
 
+// Where a path begins: from just above the middle of a random triangle to just below it.
+struct Entry {
+  Vector3d above, below, n;
+  bool free = false;  // no other sheet of the mesh is in between
+};
+
+Entry random_entry(const ContactMesh& mesh, const ContactSearch& search, support::Random& random) {
+  const auto t =
+      static_cast<std::int32_t>(random.bits() % static_cast<std::uint64_t>(mesh.triangle_count()));
+  const Vector3d middle = (mesh.position(t, 0) + mesh.position(t, 1) + mesh.position(t, 2)) / 3;
+  const Vector3d n = mesh.cell(t).face.n;
+  Entry entry{.above = middle + 1e-5 * n, .below = middle - 1e-5 * n, .n = n};
+  entry.free = !search.inside(entry.above) && search.inside(entry.below);
+  return entry;
+}
+
 // Walks 0.2 to 1 mm below the surface, on a path that no tracker decides: by the nearest point of
 // all triangles. Begun anew at a random triangle every 500 ticks.
 Path skin_path(const ContactMesh& mesh, const ContactSearch& search, int ticks, double step,
@@ -84,17 +100,14 @@ Path skin_path(const ContactMesh& mesh, const ContactSearch& search, int ticks, 
   bool begun = false;
   for (int tick = 0; tick < ticks; ++tick) {
     if (tick % 500 == 0 || !begun) {
-      const auto t = static_cast<std::int32_t>(random.bits() %
-                                               static_cast<std::uint64_t>(mesh.triangle_count()));
-      const Vector3d middle = (mesh.position(t, 0) + mesh.position(t, 1) + mesh.position(t, 2)) / 3;
-      const Vector3d above = middle + 1e-5 * mesh.cell(t).face.n;
-      p = middle - 1e-5 * mesh.cell(t).face.n;
-      begun = !search.inside(above) && search.inside(p);
+      const Entry entry = random_entry(mesh, search, random);
+      p = entry.below;
+      begun = entry.free;
       if (!begun) continue;
       path.tips.push_back(Vector3d::Constant(std::nan("")));
       path.distances.push_back(0);
       path.outs.push_back({0, 0, 0});
-      add(above);
+      add(entry.above);
       add(p);
       heading = random.direction();
       continue;
@@ -134,16 +147,13 @@ Path deep_path(const ContactMesh& mesh, const ContactSearch& search, int ticks,
   bool begun = false;
   for (int tick = 0; tick < ticks; ++tick) {
     if (tick % 500 == 0 || !begun) {
-      const auto t = static_cast<std::int32_t>(random.bits() %
-                                               static_cast<std::uint64_t>(mesh.triangle_count()));
-      const Vector3d middle = (mesh.position(t, 0) + mesh.position(t, 1) + mesh.position(t, 2)) / 3;
-      heading = -mesh.cell(t).face.n;
-      p = middle + 1e-5 * heading;
-      const Vector3d above = middle - 1e-5 * heading;
-      begun = !search.inside(above) && search.inside(p);
+      const Entry entry = random_entry(mesh, search, random);
+      heading = -entry.n;
+      p = entry.below;
+      begun = entry.free;
       if (!begun) continue;
       path.tips.push_back(Vector3d::Constant(std::nan("")));
-      path.tips.push_back(above);
+      path.tips.push_back(entry.above);
       path.tips.push_back(p);
       path.distances.insert(path.distances.end(), {0, -1e-5, 1e-5});
       path.outs.insert(path.outs.end(), 3, -heading);
