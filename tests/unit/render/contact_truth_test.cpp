@@ -332,6 +332,9 @@ TEST(ContactTruth, NoContactIsLostInsideScannedMeshesAtAnyDepth) {
   }
   tell(sums);
   EXPECT_GT(sums[0].skin.ticks, 50000);
+  if (!support::long_form()) {
+    for (const std::size_t edge_planes : {0, 1}) EXPECT_LE(sums[edge_planes].skin.unexplained, 4);
+  }
 }
 
 TEST(ContactTruth, NoContactIsLostInsideRandomClosedMeshes) {
@@ -347,7 +350,8 @@ TEST(ContactTruth, NoContactIsLostInsideRandomClosedMeshes) {
 }
 
 // Of 100,000 ticks 0.2 to 1 mm below the elephant's skin edge planes are off the nearest point by
-// more than 0.1 mm only where that belongs to another sheet: the face that was entered is kept. It
+// more than 0.1 mm only where that belongs to another sheet: the face that was entered is kept, and
+// no triangle around it that looks the same way is nearer, in all ticks but two. The nearest point
 // looks the other way in all but a few.
 TEST(ContactTruth, EdgePlanesTellTheDistanceOfTheNearestPointUnlessItIsOfAnotherSheet) {
   if (!fs::exists(fs::path(THIMBLE_MESHES) / "elephant.off")) {
@@ -358,8 +362,11 @@ TEST(ContactTruth, EdgePlanesTellTheDistanceOfTheNearestPointUnlessItIsOfAnother
   ASSERT_TRUE(mesh);
   try_all("elephant.off", scaled(*mesh), 100'000, sums);
   tell(sums);
-  EXPECT_LE(sums[0].skin.off, 700);
-  EXPECT_LE(sums[0].skin.same_side, 60);
+  for (const std::size_t edge_planes : {0, 1}) {
+    EXPECT_LE(sums[edge_planes].skin.off, 450);
+    EXPECT_LE(sums[edge_planes].skin.same_side, 25);
+    EXPECT_LE(sums[edge_planes].skin.unexplained, 3);
+  }
 }
 
 }  // namespace
