@@ -1,5 +1,8 @@
 #include "shape_object.h"
 
+#include <fmt/core.h>
+
+#include <cstddef>
 #include <string>
 #include <utility>
 
@@ -36,6 +39,27 @@ Built shaped(std::shared_ptr<MovingMesh> mesh, Contact contact, const SurfaceCho
   return built(Touch(std::move(moving), FootStageList(std::move(stages))));
 }
 
+// Tells up to how many triangles a mesh grows; 0 if it does not.
+std::size_t triangles_max_of(const ShapeChoice& shape) {
+  return shape.clay && shape.clay->edge > 0 ? static_cast<std::size_t>(shape.clay->triangles) : 0;
+}
+
+// Says why triangles under a print cannot be split.
+driver::Result<void> check_refinement(const TriangleMesh& mesh_W, const SurfaceChoice& surface,
+                                      std::size_t triangles_max) {
+  if (surface.dent || surface.shape.snap) {
+    return driver::Error{fmt::format(
+        "Clay that splits its triangles (edge) cannot have a {} as well, which counts on the ones "
+        "that it was built with: leave out edge, or take a finer mesh.",
+        surface.dent ? "dent" : "wall that snaps")};
+  }
+  if (mesh_W.triangles.size() <= triangles_max) return {};
+  return driver::Error{fmt::format(
+      "The mesh has {} triangles already, and clay that splits them may have {}: raise triangles, "
+      "or take a coarser mesh.",
+      mesh_W.triangles.size(), triangles_max)};
+}
+
 }  // namespace
 
 Built shaped_touch(const TriangleMesh& mesh_W, const ContactChoice& choice,
@@ -53,7 +77,17 @@ Built shaped_touch(const TriangleMesh& mesh_W, const ContactChoice& choice,
         "phong), \"offset\" or \"god_object\", without curved_depth; name one of these in "
         "contact."};
   }
-  auto prepared = ContactMesh::build(mesh_W, {.room = kRoom});
+  const std::size_t triangles_max = triangles_max_of(surface.shape);
+  if (triangles_max > 0) {
+    if (blending == BlendingChoice::kPhong) {
+      return driver::Error{
+          "Clay that splits its triangles (edge) is touched by \"edge_planes\" with flat blending "
+          "or "
+          "by \"god_object\": smooth normals would turn where a triangle is split."};
+    }
+    if (auto fits = check_refinement(mesh_W, surface, triangles_max); !fits) return fits.error();
+  }
+  auto prepared = ContactMesh::build(mesh_W, {.room = kRoom, .triangles_max = triangles_max});
   if (!prepared) return prepared.error();
   auto body = BodyShape::build(*prepared, surface.shape, surface.spring.stiffness);
   if (!body) return body.error();

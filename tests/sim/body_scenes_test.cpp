@@ -5,7 +5,9 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <string>
+#include <vector>
 
 #include "body/shape/body_shape.h"
 #include "mesh/contact_mesh.h"
@@ -50,6 +52,39 @@ TEST(ClayScene, KeepsItsPrints) {
   EXPECT_TRUE(render::ContactMesh::build(*again));
 }
 
+// The same scene with triangles split under its prints: repeatable to the bit, and what is saved
+// has the triangles that it has been split into.
+TEST(ClayScene, SplitsItsTrianglesAndSavesThem) {
+  const std::filesystem::path scenes = std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/scenes";
+  std::ifstream shipped(scenes / "clay.yaml");
+  std::string text((std::istreambuf_iterator<char>(shipped)), {});
+  const std::string folder = std::filesystem::absolute(scenes).string() + "/";
+  const auto put = [&text](const std::string& what, const std::string& by) {
+    const auto at = text.find(what);
+    ASSERT_NE(at, std::string::npos) << what;
+    text.replace(at, what.size(), by);
+  };
+  put("../arms/", folder + "../arms/");
+  put("mesh: clay_ball.off", "mesh: " + folder + "clay_ball.off");
+  put("plastic:", "plastic:\n        edge: 0.0012\n        volume: kept");
+  const auto file = support::scratch_folder() / "fine_clay.yaml";
+  std::ofstream(file) << text;
+  std::vector<Vector3d> first;
+  for (int run = 0; run < 2; ++run) {
+    const auto session = session::Session::open(file, {});
+    ASSERT_TRUE(session) << session.error().message;
+    ASSERT_EQ((*session)->run(std::atomic<bool>{false}), driver::ServoEnd::kDone);
+    const auto now = (*session)->mesh_now();
+    EXPECT_GT(now.triangles.size(), (*session)->setup().objects().mesh_W().triangles.size() + 500);
+    EXPECT_TRUE(render::ContactMesh::build(now));
+    const auto saved = support::scratch_folder() / "fine.off";
+    ASSERT_TRUE(render::save_mesh(now, saved));
+    EXPECT_EQ(render::load_mesh(saved)->triangles, now.triangles);
+    if (run == 0) first = now.vertices;
+    EXPECT_EQ(now.vertices, first);
+  }
+}
+
 // Reads a scene with `body` on an object that is `what`; gives the error's text, empty if there is
 // none.
 std::string refusal(const std::string& what, const std::string& body) {
@@ -84,6 +119,15 @@ TEST(BodyKeys, TellWhatIsWrongWithABody) {
   EXPECT_TRUE(says(refusal(ball, "{motion: {mass: 1, floor_friction: 1}}"), "floor"));
   EXPECT_TRUE(says(refusal(ball, "{motion: {mass: 1, time_scale: 0}}"), "time_scale"));
   EXPECT_TRUE(says(refusal(ball, "{plastic: {yield_force: -1}}"), "yield_force"));
+  EXPECT_EQ(refusal(ball + ", contact: {tracker: god_object}",
+                    "{plastic: {edge: 0.001, triangles: 9000, volume: kept}}"),
+            "");
+  EXPECT_TRUE(says(refusal(ball, "{plastic: {edge: 0.0001}}"), "edge"));
+  EXPECT_TRUE(says(refusal(ball, "{plastic: {triangles: 9000}}"), "needs edge"));
+  EXPECT_TRUE(says(refusal(ball, "{plastic: {edge: 0.001, triangles: 9.5}}"), "whole number"));
+  EXPECT_TRUE(says(refusal(ball, "{plastic: {edge: 0.001, triangles: 4}}"), "triangles already"));
+  EXPECT_TRUE(says(refusal(ball, "{plastic: {volume: full}}"), "kept"));
+  EXPECT_TRUE(says(refusal(ball, "{plastic: {edge: 0.001}, dent: {}}"), "dent"));
   EXPECT_TRUE(says(refusal(ball, "{snap: {depth: 0.02, radius: 0.01}}"), "would fold"));
   EXPECT_TRUE(says(refusal(ball, "{snap: {radius: 0.002, depth: 0.001}}"), "finer mesh"));
   EXPECT_TRUE(says(refusal(ball, "{sticky: {}}"), "sticky"));

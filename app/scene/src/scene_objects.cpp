@@ -141,15 +141,15 @@ render::TriangleMesh SceneObjects::mesh_W(std::size_t object) const {
 }
 
 render::TriangleMesh SceneObjects::mesh_now(int object) const {
-  render::TriangleMesh mesh = mesh_W_;
-  for (std::size_t i = 0; i < touch_->size(); ++i) {
-    const std::size_t begin = places_[i].vertex;
-    touch_->object(i).place_now(
-        std::span(mesh.vertices).subspan(begin, places_[i + 1].vertex - begin));
-  }
-  if (object < 0) return mesh;
-  const auto i = static_cast<std::size_t>(object);
-  return part_of(mesh, places_[i], places_[i + 1]);
+  const auto now = [this](std::size_t i) {
+    render::TriangleMesh mesh = mesh_W(i);
+    touch_->object(i).mesh_now(mesh);
+    return mesh;
+  };
+  if (object >= 0) return now(static_cast<std::size_t>(object));
+  render::TriangleMesh all;
+  for (std::size_t i = 0; i < touch_->size(); ++i) append(now(i), all);
+  return all;
 }
 
 void SceneObjects::start_loaders() {

@@ -110,6 +110,7 @@ driver::Result<ContactMesh> ContactMesh::build(const TriangleMesh& mesh,
   }
   contact.collect_fans();
   contact.measure_around();
+  if (options.triangles_max > contact.triangles_.size()) contact.make_room(options.triangles_max);
   return contact;
 }
 
@@ -150,15 +151,24 @@ void ContactMesh::compute_edge(std::int32_t triangle, std::size_t k) noexcept {
 }
 
 void ContactMesh::collect_fans() {
-  fan_begin_.assign(vertices_.size() + 1, 0);
+  std::vector<std::uint32_t> counts(vertices_.size(), 0);
   for (const auto& triangle : triangles_) {
-    for (const std::int32_t v : triangle) ++fan_begin_[static_cast<std::size_t>(v) + 1];
+    for (const std::int32_t v : triangle) ++counts[static_cast<std::size_t>(v)];
   }
-  for (std::size_t v = 0; v < vertices_.size(); ++v) fan_begin_[v + 1] += fan_begin_[v];
+  fan_of_.reserve(vertices_.size());
+  std::uint64_t begin = 0;
+  for (const std::uint32_t count : counts) {
+    fan_of_.emplace_back(begin, 0);
+    begin += count;
+  }
   fans_.resize(3 * triangles_.size());
-  std::vector<std::size_t> next(fan_begin_.begin(), fan_begin_.end() - 1);
+  fans_built_ = fans_.size();
   for (std::int32_t t = 0; t < triangle_count(); ++t) {
-    for (const std::int32_t v : corners(t)) fans_[next[static_cast<std::size_t>(v)]++] = t;
+    for (const std::int32_t v : corners(t)) {
+      Fan& fan = fan_of_[static_cast<std::size_t>(v)];
+      fans_[fan.begin() + fan.count()] = t;
+      fan = {fan.begin(), fan.count() + 1};
+    }
   }
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -57,12 +58,24 @@ struct ContactMeshOptions {
   /// How far vertices may later move out of the box, as a share of its longest side, >= 0:
   /// `box_min` and `box_max` grow by it on all sides. 0 for a mesh that keeps its shape.
   double room = 0;
+  /// Up to how many triangles the mesh may grow to by ContactMesh::split_edge; 0 for a mesh that
+  /// keeps its triangles. Memory for them is set aside at once, 350 bytes for each.
+  std::size_t triangles_max = 0;
 };
 
 /// Says where a vertex goes.
 struct VertexMove {
   std::int32_t vertex = 0;       ///< Its number.
   Eigen::Vector3d p_W{0, 0, 0};  ///< m
+};
+
+/// Says what became of an edge from vertex a to vertex b that was split in its middle, with the two
+/// triangles at it. Each keeps its number and one half; numbers of the other halves are new.
+struct EdgeSplit {
+  std::int32_t vertex = -1;                 ///< The new one, in the middle; -1: nothing was split.
+  std::array<std::int32_t, 2> ends{};       ///< The vertices a and b.
+  std::array<std::int32_t, 2> triangles{};  ///< Those that keep their numbers.
+  std::array<std::int32_t, 2> others{};     ///< The new ones beside each.
 };
 
 /// Is a mesh made ready to be touched: closed, wound alike, with face planes, edge planes and
@@ -107,8 +120,24 @@ class ContactMesh {
   /// normal 0 and no depth. Real-time: safe; some 20 ns per triangle around the vertex.
   void move_vertex(std::int32_t vertex, const Eigen::Vector3d& p_W) noexcept;
 
-  /// Returns whether any vertex has moved since the mesh was built.
+  /// Returns whether any vertex has moved, or an edge was split, since the mesh was built.
   bool moved() const noexcept { return moved_; }
+
+  /// Splits edge `k` of a triangle in its middle, with the triangle behind it: one vertex and two
+  /// triangles more, none of which hangs in an edge of another. No place of the surface moves but
+  /// by rounding. Both triangles keep the half at the edge's begin if `keep_begin`, else at its
+  /// end. Splits nothing where the mesh may not grow (ContactMeshOptions::triangles_max), a vertex
+  /// would have more than kValenceMax triangles, or the two triangles share more than this edge.
+  /// Real-time: safe; about a microsecond.
+  EdgeSplit split_edge(std::int32_t triangle, std::size_t k, bool keep_begin) noexcept;
+
+  /// Returns how many triangles and vertices the mesh may grow to.
+  std::size_t triangles_max() const noexcept { return std::max(triangles_max_, triangles_.size()); }
+  std::size_t vertices_max() const noexcept {  ///< Returns the same of its vertices.
+    return vertices_.size() + (triangles_max() - triangles_.size()) / 2;
+  }
+
+  static constexpr std::size_t kValenceMax = 64;  ///< Of a vertex that splits may make more of.
 
   /// Tells where corner `k` of a triangle is, m in W.
   const Eigen::Vector3d& position(std::int32_t triangle, std::size_t k) const noexcept {
@@ -122,8 +151,8 @@ class ContactMesh {
 
   /// Lists the triangles around a vertex.
   std::span<const std::int32_t> fan(std::int32_t vertex) const noexcept {
-    const auto v = static_cast<std::size_t>(vertex);
-    return {fans_.data() + fan_begin_[v], fan_begin_[v + 1] - fan_begin_[v]};
+    const Fan fan = fan_of_[static_cast<std::size_t>(vertex)];
+    return {fans_.data() + fan.begin(), fan.count()};
   }
 
   /// Tells the point that cells are relative to: the middle of the box, m in W.
@@ -151,7 +180,22 @@ class ContactMesh {
   // Moves many vertices at once and does each face and edge around them once.
   friend class MovingMesh;
 
+  // Where the triangles around a vertex stand in fans_: of 2^31 triangles at most.
+  class Fan {
+   public:
+    Fan(std::uint64_t begin, std::uint64_t count) noexcept : word_(begin | count << kBits) {}
+    std::size_t begin() const noexcept { return word_ & ((std::uint64_t{1} << kBits) - 1); }
+    std::size_t count() const noexcept { return word_ >> kBits; }
+
+   private:
+    static constexpr int kBits = 33;
+    std::uint64_t word_;
+  };
+
   ContactMesh() = default;
+  void make_room(std::size_t triangles_max);
+  bool add_to_fan(std::int32_t vertex, std::int32_t triangle) noexcept;
+  void change_fan(std::int32_t vertex, const EdgeSplit& split) noexcept;
   void compute_face(std::int32_t triangle) noexcept;
   void compute_edge(std::int32_t triangle, std::size_t k) noexcept;
   void collect_fans();
@@ -160,8 +204,10 @@ class ContactMesh {
   std::vector<Eigen::Vector3d> vertices_;
   std::vector<std::array<std::int32_t, 3>> triangles_;
   std::vector<TriangleCell> cells_;
-  std::vector<std::size_t> fan_begin_;
+  std::vector<Fan> fan_of_;
   std::vector<std::int32_t> fans_;
+  std::size_t fans_built_ = 0;  // of fans_; behind it stand those that have grown
+  std::size_t triangles_max_ = 0;
   Eigen::Vector3d origin_{0, 0, 0};
   Eigen::Vector3d box_min_{0, 0, 0};
   Eigen::Vector3d box_max_{0, 0, 0};

@@ -145,9 +145,15 @@ void SmoothNormals::average_group(const ContactMesh& mesh, const Corner& start,
 }
 
 void SmoothNormals::prepare_refit(const ContactMesh& mesh) {
+  corners_.reserve(mesh.triangles_max());
+  creases_.reserve(mesh.triangles_max());
+  done_.reserve(3 * mesh.triangles_max());
+  seen_.reserve(mesh.vertices_max());
+  group_.taken.reserve(mesh.vertices_max());
   done_.assign(3 * corners_.size(), false);
   seen_.assign(static_cast<std::size_t>(mesh.vertex_count()), 0);
-  std::size_t valence = 0;
+  const bool grows = mesh.triangles_max() > corners_.size();
+  std::size_t valence = grows ? ContactMesh::kValenceMax : 0;
   for (std::int32_t v = 0; v < mesh.vertex_count(); ++v) {
     valence = std::max(valence, mesh.fan(v).size());
   }
@@ -161,6 +167,13 @@ void SmoothNormals::prepare_refit(const ContactMesh& mesh) {
 
 void SmoothNormals::refit(const ContactMesh& mesh,
                           std::span<const std::int32_t> triangles) noexcept {
+  // Those that have come: prepare_refit has set room aside.
+  const auto count = static_cast<std::size_t>(mesh.triangle_count());
+  corners_.resize(count);
+  creases_.resize(count, 0);
+  done_.resize(3 * count, false);
+  seen_.resize(static_cast<std::size_t>(mesh.vertex_count()), 0);
+  group_.taken.resize(static_cast<std::size_t>(mesh.vertex_count()), 0);
   for (const std::int32_t t : triangles) {
     for (std::size_t k = 0; k < 3; ++k) {
       find_crease(mesh, t, k);

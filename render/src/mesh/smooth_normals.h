@@ -47,7 +47,8 @@ class SmoothNormals {
 
   // All of the following are Real-time: safe. Precondition: numbers name what exists.
 
-  /// Finds again what depends on triangles of the mesh whose corners have moved (all around these):
+  /// Finds again what depends on triangles of the mesh whose corners have moved (all around these)
+  /// or that are new:
   /// normals and creases are those of the mesh built anew, to the bit. Precondition:
   /// `prepare_refit` was called with the same mesh. Its time does not grow with the mesh.
   void refit(const ContactMesh& mesh, std::span<const std::int32_t> triangles) noexcept;

@@ -54,7 +54,8 @@ class ContactSearch {
   virtual double clearance(const Eigen::Vector3d& p_W) const noexcept = 0;
 
   /// Takes in that the corners of `triangles` have moved, all within the box that the surface was
-  /// built with. Afterwards every question is answered as by a search built anew. False, and
+  /// built with, and that the last of all are new (ContactMesh::split_edge) if the surface has more
+  /// than before. Afterwards every question is answered as by a search built anew. False, and
   /// nothing done, where this search cannot: ask make_moving_search for one that can.
   /// Real-time: safe; its time does not grow with the mesh but by the depth of a tree.
   virtual bool refit(std::span<const std::int32_t> triangles) noexcept {

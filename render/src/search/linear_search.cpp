@@ -25,11 +25,22 @@ template <class Surface>
 LinearSearchOver<Surface>::LinearSearchOver(const Surface& surface)
     : surface_(&surface), frame_(frame_of(surface)) {
   const auto count = static_cast<std::size_t>(surface.triangle_count());
-  const std::size_t padded = (count + kBlock - 1) / kBlock * kBlock;
-  constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  for (auto* side : {&min_x_, &min_y_, &min_z_}) side->assign(padded, kInfinity);
-  for (auto* side : {&max_x_, &max_y_, &max_z_}) side->assign(padded, -kInfinity);
+  const auto padded = [](std::size_t triangles) {
+    return (triangles + kBlock - 1) / kBlock * kBlock;
+  };
+  for (auto* side : {&min_x_, &min_y_, &min_z_, &max_x_, &max_y_, &max_z_}) {
+    side->reserve(padded(room_of(surface)));
+  }
+  pad(padded(count));
   for (std::int32_t t = 0; t < surface.triangle_count(); ++t) fit_box(t);
+}
+
+// Makes as many boxes, those that come to them empty.
+template <class Surface>
+void LinearSearchOver<Surface>::pad(std::size_t boxes) noexcept {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  for (auto* side : {&min_x_, &min_y_, &min_z_}) side->resize(boxes, kInfinity);
+  for (auto* side : {&max_x_, &max_y_, &max_z_}) side->resize(boxes, -kInfinity);
 }
 
 template <class Surface>
@@ -50,6 +61,9 @@ void LinearSearchOver<Surface>::fit_box(std::int32_t triangle) noexcept {
 
 template <class Surface>
 bool LinearSearchOver<Surface>::refit(std::span<const std::int32_t> triangles) noexcept {
+  while (min_x_.size() < static_cast<std::size_t>(surface_->triangle_count())) {
+    pad(min_x_.size() + kBlock);
+  }
   for (const std::int32_t t : triangles) fit_box(t);
   return true;
 }

@@ -37,6 +37,7 @@ class LinearSearchOver final : public ContactSearch {
   std::size_t bytes() const noexcept override { return 6 * min_x_.capacity() * sizeof(float); }
 
  private:
+  void pad(std::size_t boxes) noexcept;
   void fit_box(std::int32_t triangle) noexcept;
   template <class Visit>
   void visit_reached(const Eigen::Vector3d& low, const Eigen::Vector3d& high,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
 
 #include "mesh/contact_mesh.h"
@@ -25,6 +26,14 @@ struct SearchFrame {
 /// Gives the frame of a surface. Real-time: safe.
 SearchFrame frame_of(const PackedSurface& surface) noexcept;
 SearchFrame frame_of(const ContactMesh& mesh) noexcept;
+
+/// Returns how many triangles a surface may grow to. Real-time: safe.
+inline std::size_t room_of(const PackedSurface& surface) noexcept {
+  return static_cast<std::size_t>(surface.triangle_count());
+}
+inline std::size_t room_of(const ContactMesh& mesh) noexcept {
+  return mesh.triangles_max();
+}
 
 /// Tells where corner `k` of triangle `t` is in steps of the frame: the one accessor that searches
 /// read positions through. Real-time: safe.

@@ -37,7 +37,8 @@ TreeSearch<Surface>::TreeSearch(const Surface& surface, bool wide)
       wide_(wide),
       order_(order_of(surface, frame_)) {
   const auto count = static_cast<std::size_t>(surface.triangle_count());
-  nodes_.build(count, [this](std::size_t place) noexcept { return box_of(place); });
+  nodes_.build(
+      count, [this](std::size_t place) noexcept { return box_of(place); }, room_of(surface));
 }
 
 template <class Surface>

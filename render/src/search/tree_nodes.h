@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>
@@ -25,9 +26,19 @@ class TreeNodes {
   static constexpr std::size_t kThingsMax = std::size_t{1} << (kNumberBits + 2);  ///< Most.
 
   /// Builds the tree in linear time. `box_of(place)` gives the LatticeAabb of a thing.
+  /// Sets room aside for things that come later (`grow`), up to `room` in all.
   /// Precondition: one to `kThingsMax` things. Real-time: never from the servo thread.
   template <class BoxOf>
-  void build(std::size_t things, BoxOf box_of);
+  void build(std::size_t things, BoxOf box_of, std::size_t room = 0);
+
+  /// Takes in that there are as many `things` as this, new ones behind the others, within the room
+  /// of `build`; each must then be told to `refit`. Real-time: safe.
+  void grow(std::size_t things) noexcept {
+    counts_[0] = static_cast<std::uint32_t>(things);
+    for (std::size_t level = 0; level < levels_; ++level) {
+      counts_[level + 1] = (counts_[level] + 7) / 8;
+    }
+  }
 
   /// Takes in that the box of one thing has changed, upwards as far as that changes anything: the
   /// tree is what `build` would make. Real-time: safe.
@@ -86,17 +97,20 @@ BoxNode TreeNodes::made(std::size_t level, std::size_t number, BoxOf box_of) con
 }
 
 template <class BoxOf>
-void TreeNodes::build(std::size_t things, BoxOf box_of) {
+void TreeNodes::build(std::size_t things, BoxOf box_of, std::size_t room) {
   counts_[0] = static_cast<std::uint32_t>(things);
+  std::array<std::uint32_t, kLevelsMax + 1> most{};
+  most[0] = static_cast<std::uint32_t>(std::max(things, room));
   std::size_t all = 0;
   levels_ = 0;
   do {
     counts_[levels_ + 1] = (counts_[levels_] + 7) / 8;
-    all += counts_[++levels_];
-  } while (counts_[levels_] > 1);
+    most[levels_ + 1] = (most[levels_] + 7) / 8;
+    all += most[++levels_];
+  } while (most[levels_] > 1);
   nodes_.resize(all);
   for (std::size_t level = 0; level < levels_; ++level) {
-    all -= counts_[level + 1];
+    all -= most[level + 1];
     begins_[level] = static_cast<std::uint32_t>(all);
     for (std::size_t i = 0; i < counts_[level + 1]; ++i) nodes_[all + i] = made(level, i, box_of);
   }

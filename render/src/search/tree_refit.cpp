@@ -9,6 +9,8 @@ namespace thimble::render {
 
 template <class Surface>
 void TreeSearch<Surface>::keep_places() {
+  order_.reserve(order_.empty() ? 0 : room_of(*surface_));
+  places_.reserve(room_of(*surface_));
   places_.resize(static_cast<std::size_t>(surface_->triangle_count()));
   for (std::size_t place = 0; place < places_.size(); ++place) {
     places_[static_cast<std::size_t>(triangle_at(place))] = static_cast<std::uint32_t>(place);
@@ -23,6 +25,12 @@ bool TreeSearch<Surface>::refit(std::span<const std::int32_t> triangles) noexcep
   constexpr std::size_t kRemembered = 32;
   std::array<std::uint32_t, kRemembered> done;
   done.fill(0xffffffffu);
+  // New ones stand behind all others, those of one print together.
+  while (places_.size() < static_cast<std::size_t>(surface_->triangle_count())) {
+    if (!order_.empty()) order_.push_back(static_cast<std::int32_t>(places_.size()));
+    places_.push_back(static_cast<std::uint32_t>(places_.size()));
+  }
+  nodes_.grow(places_.size());
   for (const std::int32_t t : triangles) {
     const std::uint32_t eight =
         places_[static_cast<std::size_t>(t)] / static_cast<std::uint32_t>(BoxNode::kChildrenMax);

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "mesh/contact_mesh.h"
+#include "mesh/surface_weights.h"
 #include "mesh/triangle_foot.h"
 #include "search/contact_search.h"
 #include "thimble/driver/device_state.h"
@@ -47,6 +48,7 @@ class MovingContact {
   /// surface is moved. Real-time: never from the servo thread.
   void keep_material() {
     first_places_.clear();
+    first_places_.reserve(mesh().vertices_max());
     for (std::int32_t v = 0; v < mesh().vertex_count(); ++v) {
       first_places_.push_back(mesh().position(v));
     }
@@ -87,6 +89,20 @@ class MovingContact {
     return moved.refused;
   }
 
+  /// Splits an edge of the surface in its middle, between two updates (MovingMesh::split_edge): the
+  /// touched triangle keeps its number where it is touched. Real-time: safe.
+  EdgeSplit split_edge(std::int32_t triangle, std::size_t k) noexcept {
+    const std::array ends{mesh().corners(triangle)[k], mesh().corners(triangle)[(k + 1) % 3]};
+    const EdgeSplit split = surface_->split_edge(triangle, k, !touched_nearer(ends[1], ends[0]));
+    if (split.vertex >= 0 && !first_places_.empty()) {
+      const auto first = [this](std::int32_t v) {
+        return first_places_[static_cast<std::size_t>(v)];
+      };
+      first_places_.push_back((first(ends[0]) + first(ends[1])) / 2);
+    }
+    return split;
+  }
+
   // All Real-time: safe.
   const ContactState& state() const noexcept { return contact_.state(); }
   /// Tells the weights of the corners at the place that is touched. Real-time: safe.
@@ -97,6 +113,20 @@ class MovingContact {
   const ContactSearch& search() const noexcept { return surface_->search(); }
 
  private:
+  // Tells whether the touched place belongs to the half at vertex `a` of an edge, not at `b`.
+  bool touched_nearer(std::int32_t a, std::int32_t b) const noexcept {
+    const ContactState& touched = state();
+    if (!touched.touching || touched.triangle < 0) return false;
+    const Eigen::Vector3d weights = projected_weights(mesh(), touched.triangle, touched.p_WP);
+    const auto weight = [&](std::int32_t vertex) {
+      const auto& corners = mesh().corners(touched.triangle);
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (corners[k] == vertex) return weights[static_cast<Eigen::Index>(k)];
+      }
+      return 0.0;
+    };
+    return weight(a) > weight(b);
+  }
   double longest_path(std::span<const VertexMove> moves) const noexcept {
     double squared = 0;
     for (const VertexMove& move : moves) {

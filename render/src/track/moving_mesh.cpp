@@ -1,6 +1,7 @@
 #include "track/moving_mesh.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "search/search_answers.h"
@@ -13,7 +14,7 @@ using Eigen::Vector3d;
 
 MovingMesh::MovingMesh(ContactMesh mesh, const MovingMeshOptions& options)
     : mesh_(std::move(mesh)), search_(make_moving_search(mesh_, options.search)) {
-  const auto count = static_cast<std::size_t>(mesh_.triangle_count());
+  const std::size_t count = mesh_.triangles_max();
   around_.reserve(count);
   marks_.assign(count, 0);
   if (!options.normals) return;
@@ -37,6 +38,15 @@ SurfaceMoved MovingMesh::move_vertices(std::span<const VertexMove> moves,
   search_->refit(around_);
   if (normals_) normals_->refit(mesh_, around_);
   return moved;
+}
+
+EdgeSplit MovingMesh::split_edge(std::int32_t triangle, std::size_t k, bool keep_begin) noexcept {
+  const EdgeSplit split = mesh_.split_edge(triangle, k, keep_begin);
+  if (split.vertex < 0) return split;
+  const std::array all{split.triangles[0], split.triangles[1], split.others[0], split.others[1]};
+  search_->refit(all);
+  if (normals_) normals_->refit(mesh_, all);
+  return split;
 }
 
 bool MovingMesh::place(const VertexMove& move, const Vector3d& p_WT, const Vector3d& p_far,

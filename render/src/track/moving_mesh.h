@@ -60,6 +60,11 @@ class MovingMesh {
   SurfaceMoved move_vertices(std::span<const VertexMove> moves,
                              const Eigen::Vector3d& p_WT) noexcept;
 
+  /// Splits an edge in its middle, without moving any place of the surface
+  /// (ContactMesh::split_edge); corner normals are those of the mesh built anew. Real-time: safe;
+  /// no heap; some microseconds.
+  EdgeSplit split_edge(std::int32_t triangle, std::size_t k, bool keep_begin) noexcept;
+
   const ContactMesh& mesh() const noexcept { return mesh_; }
   const ContactSearch& search() const noexcept { return *search_; }
   /// Gives the normals; null if none are kept.

@@ -10,6 +10,7 @@
 #include "thimble/render/body_patch.h"
 #include "thimble/render/body_pose.h"
 #include "thimble/render/effect/live_settings.h"
+#include "thimble/render/mesh/triangle_mesh.h"
 
 namespace thimble::render {
 
@@ -57,6 +58,9 @@ class ObjectTouch {
   /// Puts the vertices of the object's mesh, as it was given (W, m), where they are now.
   /// Real-time: safe; time grows with the mesh.
   virtual void place_now(std::span<Eigen::Vector3d>) const noexcept {}
+  /// Makes of the object's mesh, as it was given (W, m), what it is now: vertices where they are,
+  /// and the triangles that it has been split into. Real-time: never from the servo thread.
+  virtual void mesh_now(TriangleMesh& mesh) const { place_now(mesh.vertices); }
 };
 
 /// Is an ObjectTouch made of a Touch with its stages known at compile time. `Stages` is callable

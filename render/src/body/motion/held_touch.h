@@ -53,6 +53,7 @@ class HeldTouch final : public ObjectTouch {
   void place_now(std::span<Eigen::Vector3d> vertices) const noexcept override {
     object_->place_now(vertices);
   }
+  void mesh_now(TriangleMesh& mesh) const override { object_->mesh_now(mesh); }
 
   void list_settings(LiveSettings& settings) override { object_->list_settings(settings); }
 

@@ -90,6 +90,10 @@ class MovingTouch final : public ObjectTouch {
     surface_->place_now(vertices);
     for (Eigen::Vector3d& p : vertices) p = motion_.p_WB() + motion_.R_WB() * p;
   }
+  void mesh_now(TriangleMesh& mesh) const override {
+    surface_->mesh_now(mesh);
+    for (Eigen::Vector3d& p : mesh.vertices) p = motion_.p_WB() + motion_.R_WB() * p;
+  }
 
   /// The coupling to the body counts on a surface no stiffer than it was built with.
   void list_settings(LiveSettings& settings) override {

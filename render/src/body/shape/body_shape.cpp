@@ -15,9 +15,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kStill = 1e-12;        // of the mesh's size; what is nearer is rounding
-constexpr std::uint8_t kTries = 8;      // for a vertex that others are in the way of [chosen]
-constexpr std::size_t kPrintMax = 512;  // vertices that one print moves
+constexpr double kStill = 1e-12;             // of the mesh's size; what is nearer is rounding
+constexpr std::uint8_t kTries = 8;           // for a vertex that others are in the way of [chosen]
+constexpr std::size_t kPrintMax = 512;       // vertices that one print moves
+constexpr std::size_t kFinePrintMax = 8192;  // the same of a mesh whose edges are split
 
 // Tells how many vertices lie within `radius` on a mesh whose vertices lie evenly.
 double vertices_within(const ContactMesh& mesh, double radius) {
@@ -53,7 +54,10 @@ driver::Result<BodyShape> BodyShape::build(const ContactMesh& mesh, const ShapeC
   if (choice.clay) {
     if (auto fit = choice.clay->check(); !fit) return fit.error();
     constexpr double kLeast = 0;  // the touched triangle goes in any case
-    auto fit = check_size(mesh, "A print", choice.clay->radius, kLeast, kPrintMax);
+    const std::size_t most = choice.clay->edge > 0 ? kFinePrintMax : kPrintMax;
+    const double reach = choice.clay->keeps_volume ? VolumeKeeper::kRim : 1;
+    auto fit = check_size(mesh, reach > 1 ? "A print with its rim" : "A print",
+                          reach * choice.clay->radius, kLeast, most);
     if (!fit) return fit.error();
   }
   if (choice.snap) {
@@ -68,15 +72,24 @@ driver::Result<BodyShape> BodyShape::build(const ContactMesh& mesh, const ShapeC
 BodyShape::BodyShape(const ContactMesh& mesh, const ShapeChoice& choice, double stiffness)
     : guard_(mesh), step_(choice.step), still_(kStill * (mesh.box_max() - mesh.box_min()).norm()) {
   const auto count = static_cast<std::size_t>(mesh.vertex_count());
-  first_places_.reserve(count);
+  const std::size_t room = mesh.vertices_max();
+  first_places_.reserve(room);
   for (std::int32_t v = 0; v < mesh.vertex_count(); ++v) first_places_.push_back(mesh.position(v));
+  places_.reserve(room);
   places_ = first_places_;
-  ring_.resize(count);
+  ring_.resize(room);
+  tries_.reserve(room);
   tries_.assign(count, 0);
   moves_.reserve(kMovesMax);
   if (choice.clay) {
-    print_.emplace(first_places_, kPrintMax);
-    clay_.emplace(*choice.clay, stiffness, count);
+    const bool fine = choice.clay->edge > 0;
+    const std::size_t most = fine ? kFinePrintMax : kPrintMax;
+    print_.emplace(first_places_, most, room);
+    if (choice.clay->keeps_volume) volume_.emplace(mesh, choice.clay->radius, most);
+    clay_.emplace(*choice.clay, stiffness, count, room);
+    if (fine) {
+      refinement_.emplace(choice.clay->edge, choice.clay->radius, mesh.triangles_max());
+    }
   }
   if (choice.snap) snap_.emplace(*choice.snap, stiffness, mesh, first_places_);
 }
@@ -106,12 +119,13 @@ std::span<const VertexMove> BodyShape::follow(const ContactMesh& mesh,
   // Written so that NaN means no press.
   const bool pressed = touch.in_contact && touch.feature >= 0 &&
                        touch.feature < mesh.triangle_count() && touch.depth >= 0;
+  pressed_ = false;
   if (!pressed) {
     if (snap_) {
       snap_->rest(step_);
       snap_->for_each_moved([this](std::int32_t vertex) { mark(vertex); });
     }
-    carry_waiting(mesh);
+    end_tick(mesh);
     return moves_;
   }
   ShapeContact contact = contact_of(mesh, touch);
@@ -124,18 +138,58 @@ std::span<const VertexMove> BodyShape::follow(const ContactMesh& mesh,
     snap_->for_each_moved([this](std::int32_t vertex) { mark(vertex); });
     contact.depth -= snapped;
   }
-  if (clay_) {
-    const auto patch = print_->around(mesh, contact.triangle, contact.p_first, clay_->radius());
-    if (clay_->press(contact, corners, patch, first_places_, step_) > 0) {
-      for (const std::int32_t vertex : patch) mark(vertex);
-    }
+  if (refinement_ && clay_->near_flowing(contact.depth)) {
+    refinement_->press(contact.triangle, contact.p_first);
+    pressed_ = true;
   }
+  if (clay_ && clay_->flows(contact.depth)) flow(mesh, contact);
   for (const std::int32_t vertex : corners) {
     if (tries_[static_cast<std::size_t>(vertex)] > 0) carry(mesh, vertex);
   }
   if (clay_) clay_->moved(way_of(contact, corners) - way_before - snapped, depth - snapped);
-  carry_waiting(mesh);
+  end_tick(mesh);
   return moves_;
+}
+
+// Lets clay flow under a contact, and go to the rim of the print if its volume is kept.
+void BodyShape::flow(const ContactMesh& mesh, const ShapeContact& contact) noexcept {
+  const auto& corners = mesh.corners(contact.triangle);
+  const double reach = clay_->radius() * (volume_ ? VolumeKeeper::kRim : 1);
+  const auto patch = print_->around(mesh, contact.triangle, contact.p_first, reach);
+  if (volume_) {
+    volume_->begin();
+    const double way = clay_->press(
+        contact, corners, patch, first_places_, step_,
+        [this](std::int32_t vertex, const Vector3d& change) { volume_->flowed(vertex, change); });
+    volume_->raise(*clay_, contact, corners, patch, first_places_, way);
+    if (!(way > 0)) return;
+  } else if (!(clay_->press(contact, corners, patch, first_places_, step_,
+                            [](std::int32_t, const Vector3d&) {}) > 0)) {
+    return;
+  }
+  for (const std::int32_t vertex : patch) mark(vertex);
+}
+
+void BodyShape::end_tick(const ContactMesh& mesh) noexcept {
+  carry_waiting(mesh);
+  if (!volume_ || waiting_ > 0) return;
+  for (const std::int32_t vertex : volume_->settle(*clay_)) mark(vertex);
+}
+
+void BodyShape::take(const ContactMesh& mesh, const EdgeSplit& split) noexcept {
+  refinement_->take(split);
+  if (split.vertex < 0) return;
+  const auto at = [](std::int32_t vertex) { return static_cast<std::size_t>(vertex); };
+  const auto& [a, b] = split.ends;
+  first_places_.push_back((first_places_[at(a)] + first_places_[at(b)]) / 2);
+  places_.push_back(mesh.position(split.vertex));
+  const bool waits = tries_[at(a)] > 0 || tries_[at(b)] > 0;
+  tries_.push_back(0);
+  clay_->take(split);
+  guard_.take(split);
+  if (volume_) volume_->take(mesh, places_, split);
+  print_->grow(first_places_);
+  if (waits) mark(split.vertex);
 }
 
 // Tells how far a place of the mesh lies inwards of where it was at first, m.
@@ -178,7 +232,9 @@ bool BodyShape::carry(const ContactMesh& mesh, std::int32_t vertex) noexcept {
   const Vector3d there = place + share * (to - place);
   const bool moves = share * far > still_ && mesh.in_box(there);
   if (moves) {
+    const Vector3d way = there - place;
     place = there;
+    if (volume_) volume_->moved(mesh, places_, vertex, way);
     moves_.push_back({vertex, there});
   }
   if (moves && share == 1) return true;

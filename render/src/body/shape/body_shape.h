@@ -8,10 +8,12 @@
 #include <vector>
 
 #include "body/shape/clay_shape.h"
+#include "body/shape/print_refinement.h"
 #include "body/shape/shape_contact.h"
 #include "body/shape/snap_shape.h"
 #include "body/shape/surface_patch.h"
 #include "body/shape/turn_guard.h"
+#include "body/shape/volume_keeper.h"
 #include "mesh/contact_mesh.h"
 #include "thimble/driver/force_law.h"
 #include "thimble/driver/result.h"
@@ -46,12 +48,26 @@ class BodyShape {
   std::span<const VertexMove> follow(const ContactMesh& mesh,
                                      const driver::TouchInfo& touch) noexcept;
 
+  /// Returns the next edge of the mesh that shall be split (PrintRefinement), after the moves of
+  /// the last `follow`; none if all is fine, or enough for a tick. Each is told of by `take`, split
+  /// or not. Real-time: safe.
+  std::optional<EdgeOfTriangle> next_split(const ContactMesh& mesh) noexcept {
+    if (!refinement_ || !pressed_) return std::nullopt;
+    return refinement_->next(mesh, first_places_);
+  }
+  /// Takes in what came of the edge that `next_split` has named. Real-time: safe.
+  void take(const ContactMesh& mesh, const EdgeSplit& split) noexcept;
+  /// Returns whether it may split edges at all. Real-time: safe.
+  bool refines() const noexcept { return refinement_.has_value(); }
+
   /// Gives the moves of the last `follow` again. Real-time: safe.
   std::span<const VertexMove> moves() const noexcept { return moves_; }
   /// Tells whether all vertices are where they shall be. Real-time: safe.
   bool settled() const noexcept { return waiting_ == 0; }
   /// Shows the clay; nullptr if the body is of another matter. Real-time: safe.
   const ClayShape* clay() const noexcept { return clay_ ? &*clay_ : nullptr; }
+  /// Shows the account of its volume; nullptr if that is not kept. Real-time: safe.
+  const VolumeKeeper* volume() const noexcept { return volume_ ? &*volume_ : nullptr; }
   /// Shows the panels that snap; nullptr if the body is of another matter. Real-time: safe.
   const SnapShape* snap() const noexcept { return snap_ ? &*snap_ : nullptr; }
   const TurnGuard& guard() const noexcept { return guard_; }  ///< Shows its guard.
@@ -61,6 +77,8 @@ class BodyShape {
  private:
   BodyShape(const ContactMesh& mesh, const ShapeChoice& choice, double stiffness);
   ShapeContact contact_of(const ContactMesh& mesh, const driver::TouchInfo& touch) const noexcept;
+  void flow(const ContactMesh& mesh, const ShapeContact& contact) noexcept;
+  void end_tick(const ContactMesh& mesh) noexcept;
   void mark(std::int32_t vertex) noexcept;
   bool carry(const ContactMesh& mesh, std::int32_t vertex) noexcept;
   void carry_waiting(const ContactMesh& mesh) noexcept;
@@ -74,6 +92,9 @@ class BodyShape {
   double still_;  // m, what is nearer is there
   std::optional<SurfacePatch> print_;
   std::optional<ClayShape> clay_;
+  std::optional<PrintRefinement> refinement_;
+  std::optional<VolumeKeeper> volume_;
+  bool pressed_ = false;  // so that edges may be split
   std::optional<SnapShape> snap_;
   // Vertices that wait to be carried, each once: a ring; with how often each may still be put off.
   std::vector<std::int32_t> ring_;

@@ -1,12 +1,15 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "body/shape/shape_contact.h"
+#include "mesh/contact_mesh.h"
 #include "thimble/render/body/shape_choice.h"
 
 namespace thimble::render {
@@ -21,18 +24,26 @@ namespace thimble::render {
 /// presses it only.
 class ClayShape {
  public:
-  /// Takes the surface's stiffness (N/m, > 0) and the number of vertices.
-  /// Real-time: never from the servo thread.
-  ClayShape(const ClayChoice& choice, double stiffness, std::size_t vertices);
+  /// Takes the surface's stiffness (N/m, > 0), the number of vertices, and to how many that may
+  /// grow. Real-time: never from the servo thread.
+  ClayShape(const ClayChoice& choice, double stiffness, std::size_t vertices,
+            std::size_t vertices_max);
 
   // All of the following are Real-time: safe.
 
   /// Lets the sets of `patch` (the vertices around the contact) flow for `step` s; `first_places`
   /// are those of all vertices. Gives the way that the touched place shall go inwards, m: 0 if it
   /// holds.
+  /// `changed(vertex, change)` hears by how much each set has changed, m.
+  template <class Changed>
   double press(const ShapeContact& contact, std::span<const std::int32_t> corners,
                std::span<const std::int32_t> patch, std::span<const Eigen::Vector3d> first_places,
-               double step) noexcept;
+               double step, Changed changed) noexcept;
+
+  /// Returns whether a spring pressed in by `depth` (m) makes the clay flow.
+  bool flows(double depth) const noexcept { return depth > choice_.yield_force / stiffness_; }
+  /// Returns whether it soon may: from half of that on.
+  bool near_flowing(double depth) const noexcept { return flows(2 * depth); }
 
   /// Takes in how far the touched place really went (m), with the spring pressed in by `depth` (m)
   /// before: what the slider held against turned into heat.
@@ -46,6 +57,13 @@ class ClayShape {
   void correct(std::int32_t vertex, const Eigen::Vector3d& set) noexcept {
     sets_[static_cast<std::size_t>(vertex)] = set;
   }
+  /// Adds `change` (m) to a set, as far as the movement limit lets it; returns what was added.
+  Eigen::Vector3d add(std::int32_t vertex, const Eigen::Vector3d& change) noexcept;
+  /// Takes in that an edge was split: the new vertex, the last of all, has the mean of its ends'
+  /// sets.
+  void take(const EdgeSplit& split) noexcept {
+    sets_.push_back((set(split.ends[0]) + set(split.ends[1])) / 2);
+  }
   double radius() const noexcept { return choice_.radius; }  ///< Of a print, m.
   /// Sums up what was turned into heat, J; never falls.
   double dissipated() const noexcept { return dissipated_; }
@@ -58,5 +76,40 @@ class ClayShape {
   std::vector<Eigen::Vector3d> sets_;
   double dissipated_ = 0;
 };
+
+template <class Changed>
+double ClayShape::press(const ShapeContact& contact, std::span<const std::int32_t> corners,
+                        std::span<const std::int32_t> patch,
+                        std::span<const Eigen::Vector3d> first_places, double step,
+                        Changed changed) noexcept {
+  const double beyond = contact.depth - choice_.yield_force / stiffness_;
+  // Written so that NaN moves nothing.
+  if (!(beyond > 0) || !(step > 0) || !std::isfinite(contact.depth)) return 0;
+  const double flow = std::min(beyond, choice_.flow_rate * step);
+  // The corners of the touched triangle go along even where the print is smaller than the triangle.
+  const auto share_of = [&](std::int32_t vertex) {
+    const auto v = static_cast<std::size_t>(vertex);
+    double share = print((first_places[v] - contact.p_first).squaredNorm());
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (corners[k] == vertex) {
+        share = std::max(share, contact.weights[static_cast<Eigen::Index>(k)]);
+      }
+    }
+    return share;
+  };
+  double at_place = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    at_place += contact.weights[static_cast<Eigen::Index>(k)] * share_of(corners[k]);
+  }
+  // Inwards as it was at first, so that walls of a pit neither fold nor crumple: as much farther as
+  // that is aslant, up to walls of 70 degrees. The place's share is at least a third: the squares
+  // of three weights whose sum is 1.
+  constexpr double kAslant = 0.34;
+  const double aslant = std::max(contact.first_inward.dot(contact.inward), kAslant);
+  const Eigen::Vector3d way = flow / (at_place * aslant) * contact.first_inward;
+  if (!way.allFinite()) return 0;
+  for (const std::int32_t vertex : patch) changed(vertex, add(vertex, share_of(vertex) * way));
+  return flow;
+}
 
 }  // namespace thimble::render

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <string>
 
+#include "body/shape/print_refinement.h"
 #include "body/shape/snap_base.h"
 
 namespace thimble::render {
@@ -14,6 +15,7 @@ constexpr double kForceMax = 100;    // N
 constexpr double kSpeedMax = 100;    // m/s
 constexpr double kLengthMax = 1;     // m
 constexpr double kLengthMin = 1e-5;  // m
+constexpr double kRounding = 1e-12;  // of a limit that a scene gives in decimals
 
 bool positive(double x) {
   return x > 0 && std::isfinite(x);
@@ -34,6 +36,20 @@ void ClayChoice::read(SettingsReader& reader) {
     movement_limit = 0;
     reader.number("movement_limit", movement_limit, {.unit = "m", .least = 0, .most = kLengthMax});
   }
+  if (reader.has("edge")) {
+    edge = 0;
+    reader.number("edge", edge,
+                  {.unit = "m", .least = radius / PrintRefinement::kFinest, .most = kLengthMax});
+  }
+  std::size_t volume = keeps_volume ? 1 : 0;
+  reader.choice("volume", volume, {"free", "kept"});
+  keeps_volume = volume == 1;
+  if (!reader.has("triangles")) return;
+  double count = triangles;
+  reader.number("triangles", count, {.unit = "", .least = 4, .most = kTrianglesMax});
+  if (count != std::floor(count)) reader.reject("triangles", "expected a whole number");
+  if (!(edge > 0)) reader.reject("triangles", "needs edge: the length that triangles are split to");
+  triangles = static_cast<int>(count);
 }
 
 driver::Result<void> ClayChoice::check() const {
@@ -45,6 +61,14 @@ driver::Result<void> ClayChoice::check() const {
   if (!(movement_limit >= 0)) return driver::Error{"Clay needs a movement_limit of 0 m or more."};
   if (!(radius > 0) || !std::isfinite(radius)) {
     return driver::Error{"Clay needs a radius above 0 m."};
+  }
+  if (!(edge == 0 ||
+        (edge >= (1 - kRounding) * radius / PrintRefinement::kFinest && std::isfinite(edge)))) {
+    return driver::Error{
+        "Clay needs an edge of a sixteenth of its radius or more, or 0 to split no triangles."};
+  }
+  if (!(triangles >= 4 && triangles <= kTrianglesMax)) {
+    return driver::Error{"Clay that splits its triangles may have 4 to 1000000 of them."};
   }
   return {};
 }

@@ -30,6 +30,7 @@ class ShapedTouch final : public ObjectTouch {
     was_touching_ = command.touch.in_contact;
     const auto moves = shape_.follow(stages_.contact().mesh(), command.touch);
     if (!moves.empty()) stages_.contact().move_vertices(moves);
+    if (shape_.refines()) refine();
     return command;
   }
   bool inside(const Eigen::Vector3d& p_W) const noexcept override {
@@ -45,12 +46,30 @@ class ShapedTouch final : public ObjectTouch {
     }
   }
 
+  void mesh_now(TriangleMesh& mesh) const override {
+    const auto& now = stages_.contact().mesh();
+    mesh.vertices.resize(static_cast<std::size_t>(now.vertex_count()));
+    place_now(mesh.vertices);
+    if (!shape_.refines()) return;
+    mesh.triangles.clear();
+    for (std::int32_t t = 0; t < now.triangle_count(); ++t)
+      mesh.triangles.push_back(now.corners(t));
+  }
+
   void list_settings(LiveSettings& settings) override { list_settings_of(stages_, settings); }
 
   const Stages& stages() const noexcept { return stages_; }
   const BodyShape* shape() const noexcept override { return &shape_; }
 
  private:
+  // Splits edges after the moves, so that the surface stands as the shape believes it does.
+  void refine() noexcept {
+    auto& contact = stages_.contact();
+    while (const auto edge = shape_.next_split(contact.mesh())) {
+      shape_.take(contact.mesh(), contact.split_edge(edge->triangle, edge->k));
+    }
+  }
+
   Stages stages_;
   BodyShape shape_;
   bool was_touching_ = false;

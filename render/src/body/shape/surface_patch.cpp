@@ -4,8 +4,11 @@
 
 namespace thimble::render {
 
-SurfacePatch::SurfacePatch(std::span<const Eigen::Vector3d> first_places, std::size_t capacity)
-    : first_places_(first_places), seen_in_(first_places.size(), 0), capacity_(capacity) {
+SurfacePatch::SurfacePatch(std::span<const Eigen::Vector3d> first_places, std::size_t capacity,
+                           std::size_t vertices_max)
+    : first_places_(first_places), capacity_(capacity) {
+  seen_in_.reserve(std::max(first_places.size(), vertices_max));
+  seen_in_.resize(first_places.size(), 0);
   patch_.reserve(capacity);
 }
 

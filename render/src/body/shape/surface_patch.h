@@ -16,8 +16,17 @@ namespace thimble::render {
 class SurfacePatch {
  public:
   /// Keeps the first places of the vertices (m; they must outlive the patch). Sets memory aside for
-  /// `capacity` vertices. Real-time: never from the servo thread.
-  SurfacePatch(std::span<const Eigen::Vector3d> first_places, std::size_t capacity);
+  /// `capacity` vertices in a patch, and for up to `vertices_max` of the mesh.
+  /// Real-time: never from the servo thread.
+  SurfacePatch(std::span<const Eigen::Vector3d> first_places, std::size_t capacity,
+               std::size_t vertices_max = 0);
+
+  /// Takes in that the mesh has more vertices, whose first places stand behind those of the others.
+  /// Real-time: safe.
+  void grow(std::span<const Eigen::Vector3d> first_places) noexcept {
+    first_places_ = first_places;
+    seen_in_.resize(first_places.size(), 0);
+  }
 
   /// Collects what lies within `radius` m of `place`, beginning with the corners of `triangle`,
   /// which are in it in any case; nearest over the surface first, until the capacity ends. Valid

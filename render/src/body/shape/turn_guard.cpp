@@ -19,7 +19,7 @@ Vector3d twice_area(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
 }  // namespace
 
 TurnGuard::TurnGuard(const ContactMesh& mesh) {
-  seen_along_.reserve(static_cast<std::size_t>(mesh.triangle_count()));
+  seen_along_.reserve(mesh.triangles_max());
   for (std::int32_t t = 0; t < mesh.triangle_count(); ++t) {
     const Vector3d area = twice_area(mesh.position(t, 0), mesh.position(t, 1), mesh.position(t, 2));
     const double squared = area.squaredNorm();

@@ -26,6 +26,16 @@ class TurnGuard {
   double allowed(const ContactMesh& mesh, std::span<const Eigen::Vector3d> places,
                  std::int32_t vertex, const Eigen::Vector3d& p_W) const noexcept;
 
+  /// Takes in that an edge was split: each half keeps its share of its own half of the first area.
+  /// Room is set aside for as many triangles as the mesh may grow to.
+  void take(const EdgeSplit& split) noexcept {
+    for (const std::int32_t triangle : split.triangles) {
+      Eigen::Vector3d& halved = seen_along_[static_cast<std::size_t>(triangle)];
+      halved *= 2;
+      seen_along_.push_back(halved);
+    }
+  }
+
   /// Tells a triangle's first outward normal; zero if it had no area.
   Eigen::Vector3d first_normal(std::int32_t triangle) const noexcept {
     return seen_along_[static_cast<std::size_t>(triangle)].stableNormalized();

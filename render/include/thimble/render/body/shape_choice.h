@@ -19,6 +19,14 @@ struct ClayChoice {
   /// degree their movement].
   double movement_limit = std::numeric_limits<double>::infinity();
   double radius = 5e-3;  ///< m, > 0: of the print that a press leaves.
+  /// m: triangles under a print are split until no edge is longer, a sixteenth of the radius at
+  /// least; 0: never, and the print is as fine as the mesh.
+  double edge = 0;
+  /// Whether what is pressed away goes to a rim around the print, so that the volume stays.
+  bool keeps_volume = false;
+  int triangles = 20000;  ///< Up to how many triangles the mesh grows by that.
+
+  static constexpr int kTrianglesMax = 1000000;  ///< Most triangles of a mesh that grows.
 
   /// Reads the settings of a scene. Real-time: never from the servo thread.
   void read(SettingsReader& reader);

@@ -1,0 +1,149 @@
+#include "body/shape/print_refinement.h"
+
+#include <algorithm>
+#include <array>
+#include <tuple>
+
+#include "mesh/closest_point.h"
+
+namespace thimble::render {
+namespace {
+
+using Eigen::Vector3d;
+
+// Triangles gone over from one that is too coarse to one whose longest edge is the next one's, too:
+// where that is farther, the edge that was reached is split. [chosen; 3 on scans]
+constexpr int kPathMax = 16;
+
+// Narrower triangles, as twice the area over the square of the longest edge, are not split: their
+// parts would be rounding. [chosen]
+constexpr double kNarrow = 1e-4;
+
+// An edge so much shorter than the one asked for is not made: what is so narrow stays. [chosen]
+constexpr double kShort = 0.125;
+
+// A press that has gone so far, in edges, is looked around anew; one that stays, after so many
+// ticks, since what is pressed in grows. [chosen]
+constexpr double kGone = 0.25;
+constexpr int kAgain = 32;
+
+// An edge's length and numbers, so that of two as long one is always the longer.
+using Length = std::tuple<double, std::int32_t, std::int32_t>;
+
+Length length_of(const ContactMesh& mesh, std::int32_t triangle, std::size_t k) {
+  const std::int32_t a = mesh.corners(triangle)[k];
+  const std::int32_t b = mesh.corners(triangle)[(k + 1) % 3];
+  // From the same end whoever asks, so that both triangles at it find the same length.
+  const std::int32_t low = std::min(a, b);
+  const std::int32_t high = std::max(a, b);
+  return {(mesh.position(high) - mesh.position(low)).squaredNorm(), low, high};
+}
+
+std::size_t longest_edge(const ContactMesh& mesh, std::int32_t triangle) {
+  std::size_t longest = 0;
+  for (std::size_t k = 1; k < 3; ++k) {
+    if (length_of(mesh, triangle, k) > length_of(mesh, triangle, longest)) longest = k;
+  }
+  return longest;
+}
+
+bool narrow(const ContactMesh& mesh, std::int32_t triangle, double squared) {
+  const Vector3d& a = mesh.position(triangle, 0);
+  const double area = (mesh.position(triangle, 1) - a).cross(mesh.position(triangle, 2) - a).norm();
+  // Written so that NaN is narrow.
+  return !(area > kNarrow * squared);
+}
+
+// Tells whether splitting an edge would make one shorter than `least` m, to the corners opposite.
+bool makes_short(const ContactMesh& mesh, std::int32_t triangle, std::size_t k, double least) {
+  const Vector3d& from = mesh.position(triangle, k);
+  const Vector3d& to = mesh.position(triangle, (k + 1) % 3);
+  const Vector3d middle = (from + to) / 2;
+  for (const std::int32_t t : {triangle, mesh.cell(triangle).neighbours[k]}) {
+    for (const std::int32_t corner : mesh.corners(t)) {
+      if ((mesh.position(corner) - middle).squaredNorm() < least * least) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+PrintRefinement::PrintRefinement(double edge, double radius, std::size_t triangles_max)
+    : edge_(edge), reach_(radius + edge), seen_(triangles_max, 0) {
+  queue_.reserve(triangles_max);
+}
+
+void PrintRefinement::add(std::int32_t triangle) noexcept {
+  std::uint32_t& seen = seen_[static_cast<std::size_t>(triangle)];
+  if (seen == round_) return;
+  seen = round_;
+  queue_.push_back(triangle);
+}
+
+void PrintRefinement::press(std::int32_t triangle, const Vector3d& p_first) noexcept {
+  looks_ = 0;
+  splits_ = 0;
+  p_first_ = p_first;
+  const bool gone = !((p_first - p_begun_).squaredNorm() < kGone * kGone * edge_ * edge_);
+  if (next_ < queue_.size()) return;
+  if (round_ > 0 && !gone && !split_any_ && ++idle_ < kAgain) return;
+  idle_ = 0;
+  if (++round_ == 0) {
+    std::fill(seen_.begin(), seen_.end(), 0);
+    round_ = 1;
+  }
+  queue_.clear();
+  next_ = 0;
+  split_any_ = false;
+  p_begun_ = p_first;
+  add(triangle);
+}
+
+std::optional<EdgeOfTriangle> PrintRefinement::next(
+    const ContactMesh& mesh, std::span<const Vector3d> first_places) noexcept {
+  while (next_ < queue_.size() && looks_ < kLooksMax && splits_ < kSplitsMax) {
+    ++looks_;
+    std::int32_t triangle = queue_[next_];
+    const auto first = [&](std::size_t k) -> const Vector3d& {
+      return first_places[static_cast<std::size_t>(mesh.corners(triangle)[k])];
+    };
+    const Vector3d nearest = closest_point(p_first_, first(0), first(1), first(2));
+    if (!((nearest - p_first_).squaredNorm() < reach_ * reach_)) {
+      ++next_;
+      continue;
+    }
+    std::size_t k = longest_edge(mesh, triangle);
+    double squared = std::get<0>(length_of(mesh, triangle, k));
+    if (squared > edge_ * edge_ && !narrow(mesh, triangle, squared)) {
+      for (int path = 0; path < kPathMax; ++path) {
+        const std::int32_t behind = mesh.cell(triangle).neighbours[k];
+        const std::size_t longest = longest_edge(mesh, behind);
+        const Length length = length_of(mesh, behind, longest);
+        if (!(length > length_of(mesh, triangle, k)) || narrow(mesh, behind, std::get<0>(length))) {
+          break;
+        }
+        triangle = behind;
+        k = longest;
+      }
+      if (!makes_short(mesh, triangle, k, kShort * edge_)) {
+        ++splits_;
+        return EdgeOfTriangle{triangle, k};
+      }
+    }
+    ++next_;
+    for (const std::int32_t behind : mesh.cell(triangle).neighbours) add(behind);
+  }
+  return std::nullopt;
+}
+
+void PrintRefinement::take(const EdgeSplit& split) noexcept {
+  if (split.vertex < 0) {
+    ++next_;
+    return;
+  }
+  split_any_ = true;
+  for (const std::int32_t triangle : split.others) add(triangle);
+}
+
+}  // namespace thimble::render
