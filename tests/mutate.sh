@@ -3,7 +3,8 @@
 # test would see. Writes tests/MUTANTS.md; at least 90 % must be killed.
 #   tests/mutate.sh [--count N] [--seed S] [--library driver|render] [--survivors] [--again FILE:LINE]...
 #     --count N     a sample of N mutants, half of them of each library; 340 without it
-#     --survivors   after new tests: only what survived the run before; of the others its result is taken
+#     --survivors   after new tests: only what survived the run before, or was not reached by it when it was
+#                   interrupted; of the others its result is taken
 #     --again       only mutants of that line, and nothing is written
 # All mutants are built at once, in a copy of the sources in build/mutants; the environment chooses one of them
 # when a test runs. A first run notes which tests come by which mutant. Ends with 1 below 90 %, with 3 where

@@ -37,6 +37,7 @@ class Region:
     first: int
     last: int  # the one after its last token
     type: str = ""
+    const: bool = False
 
 
 class Code:
@@ -161,9 +162,9 @@ class Code:
         elif len(parts) == 2:
             self.take_initialisers(*parts[0])
 
-    def take(self, kind, first, last, type_of=""):
+    def take(self, kind, first, last, type_of="", const=False):
         if first < last and not self.holds_code(first, last):
-            self.regions.append(Region(kind, first, last, type_of))
+            self.regions.append(Region(kind, first, last, type_of, const))
 
     def take_statement(self, first, last):
         word = self.at(first)
@@ -177,7 +178,7 @@ class Code:
         self.take("statement", first, last)
 
     def take_initialisers(self, first, last):
-        i = first
+        begin = i = first
         while i < last:
             if self.at(i) == "=":
                 end = i + 1
@@ -186,6 +187,7 @@ class Code:
                 words = self.flat(first, i - 1)
                 plain = "," not in words and not re.search(r"\bauto\b|&|=|\[", words)
                 if self.at(i + 1) != "{":
-                    self.take("initialiser", i + 1, end, re.sub(r"^const ", "", words) if plain else "")
+                    self.take("initialiser", i + 1, end, re.sub(r"^const ", "", words) if plain else "",
+                              self.at(begin) == "const")
                 i = end
             i = self.partner.get(i, i) + 1

@@ -46,3 +46,4 @@ constexpr bool mutated(int id) noexcept {
 }  // namespace thimble_mutants
 
 #define THIMBLE_MUTANT(id) ::thimble_mutants::mutated(id)
+#define THIMBLE_MUTANT_NOW(id) ::thimble_mutants::is_chosen(id)

@@ -73,8 +73,14 @@ def main():
 
     results_file = options.work / "results.json"
     ends = known_results(results_file, options, chosen)
+
+    def keep():  # so that a run that was interrupted goes on with --survivors
+        if not options.again:
+            results_file.write_text(json.dumps({chosen[i].title(): end for i, end in ends.items()}, indent=0))
+
     for ident, how, where in trials.try_all(ident for ident in chosen if ident not in ends):
         ends[ident] = (how, where)
+        keep()
         mutant = chosen[ident]
         print(f"{len(ends)}/{len(chosen)} {mutant.file}:{mutant.line} {mutant.kind}: {how or 'SURVIVED'} ({where})\n"
               f"    - {mutant.old}\n    + {mutant.new}", flush=True)
@@ -82,7 +88,7 @@ def main():
     if options.again:
         counts = summary(results, reasons_in(options.table))
     else:
-        results_file.write_text(json.dumps({chosen[i].title(): end for i, end in ends.items()}, indent=0))
+        keep()
         counts = write_table(options.table, results, uncompilable, options.seed)
     reasons = reasons_in(options.table)
     for mutant, how in results:
