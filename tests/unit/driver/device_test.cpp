@@ -221,6 +221,21 @@ TEST_F(DeviceTest, SendsZeroInTheSecondTickOfAnImpossibleJump) {
   EXPECT_EQ(device_->fault(), Fault::kOverSpeed);
 }
 
+TEST_F(DeviceTest, LetsAnArmRefuseForAsLongAsTheLimitSaysAndNoLonger) {
+  open_and_activate();
+  settle();
+  const std::int64_t limit_ticks = support::vintage_settings().silence_limit_ns / kPeriod_ns;
+  wire_.refusals = 1000;
+  for (std::int64_t k = 0; k <= limit_ticks; ++k) {
+    wire_.to_host.push_back(report());
+    tick({0, 0.5, 0});
+    EXPECT_EQ(device_->fault(), Fault::kNone) << k;
+  }
+  wire_.to_host.push_back(report());
+  tick({0, 0.5, 0});
+  EXPECT_EQ(device_->fault(), Fault::kRefused);
+}
+
 TEST_F(DeviceTest, NamesALostArmAndCannotBeActivatedAgain) {
   open_and_activate();
   settle();

@@ -329,5 +329,16 @@ TEST(Fault, SaysWhatToDo) {
   }
 }
 
+TEST(EnergyGuard, ForgetsDebtAndFadingWhenItStartsAnew) {
+  PassivityObserver observer(
+      {.stage = EnergyStage::kPassivity, .mass = 0.075, .reservoir = 0.02, .onset = 0.01});
+  observer.book(1);
+  EXPECT_EQ(observer.energy(), -1);
+  EXPECT_EQ(observer.share(kPeriod), 0);
+  observer.restart();
+  EXPECT_EQ(observer.energy(), 0);
+  EXPECT_EQ(observer.share(kPeriod), 1);
+}
+
 }  // namespace
 }  // namespace thimble::driver
