@@ -257,6 +257,21 @@ TEST_F(DeviceTest, SendsZeroWhenDeactivatedAndWhenDestroyed) {
   EXPECT_EQ(last_currents(), kZero);
 }
 
+TEST_F(DeviceTest, InsistsOnZeroOnceAndIsDestroyedWithoutInsistingAgain) {
+  constexpr int kMany = 1'000'000;
+  open_and_activate();
+  settle();
+  wire_.refusals = kMany;
+  VirtualClock clock(now_ns_);
+  device_->deactivate();
+  EXPECT_FALSE(device_->insist_on_zero(clock));
+  const int insisted = kMany - wire_.refusals;
+  EXPECT_GT(insisted, 10);
+  wire_.refusals = kMany;
+  device_.reset();
+  EXPECT_LT(kMany - wire_.refusals, 4);  // the destructor's own zero, and no more
+}
+
 /// A WoodenHaptics arm, whose reports carry a number.
 class NumberedReports : public ::testing::Test {
  protected:
