@@ -53,10 +53,11 @@ TEST(DentSettings, ReadEachOfTheirNumbers) {
   EXPECT_EQ(settings.rounds, 7);
   EXPECT_EQ(settings.step, 5e-4);
 
-  support::VariantSettings whole({{"region", "whole"}});
+  support::VariantSettings whole(support::VariantSettings::Values{{"region", "whole"}});
   settings.read(whole, {});
   EXPECT_TRUE(settings.whole);
-  support::VariantSettings both({{"region", "whole"}, {"rings", 2.0}});
+  support::VariantSettings both(
+      support::VariantSettings::Values{{"region", "whole"}, {"rings", 2.0}});
   settings.read(both, {});
   EXPECT_NE(both.mistakes.find("rings cannot stand together with region: whole"),
             std::string::npos);
