@@ -262,7 +262,8 @@ TEST_F(DeviceTest, InsistsOnZeroOnceAndIsDestroyedWithoutInsistingAgain) {
   open_and_activate();
   settle();
   wire_.refusals = kMany;
-  VirtualClock clock(now_ns_);
+  VirtualClock clock;
+  clock.sleep_until_ns(now_ns_);
   device_->deactivate();
   EXPECT_FALSE(device_->insist_on_zero(clock));
   const int insisted = kMany - wire_.refusals;

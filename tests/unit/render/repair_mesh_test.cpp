@@ -10,7 +10,6 @@
 #include <string>
 #include <utility>
 
-#include "mesh/repair/open_edges.h"
 #include "support/hard_case.h"
 #include "support/random.h"
 #include "support/reference_geometry.h"
@@ -211,49 +210,6 @@ TEST(RepairMesh, GivesPartsThatShareAVertexOneEach) {
   ASSERT_TRUE(loaded.ok());
   EXPECT_EQ(loaded->vertices, repaired.mesh.vertices);
   EXPECT_EQ(loaded->triangles, repaired.mesh.triangles);
-}
-
-TEST(WeldOpenEdges, LeavesNumbersAloneThatNameNoVertex) {
-  TriangleMesh mesh;
-  mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1e-9, 0, 0}, {0, 0, 1}, {0, 1, 1}};
-  mesh.triangles = {{0, 1, 2}, {3, 4, 5}, {-1, 99, 0}, {-7, 1'000'000'000, 3}};
-  EXPECT_EQ(weld_open_edges(mesh, 1e-6), (std::vector<std::int32_t>{3}));
-  EXPECT_EQ(mesh.triangles[1], (std::array<std::int32_t, 3>{0, 4, 5}));
-  EXPECT_EQ(mesh.triangles[2], (std::array<std::int32_t, 3>{-1, 99, 0}));
-  EXPECT_EQ(mesh.triangles[3], (std::array<std::int32_t, 3>{-7, 1'000'000'000, 0}));
-}
-
-TEST(RepairMesh, PartsTwoBodiesThatTouchAlongAnEdgeOfSeveralPieces) {
-  // Two prisms over triangles that share the edge x = y = 0, which has a vertex in its middle: at
-  // that vertex the faces of each body hang together over the parted edge alone.
-  TriangleMesh mesh;
-  const auto add = [&mesh](double x, double y, double z) {
-    mesh.vertices.emplace_back(x, y, z);
-    return static_cast<std::int32_t>(mesh.vertices.size() - 1);
-  };
-  std::array<std::int32_t, 3> shared{};
-  for (std::size_t i = 0; i < 3; ++i) shared[i] = add(0, 0, static_cast<double>(i));
-  for (const double side : {1.0, -1.0}) {
-    std::array<std::int32_t, 3> right{}, left{};
-    for (std::size_t i = 0; i < 3; ++i) right[i] = add(side, -0.5 * side, static_cast<double>(i));
-    for (std::size_t i = 0; i < 3; ++i) left[i] = add(side, 0.5 * side, static_cast<double>(i));
-    const std::array<std::array<std::int32_t, 3>, 3> columns{shared, right, left};
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto& a = columns[k];
-      const auto& b = columns[(k + 1) % 3];
-      for (std::size_t i = 0; i < 2; ++i) {
-        mesh.triangles.push_back({a[i], b[i], b[i + 1]});
-        mesh.triangles.push_back({a[i], b[i + 1], a[i + 1]});
-      }
-    }
-    mesh.triangles.push_back({shared[0], left[0], right[0]});
-    mesh.triangles.push_back({shared[2], right[2], left[2]});
-  }
-  ASSERT_EQ(count(mesh, Fault::kNonManifoldEdge), 2u);
-  const RepairedMesh repaired = repair_mesh(mesh);
-  EXPECT_TRUE(check_mesh(repaired.mesh).touchable());
-  EXPECT_EQ(repaired.mesh.triangles.size(), mesh.triangles.size());
-  EXPECT_EQ(repaired.mesh.vertices.size(), 18u);  // nine for each body
 }
 
 TEST(SaveMesh, SaysWhyItCannotWrite) {

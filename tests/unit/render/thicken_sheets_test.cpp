@@ -11,7 +11,6 @@
 #include <string>
 #include <vector>
 
-#include "mesh/repair/sheet_wedges.h"
 #include "support/random.h"
 #include "support/shapes.h"
 #include "thimble/render/mesh/check_mesh.h"
@@ -89,20 +88,6 @@ void expect_closed(const TriangleMesh& mesh, const std::string& what) {
   const ThickenedMesh thick = thicken_sheets(mesh, kThickness);
   for (const MeshFault& fault : check_mesh(thick.mesh).faults) {
     ADD_FAILURE() << what << ": " << describe(fault);
-  }
-}
-
-TEST(AmbiguousEdges, AreCutIntoPiecesThatKnowTheirTriangle) {
-  // Front and back of a lone triangle hang together over each of its edges.
-  TriangleMesh lone;
-  lone.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {5, 0, 0}, {6, 0, 0}, {5, 1, 0}};
-  lone.triangles = {{0, 1, 2}, {3, 4, 5}};
-  const CutMesh cut = with_ambiguous_edges_cut(lone);
-  EXPECT_EQ(cut.mesh.triangles.size(), 8u);
-  ASSERT_EQ(cut.sources.size(), cut.mesh.triangles.size());
-  for (std::size_t i = 0; i < cut.sources.size(); ++i) {
-    const double x = cut.mesh.vertices[static_cast<std::size_t>(cut.mesh.triangles[i][0])].x();
-    EXPECT_EQ(cut.sources[i], x < 3 ? 0 : 1) << i;
   }
 }
 
