@@ -84,6 +84,8 @@ class Trials:
         every = [(program, name) for program in self.programs for name in self.names_of(program)]
         with concurrent.futures.ThreadPoolExecutor(self.jobs) as pool:
             self.tests = list(pool.map(lambda one: self.measure_one(*one), every))
+        if None in self.tests:
+            sys.exit("Tests fail without any mutant: mend them first.")
         return self.tests
 
     def measure_one(self, program, name):
@@ -94,9 +96,8 @@ class Trials:
                 content = pathlib.Path(reached.name).read_bytes()
             if code == 0:
                 return Test(program, name, seconds, frozenset(i for i, byte in enumerate(content) if byte))
-        sys.stderr.write(output)
-        sys.stderr.write(f"{program} fails in {name} without any mutant: mend it first.\n")
-        os._exit(1)
+        print(f"{output}\n{program} fails in {name} without any mutant", flush=True)
+        return None
 
     def killer_of(self, ident):
         """Returns how a mutant was noticed and in which run; empty if no test did, or if none reaches it."""

@@ -64,8 +64,8 @@ TEST(PageFile, IsRefusedWithBoxesThatNoTrianglesHave) {
   EXPECT_EQ(refusal(same), "");
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::size_t low = 72 + 24 * 3 + 4 * axis, high = low + 12;
-    for (const auto& [at, value] : {std::pair{low, 1e9F},
-                                    {high, -1e9F},
+    for (const auto& [at, value] : {std::pair{low, 4e9F},
+                                    {high, -4e9F},
                                     {low, -1e10F},
                                     {high, 1e10F},
                                     {low, std::numeric_limits<float>::quiet_NaN()},

@@ -4,8 +4,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "mesh/closest_point.h"
 #include "mesh/repair/open_edges.h"
 #include "mesh/repair/sheet_wedges.h"
+#include "support/random.h"
 #include "thimble/render/mesh/check_mesh.h"
 #include "thimble/render/mesh/repair_mesh.h"
 
@@ -13,6 +15,8 @@
 
 namespace thimble::render {
 namespace {
+
+using Eigen::Vector3d;
 
 TEST(WeldOpenEdges, LeavesNumbersAloneThatNameNoVertex) {
   TriangleMesh mesh;
@@ -58,17 +62,32 @@ TEST(RepairMesh, PartsTwoBodiesThatTouchAlongAnEdgeOfSeveralPieces) {
 }
 
 TEST(AmbiguousEdges, AreCutIntoPiecesThatKnowTheirTriangle) {
-  // Front and back of a lone triangle hang together over each of its edges.
-  TriangleMesh lone;
-  lone.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {5, 0, 0}, {6, 0, 0}, {5, 1, 0}};
-  lone.triangles = {{0, 1, 2}, {3, 4, 5}};
-  const CutMesh cut = with_ambiguous_edges_cut(lone);
-  EXPECT_EQ(cut.mesh.triangles.size(), 8u);
-  ASSERT_EQ(cut.sources.size(), cut.mesh.triangles.size());
-  for (std::size_t i = 0; i < cut.sources.size(); ++i) {
-    const double x = cut.mesh.vertices[static_cast<std::size_t>(cut.mesh.triangles[i][0])].x();
-    EXPECT_EQ(cut.sources[i], x < 3 ? 0 : 1) << i;
+  // Triangles that hang together at random: over some edges front and back are one at both ends.
+  support::Random random(5);
+  std::size_t cuts = 0;
+  for (int i = 0; i < 50; ++i) {
+    TriangleMesh mesh;
+    for (int v = 0; v < 6; ++v) mesh.vertices.push_back(random.in_box(1));
+    for (int t = 0; t < 8; ++t) {
+      const auto a = static_cast<std::int32_t>(random.bits() % 6);
+      const auto step = static_cast<std::int32_t>(1 + random.bits() % 2);
+      mesh.triangles.push_back({a, (a + step) % 6, (a + 2 * step + 1) % 6});
+    }
+    const CutMesh cut = with_ambiguous_edges_cut(mesh);
+    ASSERT_EQ(cut.sources.size(), cut.mesh.triangles.size());
+    cuts += cut.mesh.triangles.size() - mesh.triangles.size();
+    for (std::size_t k = 0; k < cut.sources.size(); ++k) {
+      const auto corner = [&mesh, &cut, k](std::size_t n) {
+        return mesh.vertices[static_cast<std::size_t>(
+            mesh.triangles[static_cast<std::size_t>(cut.sources[k])][n])];
+      };
+      for (const std::int32_t v : cut.mesh.triangles[k]) {
+        const Vector3d& p = cut.mesh.vertices[static_cast<std::size_t>(v)];
+        EXPECT_LT((closest_point(p, corner(0), corner(1), corner(2)) - p).norm(), 1e-12) << k;
+      }
+    }
   }
+  EXPECT_GT(cuts, 10u);
 }
 
 }  // namespace
