@@ -35,6 +35,11 @@ lines && echo "HARD_CASE|42|w|<= s|1|2|N|T.T|f" >>"$scratch/lines/all"
 must_fail "a case that is not in the list" "case 42 is not in"
 lines && echo "HARD_CASE|1|torn" >>"$scratch/lines/all"
 must_fail "a torn line" "not understood"
+# Rows as cases 4 and 38 have them: more than a limit, and just that.
+lines && echo "HARD_CASE|4|adversary|> gain|-0.49|0|1|HardCase04.Test|f" >>"$scratch/lines/all"
+must_fail "an adversary who gains nothing" "case 4, adversary: -0.49 is not > 0"
+lines && echo "HARD_CASE|38|glitches|== not dropped|1|0|1|HardCase38.Test|f" >>"$scratch/lines/all"
+must_fail "a glitch that was not dropped" "case 38, glitches: 1 is not = 0"
 unset THIMBLE_LONG
 lines && must_fail "an old table" "differs from what the tests measure"
 rm -r "$scratch/lines" && must_fail "a run that has left nothing" "case 1 has no figure"

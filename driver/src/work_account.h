@@ -18,7 +18,9 @@ namespace thimble::driver {
 class WorkAccount {
  public:
   /// Takes the ticks from sampling to effort beyond the hold, 0 to EnergyGuardSettings::kDelayMost.
-  explicit WorkAccount(int delay_ticks) noexcept : delay_(static_cast<std::size_t>(delay_ticks)) {}
+  explicit WorkAccount(int delay_ticks) noexcept : delay_(static_cast<std::size_t>(delay_ticks)) {
+    restart();
+  }
 
   /// Forgets the past.
   void restart() noexcept;
@@ -36,7 +38,7 @@ class WorkAccount {
 
  private:
   std::size_t delay_;
-  std::array<Eigen::Vector3d, EnergyGuardSettings::kDelayMost + 1> efforts_{};  // the newest first
+  std::array<Eigen::Vector3d, EnergyGuardSettings::kDelayMost + 1> efforts_;  // the newest first
   Eigen::Vector3d x_{0, 0, 0};
   Eigen::Vector3d p_WT_{0, 0, 0};
   bool begun_ = false;

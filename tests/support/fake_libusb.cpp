@@ -108,13 +108,24 @@ int libusb_clear_halt(libusb_device_handle*, unsigned char) {
 }
 int libusb_control_transfer(libusb_device_handle*, std::uint8_t, std::uint8_t, std::uint16_t,
                             std::uint16_t, unsigned char*, std::uint16_t, unsigned) {
-  ++fake_libusb().control_requests;
-  return 0;
+  FakeLibusb& usb = fake_libusb();
+  const auto& refused = usb.requests_refused;
+  const bool taken =
+      std::find(refused.begin(), refused.end(), usb.control_requests) == refused.end();
+  ++usb.control_requests;
+  return taken ? 0 : LIBUSB_ERROR_PIPE;
 }
-int libusb_bulk_transfer(libusb_device_handle*, unsigned char, unsigned char*, int, int* moved,
-                         unsigned) {
+int libusb_bulk_transfer(libusb_device_handle*, unsigned char endpoint, unsigned char* bytes,
+                         int size, int* moved, unsigned) {
+  FakeLibusb& usb = fake_libusb();
   *moved = 0;
-  return LIBUSB_ERROR_TIMEOUT;
+  FakeLibusb::Read read;
+  if ((endpoint & LIBUSB_ENDPOINT_IN) == 0 || !usb.take_read(read)) {
+    return usb.read_code != 0 ? usb.read_code : LIBUSB_ERROR_TIMEOUT;
+  }
+  *moved = std::min(size, static_cast<int>(read.size));
+  std::copy_n(reinterpret_cast<const unsigned char*>(read.bytes.data()), *moved, bytes);
+  return 0;
 }
 const char* libusb_strerror(int) {
   return "scripted";

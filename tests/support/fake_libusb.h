@@ -31,12 +31,14 @@ class FakeLibusb {
   /// Lets the next read end so (a libusb_transfer_status) with nothing.
   void fail(int status);
 
-  bool answers = false;     ///< Each message that is taken is answered by `answer`.
-  bool takes = true;        ///< Messages complete at once; otherwise they stay under way.
-  int write_status = 0;     ///< What a message comes to.
-  int submit_code = 0;      ///< What handing a transfer over answers.
-  int open_code = 0;        ///< What opening the device answers.
-  std::string_view answer;  ///< Without the status bytes.
+  bool answers = false;  ///< Each message that is taken is answered by `answer`.
+  bool takes = true;     ///< Messages complete at once; otherwise they stay under way.
+  int write_status = 0;  ///< What a message comes to.
+  int read_code = 0;     ///< What a read of the line that brings nothing comes to, 0: a timeout.
+  std::array<int, 4> requests_refused{-1, -1, -1, -1};  ///< Numbers of control requests that fail.
+  int submit_code = 0;                                  ///< What handing a transfer over answers.
+  int open_code = 0;                                    ///< What opening the device answers.
+  std::string_view answer;                              ///< Without the status bytes.
 
   int transfers = 0;      ///< Made and not freed.
   int under_way = 0;      ///< Handed over and not complete.

@@ -23,6 +23,7 @@ struct PoseArm {
   double strongest = 3;    ///< What the arm can do by itself, N.
   std::uint16_t buttons = 0;
   bool lost = false, silent = false, refuses = false, stuck = false;
+  bool says_still = false;               ///< Tells a velocity of zero whatever it does.
   std::vector<Eigen::Vector3d> taken_B;  ///< Every force that it took, N.
   std::int64_t time_ns = 0;
 
@@ -55,7 +56,7 @@ class PoseLink final : public driver::ArmLink {
     if (arm_.silent) return {driver::LinkStatus::kNothing};
     if (!arm_.stuck) p_told_ = arm_.p_BT;
     sample.pose.p_BT = p_told_;
-    sample.v_BT = arm_.v_BT;
+    sample.v_BT = arm_.says_still ? Eigen::Vector3d(0, 0, 0) : arm_.v_BT;
     sample.R_BT = arm_.R_BT;
     sample.gripper = arm_.gripper;
     sample.buttons = arm_.buttons;

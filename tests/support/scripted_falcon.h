@@ -21,6 +21,7 @@ class ScriptedFalcon final : public driver::SerialLine {
   int echoes_wrong = 0;       ///< So many uploads get a wrong echo in their second block.
   int echoes_missing = 0;     ///< So many uploads stop echoing in their third block.
   std::uint8_t homed = 0;
+  int stray = 0;   ///< So many bytes of a packet before come ahead of an answer.
   int split = 64;  ///< Largest number of bytes that one read brings.
 
   int resets = 0, host_packets = 0, uploads = 0;
@@ -83,6 +84,7 @@ class ScriptedFalcon final : public driver::SerialLine {
       if (const auto packet = decode_host_packet(bytes)) {
         ++host_packets;
         last = *packet;
+        for (int i = 0; i < stray; ++i) say({'A' + i % 16});
         for (const std::byte b : encode_arm_packet({.counts = {5, -6, 7}, .homed = homed})) {
           to_host_.push_back(b);
         }

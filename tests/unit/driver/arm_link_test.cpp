@@ -177,6 +177,21 @@ TEST_F(PoseArmTest, HoldsTheLimitOfSpeedForWhatItDidAndForWhatItSays) {
   EXPECT_EQ(device_->fault(), Fault::kOverSpeed);
 }
 
+TEST_F(PoseArmTest, HoldsTheLimitOfSpeedOfATipThatSaysItStands) {
+  arm_.says_still = true;
+  arm_.stiffness = arm_.damping = 0;
+  open(settings());
+  ticks(10, {0, 0, 0});
+  EXPECT_EQ(device_->fault(), Fault::kNone);
+  for (int i = 0; i < 40 && device_->fault() == Fault::kNone; ++i) {
+    arm_.v_BT.x() += 0.2;  // up to 8 m/s, where 3 are allowed
+    tick({0, 0, 0});
+  }
+  EXPECT_EQ(device_->fault(), Fault::kOverSpeed);
+  EXPECT_LT(arm_.v_BT.x(), 4);
+  EXPECT_TRUE(device_->state().v_WT.isZero(0));
+}
+
 TEST_F(PoseArmTest, IsSwitchedOffIfItsOrientationIsNoNumber) {
   open(settings());
   ticks(10, {0, 0, 0});

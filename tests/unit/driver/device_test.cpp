@@ -221,6 +221,21 @@ TEST_F(DeviceTest, SendsZeroInTheSecondTickOfAnImpossibleJump) {
   EXPECT_EQ(device_->fault(), Fault::kOverSpeed);
 }
 
+TEST_F(DeviceTest, LetsAnArmRefuseForAsLongAsTheLimitSaysAndNoLonger) {
+  open_and_activate();
+  settle();
+  const std::int64_t limit_ticks = support::vintage_settings().silence_limit_ns / kPeriod_ns;
+  wire_.refusals = 1000;
+  for (std::int64_t k = 0; k <= limit_ticks; ++k) {
+    wire_.to_host.push_back(report());
+    tick({0, 0.5, 0});
+    EXPECT_EQ(device_->fault(), Fault::kNone) << k;
+  }
+  wire_.to_host.push_back(report());
+  tick({0, 0.5, 0});
+  EXPECT_EQ(device_->fault(), Fault::kRefused);
+}
+
 TEST_F(DeviceTest, NamesALostArmAndCannotBeActivatedAgain) {
   open_and_activate();
   settle();
@@ -240,6 +255,22 @@ TEST_F(DeviceTest, SendsZeroWhenDeactivatedAndWhenDestroyed) {
   settle();
   device_.reset();
   EXPECT_EQ(last_currents(), kZero);
+}
+
+TEST_F(DeviceTest, InsistsOnZeroOnceAndIsDestroyedWithoutInsistingAgain) {
+  constexpr int kMany = 1'000'000;
+  open_and_activate();
+  settle();
+  wire_.refusals = kMany;
+  VirtualClock clock;
+  clock.sleep_until_ns(now_ns_);
+  device_->deactivate();
+  EXPECT_FALSE(device_->insist_on_zero(clock));
+  const int insisted = kMany - wire_.refusals;
+  EXPECT_GT(insisted, 10);
+  wire_.refusals = kMany;
+  device_.reset();
+  EXPECT_LT(kMany - wire_.refusals, 4);  // the destructor's own zero, and no more
 }
 
 /// A WoodenHaptics arm, whose reports carry a number.

@@ -42,6 +42,8 @@ TEST(Discovery, FindsEachArmWithItsNodeAndItsName) {
   EXPECT_EQ((*arms)[0].certainty, Certainty::kProvesItself);
   EXPECT_EQ((*arms)[0].node, "/dev/hidraw3");
   EXPECT_EQ((*arms)[0].name(), "WH01");
+  EXPECT_EQ((*arms)[0].vendor_id, 0x1234);
+  EXPECT_EQ((*arms)[0].product_id, 0x0006);
   EXPECT_TRUE((*arms)[0].accessible);
   EXPECT_EQ((*arms)[1].kind, ArmKind::kPolhem);
   EXPECT_EQ((*arms)[1].certainty, Certainty::kKnown);
@@ -82,6 +84,8 @@ TEST(Discovery, TakesABoardForAnArmOnlyByWhatIsTheArmsOwn) {
       {"16c0", "0483", "Haptikfabriken arm", 0, true, Certainty::kKnown, BoardKind::kTextLines},
       // Another maker's arm, and forms that no arm has.
       {"16c0", "0483", "Haply inverse3", 0, true, Certainty::kUnsupported, BoardKind::kOther},
+      {"16c0", "0483", "Haply robot", 0, true, Certainty::kUnsupported, BoardKind::kOther},
+      {"16c0", "0483", "Inverse3", 0, true, Certainty::kUnsupported, BoardKind::kOther},
       {"16c0", "0486", "Polhem", 14, false, Certainty::kUnknown, BoardKind::kOther},
       {"1234", "0006", "HID DEVICE", 64, false, Certainty::kUnknown, BoardKind::kOther},
       {"1234", "0006", "WoodenHaptics", -1, false, Certainty::kUnknown, BoardKind::kOther},

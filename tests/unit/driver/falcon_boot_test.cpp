@@ -128,5 +128,32 @@ TEST_F(FalconBoot, HomesLegByLegWithZeroForceAndALightThatTells) {
   EXPECT_EQ(line_.last.motors, (std::array<std::int16_t, 3>{}));
 }
 
+TEST_F(FalconBoot, FindsTheBeginningOfAnAnswerBehindStrayBytes) {
+  line_.running = true;
+  ASSERT_TRUE(enter_run_mode(line_));
+  line_.homed = 5;
+  for (const int stray : {1, 15, 60}) {
+    line_.stray = stray;
+    const HomingState state = home_once(line_, 0, quick_);
+    EXPECT_TRUE(state.answered) << stray;
+    EXPECT_EQ(state.homed, 5);
+    EXPECT_EQ(state.counts, (std::array<std::int16_t, 3>{5, -6, 7}));
+  }
+  line_.stray = 5 * static_cast<int>(kPacketSize);
+  EXPECT_FALSE(home_once(line_, 0, quick_).answered);
+}
+
+TEST_F(FalconBoot, TakesAnImageOfJust64KBAndNoByteMore) {
+  const auto file = support::scratch_folder() / "image_64k.bin";
+  std::ofstream(file, std::ios::binary) << std::string(65'536, 'x');
+  const auto largest = read_firmware(file);
+  ASSERT_TRUE(largest) << largest.error().message;
+  EXPECT_EQ(largest->size(), 65'536u);
+  std::ofstream(file, std::ios::binary) << std::string(65'537, 'x');
+  const auto beyond = read_firmware(file);
+  ASSERT_FALSE(beyond);
+  EXPECT_NE(beyond.error().message.find("more than 64 kB"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace thimble::driver::falcon

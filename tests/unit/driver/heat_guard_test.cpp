@@ -131,6 +131,24 @@ TEST(HeatGuard, TakesWhatItCannotKnowForHotAndNoTimeForNone) {
   }
 }
 
+TEST(HeatGuard, ActsForAnArmWhoseFirstMotorIsKnown) {
+  EXPECT_TRUE(
+      (HeatSettings{.continuous_current = {0.9, 0, 0}, .time_constant = {60, 60, 60}}.named()));
+  EXPECT_FALSE(
+      (HeatSettings{.continuous_current = {0, 0.9, 0.9}, .time_constant = {60, 60, 60}}.named()));
+}
+
+TEST(HeatGuard, CountsAForceAsLoweredOnlyWhereHeatLowersIt) {
+  HeatGuard heat = guard();
+  heat.sent({3000, 3000, 3000}, true);  // cold: it was the motors' own limit
+  EXPECT_EQ(heat.lowered(), 0u);
+  for (int i = 0; i < 10'000; ++i) heat.advance(kLongestHold);
+  heat.sent({500, 500, 500}, false);  // hot, and little was asked for
+  EXPECT_EQ(heat.lowered(), 0u);
+  heat.sent({500, 500, 500}, true);
+  EXPECT_EQ(heat.lowered(), 1u);
+}
+
 /// Answers each read with a tip that goes to and fro by some counts of each encoder.
 class SwingingWire final : public Transport {
  public:
@@ -139,12 +157,15 @@ class SwingingWire final : public Transport {
     const auto count = static_cast<std::int16_t>(++reads_ % 2);
     const auto report = hfab::encode_input({.counts = {count, count, count}});
     std::copy(report.begin(), report.end(), buffer.begin());
-    return {TransportStatus::kOk, report.size(), 0};
+    return {lost ? TransportStatus::kLost : TransportStatus::kOk, report.size(), 0};
   }
   TransportStatus write(std::span<const std::byte> report) noexcept override {
+    if (lost) return TransportStatus::kLost;
     mA_ = hfab::decode_output(report)->current_mA;
     return TransportStatus::kOk;
   }
+
+  bool lost = false;
 
  private:
   std::array<std::int16_t, 3>& mA_;
@@ -191,6 +212,34 @@ TEST(HeatOfADevice, LowersAnHourOfFiftyNewtonsToTheContinuousCurrentAndKeepsItsD
     device.write({});
   }
   EXPECT_LT(*std::max_element(device.heat().heat().begin(), device.heat().heat().end()), 0.01);
+}
+
+TEST(HeatOfADevice, CoolsOnceTheArmIsGone) {
+  DeviceSettings settings = support::vintage_settings();
+  settings.heat = kSettings;
+  std::array<std::int16_t, 3> mA{};
+  auto wire = std::make_unique<SwingingWire>(mA);
+  SwingingWire& far = *wire;
+  auto opened =
+      Device::open(std::make_unique<WireLink>(
+                       std::move(wire), std::make_unique<hfab::HfabArm>(support::vintage_model())),
+                   settings, 0);
+  ASSERT_TRUE(opened) << opened.error().message;
+  Device& device = **opened;
+  ASSERT_TRUE(device.activate());
+  std::int64_t now_ns = 0;
+  const auto run = [&](int ticks) {
+    for (int i = 0; i < ticks; ++i) {
+      now_ns += 10'000'000;
+      device.read(now_ns, now_ns);
+      device.write({.f_T_W = {0, 4, 0}, .touch = {}});
+    }
+    return *std::max_element(device.heat().heat().begin(), device.heat().heat().end());
+  };
+  const double warm = run(2000);
+  EXPECT_GT(warm, 0.01);
+  far.lost = true;
+  EXPECT_LT(run(1000), warm);
 }
 
 TEST(HeatOfADevice, RefusesATimeConstantThatIsNone) {

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <string_view>
 
+#include "arms/hfab/hfab_wire.h"
 #include "support/noise.h"
 
 namespace thimble::driver::hfab {
@@ -73,6 +74,17 @@ TEST(HfabLine, RejectsEveryBeginningOfALine) {
   for (std::size_t size = 0; size < whole.size(); ++size) {
     EXPECT_FALSE(decode_arm_line(bytes_of(whole.substr(0, size)))) << size;
   }
+}
+
+TEST(LineWire, PutsEachMotorInItsPlace) {
+  std::array<std::byte, kReportCapacity> buffer{};
+  const std::size_t size = LineWire::encode({101, -202, 303}, buffer);
+  EXPECT_EQ(std::string_view(reinterpret_cast<const char*>(buffer.data()), size),
+            "[101,-202,303]\n");
+  ArmReading reading;
+  ASSERT_TRUE(LineWire::decode(bytes_of("[3,1,-2,3,4,-5,6,0]"), reading));
+  EXPECT_EQ(reading.counts, (std::array<std::int32_t, 3>{1, -2, 3}));
+  EXPECT_EQ(reading.auxiliary, (std::array<std::int32_t, 3>{4, -5, 6}));
 }
 
 }  // namespace

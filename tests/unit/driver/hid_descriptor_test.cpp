@@ -41,6 +41,25 @@ TEST(HidDescriptor, SumsTheFieldsOfAKeyboardAndKeepsItsOuterUsage) {
   EXPECT_EQ(reports.out_bytes, 1u);
 }
 
+TEST(HidDescriptor, KeepsTheUsageOfTheOuterCollectionWhateverIsWithin) {
+  const std::vector<unsigned char> nested = {
+      0x06, 0xab, 0xff, 0x0a, 0x00, 0x02, 0xa1, 0x01,  // page ffab, usage 0200: a collection
+      0x05, 0x01, 0x09, 0x06, 0xa1, 0x02,              // page 1, usage 6: a collection within
+      0x75, 0x08, 0x95, 0x08, 0x81, 0x02, 0xc0, 0xc0};
+  EXPECT_EQ(read(nested).usage_page, 0xffab);
+  EXPECT_EQ(read(nested).usage, 0x0200);
+  EXPECT_EQ(read(nested).in_bytes, 8u);
+}
+
+TEST(HidDescriptor, PassesOverALongItemAndReadsOn) {
+  // A long item of three bytes [HID 1.11, 6.2.2.3], then eight bytes in.
+  const std::vector<unsigned char> with_long = {0xfe, 0x03, 0xf0, 0x81, 0x81, 0x81,
+                                                0x75, 0x08, 0x95, 0x08, 0x81, 0x02};
+  EXPECT_EQ(read(with_long).in_bytes, 8u);
+  const std::vector<unsigned char> torn = {0x75, 0x08, 0x95, 0x08, 0x81, 0x02, 0xfe, 0x09, 0xf0};
+  EXPECT_EQ(read(torn).in_bytes, 8u);
+}
+
 TEST(HidDescriptor, SaysThatReportsAreNumbered) {
   const std::vector<unsigned char> numbered = {0x85, 0x01, 0x75, 0x08, 0x95, 0x08, 0x81, 0x02};
   EXPECT_TRUE(read(numbered).numbered);

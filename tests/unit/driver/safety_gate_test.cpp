@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -326,6 +327,17 @@ TEST(Fault, SaysWhatToDo) {
     EXPECT_NE(name(fault), "unknown");
     EXPECT_EQ(describe(fault).back(), '.');
   }
+}
+
+TEST(EnergyGuard, ForgetsDebtAndFadingWhenItStartsAnew) {
+  PassivityObserver observer(
+      {.stage = EnergyStage::kPassivity, .mass = 0.075, .reservoir = 0.02, .onset = 0.01});
+  observer.book(1);
+  EXPECT_EQ(observer.energy(), -1);
+  EXPECT_EQ(observer.share(kPeriod), 0);
+  observer.restart();
+  EXPECT_EQ(observer.energy(), 0);
+  EXPECT_EQ(observer.share(kPeriod), 1);
 }
 
 }  // namespace

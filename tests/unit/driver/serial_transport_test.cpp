@@ -1,6 +1,8 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <poll.h>
 #include <stdlib.h>
+#include <termios.h>
 #include <unistd.h>
 
 #include <fstream>
@@ -65,6 +67,27 @@ TEST_F(SerialTransportTest, CarriesEveryByteUnchangedBothWays) {
   EXPECT_EQ(hear(), "[1,-2,3]\n");  // no newline turned into two, nothing echoed
   say("[3,1,2,3,4,5,6,0]\n");
   EXPECT_EQ(read(), "[3,1,2,3,4,5,6,0]");
+}
+
+TEST_F(SerialTransportTest, SetsTheRateOfAPortThatIsARealOne) {
+  open();
+  termios settings{};
+  ASSERT_EQ(tcgetattr(far_, &settings), 0);
+  EXPECT_EQ(cfgetospeed(&settings), speed_t{B115200});
+  EXPECT_EQ(cfgetispeed(&settings), speed_t{B115200});
+}
+
+TEST_F(SerialTransportTest, ForgetsWhatCameBeforeItWasOpened) {
+  const int before = ::open(ptsname(far_), O_RDWR | O_NOCTTY);
+  ASSERT_GE(before, 0);
+  say("[9]\n");
+  pollfd port{.fd = before, .events = POLLIN, .revents = 0};
+  ASSERT_EQ(poll(&port, 1, 10'000), 1);
+  open();
+  EXPECT_EQ(read(0), "");
+  say("[3]\n");
+  EXPECT_EQ(read(), "[3]");
+  close(before);
 }
 
 TEST_F(SerialTransportTest, JoinsPiecesAndTakesTheNewest) {

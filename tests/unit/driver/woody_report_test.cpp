@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "arms/woody/woody_wire.h"
 #include "support/noise.h"
 
 namespace thimble::driver::woody {
@@ -36,6 +37,18 @@ TEST(WoodyReport, IsUnderstoodAt8BytesAndRejectedAtEveryOtherLength) {
     EXPECT_EQ(decode_input(bytes).has_value(), length == 8) << length;
     EXPECT_EQ(decode_output(bytes).has_value(), length == 8) << length;
   }
+}
+
+TEST(WoodyWire, TellsCountsAndNumberAndNothingThatTheArmHasNot) {
+  const auto bytes = encode_input({.counts = {11, -12, 13}, .counter = 14});
+  ArmReading reading;
+  reading.auxiliary = {7, 8, 9};
+  reading.buttons = 3;
+  ASSERT_TRUE(ReportWire::decode(bytes, reading));
+  EXPECT_EQ(reading.counts, (std::array<std::int32_t, 3>{11, -12, 13}));
+  EXPECT_EQ(reading.auxiliary, (std::array<std::int32_t, 3>{14, 0, 0}));
+  EXPECT_EQ(reading.buttons, 0);
+  EXPECT_EQ(reading.number, 14);
 }
 
 }  // namespace

@@ -297,6 +297,10 @@ TEST(MemoryContact, TouchesNothingUntilATipThatStartsInsideHasBeenOutsideAndAfte
     EXPECT_FALSE(move(contact, {0.1, bad, 0.9}).touching);
     EXPECT_FALSE(move(contact, {0, 0.1, 0.9}).touching);
     EXPECT_FALSE(move(contact, {0, 0.1, 1.1}).touching);
+    // A tip that was outside before it was nowhere is not known to have come in.
+    EXPECT_FALSE(move(contact, {0.1, bad, 0.9}).touching);
+    EXPECT_FALSE(move(contact, {0, 0.1, 0.9}).touching);
+    EXPECT_FALSE(move(contact, {0, 0.1, 1.1}).touching);
     EXPECT_TRUE(move(contact, {0, 0.1, 0.9}).touching);
   }
 }

@@ -71,6 +71,21 @@ TEST(NormalProjectionTracker, JumpsInDepthByTheLawWhereEdgePlanesDoNot) {
             << " um; 4b: below the step of " << 2e-3 << " um\n";
 }
 
+TEST(NormalProjectionTracker, TouchesWhereTheTipIsJustOnTheSurface) {
+  const ContactMesh mesh = ContactMesh::build(support::box({1, 1, 1})).value();
+  const LinearSearch search(mesh);
+  for (std::int32_t t = 0; t < mesh.triangle_count(); ++t) {
+    const Vector3d middle =
+        0.5 * mesh.position(t, 0) + 0.25 * mesh.position(t, 1) + 0.25 * mesh.position(t, 2);
+    NormalProjectionTracker tracker(mesh, search);
+    tracker.start(t);
+    const TrackerStep on = tracker.follow(middle);
+    EXPECT_TRUE(on.touching) << t;
+    EXPECT_EQ(on.depth, 0);
+    EXPECT_FALSE(tracker.follow(middle + 1e-12 * mesh.cell(t).face.n).touching) << t;
+  }
+}
+
 TEST(NormalProjectionTracker, LeavesGapsBelowHollowEdges) {
   const TriangleMesh shape = support::bumpy_sphere(3, 0.05, 0.3, 6);
   const auto gaps_and_losses = [&shape](auto contact) {

@@ -253,6 +253,9 @@ TEST(PagedSurface, KnowsInsideAndNearestAsATreeInMemoryDoes) {
     const bool inside = surface->inside(p, complete);
     EXPECT_TRUE(complete);
     EXPECT_EQ(inside, tree.inside(p)) << k;
+    if (k < 200) {
+      EXPECT_EQ(surface->inside_by_reading(p), inside) << k;
+    }
     within += inside;
     const SurfacePoint nearest = tree.closest(p, 0.002);
     const std::int32_t found = surface->closest(p, 0.002, complete);

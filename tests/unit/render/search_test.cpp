@@ -217,6 +217,20 @@ TEST(EverySearch, FindsNothingForNaNAndComesBackFromHugeWays) {
   EXPECT_GE(searches.entries, 200);
 }
 
+TEST(EverySearch, FindsWhatAPointLiesOnWithinARadiusOfZero) {
+  const ContactMesh box = ContactMesh::build(support::box({1, 1, 1})).value();
+  const Searches<ContactMesh> searches(box);
+  for (const Vector3d& on : {Vector3d(1, 1, 1), Vector3d(0.25, 0.5, 1), Vector3d(-1, 0, 0.5)}) {
+    EXPECT_GE(searches.linear.closest(on, 0).triangle, 0);
+    for (const ContactSearch* search : searches.others()) {
+      const SurfacePoint found = search->closest(on, 0);
+      EXPECT_GE(found.triangle, 0) << on.transpose();
+      EXPECT_EQ(found.distance, 0);
+      EXPECT_LT(search->closest(on, -1e-9).triangle, 0);
+    }
+  }
+}
+
 TEST(EverySearch, TellsAClearanceThatNoTriangleReachesInto) {
   for (const TriangleMesh& shape : shapes()) {
     const ContactMesh mesh = ContactMesh::build(shape).value();

@@ -427,6 +427,7 @@ TEST(TextureSettings, AreRefusedWithTheReason) {
     return mistakes_of<Sines>(VariantSettings({}, {{"waves", {one}}}));
   };
   // 5 N press 6.25 mm into 800 N/m.
+  EXPECT_NE(sines(wave(0.0035, 0.1)).find("is 7 mm from peak to valley"), std::string::npos);
   EXPECT_NE(sines(wave(0.0035, 0.1)).find("5 N press no deeper than 6.25 mm"), std::string::npos);
   EXPECT_NE(sines(wave(0.001, 0.001)).find("as steep as 6.28"), std::string::npos);
   // 0.1 m/s over 0.15 mm: 667 Hz.

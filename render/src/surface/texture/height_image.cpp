@@ -28,10 +28,9 @@ struct Neighbours {
     const double whole = std::floor(place);
     t = place - whole;
     const auto count = static_cast<double>(side);
-    // All whole numbers below 2^53, so that only the quotient can be off, by one.
+    // All whole numbers below 2^53, so that only the quotient can be off, and upwards: by one.
     double first = whole - count * std::floor(whole / count);
     if (first < 0) first += count;
-    if (first >= count) first -= count;
     auto at = static_cast<std::size_t>(first);
     at = at == 0 ? side - 1 : at - 1;
     for (std::size_t& one : pixel) {

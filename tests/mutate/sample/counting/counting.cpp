@@ -1,0 +1,29 @@
+#include "counting/counting.h"
+
+// Every mutant is killed but `>=`, which is equivalent.
+int at_most(int x, int most) {
+  if (x > most) return most;
+  return x;
+}
+
+// Without its `++i` it hangs.
+int counted(int n) {
+  int i = 0;
+  while (i < n) ++i;
+  return i;
+}
+
+// A sum of pointers does not compile.
+long length(const char* begin, const char* end) {
+  return end - begin;
+}
+
+// Called by a test that looks at nothing.
+int doubled(int x) {
+  return x + x;
+}
+
+// Called by no test.
+int tripled(int x) {
+  return x + 2;
+}

@@ -1,0 +1,22 @@
+#include "counting/counting.h"
+
+#include <gtest/gtest.h>
+
+TEST(Counting, StaysBelowTheMost) {
+  EXPECT_EQ(at_most(3, 5), 3);
+  EXPECT_EQ(at_most(7, 5), 5);
+}
+
+TEST(Counting, CountsToN) {
+  EXPECT_EQ(counted(4), 4);
+  EXPECT_EQ(counted(0), 0);
+}
+
+TEST(Counting, TellsALength) {
+  const char text[] = "four";
+  EXPECT_EQ(length(text, text + 4), 4);
+}
+
+TEST(Counting, IsCalled) {
+  doubled(2);
+}

@@ -1,0 +1,59 @@
+"""Writes many mutants into one source, of which the environment chooses one when the program runs."""
+from cpp_code import Code
+
+
+def with_mutants(text, chosen):
+    """Returns a source with mutants in it, given as (id, Mutant), and for each line of it the ids that a
+    compiler's error there speaks against."""
+    code = Code(text)
+    regions = {}
+    for ident, mutant in chosen:
+        regions.setdefault(mutant.region, []).append((ident, mutant))
+    pieces, place = [], 0  # (text, ids)
+    for number, here in sorted(regions.items(), key=lambda item: code.tokens[code.regions[item[0]].first].begin):
+        region = code.regions[number]
+        begin, end = code.tokens[region.first].begin, code.tokens[region.last - 1].end
+        pieces.append((text[place:begin], set()))
+        pieces += pieces_of(code, region, here)
+        place = end
+    pieces.append((text[place:], set()))
+    out, lines = "", {}
+    for piece, ids in pieces:
+        first = out.count("\n") + 1
+        out += piece
+        if ids:
+            for line in range(first, out.count("\n") + 2):
+                lines.setdefault(line, set()).update(ids)
+    return out, lines
+
+
+def pieces_of(code, region, here):
+    """Yields the texts, each on lines of its own, that take the place of a region."""
+    whole = code.flat(region.first, region.last)
+    everyone = {ident for ident, _ in here}
+    if region.kind == "statement":
+        yield "{\n", set()
+        for ident, mutant in here:
+            yield f"if (THIMBLE_MUTANT({ident})) {{ {mutated(code, region, mutant)} }} else", {ident}
+            yield "\n", set()
+        yield f"{{ {whole} }}", everyone
+        yield "\n}", set()
+        return
+    cast = "static_cast<bool>" if region.kind == "condition" else f"static_cast<{region.type}>" if region.type else ""
+    yield "\n", set()
+    # The compiler works out a constant where it can, and so would never ask for the mutant.
+    macro = "THIMBLE_MUTANT_NOW" if region.const else "THIMBLE_MUTANT"
+    for ident, mutant in here:
+        yield f"({macro}({ident}) ? {cast}({mutated(code, region, mutant)}) :", {ident}
+        yield "\n", set()
+    yield f"{cast}({whole}){')' * len(here)}", everyone
+    yield "\n", set()
+
+
+def mutated(code, region, mutant):
+    """Returns a region with its mutant in it, on one line."""
+    before = [i for i in range(region.first, region.last) if code.tokens[i].end <= mutant.begin]
+    behind = [i for i in range(region.first, region.last) if code.tokens[i].begin >= mutant.end]
+    left = code.flat(before[0], before[-1] + 1) if before else ""
+    right = code.flat(behind[0], behind[-1] + 1) if behind else ""
+    return f"{left} {mutant.text} {right}"

@@ -1,0 +1,134 @@
+"""Runs tests: which mutants each reaches, and which mutants they notice."""
+import concurrent.futures
+import dataclasses
+import hashlib
+import os
+import pathlib
+import re
+import resource
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+MOST = 65536  # kMost of mutant.h
+QUICK = 0.25  # s of processor time: such tests of a program run together
+LIMIT_TIMES, LIMIT_MORE = 8, 5  # a run that takes so many times as much, and so many s, hangs
+MEMORY = 6 << 30
+
+
+@dataclasses.dataclass(frozen=True)
+class Test:
+    program: str
+    name: str
+    seconds: float
+    reached: frozenset
+
+
+class Trials:
+    """The test programs of a build."""
+
+    def __init__(self, build, programs, jobs):
+        self.jobs = jobs
+        self.programs = {name: next(p for p in build.rglob(name) if p.is_file() and os.access(p, os.X_OK))
+                         for name in programs}
+        self.tests = []
+
+    def run(self, program, tests, variables, limit):
+        """Runs some tests of a program; returns its exit code, or none if it was ended for its time, and its
+        output and seconds of processor time."""
+        def bounds():
+            resource.setrlimit(resource.RLIMIT_CPU, (int(limit) + 1, int(limit) + 2))
+            resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+            resource.setrlimit(resource.RLIMIT_FSIZE, (1 << 30, 1 << 30))
+            resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+
+        with tempfile.TemporaryDirectory() as scratch, tempfile.TemporaryFile() as log:
+            environment = {**os.environ, "TMPDIR": scratch, **variables}
+            before = resource.getrusage(resource.RUSAGE_CHILDREN)
+            child = subprocess.Popen(
+                [str(self.programs[program]), "--gtest_brief=1", "--gtest_fail_fast", "--gtest_filter=" + ":".join(tests)],
+                cwd=scratch, env=environment, stdout=log, stderr=log, start_new_session=True, preexec_fn=bounds)
+            begin = time.monotonic()
+            try:
+                code = child.wait(10 * limit)  # the machine may have something else to do
+            except subprocess.TimeoutExpired:
+                code = None
+            seconds = time.monotonic() - begin
+            try:
+                os.killpg(child.pid, signal.SIGKILL)  # and whatever it has left behind
+            except ProcessLookupError:
+                pass
+            child.wait()
+            log.seek(0)
+            output = log.read().decode(errors="replace")
+        if code in (-signal.SIGXCPU, -signal.SIGKILL):
+            code = None
+        return code, output, seconds
+
+    def names_of(self, program):
+        listed = subprocess.run([str(self.programs[program]), "--gtest_list_tests"], check=True, capture_output=True,
+                                text=True).stdout
+        suite = ""
+        for line in listed.splitlines():
+            line = re.sub(r"\s*#.*", "", line)
+            if line.startswith("  "):
+                if not re.search(r"(^|/|\.)DISABLED_", suite + line.strip()):
+                    yield suite + line.strip()
+            elif line.endswith("."):
+                suite = line
+
+    def measure(self):
+        """Runs every test without a mutant and notes what it reaches; ends if one fails."""
+        every = [(program, name) for program in self.programs for name in self.names_of(program)]
+        with concurrent.futures.ThreadPoolExecutor(self.jobs) as pool:
+            self.tests = list(pool.map(lambda one: self.measure_one(*one), every))
+        if None in self.tests:
+            sys.exit("Tests fail without any mutant: mend them first.")
+        return self.tests
+
+    def measure_one(self, program, name):
+        for attempt in range(3):
+            with tempfile.NamedTemporaryFile() as reached:
+                reached.truncate(MOST)
+                code, output, seconds = self.run(program, [name], {"THIMBLE_MUTANTS_REACHED": reached.name}, 600)
+                content = pathlib.Path(reached.name).read_bytes()
+            if code == 0:
+                return Test(program, name, seconds, frozenset(i for i, byte in enumerate(content) if byte))
+        print(f"{output}\n{program} fails in {name} without any mutant", flush=True)
+        return None
+
+    def killer_of(self, ident):
+        """Returns how a mutant was noticed and in which run; empty if no test did, or if none reaches it."""
+        own = sorted((test for test in self.tests if ident in test.reached), key=lambda test: test.seconds)
+        if not own:
+            return "", "unreached"
+        quick = {}
+        for test in own:
+            if test.seconds < QUICK:
+                quick.setdefault(test.program, []).append(test)
+        runs = sorted(quick.values(), key=lambda tests: sum(test.seconds for test in tests))
+        runs += [[test] for test in own if test.seconds >= QUICK]
+        for tests in runs:
+            limit = LIMIT_TIMES * sum(test.seconds for test in tests) + LIMIT_MORE
+            code, output, _ = self.run(tests[0].program, [test.name for test in tests],
+                                       {"THIMBLE_MUTANT": str(ident)}, limit)
+            if code == 0:
+                continue
+            failed = re.search(r"\[  FAILED  \] ([\w./]+)", output)
+            how = "hangs" if code is None else "crashes" if code < 0 else "fails"
+            return how, failed.group(1) if failed else tests[0].program
+        return "", "survived"
+
+    def try_all(self, idents):
+        """Yields (id, how, where) as each mutant comes to its end."""
+        with concurrent.futures.ThreadPoolExecutor(self.jobs) as pool:
+            futures = {pool.submit(self.killer_of, ident): ident for ident in idents}
+            for future in concurrent.futures.as_completed(futures):
+                yield futures[future], *future.result()
+
+
+def number_of(title):
+    """Returns a number below MOST for a mutant, which a change elsewhere leaves as it is."""
+    return int(hashlib.sha256(title.encode()).hexdigest()[:8], 16) % MOST

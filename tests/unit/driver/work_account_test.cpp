@@ -1,0 +1,45 @@
+#include "work_account.h"
+
+#include <gtest/gtest.h>
+
+namespace thimble::driver {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Tells of a tick what was booked, J.
+double work(WorkAccount& account, const Vector3d& x) {
+  return account.flow(x, x, {0, 0, 0}, 0).work;
+}
+
+TEST(WorkAccount, BooksEffortTimesTheMotionThatFollowedIt) {
+  WorkAccount account(0);
+  EXPECT_EQ(work(account, {0.1, 0, 0}), 0);  // from where it began nothing is known
+  account.sent({2, 0, 0});
+  EXPECT_DOUBLE_EQ(work(account, {0.4, 1, 0}), 0.6);
+  account.hold();  // the arm took nothing: the effort of before stands
+  EXPECT_DOUBLE_EQ(work(account, {0.5, 1, 0}), 0.2);
+}
+
+TEST(WorkAccount, BooksAnEffortSoManyTicksLateAsTheWireIs) {
+  WorkAccount account(2);
+  work(account, {0, 0, 0});
+  account.sent({1, 0, 0});
+  EXPECT_EQ(work(account, {1, 0, 0}), 0);
+  account.sent({0, 0, 0});
+  EXPECT_EQ(work(account, {2, 0, 0}), 0);
+  account.sent({0, 0, 0});
+  EXPECT_EQ(work(account, {5, 0, 0}), 3);
+}
+
+TEST(WorkAccount, BooksNothingAcrossAStart) {
+  WorkAccount account(0);
+  work(account, {0, 0, 0});
+  account.sent({2, 0, 0});
+  account.restart();
+  EXPECT_EQ(work(account, {1, 0, 0}), 0);
+  EXPECT_EQ(work(account, {2, 0, 0}), 0);  // nor of an effort of before the start
+}
+
+}  // namespace
+}  // namespace thimble::driver
