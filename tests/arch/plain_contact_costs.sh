@@ -34,17 +34,17 @@ count() {
   echo "$tag: instructions per tick"
   bound "whole tick" "$whole" "$2"
   bound "force law" "$(instructions_of "$folder/$tag.calls" 'SceneTouch&)::{lambda')" "$3"
-  bound "observers of the run" "$(instructions_of "$folder/$tag.calls" 'RunLoop&)::{lambda')" 560
-  bound "simulated arm, reading" "$(instructions_of "$folder/$tag.calls" 'SimTransport::read_latest')" 3100
+  bound "observers of the run" "$(instructions_of "$folder/$tag.calls" 'RunLoop&)::{lambda')" 469
+  bound "simulated arm, reading" "$(instructions_of "$folder/$tag.calls" 'SimTransport::read_latest')" 2400
   if awk -v share="$contact" 'BEGIN { exit share > 0.95 }'; then
     echo "  in contact in $contact of the ticks only: this counts something else"
     bad=1
   fi
 }
 
-count "$source/tests/data/scenes/plain_ball.yaml" 5500 700
+count "$source/tests/data/scenes/plain_ball.yaml" 5470 456
 if [ -f "$meshes/elephant.off" ]; then
-  count "$source/tests/data/scenes/stroke.yaml" 5900 1000
+  count "$source/tests/data/scenes/stroke.yaml" 5945 838
 else
   echo "NOTE: no elephant.off in $meshes; its ticks were not counted."
 fi
