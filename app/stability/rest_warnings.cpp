@@ -23,11 +23,11 @@ constexpr double kFelt = 0.02;  // N RMS [STABILITY 6]
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kPressed = 1;   // N, with which a hand rests on something [chosen]
 constexpr double kCreep = 1e-3;  // m/s: slower, a count takes 30 ms and more
-constexpr double kStroke = 0.1;  // m/s; slower swings are always there [chosen]
+constexpr double kStroke = 0.1;  // m/s; slower oscillations are always there [chosen]
 constexpr double kProbe = 1e-6;  // m
 constexpr int kTries = 4000;     // places of a texture; finds a sine's curvature within 2 %
 
-/// Is what a field does, found by trying it.
+/// What a field does, found by trying it.
 struct FieldTried {
   double push = 0;     // N, on a tip at rest
   double damping = 0;  // N s/m
@@ -89,7 +89,7 @@ void warn_of_facets(const scene::SceneObject& object, std::vector<std::string>& 
       object.name, hollow / kDegree, 2 * std::sin(hollow / 2)));
 }
 
-/// Is what lies over what a loop carries, with the hand of the scene.
+/// What a loop carries with the hand of the scene.
 struct Loop {
   const scene::Scene& scene;
   scene::LoopTimes times;
@@ -114,7 +114,7 @@ void warn_of_effects(const scene::SceneObject& object, const Loop& loop, double 
           object.name, curvature, from, bare_edge));
     } else if (effect.kind->group == "friction") {
       const double hold = hold_of(effect);
-      // Slow swings the arm's own dry friction holds [STABILITY 1.4].
+      // The arm's own dry friction holds slow oscillations [STABILITY 1.4].
       const Carried carried = carried_by(loop.scene.arm, loop.times, 0, 0);
       const double held_speed = swing_speed_limit(
           hold, carried.damping, loop.scene.arm.simulated.plant.coulomb, carried.latency);
@@ -127,8 +127,8 @@ void warn_of_effects(const scene::SceneObject& object, const Loop& loop, double 
   }
 }
 
-/// Warns of a light body that a friction holds: the tip and the body swing against each other, and
-/// of the hand's damping only the part reaches that swing by which the tip takes part in it.
+/// Warns of a light body that a friction holds: tip and body oscillate against each other, and of
+/// the hand's damping that mode gets only the tip's share in it.
 ///
 /// With s = m / (m + m_tip) the tip's share, K L <= b_tip s^2 + b (1 - s)^2. A friction turns a
 /// free body too; at its rim a ball counts 1 / (1 + 5 / 2) of its mass.
@@ -146,11 +146,11 @@ void warn_of_light_body(const scene::SceneObject& object, const Loop& loop,
   const double damping =
       carried.damping * share * share + motion.damping * (1 - share) * (1 - share);
   if (!(hold * carried.latency > damping)) return;
-  warnings.push_back(
-      fmt::format("{} weighs {:.3g} kg and has a friction that holds with {:.0f} N/m: the hand "
-                  "hardly damps how so light a body swings on it, and the loop carries {:.0f} N/m: "
-                  "give it more mass or damping, or set the friction's stiffness lower.",
-                  object.name, motion.mass, hold, damping / carried.latency));
+  warnings.push_back(fmt::format(
+      "{} weighs {:.3g} kg and has a friction that holds with {:.0f} N/m: the hand "
+      "hardly damps how so light a body oscillates on it, and the loop carries {:.0f} N/m: "
+      "give it more mass or damping, or set the friction's stiffness lower.",
+      object.name, motion.mass, hold, damping / carried.latency));
 }
 
 /// Warns of springs that add up where a tip is on all of them: each may be carried by itself.
@@ -164,14 +164,14 @@ void warn_of_sum(const Loop& loop, std::vector<std::string>& warnings) {
     ++count;
   }
   if (count < 2 || !(sum > loop.edge(damping))) return;
-  warnings.push_back(
-      fmt::format("Together the {} surfaces are as stiff as {:.0f} N/m, more than the {:.0f} N/m "
-                  "that arm, loop and hand carry: where a tip is within all of them it trembles. "
-                  "Keep them apart, or lower their stiffness.",
-                  count, sum, loop.edge(damping)));
+  warnings.push_back(fmt::format(
+      "Together the {} surfaces are as stiff as {:.0f} N/m, more than the {:.0f} N/m "
+      "that arm, loop and hand carry: a tip that is within all of them comes into a limit cycle. "
+      "Keep them apart, or lower their stiffness.",
+      count, sum, loop.edge(damping)));
 }
 
-void warn_of_grain(const Loop& loop, std::vector<std::string>& warnings) {
+void warn_of_quantisation_noise(const Loop& loop, std::vector<std::string>& warnings) {
   const scene::ArmFile& arm = loop.scene.arm;
   const device_sim::HandSettings& hand = arm.simulated.hand;
   double surfaces = 0, fields = 0;
@@ -186,14 +186,14 @@ void warn_of_grain(const Loop& loop, std::vector<std::string>& warnings) {
   const double tremor =
       std::sqrt(2.0) * std::numbers::pi * hand.tremor_frequency * hand.tremor_amplitude;  // RMS
   const double speed = std::max(kCreep, tremor);
-  const double grain =
-      grain_of(fields + surfaces, step, speed, arm.velocity_corner_frequency, loop.times.period);
-  if (!(grain > kFelt)) return;
+  const double noise = quantisation_noise_of(fields + surfaces, step, speed,
+                                             arm.velocity_corner_frequency, loop.times.period);
+  if (!(noise > kFelt)) return;
   warnings.push_back(fmt::format(
-      "The damping of this scene, up to {:.2g} N s/m, grates on encoder steps of {:.0f} um: at "
+      "The damping of this scene, up to {:.2g} N s/m, acts on encoder steps of {:.0f} um: at "
       "{:.1f} mm/s, as the hand's tremor moves the tip or a hand comes to rest, that is {:.0f} mN "
-      "of grain. Lower the damping, or the arm's velocity_corner_frequency.",
-      fields + surfaces, 1e6 * step, 1e3 * speed, 1e3 * grain));
+      "of quantisation noise. Lower the damping, or the arm's velocity_corner_frequency.",
+      fields + surfaces, 1e6 * step, 1e3 * speed, 1e3 * noise));
 }
 
 }  // namespace
@@ -254,7 +254,8 @@ double sharpest_hollow(const render::ContactMesh& mesh, double from) {
   return most;
 }
 
-double grain_of(double damping, double step, double speed, double corner, double period) {
+double quantisation_noise_of(double damping, double step, double speed, double corner,
+                             double period) {
   if (!(step > 0)) return 0;
   const double p = std::min(0.5, speed * period / step);
   const double gain = corner > 0 ? -std::expm1(-2 * std::numbers::pi * corner * period) : 1;
@@ -266,7 +267,7 @@ std::vector<std::string> energy_warnings(const scene::Scene& scene) {
   const driver::EnergyStage stage = scene.energy.value_or(scene.arm.energy.stage);
   if (stage == driver::EnergyStage::kNone) return warnings;
   // Over the workspace that is more than the stage lets go [kEnergyAllowance].
-  const double way = (scene.arm.workspace.max_W - scene.arm.workspace.min_W).maxCoeff();
+  const double path = (scene.arm.workspace.max_W - scene.arm.workspace.min_W).maxCoeff();
   for (const scene::SceneObject& object : scene.objects) {
     const bool field = static_cast<bool>(object.build_field);
     double push = 0;
@@ -275,7 +276,7 @@ std::vector<std::string> energy_warnings(const scene::Scene& scene) {
     } else if (object.body.motion && object.body.motion->grip) {  // on the floor it gives nothing
       push = object.body.motion->mass * object.body.motion->gravity_W.norm();
     }
-    if (!(push * way > scene::kEnergyAllowance + scene::kEnergyOnset)) continue;
+    if (!(push * path > scene::kEnergyAllowance + scene::kEnergyOnset)) continue;
     warnings.push_back(
         fmt::format("{} {} (up to {:.2g} N) and gives energy by right, but the gate's energy stage "
                     "takes back what is more than {:.0f} mJ: it brakes the hand and lets all "
@@ -298,7 +299,7 @@ std::vector<std::string> rest_causes(const scene::Scene& scene, const std::strin
     warn_of_light_body(object, loop, causes);
   }
   warn_of_sum(loop, causes);
-  warn_of_grain(loop, causes);
+  warn_of_quantisation_noise(loop, causes);
   return causes;
 }
 

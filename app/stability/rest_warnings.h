@@ -17,8 +17,8 @@ namespace thimble::app {
 // number and the remedy. What counts as a limit cycle: 20 mN above 50 Hz [STABILITY 6]. Real-time:
 // never from the servo thread.
 
-/// Says of each field and weight that gives energy by right what the gate's energy stage will do to
-/// it; nothing where there is no such stage.
+/// Returns what the gate's energy stage will do to each field and weight that gives energy by
+/// right; nothing where there is no such stage.
 std::vector<std::string> energy_warnings(const scene::Scene& scene);
 
 /// Returns what by the laws may be the cause of a limit cycle of a hand that rests on the object of
@@ -32,25 +32,27 @@ std::vector<std::string> rest_causes(const scene::Scene& scene, const std::strin
 /// causes that the laws know for it; and one if a fault ended the trial.
 std::vector<std::string> rest_warnings(const scene::Scene& scene, const RestTrial& trial);
 
-/// Tells the stiffness (N/m) that a texture's waves add along the surface for each newton of
+/// Returns the stiffness (N/m) that a texture's waves add along the surface for each newton of
 /// pressing: the largest curvature of its height, 1/m; for sines a (2 pi / L)^2 [STABILITY 1.1].
 double curvature_of(const render::EffectPlan& texture);
 
-/// Tells how stiff (N/m) a friction holds what sticks to it, by a micrometre of way; 0 if it does
-/// not hold.
+/// Returns how stiff (N/m) a friction holds what sticks to it, over a micrometre of path; 0 if it
+/// does not hold.
 double hold_of(const render::EffectPlan& friction);
 
-/// Finds the sharpest hollow edge of a mesh as it is touched (wound outwards), rad: by so much the
-/// normal turns where a tip that rests in the hollow goes from one facet to the next. Edges up to
-/// `from` (rad) are passed over.
+/// Returns the sharpest hollow edge of a mesh as it is touched (wound outwards), rad: by so much
+/// the normal turns where a tip that rests in the hollow goes from one facet to the next. Edges up
+/// to `from` (rad) are passed over.
 double sharpest_hollow(const render::ContactMesh& mesh, double from);
 
-/// Finds the force (N RMS) by which damping `damping` (N s/m) grates on encoders of `step` (m) at a
-/// `speed` (m/s), through a velocity filter of `corner` (Hz; 0: none) in a loop of `period` (s).
+/// Returns the quantisation noise (N RMS) of a damping `damping` (N s/m) on encoders of `step` (m)
+/// at a `speed` (m/s), through a velocity filter of `corner` (Hz; 0: none) in a loop of `period`
+/// (s).
 ///
 /// A count is a pulse of b d / T in the unfiltered velocity; at p = v T / d counts per tick their
 /// RMS about the mean is b d / T sqrt(p (1 - p)), of which a pole of gain g leaves g / (2 - g) of
 /// the power.
-double grain_of(double damping, double step, double speed, double corner, double period);
+double quantisation_noise_of(double damping, double step, double speed, double corner,
+                             double period);
 
 }  // namespace thimble::app

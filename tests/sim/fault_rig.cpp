@@ -126,9 +126,11 @@ void FaultRig::build_arm() {
     return;
   }
   if (tested_.kind == driver::ArmKind::kHfabLine) {
+    device_sim::SimulatedArmSettings settings = file_.simulated;
+    settings.firmware.speaks = tested_.kind;
+    settings.firmware.line_model = file_.board_model;
     own_arm_ = std::make_unique<support::LineArm>(
-        device_sim::SimulatedArm::make(serial(), file_.simulated, std::move(path)).value(),
-        static_cast<driver::hfab::LineModel>(file_.board_model));
+        device_sim::SimulatedArm::make(serial(), settings, std::move(path)).value());
   } else if (file_.is<driver::LinkageArm>()) {
     own_arm_ = usb::HidArm::make(usb::kMbed14Board, usb::UsbDescription(),
                                  driver::model_as<driver::LinkageArm>(file_.model), file_.simulated,

@@ -4,12 +4,10 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <utility>
 
 #include "arms/hfab/hfab_line.h"
-#include "arms/hfab/hfab_report.h"
 #include "arms/hfab/hfab_wire.h"
 #include "frame_finder.h"
 #include "simulated_arm.h"
@@ -19,16 +17,15 @@
 
 namespace thimble::support {
 
-/// Is a simulated arm on a board that speaks text lines on USB serial: it says nothing by itself
-/// and answers every message with its counters. The answer to a message that it does not understand
+/// A simulated arm that speaks text lines, on USB serial: the board says nothing by itself and
+/// answers every message with its counters. The answer to a message that it does not understand
 /// repeats the last counters, with the error that the published firmware gives.
 class LineArm final : public device_sim::usb::UsbArm {
  public:
   static constexpr std::uint8_t kIn = 0x81, kOut = 0x02;
 
-  LineArm(device_sim::SimulatedArm arm, driver::hfab::LineModel number) : arm_(std::move(arm)) {
-    answer_.model = static_cast<std::int32_t>(number);
-  }
+  /// Takes an arm whose firmware speaks text lines.
+  explicit LineArm(device_sim::SimulatedArm arm) : arm_(std::move(arm)) {}
 
   const device_sim::usb::UsbDescription& description() const noexcept override {
     return description_;
@@ -68,21 +65,14 @@ class LineArm final : public device_sim::usb::UsbArm {
  private:
   void answer(std::span<const std::byte> line) noexcept {
     answer_.error = driver::hfab::kErrorParse;
-    if (const auto message = driver::hfab::decode_host_line(line)) {
-      driver::hfab::OutputReport output;
-      for (std::size_t i = 0; i < 3; ++i) {
-        constexpr std::int32_t kMost = std::numeric_limits<std::int16_t>::max();
-        output.current_mA[i] =
-            static_cast<std::int16_t>(std::clamp(message->current_mA[i], -kMost, kMost));
-      }
-      arm_.put_message(driver::hfab::encode_output(output));
-      std::array<std::byte, driver::hfab::kReportSize> report{};
+    if (driver::hfab::decode_host_line(line)) {
+      arm_.put_message(line);
+      std::array<std::byte, driver::hfab::kLineCapacity> report{};
       std::uint32_t skipped = 0;
       const std::size_t size = arm_.take_report(report, skipped);
-      if (const auto now =
-              driver::hfab::decode_input(std::span<const std::byte>(report).first(size))) {
-        for (std::size_t i = 0; i < 3; ++i) answer_.counts[i] = now->counts[i];
-      }
+      const auto now =
+          driver::hfab::decode_arm_line(std::span<const std::byte>(report).first(size));
+      if (now) answer_ = *now;
       answer_.error = 0;
     }
     std::array<std::byte, driver::hfab::kLineCapacity> bytes{};

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "mesh/surface_place.h"
 #include "mesh/triangle_set.h"
 #include "packed/offset_triangle.h"
 #include "packed/wide_lanes.h"
@@ -145,6 +146,9 @@ class PackedContact {
   ContactState begun_;  // where the contact began, likewise
   TrackerCounters counters_;
   HeldPlane held_;
+  SurfacePlace::On hollow_ = SurfacePlace::On::kFace;  // what of a hollow held the tip last,
+  Eigen::Vector3d along_{0, 0, 0};                     // the unit direction of its edge,
+  Eigen::Vector3d p_WT_hollow_{0, 0, 0};               // and where the tip was then
   std::uint64_t ticks_held_ = 0;
 };
 

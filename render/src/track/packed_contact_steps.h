@@ -26,6 +26,12 @@ const ContactState& PackedContact<Store>::update(const driver::DeviceState& stat
 
 template <PackedStore Store>
 SurfaceFoot PackedContact<Store>::foot(const Eigen::Vector3d& p_WT) const noexcept {
+  if (hollow_ != SurfacePlace::On::kFace && p_WT == p_WT_hollow_) {
+    SurfaceFoot foot = flat_foot(this->state());
+    foot.J_MT.setZero();
+    if (hollow_ == SurfacePlace::On::kEdge) foot.J_MT = along_ * along_.transpose();
+    return foot;
+  }
   const OffsetPlace place = offset_.locate(store_.to_lattice(p_WT));
   if (!place.valid) return flat_foot(this->state());
   const OffsetWay way = offset_.way_to_surface(place);

@@ -51,7 +51,8 @@ typename PackedContact<Store>::Outcome PackedContact<Store>::find_near(
 template <PackedStore Store>
 typename PackedContact<Store>::Outcome PackedContact<Store>::find_again(
     const Eigen::Vector3d& p_WT, const Eigen::Vector3d& p, std::int32_t before) noexcept {
-  const Outcome near = find_near(p, before);
+  // After a walk that was cut short the triangles around say nothing.
+  const Outcome near = state_.hops < kWalkMax ? find_near(p, before) : Outcome::kNo;
   if (near == Outcome::kYes) ++counters_.found_near;
   if (near != Outcome::kNo) return near;
   const FoundTriangle nearest = store_.closest(p_WT, std::numeric_limits<double>::infinity());

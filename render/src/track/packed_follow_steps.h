@@ -53,6 +53,7 @@ typename PackedContact<Store>::Outcome PackedContact<Store>::follow(
       const Outcome hold = hold_in_hollow(p, felt);
       if (hold == Outcome::kUnknown) return hold;
       if (hold == Outcome::kYes) {
+        p_WT_hollow_ = p_WT;
         report(p_WT, felt);
         return hold;
       }

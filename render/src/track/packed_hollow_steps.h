@@ -118,6 +118,12 @@ typename PackedContact<Store>::Outcome PackedContact<Store>::hold_in_hollow(
   const double distance = std::sqrt(foot.distance_squared);
   if (!crease || !(distance > kPlaced)) return Outcome::kNo;
   if (!activate(foot.place.triangle)) return Outcome::kUnknown;
+  hollow_ = foot.place.on;
+  packed = store_.find(foot.place.triangle);
+  if (hollow_ == SurfacePlace::On::kEdge && !absent(packed)) {
+    along_ =
+        (packed->corner((foot.place.k + 1) % 3) - packed->corner(foot.place.k)).stableNormalized();
+  }
   felt.n_W = (foot.p_OP - p) / distance;
   felt.depth = distance;
   return Outcome::kYes;

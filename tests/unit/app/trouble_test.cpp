@@ -205,8 +205,9 @@ TEST(Trouble, OfALightBodyInTheGripOfAFrictionIsForetold) {
 
 TEST(RestWarnings, FindTheCurvatureOfASineAndTheGrainOfAVelocityInCounts) {
   // Hollows of a cube: none; its texture and friction as a scene names them.
-  EXPECT_NEAR(grain_of(2, 3e-5, 3e-3, 0, 1e-3), 2 * 0.03 * std::sqrt(0.1 * 0.9), 1e-12);
-  EXPECT_EQ(grain_of(2, 0, 3e-3, 0, 1e-3), 0);
+  EXPECT_NEAR(quantisation_noise_of(2, 3e-5, 3e-3, 0, 1e-3), 2 * 0.03 * std::sqrt(0.1 * 0.9),
+              1e-12);
+  EXPECT_EQ(quantisation_noise_of(2, 0, 3e-3, 0, 1e-3), 0);
   const auto file = support::scratch_folder() / "wave.yaml";
   ASSERT_TRUE(write_text(
       "name: wave\narm: " + kArm.string() +

@@ -10,6 +10,10 @@
 #include <vector>
 
 #include "body/motion/move_object.h"
+#include "god_object_shapes.h"
+#include "mesh/contact_mesh.h"
+#include "mesh/smooth_normals.h"
+#include "search/make_search.h"
 #include "support/heap_guard.h"
 #include "support/random.h"
 #include "support/shapes.h"
@@ -18,6 +22,12 @@
 #include "thimble/render/build_object_touch.h"
 #include "thimble/render/build_primitive_touch.h"
 #include "thimble/render/surface/surface_response.h"
+#include "track/blended.h"
+#include "track/curved_depth.h"
+#include "track/edge_blending.h"
+#include "track/god_object.h"
+#include "track/memory_contact.h"
+#include "track/mesh_contact.h"
 
 namespace thimble::render {
 namespace {
@@ -238,6 +248,57 @@ TEST(TexturePlace, IsFixedToClayAsItGivesWay) {
   for (std::size_t i = 1200; i < bare.size(); ++i) {
     ASSERT_NEAR(rough[i] - bare[i], 0.0002, 1e-5) << i;
   }
+}
+
+// Where two walls of a hollow hold the tip the place is on their edge and moves along it only;
+// where three do, it is the corner and does not move. There and over a wall `J_MT` is held to
+// differences of the places themselves.
+template <class Contact>
+void expect_places_in_a_hollow(const char* name, const Contact& made) {
+  constexpr double kWall = 0.02, kStep = 1e-5, kAny = std::numeric_limits<double>::infinity();
+  struct Case {
+    Vector3d p, foot;
+    Vector3d moves;  // 1 where the place goes along with the tip, along an axis
+  };
+  for (const Case& one : {Case{{0.023, 0.004, 0.003}, {kWall, kAny, kAny}, {kAny, kAny, kAny}},
+                          Case{{0.023, 0.004, 0.022}, {kWall, 0.004, kWall}, {0, 1, 0}},
+                          Case{{0.004, -0.0215, 0.0235}, {0.004, -kWall, kWall}, {1, 0, 0}},
+                          Case{{-0.022, -0.023, 0.0225}, {-kWall, -kWall, kWall}, {0, 0, 0}}}) {
+    const auto foot_at = [&](const Vector3d& tip) {
+      Contact contact = made;
+      constexpr int kIn = 300;
+      for (int i = 0; i <= kIn; ++i) contact.update(at(one.p * i / kIn));
+      EXPECT_TRUE(contact.update(at(tip)).touching) << name;
+      return foot_of(contact, tip);
+    };
+    const SurfaceFoot foot = foot_at(one.p);
+    for (int k = 0; k < 3; ++k) {
+      const Vector3d axis = Vector3d::Unit(k);
+      if (one.foot[k] < kAny) {
+        EXPECT_NEAR(foot.p_M[k], one.foot[k], 1e-8) << name;
+      }
+      const Vector3d moved =
+          (foot_at(one.p + kStep * axis).p_M - foot_at(one.p - kStep * axis).p_M) / (2 * kStep);
+      if (one.moves[k] < kAny) {
+        EXPECT_LT((moved - one.moves[k] * axis).norm(), 1e-5) << name;
+      }
+      EXPECT_LT((foot.J_MT.col(k) - moved).norm(), 1e-5) << name << ", axis " << k;
+    }
+  }
+}
+
+TEST(TexturePlace, LiesOnTheEdgeOrCornerThatHoldsTheTipInAHollow) {
+  const TriangleMesh hollow = support::block_around(support::box({0.02, 0.02, 0.02}), 0.05);
+  const auto mesh = std::make_shared<const ContactMesh>(ContactMesh::build(hollow).value());
+  const auto search = make_search(*mesh);
+  const auto normals = std::make_shared<const SmoothNormals>(*mesh);
+  expect_places_in_a_hollow("edge_planes", MeshContact(mesh, search));
+  expect_places_in_a_hollow("edge_planes, phong", Blended<MeshContact, Phong>(
+                                                      MeshContact(mesh, search), Phong(), normals));
+  expect_places_in_a_hollow("offset", Blended<OffsetContact, Phong, CurvedDepth>(
+                                          OffsetContact(mesh, search, normals), Phong(), normals));
+  expect_places_in_a_hollow("compact", MemoryContact(PackedSurface::build(*mesh).value()));
+  expect_places_in_a_hollow("god_object", GodObjectContact(mesh, search));
 }
 
 TEST(TexturePlace, NeverJumpsAndStandsStillUnderAHandThatRests) {
