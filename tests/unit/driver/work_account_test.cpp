@@ -37,7 +37,10 @@ TEST(WorkAccount, BooksNothingAcrossAStart) {
   work(account, {0, 0, 0});
   account.sent({2, 0, 0});
   account.restart();
-  EXPECT_EQ(work(account, {1, 0, 0}), 0);
+  const EnergyFlow first = account.flow({1, 0, 0}, {1, 0, 0}, {3, 0, 0}, 4);
+  EXPECT_EQ(first.work, 0);
+  EXPECT_EQ(first.move_W, Vector3d(0, 0, 0));  // the way from before the start is no motion of it
+  EXPECT_EQ(first.held, 0);
   EXPECT_EQ(work(account, {2, 0, 0}), 0);  // nor of an effort of before the start
 }
 
