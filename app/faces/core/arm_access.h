@@ -30,7 +30,8 @@ bool close(int arm) noexcept;
 bool is_open(int arm) noexcept;
 /// Returns whether its loop runs. False: `thimble exec` is gone or the run has ended.
 bool is_running(int arm) noexcept;
-/// Returns what an open arm is; zeros if it is not open.
+/// Returns what an arm is; before it was opened once, what its arm file says (zeros where a real
+/// arm is not chosen yet); zeros beyond `count`. It may not be opened meanwhile by another thread.
 const ArmFacts& facts(int arm) noexcept;
 /// Returns the name of an arm that need not be open, as `thimble exec` was given it; empty beyond
 /// `count`.
