@@ -22,8 +22,6 @@ namespace {
 double number[40];
 int whole[8];
 unsigned short small_number;
-unsigned char byte;
-unsigned natural;
 
 // A call with one null pointer or one wrong number; the number of the arm is the caller's.
 struct Call {
@@ -274,7 +272,7 @@ TEST_F(DhdFace, AnArmThatIsNotOpenOrNotThereIsAnErrorToEachFunction) {
       EXPECT_EQ(dhdErrorGetLast(), error) << call.name << " of " << id;
     }
   }
-  for (const char id : {-1, 0, 9}) {
+  for (const char id : {char(-1), char(0), char(9)}) {
     EXPECT_FALSE(dhdHasBase(id) || dhdHasWrist(id) || dhdHasActiveWrist(id) || dhdHasGripper(id) ||
                  dhdHasActiveGripper(id) || dhdIsLeftHanded(id) || drdIsSupported(id) ||
                  drdIsInitialized(id) || drdIsRunning(id) || drdIsMoving(id) || drdIsFiltering(id));
@@ -402,7 +400,7 @@ TEST_F(DhdFace, AnyOrderOfCallsFromAnyThreadEndsWell) {
           drdTrackPos(0, -0.01 * v, 0, id);
           break;
         case 7:
-          dhdEnableForce(i % 2, id);
+          dhdEnableForce(i % 2 ? DHD_ON : DHD_OFF, id);
           break;
         case 8:
           dhdEnableExpertMode();
