@@ -165,8 +165,8 @@ void add_exec_command(CLI::App& app, int& exit_code) {
   auto asked = std::make_shared<Asked>();
   faces::ExecOptions& options = asked->options;
   command->prefix_command();
-  command->usage("thimble exec [OPTIONS] PROGRAM ARGUMENTS...");
   command->footer(
+      "Options stand before PROGRAM; what follows it is its own.\n"
       "The program finds libHD, libhdPhantom, libdhd and libdrd of ours in front of others. Its\n"
       "forces go through the gate of ours. A simulated arm is used unless --device names one.\n"
       "Exit code: the program's; 4 if it was 0 and a force went off with a fault.");

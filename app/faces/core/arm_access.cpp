@@ -177,7 +177,10 @@ bool close(int arm) noexcept {
   if (shared == nullptr) return false;
   if (own(arm).opened.fetch_sub(1) > 1) return true;
   shared->enabled.store(0);
-  shared->state.store(ChannelState::kLeaving);
+  if (shared->state.exchange(ChannelState::kLeaving) == ChannelState::kEnded) {
+    shared->state.store(ChannelState::kClosed);  // its run is over: nobody need end it
+    return true;
+  }
   Channel* channel = open_channel();
   channel->requests.fetch_add(1);
   wake_all(channel->requests);

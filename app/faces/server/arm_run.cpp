@@ -99,6 +99,9 @@ driver::Result<void> ArmRun::start(const std::atomic<bool>& stop) {
   client_ = std::make_unique<ClientForce>(channel_, session_->own_law(), session_->device());
   publisher_ = std::make_unique<ReadingPublisher>(channel_, *client_, session_->device(), arm);
   if (auto set = session_->set_servo_law(driver::ForceLaw(*client_)); !set) return set;
+  if (options_.observer != nullptr) {
+    if (auto added = session_->add_observer(*options_.observer); !added) return added;
+  }
   if (auto added = session_->add_observer(*publisher_); !added) return added;
   channel_.facts = facts_of(arm, session_->device().traits());
   channel_.facts.rate = session_->scene().rate;
@@ -167,15 +170,10 @@ std::string ArmRun::own_report() const {
   driver::TickRecord last;
   const bool any = session_->newest().load(last);
   const std::uint64_t missed = any && last.tick + 1 > ticks ? last.tick + 1 - ticks : 0;
-  const driver::GateCounters& gate = session_->device().gate_counters();
   std::string s = fmt::format(
       "Program   {} by {}: asked for a force in {} of {} ticks; {} tick{} of ours missed.\n",
       options_.program, channel_.face.data(), client_->renewals(), ticks, missed,
       missed == 1 ? "" : "s");
-  s += fmt::format(
-      "Gate      cut to the limit in {}, held back its rise in {}, soft start in {}, damped in {} "
-      "ticks.\n",
-      gate.limited, gate.rise_limited, gate.soft_started, gate.damped + gate.bounded);
   if (client_->stalls() > 0) {
     s += fmt::format("Stalls    {} did not renew its force {} time{}; it was zero meanwhile.\n",
                      options_.program, client_->stalls(), client_->stalls() == 1 ? "" : "s");

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "thimble/session/tick_observer.h"
+
 namespace thimble::faces {
 
 /// One arm that a program gets.
@@ -25,6 +27,8 @@ struct ExecOptions {
   bool unchecked = false;               ///< Its whole force without a passed feel check.
   bool homed = false;                   ///< It was in its home pose when it got power.
   bool no_real_time = false;            ///< Without real-time priority.
+  /// Is told of each tick of every arm, on their threads; null: nobody.
+  session::TickObserver* observer = nullptr;
 };
 
 }  // namespace thimble::faces

@@ -1,0 +1,91 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <atomic>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include "faces/core/arm_access.h"
+#include "faces/core/open_channel.h"
+#include "faces/server/arm_server.h"
+#include "thimble/driver/snapshot.h"
+#include "thimble/scene/arm_simulation.h"
+#include "thimble/session/session.h"
+
+namespace thimble::faces {
+
+/// What the simulated motors pull with, tick by tick: what is true, not what was sent.
+class MotorWatch final : public session::TickObserver {
+ public:
+  void take(const driver::TickRecord&) noexcept override {
+    if (const auto* arm = arm_.load()) force_.store(arm->f_T_W());
+  }
+  void look_at(const scene::ArmSimulation* arm) { arm_.store(arm); }
+  Eigen::Vector3d force_W() const {
+    Eigen::Vector3d f(0, 0, 0);
+    force_.load(f);
+    return f;
+  }
+
+ private:
+  std::atomic<const scene::ArmSimulation*> arm_{nullptr};
+  driver::Snapshot<Eigen::Vector3d> force_;
+};
+
+/// `thimble exec` in this process: the server on a thread of its own, and its channel in place of
+/// the one that the environment names.
+class ExecRig {
+ public:
+  explicit ExecRig(ExecOptions options = {}) {
+    options.program = "test";
+    options.observer = &motors;
+    auto made = ArmServer::make(options, stop_);
+    if (!made) throw std::runtime_error(made.error().message);
+    server_ = std::move(made).value();
+    use_channel(&server_->channel());
+    thread_ = std::thread([this] {
+      while (!stop_.load()) {
+        server_->step(5'000'000);
+        if (auto* run = server_->run(0)) motors.look_at(run->session().simulation());
+      }
+    });
+  }
+  ~ExecRig() {
+    for (int arm = 0; arm < kArmsMost; ++arm) {
+      while (arms::close(arm)) {
+      }
+    }
+    end();
+    use_channel(nullptr);
+  }
+
+  /// Ends the server and returns its report.
+  std::string end() {
+    if (thread_.joinable()) {
+      stop_.store(true);
+      thread_.join();
+      server_->end();
+    }
+    return server_->report();
+  }
+  /// Waits for so many ticks of an arm.
+  static void wait(int arm, int ticks) {
+    ArmReading reading;
+    arms::read(arm, reading);
+    arms::wait_for_tick(arm, reading.tick + static_cast<std::uint64_t>(ticks) - 1);
+  }
+
+  MotorWatch motors;
+
+ private:
+  std::atomic<bool> stop_{false};
+  std::unique_ptr<ArmServer> server_;
+  std::thread thread_;
+};
+
+}  // namespace thimble::faces
