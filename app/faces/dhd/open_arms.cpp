@@ -10,6 +10,9 @@ namespace thimble::faces::dhd {
 namespace {
 
 struct Table {
+  Table() {
+    for (int i = 0; i < kArmsMost; ++i) arms[static_cast<std::size_t>(i)].number = i;
+  }
   std::mutex opening;                   // one opens or closes at a time
   std::array<OpenArm, kArmsMost> arms;  // an entry for each that `thimble exec` may have
   std::atomic<int> chosen{-1};
@@ -79,7 +82,6 @@ int open_number(const char* function, int number) noexcept {
   if (!arm.open) {
     const std::string wrong = arms::open(number, "DHD");
     if (!wrong.empty()) return fail(function, DHD_ERROR_DEVICE_NOT_READY, wrong.c_str());
-    arm.number = number;
     forget(arm);
     arm.open = true;
   }
