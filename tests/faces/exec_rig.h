@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
+#include <array>
 #include <atomic>
 #include <memory>
 #include <stdexcept>
@@ -23,18 +24,21 @@ namespace thimble::faces {
 class MotorWatch final : public session::TickObserver {
  public:
   void take(const driver::TickRecord&) noexcept override {
-    if (const auto* arm = arm_.load()) force_.store(arm->f_T_W());
+    const auto* arm = arm_.load();
+    if (arm == nullptr) return;
+    const Eigen::Vector3d f_W = arm->f_T_W();
+    force_.store({f_W.x(), f_W.y(), f_W.z()});
   }
   void look_at(const scene::ArmSimulation* arm) { arm_.store(arm); }
   Eigen::Vector3d force_W() const {
-    Eigen::Vector3d f(0, 0, 0);
+    std::array<double, 3> f{};
     force_.load(f);
-    return f;
+    return {f[0], f[1], f[2]};
   }
 
  private:
   std::atomic<const scene::ArmSimulation*> arm_{nullptr};
-  driver::Snapshot<Eigen::Vector3d> force_;
+  driver::Snapshot<std::array<double, 3>> force_;
 };
 
 /// `thimble exec` in this process: the server on a thread of its own, and its channel in place of
