@@ -55,11 +55,11 @@ int move(const char* function, char id, const Eigen::Vector3d& p_U, bool wait) n
   if (!read_arm(function, *arm, reading)) return -1;
   const std::int64_t begin_ns = reading.time_ns;
   while (arm->regulator.moving()) {
-    arms::wait_for_tick(arm->number, reading.tick);
-    if (!read_arm(function, *arm, reading)) return -1;
     if (1e-9 * static_cast<double>(reading.time_ns - begin_ns) > longest) {
       return fail(function, DHD_ERROR_TIMEOUT, "the arm does not arrive");
     }
+    arms::wait_for_tick(arm->number, reading.tick);
+    if (!read_arm(function, *arm, reading)) return -1;
   }
   if (arm->regulator.running()) return 0;
   return fail(function, DHD_ERROR_NO_REGULATION, "regulation was stopped before the arm arrived");

@@ -222,10 +222,13 @@ bool ask_force(int arm, const ForceAsked& asked) noexcept {
 }
 
 bool wait_until_taken(int arm) noexcept {
-  const std::lock_guard lock(mutex);
-  FakeArm* found = opened(arm);
-  if (!found || over) return false;
-  tick(*found);
+  {
+    const std::lock_guard lock(mutex);
+    FakeArm* found = opened(arm);
+    if (!found || over) return false;
+    tick(*found);
+  }
+  std::this_thread::yield();  // others look at each tick
   return true;
 }
 

@@ -16,7 +16,9 @@ constexpr double kQuantum = 0.005;  // N, of a motor value
 
 TEST(FaceDhdMotors, PullWithTheForceThatWasAskedFor) {
   for (const char* arm : {"vintage_phantom", "woodenhaptics"}) {
-    ExecRig rig({.arms = {{.arm_file = arm}}});
+    ExecOptions options;
+    options.arms = {{.arm_file = arm}};
+    ExecRig rig(options);
     ASSERT_EQ(dhdOpenID(0), 0) << dhdErrorGetLastStr();
     for (const Vector3d& f : {Vector3d(0.5, -0.3, 0.2), Vector3d(0, 0, -0.4), Vector3d(0, 0, 0)}) {
       for (int i = 0; i < 500; ++i) ASSERT_EQ(dhdSetForce(f.x(), f.y(), f.z(), -1), 0);
