@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
+#include <array>
 #include <atomic>
 #include <memory>
 #include <stdexcept>
@@ -19,22 +20,26 @@
 
 namespace thimble::faces {
 
-/// What the simulated motors pull with, tick by tick: what is true, not what was sent.
+/// What the simulated motors of the first arm pull with, tick by tick: what is true, not what was
+/// sent.
 class MotorWatch final : public session::TickObserver {
  public:
   void take(const driver::TickRecord&) noexcept override {
-    if (const auto* arm = arm_.load()) force_.store(arm->f_T_W());
+    const auto* arm = arm_.load();
+    if (arm == nullptr) return;
+    const Eigen::Vector3d f_W = arm->f_T_W();
+    force_.store({f_W.x(), f_W.y(), f_W.z()});
   }
   void look_at(const scene::ArmSimulation* arm) { arm_.store(arm); }
   Eigen::Vector3d force_W() const {
-    Eigen::Vector3d f(0, 0, 0);
+    std::array<double, 3> f{};
     force_.load(f);
-    return f;
+    return {f[0], f[1], f[2]};
   }
 
  private:
   std::atomic<const scene::ArmSimulation*> arm_{nullptr};
-  driver::Snapshot<Eigen::Vector3d> force_;
+  driver::Snapshot<std::array<double, 3>> force_;
 };
 
 /// `thimble exec` in this process: the server on a thread of its own, and its channel in place of
@@ -43,16 +48,17 @@ class ExecRig {
  public:
   explicit ExecRig(ExecOptions options = {}) {
     options.program = "test";
-    options.observer = &motors;
+    options.opened = [this](std::size_t arm, session::Session& session) {
+      if (arm != 0) return;
+      motors.look_at(session.simulation());
+      EXPECT_TRUE(session.add_observer(motors));
+    };
     auto made = ArmServer::make(options, stop_);
     if (!made) throw std::runtime_error(made.error().message);
     server_ = std::move(made).value();
     use_channel(&server_->channel());
     thread_ = std::thread([this] {
-      while (!stop_.load()) {
-        server_->step(5'000'000);
-        if (auto* run = server_->run(0)) motors.look_at(run->session().simulation());
-      }
+      while (!stop_.load()) server_->step(5'000'000);
     });
   }
   ~ExecRig() {
