@@ -20,7 +20,8 @@
 
 namespace thimble::faces {
 
-/// What the simulated motors pull with, tick by tick: what is true, not what was sent.
+/// What the simulated motors of the first arm pull with, tick by tick: what is true, not what was
+/// sent.
 class MotorWatch final : public session::TickObserver {
  public:
   void take(const driver::TickRecord&) noexcept override {
@@ -47,16 +48,17 @@ class ExecRig {
  public:
   explicit ExecRig(ExecOptions options = {}) {
     options.program = "test";
-    options.observer = &motors;
+    options.opened = [this](std::size_t arm, session::Session& session) {
+      if (arm != 0) return;
+      motors.look_at(session.simulation());
+      EXPECT_TRUE(session.add_observer(motors));
+    };
     auto made = ArmServer::make(options, stop_);
     if (!made) throw std::runtime_error(made.error().message);
     server_ = std::move(made).value();
     use_channel(&server_->channel());
     thread_ = std::thread([this] {
-      while (!stop_.load()) {
-        server_->step(5'000'000);
-        if (auto* run = server_->run(0)) motors.look_at(run->session().simulation());
-      }
+      while (!stop_.load()) server_->step(5'000'000);
     });
   }
   ~ExecRig() {

@@ -31,14 +31,14 @@ std::filesystem::path recording_of(const std::filesystem::path& path, std::size_
 driver::Result<std::unique_ptr<ArmRun>> ArmRun::open(const ExecOptions& options, std::size_t index,
                                                      int number, ArmChannel& channel,
                                                      const std::atomic<bool>& stop) {
-  std::unique_ptr<ArmRun> run(new ArmRun(options, channel));
-  if (auto prepared = run->prepare(index, number); !prepared) return prepared.error();
+  std::unique_ptr<ArmRun> run(new ArmRun(options, index, channel));
+  if (auto prepared = run->prepare(number); !prepared) return prepared.error();
   if (auto started = run->start(stop); !started) return started.error();
   return run;
 }
 
-driver::Result<void> ArmRun::prepare(std::size_t index, int number) {
-  const ExecArm& wanted = options_.arms[index];
+driver::Result<void> ArmRun::prepare(int number) {
+  const ExecArm& wanted = options_.arms[index_];
   auto arm = session::choose_run_arm(wanted.device, {.arm_file = wanted.arm_file,
                                                      .firmware = options_.firmware,
                                                      .unchecked = options_.unchecked});
@@ -58,7 +58,7 @@ driver::Result<void> ArmRun::prepare(std::size_t index, int number) {
   asked.real_arm = arm->real;
   asked.terms = arm->terms;
   asked.firmware = options_.firmware;
-  asked.record = recording_of(options_.record, index, number);
+  asked.record = recording_of(options_.record, index_, number);
   asked.log = true;
   asked.homed = options_.homed;
   asked.hand_by_mouse = options_.hand == "mouse" && !arm->real;
@@ -99,9 +99,7 @@ driver::Result<void> ArmRun::start(const std::atomic<bool>& stop) {
   client_ = std::make_unique<ClientForce>(channel_, session_->own_law(), session_->device());
   publisher_ = std::make_unique<ReadingPublisher>(channel_, *client_, session_->device(), arm);
   if (auto set = session_->set_servo_law(driver::ForceLaw(*client_)); !set) return set;
-  if (options_.observer != nullptr) {
-    if (auto added = session_->add_observer(*options_.observer); !added) return added;
-  }
+  if (options_.opened) options_.opened(index_, *session_);
   if (auto added = session_->add_observer(*publisher_); !added) return added;
   channel_.facts = facts_of(arm, session_->device().traits());
   channel_.facts.rate = session_->scene().rate;

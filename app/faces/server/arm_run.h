@@ -48,12 +48,14 @@ class ArmRun {
   session::Session& session() noexcept { return *session_; }
 
  private:
-  ArmRun(const ExecOptions& options, ArmChannel& channel) : options_(options), channel_(channel) {}
-  driver::Result<void> prepare(std::size_t index, int number);
+  ArmRun(const ExecOptions& options, std::size_t index, ArmChannel& channel)
+      : options_(options), index_(index), channel_(channel) {}
+  driver::Result<void> prepare(int number);
   driver::Result<void> start(const std::atomic<bool>& stop);
   std::string own_report() const;
 
   const ExecOptions& options_;
+  std::size_t index_;
   ArmChannel& channel_;
   std::unique_ptr<FreeScene> free_scene_;
   std::unique_ptr<session::Session> session_;

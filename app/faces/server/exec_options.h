@@ -1,10 +1,14 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
-#include "thimble/session/tick_observer.h"
+namespace thimble::session {
+class Session;
+}
 
 namespace thimble::faces {
 
@@ -16,7 +20,7 @@ struct ExecArm {
 
 /// What a user wants of `thimble exec`.
 struct ExecOptions {
-  std::string program;                ///< What is started, for the report and the viewer.
+  std::string program = {};           ///< What is started, for the report and the viewer.
   std::vector<ExecArm> arms = {{}};   ///< In the order in which the program numbers them.
   std::string scene = {};             ///< Name or path; empty: nothing but what the program draws.
   std::string hand = "path";          ///< "path": the scene's; "mouse"; or a file (hand_path.h).
@@ -27,8 +31,8 @@ struct ExecOptions {
   bool unchecked = false;               ///< Its whole force without a passed feel check.
   bool homed = false;                   ///< It was in its home pose when it got power.
   bool no_real_time = false;            ///< Without real-time priority.
-  /// Is told of each tick of every arm, on their threads; null: nobody.
-  session::TickObserver* observer = nullptr;
+  /// Is called with an arm's number and session before its loop begins, for tests.
+  std::function<void(std::size_t, session::Session&)> opened = {};
 };
 
 }  // namespace thimble::faces

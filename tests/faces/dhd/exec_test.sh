@@ -6,21 +6,6 @@ source "$(dirname "$0")/../../program/expect.sh" "$1" "$2" "$3"
 clients=$4
 library=$5
 
-# Nothing is exported but the names in the table, and each of them.
-checks=$((checks + 1))
-if ! diff <(nm -D --defined-only "$library" | awk '{print $3}' | sort) \
-    <(grep -E '^[a-z]' "$source_dir/app/faces/dhd/symbols.txt" | sort); then
-  echo "FAILED: $library exports other names than symbols.txt has (< library, > table)"
-  failures=$((failures + 1))
-fi
-# A program brings no library of ours but this one, and this one none but the system's.
-expect 0 'libc.so' bash -c "objdump -p '$library' | grep NEEDED"
-checks=$((checks + 1))
-if objdump -p "$library" | grep NEEDED | grep -vE 'lib(c|m|pthread|dl|rt)\.so|ld-linux'; then
-  echo "FAILED: $library needs the libraries above"
-  failures=$((failures + 1))
-fi
-
 hand=$source_dir/tests/faces/fast_hand.txt
 expect 0 'hello force: PASSED' "$thimble" exec "$clients/dhd_client_hello_force"
 expect 0 'spring to centre: PASSED' "$thimble" exec --hand "$hand" "$clients/dhd_client_spring_to_centre"
