@@ -1,3 +1,4 @@
+#include <Eigen/Geometry>
 #include <atomic>
 #include <cmath>
 #include <random>
