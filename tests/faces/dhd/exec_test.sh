@@ -6,7 +6,7 @@ source "$(dirname "$0")/../../program/expect.sh" "$1" "$2" "$3"
 clients=$4
 library=$5
 
-hand=$source_dir/tests/faces/fast_hand.txt
+hand=$source_dir/tests/faces/dhd/late_hand.txt
 expect 0 'hello force: PASSED' "$thimble" exec "$clients/dhd_client_hello_force"
 expect 0 'spring to centre: PASSED' "$thimble" exec --hand "$hand" "$clients/dhd_client_spring_to_centre"
 expect 0 'gripper: PASSED' "$thimble" exec --arm polhem "$clients/dhd_client_gripper"

@@ -52,6 +52,7 @@ TEST_F(DhdFace, MinusOneMeansTheArmThatWasChosenLast) {
   EXPECT_EQ(dhdGetPosition(&x, &y, &z, 1), 0);
   EXPECT_EQ(x, 0.02);
   EXPECT_EQ(dhdClose(0), 0);
+  EXPECT_EQ(dhdGetDeviceID(), -1);
   EXPECT_EQ(dhdGetPosition(&x, &y, &z), -1) << "none is chosen after it was closed";
   EXPECT_EQ(dhdGetPosition(&x, &y, &z, 1), 0);
 }

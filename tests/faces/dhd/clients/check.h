@@ -19,9 +19,11 @@
 /* Two numbers that a step of an encoder or of a motor may part. */
 #define CHECK_NEAR(a, b, quantum) CHECK(fabs((a) - (b)) < (quantum))
 
-static void open_arm(char id) {
-  CHECK(dhdOpenID(id) == id);
-  CHECK(dhdEnableForce(DHD_ON, id) == 0);
-}
+/* Opens an arm and lets forces through. */
+#define OPEN_ARM(id)                        \
+  do {                                      \
+    CHECK(dhdOpenID(id) == (id));           \
+    CHECK(dhdEnableForce(DHD_ON, id) == 0); \
+  } while (0)
 
 #endif

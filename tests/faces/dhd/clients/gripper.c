@@ -5,7 +5,7 @@
 int main(void) {
   double gap = 7, force[3], torque[3], grip, rows[3][3], a, b, c, turned = 0;
   int i, k, n;
-  open_arm(0);
+  OPEN_ARM(0);
   CHECK(dhdHasWrist(-1) && !dhdHasActiveWrist(-1));
   CHECK(!dhdHasGripper(-1) && !dhdHasActiveGripper(-1));
   CHECK(dhdGetGripperGap(&gap, -1) == -1 && gap == 7);

@@ -3,7 +3,7 @@
 #include "check.h"
 
 int main(void) {
-  const double stiffness = 100, damping = 1;
+  const double stiffness = 20, damping = 2;
   double p[3], v[3], f[3], farthest = 0, worst = 0, last[3] = {0, 0, 0};
   int i;
   CHECK(dhdOpen() >= 0);

@@ -6,7 +6,7 @@ int main(void) {
   int i;
   char id;
   CHECK(dhdGetDeviceCount() == 2);
-  for (id = 0; id < 2; ++id) open_arm(id);
+  for (id = 0; id < 2; ++id) OPEN_ARM(id);
   CHECK(dhdGetDeviceID() == 1);
   for (i = 0; i < 600; ++i) {
     CHECK(dhdSetForce(0.3, 0, 0, 0) == 0);

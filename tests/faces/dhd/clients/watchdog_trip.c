@@ -17,7 +17,7 @@ static double push(int times) {
 
 int main(void) {
   double x, y, z;
-  open_arm(0);
+  OPEN_ARM(0);
   CHECK(dhdEnableExpertMode() == 0);
   CHECK(dhdSetWatchdog(80, -1) == 0); /* 10 ms */
   CHECK_NEAR(push(600), 0.5, 1e-9);
