@@ -52,11 +52,6 @@ void Regulator::stop() noexcept {
   if (thread_.joinable()) thread_.join();
 }
 
-void Regulator::regulate(bool on) noexcept {
-  if (on && !regulates_) hold();
-  regulates_ = on;
-}
-
 void Regulator::set_free_force(const ForceAsked& asked) noexcept {
   const std::lock_guard lock(mutex_);
   free_ = asked;

@@ -28,8 +28,8 @@ class Regulator {
   /// Returns whether the thread runs.
   bool running() const noexcept { return running_; }
 
-  /// Holds the tip, or lets it go and asks for the `free_force` in its place.
-  void regulate(bool on) noexcept;
+  /// Holds the tip where it is, or lets it go and asks for the free force in its place.
+  void regulate(bool on) noexcept { regulates_ = on; }
   /// Returns whether the tip is held.
   bool regulates() const noexcept { return regulates_; }
   /// Sets the force (N) while the tip is not held; torque and gripper are counted.

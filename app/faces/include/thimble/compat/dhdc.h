@@ -2,13 +2,13 @@
 #define THIMBLE_COMPAT_DHDC_H
 
 /* What a C or C++ program needs to be built for an arm behind the names dhd...: the functions that
- * `libdhd.so` and `libdrd.so` of `thimble exec` answer. Thimble's own text: names, types and numbers
- * are those that programs use (app/faces/dhd/PROVENANCE.md); what each function does here stands in
- * app/faces/dhd/README.md.
+ * `libdhd.so` and `libdrd.so` of `thimble exec` answer. Thimble's own text: names, types and
+ * numbers are those that programs use (app/faces/dhd/PROVENANCE.md); what each function does here
+ * stands in app/faces/dhd/README.md.
  *
  * Units: m, N, N m, rad, kg, s; degrees in names that end with Deg. x to the user, y to the user's
- * right, z up. `id`: number of the arm; -1: the one that was opened or chosen last (in C++ it may be
- * left out). Returns 0 or more, or -1: then dhdErrorGetLast tells the thread that called why. */
+ * right, z up. `id`: number of the arm; -1: the one that was opened or chosen last (in C++ it may
+ * be left out). Returns 0 or more, or -1: then dhdErrorGetLast tells the thread that called why. */
 
 #include <stdbool.h>
 

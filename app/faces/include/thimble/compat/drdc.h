@@ -1,9 +1,9 @@
 #ifndef THIMBLE_COMPAT_DRDC_H
 #define THIMBLE_COMPAT_DRDC_H
 
-/* What a C or C++ program needs to be built for an arm that is led and held by the functions drd...;
- * see dhdc.h. An arm of ours is held and moved by a spring between its tip and a point that moves,
- * of the force that the gate lets through. */
+/* What a C or C++ program needs to be built for an arm that is led and held by the functions
+ * drd...; see dhdc.h. An arm of ours is held and moved by a spring between its tip and a point that
+ * moves, of the force that the gate lets through. */
 
 #include "dhdc.h"
 
