@@ -173,14 +173,12 @@ void add_exec_command(CLI::App& app, int& exit_code) {
   command
       ->add_option("--arm", asked->arms,
                    "Arm file or name; again for a second arm (`thimble run --list`)")
-      ->expected(1)
-      ->take_all();
+      ->allow_extra_args(false);
   command
       ->add_option("--device", asked->devices,
                    "Arm to use: sim, auto, or a name that `thimble devices` lists; again for a "
                    "second arm")
-      ->expected(1)
-      ->take_all();
+      ->allow_extra_args(false);
   command->add_option("--scene", options.scene,
                       "Scene whose objects are felt as well: both forces add up");
   command
