@@ -83,9 +83,9 @@ TEST(FaceCore, TakesAwayAForceThatIsNotRenewedAndGivesItBackSlowly) {
   EXPECT_EQ(rig.motors.force_W().norm(), 0);
   hold(0, {0.3, 0, 0}, 10);
   EXPECT_LT(rig.motors.force_W().x(), 0.15) << "within 40 ms, not at once";
-  hold(0, {0.3, 0, 0}, 60);
+  hold(0, {0.3, 0, 0}, 500);
   EXPECT_NEAR(rig.motors.force_W().x(), 0.3, kQuantum);
-  EXPECT_NE(rig.end().find("did not renew its force 1 time"), std::string::npos);
+  EXPECT_NE(rig.end().find("test did not renew its force"), std::string::npos);
 }
 
 TEST(FaceCore, LatchesAForceThatIsNoNumberUntilForceIsEnabledAnew) {

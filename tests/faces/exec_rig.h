@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <atomic>
+#include <cstdlib>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -47,6 +48,8 @@ class MotorWatch final : public session::TickObserver {
 class ExecRig {
  public:
   explicit ExecRig(ExecOptions options = {}) {
+    // What is kept of faults goes nowhere else.
+    setenv("XDG_STATE_HOME", ::testing::TempDir().c_str(), 1);
     options.program = "test";
     options.opened = [this](std::size_t arm, session::Session& session) {
       if (arm != 0) return;

@@ -194,7 +194,7 @@ TEST_F(FaceHd, RampsAForceUpWhereItIsAskedTo) {
     arms::read(0, now);
     if (++tick > 10) {
       const double since = 1e-9 * static_cast<double>(now.time_ns - begin.time_ns);
-      EXPECT_LE(std::abs(now.f_client_W[2]), rate * since + 1e-3);
+      EXPECT_LE(std::abs(now.f_client_W[2]), rate * since + 5e-3);
     }
     if (tick == 200) half = now.f_client_W[2];
   });
@@ -232,7 +232,7 @@ TEST_F(FaceHd, ClampsAForceWithoutAnErrorWhereItIsAskedTo) {
     for (HDErrorInfo e = hdGetError(); HD_DEVICE_ERROR(e); e = hdGetError()) ++seen[e.errorCode];
   });
   EXPECT_EQ(seen[HD_EXCEEDED_MAX_FORCE], 0);
-  EXPECT_EQ(most, arms::facts(0).force_max);
+  EXPECT_DOUBLE_EQ(most, arms::facts(0).force_max);
 }
 
 TEST_F(FaceHd, SaysThatTheArmIsInFaultAndRecoversWhenForceIsEnabledAnew) {
@@ -269,7 +269,8 @@ TEST_F(FaceHd, TakesTheSpeedLimitOfTheProgram) {
 TEST_F(FaceHd, MovesTheTipAsItsJacobianSays) {
   ExecRig rig({.hand = THIMBLE_SOURCE_DIR "/tests/faces/fast_hand.txt"});
   hdInitDevice(nullptr);
-  std::array<double, 36> J{};
+  ExecRig::wait(0, 150);
+  std::array<double, 36> J{}, J2{};
   std::array<double, 3> q{}, p{}, q2{}, p2{};
   hdBeginFrame(0);
   hdGetDoublev(HD_CURRENT_JACOBIAN, J.data());
@@ -278,13 +279,15 @@ TEST_F(FaceHd, MovesTheTipAsItsJacobianSays) {
   hdEndFrame(0);
   ExecRig::wait(0, 15);
   hdBeginFrame(0);
+  hdGetDoublev(HD_CURRENT_JACOBIAN, J2.data());
   hdGetDoublev(HD_CURRENT_JOINT_ANGLES, q2.data());
   hdGetDoublev(HD_CURRENT_POSITION, p2.data());
   hdEndFrame(0);
   double moved = 0;
   for (std::size_t row = 0; row < 3; ++row) {
     double predicted = 0;
-    for (std::size_t k = 0; k < 3; ++k) predicted += J[6 * row + k] * (q2[k] - q[k]);
+    for (std::size_t k = 0; k < 3; ++k)
+      predicted += 0.5 * (J[6 * row + k] + J2[6 * row + k]) * (q2[k] - q[k]);
     EXPECT_NEAR(predicted, p2[row] - p[row], 0.1) << "mm, row " << row;
     moved += std::abs(p2[row] - p[row]);
   }
