@@ -39,6 +39,8 @@ void add_calibrate_command(CLI::App& app, int& exit_code);
 void add_feel_check_command(CLI::App& app, int& exit_code);
 /// `thimble doctor`: says why an arm cannot be used, and what mends it.
 void add_doctor_command(CLI::App& app, int& exit_code);
+/// `thimble exec PROGRAM`: runs a program that was written for another maker's arm.
+void add_exec_command(CLI::App& app, int& exit_code);
 /// `thimble export FILE`: writes a recording as a table.
 void add_export_command(CLI::App& app, int& exit_code);
 /// `thimble replay FILE`: lets a recorded hand touch a scene again.

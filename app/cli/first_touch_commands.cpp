@@ -21,6 +21,11 @@ void add_doctor_command(CLI::App& app, int& exit_code) {
   add_absent_command(app, exit_code, "doctor", "Say why an arm cannot be used, and what mends it");
 }
 
+void add_exec_command(CLI::App& app, int& exit_code) {
+  add_absent_command(app, exit_code, "exec",
+                     "Run a program that was written for another maker's arm");
+}
+
 void add_export_command(CLI::App& app, int& exit_code) {
   add_absent_command(app, exit_code, "export", "Write a recording as a table");
 }

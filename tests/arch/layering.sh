@@ -98,8 +98,8 @@ forbid app/python '(yaml|terms|recording|share|observers|report|studies|view|bri
 forbid_app() {
   forbid "app/$1" "$2" "a library above it or beside it"
 }
-forbid_app scene 'thimble/session/|(recording|share|events|report|stability|studies|view|bringup|cli)/'
-forbid_app session '(report|stability|studies|view|bringup|cli)/'
+forbid_app scene 'thimble/session/|(recording|share|events|report|stability|studies|view|bringup|faces|cli)/'
+forbid_app session '(report|stability|studies|view|bringup|faces|cli)/'
 # What a program of somebody else's includes needs nothing beside the sources; and observers of a run's
 # ticks know nothing of each other: only who registers them knows them all (run_records.h).
 forbid app/session/include '(observers|recording|share)/|[a-z_0-9]*\.h"|hdf5|yaml-cpp|fmt/' \
@@ -115,15 +115,25 @@ for observer in observers/black_box observers/dent_record observers/latest_tick 
     bad=1
   fi
 done
-forbid_app report '(stability|studies|view|bringup|cli)/'
-forbid_app stability '(studies|view|bringup|cli)/'
-forbid_app studies '(view|bringup|cli)/'
-forbid_app view '(report|stability|studies|bringup|cli)/'
-forbid_app bringup 'thimble/session/|(recording|share|events|report|stability|studies|view|cli)/'
-for folder in scene session report stability studies bringup cli python; do
+forbid_app report '(stability|studies|view|bringup|faces|cli)/'
+forbid_app stability '(studies|view|bringup|faces|cli)/'
+forbid_app studies '(view|bringup|faces|cli)/'
+forbid_app view '(report|stability|studies|bringup|faces|cli)/'
+forbid_app bringup 'thimble/session/|(recording|share|events|report|stability|studies|view|faces|cli)/'
+forbid_app faces '(report|stability|studies|view|bringup|cli)/'
+# What a program of somebody else's loads brings no library of ours with it; and faces know the core alone.
+for part in core hd hdphantom dhd; do
+  [ -d "app/faces/$part" ] || continue
+  forbid "app/faces/$part" 'faces/server/|thimble/(session|scene|render|device_sim)/|fmt/|spdlog/|yaml-cpp|hdf5' \
+    "what is in the process of thimble exec"
+done
+for part in core server; do
+  forbid "app/faces/$part" 'faces/(hd|hdphantom|dhd)/|(HD|HDU)/|d[hr]dc\.h' "a face"
+done
+for folder in scene session report stability studies bringup faces cli python; do
   forbid "app/$folder" "$graphics" "graphics: they are app/view's"
 done
-for folder in scene session report stability studies bringup view python; do
+for folder in scene session report stability studies bringup view faces python; do
   forbid "app/$folder" 'CLI/' "arguments: they are app/cli's"
 done
 

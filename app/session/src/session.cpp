@@ -61,6 +61,7 @@ struct Session::Parts {
   void add_records();
   driver::Result<void> share(const SessionOptions& options);
   void begin(const std::atomic<bool>& stop) noexcept;
+  driver::ForceLaw own_law() noexcept;
   void end() noexcept;
 
   std::unique_ptr<Setup> setup;
@@ -121,12 +122,14 @@ void Session::Parts::begin(const std::atomic<bool>& stop) noexcept {
     control->join(*shared, setup->hand_by_mouse(), stop);
     shared->set_state(RunState::kRunning);
   }
-  const driver::ForceLaw own =
-      control ? driver::ForceLaw(*control) : driver::ForceLaw(setup->objects().touch());
-  loop.begin(setup->device(), setup->clock(), law.value_or(own),
+  loop.begin(setup->device(), setup->clock(), law.value_or(own_law()),
              {.period_ns = setup->period_ns(),
               .ticks = setup->ticks(),
-              .outlive_faults = setup->real_arm().has_value()});
+              .outlive_faults = setup->real_arm().has_value() || setup->endless()});
+}
+
+driver::ForceLaw Session::Parts::own_law() noexcept {
+  return control ? driver::ForceLaw(*control) : driver::ForceLaw(setup->objects().touch());
 }
 
 void Session::Parts::end() noexcept {
@@ -187,11 +190,19 @@ driver::Result<void> Session::set_law(driver::ForceLaw law) {
         "A force law of one's own runs in virtual time alone; in real time nothing may wait for "
         "it. For that write it in C++ (app/examples/04_own_effect.cpp)."};
   }
+  return set_servo_law(law);
+}
+
+driver::Result<void> Session::set_servo_law(driver::ForceLaw law) {
   if (parts_->loop.begun()) {
     return driver::Error{"The run has begun with another force law; begin a new one."};
   }
   parts_->law = law;
   return {};
+}
+
+driver::ForceLaw Session::own_law() noexcept {
+  return parts_->own_law();
 }
 
 driver::Result<void> Session::add_observer(TickObserver& observer) {

@@ -38,6 +38,7 @@ driver::Result<std::unique_ptr<Setup>> Setup::prepare(const std::filesystem::pat
   setup->device_name_ = options.real_arm ? options.real_arm->name() : "sim";
   setup->hand_by_mouse_ = options.hand_by_mouse;
   setup->homed_ = options.homed;
+  setup->endless_ = options.endless;
   setup->real_time_ = options.clock == ClockKind::kWall || options.real_arm.has_value();
   if (auto read = setup->read(options); !read) return read.error();
 
@@ -76,8 +77,9 @@ driver::Result<void> Setup::read(const SessionOptions& options) {
   seed_ = options.seed.value_or(scene_.seed);
   period_ns_ = std::llround(1e9 / scene_.rate);
   const double duration = options.duration.value_or(scene_.duration);
-  // Led by a person it goes on until he has enough, unless he says how long.
-  if (!options.hand_by_mouse || options.duration) {
+  // Led by a person, or by another program, it goes on until he has enough, unless he says how
+  // long.
+  if ((!options.hand_by_mouse && !options.endless) || options.duration) {
     ticks_ =
         static_cast<std::uint64_t>(std::ceil(duration * 1e9 / static_cast<double>(period_ns_)));
   }

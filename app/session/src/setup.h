@@ -56,6 +56,8 @@ class Setup {
   /// Returns whether a real arm's counters are known to be right: it was in its home pose when it
   /// got power.
   bool homed() const noexcept { return homed_; }
+  /// Returns whether it runs until it is stopped, faults or not.
+  bool endless() const noexcept { return endless_; }
   /// Returns whether a viewer leads the simulated hand.
   bool hand_by_mouse() const noexcept { return hand_by_mouse_; }
   std::int64_t period_ns() const noexcept { return period_ns_; }  ///< Between two ticks.
@@ -89,6 +91,7 @@ class Setup {
   std::optional<StartPose> start_pose_;
   decltype(SessionOptions::open_link) open_link_;
   bool real_time_ = false;
+  bool endless_ = false;
   bool hand_by_mouse_ = false;
   bool homed_ = false;
   std::uint64_t seed_ = 0;

@@ -133,6 +133,10 @@ driver::Result<std::unique_ptr<SharedMemory>> SharedMemory::create(const std::st
   return map(file, bytes, run, true);
 }
 
+std::string SharedMemory::path() const {
+  return "/proc/" + std::to_string(getpid()) + "/fd/" + std::to_string(file_);
+}
+
 driver::Result<std::unique_ptr<SharedMemory>> SharedMemory::create_nameless(std::size_t bytes) {
   const int file = memfd_create("thimble", MFD_CLOEXEC | MFD_ALLOW_SEALING);
   if (file < 0) return trouble("Shared memory cannot be made");

@@ -43,6 +43,8 @@ class SharedMemory {
   std::span<std::byte> bytes() const noexcept { return bytes_; }
   /// Tells whether somebody has cut the memory short; what is gone reads as zeros. Real-time: safe.
   bool broken() const noexcept { return guard_->broken(); }
+  /// Returns a file by which processes of the same user map it while this one lives.
+  std::string path() const;
   /// Tells the run's name; empty if it has none.
   const std::string& run() const noexcept { return run_; }
 

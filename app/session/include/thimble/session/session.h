@@ -70,6 +70,9 @@ struct SessionOptions {
   std::function<void(scene::Scene&)> adjust = {};
   bool log = false;    ///< what happens in the run goes into the log
   bool homed = false;  ///< a real arm was in its home pose when it got power: do not ask for it
+  /// Runs until it is stopped: the simulated hand stays where its path ends, and faults leave the
+  /// loop going with zero force. Not with a duration.
+  bool endless = false;
   /// Opens the link to the real arm in place of `scene::open_link`, for tests.
   std::function<driver::Result<std::unique_ptr<driver::ArmLink>>(const scene::ArmFile&,
                                                                  driver::Clock&)>
@@ -112,6 +115,13 @@ class Session {
   /// is virtual and no tick has run: a law from outside of this program may take its time, which on
   /// a real arm nobody has. Real-time: never from the servo thread.
   driver::Result<void> set_law(driver::ForceLaw law);
+  /// Puts a law in place of the scene's that is safe on the servo's thread, in whatever time: it
+  /// neither waits nor allocates, and ends in a time of its own. It may ask `own_law`. Else as
+  /// `set_law`. Real-time: never from the servo thread.
+  driver::Result<void> set_servo_law(driver::ForceLaw law);
+  /// Returns the law that a session runs unless it is given another: the scene's, as viewers have
+  /// changed it. Real-time: safe.
+  driver::ForceLaw own_law() noexcept;
   /// Adds an observer of every tick, after those that were added before; it must outlive the
   /// run. Fails once a tick has run. Real-time: never from the servo thread.
   driver::Result<void> add_observer(TickObserver& observer);

@@ -1,0 +1,204 @@
+#include <signal.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "cli/commands.h"
+#include "cli/complain.h"
+#include "faces/server/arm_server.h"
+#include "faces/server/face_folder.h"
+#include "interrupt.h"
+#include "log/logger.h"
+#include "print.h"
+#include "thimble/scene/shipped_files.h"
+
+namespace thimble::app {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+struct Asked {
+  faces::ExecOptions options;
+  std::vector<std::string> arms, devices;
+};
+
+/// Joins the lists of --arm and --device: the first of each is the program's first arm.
+std::vector<faces::ExecArm> arms_of(const Asked& asked) {
+  std::vector<faces::ExecArm> arms(
+      std::max<std::size_t>({1, asked.arms.size(), asked.devices.size()}));
+  for (std::size_t i = 0; i < asked.arms.size(); ++i) arms[i].arm_file = asked.arms[i];
+  for (std::size_t i = 0; i < asked.devices.size(); ++i) arms[i].device = asked.devices[i];
+  return arms;
+}
+
+/// Returns the environment of the program: ours, with our libraries in front and the arms' address.
+std::vector<std::string> environment(const fs::path& libraries, const std::string& address) {
+  std::vector<std::string> variables;
+  std::string search = "LD_LIBRARY_PATH=" + libraries.string();
+  for (char** variable = environ; *variable != nullptr; ++variable) {
+    const std::string text = *variable;
+    if (text.starts_with("LD_LIBRARY_PATH=")) {
+      const std::string before = text.substr(text.find('=') + 1);
+      if (!before.empty()) search += ":" + before;
+    } else if (!text.starts_with(std::string(faces::kChannelVariable) + "=")) {
+      variables.push_back(text);
+    }
+  }
+  variables.push_back(search);
+  variables.push_back(std::string(faces::kChannelVariable) + "=" + address);
+  return variables;
+}
+
+std::vector<char*> pointers(std::vector<std::string>& texts) {
+  std::vector<char*> all;
+  for (std::string& text : texts) all.push_back(text.data());
+  all.push_back(nullptr);
+  return all;
+}
+
+/// Starts the program; the error is errno.
+int start(std::vector<std::string> command, std::vector<std::string> variables, pid_t& child) {
+  const auto arguments = pointers(command);
+  const auto variable_list = pointers(variables);
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  // We let some signals be (outlive_trouble_with_files); the program decides for itself.
+  sigset_t own;
+  sigemptyset(&own);
+  sigaddset(&own, SIGPIPE);
+  sigaddset(&own, SIGXFSZ);
+  posix_spawnattr_setsigdefault(&attributes, &own);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
+  const int status = posix_spawnp(&child, arguments[0], nullptr, &attributes, arguments.data(),
+                                  variable_list.data());
+  posix_spawnattr_destroy(&attributes);
+  return status;
+}
+
+/// Serves the program until it ends, and returns how it did (waitpid). Who interrupts us ends the
+/// forces first, then the program.
+int serve(faces::ArmServer& server, pid_t child, const std::atomic<bool>& stop) {
+  constexpr std::int64_t kLook_ns = 20'000'000;
+  constexpr auto kPatience = std::chrono::milliseconds(500);
+  constexpr auto kLongest = std::chrono::seconds(5);
+  Clock::time_point stopped{};
+  bool asked = false, killed = false;
+  for (int status = 0;;) {
+    server.step(kLook_ns);
+    if (waitpid(child, &status, WNOHANG) == child) return status;
+    if (!stop.load() && !server.ended_by_viewer()) continue;
+    if (stopped == Clock::time_point{}) {
+      stopped = Clock::now();
+      server.end();
+    }
+    const auto since = Clock::now() - stopped;
+    if (!asked && since > kPatience) asked = kill(child, SIGTERM) == 0;
+    if (!killed && since > kLongest) killed = kill(child, SIGKILL) == 0;
+  }
+}
+
+int exit_code_of(const faces::ArmServer& server, int status, bool stopped) {
+  if (WIFSIGNALED(status)) {
+    if (stopped) return kExitInterrupted;
+    scene::logger().error("The program was ended by signal {} ({}).", WTERMSIG(status),
+                          strsignal(WTERMSIG(status)));
+    return 128 + WTERMSIG(status);
+  }
+  const int own = WEXITSTATUS(status);
+  if (own != 0) return own;
+  return server.any_fault() ? kExitFault : kExitDone;
+}
+
+int run_program(const Asked& asked, const std::vector<std::string>& command) {
+  if (command.empty()) {
+    return complain({"Which program? thimble exec [OPTIONS] PROGRAM ARGUMENTS..."}, kExitBadInput);
+  }
+  const auto libraries = faces::face_folder();
+  if (!libraries) return complain(libraries.error(), kExitTrouble);
+  faces::ExecOptions options = asked.options;
+  options.program = fs::path(command.front()).filename().string();
+  options.arms = arms_of(asked);
+  const std::atomic<bool>& stop = scene::catch_interrupts();
+  for (const faces::ExecArm& arm : options.arms) {
+    if (arm.device != "sim") scene::leave_rather_than_stop();
+  }
+  auto made = faces::ArmServer::make(options, stop);
+  if (!made) return complain(made.error(), kExitBadInput);
+  faces::ArmServer& server = **made;
+  const scene::LeavingGuard guard;
+  pid_t child = 0;
+  if (const int error = start(command, environment(*libraries, server.address()), child)) {
+    return complain({command.front() + " cannot be started: " + std::strerror(error) + "."},
+                    kExitBadInput);
+  }
+  const int status = serve(server, child, stop);
+  server.end();
+  // What the program printed is its own; so this goes to standard error.
+  session::print(stderr, "{}", server.report());
+  if (server.runs() == 0) {
+    scene::logger().warn(
+        "{} opened no arm. It found libraries of its own (ldd, rpath), or it is written for none "
+        "of those that are stood in for: {}",
+        options.program, libraries->string());
+  }
+  return exit_code_of(server, status, stop.load());
+}
+
+}  // namespace
+
+void add_exec_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand(
+      "exec", "Run a program that was written for another maker's arm (HDAPI, DHD, CHAI3D)");
+  auto asked = std::make_shared<Asked>();
+  faces::ExecOptions& options = asked->options;
+  command->prefix_command();
+  command->footer(
+      "Options stand before PROGRAM; what follows it is its own.\n"
+      "The program finds libHD, libhdPhantom, libdhd and libdrd of ours in front of others. Its\n"
+      "forces go through the gate of ours. A simulated arm is used unless --device names one.\n"
+      "Exit code: the program's; 4 if it was 0 and a force went off with a fault.");
+  command
+      ->add_option("--arm", asked->arms,
+                   "Arm file or name; again for a second arm (`thimble run --list`)")
+      ->allow_extra_args(false);
+  command
+      ->add_option("--device", asked->devices,
+                   "Arm to use: sim, auto, or a name that `thimble devices` lists; again for a "
+                   "second arm")
+      ->allow_extra_args(false);
+  command->add_option("--scene", options.scene,
+                      "Scene whose objects are felt as well: both forces add up");
+  command
+      ->add_option(
+          "--hand", options.hand,
+          "Who leads the simulated hand: path, as the scene says; mouse, by the viewer; or "
+          "a file with lines \"t x y z\" (s, m)")
+      ->capture_default_str();
+  command->add_option("--record", options.record, "Recording of every tick to write (HDF5)");
+  command->add_flag("--view", options.view, "Watch the run in a window");
+  command->add_option("--firmware", options.firmware, "Firmware image for an arm that needs one")
+      ->check(CLI::ExistingFile);
+  command->add_flag("--yes", options.yes, "Give a real arm forces without asking");
+  command->add_flag("--unchecked", options.unchecked,
+                    "Give a real arm its whole force though `thimble feel-check` was not passed");
+  command->add_flag("--homed", options.homed, "A real arm was in its home pose when it got power");
+  command->add_flag("--no-real-time", options.no_real_time,
+                    "Use a real arm though the loop gets no real-time priority");
+  command->callback(
+      [asked, command, &exit_code] { exit_code = run_program(*asked, command->remaining()); });
+}
+
+}  // namespace thimble::app

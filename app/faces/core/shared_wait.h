@@ -1,0 +1,32 @@
+#pragma once
+
+#include <linux/futex.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <climits>
+#include <cstdint>
+#include <ctime>
+
+namespace thimble::faces {
+
+// Waiting for a word of memory that processes share: std::atomic::wait sees one process alone.
+
+/// Waits until `word` is not `old` any more, somebody wakes its waiters, or the time is over.
+/// Real-time: never from the servo thread.
+template <class Word>
+void wait_while(const std::atomic<Word>& word, Word old, std::int64_t timeout_ns) noexcept {
+  static_assert(sizeof(Word) == 4 && std::atomic<Word>::is_always_lock_free);
+  const timespec timeout{timeout_ns / 1'000'000'000, timeout_ns % 1'000'000'000};
+  syscall(SYS_futex, &word, FUTEX_WAIT, static_cast<std::uint32_t>(old), &timeout, nullptr, 0);
+}
+
+/// Wakes all that wait for `word`. Real-time: safe; one system call that does not wait.
+template <class Word>
+void wake_all(const std::atomic<Word>& word) noexcept {
+  static_assert(sizeof(Word) == 4);
+  syscall(SYS_futex, &word, FUTEX_WAKE, INT_MAX, nullptr, nullptr, 0);
+}
+
+}  // namespace thimble::faces

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace thimble::session {
+class Session;
+}
+
+namespace thimble::faces {
+
+/// One arm that a program gets.
+struct ExecArm {
+  std::string device = "sim";  ///< "sim", "auto", or a name that `thimble devices` lists.
+  std::string arm_file = {};   ///< Name or path; empty: the scene's own, or that of a real arm.
+};
+
+/// What a user wants of `thimble exec`.
+struct ExecOptions {
+  std::string program = {};           ///< What is started, for the report and the viewer.
+  std::vector<ExecArm> arms = {{}};   ///< In the order in which the program numbers them.
+  std::string scene = {};             ///< Name or path; empty: nothing but what the program draws.
+  std::string hand = "path";          ///< "path": the scene's; "mouse"; or a file (hand_path.h).
+  std::filesystem::path record = {};  ///< Recording of every tick; empty: none.
+  std::filesystem::path firmware = {};  ///< For a real arm that needs some.
+  bool view = false;                    ///< Watch the run in a window.
+  bool yes = false;                     ///< Give a real arm forces without asking.
+  bool unchecked = false;               ///< Its whole force without a passed feel check.
+  bool homed = false;                   ///< It was in its home pose when it got power.
+  bool no_real_time = false;            ///< Without real-time priority.
+  /// Is called with an arm's number and session before its loop begins, for tests.
+  std::function<void(std::size_t, session::Session&)> opened = {};
+};
+
+}  // namespace thimble::faces

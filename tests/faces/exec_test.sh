@@ -1,0 +1,51 @@
+#!/usr/bin/env bash
+# Programs written for other arms, under `thimble exec`: they run unchanged, their forces reach the simulated
+# motors, and what goes wrong is told by name.
+#   exec_test.sh THIMBLE SOURCE_DIR WORK_DIR CLIENTS_DIR
+source "$(dirname "$0")/../program/expect.sh" "$1" "$2" "$3"
+clients=$4
+export TMPDIR=$work
+run() { "$thimble" exec "$@"; }
+
+# A hand that presses into the sphere that hello_sphere draws, 8 mm deep, and out again.
+printf '0 0 0 0.03\n1 0 0 0.012\n2 0.003 0 0.012\n3 0.003 0 0.03\n' >press.txt
+expect 0 'vintage_phantom by Thimble' run --hand press.txt --record sphere.h5 "$clients/hello_sphere"
+expect 0 'Program +hello_sphere by HDAPI: asked for a force in [0-9]{4} of' run --hand press.txt "$clients/hello_sphere"
+[ -s sphere.h5 ] || { echo "FAILED: no recording"; failures=$((failures + 1)); }
+# In the recording: what the gate got (the program's force and nothing else) is what the motors were sent.
+expect 0 'sphere.csv: [0-9]+ ticks' "$thimble" export sphere.h5 --csv sphere.csv
+expect 0 '^[0-9]{3,} ticks with force, most 0\.0' awk -F, '
+  NR == 1 { for (i = 1; i <= NF; ++i) { if ($i ~ /^f_wanted_W.z/) w = i; if ($i ~ /^f_sent_W.z/) s = i } next }
+  $w > 0.5 { ++n; d = $w - $s; if (d < 0) d = -d; if (n > 100 && d > most) most = d }
+  END { printf "%d ticks with force, most %.3f N\n", n, most }' sphere.csv
+
+expect 0 'calibrated after 1, 200 x 200 x 200 mm, 5 N, 3 in' run "$clients/calibration"
+expect 0 'calibrated after 1, 160 x 160 x 160 mm, 5 N, 6 in' run --arm polhem "$clients/calibration"
+expect 0 ' 0 out of order, 0 torn' run "$clients/two_callbacks"
+expect 0 'vintage_phantom and falcon' run --arm vintage_phantom --arm falcon "$clients/two_devices"
+expect 2 'Wrong +hdInitDevice 1 time: no arm has this name' run "$clients/two_devices"
+expect 0 '0\.[23][0-9]+ N at the end' run "$clients/force_ramp"
+expect 0 '0 presses in' run "$clients/buttons"
+expect 0 '1000 turns in 1\.' run "$clients/chai_loop"
+
+# With a scene both are felt: its own objects push where the program asks for nothing.
+expect 0 'touched it [1-9]' run --scene rubber "$clients/chai_loop"
+
+# A program that hangs is told by name, and its force goes.
+expect 0 'hangs \(HDAPI\) has not renewed its force on vintage_phantom for 20 ms' run "$clients/hangs"
+expect 0 'Stalls +hangs did not renew its force 1 time' run "$clients/hangs"
+expect 0 'left with zero force' run "$clients/hangs" and_leaves
+
+# Without `thimble exec`, and other things that go wrong.
+expect 2 'hdInitDevice: Start this program with `thimble exec' \
+  env -u THIMBLE_EXEC LD_LIBRARY_PATH="$(dirname "$thimble")/faces/lib" "$clients/hello_sphere"
+expect 2 'cannot be started: No such file' run ./nowhere
+expect 2 'Which program' run
+expect 7 'opened no arm' run sh -c 'exit 7'
+expect 137 'ended by signal 9' run sh -c 'kill -9 $$'
+expect 2 'known|no arm file' run --arm nonesuch "$clients/calibration"
+echo 'zero 0 0' >bad.txt
+expect 2 'bad.txt:1: expected "t x y z"' run --hand bad.txt "$clients/calibration"
+# Nothing is left behind.
+expect 1 '^$' sh -c 'ls "${TMPDIR:-/tmp}"/thimble-free-* 2>/dev/null || { echo; exit 1; }'
+finish
