@@ -6,6 +6,7 @@
 
 #include "arm_table.h"
 #include "bringup/bench_arm.h"
+#include "calibration.h"
 #include "cli/arm_choice.h"
 #include "cli/commands.h"
 #include "cli/complain.h"
@@ -13,7 +14,6 @@
 #include "interrupt.h"
 #include "log/logger.h"
 #include "thimble/scene/arm_simulation.h"
-#include "calibration.h"
 #include "thimble/scene/real_arm.h"
 
 namespace thimble::app {
@@ -41,6 +41,15 @@ Eigen::Vector3d home_of(const scene::ArmFile& file) {
 int calibrate(const ArmChoice& choice, bool dry_run) {
   auto chosen = resolve(choice, true);
   if (!chosen) return complain(chosen.error(), kExitNoDevice);
+  const driver::ArmRow* row = driver::row_of(chosen->file.protocol);
+  if (row != nullptr && row->has_own_link()) {
+    return complain(
+        {"The arm " + chosen->name + " (" + chosen->file.name +
+         ") is calibrated by its vendor's own software, and Thimble takes its positions "
+         "as they come. Calibrate it there, then check it: thimble feel-check --device " +
+         chosen->name},
+        kExitBadInput);
+  }
   const SimulatedNote simulated(*chosen, "calibration");
   for (const std::string& sentence : chosen->told) std::printf("%s\n", sentence.c_str());
   const auto way =

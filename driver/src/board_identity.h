@@ -11,6 +11,7 @@ namespace thimble::driver {
 // How a board is reached, as FoundArm::bus tells it.
 inline constexpr const char* kHidBus = "USB HID";
 inline constexpr const char* kSerialBus = "USB serial";
+inline constexpr const char* kServiceBus = "service";
 
 /// What the kernel tells of a USB device without opening it.
 struct UsbFacts {
