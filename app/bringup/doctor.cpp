@@ -84,6 +84,10 @@ class Examination {
       findings_.push_back(examine_linked(arm));
       return;
     }
+    if (arm.board == BoardKind::kDhdLibrary || arm.board == BoardKind::kHdLibrary) {
+      note(Health::kGood,
+           name + "its vendor's library is here (" + arm.software + "). Untried on hardware.");
+    }
     look_at_driver(arm, name);
     if (arm.certainty == driver::Certainty::kUnknown) {
       note(Health::kAdvice, name + what_it_may_be(arm), how_to_use(arm));

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 
+#include "links/dhd/dhd_library.h"
 #include "links/haply/haply_link.h"
+#include "links/hd/hd_library.h"
 
 namespace thimble::app {
 namespace {
@@ -23,7 +25,20 @@ std::string mend_for_closed(const FoundArm& arm) {
     return "Use it by its vendor's service, which lists it in `thimble devices` as another line; "
            "this line is never opened.";
   }
-  return "Use its vendor's own library; Thimble cannot drive it.";
+  if (arm.arm == "Force Dimension") {
+    const auto library = driver::dhd::library();
+    return library
+               ? std::string("Plug it in again.")
+               : library.error().message +
+                     " Install the vendor's SDK and set FDSDK to its folder, or "
+                     "THIMBLE_DHD_LIBRARY to its libdrd.so.3; Thimble drives the arm through it.";
+  }
+  const auto library = driver::hd::library();
+  if (library) return "Plug it in again.";
+  return library.error().message +
+         " Install OpenHaptics and the arm's driver (they need libncurses5 and the group of its "
+         "node), "
+         "or set THIMBLE_HD_LIBRARY to libHD.so; Thimble drives the arm through it.";
 }
 
 Finding examine_linked(const FoundArm& arm) {

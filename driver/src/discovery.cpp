@@ -165,6 +165,7 @@ Result<std::vector<FoundArm>> find_arms(const fs::path& root) {
     arm.accessible = !arm.node.empty() && access(node.c_str(), R_OK | W_OK) == 0;
     found.push_back(std::move(arm));
   }
+  link_boards(found);
   for (FoundArm& arm : found) {
     const auto same = [&arm](const FoundArm& other) { return other.serial == arm.serial; };
     arm.serial_is_shared = std::count_if(found.begin(), found.end(), same) > 1;

@@ -4,9 +4,33 @@
 #include <utility>
 
 #include "board_identity.h"
+#include "links/dhd/dhd_library.h"
 #include "links/haply/haply_link.h"
+#include "links/hd/hd_library.h"
 
 namespace thimble::driver {
+
+void link_boards(std::vector<FoundArm>& found) {
+  for (FoundArm& arm : found) {
+    // `thimble doctor` says why, where a library is missing.
+    if (arm.vendor_id == kForceDimension) {
+      const auto library = dhd::library();
+      if (!library) continue;
+      arm.kind = ArmKind::kDhd;
+      arm.board = BoardKind::kDhdLibrary;
+      arm.software = "libdrd " + library->version;
+    } else if (arm.vendor_id == kTouchMaker) {
+      const auto library = hd::library();
+      if (!library) continue;
+      arm.kind = ArmKind::kHd;
+      arm.board = BoardKind::kHdLibrary;
+      arm.software = library->file;
+    } else {
+      continue;
+    }
+    arm.certainty = Certainty::kKnown;
+  }
+}
 
 std::vector<FoundArm> find_linked_arms() {
   std::vector<FoundArm> found;

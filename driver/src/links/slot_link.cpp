@@ -32,9 +32,12 @@ LinkRead SlotLink::read(ArmSample& sample, std::int64_t deadline_ns) noexcept {
 LinkWrite SlotLink::write(const GatedForce& force, const ArmSample&,
                           const Eigen::Matrix3d& R_WB) noexcept {
   if (is_lost()) return {LinkStatus::kLost};
-  const bool taken = box_.put(R_WB.transpose() * force.f_T_W());
+  const double length = force.f_T_W().norm();
+  const double scale = length > force_most_ ? force_most_ / length : 1;
+  const bool taken = box_.put(scale * (R_WB.transpose() * force.f_T_W()));
   ring();
-  return {taken ? LinkStatus::kOk : LinkStatus::kRefused};
+  if (!taken || refuses_.load(std::memory_order_acquire)) return {LinkStatus::kRefused};
+  return {LinkStatus::kOk, scale};
 }
 
 void SlotLink::publish(const ArmSample& sample) noexcept {

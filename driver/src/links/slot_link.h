@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <atomic>
 #include <cstdint>
+#include <limits>
 
 #include "links/force_box.h"
 #include "links/newest_slot.h"
@@ -16,8 +17,11 @@ namespace thimble::driver {
 /// Whoever derives from it stops that thread in its destructor.
 class SlotLink : public ArmLink {
  public:
-  /// Takes what the arm tells, and the loop's clock, which outlives the link.
-  SlotLink(const ArmTraits& traits, Clock& clock) : traits_(traits), clock_(clock) {}
+  /// Takes what the arm tells, and the loop's clock, which outlives the link; and the longest force
+  /// that the arm may get (N), to which longer ones are cut.
+  SlotLink(const ArmTraits& traits, Clock& clock,
+           double force_most = std::numeric_limits<double>::infinity())
+      : traits_(traits), clock_(clock), force_most_(force_most) {}
 
   const ArmTraits& traits() const noexcept override { return traits_; }
   LinkRead read(ArmSample& sample, std::int64_t deadline_ns) noexcept override;
@@ -31,6 +35,8 @@ class SlotLink : public ArmLink {
   void reject() noexcept;                          ///< Tells that it could not be understood.
   void lose() noexcept;                            ///< Tells that it is gone, for good.
   bool is_lost() const noexcept;                   ///< Returns whether it is.
+  /// Tells whether the arm takes no forces at the moment, so that writes are refused.
+  void refuse(bool refuses) noexcept { refuses_.store(refuses, std::memory_order_release); }
   /// Takes the force that waits, N in the base; false if none does.
   bool take_force(Eigen::Vector3d& f_T_B) noexcept { return box_.take(f_T_B); }
 
@@ -45,9 +51,10 @@ class SlotLink : public ArmLink {
 
   ArmTraits traits_;
   Clock& clock_;
+  double force_most_;
   NewestSlot<NumberedSample> newest_;
   ForceBox box_;
-  std::atomic<bool> lost_{false};
+  std::atomic<bool> lost_{false}, refuses_{false};
   std::atomic<std::uint64_t> rejected_{0};
   NumberedSample taken_;             // of the servo thread
   std::uint64_t rejected_seen_ = 0;  // of the servo thread

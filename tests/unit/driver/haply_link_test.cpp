@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <chrono>
 #include <numbers>
 #include <thread>
@@ -102,6 +103,7 @@ TEST_F(HaplyLinkTest, TellsWhereTheArmIsAndGivesItTheGatedForceInItsBase) {
     // World x is minus y of the service; the soft start is over.
     const HaplyLog log = service_->log();
     EXPECT_EQ(log.wrong, 0);
+    ASSERT_FALSE(log.taken_B.empty());
     EXPECT_LT((log.taken_B.back() - Vector3d(0, -0.4, 0)).norm(), 1e-6);
     EXPECT_EQ(log.taken_B.front(), Vector3d(0, 0, 0)) << "the first message is zero force";
     // The hand of 300 N/m yields to it, towards minus y.
