@@ -48,6 +48,8 @@ ArmPlant::ArmPlant(const driver::SerialArm& arm, const std::array<driver::MotorD
       dynamics_(dynamics),
       axes_{AxisState{p_BT.x(), 0}, AxisState{p_BT.y(), 0}, AxisState{p_BT.z(), 0}},
       pose_(arm, p_BT),
+      pose_near_(pose_),
+      q_near_(pose_.angles()),
       p_BH_(p_BH) {
   for (int i = 0; i < 3; ++i) {
     const driver::MotorDrive& drive = drives[static_cast<std::size_t>(i)];
@@ -68,6 +70,13 @@ SerialPose ArmPlant::pose_after(double time) const noexcept {
   const Eigen::Vector3d v = v_BT();
   if (v.isZero(0)) return pose_;
   return {arm_, p_BT() + v * time};
+}
+
+Eigen::Vector3d ArmPlant::q_about() noexcept {
+  Eigen::Vector3d q;
+  if (pose_.angles_near(pose_near_, q_near_, q)) return q;
+  pose_near_ = pose_;
+  return q_near_ = pose_.angles();
 }
 
 void ArmPlant::step(const Eigen::Vector3d& p_BH, std::int64_t dt_ns) noexcept {

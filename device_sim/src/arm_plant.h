@@ -42,6 +42,7 @@ class ArmPlant final : public Plant {
   Eigen::Vector3d v_BT() const noexcept override { return {axes_[0].v, axes_[1].v, axes_[2].v}; }
   const Eigen::Vector3d& p_BH() const noexcept override { return p_BH_; }
   Eigen::Vector3d q() const noexcept override { return pose_.angles(); }
+  Eigen::Vector3d q_about() noexcept override;
   const Eigen::Vector3d& currents() const noexcept override { return amperes_; }
   /// Tells the motors' force on the tip in the last sub-step, N. Real-time: safe.
   Eigen::Vector3d f_T_B() const noexcept override { return f_T_B_; }
@@ -62,6 +63,8 @@ class ArmPlant final : public Plant {
   AxisDynamics dynamics_;
   std::array<AxisState, 3> axes_;
   SerialPose pose_;
+  SerialPose pose_near_;  // not far back, with its angles
+  Eigen::Vector3d q_near_;
   Eigen::Vector3d p_BH_;
   Eigen::Vector3d amperes_{0, 0, 0};
   Eigen::Vector3d tau_{0, 0, 0};  // N m

@@ -123,8 +123,11 @@ AxisDynamics::AxisDynamics(const PlantSettings& plant, const HandSettings& hand)
       damping_((plant.viscous + hand.damping) / mass_),
       stiffness_(hand.stiffness / mass_) {}
 
-const AxisDynamics::Map& AxisDynamics::map_for(std::int64_t dt_ns) noexcept {
-  if (maps_[last_map_].dt_ns == dt_ns) return maps_[last_map_];
+inline const AxisDynamics::Map& AxisDynamics::map_for(std::int64_t dt_ns) noexcept {
+  return maps_[last_map_].dt_ns == dt_ns ? maps_[last_map_] : other_map_for(dt_ns);
+}
+
+const AxisDynamics::Map& AxisDynamics::other_map_for(std::int64_t dt_ns) noexcept {
   for (std::size_t i = 0; i < maps_.size(); ++i) {
     if (maps_[i].dt_ns == dt_ns) {
       last_map_ = i;

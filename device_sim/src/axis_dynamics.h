@@ -73,6 +73,7 @@ class AxisDynamics {
   };
 
   const Map& map_for(std::int64_t dt_ns) noexcept;
+  const Map& other_map_for(std::int64_t dt_ns) noexcept;
   double force_at_rest(double x, double anchor, const AxisDrive& drive) const noexcept;
   AxisMotion motion(double v, double net, const AxisDrive& drive) const noexcept;
   void step_with_events(AxisState& state, AxisDrive drive, double t) noexcept;

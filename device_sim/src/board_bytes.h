@@ -2,11 +2,15 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 
 #include "thimble/driver/arm.h"
 
 namespace thimble::device_sim {
+
+/// Values for the counters of a board: motor encoders, then gimbal encoders.
+using BoardCounters = std::array<std::int32_t, 6>;
 
 /// A report as a board sends it.
 struct BoardBytes {

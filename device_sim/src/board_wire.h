@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 
+#include "board_bytes.h"
 #include "thimble/device_sim/settings.h"
 #include "thimble/driver/arm.h"
 
@@ -24,8 +25,8 @@ struct BoardReport {
 
 /// What a board was told.
 struct BoardMessage {
-  std::array<std::int32_t, 3> current_mA{};               ///< Currents of its outputs.
-  std::optional<std::array<std::int32_t, 6>> counters{};  ///< A preset of its counters.
+  std::array<std::int32_t, 3> current_mA{};  ///< Currents of its outputs.
+  std::optional<BoardCounters> counters{};   ///< A preset of its counters.
 };
 
 /// Encodes a report; returns its size.

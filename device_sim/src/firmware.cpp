@@ -16,7 +16,20 @@ constexpr double kCounterMax = 1e15;
 
 std::int64_t rounded(double counts) noexcept {
   if (!(std::abs(counts) <= kCounterMax)) return 0;
-  return static_cast<std::int64_t>(std::floor(counts + 0.5));
+  const double above = counts + 0.5;
+  const auto whole = static_cast<std::int64_t>(above);
+  return whole - (static_cast<double>(whole) > above ? 1 : 0);
+}
+
+// Counts below kCountable are exact to 2^-20 after a few operations: where one is farther than
+// kCountRounding from the next half, only the angle's own error can make it another.
+constexpr double kCountable = 0x1p31, kCountRounding = 0x1p-10;
+
+bool rounds_surely(double counts, double error) noexcept {
+  if (!(std::abs(counts) < kCountable)) return false;
+  const double beyond_whole =
+      std::abs(counts - static_cast<double>(static_cast<std::int64_t>(counts)));
+  return std::abs(beyond_whole - 0.5) > error + kCountRounding;
 }
 
 }  // namespace
@@ -59,6 +72,8 @@ Firmware::Firmware(const driver::ArmModel& model, const FirmwareSettings& settin
     counts_per_radian_[joint] = encoder.sign / model.step(static_cast<std::size_t>(joint));
     home_counts_[joint] = static_cast<double>(encoder.home_counts);
   }
+  counts_per_radian_most_ = counts_per_radian_.cwiseAbs().maxCoeff();
+  countable_ = countable();
 }
 
 Eigen::Vector3d Firmware::counts_at(const Eigen::Vector3d& q) const noexcept {
@@ -71,28 +86,47 @@ Eigen::Vector3d Firmware::gimbal_counts_at(const Eigen::Vector3d& gimbal) const 
 
 BoardBytes Firmware::sample(const Eigen::Vector3d& q, const Eigen::Vector3d& gimbal,
                             std::uint16_t number) const noexcept {
-  const Eigen::Vector3d counts = counts_at(q) + preset_counts_;
-  const Eigen::Vector3d turns = gimbal_counts_at(gimbal) + preset_gimbal_;
-  BoardReport report{.counts = {}, .gimbal = {}, .number = number, .button = button_};
-  for (std::size_t i = 0; i < 3; ++i) {
-    report.counts[i] = rounded(counts[static_cast<int>(i)]);
-    report.gimbal[i] = rounded(turns[static_cast<int>(i)]);
-  }
   BoardBytes bytes;
-  bytes.size = encode_report(report, settings_, bytes.bytes);
+  report(counts_at(q) + preset_counts_, gimbal, number, bytes);
   return bytes;
 }
 
-void Firmware::receive(std::span<const std::byte> message, std::int64_t time_ns,
-                       const Eigen::Vector3d& q, const Eigen::Vector3d& gimbal) noexcept {
+bool Firmware::sample_about(const Eigen::Vector3d& q, double error, const Eigen::Vector3d& gimbal,
+                            std::uint16_t number, BoardBytes& bytes) const noexcept {
+  const Eigen::Vector3d counts = counts_at(q) + preset_counts_;
+  const double counts_error = error * counts_per_radian_most_;
+  const bool sure = countable_ && rounds_surely(counts[0], counts_error) &&
+                    rounds_surely(counts[1], counts_error) &&
+                    rounds_surely(counts[2], counts_error);
+  if (sure) report(counts, gimbal, number, bytes);
+  return sure;
+}
+
+void Firmware::report(const Eigen::Vector3d& counts, const Eigen::Vector3d& gimbal,
+                      std::uint16_t number, BoardBytes& bytes) const noexcept {
+  BoardReport report{.counts = {}, .gimbal = {}, .number = number, .button = button_};
+  for (std::size_t i = 0; i < 3; ++i) report.counts[i] = rounded(counts[static_cast<int>(i)]);
+  // Where none is mounted, its counters stay at what the last preset made them.
+  if (gimbal_ || counters_.presets > 0) {
+    const Eigen::Vector3d turns = gimbal_counts_at(gimbal) + preset_gimbal_;
+    for (std::size_t i = 0; i < 3; ++i) report.gimbal[i] = rounded(turns[static_cast<int>(i)]);
+  }
+  bytes.size = encode_report(report, settings_, bytes.bytes);
+}
+
+std::optional<BoardCounters> Firmware::receive(std::span<const std::byte> message,
+                                               std::int64_t time_ns) noexcept {
   const auto decoded = decode_message(message, settings_);
   if (!decoded) {
     ++counters_.malformed;
-    return;
+    return {};
   }
   ++counters_.messages;
   watchdog_due_ns_ = time_ns + settings_.watchdog_ns;
-  if (decoded->counters) return preset(*decoded->counters, q, gimbal);
+  if (decoded->counters) {
+    amperes_.setZero();
+    return decoded->counters;
+  }
   Eigen::Vector3d outputs;
   for (std::size_t i = 0; i < 3; ++i) {
     const int mA = decoded->current_mA[i];
@@ -101,13 +135,13 @@ void Firmware::receive(std::span<const std::byte> message, std::int64_t time_ns,
     outputs[static_cast<int>(i)] = in_range ? mA * 1e-3 : 0;
   }
   amperes_ = settings_.wiring.motors(outputs);
+  return {};
 }
 
-void Firmware::preset(const std::array<std::int32_t, 6>& counters, const Eigen::Vector3d& q,
+void Firmware::preset(const BoardCounters& counters, const Eigen::Vector3d& q,
                       const Eigen::Vector3d& gimbal) noexcept {
   ++counters_.presets;
   button_ = false;
-  amperes_.setZero();
   const Eigen::Vector3d counts = counts_at(q), turns = gimbal_counts_at(gimbal);
   const double parts = settings_.ideal_encoders ? kFine : 1;
   for (int i = 0; i < 3; ++i) {
@@ -117,6 +151,13 @@ void Firmware::preset(const std::array<std::int32_t, 6>& counters, const Eigen::
     preset_counts_[i] = parts * counters[k] - std::floor(counts[i] + 0.5);
     preset_gimbal_[i] = counters[3 + k] - std::floor(turns[i] + 0.5);
   }
+  countable_ = countable();
+}
+
+bool Firmware::countable() const noexcept {
+  const double gain_most = settings_.wiring.encoder_gain.cwiseAbs().maxCoeff();
+  return gain_most <= 1 && home_counts_.cwiseAbs().maxCoeff() < kCountable &&
+         preset_counts_.cwiseAbs().maxCoeff() < kCountable;
 }
 
 void Firmware::watch(std::int64_t time_ns) noexcept {

@@ -46,10 +46,18 @@ class Firmware {
   BoardBytes sample(const Eigen::Vector3d& q, const Eigen::Vector3d& gimbal = {0, 0, 0},
                     std::uint16_t number = 0) const noexcept;
 
-  /// Takes a message that arrived at `time_ns` with the arm and its gimbal at these true angles
-  /// (rad).
-  void receive(std::span<const std::byte> message, std::int64_t time_ns, const Eigen::Vector3d& q,
-               const Eigen::Vector3d& gimbal = {0, 0, 0}) noexcept;
+  /// Samples angles that are wrong by up to `error` (rad) into `bytes`, if they give the same
+  /// counts as the true ones would; returns false, and leaves it alone, where that is not sure.
+  bool sample_about(const Eigen::Vector3d& q, double error, const Eigen::Vector3d& gimbal,
+                    std::uint16_t number, BoardBytes& bytes) const noexcept;
+
+  /// Takes a message that arrived at `time_ns`. Returns the counters that it asks for, if it is a
+  /// preset: then `preset` is due at once.
+  std::optional<BoardCounters> receive(std::span<const std::byte> message,
+                                       std::int64_t time_ns) noexcept;
+  /// Sets the counters of an arm and a gimbal at these true angles (rad).
+  void preset(const BoardCounters& counters, const Eigen::Vector3d& q,
+              const Eigen::Vector3d& gimbal = {0, 0, 0}) noexcept;
 
   /// Switches the motors off if no message came for the watchdog's time.
   void watch(std::int64_t time_ns) noexcept;
@@ -72,13 +80,16 @@ class Firmware {
   Firmware(const driver::ArmModel& model, const FirmwareSettings& settings) noexcept;
   Eigen::Vector3d counts_at(const Eigen::Vector3d& q) const noexcept;
   Eigen::Vector3d gimbal_counts_at(const Eigen::Vector3d& gimbal) const noexcept;
-  void preset(const std::array<std::int32_t, 6>& counters, const Eigen::Vector3d& q,
-              const Eigen::Vector3d& gimbal) noexcept;
+  void report(const Eigen::Vector3d& counts, const Eigen::Vector3d& gimbal, std::uint16_t number,
+              BoardBytes& bytes) const noexcept;
+  bool countable() const noexcept;
 
   FirmwareSettings settings_;
   std::optional<driver::Gimbal> gimbal_;
   Eigen::Vector3d counts_per_radian_;  // with the encoder's sign
   Eigen::Vector3d home_counts_;
+  double counts_per_radian_most_;  // of any joint
+  bool countable_;                 // gains, home and presets leave counts their digits
   FirmwareCounters counters_;
   // What presets added to the counters.
   Eigen::Vector3d preset_counts_{0, 0, 0}, preset_gimbal_{0, 0, 0};

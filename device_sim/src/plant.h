@@ -27,6 +27,10 @@ class Plant {
   virtual const Eigen::Vector3d& p_BH() const noexcept = 0;
   /// Tells the true joint angles, rad.
   virtual Eigen::Vector3d q() const noexcept = 0;
+  /// Tells the same to within kAboutError, for less work where the plant knows how.
+  virtual Eigen::Vector3d q_about() noexcept { return q(); }
+  /// Is the most that `q_about` is wrong by, rad.
+  static constexpr double kAboutError = 1e-12;
   /// Tells the currents that flow, A.
   virtual const Eigen::Vector3d& currents() const noexcept = 0;
   /// Tells the motors' force on the tip, N.

@@ -47,4 +47,27 @@ Eigen::Vector3d SerialPose::angles() const noexcept {
   return {std::atan2(sin_a_, cos_a_), std::atan2(sin_b_, cos_b_), std::atan2(sin_c_, cos_c_)};
 }
 
+bool SerialPose::angles_near(const SerialPose& from, const Eigen::Vector3d& q_from,
+                             Eigen::Vector3d& q) const noexcept {
+  // There sines and cosines are those of unit vectors to some roundings.
+  if (!(sin_sum_ > kSingular)) return false;
+  const Eigen::Vector3d sin_turned(sin_a_ * from.cos_a_ - cos_a_ * from.sin_a_,
+                                   sin_b_ * from.cos_b_ - cos_b_ * from.sin_b_,
+                                   sin_c_ * from.cos_c_ - cos_c_ * from.sin_c_);
+  const double cos_least = std::min({cos_a_ * from.cos_a_ + sin_a_ * from.sin_a_,
+                                     cos_b_ * from.cos_b_ + sin_b_ * from.sin_b_,
+                                     cos_c_ * from.cos_c_ + sin_c_ * from.sin_c_});
+  if (!(cos_least > 0)) return false;
+  constexpr double kNear = 0.05;
+  // Half a turn less what the series can add: beyond, the arc tangent changes its sign.
+  constexpr double kHalfTurn = 3.14;
+  for (int i = 0; i < 3; ++i) {
+    const double s = sin_turned[i], s2 = s * s;
+    // The arc sine's series; the next term is below 0.031 s^9, 6e-14 at the bound.
+    q[i] = q_from[i] + s * (1 + s2 * (1.0 / 6 + s2 * (3.0 / 40 + s2 * (15.0 / 336))));
+    if (!(std::abs(s) < kNear && std::abs(q[i]) < kHalfTurn)) return false;
+  }
+  return true;
+}
+
 }  // namespace thimble::device_sim

@@ -30,6 +30,13 @@ class SerialPose {
   /// Finds the joint angles (A, B, C), rad; equal to SerialArm::inverse. Real-time: safe.
   Eigen::Vector3d angles() const noexcept;
 
+  /// Finds them to within Plant::kAboutError from a pose not far off, `from`, with its angles
+  /// `q_from`: from the sines of what the joints have turned since, without an arc tangent. Returns
+  /// false, with nothing found, beyond 0.05 rad, near fold or stretch, and near half a turn.
+  /// Real-time: safe.
+  bool angles_near(const SerialPose& from, const Eigen::Vector3d& q_from,
+                   Eigen::Vector3d& q) const noexcept;
+
  private:
   double length_b_, length_c_;
   double sin_a_ = 0, cos_a_ = 1;

@@ -69,14 +69,6 @@ driver::Result<SimulatedArm> SimulatedArm::make(const driver::JointModel<driver:
                  });
 }
 
-const Eigen::Vector3d& SimulatedArm::angles() noexcept {
-  if (q_time_ns_ != time_ns_) {
-    q_ = plant().q();
-    q_time_ns_ = time_ns_;
-  }
-  return q_;
-}
-
 void SimulatedArm::advance_to(std::int64_t time_ns) noexcept {
   while (time_ns_ < time_ns) {
     std::int64_t next_ns = std::min(time_ns, time_ns_ + ArmPlant::kStepMax_ns);
@@ -100,24 +92,41 @@ void SimulatedArm::advance_to(std::int64_t time_ns) noexcept {
 }
 
 void SimulatedArm::sample() noexcept {
-  reports_.push(sample_now(), time_ns_ + wire_.delay_in_ns);
+  if (wire_.delay_in_ns == 0) {
+    sample_into(newest_);
+    ++readable_;
+  } else {
+    reports_.push(sample_now(), time_ns_ + wire_.delay_in_ns);
+  }
   next_sample_ns_ += report_period_ns_;
 }
 
 BoardBytes SimulatedArm::sample_now() noexcept {
-  return firmware_.sample(angles(), gimbal(), number_++);
+  BoardBytes report;
+  sample_into(report);
+  return report;
+}
+
+// The exact angles are asked for only where a count hangs on their last digits.
+void SimulatedArm::sample_into(BoardBytes& report) noexcept {
+  const std::uint16_t number = number_++;
+  const Eigen::Vector3d turned = gimbal();
+  const Eigen::Vector3d q = mechanics().q_about();
+  if (firmware_.sample_about(q, Plant::kAboutError, turned, number, report)) return;
+  report = firmware_.sample(plant().q(), turned, number);
 }
 
 void SimulatedArm::receive(std::span<const std::byte> bytes) noexcept {
-  firmware_.receive(bytes, time_ns_, angles(), gimbal());
+  const auto counters = firmware_.receive(bytes, time_ns_);
+  if (counters) firmware_.preset(*counters, plant().q(), gimbal());
   mechanics().set_currents(firmware_.currents());
 }
 
 void SimulatedArm::deliver() noexcept {
   while (!reports_.empty() && reports_.front().due_ns <= time_ns_) {
     const std::span<const std::byte> report = reports_.front().content();
-    std::copy(report.begin(), report.end(), newest_.bytes.begin());
-    newest_.size = report.size();
+    newest_.size = std::min(report.size(), newest_.bytes.size());
+    std::copy_n(report.begin(), newest_.size, newest_.bytes.begin());
     ++readable_;
     reports_.pop();
   }

@@ -103,7 +103,7 @@ class SimulatedArm {
   Plant& mechanics() noexcept {
     return std::visit([](auto& plant) -> Plant& { return plant; }, plant_);
   }
-  const Eigen::Vector3d& angles() noexcept;
+  void sample_into(BoardBytes& report) noexcept;
   void sample() noexcept;
   void receive(std::span<const std::byte> bytes) noexcept;
   void deliver() noexcept;
@@ -114,13 +114,11 @@ class SimulatedArm {
   GimbalMotion gimbal_;
   AnyPlant plant_;
   Firmware firmware_;
-  Eigen::Vector3d q_{0, 0, 0};  // at q_time_ns_; the firmware asks for it twice at one time
-  std::int64_t q_time_ns_ = -1;
   std::int64_t time_ns_ = 0;
   std::int64_t next_sample_ns_ = 0;
   std::uint16_t number_ = 0;  // of the next report
   WireQueue reports_, messages_;
-  WireFrame newest_;            // the newest report the host can read
+  BoardBytes newest_{};         // the newest report the host can read
   std::uint32_t readable_ = 0;  // reports that became readable since the last was taken
 };
 

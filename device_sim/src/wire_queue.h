@@ -55,8 +55,10 @@ class WireQueue {
   /// Takes the next frame away; does nothing if there is none.
   void pop() noexcept {
     if (count_ == 0) return;
-    first_ = (first_ + 1) % kFrames;
     --count_;
+    // An empty queue begins anew: a wire without delay writes to one frame, which stays in the
+    // cache.
+    first_ = count_ == 0 ? 0 : (first_ + 1) % kFrames;
   }
 
   /// Tells how many frames were lost because too many were in flight.

@@ -9,6 +9,13 @@ namespace {
 // A message holds whole mA, rounded: a current may be larger than was asked for by so much, A.
 constexpr double kRounding = 0.0005;
 
+// Returns a heat up to which `limit` allows `share` times the continuous current, by its own
+// formula and with room for its rounding; -1 if it may not.
+double heat_of_full_current(double share, double slope) noexcept {
+  constexpr double kRoom = 1 + 1e-9;
+  return slope > 0 ? 1 - (share * share * kRoom - 1) / slope : -1;
+}
+
 }  // namespace
 
 // Why the heat never passes 1: the largest squared load at the heat h is u(h) = 1 + s (1 - h). Held
@@ -25,6 +32,8 @@ HeatGuard::HeatGuard(const HeatSettings& settings, const std::array<MotorDrive, 
     const double fall = std::max(0.0, (peak * peak - 1) / (1 - kWarning));
     const double hold = -std::expm1(-longest_hold / settings.time_constant[i]);
     slope_[i] = std::min(fall, 1 / hold - 1);
+    cool_[i] = heat_of_full_current((current_max_[i] + kRounding) / settings.continuous_current[i],
+                                    slope_[i]);
     // A heat that nobody can know is the limit.
     if (!(heat_[i] >= 0 && heat_[i] <= 1)) heat_[i] = 1;
     heat_most_ = std::max(heat_most_, heat_[i]);
@@ -56,6 +65,11 @@ void HeatGuard::sent(const std::array<std::int16_t, 3>& mA, bool scaled) noexcep
 void HeatGuard::limit() noexcept {
   limiting_ = false;
   for (std::size_t i = 0; i < 3; ++i) {
+    // So it is in nearly every tick, and no root is asked for.
+    if (heat_[i] <= cool_[i]) {
+      drives_[i].current_max = current_max_[i];
+      continue;
+    }
     const double load = 1 + slope_[i] * (1 - heat_[i]);
     // Written so that NaN allows no current.
     const double most =

@@ -32,36 +32,43 @@ driver::Error apart(const ContactChoice& choice, const std::string& why) {
 
 using Normals = std::shared_ptr<const SmoothNormals>;
 
-template <class Contact, class Shading>
-Built shaded_touch(Contact contact, Shading shading, Normals normals, bool curved,
-                   const SurfaceChoice& surface) {
-  if (!curved) {
-    return touch_of(Blended<Contact, Shading, MeshDepth>(std::move(contact), shading, normals),
-                    surface);
+// Which normal is felt, chosen when the object is built rather than compiled: what it calls stands
+// in a source of its own anyway, and each tracker with each shading would be a fifth of the time to
+// build this library.
+struct ChosenShading {
+  BlendingChoice blending = BlendingChoice::kFlat;
+  double width = 0;  // m, of a fixed band
+  BlendProfile profile = BlendProfile::kLinear;
+
+  Eigen::Vector3d normal(const ContactMesh& mesh, const SmoothNormals& normals,
+                         std::int32_t triangle, const Eigen::Vector3d& weights) const noexcept {
+    switch (blending) {
+      case BlendingChoice::kFlat:
+        break;
+      case BlendingChoice::kFixedBand:
+        return FixedBand{.width = width, .profile = profile}.normal(mesh, normals, triangle,
+                                                                    weights);
+      case BlendingChoice::kSizedBand:
+        return SizedBand{.profile = profile}.normal(mesh, normals, triangle, weights);
+      case BlendingChoice::kPhong:
+        return Phong().normal(mesh, normals, triangle, weights);
+    }
+    return Flat().normal(mesh, normals, triangle, weights);
   }
-  return touch_of(Blended<Contact, Shading, CurvedDepth>(std::move(contact), shading, normals),
-                  surface);
-}
+};
 
 /// Wraps a tracked contact into the shading that is asked for, or leaves it bare if none is.
 template <class Contact>
-Built tracked_touch(Contact contact, const ContactChoice& choice, BlendingChoice blending,
-                    bool curved, const Normals& normals, const SurfaceChoice& surface) {
-  const BlendProfile profile = choice.profile.value_or(BlendProfile::kLinear);
-  switch (blending) {
-    case BlendingChoice::kFlat:
-      if (!curved) return touch_of(std::move(contact), surface);
-      return shaded_touch(std::move(contact), Flat(), normals, curved, surface);
-    case BlendingChoice::kFixedBand:
-      return shaded_touch(std::move(contact), FixedBand{.width = choice.band, .profile = profile},
-                          normals, curved, surface);
-    case BlendingChoice::kSizedBand:
-      return shaded_touch(std::move(contact), SizedBand{.profile = profile}, normals, curved,
-                          surface);
-    case BlendingChoice::kPhong:
-      return shaded_touch(std::move(contact), Phong(), normals, curved, surface);
+Built tracked_touch(Contact contact, const ChosenShading& shading, bool curved,
+                    const Normals& normals, const SurfaceChoice& surface) {
+  if (curved) {
+    return touch_of(
+        Blended<Contact, ChosenShading, CurvedDepth>(std::move(contact), shading, normals),
+        surface);
   }
-  return apart(choice, "does not know this blending.");
+  if (shading.blending == BlendingChoice::kFlat) return touch_of(std::move(contact), surface);
+  return touch_of(Blended<Contact, ChosenShading, MeshDepth>(std::move(contact), shading, normals),
+                  surface);
 }
 
 Built packed_touch(const TriangleMesh& mesh_W, const ContactChoice& choice,
@@ -108,11 +115,13 @@ Built mesh_touch(const TriangleMesh& mesh_W, const ContactChoice& choice,
         choice.normals.value_or(NormalWeights::kFitted),
         in_bands ? kHollowCreaseAngleOfBands : kHollowCreaseAngle);
   }
+  const ChosenShading shading{.blending = blending,
+                              .width = choice.band,
+                              .profile = choice.profile.value_or(BlendProfile::kLinear)};
   if constexpr (kSmooth) {
-    return tracked_touch(Contact(mesh, search, normals), choice, blending, curved, normals,
-                         surface);
+    return tracked_touch(Contact(mesh, search, normals), shading, curved, normals, surface);
   } else {
-    return tracked_touch(Contact(mesh, search), choice, blending, curved, normals, surface);
+    return tracked_touch(Contact(mesh, search), shading, curved, normals, surface);
   }
 }
 

@@ -93,8 +93,9 @@ for i in $(seq "$([ -n "${THIMBLE_LONG:-}" ] && echo 50 || echo 3)"); do
   run=$!
   # Only a run with more ticks than may be lost can show that no more were lost.
   for _ in $(seq 200); do
-    shown=$(timeout 20 "$thimble" view "$me" --text --for 0.3 2>/dev/null | grep -oE '[0-9]+ ticks' | tail -1)
-    [ "${shown%% *}" -gt 1000 ] 2>/dev/null && break
+    shown=$(timeout 20 "$thimble" view "$me" --text --for 0.3 2>/dev/null |
+      sed -nE 's/.* running: .* ([0-9]+) ticks.*/\1/p' | tail -1)
+    [ "$shown" -gt 1000 ] 2>/dev/null && break
     sleep 0.05
   done
   sleep "0.$((RANDOM % 900 + 100))"

@@ -38,7 +38,7 @@
 namespace thimble::usb_test {
 namespace {
 
-constexpr std::int64_t kPeriod_ns = 1'000'000;
+constexpr std::int64_t kTick_ns = 1'000'000;
 
 int open_descriptors() {
   int count = 0;
@@ -112,7 +112,7 @@ int fresh(const VirtualArm& arm) {
   Eigen::Vector3d last = first;
   for (int i = 0; i < 4; ++i) {
     const std::int64_t now_ns = bench.clock.now_ns();
-    last = bench.device->read(now_ns, now_ns + 2 * kPeriod_ns).p_WT;
+    last = bench.device->read(now_ns, now_ns + 2 * kTick_ns).p_WT;
     bench.device->write({});
   }
   const double moved = (last - first).norm();
@@ -137,7 +137,7 @@ int touch(const VirtualArm& arm, std::uint64_t ticks, const std::string& trace) 
     const std::atomic<bool> stop{false};
     heap_calls = support::heap_calls_of([&] {
       end = driver::run_servo(*(*bench)->device, (*bench)->clock, driver::ForceLaw(wall),
-                              driver::TickSink(recorder), {.period_ns = kPeriod_ns, .ticks = ticks},
+                              driver::TickSink(recorder), {.period_ns = kTick_ns, .ticks = ticks},
                               stop);
     });
     wire = (*bench)->device->wire_counters();
@@ -174,7 +174,7 @@ class Ticker {
   explicit Ticker(Bench& bench) : bench_(bench), due_ns_(bench.clock.now_ns()) {}
 
   void tick() {
-    due_ns_ = std::max(due_ns_ + kPeriod_ns, bench_.clock.now_ns());
+    due_ns_ = std::max(due_ns_ + kTick_ns, bench_.clock.now_ns());
     bench_.clock.sleep_until_ns(due_ns_);
     const std::int64_t now_ns = bench_.clock.now_ns();
     const driver::DeviceState& state = bench_.device->read(now_ns, now_ns);

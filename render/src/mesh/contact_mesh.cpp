@@ -28,20 +28,19 @@ Vector3d unit_normal(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
   return (b - a).cross(c - a).stableNormalized();
 }
 
+std::uint16_t rounded_up(double sine) {
+  return static_cast<std::uint16_t>(
+      std::min(std::ceil(sine * TriangleCell::kSineUnit), TriangleCell::kSineUnit));
+}
+
 // An edge plane leans over its face by half the angle there: back if the edge is hollow.
 void measure_edges(TriangleCell& cell) {
-  double hollow = 0, ridge = 0;
+  double hollow = 0;
   for (const Plane& edge : cell.edges) {
     const double lean = edge.n.dot(cell.face.n);
     if (lean < -TriangleCell::kFlat) hollow = std::max(hollow, -lean);
-    if (lean > TriangleCell::kFlat) ridge = std::max(ridge, lean);
   }
-  const auto rounded_up = [](double sine) {
-    return static_cast<std::uint16_t>(
-        std::min(std::ceil(sine * TriangleCell::kSineUnit), TriangleCell::kSineUnit));
-  };
   cell.hollow = rounded_up(hollow);
-  cell.ridge = rounded_up(ridge);
 }
 
 // Finds the edge plane of two triangles, positive on the side of the first, which runs the edge
@@ -110,10 +109,12 @@ driver::Result<ContactMesh> ContactMesh::build(const TriangleMesh& mesh,
     }
   }
   contact.collect_fans();
+  contact.measure_around();
   return contact;
 }
 
 void ContactMesh::move_vertex(std::int32_t vertex, const Vector3d& p_W) noexcept {
+  moved_ = true;
   vertices_[static_cast<std::size_t>(vertex)] = p_W;
   for (const std::int32_t t : fan(vertex)) compute_face(t);
   for (const std::int32_t t : fan(vertex)) {
@@ -158,6 +159,22 @@ void ContactMesh::collect_fans() {
   std::vector<std::size_t> next(fan_begin_.begin(), fan_begin_.end() - 1);
   for (std::int32_t t = 0; t < triangle_count(); ++t) {
     for (const std::int32_t v : corners(t)) fans_[next[static_cast<std::size_t>(v)]++] = t;
+  }
+}
+
+// Half the difference of two unit normals is the sine of half the angle between them.
+void ContactMesh::measure_around() {
+  for (std::size_t i = 0; i < cells_.size(); ++i) {
+    double most_squared = 0;
+    for (const std::int32_t v : triangles_[i]) {
+      const auto around = fan(v);
+      if (around.size() > TriangleCell::kFanMax) most_squared = 4;
+      if (most_squared == 4) break;
+      for (const std::int32_t t : around) {
+        most_squared = std::max(most_squared, (cell(t).face.n - cells_[i].face.n).squaredNorm());
+      }
+    }
+    cells_[i].around = rounded_up(std::sqrt(most_squared) / 2);
   }
 }
 

@@ -29,11 +29,16 @@ struct TriangleCell {
   std::array<Plane, 3>
       edges;  ///< Over the edge from corner k to k + 1; positive on this side [BP 4b].
   std::array<std::int32_t, 3> neighbours;  ///< Triangle behind each edge plane.
-  /// How sharp its edges are: sine of half the angle between the normals over the sharpest of its
-  /// hollow edges and of the others, in 1 / kSineUnit, rounded up; 0 if there is none.
-  std::uint16_t hollow = 0, ridge = 0;
+  /// How sharp its hollow edges are: sine of half the angle between the normals over the sharpest
+  /// of them, in 1 / kSineUnit, rounded up; 0 if there is none.
+  std::uint16_t hollow = 0;
+  /// How far the faces around its corners lean away: the same of the largest angle to one of them,
+  /// as the mesh was built; kSineUnit at a corner of more than `kFanMax` faces.
+  std::uint16_t around = 0;
 
   static constexpr double kSineUnit = 65535;
+  /// Faces around a corner that are looked at one by one.
+  static constexpr std::size_t kFanMax = 64;
   /// Sine of half an angle that is rounding: two faces in one plane.
   static constexpr double kFlat = 1e-9;
 
@@ -102,6 +107,9 @@ class ContactMesh {
   /// normal 0 and no depth. Real-time: safe; some 20 ns per triangle around the vertex.
   void move_vertex(std::int32_t vertex, const Eigen::Vector3d& p_W) noexcept;
 
+  /// Returns whether any vertex has moved since the mesh was built.
+  bool moved() const noexcept { return moved_; }
+
   /// Tells where corner `k` of a triangle is, m in W.
   const Eigen::Vector3d& position(std::int32_t triangle, std::size_t k) const noexcept {
     return position(corners(triangle)[k]);
@@ -147,6 +155,7 @@ class ContactMesh {
   void compute_face(std::int32_t triangle) noexcept;
   void compute_edge(std::int32_t triangle, std::size_t k) noexcept;
   void collect_fans();
+  void measure_around();
 
   std::vector<Eigen::Vector3d> vertices_;
   std::vector<std::array<std::int32_t, 3>> triangles_;
@@ -157,6 +166,7 @@ class ContactMesh {
   Eigen::Vector3d box_min_{0, 0, 0};
   Eigen::Vector3d box_max_{0, 0, 0};
   double depth_rounding_ = 0;
+  bool moved_ = false;
   OrientReport orientation_;
 };
 

@@ -59,6 +59,7 @@ bool MovingMesh::place(const VertexMove& move, const Vector3d& p_WT, const Vecto
 }
 
 void MovingMesh::fit_planes() noexcept {
+  mesh_.moved_ = true;
   for (const std::int32_t t : around_) mesh_.compute_face(t);
   for (const std::int32_t t : around_) {
     for (std::size_t k = 0; k < 3; ++k) {

@@ -18,12 +18,17 @@ using Eigen::Vector3d;
 // A tip pressed straight down sinks by what it moves: twice as much cannot be rounding.
 constexpr double kRiseSquaredMax = 4;
 
-// Sine of half the angle of an edge from which on the faces around are looked at, in TriangleCell's
-// unit: 11.5 degrees. Over flatter edges the wrong face costs 2 % of the depth. [chosen]
-constexpr std::uint16_t kRidge = 6554;
+// Faces around that lean by less are not looked at: the wrong one costs 2 % of the depth. Sine of
+// half the angle, in TriangleCell's unit, and cosine of the angle: 11.5 degrees. [chosen]
+constexpr std::uint16_t kLean = 6554;
+constexpr double kNearlyFlat = 0.98;
 
-// How near two edges must be, in depths of the tip. [chosen; beyond, no face was nearer on a scan]
-constexpr double kNearCorner = 2;
+// Faces that lean by more, as a cosine, are the back of a thin part and not gone over to but by
+// edges: 104 degrees, so that the walls of a block are all gone over to. [chosen]
+constexpr double kLooksAway = -0.25;
+
+// What holds the tip is farther away than the plane of the face by this much. [chosen]
+constexpr double kBeyondPlane = 1.1;
 
 // Each leads to a nearer face; in the next tick it goes on.
 constexpr int kRoundsAround = 4;
@@ -71,12 +76,11 @@ inline SurfaceTracker::EdgeDistances SurfaceTracker::edge_distances(const Triang
   const double d0 = cell.edges[0].distance(p);
   const double d1 = cell.edges[1].distance(p);
   const double d2 = cell.edges[2].distance(p);
-  EdgeDistances found{.worst = 0, .least = d0, .middle = std::max(d0, d1)};
+  EdgeDistances found{.worst = 0, .least = d0};
   if (d1 < found.least) {
     found.worst = 1;
     found.least = d1;
   }
-  found.middle = std::max(found.least, std::min(found.middle, d2));
   if (d2 < found.least) {
     found.worst = 2;
     found.least = d2;
@@ -120,15 +124,19 @@ TrackerStep SurfaceTracker::follow(const Vector3d& p_WT) noexcept {
   step.touching = true;
   step.depth = std::max(depth, 0.0);
   held_.triangle = -1;
-  // Of a cell without a hollow edge the face holds the tip.
-  if (mesh_->cell(active_).hollow > 0) {
-    // Faces that share no edge with this one are near only where two of its edges are.
-    if (mesh_->cell(active_).ridge > kRidge && edges.middle < kNearCorner * step.depth &&
-        look_around(p_WT, step)) {
-      edges = edge_distances(mesh_->cell(active_), p);
+  if ((mesh_->cell(active_).around > kLean || mesh_->moved()) &&
+      !(edges.least >= 0 && is_quiet(p_WT)) && look_around(p_WT, step)) {
+    edges = edge_distances(mesh_->cell(active_), p);
+  }
+  // Beside a hollow edge it is not the face alone that holds the tip.
+  const TriangleCell& cell = mesh_->cell(active_);
+  if (cell.hollow > 0 && edges.least < cell.beside_hollow(step.depth)) {
+    const double plane = step.depth;
+    hold(p_WT, step);
+    // Farther than the plane: faces may be nearer that were not when the plane was asked.
+    if (held_.triangle >= 0 && step.depth > kBeyondPlane * plane && look_around(p_WT, step)) {
+      hold(p_WT, step);
     }
-    const TriangleCell& cell = mesh_->cell(active_);
-    if (cell.hollow > 0 && edges.least < cell.beside_hollow(step.depth)) hold(p_WT, step);
   }
   has_before_ = true;
   p_WT_before_ = p_WT;
@@ -141,20 +149,33 @@ TrackerStep SurfaceTracker::follow(const Vector3d& p_WT) noexcept {
 // active, unless it looks away from the one that was entered.
 bool SurfaceTracker::look_around(const Vector3d& p_WT, TrackerStep& step) noexcept {
   bool moved = false;
+  double quiet = 0;
   for (int round = 0; round < kRoundsAround; ++round) {
-    const Vector3d& n = mesh_->cell(active_).face.n;
+    const TriangleCell& cell = mesh_->cell(active_);
     std::int32_t best = -1;
     double nearest = step.depth;
+    quiet = std::numeric_limits<double>::infinity();
     for (const std::int32_t vertex : mesh_->corners(active_)) {
-      for (const std::int32_t t : mesh_->fan(vertex)) {
+      const auto fan = mesh_->fan(vertex);
+      if (fan.size() > TriangleCell::kFanMax) continue;
+      for (const std::int32_t t : fan) {
+        const Vector3d& n = mesh_->cell(t).face.n;
+        const double lean = n.dot(cell.face.n);
+        if (!(lean < kNearlyFlat && lean > kLooksAway)) continue;
         // No point of a triangle is nearer than its plane.
         const double depth = mesh_->depth(t, p_WT);
-        if (!(depth >= 0 && depth < nearest) || !(mesh_->cell(t).face.n.dot(n) > 0)) continue;
-        const double distance = std::sqrt(foot_on(*mesh_, t, p_WT).distance_squared);
-        // Of several equally near the first, whatever rounding says.
-        if (!(distance < nearest * (1 - kTie))) continue;
-        best = t;
-        nearest = distance;
+        double farther = depth < 0 ? -2 * depth : depth - step.depth;
+        if (depth >= 0 && depth < nearest) {
+          const double distance = std::sqrt(foot_on(*mesh_, t, p_WT).distance_squared);
+          farther = distance - step.depth;
+          // Of several equally near the first, whatever rounding says.
+          if (distance < nearest * (1 - kTie)) {
+            best = t;
+            nearest = distance;
+          }
+        }
+        const auto& beside = cell.neighbours;  // told apart by their edge planes
+        if (t != beside[0] && t != beside[1] && t != beside[2]) quiet = std::min(quiet, farther);
       }
     }
     if (best < 0) break;
@@ -163,12 +184,17 @@ bool SurfaceTracker::look_around(const Vector3d& p_WT, TrackerStep& step) noexce
     ++step.hops;
     ++counters_.nearer;
     step.depth = std::max(mesh_->depth(best, p_WT), 0.0);
+    quiet = 0;
   }
+  looked_ = held_.triangle < 0 ? active_ : -1;
+  p_WT_looked_ = p_WT;
+  quiet_squared_ = quiet > 0 ? quiet * quiet / 4 : 0;
   return moved;
 }
 
 // The tip is beside the active face, over a hollow edge, or where no cell is.
 void SurfaceTracker::hold(const Vector3d& p_WT, TrackerStep& step) noexcept {
+  held_.triangle = -1;
   const HollowHold hold = hold_in_hollow(*mesh_, active_, p_WT);
   if (!hold.holds) return;
   // The nearest point around changes its distance by no more than the tip moves. Where surfaces

@@ -64,6 +64,7 @@ class SurfaceTracker {
   /// Makes a triangle active, where the tip has just entered.
   void start(std::int32_t triangle) noexcept {
     active_ = triangle;
+    looked_ = -1;
     held_ = {};
     has_before_ = false;
   }
@@ -99,13 +100,18 @@ class SurfaceTracker {
 
  private:
   // How far the tip is on this side of the edge planes of a cell, m: the one it violates most
-  // (below 0) or is nearest to, and how far it is from the second.
+  // (below 0) or is nearest to.
   struct EdgeDistances {
     std::size_t worst = 0;
     double least = 0;
-    double middle = 0;
   };
   static EdgeDistances edge_distances(const TriangleCell& cell, const Eigen::Vector3d& p) noexcept;
+  // No distance changes by more than the tip moves: until it has gone half of what the faces around
+  // are farther away, nothing needs to be looked at again.
+  bool is_quiet(const Eigen::Vector3d& p_WT) const noexcept {
+    return looked_ == active_ && (p_WT - p_WT_looked_).squaredNorm() < quiet_squared_ &&
+           !mesh_->moved();
+  }
   bool look_around(const Eigen::Vector3d& p_WT, TrackerStep& step) noexcept;
   void hold(const Eigen::Vector3d& p_WT, TrackerStep& step) noexcept;
   std::uint16_t walk(const Eigen::Vector3d& p, EdgeDistances& edges) noexcept;
@@ -123,6 +129,9 @@ class SurfaceTracker {
   bool has_before_ = false;       // whether the two below are those of the last tick
   Eigen::Vector3d p_WT_before_{0, 0, 0};
   double depth_before_ = 0;
+  std::int32_t looked_ = -1;  // the triangle whose surroundings were looked at last, from where,
+  Eigen::Vector3d p_WT_looked_{0, 0, 0};
+  double quiet_squared_ = 0;  // and how far from there nothing around can be nearer, m^2
   TrackerCounters counters_;
 };
 

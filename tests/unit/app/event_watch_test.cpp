@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <numeric>
 #include <thread>
 #include <vector>
 
@@ -19,6 +20,9 @@ constexpr std::int64_t kPeriod_ns = 1'000'000;
 /// Counters that the test counts.
 class ScriptedCounters final : public EventCounters {
  public:
+  std::uint64_t changes() const noexcept override {
+    return std::accumulate(counts.begin(), counts.end(), taken);
+  }
   ActivityCounts activities() const noexcept override { return counts; }
   std::uint64_t wires_taken() const noexcept override { return taken; }
   std::uint64_t& of(Activity activity) { return counts[static_cast<std::size_t>(activity)]; }

@@ -150,9 +150,13 @@ TEST(SimulatedGimbal, IsPresetAsItsBoardDoesIt) {
   model.gimbal = driver::Gimbal{.counts_per_turn = {2000, 2000, 2000}};
   Firmware firmware = Firmware::make(arm_model(model), {}).value();
   const Eigen::Vector3d q = support::vintage_home(), turned(0.1, 0.2, 0.3);
-  firmware.receive(
-      driver::hfab::encode_output({.current_mA = {7, 8, 9}, .command = 1, .attributes = {1, 2, 3}}),
-      1, q, turned);
+  firmware.preset(
+      firmware
+          .receive(driver::hfab::encode_output(
+                       {.current_mA = {7, 8, 9}, .command = 1, .attributes = {1, 2, 3}}),
+                   1)
+          .value(),
+      q, turned);
   const auto report = driver::hfab::decode_input(firmware.sample(q, turned)).value();
   EXPECT_EQ(report.counts, (std::array<std::int16_t, 6>{1, 2, 3, 7, 8, 9}));
 }

@@ -87,24 +87,61 @@ TEST(Firmware, SendsFractionsOfCountsBelowTenNanometres) {
 TEST(Firmware, WrapsItsCountersAtSixteenBits) {
   Firmware firmware = Firmware::make(arm_model(support::vintage_model()), {}).value();
   const SerialPose home = steps_from_home(0, 0, 0);
-  firmware.receive(driver::hfab::encode_output(
+  firmware.preset(
+      firmware
+          .receive(driver::hfab::encode_output(
                        {.current_mA = {}, .command = 1, .attributes = {32767, -32768, 5}}),
-                   0, home.angles());
+                   0)
+          .value(),
+      home.angles());
   EXPECT_EQ(sampled(firmware, home).counts,
             (std::array<std::int16_t, 6>{32767, -32768, 5, 0, 0, 0}));
   EXPECT_EQ(sampled(firmware, steps_from_home(1, -1, 0)).counts,
             (std::array<std::int16_t, 6>{-32768, 32767, 5, 0, 0, 0}));
 }
 
+TEST(Firmware, SamplesAnglesThatAreAboutRightOnlyWhereTheCountsAreSure) {
+  FirmwareSettings ideal;
+  ideal.ideal_encoders = true;
+  for (const FirmwareSettings& settings : {FirmwareSettings(), ideal}) {
+    const Firmware firmware = Firmware::make(arm_model(support::vintage_model()), settings).value();
+    constexpr double kError = 1e-12;
+    support::Random random(10);
+    int sure = 0, unsure = 0;
+    for (int i = 0; i < 20000; ++i) {
+      // Every other one within 0.002 of an edge between two counts of the first joint.
+      const double near_edge =
+          std::floor(random.uniform(-500, 500)) + 0.5 + random.in_box(0.002).x();
+      const Eigen::Vector3d steps(i % 2 == 0 ? random.uniform(-500, 500) : near_edge, 300.2, -20.7);
+      const Eigen::Vector3d q = steps_from_home(steps[0], steps[1], steps[2]).angles();
+      const Eigen::Vector3d about = q + random.in_box(kError);
+      BoardBytes bytes{};
+      if (!firmware.sample_about(about, kError, {0, 0, 0}, 0, bytes)) {
+        EXPECT_EQ(bytes.size, 0u);
+        ++unsure;
+        continue;
+      }
+      ++sure;
+      ASSERT_EQ(driver::hfab::decode_input(bytes), driver::hfab::decode_input(firmware.sample(q)));
+    }
+    EXPECT_GT(sure, 10000);
+    EXPECT_GT(unsure, 20);
+  }
+}
+
 TEST(Firmware, PresetsAllCountersClearsTheButtonAndAsksForNoCurrent) {
   Firmware firmware = Firmware::make(arm_model(support::vintage_model()), {}).value();
   const SerialPose pose = steps_from_home(10.3, 20.3, 30.3);
-  firmware.receive(drive_message(100, 200, 300), 0, pose.angles());
+  firmware.receive(drive_message(100, 200, 300), 0);
   firmware.press_button();
   EXPECT_EQ(sampled(firmware, pose).info, 1);
-  firmware.receive(
-      driver::hfab::encode_output({.current_mA = {7, 8, 9}, .command = 1, .attributes = {1, 2, 3}}),
-      1, pose.angles());
+  firmware.preset(
+      firmware
+          .receive(driver::hfab::encode_output(
+                       {.current_mA = {7, 8, 9}, .command = 1, .attributes = {1, 2, 3}}),
+                   1)
+          .value(),
+      pose.angles());
   const auto report = sampled(firmware, pose);
   EXPECT_EQ(report.counts, (std::array<std::int16_t, 6>{1, 2, 3, 7, 8, 9}));
   EXPECT_EQ(report.info, 0);
@@ -124,7 +161,7 @@ TEST(Firmware, SeesAndDrivesWhatIsPluggedIntoIt) {
   Firmware firmware = Firmware::make(arm_model(support::vintage_model()), settings).value();
   EXPECT_EQ(sampled(firmware, steps_from_home(100, 200, 300)).counts,
             (std::array<std::int16_t, 6>{200, -100, 0, 0, 0, 0}));
-  firmware.receive(drive_message(1000, 2000, 3000), 0, steps_from_home(0, 0, 0).angles());
+  firmware.receive(drive_message(1000, 2000, 3000), 0);
   EXPECT_EQ(firmware.currents(), Eigen::Vector3d(0, 3, -2));
   settings.wiring.motor_of = {0, 3, 1};
   EXPECT_TRUE(refuses(Firmware::make(arm_model(support::vintage_model()), settings),
@@ -135,23 +172,22 @@ TEST(Firmware, TakesACurrentBeyondItsRangeAsZero) {
   FirmwareSettings settings;
   settings.current_range_mA = 3000;
   Firmware firmware = Firmware::make(arm_model(support::vintage_model()), settings).value();
-  firmware.receive(drive_message(3000, 3001, -3000), 0, steps_from_home(0, 0, 0).angles());
+  firmware.receive(drive_message(3000, 3001, -3000), 0);
   EXPECT_EQ(firmware.currents(), Eigen::Vector3d(3, 0, -3));
   EXPECT_EQ(firmware.counters().over_range, 1U);
-  firmware.receive(drive_message(-32768, 1, 32767), 0, steps_from_home(0, 0, 0).angles());
+  firmware.receive(drive_message(-32768, 1, 32767), 0);
   EXPECT_EQ(firmware.currents(), Eigen::Vector3d(0, 0.001, 0));
   EXPECT_EQ(firmware.counters().over_range, 3U);
 }
 
 TEST(Firmware, IgnoresAndCountsMessagesOfUnknownLength) {
   Firmware firmware = Firmware::make(arm_model(support::vintage_model()), {}).value();
-  const SerialPose home = steps_from_home(0, 0, 0);
-  firmware.receive(drive_message(100, 0, 0), 0, home.angles());
+  firmware.receive(drive_message(100, 0, 0), 0);
   const std::array<std::byte, 65> bytes{};
   std::uint64_t malformed = 0;
   for (std::size_t size = 0; size <= bytes.size(); ++size) {
     if (size == driver::hfab::kReportSize || size == driver::hfab::kPaddedReportSize) continue;
-    firmware.receive(std::span<const std::byte>(bytes).first(size), 50'000'000, home.angles());
+    firmware.receive(std::span<const std::byte>(bytes).first(size), 50'000'000);
     ++malformed;
   }
   EXPECT_EQ(firmware.counters().malformed, malformed);
@@ -166,7 +202,7 @@ TEST(Firmware, StartsWithItsMotorsOffAndArmsItsWatchdogWithTheFirstMessage) {
   EXPECT_EQ(firmware.watchdog_due_ns(), Firmware::kNever_ns);
   firmware.watch(1'000'000'000'000);
   EXPECT_EQ(firmware.counters().watchdog_fired, 0U);
-  firmware.receive(drive_message(500, 0, 0), 7, steps_from_home(0, 0, 0).angles());
+  firmware.receive(drive_message(500, 0, 0), 7);
   EXPECT_TRUE(firmware.motors_on());
   firmware.watch(100'000'006);
   EXPECT_EQ(firmware.currents().x(), 0.5);

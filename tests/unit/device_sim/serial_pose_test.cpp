@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "plant.h"
 #include "support/random.h"
 
 namespace thimble::device_sim {
@@ -34,6 +35,27 @@ TEST(SerialPose, AgreesWithTheDriversGeometryAllOverTheWorkspace) {
     ASSERT_LT((back - tau).norm(), 1e-11) << p_BT.transpose();
   }
   EXPECT_GT(reached, 5000);
+}
+
+TEST(SerialPose, FindsItsAnglesFromAPoseNearbyToWithinThePlantsError) {
+  const driver::SerialArm arm{.height = 0.05, .length_b = 0.138, .length_c = 0.112};
+  support::Random random(9);
+  int found = 0, refused = 0;
+  for (int i = 0; i < 50000; ++i) {
+    const Eigen::Vector3d p_BT = random.in_box(0.25);
+    const double far = std::pow(10, random.uniform(-7, -1.5));
+    const SerialPose from(arm, p_BT), pose(arm, p_BT + random.in_box(far));
+    if (!from.within_reach() || !pose.within_reach()) continue;
+    Eigen::Vector3d q;
+    if (!pose.angles_near(from, from.angles(), q)) {
+      ++refused;
+      continue;
+    }
+    ++found;
+    ASSERT_LT((q - pose.angles()).cwiseAbs().maxCoeff(), Plant::kAboutError) << p_BT.transpose();
+  }
+  EXPECT_GT(found, 5000);
+  EXPECT_GT(refused, 100);
 }
 
 TEST(SerialPose, KeepsForcesBoundedAtTheEdgesOfReach) {

@@ -90,6 +90,30 @@ TEST(HeatGuard, LeavesTheCurrentAloneUpToTheWarningAndThenLowersItWithoutAStep) 
   EXPECT_LT(largest_step, 0.005) << "A in a tick";
 }
 
+TEST(HeatGuard, AllowsToTheBitWhatItsFormulaSaysAtEveryHeat) {
+  constexpr double kRounding = 0.0005;
+  int full = 0, lowered = 0;
+  for (int i = 0; i <= 4000; ++i) {
+    HeatSettings settings = kSettings;
+    // Densely around the warning, where the current begins to fall.
+    const double at = i < 2000 ? i / 2000.0 : 0.79 + 0.02 * (i - 2000) / 2000.0;
+    settings.at_start = {at, at, at};
+    const HeatGuard heat = guard(settings);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double arms = drives()[k].current_max, peak = arms / settings.continuous_current[k];
+      const double hold = -std::expm1(-kLongestHold / settings.time_constant[k]);
+      const double slope =
+          std::min(std::max(0.0, (peak * peak - 1) / (1 - HeatGuard::kWarning)), 1 / hold - 1);
+      const double most =
+          settings.continuous_current[k] * std::sqrt(1 + slope * (1 - at)) - kRounding;
+      ASSERT_EQ(heat.drives()[k].current_max, std::min(most, arms)) << at;
+      ++(most < arms ? lowered : full);
+    }
+  }
+  EXPECT_GT(full, 1000);
+  EXPECT_GT(lowered, 1000);
+}
+
 TEST(HeatGuard, TakesWhatItCannotKnowForHotAndNoTimeForNone) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   HeatSettings settings = kSettings;

@@ -182,12 +182,43 @@ struct Judged {
   double lost_deepest = 0;  // m
   int off = 0;              // ticks that find the tip more than kOff nearer or deeper than it is
   int same_side = 0;        // of those, the nearest point looks the same way
+  int unexplained = 0;      // of all off, those that no promise explains (entry_face_kept)
 };
 
 constexpr double kOff = 1e-4;  // m
 
+// Faces that lean more than this away from the one that is felt, as a cosine, are another side.
+constexpr double kAnotherSide = -0.25;
+
+// Is a mesh as judges see it: triangles wound as the contact is, and those around each vertex.
+struct Oriented {
+  TriangleMesh mesh;
+  std::vector<std::vector<std::size_t>> around;
+};
+
+// Returns whether who tells the depth `found` may do so though other parts of the mesh are nearer:
+// the face that was entered is kept as long as the surface around it leads to none that is nearer
+// without going over to another side. So no triangle that shares a corner with the one that is felt
+// and does not look away from it may be nearer by more than 0.1 mm or 2 % of the depth.
+bool entry_face_kept(const Oriented& oriented, const Vector3d& tip, const ContactState& found) {
+  const auto felt = static_cast<std::size_t>(found.triangle);
+  const Vector3d n = support::outward_normal(oriented.mesh, felt);
+  const double nearest = found.depth - std::max(kOff, 0.02 * found.depth);
+  for (const std::int32_t v : oriented.mesh.triangles[felt]) {
+    for (const std::size_t t : oriented.around[static_cast<std::size_t>(v)]) {
+      if (support::outward_normal(oriented.mesh, t).dot(n) < kAnotherSide) continue;
+      const Vector3d p = support::nearest_on_triangle(tip, support::corner(oriented.mesh, t, 0),
+                                                      support::corner(oriented.mesh, t, 1),
+                                                      support::corner(oriented.mesh, t, 2));
+      if ((p - tip).norm() < nearest) return false;
+    }
+  }
+  return true;
+}
+
 template <class Contact>
-Judged judge(PathBounded<Contact>& contact, const TriangleMesh& mesh, const Path& path) {
+Judged judge(PathBounded<Contact>& contact, const Oriented& oriented, const Path& path) {
+  const TriangleMesh& mesh = oriented.mesh;
   Judged judged;
   int run = 0;
   bool entered = false;
@@ -213,6 +244,8 @@ Judged judge(PathBounded<Contact>& contact, const TriangleMesh& mesh, const Path
     if (!(std::abs(found.depth - path.distances[i]) > kOff)) continue;
     ++judged.off;
     judged.same_side += found.n_W.dot(path.outs[i]) > 0;
+    const bool too_shallow = found.depth < path.distances[i];
+    judged.unexplained += too_shallow || !entry_face_kept(oriented, path.tips[i], found);
   }
   return judged;
 }
@@ -234,6 +267,7 @@ void add(Judged& sum, const Judged& more) {
   sum.lost += more.lost;
   sum.off += more.off;
   sum.same_side += more.same_side;
+  sum.unexplained += more.unexplained;
 }
 
 // Takes every way of contact along the same paths over one mesh.
@@ -242,12 +276,16 @@ void try_all(const std::string& name, const TriangleMesh& shape, int ticks,
   const auto mesh = ContactMesh::build(shape);
   if (!mesh) return;
   const auto search = make_search(*mesh);
-  TriangleMesh oriented;  // wound as the contact is
+  Oriented oriented;
   for (std::int32_t v = 0; v < mesh->vertex_count(); ++v) {
-    oriented.vertices.push_back(mesh->position(v));
+    oriented.mesh.vertices.push_back(mesh->position(v));
   }
+  oriented.around.resize(oriented.mesh.vertices.size());
   for (std::int32_t t = 0; t < mesh->triangle_count(); ++t) {
-    oriented.triangles.push_back(mesh->corners(t));
+    oriented.mesh.triangles.push_back(mesh->corners(t));
+    for (const std::int32_t v : mesh->corners(t)) {
+      oriented.around[static_cast<std::size_t>(v)].push_back(static_cast<std::size_t>(t));
+    }
   }
   const Path along = skin_path(*mesh, *search, ticks, 3e-4, 21);
   const Path down = deep_path(*mesh, *search, ticks, 22);
@@ -269,9 +307,10 @@ void tell(const std::array<Sum, kWays.size()>& sums) {
     const Sum& sum = sums[i];
     std::printf(
         "  %-24s lost on %d meshes, in %d of %d ticks; of %d below the skin %d are off the nearest "
-        "point by more than 0.1 mm, %d where that looks the same way\n",
+        "point by more than 0.1 mm, %d where that looks the same way, %d that no promise "
+        "explains\n",
         kWays[i], sum.meshes_lost, sum.skin.lost + sum.deep.lost, sum.skin.ticks + sum.deep.ticks,
-        sum.skin.ticks, sum.skin.off, sum.skin.same_side);
+        sum.skin.ticks, sum.skin.off, sum.skin.same_side, sum.skin.unexplained);
   }
 }
 
@@ -293,6 +332,9 @@ TEST(ContactTruth, NoContactIsLostInsideScannedMeshesAtAnyDepth) {
   }
   tell(sums);
   EXPECT_GT(sums[0].skin.ticks, 50000);
+  if (!support::long_form()) {
+    for (const std::size_t edge_planes : {0, 1}) EXPECT_LE(sums[edge_planes].skin.unexplained, 4);
+  }
 }
 
 TEST(ContactTruth, NoContactIsLostInsideRandomClosedMeshes) {
@@ -308,7 +350,8 @@ TEST(ContactTruth, NoContactIsLostInsideRandomClosedMeshes) {
 }
 
 // Of 100,000 ticks 0.2 to 1 mm below the elephant's skin edge planes are off the nearest point by
-// more than 0.1 mm only where that belongs to another sheet: the face that was entered is kept. It
+// more than 0.1 mm only where that belongs to another sheet: the face that was entered is kept, and
+// no triangle around it that looks the same way is nearer, in all ticks but two. The nearest point
 // looks the other way in all but a few.
 TEST(ContactTruth, EdgePlanesTellTheDistanceOfTheNearestPointUnlessItIsOfAnotherSheet) {
   if (!fs::exists(fs::path(THIMBLE_MESHES) / "elephant.off")) {
@@ -319,8 +362,11 @@ TEST(ContactTruth, EdgePlanesTellTheDistanceOfTheNearestPointUnlessItIsOfAnother
   ASSERT_TRUE(mesh);
   try_all("elephant.off", scaled(*mesh), 100'000, sums);
   tell(sums);
-  EXPECT_LE(sums[0].skin.off, 700);
-  EXPECT_LE(sums[0].skin.same_side, 60);
+  for (const std::size_t edge_planes : {0, 1}) {
+    EXPECT_LE(sums[edge_planes].skin.off, 450);
+    EXPECT_LE(sums[edge_planes].skin.same_side, 25);
+    EXPECT_LE(sums[edge_planes].skin.unexplained, 3);
+  }
 }
 
 }  // namespace

@@ -1,6 +1,15 @@
 #include "events/event_watch.h"
 
+#include <algorithm>
+#include <numeric>
+
 namespace thimble::session {
+
+std::uint64_t DeviceCounters::changes() const noexcept {
+  // Each of them only grows.
+  const ActivityCounts counts = DeviceCounters::activities();
+  return std::accumulate(counts.begin(), counts.end(), DeviceCounters::wires_taken());
+}
 
 ActivityCounts DeviceCounters::activities() const noexcept {
   const driver::GateCounters& gate = device_.gate_counters();
@@ -31,6 +40,7 @@ EventWatch::EventWatch(const EventCounters& counters, std::int64_t period_ns,
     : counters_(counters),
       period_ns_(period_ns),
       ring_(ring),
+      changes_(counters.changes()),
       counts_(counters.activities()),
       wires_taken_(counters.wires_taken()) {}
 
@@ -38,7 +48,23 @@ void EventWatch::push(const TickEvent& event) noexcept {
   if (!ring_.push(event)) lost_.fetch_add(1, std::memory_order_relaxed);
 }
 
+// Nearly every tick is like the one before.
+bool EventWatch::quiet(const driver::TickRecord& record) const noexcept {
+  return counters_.changes() == changes_ && record.in_contact == touching_ &&
+         record.stage == stage_ && record.fault == fault_ && record.time_ns <= earliest_end_ns_ &&
+         record.due_ns - due_ns_ < 2 * period_ns_;
+}
+
 void EventWatch::take(const driver::TickRecord& record) noexcept {
+  if (!quiet(record)) look(record);
+  begun_ = true;
+  tick_ = record.tick;
+  time_ns_ = record.time_ns;
+  due_ns_ = record.due_ns;
+}
+
+void EventWatch::look(const driver::TickRecord& record) noexcept {
+  changes_ = counters_.changes();
   const std::uint64_t wires_taken = counters_.wires_taken();
   if (wires_taken != wires_taken_) {
     wires_taken_ = wires_taken;
@@ -53,10 +79,6 @@ void EventWatch::take(const driver::TickRecord& record) noexcept {
           .object = record.object});
   }
   watch_activities(record);
-  begun_ = true;
-  tick_ = record.tick;
-  time_ns_ = record.time_ns;
-  due_ns_ = record.due_ns;
 }
 
 void EventWatch::watch_stage(const driver::TickRecord& record) noexcept {
@@ -83,6 +105,7 @@ void EventWatch::watch_activities(const driver::TickRecord& record) noexcept {
   constexpr auto kMissed = static_cast<std::size_t>(Activity::kMissedTicks);
   const std::int64_t periods = begun_ ? (record.due_ns - due_ns_) / period_ns_ : 1;
   counts[kMissed] = counts_[kMissed] + static_cast<std::uint64_t>(periods > 1 ? periods - 1 : 0);
+  earliest_end_ns_ = kNever_ns;
   for (std::size_t i = 0; i < kActivities; ++i) {
     Episode& episode = episodes_[i];
     if (counts[i] == counts_[i]) {
@@ -91,6 +114,7 @@ void EventWatch::watch_activities(const driver::TickRecord& record) noexcept {
         time_ns_ = record.time_ns;
         end(static_cast<Activity>(i), episode);
       }
+      wait_for(episode);
       continue;
     }
     if (episode.count == 0) {
@@ -102,8 +126,14 @@ void EventWatch::watch_activities(const driver::TickRecord& record) noexcept {
     }
     episode.newest_ns = record.time_ns;
     episode.count += counts[i] - counts_[i];
+    wait_for(episode);
   }
   counts_ = counts;
+}
+
+void EventWatch::wait_for(const Episode& episode) noexcept {
+  if (episode.count == 0) return;
+  earliest_end_ns_ = std::min(earliest_end_ns_, episode.newest_ns + kQuiet_ns);
 }
 
 void EventWatch::end(Activity activity, Episode& episode) noexcept {

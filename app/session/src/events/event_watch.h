@@ -16,6 +16,8 @@ namespace thimble::session {
 class EventCounters {
  public:
   virtual ~EventCounters() = default;
+  /// Returns a number that changes with every count below, and with nothing else.
+  virtual std::uint64_t changes() const noexcept = 0;
   /// Returns how often each activity occurred; that of kMissedTicks is left 0.
   virtual ActivityCounts activities() const noexcept = 0;
   /// Returns how often a lost wire was replaced.
@@ -26,6 +28,7 @@ class EventCounters {
 class DeviceCounters final : public EventCounters {
  public:
   explicit DeviceCounters(const driver::Device& device) noexcept : device_(device) {}
+  std::uint64_t changes() const noexcept override;
   ActivityCounts activities() const noexcept override;
   std::uint64_t wires_taken() const noexcept override;
 
@@ -55,6 +58,8 @@ class EventWatch final : public TickObserver {
   std::uint64_t lost() const noexcept { return lost_.load(std::memory_order_relaxed); }
 
  private:
+  static constexpr std::int64_t kNever_ns = INT64_MAX;
+
   /// An activity that has not ended.
   struct Episode {
     std::int64_t began_ns = 0;
@@ -62,7 +67,10 @@ class EventWatch final : public TickObserver {
     std::uint64_t count = 0;  // 0: it does not go on
   };
 
+  bool quiet(const driver::TickRecord& record) const noexcept;
   void push(const TickEvent& event) noexcept;
+  void look(const driver::TickRecord& record) noexcept;
+  void wait_for(const Episode& episode) noexcept;
   void watch_stage(const driver::TickRecord& record) noexcept;
   void watch_activities(const driver::TickRecord& record) noexcept;
   void end(Activity activity, Episode& episode) noexcept;
@@ -70,9 +78,11 @@ class EventWatch final : public TickObserver {
   const EventCounters& counters_;
   std::int64_t period_ns_;
   SpscRing<TickEvent>& ring_;
+  std::uint64_t changes_;
   ActivityCounts counts_;
   std::uint64_t wires_taken_;
   std::array<Episode, kActivities> episodes_{};
+  std::int64_t earliest_end_ns_ = kNever_ns;  // until then no activity that goes on can have ended
   std::uint64_t tick_ = 0;
   std::int64_t time_ns_ = 0, due_ns_ = 0;
   bool begun_ = false;  // a tick has been taken

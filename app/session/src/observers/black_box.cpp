@@ -14,7 +14,8 @@ void BlackBox::take(const driver::TickRecord& tick) noexcept {
   const bool begins = faulty && !faulty_;
   faulty_ = faulty;
   if (full_.load(std::memory_order_acquire)) return;
-  ticks_[taken_ % ticks_.size()] = tick;
+  ticks_[next_] = tick;
+  if (++next_ == ticks_.size()) next_ = 0;
   ++taken_;
   if (begins && !fault_came_) {
     fault_came_ = true;
@@ -31,6 +32,7 @@ std::vector<driver::TickRecord> BlackBox::release() {
   kept.reserve(count);
   for (std::uint64_t i = taken_ - count; i < taken_; ++i) kept.push_back(ticks_[i % ticks_.size()]);
   taken_ = 0;
+  next_ = 0;
   fault_came_ = false;
   full_.store(false, std::memory_order_release);
   return kept;

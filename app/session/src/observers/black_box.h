@@ -35,6 +35,7 @@ class BlackBox final : public TickObserver {
   std::vector<driver::TickRecord> ticks_;
   std::size_t after_;  // ticks that are still taken once a fault has come
   std::uint64_t taken_ = 0;
+  std::size_t next_ = 0;  // where the next tick goes
   std::size_t left_ = 0;
   bool faulty_ = false;  // the last tick's stage
   bool fault_came_ = false;

@@ -21,33 +21,35 @@ void RunStatistics::take(const driver::TickRecord& record) noexcept {
     if (fault_ticks_++ == 0) first_fault_ = record.fault;
   }
   const double force_squared = dot(record.f_sent_W, record.f_sent_W);
-  force_max_ = std::max(force_max_, std::sqrt(force_squared));
+  force_squared_max_ = std::max(force_squared_max_, force_squared);
   if (record.in_contact) {
     ++contact_ticks_;
     force_squared_ += force_squared;
     depth_max_ = std::max(depth_max_, record.depth);
     hops_max_ = std::max(hops_max_, record.hops);
   }
-  const bool was_in_contact = ticks_ > 0 && last_.in_contact;
-  if (record.in_contact && !was_in_contact) {
+  if (record.in_contact && !was_in_contact_) {
     if (contacts_ > 0 && record.time_ns - contact_end_ns_ < kInterruption_ns) ++interruptions_;
     ++contacts_;
   }
-  if (was_in_contact && !record.in_contact) contact_end_ns_ = record.time_ns;
+  if (was_in_contact_ && !record.in_contact) contact_end_ns_ = record.time_ns;
   if (ticks_ == 0) {
     first_ns_ = record.time_ns;
   } else {
-    period_.add(record.time_ns - last_.time_ns);
-    if (last_.in_contact) contact_ns_ += record.time_ns - last_.time_ns;
-    energy_ += dot(last_.f_sent_W, record.p_WT) - dot(last_.f_sent_W, last_.p_WT);
+    period_.add(record.time_ns - last_ns_);
+    if (was_in_contact_) contact_ns_ += record.time_ns - last_ns_;
+    energy_ += dot(f_last_W_, record.p_WT) - dot(f_last_W_, p_last_WT_);
     energy_max_ = std::max(energy_max_, energy_);
   }
-  last_ = record;
+  f_last_W_ = record.f_sent_W;
+  p_last_WT_ = record.p_WT;
+  last_ns_ = record.time_ns;
+  was_in_contact_ = record.in_contact;
   ++ticks_;
 }
 
 double RunStatistics::duration() const noexcept {
-  return ticks_ > 0 ? 1e-9 * static_cast<double>(last_.time_ns - first_ns_) : 0;
+  return ticks_ > 0 ? 1e-9 * static_cast<double>(last_ns_ - first_ns_) : 0;
 }
 
 double RunStatistics::rate() const noexcept {

@@ -59,8 +59,9 @@ class HeatGuard {
   HeatSettings settings_;
   std::array<MotorDrive, 3> drives_;
   bool named_;
-  std::array<double, 3> current_max_{};  // of the arm, A
-  std::array<double, 3> slope_{};        // of the squared largest current over the heat
+  std::array<double, 3> current_max_{};     // of the arm, A
+  std::array<double, 3> slope_{};           // of the squared largest current over the heat
+  std::array<double, 3> cool_{-1, -1, -1};  // heat up to which the arm's own current is allowed
   std::array<double, 3> heat_{};
   std::array<double, 3> load_{};  // (I / I_continuous)^2 of what was sent last
   std::array<double, 3> gain_{};  // 1 - exp(-dt / tau)

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cmath>
 #include <cstdint>
 
 #include "thimble/driver/tick_record.h"
@@ -44,7 +46,7 @@ class RunStatistics final : public TickObserver {
   double contact_time() const noexcept { return 1e-9 * static_cast<double>(contact_ns_); }
 
   /// Returns the largest force sent, N.
-  double force_max() const noexcept { return force_max_; }
+  double force_max() const noexcept { return std::sqrt(force_squared_max_); }
   /// Returns its root mean square over the ticks in contact, N.
   double force_rms() const noexcept;
 
@@ -71,7 +73,10 @@ class RunStatistics final : public TickObserver {
 
  private:
   Histogram period_, work_, lateness_;
-  driver::TickRecord last_;
+  // Of the last tick, what the next one needs.
+  std::array<double, 3> f_last_W_{}, p_last_WT_{};
+  std::int64_t last_ns_ = 0;
+  bool was_in_contact_ = false;
   std::uint64_t ticks_ = 0;
   std::int64_t first_ns_ = 0;
   std::int64_t contact_ns_ = 0;
@@ -79,7 +84,7 @@ class RunStatistics final : public TickObserver {
   std::uint64_t contacts_ = 0;
   std::uint64_t interruptions_ = 0;
   std::uint64_t contact_ticks_ = 0;
-  double force_max_ = 0;
+  double force_squared_max_ = 0;
   double force_squared_ = 0;
   double depth_max_ = 0;
   double energy_ = 0;

@@ -1,0 +1,66 @@
+#!/usr/bin/env bash
+# Shows that bodies that move or bend and force fields cost a scene without them nothing: of all that they are made
+# of nothing is called in a tick, and a tick calls the object's own law and the observers of every run, no more.
+#   absent_bodies_and_fields_cost_nothing.sh SCENE_TICKS SOURCE_DIR
+set -euo pipefail
+program=$1 source=$2
+command -v valgrind >/dev/null || {
+  echo "NOTE: valgrind is not installed; nothing was counted (Debian: valgrind)."
+  exit 0
+}
+. "$(dirname "$0")/tick_calls.sh"
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+bad=0
+
+# Every class that lives there, whoever adds one.
+classes() {
+  grep -rhoE '^(class|struct) [A-Z][A-Za-z]+' "$@" | awk '{ print $2 }' | sort -u | paste -sd'|'
+}
+bodies="(render::($(classes "$source/render/src/body"))|session::(DentRecord|PoseRecord))\\b"
+fields="render::($(classes "$source/render/src/field" "$source/render/include/thimble/render/field"))\\b"
+
+# used PATTERN TAG: the functions of these classes that ticks call.
+used() {
+  cut -f2 "$folder/$2.calls" | grep -E "$1" | sort -u || true
+}
+
+tick_calls "$program" "$source/tests/data/scenes/plain_ball.yaml" "$folder" plain
+read -r instructions contact <"$folder/plain.ticks"
+echo "a plain ball: $instructions instructions per tick, in contact in $contact of them"
+for what in bodies fields; do
+  found=$(used "${!what}" plain)
+  if [ -n "$found" ]; then
+    echo "  a scene without $what calls in its ticks:"
+    echo "$found" | sed 's/^/    /'
+    bad=1
+  fi
+done
+
+# A call of somebody's else would be one of these two's.
+expect() {
+  local caller=$1 expected=$2 found
+  found=$(callees "$folder/plain.calls" "$caller" | sed -E 's/.*::([A-Za-z]+::)/\1/' | paste -sd' ')
+  if [ "$found" != "$expected" ]; then
+    echo "  a tick calls from $caller: $found"
+    echo "  and should call: $expected"
+    bad=1
+  fi
+}
+expect 'ForceLaw<thimble::render::SceneTouch>(thimble::render::SceneTouch&)::{lambda' 'ObjectTouchOf::update'
+expect 'TickSink<thimble::session::RunLoop>(thimble::session::RunLoop&)::{lambda' \
+  'BlackBox::take LatestTick::take RecordingSwitch::take RunStatistics::take Trace::take'
+
+# What this looks for is there where a scene names it.
+tick_calls "$program" "$source/app/scenes/clay.yaml" "$folder" clay
+tick_calls "$program" "$source/app/scenes/honey.yaml" "$folder" honey
+for pair in bodies:clay fields:honey; do
+  what=${pair%:*}
+  count=$(used "${!what}" "${pair#*:}" | wc -l)
+  echo "${pair#*:}: ticks call $count functions of $what"
+  if [ "$count" -eq 0 ]; then
+    echo "  none: this test could not fail"
+    bad=1
+  fi
+done
+exit $bad

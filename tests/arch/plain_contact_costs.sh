@@ -1,0 +1,51 @@
+#!/usr/bin/env bash
+# Counts the instructions of a tick in plain contact, a mesh without any effect, and where they go; fails if they
+# are more than the bounds below. They are the same in every run of the same program.
+#   plain_contact_costs.sh SCENE_TICKS SOURCE_DIR COMPILER MESHES
+# The bounds are what GCC 12 gave for x86-64 with FMA and glibc 2.36, and 3 % more; of another compiler figures are
+# only printed. The elephant needs its scanned mesh.
+set -euo pipefail
+program=$1 source=$2 compiler=$3 meshes=$4
+command -v valgrind >/dev/null || {
+  echo "NOTE: valgrind is not installed; nothing was counted (Debian: valgrind)."
+  exit 0
+}
+. "$(dirname "$0")/tick_calls.sh"
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+bad=0
+
+# bound WHAT COUNT MOST
+bound() {
+  local said=""
+  if [ "$2" -gt "$3" ]; then
+    said=" TOO MANY"
+    if [[ "$compiler" == "GNU 12."* ]] && grep -qw fma /proc/cpuinfo; then bad=1; fi
+  fi
+  printf '  %-34s %6d, at most %6d%s\n' "$1" "$2" "$3" "$said"
+}
+
+# count SCENE WHOLE LAW: with the most that the whole tick and its force law may take.
+count() {
+  local tag contact whole
+  tag=$(basename "$1" .yaml)
+  tick_calls "$program" "$1" "$folder" "$tag"
+  read -r whole contact <"$folder/$tag.ticks"
+  echo "$tag: instructions per tick"
+  bound "whole tick" "$whole" "$2"
+  bound "force law" "$(instructions_of "$folder/$tag.calls" 'SceneTouch&)::{lambda')" "$3"
+  bound "observers of the run" "$(instructions_of "$folder/$tag.calls" 'RunLoop&)::{lambda')" 560
+  bound "simulated arm, reading" "$(instructions_of "$folder/$tag.calls" 'SimTransport::read_latest')" 3100
+  if awk -v share="$contact" 'BEGIN { exit share > 0.95 }'; then
+    echo "  in contact in $contact of the ticks only: this counts something else"
+    bad=1
+  fi
+}
+
+count "$source/tests/data/scenes/plain_ball.yaml" 5500 700
+if [ -f "$meshes/elephant.off" ]; then
+  count "$source/tests/data/scenes/stroke.yaml" 5900 1000
+else
+  echo "NOTE: no elephant.off in $meshes; its ticks were not counted."
+fi
+exit $bad

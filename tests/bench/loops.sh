@@ -1,0 +1,54 @@
+#!/usr/bin/env bash
+# Measures how long each loop of a contributor takes on this machine (the table in CONTRIBUTING.md); no pass criterion.
+#   tests/bench/loops.sh edit      one changed source of render, driver and app: rebuilt in preset dev, its tests run
+#   tests/bench/loops.sh build     what app/demo.sh builds, then everything, from an empty folder
+# Prints seconds by the clock, processor seconds and, of builds, the sum of their steps. No compiler cache is used.
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+export CCACHE_DISABLE=1
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+
+# measure WHAT COMMAND...: runs it and prints what it took.
+measure() {
+  local what=$1
+  shift
+  /usr/bin/time -o "$folder/time" -f '%e s, processor %U + %S s' "$@" >"$folder/log" 2>&1 || {
+    tail -n 30 "$folder/log" >&2
+    echo "'$*' failed." >&2
+    exit 1
+  }
+  echo "$what: $(cat "$folder/time")"
+}
+# step_seconds BUILD_DIR: the sum of all steps of a build.
+step_seconds() {
+  awk -F'\t' '/^[0-9]/ && !seen[$1 "-" $2 "-" $5]++ { sum += $2 - $1 } END { printf "%.0f", sum / 1000 }' "$1/.ninja_log"
+}
+
+case ${1:-} in
+  edit)
+    app/setup.sh dev >/dev/null
+    while read -r source label; do
+      touch "$source"
+      measure "$source, rebuilt" cmake --build --preset dev --target "tests_$label"
+      measure "$source, tests of $label" ctest --preset dev -L "^$label\$"
+    done <<'END'
+render/src/track/surface_tracker.cpp render
+driver/src/device.cpp driver
+app/scene/src/scene_file.cpp app
+END
+    ;;
+  build)
+    app/fetch_meshes.sh >/dev/null
+    meshes=$PWD/build/meshes
+    measure configure cmake --preset release -B "$folder/build" -DTHIMBLE_MESHES="$meshes"
+    measure "what app/demo.sh builds" cmake --build "$folder/build" --target thimble_demo
+    echo "  steps: $(step_seconds "$folder/build") s"
+    measure "the rest" cmake --build "$folder/build"
+    echo "  steps of all: $(step_seconds "$folder/build") s"
+    ;;
+  *)
+    sed -n '2,5s/^# \{0,1\}//p' "$0"
+    exit 2
+    ;;
+esac
