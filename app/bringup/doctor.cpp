@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "bringup/board_advice.h"
+#include "bringup/doctor_links.h"
 #include "bringup/doctor_timing.h"
 #include "node_lock.h"
 #include "thimble/driver/discovery.h"
@@ -69,14 +70,23 @@ class Examination {
            "Plug it in and switch it on; `lsusb` shows whether the computer sees it at all.");
     }
     for (const FoundArm& arm : *arms) look_at(arm);
+    for (Finding& found : examine_services(*arms)) findings_.push_back(std::move(found));
   }
 
   void look_at(const FoundArm& arm) {
     const std::string name = arm.arm + " " + arm.name() + ": ";
     if (arm.certainty == driver::Certainty::kUnsupported) {
       note(Health::kAdvice, name + "plugged in, but its protocol is not public.",
-           "Use its vendor's own library; Thimble cannot drive it.");
+           mend_for_closed(arm));
       return;
+    }
+    if (arm.board == BoardKind::kHaplyService) {
+      findings_.push_back(examine_linked(arm));
+      return;
+    }
+    if (arm.board == BoardKind::kDhdLibrary || arm.board == BoardKind::kHdLibrary) {
+      note(Health::kGood,
+           name + "its vendor's library is here (" + arm.software + "). Untried on hardware.");
     }
     look_at_driver(arm, name);
     if (arm.certainty == driver::Certainty::kUnknown) {
@@ -115,6 +125,10 @@ class Examination {
                "sudo modprobe cdc_acm, then plug it in again");
         }
         return;
+      case BoardKind::kHaplyService:
+      case BoardKind::kDhdLibrary:
+      case BoardKind::kHdLibrary:
+        return;  // no driver of the kernel's is in the way
       case BoardKind::kFalconFtdi:
         look_at_falcon(arm, bound, name);
         return;

@@ -1,19 +1,23 @@
 #include <CLI/CLI.hpp>
 #include <array>
+#include <chrono>
 #include <cstdio>
 #include <memory>
 #include <string>
+#include <thread>
 
 #include "arm_table.h"
 #include "bringup/bench_arm.h"
+#include "calibration.h"
 #include "cli/arm_choice.h"
 #include "cli/commands.h"
 #include "cli/complain.h"
 #include "enter_key.h"
 #include "interrupt.h"
+#include "links/dhd/dhd_link.h"
+#include "links/hd/hd_link.h"
 #include "log/logger.h"
 #include "thimble/scene/arm_simulation.h"
-#include "calibration.h"
 #include "thimble/scene/real_arm.h"
 
 namespace thimble::app {
@@ -38,9 +42,68 @@ Eigen::Vector3d home_of(const scene::ArmFile& file) {
   return file.p_WB + file.R_WB * driver::make_arm(file.protocol, file.model)->pose({}).p_BT;
 }
 
+/// Waits for the user's word; kExitDone once it is there.
+int wait_for_word() {
+  std::fflush(stdout);
+  const std::atomic<bool>& stop = scene::catch_interrupts();
+  session::EnterKey key = session::EnterKey::kNothing;
+  while ((key = session::look_for_enter()) == session::EnterKey::kNothing) {
+    if (stop.load()) return kExitInterrupted;
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  if (key == session::EnterKey::kPressed) return kExitDone;
+  return complain({"Nobody is at the terminal, so nothing was done."}, kExitBadInput);
+}
+
+/// Tells how the library's calibration went.
+int tell_calibrated(const driver::Result<void>& done, const std::string& name) {
+  if (!done) return complain(done.error(), kExitFault);
+  std::printf("Done. Check it: thimble feel-check --device %s\n", name.c_str());
+  return kExitDone;
+}
+
+/// Calibrates a Touch as its library asks, once the user has done his part.
+int let_library_calibrate(const std::string& name) {
+  const auto library = driver::hd::library();
+  if (!library) return complain(library.error(), kExitNoDevice);
+  const auto how = driver::hd::how_to_calibrate(*library);
+  if (!how) return complain(how.error(), kExitNoDevice);
+  std::printf("%s Press Enter.\n", how->c_str());
+  if (const int word = wait_for_word(); word != kExitDone) return word;
+  return tell_calibrated(driver::hd::calibrate(*library), name);
+}
+
+/// Lets an arm of Force Dimension's find its zero by itself, once the user has said that it may
+/// move.
+int let_find_zero(const std::string& name) {
+  const auto library = driver::dhd::library();
+  if (!library) return complain(library.error(), kExitNoDevice);
+  std::printf(
+      "The arm will MOVE BY ITSELF until it has found its zero. Clear its workspace, let it go, "
+      "and "
+      "press Enter.\n");
+  if (const int word = wait_for_word(); word != kExitDone) return word;
+  return tell_calibrated(driver::dhd::find_zero(*library), name);
+}
+
 int calibrate(const ArmChoice& choice, bool dry_run) {
   auto chosen = resolve(choice, true);
   if (!chosen) return complain(chosen.error(), kExitNoDevice);
+  if (chosen->real_arm && chosen->real_arm->kind == driver::ArmKind::kDhd && !dry_run) {
+    return let_find_zero(chosen->name);
+  }
+  if (chosen->real_arm && chosen->real_arm->kind == driver::ArmKind::kHd && !dry_run) {
+    return let_library_calibrate(chosen->name);
+  }
+  const driver::ArmRow* row = driver::row_of(chosen->file.protocol);
+  if (row != nullptr && row->has_own_link()) {
+    return complain(
+        {"The arm " + chosen->name + " (" + chosen->file.name +
+         ") is calibrated by its vendor's own software, and Thimble takes its positions "
+         "as they come. Calibrate it there, then check it: thimble feel-check --device " +
+         chosen->name},
+        kExitBadInput);
+  }
   const SimulatedNote simulated(*chosen, "calibration");
   for (const std::string& sentence : chosen->told) std::printf("%s\n", sentence.c_str());
   const auto way =

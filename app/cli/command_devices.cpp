@@ -13,6 +13,7 @@ namespace {
 
 std::string state_of(const driver::FoundArm& arm, const std::string& root) {
   if (arm.certainty == driver::Certainty::kUnsupported) return "its protocol is not public";
+  if (!arm.trouble.empty()) return "not to be used now: thimble doctor";
   if (arm.node.empty()) return "no driver has it: thimble doctor";
   if (arm.certainty == driver::Certainty::kUnknown) return "board of unknown kind: thimble doctor";
   if (!arm.accessible) return "no access: thimble doctor";

@@ -243,8 +243,9 @@ py::list devices() {
     one["bus"] = arm.bus;
     one["where"] = arm.address;
     one["node"] = arm.node;
-    one["ready"] = arm.accessible && (arm.certainty == driver::Certainty::kKnown ||
-                                      arm.certainty == driver::Certainty::kProvesItself);
+    one["ready"] = arm.accessible && arm.trouble.empty() &&
+                   (arm.certainty == driver::Certainty::kKnown ||
+                    arm.certainty == driver::Certainty::kProvesItself);
     list.append(one);
   }
   return list;

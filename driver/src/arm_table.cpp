@@ -1,6 +1,8 @@
 #include "arm_table.h"
 
 #include <algorithm>
+#include <numbers>
+#include <type_traits>
 
 #include "arms/falcon/falcon_arm.h"
 #include "arms/hfab/hfab_models.h"
@@ -15,10 +17,26 @@ template <class Wire>
 std::unique_ptr<const Arm> make(const ArmModel& model) {
   return std::visit(
       [&]<class Geometry>(const Geometry& geometry) -> std::unique_ptr<const Arm> {
-        return std::make_unique<WireArm<Wire, Geometry>>(
-            JointModel<Geometry>{geometry, model.drives, model.encoders, model.gimbal});
+        if constexpr (std::is_same_v<Geometry, ToldArm>) {
+          return nullptr;  // no wire carries it
+        } else {
+          return std::make_unique<WireArm<Wire, Geometry>>(
+              JointModel<Geometry>{geometry, model.drives, model.encoders, model.gimbal});
+        }
       },
       model.geometry);
+}
+
+/// Returns the model of an arm that tells where its tip is: a motor of a newton per ampere and an
+/// encoder along each axis of the base. Their steps stand for what such an arm can resolve, which
+/// nobody tells: 0.02 mm, as the arms do whose steps are known [DEVICES 2].
+ArmModel told_model() noexcept {
+  ArmModel model;
+  model.geometry = ToldArm{};
+  model.drives.fill({.sign = 1, .ratio = 1, .torque_constant = 1, .current_max = 1});
+  model.encoders.fill(
+      {.sign = 1, .counts_per_motor_turn = 2 * std::numbers::pi / 2e-5, .home_counts = 0});
+  return model;
 }
 
 // One line per language. The text lines carry all that the 14-byte reports do.
@@ -51,6 +69,9 @@ constexpr std::array kArms{
            true,
            "",
            &make<hfab::LineWire>},
+    ArmRow{ArmKind::kHaply, "haply_service", {BoardKind::kHaplyService}, 1, false, "inverse3"},
+    ArmRow{ArmKind::kDhd, "dhd_library", {BoardKind::kDhdLibrary}, 1, false, ""},
+    ArmRow{ArmKind::kHd, "hd_library", {BoardKind::kHdLibrary}, 1, false, ""},
 };
 
 // One line per build.
@@ -58,6 +79,7 @@ constexpr std::array<ShapeRow, std::variant_size_v<ArmGeometry>> kShapes{{
     {"serial", nullptr},
     {"polhem", []() noexcept { return arm_model(hfab::polhem_model()); }},
     {"falcon", []() noexcept { return arm_model(falcon::falcon_model()); }},
+    {"told", told_model},
 }};
 
 }  // namespace
@@ -92,7 +114,7 @@ ArmKind kind_of(BoardKind board) noexcept {
 
 std::unique_ptr<const Arm> make_arm(ArmKind kind, const ArmModel& model) {
   const ArmRow* row = row_of(kind);
-  return row == nullptr ? nullptr : row->make(model);
+  return row == nullptr || row->has_own_link() ? nullptr : row->make(model);
 }
 
 std::unique_ptr<const Arm> make_ideal_arm(const ArmModel& model) {

@@ -25,8 +25,13 @@ struct ArmRow {
   bool carries_gimbal = false;           ///< Its reports have room for the encoders of a gimbal.
   /// The installed arm file that it means by itself; empty if several arms speak it.
   std::string_view own_file;
-  /// Makes the arm of a model that speaks it.
+  /// Makes the arm of a model that speaks it; null where the arm is behind a service or a library
+  /// of its vendor, which is a link of its own.
   std::unique_ptr<const Arm> (*make)(const ArmModel& model) = nullptr;
+
+  /// Returns whether its arms tell where their tip is and take forces, so that there is neither a
+  /// wire nor a geometry of ours.
+  constexpr bool has_own_link() const noexcept { return make == nullptr; }
 };
 
 /// A build of arms: one row.
@@ -48,8 +53,8 @@ std::span<const ShapeRow, std::variant_size_v<ArmGeometry>> arm_shapes() noexcep
 /// Returns what a board speaks. Real-time: never from the servo thread.
 ArmKind kind_of(BoardKind board) noexcept;
 
-/// Makes the arm of a model that speaks a language. Precondition: not kUnsupported. Real-time:
-/// never from the servo thread.
+/// Makes the arm of a model that speaks a language; null if its link is its own
+/// (ArmRow::has_own_link). Precondition: not kUnsupported. Real-time: never from the servo thread.
 std::unique_ptr<const Arm> make_arm(ArmKind kind, const ArmModel& model);
 
 /// Makes the arm of a model with ideal encoders, as a simulated board has them

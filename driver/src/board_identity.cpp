@@ -81,9 +81,11 @@ struct OwnId {
 };
 constexpr OwnId kOwnIds[] = {
     {0x0403, 0xcb48, {BoardKind::kFalconFtdi, Certainty::kKnown, "Novint Falcon", "USB FTDI"}},
-    {0x2988, 0x0302, {BoardKind::kOther, Certainty::kUnsupported, "Touch", kSerialBus}},
-    {0x2988, 0x0304, {BoardKind::kOther, Certainty::kUnsupported, "Touch X", kHidBus}},
-    {0x1451, 0x0402, {BoardKind::kOther, Certainty::kUnsupported, "Force Dimension", "USB"}},
+    {kTouchMaker, 0x0302, {BoardKind::kOther, Certainty::kUnsupported, "Touch", kSerialBus}},
+    {kTouchMaker, 0x0304, {BoardKind::kOther, Certainty::kUnsupported, "Touch X", kHidBus}},
+    {kForceDimension,
+     0x0402,
+     {BoardKind::kOther, Certainty::kUnsupported, "Force Dimension", "USB"}},
 };
 
 }  // namespace

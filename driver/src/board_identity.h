@@ -11,6 +11,10 @@ namespace thimble::driver {
 // How a board is reached, as FoundArm::bus tells it.
 inline constexpr const char* kHidBus = "USB HID";
 inline constexpr const char* kSerialBus = "USB serial";
+/// USB vendors of Force Dimension and of the maker of the Touch [S].
+inline constexpr std::uint16_t kForceDimension = 0x1451, kTouchMaker = 0x2988;
+
+inline constexpr const char* kServiceBus = "service";
 
 /// What the kernel tells of a USB device without opening it.
 struct UsbFacts {

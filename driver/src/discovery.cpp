@@ -13,6 +13,7 @@
 #include "arm_table.h"
 #include "board_identity.h"
 #include "hid_descriptor.h"
+#include "links/linked_arms.h"
 
 namespace thimble::driver {
 namespace {
@@ -120,12 +121,14 @@ std::string FoundArm::name() const {
 
 Result<std::vector<FoundArm>> find_arms(const fs::path& root) {
   const fs::path devices = root / "sys/bus/usb/devices";
+  std::vector<FoundArm> found;
+  if (root == "/") found = find_linked_arms();
   std::error_code missing;
   if (!fs::is_directory(devices, missing)) {
+    if (!found.empty()) return found;
     return Error{"USB devices cannot be listed: " + devices.string() +
                  " is not there. Check that the kernel has USB and that sysfs is mounted."};
   }
-  std::vector<FoundArm> found;
   for (const fs::path& device : entries(devices)) {
     const auto vendor_id = number_in<std::uint16_t>(device / "idVendor", 16);
     const auto product_id = number_in<std::uint16_t>(device / "idProduct", 16);
@@ -162,6 +165,7 @@ Result<std::vector<FoundArm>> find_arms(const fs::path& root) {
     arm.accessible = !arm.node.empty() && access(node.c_str(), R_OK | W_OK) == 0;
     found.push_back(std::move(arm));
   }
+  link_boards(found);
   for (FoundArm& arm : found) {
     const auto same = [&arm](const FoundArm& other) { return other.serial == arm.serial; };
     arm.serial_is_shared = std::count_if(found.begin(), found.end(), same) > 1;

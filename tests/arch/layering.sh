@@ -20,12 +20,12 @@ forbid() {
 graphics='GL/|GLFW|imgui|EGL/|epoxy/'
 forbid driver "thimble/(device_sim|render|app)/|$graphics|spdlog/|yaml-cpp/|CLI/" \
   "other modules, graphics, logging or files"
-forbid driver/include 'libusb|hidapi|termios' "a bus library in a public header"
+forbid driver/include 'libusb|hidapi|termios|boost/|nlohmann/|dlfcn' "a library in a public header"
 forbid device_sim "thimble/(render|app)/|$graphics|spdlog/|yaml-cpp/|CLI/" \
   "render, app, graphics, logging or files"
 forbid device_sim 'thimble/driver/(device|safety_gate|servo_loop|velocity_estimator|real_time)\.h' \
   "the host's side of the driver: it meets it at the wire only"
-forbid device_sim '(rise_limit|stream_transport|node_lock|ftdi_line)\.h"' \
+forbid device_sim '(rise_limit|stream_transport|node_lock|ftdi_line)\.h"|links/' \
   "the host's side of the driver: it meets it at the wire only"
 for module in driver device_sim; do
   forbid $module/include '[a-z_]*\.h"|(arms|usb)/' "a header beside the sources: it is not installed"

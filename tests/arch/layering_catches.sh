@@ -21,10 +21,12 @@ bash "$here/layering.sh" "$1"
   tar -c -C "$1" -T - | tar -x -C "$copy"
 plant "$1" driver/include/thimble/driver/fault.h '<spdlog/spdlog.h>'
 plant "$1" driver/include/thimble/driver/fault.h '<libusb-1.0/libusb.h>'
+plant "$1" driver/include/thimble/driver/fault.h '<boost/beast.hpp>'
 plant "$1" driver/src/fault.cpp '"thimble/render/touch.h"'
 plant "$1" device_sim/include/thimble/device_sim/settings.h '"thimble/render/touch.h"'
 plant "$1" device_sim/include/thimble/device_sim/settings.h '"thimble/driver/device.h"'
 plant "$1" device_sim/src/hand.cpp '"stream_transport.h"'
+plant "$1" device_sim/src/hand.cpp '"links/force_box.h"'
 plant "$1" render/include/thimble/render/touch.h '"thimble/driver/transport.h"'
 plant "$1" render/include/thimble/render/touch.h '"thimble/driver/arms/hfab/hfab_arm.h"'
 plant "$1" render/include/thimble/render/touch.h '"thimble/device_sim/settings.h"'

@@ -44,7 +44,14 @@ expect 0 'No arm that Thimble knows is plugged in' "$thimble" doctor --root root
 expect 3 "No arm is called 'WH02'" \
   "$thimble" run "$source_dir/tests/data/scenes/stroke.yaml" --device WH02
 # Every arm file runs on its own simulated arm; the Falcon takes the firmware that it is given, or any.
+# One behind its vendor's software is not simulated, and says so.
 for arm in "$source_dir"/app/arms/*.yaml; do
+  if grep -qE '^protocol: (haply_service|dhd_library|hd_library)' "$arm"; then
+    expect 2 'cannot be simulated' "$thimble" run "$source_dir/tests/data/scenes/two_boxes.yaml" --arm "$arm"
+    expect 3 'cannot be simulated' "$thimble" feel-check --arm "$arm"
+    expect 2 "calibrated by its vendor's own software" "$thimble" calibrate --dry-run --arm "$arm"
+    continue
+  fi
   expect 0 'touched it [1-9]' "$thimble" run "$source_dir/tests/data/scenes/two_boxes.yaml" --arm "$arm"
   expect 0 '^ok +force z' "$thimble" feel-check --arm "$arm"
   expect 0 '^motor_sign' "$thimble" calibrate --dry-run --arm "$arm"

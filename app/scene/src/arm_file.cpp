@@ -264,6 +264,15 @@ std::vector<driver::BoardKind> read_boards(YamlMap& root, const driver::ArmRow& 
   return boards;
 }
 
+/// Returns the build of the arms that tell where their tip is.
+const driver::ShapeRow& told_shape() {
+  const auto shapes = driver::arm_shapes();
+  return *std::find_if(shapes.begin(), shapes.end(), [](const driver::ShapeRow& row) {
+    return row.built_in != nullptr &&
+           std::holds_alternative<driver::ToldArm>(row.built_in().geometry);
+  });
+}
+
 /// Reads what the arm speaks and how it is built, by the names of the table of arms.
 void read_kind(YamlMap& root, ArmFile& arm) {
   std::vector<std::string_view> protocols, shapes;
@@ -272,6 +281,11 @@ void read_kind(YamlMap& root, ArmFile& arm) {
   const driver::ArmRow& row = driver::arm_table()[root.require_choice("protocol", protocols)];
   arm.protocol = row.kind;
   arm.boards = read_boards(root, row);
+  if (row.has_own_link()) {
+    // Its vendor's software knows its joints and motors; a file that names them is told so.
+    arm.model = told_shape().built_in();
+    return;
+  }
   const driver::ShapeRow& shape = driver::arm_shapes()[root.optional_choice("shape", 0, shapes)];
   arm.board_model = static_cast<int>(root.optional_number("board_model", 0, "", 0, 1000));
   if (shape.built_in != nullptr) {
@@ -287,6 +301,9 @@ void read_kind(YamlMap& root, ArmFile& arm) {
   }
   if ((row.kind == driver::ArmKind::kFalcon) != arm.is<driver::DeltaArm>()) {
     root.reject("protocol", "expected falcon_packet with the shape falcon, and only with it");
+  }
+  if (arm.is<driver::ToldArm>()) {
+    root.reject("shape", "the shape told is that of arms behind a vendor's service or library");
   }
   if (!root.has("gimbal")) return;
   if (!row.carries_gimbal) {
@@ -316,6 +333,9 @@ driver::Result<ArmFile> load_arm(const std::filesystem::path& meant) {
   arm.declared = read_declared(root.require_map("declared"));
   arm.limits = read_gate(root.require_map("gate"), arm);
   arm.velocity_corner_frequency = root.require_number("velocity_corner_frequency", "Hz", 0, 1e5);
+  if (arm.is<driver::ToldArm>() && root.has("simulation")) {
+    root.reject("simulation", "an arm behind a vendor's service or library cannot be simulated");
+  }
   if (arm.is<driver::SerialArm>() || root.has("simulation")) {
     arm.simulated = read_simulation(root.require_map("simulation"), arm);
     arm.can_simulate = true;

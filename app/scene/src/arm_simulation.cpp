@@ -59,6 +59,12 @@ driver::Result<void> check_reach(const ArmFile& file, const HandRoute& hand_W) {
 driver::Result<std::unique_ptr<ArmSimulation>> ArmSimulation::make(
     const ArmFile& file, const HandRoute& hand_W, const std::filesystem::path& firmware,
     std::uint64_t seed) {
+  if (file.is<driver::ToldArm>()) {
+    return driver::Error{"The arm " + file.name +
+                         " is driven by its vendor's software, so it cannot be simulated. Start "
+                         "that and name the arm by --device (thimble devices), or name another "
+                         "arm by --arm."};
+  }
   if (!file.can_simulate) {
     return driver::Error{"The arm file " + file.name +
                          " has no section 'simulation', so the arm cannot be simulated. Add one "

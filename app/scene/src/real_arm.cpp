@@ -14,6 +14,9 @@
 #include "arms/woody/woody_report.h"
 #include "ftdi_line.h"
 #include "interrupt.h"
+#include "links/dhd/dhd_link.h"
+#include "links/haply/haply_link.h"
+#include "links/hd/hd_link.h"
 #include "log/logger.h"
 #include "thimble/driver/transports.h"
 #include "thimble/driver/wire_link.h"
@@ -122,6 +125,9 @@ Result<std::unique_ptr<driver::Transport>> open_wire(const FoundArm& arm, const 
     }
     case BoardKind::kFalconFtdi:
       return open_falcon(arm, firmware, clock);
+    case BoardKind::kHaplyService:
+    case BoardKind::kDhdLibrary:
+    case BoardKind::kHdLibrary:
     case BoardKind::kOther:
       break;
   }
@@ -209,6 +215,19 @@ Result<std::unique_ptr<driver::ArmLink>> open_link(const FoundArm& arm, const Ar
                                                    const std::filesystem::path& firmware,
                                                    driver::Clock& clock) {
   if (auto fits = check_fits(file, arm); !fits) return fits.error();
+  if (arm.board == BoardKind::kHaplyService) {
+    return driver::haply::open_link(arm.serial, driver::haply::port_of_user(), clock);
+  }
+  if (arm.board == BoardKind::kDhdLibrary) {
+    const auto library = driver::dhd::library();
+    if (!library) return library.error();
+    return driver::dhd::open_link(*library, clock);
+  }
+  if (arm.board == BoardKind::kHdLibrary) {
+    const auto library = driver::hd::library();
+    if (!library) return library.error();
+    return driver::hd::open_link(*library, clock);
+  }
   auto wire = open_wire(arm, file, firmware, clock);
   if (!wire) return wire.error();
   return std::unique_ptr<driver::ArmLink>(

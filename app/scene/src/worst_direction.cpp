@@ -33,6 +33,7 @@ TipLimits tip_limits(const Eigen::Matrix3d& J_BT, const Eigen::Matrix3d& mass,
 std::optional<Eigen::Matrix3d> jacobian_at(const ArmFile& arm, const Eigen::Vector3d& p_WT) {
   const auto q = joint_angles_at(arm, p_WT);
   if (!q) return {};
+  if (arm.is<driver::ToldArm>()) return Eigen::Matrix3d(Eigen::Matrix3d::Identity());
   const Eigen::Vector3d counts = arm.model.exact_counts(*q);
   driver::ArmReading reading;
   for (std::size_t k = 0; k < 3; ++k) {

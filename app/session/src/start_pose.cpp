@@ -16,8 +16,10 @@ constexpr int kTicksBetweenLooks = 20;          // at the terminal; chosen
 
 StartPose StartPose::of(const scene::ArmFile& file, driver::ArmKind kind) {
   if (kind == driver::ArmKind::kFalcon) return {file.workspace, std::nullopt};
-  return {file.workspace,
-          file.p_WB + file.R_WB * driver::make_arm(kind, file.model)->pose({}).p_BT};
+  const auto arm = driver::make_arm(kind, file.model);
+  // An arm behind its vendor's software is calibrated by that.
+  if (arm == nullptr) return {file.workspace, std::nullopt};
+  return {file.workspace, file.p_WB + file.R_WB * arm->pose({}).p_BT};
 }
 
 std::string StartPose::trouble(const Eigen::Vector3d& p_WT, bool at_home) const {

@@ -34,8 +34,9 @@ class StartPose {
       : workspace_(workspace), p_WHome_(p_WHome) {}
 
   /// Returns the place for an arm of this kind, by its file without a calibration: a calibration
-  /// says how the counters read at the home pose, not where that is. A Falcon has no home pose
-  /// here: it finds its own by its homing. Real-time: never from the servo thread.
+  /// says how the counters read at the home pose, not where that is. A Falcon and an arm behind its
+  /// vendor's software have no home pose here: they find their own. Real-time: never from the servo
+  /// thread.
   static StartPose of(const scene::ArmFile& file, driver::ArmKind kind);
 
   /// Returns whether the arm has a home pose to begin in. Real-time: safe.

@@ -42,6 +42,16 @@ driver::FoundArm found(ArmKind kind, const std::string& serial) {
     case ArmKind::kFalcon:
       arm.board = BoardKind::kFalconFtdi;
       break;
+    case ArmKind::kHaply:
+      arm.board = BoardKind::kHaplyService;
+      arm.certainty = Certainty::kProvesItself;
+      break;
+    case ArmKind::kDhd:
+      arm.board = BoardKind::kDhdLibrary;
+      break;
+    case ArmKind::kHd:
+      arm.board = BoardKind::kHdLibrary;
+      break;
     case ArmKind::kUnsupported:
       arm.certainty = Certainty::kUnsupported;
       break;

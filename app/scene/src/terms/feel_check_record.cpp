@@ -58,6 +58,11 @@ std::string checksum_of(const fs::path& file) {
 std::string checksum_of_data(const ArmFile& file, driver::ArmKind kind) {
   Checksum sum;
   const auto arm = driver::make_arm(kind, file.model);
+  if (arm == nullptr) {  // its vendor's software knows the rest
+    for (const double coordinate : file.p_WB) sum.add(coordinate, 1);
+    for (const double entry : file.R_WB.reshaped()) sum.add(entry, 1);
+    return sum.text();
+  }
   for (int i = 0; i < 8; ++i) {
     driver::ArmReading reading;
     for (std::size_t k = 0; k < 3; ++k) reading.counts[k] = (i >> k) % 2 == 0 ? 0 : 500;
@@ -79,6 +84,7 @@ std::string checksum_of_data(const ArmFile& file, driver::ArmKind kind) {
 
 /// Returns what is known of an arm's firmware; empty if that is not enough to know it again.
 std::string firmware_of(const driver::FoundArm& found, const fs::path& image) {
+  if (!found.software.empty()) return std::string(name(found.board)) + ' ' + found.software;
   if (found.release == 0) return {};  // tells no release
   std::string text = fmt::format("usb {:04x}:{:04x} device {:04x} \"", found.vendor_id,
                                  found.product_id, found.release) +

@@ -5,9 +5,9 @@
 #include <utility>
 
 #include "arm_table.h"
+#include "calibration.h"
 #include "terms/board_model.h"
 #include "terms/limits_policy.h"
-#include "calibration.h"
 #include "thimble/scene/real_arm.h"
 #include "thimble/scene/shipped_files.h"
 #include "user_folders.h"
@@ -40,6 +40,13 @@ std::string fitting_names(const FoundArm& arm) {
 Error say_which(const FoundArm& arm, const std::string& because) {
   return Error{because + " Say which arm it is: thimble calibrate --device " + arm.name() +
                " --arm NAME keeps it for all runs to come, --arm NAME holds for one (" +
+               fitting_names(arm) + ")."};
+}
+
+/// Of an arm behind a library nothing is calibrated here, so that its file is named in each run.
+Error say_by_arm(const FoundArm& arm) {
+  return Error{"The library of " + arm.arm + " " + arm.name() +
+               " drives several arms. Say which one it is in each run: --arm NAME (" +
                fitting_names(arm) + ")."};
 }
 
@@ -78,6 +85,9 @@ Result<Choice> choose_by_arm(const FoundArm& arm, const Calibration* calibration
   const driver::ArmRow* row = driver::row_of(arm.kind);
   if (row != nullptr && !row->own_file.empty()) {
     return installed_named(std::string(row->own_file), "the arm is a " + arm.arm);
+  }
+  if (row != nullptr && row->has_own_link()) {
+    return say_by_arm(arm);
   }
   if (arm.kind != ArmKind::kHfabLine) {
     return say_which(arm, "The arm " + arm.name() + " does not tell its model over USB.");

@@ -56,6 +56,11 @@ std::vector<ArmLine> lines_of(const driver::DeltaArm& arm, const Vector3d& q,
   return lines;
 }
 
+/// Of an arm that only tells its tip nothing else can be drawn.
+std::vector<ArmLine> lines_of(const driver::ToldArm&, const Vector3d&, const Vector3d& p_BT) {
+  return {{p_BT}};
+}
+
 }  // namespace
 
 std::vector<ArmLine> arm_lines(const SharedScene::Arm& arm, const driver::TickRecord& tick) {

@@ -11,9 +11,30 @@
 
 namespace thimble::driver {
 
+/// The geometry of an arm that tells where its tip is, by its vendor's service or library. Joint
+/// vector q = p_BT, m: the axes of the base stand for joints, as in ArmSample. All functions are
+/// Real-time: safe.
+struct ToldArm {
+  /// Returns the tip and the Jacobian, which is the identity.
+  void forward(const Eigen::Vector3d& q, Eigen::Vector3d& p_BT,
+               Eigen::Matrix3d& J_BT) const noexcept {
+    p_BT = q;
+    J_BT.setIdentity();
+  }
+  /// Returns the axes of the base: nothing is known of a last link.
+  Eigen::Matrix3d last_link(const Eigen::Vector3d&, const Eigen::Vector3d&) const noexcept {
+    return Eigen::Matrix3d::Identity();
+  }
+  /// Returns the tip itself; empty if it is not finite.
+  std::optional<Eigen::Vector3d> inverse(const Eigen::Vector3d& p_BT) const noexcept {
+    if (!p_BT.allFinite()) return std::nullopt;
+    return p_BT;
+  }
+};
+
 /// The builds of arms that Thimble knows. A new build is one more type here and one more row of
 /// `kArmShapes` (arm_table.h); the compiler then names every place that has to know it.
-using ArmGeometry = std::variant<SerialArm, LinkageArm, DeltaArm>;
+using ArmGeometry = std::variant<SerialArm, LinkageArm, DeltaArm, ToldArm>;
 
 /// One model of an arm, whatever its build.
 using ArmModel = JointModel<ArmGeometry>;

@@ -41,6 +41,8 @@ struct FoundArm {
   std::uint16_t release = 0;                ///< bcdDevice.
   HidReports hid;                           ///< Its reports, if it is on HID and has a driver.
   bool serial_is_shared = false;            ///< Another one has the same serial number.
+  std::string software;  ///< What a service or library tells of the arm's versions, if it does.
+  std::string trouble;   ///< Why a service cannot use the arm now, a sentence; empty: it can.
 
   /// Returns what the user calls it by, which is also the name of its calibration: the serial
   /// number if only this board has it, else the socket it is plugged into ("usb-1-1.4", the
@@ -54,7 +56,9 @@ bool is_placeholder(std::string_view serial) noexcept;
 
 /// Lists the boards on USB that may be arms (driver/README.md names the sources), from what the
 /// kernel tells under `root`/sys: ids, strings and report descriptors. Opens nothing and needs no
-/// right to. Fails if USB cannot be listed at all. Real-time: never from the servo thread.
+/// right to. Of this computer ("/") it lists the arms behind vendors' services as well: those are
+/// listened to for half a second at most, on this computer alone, and told nothing. Fails if USB
+/// cannot be listed at all and there is no such arm. Real-time: never from the servo thread.
 Result<std::vector<FoundArm>> find_arms(const std::filesystem::path& root = "/");
 
 /// Reads a small text file of the kernel without its newline; empty if it cannot be read.

@@ -39,7 +39,8 @@ driver::Result<void> check_fits(const ArmFile& file, const driver::FoundArm& arm
 /// Opens the link to an arm, for this program alone, and brings the arm up: a Falcon gets its
 /// firmware (from the file the user named, or not at all) and is homed by the user's hand, for
 /// which it prints what to do; a WoodenHaptics on its mbed board must show by its reports that it
-/// is one before anything is sent; a board on USB serial must be the one that the file is for.
+/// is one before anything is sent; a board on USB serial must be the one that the file is for; a
+/// service must show by its first message that it is Haply's and has this arm.
 driver::Result<std::unique_ptr<driver::ArmLink>> open_link(const driver::FoundArm& arm,
                                                            const ArmFile& file,
                                                            const std::filesystem::path& firmware,

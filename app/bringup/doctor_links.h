@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bringup/doctor.h"
+#include "thimble/driver/discovery.h"
+
+namespace thimble::app {
+
+// What the doctor finds of arms that are reached by their vendors' services. Opens and changes
+// nothing. Real-time: never from the servo thread.
+
+/// Returns what to do with an arm on USB whose protocol is not public.
+std::string mend_for_closed(const driver::FoundArm& arm);
+
+/// Returns whether an arm behind a service can be used, and what it tells of its versions.
+Finding examine_linked(const driver::FoundArm& arm);
+
+/// Returns what keeps a service away whose arm is on USB: `arms` are all that were found.
+std::vector<Finding> examine_services(const std::vector<driver::FoundArm>& arms);
+
+}  // namespace thimble::app

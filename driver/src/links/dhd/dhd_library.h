@@ -1,0 +1,56 @@
+#pragma once
+
+#include <string>
+
+#include "thimble/driver/result.h"
+
+namespace thimble::driver::dhd {
+
+// Force Dimension's library, by the names and types that open clients call [S CHAI3D
+// CDeltaDevices.cpp, HAPI ForceDimensionHapticsDevice, ICube fd_effort_hi.cpp,
+// sawForceDimensionSDK]. Whoever writes this needs no header of the vendor's. Lengths in m, forces
+// in N; the arm's number is the last argument; answers below 0 are failures.
+
+/// The functions of the library that are called here.
+struct Functions {
+  int (*dhdGetDeviceCount)() = nullptr;
+  void (*dhdGetSDKVersion)(int* major, int* minor, int* release, int* revision) = nullptr;
+  int (*dhdErrorGetLast)() = nullptr;
+  const char* (*dhdErrorGetLastStr)() = nullptr;
+  int (*drdOpenID)(char id) = nullptr;
+  int (*drdClose)(char id) = nullptr;
+  bool (*drdIsInitialized)(char id) = nullptr;
+  int (*drdAutoInit)(char id) = nullptr;
+  int (*drdStop)(bool leave_force_on, char id) = nullptr;
+  const char* (*dhdGetSystemName)(char id) = nullptr;
+  bool (*dhdHasWrist)(char id) = nullptr;
+  bool (*dhdHasGripper)(char id) = nullptr;
+  int (*dhdSetWatchdog)(unsigned char duration, char id) = nullptr;
+  int (*dhdSetGravityCompensation)(int on, char id) = nullptr;
+  int (*dhdSetBrakes)(int on, char id) = nullptr;
+  int (*dhdEnableForce)(unsigned char on, char id) = nullptr;
+  int (*dhdStop)(char id) = nullptr;
+  int (*dhdGetPosition)(double* x, double* y, double* z, char id) = nullptr;
+  int (*dhdGetLinearVelocity)(double* x, double* y, double* z, char id) = nullptr;
+  int (*dhdGetOrientationFrame)(double frame[3][3], char id) = nullptr;
+  int (*dhdGetGripperGap)(double* gap, char id) = nullptr;
+  unsigned int (*dhdGetButtonMask)(char id) = nullptr;
+  int (*dhdSetForce)(double x, double y, double z, char id) = nullptr;
+};
+
+/// The library as it was found.
+struct Library {
+  std::string file;     ///< Which was opened.
+  std::string version;  ///< What it calls its version ("3.17.5").
+  Functions call;       ///< None of them null.
+};
+
+/// Returns the library: the file that THIMBLE_DHD_LIBRARY names, else libdrd.so.3 and its other
+/// names where the linker and the vendor's own folder ($FDSDK) have them. It is opened once and
+/// stays. The error says what is missing. Real-time: never from the servo thread.
+Result<Library> library();
+
+/// Opens a library of a name, as `library` does; for tests.
+Result<Library> load(const std::string& file);
+
+}  // namespace thimble::driver::dhd

@@ -1,0 +1,202 @@
+#include "links/dhd/dhd_link.h"
+
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <thread>
+#include <utility>
+
+#include "links/slot_link.h"
+
+namespace thimble::driver::dhd {
+namespace {
+
+constexpr char kId = 0;  // the only arm's
+constexpr int kOn = 1, kOff = 0;
+
+/// After this the library's watchdog switches the motors off. In steps of 10 ms [M].
+constexpr unsigned char kWatchdog = 10;
+
+/// How long a force is sent on without a new one from the loop. [chosen: 20 missed ticks]
+constexpr auto kForceKept = std::chrono::milliseconds(20);
+
+/// A number of failed reads in a row that is a loss. [chosen: 50 ms at 4 kHz]
+constexpr int kFailuresMost = 200;
+
+/// Far outside of what an arm can be, so that a slipped unit is no position, m.
+constexpr double kFarthest = 2;
+
+Error failure(const Library& library, const std::string& what) {
+  const char* why = library.call.dhdErrorGetLastStr();
+  return Error{what + ": the library says \"" + (why == nullptr ? "nothing" : why) + "\"."};
+}
+
+/// An arm that was opened, and is closed at the end.
+class OpenArm {
+ public:
+  static Result<OpenArm> open(const Library& library) {
+    const int count = library.call.dhdGetDeviceCount();
+    if (count < 1) {
+      return Error{
+          "The library of Force Dimension finds no arm. Check its power and cable, and the "
+          "udev rule (thimble doctor)."};
+    }
+    if (count > 1) {
+      return Error{"The library of Force Dimension finds " + std::to_string(count) +
+                   " arms, and nothing tells which is meant. Leave one plugged in."};
+    }
+    if (library.call.drdOpenID(kId) < 0) {
+      return failure(library, "The arm cannot be opened. Close other programs that use it");
+    }
+    return OpenArm(library);
+  }
+  OpenArm(OpenArm&& other) noexcept
+      : library_(other.library_), open_(std::exchange(other.open_, false)) {}
+  OpenArm& operator=(OpenArm&&) = delete;
+  OpenArm(const OpenArm&) = delete;
+  OpenArm& operator=(const OpenArm&) = delete;
+  ~OpenArm() {
+    if (open_) library_.call.drdClose(kId);
+  }
+  const Library& library() const { return library_; }
+  const Functions& call() const { return library_.call; }
+
+ private:
+  explicit OpenArm(const Library& library) : library_(library) {}
+
+  Library library_;
+  bool open_ = true;
+};
+
+class DhdLink final : public SlotLink {
+ public:
+  DhdLink(OpenArm arm, const ArmTraits& traits, Clock& clock)
+      : SlotLink(traits, clock), arm_(std::move(arm)) {
+    thread_ = std::thread([this] { run(); });
+  }
+
+  ~DhdLink() override {
+    ends_.store(true, std::memory_order_release);
+    thread_.join();
+    const Functions& call = arm_.call();
+    call.dhdSetForce(0, 0, 0, kId);
+    call.dhdEnableForce(kOff, kId);
+    call.dhdStop(kId);
+  }
+
+ private:
+  void run() noexcept {
+    const Functions& call = arm_.call();
+    while (!ends_.load(std::memory_order_acquire) && !is_lost()) {
+      ArmSample sample;
+      if (read(call, sample)) {
+        failures_ = 0;
+        publish(sample);
+      } else {
+        reject();
+        if (++failures_ > kFailuresMost) lose();
+      }
+      send(call);
+    }
+  }
+
+  bool read(const Functions& call, ArmSample& sample) const noexcept {
+    Eigen::Vector3d& p = sample.pose.p_BT;
+    Eigen::Vector3d& v = sample.v_BT;
+    if (call.dhdGetPosition(&p.x(), &p.y(), &p.z(), kId) < 0) return false;
+    if (call.dhdGetLinearVelocity(&v.x(), &v.y(), &v.z(), kId) < 0) return false;
+    // Written so that NaN is refused.
+    if (!(p.cwiseAbs().maxCoeff() < kFarthest) || !p.allFinite() || !v.allFinite()) return false;
+    if (traits().has_orientation) {
+      double frame[3][3];
+      if (call.dhdGetOrientationFrame(frame, kId) < 0) return false;
+      for (int row = 0; row < 3; ++row) {
+        for (int column = 0; column < 3; ++column) sample.R_BT(row, column) = frame[row][column];
+      }
+      if (!sample.R_BT.allFinite()) return false;
+    }
+    if (traits().has_gripper) {
+      if (call.dhdGetGripperGap(&sample.gripper, kId) < 0) return false;
+      if (!std::isfinite(sample.gripper)) return false;
+    }
+    sample.buttons = static_cast<std::uint16_t>(call.dhdGetButtonMask(kId));
+    return true;
+  }
+
+  void send(const Functions& call) noexcept {
+    const auto now = std::chrono::steady_clock::now();
+    Eigen::Vector3d fresh;
+    if (take_force(fresh)) {
+      f_T_B_ = fresh;
+      asked_at_ = now;
+    } else if (now - asked_at_ > kForceKept) {
+      f_T_B_.setZero();
+    }
+    // An arm whose pose is not known gets no force.
+    const Eigen::Vector3d f = failures_ == 0 ? f_T_B_ : Eigen::Vector3d(0, 0, 0);
+    if (call.dhdSetForce(f.x(), f.y(), f.z(), kId) < 0) lose();
+  }
+
+  OpenArm arm_;
+  std::atomic<bool> ends_{false};
+  // Of the thread.
+  Eigen::Vector3d f_T_B_{0, 0, 0};
+  std::chrono::steady_clock::time_point asked_at_;
+  int failures_ = 0;
+  std::thread thread_;
+};
+
+/// Switches the forces on, in the order of the open clients [S ICube fd_effort_hi.cpp]: nothing
+/// pushes before the watchdog stands.
+Result<void> enable(const OpenArm& arm) {
+  const Functions& call = arm.call();
+  const auto step = [&](int answer, const char* what) -> Result<void> {
+    if (answer < 0) return failure(arm.library(), std::string("The arm did not ") + what);
+    return {};
+  };
+  if (auto done = step(call.dhdSetWatchdog(kWatchdog, kId), "take its watchdog's time"); !done) {
+    return done;
+  }
+  if (auto done = step(call.dhdSetGravityCompensation(kOn, kId), "carry its own weight"); !done) {
+    return done;
+  }
+  if (auto done = step(call.dhdSetBrakes(kOff, kId), "let its brakes go"); !done) return done;
+  return step(call.dhdEnableForce(kOn, kId), "switch its forces on");
+}
+
+}  // namespace
+
+Result<std::unique_ptr<ArmLink>> open_link(const Library& library, Clock& clock) {
+  auto arm = OpenArm::open(library);
+  if (!arm) return arm.error();
+  const Functions& call = arm->call();
+  if (!call.drdIsInitialized(kId)) {
+    return Error{
+        "The arm does not know its zero, and must move by itself to find it. Let it: thimble "
+        "calibrate --device NAME, with nobody's hand at it."};
+  }
+  const ArmTraits traits{.has_velocity = true,
+                         .has_orientation = call.dhdHasWrist(kId),
+                         .has_gripper = call.dhdHasGripper(kId)};
+  if (auto enabled = enable(*arm); !enabled) {
+    call.dhdStop(kId);
+    return enabled.error();
+  }
+  return std::unique_ptr<ArmLink>(std::make_unique<DhdLink>(std::move(arm).value(), traits, clock));
+}
+
+Result<void> find_zero(const Library& library) {
+  auto arm = OpenArm::open(library);
+  if (!arm) return arm.error();
+  const Functions& call = arm->call();
+  if (call.drdIsInitialized(kId)) return {};
+  if (call.drdAutoInit(kId) < 0 || !call.drdIsInitialized(kId)) {
+    const Error error = failure(library, "The arm did not find its zero");
+    call.drdStop(false, kId);
+    return error;
+  }
+  call.drdStop(false, kId);
+  return {};
+}
+
+}  // namespace thimble::driver::dhd

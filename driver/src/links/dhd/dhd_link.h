@@ -1,0 +1,32 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "links/dhd/dhd_library.h"
+#include "thimble/driver/arm_link.h"
+#include "thimble/driver/clock.h"
+#include "thimble/driver/result.h"
+
+namespace thimble::driver::dhd {
+
+/// Opens the link to the only arm of the library. Frame B: x to the user, y right, z up. A thread
+/// of the link's own speaks with the arm, as often as the library lets it (some kHz): it reads
+/// position, velocity, orientation, gripper and buttons, and sends the newest force of the loop,
+/// which it drops after 20 ms without a new one.
+///
+/// Forces are enabled only for an arm that knows its zero: one that does not is refused, for it
+/// would move by itself to find it (`find_zero`). Before the first force: watchdog, gravity
+/// compensation, brakes off, force on. At the end: zero force, force off, stop, close.
+///
+/// A read that fails is rejected; a failed exchange, or a force that is not taken, loses the arm.
+/// Fails if there is no arm, or more than one: nothing tells then which of them is meant.
+/// Real-time: never from the servo thread. `clock` is the loop's, and outlives the link.
+Result<std::unique_ptr<ArmLink>> open_link(const Library& library, Clock& clock);
+
+/// Lets the only arm of the library move by itself until it has found its zero. Only after a word
+/// of the user, who must let it go and keep away. Real-time: never from the servo thread; takes
+/// seconds.
+Result<void> find_zero(const Library& library);
+
+}  // namespace thimble::driver::dhd

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <atomic>
+
+namespace thimble::driver {
+
+/// The next force for an arm, from the servo thread to the one that speaks with the arm. A force
+/// that waits is not replaced by another, so that what was taken is what the loop believes; only
+/// zero force overtakes it. Neither side ever waits. Real-time: safe, both ways.
+class ForceBox {
+ public:
+  /// Puts a force (N); false if the one before still waits, which then goes out, unless this one is
+  /// zero: then zero goes out in its place. By the servo thread.
+  bool put(const Eigen::Vector3d& f) noexcept {
+    if (full_.load(std::memory_order_acquire)) {
+      if (f.isZero(0)) zero_.store(true, std::memory_order_release);
+      return false;
+    }
+    zero_.store(false, std::memory_order_relaxed);
+    f_ = f;
+    full_.store(true, std::memory_order_release);
+    return true;
+  }
+
+  /// Takes the force that waits (N); false if none does. By the thread that speaks with the arm.
+  bool take(Eigen::Vector3d& f) noexcept {
+    if (!full_.load(std::memory_order_acquire)) return false;
+    f = f_;
+    if (zero_.exchange(false, std::memory_order_acq_rel)) f.setZero();
+    full_.store(false, std::memory_order_release);
+    return true;
+  }
+
+ private:
+  Eigen::Vector3d f_{0, 0, 0};
+  std::atomic<bool> full_{false}, zero_{false};
+};
+
+}  // namespace thimble::driver

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <string>
+
+#include "thimble/driver/result.h"
+
+namespace thimble::driver::hd {
+
+// The library of OpenHaptics (HDAPI), by the names, types and numbers that open clients use [S
+// pyOpenHaptics hd_define.py; CHAI3D hdPhantom.cpp; sawSensablePhantom mtsSensableHD.cpp]. Whoever
+// writes this needs no header of the vendor's. Lengths in mm, forces in N, transforms column by
+// column; x right, y up, z to the user.
+
+inline constexpr unsigned kNoDevice = 0xFFFFFFFF;
+inline constexpr unsigned kButtons = 0x2000, kPosition = 0x2050, kVelocity = 0x2051,
+                          kTransform = 0x2052, kModel = 0x2501, kVersion = 0x2500,
+                          kCalibrationStyle = 0x2555, kNominalMaxForce = 0x2603, kForce = 0x2700,
+                          kForceOutput = 0x4000, kCalibrated = 0x5000;
+inline constexpr unsigned kStyleEncoderReset = 1, kStyleAuto = 2, kStyleInkwell = 4;
+inline constexpr unsigned kCallbackDone = 0, kCallbackContinue = 1;
+inline constexpr unsigned short kFirstPriority = 0xFFFF;
+// Errors: forces that the arm does not give, a device that is gone, frames that were not right.
+inline constexpr unsigned kWarmMotors = 0x0200, kForceError = 0x0204, kDeviceFault = 0x0300,
+                          kTimerError = 0x0304;
+
+/// An error of the library, which it returns by value.
+struct ErrorInfo {
+  unsigned code = 0;    ///< 0: none.
+  int internal = 0;     ///< The vendor's own number.
+  unsigned device = 0;  ///< Whose.
+};
+
+/// The functions of the library that are called here.
+struct Functions {
+  unsigned (*hdInitDevice)(const char* name) = nullptr;
+  void (*hdDisableDevice)(unsigned device) = nullptr;
+  ErrorInfo (*hdGetError)() = nullptr;
+  const char* (*hdGetErrorString)(unsigned code) = nullptr;
+  const char* (*hdGetString)(unsigned name) = nullptr;
+  void (*hdGetIntegerv)(unsigned name, int* values) = nullptr;
+  void (*hdGetDoublev)(unsigned name, double* values) = nullptr;
+  void (*hdSetDoublev)(unsigned name, const double* values) = nullptr;
+  void (*hdEnable)(unsigned capability) = nullptr;
+  void (*hdStartScheduler)() = nullptr;
+  void (*hdStopScheduler)() = nullptr;
+  unsigned long (*hdScheduleAsynchronous)(unsigned (*call)(void*), void* data,
+                                          unsigned short priority) = nullptr;
+  void (*hdUnschedule)(unsigned long handle) = nullptr;
+  void (*hdBeginFrame)(unsigned device) = nullptr;
+  void (*hdEndFrame)(unsigned device) = nullptr;
+  unsigned (*hdCheckCalibration)() = nullptr;
+  void (*hdUpdateCalibration)(unsigned style) = nullptr;
+};
+
+/// The library as it was found.
+struct Library {
+  std::string file;  ///< Which was opened.
+  Functions call;    ///< None of them null.
+};
+
+/// Returns the library: the file that THIMBLE_HD_LIBRARY names, else libHD.so where the linker has
+/// it. It is opened once and stays. The error says what is missing. Real-time: never from the servo
+/// thread.
+Result<Library> library();
+
+/// Opens a library of a name, as `library` does; for tests.
+Result<Library> load(const std::string& file);
+
+}  // namespace thimble::driver::hd

@@ -1,0 +1,120 @@
+#include <dlfcn.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "bringup/doctor.h"
+#include "real_arm_terms_home.h"
+#include "support/fake_usb.h"
+#include "support/mock_dhd.h"
+#include "support/mock_hd.h"
+#include "thimble/driver/device.h"
+#include "thimble/scene/device_settings.h"
+#include "thimble/scene/real_arm.h"
+#include "thimble/scene/real_arm_file.h"
+
+namespace thimble::app {
+namespace {
+
+using driver::ArmKind;
+using driver::BoardKind;
+using driver::Certainty;
+using driver::FoundArm;
+
+/// Names the libraries before anybody looks for them: they are looked for once.
+const bool kNamed = [] {
+  setenv("THIMBLE_DHD_LIBRARY", THIMBLE_MOCK_DHD, 1);
+  setenv("THIMBLE_HD_LIBRARY", THIMBLE_MOCK_HD, 1);
+  return true;
+}();
+
+/// Arms on USB whose makers' libraries are on this computer.
+class VendorLibraryTest : public RealArmTermsTest {
+ protected:
+  VendorLibraryTest()
+      : usb_(std::string("vendor_") +
+             testing::UnitTest::GetInstance()->current_test_info()->name()) {}
+
+  template <class Mock>
+  static Mock& mock(const char* file, const char* name) {
+    void* const handle = dlopen(file, RTLD_LAZY);
+    return *reinterpret_cast<Mock* (*)()>(dlsym(handle, name))();
+  }
+
+  FoundArm only() const {
+    const auto arms = driver::find_arms(usb_.root());
+    return arms && arms->size() == 1 ? arms->front() : FoundArm{};
+  }
+
+  /// Opens an arm as a run does, and returns what became of it.
+  driver::Result<std::unique_ptr<driver::Device>> open(const FoundArm& arm,
+                                                       const std::string& file) {
+    auto found = scene::find_real_arm_file(arm, {.arm_file = kArms / (file + ".yaml")});
+    if (!found) return found.error();
+    auto link = scene::open_link(arm, found->file, {}, clock_);
+    if (!link) return link.error();
+    return driver::Device::open(std::move(link).value(), scene::device_settings(found->file, 1000),
+                                clock_.now_ns());
+  }
+
+  support::FakeUsb usb_;
+  driver::WallClock clock_{0};
+};
+
+TEST_F(VendorLibraryTest, MakesAnArmOfABoardOfForceDimensions) {
+  ASSERT_TRUE(kNamed);
+  usb_.plug("1-1", "1451", "0402", "FD1", 1, 2);
+  const FoundArm arm = only();
+  EXPECT_EQ(arm.kind, ArmKind::kDhd);
+  EXPECT_EQ(arm.board, BoardKind::kDhdLibrary);
+  EXPECT_EQ(arm.certainty, Certainty::kKnown);
+  EXPECT_EQ(arm.software, "libdrd 3.17.5");
+  // The library drives several arms, so the user says which.
+  const auto unnamed = scene::find_real_arm_file(arm);
+  ASSERT_FALSE(unnamed);
+  EXPECT_TRUE(holds(unnamed.error().message, "--arm NAME (installed are: omega3)"))
+      << unnamed.error().message;
+  auto& dhd = mock<support::MockDhd>(THIMBLE_MOCK_DHD, "mock_dhd");
+  dhd.reset();
+  {
+    const auto device = open(arm, "omega3");
+    ASSERT_TRUE(device) << device.error().message;
+    EXPECT_EQ((*device)->state().p_WT.norm() < 1e-3, true);
+  }
+  EXPECT_EQ(dhd.closed, 1);
+  for (const std::string& wrong : dhd.wrong) ADD_FAILURE() << wrong;
+  EXPECT_FALSE(open(arm, "touch")) << "another library's file";
+}
+
+TEST_F(VendorLibraryTest, MakesAnArmOfATouch) {
+  usb_.plug("1-1", "2988", "0302", "TT1", 1, 2);
+  usb_.add_tty("1-1", 0, "ttyACM0");
+  const FoundArm arm = only();
+  EXPECT_EQ(arm.kind, ArmKind::kHd);
+  EXPECT_EQ(arm.board, BoardKind::kHdLibrary);
+  EXPECT_EQ(arm.software, THIMBLE_MOCK_HD);
+  auto& hd = mock<support::MockHd>(THIMBLE_MOCK_HD, "mock_hd");
+  hd.reset();
+  {
+    const auto device = open(arm, "touch");
+    ASSERT_TRUE(device) << device.error().message;
+  }
+  EXPECT_EQ(hd.closed, 1);
+  for (const std::string& wrong : hd.wrong) ADD_FAILURE() << wrong;
+  EXPECT_FALSE(open(arm, "omega3")) << "another library's file";
+}
+
+TEST_F(VendorLibraryTest, TheDoctorNamesTheLibrary) {
+  usb_.plug("1-1", "1451", "0402", "FD1", 1, 2);
+  Patient patient;
+  patient.root = usb_.root();
+  bool said = false;
+  for (const Finding& found : examine(patient)) {
+    said = said || (holds(found.what, "FD1: its vendor's library is here (libdrd 3.17.5)") &&
+                    found.health == Health::kGood);
+  }
+  EXPECT_TRUE(said);
+}
+
+}  // namespace
+}  // namespace thimble::app
