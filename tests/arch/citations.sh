@@ -1,0 +1,62 @@
+#!/usr/bin/env bash
+# Every key in square brackets in a comment or a document stands in the guide's references, and every
+# section of the physics and of the arms that is cited exists, as does every test that a page names.
+#   citations.sh SOURCE_FOLDER
+set -euo pipefail
+source=$1
+pages=app/guide/pages
+cd "$source"
+keys=$(grep -oP '^\| \[\K[A-Za-z]+(?=\])' $pages/references.md)
+[ "$(wc -w <<<"$keys")" -ge 10 ] || { echo "FAILED: $pages/references.md has no keys" >&2 && exit 1; }
+
+# file:line:comment of every comment, and of every line of a document outside of its code.
+comments() {
+  find CMakeLists.txt README.md CONTRIBUTING.md app device_sim driver render tests udev -type f \
+    \( -name '*.h' -o -name '*.cpp' -o -name '*.c' \) -print0 | xargs -0 grep -nHoP '//.*'
+  find CMakeLists.txt app driver tests udev -type f \
+    \( -name '*.yaml' -o -name CMakeLists.txt -o -name '*.sh' -o -name '*.py' -o -name '*.rules' \) -not -path 'tests/fuzz/*' \
+    -print0 | xargs -0 grep -nHoP '(^|\s)#.*'
+  find README.md CONTRIBUTING.md app device_sim driver render tests -type f -name '*.md' -not -name references.md -print0 |
+    xargs -0 awk '/^ *```/ { inside = !inside; next } !inside && !/^    / { gsub(/`[^`]*`/, ""); print FILENAME ":" FNR ":" $0 }'
+}
+# A citation: no index, no function's argument, no link, no option of a usage line.
+cited=$(comments | grep -P '(?<![A-Za-z0-9_`\]):])\[[A-Z][A-Za-z]*[ \],:]' |
+  perl -ne 'my ($at, $text) = /^([^:]*:[0-9]*):(.*)/;
+    while ($text =~ /(?<![A-Za-z0-9_`\])])\[([A-Z][A-Za-z]*)((?:[ ,:][^\]`(]*)?)\](?![(\[])/g) { print "$at\t$1\t$2\n" }')
+[ "$(wc -l <<<"$cited")" -ge 100 ] || { echo "FAILED: hardly a citation was found" >&2 && exit 1; }
+
+failed=0
+while IFS=$'\t' read -r at key rest; do
+  # Options of a usage line, and units in a picture of an interface, are written in capitals too.
+  case $key in ARM | BUILD | FILE | FIRMWARE | FOLDER | NAME | OUTPUT | PICTURE | PRESET | REGEX | SCENE | THREADS | TIMEOUT | APART | HARD_CASES) continue ;; esac
+  if ! grep -qx "$key" <<<"$keys"; then
+    echo "$at: [$key$rest] is not in $pages/references.md"
+    failed=1
+  fi
+  case $key in
+    PHYSICS) page=physics ;;
+    DEVICES) page=devices ;;
+    *) continue ;;
+  esac
+  sections=$(grep -oP '(?<![A-Za-z0-9.])[0-9](\.[0-9])?(?![0-9A-Za-z])' <<<"${rest%%, *}" || true)
+  if [ -z "$sections" ]; then
+    echo "$at: [$key$rest] names no section"
+    failed=1
+  fi
+  for section in $sections; do
+    grep -qE "^##+ ${section//./\\.} " "$pages/$page.md" || {
+      echo "$at: [$key$rest]: $pages/$page.md has no section $section"
+      failed=1
+    }
+  done
+done <<<"$cited"
+
+# A test that a page names exists.
+for name in $(grep -hoP '`\K[A-Z]\w+\.[A-Z]\w+(?=`)' $pages/*.md | sort -u); do
+  grep -rqE "^(TEST|TEST_F|TEST_P)\(${name%.*}, ${name#*.}\)" tests || {
+    echo "$pages names the test $name, which does not exist"
+    failed=1
+  }
+done
+[ $failed = 0 ] && echo "$(wc -l <<<"$cited") citations, all in the references."
+exit $failed
