@@ -33,14 +33,17 @@ mkdir elsewhere
   fail "09_run_a_scene ran a scene that is not there"
 grep -q 'Known by name: .*elephant' said || fail "09_run_a_scene answered: $(cat said)"
 
-echo "Building the program of README.md by pkg-config ..."
-sed -n '/^```cpp$/,/^```$/p' "$examples/../../README.md" | sed '/^```/d' >by_pkg_config.cpp
-sed -i 's/"elephant"/"rubber"/' by_pkg_config.cpp  # whose mesh needs not be fetched
+echo "Building the programs of README.md and of the guide by pkg-config ..."
 PKG_CONFIG_PATH=$(dirname "$(find "$work/usr" -name thimble.pc)")
 export PKG_CONFIG_PATH
-"${CXX:-c++}" $(pkg-config --cflags thimble) -Wall -Wextra -Werror by_pkg_config.cpp -o by_pkg_config \
-  $(pkg-config --libs thimble) >log 2>&1 || fail "$(cat log)"
-XDG_DATA_DIRS=$work/usr/share ./by_pkg_config >said 2>&1 || fail "by pkg-config: $(cat said)"
+for page in README.md app/guide/pages/cpp.md; do
+  sed -n '/^```cpp$/,/^```$/p' "$examples/../../$page" | sed '/^```/d' >by_pkg_config.cpp
+  sed -i 's/"elephant"/"rubber"/' by_pkg_config.cpp  # whose mesh needs not be fetched
+  "${CXX:-c++}" $(pkg-config --cflags thimble) -Wall -Wextra -Werror by_pkg_config.cpp -o by_pkg_config \
+    $(pkg-config --libs thimble) >log 2>&1 || fail "$page: $(cat log)"
+  XDG_DATA_DIRS=$work/usr/share ./by_pkg_config >said 2>&1 || fail "$page: $(cat said)"
+  grep -q '^Force ' said || fail "$page printed: $(cat said)"
+done
 "$work/examples/09_run_a_scene" rubber third.h5 | diff said - | grep -v Replayed | grep '^[<>]' &&
   fail "by pkg-config another run"
 
