@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Fails if a module includes what it must not know (the table in README.md), if a layer of render
+# Fails if a module includes what it must not know (the table in app/guide/pages/concepts.md), if a layer of render
 # includes one above it (the table in render/README.md), if a library of app includes one above it
 # (app/CMakeLists.txt), or if a folder of render or app is too full.
 #   tests/arch/layering.sh [SOURCE_DIR]

@@ -6,9 +6,9 @@
 
 #include <functional>
 
+#include "calibration.h"
 #include "real_arm_terms_home.h"
 #include "terms/limits_policy.h"
-#include "calibration.h"
 #include "thimble/scene/scene_file.h"
 #include "user_folders.h"
 

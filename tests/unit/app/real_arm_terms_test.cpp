@@ -6,12 +6,12 @@
 #include <functional>
 
 #include "bringup/feel_check.h"
+#include "calibration.h"
 #include "energy_choice.h"
 #include "real_arm_terms_home.h"
 #include "report/report.h"
 #include "support/line_board.h"
 #include "terms/limits_policy.h"
-#include "calibration.h"
 #include "thimble/scene/scene_file.h"
 #include "thimble/scene/shipped_files.h"
 #include "thimble/session/session.h"

@@ -8,10 +8,10 @@
 
 #include "arm_table.h"
 #include "arms/hfab/hfab_report.h"
+#include "calibration.h"
 #include "support/scripted_transport.h"
 #include "support/vintage_arm.h"
 #include "thimble/driver/wire_link.h"
-#include "calibration.h"
 #include "thimble/scene/real_arm.h"
 
 namespace thimble::app {

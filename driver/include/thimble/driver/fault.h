@@ -16,9 +16,9 @@ enum class Fault : std::uint8_t {
   kLoopStalled,     ///< The loop stood still longer than the arm's own watchdog waits.
   kRefused,         ///< The arm took no message for longer than `DeviceSettings::silence_limit_ns`.
   kTimeNotMonotonic,  ///< The loop's clock stepped back, or the time of a tick is no number.
-  kMotorsReversed,  ///< The tip gained speed against the force that was sent (motion_watch.h).
-  kEncoderFrozen,   ///< A joint did not move under a changing force while others did.
-  kCountsUnchanged,  ///< No encoder counted while a force was held (motion_watch.h).
+  kMotorsReversed,    ///< The tip gained speed against the force that was sent (motion_watch.h).
+  kEncoderFrozen,     ///< A joint did not move under a changing force while others did.
+  kCountsUnchanged,   ///< No encoder counted while a force was held (motion_watch.h).
 };
 
 /// The last of the faults: what is beyond it in a file or in shared memory is damaged.
