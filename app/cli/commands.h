@@ -67,6 +67,8 @@ void add_accuracy_study(CLI::App& study_command, int& exit_code);
 void add_gating_study(CLI::App& study_command, int& exit_code);
 /// `thimble bench SCENE`: whether this machine is good enough for a scene at 1, 4 and 8 kHz.
 void add_bench_command(CLI::App& app, int& exit_code);
+/// `thimble help FILE`: lists the keys of scene and arm files.
+void add_help_command(CLI::App& app, int& exit_code);
 /// `thimble cost-probe SUBJECT STROKES`: what `thimble study cost` counts the instructions of.
 void add_cost_probe_command(CLI::App& app, int& exit_code);
 /// `thimble mesh generate OUT`: writes a page file of any number of triangles.

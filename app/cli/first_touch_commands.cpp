@@ -56,6 +56,11 @@ void add_bench_command(CLI::App& app, int& exit_code) {
                      "Is this machine good enough for a scene at 1, 4 and 8 kHz?");
 }
 
+void add_help_command(CLI::App& app, int& exit_code) {
+  add_absent_command(app, exit_code, "help",
+                     "List the keys of scene and arm files, with units and limits");
+}
+
 void add_cost_probe_command(CLI::App&, int&) {}
 
 }  // namespace thimble::app

@@ -43,6 +43,7 @@ int run(int argc, char** argv) {
   thimble::app::add_study_command(app, exit_code);
   thimble::app::add_tune_command(app, exit_code);
   thimble::app::add_bench_command(app, exit_code);
+  thimble::app::add_help_command(app, exit_code);
   thimble::app::add_cost_probe_command(app, exit_code);
   thimble::app::add_plug_command(app, exit_code);
   thimble::app::add_manual_command(app, exit_code);

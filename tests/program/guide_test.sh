@@ -61,6 +61,10 @@ for scene in my_ball my_bowl; do
 done
 grep -q 'touched as a sheet of 4 triangles' said || { echo "FAILED: nothing is told of the sheet" >&2 && exit 1; }
 
+# The page of all keys is what the readers ask for.
+bash "$source/app/guide/keys.sh" thimble | diff "$source/app/guide/pages/keys.md" - ||
+  { echo "FAILED: app/guide/pages/keys.md is old; app/guide/keys.sh writes it" >&2 && exit 1; }
+
 if command -v mkdocs >/dev/null; then
   mkdocs build --strict --quiet -f "$source/app/guide/mkdocs.yml" -d "$work/pages"
   echo "The pages are built without a broken link."

@@ -14,6 +14,7 @@
 
 #include "arm_table.h"
 #include "energy_choice.h"
+#include "read_scene.h"
 #include "thimble/scene/shipped_files.h"
 #include "yaml/yaml_reader.h"
 
@@ -320,7 +321,11 @@ driver::Result<ArmFile> load_arm(const std::filesystem::path& meant) {
   if (!file) return file.error();
   driver::Result<YamlFile> yaml = YamlFile::load(*file);
   if (!yaml) return yaml.error();
-  YamlMap& root = yaml->root();
+  return read_arm(*yaml);
+}
+
+driver::Result<ArmFile> read_arm(YamlFile& yaml) {
+  YamlMap& root = yaml.root();
   ArmFile arm;
   arm.name = root.require_string("name");
   arm.description = root.optional_string("description", "");
@@ -341,7 +346,7 @@ driver::Result<ArmFile> load_arm(const std::filesystem::path& meant) {
     arm.can_simulate = true;
   }
   root.finish();
-  if (auto done = yaml->finish(); !done) return done.error();
+  if (auto done = yaml.finish(); !done) return done.error();
   return arm;
 }
 

@@ -66,6 +66,7 @@ std::vector<render::EffectPlan> read_effects(YamlMap& object, const std::filesys
   for (YamlMap& entry : object.require_maps("effects")) {
     const render::EffectKind* kind = named_effect(entry);
     if (kind == nullptr) continue;
+    entry.set_place("effects[] " + std::string(kind->group) + ": " + std::string(kind->name));
     YamlSettings settings(entry, folder);
     plans.push_back({kind, kind->read(settings, context)});
     settings.finish();
@@ -80,6 +81,7 @@ render::FieldBuilder read_field(YamlMap& object, const std::filesystem::path& fo
   std::vector<std::string_view> names;
   for (const render::FieldKind& kind : render::field_table()) names.push_back(kind.name);
   const render::FieldKind& kind = render::field_table()[object.require_choice("field", names)];
+  object.set_place("objects[] field: " + std::string(kind.name));
   YamlSettings settings(object, folder);
   render::FieldBuilder build = kind.read(settings, context);
   settings.finish();

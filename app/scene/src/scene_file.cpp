@@ -14,6 +14,7 @@
 #include "energy_choice.h"
 #include "loop_latency.h"
 #include "page/page_file.h"
+#include "read_scene.h"
 #include "scene_body.h"
 #include "scene_effects.h"
 #include "scene_shapes.h"
@@ -257,14 +258,12 @@ bool bears_its_rate(const Scene& scene) {
   });
 }
 
-driver::Result<Scene> read_scene(const std::filesystem::path& meant, const SceneReading& reading) {
-  const auto found = find_scene(meant.string());
-  if (!found) return found.error();
-  const std::filesystem::path& file = *found;
+}  // namespace
+
+driver::Result<Scene> read_scene(YamlFile& yaml, const std::filesystem::path& file,
+                                 const SceneReading& reading) {
   const std::filesystem::path& mesh_folder = reading.mesh_folder;
-  driver::Result<YamlFile> yaml = YamlFile::load(file);
-  if (!yaml) return yaml.error();
-  YamlMap& root = yaml->root();
+  YamlMap& root = yaml.root();
   const std::filesystem::path folder = file.parent_path();
   Scene scene;
   scene.file = file;
@@ -320,15 +319,26 @@ driver::Result<Scene> read_scene(const std::filesystem::path& meant, const Scene
   }
   scene.hand = read_hand(root.require_map("hand"), scene.objects, scene.arm.simulated.hand);
   root.finish();
-  if (auto done = yaml->finish(); !done) return done.error();
+  if (auto done = yaml.finish(); !done) return done.error();
   if (arm_error) return *arm_error;
   return scene;
+}
+
+namespace {
+
+driver::Result<Scene> find_and_read_scene(const std::filesystem::path& meant,
+                                          const SceneReading& reading) {
+  const auto file = find_scene(meant.string());
+  if (!file) return file.error();
+  driver::Result<YamlFile> yaml = YamlFile::load(*file);
+  if (!yaml) return yaml.error();
+  return read_scene(*yaml, *file, reading);
 }
 
 }  // namespace
 
 driver::Result<Scene> load_scene(const std::filesystem::path& meant, const SceneReading& reading) {
-  auto scene = read_scene(meant, reading);
+  auto scene = find_and_read_scene(meant, reading);
   if (!(reading.rate_factor < 1) || (scene && bears_its_rate(*scene))) {
     if (scene && reading.rate_factor > 1) {
       auto& period_ns = scene->arm.simulated.firmware.report_period_ns;
@@ -338,7 +348,7 @@ driver::Result<Scene> load_scene(const std::filesystem::path& meant, const Scene
   }
   SceneReading as_it_says = reading;
   as_it_says.rate_factor = 1;
-  return read_scene(meant, as_it_says);
+  return find_and_read_scene(meant, as_it_says);
 }
 
 }  // namespace thimble::scene

@@ -86,8 +86,9 @@ driver::Result<YamlFile> YamlFile::load(const std::filesystem::path& file) {
   return parse(text.str(), name);
 }
 
-driver::Result<YamlFile> YamlFile::parse(const std::string& text, const std::string& name) {
-  auto mistakes = std::make_shared<YamlMistakes>(name);
+driver::Result<YamlFile> YamlFile::parse(const std::string& text, const std::string& name,
+                                         KeyLog* keys) {
+  auto mistakes = std::make_shared<YamlMistakes>(name, keys);
   try {
     const int second = line_of_second_document(text);
     const YAML::Node document = second > 0 ? YAML::Node() : YAML::Load(text);

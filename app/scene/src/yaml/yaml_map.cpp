@@ -90,6 +90,10 @@ std::string any_of(const std::vector<std::string_view>& choices) {
   return what;
 }
 
+std::string three_in_words(std::string_view unit, double min, double max) {
+  return "three numbers, each" + number_in_words(unit, min, max).substr(8);
+}
+
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
@@ -143,6 +147,12 @@ const YamlMap::Entry* YamlMap::find(std::string_view key, bool required) {
   return nullptr;
 }
 
+void YamlMap::note(std::string_view key, std::string what, bool required, std::string fallback) {
+  if (mistakes_->keys() == nullptr) return;
+  mistakes_->keys()->note(
+      {place_, std::string(key), std::move(what), required, std::move(fallback)});
+}
+
 int YamlMap::key_line(std::string_view key) const {
   for (const Entry& entry : entries_) {
     if (entry.key == key) return entry.line;
@@ -169,11 +179,13 @@ bool YamlMap::read_number(const Entry& entry, const YAML::Node& node, const std:
 }
 
 bool YamlMap::has(std::string_view key) {
+  if (mistakes_->keys() != nullptr && mistakes_->keys()->looked(place_, key)) return true;
   return find(key, false) != nullptr;
 }
 
 double YamlMap::require_number(std::string_view key, std::string_view unit, double min,
                                double max) {
+  note(key, number_in_words(unit, min, max), true);
   double number = min;
   if (const Entry* entry = find(key, true)) {
     read_number(*entry, entry->value, number_in_words(unit, min, max), min, max, number);
@@ -183,11 +195,13 @@ double YamlMap::require_number(std::string_view key, std::string_view unit, doub
 
 double YamlMap::optional_number(std::string_view key, double fallback, std::string_view unit,
                                 double min, double max) {
+  note(key, number_in_words(unit, min, max), false, in_words(fallback));
   return has(key) ? require_number(key, unit, min, max) : fallback;
 }
 
 Eigen::Vector3d YamlMap::require_vector3(std::string_view key, std::string_view unit, double min,
                                          double max) {
+  note(key, three_in_words(unit, min, max), true);
   Eigen::Vector3d vector = Eigen::Vector3d::Zero();
   const Entry* entry = find(key, true);
   if (entry == nullptr) return vector;
@@ -207,14 +221,18 @@ Eigen::Vector3d YamlMap::require_vector3(std::string_view key, std::string_view 
 
 Eigen::Vector3d YamlMap::optional_vector3(std::string_view key, const Eigen::Vector3d& fallback,
                                           std::string_view unit, double min, double max) {
+  note(key, three_in_words(unit, min, max), false,
+       '[' + in_words(fallback.x()) + ", " + in_words(fallback.y()) + ", " +
+           in_words(fallback.z()) + ']');
   return has(key) ? require_vector3(key, unit, min, max) : fallback;
 }
 
 Eigen::Matrix3d YamlMap::optional_rotation(std::string_view key) {
+  const std::string what = "a list of turns such as [[x, 90], [z, -45]], in degrees";
+  note(key, what, false, "no turn");
   Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
   const Entry* entry = find(key, false);
   if (entry == nullptr) return R;
-  const std::string what = "a list of turns such as [[x, 90], [z, -45]], in degrees";
   if (!entry->value.IsSequence()) {
     expected(*entry, what);
     return R;
@@ -238,6 +256,7 @@ Eigen::Matrix3d YamlMap::optional_rotation(std::string_view key) {
 }
 
 std::string YamlMap::require_string(std::string_view key) {
+  note(key, "a text", true);
   const Entry* entry = find(key, true);
   if (entry == nullptr) return "";
   if (!entry->value.IsScalar() || entry->value.Scalar().empty()) {
@@ -248,11 +267,13 @@ std::string YamlMap::require_string(std::string_view key) {
 }
 
 std::string YamlMap::optional_string(std::string_view key, std::string_view fallback) {
+  note(key, "a text", false, std::string(fallback));
   return has(key) ? require_string(key) : std::string(fallback);
 }
 
 std::size_t YamlMap::require_choice(std::string_view key,
                                     const std::vector<std::string_view>& choices) {
+  note(key, any_of(choices), true);
   const Entry* entry = find(key, true);
   if (entry == nullptr) return 0;
   if (const auto chosen = choice_of(entry->value, choices)) return *chosen;
@@ -263,6 +284,7 @@ std::size_t YamlMap::require_choice(std::string_view key,
 std::vector<std::size_t> YamlMap::optional_choices(std::string_view key,
                                                    const std::vector<std::size_t>& fallback,
                                                    const std::vector<std::string_view>& choices) {
+  note(key, any_of(choices) + ", or a list of such", false);
   const Entry* entry = find(key, false);
   if (entry == nullptr) return fallback;
   std::vector<std::size_t> chosen;
@@ -284,10 +306,13 @@ std::vector<std::size_t> YamlMap::optional_choices(std::string_view key,
 
 std::size_t YamlMap::optional_choice(std::string_view key, std::size_t fallback,
                                      const std::vector<std::string_view>& choices) {
+  note(key, any_of(choices), false,
+       fallback < choices.size() ? std::string(choices[fallback]) : "");
   return has(key) ? require_choice(key, choices) : fallback;
 }
 
 bool YamlMap::optional_bool(std::string_view key, bool fallback) {
+  note(key, "true or false", false, fallback ? "true" : "false");
   const Entry* entry = find(key, false);
   if (entry == nullptr) return fallback;
   if (is_plain_scalar(entry->value)) {
@@ -299,24 +324,40 @@ bool YamlMap::optional_bool(std::string_view key, bool fallback) {
 }
 
 YamlMap YamlMap::require_map(std::string_view key) {
+  note(key, "a map", true);
+  const std::string place = place_.empty() ? std::string(key) : place_ + '.' + std::string(key);
   if (const Entry* entry = find(key, true)) {
-    return YamlMap(entry->value, key, entry->line, mistakes_);
+    YamlMap map(entry->value, key, entry->line, mistakes_);
+    map.place_ = place;
+    return map;
   }
   YamlMap absent(YAML::Node(YAML::NodeType::Map), key, line_, mistakes_);
   absent.quiet_ = true;
+  absent.place_ = place;
   return absent;
 }
 
 std::vector<YamlMap> YamlMap::require_maps(std::string_view key) {
+  note(key, "a list of maps, one at least", true);
+  const std::string place =
+      (place_.empty() ? std::string(key) : place_ + '.' + std::string(key)) + "[]";
   std::vector<YamlMap> maps;
   const Entry* entry = find(key, true);
-  if (entry == nullptr) return maps;
+  if (entry == nullptr) {
+    if (mistakes_->keys() == nullptr) return maps;
+    // An entry whose keys are asked for, so that they are noted.
+    maps.emplace_back(YAML::Node(YAML::NodeType::Map), key, line_, mistakes_);
+    maps.back().quiet_ = true;
+    maps.back().place_ = place;
+    return maps;
+  }
   if (!entry->value.IsSequence() || entry->value.size() == 0) {
     expected(*entry, "a list with at least one entry");
     return maps;
   }
   for (const YAML::Node& node : entry->value) {
     maps.emplace_back(node, key, entry->line, mistakes_);
+    maps.back().place_ = place;
   }
   return maps;
 }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "thimble/driver/result.h"
+#include "yaml/key_log.h"
 
 namespace thimble::scene {
 
@@ -26,7 +27,11 @@ class YamlMistakes {
  public:
   static constexpr std::size_t kKept = 5;
 
-  explicit YamlMistakes(std::string file_name) : file_name_(std::move(file_name)) {}
+  explicit YamlMistakes(std::string file_name, KeyLog* keys = nullptr)
+      : file_name_(std::move(file_name)), keys_(keys) {}
+
+  /// Returns where the keys that are asked for are noted; nullptr: nowhere.
+  KeyLog* keys() const noexcept { return keys_; }
 
   /// Notes a mistake at a line (counted from 1; 0 for the file as a whole). `sentence` has no dot.
   void add(int line, const std::string& sentence);
@@ -39,6 +44,7 @@ class YamlMistakes {
 
  private:
   std::string file_name_;
+  KeyLog* keys_;
   std::vector<std::string> sentences_;
   std::size_t count_ = 0;
 };
@@ -109,6 +115,9 @@ class YamlMap {
   /// Notes each key that nobody asked for, with the nearest known key as a suggestion.
   void finish();
 
+  /// Names the place of this map in the reference of keys: "effects[] friction: bristle".
+  void set_place(std::string place) { place_ = std::move(place); }
+
   /// Returns the line (from 1) at which a key stands, or 0 if it is absent.
   int key_line(std::string_view key) const;
 
@@ -123,6 +132,7 @@ class YamlMap {
   };
 
   const Entry* find(std::string_view key, bool required);
+  void note(std::string_view key, std::string what, bool required, std::string fallback = {});
   void expected(const Entry& entry, const std::string& what);
   bool read_number(const Entry& entry, const YAML::Node& node, const std::string& what, double min,
                    double max, double& number);
@@ -131,6 +141,7 @@ class YamlMap {
   std::vector<std::string> asked_;
   std::shared_ptr<YamlMistakes> mistakes_;
   int line_ = 0;
+  std::string place_;
   bool quiet_ = false;  // this map could not be read: do not blame its keys as well
 };
 
@@ -142,7 +153,9 @@ class YamlFile {
   static driver::Result<YamlFile> load(const std::filesystem::path& file);
 
   /// Reads YAML from a text; `name` stands in for the file's name in messages.
-  static driver::Result<YamlFile> parse(const std::string& text, const std::string& name);
+  /// `keys` notes what is asked of it.
+  static driver::Result<YamlFile> parse(const std::string& text, const std::string& name,
+                                        KeyLog* keys = nullptr);
 
   /// Gives the outermost map.
   YamlMap& root() { return root_; }

@@ -1,0 +1,55 @@
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cli/commands.h"
+#include "cli/complain.h"
+#include "scene_keys.h"
+
+namespace thimble::app {
+namespace {
+
+struct HelpOptions {
+  std::string file = "scene";
+  std::string key;
+  bool page = false;
+};
+
+int print_keys(const HelpOptions& options) {
+  std::vector<scene::KeyNote> keys;
+  if (options.file == "arm") {
+    keys = scene::arm_keys();
+  } else {
+    auto found = scene::scene_keys();
+    if (!found) return complain(found.error(), kExitBadInput);
+    keys = std::move(found).value();
+  }
+  const std::string text =
+      options.page ? scene::key_page(keys) : scene::key_text(keys, options.key);
+  if (text.empty()) {
+    return complain(
+        driver::Error{"No key of " + options.file + " files is called \"" + options.key +
+                      "\"; `thimble help " + options.file + "` lists all."},
+        kExitBadInput);
+  }
+  std::printf("%s", text.c_str());
+  return kExitDone;
+}
+
+}  // namespace
+
+void add_help_command(CLI::App& app, int& exit_code) {
+  CLI::App* command =
+      app.add_subcommand("help", "List the keys of scene and arm files, with units and limits");
+  auto options = std::make_shared<HelpOptions>();
+  command->add_option("FILE", options->file, "Which kind of file: scene or arm")
+      ->check(CLI::IsMember({"scene", "arm"}))
+      ->capture_default_str();
+  command->add_option("KEY", options->key, "Only keys of this name");
+  command->add_flag("--page", options->page, "As a page of the guide (Markdown)");
+  command->callback([options, &exit_code] { exit_code = print_keys(*options); });
+}
+
+}  // namespace thimble::app

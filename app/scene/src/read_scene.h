@@ -1,0 +1,20 @@
+#pragma once
+
+#include <filesystem>
+
+#include "thimble/driver/result.h"
+#include "thimble/scene/arm_file.h"
+#include "thimble/scene/scene_file.h"
+#include "yaml/yaml_reader.h"
+
+namespace thimble::scene {
+
+/// Reads a scene from YAML that is already read; `file` is where it lies, beside which its files
+/// are looked for. Errors and time: as `load_scene`.
+driver::Result<Scene> read_scene(YamlFile& yaml, const std::filesystem::path& file,
+                                 const SceneReading& reading);
+
+/// Reads an arm from YAML that is already read. Errors and time: as `load_arm`.
+driver::Result<ArmFile> read_arm(YamlFile& yaml);
+
+}  // namespace thimble::scene
