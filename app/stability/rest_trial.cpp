@@ -18,7 +18,7 @@ namespace {
 constexpr double kHeld = 0.3;      // s; a shorter hold of the path is a stroke's turn [chosen]
 constexpr double kSettling = 1.6;  // s; the softest hand creeps on for so long (random_scene.cpp)
 constexpr double kWatched = 0.25;  // s, the last of it
-constexpr double kCorner = 50;     // Hz [STABILITY 2.5]
+constexpr double kCorner = 50;     // Hz [PHYSICS 2.5]
 
 /// A stretch of a run in which the hand rests, s.
 struct Stretch {

@@ -10,7 +10,7 @@
 
 namespace thimble::app {
 
-/// The force above 50 Hz from which on a hand that rests feels a limit cycle, N RMS [STABILITY 6].
+/// The force above 50 Hz from which on a hand that rests feels a limit cycle, N RMS [PHYSICS 6].
 inline constexpr double kRestFelt = 0.02;
 
 /// What the force did in the last quarter of a second of a hand's rest.

@@ -19,7 +19,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kFelt = 0.02;  // N RMS [STABILITY 6]
+constexpr double kFelt = 0.02;  // N RMS [PHYSICS 6]
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kPressed = 1;   // N, with which a hand rests on something [chosen]
 constexpr double kCreep = 1e-3;  // m/s: slower, a count takes 30 ms and more
@@ -114,7 +114,7 @@ void warn_of_effects(const scene::SceneObject& object, const Loop& loop, double 
           object.name, curvature, from, bare_edge));
     } else if (effect.kind->group == "friction") {
       const double hold = hold_of(effect);
-      // The arm's own dry friction holds slow oscillations [STABILITY 1.4].
+      // The arm's own dry friction holds slow oscillations [PHYSICS 1.4].
       const Carried carried = carried_by(loop.scene.arm, loop.times, 0, 0);
       const double held_speed = swing_speed_limit(
           hold, carried.damping, loop.scene.arm.simulated.plant.coulomb, carried.latency);

@@ -14,7 +14,7 @@ namespace thimble::app {
 
 // What `thimble study trouble` found in limit cycles under a hand that rests, though no wall is
 // stiffer than the loop carries. Each has a law, and each law a sentence that names the object, the
-// number and the remedy. What counts as a limit cycle: 20 mN above 50 Hz [STABILITY 6]. Real-time:
+// number and the remedy. What counts as a limit cycle: 20 mN above 50 Hz [PHYSICS 6]. Real-time:
 // never from the servo thread.
 
 /// Returns what the gate's energy stage will do to each field and weight that gives energy by
@@ -33,7 +33,7 @@ std::vector<std::string> rest_causes(const scene::Scene& scene, const std::strin
 std::vector<std::string> rest_warnings(const scene::Scene& scene, const RestTrial& trial);
 
 /// Returns the stiffness (N/m) that a texture's waves add along the surface for each newton of
-/// pressing: the largest curvature of its height, 1/m; for sines a (2 pi / L)^2 [STABILITY 1.1].
+/// pressing: the largest curvature of its height, 1/m; for sines a (2 pi / L)^2 [PHYSICS 1.1].
 double curvature_of(const render::EffectPlan& texture);
 
 /// Returns how stiff (N/m) a friction holds what sticks to it, over a micrometre of path; 0 if it

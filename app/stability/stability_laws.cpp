@@ -98,7 +98,7 @@ double restitution(double stiffness, double damping, double mass, double latency
 
 double bristle_length(double friction_force, double latency, double damping, double encoder_step,
                       double coulomb) {
-  // The factor covers the edge that encoder steps move out by up to 1.29 [STABILITY 2.3].
+  // The factor covers the edge that encoder steps move out by up to 1.29 [PHYSICS 2.3].
   const double late = 1.5 * friction_force * latency / damping;
   const double coarse = encoder_step > 0 ? friction_force * encoder_step / (2 * coulomb) : 0;
   return std::max(late, coarse);

@@ -4,7 +4,7 @@
 
 namespace thimble::app {
 
-// The laws of [STABILITY 1.1 to 1.5 and 2.3] as pure functions, for one direction of motion; what
+// The laws of [PHYSICS 1.1 to 1.5 and 2.3] as pure functions, for one direction of motion; what
 // makes a direction the worst one is in worst_direction.h. Letters as there: m, b, c mass, viscous
 // and dry friction of the device (with the hand, where a caller adds it), K, B stiffness and
 // damping of the wall, T the period, d the encoder step. SI throughout. Arguments that are not
@@ -18,24 +18,24 @@ double late_stiffness_limit(double damping, double latency, double mass);
 /// Returns the largest stiffness with which a wall is passive to any passive hand, N/m; 0 if none
 /// is. At each angle a it asks for (K T / 2) sin((d + 1/2) a) / sin(a / 2) - B cos((1 + d) a) <= b,
 /// with `wall_damping` B, `viscous` friction b of the device and d the delay in periods
-/// [STABILITY 1.2, Colgate and Schenkel; form with delay derived there].
+/// [PHYSICS 1.2, Colgate and Schenkel; form with delay derived there].
 double passive_stiffness(double viscous, double wall_damping, double period, double delay = 0);
 
 /// Finds the stiffness that is passive with coarse encoders, min(2 b / T, 2 c / d), N/m
-/// [STABILITY 1.3, Abbott and Okamura]. Without encoder steps the second bound falls away.
+/// [PHYSICS 1.3, Abbott and Okamura]. Without encoder steps the second bound falls away.
 double passive_stiffness_quantised(double viscous, double coulomb, double encoder_step,
                                    double period);
 
 /// Finds the speed of a swing above which dry friction holds it no more, m/s:
-/// (4 / pi) c / (K L - b) [STABILITY 1.4]; infinite where K L <= b. `latency` as `latency_of`.
+/// (4 / pi) c / (K L - b) [PHYSICS 1.4]; infinite where K L <= b. `latency` as `latency_of`.
 double swing_speed_limit(double stiffness, double viscous, double coulomb, double latency);
 
 /// Finds the mean restitution of an impact of a free mass, exp(-pi (b + B - K L) / (2 sqrt(K m)))
-/// [STABILITY 1.5]; above 1 the wall gives energy. `damping` is b + B.
+/// [PHYSICS 1.5]; above 1 the wall gives energy. `damping` is b + B.
 double restitution(double stiffness, double damping, double mass, double latency);
 
 /// Finds how far a friction's bristle must give before it slides, m:
-/// max(1.5 F L / b, F d / (2 c)) [STABILITY 2.3]; `damping` b of arm and hand, `coulomb` c of the
+/// max(1.5 F L / b, F d / (2 c)) [PHYSICS 2.3]; `damping` b of arm and hand, `coulomb` c of the
 /// arm alone. Infinite if the encoder has steps and the arm no dry friction.
 double bristle_length(double friction_force, double latency, double damping, double encoder_step,
                       double coulomb);

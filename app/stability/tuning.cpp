@@ -146,7 +146,7 @@ Carried carried_by(const scene::ArmFile& arm, const scene::LoopTimes& times, dou
   carried.tip = scene::worst_over_workspace(arm);
   carried.damping = carried.tip.damping + arm.simulated.hand.damping;
   carried.stiffness_law = scene::stiffness_limit(carried.damping + damping, carried.latency);
-  // Jitter acts as so much more delay [STABILITY 1.1].
+  // Jitter acts as so much more delay [PHYSICS 1.1].
   const double more = carried.latency - times.period / 2;
   const auto edge_with = [&](const device_sim::HandSettings& hand) {
     return stiffness_edge({.mass = carried.tip.mass + hand.mass,

@@ -20,7 +20,7 @@ struct Carried {
   double stiffness_law = 0;    ///< (b + B) / L, N/m.
   double stiffness_exact = 0;  ///< Of the exact linear map with hand and velocity filter, N/m.
   /// The same for the worst of all hands of a third to three times mass, stiffness and damping of
-  /// the file's, for these are guesses [STABILITY 9], N/m; and that hand.
+  /// the file's, for these are guesses [PHYSICS 9], N/m; and that hand.
   double stiffness_any_hand = 0;
   device_sim::HandSettings worst_hand;
   /// What is safe to ask for, N/m: part of the one, and part of the other, at whose edge a swing

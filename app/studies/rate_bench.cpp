@@ -15,7 +15,7 @@ namespace thimble::app {
 namespace {
 
 constexpr double kOften = 0.999;         // of all ticks
-constexpr double kStiffnessFelt = 0.08;  // [STABILITY 6: stiffness error]
+constexpr double kStiffnessFelt = 0.08;  // [PHYSICS 6: stiffness error]
 
 // Lets the scene run at another rate: what knows the time of a tick is told.
 void change_rate(scene::Scene& scene, double rate) {

@@ -25,7 +25,7 @@ struct RateVerdict {
   bool enough = false;
   double late_us = 0, work_us = 0;  ///< 99.9th percentiles of wake-up and tick.
   double headroom = 0;              ///< Share of the period that is left then; below 0 if none is.
-  double stiffness_lost = 0;        ///< Share of K_max that uneven ticks cost [STABILITY 1.1].
+  double stiffness_lost = 0;        ///< Share of K_max that uneven ticks cost [PHYSICS 1.1].
   std::string sentence;
 };
 
@@ -39,7 +39,7 @@ driver::Result<RateBench> bench_rate(const std::filesystem::path& scene, double 
 /// of the stiffness than can be felt.
 RateVerdict verdict_of(const RateBench& bench);
 
-/// Tells the share of K_max that ticks of uneven length cost: 1 - E[T]^2 / E[T^2] [STABILITY 1.1].
+/// Tells the share of K_max that ticks of uneven length cost: 1 - E[T]^2 / E[T^2] [PHYSICS 1.1].
 double stiffness_lost(const session::Histogram& period);
 
 /// Gives it as figures.

@@ -17,11 +17,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kStiffness = 1000;  // N/m, as in STABILITY 3
+constexpr double kStiffness = 1000;  // N/m, as in PHYSICS 3
 constexpr double kHalf = 0.015;      // m, of the square
 // Arrows per row and column: with different numbers none lies where two wedges meet.
 constexpr int kColumns = 8, kRows = 7;
-constexpr double kForceMax = 8.5;  // N, of a PHANTOM [STABILITY, heading]
+constexpr double kForceMax = 8.5;  // N, of a PHANTOM [PHYSICS 0]
 
 driver::DeviceState at(const Vector3d& p_WT) {
   driver::DeviceState state;
@@ -119,7 +119,7 @@ driver::Result<std::vector<Figure>> study_box(const std::filesystem::path& folde
     if (auto made = make_picture_folder(folder); !made) return made.error();
     if (auto drawn = draw(folder); !drawn) return drawn.error();
   }
-  // A plate of 2 mm: stiffness * thickness / 2 = 1 N [STABILITY 3].
+  // A plate of 2 mm: stiffness * thickness / 2 = 1 N [PHYSICS 3].
   const render::Box plate{.half_sides = {0.05, 0.05, 0.001}};
   return std::vector<Figure>{
       {"plate_2mm_pops_at_in_wedges",

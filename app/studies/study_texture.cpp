@@ -30,7 +30,7 @@ constexpr double kDepth = 0.002;      // m
 constexpr double kSpeed = 0.05;       // m/s, a calm stroke [chosen]
 constexpr double kRate = 1000;        // Hz
 constexpr int kTicks = 4000;          // lines of 0.25 Hz, on which all that is asked for falls
-constexpr double kEncoder = 0.00003;  // m [STABILITY, heading]
+constexpr double kEncoder = 0.00003;  // m [PHYSICS 0]
 
 /// Is one line that the force must hold, as the settings ask for it.
 struct Line {

@@ -10,7 +10,7 @@ namespace thimble::driver {
 ///
 /// As a rule the old force is held: shortened to the wanted length, which is never slowed, it moves
 /// towards the wanted force by at most `rise`. Holding must not push a hand on: a slow limit on the
-/// fall of a force makes a passive wall active [STABILITY 1.6]. So where the held force gives the
+/// fall of a force makes a passive wall active [PHYSICS 1.6]. So where the held force gives the
 /// hand more power than the wanted one, the old force is dropped as far as it does not help: to the
 /// point of it (between none and all) that is nearest to the wanted force, and at most `rise` is
 /// added to that. The one of both that gives less power is sent. At a speed up to `speed_floor`

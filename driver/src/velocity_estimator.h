@@ -7,7 +7,7 @@ namespace thimble::driver {
 /// Estimates velocity from sampled positions: backward difference, then one low-pass pole.
 ///
 /// The pole costs stability: it adds about T(1-a)/a, a = 1 - exp(-2 pi f T), to the loop's latency
-/// for damping forces [STABILITY 1.1], and pays with less encoder noise in them (B * step / T
+/// for damping forces [PHYSICS 1.1], and pays with less encoder noise in them (B * step / T
 /// without). All functions are Real-time: safe.
 class VelocityEstimator {
  public:

@@ -28,7 +28,7 @@ cited=$(comments | grep -P '(?<![A-Za-z0-9_`\]):])\[[A-Z][A-Za-z]*[ \],:]' |
 failed=0
 while IFS=$'\t' read -r at key rest; do
   # Options of a usage line, and units in a picture of an interface, are written in capitals too.
-  case $key in ARM | BUILD | FILE | FIRMWARE | FOLDER | NAME | OUTPUT | PICTURE | PRESET | REGEX | SCENE | THREADS | TIMEOUT | APART | HARD_CASES) continue ;; esac
+  case $key in ARM | BUILD | FILE | FIRMWARE | FOLDER | NAME | OUTPUT | PICTURE | PRESET | PROGRAM | REGEX | SCENE | THREADS | TIMEOUT | APART | HARD_CASES) continue ;; esac
   if ! grep -qx "$key" <<<"$keys"; then
     echo "$at: [$key$rest] is not in $pages/references.md"
     failed=1

@@ -1,5 +1,5 @@
 // Impacts on a surface with friction: what comes back is never more than what came in. Cases 7 and
-// 10 of [STABILITY 7], in two axes with the plant's exact map: x along the surface, z along its
+// 10 of [PHYSICS 7], in two axes with the plant's exact map: x along the surface, z along its
 // normal.
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // Friction from the wire up: the paper's limit cycle, and that the default has none. Cases 13 to 16
-// and 20 of [STABILITY 7] on the table of [STABILITY 2.2]: friction of 0.5 N under 1 N, 0.03 mm
+// and 20 of [PHYSICS 7] on the table of [PHYSICS 2.2]: friction of 0.5 N under 1 N, 0.03 mm
 // encoder.
 
 #include <gtest/gtest.h>
@@ -76,7 +76,7 @@ TEST(NaiveFriction, MovesTheHandNoMoreOnceTheEncodersAreIdeal) {
   const auto hold = friction("naive", rig, {{"at_rest", "hold"}});
   const Rest rest = rest_after_stop(*hold, rig, 0.01);
   // The force still turns at every second tick or so, which is the sampling's own chatter; what the
-  // hand feels of it stays below the working limit of [STABILITY 6].
+  // hand feels of it stays below the working limit of [PHYSICS 6].
   EXPECT_LT(rest.x_hf, 1.0e-6);
   EXPECT_GT(rest.sign_changes, 500);
 }
@@ -131,7 +131,7 @@ TEST(HardCase14, DefaultFrictionIsSilentAtAnyStopAtAnyDelay) {
   record_hard_case(14, kStops, "> force that it goes on holding", least_held, 0.25, "N");
 }
 
-// That the last second flickers no more than the first, as [STABILITY 7] proposes, holds of no
+// That the last second flickers no more than the first, as [PHYSICS 7] proposes, holds of no
 // limit cycle: windows of a second see it from other phases, and differ by 3 % for ever. What must
 // not grow is its span: two counts, as case 5 has it, and the RMS below half a quantum.
 TEST(HardCase14, DefaultFrictionFlickersByTwoCountsAtMostOnAnArmWithoutDryFriction) {
@@ -169,7 +169,7 @@ TEST(HardCase14, DefaultFrictionFlickersByTwoCountsAtMostOnAnArmWithoutDryFricti
   record_hard_case(14, "the same", "<= force above 50 Hz over one quantum", late_share, 0.5, "1");
 }
 
-// Hand and device constants are known from memory only: vary them by 3 [STABILITY 9].
+// Hand and device constants are known from memory only: vary them by 3 [PHYSICS 9].
 TEST(DefaultFriction, IsSilentForOtherHandsMassesAndEncoders) {
   std::vector<FrictionRigSettings> rigs(9);
   rigs[0].hand_damping = 1;

@@ -1,4 +1,4 @@
-// The hand's constants are guesses [STABILITY 9]: what ships must hold for a third and three times
+// The hand's constants are guesses [PHYSICS 9]: what ships must hold for a third and three times
 // of each.
 
 #include <gtest/gtest.h>
@@ -129,7 +129,7 @@ Unrest unrest_of(const scene::ArmFile& file, double rate, double stiffness, doub
       if (!touch) continue;
       EXPECT_FALSE(touch->fault);
       ++found.tried;
-      // What cannot be felt [STABILITY 6].
+      // What cannot be felt [PHYSICS 6].
       if (touch->force_rms > 0.02) ++found.loud;
       if (touch->force_rms < found.force_rms) continue;
       found.force_rms = touch->force_rms;

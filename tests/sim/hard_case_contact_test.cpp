@@ -1,4 +1,4 @@
-// Hard cases 22, 23, 25, 27 and 28 of [STABILITY 7] through the door that scenes use: one object
+// Hard cases 22, 23, 25, 27 and 28 of [PHYSICS 7] through the door that scenes use: one object
 // with every tracker that a scene can name, from the tip's place to the force.
 
 #include <gtest/gtest.h>

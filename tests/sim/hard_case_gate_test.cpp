@@ -1,4 +1,4 @@
-// Hard cases 9 to 12 of [STABILITY 7]: what stands between a wall and the motors. Each has its
+// Hard cases 9 to 12 of [PHYSICS 7]: what stands between a wall and the motors. Each has its
 // guard test: what must fail is seen to fail.
 
 #include <gtest/gtest.h>
@@ -215,7 +215,7 @@ double limited_restitution(double stiffness, double speed, double phase, Limiter
 
 TEST(HardCase10, SymmetricSlewLimiterThrowsTheTipBack) {
   // The guard of HardCase10 in friction_impact_test.cpp: active below K v = 300 N/s
-  // [STABILITY 1.6].
+  // [PHYSICS 1.6].
   double most = 0;
   for (int i = 0; i < 50; ++i) {
     double last = 0;

@@ -1,4 +1,4 @@
-// Hard case 40 of [STABILITY 7]: a scene of 60 Hz under a servo of 1 kHz, through the whole way:
+// Hard case 40 of [PHYSICS 7]: a scene of 60 Hz under a servo of 1 kHz, through the whole way:
 // simulated arm, wire, device and gate. Its guard: the same scene's force, held, is active.
 
 #include <gtest/gtest.h>
@@ -269,7 +269,7 @@ TEST(HardCase40, GuardHeldForceObeysTheSlowPeriodAndAModelTheServos) {
 }
 
 /// Is the largest change of what was sent from one tick to the next against the force, from `from`
-/// (s) on, where it is above 0.1 N: 5 mN, a quarter of what is felt [STABILITY 6].
+/// (s) on, where it is above 0.1 N: 5 mN, a quarter of what is felt [PHYSICS 6].
 double largest_jump(const std::vector<Row>& rows, double from) {
   double most = 0;
   for (std::size_t k = 1; k < rows.size(); ++k) {

@@ -1,4 +1,4 @@
-// Hard cases 9, 33 and 37 to 39 of [STABILITY 7]: loops that stall, surfaces that snap, poses that
+// Hard cases 9, 33 and 37 to 39 of [PHYSICS 7]: loops that stall, surfaces that snap, poses that
 // cannot, encoders and reports that lie. Through arm, board, wire, device and gate but for 33.
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Hard cases 1 to 8 of [STABILITY 7]: sampled walls in one dimension, on the plant's exact map,
+// Hard cases 1 to 8 of [PHYSICS 7]: sampled walls in one dimension, on the plant's exact map,
 // against the laws. PHANTOM-like set unless said otherwise.
 
 #include <gtest/gtest.h>

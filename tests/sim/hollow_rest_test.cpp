@@ -26,7 +26,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kFelt = 0.02;           // N RMS [STABILITY 6]
+constexpr double kFelt = 0.02;           // N RMS [PHYSICS 6]
 constexpr double kHeldByFriction = 0.2;  // N; what dry friction takes of a hand's force at most
 
 // Every way of contact that is recommended somewhere.

@@ -68,7 +68,7 @@ TEST_P(ShippedScene, RunsForItsWholeTimeAlikeEachTimeWithoutAFaultALostContactOr
     EXPECT_GT(session->statistics().force_max(), 0.3);
     EXPECT_LT(session->statistics().force_max(), session->scene().arm.limits.force_max);
     // What an ideal texture or field does not do, a loop of 1 kHz with a delay does a little
-    // [STABILITY 1.5]; felt is what exceeds a millijoule.
+    // [PHYSICS 1.5]; felt is what exceeds a millijoule.
     EXPECT_LT(session->statistics().energy_to_hand(), 1e-3);
     const std::uint64_t hash = hash_of_touch(*session);
     if (time == 0) first = hash;

@@ -14,7 +14,7 @@
 #include "support/random.h"
 #include "thimble/scene/arm_simulation.h"
 
-// The rule for three dimensions [STABILITY 9] against simulation on the real kinematics, at poses
+// The rule for three dimensions [PHYSICS 9] against simulation on the real kinematics, at poses
 // all over the workspace.
 
 namespace thimble::app {

@@ -8,12 +8,12 @@
 
 namespace thimble::support {
 
-// Laws of [STABILITY 1.2, 1.4 and 1.5] that simulated walls are compared with; letters as in
+// Laws of [PHYSICS 1.2, 1.4 and 1.5] that simulated walls are compared with; letters as in
 // stability/stability_laws.h.
 
 /// Returns the least viscous friction of a device, N s/m, with which a wall is passive to any
 /// passive hand: max over angles of (K T / 2) sin((d + 1/2) a) / sin(a / 2) - B cos((1 + d) a)
-/// [STABILITY 1.2].
+/// [PHYSICS 1.2].
 inline double passive_damping(double stiffness, double damping, double period, double delay = 0) {
   constexpr int kAngles = 20'000;
   const double d = delay / period;
@@ -26,7 +26,7 @@ inline double passive_damping(double stiffness, double damping, double period, d
   return most;
 }
 
-/// What a wall does after a start from anywhere [STABILITY 1.4, Diolaiti et al.].
+/// What a wall does after a start from anywhere [PHYSICS 1.4, Diolaiti et al.].
 enum class WallRegion {
   kComesToRest,       ///< From every start.
   kFlickers,          ///< Ends in a limit cycle of a few encoder counts.
@@ -34,7 +34,7 @@ enum class WallRegion {
   kGrows,             ///< Flickers, then grows.
 };
 
-/// The place of a wall in the map of [STABILITY 1.4]: beta = b / (K T), sigma = c / (K d).
+/// The place of a wall in the map of [PHYSICS 1.4]: beta = b / (K T), sigma = c / (K d).
 struct WallPlace {
   double beta = 0;
   double sigma = 0;

@@ -18,7 +18,7 @@ Eigen::Vector3d vector_of(const std::array<double, 3>& v) noexcept {
 }
 
 // Half of what the maker declares [chosen: room for the hand]. A spring that is felt late gives
-// energy, which the damper takes as long as b > K (T/2 + delay) [STABILITY 1]; the delay beside the
+// energy, which the damper takes as long as b > K (T/2 + delay) [PHYSICS 1]; the delay beside the
 // arm's own is two ticks: one until the program reads, one until its force is taken.
 struct Gains {
   double stiffness, damping;

@@ -13,7 +13,7 @@ namespace thimble::scene {
 inline const std::vector<std::string_view> kEnergyStageNames{"none", "passivity", "bounding"};
 
 /// The energy that may go out before the controller acts, J: the most that hard case 11 allows a
-/// guarded wall [STABILITY 7]. A hand of 0.1 kg is not moved faster than 0.2 m/s by it.
+/// guarded wall [PHYSICS 7]. A hand of 0.1 kg is not moved faster than 0.2 m/s by it.
 inline constexpr double kEnergyAllowance = 0.002;
 
 /// The debt at which the controller damps as hard as it may, J [chosen: as much again; so it
@@ -23,13 +23,13 @@ inline constexpr double kEnergyOnset = 0.002;
 /// Returns the energy stage's settings for a loop of `rate` (Hz): what the arm file, and a scene in
 /// place of it, say, joined with what follows from the arm: the mass at the tip, the delay, for the
 /// reservoir what a spring of the declared stiffness holds at the declared force, for the slope the
-/// arm's own friction over the latency, b / L [STABILITY 1.1]. Real-time: never from the servo
+/// arm's own friction over the latency, b / L [PHYSICS 1.1]. Real-time: never from the servo
 /// thread.
 driver::EnergyGuardSettings energy_settings(const ArmFile& arm, double rate,
                                             std::optional<driver::EnergyStage> scene);
 
 /// Returns the delay from encoder to motors beyond the hold, s, as far as the arm's file tells;
-/// otherwise a frame for the report and one for the force, 1 ms [STABILITY 5].
+/// otherwise a frame for the report and one for the force, 1 ms [PHYSICS 5].
 double loop_delay(const ArmFile& arm);
 
 }  // namespace thimble::scene

@@ -5,7 +5,7 @@ namespace thimble::scene {
 // What the gate of an arm needs of the laws in stability/stability_laws.h. Letters as there.
 // Real-time: never from the servo thread.
 
-/// Is what delays a loop's answer [STABILITY 1.1].
+/// Is what delays a loop's answer [PHYSICS 1.1].
 struct LoopTimes {
   double period = 0.001;     ///< Mean time between ticks, s.
   double period_spread = 0;  ///< Standard deviation of that time, s.
@@ -14,14 +14,14 @@ struct LoopTimes {
   double position_lag = 0;   ///< Of a low-pass on the position, s (see low_pass_lag).
 };
 
-/// Sums up the latency budget L = E[T^2] / (2 E[T]) + delays + lags, s [STABILITY 1.1].
+/// Sums up the latency budget L = E[T^2] / (2 E[T]) + delays + lags, s [PHYSICS 1.1].
 double latency_of(const LoopTimes& times);
 
 /// Finds the lag of a one-pole low-pass of corner frequency `corner` (Hz) at `period` (s):
 /// T (1 - a) / a with a = 1 - exp(-2 pi corner T). A corner of 0 means no filter and no lag.
 double low_pass_lag(double corner, double period);
 
-/// Finds the stiffness up to which a free device is stable, (b + B) / L, N/m [STABILITY 1.1].
+/// Finds the stiffness up to which a free device is stable, (b + B) / L, N/m [PHYSICS 1.1].
 /// `damping` is b + B, N s/m. Holds for (b + B) T / m up to 0.1; beyond, see `stiffness_edge`.
 double stiffness_limit(double damping, double latency);
 

@@ -9,7 +9,7 @@
 namespace thimble::scene {
 
 // The laws are for one direction; an arm has three at each pose. What holds in all of them
-// [STABILITY 9]: stiffness times latency up to the least eigenvalue of the damping at the tip, the
+// [PHYSICS 9]: stiffness times latency up to the least eigenvalue of the damping at the tip, the
 // longest step of the encoders, the least apparent mass. app knows arm, hand and workspace, so the
 // rule is here. Real-time: never from the servo thread.
 

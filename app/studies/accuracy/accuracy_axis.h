@@ -49,7 +49,7 @@ struct AccuracyAxis {
   std::string knob, knob_unit;
   std::string metric, unit;
   std::string truth;                     ///< One sentence: what the errors are measured against.
-  std::optional<double> threshold = {};  ///< What cannot be felt, in `unit` [STABILITY 6].
+  std::optional<double> threshold = {};  ///< What cannot be felt, in `unit` [PHYSICS 6].
   std::string threshold_words;
   std::string felt_words;      ///< In place of the sentence about the point beyond what is felt.
   std::string per = "tick";    ///< What the cost is counted for.

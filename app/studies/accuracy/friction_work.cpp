@@ -12,7 +12,7 @@ namespace thimble::app {
 namespace {
 
 constexpr double kSpeed = 0.001;  // m/s
-constexpr double kCorner = 50;    // Hz [STABILITY 2.5]
+constexpr double kCorner = 50;    // Hz [PHYSICS 2.5]
 
 }  // namespace
 

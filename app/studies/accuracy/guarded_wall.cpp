@@ -19,7 +19,7 @@ driver::SafetyGate gate_of(const WallGuard& guard) {
   settings.allowance = guard.allowance;
   settings.reservoir = 0.01;  // J
   settings.onset = guard.onset;
-  settings.slope = 2 * GuardedArm::kViscous / GuardedArm::kTick;  // passive [STABILITY 1.6]
+  settings.slope = 2 * GuardedArm::kViscous / GuardedArm::kTick;  // passive [PHYSICS 1.6]
   return driver::SafetyGate(limits, settings);
 }
 

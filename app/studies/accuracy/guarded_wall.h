@@ -7,7 +7,7 @@
 
 namespace thimble::app {
 
-/// Is the arm in front of a guarded wall: PHANTOM-like [STABILITY, heading].
+/// Is the arm in front of a guarded wall: PHANTOM-like [PHYSICS 0].
 struct GuardedArm {
   static constexpr double kMass = 0.075;     ///< kg
   static constexpr double kViscous = 0.005;  ///< N s/m
@@ -29,7 +29,7 @@ struct WallGuard {
 ///
 /// The coupling is a spring and damper between the tip and a point without mass that the wall stops
 /// by an implicit step, so that all behind the coupling is passive. Spring and damper are 1 / 1.1
-/// and 1 / 1.2 of what K T / 2 + B < b leaves [STABILITY 1.2 and 1.6, after Adams and Hannaford].
+/// and 1 / 1.2 of what K T / 2 + B < b leaves [PHYSICS 1.2 and 1.6, after Adams and Hannaford].
 /// Real-time: safe, once built.
 class GuardedWall {
  public:

@@ -5,9 +5,9 @@
 namespace thimble::app {
 
 /// Is a free mass that flies into a sampled wall and out again, without dry friction: the cheapest
-/// look at what a loop's time does [STABILITY 1.5]. SI.
+/// look at what a loop's time does [PHYSICS 1.5]. SI.
 struct Impact {
-  double mass = 0.075;     ///< kg [STABILITY, heading]
+  double mass = 0.075;     ///< kg [PHYSICS 0]
   double viscous = 0.005;  ///< N s/m
   double stiffness = 1000;
   double damping = 0;  ///< Of the wall, N s/m, by backward difference.

@@ -6,7 +6,7 @@
 
 namespace thimble::app {
 
-// One axis of the PHANTOM-like arm [STABILITY, heading], pushed for a second by a force that a
+// One axis of the PHANTOM-like arm [PHYSICS 0], pushed for a second by a force that a
 // servo loop holds for 1 ms each; and where it truly goes. Real-time: never from the servo thread.
 
 /// Is the arm, and what leads it where there is no dry friction. SI.

@@ -22,7 +22,7 @@ namespace {
 using render::BlendingChoice;
 using render::TrackerChoice;
 
-// What can be felt [STABILITY 6], as the diagrams of tessellation shade it.
+// What can be felt [PHYSICS 6], as the diagrams of tessellation shade it.
 constexpr double kForceShareFelt = 0.035;
 constexpr double kAngleFelt = 5 * std::numbers::pi / 180;
 

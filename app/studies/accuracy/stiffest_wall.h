@@ -11,7 +11,7 @@ namespace thimble::app {
 /// out once per tick. The hand's damping is the arm's; its spring does not matter beside the
 /// wall's.
 struct RestedWall {
-  double mass = 0.1;     ///< kg, of arm and hand [STABILITY, heading]
+  double mass = 0.1;     ///< kg, of arm and hand [PHYSICS 0]
   double viscous = 3;    ///< N s/m, of arm and hand
   double damping = 0;    ///< N s/m, of the wall
   double period = 1e-3;  ///< s

@@ -43,7 +43,7 @@ RingErrors ring_errors(const RingTouch& ring);
 Stroke ring_work(const RingTouch& ring);
 inline constexpr int kRingTicks = 4000;
 
-/// Tells the length of an edge around the tube over the tube's radius, L / R [STABILITY 3].
+/// Tells the length of an edge around the tube over the tube's radius, L / R [PHYSICS 3].
 double edge_over_radius(int across);
 
 }  // namespace thimble::app

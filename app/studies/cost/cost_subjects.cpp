@@ -66,7 +66,7 @@ Built build_effect(const render::EffectKind& kind) {
   auto yaml = scene::YamlFile::parse(text, std::string(kind.name));
   if (!yaml) return yaml.error();
   render::SurfaceChoice surface{.spring = kCostSpring, .effects = {}};
-  // The PHANTOM-like set of [STABILITY].
+  // The PHANTOM-like set of [PHYSICS 0].
   const render::EffectContext context{.tick = 0.001,
                                       .delay = 0.001,
                                       .encoder_step = 0.03e-3,

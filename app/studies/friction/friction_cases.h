@@ -13,7 +13,7 @@ namespace thimble::app {
 struct FrictionCase {
   std::string name;               ///< Of files and figures.
   std::string title;              ///< In words.
-  std::string letter;             ///< In the table of [STABILITY 2.2]; empty if it is not there.
+  std::string letter;             ///< In the table of [PHYSICS 2.2]; empty if it is not there.
   std::string kind;               ///< In the effect table.
   std::string word_key, word;     ///< A setting that is a word; none if empty.
   double static_coefficient = 0;  ///< 0: not given.
@@ -53,7 +53,7 @@ RigRun stop_run(const FrictionCase& which, const FrictionRigSettings& rig,
 /// Measures a friction on a rig. Real-time: never from the servo thread.
 FrictionMeasures measure(const FrictionCase& which, const FrictionRigSettings& rig);
 
-/// Is what the naive law does when it slides evenly [STABILITY 2.1].
+/// Is what the naive law does when it slides evenly [PHYSICS 2.1].
 struct EvenSliding {
   double mean = 0;    ///< N, against the motion.
   double ripple = 0;  ///< N RMS.

@@ -19,7 +19,7 @@ namespace {
 // The vintage arm's numbers; app/arms/vintage_phantom.yaml holds the same with their sources.
 constexpr double kUpperLink = 0.138;  // m
 constexpr double kLowerLink = 0.112;  // m
-constexpr double kForceMax = 8.5;     // N [STABILITY, heading]
+constexpr double kForceMax = 8.5;     // N [PHYSICS 0]
 
 driver::JointModel<driver::SerialArm> model_with_step(double step) {
   driver::JointModel<driver::SerialArm> model;

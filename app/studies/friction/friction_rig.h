@@ -11,7 +11,7 @@
 namespace thimble::app {
 
 /// Says what hand, arm, wire and surface a friction is tried on. The defaults are the PHANTOM-like
-/// set with a hand in pinch grip at 1 kHz [STABILITY, heading].
+/// set with a hand in pinch grip at 1 kHz [PHYSICS 0].
 struct FrictionRigSettings {
   double encoder_step = 3e-5;  ///< At the tip along x, m; 0: ideal encoders.
   std::int64_t delay_ns = 0;   ///< From the host's write to the motors.

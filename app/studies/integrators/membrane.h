@@ -8,7 +8,7 @@
 namespace thimble::app {
 
 /// Is a square membrane of n x n nodes in a fixed frame that is poked at one node and let go: the
-/// deformable body whose motion is known exactly [STABILITY 4].
+/// deformable body whose motion is known exactly [PHYSICS 4].
 struct Membrane {
   std::int32_t n = 32;
   double mass = 1e-3;      ///< kg per node

@@ -23,7 +23,7 @@ namespace {
 using render::SpringScheme;
 
 constexpr int kFrames = 100;
-// Half the force that a hand can just tell apart, which is 7 % [STABILITY 6, after Pang, Tan,
+// Half the force that a hand can just tell apart, which is 7 % [PHYSICS 6, after Pang, Tan,
 // Durlach 1991].
 constexpr double kFelt = 0.035;
 

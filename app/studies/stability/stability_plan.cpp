@@ -59,7 +59,7 @@ WallCase arm_case(const StabilitySetup& setup, const ArmDirection& direction) {
   return wall;
 }
 
-/// Is a free linear arm with b = 1, as in case 1 of [STABILITY 7].
+/// Is a free linear arm with b = 1, as in case 1 of [PHYSICS 7].
 WallCase bare_case(const StabilitySetup& setup) {
   WallCase wall = linear_case(setup);
   wall.hand = {};
@@ -156,7 +156,7 @@ void add_restitution(const StabilitySetup& setup, std::vector<StabilityCell>& ce
   const double mass = setup.arm.simulated.plant.mass;
   for (const Series& s : {Series{0.001, 0, 0}, Series{0.001, 0.001, 0}, Series{0.001, 0.002, 0},
                           Series{0.00025, 0, 0}, Series{0.000125, 0, 0}, Series{0.001, 0, 2}}) {
-    // Beyond this the law's own condition, K L^2 / m << 1, is broken [STABILITY 1.1].
+    // Beyond this the law's own condition, K L^2 / m << 1, is broken [PHYSICS 1.1].
     const double latency = s.period / 2 + s.delay;
     const double most = std::min(0.3 * mass / (latency * latency), 3e4);
     for (const double stiffness : octaves(100, most, setup.coarse ? 4 : 20)) {

@@ -57,7 +57,7 @@ driver::Result<std::vector<double>> measure_stability(const StabilitySetup& setu
 
 // What pictures and figures must know of the plan.
 
-inline constexpr double kBareDamping = 1;        // N s/m, of the arm in case 1 [STABILITY 7]
+inline constexpr double kBareDamping = 1;        // N s/m, of the arm in case 1 [PHYSICS 7]
 inline constexpr double kCycleStiffness = 1000;  // N/m
 /// Is the step of the encoders for the map of limit cycles, m: so coarse that a step's force is far
 /// above a step of the motors' current.

@@ -27,7 +27,7 @@ SampledWall sampled(const StabilitySetup& setup, double damping) {
           .delay = setup.delay()};
 }
 
-/// Is the free linear arm of case 1 [STABILITY 7].
+/// Is the free linear arm of case 1 [PHYSICS 7].
 SampledWall bare(const StabilitySetup& setup, double period, double delay) {
   return {.mass = setup.arm.simulated.plant.mass,
           .viscous = kBareDamping,
@@ -36,7 +36,7 @@ SampledWall bare(const StabilitySetup& setup, double period, double delay) {
 }
 
 /// Tells up to which stiffness a swing that begins at the speed of a touch dies: dry friction holds
-/// it beyond what damping carries, (b + B + 4 c / (pi v)) / L [STABILITY 1.4, solved for K].
+/// it beyond what damping carries, (b + B + 4 c / (pi v)) / L [PHYSICS 1.4, solved for K].
 double arm_law(const StabilitySetup& setup, double damping) {
   const device_sim::PlantSettings& tip = setup.arm.simulated.plant;
   const double coulomb = tip.coulomb * setup.direction.friction_share;
@@ -340,8 +340,8 @@ std::vector<Figure> stability_figures(const StabilitySetup& setup,
   judge("agreement.edge_with_latency_law",
         worst_error(linear, &StabilityRow::law,
                     [&](const StabilityRow& row) {
-                      // The law's own regime [STABILITY 1.1].
-                      // A filtered velocity damps less than the law's B [STABILITY 1.1].
+                      // The law's own regime [PHYSICS 1.1].
+                      // A filtered velocity damps less than the law's B [PHYSICS 1.1].
                       return row.cell.b < 0.03 * wall.viscous &&
                              wall.viscous * setup.period() / wall.mass < 0.1 &&
                              row.law * latency * latency / wall.mass < 0.1;

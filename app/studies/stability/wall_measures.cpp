@@ -10,7 +10,7 @@
 namespace thimble::app {
 namespace {
 
-constexpr double kTouchSpeed = 0.1;   // m/s: a light tap [STABILITY 1.5 and 1.6]
+constexpr double kTouchSpeed = 0.1;   // m/s: a light tap [PHYSICS 1.5 and 1.6]
 constexpr double kStartMost = 0.008;  // m, of a small swing: no arm reaches the end of its joints
 constexpr double kFarthest = 0.05;    // m from the middle: a small swing that comes so far grows
 constexpr double kCeiling = 25;       // times its energy at first
@@ -142,7 +142,7 @@ driver::Result<double> released_swing(const scene::ArmFile& arm, WallCase wall, 
   const double mass = wall.tip.mass + wall.hand.mass;
   wall.one_sided = false;
   const double step = wall.own_step ? wall.direction.step : wall.step;
-  // Between two counts the force is never zero: the worst place to come to rest [STABILITY 1.4].
+  // Between two counts the force is never zero: the worst place to come to rest [PHYSICS 1.4].
   // There the tip lies and the hand wants to be when the kick comes.
   wall.offset = wall.hand_from = wall.hand_to = 0.5 * step;
   wall.hand_start = wall.hand_end = 0;

@@ -79,7 +79,7 @@ class Drawing {
   RandomScene scene() {
     constexpr std::array kRates{1000.0, 1000.0, 1000.0, 500.0, 2000.0};
     rate_ = kRates[draw_.one_of(kRates.size())];
-    // Pinch grips from weak to firm [STABILITY, heading, and 9: constants varied by 1/3 to 3].
+    // Pinch grips from weak to firm [PHYSICS 0 and 9: constants varied by 1/3 to 3].
     hand_ = {.mass = draw_.octave(0.01, 0.075),
              .stiffness = draw_.octave(100, 900),
              .damping = draw_.octave(1, 9),

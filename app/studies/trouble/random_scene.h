@@ -17,7 +17,7 @@ struct RandomSceneLimits {
   /// Where the scene will say that the arm's file and the folder of the small meshes are.
   std::string arm_path, mesh_path;
   /// Of the stiffness that the latency budget allows this arm with the hand that was drawn, so much
-  /// is asked for at most [STABILITY 1.1; 1.6 of STABILITY leaves 1.1 to 1.2, what is drawn leaves
+  /// is asked for at most [PHYSICS 1.1; PHYSICS 1.6 leaves 1.1 to 1.2, what is drawn leaves
   /// 1.25].
   double stiffness_share = 0.8;
 };
@@ -28,7 +28,7 @@ struct RandomScene {
   /// Energy that the scene itself may give to the hand, J: of weights and of fields of force.
   double own_energy = 0;
   /// Whether a friction of the scene is one that has a limit cycle at rest on coarse encoders by
-  /// its nature: naive and paper, kept to compare with [STABILITY 2.2].
+  /// its nature: naive and paper, kept to compare with [PHYSICS 2.2].
   bool trembles = false;
 };
 

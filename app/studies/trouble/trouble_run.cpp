@@ -22,7 +22,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kCorner = 50;        // Hz [STABILITY 2.5]
+constexpr double kCorner = 50;        // Hz [PHYSICS 2.5]
 constexpr double kRestWindow = 0.25;  // s
 
 /// Keeps the account of one run, tick by tick.

@@ -31,7 +31,7 @@ struct TroubleFound {
   double badness() const;
 };
 
-/// The force above 50 Hz that counts as a limit cycle at rest, N RMS [STABILITY 6].
+/// The force above 50 Hz that counts as a limit cycle at rest, N RMS [PHYSICS 6].
 inline constexpr double kTrembleMost = 0.02;
 
 /// Runs a scene's file and keeps the account.

@@ -27,7 +27,7 @@ namespace thimble::render {
 ///
 /// In a hollow `bend` is negative, and the depth begins softly (depth_below_hollow).
 /// Neighbours share offset edges. `bend` is how far a smooth surface with these normals rises
-/// above the triangle, right to second order [STABILITY 3]; as sums over corners go, it is also
+/// above the triangle, right to second order [PHYSICS 3]; as sums over corners go, it is also
 /// sum over i < j of l_i l_j (x_i - x_j) . (n_i - n_j). All Real-time: safe. Points are in steps of
 /// the lattice.
 ///

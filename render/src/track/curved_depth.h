@@ -25,7 +25,7 @@ struct MeshDepth {
 };
 
 /// Turns the depth below the triangles into the depth below the smooth surface they stand for
-/// [STABILITY 3]. A `Depth` stage of Blended.
+/// [PHYSICS 3]. A `Depth` stage of Blended.
 ///
 /// With the smooth surface at height h above the place and the tip at depth d below the mesh it is
 /// d + min(h, d), at least 0. Contact still begins where the tip enters the mesh, so where h > 0 a

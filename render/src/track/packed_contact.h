@@ -30,7 +30,7 @@ namespace thimble::render {
 /// of a crease in a hollow the edge or corner itself holds the tip (hollow_hold.h).
 ///
 /// Contact begins where the smooth surface does. On a bulge that is above the triangles, by up to
-/// L^2 / 6R for edges of length L on a radius R [STABILITY 3]: there the depth rises from 0, as
+/// L^2 / 6R for edges of length L on a radius R [PHYSICS 3]: there the depth rises from 0, as
 /// long as the store can tell how high the surface rises. In a hollow it is below them: there
 /// contact begins and ends at the triangles, softly (depth_below_hollow). So nothing jumps, and
 /// no depth is bent towards the triangles as CurvedDepth has to do, which begins at the mesh.

@@ -10,15 +10,15 @@
 namespace thimble::render {
 
 /// Is the most triangles whose feet are sought in one descent, the fan of the last vertex aside.
-/// At 2 m/s and 1 kHz over triangles of 0.3 mm a tick crosses 7 [STABILITY 3: vT/L]; the slip half
+/// At 2 m/s and 1 kHz over triangles of 0.3 mm a tick crosses 7 [PHYSICS 3: vT/L]; the slip half
 /// round a sphere of n triangles, once the tip is pushed past its middle, some 1.3 sqrt(n): 400 at
 /// 10^5. At some 30 ns each the bound keeps the worst tick near 30 us.
 inline constexpr std::uint32_t kFeetMax = 1024;
 
 /// Is the distance between tip and rest, in roundings of the mesh, from which their difference
 /// gives the direction: both are wrong by a few 2^-53 of the mesh's size, a rounding is 64 of them,
-/// so the direction is good to 2^-10 rad at worst, a hundredth of what a hand can tell [STABILITY
-/// 6].
+/// so the direction is good to 2^-10 rad at worst, a hundredth of what a hand can tell
+/// [PHYSICS 6].
 inline constexpr double kDirectionMin = 64;
 
 /// Says where a descent ended.

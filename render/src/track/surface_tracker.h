@@ -13,7 +13,7 @@
 namespace thimble::render {
 
 /// Is the most triangles a tracker crosses in one tick. At 2 m/s and 1 kHz the tip moves 2 mm; over
-/// triangles of 0.3 mm that is 7 hops [STABILITY 3: vT/L], and a walk around a vertex of valence 64
+/// triangles of 0.3 mm that is 7 hops [PHYSICS 3: vT/L], and a walk around a vertex of valence 64
 /// needs 32. Reaching the bound is counted.
 inline constexpr std::uint16_t kHopsMax = 64;
 

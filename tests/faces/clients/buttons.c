@@ -5,7 +5,7 @@
 
 static int presses, looks;
 
-static HDCallbackCode HDCALLBACK look(void *data) {
+static HDCallbackCode HDCALLBACK look(void* data) {
   HDint now = 0, before = 0;
   (void)data;
   hdBeginFrame(hdGetCurrentDevice());

@@ -1,5 +1,5 @@
-/* What a CHAI3D program does: both libraries at run time, by bare names, and a loop that nothing but
- * the set-force call paces. */
+/* What a CHAI3D program does: both libraries at run time, by bare names, and a loop that nothing
+ * but the set-force call paces. */
 #include <dlfcn.h>
 #include <math.h>
 #include <stdio.h>
@@ -7,9 +7,9 @@
 
 typedef int (*Count)(void);
 typedef int (*ById)(int);
-typedef int (*Three)(int, double *, double *, double *);
-typedef int (*Six)(int, const double *, const double *, const double *, const double *,
-                   const double *, const double *);
+typedef int (*Three)(int, double*, double*, double*);
+typedef int (*Six)(int, const double*, const double*, const double*, const double*, const double*,
+                   const double*);
 
 static double now(void) {
   struct timespec t;
@@ -18,8 +18,8 @@ static double now(void) {
 }
 
 int main(void) {
-  void *hd = dlopen("libHD.so", RTLD_LAZY | RTLD_GLOBAL);
-  void *library = dlopen("libhdPhantom.so", RTLD_LAZY | RTLD_GLOBAL);
+  void* hd = dlopen("libHD.so", RTLD_LAZY | RTLD_GLOBAL);
+  void* library = dlopen("libhdPhantom.so", RTLD_LAZY | RTLD_GLOBAL);
   Count count;
   ById open_arm, close_arm;
   Three position;
@@ -27,11 +27,11 @@ int main(void) {
   double began, seconds, p[3], f[3], none = 0;
   int i, k;
   if (!hd || !library) return 2;
-  *(void **)&count = dlsym(library, "hdPhantomGetNumDevices");
-  *(void **)&open_arm = dlsym(library, "hdPhantomOpen");
-  *(void **)&close_arm = dlsym(library, "hdPhantomClose");
-  *(void **)&position = dlsym(library, "hdPhantomGetPosition");
-  *(void **)&force = dlsym(library, "hdPhantomSetForceAndTorque");
+  *(void**)&count = dlsym(library, "hdPhantomGetNumDevices");
+  *(void**)&open_arm = dlsym(library, "hdPhantomOpen");
+  *(void**)&close_arm = dlsym(library, "hdPhantomClose");
+  *(void**)&position = dlsym(library, "hdPhantomGetPosition");
+  *(void**)&force = dlsym(library, "hdPhantomSetForceAndTorque");
   if (!count || !open_arm || !close_arm || !position || !force || count() < 1) return 3;
   open_arm(0);
   began = now();

@@ -1,11 +1,12 @@
-/* Switches force on with a ramp and holds 0.3 N upwards; the force may grow no faster than asked. */
+/* Switches force on with a ramp and holds 0.3 N upwards; the force may grow no faster than asked.
+ */
 #include <HD/hd.h>
 #include <stdio.h>
 #include <unistd.h>
 
 static double sent[3], steepest;
 
-static HDCallbackCode HDCALLBACK push(void *data) {
+static HDCallbackCode HDCALLBACK push(void* data) {
   static double before;
   const double f[3] = {0, 0.3, 0};
   (void)data;

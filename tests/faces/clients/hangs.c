@@ -2,7 +2,7 @@
 #include <HD/hd.h>
 #include <unistd.h>
 
-static HDCallbackCode HDCALLBACK push(void *data) {
+static HDCallbackCode HDCALLBACK push(void* data) {
   static int ticks;
   const double f[3] = {0.3, 0, 0};
   (void)data;
@@ -13,7 +13,7 @@ static HDCallbackCode HDCALLBACK push(void *data) {
   return HD_CALLBACK_CONTINUE;
 }
 
-int main(int argc, char **argv) {
+int main(int argc, char** argv) {
   HHD device = hdInitDevice(HD_DEFAULT_DEVICE);
   (void)argv;
   if (device == HD_INVALID_HANDLE) return 2;

@@ -1,5 +1,5 @@
-/* A sphere of 20 mm that pushes the tip out, as the first example of HDAPI that anybody writes. Ends
- * with 0 if the force that was sent is the one that was asked for. */
+/* A sphere of 20 mm that pushes the tip out, as the first example of HDAPI that anybody writes.
+ * Ends with 0 if the force that was sent is the one that was asked for. */
 #include <HD/hd.h>
 #include <HDU/hduError.h>
 #include <math.h>
@@ -10,7 +10,7 @@ static const double radius = 20, stiffness = 0.25; /* mm, N/mm */
 static double asked_before[3], largest_difference, deepest;
 static int compared;
 
-static HDCallbackCode HDCALLBACK sphere(void *data) {
+static HDCallbackCode HDCALLBACK sphere(void* data) {
   double p[3], f[3] = {0, 0, 0}, sent[3], distance;
   HDErrorInfo error;
   int i;

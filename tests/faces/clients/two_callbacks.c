@@ -10,8 +10,8 @@ typedef struct {
   int reads, writes, out_of_order;
 } State;
 
-static HDCallbackCode HDCALLBACK first(void *data) {
-  State *state = data;
+static HDCallbackCode HDCALLBACK first(void* data) {
+  State* state = data;
   hdBeginFrame(hdGetCurrentDevice());
   hdGetDoublev(HD_CURRENT_POSITION, state->p);
   if (state->reads != state->writes) ++state->out_of_order;
@@ -19,8 +19,8 @@ static HDCallbackCode HDCALLBACK first(void *data) {
   return HD_CALLBACK_CONTINUE;
 }
 
-static HDCallbackCode HDCALLBACK last(void *data) {
-  State *state = data;
+static HDCallbackCode HDCALLBACK last(void* data) {
+  State* state = data;
   int i;
   for (i = 0; i < 3; ++i) state->f[i] = -0.02 * state->p[i]; /* N/mm: a spring to the centre */
   hdSetDoublev(HD_CURRENT_FORCE, state->f);
@@ -30,12 +30,12 @@ static HDCallbackCode HDCALLBACK last(void *data) {
 }
 
 typedef struct {
-  const State *from;
+  const State* from;
   State to;
 } Copy;
 
-static HDCallbackCode HDCALLBACK copy_state(void *data) {
-  Copy *copy = data;
+static HDCallbackCode HDCALLBACK copy_state(void* data) {
+  Copy* copy = data;
   copy->to = *copy->from;
   return HD_CALLBACK_DONE;
 }
@@ -64,5 +64,6 @@ int main(void) {
   hdDisableDevice(device);
   printf("%d reads, %d writes, %d out of order, %d torn\n", state.reads, state.writes,
          state.out_of_order, torn);
-  return state.reads > 700 && !state.out_of_order && !torn && !HD_DEVICE_ERROR(hdGetError()) ? 0 : 3;
+  return state.reads > 700 && !state.out_of_order && !torn && !HD_DEVICE_ERROR(hdGetError()) ? 0
+                                                                                             : 3;
 }

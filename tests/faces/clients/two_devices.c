@@ -6,7 +6,7 @@
 static HHD arms[2];
 static double most;
 
-static HDCallbackCode HDCALLBACK tie(void *data) {
+static HDCallbackCode HDCALLBACK tie(void* data) {
   double p[2][3], f[2][3];
   int arm, i;
   (void)data;

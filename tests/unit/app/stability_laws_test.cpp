@@ -8,7 +8,7 @@
 
 #include "support/wall_laws.h"
 
-// The figures are those of [STABILITY 1 and 2.3], which independent simulations have confirmed.
+// The figures are those of [PHYSICS 1 and 2.3], which independent simulations have confirmed.
 
 namespace thimble::app {
 namespace {
@@ -115,7 +115,7 @@ TEST(SampledWall, HasTheEdgeOfTheLatencyBudgetWhereItsLawHolds) {
 }
 
 TEST(SampledWall, LosesWhatALowPassOnItsVelocityCosts) {
-  // B = 2 N s/m, simulated [STABILITY 1.1]; the exact map agrees within 0.3 %.
+  // B = 2 N s/m, simulated [PHYSICS 1.1]; the exact map agrees within 0.3 %.
   SampledWall wall{.mass = kMass, .viscous = kViscous, .damping = 2, .period = 0.001};
   for (const auto& [corner, edge] :
        {std::pair(0.0, 3902.0), {100.0, 3412.0}, {50.0, 2692.0}, {30.0, 2016.0}}) {

@@ -101,7 +101,7 @@ TEST(AccuracyAxes, AgreeWithThePublishedLaws) {
       for (const AccuracyPoint& point : line.points) {
         if (!point.law) continue;
         const bool bounce = axis.name == "loop_rate" || axis.name == "latency";
-        // The law of a bounce holds where a swing lasts for many ticks [STABILITY 1.5].
+        // The law of a bounce holds where a swing lasts for many ticks [PHYSICS 1.5].
         if (bounce && *point.law > 15) continue;
         const double error = point.error();
         const std::string where = axis.name + ' ' + line.name + ' ' + point.name;
@@ -131,7 +131,7 @@ TEST(AccuracyAxes, GiveTheSameErrorsToTheBitAndReadyStrokesThatRun) {
 }
 
 TEST(StiffestWall, IsThatOfTheTableForDampersWithLowPasses) {
-  // [STABILITY 1.1]: B = 2 N s/m in front of the PHANTOM-like arm, checked there by a simulation.
+  // [PHYSICS 1.1]: B = 2 N s/m in front of the PHANTOM-like arm, checked there by a simulation.
   struct Row {
     double corner, stiffness;
   };
@@ -374,7 +374,7 @@ TEST(RateBench, AnswersByTheLateOnesAndByWhatUnevenTicksCost) {
   EXPECT_NEAR(verdict_of(bench).headroom, 0.97, 0.01);
   EXPECT_EQ(verdict_of(bench).sentence.rfind("Enough", 0), 0U);
 
-  // One tick in a hundred takes 10 ms: 44 % of the stiffness are gone [STABILITY 1.1].
+  // One tick in a hundred takes 10 ms: 44 % of the stiffness are gone [PHYSICS 1.1].
   session::Histogram gaps;
   for (int i = 0; i < 9900; ++i) gaps.add(1'000'000);
   for (int i = 0; i < 100; ++i) gaps.add(10'000'000);

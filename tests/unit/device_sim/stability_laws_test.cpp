@@ -1,4 +1,4 @@
-// The laws of STABILITY in one dimension, with nothing but the plant's exact map and a sampled
+// The laws of one dimension [PHYSICS 1], with nothing but the plant's exact map and a sampled
 // wall: evidence that the simulated arm shows what a real one would. The other laws: hard cases 1
 // to 8, tests/sim/hard_case_walls_test.cpp.
 
@@ -38,11 +38,11 @@ double law_of_restitution(double stiffness, double period) {
 }
 
 TEST(StabilityLaws, SampledWallReturnsTheEnergyThatTheRestitutionLawSays) {
-  EXPECT_NEAR(mean_restitution(1000, 1'000'000), 1.0936, 0.0011);  // [STABILITY 1.5]
+  EXPECT_NEAR(mean_restitution(1000, 1'000'000), 1.0936, 0.0011);  // [PHYSICS 1.5]
   EXPECT_NEAR(mean_restitution(1000, 1'000'000), law_of_restitution(1000, 1e-3), 0.0011);
   EXPECT_NEAR(mean_restitution(1000, 250'000), law_of_restitution(1000, 0.25e-3), 0.0005);
   EXPECT_NEAR(mean_restitution(1000, 125'000), law_of_restitution(1000, 0.125e-3), 0.0003);
-  EXPECT_NEAR(mean_restitution(3000, 1'000'000), 1.168, 0.0025);  // [STABILITY 1.5]
+  EXPECT_NEAR(mean_restitution(3000, 1'000'000), 1.168, 0.0025);  // [PHYSICS 1.5]
 }
 
 }  // namespace

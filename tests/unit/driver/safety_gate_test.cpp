@@ -52,7 +52,7 @@ TEST(SafetyGate, LimitsOnlyTheRiseOfAForce) {
   for (int k = 1; k <= 30; ++k) {
     EXPECT_NEAR(gate.pass({0, 0, 3}, kStill, kPeriod).f_T_W().z(), std::min(3.0, 0.1 * k), 1e-12);
   }
-  // A fall is followed at once: slowing it would give energy back to the hand [STABILITY 1.6].
+  // A fall is followed at once: slowing it would give energy back to the hand [PHYSICS 1.6].
   EXPECT_EQ(gate.pass({0, 0, 0.2}, kStill, kPeriod).f_T_W().z(), 0.2);
   EXPECT_EQ(gate.pass({0, 0, 0}, kStill, kPeriod).f_T_W().z(), 0);
 }

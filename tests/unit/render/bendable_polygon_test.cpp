@@ -223,7 +223,8 @@ TEST(BendablePolygon, KeepsSwingingVerticesWhenTheCursorGoesOn) {
   EXPECT_EQ(dent.motion().cut(), 0u);
 }
 
-// [PAPER 24] at 1, 10 and 0.1 times the stiffness, any step and integrator, and far beyond.
+// Very elastic objects of few polygons [BP 4.3]: at 1, 10 and 0.1 times the stiffness, any step and
+// integrator, and far beyond.
 TEST(BendablePolygon, StaysBoundedOnCoarseSoftMeshesAtAnyStiffnessMassAndStep) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   constexpr int kPresses = 1;  // of what takes a minute and a half under them

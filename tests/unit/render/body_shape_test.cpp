@@ -196,7 +196,7 @@ TEST(HardCase34, ClayNeverTurnsATriangleOverNorLosesTheTipNorGivesEnergy) {
     lost += object->lost_contacts();
     EXPECT_GT(felt, 10 * presses());
     // What was put in is what became heat and what stands in no spring any more, and the flat
-    // tracker's own account around edges (STABILITY 3) on top.
+    // tracker's own account around edges (PHYSICS 3) on top.
     EXPECT_GT(heat, 0.05);
     EXPECT_GT(work, 0.9 * heat);
   }
@@ -266,7 +266,7 @@ TEST(HardCase35, ClayKeepsTheForceContinuousWhereTheProbeLeavesAPitAndComesBack)
                    0, "1");
 }
 
-// The stated truss [STABILITY 4], through contact and mesh: a panel in a plate.
+// The stated truss [PHYSICS 4], through contact and mesh: a panel in a plate.
 ShapeChoice stated_truss() {
   return {.clay = {},
           .snap = SnapChoice{.force = 0.994992, .depth = 12e-3, .radius = 20e-3, .panels = 2}};

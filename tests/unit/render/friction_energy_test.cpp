@@ -1,4 +1,4 @@
-// Friction takes energy and gives none: case 18 of [STABILITY 7], and beyond it any way at all.
+// Friction takes energy and gives none: case 18 of [PHYSICS 7], and beyond it any way at all.
 
 #include <gtest/gtest.h>
 

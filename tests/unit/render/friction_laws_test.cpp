@@ -33,7 +33,7 @@ AnyStageOf<FrictionStage<Law>> stage(const typename Law::Settings& settings) {
   return AnyStageOf<FrictionStage<Law>>({settings, support::phantom_context()});
 }
 
-// [STABILITY 2.1]: p = v T / step.
+// [PHYSICS 2.1]: p = v T / step.
 TEST(HardCase13, NaiveFrictionIsOnlyADamperBelowOneCountPerTick) {
   double worst = 0;
   for (const double speed : {0.005, 0.02}) {

@@ -163,7 +163,7 @@ TEST(EveryFriction, RefusesSettingsThatMakeNoSense) {
       complaints_of("paper", MapSettings({{"coefficient", 0.5}, {"viscous", -1}})).empty());
   EXPECT_FALSE(
       complaints_of("naive", MapSettings({{"coefficient", 0.5}}, {{"at_rest", "x"}})).empty());
-  // sigma2 >= sigma1 (F_s - F_c) / F_c [STABILITY 2.4].
+  // sigma2 >= sigma1 (F_s - F_c) / F_c [PHYSICS 2.4].
   const auto damped = [](double viscous) {
     return complaints_of("lugre", MapSettings({{"coefficient", 0.5},
                                                {"static_coefficient", 0.6},

@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 
 const fs::path kFolder = THIMBLE_MESHES;
 constexpr double kSize = 0.1;           // longest side of every mesh, m
-constexpr double kStiffness = 1000;     // N/m, the hard feel of [STABILITY 6]
+constexpr double kStiffness = 1000;     // N/m, the hard feel of [PHYSICS 6]
 constexpr double kForceMax = 5;         // N
 constexpr double kStep = 0.0002;        // m per tick
 constexpr double kStartAbove = 1e-5;    // m

@@ -130,7 +130,7 @@ TEST(HardCase36, MovingTouchKeepsTheMomentaAndNeverGainsEnergyAtAnyMassAndStiffn
       for (const double off : {0.0, 0.015}) {
         for (const MotionKind kind : {MotionKind::kTranslate, MotionKind::kRigid}) {
           const MotionChoice motion{.kind = kind, .mass = mass};
-          // A sampled wall that stands still is passive for b > K T / 2 [STABILITY 1.2].
+          // A sampled wall that stands still is passive for b > K T / 2 [PHYSICS 1.2].
           const double damping = std::max(1.0, 0.6 * kTick * stiffness);
           auto object = moving(block(), motion, stiffness, damping, true);
           support::Stylus stylus;

@@ -37,7 +37,7 @@ namespace {
 using Eigen::Vector3d;
 namespace fs = std::filesystem;
 
-constexpr double kStiffness = 1000;                    // N/m, the hard feel of [STABILITY 6]
+constexpr double kStiffness = 1000;                    // N/m, the hard feel of [PHYSICS 6]
 constexpr double kTick = 1e-3;                         // s
 constexpr double kSize = 0.1;                          // longest side of every mesh, m
 constexpr double kBound = 1 + FeltAnchor::kPathRatio;  // of |df| / (K |dp|)

@@ -159,7 +159,7 @@ TEST(WedgeBox, KeepsTheForcesStrengthFromWedgeToWedge) {
 }
 
 TEST(WedgeBox, PopsThroughAPlateAtStiffnessTimesHalfItsThickness) {
-  // STABILITY 3: a plate of 2 mm at 1 N/mm lets go at 1 N.
+  // PHYSICS 3: a plate of 2 mm at 1 N/mm lets go at 1 N.
   const WedgeBox plate{{.half_sides = {0.05, 0.05, 0.001}}};
   Touch touch{PrimitiveContact(plate), SpringDamper{1000, 0}};
   double largest = 0;
@@ -174,7 +174,7 @@ TEST(WedgeBox, PopsThroughAPlateAtStiffnessTimesHalfItsThickness) {
 }
 
 TEST(EntryFaceContact, HoldsTheTipBeforeAPlateHoweverDeepItIsPressed) {
-  const Box plate{.half_sides = {0.05, 0.05, 0.0001}};  // case 23 of STABILITY 7: 0.2 mm
+  const Box plate{.half_sides = {0.05, 0.05, 0.0001}};  // case 23 of PHYSICS 7: 0.2 mm
   support::Random random(3);
   for (const double side : {1.0, -1.0}) {
     Touch touch{EntryFaceContact(plate), SpringDamper{1000, 0}};

@@ -29,7 +29,7 @@ using Kind = RepairChange::Kind;
 namespace fs = std::filesystem;
 
 constexpr double kSize = 0.1;    // m, as the objects of a scene
-constexpr double kCrack = 1e-6;  // m [STABILITY 7, case 24]
+constexpr double kCrack = 1e-6;  // m [PHYSICS 7, case 24]
 
 std::size_t count(const RepairedMesh& repaired, Kind kind) {
   for (const RepairChange& change : repaired.changes) {
@@ -237,7 +237,7 @@ TEST(CheckMesh, ListsThePlacesOfFaultsUpToABound) {
   EXPECT_EQ(many.faults[0].places.size(), kPlacesMax);
 }
 
-// Hard case 24 [STABILITY 7]: a fault is told on loading, and nothing falls through what a repair
+// Hard case 24 [PHYSICS 7]: a fault is told on loading, and nothing falls through what a repair
 // promises to mend.
 TEST(HardCase24, IsToldOnLoadingAndMendedWithoutFallThrough) {
   TriangleMesh crack = good();

@@ -12,7 +12,7 @@
 namespace thimble::render {
 namespace {
 
-// The truss of [STABILITY 4], which gives its limit load, stiffnesses and energies.
+// The truss of [PHYSICS 4], which gives its limit load, stiffnesses and energies.
 constexpr SnapSettings kStated{
     .half_span = 20e-3, .rise = 6e-3, .bar_stiffness = 5000, .speed_max = 1e9};
 

@@ -62,7 +62,7 @@ TEST(SpringNetwork, FindsTheHighestFrequencyOfMeshesAndWildNetworks) {
 }
 
 TEST(SpringNetwork, KnowsTheLimitsOfTriangleGrids) {
-  // [STABILITY 4]: 5.92 (directed), 8.91 (heights), 12 (Gershgorin), in k/m. On an endless sheet it
+  // [PHYSICS 4]: 5.92 (directed), 8.91 (heights), 12 (Gershgorin), in k/m. On an endless sheet it
   // would be 6 and 9.
   const MeshSpringSettings settings{1e-3, 0, 0, 1000, 0, true};
   const TriangleMesh sheet = support::triangle_sheet(24, 5e-3);

@@ -38,7 +38,7 @@ struct Errors {
   int lost = 0;
 };
 
-// Replays an analytic in-trajectory [STABILITY 3]: chooses a way s(t) on the surface and a force
+// Replays an analytic in-trajectory [PHYSICS 3]: chooses a way s(t) on the surface and a force
 // f(t) along its normal, sends the tip where an arm would be that yields by f / k, and compares
 // what the renderer answers with f.
 template <class Contact, class Surface>
@@ -129,14 +129,14 @@ TEST(TouchAccuracy, OfFlatFacesOnASphereFollowsTheLawOfTessellation) {
                                kOnSphere, kAnywhere);
     print("flat", flat);
     EXPECT_EQ(flat.lost, 0);
-    // L / (sqrt 3 R) at the corners, the worst place [STABILITY 3]; edges differ by some 15 %.
+    // L / (sqrt 3 R) at the corners, the worst place [PHYSICS 3]; edges differ by some 15 %.
     const double law = flat.edge_length / (std::sqrt(3.0) * 0.03);
     EXPECT_NEAR(flat.direction_p99, law, 0.15 * law);
   }
 }
 
 TEST(TouchAccuracy, OfPhongAloneLeavesTheMagnitudeWrongByTheSagitta) {
-  // [STABILITY 3]: 35, 8.8 and 2.2 % at L/R = 0.33, 0.165 and 0.083, 1 mm deep.
+  // [PHYSICS 3]: 35, 8.8 and 2.2 % at L/R = 0.33, 0.165 and 0.083, 1 mm deep.
   const double law[] = {0.35, 0.088, 0.022};
   for (const int level : {2, 3, 4}) {
     const Errors phong =
@@ -154,7 +154,7 @@ TEST(HardCase21, CurvedDepthOnASphereMeetsTheLimitsOfFeel) {
                                  kOnSphere, kAnywhere);
     print("phong, curved depth", curved);
     EXPECT_EQ(curved.lost, 0);
-    // STABILITY 7, case 21: a tenth of both limits at L/R = 0.15 and finer. At 0.3 the depth falls
+    // PHYSICS 7, case 21: a tenth of both limits at L/R = 0.15 and finer. At 0.3 the depth falls
     // below the sagitta, where CurvedDepth is not exact.
     EXPECT_LE(curved.force_rms, level > 2 ? 0.0035 : 0.07);
     EXPECT_LE(curved.direction_p99, 0.5 / kDegrees);

@@ -23,7 +23,7 @@ class LiveKnobs {
  public:
   static constexpr double kTurnTime = 0.05;  ///< s. [chosen: a hand takes longer]
   /// Is the most that a knob changes the force per time, N/s: 0.04 N in a tick of 1 kHz, less than
-  /// a hand tells apart at 1 N [STABILITY 6: 7 %].
+  /// a hand tells apart at 1 N [PHYSICS 6: 7 %].
   static constexpr double kForceRate = 40;
 
   /// Finds the settings of a scene's objects, at most kKnobsMost. Both must outlive it.

@@ -5,7 +5,7 @@
 namespace thimble::app {
 
 /// How far a wall gives that is felt as rigid (24 N/mm), mm/N: below it no hand tells one from
-/// another, so every diagram of the stiffest wall is shaded there [STABILITY 6, after Tan et al.].
+/// another, so every diagram of the stiffest wall is shaded there [PHYSICS 6, after Tan et al.].
 inline constexpr double kRigidGive = 1 / 24.0;
 inline constexpr const char* kRigidWords = "the give of a wall that is felt as rigid (24 N/mm)";
 

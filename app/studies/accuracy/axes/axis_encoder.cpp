@@ -17,7 +17,7 @@ constexpr double kStiffness = 800;  // N/m
 constexpr double kDamping = 1;      // N s/m
 constexpr int kTicks = 4000;
 constexpr double kSteps[] = {1, 3, 10, 30, 100};  // um
-constexpr double kDefaultStep = 30;               // um [STABILITY, heading]
+constexpr double kDefaultStep = 30;               // um [PHYSICS 0]
 
 struct Wall {
   double damping = 0;

@@ -103,7 +103,7 @@ AccuracyAxis profile_axis() {
   axis.truth =
       "The ring (torus) itself: the normal of each point in closed form, stroked by the same "
       "states.";
-  axis.threshold = 5;  // [STABILITY 6]
+  axis.threshold = 5;  // [PHYSICS 6]
   axis.threshold_words = "a quarter of the turn that is felt (5 degrees)";
   axis.default_words =
       "A band is for who wants the paper's way; a scene that names no blending feels none.";

@@ -17,8 +17,8 @@ using driver::EnergyStage;
 
 constexpr double kTick = GuardedArm::kTick;
 constexpr double kSpeed = 0.2;  // m/s, of the impact
-constexpr double kStep = 3e-5;  // m, of the encoder [STABILITY, heading]
-constexpr double kPull = 1;     // N, towards the wall [STABILITY 1.6]
+constexpr double kStep = 3e-5;  // m, of the encoder [PHYSICS 0]
+constexpr double kPull = 1;     // N, towards the wall [PHYSICS 1.6]
 constexpr int kBounces = 20;
 constexpr int kBouncingTicks = 40000;
 constexpr int kPhases = 40;
@@ -166,7 +166,7 @@ AccuracyAxis safety_stiffness_axis() {
   axis.title = "Energy stages of the safety gate: stiffness that is missing under a resting hand";
   axis.metric = "stiffness missing";
   axis.truth = "The wall's own stiffness, pressed 1 mm deep.";
-  axis.threshold = 8;  // [STABILITY 6]
+  axis.threshold = 8;  // [PHYSICS 6]
   axis.threshold_words = "half the change of stiffness that is felt (8 %)";
   axis.left_out = "How long the press takes to be felt in full; walls of moving objects.";
   return axis;

@@ -158,12 +158,12 @@ AccuracyAxis axis_of(bool dry, Wrong wrong) {
   if (wrong == Wrong::kPlace) {
     axis.metric = "largest error of the place in 1 s";
     axis.unit = "um";
-    axis.threshold = 1;  // [STABILITY 6]
+    axis.threshold = 1;  // [PHYSICS 6]
     axis.threshold_words = "the least vibration that is felt (1 um)";
   } else {
     axis.metric = "largest error of the speed in 1 s";
     axis.unit = "mm/s";
-    axis.threshold = 20;  // [STABILITY 6]
+    axis.threshold = 20;  // [PHYSICS 6]
     axis.threshold_words = "20 mN from a damper of 1 N s/m";
   }
   const Line lines[] = {{Method::kEuler, "euler", "semi-implicit Euler", 1},

@@ -31,7 +31,7 @@ struct Way {
 };
 
 // The flat normal turns by up to L / R within a triangle, the smooth one and the depth below the
-// triangles are off by (L / R)^2 [STABILITY 3]. The flat force has both in it, and the depth below
+// triangles are off by (L / R)^2 [PHYSICS 3]. The flat force has both in it, and the depth below
 // the smooth surface is better than that where triangles are alike: no order is asked of either.
 // Nor of the 99th percentile of smooth directions, in which few places count.
 constexpr Way kWays[] = {
@@ -108,7 +108,7 @@ AccuracyAxis tessellation_axis() {
   axis.title = "How finely a surface must be cut, by the way it is felt: force";
   axis.metric = "force error, RMS";
   axis.unit = std::string("%");
-  axis.threshold = 3.5;  // half of 7 % [STABILITY 6, after Pang, Tan, Durlach 1991]
+  axis.threshold = 3.5;  // half of 7 % [PHYSICS 6, after Pang, Tan, Durlach 1991]
   axis.threshold_words = "half the change of force that is felt (3.5 %)";
   axis.left_out =
       "One shape alone, the ring, because its truth is exact on hollow and round sides; sharp "
@@ -123,7 +123,7 @@ AccuracyAxis tessellation_direction_axis() {
   axis.title = "How finely a surface must be cut, by the way it is felt: direction";
   axis.metric = "direction error, 99th percentile";
   axis.unit = "degrees";
-  axis.threshold = 5;  // [STABILITY 6]
+  axis.threshold = 5;  // [PHYSICS 6]
   axis.threshold_words = "a quarter of the turn that is felt (5 degrees)";
   axis.left_out = "Jumps from tick to tick over edges, which are in the next diagram.";
   return axis;
@@ -138,7 +138,7 @@ AccuracyAxis tessellation_jump_axis() {
   axis.truth =
       "The ring itself, on which the same stroke turns the force by no more than 0.2 degrees in a "
       "tick, which is taken off.";
-  axis.threshold = 5;  // [STABILITY 6]
+  axis.threshold = 5;  // [PHYSICS 6]
   axis.threshold_words = "a quarter of the turn that is felt (5 degrees)";
   axis.default_words =
       "It is the paper's way, which scenes keep until they name another: edges of a tenth of the "

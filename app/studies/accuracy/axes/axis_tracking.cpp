@@ -32,7 +32,7 @@ constexpr int kRepeats = 100;                      // of the worst tick
 constexpr double kSpeeds[] = {0.1, 0.3, 1, 2, 4};  // m/s
 constexpr double kUsualSpeed = 0.3;
 // A face is wrong if it is farther from the tip than the nearest one by what the spring of the
-// other studies, 800 N/m, turns into 20 mN [STABILITY 6].
+// other studies, 800 N/m, turns into 20 mN [PHYSICS 6].
 const double kFelt = 0.02 / kCostSpring.stiffness;
 
 /// Is the ring with hills and hollows of one triangle each, so that there are places at which many

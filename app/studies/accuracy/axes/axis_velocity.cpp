@@ -14,10 +14,10 @@ namespace thimble::app {
 namespace {
 
 constexpr double kTick = 1e-3;      // s
-constexpr double kStep = 3e-5;      // m, an encoder's at the tip [STABILITY, heading]
+constexpr double kStep = 3e-5;      // m, an encoder's at the tip [PHYSICS 0]
 constexpr double kDamping = 1;      // N s/m, what most scenes' surfaces have
 constexpr double kHand = 1;         // N s/m, a light one
-constexpr double kWallDamping = 2;  // N s/m [STABILITY 1.1]
+constexpr double kWallDamping = 2;  // N s/m [PHYSICS 1.1]
 constexpr int kTicks = 8000;
 constexpr int kSettle = 500;            // ticks that are not counted
 constexpr double kDefaultCorner = 100;  // Hz, app/arms/vintage_phantom.yaml
@@ -119,7 +119,7 @@ AccuracyAxis velocity_axis() {
   axis.metric = "force error of a damper of 1 N s/m, RMS";
   axis.unit = "mN";
   axis.truth = "The hand's velocity in closed form: strokes of 20 mm and 1 mm, and tremor.";
-  axis.threshold = 20;  // [STABILITY 6]
+  axis.threshold = 20;  // [PHYSICS 6]
   axis.threshold_words = "the smallest force that is felt (20 mN)";
   axis.default_words =
       "The pole at 100 Hz costs little latency, which stability pays for (13 % of the stiffness "

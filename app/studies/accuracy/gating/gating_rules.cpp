@@ -12,7 +12,7 @@
 namespace thimble::app {
 namespace {
 
-// [STABILITY 6 and 8]
+// [PHYSICS 6 and 8]
 constexpr double kForceFelt = 0.02;  // N
 constexpr double kLatencyShare = 0.05;
 

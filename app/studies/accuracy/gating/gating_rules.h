@@ -10,10 +10,10 @@
 
 namespace thimble::app {
 
-/// Is the share by which a force may change unnoticed: half of 7 % [STABILITY 6].
+/// Is the share by which a force may change unnoticed: half of 7 % [PHYSICS 6].
 inline constexpr double kShareFelt = 0.035;
 
-/// Is one effect of the simulated arm: whether this scene calls for it [STABILITY 8, gating].
+/// Is one effect of the simulated arm: whether this scene calls for it [PHYSICS 8, gating].
 struct GateDecision {
   std::string effect;     ///< In words.
   std::string name;       ///< Without spaces: part of an argument of `thimble cost-probe`.

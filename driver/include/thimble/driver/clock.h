@@ -37,7 +37,7 @@ class VirtualClock final : public Clock {
 /// Is CLOCK_MONOTONIC, counted from the clock's construction: sleeps to shortly before the wanted
 /// time, then spins.
 ///
-/// The spin buys a median wake-up error below 1 us instead of tens of us [STABILITY 5] and must
+/// The spin buys a median wake-up error below 1 us instead of tens of us [PHYSICS 5] and must
 /// stay short: the kernel throttles a SCHED_FIFO thread that keeps a core busy (950 ms of every
 /// second by default). The default of 60 us is 6 % of a 1 kHz tick.
 class WallClock final : public Clock {

@@ -43,7 +43,7 @@ struct EnergyFlow {
 };
 
 /// Books the energy that the arm took from the hand and finds the damping that gets back what went
-/// out too much [STABILITY 1.6, Hannaford and Ryu; derived again there].
+/// out too much [PHYSICS 1.6, Hannaford and Ryu; derived again there].
 ///
 /// In three dimensions power is f . v: one account for all directions, since a hand is hurt by the
 /// sum. Damping acts against the velocity, where a given force takes most energy.
@@ -85,7 +85,7 @@ class PassivityObserver {
 };
 
 /// Finds how long a force may be so that storage |f|^2 / (2 c1) and the arm's friction pay for all
-/// that is given: |f_last - c1 move| [STABILITY 1.6, Kim and Ryu; the slope form in 3-D].
+/// that is given: |f_last - c1 move| [PHYSICS 1.6, Kim and Ryu; the slope form in 3-D].
 ///
 /// Why: a held force f over a way s takes -f . s from the hand, and viscous friction b takes at
 /// least b |s|^2 / T more. The sum covers the change of |f|^2 / (2 c1) if |f'|^2 <= |f|^2 - 2 c1

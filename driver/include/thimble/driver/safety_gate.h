@@ -46,7 +46,7 @@ struct GateLimits {
   double rise_max = 0;
   double soft_start = 0;  ///< Time over which the limit opens from 0 to `force_max`, s.
   /// The same after a gap, for somebody who is touching already, s; a hand feels a surface as gone
-  /// if it is away for longer [STABILITY 7, case 9: back within 50 ms].
+  /// if it is away for longer [PHYSICS 7, case 9: back within 50 ms].
   double reopen = 0.04;
   std::int64_t stall_ns = 0;     ///< Gap between ticks after which the limit opens anew, ns.
   std::int64_t watchdog_ns = 0;  ///< Gap after which the arm's own watchdog has fired: a fault, ns.
@@ -68,7 +68,7 @@ struct GateCounters {
 ///
 /// The rise limit comes last, so that it holds for whatever the energy stage adds. It is one-sided:
 /// a limit on the fall as well would turn a passive wall into an active one (restitution up to 2.7)
-/// [STABILITY 1.6]. No stage behind the arm's limit makes a force longer than the limit, as far as
+/// [PHYSICS 1.6]. No stage behind the arm's limit makes a force longer than the limit, as far as
 /// the soft start has opened it.
 ///
 /// The time of a tick must be a finite number of zero or more: all limits in time follow from it.

@@ -46,7 +46,7 @@ struct UploadReport {
 Result<std::vector<std::byte>> read_firmware(const std::filesystem::path& file);
 
 /// Sets the line for running: latency timer 1 ms (16 ms would cost 33 times the stable stiffness
-/// [C STABILITY 5]), 1.5 Mbaud, empty buffers.
+/// [C PHYSICS 5]), 1.5 Mbaud, empty buffers.
 Result<void> enter_run_mode(SerialLine& line);
 
 /// Asks whether firmware runs: sends zero force and waits for a packet. Needs run mode.

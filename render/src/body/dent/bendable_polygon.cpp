@@ -15,7 +15,7 @@ namespace {
 // triangle that is drawn is without area. A thousandth of a triangle is below what anybody sees.
 constexpr double kApart = 1e-3;
 
-// No hand is as fast, m/s [STABILITY 7: strokes of 2 m/s]: what jumps farther in a tick is not
+// No hand is as fast, m/s [PHYSICS 7: strokes of 2 m/s]: what jumps farther in a tick is not
 // handed on by dampers as a blow.
 constexpr double kSpeedMax = 10;
 

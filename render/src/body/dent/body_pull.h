@@ -18,7 +18,7 @@ namespace thimble::render {
 ///
 /// On strokes the account never acts (dent_pull_test.cpp), under a random tremor of 0.03 mm per
 /// tick in one tick of a hundred: a force that is held for a tick lets a spring k do k
-/// x^2 / 2 more work per move of x than it has energy [STABILITY 1.1], and so much is put by.
+/// x^2 / 2 more work per move of x than it has energy [PHYSICS 1.1], and so much is put by.
 ///
 /// It never pulls into the surface, so that leaving does not stick.
 class BodyPull {

@@ -11,7 +11,7 @@ namespace {
 // the largest dent: 1e-5 of it unless set.
 constexpr double kStill = 1e-3;
 
-// No vertex moves faster, m/s: strokes are up to 2 m/s [STABILITY 7]. What the cursor throws
+// No vertex moves faster, m/s: strokes are up to 2 m/s [PHYSICS 7]. What the cursor throws
 // farther in one tick, as by a lost contact that is found elsewhere, takes energy out here, never
 // in.
 constexpr double kSpeedMax = 10;

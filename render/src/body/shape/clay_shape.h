@@ -17,7 +17,7 @@ namespace thimble::render {
 /// Moves the base points of a mesh as clay does: each keeps a set, which flows where the surface's
 /// spring presses with more than the yield force.
 ///
-/// The touched place is a spring in a row with a slider [STABILITY 4, plastic truth]: it gives way
+/// The touched place is a spring in a row with a slider [PHYSICS 4, plastic truth]: it gives way
 /// until the spring holds the yield force, so pressed to x_max it keeps x_max - F_y / k, whatever
 /// the mesh; the base points around go with it by a smooth print (1 - (r / radius)^2)^2, along the
 /// first normal of the touched triangle. Never gives energy: it moves against the force that

@@ -6,7 +6,7 @@ namespace thimble::render {
 
 /// Is the law of a shallow pair of bars (von Mises truss): what a dimple in sheet metal does. Apart
 /// by 2 a at their feet, a rise H at their joint, stiffness k each; u is the way that the joint is
-/// pressed in, m. Stable at rest at u = 0 and u = 2 H; between them it snaps [STABILITY 4].
+/// pressed in, m. Stable at rest at u = 0 and u = 2 H; between them it snaps [PHYSICS 4].
 class SnapTruss {
  public:
   /// Describes a truss by `half_span` a (m, > 0), `rise` H (m, > 0) and `bar_stiffness` k (N/m,

@@ -7,7 +7,7 @@ namespace thimble::render {
 ///     x+ = xx x + xv v + xf f        v+ = vx x + vv v + vf f
 ///
 /// Exact at any stiffness, mass, damping and step, so it cannot diverge: the matrix is the flow of
-/// a system that loses energy [STABILITY 4]. For one node on its base point, or one mode of a mesh.
+/// a system that loses energy [PHYSICS 4]. For one node on its base point, or one mode of a mesh.
 struct OscillatorStep {
   double xx = 1, xv = 0, xf = 0;  ///< 1, s, m/N
   double vx = 0, vv = 0, vf = 0;  ///< 1/s, 1, s/kg

@@ -10,7 +10,7 @@ namespace thimble::render {
 
 /// Is the friction to use: a bristle between tip and surface that bends with the way, and is
 /// dragged along where it would pull harder than friction can (the form of Hayward and Armstrong)
-/// [STABILITY 2.2, H].
+/// [PHYSICS 2.2, H].
 ///
 /// From positions alone, so it neither drifts nor relaxes, and a count more or less moves its force
 /// by stiffness times step. Once it slides it holds with the sliding coefficient until it has bent
@@ -22,7 +22,7 @@ class BristleLaw {
 
   struct Settings {
     CoulombSettings coulomb;
-    double stiffness = 1000;  ///< N/m; F / z_max of [STABILITY 2.3].
+    double stiffness = 1000;  ///< N/m; F / z_max of [PHYSICS 2.3].
 
     void read(SettingsReader& reader, const EffectContext& context);
   };

@@ -11,8 +11,8 @@ namespace {
 // Rubber on clean glass reaches about 4 [M]; more is a slipped decimal point.
 constexpr double kCoefficientMax = 5;
 constexpr double kCoefficient = 0.3;   // wood or metal under a tool [chosen]
-constexpr double kHandDamping = 3;     // N s/m, pinch grip [STABILITY, heading]
-constexpr double kSafety = 1.5;        // [STABILITY 2.3]
+constexpr double kHandDamping = 3;     // N s/m, pinch grip [PHYSICS 0]
+constexpr double kSafety = 1.5;        // [PHYSICS 2.3]
 constexpr double kStiffnessMax = 1e6;  // N/m
 constexpr double kBendMax = 0.05;      // m
 

@@ -50,7 +50,7 @@ struct ViscousSettings {
 /// Tells how stiff (N/m) a friction may hold, so that the arm stays quiet: the stuck bristle is a
 /// wall, and
 ///     stiffness <= min( (b + b_hand) / (1.5 L), 2 c / step ),   L = tick / 2 + delay
-/// [STABILITY 2.3], with a hand of 3 N s/m [STABILITY, heading]. Without known dry friction of the
+/// [PHYSICS 2.3], with a hand of 3 N s/m [PHYSICS 0]. Without known dry friction of the
 /// arm only the first bound is kept, and a flicker of a count at rest may remain.
 /// Real-time: never from the servo thread.
 double stick_stiffness_max(const EffectContext& context);

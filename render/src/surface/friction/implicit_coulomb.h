@@ -9,7 +9,7 @@
 namespace thimble::render {
 
 /// Is Coulomb's set-valued friction on a point without mass that hangs on the tip by a spring and a
-/// damper, solved by the implicit Euler step (the form of Kikuuwe and others) [STABILITY 2.2, J].
+/// damper, solved by the implicit Euler step (the form of Kikuuwe and others) [PHYSICS 2.2, J].
 /// Like the bristle with damping of its own; static and sliding friction are the same.
 class ImplicitCoulombLaw {
  public:
@@ -18,7 +18,7 @@ class ImplicitCoulombLaw {
   struct Settings {
     CoulombSettings coulomb;
     double stiffness = 1000;  ///< N/m
-    double damping = 1;       ///< N s/m [STABILITY 2.2]; each count adds damping * step / tick.
+    double damping = 1;       ///< N s/m [PHYSICS 2.2]; each count adds damping * step / tick.
 
     void read(SettingsReader& reader, const EffectContext& context);
   };

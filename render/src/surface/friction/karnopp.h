@@ -10,7 +10,7 @@ namespace thimble::render {
 
 /// Is Karnopp's friction with a stick spring: above a speed it slides, against the smoothed
 /// velocity; below half of it, or when the tip turns back, a spring and a damper hold
-/// [STABILITY 2.2, G].
+/// [PHYSICS 2.2, G].
 ///
 /// While sliding the spring stays stretched and turns with the direction, so that changing between
 /// the two makes no energy.
@@ -20,8 +20,8 @@ class KarnoppLaw {
 
   struct Settings {
     CoulombSettings coulomb;
-    double stiffness = 1000;  ///< Of the stick spring, N/m [STABILITY 2.2].
-    double damping = 1;       ///< Beside it, N s/m [STABILITY 2.2].
+    double stiffness = 1000;  ///< Of the stick spring, N/m [PHYSICS 2.2].
+    double damping = 1;       ///< Beside it, N s/m [PHYSICS 2.2].
     double speed = 0.02;      ///< It slides above this, m/s [chosen: 4 times one smoothed count].
 
     void read(SettingsReader& reader, const EffectContext& context);
@@ -38,7 +38,7 @@ class KarnoppLaw {
   CoulombSettings& coulomb() noexcept { return settings_.coulomb; }
 
  private:
-  static constexpr double kSpeedCorner = 30;  // Hz [STABILITY 2.2]
+  static constexpr double kSpeedCorner = 30;  // Hz [PHYSICS 2.2]
 
   Settings settings_;
   VectorLowPass velocity_;

@@ -12,7 +12,7 @@ namespace thimble::render {
 /// friction the faster it slides (Stribeck), from static to sliding over `stribeck_speed`.
 ///
 /// The bristles follow z <- z_ss + (z - z_ss) exp(-sigma0 |v| T / g), which no stiffness and no
-/// speed makes unstable; Euler's step would diverge where T sigma0 |v| / g > 2 [STABILITY 2.4]. Dry
+/// speed makes unstable; Euler's step would diverge where T sigma0 |v| / g > 2 [PHYSICS 2.4]. Dry
 /// part and damping together stay below static friction. Known to drift under a load that swings
 /// (4.9 um per cycle there): for holding still take the bristle.
 class LugreLaw {
@@ -24,9 +24,9 @@ class LugreLaw {
     ViscousSettings viscous;       ///< sigma2
     double stiffness = 1000;       ///< sigma0, N/m.
     double damping = 0;            ///< sigma1, N s/m.
-    double stribeck_speed = 0.01;  ///< m/s [chosen: the knee of STABILITY 2.2]
+    double stribeck_speed = 0.01;  ///< m/s [chosen: the knee of PHYSICS 2.2]
 
-    /// Refuses what is not passive: sigma2 >= sigma1 (F_s - F_c) / F_c [STABILITY 2.4].
+    /// Refuses what is not passive: sigma2 >= sigma1 (F_s - F_c) / F_c [PHYSICS 2.4].
     void read(SettingsReader& reader, const EffectContext& context);
   };
 
@@ -41,7 +41,7 @@ class LugreLaw {
   CoulombSettings& coulomb() noexcept { return settings_.coulomb; }
 
  private:
-  // Hz; one count per tick would else swing the Stribeck curve from end to end [STABILITY 2.2].
+  // Hz; one count per tick would else swing the Stribeck curve from end to end [PHYSICS 2.2].
   static constexpr double kSpeedCorner = 30;
 
   Settings settings_;

@@ -10,7 +10,7 @@
 namespace thimble::render {
 
 /// Is the friction of the textbook, against the direction of the last move. With encoders that have
-/// steps it has a limit cycle [BP 4.2]: kept to show why the others exist. [STABILITY 2.1, A and B]
+/// steps it has a limit cycle [BP 4.2]: kept to show why the others exist. [PHYSICS 2.1, A and B]
 class NaiveFrictionLaw {
  public:
   static constexpr std::string_view kName = "naive";

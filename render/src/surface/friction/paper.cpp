@@ -10,7 +10,7 @@ void PaperFrictionLaw::Settings::read(SettingsReader& reader, const EffectContex
   auto chosen = static_cast<std::size_t>(smooth);
   reader.choice("smooth", chosen, {"velocity", "direction", "twice"});
   smooth = static_cast<Smooth>(chosen);
-  corner_frequency = smooth == Smooth::kTwice ? 10 : 30;  // [STABILITY 2.2]
+  corner_frequency = smooth == Smooth::kTwice ? 10 : 30;  // [PHYSICS 2.2]
   // Above half the rate there is nothing left to smooth.
   reader.number("corner_frequency", corner_frequency,
                 {.unit = "Hz", .least = 0.5, .most = 0.5 / context.tick});

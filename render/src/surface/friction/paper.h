@@ -12,7 +12,7 @@ namespace thimble::render {
 
 /// Is the paper's cure: friction that depends on velocity, its direction smoothed, dry friction
 /// (depth times stiffness times coefficient) and viscous friction in any proportion [BP 4.2]. It is
-/// quiet, but holds nothing at rest: under any load it creeps. [STABILITY 2.2, D, E and F]
+/// quiet, but holds nothing at rest: under any load it creeps. [PHYSICS 2.2, D, E and F]
 class PaperFrictionLaw {
  public:
   static constexpr std::string_view kName = "paper";
@@ -28,8 +28,8 @@ class PaperFrictionLaw {
     CoulombSettings coulomb;
     ViscousSettings viscous;
     Smooth smooth = Smooth::kVelocity;  ///< What is smoothed.
-    double corner_frequency = 30;       ///< Hz [STABILITY 2.2]; 10 for kTwice.
-    double speed = 0.01;                ///< Dry friction is full from here on, m/s [STABILITY 2.2].
+    double corner_frequency = 30;       ///< Hz [PHYSICS 2.2]; 10 for kTwice.
+    double speed = 0.01;                ///< Dry friction is full from here on, m/s [PHYSICS 2.2].
 
     void read(SettingsReader& reader, const EffectContext& context);
   };

@@ -84,7 +84,7 @@ struct SceneReading {
   std::filesystem::path mesh_folder = scene::mesh_folder();  ///< Where meshes `cgal:NAME` lie.
   /// The loop's rate over what the file says, > 0. Above 1 the simulated board reports as often.
   /// Below 1 only where the scene bears it: every stiffness at most half of what the law of the
-  /// latency lets this arm and hand hold [STABILITY 1.1], and no setting refused at that rate.
+  /// latency lets this arm and hand hold [PHYSICS 1.1], and no setting refused at that rate.
   double rate_factor = 1;
 };
 

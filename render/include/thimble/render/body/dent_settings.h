@@ -26,7 +26,7 @@ struct DentSettings {
   int substeps = 1;  ///< Per tick, at least; more where the integrator needs them.
   int rounds = 25;   ///< Of the implicit integrators per substep, at most.
   /// Relative remainder of one tick at which rounds end early; the next tick takes it up. Below
-  /// what is felt [STABILITY 6: 7 %], and no remainder harms stability.
+  /// what is felt [PHYSICS 6: 7 %], and no remainder harms stability.
   double remainder = 1e-2;
   double step = 1e-3;  ///< Time of one tick, s, > 0.
 

@@ -8,7 +8,7 @@ struct NetworkBounds {
   /// told by `converged`; its remainder is added, so that it does not err to the low side.
   double omega_max = 0;
   /// A cheap bound that cannot be too low (Gershgorin: row sums), rad/s; 2 valence k / m under the
-  /// root for springs alone [STABILITY 4].
+  /// root for springs alone [PHYSICS 4].
   double omega_gershgorin = 0;
   /// The highest rate at which dampers stop a node, 1/s: the same of masses and dampers.
   double damping_rate_max = 0;

@@ -9,7 +9,7 @@
 namespace thimble::render {
 
 /// Names a way to step a spring network in time. w is its highest frequency, h the step
-/// [STABILITY 4].
+/// [PHYSICS 4].
 enum class SpringScheme {
   kExplicitEuler,    ///< order 1; gains energy wherever dampers do not take it: to show why not
   kSymplecticEuler,  ///< order 1; cheapest; h below 2 / w
@@ -21,8 +21,8 @@ enum class SpringScheme {
 };
 
 /// Is the scheme of whoever names none: stable at any stiffness, mass and step (spring_motion.h has
-/// the proof), at the cost of implicit Euler and truer at every step that follows the motion; a node
-/// too fast for its step swings on for as long as its damper lets it.
+/// the proof), at the cost of implicit Euler and truer at every step that follows the motion; a
+/// node too fast for its step swings on for as long as its damper lets it.
 inline constexpr SpringScheme kDefaultScheme = SpringScheme::kTrapezoid;
 
 inline constexpr std::array kSpringSchemes{

@@ -43,7 +43,7 @@ struct Box {
 ///
 /// Where two faces are equally near the force changes its direction but not its strength; no way
 /// round a closed loop gains energy. On a plate of thickness h the tip is pushed out at the back as
-/// soon as it has passed the middle, at stiffness * h / 2 [STABILITY 3]: kept as the paper's
+/// soon as it has passed the middle, at stiffness * h / 2 [PHYSICS 3]: kept as the paper's
 /// counter-example; EntryFaceContact cures it.
 struct WedgeBox : Box {
   /// Finds the nearest face of a point (W, m); the first of several. NaN lies outside.

@@ -11,7 +11,7 @@ namespace thimble::render {
 /// Sets what a repair may do. Each step can be left out.
 struct RepairOptions {
   /// How far apart two places may lie to be taken for one, as a share of the diagonal of the mesh's
-  /// box: 1 um on an object of 0.1 m, a thirtieth of an encoder step [STABILITY, set P]. 0 or NaN
+  /// box: 1 um on an object of 0.1 m, a thirtieth of an encoder step [PHYSICS 0]. 0 or NaN
   /// leaves out all that depends on it. At most 0.01 is used.
   double tolerance = 1e-5;
   bool weld = true;         ///< Join vertices on open edges that lie within the tolerance.

@@ -15,10 +15,10 @@ namespace thimble::render {
 /// Sets how models are followed.
 struct ModelTouchSettings {
   /// Stiffest that arm, loop and hand carry, N/m: (b + B) / L with the latency L of the *servo*
-  /// [STABILITY 1.1]. A stiffer model is felt as one of this stiffness with the same surface.
+  /// [PHYSICS 1.1]. A stiffer model is felt as one of this stiffness with the same surface.
   double stiffness_max = 0;
   /// Share of the force by which it may change in a tick on the way to a new model; half of what a
-  /// hand can tell is 3.5 % [STABILITY 6], and the tip moves as well.
+  /// hand can tell is 3.5 % [PHYSICS 6], and the tip moves as well.
   double jump = 0.02;
   double jump_least = 0.003;  ///< The same where there is hardly a force, N.
   double late = 0.05;  ///< Age from which a model is told as held, s: three periods of 60 Hz.
@@ -28,7 +28,7 @@ struct ModelTouchSettings {
   /// object moves by itself needs it. A pinch grip takes up ten times the default at 60 mm/s.
   double power = 0.001;
   /// What the hand has put in beyond what the model could give back is kept up to here, J [chosen:
-  /// half of what the gate lets go, STABILITY 7 case 11].
+  /// half of what the gate lets go, PHYSICS 7 case 11].
   double reserve = 0.001;
 };
 
