@@ -16,11 +16,11 @@
 
 namespace thimble::app {
 
-/// Is one arm on the bench, real or simulated: for commands that try an arm out rather than touch
+/// One arm on the bench, real or simulated: for commands that try an arm out rather than touch
 /// a scene with it. A simulated one runs on the virtual clock, with a hand that follows a path.
 class BenchArm {
  public:
-  /// Is called in each tick; answers the force it wishes, N in the world.
+  /// Called in each tick; answers the force it wishes, N in the world.
   using Law = std::function<Eigen::Vector3d(const driver::DeviceState&)>;
 
   /// Opens a real arm, or, without one, a simulated arm of the file whose hand follows `hand_W`
@@ -40,12 +40,12 @@ class BenchArm {
   bool hold(const std::function<bool()>& done, const std::atomic<bool>& stop);
 
   driver::Device& device() { return *device_; }
-  /// Tells whether the arm is simulated.
+  /// Returns whether the arm is simulated.
   bool simulated() const { return simulation_ != nullptr; }
-  /// Tells the largest force that the motors made on the tip in any run, N: what was true of a
+  /// Returns the largest force that the motors made on the tip in any run, N: what was true of a
   /// simulated arm, whatever its driver believes; 0 for a real one.
   double true_force_max() const { return true_force_max_; }
-  /// Tells the time, s.
+  /// Returns the time, s.
   double now() const { return static_cast<double>(clock_->now_ns()) * 1e-9; }
 
  private:

@@ -13,14 +13,14 @@ enum class Health {
   kProblem,  ///< The arm cannot be used like this.
 };
 
-/// Is one thing that the doctor looked at.
+/// One thing that the doctor looked at.
 struct Finding {
   Health health = Health::kGood;
   std::string what;  ///< One sentence.
   std::string mend;  ///< A command or an act that mends it; empty if nothing is wrong.
 };
 
-/// Is the machine as the doctor sees it; tests give one of their own.
+/// The machine as the doctor sees it; tests give one of their own.
 struct Patient {
   std::filesystem::path root = "/";  ///< Everything the kernel tells is read below it.
   long real_time_priority_max = 0;   ///< This user's RLIMIT_RTPRIO.

@@ -115,7 +115,7 @@ class Check {
                     : text);
   }
 
-  /// Is where the check is meant to be done: the middle of the workspace, in the world, m.
+  /// Where the check is meant to be done: the middle of the workspace, in the world, m.
   Eigen::Vector3d middle() const { return (file_.workspace.min_W + file_.workspace.max_W) / 2; }
 
   Eigen::Vector3d angles_from_middle(const Eigen::Vector3d& step) const {
@@ -124,7 +124,7 @@ class Check {
     return there && here ? *there - *here : Eigen::Vector3d(0, 0, 0);
   }
 
-  /// Tells how the joint angles change when the grip is moved along each axis, a column for each.
+  /// Returns how the joint angles change when the grip is moved along each axis, a column for each.
   Eigen::Matrix3d expected_moves() const {
     Eigen::Matrix3d moves;
     for (int axis = 0; axis < 3; ++axis) {
@@ -141,7 +141,7 @@ class Check {
     return step;
   }
 
-  /// Tells the force that each push of 1 N along an axis makes with a wiring of the motors, N in
+  /// Returns the force that each push of 1 N along an axis makes with a wiring of the motors, N in
   /// the world, a column for each.
   Eigen::Matrix3d tip_forces(const WiringGuess& guess) const {
     Eigen::Vector3d torque;  // per ampere, at the joint

@@ -16,14 +16,14 @@ namespace thimble::app {
 /// forces, watchdog.
 inline constexpr std::size_t kFeelChecks = 8;
 
-/// Is what one step of the check found.
+/// What one step of the check found.
 struct CheckResult {
   std::string name;
   bool passed = false;
   std::string text;  ///< One sentence with figures.
 };
 
-/// Is called before each step with what the user shall do; returns false to end the check.
+/// Called before each step with what the user shall do; returns false to end the check.
 using Prompt = std::function<bool(const std::string& what)>;
 
 /// Checks an arm step by step: do all encoders count, do the directions agree with the world, does

@@ -7,7 +7,7 @@
 
 namespace thimble::app {
 
-/// Is which wire sits where: joint i has what belongs to joint `source[i]`.
+/// Which wire sits where: joint i has what belongs to joint `source[i]`.
 struct WiringGuess {
   std::array<int, 3> source{0, 1, 2};
   std::array<int, 3> sign{1, 1, 1};  ///< 1, -1 if it is turned round, 0 if there is nothing.

@@ -11,7 +11,7 @@
 
 namespace thimble::app {
 
-/// Is which arm a command is about, as the user said it.
+/// Which arm a command is about, as the user said it.
 struct ArmChoice {
   std::string device = "auto";
   std::string arm_file;
@@ -21,7 +21,7 @@ struct ArmChoice {
   void add_options(CLI::App& command);
 };
 
-/// Is the arm that a choice means.
+/// The arm that a choice means.
 struct ChosenArm {
   scene::ArmFile file;                       ///< Of a real arm with its calibration, if wanted.
   std::filesystem::path path;                ///< Where `file` was read.

@@ -23,7 +23,7 @@
 namespace thimble::app {
 namespace {
 
-/// Is where the simulated hand goes: each pose is reached after a second and held for a second.
+/// Where the simulated hand goes: each pose is reached after a second and held for a second.
 std::vector<std::pair<double, Eigen::Vector3d>> simulated_hand(const Eigen::Vector3d& p_home) {
   std::vector<std::pair<double, Eigen::Vector3d>> way{{0, p_home}};
   for (int axis = 0; axis < 3; ++axis) {
@@ -55,7 +55,7 @@ int wait_for_word() {
   return complain({"Nobody is at the terminal, so nothing was done."}, kExitBadInput);
 }
 
-/// Tells how the library's calibration went.
+/// Returns how the library's calibration went.
 int tell_calibrated(const driver::Result<void>& done, const std::string& name) {
   if (!done) return complain(done.error(), kExitFault);
   std::printf("Done. Check it: thimble feel-check --device %s\n", name.c_str());

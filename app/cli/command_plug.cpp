@@ -95,7 +95,7 @@ bool obey(usb::FaultyDevice& device, const std::string& line) {
   return true;
 }
 
-/// Is the pipe that orders faults while the arm is plugged in.
+/// The pipe that orders faults while the arm is plugged in.
 class ControlPipeFile {
  public:
   ControlPipeFile() = default;

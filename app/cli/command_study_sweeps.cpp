@@ -15,7 +15,7 @@
 namespace thimble::app {
 namespace {
 
-/// Is what every study by a sweep asks for.
+/// What every study by a sweep asks for.
 struct SweepChoice {
   std::string out;
   int jobs = 0;

@@ -11,7 +11,7 @@ namespace thimble::app {
 // What a mesh's faults look like on its picture: edges as coloured lines, vertices and triangles
 // that may be too small to be seen as open signs. Real-time: never from the servo thread.
 
-/// Tells whether any of the faults has a place that can be marked.
+/// Returns whether any of the faults has a place that can be marked.
 bool has_marks(const render::MeshFindings& found);
 
 /// Writes the places of all faults as seen in a view: for each kind that has any, a block of what

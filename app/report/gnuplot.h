@@ -7,7 +7,7 @@
 
 namespace thimble::app {
 
-/// Is one picture: gnuplot commands that draw it, and its size.
+/// One picture: gnuplot commands that draw it, and its size.
 struct Plot {
   std::string name;      ///< Of the files, without ending.
   int width = 1600;      ///< pixels
@@ -22,7 +22,7 @@ struct Plot {
 /// Real-time: never from the servo thread.
 driver::Result<void> draw_plot(const Plot& plot, const std::filesystem::path& folder);
 
-/// Tells whether gnuplot can be run.
+/// Returns whether gnuplot can be run.
 bool has_gnuplot();
 
 }  // namespace thimble::app

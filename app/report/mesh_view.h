@@ -11,7 +11,7 @@
 
 namespace thimble::app {
 
-/// Is a direction to look from, orthographically: axes of the picture in the world. World: x
+/// A direction to look from, orthographically: axes of the picture in the world. World: x
 /// towards the user, y to the user's right, z up.
 struct ViewDirection {
   std::string_view name;
@@ -23,7 +23,7 @@ struct ViewDirection {
 /// Lists what the user sees from the front, what is seen from the left, and from above.
 const std::array<ViewDirection, 3>& view_directions();
 
-/// Is one shaded picture of a mesh on white, and how deep it is at each pixel.
+/// One shaded picture of a mesh on white, and how deep it is at each pixel.
 class MeshView {
  public:
   /// Draws the mesh (m) as seen in a square window of side `extent` (m, > 0) about `center_W`, with
@@ -32,14 +32,15 @@ class MeshView {
   MeshView(const render::TriangleMesh& mesh_W, const ViewDirection& direction,
            const Eigen::Vector3d& center_W, double extent, int pixels);
 
-  /// Tells the pixels, three bytes (red, green, blue) each, rows from below, columns from the left.
+  /// Returns the pixels, three bytes (red, green, blue) each, rows from below, columns from the
+  /// left.
   const std::vector<std::uint8_t>& rgb() const noexcept { return rgb_; }
   int pixels() const noexcept { return pixels_; }
 
-  /// Tells where a point falls in the picture: right and up, m in the world's axes u and v.
+  /// Returns where a point falls in the picture: right and up, m in the world's axes u and v.
   Eigen::Vector2d project(const Eigen::Vector3d& p_W) const;
 
-  /// Tells whether the mesh stands more than `tolerance` (m) before the point.
+  /// Returns whether the mesh stands more than `tolerance` (m) before the point.
   bool hides(const Eigen::Vector3d& p_W, double tolerance) const;
 
  private:

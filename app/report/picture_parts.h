@@ -13,7 +13,7 @@ namespace thimble::app {
 
 // What the pictures share: colours, quoting, contact intervals; and one function per picture.
 
-/// Is the ink of the pictures. Force is blue and depth orange: apart for colour-blind eyes too
+/// The ink of the pictures. Force is blue and depth orange: apart for colour-blind eyes too
 /// [M Okabe and Ito].
 inline constexpr const char* kInk = "#30343b";
 inline constexpr const char* kFaintInk = "#8a919c";
@@ -38,10 +38,10 @@ double tic_step(double range, int count);
 std::vector<std::pair<double, double>> contact_intervals(std::span<const driver::TickRecord> rows,
                                                          double gap);
 
-/// Tells the length of a vector.
+/// Returns the length of a vector.
 double length_of(const std::array<double, 3>& vector);
 
-/// Tells the time of a row in s from the first row's.
+/// Returns the time of a row in s from the first row's.
 double time_of(const driver::TickRecord& row, const driver::TickRecord& first);
 
 /// Draws force and depth over time.

@@ -12,7 +12,7 @@
 
 namespace thimble::app {
 
-/// Is what pictures say beside what they show.
+/// What pictures say beside what they show.
 struct PictureInfo {
   std::string title;  ///< Scene and arm, in a few words.
   bool virtual_time = true;

@@ -21,7 +21,7 @@ class Draw {
   }
   /// Draws from [low, high) so that each octave is as likely as any other; both above 0.
   double octave(double low, double high) { return low * std::pow(high / low, uniform(0, 1)); }
-  /// Tells whether something of this probability happens.
+  /// Returns whether something of this probability happens.
   bool chance(double probability) { return uniform(0, 1) < probability; }
   /// Draws one of 0 to count - 1.
   std::size_t one_of(std::size_t count) { return static_cast<std::size_t>(bits_() % count); }

@@ -10,16 +10,16 @@ namespace thimble::app {
 /// Takes away what is slow: Butterworth's high-pass of fourth order at `corner` (Hz), `rate` (Hz).
 std::vector<double> high_passed(std::span<const double> signal, double rate, double corner);
 
-/// Tells the root of the mean square; 0 of nothing.
+/// Returns the root of the mean square; 0 of nothing.
 double root_mean_square(std::span<const double> signal);
 
-/// Tells the mean; 0 of nothing.
+/// Returns the mean; 0 of nothing.
 double mean(std::span<const double> signal);
 
-/// Tells how often per second the sign changes; zeros count as the sign before.
+/// Returns how often per second the sign changes; zeros count as the sign before.
 double sign_changes_per_second(std::span<const double> signal, double rate);
 
-/// Is one line of a spectrum.
+/// One line of a spectrum.
 struct SpectralLine {
   double frequency = 0;  ///< Hz
   double amplitude = 0;  ///< Peak, in the signal's unit.

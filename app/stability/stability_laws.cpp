@@ -12,7 +12,7 @@ namespace {
 constexpr double kNone = std::numeric_limits<double>::infinity();
 constexpr double kPi = std::numbers::pi;
 
-/// Is how many angles are looked at in a maximum over angles; the maxima are broad.
+/// How many angles are looked at in a maximum over angles; the maxima are broad.
 constexpr int kAngles = 20'000;
 
 /// Gives what a unit of stiffness and of damping ask of the device's friction at one angle.

@@ -40,7 +40,7 @@ double restitution(double stiffness, double damping, double mass, double latency
 double bristle_length(double friction_force, double latency, double damping, double encoder_step,
                       double coulomb);
 
-/// Is a wall with everything linear between encoder and motor: no dry friction, no steps.
+/// A wall with everything linear between encoder and motor: no dry friction, no steps.
 struct SampledWall {
   double mass = 0;             ///< Of arm and hand, kg.
   double viscous = 0;          ///< Of arm and hand, N s/m.

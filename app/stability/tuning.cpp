@@ -15,15 +15,15 @@
 namespace thimble::app {
 namespace {
 
-/// Is the part of the limit that is safe to ask for: tightening a grip brings stiffness as well as
+/// The part of the limit that is safe to ask for: tightening a grip brings stiffness as well as
 /// damping [chosen]. It is not enough for hands that differ by three, which are looked at apart.
 constexpr double kShare = 0.7;
 
-/// Is the part of what the worst of those hands carries: there swings die within a second
+/// The part of what the worst of those hands carries: there swings die within a second
 /// [measured, tests/sim/hand_constants_test].
 constexpr double kShareAnyHand = 0.8;
 
-/// Is the worst of what simulated walls could carry.
+/// The worst of what simulated walls could carry.
 struct Edges {
   double linear = std::numeric_limits<double>::infinity();  // without dry friction and steps, N/m
   double as_is = std::numeric_limits<double>::infinity();   // N/m
@@ -78,7 +78,7 @@ std::string advice(const scene::Scene& scene, const scene::SceneObject& object,
       1e3 * carried.latency, limit, rate, 1e3 * carried.times.delay);
 }
 
-/// Tells how the hand rests on what the scene has, and how hands of other firmness would.
+/// Returns how the hand rests on what the scene has, and how hands of other firmness would.
 void tell_rests(const scene::Scene& scene, TuneResult& result) {
   const device_sim::HandSettings& own = scene.arm.simulated.hand;
   const auto trial = try_rests(scene, own);

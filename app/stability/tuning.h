@@ -11,7 +11,7 @@
 
 namespace thimble::app {
 
-/// Is what an arm, its loop and its hand can carry by the laws, in the worst direction.
+/// What an arm, its loop and its hand can carry by the laws, in the worst direction.
 struct Carried {
   scene::LoopTimes times;
   double latency = 0;          ///< s
@@ -36,14 +36,14 @@ struct Carried {
 Carried carried_by(const scene::ArmFile& arm, const scene::LoopTimes& times, double stiffness,
                    double damping);
 
-/// Tells the times of a loop of `rate` (Hz) with this arm, without jitter.
+/// Returns the times of a loop of `rate` (Hz) with this arm, without jitter.
 scene::LoopTimes loop_times(const scene::ArmFile& arm, double rate, double period_spread = 0);
 
 /// Says in one sentence for each object of a scene that asks for more than arm, loop and hand can
 /// carry what it asks, what can be had, and what to change; nothing for a scene that is in order.
 std::vector<std::string> stability_warnings(const scene::Scene& scene);
 
-/// Is what `thimble tune` tells.
+/// What `thimble tune` tells.
 struct TuneResult {
   std::vector<Figure> figures;
   std::string text;  ///< For a person.
@@ -55,8 +55,8 @@ struct TuneOptions {
   int places_per_side = 2;   ///< Walls are tried at so many places per side of the workspace.
 };
 
-/// Tells what a scene asks and what can be had: by the laws, and simulated through the whole way in
-/// three directions at places all over the workspace. Real-time: never from the servo thread.
+/// Returns what a scene asks and what can be had: by the laws, and simulated through the whole way
+/// in three directions at places all over the workspace. Real-time: never from the servo thread.
 TuneResult tune(const scene::Scene& scene, const TuneOptions& options);
 
 }  // namespace thimble::app

@@ -11,7 +11,7 @@
 
 namespace thimble::app {
 
-/// Is a direction of the tip at an arm's home pose, and what the encoders make of it.
+/// A direction of the tip at an arm's home pose, and what the encoders make of it.
 struct ArmDirection {
   Eigen::Vector3d n_W{0, 0, 1};   ///< Unit vector.
   Eigen::Vector3d p_WT{0, 0, 0};  ///< The home pose's tip, m.
@@ -37,7 +37,7 @@ driver::Result<ArmDirection> diagonal_direction_at_home(const scene::ArmFile& ar
 driver::Result<ArmDirection> direction_at_home(const scene::ArmFile& arm,
                                                const Eigen::Vector3d& way_W);
 
-/// Is one wall in front of one arm, and how it is begun; the one way in which walls are tried
+/// One wall in front of one arm, and how it is begun; the one way in which walls are tried
 /// (wall_trial.h and study/wall_measures.h say what is looked at). SI units.
 struct WallCase {
   ArmDirection direction;
@@ -65,7 +65,7 @@ struct WallCase {
   double give_up = 0.1;                 ///< Ends the run when the tip is so far from the middle, m.
 };
 
-/// Is what the tip truly did at each tick; offset from home along the direction.
+/// What the tip truly did at each tick; offset from home along the direction.
 struct WallRun {
   std::vector<double> time;  ///< s
   std::vector<double> x;     ///< m

@@ -15,7 +15,7 @@ constexpr double kEnd = 1.55;     // s
 constexpr double kWatched = 0.2;  // s, the last of it
 constexpr double kBefore = 0.4;   // s; so much earlier it is watched, too
 
-/// Tells how far the tip moved to and fro in a stretch of time, m.
+/// Returns how far the tip moved to and fro in a stretch of time, m.
 double swing_between(const WallRun& run, double from, double to) {
   double least = 1e9, most = -1e9;
   for (std::size_t i = 0; i < run.x.size(); ++i) {
@@ -26,7 +26,7 @@ double swing_between(const WallRun& run, double from, double to) {
   return std::max(0.0, most - least);
 }
 
-/// Tells how the force differs from its mean from a time on, N, RMS.
+/// Returns how the force differs from its mean from a time on, N, RMS.
 double force_rms(const WallRun& run, double from) {
   double sum = 0, squares = 0;
   int seen = 0;

@@ -8,7 +8,7 @@
 
 namespace thimble::app {
 
-/// Is one wall at one place of an arm's workspace, and how the hand of the arm's file meets it.
+/// One wall at one place of an arm's workspace, and how the hand of the arm's file meets it.
 struct WallTrial {
   Eigen::Vector3d p_W{0, 0, 0};          ///< A point of the wall, m.
   Eigen::Vector3d n_W{0, 0, 1};          ///< Its normal, to the free side.
@@ -20,7 +20,7 @@ struct WallTrial {
   driver::EnergyGuardSettings energy{};  ///< Of the gate.
 };
 
-/// Is what became of it.
+/// What became of it.
 struct WallTouch {
   double swing = 0;         ///< Of the true tip in the last 0.2 s, peak to peak, m.
   double swing_before = 0;  ///< The same 0.4 s earlier, m.

@@ -11,7 +11,7 @@
 
 namespace thimble::app {
 
-/// Is what a loop of one rate did on this machine.
+/// What a loop of one rate did on this machine.
 struct RateBench {
   double rate = 0;                            ///< Asked for, Hz.
   session::Histogram period, lateness, work;  ///< As RunStatistics.
@@ -20,7 +20,7 @@ struct RateBench {
   std::string trouble;                        ///< A fault, if one ended the run.
 };
 
-/// Is the answer to "is it good enough".
+/// The answer to "is it good enough".
 struct RateVerdict {
   bool enough = false;
   double late_us = 0, work_us = 0;  ///< 99.9th percentiles of wake-up and tick.
@@ -39,7 +39,7 @@ driver::Result<RateBench> bench_rate(const std::filesystem::path& scene, double 
 /// of the stiffness than can be felt.
 RateVerdict verdict_of(const RateBench& bench);
 
-/// Tells the share of K_max that ticks of uneven length cost: 1 - E[T]^2 / E[T^2] [PHYSICS 1.1].
+/// Returns the share of K_max that ticks of uneven length cost: 1 - E[T]^2 / E[T^2] [PHYSICS 1.1].
 double stiffness_lost(const session::Histogram& period);
 
 /// Gives it as figures.

@@ -20,12 +20,12 @@ constexpr std::int32_t kPatchAcross = 16;
 constexpr std::int32_t kPatchSquares = kPatchAround * kPatchAcross;
 static_assert(2 * kPatchSquares == render::kPageTriangles);
 
-/// Is what the ring needs to know of one angle: itself and its waves.
+/// What the ring needs to know of one angle: itself and its waves.
 struct Turn {
   double cosine, sine, wave_cosine, wave_sine;
 };
 
-/// Is the place of (row, column) in a table that is stored row by row.
+/// The place of (row, column) in a table that is stored row by row.
 std::size_t index(std::int32_t row, std::int32_t columns, std::int32_t column) noexcept {
   return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
          static_cast<std::size_t>(column);
@@ -124,7 +124,7 @@ class RingNumbers {
     return patch_of_page_[static_cast<std::size_t>(page)] % patches_across_ * kPatchAcross;
   }
 
-  /// Tells the number of square (i, j)'s triangle: the one below its diagonal, or above. Squares
+  /// Returns the number of square (i, j)'s triangle: the one below its diagonal, or above. Squares
   /// one beyond an end are those at the other end.
   std::int32_t triangle(std::int32_t i, std::int32_t j, bool above) const {
     i = (i + grid_.around) % grid_.around;
@@ -134,7 +134,7 @@ class RingNumbers {
            2 * place(i % kPatchAround, j % kPatchAcross) + (above ? 1 : 0);
   }
 
-  /// Tells which place square (i, j) of a patch has in its page.
+  /// Returns which place square (i, j) of a patch has in its page.
   std::int32_t place(std::int32_t i, std::int32_t j) const {
     return place_[index(i, kPatchAcross, j)];
   }
@@ -146,7 +146,7 @@ class RingNumbers {
   std::array<std::int32_t, kPatchSquares> place_{};
 };
 
-/// Is a corner as records hold it.
+/// A corner as records hold it.
 struct Corner {
   std::array<std::int32_t, 3> position;
   std::uint32_t normal;

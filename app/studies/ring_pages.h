@@ -8,7 +8,7 @@
 
 namespace thimble::app {
 
-/// Is a ring with bumps all over, about z; lengths in m. At u (around the ring) and v (around its
+/// A ring with bumps all over, about z; lengths in m. At u (around the ring) and v (around its
 /// tube), both in rad, the tube's radius is tube_radius (1 + amplitude sin(waves_u u) sin(waves_v
 /// v)). A surface of any number of triangles whose every point is known by itself.
 struct BumpyRing {

@@ -10,7 +10,7 @@
 
 namespace thimble::app {
 
-/// Is one study: it measures something on the virtual clock, draws it, and says it in figures.
+/// One study: it measures something on the virtual clock, draws it, and says it in figures.
 struct Study {
   std::string_view name;   ///< `thimble study NAME`.
   std::string_view about;  ///< What it shows, in one line of the help.

@@ -32,7 +32,7 @@ constexpr double kRate = 1000;        // Hz
 constexpr int kTicks = 4000;          // lines of 0.25 Hz, on which all that is asked for falls
 constexpr double kEncoder = 0.00003;  // m [PHYSICS 0]
 
-/// Is one line that the force must hold, as the settings ask for it.
+/// One line that the force must hold, as the settings ask for it.
 struct Line {
   double frequency = 0;  // Hz
   double amplitude = 0;  // N
@@ -78,7 +78,7 @@ render::Sines::Settings three_waves(render::TextureForm form) {
   return settings;
 }
 
-/// Is a picture of sine stripes, 16 pixels each.
+/// A picture of sine stripes, 16 pixels each.
 render::HeightMap::Settings stripes(render::TextureForm form) {
   std::vector<float> values;
   values.reserve(16);

@@ -8,7 +8,7 @@
 
 namespace thimble::app::view {
 
-/// Is an eye that circles about a point of the world. World: x towards the user, y to the user's
+/// An eye that circles about a point of the world. World: x towards the user, y to the user's
 /// right, z up.
 struct Camera {
   Eigen::Vector3d p_WTarget{0, 0, 0};  ///< What it looks at, m.
@@ -17,9 +17,9 @@ struct Camera {
   double distance = 0.5;               ///< m, from the target.
   double opening = 0.5;                ///< rad, of the picture's height.
 
-  /// Tells the direction from the target to the eye; unit vector in W.
+  /// Returns the direction from the target to the eye; unit vector in W.
   Eigen::Vector3d towards_eye() const;
-  /// Tells where the eye is, m in W.
+  /// Returns where the eye is, m in W.
   Eigen::Vector3d p_WEye() const { return p_WTarget + distance * towards_eye(); }
   /// Tell the directions right and up in the picture; unit vectors in W.
   Eigen::Vector3d right() const;

@@ -13,7 +13,7 @@
 
 namespace thimble::app::view {
 
-/// Is one object as it is drawn; a field has a mesh without triangles.
+/// One object as it is drawn; a field has a mesh without triangles.
 struct DrawnObject {
   std::string name;
   render::TriangleMesh mesh;      ///< W before the first tick, m.
@@ -22,7 +22,7 @@ struct DrawnObject {
   bool endless = false;           ///< A plane: drawn, but no part of what must fit in the picture.
 };
 
-/// Is what of a scene stays the same while it is drawn.
+/// What of a scene stays the same while it is drawn.
 struct DrawnScene {
   std::string name;
   std::string arm;
@@ -31,10 +31,10 @@ struct DrawnScene {
   double rate = 1000;      ///< Ticks per second, Hz.
 };
 
-/// Is one part of the arm: a rod between two points of the world, m.
+/// One part of the arm: a rod between two points of the world, m.
 using DrawnRod = std::pair<Eigen::Vector3d, Eigen::Vector3d>;
 
-/// Is a scene at one moment.
+/// A scene at one moment.
 struct DrawnMoment {
   driver::TickRecord tick;
   std::vector<render::BodyPose> poses;  ///< One per object of the scene.

@@ -11,7 +11,7 @@
 namespace thimble::app::view {
 namespace {
 
-/// Tells whether a mesh is flat: it stands for a plane, which has no end.
+/// Returns whether a mesh is flat: it stands for a plane, which has no end.
 bool is_flat(const render::TriangleMesh& mesh) {
   Eigen::AlignedBox3d box;
   for (const Eigen::Vector3d& vertex : mesh.vertices) box.extend(vertex);

@@ -49,7 +49,7 @@ ScreenPart draw_box(ImDrawList& list, const ScreenPart& part, const char* title,
 
 }  // namespace
 
-/// Is how a line looks, and up to where its axis goes.
+/// How a line looks, and up to where its axis goes.
 struct Plots::Look {
   const char* title;
   const char* unit;

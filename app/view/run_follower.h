@@ -26,7 +26,7 @@ class RunFollower {
   /// Gives what is drawn. Precondition: there is a reader; as for the moment.
   const DrawnScene& scene() const { return live_->scene(); }
   const DrawnMoment& moment() const { return *moment_; }
-  /// Tells whether the run has told of a tick so far.
+  /// Returns whether the run has told of a tick so far.
   bool has_moment() const { return has_moment_; }
   const Plots& plots() const { return plots_; }
   /// Says why nothing moves; empty if it does.

@@ -7,7 +7,7 @@
 
 namespace thimble::app::view {
 
-/// Is where the mouse wants the hand.
+/// Where the mouse wants the hand.
 struct HandWish {
   Eigen::Vector3d p_WH{0, 0, 0};  ///< m
   bool holds = false;
@@ -24,7 +24,7 @@ class SceneMouse {
   /// `hand_first` says which left leads the hand. To be called between ImGui's NewFrame and Render.
   void step(Camera& camera, const Eigen::Vector3d& p_WT, const ScreenPart& part, bool hand_first);
 
-  /// Tells where the hand shall be.
+  /// Returns where the hand shall be.
   const HandWish& hand() const { return hand_; }
 
  private:

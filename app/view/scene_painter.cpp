@@ -45,7 +45,7 @@ void set_paint(const GlProgram& program, const Colour& colour, float cover) {
   glUniform4f(program.at("paint"), colour[0], colour[1], colour[2], cover);
 }
 
-/// Tells whether a plane's mesh is level, so that it can be drawn as the ground.
+/// Returns whether a plane's mesh is level, so that it can be drawn as the ground.
 bool is_level(const render::TriangleMesh& mesh) {
   return std::all_of(mesh.vertices.begin(), mesh.vertices.end(), [&](const auto& vertex) {
     return std::abs(vertex.z() - mesh.vertices[0].z()) < 1e-9;
@@ -54,7 +54,7 @@ bool is_level(const render::TriangleMesh& mesh) {
 
 }  // namespace
 
-/// Is the block of the shaders that all programs read; std140 leaves no gaps between these.
+/// The block of the shaders that all programs read; std140 leaves no gaps between these.
 struct ScenePainter::ViewBlock {
   Eigen::Matrix4f view_projection, shadow_from_world;
   Eigen::Vector4f eye, key, sky, ground, grid, ground_place;

@@ -18,7 +18,7 @@
 
 namespace thimble::app::view {
 
-/// Is a scene that plays on the virtual clock, to take pictures of: what a viewer sees, by the same
+/// A scene that plays on the virtual clock, to take pictures of: what a viewer sees, by the same
 /// way through shared memory, but stopped at any tick.
 class PlayedScene {
  public:

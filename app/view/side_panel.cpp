@@ -15,7 +15,7 @@
 namespace thimble::app::view {
 namespace {
 
-/// Is one key and what it does.
+/// One key and what it does.
 struct Key {
   const char* key;
   const char* does;

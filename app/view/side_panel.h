@@ -8,7 +8,7 @@
 
 namespace thimble::app::view {
 
-/// Is what the user chose by panel and keys.
+/// What the user chose by panel and keys.
 struct ViewChoice {
   PaintChoice paint;
   bool mouse_is_hand = false;  ///< A left drag leads the hand, and not the camera.
@@ -19,7 +19,7 @@ struct ViewChoice {
   bool close = false;
 };
 
-/// Is what the panel says of the window itself.
+/// What the panel says of the window itself.
 struct ViewNotes {
   std::string notice;     ///< Above the scene: that the run has ended, say; empty: none.
   std::string message;    ///< Of what was just done; empty: none.

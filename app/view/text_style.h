@@ -13,7 +13,7 @@ namespace thimble::app::view {
 /// on a usual screen (1 for 96 pixels an inch). Real-time: never from the servo thread.
 void set_text_style(float scale);
 
-/// Is a part of a window or picture, in pixels from the upper left corner.
+/// A part of a window or picture, in pixels from the upper left corner.
 struct ScreenPart {
   float x = 0, y = 0, width = 0, height = 0;
 };
@@ -28,7 +28,7 @@ void write_caption(const std::string& text, const ScreenPart& part);
 /// Fills a part with one colour, behind everything else that is written there later.
 void fill_part(const ScreenPart& part, const Colour& colour);
 
-/// Is ImGui without a window, to write on pictures.
+/// ImGui without a window, to write on pictures.
 class PictureText {
  public:
   /// Precondition: a context of OpenGL 3.3 is current, and outlives this.

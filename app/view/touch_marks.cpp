@@ -57,8 +57,8 @@ void add_stylus(const DrawnMoment& moment, TouchMarks& marks) {
       ball(tip + 3 * kPoint * along + kWidth * R_WT.col(2), kButton, kTipColour));
 }
 
-/// Tells where the touch is seen: the proxy on a stiff surface; on one that is bent, where the tip
-/// has taken it.
+/// Returns where the touch is seen: the proxy on a stiff surface; on one that is bent, where the
+/// tip has taken it.
 Point touched_point(const DrawnMoment& moment) {
   const bool bent = moment.patch.triangle_count > 0 && moment.patch.object == moment.tick.object;
   return point(moment.tick.in_contact && !bent ? moment.tick.p_WP : moment.tick.p_WT);

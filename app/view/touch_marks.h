@@ -10,7 +10,7 @@
 
 namespace thimble::app::view {
 
-/// Is a word at a place of the scene.
+/// A word at a place of the scene.
 struct Label {
   Eigen::Vector3d p_W{0, 0, 0};     ///< m
   Eigen::Vector3d away_W{0, 0, 0};  ///< From the place towards where the word has room.
@@ -18,23 +18,23 @@ struct Label {
   Colour colour{};
 };
 
-/// Is a flat four-cornered piece that can be seen through; W, m.
+/// A flat four-cornered piece that can be seen through; W, m.
 struct Pane {
   std::array<Eigen::Vector3d, 4> corners_W;
   Colour colour{};
 };
 
-/// Is all that is drawn beside the objects: what shows the touch.
+/// All that is drawn beside the objects: what shows the touch.
 struct TouchMarks {
   std::vector<Solid> solids;
   std::vector<Label> labels;
   std::vector<Pane> panes;
 };
 
-/// Tells how large a scene's objects are together (m): the diagonal of their box, in sane limits.
+/// Returns how large a scene's objects are together (m): the diagonal of their box, in sane limits.
 double size_of(const DrawnScene& scene);
 
-/// Tells how long the arrow of a force (N) is drawn, m: its limit is as long as half the scene.
+/// Returns how long the arrow of a force (N) is drawn, m: its limit is as long as half the scene.
 double arrow_length(double force, const DrawnScene& scene);
 
 /// Says which marks are wanted.

@@ -45,7 +45,7 @@ std::string picture_name(const std::string& run) {
   return "thimble-" + (run.empty() ? "view" : run) + text;
 }
 
-/// Is the window with its OpenGL and ImGui; all go with it.
+/// The window with its OpenGL and ImGui; all go with it.
 class Screen {
  public:
   static driver::Result<std::unique_ptr<Screen>> open() {
@@ -142,15 +142,15 @@ Picture read_window(GLFWwindow* window) {
   return picture;
 }
 
-/// Tells whether the processor draws in place of a graphics card: then a picture as fine as can be
-/// takes 2.5 times as long as need be (tests/bench/view_bench).
+/// Returns whether the processor draws in place of a graphics card: then a picture as fine as can
+/// be takes 2.5 times as long as need be (tests/bench/view_bench).
 bool software_draws() {
   const auto* words = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
   const std::string name = words == nullptr ? "" : words;
   return name.find("llvmpipe") != std::string::npos || name.find("softpipe") != std::string::npos;
 }
 
-/// Is the window's content from picture to picture.
+/// The window's content from picture to picture.
 class Content {
  public:
   Content(Screen& screen, session::RunAttachment& runs) : screen_(screen), follower_(runs) {
@@ -160,7 +160,7 @@ class Content {
   /// Draws one picture into the window.
   driver::Result<void> draw(double frame_time);
   bool wants_to_close() const { return choice_.close; }
-  /// Tells whether nothing moves by itself: there is no run, or it has ended.
+  /// Returns whether nothing moves by itself: there is no run, or it has ended.
   bool still() {
     return follower_.reader() == nullptr ||
            follower_.reader()->state() == session::RunState::kEnded;

@@ -14,7 +14,7 @@
 
 namespace thimble::device_sim {
 
-/// Is the mechanics of the arm with the hand on it: motors pull on the joints, the tip moves as a
+/// The mechanics of the arm with the hand on it: motors pull on the joints, the tip moves as a
 /// mass with friction, the same in x, y and z of the base. Frames: B base, T tip, H where the hand
 /// wants to be.
 ///
@@ -25,7 +25,7 @@ namespace thimble::device_sim {
 /// exactly.
 class ArmPlant final : public Plant {
  public:
-  /// Is the longest sub-step, ns.
+  /// The longest sub-step, ns.
   static constexpr std::int64_t kStepMax_ns = 1'000'000;
 
   /// Makes the arm at rest at p_BT (m), with the hand wanting to be at p_BH (m). Fails if a
@@ -44,7 +44,7 @@ class ArmPlant final : public Plant {
   Eigen::Vector3d q() const noexcept override { return pose_.angles(); }
   Eigen::Vector3d q_about() noexcept override;
   const Eigen::Vector3d& currents() const noexcept override { return amperes_; }
-  /// Tells the motors' force on the tip in the last sub-step, N. Real-time: safe.
+  /// Returns the motors' force on the tip in the last sub-step, N. Real-time: safe.
   Eigen::Vector3d f_T_B() const noexcept override { return f_T_B_; }
   std::uint64_t stops() const noexcept override { return stops_; }
 

@@ -44,7 +44,7 @@ struct AxisCounters {
 /// step lengths. Used by one thread.
 class AxisDynamics {
  public:
-  /// Is the most events that one piece of a step may hold. A smooth drive has at most a few.
+  /// The most events that one piece of a step may hold. A smooth drive has at most a few.
   static constexpr int kMaxEvents = 16;
 
   /// Makes the dynamics. Fails if mass is not > 0 or anything else is negative or not finite.
@@ -55,9 +55,9 @@ class AxisDynamics {
   /// gives a state that is not finite. Real-time: safe; bounded by 1 + dt sqrt(k/m) / 1.5 pieces.
   void step(AxisState& state, const AxisDrive& drive, std::int64_t dt_ns) noexcept;
 
-  /// Tells the moving mass of arm and hand, kg. Real-time: safe.
+  /// Returns the moving mass of arm and hand, kg. Real-time: safe.
   double mass() const noexcept { return mass_; }
-  /// Tells what happened in all steps so far. Real-time: safe.
+  /// Returns what happened in all steps so far. Real-time: safe.
   const AxisCounters& counters() const noexcept { return counters_; }
 
  private:

@@ -23,7 +23,7 @@ struct FirmwareCounters {
   std::uint64_t watchdog_fired = 0;  ///< Times the motors went off for want of messages.
 };
 
-/// Is what runs on the arm's own board: it samples encoders into reports, and turns messages into
+/// What runs on the arm's own board: it samples encoders into reports, and turns messages into
 /// wanted motor currents. It knows no clock; whoever owns it tells it the time.
 ///
 /// The motors are off until the first message and after the watchdog fired, until the next message.
@@ -31,7 +31,7 @@ struct FirmwareCounters {
 /// published firmware does [S, DEVICES 1]. All functions are Real-time: safe.
 class Firmware {
  public:
-  /// Is the time of an event that is not going to happen, ns.
+  /// The time of an event that is not going to happen, ns.
   static constexpr std::int64_t kNever_ns = INT64_MAX;
 
   /// Makes the board of a model's motors and encoders; its geometry does not matter. Fails if a
@@ -62,16 +62,17 @@ class Firmware {
   /// Switches the motors off if no message came for the watchdog's time.
   void watch(std::int64_t time_ns) noexcept;
 
-  /// Tells when `watch` will act unless a message comes, ns, or kNever_ns while the motors are off.
+  /// Returns when `watch` will act unless a message comes, ns, or kNever_ns while the motors are
+  /// off.
   std::int64_t watchdog_due_ns() const noexcept { return watchdog_due_ns_; }
 
   /// Presses the calibration button; its flag stays set until a preset.
   void press_button() noexcept { button_ = true; }
 
-  /// Tells the currents the motors are asked for, joint by joint, A.
+  /// Returns the currents the motors are asked for, joint by joint, A.
   const Eigen::Vector3d& currents() const noexcept { return amperes_; }
 
-  /// Tells whether the amplifiers are enabled.
+  /// Returns whether the amplifiers are enabled.
   bool motors_on() const noexcept { return watchdog_due_ns_ != kNever_ns; }
 
   const FirmwareCounters& counters() const noexcept { return counters_; }

@@ -9,14 +9,14 @@
 
 namespace thimble::device_sim {
 
-/// Is where the hand wants the tip over time: along a path that was planned, or led by somebody who
+/// Where the hand wants the tip over time: along a path that was planned, or led by somebody who
 /// drags it; with its tremor; and standing still while it is held. Frame B: base of the arm. All
 /// functions but the constructor are Real-time: safe.
 class Hand {
  public:
-  /// Is the fastest that a hand goes that is led, m/s. [chosen: a brisk move over a desk]
+  /// The fastest that a hand goes that is led, m/s. [chosen: a brisk move over a desk]
   static constexpr double kSpeedMax = 0.4;
-  /// Is how quickly a hand that is led comes to where it is led to, 1/s: two time constants are
+  /// How quickly a hand that is led comes to where it is led to, 1/s: two time constants are
   /// some 100 ms. [chosen: what a person needs to follow a point by eye]
   static constexpr double kQuickness = 25;
 

@@ -8,11 +8,11 @@
 
 namespace thimble::device_sim {
 
-/// Is where the hand wants to be over time: points joined by straight lines. Before the first point
+/// Where the hand wants to be over time: points joined by straight lines. Before the first point
 /// it waits at the first, after the last point at the last. Frame B: base of the arm.
 class HandPath {
  public:
-  /// Is one point of the path.
+  /// One point of the path.
   struct Point {
     double time = 0;                ///< s
     Eigen::Vector3d p_BH{0, 0, 0};  ///< m

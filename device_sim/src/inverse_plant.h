@@ -14,7 +14,7 @@
 
 namespace thimble::device_sim {
 
-/// Is the mechanics of an arm whose inverse kinematics are known (`inverse(p_BT)`), with a hand on
+/// The mechanics of an arm whose inverse kinematics are known (`inverse(p_BT)`), with a hand on
 /// it: as ArmPlant, for any geometry. Its force comes from the inverse kinematics alone: by virtual
 /// work f = (dq/dp)^T tau, and dq/dp is a central difference over 1 um (error about 1e-9 of
 /// itself). So it shares nothing with the Jacobian by which a driver turns forces into torques.
@@ -39,7 +39,7 @@ class InversePlant final : public Plant {
   Eigen::Vector3d f_T_B() const noexcept override;
   std::uint64_t stops() const noexcept override { return stops_; }
 
-  /// Tells the true encoder counts before rounding.
+  /// Returns the true encoder counts before rounding.
   Eigen::Vector3d exact_counts() const noexcept { return model_.exact_counts(q_); }
 
  private:

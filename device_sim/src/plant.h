@@ -5,7 +5,7 @@
 
 namespace thimble::device_sim {
 
-/// Is the mechanics of an arm with a hand on it, whatever its build: motors pull on the joints, the
+/// The mechanics of an arm with a hand on it, whatever its build: motors pull on the joints, the
 /// tip moves as a mass with friction. Frames: B base, T tip, H where the hand wants to be. All
 /// functions are Real-time: safe.
 class Plant {
@@ -19,23 +19,23 @@ class Plant {
   /// end of reach the tip stays where it was, with no velocity.
   virtual void step(const Eigen::Vector3d& p_BH, std::int64_t dt_ns) noexcept = 0;
 
-  /// Tells where the tip is, m.
+  /// Returns where the tip is, m.
   virtual Eigen::Vector3d p_BT() const noexcept = 0;
-  /// Tells how the tip moves, m/s.
+  /// Returns how the tip moves, m/s.
   virtual Eigen::Vector3d v_BT() const noexcept = 0;
-  /// Tells where the hand wants the tip, m.
+  /// Returns where the hand wants the tip, m.
   virtual const Eigen::Vector3d& p_BH() const noexcept = 0;
-  /// Tells the true joint angles, rad.
+  /// Returns the true joint angles, rad.
   virtual Eigen::Vector3d q() const noexcept = 0;
-  /// Tells the same to within kAboutError, for less work where the plant knows how.
+  /// Returns the same to within kAboutError, for less work where the plant knows how.
   virtual Eigen::Vector3d q_about() noexcept { return q(); }
-  /// Is the most that `q_about` is wrong by, rad.
+  /// The most that `q_about` is wrong by, rad.
   static constexpr double kAboutError = 1e-12;
-  /// Tells the currents that flow, A.
+  /// Returns the currents that flow, A.
   virtual const Eigen::Vector3d& currents() const noexcept = 0;
-  /// Tells the motors' force on the tip, N.
+  /// Returns the motors' force on the tip, N.
   virtual Eigen::Vector3d f_T_B() const noexcept = 0;
-  /// Tells how many sub-steps ended at a mechanical stop.
+  /// Returns how many sub-steps ended at a mechanical stop.
   virtual std::uint64_t stops() const noexcept = 0;
 
  protected:

@@ -10,7 +10,7 @@ namespace thimble::device_sim {
 /// without a single trigonometric function. Frame B: base of the arm.
 class SerialPose {
  public:
-  /// Is the smallest sine of the angle between the links, and the smallest distance from the yaw
+  /// The smallest sine of the angle between the links, and the smallest distance from the yaw
   /// axis in units of the first link, that force_from uses. Nearer to fold, stretch or the yaw axis
   /// the structure carries what the formula would send to infinity. [guess: within 3 degrees of the
   /// end of travel; no arm is meant to be used there]
@@ -20,7 +20,7 @@ class SerialPose {
   /// under the same condition. A tip that is not finite is out of reach. Real-time: safe.
   SerialPose(const driver::SerialArm& arm, const Eigen::Vector3d& p_BT) noexcept;
 
-  /// Tells whether the arm gets there; if not, nothing else may be asked. Real-time: safe.
+  /// Returns whether the arm gets there; if not, nothing else may be asked. Real-time: safe.
   bool within_reach() const noexcept { return within_reach_; }
 
   /// Finds the tip force f_T_B (N) that joint torques tau (N m) make on a hand: J_BT^-T tau,

@@ -6,7 +6,7 @@
 
 namespace thimble::device_sim {
 
-/// Is the wire to a simulated arm: moves the arm's time to the clock's time at each exchange. Keeps
+/// The wire to a simulated arm: moves the arm's time to the clock's time at each exchange. Keeps
 /// neither the clock nor the arm alive.
 class SimTransport final : public driver::Transport {
  public:

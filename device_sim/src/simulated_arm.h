@@ -19,7 +19,7 @@
 
 namespace thimble::device_sim {
 
-/// Is a whole arm on the far side of the wire: plant, encoders, motors, firmware and a hand, driven
+/// A whole arm on the far side of the wire: plant, encoders, motors, firmware and a hand, driven
 /// by time alone. It speaks the bytes of the real arm and shares no state with the driver.
 ///
 /// Events in time order: at each report period (the first at time 0) the firmware samples the
@@ -55,7 +55,7 @@ class SimulatedArm {
   /// longer than the buffer is cut.
   std::size_t take_report(std::span<std::byte> buffer, std::uint32_t& skipped) noexcept;
 
-  /// Tells when the next report can be read, ns; never earlier than the present time.
+  /// Returns when the next report can be read, ns; never earlier than the present time.
   std::int64_t next_report_ns() const noexcept;
 
   /// Samples the encoders at the present time, for a board that speaks when it is spoken to; the
@@ -73,7 +73,7 @@ class SimulatedArm {
 
   // What is true in the simulation, for tests and studies; a driver cannot see it.
 
-  /// Tells the present time, ns.
+  /// Returns the present time, ns.
   std::int64_t time_ns() const noexcept { return time_ns_; }
   /// Shows the mechanics.
   const Plant& plant() const noexcept {
@@ -85,9 +85,9 @@ class SimulatedArm {
   Eigen::Vector3d gimbal() const noexcept {
     return gimbal_.at(1e-9 * static_cast<double>(time_ns_));
   }
-  /// Tells where the hand wants to be, m.
+  /// Returns where the hand wants to be, m.
   const Eigen::Vector3d& p_BH() const noexcept { return plant().p_BH(); }
-  /// Tells how many reports or messages were lost because more than WireQueue::kFrames were in
+  /// Returns how many reports or messages were lost because more than WireQueue::kFrames were in
   /// flight.
   std::uint64_t wire_overflows() const noexcept { return reports_.dropped() + messages_.dropped(); }
 

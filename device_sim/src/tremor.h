@@ -8,7 +8,7 @@
 
 namespace thimble::device_sim {
 
-/// Is the physiological tremor of a hand: per axis a sum of three sines around its middle
+/// The physiological tremor of a hand: per axis a sum of three sines around its middle
 /// frequency, whose amplitudes add up to the asked one. A hand trembles at 8 to 12 Hz [guess, from
 /// the general literature; amplitude and frequency are data]; the ratios cover that band around 10
 /// Hz.

@@ -10,7 +10,7 @@
 
 namespace thimble::device_sim {
 
-/// Is one report or message on its way.
+/// One report or message on its way.
 struct WireFrame {
   /// One byte more than any report has, so that what was too long stays recognisable as such.
   static constexpr std::size_t kCapacity = driver::kReportCapacity + 1;
@@ -19,7 +19,7 @@ struct WireFrame {
   std::size_t size = 0;                      ///< Bytes that count.
   std::array<std::byte, kCapacity> bytes{};  ///< The first `size` count.
 
-  /// Tells the bytes that count.
+  /// Returns the bytes that count.
   std::span<const std::byte> content() const noexcept {
     return std::span<const std::byte>(bytes).first(size);
   }
@@ -29,13 +29,13 @@ struct WireFrame {
 /// dropped and counted. All functions are Real-time: safe.
 class WireQueue {
  public:
-  /// Is how many frames may be in flight.
+  /// How many frames may be in flight.
   static constexpr std::size_t kFrames = 256;
 
-  bool empty() const noexcept { return count_ == 0; }  ///< Tells whether nothing waits.
+  bool empty() const noexcept { return count_ == 0; }  ///< Returns whether nothing waits.
 
-  /// Tells the next frame to arrive. Precondition: not empty (the caller's duty; otherwise it is a
-  /// frame of the past).
+  /// Returns the next frame to arrive. Precondition: not empty (the caller's duty; otherwise it is
+  /// a frame of the past).
   const WireFrame& front() const noexcept { return frames_[first_]; }
 
   /// Sends bytes that will arrive at `due_ns`, which must not lie before that of the frame sent
@@ -61,7 +61,7 @@ class WireQueue {
     first_ = count_ == 0 ? 0 : (first_ + 1) % kFrames;
   }
 
-  /// Tells how many frames were lost because too many were in flight.
+  /// Returns how many frames were lost because too many were in flight.
   std::uint64_t dropped() const noexcept { return dropped_; }
 
  private:

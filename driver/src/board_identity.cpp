@@ -26,7 +26,7 @@ bool is_ours(std::string_view product) {
          has_word(product, "haptikfabriken");
 }
 
-/// Tells an arm on Haptikfabriken's protocols by its product string.
+/// Returns an arm on Haptikfabriken's protocols by its product string.
 const char* arm_named(std::string_view product) {
   if (has_word(product, "woodenhaptics")) return "WoodenHaptics";
   return has_word(product, "polhem") ? "Polhem" : "Haptikfabriken arm";

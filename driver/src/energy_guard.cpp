@@ -6,7 +6,7 @@
 namespace thimble::driver {
 namespace {
 
-/// Is more than any surface holds that a hand can press, J: 10 N over the workspace of an arm.
+/// More than any surface holds that a hand can press, J: 10 N over the workspace of an arm.
 constexpr double kHeldMost = 2;
 
 }  // namespace

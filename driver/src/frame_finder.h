@@ -19,17 +19,17 @@ class FrameFinder {
   /// Takes the next bytes of the stream.
   void push(std::span<const std::byte> bytes) noexcept;
 
-  /// Tells whether a message came that was not taken yet.
+  /// Returns whether a message came that was not taken yet.
   bool ready() const noexcept { return ready_ > 0; }
 
   /// Copies the newest message and forgets it; returns its size, 0 if there is none. `skipped`
   /// tells how many older ones were dropped. A message longer than the buffer is cut.
   std::size_t take(std::span<std::byte> buffer, std::uint32_t& skipped) noexcept;
 
-  /// Tells how many whole messages came so far.
+  /// Returns how many whole messages came so far.
   std::uint64_t found() const noexcept { return found_; }
 
-  /// Tells how many messages were torn: begun and never ended, or too long.
+  /// Returns how many messages were torn: begun and never ended, or too long.
   std::uint64_t torn() const noexcept { return torn_; }
 
  private:

@@ -5,7 +5,7 @@
 
 namespace thimble::driver {
 
-/// Is the size of a packet of a full-speed FTDI converter, bytes, and of the modem and line status
+/// The size of a packet of a full-speed FTDI converter, bytes, and of the modem and line status
 /// at its beginning [S libnifalcon, libftdi].
 inline constexpr std::size_t kFtdiPacketSize = 64;
 inline constexpr std::size_t kFtdiStatusSize = 2;

@@ -27,7 +27,7 @@ struct CloseHandle {
   }
 };
 
-/// Is an open and claimed converter. The handle goes before its context.
+/// An open and claimed converter. The handle goes before its context.
 struct FtdiUsb {
   std::unique_ptr<libusb_context, CloseContext> context;
   std::unique_ptr<libusb_device_handle, CloseHandle> handle;

@@ -6,7 +6,7 @@
 
 namespace thimble::driver {
 
-/// Is an FTDI converter seen as what it converts: a serial line with its control wires. For set-up
+/// An FTDI converter seen as what it converts: a serial line with its control wires. For set-up
 /// only (boot, firmware upload); touching goes through a Transport. Every function answers false
 /// if the converter did not take the request; the line is then of no further use.
 /// Real-time: never from the servo thread.

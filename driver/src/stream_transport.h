@@ -14,7 +14,7 @@ struct StreamCounters {
   std::uint64_t unanswered = 0;  ///< Messages sent though the one before had no answer yet.
 };
 
-/// Is a wire that carries bytes without borders, to an arm that speaks only when spoken to: the
+/// A wire that carries bytes without borders, to an arm that speaks only when spoken to: the
 /// part that serial ports and FTDI converters have in common.
 ///
 /// Ping-pong. The arm samples its encoders when a message reaches it and answers at once. The loop
@@ -30,13 +30,13 @@ struct StreamCounters {
 /// silent is not waited for again.
 class StreamTransport : public Transport {
  public:
-  /// Is one frame of full-speed USB.
+  /// One frame of full-speed USB.
   static constexpr std::int64_t kTurn_ns = 1'000'000;
 
   TransportRead read_latest(std::span<std::byte> buffer, std::int64_t deadline_ns) noexcept final;
   TransportStatus write(std::span<const std::byte> report) noexcept final;
 
-  /// Tells what the stream met. Real-time: safe.
+  /// Returns what the stream met. Real-time: safe.
   StreamCounters counters() const noexcept {
     return {.torn = finder_.torn(), .unanswered = unanswered_};
   }

@@ -17,7 +17,7 @@ class VelocityEstimator {
   /// Forgets the past; the next estimate is zero.
   void reset() noexcept { primed_ = false; }
 
-  /// Tells whether a position has been taken since `reset`.
+  /// Returns whether a position has been taken since `reset`.
   bool primed() const noexcept { return primed_; }
 
   /// Takes the position p (m) sampled `dt` (s) after the previous one and returns the velocity,

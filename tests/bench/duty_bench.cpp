@@ -25,7 +25,7 @@ namespace {
 
 using Report = std::vector<std::byte>;
 
-/// Is a wire that has the next of some reports for each read, and forgets what is written.
+/// A wire that has the next of some reports for each read, and forgets what is written.
 class LoopedWire final : public driver::Transport {
  public:
   explicit LoopedWire(std::vector<Report> reports) : reports_(std::move(reports)) {}

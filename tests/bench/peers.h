@@ -9,7 +9,7 @@
 
 namespace thimble::bench {
 
-/// Is another library asked the same questions. Set-up may throw away what it does not need;
+/// Another library asked the same questions. Set-up may throw away what it does not need;
 /// questions return NaN where the library finds nothing.
 class Peer {
  public:

@@ -112,7 +112,7 @@ bool usbip_decode(Bytes bytes) {
   return true;
 }
 
-/// Is a device with one endpoint of each kind, which takes and gives whatever it is asked.
+/// A device with one endpoint of each kind, which takes and gives whatever it is asked.
 class Obliging final : public device_sim::usb::UsbDevice {
  public:
   Obliging() {

@@ -6,7 +6,7 @@
 
 namespace thimble::fuzz {
 
-/// Is how many things `decode_anything` can try.
+/// How many things `decode_anything` can try.
 inline constexpr unsigned kTargets = 13;
 
 /// Feeds bytes to one of the decoders; the first byte says which. Every decoder must survive any

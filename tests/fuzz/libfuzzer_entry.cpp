@@ -7,7 +7,7 @@
 
 namespace {
 
-/// Is which decoders are to be fuzzed.
+/// Which decoders are to be fuzzed.
 struct Decoders {
   unsigned first = 0;
   unsigned last = thimble::fuzz::kTargets - 1;

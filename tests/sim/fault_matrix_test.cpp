@@ -16,7 +16,7 @@ namespace {
 constexpr int kBefore = 260;  // ticks: the hand is where it shall be, and the soft start is over
 constexpr int kAfter = 180;   // ticks in which is watched what becomes of it
 
-/// Is what was seen of one cell.
+/// What was seen of one cell.
 struct Seen {
   std::int64_t off_after = 0;  ///< ms until the motors had no current, for good; -1: never
   driver::Fault cause = driver::Fault::kNone;

@@ -23,7 +23,7 @@ enum class Promise {
 /// Says where a fault comes from.
 enum class Place { kCable, kWiring, kHost };
 
-/// Is one kind of fault.
+/// One kind of fault.
 struct TestedFault {
   std::string_view name;
   Place place = Place::kCable;
@@ -65,7 +65,7 @@ inline constexpr std::array<TestedFault, 33> kTestedFaults{{
     {"stall out at the end", Place::kHost, "stall out"},
 }};
 
-/// Is what is promised, and in how many ms, which are ticks, the motors have no current.
+/// What is promised, and in how many ms, which are ticks, the motors have no current.
 struct Promised {
   Promise promise = Promise::kBound;
   int ticks = 0;
@@ -141,7 +141,7 @@ inline Promised promised(std::string_view fault, driver::ArmKind arm, Phase phas
   return {};
 }
 
-/// Tells whether an arm with this fault cannot be opened at all; nothing if that is a matter of
+/// Returns whether an arm with this fault cannot be opened at all; nothing if that is a matter of
 /// luck.
 inline std::optional<bool> refused_at_opening(std::string_view fault, driver::ArmKind arm) {
   const bool hid = arm == driver::ArmKind::kPolhem || arm == driver::ArmKind::kWoody;

@@ -22,7 +22,7 @@
 
 namespace thimble::fault_test {
 
-/// Is an arm as it comes, on its own wire.
+/// An arm as it comes, on its own wire.
 struct TestedArm {
   std::string_view name;
   std::string_view file;  ///< in app/arms
@@ -37,7 +37,7 @@ inline constexpr std::array<TestedArm, 6> kTestedArms{{
     {"falcon", "falcon", driver::ArmKind::kFalcon},
 }};
 
-/// Is what the arm is about when the fault comes.
+/// What the arm is about when the fault comes.
 enum class Phase { kOpening, kFree, kContact, kSliding, kDeforming, kRecording };
 inline constexpr std::array<std::string_view, 6> kPhaseNames{"opening", "free",      "contact",
                                                              "sliding", "deforming", "recording"};
@@ -68,7 +68,7 @@ class MotorWatch final : public device_sim::usb::UsbDevice {
     return arm_.out(address, packet);
   }
 
-  /// Tells the time of the last frame, and of the last in which a current flowed, ns.
+  /// Returns the time of the last frame, and of the last in which a current flowed, ns.
   std::int64_t time_ns() const noexcept { return time_ns_; }
   std::int64_t last_on_ns() const noexcept { return last_on_ns_; }
 
@@ -78,7 +78,7 @@ class MotorWatch final : public device_sim::usb::UsbDevice {
   std::int64_t last_on_ns_ = 0;
 };
 
-/// Is one arm with all between its hand and the force law: mechanics, board, a cable on which
+/// One arm with all between its hand and the force law: mechanics, board, a cable on which
 /// packets go wrong on demand, bus, driver, gate and a scene. Time is simulated.
 class FaultRig {
  public:
@@ -112,13 +112,13 @@ class FaultRig {
   driver::Device& device() { return *device_; }
   bool is_open() const { return device_ != nullptr; }
   const scene::ArmFile& file() const { return file_; }
-  /// Tells the current in all motors together: what is true, whatever the driver believes; A
+  /// Returns the current in all motors together: what is true, whatever the driver believes; A
   /// (Falcon: motor values).
   double motors() const { return arm_->truth().currents.norm(); }
   const MotorWatch& watch() const { return *watch_; }
   double depth() const { return depth_; }
   std::uint64_t ticks() const { return ticks_; }
-  /// Tells whether all forces sent were finite and within the arm's limit.
+  /// Returns whether all forces sent were finite and within the arm's limit.
   bool within_limit() const { return within_limit_; }
 
  private:

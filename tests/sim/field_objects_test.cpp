@@ -28,7 +28,7 @@ struct Nothing {
   void operator()(const driver::TickRecord&) const noexcept {}
 };
 
-/// Is an arm without a hand, nearly without friction, on an ideal wire; its gate lets all through.
+/// An arm without a hand, nearly without friction, on an ideal wire; its gate lets all through.
 struct FreeArm {
   static constexpr double kMass = 0.1;
   static constexpr double kViscous = 0.005;

@@ -105,7 +105,7 @@ TEST(HandConstants, NoHandIsThrownBackFasterByAnyShippedWall) {
                             "<= largest restitution", most, 1, "1");
 }
 
-/// Is what a wall does under all hands, pressed along each axis through the whole way; without the
+/// What a wall does under all hands, pressed along each axis through the whole way; without the
 /// gate's energy stage, which would help.
 struct Unrest {
   int loud = 0;  ///< Hands and axes under which the force moves by more than 20 mN RMS.

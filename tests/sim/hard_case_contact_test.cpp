@@ -43,7 +43,7 @@ std::string name_of(TrackerChoice tracker) {
   return name;
 }
 
-/// Is an object that is touched at one place after the other.
+/// An object that is touched at one place after the other.
 class Touched {
  public:
   Touched(const TriangleMesh& mesh, TrackerChoice tracker,

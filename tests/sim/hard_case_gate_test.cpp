@@ -35,7 +35,7 @@ GateLimits limits(double force_max = 8.5) {
           .watchdog_ns = 100'000'000};
 }
 
-/// Is how a guard keeps its account.
+/// How a guard keeps its account.
 enum class Booking { kSent, kDemanded };
 
 /// Joins a gate to a one-dimensional wall as Device joins it to an arm.
@@ -156,7 +156,7 @@ TEST(HardCase11, BouncesCreepWhenNotTheSentForceIsBooked) {
                    "> largest bounce over the first", crept, 1.2, "1");
 }
 
-/// Tells the largest restitution of a bounded wall over 40 phases.
+/// Returns the largest restitution of a bounded wall over 40 phases.
 double bounded_restitution(double viscous, double slope_share, double speed, double demanded) {
   double most = 0;
   for (int i = 0; i < 40; ++i) {

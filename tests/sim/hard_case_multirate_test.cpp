@@ -44,14 +44,14 @@ scene::ArmFile phantom() {
   return *arm;
 }
 
-/// Is how the slow scene is felt.
+/// How the slow scene is felt.
 enum class Law {
   kLocalModel,  // the product
   kHeldForce,   // the naive way: the newest force, until there is another
   kEveryTick,   // what both would like to be: the surface itself at 1 kHz
 };
 
-/// Is one tick: what is true, and what was sent.
+/// One tick: what is true, and what was sent.
 struct Row {
   double time = 0;             // s
   Vector3d p_WT{0, 0, 0};      // m, of the true tip
@@ -124,7 +124,7 @@ Felt run(const scene::ArmFile& arm, SlowSide& slow, Law law, const Way& way, dou
 
 constexpr double kBegin = 0.35;  // s; the soft start is over
 
-/// Is a throw: the speed of the tip when it came, and when it left.
+/// A throw: the speed of the tip when it came, and when it left.
 struct Throw {
   double in = 0, out = 0;  // m/s
   double e() const { return out / in; }
@@ -268,7 +268,7 @@ TEST(HardCase40, GuardHeldForceObeysTheSlowPeriodAndAModelTheServos) {
                    1e3 * model, 0.2, "mm");
 }
 
-/// Is the largest change of what was sent from one tick to the next against the force, from `from`
+/// The largest change of what was sent from one tick to the next against the force, from `from`
 /// (s) on, where it is above 0.1 N: 5 mN, a quarter of what is felt [PHYSICS 6].
 double largest_jump(const std::vector<Row>& rows, double from) {
   double most = 0;

@@ -342,7 +342,7 @@ TEST(HardCase37, SingularPosesAndTheEdgeOfReachGiveFiniteClampedCurrents) {
                    1e-6, "rad");
 }
 
-/// Tells the largest change of the force from tick to tick from `from` on, N.
+/// Returns the largest change of the force from tick to tick from `from` on, N.
 double largest_step(const std::vector<Press::Row>& rows, std::size_t from) {
   double most = 0;
   for (std::size_t i = from; i < rows.size(); ++i) {

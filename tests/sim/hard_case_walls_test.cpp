@@ -35,7 +35,8 @@ using support::WallRig;
 
 constexpr double kMass = 0.075, kStep = 3e-5;
 
-/// Tells how fast the logarithm of a swing's energy grows, 1/s: from the second tenth to the last.
+/// Returns how fast the logarithm of a swing's energy grows, 1/s: from the second tenth to the
+/// last.
 double growth(const Wall& wall, double duration) {
   WallRig rig(wall);
   rig.state.x = 1e-3;
@@ -109,7 +110,7 @@ std::int64_t draw(Jitter jitter, support::Random& random) {
   return 0;
 }
 
-/// Tells the growth of a swing's energy per tick under jitter, from the same draws for any
+/// Returns the growth of a swing's energy per tick under jitter, from the same draws for any
 /// stiffness.
 double jittered_growth(Jitter jitter, double stiffness, double viscous, int ticks) {
   AxisDynamics axis =
@@ -157,7 +158,7 @@ TEST(HardCase02, JitterCostsWhatTheMeanSquareOfThePeriodSays) {
                    "<= largest error of K_max against b / (E[T^2] / 2 E[T])", worst, 0.03, "1");
 }
 
-/// Tells the fastest growth per tick of a wall in any of 21 x 112 hands of mass and spring alone.
+/// Returns the fastest growth per tick of a wall in any of 21 x 112 hands of mass and spring alone.
 double worst_operator(double stiffness, double damping, double delay, double viscous) {
   double worst = 0;
   for (int i = 0; i < 21; ++i) {
@@ -208,7 +209,7 @@ class EncodedTip {
         firmware_(device_sim::Firmware::make(driver::arm_model(model_), {}).value()),
         arm_(model_) {}
 
-  /// Tells how far from home the driver sees a tip that truly is `x` away, m.
+  /// Returns how far from home the driver sees a tip that truly is `x` away, m.
   double seen(double x) const {
     Vector3d q = support::vintage_home();
     q[2] += x / model_.geometry.length_c;
@@ -277,7 +278,7 @@ TEST(HardCase04, AnAdversaryGainsJustWhereFrictionIsBelowHalfAQuantum) {
   record_hard_case(4, "adversary at f_c = 0.98 K step / 2", "> gain over K step d", least, 0, "1");
 }
 
-/// Is what became of a swing.
+/// What became of a swing.
 struct Ending {
   bool rests = false;
   double amplitude = 0;  // of the last tenth, m, peak to peak

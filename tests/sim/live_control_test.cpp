@@ -68,7 +68,7 @@ std::uint64_t hash_of(const session::Session& session) {
   return hash.value();
 }
 
-/// Is one copy of a scene's force law with its knobs.
+/// One copy of a scene's force law with its knobs.
 struct Copy {
   explicit Copy(const scene::Scene& scene)
       : objects(scene::SceneObjects::build(scene).value()), knobs(scene, objects->touch()) {}
@@ -96,7 +96,7 @@ driver::TickRecord told(const driver::DeviceState& state, const driver::ForceCom
   return record;
 }
 
-/// Is what turning a knob does to a force.
+/// What turning a knob does to a force.
 struct Turned {
   double largest_step = 0;  // by the turning of one tick alone, N
   double range = 0;         // how far the values went, of their bounds

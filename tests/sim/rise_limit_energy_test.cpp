@@ -22,7 +22,7 @@ constexpr double kForceMost = 8.5;  // N
 constexpr double kMass = 0.075;     // kg
 constexpr double kRise = 2000;      // N/s, as shipped
 
-/// Is what stands between a force law and the motors of the throws.
+/// What stands between a force law and the motors of the throws.
 enum Limiter : std::size_t {
   kNone,       ///< The arm's limit alone.
   kLength,     ///< Its rise, but of its length alone: what the gate once did.
@@ -64,7 +64,7 @@ class Between {
   Vector3d last_{0, 0, 0};
 };
 
-/// Is a body of faces through the origin, `n` being their outward normals: a wall of one, a wedge
+/// A body of faces through the origin, `n` being their outward normals: a wall of one, a wedge
 /// of two, a plate of two that look away from each other. Its force is the spring of the face that
 /// is nearest.
 struct Faces {
@@ -87,7 +87,7 @@ struct Faces {
   }
 };
 
-/// Is one throw at a body.
+/// One throw at a body.
 struct Throw {
   Vector3d p{0, 0, 0}, v{0, 0, 0};
   double phase = 0;    ///< of a tick, until the first sample
@@ -139,7 +139,7 @@ double energy_back(const Faces& body, const Throw& thrown, Limiter limiter, doub
   return Vector3d(s[0].v, s[1].v, s[2].v).squaredNorm() / thrown.v.squaredNorm();
 }
 
-/// Is what comes back of many throws, per limiter.
+/// What comes back of many throws, per limiter.
 struct Back {
   std::array<double, 4> sum{}, most{};
   int throws = 0, acted = 0;

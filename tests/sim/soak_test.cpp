@@ -39,7 +39,7 @@ std::vector<std::string> shipped_scenes() {
   return names;
 }
 
-/// Is what a scene did in its ticks.
+/// What a scene did in its ticks.
 struct Soaked {
   std::uint64_t ticks = 0;
   std::uint64_t hash = 0;

@@ -65,7 +65,7 @@ class WaysOut : public ::testing::Test {
                              {.period_ns = kPeriod_ns, .ticks = ticks}, stop_);
   }
 
-  /// Tells the largest current in the simulated motors, A.
+  /// Returns the largest current in the simulated motors, A.
   double current() const { return arm_->firmware().currents().cwiseAbs().maxCoeff(); }
 
   void let_pass(std::int64_t ns) {

@@ -17,7 +17,7 @@ namespace thimble::support {
 // Closed shapes of 0.1 m from 10^3 to 10^7 triangles, made in linear time, and the surface that
 // they stand for. Lengths in m.
 
-/// Is the surface r(u) = radius * (1 + amplitude * sin(w x) sin(w y + 1) sin(w z + 2)), u = (x, y,
+/// The surface r(u) = radius * (1 + amplitude * sin(w x) sin(w y + 1) sin(w z + 2)), u = (x, y,
 /// z) a direction: a ball of 0.1 m with dents and bumps.
 struct BumpyBall {
   double radius = 0.05;
@@ -43,7 +43,7 @@ struct BumpyBall {
   }
 };
 
-/// Is a torus about z of 0.1 m across.
+/// A torus about z of 0.1 m across.
 struct Ring {
   double ring_radius = 0.035;
   double tube_radius = 0.015;
@@ -56,7 +56,7 @@ struct Ring {
     return {std::cos(across) * std::cos(around), std::cos(across) * std::sin(around),
             std::sin(across)};
   }
-  /// Tells how far a point is below the surface.
+  /// Returns how far a point is below the surface.
   double depth(const Eigen::Vector3d& p) const {
     return tube_radius - std::hypot(std::hypot(p.x(), p.y()) - ring_radius, p.z());
   }

@@ -15,7 +15,7 @@
 
 namespace thimble::support {
 
-/// Is a driver's wire over a full-speed bus in this process, whose frames of a millisecond pass as
+/// A driver's wire over a full-speed bus in this process, whose frames of a millisecond pass as
 /// the virtual clock does: what usb_host_transport.h does through sockets, without them, for tests
 /// of many runs. It treats its device as the kernel does:
 /// - a HID report longer than asked for is babble, and nothing comes of it;

@@ -11,7 +11,7 @@
 
 namespace thimble::support {
 
-/// Tells whether tests shall run at full length (THIMBLE_LONG=1) or in their short form.
+/// Returns whether tests shall run at full length (THIMBLE_LONG=1) or in their short form.
 inline bool long_form() {
   const char* const wish = std::getenv("THIMBLE_LONG");
   return wish != nullptr && std::string_view(wish) == "1";

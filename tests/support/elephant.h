@@ -20,7 +20,7 @@ inline std::filesystem::path elephant_scene() {
   return std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/scenes/elephant.yaml";
 }
 
-/// Tells whether the scanned meshes are there (app/fetch_meshes.sh brings them).
+/// Returns whether the scanned meshes are there (app/fetch_meshes.sh brings them).
 inline bool have_meshes() {
   return std::filesystem::exists(std::filesystem::path(THIMBLE_MESHES) / "elephant.off");
 }

@@ -8,7 +8,7 @@
 
 namespace thimble::support {
 
-/// Is libusb with one scripted FTDI converter on its bus, for programs that link fake_libusb.cpp:
+/// Libusb with one scripted FTDI converter on its bus, for programs that link fake_libusb.cpp:
 /// its functions stand in for the library's. A chat is written beforehand: what each read of the
 /// converter comes to, and how it takes messages. Nothing here asks the heap for anything once the
 /// chat runs, so that a heap guard sees the code under test alone.
@@ -16,7 +16,7 @@ class FakeLibusb {
  public:
   static constexpr std::size_t kChatMax = 4096;
 
-  /// Is what one read comes to.
+  /// What one read comes to.
   struct Read {
     int status = 0;  ///< A libusb_transfer_status.
     std::array<std::byte, 64> bytes{};

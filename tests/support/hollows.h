@@ -12,7 +12,7 @@
 
 namespace thimble::support {
 
-/// Is a solid with one sharp hollow in its top, and how a hand presses into it. W, m.
+/// A solid with one sharp hollow in its top, and how a hand presses into it. W, m.
 struct Hollow {
   TriangleMesh mesh;
   Vector3d bottom{0, 0, 0};    ///< Where the planes meet.

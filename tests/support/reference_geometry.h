@@ -66,7 +66,7 @@ inline Vector3d nearest_on_triangle(const Vector3d& p, const Vector3d& a, const 
   return nearest;
 }
 
-/// Is the nearest point of a mesh.
+/// The nearest point of a mesh.
 struct Nearest {
   std::size_t triangle = 0;
   Vector3d point{0, 0, 0};

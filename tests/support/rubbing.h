@@ -13,7 +13,7 @@ namespace thimble::support {
 
 using render::MapSettings;
 
-/// Is the PHANTOM-like arm at 1 kHz, as effects know it [PHYSICS 0].
+/// The PHANTOM-like arm at 1 kHz, as effects know it [PHYSICS 0].
 inline render::EffectContext phantom_context() {
   render::EffectContext context;
   context.encoder_step = 3e-5;

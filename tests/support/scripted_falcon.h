@@ -9,7 +9,7 @@
 
 namespace thimble::support {
 
-/// Is the far side of a Falcon's serial line, as strict as its boot loader: it listens only at the
+/// The far side of a Falcon's serial line, as strict as its boot loader: it listens only at the
 /// right rate and with the right control wires. Faults on demand.
 class ScriptedFalcon final : public driver::SerialLine {
  public:

@@ -16,7 +16,7 @@ struct Wire {
   int refusals = 0;  ///< So many messages from now on are not taken.
 };
 
-/// Is a wire whose far side is written by the test.
+/// A wire whose far side is written by the test.
 class ScriptedTransport final : public driver::Transport {
  public:
   explicit ScriptedTransport(Wire& wire) : wire_(wire) {}

@@ -12,7 +12,7 @@
 
 namespace thimble::support {
 
-/// Is a surface in closed form that stands in for a slow simulation: a plane, ball or bowl whose
+/// A surface in closed form that stands in for a slow simulation: a plane, ball or bowl whose
 /// force is k d, or grows more or less than with the depth d.
 struct SlowSurface {
   enum class Shape { kPlane, kBall, kBowl };
@@ -80,7 +80,7 @@ struct SlowSurface {
   }
 };
 
-/// Is a thread of 60 Hz in simulated time: looks at the tip, computes for a whole period,
+/// A thread of 60 Hz in simulated time: looks at the tip, computes for a whole period,
 /// publishes, looks again. It may fall silent for a while.
 class SlowSide {
  public:

@@ -31,7 +31,7 @@ struct TorusSurface {
   }
 };
 
-/// Is the space on one side of the gyroid sin x cos y + sin y cos z + sin z cos x = 0, rounded off
+/// The space on one side of the gyroid sin x cos y + sin y cos z + sin z cos x = 0, rounded off
 /// at a sphere, so that it is closed and smooth: saddles everywhere but near the sphere.
 struct GyroidSurface {
   double wave;      ///< rad/m: the gyroid repeats after 2 pi / wave.

@@ -8,7 +8,7 @@
 
 namespace thimble::support {
 
-/// Is a free point mass in simulated time that touches one object, with a hand's spring and damper
+/// A free point mass in simulated time that touches one object, with a hand's spring and damper
 /// or none: positions are ideal, forces are held over a tick.
 struct Stylus {
   double mass = 0.1;  ///< kg

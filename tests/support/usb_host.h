@@ -18,11 +18,11 @@
 
 namespace thimble::support {
 
-/// Is a USB host in this process: it talks USB/IP to a server over a socket pair, on one thread and
+/// A USB host in this process: it talks USB/IP to a server over a socket pair, on one thread and
 /// in simulated time, a frame at a time.
 class UsbHost {
  public:
-  /// Is what a transfer came to.
+  /// What a transfer came to.
   struct Done {
     std::int32_t status = 0;
     std::vector<std::byte> data;  // to the host
@@ -58,7 +58,7 @@ class UsbHost {
     return std::exchange(heard_, {});
   }
 
-  /// Tells whether the server hung up.
+  /// Returns whether the server hung up.
   bool hung_up() {
     listen();
     return closed_;

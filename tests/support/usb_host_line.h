@@ -9,7 +9,7 @@
 
 namespace thimble::support {
 
-/// Is an FTDI line through a host in this process; time is simulated, a millisecond a frame.
+/// An FTDI line through a host in this process; time is simulated, a millisecond a frame.
 class UsbHostLine final : public driver::SerialLine {
  public:
   explicit UsbHostLine(UsbHost& host) : host_(host) {}

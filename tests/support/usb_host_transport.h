@@ -13,7 +13,7 @@
 
 namespace thimble::support {
 
-/// Is a driver's wire through a host in this process: frames of the bus pass as the virtual clock
+/// A driver's wire through a host in this process: frames of the bus pass as the virtual clock
 /// does, one a millisecond. Two reads are always under way; a stalled endpoint is cleared, as the
 /// kernel does for HID arms.
 class UsbHostTransport final : public driver::Transport {

@@ -8,7 +8,7 @@
 
 namespace thimble::support {
 
-/// Is the vintage PHANTOM refit in code (app/arms/vintage_phantom.yaml holds the same with its
+/// The vintage PHANTOM refit in code (app/arms/vintage_phantom.yaml holds the same with its
 /// sources), so that tests of the lower rooms need no file.
 inline driver::JointModel<driver::SerialArm> vintage_model() {
   driver::JointModel<driver::SerialArm> model;
@@ -24,7 +24,7 @@ inline driver::JointModel<driver::SerialArm> vintage_model() {
   return model;
 }
 
-/// Is the arm's home pose: upper link level, lower link hanging.
+/// The arm's home pose: upper link level, lower link hanging.
 inline Eigen::Vector3d vintage_home() {
   return {0, std::numbers::pi / 2, 0};
 }

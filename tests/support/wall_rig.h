@@ -10,7 +10,7 @@
 
 namespace thimble::support {
 
-/// Is a sampled wall in one dimension: the plant's exact map, an encoder, a late and held force.
+/// A sampled wall in one dimension: the plant's exact map, an encoder, a late and held force.
 /// Free space is x > 0, and the wall's force is positive.
 struct Wall {
   device_sim::PlantSettings plant{.mass = 0.075, .viscous = 0.005, .coulomb = 0};
@@ -77,9 +77,9 @@ class WallRig {
     return sent;
   }
 
-  /// Tells the way since the tick before, as read.
+  /// Returns the way since the tick before, as read.
   double way() const { return x_read_ - x_before_; }
-  /// Tells the work that the motor truly did on the tip, J.
+  /// Returns the work that the motor truly did on the tip, J.
   double work() const { return work_; }
   double velocity() const { return velocity_; }
 

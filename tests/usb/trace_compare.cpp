@@ -22,7 +22,7 @@ struct Tick {
   Numbers f_sent{};
 };
 
-/// Is one packet as the arm saw it.
+/// One packet as the arm saw it.
 struct Report {
   std::int64_t sampled = 0;  // frame
   Counts counts{};

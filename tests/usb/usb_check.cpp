@@ -58,7 +58,7 @@ struct Recorder {
   }
 };
 
-/// Is one arm opened and ready to be touched.
+/// One arm opened and ready to be touched.
 struct Bench {
   driver::WallClock clock{0};  // one processor: a loop that spins keeps the kernel from working
   driver::FoundArm found;

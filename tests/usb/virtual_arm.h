@@ -13,13 +13,13 @@
 
 namespace thimble::usb_test {
 
-/// Is one of the arms that `thimble plug` exports, as a driver opens it: by what the kernel shows.
+/// One of the arms that `thimble plug` exports, as a driver opens it: by what the kernel shows.
 struct VirtualArm {
   std::string name;
   std::string firmware;  ///< For the Falcon: the file to upload.
 
   bool is_falcon() const { return name == "falcon"; }
-  /// Tells whether it sends reports only after messages.
+  /// Returns whether it sends reports only after messages.
   bool answers() const { return name != "woodenhaptics"; }
   /// Returns the bytes of its messages, 0 for a Falcon.
   std::size_t message_size() const;
@@ -36,10 +36,10 @@ struct VirtualArm {
                                                           const driver::Clock& clock) const;
 };
 
-/// Tells the limits under which all checks run.
+/// Returns the limits under which all checks run.
 driver::DeviceSettings check_settings();
 
-/// Is a wall across the base's z, a spring of 300 N/m. The simulated hand goes up and down once a
+/// A wall across the base's z, a spring of 300 N/m. The simulated hand goes up and down once a
 /// second by 15 mm or more; the wall stands 19 mm below the highest place that the tip has reached,
 /// so that it is the same wherever the hand was when the check began. It rises slowly enough that a
 /// spoilt report does not carry it away.

@@ -50,7 +50,7 @@ int arm_named(const char* name) {
   return std::atoi(number.c_str()) - 1;
 }
 
-/// Tells the program what became of its force, as errors.
+/// Returns the program what became of its force, as errors.
 void look_at_forces(HHD handle, Device& device) noexcept {
   const ArmReading& now = device.frame.now;
   if (now.fault != device.fault_told) {

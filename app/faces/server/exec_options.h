@@ -31,7 +31,7 @@ struct ExecOptions {
   bool unchecked = false;               ///< Its whole force without a passed feel check.
   bool homed = false;                   ///< It was in its home pose when it got power.
   bool no_real_time = false;            ///< Without real-time priority.
-  /// Is called with an arm's number and session before its loop begins, for tests.
+  /// Called with an arm's number and session before its loop begins, for tests.
   std::function<void(std::size_t, session::Session&)> opened = {};
 };
 

@@ -5,7 +5,7 @@ namespace thimble::scene {
 // What the gate of an arm needs of the laws in stability/stability_laws.h. Letters as there.
 // Real-time: never from the servo thread.
 
-/// Is what delays a loop's answer [PHYSICS 1.1].
+/// What delays a loop's answer [PHYSICS 1.1].
 struct LoopTimes {
   double period = 0.001;     ///< Mean time between ticks, s.
   double period_spread = 0;  ///< Standard deviation of that time, s.

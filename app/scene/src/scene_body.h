@@ -13,9 +13,9 @@ namespace thimble::scene {
 SceneBody read_body(YamlMap& object, const std::filesystem::path& folder,
                     const render::EffectContext& context);
 
-/// Tells how stiff a surface may answer a body that it is on: its own spring, twice with a texture
-/// (whose slopes are at most 1), and what friction may hold with on this arm.
-/// Real-time: never from the servo thread.
+/// Returns how stiff a surface may answer a body that it is on: its own spring, twice with a
+/// texture (whose slopes are at most 1), and what friction may hold with on this arm. Real-time:
+/// never from the servo thread.
 render::BodyCoupling coupling_of(const render::EffectContext& context, bool texture, bool friction);
 
 }  // namespace thimble::scene

@@ -11,8 +11,8 @@
 
 namespace thimble::scene {
 
-/// Tells what effects may know of an arm and a loop of `rate` (Hz); the encoder step is that of the
-/// worst direction over the workspace (worst_direction.h). The surface's own values are left 0.
+/// Returns what effects may know of an arm and a loop of `rate` (Hz); the encoder step is that of
+/// the worst direction over the workspace (worst_direction.h). The surface's own values are left 0.
 /// Real-time: never from the servo thread.
 render::EffectContext effect_context_of(const ArmFile& arm, double rate);
 

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Tells where the program lies, or the library, if this code is in one (Python's module).
+/// Returns where the program lies, or the library, if this code is in one (Python's module).
 fs::path own_file() {
   std::error_code status;
   Dl_info info{};

@@ -5,15 +5,15 @@
 
 namespace thimble::scene {
 
-/// Tells where a user's settings for Thimble lie: $XDG_CONFIG_HOME/thimble, or
+/// Returns where a user's settings for Thimble lie: $XDG_CONFIG_HOME/thimble, or
 /// ~/.config/thimble [XDG Base Directory Specification].
 std::filesystem::path config_folder();
 
-/// Tells where what Thimble keeps on a user's behalf lies: $XDG_STATE_HOME/thimble, or
+/// Returns where what Thimble keeps on a user's behalf lies: $XDG_STATE_HOME/thimble, or
 /// ~/.local/state/thimble [XDG Base Directory Specification].
 std::filesystem::path state_folder();
 
-/// Tells where a user's own scenes and arm files lie: $XDG_DATA_HOME/thimble, or
+/// Returns where a user's own scenes and arm files lie: $XDG_DATA_HOME/thimble, or
 /// ~/.local/share/thimble [XDG Base Directory Specification].
 std::filesystem::path data_folder();
 

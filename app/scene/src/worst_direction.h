@@ -13,7 +13,7 @@ namespace thimble::scene {
 // longest step of the encoders, the least apparent mass. app knows arm, hand and workspace, so the
 // rule is here. Real-time: never from the servo thread.
 
-/// Is what an arm's tip is made of in its worst directions, at one pose or over many.
+/// What an arm's tip is made of in its worst directions, at one pose or over many.
 struct TipLimits {
   double encoder_step = 0;  ///< m
   double damping = 0;       ///< Least eigenvalue, N s/m.

@@ -37,7 +37,7 @@ class RunLoop {
   /// Returns why the run ended; empty while it has not.
   std::optional<driver::ServoEnd> end() const noexcept { return end_; }
 
-  /// Tells the observers of one tick, in the order in which they were added (the loop's sink).
+  /// Returns the observers of one tick, in the order in which they were added (the loop's sink).
   /// Real-time: safe, as each of them is.
   void operator()(const driver::TickRecord& record) noexcept {
     for (TickObserver* observer : observers_) observer->take(record);

@@ -13,7 +13,7 @@ namespace thimble::app {
 /// can be left out as unused.
 using Stroke = std::function<double()>;
 
-/// Is one setting of a knob: how wrong it is, and the work that it takes.
+/// One setting of a knob: how wrong it is, and the work that it takes.
 struct AccuracyPoint {
   std::string name;  ///< Without spaces: part of an argument of `thimble cost-probe`.
   double knob = 0;   ///< In the unit of the axis.
@@ -32,7 +32,7 @@ struct AccuracyPoint {
   std::string title = {};  ///< In words, where the line's title and the knob do not name it.
 };
 
-/// Is one method over its knob.
+/// One method over its knob.
 struct AccuracyLine {
   std::string name;                  ///< Without spaces.
   std::string title;                 ///< In words, for legends.
@@ -42,7 +42,7 @@ struct AccuracyLine {
   std::vector<AccuracyPoint> points = {};
 };
 
-/// Is one diagram of what accuracy costs: a knob, an error with its truth, and methods.
+/// One diagram of what accuracy costs: a knob, an error with its truth, and methods.
 struct AccuracyAxis {
   std::string name;   ///< `--axis NAME`, and of the files.
   std::string title;  ///< Says what is shown.

@@ -9,7 +9,7 @@
 
 namespace thimble::app {
 
-/// Is one section of the page: an axis, and its pictures' names without ending.
+/// One section of the page: an axis, and its pictures' names without ending.
 struct AxisSection {
   const MeasuredAxis* axis = nullptr;
   std::vector<std::string> pictures;

@@ -102,7 +102,7 @@ std::string tics_of(char axis, double low, double high) {
 constexpr double kFloorShare = 1e-4;
 constexpr double kRounding = 1e-9;
 
-/// Is how one view sees a point.
+/// How one view sees a point.
 class Eye {
  public:
   Eye(const MeasuredAxis& axis, View view)

@@ -22,7 +22,7 @@ struct FollowerChoice {
   int rings = 0;
 };
 
-/// Is one surface that is followed; all ways of following share it.
+/// One surface that is followed; all ways of following share it.
 struct FollowedSurface {
   std::shared_ptr<const render::ContactMesh> mesh;
   std::shared_ptr<const render::ContactSearch> tree, linear;
@@ -37,8 +37,9 @@ class Follower {
   /// place must be outside, the second inside. Real-time: safe.
   virtual std::int32_t follow(const Eigen::Vector3d& p_WT) noexcept = 0;
 
-  /// Tells how much was done in the last `follow`: hops, with looks around counted as the triangles
-  /// that they may take. To find the worst tick by, the same on every machine. Real-time: safe.
+  /// Returns how much was done in the last `follow`: hops, with looks around counted as the
+  /// triangles that they may take. To find the worst tick by, the same on every machine. Real-time:
+  /// safe.
   virtual double effort() const noexcept = 0;
 
   /// Makes another one that stands where this one does. Real-time: never from the servo thread.

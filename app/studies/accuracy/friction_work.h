@@ -6,7 +6,7 @@
 
 namespace thimble::app {
 
-/// Is what a friction does under a hand that creeps at 1 mm/s, N.
+/// What a friction does under a hand that creeps at 1 mm/s, N.
 struct Creep {
   double limit_cycle = 0;  ///< RMS above 50 Hz.
   double mean = 0;         ///< Against the motion.

@@ -7,7 +7,7 @@
 
 namespace thimble::app {
 
-/// Is the arm in front of a guarded wall: PHANTOM-like [PHYSICS 0].
+/// The arm in front of a guarded wall: PHANTOM-like [PHYSICS 0].
 struct GuardedArm {
   static constexpr double kMass = 0.075;     ///< kg
   static constexpr double kViscous = 0.005;  ///< N s/m
@@ -15,7 +15,7 @@ struct GuardedArm {
   static constexpr double kHand = 3;         ///< N s/m, of a pinch grip
 };
 
-/// Is what keeps a wall from giving more than it takes: a stage of the product's gate, or a virtual
+/// What keeps a wall from giving more than it takes: a stage of the product's gate, or a virtual
 /// coupling, which the product does not have.
 struct WallGuard {
   driver::EnergyStage stage = driver::EnergyStage::kNone;
@@ -25,7 +25,7 @@ struct WallGuard {
   double counted_on = 0;
 };
 
-/// Is a wall behind a guard: what is sent tick by tick, along one line.
+/// A wall behind a guard: what is sent tick by tick, along one line.
 ///
 /// The coupling is a spring and damper between the tip and a point without mass that the wall stops
 /// by an implicit step, so that all behind the coupling is passive. Spring and damper are 1 / 1.1

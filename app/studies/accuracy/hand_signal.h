@@ -2,14 +2,14 @@
 
 namespace thimble::app {
 
-/// Is a hand's motion along one line that is known in closed form: a slow stroke, a faster one, and
+/// A hand's motion along one line that is known in closed form: a slow stroke, a faster one, and
 /// the tremor of a hand. Real-time: never from the servo thread.
 struct HandSignal {
   double x = 0;  ///< m
   double v = 0;  ///< m/s
 };
 
-/// Tells where the hand is at `t` s: 20 mm at 0.4 Hz, 1 mm at 3 Hz, 50 um at 10 Hz.
+/// Returns where the hand is at `t` s: 20 mm at 0.4 Hz, 1 mm at 3 Hz, 50 um at 10 Hz.
 HandSignal hand_signal(double t);
 
 /// Cuts `x` to whole steps of an encoder; 0 leaves it as it is.

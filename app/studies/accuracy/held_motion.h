@@ -4,7 +4,7 @@
 
 namespace thimble::app {
 
-/// Is where a mass is (m) and how fast (m/s), along one line.
+/// Where a mass is (m) and how fast (m/s), along one line.
 struct LineMotion {
   double x = 0, v = 0;
 };

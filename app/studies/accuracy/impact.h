@@ -4,7 +4,7 @@
 
 namespace thimble::app {
 
-/// Is a free mass that flies into a sampled wall and out again, without dry friction: the cheapest
+/// A free mass that flies into a sampled wall and out again, without dry friction: the cheapest
 /// look at what a loop's time does [PHYSICS 1.5]. SI.
 struct Impact {
   double mass = 0.075;     ///< kg [PHYSICS 0]

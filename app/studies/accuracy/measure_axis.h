@@ -8,7 +8,7 @@
 
 namespace thimble::app {
 
-/// Is what one point was found to be. `error` in the unit of the axis.
+/// What one point was found to be. `error` in the unit of the axis.
 struct MeasuredPoint {
   const AccuracyPoint* point = nullptr;
   double error = 0;
@@ -18,19 +18,19 @@ struct MeasuredPoint {
   std::optional<double> instructions;
   bool on_front = false;  ///< No other point is both cheaper and better.
 
-  /// Tells what the point costs: instructions where they were counted, for they do not depend on
+  /// Returns what the point costs: instructions where they were counted, for they do not depend on
   /// what else the machine does, else ns.
   double cost() const { return instructions.value_or(ns); }
 };
 
-/// Is what one line was found to be.
+/// What one line was found to be.
 struct MeasuredLine {
   const AccuracyLine* line = nullptr;
   std::optional<double> slope;  ///< Of log error over log knob, through the points that fit.
   std::vector<MeasuredPoint> points;
 };
 
-/// Is what one axis was found to be. Points into `axis`, so it is moved and never copied.
+/// What one axis was found to be. Points into `axis`, so it is moved and never copied.
 struct MeasuredAxis {
   MeasuredAxis() = default;
   MeasuredAxis(MeasuredAxis&&) = default;

@@ -9,7 +9,7 @@ namespace thimble::app {
 // One axis of the PHANTOM-like arm [PHYSICS 0], pushed for a second by a force that a
 // servo loop holds for 1 ms each; and where it truly goes. Real-time: never from the servo thread.
 
-/// Is the arm, and what leads it where there is no dry friction. SI.
+/// The arm, and what leads it where there is no dry friction. SI.
 struct PushedArm {
   static constexpr double kMass = 0.075;     ///< kg
   static constexpr double kViscous = 0.005;  ///< N s/m

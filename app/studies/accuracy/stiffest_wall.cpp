@@ -14,7 +14,7 @@ constexpr double kStiffest = 1e6;  // N/m
 constexpr int kHalvings = 40;
 constexpr double kNearEnough = 1e-3;
 
-/// Is a force that is on its way to the motors.
+/// A force that is on its way to the motors.
 struct Sent {
   double arrives = 0;  // s
   double force = 0;    // N

@@ -7,7 +7,7 @@
 
 namespace thimble::app {
 
-/// Is a wall that an arm rests against in a hand: a two-sided spring and a damper that are worked
+/// A wall that an arm rests against in a hand: a two-sided spring and a damper that are worked
 /// out once per tick. The hand's damping is the arm's; its spring does not matter beside the
 /// wall's.
 struct RestedWall {

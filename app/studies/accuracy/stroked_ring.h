@@ -14,7 +14,7 @@ namespace thimble::app {
 // The ring of `thimble study cost`, cut as finely as wanted, stroked and compared with itself.
 // Real-time: never from the servo thread.
 
-/// Is how the ring is touched.
+/// How the ring is touched.
 struct RingTouch {
   render::ContactChoice choice;
   int across = 32;  ///< Triangles' edges around the tube; twice as many around the ring.
@@ -31,7 +31,7 @@ std::unique_ptr<render::ObjectTouch> build_ring(const RingTouch& ring);
 /// Gives the force (N) at each state.
 std::vector<Eigen::Vector3d> forces_on(const RingTouch& ring);
 
-/// Is how far the force is from that on the ring itself, where the tip is 0.2 mm deep or more.
+/// How far the force is from that on the ring itself, where the tip is 0.2 mm deep or more.
 struct RingErrors {
   double force = 0;          ///< RMS, as a share.
   double direction_p99 = 0;  ///< rad
@@ -43,7 +43,7 @@ RingErrors ring_errors(const RingTouch& ring);
 Stroke ring_work(const RingTouch& ring);
 inline constexpr int kRingTicks = 4000;
 
-/// Tells the length of an edge around the tube over the tube's radius, L / R [PHYSICS 3].
+/// Returns the length of an edge around the tube over the tube's radius, L / R [PHYSICS 3].
 double edge_over_radius(int across);
 
 }  // namespace thimble::app

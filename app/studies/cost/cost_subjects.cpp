@@ -39,7 +39,7 @@ render::ContactChoice choice_of(render::TrackerChoice tracker) {
   return choice;
 }
 
-/// Is a height map without a file: stripes of two pixels, 1 mm apart.
+/// A height map without a file: stripes of two pixels, 1 mm apart.
 std::unique_ptr<render::AnyStage> striped_map() {
   render::HeightMap::Settings settings;
   settings.image =

@@ -12,7 +12,7 @@
 
 namespace thimble::app {
 
-/// Is one thing whose cost per tick is measured: an object of a scene, made of named stages.
+/// One thing whose cost per tick is measured: an object of a scene, made of named stages.
 struct CostSubject {
   enum class Kind { kContact, kEffect };
 
@@ -21,15 +21,15 @@ struct CostSubject {
   std::function<driver::Result<std::unique_ptr<render::ObjectTouch>>()> build;
 };
 
-/// Is the ring that all subjects are measured on, and how finely it is cut: 4,096 triangles.
+/// The ring that all subjects are measured on, and how finely it is cut: 4,096 triangles.
 inline constexpr RingSurface kCostRing{};
 inline constexpr int kCostAround = 64, kCostAcross = 32;
 
-/// Is the spring of all subjects' surface, what scenes give most: the vintage arm's declared
+/// The spring of all subjects' surface, what scenes give most: the vintage arm's declared
 /// stiffness [DEVICES 3].
 inline constexpr render::SpringDamper kCostSpring{.stiffness = 800, .damping = 1};
 
-/// Is the subject that has no effect; effects are measured as what they add to it.
+/// The subject that has no effect; effects are measured as what they add to it.
 inline constexpr const char* kBareSubject = "bare";
 
 /// Gives every way of contact and every effect that a scene can name, effects with the settings of

@@ -11,7 +11,7 @@ namespace thimble::app {
 /// Real-time: never from the servo thread.
 std::optional<double> instructions_per_tick(const std::string& subject);
 
-/// Is the number of ticks of one stroke.
+/// The number of ticks of one stroke.
 inline constexpr int kStrokeTicks = 4000;
 
 }  // namespace thimble::app

@@ -5,7 +5,7 @@
 
 namespace thimble::app {
 
-/// Is one way to answer a question that a contact asks, with what it holds in memory for that.
+/// One way to answer a question that a contact asks, with what it holds in memory for that.
 struct MemoryTrade {
   std::string name;
   double bytes_per_triangle = 0;

@@ -8,7 +8,7 @@
 
 namespace thimble::app {
 
-/// Is a ring (torus) about the z axis of the world: a surface whose depth and normal are known at
+/// A ring (torus) about the z axis of the world: a surface whose depth and normal are known at
 /// every point, hollow on the inner side and round on the outer. m.
 struct RingSurface {
   double ring_radius = 0.05;

@@ -19,7 +19,7 @@ constexpr double kCorner = 50;        // Hz [PHYSICS 2.5]
 constexpr double kNothing = 1e-12;    // N or m
 constexpr double kTrembles = 0.001;   // N RMS [PHYSICS 7, case 14]
 
-/// Tells the RMS above the corner in the last `ticks`; what is left of the filter's ringing is 0.
+/// Returns the RMS above the corner in the last `ticks`; what is left of the filter's ringing is 0.
 double above_corner(std::span<const double> signal, double rate, std::size_t ticks) {
   const std::vector<double> fast = high_passed(signal, rate, kCorner);
   const double found = root_mean_square(std::span(fast).last(ticks));

@@ -9,7 +9,7 @@
 
 namespace thimble::app {
 
-/// Is one friction that the study compares, as a scene would name it: 0.5 of a load of 1 N.
+/// One friction that the study compares, as a scene would name it: 0.5 of a load of 1 N.
 struct FrictionCase {
   std::string name;               ///< Of files and figures.
   std::string title;              ///< In words.
@@ -29,7 +29,7 @@ const std::vector<FrictionCase>& friction_cases();
 std::unique_ptr<render::AnyStage> build_friction(const FrictionCase& which,
                                                  const FrictionRigSettings& rig);
 
-/// Is what is measured of one friction at one delay. Forces in N, places in m, RMS above 50 Hz.
+/// What is measured of one friction at one delay. Forces in N, places in m, RMS above 50 Hz.
 struct FrictionMeasures {
   double rest_force = 0;      ///< In the last second after a stop from 50 mm/s.
   double rest_way = 0;        ///< The tip's, then.
@@ -42,7 +42,7 @@ struct FrictionMeasures {
   RigRun stop;                ///< The run of the stop, for pictures.
 };
 
-/// Is when and where the run of the stop stops.
+/// When and where the run of the stop stops.
 inline constexpr double kStopTime = 0.8;    // s
 inline constexpr double kStopPlace = 0.01;  // m
 
@@ -53,7 +53,7 @@ RigRun stop_run(const FrictionCase& which, const FrictionRigSettings& rig,
 /// Measures a friction on a rig. Real-time: never from the servo thread.
 FrictionMeasures measure(const FrictionCase& which, const FrictionRigSettings& rig);
 
-/// Is what the naive law does when it slides evenly [PHYSICS 2.1].
+/// What the naive law does when it slides evenly [PHYSICS 2.1].
 struct EvenSliding {
   double mean = 0;    ///< N, against the motion.
   double ripple = 0;  ///< N RMS.

@@ -14,7 +14,7 @@
 namespace thimble::app {
 namespace {
 
-/// Tells the state at rest in a few words.
+/// Returns the state at rest in a few words.
 std::string verdict(const FrictionMeasures& found) {
   if (found.rest_force < 0.001) {
     return found.rest_held >= 0.01 ? fmt::format("at rest: silent, holds {:.2f} N", found.rest_held)

@@ -27,13 +27,13 @@ struct FrictionRigSettings {
   double depth = 0.001;         ///< m
 };
 
-/// Is one corner of the hand's way along the surface.
+/// One corner of the hand's way along the surface.
 struct RigPoint {
   double time = 0;  ///< s
   double x = 0;     ///< Where the hand wants to be, m, within 0.03 of the middle.
 };
 
-/// Is what happened along x, one entry per tick.
+/// What happened along x, one entry per tick.
 struct RigRun {
   double period = 0.001;         ///< s
   std::vector<double> x;         ///< Where the tip truly was, m.
@@ -43,7 +43,7 @@ struct RigRun {
   bool fault = false;            ///< The loop ended early by a fault of the device.
 };
 
-/// Is the force law of the rig: a surface that presses evenly with `load` (N), which is not told,
+/// The force law of the rig: a surface that presses evenly with `load` (N), which is not told,
 /// and the friction on it. Keeps the friction only by reference. Real-time: safe.
 class EvenSurface {
  public:
@@ -67,7 +67,7 @@ class EvenSurface {
 RigRun rub(render::AnyStage& friction, const std::vector<RigPoint>& way, double duration,
            const FrictionRigSettings& settings);
 
-/// Tells what an effect may know of the rig. Real-time: never from the servo thread.
+/// Returns what an effect may know of the rig. Real-time: never from the servo thread.
 render::EffectContext effect_context_of(const FrictionRigSettings& settings);
 
 }  // namespace thimble::app

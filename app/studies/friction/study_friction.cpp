@@ -34,7 +34,7 @@ std::string csv_row(const FrictionCase& which, int delay, const FrictionMeasures
                      found.creep_force, found.creep_mean, found.slow_mean, found.tremor_force);
 }
 
-/// Is the worst of 40 stops at each of four delays.
+/// The worst of 40 stops at each of four delays.
 struct WorstStop {
   double force = 0;         // N RMS above 50 Hz
   double way = 0;           // m RMS above 50 Hz

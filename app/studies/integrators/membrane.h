@@ -7,7 +7,7 @@
 
 namespace thimble::app {
 
-/// Is a square membrane of n x n nodes in a fixed frame that is poked at one node and let go: the
+/// A square membrane of n x n nodes in a fixed frame that is poked at one node and let go: the
 /// deformable body whose motion is known exactly [PHYSICS 4].
 struct Membrane {
   std::int32_t n = 32;
@@ -17,7 +17,7 @@ struct Membrane {
   double force = 1;        ///< N, held from 0 until `poke`
   double poke = 0.05;      ///< s
 
-  /// Tells which node is poked: off the middle, so that no mode is spared by symmetry.
+  /// Returns which node is poked: off the middle, so that no mode is spared by symmetry.
   std::int32_t poked() const { return (2 * n / 5) * n + n / 3; }
 };
 
@@ -25,8 +25,8 @@ struct Membrane {
 /// the servo thread.
 render::SpringNetwork<1> membrane_network(const Membrane& membrane);
 
-/// Tells the true height (m) of every node at time `t` (s): the sum of all n^2 sine modes, each by
-/// its closed form. Real-time: never from the servo thread.
+/// Returns the true height (m) of every node at time `t` (s): the sum of all n^2 sine modes, each
+/// by its closed form. Real-time: never from the servo thread.
 std::vector<double> membrane_truth(const Membrane& membrane, double t);
 
 }  // namespace thimble::app

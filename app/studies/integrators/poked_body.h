@@ -10,7 +10,7 @@
 
 namespace thimble::app {
 
-/// Is a body that is poked at one node and let go, and how it truly moves: all numbers of all nodes
+/// A body that is poked at one node and let go, and how it truly moves: all numbers of all nodes
 /// at the end of each frame of 1 ms.
 template <int kDof>
 struct PokedBody {
@@ -23,7 +23,7 @@ struct PokedBody {
   std::vector<std::vector<Vector>> truth;  ///< m, per frame and node
 };
 
-/// Is one point of a work-precision diagram.
+/// One point of a work-precision diagram.
 struct WorkPoint {
   std::string integrator;
   int substeps = 1;       ///< per frame

@@ -34,7 +34,7 @@ std::vector<double> even(double least, double most, int count) {
   return values;
 }
 
-/// Is the arm as a linear one: no dry friction, ideal encoders, no limits.
+/// The arm as a linear one: no dry friction, ideal encoders, no limits.
 WallCase linear_case(const StabilitySetup& setup) {
   WallCase wall;
   wall.direction = setup.direction;
@@ -48,7 +48,7 @@ WallCase linear_case(const StabilitySetup& setup) {
   return wall;
 }
 
-/// Is the arm with its friction, encoders and limits, but without the energy stage of its gate, of
+/// The arm with its friction, encoders and limits, but without the energy stage of its gate, of
 /// which the laws know nothing.
 WallCase arm_case(const StabilitySetup& setup, const ArmDirection& direction) {
   WallCase wall = linear_case(setup);
@@ -59,7 +59,7 @@ WallCase arm_case(const StabilitySetup& setup, const ArmDirection& direction) {
   return wall;
 }
 
-/// Is a free linear arm with b = 1, as in case 1 of [PHYSICS 7].
+/// A free linear arm with b = 1, as in case 1 of [PHYSICS 7].
 WallCase bare_case(const StabilitySetup& setup) {
   WallCase wall = linear_case(setup);
   wall.hand = {};

@@ -8,7 +8,7 @@
 
 namespace thimble::app {
 
-/// Is what a study of stability is about.
+/// What a study of stability is about.
 struct StabilitySetup {
   scene::ArmFile arm;
   device_sim::HandSettings hand;
@@ -41,7 +41,7 @@ enum class StabilityPart {
   kStepEdge     ///< a: encoder step m -> largest stiffness that comes to rest, with the hand.
 };
 
-/// Is one cell of the study's sweep.
+/// One cell of the study's sweep.
 struct StabilityCell {
   StabilityPart part;
   double a = 0, b = 0, c = 0, d = 0;
@@ -59,7 +59,7 @@ driver::Result<std::vector<double>> measure_stability(const StabilitySetup& setu
 
 inline constexpr double kBareDamping = 1;        // N s/m, of the arm in case 1 [PHYSICS 7]
 inline constexpr double kCycleStiffness = 1000;  // N/m
-/// Is the step of the encoders for the map of limit cycles, m: so coarse that a step's force is far
+/// The step of the encoders for the map of limit cycles, m: so coarse that a step's force is far
 /// above a step of the motors' current.
 inline constexpr double kCycleStep = 2e-4;
 inline constexpr double kReleaseSpeed = 0.1;  // m/s, at which a swing begins
@@ -70,7 +70,7 @@ inline constexpr int kLatePeriods = 3;        // a late tick comes so many perio
 scene::LoopTimes late_times(double period, double share);
 scene::LoopTimes spread_times(double period, double spread);
 
-/// Tells the speed (m/s) at which a swing of `counts` begins in the map of limit cycles.
+/// Returns the speed (m/s) at which a swing of `counts` begins in the map of limit cycles.
 double cycle_speed(const StabilitySetup& setup, double counts);
 
 }  // namespace thimble::app

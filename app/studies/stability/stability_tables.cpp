@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-/// Is the wall that the exact map knows, of the arm with the hand.
+/// The wall that the exact map knows, of the arm with the hand.
 SampledWall sampled(const StabilitySetup& setup, double damping) {
   const device_sim::PlantSettings& tip = setup.arm.simulated.plant;
   return {.mass = tip.mass + setup.hand.mass,
@@ -27,7 +27,7 @@ SampledWall sampled(const StabilitySetup& setup, double damping) {
           .delay = setup.delay()};
 }
 
-/// Is the free linear arm of case 1 [PHYSICS 7].
+/// The free linear arm of case 1 [PHYSICS 7].
 SampledWall bare(const StabilitySetup& setup, double period, double delay) {
   return {.mass = setup.arm.simulated.plant.mass,
           .viscous = kBareDamping,
@@ -91,7 +91,7 @@ void add_laws(const StabilitySetup& setup, StabilityRow& row) {
   }
 }
 
-/// Is one CSV: its file, its heading, and the sweeps in it.
+/// One CSV: its file, its heading, and the sweeps in it.
 struct Table {
   const char* file;
   const char* heading;
@@ -210,7 +210,7 @@ WorstError worst_error(const std::vector<StabilityRow>& rows, double StabilityRo
 
 constexpr auto kAll = [](const StabilityRow&) { return true; };
 
-/// Is how the map of limit cycles agrees with its corners: shares of the cells that are no nearer
+/// How the map of limit cycles agrees with its corners: shares of the cells that are no nearer
 /// to a boundary than 5 % or 0.04. Where not one encoder alone steps against the friction of one
 /// axis, sigma = 1/2 is a bound: what it says will rest is judged, and what flickers is not.
 struct CycleAgreement {

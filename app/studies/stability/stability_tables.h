@@ -11,7 +11,7 @@
 
 namespace thimble::app {
 
-/// Is one cell with what was measured and what the laws say of it.
+/// One cell with what was measured and what the laws say of it.
 struct StabilityRow {
   StabilityCell cell;
   std::vector<double> found;
@@ -25,7 +25,7 @@ std::vector<StabilityRow> stability_rows(const StabilitySetup& setup, const Cell
 /// Gives the rows of one sweep.
 std::vector<StabilityRow> part_of(const std::vector<StabilityRow>& rows, StabilityPart part);
 
-/// Is what the region of the K-B map measures [PHYSICS 1.6].
+/// What the region of the K-B map measures [PHYSICS 1.6].
 struct ZWidth {
   double area = 0;           ///< Under the edge, N/m times N s/m.
   double stiffness_max = 0;  ///< N/m
@@ -33,7 +33,7 @@ struct ZWidth {
   double decades = 0;        ///< log10(K_max / K_JND).
 };
 
-/// Is the least stiffness that a hand can tell from none, N/m: it answers a press of 10 mm by the
+/// The least stiffness that a hand can tell from none, N/m: it answers a press of 10 mm by the
 /// 20 mN that a hand can just feel [PHYSICS 6; the way is chosen: as far as a finger presses].
 inline constexpr double kStiffnessJnd = 2;
 
@@ -45,7 +45,7 @@ driver::Result<void> write_stability_tables(const StabilitySetup& setup,
                                             const std::vector<StabilityRow>& rows,
                                             const std::filesystem::path& folder);
 
-/// Tells how well laws and simulation agree, with the tolerances of [PHYSICS 1 and 7].
+/// Returns how well laws and simulation agree, with the tolerances of [PHYSICS 1 and 7].
 std::vector<Figure> stability_figures(const StabilitySetup& setup,
                                       const std::vector<StabilityRow>& rows);
 

@@ -26,7 +26,7 @@ struct StabilityOptions {
 /// Reads what is asked for. The error says what to mend. Real-time: never from the servo thread.
 driver::Result<StabilitySetup> stability_setup(const StabilityOptions& options);
 
-/// Is what the study found.
+/// What the study found.
 struct StabilityReport {
   SweepEnd end = SweepEnd::kDone;
   std::vector<Figure> figures;

@@ -42,7 +42,7 @@ driver::Result<bool> is_quiet(const driver::Result<double>& swing, double quiet)
   return *swing < quiet;
 }
 
-/// Tells the energy of a swing at each tick, J.
+/// Returns the energy of a swing at each tick, J.
 std::vector<double> swing_energies(const WallRun& run, const WallCase& wall) {
   const double mass = wall.tip.mass + wall.hand.mass;
   const double spring = wall.stiffness + wall.hand.stiffness;

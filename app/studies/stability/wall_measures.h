@@ -40,7 +40,7 @@ driver::Result<double> pressed_edge(const scene::ArmFile& arm, WallCase wall, do
 driver::Result<double> released_edge(const scene::ArmFile& arm, WallCase wall, double speed,
                                      double duration, double quiet, double least, double most);
 
-/// Is how fast a tip leaves a wall against how fast it came, over several sampling phases.
+/// How fast a tip leaves a wall against how fast it came, over several sampling phases.
 struct Restitution {
   double mean = 0;
   double least = 0, most = 0;

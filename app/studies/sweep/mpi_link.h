@@ -8,7 +8,7 @@ extern "C" {
 
 /// Begins MPI; 0 if all is well.
 int thimble_mpi_begin();
-/// Tells the number of this process and how many there are.
+/// Returns the number of this process and how many there are.
 int thimble_mpi_rank();
 int thimble_mpi_size();
 /// Sends `count` numbers.

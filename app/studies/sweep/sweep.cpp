@@ -29,7 +29,7 @@ using Message = SweepTeam::Message;
 constexpr std::uint64_t kResults = 0;
 constexpr std::uint64_t kTrouble = 1;
 
-/// Is what is left to measure and what went wrong; all threads of a process share one.
+/// What is left to measure and what went wrong; all threads of a process share one.
 class Work {
  public:
   Work(std::vector<std::size_t> cells, const std::atomic<bool>& stop)

@@ -13,10 +13,10 @@
 
 namespace thimble::app {
 
-/// Is the numbers of each cell that was measured; an empty list stands for a cell that was not.
+/// The numbers of each cell that was measured; an empty list stands for a cell that was not.
 using CellNumbers = std::vector<std::vector<double>>;
 
-/// Is a list of independent cells, each a pure function of its number. That is what makes a sweep
+/// A list of independent cells, each a pure function of its number. That is what makes a sweep
 /// give the same bytes with any number of threads and machines, interrupted or not.
 struct Sweep {
   std::string name;  ///< Of its journal, NAME.journal.
@@ -43,7 +43,7 @@ enum class SweepEnd {
   kHelped    ///< This process helped the one that has the numbers.
 };
 
-/// Is what a sweep gave: a list of numbers for each cell; empty lists unless it is done.
+/// What a sweep gave: a list of numbers for each cell; empty lists unless it is done.
 struct SweepResult {
   SweepEnd end = SweepEnd::kDone;
   CellNumbers numbers;
@@ -62,8 +62,8 @@ driver::Result<SweepResult> run_sweep(const Sweep& sweep, const SweepOptions& op
 /// Draws the seed of one cell out of that of a sweep, alike on every machine.
 std::uint64_t cell_seed(std::uint64_t seed, std::size_t cell);
 
-/// Tells how many threads this process should run: the cores it may use, shared with the processes
-/// beside it on this machine.
+/// Returns how many threads this process should run: the cores it may use, shared with the
+/// processes beside it on this machine.
 int jobs_here();
 
 }  // namespace thimble::app

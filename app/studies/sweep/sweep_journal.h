@@ -12,7 +12,7 @@
 
 namespace thimble::app {
 
-/// Is the file that keeps what a sweep has measured: one line per cell, to the bit, with a check
+/// The file that keeps what a sweep has measured: one line per cell, to the bit, with a check
 /// sum, each written by one call. Whatever ends the program, at most the last line is torn; `open`
 /// cuts it off.
 class SweepJournal {

@@ -11,7 +11,7 @@
 namespace thimble::app {
 namespace {
 
-/// Is a team that talks by MPI.
+/// A team that talks by MPI.
 class MpiTeam final : public SweepTeam {
  public:
   /// Takes the loaded library; false if something is missing in it.
@@ -65,7 +65,7 @@ class MpiTeam final : public SweepTeam {
   decltype(&thimble_mpi_end) end_ = nullptr;
 };
 
-/// Tells whether mpirun started this process: Open MPI and the launchers of MPICH say so.
+/// Returns whether mpirun started this process: Open MPI and the launchers of MPICH say so.
 bool started_by_mpirun() {
   return std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr || std::getenv("PMI_SIZE") != nullptr;
 }

@@ -8,11 +8,11 @@
 
 namespace thimble::app {
 
-/// Is the processes that share a sweep, as `mpirun` started them; process 0 keeps the journal and
+/// The processes that share a sweep, as `mpirun` started them; process 0 keeps the journal and
 /// has the numbers, the others help. Used by the main thread alone.
 class SweepTeam {
  public:
-  /// Is what processes tell each other.
+  /// What processes tell each other.
   using Message = std::vector<std::uint64_t>;
 
   /// Joins the team that this process was started in; nullptr if it was started alone. MPI is
@@ -26,9 +26,9 @@ class SweepTeam {
   SweepTeam& operator=(const SweepTeam&) = delete;
   virtual ~SweepTeam() = default;
 
-  /// Tells the number of this process; 0 is the one that leads.
+  /// Returns the number of this process; 0 is the one that leads.
   virtual int rank() const = 0;
-  /// Tells how many processes there are.
+  /// Returns how many processes there are.
   virtual int size() const = 0;
   /// Sends a message; returns when it may be forgotten.
   virtual void send(int to, const Message& message) = 0;

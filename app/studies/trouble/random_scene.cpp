@@ -63,7 +63,7 @@ struct Hand {
   double mass, stiffness, damping, tremor;
 };
 
-/// Is one object as far as the hand must know it.
+/// One object as far as the hand must know it.
 struct Placed {
   std::string name;
   bool has_surface = false;
@@ -99,7 +99,7 @@ class Drawing {
   }
 
  private:
-  /// Tells how stiff a surface may be.
+  /// Returns how stiff a surface may be.
   double stiffness_max() const {
     const scene::ArmFile& arm = limits_.arm;
     const device_sim::SimulatedArmSettings& sim = arm.simulated;

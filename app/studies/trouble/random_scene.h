@@ -22,7 +22,7 @@ struct RandomSceneLimits {
   double stiffness_share = 0.8;
 };
 
-/// Is a scene as its file says it, and what the energy account must know of it.
+/// A scene as its file says it, and what the energy account must know of it.
 struct RandomScene {
   std::string text;  ///< YAML.
   /// Energy that the scene itself may give to the hand, J: of weights and of fields of force.

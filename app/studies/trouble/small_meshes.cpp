@@ -50,7 +50,7 @@ TriangleMesh ball(int refinements) {
   return mesh;
 }
 
-/// Is a ball with six bumps and the hollows between them.
+/// A ball with six bumps and the hollows between them.
 TriangleMesh star() {
   TriangleMesh mesh = ball(3);
   for (Vector3d& v : mesh.vertices) {
@@ -78,7 +78,7 @@ TriangleMesh ring() {
   });
 }
 
-/// Is a slim cone: a vertex where many thin triangles meet.
+/// A slim cone: a vertex where many thin triangles meet.
 TriangleMesh needle() {
   constexpr std::int32_t kAround = 32;
   TriangleMesh mesh;
@@ -95,7 +95,7 @@ TriangleMesh needle() {
   return mesh;
 }
 
-/// Is a roof with an edge of 20 degrees.
+/// A roof with an edge of 20 degrees.
 TriangleMesh wedge() {
   const double half = std::tan(10 * kPi / 180);
   return {{{-1, -half, 0}, {1, -half, 0}, {1, half, 0}, {-1, half, 0}, {-1, 0, 1}, {1, 0, 1}},

@@ -22,7 +22,7 @@ constexpr int kTries = 12;           // a scene that the loader refuses is drawn
 constexpr std::size_t kWorst = 10;   // kept
 constexpr double kGivenMuch = 1e-3;  // J, told
 
-/// Is a folder for scene files of this process; it goes with the object.
+/// A folder for scene files of this process; it goes with the object.
 class SceneFolder {
  public:
   SceneFolder()

@@ -19,7 +19,7 @@ struct TroubleOptions {
   std::uint64_t seed = 1;
 };
 
-/// Is what the search found.
+/// What the search found.
 struct TroubleReport {
   SweepEnd end = SweepEnd::kDone;
   std::vector<Figure> figures;

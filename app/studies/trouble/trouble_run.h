@@ -8,7 +8,7 @@
 
 namespace thimble::app {
 
-/// Is what a scene showed on the virtual clock. All of it is finite, whatever happened.
+/// What a scene showed on the virtual clock. All of it is finite, whatever happened.
 struct TroubleFound {
   bool refused = false;       ///< The loader would not have it; nothing else is said.
   double not_finite = 0;      ///< Ticks with a place or a force that is no number.
@@ -24,7 +24,7 @@ struct TroubleFound {
   double given_bound = 0;
   double contact = 0;  ///< Share of ticks in contact.
 
-  /// Tells whether the scene broke one of the promises.
+  /// Returns whether the scene broke one of the promises.
   bool bad() const;
   /// Orders scenes by how near they came to trouble; larger is worse. Their tremble counts unless
   /// it is known that they must.

@@ -7,14 +7,14 @@
 
 namespace thimble::app::view {
 
-/// Is a picture: three bytes (red, green, blue) a pixel, rows from the top.
+/// A picture: three bytes (red, green, blue) a pixel, rows from the top.
 struct Picture {
   int width = 0;
   int height = 0;
   std::vector<std::uint8_t> rgb;
 };
 
-/// Is what a scene is painted on: several samples a pixel, whatever is shown in the end.
+/// What a scene is painted on: several samples a pixel, whatever is shown in the end.
 class Canvas {
  public:
   /// Makes one of this size (pixels, > 0), of which the lowest `strip` rows are left for plots.

@@ -13,13 +13,13 @@ constexpr std::size_t kMost = 256;
 constexpr int kBits = 6;  // of each colour that are told apart when asking for the nearest
 constexpr int kDrop = 8 - kBits;
 
-/// Is a colour and how often it comes.
+/// A colour and how often it comes.
 struct Counted {
   ColourTable::Rgb rgb;
   std::uint64_t count;
 };
 
-/// Is a box of colours: some of the list, one after the other.
+/// A box of colours: some of the list, one after the other.
 struct Box {
   std::size_t begin, end;
   std::size_t axis = 0;  // the longest

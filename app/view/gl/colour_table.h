@@ -8,7 +8,7 @@
 
 namespace thimble::app::view {
 
-/// Is the colours that stand for all of some pictures, at most 256, by median cut [Heckbert 1982,
+/// The colours that stand for all of some pictures, at most 256, by median cut [Heckbert 1982,
 /// "Color image quantization for frame buffer display"].
 class ColourTable {
  public:

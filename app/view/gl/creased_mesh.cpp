@@ -11,7 +11,7 @@
 namespace thimble::app::view {
 namespace {
 
-/// Is one side of a triangle, named so that both sides of an edge have the same name.
+/// One side of a triangle, named so that both sides of an edge have the same name.
 struct Side {
   std::int32_t low, high;
   std::uint32_t triangle;

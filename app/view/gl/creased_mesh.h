@@ -15,7 +15,7 @@ enum class NormalWeights {
   kEqual,  ///< All the same, as it was done when triangles were few [BP].
 };
 
-/// Is a mesh ready to be drawn: a vertex has one normal, the mean of its polygons, except where
+/// A mesh ready to be drawn: a vertex has one normal, the mean of its polygons, except where
 /// they meet in a crease: there each side of the crease has its own.
 struct CreasedMesh {
   std::vector<Eigen::Vector3f> positions;               ///< m, in the mesh's frame.

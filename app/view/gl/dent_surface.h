@@ -10,7 +10,7 @@
 
 namespace thimble::app::view {
 
-/// Is one corner of a bent triangle, with all that its shade is made of. `a`, `b`, `c` are the
+/// One corner of a bent triangle, with all that its shade is made of. `a`, `b`, `c` are the
 /// corners of the mesh's own triangle, as it is drawn when nothing is bent.
 struct DentVertex {
   Eigen::Vector3f p;        ///< m, in the mesh's frame; so are all positions.

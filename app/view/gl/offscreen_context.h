@@ -7,7 +7,7 @@
 
 namespace thimble::app::view {
 
-/// Is OpenGL 3.3 without a screen: EGL without a surface, on the processor if there is no graphics
+/// OpenGL 3.3 without a screen: EGL without a surface, on the processor if there is no graphics
 /// card (Mesa). Current on the thread that made it for as long as it lives.
 class OffscreenContext {
  public:
@@ -17,7 +17,7 @@ class OffscreenContext {
   OffscreenContext& operator=(const OffscreenContext&) = delete;
   ~OffscreenContext();
 
-  /// Tells what draws, in its maker's words.
+  /// Returns what draws, in its maker's words.
   std::string renderer() const;
 
  private:

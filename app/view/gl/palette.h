@@ -5,7 +5,7 @@
 
 namespace thimble::app::view {
 
-/// Is a colour as screens take it: red, green, blue in sRGB, 0 to 1.
+/// A colour as screens take it: red, green, blue in sRGB, 0 to 1.
 using Colour = std::array<float, 3>;
 
 /// Makes a colour of its usual six hexadecimal digits.

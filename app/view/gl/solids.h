@@ -11,7 +11,7 @@ namespace thimble::app::view {
 /// Says what a solid is.
 enum class SolidKind { kBall, kRod, kCone };
 
-/// Is one of the simple solids that show arm, tip and force.
+/// One of the simple solids that show arm, tip and force.
 struct Solid {
   SolidKind kind = SolidKind::kBall;
   Eigen::Matrix4f model = Eigen::Matrix4f::Identity();  ///< From the unit solid to W, m.
@@ -28,7 +28,7 @@ Solid rod(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double radius,
 Solid cone(const Eigen::Vector3d& base, const Eigen::Vector3d& tip, double radius,
            const Colour& colour);
 
-/// Is the unit solids where OpenGL can draw them.
+/// The unit solids where OpenGL can draw them.
 class SolidModels {
  public:
   SolidModels();

@@ -7,7 +7,7 @@
 namespace thimble::app::view {
 namespace {
 
-/// Is one vertex as OpenGL takes it.
+/// One vertex as OpenGL takes it.
 struct MeshVertex {
   Eigen::Vector3f p;
   Eigen::Vector3f n;

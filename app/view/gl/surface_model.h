@@ -9,7 +9,7 @@
 
 namespace thimble::app::view {
 
-/// Is one object's surface where OpenGL can draw it: the mesh goes there once, and in a picture
+/// One object's surface where OpenGL can draw it: the mesh goes there once, and in a picture
 /// only the dent does.
 class SurfaceModel {
  public:

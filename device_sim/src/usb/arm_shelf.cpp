@@ -25,7 +25,7 @@ constexpr double kPolhemMass = 0.1;     // kg at the tip [guess]
 constexpr double kQuiet = 1.0;          // s at rest before the hand begins
 constexpr double kTwoPi = 2 * std::numbers::pi;
 
-/// Is the middle of the Polhem's workspace, m [S forsslund/hfabapi].
+/// The middle of the Polhem's workspace, m [S forsslund/hfabapi].
 Eigen::Vector3d polhem_middle() {
   return {0.2045, 0, 0.0325};
 }

@@ -9,7 +9,7 @@
 
 namespace thimble::device_sim::usb {
 
-/// Is the control pipe of a device: it answers the standard requests of USB [USB 2.0, 9.4] and
+/// The control pipe of a device: it answers the standard requests of USB [USB 2.0, 9.4] and
 /// HID's GET_DESCRIPTOR [HID 1.11, 7.1.1] from the description, keeps configuration and halted
 /// endpoints, and hands everything else to the device.
 class ControlPipe {
@@ -21,11 +21,11 @@ class ControlPipe {
   /// or room for what it asks for. Real-time: never from the servo thread.
   PacketResult transfer(const SetupPacket& setup, std::span<std::byte> data);
 
-  /// Tells whether an endpoint is halted. Real-time: safe.
+  /// Returns whether an endpoint is halted. Real-time: safe.
   bool halted(std::uint8_t address) const noexcept;
   /// Halts an endpoint until the host clears it. Real-time: safe.
   void halt(std::uint8_t address) noexcept;
-  /// Tells the configuration that the host chose, 0 for none. Real-time: safe.
+  /// Returns the configuration that the host chose, 0 for none. Real-time: safe.
   std::uint8_t configuration() const noexcept { return configuration_; }
 
  private:

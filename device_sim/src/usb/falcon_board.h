@@ -28,14 +28,14 @@ enum class FalconHoming : std::uint8_t {
   kKeeps,       ///< Nothing.
 };
 
-/// Is the processor of a Novint Falcon, as a host meets it [S libnifalcon FalconCommLibUSB.cpp,
+/// The processor of a Novint Falcon, as a host meets it [S libnifalcon FalconCommLibUSB.cpp,
 /// FalconFirmware.cpp]: a boot loader that a rising DTR resets (firmware is then lost), that
 /// answers a greeting at 9600 baud, echoes the firmware at 140 kbaud, and then the firmware, which
 /// answers each packet at 1.5 Mbaud with one packet. Encoders count from an arbitrary value until
 /// their leg passed its home in homing mode.
 class FalconBoard final : public SerialBoard {
  public:
-  /// Is what the boot loader and the firmware are doing.
+  /// What the boot loader and the firmware are doing.
   enum class Stage : std::uint8_t {
     kBoot,    ///< Waits for the greeting at 9600 baud.
     kReady,   ///< Greeted; waits for 'A' at 140 kbaud.
@@ -51,11 +51,11 @@ class FalconBoard final : public SerialBoard {
   double rate() const noexcept override;
   void hear(std::byte byte, ByteQueue& says) noexcept override;
   void wires(bool dtr, bool rts) noexcept override;
-  /// Tells the board at which rate the host talks now: firmware that was uploaded begins to run
+  /// Returns the board at which rate the host talks now: firmware that was uploaded begins to run
   /// when the host comes to the running rate.
   void host_rate(double baud) noexcept;
 
-  /// Tells where the encoders really stand, counts. Must be called before `hear`.
+  /// Returns where the encoders really stand, counts. Must be called before `hear`.
   void set_encoders(const std::array<double, 3>& exact_counts) noexcept;
 
   /// Switches the motors off if no packet came for the watchdog's time.
@@ -64,16 +64,16 @@ class FalconBoard final : public SerialBoard {
   /// nothing may be promised that hangs on it.
   void set_watchdog(std::int64_t time_ns) noexcept { watchdog_ns_ = time_ns; }
 
-  Stage stage() const noexcept { return stage_; }  ///< Tells what it waits for.
-  /// Tells whether firmware runs.
+  Stage stage() const noexcept { return stage_; }  ///< Returns what it waits for.
+  /// Returns whether firmware runs.
   bool running() const noexcept { return running_; }
-  /// Tells how many bytes of firmware came.
+  /// Returns how many bytes of firmware came.
   std::size_t uploaded() const noexcept { return uploaded_; }
   /// Shows the last message of the host.
   const driver::falcon::HostPacket& asked() const noexcept { return asked_; }
   /// Shows the last message to the host.
   const driver::falcon::ArmPacket& answered() const noexcept { return answered_; }
-  bool motors_on() const noexcept { return motors_on_; }  ///< Tells whether it has them on.
+  bool motors_on() const noexcept { return motors_on_; }  ///< Returns whether it has them on.
   /// Returns whether a host asks it to home now and some leg has not passed its home.
   bool wants_homing() const noexcept;
   const FalconCounters& counters() const noexcept { return counters_; }

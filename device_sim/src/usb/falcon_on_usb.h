@@ -18,7 +18,7 @@
 
 namespace thimble::device_sim::usb {
 
-/// Is a simulated Novint Falcon on a USB plug: FTDI converter, board, delta mechanics and a hand.
+/// A simulated Novint Falcon on a USB plug: FTDI converter, board, delta mechanics and a hand.
 /// What the host sends reaches the board at the line's rate, the board samples the encoders when a
 /// packet is complete, and its answer goes to the host when the latency timer of 1 ms is over.
 class FalconOnUsb final : public UsbArm {

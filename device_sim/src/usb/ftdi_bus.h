@@ -14,7 +14,7 @@
 
 namespace thimble::device_sim::usb {
 
-/// Is a full-speed bus with one FTDI converter on it: frames of a millisecond; in each the host
+/// A full-speed bus with one FTDI converter on it: frames of a millisecond; in each the host
 /// takes what the converter has. Keeps a reference to the device. Real-time: safe.
 class FtdiBus {
  public:
@@ -50,7 +50,7 @@ class FtdiBus {
   std::int64_t time_ns_;
 };
 
-/// Is the serial line behind it, for the set-up; its waiting is simulated time. Real-time: never
+/// The serial line behind it, for the set-up; its waiting is simulated time. Real-time: never
 /// from the servo thread.
 class FtdiBusLine final : public driver::SerialLine {
  public:
@@ -73,7 +73,7 @@ class FtdiBusLine final : public driver::SerialLine {
   std::deque<std::byte> heard_;
 };
 
-/// Is a driver's wire to it: frames pass as the clock does, whose time 0 is `begin_ns` of the arm.
+/// A driver's wire to it: frames pass as the clock does, whose time 0 is `begin_ns` of the arm.
 /// Keeps no clock alive. Real-time: safe.
 class FtdiBusTransport final : public driver::Transport {
  public:

@@ -10,12 +10,12 @@
 
 namespace thimble::device_sim::usb {
 
-/// Is a queue of bytes of fixed capacity; what does not fit is lost and counted. Real-time: safe.
+/// A queue of bytes of fixed capacity; what does not fit is lost and counted. Real-time: safe.
 class ByteQueue {
  public:
   static constexpr std::size_t kCapacity = 1024;  ///< Bytes.
 
-  std::size_t size() const noexcept { return size_; }    ///< Tells the bytes that wait.
+  std::size_t size() const noexcept { return size_; }    ///< Returns the bytes that wait.
   std::uint64_t lost() const noexcept { return lost_; }  ///< Counts bytes without room.
   void clear() noexcept { size_ = 0; }                   ///< Drops all that waits.
   /// Lets a byte wait; counts it as lost if there is no room.
@@ -41,7 +41,7 @@ class ByteQueue {
   std::uint64_t lost_ = 0;
 };
 
-/// Is the board behind an FTDI converter: it hears bytes and control wires, and says bytes.
+/// The board behind an FTDI converter: it hears bytes and control wires, and says bytes.
 class SerialBoard {
  public:
   SerialBoard() = default;
@@ -49,7 +49,7 @@ class SerialBoard {
   SerialBoard& operator=(const SerialBoard&) = delete;
   virtual ~SerialBoard() = default;
 
-  /// Tells the line rate that the board listens at now, baud. Real-time: safe.
+  /// Returns the line rate that the board listens at now, baud. Real-time: safe.
   virtual double rate() const noexcept = 0;
   /// Hears one byte; may say some. Real-time: safe.
   virtual void hear(std::byte byte, ByteQueue& says) noexcept = 0;
@@ -57,7 +57,7 @@ class SerialBoard {
   virtual void wires(bool dtr, bool rts) noexcept = 0;
 };
 
-/// Is an FT232BM converter: bytes in both directions at the line's rate, two status bytes in front
+/// An FT232BM converter: bytes in both directions at the line's rate, two status bytes in front
 /// of every packet to the host, the latency timer, and the vendor requests of FTDI [S Linux,
 /// drivers/usb/serial/ftdi_sio.h; libftdi]. Bytes that come at another rate than the board listens
 /// at are lost, as noise would be.
@@ -80,16 +80,16 @@ class FtdiChip {
   /// Takes a packet of the host for the serial line.
   PacketResult out(std::span<const std::byte> packet) noexcept;
 
-  /// Tells how long the line needs for what the host sent and may go within `dt_ns`, ns; 0 if
+  /// Returns how long the line needs for what the host sent and may go within `dt_ns`, ns; 0 if
   /// nothing waits. The caller lets that time pass before `deliver`.
   std::int64_t line_time_ns(std::int64_t dt_ns) const noexcept;
   /// Brings the board what the host sent, and the host what the board says, each as far as the line
   /// comes in `dt_ns`.
   void deliver(std::int64_t dt_ns) noexcept;
 
-  /// Tells the latency timer as the host set it, ms.
+  /// Returns the latency timer as the host set it, ms.
   std::uint8_t latency_ms() const noexcept { return latency_ms_; }
-  /// Tells the line's rate as the host set it, baud.
+  /// Returns the line's rate as the host set it, baud.
   double rate() const noexcept;
   /// Counts bytes lost because the rates did not match.
   std::uint64_t garbled() const noexcept { return garbled_; }

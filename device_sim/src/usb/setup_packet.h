@@ -6,7 +6,7 @@
 
 namespace thimble::device_sim::usb {
 
-/// Is the eight bytes that begin every control transfer [USB 2.0, 9.3].
+/// The eight bytes that begin every control transfer [USB 2.0, 9.3].
 struct SetupPacket {
   std::uint8_t request_type = 0;  ///< Bit 7: towards the host; bits 5-6: kind; bits 0-4: recipient.
   std::uint8_t request = 0;       ///< What is asked.
@@ -16,16 +16,16 @@ struct SetupPacket {
 
   friend bool operator==(const SetupPacket&, const SetupPacket&) = default;
 
-  /// Tells whether the data stage goes to the host. Real-time: safe.
+  /// Returns whether the data stage goes to the host. Real-time: safe.
   bool to_host() const noexcept { return (request_type & 0x80U) != 0; }
 };
 
-/// Is whom a control request is for (bits 0-4 of `request_type`).
+/// Whom a control request is for (bits 0-4 of `request_type`).
 inline constexpr std::uint8_t kRecipientDevice = 0;
 inline constexpr std::uint8_t kRecipientInterface = 1;
 inline constexpr std::uint8_t kRecipientEndpoint = 2;
 
-/// Is the kind of a control request (bits 5-6 of `request_type`).
+/// The kind of a control request (bits 5-6 of `request_type`).
 inline constexpr std::uint8_t kKindMask = 0x60;
 inline constexpr std::uint8_t kKindStandard = 0x00;
 inline constexpr std::uint8_t kKindClass = 0x20;

@@ -13,7 +13,7 @@
 
 namespace thimble::device_sim::usb {
 
-/// Is a simulated Falcon inside the program: the arm of `thimble plug falcon` with a host's bus in
+/// A simulated Falcon inside the program: the arm of `thimble plug falcon` with a host's bus in
 /// place of the kernel. It is booted, takes firmware and is homed by its own hand through the very
 /// bytes of a real one, before the path of the hand begins.
 class SimulatedFalcon {
@@ -42,7 +42,7 @@ class SimulatedFalcon {
   void set_watchdog(std::int64_t time_ns) noexcept { falcon_->set_watchdog(time_ns); }
   /// Gives the arm to another bus than `wire` makes. Real-time: safe.
   UsbArm& on_bus() noexcept { return *falcon_; }
-  /// Tells the arm's own time (ns) at which its hand begins. Real-time: safe.
+  /// Returns the arm's own time (ns) at which its hand begins. Real-time: safe.
   std::int64_t begin_ns() const noexcept { return begin_ns_; }
   const FalconOnUsb& arm() const noexcept { return *falcon_; }  ///< Shows the arm.
 

@@ -46,7 +46,7 @@ struct UsbDescription {
   const EndpointDescription* endpoint(std::uint8_t address) const noexcept;
 };
 
-/// Is the kind of a descriptor [USB 2.0, table 9-5; HID 1.11, 7.1].
+/// The kind of a descriptor [USB 2.0, table 9-5; HID 1.11, 7.1].
 enum DescriptorKind : std::uint8_t {
   kDeviceDescriptor = 1,
   kConfigurationDescriptor = 2,

@@ -16,7 +16,7 @@
 
 namespace thimble::device_sim::usb {
 
-/// Is one connection of a USB/IP client to a device: bytes in, bytes out, and in between the
+/// One connection of a USB/IP client to a device: bytes in, bytes out, and in between the
 /// schedule of a full-speed bus. It owns no socket and no clock, so that tests feed it by hand.
 ///
 /// An interrupt transfer waits for its frame, as it does on a real bus: in each frame an interrupt
@@ -25,9 +25,9 @@ namespace thimble::device_sim::usb {
 /// (`send_bulk`). Transfers of one endpoint keep their order.
 class UsbipSession {
  public:
-  /// Is how many bulk packets of 64 bytes a frame holds [USB 2.0, table 5-9].
+  /// How many bulk packets of 64 bytes a frame holds [USB 2.0, table 5-9].
   static constexpr int kBulkPackets = 19;
-  /// Is how many transfers may wait; a client that hands over more is hung up on.
+  /// How many transfers may wait; a client that hands over more is hung up on.
   static constexpr std::size_t kPendingMax = 256;
 
   /// Says what a connection is good for.
@@ -48,7 +48,7 @@ class UsbipSession {
   /// kClosing. The caller moves the device's time. Real-time: never from the servo thread.
   void frame(std::int64_t time_ns);
 
-  /// Tells whether bulk data wait to go to the device. Real-time: safe.
+  /// Returns whether bulk data wait to go to the device. Real-time: safe.
   bool has_bulk_to_send() const noexcept;
 
   /// Sends bulk data to the device in the running frame. The caller moves the device's time.

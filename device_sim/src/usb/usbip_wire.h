@@ -22,7 +22,7 @@ inline constexpr std::size_t kBusIdSize = 32;          ///< Bytes of a bus id, z
 inline constexpr std::size_t kUsbipHeaderSize = 48;    ///< Bytes before a transfer's data.
 inline constexpr std::size_t kTransferMax = 1U << 16;  ///< Larger transfers are refused, bytes.
 
-/// Is what a client asks before a device is attached.
+/// What a client asks before a device is attached.
 struct UsbipRequest {
   /// Says what a client asks.
   enum class Kind : std::uint8_t { kList, kImport };
@@ -31,7 +31,7 @@ struct UsbipRequest {
   std::size_t size = 0;     ///< Bytes of the message.
 };
 
-/// Is one transfer that the host's controller hands over, or takes back.
+/// One transfer that the host's controller hands over, or takes back.
 struct UsbipCommand {
   /// Says what the host asks.
   enum class Kind : std::uint8_t { kSubmit, kUnlink };
@@ -85,7 +85,7 @@ std::vector<std::byte> encode_request(const UsbipRequest& request);
 std::vector<std::byte> encode_command(const UsbipCommand& command,
                                       std::span<const std::byte> data = {});
 
-/// Is the answer to a transfer or an unlink.
+/// The answer to a transfer or an unlink.
 struct UsbipReply {
   bool unlink = false;         ///< Whether it answers an unlink.
   std::uint32_t sequence = 0;  ///< Number of the command that it answers.
@@ -96,7 +96,7 @@ struct UsbipReply {
 /// Decodes the header of an answer; data to the host follow it. Empty if it is none.
 std::optional<UsbipReply> decode_reply(std::span<const std::byte, kUsbipHeaderSize> bytes) noexcept;
 
-/// Is the bytes of an import's answer when the device is there, and when it is not.
+/// The bytes of an import's answer when the device is there, and when it is not.
 inline constexpr std::size_t kImportReplySize = 8 + 0x138;
 inline constexpr std::size_t kImportRefusalSize = 8;
 

@@ -31,16 +31,16 @@ class SlotLink : public ArmLink {
 
  protected:
   // By the thread that speaks with the arm. None of them waits.
-  void publish(const ArmSample& sample) noexcept;  ///< Tells where the arm is.
+  void publish(const ArmSample& sample) noexcept;  ///< Returns where the arm is.
   void reject() noexcept;                          ///< Tells that it could not be understood.
   void lose() noexcept;                            ///< Tells that it is gone, for good.
   bool is_lost() const noexcept;                   ///< Returns whether it is.
-  /// Tells whether the arm takes no forces at the moment, so that writes are refused.
+  /// Returns whether the arm takes no forces at the moment, so that writes are refused.
   void refuse(bool refuses) noexcept { refuses_.store(refuses, std::memory_order_release); }
   /// Takes the force that waits, N in the base; false if none does.
   bool take_force(Eigen::Vector3d& f_T_B) noexcept { return box_.take(f_T_B); }
 
-  /// Is called by the servo thread when a force waits. Real-time: safe.
+  /// Called by the servo thread when a force waits. Real-time: safe.
   virtual void ring() noexcept {}
 
  private:

@@ -35,7 +35,7 @@ const ContactState& EntryFaceContact::update(const driver::DeviceState& state) n
   return state_;
 }
 
-/// Tells whether a point (O, m) is below the plane of a face and within its outline.
+/// Returns whether a point (O, m) is below the plane of a face and within its outline.
 bool EntryFaceContact::behind(const Eigen::Vector3d& p_O, std::int32_t face) const noexcept {
   const Eigen::Index u = (face / 2 + 1) % 3;
   const Eigen::Index v = (face / 2 + 2) % 3;

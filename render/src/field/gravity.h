@@ -9,7 +9,7 @@
 
 namespace thimble::render {
 
-/// Is the weight of something held in the hand: the same force everywhere. A Field; conservative.
+/// The weight of something held in the hand: the same force everywhere. A Field; conservative.
 class Gravity {
  public:
   static constexpr std::string_view kName = "gravity";

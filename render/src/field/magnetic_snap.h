@@ -11,7 +11,7 @@
 
 namespace thimble::render {
 
-/// Is what draws the tip onto points and lines once it is near. A Field; conservative.
+/// What draws the tip onto points and lines once it is near. A Field; conservative.
 ///
 /// At distance r from a target, within its capture radius R, the energy is -U (1 - (r/R)^2)^2: the
 /// pull begins at R without a step, is largest at R / sqrt 3 and zero on the target, where it holds
@@ -22,7 +22,7 @@ class MagneticSnap {
   static constexpr std::string_view kName = "magnetic_snap";
 
   struct Settings {
-    /// Is one point that pulls the tip in.
+    /// One point that pulls the tip in.
     struct Target {
       Eigen::Vector3d from_O{0, 0, 0};  ///< The point, or one end of the line; object's frame, m.
       Eigen::Vector3d to_O{0, 0, 0};    ///< The other end; the same for a point.

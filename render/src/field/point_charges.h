@@ -11,7 +11,7 @@
 
 namespace thimble::render {
 
-/// Is the field of electric charges on a charged tip [BP 2]. A Field; conservative.
+/// The field of electric charges on a charged tip [BP 2]. A Field; conservative.
 ///
 /// A bare charge pulls without bound. Here each is softened as if spread over a ball (Plummer's
 /// law): with s the vector from charge to tip, F = q s / (|s|^2 + a^2)^(3/2), the gradient of
@@ -23,7 +23,7 @@ class PointCharges {
   static constexpr std::string_view kName = "charges";
 
   struct Settings {
-    /// Is one charge.
+    /// One charge.
     struct One {
       Eigen::Vector3d p_O{0, 0, 0};  ///< In the object's frame, m.
       double force = 0;              ///< The largest, N; negative pulls.

@@ -14,7 +14,7 @@
 
 namespace thimble::render {
 
-/// Is a solid whose force depends on the place of the tip alone [BP 2]: a plane, a sphere, a box in
+/// A solid whose force depends on the place of the tip alone [BP 2]: a plane, a sphere, a box in
 /// wedges. `n_before_W` is the last normal felt (zero if none), for places that have none of their
 /// own.
 template <class Shape>

@@ -11,7 +11,7 @@
 
 namespace thimble::render {
 
-/// Is a thick liquid that fills the space: a force against the velocity. A Field; takes energy out
+/// A thick liquid that fills the space: a force against the velocity. A Field; takes energy out
 /// of every motion.
 class Viscous {
  public:
@@ -30,8 +30,8 @@ class Viscous {
   Viscous(const Settings& settings, const EffectContext& context)
       : damping_(settings.damping), damping_most_(most_damping(context)) {}
 
-  /// Tells what the loop can hold, N s/m: see Settings::read; infinite where the arm's mass is not
-  /// known. Real-time: never from the servo thread.
+  /// Returns what the loop can hold, N s/m: see Settings::read; infinite where the arm's mass is
+  /// not known. Real-time: never from the servo thread.
   static double most_damping(const EffectContext& context);
 
   /// Tells of the damping: up to two thirds of what the loop can hold, for the filter of the

@@ -14,12 +14,12 @@
 
 namespace thimble::render {
 
-/// Is a plane with unit normal: `n . x + d` is the signed distance (m) of a point x.
+/// A plane with unit normal: `n . x + d` is the signed distance (m) of a point x.
 struct Plane {
   Eigen::Vector3d n{0, 0, 0};  ///< Unit normal.
   double d = 0;                ///< m; n x + d = 0 on it.
 
-  /// Tells the distance of a point from the plane, m, positive outside. Real-time: safe.
+  /// Returns the distance of a point from the plane, m, positive outside. Real-time: safe.
   double distance(const Eigen::Vector3d& x) const noexcept { return n.dot(x) + d; }
 };
 
@@ -78,7 +78,7 @@ struct EdgeSplit {
   std::array<std::int32_t, 2> others{};     ///< The new ones beside each.
 };
 
-/// Is a mesh made ready to be touched: closed, wound alike, with face planes, edge planes and
+/// A mesh made ready to be touched: closed, wound alike, with face planes, edge planes and
 /// neighbours. Frame W, m.
 ///
 /// The edge plane of two neighbours goes through their shared edge and the average of their unit
@@ -98,18 +98,18 @@ class ContactMesh {
 
   std::int32_t vertex_count() const noexcept { return static_cast<std::int32_t>(vertices_.size()); }
 
-  /// Tells how many components were wholly inside out and have been turned.
+  /// Returns how many components were wholly inside out and have been turned.
   std::size_t turned_components() const noexcept { return orientation_.turned_components; }
 
   /// Tells all that was turned round.
   const OrientReport& orientation() const noexcept { return orientation_; }
 
-  /// Tells the corners of a triangle, counter-clockwise from outside.
+  /// Returns the corners of a triangle, counter-clockwise from outside.
   const std::array<std::int32_t, 3>& corners(std::int32_t triangle) const noexcept {
     return triangles_[static_cast<std::size_t>(triangle)];
   }
 
-  /// Tells where a vertex is, m in W. Everything that asks for positions asks here.
+  /// Returns where a vertex is, m in W. Everything that asks for positions asks here.
   const Eigen::Vector3d& position(std::int32_t vertex) const noexcept {
     return vertices_[static_cast<std::size_t>(vertex)];
   }
@@ -139,7 +139,7 @@ class ContactMesh {
 
   static constexpr std::size_t kValenceMax = 64;  ///< Of a vertex that splits may make more of.
 
-  /// Tells where corner `k` of a triangle is, m in W.
+  /// Returns where corner `k` of a triangle is, m in W.
   const Eigen::Vector3d& position(std::int32_t triangle, std::size_t k) const noexcept {
     return position(corners(triangle)[k]);
   }
@@ -155,25 +155,27 @@ class ContactMesh {
     return {fans_.data() + fan.begin(), fan.count()};
   }
 
-  /// Tells the point that cells are relative to: the middle of the box, m in W.
+  /// Returns the point that cells are relative to: the middle of the box, m in W.
   const Eigen::Vector3d& origin() const noexcept { return origin_; }
 
   /// Tell the box of the vertices as they were when built, grown by ContactMeshOptions::room; m, W.
   /// Searches count in it: they find nothing that lies outside.
   const Eigen::Vector3d& box_min() const noexcept { return box_min_; }
-  const Eigen::Vector3d& box_max() const noexcept { return box_max_; }  ///< Tells the other corner.
+  const Eigen::Vector3d& box_max() const noexcept {
+    return box_max_;
+  }  ///< Returns the other corner.
 
-  /// Tells whether a point lies in the box. NaN does not.
+  /// Returns whether a point lies in the box. NaN does not.
   bool in_box(const Eigen::Vector3d& p_W) const noexcept {
     return (p_W.array() >= box_min_.array()).all() && (p_W.array() <= box_max_.array()).all();
   }
 
-  /// Tells how far a point lies below a triangle's plane, m; negative outside.
+  /// Returns how far a point lies below a triangle's plane, m; negative outside.
   double depth(std::int32_t triangle, const Eigen::Vector3d& p_W) const noexcept {
     return -cell(triangle).face.distance(p_W - origin_);
   }
 
-  /// Tells the depth below which rounding decides its sign, m.
+  /// Returns the depth below which rounding decides its sign, m.
   double depth_rounding() const noexcept { return depth_rounding_; }
 
  private:

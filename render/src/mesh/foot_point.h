@@ -9,7 +9,7 @@
 
 namespace thimble::render {
 
-/// Is the point of a triangle nearest to the tip. Frame O of the mesh, m.
+/// The point of a triangle nearest to the tip. Frame O of the mesh, m.
 struct Foot {
   Eigen::Vector3d p_OP{0, 0, 0};
   double distance_squared = 0;      ///< From the tip, m^2.

@@ -14,7 +14,7 @@ namespace thimble::render {
 /// where sorting all edges takes several times as long. Real-time: never from the servo thread.
 class HalfEdges {
  public:
-  /// Is a side of a triangle without its begin.
+  /// A side of a triangle without its begin.
   struct Side {
     std::int32_t end;
     std::int32_t triangle;

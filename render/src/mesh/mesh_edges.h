@@ -9,7 +9,7 @@
 
 namespace thimble::render {
 
-/// Is one side of a triangle: the edge from its corner `corner` to the next corner.
+/// One side of a triangle: the edge from its corner `corner` to the next corner.
 struct EdgeUse {
   std::int32_t low = 0;   ///< The smaller vertex number of the edge.
   std::int32_t high = 0;  ///< The larger one.
@@ -26,7 +26,7 @@ std::vector<EdgeUse> sorted_edge_uses(const TriangleMesh& mesh);
 /// Finds the end of the group of sides that share the edge of side `begin`.
 std::size_t end_of_edge(const std::vector<EdgeUse>& uses, std::size_t begin);
 
-/// Tells whether a triangle names three different vertices that exist.
+/// Returns whether a triangle names three different vertices that exist.
 bool has_three_vertices(const TriangleMesh& mesh, std::size_t triangle);
 
 /// Joins numbers into groups (union by smaller number, with path halving).

@@ -12,8 +12,8 @@ enum class Crossing : std::uint8_t {
   kLeaves,  ///< From inside to outside.
 };
 
-/// Tells whether the segment from `p_from` to `p_to` crosses the triangle a, b, c; all in one frame
-/// and one unit, finite, of magnitude at most 1e15.
+/// Returns whether the segment from `p_from` to `p_to` crosses the triangle a, b, c; all in one
+/// frame and one unit, finite, of magnitude at most 1e15.
 ///
 /// There are no ties and no rounding: the answer is that of exact arithmetic for a segment moved by
 /// the infinitely small vector (e, e^2, e^3). So over a closed mesh a segment aimed at an edge or a

@@ -12,17 +12,17 @@
 
 namespace thimble::render {
 
-/// Is the angle between two faces' normals (rad) above which their edge is felt as a crease: the
+/// The angle between two faces' normals (rad) above which their edge is felt as a crease: the
 /// right angles of made things stay sharp, the steps of a scan do not. A default; scenes may say
 /// another.
 inline constexpr double kCreaseAngle = std::numbers::pi / 3;
 
-/// Is the same of edges in hollows, at most, whatever is said of others: a depth below the faces of
+/// The same of edges in hollows, at most, whatever is said of others: a depth below the faces of
 /// a hollow and a normal that turns over them are the force of a potential only to the square of
 /// the angle, and beyond this one a hand may swing in the hollow (../track/hollows.md).
 inline constexpr double kHollowCreaseAngle = kCreaseAngle;
 
-/// Is the same for shading in bands along the edges, where the normal turns within a band.
+/// The same for shading in bands along the edges, where the normal turns within a band.
 inline constexpr double kHollowCreaseAngleOfBands = std::numbers::pi / 9;
 
 /// Holds the normals that a mesh is shaded with, at each corner of each triangle, and says which

@@ -7,12 +7,12 @@
 
 namespace thimble::render {
 
-/// Is a small set of triangles in the order in which they were added: those a walk has visited, or
+/// A small set of triangles in the order in which they were added: those a walk has visited, or
 /// a patch that grows around a place. All is Real-time: safe; time grows with the size.
 template <std::size_t kMax>
 class TriangleSet {
  public:
-  /// Tells whether a triangle is in the set.
+  /// Returns whether a triangle is in the set.
   bool has(std::int32_t triangle) const noexcept {
     const auto end = triangles_.begin() + static_cast<std::ptrdiff_t>(size_);
     return std::find(triangles_.begin(), end, triangle) != end;
@@ -23,8 +23,8 @@ class TriangleSet {
     if (!full() && !has(triangle)) triangles_[size_++] = triangle;
   }
 
-  bool full() const noexcept { return size_ == kMax; }  ///< Tells whether it has no room.
-  std::size_t size() const noexcept { return size_; }   ///< Tells how many it has.
+  bool full() const noexcept { return size_ == kMax; }  ///< Returns whether it has no room.
+  std::size_t size() const noexcept { return size_; }   ///< Returns how many it has.
   /// Precondition: i < size().
   std::int32_t operator[](std::size_t i) const noexcept { return triangles_[i]; }
 

@@ -11,12 +11,12 @@
 
 namespace thimble::render {
 
-/// Tells how far `p` (steps) is on this side of the plane that halves the angle at a crease, as a
+/// Returns how far `p` (steps) is on this side of the plane that halves the angle at a crease, as a
 /// share of the triangle's height over that edge. Real-time: safe.
 double side_of_crease(const Eigen::Vector3d& p, const PackedTriangle& own, std::size_t edge,
                       const PackedTriangle& other) noexcept;
 
-/// Tells what is felt at the point of a packed triangle that is nearest to `p` (steps), where no
+/// Returns what is felt at the point of a packed triangle that is nearest to `p` (steps), where no
 /// offset triangle holds it; `offset` is that packed triangle unpacked. Real-time: safe.
 OffsetResponse feel_nearest(const Eigen::Vector3d& p, const PackedTriangle& packed,
                             const OffsetTriangle& offset) noexcept;

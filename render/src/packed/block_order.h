@@ -6,7 +6,7 @@
 
 namespace thimble::render {
 
-/// Is a place with the number of what stands there. In any unit; finite.
+/// A place with the number of what stands there. In any unit; finite.
 struct alignas(16) PlacedIndex {
   std::array<float, 3> at;
   std::int32_t index;

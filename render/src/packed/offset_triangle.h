@@ -16,7 +16,7 @@
 
 namespace thimble::render {
 
-/// Is one packed triangle unpacked: a triangle that sinks along its corner normals. Offset by d
+/// One packed triangle unpacked: a triangle that sinks along its corner normals. Offset by d
 /// along them, a triangle x_i becomes the triangle x_i - d n_i. The one that holds the tip p, for
 /// its own d, is where the tip belongs:
 ///
@@ -46,11 +46,11 @@ class alignas(64) OffsetTriangle {
   /// Finds where `p` belongs; the answer depends on `p` and the packed triangle alone.
   OffsetPlace locate(const Eigen::Vector3d& p) const noexcept;
 
-  /// Tells the direction and the depth at a place; one outside the triangle counts as on its
+  /// Returns the direction and the depth at a place; one outside the triangle counts as on its
   /// border, for neither is known beyond.
   OffsetResponse feel(const OffsetPlace& place) const noexcept;
 
-  /// Tells the same faster. Precondition: no weight is negative.
+  /// Returns the same faster. Precondition: no weight is negative.
   OffsetResponse feel_within(const OffsetPlace& place) const noexcept;
 
   /// Returns the way from the tip to the point q of the triangle, and how q moves with the tip
@@ -58,9 +58,9 @@ class alignas(64) OffsetTriangle {
   /// some 100 ns, for what needs the place itself, as textures do.
   OffsetWay way_to_surface(const OffsetPlace& place) const noexcept;
 
-  /// Tells whether an edge is a crease, in bit k for edge k.
+  /// Returns whether an edge is a crease, in bit k for edge k.
   std::uint32_t creases() const noexcept { return creases_; }
-  /// Tells which triangle of the input this is.
+  /// Returns which triangle of the input this is.
   std::int32_t source() const noexcept { return source_; }
   /// Gives the triangle's own unit normal.
   Eigen::Vector3d face() const noexcept { return {-h_[0], -h_[1], -h_[2]}; }
@@ -95,7 +95,7 @@ class alignas(64) OffsetTriangle {
   std::int32_t source_ = -1;
 };
 
-/// Is how well `locate` places a tip, in steps: 3e-8 of the mesh's longest side.
+/// How well `locate` places a tip, in steps: 3e-8 of the mesh's longest side.
 inline constexpr double kPlaced = 64;
 
 // Solves p = sum l_i (x_i - d n_i). In the triangle's own axes that is a pair of linear equations

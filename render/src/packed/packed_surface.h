@@ -14,7 +14,7 @@
 
 namespace thimble::render {
 
-/// Is half the side of the lattice that positions are rounded to: 2^-31 of the mesh's longest side
+/// Half the side of the lattice that positions are rounded to: 2^-31 of the mesh's longest side
 /// is one step, and the difference of two positions fits into 32 bits.
 inline constexpr double kLatticeHalf = 0x1p30;
 
@@ -28,24 +28,24 @@ struct alignas(64) PackedTriangle {
   std::array<std::int32_t, 3> neighbours;  ///< Record over the edge from corner k to k + 1.
   std::uint32_t flags;  ///< Bit k: edge k is a crease. From bit 3: the input's number.
 
-  /// Is where the input's number begins in `flags`: 2^28 triangles fit, the most that a surface
+  /// Where the input's number begins in `flags`: 2^28 triangles fit, the most that a surface
   /// takes.
   static constexpr int kSourceShift = 3;
 
-  /// Tells whether an edge is a crease. Real-time: safe.
+  /// Returns whether an edge is a crease. Real-time: safe.
   bool crease(std::size_t edge) const noexcept { return ((flags >> edge) & 1u) != 0; }
 
-  /// Tells which triangle of the input this is.
+  /// Returns which triangle of the input this is.
   std::int32_t source() const noexcept { return static_cast<std::int32_t>(flags >> kSourceShift); }
 
-  /// Tells where corner `k` is, in steps of the lattice from its middle; exact.
+  /// Returns where corner `k` is, in steps of the lattice from its middle; exact.
   Eigen::Vector3d corner(std::size_t k) const noexcept {
     return {static_cast<double>(x[k]), static_cast<double>(y[k]), static_cast<double>(z[k])};
   }
 };
 static_assert(sizeof(PackedTriangle) == 64 && alignof(PackedTriangle) == 64);
 
-/// Is the number that a coordinate of 1 is packed as. It has so many divisors that the normals of
+/// The number that a coordinate of 1 is packed as. It has so many divisors that the normals of
 /// symmetric shapes fall on whole numbers: on a half, the rounding of a scaled mesh would decide.
 inline constexpr float kOctahedron = 32760;
 
@@ -58,12 +58,12 @@ Eigen::Vector3d unpack_normal(std::uint32_t packed) noexcept;
 
 /// Sets how a packed surface is built.
 struct PackedSurfaceOptions {
-  /// Is the angle between two faces above which their edge stays sharp, rad. 43 degrees: an
+  /// The angle between two faces above which their edge stays sharp, rad. 43 degrees: an
   /// icosahedron (41.8) is still a ball, a bevel (45) is an edge.
   double crease_angle = 0.75;
 };
 
-/// Is a closed surface as packed triangles of 64 bytes, sorted such that each eight, each 64 and so
+/// A closed surface as packed triangles of 64 bytes, sorted such that each eight, each 64 and so
 /// on that follow each other lie close together: what is near in space is near in memory. Frame W,
 /// m.
 ///
@@ -97,10 +97,10 @@ class PackedSurface {
     return triangles_;
   }  ///< Lists them.
 
-  /// Tells which triangle of the input a packed triangle is.
+  /// Returns which triangle of the input a packed triangle is.
   std::int32_t source(std::int32_t t) const noexcept { return triangle(t).source(); }
 
-  /// Tells where corner `k` of a packed triangle is, m in W. Equal for all packed triangles that
+  /// Returns where corner `k` of a packed triangle is, m in W. Equal for all packed triangles that
   /// share it.
   Eigen::Vector3d position(std::int32_t t, std::size_t k) const noexcept {
     return origin_ + step_ * triangle(t).corner(k);
@@ -111,14 +111,14 @@ class PackedSurface {
     return (p_W - origin_) * per_step_;
   }
 
-  const Eigen::Vector3d& origin() const noexcept { return origin_; }  ///< Tells the lattice's, m.
-  /// Tells the length of one step of the lattice, m.
+  const Eigen::Vector3d& origin() const noexcept { return origin_; }  ///< Returns the lattice's, m.
+  /// Returns the length of one step of the lattice, m.
   double step() const noexcept { return step_; }
-  /// Tells how many steps there are in 1 m.
+  /// Returns how many steps there are in 1 m.
   double per_step() const noexcept { return per_step_; }
 
-  /// Tells how far the smooth surface that the normals stand for rises above the triangles at most,
-  /// m; 0 where that is less than 1e-5 of the size and nobody would feel it.
+  /// Returns how far the smooth surface that the normals stand for rises above the triangles at
+  /// most, m; 0 where that is less than 1e-5 of the size and nobody would feel it.
   double rise() const noexcept { return rise_; }
 
   /// Counts the bytes of memory held.

@@ -103,7 +103,8 @@ float up(double value) noexcept {
   return std::nextafter(static_cast<float>(value), std::numeric_limits<float>::infinity());
 }
 
-/// Tells whether a box can be one of packed triangles, whose corners are whole numbers of 32 bits.
+/// Returns whether a box can be one of packed triangles, whose corners are whole numbers of 32
+/// bits.
 bool can_be(const PageBox& box) {
   constexpr float kFarthest = 0x1p31F;
   for (std::size_t axis = 0; axis < 3; ++axis) {

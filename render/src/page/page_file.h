@@ -24,10 +24,10 @@ namespace thimble::render {
 // another version, byte order or packed triangle is refused, and so is damage: on opening that of
 // what stands before the pages, on reading that of a page.
 
-/// Is how many packed triangles a page holds: 64 KiB, a size that disks read at full speed.
+/// How many packed triangles a page holds: 64 KiB, a size that disks read at full speed.
 inline constexpr std::int32_t kPageTriangles = 1024;
 
-/// Is the box of a page's triangles, in steps of the lattice, rounded outwards.
+/// The box of a page's triangles, in steps of the lattice, rounded outwards.
 struct PageBox {
   std::array<float, 3> min;  ///< Lower corner.
   std::array<float, 3> max;  ///< Upper corner.
@@ -36,7 +36,7 @@ struct PageBox {
 /// Finds the box of some packed triangles. Real-time: safe.
 PageBox box_of(std::span<const PackedTriangle> triangles) noexcept;
 
-/// Tells whether two boxes share a point; `low` and `high` in steps. NaN shares none.
+/// Returns whether two boxes share a point; `low` and `high` in steps. NaN shares none.
 /// Real-time: safe.
 inline bool reaches(const PageBox& box, const Eigen::Vector3d& low,
                     const Eigen::Vector3d& high) noexcept {
@@ -70,12 +70,12 @@ inline double farthest_squared(const PageBox& box, const Eigen::Vector3d& p) noe
   return sum;
 }
 
-/// Is the lattice of a surface: where its middle lies and how long one step is, m in W.
+/// The lattice of a surface: where its middle lies and how long one step is, m in W.
 struct Lattice {
   Eigen::Vector3d origin{0, 0, 0};  ///< Of the lattice.
   double step = 0;                  ///< Of the lattice.
 
-  /// Tells where corner `k` of a packed triangle is, m in W; the same as PackedSurface::position.
+  /// Returns where corner `k` of a packed triangle is, m in W; the same as PackedSurface::position.
   Eigen::Vector3d position(const PackedTriangle& packed, std::size_t k) const noexcept {
     return origin + step * packed.corner(k);
   }
@@ -112,11 +112,11 @@ class PageFileWriter {
 driver::Result<void> write_page_file(const PackedSurface& surface,
                                      const std::filesystem::path& file);
 
-/// Tells whether a file begins as a page file does; false if it cannot be read.
+/// Returns whether a file begins as a page file does; false if it cannot be read.
 /// Real-time: never from the servo thread.
 bool is_page_file(const std::filesystem::path& file);
 
-/// Is an open page file: what stands before the packed triangles, in memory.
+/// An open page file: what stands before the packed triangles, in memory.
 /// Real-time: never from the servo thread.
 class PageFile {
  public:
@@ -136,13 +136,13 @@ class PageFile {
   /// Asks the kernel to bring a page near, for a `read_page` soon: so the disk works on several.
   void announce_page(std::int32_t page) const noexcept;
 
-  const Lattice& lattice() const noexcept { return lattice_; }  ///< Tells the lattice.
+  const Lattice& lattice() const noexcept { return lattice_; }  ///< Returns the lattice.
   std::int32_t triangle_count() const noexcept { return triangle_count_; }
-  /// Tells how far the smooth surface rises above its triangles, m in W; as PackedSurface::rise.
+  /// Returns how far the smooth surface rises above its triangles, m in W; as PackedSurface::rise.
   double rise() const noexcept { return rise_; }
-  /// Tells the box around the whole surface, in steps.
+  /// Returns the box around the whole surface, in steps.
   const PageBox& whole() const noexcept { return whole_; }
-  /// Tells the box of each page, in steps.
+  /// Returns the box of each page, in steps.
   const std::vector<PageBox>& boxes() const noexcept { return boxes_; }
 
  private:

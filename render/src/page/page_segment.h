@@ -12,7 +12,7 @@
 
 namespace thimble::render {
 
-/// Is a segment asked about the packed triangles of a page file: boxes and planes drop in a few ns
+/// A segment asked about the packed triangles of a page file: boxes and planes drop in a few ns
 /// what is out of reach, `crossing` decides the rest without rounding. Real-time: safe.
 class PageSegment {
  public:
@@ -35,8 +35,8 @@ class PageSegment {
     half_way_ = 0.5 * way_.cwiseAbs();
   }
 
-  /// Tells whether the segment may reach a box: no plane of the box and none through an edge of it
-  /// and the segment parts them. False for NaN.
+  /// Returns whether the segment may reach a box: no plane of the box and none through an edge of
+  /// it and the segment parts them. False for NaN.
   bool reaches(const PageBox& box) const noexcept {
     if (!render::reaches(box, low, high)) return false;
     Eigen::Vector3d half, apart;
@@ -56,7 +56,7 @@ class PageSegment {
            std::abs(across.z()) <= room.z() * kMore;
   }
 
-  /// Tells how the segment crosses a packed triangle, and where: 0 at its begin, 1 at its end.
+  /// Returns how the segment crosses a packed triangle, and where: 0 at its begin, 1 at its end.
   Crossing cross(const PackedTriangle& packed, double& parameter) const noexcept {
     if (!near(packed.x, 0) || !near(packed.y, 1) || !near(packed.z, 2)) return Crossing::kNone;
     const Eigen::Vector3d a = packed.corner(0);

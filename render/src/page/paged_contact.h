@@ -11,7 +11,7 @@
 
 namespace thimble::render {
 
-/// Is a store whose packed triangles come from a page file: what is not near the tip is absent.
+/// A store whose packed triangles come from a page file: what is not near the tip is absent.
 class PagedStore {
  public:
   static constexpr bool kComplete = false;
@@ -75,7 +75,7 @@ struct PagedPlace {
 /// unseen is let out slowly and not thrown out. What the mesh has and the tip met is felt as it is.
 class PagedContact {
  public:
-  /// Is how fast a surface comes back that was entered unseen, m/s in W: so slow that a hand yields
+  /// How fast a surface comes back that was entered unseen, m/s in W: so slow that a hand yields
   /// without effort. [chosen: a quarter of a calm stroke]
   static constexpr double kRiseSpeed = 0.02;
 
@@ -98,12 +98,12 @@ class PagedContact {
   /// Counts the ticks in which a page was absent that the answer needed.
   std::uint64_t misses() const noexcept { return contact_.ticks_held(); }
   PagedSurface& surface() const noexcept { return contact_.store().surface(); }
-  const PagedPlace& place() const noexcept { return place_; }  ///< Tells where it stands.
+  const PagedPlace& place() const noexcept { return place_; }  ///< Returns where it stands.
 
-  /// Is the question `inside` for who stands beside the servo.
+  /// The question `inside` for who stands beside the servo.
   class Search {
    public:
-    /// Tells whether a point (W, m) is inside; reads what it needs from the disk. False if that
+    /// Returns whether a point (W, m) is inside; reads what it needs from the disk. False if that
     /// fails. Real-time: never from the servo thread.
     bool inside(const Eigen::Vector3d& p_W) const;
 

@@ -31,7 +31,7 @@ struct PagingSettings {
   double horizon = 0.02;      ///< So far ahead of its velocity too, s: twice a disk's worst seek.
 };
 
-/// Is a surface of which only the volumes around the tip are in memory [BP 4.1]. A loader brings
+/// A surface of which only the volumes around the tip are in memory [BP 4.1]. A loader brings
 /// what lies ahead of the tip and gives up what it left behind; the servo never waits for it.
 ///
 /// The servo marks its ticks by `begin_tick` and `end_tick` and keeps no pointer beyond a tick; a
@@ -84,7 +84,7 @@ class PagedSurface {
       __builtin_prefetch(&frame->triangles[static_cast<std::size_t>(i)]);
     }
   }
-  /// Is how many packed triangles stand together: numbers that differ by less are likely near.
+  /// How many packed triangles stand together: numbers that differ by less are likely near.
   static constexpr std::int32_t kGroup = 16;
 
   // Answers of the following are about the packed triangles in memory; `complete` tells whether
@@ -96,14 +96,14 @@ class PagedSurface {
   /// Finds the packed triangle nearest to a point (W, m) and nearer than `radius` (m), -1 for none.
   std::int32_t closest(const Eigen::Vector3d& p_W, double radius, bool& complete) const noexcept;
 
-  /// Tells whether a point (W, m) is inside; false if not `complete`. Needs the pages between the
+  /// Returns whether a point (W, m) is inside; false if not `complete`. Needs the pages between the
   /// point and the surface nearest to it.
   bool inside(const Eigen::Vector3d& p_W, bool& complete) const noexcept;
 
   const PagingSettings& settings() const noexcept { return settings_; }
   const PageFile& file() const noexcept { return file_; }  ///< Shows the file.
   std::int32_t triangle_count() const noexcept { return file_.triangle_count(); }
-  const Lattice& lattice() const noexcept { return file_.lattice(); }  ///< Tells the lattice.
+  const Lattice& lattice() const noexcept { return file_.lattice(); }  ///< Returns the lattice.
 
   // The loader's side: one thread. Real-time: never from the servo thread.
 
@@ -114,7 +114,7 @@ class PagedSurface {
   /// Waits for the end of a tick before it reuses a frame. For whoever has no loader thread.
   std::size_t serve();
 
-  /// Tells whether a point (W, m) is inside, by the parity of crossings on the way out; reads the
+  /// Returns whether a point (W, m) is inside, by the parity of crossings on the way out; reads the
   /// pages on that way. False if a coordinate is NaN or beyond `kPositionMax`, or the disk fails.
   bool inside_by_reading(const Eigen::Vector3d& p_W) const;
 

@@ -8,7 +8,7 @@
 
 namespace thimble::render {
 
-/// Is an upright box in steps of a SearchFrame; empty until something is added.
+/// An upright box in steps of a SearchFrame; empty until something is added.
 struct LatticeAabb {
   LatticeAabb() noexcept;
   /// Makes the box hold a point. Real-time: safe.
@@ -19,7 +19,7 @@ struct LatticeAabb {
   std::array<double, 3> min, max;  ///< Its corners, steps.
 };
 
-/// Is a node of a TreeSearch in one line of the cache: the boxes of up to eight children, rounded
+/// A node of a TreeSearch in one line of the cache: the boxes of up to eight children, rounded
 /// outwards to 1/255 of the node's own size. Which children these are follows from its place.
 ///
 ///     byte 0        12                16                      64
@@ -29,16 +29,16 @@ struct alignas(64) BoxNode {
   using Side = std::array<std::uint8_t, kChildrenMax>;  ///< One side of all children.
 
   std::array<float, 3> origin{};  ///< Where sides count from, in steps.
-  /// Is the bits of a float, a power of two: steps per unit of a side; in the lowest eight bits
+  /// The bits of a float, a power of two: steps per unit of a side; in the lowest eight bits
   /// those of the children that are there.
   std::uint32_t scale_and_children = 0;
   /// Low x, y, z, then high x, y, z of each child, in units above the origin; of a child that is
   /// not there those of the last one.
   std::array<Side, 6> sides{};
 
-  /// Tells how many steps a unit of a side has: a power of two. Real-time: safe.
+  /// Returns how many steps a unit of a side has: a power of two. Real-time: safe.
   float scale() const noexcept { return std::bit_cast<float>(scale_and_children & ~kChildren); }
-  /// Tells which children are there, in bits. Real-time: safe.
+  /// Returns which children are there, in bits. Real-time: safe.
   unsigned children() const noexcept { return scale_and_children & kChildren; }
 
   /// Sets the boxes of the first children. Precondition: one to `kChildrenMax`, none empty.

@@ -16,7 +16,7 @@ struct Entry {
   double parameter = 0;        ///< 0 at the segment's begin, 1 at its end.
 };
 
-/// Is the point of a surface nearest to a point asked about.
+/// The point of a surface nearest to a point asked about.
 struct SurfacePoint {
   std::int32_t triangle = -1;                                 ///< -1 for none within reach.
   double distance = std::numeric_limits<double>::infinity();  ///< m
@@ -40,8 +40,8 @@ class ContactSearch {
   virtual Entry first_entry(const Eigen::Vector3d& p_from,
                             const Eigen::Vector3d& p_to) const noexcept = 0;
 
-  /// Tells whether a point (W, m) is inside the surface, by the parity of crossings on the way out.
-  /// False if a coordinate is NaN or beyond `kPositionMax`.
+  /// Returns whether a point (W, m) is inside the surface, by the parity of crossings on the way
+  /// out. False if a coordinate is NaN or beyond `kPositionMax`.
   virtual bool inside(const Eigen::Vector3d& p_W) const noexcept = 0;
 
   /// Finds the nearest point of the surface no farther than `radius` (m) from a point (W, m); of

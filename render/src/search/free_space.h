@@ -24,7 +24,7 @@ class FreeSpace {
     return entry;
   }
 
-  /// Tells whether a point is known to be in free space, with all between it and others that are.
+  /// Returns whether a point is known to be in free space, with all between it and others that are.
   /// Real-time: safe.
   bool holds(const Eigen::Vector3d& p) const noexcept {
     // Written so that NaN is not held; strictly, so that an empty ball holds nothing.

@@ -35,7 +35,7 @@ class GridSearch final : public ContactSearch {
   double clearance(const Eigen::Vector3d& p_W) const noexcept override;
   std::size_t bytes() const noexcept override { return grid_.bytes(); }
 
-  /// Tells whether the triangles lie evenly enough for the grid to be the search of choice.
+  /// Returns whether the triangles lie evenly enough for the grid to be the search of choice.
   /// Real-time: never from the servo thread.
   bool even() const noexcept;
 

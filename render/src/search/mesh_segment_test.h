@@ -37,7 +37,7 @@ class MeshSegmentTest {
     return count;
   }
 
-  /// Tells the way in which the segment crosses triangle `t`, and where (0 at its begin, 1 at its
+  /// Returns the way in which the segment crosses triangle `t`, and where (0 at its begin, 1 at its
   /// end).
   Crossing cross(std::int32_t t, double& parameter) const noexcept {
     const Crossing way =

@@ -5,7 +5,7 @@
 
 namespace thimble::render {
 
-/// Is the nearest point of a surface that a question has come upon. In steps of a SearchFrame.
+/// The nearest point of a surface that a question has come upon. In steps of a SearchFrame.
 struct NearestSoFar {
   double squared = 0;           ///< Squared distance beyond which no more triangles are wanted.
   Eigen::Vector3d to{0, 0, 0};  ///< From the point asked about.

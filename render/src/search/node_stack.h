@@ -8,7 +8,7 @@
 
 namespace thimble::render {
 
-/// Is a part of a tree that a question still has to look at.
+/// A part of a tree that a question still has to look at.
 struct Waiting {
   TreeNodes::Name node;
   float near;  ///< Parameter of the segment, or squared distance in steps.

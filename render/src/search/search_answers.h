@@ -49,7 +49,7 @@ class FirstEntry {
   }
 
   const Entry& entry() const noexcept { return entry_; }
-  /// Tells the parameter beyond which no more triangles are wanted.
+  /// Returns the parameter beyond which no more triangles are wanted.
   double limit() const noexcept { return limit_; }
 
  private:
@@ -82,7 +82,7 @@ class NearestPoint {
   }
 
   bool found() const noexcept { return best_.triangle >= 0; }
-  /// Tells the squared distance beyond which no more triangles are wanted.
+  /// Returns the squared distance beyond which no more triangles are wanted.
   double squared() const noexcept { return best_.squared; }
   NearestSoFar& so_far() noexcept { return best_; }
 
@@ -107,13 +107,13 @@ inline double reach_of(const SearchFrame& frame, double radius) noexcept {
   return std::min(radius * frame.per_step, 1e18);
 }
 
-/// Tells where the ray ends that leaves the surface from `p_W` along x; along an axis, so that
+/// Returns where the ray ends that leaves the surface from `p_W` along x; along an axis, so that
 /// boxes drop all but the triangles in the way.
 inline Eigen::Vector3d far_along_x(const SearchFrame& frame, const Eigen::Vector3d& p_W) noexcept {
   return {frame.origin.x() + 4 * kLatticeHalf * frame.step, p_W.y(), p_W.z()};
 }
 
-/// Tells whether a point (steps) can lie inside at all; NaN cannot. One step of room covers the
+/// Returns whether a point (steps) can lie inside at all; NaN cannot. One step of room covers the
 /// rounding of the frame's middle.
 inline bool in_frame(const Eigen::Vector3d& p) noexcept {
   return p.cwiseAbs().maxCoeff() <= kLatticeHalf + 1;

@@ -9,7 +9,7 @@
 
 namespace thimble::render {
 
-/// Is the frame that searches count in: steps of 2^-31 of the surface's longest side from the
+/// The frame that searches count in: steps of 2^-31 of the surface's longest side from the
 /// middle of its box, so that nothing in them depends on scale or place. For a PackedSurface its
 /// lattice. Turning W into it is monotone on each axis, rounding included. Real-time: safe.
 struct SearchFrame {
@@ -35,8 +35,8 @@ inline std::size_t room_of(const ContactMesh& mesh) noexcept {
   return mesh.triangles_max();
 }
 
-/// Tells where corner `k` of triangle `t` is in steps of the frame: the one accessor that searches
-/// read positions through. Real-time: safe.
+/// Returns where corner `k` of triangle `t` is in steps of the frame: the one accessor that
+/// searches read positions through. Real-time: safe.
 inline Eigen::Vector3d corner_in(const SearchFrame&, const PackedSurface& surface, std::int32_t t,
                                  std::size_t k) noexcept {
   return surface.triangle(t).corner(k);

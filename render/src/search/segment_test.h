@@ -14,7 +14,7 @@
 
 namespace thimble::render {
 
-/// Is a segment in numbers that tell fast that it does not cross a packed triangle, in steps.
+/// A segment in numbers that tell fast that it does not cross a packed triangle, in steps.
 struct SegmentBounds {
   std::array<std::int32_t, 4> low, high;  ///< Around it, with room for rounding; three count.
   std::array<std::int32_t, 4> from;       ///< Where it begins, rounded.
@@ -38,7 +38,7 @@ class SegmentTest {
   /// the edges on in single precision. Precondition: `near` has room for the whole list.
   std::size_t select_near(std::span<const std::int32_t> list, std::int32_t* near) const noexcept;
 
-  /// Tells the way in which the segment crosses packed triangle `t`, and where (0 at its begin, 1
+  /// Returns the way in which the segment crosses packed triangle `t`, and where (0 at its begin, 1
   /// at its end).
   Crossing cross(std::int32_t t, double& parameter) const noexcept;
 
@@ -71,12 +71,12 @@ class SegmentTest {
 double kept_in_box(double parameter, const Eigen::Vector3d& way, const Eigen::Vector3d& a,
                    const Eigen::Vector3d& b, const Eigen::Vector3d& c) noexcept;
 
-/// Is the room around boxes, in steps, that covers the rounding of a segment within the lattice: of
+/// The room around boxes, in steps, that covers the rounding of a segment within the lattice: of
 /// its begin, of the way to a node, of that divided by its own way, and of the sum with a side (at
 /// most 2^-24 of 2^31 steps each), several times.
 inline constexpr float kBoxRoom = 2048;
 
-/// Is a segment cut to the part that can reach a surface, in steps of the lattice and single
+/// A segment cut to the part that can reach a surface, in steps of the lattice and single
 /// precision.
 struct ReachedPart {
   bool any = false;

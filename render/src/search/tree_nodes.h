@@ -12,7 +12,7 @@
 
 namespace thimble::render {
 
-/// Is a tree of boxes over things that stand in a row, where each node but the last of its level
+/// A tree of boxes over things that stand in a row, where each node but the last of its level
 /// has eight children: the nodes of the lowest level hold eight things that follow each other,
 /// those above eight nodes that do. So nobody needs to say who is whose child, and a node is one
 /// line of the cache.
@@ -49,18 +49,18 @@ class TreeNodes {
   Name root() const noexcept { return static_cast<Name>(levels_ - 1) << kNumberBits; }
   /// Gives a node. Real-time: safe.
   const BoxNode& node(Name name) const noexcept { return nodes_[place_of(name)]; }
-  /// Tells whether the children of a node are things, not nodes. Real-time: safe.
+  /// Returns whether the children of a node are things, not nodes. Real-time: safe.
   static bool lowest(Name name) noexcept { return name <= kNumber; }
   /// Names the first child of a node that is not lowest; the others follow. Real-time: safe.
   static Name first_child(Name name) noexcept {
     return (name - (Name{1} << kNumberBits)) + 7 * (name & kNumber);
   }
-  /// Tells the place of the first thing of a lowest node; the others follow. Real-time: safe.
+  /// Returns the place of the first thing of a lowest node; the others follow. Real-time: safe.
   static std::size_t first_thing(Name name) noexcept { return std::size_t{8} * name; }
 
-  /// Tells how many levels there are. Real-time: safe.
+  /// Returns how many levels there are. Real-time: safe.
   std::size_t levels() const noexcept { return levels_; }
-  /// Tells how many nodes a level has. Real-time: safe.
+  /// Returns how many nodes a level has. Real-time: safe.
   std::size_t width(std::size_t level) const noexcept { return counts_[level + 1]; }
   /// Shows the nodes of a level. Real-time: safe.
   const BoxNode* row(std::size_t level) const noexcept { return nodes_.data() + begins_[level]; }

@@ -19,7 +19,7 @@ inline std::uint32_t count_ones(std::uint64_t v) noexcept {
   return static_cast<std::uint32_t>((v * 0x0101010101010101u) >> 56);
 }
 
-/// Is space cut into volumes (cubes) with the triangles that reach into each [BP 4.1]. Volumes
+/// Space cut into volumes (cubes) with the triangles that reach into each [BP 4.1]. Volumes
 /// stand in blocks of 4 x 4 x 4:
 ///
 ///     top: one word per block of the box  ->  block: which of its 64 volumes hold anything
@@ -30,7 +30,7 @@ inline std::uint32_t count_ones(std::uint64_t v) noexcept {
 /// it, made thicker by `kGridRoom` of a volume, reaches into. Lengths are steps of a SearchFrame.
 class VolumeGrid {
  public:
-  /// Is one block: bit x + 4 y + 16 z is set where that volume lists anything.
+  /// One block: bit x + 4 y + 16 z is set where that volume lists anything.
   struct Block {
     std::uint64_t occupied = 0;      ///< One bit for each volume.
     std::uint32_t first_volume = 0;  ///< Place of its first occupied volume in `begins`.
@@ -39,10 +39,10 @@ class VolumeGrid {
   /// is that is not, along the axis where they are farthest apart, at most `kFarthest`.
   static constexpr std::uint32_t kEmpty = 0x80000000u;
   static constexpr std::uint32_t kFarthest = 255;  ///< Blocks.
-  /// Is the most blocks along an axis.
+  /// The most blocks along an axis.
   static constexpr std::int32_t kBlocksMax = 1024;
 
-  /// Is what a grid is made of; see build_volume_grid.
+  /// What a grid is made of; see build_volume_grid.
   struct Parts {
     Eigen::Vector3d low{0, 0, 0};                 ///< The corner where the grid begins.
     double side = 1;                              ///< Of a volume.
@@ -72,7 +72,7 @@ class VolumeGrid {
            parts_.triangles.capacity() * sizeof(std::int32_t);
   }
 
-  /// Tells the volume a coordinate is in; what lies beside the grid counts to its outermost ones.
+  /// Returns the volume a coordinate is in; what lies beside the grid counts to its outermost ones.
   /// Monotone. NaN is in the first. Real-time: safe.
   std::int32_t volume_of(double u, int axis) const noexcept {
     const double v = (u - parts_.low[axis]) * per_side_;
@@ -87,8 +87,8 @@ class VolumeGrid {
   void visit_box(const Eigen::Vector3d& low, const Eigen::Vector3d& high, Wanted wanted,
                  Visit visit) const noexcept;
 
-  /// Tells how far a point is from the border of the volume it is in; not above 0 beside the grid.
-  /// Real-time: safe.
+  /// Returns how far a point is from the border of the volume it is in; not above 0 beside the
+  /// grid. Real-time: safe.
   double within_volume(const Eigen::Vector3d& p) const noexcept {
     double least = parts_.side;
     for (int i = 0; i < 3; ++i) {
@@ -121,7 +121,7 @@ class VolumeGrid {
   Eigen::Vector3d high_{0, 0, 0};
 };
 
-/// Is how far, as a share of a volume's side, triangles count as reaching: it covers the rounding
+/// How far, as a share of a volume's side, triangles count as reaching: it covers the rounding
 /// of places in the grid (2^-52 of 2^12 volumes) by far.
 inline constexpr double kGridRoom = 0x1p-16;
 

@@ -8,7 +8,7 @@
 
 namespace thimble::render {
 
-/// Tells which cubes of one size a triangle reaches into: by its plane and, seen along each axis,
+/// Returns which cubes of one size a triangle reaches into: by its plane and, seen along each axis,
 /// by its edges [Schwarz]. The box of the triangle is left to who asks. Never says no where a
 /// triangle grown by `room` on every side reaches in, rounding included.
 class VolumeOverlap {

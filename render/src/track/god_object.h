@@ -18,7 +18,7 @@
 
 namespace thimble::render {
 
-/// Is the most times the proxy leaves the surface for the tip within one tick and is stopped again
+/// The most times the proxy leaves the surface for the tip within one tick and is stopped again
 /// by another part of it. Each time brings it nearer; one suffices to cross a room from wall to
 /// wall and into its corner. Where eight do not, the next tick goes on.
 inline constexpr int kLiftsMax = 8;
@@ -88,8 +88,8 @@ class GodObjectContact {
     state_.p_WP = p_OP_;
   }
 
-  /// Tells where a free tip was in the last `update`, m in O; NaN if there was none, or it touches.
-  /// Real-time: safe.
+  /// Returns where a free tip was in the last `update`, m in O; NaN if there was none, or it
+  /// touches. Real-time: safe.
   Eigen::Vector3d free_tip() const noexcept {
     if (has_before_ && !state_.touching) return p_OP_;
     return Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());

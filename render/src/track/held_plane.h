@@ -12,7 +12,7 @@ namespace thimble::render {
 /// over to it in `kFadeTicks`. All Real-time: safe.
 class HeldPlane {
  public:
-  /// Is how long the plane fades: 32 ms at 1 kHz, as long as the finest change that a hand follows.
+  /// How long the plane fades: 32 ms at 1 kHz, as long as the finest change that a hand follows.
   static constexpr int kFadeTicks = 32;
 
   /// Puts the contact at `p_WT` (W, m) on the plane; the first call of a hold takes the plane from
@@ -61,9 +61,9 @@ class HeldPlane {
     return true;
   }
 
-  /// Tells whether the last tick was held.
+  /// Returns whether the last tick was held.
   bool holding() const noexcept { return left_ == kFadeTicks; }
-  /// Tells whether the plane is still felt.
+  /// Returns whether the plane is still felt.
   bool fading() const noexcept { return left_ > 0; }
 
   /// Forgets the plane: the contact has ended.

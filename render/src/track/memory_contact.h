@@ -13,7 +13,7 @@
 
 namespace thimble::render {
 
-/// Is a store that has all packed triangles in memory and a search over them: no question costs
+/// A store that has all packed triangles in memory and a search over them: no question costs
 /// more than its answer. Asked by one thread at a time: it remembers the free space around the last
 /// path.
 class MemoryStore {
@@ -32,7 +32,7 @@ class MemoryStore {
   }
   double step() const noexcept { return step_; }
   double reach() const noexcept { return std::numeric_limits<double>::infinity(); }
-  /// Tells how far the surface rises above its triangles, m (PackedSurface::rise).
+  /// Returns how far the surface rises above its triangles, m (PackedSurface::rise).
   double rise() const noexcept { return surface_->rise(); }
   FoundEntry first_entry(const Eigen::Vector3d& p_from,
                          const Eigen::Vector3d& p_to) const noexcept {

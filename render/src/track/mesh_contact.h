@@ -85,15 +85,15 @@ class TrackedContact {
     state_.p_WP = p_WT_before_;
   }
 
-  /// Tells where a free tip was in the last `update`, m in W; NaN if there was none, or it touches:
-  /// what a surface that moves may sweep over. Real-time: safe.
+  /// Returns where a free tip was in the last `update`, m in W; NaN if there was none, or it
+  /// touches: what a surface that moves may sweep over. Real-time: safe.
   Eigen::Vector3d free_tip() const noexcept {
     if (has_before_ && !state_.touching) return p_WT_before_;
     return Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
   }
 
-  /// Tells where on the active triangle the tip belongs (surface_weights.h). Precondition: the last
-  /// `update` was at `p_WT` (W, m) and touches. Real-time: safe.
+  /// Returns where on the active triangle the tip belongs (surface_weights.h). Precondition: the
+  /// last `update` was at `p_WT` (W, m) and touches. Real-time: safe.
   Eigen::Vector3d weights(const Eigen::Vector3d& p_WT) const noexcept {
     return tracker_.weights(p_WT);
   }

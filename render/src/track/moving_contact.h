@@ -22,7 +22,7 @@
 
 namespace thimble::render {
 
-/// Is the `Contact` stage of Touch over a surface that changes shape: another contact stage
+/// The `Contact` stage of Touch over a surface that changes shape: another contact stage
 /// (MeshContact, OffsetContact, Blended over either, GodObjectContact) made over a MovingMesh, with
 /// the one door through which the surface moves. Frame W, m.
 ///
@@ -105,7 +105,7 @@ class MovingContact {
 
   // All Real-time: safe.
   const ContactState& state() const noexcept { return contact_.state(); }
-  /// Tells the weights of the corners at the place that is touched. Real-time: safe.
+  /// Returns the weights of the corners at the place that is touched. Real-time: safe.
   auto weights(const Eigen::Vector3d& p_WT) const noexcept { return contact_.weights(p_WT); }
   auto counters() const noexcept { return contact_.counters(); }
   const Contact& contact() const noexcept { return contact_; }

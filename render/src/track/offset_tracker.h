@@ -77,7 +77,7 @@ class OffsetTracker {
   /// -1 where a smooth cell does.
   const SurfacePlace& held() const noexcept { return held_; }
 
-  /// Tells where on the active triangle the tip belongs (surface_weights.h), as of the last step.
+  /// Returns where on the active triangle the tip belongs (surface_weights.h), as of the last step.
   const Eigen::Vector3d& weights(const Eigen::Vector3d&) const noexcept { return weights_; }
 
   /// Returns the place on the surface and how it moves with the tip, which is at `p_WT` (W, m), as

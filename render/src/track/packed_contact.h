@@ -71,7 +71,7 @@ class PackedContact {
   const TrackerCounters& counters() const noexcept { return counters_; }
   /// Counts the ticks in which a packed triangle was absent.
   std::uint64_t ticks_held() const noexcept { return ticks_held_; }
-  /// Tells where the path begins that the next tick examines if the tip is free (W, m): the last
+  /// Returns where the path begins that the next tick examines if the tip is free (W, m): the last
   /// tip, or an older one where packed triangles were absent. Real-time: safe.
   const Eigen::Vector3d& path_begin() const noexcept { return p_WT_before_; }
   const Store& store() const noexcept { return store_; }  ///< Shows whence packed triangles come.

@@ -16,12 +16,12 @@
 
 namespace thimble::render {
 
-/// Is how far outside a triangle, as a share of its height, the tip may be and stay: rounding on
+/// How far outside a triangle, as a share of its height, the tip may be and stay: rounding on
 /// both sides of an edge must not send it back and forth (offset_triangle.h). The jump that this
 /// leaves is so small a share of the triangle's bulge.
 inline constexpr double kOutside = -1e-6;
 
-/// Is the same at a crease, where the direction jumps and everything is in double precision.
+/// The same at a crease, where the direction jumps and everything is in double precision.
 inline constexpr double kOutsideOfCrease = -1e-11;
 
 template <PackedStore Store>

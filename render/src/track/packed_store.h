@@ -9,10 +9,10 @@
 
 namespace thimble::render {
 
-/// Is an answer of a store that may lack the packed triangles it would need to know.
+/// An answer of a store that may lack the packed triangles it would need to know.
 enum class Known : std::uint8_t { kNo, kYes, kUnknown };
 
-/// Is where a segment first enters the surface; not `complete`: among the packed triangles at hand.
+/// Where a segment first enters the surface; not `complete`: among the packed triangles at hand.
 struct FoundEntry {
   Entry entry;           ///< Where the path goes in, if it does.
   bool complete = true;  ///< Whether all packed triangles were at hand.
@@ -20,14 +20,14 @@ struct FoundEntry {
       false;  ///< Whether it ends outside again; only stores that lack packed triangles tell.
 };
 
-/// Is the packed triangle nearest to a point, -1 for none; not `complete`: among the packed
+/// The packed triangle nearest to a point, -1 for none; not `complete`: among the packed
 /// triangles at hand.
 struct FoundTriangle {
   std::int32_t triangle = -1;  ///< The nearest; -1: none.
   bool complete = true;        ///< Whether all packed triangles were at hand.
 };
 
-/// Is where a PackedContact takes its packed triangles from. All questions are in W and m, and
+/// Where a PackedContact takes its packed triangles from. All questions are in W and m, and
 /// Real-time: safe. `kComplete` says that no packed triangle is ever absent; then the contact holds
 /// no code for that.
 // clang-format off

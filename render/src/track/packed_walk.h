@@ -27,7 +27,7 @@ class PackedWalk {
         ny_(_mm_set1_ps(static_cast<float>(n.y()))),
         nz_(_mm_set1_ps(static_cast<float>(n.z()))) {}
 
-  /// Tells the edge that the point is farthest outside of; -1 if it is inside of all that are no
+  /// Returns the edge that the point is farthest outside of; -1 if it is inside of all that are no
   /// creases.
   int edge_to_hop(const PackedTriangle& r) const noexcept {
     const __m128 x = relative(r.x.data(), px_);

@@ -9,13 +9,13 @@
 
 namespace thimble::render {
 
-/// Is the most triangles whose feet are sought in one descent, the fan of the last vertex aside.
+/// The most triangles whose feet are sought in one descent, the fan of the last vertex aside.
 /// At 2 m/s and 1 kHz over triangles of 0.3 mm a tick crosses 7 [PHYSICS 3: vT/L]; the slip half
 /// round a sphere of n triangles, once the tip is pushed past its middle, some 1.3 sqrt(n): 400 at
 /// 10^5. At some 30 ns each the bound keeps the worst tick near 30 us.
 inline constexpr std::uint32_t kFeetMax = 1024;
 
-/// Is the distance between tip and rest, in roundings of the mesh, from which their difference
+/// The distance between tip and rest, in roundings of the mesh, from which their difference
 /// gives the direction: both are wrong by a few 2^-53 of the mesh's size, a rounding is 64 of them,
 /// so the direction is good to 2^-10 rad at worst, a hundredth of what a hand can tell
 /// [PHYSICS 6].
@@ -36,8 +36,8 @@ struct Rest {
 Rest descend(const ContactMesh& mesh, const SurfacePlace& from,
              const Eigen::Vector3d& p_OT) noexcept;
 
-/// Tells whether the tip lies below the surface as seen from a rest: whether the straight way to it
-/// begins in the material. Precondition: the rest is settled. Real-time: safe; at worst one fan.
+/// Returns whether the tip lies below the surface as seen from a rest: whether the straight way to
+/// it begins in the material. Precondition: the rest is settled. Real-time: safe; at worst one fan.
 bool below(const ContactMesh& mesh, const Rest& rest, const Eigen::Vector3d& p_OT) noexcept;
 
 }  // namespace thimble::render

@@ -12,12 +12,12 @@
 
 namespace thimble::render {
 
-/// Is the most triangles a tracker crosses in one tick. At 2 m/s and 1 kHz the tip moves 2 mm; over
+/// The most triangles a tracker crosses in one tick. At 2 m/s and 1 kHz the tip moves 2 mm; over
 /// triangles of 0.3 mm that is 7 hops [PHYSICS 3: vT/L], and a walk around a vertex of valence 64
 /// needs 32. Reaching the bound is counted.
 inline constexpr std::uint16_t kHopsMax = 64;
 
-/// Is the most triangles looked at when contact is sought again nearby: the third ring around a
+/// The most triangles looked at when contact is sought again nearby: the third ring around a
 /// triangle of a regular mesh holds about 75.
 inline constexpr std::int32_t kPatchMax = 128;
 
@@ -73,7 +73,7 @@ class SurfaceTracker {
   /// was touching.
   TrackerStep follow(const Eigen::Vector3d& p_WT) noexcept;
 
-  /// Tells the active triangle.
+  /// Returns the active triangle.
   std::int32_t active() const noexcept { return active_; }
 
   /// Returns the unit normal of the active triangle, or the direction to what holds the tip in a

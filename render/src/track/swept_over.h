@@ -4,7 +4,7 @@
 
 namespace thimble::render {
 
-/// Tells how the triangle a, b, c (counter-clockwise from outside) passes over a point when its
+/// Returns how the triangle a, b, c (counter-clockwise from outside) passes over a point when its
 /// corner `a` goes to `a_then` in a straight line: 1 from outside, so that the point comes to lie
 /// below it, -1 from below, 0 if it does not. `p_far` is where the ray from the point ends that
 /// decides between ties (far_along_x): with the same one everywhere the answers of all triangles

@@ -34,7 +34,7 @@ std::array<std::int32_t, 3> corner(const PackedTriangle& t, std::size_t k) {
   return {t.x[k], t.y[k], t.z[k]};
 }
 
-/// Tells whether the edge from corner k of `t` runs backwards along one edge of `other` whose
+/// Returns whether the edge from corner k of `t` runs backwards along one edge of `other` whose
 /// neighbour is `number`, with the same normals at its ends.
 bool shares_edge(const PackedTriangle& t, std::size_t k, std::int32_t number,
                  const PackedTriangle& other) {

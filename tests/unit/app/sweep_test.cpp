@@ -17,7 +17,7 @@
 namespace thimble::app {
 namespace {
 
-/// Is a folder of its own in that of this process.
+/// A folder of its own in that of this process.
 class Folder {
  public:
   Folder() {
@@ -33,7 +33,7 @@ class Folder {
 
 const std::atomic<bool> kNoStop{false};
 
-/// Is a sweep whose cells give what they alone know, some of it no ordinary number.
+/// A sweep whose cells give what they alone know, some of it no ordinary number.
 Sweep plain_sweep(std::size_t cells = 50) {
   return {.name = "plain", .key = "plain 1", .cells = cells, .measure = [](std::size_t cell) {
             const double x = static_cast<double>(cell);

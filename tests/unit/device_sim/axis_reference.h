@@ -6,7 +6,7 @@
 
 namespace thimble::device_sim {
 
-/// Is an independent truth: Runge-Kutta of order 4 in extended precision with tiny steps, cut by
+/// An independent truth: Runge-Kutta of order 4 in extended precision with tiny steps, cut by
 /// bisection where the velocity changes its sign or a held axis breaks loose.
 class AxisReference {
  public:

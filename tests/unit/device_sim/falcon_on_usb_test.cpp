@@ -180,7 +180,7 @@ TEST_F(FalconOnUsbTest, LosesItsHomeByOnePacketWithoutTheHomingBit) {
   EXPECT_FALSE(state.done()) << "the bit alone does not bring the home back";
 }
 
-/// Is a board that runs some firmware, homed, and what it says to one packet.
+/// A board that runs some firmware, homed, and what it says to one packet.
 struct HomedBoard {
   explicit HomedBoard(FalconHoming homing) : board({}, homing) {
     for (const bool dtr : {false, true}) board.wires(dtr, false);

@@ -17,7 +17,7 @@ namespace {
 
 using support::refuses;
 
-/// Is a driver of a Falcon inside the program, whose hand goes 10 mm to the side in a second.
+/// A driver of a Falcon inside the program, whose hand goes 10 mm to the side in a second.
 struct InProgram {
   explicit InProgram(std::vector<std::byte> firmware = {}) {
     SimulatedArmSettings settings;
@@ -100,7 +100,7 @@ TEST(SimulatedFalcon, HearsTheHomingBitInEveryMessageOfTheDriver) {
   }
 }
 
-/// Is a Falcon whose answers say at some time that a leg is not homed.
+/// A Falcon whose answers say at some time that a leg is not homed.
 class LegLost final : public driver::Transport {
  public:
   explicit LegLost(std::unique_ptr<driver::Transport> wire) : wire_(std::move(wire)) {}

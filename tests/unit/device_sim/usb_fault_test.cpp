@@ -13,7 +13,7 @@ namespace {
 
 using Packet = std::vector<std::byte>;
 
-/// Is a device whose n-th packet is eight bytes of n, and which keeps what it gets.
+/// A device whose n-th packet is eight bytes of n, and which keeps what it gets.
 class Numbered final : public UsbDevice {
  public:
   const UsbDescription& description() const noexcept override { return description_; }

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::int32_t kStalled = -32, kBabble = -75, kUnlinked = -104;
 
-/// Is a device whose packets are easy to tell apart: each one to the host begins with its number.
+/// A device whose packets are easy to tell apart: each one to the host begins with its number.
 class CountingDevice final : public UsbDevice {
  public:
   CountingDevice() {

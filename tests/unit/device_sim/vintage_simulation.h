@@ -10,7 +10,7 @@
 
 namespace thimble::device_sim {
 
-/// Is the PHANTOM-like set with a hand in pinch grip [PHYSICS 0].
+/// The PHANTOM-like set with a hand in pinch grip [PHYSICS 0].
 inline SimulatedArmSettings phantom_like() {
   SimulatedArmSettings settings;
   settings.plant = {.mass = 0.075, .viscous = 0.005, .coulomb = 0.04};

@@ -197,14 +197,14 @@ TEST(EnergyGuard, KeepsNoMoreToOnesCreditThanTheReservoirAndAllowsWhatItIsTold) 
   EXPECT_TRUE(damped(0.0002));
 }
 
-/// Is a gate that fades forces from a debt of 2 mJ beyond its allowance on, its soft start over.
+/// A gate that fades forces from a debt of 2 mJ beyond its allowance on, its soft start over.
 SafetyGate open_gate_with_onset() {
   EnergyGuardSettings settings = passivity();
   settings.onset = 0.002;
   return open_guarded_gate(settings);
 }
 
-/// Tells what of 2 N passes after the arm did `work` (J) on the hand.
+/// Returns what of 2 N passes after the arm did `work` (J) on the hand.
 double sent_at_rest(SafetyGate& gate, double work) {
   return gate.pass_guarded({2, 0, 0}, kStill, kPeriod, {.work = work}).f_T_W().x();
 }

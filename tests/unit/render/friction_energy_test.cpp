@@ -86,7 +86,7 @@ TEST(HardCase18, EveryFrictionButTheNaiveGivesARandomHandNoEnergyInAnyWindowFrom
                             "<= largest work given in a window from rest", most, 0, "J");
 }
 
-/// Is the bristle as it must not be: bent by no more than a fixed way, so stiffer under more load.
+/// The bristle as it must not be: bent by no more than a fixed way, so stiffer under more load.
 class LoadStiffenedLaw {
  public:
   Vector3d pull(const SlideTick& tick) noexcept {

@@ -37,7 +37,7 @@ inline TriangleMesh block_around(const TriangleMesh& hollow, double half_side) {
   return mesh;
 }
 
-/// Is a random way of the tip through and around a mesh: long presses towards goals between two
+/// A random way of the tip through and around a mesh: long presses towards goals between two
 /// random vertices, or a little beside, with tremor, fast and slow.
 class RandomTip {
  public:

@@ -54,7 +54,7 @@ Sines::Settings two_waves(TextureForm form) {
   return settings;
 }
 
-/// Is a picture of one sine each way, as heights.
+/// A picture of one sine each way, as heights.
 std::shared_ptr<const HeightImage> egg_box(std::size_t side) {
   std::vector<float> values;
   for (std::size_t row = 0; row < side; ++row) {

@@ -18,7 +18,7 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-/// Is a dent in a mesh, and how it is drawn.
+/// A dent in a mesh, and how it is drawn.
 struct Fixture {
   explicit Fixture(const render::TriangleMesh& given)
       : mesh(given),

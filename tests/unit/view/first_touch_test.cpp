@@ -16,7 +16,7 @@ namespace {
 
 using support::difference;
 
-/// Is the coarsest of balls (app/scenes/soft_coarse.yaml), a camera before one of its triangles,
+/// The coarsest of balls (app/scenes/soft_coarse.yaml), a camera before one of its triangles,
 /// and the patch of the least of touches.
 struct FirstTouch {
   FirstTouch() {

@@ -10,7 +10,7 @@
 
 namespace thimble::support {
 
-/// Tells how two pictures of one size differ, in steps of 255.
+/// Returns how two pictures of one size differ, in steps of 255.
 struct PictureDifference {
   double mean = 0;  ///< Of all bytes.
   double most = 0;  ///< Of any byte.

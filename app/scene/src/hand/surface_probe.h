@@ -10,7 +10,7 @@
 
 namespace thimble::scene {
 
-/// Is a point on a mesh and the smooth normal there.
+/// A point on a mesh and the smooth normal there.
 struct SurfacePoint {
   Eigen::Vector3d p_WS{0, 0, 0};
   Eigen::Vector3d n_W{0, 0, 0};  ///< Vertex normals interpolated over the triangle, unit length.

@@ -36,10 +36,10 @@ class YamlMistakes {
   /// Notes a mistake at a line (counted from 1; 0 for the file as a whole). `sentence` has no dot.
   void add(int line, const std::string& sentence);
 
-  /// Tells whether nothing was noted.
+  /// Returns whether nothing was noted.
   bool empty() const { return count_ == 0; }
 
-  /// Tells the mistakes kept, one per line, and how many more there are.
+  /// Returns the mistakes kept, one per line, and how many more there are.
   std::string text() const;
 
  private:
@@ -49,15 +49,15 @@ class YamlMistakes {
   std::size_t count_ = 0;
 };
 
-/// Is one map of a YAML file. Copies share what was asked of it, so that `finish` knows.
+/// One map of a YAML file. Copies share what was asked of it, so that `finish` knows.
 class YamlMap {
  public:
-  /// Is the map at `node`; notes a mistake if it is none, or if a key stands twice in it. `name` is
+  /// The map at `node`; notes a mistake if it is none, or if a key stands twice in it. `name` is
   /// the key it stands under.
   YamlMap(const YAML::Node& node, std::string_view name, int line,
           std::shared_ptr<YamlMistakes> mistakes);
 
-  /// Tells whether a key is there (and counts it as known).
+  /// Returns whether a key is there (and counts it as known).
   bool has(std::string_view key);
 
   /// Reads a finite number from `min` to `max` (in `unit`, told to the reader; may be empty).
@@ -121,7 +121,7 @@ class YamlMap {
   /// Returns the line (from 1) at which a key stands, or 0 if it is absent.
   int key_line(std::string_view key) const;
 
-  /// Tells the line (from 1) at which this map begins.
+  /// Returns the line (from 1) at which this map begins.
   int line() const { return line_; }
 
  private:
@@ -145,7 +145,7 @@ class YamlMap {
   bool quiet_ = false;  // this map could not be read: do not blame its keys as well
 };
 
-/// Is one YAML file whose outermost value is a map.
+/// One YAML file whose outermost value is a map.
 class YamlFile {
  public:
   /// Reads a file. Fails on a file that cannot be read, that is empty or beyond 4 MB, or that is

@@ -19,7 +19,7 @@ class H5Handle {
     if (id_ >= 0) close_(id_);
   }
 
-  /// Tells whether the library gave a handle.
+  /// Returns whether the library gave a handle.
   bool good() const noexcept { return id_ >= 0; }
   hid_t id() const noexcept { return id_; }
 

@@ -22,7 +22,7 @@ H5Handle open_set(const H5Handle& file, const char* name) {
           H5Dclose};
 }
 
-/// Tells the sizes of a data set of numbers, both 0 if it is none.
+/// Returns the sizes of a data set of numbers, both 0 if it is none.
 std::array<hsize_t, 2> sizes_of(const H5Handle& set) {
   const H5Handle space(set.good() ? H5Dget_space(set.id()) : H5I_INVALID_HID, H5Sclose);
   std::array<hsize_t, 2> sizes{0, 1};
@@ -126,7 +126,7 @@ bool read_column(const H5Handle& file, const RecordingColumn& column,
   return true;
 }
 
-/// Tells whether the flags of a tick are such as a program may look at: a bool is 0 or 1, an enum
+/// Returns whether the flags of a tick are such as a program may look at: a bool is 0 or 1, an enum
 /// has a name. Looks at the bytes, for that is what may be wrong.
 bool sound(const driver::TickRecord& tick) {
   const auto byte_at = [&](std::size_t offset) {

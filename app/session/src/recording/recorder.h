@@ -21,7 +21,7 @@ namespace thimble::session {
 /// than 100 ms. Where the disk is full the recording ends, the touch goes on, and `finish` tells.
 class Recorder {
  public:
-  /// Is the room for ticks on their way to the disk: 8 s at 1 kHz, for disks that pause.
+  /// The room for ticks on their way to the disk: 8 s at 1 kHz, for disks that pause.
   static constexpr std::size_t kRingTicks = 8192;
 
   /// Begins a recording of at most `ticks_max` ticks. The error is that of RecordingFile::create.
@@ -46,14 +46,14 @@ class Recorder {
   /// as it computes. Not together with the thread. Real-time: no.
   void serve() noexcept;
 
-  /// Tells how many ticks wait to be written. Real-time: safe.
+  /// Returns how many ticks wait to be written. Real-time: safe.
   std::size_t waiting() const noexcept { return ring_.waiting(); }
 
   /// Writes what is left and ends the file. The error says after which tick the recording ended and
   /// why, or how many ticks found no room. Real-time: never from the servo thread.
   driver::Result<void> finish();
 
-  /// Tells how many ticks found no room, because the disk was too slow. Real-time: safe.
+  /// Returns how many ticks found no room, because the disk was too slow. Real-time: safe.
   std::uint64_t dropped() const noexcept { return dropped_.load(std::memory_order_relaxed); }
   const std::filesystem::path& path() const noexcept { return file_.path(); }
 

@@ -23,7 +23,7 @@ namespace {
 // Numbers go to the file as they lie in memory.
 static_assert(std::endian::native == std::endian::little);
 
-/// Is one data set whose bytes lie in one piece at a place that is known from the start.
+/// One data set whose bytes lie in one piece at a place that is known from the start.
 struct Laid {
   bool good = false;
   std::uint64_t place = 0;

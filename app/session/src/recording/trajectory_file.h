@@ -9,7 +9,7 @@
 
 namespace thimble::session {
 
-/// Is one line of a trajectory: where a probe was, and what it felt.
+/// One line of a trajectory: where a probe was, and what it felt.
 struct TrajectoryPoint {
   double time = 0;             ///< s
   Eigen::Vector3d p{0, 0, 0};  ///< m, in the trajectory's frame.
@@ -24,7 +24,7 @@ struct TrajectoryForm {
 
   double farthest = 10;  ///< m; what is beyond is taken for a wrong unit.
 
-  /// Tells whether forces are among the columns.
+  /// Returns whether forces are among the columns.
   bool has_forces() const { return columns.find("fx") != std::string::npos; }
 };
 

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Tells the time as a name that sorts, with milliseconds: faults may come fast.
+/// Returns the time as a name that sorts, with milliseconds: faults may come fast.
 std::string time_as_name() {
   const auto now = std::chrono::system_clock::now();
   const std::time_t seconds = std::chrono::system_clock::to_time_t(now);

@@ -9,7 +9,7 @@
 
 namespace thimble::session {
 
-/// Is how many black boxes are kept; the oldest go first.
+/// How many black boxes are kept; the oldest go first.
 inline constexpr std::size_t kBlackBoxesMax = 50;
 
 /// Writes the ticks around a fault as a recording into the user's state folder and tells where;

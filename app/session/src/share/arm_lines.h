@@ -8,7 +8,7 @@
 
 namespace thimble::session {
 
-/// Is one piece of an arm as it is drawn: points joined by straight bars (W, m).
+/// One piece of an arm as it is drawn: points joined by straight bars (W, m).
 using ArmLine = std::vector<Eigen::Vector3d>;
 
 /// Finds the bars of an arm in the pose of a tick; the last point of the first line is the tip. An

@@ -20,7 +20,7 @@ class BusGuard {
   BusGuard& operator=(const BusGuard&) = delete;
   ~BusGuard();
 
-  /// Tells whether a page was gone. Real-time: safe.
+  /// Returns whether a page was gone. Real-time: safe.
   bool broken() const noexcept;
 
  private:

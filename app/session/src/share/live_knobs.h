@@ -22,7 +22,7 @@ namespace thimble::session {
 class LiveKnobs {
  public:
   static constexpr double kTurnTime = 0.05;  ///< s. [chosen: a hand takes longer]
-  /// Is the most that a knob changes the force per time, N/s: 0.04 N in a tick of 1 kHz, less than
+  /// The most that a knob changes the force per time, N/s: 0.04 N in a tick of 1 kHz, less than
   /// a hand tells apart at 1 N [PHYSICS 6: 7 %].
   static constexpr double kForceRate = 40;
 

@@ -27,7 +27,7 @@ class RequestDesk {
   /// Looks once; call it about ten times a second.
   void step();
 
-  /// Tells whether a viewer has ended the run.
+  /// Returns whether a viewer has ended the run.
   bool ended() const noexcept { return ended_; }
 
  private:

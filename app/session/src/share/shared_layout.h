@@ -30,10 +30,10 @@ inline constexpr std::uint64_t kSharedReady = 0x31656c626d696874;
 inline constexpr std::size_t kViewersMost = 16;    ///< Chosen: more than look on at a time.
 inline constexpr std::size_t kKnobsMost = 64;      ///< Chosen: more than a person can find.
 inline constexpr std::size_t kObjectsMost = 1024;  ///< Chosen, as a bound for readers.
-/// Is the most bytes that a reader maps: 100 million triangles and a long ring. Chosen.
+/// The most bytes that a reader maps: 100 million triangles and a long ring. Chosen.
 inline constexpr std::uint64_t kSharedBytesMost = std::uint64_t{1} << 33;
 
-/// Is a text of at most N - 1 bytes with zeros behind it.
+/// A text of at most N - 1 bytes with zeros behind it.
 template <std::size_t N>
 using SharedText = std::array<char, N>;
 
@@ -61,7 +61,7 @@ constexpr const char* name_of(RunState state) noexcept {
   return "unknown";
 }
 
-/// Is what a viewer needs to draw the arm from its joint angles.
+/// What a viewer needs to draw the arm from its joint angles.
 struct SharedArm {
   SharedText<64> name{};
   SharedText<64> device{};  ///< "sim", or the name of the arm on the desk.
@@ -74,7 +74,7 @@ struct SharedArm {
   std::array<double, 3> max_W{};     ///< Of the workspace, m.
 };
 
-/// Is what the segment is. Plain bytes without gaps, so that they can be hashed.
+/// What the segment is. Plain bytes without gaps, so that they can be hashed.
 struct SharedHead {
   std::atomic<std::uint64_t> ready;  ///< kSharedReady, written last.
   std::uint32_t version = 0;         ///< kSharedVersion
@@ -99,7 +99,7 @@ static_assert(std::is_standard_layout_v<SharedHead>);
 /// Names what an object is.
 enum class SharedKind : std::uint32_t { kMesh, kShape, kField, kPaged };
 
-/// Is one object: its part of the tables of vertices and triangles.
+/// One object: its part of the tables of vertices and triangles.
 struct SharedObject {
   SharedText<64> name{};
   std::uint32_t kind = 0;    ///< A SharedKind.
@@ -114,7 +114,7 @@ struct SharedObject {
   double crease_angle = 0;         ///< Edges sharper than this stay sharp, rad.
 };
 
-/// Is one setting of the scene that can be changed while it is felt.
+/// One setting of the scene that can be changed while it is felt.
 struct SharedKnob {
   SharedText<64> name{};  ///< "OBJECT: stiffness"
   SharedText<16> unit{};
@@ -123,11 +123,11 @@ struct SharedKnob {
 
 using SharedVertex = std::array<double, 3>;           ///< W, m, as it was before the first tick.
 using SharedTriangle = std::array<std::uint32_t, 3>;  ///< Of the whole table of vertices.
-/// Is where a vertex of a shaped object is now (W, m); not stored before it moves for the first
+/// Where a vertex of a shaped object is now (W, m); not stored before it moves for the first
 /// time.
 using SharedShaped = driver::Snapshot<std::array<double, 3>>;
 
-/// Is one place of the ring of ticks.
+/// One place of the ring of ticks.
 struct SharedTick {
   std::uint64_t serial = 0;  ///< Counts stored ticks from 1; tells which round of the ring this is.
   driver::TickRecord record;
@@ -135,20 +135,20 @@ struct SharedTick {
 static_assert(std::is_trivially_copyable_v<SharedTick>);
 using SharedRingSlot = driver::Snapshot<SharedTick>;
 
-/// Is one knob as it is turned.
+/// One knob as it is turned.
 struct SharedKnobState {
   std::atomic<double> wanted;  ///< By the viewers. What is not a number in its bounds is ignored.
   std::atomic<double> now;     ///< What is felt now.
 };
 
-/// Is where a viewer wants the simulated hand.
+/// Where a viewer wants the simulated hand.
 struct SharedHand {
   std::array<double, 3> p_WH{};  ///< m
   std::uint64_t active = 0;      ///< 1 while the mouse holds it.
   std::int64_t pid = 0;          ///< Of the viewer; should that die, it holds no longer.
 };
 
-/// Is what viewers ask for. Viewers take turns by `writer`; the run never waits for them.
+/// What viewers ask for. Viewers take turns by `writer`; the run never waits for them.
 struct SharedRequests {
   std::atomic<std::uint64_t> writer;         ///< pid of the viewer that writes; 0: none.
   std::atomic<std::uint32_t> pause;          ///< 1: hold the loop.
@@ -159,7 +159,7 @@ struct SharedRequests {
   std::array<std::atomic<std::uint64_t>, kViewersMost> viewers;  ///< Their pids; 0: a free place.
 };
 
-/// Is what changes while the run goes on.
+/// What changes while the run goes on.
 struct SharedLive {
   std::atomic<std::uint32_t> state;                   ///< A RunState.
   std::atomic<std::uint32_t> recording;               ///< 1 while ticks are recorded.
@@ -179,9 +179,9 @@ static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
 static_assert(std::atomic<std::uint32_t>::is_always_lock_free);
 static_assert(std::atomic<double>::is_always_lock_free);
 
-/// Is where SharedLive begins.
+/// Where SharedLive begins.
 inline constexpr std::uint64_t kSharedLiveOffset = (sizeof(SharedHead) + 63) / 64 * 64;
-/// Is where the first table may begin.
+/// Where the first table may begin.
 inline constexpr std::uint64_t kSharedTablesOffset =
     (kSharedLiveOffset + sizeof(SharedLive) + 63) / 64 * 64;
 

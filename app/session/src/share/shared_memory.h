@@ -13,7 +13,7 @@
 
 namespace thimble::session {
 
-/// Is memory that processes of one user share, mapped into this one: POSIX shared memory under a
+/// Memory that processes of one user share, mapped into this one: POSIX shared memory under a
 /// name, or without one.
 class SharedMemory {
  public:
@@ -41,11 +41,12 @@ class SharedMemory {
 
   /// Gives the memory, aligned to a page. Real-time: safe.
   std::span<std::byte> bytes() const noexcept { return bytes_; }
-  /// Tells whether somebody has cut the memory short; what is gone reads as zeros. Real-time: safe.
+  /// Returns whether somebody has cut the memory short; what is gone reads as zeros. Real-time:
+  /// safe.
   bool broken() const noexcept { return guard_->broken(); }
   /// Returns a file by which processes of the same user map it while this one lives.
   std::string path() const;
-  /// Tells the run's name; empty if it has none.
+  /// Returns the run's name; empty if it has none.
   const std::string& run() const noexcept { return run_; }
 
  private:
@@ -63,7 +64,7 @@ class SharedMemory {
   std::optional<BusGuard> guard_;
 };
 
-/// Is one run that shares itself.
+/// One run that shares itself.
 struct RunningRun {
   std::string name;           ///< For `thimble view NAME`.
   std::int64_t began_ns = 0;  ///< When its memory was made, of the system's clock.
@@ -79,11 +80,11 @@ void remove_dead_runs();
 /// Turns a scene's name into one for its run: letters, digits, - and _ stay, others become -.
 std::string run_name_of(const std::string& scene);
 
-/// Tells whether there is anything of a run's name, dead or alive. Real-time: never from the servo
-/// thread.
+/// Returns whether there is anything of a run's name, dead or alive. Real-time: never from the
+/// servo thread.
 bool run_name_taken(const std::string& run);
 
-/// Tells when a process began, in clock ticks since boot; 0 if there is none [proc(5), field 22].
+/// Returns when a process began, in clock ticks since boot; 0 if there is none [proc(5), field 22].
 /// Real-time: never from the servo thread.
 std::uint64_t start_of_process(std::int64_t pid);
 

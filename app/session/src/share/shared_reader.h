@@ -16,7 +16,7 @@
 
 namespace thimble::session {
 
-/// Is a viewer's side of the memory that a run shares: what happens, and what to ask for.
+/// A viewer's side of the memory that a run shares: what happens, and what to ask for.
 ///
 /// Whatever the memory holds, nothing here crashes, and what it hands out is within bounds and
 /// whole: from one tick, not from two. Used by one thread; Real-time: never from the servo thread.
@@ -37,12 +37,12 @@ class SharedReader {
 
   /// Gives what does not change.
   const SharedScene& scene() const noexcept { return scene_; }
-  /// Tells the name of the run; empty if it has none.
+  /// Returns the name of the run; empty if it has none.
   const std::string& name() const noexcept { return name_; }
 
-  /// Tells what the run is doing; kEnded too if its process has died or the memory is gone.
+  /// Returns what the run is doing; kEnded too if its process has died or the memory is gone.
   RunState state() const;
-  /// Tells whether the run ended without saying so: killed, or crashed.
+  /// Returns whether the run ended without saying so: killed, or crashed.
   bool died() const;
 
   /// Copies the newest tick; false if there is none yet, or if the memory holds nonsense.
@@ -62,7 +62,7 @@ class SharedReader {
   /// Counts vertices moved for good so far: a viewer need only look if it has grown.
   std::uint64_t shape_moves() const noexcept { return live_->shape_moves.load(); }
 
-  /// Is what a run counts.
+  /// What a run counts.
   struct Counters {
     std::uint64_t ticks = 0;
     std::uint64_t missed = 0;  ///< Periods of the loop that were skipped.
@@ -70,13 +70,13 @@ class SharedReader {
     std::uint64_t record_dropped = 0;  ///< Ticks that the recording lacks.
   };
   Counters counters() const noexcept;
-  /// Tells where ticks are, or were last, recorded to; empty if nowhere.
+  /// Returns where ticks are, or were last, recorded to; empty if nowhere.
   std::string recording_path() const;
 
-  /// Tells what a knob is now; its first value if the memory holds nonsense. Precondition: the
+  /// Returns what a knob is now; its first value if the memory holds nonsense. Precondition: the
   /// scene has it; as for all of these.
   double knob(std::size_t knob) const noexcept;
-  /// Tells what it was turned to.
+  /// Returns what it was turned to.
   double knob_wanted(std::size_t knob) const noexcept;
   /// Turns a knob; what is outside its bounds is brought within, NaN is ignored.
   void turn_knob(std::size_t knob, double value) noexcept;

@@ -15,7 +15,7 @@
 
 namespace thimble::session {
 
-/// Is the run's side of the memory that it shares with its viewers: the servo stores what happens
+/// The run's side of the memory that it shares with its viewers: the servo stores what happens
 /// and looks at what is asked for, and never waits for anybody.
 class SharedRun {
  public:
@@ -33,7 +33,7 @@ class SharedRun {
 
   /// Gives the memory, for a reader in this process.
   const SharedMemory& memory() const noexcept { return *memory_; }
-  /// Tells the name; empty if it has none.
+  /// Returns the name; empty if it has none.
   const std::string& name() const noexcept { return memory_->run(); }
 
   // What the servo stores. One thread; Real-time: safe.
@@ -52,7 +52,7 @@ class SharedRun {
     live_->state.store(static_cast<std::uint32_t>(state), std::memory_order_release);
   }
   void set_recording(bool on, std::uint64_t dropped) noexcept;
-  /// Tells where ticks are recorded to; one thread.
+  /// Returns where ticks are recorded to; one thread.
   void set_recording_path(const std::string& path) noexcept;
 
   // What viewers ask for. Nothing of it can be trusted: it is checked here. Real-time: safe.
@@ -62,14 +62,14 @@ class SharedRun {
   bool stop_asked() const noexcept {
     return live_->requests.stop.load(std::memory_order_relaxed) == 1;
   }
-  /// Tells what a knob shall be: within its bounds, or empty if a viewer wrote nonsense.
+  /// Returns what a knob shall be: within its bounds, or empty if a viewer wrote nonsense.
   std::optional<double> knob_wanted(std::size_t knob) const noexcept;
   std::size_t knob_count() const noexcept { return knobs_.size(); }
   /// Looks where a viewer wants the hand (W, m, finite); false if none ever did, or one is writing
   /// just now.
   bool hand(SharedHand& hand) const noexcept;
 
-  /// Is an order to record or to stop that.
+  /// An order to record or to stop that.
   struct RecordOrder {
     std::uint64_t number = 0;  ///< Grows with each order.
     bool record = false;

@@ -28,7 +28,7 @@ bool within(std::uint64_t first, std::uint64_t count, std::uint64_t all) {
   return first <= all && count <= all - first;
 }
 
-/// Tells whether a table of things of `size` lies whole in the memory, behind what is fixed.
+/// Returns whether a table of things of `size` lies whole in the memory, behind what is fixed.
 bool lies_in(const SharedTable& table, std::size_t size, std::uint64_t total) {
   return table.offset % 64 == 0 && table.offset >= kSharedTablesOffset && table.offset <= total &&
          table.count <= (total - table.offset) / size;

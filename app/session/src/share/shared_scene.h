@@ -15,10 +15,10 @@
 
 namespace thimble::session {
 
-/// Is what does not change of a run, copied out of its shared memory and found sound: all counts
+/// What does not change of a run, copied out of its shared memory and found sound: all counts
 /// and numbers of vertices are within bounds, all places finite.
 struct SharedScene {
-  /// Is one object: a range of `vertices` and `triangles`.
+  /// One object: a range of `vertices` and `triangles`.
   struct Object {
     std::string name;
     SharedKind kind = SharedKind::kMesh;
@@ -31,13 +31,13 @@ struct SharedScene {
     std::size_t first_shaped = 0;
     double crease_angle = 0;  ///< Edges sharper than this stay sharp, rad.
   };
-  /// Is one setting of the scene that can be changed while it is felt.
+  /// One setting of the scene that can be changed while it is felt.
   struct Knob {
     std::string name;  ///< "OBJECT: stiffness"
     std::string unit;
     double least = 0, most = 0, initial = 0;
   };
-  /// Is what is needed to draw the arm: see arm_lines.h.
+  /// What is needed to draw the arm: see arm_lines.h.
   struct Arm {
     std::string name;
     std::string device;

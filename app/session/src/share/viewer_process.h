@@ -9,18 +9,18 @@
 
 namespace thimble::session {
 
-/// Tells whether there is a screen to draw on: X11 or Wayland. Real-time: never from the servo
+/// Returns whether there is a screen to draw on: X11 or Wayland. Real-time: never from the servo
 /// thread.
 bool has_display();
 
-/// Is the viewer that a run has opened, a process of its own: nothing of the run depends on it.
+/// The viewer that a run has opened, a process of its own: nothing of the run depends on it.
 /// Real-time: never from the servo thread.
 class ViewerProcess {
  public:
   /// Starts `thimble view RUN`. It stays when the run ends, and tells so.
   static driver::Result<std::unique_ptr<ViewerProcess>> start(const std::string& run);
 
-  /// Tells whether a person has closed it; one that could not open its window was not closed.
+  /// Returns whether a person has closed it; one that could not open its window was not closed.
   bool closed();
 
  private:

@@ -16,7 +16,7 @@ constexpr int kTicks = 200;
 constexpr std::int32_t kTriangle = 2;
 constexpr double kPress = 0.003;  // m
 
-/// Is a soft ring that is pressed at the middle of a triangle and let go, over and over.
+/// A soft ring that is pressed at the middle of a triangle and let go, over and over.
 class SoftRing {
  public:
   SoftRing(int rings, bool whole, double reach) : body_(build(rings, whole, reach)) {

@@ -21,7 +21,7 @@ constexpr int kAcross[] = {8, 16, 32, 64, 96};
 constexpr int kDefaultAcross = 32;
 constexpr int kQuestions = 500;
 
-/// Is a ring to be searched. The mesh stays where it is, for the search keeps a reference to it.
+/// A ring to be searched. The mesh stays where it is, for the search keeps a reference to it.
 struct Searched {
   Searched(int across, SearchChoice choice)
       : mesh(build(across)), search(render::make_search(mesh, choice)) {}

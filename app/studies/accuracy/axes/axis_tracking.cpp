@@ -35,7 +35,7 @@ constexpr double kUsualSpeed = 0.3;
 // other studies, 800 N/m, turns into 20 mN [PHYSICS 6].
 const double kFelt = 0.02 / kCostSpring.stiffness;
 
-/// Is the ring with hills and hollows of one triangle each, so that there are places at which many
+/// The ring with hills and hollows of one triangle each, so that there are places at which many
 /// triangles are about as near.
 const FollowedSurface& surface() {
   static const FollowedSurface one = [] {
@@ -99,7 +99,7 @@ double wrong_faces(const FollowerChoice& choice, double speed) {
   return 100.0 * wrong / (kTicks - 1);
 }
 
-/// Is the tick of a stroke that is the most work: who follows, as before it, and where it goes.
+/// The tick of a stroke that is the most work: who follows, as before it, and where it goes.
 struct WorstTick {
   std::shared_ptr<const Follower> before;
   Vector3d p_WT{0, 0, 0};

@@ -11,7 +11,7 @@
 
 namespace thimble::app {
 
-/// Is what the decisions come to.
+/// What the decisions come to.
 struct GatingReport {
   std::vector<GateDecision> decisions;
   double force = 0;   ///< RMS force in contact of the full model, N.

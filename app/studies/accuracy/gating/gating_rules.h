@@ -10,10 +10,10 @@
 
 namespace thimble::app {
 
-/// Is the share by which a force may change unnoticed: half of 7 % [PHYSICS 6].
+/// The share by which a force may change unnoticed: half of 7 % [PHYSICS 6].
 inline constexpr double kShareFelt = 0.035;
 
-/// Is one effect of the simulated arm: whether this scene calls for it [PHYSICS 8, gating].
+/// One effect of the simulated arm: whether this scene calls for it [PHYSICS 8, gating].
 struct GateDecision {
   std::string effect;     ///< In words.
   std::string name;       ///< Without spaces: part of an argument of `thimble cost-probe`.
@@ -24,7 +24,7 @@ struct GateDecision {
       {};  ///< RMS change of force in contact without it, of the force's RMS.
 };
 
-/// Is what the rules look at, found in a run of the full model.
+/// What the rules look at, found in a run of the full model.
 struct SeenInRun {
   double force_rms = 0, force_max = 0;  ///< N, in contact
   double acceleration = 0;              ///< m/s^2, 99th percentile in contact

@@ -60,12 +60,12 @@ struct MotorSettings {
 struct WiringSettings {
   /// Names the joint whose encoder is plugged into each input of the board.
   std::array<std::uint8_t, 3> encoder_of{0, 1, 2};
-  /// Is 1 for an encoder that counts as it should, -1 for one that counts backwards, 0 for a dead
+  /// 1 for an encoder that counts as it should, -1 for one that counts backwards, 0 for a dead
   /// one; one for each input.
   Eigen::Vector3d encoder_gain{1, 1, 1};
   /// Names the joint whose motor is plugged into each output of the board.
   std::array<std::uint8_t, 3> motor_of{0, 1, 2};
-  /// Is 1 for a motor that pulls as it should, -1 for one with its wires swapped, 0 for a dead one;
+  /// 1 for a motor that pulls as it should, -1 for one with its wires swapped, 0 for a dead one;
   /// one for each output.
   Eigen::Vector3d motor_gain{1, 1, 1};
 

@@ -11,7 +11,7 @@
 
 namespace thimble::driver {
 
-/// Is the size of the largest report any arm sends or takes, in bytes: the line buffer of the
+/// The size of the largest report any arm sends or takes, in bytes: the line buffer of the
 /// Haptikfabriken boards [S forsslund/woodenhaptics firmware, buf_len]; a full-speed HID report has
 /// half of it.
 inline constexpr std::size_t kReportCapacity = 128;
@@ -21,7 +21,7 @@ struct ArmReading {
   std::array<std::int32_t, 3> counts{};     ///< Motor encoders, counts.
   std::array<std::int32_t, 3> auxiliary{};  ///< Gimbal encoders or whatever the arm sends there.
   std::uint16_t buttons = 0;                ///< One bit each.
-  /// Is the report's own number, if the arm counts its reports; it tells old ones that come again.
+  /// The report's own number, if the arm counts its reports; it tells old ones that come again.
   std::optional<std::uint16_t> number = std::nullopt;
 };
 
@@ -32,7 +32,7 @@ struct ArmPose {
   Eigen::Matrix3d J_BT = Eigen::Matrix3d::Zero();  ///< d p_BT / d q, m/rad.
 };
 
-/// Is one kind of arm: its wire format and its geometry, both pure functions with no state. The
+/// One kind of arm: its wire format and its geometry, both pure functions with no state. The
 /// driver talks to every arm through it. Adding an arm means implementing it under arms/NAME/.
 class Arm {
  public:
@@ -59,7 +59,7 @@ class Arm {
     return pose;
   }
 
-  /// Tells how torque becomes current in each motor. Real-time: safe.
+  /// Returns how torque becomes current in each motor. Real-time: safe.
   virtual const std::array<MotorDrive, 3>& drives() const noexcept = 0;
 
   /// Returns whether a gimbal is mounted whose encoders come with each reading. Real-time: safe.

@@ -4,7 +4,7 @@
 
 namespace thimble::driver {
 
-/// Tells the time and waits for it; the servo loop runs on one. Times are nanoseconds since an
+/// Returns the time and waits for it; the servo loop runs on one. Times are nanoseconds since an
 /// arbitrary start that never jumps back.
 class Clock {
  public:
@@ -13,7 +13,7 @@ class Clock {
   Clock& operator=(const Clock&) = delete;
   virtual ~Clock() = default;
 
-  /// Tells the time in ns. Real-time: safe.
+  /// Returns the time in ns. Real-time: safe.
   virtual std::int64_t now_ns() const noexcept = 0;
 
   /// Returns at `time_ns` or later; at once if that time has passed.
@@ -21,7 +21,7 @@ class Clock {
   virtual void sleep_until_ns(std::int64_t time_ns) noexcept = 0;
 };
 
-/// Is time that passes only when somebody waits for it: every run is repeatable to the bit, and
+/// Time that passes only when somebody waits for it: every run is repeatable to the bit, and
 /// seconds of touch take milliseconds. Used by one thread.
 class VirtualClock final : public Clock {
  public:
@@ -34,7 +34,7 @@ class VirtualClock final : public Clock {
   std::int64_t now_ns_ = 0;
 };
 
-/// Is CLOCK_MONOTONIC, counted from the clock's construction: sleeps to shortly before the wanted
+/// CLOCK_MONOTONIC, counted from the clock's construction: sleeps to shortly before the wanted
 /// time, then spins.
 ///
 /// The spin buys a median wake-up error below 1 us instead of tens of us [PHYSICS 5] and must

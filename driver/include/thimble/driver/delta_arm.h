@@ -6,7 +6,7 @@
 
 namespace thimble::driver {
 
-/// Is the geometry of a delta arm with three legs, each an upper link and a parallelogram that
+/// The geometry of a delta arm with three legs, each an upper link and a parallelogram that
 /// hangs on two short links, as R. E. Stamper describes it (PhD thesis 97-4, University of
 /// Maryland) and libnifalcon has it for the Novint Falcon [S FalconGeometry.h].
 ///
@@ -35,7 +35,7 @@ struct DeltaArm {
   /// A tip position well inside the workspace, where the search for the tip begins, m.
   Eigen::Vector3d p_BM{0, 0, 0};
 
-  /// Is the largest number of steps the search for the tip takes.
+  /// The largest number of steps the search for the tip takes.
   static constexpr int kStepsMax = 40;
 
   /// Finds the tip p_BT (m) and the Jacobian J_BT = d p_BT / d q (m/rad) from the leg angles, to

@@ -50,7 +50,7 @@ struct WireCounters {
   std::uint64_t replugged = 0;  ///< Times a lost wire was replaced.
 };
 
-/// Is one open arm behind its link: idle -> active -> (fault ->) idle, until destroyed.
+/// One open arm behind its link: idle -> active -> (fault ->) idle, until destroyed.
 ///
 /// Every way out sends zero force: `deactivate`, a fault, the destructor. A fault latches until
 /// `activate` is called again; a clock that steps back is one. Used by one thread at a time, but
@@ -128,8 +128,8 @@ class Device {
   /// any thread. Real-time: safe.
   void ask_to_activate() noexcept { activation_asked_.store(true, std::memory_order_release); }
 
-  DeviceStage stage() const noexcept;  ///< Tells where it is in its life. Real-time: safe.
-  /// Tells whether the link is lost and waits for an offer. Real-time: safe.
+  DeviceStage stage() const noexcept;  ///< Returns where it is in its life. Real-time: safe.
+  /// Returns whether the link is lost and waits for an offer. Real-time: safe.
   bool lost() const noexcept { return lost_; }
   Fault fault() const noexcept { return gate_.fault(); }  ///< Names what switched the force off.
   /// Shows what was read last. Real-time: safe.

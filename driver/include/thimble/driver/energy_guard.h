@@ -75,7 +75,7 @@ class PassivityObserver {
   double share(double dt) noexcept;
   static constexpr double kReturn = 2;  ///< Time from none to all, s [chosen: no hand is startled].
 
-  /// Tells the energy on the account, J; below 0 the arm gave more than it took.
+  /// Returns the energy on the account, J; below 0 the arm gave more than it took.
   double energy() const noexcept { return energy_; }
 
  private:

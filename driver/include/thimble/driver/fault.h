@@ -24,7 +24,7 @@ enum class Fault : std::uint8_t {
 /// The last of the faults: what is beyond it in a file or in shared memory is damaged.
 inline constexpr Fault kLastFault = Fault::kCountsUnchanged;
 
-/// Tells what a fault means and what to do, in one or two sentences for the user.
+/// Returns what a fault means and what to do, in one or two sentences for the user.
 /// Real-time: safe.
 std::string_view describe(Fault fault) noexcept;
 

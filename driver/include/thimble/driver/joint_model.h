@@ -29,7 +29,7 @@ struct JointModel {
   std::array<JointEncoder, 3> encoders;  ///< Encoders.
   std::optional<Gimbal> gimbal{};        ///< Behind the last link, if one is mounted.
 
-  /// Tells the joint angle of one encoder step, rad.
+  /// Returns the joint angle of one encoder step, rad.
   double step(std::size_t joint) const noexcept {
     return 2 * std::numbers::pi / (encoders[joint].counts_per_motor_turn * drives[joint].ratio);
   }
@@ -46,7 +46,7 @@ struct JointModel {
     return q;
   }
 
-  /// Is the inverse of `joint_angles` before rounding: counter values at joint angles q (rad).
+  /// The inverse of `joint_angles` before rounding: counter values at joint angles q (rad).
   Eigen::Vector3d exact_counts(const Eigen::Vector3d& q) const noexcept {
     Eigen::Vector3d counts;
     for (std::size_t i = 0; i < 3; ++i) {

@@ -5,7 +5,7 @@
 
 namespace thimble::driver {
 
-/// Is the geometry of the Polhem arm: a yaw, and in its plane two motors side by side that move the
+/// The geometry of the Polhem arm: a yaw, and in its plane two motors side by side that move the
 /// forearm through a linkage of four bars [S forsslund/hfabapi hfab_polhem.h].
 ///
 ///     h |            elbow            bar 1 from the front motor to the elbow, at angle q1

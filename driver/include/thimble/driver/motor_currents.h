@@ -22,7 +22,7 @@ struct MotorDrive {
 /// GatedForce, and no way to send anything else.
 class MotorCurrents {
  public:
-  /// Is zero current in every motor.
+  /// Zero current in every motor.
   MotorCurrents() = default;
 
   /// Turns a gated tip force into motor currents by tau = J_BT^T f_T_B. If a motor would need more
@@ -31,10 +31,10 @@ class MotorCurrents {
   MotorCurrents(const GatedForce& force, const Eigen::Matrix3d& R_WB, const Eigen::Matrix3d& J_BT,
                 const std::array<MotorDrive, 3>& drives) noexcept;
 
-  /// Tells the currents, A.
+  /// Returns the currents, A.
   const Eigen::Vector3d& amperes() const noexcept { return amperes_; }
 
-  /// Tells what is left of the gated force after the scaling, 0 to 1.
+  /// Returns what is left of the gated force after the scaling, 0 to 1.
   double scale() const noexcept { return scale_; }
 
  private:

@@ -25,7 +25,7 @@ class [[nodiscard]] Result {
   Result(T value) : content_(std::in_place_index<0>, std::move(value)) {}      // NOLINT
   Result(Error error) : content_(std::in_place_index<1>, std::move(error)) {}  // NOLINT
 
-  bool ok() const { return content_.index() == 0; }  ///< Tells whether there is a value.
+  bool ok() const { return content_.index() == 0; }  ///< Returns whether there is a value.
   explicit operator bool() const { return ok(); }    ///< As `ok`.
 
   T& value() & { return std::get<0>(content_); }                ///< Gives the value.
@@ -49,7 +49,7 @@ class [[nodiscard]] Result<void> {
   Result() = default;
   Result(Error error) : error_(std::move(error)) {}  // NOLINT
 
-  bool ok() const { return !error_.has_value(); }        ///< Tells whether it worked.
+  bool ok() const { return !error_.has_value(); }        ///< Returns whether it worked.
   explicit operator bool() const { return ok(); }        ///< As `ok`.
   const Error& error() const { return error_.value(); }  ///< Gives the error.
 

@@ -12,10 +12,10 @@ namespace thimble::driver {
 /// may make the zero force; only SafetyGate makes another.
 class GatedForce {
  public:
-  /// Is zero force.
+  /// Zero force.
   GatedForce() = default;
 
-  /// Tells the force on the hand in the world frame, N.
+  /// Returns the force on the hand in the world frame, N.
   const Eigen::Vector3d& f_T_W() const noexcept { return f_T_W_; }
 
  private:
@@ -105,7 +105,7 @@ class SafetyGate {
   const GateCounters& counters() const noexcept { return counters_; }
   const GateLimits& limits() const noexcept { return limits_; }        ///< Tells its limits.
   EnergyStage energy_stage() const noexcept { return energy_.stage; }  ///< Names its energy stage.
-  /// Tells the energy on the observer's account, J.
+  /// Returns the energy on the observer's account, J.
   double energy() const noexcept { return observer_.energy(); }
 
  private:

@@ -5,7 +5,7 @@
 
 namespace thimble::driver {
 
-/// Is the geometry of a serial arm of the PHANTOM family: a yaw A and two links B and C that are
+/// The geometry of a serial arm of the PHANTOM family: a yaw A and two links B and C that are
 /// both measured from the ground, because a parallel linkage carries the second one [hfab
 /// kinematics].
 ///

@@ -56,7 +56,7 @@ enum class ServoEnd : std::uint8_t {
 /// Returns how a report names an end ("done"). Real-time: safe.
 std::string_view name(ServoEnd end) noexcept;
 
-/// Is a servo loop, tick by tick, for whoever has something to do of his own between two ticks of
+/// A servo loop, tick by tick, for whoever has something to do of his own between two ticks of
 /// virtual time. `run_servo` is nothing but all its ticks.
 ///
 /// Each tick: wait, read, ask the law, write, tell the sink. Ticks are due at fixed times; after a

@@ -52,7 +52,7 @@ class Snapshot {
     return false;
   }
 
-  /// Tells how many values were stored so far.
+  /// Returns how many values were stored so far.
   std::uint64_t count() const noexcept { return sequence_.load(std::memory_order_acquire) / 2; }
 
  private:

@@ -37,7 +37,7 @@ Result<std::unique_ptr<Transport>> open_serial_transport(const std::string& node
                                                          const Framing& framing,
                                                          const Clock& clock);
 
-/// Is where the kernel put a USB device.
+/// Where the kernel put a USB device.
 struct UsbAddress {
   int bus = 0;     ///< Number of the bus.
   int device = 0;  ///< Number of the device on it.

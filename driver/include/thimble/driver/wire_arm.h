@@ -29,7 +29,7 @@ inline std::array<std::int16_t, 3> whole_mA(const MotorCurrents& currents) noexc
   return mA;
 }
 
-/// Is an arm made of two parts: a wire format and a geometry.
+/// An arm made of two parts: a wire format and a geometry.
 ///
 /// A Wire has two static functions, both noexcept: `bool decode(bytes, ArmReading&)`, total and
 /// leaving the reading alone when it answers false; and `std::size_t encode(mA, bytes)`, which

@@ -6,7 +6,7 @@
 
 namespace thimble::driver::falcon {
 
-/// Is the Falcon's wire as an arm sees it: counts and buttons in, motor values out, lights green.
+/// The Falcon's wire as an arm sees it: counts and buttons in, motor values out, lights green.
 /// Every message has the homing bit, without which the arm does not say whether it is homed [S
 /// libnifalcon FalconFirmwareNovintSDK.h]; an answer in which a leg is not homed is rejected.
 /// Real-time: safe.
@@ -16,7 +16,7 @@ struct PacketWire {
                             std::span<std::byte, kReportCapacity> bytes) noexcept;
 };
 
-/// Is a Novint Falcon. Its packets carry motor values of an unknown unit, about 10,000 per N m at
+/// A Novint Falcon. Its packets carry motor values of an unknown unit, about 10,000 per N m at
 /// the leg and reversed in sign [S libnifalcon FalconKinematicStamper.cpp]. The driver thinks in
 /// amperes, so 1000 motor values count as 1 A and the torque constant says the rest.
 using FalconArm = WireArm<PacketWire, DeltaArm>;
@@ -30,7 +30,7 @@ DeltaArm falcon_geometry() noexcept;
 /// to [S]).
 JointModel<DeltaArm> falcon_model() noexcept;
 
-/// Is the radius of the ball around `falcon_geometry().p_BM` in which the arm works, m: the
+/// The radius of the ball around `falcon_geometry().p_BM` in which the arm works, m: the
 /// published workspace is about 4 inches wide [M]. All legs reach all of this ball, far from any
 /// singular pose (condition of the Jacobian below 4) [C]; the corners of a cube of that size are
 /// out of reach.

@@ -31,7 +31,7 @@ std::size_t read_all(SerialLine& line, std::span<std::byte> wanted, int timeout_
   return size;
 }
 
-/// Tells whether `answer` comes as the end of what the line brings. The converter may bring stray
+/// Returns whether `answer` comes as the end of what the line brings. The converter may bring stray
 /// bytes from before (a zero is known [S]), so the answer need not be the beginning.
 bool answers(SerialLine& line, std::span<const std::byte> answer, int timeout_ms) {
   std::array<std::byte, 64> heard{};

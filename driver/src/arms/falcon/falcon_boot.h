@@ -21,7 +21,7 @@ inline constexpr std::uint16_t kBootDivisor = 0x4138;
 inline constexpr std::uint16_t kUploadDivisor = 0x0015;
 inline constexpr std::uint16_t kRunDivisor = 0x0002;
 
-/// Is how many bytes of firmware go at once: an FTDI packet of 64 less its 2 status bytes, so that
+/// How many bytes of firmware go at once: an FTDI packet of 64 less its 2 status bytes, so that
 /// the echo of one block comes back in one packet [S].
 inline constexpr std::size_t kBlockSize = 62;
 
@@ -34,7 +34,7 @@ struct BootSettings {
   int settle_ms = 10;           ///< Pause after each change of DTR (chosen).
 };
 
-/// Tells what an upload did.
+/// Returns what an upload did.
 struct UploadReport {
   std::size_t size = 0;        ///< Bytes of firmware.
   int attempts = 0;            ///< Uploads begun, 1 if the first went through.
@@ -73,7 +73,7 @@ struct HomingState {
   bool answered = false;                 ///< A packet came.
   std::uint8_t homed = 0;                ///< One bit per leg.
   std::array<std::int16_t, 3> counts{};  ///< Encoder counts of the last packet.
-  /// Tells whether the encoders know where they are.
+  /// Returns whether the encoders know where they are.
   bool done() const { return homed == kAllHomed; }
 };
 

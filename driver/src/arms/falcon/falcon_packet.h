@@ -31,14 +31,14 @@ inline constexpr std::uint8_t kGreenLight = 0x02;
 inline constexpr std::uint8_t kBlueLight = 0x04;
 inline constexpr std::uint8_t kRedLight = 0x08;
 
-/// Is all three legs homed, as `ArmPacket::homed` tells it.
+/// All three legs homed, as `ArmPacket::homed` tells it.
 inline constexpr std::uint8_t kAllHomed = 0x07;
 
-/// Is how packets stand out of the line's bytes.
+/// How packets stand out of the line's bytes.
 inline constexpr Framing kPacketFraming{
     .begin = std::byte{'<'}, .end = std::byte{'>'}, .size_max = kPacketSize};
 
-/// Is what the host sends.
+/// What the host sends.
 struct HostPacket {
   std::array<std::int16_t, 3> motors{};  ///< Legs a, b, c; about 10,000 per N m [S libnifalcon].
   std::uint8_t lights = 0;               ///< kHomingMode and the lights.
@@ -47,7 +47,7 @@ struct HostPacket {
   friend bool operator==(const HostPacket&, const HostPacket&) = default;
 };
 
-/// Is what the arm answers.
+/// What the arm answers.
 struct ArmPacket {
   std::array<std::int16_t, 3> counts{};  ///< Encoders of legs a, b, c.
   std::uint8_t buttons = 0;              ///< Four bits: right, forward, centre, left [S].

@@ -13,11 +13,11 @@ namespace thimble::driver::hfab {
 // forsslund/woodenhaptics firmware/woody_teensy_mini; forsslund/hfabapi hfab_protocol.h].
 // Everything here is Real-time: safe.
 
-/// Is room for the longest line of either direction, in bytes: 8 numbers of 11 characters, 7
+/// Room for the longest line of either direction, in bytes: 8 numbers of 11 characters, 7
 /// commas, two brackets, the newline.
 inline constexpr std::size_t kLineCapacity = 98;
 
-/// Is which arm a board drives; it chooses the geometry [S].
+/// Which arm a board drives; it chooses the geometry [S].
 enum class LineModel : std::int32_t { kPolhem = 1, kVintage = 2, kWoody = 3 };
 
 // What the board says of the host's message in `ArmLine::error` [S]. Bits 1, 2 and 4: a gimbal
@@ -27,11 +27,11 @@ inline constexpr std::int32_t kErrorBufferFull = 128;  ///< No closing bracket i
 inline constexpr std::int32_t kErrorNoStart = 256;  ///< A closing bracket without an opening one.
 inline constexpr std::int32_t kErrorLength = 512;   ///< Not three numbers.
 inline constexpr std::int32_t kErrorParse = 1024;   ///< Something else than numbers.
-/// Is every error after which the board repeats its last counts instead of reading its encoders.
+/// Every error after which the board repeats its last counts instead of reading its encoders.
 inline constexpr std::int32_t kErrorStale =
     kErrorTrailing | kErrorBufferFull | kErrorNoStart | kErrorLength | kErrorParse;
 
-/// Is what the arm answers.
+/// What the arm answers.
 struct ArmLine {
   std::int32_t model = 1;                ///< What the board calls its arm.
   std::array<std::int32_t, 6> counts{};  ///< Motor encoders a to c, gimbal encoders d to f.
@@ -40,7 +40,7 @@ struct ArmLine {
   friend bool operator==(const ArmLine&, const ArmLine&) = default;
 };
 
-/// Is what the host says. The board takes a current beyond its range as zero [S].
+/// What the host says. The board takes a current beyond its range as zero [S].
 struct HostLine {
   std::array<std::int32_t, 3> current_mA{};  ///< Currents of the motors, mA.
 

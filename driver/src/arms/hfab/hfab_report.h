@@ -15,7 +15,7 @@ namespace thimble::driver::hfab {
 inline constexpr std::size_t kReportSize = 14;
 inline constexpr std::size_t kPaddedReportSize = 64;
 
-/// Is what the arm sends: counters of three motor and three gimbal encoders, and a flag word.
+/// What the arm sends: counters of three motor and three gimbal encoders, and a flag word.
 struct InputReport {
   std::array<std::int16_t, 6> counts{};  ///< Encoders a to f.
   /// Bit 0: the calibration button was pressed and no preset came since. The other bits are
@@ -25,13 +25,13 @@ struct InputReport {
   friend bool operator==(const InputReport&, const InputReport&) = default;
 };
 
-/// Is what an output report asks of the firmware.
+/// What an output report asks of the firmware.
 enum class Command : std::int16_t {
   kDrive = 0,  ///< Use the currents. (Every value but 1 means this; the host library sends 0 or 2.)
   kPreset = 1,  ///< Set counters a, b, c from the attributes and d, e, f from the current fields.
 };
 
-/// Is what the arm takes: motor currents, or a preset for its counters.
+/// What the arm takes: motor currents, or a preset for its counters.
 struct OutputReport {
   std::array<std::int16_t, 3> current_mA{};  ///< Currents of the motors, mA.
   std::int16_t command = 0;                  ///< A Command.

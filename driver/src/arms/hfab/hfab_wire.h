@@ -7,11 +7,11 @@
 
 namespace thimble::driver::hfab {
 
-/// Is how lines of either direction stand out of the stream.
+/// How lines of either direction stand out of the stream.
 inline constexpr Framing kLineFraming{
     .begin = std::byte{'['}, .end = std::byte{']'}, .size_max = kLineCapacity};
 
-/// Is the text protocol as an arm sees it. An answer with an error after which the board repeats
+/// The text protocol as an arm sees it. An answer with an error after which the board repeats
 /// old counts (kErrorStale) is rejected, so that old positions never pass for new ones.
 /// Real-time: safe.
 struct LineWire {
@@ -20,7 +20,7 @@ struct LineWire {
                             std::span<std::byte, kReportCapacity> bytes) noexcept;
 };
 
-/// Is the 14-byte HID protocol as an arm sees it. Real-time: safe.
+/// The 14-byte HID protocol as an arm sees it. Real-time: safe.
 struct ReportWire {
   static bool decode(std::span<const std::byte> bytes, ArmReading& reading) noexcept;
   static std::size_t encode(const std::array<std::int16_t, 3>& mA,
@@ -38,7 +38,7 @@ struct FineReportWire {
   }
 };
 
-/// Is a serial arm that speaks the 14-byte reports.
+/// A serial arm that speaks the 14-byte reports.
 using HfabArm = WireArm<ReportWire, SerialArm>;
 
 }  // namespace thimble::driver::hfab

@@ -14,7 +14,7 @@ namespace thimble::driver::woody {
 
 inline constexpr std::size_t kReportSize = 8;
 
-/// Is what the arm sends.
+/// What the arm sends.
 struct InputReport {
   std::array<std::int16_t, 3> counts{};  ///< Encoders a to c.
   std::uint16_t counter = 0;             ///< Grows by one with each report the board makes [S].
@@ -22,7 +22,7 @@ struct InputReport {
   friend bool operator==(const InputReport&, const InputReport&) = default;
 };
 
-/// Is what the arm takes. The board clamps a current beyond 3 A, it does not refuse it [S].
+/// What the arm takes. The board clamps a current beyond 3 A, it does not refuse it [S].
 struct OutputReport {
   std::array<std::int16_t, 3> current_mA{};  ///< Currents of the motors, mA.
   std::uint16_t unknown_debug = 0;  ///< Named "debug" in the firmware, which never reads it [S].

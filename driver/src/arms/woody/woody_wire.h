@@ -6,14 +6,14 @@
 
 namespace thimble::driver::woody {
 
-/// Is the 8-byte HID protocol as an arm sees it. Real-time: safe.
+/// The 8-byte HID protocol as an arm sees it. Real-time: safe.
 struct ReportWire {
   static bool decode(std::span<const std::byte> bytes, ArmReading& reading) noexcept;
   static std::size_t encode(const std::array<std::int16_t, 3>& mA,
                             std::span<std::byte, kReportCapacity> bytes) noexcept;
 };
 
-/// Is a WoodenHaptics arm on its mbed board.
+/// A WoodenHaptics arm on its mbed board.
 using WoodyArm = WireArm<ReportWire, SerialArm>;
 
 }  // namespace thimble::driver::woody

@@ -7,7 +7,7 @@
 
 namespace thimble::render {
 
-/// Is what is drawn of a dent: triangles that stand in for some of the mesh's [BP Fig. 6]. The
+/// What is drawn of a dent: triangles that stand in for some of the mesh's [BP Fig. 6]. The
 /// touched one is drawn as 6, each of its neighbours as 2, what else moves as it is.
 ///
 /// Whoever draws leaves out the mesh's triangles named in `source` and draws `triangles` in their
@@ -17,7 +17,7 @@ struct BodyPatch {
   static constexpr std::size_t kPointsMax = 768;      ///< Room for points.
   static constexpr std::size_t kTrianglesMax = 1280;  ///< Room for triangles.
 
-  /// Is one corner of the triangles.
+  /// One corner of the triangles.
   struct Point {
     /// m, in the frame the mesh is given in; in double, since scans have slivers whose parts would
     /// turn over by the rounding of single precision.

@@ -5,7 +5,7 @@
 
 namespace thimble::render {
 
-/// Tells where an object has moved to, as plain numbers for readers at the side. B is the frame
+/// Returns where an object has moved to, as plain numbers for readers at the side. B is the frame
 /// that the object's mesh was given in: W before the first tick, so a point that was at p then is
 /// at p_WB + q_WB * p now.
 struct BodyPose {

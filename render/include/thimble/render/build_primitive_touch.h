@@ -11,10 +11,10 @@
 
 namespace thimble::render {
 
-/// Is a box whose force depends on the face by which the tip came in (EntryFaceContact).
+/// A box whose force depends on the face by which the tip came in (EntryFaceContact).
 struct EntryFaceBox : Box {};
 
-/// Is any shape that needs no mesh.
+/// Any shape that needs no mesh.
 using Primitive = std::variant<HalfSpace, Sphere, WedgeBox, EntryFaceBox>;
 
 /// Builds the force law of one shape (W, m) from just the stages that `surface` names. Whoever

@@ -38,7 +38,7 @@ inline constexpr std::array<std::string_view, 2> kProfileNames{"linear", "smooth
 /// Names what NormalWeights says.
 inline constexpr std::array<std::string_view, 3> kNormalNames{"angle", "round", "fitted"};
 
-/// Is how one object is touched. What is left empty is chosen to go with the tracker: `compact` and
+/// How one object is touched. What is left empty is chosen to go with the tracker: `compact` and
 /// `offset` are smooth (phong, curved depth), the others are flat.
 struct ContactChoice {
   TrackerChoice tracker = TrackerChoice::kEdgePlanes;  ///< How it is followed.

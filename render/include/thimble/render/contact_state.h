@@ -5,7 +5,7 @@
 
 namespace thimble::render {
 
-/// Is what a contact algorithm knows at one tick. Frames: W world, P proxy.
+/// What a contact algorithm knows at one tick. Frames: W world, P proxy.
 struct ContactState {
   bool touching = false;          ///< Whether the tip is held outside.
   std::int32_t triangle = -1;     ///< Active triangle, -1 if not touching.

@@ -17,7 +17,7 @@ namespace thimble::render {
 class BodyShape;
 class ContactMesh;
 
-/// Is the force law of one object of a scene, whatever stages it is made of: one indirect call per
+/// The force law of one object of a scene, whatever stages it is made of: one indirect call per
 /// tick stands for all of them (see object_touch_of).
 class ObjectTouch {
  public:
@@ -29,7 +29,7 @@ class ObjectTouch {
   /// Finds the force of this object on the hand. Real-time: safe.
   virtual driver::ForceCommand update(const driver::DeviceState& state) noexcept = 0;
 
-  /// Tells whether a point (W, m) lies inside the object; for checks beside the servo.
+  /// Returns whether a point (W, m) lies inside the object; for checks beside the servo.
   /// Real-time: safe unless the object is on the disk; one question to its search.
   virtual bool inside(const Eigen::Vector3d& p_W) const noexcept = 0;
 
@@ -46,12 +46,12 @@ class ObjectTouch {
 
   // The following are for readers beside the servo, and for bodies (render/body) to answer.
 
-  /// Tells whether the surface is where it was before the first tick: neither moved nor bent.
+  /// Returns whether the surface is where it was before the first tick: neither moved nor bent.
   virtual bool stands_still() const noexcept { return true; }
   /// Counts contacts that ended with the tip inside; 0 for what stands still, where they can be
   /// found afterwards. Real-time: safe.
   virtual std::uint64_t lost_contacts() const noexcept { return 0; }
-  /// Tells where the object has moved to. Real-time: safe.
+  /// Returns where the object has moved to. Real-time: safe.
   virtual BodyPose pose() const noexcept { return {}; }
   /// Gives the shape of an object whose base points move by themselves; nullptr for others.
   virtual const BodyShape* shape() const noexcept { return nullptr; }
@@ -63,7 +63,7 @@ class ObjectTouch {
   virtual void mesh_now(TriangleMesh& mesh) const { place_now(mesh.vertices); }
 };
 
-/// Is an ObjectTouch made of a Touch with its stages known at compile time. `Stages` is callable
+/// An ObjectTouch made of a Touch with its stages known at compile time. `Stages` is callable
 /// like Touch and has a `contact()` with `search()`.
 template <class Stages>
 class ObjectTouchOf final : public ObjectTouch {

@@ -12,7 +12,7 @@
 
 namespace thimble::render {
 
-/// Is the force law of a whole scene: several separate objects, each closed by itself. Their forces
+/// The force law of a whole scene: several separate objects, each closed by itself. Their forces
 /// add; what is told of the touch is that of the object the tip is deepest in.
 class SceneTouch {
  public:
@@ -35,7 +35,7 @@ class SceneTouch {
     return sum;
   }
 
-  /// Tells whether a point (W, m) lies inside any object that stands still; for checks beside the
+  /// Returns whether a point (W, m) lies inside any object that stands still; for checks beside the
   /// servo. Real-time: safe; time grows with the objects' size.
   bool inside(const Eigen::Vector3d& p_W) const noexcept {
     for (const auto& object : objects_) {
@@ -65,7 +65,7 @@ class SceneTouch {
     return lost;
   }
 
-  std::size_t size() const noexcept { return objects_.size(); }  ///< Tells how many there are.
+  std::size_t size() const noexcept { return objects_.size(); }  ///< Returns how many there are.
   const ObjectTouch& object(std::size_t i) const noexcept { return *objects_[i]; }  ///< Shows one.
   ObjectTouch& object(std::size_t i) noexcept { return *objects_[i]; }              ///< Gives one.
 

@@ -11,7 +11,7 @@
 
 namespace thimble::render {
 
-/// Is the force law of an object: just the stages the scene names, joined at compile time, so that
+/// The force law of an object: just the stages the scene names, joined at compile time, so that
 /// a stage that is not named costs nothing.
 ///
 /// `Contact` finds what the tip touches: `const ContactState& update(const DeviceState&) noexcept`.

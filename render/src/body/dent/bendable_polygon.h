@@ -15,7 +15,7 @@
 
 namespace thimble::render {
 
-/// Is a surface that dents under the cursor: the paper's Bendable Polygon [BP 4.2].
+/// A surface that dents under the cursor: the paper's Bendable Polygon [BP 4.2].
 ///
 /// The base points are the mesh, which is what is touched; the vertices hang on them. While the
 /// cursor is below a triangle, springs and dampers join it to the six points around it: the three
@@ -52,7 +52,7 @@ class BendablePolygon {
   /// then.
   void rest() noexcept;
 
-  /// Tells how the cursor's springs pull it in the last step, N in W: their sum.
+  /// Returns how the cursor's springs pull it in the last step, N in W: their sum.
   const Eigen::Vector3d& f_T_W() const noexcept { return f_T_W_; }
   /// Returns how the springs pull at the tip that moves the cursor, N in W; all of it, whatever
   /// share the hand is to feel (body_pull.h). `change` is how the weights of the last `touch`
@@ -70,11 +70,11 @@ class BendablePolygon {
   /// they began do no work; and as c is as long as the tip is deep, f is K d n wherever the cursor
   /// is, if no springs join the vertices: on both sides of an edge, on faces of any size.
   Eigen::Vector3d pull_at_tip(const Eigen::Matrix3d& change) const noexcept;
-  /// Tells where the cursor is from its base point, the place below which it is: as far as the tip
-  /// lies below the face, towards the tip, m; 0 if it does not touch. Both tell the same from both
-  /// sides of an edge plane.
+  /// Returns where the cursor is from its base point, the place below which it is: as far as the
+  /// tip lies below the face, towards the tip, m; 0 if it does not touch. Both tell the same from
+  /// both sides of an edge plane.
   const Eigen::Vector3d& cursor() const noexcept { return cursor_; }
-  /// Tells where a vertex is, m in W.
+  /// Returns where a vertex is, m in W.
   Eigen::Vector3d position(std::int32_t vertex) const noexcept {
     return mesh_->position(vertex) + motion_.u(vertex);
   }
@@ -85,7 +85,7 @@ class BendablePolygon {
 
   const DentMotion& motion() const noexcept { return motion_; }
   const ContactMesh& mesh() const noexcept { return *mesh_; }
-  /// Tells the triangle under the cursor, -1 if there is none.
+  /// Returns the triangle under the cursor, -1 if there is none.
   std::int32_t triangle() const noexcept { return triangle_; }
 
  private:

@@ -60,7 +60,7 @@ class BodyPull {
     stored_ = 0;
     has_before_ = false;
   }
-  /// Tells what the hand has put in and not got back since it touched, J.
+  /// Returns what the hand has put in and not got back since it touched, J.
   double stored() const noexcept { return stored_; }
   /// Counts the ticks in which the account has made the pull less.
   std::uint64_t limited() const noexcept { return limited_; }

@@ -54,7 +54,7 @@ class DentMotion {
   /// Lets nothing new move: what swings goes on until it has settled.
   void release() noexcept;
 
-  /// Is a spring and a damper from the cursor to a vertex.
+  /// A spring and a damper from the cursor to a vertex.
   struct CursorSpring {
     double stiffness = 0;    ///< N/m, 0 to infinity
     double damping = 0;      ///< N s/m, >= 0
@@ -66,34 +66,34 @@ class DentMotion {
   void pull(std::size_t k, std::int32_t vertex, const CursorSpring& spring) noexcept;
   /// Moves on by one step; the cursor springs are then gone. Costs nothing while nothing moves.
   void step() noexcept;
-  /// Tells the mean force (N) of cursor spring `k` on its vertex over the last step.
+  /// Returns the mean force (N) of cursor spring `k` on its vertex over the last step.
   const Vector& force(std::size_t k) const noexcept { return grips_[k].force; }
 
-  /// Tells the displacement (m) and velocity (m/s) of any vertex.
+  /// Returns the displacement (m) and velocity (m/s) of any vertex.
   Vector u(std::int32_t vertex) const noexcept {
     const std::int32_t s = places_[at(vertex)].slot;
     return s < 0 ? Vector(0, 0, 0) : Vector(u_[at(s)].head<3>());
   }
-  /// Tells the velocity of any vertex, m/s. Real-time: safe.
+  /// Returns the velocity of any vertex, m/s. Real-time: safe.
   Vector v(std::int32_t vertex) const noexcept {
     const std::int32_t s = places_[at(vertex)].slot;
     return s < 0 ? Vector(0, 0, 0) : Vector(v_[at(s)].head<3>());
   }
-  /// Tells whether a vertex moves at all.
+  /// Returns whether a vertex moves at all.
   bool moves(std::int32_t vertex) const noexcept { return places_[at(vertex)].slot >= 0; }
   /// Lists the vertices that move.
   std::span<const std::int32_t> vertices() const noexcept { return vertices_; }
-  bool resting() const noexcept { return vertices_.empty(); }  ///< Tells whether none moves.
-  /// Tells the stiffness (N/m) of a vertex of valence 6 while its neighbours stand still.
+  bool resting() const noexcept { return vertices_.empty(); }  ///< Returns whether none moves.
+  /// Returns the stiffness (N/m) of a vertex of valence 6 while its neighbours stand still.
   double stiffness() const noexcept {
     return settings_.stiffness + 6 * settings_.neighbour_stiffness;
   }
-  /// Tells the energy of springs and masses, without the cursor's springs, J.
+  /// Returns the energy of springs and masses, without the cursor's springs, J.
   double energy() const noexcept;
   /// Counts vertices that were stopped while they still swung, for want of room.
   std::uint64_t cut() const noexcept { return cut_; }
   const DentSettings& settings() const noexcept { return settings_; }
-  int substeps() const noexcept { return substeps_; }  ///< Tells how many steps make a tick.
+  int substeps() const noexcept { return substeps_; }  ///< Returns how many steps make a tick.
 
  private:
   // A vector and a zero: four numbers go through the processor two or four at a time.

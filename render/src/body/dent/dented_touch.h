@@ -13,7 +13,7 @@
 
 namespace thimble::render {
 
-/// Is the force law of an object whose surface dents: that of the object, whatever stages it is
+/// The force law of an object whose surface dents: that of the object, whatever stages it is
 /// made of, with a BendablePolygon that follows. An object that no scene calls so has none around
 /// it.
 class DentedTouch final : public ObjectTouch {

@@ -7,7 +7,7 @@
 
 namespace thimble::render {
 
-/// Is a point that splits an edge of the touched triangle [BP 4.2, Fig. 6]. Its base point is the
+/// A point that splits an edge of the touched triangle [BP 4.2, Fig. 6]. Its base point is the
 /// cursor's projection onto the edge; it hangs by a spring and a damper on the edge as that stands
 /// now, and by others on the cursor.
 ///
@@ -24,7 +24,7 @@ namespace thimble::render {
 /// points load no vertex: they are light, as points in the middle of an edge without matter are.
 class EdgePoint {
  public:
-  /// Is what moves the edge point in one step.
+  /// What moves the edge point in one step.
   struct Pull {
     double share = 0;                 ///< s, 0 to 1
     double place = 0.5;               ///< t, of the base point between the ends, 0 to 1
@@ -35,7 +35,7 @@ class EdgePoint {
 
   /// Lets it split the edge between two vertices, on the edge and at rest. Real-time: safe.
   void begin(std::int32_t from, std::int32_t to) noexcept;
-  /// Tells whether it splits the edge between these vertices, in either direction.
+  /// Returns whether it splits the edge between these vertices, in either direction.
   bool splits(std::int32_t a, std::int32_t b) const noexcept {
     return (a == from_ && b == to_) || (a == to_ && b == from_);
   }
@@ -49,9 +49,9 @@ class EdgePoint {
   /// it onto the edge. Real-time: safe.
   void step(const Pull& pull, const DentSettings& settings, double stiffness) noexcept;
 
-  /// Tells the displacement from the base point, m.
+  /// Returns the displacement from the base point, m.
   const Eigen::Vector3d& u() const noexcept { return u_; }
-  double place() const noexcept { return place_; }  ///< Tells the same, m.
+  double place() const noexcept { return place_; }  ///< Returns the same, m.
 
  private:
   std::int32_t from_ = -1, to_ = -1;

@@ -28,12 +28,12 @@ class VertexLinks {
     const auto v = static_cast<std::size_t>(vertex);
     return {other_.data() + begin_[v], begin_[v + 1] - begin_[v]};
   }
-  /// Tells how many edges meet in `vertex`. Real-time: safe.
+  /// Returns how many edges meet in `vertex`. Real-time: safe.
   std::int32_t valence(std::int32_t vertex) const noexcept {
     const auto v = static_cast<std::size_t>(vertex);
     return static_cast<std::int32_t>(begin_[v + 1] - begin_[v]);
   }
-  /// Tells how strong an edge between vertices of these valences is.
+  /// Returns how strong an edge between vertices of these valences is.
   static double weight(std::int32_t one, std::int32_t other) noexcept {
     return 12.0 / (one + other);
   }

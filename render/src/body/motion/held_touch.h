@@ -14,7 +14,7 @@
 
 namespace thimble::render {
 
-/// Is the force law of an object that the hand holds from the first tick on: a spring and a damper
+/// The force law of an object that the hand holds from the first tick on: a spring and a damper
 /// from the tip to the place of the body that was there then. Its weight, its swing and what it
 /// meets are felt through them; its surface is not touched until it has slipped out.
 ///
@@ -57,7 +57,7 @@ class HeldTouch final : public ObjectTouch {
 
   void list_settings(LiveSettings& settings) override { object_->list_settings(settings); }
 
-  bool slipped() const noexcept { return slipped_; }  ///< Tells whether it left the hand.
+  bool slipped() const noexcept { return slipped_; }  ///< Returns whether it left the hand.
 
  private:
   static constexpr double kFarSquared = 1e6;  // m^2; no arm reaches there

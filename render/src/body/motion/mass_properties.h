@@ -8,8 +8,8 @@
 
 namespace thimble::render {
 
-/// Tells how a body resists motion: C its centre of mass, B its frame, with its origin in C and its
-/// axes along the principal ones.
+/// Returns how a body resists motion: C its centre of mass, B its frame, with its origin in C and
+/// its axes along the principal ones.
 struct MassProperties {
   double mass = 1;                                           ///< kg, > 0
   Eigen::Vector3d p_WC{0, 0, 0};                             ///< m
@@ -17,7 +17,7 @@ struct MassProperties {
   Eigen::Vector3d inertia{1, 1, 1};  ///< kg m^2 about the axes of B, > 0, smallest first
   double volume = 0;                 ///< m^3
 
-  /// Tells whether a body can have these numbers: all finite and positive, and no inertia larger
+  /// Returns whether a body can have these numbers: all finite and positive, and no inertia larger
   /// than the other two together.
   bool valid() const noexcept;
 };

@@ -16,7 +16,7 @@
 
 namespace thimble::render {
 
-/// Is how all base points of an object move together [BP 4.3]. All of it is Real-time: safe.
+/// How all base points of an object move together [BP 4.3]. All of it is Real-time: safe.
 ///
 /// `R_WB` and `p_WB` tell where the frame B that the mesh stands in is now (W before the first
 /// tick), `velocity_at` how fast a point of the body moves (m/s, our time), `gain_at` which
@@ -38,7 +38,7 @@ concept BodyMotion = requires(Motion motion, const Motion& now, const Eigen::Vec
   noexcept;
 };
 
-/// Is the force law of an object that moves: the tip is taken into the frame B of the object's
+/// The force law of an object that moves: the tip is taken into the frame B of the object's
 /// mesh, touches there what stands still, and the force comes back; the opposite acts on the body
 /// at the tip, in the same tick and to the bit.
 ///

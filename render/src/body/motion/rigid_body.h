@@ -19,7 +19,7 @@ struct RigidBodySettings {
   Eigen::Vector3d gravity_W{0, 0, 0};  ///< m/s^2
   double damping = 0;                  ///< N s/m, >= 0
   double angular_damping = 0;          ///< N m s, >= 0: the torque is this times the turning rate.
-  /// Is the body's time over ours, > 0: smaller feels heavier, as 1 / time_scale^2 times the mass,
+  /// The body's time over ours, > 0: smaller feels heavier, as 1 / time_scale^2 times the mass,
   /// and as if in a thick liquid [BP 4.3].
   double time_scale = 1;
   std::optional<Floor> floor{};  ///< Where it cannot go below.
@@ -54,20 +54,20 @@ class RigidBody {
     angular_W_ = angular_W;
   }
 
-  const Eigen::Vector3d& p_WC() const noexcept { return p_WC_; }     ///< Tells where C is, m.
-  const Eigen::Quaterniond& q_WB() const noexcept { return q_WB_; }  ///< Tells how it is turned.
-  /// Tells the momentum, kg m/s, in the body's own time.
+  const Eigen::Vector3d& p_WC() const noexcept { return p_WC_; }     ///< Returns where C is, m.
+  const Eigen::Quaterniond& q_WB() const noexcept { return q_WB_; }  ///< Returns how it is turned.
+  /// Returns the momentum, kg m/s, in the body's own time.
   const Eigen::Vector3d& momentum_W() const noexcept { return momentum_W_; }
-  /// Tells the angular momentum about C, kg m^2/s, in the body's own time.
+  /// Returns the angular momentum about C, kg m^2/s, in the body's own time.
   const Eigen::Vector3d& angular_momentum_W() const noexcept { return angular_W_; }
   const RigidBodySettings& settings() const noexcept { return settings_; }
-  /// Tells the velocity of C (m/s) and the turning rate (rad/s), in the body's own time.
+  /// Returns the velocity of C (m/s) and the turning rate (rad/s), in the body's own time.
   Eigen::Vector3d v_WC() const noexcept { return momentum_W_ / settings_.mass.mass; }
-  Eigen::Vector3d omega_W() const noexcept;  ///< Tells the turning rate, rad/s.
-  /// Tells the velocity (m/s, in our time) of the body's point at `p_W`.
+  Eigen::Vector3d omega_W() const noexcept;  ///< Returns the turning rate, rad/s.
+  /// Returns the velocity (m/s, in our time) of the body's point at `p_W`.
   Eigen::Vector3d velocity_at(const Eigen::Vector3d& p_W) const noexcept;
-  /// Tells which velocity (m/s, in our time) the body's point at `p_W` gains by an impulse (N s, in
-  /// our time) given there.
+  /// Returns which velocity (m/s, in our time) the body's point at `p_W` gains by an impulse (N s,
+  /// in our time) given there.
   Eigen::Vector3d gain_at(const Eigen::Vector3d& p_W,
                           const Eigen::Vector3d& impulse) const noexcept {
     return settings_.time_scale * settings_.time_scale * give(p_W - p_WC_, impulse);
@@ -75,11 +75,11 @@ class RigidBody {
   /// Keeps C within `reach` m of where it was at first: puts it back and takes the momentum that
   /// leads away, so that energy only falls. Nonsense: nothing.
   void keep_within(double reach) noexcept;
-  /// Tells where a point of the body that was at `p_W` at first is now, m.
+  /// Returns where a point of the body that was at `p_W` at first is now, m.
   Eigen::Vector3d moved(const Eigen::Vector3d& p_W) const noexcept {
     return p_WC_ + q_WB_ * (settings_.mass.q_WB.conjugate() * (p_W - settings_.mass.p_WC));
   }
-  /// Tells the energy of motion, and of height over the origin where there is gravity, J.
+  /// Returns the energy of motion, and of height over the origin where there is gravity, J.
   double kinetic_energy() const noexcept;
   double potential_energy() const noexcept;  ///< Tells that of height, J.
 

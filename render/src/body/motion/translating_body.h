@@ -7,7 +7,7 @@
 
 namespace thimble::render {
 
-/// Is a body that moves but does not turn: all base points relative to one mass point [BP 4.3].
+/// A body that moves but does not turn: all base points relative to one mass point [BP 4.3].
 /// Exact under forces that are held over a step, with damping; so it cannot diverge.
 class TranslatingBody {
  public:
@@ -50,12 +50,13 @@ class TranslatingBody {
     if (fast > 0) v_W_ -= std::min(1.0, friction * into / fast) * slip;
   }
 
-  /// Tells the velocity (m/s, in our time), and which of it is gained per impulse (N s, our time).
+  /// Returns the velocity (m/s, in our time), and which of it is gained per impulse (N s, our
+  /// time).
   Eigen::Vector3d velocity() const noexcept { return time_scale_ * v_W_; }
-  /// Tells the velocity gained per impulse, 1/kg, in our time. Real-time: safe.
+  /// Returns the velocity gained per impulse, 1/kg, in our time. Real-time: safe.
   double gain() const noexcept { return time_scale_ * time_scale_ / mass_; }
 
-  /// Tells how far all base points have moved, m; the velocity (m/s) and momentum (kg m/s) are in
+  /// Returns how far all base points have moved, m; the velocity (m/s) and momentum (kg m/s) are in
   /// the body's own time.
   const Eigen::Vector3d& p_W() const noexcept { return p_W_; }
   const Eigen::Vector3d& v_W() const noexcept { return v_W_; }          ///< Tells it, m/s.

@@ -62,7 +62,7 @@ class BodyShape {
 
   /// Gives the moves of the last `follow` again. Real-time: safe.
   std::span<const VertexMove> moves() const noexcept { return moves_; }
-  /// Tells whether all vertices are where they shall be. Real-time: safe.
+  /// Returns whether all vertices are where they shall be. Real-time: safe.
   bool settled() const noexcept { return waiting_ == 0; }
   /// Shows the clay; nullptr if the body is of another matter. Real-time: safe.
   const ClayShape* clay() const noexcept { return clay_ ? &*clay_ : nullptr; }

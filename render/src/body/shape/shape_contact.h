@@ -5,7 +5,7 @@
 
 namespace thimble::render {
 
-/// Is what a body that changes shape knows of the press on it, in the frame of its mesh.
+/// What a body that changes shape knows of the press on it, in the frame of its mesh.
 struct ShapeContact {
   std::int32_t triangle = -1;        ///< That is touched; -1: none.
   Eigen::Vector3d weights{0, 0, 0};  ///< Of the triangle's corners at the touched place, each >= 0.

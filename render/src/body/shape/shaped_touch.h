@@ -12,7 +12,7 @@
 
 namespace thimble::render {
 
-/// Is the force law of an object whose base points move by themselves: clay, a tin can.
+/// The force law of an object whose base points move by themselves: clay, a tin can.
 ///
 /// `Stages` is a Touch over a MovingContact. The force of a tick is that of the surface as it
 /// stands; then the surface gives way, and the next tick finds it there. So what gives way takes

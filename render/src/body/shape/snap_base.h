@@ -15,7 +15,7 @@ struct SnapSettings {
   double speed_max = 1;         ///< m/s, > 0: how fast the base point may run to its new place
 };
 
-/// Is a base point that jumps past a threshold [BP 4.3, the tin can]: it rides on the joint of a
+/// A base point that jumps past a threshold [BP 4.3, the tin can]: it rides on the joint of a
 /// SnapTruss along one direction, and its vertex pulls it through the vertex's own spring. Below
 /// the limit load it gives way elastically; beyond it runs to the other shape and stays there.
 class SnapBase {
@@ -36,17 +36,17 @@ class SnapBase {
     follow(stiffness * way, stiffness, step);
   }
 
-  /// Tells the way gone in (m), and as a displacement of the base point.
+  /// Returns the way gone in (m), and as a displacement of the base point.
   double way() const noexcept { return u_; }
-  /// Tells the same as a displacement of the base point, m in W. Real-time: safe.
+  /// Returns the same as a displacement of the base point, m in W. Real-time: safe.
   Eigen::Vector3d displacement() const noexcept { return u_ * inward_; }
-  /// Tells whether the second shape is the one it rests in or runs to.
+  /// Returns whether the second shape is the one it rests in or runs to.
   bool snapped() const noexcept { return snapped_; }
   /// Counts the snaps, and sums up the energy that they released (J): what the load did on the way
   /// less what the bars kept. It goes into sound and heat, never back to the hand.
   std::int64_t snaps() const noexcept { return snaps_; }
-  double released() const noexcept { return released_; }        ///< Tells what was released, J.
-  double energy() const noexcept { return truss_.energy(u_); }  ///< Tells what the bars keep, J.
+  double released() const noexcept { return released_; }        ///< Returns what was released, J.
+  double energy() const noexcept { return truss_.energy(u_); }  ///< Returns what the bars keep, J.
   const SnapTruss& truss() const noexcept { return truss_; }    ///< Shows the bars.
 
  private:

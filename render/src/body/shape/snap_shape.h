@@ -47,14 +47,14 @@ class SnapShape {
     for (const std::int32_t vertex : left_) take(vertex);
   }
 
-  /// Tells how far a vertex that was at `p_first` (m) shall be from there, m.
+  /// Returns how far a vertex that was at `p_first` (m) shall be from there, m.
   Eigen::Vector3d displacement(const Eigen::Vector3d& p_first) const noexcept;
 
   /// Counts the snaps; tells the energy in the panels, and what they released (J): what pressed
   /// them in less what they keep. It goes into sound and heat.
   std::int64_t snaps() const noexcept;
-  double energy() const noexcept;                         ///< Tells what the panels keep, J.
-  double released() const noexcept { return released_; }  ///< Tells what they released, J.
+  double energy() const noexcept;                         ///< Returns what the panels keep, J.
+  double released() const noexcept { return released_; }  ///< Returns what they released, J.
 
   static constexpr std::size_t kVerticesMax = 512;  ///< Of a panel.
 

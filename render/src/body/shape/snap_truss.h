@@ -4,7 +4,7 @@
 
 namespace thimble::render {
 
-/// Is the law of a shallow pair of bars (von Mises truss): what a dimple in sheet metal does. Apart
+/// The law of a shallow pair of bars (von Mises truss): what a dimple in sheet metal does. Apart
 /// by 2 a at their feet, a rise H at their joint, stiffness k each; u is the way that the joint is
 /// pressed in, m. Stable at rest at u = 0 and u = 2 H; between them it snaps [PHYSICS 4].
 class SnapTruss {
@@ -16,18 +16,18 @@ class SnapTruss {
 
   // All of the following are Real-time: safe.
 
-  bool valid() const noexcept { return k_ > 0; }  ///< Tells whether it can snap.
+  bool valid() const noexcept { return k_ > 0; }  ///< Returns whether it can snap.
   double rise() const noexcept { return rise_; }  ///< Tells its height at rest, m.
-  /// Tells the force (N) that holds the joint at `u`; and the energy in the bars (J).
+  /// Returns the force (N) that holds the joint at `u`; and the energy in the bars (J).
   double force(double u) const noexcept;
   double energy(double u) const noexcept;  ///< Tells that in the bars, J.
-  /// Tells the stiffness at `u`, N/m; below zero between the limit points.
+  /// Returns the stiffness at `u`, N/m; below zero between the limit points.
   double stiffness(double u) const noexcept;
 
-  /// Tells where the joint, pressed through a spring of `spring` N/m (0: by a dead load), leaves
+  /// Returns where the joint, pressed through a spring of `spring` N/m (0: by a dead load), leaves
   /// the first shape, m. Nothing if the spring is so stiff that the joint never jumps.
   std::optional<double> limit_point(double spring = 0) const noexcept;
-  /// Tells the load under which it snaps in, N; out again at minus this.
+  /// Returns the load under which it snaps in, N; out again at minus this.
   double limit_load() const noexcept;
 
   /// Finds the resting place of the joint under F(u) + spring u = load on the side of the first

@@ -19,7 +19,7 @@ class ModalMotion {
  public:
   using Vector = typename SpringNetwork<kDof>::Vector;  ///< Numbers of a node.
 
-  /// Is the most modes (nodes times directions) that are worked out: about 3 s and 20 MB.
+  /// The most modes (nodes times directions) that are worked out: about 3 s and 20 MB.
   static constexpr std::int32_t kModesMax = 1600;
 
   /// Finds the modes for steps of `step` s (> 0). The error says that the network is too large, or
@@ -30,7 +30,7 @@ class ModalMotion {
 
   // All of the following are Real-time: safe. Precondition: numbers name nodes that exist.
 
-  /// Tells the frequency of a mode, rad/s; modes go from slow to fast.
+  /// Returns the frequency of a mode, rad/s; modes go from slow to fast.
   double omega(std::int32_t mode) const noexcept { return omega_[static_cast<std::size_t>(mode)]; }
 
   /// Adds displacement `u` (m) and velocity `v` (m/s) at a node, relative to its base point.
@@ -39,11 +39,11 @@ class ModalMotion {
   void push(std::int32_t node, const Vector& f) noexcept;
   /// Moves on by one step under the forces pushed, which are then gone.
   void step() noexcept;
-  /// Tells where a node is (m) and how it moves (m/s), relative to its base point.
+  /// Returns where a node is (m) and how it moves (m/s), relative to its base point.
   Vector u(std::int32_t node) const noexcept { return sum(node, x_); }
-  /// Tells how a node moves, relative to its base point, m/s. Real-time: safe.
+  /// Returns how a node moves, relative to its base point, m/s. Real-time: safe.
   Vector v(std::int32_t node) const noexcept { return sum(node, xdot_); }
-  /// Tells the energy of all modes, J.
+  /// Returns the energy of all modes, J.
   double energy() const noexcept;
 
  private:

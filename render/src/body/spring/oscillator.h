@@ -2,7 +2,7 @@
 
 namespace thimble::render {
 
-/// Is the exact way of a damped oscillator m x'' + b x' + k x = f over one step, f held:
+/// The exact way of a damped oscillator m x'' + b x' + k x = f over one step, f held:
 ///
 ///     x+ = xx x + xv v + xf f        v+ = vx x + vv v + vf f
 ///

@@ -6,7 +6,7 @@
 
 namespace thimble::render {
 
-/// Is the largest eigenvalue of M^-1 A.
+/// The largest eigenvalue of M^-1 A.
 struct SpectralRadius {
   double value = 0;       ///< With its remainder added; never above `gershgorin`.
   double gershgorin = 0;  ///< From row sums.

@@ -53,8 +53,8 @@ class SpringMotion {
   // All of the following are Real-time: safe. Precondition: numbers name nodes that exist.
 
   const SpringNetwork<kDof>& network() const noexcept { return network_; }  ///< Shows the network.
-  int substeps() const noexcept { return substeps_; }  ///< Tells the steps of a tick.
-  /// Tells how the step stands to the limit, in a sentence for a log. Real-time: never.
+  int substeps() const noexcept { return substeps_; }  ///< Returns the steps of a tick.
+  /// Returns how the step stands to the limit, in a sentence for a log. Real-time: never.
   std::string describe() const;
 
   /// Tells displacement (m) and velocity (m/s) of each node, relative to its base point.
@@ -70,7 +70,7 @@ class SpringMotion {
   /// Moves on by one step under the forces pushed, which are then gone.
   void step() noexcept;
 
-  /// Tells the energy of springs and masses, J.
+  /// Returns the energy of springs and masses, J.
   double energy() const noexcept { return network_.energy(u_, v_); }
 
  private:

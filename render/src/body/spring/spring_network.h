@@ -11,7 +11,7 @@
 
 namespace thimble::render {
 
-/// Is one node: a mass on a spring and a damper to its own base point [BP Fig. 6, 7].
+/// One node: a mass on a spring and a damper to its own base point [BP Fig. 6, 7].
 struct BodyNode {
   double mass = 1e-3;         ///< kg, > 0
   double base_stiffness = 0;  ///< N/m, >= 0
@@ -37,7 +37,7 @@ struct NetworkWeights {
   bool joined = true;        ///< False if all of `half` is 0, so that nobody need look there.
 };
 
-/// Is masses, springs and dampers between nodes: M u'' + C u' + K u = f, with u the displacements
+/// Masses, springs and dampers between nodes: M u'' + C u' + K u = f, with u the displacements
 /// from the base points. `kDof` = 3: vectors (m); 1: displacements along each vertex's normal (m).
 ///
 /// Linear in u, and at rest at u = 0 wherever the base points are: who moves base points (rigid
@@ -57,15 +57,15 @@ class SpringNetwork {
   // All of the following are Real-time: safe. Precondition: numbers name what exists, spans hold
   // one entry per node.
 
-  /// Tells the number of nodes. Real-time: safe.
+  /// Returns the number of nodes. Real-time: safe.
   std::int32_t node_count() const noexcept { return static_cast<std::int32_t>(mass_.size()); }
-  /// Tells the mass of a node, kg. Real-time: safe.
+  /// Returns the mass of a node, kg. Real-time: safe.
   double mass(std::int32_t node) const noexcept { return mass_[static_cast<std::size_t>(node)]; }
   const NetworkWeights& stiffness() const noexcept { return stiffness_; }  ///< Shows the springs.
   const NetworkWeights& damping() const noexcept { return damping_; }      ///< Shows the dampers.
-  /// Tells whether springs or dampers join nodes, and whether there are dampers at all.
+  /// Returns whether springs or dampers join nodes, and whether there are dampers at all.
   bool coupled() const noexcept { return coupled_; }
-  bool damped() const noexcept { return damped_; }  ///< Tells whether dampers are there.
+  bool damped() const noexcept { return damped_; }  ///< Returns whether dampers are there.
   const NetworkBounds& bounds() const noexcept { return bounds_; }  ///< Tells its bounds.
 
   /// Lists the nodes that springs join to `node`.
@@ -82,7 +82,7 @@ class SpringNetwork {
   Vector row(const NetworkWeights& weights, std::int32_t node,
              std::span<const Vector> x) const noexcept;
 
-  /// Tells the energy of displacements `u` (m) and velocities `v` (m/s), J.
+  /// Returns the energy of displacements `u` (m) and velocities `v` (m/s), J.
   double energy(std::span<const Vector> u, std::span<const Vector> v) const noexcept;
 
  private:

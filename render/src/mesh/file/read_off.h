@@ -8,7 +8,7 @@
 
 namespace thimble::render {
 
-/// Is the largest coordinate a mesh file may hold, in the file's unit. Up to here doubles tell
+/// The largest coordinate a mesh file may hold, in the file's unit. Up to here doubles tell
 /// places apart to better than one unit, and products of three stay far from overflow.
 inline constexpr double kCoordinateMax = 1e15;
 

@@ -28,7 +28,7 @@ struct MeshComponents {
 /// the servo thread.
 MeshComponents find_components(const TriangleMesh& mesh, const std::vector<EdgeUse>& uses);
 
-/// Tells what was done to wind the triangles of a mesh alike.
+/// Returns what was done to wind the triangles of a mesh alike.
 struct OrientReport {
   std::size_t turned_triangles = 0;      ///< Triangles that stand the other way round now.
   std::int32_t first_turned = -1;        ///< The first of them, -1 for none.
@@ -45,7 +45,7 @@ struct OrientReport {
 /// O(n log n), and see check_mesh. Real-time: never from the servo thread.
 OrientReport orient_mesh(TriangleMesh& mesh);
 
-/// Tells an orientation as one sentence for the user ("5 triangles were turned round ..."); empty
+/// Returns an orientation as one sentence for the user ("5 triangles were turned round ..."); empty
 /// if nothing had to be turned and every component has two sides.
 std::string describe(const OrientReport& report);
 

@@ -8,7 +8,7 @@
 
 namespace thimble::render {
 
-/// Is the friction to use: a bristle between tip and surface that bends with the way, and is
+/// The friction to use: a bristle between tip and surface that bends with the way, and is
 /// dragged along where it would pull harder than friction can (the form of Hayward and Armstrong)
 /// [PHYSICS 2.2, H].
 ///

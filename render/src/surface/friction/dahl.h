@@ -8,7 +8,7 @@
 
 namespace thimble::render {
 
-/// Is Dahl's friction: it grows with the way, dF/dx = stiffness (1 - F / F_c), and nears sliding
+/// Dahl's friction: it grows with the way, dF/dx = stiffness (1 - F / F_c), and nears sliding
 /// friction without a corner. Taken over each tick by its exact solution, exp in |dx|, so that no
 /// step is too long [PHYSICS 2.2, I]. Soft and rounded; static and sliding friction are the same.
 class DahlLaw {

@@ -12,7 +12,7 @@ namespace thimble::render {
 
 // What several frictions are set by.
 
-/// Is dry friction's size: what share of the normal force holds back.
+/// Dry friction's size: what share of the normal force holds back.
 struct CoulombSettings {
   double sliding = 0;  ///< While sliding, no unit, >= 0. The key `coefficient`, 0.3 if not given.
   double holding = 0;  ///< Before it slides; at least `sliding`. The key `static_coefficient`.
@@ -23,7 +23,7 @@ struct CoulombSettings {
     sliding = coefficient;
   }
 
-  /// Tells how much more it holds before it slides, >= 1. Real-time: safe.
+  /// Returns how much more it holds before it slides, >= 1. Real-time: safe.
   double ratio() const noexcept { return sliding > 0 ? holding / sliding : 1; }
 
   /// Reads the sliding coefficient alone. Real-time: never from the servo thread.
@@ -33,7 +33,7 @@ struct CoulombSettings {
   void read(SettingsReader& reader, double ratio = 1);
 };
 
-/// Is the part of a friction that grows with speed. It fades towards the surface, because it does
+/// The part of a friction that grows with speed. It fades towards the surface, because it does
 /// not end with the normal force by itself.
 struct ViscousSettings {
   double viscous = 0;          ///< N s/m
@@ -47,7 +47,7 @@ struct ViscousSettings {
   }
 };
 
-/// Tells how stiff (N/m) a friction may hold, so that the arm stays quiet: the stuck bristle is a
+/// Returns how stiff (N/m) a friction may hold, so that the arm stays quiet: the stuck bristle is a
 /// wall, and
 ///     stiffness <= min( (b + b_hand) / (1.5 L), 2 c / step ),   L = tick / 2 + delay
 /// [PHYSICS 2.3], with a hand of 3 N s/m [PHYSICS 0]. Without known dry friction of the
@@ -78,7 +78,7 @@ class VectorLowPass {
   }
   void turn(const Turn& turn) noexcept { value_ = turn.carry(value_); }
   void forget() noexcept { value_.setZero(); }
-  const Eigen::Vector3d& value() const noexcept { return value_; }  ///< Tells the last, filtered.
+  const Eigen::Vector3d& value() const noexcept { return value_; }  ///< Returns the last, filtered.
 
  private:
   double corner_frequency_;

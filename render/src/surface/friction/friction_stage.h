@@ -12,7 +12,7 @@
 
 namespace thimble::render {
 
-/// Is how one kind of friction answers a way along the surface.
+/// How one kind of friction answers a way along the surface.
 ///
 /// `pull` gives the force (N in W) along the surface with which the surface holds back, in the
 /// direction in which the tip moved: the hand feels its opposite. `turn` carries what is remembered
@@ -27,7 +27,7 @@ concept FrictionLaw = requires(Law law, const SlideTick& tick, const Turn& turn)
   noexcept->std::same_as<void>;
 };
 
-/// Is a friction on a surface: a SurfaceStage around a FrictionLaw.
+/// A friction on a surface: a SurfaceStage around a FrictionLaw.
 ///
 /// It acts along the surface only, and only as far as the surface presses back, so that it ends
 /// with the contact: leaving neither pulls nor sticks. It stands after the surface's spring and

@@ -8,7 +8,7 @@
 
 namespace thimble::render {
 
-/// Is Coulomb's set-valued friction on a point without mass that hangs on the tip by a spring and a
+/// Coulomb's set-valued friction on a point without mass that hangs on the tip by a spring and a
 /// damper, solved by the implicit Euler step (the form of Kikuuwe and others) [PHYSICS 2.2, J].
 /// Like the bristle with damping of its own; static and sliding friction are the same.
 class ImplicitCoulombLaw {

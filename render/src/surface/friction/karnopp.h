@@ -8,7 +8,7 @@
 
 namespace thimble::render {
 
-/// Is Karnopp's friction with a stick spring: above a speed it slides, against the smoothed
+/// Karnopp's friction with a stick spring: above a speed it slides, against the smoothed
 /// velocity; below half of it, or when the tip turns back, a spring and a damper hold
 /// [PHYSICS 2.2, G].
 ///

@@ -8,7 +8,7 @@
 
 namespace thimble::render {
 
-/// Is the LuGre friction: Dahl's bristles with damping (sigma1), viscous friction (sigma2) and less
+/// The LuGre friction: Dahl's bristles with damping (sigma1), viscous friction (sigma2) and less
 /// friction the faster it slides (Stribeck), from static to sliding over `stribeck_speed`.
 ///
 /// The bristles follow z <- z_ss + (z - z_ss) exp(-sigma0 |v| T / g), which no stiffness and no

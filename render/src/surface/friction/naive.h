@@ -9,7 +9,7 @@
 
 namespace thimble::render {
 
-/// Is the friction of the textbook, against the direction of the last move. With encoders that have
+/// The friction of the textbook, against the direction of the last move. With encoders that have
 /// steps it has a limit cycle [BP 4.2]: kept to show why the others exist. [PHYSICS 2.1, A and B]
 class NaiveFrictionLaw {
  public:

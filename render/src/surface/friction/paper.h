@@ -10,7 +10,7 @@
 
 namespace thimble::render {
 
-/// Is the paper's cure: friction that depends on velocity, its direction smoothed, dry friction
+/// The paper's cure: friction that depends on velocity, its direction smoothed, dry friction
 /// (depth times stiffness times coefficient) and viscous friction in any proportion [BP 4.2]. It is
 /// quiet, but holds nothing at rest: under any load it creeps. [PHYSICS 2.2, D, E and F]
 class PaperFrictionLaw {

@@ -24,7 +24,7 @@ inline Eigen::Vector3d direction_of(const Eigen::Vector3d& v) noexcept {
   return v / std::sqrt(length2);
 }
 
-/// Is one tick of contact as a friction sees it.
+/// One tick of contact as a friction sees it.
 struct SlideTick {
   Eigen::Vector3d n_W{0, 0, 1};   ///< Outward unit normal.
   Eigen::Vector3d slip{0, 0, 0};  ///< Way of the tip along the surface since the last tick, m in W.

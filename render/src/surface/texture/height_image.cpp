@@ -9,7 +9,7 @@
 namespace thimble::render {
 namespace {
 
-/// Is the part of each of four neighbours of a uniform cubic B-spline, and how it changes.
+/// The part of each of four neighbours of a uniform cubic B-spline, and how it changes.
 struct Spline {
   std::array<double, 4> weight, slope;
 

@@ -9,12 +9,12 @@
 
 namespace thimble::render {
 
-/// Is a grey picture read as heights that repeats in both directions. Between its pixels runs a
+/// A grey picture read as heights that repeats in both directions. Between its pixels runs a
 /// cubic B-spline: smooth in value, slope and curvature, never above the brightest nor below the
 /// darkest pixel nearby. It rounds off what is finer than about three pixels.
 class HeightImage {
  public:
-  /// Is the most pixels that a side may have: 32 MB of heights. [chosen]
+  /// The most pixels that a side may have: 32 MB of heights. [chosen]
   static constexpr std::size_t kSideMax = 2048;
 
   /// Takes `values` (0 to 1, rows from the bottom, each from the left).
@@ -26,7 +26,7 @@ class HeightImage {
   /// kSideMax. Real-time: never from the servo thread.
   static driver::Result<HeightImage> load(const std::filesystem::path& file);
 
-  /// Is what the image says at a place: height and slope.
+  /// What the image says at a place: height and slope.
   struct Sample {
     double value = 0;  ///< 0 to 1
     double du = 0;     ///< Per pixel to the right.
@@ -38,7 +38,7 @@ class HeightImage {
 
   std::size_t width() const noexcept { return width_; }    ///< Pixels.
   std::size_t height() const noexcept { return height_; }  ///< Pixels.
-  /// Is a bound of the slope's size, per pixel. Real-time: safe.
+  /// A bound of the slope's size, per pixel. Real-time: safe.
   double slope_max() const noexcept { return slope_max_; }
 
  private:

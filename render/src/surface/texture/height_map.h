@@ -38,7 +38,8 @@ class HeightMap {
     /// Reads `form`, `hand_speed`, `image`, `width`, `height`, `along`.
     /// Real-time: never from the servo thread.
     void read(SettingsReader& reader, const EffectContext& context);
-    /// Tells how high and steep it is. Precondition: it has an image and a width. Real-time: safe.
+    /// Returns how high and steep it is. Precondition: it has an image and a width. Real-time:
+    /// safe.
     TextureExtent extent() const noexcept;
   };
 

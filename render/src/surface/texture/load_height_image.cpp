@@ -14,7 +14,7 @@ struct CloseFile {
   void operator()(std::FILE* file) const { std::fclose(file); }
 };
 
-/// Is what a PNG is turned into: one 16-bit grey value per pixel, rows from the top.
+/// What a PNG is turned into: one 16-bit grey value per pixel, rows from the top.
 struct Picture {
   std::size_t width = 0, height = 0;
   std::vector<png_uint_16> grey;

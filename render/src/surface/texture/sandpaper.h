@@ -29,7 +29,7 @@ class Sandpaper {
     /// Reads `form`, `hand_speed`, `grain`, `roughness`, `seed`.
     /// Real-time: never from the servo thread.
     void read(SettingsReader& reader, const EffectContext& context);
-    /// Tells how high and steep it is. Real-time: safe.
+    /// Returns how high and steep it is. Real-time: safe.
     TextureExtent extent() const noexcept;
   };
 

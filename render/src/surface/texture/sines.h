@@ -23,7 +23,7 @@ class Sines {
   static constexpr EffectOrder kOrder = EffectOrder::kDepth;
 
   struct Settings : TextureSettings {
-    /// Is one wave.
+    /// One wave.
     struct One {
       double amplitude = 0;                ///< Half from valley to peak, m.
       double wavelength = 0;               ///< m
@@ -35,7 +35,7 @@ class Sines {
     /// Reads `form`, `hand_speed` and the list `waves`: amplitude, wavelength or frequency (waves
     /// per metre), direction, phase. Real-time: never from the servo thread.
     void read(SettingsReader& reader, const EffectContext& context);
-    /// Tells how high and steep they are together. Precondition: each has a length.
+    /// Returns how high and steep they are together. Precondition: each has a length.
     /// Real-time: safe.
     TextureExtent extent() const noexcept;
   };

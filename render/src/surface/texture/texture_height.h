@@ -9,7 +9,7 @@
 
 namespace thimble::render {
 
-/// Is the height of a texture at one place. Textures are cut into the object: their peaks lie in
+/// The height of a texture at one place. Textures are cut into the object: their peaks lie in
 /// its surface, so a height is never above 0. Else contact would begin with a step of force, and
 /// whoever comes in by a valley and leaves by a peak would take energy with him.
 struct TextureHeight {

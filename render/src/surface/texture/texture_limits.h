@@ -9,15 +9,15 @@
 
 namespace thimble::render {
 
-/// Is how steep a texture may be: at 45 degrees the surface is twice as stiff along the slope as
+/// How steep a texture may be: at 45 degrees the surface is twice as stiff along the slope as
 /// along the normal; what is steeper is geometry and belongs into the mesh. [chosen]
 inline constexpr double kTextureSlopeMax = 1;
 
-/// Is the speed of a hand up to which a texture keeps its lines, unless a scene says otherwise,
+/// The speed of a hand up to which a texture keeps its lines, unless a scene says otherwise,
 /// m/s: a fast exploring stroke. [chosen; scenes vary it]
 inline constexpr double kTextureHandSpeed = 0.1;
 
-/// Is what all textures may be asked: how they push, and how fast the hand is expected to be.
+/// What all textures may be asked: how they push, and how fast the hand is expected to be.
 struct TextureSettings {
   TextureForm form = TextureForm::kConservative;  ///< What it does besides.
   double hand_speed = kTextureHandSpeed;          ///< m/s
@@ -26,7 +26,7 @@ struct TextureSettings {
   void read(SettingsReader& reader);
 };
 
-/// Is what decides whether a texture can be felt as it is meant.
+/// What decides whether a texture can be felt as it is meant.
 struct TextureExtent {
   double relief = 0;      ///< From its lowest to its highest place, m.
   double slope = 0;       ///< The steepest, or its root mean square where it is random.

@@ -8,14 +8,14 @@
 
 namespace thimble::render {
 
-/// Is one plane wave through space: amplitude * sin(k . p + phase).
+/// One plane wave through space: amplitude * sin(k . p + phase).
 struct Wave {
   double amplitude = 0;          ///< m
   Eigen::Vector3d k_M{0, 0, 0};  ///< Wave vector, rad/m.
   double phase = 0;              ///< rad
 };
 
-/// Is a height made of plane waves, lowered so that its highest possible peak is 0. The waves run
+/// A height made of plane waves, lowered so that its highest possible peak is 0. The waves run
 /// through the whole space, and the object's surface is cut out of them.
 class WaveSum {
  public:
@@ -41,7 +41,7 @@ class WaveSum {
     peak_ *= factor;
   }
 
-  /// Tells how far the height goes down from 0 at most, m. Real-time: safe.
+  /// Returns how far the height goes down from 0 at most, m. Real-time: safe.
   double relief() const noexcept { return 2 * peak_; }
 
  private:

@@ -8,7 +8,7 @@
 
 namespace thimble::device_sim::usb {
 
-/// Is what is true of a simulated arm at its last packets; a driver cannot see it. Frame B: base of
+/// What is true of a simulated arm at its last packets; a driver cannot see it. Frame B: base of
 /// the arm.
 struct ArmTruth {
   std::uint64_t reports = 0;                   ///< Reports that the host took.
@@ -24,7 +24,7 @@ struct ArmTruth {
                                                ///< watchdog fired.
 };
 
-/// Is a simulated arm on a USB plug.
+/// A simulated arm on a USB plug.
 class UsbArm : public UsbDevice {
  public:
   /// Shows what is true. Real-time: safe.

@@ -23,7 +23,7 @@ struct PacketResult {
   std::size_t size = 0;          ///< Bytes moved; more than the host asked for is babble.
 };
 
-/// Is a USB device as its own side of the cable sees it: what it says of itself, and what it does
+/// A USB device as its own side of the cable sees it: what it says of itself, and what it does
 /// when the host polls an endpoint. It knows no kernel, no socket and no clock of its own. Standard
 /// requests are not its business (ControlPipe answers them from the description).
 ///
@@ -31,9 +31,9 @@ struct PacketResult {
 /// safe.
 class UsbDevice {
  public:
-  /// Is the largest packet of a full-speed bus, bytes.
+  /// The largest packet of a full-speed bus, bytes.
   static constexpr std::size_t kPacketMax = 64;
-  /// Is the length of a frame, ns [USB 2.0, 5.3.3].
+  /// The length of a frame, ns [USB 2.0, 5.3.3].
   static constexpr std::int64_t kFrame_ns = 1'000'000;
 
   UsbDevice() = default;
@@ -41,7 +41,7 @@ class UsbDevice {
   UsbDevice& operator=(const UsbDevice&) = delete;
   virtual ~UsbDevice() = default;
 
-  /// Tells what the device is.
+  /// Returns what the device is.
   virtual const UsbDescription& description() const noexcept = 0;
 
   /// Lets time pass up to the start of a frame, ns since the device was plugged in.

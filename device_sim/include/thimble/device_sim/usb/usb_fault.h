@@ -49,11 +49,11 @@ struct FaultOrder {
 /// Real-time: never from the servo thread.
 driver::Result<FaultOrder> parse_fault(std::string_view line);
 
-/// Is a device whose packets go wrong on demand. Control requests pass untouched. Faults of one
+/// A device whose packets go wrong on demand. Control requests pass untouched. Faults of one
 /// direction exclude each other: the one ordered last counts.
 class FaultyDevice final : public UsbDevice {
  public:
-  /// Is how many orders may be open; more push out the oldest.
+  /// How many orders may be open; more push out the oldest.
   static constexpr std::size_t kOrders = 16;
 
   /// Keeps a reference to the device, which must live longer. `seed` chooses the bits that flip.
@@ -65,9 +65,9 @@ class FaultyDevice final : public UsbDevice {
   /// Forgets all orders; an unplugged device is plugged in again. Real-time: safe.
   void heal() noexcept;
 
-  /// Tells whether the device is on the bus. Real-time: safe.
+  /// Returns whether the device is on the bus. Real-time: safe.
   bool plugged() const noexcept { return active(true, FaultKind::kUnplug) == nullptr; }
-  /// Tells how many packets a kind of fault has hit. Real-time: safe.
+  /// Returns how many packets a kind of fault has hit. Real-time: safe.
   std::uint64_t hits(FaultKind kind) const noexcept { return hits_[index(kind)]; }
 
   const UsbDescription& description() const noexcept override { return device_.description(); }
@@ -77,7 +77,7 @@ class FaultyDevice final : public UsbDevice {
   PacketResult out(std::uint8_t address, std::span<const std::byte> packet) noexcept override;
 
  private:
-  /// Is a packet that went by.
+  /// A packet that went by.
   struct Kept {
     std::array<std::byte, kPacketMax> bytes{};
     std::size_t size = 0;

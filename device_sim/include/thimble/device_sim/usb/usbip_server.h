@@ -37,7 +37,7 @@ struct UsbipServerSettings {
 /// number of clients may ask; one at a time may have the device. One thread.
 class UsbipServer {
  public:
-  /// Is called after each frame with its number.
+  /// Called after each frame with its number.
   using FrameObserver = std::function<void(std::int64_t)>;
 
   /// Listens. Keeps a reference to the device, which must live longer. Fails with a sentence that
@@ -68,14 +68,14 @@ class UsbipServer {
   /// that comes too late is left out and counted.
   void run(const std::atomic<bool>& stop, const FrameObserver& observer);
 
-  /// Tells the port that it listens on, 0 if on none.
+  /// Returns the port that it listens on, 0 if on none.
   std::uint16_t port() const noexcept { return port_; }
-  const std::string& bus_id() const noexcept { return bus_id_; }  ///< Tells the device's.
-  /// Tells whether a client has the device now.
+  const std::string& bus_id() const noexcept { return bus_id_; }  ///< Returns the device's.
+  /// Returns whether a client has the device now.
   bool attached() const noexcept;
-  /// Tells how many frames `run` left out.
+  /// Returns how many frames `run` left out.
   std::uint64_t late_frames() const noexcept { return late_frames_; }
-  /// Tells what happened on all connections so far.
+  /// Returns what happened on all connections so far.
   UsbipCounters counters() const noexcept;
 
  private:

@@ -10,7 +10,7 @@
 
 namespace thimble::device_sim::usb {
 
-/// Is where the kernel's virtual USB host shows itself [Linux, drivers/usb/usbip/vhci_sysfs.c].
+/// Where the kernel's virtual USB host shows itself [Linux, drivers/usb/usbip/vhci_sysfs.c].
 inline constexpr const char* kVhciFolder = "/sys/devices/platform/vhci_hcd.0";
 
 /// Finds the first free port for a full-speed device in the kernel's table of ports; empty if there

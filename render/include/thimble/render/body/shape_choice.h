@@ -58,7 +58,7 @@ struct ShapeChoice {
   std::optional<SnapChoice> snap{};  ///< Panels that snap, if any.
   double step = 1e-3;                ///< s, > 0: the loop's period
 
-  bool named() const { return clay || snap; }  ///< Tells whether it is any.
+  bool named() const { return clay || snap; }  ///< Returns whether it is any.
 };
 
 }  // namespace thimble::render

@@ -20,7 +20,7 @@ enum class SpringScheme {
   kModal,            ///< exact at any h, for small meshes (modal_motion.h)
 };
 
-/// Is the scheme of whoever names none: stable at any stiffness, mass and step (spring_motion.h has
+/// The scheme of whoever names none: stable at any stiffness, mass and step (spring_motion.h has
 /// the proof), at the cost of implicit Euler and truer at every step that follows the motion; a
 /// node too fast for its step swings on for as long as its damper lets it.
 inline constexpr SpringScheme kDefaultScheme = SpringScheme::kTrapezoid;
@@ -30,7 +30,7 @@ inline constexpr std::array kSpringSchemes{
     SpringScheme::kImplicitEuler, SpringScheme::kTrapezoid,       SpringScheme::kExponential,
     SpringScheme::kModal};
 
-/// Tells the name of a scheme as scenes spell it ("implicit_euler"). Real-time: safe.
+/// Returns the name of a scheme as scenes spell it ("implicit_euler"). Real-time: safe.
 std::string_view name_of(SpringScheme scheme) noexcept;
 
 /// Finds the largest step (s) at which the scheme stays bounded on a network with these bounds;

@@ -4,7 +4,7 @@
 
 namespace thimble::render {
 
-/// Is what an effect may know of the arm, the loop and the surface it is put on, to choose its
+/// What an effect may know of the arm, the loop and the surface it is put on, to choose its
 /// defaults and to refuse what cannot be stable. All of it is fixed before the first tick.
 struct EffectContext {
   double tick = 0.001;           ///< Period of the loop, s.

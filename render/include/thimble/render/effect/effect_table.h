@@ -22,7 +22,7 @@ enum class EffectOrder : std::uint8_t {
 /// Real-time: never from the servo thread.
 using StageBuilder = std::function<std::unique_ptr<AnyStage>()>;
 
-/// Is one effect that a scene can put on an object: `- GROUP: NAME` and its settings.
+/// One effect that a scene can put on an object: `- GROUP: NAME` and its settings.
 struct EffectKind {
   std::string_view group;  ///< What stands left of the colon: "friction", "texture".
   std::string_view name;   ///< What stands right of it: "bristle".
@@ -32,7 +32,7 @@ struct EffectKind {
   StageBuilder (*read)(SettingsReader& settings, const EffectContext& context);
 };
 
-/// Is one effect with the settings that a scene gives it.
+/// One effect with the settings that a scene gives it.
 struct EffectPlan {
   const EffectKind* kind = nullptr;  ///< What it is.
   StageBuilder build;                ///< Makes it.

@@ -18,7 +18,7 @@ struct ForceSensitivity {
   double always = 0;         ///< N
 };
 
-/// Is one setting of a force law that can be changed between two ticks. The stage that it belongs
+/// One setting of a force law that can be changed between two ticks. The stage that it belongs
 /// to must outlive it.
 struct LiveSetting {
   std::string name;            ///< As a scene names it, with its group: "friction coefficient".

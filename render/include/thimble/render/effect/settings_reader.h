@@ -29,7 +29,7 @@ class SettingsReader {
   SettingsReader& operator=(const SettingsReader&) = delete;
   virtual ~SettingsReader() = default;
 
-  /// Tells whether a setting is given at all.
+  /// Returns whether a setting is given at all.
   virtual bool has(std::string_view key) = 0;
   /// Reads a finite number within limits.
   virtual void number(std::string_view key, double& value, const NumberLimits& limits) = 0;

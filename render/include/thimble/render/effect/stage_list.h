@@ -10,7 +10,7 @@
 
 namespace thimble::render {
 
-/// Is a surface stage whose kind is known only when a scene has been read.
+/// A surface stage whose kind is known only when a scene has been read.
 class AnyStage {
  public:
   AnyStage() = default;
@@ -63,7 +63,7 @@ class AnyStageOf final : public AnyStage {
   Stage stage_;
 };
 
-/// Is a surface stage made of others, run in order: just those that a scene names, one indirect
+/// A surface stage made of others, run in order: just those that a scene names, one indirect
 /// call each.
 class StageList {
  public:

@@ -8,7 +8,7 @@
 
 namespace thimble::render {
 
-/// Is a solid box that stands anywhere. Its faces are numbered -x, +x, -y, +y, -z, +z of its own
+/// A solid box that stands anywhere. Its faces are numbered -x, +x, -y, +y, -z, +z of its own
 /// frame O, from 0.
 struct Box {
   Eigen::Matrix3d R_WO = Eigen::Matrix3d::Identity();  ///< Rotation.
@@ -26,19 +26,19 @@ struct Box {
                          : Eigen::Vector3d(R_WO.col(face / 2));
   }
 
-  /// Tells how far a point (O, m) lies below the plane of a face, m. Real-time: safe.
+  /// Returns how far a point (O, m) lies below the plane of a face, m. Real-time: safe.
   double depth(const Eigen::Vector3d& p_O, std::int32_t face) const noexcept {
     const Eigen::Index axis = face / 2;
     return half_sides[axis] - (face % 2 == 0 ? -p_O[axis] : p_O[axis]);
   }
 
-  /// Tells whether a point (W, m) lies inside. Real-time: safe.
+  /// Returns whether a point (W, m) lies inside. Real-time: safe.
   bool inside(const Eigen::Vector3d& p_W) const noexcept {
     return (to_box(p_W).array().abs() < half_sides.array()).all();
   }
 };
 
-/// Is a box split into wedges, one per face: the nearest face pushes [BP Fig. 2b]. A PrimitiveShape
+/// A box split into wedges, one per face: the nearest face pushes [BP Fig. 2b]. A PrimitiveShape
 /// with six faces.
 ///
 /// Where two faces are equally near the force changes its direction but not its strength; no way

@@ -15,7 +15,7 @@ namespace thimble::render {
 /// Real-time: never from the servo thread.
 using FieldBuilder = std::function<std::unique_ptr<ObjectTouch>()>;
 
-/// Is one field that a scene can name: `field: NAME` and its settings.
+/// One field that a scene can name: `field: NAME` and its settings.
 struct FieldKind {
   std::string_view name;  ///< As scenes name it.
   /// Reads the settings. Mistakes are told to the reader; what comes back is then not to be used.

@@ -12,7 +12,7 @@
 
 namespace thimble::render {
 
-/// Is a force that fills the space and needs no surface [BP 2, "continuous vector fields"]: a pure
+/// A force that fills the space and needs no surface [BP 2, "continuous vector fields"]: a pure
 /// function of the state. `force` gives the force on the hand (N in W) and is Real-time: safe.
 template <class F>
 concept Field = requires(const F& field, const driver::DeviceState& state) {
@@ -20,7 +20,7 @@ concept Field = requires(const F& field, const driver::DeviceState& state) {
   noexcept->std::convertible_to<Eigen::Vector3d>;
 };
 
-/// Is a field as an object of a scene. It has no inside and is never in contact.
+/// A field as an object of a scene. It has no inside and is never in contact.
 template <Field F>
 class FieldTouch final : public ObjectTouch {
  public:
@@ -39,7 +39,7 @@ class FieldTouch final : public ObjectTouch {
   F field_;
 };
 
-/// Is any function of the state as a field.
+/// Any function of the state as a field.
 template <class Function>
 requires std::is_nothrow_invocable_r_v<Eigen::Vector3d, const Function&, const driver::DeviceState&>
 class FunctionField {

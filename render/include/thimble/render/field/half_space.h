@@ -6,17 +6,17 @@
 
 namespace thimble::render {
 
-/// Is a half-space: all that lies below a plane. A PrimitiveShape with one face [BP 2, the wall].
+/// A half-space: all that lies below a plane. A PrimitiveShape with one face [BP 2, the wall].
 struct HalfSpace {
   Eigen::Vector3d n_W{0, 0, 1};   ///< Outward unit normal; whoever fills it in makes it unit.
   Eigen::Vector3d p_WO{0, 0, 0};  ///< Any point of the plane, m.
 
-  /// Tells how deep a point (W, m) lies below the plane. NaN lies outside. Real-time: safe.
+  /// Returns how deep a point (W, m) lies below the plane. NaN lies outside. Real-time: safe.
   PrimitivePlace place(const Eigen::Vector3d& p_W, const Eigen::Vector3d&) const noexcept {
     return {.depth = n_W.dot(p_WO - p_W), .n_W = n_W};
   }
 
-  /// Tells whether a point (W, m) lies below the plane. Real-time: safe.
+  /// Returns whether a point (W, m) lies below the plane. Real-time: safe.
   bool inside(const Eigen::Vector3d& p_W) const noexcept { return n_W.dot(p_WO - p_W) > 0; }
 };
 

@@ -6,13 +6,13 @@
 
 namespace thimble::render {
 
-/// Is a ball; its force points away from the centre [BP 2]. A PrimitiveShape with one face.
+/// A ball; its force points away from the centre [BP 2]. A PrimitiveShape with one face.
 struct Sphere {
   Eigen::Vector3d p_WO{0, 0, 0};  ///< Centre, m.
   double radius = 0;              ///< m, > 0
 
-  /// Tells how deep a point (W, m) lies below the surface. NaN lies outside. At the very centre the
-  /// normal is the last one felt, or up where there was none. Real-time: safe.
+  /// Returns how deep a point (W, m) lies below the surface. NaN lies outside. At the very centre
+  /// the normal is the last one felt, or up where there was none. Real-time: safe.
   PrimitivePlace place(const Eigen::Vector3d& p_W,
                        const Eigen::Vector3d& n_before_W) const noexcept {
     const Eigen::Vector3d p_O = p_W - p_WO;
@@ -31,7 +31,7 @@ struct Sphere {
   /// Infinite at the centre. Real-time: safe.
   double stretch(double depth) const noexcept { return radius / (radius - depth); }
 
-  /// Tells whether a point (W, m) lies inside. Real-time: safe.
+  /// Returns whether a point (W, m) lies inside. Real-time: safe.
   bool inside(const Eigen::Vector3d& p_W) const noexcept { return (p_W - p_WO).norm() < radius; }
 };
 

@@ -11,12 +11,12 @@
 
 namespace thimble::render {
 
-/// Is a triangle's smallest height as a share of its longest edge at or below which it counts as
+/// A triangle's smallest height as a share of its longest edge at or below which it counts as
 /// degenerate: coordinates carry 2^-53 of their size, so a flatter triangle's normal would be wrong
 /// by more than about 1e-4 rad. Relative, so that scaling a mesh changes no finding.
 inline constexpr double kFlatness = 1e-12;
 
-/// Is the most places of one kind of fault that are listed: plenty for a picture, and a bound on
+/// The most places of one kind of fault that are listed: plenty for a picture, and a bound on
 /// memory for a mesh where everything is wrong.
 inline constexpr std::size_t kPlacesMax = 10000;
 
@@ -24,7 +24,7 @@ inline constexpr std::size_t kPlacesMax = 10000;
 /// They may name vertices that do not exist if that is the fault.
 using FaultPlace = std::array<std::int32_t, 3>;
 
-/// Is one kind of fault that keeps a mesh from being touched, how often it stands in the mesh, and
+/// One kind of fault that keeps a mesh from being touched, how often it stands in the mesh, and
 /// where it stands first.
 struct MeshFault {
   /// What is wrong with a mesh.
@@ -46,7 +46,7 @@ struct MeshFault {
   std::vector<FaultPlace> places{};
 };
 
-/// Tells what a mesh is and what is wrong with it.
+/// Returns what a mesh is and what is wrong with it.
 struct MeshFindings {
   std::size_t vertices = 0;                          ///< In the file.
   std::size_t unused_vertices = 0;                   ///< That no triangle has.

@@ -25,7 +25,7 @@ struct RepairOptions {
   bool orient = true;  ///< Wind triangles alike and outwards (see orient_mesh).
 };
 
-/// Is one kind of change that a repair made, how often, and where first.
+/// One kind of change that a repair made, how often, and where first.
 struct RepairChange {
   /// What was done.
   enum class Kind {
@@ -45,7 +45,7 @@ struct RepairChange {
   std::string where;      ///< The first place, with the numbers of the mesh before the repair.
 };
 
-/// Is a mesh after a repair, and all that was changed, in the order of RepairChange::Kind.
+/// A mesh after a repair, and all that was changed, in the order of RepairChange::Kind.
 struct RepairedMesh {
   TriangleMesh mesh;                  ///< As it is now.
   std::vector<RepairChange> changes;  ///< What was done to it.

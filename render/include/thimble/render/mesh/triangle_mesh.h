@@ -8,7 +8,7 @@
 
 namespace thimble::render {
 
-/// Is a set of triangles over shared vertices: what files hold, before anything is known of it.
+/// A set of triangles over shared vertices: what files hold, before anything is known of it.
 struct TriangleMesh {
   std::vector<Eigen::Vector3d> vertices;  ///< Positions, in the file's unit or in m.
   std::vector<std::array<std::int32_t, 3>>

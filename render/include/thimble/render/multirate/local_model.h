@@ -6,7 +6,7 @@
 
 namespace thimble::render {
 
-/// Is what the tip of an arm feels near one place, as a simulation that is too slow for the servo
+/// What the tip of an arm feels near one place, as a simulation that is too slow for the servo
 /// tells it: a force there and how it changes with the tip's way.
 ///
 ///     f(p) = f_T_W - stiffness (p - p_WR), as long as it pushes along n_W; else nothing

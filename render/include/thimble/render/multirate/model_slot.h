@@ -8,7 +8,7 @@
 
 namespace thimble::render {
 
-/// Is where a slow simulation leaves its newest model for the servo: one writer, any number of
+/// Where a slow simulation leaves its newest model for the servo: one writer, any number of
 /// readers, no lock. It holds no pointer, so it may lie in memory that two processes share.
 class ModelSlot {
  public:
@@ -21,11 +21,11 @@ class ModelSlot {
   /// Real-time: safe; a few hundred instructions.
   bool newest(LocalModel& model) const noexcept;
 
-  /// Tells how many models were published. Real-time: safe.
+  /// Returns how many models were published. Real-time: safe.
   std::uint64_t count() const noexcept { return snapshot_.count(); }
 
  private:
-  /// Is a model as plain numbers: what a Snapshot copies.
+  /// A model as plain numbers: what a Snapshot copies.
   struct Words {
     double p[3], f[3], stiffness[9], damping, n[3];
     std::int64_t time_ns;

@@ -79,11 +79,11 @@ class ModelTouch final : public ObjectTouch {
   bool inside(const Eigen::Vector3d&) const noexcept override { return false; }
   bool stands_still() const noexcept override { return false; }
 
-  /// Tells how old what is felt is; from any thread.
+  /// Returns how old what is felt is; from any thread.
   ModelAge age() const noexcept { return age_.load(std::memory_order_relaxed); }
-  /// Tells the counters; on the servo's thread, or when it has ended.
+  /// Returns the counters; on the servo's thread, or when it has ended.
   const ModelCounters& counters() const noexcept { return counters_; }
-  /// Tells the account, J; as `counters`.
+  /// Returns the account, J; as `counters`.
   double energy() const noexcept { return energy_; }
 
  private:
