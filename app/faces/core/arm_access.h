@@ -51,7 +51,8 @@ bool ask_force(int arm, const ForceAsked& asked) noexcept;
 bool wait_until_taken(int arm) noexcept;
 
 /// Lets all force through, the program's and the scene's, or none. Switched on it opens slowly
-/// (soft start). Where the arm is in fault and the cause is over, it is activated anew.
+/// (soft start). A simulated arm that is in fault, with the cause over, is activated anew; a real
+/// one waits for a person.
 bool enable_force(int arm, bool enabled) noexcept;
 /// Returns whether force is let through.
 bool force_enabled(int arm) noexcept;

@@ -96,7 +96,8 @@ driver::Result<void> ArmRun::start(const std::atomic<bool>& stop) {
   if (!open) return open.error();
   if (!*open) return driver::Error{"It was stopped before the arm was in its place."};
   const scene::ArmFile& arm = session_->scene().arm;
-  client_ = std::make_unique<ClientForce>(channel_, session_->own_law(), session_->device());
+  client_ = std::make_unique<ClientForce>(channel_, session_->own_law(), session_->device(),
+                                          !session_->setup().real_arm());
   publisher_ = std::make_unique<ReadingPublisher>(channel_, *client_, session_->device(), arm);
   if (auto set = session_->set_servo_law(driver::ForceLaw(*client_)); !set) return set;
   if (options_.opened) options_.opened(index_, *session_);

@@ -14,12 +14,13 @@ double opened_further(double opened, double dt, double opening) noexcept {
 
 }  // namespace
 
-ClientForce::ClientForce(ArmChannel& channel, driver::ForceLaw scene,
-                         driver::Device& device) noexcept
+ClientForce::ClientForce(ArmChannel& channel, driver::ForceLaw scene, driver::Device& device,
+                         bool may_activate) noexcept
     : channel_(channel),
       scene_(scene),
       device_(device),
       limits_(device.gate().limits()),
+      may_activate_(may_activate),
       enablings_(channel.enablings.load()) {
   // What a program asked for before this run began counts no more.
   ForceWritten old;
@@ -51,8 +52,7 @@ void ClientForce::take(const driver::DeviceState& state) noexcept {
   if (enablings != enablings_) {
     enablings_ = enablings;
     opened_ = 0;
-    // Who switches the force on asks for it; so a fault whose cause is over ends here.
-    if (device_.fault() != driver::Fault::kNone) device_.ask_to_activate();
+    if (may_activate_ && device_.fault() != driver::Fault::kNone) device_.ask_to_activate();
   }
   ForceWritten written;
   if (!channel_.force.load(written, kAttempts) || written.number == taken_) return;

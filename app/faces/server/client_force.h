@@ -23,7 +23,10 @@ class ClientForce {
  public:
   /// Takes the channel, the scene's law, and the device once it is open; all must outlive it.
   /// Real-time: never from the servo thread.
-  ClientForce(ArmChannel& channel, driver::ForceLaw scene, driver::Device& device) noexcept;
+  /// `may_activate`: the program may end a fault by switching the force on. Only of a simulated
+  /// arm: where somebody holds a motor, a person says so.
+  ClientForce(ArmChannel& channel, driver::ForceLaw scene, driver::Device& device,
+              bool may_activate) noexcept;
 
   /// Returns the force of a tick. Real-time: safe.
   driver::ForceCommand operator()(const driver::DeviceState& state) noexcept;
@@ -47,6 +50,7 @@ class ClientForce {
   driver::ForceLaw scene_;
   driver::Device& device_;
   driver::GateLimits limits_;
+  bool may_activate_;
   Eigen::Vector3d f_asked_W_{0, 0, 0};
   Eigen::Vector3d f_client_W_{0, 0, 0};
   std::uint64_t taken_ = 0;
