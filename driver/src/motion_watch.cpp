@@ -6,9 +6,10 @@
 namespace thimble::driver {
 namespace {
 
-// All thresholds: [chosen] by tests/unit/device_sim/motion_watch_test.cpp, so that random hands (100
-// to 1000 N/m, up to 1.5 m/s) on sound arms stay below them and the touch of a reversed arm does not.
-// Of 6000 such hands, 3.3 hours, one did not stay below: a stroke at 1.4 m/s from its first tick on.
+// All thresholds: [chosen] by tests/unit/device_sim/motion_watch_test.cpp, so that random hands
+// (100 to 1000 N/m, up to 1.5 m/s) on sound arms stay below them and the touch of a reversed arm
+// does not. Of 6000 such hands, 3.3 hours, one did not stay below: a stroke at 1.4 m/s from its
+// first tick on.
 
 // Forces that change by less in 20 ms do not tell the hand's part from the motors', N: a hand
 // makes 75 N/s at will. Then: what makes it doubtful, what is enough if it is sudden, what is

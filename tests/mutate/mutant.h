@@ -1,6 +1,7 @@
-// What a mutated source asks: is this mutant the one to be tried? Included in front of every source by
-// tests/mutate.sh. THIMBLE_MUTANT in the environment names it; THIMBLE_MUTANTS_REACHED names a file of
-// one byte per mutant, in which is noted which of them a run has come by, also by its child processes.
+// What a mutated source asks: is this mutant the one to be tried? Included in front of every source
+// by tests/mutate.sh. THIMBLE_MUTANT in the environment names it; THIMBLE_MUTANTS_REACHED names a
+// file of one byte per mutant, in which is noted which of them a run has come by, also by its child
+// processes.
 #pragma once
 
 #include <fcntl.h>
