@@ -2,7 +2,7 @@
 # Breaks single places of driver and render and looks whether a test fails: what survives is a fault that no
 # test would see. Writes tests/MUTANTS.md; at least 90 % must be killed.
 #   tests/mutate.sh [--count N] [--seed S] [--library driver|render] [--survivors] [--again FILE:LINE]...
-#     --count N     a sample of N mutants, half of them of each library; 340 without it
+#     --count N     a sample of N mutants, half of them of each library; 400 without it
 #     --survivors   after new tests: only what survived the run before, or was not reached by it when it was
 #                   interrupted; of the others its result is taken
 #     --again       only mutants of that line, and nothing is written
