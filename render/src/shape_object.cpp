@@ -79,11 +79,13 @@ Built shaped_touch(const TriangleMesh& mesh_W, const ContactChoice& choice,
   }
   const std::size_t triangles_max = triangles_max_of(surface.shape);
   if (triangles_max > 0) {
-    if (blending == BlendingChoice::kPhong) {
+    // The other trackers ask the cells of faces, which say nothing where they are smaller than the
+    // tip is deep.
+    if (!god_object) {
       return driver::Error{
-          "Clay that splits its triangles (edge) is touched by \"edge_planes\" with flat blending "
-          "or "
-          "by \"god_object\": smooth normals would turn where a triangle is split."};
+          "Clay that splits its triangles (edge) is touched by the tracker \"god_object\": name it "
+          "in "
+          "contact."};
     }
     if (auto fits = check_refinement(mesh_W, surface, triangles_max); !fits) return fits.error();
   }

@@ -66,6 +66,7 @@ TEST(ClayScene, SplitsItsTrianglesAndSavesThem) {
   };
   put("../arms/", folder + "../arms/");
   put("mesh: clay_ball.off", "mesh: " + folder + "clay_ball.off");
+  put("    body:", "    contact: {tracker: god_object}\n    body:");
   put("plastic:", "plastic:\n        edge: 0.0012\n        volume: kept");
   const auto file = support::scratch_folder() / "fine_clay.yaml";
   std::ofstream(file) << text;
@@ -125,9 +126,11 @@ TEST(BodyKeys, TellWhatIsWrongWithABody) {
   EXPECT_TRUE(says(refusal(ball, "{plastic: {edge: 0.0001}}"), "edge"));
   EXPECT_TRUE(says(refusal(ball, "{plastic: {triangles: 9000}}"), "needs edge"));
   EXPECT_TRUE(says(refusal(ball, "{plastic: {edge: 0.001, triangles: 9.5}}"), "whole number"));
-  EXPECT_TRUE(says(refusal(ball, "{plastic: {edge: 0.001, triangles: 4}}"), "triangles already"));
+  const std::string felt = ball + ", contact: {tracker: god_object}";
+  EXPECT_TRUE(says(refusal(felt, "{plastic: {edge: 0.001, triangles: 4}}"), "triangles already"));
+  EXPECT_TRUE(says(refusal(ball, "{plastic: {edge: 0.001}}"), "god_object"));
   EXPECT_TRUE(says(refusal(ball, "{plastic: {volume: full}}"), "kept"));
-  EXPECT_TRUE(says(refusal(ball, "{plastic: {edge: 0.001}, dent: {}}"), "dent"));
+  EXPECT_TRUE(says(refusal(felt, "{plastic: {edge: 0.001}, dent: {}}"), "dent"));
   EXPECT_TRUE(says(refusal(ball, "{snap: {depth: 0.02, radius: 0.01}}"), "would fold"));
   EXPECT_TRUE(says(refusal(ball, "{snap: {radius: 0.002, depth: 0.001}}"), "finer mesh"));
   EXPECT_TRUE(says(refusal(ball, "{sticky: {}}"), "sticky"));

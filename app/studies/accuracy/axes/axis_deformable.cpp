@@ -151,12 +151,13 @@ AccuracyAxis deformable_axis() {
   axis.threshold = 3.5;
   axis.threshold_words = "half the change of force that is felt (3.5 %)";
   axis.default_words =
-      "The trapezoid with one step per tick is stable at any stiffness, mass and step, and cheaper "
-      "and truer than implicit Euler, which has the same proof; what is too fast for its step "
-      "rings for as long as its damper lets it, and implicit Euler is there to be named for that. "
-      "Symplectic Euler and Verlet are cheaper still and diverge as soon as a scene's body is "
-      "stiffer. Modes are exact, for bodies that stay whole: a dent's patch moves along with the "
-      "cursor. --quality auto and reference take finer steps.";
+      "Implicit Euler with one step per tick is stable at any stiffness, mass and step and comes "
+      "to "
+      "rest as well; what it gets wrong is how fast a body swings after a poke, not how deep it "
+      "dents under a steady hand. Of what is cheaper, symplectic Euler and Verlet diverge as soon "
+      "as "
+      "a scene's body is stiffer. The trapezoid does not: it is as stable, cheaper and truer, but "
+      "what is too fast for its step rings. --quality auto and reference take it with finer steps.";
   axis.left_out =
       "XPBD is not in the product: converged it is implicit Euler, and a single round of it is "
       "dominated by that. Scanned meshes are in `thimble study integrators`.";
