@@ -124,7 +124,7 @@ forbid_app faces '(report|stability|studies|view|bringup|cli)/'
 # What a program of somebody else's loads brings no library of ours with it; and faces know the core alone.
 for part in core hd hdphantom dhd; do
   [ -d "app/faces/$part" ] || continue
-  forbid "app/faces/$part" 'faces/server/|thimble/(session|scene|render|device_sim)/|fmt/|spdlog/|yaml-cpp|hdf5|Eigen/' \
+  forbid "app/faces/$part" 'faces/server/|thimble/(session|scene|render|device_sim)/|fmt/|spdlog/|yaml-cpp|hdf5' \
     "what is in the process of thimble exec"
 done
 for part in core server; do

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace thimble::faces::dhd {
+
+struct OpenArm;
+
+/// Asks for a force on the hand (N, in the program's frame) and waits until a tick has taken it,
+/// which paces the program's loop. Switches the force on if the program never said anything about
+/// it. Torque (N m) and gripper (N) are counted in the report. Returns 0, DHD_MOTOR_SATURATED where
+/// the force is beyond what the arm may give, or -1.
+int send_force(const char* function, OpenArm& arm, const Eigen::Vector3d& f_U,
+               const Eigen::Vector3d& torque_U, double gripper) noexcept;
+
+}  // namespace thimble::faces::dhd

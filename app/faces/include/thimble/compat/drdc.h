@@ -1,0 +1,66 @@
+#ifndef THIMBLE_COMPAT_DRDC_H
+#define THIMBLE_COMPAT_DRDC_H
+
+/* What a C or C++ program needs to be built for an arm that is led and held by the functions
+ * drd...; see dhdc.h. An arm of ours is held and moved by a spring between its tip and a point that
+ * moves, of the force that the gate lets through. */
+
+#include "dhdc.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Which arms there are: as dhdOpen and others. */
+int drdOpen(void);
+int drdOpenID(char index);
+int drdClose(THIMBLE_DHD_ID);
+int drdSetDevice(char id);
+int drdGetDeviceID(void);
+bool drdIsSupported(THIMBLE_DHD_ID);
+bool drdIsInitialized(THIMBLE_DHD_ID);
+int drdAutoInit(THIMBLE_DHD_ID);
+int drdCheckInit(THIMBLE_DHD_ID);
+int drdPrecisionInit(THIMBLE_DHD_ID);
+
+/* The thread that regulates. */
+int drdStart(THIMBLE_DHD_ID);
+int drdStop(bool leave_force_on, THIMBLE_DHD_ID);
+bool drdIsRunning(THIMBLE_DHD_ID);
+bool drdIsMoving(THIMBLE_DHD_ID);
+bool drdIsFiltering(THIMBLE_DHD_ID);
+int drdWaitForTick(THIMBLE_DHD_ID);
+double drdGetCtrlFreq(THIMBLE_DHD_ID); /* kHz */
+int drdRegulatePos(bool on, THIMBLE_DHD_ID);
+int drdRegulateRot(bool on, THIMBLE_DHD_ID);
+int drdRegulateGrip(bool on, THIMBLE_DHD_ID);
+int drdEnableFilter(bool on, THIMBLE_DHD_ID);
+int drdSetMotRatioMax(double ratio, THIMBLE_DHD_ID);
+double drdGetMotRatioMax(THIMBLE_DHD_ID);
+
+/* Where the arm goes. */
+int drdMoveToPos(double x, double y, double z, bool wait, THIMBLE_DHD_ID);
+int drdMoveTo(double goal[DHD_MAX_DOF], bool wait, THIMBLE_DHD_ID);
+int drdTrackPos(double x, double y, double z, THIMBLE_DHD_ID);
+int drdTrack(double goal[DHD_MAX_DOF], THIMBLE_DHD_ID);
+int drdHold(THIMBLE_DHD_ID);
+int drdSetPosMoveParam(double acceleration, double speed, double jerk, THIMBLE_DHD_ID);
+int drdGetPosMoveParam(double* acceleration, double* speed, double* jerk, THIMBLE_DHD_ID);
+int drdSetPosTrackParam(double acceleration, double speed, double jerk, THIMBLE_DHD_ID);
+int drdGetPosTrackParam(double* acceleration, double* speed, double* jerk, THIMBLE_DHD_ID);
+
+/* What the arm does. */
+int drdGetPositionAndOrientation(double* x, double* y, double* z, double* a, double* b, double* c,
+                                 double* gripper, double rows[3][3], THIMBLE_DHD_ID);
+int drdGetVelocity(double* x, double* y, double* z, double* wx, double* wy, double* wz,
+                   double* gripper, THIMBLE_DHD_ID);
+int drdSetForceAndTorqueAndGripperForce(double force[DHD_MAX_DOF], THIMBLE_DHD_ID);
+
+double drdGetTime(void);
+void drdSleep(double seconds);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
