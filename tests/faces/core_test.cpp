@@ -1,8 +1,10 @@
 // The core that all faces stand on: what a program asks for reaches the motors through the gate.
 #include <chrono>
 #include <cmath>
+#include <fstream>
 
 #include "faces/exec_rig.h"
+#include "faces/server/hand_path.h"
 
 namespace thimble::faces {
 namespace {
@@ -155,6 +157,27 @@ TEST(FaceCore, OpensAnArmAgainWithoutTheForceOfBefore) {
     EXPECT_TRUE(arms::close(0));
     EXPECT_FALSE(arms::close(0));
   }
+}
+
+TEST(FaceCore, ReadsAHandsPathAndSaysWhichLineIsWrong) {
+  const std::string file = ::testing::TempDir() + "hand_path.txt";
+  const auto read = [&](const char* text) {
+    std::ofstream(file) << text;
+    return read_hand_path(file);
+  };
+  const auto good = read("# t x y z\n0 0.01 0 -0.02\n\n1.5, 0.02; 0 0 # to the user\n");
+  ASSERT_TRUE(good) << good.error().message;
+  ASSERT_EQ(good->size(), 2u);
+  EXPECT_EQ((*good)[1].time, 1.5);
+  EXPECT_EQ((*good)[0].p_W, Vector3d(0.01, 0, -0.02));
+  for (const char* bad : {"0 0 0 0\n0 0 0 0", "0 0 0 0\n1 0 0", "0 0 0 0\n1 0 0 0 0",
+                          "0 0 0 0\n1 0 0 nan", "0 0 0 0\n1 0 0 3", "0 0 0 0\n-1 0 0 0"}) {
+    const auto refused = read(bad);
+    ASSERT_FALSE(refused) << bad;
+    EXPECT_NE(refused.error().message.find("hand_path.txt:2: expected"), std::string::npos);
+  }
+  EXPECT_FALSE(read("# nothing\n"));
+  EXPECT_FALSE(read_hand_path("/nonexistent/path"));
 }
 
 TEST(FaceCore, RefusesWhatIsNotThere) {

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "faces/core/shared_wait.h"
@@ -165,10 +167,10 @@ std::string ArmRun::end() {
 }
 
 std::string ArmRun::own_report() const {
-  const std::uint64_t ticks = session_->statistics().ticks();
-  driver::TickRecord last;
-  const bool any = session_->newest().load(last);
-  const std::uint64_t missed = any && last.tick + 1 > ticks ? last.tick + 1 - ticks : 0;
+  const session::RunStatistics& run = session_->statistics();
+  const std::uint64_t ticks = run.ticks();
+  const auto due = std::llround(run.duration() * session_->scene().rate) + 1;
+  const auto missed = std::max<long long>(due - static_cast<long long>(ticks), 0);
   std::string s = fmt::format(
       "Program   {} by {}: asked for a force in {} of {} ticks; {} tick{} of ours missed.\n",
       options_.program, channel_.face.data(), client_->renewals(), ticks, missed,
