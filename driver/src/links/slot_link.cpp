@@ -41,7 +41,9 @@ LinkWrite SlotLink::write(const GatedForce& force, const ArmSample&,
 }
 
 void SlotLink::publish(const ArmSample& sample) noexcept {
-  newest_.put({sample, ++published_});
+  NumberedSample fresh{sample, ++published_};
+  fresh.sample.pose.q = sample.pose.p_BT;  // as ToldArm has it
+  newest_.put(fresh);
 }
 
 void SlotLink::reject() noexcept {

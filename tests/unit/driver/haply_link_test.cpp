@@ -114,6 +114,10 @@ TEST_F(HaplyLinkTest, TellsWhereTheArmIsAndGivesItTheGatedForceInItsBase) {
                   .norm(),
               4e-4);
     EXPECT_EQ(device_->fault(), Fault::kNone) << describe(device_->fault());
+    EXPECT_LT(
+        (settings(0).p_WB + settings(0).R_WB * device_->state().q - device_->state().p_WT).norm(),
+        1e-12)
+        << "the axes of the base stand for joints";
     EXPECT_FALSE(device_->state().has_orientation);
     EXPECT_FALSE(device_->traits().motors.has_value());
     device_.reset();
