@@ -143,7 +143,7 @@ render::TriangleMesh SceneObjects::mesh_W(std::size_t object) const {
 render::TriangleMesh SceneObjects::mesh_now(int object) const {
   const auto now = [this](std::size_t i) {
     render::TriangleMesh mesh = mesh_W(i);
-    touch_->object(i).mesh_now(mesh);
+    touch_->object(i).mesh_now(mesh.vertices, mesh.triangles);
     return mesh;
   };
   if (object >= 0) return now(static_cast<std::size_t>(object));

@@ -42,7 +42,7 @@ TriangleMesh now(const ObjectTouch& object) {
     mesh.triangles.push_back(object.mesh()->corners(t));
   }
   mesh.vertices.resize(static_cast<std::size_t>(object.mesh()->vertex_count()));
-  object.mesh_now(mesh);
+  object.mesh_now(mesh.vertices, mesh.triangles);
   return mesh;
 }
 

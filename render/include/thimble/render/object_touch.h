@@ -1,16 +1,17 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include "thimble/driver/device_state.h"
 #include "thimble/driver/force_law.h"
 #include "thimble/render/body_patch.h"
 #include "thimble/render/body_pose.h"
 #include "thimble/render/effect/live_settings.h"
-#include "thimble/render/mesh/triangle_mesh.h"
 
 namespace thimble::render {
 
@@ -60,7 +61,10 @@ class ObjectTouch {
   virtual void place_now(std::span<Eigen::Vector3d>) const noexcept {}
   /// Makes of the object's mesh, as it was given (W, m), what it is now: vertices where they are,
   /// and the triangles that it has been split into. Real-time: never from the servo thread.
-  virtual void mesh_now(TriangleMesh& mesh) const { place_now(mesh.vertices); }
+  virtual void mesh_now(std::vector<Eigen::Vector3d>& vertices,
+                        std::vector<std::array<std::int32_t, 3>>& /*triangles*/) const {
+    place_now(vertices);
+  }
 };
 
 /// An ObjectTouch made of a Touch with its stages known at compile time. `Stages` is callable

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include "body/motion/moving_touch.h"
 #include "thimble/driver/device_state.h"
@@ -53,7 +55,10 @@ class HeldTouch final : public ObjectTouch {
   void place_now(std::span<Eigen::Vector3d> vertices) const noexcept override {
     object_->place_now(vertices);
   }
-  void mesh_now(TriangleMesh& mesh) const override { object_->mesh_now(mesh); }
+  void mesh_now(std::vector<Eigen::Vector3d>& vertices,
+                std::vector<std::array<std::int32_t, 3>>& triangles) const override {
+    object_->mesh_now(vertices, triangles);
+  }
 
   void list_settings(LiveSettings& settings) override { object_->list_settings(settings); }
 

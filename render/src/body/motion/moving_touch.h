@@ -2,11 +2,13 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <array>
 #include <concepts>
 #include <cstdint>
 #include <memory>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include "body/motion/body_coupling.h"
 #include "thimble/driver/device_state.h"
@@ -90,9 +92,10 @@ class MovingTouch final : public ObjectTouch {
     surface_->place_now(vertices);
     for (Eigen::Vector3d& p : vertices) p = motion_.p_WB() + motion_.R_WB() * p;
   }
-  void mesh_now(TriangleMesh& mesh) const override {
-    surface_->mesh_now(mesh);
-    for (Eigen::Vector3d& p : mesh.vertices) p = motion_.p_WB() + motion_.R_WB() * p;
+  void mesh_now(std::vector<Eigen::Vector3d>& vertices,
+                std::vector<std::array<std::int32_t, 3>>& triangles) const override {
+    surface_->mesh_now(vertices, triangles);
+    for (Eigen::Vector3d& p : vertices) p = motion_.p_WB() + motion_.R_WB() * p;
   }
 
   /// The coupling to the body counts on a surface no stiffer than it was built with.

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include "body/shape/body_shape.h"
 #include "thimble/driver/device_state.h"
@@ -46,14 +48,14 @@ class ShapedTouch final : public ObjectTouch {
     }
   }
 
-  void mesh_now(TriangleMesh& mesh) const override {
+  void mesh_now(std::vector<Eigen::Vector3d>& vertices,
+                std::vector<std::array<std::int32_t, 3>>& triangles) const override {
     const auto& now = stages_.contact().mesh();
-    mesh.vertices.resize(static_cast<std::size_t>(now.vertex_count()));
-    place_now(mesh.vertices);
+    vertices.resize(static_cast<std::size_t>(now.vertex_count()));
+    place_now(vertices);
     if (!shape_.refines()) return;
-    mesh.triangles.clear();
-    for (std::int32_t t = 0; t < now.triangle_count(); ++t)
-      mesh.triangles.push_back(now.corners(t));
+    triangles.clear();
+    for (std::int32_t t = 0; t < now.triangle_count(); ++t) triangles.push_back(now.corners(t));
   }
 
   void list_settings(LiveSettings& settings) override { list_settings_of(stages_, settings); }
