@@ -47,7 +47,7 @@ layers='
   packed: mesh
   search: mesh packed
   track: state mesh packed search
-  touch: state settings mesh
+  touch: state settings
   effect: state settings
   surface: state settings effect
   field: state settings touch mesh
