@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Measures how long each loop of a contributor takes on this machine (the table in CONTRIBUTING.md); no pass criterion.
+# Measures how long each loop of a contributor takes on this machine (CONTRIBUTING.md names them); no pass criterion.
 #   tests/bench/loops.sh edit      one changed source of render, driver and app: rebuilt in preset dev, its tests run
 #   tests/bench/loops.sh build     what app/demo.sh builds, then everything, from an empty folder
 # Prints seconds by the clock, processor seconds and, of builds, the sum of their steps. No compiler cache is used.
@@ -13,11 +13,13 @@ trap 'rm -rf "$folder"' EXIT
 measure() {
   local what=$1
   shift
-  /usr/bin/time -o "$folder/time" -f '%e s, processor %U + %S s' "$@" >"$folder/log" 2>&1 || {
+  local TIMEFORMAT='%R s, processor %U + %S s'
+  { time "$@" >"$folder/log" 2>&1 || touch "$folder/failed"; } 2>"$folder/time"
+  if [ -e "$folder/failed" ]; then
     tail -n 30 "$folder/log" >&2
     echo "'$*' failed." >&2
     exit 1
-  }
+  fi
   echo "$what: $(cat "$folder/time")"
 }
 # step_seconds BUILD_DIR: the sum of all steps of a build.
