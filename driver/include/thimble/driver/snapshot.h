@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstddef>
@@ -29,7 +30,7 @@ class Snapshot {
     const std::uint64_t writing = sequence_.load(std::memory_order_relaxed) | 1;
     sequence_.store(writing, std::memory_order_relaxed);
     // Each release store below makes the odd sequence visible before the word it writes.
-    store_words(value, std::make_index_sequence<kWords>());
+    store_words(value);
     sequence_.store(writing + 1, std::memory_order_release);
   }
 
@@ -58,18 +59,26 @@ class Snapshot {
  private:
   static constexpr std::size_t kWords = (sizeof(T) + 7) / 8;
 
-  // From the value to its place without a copy between, and without a loop: two instructions per
-  // word.
-  template <std::size_t... I>
-  void store_words(const T& value, std::index_sequence<I...>) noexcept {
-    (words_[I].store(word<I>(value), std::memory_order_release), ...);
+  // From the value to its place without a copy between. A record of a tick goes without a loop, two
+  // instructions per word; compilers bear no such list of thousands of words.
+  static constexpr std::size_t kListed = 128;
+
+  void store_words(const T& value) noexcept {
+    if constexpr (kWords <= kListed) {
+      store_listed(value, std::make_index_sequence<kWords>());
+    } else {
+      for (std::size_t i = 0; i < kWords; ++i) store_word(value, i);
+    }
   }
-  template <std::size_t I>
-  static std::uint64_t word(const T& value) noexcept {
-    constexpr std::size_t kBytes = sizeof(T) - 8 * I < 8 ? sizeof(T) - 8 * I : 8;
+  template <std::size_t... I>
+  void store_listed(const T& value, std::index_sequence<I...>) noexcept {
+    (store_word(value, I), ...);
+  }
+  void store_word(const T& value, std::size_t i) noexcept {
     std::uint64_t word = 0;
-    std::memcpy(&word, reinterpret_cast<const std::byte*>(&value) + 8 * I, kBytes);
-    return word;
+    std::memcpy(&word, reinterpret_cast<const std::byte*>(&value) + 8 * i,
+                std::min<std::size_t>(8, sizeof(T) - 8 * i));
+    words_[i].store(word, std::memory_order_release);
   }
 
   std::atomic<std::uint64_t> sequence_{0};
