@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstddef>
@@ -62,22 +61,24 @@ class Snapshot {
   // From the value to its place without a copy between. A record of a tick goes without a loop, two
   // instructions per word; compilers bear no such list of thousands of words.
   static constexpr std::size_t kListed = 128;
+  static constexpr std::size_t kLast = sizeof(T) - 8 * (kWords - 1);  // bytes of the last word
 
   void store_words(const T& value) noexcept {
     if constexpr (kWords <= kListed) {
       store_listed(value, std::make_index_sequence<kWords>());
     } else {
-      for (std::size_t i = 0; i < kWords; ++i) store_word(value, i);
+      for (std::size_t i = 0; i + 1 < kWords; ++i) store_word<8>(value, i);
+      store_word<kLast>(value, kWords - 1);
     }
   }
   template <std::size_t... I>
   void store_listed(const T& value, std::index_sequence<I...>) noexcept {
-    (store_word(value, I), ...);
+    (store_word<(I + 1 < kWords ? 8 : kLast)>(value, I), ...);
   }
+  template <std::size_t kBytes>
   void store_word(const T& value, std::size_t i) noexcept {
     std::uint64_t word = 0;
-    std::memcpy(&word, reinterpret_cast<const std::byte*>(&value) + 8 * i,
-                std::min<std::size_t>(8, sizeof(T) - 8 * i));
+    std::memcpy(&word, reinterpret_cast<const std::byte*>(&value) + 8 * i, kBytes);
     words_[i].store(word, std::memory_order_release);
   }
 
