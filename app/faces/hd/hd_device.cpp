@@ -175,7 +175,13 @@ HHD hdInitDevice(HDstring name) {
     keep_wrong_call(HD_COMM_ERROR, __func__, trouble.c_str());
     return HD_INVALID_HANDLE;
   }
-  const std::lock_guard lock(devices().mutex);
+  std::unique_lock lock(devices().mutex);
+  if (is_open(handle)) {  // by another thread, meanwhile: one opening is one too many
+    lock.unlock();
+    arms::close(arm);
+    keep_wrong_call(HD_DEVICE_ALREADY_INITIATED, __func__, "the arm is open already");
+    return HD_INVALID_HANDLE;
+  }
   Device& device = devices().all[handle];
   device = Device{};
   device.open = true;
