@@ -26,7 +26,18 @@ expect 0 'vintage_phantom and falcon' run --arm vintage_phantom --arm falcon "$c
 expect 2 'Wrong +hdInitDevice 1 time: no arm has this name' run "$clients/two_devices"
 expect 0 '0\.[23][0-9]+ N at the end' run "$clients/force_ramp"
 expect 0 '0 presses in' run "$clients/buttons"
-expect 0 '1000 turns in 1\.' run "$clients/chai_loop"
+expect 0 'errors by value: right' run --arm vintage_phantom --arm falcon "$clients/wrong_calls"
+
+# A loop that the set-force call paces, for a while: what it held is told, not judged; a program that waits for a tick has
+# fewer turns than there were ticks.
+seconds=${THIMBLE_LONG:+60}
+run "$clients/chai_loop" "${seconds:-2}000" >loop.log 2>&1
+grep -E 'turns in|^Program' loop.log
+expect 0 "^${seconds:-2}000 turns in" cat loop.log
+expect 0 'Program +chai_loop by hdPhantom: asked for a force in [0-9]+ of [0-9]+ ticks; [0-9]+ ticks? of ours missed' cat loop.log
+
+# In Python, with ctypes.
+expect 0 'both libraries: right' run --hand press.txt python3 "$source_dir/tests/faces/clients/hello_sphere.py"
 
 # With a scene both are felt: its own objects push where the program asks for nothing.
 expect 0 'touched it [1-9]' run --scene rubber "$clients/chai_loop"
