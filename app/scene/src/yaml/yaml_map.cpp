@@ -9,6 +9,8 @@
 #include <optional>
 #include <system_error>
 
+#include "yaml/renamed_keys.h"
+
 namespace thimble::scene {
 namespace {
 
@@ -142,6 +144,16 @@ const YamlMap::Entry* YamlMap::find(std::string_view key, bool required) {
   if (std::find(asked_.begin(), asked_.end(), key) == asked_.end()) asked_.emplace_back(key);
   for (const Entry& entry : entries_) {
     if (entry.key == key) return &entry;
+  }
+  for (const RenamedKey& renamed : kRenamedKeys) {
+    if (renamed.place != place_ || renamed.is != key) continue;
+    for (Entry& entry : entries_) {
+      if (entry.key != renamed.was) continue;
+      mistakes_->warn(entry.line, entry.key + ": is called " + std::string(key) +
+                                      " now; the old name still works, but write the new one");
+      entry.key = key;
+      return &entry;
+    }
   }
   if (required && !quiet_) mistakes_->add(line_, std::string(key) + ": is missing here");
   return nullptr;
@@ -372,6 +384,12 @@ void YamlMap::finish() {
   for (const Entry& entry : entries_) {
     if (std::find(asked_.begin(), asked_.end(), entry.key) != asked_.end()) continue;
     std::string sentence = entry.key + ": is no key that is known here";
+    for (const RenamedKey& renamed : kRenamedKeys) {
+      if (renamed.place != place_ || renamed.was != entry.key || key_line(renamed.is) == 0)
+        continue;
+      sentence = entry.key + ": is the old name of " + std::string(renamed.is) +
+                 ", which stands here too; keep the new one";
+    }
     const std::string* nearest = nullptr;
     std::size_t nearest_distance = std::max<std::size_t>(2, entry.key.size() / 3) + 1;
     for (const std::string& known : asked_) {
