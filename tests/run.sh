@@ -26,6 +26,7 @@ fi
 
 tests/usb/setup.sh || true  # optional: without it the USB arms are not tested through a kernel
 tests/fuzz/setup.sh || true  # optional: without it only the corpora are replayed
+tests/optional_packages.sh "the guide as web pages" mkdocs || true
 tests/optional_packages.sh "the format of the sources" clang-format-14 || true
 
 failed=()

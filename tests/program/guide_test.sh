@@ -65,9 +65,19 @@ grep -q 'touched as a sheet of 4 triangles' said || { echo "FAILED: nothing is t
 bash "$source/app/guide/keys.sh" thimble | diff "$source/app/guide/pages/keys.md" - ||
   { echo "FAILED: app/guide/pages/keys.md is old; app/guide/keys.sh writes it" >&2 && exit 1; }
 
-if command -v mkdocs >/dev/null; then
-  mkdocs build --strict --quiet -f "$source/app/guide/mkdocs.yml" -d "$work/pages"
-  echo "The pages are built without a broken link."
-else
-  echo "mkdocs is not installed: the pages were not built."
-fi
+# What the guide tells of peers is what the folders of the source have measured.
+rows() { sed -nE 's/^\| (10\^[0-9])[^|]*\| ([0-9]+), [0-9]+ \(([0-9]+), [0-9]+\) \| ([0-9]+), [0-9]+ \(([0-9]+), [0-9]+\) \|.*/| \1 | \2 | \3 | \4 | \5 |/p'; }
+rows <"$source/render/src/packed/README.md" >measured
+[ "$(wc -l <measured)" = 5 ] || { echo "FAILED: render/src/packed/README.md has no table of peers" >&2 && exit 1; }
+grep -E '^\| 10\^[0-9] \|' "$source/app/guide/pages/compare.md" | diff - measured ||
+  { echo "FAILED: compare.md tells other times of ticks than render/src/packed/README.md" >&2 && exit 1; }
+for row in 'segment: grid, tree (Embree)' 'nearest point: grid, tree (Embree)'; do
+  grep -qxF "$(grep -F "| $row" "$source/render/src/search/README.md")" "$source/app/guide/pages/compare.md" ||
+    { echo "FAILED: compare.md tells other times of searches than render/src/search/README.md: $row" >&2 && exit 1; }
+done
+
+# The guide as a site, strictly: no dead link, no page out of the menu.
+bash "$source/app/guide/site.sh" "$work/pages" || {
+  [ $? = 3 ] || { echo "FAILED: the guide's pages" >&2 && exit 1; }
+  echo "NOT TESTED: the guide as web pages; install mkdocs."
+}
