@@ -22,26 +22,32 @@ cd "$work"
 
 pages=$(sed -n 's/^ *- .*: \(.*\.md\)$/\1/p' "$source/app/guide/mkdocs.yml")
 commands=0
+run_command() {  # PAGE LINE
+  local line=$2
+  case $line in
+    "thimble study "*)
+      # What is refused is refused at once; what has begun is interrupted.
+      [ -n "${THIMBLE_LONG:-}" ] || line="timeout -s INT 1 $line || [ \$? = 124 ]"
+      ;;
+    "python3 "*) [ -n "$python" ] || return 0 ;;
+  esac
+  commands=$((commands + 1))
+  bash -c "$line" </dev/null >said 2>&1 || grep -q 'Without python3-matplotlib' said || {
+    echo "FAILED: $1: $line" >&2
+    cat said >&2
+    exit 1
+  }
+}
 for page in $pages; do
-  while IFS= read -r line; do
-    case $line in
-      "thimble study "*)
-        # What is refused is refused at once; what has begun is interrupted.
-        [ -n "${THIMBLE_LONG:-}" ] || line="timeout -s INT 1 $line || [ \$? = 124 ]"
-        ;;
-      "python3 "*) [ -n "$python" ] || continue ;;
-    esac
-    commands=$((commands + 1))
-    bash -c "$line" >said 2>&1 || grep -q 'Without python3-matplotlib' said || {
-      echo "FAILED: $page: $line" >&2
-      cat said >&2
-      exit 1
-    }
-  done < <(awk '/^```sh$/ { inside = 1; next } /^```/ { inside = 0 } inside' \
-    "$source/app/guide/pages/$page")
+  while IFS= read -r line; do run_command "$page" "$line"; done < <(
+    awk '/^```sh$/ { inside = 1; next } /^```/ { inside = 0 } inside' "$source/app/guide/pages/$page")
 done
+while IFS= read -r line; do run_command README.md "$line"; done < <(
+  sed -nE 's|^build/release/app/(thimble [^#]*[^# ]) *(#.*)?$|\1|p' "$source/README.md")
+grep -q '^thimble run tin_can --record can.h5$' <(sed -nE 's|^build/release/app/(thimble [^#]*[^# ]) *(#.*)?$|\1|p' "$source/README.md") ||
+  { echo "FAILED: no command of the README was found" >&2 && exit 1; }
 [ "$commands" -ge 12 ] || { echo "FAILED: only $commands commands were found" >&2 && exit 1; }
-echo "$commands commands of $(wc -w <<<"$pages") pages ran."
+echo "$commands commands of $(wc -w <<<"$pages") pages and the README ran."
 
 # What the guide writes in Python, all of it in one go.
 if [ -n "$python" ]; then
