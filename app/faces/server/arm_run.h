@@ -13,7 +13,7 @@
 #include "faces/server/reading_publisher.h"
 #include "replug_watch.h"
 #include "run_attendance.h"
-#include "share/request_desk.h"
+#include "share/viewer_request_handler.h"
 #include "thimble/driver/result.h"
 #include "thimble/session/servo_thread.h"
 #include "thimble/session/session.h"
@@ -61,7 +61,7 @@ class ArmRun {
   std::unique_ptr<FreeScene> free_scene_;
   std::shared_ptr<PacedClock> paced_;
   std::unique_ptr<session::Session> session_;
-  std::unique_ptr<session::RequestDesk> desk_;
+  std::unique_ptr<session::ViewerRequestHandler> desk_;
   std::unique_ptr<session::ServoThread> servo_;
   std::unique_ptr<ClientForce> client_;
   std::unique_ptr<ReadingPublisher> publisher_;

@@ -214,7 +214,7 @@ device_sim::GimbalMotion read_gimbal_motion(YamlMap map) {
   device_sim::GimbalMotion motion;
   motion.middle =
       kRadians * map.optional_vector3("middle_degrees", {0, 0, 0}, "degrees", -180, 180);
-  motion.swing = kRadians * map.require_vector3("swing_degrees", "degrees", 0, 180);
+  motion.amplitude = kRadians * map.require_vector3("amplitude_degrees", "degrees", 0, 180);
   motion.period = map.require_number("period", "s", 0.05, 100);
   map.finish();
   return motion;

@@ -129,7 +129,7 @@ driver::Result<void> Setup::open_arm() {
     link = simulation_->link(*clock_);
   }
   driver::DeviceSettings settings = scene::device_settings(arm, scene_.rate, scene_.energy);
-  // A simulated hand that a mouse holds does not tremble, and its arm sends no old positions.
+  // A simulated hand that a mouse holds has no tremor, and its arm sends no old positions.
   constexpr double kAnyTime = 1e9;  // s
   if (hand_by_mouse_) settings.motion.hold_most = kAnyTime;
   driver::HeatSettings& heat = settings.heat;

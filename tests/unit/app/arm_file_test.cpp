@@ -218,10 +218,11 @@ TEST(ArmFile, DescribesTheGimbalThatIsMounted) {
   EXPECT_NE(mistake_with("protocol: hfab_14_byte", "protocol: woody_8_byte\n" + good)
                 .find("carry no encoders of a gimbal"),
             std::string::npos);
-  EXPECT_NE(mistake_with("  encoders: quantised",
-                         "  gimbal: {swing_degrees: [1, 1, 1], period: 2}\n  encoders: quantised")
-                .find("expected a section 'gimbal' of the arm"),
-            std::string::npos);
+  EXPECT_NE(
+      mistake_with("  encoders: quantised",
+                   "  gimbal: {amplitude_degrees: [1, 1, 1], period: 2}\n  encoders: quantised")
+          .find("expected a section 'gimbal' of the arm"),
+      std::string::npos);
 }
 
 TEST(ArmFile, RefusesSignsOtherThanOne) {

@@ -89,7 +89,7 @@ TEST_F(RealArmTermsTest, AFileOfAnotherWireIsRefused) {
 
 TEST_F(RealArmTermsTest, AFileFromElsewhereTightensEachLimitAndLoosensNone) {
   struct Case {
-    const char *key, *was, *tighter, *looser;
+    const char *key, *was, *tighter, *weaker;
     double (*value)(const scene::ArmFile&);
   };
   const auto seconds = [](std::int64_t ns) { return 1e-9 * static_cast<double>(ns); };
@@ -123,7 +123,7 @@ TEST_F(RealArmTermsTest, AFileFromElsewhereTightensEachLimitAndLoosensNone) {
   ASSERT_TRUE(installed);
   for (const Case& one : cases) {
     for (const bool tighter : {true, false}) {
-      const char* by = tighter ? one.tighter : one.looser;
+      const char* by = tighter ? one.tighter : one.weaker;
       if (by == nullptr) continue;
       const fs::path file = copy_of("woodenhaptics", one.was, by);
       const auto wanted = scene::load_arm(file);
