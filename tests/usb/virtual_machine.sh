@@ -108,7 +108,7 @@ head -c 1500 /bin/sh >"$root/etc/falcon.bin"
 (cd "$root" && find . | cpio -o -H newc --quiet) | gzip -1 >"$work/initrd.gz"
 
 # The first arm is always touched for 10,000 ticks; the others take a fifth of it in the short form.
-ticks=2000 faulty=woodenhaptics arms=woodenhaptics,polhem,polhem-64,falcon limit=1200
+ticks=2000 faulty=woodenhaptics arms=woodenhaptics,polhem,polhem-64,falcon limit=2400
 [ -z "$long" ] || { ticks=10000 faulty=$arms limit=3000; }
 arms=${THIMBLE_USB_ARMS-$arms} faulty=${THIMBLE_USB_FAULTY-$faulty}
 gadgets=${THIMBLE_USB_GADGETS-$gadgets}
