@@ -10,4 +10,17 @@ inline double depth_below_hollow(double below_mesh, double gap) noexcept {
   return below_mesh < 2 * gap ? below_mesh * below_mesh / (4 * gap) : below_mesh - gap;
 }
 
+/// How `depth_below_hollow` changes.
+struct HollowDepthChange {
+  double per_depth = 1;  ///< By the depth below the triangles.
+  double per_gap = -1;   ///< By the gap.
+};
+
+/// Returns its derivatives at the same place. Real-time: safe.
+inline HollowDepthChange change_below_hollow(double below_mesh, double gap) noexcept {
+  if (!(below_mesh < 2 * gap)) return {};
+  const double part = below_mesh / (2 * gap);
+  return {.per_depth = part, .per_gap = -part * part};
+}
+
 }  // namespace thimble::render

@@ -4,12 +4,9 @@
 #include <array>
 
 namespace thimble::render {
-namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-
-}  // namespace
 
 TriangleFoot edge_plane_foot(const ContactMesh& mesh, std::int32_t triangle,
                              const Vector3d& p_WT) noexcept {
@@ -42,7 +39,27 @@ TriangleFoot offset_foot(const std::array<Vector3d, 3>& x, const std::array<Vect
   foot.change.row(1) = side_2.cross(way_down).transpose() / volume;
   foot.change.row(2) = way_down.cross(side_1).transpose() / volume;
   foot.change.row(0) = -foot.change.row(1) - foot.change.row(2);
+  foot.sink = -side_1.cross(side_2) / volume;
   return foot;
+}
+
+Vector3d offset_depth_slope(const std::array<Vector3d, 3>& n, const TriangleFoot& foot,
+                            double depth) noexcept {
+  const Vector3d& w = foot.weights;
+  const Vector3d N = w[0] * n[0] + w[1] * n[1] + w[2] * n[2];
+  const double size = N.norm();
+  const Vector3d along = Vector3d(n[0].dot(N), n[1].dot(N), n[2].dot(N)) / size;
+  return size * foot.sink + depth * (foot.change.transpose() * along);
+}
+
+Vector3d height_slope(const std::array<Vector3d, 3>& x, const std::array<Vector3d, 3>& n,
+                      const TriangleFoot& foot) noexcept {
+  const auto bulge = [&](std::size_t i, std::size_t j) { return (x[i] - x[j]).dot(n[i] - n[j]); };
+  const double b01 = bulge(0, 1), b12 = bulge(1, 2), b20 = bulge(2, 0);
+  const Vector3d& w = foot.weights;
+  const Vector3d by_weight(w[1] * b01 + w[2] * b20, w[0] * b01 + w[2] * b12,
+                           w[1] * b12 + w[0] * b20);
+  return 0.5 * (foot.change.transpose() * by_weight);
 }
 
 TriangleFoot offset_foot(const ContactMesh& mesh, const SmoothNormals& normals,

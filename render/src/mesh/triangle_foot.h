@@ -16,6 +16,8 @@ struct TriangleFoot {
   std::int32_t triangle = -1;
   Eigen::Vector3d weights{0, 0, 0};                  ///< Of the corners: at least 0, sum 1.
   Eigen::Matrix3d change = Eigen::Matrix3d::Zero();  ///< Row k: gradient of weight k, 1/m in W.
+  /// Gradient of the depth along the corners' normals, in W; 0 where it is no such place.
+  Eigen::Vector3d sink{0, 0, 0};
 };
 
 /// Returns the place by the distances to the edge planes (edge_plane_weights, brought back into the
@@ -45,6 +47,19 @@ struct FootPath {
   Eigen::Vector3d p_W{0, 0, 0};                 ///< m
   Eigen::Matrix3d J = Eigen::Matrix3d::Zero();  ///< Derivative of `p_W` by the tip's place.
 };
+
+/// Returns the gradient in the tip's place of the depth d |N| that offset corners measure along
+/// N = sum w_k n_k, for a foot made by `offset_foot` with the same normals and `depth`. The
+/// gradient of |N| is sum grad w_k (n_k . N) / |N|. Real-time: safe.
+Eigen::Vector3d offset_depth_slope(const std::array<Eigen::Vector3d, 3>& n,
+                                   const TriangleFoot& foot, double depth) noexcept;
+
+/// Returns the gradient in the tip's place of 1/2 sum w_k (x_k - q) . n_k, q = sum w_k x_k: how far
+/// the smooth surface with normals `n` at the corners `x` stands above the place. As sums over
+/// corners go that is 1/2 sum over i < j of w_i w_j (x_i - x_j) . (n_i - n_j). Real-time: safe.
+Eigen::Vector3d height_slope(const std::array<Eigen::Vector3d, 3>& x,
+                             const std::array<Eigen::Vector3d, 3>& n,
+                             const TriangleFoot& foot) noexcept;
 
 /// Returns the point of a triangle that is such a place. Real-time: safe.
 FootPath path_of(const ContactMesh& mesh, const TriangleFoot& foot) noexcept;

@@ -15,6 +15,7 @@ struct OffsetPlace {
 struct OffsetWay {
   Eigen::Vector3d to_surface{0, 0, 0};          ///< q - p, in steps of the lattice.
   Eigen::Matrix3d J = Eigen::Matrix3d::Zero();  ///< Derivative of q by p.
+  Eigen::Vector3d fall{0, 0, 0};                ///< Minus the gradient in p of the felt depth.
 };
 
 /// What is felt at a place of an offset triangle.

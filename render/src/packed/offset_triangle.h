@@ -53,9 +53,10 @@ class alignas(64) OffsetTriangle {
   /// Returns the same faster. Precondition: no weight is negative.
   OffsetResponse feel_within(const OffsetPlace& place) const noexcept;
 
-  /// Returns the way from the tip to the point q of the triangle, and how q moves with the tip
-  /// (mesh/triangle_foot.h); a place outside the triangle counts as on its border. Real-time: safe;
-  /// some 100 ns, for what needs the place itself, as textures do.
+  /// Returns the way from the tip to the point q of the triangle, how q moves with the tip
+  /// (mesh/triangle_foot.h), and how fast the felt depth falls; a place outside the triangle counts
+  /// as on its border. Real-time: safe; some 100 ns, for what needs the place itself, as textures
+  /// do.
   OffsetWay way_to_surface(const OffsetPlace& place) const noexcept;
 
   /// Returns whether an edge is a crease, in bit k for edge k.

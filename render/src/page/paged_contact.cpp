@@ -54,6 +54,7 @@ SurfaceFoot PagedContact::foot(const Vector3d& p_WT) const noexcept {
   foot.p_M = p_WT + place_.scale * (place_.R_WM * (foot.p_M - p_MT));
   foot.n_M = state_.n_W;
   foot.J_MT = place_.R_WM * foot.J_MT * place_.R_WM.transpose();
+  foot.fall_W = place_.R_WM * foot.fall_W;
   return foot;
 }
 

@@ -5,6 +5,7 @@
 
 #include "mesh/contact_mesh.h"
 #include "mesh/smooth_normals.h"
+#include "mesh/triangle_foot.h"
 #include "thimble/driver/device_state.h"
 #include "thimble/render/contact_state.h"
 #include "thimble/render/surface/surface_response.h"
@@ -64,7 +65,16 @@ class Blended {
   SurfaceFoot foot(const Eigen::Vector3d& p_WT) const noexcept {
     const SurfacePlace& held = contact_.held();
     const bool by_crease = held.triangle >= 0 && on_hollow_crease(mesh(), *normals_, held);
-    SurfaceFoot foot = by_crease ? contact_.foot(p_WT) : contact_.foot_on_triangle(p_WT);
+    SurfaceFoot foot;
+    if (by_crease) {
+      foot = contact_.foot(p_WT);
+    } else if constexpr (Contact::kTellsFoot) {
+      const TriangleFoot place = contact_.triangle_foot(p_WT);
+      foot = contact_.foot_at(place);
+      foot.fall_W = depth_.fall(mesh(), *normals_, place, contact_.state().depth, foot.fall_W);
+    } else {
+      foot = contact_.foot_on_triangle(p_WT);
+    }
     foot.n_M = state_.n_W;
     return foot;
   }

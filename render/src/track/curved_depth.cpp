@@ -28,4 +28,20 @@ double CurvedDepth::depth(const ContactMesh& mesh, const SmoothNormals& normals,
   return corrected > 0 ? corrected : 0;
 }
 
+Eigen::Vector3d CurvedDepth::fall(const ContactMesh& mesh, const SmoothNormals& normals,
+                                  const TriangleFoot& foot, double below_mesh,
+                                  const Eigen::Vector3d& fall_of_mesh_W) const noexcept {
+  const std::int32_t triangle = foot.triangle;
+  const double height = height_above(mesh, normals, triangle, foot.weights);
+  const Eigen::Vector3d rising = height_slope(
+      {mesh.position(triangle, 0), mesh.position(triangle, 1), mesh.position(triangle, 2)},
+      normals.corners(triangle), foot);
+  if (height < 0) {
+    const HollowDepthChange change = change_below_hollow(below_mesh, -height);
+    return change.per_depth * fall_of_mesh_W + change.per_gap * rising;
+  }
+  if (height < below_mesh) return fall_of_mesh_W - rising;
+  return 2 * fall_of_mesh_W;
+}
+
 }  // namespace thimble::render

@@ -5,6 +5,7 @@
 
 #include "mesh/contact_mesh.h"
 #include "mesh/smooth_normals.h"
+#include "mesh/triangle_foot.h"
 
 namespace thimble::render {
 
@@ -22,6 +23,11 @@ struct MeshDepth {
                double below_mesh) const noexcept {
     return below_mesh;
   }
+  /// Returns `fall_of_mesh_W` as it is.
+  Eigen::Vector3d fall(const ContactMesh&, const SmoothNormals&, const TriangleFoot&, double,
+                       const Eigen::Vector3d& fall_of_mesh_W) const noexcept {
+    return fall_of_mesh_W;
+  }
 };
 
 /// Turns the depth below the triangles into the depth below the smooth surface they stand for
@@ -37,6 +43,11 @@ struct MeshDepth {
 struct CurvedDepth {
   double depth(const ContactMesh& mesh, const SmoothNormals& normals, std::int32_t triangle,
                const Eigen::Vector3d& weights, double below_mesh) const noexcept;
+  /// Returns minus the gradient of `depth` in the tip's place (W), where the tip belongs to `foot`
+  /// and that of `below_mesh` is `fall_of_mesh_W`.
+  Eigen::Vector3d fall(const ContactMesh& mesh, const SmoothNormals& normals,
+                       const TriangleFoot& foot, double below_mesh,
+                       const Eigen::Vector3d& fall_of_mesh_W) const noexcept;
 };
 
 }  // namespace thimble::render

@@ -111,12 +111,25 @@ class TrackedContact {
   /// Returns the place on the active triangle, whether an edge beside it holds the tip or not.
   /// Precondition: as of `weights`. Real-time: safe.
   SurfaceFoot foot_on_triangle(const Eigen::Vector3d& p_WT) const noexcept {
-    if constexpr (requires { tracker_.foot(p_WT); }) {
-      const FootPath path = tracker_.foot(p_WT);
-      return {.p_M = path.p_W, .n_M = state_.n_W, .J_MT = path.J};
+    if constexpr (kTellsFoot) {
+      return foot_at(tracker_.foot(p_WT));
     } else {
       return flat_foot(state_);
     }
+  }
+
+  /// Whether the tracker tells the place by the weights of the corners and their derivatives.
+  static constexpr bool kTellsFoot = requires(const Tracker& tracker, const Eigen::Vector3d& p) {
+    tracker.foot(p);
+  };
+  /// Returns that place of the active triangle. Precondition: as of `weights`. Real-time: safe.
+  TriangleFoot triangle_foot(const Eigen::Vector3d& p_WT) const noexcept requires kTellsFoot {
+    return tracker_.foot(p_WT);
+  }
+  /// Returns the foot that lies at such a place. Real-time: safe.
+  SurfaceFoot foot_at(const TriangleFoot& place) const noexcept requires kTellsFoot {
+    const FootPath path = path_of(mesh(), place);
+    return {.p_M = path.p_W, .n_M = state_.n_W, .J_MT = path.J, .fall_W = tracker_.fall(place)};
   }
 
   TrackerCounters counters() const noexcept { return tracker_.counters(); }

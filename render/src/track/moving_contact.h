@@ -70,6 +70,7 @@ class MovingContact {
     return {.p_M = path.p_W,
             .n_M = (places[1] - places[0]).cross(places[2] - places[0]).stableNormalized(),
             .J_MT = path.J,
+            .fall_W = now.fall_W,
             .surface_path = path_felt_};
   }
 

@@ -80,12 +80,19 @@ class OffsetTracker {
   /// Returns where on the active triangle the tip belongs (surface_weights.h), as of the last step.
   const Eigen::Vector3d& weights(const Eigen::Vector3d&) const noexcept { return weights_; }
 
-  /// Returns the place on the surface and how it moves with the tip, which is at `p_WT` (W, m), as
+  /// Returns the place on the active triangle where the tip belongs, which is at `p_WT` (W, m), as
   /// of the last step.
-  FootPath foot(const Eigen::Vector3d& p_WT) const noexcept {
-    return path_of(*mesh_, foot_.found
-                               ? offset_foot(*mesh_, *normals_, active_, weights_, foot_.depth)
-                               : edge_plane_foot(*mesh_, active_, p_WT));
+  TriangleFoot foot(const Eigen::Vector3d& p_WT) const noexcept {
+    return foot_.found ? offset_foot(*mesh_, *normals_, active_, weights_, foot_.depth)
+                       : edge_plane_foot(*mesh_, active_, p_WT);
+  }
+
+  /// Returns minus the gradient of the last step's depth in the tip's place, for its `foot`; where
+  /// the corners have not sunk that is the normal of what holds the tip.
+  Eigen::Vector3d fall(const TriangleFoot& foot) const noexcept {
+    if (held_.triangle >= 0) return n_W_;
+    if (!foot_.found) return mesh_->cell(active_).face.n;
+    return -offset_depth_slope(normals_->corners(active_), foot, foot_.depth);
   }
 
   TrackerCounters counters() const noexcept;

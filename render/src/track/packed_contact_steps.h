@@ -35,7 +35,10 @@ SurfaceFoot PackedContact<Store>::foot(const Eigen::Vector3d& p_WT) const noexce
   const OffsetPlace place = offset_.locate(store_.to_lattice(p_WT));
   if (!place.valid) return flat_foot(this->state());
   const OffsetWay way = offset_.way_to_surface(place);
-  return {.p_M = p_WT + store_.step() * way.to_surface, .n_M = this->state().n_W, .J_MT = way.J};
+  return {.p_M = p_WT + store_.step() * way.to_surface,
+          .n_M = this->state().n_W,
+          .J_MT = way.J,
+          .fall_W = way.fall};
 }
 
 template <PackedStore Store>

@@ -44,9 +44,13 @@ class PathBounded {
   /// Returns where the free tip is examined from (TrackedContact). Real-time: safe.
   Eigen::Vector3d free_tip() const noexcept { return contact_.free_tip(); }
 
-  /// Returns the place that was found for the tip at `p_WT` (W, m; surface_response.h).
-  /// Real-time: safe.
-  SurfaceFoot foot(const Eigen::Vector3d& p_WT) const noexcept { return foot_of(contact_, p_WT); }
+  /// Returns the place that was found for the tip at `p_WT` (W, m; surface_response.h). While what
+  /// is felt lags behind, its depth falls along its own normal. Real-time: safe.
+  SurfaceFoot foot(const Eigen::Vector3d& p_WT) const noexcept {
+    SurfaceFoot foot = foot_of(contact_, p_WT);
+    if (!as_found_) foot.fall_W = anchor_.felt().n_W;
+    return foot;
+  }
 
   const Contact& contact() const noexcept { return contact_; }
   const FeltAnchor& anchor() const noexcept { return anchor_; }

@@ -91,10 +91,13 @@ class SurfaceTracker {
     return within_triangle(edge_plane_weights(*mesh_, active_, p_WT));
   }
 
-  /// Returns the place on the surface and how it moves with the tip, which is at `p_WT` (W, m).
-  FootPath foot(const Eigen::Vector3d& p_WT) const noexcept {
-    return path_of(*mesh_, edge_plane_foot(*mesh_, active_, p_WT));
+  /// Returns the place on the active triangle where the tip belongs, which is at `p_WT` (W, m).
+  TriangleFoot foot(const Eigen::Vector3d& p_WT) const noexcept {
+    return edge_plane_foot(*mesh_, active_, p_WT);
   }
+
+  /// Returns minus the gradient of the depth in the tip's place: the normal.
+  Eigen::Vector3d fall(const TriangleFoot&) const noexcept { return normal(); }
 
   const TrackerCounters& counters() const noexcept { return counters_; }
 

@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <chrono>
 #include <cstring>
 #include <mutex>
 #include <thread>
@@ -231,6 +232,17 @@ bool wait_until_taken(int arm) noexcept {
   std::this_thread::yield();  // others look at each tick
   return true;
 }
+
+// Programs live by the wall's time here.
+std::int64_t now_ns() noexcept {
+  return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+void sleep_ns(std::int64_t duration_ns) noexcept {
+  std::this_thread::sleep_for(std::chrono::nanoseconds(duration_ns));
+}
+
+void lead(int, bool) noexcept {}
 
 bool enable_force(int arm, bool enabled) noexcept {
   const std::lock_guard lock(mutex);

@@ -3,10 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <map>
 #include <numbers>
+#include <utility>
 
+#include "page/paged_contact.h"
 #include "page/paged_surface.h"
 #include "search/tree_search.h"
 #include "studies/resident_memory.h"
@@ -154,6 +158,54 @@ TEST(RingPages, AreWrittenInAMemoryThatDoesNotGrowWithTheMesh) {
   const auto file = ring_of(10'000'000);
   EXPECT_LT(resident_memory().most, before + (4u << 20));
   std::filesystem::remove(file);
+}
+
+// A tip that slides at 0.5 m/s over a ring of 10^7 triangles on the disk (10^5 in the short form),
+// with 16 MiB (4) of it in memory: the depth is known in closed form, every page comes in time, and
+// memory does not grow with the mesh.
+TEST(RingPages, AreTouchedAtTenMillionTrianglesInTheMemoryOfTheirFrames) {
+  const auto file = ring_of(support::long_form() ? 10'000'000 : 100'000);
+  const std::size_t frames = support::long_form() ? 256 : 64;
+  const std::size_t before = resident_memory().now;
+  auto opened =
+      render::PagedSurface::open(file, {.frames = frames, .reach = 0.003, .horizon = 0.01});
+  ASSERT_TRUE(opened.ok()) << opened.error().message;
+  render::PagedContact contact(std::move(opened).value());
+  constexpr double kTick = 1e-3, kSpeed = 0.5, kPressed = 5e-4;
+  const auto at = [](double turn, double height) {
+    // Winds around the tube as it goes around the ring.
+    return Vector3d(kRing.at(turn, 3.7 * turn) + height * kRing.normal(turn, 3.7 * turn));
+  };
+  driver::DeviceState state;
+  state.dt = kTick;
+  const auto move = [&](const Vector3d& p) {
+    state.v_WT = state.tick++ > 0 ? Vector3d((p - state.p_WT) / kTick) : Vector3d::Zero();
+    state.p_WT = p;
+    const render::ContactState& felt = contact.update(state);
+    while (contact.surface().serve() > 0) {
+    }
+    return felt;
+  };
+  for (int i = 0; i <= 100; ++i) move(at(0, 2e-3 - (2e-3 + kPressed) * i / 100));
+  double turn = 0, worst = 0;
+  std::size_t most = 0;
+  const int ticks = support::long_form() ? 20'000 : 4000;
+  for (int i = 0; i < ticks; ++i) {
+    constexpr double kStep = 1e-6;
+    turn += kSpeed * kTick * 2 * kStep /
+            (at(turn + kStep, -kPressed) - at(turn - kStep, -kPressed)).norm();
+    const render::ContactState felt = move(at(turn, -kPressed));
+    ASSERT_TRUE(felt.touching) << i;
+    worst = std::max(worst, std::abs(felt.depth - kPressed));
+    if (i % 1000 == 0) most = std::max(most, resident_memory().now);
+  }
+  std::printf("  depth off by %.3g um, %.1f MiB more memory, %d pages read\n", 1e6 * worst,
+              static_cast<double>(most - before) / (1 << 20),
+              static_cast<int>(contact.surface().counters().loads));
+  EXPECT_EQ(contact.misses(), 0u);
+  EXPECT_LT(worst, 1e-6);
+  EXPECT_LT(most, before + (48u << 20));
+  EXPECT_GT(contact.surface().counters().loads, frames) << "all of it was in memory";
 }
 
 TEST(RingPages, SayWhenTheyCannotBeWritten) {

@@ -311,7 +311,7 @@ TEST(DentPull, DoesNoWorkAroundAClosedWayAcrossAnEdge) {
         between, even.net, flat.net, other.net, other.jumps);
     EXPECT_LT(std::abs(even.net), 1e-9);
     EXPECT_LT(std::abs(flat.net), 1e-9);
-    EXPECT_LT(std::abs(other.net), 1e-4);
+    EXPECT_LT(std::abs(other.net), 3e-5);
     EXPECT_LT(std::abs(other.net - other.jumps), 1e-9);
     if (between > 0) {
       EXPECT_GT(std::abs(other.jumps), 1e-7);

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <limits>
@@ -95,6 +96,23 @@ TEST(MemoryContact, BeginsAndEndsWithoutAJumpWhereACoarseSurfaceBulgesAboveItsTr
     }
     ASSERT_FALSE(contact.state().touching);
   }
+}
+
+// What speaks against smoothing whatever a scene says nothing of: the edges of 20 triangles are no
+// creases.
+TEST(MemoryContact, IsFeltAFifthOfItsRadiusOutsideABallOf20Triangles) {
+  constexpr double kBall = 0.05;
+  const TriangleMesh ball = support::icosphere(0, kBall);
+  MemoryContact contact = MemoryContact::build(ball).value();
+  const auto corner = [&](std::size_t k) {
+    return ball.vertices[static_cast<std::size_t>(ball.triangles[0][k])];
+  };
+  const Vector3d middle = (corner(0) + corner(1) + corner(2)) / 3;
+  const Vector3d out = middle.normalized();
+  double height = 0.02;
+  while (height > -0.001 && !move(contact, middle + height * out).touching) height -= 1e-5;
+  std::printf("felt %.2f mm above the triangle, of a radius of 50 mm\n", 1e3 * height);
+  EXPECT_NEAR(height, kBall - middle.norm(), 0.05 * kBall);
 }
 
 TEST(MemoryContact, TouchesNoBulgeThatTheTipReachesFromInside) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <string_view>
@@ -28,13 +29,21 @@ inline constexpr std::array<std::string_view, 2> kTextureFormNames{"conservative
 ///
 /// The height h is that of the foot q, the place of the material below the tip p
 /// (surface_response.h), so it is the same at every depth, and rides on what carries the material.
-/// With depth d, whose gradient is -n, the spring holds the energy k (d(p) + h(q(p)))^2 / 2; so its
-/// force is k (d + h) (n - J^T grad h), with J = dq/dp. `kConservative` hands on just that: the
-/// normal tilts to (n - s) / |n - s|, s = J^T grad h, and the depth stretches to (d + h) |n - s|.
-/// Any spring that is linear in the depth then does no work around a closed way, in depth or along
-/// the surface, and a damper takes out energy only. J is the plane's projection on flat ground,
-/// longer by R / (R - d) on a ball, shorter in a hollow. `kDepthOnly` leaves the normal alone:
-/// going up a slope costs less than going down gives back.
+/// The texture changes the energy k d^2 / 2 of the spring into k (d + h(q))^2 / 2, so to the force
+/// k d n of the contact it adds minus the gradient of the difference. With g = -grad d
+/// (SurfaceFoot::fall_W), s = J^T grad h and J = dq/dp the force becomes
+///
+///   k d n + k (d + h) (g - s) - k d g  =  k (d + h) (g - s) + k d (n - g).
+///
+/// So whatever the normal n, the texture by itself does no work around a closed way, in depth or
+/// along the surface, with any spring that is linear in the depth, and a damper takes out energy
+/// only. Where n is g (flat faces, shapes, the god-object, what holds a tip in a hollow) the last
+/// part is 0 and the whole force does none; where n is shaded that part is what the contact leaves
+/// open by itself. `kConservative` hands on just that, as a tilted normal and a stretched depth. In
+/// the last part d is at most 2 (d + h), so that the force ends with d + h: less than twice as deep
+/// as a valley a shaded contact leaves open a little less by it. J is the plane's projection on
+/// flat ground, longer by R / (R - d) on a ball, shorter in a hollow. `kDepthOnly` leaves the
+/// normal alone: going up a slope costs less than going down gives back.
 ///
 /// Where the tip is above the texture, and for NaN, the depth becomes 0. The force never points
 /// into the object. The proxy stays on the object's own surface. Real-time: safe.
@@ -46,9 +55,15 @@ inline void feel_height(const TextureHeight& texture, const SurfaceFoot& foot, T
     contact.depth = depth > 0 ? depth : 0;  // written so that NaN gives 0
     return;
   }
-  const Eigen::Vector3d steep = contact.n_W - foot.slope_at_tip(texture.slope_M);
+  if (!(depth > 0)) {
+    contact.depth = 0;
+    return;
+  }
+  const double shaded = std::min(contact.depth / depth, 2.0);
+  const Eigen::Vector3d steep =
+      foot.fall_W - foot.slope_at_tip(texture.slope_M) + shaded * (contact.n_W - foot.fall_W);
   const double stretch = steep.norm();
-  if (!(depth > 0 && steep.dot(contact.n_W) > 0)) {
+  if (!(steep.dot(contact.n_W) > 0)) {
     contact.depth = 0;
     return;
   }

@@ -35,7 +35,10 @@ struct SurfaceFoot {
   Eigen::Vector3d p_M{0, 0, 0};                    ///< The place, m.
   Eigen::Vector3d n_M{0, 0, 0};                    ///< Outward unit normal there.
   Eigen::Matrix3d J_MT = Eigen::Matrix3d::Zero();  ///< Derivative of `p_M` by the tip's place.
-  double surface_path = 0;                         ///< Path of the surface since the last tick, m.
+  /// How fast the depth falls with the tip's place: minus its gradient, W. The normal that is felt
+  /// where that is this gradient; beside it where the normal is shaded.
+  Eigen::Vector3d fall_W{0, 0, 0};
+  double surface_path = 0;  ///< Path of the surface since the last tick, m.
 
   /// Returns the gradient in the tip's place of a quantity whose gradient in the material is
   /// `slope_M`.
@@ -49,7 +52,8 @@ struct SurfaceFoot {
 inline SurfaceFoot flat_foot(const ContactState& contact) noexcept {
   return {.p_M = contact.p_WP,
           .n_M = contact.n_W,
-          .J_MT = Eigen::Matrix3d::Identity() - contact.n_W * contact.n_W.transpose()};
+          .J_MT = Eigen::Matrix3d::Identity() - contact.n_W * contact.n_W.transpose(),
+          .fall_W = contact.n_W};
 }
 
 /// Returns the foot that a `Contact` stage of Touch tells of, or the flat one if it tells of none.
@@ -99,7 +103,7 @@ class FootFollower {
       return found;
     }
     p_M_ += reach / way * behind;
-    return {.p_M = p_M_, .n_M = found.n_M};
+    return {.p_M = p_M_, .n_M = found.n_M, .fall_W = found.fall_W};
   }
 
   /// Forgets the place: the contact has ended.
