@@ -9,6 +9,7 @@
 #include "faces/server/client_force.h"
 #include "faces/server/exec_options.h"
 #include "faces/server/free_scene.h"
+#include "faces/server/paced_clock.h"
 #include "faces/server/reading_publisher.h"
 #include "replug_watch.h"
 #include "run_attendance.h"
@@ -58,6 +59,7 @@ class ArmRun {
   std::size_t index_;
   ArmChannel& channel_;
   std::unique_ptr<FreeScene> free_scene_;
+  std::shared_ptr<PacedClock> paced_;
   std::unique_ptr<session::Session> session_;
   std::unique_ptr<session::ViewerRequestHandler> desk_;
   std::unique_ptr<session::ServoThread> servo_;

@@ -161,6 +161,10 @@ DeclaredLimits read_declared(YamlMap map) {
   declared.force = map.require_number("force", "N", 0.01, 100);
   declared.stiffness = map.require_number("stiffness", "N/m", 1, 1e5);
   declared.damping = map.require_number("damping", "N s/m", 0, 1000);
+  declared.continuous_force = map.optional_number("continuous_force", 0, "N", 0, 100);
+  if (declared.continuous_force > declared.force) {
+    map.reject("continuous_force", "expected at most the declared force");
+  }
   map.finish();
   return declared;
 }
