@@ -26,8 +26,8 @@ fi
 
 tests/usb/setup.sh || true  # optional: without it the USB arms are not tested through a kernel
 tests/fuzz/setup.sh || true  # optional: without it only the corpora are replayed
-tests/optional_packages.sh "the guide as web pages" mkdocs || true
 [ -z "${THIMBLE_LONG:-}" ] || tests/faces/setup.sh || true  # optional: 64-bit ARM, and a window on a screen in memory
+tests/optional_packages.sh "the guide as web pages" mkdocs || true
 tests/optional_packages.sh "the format of the sources" clang-format-14 || true
 
 # What failed, again at the very end: a log of CI is often cut to its last lines.
