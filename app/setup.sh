@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Makes a Debian 12 machine ready and builds one preset: installs the Debian packages that are missing,
 # unpacks the scanned meshes, configures, builds. Quick when there is nothing to do.
-#   app/setup.sh [PRESET [TARGET...]]      PRESET: release (default), dev, asan, tsan, tsan-all, coverage
+#   app/setup.sh [PRESET [TARGET...]]      PRESET: release (default), dev, clang, asan, tsan, tsan-all, coverage
 set -euo pipefail
 cd "$(dirname "$0")/.."
 preset=${1:-release}
@@ -33,6 +33,8 @@ packages=(
   python3-dev pybind11-dev               # the Python package ...
   python3-numpy python3-pytest           # ... and its tests
 )
+
+[ "$preset" != clang ] || packages+=(clang)
 
 missing=()
 for package in "${packages[@]}"; do

@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
 # Runs every test: sets the machine up, builds, and runs the tests as release, under the address and
 # undefined-behaviour sanitizers, and those in which threads meet under the thread sanitizer.
-#   tests/run.sh [--long] [PRESET...]    --long: all tests under all sanitizers, at full length, then
-#                                        clang-tidy, coverage and mutants (40, 30 and 30 minutes of
-#                                        two cores), if what they need is installed;
+#   tests/run.sh [--long] [PRESET...]    --long: all tests under all sanitizers, at full length, the
+#                                        release built by clang, then clang-tidy, coverage and mutants
+#                                        (40, 30 and 30 minutes of two cores), if what they need is
+#                                        installed;
 #                                        PRESET: only these
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -11,9 +12,9 @@ presets=()
 for argument in "$@"; do
   case $argument in
     --long) export THIMBLE_LONG=1 ;;
-    release | dev | asan | tsan | tsan-all) presets+=("$argument") ;;
+    release | dev | clang | asan | tsan | tsan-all) presets+=("$argument") ;;
     *)
-      sed -n '2,7s/^# \{0,1\}//p' "$0"
+      sed -n '2,8s/^# \{0,1\}//p' "$0"
       exit 2
       ;;
   esac
@@ -21,7 +22,10 @@ done
 more=()
 if [ ${#presets[@]} = 0 ]; then
   presets=(release asan "tsan${THIMBLE_LONG:+-all}")
-  [ -z "${THIMBLE_LONG:-}" ] || more=(tidy coverage mutate)
+  if [ -n "${THIMBLE_LONG:-}" ]; then
+    more=(tidy coverage mutate)
+    if tests/optional_packages.sh "the build by clang" clang; then presets+=(clang); fi
+  fi
 fi
 
 tests/usb/setup.sh || true  # optional: without it the USB arms are not tested through a kernel

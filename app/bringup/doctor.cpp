@@ -29,12 +29,12 @@ constexpr const char* kInstallRule =
 
 class Examination {
  public:
-  explicit Examination(const Patient& patient) : patient_(patient) {}
+  explicit Examination(const SystemInfo& system) : system_(system) {}
 
   std::vector<Finding> run() {
     look_for_rule();
     look_at_arms();
-    for (Finding& found : examine_timing(patient_)) findings_.push_back(std::move(found));
+    for (Finding& found : examine_timing(system_)) findings_.push_back(std::move(found));
     return std::move(findings_);
   }
 
@@ -43,7 +43,7 @@ class Examination {
     findings_.push_back({health, std::move(what), std::move(mend)});
   }
 
-  fs::path below_root(const fs::path& path) const { return patient_.root / path.relative_path(); }
+  fs::path below_root(const fs::path& path) const { return system_.root / path.relative_path(); }
 
   void look_for_rule() {
     for (const char* folder : {"/etc/udev/rules.d", "/usr/lib/udev/rules.d", "/lib/udev/rules.d",
@@ -60,7 +60,7 @@ class Examination {
   }
 
   void look_at_arms() {
-    const auto arms = driver::find_arms(patient_.root);
+    const auto arms = driver::find_arms(system_.root);
     if (!arms) {
       note(Health::kProblem, arms.error().message, "sudo modprobe usbcore");
       return;
@@ -162,7 +162,7 @@ class Examination {
     } else if (!rule_) {
       note(Health::kProblem, name + "you may not open " + arm.node + ": the rule is missing.",
            kInstallRule);
-    } else if (!patient_.in_plugdev) {
+    } else if (!system_.in_plugdev) {
       note(Health::kProblem,
            name + "you may not open " + arm.node +
                ": it was plugged in before the rule, or you are not the user at the screen.",
@@ -176,7 +176,7 @@ class Examination {
 
   void look_at_holder(const FoundArm& arm, const std::string& name) {
     if (arm.node.empty()) return;
-    if (const auto holder = driver::find_holder(arm.node, patient_.root)) {
+    if (const auto holder = driver::find_holder(arm.node, system_.root)) {
       note(Health::kProblem,
            name + "the program " + holder->program + " (process " + std::to_string(holder->pid) +
                ") has it open.",
@@ -227,28 +227,28 @@ class Examination {
     return {};
   }
 
-  const Patient& patient_;
+  const SystemInfo& system_;
   std::vector<Finding> findings_;
   bool rule_ = false;
 };
 
 }  // namespace
 
-Patient this_machine() {
-  Patient patient;
+SystemInfo this_machine() {
+  SystemInfo system;
   rlimit limit{};
   if (getrlimit(RLIMIT_RTPRIO, &limit) == 0) {
-    patient.real_time_priority_max =
+    system.real_time_priority_max =
         limit.rlim_cur == RLIM_INFINITY ? 99 : static_cast<long>(limit.rlim_cur);
   }
-  if (geteuid() == 0) patient.real_time_priority_max = 99;
+  if (geteuid() == 0) system.real_time_priority_max = 99;
   if (const group* plugdev = getgrnam("plugdev")) {
     std::vector<gid_t> groups(static_cast<std::size_t>(std::max(getgroups(0, nullptr), 0)));
     const int count = getgroups(static_cast<int>(groups.size()), groups.data());
     groups.resize(static_cast<std::size_t>(std::max(count, 0)));
-    patient.in_plugdev = std::find(groups.begin(), groups.end(), plugdev->gr_gid) != groups.end();
+    system.in_plugdev = std::find(groups.begin(), groups.end(), plugdev->gr_gid) != groups.end();
   }
-  return patient;
+  return system;
 }
 
 Finding examine_log(const fs::path& file) {
@@ -263,8 +263,8 @@ Finding examine_log(const fs::path& file) {
           "Make " + place.string() + " writable, or name another file by --log"};
 }
 
-std::vector<Finding> examine(const Patient& patient) {
-  return Examination(patient).run();
+std::vector<Finding> examine(const SystemInfo& system) {
+  return Examination(system).run();
 }
 
 }  // namespace thimble::app

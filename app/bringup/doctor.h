@@ -21,7 +21,7 @@ struct Finding {
 };
 
 /// The machine as the doctor sees it; tests give one of their own.
-struct Patient {
+struct SystemInfo {
   std::filesystem::path root = "/";  ///< Everything the kernel tells is read below it.
   long real_time_priority_max = 0;   ///< This user's RLIMIT_RTPRIO.
   bool in_plugdev = false;           ///< This user is in the group plugdev.
@@ -32,11 +32,11 @@ struct Patient {
 Finding examine_log(const std::filesystem::path& file);
 
 /// Looks at this machine and user. Real-time: never from the servo thread.
-Patient this_machine();
+SystemInfo this_machine();
 
 /// Examines why an arm cannot be used or touch may suffer: the udev rule, each arm's node, access,
 /// driver, hub, power saving and latency timer, and how evenly a loop can run. Opens and
 /// changes nothing. Real-time: never from the servo thread.
-std::vector<Finding> examine(const Patient& patient);
+std::vector<Finding> examine(const SystemInfo& system);
 
 }  // namespace thimble::app

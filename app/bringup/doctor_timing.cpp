@@ -19,16 +19,16 @@ using driver::read_line;
 // Waking up may cost a twentieth of a period of 1 kHz before a hand could feel it. [chosen]
 constexpr long kWakeMost_us = 50;
 
-fs::path below(const Patient& patient, const char* path) {
-  return patient.root / fs::path(path).relative_path();
+fs::path below(const SystemInfo& system, const char* path) {
+  return system.root / fs::path(path).relative_path();
 }
 
 /// Returns the folders of the processors ("cpu0", "cpu1", ...).
-std::vector<fs::path> processors(const Patient& patient) {
+std::vector<fs::path> processors(const SystemInfo& system) {
   std::vector<fs::path> found;
   std::error_code ignored;
   for (const auto& entry :
-       fs::directory_iterator(below(patient, "/sys/devices/system/cpu"), ignored)) {
+       fs::directory_iterator(below(system, "/sys/devices/system/cpu"), ignored)) {
     const std::string name = entry.path().filename().string();
     const bool numbered = name.size() > 3 && name.compare(0, 3, "cpu") == 0 &&
                           std::all_of(name.begin() + 3, name.end(),
@@ -39,8 +39,8 @@ std::vector<fs::path> processors(const Patient& patient) {
   return found;
 }
 
-void look_at_priority(const Patient& patient, std::vector<Finding>& findings) {
-  if (patient.real_time_priority_max >= 80) {
+void look_at_priority(const SystemInfo& system, std::vector<Finding>& findings) {
+  if (system.real_time_priority_max >= 80) {
     findings.push_back({Health::kGood, "You may run at real-time priority.", {}});
   } else {
     findings.push_back(
@@ -50,7 +50,7 @@ void look_at_priority(const Patient& patient, std::vector<Finding>& findings) {
          "echo '@plugdev - rtprio 80' | sudo tee /etc/security/limits.d/thimble.conf, then log in "
          "again"});
   }
-  const std::string runtime = read_line(below(patient, "/proc/sys/kernel/sched_rt_runtime_us"));
+  const std::string runtime = read_line(below(system, "/proc/sys/kernel/sched_rt_runtime_us"));
   // The default leaves a real-time thread 950 ms of each second, far more than the loop takes.
   if (!runtime.empty() && std::atol(runtime.c_str()) >= 0 && std::atol(runtime.c_str()) < 500000) {
     findings.push_back(
@@ -60,11 +60,11 @@ void look_at_priority(const Patient& patient, std::vector<Finding>& findings) {
   }
 }
 
-void look_at_preemption(const Patient& patient, std::vector<Finding>& findings) {
+void look_at_preemption(const SystemInfo& system, std::vector<Finding>& findings) {
   // PREEMPT_RT kernels say 1 there [S kernel/ksysfs.c of the RT patches]; all name it in `uname
   // -v`, which is this file.
-  const std::string version = read_line(below(patient, "/proc/sys/kernel/version"));
-  if (read_line(below(patient, "/sys/kernel/realtime")) == "1" ||
+  const std::string version = read_line(below(system, "/proc/sys/kernel/version"));
+  if (read_line(below(system, "/sys/kernel/realtime")) == "1" ||
       version.find("PREEMPT_RT") != std::string::npos) {
     findings.push_back({Health::kGood, "The kernel is a real-time one (PREEMPT_RT).", {}});
   } else if (!version.empty()) {
@@ -76,10 +76,10 @@ void look_at_preemption(const Patient& patient, std::vector<Finding>& findings) 
   }
 }
 
-void look_at_governor(const Patient& patient, std::vector<Finding>& findings) {
+void look_at_governor(const SystemInfo& system, std::vector<Finding>& findings) {
   std::set<std::string> others;
   bool any = false;
-  for (const fs::path& cpu : processors(patient)) {
+  for (const fs::path& cpu : processors(system)) {
     const std::string governor = read_line(cpu / "cpufreq/scaling_governor");
     any |= !governor.empty();
     if (!governor.empty() && governor != "performance") others.insert(governor);
@@ -99,9 +99,9 @@ void look_at_governor(const Patient& patient, std::vector<Finding>& findings) {
 }
 
 /// Returns how long the deepest sleep that is not switched off takes to wake from, us.
-long deepest_wake_us(const Patient& patient) {
+long deepest_wake_us(const SystemInfo& system) {
   long most = 0;
-  for (const fs::path& cpu : processors(patient)) {
+  for (const fs::path& cpu : processors(system)) {
     std::error_code ignored;
     for (const auto& state : fs::directory_iterator(cpu / "cpuidle", ignored)) {
       if (read_line(state.path() / "disable") == "1") continue;
@@ -111,10 +111,10 @@ long deepest_wake_us(const Patient& patient) {
   return most;
 }
 
-void look_at_sleep(const Patient& patient, std::vector<Finding>& findings) {
-  const long wake_us = deepest_wake_us(patient);
+void look_at_sleep(const SystemInfo& system, std::vector<Finding>& findings) {
+  const long wake_us = deepest_wake_us(system);
   if (wake_us <= kWakeMost_us) return;
-  const fs::path latency = below(patient, "/dev/cpu_dma_latency");
+  const fs::path latency = below(system, "/dev/cpu_dma_latency");
   if (access(latency.c_str(), W_OK) == 0) {
     findings.push_back({Health::kGood,
                         "Processors at rest take " + std::to_string(wake_us) +
@@ -138,12 +138,12 @@ void look_at_sleep(const Patient& patient, std::vector<Finding>& findings) {
 
 }  // namespace
 
-std::vector<Finding> examine_timing(const Patient& patient) {
+std::vector<Finding> examine_timing(const SystemInfo& system) {
   std::vector<Finding> findings;
-  look_at_priority(patient, findings);
-  look_at_preemption(patient, findings);
-  look_at_governor(patient, findings);
-  look_at_sleep(patient, findings);
+  look_at_priority(system, findings);
+  look_at_preemption(system, findings);
+  look_at_governor(system, findings);
+  look_at_sleep(system, findings);
   return findings;
 }
 

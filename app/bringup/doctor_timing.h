@@ -8,8 +8,8 @@ namespace thimble::app {
 
 /// Returns what the doctor finds of how evenly a loop can run here: real-time priority, the
 /// kernel's limit of it, its preemption, the processors' governor and their sleep. What the kernel
-/// does not tell is passed over. Reads below `patient.root`; changes nothing. Real-time: never from
+/// does not tell is passed over. Reads below `system.root`; changes nothing. Real-time: never from
 /// the servo thread.
-std::vector<Finding> examine_timing(const Patient& patient);
+std::vector<Finding> examine_timing(const SystemInfo& system);
 
 }  // namespace thimble::app

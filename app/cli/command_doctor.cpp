@@ -13,10 +13,10 @@ namespace thimble::app {
 namespace {
 
 int show_findings(const std::string& root) {
-  Patient patient = this_machine();
-  patient.root = root;
+  SystemInfo system = this_machine();
+  system.root = root;
   int problems = 0;
-  std::vector<Finding> findings = examine(patient);
+  std::vector<Finding> findings = examine(system);
   findings.push_back(examine_log(scene::default_log_file()));
   for (const Finding& finding : findings) {
     const char* mark = "ok      ";

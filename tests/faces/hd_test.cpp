@@ -25,7 +25,6 @@ HDErrorInfo drain() {
 /// Runs `work` in a frame of each of so many ticks.
 template <class Work>
 void frames(HHD device, int ticks, Work work) {
-  ArmReading reading;
   for (int i = 0; i < ticks; ++i) {
     hdBeginFrame(device);
     work();

@@ -302,7 +302,7 @@ Ending ending(const Wall& wall, double x, double v, double duration) {
 
 TEST(HardCase05, TheFourRegionsMeetWhereTheMapSays) {
   double worst_counts = 0;
-  int classes = 0, rests_from_slow = 0, slow_starts = 0;
+  int classes = 0;
   for (const int delay : {0, 1}) {
     for (const double beta_share : {0.96, 1.04}) {
       for (const double sigma_share : {0.96, 1.04}) {
@@ -325,8 +325,6 @@ TEST(HardCase05, TheFourRegionsMeetWhereTheMapSays) {
           // Slow starts: well below the speed above which friction holds no more.
           const Ending end = ending(wall, kStep * i / 12, 0.02 * (i % 4), 8);
           all_rest = all_rest && end.rests;
-          rests_from_slow += end.rests;
-          ++slow_starts;
           cycle = std::max(cycle, end.amplitude / kStep);
         }
         const double limit = app::oscillation_speed_limit(stiffness, wall.plant.viscous,

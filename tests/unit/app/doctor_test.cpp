@@ -22,9 +22,9 @@ class DoctorTest : public ::testing::Test {
       usb_.write(kCpus + cpu + "/cpuidle/state1/latency", "200");
     }
     usb_.write("dev/cpu_dma_latency", "");
-    patient_.root = usb_.root();
-    patient_.real_time_priority_max = 99;
-    patient_.in_plugdev = true;
+    system_.root = usb_.root();
+    system_.real_time_priority_max = 99;
+    system_.in_plugdev = true;
   }
 
   void plug_woody(const std::string& port = "1-1") const {
@@ -37,7 +37,7 @@ class DoctorTest : public ::testing::Test {
 
   /// Finds what the doctor says with these words; fails the test if there is nothing.
   Finding finding(const std::string& words) const {
-    for (const Finding& found : examine(patient_)) {
+    for (const Finding& found : examine(system_)) {
       if (found.what.find(words) != std::string::npos) return found;
     }
     ADD_FAILURE() << "no finding about: " << words;
@@ -46,7 +46,7 @@ class DoctorTest : public ::testing::Test {
 
   std::size_t troubles() const {
     std::size_t count = 0;
-    for (const Finding& found : examine(patient_)) {
+    for (const Finding& found : examine(system_)) {
       EXPECT_EQ(found.health == Health::kGood, found.mend.empty()) << found.what;
       count += found.health != Health::kGood;
     }
@@ -55,7 +55,7 @@ class DoctorTest : public ::testing::Test {
 
   static inline const std::string kCpus = "sys/devices/system/cpu/";
   support::FakeUsb usb_;
-  Patient patient_;
+  SystemInfo system_;
 };
 
 TEST_F(DoctorTest, FindsNothingWrongWithAMachineOnWhichAllIsWell) {
@@ -74,10 +74,10 @@ TEST_F(DoctorTest, MissesTheRule) {
 TEST_F(DoctorTest, SaysWhyANodeMayNotBeOpened) {
   plug_woody();
   std::filesystem::remove(usb_.root() / "dev/hidraw3");  // root may open all that exists
-  patient_.in_plugdev = false;
+  system_.in_plugdev = false;
   EXPECT_EQ(finding("may not open /dev/hidraw3").health, Health::kProblem);
   EXPECT_NE(finding("may not open").mend.find("usermod -aG plugdev"), std::string::npos);
-  patient_.in_plugdev = true;
+  system_.in_plugdev = true;
   EXPECT_NE(finding("may not open").mend.find("udevadm trigger"), std::string::npos);
   std::filesystem::remove(usb_.root() / "etc/udev/rules.d/70-thimble.rules");
   EXPECT_NE(finding("may not open").what.find("rule is missing"), std::string::npos);
@@ -107,7 +107,7 @@ TEST_F(DoctorTest, SeesPowerSavingAndHubs) {
 
 TEST_F(DoctorTest, SeesTheKernelsRealTimeLimits) {
   plug_woody();
-  patient_.real_time_priority_max = 0;
+  system_.real_time_priority_max = 0;
   EXPECT_NE(finding("real-time priority").mend.find("rtprio 80"), std::string::npos);
   usb_.write("proc/sys/kernel/sched_rt_runtime_us", "100000");
   EXPECT_NE(finding("100000 us").mend.find("sysctl"), std::string::npos);

@@ -272,7 +272,9 @@ TEST(HandRoute, GoesEveryStrokeOverPlainAndShippedMeshes) {
   std::mt19937_64 bits(41);
   const auto share = [&bits] { return static_cast<double>(bits() >> 11) * 0x1p-53; };
   int strokes = 0, refused = 0;
-  for (const auto& [name, mesh] : meshes) {
+  for (const auto& entry : meshes) {
+    const std::string& name = entry.first;
+    const render::TriangleMesh& mesh = entry.second;
     const auto point = [&] {
       const auto& t = mesh.triangles[bits() % mesh.triangles.size()];
       const double u = share(), v = share() * (1 - u);

@@ -268,7 +268,7 @@ TEST(SceneFile, DrawsShapesWhereTheyAre) {
     ASSERT_FALSE(mesh.triangles.empty());
     double volume = 0;
     for (const auto& t : mesh.triangles) {
-      const auto v = [&](int k) { return mesh.vertices[static_cast<std::size_t>(t[k])]; };
+      const auto v = [&](std::size_t k) { return mesh.vertices[static_cast<std::size_t>(t[k])]; };
       volume += (v(0) - object.p_WO).dot((v(1) - object.p_WO).cross(v(2) - object.p_WO)) / 6;
     }
     for (const auto& vertex : mesh.vertices) {

@@ -106,10 +106,10 @@ TEST_F(VendorLibraryTest, MakesAnArmOfATouch) {
 
 TEST_F(VendorLibraryTest, TheDoctorNamesTheLibrary) {
   usb_.plug("1-1", "1451", "0402", "FD1", 1, 2);
-  Patient patient;
-  patient.root = usb_.root();
+  SystemInfo system;
+  system.root = usb_.root();
   bool said = false;
-  for (const Finding& found : examine(patient)) {
+  for (const Finding& found : examine(system)) {
     said = said || (holds(found.what, "FD1: its vendor's library is here (libdrd 3.17.5)") &&
                     found.health == Health::kGood);
   }

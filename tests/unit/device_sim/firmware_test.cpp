@@ -28,7 +28,8 @@ SerialPose steps_from_home(double a, double b, double c) {
   Eigen::Vector3d q = support::vintage_home();
   const Eigen::Vector3d counts(a, b, c);
   for (int i = 0; i < 3; ++i) {
-    q[i] += model.encoders[static_cast<std::size_t>(i)].sign * counts[i] * model.step(i);
+    const auto joint = static_cast<std::size_t>(i);
+    q[i] += model.encoders[joint].sign * counts[i] * model.step(joint);
   }
   return pose_at(q);
 }

@@ -103,7 +103,7 @@ TEST(FtdiPacket, LosesItsTwoStatusBytesAndNothingElse) {
 }
 
 TEST(FtdiPacket, HoldsNothingIfItIsTooShortForItsStatus) {
-  for (std::size_t size : {0, 1, 2, 64 + 1, 64 + 2}) {
+  for (const std::size_t size : {0U, 1U, 2U, 64U + 1, 64U + 2}) {
     std::size_t heard = 0;
     for_each_ftdi_packet(std::vector<std::byte>(size),
                          [&](std::span<const std::byte> part) { heard += part.size(); });

@@ -77,7 +77,7 @@ TEST(BoxNode, HoldsItsChildrensBoxesAndLittleMore) {
 // changes leaves the tree that would have been built.
 TEST(TreeNodes, HoldEveryThingOnceInBoxesAboveIt) {
   support::Random random(3);
-  for (const std::size_t things : {1, 2, 7, 8, 9, 63, 64, 65, 512, 1000, 4097}) {
+  for (const std::size_t things : {1U, 2U, 7U, 8U, 9U, 63U, 64U, 65U, 512U, 1000U, 4097U}) {
     std::vector<LatticeAabb> boxes(things);
     const auto fill = [&](LatticeAabb& box) {
       box = LatticeAabb();

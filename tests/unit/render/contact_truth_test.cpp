@@ -219,7 +219,7 @@ TEST(ContactTruth, NoContactIsLostInsideScannedMeshesAtAnyDepth) {
   tell(sums);
   EXPECT_GT(sums[0].skin.ticks, 50000);
   if (!support::long_form()) {
-    for (const std::size_t edge_planes : {0, 1}) EXPECT_LE(sums[edge_planes].skin.unexplained, 4);
+    for (const std::size_t edge_planes : {0U, 1U}) EXPECT_LE(sums[edge_planes].skin.unexplained, 4);
   }
 }
 
@@ -248,7 +248,7 @@ TEST(ContactTruth, EdgePlanesTellTheDistanceOfTheNearestPointUnlessItIsOfAnother
   ASSERT_TRUE(mesh);
   try_all("elephant.off", scaled(*mesh), 100'000, sums);
   tell(sums);
-  for (const std::size_t edge_planes : {0, 1}) {
+  for (const std::size_t edge_planes : {0U, 1U}) {
     EXPECT_LE(sums[edge_planes].skin.off, 450);
     EXPECT_LE(sums[edge_planes].skin.same_side, 25);
     EXPECT_LE(sums[edge_planes].skin.unexplained, 3);

@@ -103,7 +103,7 @@ TEST(EdgeBlending, ChangesWithinATriangleByNoMoreThanItsBandAllows) {
     const FixedBand shading{width};
     for (int i = 0; i < 20000; ++i) {
       const auto t = static_cast<std::int32_t>(random.bits() % 320);
-      const Vector3d start = weights_of(i % 3, random.uniform(0, 1), 0);
+      const Vector3d start = weights_of(static_cast<std::size_t>(i % 3), random.uniform(0, 1), 0);
       Vector3d mixed = start + Vector3d(random.uniform(0, 1), random.uniform(0, 1), 0.1);
       mixed /= mixed.sum();
       const Vector3d turn = 1e-6 * (start / start.sum() - mixed);

@@ -89,7 +89,7 @@ class DhdLink final : public SlotLink {
     const Functions& call = arm_.call();
     while (!ends_.load(std::memory_order_acquire) && !is_lost()) {
       ArmSample sample;
-      if (read(call, sample)) {
+      if (ask(call, sample)) {
         failures_ = 0;
         publish(sample);
       } else {
@@ -100,7 +100,7 @@ class DhdLink final : public SlotLink {
     }
   }
 
-  bool read(const Functions& call, ArmSample& sample) const noexcept {
+  bool ask(const Functions& call, ArmSample& sample) const noexcept {
     Eigen::Vector3d& p = sample.pose.p_BT;
     Eigen::Vector3d& v = sample.v_BT;
     if (call.dhdGetPosition(&p.x(), &p.y(), &p.z(), kId) < 0) return false;

@@ -123,7 +123,7 @@ class HdLink final : public SlotLink {
     const auto now = steady_clock::now();
     call().hdBeginFrame(device_.handle());
     ArmSample sample;
-    const bool understood = read(sample);
+    const bool understood = ask(sample);
     const Eigen::Vector3d f = last || !understood ? Eigen::Vector3d(0, 0, 0) : force_at(now);
     call().hdSetDoublev(kForce, f.data());
     call().hdEndFrame(device_.handle());
@@ -132,7 +132,7 @@ class HdLink final : public SlotLink {
     return last ? kCallbackDone : kCallbackContinue;
   }
 
-  bool read(ArmSample& sample) const noexcept {
+  bool ask(ArmSample& sample) const noexcept {
     std::array<double, 16> transform{};
     int buttons = 0;
     call().hdGetDoublev(kPosition, sample.pose.p_BT.data());
