@@ -118,8 +118,7 @@ void add_edge_planes(const DrawnScene& scene, const DrawnMoment& moment, TouchMa
     return;
   }
   const bool shaped = object < moment.shapes.size() && moment.shapes[object] != nullptr;
-  const render::TriangleMesh& mesh =
-      shaped ? *moment.shapes[object] : scene.objects[object].mesh;
+  const render::TriangleMesh& mesh = shaped ? *moment.shapes[object] : scene.objects[object].mesh;
   if (triangle >= mesh.triangles.size()) return;
   const render::BodyPose pose =
       object < moment.poses.size() ? moment.poses[object] : render::BodyPose{};

@@ -97,7 +97,8 @@ void read_everything(session::SharedReader& reader) {
       }
     }
     reader.shape(i, mesh);
-    for (const auto& vertex : mesh.vertices) promise(vertex.allFinite(), "a vertex stays somewhere");
+    for (const auto& vertex : mesh.vertices)
+      promise(vertex.allFinite(), "a vertex stays somewhere");
     for (const auto& corners : mesh.triangles) {
       for (const std::int32_t vertex : corners) {
         promise(vertex >= 0 && static_cast<std::size_t>(vertex) < mesh.vertices.size(),

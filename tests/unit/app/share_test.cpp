@@ -292,13 +292,12 @@ TEST(Share, ShowsTrianglesThatWereSplitForGood) {
 }
 
 TEST(Share, SplitsNoEdgeThatIsNotThere) {
-  for (const render::EdgeSplit& wrong :
-       {render::EdgeSplit{.ends = {0, 9}, .triangles = {0, 1}},
-        render::EdgeSplit{.ends = {-1, 0}, .triangles = {0, 1}},
-        render::EdgeSplit{.ends = {1, 1}, .triangles = {0, 1}},
-        render::EdgeSplit{.ends = {0, 1}, .triangles = {0, 0}},
-        render::EdgeSplit{.ends = {0, 1}, .triangles = {0, 2}},
-        render::EdgeSplit{.ends = {0, 1}, .triangles = {-1, 0}}}) {
+  for (const render::EdgeSplit& wrong : {render::EdgeSplit{.ends = {0, 9}, .triangles = {0, 1}},
+                                         render::EdgeSplit{.ends = {-1, 0}, .triangles = {0, 1}},
+                                         render::EdgeSplit{.ends = {1, 1}, .triangles = {0, 1}},
+                                         render::EdgeSplit{.ends = {0, 1}, .triangles = {0, 0}},
+                                         render::EdgeSplit{.ends = {0, 1}, .triangles = {0, 2}},
+                                         render::EdgeSplit{.ends = {0, 1}, .triangles = {-1, 0}}}) {
     const Pair pair = joined(small_scene());
     render::TriangleMesh mesh = mesh_of(pair.reader->scene(), 1);
     const render::TriangleMesh first = mesh;

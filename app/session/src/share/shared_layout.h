@@ -128,12 +128,12 @@ using SharedTriangle = std::array<std::uint32_t, 3>;  ///< Of the whole table of
 /// time.
 using SharedShaped = driver::Snapshot<std::array<double, 3>>;
 
-/// An edge of a shaped object that was split in its middle for good, as EdgeSplit tells it. The n-th
-/// split of an object makes its n-th new vertex and two new triangles, at the end of those there
-/// were. Written once, `ready` last.
+/// An edge of a shaped object that was split in its middle for good, as EdgeSplit tells it. The
+/// n-th split of an object makes its n-th new vertex and two new triangles, at the end of those
+/// there were. Written once, `ready` last.
 struct SharedSplit {
-  std::atomic<std::uint32_t> ready;           ///< 1: all of it is there, its vertex's place too.
-  std::uint32_t kept = 0, lost = 0;           ///< The ends of the edge; vertices of the object.
+  std::atomic<std::uint32_t> ready;          ///< 1: all of it is there, its vertex's place too.
+  std::uint32_t kept = 0, lost = 0;          ///< The ends of the edge; vertices of the object.
   std::array<std::uint32_t, 2> triangles{};  ///< Those at it, of the object.
 };
 

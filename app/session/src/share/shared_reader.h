@@ -60,7 +60,8 @@ class SharedReader {
   /// Brings the mesh of a shaped object (W, m; its own vertices from 0 on) to what it is now: as it
   /// was in `scene`, or as this left it before.
   void shape(std::size_t object, render::TriangleMesh& mesh) const;
-  /// Counts vertices moved and edges split for good so far: a viewer need only look if it has grown.
+  /// Counts vertices moved and edges split for good so far: a viewer need only look if it has
+  /// grown.
   std::uint64_t shape_moves() const noexcept { return live_->shape_moves.load(); }
 
   /// What a run counts.

@@ -47,8 +47,8 @@ class SharedRun {
   /// Stores where a vertex of a shaped object has gone for good (W, m). `shaped` counts through
   /// the table; one outside is ignored.
   void store_vertex(std::size_t shaped, const Eigen::Vector3d& p_W) noexcept;
-  /// Stores that an edge of a shaped object was split; the place of its new vertex is stored before.
-  /// `number` counts through the table; one outside is ignored.
+  /// Stores that an edge of a shaped object was split; the place of its new vertex is stored
+  /// before. `number` counts through the table; one outside is ignored.
   void store_split(std::size_t number, const render::EdgeSplit& split) noexcept;
   void store_knob(std::size_t knob, double now) noexcept {
     live_->knobs[knob].now.store(now, std::memory_order_relaxed);

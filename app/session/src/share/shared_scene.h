@@ -30,7 +30,7 @@ struct SharedScene {
     std::size_t first_triangle = 0, triangle_count = 0;
     std::size_t first_shaped = 0;
     std::size_t first_split = 0, splits_most = 0;  ///< Of its edges; 0: its triangles stay.
-    double crease_angle = 0;  ///< Edges sharper than this stay sharp, rad.
+    double crease_angle = 0;                       ///< Edges sharper than this stay sharp, rad.
   };
   /// One setting of the scene that can be changed while it is felt.
   struct Knob {
@@ -62,7 +62,7 @@ struct SharedScene {
   std::vector<Knob> knobs;
   std::vector<Eigen::Vector3d> vertices;  ///< W, m, as they were before the first tick.
   std::vector<std::array<std::uint32_t, 3>>
-      triangles;             ///< Of all `vertices`; outside is counter-clockwise.
+      triangles;                     ///< Of all `vertices`; outside is counter-clockwise.
   SharedTable shaped, splits, ring;  ///< Where those tables lie; whole within the memory.
 };
 

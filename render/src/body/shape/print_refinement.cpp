@@ -116,8 +116,8 @@ std::optional<EdgeOfTriangle> PrintRefinement::next(
   while (next_ < queue_.size() && looks_ < kLooksMax && splits_ < kSplitsMax) {
     ++looks_;
     std::int32_t triangle = queue_[next_];
-    const Vector3d nearest =
-        closest_point(p_first_, shape.at(triangle, 0), shape.at(triangle, 1), shape.at(triangle, 2));
+    const Vector3d nearest = closest_point(p_first_, shape.at(triangle, 0), shape.at(triangle, 1),
+                                           shape.at(triangle, 2));
     if (!((nearest - p_first_).squaredNorm() < reach_ * reach_)) {
       ++next_;
       continue;
@@ -129,7 +129,8 @@ std::optional<EdgeOfTriangle> PrintRefinement::next(
         const std::int32_t behind = mesh.cell(triangle).neighbours[k];
         const std::size_t longest = longest_edge(shape, behind);
         const Length length = length_of(shape, behind, longest);
-        if (!(length > length_of(shape, triangle, k)) || narrow(shape, behind, std::get<0>(length))) {
+        if (!(length > length_of(shape, triangle, k)) ||
+            narrow(shape, behind, std::get<0>(length))) {
           break;
         }
         triangle = behind;
