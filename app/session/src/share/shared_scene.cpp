@@ -91,8 +91,8 @@ bool take_object(const SharedObject& shared, const SharedHead& head,
     return false;
   }
   if (!within(shared.first_split, shared.splits_most, head.splits.count)) return false;
-  const std::uint64_t places = shared.vertex_count + shared.splits_most;
-  if (shared.shaped == 1 ? !within(shared.first_shaped, places, head.shaped.count)
+  const std::uint64_t room = shared.vertex_count + shared.splits_most;
+  if (shared.shaped == 1 ? !within(shared.first_shaped, room, head.shaped.count)
                          : shared.splits_most > 0) {
     return false;
   }
