@@ -26,7 +26,20 @@ fi
 
 tests/usb/setup.sh || true  # optional: without it the USB arms are not tested through a kernel
 tests/fuzz/setup.sh || true  # optional: without it only the corpora are replayed
+[ -z "${THIMBLE_LONG:-}" ] || tests/faces/setup.sh || true  # optional: 64-bit ARM, and a window on a screen in memory
+tests/optional_packages.sh "the guide as web pages" mkdocs || true
 tests/optional_packages.sh "the format of the sources" clang-format-14 || true
+
+# What failed, again at the very end: a log of CI is often cut to its last lines.
+tell_failures() {  # tell_failures PRESET
+  local logs=build/$1/Testing/Temporary
+  cut -d: -f2- "$logs/LastTestsFailed.log" | while IFS= read -r name; do
+    echo "== $1: $name"
+    awk -v name="$name" '/^[0-9]+\/[0-9]+ Testing: / { inside = index($0, " Testing: " name) > 0 } inside' \
+      "$logs/LastTest.log" | tail -n 40
+  done
+  cut -d: -f2- "$logs/LastTestsFailed.log" | sed "s/^/Failed in $1: /"
+}
 
 failed=()
 for preset in "${presets[@]}"; do
@@ -39,6 +52,7 @@ for name in "${more[@]}"; do
   env -u THIMBLE_LONG "tests/$name.sh" || [ $? = 3 ] || failed+=("$name")  # 3: not installed
 done
 if [ ${#failed[@]} -gt 0 ]; then
+  for preset in "${failed[@]}"; do tell_failures "$preset" >&2; done
   echo "Tests failed in: ${failed[*]}" >&2
   exit 1
 fi

@@ -20,7 +20,7 @@ namespace thimble::app {
 /// a scene with it. A simulated one runs on the virtual clock, with a hand that follows a path.
 class BenchArm {
  public:
-  /// Called in each tick; answers the force it wishes, N in the world.
+  /// Called in each tick; answers the requested force, N in the world.
   using Law = std::function<Eigen::Vector3d(const driver::DeviceState&)>;
 
   /// Opens a real arm, or, without one, a simulated arm of the file whose hand follows `hand_W`

@@ -45,7 +45,8 @@ class Check {
   }
 
   bool encoders() {
-    if (!prompt_("Move the grip slowly through its whole room for four seconds.")) return false;
+    if (!prompt_("Move the grip slowly through its whole workspace for four seconds."))
+      return false;
     std::array<std::int32_t, 3> least{INT32_MAX, INT32_MAX, INT32_MAX};
     std::array<std::int32_t, 3> most{INT32_MIN, INT32_MIN, INT32_MIN};
     const auto watch = [&](const driver::DeviceState& state) {

@@ -33,6 +33,7 @@ using Clock = std::chrono::steady_clock;
 struct Asked {
   faces::ExecOptions options;
   std::vector<std::string> arms, devices;
+  std::string clock = "wall";
 };
 
 /// Joins the lists of --arm and --device: the first of each is the program's first arm.
@@ -131,6 +132,7 @@ int run_program(const Asked& asked, const std::vector<std::string>& command) {
   faces::ExecOptions options = asked.options;
   options.program = fs::path(command.front()).filename().string();
   options.arms = arms_of(asked);
+  options.paced = asked.clock == "virtual";
   const std::atomic<bool>& stop = scene::catch_interrupts();
   for (const faces::ExecArm& arm : options.arms) {
     if (arm.device != "sim") scene::leave_rather_than_stop();
@@ -186,6 +188,13 @@ void add_exec_command(CLI::App& app, int& exit_code) {
           "--hand", options.hand,
           "Who leads the simulated hand: path, as the scene says; mouse, by the viewer; or "
           "a file with lines \"t x y z\" (s, m)")
+      ->capture_default_str();
+  command
+      ->add_option(
+          "--clock", asked->clock,
+          "wall: in real time; virtual: each tick waits until the program waits for it, so "
+          "that a program does the same each time (simulated arms only)")
+      ->check(CLI::IsMember({"virtual", "wall"}))
       ->capture_default_str();
   command->add_option("--record", options.record, "Recording of every tick to write (HDF5)");
   command->add_flag("--view", options.view, "Watch the run in a window");

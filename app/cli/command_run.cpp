@@ -24,7 +24,7 @@
 #include "run_arm.h"
 #include "run_attendance.h"
 #include "setup.h"
-#include "share/request_desk.h"
+#include "share/viewer_request_handler.h"
 #include "stability/tuning.h"
 #include "terminal.h"
 #include "thimble/driver/discovery.h"
@@ -116,7 +116,7 @@ session::SessionOptions session_options(const RunOptions& options, const session
   return asked;
 }
 
-session::ViewerWish viewer_wish(const RunOptions& options) {
+session::ViewerChoice viewer_choice(const RunOptions& options) {
   const bool asked = options.view || options.led();
   if (asked && !has_window()) {
     scene::terminal().info(
@@ -124,8 +124,8 @@ session::ViewerWish viewer_wish(const RunOptions& options) {
         "tells of "
         "the run.");
   }
-  if (options.no_view || !has_window()) return session::ViewerWish::kNever;
-  return asked ? session::ViewerWish::kAsked : session::ViewerWish::kIfWatched;
+  if (options.no_view || !has_window()) return session::ViewerChoice::kNever;
+  return asked ? session::ViewerChoice::kAsked : session::ViewerChoice::kIfWatched;
 }
 
 /// Ends the recording and tells where it is; who asked for one shall hear of what it lacks.
@@ -157,7 +157,7 @@ driver::Result<void> write_files(const session::Session& session,
 /// Opens the arm of a session that is ready and runs it to its end. `guard` stands while an arm may
 /// hold a force or a recording is not closed.
 ExitCode run_session(session::Session& session, session::ServoThread& servo,
-                     session::RequestDesk* desk, std::optional<scene::LeavingGuard>& guard,
+                     session::ViewerRequestHandler* desk, std::optional<scene::LeavingGuard>& guard,
                      const std::atomic<bool>& stop) {
   guard.emplace();
   const bool real = session.setup().real_arm().has_value();
@@ -213,7 +213,7 @@ int run_scene(const RunOptions& options) {
         complain({"--save-object: the scene has no object \"" + options.save_object + "\"."},
                  kExitBadInput));
   }
-  const auto desk = session::open_desk(session, viewer_wish(options));
+  const auto desk = session::open_viewer_requests(session, viewer_choice(options));
   session::ServoThread servo(session.real_time());
   if (arm->real) {
     if (auto granted = session::check_real_time(servo.grant(), options.no_real_time); !granted) {
@@ -323,7 +323,8 @@ void add_run_command(CLI::App& app, int& exit_code) {
       "can be felt): points on the diagrams of `thimble study accuracy`; each choice is printed");
   command
       ->add_option("--budget", options->budget,
-                   "With --quality auto: the truest points for so many ns per tick, of all objects "
+                   "With --quality auto: the most accurate points within so many ns per tick, of "
+                   "all objects "
                    "together, on the machine that the stored diagrams name")
       ->check(CLI::Range(1.0, 1e9));
   command->add_option("--report", options->report, "Folder for report.json and pictures");

@@ -64,7 +64,7 @@ int run_by_sweep(const SweepChoice& choice, const Run& run) {
 
 void add_stability_study(CLI::App& study_command, int& exit_code) {
   CLI::App* command = study_command.add_subcommand(
-      "stability", "where walls are stable on an arm: the laws against the whole way, simulated");
+      "stability", "where walls are stable on an arm: the laws, and the simulated loop");
   auto choice = std::make_shared<SweepChoice>();
   auto options = std::make_shared<StabilityOptions>();
   choice->out = "study-stability";

@@ -71,7 +71,7 @@ driver::Result<void> draw_force_and_depth(std::span<const driver::TickRecord> ro
       wanted_max = std::max(wanted_max, length_of(row.f_wanted_W));
     }
   }
-  // A wish far beyond the limit must not flatten what was felt.
+  // A requested force far beyond the limit must not flatten what was felt.
   const double force_top = 1.12 * std::max(force_max, std::min(wanted_max, 2 * force_max));
   const double depth_top = 1.12e3 * depth_max;
   c << "set tmargin at screen 0.875\nset bmargin at screen 0.515\n"

@@ -37,7 +37,7 @@ Vector3d to_vector(const std::array<double, 3>& v) {
   return {v[0], v[1], v[2]};
 }
 
-// Shows the whole mesh and what of the way is near it: a far start would make the mesh tiny.
+// Shows the whole mesh and what of the path is near it: a far start would make the mesh tiny.
 Window window_of(const render::TriangleMesh& mesh, std::span<const driver::TickRecord> rows) {
   const Eigen::AlignedBox3d mesh_box = box_of(mesh);
   const double side = std::max(mesh_box.sizes().maxCoeff(), 1e-9);
@@ -52,7 +52,7 @@ Window window_of(const render::TriangleMesh& mesh, std::span<const driver::TickR
   return {box.center(), 1.08 * box.sizes().maxCoeff()};
 }
 
-// Writes the way as seen from one side: u, v, force; blank lines end a stretch. Three blocks:
+// Writes the path as seen from one side: u, v, force; blank lines end a stretch. Three blocks:
 // free air, hidden by the mesh, and in sight.
 std::string way_table(std::span<const driver::TickRecord> rows, const MeshView& view,
                       double tolerance, double scale) {

@@ -49,7 +49,7 @@ driver::Result<void> draw_force_and_depth(std::span<const driver::TickRecord> ro
                                           const PictureInfo& info,
                                           const std::filesystem::path& folder);
 
-/// Draws the way of the tip over the mesh.
+/// Draws the path of the tip over the mesh.
 driver::Result<void> draw_path_on_mesh(std::span<const driver::TickRecord> rows,
                                        const render::TriangleMesh& mesh_W, const PictureInfo& info,
                                        const std::filesystem::path& folder);

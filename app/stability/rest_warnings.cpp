@@ -116,7 +116,7 @@ void warn_of_effects(const scene::SceneObject& object, const Loop& loop, double 
       const double hold = hold_of(effect);
       // The arm's own dry friction holds slow oscillations [PHYSICS 1.4].
       const Carried carried = carried_by(loop.scene.arm, loop.times, 0, 0);
-      const double held_speed = swing_speed_limit(
+      const double held_speed = oscillation_speed_limit(
           hold, carried.damping, loop.scene.arm.simulated.plant.coulomb, carried.latency);
       if (!(hold > bare_edge && held_speed < kStroke)) continue;
       warnings.push_back(fmt::format(

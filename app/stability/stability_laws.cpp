@@ -87,7 +87,7 @@ double passive_stiffness_quantised(double viscous, double coulomb, double encode
   return encoder_step > 0 ? std::min(held, 2 * coulomb / encoder_step) : held;
 }
 
-double swing_speed_limit(double stiffness, double viscous, double coulomb, double latency) {
+double oscillation_speed_limit(double stiffness, double viscous, double coulomb, double latency) {
   const double leak = stiffness * latency - viscous;
   return leak > 0 ? 4 / kPi * coulomb / leak : kNone;
 }

@@ -10,9 +10,9 @@ namespace thimble::app {
 // damping of the wall, T the period, d the encoder step. SI throughout. Arguments that are not
 // finite give results that are not. Real-time: never from the servo thread.
 
-/// Does the same with what lateness does to the swing's period: (b / L) u / sin u with u tan u =
-/// b L / m. From m x'' + b x' + K x(t - L) = 0 at the edge, x = e^{i w t}, u = w L: K cos u = m w^2
-/// and K sin u = b w. Above `stiffness_limit` by b L / (6 m) of it, for small ones.
+/// Does the same with what lateness does to the oscillation's period: (b / L) u / sin u with u tan
+/// u = b L / m. From m x'' + b x' + K x(t - L) = 0 at the edge, x = e^{i w t}, u = w L: K cos u = m
+/// w^2 and K sin u = b w. Above `stiffness_limit` by b L / (6 m) of it, for small ones.
 double late_stiffness_limit(double damping, double latency, double mass);
 
 /// Returns the largest stiffness with which a wall is passive to any passive hand, N/m; 0 if none
@@ -26,9 +26,9 @@ double passive_stiffness(double viscous, double wall_damping, double period, dou
 double passive_stiffness_quantised(double viscous, double coulomb, double encoder_step,
                                    double period);
 
-/// Finds the speed of a swing above which dry friction holds it no more, m/s:
+/// Finds the speed of an oscillation above which dry friction holds it no more, m/s:
 /// (4 / pi) c / (K L - b) [PHYSICS 1.4]; infinite where K L <= b. `latency` as `latency_of`.
-double swing_speed_limit(double stiffness, double viscous, double coulomb, double latency);
+double oscillation_speed_limit(double stiffness, double viscous, double coulomb, double latency);
 
 /// Finds the mean restitution of an impact of a free mass, exp(-pi (b + B - K L) / (2 sqrt(K m)))
 /// [PHYSICS 1.5]; above 1 the wall gives energy. `damping` is b + B.

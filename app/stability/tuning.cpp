@@ -19,7 +19,7 @@ namespace {
 /// damping [chosen]. It is not enough for hands that differ by three, which are looked at apart.
 constexpr double kShare = 0.7;
 
-/// The part of what the worst of those hands carries: there swings die within a second
+/// The part of what the worst of those hands carries: there oscillations die within a second
 /// [measured, tests/sim/hand_constants_test].
 constexpr double kShareAnyHand = 0.8;
 
@@ -41,13 +41,13 @@ Edges try_walls(const scene::ArmFile& file, double rate, double damping, const C
                 int per_side) {
   scene::ArmFile arm = file;
   arm.simulated.hand.tremor_amplitude = 0;
-  // Room for the hand's way within the workspace.
+  // Space for the hand's path within the workspace.
   const Eigen::Vector3d room =
       (0.02 * Eigen::Vector3d::Ones()).cwiseMin(0.25 * (arm.workspace.max_W - arm.workspace.min_W));
   arm.workspace.min_W += room;
   arm.workspace.max_W -= room;
   const scene::ArmFile smooth = without_friction(arm);
-  // What swings by less than that is count-level flicker or the end of a slow creep [chosen].
+  // What oscillates by less than that is count-level flicker or the end of a slow creep [chosen].
   const double quiet = 2e-4 + 5 * carried.tip.encoder_step;
   Edges edges;
   for (const Eigen::Vector3d& p_W : scene::points_of_workspace(arm, per_side)) {
@@ -179,8 +179,8 @@ Carried carried_by(const scene::ArmFile& arm, const scene::LoopTimes& times, dou
       std::min(passive_stiffness(carried.tip.damping, 0, times.period, more),
                passive_stiffness_quantised(carried.tip.damping, arm.simulated.plant.coulomb, step,
                                            times.period));
-  carried.held_speed = swing_speed_limit(stiffness, carried.tip.damping,
-                                         arm.simulated.plant.coulomb, carried.latency);
+  carried.held_speed = oscillation_speed_limit(stiffness, carried.tip.damping,
+                                               arm.simulated.plant.coulomb, carried.latency);
   // The length that a bristle needs goes with its force, so their quotient is the arm's.
   carried.bristle_stiffness =
       1 / bristle_length(1, carried.latency, carried.damping, step, arm.simulated.plant.coulomb);
@@ -221,7 +221,7 @@ TuneResult tune(const scene::Scene& scene, const TuneOptions& options) {
       bare.tip.mass, bare.tip.damping, arm.simulated.plant.coulomb, 1e6 * bare.tip.encoder_step);
   result.text += fmt::format(
       "Passive   for any hand up to {:.3g} N/m (no arm of this kind is used there); without a hand "
-      "dry friction holds 1000 N/m up to swings of {:.3f} m/s.\n",
+      "dry friction holds 1000 N/m up to oscillations of {:.3f} m/s.\n",
       bare.passive, bare.held_speed);
   result.text += fmt::format(
       "Friction  a bristle of up to {:.0f} N/m is quiet: z_max >= {:.3g} mm for each newton.\n",

@@ -23,12 +23,12 @@ struct Carried {
   /// the file's, for these are guesses [PHYSICS 9], N/m; and that hand.
   double stiffness_any_hand = 0;
   device_sim::HandSettings worst_hand;
-  /// What is safe to ask for, N/m: part of the one, and part of the other, at whose edge a swing
-  /// takes for ever to die.
+  /// What is safe to ask for, N/m: part of the one, and part of the other, at whose edge an
+  /// oscillation takes for ever to die.
   double stiffness_safe = 0;
   double passive = 0;     ///< For any hand: min(2 b / T with delay, 2 c / d), N/m.
-  double held_speed = 0;  ///< Fastest swing that dry friction holds without a hand, m/s, at the
-                          ///< stiffness asked for.
+  double held_speed = 0;  ///< Fastest oscillation that dry friction holds without a hand, m/s, at
+                          ///< the stiffness asked for.
   double bristle_stiffness = 0;  ///< Stiffest bristle that stays quiet, F / z_max, N/m.
 };
 
@@ -55,7 +55,7 @@ struct TuneOptions {
   int places_per_side = 2;   ///< Walls are tried at so many places per side of the workspace.
 };
 
-/// Returns what a scene asks and what can be had: by the laws, and simulated through the whole way
+/// Returns what a scene asks and what can be had: by the laws, and simulated through the whole loop
 /// in three directions at places all over the workspace. Real-time: never from the servo thread.
 TuneResult tune(const scene::Scene& scene, const TuneOptions& options);
 

@@ -149,11 +149,11 @@ driver::Result<WallRun> run_wall(const scene::ArmFile& file, const WallCase& wal
   const scene::ArmFile arm = arm_of(file, wall);
   const Vector3d n_W = wall.direction.n_W;
   const Vector3d home_W = wall.direction.p_WT;
-  const auto wish = [&](double offset) { return Vector3d(home_W + offset * n_W); };
-  std::vector<std::pair<double, Vector3d>> way{{0.0, wish(wall.hand_from)}};
+  const auto hand_at = [&](double offset) { return Vector3d(home_W + offset * n_W); };
+  std::vector<std::pair<double, Vector3d>> way{{0.0, hand_at(wall.hand_from)}};
   if (wall.hand_end > wall.hand_start) {
-    way.emplace_back(std::max(wall.hand_start, 1e-6), wish(wall.hand_from));
-    way.emplace_back(wall.hand_end, wish(wall.hand_to));
+    way.emplace_back(std::max(wall.hand_start, 1e-6), hand_at(wall.hand_from));
+    way.emplace_back(wall.hand_end, hand_at(wall.hand_to));
   }
   auto simulation = scene::ArmSimulation::make(arm, way);
   if (!simulation) return simulation.error();

@@ -59,7 +59,7 @@ struct WallCase {
   double offset = 0;      ///< Where the wall stands or the spring's middle lies, from home, m.
   double kick = 0;        ///< Speed that four ticks give the free tip, against the direction, m/s.
   double kick_start = 0;  ///< Time of the first of them, s; there is no wall before.
-  double hand_from = 0, hand_to = 0;    ///< The hand's wish moves between them, from home, m,
+  double hand_from = 0, hand_to = 0;    ///< The hand's target moves between them, from home, m,
   double hand_start = 0, hand_end = 0;  ///< between these times, s.
   double duration = 1;                  ///< s
   double give_up = 0.1;                 ///< Ends the run when the tip is so far from the middle, m.
@@ -77,7 +77,7 @@ struct WallRun {
   driver::GateCounters gate;
 };
 
-/// Runs a wall through the whole way: simulated arm, wire, firmware, driver, gate; virtual time.
+/// Runs a wall through the whole loop: simulated arm, wire, firmware, driver, gate; virtual time.
 /// Fails if the arm cannot be simulated so. Real-time: never from the servo thread.
 driver::Result<WallRun> run_wall(const scene::ArmFile& arm, const WallCase& wall);
 

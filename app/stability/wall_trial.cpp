@@ -16,7 +16,7 @@ constexpr double kWatched = 0.2;  // s, the last of it
 constexpr double kBefore = 0.4;   // s; so much earlier it is watched, too
 
 /// Returns how far the tip moved to and fro in a stretch of time, m.
-double swing_between(const WallRun& run, double from, double to) {
+double oscillation_between(const WallRun& run, double from, double to) {
   double least = 1e9, most = -1e9;
   for (std::size_t i = 0; i < run.x.size(); ++i) {
     if (run.time[i] < from || run.time[i] >= to) continue;
@@ -70,13 +70,14 @@ driver::Result<WallTouch> press_on_wall(const scene::ArmFile& arm, const WallTri
                       .give_up = HUGE_VAL};
   const auto run = run_wall(arm, wall);
   if (!run) return run.error();
-  return WallTouch{.swing = swing_between(*run, kEnd - kWatched, HUGE_VAL),
-                   .swing_before = swing_between(*run, kEnd - kWatched - kBefore, kEnd - kBefore),
-                   .force_max = *std::max_element(run->f.begin(), run->f.end()),
-                   .energy_given = *std::max_element(run->work.begin(), run->work.end()),
-                   .force_rms = force_rms(*run, kEnd - kWatched),
-                   .fault = run->fault,
-                   .gate = run->gate};
+  return WallTouch{
+      .oscillation = oscillation_between(*run, kEnd - kWatched, HUGE_VAL),
+      .oscillation_before = oscillation_between(*run, kEnd - kWatched - kBefore, kEnd - kBefore),
+      .force_max = *std::max_element(run->f.begin(), run->f.end()),
+      .energy_given = *std::max_element(run->work.begin(), run->work.end()),
+      .force_rms = force_rms(*run, kEnd - kWatched),
+      .fault = run->fault,
+      .gate = run->gate};
 }
 
 driver::Result<double> simulated_edge(const scene::ArmFile& arm, WallTrial trial, double guess,
@@ -86,10 +87,11 @@ driver::Result<double> simulated_edge(const scene::ArmFile& arm, WallTrial trial
     trial.stiffness = std::sqrt(low * high);
     const auto touch = press_on_wall(arm, trial);
     if (!touch) return touch.error();
-    // Near the edge a swing takes long to die, so that it becomes less is enough: 5 % in 0.4 s are
-    // 0.5 % below the edge for 0.1 kg and a latency of 1.5 ms. Written so that NaN is not quiet.
-    const bool rests =
-        !touch->fault && (touch->swing <= quiet || touch->swing < 0.95 * touch->swing_before);
+    // Near the edge an oscillation takes long to die, so that it becomes less is enough: 5 % in 0.4
+    // s are 0.5 % below the edge for 0.1 kg and a latency of 1.5 ms. Written so that NaN is not
+    // quiet.
+    const bool rests = !touch->fault && (touch->oscillation <= quiet ||
+                                         touch->oscillation < 0.95 * touch->oscillation_before);
     (rests ? low : high) = trial.stiffness;
   }
   return low;

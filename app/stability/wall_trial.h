@@ -15,28 +15,28 @@ struct WallTrial {
   double stiffness = 0;                  ///< N/m
   double damping = 0;                    ///< N s/m
   double rate = 1000;                    ///< Of the loop, Hz.
-  double speed = 0.2;                    ///< Of the hand's way in, m/s.
+  double speed = 0.2;                    ///< Of the hand's path in, m/s.
   double press = 2;                      ///< What the hand presses with in the end, N.
   driver::EnergyGuardSettings energy{};  ///< Of the gate.
 };
 
 /// What became of it.
 struct WallTouch {
-  double swing = 0;         ///< Of the true tip in the last 0.2 s, peak to peak, m.
-  double swing_before = 0;  ///< The same 0.4 s earlier, m.
-  double force_max = 0;     ///< Sent, N.
-  double energy_given = 0;  ///< Most that motors truly gave the tip beyond what they took, J.
-  double force_rms = 0;     ///< Of what was sent, about its mean, in the last 0.2 s, N.
+  double oscillation = 0;         ///< Of the true tip in the last 0.2 s, peak to peak, m.
+  double oscillation_before = 0;  ///< The same 0.4 s earlier, m.
+  double force_max = 0;           ///< Sent, N.
+  double energy_given = 0;        ///< Most that motors truly gave the tip beyond what they took, J.
+  double force_rms = 0;           ///< Of what was sent, about its mean, in the last 0.2 s, N.
   bool fault = false;
   driver::GateCounters gate;
 };
 
-/// Lets the simulated hand press on a wall through the whole way: arm, board, wire, device, gate,
+/// Lets the simulated hand press on a wall through the whole loop: arm, board, wire, device, gate,
 /// on the virtual clock, for 1.2 s after the soft start. Fails if a point is out of reach.
 /// Real-time: never from the servo thread.
 driver::Result<WallTouch> press_on_wall(const scene::ArmFile& arm, const WallTrial& trial);
 
-/// Finds the largest stiffness at which the tip comes to rest on the wall (it swings by no more
+/// Finds the largest stiffness at which the tip comes to rest on the wall (it oscillates by no more
 /// than `quiet`, m, or ever less), N/m, between a tenth and ten times `guess` to 1 %;
 /// `trial.stiffness` is not looked at. Fails as `press_on_wall`.
 driver::Result<double> simulated_edge(const scene::ArmFile& arm, WallTrial trial, double guess,

@@ -11,8 +11,7 @@ namespace thimble::app {
 namespace {
 
 constexpr std::array kStudies{
-    Study{"cost", "what each way of contact and each effect costs per tick, and what it buys",
-          study_cost},
+    Study{"cost", "what each tracker and each effect costs per tick, and what it buys", study_cost},
     Study{"friction", "limit cycles of friction on coarse encoders, and what cures them",
           study_friction},
     Study{"texture", "whether a stroke over a texture feels the waves that were asked for",

@@ -99,7 +99,7 @@ driver::Result<void> draw(const std::filesystem::path& folder) {
     << kContactFill << "' fs solid border lc rgb '" << kFaintInk
     << "' behind\nset key at graph 0.5, 1.0 center bottom horizontal textcolor rgb '" << kInk
     << "'\nset title offset 0,1.6\n";
-  panel(0.075, "entry_face: it depends on the way (Fig. 2a)",
+  panel(0.075, "entry_face: it depends on the path (Fig. 2a)",
         arrows(3, kForceInk, "came in from above") + ", " +
             arrows(5, kDepthInk, "came in from the right"));
   c << "unset label 1\nunset label 2\nset arrow 1 from -15,-15 to 15,15 nohead dt 2 lc rgb '"

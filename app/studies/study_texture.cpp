@@ -110,10 +110,10 @@ std::vector<Subject> subjects(render::TextureForm form) {
   render::Sandpaper::Settings rough;
   rough.form = form;
   all.push_back({"sandpaper",
-                 "grain 2 mm, roughness 0.03 mm",
+                 "wavelength 2 mm, roughness 0.03 mm",
                  wall_with(render::Sandpaper(rough, known)),
                  {},
-                 kSpeed * std::numbers::sqrt2 / rough.grain});
+                 kSpeed * std::numbers::sqrt2 / rough.wavelength});
   const auto map = stripes(form);
   // The spline rounds a sine of 16 pixels off by this much.
   const double kept = (4 + 2 * std::cos(kTurn / 16)) / 6;

@@ -24,7 +24,7 @@ driver::Result<SimulatedArm> SimulatedArm::make_of(const driver::ArmModel& board
     return driver::Error{"The simulated wire's delays must not be negative (ns)."};
   }
   if (!(settings.gimbal.period > 0) || !settings.gimbal.middle.allFinite() ||
-      !settings.gimbal.swing.allFinite()) {
+      !settings.gimbal.amplitude.allFinite()) {
     return driver::Error{"The simulated gimbal needs finite angles and a period above zero (s)."};
   }
   const auto tremor = Tremor::make(settings.hand, seed);

@@ -9,9 +9,9 @@
 namespace thimble::device_sim {
 
 /// The physiological tremor of a hand: per axis a sum of three sines around its middle
-/// frequency, whose amplitudes add up to the asked one. A hand trembles at 8 to 12 Hz [guess, from
-/// the general literature; amplitude and frequency are data]; the ratios cover that band around 10
-/// Hz.
+/// frequency, whose amplitudes add up to the asked one. A hand's tremor is at 8 to 12 Hz [guess,
+/// from the general literature; amplitude and frequency are data]; the ratios cover that band
+/// around 10 Hz.
 class Tremor {
  public:
   /// Makes a tremor whose phases are drawn from `seed`, alike on every machine. Fails if amplitude

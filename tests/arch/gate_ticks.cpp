@@ -13,7 +13,7 @@ namespace {
 using namespace thimble;
 
 /// Answers each read with a report in which the tip goes to and fro by some counts.
-class SwingingWire final : public driver::Transport {
+class OscillatingWire final : public driver::Transport {
  public:
   driver::TransportRead read_latest(std::span<std::byte> buffer, std::int64_t) noexcept override {
     ++reads_;
@@ -55,7 +55,7 @@ int main(int argc, char** argv) {
   }
   auto device =
       driver::Device::open(std::make_unique<driver::WireLink>(
-                               std::make_unique<SwingingWire>(),
+                               std::make_unique<OscillatingWire>(),
                                std::make_unique<driver::hfab::HfabArm>(support::vintage_model())),
                            settings, 0);
   if (!device || !(*device)->activate()) return 1;

@@ -323,11 +323,23 @@ TEST_F(FaceHd, GivesNumbersByAllFiveTypes) {
   EXPECT_FLOAT_EQ(f, 0.8f) << "N/mm, of the arm's file";
   EXPECT_DOUBLE_EQ(d, 0.8);
   EXPECT_EQ(b, HD_TRUE);
+  hdGetDoublev(HD_NOMINAL_MAX_CONTINUOUS_FORCE, &d);
+  EXPECT_DOUBLE_EQ(d, 1.4) << "N, of the arm's file";
   std::array<double, 6> box{};
   hdGetDoublev(HD_USABLE_WORKSPACE_DIMENSIONS, box.data());
   EXPECT_EQ(box, (std::array<double, 6>{-100, -100, -100, 100, 100, 100}));
   EXPECT_STREQ(hdGetString(HD_DEVICE_VENDOR), "Thimble");
   EXPECT_STREQ(hdGetString(HD_DEVICE_MODEL_TYPE), "vintage_phantom");
+}
+
+TEST_F(FaceHd, GivesTheLargestForceWhereNobodyHasPublishedWhatTheMotorsBearForLong) {
+  ExecRig rig({.arms = {{.arm_file = "falcon"}}});
+  hdInitDevice(nullptr);
+  HDdouble most = 0, continuous = 0;
+  hdGetDoublev(HD_NOMINAL_MAX_FORCE, &most);
+  hdGetDoublev(HD_NOMINAL_MAX_CONTINUOUS_FORCE, &continuous);
+  EXPECT_EQ(most, 8);
+  EXPECT_EQ(continuous, most);
 }
 
 TEST_F(FaceHd, SaysHowAProgramGetsAnArmWhereNoneIs) {

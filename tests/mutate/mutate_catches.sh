@@ -2,7 +2,7 @@
 # Shows that the mutants' tool tells what it must, on a small project of its own (sample): which mutants are
 # killed, which survive, which hang or do not compile, and that its exit code says whether enough are killed.
 set -euo pipefail
-command -v python3 git ninja >/dev/null || exit 77
+for tool in python3 git ninja; do command -v "$tool" >/dev/null || exit 77; done
 here=$(cd "$(dirname "$0")" && pwd)
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT

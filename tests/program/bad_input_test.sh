@@ -56,6 +56,16 @@ expect 0 'triangles +12' "$thimble" mesh cube.off
 
 # Scenes.
 good_scene
+# Keys with an old name are read as before, with one warning each that tells the new one.
+sed '0,/wavelength:/s//grain:/' scenes/sandpaper.yaml >scenes/old_keys.yaml
+expect 0 'old_keys\.yaml:[0-9]+: grain: is called wavelength now' "$thimble" run scenes/old_keys.yaml
+expect 0 '^1$' sh -c "'$thimble' run scenes/old_keys.yaml 2>&1 | grep -c 'is called'"
+for scene in sandpaper old_keys; do
+  "$thimble" run scenes/$scene.yaml --duration 2 --record $scene.h5 >/dev/null 2>&1
+  "$thimble" export $scene.h5 --csv $scene.csv >/dev/null 2>&1
+done
+expect 0 '^2000$' sh -c "grep -vc '^[a-z#]' sandpaper.csv"
+expect 0 '' cmp sandpaper.csv old_keys.csv
 expect 2 'no_such.yaml' "$thimble" run no_such.yaml
 : >empty.yaml
 expect 2 'empty\.yaml' "$thimble" run empty.yaml

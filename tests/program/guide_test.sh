@@ -22,26 +22,32 @@ cd "$work"
 
 pages=$(sed -n 's/^ *- .*: \(.*\.md\)$/\1/p' "$source/app/guide/mkdocs.yml")
 commands=0
+run_command() {  # PAGE LINE
+  local line=$2
+  case $line in
+    "thimble study "*)
+      # What is refused is refused at once; what has begun is interrupted.
+      [ -n "${THIMBLE_LONG:-}" ] || line="timeout -s INT 1 $line || [ \$? = 124 ]"
+      ;;
+    "python3 "*) [ -n "$python" ] || return 0 ;;
+  esac
+  commands=$((commands + 1))
+  bash -c "$line" </dev/null >said 2>&1 || grep -q 'Without python3-matplotlib' said || {
+    echo "FAILED: $1: $line" >&2
+    cat said >&2
+    exit 1
+  }
+}
 for page in $pages; do
-  while IFS= read -r line; do
-    case $line in
-      "thimble study "*)
-        # What is refused is refused at once; what has begun is interrupted.
-        [ -n "${THIMBLE_LONG:-}" ] || line="timeout -s INT 1 $line || [ \$? = 124 ]"
-        ;;
-      "python3 "*) [ -n "$python" ] || continue ;;
-    esac
-    commands=$((commands + 1))
-    bash -c "$line" >said 2>&1 || grep -q 'Without python3-matplotlib' said || {
-      echo "FAILED: $page: $line" >&2
-      cat said >&2
-      exit 1
-    }
-  done < <(awk '/^```sh$/ { inside = 1; next } /^```/ { inside = 0 } inside' \
-    "$source/app/guide/pages/$page")
+  while IFS= read -r line; do run_command "$page" "$line"; done < <(
+    awk '/^```sh$/ { inside = 1; next } /^```/ { inside = 0 } inside' "$source/app/guide/pages/$page")
 done
+while IFS= read -r line; do run_command README.md "$line"; done < <(
+  sed -nE 's|^build/release/app/(thimble [^#]*[^# ]) *(#.*)?$|\1|p' "$source/README.md")
+grep -q '^thimble run tin_can --record can.h5$' <(sed -nE 's|^build/release/app/(thimble [^#]*[^# ]) *(#.*)?$|\1|p' "$source/README.md") ||
+  { echo "FAILED: no command of the README was found" >&2 && exit 1; }
 [ "$commands" -ge 12 ] || { echo "FAILED: only $commands commands were found" >&2 && exit 1; }
-echo "$commands commands of $(wc -w <<<"$pages") pages ran."
+echo "$commands commands of $(wc -w <<<"$pages") pages and the README ran."
 
 # What the guide writes in Python, all of it in one go.
 if [ -n "$python" ]; then
@@ -65,9 +71,19 @@ grep -q 'touched as a sheet of 4 triangles' said || { echo "FAILED: nothing is t
 bash "$source/app/guide/keys.sh" thimble | diff "$source/app/guide/pages/keys.md" - ||
   { echo "FAILED: app/guide/pages/keys.md is old; app/guide/keys.sh writes it" >&2 && exit 1; }
 
-if command -v mkdocs >/dev/null; then
-  mkdocs build --strict --quiet -f "$source/app/guide/mkdocs.yml" -d "$work/pages"
-  echo "The pages are built without a broken link."
-else
-  echo "mkdocs is not installed: the pages were not built."
-fi
+# What the guide tells of peers is what the folders of the source have measured.
+rows() { sed -nE 's/^\| (10\^[0-9])[^|]*\| ([0-9]+), [0-9]+ \(([0-9]+), [0-9]+\) \| ([0-9]+), [0-9]+ \(([0-9]+), [0-9]+\) \|.*/| \1 | \2 | \3 | \4 | \5 |/p'; }
+rows <"$source/render/src/packed/README.md" >measured
+[ "$(wc -l <measured)" = 5 ] || { echo "FAILED: render/src/packed/README.md has no table of peers" >&2 && exit 1; }
+grep -E '^\| 10\^[0-9] \|' "$source/app/guide/pages/compare.md" | diff - measured ||
+  { echo "FAILED: compare.md tells other times of ticks than render/src/packed/README.md" >&2 && exit 1; }
+for row in 'segment: grid, tree (Embree)' 'nearest point: grid, tree (Embree)'; do
+  grep -qxF "$(grep -F "| $row" "$source/render/src/search/README.md")" "$source/app/guide/pages/compare.md" ||
+    { echo "FAILED: compare.md tells other times of searches than render/src/search/README.md: $row" >&2 && exit 1; }
+done
+
+# The guide as a site, strictly: no dead link, no page out of the menu.
+bash "$source/app/guide/site.sh" "$work/pages" || {
+  [ $? = 3 ] || { echo "FAILED: the guide's pages" >&2 && exit 1; }
+  echo "NOT TESTED: the guide as web pages; install mkdocs."
+}

@@ -34,7 +34,7 @@ expect 0 '^[1-9][0-9]* of them apart by less than 10 %$' awk -F, 'NR > 1 && $1 <
 expect 0 'encoder_step_with_law .*the law of one dimension is a bound here' \
   "$thimble" study stability --arm "$arm" --direction 1 1 1 --coarse --out across
 expect 0 '"one_dimensional": false' cat across/summary.json
-# A linkage, along whose axes several encoders step; and a high rate, at which swings take longer to die.
+# A linkage, along whose axes several encoders step; and a high rate, at which oscillations take longer to die.
 if [ -n "${THIMBLE_LONG:-}" ]; then
   expect 0 'rate_with_exact_map .* met' "$thimble" study stability \
     --arm "$source_dir/app/arms/polhem.yaml" --coarse --out linkage

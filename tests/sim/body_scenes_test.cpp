@@ -113,7 +113,8 @@ TEST(BodyKeys, TellWhatIsWrongWithABody) {
   EXPECT_TRUE(says(refusal(ball, "{motion: {}}"), "mass"));
   EXPECT_TRUE(says(refusal(ball, "{motion: {mass: 0}}"), "mass: expected a number from 0.0001"));
   EXPECT_TRUE(says(refusal(ball, "{motion: {mass: .nan}}"), "mass"));
-  EXPECT_TRUE(says(refusal(ball, "{motion: {mass: 1, turning: [0, 0, 1]}}"), "kind: rigid"));
+  EXPECT_TRUE(
+      says(refusal(ball, "{motion: {mass: 1, angular_velocity: [0, 0, 1]}}"), "kind: rigid"));
   EXPECT_TRUE(says(refusal(ball, "{motion: {mass: 1, floor_friction: 1}}"), "floor"));
   EXPECT_TRUE(says(refusal(ball, "{motion: {mass: 1, time_scale: 0}}"), "time_scale"));
   EXPECT_TRUE(says(refusal(ball, "{plastic: {yield_force: -1}}"), "yield_force"));

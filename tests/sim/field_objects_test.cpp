@@ -48,14 +48,14 @@ struct FreeArm {
         device_sim::SimulatedArm::make(
             model, settings, device_sim::HandPath::make({{.time = 0, .p_BH = home}}).value())
             .value());
-    driver::DeviceSettings loose = support::vintage_settings();
-    loose.limits.force_max = 1e5;  // the soft start of 50 ms is not felt
-    loose.limits.rise_max = 1e5;
-    loose.limits.soft_start = 0.05;
+    driver::DeviceSettings wide = support::vintage_settings();
+    wide.limits.force_max = 1e5;  // the soft start of 50 ms is not felt
+    wide.limits.rise_max = 1e5;
+    wide.limits.soft_start = 0.05;
     auto opened = driver::Device::open(
         std::make_unique<driver::WireLink>(std::make_unique<device_sim::SimTransport>(clock, *arm),
                                            driver::make_ideal_arm(arm_model(model))),
-        loose, clock.now_ns());
+        wide, clock.now_ns());
     EXPECT_TRUE(opened) << (opened ? "" : opened.error().message);
     device = std::move(opened).value();
     EXPECT_TRUE(device->activate());

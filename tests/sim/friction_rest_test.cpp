@@ -61,7 +61,7 @@ Rest rest_after_stop(render::AnyStage& stage, const FrictionRigSettings& rig, do
           .held = std::abs(mean(raw.last(1000)))};
 }
 
-TEST(NaiveFriction, TremblesAfterAStopAsThePaperSays) {
+TEST(NaiveFriction, HasALimitCycleAfterAStopAsThePaperSays) {
   const FrictionRigSettings rig;
   const auto hold = friction("naive", rig, {{"at_rest", "hold"}});
   const Rest rest = rest_after_stop(*hold, rig, 0.01);
@@ -197,7 +197,7 @@ TEST(DefaultFriction, IsSilentForOtherHandsMassesAndEncoders) {
 }
 
 // What the settings refuse is what falls into a limit cycle.
-TEST(HardCase20, BristleThatBendsByOneCountWouldTremble) {
+TEST(HardCase20, BristleThatBendsByOneCountWouldChatter) {
   const FrictionRigSettings rig;
   render::AnyStageOf<render::BristleFriction> bristle(render::BristleFriction(
       {.coulomb = {.sliding = 0.5, .holding = 0.5}, .stiffness = 0.5 / 3e-5},
@@ -247,7 +247,7 @@ TEST(HardCase16, DefaultFrictionHoldsALoadWithoutDrift) {
   }
 }
 
-TEST(HardCase16, DefaultFrictionDoesNotCreepUnderALoadThatSwings) {
+TEST(HardCase16, DefaultFrictionDoesNotCreepUnderALoadThatOscillates) {
   FrictionRigSettings rig;
   const auto context = app::effect_context_of(rig);
   rig.arm_coulomb = 0;
@@ -264,7 +264,7 @@ TEST(HardCase16, DefaultFrictionDoesNotCreepUnderALoadThatSwings) {
     }
     const double duration = 0.5 + 0.2 * cycles;
     const RigRun run = rub(*bristle, way, duration, rig);
-    // The mean place of the first whole second of swinging against the last's.
+    // The mean place of the first whole second of the oscillation against the last's.
     const std::span<const double> x(run.x);
     const double drift = mean(x.last(1000)) - mean(x.subspan(1500, 1000));
     EXPECT_LE(std::abs(drift), 1e-6) << step;

@@ -130,7 +130,7 @@ struct Throw {
   double e() const { return out / in; }
 };
 
-/// Lets the hand wish itself onto the surface from `height` (m) above, by its spring; as in hard
+/// Lets the hand aim at the surface from `height` (m) above, by its spring; as in hard
 /// case 7 it stays there, so that spring and damper act during the impact.
 Throw throw_from(double height, const scene::ArmFile& arm, const SlowSurface& surface, double phase,
                  Law law, double silent_from = 0, double silent_to = 0) {
@@ -164,17 +164,18 @@ constexpr std::array kHeights{0.001, 0.003, 0.01, 0.03};  // m: 0.03 to 1.1 m/s
 
 TEST(HardCase40, ThrownAtItTheTipNeverComesBackFaster) {
   const scene::ArmFile arm = phantom();
-  scene::ArmFile loose = arm;
-  loose.simulated.hand.damping /= 10;
+  scene::ArmFile low_impedance = arm;
+  low_impedance.simulated.hand.damping /= 10;
   double most = 0, most_over_direct = 0, fastest = 0;
   for (const Feel feel : {Feel::kEven, Feel::kStiffening, Feel::kSoftening}) {
     for (const Shape shape : {Shape::kPlane, Shape::kBall, Shape::kBowl}) {
       const SlowSurface surface{.shape = shape, .feel = feel};
       for (const double height : kHeights) {
-        const Throw direct = throw_from(height, loose, surface, 0, Law::kEveryTick);
+        const Throw direct = throw_from(height, low_impedance, surface, 0, Law::kEveryTick);
         for (int phase = 0; phase < 4; ++phase) {
           const Throw thrown = throw_from(height, arm, surface, phase / 4.0, Law::kLocalModel);
-          const Throw light = throw_from(height, loose, surface, phase / 4.0, Law::kLocalModel);
+          const Throw light =
+              throw_from(height, low_impedance, surface, phase / 4.0, Law::kLocalModel);
           EXPECT_GT(thrown.in, 0.02);
           EXPECT_LE(thrown.e(), 1)
               << static_cast<int>(feel) << static_cast<int>(shape) << " " << height << " " << phase;
@@ -228,8 +229,8 @@ TEST(HardCase40, GuardHeldForceComesBackFaster) {
                    most, 1, "1");
 }
 
-/// Presses on a plane of this stiffness and tells how far the tip swings in the last 0.3 s, m.
-double pressed_swing(double stiffness, Law law) {
+/// Presses on a plane of this stiffness and tells how far the tip oscillates in the last 0.3 s, m.
+double pressed_oscillation(double stiffness, Law law) {
   const scene::ArmFile arm = phantom();
   SlowSide slow({.stiffness = stiffness});
   const Way way{{0, {0, 0, 0.002}}, {kBegin, {0, 0, 0.002}}, {0.5, {0, 0, -0.006}}};
@@ -254,9 +255,9 @@ TEST(HardCase40, GuardHeldForceObeysTheSlowPeriodAndAModelTheServos) {
                            .hand_stiffness = simulated.hand.stiffness,
                            .period = period,
                            .delay = period + 1e-3});
-  const double quiet = pressed_swing(0.8 * edge, Law::kHeldForce);
-  const double loud = pressed_swing(1.5 * edge, Law::kHeldForce);
-  const double model = pressed_swing(0.7 * carried(arm), Law::kLocalModel);
+  const double quiet = pressed_oscillation(0.8 * edge, Law::kHeldForce);
+  const double loud = pressed_oscillation(1.5 * edge, Law::kHeldForce);
+  const double model = pressed_oscillation(0.7 * carried(arm), Law::kLocalModel);
   EXPECT_LE(quiet, 2e-4);
   EXPECT_GT(loud, 1e-3);
   EXPECT_LE(model, 2e-4);
@@ -264,7 +265,7 @@ TEST(HardCase40, GuardHeldForceObeysTheSlowPeriodAndAModelTheServos) {
   record_hard_case(40, "stiffness that a model carries over that of a held force",
                    ">= 0.7 of the servo's edge over the slow loop's", 0.7 * carried(arm) / edge, 5,
                    "1");
-  record_hard_case(40, "the stiffer of both, pressed: swing at rest", "<= peak to peak",
+  record_hard_case(40, "the stiffer of both, pressed: oscillation at rest", "<= peak to peak",
                    1e3 * model, 0.2, "mm");
 }
 

@@ -35,8 +35,8 @@ using support::WallRig;
 
 constexpr double kMass = 0.075, kStep = 3e-5;
 
-/// Returns how fast the logarithm of a swing's energy grows, 1/s: from the second tenth to the
-/// last.
+/// Returns how fast the logarithm of an oscillation's energy grows, 1/s: from the second tenth to
+/// the last.
 double growth(const Wall& wall, double duration) {
   WallRig rig(wall);
   rig.state.x = 1e-3;
@@ -58,7 +58,7 @@ double edge_between(double low, double growth_low, double high, double growth_hi
 }
 
 TEST(HardCase01, StiffnessLimitIsTheLatencyBudgetAtAnyRateAndDelay) {
-  // b / L leaves out that a late wall swings slower: with u tan u = b L / m the limit of a late
+  // b / L leaves out that a late wall oscillates slower: with u tan u = b L / m the limit of a late
   // spring is (b / L) u / sin u, 4.6 % more at 250 Hz and five periods of delay. The plain law is
   // held to 3 % where that is below 1 % (b L / m <= 0.06), the full one to 3 % everywhere.
   double worst = 0, worst_plain = 0;
@@ -110,7 +110,7 @@ std::int64_t draw(Jitter jitter, support::Random& random) {
   return 0;
 }
 
-/// Returns the growth of a swing's energy per tick under jitter, from the same draws for any
+/// Returns the growth of an oscillation's energy per tick under jitter, from the same draws for any
 /// stiffness.
 double jittered_growth(Jitter jitter, double stiffness, double viscous, int ticks) {
   AxisDynamics axis =
@@ -278,7 +278,7 @@ TEST(HardCase04, AnAdversaryGainsJustWhereFrictionIsBelowHalfAQuantum) {
   record_hard_case(4, "adversary at f_c = 0.98 K step / 2", "> gain over K step d", least, 0, "1");
 }
 
-/// What became of a swing.
+/// What became of an oscillation.
 struct Ending {
   bool rests = false;
   double amplitude = 0;  // of the last tenth, m, peak to peak
@@ -329,14 +329,15 @@ TEST(HardCase05, TheFourRegionsMeetWhereTheMapSays) {
           ++slow_starts;
           cycle = std::max(cycle, end.amplitude / kStep);
         }
-        const double limit = app::swing_speed_limit(stiffness, wall.plant.viscous,
-                                                    wall.plant.coulomb, (0.5 + delay) * 1e-3);
+        const double limit = app::oscillation_speed_limit(stiffness, wall.plant.viscous,
+                                                          wall.plant.coulomb, (0.5 + delay) * 1e-3);
         const double fast = damped ? 1 : 2 * limit;
         const Ending thrown = ending(wall, 0, fast, 20);
         const bool grows = thrown.amplitude > 2.2 * fast / std::sqrt(stiffness / kMass);
         support::WallRegion seen;
         if (all_rest) {
-          seen = grows ? support::WallRegion::kHoldsSmallSwings : support::WallRegion::kComesToRest;
+          seen = grows ? support::WallRegion::kHoldsSmallOscillations
+                       : support::WallRegion::kComesToRest;
         } else {
           seen = grows ? support::WallRegion::kGrows : support::WallRegion::kFlickers;
         }
@@ -355,13 +356,13 @@ TEST(HardCase05, TheFourRegionsMeetWhereTheMapSays) {
                    worst_counts, 2, "counts");
 }
 
-TEST(HardCase06, DryFrictionHoldsASwingUpToItsLimitSpeed) {
+TEST(HardCase06, DryFrictionHoldsAnOscillationUpToItsLimitSpeed) {
   double slow = 0, fast = 1e9;
   for (const double stiffness : {500.0, 1000.0, 2000.0, 3000.0}) {
     Wall wall{.plant = {.mass = kMass, .viscous = 0.005, .coulomb = 0.04}};
     wall.stiffness = stiffness;
     wall.two_sided = true;
-    const double limit = app::swing_speed_limit(stiffness, 0.005, 0.04, 0.5e-3);
+    const double limit = app::oscillation_speed_limit(stiffness, 0.005, 0.04, 0.5e-3);
     const auto last_speed = [&](double start) {
       WallRig rig(wall);
       rig.state.v = start;

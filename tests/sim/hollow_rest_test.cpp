@@ -56,7 +56,7 @@ struct Pressed {
   double stiffness = 0;     // N/m
   double force = 0;         // N, with which the hand presses
   Vector3d aside{1, 0, 0};  // where it comes from, in x and y
-  bool bare = false;        // without dry friction and encoder steps, which hide small swings
+  bool bare = false;        // without dry friction and encoder steps, which hide small oscillations
 };
 
 std::string point(const Vector3d& p) {

@@ -342,7 +342,7 @@ TEST(LiveControl, AHandThatTheMouseLeadsFeelsTheScene) {
   EXPECT_EQ(end.tick, 1499u);
   EXPECT_TRUE(end.in_contact);
   EXPECT_GT(force, 0.5);
-  EXPECT_LT(fastest, 1.5 * device_sim::Hand::kSpeedMax) << "an arm on a hand swings a little over";
+  EXPECT_LT(fastest, 1.5 * device_sim::Hand::kSpeedMax) << "an arm on a hand overshoots a little";
 }
 
 TEST(LiveControl, KeepsTheHandWithinTheWorkspace) {

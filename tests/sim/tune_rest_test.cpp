@@ -84,13 +84,13 @@ TEST(TuneRest, WarnsOfRandomScenesThatOscillateAndOfNoOthers) {
     const auto scene = scene::load_scene(file);
     ASSERT_TRUE(scene);
     ++ran;
-    bool oscillates = found.tremble > kTrembleMost;
+    bool oscillates = found.limit_cycle > kLimitCycleMost;
     const bool alarm = !warnings_of(*scene).empty();
     if (alarm && !oscillates) {
       // Where the scene's own rest touches nothing, tune stops the hand on its path.
       const auto trial = try_rests(*scene, scene->arm.simulated.hand);
       ASSERT_TRUE(trial && trial->worst());
-      oscillates = oscillation_stopped_at(file, trial->worst()->time) > kTrembleMost;
+      oscillates = oscillation_stopped_at(file, trial->worst()->time) > kLimitCycleMost;
     }
     const bool rule = !rest_causes(*scene).empty();
     oscillate += oscillates;
@@ -101,7 +101,7 @@ TEST(TuneRest, WarnsOfRandomScenesThatOscillateAndOfNoOthers) {
     rules_wrong += rule && !oscillates;
     if (alarm != oscillates) {
       std::printf("  seed %llx: %.4f N RMS, %s\n", static_cast<unsigned long long>(seed),
-                  found.tremble, alarm ? "warned of" : "missed");
+                  found.limit_cycle, alarm ? "warned of" : "missed");
     }
   }
   std::printf(

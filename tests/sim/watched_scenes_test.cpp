@@ -26,7 +26,7 @@ class WatchedScene : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(WatchedScene, IsTakenForABrokenArmWithNoHand) {
   for (const Grip& grip :
-       {Grip{"soft", 0.01, 100, 1, 5e-5}, Grip{"firm", 0.05, 1000, 10, 5e-5},
+       {Grip{"low-impedance", 0.01, 100, 1, 5e-5}, Grip{"high-impedance", 0.05, 1000, 10, 5e-5},
         Grip{"stiff and without damping", 0.025, 1000, 1, 0}, Grip{"heavy", 0.1, 300, 3, 0}}) {
     session::SessionOptions options;
     options.adjust = [&](scene::Scene& scene) {

@@ -28,10 +28,11 @@ inline double passive_damping(double stiffness, double damping, double period, d
 
 /// What a wall does after a start from anywhere [PHYSICS 1.4, Diolaiti et al.].
 enum class WallRegion {
-  kComesToRest,       ///< From every start.
-  kFlickers,          ///< Ends in a limit cycle of a few encoder counts.
-  kHoldsSmallSwings,  ///< Comes to rest from slow starts, grows above swing_speed_limit.
-  kGrows,             ///< Flickers, then grows.
+  kComesToRest,             ///< From every start.
+  kFlickers,                ///< Ends in a limit cycle of a few encoder counts.
+  kHoldsSmallOscillations,  ///< Comes to rest from slow starts, grows above
+                            ///< oscillation_speed_limit.
+  kGrows,                   ///< Flickers, then grows.
 };
 
 /// The place of a wall in the map of [PHYSICS 1.4]: beta = b / (K T), sigma = c / (K d).
@@ -53,7 +54,8 @@ inline WallPlace place_of_wall(double stiffness, double viscous, double coulomb,
 /// Returns what a wall at this place does; the corners lie at beta = 1/2 + d and sigma = 1/2.
 inline WallRegion region_of(const WallPlace& place) {
   const bool damped = place.beta > 0.5 + place.delay_periods;
-  if (place.sigma > 0.5) return damped ? WallRegion::kComesToRest : WallRegion::kHoldsSmallSwings;
+  if (place.sigma > 0.5)
+    return damped ? WallRegion::kComesToRest : WallRegion::kHoldsSmallOscillations;
   return damped ? WallRegion::kFlickers : WallRegion::kGrows;
 }
 

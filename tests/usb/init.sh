@@ -47,6 +47,30 @@ unplug() {
   udevadm settle --timeout=20
 }
 
+# Programs written for other arms, each with a sphere of its own below the place where the hand goes up
+# and down: the forces that they log are those that the board's motors get.
+programs() {
+  arm=$1
+  while read -r program axes centre; do
+    plug $arm /tmp/board.trace
+    name=$(usb_check name $arm)
+    as tester "cd /tmp && HOME=/tmp thimble exec --device $name --arm /data/app/arms/$arm.yaml --yes --unchecked \
+      --homed --no-real-time --record program.h5 $program 2 program.log $centre </dev/null &&
+      thimble export program.h5 --csv program.csv" >/tmp/program.out 2>&1 ||
+      echo "FAIL $arm with $program: $(tr '\n' ' ' </tmp/program.out)"
+    unplug
+    {
+      usb_check program $arm /tmp/program.log $axes /tmp/program.csv /tmp/program.trace
+      usb_check compare $arm /tmp/program.trace /tmp/board.trace
+    } | grep -v ^FIGURE | sed "s/^\([A-Z]* $arm\)/\1 with $program/"
+    rm -f /tmp/program.*
+  done <<EOF
+hello_sphere zxy 0 180 25
+chai_sphere xyz 0.025 0 0.180
+dhd_client_sphere xyz 0.025 0 0.180
+EOF
+}
+
 # What a real arm may do stands in an installed arm file: here in the tester's own folder.
 mkdir -p /tmp/.config/thimble
 cp -r /data/app/arms /tmp/.config/thimble/arm_files
@@ -97,6 +121,8 @@ for arm in $arms; do
   usleep 300000
   as tester "usb_check fresh $arm $image"
   unplug
+
+  [ $arm != woodenhaptics ] || programs $arm
 
   # The padded board differs from the other in its reports only.
   [ $arm = polhem-64 ] && [ $ticks -lt 10000 ] && { echo "NOTE $arm done after $(uptime) s"; continue; }

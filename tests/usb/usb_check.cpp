@@ -12,7 +12,8 @@
 //   usb_check replug ARM PIPE [FIRMWARE]
 //   usb_check fault ARM PIPE "FAULT" [FIRMWARE]
 //   usb_check compare ARM TRACE DEVICE_TRACE
-//   usb_check descriptor ARM                      the HID report descriptor, as bytes
+//   usb_check program ARM LOG AXES CSV TRACE      what a program under `thimble exec` asked for, as
+//   a trace usb_check descriptor ARM                      the HID report descriptor, as bytes
 //   usb_check gadget ARM NODE                     is the arm behind a HID gadget
 #include <dirent.h>
 
@@ -32,6 +33,7 @@
 #include "thimble/driver/wire_link.h"
 #include "usb/board_checks.h"
 #include "usb/hid_gadget.h"
+#include "usb/program_trace.h"
 #include "usb/trace_compare.h"
 #include "usb/virtual_arm.h"
 
@@ -370,6 +372,7 @@ int run(const std::vector<std::string>& words) {
   if (what == "descriptor") return print_report_descriptor(arm.name);
   if (what == "gadget") return be_gadget(arm.name, word(2));
   if (what == "compare") return compare_traces(arm, word(2), word(3));
+  if (what == "program") return trace_of_program(arm, word(2), word(3), word(4), word(5));
   if (what == "touch") {
     arm.firmware = word(4);
     return touch(arm, std::strtoull(word(2).c_str(), nullptr, 10), word(3));

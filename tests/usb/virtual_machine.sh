@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Boots this system's Debian kernel in QEMU and drives every simulated USB arm through it.
-#   virtual_machine.sh THIMBLE USB_CHECK SOURCE_DIR WORK_DIR [--long]
+#   virtual_machine.sh THIMBLE USB_CHECK SOURCE_DIR WORK_DIR PROGRAMS_DIR [--long]
+# PROGRAMS_DIR holds the programs in C that were built for others' arms (tests/faces).
 # Ends with 0 if all passed, 1 if not, 77 if this machine lacks what it takes. The whole log stays in
 # WORK_DIR/console.log, the figures in WORK_DIR/figures.json, every fault on every arm that was tried
 # in WORK_DIR/faults.md.
@@ -8,9 +9,9 @@
 # The machine counts instructions instead of time (-icount): one instruction is 4 ns, and idle time
 # is skipped. So a busy computer makes the test slower, never different.
 set -euo pipefail
-thimble=$1 check=$2 source=$3 work=$4
+thimble=$1 check=$2 source=$3 work=$4 programs=$5
 long=${THIMBLE_LONG:+--long}
-[ "${5:-$long}" = --long ] && long=1 || long=
+[ "${6:-$long}" = --long ] && long=1 || long=
 
 skip() {
   echo "SKIPPED: the USB arms were NOT tested through a kernel: $1" >&2
@@ -57,6 +58,12 @@ add() {
 }
 add "$thimble" /bin/thimble
 add "$check" /bin/usb_check
+# Programs written for other arms, and the libraries that `thimble exec` puts in front of them.
+for program in clients/hello_sphere clients/chai_sphere dhd/dhd_client_sphere; do
+  add "$programs/$program" "/bin/$(basename $program)"
+done
+mkdir -p "$root/bin/faces/lib"
+cp -L "$(dirname "$thimble")"/faces/lib/*.so* "$root/bin/faces/lib/"
 # systemd-udevd and udevadm are one program that looks at its name.
 add /bin/udevadm /bin/udevadm
 add $udevd $udevd
@@ -101,7 +108,7 @@ head -c 1500 /bin/sh >"$root/etc/falcon.bin"
 (cd "$root" && find . | cpio -o -H newc --quiet) | gzip -1 >"$work/initrd.gz"
 
 # The first arm is always touched for 10,000 ticks; the others take a fifth of it in the short form.
-ticks=2000 faulty=woodenhaptics arms=woodenhaptics,polhem,polhem-64,falcon limit=1200
+ticks=2000 faulty=woodenhaptics arms=woodenhaptics,polhem,polhem-64,falcon limit=2400
 [ -z "$long" ] || { ticks=10000 faulty=$arms limit=3000; }
 arms=${THIMBLE_USB_ARMS-$arms} faulty=${THIMBLE_USB_FAULTY-$faulty}
 gadgets=${THIMBLE_USB_GADGETS-$gadgets}

@@ -25,9 +25,10 @@ constexpr std::int64_t kOpening_ns = 120'000'000'000;  // a person may have to a
 
 /// What this process knows of an arm that it has open.
 struct OwnArm {
-  std::mutex mutex;            // of writers: a snapshot has one
-  std::atomic<int> opened{0};  // how often
-  std::uint64_t number = 0;    // of the force written last
+  std::mutex mutex;                          // of writers: a snapshot has one
+  std::atomic<int> opened{0};                // how often
+  std::uint64_t number = 0;                  // of the force written last
+  std::atomic<const char*> leader{nullptr};  // the thread whose waits alone move time on
 };
 
 // Never destroyed: threads of the program may still ask while it exits.
@@ -45,6 +46,12 @@ std::mutex& opening() {
   return only;
 }
 
+/// Returns what no other thread has.
+const char* this_thread() noexcept {
+  static thread_local const char own_byte = 0;
+  return &own_byte;
+}
+
 bool is_number(int arm) noexcept {
   return arm >= 0 && arm < kArmsMost;
 }
@@ -60,12 +67,14 @@ bool alive(std::int32_t process) noexcept {
   return kill(process, 0) == 0 || errno != ESRCH;
 }
 
-void sleep_ns(std::int64_t duration_ns) noexcept {
-  const timespec duration{duration_ns / 1'000'000'000, duration_ns % 1'000'000'000};
-  nanosleep(&duration, nullptr);
+/// Waits by the wall's time.
+void wait_ns(std::int64_t duration_ns) noexcept {
+  timespec left{duration_ns / 1'000'000'000, duration_ns % 1'000'000'000};
+  while (nanosleep(&left, &left) != 0 && errno == EINTR) {
+  }
 }
 
-std::int64_t now_ns() noexcept {
+std::int64_t monotonic_ns() noexcept {
   timespec now{};
   clock_gettime(CLOCK_MONOTONIC, &now);
   return now.tv_sec * std::int64_t{1'000'000'000} + now.tv_nsec;
@@ -82,22 +91,51 @@ std::string text_of(const std::array<char, N>& text) {
   return {text.data(), strnlen(text.data(), N)};
 }
 
+/// Lets an arm whose ticks wait for the program go on until `ticks` of them are over.
+void permit(ArmChannel& arm, std::uint32_t ticks) noexcept {
+  std::uint32_t permitted = arm.permitted.load();
+  // Counted around: the later one is less than half the numbers ahead.
+  while (static_cast<std::int32_t>(ticks - permitted) > 0) {
+    if (!arm.permitted.compare_exchange_weak(permitted, ticks)) continue;
+    wake_all(arm.permitted);
+    return;
+  }
+}
+
+/// Returns an arm that is open here and whose ticks wait for the program, from `first` on; -1:
+/// none.
+int paced_arm(int first = 0) noexcept {
+  for (int arm = first; arm < kArmsMost; ++arm) {
+    const ArmChannel* channel = channel_of(arm);
+    if (channel != nullptr && channel->paced.load() != 0 &&
+        channel->state.load() == ChannelState::kOpen) {
+      return arm;
+    }
+  }
+  return -1;
+}
+
 /// Waits until a loop has done what `done` looks at. False, after a period of sleep, if the loop
 /// is over or its process gone.
 template <class Done>
-bool wait_until(ArmChannel& arm, Done done) noexcept {
+bool wait_until(int number, Done done) noexcept {
   Channel* channel = open_channel();
+  ArmChannel& arm = channel->arms[static_cast<std::size_t>(number)];
+  const std::atomic<const char*>& leader = own(number).leader;
   arm.waiting.fetch_add(1);
   bool reached = false;
   for (;;) {
     const std::uint32_t ticks = arm.ticks.load();
     reached = done();
     if (reached || arm.state.load() != ChannelState::kOpen) break;
+    if (arm.paced.load() != 0 && (leader.load() == nullptr || leader.load() == this_thread())) {
+      permit(arm, ticks + 1);
+    }
     wait_while(arm.ticks, ticks, kLook_ns);
     if (arm.ticks.load() == ticks && !alive(channel->server)) break;
   }
   arm.waiting.fetch_sub(1);
-  if (!reached) sleep_ns(kPeriod_ns);
+  if (!reached) wait_ns(kPeriod_ns);
   return reached;
 }
 
@@ -111,7 +149,7 @@ std::string ask_for(Channel& channel, ArmChannel& arm, const char* face) {
   }
   channel.requests.fetch_add(1);
   wake_all(channel.requests);
-  const std::int64_t end_ns = now_ns() + kOpening_ns;
+  const std::int64_t end_ns = monotonic_ns() + kOpening_ns;
   for (;;) {
     const ChannelState state = arm.state.load(std::memory_order_acquire);
     if (state == ChannelState::kOpen) return {};
@@ -121,7 +159,7 @@ std::string ask_for(Channel& channel, ArmChannel& arm, const char* face) {
       return trouble.empty() ? "The arm cannot be opened." : trouble;
     }
     if (!alive(channel.server)) return "The `thimble exec` that started this program has ended.";
-    if (now_ns() > end_ns) {
+    if (monotonic_ns() > end_ns) {
       arm.state.store(ChannelState::kLeaving);
       return "`thimble exec` did not open the arm within two minutes.";
     }
@@ -222,10 +260,10 @@ bool read(int arm, ArmReading& reading) noexcept {
 bool wait_for_tick(int arm, std::uint64_t tick) noexcept {
   ArmChannel* channel = channel_of(arm);
   if (channel == nullptr) {
-    sleep_ns(kPeriod_ns);
+    wait_ns(kPeriod_ns);
     return false;
   }
-  return wait_until(*channel, [&] {
+  return wait_until(arm, [&] {
     ArmReading reading;
     return channel->reading.load(reading) && reading.tick > tick;
   });
@@ -253,7 +291,7 @@ bool ask_force(int arm, const ForceAsked& asked) noexcept {
 bool wait_until_taken(int arm) noexcept {
   ArmChannel* channel = channel_of(arm);
   if (channel == nullptr) {
-    sleep_ns(kPeriod_ns);
+    wait_ns(kPeriod_ns);
     return false;
   }
   std::uint64_t number = 0;
@@ -261,7 +299,35 @@ bool wait_until_taken(int arm) noexcept {
     const std::lock_guard lock(own(arm).mutex);
     number = own(arm).number;
   }
-  return wait_until(*channel, [&] { return channel->taken.load() >= number; });
+  return wait_until(arm, [&] { return channel->taken.load() >= number; });
+}
+
+void lead(int arm, bool leads) noexcept {
+  if (!is_number(arm)) return;
+  const char* leader = this_thread();
+  if (leads) {
+    own(arm).leader.store(leader);
+  } else {
+    own(arm).leader.compare_exchange_strong(leader, nullptr);
+  }
+}
+
+std::int64_t now_ns() noexcept {
+  ArmReading reading;
+  const int arm = paced_arm();
+  return arm >= 0 && read(arm, reading) ? reading.time_ns : monotonic_ns();
+}
+
+void sleep_ns(std::int64_t duration_ns) noexcept {
+  int arm = paced_arm();
+  if (arm < 0) wait_ns(duration_ns);
+  for (; arm >= 0; arm = paced_arm(arm + 1)) {
+    ArmReading reading;
+    if (!read(arm, reading)) continue;
+    const std::int64_t end_ns = reading.time_ns + duration_ns;
+    while (reading.time_ns < end_ns && wait_for_tick(arm, reading.tick) && read(arm, reading)) {
+    }
+  }
 }
 
 bool enable_force(int arm, bool enabled) noexcept {

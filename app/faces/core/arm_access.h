@@ -50,6 +50,16 @@ bool ask_force(int arm, const ForceAsked& asked) noexcept;
 /// False, after one period of sleep, if there will be none.
 bool wait_until_taken(int arm) noexcept;
 
+/// Says whether ticks that wait for the program wait for the calling thread alone: one that renews
+/// the force by itself, while other threads wait for ticks too. Ends by the same thread.
+void lead(int arm, bool leads) noexcept;
+
+/// Returns the time that the program lives by, ns since some start: the wall's, or that of the
+/// first open arm where ticks wait for the program (`thimble exec --clock virtual`).
+std::int64_t now_ns() noexcept;
+/// Waits by that time.
+void sleep_ns(std::int64_t duration_ns) noexcept;
+
 /// Lets all force through, the program's and the scene's, or none. Switched on it opens slowly
 /// (soft start). A simulated arm that is in fault, with the cause over, is activated anew; a real
 /// one waits for a person.

@@ -43,10 +43,12 @@ struct ArmChannel {
   std::array<char, 1024> trouble{};                        ///< Of kFailed.
   ArmFacts facts;                                          ///< Written while it is not open.
 
-  driver::Snapshot<ArmReading> reading;   ///< Written by the servo.
-  std::atomic<std::uint32_t> ticks{0};    ///< A futex; grows with each tick.
-  std::atomic<std::uint32_t> waiting{0};  ///< Threads that wait for a tick.
-  std::atomic<std::uint64_t> taken{0};    ///< Number of the newest force that was sent.
+  driver::Snapshot<ArmReading> reading;     ///< Written by the servo.
+  std::atomic<std::uint32_t> ticks{0};      ///< A futex; grows with each tick.
+  std::atomic<std::uint32_t> waiting{0};    ///< Threads that wait for a tick.
+  std::atomic<std::uint64_t> taken{0};      ///< Number of the newest force that was sent.
+  std::atomic<std::uint32_t> paced{0};      ///< Whether ticks wait for the program (virtual time).
+  std::atomic<std::uint32_t> permitted{0};  ///< A futex; up to which of `ticks` they may go on.
 
   driver::Snapshot<ForceWritten> force;      ///< Written by the program.
   std::atomic<std::uint32_t> enabled{0};     ///< Whether force is let through.

@@ -33,7 +33,7 @@ struct ArmFacts {
   bool has_joints = false;                ///< Joint angles and Jacobian are the arm's.
   double rate = 1000;                     ///< Of the loop, Hz.
   double force_max = 0;                   ///< The gate's limit, N.
-  double force_continuous = 0;            ///< What the motors bear for long, N; 0: not known.
+  double force_continuous = 0;            ///< What the arm bears for long, N; 0: not known.
   double stiffness_max = 0;               ///< What its maker declares, N/m.
   double damping_max = 0;                 ///< The same, N s/m.
   double speed_max = 0;                   ///< The gate's limit, m/s.

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <numbers>
 
 #include "drdc.h"
@@ -151,9 +150,7 @@ int dhdGetForceAndTorqueAndGripperForce(double* fx, double* fy, double* fz, doub
 double dhdGetComFreq(char id) {
   OpenArm* arm = open_arm("dhdGetComFreq", id);
   if (!arm) return -1.0;
-  timespec now{};
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  const std::int64_t now_ns = std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
+  const std::int64_t now_ns = arms::now_ns();
   const std::uint64_t forces = arm->forces;
   const std::lock_guard lock(arm->gap_mutex);
   const std::int64_t passed_ns = now_ns - arm->counted_ns;

@@ -7,9 +7,9 @@
 
 #include <cerrno>
 #include <cmath>
-#include <ctime>
 
 #include "drdc.h"
+#include "faces/core/arm_access.h"
 #include "faces/dhd/last_error.h"
 
 namespace {
@@ -46,9 +46,7 @@ bool key_waits(int timeout_ms) noexcept {
 extern "C" {
 
 double dhdGetTime(void) {
-  timespec now{};
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+  return 1e-9 * static_cast<double>(thimble::faces::arms::now_ns());
 }
 double drdGetTime(void) {
   return dhdGetTime();
@@ -57,11 +55,7 @@ double drdGetTime(void) {
 void dhdSleep(double seconds) {
   if (!(seconds > 0)) return;
   constexpr double kLongest = 1e8;  // three years
-  seconds = std::fmin(seconds, kLongest);
-  timespec left{.tv_sec = static_cast<time_t>(seconds),
-                .tv_nsec = static_cast<long>(1e9 * (seconds - std::floor(seconds)))};
-  while (nanosleep(&left, &left) != 0 && errno == EINTR) {
-  }
+  thimble::faces::arms::sleep_ns(std::llround(1e9 * std::fmin(seconds, kLongest)));
 }
 void drdSleep(double seconds) {
   dhdSleep(seconds);

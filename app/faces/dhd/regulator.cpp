@@ -153,6 +153,7 @@ ForceAsked Regulator::force(const ArmFacts& facts, const ArmReading& reading, do
 void Regulator::run(int arm) noexcept {
   ArmReading reading;
   std::int64_t time_ns = 0;
+  arms::lead(arm, true);
   while (!stop_ && arms::is_running(arm) && arms::read(arm, reading)) {
     const double dt = time_ns == 0 ? 0 : 1e-9 * static_cast<double>(reading.time_ns - time_ns);
     time_ns = reading.time_ns;
@@ -161,6 +162,7 @@ void Regulator::run(int arm) noexcept {
     arms::wait_until_taken(arm);
   }
   arms::ask_force(arm, {});
+  arms::lead(arm, false);
   moving_ = false;
   running_ = false;
 }

@@ -150,6 +150,8 @@ void get_force_max(const Look& look, Numbers& to) {
   put_one(look.facts.force_max, to);
 }
 void get_force_continuous(const Look& look, Numbers& to) {
+  // Where nobody has published it: the largest force. The arm's heat guard knows better, and holds
+  // anyway.
   const double known = look.facts.force_continuous;
   put_one(known > 0 ? known : look.facts.force_max, to);
 }

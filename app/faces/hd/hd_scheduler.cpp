@@ -31,6 +31,7 @@ struct Callback {
   void* data = nullptr;
   HDushort priority = 0;
   bool running = false;
+  bool leaving = false;  // somebody waits to remove it: it does not begin again
 };
 
 struct Scheduler {
@@ -76,7 +77,7 @@ HDSchedulerHandle add(Scheduler& s, HDSchedulerCallback call, void* data, HDusho
   const auto behind = std::find_if(s.callbacks.begin(), s.callbacks.end(),
                                    [&](const Callback& c) { return c.priority < priority; });
   const HDSchedulerHandle handle = s.next++;
-  s.callbacks.insert(behind, {handle, call, data, priority, false});
+  s.callbacks.insert(behind, {handle, call, data, priority});
   return handle;
 }
 
@@ -92,7 +93,7 @@ void run_callbacks(Scheduler& s) {
     {
       const std::lock_guard lock(s.mutex);
       Callback* found = find(s, handle);
-      if (found == nullptr) continue;  // unscheduled meanwhile
+      if (found == nullptr || found->leaving) continue;  // unscheduled meanwhile
       found->running = true;
       now = *found;
     }
@@ -253,10 +254,12 @@ void hdScheduleSynchronous(HDSchedulerCallback callback, void* data, HDushort pr
 void hdUnschedule(HDSchedulerHandle handle) {
   Scheduler& s = scheduler();
   std::unique_lock lock(s.mutex);
-  if (find(s, handle) == nullptr) {
+  Callback* callback = find(s, handle);
+  if (callback == nullptr) {
     keep_wrong_call(HD_INVALID_VALUE, __func__, "no callback has this handle");
     return;
   }
+  callback->leaving = true;
   // What the callback uses may go away once this returns.
   if (!on_scheduler_thread) {
     s.changed.wait(lock, [&] {

@@ -54,7 +54,8 @@ driver::Result<void> ArmRun::prepare(int number) {
     scene = free_scene_->file().string();
   }
   session::SessionOptions asked;
-  asked.clock = session::ClockKind::kWall;
+  asked.clock = options_.paced ? session::ClockKind::kVirtual : session::ClockKind::kWall;
+  if (options_.paced) asked.own_clock = paced_ = std::make_shared<PacedClock>(channel_);
   asked.endless = true;
   asked.arm_file = wanted.arm_file;
   asked.real_arm = arm->real;
@@ -81,10 +82,10 @@ driver::Result<void> ArmRun::prepare(int number) {
   if (!prepared) return prepared.error();
   session_ = std::move(prepared).value();
   for (const std::string& told : session_->told()) scene::terminal().info("{}", told);
-  desk_ = session::open_desk(*session_, options_.view || asked.hand_by_mouse
-                                            ? session::ViewerWish::kAsked
-                                            : session::ViewerWish::kNever);
-  servo_ = std::make_unique<session::ServoThread>(true);
+  desk_ = session::open_viewer_requests(*session_, options_.view || asked.hand_by_mouse
+                                                       ? session::ViewerChoice::kAsked
+                                                       : session::ViewerChoice::kNever);
+  servo_ = std::make_unique<session::ServoThread>(!options_.paced);
   if (arm->real) return session::check_real_time(servo_->grant(), options_.no_real_time);
   return {};
 }
@@ -152,6 +153,7 @@ std::string ArmRun::end() {
   over_ = true;
   if (!begun_) return {};
   stop_.store(true);
+  if (paced_) paced_->release();
   servo_->join();
   channel_.ticks.fetch_add(1);
   wake_all(channel_.ticks);

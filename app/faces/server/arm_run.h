@@ -9,10 +9,11 @@
 #include "faces/server/client_force.h"
 #include "faces/server/exec_options.h"
 #include "faces/server/free_scene.h"
+#include "faces/server/paced_clock.h"
 #include "faces/server/reading_publisher.h"
 #include "replug_watch.h"
 #include "run_attendance.h"
-#include "share/request_desk.h"
+#include "share/viewer_request_handler.h"
 #include "thimble/driver/result.h"
 #include "thimble/session/servo_thread.h"
 #include "thimble/session/session.h"
@@ -58,8 +59,9 @@ class ArmRun {
   std::size_t index_;
   ArmChannel& channel_;
   std::unique_ptr<FreeScene> free_scene_;
+  std::shared_ptr<PacedClock> paced_;
   std::unique_ptr<session::Session> session_;
-  std::unique_ptr<session::RequestDesk> desk_;
+  std::unique_ptr<session::ViewerRequestHandler> desk_;
   std::unique_ptr<session::ServoThread> servo_;
   std::unique_ptr<ClientForce> client_;
   std::unique_ptr<ReadingPublisher> publisher_;

@@ -47,6 +47,17 @@ driver::Result<std::unique_ptr<ArmServer>> ArmServer::make(const ExecOptions& op
   if (options.arms.empty() || options.arms.size() > kArmsMost) {
     return driver::Error{fmt::format("A program gets 1 to {} arms.", kArmsMost)};
   }
+  if (options.paced) {
+    for (const ExecArm& arm : options.arms) {
+      if (arm.device == "sim") continue;
+      return driver::Error{fmt::format(
+          "--clock virtual goes with simulated arms only; {} lives in real time.", arm.device)};
+    }
+    if (options.view || options.hand == "mouse") {
+      return driver::Error{
+          "--clock virtual goes without --view and --hand mouse: a person lives in real time."};
+    }
+  }
   auto memory = session::SharedMemory::create_nameless(sizeof(Channel));
   if (!memory) return memory.error();
   return std::unique_ptr<ArmServer>(new ArmServer(options, stop, std::move(memory).value()));

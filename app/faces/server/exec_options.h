@@ -26,11 +26,14 @@ struct ExecOptions {
   std::string hand = "path";          ///< "path": the scene's; "mouse"; or a file (hand_path.h).
   std::filesystem::path record = {};  ///< Recording of every tick; empty: none.
   std::filesystem::path firmware = {};  ///< For a real arm that needs some.
-  bool view = false;                    ///< Watch the run in a window.
-  bool yes = false;                     ///< Give a real arm forces without asking.
-  bool unchecked = false;               ///< Its whole force without a passed feel check.
-  bool homed = false;                   ///< It was in its home pose when it got power.
-  bool no_real_time = false;            ///< Without real-time priority.
+  /// Ticks wait for the program: the same result each time, as fast as it goes. Only with simulated
+  /// arms, and without a viewer.
+  bool paced = false;
+  bool view = false;          ///< Watch the run in a window.
+  bool yes = false;           ///< Give a real arm forces without asking.
+  bool unchecked = false;     ///< Its whole force without a passed feel check.
+  bool homed = false;         ///< It was in its home pose when it got power.
+  bool no_real_time = false;  ///< Without real-time priority.
   /// Called with an arm's number and session before its loop begins, for tests.
   std::function<void(std::size_t, session::Session&)> opened = {};
 };

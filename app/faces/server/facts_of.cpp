@@ -25,6 +25,7 @@ ArmFacts facts_of(const scene::ArmFile& arm, const driver::ArmTraits& traits) {
   facts.has_gripper = traits.has_gripper;
   facts.has_joints = traits.has_joints;
   facts.force_max = arm.limits.force_max;
+  facts.force_continuous = arm.declared.continuous_force;
   facts.stiffness_max = arm.declared.stiffness;
   facts.damping_max = arm.declared.damping;
   facts.speed_max = arm.limits.speed_max;

@@ -161,6 +161,10 @@ DeclaredLimits read_declared(YamlMap map) {
   declared.force = map.require_number("force", "N", 0.01, 100);
   declared.stiffness = map.require_number("stiffness", "N/m", 1, 1e5);
   declared.damping = map.require_number("damping", "N s/m", 0, 1000);
+  declared.continuous_force = map.optional_number("continuous_force", 0, "N", 0, 100);
+  if (declared.continuous_force > declared.force) {
+    map.reject("continuous_force", "expected at most the declared force");
+  }
   map.finish();
   return declared;
 }
@@ -210,7 +214,7 @@ device_sim::GimbalMotion read_gimbal_motion(YamlMap map) {
   device_sim::GimbalMotion motion;
   motion.middle =
       kRadians * map.optional_vector3("middle_degrees", {0, 0, 0}, "degrees", -180, 180);
-  motion.swing = kRadians * map.require_vector3("swing_degrees", "degrees", 0, 180);
+  motion.amplitude = kRadians * map.require_vector3("amplitude_degrees", "degrees", 0, 180);
   motion.period = map.require_number("period", "s", 0.05, 100);
   map.finish();
   return motion;

@@ -211,7 +211,7 @@ HandWaypoint read_waypoint(YamlMap map, const std::vector<SceneObject>& objects)
       if (object.paged) {
         map.reject("on",
                    "the surface of a mesh in pages is not in memory to plan on; give points "
-                   "of the way by at: [x, y, z]");
+                   "of the path by at: [x, y, z]");
       }
     }
     if (!known) map.reject("on", "expected an object of this scene, found \"" + *waypoint.on + '"');

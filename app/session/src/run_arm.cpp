@@ -6,7 +6,8 @@
 
 namespace thimble::session {
 
-driver::Result<RunArm> choose_run_arm(const std::string& device, const scene::RealArmRequest& wish,
+driver::Result<RunArm> choose_run_arm(const std::string& device,
+                                      const scene::RealArmRequest& request,
                                       const FindArms& find_arms) {
   RunArm arm;
   if (device == "sim") return arm;
@@ -21,7 +22,7 @@ driver::Result<RunArm> choose_run_arm(const std::string& device, const scene::Re
     if (!left.empty()) arm.told.push_back(left);
     return arm;
   }
-  auto terms = scene::terms_for(*arm.real, wish);
+  auto terms = scene::terms_for(*arm.real, request);
   if (!terms) return terms.error();
   arm.terms = std::move(terms).value();
   arm.told = arm.terms->told;

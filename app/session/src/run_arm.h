@@ -25,7 +25,7 @@ using FindArms = std::function<driver::Result<std::vector<driver::FoundArm>>()>;
 /// (scene::choose_arm). Boards that cannot be listed count as none. The error says what to do.
 /// Real-time: never from the servo thread.
 driver::Result<RunArm> choose_run_arm(
-    const std::string& device, const scene::RealArmRequest& wish,
+    const std::string& device, const scene::RealArmRequest& request,
     const FindArms& find_arms = [] { return driver::find_arms(); });
 
 }  // namespace thimble::session

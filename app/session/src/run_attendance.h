@@ -4,7 +4,7 @@
 #include <string>
 
 #include "replug_watch.h"
-#include "share/request_desk.h"
+#include "share/viewer_request_handler.h"
 #include "thimble/driver/tick_record.h"
 #include "thimble/session/session.h"
 
@@ -34,7 +34,7 @@ class RunAttendance {
  public:
   /// Attends a session; `watch` and `desk` may be null, and must outlive it. `on_terminal`: a
   /// person looks at standard error.
-  RunAttendance(Session& session, ReplugWatch* watch, RequestDesk* desk, bool on_terminal);
+  RunAttendance(Session& session, ReplugWatch* watch, ViewerRequestHandler* desk, bool on_terminal);
 
   /// Looks once; call it about ten times a second.
   void step();
@@ -44,7 +44,7 @@ class RunAttendance {
  private:
   Session& session_;
   ReplugWatch* watch_;
-  RequestDesk* desk_;
+  ViewerRequestHandler* desk_;
   bool on_terminal_;
   double total_;  // s; 0: nobody knows
   HeatWarning heat_;

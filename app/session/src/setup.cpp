@@ -40,6 +40,7 @@ driver::Result<std::unique_ptr<Setup>> Setup::prepare(const std::filesystem::pat
   setup->homed_ = options.homed;
   setup->endless_ = options.endless;
   setup->real_time_ = options.clock == ClockKind::kWall || options.real_arm.has_value();
+  if (!setup->real_time_) setup->clock_ = options.own_clock;
   if (auto read = setup->read(options); !read) return read.error();
 
   auto objects = scene::SceneObjects::build(setup->scene_);
@@ -115,7 +116,7 @@ driver::Result<void> Setup::open_arm() {
   // the time of the world.
   if (real_time_) {
     clock_ = std::make_unique<driver::WallClock>();
-  } else {
+  } else if (!clock_) {
     clock_ = std::make_unique<driver::VirtualClock>();
   }
   std::unique_ptr<driver::ArmLink> link;
@@ -128,7 +129,7 @@ driver::Result<void> Setup::open_arm() {
     link = simulation_->link(*clock_);
   }
   driver::DeviceSettings settings = scene::device_settings(arm, scene_.rate, scene_.energy);
-  // A simulated hand that a mouse holds does not tremble, and its arm sends no old positions.
+  // A simulated hand that a mouse holds has no tremor, and its arm sends no old positions.
   constexpr double kAnyTime = 1e9;  // s
   if (hand_by_mouse_) settings.motion.hold_most = kAnyTime;
   driver::HeatSettings& heat = settings.heat;

@@ -98,7 +98,7 @@ class Setup {
   std::uint64_t ticks_ = 0;
   std::int64_t period_ns_ = 0;
   std::unique_ptr<scene::SceneObjects> objects_;
-  std::unique_ptr<driver::Clock> clock_;
+  std::shared_ptr<driver::Clock> clock_;
   std::unique_ptr<scene::ArmSimulation> simulation_;
   std::unique_ptr<driver::Device> device_;  // holds the wire to the simulation, so it goes first
   std::unique_ptr<scene::HeatKeeper> heat_keeper_;  // of a real arm whose file names its heat

@@ -20,7 +20,7 @@ struct Sent {
   double force = 0;    // N
 };
 
-// Tells whether a swing is larger in the last quarter of the time than in the second one.
+// Tells whether an oscillation is larger in the last quarter of the time than in the second one.
 bool grows(const RestedWall& wall, double stiffness) {
   LineMotion now{kStart, 0};
   const auto estimate = wall.estimate ? wall.estimate() : nullptr;

@@ -16,15 +16,15 @@ struct RestedWall {
   double damping = 0;    ///< N s/m, of the wall
   double period = 1e-3;  ///< s
   double delay = 0;      ///< s, from seeing a place to the force
-  double duration = 1;   ///< s, of a swing; uneven ticks take longer to show their mean.
+  double duration = 1;   ///< s, of an oscillation; uneven ticks take longer to show their mean.
   /// Gives the length of tick k, s; if empty, all have `period`.
   std::function<double(int)> period_of = {};
   /// Makes the estimate of velocity for the damper; if empty, the difference over a tick.
   std::function<std::unique_ptr<VelocityEstimate>()> estimate = {};
 };
 
-/// Finds the largest stiffness at which a swing of 1 mm dies, N/m, by bisection to 0.1 %; 0 if it
-/// grows at 1 N/m. The same bits each time. Real-time: never from the servo thread.
+/// Finds the largest stiffness at which an oscillation of 1 mm dies, N/m, by bisection to 0.1 %; 0
+/// if it grows at 1 N/m. The same bits each time. Real-time: never from the servo thread.
 double stiffest(const RestedWall& wall);
 
 }  // namespace thimble::app

@@ -14,10 +14,10 @@
 namespace thimble::app {
 namespace {
 
-constexpr double kCoefficient = 0.5;  // of 1 N [PHYSICS 2.2]
-constexpr double kCorner = 50;        // Hz [PHYSICS 2.5]
-constexpr double kNothing = 1e-12;    // N or m
-constexpr double kTrembles = 0.001;   // N RMS [PHYSICS 7, case 14]
+constexpr double kCoefficient = 0.5;   // of 1 N [PHYSICS 2.2]
+constexpr double kCorner = 50;         // Hz [PHYSICS 2.5]
+constexpr double kNothing = 1e-12;     // N or m
+constexpr double kOscillates = 0.001;  // N RMS [PHYSICS 7, case 14]
 
 /// Returns the RMS above the corner in the last `ticks`; what is left of the filter's ringing is 0.
 double above_corner(std::span<const double> signal, double rate, std::size_t ticks) {
@@ -92,7 +92,7 @@ FrictionMeasures measure(const FrictionCase& which, const FrictionRigSettings& r
   found.rest_way = above_corner(found.stop.x, rate, second);
   std::vector<double> rest(found.stop.force.end() - std::llround(rate), found.stop.force.end());
   const double held = std::abs(mean(rest));
-  if (found.rest_force > kTrembles) {
+  if (found.rest_force > kOscillates) {
     const double middle = mean(rest);
     for (double& force : rest) force -= middle;
     found.rest_frequency = sign_changes_per_second(rest, rate) / 2;
@@ -105,10 +105,10 @@ FrictionMeasures measure(const FrictionCase& which, const FrictionRigSettings& r
   const RigRun slow = creep_run(which, rig, 0.005);
   found.slow_mean = -mean(std::span<const double>(slow.force).last(2 * second));
 
-  FrictionRigSettings trembling = rig;
-  trembling.tremor_amplitude = 300e-6;  // [PHYSICS 2.2]
-  const auto friction = build_friction(which, trembling);
-  found.tremor_force = above_corner(rub(*friction, {{0, 0}}, 3, trembling).force, rate, 2 * second);
+  FrictionRigSettings tremulous = rig;
+  tremulous.tremor_amplitude = 300e-6;  // [PHYSICS 2.2]
+  const auto friction = build_friction(which, tremulous);
+  found.tremor_force = above_corner(rub(*friction, {{0, 0}}, 3, tremulous).force, rate, 2 * second);
   return found;
 }
 

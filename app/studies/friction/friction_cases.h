@@ -31,15 +31,16 @@ std::unique_ptr<render::AnyStage> build_friction(const FrictionCase& which,
 
 /// What is measured of one friction at one delay. Forces in N, places in m, RMS above 50 Hz.
 struct FrictionMeasures {
-  double rest_force = 0;      ///< In the last second after a stop from 50 mm/s.
-  double rest_way = 0;        ///< The tip's, then.
-  double rest_frequency = 0;  ///< How often the force swings about its mean then, Hz; 0 if silent.
-  double rest_held = 0;       ///< Mean force held, then.
-  double creep_force = 0;     ///< The hand creeping at 1 mm/s.
-  double creep_mean = 0;      ///< Mean friction, then.
-  double slow_mean = 0;       ///< The same at 5 mm/s.
-  double tremor_force = 0;    ///< The hand at one place, trembling by 300 um.
-  RigRun stop;                ///< The run of the stop, for pictures.
+  double rest_force = 0;  ///< In the last second after a stop from 50 mm/s.
+  double rest_way = 0;    ///< The tip's, then.
+  double rest_frequency =
+      0;                   ///< How often the force oscillates about its mean then, Hz; 0 if silent.
+  double rest_held = 0;    ///< Mean force held, then.
+  double creep_force = 0;  ///< The hand creeping at 1 mm/s.
+  double creep_mean = 0;   ///< Mean friction, then.
+  double slow_mean = 0;    ///< The same at 5 mm/s.
+  double tremor_force = 0;  ///< The hand at one place, with a tremor of 300 um.
+  RigRun stop;              ///< The run of the stop, for pictures.
 };
 
 /// When and where the run of the stop stops.

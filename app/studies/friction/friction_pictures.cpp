@@ -20,7 +20,7 @@ std::string verdict(const FrictionMeasures& found) {
     return found.rest_held >= 0.01 ? fmt::format("at rest: silent, holds {:.2f} N", found.rest_held)
                                    : "at rest: silent, but holds nothing";
   }
-  return fmt::format("at rest: trembles by {:.2f} N and {:.1f} µm RMS at {:.0f} Hz",
+  return fmt::format("at rest: limit cycle of {:.2f} N and {:.1f} µm RMS at {:.0f} Hz",
                      found.rest_force, 1e6 * found.rest_way, found.rest_frequency);
 }
 
@@ -118,12 +118,12 @@ driver::Result<void> draw_friction_overview(const std::vector<FrictionMeasures>&
     const auto row = static_cast<int>(i) / kColumns;
     const double left = 0.065 + 0.235 * column;
     const double top = 0.87 - 0.293 * row;
-    const bool trembles = found[i].rest_force >= 0.001;
+    const bool oscillates = found[i].rest_force >= 0.001;
     const bool holds = found[i].rest_held >= 0.01;
-    const char* const color = trembles ? kDepthInk : holds ? kForceInk : kFaintInk;
+    const char* const color = oscillates ? kDepthInk : holds ? kForceInk : kFaintInk;
     std::string text = "silent at last, but holds nothing";
-    if (trembles) {
-      text = fmt::format("trembles: {:.2f} N, {:.1f} µm", found[i].rest_force,
+    if (oscillates) {
+      text = fmt::format("limit cycle: {:.2f} N, {:.1f} µm", found[i].rest_force,
                          1e6 * found[i].rest_way);
     } else if (holds) {
       text = fmt::format("silent, holds {:.2f} N", found[i].rest_held);

@@ -9,7 +9,7 @@
 namespace thimble::app {
 
 /// Draws one friction's stop as NAME.png and .svg: place and force around the stop, the tip's
-/// trembling afterwards, and the spectrum of the force at rest. The numbers go to data/. Fails if
+/// limit cycle afterwards, and the spectrum of the force at rest. The numbers go to data/. Fails if
 /// gnuplot is missing or a file cannot be written. Real-time: never from the servo thread.
 driver::Result<void> draw_friction(const FrictionCase& which, const FrictionMeasures& found,
                                    const std::filesystem::path& folder);

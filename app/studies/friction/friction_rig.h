@@ -27,7 +27,7 @@ struct FrictionRigSettings {
   double depth = 0.001;         ///< m
 };
 
-/// One corner of the hand's way along the surface.
+/// One corner of the hand's path along the surface.
 struct RigPoint {
   double time = 0;  ///< s
   double x = 0;     ///< Where the hand wants to be, m, within 0.03 of the middle.

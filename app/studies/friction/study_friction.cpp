@@ -81,7 +81,8 @@ void add_even_sliding(std::vector<Figure>& figures) {
 void add_measures(std::vector<Figure>& figures, const FrictionCase& which,
                   const FrictionMeasures& found) {
   const std::string name = which.name + ".";
-  // What the default promises, and what the paper's tremble is [PHYSICS 2.2 and 7, cases 14, 15].
+  // What the default promises, and what the paper's limit cycle is [PHYSICS 2.2 and 7, cases 14,
+  // 15].
   const bool chosen = which.name == "bristle";
   figures.push_back({name + "rest_force", found.rest_force, "N", chosen ? "<= 0.001" : ""});
   figures.push_back({name + "rest_way", found.rest_way, "m", chosen ? "<= 5e-08" : ""});
@@ -114,7 +115,7 @@ driver::Result<std::vector<Figure>> study_friction(const std::filesystem::path& 
       "slow at 5 mm/s,\ntremor of 300 um.\n\n"
       "                                    after a stop                  creep    mean   slow    "
       "tremor\n"
-      "    friction                          force     way    Hz   held     force   mean   mean    "
+      "    friction                          force    path    Hz   held     force   mean   mean    "
       " force\n");
   for (const FrictionCase& which : friction_cases()) {
     for (int delay = 0; delay < kDelays; ++delay) {

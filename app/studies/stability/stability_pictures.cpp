@@ -139,7 +139,9 @@ driver::Result<void> draw_kb_map(const StabilitySetup& setup, const std::vector<
   const double step = setup.direction.step;
   if (auto done = write_map(
           part_of(rows, StabilityPart::kArmMap),
-          [step](double swing) { return std::log10(std::clamp(swing / step, 1e-2, 1e3)); },
+          [step](double oscillation) {
+            return std::log10(std::clamp(oscillation / step, 1e-2, 1e3));
+          },
           folder / "data/kb_arm.dat");
       !done) {
     return done;
@@ -158,10 +160,10 @@ driver::Result<void> draw_kb_map(const StabilitySetup& setup, const std::vector<
     << kInk << "'\n"
     << axis_labels("damping B of the wall [N s/m]", "stiffness K of the wall [N/m]")
     << decade_axes() << panel(0.06, 0.435, 0.29, 0.83)
-    << panel_title("The linear arm: ideal encoders, no dry friction, small swings")
+    << panel_title("The linear arm: ideal encoders, no dry friction, small oscillations")
     << "set palette defined (-40 '#0072b2', -8 '#a9cfe6', 0 '#ffffff', 8 '#f3c19b', 40 '#d55e00')\n"
     << "set cbrange [-40:40]\nset cbtics 20\n"
-    << "set cblabel 'growth of a swing [1/s]' textcolor rgb '" << kInk << "' offset 0.6,0\n"
+    << "set cblabel 'growth of an oscillation [1/s]' textcolor rgb '" << kInk << "' offset 0.6,0\n"
     << "set colorbox user origin screen 0.443, screen 0.29 size screen 0.012, screen 0.54\n"
     << "plot 'data/kb_linear.dat' using 1:2:3 with image pixels notitle, "
     << curve("kb_lines.dat", "1:2", kInk, "with points pt 7 ps 0.45", "measured edge") << ", "
@@ -179,10 +181,11 @@ driver::Result<void> draw_kb_map(const StabilitySetup& setup, const std::vector<
     << "set palette defined (-2 '#ffffff', -1 '#f6e3c8', 0 '#f0c08a', 1 '#d55e00', 2 '#8c2d04', "
        "3 '#3b0f00')\n"
     << "set cbrange [-2:3]\nset cbtics ('rest' -2, '0.1' -1, '1' 0, '10' 1, '100' 2, '1000' 3)\n"
-    << "set cblabel 'tremble at the end [encoder steps]' textcolor rgb '" << kInk << "'\n"
+    << "set cblabel 'limit cycle at the end [encoder steps]' textcolor rgb '" << kInk << "'\n"
     << "set colorbox user origin screen 0.928, screen 0.29 size screen 0.012, screen 0.54\n"
     << "plot 'data/kb_arm.dat' using 1:2:3 with image pixels notitle, "
-    << curve("kb_lines.dat", "1:5", kInk, "with lines lw 2", "measured edge: trembles by 1/4 step")
+    << curve("kb_lines.dat", "1:5", kInk, "with lines lw 2",
+             "measured edge: limit cycle of 1/4 step")
     << ", "
     << curve("kb_lines.dat", "1:9", kForceInk, "with lines lw 2.5",
              "the same with the arm's energy stage")
@@ -275,14 +278,14 @@ driver::Result<void> draw_cycles(const StabilitySetup& setup, const std::vector<
   std::ostringstream c;
   c << quiet_style() << "set multiplot\n"
     << heading(
-           "Where coarse encoders and dry friction keep a wall trembling",
+           "Where coarse encoders and dry friction keep a wall in a limit cycle",
            "β = b/(K T), σ = c/(K Δ); blue: corners of Diolaiti et al.; green: where dry friction "
            "just holds the start; " +
                setup.arm.name + ", no hand")
     << "unset grid\nset border 15 lw 1 lc rgb '" << kFaintInk << "'\n"
     << "set palette defined (-3 '#ffffff', -2 '#f6e3c8', 0 '#f0c08a', 1 '#d55e00', 2.4 '#3b0f00')\n"
     << "set cbrange [-3:2.4]\nset cbtics ('rest' -3, '0.01' -2, '0.1' -1, '1' 0, '10' 1, '100' 2)\n"
-    << "set cblabel 'swing at the end [encoder steps]' textcolor rgb '" << kInk << "'\n"
+    << "set cblabel 'oscillation at the end [encoder steps]' textcolor rgb '" << kInk << "'\n"
     << "set xrange [0.02:1.53]\nset xtics 0.5\nset ytics 0.5\n";
   int index = 0;
   for (const double start : {3.5, 60.5}) {
@@ -321,7 +324,7 @@ driver::Result<void> draw_cycles(const StabilitySetup& setup, const std::vector<
       const bool large = start > 10;
       region(1, "comes to rest", 0.66, 0.66, kInk);
       region(2, "flickers", 0.16, 0.66, kInk);
-      region(3, large ? "too fast for dry friction: grows" : "holds so small a swing", 0.66,
+      region(3, large ? "too fast for dry friction: grows" : "holds so small an oscillation", 0.66,
              large ? 0.06 : 0.16, large ? "#ffffff" : kInk);
       region(4, large ? "grows" : "", 0.16, 0.06, "#ffffff");
       c << (index == 0 ? "set colorbox user origin screen 0.92, screen 0.14 size screen 0.014, "
@@ -374,7 +377,7 @@ driver::Result<void> draw_largest(const StabilitySetup& setup,
   std::ostringstream c;
   c << quiet_style() << "set multiplot\n"
     << heading("What the largest stiffness of a wall depends on",
-               "lines: the laws; dots: simulated through the whole way; " + setup.arm.name)
+               "lines: the laws; dots: the simulated loop; " + setup.arm.name)
     << "set key top right samplen 2 spacing 1.2 font ',15' textcolor rgb '" << kInk << "'\n"
     << panel(0.095, 0.475, 0.57, 0.83) << panel_title("Rate: free linear arm, b = 1 N s/m")
     << axis_labels("rate [kHz]", y)

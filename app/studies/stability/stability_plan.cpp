@@ -14,7 +14,7 @@ namespace {
 // The limits of all maps: five decades of each, from what passivity allows to beyond any arm.
 constexpr double kStiffnessLeast = 1, kStiffnessMost = 1e5;  // N/m
 constexpr double kDampingLeast = 1e-3, kDampingMost = 1e2;   // N s/m
-constexpr double kQuiet = 0.25;   // counts: what swings less is taken as at rest
+constexpr double kQuiet = 0.25;   // counts: what oscillates less is taken as at rest
 constexpr double kEdgeRange = 4;  // an edge is looked for within the law divided and times this
 
 /// Gives `count` values from `least` to `most`, evenly on a logarithm.
@@ -80,9 +80,9 @@ driver::Result<double> edge_by_law(const StabilitySetup& setup, const WallCase& 
   return linear_edge(setup.arm, wall, law / kEdgeRange, law * kEdgeRange);
 }
 
-driver::Result<double> arm_swing(const StabilitySetup& setup, const WallCase& wall) {
-  return setup.hand.stiffness > 0 ? pressed_swing(setup.arm, wall)
-                                  : released_swing(setup.arm, wall, kReleaseSpeed, 2);
+driver::Result<double> arm_oscillation(const StabilitySetup& setup, const WallCase& wall) {
+  return setup.hand.stiffness > 0 ? pressed_oscillation(setup.arm, wall)
+                                  : released_oscillation(setup.arm, wall, kReleaseSpeed, 2);
 }
 
 driver::Result<double> arm_edge(const StabilitySetup& setup, const ArmDirection& direction,
@@ -108,13 +108,14 @@ driver::Result<double> cycle(const StabilitySetup& setup, const StabilityCell& c
   wall.tip.coulomb = cell.a * kCycleStiffness * kCycleStep;
   wall.tip.viscous = cell.b * kCycleStiffness * period;
   wall.delay_ns = to_ns(cell.d * period);
-  // A swing dies or grows by (K T / m) times its distance from the corner: so long until it is
-  // told.
+  // An oscillation dies or grows by (K T / m) times its distance from the corner: so long until it
+  // is told.
   const double growth_time = wall.tip.mass / (kCycleStiffness * period);
   const double duration = (setup.coarse ? 40 : 70) * growth_time;
-  const auto swing = released_swing(setup.arm, wall, cycle_speed(setup, cell.c), duration);
-  if (!swing) return swing.error();
-  return *swing / kCycleStep;
+  const auto oscillation =
+      released_oscillation(setup.arm, wall, cycle_speed(setup, cell.c), duration);
+  if (!oscillation) return oscillation.error();
+  return *oscillation / kCycleStep;
 }
 
 /// Returns the largest stiffness that comes to rest with encoders of one step.
@@ -230,7 +231,7 @@ driver::Result<std::vector<double>> measure_stability(const StabilitySetup& setu
       WallCase wall = arm_case(setup, setup.direction);
       wall.stiffness = cell.a;
       wall.damping = cell.b;
-      return alone(arm_swing(setup, wall));
+      return alone(arm_oscillation(setup, wall));
     }
     case StabilityPart::kLinearEdge: {
       WallCase wall = linear_case(setup);

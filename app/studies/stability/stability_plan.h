@@ -26,14 +26,14 @@ struct StabilitySetup {
 
 /// Says which sweep a cell is of, and what its numbers are.
 enum class StabilityPart {
-  kLinearMap,     ///< a: stiffness, b: damping -> growth rate of the linear arm, 1/s.
-  kArmMap,        ///< a: stiffness, b: damping -> last swing of the arm without energy stage, m.
+  kLinearMap,  ///< a: stiffness, b: damping -> growth rate of the linear arm, 1/s.
+  kArmMap,     ///< a: stiffness, b: damping -> last oscillation of the arm without energy stage, m.
   kLinearEdge,    ///< b: damping -> largest stiffness of the linear arm, N/m.
   kArmEdge,       ///< b: damping -> the same of the arm without energy stage.
   kGuardedEdge,   ///< b: damping -> the same of the arm as it is, with the gate's energy stage.
   kDiagonalEdge,  ///< b: damping -> that without energy stage along the diagonal.
   kRestitution,   ///< a: stiffness, b: damping, c: period s, d: delay s -> mean, least, most.
-  kCycle,       ///< a: sigma, b: beta, c: start in counts, d: delay in periods -> swing in counts.
+  kCycle,  ///< a: sigma, b: beta, c: start in counts, d: delay in periods -> oscillation in counts.
   kRateEdge,    ///< c: period s, d: delay s -> largest stiffness of an arm with b = 1.
   kDelayEdge,   ///< c: period s, d: delay s -> the same.
   kLateEdge,    ///< a: share of ticks that come three late -> the same.
@@ -62,7 +62,7 @@ inline constexpr double kCycleStiffness = 1000;  // N/m
 /// The step of the encoders for the map of limit cycles, m: so coarse that a step's force is far
 /// above a step of the motors' current.
 inline constexpr double kCycleStep = 2e-4;
-inline constexpr double kReleaseSpeed = 0.1;  // m/s, at which a swing begins
+inline constexpr double kReleaseSpeed = 0.1;  // m/s, at which an oscillation begins
 inline constexpr int kLatePeriods = 3;        // a late tick comes so many periods late
 
 /// Gives the times of a loop in which a share of ticks comes late, and of one whose period spreads
@@ -70,7 +70,7 @@ inline constexpr int kLatePeriods = 3;        // a late tick comes so many perio
 scene::LoopTimes late_times(double period, double share);
 scene::LoopTimes spread_times(double period, double spread);
 
-/// Returns the speed (m/s) at which a swing of `counts` begins in the map of limit cycles.
+/// Returns the speed (m/s) at which an oscillation of `counts` begins in the map of limit cycles.
 double cycle_speed(const StabilitySetup& setup, double counts);
 
 }  // namespace thimble::app

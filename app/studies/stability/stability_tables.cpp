@@ -35,8 +35,9 @@ SampledWall bare(const StabilitySetup& setup, double period, double delay) {
           .delay = delay};
 }
 
-/// Tells up to which stiffness a swing that begins at the speed of a touch dies: dry friction holds
-/// it beyond what damping carries, (b + B + 4 c / (pi v)) / L [PHYSICS 1.4, solved for K].
+/// Tells up to which stiffness an oscillation that begins at the speed of a touch dies: dry
+/// friction holds it beyond what damping carries, (b + B + 4 c / (pi v)) / L [PHYSICS 1.4, solved
+/// for K].
 double arm_law(const StabilitySetup& setup, double damping) {
   const device_sim::PlantSettings& tip = setup.arm.simulated.plant;
   const double coulomb = tip.coulomb * setup.direction.friction_share;
@@ -102,7 +103,7 @@ const std::vector<Table>& tables() {
   using enum StabilityPart;
   static const std::vector<Table> list{
       {"kb_map_linear.csv", "stiffness_N_m,damping_Ns_m,growth_1_s", {kLinearMap}},
-      {"kb_map_arm.csv", "stiffness_N_m,damping_Ns_m,swing_m", {kArmMap}},
+      {"kb_map_arm.csv", "stiffness_N_m,damping_Ns_m,oscillation_m", {kArmMap}},
       {"kb_edge_linear.csv", "damping_Ns_m,stiffness_N_m,law_N_m,exact_N_m", {kLinearEdge}},
       {"kb_edge_arm.csv", "damping_Ns_m,stiffness_N_m,law_N_m", {kArmEdge}},
       {"kb_edge_with_energy_stage.csv", "damping_Ns_m,stiffness_N_m,law_N_m", {kGuardedEdge}},
@@ -110,7 +111,7 @@ const std::vector<Table>& tables() {
       {"restitution.csv",
        "period_s,delay_s,damping_Ns_m,stiffness_N_m,mean,least,most,law",
        {kRestitution}},
-      {"limit_cycles.csv", "start_counts,delay_periods,sigma,beta,swing_counts", {kCycle}},
+      {"limit_cycles.csv", "start_counts,delay_periods,sigma,beta,oscillation_counts", {kCycle}},
       {"stiffness_by_rate.csv", "period_s,delay_s,stiffness_N_m,law_N_m,exact_N_m", {kRateEdge}},
       {"stiffness_by_delay.csv", "period_s,delay_s,stiffness_N_m,law_N_m,exact_N_m", {kDelayEdge}},
       {"stiffness_by_late_ticks.csv", "late_share,stiffness_N_m,law_N_m", {kLateEdge}},
@@ -214,7 +215,7 @@ constexpr auto kAll = [](const StabilityRow&) { return true; };
 /// to a boundary than 5 % or 0.04. Where not one encoder alone steps against the friction of one
 /// axis, sigma = 1/2 is a bound: what it says will rest is judged, and what flickers is not.
 struct CycleAgreement {
-  double growing = 0;  ///< Grows or does not, as the speed limit of a swing says.
+  double growing = 0;  ///< Grows or does not, as the speed limit of an oscillation says.
   double resting = 0;  ///< Of those that do not grow: rests or flickers, as sigma = 1/2 says.
   double flicker = 0;  ///< Largest flicker of those that should, without a delay, counts.
 };
@@ -230,26 +231,26 @@ CycleAgreement cycle_agreement(const StabilitySetup& setup, const std::vector<St
     const double coulomb = cell.a * kCycleStiffness * kCycleStep;
     const double latency = scene::latency_of({.period = period, .delay = cell.d * period});
     // Far from rest every axis slides, and each rubs by itself.
-    const double limit = swing_speed_limit(kCycleStiffness, viscous,
-                                           coulomb * setup.direction.friction_share, latency);
+    const double limit = oscillation_speed_limit(kCycleStiffness, viscous,
+                                                 coulomb * setup.direction.friction_share, latency);
     const double speed = cycle_speed(setup, cell.c);
-    const double swing = row.found[0];
+    const double oscillation = row.found[0];
     const bool near_speed = std::abs(speed / limit - 1) < 0.1;
     // Below one step of speed per tick the describing function knows nothing of the steps.
     if (near_speed || std::abs(cell.b - 0.5 - cell.d) < 0.04 || std::abs(cell.a - 0.5) < 0.04) {
       continue;
     }
-    const bool grows = swing > 2.2 * cell.c;  // from peak to peak, beyond twice the start
+    const bool grows = oscillation > 2.2 * cell.c;  // from peak to peak, beyond twice the start
     if (speed > limit || cell.a > 0.5) {
       ++judged;
       right += grows == (speed > limit) ? 1 : 0;
     }
-    if (grows || speed > limit || cell.b < 0.7 + cell.d || swing > 6) continue;
+    if (grows || speed > limit || cell.b < 0.7 + cell.d || oscillation > 6) continue;
     if (!lone && cell.a < 0.5) continue;
     ++settled;
-    const bool rests = swing < 1e-4;
+    const bool rests = oscillation < 1e-4;
     classed += rests == (cell.a > 0.5) ? 1 : 0;
-    if (cell.d == 0 && cell.a < 0.5) agreement.flicker = std::max(agreement.flicker, swing);
+    if (cell.d == 0 && cell.a < 0.5) agreement.flicker = std::max(agreement.flicker, oscillation);
   }
   agreement.growing = judged > 0 ? right / judged : 0;
   agreement.resting = settled > 0 ? classed / settled : 0;
@@ -360,7 +361,8 @@ std::vector<Figure> stability_figures(const StabilitySetup& setup,
   const auto bounces = part_of(rows, StabilityPart::kRestitution);
   const auto soft = [&setup](const StabilityRow& row, bool damped) {
     const double l = row.cell.c / 2 + row.cell.d;
-    // The law is of small damping: a wall that stops what hits it within one swing is another.
+    // The law is of small damping: a wall that stops what hits it within one oscillation is
+    // another.
     const double ratio = row.cell.b / (2 * std::sqrt(row.cell.a * setup.arm.simulated.plant.mass));
     return (row.cell.b > 0) == damped && ratio < 0.12 &&
            row.cell.a * l * l / setup.arm.simulated.plant.mass < 0.05;

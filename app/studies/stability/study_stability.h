@@ -32,7 +32,7 @@ struct StabilityReport {
   std::vector<Figure> figures;
 };
 
-/// Measures where walls are stable on a simulated arm, through the whole way from the force law
+/// Measures where walls are stable on a simulated arm, through the whole loop from the force law
 /// over gate, wire and firmware to the tip and back, beside what the laws say: K-B map,
 /// restitution, limit cycles, largest stiffness. Writes pictures, tables and summary.json.
 /// Real-time: never from the servo thread.

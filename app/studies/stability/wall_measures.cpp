@@ -10,13 +10,15 @@
 namespace thimble::app {
 namespace {
 
-constexpr double kTouchSpeed = 0.1;   // m/s: a light tap [PHYSICS 1.5 and 1.6]
-constexpr double kStartMost = 0.008;  // m, of a small swing: no arm reaches the end of its joints
-constexpr double kFarthest = 0.05;    // m from the middle: a small swing that comes so far grows
-constexpr double kCeiling = 25;       // times its energy at first
-constexpr double kFloor = 1e-3;       // of its energy: a swing below that is seen no more
-constexpr double kStartForce = 0.3;   // N, of a small swing: far above a step of the current
-constexpr double kSwings = 20;        // that are waited for, lest a slow one be judged by its phase
+constexpr double kTouchSpeed = 0.1;  // m/s: a light tap [PHYSICS 1.5 and 1.6]
+constexpr double kStartMost =
+    0.008;  // m, of a small oscillation: no arm reaches the end of its joints
+constexpr double kFarthest =
+    0.05;                        // m from the middle: a small oscillation that comes so far grows
+constexpr double kCeiling = 25;  // times its energy at first
+constexpr double kFloor = 1e-3;  // of its energy: an oscillation below that is seen no more
+constexpr double kStartForce = 0.3;   // N, of a small oscillation: far above a step of the current
+constexpr double kOscillations = 20;  // that are waited for, lest a slow one be judged by its phase
 
 /// Returns where a measure leaves what is good, in equal steps of the logarithm.
 template <class Good>
@@ -36,14 +38,14 @@ driver::Result<double> bisect(double least, double most, double share, const Goo
   return std::sqrt(least * most);
 }
 
-/// Returns whether a swing stays below `quiet` (m), or why it was not measured.
-driver::Result<bool> is_quiet(const driver::Result<double>& swing, double quiet) {
-  if (!swing) return swing.error();
-  return *swing < quiet;
+/// Returns whether an oscillation stays below `quiet` (m), or why it was not measured.
+driver::Result<bool> is_quiet(const driver::Result<double>& oscillation, double quiet) {
+  if (!oscillation) return oscillation.error();
+  return *oscillation < quiet;
 }
 
-/// Returns the energy of a swing at each tick, J.
-std::vector<double> swing_energies(const WallRun& run, const WallCase& wall) {
+/// Returns the energy of an oscillation at each tick, J.
+std::vector<double> oscillation_energies(const WallRun& run, const WallCase& wall) {
   const double mass = wall.tip.mass + wall.hand.mass;
   const double spring = wall.stiffness + wall.hand.stiffness;
   std::vector<double> energies;
@@ -67,12 +69,12 @@ driver::Result<double> growth_rate(const scene::ArmFile& arm, WallCase wall) {
   const double frequency = std::sqrt((wall.stiffness + wall.hand.stiffness) / mass);
   wall.kick = start * frequency;
   wall.give_up = kFarthest;
-  wall.duration = std::max(wall.duration, kSwings * 2 * std::numbers::pi / frequency);
+  wall.duration = std::max(wall.duration, kOscillations * 2 * std::numbers::pi / frequency);
   const auto ran = run_wall(arm, wall);
   if (!ran) return ran.error();
   const WallRun& run = *ran;
   if (run.gave_up) return std::log(kFarthest / start) / std::max(run.time.back(), 1e-3);
-  const std::vector<double> energies = swing_energies(run, wall);
+  const std::vector<double> energies = oscillation_energies(run, wall);
   const std::size_t count = energies.size();
   const auto most = [&](double from, double to) {
     const auto at = [&](double share) {
@@ -81,11 +83,11 @@ driver::Result<double> growth_rate(const scene::ArmFile& arm, WallCase wall) {
     return *std::max_element(at(from), std::max(at(from) + 1, at(to)));
   };
   // What soon grows far or dies down to the steps of the motors' current is timed; the rest is
-  // compared early and late, each long enough for a swing to show all its energy.
+  // compared early and late, each long enough for an oscillation to show all its energy.
   const double first = 0.5 * mass * wall.kick * wall.kick;
   const double late = most(0.85, 1);
   // Where the spring asks for less than a step of the motors' current, the tip may rest beside the
-  // middle: that is no swing.
+  // middle: that is no oscillation.
   const double asleep =
       0.5 * wall.direction.force_step * wall.direction.force_step / wall.stiffness;
   const double floor = std::max(kFloor * first, asleep);
@@ -110,7 +112,7 @@ driver::Result<double> linear_edge(const scene::ArmFile& arm, WallCase wall, dou
   });
 }
 
-driver::Result<double> last_swing(const scene::ArmFile& arm, const WallCase& wall) {
+driver::Result<double> last_oscillation(const scene::ArmFile& arm, const WallCase& wall) {
   const auto ran = run_wall(arm, wall);
   if (!ran) return ran.error();
   const WallRun& run = *ran;
@@ -124,7 +126,7 @@ driver::Result<double> last_swing(const scene::ArmFile& arm, const WallCase& wal
   return std::min(high - low, wall.give_up);
 }
 
-driver::Result<double> pressed_swing(const scene::ArmFile& arm, WallCase wall) {
+driver::Result<double> pressed_oscillation(const scene::ArmFile& arm, WallCase wall) {
   constexpr double kWay = 0.005;  // m, to each side of the wall
   wall.one_sided = true;
   wall.offset = -kWay;
@@ -134,11 +136,11 @@ driver::Result<double> pressed_swing(const scene::ArmFile& arm, WallCase wall) {
   wall.hand_start = arm.limits.soft_start + 0.02;
   wall.hand_end = wall.hand_start + 2 * kWay / kTouchSpeed;
   wall.duration = wall.hand_end + 1.4;
-  return last_swing(arm, wall);
+  return last_oscillation(arm, wall);
 }
 
-driver::Result<double> released_swing(const scene::ArmFile& arm, WallCase wall, double speed,
-                                      double duration) {
+driver::Result<double> released_oscillation(const scene::ArmFile& arm, WallCase wall, double speed,
+                                            double duration) {
   const double mass = wall.tip.mass + wall.hand.mass;
   wall.one_sided = false;
   const double step = wall.own_step ? wall.direction.step : wall.step;
@@ -152,14 +154,14 @@ driver::Result<double> released_swing(const scene::ArmFile& arm, WallCase wall, 
   const double reach = speed * std::sqrt(mass / (wall.stiffness + wall.hand.stiffness));
   wall.duration = wall.kick_start + duration;
   wall.give_up = std::min(20 * reach, 0.05);
-  return last_swing(arm, wall);
+  return last_oscillation(arm, wall);
 }
 
 driver::Result<double> pressed_edge(const scene::ArmFile& arm, WallCase wall, double quiet,
                                     double least, double most) {
   return bisect(least, most, 0.005, [&](double stiffness) {
     wall.stiffness = stiffness;
-    return is_quiet(pressed_swing(arm, wall), quiet);
+    return is_quiet(pressed_oscillation(arm, wall), quiet);
   });
 }
 
@@ -167,7 +169,7 @@ driver::Result<double> released_edge(const scene::ArmFile& arm, WallCase wall, d
                                      double duration, double quiet, double least, double most) {
   return bisect(least, most, 0.005, [&](double stiffness) {
     wall.stiffness = stiffness;
-    return is_quiet(released_swing(arm, wall, speed, duration), quiet);
+    return is_quiet(released_oscillation(arm, wall, speed, duration), quiet);
   });
 }
 
@@ -178,9 +180,9 @@ driver::Result<Restitution> throw_at_wall(const scene::ArmFile& arm, WallCase wa
   const double delay = static_cast<double>(wall.delay_ns) * 1e-9;
   wall.one_sided = true;
   wall.kick = kTouchSpeed;
-  // There and back, and half a swing in the wall.
-  const double swing = std::numbers::pi * std::sqrt(mass / wall.stiffness);
-  wall.duration = 2.5 * kRunUp / kTouchSpeed + 1.5 * swing + 3 * delay + 10 * period;
+  // There and back, and half an oscillation in the wall.
+  const double oscillation = std::numbers::pi * std::sqrt(mass / wall.stiffness);
+  wall.duration = 2.5 * kRunUp / kTouchSpeed + 1.5 * oscillation + 3 * delay + 10 * period;
   const auto late = static_cast<std::size_t>(std::ceil(delay / period));
   Restitution found{0, HUGE_VAL, 0};
   for (int i = 0; i < phases; ++i) {

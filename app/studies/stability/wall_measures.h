@@ -11,30 +11,30 @@ namespace thimble::app {
 // run_wall does.
 // Real-time: never from the servo thread.
 
-/// Measures how fast a small swing about the middle of a two-sided spring grows, 1/s; below 0 it
-/// dies. For a wall whose arm is linear: no dry friction, ideal encoders.
+/// Measures how fast a small oscillation about the middle of a two-sided spring grows, 1/s; below 0
+/// it dies. For a wall whose arm is linear: no dry friction, ideal encoders.
 driver::Result<double> growth_rate(const scene::ArmFile& arm, WallCase wall);
 
-/// Finds by bisection the largest stiffness whose swings do not grow, N/m, to 0.3 % between `least`
-/// and `most`; 0 if even the least grows, `most` if nothing does.
+/// Finds by bisection the largest stiffness whose oscillations do not grow, N/m, to 0.3 % between
+/// `least` and `most`; 0 if even the least grows, `most` if nothing does.
 driver::Result<double> linear_edge(const scene::ArmFile& arm, WallCase wall, double least,
                                    double most);
 
-/// Measures how far the tip still swings at the end of a run, from peak to peak in the last quarter
-/// of the time, m; `give_up` of the case if it went too far.
-driver::Result<double> last_swing(const scene::ArmFile& arm, const WallCase& wall);
+/// Measures how far the tip still oscillates at the end of a run, from peak to peak in the last
+/// quarter of the time, m; `give_up` of the case if it went too far.
+driver::Result<double> last_oscillation(const scene::ArmFile& arm, const WallCase& wall);
 
-/// Lets a hand move the tip at 0.1 m/s against a one-sided wall and hold it there: the last swing,
-/// m. Sets how the case begins and how long it lasts.
-driver::Result<double> pressed_swing(const scene::ArmFile& arm, WallCase wall);
+/// Lets a hand move the tip at 0.1 m/s against a one-sided wall and hold it there: the last
+/// oscillation, m. Sets how the case begins and how long it lasts.
+driver::Result<double> pressed_oscillation(const scene::ArmFile& arm, WallCase wall);
 
-/// Lets go of the tip beside the middle of a two-sided spring, so that it swings at `speed` (m/s)
-/// at first: the last swing after `duration` (s), m.
-driver::Result<double> released_swing(const scene::ArmFile& arm, WallCase wall, double speed,
-                                      double duration);
+/// Lets go of the tip beside the middle of a two-sided spring, so that it oscillates at `speed`
+/// (m/s) at first: the last oscillation after `duration` (s), m.
+driver::Result<double> released_oscillation(const scene::ArmFile& arm, WallCase wall, double speed,
+                                            double duration);
 
-/// Finds by bisection the largest stiffness at which `pressed_swing` or `released_swing` stays
-/// below `quiet` (m), N/m, to 0.5 %; 0 if even the least does not.
+/// Finds by bisection the largest stiffness at which `pressed_oscillation` or
+/// `released_oscillation` stays below `quiet` (m), N/m, to 0.5 %; 0 if even the least does not.
 driver::Result<double> pressed_edge(const scene::ArmFile& arm, WallCase wall, double quiet,
                                     double least, double most);
 driver::Result<double> released_edge(const scene::ArmFile& arm, WallCase wall, double speed,

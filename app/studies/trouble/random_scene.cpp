@@ -79,7 +79,7 @@ class Drawing {
   RandomScene scene() {
     constexpr std::array kRates{1000.0, 1000.0, 1000.0, 500.0, 2000.0};
     rate_ = kRates[draw_.one_of(kRates.size())];
-    // Pinch grips from weak to firm [PHYSICS 0 and 9: constants varied by 1/3 to 3].
+    // Pinch grips from low to high impedance [PHYSICS 0 and 9: constants varied by 1/3 to 3].
     hand_ = {.mass = draw_.octave(0.01, 0.075),
              .stiffness = draw_.octave(100, 900),
              .damping = draw_.octave(1, 9),
@@ -95,7 +95,7 @@ class Drawing {
     share_ = 1 / static_cast<double>(count);
     for (std::size_t i = 0; i < count; ++i) object(i);
     hand();
-    return {std::move(lines_.text()), own_energy_, trembles_};
+    return {std::move(lines_.text()), own_energy_, oscillates_};
   }
 
  private:
@@ -233,16 +233,16 @@ class Drawing {
                          ", direction: ", vector(draw_.direction()), "}]"}));
     } else if (texture) {
       lines_.text().append("      - texture: sandpaper\n");
-      const double grain = draw_.octave(0.002, 0.01);
-      lines_.add(8, "grain", grain);
-      lines_.add(8, "roughness", draw_.uniform(0, 0.02) * grain);
+      const double wavelength = draw_.octave(0.002, 0.01);
+      lines_.add(8, "wavelength", wavelength);
+      lines_.add(8, "roughness", draw_.uniform(0, 0.02) * wavelength);
     }
     if (!friction) return;
     constexpr std::array<std::string_view, 8> kFrictions{
         "bristle", "dahl",  "implicit_coulomb", "karnopp", "lugre",
         "naive",   "paper", "stiction_point"};
     const std::string_view chosen = kFrictions[draw_.one_of(kFrictions.size())];
-    trembles_ = trembles_ || chosen == "naive" || chosen == "paper";
+    oscillates_ = oscillates_ || chosen == "naive" || chosen == "paper";
     lines_.text().append("      - friction: ").append(chosen).append("\n");
     lines_.add(8, "coefficient", draw_.uniform(0.05, 1));
   }
@@ -347,7 +347,7 @@ class Drawing {
   Hand hand_{};
   Lines lines_;
   double own_energy_ = 0;
-  bool trembles_ = false;
+  bool oscillates_ = false;
   double share_ = 1;  // of the stiffness, for each object
   std::vector<Placed> objects_;
   Vector3d way_{0, 0, 1};

@@ -29,7 +29,7 @@ struct RandomScene {
   double own_energy = 0;
   /// Whether a friction of the scene is one that has a limit cycle at rest on coarse encoders by
   /// its nature: naive and paper, kept to compare with [PHYSICS 2.2].
-  bool trembles = false;
+  bool oscillates = false;
 };
 
 /// Draws a scene and a hand: one to three objects (shapes, small meshes in every way of contact,

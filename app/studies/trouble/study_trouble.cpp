@@ -71,15 +71,15 @@ driver::Result<std::vector<double>> measure(std::size_t cell, std::uint64_t seed
 
 std::string table_of(const CellNumbers& cells, std::uint64_t seed) {
   std::string csv =
-      "cell,seed,refused,not_finite_ticks,fault,force_share,tremble_N,speed_m_s,"
-      "given_J,given_bound_J,contact_share,must_tremble,unforetold\n";
+      "cell,seed,refused,not_finite_ticks,fault,force_share,limit_cycle_N,speed_m_s,"
+      "given_J,given_bound_J,contact_share,must_oscillate,unforetold\n";
   for (std::size_t cell = 0; cell < cells.size(); ++cell) {
     const TroubleFound f = trouble_of(cells[cell]);
     const auto attempt = static_cast<int>(cells[cell].back());
     csv += fmt::format("{},{},{},{:.17g},{:.17g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{},{}\n",
                        cell, seed_name(try_seed(seed, cell, attempt)), attempt, f.not_finite,
-                       f.fault, f.force_share, f.tremble, f.speed, f.given, f.given_bound,
-                       f.contact, f.must_tremble ? 1 : 0, f.unforetold ? 1 : 0);
+                       f.fault, f.force_share, f.limit_cycle, f.speed, f.given, f.given_bound,
+                       f.contact, f.must_oscillate ? 1 : 0, f.unforetold ? 1 : 0);
   }
   return csv;
 }
@@ -103,10 +103,11 @@ driver::Result<void> keep_worst(const CellNumbers& cells, std::uint64_t seed,
     const std::uint64_t drawn = try_seed(seed, cell, static_cast<int>(cells[cell].back()));
     const RandomScene scene = random_scene(drawn, limits);
     const std::string heading = fmt::format(
-        "# own_energy: {:.9g} J; showed a tremble of {:.3g} N, fault {:.0f}, {:.3g} of the arm's "
+        "# own_energy: {:.9g} J; showed a limit cycle of {:.3g} N, fault {:.0f}, {:.3g} of the "
+        "arm's "
         "force; "
         "{:.3g} J given in one window, {:.3g} allowed.\n",
-        scene.own_energy, f.tremble, f.fault, f.force_share, f.given, f.given_bound);
+        scene.own_energy, f.limit_cycle, f.fault, f.force_share, f.given, f.given_bound);
     const std::string name = fmt::format("{:02}_{}.yaml", rank + 1, seed_name(drawn));
     if (auto done = write_text(heading + scene.text, folder / name); !done) return done;
   }
@@ -144,8 +145,8 @@ driver::Result<TroubleReport> study_trouble(const TroubleOptions& options,
   if (report.end != SweepEnd::kDone) return report;
 
   double refused = 0, given_up = 0, not_finite = 0, faults = 0, over = 0, grown = 0;
-  double given_scenes = 0, trembling = 0, unforetold = 0;
-  double given = 0, nearest = 0, share = 0, tremble = 0, known = 0, contact = 0;
+  double given_scenes = 0, oscillating = 0, unforetold = 0;
+  double given = 0, nearest = 0, share = 0, limit_cycle = 0, known = 0, contact = 0;
   for (const auto& cell : result->numbers) {
     const TroubleFound f = trouble_of(cell);
     refused += cell.back();
@@ -157,10 +158,11 @@ driver::Result<TroubleReport> study_trouble(const TroubleOptions& options,
     if (!f.refused) nearest = std::max(nearest, f.given / f.given_bound);
     given = std::max(given, f.given);
     given_scenes += f.given > kGivenMuch ? 1 : 0;
-    trembling += !f.must_tremble && f.tremble > kTrembleMost ? 1 : 0;
+    oscillating += !f.must_oscillate && f.limit_cycle > kLimitCycleMost ? 1 : 0;
     unforetold += f.unforetold ? 1 : 0;
     share = std::max(share, f.force_share);
-    (f.must_tremble ? known : tremble) = std::max(f.must_tremble ? known : tremble, f.tremble);
+    (f.must_oscillate ? known : limit_cycle) =
+        std::max(f.must_oscillate ? known : limit_cycle, f.limit_cycle);
     contact += f.contact;
   }
   const auto count = static_cast<double>(options.count);
@@ -175,10 +177,10 @@ driver::Result<TroubleReport> study_trouble(const TroubleOptions& options,
                     {"most_energy_given_in_one_window", given, "J", ""},
                     {"scenes_whose_motors_gave_over_1_mJ", given_scenes, "", ""},
                     {"largest_force_share", share, "", ""},
-                    {"largest_tremble_at_rest", tremble, "N", ""},
-                    {"scenes_that_tremble_at_rest_over_20_mN", trembling, "", ""},
+                    {"largest_limit_cycle_at_rest", limit_cycle, "N", ""},
+                    {"scenes_with_limit_cycles_at_rest_over_20_mN", oscillating, "", ""},
                     {"of_those_no_warning_foretold", unforetold, "", "== 0"},
-                    {"largest_tremble_of_naive_and_paper_friction", known, "N", ""}};
+                    {"largest_limit_cycle_of_naive_and_paper_friction", known, "N", ""}};
   const std::filesystem::path& folder = sweep_options.folder;
   if (auto done = write_text(table_of(result->numbers, options.seed), folder / "trouble.csv");
       !done) {

@@ -68,7 +68,7 @@ class Account {
       const double one = root_mean_square(std::span(fast).last(rest));
       square += one * one;
     }
-    found_.tremble = found_.not_finite > 0 ? 0 : std::sqrt(square);
+    found_.limit_cycle = found_.not_finite > 0 ? 0 : std::sqrt(square);
     found_.contact /= std::max(ticks_, 1.0);
     found_.given = given_.most();
     return found_;
@@ -96,11 +96,11 @@ double TroubleFound::badness() const {
   if (not_finite > 0) return 1e9;
   // A fault takes the force away, so what is beside it tells little.
   return (fault > 0 ? 1e6 : 0) + (force_share > 1 + 1e-9 ? 1e5 : 0) + given / given_bound +
-         (must_tremble ? 0 : 10 * tremble);
+         (must_oscillate ? 0 : 10 * limit_cycle);
 }
 
 TroubleFound run_for_trouble(const std::filesystem::path& scene_file, const RandomScene& scene) {
-  TroubleFound found{.must_tremble = scene.trembles};
+  TroubleFound found{.must_oscillate = scene.oscillates};
   auto opened = session::Session::open(scene_file, {});
   if (!opened) {
     found.refused = true;
@@ -117,9 +117,9 @@ TroubleFound run_for_trouble(const std::filesystem::path& scene_file, const Rand
   found.given_bound = energy_let_go(scene::energy_settings(
                           session.scene().arm, session.scene().rate, session.scene().energy)) +
                       scene.own_energy;
-  found.must_tremble = scene.trembles;
-  found.unforetold =
-      !found.must_tremble && found.tremble > kTrembleMost && rest_causes(session.scene()).empty();
+  found.must_oscillate = scene.oscillates;
+  found.unforetold = !found.must_oscillate && found.limit_cycle > kLimitCycleMost &&
+                     rest_causes(session.scene()).empty();
   return found;
 }
 
@@ -128,12 +128,12 @@ std::vector<double> numbers_of(const TroubleFound& found) {
           found.not_finite,
           found.fault,
           found.force_share,
-          found.tremble,
+          found.limit_cycle,
           found.speed,
           found.given,
           found.given_bound,
           found.contact,
-          found.must_tremble ? 1.0 : 0.0,
+          found.must_oscillate ? 1.0 : 0.0,
           found.unforetold ? 1.0 : 0.0};
 }
 
@@ -144,12 +144,12 @@ TroubleFound trouble_of(const std::vector<double>& numbers) {
   found.not_finite = numbers[1];
   found.fault = numbers[2];
   found.force_share = numbers[3];
-  found.tremble = numbers[4];
+  found.limit_cycle = numbers[4];
   found.speed = numbers[5];
   found.given = numbers[6];
   found.given_bound = numbers[7];
   found.contact = numbers[8];
-  found.must_tremble = numbers[9] > 0;
+  found.must_oscillate = numbers[9] > 0;
   found.unforetold = numbers[10] > 0;
   return found;
 }

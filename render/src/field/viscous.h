@@ -21,9 +21,10 @@ class Viscous {
     double damping = 0;  ///< N s/m
 
     /// Reads `damping`, and refuses what the loop cannot hold: against a free mass m a damper that
-    /// acts late by L swings up beyond pi m / (2 L) [Nyquist's criterion for -b exp(-L s) / (m s)].
-    /// L is period + delay: the velocity is half a period old, and the force is held for another
-    /// half. The filter of the velocity comes on top. Real-time: never from the servo thread.
+    /// acts late by L oscillates more and more beyond pi m / (2 L) [Nyquist's criterion for -b
+    /// exp(-L s) / (m s)]. L is period + delay: the velocity is half a period old, and the force is
+    /// held for another half. The filter of the velocity comes on top. Real-time: never from the
+    /// servo thread.
     void read(SettingsReader& reader, const EffectContext& context);
   };
 

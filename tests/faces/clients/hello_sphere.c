@@ -6,23 +6,24 @@
 #include <stdio.h>
 #include <unistd.h>
 
-static const double radius = 20, stiffness = 0.25; /* mm, N/mm */
+#include "sphere.h"
+
+static Sphere sphere = {{0, 0, 0}, 20, 0.25}; /* mm, N/mm */
+static AskedLog asked;
 static double asked_before[3], largest_difference, deepest;
 static int compared;
 
-static HDCallbackCode HDCALLBACK sphere(void* data) {
-  double p[3], f[3] = {0, 0, 0}, sent[3], distance;
+static HDCallbackCode HDCALLBACK feel(void* data) {
+  double p[3], f[3], sent[3], depth;
   HDErrorInfo error;
   int i;
   (void)data;
   hdBeginFrame(hdGetCurrentDevice());
   hdGetDoublev(HD_CURRENT_POSITION, p);
-  distance = sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
-  if (distance < radius && distance > 0) {
-    for (i = 0; i < 3; ++i) f[i] = stiffness * (radius - distance) * p[i] / distance;
-    if (radius - distance > deepest) deepest = radius - distance;
-  }
+  depth = sphere_force(&sphere, p, f);
+  if (depth > deepest) deepest = depth;
   hdSetDoublev(HD_CURRENT_FORCE, f);
+  note_asked(&asked, f);
   /* What the tick before has sent is what was asked for before. */
   hdGetDoublev(HD_LAST_FORCE, sent);
   hdEndFrame(hdGetCurrentDevice());
@@ -40,7 +41,8 @@ static HDCallbackCode HDCALLBACK sphere(void* data) {
   return HD_CALLBACK_CONTINUE;
 }
 
-int main(void) {
+int main(int argc, char** argv) {
+  const SphereChoice choice = sphere_choice(argc, argv, &sphere, &asked);
   HDSchedulerHandle handle;
   HDErrorInfo error;
   HHD device = hdInitDevice(HD_DEFAULT_DEVICE);
@@ -52,13 +54,14 @@ int main(void) {
   printf("%s by %s\n", hdGetString(HD_DEVICE_MODEL_TYPE), hdGetString(HD_DEVICE_VENDOR));
   hdEnable(HD_FORCE_OUTPUT);
   hdStartScheduler();
-  handle = hdScheduleAsynchronous(sphere, 0, HD_DEFAULT_SCHEDULER_PRIORITY);
-  usleep(3500000);
+  handle = hdScheduleAsynchronous(feel, 0, HD_DEFAULT_SCHEDULER_PRIORITY);
+  usleep((useconds_t)(1e6 * choice.seconds));
   hdStopScheduler();
   hdUnschedule(handle);
   hdDisableDevice(device);
   printf("%d callbacks, %.2f mm deep, force off by %.4f N at most\n", compared, deepest,
          largest_difference);
-  if (compared < 2500 || !(deepest > 1)) return 3;
+  if (write_asked(&asked, choice.log_file)) return 5;
+  if (compared < 700 * choice.seconds || !(deepest > 1)) return 3;
   return largest_difference < 0.2 ? 0 : 4;
 }

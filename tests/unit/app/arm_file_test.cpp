@@ -64,6 +64,19 @@ TEST(ArmFile, ReadsTheShippedArmToTheLastConstant) {
   EXPECT_EQ(arm.simulated.wire.delay_out_ns, 1'000'000);
 }
 
+TEST(ArmFile, DeclaresAContinuousForceWhereOneIsPublished) {
+  const auto declared = [](const char* name) {
+    const auto arm = scene::load_arm(name);
+    return arm ? arm->declared.continuous_force : -1;
+  };
+  EXPECT_EQ(declared("vintage_phantom"), 1.4);
+  EXPECT_EQ(declared("touch"), 0.88);
+  EXPECT_EQ(declared("falcon"), 0) << "nobody has published one";
+  EXPECT_NE(mistake_with("continuous_force: 1.4", "continuous_force: 5.1")
+                .find("continuous_force: expected at most the declared force"),
+            std::string::npos);
+}
+
 TEST(ArmFile, HasItsHomeAtTheOriginOfTheWorld) {
   const auto arm = scene::load_arm(kArm);
   ASSERT_TRUE(arm.ok());
@@ -205,10 +218,11 @@ TEST(ArmFile, DescribesTheGimbalThatIsMounted) {
   EXPECT_NE(mistake_with("protocol: hfab_14_byte", "protocol: woody_8_byte\n" + good)
                 .find("carry no encoders of a gimbal"),
             std::string::npos);
-  EXPECT_NE(mistake_with("  encoders: quantised",
-                         "  gimbal: {swing_degrees: [1, 1, 1], period: 2}\n  encoders: quantised")
-                .find("expected a section 'gimbal' of the arm"),
-            std::string::npos);
+  EXPECT_NE(
+      mistake_with("  encoders: quantised",
+                   "  gimbal: {amplitude_degrees: [1, 1, 1], period: 2}\n  encoders: quantised")
+          .find("expected a section 'gimbal' of the arm"),
+      std::string::npos);
 }
 
 TEST(ArmFile, RefusesSignsOtherThanOne) {
@@ -234,16 +248,16 @@ TEST(ArmFile, RefusesLimitsThatProtectNobodyWithTheirLine) {
   };
   const Case cases[] = {
       {"force_max: 5 ", "force_max: 100 ",
-       ":45: force_max: expected at most what the arm declares, 5 N, found 100"},
+       ":46: force_max: expected at most what the arm declares, 5 N, found 100"},
       {"force_max: 5 ", "force_max: 5.01 ",
-       ":45: force_max: expected at most what the arm declares"},
-      {"soft_start: 0.3", "soft_start: 0", ":48: soft_start: expected a number from 0.05 to 10 s"},
-      {"soft_start: 0.3", "soft_start: 1e-9", ":48: soft_start: expected a number from 0.05"},
-      {"soft_start: 0.3", "soft_start: 0.049", ":48: soft_start: expected a number from 0.05"},
-      {"watchdog: 0.1 ", "watchdog: 10 ", ":50: watchdog: expected a number from 0.001 to 1 s"},
-      {"rise_max: 2000", "rise_max: 1e6", ":47: rise_max: expected a number from 1 to 100000 N/s"},
-      {"stall: 0.02 ", "stall: 0.1 ", ":49: stall: expected a shorter time than that of watchdog"},
-      {"force_max: 5 ", "force_max: .nan ", ":45: force_max: expected a number"},
+       ":46: force_max: expected at most what the arm declares"},
+      {"soft_start: 0.3", "soft_start: 0", ":49: soft_start: expected a number from 0.05 to 10 s"},
+      {"soft_start: 0.3", "soft_start: 1e-9", ":49: soft_start: expected a number from 0.05"},
+      {"soft_start: 0.3", "soft_start: 0.049", ":49: soft_start: expected a number from 0.05"},
+      {"watchdog: 0.1 ", "watchdog: 10 ", ":51: watchdog: expected a number from 0.001 to 1 s"},
+      {"rise_max: 2000", "rise_max: 1e6", ":48: rise_max: expected a number from 1 to 100000 N/s"},
+      {"stall: 0.02 ", "stall: 0.1 ", ":50: stall: expected a shorter time than that of watchdog"},
+      {"force_max: 5 ", "force_max: .nan ", ":46: force_max: expected a number"},
   };
   for (const Case& wrong : cases) {
     EXPECT_NE(mistake_with(wrong.piece, wrong.by).find(wrong.mistake), std::string::npos)

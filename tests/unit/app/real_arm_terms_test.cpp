@@ -89,7 +89,7 @@ TEST_F(RealArmTermsTest, AFileOfAnotherWireIsRefused) {
 
 TEST_F(RealArmTermsTest, AFileFromElsewhereTightensEachLimitAndLoosensNone) {
   struct Case {
-    const char *key, *was, *tighter, *looser;
+    const char *key, *was, *tighter, *weaker;
     double (*value)(const scene::ArmFile&);
   };
   const auto seconds = [](std::int64_t ns) { return 1e-9 * static_cast<double>(ns); };
@@ -123,7 +123,7 @@ TEST_F(RealArmTermsTest, AFileFromElsewhereTightensEachLimitAndLoosensNone) {
   ASSERT_TRUE(installed);
   for (const Case& one : cases) {
     for (const bool tighter : {true, false}) {
-      const char* by = tighter ? one.tighter : one.looser;
+      const char* by = tighter ? one.tighter : one.weaker;
       if (by == nullptr) continue;
       const fs::path file = copy_of("woodenhaptics", one.was, by);
       const auto wanted = scene::load_arm(file);
@@ -282,11 +282,11 @@ TEST_F(RealArmTermsTest, AScenesOwnArmFileTightensOnly) {
   EXPECT_EQ(scene->arm.limits.watchdog_ns, 100'000'000);
   EXPECT_EQ(scene->arm.limits.speed_max, 0.5);
   EXPECT_EQ(scene->arm.energy.stage, EnergyStage::kPassivity);
-  EXPECT_TRUE(holds(text, "own.yaml:45: force_max 100 N is ignored")) << text;
-  EXPECT_TRUE(holds(text, "own.yaml:46: speed_max 0.5 m/s is kept")) << text;
-  EXPECT_TRUE(holds(text, "own.yaml:48: soft_start 0.05 s is ignored")) << text;
-  EXPECT_TRUE(holds(text, "own.yaml:50: watchdog 1 s is ignored")) << text;
-  EXPECT_TRUE(holds(text, "own.yaml:51: energy: none is ignored")) << text;
+  EXPECT_TRUE(holds(text, "own.yaml:46: force_max 100 N is ignored")) << text;
+  EXPECT_TRUE(holds(text, "own.yaml:47: speed_max 0.5 m/s is kept")) << text;
+  EXPECT_TRUE(holds(text, "own.yaml:49: soft_start 0.05 s is ignored")) << text;
+  EXPECT_TRUE(holds(text, "own.yaml:51: watchdog 1 s is ignored")) << text;
+  EXPECT_TRUE(holds(text, "own.yaml:52: energy: none is ignored")) << text;
   // A file that is wrong is no reason to go on.
   write(folder / "own.yaml", with(own, "force_max: 100", "force_max: much"));
   EXPECT_FALSE(scene::put_on_terms(*scene, file, *terms));

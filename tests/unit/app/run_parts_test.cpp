@@ -8,13 +8,13 @@
 #include "cli/exit_code.h"
 #include "run_arm.h"
 #include "run_attendance.h"
-#include "share/request_desk.h"
+#include "share/viewer_request_handler.h"
 #include "support/scripted_run.h"
 
 namespace thimble {
 namespace {
 
-using session::ViewerWish;
+using session::ViewerChoice;
 
 TEST(ChooseRunArm, LooksForNoBoardWhereTheSimulatedArmIsAskedFor) {
   int looks = 0;
@@ -47,12 +47,12 @@ TEST(ChooseRunArm, SaysSoWhereTheSimulatedArmStandsInAndFailsForANameThatIsNotTh
 }
 
 TEST(OpensViewer, WhereItIsAskedForOrAPersonWatchesInRealTime) {
-  EXPECT_TRUE(session::opens_viewer(ViewerWish::kAsked, false, true, false));
-  EXPECT_FALSE(session::opens_viewer(ViewerWish::kAsked, true, false, true)) << "no screen";
-  EXPECT_TRUE(session::opens_viewer(ViewerWish::kIfWatched, true, true, true));
-  EXPECT_FALSE(session::opens_viewer(ViewerWish::kIfWatched, false, true, true));
-  EXPECT_FALSE(session::opens_viewer(ViewerWish::kIfWatched, true, true, false)) << "a script";
-  EXPECT_FALSE(session::opens_viewer(ViewerWish::kNever, true, true, true));
+  EXPECT_TRUE(session::opens_viewer(ViewerChoice::kAsked, false, true, false));
+  EXPECT_FALSE(session::opens_viewer(ViewerChoice::kAsked, true, false, true)) << "no screen";
+  EXPECT_TRUE(session::opens_viewer(ViewerChoice::kIfWatched, true, true, true));
+  EXPECT_FALSE(session::opens_viewer(ViewerChoice::kIfWatched, false, true, true));
+  EXPECT_FALSE(session::opens_viewer(ViewerChoice::kIfWatched, true, true, false)) << "a script";
+  EXPECT_FALSE(session::opens_viewer(ViewerChoice::kNever, true, true, true));
 }
 
 TEST(ProgressLine, TellsTimeTouchForceAndDepth) {

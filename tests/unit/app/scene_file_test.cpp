@@ -233,7 +233,7 @@ TEST(SceneFile, ReadsShapesAndFieldsInPlaceOfMeshes) {
   const auto scene = read(
       "  - {name: wall, plane: {normal: [0, 2, 0]}, position: [0, 0.01, 0], stiffness: 500}\n"
       "  - {name: ball, sphere: {radius: 0.02}, stiffness: 400, damping: 1, effects: [{texture: "
-      "sandpaper, grain: 0.003}]}\n"
+      "sandpaper, wavelength: 0.003}]}\n"
       "  - {name: block, box: {sides: [0.01, 0.02, 0.03]}, rotate_degrees: [[z, 90]], stiffness: "
       "300}\n"
       "  - {name: split, box: {sides: [0.01, 0.02, 0.03], form: wedges}, stiffness: 300}\n"
@@ -315,7 +315,7 @@ TEST(SceneFile, SaysWhatIsWrongWithAShapeOrAField) {
   EXPECT_NE(wrong("field: magic").find("field"), std::string::npos);
   EXPECT_NE(wrong("field: gravity").find("mass"), std::string::npos);
   EXPECT_NE(wrong("field: gravity, mass: 0.1, stiffness: 3").find("stiffness"), std::string::npos);
-  EXPECT_NE(wrong("field: viscous, damping: 500").find("swings an arm"), std::string::npos);
+  EXPECT_NE(wrong("field: viscous, damping: 500").find("makes an arm"), std::string::npos);
   EXPECT_NE(mistake("  - {name: a, field: gravity, mass: 0.1}\n",
                     kWait + "    - {t: 1, on: a, near: [0, 0, 0]}\n")
                 .find("a field has no surface"),

@@ -69,7 +69,7 @@ TEST(StabilityLaws, PlaceAWallInTheMapOfDiolaiti) {
   for (const double d : {0.0, 1.0}) {
     EXPECT_EQ(region_of({0.52 + d, 0.52, d}), kComesToRest);
     EXPECT_EQ(region_of({0.52 + d, 0.48, d}), kFlickers);
-    EXPECT_EQ(region_of({0.48 + d, 0.52, d}), kHoldsSmallSwings);
+    EXPECT_EQ(region_of({0.48 + d, 0.52, d}), kHoldsSmallOscillations);
     EXPECT_EQ(region_of({0.48 + d, 0.48, d}), kGrows);
   }
   const WallPlace place = place_of_wall(1000, 0.5, 0.03, kStep, 0.001, 0.002);
@@ -78,8 +78,8 @@ TEST(StabilityLaws, PlaceAWallInTheMapOfDiolaiti) {
   EXPECT_DOUBLE_EQ(place.delay_periods, 2);
   EXPECT_EQ(place_of_wall(1000, 0.5, 0.03, 0, 0.001).sigma,
             std::numeric_limits<double>::infinity());
-  EXPECT_NEAR(swing_speed_limit(1000, kViscous, kCoulomb, 0.0005), 0.103, 0.0005);
-  EXPECT_EQ(swing_speed_limit(9, kViscous, kCoulomb, 0.0005),
+  EXPECT_NEAR(oscillation_speed_limit(1000, kViscous, kCoulomb, 0.0005), 0.103, 0.0005);
+  EXPECT_EQ(oscillation_speed_limit(9, kViscous, kCoulomb, 0.0005),
             std::numeric_limits<double>::infinity());
 }
 

@@ -101,7 +101,7 @@ TEST(AccuracyAxes, AgreeWithThePublishedLaws) {
       for (const AccuracyPoint& point : line.points) {
         if (!point.law) continue;
         const bool bounce = axis.name == "loop_rate" || axis.name == "latency";
-        // The law of a bounce holds where a swing lasts for many ticks [PHYSICS 1.5].
+        // The law of a bounce holds where an oscillation lasts for many ticks [PHYSICS 1.5].
         if (bounce && *point.law > 15) continue;
         const double error = point.error();
         const std::string where = axis.name + ' ' + line.name + ' ' + point.name;

@@ -69,7 +69,7 @@ TEST(Trouble, IsSeenWhereAWallIsFarTooStiffForItsHand) {
   EXPECT_FALSE(found.refused);
   EXPECT_TRUE(found.bad());
   EXPECT_GT(found.given, 10 * found.given_bound);
-  EXPECT_GT(found.tremble, 0.1);
+  EXPECT_GT(found.limit_cycle, 0.1);
 }
 
 // What damping and friction took before is no credit: the hand rubs over rubber for two seconds,
@@ -154,10 +154,10 @@ bool any_has(const std::vector<std::string>& warnings, const std::string& word) 
   });
 }
 
-// Seeds of a search through 100,000 scenes, of which 552 trembled; by cause. What each one showed
+// Seeds of a search through 100,000 scenes, of which 552 oscillated; by cause. What each one showed
 // before stands behind it.
 
-TEST(Trouble, RestsWhereTheEnergyStageTrembledByItself) {
+TEST(Trouble, RestsWhereTheEnergyStageOscillatedByItself) {
   for (const std::uint64_t seed : {0x9fdca176d19cc5a4u,     // 2.0 N: the fade as a spring
                                    0x0ba1cf68047f62f8u,     // 1.2 N: a deep soft wall let go
                                    0x9d31e7a72db18a0cu,     // 1.7 N
@@ -165,7 +165,7 @@ TEST(Trouble, RestsWhereTheEnergyStageTrembledByItself) {
     const TroubleFound found = run_seed(seed);
     EXPECT_FALSE(found.refused);
     EXPECT_FALSE(found.bad());
-    EXPECT_LE(found.tremble, kTrembleMost) << std::hex << seed;
+    EXPECT_LE(found.limit_cycle, kLimitCycleMost) << std::hex << seed;
   }
 }
 
@@ -175,7 +175,7 @@ TEST(Trouble, RestsWhereThePullOfADentWasASwitch) {
                                    0x4ef4be767faa6f60u}) {  // 0.14 N
     const TroubleFound found = run_seed(seed);
     EXPECT_GT(found.contact, 0.2);
-    EXPECT_LE(found.tremble, kTrembleMost) << std::hex << seed;
+    EXPECT_LE(found.limit_cycle, kLimitCycleMost) << std::hex << seed;
   }
 }
 
@@ -183,7 +183,7 @@ TEST(Trouble, OfFacetsInAHollowIsCuredAndWarnedOfForTheTrackerThatIsForCompariso
   constexpr std::uint64_t kSeed = 0x8836b4fd9b78a8ec;  // a ring, nothing on it
   std::vector<std::string> warnings;
   // Above 20 mN before both facets of a hollow edge held the tip at once.
-  EXPECT_LE(run_seed(kSeed, "", "", &warnings).tremble, 1e-3);
+  EXPECT_LE(run_seed(kSeed, "", "", &warnings).limit_cycle, 1e-3);
   EXPECT_FALSE(any_has(warnings, "facets"));
   const std::string plain = "    size: 0.0425869\n";
   const std::string projected = plain + "    contact: {tracker: normal_projection}\n";
@@ -193,13 +193,13 @@ TEST(Trouble, OfFacetsInAHollowIsCuredAndWarnedOfForTheTrackerThatIsForCompariso
 
 TEST(Trouble, OfATextureThatIsTooShortIsForetold) {
   std::vector<std::string> warnings;
-  EXPECT_GT(run_seed(0x9e0ae1da2e824ea6, "", "", &warnings).tremble, kTrembleMost);
+  EXPECT_GT(run_seed(0x9e0ae1da2e824ea6, "", "", &warnings).limit_cycle, kLimitCycleMost);
   EXPECT_TRUE(any_has(warnings, "texture"));
 }
 
 TEST(Trouble, OfALightBodyInTheGripOfAFrictionIsForetold) {
   std::vector<std::string> warnings;
-  EXPECT_GT(run_seed(0x84aec02417858bab, "", "", &warnings).tremble, kTrembleMost);
+  EXPECT_GT(run_seed(0x84aec02417858bab, "", "", &warnings).limit_cycle, kLimitCycleMost);
   EXPECT_TRUE(any_has(warnings, "so light"));
 }
 
@@ -245,8 +245,8 @@ TEST(TroubleFound, SurvivesItsWayThroughASweep) {
   const TroubleFound found{.not_finite = 2,
                            .fault = 3,
                            .force_share = 0.5,
-                           .tremble = 0.1,
-                           .must_tremble = true,
+                           .limit_cycle = 0.1,
+                           .must_oscillate = true,
                            .speed = 1,
                            .given = 0.02,
                            .given_bound = 0.01,
@@ -277,11 +277,11 @@ TEST(WallMeasures, FindRestOnlyWhereDryFrictionHoldsHalfAStep) {
   wall.tip = {.mass = 0.075, .viscous = 1, .coulomb = 0};
   for (const double sigma : {0.4, 0.48}) {
     wall.tip.coulomb = sigma * wall.stiffness * wall.step;
-    EXPECT_GT(released_swing(*arm, wall, 0.08, 3).value(), 0) << sigma;
+    EXPECT_GT(released_oscillation(*arm, wall, 0.08, 3).value(), 0) << sigma;
   }
   for (const double sigma : {0.52, 0.6}) {
     wall.tip.coulomb = sigma * wall.stiffness * wall.step;
-    EXPECT_EQ(released_swing(*arm, wall, 0.08, 3).value(), 0) << sigma;
+    EXPECT_EQ(released_oscillation(*arm, wall, 0.08, 3).value(), 0) << sigma;
   }
 }
 

@@ -57,7 +57,7 @@ TEST(ArmPlant, SaturatesEachMotor) {
 }
 
 // Moves a free arm fast under constant torque for 40 ms in sub-steps of this length.
-Eigen::Vector3d swing(std::int64_t step_ns) {
+Eigen::Vector3d oscillation(std::int64_t step_ns) {
   ArmPlant plant = plant_with(free_arm(), home_tip());
   plant.set_currents({1.0, 0.8, -0.6});
   for (std::int64_t t = 0; t < 40'000'000; t += step_ns) plant.step(home_tip(), step_ns);
@@ -65,9 +65,9 @@ Eigen::Vector3d swing(std::int64_t step_ns) {
 }
 
 TEST(ArmPlant, ErrsWithTheSquareOfTheSubStepAlone) {
-  const Eigen::Vector3d truth = swing(1'000);
-  const double coarse = (swing(1'000'000) - truth).norm();
-  const double fine = (swing(500'000) - truth).norm();
+  const Eigen::Vector3d truth = oscillation(1'000);
+  const double coarse = (oscillation(1'000'000) - truth).norm();
+  const double fine = (oscillation(500'000) - truth).norm();
   EXPECT_GT((truth - home_tip()).norm(), 0.01);
   EXPECT_LT(coarse, 1e-6);
   EXPECT_NEAR(coarse / fine, 4, 0.4);

@@ -116,7 +116,7 @@ TEST(SimulatedGimbal, IsReadThroughTheBytesOfTheWire) {
   const double step = 2 * std::numbers::pi / 1024;
   for (const ArmKind kind : {ArmKind::kPolhem, ArmKind::kHfabLine}) {
     SimulatedArmSettings settings = speaking(kind);
-    settings.gimbal = {.middle = {0.1, -0.2, 0.3}, .swing = {0.5, 0.6, 2.5}, .period = 0.7};
+    settings.gimbal = {.middle = {0.1, -0.2, 0.3}, .amplitude = {0.5, 0.6, 2.5}, .period = 0.7};
     SimulatedArm arm =
         SimulatedArm::make(
             model, settings,

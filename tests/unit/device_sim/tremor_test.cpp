@@ -13,7 +13,7 @@ namespace {
 
 using support::refuses;
 
-HandSettings trembling(double amplitude) {
+HandSettings tremulous(double amplitude) {
   HandSettings hand;
   hand.tremor_amplitude = amplitude;
   hand.tremor_frequency = 10;
@@ -21,7 +21,7 @@ HandSettings trembling(double amplitude) {
 }
 
 TEST(Tremor, NeverExceedsItsAmplitudeAndComesNearIt) {
-  const Tremor tremor = Tremor::make(trembling(300e-6), 1).value();
+  const Tremor tremor = Tremor::make(tremulous(300e-6), 1).value();
   Eigen::Vector3d largest(0, 0, 0);
   for (int k = 0; k < 200000; ++k) largest = largest.cwiseMax(tremor.at(k * 1e-3).cwiseAbs());
   for (int axis = 0; axis < 3; ++axis) {
@@ -31,7 +31,7 @@ TEST(Tremor, NeverExceedsItsAmplitudeAndComesNearIt) {
 }
 
 TEST(Tremor, KeepsItsPowerBetweenEightAndTwelveHertz) {
-  const Tremor tremor = Tremor::make(trembling(1), 2).value();
+  const Tremor tremor = Tremor::make(tremulous(1), 2).value();
   double inside = 0, outside = 0;
   // 100 s hold a whole number of periods of all three sines (8.3, 10 and 11.9 Hz), so no power
   // leaks.
@@ -48,22 +48,22 @@ TEST(Tremor, KeepsItsPowerBetweenEightAndTwelveHertz) {
 }
 
 TEST(Tremor, DependsOnItsSeedAlone) {
-  const Tremor one = Tremor::make(trembling(1), 5).value();
-  const Tremor same = Tremor::make(trembling(1), 5).value();
-  const Tremor other = Tremor::make(trembling(1), 6).value();
+  const Tremor one = Tremor::make(tremulous(1), 5).value();
+  const Tremor same = Tremor::make(tremulous(1), 5).value();
+  const Tremor other = Tremor::make(tremulous(1), 6).value();
   EXPECT_EQ(one.at(1.234), same.at(1.234));
   EXPECT_NE(one.at(1.234), other.at(1.234));
 }
 
 TEST(Tremor, IsExactlyStillWithoutAmplitude) {
-  const Tremor tremor = Tremor::make(trembling(0), 1).value();
+  const Tremor tremor = Tremor::make(tremulous(0), 1).value();
   EXPECT_EQ(tremor.at(3.21), Eigen::Vector3d(0, 0, 0));
 }
 
 TEST(Tremor, RefusesAmplitudesAndFrequenciesOutOfRange) {
-  const auto amplitude = Tremor::make(trembling(-1), 0);
+  const auto amplitude = Tremor::make(tremulous(-1), 0);
   EXPECT_TRUE(refuses(amplitude, "amplitude"));
-  HandSettings hand = trembling(1);
+  HandSettings hand = tremulous(1);
   hand.tremor_frequency = std::numeric_limits<double>::infinity();
   const auto frequency = Tremor::make(hand, 0);
   EXPECT_TRUE(refuses(frequency, "frequency"));

@@ -150,9 +150,9 @@ TEST(HeatGuard, CountsAForceAsLoweredOnlyWhereHeatLowersIt) {
 }
 
 /// Answers each read with a tip that goes to and fro by some counts of each encoder.
-class SwingingWire final : public Transport {
+class OscillatingWire final : public Transport {
  public:
-  explicit SwingingWire(std::array<std::int16_t, 3>& mA) : mA_(mA) {}
+  explicit OscillatingWire(std::array<std::int16_t, 3>& mA) : mA_(mA) {}
   TransportRead read_latest(std::span<std::byte> buffer, std::int64_t) noexcept override {
     const auto count = static_cast<std::int16_t>(++reads_ % 2);
     const auto report = hfab::encode_input({.counts = {count, count, count}});
@@ -178,7 +178,7 @@ TEST(HeatOfADevice, LowersAnHourOfFiftyNewtonsToTheContinuousCurrentAndKeepsItsD
   settings.heat = kSettings;
   std::array<std::int16_t, 3> mA{};
   auto opened = Device::open(
-      std::make_unique<WireLink>(std::make_unique<SwingingWire>(mA),
+      std::make_unique<WireLink>(std::make_unique<OscillatingWire>(mA),
                                  std::make_unique<hfab::HfabArm>(support::vintage_model())),
       settings, 0);
   ASSERT_TRUE(opened) << opened.error().message;
@@ -218,8 +218,8 @@ TEST(HeatOfADevice, CoolsOnceTheArmIsGone) {
   DeviceSettings settings = support::vintage_settings();
   settings.heat = kSettings;
   std::array<std::int16_t, 3> mA{};
-  auto wire = std::make_unique<SwingingWire>(mA);
-  SwingingWire& far = *wire;
+  auto wire = std::make_unique<OscillatingWire>(mA);
+  OscillatingWire& far = *wire;
   auto opened =
       Device::open(std::make_unique<WireLink>(
                        std::move(wire), std::make_unique<hfab::HfabArm>(support::vintage_model())),
@@ -248,7 +248,7 @@ TEST(HeatOfADevice, RefusesATimeConstantThatIsNone) {
   settings.heat.time_constant[1] = 0;
   std::array<std::int16_t, 3> mA{};
   const auto opened = Device::open(
-      std::make_unique<WireLink>(std::make_unique<SwingingWire>(mA),
+      std::make_unique<WireLink>(std::make_unique<OscillatingWire>(mA),
                                  std::make_unique<hfab::HfabArm>(support::vintage_model())),
       settings, 0);
   ASSERT_FALSE(opened);

@@ -120,7 +120,7 @@ TEST(BodyPatch, IsClosedAndOnItsSideInRandomTouchesOverRealMeshes) {
     const int count = touches / static_cast<int>(meshes.size());
     std::int32_t t = 0;
     for (int i = 0; i < count; ++i) {
-      // A jump elsewhere while the last dent still swings, or on to a neighbour.
+      // A jump elsewhere while the last dent still oscillates, or on to a neighbour.
       if (random.bits() % 4 == 0) {
         t = static_cast<std::int32_t>(random.bits() %
                                       static_cast<std::uint64_t>(dent.mesh().triangle_count()));

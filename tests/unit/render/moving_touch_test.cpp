@@ -173,9 +173,9 @@ TEST(HardCase36, MovingTouchKeepsTheMomentaAndNeverGainsEnergyAtAnyMassAndStiffn
   support::record_hard_case(36, "the same", "<= energy beyond the first", gain, 1e-9, "1");
 }
 
-// The same without any damping, held by a hand against a floor or not: springs alone do not swing
-// up, even at stiffnesses that no arm could show.
-TEST(MovingTouch, SwingsUpAtNoMassAndStiffnessWhileAHandRestsOnIt) {
+// The same without any damping, held by a hand against a floor or not: springs alone do not
+// oscillate up, even at stiffnesses that no arm could show.
+TEST(MovingTouch, OscillatesAtNoMassAndStiffnessWhileAHandRestsOnIt) {
   for (const double mass : {1e-3, 1e-2, 1.0, 100.0}) {
     for (const double stiffness : {200.0, 2000.0, 5000.0}) {
       MotionChoice motion{.kind = MotionKind::kRigid, .mass = mass};

@@ -416,9 +416,9 @@ TriangleMesh grooved(double deep) {
 }
 
 // Presses a hand (150 g, 300 N/m, 3 N s/m, tremor of 0.2 N) into the groove, over encoders of 0.03
-// mm and a tick of delay; gives the swing of the force across the groove, N, after 5 s.
+// mm and a tick of delay; gives the oscillation of the force across the groove, N, after 5 s.
 template <class Contact>
-double swing_in_groove(Contact contact, double deep) {
+double oscillation_in_groove(Contact contact, double deep) {
   Touch touch(std::move(contact), SpringDamper{500, 0});
   support::Random random(3);
   const Vector3d from(0.001, 0, 0.005), to(0, 0, -deep - 0.009);
@@ -444,10 +444,10 @@ double swing_in_groove(Contact contact, double deep) {
 TEST(PathBounded, DoesNotPushATipToAndFroAcrossAGroove) {
   for (const double deep : {0.008, 0.017, 0.03}) {
     const TriangleMesh mesh = grooved(deep);
-    const double bare = swing_in_groove(edge_planes(mesh), deep);
-    const double bounded = swing_in_groove(PathBounded(edge_planes(mesh)), deep);
+    const double bare = oscillation_in_groove(edge_planes(mesh), deep);
+    const double bounded = oscillation_in_groove(PathBounded(edge_planes(mesh)), deep);
     const double one_face =
-        swing_in_groove(TrackedContact<NormalProjectionTracker>::build(mesh).value(), deep);
+        oscillation_in_groove(TrackedContact<NormalProjectionTracker>::build(mesh).value(), deep);
     std::printf(
         "  groove of %.0f mm: %.3f N, without the bound %.3f N, one face at a time %.3f N\n",
         1e3 * deep, bounded, bare, one_face);

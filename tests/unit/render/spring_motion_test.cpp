@@ -156,7 +156,7 @@ TEST(HardCase31, SpringMotionKeepsTheEnergyOfAMembraneForAMillionSymplecticSteps
   for (const SpringScheme scheme : {SpringScheme::kSymplecticEuler, SpringScheme::kVerlet}) {
     auto motion = SpringMotion<1>::build(network, with(scheme, step)).value();
     support::throw_nodes(motion, 1e-3, 0, 4);
-    // Averages over windows, since these schemes swing about the energy that they keep.
+    // Averages over windows, since these schemes oscillate about the energy that they keep.
     const auto average = [&] {
       double sum = 0;
       for (int i = 0; i < 1000; ++i) {

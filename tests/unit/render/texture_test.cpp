@@ -125,7 +125,7 @@ void expect_work_around(const Stage& stage, bool conservative, const char* what)
 TEST(Textures, DoNoWorkAroundAClosedWayUnlessTheyChangeTheDepthOnly) {
   Sandpaper::Settings rough;
   rough.roughness = 0.00005;
-  rough.grain = 0.0015;
+  rough.wavelength = 0.0015;
   const EffectContext known = context();
   expect_work_around(Sines(two_waves(TextureForm::kConservative), known), true, "sines");
   expect_work_around(Sandpaper(rough, known), true, "sandpaper");
@@ -310,8 +310,8 @@ TEST(Sandpaper, IsTheSameForTheSameSeedAndHasTheRoughnessAskedFor) {
 }
 
 TEST(Sandpaper, HoldsNoWavesShorterThanItsBand) {
-  // Along a straight line: the spectrum ends at sqrt 2 / grain.
-  const Sandpaper rough({}, EffectContext{});  // grain 2 mm: 707 waves per metre
+  // Along a straight line: the spectrum ends at sqrt 2 / wavelength.
+  const Sandpaper rough({}, EffectContext{});  // wavelength 2 mm: 707 waves per metre
   constexpr int kPlaces = 4096;
   constexpr double kStep = 0.0001;
   std::vector<double> heights;
@@ -442,9 +442,9 @@ TEST(TextureSettings, AreRefusedWithTheReason) {
   EXPECT_NE(mistakes_of<Sines>(VariantSettings({})).find("waves"), std::string::npos);
   EXPECT_NE(mistakes_of<Sandpaper>(VariantSettings({{"roughness", 0.002}})).find("peak to valley"),
             std::string::npos);
-  EXPECT_NE(mistakes_of<Sandpaper>(VariantSettings({{"grain", 0.0001}})).find("Hz at most"),
+  EXPECT_NE(mistakes_of<Sandpaper>(VariantSettings({{"wavelength", 0.0001}})).find("Hz at most"),
             std::string::npos);
-  EXPECT_NE(mistakes_of<Sandpaper>(VariantSettings({{"grain", kNan}})).find("grain"),
+  EXPECT_NE(mistakes_of<Sandpaper>(VariantSettings({{"wavelength", kNan}})).find("wavelength"),
             std::string::npos);
   EXPECT_NE(mistakes_of<HeightMap>(VariantSettings({{"width", 0.01}, {"height", 0.0002}}))
                 .find("image is missing"),

@@ -15,7 +15,7 @@ using render::TrackerChoice;
 
 // Where dents end and how they are stepped. The force of one ring is off by less than can be felt,
 // as `thimble study accuracy --axis rings` shows; the trapezoid with eight steps is below 3.5 %
-// even while a body swings (axis deformable).
+// even while a body oscillates (axis deformable).
 constexpr int kDraftRings = 1;
 constexpr int kReferenceRings = 6;
 constexpr int kReferenceSubsteps = 8;

@@ -102,7 +102,7 @@ std::vector<std::string> tighten(ArmFile& arm, const fs::path& arm_path, const A
     told.push_back(place(other_path, line) +
                    fmt::format(": {} {:g} {} is {} {:g} {} (", rule.key, value, rule.unit,
                                tighter ? "kept: it is tighter than the arm's"
-                                       : "ignored: it is looser than the arm's",
+                                       : "ignored: it is less strict than the arm's",
                                own, rule.unit) +
                    place(arm_path, line_in(arm, rule.key)) + ").");
   }

@@ -2,10 +2,13 @@
 
 #include <exception>
 #include <fstream>
+#include <mutex>
+#include <set>
 #include <sstream>
 #include <system_error>
 #include <utility>
 
+#include "log/logger.h"
 #include "yaml/yaml_reader.h"
 
 namespace thimble::scene {
@@ -48,13 +51,29 @@ int line_of_second_document(const std::string& text) {
   return starts.line();
 }
 
+std::string in_file(const std::string& file, int line, const std::string& sentence) {
+  const std::string place = line > 0 ? file + ":" + std::to_string(line) : file;
+  return place + ": " + sentence + ".";
+}
+
+/// Warns the user, but not again of what this process has told him: studies read a scene often.
+void tell_once(const std::string& warning) {
+  static std::mutex mutex;
+  static std::set<std::string> told;
+  const std::lock_guard lock(mutex);
+  if (told.insert(warning).second) logger().warn(warning);
+}
+
 }  // namespace
 
 void YamlMistakes::add(int line, const std::string& sentence) {
   ++count_;
   if (sentences_.size() == kKept) return;
-  const std::string place = line > 0 ? file_name_ + ":" + std::to_string(line) : file_name_;
-  sentences_.push_back(place + ": " + sentence + ".");
+  sentences_.push_back(in_file(file_name_, line, sentence));
+}
+
+void YamlMistakes::warn(int line, const std::string& sentence) {
+  warnings_.push_back(in_file(file_name_, line, sentence));
 }
 
 std::string YamlMistakes::text() const {
@@ -110,6 +129,7 @@ driver::Result<YamlFile> YamlFile::parse(const std::string& text, const std::str
 }
 
 driver::Result<void> YamlFile::finish() const {
+  for (const std::string& warning : mistakes_->warnings()) tell_once(warning);
   if (mistakes_->empty()) return {};
   return driver::Error{mistakes_->text()};
 }

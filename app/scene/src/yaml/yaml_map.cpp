@@ -2,114 +2,15 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
 #include <optional>
-#include <system_error>
+
+#include "yaml/renamed_keys.h"
+#include "yaml/yaml_words.h"
 
 namespace thimble::scene {
-namespace {
-
-constexpr std::size_t kFoundLengthMax = 40;  // chosen: what fits beside the rest of a line
-
-int line_of(const YAML::Node& node, int fallback) {
-  // A value left out is marked where the parser noticed it, which may be the line below.
-  if (node.IsNull()) return fallback;
-  const YAML::Mark mark = node.Mark();
-  return mark.is_null() ? fallback : mark.line + 1;
-}
-
-std::string in_quotes(std::string_view text) {
-  std::string result = "\"";
-  for (const char c : text.substr(0, kFoundLengthMax)) {
-    result += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-  }
-  if (text.size() > kFoundLengthMax) result += "...";
-  result += '"';
-  return result;
-}
-
-std::string found(const YAML::Node& node) {
-  switch (node.Type()) {
-    case YAML::NodeType::Undefined:
-    case YAML::NodeType::Null:
-      return "nothing";
-    case YAML::NodeType::Scalar:
-      return in_quotes(node.Scalar());
-    case YAML::NodeType::Sequence:
-      return "a list of " + std::to_string(node.size());
-    case YAML::NodeType::Map:
-      return "a map";
-  }
-  return "nothing";
-}
-
-std::string in_words(double number) {
-  std::ostringstream text;
-  text << number;
-  return text.str();
-}
-
-std::string number_in_words(std::string_view unit, double min, double max) {
-  std::string text = "a number from " + in_words(min) + " to " + in_words(max);
-  if (!unit.empty()) text.append(" ").append(unit);
-  return text;
-}
-
-// yaml-cpp marks a scalar that stood in quotes with the tag "!"; such a one is a text.
-bool is_plain_scalar(const YAML::Node& node) {
-  return node.IsScalar() && node.Tag() != "!";
-}
-
-std::optional<double> to_number(const YAML::Node& node) {
-  if (!is_plain_scalar(node)) return std::nullopt;
-  std::string_view text = node.Scalar();
-  if (text.starts_with('+')) text.remove_prefix(1);
-  double number = 0;
-  const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (status != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return number;
-}
-
-/// Gives the number of the word that a node holds; nothing if it is none of them.
-std::optional<std::size_t> choice_of(const YAML::Node& node,
-                                     const std::vector<std::string_view>& choices) {
-  if (!node.IsScalar()) return std::nullopt;
-  const auto found = std::find(choices.begin(), choices.end(), node.Scalar());
-  if (found == choices.end()) return std::nullopt;
-  return static_cast<std::size_t>(found - choices.begin());
-}
-
-std::string any_of(const std::vector<std::string_view>& choices) {
-  std::string what;
-  for (std::size_t i = 0; i < choices.size(); ++i) {
-    what.append(i == 0 ? "" : i + 1 == choices.size() ? " or " : ", ").append(choices[i]);
-  }
-  return what;
-}
-
-std::string three_in_words(std::string_view unit, double min, double max) {
-  return "three numbers, each" + number_in_words(unit, min, max).substr(8);
-}
-
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t substituted = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({substituted, row[j] + 1, row[j - 1] + 1});
-    }
-  }
-  return row.back();
-}
-
-}  // namespace
 
 YamlMap::YamlMap(const YAML::Node& node, std::string_view name, int line,
                  std::shared_ptr<YamlMistakes> mistakes)
@@ -142,6 +43,16 @@ const YamlMap::Entry* YamlMap::find(std::string_view key, bool required) {
   if (std::find(asked_.begin(), asked_.end(), key) == asked_.end()) asked_.emplace_back(key);
   for (const Entry& entry : entries_) {
     if (entry.key == key) return &entry;
+  }
+  for (const RenamedKey& renamed : kRenamedKeys) {
+    if (renamed.place != place_ || renamed.is != key) continue;
+    for (Entry& entry : entries_) {
+      if (entry.key != renamed.was) continue;
+      mistakes_->warn(entry.line, entry.key + ": is called " + std::string(key) +
+                                      " now; the old name still works, but write the new one");
+      entry.key = key;
+      return &entry;
+    }
   }
   if (required && !quiet_) mistakes_->add(line_, std::string(key) + ": is missing here");
   return nullptr;
@@ -372,6 +283,12 @@ void YamlMap::finish() {
   for (const Entry& entry : entries_) {
     if (std::find(asked_.begin(), asked_.end(), entry.key) != asked_.end()) continue;
     std::string sentence = entry.key + ": is no key that is known here";
+    for (const RenamedKey& renamed : kRenamedKeys) {
+      if (renamed.place != place_ || renamed.was != entry.key || key_line(renamed.is) == 0)
+        continue;
+      sentence = entry.key + ": is the old name of " + std::string(renamed.is) +
+                 ", which stands here too; keep the new one";
+    }
     const std::string* nearest = nullptr;
     std::size_t nearest_distance = std::max<std::size_t>(2, entry.key.size() / 3) + 1;
     for (const std::string& known : asked_) {

@@ -36,6 +36,12 @@ class YamlMistakes {
   /// Notes a mistake at a line (counted from 1; 0 for the file as a whole). `sentence` has no dot.
   void add(int line, const std::string& sentence);
 
+  /// Notes what is read nevertheless, but should be written in another way.
+  void warn(int line, const std::string& sentence);
+
+  /// Returns what was warned of, a sentence each with file and line.
+  const std::vector<std::string>& warnings() const noexcept { return warnings_; }
+
   /// Returns whether nothing was noted.
   bool empty() const { return count_ == 0; }
 
@@ -45,7 +51,7 @@ class YamlMistakes {
  private:
   std::string file_name_;
   KeyLog* keys_;
-  std::vector<std::string> sentences_;
+  std::vector<std::string> sentences_, warnings_;
   std::size_t count_ = 0;
 };
 
@@ -161,7 +167,11 @@ class YamlFile {
   YamlMap& root() { return root_; }
 
   /// Says whether everything read so far was right. Call `YamlMap::finish` on each map before.
+  /// Warns the user of keys that have got another name, once in a process.
   driver::Result<void> finish() const;
+
+  /// Returns what the user is warned of, a sentence each.
+  const std::vector<std::string>& warnings() const noexcept { return mistakes_->warnings(); }
 
  private:
   YamlFile(YamlMap root, std::shared_ptr<YamlMistakes> mistakes)

@@ -215,7 +215,7 @@ void SharedRun::set_recording_path(const std::string& path) noexcept {
 
 std::optional<double> SharedRun::knob_wanted(std::size_t knob) const noexcept {
   const double wanted = live_->knobs[knob].wanted.load(std::memory_order_relaxed);
-  // Written so that NaN is no wish.
+  // Written so that NaN is no request.
   if (wanted >= knobs_[knob].least && wanted <= knobs_[knob].most) return wanted;
   return {};
 }

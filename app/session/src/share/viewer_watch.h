@@ -16,7 +16,8 @@ namespace thimble::session {
 class ViewerWatch {
  public:
   /// Steps for which a knob must stand still until it counts as set: half a second of `step` as
-  /// often as RequestDesk does. [chosen: a person who draws at a slider is not done before]
+  /// often as ViewerRequestHandler does. [chosen: a person who draws at a slider is not done
+  /// before]
   static constexpr int kSettled = 5;
 
   /// Watches what viewers do to `shared`, which must outlive it, and tells `log`.

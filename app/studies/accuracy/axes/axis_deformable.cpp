@@ -153,7 +153,8 @@ AccuracyAxis deformable_axis() {
   axis.default_words =
       "Implicit Euler with one step per tick is stable at any stiffness, mass and step and comes "
       "to "
-      "rest as well; what it gets wrong is how fast a body swings after a poke, not how deep it "
+      "rest as well; what it gets wrong is how fast a body oscillates after a poke, not how deep "
+      "it "
       "dents under a steady hand. Of what is cheaper, symplectic Euler and Verlet diverge as soon "
       "as "
       "a scene's body is stiffer. The trapezoid does not: it is as stable, cheaper and truer, but "

@@ -72,7 +72,7 @@ AccuracyAxis encoder_axis() {
   axis.left_out =
       "The error over the cost: a tick costs the same whatever the step. How stiff a wall the "
       "steps "
-      "bear, 2 c / step, and how far they let the arm swing, which are in `thimble study "
+      "bear, 2 c / step, and how far they let the arm oscillate, which are in `thimble study "
       "stability`. No step at all, which has no place on this scale and no error.";
   struct Line {
     const char* name;

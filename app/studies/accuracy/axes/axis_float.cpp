@@ -68,7 +68,7 @@ AccuracyAxis float_axis() {
   axis.knob_unit = "m";
   axis.metric = "largest force error";
   axis.unit = "% of the largest force";
-  axis.truth = "The same way of contact at the origin.";
+  axis.truth = "The same tracker at the origin.";
   axis.threshold = 3.5;
   axis.threshold_words = "half the change of force that is felt (3.5 %)";
   axis.over_cost = false;

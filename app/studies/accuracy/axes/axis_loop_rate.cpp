@@ -61,7 +61,8 @@ AccuracyAxis loop_rate_axis() {
       "hand the hand's 3 N s/m take more than the wall gives. Faster loops are a line in the scene "
       "(rate:) where the arm can follow.";
   axis.left_out =
-      "The hand, which damps what is seen here, and dry friction, which stops the smallest swings: "
+      "The hand, which damps what is seen here, and dry friction, which stops the smallest "
+      "oscillations: "
       "both only help. Textures, which gain up to 5 to 10 kHz.";
   const Line lines[] = {{"soft", "800 N/m", 800, 0},
                         {"stiff", "3000 N/m", 3000, 0},

@@ -142,7 +142,8 @@ AccuracyAxis profile_rate_axis() {
   axis.default_words =
       "A band is for who wants the paper's way; a scene that names no blending feels none.";
   axis.left_out =
-      "The way along which a hand goes: this one is straight on the surface, so that what turns is "
+      "The path along which a hand goes: this one is straight on the surface, so that what turns "
+      "is "
       "the shading alone.";
   const auto ring = [](BlendProfile profile) {
     return banded_ring(BlendingChoice::kFixedBand, profile, 0.001);

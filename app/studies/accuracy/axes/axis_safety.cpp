@@ -67,7 +67,7 @@ double softened(const WallGuard& guard, double stiffness) {
 }
 
 // The force that the encoder's steps add while a hand presses in and out, mN RMS.
-double shaken(const WallGuard& guard, double stiffness) {
+double encoder_noise(const WallGuard& guard, double stiffness) {
   GuardedWall stepped(guard, stiffness);
   GuardedWall smooth(guard, stiffness);
   constexpr double kShare = 0.1;  // of the hand's strokes: 2 mm
@@ -156,7 +156,7 @@ AccuracyAxis safety_axis() {
   axis.left_out =
       "The error over the cost: that is the guard's alone, whatever the stiffness (see the "
       "figures). The first bounces, which an allowance of energy lets through; loops with delay, "
-      "which tests of the whole way look at.";
+      "which tests of the whole loop look at.";
   return axis;
 }
 
@@ -173,7 +173,7 @@ AccuracyAxis safety_stiffness_axis() {
 }
 
 AccuracyAxis safety_noise_axis() {
-  AccuracyAxis axis = axis_of(shaken);
+  AccuracyAxis axis = axis_of(encoder_noise);
   axis.name = "safety_noise";
   axis.title = "Energy stages of the safety gate: force that encoder steps of 30 um add";
   axis.metric = "force error, RMS";

@@ -34,17 +34,17 @@ struct HandSettings {
 /// How a simulated hand turns the stylus: each axis of the gimbal to and fro, a third of a period
 /// after the one before. It is a script: no force turns the stylus.
 struct GimbalMotion {
-  Eigen::Vector3d middle{0, 0, 0};  ///< Angles about which it swings, rad.
-  Eigen::Vector3d swing{0, 0, 0};   ///< How far to each side, rad.
-  double period = 2;                ///< s. Must be > 0.
+  Eigen::Vector3d middle{0, 0, 0};     ///< Angles about which it turns to and fro, rad.
+  Eigen::Vector3d amplitude{0, 0, 0};  ///< How far to each side, rad.
+  double period = 2;                   ///< s. Must be > 0.
 
   /// Returns the angles of the gimbal at a time (s), rad. Real-time: safe.
   Eigen::Vector3d at(double time) const noexcept {
-    if (swing.isZero(0)) return middle;
+    if (amplitude.isZero(0)) return middle;
     Eigen::Vector3d angles = middle;
     for (Eigen::Index i = 0; i < 3; ++i) {
       const double turns = time / period - static_cast<double>(i) / 3;
-      angles[i] += swing[i] * std::sin(2 * std::numbers::pi * turns);
+      angles[i] += amplitude[i] * std::sin(2 * std::numbers::pi * turns);
     }
     return angles;
   }

@@ -63,15 +63,15 @@ class PassivityObserver {
 
   /// Finds the damping for the tip's velocity (m/s): -alpha v, N, with alpha the least that pays
   /// the debt within a tick of `dt` (s), and never above m / (T (1 + 2 delay)): a damper on a mass
-  /// swings up by itself beyond m / T, earlier when late. Up to the debt `onset` that end rises in
+  /// oscillates by itself beyond m / T, earlier when late. Up to the debt `onset` that end rises in
   /// proportion. What of v is below the speed floor is not damped.
   Eigen::Vector3d damping(const Eigen::Vector3d& v_WT, double dt) const noexcept;
 
   /// Finds the share of a force that may stand, after `dt` (s): 1, and less from a debt beyond the
   /// onset on, 0 at twice that. It falls with the debt and does not rise with it: a force that
   /// followed its debt both ways would be a spring of F^2 / onset, 8 N/mm for 4 N, which no arm
-  /// carries (it swung by 0.1 mm at 60 Hz). It comes back, over kReturn, from half the onset on:
-  /// damping pays a debt, and never quite to its end, while a force that is gone pays nothing.
+  /// carries (it oscillated by 0.1 mm at 60 Hz). It comes back, over kReturn, from half the onset
+  /// on: damping pays a debt, and never quite to its end, while a force that is gone pays nothing.
   double share(double dt) noexcept;
   static constexpr double kReturn = 2;  ///< Time from none to all, s [chosen: no hand is startled].
 

@@ -98,14 +98,15 @@ void MotionChoice::read(SettingsReader& reader) {
     reader.number("hold_force", grip->force_max,
                   {.unit = "N", .least = 0.01, .most = kHoldForceMax});
   }
-  for (const char* key : {"angular_damping", "turning"}) {
+  for (const char* key : {"angular_damping", "angular_velocity"}) {
     if (kind == MotionKind::kTranslate && reader.has(key)) {
       reader.reject(key, "is for what turns; say kind: rigid");
     }
   }
   reader.number("angular_damping", angular_damping,
                 {.unit = "N m s", .least = 0, .most = kDampingMax});
-  reader.vector("turning", omega_W, {.unit = "rad/s", .least = -kTurningMax, .most = kTurningMax});
+  reader.vector("angular_velocity", omega_W,
+                {.unit = "rad/s", .least = -kTurningMax, .most = kTurningMax});
 }
 
 Moved move_object(std::unique_ptr<ObjectTouch> surface, const TriangleMesh& mesh_W,

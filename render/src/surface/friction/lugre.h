@@ -13,8 +13,8 @@ namespace thimble::render {
 ///
 /// The bristles follow z <- z_ss + (z - z_ss) exp(-sigma0 |v| T / g), which no stiffness and no
 /// speed makes unstable; Euler's step would diverge where T sigma0 |v| / g > 2 [PHYSICS 2.4]. Dry
-/// part and damping together stay below static friction. Known to drift under a load that swings
-/// (4.9 um per cycle there): for holding still take the bristle.
+/// part and damping together stay below static friction. Known to drift under a load that
+/// oscillates (4.9 um per cycle there): for holding still take the bristle.
 class LugreLaw {
  public:
   static constexpr std::string_view kName = "lugre";
@@ -41,7 +41,7 @@ class LugreLaw {
   CoulombSettings& coulomb() noexcept { return settings_.coulomb; }
 
  private:
-  // Hz; one count per tick would else swing the Stribeck curve from end to end [PHYSICS 2.2].
+  // Hz; one count per tick would else throw the Stribeck curve from end to end [PHYSICS 2.2].
   static constexpr double kSpeedCorner = 30;
 
   Settings settings_;

@@ -22,7 +22,7 @@ std::vector<Wave> random_waves(const Sandpaper::Settings& settings, const Effect
     const double turn = 2 * std::numbers::pi * uniform();
     const double across = std::sqrt(1 - z * z);
     const Eigen::Vector3d direction_O(across * std::cos(turn), across * std::sin(turn), z);
-    const double wavelength = settings.grain * std::exp2(uniform() - 0.5);
+    const double wavelength = settings.wavelength * std::exp2(uniform() - 0.5);
     const Eigen::Vector3d k_M = 2 * std::numbers::pi / wavelength * (context.R_WO * direction_O);
     const double phase = 2 * std::numbers::pi * uniform();
     // A sine's mean square is half its amplitude's; those of different waves add.
@@ -36,18 +36,18 @@ std::vector<Wave> random_waves(const Sandpaper::Settings& settings, const Effect
 
 void Sandpaper::Settings::read(SettingsReader& reader, const EffectContext& context) {
   TextureSettings::read(reader);
-  reader.number("grain", grain, {.unit = "m", .least = 1e-5, .most = 0.1});
+  reader.number("wavelength", wavelength, {.unit = "m", .least = 1e-5, .most = 0.1});
   reader.number("roughness", roughness, {.unit = "m", .least = 0, .most = 0.01});
   reader.number("seed", seed, {.unit = "", .least = 0, .most = 0x1p53});
-  if (!(grain > 0)) return;
+  if (!(wavelength > 0)) return;
   check_texture(reader, "roughness", extent(), *this, context);
 }
 
 TextureExtent Sandpaper::Settings::extent() const noexcept {
   const double amplitude = roughness * std::sqrt(2.0 / kWaves);
   return {.relief = 2 * kWaves * amplitude,
-          .slope = 2 * std::numbers::pi * roughness / grain,
-          .wavelength = grain / std::numbers::sqrt2};
+          .slope = 2 * std::numbers::pi * roughness / wavelength,
+          .wavelength = wavelength / std::numbers::sqrt2};
 }
 
 Sandpaper::Sandpaper(const Settings& settings, const EffectContext& context)

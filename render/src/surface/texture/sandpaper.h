@@ -13,8 +13,8 @@ namespace thimble::render {
 /// the sandpaper system]. A FootStage.
 ///
 /// The height is a sum of plane waves in random directions with lengths in one octave around the
-/// grain, the same for the same seed on every machine. So it holds no waves shorter than
-/// grain / sqrt 2 and is smooth. All textures: texture_height.h.
+/// wavelength, the same for the same seed on every machine. So it holds no waves shorter than
+/// wavelength / sqrt 2 and is smooth. All textures: texture_height.h.
 class Sandpaper {
  public:
   static constexpr std::string_view kGroup = "texture";
@@ -22,11 +22,11 @@ class Sandpaper {
   static constexpr EffectOrder kOrder = EffectOrder::kDepth;
 
   struct Settings : TextureSettings {
-    double grain = 0.002;        ///< Middle wavelength, m.
+    double wavelength = 0.002;   ///< Middle wavelength, m.
     double roughness = 0.00003;  ///< Root mean square of the height, m.
     double seed = 1;             ///< A whole number; another one, another piece of sandpaper.
 
-    /// Reads `form`, `hand_speed`, `grain`, `roughness`, `seed`.
+    /// Reads `form`, `hand_speed`, `wavelength`, `roughness`, `seed`.
     /// Real-time: never from the servo thread.
     void read(SettingsReader& reader, const EffectContext& context);
     /// Returns how high and steep it is. Real-time: safe.

@@ -19,7 +19,7 @@ int main(void) {
   double x, y, z;
   OPEN_ARM(0);
   CHECK(dhdEnableExpertMode() == 0);
-  CHECK(dhdSetWatchdog(80, -1) == 0); /* 10 ms */
+  CHECK(dhdSetWatchdog(152, -1) == 0); /* 19 ms */
   CHECK_NEAR(push(600), 0.5, 1e-9);
   dhdSleep(0.06);
   CHECK(dhdGetForce(&x, &y, &z, -1) == 0);

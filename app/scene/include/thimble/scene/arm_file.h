@@ -27,9 +27,10 @@ struct WorkspaceBox {
 
 /// What an arm's maker or refitter declares of it; scenes that ask for more are told so.
 struct DeclaredLimits {
-  double force = 0;      ///< N
-  double stiffness = 0;  ///< N/m
-  double damping = 0;    ///< N s/m
+  double force = 0;             ///< N
+  double stiffness = 0;         ///< N/m
+  double damping = 0;           ///< N s/m
+  double continuous_force = 0;  ///< What the arm bears for as long as one likes, N; 0: not known.
 };
 
 /// What an arm file says of the gate's energy stage; what it leaves open follows from the arm.

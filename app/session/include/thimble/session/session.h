@@ -49,7 +49,10 @@ enum class ClockKind {
 
 /// What the user asks for beyond the scene.
 struct SessionOptions {
-  ClockKind clock = ClockKind::kVirtual;   ///< which time it runs on
+  ClockKind clock = ClockKind::kVirtual;  ///< which time it runs on
+  /// Moves on the time of a virtual run in place of its own clock, which never waits: for runs that
+  /// go on only when somebody else has done his part. Not with a real arm.
+  std::shared_ptr<driver::Clock> own_clock = {};
   std::optional<double> duration = {};     ///< s; the scene's own if empty
   std::optional<std::uint64_t> seed = {};  ///< of everything random; the scene's own if empty
   std::filesystem::path mesh_folder = {};  ///< of `cgal:` meshes; empty: scene::mesh_folder()

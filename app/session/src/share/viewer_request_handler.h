@@ -14,11 +14,12 @@ namespace thimble::session {
 
 /// Does beside the servo what viewers ask of a run: recordings begin and end, a hand that nobody
 /// leads any more is let go, the run ends. Real-time: never from the servo thread.
-class RequestDesk {
+class ViewerRequestHandler {
  public:
   /// Serves `session`, which must be shared. `viewer` is the one that was opened with the run, if
   /// any; with `ends_with_viewer` the run ends when that is closed.
-  RequestDesk(Session& session, std::unique_ptr<ViewerProcess> viewer, bool ends_with_viewer)
+  ViewerRequestHandler(Session& session, std::unique_ptr<ViewerProcess> viewer,
+                       bool ends_with_viewer)
       : session_(session),
         viewer_(std::move(viewer)),
         watch_(*session.shared(), scene::run_logger(session.scene().name)),
@@ -42,21 +43,22 @@ class RequestDesk {
 };
 
 /// Whether a run opens a viewer.
-enum class ViewerWish {
+enum class ViewerChoice {
   kIfWatched,  ///< Where a person watches the run in real time.
   kAsked,      ///< Wherever there is a screen.
   kNever,
 };
 
 /// Returns whether a run opens a viewer. `terminal`: a person looks at standard error.
-constexpr bool opens_viewer(ViewerWish wish, bool real_time, bool display, bool terminal) noexcept {
-  if (wish == ViewerWish::kNever || !display) return false;
-  return wish == ViewerWish::kAsked || (real_time && terminal);
+constexpr bool opens_viewer(ViewerChoice choice, bool real_time, bool display,
+                            bool terminal) noexcept {
+  if (choice == ViewerChoice::kNever || !display) return false;
+  return choice == ViewerChoice::kAsked || (real_time && terminal);
 }
 
-/// Opens the viewer of a session if one is wished for, or says on standard error how to watch
+/// Opens the viewer of a session if one is asked for, or says on standard error how to watch
 /// without, and returns who serves all that come; null if the run is not shared. Real-time: never
 /// from the servo thread.
-std::unique_ptr<RequestDesk> open_desk(Session& session, ViewerWish wish);
+std::unique_ptr<ViewerRequestHandler> open_viewer_requests(Session& session, ViewerChoice choice);
 
 }  // namespace thimble::session

@@ -1,4 +1,4 @@
-#include "share/request_desk.h"
+#include "share/viewer_request_handler.h"
 
 #include <unistd.h>
 
@@ -27,7 +27,7 @@ std::string recording_name(const std::string& scene) {
 
 }  // namespace
 
-void RequestDesk::record(const SharedRun::RecordOrder& order) {
+void ViewerRequestHandler::record(const SharedRun::RecordOrder& order) {
   last_order_ = order.number;
   if (auto stopped = session_.end_recording(); !stopped) {
     scene::logger().error("{}", stopped.error().message);
@@ -39,7 +39,7 @@ void RequestDesk::record(const SharedRun::RecordOrder& order) {
   }
 }
 
-void RequestDesk::step() {
+void ViewerRequestHandler::step() {
   SharedRun& shared = *session_.shared();
   const RecordingSwitch& recording = session_.records().recording;
   shared.watch_viewers();
@@ -55,21 +55,22 @@ void RequestDesk::step() {
   }
 }
 
-std::unique_ptr<RequestDesk> open_desk(Session& session, ViewerWish wish) {
+std::unique_ptr<ViewerRequestHandler> open_viewer_requests(Session& session, ViewerChoice choice) {
   if (session.shared() == nullptr) return nullptr;
   std::unique_ptr<ViewerProcess> viewer;
-  if (opens_viewer(wish, session.real_time(), has_display(), isatty(STDERR_FILENO) != 0)) {
+  if (opens_viewer(choice, session.real_time(), has_display(), isatty(STDERR_FILENO) != 0)) {
     auto started = ViewerProcess::start(session.shared()->name());
     if (started) {
       viewer = std::move(started).value();
     } else {
       scene::logger().error("{}", started.error().message);
     }
-  } else if (wish == ViewerWish::kAsked) {
+  } else if (choice == ViewerChoice::kAsked) {
     scene::terminal().info("No screen (DISPLAY, WAYLAND_DISPLAY): watch by `thimble view {}`.",
                            session.shared()->name());
   }
-  return std::make_unique<RequestDesk>(session, std::move(viewer), session.setup().hand_by_mouse());
+  return std::make_unique<ViewerRequestHandler>(session, std::move(viewer),
+                                                session.setup().hand_by_mouse());
 }
 
 }  // namespace thimble::session

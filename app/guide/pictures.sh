@@ -1,0 +1,66 @@
+#!/usr/bin/env bash
+# Draws the guide's pictures anew by the program's own commands (needs gnuplot).
+#   app/guide/pictures.sh [PROGRAM]
+# The three that begin with accuracy_ come from `thimble study accuracy`, which takes minutes; they are kept.
+set -euo pipefail
+here=$(cd "$(dirname "$0")" && pwd)
+program=$(realpath "${1:-build/release/app/thimble}")
+pictures=$here/pages/pictures
+scenes=$here/../scenes
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work"
+
+shot() {  # NAME SCENE [OPTION...]: a moment of a scene, 480 by 320
+  "$program" shot "$scenes/$2.yaml" --out "$pictures/$1.png" --size 480x320 --no-caption "${@:3}" >/dev/null
+}
+figure() {  # NAME FILE: a figure as the program wrote it
+  cp "$2" "$pictures/$1.png"
+}
+
+# First touch, with force and depth over time.
+"$program" shot "$scenes/elephant.yaml" --plots --size 720x540 --out "$pictures/first_touch.png" >/dev/null
+
+# The scene that scenes.md writes out.
+awk '/^```yaml$/ { inside = 1; next } /^```/ { inside = 0 } inside && /^name: / { keep = $2 == "my_ball" } inside && keep' \
+  "$here/pages/scenes.md" | sed "s|\.\./arms|$here/../arms|" >my_ball.yaml
+"$program" shot my_ball.yaml --out "$pictures/my_ball.png" --size 480x320 --no-caption >/dev/null
+
+# Arms, each on the same ball.
+for arm in vintage_phantom polhem falcon; do
+  "$program" shot my_ball.yaml --arm "$here/../arms/$arm.yaml" --out "$pictures/arm_$arm.png" --size 320x320 --camera 35 18 0.35 --no-caption >/dev/null
+done
+
+# Effects: what dents, what keeps a print, what moves.
+shot effect_dent water_balloon
+shot effect_clay clay
+shot effect_field charges
+"$program" shot "$scenes/clay_tablet.yaml" --at 5.8 --edges on --camera 25 45 --size 640x420 --no-caption --out "$pictures/clay_tablet.png" >/dev/null
+"$program" study friction --out friction >/dev/null || [ $? = 5 ]
+figure friction friction/overview.png
+"$program" study stability --arm vintage_phantom --coarse --out stability >/dev/null || [ $? = 5 ]
+figure stability_map stability/kb_map.png
+
+# A recording, as a plot.
+"$program" run "$scenes/tin_can.yaml" --report can >/dev/null
+figure recording can/force_and_depth.png
+
+# The guide's own table of peers, as a plot.
+awk -F'|' '/^\| 10\^[0-9]/ && NF == 7 { sub(/.*\^/, "", $2); print 10 ^ $2, $3, $4, $5, $6 }' \
+  "$here/pages/compare.md" >peers.dat
+gnuplot <<PLOT
+set terminal pngcairo size 720,400 font "sans,11" rounded
+set output "$pictures/peers.png"
+set logscale xy
+set xlabel "triangles"
+set ylabel "one tick [ns]"
+set format x "10^{%L}"
+set key top left
+set grid lc rgb "#dddddd"
+set xrange [700:1.5e7]
+plot "peers.dat" using 1:2 with linespoints pt 7 lw 2 lc rgb "#1f6f8b" title "Thimble compact, stroke", \
+     "" using 1:3 with linespoints pt 6 lw 2 lc rgb "#b3541e" title "god-object over Embree, stroke", \
+     "" using 1:4 with linespoints pt 7 lw 2 dt 2 lc rgb "#1f6f8b" title "Thimble compact, fast slide", \
+     "" using 1:5 with linespoints pt 6 lw 2 dt 2 lc rgb "#b3541e" title "god-object over Embree, fast slide"
+PLOT
+ls -s "$pictures"

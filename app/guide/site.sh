@@ -1,0 +1,35 @@
+#!/usr/bin/env bash
+# Builds the guide as web pages with mkdocs (Debian: mkdocs); a link that leads nowhere, or a page that
+# stands in no menu, is an error.
+#   app/guide/site.sh [FOLDER]      FOLDER: where to write, build/guide by default; open index.html there
+set -euo pipefail
+here=$(cd "$(dirname "$0")" && pwd)
+out=$(realpath -m "${1:-$here/../../build/guide}")
+command -v mkdocs >/dev/null || {
+  echo "mkdocs is not installed: apt install mkdocs" >&2
+  exit 3
+}
+said=$(mkdocs build --clean --strict -f "$here/mkdocs.yml" -d "$out" 2>&1) || {
+  echo "$said" >&2
+  exit 1
+}
+# mkdocs only mentions what stands in no menu, and does not look whether a heading exists.
+failed=0
+if grep -A 20 'not included in the "nav"' <<<"$said" >&2; then failed=1; fi
+while IFS=$'\t' read -r page target; do
+  file=${target%%#*} anchor=${target#*#}
+  [ -n "$file" ] && file=$(dirname "$page")/$file || file=$page
+  grep -q "id=\"$anchor\"" "$file" || {
+    echo "${page#"$out"/}: there is no heading #$anchor in ${file#"$out"/}" >&2
+    failed=1
+  }
+done < <(grep -oHP '<a [^>]*href="\K[^":]*#[^"]+(?=")' "$out"/*.html | sed 's/:/\t/' | grep -v '#$' | sort -u)
+# Every picture is shown by some page.
+for picture in "$here"/pages/pictures/*; do
+  grep -rqF "pictures/$(basename "$picture")" "$here"/pages/*.md || {
+    echo "app/guide/pages/pictures/$(basename "$picture"): no page shows it" >&2
+    failed=1
+  }
+done
+[ $failed = 0 ] || exit 1
+echo "$(ls "$out"/*.html | wc -l) pages: $out/index.html"

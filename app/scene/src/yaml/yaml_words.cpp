@@ -1,0 +1,109 @@
+#include "yaml/yaml_words.h"
+
+#include <algorithm>
+#include <charconv>
+#include <sstream>
+#include <system_error>
+
+namespace thimble::scene {
+namespace {
+
+constexpr std::size_t kFoundLengthMax = 40;  // chosen: what fits beside the rest of a line
+
+}  // namespace
+
+int line_of(const YAML::Node& node, int fallback) {
+  // A value left out is marked where the parser noticed it, which may be the line below.
+  if (node.IsNull()) return fallback;
+  const YAML::Mark mark = node.Mark();
+  return mark.is_null() ? fallback : mark.line + 1;
+}
+
+std::string in_quotes(std::string_view text) {
+  std::string result = "\"";
+  for (const char c : text.substr(0, kFoundLengthMax)) {
+    result += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+  }
+  if (text.size() > kFoundLengthMax) result += "...";
+  result += '"';
+  return result;
+}
+
+std::string found(const YAML::Node& node) {
+  switch (node.Type()) {
+    case YAML::NodeType::Undefined:
+    case YAML::NodeType::Null:
+      return "nothing";
+    case YAML::NodeType::Scalar:
+      return in_quotes(node.Scalar());
+    case YAML::NodeType::Sequence:
+      return "a list of " + std::to_string(node.size());
+    case YAML::NodeType::Map:
+      return "a map";
+  }
+  return "nothing";
+}
+
+std::string in_words(double number) {
+  std::ostringstream text;
+  text << number;
+  return text.str();
+}
+
+std::string number_in_words(std::string_view unit, double min, double max) {
+  std::string text = "a number from " + in_words(min) + " to " + in_words(max);
+  if (!unit.empty()) text.append(" ").append(unit);
+  return text;
+}
+
+// yaml-cpp marks a scalar that stood in quotes with the tag "!"; such a one is a text.
+bool is_plain_scalar(const YAML::Node& node) {
+  return node.IsScalar() && node.Tag() != "!";
+}
+
+std::optional<double> to_number(const YAML::Node& node) {
+  if (!is_plain_scalar(node)) return std::nullopt;
+  std::string_view text = node.Scalar();
+  if (text.starts_with('+')) text.remove_prefix(1);
+  double number = 0;
+  const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (status != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return number;
+}
+
+std::optional<std::size_t> choice_of(const YAML::Node& node,
+                                     const std::vector<std::string_view>& choices) {
+  if (!node.IsScalar()) return std::nullopt;
+  const auto found = std::find(choices.begin(), choices.end(), node.Scalar());
+  if (found == choices.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - choices.begin());
+}
+
+std::string any_of(const std::vector<std::string_view>& choices) {
+  std::string what;
+  for (std::size_t i = 0; i < choices.size(); ++i) {
+    what.append(i == 0 ? "" : i + 1 == choices.size() ? " or " : ", ").append(choices[i]);
+  }
+  return what;
+}
+
+std::string three_in_words(std::string_view unit, double min, double max) {
+  return "three numbers, each" + number_in_words(unit, min, max).substr(8);
+}
+
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t substituted = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({substituted, row[j] + 1, row[j - 1] + 1});
+    }
+  }
+  return row.back();
+}
+
+}  // namespace thimble::scene

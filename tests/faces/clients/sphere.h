@@ -1,0 +1,74 @@
+/* The sphere of the hello programs, in whatever unit and axes an interface has. */
+#ifndef SPHERE_H
+#define SPHERE_H
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+typedef struct {
+  double centre[3], radius, stiffness;
+} Sphere;
+
+/* Pushes a tip at p out; returns how deep it is inside. */
+static double sphere_force(const Sphere* sphere, const double p[3], double f[3]) {
+  double d[3], distance = 0;
+  int i;
+  for (i = 0; i < 3; ++i) {
+    d[i] = p[i] - sphere->centre[i];
+    distance += d[i] * d[i];
+    f[i] = 0;
+  }
+  distance = sqrt(distance);
+  if (!(distance < sphere->radius) || !(distance > 0)) return 0;
+  for (i = 0; i < 3; ++i) {
+    f[i] = sphere->stiffness * (sphere->radius - distance) * d[i] / distance;
+  }
+  return sphere->radius - distance;
+}
+
+/* The forces that were asked for, in memory until the program ends. */
+typedef struct {
+  double (*all)[3];
+  long count, room;
+} AskedLog;
+
+static void note_asked(AskedLog* log, const double f[3]) {
+  int i;
+  if (log->count >= log->room) return;
+  for (i = 0; i < 3; ++i) log->all[log->count][i] = f[i];
+  ++log->count;
+}
+
+/* What stands on the command line: [SECONDS [LOG [X Y Z]]]. LOG gets the forces, a line each, in
+ * the program's own axes; X Y Z is the sphere's centre. */
+typedef struct {
+  double seconds;
+  const char* log_file;
+} SphereChoice;
+
+static SphereChoice sphere_choice(int argc, char** argv, Sphere* sphere, AskedLog* log) {
+  SphereChoice choice = {3.5, 0};
+  int i;
+  if (argc > 1) choice.seconds = atof(argv[1]);
+  if (argc > 2) choice.log_file = argv[2];
+  for (i = 0; i < 3 && argc > 5; ++i) sphere->centre[i] = atof(argv[3 + i]);
+  log->room = choice.log_file ? (long)(2000 * choice.seconds) + 1 : 0;
+  log->all = malloc((size_t)(log->room + 1) * sizeof *log->all);
+  return choice;
+}
+
+/* Returns 0 if the file holds them all. */
+static int write_asked(const AskedLog* log, const char* file_name) {
+  FILE* file;
+  long i;
+  if (!file_name) return 0;
+  file = fopen(file_name, "w");
+  if (!file) return 1;
+  for (i = 0; i < log->count; ++i) {
+    fprintf(file, "%.17g %.17g %.17g\n", log->all[i][0], log->all[i][1], log->all[i][2]);
+  }
+  return fclose(file);
+}
+
+#endif

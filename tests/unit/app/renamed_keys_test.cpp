@@ -1,0 +1,87 @@
+// Files with keys that have got another name are read as before, and the user is told the new name.
+#include "yaml/renamed_keys.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "scene_keys.h"
+#include "yaml/yaml_reader.h"
+
+namespace thimble::scene {
+namespace {
+
+/// Reads a map at the place of the sandpaper that may have a wavelength.
+struct Reading {
+  double wavelength = 0;
+  std::string mistakes;
+  std::vector<std::string> warnings;
+};
+
+Reading read(const std::string& text, const std::string& place = "effects[] texture: sandpaper") {
+  auto file = YamlFile::parse(text, "scene.yaml");
+  if (!file) return {.wavelength = 0, .mistakes = file.error().message, .warnings = {}};
+  file->root().set_place(place);
+  Reading reading;
+  reading.wavelength = file->root().optional_number("wavelength", 0.002, "m", 1e-5, 0.1);
+  file->root().finish();
+  const auto done = file->finish();
+  if (!done) reading.mistakes = done.error().message;
+  reading.warnings = file->warnings();
+  return reading;
+}
+
+TEST(RenamedKeys, AreReadWithAWarningThatTellsLineAndNewName) {
+  const Reading reading = read("\ngrain: 0.003\n");
+  EXPECT_EQ(reading.mistakes, "");
+  EXPECT_EQ(reading.wavelength, 0.003);
+  ASSERT_EQ(reading.warnings.size(), 1U);
+  EXPECT_EQ(reading.warnings[0],
+            "scene.yaml:2: grain: is called wavelength now; the old name still works, but write "
+            "the new one.");
+}
+
+TEST(RenamedKeys, AreNotWarnedOfByTheirNewName) {
+  const Reading reading = read("wavelength: 0.003\n");
+  EXPECT_EQ(reading.mistakes, "");
+  EXPECT_EQ(reading.wavelength, 0.003);
+  EXPECT_TRUE(reading.warnings.empty());
+}
+
+TEST(RenamedKeys, AreCheckedLikeTheNewOnes) {
+  EXPECT_NE(read("grain: 7\n").mistakes.find("expected a number from 1e-05 to 0.1 m"),
+            std::string::npos);
+}
+
+TEST(RenamedKeys, AreRefusedBesideTheNewOne) {
+  EXPECT_EQ(read("wavelength: 0.003\ngrain: 0.004\n").mistakes,
+            "scene.yaml:2: grain: is the old name of wavelength, which stands here too; keep the "
+            "new one.");
+}
+
+TEST(RenamedKeys, AreKnownWhereTheyStoodAndNowhereElse) {
+  const Reading reading = read("grain: 0.003\n", "effects[] texture: sines.waves[]");
+  EXPECT_NE(reading.mistakes.find("grain: is no key that is known here"), std::string::npos);
+  EXPECT_TRUE(reading.warnings.empty());
+}
+
+// The table names places and keys as the readers do.
+TEST(RenamedKeys, LeadToKeysThatTheReadersAskFor) {
+  auto keys = scene_keys().value();
+  const auto arm = arm_keys();
+  keys.insert(keys.end(), arm.begin(), arm.end());
+  for (const RenamedKey& renamed : kRenamedKeys) {
+    const auto has = [&](std::string_view key) {
+      return std::any_of(keys.begin(), keys.end(), [&](const KeyNote& note) {
+        return note.place == renamed.place && note.key == key;
+      });
+    };
+    EXPECT_TRUE(has(renamed.is)) << renamed.place << ": " << renamed.is;
+    EXPECT_FALSE(has(renamed.was)) << renamed.place << ": " << renamed.was;
+  }
+}
+
+}  // namespace
+}  // namespace thimble::scene
