@@ -35,6 +35,7 @@ done
 shot effect_dent water_balloon
 shot effect_clay clay
 shot effect_field charges
+"$program" shot "$scenes/clay_tablet.yaml" --at 5.8 --edges on --camera 25 45 --size 640x420 --no-caption --out "$pictures/clay_tablet.png" >/dev/null
 "$program" study friction --out friction >/dev/null || [ $? = 5 ]
 figure friction friction/overview.png
 "$program" study stability --arm vintage_phantom --coarse --out stability >/dev/null || [ $? = 5 ]

@@ -40,7 +40,7 @@ struct DrawnMoment {
   std::vector<render::BodyPose> poses;  ///< One per object of the scene.
   render::BodyPatch patch;              ///< No triangles if nothing is dented.
   std::vector<DrawnRod> arm;            ///< From the base to the tip; empty: not drawn.
-  /// One per object: what it has been shaped to, with the triangles of its mesh; null if it has
+  /// One per object: what it has been shaped to, triangles that were split included; null if it has
   /// not. A new shape is a new object.
   std::vector<std::shared_ptr<const render::TriangleMesh>> shapes;
 };

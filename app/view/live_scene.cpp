@@ -81,8 +81,9 @@ void LiveScene::update_shapes(DrawnMoment& moment) {
   shape_moves_ = moves;
   for (std::size_t i = 0; i < scene_.objects.size(); ++i) {
     if (!reader_.scene().objects[i].shaped) continue;
-    const auto shape = std::make_shared<render::TriangleMesh>(scene_.objects[i].mesh);
-    reader_.shaped_vertices(i, shape->vertices);
+    const auto shape = std::make_shared<render::TriangleMesh>(
+        moment.shapes[i] ? *moment.shapes[i] : scene_.objects[i].mesh);
+    reader_.shape(i, *shape);
     moment.shapes[i] = shape;
   }
 }

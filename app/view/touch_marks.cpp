@@ -117,7 +117,8 @@ void add_edge_planes(const DrawnScene& scene, const DrawnMoment& moment, TouchMa
       object >= scene.objects.size() || scene.objects[object].stands_for_shape) {
     return;
   }
-  const render::TriangleMesh& mesh = scene.objects[object].mesh;
+  const bool shaped = object < moment.shapes.size() && moment.shapes[object] != nullptr;
+  const render::TriangleMesh& mesh = shaped ? *moment.shapes[object] : scene.objects[object].mesh;
   if (triangle >= mesh.triangles.size()) return;
   const render::BodyPose pose =
       object < moment.poses.size() ? moment.poses[object] : render::BodyPose{};

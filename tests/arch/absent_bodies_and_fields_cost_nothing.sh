@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Shows that bodies that move or bend and force fields cost a scene without them nothing: of all that they are made
+# Shows that bodies that move or bend, force fields, and clay's splitting cost a scene without them nothing: of all that they are made
 # of nothing is called in a tick, and a tick calls the object's own law and the observers of every run, no more.
 #   absent_bodies_and_fields_cost_nothing.sh SCENE_TICKS SOURCE_DIR
 set -euo pipefail
@@ -54,7 +54,16 @@ expect 'TickSink<thimble::session::RunLoop>(thimble::session::RunLoop&)::{lambda
 # What this looks for is there where a scene names it.
 tick_calls "$program" "$source/app/scenes/clay.yaml" "$folder" clay
 tick_calls "$program" "$source/app/scenes/honey.yaml" "$folder" honey
-for pair in bodies:clay fields:honey; do
+# Clay that splits no triangles calls nothing of what does.
+splits='PrintRefinement|split_edge|EdgeSplit'
+found=$(used "$splits" clay)
+if [ -n "$found" ]; then
+  echo "  clay without an edge calls in its ticks:"
+  echo "$found" | sed 's/^/    /'
+  bad=1
+fi
+tick_calls "$program" "$source/app/scenes/clay_tablet.yaml" "$folder" clay_tablet
+for pair in bodies:clay fields:honey splits:clay_tablet; do
   what=${pair%:*}
   count=$(used "${!what}" "${pair#*:}" | wc -l)
   echo "${pair#*:}: ticks call $count functions of $what"

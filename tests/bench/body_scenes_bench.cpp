@@ -69,6 +69,7 @@ void tick_p99_of_scene(benchmark::State& state, const std::string& name) {
   BENCHMARK_CAPTURE(tick_p99_of_scene, name, #name)->UseManualTime()->Iterations(1)
 THIMBLE_SCENE(tin_can)->Unit(benchmark::kMicrosecond);
 THIMBLE_SCENE(clay)->Unit(benchmark::kMicrosecond);
+THIMBLE_SCENE(clay_tablet)->Unit(benchmark::kMicrosecond);
 THIMBLE_SCENE(floating_block)->Unit(benchmark::kMicrosecond);
 
 }  // namespace

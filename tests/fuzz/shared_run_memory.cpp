@@ -7,6 +7,7 @@
 #include <cstring>
 #include <vector>
 
+#include "mesh/contact_mesh.h"
 #include "share/arm_lines.h"
 #include "share/shared_reader.h"
 #include "share/shared_run.h"
@@ -28,7 +29,7 @@ std::vector<std::byte> sound_memory() {
   scene.force_max = 5;
   scene.arm.geometry = driver::DeltaArm{.a = 0.05, .b = 0.05, .c = 0.05, .r = 0.05};
   scene.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
-  scene.triangles = {{0, 1, 2}, {3, 4, 5}};
+  scene.triangles = {{0, 1, 2}, {3, 4, 5}, {4, 3, 5}};
   scene.objects.push_back({.name = "a", .moves = true, .vertex_count = 3, .triangle_count = 1});
   scene.objects.push_back({.name = "b",
                            .dents = true,
@@ -36,7 +37,8 @@ std::vector<std::byte> sound_memory() {
                            .first_vertex = 3,
                            .vertex_count = 3,
                            .first_triangle = 1,
-                           .triangle_count = 1});
+                           .triangle_count = 2,
+                           .splits_most = 2});
   scene.knobs.push_back({"a: stiffness", "N/m", 0, 800, 400});
   const auto run = session::SharedRun::create("", scene, 8).value();
   run->set_state(session::RunState::kRunning);
@@ -52,6 +54,7 @@ std::vector<std::byte> sound_memory() {
   patch.triangles[0] = {0, 1, 2};
   run->store_patch(patch);
   run->store_vertex(1, {1, 2, 3});
+  run->store_split(0, {.vertex = 3, .ends = {0, 1}, .triangles = {0, 1}, .others = {2, 3}});
   run->set_recording_path("x.h5");
   return {run->memory().bytes().begin(), run->memory().bytes().end()};
 }
@@ -84,9 +87,24 @@ void read_everything(session::SharedReader& reader) {
     promise(object.first_vertex + object.vertex_count <= scene.vertices.size() &&
                 object.first_triangle + object.triangle_count <= scene.triangles.size(),
             "an object lies in its tables");
-    std::vector<Eigen::Vector3d> vertices(object.vertex_count, Eigen::Vector3d::Zero());
-    reader.shaped_vertices(i, vertices);
-    for (const auto& vertex : vertices) promise(vertex.allFinite(), "a vertex stays somewhere");
+    render::TriangleMesh mesh;
+    mesh.vertices.assign(object.vertex_count, Eigen::Vector3d::Zero());
+    for (std::size_t t = 0; t < object.triangle_count; ++t) {
+      auto& corners = mesh.triangles.emplace_back();
+      for (std::size_t k = 0; k < 3; ++k) {
+        corners[k] = static_cast<std::int32_t>(scene.triangles[object.first_triangle + t][k] -
+                                               object.first_vertex);
+      }
+    }
+    reader.shape(i, mesh);
+    for (const auto& vertex : mesh.vertices)
+      promise(vertex.allFinite(), "a vertex stays somewhere");
+    for (const auto& corners : mesh.triangles) {
+      for (const std::int32_t vertex : corners) {
+        promise(vertex >= 0 && static_cast<std::size_t>(vertex) < mesh.vertices.size(),
+                "a triangle that was split has vertices");
+      }
+    }
   }
   for (std::size_t i = 0; i < scene.knobs.size(); ++i) {
     const auto& knob = scene.knobs[i];

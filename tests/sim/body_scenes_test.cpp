@@ -18,6 +18,7 @@
 #include "thimble/render/mesh/load_mesh.h"
 #include "thimble/render/mesh/save_mesh.h"
 #include "thimble/render/scene_touch.h"
+#include "thimble/session/recording.h"
 #include "thimble/session/session.h"
 
 // The scenes with bodies that move, keep what they gave way, and snap, from the wire up.
@@ -52,38 +53,34 @@ TEST(ClayScene, KeepsItsPrints) {
   EXPECT_TRUE(render::ContactMesh::build(*again));
 }
 
-// The same scene with triangles split under its prints: repeatable to the bit, and what is saved
-// has the triangles that it has been split into.
-TEST(ClayScene, SplitsItsTrianglesAndSavesThem) {
-  const std::filesystem::path scenes = std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/scenes";
-  std::ifstream shipped(scenes / "clay.yaml");
-  std::string text((std::istreambuf_iterator<char>(shipped)), {});
-  const std::string folder = std::filesystem::absolute(scenes).string() + "/";
-  const auto put = [&text](const std::string& what, const std::string& by) {
-    const auto at = text.find(what);
-    ASSERT_NE(at, std::string::npos) << what;
-    text.replace(at, what.size(), by);
-  };
-  put("../arms/", folder + "../arms/");
-  put("mesh: clay_ball.off", "mesh: " + folder + "clay_ball.off");
-  put("    body:", "    contact: {tracker: god_object}\n    body:");
-  put("plastic:", "plastic:\n        edge: 0.0012\n        volume: kept");
-  const auto file = support::scratch_folder() / "fine_clay.yaml";
-  std::ofstream(file) << text;
-  std::vector<Vector3d> first;
-  for (int run = 0; run < 2; ++run) {
-    const auto session = session::Session::open(file, {});
-    ASSERT_TRUE(session) << session.error().message;
-    ASSERT_EQ((*session)->run(std::atomic<bool>{false}), driver::ServoEnd::kDone);
-    const auto now = (*session)->mesh_now();
-    EXPECT_GT(now.triangles.size(), (*session)->setup().objects().mesh_W().triangles.size() + 500);
-    EXPECT_TRUE(render::ContactMesh::build(now));
-    const auto saved = support::scratch_folder() / "fine.off";
-    ASSERT_TRUE(render::save_mesh(now, saved));
-    EXPECT_EQ(render::load_mesh(saved)->triangles, now.triangles);
-    if (run == 0) first = now.vertices;
-    EXPECT_EQ(now.vertices, first);
-  }
+// Triangles split under its prints: what is saved has them, and the run is repeatable to the bit,
+// from its recording too.
+TEST(ClayTablet, SplitsItsTrianglesSavesThemAndIsReplayedToTheBit) {
+  session::SessionOptions options;
+  options.record = support::scratch_folder() / "tablet.h5";
+  const auto scene = std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/scenes/clay_tablet.yaml";
+  const auto session = session::Session::open(scene, options);
+  ASSERT_TRUE(session) << session.error().message;
+  ASSERT_EQ((*session)->run(std::atomic<bool>{false}), driver::ServoEnd::kDone);
+  ASSERT_TRUE((*session)->end_recording());
+  const auto now = (*session)->mesh_now();
+  EXPECT_GT(now.triangles.size(), (*session)->setup().objects().mesh_W().triangles.size() + 5000);
+  EXPECT_LT(now.triangles.size(), 20000U) << "the stroke ends before the triangles do";
+  EXPECT_TRUE(render::ContactMesh::build(now));
+  const auto saved = support::scratch_folder() / "tablet.off";
+  ASSERT_TRUE(render::save_mesh(now, saved));
+  const auto loaded = render::load_mesh(saved);
+  ASSERT_TRUE(loaded);
+  EXPECT_EQ(loaded->triangles, now.triangles);
+  EXPECT_EQ(loaded->vertices, now.vertices);
+
+  const auto recording = session::read_recording(options.record);
+  ASSERT_TRUE(recording) << recording.error().message;
+  EXPECT_TRUE(session::check_repeatable(*recording));
+  const auto replay = session::replay(*recording);
+  ASSERT_TRUE(replay) << replay.error().message;
+  EXPECT_EQ(replay->compared.ticks, recording->ticks.size());
+  EXPECT_EQ(replay->compared.differing, 0u);
 }
 
 // Reads a scene with `body` on an object that is `what`; gives the error's text, empty if there is

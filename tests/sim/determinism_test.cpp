@@ -68,6 +68,7 @@ TEST(HardCase41, ScenesGiveTheBitsThatWereStoredAloneAndFourAtOnce) {
   int others = 0, runs = 0;
   for (const Stored& stored : {Stored{"box", 0xa23f75401db0979e},
                                {"clay", 0x69b3cf6085094106},
+                               {"clay_tablet", 0x2bb8151dd77192aa},
                                {"floating_block", 0x5e14def3f8c3a7ef}}) {
     std::array<std::uint64_t, 5> found{};
     found[4] = hash_of_scene(stored.scene);

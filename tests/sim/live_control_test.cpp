@@ -259,11 +259,34 @@ TEST(LiveControl, ShowsShapedAndMovedObjectsWhereTheyAre) {
   const auto clay = open(shipped("clay"), options);
   const auto reader = reader_of(*clay);
   clay->run(std::atomic<bool>{false});
-  std::vector<Eigen::Vector3d> vertices = reader->scene().vertices;
-  const auto first = vertices;
-  reader->shaped_vertices(0, vertices);
-  EXPECT_NE(vertices, first) << "it left a print";
-  EXPECT_EQ(vertices, clay->mesh_now().vertices);
+  render::TriangleMesh seen_shape = clay->setup().objects().mesh_W(0);
+  const auto first = seen_shape.vertices;
+  reader->shape(0, seen_shape);
+  EXPECT_NE(seen_shape.vertices, first) << "it left a print";
+  EXPECT_EQ(seen_shape.vertices, clay->mesh_now().vertices);
+
+  // One that splits its triangles, read anew every 50 ticks and at the end alone.
+  const auto tablet = open(shipped("clay_tablet"), options);
+  const auto looker = reader_of(*tablet);
+  render::TriangleMesh followed = tablet->setup().objects().mesh_W(0), at_once = followed;
+  std::size_t before = followed.triangles.size();
+  int grown = 0;
+  for (int i = 0; !tablet->step(); ++i) {
+    if (i % 50 != 0) continue;
+    looker->shape(0, followed);
+    EXPECT_EQ(followed.triangles, tablet->mesh_now().triangles) << "tick " << i;
+    EXPECT_EQ(followed.vertices, tablet->mesh_now().vertices) << "tick " << i;
+    grown += followed.triangles.size() > before;
+    before = followed.triangles.size();
+  }
+  EXPECT_GT(grown, 5);
+  looker->shape(0, followed);
+  looker->shape(0, at_once);
+  const render::TriangleMesh in_the_end = tablet->mesh_now();
+  EXPECT_EQ(followed.triangles, in_the_end.triangles);
+  EXPECT_EQ(at_once.triangles, in_the_end.triangles);
+  EXPECT_EQ(at_once.vertices, in_the_end.vertices);
+  EXPECT_EQ(looker->rejected(), 0u);
 
   const auto block = open(shipped("floating_block"), options);
   const auto watcher = reader_of(*block);

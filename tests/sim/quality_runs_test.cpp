@@ -34,9 +34,9 @@ TEST_P(QualityOfScene, RunsWithoutAFaultAndGivesNoEnergy) {
 }
 
 INSTANTIATE_TEST_SUITE_P(ByName, QualityOfScene,
-                         ::testing::Values("box", "clay", "floating_block", "ice", "rubber",
-                                           "sandpaper", "soft_coarse", "tin_can", "trampoline",
-                                           "water_balloon"),
+                         ::testing::Values("box", "clay", "clay_tablet", "floating_block", "ice",
+                                           "rubber", "sandpaper", "soft_coarse", "tin_can",
+                                           "trampoline", "water_balloon"),
                          [](const auto& scene) { return std::string(scene.param); });
 
 }  // namespace

@@ -51,9 +51,10 @@ TEST_P(WatchedScene, IsTakenForABrokenArmWithNoHand) {
 }
 
 INSTANTIATE_TEST_SUITE_P(ByName, WatchedScene,
-                         ::testing::Values("box", "charges", "clay", "floating_block", "held_block",
-                                           "honey", "ice", "rubber", "sandpaper", "soft_coarse",
-                                           "tin_can", "trampoline", "water_balloon"),
+                         ::testing::Values("box", "charges", "clay", "clay_tablet",
+                                           "floating_block", "held_block", "honey", "ice", "rubber",
+                                           "sandpaper", "soft_coarse", "tin_can", "trampoline",
+                                           "water_balloon"),
                          [](const auto& scene) { return std::string(scene.param); });
 
 /// A plate of 800 N/m under a hand that presses at 0.1 m/s, with an arm file and its own motors.

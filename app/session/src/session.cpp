@@ -28,11 +28,18 @@ bool dents(const scene::SceneObject& object) {
 /// Returns the objects whose vertices move for good, as they lie in what is shared.
 std::vector<RunSharing::Shaped> shaped_objects(const Setup& setup) {
   std::vector<RunSharing::Shaped> shaped;
-  std::size_t first = 0;
+  std::size_t first = 0, first_split = 0;
   for (std::size_t i = 0; i < setup.scene().objects.size(); ++i) {
     if (!setup.scene().objects[i].body.shape.named()) continue;
-    shaped.push_back({setup.objects().touch().object(i).shape(), first});
-    first += setup.objects().place(i + 1).vertex - setup.objects().place(i).vertex;
+    const render::BodyShape* shape = setup.objects().touch().object(i).shape();
+    const std::size_t vertices =
+        setup.objects().place(i + 1).vertex - setup.objects().place(i).vertex;
+    shaped.push_back({.shape = shape,
+                      .first = first,
+                      .first_split = first_split,
+                      .vertices = static_cast<std::int32_t>(vertices)});
+    first += vertices + shape->splits_left();
+    first_split += shape->splits_left();
   }
   return shaped;
 }

@@ -17,7 +17,7 @@ class SurfaceModel {
   SurfaceModel(const render::TriangleMesh& mesh, double crease_angle,
                NormalWeights weights = NormalWeights::kAngle);
 
-  /// Takes another mesh with the same triangles in its place: what keeps a dent.
+  /// Takes another mesh in its place: what keeps a dent, and what was split to keep it.
   void reshape(const render::TriangleMesh& mesh);
   /// Takes the dent of the next picture; nothing if it has no triangles.
   void bend(const render::BodyPatch& patch);

@@ -69,11 +69,12 @@ struct VertexMove {
   Eigen::Vector3d p_W{0, 0, 0};  ///< m
 };
 
-/// Says what became of an edge from vertex a to vertex b that was split in its middle, with the two
-/// triangles at it. Each keeps its number and one half; numbers of the other halves are new.
+/// Says what became of an edge that was split in its middle, with the two triangles at it. Each
+/// keeps its number and the half at the first of the edge's ends; numbers of the other halves are
+/// new.
 struct EdgeSplit {
   std::int32_t vertex = -1;                 ///< The new one, in the middle; -1: nothing was split.
-  std::array<std::int32_t, 2> ends{};       ///< The vertices a and b.
+  std::array<std::int32_t, 2> ends{};       ///< The vertex kept by `triangles`, and the lost one.
   std::array<std::int32_t, 2> triangles{};  ///< Those that keep their numbers.
   std::array<std::int32_t, 2> others{};     ///< The new ones beside each.
 };

@@ -72,12 +72,11 @@ EdgeSplit ContactMesh::split_edge(std::int32_t triangle, std::size_t k, bool kee
   const auto count = triangle_count();
   moved_ = true;  // new faces lean on other ones
   const EdgeSplit split{.vertex = vertex_count(),
-                        .ends = {a, b},
+                        .ends = {keep_begin ? a : b, keep_begin ? b : a},
                         .triangles = {triangle, behind},
                         .others = {count, count + 1}};
   const std::int32_t m = split.vertex;
-  const std::int32_t lost = keep_begin ? b : a;
-  const std::int32_t kept = keep_begin ? a : b;
+  const auto [kept, lost] = split.ends;
   vertices_.push_back((position(a) + position(b)) / 2);
   for (std::size_t side = 0; side < 2; ++side) {
     const std::int32_t old = split.triangles[side];

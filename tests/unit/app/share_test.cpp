@@ -15,6 +15,7 @@
 
 #include <gtest/gtest.h>
 
+#include "mesh/contact_mesh.h"
 #include "share/arm_lines.h"
 #include "share/knob_order.h"
 #include "share/shared_reader.h"
@@ -26,7 +27,7 @@ namespace {
 
 using driver::TickRecord;
 
-/// Makes a scene of two triangles, one of them shaped, and a knob.
+/// Makes a scene of a triangle, a shaped one with two sides whose edges may be split, and a knob.
 session::SharedScene small_scene() {
   session::SharedScene scene;
   scene.name = "small";
@@ -37,7 +38,7 @@ session::SharedScene small_scene() {
   scene.arm.device = "sim";
   scene.arm.geometry = driver::SerialArm{.height = 0.1, .length_b = 0.13, .length_c = 0.16};
   scene.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
-  scene.triangles = {{0, 1, 2}, {3, 4, 5}};
+  scene.triangles = {{0, 1, 2}, {3, 4, 5}, {4, 3, 5}};
   scene.objects.push_back({.name = "stiff", .dents = true, .vertex_count = 3, .triangle_count = 1});
   scene.objects.push_back({.name = "clay",
                            .colour = 1,
@@ -45,7 +46,8 @@ session::SharedScene small_scene() {
                            .first_vertex = 3,
                            .vertex_count = 3,
                            .first_triangle = 1,
-                           .triangle_count = 1});
+                           .triangle_count = 2,
+                           .splits_most = 2});
   scene.knobs.push_back({"stiff: stiffness", "N/m", 0, 1000, 800});
   return scene;
 }
@@ -53,6 +55,23 @@ session::SharedScene small_scene() {
 /// Gives a name that no other test has at the moment.
 std::string name_for(const char* test) {
   return std::string(test) + "-" + std::to_string(getpid());
+}
+
+/// Gives an object's mesh as it was described.
+render::TriangleMesh mesh_of(const session::SharedScene& scene, std::size_t number) {
+  const auto& object = scene.objects[number];
+  render::TriangleMesh mesh;
+  for (std::size_t i = 0; i < object.vertex_count; ++i) {
+    mesh.vertices.push_back(scene.vertices[object.first_vertex + i]);
+  }
+  for (std::size_t i = 0; i < object.triangle_count; ++i) {
+    auto& corners = mesh.triangles.emplace_back();
+    for (std::size_t k = 0; k < 3; ++k) {
+      corners[k] = static_cast<std::int32_t>(scene.triangles[object.first_triangle + i][k] -
+                                             object.first_vertex);
+    }
+  }
+  return mesh;
 }
 
 /// Makes a tick all of whose numbers follow from one, so that a torn one shows.
@@ -219,6 +238,7 @@ TEST(Share, StoresWithoutTheHeap) {
       pair.run->store_poses({});
       pair.run->store_patch(patch);
       pair.run->store_vertex(i, {0, 0, 0});
+      pair.run->store_split(i, {});
       pair.run->store_knob(0, pair.run->knob_wanted(0).value_or(0));
       static_cast<void>(pair.run->hand(hand));
     }
@@ -228,17 +248,65 @@ TEST(Share, StoresWithoutTheHeap) {
 
 TEST(Share, ShowsWhereShapedVerticesHaveGoneForGood) {
   const Pair pair = joined(small_scene());
-  std::vector<Eigen::Vector3d> vertices(pair.reader->scene().vertices.begin() + 3,
-                                        pair.reader->scene().vertices.end());
-  const auto first = vertices;
-  pair.reader->shaped_vertices(1, vertices);
-  EXPECT_EQ(vertices, first) << "nothing has moved";
+  const render::TriangleMesh first = mesh_of(pair.reader->scene(), 1);
+  render::TriangleMesh mesh = first;
+  pair.reader->shape(1, mesh);
+  EXPECT_EQ(mesh.vertices, first.vertices) << "nothing has moved";
   pair.run->store_vertex(1, {7, 8, 9});
-  pair.run->store_vertex(3, {7, 8, 9});  // there is none
+  pair.run->store_vertex(5, {7, 8, 9});  // there is none
   EXPECT_EQ(pair.reader->shape_moves(), 1U);
-  pair.reader->shaped_vertices(1, vertices);
-  EXPECT_EQ(vertices[0], first[0]);
-  EXPECT_EQ(vertices[1], Eigen::Vector3d(7, 8, 9));
+  pair.reader->shape(1, mesh);
+  EXPECT_EQ(mesh.vertices[0], first.vertices[0]);
+  EXPECT_EQ(mesh.vertices[1], Eigen::Vector3d(7, 8, 9));
+  EXPECT_EQ(mesh.triangles, first.triangles);
+}
+
+TEST(Share, ShowsTrianglesThatWereSplitForGood) {
+  const Pair pair = joined(small_scene());
+  render::TriangleMesh mesh = mesh_of(pair.reader->scene(), 1);
+  const render::TriangleMesh first = mesh;
+  using Triangles = decltype(mesh.triangles);
+  pair.run->store_vertex(3, {1, 2, 3});
+  pair.reader->shape(1, mesh);
+  EXPECT_EQ(mesh.vertices, first.vertices) << "a vertex is there once its edge is split";
+  pair.run->store_split(0, {.vertex = 3, .ends = {0, 1}, .triangles = {0, 1}, .others = {2, 3}});
+  EXPECT_EQ(pair.reader->shape_moves(), 2U);
+  pair.reader->shape(1, mesh);
+  const Triangles once{{0, 3, 2}, {3, 0, 2}, {3, 1, 2}, {1, 3, 2}};
+  EXPECT_EQ(mesh.triangles, once);
+  ASSERT_EQ(mesh.vertices.size(), 4U);
+  EXPECT_EQ(mesh.vertices[3], Eigen::Vector3d(1, 2, 3));
+  // From where it was, and from the first shape anew.
+  pair.run->store_vertex(4, {4, 5, 6});
+  pair.run->store_split(1, {.vertex = 4, .ends = {2, 3}, .triangles = {0, 2}, .others = {4, 5}});
+  pair.run->store_split(2, {});  // there is none
+  render::TriangleMesh anew = first;
+  pair.reader->shape(1, mesh);
+  pair.reader->shape(1, anew);
+  const Triangles twice{{0, 4, 2}, {3, 0, 2}, {4, 1, 2}, {1, 3, 2}, {0, 3, 4}, {3, 1, 4}};
+  EXPECT_EQ(mesh.triangles, twice);
+  EXPECT_EQ(anew.triangles, twice);
+  EXPECT_EQ(anew.vertices, mesh.vertices);
+  EXPECT_EQ(mesh.vertices[4], Eigen::Vector3d(4, 5, 6));
+  EXPECT_EQ(pair.reader->rejected(), 0U);
+}
+
+TEST(Share, SplitsNoEdgeThatIsNotThere) {
+  for (const render::EdgeSplit& wrong : {render::EdgeSplit{.ends = {0, 9}, .triangles = {0, 1}},
+                                         render::EdgeSplit{.ends = {-1, 0}, .triangles = {0, 1}},
+                                         render::EdgeSplit{.ends = {1, 1}, .triangles = {0, 1}},
+                                         render::EdgeSplit{.ends = {0, 1}, .triangles = {0, 0}},
+                                         render::EdgeSplit{.ends = {0, 1}, .triangles = {0, 2}},
+                                         render::EdgeSplit{.ends = {0, 1}, .triangles = {-1, 0}}}) {
+    const Pair pair = joined(small_scene());
+    render::TriangleMesh mesh = mesh_of(pair.reader->scene(), 1);
+    const render::TriangleMesh first = mesh;
+    pair.run->store_split(0, wrong);
+    pair.reader->shape(1, mesh);
+    EXPECT_EQ(pair.reader->rejected(), 1U);
+    EXPECT_EQ(mesh.vertices, first.vertices);
+    EXPECT_EQ(mesh.triangles, first.triangles);
+  }
 }
 
 TEST(Share, TurnsKnobsWithinTheirBoundsAlone) {
@@ -409,8 +477,13 @@ void read_all(session::SharedReader& reader) {
   render::BodyPatch patch{};
   static_cast<void>(reader.patch(patch));
   for (std::size_t i = 0; i < reader.scene().objects.size(); ++i) {
-    std::vector<Eigen::Vector3d> vertices(reader.scene().objects[i].vertex_count);
-    reader.shaped_vertices(i, vertices);
+    render::TriangleMesh mesh = mesh_of(reader.scene(), i);
+    reader.shape(i, mesh);
+    for (const auto& corners : mesh.triangles) {
+      for (const std::int32_t vertex : corners) {
+        EXPECT_TRUE(vertex >= 0 && static_cast<std::size_t>(vertex) < mesh.vertices.size());
+      }
+    }
   }
   for (std::size_t i = 0; i < reader.scene().knobs.size(); ++i) {
     const double value = reader.knob(i);
@@ -460,6 +533,7 @@ TEST(Share, ReadsAnyNonsenseInWhatChangesWithoutHarm) {
   for (std::uint64_t i = 0; i < 150; ++i) pair.run->store_tick(tick_number(i));
   pair.run->store_patch({});
   pair.run->store_poses({});
+  pair.run->store_split(0, {.vertex = 3, .ends = {0, 1}, .triangles = {0, 1}, .others = {2, 3}});
   Copy copy(pair.run->memory().bytes());
   const auto reader = session::SharedReader::over(copy.bytes).value();
   read_all(*reader);

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <limits>
 #include <memory>
+#include <numbers>
 #include <vector>
 
 #include "body/shape/body_shape.h"
@@ -141,6 +142,47 @@ TEST(ClayRefinement, MakesPrintsAsAskedForHoweverCoarseTheMesh) {
       EXPECT_LT(fine.most, 0.5 * medium.most);
     }
   }
+}
+
+// A furrow as deep as it is wide, drawn to and fro: its walls are steep, and splitting them again
+// and again would take all triangles there are.
+TEST(ClayRefinement, SplitsWallsNoFinerThanTheFloor) {
+  constexpr double kEdge = 0.7e-3, kTop = 0.02;
+  auto object = clay_of(support::plate(0.1, 0.04, 10),
+                        {.yield_force = 0.5, .radius = 4e-3, .edge = kEdge, .triangles = 100000});
+  Tip tip(*object);
+  for (int i = -200; i < 400; ++i) tip.at({-0.01, 0.002, kTop - std::max(i, -20) * 1e-5});
+  for (int i = 0; i < 4000; ++i) {
+    const double x = 0.01 * std::cos(std::numbers::pi * (1 + i / 1000.0));
+    tip.at({x, 0.002 + 0.1 * x, kTop - 4e-3});
+  }
+  const TriangleMesh mesh = now(*object);
+  double lowest = kTop, shortest = 1, longest = 0, steepest = 0;
+  for (const auto& corners : mesh.triangles) {
+    const auto p = [&](std::size_t k) -> const Vector3d& {
+      return mesh.vertices[static_cast<std::size_t>(corners[k % 3])];
+    };
+    const Vector3d middle = (p(0) + p(1) + p(2)) / 3;
+    if (middle.z() < 0 || middle.head<2>().cwiseAbs().maxCoeff() > 0.045) continue;
+    lowest = std::min(lowest, middle.z());
+    for (std::size_t k = 0; k < 3; ++k) {
+      // All that was pressed went straight down: seen from above the mesh is as it was at first.
+      const Vector3d side = p(k + 1) - p(k);
+      shortest = std::min(shortest, side.head<2>().norm());
+      steepest = std::max(steepest, std::abs(side.z()) / side.head<2>().norm());
+      if (std::abs(middle.x()) < 0.01 && std::abs(middle.y() - 0.002) < 0.004) {
+        longest = std::max(longest, side.head<2>().norm());
+      }
+    }
+  }
+  std::printf("%.1f mm deep, slope %.1f at most: %zu triangles, edges of %.2f to %.2f mm\n",
+              1e3 * (kTop - lowest), steepest, mesh.triangles.size(), 1e3 * shortest,
+              1e3 * longest);
+  EXPECT_LT(lowest, kTop - 3e-3);
+  EXPECT_GT(steepest, 2);
+  EXPECT_LE(longest, kEdge);
+  EXPECT_GT(shortest, 0.4 * kEdge);
+  EXPECT_LT(mesh.triangles.size(), 9000U);
 }
 
 struct Difference {

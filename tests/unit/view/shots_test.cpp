@@ -61,8 +61,9 @@ ShotPainter painter_of(const DrawnScene& scene, const ShotChoice& choice) {
 
 /// Tells at which second a scene is drawn: in touch, where the usual one is not.
 double second_of(const std::string& scene) {
-  static const std::map<std::string, double> others = {
-      {"clay", 3.0}, {"tin_can", 4.2}, {"held_block", 2.4}, {"box", 2.2}, {"charges", 3.0}};
+  static const std::map<std::string, double> others = {{"clay", 3.0},    {"clay_tablet", 5.0},
+                                                       {"tin_can", 4.2}, {"held_block", 2.4},
+                                                       {"box", 2.2},     {"charges", 3.0}};
   const auto found = others.find(scene);
   return found == others.end() ? 1.6 : found->second;
 }
@@ -114,6 +115,16 @@ TEST(Shots, OfEveryShippedSceneLookAsTheyDid) {
            armless.paint.marks.arm = false;
            EXPECT_FALSE(alike(difference(*stored, painter_of(drawn, armless).paint(moment, plots))))
                << name << " without its arm passes for the one with it";
+           if (std::any_of(moment.shapes.begin(), moment.shapes.end(),
+                           [](const auto& shape) { return shape != nullptr; })) {
+             DrawnMoment unshaped = moment;
+             unshaped.shapes.clear();
+             ShotChoice same_camera = small_choice();
+             same_camera.camera = painter.camera();
+             const Picture as_at_first = painter_of(drawn, same_camera).paint(unshaped, plots);
+             EXPECT_GT(difference(picture, as_at_first).mean, 0)
+                 << name << " looks as it was before it was shaped";
+           }
            const bool solid =
                std::any_of(drawn.objects.begin(), drawn.objects.end(),
                            [](const auto& o) { return !o.mesh.triangles.empty() && !o.endless; });

@@ -2,6 +2,8 @@
 
 #include <numbers>
 
+#include "body/shape/body_shape.h"
+
 namespace thimble::session {
 namespace {
 
@@ -27,6 +29,11 @@ SharedKind kind_of(const scene::SceneObject& object) {
   if (object.build_field) return SharedKind::kField;
   if (object.shape) return SharedKind::kShape;
   return object.paged ? SharedKind::kPaged : SharedKind::kMesh;
+}
+
+// Returns how many edges of an object may be split while it is felt.
+std::size_t splits_most(const scene::SceneObject& object, const render::ObjectTouch& touch) {
+  return object.body.shape.named() && touch.shape()->refines() ? touch.shape()->splits_left() : 0;
 }
 
 }  // namespace
@@ -59,6 +66,7 @@ SharedScene describe_scene(const scene::Scene& scene, const scene::SceneObjects&
          .vertex_count = end.vertex - begin.vertex,
          .first_triangle = begin.triangle,
          .triangle_count = end.triangle - begin.triangle,
+         .splits_most = splits_most(object, objects.touch().object(i)),
          .crease_angle = object.contact.crease_angle.value_or(kCreaseDrawn)});
   }
   return described;

@@ -20,7 +20,9 @@ class RunSharing final : public TickObserver {
   /// An object whose vertices move for good.
   struct Shaped {
     const render::BodyShape* shape;
-    std::size_t first = 0;  ///< Where its vertices begin in what is shared.
+    std::size_t first = 0;        ///< Where its vertices begin in what is shared.
+    std::size_t first_split = 0;  ///< Where its splits do.
+    std::int32_t vertices = 0;    ///< That it has; those of all splits stored included.
   };
   /// What moves in the scene; all of it must outlive the sharing, and is brought up to a tick by
   /// observers that come before.

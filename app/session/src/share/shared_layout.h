@@ -17,13 +17,13 @@ namespace thimble::session {
 //
 //   SharedHead   written once, before `ready` is set; its hash covers the tables marked (*)
 //   SharedLive   changes while the run goes on: lock-free atomics and snapshots only
-//   tables       where the head says: objects*, knobs*, vertices*, triangles*, shaped, ring
+//   tables       where the head says: objects*, knobs*, vertices*, triangles*, shaped, splits, ring
 //
 // Offsets count bytes from the head and are whole multiples of 64; nothing in it is a pointer.
 // Frames: W world.
 
 /// Changes with every change of this file. A reader of another version refuses.
-inline constexpr std::uint32_t kSharedVersion = 4;
+inline constexpr std::uint32_t kSharedVersion = 5;
 /// Stands in `SharedHead::ready` of a segment that is complete: "thimble1" in ASCII.
 inline constexpr std::uint64_t kSharedReady = 0x31656c626d696874;
 
@@ -92,7 +92,7 @@ struct SharedHead {
   SharedText<64> scene{};
   SharedText<1024> scene_file{};
   SharedArm arm;
-  SharedTable objects, knobs, vertices, triangles, shaped, ring;
+  SharedTable objects, knobs, vertices, triangles, shaped, splits, ring;
 };
 static_assert(std::is_standard_layout_v<SharedHead>);
 
@@ -110,8 +110,9 @@ struct SharedObject {
   std::uint32_t unused = 0;
   std::uint64_t first_vertex = 0, vertex_count = 0;
   std::uint64_t first_triangle = 0, triangle_count = 0;
-  std::uint64_t first_shaped = 0;  ///< In the table `shaped`; as many as vertices.
-  double crease_angle = 0;         ///< Edges sharper than this stay sharp, rad.
+  std::uint64_t first_shaped = 0;  ///< In the table `shaped`; as many as vertices and splits.
+  std::uint64_t first_split = 0, splits_most = 0;  ///< In the table `splits`.
+  double crease_angle = 0;                         ///< Edges sharper than this stay sharp, rad.
 };
 
 /// One setting of the scene that can be changed while it is felt.
@@ -126,6 +127,15 @@ using SharedTriangle = std::array<std::uint32_t, 3>;  ///< Of the whole table of
 /// Where a vertex of a shaped object is now (W, m); not stored before it moves for the first
 /// time.
 using SharedShaped = driver::Snapshot<std::array<double, 3>>;
+
+/// An edge of a shaped object that was split in its middle for good, as EdgeSplit tells it. The
+/// n-th split of an object makes its n-th new vertex and two new triangles, at the end of those
+/// there were. Written once, `ready` last.
+struct SharedSplit {
+  std::atomic<std::uint32_t> ready;          ///< 1: all of it is there, its vertex's place too.
+  std::uint32_t kept = 0, lost = 0;          ///< The ends of the edge; vertices of the object.
+  std::array<std::uint32_t, 2> triangles{};  ///< Those at it, of the object.
+};
 
 /// One place of the ring of ticks.
 struct SharedTick {
@@ -166,7 +176,7 @@ struct SharedLive {
   std::atomic<std::uint64_t> ticks;                   ///< Ticks stored in the ring so far.
   std::atomic<std::uint64_t> missed;                  ///< Periods of the loop that were skipped.
   std::atomic<std::uint64_t> record_dropped;          ///< Ticks that a recording lacks.
-  std::atomic<std::uint64_t> shape_moves;             ///< Vertices moved for good so far.
+  std::atomic<std::uint64_t> shape_moves;             ///< Vertices moved, edges split for good.
   driver::Snapshot<SharedText<1024>> recording_path;  ///< Of the current or last recording.
   driver::Snapshot<ScenePoses> poses;
   driver::Snapshot<render::BodyPatch> patch;

@@ -8,6 +8,8 @@
 #include <cstring>
 #include <utility>
 
+#include "share/split_edge.h"
+
 namespace thimble::session {
 namespace {
 
@@ -69,6 +71,7 @@ SharedReader::SharedReader(std::unique_ptr<SharedMemory> memory, std::span<std::
       scene_(std::move(scene)),
       live_(reinterpret_cast<SharedLive*>(bytes.data() + kSharedLiveOffset)),
       shaped_(table_in<const SharedShaped>(bytes, scene_.shaped)),
+      splits_(table_in<const SharedSplit>(bytes, scene_.splits)),
       ring_(table_in<const SharedRingSlot>(bytes, scene_.ring)) {
   sign_in();
 }
@@ -148,11 +151,19 @@ bool SharedReader::patch(render::BodyPatch& patch) const noexcept {
   return false;
 }
 
-void SharedReader::shaped_vertices(std::size_t object,
-                                   std::span<Eigen::Vector3d> vertices) const noexcept {
+void SharedReader::shape(std::size_t object, render::TriangleMesh& mesh) const {
   const SharedScene::Object& o = scene_.objects[object];
-  if (!o.shaped) return;
-  const std::size_t count = std::min(vertices.size(), o.vertex_count);
+  if (!o.shaped || mesh.vertices.size() < o.vertex_count) return;
+  for (std::size_t n = mesh.vertices.size() - o.vertex_count; n < o.splits_most; ++n) {
+    const SharedSplit& split = splits_[o.first_split + n];
+    if (split.ready.load(std::memory_order_acquire) != 1) break;
+    if (!split_edge(mesh, split.kept, split.lost, split.triangles)) {
+      ++rejected_;
+      break;
+    }
+  }
+  auto& vertices = mesh.vertices;
+  const std::size_t count = std::min(vertices.size(), o.vertex_count + o.splits_most);
   for (std::size_t i = 0; i < count; ++i) {
     std::array<double, 3> p{};
     if (!shaped_[o.first_shaped + i].load(p, 10)) continue;

@@ -13,6 +13,7 @@
 #include "share/shared_memory.h"
 #include "share/shared_scene.h"
 #include "thimble/driver/result.h"
+#include "thimble/render/mesh/triangle_mesh.h"
 
 namespace thimble::session {
 
@@ -56,10 +57,11 @@ class SharedReader {
   bool patch(render::BodyPatch& patch) const noexcept;
   /// Returns how many patches there were so far: a viewer need only draw anew if it has grown.
   std::uint64_t patch_count() const noexcept { return live_->patch.count(); }
-  /// Puts the vertices of a shaped object, as many as it has, where they are now (W, m).
-  /// Vertices that never moved are left alone, so begin with those of `scene`.
-  void shaped_vertices(std::size_t object, std::span<Eigen::Vector3d> vertices) const noexcept;
-  /// Counts vertices moved for good so far: a viewer need only look if it has grown.
+  /// Brings the mesh of a shaped object (W, m; its own vertices from 0 on) to what it is now: as it
+  /// was in `scene`, or as this left it before.
+  void shape(std::size_t object, render::TriangleMesh& mesh) const;
+  /// Counts vertices moved and edges split for good so far: a viewer need only look if it has
+  /// grown.
   std::uint64_t shape_moves() const noexcept { return live_->shape_moves.load(); }
 
   /// What a run counts.
@@ -110,6 +112,7 @@ class SharedReader {
   SharedScene scene_;
   SharedLive* live_;
   std::span<const SharedShaped> shaped_;
+  std::span<const SharedSplit> splits_;
   std::span<const SharedRingSlot> ring_;
   std::atomic<std::uint64_t>* place_ = nullptr;  // among the viewers; null if all were taken
   mutable std::uint64_t rejected_ = 0;

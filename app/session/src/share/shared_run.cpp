@@ -11,6 +11,7 @@
 #include <span>
 #include <string_view>
 
+#include "mesh/contact_mesh.h"
 #include "share/shared_geometry.h"
 
 namespace thimble::session {
@@ -34,15 +35,18 @@ std::uint64_t lay_out(const SharedScene& scene, std::size_t ring_ticks, SharedHe
     table = {.offset = end, .count = count};
     end = (end + count * size + 63) / 64 * 64;
   };
-  std::size_t shaped = 0;
+  std::size_t shaped = 0, splits = 0;
   for (const auto& object : scene.objects) {
-    if (object.shaped) shaped += object.vertex_count;
+    if (!object.shaped) continue;
+    shaped += object.vertex_count + object.splits_most;
+    splits += object.splits_most;
   }
   lay(head.objects, scene.objects.size(), sizeof(SharedObject));
   lay(head.knobs, scene.knobs.size(), sizeof(SharedKnob));
   lay(head.vertices, scene.vertices.size(), sizeof(SharedVertex));
   lay(head.triangles, scene.triangles.size(), sizeof(SharedTriangle));
   lay(head.shaped, shaped, sizeof(SharedShaped));
+  lay(head.splits, splits, sizeof(SharedSplit));
   lay(head.ring, ring_ticks, sizeof(SharedRingSlot));
   return end;
 }
@@ -110,7 +114,7 @@ void SharedRun::write(const SharedScene& scene, std::size_t ring_ticks) {
   put_arm(scene.arm, head_->arm);
 
   const auto objects = table_in<SharedObject>(memory, head_->objects);
-  std::uint64_t shaped = 0;
+  std::uint64_t shaped = 0, splits = 0;
   for (std::size_t i = 0; i < objects.size(); ++i) {
     const SharedScene::Object& object = scene.objects[i];
     SharedObject& to = objects[i];
@@ -125,7 +129,12 @@ void SharedRun::write(const SharedScene& scene, std::size_t ring_ticks) {
     to.first_triangle = object.first_triangle;
     to.triangle_count = object.triangle_count;
     to.first_shaped = shaped;
-    if (object.shaped) shaped += object.vertex_count;
+    to.first_split = splits;
+    if (object.shaped) {
+      to.splits_most = object.splits_most;
+      shaped += object.vertex_count + object.splits_most;
+      splits += object.splits_most;
+    }
     to.crease_angle = object.crease_angle;
   }
   const auto knobs = table_in<SharedKnob>(memory, head_->knobs);
@@ -146,6 +155,8 @@ void SharedRun::write(const SharedScene& scene, std::size_t ring_ticks) {
   std::copy(scene.triangles.begin(), scene.triangles.end(), triangles.begin());
   shaped_ = table_in<SharedShaped>(memory, head_->shaped).data();
   shaped_count_ = head_->shaped.count;
+  splits_ = table_in<SharedSplit>(memory, head_->splits).data();
+  splits_count_ = head_->splits.count;
   ring_ = table_in<SharedRingSlot>(memory, head_->ring).data();
   ring_count_ = head_->ring.count;
 
@@ -174,6 +185,19 @@ void SharedRun::store_tick(const driver::TickRecord& record) noexcept {
 void SharedRun::store_vertex(std::size_t shaped, const Eigen::Vector3d& p_W) noexcept {
   if (shaped >= shaped_count_) return;
   shaped_[shaped].store(plain(p_W));
+  live_->shape_moves.store(live_->shape_moves.load(std::memory_order_relaxed) + 1,
+                           std::memory_order_release);
+}
+
+void SharedRun::store_split(std::size_t number, const render::EdgeSplit& split) noexcept {
+  if (number >= splits_count_) return;
+  SharedSplit& shared = splits_[number];
+  const auto [kept, lost] = split.ends;
+  shared.kept = static_cast<std::uint32_t>(kept);
+  shared.lost = static_cast<std::uint32_t>(lost);
+  shared.triangles = {static_cast<std::uint32_t>(split.triangles[0]),
+                      static_cast<std::uint32_t>(split.triangles[1])};
+  shared.ready.store(1, std::memory_order_release);
   live_->shape_moves.store(live_->shape_moves.load(std::memory_order_relaxed) + 1,
                            std::memory_order_release);
 }

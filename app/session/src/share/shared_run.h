@@ -13,6 +13,10 @@
 #include "share/shared_scene.h"
 #include "thimble/driver/result.h"
 
+namespace thimble::render {
+struct EdgeSplit;
+}
+
 namespace thimble::session {
 
 /// The run's side of the memory that it shares with its viewers: the servo stores what happens
@@ -43,6 +47,9 @@ class SharedRun {
   /// Stores where a vertex of a shaped object has gone for good (W, m). `shaped` counts through
   /// the table; one outside is ignored.
   void store_vertex(std::size_t shaped, const Eigen::Vector3d& p_W) noexcept;
+  /// Stores that an edge of a shaped object was split; the place of its new vertex is stored
+  /// before. `number` counts through the table; one outside is ignored.
+  void store_split(std::size_t number, const render::EdgeSplit& split) noexcept;
   void store_knob(std::size_t knob, double now) noexcept {
     live_->knobs[knob].now.store(now, std::memory_order_relaxed);
   }
@@ -95,6 +102,8 @@ class SharedRun {
   SharedLive* live_ = nullptr;
   SharedShaped* shaped_ = nullptr;
   std::size_t shaped_count_ = 0;
+  SharedSplit* splits_ = nullptr;
+  std::size_t splits_count_ = 0;
   SharedRingSlot* ring_ = nullptr;
   std::size_t ring_count_ = 0;
   std::vector<SharedScene::Knob> knobs_;

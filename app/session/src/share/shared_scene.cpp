@@ -90,7 +90,10 @@ bool take_object(const SharedObject& shared, const SharedHead& head,
       !within(shared.first_triangle, shared.triangle_count, head.triangles.count)) {
     return false;
   }
-  if (shared.shaped == 1 && !within(shared.first_shaped, shared.vertex_count, head.shaped.count)) {
+  if (!within(shared.first_split, shared.splits_most, head.splits.count)) return false;
+  const std::uint64_t room = shared.vertex_count + shared.splits_most;
+  if (shared.shaped == 1 ? !within(shared.first_shaped, room, head.shaped.count)
+                         : shared.splits_most > 0) {
     return false;
   }
   for (std::uint64_t t = 0; t < shared.triangle_count; ++t) {
@@ -111,6 +114,8 @@ bool take_object(const SharedObject& shared, const SharedHead& head,
             .first_triangle = shared.first_triangle,
             .triangle_count = shared.triangle_count,
             .first_shaped = shared.first_shaped,
+            .first_split = shared.first_split,
+            .splits_most = shared.splits_most,
             .crease_angle = shared.crease_angle};
   return true;
 }
@@ -170,6 +175,7 @@ driver::Result<SharedScene> read_shared_scene(std::span<const std::byte> memory)
       !lies_in(head.vertices, sizeof(SharedVertex), total) ||
       !lies_in(head.triangles, sizeof(SharedTriangle), total) ||
       !lies_in(head.shaped, sizeof(SharedShaped), total) ||
+      !lies_in(head.splits, sizeof(SharedSplit), total) ||
       !lies_in(head.ring, sizeof(SharedRingSlot), total)) {
     return broken("a table lies outside");
   }
@@ -219,6 +225,7 @@ driver::Result<SharedScene> read_shared_scene(std::span<const std::byte> memory)
   scene.wall_clock = head.wall_clock == 1;
   scene.hand_by_mouse = head.hand_by_mouse == 1;
   scene.shaped = head.shaped;
+  scene.splits = head.splits;
   scene.ring = head.ring;
   return scene;
 }

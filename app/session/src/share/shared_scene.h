@@ -25,11 +25,12 @@ struct SharedScene {
     std::uint32_t colour = 0;
     bool moves = false;   ///< SharedReader::poses tells where it is.
     bool dents = false;   ///< SharedReader::patch tells how it is bent.
-    bool shaped = false;  ///< SharedReader::shaped_vertices tells where its vertices are.
+    bool shaped = false;  ///< SharedReader::shape tells what it is now.
     std::size_t first_vertex = 0, vertex_count = 0;
     std::size_t first_triangle = 0, triangle_count = 0;
     std::size_t first_shaped = 0;
-    double crease_angle = 0;  ///< Edges sharper than this stay sharp, rad.
+    std::size_t first_split = 0, splits_most = 0;  ///< Of its edges; 0: its triangles stay.
+    double crease_angle = 0;                       ///< Edges sharper than this stay sharp, rad.
   };
   /// One setting of the scene that can be changed while it is felt.
   struct Knob {
@@ -61,8 +62,8 @@ struct SharedScene {
   std::vector<Knob> knobs;
   std::vector<Eigen::Vector3d> vertices;  ///< W, m, as they were before the first tick.
   std::vector<std::array<std::uint32_t, 3>>
-      triangles;             ///< Of all `vertices`; outside is counter-clockwise.
-  SharedTable shaped, ring;  ///< Where those tables lie; whole within the memory.
+      triangles;                     ///< Of all `vertices`; outside is counter-clockwise.
+  SharedTable shaped, splits, ring;  ///< Where those tables lie; whole within the memory.
 };
 
 /// Reads what does not change out of a run's memory, each byte once, and checks all of it before it

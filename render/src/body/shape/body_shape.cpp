@@ -89,6 +89,7 @@ BodyShape::BodyShape(const ContactMesh& mesh, const ShapeChoice& choice, double 
     clay_.emplace(*choice.clay, stiffness, count, room);
     if (fine) {
       refinement_.emplace(choice.clay->edge, choice.clay->radius, mesh.triangles_max());
+      splits_.reserve(PrintRefinement::kSplitsMax);
     }
   }
   if (choice.snap) snap_.emplace(*choice.snap, stiffness, mesh, first_places_);
@@ -116,6 +117,7 @@ ShapeContact BodyShape::contact_of(const ContactMesh& mesh,
 std::span<const VertexMove> BodyShape::follow(const ContactMesh& mesh,
                                               const driver::TouchInfo& touch) noexcept {
   moves_.clear();
+  splits_.clear();
   // Written so that NaN means no press.
   const bool pressed = touch.in_contact && touch.feature >= 0 &&
                        touch.feature < mesh.triangle_count() && touch.depth >= 0;
@@ -179,6 +181,7 @@ void BodyShape::end_tick(const ContactMesh& mesh) noexcept {
 void BodyShape::take(const ContactMesh& mesh, const EdgeSplit& split) noexcept {
   refinement_->take(split);
   if (split.vertex < 0) return;
+  splits_.push_back(split);
   const auto at = [](std::int32_t vertex) { return static_cast<std::size_t>(vertex); };
   const auto& [a, b] = split.ends;
   first_places_.push_back((first_places_[at(a)] + first_places_[at(b)]) / 2);

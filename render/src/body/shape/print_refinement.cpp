@@ -27,41 +27,51 @@ constexpr double kShort = 0.125;
 constexpr double kGone = 0.25;
 constexpr int kAgain = 32;
 
+// The triangles of the mesh on its first shape: a print is as smooth as it asks for over that, and
+// walls of a pit, however steep, need no more triangles than its floor.
+struct FirstShape {
+  const ContactMesh& mesh;
+  std::span<const Vector3d> places;
+
+  const Vector3d& at(std::int32_t vertex) const { return places[static_cast<std::size_t>(vertex)]; }
+  const Vector3d& at(std::int32_t triangle, std::size_t k) const {
+    return at(mesh.corners(triangle)[k]);
+  }
+};
+
 // An edge's length and numbers, so that of two as long one is always the longer.
 using Length = std::tuple<double, std::int32_t, std::int32_t>;
 
-Length length_of(const ContactMesh& mesh, std::int32_t triangle, std::size_t k) {
-  const std::int32_t a = mesh.corners(triangle)[k];
-  const std::int32_t b = mesh.corners(triangle)[(k + 1) % 3];
+Length length_of(const FirstShape& shape, std::int32_t triangle, std::size_t k) {
+  const std::int32_t a = shape.mesh.corners(triangle)[k];
+  const std::int32_t b = shape.mesh.corners(triangle)[(k + 1) % 3];
   // From the same end whoever asks, so that both triangles at it find the same length.
   const std::int32_t low = std::min(a, b);
   const std::int32_t high = std::max(a, b);
-  return {(mesh.position(high) - mesh.position(low)).squaredNorm(), low, high};
+  return {(shape.at(high) - shape.at(low)).squaredNorm(), low, high};
 }
 
-std::size_t longest_edge(const ContactMesh& mesh, std::int32_t triangle) {
+std::size_t longest_edge(const FirstShape& shape, std::int32_t triangle) {
   std::size_t longest = 0;
   for (std::size_t k = 1; k < 3; ++k) {
-    if (length_of(mesh, triangle, k) > length_of(mesh, triangle, longest)) longest = k;
+    if (length_of(shape, triangle, k) > length_of(shape, triangle, longest)) longest = k;
   }
   return longest;
 }
 
-bool narrow(const ContactMesh& mesh, std::int32_t triangle, double squared) {
-  const Vector3d& a = mesh.position(triangle, 0);
-  const double area = (mesh.position(triangle, 1) - a).cross(mesh.position(triangle, 2) - a).norm();
+bool narrow(const FirstShape& shape, std::int32_t triangle, double squared) {
+  const Vector3d& a = shape.at(triangle, 0);
+  const double area = (shape.at(triangle, 1) - a).cross(shape.at(triangle, 2) - a).norm();
   // Written so that NaN is narrow.
   return !(area > kNarrow * squared);
 }
 
 // Tells whether splitting an edge would make one shorter than `least` m, to the corners opposite.
-bool makes_short(const ContactMesh& mesh, std::int32_t triangle, std::size_t k, double least) {
-  const Vector3d& from = mesh.position(triangle, k);
-  const Vector3d& to = mesh.position(triangle, (k + 1) % 3);
-  const Vector3d middle = (from + to) / 2;
-  for (const std::int32_t t : {triangle, mesh.cell(triangle).neighbours[k]}) {
-    for (const std::int32_t corner : mesh.corners(t)) {
-      if ((mesh.position(corner) - middle).squaredNorm() < least * least) return true;
+bool makes_short(const FirstShape& shape, std::int32_t triangle, std::size_t k, double least) {
+  const Vector3d middle = (shape.at(triangle, k) + shape.at(triangle, (k + 1) % 3)) / 2;
+  for (const std::int32_t t : {triangle, shape.mesh.cell(triangle).neighbours[k]}) {
+    for (const std::int32_t corner : shape.mesh.corners(t)) {
+      if ((shape.at(corner) - middle).squaredNorm() < least * least) return true;
     }
   }
   return false;
@@ -102,31 +112,31 @@ void PrintRefinement::press(std::int32_t triangle, const Vector3d& p_first) noex
 
 std::optional<EdgeOfTriangle> PrintRefinement::next(
     const ContactMesh& mesh, std::span<const Vector3d> first_places) noexcept {
+  const FirstShape shape{mesh, first_places};
   while (next_ < queue_.size() && looks_ < kLooksMax && splits_ < kSplitsMax) {
     ++looks_;
     std::int32_t triangle = queue_[next_];
-    const auto first = [&](std::size_t k) -> const Vector3d& {
-      return first_places[static_cast<std::size_t>(mesh.corners(triangle)[k])];
-    };
-    const Vector3d nearest = closest_point(p_first_, first(0), first(1), first(2));
+    const Vector3d nearest = closest_point(p_first_, shape.at(triangle, 0), shape.at(triangle, 1),
+                                           shape.at(triangle, 2));
     if (!((nearest - p_first_).squaredNorm() < reach_ * reach_)) {
       ++next_;
       continue;
     }
-    std::size_t k = longest_edge(mesh, triangle);
-    double squared = std::get<0>(length_of(mesh, triangle, k));
-    if (squared > edge_ * edge_ && !narrow(mesh, triangle, squared)) {
+    std::size_t k = longest_edge(shape, triangle);
+    double squared = std::get<0>(length_of(shape, triangle, k));
+    if (squared > edge_ * edge_ && !narrow(shape, triangle, squared)) {
       for (int path = 0; path < kPathMax; ++path) {
         const std::int32_t behind = mesh.cell(triangle).neighbours[k];
-        const std::size_t longest = longest_edge(mesh, behind);
-        const Length length = length_of(mesh, behind, longest);
-        if (!(length > length_of(mesh, triangle, k)) || narrow(mesh, behind, std::get<0>(length))) {
+        const std::size_t longest = longest_edge(shape, behind);
+        const Length length = length_of(shape, behind, longest);
+        if (!(length > length_of(shape, triangle, k)) ||
+            narrow(shape, behind, std::get<0>(length))) {
           break;
         }
         triangle = behind;
         k = longest;
       }
-      if (!makes_short(mesh, triangle, k, kShort * edge_)) {
+      if (!makes_short(shape, triangle, k, kShort * edge_)) {
         ++splits_;
         return EdgeOfTriangle{triangle, k};
       }

@@ -27,8 +27,8 @@ struct EdgeOfTriangle {
 class PrintRefinement {
  public:
   /// Splits triangles with an edge longer than `edge` m, within `radius` m of a press, of a mesh
-  /// that grows to `triangles_max`; makes no edge shorter than an eighth of `edge`. Real-time:
-  /// never from the servo thread.
+  /// that grows to `triangles_max`; makes no edge shorter than an eighth of `edge`. All lengths are
+  /// those on the first shape. Real-time: never from the servo thread.
   PrintRefinement(double edge, double radius, std::size_t triangles_max);
 
   // All of the following are Real-time: safe.
