@@ -163,13 +163,14 @@ TEST_F(FaceHd, RefusesFramesThatDoNotFit) {
 }
 
 TEST_F(FaceHd, GivesErrorsNewestFirstAndByValue) {
-  ExecRig rig;
-  hdInitDevice(nullptr);
-  hdEndFrame(0);
+  ExecRig rig({.arms = {{.arm_file = "vintage_phantom"}, {.arm_file = "falcon"}}});
+  ASSERT_EQ(hdInitDevice("falcon"), 1u);
+  hdEndFrame(1);
   hdEnable(0x1234);
   const HDErrorInfo newest = hdGetError();
   EXPECT_EQ(newest.errorCode, HD_INVALID_ENUM);
-  EXPECT_EQ(newest.hHD, 0u);
+  EXPECT_EQ(newest.hHD, 1u);
+  EXPECT_EQ(newest.internalErrorCode, 0);
   EXPECT_TRUE(HD_DEVICE_ERROR(newest));
   EXPECT_EQ(hdGetError().errorCode, HD_ILLEGAL_END);
   EXPECT_EQ(hdGetError().errorCode, HD_SUCCESS);

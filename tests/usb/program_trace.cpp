@@ -84,10 +84,11 @@ int trace_of_program(const VirtualArm& arm, const std::string& log, const std::s
   const bool good_axes = axes.size() == 3 && axes.find_first_not_of("xyz") == std::string::npos;
   const std::vector<Numbers> asked = good_axes ? read_log(log, axes) : std::vector<Numbers>{};
   const std::vector<RecordedTick> ticks = read_recording(recording);
-  std::FILE* out = std::fopen(trace.c_str(), "we");
-  if (asked.empty() || ticks.empty() || out == nullptr) {
-    return verdict(false, arm.name + " program", "no log, no recording or no trace");
+  if (asked.empty() || ticks.empty()) {
+    return verdict(false, arm.name + " program", "no log or no recording");
   }
+  std::FILE* out = std::fopen(trace.c_str(), "we");
+  if (out == nullptr) return verdict(false, arm.name + " program", "no trace can be written");
   std::fprintf(out, "0\n");
   std::size_t at = 0, felt = 0, unknown = 0, held_back = 0, opening = 0;
   double most = 0;

@@ -1,10 +1,17 @@
-/* Switches force on with a ramp and holds 0.3 N upwards; the force may grow no faster than asked.
- */
+/* Switches force on with a ramp and holds 0.3 N upwards; the force may grow no faster than asked,
+ * which is slower than an arm opens by itself. */
 #include <HD/hd.h>
 #include <stdio.h>
+#include <time.h>
 #include <unistd.h>
 
-static double sent[3], steepest;
+static double sent[3], steepest, began, near_all; /* s when 0.25 N were there */
+
+static double now(void) {
+  struct timespec t;
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
 
 static HDCallbackCode HDCALLBACK push(void* data) {
   static double before;
@@ -16,6 +23,7 @@ static HDCallbackCode HDCALLBACK push(void* data) {
   hdEndFrame(hdGetCurrentDevice());
   if (sent[1] - before > steepest) steepest = sent[1] - before;
   before = sent[1];
+  if (near_all == 0 && sent[1] >= 0.25) near_all = now() - began;
   return HD_CALLBACK_CONTINUE;
 }
 
@@ -25,13 +33,15 @@ int main(void) {
   if (device == HD_INVALID_HANDLE) return 2;
   hdSetDoublev(HD_FORCE_RAMPING_RATE, &rate);
   hdEnable(HD_FORCE_RAMPING);
+  began = now();
   hdEnable(HD_FORCE_OUTPUT);
   hdScheduleAsynchronous(push, 0, HD_DEFAULT_SCHEDULER_PRIORITY);
   hdStartScheduler();
   usleep(1500000);
   hdStopScheduler();
   hdDisableDevice(device);
-  printf("%.3f N at the end, %.4f N in one tick at most\n", sent[1], steepest);
-  /* Ten ticks of the ramp: a busy machine skips some. */
-  return sent[1] > 0.295 && sent[1] < 0.305 && steepest < 10 * rate * 1e-3 ? 0 : 3;
+  printf("%.3f N at the end, %.4f N in one tick at most, 0.25 N after %.3f s\n", sent[1], steepest,
+         near_all);
+  /* A busy machine skips ticks; it can only make this later. */
+  return sent[1] > 0.295 && sent[1] < 0.305 && near_all > 0.9 * 0.25 / rate ? 0 : 3;
 }

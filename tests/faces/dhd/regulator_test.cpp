@@ -172,6 +172,8 @@ TEST_F(DhdFace, RegulationEndsWithTheArmAndStaysOffWhereForceWasSwitchedOff) {
   begin_and_open({.held = true});
   ASSERT_EQ(drdStart(), 0);
   ASSERT_EQ(drdClose(), 0);
+  ASSERT_EQ(dhdOpenID(0), 0);
+  EXPECT_FALSE(drdIsRunning()) << "an arm that is opened again at once is not regulated";
   fake::pass(0, 0.001);
   EXPECT_TRUE(fake::f_sent_W(0).isZero(0));
   begin_and_open({.held = true});
