@@ -71,6 +71,9 @@ class Examination {
     }
     for (const FoundArm& arm : *arms) look_at(arm);
     for (Finding& found : examine_services(*arms)) findings_.push_back(std::move(found));
+    for (Finding& found : examine_touch(*arms, patient_.root)) {
+      findings_.push_back(std::move(found));
+    }
   }
 
   void look_at(const FoundArm& arm) {

@@ -1,6 +1,7 @@
 #include "bringup/doctor_links.h"
 
 #include <algorithm>
+#include <system_error>
 
 #include "links/dhd/dhd_library.h"
 #include "links/haply/haply_link.h"
@@ -16,6 +17,28 @@ using driver::FoundArm;
 /// Returns whether it is the USB side of an arm that its service drives.
 bool is_haply_on_usb(const FoundArm& arm) {
   return arm.certainty == Certainty::kUnsupported && arm.arm == "Haply Inverse3";
+}
+
+/// USB's number of the maker of the Touch [S].
+constexpr std::uint16_t kTouchMaker = 0x2988;
+
+/// Returns whether a program of this name runs.
+bool runs(const std::string& program, const std::filesystem::path& root) {
+  std::error_code ignored;
+  const std::filesystem::directory_iterator processes(root / "proc", ignored);
+  return std::any_of(begin(processes), end(processes), [&](const auto& process) {
+    return driver::read_line(process.path() / "comm") == program;
+  });
+}
+
+/// Returns whether a shared library lies where Debian or a vendor's installer puts it.
+bool is_installed(const char* library, const std::filesystem::path& root) {
+  std::error_code ignored;
+  for (const char* folder : {"lib", "lib64", "lib/x86_64-linux-gnu", "usr/lib", "usr/lib64",
+                             "usr/lib/x86_64-linux-gnu", "usr/local/lib"}) {
+    if (std::filesystem::exists(root / folder / library, ignored)) return true;
+  }
+  return false;
 }
 
 }  // namespace
@@ -66,6 +89,26 @@ std::vector<Finding> examine_services(const std::vector<FoundArm>& arms) {
   return {{Health::kProblem, "An Inverse3 is plugged in, but no service tells of it. " + why,
            "Install and start Haply's Inverse Service; if it listens elsewhere, set "
            "THIMBLE_HAPLY_PORT to its WebSocket port"}};
+}
+
+std::vector<Finding> examine_touch(const std::vector<FoundArm>& arms,
+                                   const std::filesystem::path& root) {
+  std::vector<Finding> findings;
+  const bool plugged_in = std::any_of(
+      arms.begin(), arms.end(), [](const FoundArm& arm) { return arm.vendor_id == kTouchMaker; });
+  if (!plugged_in) return findings;
+  if (runs("ModemManager", root)) {
+    findings.push_back({Health::kAdvice,
+                        "ModemManager runs, and may talk to the Touch's serial port first.",
+                        "sudo systemctl stop ModemManager while the Touch is used"});
+  }
+  if (!is_installed("libncurses.so.5", root)) {
+    findings.push_back({Health::kAdvice,
+                        "libncurses.so.5 is not installed, which the Touch's vendor's library "
+                        "needs.",
+                        "Install libncurses5 (Debian 12: sudo apt install libncurses5)"});
+  }
+  return findings;
 }
 
 }  // namespace thimble::app

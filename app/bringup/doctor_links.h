@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -19,5 +20,11 @@ Finding examine_linked(const driver::FoundArm& arm);
 
 /// Returns what keeps a service away whose arm is on USB: `arms` are all that were found.
 std::vector<Finding> examine_services(const std::vector<driver::FoundArm>& arms);
+
+/// Returns what keeps the vendor's library from a Touch among `arms`, as far as the files and
+/// programs below `root` tell: a ModemManager that runs, a libncurses5 that is missing. Empty
+/// without a Touch.
+std::vector<Finding> examine_touch(const std::vector<driver::FoundArm>& arms,
+                                   const std::filesystem::path& root);
 
 }  // namespace thimble::app

@@ -142,19 +142,21 @@ Result<std::optional<FoundArm>> choose_arm(const std::vector<FoundArm>& plugged_
   const bool by_itself = wanted == "auto";
   std::optional<FoundArm> found;
   std::string names;
+  bool several = false;
   for (const FoundArm& arm : plugged_in) {
     if (arm.kind == ArmKind::kUnsupported) {
       if (arm.name() == wanted) return cannot_drive(arm);
       continue;
     }
     if (by_itself && arm.certainty == Certainty::kUnknown) continue;
-    names.append(names.empty() ? "" : ", ").append(arm.name());
+    names.append(names.empty() ? "" : ", ").append(arm.name() + " (" + arm.arm + ")");
     if (!by_itself && arm.name() != wanted) continue;
-    if (found) {
-      return Error{fmt::format("Several arms answer to '{}': {}. Name one with --device NAME.",
-                               wanted, names)};
-    }
+    several = several || found;
     found = arm;
+  }
+  if (several) {
+    return Error{fmt::format(
+        "Several arms answer to '{}'. There is: {}. Name one with --device NAME.", wanted, names)};
   }
   if (!found && !by_itself) {
     return Error{"No arm is called '" + wanted + "'. " +

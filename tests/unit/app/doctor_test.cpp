@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "support/fake_usb.h"
 #include "support/scratch.h"
 
@@ -93,6 +95,25 @@ TEST_F(DoctorTest, NamesADriverThatIsMissingOrInTheWay) {
   usb_.write(usb_.device_folder("1-2") / "1-2:1.0/ttyUSB0/latency_timer", "16");
   EXPECT_NE(finding("ftdi_sio").what.find("latency timer of 16 ms"), std::string::npos);
   EXPECT_NE(finding("ftdi_sio").mend.find("1-2:1.0"), std::string::npos);
+}
+
+TEST_F(DoctorTest, SeesWhatKeepsTheVendorsLibraryFromATouch) {
+  const auto about = [&](const std::string& words) {
+    const auto findings = examine(patient_);
+    return std::any_of(findings.begin(), findings.end(), [&](const Finding& found) {
+      return found.what.find(words) != std::string::npos;
+    });
+  };
+  usb_.write("proc/812/comm", "ModemManager\n");
+  EXPECT_FALSE(about("ModemManager"));  // without a Touch it is in nobody's way
+  EXPECT_FALSE(about("libncurses"));
+  usb_.plug("1-5", "2988", "0302", "T1", 1, 6);
+  EXPECT_NE(finding("ModemManager runs").mend.find("stop ModemManager"), std::string::npos);
+  EXPECT_NE(finding("libncurses.so.5").mend.find("apt install libncurses5"), std::string::npos);
+  usb_.write("usr/lib/x86_64-linux-gnu/libncurses.so.5", "");
+  usb_.write("proc/812/comm", "bash\n");
+  EXPECT_FALSE(about("ModemManager"));
+  EXPECT_FALSE(about("libncurses"));
 }
 
 TEST_F(DoctorTest, SeesPowerSavingAndHubs) {

@@ -67,12 +67,26 @@ TEST(RealArm, IsChosenByNameOrAsTheOnlyOne) {
   EXPECT_EQ((*scene::choose_arm(arms, "F1"))->serial, "F1");
   const auto two = scene::choose_arm(arms, "auto");
   ASSERT_FALSE(two);
-  EXPECT_NE(two.error().message.find("W1, F1"), std::string::npos);
+  EXPECT_NE(two.error().message.find("W1 (arm), F1 (arm)"), std::string::npos);
   EXPECT_EQ((*scene::choose_arm({arms[0], arms[1]}, "auto"))->serial, "W1");
   EXPECT_FALSE(scene::choose_arm({}, "auto")->has_value());
   EXPECT_NE(scene::choose_arm({}, "W1").error().message.find("None is plugged in"),
             std::string::npos);
   EXPECT_NE(scene::choose_arm(arms, "T1").error().message.find("not public"), std::string::npos);
+}
+
+TEST(RealArm, IsAskedForByListingAllWithTheirKindsWhereSeveralArePluggedIn) {
+  std::vector<driver::FoundArm> arms = {found(ArmKind::kWoody, "W1"), found(ArmKind::kFalcon, "F1"),
+                                        found(ArmKind::kHaply, "H1")};
+  arms[0].arm = "WoodenHaptics";
+  arms[1].arm = "Falcon";
+  arms[2].arm = "Haply Inverse3";
+  const auto chosen = scene::choose_arm(arms, "auto");
+  ASSERT_FALSE(chosen);
+  EXPECT_NE(
+      chosen.error().message.find("W1 (WoodenHaptics), F1 (Falcon), H1 (Haply Inverse3). Name one"),
+      std::string::npos)
+      << chosen.error().message;
 }
 
 TEST(RealArm, OfUnknownKindIsTakenByItsNameAloneAndToldOf) {
