@@ -71,7 +71,7 @@ class Examination {
     }
     for (const FoundArm& arm : *arms) look_at(arm);
     for (Finding& found : examine_services(*arms)) findings_.push_back(std::move(found));
-    for (Finding& found : examine_touch(*arms, patient_.root)) {
+    for (Finding& found : examine_touch(*arms, system_.root)) {
       findings_.push_back(std::move(found));
     }
   }

@@ -99,7 +99,7 @@ TEST_F(DoctorTest, NamesADriverThatIsMissingOrInTheWay) {
 
 TEST_F(DoctorTest, SeesWhatKeepsTheVendorsLibraryFromATouch) {
   const auto about = [&](const std::string& words) {
-    const auto findings = examine(patient_);
+    const auto findings = examine(system_);
     return std::any_of(findings.begin(), findings.end(), [&](const Finding& found) {
       return found.what.find(words) != std::string::npos;
     });
