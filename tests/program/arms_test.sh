@@ -90,7 +90,7 @@ for wrong in 's/force_max: 5 /force_max: 100 /' 's/soft_start: 0.3/soft_start: 0
   's/soft_start: 0.3/soft_start: 1e-9/' 's/watchdog: 0.1 /watchdog: 10 /' \
   's/rise_max: 2000/rise_max: 1e6/' 's/stall: 0.02 /stall: 0.1 /'; do
   sed "$wrong" "$vintage" >wrong.yaml
-  expect 2 'wrong\.yaml:(4[5-9]|50): (force_max|soft_start|watchdog|rise_max|stall): expected' \
+  expect 2 'wrong\.yaml:(4[5-9]|5[01]): (force_max|soft_start|watchdog|rise_max|stall): expected' \
     "$thimble" run "$source_dir/tests/data/scenes/two_boxes.yaml" --arm wrong.yaml
 done
 expect 3 "No arm is called 'WH02'" "$thimble" feel-check --arm "$vintage" --device WH02

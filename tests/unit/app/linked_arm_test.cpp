@@ -81,7 +81,7 @@ TEST_F(LinkedArmTest, TwoArmsMakeAutoAskWhich) {
   arms.push_back(falcon);
   const auto chosen = scene::choose_arm(arms, "auto");
   ASSERT_FALSE(chosen);
-  EXPECT_TRUE(holds(chosen.error().message, "049D, F1")) << chosen.error().message;
+  EXPECT_TRUE(holds(chosen.error().message, "049D (Haply Inverse3), F1")) << chosen.error().message;
   EXPECT_TRUE(holds(chosen.error().message, "--device NAME"));
   EXPECT_EQ((*scene::choose_arm(arms, "049D"))->board, BoardKind::kHaplyService);
 }
