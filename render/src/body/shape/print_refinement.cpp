@@ -1,5 +1,6 @@
 #include "body/shape/print_refinement.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <tuple>
