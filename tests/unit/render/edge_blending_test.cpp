@@ -1,6 +1,7 @@
 #include "track/edge_blending.h"
 
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,7 @@
 #include "track/normal_projection_tracker.h"
 
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,7 @@
 #include "body/motion/rigid_body.h"
 
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
