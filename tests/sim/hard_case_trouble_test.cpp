@@ -308,7 +308,8 @@ TEST(HardCase37, SingularPosesAndTheEdgeOfReachGiveFiniteClampedCurrents) {
       if (!std::isfinite(q[2])) continue;
     }
     const Eigen::Matrix3d J = model.geometry.jacobian(q);
-    const Vector3d requested = random.uniform(0, 20) * random.direction();
+    const double newtons = random.uniform(0, 20);
+    const Vector3d requested = newtons * random.direction();
     const auto force = gate.pass(requested, {0, 0, 0}, 1e-3);
     const driver::MotorCurrents currents(force, Eigen::Matrix3d::Identity(), J, model.drives);
     ASSERT_TRUE(currents.amperes().allFinite());

@@ -167,7 +167,8 @@ TEST(HardCase34, ClayNeverTurnsATriangleOverNorLosesTheTipNorGivesEnergy) {
     Vector3d f_before(0, 0, 0), p_before(0, 0, 0.05);
     for (int press = 0; press < presses(); ++press) {
       const Vector3d from = 0.04 * random.direction();
-      const Vector3d to = (from + random.in_box(0.02)).normalized() * random.uniform(0.02, 0.028);
+      const Vector3d way = (from + random.in_box(0.02)).normalized();
+      const Vector3d to = random.uniform(0.02, 0.028) * way;
       const int ticks = 20 + static_cast<int>(random.bits() % 60);
       const auto go = [&](const Vector3d& p) {
         const auto command = tip.at(p);
@@ -445,7 +446,8 @@ TEST(Shape, RefusesOrSurvivesNonsense) {
     support::Random random(5);
     driver::DeviceState state;
     for (int i = 0; i < 3000; ++i) {
-      state.p_WT = random.uniform(0.01, 0.04) * random.direction();
+      const double far = random.uniform(0.01, 0.04);
+      state.p_WT = far * random.direction();
       if (i % 7 == 0) state.p_WT.x() = kNaN;
       if (i % 11 == 0) state.v_WT.y() = kNaN;
       ASSERT_TRUE(object->update(state).f_T_W.allFinite());
