@@ -1,5 +1,6 @@
 #include "firmware.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 
@@ -46,6 +47,9 @@ driver::Result<Firmware> Firmware::make(const driver::ArmModel& real,
         "reports "
         "or text lines."};
   }
+  if (!(settings.missed_edges >= 0 && settings.missed_edges <= 1)) {
+    return driver::Error{"The simulated firmware's missed_edges must be a chance from 0 to 1."};
+  }
   if (settings.report_period_ns <= 0) {
     return driver::Error{"The simulated firmware's report period must be above zero (ns)."};
   }
@@ -78,6 +82,22 @@ Firmware::Firmware(const driver::ArmModel& model, const FirmwareSettings& settin
 
 Eigen::Vector3d Firmware::counts_at(const Eigen::Vector3d& q) const noexcept {
   return settings_.wiring.inputs(q.cwiseProduct(counts_per_radian_) - home_counts_);
+}
+
+void Firmware::miss_edges(const Eigen::Vector3d& q, SplitMix& chance) noexcept {
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    const std::int64_t now = rounded(q[k] * counts_per_radian_[k]);
+    const std::int64_t passed = looked_ ? now - edges_[i] : 0;
+    edges_[i] = now;
+    const double step = passed > 0 ? 1 : -1;
+    for (std::int64_t edge = std::min(std::abs(passed), kEdgesMost); edge > 0; --edge) {
+      if (!(chance.uniform() < settings_.missed_edges)) continue;
+      home_counts_[k] += step;
+      ++counters_.missed_edges;
+    }
+  }
+  looked_ = true;
 }
 
 Eigen::Vector3d Firmware::gimbal_counts_at(const Eigen::Vector3d& gimbal) const noexcept {
@@ -156,7 +176,7 @@ void Firmware::preset(const BoardCounters& counters, const Eigen::Vector3d& q,
 
 bool Firmware::countable() const noexcept {
   const double gain_most = settings_.wiring.encoder_gain.cwiseAbs().maxCoeff();
-  return gain_most <= 1 && home_counts_.cwiseAbs().maxCoeff() < kCountable &&
+  return !misses_edges() && gain_most <= 1 && home_counts_.cwiseAbs().maxCoeff() < kCountable &&
          preset_counts_.cwiseAbs().maxCoeff() < kCountable;
 }
 

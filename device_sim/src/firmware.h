@@ -8,6 +8,7 @@
 #include <span>
 
 #include "board_bytes.h"
+#include "split_mix.h"
 #include "thimble/device_sim/settings.h"
 #include "thimble/driver/arm_model.h"
 #include "thimble/driver/result.h"
@@ -19,6 +20,7 @@ struct FirmwareCounters {
   std::uint64_t messages = 0;        ///< Valid messages.
   std::uint64_t malformed = 0;       ///< Messages of a length nobody knows; ignored.
   std::uint64_t over_range = 0;      ///< Currents beyond the range, taken as zero.
+  std::uint64_t missed_edges = 0;    ///< Steps of the encoders that were not counted.
   std::uint64_t presets = 0;         ///< Messages that set the encoder counters.
   std::uint64_t watchdog_fired = 0;  ///< Times the motors went off for want of messages.
 };
@@ -50,6 +52,15 @@ class Firmware {
   /// counts as the true ones would; returns false, and leaves it alone, where that is not sure.
   bool sample_about(const Eigen::Vector3d& q, double error, const Eigen::Vector3d& gimbal,
                     std::uint16_t number, BoardBytes& bytes) const noexcept;
+
+  /// Returns whether its counters miss edges; then `sample_about` is never sure.
+  bool misses_edges() const noexcept { return settings_.missed_edges > 0; }
+  /// Lets the counters miss some of the edges that the encoders passed since the last call, at
+  /// these true joint angles (rad): each with the chance FirmwareSettings::missed_edges. At most
+  /// kEdgesMost of each encoder are looked at, which is beyond what an arm does in a period.
+  void miss_edges(const Eigen::Vector3d& q, SplitMix& chance) noexcept;
+  /// How many edges of an encoder `miss_edges` looks at.
+  static constexpr std::int64_t kEdgesMost = 100'000;
 
   /// Takes a message that arrived at `time_ns`. Returns the counters that it asks for, if it is a
   /// preset: then `preset` is due at once.
@@ -88,12 +99,14 @@ class Firmware {
   FirmwareSettings settings_;
   std::optional<driver::Gimbal> gimbal_;
   Eigen::Vector3d counts_per_radian_;  // with the encoder's sign
-  Eigen::Vector3d home_counts_;
-  double counts_per_radian_most_;  // of any joint
-  bool countable_;                 // gains, home and presets leave counts their digits
+  Eigen::Vector3d home_counts_;        // and what the counters have missed
+  double counts_per_radian_most_;      // of any joint
+  bool countable_;                     // gains, home and presets leave counts their digits
   FirmwareCounters counters_;
   // What presets added to the counters.
   Eigen::Vector3d preset_counts_{0, 0, 0}, preset_gimbal_{0, 0, 0};
+  std::array<std::int64_t, 3> edges_{};  // where the encoders were at the last `miss_edges`
+  bool looked_ = false;
   Eigen::Vector3d amperes_{0, 0, 0};
   std::int64_t watchdog_due_ns_ = kNever_ns;
   bool button_ = false;

@@ -13,13 +13,13 @@ driver::TransportRead SimTransport::read_latest(std::span<std::byte> buffer,
     return read;
   }
   read.size = arm_.take_report(buffer, read.skipped);
-  if (read.size == 0) {
+  // A wire with jitter shows only when a report is sent when it will be there.
+  while (read.size == 0) {
     const std::int64_t until_ns = std::min(arm_.next_report_ns(), deadline_ns);
-    if (until_ns > clock_.now_ns()) {
-      clock_.sleep_until_ns(until_ns);
-      arm_.advance_to(clock_.now_ns());
-      read.size = arm_.take_report(buffer, read.skipped);
-    }
+    if (!(until_ns > clock_.now_ns())) break;
+    clock_.sleep_until_ns(until_ns);
+    arm_.advance_to(clock_.now_ns());
+    read.size = arm_.take_report(buffer, read.skipped);
   }
   if (read.size > 0) read.status = driver::TransportStatus::kOk;
   return read;

@@ -13,6 +13,16 @@ Eigen::Vector3d wanted_first(const HandPath& path, const Tremor& tremor) {
   return way.at(0) + tremor.at(0);
 }
 
+bool needs_drive_train(const SimulatedArmSettings& settings) {
+  return settings.drive_train.named() || !settings.weight_B.isZero(0);
+}
+
+template <class AnyPlant, class Made>
+driver::Result<AnyPlant> as_any(driver::Result<Made> made) {
+  if (!made) return made.error();
+  return AnyPlant(std::move(made).value());
+}
+
 }  // namespace
 
 template <class MakePlant>
@@ -22,6 +32,10 @@ driver::Result<SimulatedArm> SimulatedArm::make_of(const driver::ArmModel& board
                                                    const MakePlant& make_plant) {
   if (settings.wire.delay_in_ns < 0 || settings.wire.delay_out_ns < 0) {
     return driver::Error{"The simulated wire's delays must not be negative (ns)."};
+  }
+  if (settings.wire.jitter_ns < 0 || !(settings.wire.loss >= 0 && settings.wire.loss < 1)) {
+    return driver::Error{
+        "The simulated wire's jitter must not be negative (ns), and its loss from 0 to below 1."};
   }
   if (!(settings.gimbal.period > 0) || !settings.gimbal.middle.allFinite() ||
       !settings.gimbal.amplitude.allFinite()) {
@@ -33,14 +47,18 @@ driver::Result<SimulatedArm> SimulatedArm::make_of(const driver::ArmModel& board
   if (!plant) return plant.error();
   const auto firmware = Firmware::make(board, settings.firmware);
   if (!firmware) return firmware.error();
-  return SimulatedArm(settings, Hand(std::move(path), *tremor), std::move(plant).value(),
-                      *firmware);
+  return SimulatedArm(settings, Hand(std::move(path), *tremor), std::move(plant).value(), *firmware,
+                      seed);
 }
 
 SimulatedArm::SimulatedArm(const SimulatedArmSettings& settings, Hand hand, AnyPlant plant,
-                           const Firmware& firmware) noexcept
+                           const Firmware& firmware, std::uint64_t seed) noexcept
     : report_period_ns_(settings.firmware.report_period_ns),
       wire_(settings.wire),
+      reports_at_once_(wire_.delay_in_ns == 0 && wire_.regular()),
+      messages_at_once_(wire_.delay_out_ns == 0 && wire_.regular()),
+      wire_chance_(seed ^ 0x77697265),
+      edge_chance_(seed ^ 0x65646765),
       hand_(std::move(hand)),
       gimbal_(settings.gimbal),
       plant_(std::move(plant)),
@@ -52,21 +70,29 @@ SimulatedArm::SimulatedArm(const SimulatedArmSettings& settings, Hand hand, AnyP
 driver::Result<SimulatedArm> SimulatedArm::make(const driver::JointModel<driver::SerialArm>& model,
                                                 const SimulatedArmSettings& settings, HandPath path,
                                                 std::uint64_t seed) {
-  return make_of(arm_model(model), settings, std::move(path), seed,
-                 [&](const Eigen::Vector3d& p_BT, const Eigen::Vector3d& p_BH) {
-                   return ArmPlant::make(model.geometry, model.drives, settings.plant,
-                                         settings.hand, settings.motors, p_BT, p_BH);
-                 });
+  return make_of(
+      arm_model(model), settings, std::move(path), seed,
+      [&](const Eigen::Vector3d& p_BT, const Eigen::Vector3d& p_BH) -> driver::Result<AnyPlant> {
+        if (needs_drive_train(settings)) {
+          return as_any<AnyPlant>(SerialDriveTrainPlant::make(model, settings, p_BT, p_BH));
+        }
+        return as_any<AnyPlant>(ArmPlant::make(model.geometry, model.drives, settings.plant,
+                                               settings.hand, settings.motors, p_BT, p_BH));
+      });
 }
 
 driver::Result<SimulatedArm> SimulatedArm::make(const driver::JointModel<driver::LinkageArm>& model,
                                                 const SimulatedArmSettings& settings, HandPath path,
                                                 std::uint64_t seed) {
-  return make_of(arm_model(model), settings, std::move(path), seed,
-                 [&](const Eigen::Vector3d& p_BT, const Eigen::Vector3d& p_BH) {
-                   return LinkagePlant::make(model, settings.plant, settings.hand, settings.motors,
-                                             p_BT, p_BH);
-                 });
+  return make_of(
+      arm_model(model), settings, std::move(path), seed,
+      [&](const Eigen::Vector3d& p_BT, const Eigen::Vector3d& p_BH) -> driver::Result<AnyPlant> {
+        if (needs_drive_train(settings)) {
+          return as_any<AnyPlant>(LinkageDriveTrainPlant::make(model, settings, p_BT, p_BH));
+        }
+        return as_any<AnyPlant>(
+            LinkagePlant::make(model, settings.plant, settings.hand, settings.motors, p_BT, p_BH));
+      });
 }
 
 void SimulatedArm::advance_to(std::int64_t time_ns) noexcept {
@@ -92,11 +118,12 @@ void SimulatedArm::advance_to(std::int64_t time_ns) noexcept {
 }
 
 void SimulatedArm::sample() noexcept {
-  if (wire_.delay_in_ns == 0) {
+  if (reports_at_once_) {
     sample_into(newest_);
     ++readable_;
   } else {
-    reports_.push(sample_now(), time_ns_ + wire_.delay_in_ns);
+    const BoardBytes report = sample_now();
+    send(reports_, report, wire_.delay_in_ns);
   }
   next_sample_ns_ += report_period_ns_;
 }
@@ -113,6 +140,7 @@ void SimulatedArm::sample_into(BoardBytes& report) noexcept {
   const Eigen::Vector3d turned = gimbal();
   const Eigen::Vector3d q = mechanics().q_about();
   if (firmware_.sample_about(q, Plant::kAboutError, turned, number, report)) return;
+  if (firmware_.misses_edges()) firmware_.miss_edges(plant().q(), edge_chance_);
   report = firmware_.sample(plant().q(), turned, number);
 }
 
@@ -149,11 +177,26 @@ std::int64_t SimulatedArm::next_report_ns() const noexcept {
 }
 
 void SimulatedArm::put_message(std::span<const std::byte> bytes) noexcept {
-  if (wire_.delay_out_ns == 0) {
+  if (messages_at_once_) {
     receive(bytes);
   } else {
-    messages_.push(bytes, time_ns_ + wire_.delay_out_ns);
+    send(messages_, bytes, wire_.delay_out_ns);
   }
+}
+
+void SimulatedArm::send(WireQueue& queue, std::span<const std::byte> bytes,
+                        std::int64_t delay_ns) noexcept {
+  std::int64_t due_ns = time_ns_ + delay_ns;
+  if (!wire_.regular()) {
+    if (wire_chance_.uniform() < wire_.loss) {
+      ++losses_;
+      return;
+    }
+    due_ns +=
+        static_cast<std::int64_t>(wire_chance_.uniform() * static_cast<double>(wire_.jitter_ns));
+    due_ns = std::max(due_ns, queue.last_due_ns());  // nothing overtakes
+  }
+  queue.push(bytes, due_ns);
 }
 
 }  // namespace thimble::device_sim

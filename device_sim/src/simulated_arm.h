@@ -7,10 +7,12 @@
 #include <variant>
 
 #include "arm_plant.h"
+#include "drive_train_plant.h"
 #include "firmware.h"
 #include "hand.h"
 #include "hand_path.h"
 #include "inverse_plant.h"
+#include "split_mix.h"
 #include "thimble/device_sim/settings.h"
 #include "thimble/driver/arm_model.h"
 #include "thimble/driver/result.h"
@@ -36,7 +38,8 @@ namespace thimble::device_sim {
 /// advance_to takes grows with the time that passes.
 class SimulatedArm {
  public:
-  /// Makes the arm at rest at the path's first point, with time 0. `seed` sets the tremor's phases.
+  /// Makes the arm at rest at the path's first point, with time 0. `seed` sets the tremor's phases,
+  /// and which frames are late or lost and which edges are missed.
   /// Fails if a constant is out of range or the path's start is out of reach. Real-time: never from
   /// the servo thread.
   static driver::Result<SimulatedArm> make(const driver::JointModel<driver::SerialArm>& model,
@@ -87,15 +90,18 @@ class SimulatedArm {
   }
   /// Returns where the hand wants to be, m.
   const Eigen::Vector3d& p_BH() const noexcept { return plant().p_BH(); }
+  /// Returns how many reports and messages the wire has lost (WireSettings::loss).
+  std::uint64_t wire_losses() const noexcept { return losses_; }
   /// Returns how many reports or messages were lost because more than WireQueue::kFrames were in
   /// flight.
   std::uint64_t wire_overflows() const noexcept { return reports_.dropped() + messages_.dropped(); }
 
  private:
-  using AnyPlant = std::variant<ArmPlant, LinkagePlant>;
+  using AnyPlant =
+      std::variant<ArmPlant, LinkagePlant, SerialDriveTrainPlant, LinkageDriveTrainPlant>;
 
   SimulatedArm(const SimulatedArmSettings& settings, Hand hand, AnyPlant plant,
-               const Firmware& firmware) noexcept;
+               const Firmware& firmware, std::uint64_t seed) noexcept;
   template <class MakePlant>
   static driver::Result<SimulatedArm> make_of(const driver::ArmModel& board,
                                               const SimulatedArmSettings& settings, HandPath path,
@@ -105,11 +111,14 @@ class SimulatedArm {
   }
   void sample_into(BoardBytes& report) noexcept;
   void sample() noexcept;
+  void send(WireQueue& queue, std::span<const std::byte> bytes, std::int64_t delay_ns) noexcept;
   void receive(std::span<const std::byte> bytes) noexcept;
   void deliver() noexcept;
 
   std::int64_t report_period_ns_;
   WireSettings wire_;
+  bool reports_at_once_, messages_at_once_;  // without delay, jitter and loss
+  SplitMix wire_chance_, edge_chance_;
   Hand hand_;
   GimbalMotion gimbal_;
   AnyPlant plant_;
@@ -117,6 +126,7 @@ class SimulatedArm {
   std::int64_t time_ns_ = 0;
   std::int64_t next_sample_ns_ = 0;
   std::uint16_t number_ = 0;  // of the next report
+  std::uint64_t losses_ = 0;
   WireQueue reports_, messages_;
   BoardBytes newest_{};         // the newest report the host can read
   std::uint32_t readable_ = 0;  // reports that became readable since the last was taken

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "split_mix.h"
+
 namespace thimble::device_sim {
 namespace {
 
@@ -10,24 +12,6 @@ namespace {
 const Eigen::Vector3d kRatios{0.83, 1.0, 1.19};
 // Shares of the amplitude; the middle is the strongest.
 const Eigen::Vector3d kShares{0.3, 0.4, 0.3};
-
-// SplitMix64 (Steele, Lea, Flood 2014): the same bits on every platform, which the distributions of
-// the standard library do not promise.
-class SplitMix {
- public:
-  explicit SplitMix(std::uint64_t seed) noexcept : state_(seed) {}
-  double uniform() noexcept {
-    state_ += 0x9e3779b97f4a7c15ULL;
-    std::uint64_t z = state_;
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
-    z ^= z >> 31;
-    return static_cast<double>(z >> 11) * 0x1p-53;
-  }
-
- private:
-  std::uint64_t state_;
-};
 
 }  // namespace
 

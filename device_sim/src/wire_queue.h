@@ -61,6 +61,11 @@ class WireQueue {
     first_ = count_ == 0 ? 0 : (first_ + 1) % kFrames;
   }
 
+  /// Returns when the frame sent last arrives or arrived, ns; 0 before the first.
+  std::int64_t last_due_ns() const noexcept {
+    return frames_[(first_ + count_ + kFrames - 1) % kFrames].due_ns;
+  }
+
   /// Returns how many frames were lost because too many were in flight.
   std::uint64_t dropped() const noexcept { return dropped_; }
 

@@ -55,6 +55,32 @@ struct MotorSettings {
   double current_max = 0;  ///< The amplifier saturates here, A. Must be > 0.
 };
 
+/// Describes what lies between the amplifiers and the links: all of it zero is an ideal drive
+/// train. Vectors go joint by joint.
+struct DriveTrainSettings {
+  double current_lag = 0;  ///< Time constant of the currents (inductance, current loop), s.
+  Eigen::Vector3d cogging{0, 0, 0};  ///< Amplitude of the torque towards the poles, N m at a motor.
+  Eigen::Vector3d ripple{0, 0, 0};   ///< Amplitude of the torque constant's variation, relative.
+  double periods_per_turn = 0;       ///< Of cogging and ripple, in a turn of the motor.
+  /// Inertia of rotor and pulley, kg m^2 at the joint. It makes the mass at the tip depend on the
+  /// pose: J^-T diag(inertia) J^-1 comes on top of the tip's own.
+  Eigen::Vector3d inertia{0, 0, 0};
+  Eigen::Vector3d stiffness{0, 0, 0};  ///< Of the cable, N m/rad at the joint. All > 0, or none.
+  Eigen::Vector3d damping{0, 0, 0};    ///< Of the cable, N m s/rad.
+  Eigen::Vector3d play{0, 0, 0};       ///< Whole width of the backlash, rad at the joint.
+  Eigen::Vector3d viscous{0, 0, 0};    ///< Friction of the motor's side, N m s/rad at the joint.
+  Eigen::Vector3d coulomb{0, 0, 0};    ///< Dry friction of the motor's side, N m at the joint.
+
+  /// Returns whether the cable stretches, so that motors and links move apart. Real-time: safe.
+  bool compliant() const noexcept { return !stiffness.isZero(0); }
+  /// Returns whether there is anything to simulate. Real-time: safe.
+  bool named() const noexcept {
+    return current_lag != 0 || !cogging.isZero(0) || !ripple.isZero(0) || periods_per_turn != 0 ||
+           !inertia.isZero(0) || compliant() || !damping.isZero(0) || !play.isZero(0) ||
+           !viscous.isZero(0) || !coulomb.isZero(0);
+  }
+};
+
 /// Describes how encoders and motors are plugged into the board: a well-made arm has the defaults,
 /// anything else is a mistake for a check to find.
 struct WiringSettings {
@@ -94,22 +120,31 @@ struct FirmwareSettings {
   /// cost. Their counts need more room than any arm's language has but that of 14 bytes
   /// (hfab::FineReportWire), which is then spoken in place of `speaks`, and without a gimbal.
   bool ideal_encoders = false;
+  double missed_edges = 0;  ///< Chance that a counter misses a step of its encoder, 0 to 1.
 };
 
 /// Describes the way between host and firmware.
 struct WireSettings {
   std::int64_t delay_in_ns = 0;   ///< From sampling a report to the host being able to read it.
   std::int64_t delay_out_ns = 0;  ///< From the host's write to the motors.
+  /// Comes on top of either delay, evenly spread from 0 to this; nothing overtakes.
+  std::int64_t jitter_ns = 0;
+  double loss = 0;  ///< Chance that a report or a message never arrives, 0 to below 1.
+
+  /// Returns whether all that is sent arrives, after the same time. Real-time: safe.
+  bool regular() const noexcept { return jitter_ns == 0 && loss == 0; }
 };
 
 /// Describes a whole simulated arm.
 struct SimulatedArmSettings {
-  PlantSettings plant;        ///< Mass, friction and stops of the arm.
-  HandSettings hand;          ///< How the hand holds it.
-  MotorSettings motors;       ///< What the motors make of currents.
-  FirmwareSettings firmware;  ///< What the board does, and when it gives up.
-  WireSettings wire;          ///< How long messages are on their way.
-  GimbalMotion gimbal;        ///< How the hand turns the stylus, if a gimbal is mounted.
+  PlantSettings plant;                ///< Mass, friction and stops of the arm.
+  HandSettings hand;                  ///< How the hand holds it.
+  MotorSettings motors;               ///< What the motors make of currents.
+  DriveTrainSettings drive_train{};   ///< What lies between motors and links.
+  Eigen::Vector3d weight_B{0, 0, 0};  ///< What gravity pulls on the tip with, in the base, N.
+  FirmwareSettings firmware;          ///< What the board does, and when it gives up.
+  WireSettings wire;                  ///< How long messages are on their way.
+  GimbalMotion gimbal;                ///< How the hand turns the stylus, if a gimbal is mounted.
 };
 
 }  // namespace thimble::device_sim

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+namespace thimble::scene {
+
+/// Returns a time of a file (s) in ns.
+inline std::int64_t to_ns(double seconds) {
+  return std::llround(seconds * 1e9);
+}
+
+}  // namespace thimble::scene

@@ -1,0 +1,140 @@
+#include "arm/simulation_section.h"
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <string_view>
+
+#include "arm/nanoseconds.h"
+
+namespace thimble::scene {
+namespace {
+
+std::array<std::uint8_t, 3> joints_of(YamlMap& map, std::string_view key) {
+  const Eigen::Vector3d named = map.optional_vector3(key, {1, 2, 3}, "", 1, 3);
+  std::array<std::uint8_t, 3> joints{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double joint = named[static_cast<Eigen::Index>(i)];
+    if (joint != std::round(joint)) map.reject(key, "expected whole numbers");
+    joints[i] = static_cast<std::uint8_t>(std::lround(joint) - 1);
+  }
+  return joints;
+}
+
+device_sim::WiringSettings read_wiring(YamlMap map) {
+  device_sim::WiringSettings wiring;
+  wiring.encoder_of = joints_of(map, "encoder_of");
+  wiring.encoder_gain = map.optional_vector3("encoder_gain", wiring.encoder_gain, "", -1, 1);
+  wiring.motor_of = joints_of(map, "motor_of");
+  wiring.motor_gain = map.optional_vector3("motor_gain", wiring.motor_gain, "", -1, 1);
+  map.finish();
+  return wiring;
+}
+
+void read_board(YamlMap& map, device_sim::SimulatedArmSettings& settings) {
+  YamlMap motors = map.require_map("motors");
+  settings.motors.current_max = motors.require_number("current_max", "A", 0.01, 32);
+  motors.finish();
+  YamlMap firmware = map.require_map("firmware");
+  settings.firmware.report_period_ns =
+      to_ns(firmware.require_number("report_period", "s", 1e-5, 0.1));
+  settings.firmware.watchdog_ns = to_ns(firmware.require_number("watchdog", "s", 1e-3, 10));
+  // The wire carries 16-bit mA [DEVICES 1].
+  settings.firmware.current_range_mA = static_cast<std::int16_t>(
+      std::lround(1000 * firmware.require_number("current_range", "A", 0.01, 32.767)));
+  settings.firmware.missed_edges = firmware.optional_number("missed_edges", 0, "", 0, 1);
+  firmware.finish();
+  YamlMap wire = map.require_map("wire");
+  settings.wire.delay_in_ns = to_ns(wire.require_number("delay_in", "s", 0, 1));
+  settings.wire.delay_out_ns = to_ns(wire.require_number("delay_out", "s", 0, 1));
+  settings.wire.jitter_ns = to_ns(wire.optional_number("jitter", 0, "s", 0, 1));
+  settings.wire.loss = wire.optional_number("loss", 0, "", 0, 0.99);
+  wire.finish();
+}
+
+/// Reads how the simulated hand turns the stylus.
+device_sim::GimbalMotion read_gimbal_motion(YamlMap map) {
+  constexpr double kRadians = std::numbers::pi / 180;
+  device_sim::GimbalMotion motion;
+  motion.middle =
+      kRadians * map.optional_vector3("middle_degrees", {0, 0, 0}, "degrees", -180, 180);
+  motion.amplitude = kRadians * map.require_vector3("amplitude_degrees", "degrees", 0, 180);
+  motion.period = map.require_number("period", "s", 0.05, 100);
+  map.finish();
+  return motion;
+}
+
+/// Reads what lies between motors and links. What does not fit together is told by the plant.
+device_sim::DriveTrainSettings read_drive_train(YamlMap map) {
+  const auto amounts = [&map](std::string_view key, std::string_view unit, double most) {
+    return map.optional_vector3(key, {0, 0, 0}, unit, 0, most);
+  };
+  device_sim::DriveTrainSettings train;
+  train.current_lag = map.optional_number("current_lag", 0, "s", 0, 0.1);
+  train.cogging = amounts("cogging", "N m at the motor", 1);
+  train.ripple = amounts("ripple", "", 0.5);
+  train.periods_per_turn = map.optional_number("periods_per_turn", 0, "", 0, 1000);
+  train.inertia = amounts("inertia", "kg m^2 at the joint", 1);
+  train.stiffness = amounts("stiffness", "N m/rad at the joint", 1e6);
+  train.damping = amounts("damping", "N m s/rad at the joint", 1000);
+  train.play = amounts("play", "rad at the joint", 0.2);
+  train.viscous = amounts("viscous", "N m s/rad at the joint", 100);
+  train.coulomb = amounts("coulomb", "N m at the joint", 10);
+  const bool wavy = !train.cogging.isZero(0) || !train.ripple.isZero(0);
+  if (wavy && train.periods_per_turn == 0) {
+    map.reject("", "expected periods_per_turn beside cogging or ripple");
+  }
+  const bool masses = !train.inertia.isZero(0) || !train.damping.isZero(0) ||
+                      !train.play.isZero(0) || !train.viscous.isZero(0) || !train.coulomb.isZero(0);
+  if (train.compliant() &&
+      !((train.stiffness.array() > 0).all() && (train.inertia.array() > 0).all())) {
+    map.reject("stiffness", "expected each above zero, and each of inertia too");
+  }
+  if (masses && !train.compliant()) {
+    map.reject("", "expected stiffness beside inertia, damping, play, viscous or coulomb");
+  }
+  map.finish();
+  return train;
+}
+
+}  // namespace
+
+device_sim::SimulatedArmSettings read_simulation(YamlMap map, const ArmFile& arm) {
+  device_sim::SimulatedArmSettings settings;
+  if (arm.is<driver::SerialArm>()) {
+    settings.firmware.ideal_encoders = map.require_choice("encoders", {"quantised", "ideal"}) == 1;
+  }
+  if (settings.firmware.ideal_encoders && arm.model.gimbal) {
+    map.reject("encoders", "expected quantised with a gimbal: the reports have no room for both");
+  }
+  if (map.has("gimbal")) {
+    if (!arm.model.gimbal) map.reject("gimbal", "expected a section 'gimbal' of the arm beside it");
+    settings.gimbal = read_gimbal_motion(map.require_map("gimbal"));
+  }
+  if (map.has("wiring")) settings.firmware.wiring = read_wiring(map.require_map("wiring"));
+  YamlMap tip = map.require_map("tip");
+  settings.plant.mass = tip.require_number("mass", "kg", 1e-3, 10);
+  settings.plant.viscous = tip.require_number("viscous", "N s/m", 0, 100);
+  settings.plant.coulomb = tip.require_number("coulomb", "N", 0, 10);
+  if (!arm.is<driver::DeltaArm>()) {
+    const double weight = tip.optional_number("weight", 0, "N", 0, 10);
+    settings.weight_B = arm.R_WB.transpose() * Eigen::Vector3d(0, 0, -weight);
+    if (map.has("drive_train")) {
+      settings.drive_train = read_drive_train(map.require_map("drive_train"));
+    }
+    read_board(map, settings);
+  }
+  tip.finish();
+  YamlMap hand = map.require_map("hand");
+  settings.hand.mass = hand.require_number("mass", "kg", 0, 10);
+  settings.hand.stiffness = hand.require_number("stiffness", "N/m", 0, 1e5);
+  settings.hand.damping = hand.require_number("damping", "N s/m", 0, 1000);
+  settings.hand.tremor_amplitude = hand.require_number("tremor_amplitude", "m", 0, 0.01);
+  settings.hand.tremor_frequency = hand.require_number("tremor_frequency", "Hz", 0.1, 100);
+  hand.finish();
+  map.finish();
+  return settings;
+}
+
+}  // namespace thimble::scene

@@ -1,0 +1,122 @@
+#include "arm/simulation_section.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "support/scratch.h"
+#include "thimble/scene/arm_simulation.h"
+
+namespace thimble::app {
+namespace {
+
+const std::string kTrain =
+    "  drive_train: {current_lag: 0.0003, cogging: [0.001, 0.002, 0.003], ripple: [0.01, 0.02, "
+    "0.03], periods_per_turn: 7, inertia: [0.001, 0.002, 0.003], stiffness: [100, 200, 300], "
+    "damping: [0.01, 0.02, 0.03], play: [0.001, 0.002, 0.003], viscous: [0.004, 0.005, 0.006], "
+    "coulomb: [0.007, 0.008, 0.009]}\n";
+
+using Change = std::pair<std::string, std::string>;
+
+/// Reads a shipped arm with some pieces of its text replaced.
+driver::Result<scene::ArmFile> read_with(const std::vector<Change>& changes,
+                                         const std::string& arm = "vintage_phantom") {
+  std::ostringstream content;
+  content << std::ifstream(std::string(THIMBLE_SOURCE_DIR) + "/app/arms/" + arm + ".yaml").rdbuf();
+  std::string text = content.str();
+  for (const auto& [piece, by] : changes) {
+    const std::size_t at = text.find(piece);
+    EXPECT_NE(at, std::string::npos) << piece;
+    text.replace(at, piece.size(), by);
+  }
+  const auto file = support::scratch_folder() / "thimble_simulation_section_test.yaml";
+  std::ofstream(file) << text;
+  return scene::load_arm(file);
+}
+
+std::string mistake_with(const std::string& piece, const std::string& by,
+                         const std::string& arm = "vintage_phantom") {
+  const auto read = read_with({{piece, by}}, arm);
+  return read ? "" : read.error().message;
+}
+
+TEST(SimulationSection, NamesNothingOfADriveTrainUnlessTheFileDoes) {
+  const auto arm = scene::load_arm("vintage_phantom");
+  ASSERT_TRUE(arm.ok());
+  EXPECT_FALSE(arm->simulated.drive_train.named());
+  EXPECT_EQ(arm->simulated.weight_B, Eigen::Vector3d(0, 0, 0));
+  EXPECT_TRUE(arm->simulated.wire.regular());
+  EXPECT_EQ(arm->simulated.firmware.missed_edges, 0);
+}
+
+TEST(SimulationSection, ReadsADriveTrainToItsLastConstant) {
+  const auto arm = read_with({{"  encoders: quantised", kTrain + "  encoders: quantised"}});
+  ASSERT_TRUE(arm.ok()) << arm.error().message;
+  const device_sim::DriveTrainSettings& train = arm->simulated.drive_train;
+  EXPECT_EQ(train.current_lag, 0.0003);
+  EXPECT_EQ(train.cogging, Eigen::Vector3d(0.001, 0.002, 0.003));
+  EXPECT_EQ(train.ripple, Eigen::Vector3d(0.01, 0.02, 0.03));
+  EXPECT_EQ(train.periods_per_turn, 7);
+  EXPECT_EQ(train.inertia, Eigen::Vector3d(0.001, 0.002, 0.003));
+  EXPECT_EQ(train.stiffness, Eigen::Vector3d(100, 200, 300));
+  EXPECT_EQ(train.damping, Eigen::Vector3d(0.01, 0.02, 0.03));
+  EXPECT_EQ(train.play, Eigen::Vector3d(0.001, 0.002, 0.003));
+  EXPECT_EQ(train.viscous, Eigen::Vector3d(0.004, 0.005, 0.006));
+  EXPECT_EQ(train.coulomb, Eigen::Vector3d(0.007, 0.008, 0.009));
+  EXPECT_TRUE(scene::ArmSimulation::make(*arm, {{0, Eigen::Vector3d::Zero()}}).ok());
+}
+
+TEST(SimulationSection, TurnsTheWeightDownInTheWorldIntoTheBase) {
+  const Change weight{"    coulomb: 0.04 ", "    weight: 0.2\n    coulomb: 0.04 "};
+  const auto upright = read_with({weight});
+  ASSERT_TRUE(upright.ok()) << upright.error().message;
+  EXPECT_EQ(upright->simulated.weight_B, Eigen::Vector3d(0, 0, -0.2));
+  // On its side: a turn of 90 degrees about x puts the base's y upwards.
+  const auto lying = read_with({weight, {"rotate_degrees: []", "rotate_degrees: [[x, 90]]"}});
+  ASSERT_TRUE(lying.ok()) << lying.error().message;
+  EXPECT_LT((lying->simulated.weight_B - Eigen::Vector3d(0, -0.2, 0)).norm(), 1e-15);
+}
+
+TEST(SimulationSection, ReadsWhatGoesWrongOnWireAndEncoders) {
+  const auto wire =
+      read_with({{"    delay_in: 0 ", "    jitter: 0.0004\n    loss: 0.01\n    delay_in: 0 "}});
+  ASSERT_TRUE(wire.ok()) << wire.error().message;
+  EXPECT_EQ(wire->simulated.wire.jitter_ns, 400'000);
+  EXPECT_EQ(wire->simulated.wire.loss, 0.01);
+  const auto edges = read_with(
+      {{"    report_period: 0.001", "    missed_edges: 0.001\n    report_period: 0.001"}});
+  ASSERT_TRUE(edges.ok()) << edges.error().message;
+  EXPECT_EQ(edges->simulated.firmware.missed_edges, 0.001);
+}
+
+TEST(SimulationSection, RefusesADriveTrainThatDoesNotFitTogether) {
+  const auto mistake = [](const std::string& train) {
+    return mistake_with("  encoders: quantised",
+                        "  drive_train: {" + train + "}\n  encoders: quantised");
+  };
+  const std::string inertia = "inertia: [0.001, 0.001, 0.001]";
+  EXPECT_NE(mistake("stiffness: [100, 100, 100]").find("each of inertia too"), std::string::npos);
+  EXPECT_NE(mistake("stiffness: [100, 0, 100], " + inertia).find("stiffness: expected each"),
+            std::string::npos);
+  EXPECT_NE(mistake(inertia).find("expected stiffness beside"), std::string::npos);
+  EXPECT_NE(mistake("play: [0.001, 0, 0]").find("expected stiffness beside"), std::string::npos);
+  EXPECT_NE(mistake("cogging: [0.001, 0, 0]").find("expected periods_per_turn"), std::string::npos);
+  EXPECT_NE(mistake("current_lag: -1").find("current_lag: expected a number from 0 to 0.1 s"),
+            std::string::npos);
+  EXPECT_NE(mistake("current_lagg: 0.1").find("perhaps \"current_lag\" was meant"),
+            std::string::npos);
+  EXPECT_EQ(mistake("stiffness: [100, 100, 100], " + inertia), "");
+}
+
+TEST(SimulationSection, TellsTheFalconThatItsDriveTrainIsNotSimulated) {
+  EXPECT_NE(mistake_with("  tip:\n", "  drive_train: {current_lag: 0.001}\n  tip:\n", "falcon")
+                .find("drive_train: is no key that is known here"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace thimble::app
