@@ -1,9 +1,12 @@
 #!/usr/bin/env bash
 # The first touch: sets the machine up, then a simulated PHANTOM-class arm in a simulated hand touches
-# a scanned elephant for 10 s at 1 kHz, and pictures of it are drawn.
+# a scanned elephant for 10 s at 1 kHz, and pictures of it are drawn. Where the scan cannot be had it is a
+# balloon, whose mesh came with Thimble.
 #   app/demo.sh [options of `thimble run`]      for example: app/demo.sh --duration 3
 set -euo pipefail
 cd "$(dirname "$0")/.."
 app/setup.sh release thimble_demo
-exec build/release/app/demo/thimble run app/scenes/elephant.yaml --device sim --clock wall \
+scene=elephant
+if [ ! -f build/meshes/elephant.off ]; then scene=water_balloon; fi
+exec build/release/app/demo/thimble run app/scenes/$scene.yaml --device sim --clock wall \
   --report build/demo "$@"

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Unpacks the scanned meshes of Debian's libcgal-demo package (its data archive, about 140 meshes) into
-# build/meshes. Takes the package file alone: nothing is installed, and no right is needed for it.
+# build/meshes. Takes the installed package's archive, or else the package file alone: nothing is installed, and no
+# right is needed for it.
 #   app/fetch_meshes.sh
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -8,6 +9,13 @@ cd "$(dirname "$0")/.."
 mkdir -p build
 work=$(mktemp -d build/meshes.XXXXXX)
 trap 'rm -rf "$work"' EXIT
+installed=/usr/share/doc/libcgal-dev/data.tar.gz
+if [ -f $installed ]; then
+  tar -xzf $installed -C "$work" data/meshes
+  rm -rf build/meshes
+  mv "$work/data/meshes" build/meshes
+  exit 0
+fi
 echo "Fetching the meshes of Debian's libcgal-demo package ..."
 if ! (cd "$work" && apt-get download -q libcgal-demo) >"$work/log" 2>&1; then
   tail -n 3 "$work/log" >&2

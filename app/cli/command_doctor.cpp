@@ -5,8 +5,10 @@
 #include <vector>
 
 #include "bringup/doctor.h"
+#include "bringup/doctor_files.h"
 #include "cli/commands.h"
 #include "cli/exit_code.h"
+#include "files/data_folders.h"
 #include "log/logger.h"
 
 namespace thimble::app {
@@ -17,6 +19,8 @@ int show_findings(const std::string& root) {
   system.root = root;
   int problems = 0;
   std::vector<Finding> findings = examine(system);
+  findings.push_back(examine_names(scene::data_folders()));
+  findings.push_back(examine_scans(scene::scan_places()));
   findings.push_back(examine_log(scene::default_log_file()));
   for (const Finding& finding : findings) {
     const char* mark = "ok      ";

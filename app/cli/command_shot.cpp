@@ -8,7 +8,6 @@
 #include "cli/commands.h"
 #include "cli/complain.h"
 #include "cli/file_options.h"
-#include "thimble/scene/shipped_files.h"
 #include "view/gl/animated_picture_file.h"
 #include "view/gl/offscreen_context.h"
 #include "view/gl/picture_file.h"
@@ -76,7 +75,6 @@ int take_shot(const ShotOptions& options) {
   choice.caption = !options.no_caption;
 
   session::SessionOptions session;
-  session.mesh_folder = scene::mesh_folder();
   session.arm_file = options.arm_file;
   double at = 0;
   if (options.at) {

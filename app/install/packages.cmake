@@ -24,7 +24,11 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "gnuplot-nox, valgrind")
+# Not needed to touch: scans that scenes name (unpacked on first use), OpenGL for shots and the window, which
+# is opened at run time, and plots.
+string(CONCAT CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "libcgal-demo, "
+    "libegl1, libegl-mesa0, libgl1, libgl1-mesa-dri, gnuplot-nox, fonts-dejavu-core")
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "valgrind")
 string(CONCAT CPACK_DEBIAN_DEV_PACKAGE_DEPENDS
     "thimble (= ${PROJECT_VERSION}), libeigen3-dev, libusb-1.0-0-dev, libhidapi-dev, libassimp-dev, zlib1g-dev, libpng-dev, "
     "libfmt-dev, libyaml-cpp-dev, libhdf5-dev, libspdlog-dev, pkg-config")

@@ -7,11 +7,13 @@
 #include <pybind11/stl.h>
 
 #include <cstring>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "files/kept_scene.h"
 #include "scene_run.h"
 #include "simulator_session.h"
 #include "stability/tuning.h"
@@ -24,6 +26,7 @@
 #include "thimble/scene/shipped_files.h"
 #include "thimble/session/recording.h"
 #include "thimble_error.h"
+#include "user_folders.h"
 
 namespace py = pybind11;
 
@@ -355,6 +358,15 @@ PYBIND11_MODULE(_core, core) {
            [](const std::string& name) { return value_of(scene::find_scene(name)).string(); });
   core.def("find_arm",
            [](const std::string& name) { return value_of(scene::find_arm_file(name)).string(); });
+  core.def("keep_scene", [](const std::string& text, const std::map<std::string, std::string>& set,
+                            const std::string& beside, const std::string& into) {
+    std::vector<scene::SceneChange> changes;
+    for (const auto& [place, value] : set) changes.push_back({place, value});
+    return value_of(scene::keep_scene(text, changes, beside,
+                                      into.empty() ? scene::state_folder() / "scenes"
+                                                   : std::filesystem::path(into)))
+        .string();
+  });
   core.def("devices", &devices);
   core.def("columns", [] {
     py::list list;

@@ -55,6 +55,12 @@ session::SessionOptions session_options(const RunOptions& options) {
           : driver::find_arms();
   asked.real_arm = value_of(scene::choose_arm(
       plugged_in ? *plugged_in : std::vector<driver::FoundArm>(), options.device));
+  if (options.device == "auto" && !asked.real_arm) {
+    throw ThimbleError(
+        "No arm is plugged in that Thimble drives: `thimble doctor` says why. device=\"sim\" takes "
+        "the "
+        "simulated one.");
+  }
   if (asked.real_arm && !options.agreed) {
     throw ThimbleError(
         asked.real_arm->arm + " " + asked.real_arm->name() +

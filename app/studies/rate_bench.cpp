@@ -7,7 +7,6 @@
 #include <memory>
 #include <string>
 
-#include "thimble/scene/shipped_files.h"
 #include "thimble/session/servo_thread.h"
 #include "thimble/session/session.h"
 
@@ -78,7 +77,6 @@ driver::Result<RateBench> bench_rate(const std::filesystem::path& scene, double 
   session::SessionOptions options;
   options.clock = session::ClockKind::kWall;
   options.duration = seconds;
-  options.mesh_folder = scene::mesh_folder();
   options.adjust = [rate, quality](scene::Scene& changed) {
     scene::apply_quality(quality, changed);
     change_rate(changed, rate);

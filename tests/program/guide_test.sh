@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Runs every command that the guide and the README promise (the blocks marked "sh"), in the guide's
-# order. Studies take minutes and have tests of their own: without THIMBLE_LONG they are only begun.
+# Runs every command that the guide and the README promise (guide_commands.sh), and looks whether its pages are
+# what the program and the sources say.
 #   guide_test.sh PROGRAM SOURCE_FOLDER WORK_FOLDER
 set -euo pipefail
 program=$1 source=$2 work=$3
@@ -20,34 +20,21 @@ else
 fi
 cd "$work"
 
-pages=$(sed -n 's/^ *- .*: \(.*\.md\)$/\1/p' "$source/app/guide/mkdocs.yml")
 commands=0
-run_command() {  # PAGE LINE
-  local line=$2
-  case $line in
-    "thimble study "*)
-      # What is refused is refused at once; what has begun is interrupted.
-      [ -n "${THIMBLE_LONG:-}" ] || line="timeout -s INT 1 $line || [ \$? = 124 ]"
-      ;;
-    "python3 "*) [ -n "$python" ] || return 0 ;;
-  esac
+bash "$(dirname "$0")/guide_commands.sh" "$source" >commands
+while IFS=$'\t' read -r page line; do
+  if [[ $line == "python3 "* ]] && [ -z "$python" ]; then continue; fi
   commands=$((commands + 1))
   bash -c "$line" </dev/null >said 2>&1 || grep -q 'Without python3-matplotlib' said || {
-    echo "FAILED: $1: $line" >&2
+    echo "FAILED: $page: $line" >&2
     cat said >&2
     exit 1
   }
-}
-for page in $pages; do
-  while IFS= read -r line; do run_command "$page" "$line"; done < <(
-    awk '/^```sh$/ { inside = 1; next } /^```/ { inside = 0 } inside' "$source/app/guide/pages/$page")
-done
-while IFS= read -r line; do run_command README.md "$line"; done < <(
-  sed -nE 's|^build/release/app/(thimble [^#]*[^# ]) *(#.*)?$|\1|p' "$source/README.md")
-grep -q '^thimble run tin_can --record can.h5$' <(sed -nE 's|^build/release/app/(thimble [^#]*[^# ]) *(#.*)?$|\1|p' "$source/README.md") ||
+done <commands
+grep -q $'^README.md\tthimble run tin_can --record can.h5$' commands ||
   { echo "FAILED: no command of the README was found" >&2 && exit 1; }
 [ "$commands" -ge 12 ] || { echo "FAILED: only $commands commands were found" >&2 && exit 1; }
-echo "$commands commands of $(wc -w <<<"$pages") pages and the README ran."
+echo "$commands commands of $(cut -f 1 commands | sort -u | wc -l) pages ran."
 
 # What the guide writes in Python, all of it in one go.
 if [ -n "$python" ]; then

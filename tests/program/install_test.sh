@@ -86,4 +86,31 @@ assert all(str(one.path).startswith(sys.argv[1]) for one in thimble.scenes()), t
 assert thimble._program().startswith(sys.argv[1])' "$work/usr" || fail "the package uses files of another place"
 fi
 [ -f "$work/usr/lib/udev/rules.d/70-thimble.rules" ] || fail "no udev rules"
+
+echo "Following the links of README and guide ..."
+documents=$work/usr/share/doc/thimble
+links=0
+while IFS=: read -r page link; do
+  links=$((links + 1))
+  [ -e "$(dirname "$page")/$link" ] || fail "${page#"$work"/} names $link, which is not installed"
+done < <(grep -oHP '\]\(\K[A-Za-z0-9_./-]+(?=(#[^)]*)?\))' "$documents"/*.md "$documents"/guide/*.md)
+[ "$links" -ge 70 ] || fail "only $links links of $documents were found"
+diff "$examples/../guide/pages/keys.md" "$documents/guide/keys.md" || fail "the guide has other keys"
+
+# Nothing of the folder that it was built in: scans are looked for where it is installed.
+mkdir -p home "$work/usr/share/thimble/meshes"
+printf 'OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n' >tetrahedron.off
+in_place() { env -u THIMBLE_MESHES HOME="$work/home" XDG_CACHE_HOME="$work/home/cache" "$program" "$@"; }
+if [ ! -e /usr/share/doc/libcgal-dev/data.tar.gz ]; then
+  in_place run elephant >said 2>&1 && fail "the installed program took the elephant from elsewhere: $(cat said)"
+  grep -q 'elephant.off is a scan .*libcgal-demo, and is not in .*/usr/share/thimble/meshes' said ||
+    fail "without scans the program said: $(cat said)"
+  in_place doctor >said 2>&1 || true
+  grep -q 'scanned meshes that some scenes name are not here; .*/usr/share/thimble/meshes' said ||
+    fail "without scans the doctor said: $(cat said)"
+fi
+sed 's/elephant\.off/tetrahedron.off/' "$work/usr/share/thimble/scenes/elephant.yaml" |
+  sed 's|\.\./arms/vintage_phantom.yaml|vintage_phantom|' >pyramid.yaml
+cp tetrahedron.off "$work/usr/share/thimble/meshes/"
+in_place run pyramid.yaml --duration 0.1 >said 2>&1 || fail "a scan beside the installed scenes: $(cat said)"
 echo "Done."

@@ -29,6 +29,19 @@ box_at other/share/thimble/scenes/only_there.yaml 0.02
 expect 0 '^Loop +20 ticks' "$thimble" run only_there
 box_at home/.local/share/thimble/scenes/only_there.yaml 0.03
 expect 0 '^Loop +30 ticks' "$thimble" run only_there
+expect 0 '^  only_there .*/home/\.local/share/thimble/scenes/only_there\.yaml$' "$thimble" run --list
+mkdir -p home/.local/share/thimble/arms home/.config/thimble/arm_files
+cp "$source_dir/app/arms/vintage_phantom.yaml" home/.local/share/thimble/arms/mine.yaml
+cp "$source_dir/app/arms/polhem.yaml" home/.config/thimble/arm_files/checked.yaml
+expect 0 '^  mine .*/home/\.local/share/thimble/arms/mine\.yaml$' "$thimble" run --list
+expect 0 '^  checked .*/home/\.config/thimble/arm_files/checked\.yaml$' "$thimble" run --list
+sed 's#^arm:.*#arm: mine#' "$source_dir/app/scenes/box.yaml" >by_name.yaml
+expect 0 '^Loop +200 ticks' "$thimble" run by_name.yaml --duration 0.2
+sed -i 's#^arm:.*#arm: nobody#' by_name.yaml
+expect 2 'by_name\.yaml:[0-9]+: arm: expected a file, found none at nobody; or the name of an arm: .*mine' \
+  "$thimble" run by_name.yaml
+expect 0 'are looked for by name in this order: app.*home/\.local/share/thimble \(there\)' \
+  bash -c '"$0" doctor || true' "$thimble"
 box_at xdg/thimble/scenes/only_there.yaml 0.04
 expect 0 '^Loop +40 ticks' env XDG_DATA_HOME="$work/xdg" "$thimble" run only_there
 box_at app/scenes/only_there.yaml 0.05

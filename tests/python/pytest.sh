@@ -9,4 +9,4 @@ python=$1 file=$2 work=$3
 }
 mkdir -p "$work"
 cd "$work"
-"$python" -B -m pytest -q -p no:cacheprovider -W error::pytest.PytestUnhandledThreadExceptionWarning "$file"
+"$python" -B -m pytest -q -rs -p no:cacheprovider -W error::pytest.PytestUnhandledThreadExceptionWarning "$file"

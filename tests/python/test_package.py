@@ -36,7 +36,8 @@ def test_knows_scenes_and_arms_by_name(source):
         (lambda: thimble.Stepper("box").mesh("no_such_object"), "no object"),
         (lambda: thimble.Stepper("box").summary(), "not over"),
         (lambda: thimble.open("box", "WH99", agree=True), "WH99"),
-        (lambda: thimble.study("no_such_study"), "no_such_study"),
+        (lambda: thimble.study("no_such_study"), 'no study "no_such_study"; there are cost, friction, '),
+        (lambda: thimble.study("box", no_such_option=3), "study box: .*--no-such-option"),
     ],
 )
 def test_mistakes_are_answered_with_a_sentence(wrong, said):
@@ -143,6 +144,26 @@ def test_real_time_takes_no_law_and_no_steps():
         core.Run("box", real_time=True, law=lambda tick: None)
     with pytest.raises(thimble.Error, match="not stepped by hand"):
         core.Run("box", real_time=True).step()
+
+
+def test_arguments_that_name_nothing_are_value_errors_too(tmp_path):
+    with pytest.raises(ValueError, match="there are cost"):
+        thimble.study("no_such_study", out=tmp_path)
+    with pytest.raises(ValueError, match="no-such-option"):
+        thimble.study("box", out=tmp_path, no_such_option=3)
+
+
+def test_auto_without_an_arm_is_an_error_and_not_the_simulated_one():
+    if not _arms_plugged_in():
+        with pytest.raises(thimble.Error, match='No arm is plugged in.*thimble doctor.*device="sim"'):
+            thimble.open("box", agree=True)
+
+
+def _arms_plugged_in():
+    try:
+        return thimble.devices()
+    except thimble.Error:  # no USB at all
+        return []
 
 
 def test_nobody_is_surprised_by_a_real_arm():

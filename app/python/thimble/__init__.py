@@ -19,25 +19,29 @@ its force off, or goes on with an old one. Force laws in Python (``law=``) and s
 from __future__ import annotations
 
 import atexit
+import functools
 import json
 import os
+import re
 import shutil
 import signal
 import subprocess
+import tempfile
 import threading
 import warnings
 import weakref
 from pathlib import Path
-from typing import Any, Callable, Mapping, NamedTuple, Optional, Sequence, Union
+from typing import Any, Callable, Iterator, Mapping, NamedTuple, Optional, Sequence, Union, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _core
+from . import _core, _show
 from ._core import Error
 
 __version__: str = _core.version
 __all__ = [
+    "ArgumentError",
     "Error",
     "Figure",
     "Live",
@@ -59,8 +63,13 @@ __all__ = [
 ]
 
 PathOrName = Union[str, "os.PathLike[str]"]
+Scene = Union[PathOrName, Mapping[str, Any]]
 Vector = NDArray[np.float64]
 Law = Callable[["Tick"], Optional[ArrayLike]]
+
+
+class ArgumentError(Error, ValueError):
+    """An argument that names nothing that there is, or misses its bounds; the sentence says what would do."""
 
 
 class NamedFile(NamedTuple):
@@ -225,8 +234,40 @@ class Ticks(_Columns):
     def __len__(self) -> int:
         return len(self.columns)
 
-    def __getitem__(self, index: int) -> Tick:
-        return Tick(self.columns[index])
+    @overload
+    def __getitem__(self, index: int) -> Tick: ...
+
+    @overload
+    def __getitem__(self, index: Union[slice, NDArray[Any]]) -> "Ticks": ...
+
+    def __getitem__(self, index: Any) -> Any:
+        """Give one tick, or several by a slice, an array of numbers or a mask: ``run[run.in_contact]``."""
+        columns = self.columns[index]
+        return Tick(columns) if isinstance(columns, np.void) else Ticks(columns)
+
+    def __iter__(self) -> Iterator[Tick]:
+        return map(Tick, self.columns)
+
+    def to_pandas(self) -> Any:
+        """Give all columns as a pandas DataFrame over the time in s.
+
+        Vectors become ``p_WT_x``, ``p_WT_y``, ``p_WT_z``, what has no axes ``q_0`` and so on; units as
+        :func:`units` tells them. ImportError without pandas.
+        """
+        return _show.to_pandas(self)
+
+    def plot(self) -> Any:
+        """Draw force and depth over time, and give matplotlib's figure. ImportError without matplotlib."""
+        return _show.plot(self, self._title())
+
+    def _title(self) -> str:
+        return "ticks"
+
+    def _figures(self) -> list[Figure]:
+        return []
+
+    def _repr_html_(self) -> str:
+        return _show.html(self._title(), self, self._figures())
 
 
 class Recording(Ticks):
@@ -241,6 +282,9 @@ class Recording(Ticks):
         self.info = dict(info)
         self.complete = complete
 
+    def _title(self) -> str:
+        return f"{self.info['scene']}, {self.info['arm']}"
+
 
 def read_recording(path: PathOrName) -> Recording:
     """Read what ``thimble run SCENE --record FILE``, or ``record=`` here, has written (HDF5)."""
@@ -250,7 +294,7 @@ def read_recording(path: PathOrName) -> Recording:
 class _Held:
     """What all that run a scene have in common."""
 
-    _run: _core.Run
+    _run: Union[_core.Run, _Past]
 
     @property
     def objects(self) -> list[str]:
@@ -293,17 +337,92 @@ def _figure(one: Mapping[str, Any]) -> Figure:
     return Figure(one["name"], one["value"], one["unit"], one.get("goal", ""), one.get("met", True))
 
 
-class Run(_Held, Ticks):
-    """A run that is over: its ticks as arrays, and what it was."""
+class _Past:
+    """What a run that is over tells, apart from its ticks: what is left of it in another process."""
 
-    def __init__(self, run: _core.Run) -> None:
+    def __init__(self, run: Union[_core.Run, "_Past"]) -> None:
+        self.objects = list(run.objects)
+        self.end = run.end
+        self.stride = run.stride
+        self._info = run.info()
+        self._summary = run.summary()
+        self._figures = run.figures()
+        self._meshes = {name: run.mesh(name) for name in (None, *self.objects)}
+
+    def info(self) -> dict[str, Any]:
+        return dict(self._info)
+
+    def summary(self) -> str:
+        return self._summary
+
+    def figures(self) -> list[dict[str, Any]]:
+        return self._figures
+
+    def mesh(self, object: Optional[str] = None) -> tuple[Vector, NDArray[np.int32]]:
+        if object not in self._meshes:
+            raise Error(f'The scene has no object "{object}".')
+        return self._meshes[object]
+
+
+class Run(_Held, Ticks):
+    """A run that is over: its ticks as arrays, and what it was. May be pickled, meshes and all."""
+
+    def __init__(self, run: Union[_core.Run, _Past], columns: Any = None) -> None:
         self._run = run
-        Ticks.__init__(self, run.ticks())
+        Ticks.__init__(self, run.ticks() if columns is None else columns)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Run, (_Past(self._run), self.columns)
+
+    def _title(self) -> str:
+        return f"{self.info['scene']}, {self.info['arm']}"
+
+    def _figures(self) -> list[Figure]:
+        return self.figures()
+
+
+def _as_yaml(value: Any) -> str:
+    """Write a value as JSON, which YAML understands; numpy's are taken as Python's own."""
+    try:
+        return json.dumps(value, allow_nan=False, default=lambda one: one.tolist())
+    except (AttributeError, TypeError, ValueError) as wrong:
+        raise ArgumentError(f"A scene cannot hold {value!r}: {wrong}.") from wrong
+
+
+def _scene_file(scene: Scene, changes: Optional[Mapping[str, Any]], keep: bool) -> str:
+    """Give the file of a scene; of one without a file, or changed, one that is written for it.
+
+    keep: in the user's state folder, where a recording's replay finds it, not for this process alone.
+    """
+    beside = Path.cwd()
+    if isinstance(scene, Mapping):
+        text = _as_yaml(scene)
+    elif isinstance(scene, str) and "\n" in scene:
+        text = scene
+    elif changes:
+        file = Path(_core.find_scene(os.fspath(scene)))
+        try:
+            text, beside = file.read_text(encoding="utf-8"), file.parent
+        except (OSError, UnicodeDecodeError) as wrong:
+            raise Error(f"{file}: cannot be read: {wrong}.") from wrong
+    else:
+        return os.fspath(scene)
+    into = "" if keep else str(_scratch())
+    values = {place: _as_yaml(value) for place, value in (changes or {}).items()}
+    return _core.keep_scene(text, values, str(beside), into)
+
+
+@functools.lru_cache(maxsize=1)
+def _scratch() -> Path:
+    folder = tempfile.mkdtemp(prefix="thimble-")
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    return Path(folder)
 
 
 def _begin(
-    scene: PathOrName,
+    scene: Scene,
     *,
+    set: Optional[Mapping[str, Any]],
     seconds: Optional[float],
     seed: Optional[int],
     arm: Optional[PathOrName],
@@ -319,7 +438,7 @@ def _begin(
     no_real_time: bool = False,
 ) -> _core.Run:
     run = _core.Run(
-        os.fspath(scene),
+        _scene_file(scene, set, keep=record is not None),
         arm=os.fspath(arm) if arm is not None else "",
         device=device,
         agreed=agreed,
@@ -340,8 +459,9 @@ def _begin(
 
 
 def run(
-    scene: PathOrName,
+    scene: Scene,
     *,
+    set: Optional[Mapping[str, Any]] = None,
     seconds: Optional[float] = None,
     seed: Optional[int] = None,
     arm: Optional[PathOrName] = None,
@@ -354,7 +474,9 @@ def run(
     The same to the bit as ``thimble run``, and again each time. Other Python threads go on meanwhile;
     Ctrl-C ends it.
 
-    scene: file, or a name (:func:`scenes`). seconds: how long; the scene's own if absent. seed: of
+    scene: file, or a name (:func:`scenes`); or the scene itself, as a dict or as YAML text of several
+    lines, with files beside the working folder. set: values of it to be others, by where they stand:
+    ``{"ball.stiffness": 300, "ball.effects.friction.coefficient": 0.2, "rate": 2000}``. seconds: how long; the scene's own if absent. seed: of
     everything random; the scene's own if absent. arm: file or name in place of the scene's arm.
     quality: "draft", "normal", "reference" or "auto". record: HDF5 file to write every tick into.
 
@@ -366,7 +488,7 @@ def run(
     Raises Error, with what to do, if scene, arm or mesh cannot be had. A fault of the arm is no
     exception: ``end`` is "fault" then, and the last tick names it.
     """
-    held = _begin(scene, seconds=seconds, seed=seed, arm=arm, quality=quality, record=record, law=law)
+    held = _begin(scene, set=set, seconds=seconds, seed=seed, arm=arm, quality=quality, record=record, law=law)
     held.run()
     return Run(held)
 
@@ -379,8 +501,9 @@ class Stepper(_Held):
 
     def __init__(
         self,
-        scene: PathOrName,
+        scene: Scene,
         *,
+        set: Optional[Mapping[str, Any]] = None,
         seconds: Optional[float] = None,
         seed: Optional[int] = None,
         arm: Optional[PathOrName] = None,
@@ -389,7 +512,7 @@ class Stepper(_Held):
         law: Optional[Law] = None,
     ) -> None:
         self._run = _begin(
-            scene, seconds=seconds, seed=seed, arm=arm, quality=quality, record=record, law=law
+            scene, set=set, seconds=seconds, seed=seed, arm=arm, quality=quality, record=record, law=law
         )
 
     def step(self, hand: Optional[ArrayLike] = None) -> bool:
@@ -510,9 +633,10 @@ _live: "weakref.WeakSet[Live]" = weakref.WeakSet()
 
 
 def open(
-    scene: PathOrName,
+    scene: Scene,
     device: str = "auto",
     *,
+    set: Optional[Mapping[str, Any]] = None,
     agree: bool = False,
     unchecked: bool = False,
     seconds: Optional[float] = None,
@@ -527,7 +651,7 @@ def open(
     """Touch a scene in real time, and begin at once. Other options as of :func:`run`.
 
     device: "sim" for the simulated arm, a name that :func:`devices` tells, or "auto" for the only arm
-    that is plugged in (the simulated one if there is none). agree: **a real arm moves by itself.**
+    that is plugged in (Error if there is none). agree: **a real arm moves by itself.**
     Keep clear of it, hold its grip, have its switch at hand, and say so with ``agree=True``. unchecked: a
     real arm that has not passed ``thimble feel-check`` gets at most 0.5 N; ``unchecked=True`` gives it
     its whole force all the same. A real arm brings its own arm file; what the scene or ``arm`` say of
@@ -543,6 +667,7 @@ def open(
         )
     held = _begin(
         scene,
+        set=set,
         seconds=seconds,
         seed=seed,
         arm=arm,
@@ -614,6 +739,14 @@ def _program() -> str:
     return found
 
 
+_BAD_INPUT = 2  # the program's exit code of wrong arguments, scene, arm file or mesh
+
+
+def _studies() -> list[str]:
+    told = subprocess.run([_program(), "study", "--help"], capture_output=True, text=True, check=True).stdout
+    return re.findall(r"^  ([a-z][a-z-]*) ", told.partition("Subcommands:")[2], re.MULTILINE)
+
+
 def study(
     name: str, *arguments: PathOrName, out: Optional[PathOrName] = None, **options: Any
 ) -> list[Figure]:
@@ -622,8 +755,12 @@ def study(
     It runs in a process of its own, as several count their own instructions or use all cores. Options
     are those of the command line: ``study("stability", arm="vintage_phantom", coarse=True)``,
     ``study("accuracy", axis=["velocity", "encoder"])``. out: folder for pictures, tables and
-    figures.json; "study-NAME" if absent. Raises Error with what the program said.
+    figures.json; "study-NAME" if absent. Raises ArgumentError if there is no such study, or it cannot
+    take an option; Error with what the program said if it fails.
     """
+    names = _studies()
+    if name not in names:
+        raise ArgumentError(f'There is no study "{name}"; there are {", ".join(names)}.')
     folder = Path(out) if out is not None else Path(f"study-{name}")
     command = [_program(), "study", name, *map(os.fspath, arguments), "--out", str(folder)]
     for key, value in options.items():
@@ -635,6 +772,7 @@ def study(
             command += [str(one) for one in (value if several else [value])]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     if done.returncode != 0:
-        said = done.stderr.strip() or done.stdout.strip()
-        raise Error(f"thimble study {name} ended with {done.returncode}: {said}")
+        said = (done.stderr.strip() or done.stdout.strip()).removesuffix("\nRun with --help for more information.")
+        kind = ArgumentError if done.returncode == _BAD_INPUT else Error
+        raise kind(f"thimble study {name}: {said}")
     return [_figure(one) for one in json.loads((folder / "figures.json").read_text())]

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "energy_choice.h"
+#include "files/scene_paths.h"
 #include "loop_latency.h"
 #include "page/page_file.h"
 #include "read_scene.h"
@@ -34,27 +35,6 @@ constexpr double kDurationMax = 86400;                // s
 constexpr double kRateMin = 10;                       // Hz
 constexpr double kRateMax = 1e5;                      // Hz
 constexpr double kShareBorne = 0.5;  // of the law's stiffness [chosen: hands differ by that]
-constexpr std::string_view kMeshScheme = "cgal:";
-
-std::filesystem::path find_file(YamlMap& map, std::string_view key,
-                                const std::filesystem::path& folder,
-                                const std::filesystem::path& mesh_folder) {
-  const std::string text = map.require_string(key);
-  if (text.empty()) return {};
-  const bool in_collection = text.starts_with(kMeshScheme) && !mesh_folder.empty();
-  if (text.starts_with(kMeshScheme) && mesh_folder.empty()) {
-    map.reject(
-        key, "expected a file beside the scene: no folder of meshes is known for \"" + text + "\"");
-    return {};
-  }
-  const std::filesystem::path path =
-      in_collection ? mesh_folder / text.substr(kMeshScheme.size()) : folder / text;
-  std::error_code status;
-  if (!std::filesystem::is_regular_file(path, status)) {
-    map.reject(key, "expected a file, found none at " + path.lexically_normal().string());
-  }
-  return path.lexically_normal();
-}
 
 render::ContactChoice read_contact(YamlMap map) {
   render::ContactChoice choice;
@@ -93,7 +73,7 @@ render::ContactChoice read_contact(YamlMap map) {
 
 void read_mesh(YamlMap& map, const std::filesystem::path& folder,
                const std::filesystem::path& mesh_folder, SceneObject& object) {
-  object.mesh_file = find_file(map, "mesh", folder, mesh_folder);
+  object.mesh_file = find_mesh_file(map, folder, mesh_folder);
   if (map.has("size")) object.size = map.require_number("size", "m", 1e-4, kPositionMax);
   if (object.size && map.has("scale")) {
     map.reject("scale", "cannot stand together with size; keep one of them");
@@ -269,7 +249,7 @@ driver::Result<Scene> read_scene(YamlFile& yaml, const std::filesystem::path& fi
   scene.file = file;
   scene.name = root.require_string("name");
   scene.description = root.optional_string("description", "");
-  scene.arm_file = find_file(root, "arm", folder, {});
+  scene.arm_file = find_own_arm_file(root, folder);
   scene.rate =
       std::clamp(root.optional_number("rate", 1000, "Hz", kRateMin, kRateMax) * reading.rate_factor,
                  kRateMin, kRateMax);

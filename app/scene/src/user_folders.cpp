@@ -25,6 +25,10 @@ fs::path state_folder() {
   return folder("XDG_STATE_HOME", ".local/state");
 }
 
+fs::path cache_folder() {
+  return folder("XDG_CACHE_HOME", ".cache");
+}
+
 fs::path data_folder() {
   return folder("XDG_DATA_HOME", ".local/share");
 }

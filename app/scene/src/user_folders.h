@@ -13,6 +13,10 @@ std::filesystem::path config_folder();
 /// ~/.local/state/thimble [XDG Base Directory Specification].
 std::filesystem::path state_folder();
 
+/// Returns where what can be made anew lies: $XDG_CACHE_HOME/thimble, or ~/.cache/thimble [XDG Base
+/// Directory Specification].
+std::filesystem::path cache_folder();
+
 /// Returns where a user's own scenes and arm files lie: $XDG_DATA_HOME/thimble, or
 /// ~/.local/share/thimble [XDG Base Directory Specification].
 std::filesystem::path data_folder();

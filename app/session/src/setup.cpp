@@ -61,10 +61,9 @@ driver::Result<std::unique_ptr<Setup>> Setup::prepare(const std::filesystem::pat
 
 driver::Result<void> Setup::read(const SessionOptions& options) {
   auto scene = scene::load_scene(
-      scene_file_,
-      {.arm = options.real_arm ? options.terms->arm.path : options.arm_file,
-       .mesh_folder = options.mesh_folder.empty() ? scene::mesh_folder() : options.mesh_folder,
-       .rate_factor = options.real_arm ? 1 : options.rate_factor});
+      scene_file_, {.arm = options.real_arm ? options.terms->arm.path : options.arm_file,
+                    .mesh_folder = options.mesh_folder,
+                    .rate_factor = options.real_arm ? 1 : options.rate_factor});
   if (!scene) return scene.error();
   scene_ = std::move(scene).value();
   if (options.adjust) options.adjust(scene_);

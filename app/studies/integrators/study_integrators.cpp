@@ -10,12 +10,12 @@
 #include <utility>
 
 #include "body/spring/mesh_springs.h"
+#include "files/scanned_meshes.h"
 #include "report/gnuplot.h"
 #include "report/picture_parts.h"
 #include "studies/integrators/membrane.h"
 #include "studies/integrators/poked_body.h"
 #include "thimble/render/mesh/load_mesh.h"
-#include "thimble/scene/shipped_files.h"
 
 namespace thimble::app {
 namespace {
@@ -68,7 +68,9 @@ PokedBody<1> poked_membrane() {
 }
 
 driver::Result<PokedBody<3>> poked_scan() {
-  auto mesh = render::load_mesh(scene::mesh_folder() / kScan);
+  const auto scan = scene::find_scan(kScan);
+  if (!scan) return scan.error();
+  auto mesh = render::load_mesh(*scan);
   if (!mesh) return mesh.error();
   Eigen::Vector3d low = mesh->vertices[0];
   Eigen::Vector3d high = low;

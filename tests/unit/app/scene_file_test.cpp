@@ -150,6 +150,35 @@ TEST(SceneFile, NamesAMeshOrArmThatIsNotThere) {
             std::string::npos);
 }
 
+TEST(SceneFile, TakesAnArmByNameUnlessAFileOfThatNameLiesBesideIt) {
+  ASSERT_TRUE(read(kBall, kWait));  // writes the mesh
+  std::filesystem::remove(kFolder / "falcon");
+  const auto with_arm = [](const std::string& arm) {
+    std::ofstream(kFolder / "named.yaml") << "name: test\narm: " + arm +
+                                                 "\nduration: 2\nobjects:\n" + kBall +
+                                                 "hand:\n  path:\n" + kWait;
+    return scene::load_scene(kFolder / "named.yaml", {.mesh_folder = kFolder / "meshes"});
+  };
+  for (const std::string name : {"falcon", "falcon.yaml"}) {
+    const auto named = with_arm(name);
+    ASSERT_TRUE(named.ok()) << named.error().message;
+    EXPECT_EQ(named->arm_file.filename(), "falcon.yaml");
+    EXPECT_EQ(named->own_arm_file, named->arm_file);
+  }
+  std::filesystem::copy_file(kFolder / "arm.yaml", kFolder / "falcon");
+  EXPECT_EQ(with_arm("falcon")->arm_file, kFolder / "falcon");
+  std::filesystem::remove(kFolder / "falcon");
+  const auto unknown = with_arm("eagle");
+  ASSERT_FALSE(unknown.ok());
+  EXPECT_NE(unknown.error().message.find("named.yaml:2: arm: expected a file, found none at"),
+            std::string::npos);
+  EXPECT_NE(unknown.error().message.find("the name of an arm: falcon, "), std::string::npos)
+      << unknown.error().message;
+  // What has a folder in it is a path.
+  EXPECT_EQ(with_arm("arms/falcon.yaml").error().message.find("the name of an arm"),
+            std::string::npos);
+}
+
 TEST(SceneFile, RefusesSizeTogetherWithScale) {
   EXPECT_NE(mistake("  - {name: b, mesh: cgal:ball.off, size: 1, scale: 1, stiffness: 1}\n", kWait)
                 .find("scale: cannot stand together with size"),

@@ -12,7 +12,6 @@
 #include "studies/accuracy/probed_stroke.h"
 #include "thimble/scene/arm_simulation.h"
 #include "thimble/scene/scene_file.h"
-#include "thimble/scene/shipped_files.h"
 #include "thimble/session/session.h"
 
 namespace thimble::app {
@@ -25,7 +24,6 @@ using Adjust = std::function<void(scene::Scene&)>;
 driver::Result<std::unique_ptr<session::Session>> open_with(const std::filesystem::path& scene,
                                                             const Adjust& adjust) {
   session::SessionOptions options;
-  options.mesh_folder = scene::mesh_folder();
   options.adjust = adjust;
   return session::Session::open(scene, options);
 }

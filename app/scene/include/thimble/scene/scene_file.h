@@ -81,7 +81,8 @@ struct Scene {
 struct SceneReading {
   std::filesystem::path
       arm{};  ///< Arm file, by name or path, in place of the scene's; empty: its own.
-  std::filesystem::path mesh_folder = scene::mesh_folder();  ///< Where meshes `cgal:NAME` lie.
+  /// Where meshes `cgal:NAME` lie; empty: looked for where `thimble doctor` says.
+  std::filesystem::path mesh_folder{};
   /// The loop's rate over what the file says, > 0. Above 1 the simulated board reports as often.
   /// Below 1 only where the scene bears it: every stiffness at most half of what the law of the
   /// latency lets this arm and hand hold [PHYSICS 1.1], and no setting refused at that rate.

@@ -47,8 +47,4 @@ driver::Result<std::filesystem::path> find_scene(const std::string& meant);
 /// Returns the arm file that a user means, as above.
 driver::Result<std::filesystem::path> find_arm_file(const std::string& meant);
 
-/// Returns where the meshes of Debian's libcgal-demo lie (`cgal:` in scenes): the environment's
-/// THIMBLE_MESHES, or the folder that this build was configured with.
-std::filesystem::path mesh_folder();
-
 }  // namespace thimble::scene

@@ -55,7 +55,7 @@ struct SessionOptions {
   std::shared_ptr<driver::Clock> own_clock = {};
   std::optional<double> duration = {};     ///< s; the scene's own if empty
   std::optional<std::uint64_t> seed = {};  ///< of everything random; the scene's own if empty
-  std::filesystem::path mesh_folder = {};  ///< of `cgal:` meshes; empty: scene::mesh_folder()
+  std::filesystem::path mesh_folder = {};  ///< of `cgal:` meshes; empty: as SceneReading
   std::filesystem::path arm_file = {};     ///< file or name, in place of the scene's own
   std::optional<driver::FoundArm> real_arm = {};  ///< in place of the simulated one
   std::optional<scene::RealArmTerms> terms = {};  ///< on which it may be used; needed with one

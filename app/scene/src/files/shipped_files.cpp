@@ -1,69 +1,18 @@
 #include "thimble/scene/shipped_files.h"
 
-#include <dlfcn.h>
 #include <yaml-cpp/yaml.h>
 
-#include <cstdlib>
 #include <map>
 #include <string_view>
 #include <system_error>
 
+#include "files/data_folders.h"
 #include "user_folders.h"
-
-// Where the files lie that came with the installed libraries; the CMake package gives it to each
-// program that is built with them (app/install/installed_files.cpp.in), for a static library cannot
-// know.
-extern "C" __attribute__((weak)) const char* thimble_installed_files();
 
 namespace thimble::scene {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Returns where the program lies, or the library, if this code is in one (Python's module).
-fs::path own_file() {
-  std::error_code status;
-  Dl_info info{};
-  if (dladdr(reinterpret_cast<const void*>(&own_file), &info) != 0 && info.dli_fname != nullptr) {
-    fs::path file = fs::canonical(info.dli_fname, status);
-    // Of a program it is told as it was called: without a folder if the shell found it.
-    if (!status && file.extension() == ".so") return file;
-  }
-  return fs::read_symlink("/proc/self/exe", status);
-}
-
-bool has_both(const fs::path& folder) {
-  std::error_code status;
-  return fs::is_directory(folder / "scenes", status) && fs::is_directory(folder / "arms", status);
-}
-
-/// Returns what came with this program: PREFIX/share/thimble, or app/ of the sources it was built
-/// in; else, for a program of somebody else, what came with the libraries that it was built with.
-fs::path own_folder() {
-  for (fs::path above = own_file().parent_path();; above = above.parent_path()) {
-    for (const fs::path& folder : {above / "share" / "thimble", above / "app"}) {
-      if (has_both(folder)) return folder;
-    }
-    if (!above.has_relative_path()) break;
-  }
-  const char* told = thimble_installed_files != nullptr ? thimble_installed_files() : "";
-  for (const fs::path& folder : {fs::path(told), fs::path(THIMBLE_INSTALLED_FILES)}) {
-    if (!folder.empty() && has_both(folder)) return folder;
-  }
-  return {};
-}
-
-std::vector<fs::path> folders() {
-  std::vector<fs::path> folders{"app", data_folder(), own_folder()};
-  const char* named = std::getenv("XDG_DATA_DIRS");
-  std::string_view rest = named != nullptr && *named != 0 ? named : "/usr/local/share:/usr/share";
-  while (!rest.empty()) {
-    const std::string_view one = rest.substr(0, rest.find(':'));
-    if (!one.empty()) folders.push_back(fs::path(one) / "thimble");
-    rest.remove_prefix(std::min(rest.size(), one.size() + 1));
-  }
-  return folders;
-}
 
 /// Returns the folders of arm files that set the limits of a real arm, the first first.
 std::vector<fs::path> installed_arm_folders() {
@@ -92,7 +41,7 @@ std::vector<ShippedFile> list_in(const std::vector<fs::path>& folders) {
 
 std::vector<ShippedFile> list(std::string_view kind) {
   std::vector<fs::path> places;
-  for (const fs::path& folder : folders()) {
+  for (const fs::path& folder : data_folders()) {
     if (!folder.empty()) places.push_back(folder / kind);
     if (kind == "arms" && folder == "app") places.push_back(own_arm_folder());
   }
@@ -146,11 +95,6 @@ std::string description_of(const fs::path& file) {
   } catch (const YAML::Exception&) {
     return {};  // whoever runs it is told what is wrong with it
   }
-}
-
-fs::path mesh_folder() {
-  const char* chosen = std::getenv("THIMBLE_MESHES");
-  return chosen && *chosen ? chosen : THIMBLE_MESH_FOLDER;
 }
 
 driver::Result<fs::path> find_scene(const std::string& meant) {

@@ -1,0 +1,63 @@
+#include "files/scene_paths.h"
+
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include "files/scanned_meshes.h"
+#include "thimble/scene/shipped_files.h"
+
+namespace thimble::scene {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kMeshScheme = "cgal:";
+
+bool is_file(const fs::path& path) {
+  std::error_code status;
+  return fs::is_regular_file(path, status);
+}
+
+}  // namespace
+
+fs::path find_mesh_file(YamlMap& map, const fs::path& folder, const fs::path& mesh_folder) {
+  const std::string text = map.require_string("mesh");
+  if (text.empty()) return {};
+  fs::path path = folder / text;
+  if (text.starts_with(kMeshScheme)) {
+    const std::string scan = text.substr(kMeshScheme.size());
+    path = mesh_folder / scan;
+    if (mesh_folder.empty()) {
+      auto found = find_scan(scan);
+      if (!found) {
+        map.reject("mesh", found.error().message);
+        return {};
+      }
+      path = std::move(found).value();
+    }
+  }
+  if (!is_file(path)) {
+    map.reject("mesh", "expected a file, found none at " + path.lexically_normal().string());
+  }
+  return path.lexically_normal();
+}
+
+fs::path find_own_arm_file(YamlMap& map, const fs::path& folder) {
+  const std::string text = map.require_string("arm");
+  if (text.empty()) return {};
+  const fs::path path = (folder / text).lexically_normal();
+  if (is_file(path)) return path;
+  std::string names;
+  if (text.find('/') == std::string::npos) {
+    for (const ShippedFile& arm : shipped_arms()) {
+      if (text == arm.name || text == arm.name + ".yaml") return arm.path;
+      names += (names.empty() ? "; or the name of an arm: " : ", ") + arm.name;
+    }
+  }
+  map.reject("arm", "expected a file, found none at " + path.string() + names);
+  return path;
+}
+
+}  // namespace thimble::scene
