@@ -40,7 +40,8 @@ LinkWrite SlotLink::write(const GatedForce& force, const ArmSample&,
       box_.put(refuses ? Eigen::Vector3d(0, 0, 0)
                        : Eigen::Vector3d(scale * (R_WB.transpose() * force.f_T_W())));
   ring();
-  if (!taken || refuses) return {LinkStatus::kRefused};
+  // Zero is what it has meanwhile.
+  if (!taken || (refuses && length > 0)) return {LinkStatus::kRefused};
   return {LinkStatus::kOk, scale};
 }
 
