@@ -75,6 +75,7 @@ class Program {
       } catch (const std::exception&) {  // no memory, say: as if the program had left
       }
       arms.leave(session_);
+      stream_.next_layer().close();
       done_.store(true, std::memory_order_release);
     });
   }

@@ -77,8 +77,11 @@ bool ServedArms::push(int number, int session, const std::optional<Eigen::Vector
   if (!f_B && is_first) return false;
   arm.sessions[session] = {f_B.value_or(Eigen::Vector3d(0, 0, 0)), arms::now_ns()};
   // A session begins as a program that switches the force on: after a fault of a simulated arm,
-  // too.
-  if (is_first) arms::enable_force(number, true);
+  // too. What others have switched on goes on as it is.
+  ArmReading now;
+  const bool off =
+      !arms::force_enabled(number) || !arms::read(number, now) || now.fault != driver::Fault::kNone;
+  if (is_first && off) arms::enable_force(number, true);
   ask_sum(number, arm);
   return true;
 }
