@@ -151,14 +151,23 @@ int exit_code_of(const faces::ArmServer& server, int status, bool stopped) {
   return server.any_fault() ? kExitFault : kExitDone;
 }
 
-/// Tells what a program that opened no arm may lack.
-void warn_of_no_arm(const std::string& program, const fs::path& libraries,
-                    const faces::haply::Service* service) {
-  if (service != nullptr) {
-    scene::logger().warn("Nobody asked for an arm: no program came to ws://localhost:{}.",
-                         service->port());
-    return;
+/// Makes the service and opens its arms.
+driver::Result<std::unique_ptr<faces::haply::Service>> make_service(const Asked& asked,
+                                                                    faces::ArmServer& server) {
+  faces::use_channel(&server.channel());
+  auto service = faces::haply::Service::listen(asked.port);
+  if (!service) return service;
+  constexpr std::int64_t kLook_ns = 1'000'000;
+  while (!(*service)->ready()) server.step(kLook_ns);
+  if (server.runs() < static_cast<int>(arms_of(asked).size())) {
+    end(**service, server);
+    return driver::Error{"Not all arms could be opened, so no program is served."};
   }
+  return service;
+}
+
+/// Tells what a program that opened no arm may lack.
+void warn_of_no_arm(const std::string& program, const fs::path& libraries) {
   scene::logger().warn(
       "{} opened no arm. It found libraries of its own (ldd, rpath), or it is written for none "
       "of those that are stood in for: {}",
@@ -183,16 +192,15 @@ int run_program(const Asked& asked, const std::vector<std::string>& command) {
   auto made = faces::ArmServer::make(options, stop);
   if (!made) return complain(made.error(), kExitBadInput);
   faces::ArmServer& server = **made;
+  const scene::LeavingGuard guard;
   std::unique_ptr<faces::haply::Service> service;
   if (serves) {
-    faces::use_channel(&server.channel());
-    auto listening = faces::haply::Service::listen(asked.port);
-    if (!listening) return complain(listening.error(), kExitBadInput);
-    service = std::move(listening).value();
+    auto serving = make_service(asked, server);
+    if (!serving) return complain(serving.error(), kExitBadInput);
+    service = std::move(serving).value();
     scene::terminal().info("Programs of the Inverse3 find the arm at ws://localhost:{}.{}",
                            service->port(), command.empty() ? " Ctrl-C ends it." : "");
   }
-  const scene::LeavingGuard guard;
   int status = 0;
   if (command.empty()) {
     serve_all(server, stop);
@@ -211,7 +219,11 @@ int run_program(const Asked& asked, const std::vector<std::string>& command) {
   server.end();
   // What the program printed is its own; so this goes to standard error.
   session::print(stderr, "{}", server.report());
-  if (server.runs() == 0) warn_of_no_arm(options.program, *libraries, service.get());
+  if (service && service->programs() == 0) {
+    scene::logger().warn("No program came to ws://localhost:{}.", service->port());
+  } else if (server.runs() == 0) {
+    warn_of_no_arm(options.program, *libraries);
+  }
   return exit_code_of(server, status, stop.load());
 }
 

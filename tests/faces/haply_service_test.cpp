@@ -29,6 +29,10 @@ class HaplyService : public ::testing::Test {
     auto listening = haply::Service::listen(0);
     EXPECT_TRUE(listening) << listening.error().message;
     if (listening) service_ = std::move(listening).value();
+    // Opening takes its time on a busy machine, and our back end does not wait for it.
+    for (int look = 0; look < 30'000 && service_ && !service_->ready(); ++look) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
   }
   ~HaplyService() override {
     device_.reset();

@@ -20,6 +20,12 @@ driver::Result<std::unique_ptr<Service>> Service::listen(std::uint16_t) {
 std::uint16_t Service::port() const noexcept {
   return 0;
 }
+bool Service::ready() const noexcept {
+  return true;
+}
+int Service::programs() const noexcept {
+  return 0;
+}
 void Service::leave() {}
 bool Service::ended() const noexcept {
   return true;

@@ -177,6 +177,8 @@ class Service::Listener {
   }
 
   std::uint16_t port() const noexcept { return port_; }
+  bool ready() const noexcept { return ready_.load(std::memory_order_acquire); }
+  int programs() const noexcept { return came_.load(std::memory_order_relaxed); }
   bool ended() const noexcept { return ended_.load(std::memory_order_acquire); }
 
   void leave() {
@@ -188,6 +190,8 @@ class Service::Listener {
 
  private:
   void listen() {
+    arms_.open();
+    ready_.store(true, std::memory_order_release);
     for (int session = 1; !leaves_.load(std::memory_order_acquire); ++session) {
       std::list<Program> one;
       if (!one.emplace_back(session).accept(acceptor_)) {
@@ -198,6 +202,7 @@ class Service::Listener {
       programs_.remove_if([](const Program& program) { return program.done(); });
       if (leaves_.load(std::memory_order_acquire)) break;
       if (programs_.size() >= kProgramsMost) continue;
+      came_.fetch_add(1, std::memory_order_relaxed);
       one.front().begin(arms_);
       programs_.splice(programs_.end(), one);
     }
@@ -220,7 +225,8 @@ class Service::Listener {
   ServedArms arms_;
   std::mutex mutex_;
   std::list<Program> programs_;  // that are connected
-  std::atomic<bool> leaves_{false}, ended_{false};
+  std::atomic<bool> ready_{false}, leaves_{false}, ended_{false};
+  std::atomic<int> came_{0};
   std::uint16_t port_ = 0;
   std::thread thread_;
 };
@@ -241,6 +247,12 @@ driver::Result<std::unique_ptr<Service>> Service::listen(std::uint16_t port) {
 
 std::uint16_t Service::port() const noexcept {
   return listener_->port();
+}
+bool Service::ready() const noexcept {
+  return listener_->ready();
+}
+int Service::programs() const noexcept {
+  return listener_->programs();
 }
 void Service::leave() {
   listener_->leave();

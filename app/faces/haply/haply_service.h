@@ -21,7 +21,8 @@ inline constexpr std::uint16_t kPort = 10001;
 class Service {
  public:
   /// Listens on a port; 0: one that is free. The channel to the arms must be in use (use_channel)
-  /// until the service is destroyed. The error says what to do.
+  /// until the service is destroyed. Begins by opening all arms, for which whoever serves them has
+  /// to go on with it. The error says what to do.
   static driver::Result<std::unique_ptr<Service>> listen(std::uint16_t port);
   /// Leaves, and waits for its threads.
   ~Service();
@@ -30,6 +31,10 @@ class Service {
 
   /// Returns where it listens.
   std::uint16_t port() const noexcept;
+  /// Returns whether the arms have been opened, or could not be; programs are let in from then on.
+  bool ready() const noexcept;
+  /// Returns how many programs have come.
+  int programs() const noexcept;
   /// Closes all connections. Any thread.
   void leave();
   /// Returns whether all its threads are done, after `leave`: until then whoever serves the arms

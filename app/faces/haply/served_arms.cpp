@@ -5,19 +5,13 @@
 
 namespace thimble::faces::haply {
 
-std::string ServedArms::greet(int session) {
-  {
-    const std::lock_guard one_at_a_time(opening_);
-    for (int number = 0; number < arms::count(); ++number) {
-      // Why an arm cannot be opened stands in the terminal; it is not listed, and tried again when
-      // the next program comes.
-      if (is_open(number) || !arms::open(number, "Haply").empty()) continue;
-      Arm& arm = arms_[static_cast<std::size_t>(number)];
-      const std::lock_guard lock(arm.mutex);
-      arm.open = true;
-    }
+void ServedArms::open() {
+  for (int number = 0; number < arms::count(); ++number) {
+    Arm& arm = arms_[static_cast<std::size_t>(number)];
+    const bool opened = arms::open(number, "Haply").empty();
+    const std::lock_guard lock(arm.mutex);
+    arm.open = opened;
   }
-  return message(session, true);
 }
 
 std::string ServedArms::answer(int session, std::string_view text) {

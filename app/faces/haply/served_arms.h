@@ -25,8 +25,10 @@ namespace thimble::faces::haply {
 /// a session at a time; never from the servo thread.
 class ServedArms {
  public:
-  /// Opens what is not open yet and returns the first message, which tells everything.
-  std::string greet(int session);
+  /// Opens all arms. Why one cannot be opened stands in the terminal; it is not listed then.
+  void open();
+  /// Returns the first message, which tells everything.
+  std::string greet(int session) { return message(session, true); }
   /// Does what a message asks for and returns its answer.
   std::string answer(int session, std::string_view text);
   /// Takes the forces of a session away, whose program has left.
@@ -50,7 +52,6 @@ class ServedArms {
   void ask_sum(int number, const Arm& arm) const;
   std::string message(int session, bool full);
 
-  std::mutex opening_;
   std::array<Arm, kArmsMost> arms_;
 };
 
