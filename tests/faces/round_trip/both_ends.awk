@@ -1,8 +1,9 @@
 # Compares the two ends of an arm: what a program at this end knew of each tick (THIS), and the recording of
 # `thimble exec` as a table (THAT). Positions are the same within 1 nm, velocities within 100 nm/s, forces as said.
-#   awk -f both_ends.awk -v force_step=1e-9 THIS THAT
+#   awk -f both_ends.awk -v force_step=1e-9 -v opening=5000 THIS THAT
 # THIS has lines "px py pz vx vy vz fx fy fz" (m, m/s, N, in the world; - where a tick had nothing new). Each position and velocity of it must
-# be in THAT, in the same order; each force that THAT had asked once the soft start was over must be one that THIS sent.
+# be in THAT, in the same order; each force that THAT was asked for
+# after the first `opening` ticks, in which the soft start changes it, must be one that THIS sent.
 # Whole steps, so that zero has no sign.
 function steps(value, step) { return sprintf("%d", int(value / step + (value < 0 ? -0.5 : 0.5))) }
 function three(x, y, z, step) { return steps(x, step) " " steps(y, step) " " steps(z, step) }
@@ -27,11 +28,12 @@ FNR == 1 {
   here = place($p, $(p + 1), $(p + 2), $v, $(v + 1), $(v + 2))
   if (!(here in first)) first[here] = FNR
   last[here] = FNR
+  if (FNR <= opening + 1) next
   if (sqrt($f * $f + $(f + 1) * $(f + 1) + $(f + 2) * $(f + 2)) < 0.05) next
   if (push($f, $(f + 1), $(f + 2)) in sent) {
     ++same
     distinct[push($f, $(f + 1), $(f + 2))] = 1
-  } else if (same > 0) {
+  } else {
     ++foreign
   }
 }

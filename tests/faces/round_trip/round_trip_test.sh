@@ -19,8 +19,8 @@ for kind in dhd:omega3 hd:touch; do
   # A Touch is calibrated first, which is a run of its own.
   [ ! -e $name-2.h5 ] || mv $name-2.h5 $name.h5
   expect 0 "$name.csv: [0-9]+ ticks" "$thimble" export $name.h5 --csv $name.csv
-  expect 0 "$good" awk -f "$here/both_ends.awk" -v force_step=1e-9 $name.txt $name.csv
-  awk -f "$here/both_ends.awk" -v force_step=1e-9 $name.txt $name.csv
+  expect 0 "$good" awk -f "$here/both_ends.awk" -v force_step=1e-9 -v opening=5000 $name.txt $name.csv
+  awk -f "$here/both_ends.awk" -v force_step=1e-9 -v opening=5000 $name.txt $name.csv
 done
 # Whatever our back ends call, they call in an order that the interfaces allow.
 for kind in dhd:omega3 hd:touch; do
