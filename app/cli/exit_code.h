@@ -5,7 +5,7 @@
 
 namespace thimble::app {
 
-/// Tells a script how the program ended; `thimble --help` lists them.
+/// How the program ended, for scripts; `thimble --help` lists them.
 enum ExitCode : int {
   kExitDone = 0,          ///< All went well.
   kExitTrouble = 1,       ///< Something unexpected; the message says what.

@@ -1,6 +1,7 @@
 #include "stability/rest_warnings.h"
 
 #include <fmt/core.h>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>

@@ -22,7 +22,7 @@ struct BumpyRing {
   Eigen::Vector3d at(double u, double v) const noexcept;
   /// Finds the outward unit normal at (u, v). Real-time: safe.
   Eigen::Vector3d normal(double u, double v) const noexcept;
-  /// Tells half the longest side of a box around the ring and the origin, m.
+  /// Returns half the longest side of a box around the ring and the origin, m.
   double half_size() const noexcept { return ring_radius + tube_radius * (1 + amplitude); }
 };
 

@@ -63,7 +63,7 @@ double zero_of_velocity(const AxisMotion& m, double low, double high, double gue
   });
 }
 
-// Tells whether a velocity that keeps its sign at both ends of a piece might leave it in between.
+// Returns whether a velocity that keeps its sign at both ends of a piece might leave it in between.
 // Inside a piece an acceleration that rises from a < 0 through zero stays above a (the boundary
 // value problem's influence functions are at most 1 within a quarter period), so the velocity
 // stays above v + a t.

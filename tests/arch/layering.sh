@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Fails if a module includes what it must not know (the table in app/guide/pages/concepts.md), if a layer of render
 # includes one above it (the table in render/README.md), if a library of app includes one above it
-# (app/CMakeLists.txt), or if a folder of render or app is too full.
+# (app/CMakeLists.txt), if a folder of render or app is too full, or if a source needs a header of its neighbour's.
 #   tests/arch/layering.sh [SOURCE_DIR]
 set -euo pipefail
 cd "${1:-$(dirname "$0")/../..}"
@@ -135,6 +135,16 @@ for folder in scene session report stability studies bringup faces cli python; d
 done
 for folder in scene session report stability studies bringup view faces python; do
   forbid "app/$folder" 'CLI/' "arguments: they are app/cli's"
+done
+
+# Eigen declares the cross product in one header and defines it in another: a source that leaves the second to
+# the sources it is joined with does not link where none are joined (preset dev).
+for source in $(grep -rlE '\.cross\(' driver device_sim render app --include='*.h' --include='*.cpp'); do
+  own=$(basename "${source%.*}").h
+  if ! grep -q '<Eigen/Geometry>' "$source" $(find driver device_sim render app -name "$own"); then
+    echo "$source calls cross() and includes <Eigen/Geometry> neither itself nor by its own header"
+    bad=1
+  fi
 done
 
 # Who looks for something reads a folder from end to end: headers and sources of one count together.

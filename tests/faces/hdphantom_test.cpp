@@ -1,4 +1,5 @@
 // libhdPhantom as CHAI3D and AMBF use it: the same calls in the same order.
+#include <Eigen/LU>
 #include <array>
 #include <chrono>
 #include <cmath>

@@ -134,7 +134,7 @@ TEST(HardCase23, NoTrackerLetsTheTipThroughAThinPlateUnderAllForce) {
     double most = 0, worst = 0;
     for (int press = 0; press < 60; ++press) {
       const double side = press % 2 == 0 ? 1 : -1;
-      const Vector3d place(random.uniform(-0.035, 0.035), random.uniform(-0.035, 0.035), 0);
+      const Vector3d place{random.uniform(-0.035, 0.035), random.uniform(-0.035, 0.035), 0};
       touched.forget();
       touched.at(place + Vector3d(0, 0, side * 0.002));
       for (int i = 0; i < 500; ++i) {
@@ -345,7 +345,7 @@ TEST(HardCase28, NoTrackerTunnelsThroughAPlateAtAnyPhase) {
     for (int i = 0; i < 10000; ++i) {
       touched.forget();
       const double side = i % 2 == 0 ? 1 : -1;
-      const Vector3d beside(random.uniform(-0.04, 0.04), random.uniform(-0.04, 0.04), 0);
+      const Vector3d beside{random.uniform(-0.04, 0.04), random.uniform(-0.04, 0.04), 0};
       bool met = false, held = true;
       for (int tick = 0; tick < 6; ++tick) {
         const double z = 5e-3 + 2e-3 * i / 10000 - 2e-3 * tick;

@@ -301,7 +301,7 @@ TEST(HardCase37, SingularPosesAndTheEdgeOfReachGiveFiniteClampedCurrents) {
   for (int i = 0; i < 20'000; ++i) {
     // Folded (B + C = 0), stretched (B + C = pi) and on the yaw axis, exactly and nearly.
     const double off = i % 4 == 0 ? 0 : std::pow(10, random.uniform(-12, -1));
-    Vector3d q(random.uniform(-1, 1), random.uniform(0.1, 2.5), 0);
+    Vector3d q{random.uniform(-1, 1), random.uniform(0.1, 2.5), 0};
     q[2] = (i % 3 == 0 ? 0 : std::numbers::pi) - q[1] + off;
     if (i % 3 == 2) {  // the tip on the yaw axis
       q[2] = std::asin(-model.geometry.length_b / model.geometry.length_c * std::sin(q[1])) + off;

@@ -7,6 +7,7 @@
 #include "support/run_hash.h"
 #include "support/scratch.h"
 #include "thimble/driver/orientation.h"
+#include "thimble/scene/scene_file.h"
 #include "thimble/session/recording.h"
 #include "thimble/session/session.h"
 

@@ -117,7 +117,9 @@ inline Hollow random_hollow(Random& random) {
     for (int i = 0; i < rows; ++i) cuts.push_back(random.uniform(-0.028, 0.028));
     std::sort(cuts.begin(), cuts.end());
     const double left = turn / 2 + lean, right = turn / 2 - lean;
-    made = groove(left, right, random.uniform(0.01, 0.035), random.uniform(0.01, 0.035), cuts);
+    const double left_long = random.uniform(0.01, 0.035);
+    const double right_long = random.uniform(0.01, 0.035);
+    made = groove(left, right, left_long, right_long, cuts);
     // From one wall's normal to the other's, and a little along the groove.
     const double across = random.uniform(-1, 1);
     const double angle = across > 0 ? across * left : across * right;

@@ -28,7 +28,7 @@ struct FollowedSurface {
   std::shared_ptr<const render::ContactSearch> tree, linear;
 };
 
-/// Tells in each tick which triangle a tip that has come in from outside belongs to.
+/// Finds in each tick which triangle a tip that has come in from outside belongs to.
 class Follower {
  public:
   virtual ~Follower() = default;

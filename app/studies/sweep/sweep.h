@@ -20,7 +20,7 @@ using CellNumbers = std::vector<std::vector<double>>;
 /// give the same bytes with any number of threads and machines, interrupted or not.
 struct Sweep {
   std::string name;  ///< Of its journal, NAME.journal.
-  /// Tells everything that the numbers depend on, in any form: a journal of another key is refused.
+  /// Everything that the numbers depend on, in any form: a journal of another key is refused.
   std::string key;
   std::size_t cells = 0;
   /// Measures one cell, by several threads at once: at least one number, or why there is none,

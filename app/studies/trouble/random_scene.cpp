@@ -302,7 +302,7 @@ class Drawing {
                 ", damping: ", number(hand_.damping), ", tremor: ", number(hand_.tremor), "}"}));
     lines_.add(2, "path", "");
     // Above everything, so that nothing is touched while the forces open softly.
-    station(0, Vector3d(draw_.uniform(-0.05, 0.05), draw_.uniform(-0.05, 0.05), 0.075));
+    station(0, Vector3d{draw_.uniform(-0.05, 0.05), draw_.uniform(-0.05, 0.05), 0.075});
     double time = draw_.uniform(0.3, 0.5);
     const Placed* last = nullptr;
     std::string rest;

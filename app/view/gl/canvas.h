@@ -27,7 +27,7 @@ class Canvas {
   int width() const { return width_; }
   int height() const { return height_; }
   int strip() const { return strip_; }
-  /// Tells width by height of the part that shows the scene.
+  /// Returns width by height of the part that shows the scene.
   double aspect() const { return static_cast<double>(width_) / (height_ - strip_); }
 
   /// Lets everything drawn from now on go to the samples.

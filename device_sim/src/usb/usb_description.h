@@ -18,8 +18,8 @@ struct EndpointDescription {
   std::uint16_t packet_size = 64;                ///< Bytes; at most 64 at full speed.
   std::uint8_t interval = 0;  ///< Frames between two polls of an interrupt endpoint.
 
-  bool to_host() const noexcept { return (address & 0x80U) != 0; }  ///< Tells its direction.
-  std::uint8_t number() const noexcept { return address & 0x0fU; }  ///< Tells its number.
+  bool to_host() const noexcept { return (address & 0x80U) != 0; }  ///< Its direction.
+  std::uint8_t number() const noexcept { return address & 0x0fU; }  ///< Its number.
 };
 
 /// One interface of a device: a host binds a driver to each.

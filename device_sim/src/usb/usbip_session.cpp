@@ -37,7 +37,7 @@ void UsbipSession::receive(std::span<const std::byte> bytes, bool available) {
   input_.erase(input_.begin(), input_.begin() + static_cast<std::ptrdiff_t>(taken));
 }
 
-// Tells whether a message is there; after one that is none there is no telling where the next
+// Returns whether a message is there; after one that is none nobody knows where the next
 // begins.
 bool UsbipSession::whole(Decode decoded) noexcept {
   if (decoded == Decode::kInvalid) state_ = State::kClosing;

@@ -32,8 +32,8 @@ class SlotLink : public ArmLink {
  protected:
   // By the thread that speaks with the arm. None of them waits.
   void publish(const ArmSample& sample) noexcept;  ///< Returns where the arm is.
-  void reject() noexcept;                          ///< Tells that it could not be understood.
-  void lose() noexcept;                            ///< Tells that it is gone, for good.
+  void reject() noexcept;                          ///< Notes that it could not be understood.
+  void lose() noexcept;                            ///< Notes that it is gone, for good.
   bool is_lost() const noexcept;                   ///< Returns whether it is.
   /// Tells whether the arm takes no forces at the moment: then all but zero are refused.
   void refuse(bool refuses) noexcept { refuses_.store(refuses, std::memory_order_release); }

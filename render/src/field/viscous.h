@@ -35,7 +35,7 @@ class Viscous {
   /// not known. Real-time: never from the servo thread.
   static double most_damping(const EffectContext& context);
 
-  /// Tells of the damping: up to two thirds of what the loop can hold, for the filter of the
+  /// Lists the damping: up to two thirds of what the loop can hold, for the filter of the
   /// velocity comes on top. Real-time: never from the servo thread.
   void list_settings(LiveSettings& settings) {
     constexpr double kMargin = 1.5, kUnknown = 20;  // chosen; N s/m

@@ -102,7 +102,7 @@ class ContactMesh {
   /// Returns how many components were wholly inside out and have been turned.
   std::size_t turned_components() const noexcept { return orientation_.turned_components; }
 
-  /// Tells all that was turned round.
+  /// Returns all that was turned round.
   const OrientReport& orientation() const noexcept { return orientation_; }
 
   /// Returns the corners of a triangle, counter-clockwise from outside.

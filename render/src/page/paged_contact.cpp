@@ -58,7 +58,7 @@ SurfaceFoot PagedContact::foot(const Vector3d& p_WT) const noexcept {
   return foot;
 }
 
-// Tells how deep the tip can be if the surface was met as it should be.
+// Returns how deep the tip can be if the surface was met as it should be.
 double PagedContact::allowed_depth(const driver::DeviceState& state,
                                    const Vector3d& n_W) const noexcept {
   if (!has_before_) return 0;

@@ -1,5 +1,6 @@
 #include "search/build_volume_grid.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -49,8 +49,8 @@ class ContactSearch {
   /// `kPositionMax`, if `radius` is NaN or negative, or farther than 10^8 times the surface's size.
   virtual SurfacePoint closest(const Eigen::Vector3d& p_W, double radius) const noexcept = 0;
 
-  /// Tells a distance (m) from a point (W, m) within which there is certainly no triangle, as far
-  /// as that can be told faster than by `first_entry`; 0 where it cannot.
+  /// Returns a distance (m) from a point (W, m) within which there is certainly no triangle, as far
+  /// as that can be found faster than by `first_entry`; 0 where it cannot.
   virtual double clearance(const Eigen::Vector3d& p_W) const noexcept = 0;
 
   /// Takes in that the corners of `triangles` have moved, all within the box that the surface was

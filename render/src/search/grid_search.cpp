@@ -1,5 +1,6 @@
 #include "search/grid_search.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>

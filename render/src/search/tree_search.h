@@ -59,7 +59,7 @@ class TreeSearch final : public ContactSearch {
   void visit_reached(const Eigen::Vector3d& from, const Eigen::Vector3d& way,
                      Visit visit) const noexcept;
 
-  // Tells which triangle stands at a place of the order.
+  // Returns which triangle stands at a place of the order.
   std::int32_t triangle_at(std::size_t place) const noexcept {
     return order_.empty() ? static_cast<std::int32_t>(place) : order_[place];
   }

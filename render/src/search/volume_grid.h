@@ -98,7 +98,7 @@ class VolumeGrid {
     return least;
   }
 
-  /// Tells a distance from a point within which all blocks are empty; 0 near the surface.
+  /// Returns a distance from a point within which all blocks are empty; 0 near the surface.
   /// Real-time: safe; one line of the cache.
   double clearance(const Eigen::Vector3d& p) const noexcept;
 

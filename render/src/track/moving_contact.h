@@ -114,7 +114,7 @@ class MovingContact {
   const ContactSearch& search() const noexcept { return surface_->search(); }
 
  private:
-  // Tells whether the touched place belongs to the half at vertex `a` of an edge, not at `b`.
+  // Returns whether the touched place belongs to the half at vertex `a` of an edge, not at `b`.
   bool touched_nearer(std::int32_t a, std::int32_t b) const noexcept {
     const ContactState& touched = state();
     if (!touched.touching || touched.triangle < 0) return false;

@@ -186,7 +186,7 @@ inline void PackedContact<Store>::fetch_around(const PackedTriangle& packed) con
   // NOLINTEND(performance-no-int-to-ptr)
 }
 
-// Tells the edge that the tip is farthest outside of, as a share of the triangle's height; -1 if
+// Returns the edge that the tip is farthest outside of, as a share of the triangle's height; -1 if
 // the triangle holds it.
 template <PackedStore Store>
 typename PackedContact<Store>::Outcome PackedContact<Store>::edge_to_hop(const Eigen::Vector3d& p,

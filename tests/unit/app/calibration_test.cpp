@@ -167,6 +167,10 @@ const Miswired kMiswired[] = {
      },
      "Encoder 2 does what 3 should: they are swapped."},
     {"MotorBackwards", [](auto& f) { f.wiring.motor_gain[0] = -1; }, "Motor 1 pulls backwards."},
+    {"SecondMotorBackwards", [](auto& f) { f.wiring.motor_gain[1] = -1; },
+     "Motor 2 pulls backwards."},
+    {"ThirdMotorBackwards", [](auto& f) { f.wiring.motor_gain[2] = -1; },
+     "Motor 3 pulls backwards."},
     {"MotorDead", [](auto& f) { f.wiring.motor_gain[1] = 0; }, "Motor 2 does not pull."},
     {"MotorsSwapped",
      [](auto& f) {

@@ -1,6 +1,7 @@
 #include "report/pictures.h"
 
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
 #include <cmath>
 #include <fstream>

@@ -23,16 +23,16 @@ std::string name_of(MotionArm arm) {
 }
 
 /// The shipped hand, which strokes into the wall at this speed, again and again, from 0.5 s on.
-MotionRun strokes(MotionArm arm, double speed) {
+MotionRun strokes(MotionArm arm, double speed, std::uint64_t seed = 3) {
   MotionRun run;
   run.arm = arm;
   Eigen::Vector3d p(0, 0, 0.01);
   double time = 0.5;
   run.way = {{0, p}, {time, p}};
-  support::Random random(3);
+  support::Random random(seed);
   while (time < 4) {
-    const Eigen::Vector3d to(random.uniform(-0.02, 0.02), random.uniform(-0.02, 0.02),
-                             random.uniform(-0.02, 0.004));
+    const Eigen::Vector3d to{random.uniform(-0.02, 0.02), random.uniform(-0.02, 0.02),
+                             random.uniform(-0.02, 0.004)};
     time += std::max((to - p).norm() / speed, 0.01);
     run.way.emplace_back(time, to);
     p = to;
@@ -62,22 +62,30 @@ TEST(ReversedMotors, AreFoundInTheFirstMillimetresOfAStiffTouch) {
   }
 }
 
-TEST(ReversedMotors, AreFoundWhereOneJointOfThoseThatCarryTheForceIsWrong) {
+TEST(ReversedMotors, AreFoundInManyStrokingsWhereOneJointOfThoseThatCarryTheForceIsWrong) {
   // At home of the PHANTOM link B alone moves the tip up and down; of the others, C more than B.
   constexpr std::array<int, 3> kJoints{1, 2, 2};
+  // Of 200 strokings of 3.5 s: 197, 104, 170. Where another joint holds the tip, nothing tells.
+  constexpr std::array<int, 3> kFoundLeast{185, 90, 155};
   for (const MotionArm arm : kMotionArms) {
-    const int joint = kJoints[static_cast<std::size_t>(arm)];
-    int found = 0;
+    const auto at = static_cast<std::size_t>(arm);
+    int all = 0;
     for (const double speed : {0.1, 0.2, 0.3, 0.6}) {
-      MotionRun run = strokes(arm, speed);
-      run.wiring.motor_gain[joint] = -1;
-      run.run(4);
-      if (run.fault == Fault::kMotorsReversed) ++found;
-      std::printf("%-16s joint %d, %.2f m/s: %s at %.1f mm, %.2f m/s\n", name_of(arm).c_str(),
-                  joint + 1, speed, std::string(name(run.fault)).c_str(), 1e3 * run.depth,
-                  run.speed);
+      int found = 0;
+      double deepest = 0, fastest = 0;
+      for (std::uint64_t seed = 0; seed < 50; ++seed) {
+        MotionRun run = strokes(arm, speed, seed);
+        run.wiring.motor_gain[kJoints[at]] = -1;
+        run.run(4);
+        found += run.fault == Fault::kMotorsReversed ? 1 : 0;
+        deepest = std::max(deepest, run.depth);
+        fastest = std::max(fastest, run.speed);
+      }
+      std::printf("%-16s joint %d, %.2f m/s: %d of 50, at most %.0f mm deep and %.2f m/s\n",
+                  name_of(arm).c_str(), kJoints[at] + 1, speed, found, 1e3 * deepest, fastest);
+      all += found;
     }
-    EXPECT_GE(found, 2) << name_of(arm) << " of 4";
+    EXPECT_GE(all, kFoundLeast[at]) << name_of(arm) << " of 200";
   }
 }
 

@@ -150,7 +150,7 @@ TEST(Orientation, GoesThroughItsQuaternionWithinASmallFractionOfAnyStep) {
   support::Random random(5);
   for (int i = 0; i < 1000; ++i) {
     const Matrix3d R =
-        AngleAxisd(random.uniform(-3.14, 3.14), random.in_box(1).normalized()).toRotationMatrix();
+        AngleAxisd{random.uniform(-3.14, 3.14), random.in_box(1).normalized()}.toRotationMatrix();
     const TipQuaternion q = quaternion_of(R);
     EXPECT_LT((rotation_of(q) - R).norm(), 1e-6);
     EXPECT_GE(q[0], 0);

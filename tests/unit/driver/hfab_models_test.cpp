@@ -33,8 +33,8 @@ double worst_jacobian_error(const Geometry& geometry, const Eigen::Vector3d& q) 
 Eigen::Vector3d polhem_angles(support::Random& random) {
   const LinkageArm arm = polhem_model().geometry;
   for (;;) {
-    const Eigen::Vector3d q(random.uniform(-1, 1), random.uniform(0.5, 2.2),
-                            random.uniform(2.0, 4.4));
+    const Eigen::Vector3d q{random.uniform(-1, 1), random.uniform(0.5, 2.2),
+                            random.uniform(2.0, 4.4)};
     const Eigen::Vector2d bar(
         arm.length_0 + arm.length_1 * std::cos(q[1]) - arm.length_2 * std::cos(q[2]),
         arm.length_1 * std::sin(q[1]) - arm.length_2 * std::sin(q[2]));

@@ -1,6 +1,7 @@
 #include "body/shape/body_shape.h"
 
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>

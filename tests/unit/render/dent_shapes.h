@@ -25,7 +25,7 @@ inline render::BendablePolygon dent_in(const render::TriangleMesh& mesh,
 /// Draws weights of a place on a triangle: anywhere, or near to an edge or a corner in half of the
 /// cases.
 inline Eigen::Vector3d any_weights(Random& random) {
-  Eigen::Vector3d w(random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 1));
+  Eigen::Vector3d w{random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 1)};
   const auto k = static_cast<Eigen::Index>(random.bits() % 3);
   const std::uint64_t where = random.bits() % 4;
   if (where == 0) w[k] *= 1e-4;

@@ -1,6 +1,7 @@
 #include "track/edge_blending.h"
 
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
@@ -104,7 +105,7 @@ TEST(EdgeBlending, ChangesWithinATriangleByNoMoreThanItsBandAllows) {
     for (int i = 0; i < 20000; ++i) {
       const auto t = static_cast<std::int32_t>(random.bits() % 320);
       const Vector3d start = weights_of(static_cast<std::size_t>(i % 3), random.uniform(0, 1), 0);
-      Vector3d mixed = start + Vector3d(random.uniform(0, 1), random.uniform(0, 1), 0.1);
+      Vector3d mixed = start + Vector3d{random.uniform(0, 1), random.uniform(0, 1), 0.1};
       mixed /= mixed.sum();
       const Vector3d turn = 1e-6 * (start / start.sum() - mixed);
       const Vector3d from = shading.normal(on.mesh, on.normals, t, mixed);
@@ -154,7 +155,8 @@ TEST(EdgeBlending, TurnsAtAContinuousRateWithinATriangleIfTheProfileIsSmooth) {
         worst = std::max(worst, rate_jump(on, shading, t, weights, turn));
       };
       const double rest = 1 - end;
-      const Vector3d anywhere = weights_of(k, random.uniform(0.1, 0.4), random.uniform(0.1, 0.4));
+      const double first = random.uniform(0.1, 0.4);
+      const Vector3d anywhere = weights_of(k, first, random.uniform(0.1, 0.4));
       for (const BlendProfile profile : {BlendProfile::kLinear, BlendProfile::kSmooth}) {
         ask(FixedBand{0.001, profile}, weights_of(k, rest * along, rest * (1 - along)), out);
         ask(SizedBand{1, profile}, weights_of(k, 0.5, 0.5), change_of(k, 1e-5, -1e-5));

@@ -295,7 +295,7 @@ TEST(MemoryContact, BeginsWithAnySpeedAndEndsOutside) {
   MemoryContact contact = MemoryContact::build(support::plate(0.1, 0.001, 10)).value();
   support::Random random(51);
   for (int i = 0; i < scaled(10000, 2000); ++i) {
-    const Vector3d at(random.uniform(-0.04, 0.04), random.uniform(-0.04, 0.04), 0);
+    const Vector3d at{random.uniform(-0.04, 0.04), random.uniform(-0.04, 0.04), 0};
     const double above = random.uniform(1e-4, 2e-3);  // 2 m/s at 1 kHz
     move(contact, at + Vector3d(0, 0, 0.0005 + above));
     const ContactState& state = move(contact, at + Vector3d(0, 0, 0.0005 + above - 0.0025));

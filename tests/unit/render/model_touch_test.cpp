@@ -103,7 +103,7 @@ TEST(ModelTouch, DampsWhatGoesInAndNeverHoldsWhatLeaves) {
 /// Draws a model near a place: springs of any strength in any direction, one to three of them.
 LocalModel any_model(support::Random& random, const Vector3d& near_W, std::int64_t time_ns) {
   const auto direction = [&random] {
-    return Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1))
+    return Vector3d{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)}
         .normalized();
   };
   LocalModel model;

@@ -153,8 +153,8 @@ TEST(MovingContact, FeelsAPlateThatHasPassedOverTheTipWithinOneTick) {
   for_each_way(shape, [&](const auto& surface, auto contact) {
     support::Random random(3);
     for (int round = 0; round < 50; ++round) {
-      const Vector3d tip(random.uniform(-0.03, 0.03), random.uniform(-0.03, 0.03),
-                         random.uniform(0.001, 0.01));
+      const Vector3d tip{random.uniform(-0.03, 0.03), random.uniform(-0.03, 0.03),
+                         random.uniform(0.001, 0.01)};
       contact.update(at(Vector3d::Constant(NAN)));
       contact.update(at(tip));
       std::vector<VertexMove> up;

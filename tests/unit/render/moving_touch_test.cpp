@@ -1,6 +1,7 @@
 #include "body/motion/moving_touch.h"
 
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>

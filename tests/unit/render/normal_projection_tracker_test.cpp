@@ -1,6 +1,7 @@
 #include "track/normal_projection_tracker.h"
 
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
@@ -116,8 +117,8 @@ TEST(NormalProjectionTracker, AgreesWithEdgePlanesOnFlatGround) {
   support::move_tip(projected, {0.003, 0.002, 0.02});
   support::move_tip(edge_planes, {0.003, 0.002, 0.02});
   for (int i = 0; i < 5000; ++i) {
-    const Vector3d p(random.uniform(-0.035, 0.035), random.uniform(-0.035, 0.035),
-                     random.uniform(0.005, 0.0099));
+    const Vector3d p{random.uniform(-0.035, 0.035), random.uniform(-0.035, 0.035),
+                     random.uniform(0.005, 0.0099)};
     const ContactState& a = support::move_tip(projected, p);
     const ContactState& b = support::move_tip(edge_planes, p);
     ASSERT_TRUE(a.touching && b.touching);

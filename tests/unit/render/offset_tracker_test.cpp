@@ -39,7 +39,7 @@ Vector3d sunk(const ContactMesh& mesh, const SmoothNormals& normals, std::int32_
 }
 
 Vector3d any_weights(support::Random& random) {
-  const Vector3d w(random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 1));
+  const Vector3d w{random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 1)};
   return w / w.sum();
 }
 

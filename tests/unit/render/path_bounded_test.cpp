@@ -379,7 +379,10 @@ TEST(PathBounded, GivesNoEnergyThatTheHandHasNotPutInButTheGift) {
       heading = (heading + wander * random.direction()).normalized();
       const double moved = 1e-4 * random.uniform(0, 1);
       p += moved * heading;
-      if (tick % 20 == 0) goal = found(random.uniform(0.001, 0.02), random.direction());
+      if (tick % 20 == 0) {
+        const double depth = random.uniform(0.001, 0.02);
+        goal = found(depth, random.direction());
+      }
       const bool reached = anchor.follow(p, goal);
       const Vector3d next = reached ? Vector3d(p + goal.depth * goal.n_W) : anchor.felt().p_WP;
       EXPECT_LE((next - a).norm(), FeltAnchor::kPathRatio * moved * (1 + 1e-9) + 1e-12);

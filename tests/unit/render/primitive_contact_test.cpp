@@ -33,7 +33,7 @@ driver::DeviceState at(const Vector3d& p_WT, const Vector3d& v_WT = Vector3d::Ze
 }
 
 Eigen::Matrix3d random_rotation(support::Random& random) {
-  return Eigen::AngleAxisd(random.uniform(-3, 3), random.direction()).toRotationMatrix();
+  return Eigen::AngleAxisd{random.uniform(-3, 3), random.direction()}.toRotationMatrix();
 }
 
 TEST(HalfSpace, PushesWithKxPlusBv) {

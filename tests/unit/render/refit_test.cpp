@@ -52,8 +52,10 @@ std::vector<VertexMove> next_moves(const ContactMesh& mesh, const TriangleMesh& 
   const auto centre =
       static_cast<std::int32_t>(random.bits() % static_cast<std::uint64_t>(mesh.vertex_count()));
   const double way = round % 3 == 0 ? -1 : 0.3;
-  return support::dent(mesh, centre, way * support::outwards_at(mesh, centre),
-                       random.uniform(0.0002, 0.004), random.uniform(0.005, 0.02), random);
+  const double depth = random.uniform(0.0002, 0.004);
+  const double radius = random.uniform(0.005, 0.02);
+  return support::dent(mesh, centre, way * support::outwards_at(mesh, centre), depth, radius,
+                       random);
 }
 
 void expect_same_answers(const ContactSearch& moved, const ContactSearch& anew,

@@ -1,6 +1,7 @@
 #include "body/motion/rigid_body.h"
 
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
@@ -48,7 +49,7 @@ TEST(MassProperties, AreThoseOfABlockWhereverAndHoweverItStands) {
   support::Random random(1);
   for (int i = 0; i < 50; ++i) {
     const Vector3d at = random.in_box(i < 25 ? 0.1 : 1e4);
-    const Eigen::Quaterniond turned(Eigen::AngleAxisd(random.uniform(-3, 3), random.direction()));
+    const Eigen::Quaterniond turned(Eigen::AngleAxisd{random.uniform(-3, 3), random.direction()});
     const auto found = mass_properties(block(at, turned), 0.3);
     ASSERT_TRUE(found);
     const double digits = i < 25 ? 1e-12 : 1e-7;

@@ -211,8 +211,10 @@ TEST(EverySearch, FindsNothingForNaNAndComesBackFromHugeWays) {
   support::Random random(61);
   for (int i = 0; i < 200; ++i) {
     const double far = std::pow(10.0, random.uniform(0, 14.9));
-    searches.expect_same_entry(far * random.direction(), 0.1 * random.direction());
-    searches.expect_same_entry(far * random.direction(), far * random.direction());
+    const Vector3d near_from = far * random.direction();
+    searches.expect_same_entry(near_from, 0.1 * random.direction());
+    const Vector3d far_from = far * random.direction();
+    searches.expect_same_entry(far_from, far * random.direction());
   }
   EXPECT_GE(searches.entries, 200);
 }
@@ -297,7 +299,7 @@ void expect_no_tunnelling(Build build) {
     const int phases = scaled_count(10000, 1000);
     for (int i = 0; i < phases; ++i) {
       const double phase = 2e-3 * i / phases;
-      const Vector3d beside(random.uniform(-0.04, 0.04), random.uniform(-0.04, 0.04), 0);
+      const Vector3d beside{random.uniform(-0.04, 0.04), random.uniform(-0.04, 0.04), 0};
       driver::DeviceState state;
       bool touched = false;
       for (int tick = 0; tick < 6; ++tick) {

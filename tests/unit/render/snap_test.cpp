@@ -44,8 +44,8 @@ TEST(SnapTruss, SettlesWhereForcesAreEqual) {
   support::Random random(33);
   int found = 0;
   for (int i = 0; i < 20000; ++i) {
-    const SnapTruss truss(random.uniform(5e-3, 30e-3), random.uniform(1e-4, 20e-3),
-                          std::pow(10, random.uniform(1, 6)));
+    const SnapTruss truss{random.uniform(5e-3, 30e-3), random.uniform(1e-4, 20e-3),
+                          std::pow(10, random.uniform(1, 6))};
     const double spring = i % 2 == 0 ? 0 : std::pow(10, random.uniform(0, 7));
     const double load =
         truss.limit_load() * random.uniform(-2, 2) + spring * random.uniform(0, 0.02);

@@ -23,7 +23,8 @@ using Eigen::Vector3d;
 void split_somewhere(MovingMesh& mesh, support::Random& random) {
   const auto t = static_cast<std::int32_t>(
       random.bits() % static_cast<std::uint64_t>(mesh.mesh().triangle_count()));
-  mesh.split_edge(t, random.bits() % 3, random.bits() % 2 == 0);
+  const auto edge = random.bits() % 3;
+  mesh.split_edge(t, edge, random.bits() % 2 == 0);
 }
 
 TEST(SplitEdge, LeavesTheMeshAndAllOverItAsIfBuiltAnew) {

@@ -30,9 +30,9 @@ TEST(SpringDamper, IsKxPlusBvAlongTheNormalAndNeverPulls) {
   const SpringDamper spring{1234.5, 6.7};
   int pushed = 0;
   for (int i = 0; i < 10000; ++i) {
-    const Vector3d n = Vector3d(uniform(random), uniform(random), uniform(random)).normalized();
+    const Vector3d n = Vector3d{uniform(random), uniform(random), uniform(random)}.normalized();
     driver::DeviceState state;
-    state.v_WT = Vector3d(uniform(random), uniform(random), uniform(random));
+    state.v_WT = Vector3d{uniform(random), uniform(random), uniform(random)};
     const double depth = 0.005 * (1 + uniform(random));
     const double wanted = 1234.5 * depth - 6.7 * n.dot(state.v_WT);
     const Vector3d force = spring.force(contact_at(depth, n), state);

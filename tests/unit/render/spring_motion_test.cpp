@@ -337,7 +337,8 @@ TEST(SpringMotion, AsksTheHeapForNothing) {
               modal.add(4, modal.u(3), modal.v(3));
             }),
             0);
-  EXPECT_GT(support::heap_calls_of([] { return std::vector<int>(10); }), 0);
+  // A compiler may leave out a vector that nobody reads, but no such call.
+  EXPECT_GT(support::heap_calls_of([] { ::operator delete(::operator new(10)); }), 0);
 }
 
 }  // namespace

@@ -120,7 +120,7 @@ TEST(TexturePlace, FeelsAsRoughAtEveryDepth) {
     double mean = 0, square = 0;
     constexpr int kPlaces = 4000;
     for (int i = 0; i < kPlaces; ++i) {
-      const Vector3d p(random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), 0);
+      const Vector3d p{random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), 0};
       wall->update(at(p + Vector3d(0, 0, 0.001)));
       // From just above the wall, straight in.
       wall->update(at(p - Vector3d(0, 0, 1e-7)));

@@ -169,8 +169,8 @@ TEST(Textures, PushWithTheGradientOfTheSpringsEnergy) {
     return depth > 0 ? kStiffness * depth * depth / 2 : 0;
   };
   for (int i = 0; i < 1000; ++i) {
-    const Vector3d p(random.uniform(-0.01, 0.01), random.uniform(-0.01, 0.01),
-                     random.uniform(-0.003, 0));
+    const Vector3d p{random.uniform(-0.01, 0.01), random.uniform(-0.01, 0.01),
+                     random.uniform(-0.003, 0)};
     const double e = 1e-8;
     Vector3d wanted;
     for (Eigen::Index axis = 0; axis < 3; ++axis) {

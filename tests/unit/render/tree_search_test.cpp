@@ -128,8 +128,8 @@ TEST(TreeSearch, GivesTheSameAnswersAtEveryScaleAndFarFromTheOrigin) {
       support::Random random(14);
       const Vector3d middle(offset, -offset, offset);
       for (int i = 0; i < 5000; ++i) {
-        scene.expect_same(middle + scale * random.in_box(0.08),
-                          middle + scale * random.in_box(0.08));
+        const Vector3d from = middle + scale * random.in_box(0.08);
+        scene.expect_same(from, middle + scale * random.in_box(0.08));
       }
       EXPECT_GT(scene.entries, 500);
     }

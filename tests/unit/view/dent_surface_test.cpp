@@ -45,7 +45,7 @@ struct Fixture {
 };
 
 Vector3d any_weights(support::Random& random) {
-  const Vector3d w(random.uniform(0.02, 1), random.uniform(0.02, 1), random.uniform(0.02, 1));
+  const Vector3d w{random.uniform(0.02, 1), random.uniform(0.02, 1), random.uniform(0.02, 1)};
   return w / w.sum();
 }
 

@@ -1,5 +1,6 @@
 #include "quality/quality_table.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>

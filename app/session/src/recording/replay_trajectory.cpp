@@ -1,5 +1,6 @@
 #include "recording/replay_trajectory.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 

@@ -37,7 +37,7 @@ class LiveKnobs {
   /// Real-time: safe; does next to nothing while no knob turns.
   void step(SharedRun& shared, const driver::TickRecord& last, double dt) noexcept;
 
-  /// Tells a value as it is felt now. Real-time: safe.
+  /// Returns a value as it is felt now. Real-time: safe.
   double value(std::size_t knob) const noexcept { return knobs_[knob].now; }
 
  private:

@@ -103,7 +103,7 @@ class SafetyGate {
 
   Fault fault() const noexcept { return fault_; }  ///< Names what switched the force off.
   const GateCounters& counters() const noexcept { return counters_; }
-  const GateLimits& limits() const noexcept { return limits_; }        ///< Tells its limits.
+  const GateLimits& limits() const noexcept { return limits_; }        ///< Its limits.
   EnergyStage energy_stage() const noexcept { return energy_.stage; }  ///< Names its energy stage.
   /// Returns the energy on the observer's account, J.
   double energy() const noexcept { return observer_.energy(); }

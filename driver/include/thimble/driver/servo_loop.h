@@ -68,11 +68,10 @@ class ServoLoop {
   ServoLoop(Device& device, Clock& clock, ForceLaw law, TickSink sink,
             const ServoSettings& settings) noexcept;
 
-  /// Runs the next tick. Tells why there is none any more, once the periods are used up, `stop` is
-  /// set, or this tick ended in a fault; then the device has been left idle (or in fault) with zero
-  /// force sent, insistently if the arm did not take it (`Device::insist_on_zero`), and later calls
-  /// do nothing but tell the same. Real-time: safe; waits until the
-  /// tick is due.
+  /// Runs the next tick. Returns why there is none any more, once the periods are used up, `stop`
+  /// is set, or this tick ended in a fault; then the device has been left idle (or in fault) with
+  /// zero force sent, insistently if the arm did not take it (`Device::insist_on_zero`), and later
+  /// calls do nothing but tell the same. Real-time: safe; waits until the tick is due.
   std::optional<ServoEnd> tick(const std::atomic<bool>& stop) noexcept;
 
  private:

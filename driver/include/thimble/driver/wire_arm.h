@@ -66,7 +66,7 @@ class WireArm final : public Arm {
     }
   }
 
-  /// Tells geometry, motors and encoders. Real-time: safe.
+  /// Returns geometry, motors and encoders. Real-time: safe.
   const JointModel<Geometry>& model() const noexcept { return model_; }
 
  private:

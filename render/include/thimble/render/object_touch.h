@@ -41,7 +41,7 @@ class ObjectTouch {
   /// if the object is stiff. Real-time: safe; for the rate of a picture.
   virtual bool draw(BodyPatch& /*patch*/) noexcept { return false; }
 
-  /// Tells of the settings that can be changed between two ticks, on the servo's thread.
+  /// Lists the settings that can be changed between two ticks, on the servo's thread.
   /// Real-time: never from the servo thread.
   virtual void list_settings(LiveSettings&) {}
 

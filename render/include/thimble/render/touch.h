@@ -47,7 +47,7 @@ class Touch {
     return command;
   }
 
-  /// Tells of the stages' settings that can be changed between two ticks. Real-time: never from the
+  /// Lists the stages' settings that can be changed between two ticks. Real-time: never from the
   /// servo thread.
   void list_settings(LiveSettings& settings) {
     std::apply([&](auto&... stage) { (list_settings_of(stage, settings), ...); }, stages_);

@@ -48,7 +48,7 @@ class BendablePolygon {
   /// NaN: as `rest`.
   void touch(std::int32_t triangle, const Eigen::Vector3d& weights,
              const Eigen::Vector3d& p_WT) noexcept;
-  /// Goes on by one step without the cursor: what swings swings until it has settled. Costs nothing
+  /// Goes on by one step without the cursor: what moves goes on until it has settled. Costs nothing
   /// then.
   void rest() noexcept;
 

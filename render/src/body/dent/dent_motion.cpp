@@ -85,7 +85,7 @@ driver::Result<DentMotion> DentMotion::build(std::shared_ptr<const VertexLinks> 
   return motion;
 }
 
-bool DentMotion::swings(std::size_t slot) const noexcept {
+bool DentMotion::unsettled(std::size_t slot) const noexcept {
   const double k = stiffness();
   return settings_.mass * v_[slot].squaredNorm() + k * u_[slot].squaredNorm() >
          kSettled * kSettled * k * largest_ * largest_;
@@ -102,9 +102,9 @@ bool DentMotion::add(std::int32_t vertex) noexcept {
   return true;
 }
 
-void DentMotion::add_swinging() noexcept {
+void DentMotion::add_unsettled() noexcept {
   for (std::size_t i = 0; i < vertices_.size(); ++i) {
-    if (swings(i) && !add(vertices_[i])) ++cut_;
+    if (unsettled(i) && !add(vertices_[i])) ++cut_;
   }
   take_over();
   until_look_ = kLookEvery;
@@ -132,7 +132,7 @@ void DentMotion::gather(std::span<const std::int32_t> first) noexcept {
     }
   }
   wanted_ = gathered_.size();
-  add_swinging();
+  add_unsettled();
 }
 
 void DentMotion::release() noexcept {
@@ -144,7 +144,7 @@ void DentMotion::prune() noexcept {
   if (settings_.whole) {
     // Waves run through the whole body: it rests as a whole.
     for (std::size_t i = 0; i < vertices_.size(); ++i) {
-      if (swings(i)) {
+      if (unsettled(i)) {
         until_look_ = kLookEvery;
         return;
       }
@@ -154,7 +154,7 @@ void DentMotion::prune() noexcept {
   gathered_.clear();
   links_gathered_ = 0;
   for (std::size_t i = 0; i < wanted_; ++i) add(vertices_[i]);
-  add_swinging();
+  add_unsettled();
 }
 
 // Goes over from `vertices_` to `gathered_`.

@@ -48,10 +48,10 @@ class DentMotion {
 
   // All of the following are Real-time: safe. Precondition: numbers name vertices that exist.
 
-  /// Lets what lies within the rings of `first` move (all of a whole body), and what still swings;
-  /// the rest is put on its base points. Where room ends, what swings is stopped.
+  /// Lets what lies within the rings of `first` move (all of a whole body), and what still moves;
+  /// the rest is put on its base points. Where room ends, what moves is stopped.
   void gather(std::span<const std::int32_t> first) noexcept;
-  /// Lets nothing new move: what swings goes on until it has settled.
+  /// Lets nothing new move: what moves goes on until it has settled.
   void release() noexcept;
 
   /// A spring and a damper from the cursor to a vertex.
@@ -126,11 +126,11 @@ class DentMotion {
   static std::size_t at(std::int32_t i) noexcept { return static_cast<std::size_t>(i); }
   NetworkBounds bounds() const noexcept;
   bool add(std::int32_t vertex) noexcept;
-  void add_swinging() noexcept;
+  void add_unsettled() noexcept;
   void prune() noexcept;
   void take_over() noexcept;
   void link_up() noexcept;
-  bool swings(std::size_t slot) const noexcept;
+  bool unsettled(std::size_t slot) const noexcept;
   template <class Value>
   Value row(const Weights& weights, std::size_t i, const std::vector<Value>& x) const noexcept;
   Lane cursor_force(const Grip& grip, std::size_t i) const noexcept;

@@ -131,7 +131,9 @@ void PatchDrawing::add_moving(const DentMotion& motion) noexcept {
     for (const std::int32_t t : mesh_->fan(vertex)) {
       if (!first_time(t)) continue;
       const auto& c = mesh_->corners(t);
-      add_triangle(corner(c[0], motion), corner(c[1], motion), corner(c[2], motion), t);
+      std::array<std::uint16_t, 3> at{};  // in an order that no compiler chooses
+      for (std::size_t k = 3; k-- > 0;) at[k] = corner(c[k], motion);
+      add_triangle(at[0], at[1], at[2], t);
       if (!complete_) return;
     }
   }

@@ -55,9 +55,11 @@ class PatchDrawing {
 
  private:
   struct Point {
-    Eigen::Vector3d p, u, n;  // base point, displacement, normal of the untouched surface
-    Eigen::Vector3d turn;     // sum of the changes of the faces around, as area vectors
-    double area = 0;          // sum of the areas around, twice
+    Eigen::Vector3d p{0, 0, 0};     // base point
+    Eigen::Vector3d u{0, 0, 0};     // displacement
+    Eigen::Vector3d n{0, 0, 0};     // normal of the untouched surface
+    Eigen::Vector3d turn{0, 0, 0};  // sum of the changes of the faces around, as area vectors
+    double area = 0;                // sum of the areas around, twice
     std::int32_t vertex = -1;
     bool moves = false;
   };

@@ -36,7 +36,7 @@ class TurnGuard {
     }
   }
 
-  /// Tells a triangle's first outward normal; zero if it had no area.
+  /// Returns a triangle's first outward normal; zero if it had no area.
   Eigen::Vector3d first_normal(std::int32_t triangle) const noexcept {
     return seen_along_[static_cast<std::size_t>(triangle)].stableNormalized();
   }

@@ -57,7 +57,7 @@ class SpringMotion {
   /// Returns how the step stands to the limit, in a sentence for a log. Real-time: never.
   std::string describe() const;
 
-  /// Tells displacement (m) and velocity (m/s) of each node, relative to its base point.
+  /// Returns displacement (m) and velocity (m/s) of each node, relative to its base point.
   std::span<const Vector> u() const noexcept { return u_; }
   std::span<const Vector> v() const noexcept { return v_; }  ///< Tells velocities, m/s.
   /// Puts a node at displacement `u` with velocity `v`.

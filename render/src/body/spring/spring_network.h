@@ -78,7 +78,7 @@ class SpringNetwork {
   void multiply(const NetworkWeights& weights, std::span<const std::int32_t> nodes,
                 std::span<const Vector> x, std::span<Vector> y) const noexcept;
 
-  /// Tells row `node` of that product alone.
+  /// Returns row `node` of that product alone.
   Vector row(const NetworkWeights& weights, std::int32_t node,
              std::span<const Vector> x) const noexcept;
 

@@ -69,7 +69,7 @@ class FrictionStage {
     law_.forget();
   }
 
-  /// Tells of the coefficient; how stiff friction holds hangs on arm and loop, and stays.
+  /// Lists the coefficient; how stiff friction holds hangs on arm and loop, and stays.
   /// Real-time: never from the servo thread.
   void list_settings(LiveSettings& settings) {
     settings.add<[](FrictionStage& stage, double mu) noexcept {

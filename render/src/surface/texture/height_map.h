@@ -57,7 +57,7 @@ class HeightMap {
   }
   void leave() const noexcept {}
 
-  /// Tells of the height. Real-time: never from the servo thread.
+  /// Lists the height. Real-time: never from the servo thread.
   void list_settings(LiveSettings& settings);
 
   /// Finds the height at a place (M, m) of a surface with the normal `n_M`. NaN gives NaN.

@@ -47,7 +47,7 @@ class Sandpaper {
   }
   void leave() const noexcept {}
 
-  /// Tells of the roughness. Real-time: never from the servo thread.
+  /// Lists the roughness. Real-time: never from the servo thread.
   void list_settings(LiveSettings& settings);
 
   const WaveSum& height() const noexcept { return height_; }  ///< Shows its waves.

@@ -54,7 +54,7 @@ class Sines {
   }
   void leave() const noexcept {}
 
-  /// Tells of the height of all waves, as a factor. Real-time: never from the servo thread.
+  /// Lists the height of all waves, as a factor. Real-time: never from the servo thread.
   void list_settings(LiveSettings& settings);
 
   const WaveSum& height() const noexcept { return height_; }  ///< Shows them.

@@ -33,7 +33,7 @@ struct TextureExtent {
   double wavelength = 0;  ///< The shortest, m.
 };
 
-/// Tells by which factor (>= 1) a texture that was found right may be made higher, until it would
+/// Returns by which factor (>= 1) a texture that was found right may be made higher, until it would
 /// be refused or three times as high. Real-time: never from the servo thread.
 double texture_headroom(const TextureExtent& extent, const EffectContext& context);
 

@@ -73,7 +73,7 @@ struct MeshFindings {
 /// in another one's box. Real-time: never from the servo thread.
 MeshFindings check_mesh(const TriangleMesh& mesh);
 
-/// Tells a fault as one sentence ("3 edges belong to only one triangle, so the mesh has a hole;
+/// Returns a fault as one sentence ("3 edges belong to only one triangle, so the mesh has a hole;
 /// ...").
 std::string describe(const MeshFault& fault);
 

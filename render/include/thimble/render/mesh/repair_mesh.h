@@ -59,7 +59,7 @@ struct RepairedMesh {
 /// scaling a mesh scales the answer. O(n log n). Real-time: never from the servo thread.
 RepairedMesh repair_mesh(const TriangleMesh& mesh, const RepairOptions& options = {});
 
-/// Tells a change as one sentence ("12 vertices were joined with ones within ...").
+/// Returns a change as one sentence ("12 vertices were joined with ones within ...").
 std::string describe(const RepairChange& change);
 
 }  // namespace thimble::render

@@ -32,7 +32,7 @@ struct SpringDamper {
   }
   void leave() const noexcept {}
 
-  /// Tells of both numbers. Real-time: never from the servo thread.
+  /// Lists both numbers. Real-time: never from the servo thread.
   void list_settings(LiveSettings& settings) {
     settings.add<[](SpringDamper& spring, double k) noexcept { spring.stiffness = k; }>(
         *this, {.name = "stiffness",
