@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <system_error>
 
+#include "board_identity.h"
 #include "links/dhd/dhd_library.h"
 #include "links/haply/haply_link.h"
 #include "links/hd/hd_library.h"
@@ -22,9 +23,6 @@ using driver::FoundArm;
 bool is_haply_on_usb(const FoundArm& arm) {
   return arm.certainty == Certainty::kUnsupported && arm.arm == "Haply Inverse3";
 }
-
-/// USB's number of the maker of the Touch [S].
-constexpr std::uint16_t kTouchMaker = 0x2988;
 
 /// Returns whether a program of this name runs.
 bool runs(const std::string& program, const std::filesystem::path& root) {
@@ -149,8 +147,9 @@ std::vector<Finding> examine_services(const std::vector<FoundArm>& arms) {
 std::vector<Finding> examine_touch(const std::vector<FoundArm>& arms,
                                    const std::filesystem::path& root) {
   std::vector<Finding> findings;
-  const bool plugged_in = std::any_of(
-      arms.begin(), arms.end(), [](const FoundArm& arm) { return arm.vendor_id == kTouchMaker; });
+  const bool plugged_in = std::any_of(arms.begin(), arms.end(), [](const FoundArm& arm) {
+    return arm.vendor_id == driver::kTouchMaker;
+  });
   if (!plugged_in) return findings;
   if (runs("ModemManager", root)) {
     findings.push_back({Health::kAdvice,

@@ -151,16 +151,19 @@ int exit_code_of(const faces::ArmServer& server, int status, bool stopped) {
   return server.any_fault() ? kExitFault : kExitDone;
 }
 
-/// Makes the service and opens its arms.
+/// Makes the service and opens its arms; `code`: of the error.
 driver::Result<std::unique_ptr<faces::haply::Service>> make_service(const Asked& asked,
-                                                                    faces::ArmServer& server) {
+                                                                    faces::ArmServer& server,
+                                                                    ExitCode& code) {
   faces::use_channel(&server.channel());
+  code = kExitBadInput;
   auto service = faces::haply::Service::listen(asked.port);
   if (!service) return service;
   constexpr std::int64_t kLook_ns = 1'000'000;
   while (!(*service)->ready()) server.step(kLook_ns);
   if (server.runs() < static_cast<int>(arms_of(asked).size())) {
     end(**service, server);
+    code = kExitNoDevice;
     return driver::Error{"Not all arms could be opened, so no program is served."};
   }
   return service;
@@ -195,8 +198,9 @@ int run_program(const Asked& asked, const std::vector<std::string>& command) {
   const scene::LeavingGuard guard;
   std::unique_ptr<faces::haply::Service> service;
   if (serves) {
-    auto serving = make_service(asked, server);
-    if (!serving) return complain(serving.error(), kExitBadInput);
+    ExitCode code = kExitDone;
+    auto serving = make_service(asked, server, code);
+    if (!serving) return complain(serving.error(), code);
     service = std::move(serving).value();
     scene::terminal().info("Programs of the Inverse3 find the arm at ws://localhost:{}.{}",
                            service->port(), command.empty() ? " Ctrl-C ends it." : "");

@@ -28,7 +28,7 @@ expect 2 'haply' "$thimble" exec --serve tetris true
 expect 2 '70000' "$thimble" exec --serve haply --port 70000 true
 expect 7 'No program came to ws://localhost:[0-9]+' serve sh -c 'exit 7'
 expect 2 'cannot be started: No such file' serve ./nowhere
-expect 2 'Not all arms could be opened' serve --arm nonesuch true
+expect 3 'Not all arms could be opened' serve --arm nonesuch true
 
 python=/usr/bin/python3 # Debian's
 [ -x $python ] || python=python3

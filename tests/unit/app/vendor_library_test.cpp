@@ -121,6 +121,9 @@ TEST_F(VendorLibraryTest, TheDoctorSaysHowAVendorsLibraryGetsToItsArm) {
   usb_.plug("1-2", "2988", "0302", "TT1", 1, 3);
   usb_.add_tty("1-2", 0, "ttyACM0");
   usb_.plug("1-3", "2988", "0304", "TX1", 1, 4);
+  // Whoever is root may open all that is there.
+  std::filesystem::remove(usb_.root() / "dev/bus/usb/001/002");
+  std::filesystem::remove(usb_.root() / "dev/ttyACM0");
   SystemInfo system;
   system.root = usb_.root();
   const auto mend = [&](const std::string& words) {
