@@ -10,6 +10,8 @@ output=${2:-tests/FAULTS.md}
 lines=$(mktemp)
 trap 'rm -f "$lines"' EXIT
 THIMBLE_FAULTS=$lines "$build/tests/sim/test_hard_cases" --gtest_filter="*FaultMatrix*" >/dev/null
+[ ! -e "$build/tests/unit/driver/test_links" ] ||
+  THIMBLE_FAULTS=$lines "$build/tests/unit/driver/test_links" --gtest_filter='*Link*Names*' >/dev/null
 [ ! -e "$build/app/thimble" ] ||
   THIMBLE_FAULTS=$lines bash tests/program/faults_test.sh "$(realpath "$build/app/thimble")" "$PWD" \
     "$(realpath "$build")/tests/program/faults_table" >/dev/null || [ $? = 77 ]
@@ -18,8 +20,9 @@ THIMBLE_FAULTS=$lines "$build/tests/sim/test_hard_cases" --gtest_filter="*FaultM
 # Faults: what is promised, and what was measured
 
 Written by `tests/faults.sh`; do not edit. The promises are data in `tests/sim/fault_promises.h`, the cells are
-`tests/sim/fault_matrix_test.cpp` (simulated time, the whole way from hand to motors) and
-`tests/program/faults_test.sh` (real processes).
+`tests/sim/fault_matrix_test.cpp` (simulated time, the whole way from hand to motors),
+`tests/unit/driver/*_link_test.cpp` (arms behind vendors' libraries and services) and `tests/program/faults_test.sh` (real
+processes).
 
 A number is the time in ms until no current flowed in the motors of the simulated arm, for good; behind it the cause that
 the driver named. `-` is a touch that went on, every force sent within the arm's limit. In the column `limit`: no later than so
@@ -35,7 +38,7 @@ checksum. Forces on the way out that a cable has changed are the board's busines
 |---|---|---|---|---|---|---|---|---|---|
 TEXT
   awk -F'|' '
-    $3 == "process" { next }
+    $3 == "process" || $4 == "link" { next }
     {
       key = $2 "|" $3
       if (!(key in seen)) { seen[key] = 1; order[++n] = key }
@@ -53,6 +56,18 @@ TEXT
         print line
       }
     }' "$lines" | sort -t'|' -s -k2,2
+  cat <<'TEXT'
+
+## Behind a vendor's library or service, on the wall clock
+
+Over libraries and a service of our own that stand in for the vendors'. "more with a force": messages with a force that still go out
+once the fault is there, before zero does for good; the cause latches. What a library or service that hangs does with the
+last force is its own business: Force Dimension's arm is asked to let it go after 20 ms.
+
+| fault | library or service | promise | result |
+|---|---|---|---|
+TEXT
+  awk -F'|' '$4 == "link" { print "| " $2 " | " $3 " | " $5 " | " $6 " |" }' "$lines"
   cat <<'TEXT'
 
 ## With real processes, on the wall clock

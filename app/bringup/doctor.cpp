@@ -90,6 +90,11 @@ class Examination {
     if (arm.board == BoardKind::kDhdLibrary || arm.board == BoardKind::kHdLibrary) {
       note(Health::kGood,
            name + "its vendor's library is here (" + arm.software + "). Untried on hardware.");
+      findings_.push_back(examine_access(arm, system_.root));
+      look_at_holder(arm, name);
+      look_at_power(arm, name);
+      look_at_hub(arm, name);
+      return;
     }
     look_at_driver(arm, name);
     if (arm.certainty == driver::Certainty::kUnknown) {
@@ -131,7 +136,7 @@ class Examination {
       case BoardKind::kHaplyService:
       case BoardKind::kDhdLibrary:
       case BoardKind::kHdLibrary:
-        return;  // no driver of the kernel's is in the way
+        return;  // their vendors' software opens them
       case BoardKind::kFalconFtdi:
         look_at_falcon(arm, bound, name);
         return;

@@ -1,8 +1,13 @@
 #include "bringup/doctor_links.h"
 
+#include <grp.h>
+#include <sys/stat.h>
+
 #include <algorithm>
+#include <cstdio>
 #include <system_error>
 
+#include "board_identity.h"
 #include "links/dhd/dhd_library.h"
 #include "links/haply/haply_link.h"
 #include "links/hd/hd_library.h"
@@ -18,9 +23,6 @@ using driver::FoundArm;
 bool is_haply_on_usb(const FoundArm& arm) {
   return arm.certainty == Certainty::kUnsupported && arm.arm == "Haply Inverse3";
 }
-
-/// USB's number of the maker of the Touch [S].
-constexpr std::uint16_t kTouchMaker = 0x2988;
 
 /// Returns whether a program of this name runs.
 bool runs(const std::string& program, const std::filesystem::path& root) {
@@ -39,6 +41,30 @@ bool is_installed(const char* library, const std::filesystem::path& root) {
     if (std::filesystem::exists(root / folder / library, ignored)) return true;
   }
   return false;
+}
+
+/// Returns the group of a file; empty if it has none of a name.
+std::string group_of(const std::filesystem::path& file) {
+  struct stat status {};
+  if (stat(file.c_str(), &status) != 0) return {};
+  const group* found = getgrgid(status.st_gid);
+  return found == nullptr ? std::string() : found->gr_name;
+}
+
+/// Returns a udev rule that gives the person at the screen an arm's node.
+std::string rule_for(const FoundArm& arm) {
+  char maker[8];
+  std::snprintf(maker, sizeof maker, "%04x", arm.vendor_id);
+  const std::string id = std::string("\"") + maker + "\"";
+  const std::string access = "TAG+=\"uaccess\"";
+  if (arm.bus == driver::kSerialBus) {
+    return "SUBSYSTEM==\"tty\", ATTRS{idVendor}==" + id + ", " + access +
+           ", ENV{ID_MM_DEVICE_IGNORE}=\"1\"";
+  }
+  if (arm.bus == driver::kHidBus) {
+    return "SUBSYSTEM==\"hidraw\", ATTRS{idVendor}==" + id + ", " + access;
+  }
+  return "SUBSYSTEM==\"usb\", ENV{DEVTYPE}==\"usb_device\", ATTR{idVendor}==" + id + ", " + access;
 }
 
 }  // namespace
@@ -78,6 +104,33 @@ Finding examine_linked(const FoundArm& arm) {
           {}};
 }
 
+Finding examine_access(const FoundArm& arm, const std::filesystem::path& root) {
+  const std::string name = arm.arm + " " + arm.name() + ": ";
+  if (arm.node.empty()) {
+    return {Health::kProblem,
+            name + "no kernel driver has it, so its vendor's library has no node.",
+            arm.bus == driver::kSerialBus ? "sudo modprobe cdc_acm, then plug it in again"
+                                          : "sudo modprobe usbhid, then plug it in again"};
+  }
+  if (arm.accessible) {
+    return {
+        Health::kGood, name + "you may open " + arm.node + ", as its vendor's library does.", {}};
+  }
+  const std::string group = group_of(root / std::filesystem::path(arm.node).relative_path());
+  std::string mend =
+      "What its vendor's set-up does here is not published: run that again, as its manual says. ";
+  if (!group.empty() && group != "root") {
+    mend +=
+        "Or join the group of the node, and log in again: sudo usermod -aG " + group + " $USER. ";
+  }
+  mend += "Or put this line into /etc/udev/rules.d/70-vendor-arm.rules, and plug it in again: " +
+          rule_for(arm);
+  return {Health::kProblem,
+          name + "you may not open " + arm.node + ", by which its vendor's library reaches it" +
+              (group.empty() ? "." : " (its group is " + group + ")."),
+          mend};
+}
+
 std::vector<Finding> examine_services(const std::vector<FoundArm>& arms) {
   const bool on_usb = std::any_of(arms.begin(), arms.end(), is_haply_on_usb);
   const bool served = std::any_of(arms.begin(), arms.end(), [](const FoundArm& arm) {
@@ -94,8 +147,9 @@ std::vector<Finding> examine_services(const std::vector<FoundArm>& arms) {
 std::vector<Finding> examine_touch(const std::vector<FoundArm>& arms,
                                    const std::filesystem::path& root) {
   std::vector<Finding> findings;
-  const bool plugged_in = std::any_of(
-      arms.begin(), arms.end(), [](const FoundArm& arm) { return arm.vendor_id == kTouchMaker; });
+  const bool plugged_in = std::any_of(arms.begin(), arms.end(), [](const FoundArm& arm) {
+    return arm.vendor_id == driver::kTouchMaker;
+  });
   if (!plugged_in) return findings;
   if (runs("ModemManager", root)) {
     findings.push_back({Health::kAdvice,

@@ -18,6 +18,11 @@ std::string mend_for_closed(const driver::FoundArm& arm);
 /// Returns whether an arm behind a service can be used, and what it tells of its versions.
 Finding examine_linked(const driver::FoundArm& arm);
 
+/// Returns whether the user may open the node of an arm on USB through which its vendor's library
+/// reaches it, below `root`, and what to do if not: our udev rule is for arms that we open
+/// ourselves.
+Finding examine_access(const driver::FoundArm& arm, const std::filesystem::path& root);
+
 /// Returns what keeps a service away whose arm is on USB: `arms` are all that were found.
 std::vector<Finding> examine_services(const std::vector<driver::FoundArm>& arms);
 

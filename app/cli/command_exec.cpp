@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <memory>
@@ -17,6 +18,8 @@
 
 #include "cli/commands.h"
 #include "cli/complain.h"
+#include "faces/core/open_channel.h"
+#include "faces/haply/haply_service.h"
 #include "faces/server/arm_server.h"
 #include "faces/server/face_folder.h"
 #include "interrupt.h"
@@ -34,7 +37,12 @@ struct Asked {
   faces::ExecOptions options;
   std::vector<std::string> arms, devices;
   std::string clock = "wall";
+  std::string serve;  // "haply", or nothing
+  std::uint16_t port = faces::haply::kPort;
 };
+
+/// The variable that names the service's port to programs of ours, as they read it.
+constexpr const char* kPortVariable = "THIMBLE_HAPLY_PORT";
 
 /// Joins the lists of --arm and --device: the first of each is the program's first arm.
 std::vector<faces::ExecArm> arms_of(const Asked& asked) {
@@ -45,8 +53,10 @@ std::vector<faces::ExecArm> arms_of(const Asked& asked) {
   return arms;
 }
 
-/// Returns the environment of the program: ours, with our libraries in front and the arms' address.
-std::vector<std::string> environment(const fs::path& libraries, const std::string& address) {
+/// Returns the environment of the program: ours, with our libraries in front, the arms' address,
+/// and the port of the service, if there is one.
+std::vector<std::string> environment(const fs::path& libraries, const std::string& address,
+                                     const faces::haply::Service* service) {
   std::vector<std::string> variables;
   std::string search = "LD_LIBRARY_PATH=" + libraries.string();
   for (char** variable = environ; *variable != nullptr; ++variable) {
@@ -54,12 +64,16 @@ std::vector<std::string> environment(const fs::path& libraries, const std::strin
     if (text.starts_with("LD_LIBRARY_PATH=")) {
       const std::string before = text.substr(text.find('=') + 1);
       if (!before.empty()) search += ":" + before;
-    } else if (!text.starts_with(std::string(faces::kChannelVariable) + "=")) {
+    } else if (!text.starts_with(std::string(faces::kChannelVariable) + "=") &&
+               !(service != nullptr && text.starts_with(std::string(kPortVariable) + "="))) {
       variables.push_back(text);
     }
   }
   variables.push_back(search);
   variables.push_back(std::string(faces::kChannelVariable) + "=" + address);
+  if (service != nullptr) {
+    variables.push_back(std::string(kPortVariable) + "=" + std::to_string(service->port()));
+  }
   return variables;
 }
 
@@ -111,6 +125,20 @@ int serve(faces::ArmServer& server, pid_t child, const std::atomic<bool>& stop) 
   }
 }
 
+/// Serves programs that come by themselves, until the user or a viewer ends it.
+void serve_all(faces::ArmServer& server, const std::atomic<bool>& stop) {
+  constexpr std::int64_t kLook_ns = 20'000'000;
+  while (!stop.load() && !server.ended_by_viewer()) server.step(kLook_ns);
+  server.end();
+}
+
+/// Ends the service: who waits there for an arm gets its answer first.
+void end(faces::haply::Service& service, faces::ArmServer& server) {
+  constexpr std::int64_t kLook_ns = 1'000'000;
+  service.leave();
+  while (!service.ended()) server.step(kLook_ns);
+}
+
 int exit_code_of(const faces::ArmServer& server, int status, bool stopped) {
   if (WIFSIGNALED(status)) {
     if (stopped) return kExitInterrupted;
@@ -123,14 +151,41 @@ int exit_code_of(const faces::ArmServer& server, int status, bool stopped) {
   return server.any_fault() ? kExitFault : kExitDone;
 }
 
+/// Makes the service and opens its arms; `code`: of the error.
+driver::Result<std::unique_ptr<faces::haply::Service>> make_service(const Asked& asked,
+                                                                    faces::ArmServer& server,
+                                                                    ExitCode& code) {
+  faces::use_channel(&server.channel());
+  code = kExitBadInput;
+  auto service = faces::haply::Service::listen(asked.port);
+  if (!service) return service;
+  constexpr std::int64_t kLook_ns = 1'000'000;
+  while (!(*service)->ready()) server.step(kLook_ns);
+  if (server.runs() < static_cast<int>(arms_of(asked).size())) {
+    end(**service, server);
+    code = kExitNoDevice;
+    return driver::Error{"Not all arms could be opened, so no program is served."};
+  }
+  return service;
+}
+
+/// Tells what a program that opened no arm may lack.
+void warn_of_no_arm(const std::string& program, const fs::path& libraries) {
+  scene::logger().warn(
+      "{} opened no arm. It found libraries of its own (ldd, rpath), or it is written for none "
+      "of those that are stood in for: {}",
+      program, libraries.string());
+}
+
 int run_program(const Asked& asked, const std::vector<std::string>& command) {
-  if (command.empty()) {
+  const bool serves = !asked.serve.empty();
+  if (command.empty() && !serves) {
     return complain({"Which program? thimble exec [OPTIONS] PROGRAM ARGUMENTS..."}, kExitBadInput);
   }
   const auto libraries = faces::face_folder();
   if (!libraries) return complain(libraries.error(), kExitTrouble);
   faces::ExecOptions options = asked.options;
-  options.program = fs::path(command.front()).filename().string();
+  options.program = command.empty() ? asked.serve : fs::path(command.front()).filename().string();
   options.arms = arms_of(asked);
   options.paced = asked.clock == "virtual";
   const std::atomic<bool>& stop = scene::catch_interrupts();
@@ -141,20 +196,37 @@ int run_program(const Asked& asked, const std::vector<std::string>& command) {
   if (!made) return complain(made.error(), kExitBadInput);
   faces::ArmServer& server = **made;
   const scene::LeavingGuard guard;
-  pid_t child = 0;
-  if (const int error = start(command, environment(*libraries, server.address()), child)) {
-    return complain({command.front() + " cannot be started: " + std::strerror(error) + "."},
-                    kExitBadInput);
+  std::unique_ptr<faces::haply::Service> service;
+  if (serves) {
+    ExitCode code = kExitDone;
+    auto serving = make_service(asked, server, code);
+    if (!serving) return complain(serving.error(), code);
+    service = std::move(serving).value();
+    scene::terminal().info("Programs of the Inverse3 find the arm at ws://localhost:{}.{}",
+                           service->port(), command.empty() ? " Ctrl-C ends it." : "");
   }
-  const int status = serve(server, child, stop);
+  int status = 0;
+  if (command.empty()) {
+    serve_all(server, stop);
+  } else {
+    pid_t child = 0;
+    const int error =
+        start(command, environment(*libraries, server.address(), service.get()), child);
+    if (error != 0) {
+      if (service) end(*service, server);
+      return complain({command.front() + " cannot be started: " + std::strerror(error) + "."},
+                      kExitBadInput);
+    }
+    status = serve(server, child, stop);
+  }
+  if (service) end(*service, server);
   server.end();
   // What the program printed is its own; so this goes to standard error.
   session::print(stderr, "{}", server.report());
-  if (server.runs() == 0) {
-    scene::logger().warn(
-        "{} opened no arm. It found libraries of its own (ldd, rpath), or it is written for none "
-        "of those that are stood in for: {}",
-        options.program, libraries->string());
+  if (service && service->programs() == 0) {
+    scene::logger().warn("No program came to ws://localhost:{}.", service->port());
+  } else if (server.runs() == 0) {
+    warn_of_no_arm(options.program, *libraries);
   }
   return exit_code_of(server, status, stop.load());
 }
@@ -163,7 +235,8 @@ int run_program(const Asked& asked, const std::vector<std::string>& command) {
 
 void add_exec_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
-      "exec", "Run a program that was written for another maker's arm (HDAPI, DHD, CHAI3D)");
+      "exec",
+      "Run a program that was written for another maker's arm (HDAPI, DHD, CHAI3D, Inverse3)");
   auto asked = std::make_shared<Asked>();
   faces::ExecOptions& options = asked->options;
   command->prefix_command();
@@ -171,6 +244,8 @@ void add_exec_command(CLI::App& app, int& exit_code) {
       "Options stand before PROGRAM; what follows it is its own.\n"
       "The program finds libHD, libhdPhantom, libdhd and libdrd of ours in front of others. Its\n"
       "forces go through the gate of ours. A simulated arm is used unless --device names one.\n"
+      "With --serve haply, programs of the Inverse3 find it as they find their vendor's service;\n"
+      "without PROGRAM they are served until Ctrl-C.\n"
       "Exit code: the program's; 4 if it was 0 and a force went off with a fault.");
   command
       ->add_option("--arm", asked->arms,
@@ -195,6 +270,14 @@ void add_exec_command(CLI::App& app, int& exit_code) {
           "wall: in real time; virtual: each tick waits until the program waits for it, so "
           "that a program does the same each time (simulated arms only)")
       ->check(CLI::IsMember({"virtual", "wall"}))
+      ->capture_default_str();
+  command
+      ->add_option(
+          "--serve", asked->serve,
+          "haply: show the arm as the service of an Inverse3 does (JSON over WebSocket, on "
+          "this computer alone)")
+      ->check(CLI::IsMember({"haply"}));
+  command->add_option("--port", asked->port, "Port of --serve; 0: any that is free")
       ->capture_default_str();
   command->add_option("--record", options.record, "Recording of every tick to write (HDF5)");
   command->add_flag("--view", options.view, "Watch the run in a window");

@@ -122,13 +122,13 @@ forbid_app view '(report|stability|studies|bringup|faces|cli)/'
 forbid_app bringup 'thimble/session/|(recording|share|events|report|stability|studies|view|faces|cli)/'
 forbid_app faces '(report|stability|studies|view|bringup|cli)/'
 # What a program of somebody else's loads brings no library of ours with it; and faces know the core alone.
-for part in core hd hdphantom dhd; do
+for part in core haply hd hdphantom dhd; do
   [ -d "app/faces/$part" ] || continue
   forbid "app/faces/$part" 'faces/server/|thimble/(session|scene|render|device_sim)/|fmt/|spdlog/|yaml-cpp|hdf5' \
     "what is in the process of thimble exec"
 done
 for part in core server; do
-  forbid "app/faces/$part" 'faces/(hd|hdphantom|dhd)/|(HD|HDU)/|d[hr]dc\.h' "a face"
+  forbid "app/faces/$part" 'faces/(haply|hd|hdphantom|dhd)/|(HD|HDU)/|d[hr]dc\.h' "a face"
 done
 for folder in scene session report stability studies bringup faces cli python; do
   forbid "app/$folder" "$graphics" "graphics: they are app/view's"

@@ -1,4 +1,4 @@
-"""A service that keeps to the published JSON of Haply's, with a still arm: haply_service.py PORT_FILE.
+"""A service that keeps to the published JSON of Haply's, with still arms: haply_service.py PORT_FILE [NAME...].
 
 Writes its port into PORT_FILE, serves until it is killed, and prints each force it is given."""
 import asyncio
@@ -9,9 +9,12 @@ import sys
 import websockets
 
 
-def state():
+NAMES = sys.argv[2:] or ["049D"]
+
+
+def state(device_id):
     return {
-        "device_id": "049D",
+        "device_id": device_id,
         "config": {"device_info": {"major_version": 3}},
         "state": {
             "cursor_position": {"x": 0.0, "y": -0.13, "z": 0.17},
@@ -22,12 +25,12 @@ def state():
 
 
 async def serve(socket, path):
-    await socket.send(json.dumps({"session_id": 1, "inverse3": [state()]}))
+    await socket.send(json.dumps({"session_id": 1, "inverse3": [state(name) for name in NAMES]}))
     async for text in socket:
         (arm,) = json.loads(text)["inverse3"]
         force = arm["commands"]["set_cursor_force"]["vector"]
         print(arm["device_id"], force["x"], force["y"], force["z"], flush=True)
-        await socket.send(json.dumps({"inverse3": [state()]}))
+        await socket.send(json.dumps({"inverse3": [state(name) for name in NAMES]}))
 
 
 async def main():

@@ -31,4 +31,34 @@ expect 0 '^049D ' tail -n 1 forces.txt
 # A millisecond each, less what a busy machine left out; and the last of them is zero.
 expect 0 '^[1-9][0-9][0-9]+ ' wc -l forces.txt
 expect 0 '^049D -?0\.?0* -?0\.?0* -?0\.?0*$' tail -n 1 forces.txt
+
+# Several arms: which? Two behind the service, and two kinds: one there and one on USB, if the kernel lets us show one.
+rm port
+kill $service
+wait $service 2>/dev/null
+$python "$source_dir/tests/program/haply_service.py" port 049D 0A11 >forces.txt 2>service.txt &
+service=$!
+for _ in $(seq 200); do
+  [ -s port ] && break
+  sleep 0.05
+done
+THIMBLE_HAPLY_PORT=$(cat port)
+scene=$source_dir/tests/data/scenes/two_boxes.yaml
+expect 3 "Several arms answer to 'auto'\. There is: 049D \(Haply Inverse3\), 0A11 \(Haply Inverse3\)\. Name one with --device NAME" \
+  "$thimble" run "$scene" --device auto --yes --no-real-time --no-view
+expect 3 'Name one with --device NAME' "$thimble" exec --serve haply --port 0 --device auto --yes --no-real-time true
+cat >with_falcon.sh <<'END'
+mount -t tmpfs none /sys || exit 77
+falcon=/sys/bus/usb/devices/1-2
+mkdir -p $falcon
+for line in idVendor=0403 idProduct=cb48 serial=F7 product=FALCON busnum=1 devnum=9; do echo "${line#*=}" >$falcon/${line%%=*}; done
+exec "$@"
+END
+if unshare -rm bash with_falcon.sh true 2>/dev/null; then
+  expect 3 "Several arms answer to 'auto'\. There is: .*049D \(Haply Inverse3\), .*F7 \(Novint Falcon\)\. Name one with --device NAME" \
+    unshare -rm bash with_falcon.sh "$thimble" run "$scene" --device auto --yes --no-real-time --no-view
+else
+  echo "NOT TESTED: two kinds of arms with --device auto: no namespaces of one's own"
+fi
+expect 0 '^0$' stat -c %s forces.txt  # nobody was chosen, so nobody was told anything
 finish

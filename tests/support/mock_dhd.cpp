@@ -1,5 +1,6 @@
 #include "support/mock_dhd.h"
 
+#include <algorithm>
 #include <chrono>
 #include <limits>
 #include <thread>
@@ -103,9 +104,27 @@ bool dhdHasGripper(char id) {
   const Call call("dhdHasGripper", id);
   return mock().gripper;
 }
+int dhdEnableExpertMode() {
+  const std::lock_guard lock(mock().mutex);
+  mock().expert = true;
+  return 0;
+}
+int dhdDisableExpertMode() {
+  const std::lock_guard lock(mock().mutex);
+  mock().expert = false;
+  return 0;
+}
+int dhdGetStatus(int status[17], char id) {
+  const Call call("dhdGetStatus", id);
+  std::fill_n(status, 17, 0);
+  status[5] = mock().force_on && !mock().tripped ? 1 : 0;
+  return call.answer();
+}
 int dhdSetWatchdog(unsigned char duration, char id) {
   Call call("dhdSetWatchdog", id);
+  call.expect(mock().expert, "by who is no expert");
   call.expect(duration > 0, "switches it off");
+  call.expect(duration >= 80, "shorter than 10 ms");
   mock().watchdog = call.answer() == 0;
   return call.answer();
 }
@@ -126,6 +145,7 @@ int dhdEnableForce(unsigned char on, char id) {
     call.expect(mock().watchdog, "before the watchdog");
     call.expect(mock().gravity, "before gravity compensation");
     call.expect(!mock().brakes, "with the brakes on");
+    call.expect(!mock().expert, "by an expert");
   } else {
     call.expect(mock().taken.empty() || mock().taken.back().isZero(0), "off while a force stands");
   }
@@ -138,7 +158,13 @@ int dhdStop(char id) {
   return call.answer();
 }
 int dhdGetPosition(double* x, double* y, double* z, char id) {
-  std::this_thread::sleep_for(std::chrono::microseconds(250));  // an exchange over USB
+  const bool late = [] {
+    const std::lock_guard lock(mock().mutex);
+    return mock().late;
+  }();
+  // An exchange over USB.
+  std::this_thread::sleep_for(late ? std::chrono::microseconds(60'000)
+                                   : std::chrono::microseconds(250));
   const Call call("dhdGetPosition", id);
   const Eigen::Vector3d& p = mock().arm.p_BT;
   *x = mock().tells_nan ? std::numeric_limits<double>::quiet_NaN() : p.x();
@@ -178,7 +204,7 @@ int dhdSetForce(double x, double y, double z, char id) {
   call.expect(f.allFinite(), "with what is no number");
   call.expect(f.isZero(0) || mock().force_on, "before the forces are on");
   if (call.answer() < 0) return -1;
-  mock().arm.f_T_B = f;
+  mock().arm.f_T_B = mock().tripped ? Eigen::Vector3d(0, 0, 0) : f;
   mock().taken.push_back(f);
   return 0;
 }

@@ -21,8 +21,11 @@ struct MockDhd {
   bool held = false;       ///< Another program has it.
   std::string fails;       ///< The function that fails from now on.
   bool tells_nan = false;  ///< Positions are NaN.
+  bool late = false;       ///< Exchanges take 60 ms.
 
   bool open = false, watchdog = false, gravity = false, brakes = true, force_on = false;
+  bool expert = false;      ///< Functions of experts are allowed.
+  bool tripped = false;     ///< The arm switched the forces off by itself.
   bool asked_zero = false;  ///< Somebody asked whether the arm knows its zero, since it was opened.
   int opened = 0, closed = 0, stopped = 0, found_zero = 0;
   std::vector<Eigen::Vector3d> taken;  ///< Forces, N.
@@ -34,7 +37,7 @@ struct MockDhd {
     arm = PoseArm();
     arms = 1;
     initialised = true;
-    wrist = gripper = held = tells_nan = false;
+    wrist = gripper = held = tells_nan = late = expert = tripped = false;
     fails.clear();
     open = watchdog = gravity = force_on = asked_zero = false;
     brakes = true;

@@ -44,19 +44,27 @@ Scheduler& scheduler() {
   return one;
 }
 
+/// Runs each task once; those that are done are tasks no more.
+void run_tasks() {
+  const std::lock_guard lock(scheduler().mutex);
+  for (auto& [priority, entry] : scheduler().tasks) {
+    Task& task = entry.second;
+    task.done = task.call(task.data) == 0;
+    const std::lock_guard mock_lock(mock().mutex);
+    expect(!mock().frame, "a callback left its frame open");
+    mock().frame = false;
+  }
+  std::erase_if(scheduler().tasks, [](const auto& task) { return task.second.second.done; });
+}
+
 void run_scheduler() {
   while (scheduler().runs) {
-    {
-      const std::lock_guard lock(scheduler().mutex);
-      for (auto& [priority, entry] : scheduler().tasks) {
-        Task& task = entry.second;
-        if (task.done) continue;
-        task.done = task.call(task.data) == 0;
-        const std::lock_guard mock_lock(mock().mutex);
-        expect(!mock().frame, "a callback left its frame open");
-      }
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    run_tasks();
+    const bool late = [] {
+      const std::lock_guard lock(mock().mutex);
+      return mock().late;
+    }();
+    std::this_thread::sleep_for(std::chrono::milliseconds(late ? 60 : 1));
   }
 }
 
@@ -87,7 +95,9 @@ unsigned hdInitDevice(const char*) {
   return kDevice;
 }
 void hdDisableDevice(unsigned device) {
+  const std::lock_guard tasks_lock(scheduler().mutex);
   const std::lock_guard lock(mock().mutex);
+  expect(scheduler().tasks.empty(), "hdDisableDevice with a callback scheduled");
   expect(device == kDevice && mock().open, "hdDisableDevice of what is not open");
   expect(!mock().scheduler, "hdDisableDevice while the scheduler runs");
   expect(mock().taken.empty() || mock().taken.back().isZero(0),
@@ -165,7 +175,7 @@ void hdBeginFrame(unsigned device) {
   expect(device == kDevice && mock().open, "hdBeginFrame before hdInitDevice");
   expect(!mock().frame, "hdBeginFrame in a frame");
   mock().frame = true;
-  mock().arm.advance_to(steady_ns());
+  if (mock().open) mock().arm.advance_to(steady_ns());
 }
 void hdEndFrame(unsigned device) {
   const std::lock_guard lock(mock().mutex);
@@ -191,6 +201,7 @@ void hdStartScheduler() {
   {
     const std::lock_guard lock(mock().mutex);
     expect(!mock().scheduler, "hdStartScheduler twice");
+    expect(mock().open, "hdStartScheduler before hdInitDevice");
     mock().scheduler = true;
   }
   scheduler().runs = true;
@@ -205,6 +216,12 @@ void hdStopScheduler() {
 }
 unsigned long hdScheduleAsynchronous(unsigned (*call)(void*), void* data, unsigned short priority) {
   const std::lock_guard lock(scheduler().mutex);
+  {
+    const std::lock_guard mock_lock(mock().mutex);
+    expect(mock().open, "hdScheduleAsynchronous before hdInitDevice");
+    expect(call != nullptr, "hdScheduleAsynchronous of nothing");
+  }
+  if (call == nullptr) return 0;
   const unsigned long handle = scheduler().next++;
   scheduler().tasks.emplace(-priority, std::make_pair(handle, Task{call, data}));
   return handle;

@@ -21,6 +21,7 @@ struct MockHd {
   double nominal = 3.3;    ///< N
   unsigned error = 0;      ///< That each frame ends with.
   bool tells_nan = false;  ///< Positions are NaN.
+  bool late = false;       ///< The scheduler turns every 60 ms.
 
   bool open = false, frame = false, scheduler = false, force_on = false, asked_calibration = false;
   int opened = 0, closed = 0, frames = 0, calibrations = 0;
@@ -36,7 +37,7 @@ struct MockHd {
     styles = 4;
     nominal = 3.3;
     error = pending_error = 0;
-    tells_nan = open = frame = scheduler = force_on = asked_calibration = false;
+    tells_nan = late = open = frame = scheduler = force_on = asked_calibration = false;
     opened = closed = frames = calibrations = 0;
     taken.clear();
     wrong.clear();

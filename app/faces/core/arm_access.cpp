@@ -355,6 +355,15 @@ bool set_force_limit(int arm, double force) noexcept {
   return set(arm, &ArmChannel::force_limit, force > 0 ? force : 0.0);
 }
 
+bool mark_calibrated(int arm) noexcept {
+  return set(arm, &ArmChannel::calibrated, std::uint32_t{1});
+}
+
+bool is_calibrated(int arm) noexcept {
+  const ArmChannel* channel = channel_of(arm);
+  return channel != nullptr && channel->calibrated.load() != 0;
+}
+
 void wrong_call(const char* function, const char* what) noexcept {
   Channel* channel = open_channel();
   if (channel == nullptr) return;

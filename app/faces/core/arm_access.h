@@ -74,6 +74,12 @@ bool set_speed_limit(int arm, double speed) noexcept;
 /// gate's. A longer one is cut to it.
 bool set_force_limit(int arm, double force) noexcept;
 
+/// Notes that a program has calibrated an arm, as its interface asks. It holds beyond `close`, for
+/// other programs of the same `thimble exec` too.
+bool mark_calibrated(int arm) noexcept;
+/// Returns whether one has.
+bool is_calibrated(int arm) noexcept;
+
 /// Counts a wrong call for the report and keeps the first words of each function.
 void wrong_call(const char* function, const char* what) noexcept;
 

@@ -56,6 +56,7 @@ struct ArmChannel {
   std::atomic<std::int64_t> watchdog_ns{0};  ///< 0: the gate's.
   std::atomic<double> speed_limit{0};        ///< m/s; 0: the gate's.
   std::atomic<double> force_limit{0};        ///< N; 0: the gate's.
+  std::atomic<std::uint32_t> calibrated{0};  ///< Whether a program has asked for it (HDAPI).
 };
 
 /// A function that was called in a wrong way.
@@ -67,7 +68,7 @@ struct WrongCall {
 
 /// All of it.
 struct Channel {
-  static constexpr std::uint64_t kMagic = 0x3143'4558'4554'4854;  ///< Form of this memory.
+  static constexpr std::uint64_t kMagic = 0x3243'4558'4554'4854;  ///< Form of this memory.
   static constexpr std::size_t kWrongCallsMost = 64;  ///< Functions that are told apart.
 
   std::atomic<std::uint64_t> magic{0};     ///< kMagic once the rest is ready.

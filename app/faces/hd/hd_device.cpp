@@ -263,7 +263,8 @@ HDenum hdCheckCalibration(void) {
   const std::lock_guard lock(devices().mutex);
   const Device* device = current_open(__func__);
   if (device == nullptr) return HD_CALIBRATION_NEEDS_UPDATE;
-  return device->calibrated ? HD_CALIBRATION_OK : HD_CALIBRATION_NEEDS_UPDATE;
+  return arms::is_calibrated(static_cast<int>(current_device())) ? HD_CALIBRATION_OK
+                                                                 : HD_CALIBRATION_NEEDS_UPDATE;
 }
 
 HDenum hdCheckCalibrationStyle(void) {
@@ -272,8 +273,7 @@ HDenum hdCheckCalibrationStyle(void) {
 
 void hdUpdateCalibration(HDenum style) {
   const std::lock_guard lock(devices().mutex);
-  Device* device = current_open(__func__);
-  if (device == nullptr) return;
+  if (current_open(__func__) == nullptr) return;
   constexpr HDenum kStyles =
       HD_CALIBRATION_ENCODER_RESET | HD_CALIBRATION_AUTO | HD_CALIBRATION_INKWELL;
   if (style == 0 || (style & ~kStyles) != 0) {
@@ -281,7 +281,7 @@ void hdUpdateCalibration(HDenum style) {
     return;
   }
   // Our arms know where they are when they are opened (thimble calibrate).
-  device->calibrated = true;
+  arms::mark_calibrated(static_cast<int>(current_device()));
 }
 
 void hdUpdateCalibrationMessage(HDenum style) {

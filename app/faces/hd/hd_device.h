@@ -25,7 +25,6 @@ struct Frame {
 /// One arm that a program has by HDAPI. Its handle is the arm's number.
 struct Device {
   bool open = false;
-  bool calibrated = false;
   Frame frame;
   bool force_output = false, force_clamping = false, force_ramping = false;
   bool force_limit = true, one_frame_limit = false;

@@ -170,6 +170,11 @@ Result<std::optional<FoundArm>> choose_arm(const std::vector<FoundArm>& plugged_
                    "): the installed rule is for arms alone. `thimble doctor` prints the line to "
                    "add for this board."};
     }
+    if (found->kind == ArmKind::kHd || found->kind == ArmKind::kDhd) {
+      return Error{
+          "No access to " + found->arm + " " + found->name() + " (" + found->node +
+          "), by which its vendor's library reaches it: `thimble doctor` says what to do."};
+    }
     return Error{"No access to " + found->arm + " " + found->name() +
                  ": install udev/70-thimble.rules and plug it in again (see `thimble doctor`)."};
   }

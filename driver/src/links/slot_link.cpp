@@ -34,9 +34,14 @@ LinkWrite SlotLink::write(const GatedForce& force, const ArmSample&,
   if (is_lost()) return {LinkStatus::kLost};
   const double length = force.f_T_W().norm();
   const double scale = length > force_most_ ? force_most_ / length : 1;
-  const bool taken = box_.put(scale * (R_WB.transpose() * force.f_T_W()));
+  // What is refused must not go out once the arm takes forces again.
+  const bool refuses = refuses_.load(std::memory_order_acquire);
+  const bool taken =
+      box_.put(refuses ? Eigen::Vector3d(0, 0, 0)
+                       : Eigen::Vector3d(scale * (R_WB.transpose() * force.f_T_W())));
   ring();
-  if (!taken || refuses_.load(std::memory_order_acquire)) return {LinkStatus::kRefused};
+  // Zero is what it has meanwhile.
+  if (!taken || (refuses && length > 0)) return {LinkStatus::kRefused};
   return {LinkStatus::kOk, scale};
 }
 

@@ -35,7 +35,7 @@ class SlotLink : public ArmLink {
   void reject() noexcept;                          ///< Notes that it could not be understood.
   void lose() noexcept;                            ///< Notes that it is gone, for good.
   bool is_lost() const noexcept;                   ///< Returns whether it is.
-  /// Returns whether the arm takes no forces at the moment, so that writes are refused.
+  /// Tells whether the arm takes no forces at the moment: then all but zero are refused.
   void refuse(bool refuses) noexcept { refuses_.store(refuses, std::memory_order_release); }
   /// Takes the force that waits, N in the base; false if none does.
   bool take_force(Eigen::Vector3d& f_T_B) noexcept { return box_.take(f_T_B); }

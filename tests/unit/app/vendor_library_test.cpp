@@ -116,5 +116,39 @@ TEST_F(VendorLibraryTest, TheDoctorNamesTheLibrary) {
   EXPECT_TRUE(said);
 }
 
+TEST_F(VendorLibraryTest, TheDoctorSaysHowAVendorsLibraryGetsToItsArm) {
+  usb_.plug("1-1", "1451", "0402", "FD1", 1, 2);
+  usb_.plug("1-2", "2988", "0302", "TT1", 1, 3);
+  usb_.add_tty("1-2", 0, "ttyACM0");
+  usb_.plug("1-3", "2988", "0304", "TX1", 1, 4);
+  // Whoever is root may open all that is there.
+  std::filesystem::remove(usb_.root() / "dev/bus/usb/001/002");
+  std::filesystem::remove(usb_.root() / "dev/ttyACM0");
+  SystemInfo system;
+  system.root = usb_.root();
+  const auto mend = [&](const std::string& words) {
+    for (const Finding& found : examine(system)) {
+      if (holds(found.what, words)) return found.mend;
+    }
+    return std::string("nobody says: " + words);
+  };
+  // Nobody has published what the vendors' set-ups do, and our own rule is not for their arms.
+  const std::string touch = mend("TT1: you may not open /dev/ttyACM0");
+  EXPECT_TRUE(holds(touch, "is not published")) << touch;
+  EXPECT_TRUE(holds(touch, R"(SUBSYSTEM=="tty", ATTRS{idVendor}=="2988", TAG+="uaccess")"))
+      << touch;
+  EXPECT_TRUE(holds(touch, "ID_MM_DEVICE_IGNORE")) << touch;
+  const std::string omega = mend("FD1: you may not open /dev/bus/usb/001/002");
+  EXPECT_TRUE(holds(omega, R"(ENV{DEVTYPE}=="usb_device", ATTR{idVendor}=="1451")")) << omega;
+  EXPECT_TRUE(holds(mend("TX1: no kernel driver has it"), "usbhid"));
+  for (const Finding& found : examine(system)) {
+    EXPECT_FALSE(holds(found.what, "T1: ") && holds(found.mend, "70-thimble")) << found.mend;
+  }
+  const auto chosen = scene::choose_arm(*driver::find_arms(usb_.root()), "TT1");
+  ASSERT_FALSE(chosen);
+  EXPECT_TRUE(holds(chosen.error().message, "`thimble doctor` says what to do"));
+  EXPECT_FALSE(holds(chosen.error().message, "70-thimble"));
+}
+
 }  // namespace
 }  // namespace thimble::app

@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <functional>
 #include <thread>
 
 #include "support/heap_guard.h"
+#include "support/link_fault.h"
 #include "support/mock_dhd.h"
 #include "support/vintage_arm.h"
 #include "thimble/driver/device.h"
@@ -143,35 +145,54 @@ TEST_F(DhdLinkTest, SaysWhyAnArmCannotBeOpened) {
 }
 
 TEST_F(DhdLinkTest, NamesEachFaultOfTheLibraryAndLatchesZeroForce) {
-  struct Row {
-    const char* fails;  // nullptr: positions are no numbers
-    Fault fault;
+  using Mock = support::MockDhd;
+  const auto failing = [](const char* function) {
+    return [function](Mock& mock) { mock.fails = function; };
   };
-  for (const Row& row : {Row{"dhdGetPosition", Fault::kNoReports}, Row{nullptr, Fault::kNoReports},
-                         Row{"dhdGetLinearVelocity", Fault::kNoReports},
-                         Row{"dhdSetForce", Fault::kTransportLost}}) {
-    const std::string name_of_row = row.fails == nullptr ? "NaN" : row.fails;
+  const auto nan = [](Mock& mock) { mock.tells_nan = true; };
+  const auto late = [](Mock& mock) { mock.late = true; };
+  const auto trip = [](Mock& mock) { mock.tripped = true; };
+  struct Row {
+    const char* name;
+    std::function<void(Mock&)> begin;
+    Fault fault;
+    int more;
+  };
+  const Row rows[] = {
+      {"library says error: position", failing("dhdGetPosition"), Fault::kNoReports, 1},
+      {"library says error: velocity", failing("dhdGetLinearVelocity"), Fault::kNoReports, 1},
+      {"NaN from the library", nan, Fault::kNoReports, 1},
+      {"library answers 60 ms late", late, Fault::kNoReports, 3},
+      {"library takes no force", failing("dhdSetForce"), Fault::kTransportLost, 0},
+      // It is asked every 32nd time, and what it takes meanwhile goes to no motor.
+      {"library switched the forces off", trip, Fault::kRefused, 200}};
+  for (const Row& row : rows) {
     mock_->reset();
     ASSERT_NO_FATAL_FAILURE(open(30'000'000));
     ASSERT_TRUE(ticks_until({1, 0, 0}, [&] { return device_->f_sent_W().x() > 0.5; }));
-    with_mock([&](support::MockDhd& mock) {
-      if (row.fails == nullptr) mock.tells_nan = true;
-      if (row.fails != nullptr) mock.fails = row.fails;
+    const support::LinkFaultRow promised(row.name, "libdrd", row.fault, row.more);
+    std::size_t before = 0;
+    with_mock([&](Mock& mock) {
+      row.begin(mock);
+      before = mock.taken.size();
     });
     EXPECT_TRUE(ticks_until({1, 0, 0}, [&] { return device_->fault() != Fault::kNone; }));
-    EXPECT_EQ(device_->fault(), row.fault) << name_of_row << ": " << name(device_->fault());
+    EXPECT_EQ(device_->fault(), row.fault) << row.name << ": " << name(device_->fault());
     EXPECT_TRUE(device_->state().p_WT.allFinite());
-    with_mock([](support::MockDhd& mock) {
+    with_mock([&](Mock& mock) {
       mock.fails.clear();
-      mock.tells_nan = false;
+      mock.tells_nan = mock.late = false;
     });
     int more = 50;
     ticks_until({1, 0, 0}, [&] { return --more <= 0; });
-    EXPECT_EQ(device_->fault(), row.fault) << name_of_row;
-    EXPECT_EQ(device_->f_sent_W(), Vector3d(0, 0, 0)) << name_of_row;
+    EXPECT_EQ(device_->fault(), row.fault) << row.name;
+    EXPECT_EQ(device_->f_sent_W(), Vector3d(0, 0, 0)) << row.name;
     device_.reset();
-    EXPECT_EQ(force_of_arm(), Vector3d(0, 0, 0)) << name_of_row;
-    for (const std::string& wrong : mock_->wrong) ADD_FAILURE() << name_of_row << ": " << wrong;
+    with_mock([&](const Mock& mock) {
+      EXPECT_LE(support::forces_since(mock.taken, before), row.more) << row.name;
+      EXPECT_EQ(mock.arm.f_T_B, Vector3d(0, 0, 0)) << row.name;
+      for (const std::string& wrong : mock.wrong) ADD_FAILURE() << row.name << ": " << wrong;
+    });
   }
 }
 

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "support/heap_guard.h"
+#include "support/link_fault.h"
 #include "support/mock_haply_service.h"
 #include "support/vintage_arm.h"
 #include "thimble/driver/device.h"
@@ -72,8 +73,9 @@ class HaplyLinkTest : public ::testing::Test {
     ticks_until(f_T_W, [&] { return --count <= 0; });
   }
 
-  /// Returns what the service's mischief is named, once a force stands.
-  Fault fault_of(HaplyMischief mischief) {
+  /// Returns what the service's mischief is named, once a force stands; and how many forces it had
+  /// taken before.
+  Fault fault_of(HaplyMischief mischief, std::size_t& before) {
     greet();
     open(50'000'000);
     if (!device_) return Fault::kNone;
@@ -83,6 +85,7 @@ class HaplyLinkTest : public ::testing::Test {
       return Fault::kNone;
     }
     service_->begin(mischief);
+    before = service_->log().taken_B.size();
     EXPECT_TRUE(ticks_until({1, 0, 0}, [&] { return device_->fault() != Fault::kNone; }));
     return device_->fault();
   }
@@ -202,34 +205,42 @@ TEST_F(HaplyLinkTest, ListsTheArmsOfAServiceAndTellsItNothing) {
 // The rows of the fault matrix for an arm behind a service: what it does, the fault that latches,
 // and the zero force that follows wherever the service still listens.
 TEST_F(HaplyLinkTest, NamesEachFaultOfAServiceAndLatchesZeroForce) {
-  const std::pair<HaplyMischief, Fault> kRows[] = {
-      {HaplyMischief::kSilent, Fault::kNoReports},
-      {HaplyMischief::kLate, Fault::kNoReports},
-      {HaplyMischief::kNan, Fault::kNoReports},
-      {HaplyMischief::kInfinite, Fault::kNoReports},
-      {HaplyMischief::kMillimetres, Fault::kNoReports},
-      {HaplyMischief::kNull, Fault::kNoReports},
-      {HaplyMischief::kGarbage, Fault::kNoReports},
-      {HaplyMischief::kNotReady, Fault::kNoReports},
-      {HaplyMischief::kHuge, Fault::kTransportLost},
-      {HaplyMischief::kUnplugged, Fault::kTransportLost},
-      {HaplyMischief::kClose, Fault::kTransportLost},
-      {HaplyMischief::kDie, Fault::kTransportLost}};
-  for (const auto& [mischief, fault] : kRows) {
-    const int row = static_cast<int>(mischief);
-    const Fault named = fault_of(mischief);
-    ASSERT_TRUE(device_) << "row " << row;
-    EXPECT_EQ(named, fault) << "row " << row << ": " << name(named);
-    EXPECT_TRUE(device_->state().p_WT.allFinite()) << "row " << row;
-    EXPECT_LT(device_->state().p_WT.norm(), 0.1) << "row " << row;
+  struct Row {
+    const char* name;
+    HaplyMischief mischief;
+    Fault fault;
+    int more;
+  };
+  // A message every 10 ms goes to a service that does not answer, until 50 ms are a fault.
+  const Row rows[] = {{"service says nothing", HaplyMischief::kSilent, Fault::kNoReports, 7},
+                      {"service answers 60 ms late", HaplyMischief::kLate, Fault::kNoReports, 7},
+                      {"NaN from the service", HaplyMischief::kNan, Fault::kNoReports, 2},
+                      {"number too large", HaplyMischief::kInfinite, Fault::kNoReports, 2},
+                      {"position in mm", HaplyMischief::kMillimetres, Fault::kNoReports, 2},
+                      {"position without a number", HaplyMischief::kNull, Fault::kNoReports, 2},
+                      {"no JSON", HaplyMischief::kGarbage, Fault::kNoReports, 2},
+                      {"arm not ready", HaplyMischief::kNotReady, Fault::kNoReports, 2},
+                      {"message of 1 MB", HaplyMischief::kHuge, Fault::kTransportLost, 2},
+                      {"arm unplugged", HaplyMischief::kUnplugged, Fault::kTransportLost, 2},
+                      {"socket closed", HaplyMischief::kClose, Fault::kTransportLost, 2},
+                      {"service dies", HaplyMischief::kDie, Fault::kTransportLost, 2}};
+  for (const Row& row : rows) {
+    const support::LinkFaultRow promised(row.name, "Inverse3's service", row.fault, row.more);
+    std::size_t before = 0;
+    const Fault named = fault_of(row.mischief, before);
+    ASSERT_TRUE(device_) << row.name;
+    EXPECT_EQ(named, row.fault) << row.name << ": " << name(named);
+    EXPECT_TRUE(device_->state().p_WT.allFinite()) << row.name;
+    EXPECT_LT(device_->state().p_WT.norm(), 0.1) << row.name;
     service_->begin(HaplyMischief::kNone);
     ticks(100, {1, 0, 0});
-    EXPECT_EQ(device_->fault(), fault) << "row " << row << " came back";
-    EXPECT_EQ(device_->f_sent_W(), Vector3d(0, 0, 0)) << "row " << row;
-    EXPECT_TRUE(service_->log().f_T_B.isZero(0)) << "row " << row;
-    if (fault == Fault::kNoReports) {
-      EXPECT_TRUE(device_->zero_assured()) << "row " << row;
-      EXPECT_TRUE(service_->log().taken_B.back().isZero(0)) << "row " << row;
+    EXPECT_EQ(device_->fault(), row.fault) << row.name << " came back";
+    EXPECT_EQ(device_->f_sent_W(), Vector3d(0, 0, 0)) << row.name;
+    EXPECT_TRUE(service_->log().f_T_B.isZero(0)) << row.name;
+    EXPECT_LE(support::forces_since(service_->log().taken_B, before), row.more) << row.name;
+    if (row.fault == Fault::kNoReports) {
+      EXPECT_TRUE(device_->zero_assured()) << row.name;
+      EXPECT_TRUE(service_->log().taken_B.back().isZero(0)) << row.name;
     }
     device_.reset();
   }

@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <functional>
 #include <thread>
 
 #include "support/heap_guard.h"
+#include "support/link_fault.h"
 #include "support/mock_hd.h"
 #include "support/vintage_arm.h"
 #include "thimble/driver/device.h"
@@ -133,35 +135,52 @@ TEST_F(HdLinkTest, SaysWhyAnArmCannotBeOpened) {
 }
 
 TEST_F(HdLinkTest, NamesEachErrorOfTheLibraryAndLatchesZeroForce) {
+  using Mock = support::MockHd;
+  const auto error = [](unsigned code) { return [code](Mock& mock) { mock.error = code; }; };
+  const auto nan = [](Mock& mock) { mock.tells_nan = true; };
+  const auto late = [](Mock& mock) { mock.late = true; };
   struct Row {
-    unsigned error;  // 0: positions are no numbers
+    const char* name;
+    std::function<void(Mock&)> begin;
     Fault fault;
+    int more;
   };
-  for (const Row& row :
-       {Row{0x0200, Fault::kRefused}, Row{0x0201, Fault::kRefused}, Row{0x0203, Fault::kRefused},
-        Row{0x0302, Fault::kTransportLost}, Row{0x0300, Fault::kTransportLost},
-        Row{0x0402, Fault::kNoReports}, Row{0, Fault::kNoReports}}) {
+  const Row rows[] = {
+      {"library says error: warm motors", error(0x0200), Fault::kRefused, 1},
+      {"library says error: exceeded force", error(0x0201), Fault::kRefused, 1},
+      {"library says error: exceeded velocity", error(0x0203), Fault::kRefused, 1},
+      {"library says error: device fault", error(0x0300), Fault::kTransportLost, 1},
+      {"library says error: communication", error(0x0302), Fault::kTransportLost, 1},
+      {"library says error: frame", error(0x0402), Fault::kNoReports, 1},
+      {"NaN from the library", nan, Fault::kNoReports, 1},
+      {"library's scheduler turns every 60 ms", late, Fault::kNoReports, 3}};
+  for (const Row& row : rows) {
     mock_->reset();
     ASSERT_NO_FATAL_FAILURE(open(40'000'000));
     ASSERT_TRUE(ticks_until({1, 0, 0}, [&] { return device_->f_sent_W().x() > 0.5; }));
-    with_mock([&](support::MockHd& mock) {
-      mock.error = row.error;
-      mock.tells_nan = row.error == 0;
+    const support::LinkFaultRow promised(row.name, "libHD", row.fault, row.more);
+    std::size_t before = 0;
+    with_mock([&](Mock& mock) {
+      row.begin(mock);
+      before = mock.taken.size();
     });
     EXPECT_TRUE(ticks_until({1, 0, 0}, [&] { return device_->fault() != Fault::kNone; }));
-    EXPECT_EQ(device_->fault(), row.fault) << row.error << ": " << name(device_->fault());
+    EXPECT_EQ(device_->fault(), row.fault) << row.name << ": " << name(device_->fault());
     EXPECT_TRUE(device_->state().p_WT.allFinite());
-    with_mock([](support::MockHd& mock) {
+    with_mock([](Mock& mock) {
       mock.error = 0;
-      mock.tells_nan = false;
+      mock.tells_nan = mock.late = false;
     });
     int more = 100;
     ticks_until({1, 0, 0}, [&] { return --more <= 0; });
-    EXPECT_EQ(device_->fault(), row.fault) << row.error;
-    EXPECT_EQ(device_->f_sent_W(), Vector3d(0, 0, 0)) << row.error;
+    EXPECT_EQ(device_->fault(), row.fault) << row.name;
+    EXPECT_EQ(device_->f_sent_W(), Vector3d(0, 0, 0)) << row.name;
     device_.reset();
-    EXPECT_EQ(force_of_arm(), Vector3d(0, 0, 0)) << row.error;
-    for (const std::string& wrong : mock_->wrong) ADD_FAILURE() << row.error << ": " << wrong;
+    with_mock([&](const Mock& mock) {
+      EXPECT_LE(support::forces_since(mock.taken, before), row.more) << row.name;
+      EXPECT_EQ(mock.arm.f_T_B, Vector3d(0, 0, 0)) << row.name;
+      for (const std::string& wrong : mock.wrong) ADD_FAILURE() << row.name << ": " << wrong;
+    });
   }
 }
 

@@ -5,6 +5,8 @@
 
 #include "links/force_box.h"
 #include "links/newest_slot.h"
+#include "links/slot_link.h"
+#include "support/open_gate.h"
 
 namespace thimble::driver {
 namespace {
@@ -99,6 +101,30 @@ TEST(ForceBox, EveryForceThatWasTakenInGoesOutOnceAndInOrder) {
   reader.join();
   EXPECT_EQ(taken, put);
   EXPECT_TRUE(in_order);
+}
+
+/// A link whose other thread is the test.
+class OpenSlotLink final : public SlotLink {
+ public:
+  using SlotLink::refuse;
+  using SlotLink::SlotLink;
+  using SlotLink::take_force;
+};
+
+TEST(SlotLink, AForceThatWasRefusedNeverGoesOut) {
+  VirtualClock clock;
+  OpenSlotLink link({}, clock);
+  const GatedForce force = support::open_gate().pass({0.5, 0, 0}, {0, 0, 0}, 0.009);
+  ASSERT_GT(force.f_T_W().x(), 0.1);
+  const auto write = [&] { return link.write(force, {}, Eigen::Matrix3d::Identity()).status; };
+  Vector3d f;
+  link.refuse(true);
+  EXPECT_EQ(write(), LinkStatus::kRefused);
+  link.refuse(false);
+  EXPECT_FALSE(link.take_force(f) && !f.isZero(0)) << "the loop believes that it did not go out";
+  EXPECT_EQ(write(), LinkStatus::kOk);
+  ASSERT_TRUE(link.take_force(f));
+  EXPECT_EQ(f, force.f_T_W());
 }
 
 }  // namespace

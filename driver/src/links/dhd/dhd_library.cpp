@@ -24,10 +24,12 @@ Result<Library> take(Result<VendorLibrary> opened) {
       THIMBLE_FIND(drdOpenID) && THIMBLE_FIND(drdClose) && THIMBLE_FIND(drdIsInitialized) &&
       THIMBLE_FIND(drdAutoInit) && THIMBLE_FIND(drdStop) && THIMBLE_FIND(dhdGetSystemName) &&
       THIMBLE_FIND(dhdHasWrist) && THIMBLE_FIND(dhdHasGripper) && THIMBLE_FIND(dhdSetWatchdog) &&
-      THIMBLE_FIND(dhdSetGravityCompensation) && THIMBLE_FIND(dhdSetBrakes) &&
-      THIMBLE_FIND(dhdEnableForce) && THIMBLE_FIND(dhdStop) && THIMBLE_FIND(dhdGetPosition) &&
-      THIMBLE_FIND(dhdGetLinearVelocity) && THIMBLE_FIND(dhdGetOrientationFrame) &&
-      THIMBLE_FIND(dhdGetGripperGap) && THIMBLE_FIND(dhdGetButtonMask) && THIMBLE_FIND(dhdSetForce);
+      THIMBLE_FIND(dhdEnableExpertMode) && THIMBLE_FIND(dhdDisableExpertMode) &&
+      THIMBLE_FIND(dhdGetStatus) && THIMBLE_FIND(dhdSetGravityCompensation) &&
+      THIMBLE_FIND(dhdSetBrakes) && THIMBLE_FIND(dhdEnableForce) && THIMBLE_FIND(dhdStop) &&
+      THIMBLE_FIND(dhdGetPosition) && THIMBLE_FIND(dhdGetLinearVelocity) &&
+      THIMBLE_FIND(dhdGetOrientationFrame) && THIMBLE_FIND(dhdGetGripperGap) &&
+      THIMBLE_FIND(dhdGetButtonMask) && THIMBLE_FIND(dhdSetForce);
 #undef THIMBLE_FIND
   if (!whole) {
     return Error{library.file + " has no function " + missing +

@@ -25,7 +25,10 @@ struct Functions {
   const char* (*dhdGetSystemName)(char id) = nullptr;
   bool (*dhdHasWrist)(char id) = nullptr;
   bool (*dhdHasGripper)(char id) = nullptr;
+  int (*dhdEnableExpertMode)() = nullptr;
+  int (*dhdDisableExpertMode)() = nullptr;
   int (*dhdSetWatchdog)(unsigned char duration, char id) = nullptr;
+  int (*dhdGetStatus)(int status[17], char id) = nullptr;
   int (*dhdSetGravityCompensation)(int on, char id) = nullptr;
   int (*dhdSetBrakes)(int on, char id) = nullptr;
   int (*dhdEnableForce)(unsigned char on, char id) = nullptr;

@@ -1,5 +1,6 @@
 #include "links/dhd/dhd_link.h"
 
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -14,8 +15,15 @@ namespace {
 constexpr char kId = 0;  // the only arm's
 constexpr int kOn = 1, kOff = 0;
 
-/// After this the library's watchdog switches the motors off. In steps of 10 ms [M].
-constexpr unsigned char kWatchdog = 10;
+/// After this the arm's watchdog switches the motors off, in steps of 125 us [S
+/// forcedimension_core]: 20 ms, as long as a force is kept here [chosen; the most there is are 32
+/// ms].
+constexpr unsigned char kWatchdog = 160;
+
+/// How often it is asked whether the forces are still on: the library says nothing of it otherwise.
+/// [chosen: every 8 ms at 4 kHz, less than half of what is a fault]
+constexpr unsigned kStatusEvery = 32;
+constexpr std::size_t kStatusSize = 17, kStatusForce = 5;  // [S forcedimension_core]
 
 /// How long a force is sent on without a new one from the loop. [chosen: 20 missed ticks]
 constexpr auto kForceKept = std::chrono::milliseconds(20);
@@ -97,7 +105,15 @@ class DhdLink final : public SlotLink {
         if (++failures_ > kFailuresMost) lose();
       }
       send(call);
+      if (++exchanges_ % kStatusEvery == 0) look_at_force(call);
     }
+  }
+
+  /// Tells the loop of forces that the library has switched off: its watchdog, too fast a motion, a
+  /// person at the arm's button. They stay off until the arm is opened anew.
+  void look_at_force(const Functions& call) noexcept {
+    std::array<int, kStatusSize> status{};
+    if (call.dhdGetStatus(status.data(), kId) >= 0) refuse(status[kStatusForce] == 0);
   }
 
   bool ask(const Functions& call, ArmSample& sample) const noexcept {
@@ -143,6 +159,7 @@ class DhdLink final : public SlotLink {
   Eigen::Vector3d f_T_B_{0, 0, 0};
   std::chrono::steady_clock::time_point asked_at_;
   int failures_ = 0;
+  unsigned exchanges_ = 0;
   std::thread thread_;
 };
 
@@ -154,9 +171,12 @@ Result<void> enable(const OpenArm& arm) {
     if (answer < 0) return failure(arm.library(), std::string("The arm did not ") + what);
     return {};
   };
-  if (auto done = step(call.dhdSetWatchdog(kWatchdog, kId), "take its watchdog's time"); !done) {
-    return done;
-  }
+  // Experts alone may set it, and expert may nobody stay.
+  call.dhdEnableExpertMode();
+  const int watched = call.dhdSetWatchdog(kWatchdog, kId);
+  auto done_watch = step(watched, "take its watchdog's time");
+  call.dhdDisableExpertMode();
+  if (!done_watch) return done_watch;
   if (auto done = step(call.dhdSetGravityCompensation(kOn, kId), "carry its own weight"); !done) {
     return done;
   }

@@ -20,6 +20,7 @@ namespace thimble::driver::dhd {
 /// compensation, brakes off, force on. At the end: zero force, force off, stop, close.
 ///
 /// A read that fails is rejected; a failed exchange, or a force that is not taken, loses the arm.
+/// While the library has the forces off by itself, writes are refused.
 /// Fails if there is no arm, or more than one: nothing tells then which of them is meant.
 /// Real-time: never from the servo thread. `clock` is the loop's, and outlives the link.
 Result<std::unique_ptr<ArmLink>> open_link(const Library& library, Clock& clock);

@@ -47,7 +47,8 @@ class HaplyLink final : public SlotLink, private Traffic {
     waits_ = false;
     const StateRead read = read_state(text, device_id_, state_);
     if (read == StateRead::kGone) return lose();
-    if (read == StateRead::kRejected) return reject();
+    trusted_ = read == StateRead::kOk;
+    if (!trusted_) return reject();
     ArmSample sample;
     sample.pose.p_BT = state_.p_BT;
     sample.v_BT = state_.v_BT;
@@ -62,6 +63,8 @@ class HaplyLink final : public SlotLink, private Traffic {
     if (!take_force(f_T_B)) return std::nullopt;
     waits_ = true;
     sent_at_ = now;
+    // An arm whose pose is not known gets no force.
+    if (!trusted_) f_T_B.setZero();
     return force_message(device_id_, f_T_B);
   }
   std::string last_message() override { return force_message(device_id_, {0, 0, 0}); }
@@ -71,7 +74,7 @@ class HaplyLink final : public SlotLink, private Traffic {
   std::string device_id_;
   // Of the socket's thread.
   ArmState state_;
-  bool waits_ = false;
+  bool waits_ = false, trusted_ = true;
   std::chrono::steady_clock::time_point sent_at_;
   std::thread thread_;
 };

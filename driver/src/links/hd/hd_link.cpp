@@ -96,7 +96,8 @@ class HdLink final : public SlotLink {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
     call().hdStopScheduler();
-    call().hdUnschedule(task_);
+    // A callback that is done is no task any more.
+    if (!ended_.load(std::memory_order_acquire)) call().hdUnschedule(task_);
   }
 
   /// Switches the forces on, once the device says that it is calibrated.
@@ -124,7 +125,9 @@ class HdLink final : public SlotLink {
     call().hdBeginFrame(device_.handle());
     ArmSample sample;
     const bool understood = ask(sample);
-    const Eigen::Vector3d f = last || !understood ? Eigen::Vector3d(0, 0, 0) : force_at(now);
+    // An arm whose pose is not known, or that is lost, gets no force.
+    const bool trusted = understood && !rejected_ && !is_lost();
+    const Eigen::Vector3d f = last || !trusted ? Eigen::Vector3d(0, 0, 0) : force_at(now);
     call().hdSetDoublev(kForce, f.data());
     call().hdEndFrame(device_.handle());
     judge(first_error(call()), understood, sample, now);
@@ -170,8 +173,10 @@ class HdLink final : public SlotLink {
     } else if (code >= kDeviceFault && code <= kTimerError) {
       return lose();
     } else if (code != 0 || !understood) {
+      rejected_ = true;
       return reject();
     }
+    rejected_ = false;
     refuse(now < refused_until_);
     if (understood) publish(sample);
   }
@@ -182,6 +187,7 @@ class HdLink final : public SlotLink {
   // Of the scheduler's thread.
   Eigen::Vector3d f_T_B_{0, 0, 0};
   steady_clock::time_point asked_at_, refused_until_;
+  bool rejected_ = false;  // the frame before
 };
 
 }  // namespace

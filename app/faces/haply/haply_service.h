@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "thimble/driver/result.h"
+
+namespace thimble::faces::haply {
+
+/// Where an Inverse3's service listens [S docs.haply.co/inverseSDK].
+inline constexpr std::uint16_t kPort = 10001;
+
+/// A WebSocket service on this computer that stands in for an Inverse3's: programs that were
+/// written for one find the arms of `thimble exec` there. It lives in the process of `thimble exec`
+/// and reaches the arms as the libraries that stand in for others' do (core/arm_access.h), by a
+/// thread for each program.
+///
+/// Only programs of this computer are heard, and no web page of another: what names a foreign
+/// origin is refused. A message may have 256 KiB. Who says anything that is no message of such a
+/// program gets no force for it. Real-time: never from the servo thread, all of it.
+class Service {
+ public:
+  /// Listens on a port; 0: one that is free. The channel to the arms must be in use (use_channel)
+  /// until the service is destroyed. Begins by opening all arms, for which whoever serves them has
+  /// to go on with it. The error says what to do.
+  static driver::Result<std::unique_ptr<Service>> listen(std::uint16_t port);
+  /// Leaves, and waits for its threads.
+  ~Service();
+  Service(const Service&) = delete;
+  Service& operator=(const Service&) = delete;
+
+  /// Returns where it listens.
+  std::uint16_t port() const noexcept;
+  /// Returns whether the arms have been opened, or could not be; programs are let in from then on.
+  bool ready() const noexcept;
+  /// Returns how many programs have come.
+  int programs() const noexcept;
+  /// Closes all connections. Any thread.
+  void leave();
+  /// Returns whether all its threads are done, after `leave`: until then whoever serves the arms
+  /// has to go on with it.
+  bool ended() const noexcept;
+
+ private:
+  class Listener;
+  explicit Service(std::unique_ptr<Listener> listener);
+
+  std::unique_ptr<Listener> listener_;
+};
+
+}  // namespace thimble::faces::haply
