@@ -37,6 +37,8 @@ void add_devices_command(CLI::App& app, int& exit_code);
 void add_calibrate_command(CLI::App& app, int& exit_code);
 /// `thimble feel-check`: checks an arm by hand.
 void add_feel_check_command(CLI::App& app, int& exit_code);
+/// `thimble identify`: measures an arm's constants.
+void add_identify_command(CLI::App& app, int& exit_code);
 /// `thimble doctor`: says why an arm cannot be used, and what mends it.
 void add_doctor_command(CLI::App& app, int& exit_code);
 /// `thimble exec PROGRAM`: runs a program that was written for another maker's arm.

@@ -34,6 +34,11 @@ void add_feel_check_command(CLI::App& app, int& exit_code) {
   add_absent_command(app, exit_code, "feel-check", "Check an arm by hand");
 }
 
+void add_identify_command(CLI::App& app, int& exit_code) {
+  add_absent_command(app, exit_code, "identify",
+                     "Measure an arm's mass, friction, gains and delay by small forces");
+}
+
 void add_mesh_command(CLI::App& app, int& exit_code) {
   add_absent_command(app, exit_code, "mesh", "Tell what a mesh is and what is wrong with it");
 }

@@ -194,8 +194,8 @@ void SimulatedArm::send(WireQueue& queue, std::span<const std::byte> bytes,
     }
     due_ns +=
         static_cast<std::int64_t>(wire_chance_.uniform() * static_cast<double>(wire_.jitter_ns));
-    due_ns = std::max(due_ns, queue.last_due_ns());  // nothing overtakes
   }
+  // Nothing overtakes: what is due before the frame ahead of it arrives with that one.
   queue.push(bytes, due_ns);
 }
 

@@ -38,8 +38,8 @@ class WireQueue {
   /// a frame of the past).
   const WireFrame& front() const noexcept { return frames_[first_]; }
 
-  /// Sends bytes that will arrive at `due_ns`, which must not lie before that of the frame sent
-  /// last (the caller's duty; otherwise it arrives with that one).
+  /// Sends bytes that will arrive at `due_ns`; if that lies before the time of the frame sent last,
+  /// they arrive with that one.
   void push(std::span<const std::byte> bytes, std::int64_t due_ns) noexcept {
     if (count_ == kFrames) {
       pop();
@@ -59,11 +59,6 @@ class WireQueue {
     // An empty queue begins anew: a wire without delay writes to one frame, which stays in the
     // cache.
     first_ = count_ == 0 ? 0 : (first_ + 1) % kFrames;
-  }
-
-  /// Returns when the frame sent last arrives or arrived, ns; 0 before the first.
-  std::int64_t last_due_ns() const noexcept {
-    return frames_[(first_ + count_ + kFrames - 1) % kFrames].due_ns;
   }
 
   /// Returns how many frames were lost because too many were in flight.

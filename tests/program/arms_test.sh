@@ -85,6 +85,22 @@ expect 1 '' test -e state/thimble/feel_checks
 expect 3 'No arm is plugged in .*--arm NAME' "$thimble" feel-check
 expect 3 'No arm is plugged in .*--arm NAME' "$thimble" calibrate --device auto
 
+# What was identified goes into a new file, which runs; nobody's file is written over, and a motor that is
+# turned round is named before anything follows the motion.
+expect 0 '^Written to twin\.yaml' "$thimble" identify --arm "$vintage" --seconds 10 --known-mass 0.025 \
+  --output twin.yaml
+expect 0 'mass: 0\.07[45][0-9]*  # kg, apparent \[I ' cat twin.yaml
+expect 0 'touched it [1-9]' "$thimble" run "$source_dir/tests/data/scenes/two_boxes.yaml" --arm twin.yaml
+expect 1 'twin\.yaml is there already' "$thimble" identify --arm "$vintage" --seconds 10 --output twin.yaml
+expect 4 'Motor 1 pulls against its encoder' "$thimble" identify --arm reversed.yaml --output no.yaml
+expect 1 '' test -e no.yaml
+sed 's/^simulation:/&\n  drive_train: {stiffness: [20, 20, 20], inertia: [0.0005, 0.0005, 0.0005], damping: [0.01, 0.01, 0.01]}/' \
+  "$vintage" >springy.yaml
+expect 5 '^BAD FIT +The motion is not that of a rigid arm' "$thimble" identify --arm springy.yaml --seconds 10 \
+  --output no.yaml
+expect 1 '' test -e no.yaml
+expect 4 'Falcon' "$thimble" identify --arm falcon
+
 # Limits that protect nobody: an error with file and line, whoever names them.
 for wrong in 's/force_max: 5 /force_max: 100 /' 's/soft_start: 0.3/soft_start: 0/' \
   's/soft_start: 0.3/soft_start: 1e-9/' 's/watchdog: 0.1 /watchdog: 10 /' \

@@ -1,0 +1,114 @@
+#include "bringup/identify/arm_constants.h"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+
+namespace thimble::app {
+namespace {
+
+constexpr int kSeen = 8;    // constants per mass: all but the stiffness
+constexpr int kWanted = 9;  // mass, three gains, viscous, coulomb, three of the weight
+
+using Seen = Eigen::Matrix<double, kSeen, 1>;
+using Wanted = Eigen::Matrix<double, kWanted, 1>;
+using Slope = Eigen::Matrix<double, kSeen, kWanted>;
+
+/// What a motion shows per mass of an arm with these constants, and how that follows them.
+Seen shown(const Wanted& x, double added, const Eigen::Vector3d& down_B, Slope& slope) {
+  const double over = 1 / (x[0] + added);
+  Seen z = x.tail<kSeen>();
+  z.tail<3>() += added * kStandardGravity * down_B;
+  z *= over;
+  slope.setZero();
+  slope.col(0) = -over * z;
+  slope.rightCols<kSeen>() = over * Eigen::Matrix<double, kSeen, kSeen>::Identity();
+  return z;
+}
+
+ArmConstants constants_of(const Wanted& x, const Eigen::Matrix<double, kWanted, kWanted>& cov,
+                          const Eigen::Vector3d& down_B) {
+  const auto estimate = [&](int i) { return Estimate{x[i], kNormal95 * std::sqrt(cov(i, i))}; };
+  ArmConstants found;
+  found.mass = estimate(0);
+  for (int i = 0; i < 3; ++i) found.gain[static_cast<std::size_t>(i)] = estimate(1 + i);
+  found.viscous = estimate(4);
+  found.coulomb = estimate(5);
+  const Eigen::Matrix3d weight = cov.bottomRightCorner<3, 3>();
+  found.weight = {x.tail<3>().dot(down_B), kNormal95 * std::sqrt(down_B.dot(weight * down_B))};
+  return found;
+}
+
+/// With the gains' geometric mean 1, mass is what the accelerations say.
+ArmConstants by_declared_torque(const PerMass& bare, const Eigen::Vector3d& down_B) {
+  const Seen z = bare.theta.head<kSeen>();
+  double log_gain = 0;
+  for (int i = 0; i < 3; ++i) log_gain += std::log(std::abs(z[i])) / 3;
+  Wanted x;
+  x[0] = std::exp(-log_gain);
+  x.tail<kSeen>() = x[0] * z;
+  Eigen::Matrix<double, kWanted, kSeen> slope = Eigen::Matrix<double, kWanted, kSeen>::Zero();
+  for (int i = 0; i < 3; ++i) slope(0, i) = -x[0] / (3 * z[i]);
+  slope.bottomRows<kSeen>() = z * slope.row(0);
+  slope.bottomRows<kSeen>() += x[0] * Eigen::Matrix<double, kSeen, kSeen>::Identity();
+  return constants_of(x, slope * bare.covariance.topLeftCorner<kSeen, kSeen>() * slope.transpose(),
+                      down_B);
+}
+
+}  // namespace
+
+driver::Result<ArmConstants> arm_constants(const PerMass& bare, const Eigen::Vector3d& down_B,
+                                           const std::optional<PerMass>& loaded,
+                                           double added_mass) {
+  for (int i = 0; i < 3; ++i) {
+    if (bare.theta[i] > 0) continue;
+    return driver::Error{"Joint " + std::to_string(i + 1) +
+                         " does not follow its motor: what was recorded has another cause. Run "
+                         "`thimble feel-check`."};
+  }
+  ArmConstants found = by_declared_torque(bare, down_B);
+  found.delay = bare.delay;
+  if (!loaded) return found;
+  Wanted x;
+  double ratio = 0;  // of accelerations, bare to loaded
+  for (int i = 0; i < 3; ++i) ratio += bare.theta[i] / loaded->theta[i] / 3;
+  if (!(ratio > 1.02)) {
+    return driver::Error{
+        "The tip moved no slower with the known mass than without it: fix it to the tip, or take a "
+        "heavier one (about what the tip itself weighs)."};
+  }
+  x[0] = added_mass / (ratio - 1);
+  x.tail<kSeen>() = x[0] * bare.theta.head<kSeen>();
+  Eigen::Matrix<double, kWanted, kWanted> normal;
+  double square = 0;
+  for (int round = 0; round < 20; ++round) {
+    normal.setZero();
+    Wanted right = Wanted::Zero();
+    square = 0;
+    const auto add = [&](const PerMass& fit, double added) {
+      Slope slope;
+      const Seen rest = fit.theta.head<kSeen>() - shown(x, added, down_B, slope);
+      const auto weight = fit.covariance.topLeftCorner<kSeen, kSeen>().ldlt();
+      normal += slope.transpose() * weight.solve(slope);
+      const Seen weighed = weight.solve(rest);
+      right += slope.transpose() * weighed;
+      square += rest.dot(weighed);
+    };
+    add(bare, 0);
+    add(*loaded, added_mass);
+    x += normal.ldlt().solve(right);
+  }
+  if (!(x[0] > 0)) return driver::Error{"The two motions fit no arm with a mass above zero."};
+  const Eigen::Matrix<double, kWanted, kWanted> cov =
+      normal.ldlt().solve(Eigen::Matrix<double, kWanted, kWanted>::Identity());
+  found = constants_of(x, cov, down_B);
+  found.absolute = true;
+  found.misfit = square / (2 * kSeen - kWanted);
+  // Both saw the same delay.
+  const double first = 1 / (bare.delay.plus_minus * bare.delay.plus_minus);
+  const double second = 1 / (loaded->delay.plus_minus * loaded->delay.plus_minus);
+  found.delay = {(first * bare.delay.value + second * loaded->delay.value) / (first + second),
+                 1 / std::sqrt(first + second)};
+  return found;
+}
+
+}  // namespace thimble::app

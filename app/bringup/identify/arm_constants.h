@@ -1,0 +1,36 @@
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "bringup/identify/motion_fit.h"
+
+namespace thimble::app {
+
+/// Standard gravity, m/s^2.
+inline constexpr double kStandardGravity = 9.80665;
+/// Half-width of the 95 % interval of a normal distribution, in standard deviations.
+inline constexpr double kNormal95 = 1.96;
+
+/// Constants of an arm as they are written into its file, with their intervals.
+struct ArmConstants {
+  Estimate mass;                 ///< At the tip, kg.
+  Estimate viscous;              ///< N s/m
+  Estimate coulomb;              ///< N per axis
+  Estimate weight;               ///< What gravity pulls on the tip with, N.
+  std::array<Estimate, 3> gain;  ///< True torque over that of the arm file, joint by joint.
+  Estimate delay;                ///< From force to seen motion, s.
+  /// The scale of masses and forces was measured with a known mass. If not, the gains' geometric
+  /// mean was taken to be 1, and all but the delay are as wrong as that.
+  bool absolute = false;
+  double misfit = 0;  ///< With a known mass: chi^2 per degree of freedom of both motions together.
+};
+
+/// Returns the constants that the motion of a bare tip means, or those of two motions together, the
+/// second with a known mass on the tip: it moves as much slower as its mass is more, whatever the
+/// motors' constants. The error says why there is no such arm.
+/// Real-time: never from the servo thread.
+driver::Result<ArmConstants> arm_constants(const PerMass& bare, const Eigen::Vector3d& down_B,
+                                           const std::optional<PerMass>& loaded, double added_mass);
+
+}  // namespace thimble::app

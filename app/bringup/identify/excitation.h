@@ -1,0 +1,39 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+
+namespace thimble::app {
+
+/// A force that moves a free arm in all directions at once, so that mass, friction and gains show
+/// in its motion: sines of many frequencies per axis, and a weak spring and damper that keep the
+/// tip where it began. Never longer than `kForceMost`. Frame W: world.
+class Excitation {
+ public:
+  static constexpr double kForceMost = 0.95;  ///< N, below the 1 N that identifying is allowed.
+  static constexpr double kFar = 0.04;        ///< How far the tip may go from the middle, m.
+  static constexpr int kSines = 8;            ///< Per axis.
+
+  /// Takes where the tip shall stay (m), the force that carries a known mass (N), and what the
+  /// phases are drawn by.
+  Excitation(const Eigen::Vector3d& p_WM, const Eigen::Vector3d& f_carried_W, std::uint64_t seed);
+
+  /// Returns the force (N) at a time since the beginning (s), `dt` (s) after the last, for a tip at
+  /// p_WT (m) with v_WT (m/s); zero for a tip that has left the space it may move in. Real-time:
+  /// safe.
+  Eigen::Vector3d force(double time, double dt, const Eigen::Vector3d& p_WT,
+                        const Eigen::Vector3d& v_WT) noexcept;
+
+  /// Returns whether a tip is where it may be. Real-time: safe.
+  bool near(const Eigen::Vector3d& p_WT) const noexcept { return (p_WT - p_WM_).norm() < kFar; }
+
+ private:
+  Eigen::Vector3d p_WM_;
+  Eigen::Vector3d f_carried_W_;
+  std::array<std::array<double, kSines>, 3> frequency_{};  // rad/s
+  std::array<std::array<double, kSines>, 3> phase_{};
+  Eigen::Vector3d v_slow_{0, 0, 0};  // without the noise of the encoders' steps, m/s
+};
+
+}  // namespace thimble::app

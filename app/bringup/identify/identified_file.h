@@ -1,0 +1,31 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "bringup/identify/arm_constants.h"
+#include "thimble/driver/result.h"
+#include "thimble/scene/arm_file.h"
+
+namespace thimble::app {
+
+/// When and on which arm constants were identified.
+struct IdentifiedMark {
+  std::string date;  ///< "2026-11-23"
+  std::string arm;   ///< The arm's name or serial number; "sim" for the simulated one.
+};
+
+/// Returns an arm file's text with identified constants in place of its own: mass, friction, weight
+/// and delay of its section `simulation`, and the torque constants. Each is marked with date, arm
+/// and interval behind it; all other lines stay as they are. Fails if the text has no section
+/// `simulation`, or a form in which that cannot be done. Real-time: never from the servo thread.
+driver::Result<std::string> identified_text(const std::string& text, const ArmConstants& constants,
+                                            const IdentifiedMark& mark);
+
+/// Writes that into a new file. Fails if there is one already: nobody's own file is written over.
+/// Real-time: never from the servo thread.
+driver::Result<void> write_identified(const std::filesystem::path& arm_file,
+                                      const std::filesystem::path& new_file,
+                                      const ArmConstants& constants, const IdentifiedMark& mark);
+
+}  // namespace thimble::app

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "bringup/identify/arm_motion.h"
+#include "thimble/driver/result.h"
+
+namespace thimble::app {
+
+/// A constant with the half-width of its 95 % interval, in the same unit.
+struct Estimate {
+  double value = 0;
+  double plus_minus = 0;
+
+  /// Returns whether a value lies inside the interval.
+  bool holds(double truth) const { return std::abs(truth - value) <= plus_minus; }
+};
+
+/// Constants of a motion, per moved mass: what motion alone can tell.
+///
+///     p'' = sum_i g_i G_i^T tau_i(t - delay) - b p' - c sgn(p') + w - k (p - p_0),
+///
+/// row i of G for joint i. Torques and mass scale together, so that only the ratios are seen.
+struct PerMass {
+  /// Index of each constant in `theta`.
+  enum Index { kGain = 0, kViscous = 3, kCoulomb = 4, kWeight = 5, kStiffness = 8, kCount = 9 };
+
+  Eigen::Matrix<double, kCount, 1> theta = Eigen::Matrix<double, kCount, 1>::Zero();
+  Eigen::Matrix<double, kCount, kCount> covariance = Eigen::Matrix<double, kCount, kCount>::Zero();
+  Estimate delay;            ///< From the force to the motion that the host sees, s.
+  double residual = 0;       ///< RMS of what the model leaves of the acceleration, m/s^2.
+  double noise = 0;          ///< RMS that the encoders' steps alone would leave, m/s^2.
+  double explained = 0;      ///< Share of the acceleration's variance that the model explains.
+  std::size_t windows = 0;   ///< Pieces of motion that it was fitted to.
+  std::size_t left_out = 0;  ///< Pieces in which an axis stood too long to know its friction.
+};
+
+/// Fits a motion in the weak form: both sides are integrated against smooth bumps of 60 ms, so that
+/// positions need no differentiation; linear least squares for all constants but the delay, which a
+/// line search finds to a fraction of a tick. The covariance is that of clusters of half a second,
+/// whatever their residuals' correlation. `with_stiffness`: a spring holds the tip (a hand).
+/// Fails if the motion is too short or its windows too few. Real-time: never from the servo thread.
+driver::Result<PerMass> fit_motion(const ArmMotion& motion, bool with_stiffness);
+
+}  // namespace thimble::app

@@ -1,0 +1,20 @@
+#include "bringup/identify/simulated_bench.h"
+
+#include "bringup/identify/identify.h"
+
+namespace thimble::app {
+
+driver::Result<std::unique_ptr<BenchArm>> simulated_bench(const scene::ArmFile& file,
+                                                          double added_mass, bool hold_it) {
+  scene::ArmFile bench = file;
+  if (!hold_it) bench.simulated.hand = {};
+  bench.simulated.hand.mass += added_mass;
+  bench.simulated.weight_B +=
+      file.R_WB.transpose() * Eigen::Vector3d(0, 0, -kStandardGravity * added_mass);
+  // Nobody holds the mass from below until it is carried.
+  if (added_mass > 0) bench.limits.soft_start = driver::GateLimits::kSoftStartLeast;
+  const Eigen::Vector3d middle = (file.workspace.min_W + file.workspace.max_W) / 2;
+  return BenchArm::open(bench, {}, {}, {{0, middle}}, kIdentifyForceMax);
+}
+
+}  // namespace thimble::app

@@ -1,0 +1,122 @@
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <ctime>
+#include <memory>
+#include <string>
+
+#include "bringup/identify/identified_file.h"
+#include "bringup/identify/identify.h"
+#include "bringup/identify/simulated_bench.h"
+#include "cli/arm_choice.h"
+#include "cli/commands.h"
+#include "cli/complain.h"
+#include "enter_key.h"
+#include "interrupt.h"
+#include "log/logger.h"
+#include "thimble/scene/shipped_files.h"
+
+namespace thimble::app {
+namespace {
+
+struct IdentifyCommand {
+  ArmChoice choice;
+  IdentifyOptions options;
+  std::string output;
+};
+
+std::string today() {
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  char text[16];
+  std::strftime(text, sizeof text, "%Y-%m-%d", &utc);
+  return text;
+}
+
+/// Opens a real arm and asks for what the motion needs; the arm is idle meanwhile.
+driver::Result<std::unique_ptr<BenchArm>> open_real(const ChosenArm& chosen,
+                                                    const IdentifyCommand& command, bool loaded,
+                                                    const std::atomic<bool>& stop) {
+  auto bench =
+      BenchArm::open(chosen.file, chosen.real_arm, command.choice.firmware, {}, kIdentifyForceMax);
+  if (!bench) return bench;
+  if (loaded) {
+    std::printf(
+        "Fix %g kg to the tip so that it cannot swing, in the middle of the workspace, and hold it "
+        "from below; let go once you feel that it is carried. Press Enter to begin.\n",
+        command.options.known_mass);
+  } else {
+    std::printf(
+        "Put the tip into the middle of the workspace, so that it stays there, and take your hand "
+        "off. It will shake by some millimetres with at most %g N for %g s; Ctrl-C ends it. Press "
+        "Enter to begin.\n",
+        kIdentifyForceMax, command.options.seconds);
+  }
+  session::EnterKey key = session::EnterKey::kNothing;
+  const auto done = [&key] {
+    return (key = session::look_for_enter()) != session::EnterKey::kNothing;
+  };
+  if (!(*bench)->hold(done, stop) || key != session::EnterKey::kPressed) {
+    return driver::Error{"It was left before it began; nothing was kept."};
+  }
+  return bench;
+}
+
+int identify_arm(IdentifyCommand command) {
+  const auto chosen = resolve(command.choice, false);
+  if (!chosen) return complain(chosen.error(), kExitNoDevice);
+  const SimulatedNote simulated(*chosen, "constant of an arm on the desk");
+  for (const std::string& sentence : chosen->told) std::printf("%s\n", sentence.c_str());
+  if (command.output.empty()) command.output = chosen->file.name + "_identified.yaml";
+  const std::atomic<bool>& stop = scene::catch_interrupts();
+  if (chosen->real_arm) scene::leave_rather_than_stop();
+  const scene::LeavingGuard guard;
+  // A person needs time to let go of the mass.
+  if (chosen->real_arm) command.options.lead = 4;
+  const OpenBench open = [&](bool loaded) {
+    return chosen->real_arm
+               ? open_real(*chosen, command, loaded, stop)
+               : simulated_bench(chosen->file, loaded ? command.options.known_mass : 0);
+  };
+  const auto found = identify(open, chosen->file, command.options, stop);
+  if (stop.load()) return kExitInterrupted;
+  if (!found) return complain(found.error(), kExitFault);
+  std::printf("%s", constants_table(*found).c_str());
+  scene::logger().info("The arm {} was identified{}.", chosen->name,
+                       found->against.empty() ? "" : ", and its fit is bad");
+  if (!found->against.empty()) {
+    for (const std::string& sentence : found->against)
+      std::printf("BAD FIT  %s\n", sentence.c_str());
+    std::printf("Nothing was written.\n");
+    return kExitUnmet;
+  }
+  const auto file = scene::find_arm_file(chosen->path.string());
+  if (!file) return complain(file.error(), kExitBadInput);
+  const auto written = write_identified(*file, command.output, found->constants,
+                                        {.date = today(), .arm = chosen->name});
+  if (!written) return complain(written.error(), kExitTrouble);
+  std::printf("Written to %s.\n", command.output.c_str());
+  return kExitDone;
+}
+
+}  // namespace
+
+void add_identify_command(CLI::App& app, int& exit_code) {
+  CLI::App* sub = app.add_subcommand(
+      "identify", "Measure an arm's mass, friction, gains and delay by small forces");
+  auto command = std::make_shared<IdentifyCommand>();
+  command->choice.add_options(*sub);
+  sub->add_option(
+         "--known-mass", command->options.known_mass,
+         "Mass that you fix to the tip for a second motion, kg: without it only the ratios "
+         "of masses and forces can be seen")
+      ->check(CLI::Range(0.0, 0.06));
+  sub->add_option("--seconds", command->options.seconds, "Of each motion")
+      ->check(CLI::Range(10.0, 600.0))
+      ->capture_default_str();
+  sub->add_option("--output", command->output,
+                  "New arm file to write; left out: NAME_identified.yaml in this folder");
+  sub->callback([command, &exit_code] { exit_code = identify_arm(*command); });
+}
+
+}  // namespace thimble::app
