@@ -13,6 +13,7 @@
 #include "enter_key.h"
 #include "interrupt.h"
 #include "log/logger.h"
+#include "terms/feel_check_record.h"
 #include "thimble/scene/shipped_files.h"
 
 namespace thimble::app {
@@ -62,11 +63,23 @@ driver::Result<std::unique_ptr<BenchArm>> open_real(const ChosenArm& chosen,
   return bench;
 }
 
+/// Says whether a real arm passed its feel check as it is: what asks for more than that check may
+/// needs an arm of which signs and watchdog are known.
+bool checked(const ChosenArm& chosen, const std::string& firmware) {
+  const scene::RealArmFile file{.path = chosen.path, .file = chosen.file, .why = {}, .told = {}};
+  return scene::has_passed(scene::describe_checked(*chosen.real_arm, file, firmware));
+}
+
 int identify_arm(IdentifyCommand command) {
   const auto chosen = resolve(command.choice, false);
   if (!chosen) return complain(chosen.error(), kExitNoDevice);
   const SimulatedNote simulated(*chosen, "constant of an arm on the desk");
   for (const std::string& sentence : chosen->told) std::printf("%s\n", sentence.c_str());
+  if (chosen->real_arm && !checked(*chosen, command.choice.firmware)) {
+    return complain({"Identifying asks for up to 1 N, and this arm, with this arm file, has not "
+                     "passed its feel check. Run `thimble feel-check` first."},
+                    kExitBadInput);
+  }
   if (command.output.empty()) command.output = chosen->file.name + "_identified.yaml";
   const std::atomic<bool>& stop = scene::catch_interrupts();
   if (chosen->real_arm) scene::leave_rather_than_stop();
