@@ -25,8 +25,15 @@ expect 0 '^049D +Haply Inverse3 +service +port [0-9]+ +ws://localhost:[0-9]+ +re
 "$thimble" doctor >doctor.txt 2>&1
 expect 0 'Haply Inverse3 049D: its service on port [0-9]+ has it .*Untried on hardware' cat doctor.txt
 expect 2 "calibrated by its vendor's own software" "$thimble" calibrate --device 049D
-expect 0 'Arm file: .*inverse3\.yaml .*the arm is a Haply Inverse3' \
-  "$thimble" run "$source_dir/tests/data/scenes/two_boxes.yaml" --device auto --yes --no-real-time --no-view --duration 1
+# In real time, where a busy machine may give the service no turn for longer than the gate waits for a report.
+touch_it() {
+  for _ in 1 2 3 4 5; do
+    "$thimble" run "$source_dir/tests/data/scenes/two_boxes.yaml" --device auto --yes --no-real-time --no-view --duration 1 && return
+    sleep 1
+  done
+  return 4
+}
+expect 0 'Arm file: .*inverse3\.yaml .*the arm is a Haply Inverse3' touch_it
 expect 0 '^049D ' tail -n 1 forces.txt
 # A millisecond each, less what a busy machine left out; and the last of them is zero.
 expect 0 '^[1-9][0-9][0-9]+ ' wc -l forces.txt

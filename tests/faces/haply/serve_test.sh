@@ -11,18 +11,23 @@ serve() { "$thimble" exec --serve haply --port 0 "$@"; }
 # Our own back end behind our own face: a run on an arm that is another program's simulated one. A hand goes into a box
 # of the scene that the inner run alone knows.
 printf '0 0.002 -0.03 0.02\n0.05 0.002 -0.03 0.02\n0.5 0.002 -0.03 0.0135\n1 0.004 -0.027 0.011\n3 0 -0.03 0.012\n900 0 -0.03 0.012\n' >press.txt
-serve --clock virtual --hand press.txt --record outer.h5 "$thimble" run "$source_dir/tests/data/scenes/two_boxes.yaml" \
-  --device 0001 --yes --no-real-time --no-view --duration 4 --record inner.h5 >run.txt 2>&1
-status=$?
-# On a busy machine the inner run may miss the arm for 20 ms, and says so; what both knew until then is compared all the same.
-[ $status = 0 ] || expect 0 'no_reports|loop_stalled|stood still|told nothing' cat run.txt
-for end in outer inner; do expect 0 "$end.csv: [0-9]+ ticks" "$thimble" export $end.h5 --csv $end.csv; done
-awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) { if ($i ~ /^p_WT.x/) p = i; if ($i ~ /^v_WT.x/) v = i; if ($i ~ /^f_sent_W.x/) f = i; if ($i == "fresh") n = i }; next }
-  $n { print $p, $(p + 1), $(p + 2), $v, $(v + 1), $(v + 2), $f, $(f + 1), $(f + 2); next }
-  { print "- - - - - -", $f, $(f + 1), $(f + 2) }' inner.csv >inner.txt
-awk -f "$ends" -v force_step=1e-6 -v opening=600 inner.txt outer.csv
-expect 0 '^[0-9]{3,} ticks here, 0 not there, 0 out of order; [0-9]{2,} ticks there with a force from here, [0-9]{2,} different, 0 from elsewhere$' \
-  awk -f "$ends" -v force_step=1e-6 -v opening=600 inner.txt outer.csv
+# On a busy machine the inner run may miss the arm for 20 ms, and says so: what both knew until then is the same all the same,
+# and it is tried again until the touch was long enough.
+for _ in 1 2 3 4 5 6; do
+  serve --clock virtual --hand press.txt --record outer.h5 "$thimble" run "$source_dir/tests/data/scenes/two_boxes.yaml" \
+    --device 0001 --yes --no-real-time --no-view --duration 4 --record inner.h5 >run.txt 2>&1
+  status=$?
+  [ $status = 0 ] || expect 0 'no_reports|loop_stalled|stood still|told nothing' cat run.txt
+  for end in outer inner; do expect 0 "$end.csv: [0-9]+ ticks" "$thimble" export $end.h5 --csv $end.csv; done
+  awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) { if ($i ~ /^p_WT.x/) p = i; if ($i ~ /^v_WT.x/) v = i; if ($i ~ /^f_sent_W.x/) f = i; if ($i == "fresh") n = i }; next }
+    $n { print $p, $(p + 1), $(p + 2), $v, $(v + 1), $(v + 2), $f, $(f + 1), $(f + 2); next }
+    { print "- - - - - -", $f, $(f + 1), $(f + 2) }' inner.csv >inner.txt
+  awk -f "$ends" -v force_step=1e-6 -v opening=600 inner.txt outer.csv >same.txt
+  cat same.txt
+  expect 0 ' ticks here, 0 not there, 0 out of order; .* 0 from elsewhere$' cat same.txt
+  grep -qE ' [0-9]{3,} ticks there with a force' same.txt && break
+done
+expect 0 '^[0-9]{3,} ticks here, .* [0-9]{3,} ticks there with a force from here, [0-9]{2,} different' cat same.txt
 
 expect 2 'haply' "$thimble" exec --serve tetris true
 expect 2 '70000' "$thimble" exec --serve haply --port 70000 true
