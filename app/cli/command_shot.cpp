@@ -1,13 +1,18 @@
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cli/commands.h"
 #include "cli/complain.h"
 #include "cli/file_options.h"
+#include "thimble/scene/scene_file.h"
 #include "view/gl/animated_picture_file.h"
 #include "view/gl/offscreen_context.h"
 #include "view/gl/picture_file.h"
@@ -53,6 +58,31 @@ void turn(view::Camera& camera, const std::vector<double>& wanted) {
   if (wanted.size() > 2) camera.zoom(wanted[2]);
 }
 
+/// Returns what is wrong with the names of the pictures; empty if nothing is.
+std::string wrong_ending(const ShotOptions& options) {
+  for (const auto& [option, file] :
+       {std::pair{"--out", &options.out}, {"--animate", &options.animate}}) {
+    const std::string ending = std::filesystem::path(*file).extension().string();
+    if (file->empty() || ending == ".png" || ending == ".PNG") continue;
+    return std::string(option) +
+           ": pictures are written as PNG; expected a file that ends in .png, found " + *file + ".";
+  }
+  return {};
+}
+
+/// Returns how the times that are to be drawn miss the scene; empty if they do not.
+std::string beyond_the_end(const ShotOptions& options) {
+  const auto scene = scene::load_scene(options.scene, {.arm = options.arm_file});
+  if (!scene) return {};  // whoever plays it tells why
+  for (const auto& [option, time] :
+       {std::pair{"--at", options.at.value_or(0)}, {"--until", options.until}}) {
+    if (time <= scene->duration) continue;
+    return fmt::format("{} {:g}: the scene {} ends at {:g} s.", option, time, scene->name,
+                       scene->duration);
+  }
+  return {};
+}
+
 int take_shot(const ShotOptions& options) {
   view::ShotChoice choice;
   if (!read_size(options.size, choice.width, choice.height)) {
@@ -63,6 +93,9 @@ int take_shot(const ShotOptions& options) {
   if (options.out.empty() && options.animate.empty()) {
     return complain({"Say where the picture goes: --out FILE.png, or --animate FILE.png."},
                     kExitBadInput);
+  }
+  for (const std::string& wrong : {wrong_ending(options), beyond_the_end(options)}) {
+    if (!wrong.empty()) return complain({wrong}, kExitBadInput);
   }
   choice.paint.shading =
       options.shading == "gouraud" ? view::Shading::kGouraud : view::Shading::kPhong;

@@ -120,9 +120,7 @@ driver::Result<void> draw_period_histogram(const PictureInfo& info,
   const std::string heading_label =
       "set label 9 " + quote("Pace of the loop: " + info.title) +
       " at screen 0.085, screen 0.955 font ',22' noenhanced textcolor rgb '" + kInk + "'\n";
-  std::string first = panel(*info.period_times, range, "data/period.dat",
-                            info.virtual_time ? "Time between ticks (virtual time: always as asked)"
-                                              : "Time between ticks",
+  std::string first = panel(*info.period_times, range, "data/period.dat", "Time between ticks",
                             with_work ? 0.565 : 0.12, 0.86, kForceInk);
   first.insert(first.find("plot "),
                heading_label + "set arrow 1 from " + number(nominal) + ", graph 0 to " +

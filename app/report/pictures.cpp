@@ -84,6 +84,7 @@ driver::Result<void> draw_pictures(std::span<const driver::TickRecord> rows,
       if (auto done = draw_path_on_mesh(rows, mesh_W, info, folder); !done) return done;
     }
   }
+  if (info.virtual_time) return {};  // every tick comes as asked, and none takes time
   PictureInfo complete = info;
   session::Histogram period;
   session::Histogram work;

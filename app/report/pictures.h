@@ -24,8 +24,8 @@ struct PictureInfo {
 };
 
 /// Draws a run into `folder`, each picture as PNG and SVG: force_and_depth (over time),
-/// path_on_mesh (the tip's way over the mesh, coloured by force, from three sides), and
-/// period_histogram. Numbers and scripts behind them go to data/.
+/// path_on_mesh (the tip's way over the mesh, coloured by force, from three sides), and in the time
+/// of the world period_histogram. Numbers and scripts behind them go to data/.
 ///
 /// `rows` are records in order of time (world frame, SI), `mesh_W` is the mesh in the world, m. No
 /// rows draw no picture. Fails if gnuplot is missing or a file cannot be written.

@@ -35,7 +35,7 @@ constexpr std::array kKeys = {Key{"left drag", "turn about the scene"},
                               Key{"P", "active triangle and edge planes"},
                               Key{"A", "arm"},
                               Key{"F1", "this help"},
-                              Key{"Q", "close; the run goes on"}};
+                              Key{"Q", "close"}};
 
 ImVec4 vec(const Colour& colour) {
   return {colour[0], colour[1], colour[2], 1};
@@ -119,15 +119,7 @@ void draw_knobs(session::SharedReader& reader) {
     ImGui::TextUnformatted(knob.name.c_str());
     const float reset = ImGui::CalcTextSize("reset").x + 2 * ImGui::GetStyle().FramePadding.x;
     ImGui::SetNextItemWidth(-reset - ImGui::GetStyle().ItemSpacing.x);
-    // What reaches over more than two powers of ten is turned by its logarithm.
-    const bool wide = knob.least > 0 && knob.most > 100 * knob.least;
-    const std::string format = "%.4g " + knob.unit;
-    if (ImGui::SliderScalar("##value", ImGuiDataType_Double, &value, &knob.least, &knob.most,
-                            format.c_str(),
-                            ImGuiSliderFlags_AlwaysClamp |
-                                (wide ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None))) {
-      reader.turn_knob(i, value);
-    }
+    if (knob_slider(knob, value)) reader.turn_knob(i, value);
     ImGui::SameLine();
     if (ImGui::Button("reset")) reader.turn_knob(i, knob.initial);
     ImGui::PopID();
@@ -188,6 +180,18 @@ void draw_side_panel(const ScreenPart& part, session::SharedReader* reader,
   ImGui::End();
 }
 
+bool knob_slider(const session::SharedScene::Knob& knob, double& value) {
+  // What reaches over more than two powers of ten is turned by its logarithm. There ImGui takes for
+  // zero what is below a unit of the format's last digit: so it has digits enough for the least.
+  const bool wide = knob.least > 0 && knob.most > 100 * knob.least;
+  const int digits =
+      wide ? std::max(4, static_cast<int>(std::ceil(1 - std::log10(knob.least)))) : 4;
+  const std::string format = "%." + std::to_string(digits) + "g " + knob.unit;
+  return ImGui::SliderScalar(
+      "##value", ImGuiDataType_Double, &value, &knob.least, &knob.most, format.c_str(),
+      ImGuiSliderFlags_AlwaysClamp | (wide ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None));
+}
+
 void draw_notices(const ScreenPart& part, const ViewNotes& notes, const ViewChoice& choice) {
   const auto box = [](const char* name, float x, float y, float pivot_y) {
     ImGui::SetNextWindowPos({x, y}, ImGuiCond_Always, {0.5F, pivot_y});
@@ -215,6 +219,8 @@ void draw_notices(const ScreenPart& part, const ViewNotes& notes, const ViewChoi
       ImGui::SameLine(10 * ImGui::GetFontSize());
       ImGui::TextUnformatted(key.does);
     }
+    ImGui::TextUnformatted(notes.closing_ends ? "Closing ends the run: its hand is in this window."
+                                              : "Closing leaves the run on.");
     ImGui::End();
   }
 }

@@ -21,10 +21,15 @@ struct ViewChoice {
 
 /// What the panel says of the window itself.
 struct ViewNotes {
-  std::string notice;     ///< Above the scene: that the run has ended, say; empty: none.
-  std::string message;    ///< Of what was just done; empty: none.
-  double frame_time = 0;  ///< s, smoothed
+  std::string notice;         ///< Above the scene: that the run has ended, say; empty: none.
+  std::string message;        ///< Of what was just done; empty: none.
+  double frame_time = 0;      ///< s, smoothed
+  bool closing_ends = false;  ///< Whether the run ends with this window.
 };
+
+/// Draws the slider of a knob within its bounds; returns whether the user turned it to another
+/// `value`. As below.
+bool knob_slider(const session::SharedScene::Knob& knob, double& value);
 
 /// Draws the panel at the window's side: how the run is, force, depth and times over time, and the
 /// knobs. `reader` is null while no run is attached. To be called between ImGui's NewFrame and

@@ -6,6 +6,7 @@
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
 #include <imgui.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -231,7 +232,9 @@ driver::Result<void> Content::draw(double frame_time) {
     if (!programs) return programs.error();
     painter_ = std::make_unique<ScenePainter>(follower_.scene(), std::move(programs).value());
     choice_.frame = true;
-    choice_.mouse_is_hand = follower_.reader()->scene().hand_by_mouse;
+    const session::SharedScene& scene = follower_.reader()->scene();
+    choice_.mouse_is_hand = scene.hand_by_mouse;
+    notes_.closing_ends = scene.hand_by_mouse && scene.pid == getppid();  // which has opened it
     glfwSetWindowTitle(screen_.window(), ("Thimble: " + follower_.scene().name).c_str());
   }
   screen_.begin();

@@ -7,6 +7,10 @@ scene=$source_dir/app/scenes/water_balloon.yaml
 expect 2 '--out FILE.png' "$thimble" shot "$scene"
 expect 2 'WIDTHxHEIGHT' "$thimble" shot "$scene" --out a.png --size 10x10
 expect 2 'WIDTHxHEIGHT' "$thimble" shot "$scene" --out a.png --size 640
+expect 2 '--out: .*ends in \.png, found a\.jpg' "$thimble" shot "$scene" --out a.jpg
+expect 2 '--animate: .*ends in \.png, found a\.gif' "$thimble" shot "$scene" --animate a.gif
+expect 2 '--at 6\.5: the scene water_balloon ends at 6 s' "$thimble" shot "$scene" --at 6.5 --out a.png
+expect 2 '--until 7: the scene water_balloon ends at 6 s' "$thimble" shot "$scene" --at 1 --animate a.png --until 7
 expect 2 'no_such.yaml' "$thimble" shot no_such.yaml --out a.png
 if ! "$thimble" shot "$scene" --at 1 --size 160x120 --out probe.png >probe.txt 2>&1; then
   if grep -q 'No OpenGL' probe.txt && [ -z "${CI:-}" ]; then
@@ -44,6 +48,22 @@ if command -v Xvfb >/dev/null; then
   kill -INT $run
   wait $run
   expect 0 '' "$thimble" view shot_test_$$ --for 1 --picture none.png  # waits for a run
+
+  # The window is no reader of what the run prints: a pipe ends with the run, though the window stays.
+  expect 0 'The simulated hand' timeout 60 bash -c '"$0" run "$1" --duration 1 --view --name "$2" 2>/dev/null | head -1' \
+    "$thimble" "$scene" shot_pipe_$$
+  for viewer in $(pgrep -f "view shot_pipe_$$"); do kill "$viewer"; done
+  # Whose hand was in a window that is gone ends as if it had been closed.
+  "$thimble" run "$scene" --hand mouse --name shot_gone_$$ >run.txt 2>&1 &
+  run=$!
+  for _ in $(seq 200); do
+    viewer=$(pgrep -P $run | head -1)
+    "$thimble" view --list | grep -q "^shot_gone_$$:" && [ -n "$viewer" ] && break
+    sleep 0.1
+  done
+  kill -9 "$viewer"
+  expect 0 '' timeout 30 tail --pid=$run -f /dev/null
+  kill -9 $run 2>/dev/null
   kill $xvfb
 else
   echo "NOT TESTED: the window, for want of Xvfb."

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "thimble/driver/fault.h"
 #include "thimble/driver/heat_guard.h"
 
@@ -73,7 +75,7 @@ std::string summary(const RunFigures& report) {
   const double energy = 1e3 * run.energy_to_hand();
   s += fmt::format(
       "Energy    the arm {} {:.2f} mJ in all{}\n", energy > 0 ? "gave the hand" : "took",
-      energy > 0 ? energy : -energy,
+      std::abs(energy),
       energy > 0 ? ": more than it took." : " from the hand, as a passive surface does.");
   s += fmt::format(
       "Loop      {} ticks, {:.1f} of {:.1f} per second asked; {}.\n", run.ticks(), run.rate(),
@@ -104,12 +106,11 @@ std::string summary(const RunFigures& report) {
       report.gate.limited, report.gate.rise_limited, report.gate.soft_started);
   if (report.energy_stage == driver::EnergyStage::kPassivity) {
     s += fmt::format(
-        "Energy    watched by the gate: {:.2f} mJ given at most beyond what it took; damped in {} "
+        "Gate      energy watched: {:.2f} mJ given at most beyond what it took; damped in {} "
         "ticks.\n",
-        -1e3 * report.gate.energy_least, report.gate.damped);
+        0 - 1e3 * report.gate.energy_least, report.gate.damped);  // no -0.00
   } else if (report.energy_stage == driver::EnergyStage::kBounding) {
-    s +=
-        fmt::format("Energy    bounded by the gate: force cut in {} ticks.\n", report.gate.bounded);
+    s += fmt::format("Gate      energy bounded: force cut in {} ticks.\n", report.gate.bounded);
   }
   if (report.heat_known && report.heat_most >= driver::HeatGuard::kWarning) {
     s +=

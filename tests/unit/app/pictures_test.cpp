@@ -83,7 +83,8 @@ TEST(Pictures, AreWrittenAsPngAndSvg) {
   const std::filesystem::path folder = support::scratch_folder() / "thimble's pictures";
   std::filesystem::remove_all(folder);
   const std::vector<driver::TickRecord> rows = stroke();
-  const auto done = draw_pictures(rows, tetrahedron(), {.title = "it's_a \"test\""}, folder);
+  const auto done = draw_pictures(rows, tetrahedron(),
+                                  {.title = "it's_a \"test\"", .virtual_time = false}, folder);
   ASSERT_TRUE(done.ok()) << done.error().message;
   for (const std::string name : {"force_and_depth", "path_on_mesh", "period_histogram"}) {
     const auto [width, height] = png_size(folder / (name + ".png"));
@@ -93,6 +94,16 @@ TEST(Pictures, AreWrittenAsPngAndSvg) {
     EXPECT_GT(std::filesystem::file_size(folder / (name + ".svg")), 5'000U) << name;
     EXPECT_FALSE(std::filesystem::exists(folder / "data" / (name + ".log"))) << name;
   }
+}
+
+TEST(Pictures, TellNothingOfThePaceOfVirtualTime) {
+  if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  const std::filesystem::path folder = support::scratch_folder() / "virtual_pictures";
+  std::filesystem::remove_all(folder);
+  ASSERT_TRUE(
+      draw_pictures(stroke(), tetrahedron(), {.title = "test", .virtual_time = true}, folder).ok());
+  EXPECT_TRUE(std::filesystem::exists(folder / "force_and_depth.png"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "period_histogram.png"));
 }
 
 TEST(Pictures, AreDrawnOfARunWithoutContactToo) {

@@ -1,5 +1,6 @@
 #include "share/viewer_process.h"
 
+#include <fcntl.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -25,9 +26,15 @@ driver::Result<std::unique_ptr<ViewerProcess>> ViewerProcess::start(const std::s
   posix_spawnattr_init(&attributes);
   // A process group of its own: Ctrl-C in the run's terminal ends the run, and the viewer says so.
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+  // What the run prints may be read by a pipe, which ends when the last writer does: the viewer is
+  // none.
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
   pid_t pid = 0;
   const int status =
-      posix_spawn(&pid, "/proc/self/exe", nullptr, &attributes, arguments.data(), environ);
+      posix_spawn(&pid, "/proc/self/exe", &actions, &attributes, arguments.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
   posix_spawnattr_destroy(&attributes);
   if (status != 0) {
     return driver::Error{"The viewer cannot be started: " + std::string(std::strerror(status)) +
@@ -40,7 +47,7 @@ bool ViewerProcess::closed() {
   int status = 0;
   if (alive_ && waitpid(pid_, &status, WNOHANG) == pid_) {
     alive_ = false;
-    closed_ = WIFEXITED(status) && WEXITSTATUS(status) == 0;
+    closed_ = WIFSIGNALED(status) || (WIFEXITED(status) && WEXITSTATUS(status) == 0);
   }
   return closed_;
 }

@@ -20,7 +20,8 @@ class ViewerProcess {
   /// Starts `thimble view RUN`. It stays when the run ends, and tells so.
   static driver::Result<std::unique_ptr<ViewerProcess>> start(const std::string& run);
 
-  /// Returns whether a person has closed it; one that could not open its window was not closed.
+  /// Returns whether a person has closed it, or a signal has ended it; one that could not open its
+  /// window was not closed.
   bool closed();
 
  private:
