@@ -50,7 +50,7 @@ if command -v Xvfb >/dev/null; then
   expect 0 '' "$thimble" view shot_test_$$ --for 1 --picture none.png  # waits for a run
 
   # The window is no reader of what the run prints: a pipe ends with the run, though the window stays.
-  expect 0 'The simulated hand' timeout 60 bash -c '"$0" run "$1" --duration 1 --view --name "$2" 2>/dev/null | head -1' \
+  expect 0 'The simulated hand' timeout 60 bash -c '"$0" run "$1" --duration 1 --view --name "$2" 2>/dev/null | cat' \
     "$thimble" "$scene" shot_pipe_$$
   for viewer in $(pgrep -f "view shot_pipe_$$"); do kill "$viewer"; done
   # Whose hand was in a window that is gone ends as if it had been closed.
