@@ -49,12 +49,13 @@ struct Score {
 };
 
 TEST(Identify, FindsTheConstantsOfHiddenArms) {
-  const int arms = std::getenv("THIMBLE_LONG") != nullptr ? 200 : 20;
+  const int arms = std::getenv("THIMBLE_LONG") != nullptr ? 200 : 10;
   Score mass{"mass", 0.03}, coulomb{"Coulomb", 0.05}, gain{"gain", 0.02}, delay{"delay", 1e-4};
   Score viscous{"viscous", 0.1}, weight{"weight", 0.1};
   int viscous_right = 0;
   for (int k = 0; k < arms; ++k) {
-    const auto seed = static_cast<std::uint64_t>(1000 + k);
+    // The method was made with arms 1000 to 1019 in view; these are others.
+    const auto seed = static_cast<std::uint64_t>(5000 + k);
     const HiddenArm arm = hidden_arm(seed);
     const auto found = identified(arm, {.seconds = 30, .known_mass = kKnownMass, .seed = seed});
     if (!found) {
@@ -91,7 +92,7 @@ TEST(Identify, FindsTheConstantsOfHiddenArms) {
     EXPECT_LT(score->worst, score->most) << score->name;
   }
   EXPECT_GE(viscous_right, 0.95 * arms);
-  // Of 160 intervals in the short form as many as 99 % may hold by chance.
+  // Of 80 intervals in the short form as many as 99 % may hold by chance.
   EXPECT_GT(held, 0.90 * all);
   if (arms == 200) {
     EXPECT_LE(held, 0.99 * all);
