@@ -88,21 +88,27 @@ done
 # tells, and the next run clears away what was left.
 lost_most=0
 for i in $(seq "$([ -n "${THIMBLE_LONG:-}" ] && echo 50 || echo 3)"); do
-  "$thimble" run "$scenes/rubber.yaml" --clock wall --duration 60 --name "$me" --record killed.h5 \
-    >/dev/null 2>&1 &
-  run=$!
-  # Only a run with more ticks than may be lost can show that no more were lost.
-  for _ in $(seq 200); do
-    shown=$(timeout 20 "$thimble" view "$me" --text --for 0.3 2>/dev/null |
-      sed -nE 's/.* running: .* ([0-9]+) ticks.*/\1/p' | tail -1)
-    [ "$shown" -gt 1000 ] 2>/dev/null && break
-    sleep 0.05
+  # Any run that begins on this machine clears dead ones away: then once more.
+  for _ in 1 2 3 4 5; do
+    "$thimble" run "$scenes/rubber.yaml" --clock wall --duration 60 --name "$me" --record killed.h5 \
+      >/dev/null 2>&1 &
+    run=$!
+    # Only a run with more ticks than may be lost can show that no more were lost.
+    for _ in $(seq 200); do
+      shown=$(timeout 20 "$thimble" view "$me" --text --for 0.3 2>/dev/null |
+        sed -nE 's/.* running: .* ([0-9]+) ticks.*/\1/p' | tail -1)
+      [ "$shown" -gt 1000 ] 2>/dev/null && break
+      sleep 0.05
+    done
+    sleep "0.$((RANDOM % 900 + 100))"
+    kill -9 $run
+    wait $run 2>/dev/null
+    timeout 10 "$thimble" view "$me" --text >told.txt 2>&1
+    status=$?
+    [ -e "$segment" ] && break
   done
-  sleep "0.$((RANDOM % 900 + 100))"
-  kill -9 $run
-  wait $run 2>/dev/null
-  expect 0 'process has died' timeout 10 "$thimble" view "$me" --text
-  stored=$(timeout 10 "$thimble" view "$me" --text | grep -oE '[0-9]+ ticks' | head -1 | grep -oE '[0-9]+')
+  expect 0 'process has died' sh -c "cat told.txt; exit $status"
+  stored=$(grep -oE '[0-9]+ ticks' told.txt | head -1 | grep -oE '[0-9]+')
   expect 0 'the recording was cut off' "$thimble" export killed.h5 --csv killed.csv
   rows=$(($(wc -l <killed.csv) - 1))
   lost=$((stored - rows))
