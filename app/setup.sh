@@ -16,9 +16,11 @@ packages=(
   libpng-dev                             # pictures felt as heights
   libyaml-cpp-dev nlohmann-json3-dev     # scenes in, reports out
   libhdf5-dev                            # recordings
+  libsqlite3-dev                         # bags of ROS 2
   libfmt-dev libspdlog-dev               # sentences with numbers in them, the log
   libcli11-dev                           # arguments of the program
   gnuplot-nox fonts-dejavu-core          # pictures
+  libjs-three libjs-dygraphs             # put into pages that play a touch in a browser
   libepoxy-dev libegl-dev libgl-dev      # scenes drawn with OpenGL ...
   libegl-mesa0 libgl1-mesa-dri           # ... by the processor where there is no graphics card
   libglfw3-dev libimgui-dev              # the window
@@ -34,6 +36,10 @@ packages=(
   python3-numpy python3-pytest           # ... and its tests
 )
 
+[ "$preset" != release ] || [ ${#targets[@]} -gt 0 ] || packages+=(
+  cyclonedds-dev cyclonedds-tools        # topics of ROS 2 ...
+  libfastrtps-dev fastddsgen             # ... and a program of another maker that hears them
+)
 [ "$preset" != clang ] || packages+=(clang)
 
 missing=()

@@ -33,6 +33,7 @@ tests/fuzz/setup.sh || true  # optional: without it only the corpora are replaye
 [ -z "${THIMBLE_LONG:-}" ] || tests/faces/setup.sh || true  # optional: 64-bit ARM, and a window on a screen in memory
 tests/optional_packages.sh "the guide as web pages" mkdocs || true
 tests/optional_packages.sh "the format of the sources" clang-format-14 || true
+tests/optional_packages.sh "the page in a real browser" chromium python3-websockets || true
 
 # What failed, again at the very end: a log of CI is often cut to its last lines.
 tell_failures() {  # tell_failures PRESET
@@ -50,12 +51,16 @@ failed=()
 for preset in "${presets[@]}"; do
   app/setup.sh "$preset"
   echo "== Tests: $preset"
-  ctest --preset "$preset" || failed+=("$preset")
+  ctest --preset "$preset" | tee "build/$preset.tests" || failed+=("$preset")
 done
 [ ${#more[@]} = 0 ] || app/setup.sh dev || failed+=(dev)  # each source with its own includes
 for name in "${more[@]}"; do
   echo "== $name"
   env -u THIMBLE_LONG "tests/$name.sh" || [ $? = 3 ] || failed+=("$name")  # 3: not installed
+done
+# What was not tested, once more where it is seen.
+for preset in "${presets[@]}"; do
+  sed -n "s/.*Test  *#[0-9]*: \([^ ]*\) .*\*\*\*Skipped.*/Not tested in $preset: \1/p" "build/$preset.tests" 2>/dev/null || true
 done
 if [ ${#failed[@]} -gt 0 ]; then
   for preset in "${failed[@]}"; do tell_failures "$preset" >&2; done

@@ -57,11 +57,23 @@ bool BenchArm::run(double duration, const Law& law, const std::atomic<bool>& sto
     const std::int64_t now_ns = clock_->now_ns();
     const Eigen::Vector3d f_T_W = law(device_->read(now_ns, now_ns));
     if (!silent) device_->write({.f_T_W = f_T_W, .touch = {}});
+    if (!silent && sink_) tell(due_ns, now_ns, f_T_W);
     if (simulation_) true_force_max_ = std::max(true_force_max_, simulation_->f_T_W().norm());
     const bool seen_only = !active && device_->fault() == driver::Fault::kStateNotFinite;
     if (device_->fault() != driver::Fault::kNone && !seen_only) return false;
   }
   return true;
+}
+
+void BenchArm::tell(std::int64_t due_ns, std::int64_t now_ns, const Eigen::Vector3d& f_T_W) {
+  driver::TickRecord record = driver::record_of(device_->state(), {.f_T_W = f_T_W, .touch = {}});
+  record.tick = tick_++;
+  record.time_ns = now_ns;
+  record.due_ns = due_ns;
+  record.f_sent_W = {device_->f_sent_W().x(), device_->f_sent_W().y(), device_->f_sent_W().z()};
+  record.stage = device_->stage();
+  record.fault = device_->fault();
+  sink_(record);
 }
 
 bool BenchArm::hold(const std::function<bool()>& done, const std::atomic<bool>& stop) {

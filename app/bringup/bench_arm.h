@@ -11,6 +11,7 @@
 #include "thimble/driver/clock.h"
 #include "thimble/driver/device.h"
 #include "thimble/driver/discovery.h"
+#include "thimble/driver/tick_record.h"
 #include "thimble/scene/arm_file.h"
 #include "thimble/scene/arm_simulation.h"
 
@@ -39,7 +40,12 @@ class BenchArm {
   /// Runs with zero force until `done` answers true or `stop` is set.
   bool hold(const std::function<bool()>& done, const std::atomic<bool>& stop);
 
+  /// Hands each tick from now on to `sink`, after its force was sent; an empty one ends that.
+  /// Silent ticks are left out.
+  void watch(std::function<void(const driver::TickRecord&)> sink) { sink_ = std::move(sink); }
+
   driver::Device& device() { return *device_; }
+  driver::Fault fault() const { return device_->fault(); }
   /// Returns whether the arm is simulated.
   bool simulated() const { return simulation_ != nullptr; }
   /// Returns the largest force that the motors made on the tip in any run, N: what was true of a
@@ -49,9 +55,13 @@ class BenchArm {
   double now() const { return static_cast<double>(clock_->now_ns()) * 1e-9; }
 
  private:
+  void tell(std::int64_t due_ns, std::int64_t now_ns, const Eigen::Vector3d& f_T_W);
+
   std::unique_ptr<driver::Clock> clock_;
   std::unique_ptr<scene::ArmSimulation> simulation_;
   double true_force_max_ = 0;
+  std::function<void(const driver::TickRecord&)> sink_;
+  std::uint64_t tick_ = 0;
   std::unique_ptr<driver::Device> device_;  // holds the wire to the simulation, so it goes first
   std::unique_ptr<scene::HeatKeeper> heat_keeper_;  // of a real arm whose file names its heat
 };

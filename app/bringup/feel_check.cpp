@@ -116,12 +116,11 @@ class Check {
                     : text);
   }
 
-  /// Where the check is meant to be done: the middle of the workspace, in the world, m.
-  Eigen::Vector3d middle() const { return (file_.workspace.min_W + file_.workspace.max_W) / 2; }
-
+  /// Returns how far the joints turn when the tip goes from the middle of the workspace by `step`,
+  /// rad.
   Eigen::Vector3d angles_from_middle(const Eigen::Vector3d& step) const {
-    const auto there = scene::joint_angles_at(file_, middle() + step);
-    const auto here = scene::joint_angles_at(file_, middle());
+    const auto there = scene::joint_angles_at(file_, file_.workspace.middle() + step);
+    const auto here = scene::joint_angles_at(file_, file_.workspace.middle());
     return there && here ? *there - *here : Eigen::Vector3d(0, 0, 0);
   }
 

@@ -18,8 +18,10 @@
 
 #include "cli/commands.h"
 #include "cli/complain.h"
+#include "cli/options/ros_options.h"
 #include "faces/core/open_channel.h"
 #include "faces/haply/haply_service.h"
+#include "faces/ros2/ros_module.h"
 #include "faces/server/arm_server.h"
 #include "faces/server/face_folder.h"
 #include "interrupt.h"
@@ -39,7 +41,23 @@ struct Asked {
   std::string clock = "wall";
   std::string serve;  // "haply", or nothing
   std::uint16_t port = faces::haply::kPort;
+  RosArguments ros;
 };
+
+/// Reads the options of the topics, if there are to be any.
+driver::Result<void> take_topics(RosArguments ros, faces::ExecOptions& options) {
+  if (!ros.asked) return {};
+  if (auto fits = check_ros_arguments(ros); !fits) return fits;
+  if (ros.options.force != faces::RosForce::kNone) {
+    return driver::Error{"--ros-force: the program asks for the forces; leave it away."};
+  }
+  if (options.paced) {
+    return driver::Error{"--ros2 tells of a run in real time: leave --clock virtual away."};
+  }
+  if (auto there = faces::check_ros_module(); !there) return there;
+  options.topics = ros.options;
+  return {};
+}
 
 /// The variable that names the service's port to programs of ours, as they read it.
 constexpr const char* kPortVariable = "THIMBLE_HAPLY_PORT";
@@ -188,6 +206,9 @@ int run_program(const Asked& asked, const std::vector<std::string>& command) {
   options.program = command.empty() ? asked.serve : fs::path(command.front()).filename().string();
   options.arms = arms_of(asked);
   options.paced = asked.clock == "virtual";
+  if (auto taken = take_topics(asked.ros, options); !taken) {
+    return complain(taken.error(), kExitBadInput);
+  }
   const std::atomic<bool>& stop = scene::catch_interrupts();
   for (const faces::ExecArm& arm : options.arms) {
     if (arm.device != "sim") scene::leave_rather_than_stop();
@@ -262,7 +283,7 @@ void add_exec_command(CLI::App& app, int& exit_code) {
       ->add_option(
           "--hand", options.hand,
           "Who leads the simulated hand: path, as the scene says; mouse, by the viewer; or "
-          "a file with lines \"t x y z\" (s, m)")
+          "a file with lines \"t x y z\" (s, m), or a ROS bag")
       ->capture_default_str();
   command
       ->add_option(
@@ -281,6 +302,7 @@ void add_exec_command(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command->add_option("--record", options.record, "Recording of every tick to write (HDF5)");
   command->add_flag("--view", options.view, "Watch the run in a window");
+  add_ros_options(*command, asked->ros);
   command->add_option("--firmware", options.firmware, "Firmware image for an arm that needs one")
       ->check(CLI::ExistingFile);
   command->add_flag("--yes", options.yes, "Give a real arm forces without asking");

@@ -5,6 +5,7 @@
 
 #include "cli/commands.h"
 #include "cli/complain.h"
+#include "recording/bag_export.h"
 #include "thimble/session/recording.h"
 
 namespace thimble::app {
@@ -13,30 +14,46 @@ namespace {
 struct ExportOptions {
   std::string file;
   std::string csv;
+  std::string bag;
 };
 
 int export_recording(const ExportOptions& options) {
   const auto recording = session::read_recording(options.file);
   if (!recording) return complain(recording.error(), kExitBadInput);
-  if (auto written = session::write_csv(*recording, options.csv); !written) {
-    return complain(written.error(), kExitTrouble);
+  const auto tell = [&recording](const std::string& file) {
+    std::printf("%s: %zu ticks of %s at %g Hz%s.\n", file.c_str(), recording->ticks.size(),
+                recording->info.scene.c_str(), recording->info.rate,
+                recording->complete ? "" : "; the recording was cut off");
+  };
+  if (!options.csv.empty()) {
+    if (auto written = session::write_csv(*recording, options.csv); !written) {
+      return complain(written.error(), kExitTrouble);
+    }
+    tell(options.csv);
   }
-  std::printf("%s: %zu ticks of %s at %g Hz%s.\n", options.csv.c_str(), recording->ticks.size(),
-              recording->info.scene.c_str(), recording->info.rate,
-              recording->complete ? "" : "; the recording was cut off");
+  if (!options.bag.empty()) {
+    if (auto written = session::export_bag(*recording, options.bag); !written) {
+      return complain(written.error(), kExitTrouble);
+    }
+    tell(options.bag);
+  }
   return kExitDone;
 }
 
 }  // namespace
 
 void add_export_command(CLI::App& app, int& exit_code) {
-  CLI::App* command =
-      app.add_subcommand("export", "Write a recording as a table that any program reads");
+  CLI::App* command = app.add_subcommand(
+      "export", "Write a recording as a table that any program reads, or as a ROS bag");
   auto options = std::make_shared<ExportOptions>();
   command->add_option("FILE", options->file, "Recording, made by `thimble run SCENE --record FILE`")
       ->required();
-  command->add_option("--csv", options->csv, "Table to write: a line per tick, SI units")
-      ->required();
+  CLI::Option_group* as = command->add_option_group("As what");
+  as->add_option("--csv", options->csv, "Table to write: a line per tick, SI units");
+  as->add_option("--bag", options->bag,
+                 "Folder to write: a bag of ROS 2 (SQLite) with /pose, /wrench (as sent) and "
+                 "/wrench_wanted (before the gate)");
+  as->require_option(1, 2);
   command->callback([options, &exit_code] { exit_code = export_recording(*options); });
 }
 

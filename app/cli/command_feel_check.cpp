@@ -4,6 +4,7 @@
 #include <string>
 
 #include "bringup/feel_check.h"
+#include "bringup/listen.h"
 #include "cli/arm_choice.h"
 #include "cli/commands.h"
 #include "cli/complain.h"
@@ -17,25 +18,12 @@ namespace {
 
 /// Reads the arm with zero force, and tells how well its reports arrive.
 int listen_to(BenchArm& bench, double duration, const std::atomic<bool>& stop) {
-  const auto rest = [](const driver::DeviceState&) { return Eigen::Vector3d(0, 0, 0); };
-  const driver::WireCounters before = bench.device().wire_counters();
-  const bool whole = bench.run(duration, rest, stop);
-  const driver::WireCounters& after = bench.device().wire_counters();
-  const std::uint64_t reports = after.reports - before.reports;
-  const std::uint64_t missing = after.missing - before.missing;
-  std::printf(
-      "%.0f reports per second; %llu ticks without one, %llu skipped, %llu rejected, %llu "
-      "messages refused.\n",
-      static_cast<double>(reports) / duration, static_cast<unsigned long long>(missing),
-      static_cast<unsigned long long>(after.skipped - before.skipped),
-      static_cast<unsigned long long>(after.rejected - before.rejected),
-      static_cast<unsigned long long>(after.refused - before.refused));
-  if (!whole && !stop.load()) {
+  const Listened heard = listen(bench, duration, stop);
+  std::printf("%s\n", heard.text().c_str());
+  if (!heard.whole && !stop.load()) {
     std::printf("%s\n", std::string(driver::describe(bench.device().fault())).c_str());
   }
-  // One tick in twenty without a report is what a loop without real-time priority may cost.
-  const bool good = whole && missing * 20 <= reports && after.rejected == before.rejected;
-  return good ? kExitDone : kExitFault;
+  return heard.good() ? kExitDone : kExitFault;
 }
 
 /// Keeps that a real arm passed, so that `thimble run` gives it its whole force; takes back what an

@@ -1,8 +1,11 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <ctime>
+#include <fstream>
 #include <memory>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include "bringup/identify/identified_file.h"
 #include "bringup/identify/identify.h"
@@ -14,7 +17,9 @@
 #include "interrupt.h"
 #include "log/logger.h"
 #include "terms/feel_check_record.h"
+#include "thimble/scene/build_info.h"
 #include "thimble/scene/shipped_files.h"
+#include "thimble/session/recording.h"
 
 namespace thimble::app {
 namespace {
@@ -23,6 +28,7 @@ struct IdentifyCommand {
   ArmChoice choice;
   IdentifyOptions options;
   std::string output;
+  std::string record;
 };
 
 std::string today() {
@@ -70,6 +76,25 @@ bool checked(const ChosenArm& chosen, const std::string& firmware) {
   return scene::has_passed(scene::describe_checked(*chosen.real_arm, file, firmware));
 }
 
+/// Writes the motion with the bare tip as a recording, for `thimble twin`.
+driver::Result<void> write_motion(const ChosenArm& chosen, const std::string& path,
+                                  const std::vector<driver::TickRecord>& ticks) {
+  const auto file = scene::find_arm_file(chosen.path.string());
+  if (!file) return file.error();
+  std::ostringstream text;
+  text << std::ifstream(*file).rdbuf();
+  session::RecordingInfo info;
+  info.scene = "identify";
+  info.arm = chosen.file.name;
+  info.arm_file = file->string();
+  info.arm_text = text.str();
+  info.device = chosen.name;
+  info.clock = chosen.real_arm ? "wall" : "virtual";
+  info.program = scene::program_name();
+  info.rate = 1000;
+  return session::write_recording(path, info, ticks);
+}
+
 int identify_arm(IdentifyCommand command) {
   const auto chosen = resolve(command.choice, false);
   if (!chosen) return complain(chosen.error(), kExitNoDevice);
@@ -91,8 +116,20 @@ int identify_arm(IdentifyCommand command) {
                ? open_real(*chosen, command, loaded, stop)
                : simulated_bench(chosen->file, loaded ? command.options.known_mass : 0);
   };
+  std::vector<driver::TickRecord> ticks;
+  if (!command.record.empty()) {
+    // Room at once: a real arm's ticks wait for nobody.
+    ticks.reserve(static_cast<std::size_t>(1000 * (command.options.seconds + 10)));
+    command.options.watch = [&ticks](const driver::TickRecord& tick) { ticks.push_back(tick); };
+  }
   const auto found = identify(open, chosen->file, command.options, stop);
   if (stop.load()) return kExitInterrupted;
+  if (!ticks.empty()) {
+    if (auto written = write_motion(*chosen, command.record, ticks); !written) {
+      return complain(written.error(), kExitTrouble);
+    }
+    std::printf("The motion was recorded in %s.\n", command.record.c_str());
+  }
   if (!found) return complain(found.error(), kExitFault);
   std::printf("%s", constants_table(*found).c_str());
   scene::logger().info("The arm {} was identified{}.", chosen->name,
@@ -129,6 +166,8 @@ void add_identify_command(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   sub->add_option("--output", command->output,
                   "New arm file to write; left out: NAME_identified.yaml in this folder");
+  sub->add_option("--record", command->record,
+                  "Recording of the motion with the bare tip to write, for `thimble twin`");
   sub->callback([command, &exit_code] { exit_code = identify_arm(*command); });
 }
 

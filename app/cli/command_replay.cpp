@@ -4,26 +4,35 @@
 #include <memory>
 #include <numbers>
 #include <string>
+#include <utility>
+#include <vector>
 
+#include "bag/read_bag.h"
 #include "cli/commands.h"
 #include "cli/complain.h"
 #include "cli/file_options.h"
 #include "print.h"
+#include "recording/replay_bag.h"
 #include "recording/replay_trajectory.h"
 #include "recording/trajectory_file.h"
+#include "report/page/touch_page.h"
 #include "thimble/session/recording.h"
 
 namespace thimble::app {
 namespace {
 
 struct ReplayOptions {
-  std::string file;
+  std::vector<std::string> files;
   std::string scene;
   std::string record;
+  std::string page;
   bool verify = false;
   session::TrajectoryForm form;
   std::string length = "m", time = "s";
   std::string frame;
+  session::BagTopics bag;
+  std::string axes = "plain";
+  std::string csv;
 };
 
 /// Tells a recording from a text: by the first byte of an HDF5 file [HDF5 file format, superblock].
@@ -53,17 +62,22 @@ void print_comparison(const std::string& file, const session::TrajectoryComparis
 
 /// Lets the probe of a trajectory file touch a scene.
 int replay_probe(const ReplayOptions& options) {
+  if (!options.page.empty()) {
+    return complain({"--page plays recordings; of a trajectory write one first, by --record FILE."},
+                    kExitBadInput);
+  }
   if (options.scene.empty()) {
-    return complain({options.file + " is no recording; as a trajectory it needs --scene."},
+    return complain({options.files.front() + " is no recording; as a trajectory it needs --scene."},
                     kExitBadInput);
   }
   session::TrajectoryForm form = options.form;
   form.metres = options.length == "mm" ? 1e-3 : 1;
   form.seconds = options.time == "ms" ? 1e-3 : 1;
   const auto replay =
-      session::replay_trajectory_file(options.file, form, options.frame, options.scene);
+      session::replay_trajectory_file(options.files.front(), form, options.frame, options.scene);
   if (!replay) return complain(replay.error(), kExitBadInput);
-  print_comparison(options.file, replay->compared, replay->felt.info.scene, form.has_forces());
+  print_comparison(options.files.front(), replay->compared, replay->felt.info.scene,
+                   form.has_forces());
   if (options.record.empty()) return kExitDone;
   if (auto written =
           session::write_recording(options.record, replay->felt.info, replay->felt.ticks);
@@ -73,20 +87,37 @@ int replay_probe(const ReplayOptions& options) {
   return kExitDone;
 }
 
-int replay_recording(const ReplayOptions& options) {
-  if (!is_recording(options.file)) return replay_probe(options);
-  const auto recording = session::read_recording(options.file);
-  if (!recording) return complain(recording.error(), kExitBadInput);
-  if (options.verify) {
-    if (auto same = session::check_repeatable(*recording, options.scene); !same) {
-      return complain({"--verify: " + same.error().message}, kExitBadInput);
+/// Lets the positions of a ROS bag touch a scene.
+int replay_a_bag(const ReplayOptions& options) {
+  const std::string& file = options.files.front();
+  if (options.scene.empty())
+    return complain({file + " is a bag; it needs --scene."}, kExitBadInput);
+  if (!options.page.empty()) {
+    return complain({"--page plays recordings; of a bag write one first, by --record FILE."},
+                    kExitBadInput);
+  }
+  session::BagTopics topics = options.bag;
+  topics.axes = options.axes == "omni" ? bag::BagAxes::kOmni : bag::BagAxes::kPlain;
+  const auto replayed = session::replay_bag(file, topics, options.scene);
+  if (!replayed) return complain(replayed.error(), kExitBadInput);
+  const session::TrajectoryReplay& replay = replayed->replay;
+  print_comparison(file, replay.compared, replay.felt.info.scene, replayed->has_forces);
+  if (replayed->has_forces) std::printf("Largest force error %.3g N.\n", replayed->error_max);
+  if (!options.csv.empty()) {
+    if (auto written = session::write_csv(replay.felt, options.csv); !written) {
+      return complain(written.error(), kExitTrouble);
     }
   }
-  auto replay = session::replay(*recording, options.scene);
-  if (!replay) return complain(replay.error(), kExitBadInput);
-  const session::ReplayComparison& compared = replay->compared;
-  session::print(stdout, "{}: {} ticks of {} by the recorded hand; ", options.file, compared.ticks,
-                 replay->felt.info.scene);
+  if (options.record.empty()) return kExitDone;
+  auto written = session::write_recording(options.record, replay.felt.info, replay.felt.ticks);
+  return written ? kExitDone : complain(written.error(), kExitTrouble);
+}
+
+/// Says how the forces of one hand compare with the recorded ones.
+void print_replay(const std::string& file, const session::Replay& replay) {
+  const session::ReplayComparison& compared = replay.compared;
+  session::print(stdout, "{}: {} ticks of {} by the recorded hand; ", file, compared.ticks,
+                 replay.felt.info.scene);
   if (compared.differing == 0) {
     session::print(stdout, "every force is the recorded one to the bit.\n");
   } else {
@@ -94,15 +125,55 @@ int replay_recording(const ReplayOptions& options) {
         stdout, "{} forces differ from the recorded ones, first in tick {}, by {:.3g} N at most.\n",
         compared.differing, *compared.first, compared.largest);
   }
-  if (!options.record.empty()) {
-    replay->felt.info.device = "replay of " + options.file;
-    if (auto written =
-            session::write_recording(options.record, replay->felt.info, replay->felt.ticks);
+}
+
+int replay_recordings(const ReplayOptions& options) {
+  if (options.files.size() == 1 && bag::is_bag(options.files.front())) {
+    return replay_a_bag(options);
+  }
+  if (!options.csv.empty()) {
+    return complain({"--csv is of a bag; of others say --record FILE, then thimble export."},
+                    kExitBadInput);
+  }
+  if (options.files.size() == 1 && !is_recording(options.files.front())) {
+    return replay_probe(options);
+  }
+  std::vector<session::Recording> recordings;
+  for (const std::string& file : options.files) {
+    auto recording = session::read_recording(file);
+    if (!recording) return complain(recording.error(), kExitBadInput);
+    if (options.verify) {
+      if (auto same = session::check_repeatable(*recording, options.scene); !same) {
+        return complain({"--verify: " + same.error().message}, kExitBadInput);
+      }
+    }
+    recordings.push_back(std::move(recording).value());
+  }
+  ReplayPage page;
+  auto replays =
+      session::replay_together(recordings, options.scene, options.page.empty() ? nullptr : &page);
+  if (!replays) return complain(replays.error(), kExitBadInput);
+  bool differs = false;
+  for (std::size_t i = 0; i < replays->size(); ++i) {
+    session::Replay& replay = (*replays)[i];
+    print_replay(options.files[i], replay);
+    differs = differs || replay.compared.differing > 0;
+    if (options.record.empty()) continue;
+    replay.felt.info.device = "replay of " + options.files[i];
+    const std::filesystem::path file =
+        session::file_of_arm(options.record, replay.felt.info.arm_in_scene);
+    if (auto written = session::write_recording(file, replay.felt.info, replay.felt.ticks);
         !written) {
       return complain(written.error(), kExitTrouble);
     }
   }
-  return options.verify && compared.differing > 0 ? kExitTrouble : kExitDone;
+  if (!options.page.empty()) {
+    if (auto written = page.write(*replays, options.page); !written) {
+      return complain({options.page + " is not written: " + written.error().message}, kExitTrouble);
+    }
+    session::print(stdout, "Page that plays it: {}\n", options.page);
+  }
+  return options.verify && differs ? kExitTrouble : kExitDone;
 }
 
 }  // namespace
@@ -112,9 +183,10 @@ void add_replay_command(CLI::App& app, int& exit_code) {
       "replay", "Let a recorded hand touch a scene again, and compare the forces");
   auto options = std::make_shared<ReplayOptions>();
   command
-      ->add_option("FILE", options->file,
-                   "Recording, made by `thimble run SCENE --record FILE`, or a trajectory as text: "
-                   "where a probe was in each line, and what it felt")
+      ->add_option("FILE", options->files,
+                   "Recording, made by `thimble run SCENE --record FILE`, of each arm one; or a "
+                   "trajectory as text: where a probe was in each line, and what it felt; or a bag "
+                   "of ROS 2 (SQLite): its folder or .db3 file")
       ->required();
   command
       ->add_option(
@@ -130,13 +202,25 @@ void add_replay_command(CLI::App& app, int& exit_code) {
   command->add_option("--frame", options->frame,
                       "Where a trajectory is told in: world, or the object whose mesh file has its "
                       "frame and unit");
+  command->add_option(
+      "--topic", options->bag.pose,
+      "Positions of a bag (PoseStamped); if left out the only such topic, or /pose");
+  command->add_option("--wrench-topic", options->bag.wrench,
+                      "Forces of a bag to compare with (WrenchStamped); if left out the only such "
+                      "topic, or /wrench");
+  command->add_option("--axes", options->axes, "Axes of a bag: the world's, or the Omni drivers'")
+      ->check(CLI::IsMember({"plain", "omni"}))
+      ->capture_default_str();
+  command->add_option("--csv", options->csv, "Table to write of what a bag's positions felt");
   add_scene_option(*command, options->scene, "--scene",
                    "Scene to touch in place of the recorded one: what would this hand have felt?");
   command->add_option("--record", options->record, "Recording of what is felt now to write");
+  command->add_option("--page", options->page,
+                      "Page that plays the touch in a browser to write: one HTML file");
   command->add_flag("--verify", options->verify,
                     "Fail unless scene and build are those of the recording and every force is the "
                     "same to the bit");
-  command->callback([options, &exit_code] { exit_code = replay_recording(*options); });
+  command->callback([options, &exit_code] { exit_code = replay_recordings(*options); });
 }
 
 }  // namespace thimble::app

@@ -108,6 +108,7 @@ int take_shot(const ShotOptions& options) {
   choice.caption = !options.no_caption;
 
   session::SessionOptions session;
+  session.several_arms = true;
   session.arm_file = options.arm_file;
   double at = 0;
   if (options.at) {

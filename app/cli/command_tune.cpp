@@ -1,5 +1,6 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -9,6 +10,7 @@
 #include "cli/commands.h"
 #include "cli/complain.h"
 #include "cli/file_options.h"
+#include "faces/ros2/ros_latency.h"
 #include "stability/tuning.h"
 #include "thimble/driver/clock.h"
 #include "thimble/scene/shipped_files.h"
@@ -22,6 +24,8 @@ struct TuneCommand {
   std::string folder;
   double spread_us = 0;
   double measure = 0;  // s
+  bool topics = false;
+  std::uint32_t domain = 0;
 };
 
 /// Measures how far this computer's periods spread while it only waits, s.
@@ -56,6 +60,14 @@ int tune_scene(const TuneCommand& command) {
     std::printf("Measured  periods of this computer spread by %.1f us (standard deviation).\n",
                 1e6 * options.period_spread);
   }
+  if (command.topics) {
+    constexpr double kDuration = 5;  // s [chosen]
+    const auto ages =
+        faces::measure_ros_latency(command.scene, command.arm_file, command.domain, kDuration);
+    if (!ages) return complain(ages.error(), kExitTrouble);
+    options.topics =
+        AnswerAges{.median = 1e-9 * ages->percentile(0.5), .most = 1e-9 * ages->percentile(0.99)};
+  }
   const TuneResult result = tune(*scene, options);
   std::printf("%s\n%s", result.text.c_str(), figure_table(result.figures).c_str());
   if (command.folder.empty()) return kExitDone;
@@ -88,6 +100,14 @@ void add_tune_command(CLI::App& app, int& exit_code) {
                    "Measure that on this computer for so many seconds instead")
       ->check(CLI::Range(0.1, 600.0))
       ->excludes(spread);
+  CLI::Option* topics = command->add_flag(
+      "--ros2", options->topics,
+      "Measure for 5 s how late forces come that a program at the other end of ROS 2 topics "
+      "computes, and tell what wall it can make (package thimble-ros2)");
+  command->add_option("--ros-domain", options->domain, "ROS_DOMAIN_ID of that measurement")
+      ->check(CLI::Range(0, 232))
+      ->capture_default_str()
+      ->needs(topics);
   command->callback([options, &exit_code] { exit_code = tune_scene(*options); });
 }
 

@@ -39,6 +39,10 @@ void add_calibrate_command(CLI::App& app, int& exit_code);
 void add_feel_check_command(CLI::App& app, int& exit_code);
 /// `thimble identify`: measures an arm's constants.
 void add_identify_command(CLI::App& app, int& exit_code);
+/// `thimble twin FILE`: compares a recorded arm with its simulated twin.
+void add_twin_command(CLI::App& app, int& exit_code);
+/// `thimble hil`: checks an arm as a laboratory's test server does.
+void add_hil_command(CLI::App& app, int& exit_code);
 /// `thimble doctor`: says why an arm cannot be used, and what mends it.
 void add_doctor_command(CLI::App& app, int& exit_code);
 /// `thimble exec PROGRAM`: runs a program that was written for another maker's arm.

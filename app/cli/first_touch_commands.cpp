@@ -39,6 +39,17 @@ void add_identify_command(CLI::App& app, int& exit_code) {
                      "Measure an arm's mass, friction, gains and delay by small forces");
 }
 
+void add_twin_command(CLI::App& app, int& exit_code) {
+  add_absent_command(app, exit_code, "twin",
+                     "Let the simulated arm relive a recording, and tell how far both are apart");
+}
+
+void add_hil_command(CLI::App& app, int& exit_code) {
+  add_absent_command(app, exit_code, "hil",
+                     "Check an arm as a test server does: reports, delays, watchdog, friction, "
+                     "walls, soak");
+}
+
 void add_mesh_command(CLI::App& app, int& exit_code) {
   add_absent_command(app, exit_code, "mesh", "Tell what a mesh is and what is wrong with it");
 }

@@ -37,6 +37,8 @@ int run(int argc, char** argv) {
   thimble::app::add_calibrate_command(app, exit_code);
   thimble::app::add_feel_check_command(app, exit_code);
   thimble::app::add_identify_command(app, exit_code);
+  thimble::app::add_twin_command(app, exit_code);
+  thimble::app::add_hil_command(app, exit_code);
   thimble::app::add_exec_command(app, exit_code);
   thimble::app::add_export_command(app, exit_code);
   thimble::app::add_replay_command(app, exit_code);

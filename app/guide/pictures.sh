@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Draws the guide's pictures anew by the program's own commands (needs gnuplot).
+# Draws the guide's pictures anew by the program's own commands (needs gnuplot, chromium and python3-websockets).
 #   app/guide/pictures.sh [PROGRAM]
 # The three that begin with accuracy_ come from `thimble study accuracy`, which takes minutes; they are kept.
 set -euo pipefail
@@ -44,6 +44,10 @@ figure stability_map stability/kb_map.png
 # A recording, as a plot.
 "$program" run "$scenes/tin_can.yaml" --report can >/dev/null
 figure recording can/force_and_depth.png
+
+# The page that plays a run, as a browser shows it.
+"$program" run "$scenes/water_balloon.yaml" --report balloon >/dev/null
+/usr/bin/python3 "$here/../../tests/program/page_browser.py" chromium balloon/index.html "$pictures/page.png" 1 >/dev/null
 
 # The guide's own table of peers, as a plot.
 awk -F'|' '/^\| 10\^[0-9]/ && NF == 7 { sub(/.*\^/, "", $2); print 10 ^ $2, $3, $4, $5, $6 }' \

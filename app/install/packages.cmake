@@ -25,13 +25,13 @@ set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
 # Not needed to touch: scans that scenes name (unpacked on first use), OpenGL for shots and the window, which
-# is opened at run time, and plots.
+# is opened at run time, plots, and what a page in the browser is made of.
 string(CONCAT CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "libcgal-demo, "
-    "libegl1, libegl-mesa0, libgl1, libgl1-mesa-dri, gnuplot-nox, fonts-dejavu-core")
+    "libegl1, libegl-mesa0, libgl1, libgl1-mesa-dri, gnuplot-nox, fonts-dejavu-core, libjs-three, libjs-dygraphs")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "valgrind")
 string(CONCAT CPACK_DEBIAN_DEV_PACKAGE_DEPENDS
     "thimble (= ${PROJECT_VERSION}), libeigen3-dev, libusb-1.0-0-dev, libhidapi-dev, libassimp-dev, zlib1g-dev, libpng-dev, "
-    "libfmt-dev, libyaml-cpp-dev, libhdf5-dev, libspdlog-dev, pkg-config")
+    "libfmt-dev, libyaml-cpp-dev, libhdf5-dev, libsqlite3-dev, libspdlog-dev, pkg-config")
 set(CPACK_COMPONENT_PROGRAM_DESCRIPTION
 "touch virtual objects by a force-feedback arm, real or simulated
 Thimble drives 3-DOF force-feedback arms on USB, simulates them where there is
@@ -65,6 +65,22 @@ whole runs in virtual time, tick by tick, or watched in real time.")
   set(CPACK_DEBIAN_PYTHON_DESCRIPTION "${CPACK_COMPONENT_PYTHON_DESCRIPTION}")
 endif()
 
+# Topics of ROS 2, where there was a Cyclone DDS to build the module with.
+if(TARGET thimble_ros2)
+  list(APPEND packages thimble-ros2)
+  list(APPEND CPACK_COMPONENTS_ALL ros2)
+  set(CPACK_COMPONENT_ROS2_GROUP ros2)
+  set(CPACK_DEBIAN_ROS2_PACKAGE_NAME thimble-ros2)
+  set(CPACK_DEBIAN_ROS2_PACKAGE_SECTION science)
+  set(CPACK_DEBIAN_ROS2_PACKAGE_SHLIBDEPS ON)
+  set(CPACK_DEBIAN_ROS2_PACKAGE_DEPENDS "thimble (= ${PROJECT_VERSION})")
+  set(CPACK_COMPONENT_ROS2_DESCRIPTION
+"runs of Thimble as topics of ROS 2
+What `thimble run --ros2` loads: it publishes joints, pose, velocity, force and
+buttons of a force-feedback arm by DDS and takes forces, without ROS installed.")
+  set(CPACK_DEBIAN_ROS2_DESCRIPTION "${CPACK_COMPONENT_ROS2_DESCRIPTION}")
+endif()
+
 # What Debian wants of every package: its licence and its changes, and rules that udev reads anew.
 foreach(package ${packages})
   set(folder "${CMAKE_CURRENT_BINARY_DIR}/${package}")
@@ -82,6 +98,8 @@ foreach(package ${packages})
     set(component program)
   elseif(package STREQUAL python3-thimble)
     set(component python)
+  elseif(package STREQUAL thimble-ros2)
+    set(component ros2)
   else()
     set(component dev)
   endif()

@@ -82,6 +82,7 @@ session::SessionOptions session_options(const RunOptions& options) {
     if (!allowed) throw ThimbleError(allowed.error().message + " In Python: no_real_time=True.");
   }
   asked.homed = options.homed;
+  asked.several_arms = true;
   const bool real_time = options.real_time || asked.real_arm;
   asked.clock = real_time ? session::ClockKind::kWall : session::ClockKind::kVirtual;
   asked.duration = options.seconds;
@@ -98,11 +99,22 @@ session::SessionOptions session_options(const RunOptions& options) {
 SceneRun::SceneRun(const RunOptions& options)
     : session_(value_of(session::Session::open(options.scene, session_options(options)))) {
   tell(session_->told());
+  if (!options.topics) return;
+  if (!options.real_time) {
+    throw ThimbleError("ros2: topics tell of a run in real time; see thimble.open.");
+  }
+  asked_topics_ = value_of(faces::ros_options(*options.topics));
 }
 
 SceneRun::~SceneRun() {
   stop_.store(true);
   servo_.reset();
+}
+
+std::string SceneRun::topics_report() const {
+  std::string all;
+  for (const auto& arm : topics_) all += arm->report();
+  return all;
 }
 
 bool SceneRun::running() const noexcept {
@@ -140,6 +152,9 @@ void SceneRun::run(const std::function<bool()>& stop_asked) {
 void SceneRun::start() {
   if (!session_->real_time()) throw ThimbleError("A run in virtual time has no thread.");
   if (servo_ || end_) throw ThimbleError("This run has begun before.");
+  for (std::size_t arm = 0; asked_topics_ && arm < session_->arms(); ++arm) {
+    topics_.push_back(value_of(faces::RosRun::open(*session_, *asked_topics_, arm)));
+  }
   servo_ = std::make_unique<session::ServoThread>(true);
   grant_ = servo_->grant();
   servo_->begin(*session_, stop_);
@@ -167,14 +182,14 @@ void SceneRun::finish() {
     throw ThimbleError(ended.error().message);
 }
 
-std::span<const driver::TickRecord> SceneRun::ticks() const {
+std::span<const driver::TickRecord> SceneRun::ticks(std::size_t arm) const {
   if (running()) throw ThimbleError("The run goes on; stop() it to see its ticks.");
-  return session_->ticks();
+  return session_->ticks(arm);
 }
 
-session::RunFigures SceneRun::figures() {
+session::RunFigures SceneRun::figures(std::size_t arm) {
   if (!end()) throw ThimbleError("The run is not over: nothing to sum up yet.");
-  return session_->figures(grant_);
+  return session_->figures(grant_, arm);
 }
 
 }  // namespace thimble::python

@@ -5,7 +5,10 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "faces/ros2/ros_run.h"
+#include "faces/ros2/ros_words.h"
 #include "thimble/driver/real_time.h"
 #include "thimble/driver/servo_loop.h"
 #include "thimble/session/servo_thread.h"
@@ -27,6 +30,7 @@ struct RunOptions {
   std::string record;    ///< HDF5 file; empty: none.
   std::string firmware;  ///< For a real arm that needs some.
   bool homed = false;    ///< A real arm was in its home pose when it got power: do not ask for it.
+  std::optional<faces::RosWords> topics = {};  ///< Of ROS 2; in real time only.
   bool no_real_time = false;  ///< Use a real arm though the loop gets no real-time priority.
 };
 
@@ -60,9 +64,11 @@ class SceneRun {
   /// Returns why it ended; empty while it has not.
   std::optional<driver::ServoEnd> end() noexcept;
   /// Returns what was recorded, unless the thread runs.
-  std::span<const driver::TickRecord> ticks() const;
+  std::span<const driver::TickRecord> ticks(std::size_t arm = 0) const;
+  /// Returns what there is to say of the topics of ROS 2; empty if there are none.
+  std::string topics_report() const;
   /// Returns the figures of a run that is over.
-  session::RunFigures figures();
+  session::RunFigures figures(std::size_t arm = 0);
 
  private:
   bool take_step();
@@ -74,7 +80,9 @@ class SceneRun {
   bool finished_ = false;
   std::optional<driver::ServoEnd> end_;
   driver::RealTimeGrant grant_;
-  std::unique_ptr<session::ServoThread> servo_;  // in real time
+  std::optional<faces::RosOptions> asked_topics_;
+  std::vector<std::unique_ptr<faces::RosRun>> topics_;  // of each arm; they end before the session
+  std::unique_ptr<session::ServoThread> servo_;         // in real time
 };
 
 }  // namespace thimble::python

@@ -6,10 +6,11 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "report/figure_json.h"
+
 namespace thimble::app {
 
-driver::Result<void> write_figures(const std::vector<Figure>& figures,
-                                   const std::filesystem::path& file) {
+nlohmann::ordered_json figures_json(const std::vector<Figure>& figures) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const Figure& figure : figures) {
     nlohmann::ordered_json entry{
@@ -21,7 +22,12 @@ driver::Result<void> write_figures(const std::vector<Figure>& figures,
     if (!figure.note.empty()) entry["note"] = figure.note;
     list.push_back(std::move(entry));
   }
-  return write_text(list.dump(2) + "\n", file);
+  return list;
+}
+
+driver::Result<void> write_figures(const std::vector<Figure>& figures,
+                                   const std::filesystem::path& file) {
+  return write_text(figures_json(figures).dump(2) + "\n", file);
 }
 
 std::string figure_table(const std::vector<Figure>& figures) {

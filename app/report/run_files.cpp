@@ -5,22 +5,37 @@
 #include "setup.h"
 
 namespace thimble::app {
+namespace {
 
-driver::Result<void> write_run_files(const session::Session& session,
+driver::Result<void> write_arm_files(const session::Session& session,
                                      const session::RunFigures& figures,
-                                     const std::filesystem::path& folder) {
+                                     const std::filesystem::path& folder, std::size_t arm) {
   if (auto written = write_report(figures, folder); !written) return written;
-  const PictureInfo info{.title = figures.scene + ", " + figures.arm,
+  const std::string whose = session.arms() > 1 ? ", " + session.arm_name(arm) : "";
+  const PictureInfo info{.title = figures.scene + ", " + figures.arm + whose,
                          .virtual_time = figures.virtual_time,
                          .period = 1 / figures.rate_asked,
                          .period_times = &figures.statistics.period(),
                          .work_times = &figures.statistics.work()};
-  auto drawn = draw_pictures(session.ticks(), session.setup().objects().mesh_W(), info, folder);
+  auto drawn = draw_pictures(session.ticks(arm), session.setup().objects().mesh_W(), info, folder);
   if (!drawn) return drawn;
   auto dent = session.deepest_dent();
   if (!dent) return {};
   for (Eigen::Vector3d& vertex : dent->vertices) vertex *= 1e3;
   return draw_mesh(*dent, folder / "dent.png", figures.scene + ": the deepest dent", "mm");
+}
+
+}  // namespace
+
+driver::Result<void> write_run_files(const session::Session& session,
+                                     const driver::RealTimeGrant& grant,
+                                     const std::filesystem::path& folder) {
+  for (std::size_t arm = 0; arm < session.arms(); ++arm) {
+    const auto own = session.arms() == 1 ? folder : folder / session.arm_name(arm);
+    auto written = write_arm_files(session, session.figures(grant, arm), own, arm);
+    if (!written) return written;
+  }
+  return {};
 }
 
 }  // namespace thimble::app

@@ -2,17 +2,18 @@
 
 #include <filesystem>
 
+#include "thimble/driver/real_time.h"
 #include "thimble/driver/result.h"
 #include "thimble/session/session.h"
 
 namespace thimble::app {
 
 /// Writes what a run that is over leaves in `folder`: report.json and figures.json (write_report),
-/// the pictures (draw_pictures) and, of a scene that was dented, dent.png. `figures` are those of
-/// `session`. Fails, naming the file, if that cannot be done. Real-time: never from the servo
-/// thread.
+/// the pictures (draw_pictures) and, of a scene that was dented, dent.png; of several arms into a
+/// folder each, by their names. `grant`: what the kernel granted the servo's thread. Fails, naming
+/// the file, if that cannot be done. Real-time: never from the servo thread.
 driver::Result<void> write_run_files(const session::Session& session,
-                                     const session::RunFigures& figures,
+                                     const driver::RealTimeGrant& grant,
                                      const std::filesystem::path& folder);
 
 }  // namespace thimble::app

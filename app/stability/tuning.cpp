@@ -132,6 +132,25 @@ void tell_rests(const scene::Scene& scene, TuneResult& result) {
   }
 }
 
+/// Says what a wall may be that another program computes, over topics.
+void tell_topics(const scene::Scene& scene, const scene::LoopTimes& times, const AnswerAges& ages,
+                 TuneResult& result) {
+  scene::LoopTimes late = times;
+  late.delay += ages.most;
+  const Carried here = carried_by(scene.arm, times, 1000, 0);
+  const Carried there = carried_by(scene.arm, late, 1000, 0);
+  result.text += fmt::format(
+      "ROS 2     forces answer positions that are {:.2f} ms old (median), {:.2f} ms (99 %): a wall "
+      "without damping that is computed at the other end of the topics carries {:.0f} N/m by the "
+      "law, {:.0f} N/m are safe; computed here {:.0f} N/m, {:.0f} N/m.\n",
+      1e3 * ages.median, 1e3 * ages.most, there.stiffness_exact, there.stiffness_safe,
+      here.stiffness_exact, here.stiffness_safe);
+  result.figures.push_back({"topics.age_median", 1e3 * ages.median, "ms", ""});
+  result.figures.push_back({"topics.age_99", 1e3 * ages.most, "ms", ""});
+  result.figures.push_back({"topics.stiffness", there.stiffness_exact, "N/m", ""});
+  result.figures.push_back({"topics.stiffness_safe", there.stiffness_safe, "N/m", ""});
+}
+
 }  // namespace
 
 scene::LoopTimes loop_times(const scene::ArmFile& arm, double rate, double period_spread) {
@@ -199,6 +218,14 @@ std::vector<std::string> stability_warnings(const scene::Scene& scene) {
     }
   }
   for (std::string& warning : energy_warnings(scene)) warnings.push_back(std::move(warning));
+  for (const scene::SceneArm& other : scene.more_arms) {
+    scene::Scene with_it = scene;
+    with_it.arm = other.arm;
+    with_it.more_arms.clear();
+    for (const std::string& warning : stability_warnings(with_it)) {
+      warnings.push_back("The arm \"" + other.name + "\": " + warning);
+    }
+  }
   return warnings;
 }
 
@@ -231,6 +258,7 @@ TuneResult tune(const scene::Scene& scene, const TuneOptions& options) {
                     {"passive_stiffness", bare.passive, "N/m", ""},
                     {"bristle_stiffness", bare.bristle_stiffness, "N/m", ""},
                     {"bristle_length_per_newton", 1e3 / bare.bristle_stiffness, "mm/N", ""}};
+  if (options.topics) tell_topics(scene, times, *options.topics, result);
   for (const scene::SceneObject& object : scene.objects) {
     if (object.build_field || !(object.stiffness > 0)) continue;
     const Carried carried = carried_by(arm, times, object.stiffness, object.damping);

@@ -49,10 +49,18 @@ struct TuneResult {
   std::string text;  ///< For a person.
 };
 
+/// How old the positions are that forces answer where another program computes them, s.
+struct AnswerAges {
+  double median = 0;
+  double most = 0;  ///< that 99 % do not exceed
+};
+
 /// Says how thorough a tuning is.
 struct TuneOptions {
   double period_spread = 0;  ///< Standard deviation of the loop's period, s.
   int places_per_side = 2;   ///< Walls are tried at so many places per side of the workspace.
+  /// Measured over the topics of ROS 2; empty: nothing is said of them.
+  std::optional<AnswerAges> topics = {};
 };
 
 /// Returns what a scene asks and what can be had: by the laws, and simulated through the whole loop

@@ -7,7 +7,6 @@ namespace thimble::app {
 /// Returns how much memory this process holds, bytes; all 0 where the kernel does not say.
 struct ResidentMemory {
   std::size_t now = 0;   ///< In memory now, the program's own code and mapped files included.
-  std::size_t own = 0;   ///< Of that, what is no copy of a file.
   std::size_t most = 0;  ///< The most there ever was.
 };
 

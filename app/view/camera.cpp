@@ -18,6 +18,19 @@ constexpr double kYaw = 0.55;
 constexpr double kPitch = 0.42;
 constexpr double kMargin = 1.12;  // of the box, so that nothing stands at the picture's rim
 
+/// Adds an arm's tip, and where the arrow of its force ends.
+void add_touch(const DrawnScene& scene, const driver::TickRecord& tick,
+               std::vector<Eigen::Vector3d>& points) {
+  const Eigen::Map<const Eigen::Vector3d> p_WT(tick.p_WT.data());
+  const Eigen::Map<const Eigen::Vector3d> f_W(tick.f_sent_W.data());
+  if (p_WT.allFinite()) points.emplace_back(p_WT);
+  if (p_WT.allFinite() && f_W.norm() > 0) {
+    const Eigen::Map<const Eigen::Vector3d> p_WP(tick.p_WP.data());
+    const Eigen::Vector3d from = tick.in_contact && p_WP.allFinite() ? p_WP : p_WT;
+    points.emplace_back(from + arrow_length(f_W.norm(), scene) * f_W.normalized());
+  }
+}
+
 }  // namespace
 
 Eigen::Vector3d placed(const render::BodyPose& pose, const Eigen::Vector3d& p_B) {
@@ -97,14 +110,8 @@ std::vector<Eigen::Vector3d> framed_points(const DrawnScene& scene, const DrawnM
       points.push_back(placed(pose, vertices[v]));
     }
   }
-  const Eigen::Map<const Eigen::Vector3d> p_WT(moment.tick.p_WT.data());
-  const Eigen::Map<const Eigen::Vector3d> f_W(moment.tick.f_sent_W.data());
-  if (p_WT.allFinite()) points.emplace_back(p_WT);
-  if (p_WT.allFinite() && f_W.norm() > 0) {
-    const Eigen::Map<const Eigen::Vector3d> p_WP(moment.tick.p_WP.data());
-    const Eigen::Vector3d from = moment.tick.in_contact && p_WP.allFinite() ? p_WP : p_WT;
-    points.emplace_back(from + arrow_length(f_W.norm(), scene) * f_W.normalized());
-  }
+  add_touch(scene, moment.tick, points);
+  for (const DrawnArm& other : moment.others) add_touch(scene, other.tick, points);
   Eigen::AlignedBox3d box;
   for (const Eigen::Vector3d& point : points) box.extend(point);
   // A field has no size: the tip alone would fill the picture.

@@ -26,6 +26,8 @@ struct DrawnObject {
 struct DrawnScene {
   std::string name;
   std::string arm;
+  std::string
+      arm_in_scene;  ///< What the scene calls the first of several; empty: it is the only one.
   std::vector<DrawnObject> objects;
   double force_limit = 5;  ///< N
   double rate = 1000;      ///< Ticks per second, Hz.
@@ -34,12 +36,20 @@ struct DrawnScene {
 /// One part of the arm: a rod between two points of the world, m.
 using DrawnRod = std::pair<Eigen::Vector3d, Eigen::Vector3d>;
 
+/// An arm after the first of a scene with several, at one moment.
+struct DrawnArm {
+  std::string name;  ///< What the scene calls it.
+  driver::TickRecord tick;
+  std::vector<DrawnRod> rods;  ///< From the base to the tip; empty: not drawn.
+};
+
 /// A scene at one moment.
 struct DrawnMoment {
   driver::TickRecord tick;
   std::vector<render::BodyPose> poses;  ///< One per object of the scene.
   render::BodyPatch patch;              ///< No triangles if nothing is dented.
   std::vector<DrawnRod> arm;            ///< From the base to the tip; empty: not drawn.
+  std::vector<DrawnArm> others;         ///< The arms after the first, if there are any.
   /// One per object: what it has been shaped to, triangles that were split included; null if it has
   /// not. A new shape is a new object.
   std::vector<std::shared_ptr<const render::TriangleMesh>> shapes;

@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <memory>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "share/arm_lines.h"
 
@@ -42,12 +44,23 @@ DrawnObject drawn_object(const session::SharedScene& scene,
   return drawn;
 }
 
+/// Returns the rods of an arm, from its base to its tip.
+std::vector<DrawnRod> rods_of(const session::SharedScene::Arm& arm,
+                              const driver::TickRecord& tick) {
+  std::vector<DrawnRod> rods;
+  for (const session::ArmLine& line : session::arm_lines(arm, tick)) {
+    for (std::size_t i = 0; i + 1 < line.size(); ++i) rods.push_back({line[i], line[i + 1]});
+  }
+  return rods;
+}
+
 }  // namespace
 
 LiveScene::LiveScene(const session::SharedReader& reader) : reader_(reader) {
   const session::SharedScene& scene = reader.scene();
   scene_.name = scene.name;
   scene_.arm = scene.arm.name;
+  scene_.arm_in_scene = scene.arm.in_scene;
   scene_.force_limit = scene.force_max > 0 ? scene.force_max : 5;
   scene_.rate = 1e9 / static_cast<double>(scene.period_ns);
   for (const session::SharedScene::Object& object : scene.objects) {
@@ -68,9 +81,15 @@ bool LiveScene::update(DrawnMoment& moment) {
   }
   if (!reader_.patch(moment.patch)) moment.patch.triangle_count = 0;
   update_shapes(moment);
-  moment.arm.clear();
-  for (const session::ArmLine& line : session::arm_lines(reader_.scene().arm, moment.tick)) {
-    for (std::size_t i = 0; i + 1 < line.size(); ++i) moment.arm.push_back({line[i], line[i + 1]});
+  moment.arm = rods_of(reader_.scene().arm, moment.tick);
+  moment.others.clear();
+  for (std::size_t i = 0; i < reader_.scene().more_arms.size(); ++i) {
+    const session::SharedScene::Arm& arm = reader_.scene().more_arms[i];
+    DrawnArm other;
+    other.name = arm.in_scene;
+    if (!reader_.newest_of(i + 1, other.tick)) continue;
+    other.rods = rods_of(arm, other.tick);
+    moment.others.push_back(std::move(other));
   }
   return true;
 }

@@ -18,7 +18,14 @@ Point point(const std::array<double, 3>& p) {
   return {p[0], p[1], p[2]};
 }
 
-void add_arm(const DrawnMoment& moment, TouchMarks& marks) {
+/// One arm of a moment.
+struct OneArm {
+  const driver::TickRecord& tick;
+  const std::vector<DrawnRod>& rods;
+  bool bent;  ///< What it touches is dented, so that its tip lies on the surface.
+};
+
+void add_arm(const OneArm& moment, TouchMarks& marks) {
   // As thick as the tubes of such arms, m; the last piece ends in a thin stem, as the rod that
   // carries a thimble does, so that it hides little of what is touched.
   constexpr double kTube = 0.0026;
@@ -26,7 +33,7 @@ void add_arm(const DrawnMoment& moment, TouchMarks& marks) {
   constexpr double kStem = 0.0009;
   constexpr double kStemLength = 0.022;
   const Point tip = point(moment.tick.p_WT);
-  for (const auto& [from, to] : moment.arm) {
+  for (const auto& [from, to] : moment.rods) {
     const double length = (to - from).norm();
     if ((to - tip).norm() < 1e-6 && length > 2 * kStemLength) {
       const Point along = (to - from) / length;
@@ -44,7 +51,7 @@ void add_arm(const DrawnMoment& moment, TouchMarks& marks) {
 
 // The stylus that a gimbal holds: a pen along its x from the tip on, with a button on its z side,
 // so that a roll is seen.
-void add_stylus(const DrawnMoment& moment, TouchMarks& marks) {
+void add_stylus(const OneArm& moment, TouchMarks& marks) {
   constexpr double kPoint = 0.012, kLength = 0.11, kWidth = 0.0045, kButton = 0.0022;  // m
   const Point tip = point(moment.tick.p_WT);
   if (moment.tick.q_WT == driver::TipQuaternion{} || !tip.allFinite()) return;
@@ -59,13 +66,11 @@ void add_stylus(const DrawnMoment& moment, TouchMarks& marks) {
 
 /// Returns where the touch is seen: the proxy on a stiff surface; on one that is bent, where the
 /// tip has taken it.
-Point touched_point(const DrawnMoment& moment) {
-  const bool bent = moment.patch.triangle_count > 0 && moment.patch.object == moment.tick.object;
-  return point(moment.tick.in_contact && !bent ? moment.tick.p_WP : moment.tick.p_WT);
+Point touched_point(const OneArm& moment) {
+  return point(moment.tick.in_contact && !moment.bent ? moment.tick.p_WP : moment.tick.p_WT);
 }
 
-void add_force(const DrawnScene& scene, const DrawnMoment& moment, double thick,
-               TouchMarks& marks) {
+void add_force(const DrawnScene& scene, const OneArm& moment, double thick, TouchMarks& marks) {
   const Point force = point(moment.tick.f_sent_W);
   const double size = force.norm();
   if (!(size > kThinnest)) return;  // NaN: no arrow
@@ -80,7 +85,7 @@ void add_force(const DrawnScene& scene, const DrawnMoment& moment, double thick,
   marks.labels.push_back({tip, along, fmt::format("{:.2f} N", size), kForceColour});
 }
 
-void add_tip(const DrawnMoment& moment, double thick, TouchMarks& marks) {
+void add_tip(const OneArm& moment, double thick, TouchMarks& marks) {
   const Point p_WT = point(moment.tick.p_WT);
   if (!p_WT.allFinite()) return;
   Solid tip = ball(p_WT, 1.8 * thick, kTipColour);
@@ -167,10 +172,20 @@ TouchMarks mark_touch(const DrawnScene& scene, const DrawnMoment& moment, double
                       const MarkChoice& choice) {
   const double thick = 0.0032 * eye_distance;
   TouchMarks marks;
-  if (choice.arm) add_arm(moment, marks);
-  if (choice.arm) add_stylus(moment, marks);
-  if (choice.force) add_force(scene, moment, thick, marks);
-  if (choice.tip) add_tip(moment, thick, marks);
+  const auto add = [&](const OneArm& arm, const std::string& name) {
+    if (choice.arm) add_arm(arm, marks);
+    if (choice.arm) add_stylus(arm, marks);
+    if (choice.force) add_force(scene, arm, thick, marks);
+    if (choice.tip) add_tip(arm, thick, marks);
+    const Point tip = point(arm.tick.p_WT);
+    if (choice.tip && !name.empty() && tip.allFinite()) {
+      const Point up(0, 0, 1);
+      marks.labels.push_back({tip + 6 * thick * up, up, name, kTipColour});
+    }
+  };
+  const bool bent = moment.patch.triangle_count > 0 && moment.patch.object == moment.tick.object;
+  add({moment.tick, moment.arm, bent}, scene.arm_in_scene);
+  for (const DrawnArm& other : moment.others) add({other.tick, other.rods, false}, other.name);
   if (choice.edge_planes) add_edge_planes(scene, moment, marks);
   return marks;
 }

@@ -45,6 +45,9 @@ std::string_view describe(Fault fault) noexcept {
              "Move the arm and activate it again; if nothing counts, check its cable and power. An "
              "arm that lies still on an object for long looks the same (hold_unchanged in the arm "
              "file).";
+    case Fault::kOtherArm:
+      return "Another arm of this run came to a fault, and the scene takes the force of all its "
+             "arms together (faults: apart lets the others go on).";
   }
   return "Unknown fault.";
 }
@@ -75,6 +78,8 @@ std::string_view name(Fault fault) noexcept {
       return "encoder_frozen";
     case Fault::kCountsUnchanged:
       return "counts_unchanged";
+    case Fault::kOtherArm:
+      return "other_arm";
   }
   return "unknown";
 }

@@ -7,6 +7,7 @@
 
 #include "body/dent/bendable_polygon.h"
 #include "body/dent/dented_touch.h"
+#include "mesh/repair/sound_mesh.h"
 #include "mesh/smooth_normals.h"
 #include "shape_object.h"
 #include "touch_of.h"
@@ -84,12 +85,14 @@ Built packed_touch(const TriangleMesh& mesh_W, const ContactChoice& choice,
                  "has the mean of the faces by their angles at its corners: leave normals away, or "
                  "take the tracker \"offset\".");
   }
-  // Looks at the whole mesh first, so that faults are told as for every other way.
-  const auto checked = ContactMesh::build(mesh_W);
-  if (!checked) return checked.error();
+  // Looks at the whole mesh as well, so that faults are told as for every other way.
+  auto looked = look_at_mesh_beside(mesh_W, true);
   PackedSurfaceOptions options;
   if (choice.crease_angle) options.crease_angle = *choice.crease_angle;
-  auto packed = PackedSurface::build(*checked, options);
+  auto packed = PackedSurface::build(mesh_W, options);
+  const auto sound = looked.get();
+  if (!sound) return sound.error();
+  if (sound->turned) packed = PackedSurface::build(*sound->turned, options);
   if (!packed) return packed.error();
   return touch_of(MemoryContact(std::move(packed).value(), choice.search), surface);
 }

@@ -91,15 +91,16 @@ fi
 forbid app/scene/include '(yaml|terms)/|[a-z_]*\.h"|yaml-cpp/' "a header beside the sources, or yaml-cpp"
 forbid app/session/include '(recording|share|observers)/|[a-z_]*\.h"|hdf5|H5' "a header beside the sources, or HDF5"
 # Python binds what C++ programs link; of the rest it reads the warnings alone.
-forbid app/python '(yaml|terms|recording|share|observers|report|studies|view|bringup|cli)/|stability/(draw|rest|stability|wall)' \
+forbid app/python '(yaml|terms|recording|share|observers|report|studies|view|bringup|hil|cli)/|stability/(draw|rest|stability|wall)' \
   "what a C++ program that links thimble::session cannot reach"
 
 # The libraries of app, the lowest first: FOLDER: what it must not know.
 forbid_app() {
   forbid "app/$1" "$2" "a library above it or beside it"
 }
-forbid_app scene 'thimble/session/|(recording|share|events|report|stability|studies|view|bringup|faces|cli)/'
-forbid_app session '(report|stability|studies|view|bringup|faces|cli)/'
+forbid_app bag 'thimble/(device_sim|render|scene|session)/|(yaml|files|hand|recording|share|events|report|stability|studies|view|bringup|faces|hil|cli)/'
+forbid_app scene 'thimble/session/|(recording|share|events|report|stability|studies|view|bringup|faces|hil|cli)/'
+forbid_app session '(report|stability|studies|view|bringup|faces|hil|cli)/'
 # What a program of somebody else's includes needs nothing beside the sources; and observers of a run's
 # ticks know nothing of each other: only who registers them knows them all (run_records.h).
 forbid app/session/include '(observers|recording|share)/|[a-z_0-9]*\.h"|hdf5|yaml-cpp|fmt/' \
@@ -115,12 +116,14 @@ for observer in observers/black_box observers/dent_record observers/latest_tick 
     bad=1
   fi
 done
-forbid_app report '(stability|studies|view|bringup|faces|cli)/'
-forbid_app stability '(studies|view|bringup|faces|cli)/'
-forbid_app studies '(view|bringup|faces|cli)/'
-forbid_app view '(report|stability|studies|bringup|faces|cli)/'
-forbid_app bringup 'thimble/session/|(recording|share|events|report|stability|studies|view|faces|cli)/'
-forbid_app faces '(report|stability|studies|view|bringup|cli)/'
+forbid_app report '(stability|studies|view|bringup|faces|hil|cli)/'
+forbid_app stability '(studies|view|bringup|faces|hil|cli)/'
+forbid_app studies '(view|bringup|faces|hil|cli)/'
+forbid_app view '(report|stability|studies|bringup|faces|hil|cli)/'
+forbid_app bringup 'thimble/session/|(recording|share|events|report|stability|studies|view|faces|hil|cli)/'
+forbid_app hil '(share|events|view|faces|cli)/'
+forbid_app twin '(share|events|stability|studies|view|bringup|hil|faces|cli)/'
+forbid_app faces '(report|stability|studies|view|bringup|hil|cli)/'
 # What a program of somebody else's loads brings no library of ours with it; and faces know the core alone.
 for part in core haply hd hdphantom dhd; do
   [ -d "app/faces/$part" ] || continue
@@ -130,10 +133,10 @@ done
 for part in core server; do
   forbid "app/faces/$part" 'faces/(haply|hd|hdphantom|dhd)/|(HD|HDU)/|d[hr]dc\.h' "a face"
 done
-for folder in scene session report stability studies bringup faces cli python; do
+for folder in bag scene session report stability studies bringup hil twin faces cli python; do
   forbid "app/$folder" "$graphics" "graphics: they are app/view's"
 done
-for folder in scene session report stability studies bringup view faces python; do
+for folder in bag scene session report stability studies bringup hil twin view faces python; do
   forbid "app/$folder" 'CLI/' "arguments: they are app/cli's"
 done
 

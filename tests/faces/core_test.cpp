@@ -26,7 +26,7 @@ void hold(int arm, const std::array<double, 3>& f_W, int ticks) {
 }
 
 TEST(FaceCore, GivesTheMotorsTheForceThatWasAskedFor) {
-  ExecRig rig;
+  ExecRig rig(in_step());
   ASSERT_EQ(arms::open(0, "test"), "");
   arms::enable_force(0, true);
   const Vector3d asked(0.2, -0.15, 0.1);
@@ -39,7 +39,7 @@ TEST(FaceCore, GivesTheMotorsTheForceThatWasAskedFor) {
 }
 
 TEST(FaceCore, SendsNothingBeforeForceIsEnabledAndOpensSlowlyThen) {
-  ExecRig rig;
+  ExecRig rig(in_step());
   ASSERT_EQ(arms::open(0, "test"), "");
   hold(0, {0.3, 0, 0}, 400);
   EXPECT_EQ(rig.motors.force_W().norm(), 0);
@@ -54,7 +54,7 @@ TEST(FaceCore, SendsNothingBeforeForceIsEnabledAndOpensSlowlyThen) {
 }
 
 TEST(FaceCore, CutsAForceToTheArmsLimitAndSaysSo) {
-  ExecRig rig;
+  ExecRig rig(in_step());
   ASSERT_EQ(arms::open(0, "test"), "");
   arms::enable_force(0, true);
   ArmReading reading;
@@ -91,7 +91,7 @@ TEST(FaceCore, TakesAwayAForceThatIsNotRenewedAndGivesItBackSlowly) {
 }
 
 TEST(FaceCore, LatchesAForceThatIsNoNumberUntilForceIsEnabledAnew) {
-  ExecRig rig;
+  ExecRig rig(in_step());
   ASSERT_EQ(arms::open(0, "test"), "");
   arms::enable_force(0, true);
   hold(0, {0.2, 0, 0}, 400);
@@ -145,7 +145,7 @@ TEST(FaceCore, HasTwoArmsAtOnceThatKnowNothingOfEachOther) {
 }
 
 TEST(FaceCore, OpensAnArmAgainWithoutTheForceOfBefore) {
-  ExecRig rig;
+  ExecRig rig(in_step());
   for (int again = 0; again < 3; ++again) {
     ASSERT_EQ(arms::open(0, "test"), "");
     arms::enable_force(0, true);

@@ -43,6 +43,15 @@ class MotorWatch final : public session::TickObserver {
   driver::Snapshot<std::array<double, 3>> force_;
 };
 
+/// Options of a rig whose ticks wait for the program: on a busy machine none of its forces comes
+/// too late. `arm`: name or file; empty: the vintage PHANTOM.
+inline ExecOptions in_step(const char* arm = "") {
+  ExecOptions options;
+  options.arms = {{.arm_file = arm}};
+  options.paced = true;
+  return options;
+}
+
 /// `thimble exec` in this process: the server on a thread of its own, and its channel in place of
 /// the one that the environment names.
 class ExecRig {

@@ -5,7 +5,7 @@ source "$(dirname "$0")/expect.sh" "$@"
 expect 0 'makes virtual objects touchable' "$thimble" --help
 expect 0 'Exit codes: 0 done' "$thimble" --help
 expect 0 '^thimble [0-9]+\.[0-9]+\.[0-9]+ \(' "$thimble" --version
-for command in run exec view devices doctor calibrate feel-check identify mesh plug bench; do
+for command in run exec view devices doctor calibrate feel-check identify twin hil mesh plug bench; do
   expect 0 "$command" "$thimble" "$command" --help
   expect 0 '^thimble [0-9]' "$thimble" "$command" --version
 done

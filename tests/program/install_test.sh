@@ -81,7 +81,7 @@ else
     >"$work/log" 2>&1 || grep -q 'Without python3-matplotlib' "$work/log" || fail "$(cat "$work/log")"
   grep -q 'Contacts: [1-9]' "$work/log" || fail "08_plot_a_touch.py: $(cat "$work/log")"
   PYTHONPATH=$work/usr/lib/python3/dist-packages /usr/bin/python3 -B -c '
-import sys, thimble
+import sys, thimble, thimble.experiment, thimble.gym
 assert all(str(one.path).startswith(sys.argv[1]) for one in thimble.scenes()), thimble.scenes()
 assert thimble._program().startswith(sys.argv[1])' "$work/usr" || fail "the package uses files of another place"
 fi

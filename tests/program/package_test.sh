@@ -55,7 +55,7 @@ for module in $needed pkg-config thimble; do
   grep -qE "(^|, )$library( |,|$)" asked || fail "libthimble-dev does not ask for $library: $(cat asked)"
 done
 dpkg-deb --field "$program" Recommends >asked
-for package in libcgal-demo libegl-mesa0 gnuplot-nox; do
+for package in libcgal-demo libegl-mesa0 gnuplot-nox libjs-three libjs-dygraphs; do
   grep -q "$package" asked || fail "thimble does not recommend $package"
 done
 # Of the folders of the machine that built it, only what stands in every program: names of sources.
@@ -109,7 +109,7 @@ if ls "$bare"/root/python3-thimble_*.deb >/dev/null 2>&1; then
   inside 'apt-get install -y -q --no-install-recommends ./root/python3-thimble_*.deb'
 fi
 inside 'apt-get install -y -q --no-install-recommends ./root/libthimble-dev_*.deb g++ cmake make'
-inside 'cd /root && thimble run elephant --report out && ls out/force_and_depth.png && ls ~/.cache/thimble/meshes/elephant.off'
+inside 'cd /root && thimble run elephant --report out && ls out/index.html out/force_and_depth.png && ls ~/.cache/thimble/meshes/elephant.off'
 echo "  the README's first touch: $(grep -m 1 '^Contact' log || head -n 1 log)"
 inside 'cd /root && thimble shot water_balloon --out shot.png && head -c 4 shot.png | grep -q PNG'
 

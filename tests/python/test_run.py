@@ -1,6 +1,7 @@
 """A run from Python is a run of the program."""
 
 import math
+import pickle
 import threading
 
 import numpy as np
@@ -193,3 +194,35 @@ def test_runs_in_threads_do_not_disturb_each_other():
     for thread in threads:
         thread.join()
     assert felt == [alone] * len(felt)
+
+
+def test_a_scene_with_several_arms_gives_each_of_them():
+    run = thimble.run("two_hands", seconds=2)
+    assert list(run.arms) == ["left", "right"]
+    left, right = run.arms["left"], run.arms["right"]
+    assert len(left) == len(right) == len(run) == 2000
+    assert np.array_equal(left.force, run.force)  # the run itself is its first arm
+    assert not np.array_equal(left.force, right.force)
+    # Lifted, each bears its half of the beam, and they lean against each other.
+    assert left.force[-1, 2] < -0.3 and right.force[-1, 2] < -0.3
+    assert (left.tip[:, 1] < 0).all() and (right.tip[:, 1] > 0).all()
+    assert left.info["arm_in_scene"] == "left" and right.info["seed"] == left.info["seed"] + 1
+    assert "2.0 s" in right.summary()
+    assert thimble.run("box", seconds=0.1).arms == {}
+    again = pickle.loads(pickle.dumps(run))
+    assert np.array_equal(again.arms["right"].force, right.force)
+
+
+def test_several_arms_are_stepped_together_and_recorded_each(tmp_path):
+    stepper = thimble.Stepper("two_hands", seconds=0.5, record=tmp_path / "two.h5")
+    while stepper.step():
+        pass
+    left = thimble.read_recording(tmp_path / "two_left.h5")
+    right = thimble.read_recording(tmp_path / "two_right.h5")
+    assert len(left) == len(right) == 500
+    assert np.array_equal(left.force, stepper.ticks().force)
+    assert right.info["arm_in_scene"] == "right"
+    with pytest.raises(thimble.Error, match="one arm"):
+        thimble.Stepper("two_hands").step(hand=(0, 0, 0))
+    with pytest.raises(thimble.Error, match="for one arm"):
+        thimble.run("two_hands", law=lambda tick: None)

@@ -9,8 +9,6 @@ namespace thimble::app {
 
 /// Standard gravity, m/s^2.
 inline constexpr double kStandardGravity = 9.80665;
-/// Half-width of the 95 % interval of a normal distribution, in standard deviations.
-inline constexpr double kNormal95 = 1.96;
 
 /// Constants of an arm as they are written into its file, with their intervals.
 struct ArmConstants {

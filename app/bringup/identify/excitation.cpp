@@ -8,20 +8,14 @@
 namespace thimble::app {
 namespace {
 
-// A spring that a mass of 25 to 250 g moves on at 2 to 8 Hz, and a damper below that of a hand:
-// weak beside the sines, so that what is fitted is not the force's own doing.
-constexpr double kStiffness = 60;  // N/m
-constexpr double kDamping = 0.6;   // N s/m
-// What the encoders' noise makes the force do comes back in the motion, and would bias the fit.
-constexpr double kCorner = 2 * std::numbers::pi * 15;  // rad/s
-constexpr double kAmplitude = 0.11;                    // N, of each sine
-constexpr double kLowest = 0.7, kHighest = 13;         // Hz
+constexpr double kAmplitude = 0.11;             // N, of each sine
+constexpr double kLowest = 0.7, kHighest = 13;  // Hz
 
 }  // namespace
 
 Excitation::Excitation(const Eigen::Vector3d& p_WM, const Eigen::Vector3d& f_carried_W,
                        std::uint64_t seed)
-    : p_WM_(p_WM), f_carried_W_(f_carried_W) {
+    : hold_(p_WM, f_carried_W) {
   std::mt19937_64 bits(seed);
   const double steps = 3 * kSines - 1;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -37,10 +31,9 @@ Excitation::Excitation(const Eigen::Vector3d& p_WM, const Eigen::Vector3d& f_car
 Eigen::Vector3d Excitation::force(double time, double dt, const Eigen::Vector3d& p_WT,
                                   const Eigen::Vector3d& v_WT) noexcept {
   if (!near(p_WT)) return {0, 0, 0};
-  v_slow_ += (v_WT - v_slow_) * -std::expm1(-kCorner * dt);
   // From a quarter of the way on the sines fade; from two thirds on only the spring is left.
-  const double share = std::clamp(1.6 - 2.4 * (p_WT - p_WM_).norm() / kFar, 0.0, 1.0);
-  Eigen::Vector3d f = f_carried_W_ + kStiffness * (p_WM_ - p_WT) - kDamping * v_slow_;
+  const double share = std::clamp(1.6 - 2.4 * (p_WT - hold_.place()).norm() / kFar, 0.0, 1.0);
+  Eigen::Vector3d f = hold_.force(dt, p_WT, v_WT);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (std::size_t i = 0; i < kSines; ++i) {
       f[static_cast<Eigen::Index>(axis)] +=

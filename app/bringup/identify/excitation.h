@@ -4,6 +4,8 @@
 #include <array>
 #include <cstdint>
 
+#include "bringup/hold_place.h"
+
 namespace thimble::app {
 
 /// A force that moves a free arm in all directions at once, so that mass, friction and gains show
@@ -26,14 +28,14 @@ class Excitation {
                         const Eigen::Vector3d& v_WT) noexcept;
 
   /// Returns whether a tip is where it may be. Real-time: safe.
-  bool near(const Eigen::Vector3d& p_WT) const noexcept { return (p_WT - p_WM_).norm() < kFar; }
+  bool near(const Eigen::Vector3d& p_WT) const noexcept {
+    return (p_WT - hold_.place()).norm() < kFar;
+  }
 
  private:
-  Eigen::Vector3d p_WM_;
-  Eigen::Vector3d f_carried_W_;
+  HoldPlace hold_;
   std::array<std::array<double, kSines>, 3> frequency_{};  // rad/s
   std::array<std::array<double, kSines>, 3> phase_{};
-  Eigen::Vector3d v_slow_{0, 0, 0};  // without the noise of the encoders' steps, m/s
 };
 
 }  // namespace thimble::app

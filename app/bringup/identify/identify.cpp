@@ -94,6 +94,7 @@ driver::Result<Identified> identify(const OpenBench& open, const scene::ArmFile&
     if (loaded && options.known_mass == 0) break;
     auto bench = open(loaded);
     if (!bench) return bench.error();
+    if (!loaded) (*bench)->watch(options.watch);
     const auto motion = record_motion(**bench, file,
                                       {.seconds = options.seconds,
                                        .lead = options.lead,

@@ -8,6 +8,7 @@
 #include "bringup/bench_arm.h"
 #include "bringup/identify/arm_constants.h"
 #include "thimble/driver/result.h"
+#include "thimble/driver/tick_record.h"
 
 namespace thimble::app {
 
@@ -20,6 +21,8 @@ struct IdentifyOptions {
   double lead = 1;         ///< That it moves before each, s.
   double known_mass = 0;   ///< That the user fixes to the tip for the second motion, kg; 0: none.
   std::uint64_t seed = 1;  ///< Of the excitation's phases.
+  /// Handed each tick of the motion with the bare tip, for a recording; may be empty.
+  std::function<void(const driver::TickRecord&)> watch{};
 };
 
 /// What was found, and what speaks against it.

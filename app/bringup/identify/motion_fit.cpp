@@ -282,7 +282,7 @@ class Fit {
     PerMass found;
     found.theta = theta.head<PerMass::kCount>();
     found.covariance = covariance.topLeftCorner<PerMass::kCount, PerMass::kCount>();
-    found.delay = {delay, 1.96 * std::sqrt(covariance(PerMass::kCount, PerMass::kCount))};
+    found.delay = {delay, kNormal95 * std::sqrt(covariance(PerMass::kCount, PerMass::kCount))};
     found.residual = std::sqrt(rest.squaredNorm() / static_cast<double>(count));
     found.explained = 1 - rest.squaredNorm() / left.squaredNorm();
     found.noise = noise();

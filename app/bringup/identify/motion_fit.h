@@ -8,6 +8,9 @@
 
 namespace thimble::app {
 
+/// Half-width of the 95 % interval of a normal distribution, in standard deviations.
+inline constexpr double kNormal95 = 1.96;
+
 /// A constant with the half-width of its 95 % interval, in the same unit.
 struct Estimate {
   double value = 0;

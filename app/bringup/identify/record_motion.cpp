@@ -102,7 +102,7 @@ class Recorder {
       // What was sent in the tick before stands until now.
       if (!motion.samples.empty()) motion.samples.back().tau = sent_torque(motion.samples.back());
       if (t >= lead_) motion.samples.push_back(sample_of(file_, state));
-      left = left || !excitation.near(state.p_WT) || !in_workspace(state.p_WT);
+      left = left || !excitation.near(state.p_WT) || !file_.workspace.holds(state.p_WT);
       if (left) return {0, 0, 0};
       return excitation.force(t, kTick, state.p_WT, state.v_WT);
     };
@@ -119,11 +119,6 @@ class Recorder {
   }
 
  private:
-  bool in_workspace(const Eigen::Vector3d& p_WT) const {
-    return (p_WT.array() >= file_.workspace.min_W.array()).all() &&
-           (p_WT.array() <= file_.workspace.max_W.array()).all();
-  }
-
   /// Returns the torques of the force that stands, in the pose that it was sent for.
   Eigen::Vector3d sent_torque(const MotionSample& then) const {
     const Eigen::Vector3d f_T_B = file_.R_WB.transpose() * bench_.device().f_sent_W();

@@ -13,7 +13,7 @@ driver::Result<std::unique_ptr<BenchArm>> simulated_bench(const scene::ArmFile& 
       file.R_WB.transpose() * Eigen::Vector3d(0, 0, -kStandardGravity * added_mass);
   // Nobody holds the mass from below until it is carried.
   if (added_mass > 0) bench.limits.soft_start = driver::GateLimits::kSoftStartLeast;
-  const Eigen::Vector3d middle = (file.workspace.min_W + file.workspace.max_W) / 2;
+  const Eigen::Vector3d middle = file.workspace.middle();
   return BenchArm::open(bench, {}, {}, {{0, middle}}, kIdentifyForceMax);
 }
 

@@ -105,10 +105,11 @@ driver::Result<void> ArmRun::start(const std::atomic<bool>& stop) {
   if (auto set = session_->set_servo_law(driver::ForceLaw(*client_)); !set) return set;
   if (options_.opened) options_.opened(index_, *session_);
   if (auto added = session_->add_observer(*publisher_); !added) return added;
+  if (auto opened = open_topics(); !opened) return opened;
   channel_.facts = facts_of(arm, session_->device().traits());
   channel_.facts.rate = session_->scene().rate;
   if (const auto& real = session_->setup().real_arm()) name_real(channel_.facts, real->name());
-  if (session_->setup().real_arm()) watch_.emplace(session::replug_watch_of(*session_));
+  if (session_->setup().real_arm()) watch_.emplace(*session_);
   // A program that runs in the same terminal writes there: no line of progress.
   attendance_.emplace(*session_, watch_ ? &*watch_ : nullptr, desk_.get(), false);
   const std::uint32_t ticks = channel_.ticks.load();
@@ -122,6 +123,16 @@ driver::Result<void> ArmRun::start(const std::atomic<bool>& stop) {
     channel_.waiting.fetch_sub(1);
   }
   if (channel_.ticks.load() == ticks) return driver::Error{"The servo loop did not begin."};
+  return {};
+}
+
+driver::Result<void> ArmRun::open_topics() {
+  if (!options_.topics) return {};
+  RosOptions topics = *options_.topics;
+  if (options_.arms.size() > 1) topics.name_space += fmt::format("/arm{}", index_ + 1);
+  auto opened = RosRun::open(*session_, topics);
+  if (!opened) return opened.error();
+  topics_ = std::move(opened).value();
   return {};
 }
 
@@ -181,6 +192,7 @@ std::string ArmRun::own_report() const {
     s += fmt::format("Stalls    {} did not renew its force {} time{}; it was zero meanwhile.\n",
                      options_.program, client_->stalls(), client_->stalls() == 1 ? "" : "s");
   }
+  if (topics_) s += topics_->report();
   return s;
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "faces/core/arm_channel.h"
+#include "faces/ros2/ros_run.h"
 #include "faces/server/client_force.h"
 #include "faces/server/exec_options.h"
 #include "faces/server/free_scene.h"
@@ -53,6 +54,7 @@ class ArmRun {
       : options_(options), index_(index), channel_(channel) {}
   driver::Result<void> prepare(int number);
   driver::Result<void> start(const std::atomic<bool>& stop);
+  driver::Result<void> open_topics();
   std::string own_report() const;
 
   const ExecOptions& options_;
@@ -65,7 +67,8 @@ class ArmRun {
   std::unique_ptr<session::ServoThread> servo_;
   std::unique_ptr<ClientForce> client_;
   std::unique_ptr<ReadingPublisher> publisher_;
-  std::optional<session::ReplugWatch> watch_;
+  std::unique_ptr<RosRun> topics_;  // null: nobody asked
+  std::optional<session::ReplugWatches> watch_;
   std::optional<session::RunAttendance> attendance_;
   std::atomic<bool> stop_{false};
   std::uint64_t stalls_told_ = 0;

@@ -3,8 +3,11 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "faces/ros2/ros_peer.h"
 
 namespace thimble::session {
 class Session;
@@ -29,11 +32,12 @@ struct ExecOptions {
   /// Ticks wait for the program: the same result each time, as fast as it goes. Only with simulated
   /// arms, and without a viewer.
   bool paced = false;
-  bool view = false;          ///< Watch the run in a window.
-  bool yes = false;           ///< Give a real arm forces without asking.
-  bool unchecked = false;     ///< Its whole force without a passed feel check.
-  bool homed = false;         ///< It was in its home pose when it got power.
-  bool no_real_time = false;  ///< Without real-time priority.
+  std::optional<RosOptions> topics = {};  ///< Of ROS 2; not with `paced`.
+  bool view = false;                      ///< Watch the run in a window.
+  bool yes = false;                       ///< Give a real arm forces without asking.
+  bool unchecked = false;                 ///< Its whole force without a passed feel check.
+  bool homed = false;                     ///< It was in its home pose when it got power.
+  bool no_real_time = false;              ///< Without real-time priority.
   /// Called with an arm's number and session before its loop begins, for tests.
   std::function<void(std::size_t, session::Session&)> opened = {};
 };

@@ -8,9 +8,13 @@
 #include <sstream>
 #include <string>
 
+#include "bag/read_bag.h"
+#include "hand/bag_hand.h"
+
 namespace thimble::faces {
 
 driver::Result<std::vector<scene::HandWaypoint>> read_hand_path(const std::filesystem::path& file) {
+  if (bag::is_bag(file)) return scene::read_bag_hand(file, {}, bag::BagAxes::kPlain);
   std::ifstream text(file);
   if (!text) return driver::Error{file.string() + ": cannot be read."};
   constexpr double kFarthest = 2;    // m, as in a scene

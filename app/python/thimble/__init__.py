@@ -294,7 +294,7 @@ def read_recording(path: PathOrName) -> Recording:
 class _Held:
     """What all that run a scene have in common."""
 
-    _run: Union[_core.Run, _Past]
+    _run: Union[_core.Run, _Past, _OfArm]
 
     @property
     def objects(self) -> list[str]:
@@ -364,15 +364,45 @@ class _Past:
         return self._meshes[object]
 
 
-class Run(_Held, Ticks):
-    """A run that is over: its ticks as arrays, and what it was. May be pickled, meshes and all."""
+class _OfArm:
+    """A run as one of its arms had it."""
 
-    def __init__(self, run: Union[_core.Run, _Past], columns: Any = None) -> None:
+    def __init__(self, run: _core.Run, arm: int) -> None:
         self._run = run
+        self._arm = arm
+
+    def __getattr__(self, name: str) -> Any:
+        found = getattr(self._run, name)
+        if name in ("ticks", "latest", "summary", "figures", "info"):
+            return lambda: found(self._arm)
+        return found
+
+
+class Run(_Held, Ticks):
+    """A run that is over: its ticks as arrays, and what it was. May be pickled, meshes and all.
+
+    Of a scene with several arms it is what the first of them did; ``arms`` has all of them.
+    """
+
+    def __init__(
+        self,
+        run: Union[_core.Run, _Past, _OfArm],
+        columns: Any = None,
+        arms: Optional[dict[str, "Run"]] = None,
+    ) -> None:
+        self._run = run
+        self._arms = arms
         Ticks.__init__(self, run.ticks() if columns is None else columns)
 
+    @property
+    def arms(self) -> dict[str, "Run"]:
+        """The run of each arm by its name in the scene; empty if the scene has one alone."""
+        if self._arms is None:
+            self._arms = {name: Run(_OfArm(self._run, i), None, {}) for i, name in enumerate(self._run.arms)}
+        return self._arms
+
     def __reduce__(self) -> tuple[Any, ...]:
-        return Run, (_Past(self._run), self.columns)
+        return Run, (_Past(self._run), self.columns, self.arms)
 
     def _title(self) -> str:
         return f"{self.info['scene']}, {self.info['arm']}"
@@ -436,6 +466,7 @@ def _begin(
     firmware: Optional[PathOrName] = None,
     homed: bool = False,
     no_real_time: bool = False,
+    ros2: Union[None, bool, dict[str, Any]] = None,
 ) -> _core.Run:
     run = _core.Run(
         _scene_file(scene, set, keep=record is not None),
@@ -452,6 +483,7 @@ def _begin(
         law=None if law is None else lambda columns: law(Tick(columns)),
         homed=homed,
         no_real_time=no_real_time,
+        ros2=ros2,
     )
     for warning in run.warnings():
         warnings.warn(warning, RuntimeWarning, stacklevel=3)
@@ -620,6 +652,11 @@ class Live(_Held):
         latest = self._run.latest()
         return None if latest is None else Tick(latest)
 
+    @property
+    def topics(self) -> str:
+        """What there is to say of the topics of ROS 2, a line each; "" if there are none."""
+        return self._run.topics_report()
+
     def stop(self) -> None:
         """End the loop with zero force, if it runs, and wait for that. A recording is closed."""
         self._run.stop()
@@ -647,6 +684,7 @@ def open(
     firmware: Optional[PathOrName] = None,
     homed: bool = False,
     no_real_time: bool = False,
+    ros2: Union[None, bool, Mapping[str, Any]] = None,
 ) -> Live:
     """Touch a scene in real time, and begin at once. Other options as of :func:`run`.
 
@@ -658,7 +696,10 @@ def open(
     limits may only tighten them, and stderr says what became of it. firmware: image for an arm that
     needs one. homed: a real arm was in its home pose when it got power, so
     that only its workspace is checked before it gets a force. no_real_time: use a real arm though
-    the loop gets no real-time priority. Raises Error with what to do.
+    the loop gets no real-time priority. ros2: publish the run as topics of ROS 2 (package
+    thimble-ros2): True, or what ``thimble run --ros2`` takes as a dict, ``{"namespace": "/phantom",
+    "names": "omni", "domain": 5, "force": "add", "limit": 1, "stale_ms": 50, "frames":
+    "world,tip"}``, each of them as you like. Raises Error with what to do.
     """
     if device not in ("sim", "auto") and not agree:  # what "auto" finds is asked about beneath
         raise Error(
@@ -680,6 +721,7 @@ def open(
         firmware=firmware,
         homed=homed,
         no_real_time=no_real_time,
+        ros2=dict(ros2) if isinstance(ros2, Mapping) else ros2,
     )
     live = Live(held)
     _live.add(live)

@@ -44,9 +44,7 @@ std::optional<Eigen::Vector3d> joint_angles_at(const ArmFile& file, const Eigen:
 
 driver::Result<void> check_reach(const ArmFile& file, const HandRoute& hand_W) {
   for (const auto& [time, p_WH] : hand_W) {
-    const bool in_box = (p_WH.array() >= file.workspace.min_W.array()).all() &&
-                        (p_WH.array() <= file.workspace.max_W.array()).all();
-    if (!in_box || !joint_angles_at(file, p_WH)) {
+    if (!file.workspace.holds(p_WH) || !joint_angles_at(file, p_WH)) {
       return driver::Error{
           fmt::format("At {:.3f} s the hand would be at ({:.3f}, {:.3f}, {:.3f}) m, where the arm "
                       "does not reach or may not work; move that waypoint or the object.",

@@ -13,6 +13,8 @@
 
 #include "energy_choice.h"
 #include "files/scene_paths.h"
+#include "hand/read_hand.h"
+#include "hand/scene_arms.h"
 #include "loop_latency.h"
 #include "page/page_file.h"
 #include "read_scene.h"
@@ -30,7 +32,7 @@ constexpr double kPositionMax = 2;                    // m
 constexpr double kStiffnessMax = 1e5;                 // N/m
 constexpr double kDampingMax = 1000;                  // N s/m
 constexpr double kSheetMin = 1e-5, kSheetMax = 0.02;  // m
-constexpr double kPressMax = 0.1;                     // m
+constexpr double kBandMax = 0.1;                      // m
 constexpr double kDurationMax = 86400;                // s
 constexpr double kRateMin = 10;                       // Hz
 constexpr double kRateMax = 1e5;                      // Hz
@@ -57,7 +59,7 @@ render::ContactChoice read_contact(YamlMap map) {
     choice.crease_angle =
         map.require_number("crease_degrees", "degrees", 0, 180) * std::numbers::pi / 180;
   }
-  choice.band = map.optional_number("band", choice.band, "m", 0, kPressMax);
+  choice.band = map.optional_number("band", choice.band, "m", 0, kBandMax);
   if (map.has("profile")) {
     choice.profile = static_cast<render::BlendProfile>(choose("profile", render::kProfileNames));
     if (choice.blending != render::BlendingChoice::kFixedBand &&
@@ -171,63 +173,8 @@ SceneObject read_object(YamlMap map, const std::filesystem::path& folder,
   return object;
 }
 
-HandWaypoint read_waypoint(YamlMap map, const std::vector<SceneObject>& objects) {
-  HandWaypoint waypoint;
-  waypoint.time = map.require_number("t", "s", 0, kDurationMax);
-  waypoint.stop = map.optional_bool("stop", false);
-  if (map.has("at") == map.has("on")) {
-    map.reject("", "expected either at: [x, y, z] or on: OBJECT with near: [x, y, z]");
-  } else if (map.has("at")) {
-    waypoint.p_W = map.require_vector3("at", "m", -kPositionMax, kPositionMax);
-  } else {
-    waypoint.on = map.require_string("on");
-    waypoint.p_W = map.require_vector3("near", "m", -kPositionMax, kPositionMax);
-    waypoint.press = map.optional_number("press", 0, "m", -kPressMax, kPressMax);
-    bool known = false, is_field = false;
-    for (const SceneObject& object : objects) {
-      if (object.name != *waypoint.on) continue;
-      known = true;
-      is_field = object.build_field != nullptr;
-      if (object.paged) {
-        map.reject("on",
-                   "the surface of a mesh in pages is not in memory to plan on; give points "
-                   "of the path by at: [x, y, z]");
-      }
-    }
-    if (!known) map.reject("on", "expected an object of this scene, found \"" + *waypoint.on + '"');
-    if (is_field) map.reject("on", "a field has no surface to be on; use at: [x, y, z]");
-  }
-  map.finish();
-  return waypoint;
-}
-
-/// Reads how the simulated hand holds the arm, where the scene wants another one than the arm's
-/// file; limits as there.
-void read_grip(YamlMap map, device_sim::HandSettings& hand) {
-  hand.mass = map.optional_number("mass", hand.mass, "kg", 0, 10);
-  hand.stiffness = map.optional_number("stiffness", hand.stiffness, "N/m", 0, 1e5);
-  hand.damping = map.optional_number("damping", hand.damping, "N s/m", 0, 1000);
-  hand.tremor_amplitude = map.optional_number("tremor", hand.tremor_amplitude, "m", 0, 0.01);
-  map.finish();
-}
-
-std::vector<HandWaypoint> read_hand(YamlMap map, const std::vector<SceneObject>& objects,
-                                    device_sim::HandSettings& grip) {
-  std::vector<HandWaypoint> hand;
-  if (map.has("grip")) read_grip(map.require_map("grip"), grip);
-  for (YamlMap& entry : map.require_maps("path")) {
-    hand.push_back(read_waypoint(entry, objects));
-    if (hand.size() > 1 && !(hand.back().time > hand[hand.size() - 2].time)) {
-      entry.reject("t", "expected a time after that of the station before");
-    }
-  }
-  map.finish();
-  return hand;
-}
-
-/// Returns whether every surface of the scene is well within what its loop holds.
-bool bears_its_rate(const Scene& scene) {
-  const device_sim::SimulatedArmSettings& arm = scene.arm.simulated;
+/// Returns whether every surface of the scene is well within what its loop holds with one arm.
+bool bears_its_rate(const Scene& scene, const device_sim::SimulatedArmSettings& arm) {
   const double latency = latency_of(
       {.period = 1 / scene.rate,
        .delay = 1e-9 * static_cast<double>(arm.wire.delay_in_ns + arm.wire.delay_out_ns)});
@@ -236,6 +183,25 @@ bool bears_its_rate(const Scene& scene) {
     // Written so that NaN is not borne.
     return object.stiffness <= kShareBorne * stiffness_limit(held, latency);
   });
+}
+
+/// Returns the same of all arms of the scene.
+bool bears_its_rate(const Scene& scene) {
+  return bears_its_rate(scene, scene.arm.simulated) &&
+         std::all_of(scene.more_arms.begin(), scene.more_arms.end(), [&](const SceneArm& other) {
+           return bears_its_rate(scene, other.arm.simulated);
+         });
+}
+
+/// Notes a rate at which the gate of an arm would take the loop for stalled.
+void check_stall(YamlMap& root, double rate, const ArmFile& arm) {
+  const double stall = 1e-9 * static_cast<double>(arm.limits.stall_ns);
+  if (1 / rate <= stall) return;
+  root.reject("rate",
+              fmt::format("expected {:.4g} Hz or more, found {:g}: a tick would take longer "
+                          "than the {:.4g} s after which the gate of {} takes the loop for "
+                          "stalled",
+                          1 / stall, rate, stall, arm.name));
 }
 
 }  // namespace
@@ -249,7 +215,8 @@ driver::Result<Scene> read_scene(YamlFile& yaml, const std::filesystem::path& fi
   scene.file = file;
   scene.name = root.require_string("name");
   scene.description = root.optional_string("description", "");
-  scene.arm_file = find_own_arm_file(root, folder);
+  const bool several = root.has("arms");
+  if (!several) scene.arm_file = find_own_arm_file(root, folder);
   scene.rate =
       std::clamp(root.optional_number("rate", 1000, "Hz", kRateMin, kRateMax) * reading.rate_factor,
                  kRateMin, kRateMax);
@@ -264,27 +231,27 @@ driver::Result<Scene> read_scene(YamlFile& yaml, const std::filesystem::path& fi
     scene.energy_line = gate.key_line("energy");
     gate.finish();
   }
+  std::vector<YamlMap> arms;
+  if (several) {
+    if (auto read = read_arms(root, folder, reading, arms, scene); !read) return read.error();
+  }
   scene.own_arm_file = scene.arm_file;
   if (!reading.arm.empty()) {
     auto other = find_arm_file(reading.arm.string());
     if (!other) return other.error();
     scene.arm_file = std::move(other).value();
   }
-  auto arm = load_arm(scene.arm_file);
   std::optional<driver::Error> arm_error;
-  if (arm) {
-    scene.arm = std::move(arm).value();
-  } else {
-    arm_error = arm.error();
+  if (!several) {
+    auto arm = load_arm(scene.arm_file);
+    if (arm) {
+      scene.arm = std::move(arm).value();
+    } else {
+      arm_error = arm.error();
+    }
   }
-  const double stall = 1e-9 * static_cast<double>(scene.arm.limits.stall_ns);
-  if (!arm_error && !(1 / scene.rate <= stall)) {
-    root.reject("rate",
-                fmt::format("expected {:.4g} Hz or more, found {:g}: a tick would take longer "
-                            "than the {:.4g} s after which the gate of {} takes the loop for "
-                            "stalled",
-                            1 / stall, scene.rate, stall, scene.arm.name));
-  }
+  if (!arm_error) check_stall(root, scene.rate, scene.arm);
+  for (const SceneArm& other : scene.more_arms) check_stall(root, scene.rate, other.arm);
   const render::EffectContext context = effect_context_of(scene.arm, scene.rate);
   for (YamlMap& object : root.require_maps("objects")) {
     scene.objects.push_back(read_object(object, folder, mesh_folder, context));
@@ -297,7 +264,12 @@ driver::Result<Scene> read_scene(YamlFile& yaml, const std::filesystem::path& fi
       }
     }
   }
-  scene.hand = read_hand(root.require_map("hand"), scene.objects, scene.arm.simulated.hand);
+  if (several) {
+    read_hands(arms, folder, scene);
+  } else {
+    scene.hand =
+        read_hand(root.require_map("hand"), scene.objects, folder, scene.arm.simulated.hand);
+  }
   root.finish();
   if (auto done = yaml.finish(); !done) return done.error();
   if (arm_error) return *arm_error;
@@ -321,8 +293,12 @@ driver::Result<Scene> load_scene(const std::filesystem::path& meant, const Scene
   auto scene = find_and_read_scene(meant, reading);
   if (!(reading.rate_factor < 1) || (scene && bears_its_rate(*scene))) {
     if (scene && reading.rate_factor > 1) {
-      auto& period_ns = scene->arm.simulated.firmware.report_period_ns;
-      period_ns = std::min<std::int64_t>(period_ns, std::llround(1e9 / scene->rate));
+      const auto report_as_often = [&](ArmFile& arm) {
+        auto& period_ns = arm.simulated.firmware.report_period_ns;
+        period_ns = std::min<std::int64_t>(period_ns, std::llround(1e9 / scene->rate));
+      };
+      report_as_often(scene->arm);
+      for (SceneArm& other : scene->more_arms) report_as_often(other.arm);
     }
     return scene;
   }

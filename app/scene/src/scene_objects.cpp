@@ -1,9 +1,12 @@
 #include "thimble/scene/scene_objects.h"
 
+#include <fmt/format.h>
+
 #include <string>
 #include <utility>
 
 #include "body/motion/move_object.h"
+#include "body/motion/shared_body.h"
 #include "build_paged_touch.h"
 #include "object_mesh.h"
 #include "page/paged_surface.h"
@@ -49,44 +52,74 @@ std::string remedy_for(const SceneObject& object, const render::TriangleMesh& me
                "thimble mesh tells which.";
 }
 
-/// Builds the force law that the scene calls for.
-driver::Result<std::unique_ptr<render::SceneTouch>> build_touch(
-    const Scene& scene, const std::vector<render::TriangleMesh>& meshes_W,
-    std::vector<std::shared_ptr<render::PagedSurface>>& pages) {
-  std::vector<std::unique_ptr<render::ObjectTouch>> objects;
-  for (std::size_t i = 0; i < meshes_W.size(); ++i) {
-    const SceneObject& object = scene.objects[i];
-    const render::SurfaceChoice surface{
-        .spring = {.stiffness = object.stiffness, .damping = object.damping},
-        .effects = object.effects,
-        .dent = object.body.dent,
-        .shape = object.body.shape};
-    if (object.build_field) {
-      objects.push_back(object.build_field());
-      continue;
-    }
-    if (object.paged) {
-      auto opened = render::PagedSurface::open(object.mesh_file);
-      if (!opened) return opened.error();
-      pages.emplace_back(std::move(opened).value());
-      const render::PagedPlace place = place_pages(pages.back()->file(), object);
-      objects.push_back(render::build_paged_touch(pages.back(), place, surface));
-      continue;
-    }
-    auto touch = object.shape
-                     ? Touched(render::build_primitive_touch(object.shape->shape_W, surface))
-                     : render::build_object_touch(meshes_W[i], object.contact, surface);
-    if (touch && object.body.motion) {
-      touch = render::move_object(std::move(touch).value(), meshes_W[i], *object.body.motion,
-                                  object.coupling);
-    }
-    if (!touch) {
-      return driver::Error{name_of(object) + ": " + touch.error().message +
-                           remedy_for(object, meshes_W[i])};
-    }
-    objects.push_back(std::move(touch).value());
+/// Returns what the surface of an object is made of.
+render::SurfaceChoice surface_of(const SceneObject& object) {
+  return {.spring = {.stiffness = object.stiffness, .damping = object.damping},
+          .effects = object.effects,
+          .dent = object.body.dent,
+          .shape = object.body.shape};
+}
+
+/// Returns an error about an object that contact, or a body, refuses.
+driver::Error refused(const SceneObject& object, const render::TriangleMesh& mesh_W,
+                      const driver::Error& error) {
+  return driver::Error{name_of(object) + ": " + error.message + remedy_for(object, mesh_W)};
+}
+
+/// Builds the force law of what is touched in memory, as it stands still.
+Touched build_still(const SceneObject& object, const render::TriangleMesh& mesh_W) {
+  const render::SurfaceChoice surface = surface_of(object);
+  return object.shape ? Touched(render::build_primitive_touch(object.shape->shape_W, surface))
+                      : render::build_object_touch(mesh_W, object.contact, surface);
+}
+
+/// Builds the force law of one object that one arm touches.
+Touched build_one(const SceneObject& object, const render::TriangleMesh& mesh_W,
+                  std::vector<std::shared_ptr<render::PagedSurface>>& pages) {
+  if (object.build_field) return object.build_field();
+  if (object.paged) {
+    auto opened = render::PagedSurface::open(object.mesh_file);
+    if (!opened) return opened.error();
+    pages.emplace_back(std::move(opened).value());
+    const render::PagedPlace place = place_pages(pages.back()->file(), object);
+    return render::build_paged_touch(pages.back(), place, surface_of(object));
   }
-  return std::make_unique<render::SceneTouch>(std::move(objects));
+  auto touch = build_still(object, mesh_W);
+  if (touch && object.body.motion) {
+    touch =
+        render::move_object(std::move(touch).value(), mesh_W, *object.body.motion, object.coupling);
+  }
+  if (!touch) return refused(object, mesh_W, touch.error());
+  return touch;
+}
+
+/// Builds the force law of one object on each of several arms: each has its own contact with it,
+/// and all of them the body that moves.
+driver::Result<render::SharedObject> build_shared(const SceneObject& object,
+                                                  const render::TriangleMesh& mesh_W,
+                                                  std::size_t arms) {
+  render::SharedObject shared;
+  const bool gives_way = object.body.dent || object.body.shape.named();
+  if (gives_way || object.paged) {
+    return driver::Error{fmt::format(
+        "{}: {} can be touched by one arm alone so far, and the scene has {}; {}.", name_of(object),
+        gives_way ? "an object whose surface gives way (dent, plastic, snap)" : "a mesh in pages",
+        arms, gives_way ? "keep body: {motion: ...}" : "name the mesh itself")};
+  }
+  for (std::size_t arm = 0; arm < arms; ++arm) {
+    if (object.build_field) {
+      shared.touches.push_back(object.build_field());
+      continue;
+    }
+    auto touch = build_still(object, mesh_W);
+    if (!touch) return refused(object, mesh_W, touch.error());
+    shared.touches.push_back(std::move(touch).value());
+  }
+  if (!object.body.motion) return shared;
+  auto moved = render::move_shared_object(std::move(shared.touches), mesh_W, *object.body.motion,
+                                          object.coupling);
+  if (!moved) return refused(object, mesh_W, moved.error());
+  return moved;
 }
 
 /// Adds the triangles of one mesh to another.
@@ -119,9 +152,26 @@ driver::Result<std::unique_ptr<SceneObjects>> SceneObjects::build(const Scene& s
   std::unique_ptr<SceneObjects> objects(new SceneObjects);
   const auto meshes = load_meshes(scene, objects->notes_);
   if (!meshes) return meshes.error();
-  auto touch = build_touch(scene, *meshes, objects->pages_);
-  if (!touch) return touch.error();
-  objects->touch_ = std::move(touch).value();
+  const std::size_t arms = 1 + scene.more_arms.size();
+  std::vector<std::vector<std::unique_ptr<render::ObjectTouch>>> touches(arms);
+  for (std::size_t i = 0; i < meshes->size(); ++i) {
+    const SceneObject& object = scene.objects[i];
+    if (arms == 1) {
+      auto touch = build_one(object, (*meshes)[i], objects->pages_);
+      if (!touch) return touch.error();
+      touches[0].push_back(std::move(touch).value());
+      continue;
+    }
+    auto shared = build_shared(object, (*meshes)[i], arms);
+    if (!shared) return shared.error();
+    for (std::size_t arm = 0; arm < arms; ++arm) {
+      touches[arm].push_back(std::move(shared->touches[arm]));
+    }
+    if (shared->body) objects->bodies_.push_back(std::move(shared->body));
+  }
+  for (auto& objects_of_arm : touches) {
+    objects->touches_.push_back(std::make_unique<render::SceneTouch>(std::move(objects_of_arm)));
+  }
   for (std::size_t i = 0; i < meshes->size(); ++i) {
     if (!scene.objects[i].shape) objects->triangles_ += (*meshes)[i].triangles.size();
     objects->places_.push_back(
@@ -143,13 +193,17 @@ render::TriangleMesh SceneObjects::mesh_W(std::size_t object) const {
 render::TriangleMesh SceneObjects::mesh_now(int object) const {
   const auto now = [this](std::size_t i) {
     render::TriangleMesh mesh = mesh_W(i);
-    touch_->object(i).mesh_now(mesh.vertices, mesh.triangles);
+    touches_.front()->object(i).mesh_now(mesh.vertices, mesh.triangles);
     return mesh;
   };
   if (object >= 0) return now(static_cast<std::size_t>(object));
   render::TriangleMesh all;
-  for (std::size_t i = 0; i < touch_->size(); ++i) append(now(i), all);
+  for (std::size_t i = 0; i < touches_.front()->size(); ++i) append(now(i), all);
   return all;
+}
+
+void SceneObjects::step_bodies(double step) noexcept {
+  for (const auto& body : bodies_) body->step(step);
 }
 
 void SceneObjects::start_loaders() {

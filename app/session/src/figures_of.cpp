@@ -4,25 +4,25 @@
 
 namespace thimble::session {
 
-RunFigures figures_of(const Setup& setup, const RunRecords& records, driver::ServoEnd end,
-                      const driver::RealTimeGrant& grant) {
-  const driver::Device& device = setup.device();
+RunFigures figures_of(const Setup& setup, std::size_t arm, const RunRecords& records,
+                      driver::ServoEnd end, const driver::RealTimeGrant& grant) {
+  const driver::Device& device = setup.device(arm);
   RunFigures figures;
   figures.scene = setup.scene().name;
   for (const scene::SceneObject& object : setup.scene().objects) {
     figures.object += (figures.object.empty() ? "" : ", ") + object.name;
   }
-  figures.arm = setup.scene().arm.name;
-  figures.simulated_arm = setup.simulation() != nullptr;
-  figures.feel_check = setup.feel_check();
+  figures.arm = setup.arm_file(arm).name;
+  figures.simulated_arm = setup.simulation(arm) != nullptr;
+  figures.feel_check = setup.feel_check(arm);
   figures.virtual_time = !setup.real_time();
   figures.seed = setup.seed();
   figures.rate_asked = setup.scene().rate;
-  figures.force_limit = setup.scene().arm.limits.force_max;
+  figures.force_limit = setup.arm_file(arm).limits.force_max;
   figures.triangles = setup.objects().triangles();
   figures.paging = setup.objects().paging();
   figures.statistics = records.statistics;
-  figures.lost_contacts = count_lost_contacts(records.trace.rows(), setup.objects().touch());
+  figures.lost_contacts = count_lost_contacts(records.trace.rows(), setup.objects().touch(arm));
   figures.wire = device.wire_counters();
   figures.gate = device.gate_counters();
   figures.energy_stage = device.gate().energy_stage();
@@ -35,8 +35,8 @@ RunFigures figures_of(const Setup& setup, const RunRecords& records, driver::Ser
   figures.end = end;
   figures.fault = device.fault();
   figures.zero_assured = device.zero_assured();
-  if (const auto* arm = setup.simulation()) {
-    figures.current_at_exit = arm->currents().cwiseAbs().maxCoeff();
+  if (const auto* simulation = setup.simulation(arm)) {
+    figures.current_at_exit = simulation->currents().cwiseAbs().maxCoeff();
   }
   figures.trace_stride = records.trace.stride();
   figures.trace_dropped = records.trace.dropped();

@@ -9,17 +9,37 @@
 #include "start_pose.h"
 
 namespace thimble::session {
+namespace {
+
+/// Reads all arms for an instant, idle as they are: while one was waited for, the others' reports
+/// grew old, and simulated arms have time to make up for.
+void catch_up(const Setup& setup) {
+  constexpr int kTicks = 50;  // chosen: the longest start of a board's reports
+  driver::Clock& clock = setup.clock();
+  for (int tick = 0; tick < kTicks; ++tick) {
+    for (std::size_t i = 0; i < setup.arms(); ++i) {
+      const std::int64_t now_ns = clock.now_ns();
+      setup.device(i).idle(now_ns, now_ns);
+    }
+    clock.sleep_until_ns(clock.now_ns() + setup.period_ns());
+  }
+}
+
+}  // namespace
 
 bool agree_to_forces(const Session& session, bool agreed, const Terminal& terminal,
                      const std::atomic<bool>& stop) {
   const Setup& setup = session.setup();
-  if (!setup.real_arm()) return true;
-  const driver::FoundArm& arm = *setup.real_arm();
-  const bool at_home = !setup.homed() && setup.start_pose().has_home();
-  terminal.tell(
-      fmt::format("{} {} is about to get forces. Keep clear of it, hold its grip{}, keep its "
-                  "switch at hand.",
-                  arm.arm, arm.name(), at_home ? " in the home pose" : ""));
+  if (!setup.any_real()) return true;
+  for (std::size_t i = 0; i < setup.arms(); ++i) {
+    if (!setup.real_arm(i)) continue;
+    const driver::FoundArm& arm = *setup.real_arm(i);
+    const bool at_home = !setup.homed() && setup.start_pose(i).has_home();
+    terminal.tell(
+        fmt::format("{} {} is about to get forces. Keep clear of it, hold its grip{}, keep its "
+                    "switch at hand.",
+                    arm.arm, arm.name(), at_home ? " in the home pose" : ""));
+  }
   if (agreed) return true;
   if (!terminal.there) {
     terminal.tell("thimble: Nobody is at the terminal to agree; say so with --yes.");
@@ -38,10 +58,17 @@ driver::Result<bool> open_arm(Session& session, const Terminal& terminal,
                               const std::atomic<bool>& stop) {
   if (auto opened = session.open_arm(); !opened) return opened.error();
   const Setup& setup = session.setup();
-  if (!setup.real_arm()) return true;
-  auto placed = wait_for_start_pose(setup.device(), setup.clock(), setup.start_pose(),
-                                    !setup.homed(), terminal, stop);
-  if (!placed || !*placed) return placed;
+  if (!setup.any_real()) return true;
+  for (std::size_t i = 0; i < setup.arms(); ++i) {
+    if (!setup.real_arm(i)) continue;
+    auto placed = wait_for_start_pose(setup.device(i), setup.clock(), setup.start_pose(i),
+                                      !setup.homed(), terminal_of(setup, i, terminal), stop);
+    if (!placed || !*placed) return placed;
+  }
+  if (setup.arms() > 1) {
+    catch_up(setup);
+    if (auto placed = setup.check_start_pose(); !placed) return placed.error();
+  }
   if (auto activated = session.activate(); !activated) return activated.error();
   return true;
 }

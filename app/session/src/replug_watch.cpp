@@ -99,17 +99,36 @@ void ReplugWatch::let_through(const driver::TickRecord& record) {
   }
 }
 
-ReplugWatch replug_watch_of(Session& session) {
+ReplugWatch replug_watch_of(Session& session, std::size_t arm, Terminal terminal) {
   const Setup& setup = session.setup();
   const auto find = [](const driver::FoundArm& lost) -> std::optional<driver::FoundArm> {
     const auto plugged_in = driver::find_arms();
     return plugged_in ? scene::find_again(*plugged_in, lost) : std::nullopt;
   };
-  const auto open = [&setup](const driver::FoundArm& found) {
-    return scene::open_link(found, setup.scene().arm, setup.firmware(), setup.clock());
+  const auto open = [&setup, arm](const driver::FoundArm& found) {
+    return scene::open_link(found, setup.arm_file(arm), setup.firmware(), setup.clock());
   };
-  return {setup.device(),    session.newest(), setup.start_pose(),
-          *setup.real_arm(), {find, open},     user_terminal()};
+  return {setup.device(arm),
+          session.newest(arm),
+          setup.start_pose(arm),
+          setup.real_arm(arm).value_or(driver::FoundArm{}),  // one that is simulated is not pulled
+          {find, open},
+          terminal_of(setup, arm, std::move(terminal))};
+}
+
+ReplugWatches::ReplugWatches(Session& session, Terminal terminal) : terminal_(std::move(terminal)) {
+  for (std::size_t arm = 0; arm < session.arms(); ++arm) {
+    keys_.push_back(std::make_unique<EnterKey>(EnterKey::kNothing));
+    Terminal own = terminal_;
+    own.key = [key = keys_.back().get()] { return std::exchange(*key, EnterKey::kNothing); };
+    watches_.push_back(replug_watch_of(session, arm, std::move(own)));
+  }
+}
+
+void ReplugWatches::step() {
+  const EnterKey key = terminal_.key();
+  for (const auto& own : keys_) *own = key;
+  for (ReplugWatch& watch : watches_) watch.step();
 }
 
 }  // namespace thimble::session

@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "start_pose.h"
 #include "thimble/driver/device.h"
@@ -55,8 +56,25 @@ class ReplugWatch {
   int silent_ = 0;          // steps since a new link gave a report
 };
 
-/// Returns the watch over the arm of a session, which must outlive it. Precondition: the arm is
-/// real and open.
-ReplugWatch replug_watch_of(Session& session);
+/// Returns the watch over an arm of a session, which must outlive it. Precondition: an arm of the
+/// run is real, and all are open.
+ReplugWatch replug_watch_of(Session& session, std::size_t arm = 0,
+                            Terminal terminal = user_terminal());
+
+/// The watches over all arms of a run with a real one: who presses Enter presses it for each arm
+/// whose force is off. Real-time: never from the servo thread.
+class ReplugWatches {
+ public:
+  /// Watches the arms of a session, which must outlive it. Precondition: as replug_watch_of.
+  explicit ReplugWatches(Session& session, Terminal terminal = user_terminal());
+
+  /// Looks once; call it a few times a second.
+  void step();
+
+ private:
+  Terminal terminal_;
+  std::vector<std::unique_ptr<EnterKey>> keys_;  // what each watch has yet to see
+  std::vector<ReplugWatch> watches_;
+};
 
 }  // namespace thimble::session

@@ -1,5 +1,6 @@
 #include "run_arm.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "thimble/scene/real_arm.h"
@@ -27,6 +28,54 @@ driver::Result<RunArm> choose_run_arm(const std::string& device,
   arm.terms = std::move(terms).value();
   arm.told = arm.terms->told;
   return arm;
+}
+
+bool RunArms::real() const {
+  return one.real || std::any_of(several.begin(), several.end(),
+                                 [](const auto& arm) { return arm.second.has_value(); });
+}
+
+driver::Result<RunArms> choose_run_arms(const std::vector<std::string>& devices,
+                                        const scene::RealArmRequest& request,
+                                        const FindArms& find_arms) {
+  RunArms arms;
+  if (devices.empty()) return arms;
+  if (devices.size() == 1 && devices.front().find('=') == std::string::npos) {
+    auto one = choose_run_arm(devices.front(), request, find_arms);
+    if (!one) return one.error();
+    arms.one = std::move(one).value();
+    arms.told = arms.one.told;
+    return arms;
+  }
+  std::map<std::string, std::string> taken;  // board, and the arm of the scene that has it
+  for (const std::string& device : devices) {
+    const std::size_t equals = device.find('=');
+    if (equals == std::string::npos || equals == 0) {
+      return driver::Error{"--device " + device +
+                           ": of several say which arm of the scene each is: NAME=" + device + "."};
+    }
+    const std::string name = device.substr(0, equals);
+    if (arms.several.contains(name)) {
+      return driver::Error{"--device names the arm \"" + name + "\" twice."};
+    }
+    auto one = choose_run_arm(device.substr(equals + 1), request, find_arms);
+    if (!one) return driver::Error{"The arm \"" + name + "\": " + one.error().message};
+    for (const std::string& sentence : one->told) {
+      arms.told.push_back("The arm \"" + name + "\": " + sentence);
+    }
+    if (!one->real) {
+      arms.several.emplace(name, std::nullopt);
+      continue;
+    }
+    const auto [other, is_new] = taken.emplace(one->real->name(), name);
+    if (!is_new) {
+      return driver::Error{"The arms \"" + other->second + "\" and \"" + name +
+                           "\" would both be " + one->real->name() +
+                           "; name another for one of them (thimble devices)."};
+    }
+    arms.several.emplace(name, RealArmUse{.arm = *one->real, .terms = *one->terms});
+  }
+  return arms;
 }
 
 }  // namespace thimble::session

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "thimble/driver/discovery.h"
 #include "thimble/driver/result.h"
 #include "thimble/scene/real_arm_terms.h"
+#include "thimble/session/session.h"
 
 namespace thimble::session {
 
@@ -26,6 +28,23 @@ using FindArms = std::function<driver::Result<std::vector<driver::FoundArm>>()>;
 /// Real-time: never from the servo thread.
 driver::Result<RunArm> choose_run_arm(
     const std::string& device, const scene::RealArmRequest& request,
+    const FindArms& find_arms = [] { return driver::find_arms(); });
+
+/// The arms that a run uses, of a scene with one or with several.
+struct RunArms {
+  RunArm one;                                                ///< Of a scene with one.
+  std::map<std::string, std::optional<RealArmUse>> several;  ///< See SessionOptions::real_arms.
+  std::vector<std::string> told;  ///< What the user must know, a sentence each.
+
+  /// Returns whether one of them is real.
+  bool real() const;
+};
+
+/// Chooses the arms of a run. `devices`: one word as `choose_run_arm` takes it, or NAME=WORD for
+/// each arm of a scene that shall not be simulated. The error says what to do, also where two names
+/// mean one arm. Real-time: never from the servo thread.
+driver::Result<RunArms> choose_run_arms(
+    const std::vector<std::string>& devices, const scene::RealArmRequest& request,
     const FindArms& find_arms = [] { return driver::find_arms(); });
 
 }  // namespace thimble::session

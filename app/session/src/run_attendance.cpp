@@ -40,7 +40,7 @@ void keep_black_box(Session& session) {
   }
 }
 
-RunAttendance::RunAttendance(Session& session, ReplugWatch* watch, ViewerRequestHandler* desk,
+RunAttendance::RunAttendance(Session& session, ReplugWatches* watch, ViewerRequestHandler* desk,
                              bool on_terminal)
     : session_(session),
       watch_(watch),

@@ -34,7 +34,8 @@ class RunAttendance {
  public:
   /// Attends a session; `watch` and `desk` may be null, and must outlive it. `on_terminal`: a
   /// person looks at standard error.
-  RunAttendance(Session& session, ReplugWatch* watch, ViewerRequestHandler* desk, bool on_terminal);
+  RunAttendance(Session& session, ReplugWatches* watch, ViewerRequestHandler* desk,
+                bool on_terminal);
 
   /// Looks once; call it about ten times a second.
   void step();
@@ -43,7 +44,7 @@ class RunAttendance {
 
  private:
   Session& session_;
-  ReplugWatch* watch_;
+  ReplugWatches* watch_;
   ViewerRequestHandler* desk_;
   bool on_terminal_;
   double total_;  // s; 0: nobody knows

@@ -8,6 +8,7 @@
 #include "events/event_log.h"
 #include "figures_of.h"
 #include "log/logger.h"
+#include "more_arms.h"
 #include "observers/page_server.h"
 #include "print.h"
 #include "recording/write_black_box.h"
@@ -25,50 +26,22 @@ bool dents(const scene::SceneObject& object) {
   return object.body.dent.has_value();
 }
 
-/// Returns the objects whose vertices move for good, as they lie in what is shared.
-std::vector<RunSharing::Shaped> shaped_objects(const Setup& setup) {
-  std::vector<RunSharing::Shaped> shaped;
-  std::size_t first = 0, first_split = 0;
-  for (std::size_t i = 0; i < setup.scene().objects.size(); ++i) {
-    if (!setup.scene().objects[i].body.shape.named()) continue;
-    const render::BodyShape* shape = setup.objects().touch().object(i).shape();
-    const std::size_t vertices =
-        setup.objects().place(i + 1).vertex - setup.objects().place(i).vertex;
-    shaped.push_back({.shape = shape,
-                      .first = first,
-                      .first_split = first_split,
-                      .vertices = static_cast<std::int32_t>(vertices)});
-    first += vertices + shape->splits_left();
-    first_split += shape->splits_left();
-  }
-  return shaped;
-}
-
-LoggedRun logged_run(const Setup& setup) {
-  const scene::Scene& scene = setup.scene();
-  LoggedRun run;
-  run.name = scene.name;
-  run.what =
-      fmt::format("{} ({}) feels {} at {:g} Hz in {} time", scene.arm.name, setup.device_name(),
-                  scene.name, scene.rate, setup.real_time() ? "real" : "virtual");
-  run.period_ns = setup.period_ns();
-  run.now_ns = setup.clock().now_ns();
-  run.real_time = setup.real_time();
-  for (const scene::SceneObject& object : scene.objects) run.objects.push_back(object.name);
-  return run;
-}
-
 }  // namespace
 
 /// The parts of a session: what is run, the loop over it, and the observers of its ticks.
 struct Session::Parts {
   explicit Parts(std::unique_ptr<Setup> prepared)
-      : setup(std::move(prepared)), records(setup->ticks(), setup->scene().rate) {}
+      : setup(std::move(prepared)),
+        records(setup->ticks(), setup->scene().rate),
+        more_arms(*setup) {}
 
   void add_records();
   driver::Result<void> share(const SessionOptions& options);
   void begin(const std::atomic<bool>& stop) noexcept;
   driver::ForceLaw own_law() noexcept;
+  RunRecords& records_of(std::size_t arm) noexcept {
+    return arm == 0 ? records : more_arms.run(arm).records;
+  }
   void end() noexcept;
 
   std::unique_ptr<Setup> setup;
@@ -81,6 +54,7 @@ struct Session::Parts {
   bool log = false;                      // what happens in the run goes into the log
   std::unique_ptr<EventLog> event_log;   // once the arm is open, if so
   RunLoop loop;
+  MoreArms more_arms;  // after the first
 };
 
 void Session::Parts::add_records() {
@@ -118,6 +92,7 @@ driver::Result<void> Session::Parts::share(const SessionOptions& options) {
                                   .shaped = shaped_objects(*setup)});
   loop.add(*sharing);
   loop.add(*control);
+  more_arms.share(*shared, *control);
   if (const Recorder* recorder = records.recording.recorder()) {
     shared->set_recording_path(std::filesystem::absolute(recorder->path()).string());
   }
@@ -129,10 +104,14 @@ void Session::Parts::begin(const std::atomic<bool>& stop) noexcept {
     control->join(*shared, setup->hand_by_mouse(), stop);
     shared->set_state(RunState::kRunning);
   }
-  loop.begin(setup->device(), setup->clock(), law.value_or(own_law()),
-             {.period_ns = setup->period_ns(),
-              .ticks = setup->ticks(),
-              .outlive_faults = setup->real_arm().has_value() || setup->endless()});
+  const bool go_on_with_the_others =
+      setup->arms() > 1 && setup->scene().faults == scene::FaultRule::kApart;
+  const driver::ServoSettings settings{
+      .period_ns = setup->period_ns(),
+      .ticks = setup->ticks(),
+      .outlive_faults = setup->any_real() || setup->endless() || go_on_with_the_others};
+  if (!more_arms.empty()) return more_arms.begin(loop, settings);
+  loop.begin(setup->device(), setup->clock(), law.value_or(own_law()), settings);
 }
 
 driver::ForceLaw Session::Parts::own_law() noexcept {
@@ -140,7 +119,10 @@ driver::ForceLaw Session::Parts::own_law() noexcept {
 }
 
 void Session::Parts::end() noexcept {
-  if (setup->simulation() != nullptr) setup->simulation()->settle(setup->clock().now_ns());
+  for (std::size_t i = 0; i < setup->arms(); ++i) {
+    scene::ArmSimulation* arm = setup->simulation(i);
+    if (arm != nullptr) arm->settle(setup->clock().now_ns());
+  }
   if (shared) shared->set_state(RunState::kEnded);
 }
 
@@ -171,7 +153,7 @@ driver::Result<std::unique_ptr<Session>> Session::open(const std::filesystem::pa
   auto session = prepare(scene, options);
   if (!session) return session;
   if (auto opened = (*session)->open_arm(); !opened) return opened.error();
-  if (!options.real_arm) return session;
+  if (!(*session)->setup().any_real()) return session;
   if (auto placed = (*session)->setup().check_start_pose(); !placed) return placed.error();
   if (auto activated = (*session)->activate(); !activated) return activated.error();
   return session;
@@ -181,14 +163,15 @@ driver::Result<void> Session::open_arm() {
   if (auto opened = parts_->setup->open_arm(); !opened) return opened;
   if (parts_->log) {
     parts_->event_log =
-        std::make_unique<EventLog>(logged_run(*parts_->setup), parts_->setup->device());
+        std::make_unique<EventLog>(logged_run(*parts_->setup, 0), parts_->setup->device());
     parts_->loop.add(*parts_->event_log);
   }
+  parts_->more_arms.open(parts_->log);
   return {};
 }
 
 driver::Result<void> Session::activate() {
-  return parts_->setup->device().activate();
+  return parts_->setup->activate();
 }
 
 driver::Result<void> Session::set_law(driver::ForceLaw law) {
@@ -201,6 +184,11 @@ driver::Result<void> Session::set_law(driver::ForceLaw law) {
 }
 
 driver::Result<void> Session::set_servo_law(driver::ForceLaw law) {
+  if (arms() > 1) {
+    return driver::Error{fmt::format(
+        "A force law of one's own is for one arm, and the scene has {}; take a scene of one.",
+        arms())};
+  }
   if (parts_->loop.begun()) {
     return driver::Error{"The run has begun with another force law; begin a new one."};
   }
@@ -212,11 +200,11 @@ driver::ForceLaw Session::own_law() noexcept {
   return parts_->own_law();
 }
 
-driver::Result<void> Session::add_observer(TickObserver& observer) {
+driver::Result<void> Session::add_observer(TickObserver& observer, std::size_t arm) {
   if (parts_->loop.begun()) {
     return driver::Error{"The run has begun; add the observer to a new one before its first tick."};
   }
-  parts_->loop.add(observer);
+  (arm == 0 ? parts_->loop : parts_->more_arms.run(arm).loop).add(observer);
   return {};
 }
 
@@ -230,7 +218,8 @@ std::optional<driver::ServoEnd> Session::step(const std::atomic<bool>& stop) noe
   RunLoop& loop = parts_->loop;
   if (!loop.begun()) parts_->begin(stop);
   const bool ended_before = loop.end().has_value();
-  const auto end = loop.tick(stop);
+  auto end = loop.tick(stop);
+  if (!parts_->more_arms.empty()) end = parts_->more_arms.tick(loop, end, stop);
   if (end && !ended_before) parts_->end();
   return end;
 }
@@ -248,17 +237,23 @@ render::SceneTouch& Session::touch() noexcept {
 const render::SceneTouch& Session::touch() const noexcept {
   return parts_->setup->objects().touch();
 }
-driver::Device& Session::device() noexcept {
-  return parts_->setup->device();
+std::size_t Session::arms() const noexcept {
+  return parts_->setup->arms();
 }
-const driver::Device& Session::device() const noexcept {
-  return parts_->setup->device();
+const std::string& Session::arm_name(std::size_t arm) const noexcept {
+  return parts_->setup->arm_name(arm);
 }
-scene::ArmSimulation* Session::simulation() noexcept {
-  return parts_->setup->simulation();
+driver::Device& Session::device(std::size_t arm) noexcept {
+  return parts_->setup->device(arm);
 }
-const scene::ArmSimulation* Session::simulation() const noexcept {
-  return parts_->setup->simulation();
+const driver::Device& Session::device(std::size_t arm) const noexcept {
+  return parts_->setup->device(arm);
+}
+scene::ArmSimulation* Session::simulation(std::size_t arm) noexcept {
+  return parts_->setup->simulation(arm);
+}
+const scene::ArmSimulation* Session::simulation(std::size_t arm) const noexcept {
+  return parts_->setup->simulation(arm);
 }
 bool Session::real_time() const noexcept {
   return parts_->setup->real_time();
@@ -267,11 +262,11 @@ const std::vector<std::string>& Session::told() const noexcept {
   return parts_->setup->told();
 }
 
-const driver::Snapshot<driver::TickRecord>& Session::newest() const noexcept {
-  return parts_->records.latest.snapshot();
+const driver::Snapshot<driver::TickRecord>& Session::newest(std::size_t arm) const noexcept {
+  return parts_->records_of(arm).latest.snapshot();
 }
-std::span<const driver::TickRecord> Session::ticks() const noexcept {
-  return parts_->records.trace.rows();
+std::span<const driver::TickRecord> Session::ticks(std::size_t arm) const noexcept {
+  return parts_->records_of(arm).trace.rows();
 }
 std::uint64_t Session::stride() const noexcept {
   return parts_->records.trace.stride();
@@ -280,9 +275,12 @@ const RunStatistics& Session::statistics() const noexcept {
   return parts_->records.statistics;
 }
 
-RunFigures Session::figures(const driver::RealTimeGrant& grant) const {
-  return figures_of(*parts_->setup, parts_->records,
-                    parts_->loop.end().value_or(driver::ServoEnd::kStopped), grant);
+RunFigures Session::figures(const driver::RealTimeGrant& grant, std::size_t arm) const {
+  const RunLoop& loop = arm == 0 ? parts_->loop : parts_->more_arms.run(arm).loop;
+  auto end = loop.end().value_or(driver::ServoEnd::kStopped);
+  // The loop that comes to its end first stops the others.
+  if (parts_->more_arms.end() == driver::ServoEnd::kDone) end = driver::ServoEnd::kDone;
+  return figures_of(*parts_->setup, arm, parts_->records_of(arm), end, grant);
 }
 
 std::optional<int> Session::find_object(const std::string& name) const {
@@ -314,27 +312,44 @@ driver::Result<void> Session::begin_recording(const std::filesystem::path& path)
   if (parts_->shared) {
     parts_->shared->set_recording_path(std::filesystem::absolute(path).string());
   }
-  return parts_->records.recording.begin(path, recording_info(), ticks_most, setup.real_time());
+  for (std::size_t arm = 0; arm < arms(); ++arm) {
+    auto begun = parts_->records_of(arm).recording.begin(
+        file_of_arm(path, arm_name(arm)), setup.recording_info(arm), ticks_most, setup.real_time());
+    if (!begun) return begun;
+  }
+  return {};
 }
 
 driver::Result<std::optional<std::filesystem::path>> Session::end_recording() {
-  RecordingSwitch& recording = parts_->records.recording;
-  std::optional<std::filesystem::path> path;
-  if (const Recorder* recorder = recording.recorder()) path = recorder->path();
-  if (auto stopped = recording.stop(); !stopped) return stopped.error();
-  return path;
+  std::optional<std::filesystem::path> first;
+  std::optional<driver::Error> trouble;
+  for (std::size_t arm = 0; arm < arms(); ++arm) {
+    RecordingSwitch& recording = parts_->records_of(arm).recording;
+    const Recorder* recorder = recording.recorder();
+    if (recorder != nullptr && !first) first = recorder->path();
+    auto stopped = recording.stop();
+    if (!stopped && !trouble) trouble = stopped.error();
+  }
+  if (trouble) return *trouble;
+  return first;
 }
 
 driver::Result<std::optional<std::filesystem::path>> Session::keep_black_box() {
-  const auto ticks = parts_->records.black_box.release();
-  if (ticks.empty()) return std::optional<std::filesystem::path>();
-  auto written = write_black_box(ticks, recording_info());
-  if (!written) return written.error();
-  return std::optional<std::filesystem::path>(std::move(written).value());
+  std::optional<std::filesystem::path> first;
+  for (std::size_t arm = 0; arm < arms(); ++arm) {
+    const auto ticks = parts_->records_of(arm).black_box.release();
+    if (ticks.empty()) continue;
+    RecordingInfo info = parts_->setup->recording_info(arm);
+    if (arms() > 1) info.scene += "_" + arm_name(arm);
+    auto written = write_black_box(ticks, info);
+    if (!written) return written.error();
+    if (!first) first = std::move(written).value();
+  }
+  return first;
 }
 
-RecordingInfo Session::recording_info() const {
-  return parts_->setup->recording_info();
+RecordingInfo Session::recording_info(std::size_t arm) const {
+  return parts_->setup->recording_info(arm);
 }
 
 Setup& Session::setup() noexcept {

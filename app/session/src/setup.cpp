@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -21,6 +22,11 @@ std::string full_path(const std::filesystem::path& file) {
   return std::filesystem::absolute(file).lexically_normal().string();
 }
 
+bool any_real_in(const SessionOptions& options) {
+  return options.real_arm || std::any_of(options.real_arms.begin(), options.real_arms.end(),
+                                         [](const auto& use) { return use.second.has_value(); });
+}
+
 }  // namespace
 
 driver::Result<std::unique_ptr<Setup>> Setup::prepare(const std::filesystem::path& scene,
@@ -32,15 +38,17 @@ driver::Result<std::unique_ptr<Setup>> Setup::prepare(const std::filesystem::pat
   if (!found) return found.error();
   std::unique_ptr<Setup> setup(new Setup);
   setup->scene_file_ = std::move(found).value();
-  setup->real_arm_ = options.real_arm;
   setup->firmware_ = options.firmware;
-  setup->open_link_ = options.open_link;
-  setup->device_name_ = options.real_arm ? options.real_arm->name() : "sim";
   setup->hand_by_mouse_ = options.hand_by_mouse;
+  setup->hand_by_program_ = options.hand_by_program;
   setup->homed_ = options.homed;
   setup->endless_ = options.endless;
-  setup->real_time_ = options.clock == ClockKind::kWall || options.real_arm.has_value();
-  if (!setup->real_time_) setup->clock_ = options.own_clock;
+  setup->real_time_ = options.clock == ClockKind::kWall || any_real_in(options);
+  const auto stood_in = [](const auto& use) { return use.second && use.second->open_link; };
+  if (!setup->real_time_ || options.open_link ||
+      std::any_of(options.real_arms.begin(), options.real_arms.end(), stood_in)) {
+    setup->clock_ = options.own_clock;
+  }
   if (auto read = setup->read(options); !read) return read.error();
 
   auto objects = scene::SceneObjects::build(setup->scene_);
@@ -52,41 +60,123 @@ driver::Result<std::unique_ptr<Setup>> Setup::prepare(const std::filesystem::pat
     return driver::Error{fmt::format("{}: at most {} objects may move.",
                                      setup->scene_file_.string(), ScenePoses::kMost)};
   }
-  if (!options.real_arm) {
-    if (auto simulated = setup->simulate_arm(); !simulated) return simulated.error();
-  }
+  if (auto simulated = setup->simulate_arms(); !simulated) return simulated.error();
   if (setup->real_time_) setup->objects_->start_loaders();
   return setup;
 }
 
 driver::Result<void> Setup::read(const SessionOptions& options) {
+  const bool real = any_real_in(options);
   auto scene = scene::load_scene(
       scene_file_, {.arm = options.real_arm ? options.terms->arm.path : options.arm_file,
                     .mesh_folder = options.mesh_folder,
-                    .rate_factor = options.real_arm ? 1 : options.rate_factor});
+                    .rate_factor = real ? 1 : options.rate_factor,
+                    .several_arms = options.several_arms});
   if (!scene) return scene.error();
   scene_ = std::move(scene).value();
+  if (auto fits = check_several(options); !fits) return fits;
   if (options.adjust) options.adjust(scene_);
-  if (options.real_arm) {
-    start_pose_ = StartPose::of(scene_.arm, options.real_arm->kind);
-    auto told = scene::put_on_terms(scene_, scene_file_, *options.terms);
-    if (!told) return told.error();
-    told_ = std::move(told).value();
-    feel_check_ = options.terms->feel_check;
-  }
+  if (auto used = use_real_arms(options); !used) return used;
   seed_ = options.seed.value_or(scene_.seed);
   period_ns_ = std::llround(1e9 / scene_.rate);
   const double duration = options.duration.value_or(scene_.duration);
   // Led by a person, or by another program, it goes on until he has enough, unless he says how
   // long.
-  if ((!options.hand_by_mouse && !options.endless) || options.duration) {
+  if ((!hand_led() && !options.endless) || options.duration) {
     ticks_ =
         static_cast<std::uint64_t>(std::ceil(duration * 1e9 / static_cast<double>(period_ns_)));
   }
   return {};
 }
 
-driver::Result<void> Setup::simulate_arm() {
+driver::Result<void> Setup::check_several(const SessionOptions& options) const {
+  if (arms() == 1 && options.real_arms.empty()) return {};
+  if (arms() == 1) {
+    return driver::Error{
+        fmt::format("{}: the scene has one arm; name it without {}=: --device WHICH.",
+                    scene_file_.string(), options.real_arms.begin()->first)};
+  }
+  const auto refuse = [this](const char* what) {
+    return driver::Error{
+        fmt::format("{}: the scene has {} arms; {}", scene_file_.string(), arms(), what)};
+  };
+  if (options.real_arm) {
+    return refuse(fmt::format("say which one is meant: --device {}=WHICH.", arm_name(0)).c_str());
+  }
+  std::string names = arm_name(0);
+  for (std::size_t i = 1; i < arms(); ++i) names += ", " + arm_name(i);
+  for (const auto& [name, use] : options.real_arms) {
+    const auto same = [&name](const scene::SceneArm& arm) { return arm.name == name; };
+    if (name != scene_.arm_name &&
+        std::none_of(scene_.more_arms.begin(), scene_.more_arms.end(), same)) {
+      return refuse(fmt::format("none is called \"{}\": {}.", name, names).c_str());
+    }
+  }
+  if (options.hand_by_mouse) {
+    return refuse("a mouse leads one hand; leave --hand mouse away.");
+  }
+  if (options.hand_by_program) {
+    return refuse("a program leads one hand; leave --hand topic away.");
+  }
+  return {};
+}
+
+driver::Result<void> Setup::use_real_arms(const SessionOptions& options) {
+  arms_.resize(arms());
+  for (ArmOfRun& arm : arms_) arm.energy = scene_.energy;
+  if (options.real_arm) {
+    ArmOfRun& arm = arms_.front();
+    arm.real = options.real_arm;
+    arm.open_link = options.open_link;
+    arm.start_pose = StartPose::of(scene_.arm, arm.real->kind);
+    auto told = scene::put_on_terms(scene_, scene_file_, *options.terms);
+    if (!told) return told.error();
+    told_ = std::move(told).value();
+    arm.energy = scene_.energy;
+    arm.feel_check = options.terms->feel_check;
+    return {};
+  }
+  if (!any_real_in(options)) return {};
+  for (std::size_t i = 0; i < arms(); ++i) {
+    const auto use = options.real_arms.find(arm_name(i));
+    if (use == options.real_arms.end() || !use->second) {
+      arms_[i].start_pose.emplace(arm_file(i).workspace, std::nullopt);
+    } else if (auto used = use_among_others(i, *use->second); !used) {
+      return used;
+    }
+  }
+  return {};
+}
+
+driver::Result<void> Setup::use_among_others(std::size_t i, const RealArmUse& use) {
+  const scene::ArmPlace& place = i == 0 ? scene_.arm_place : scene_.more_arms[i - 1].place;
+  auto& path = i == 0 ? scene_.arm_file : scene_.more_arms[i - 1].arm_file;
+  const auto of_arm = [&](const std::string& what) {
+    return "The arm \"" + arm_name(i) + "\": " + what;
+  };
+  ArmOfRun& arm = arms_[i];
+  arm.real = use.arm;
+  arm.open_link = use.open_link;
+  arm.feel_check = use.terms.feel_check;
+  // Where it stands comes from the scene, how it counts from its home pose from its file alone.
+  const auto uncalibrated = scene::load_arm(use.terms.arm.path);
+  if (!uncalibrated) return driver::Error{of_arm(uncalibrated.error().message)};
+  arm.start_pose = StartPose::of(place.put(*uncalibrated), use.arm.kind);
+  // What the scene says of limits is kept as with one arm, for this one.
+  scene::Scene alone;
+  alone.own_arm_file = path;
+  alone.energy = scene_.energy;
+  alone.energy_line = scene_.energy_line;
+  auto told = scene::put_on_terms(alone, scene_file_, use.terms);
+  if (!told) return driver::Error{of_arm(told.error().message)};
+  for (const std::string& sentence : *told) told_.push_back(of_arm(sentence));
+  own_arm_file(i) = place.put(alone.arm);
+  path = alone.arm_file;
+  arm.energy.reset();  // the arm has it now
+  return {};
+}
+
+driver::Result<void> Setup::simulate_arms() {
   std::vector<render::TriangleMesh> meshes_W;
   for (std::size_t i = 0; i < scene_.objects.size(); ++i) meshes_W.push_back(objects_->mesh_W(i));
   std::vector<scene::NamedMesh> named;
@@ -94,82 +184,144 @@ driver::Result<void> Setup::simulate_arm() {
     const scene::SceneObject& object = scene_.objects[i];
     if (!object.build_field && !object.paged) named.push_back({object.name, &meshes_W[i]});
   }
-  const auto in_file = [](const std::filesystem::path& file, const driver::Error& error) {
-    return driver::Error{file.string() + ": " + error.message};
+  using Simulated = driver::Result<std::unique_ptr<scene::ArmSimulation>>;
+  const auto simulate = [&](const scene::ArmFile& arm, const std::filesystem::path& arm_file,
+                            const std::vector<scene::HandWaypoint>& hand, const std::string& name,
+                            std::uint64_t seed) -> Simulated {
+    const std::string whose = name.empty() ? "" : "the arm \"" + name + "\": ";
+    const auto in_file = [&whose](const std::filesystem::path& file, const driver::Error& error) {
+      return driver::Error{file.string() + ": " + whose + error.message};
+    };
+    auto route = scene::plan_hand(hand, named);
+    if (!route) return in_file(scene_file_, route.error());
+    if (auto reach = scene::check_reach(arm, *route); !reach) {
+      return in_file(scene_file_, reach.error());
+    }
+    if (hand_led()) route->resize(1);  // waits where the planned path begins
+    auto simulation = scene::ArmSimulation::make(arm, *route, firmware_, seed);
+    if (!simulation) return in_file(arm_file, simulation.error());
+    return simulation;
   };
-  auto route = scene::plan_hand(scene_.hand, named);
-  if (!route) return in_file(scene_file_, route.error());
-  if (auto reach = scene::check_reach(scene_.arm, *route); !reach) {
-    return in_file(scene_file_, reach.error());
+  for (std::size_t i = 0; i < arms(); ++i) {
+    if (arms_[i].real) continue;
+    // A seed of its own each, so that two hands do not tremble as one.
+    const bool first = i == 0;
+    auto simulation =
+        simulate(arm_file(i), first ? scene_.arm_file : scene_.more_arms[i - 1].arm_file,
+                 first ? scene_.hand : scene_.more_arms[i - 1].hand, arm_name(i), seed_ + i);
+    if (!simulation) return simulation.error();
+    arms_[i].simulation = std::move(simulation).value();
   }
-  if (hand_by_mouse_) route->resize(1);  // waits where the planned path begins
-  auto simulation = scene::ArmSimulation::make(scene_.arm, *route, firmware_, seed_);
-  if (!simulation) return in_file(scene_.arm_file, simulation.error());
-  simulation_ = std::move(simulation).value();
   return {};
 }
 
-driver::Result<void> Setup::open_arm() {
-  const scene::ArmFile& arm = scene_.arm;
-  // The clock starts last, so that the arm's time begins with the session's. A real arm knows only
-  // the time of the world.
-  if (real_time_) {
-    clock_ = std::make_unique<driver::WallClock>();
-  } else if (!clock_) {
-    clock_ = std::make_unique<driver::VirtualClock>();
-  }
+bool Setup::any_real() const noexcept {
+  return std::any_of(arms_.begin(), arms_.end(),
+                     [](const ArmOfRun& arm) { return arm.real.has_value(); });
+}
+
+driver::Result<void> Setup::open(std::size_t i) {
+  ArmOfRun& arm = arms_[i];
   std::unique_ptr<driver::ArmLink> link;
-  if (real_arm_) {
-    auto opened = open_link_ ? open_link_(arm, *clock_)
-                             : scene::open_link(*real_arm_, arm, firmware_, *clock_);
+  if (arm.real) {
+    auto opened = arm.open_link ? arm.open_link(arm_file(i), *clock_)
+                                : scene::open_link(*arm.real, arm_file(i), firmware_, *clock_);
     if (!opened) return opened.error();
     link = std::move(opened).value();
   } else {
-    link = simulation_->link(*clock_);
+    link = arm.simulation->link(*clock_);
   }
-  driver::DeviceSettings settings = scene::device_settings(arm, scene_.rate, scene_.energy);
-  // A simulated hand that a mouse holds has no tremor, and its arm sends no old positions.
+  driver::DeviceSettings settings = scene::device_settings(arm_file(i), scene_.rate, arm.energy);
+  // A simulated hand that is led has no tremor, and its arm sends no old positions.
   constexpr double kAnyTime = 1e9;  // s
-  if (hand_by_mouse_) settings.motion.hold_most = kAnyTime;
+  if (hand_led()) settings.motion.hold_most = kAnyTime;
   driver::HeatSettings& heat = settings.heat;
-  if (real_arm_ && heat.named()) {
-    const scene::KnownHeat known = scene::load_heat(real_arm_->name(), heat, scene::world_time());
+  if (arm.real && heat.named()) {
+    const scene::KnownHeat known = scene::load_heat(arm.real->name(), heat, scene::world_time());
     if (!known.note.empty()) scene::logger().warn("{}", known.note);
     heat.at_start = known.heat;
   }
   auto device = driver::Device::open(std::move(link), settings, clock_->now_ns());
   if (!device) return device.error();
-  device_ = std::move(device).value();
-  if (!real_arm_) return device_->activate();
-  if (heat.named()) {
-    heat_keeper_ = std::make_unique<scene::HeatKeeper>(real_arm_->name(), *device_);
+  arm.device = std::move(device).value();
+  if (arm.real && heat.named()) {
+    arm.heat_keeper = std::make_unique<scene::HeatKeeper>(arm.real->name(), *arm.device);
+  }
+  return {};
+}
+
+driver::Result<void> Setup::open_arm() {
+  // The clock starts last, so that the arms' time begins with the session's. A real arm knows only
+  // the time of the world.
+  if (!clock_ && real_time_) clock_ = std::make_unique<driver::WallClock>();
+  if (!clock_) clock_ = std::make_unique<driver::VirtualClock>();
+  for (std::size_t i = 0; i < arms(); ++i) {
+    if (auto opened = open(i); !opened) {
+      if (arms() == 1) return opened;
+      return driver::Error{"The arm \"" + arm_name(i) + "\": " + opened.error().message};
+    }
+  }
+  if (!any_real()) return activate();
+  // A simulated hand beside a real one begins its path with the forces.
+  for (const ArmOfRun& arm : arms_) {
+    if (arm.simulation) arm.simulation->hold(true);
+  }
+  return {};
+}
+
+driver::Result<void> Setup::activate() {
+  for (std::size_t i = 0; i < arms(); ++i) {
+    if (auto active = device(i).activate(); !active) {
+      for (const ArmOfRun& arm : arms_) arm.device->deactivate();
+      if (arms() == 1) return active;
+      return driver::Error{"The arm \"" + arm_name(i) + "\": " + active.error().message};
+    }
+    if (any_real() && arms_[i].simulation) arms_[i].simulation->hold(false);
   }
   return {};
 }
 
 driver::Result<void> Setup::check_start_pose() const {
-  if (!real_arm_) return {};
-  const std::string trouble = start_pose_->trouble(device_->state().p_WT, !homed_);
-  if (!trouble.empty()) return driver::Error{trouble};
+  for (std::size_t i = 0; i < arms(); ++i) {
+    if (!arms_[i].real) continue;
+    const std::string trouble = start_pose(i).trouble(device(i).state().p_WT, !homed_);
+    if (trouble.empty()) continue;
+    return driver::Error{arms() == 1 ? trouble : "The arm \"" + arm_name(i) + "\": " + trouble};
+  }
   return {};
+}
+
+Terminal terminal_of(const Setup& setup, std::size_t arm, Terminal terminal) {
+  if (setup.arms() == 1) return terminal;
+  const std::string name = setup.arm_name(arm) + ": ";
+  for (auto* says : {&terminal.tell, &terminal.ask}) {
+    if (!*says) continue;
+    *says = [name, whole = *says](const std::string& line) {
+      const bool begins_anew = !line.empty() && line.front() == '\n';
+      whole(begins_anew ? "\n" + name + line.substr(1) : name + line);
+    };
+  }
+  return terminal;
 }
 
 std::string Setup::scene_path() const {
   return full_path(scene_file_);
 }
 
-RecordingInfo Setup::recording_info() const {
+RecordingInfo Setup::recording_info(std::size_t arm) const {
+  const auto& file = arm == 0 ? scene_.arm_file : scene_.more_arms[arm - 1].arm_file;
   return {.scene = scene_.name,
           .scene_file = full_path(scene_file_),
           .scene_text = scene::text_of(scene_file_),
-          .arm = scene_.arm.name,
-          .arm_file = full_path(scene_.arm_file),
-          .arm_text = scene::text_of(scene_.arm_file),
-          .device = device_name_,
+          .arm = arm_file(arm).name,
+          .arm_file = full_path(file),
+          .arm_text = scene::text_of(file),
+          .device = device_name(arm),
           .clock = real_time_ ? "wall" : "virtual",
           .program = scene::program_name(),
           .rate = scene_.rate,
-          .seed = seed_};
+          .seed = seed_ + arm,
+          .arm_in_scene = arm_name(arm)};
 }
 
 }  // namespace thimble::session

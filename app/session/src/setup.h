@@ -9,6 +9,7 @@
 
 #include "heat_keeper.h"
 #include "start_pose.h"
+#include "terminal.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/device.h"
 #include "thimble/driver/result.h"
@@ -21,7 +22,20 @@
 
 namespace thimble::session {
 
-/// What a session runs: a scene with its objects, and the arm that touches them, on one clock.
+/// One arm of a run: what it is, and as its loop drives it.
+struct ArmOfRun {
+  std::optional<driver::FoundArm> real;  ///< The arm on the desk, if it is not simulated.
+  OpenLink open_link;                    ///< To it, in place of its own; may be empty.
+  /// Where its tip must be before it gets a force; of a real arm, and of those beside one.
+  std::optional<StartPose> start_pose;
+  scene::FeelCheckState feel_check = scene::FeelCheckState::kSimulated;
+  std::optional<driver::EnergyStage> energy;  ///< That the scene names, if it is not the arm's.
+  std::unique_ptr<scene::ArmSimulation> simulation;  ///< Null if it is real.
+  std::unique_ptr<driver::Device> device;  ///< Holds the wire to the simulation, so it goes first.
+  std::unique_ptr<scene::HeatKeeper> heat_keeper;  ///< Of a real arm whose file names its heat.
+};
+
+/// What a session runs: a scene with its objects, and the arms that touch them, on one clock.
 class Setup {
  public:
   /// Does what takes time and needs no arm: reads the scene, its arm and its meshes, plans the
@@ -29,25 +43,44 @@ class Setup {
   /// Real-time: never from the servo thread.
   static driver::Result<std::unique_ptr<Setup>> prepare(const std::filesystem::path& scene,
                                                         const SessionOptions& options);
-  /// Starts the clock and opens the arm: a simulated one may get forces from then on, a real one
-  /// is idle. Once. Real-time: never from the servo thread.
+  /// Starts the clock and opens the arms: simulated ones alone may get forces from then on; where
+  /// one is real all are idle. Once. Real-time: never from the servo thread.
   driver::Result<void> open_arm();
   /// Fails if the tip of a real arm is not where it must be before a force may come; a simulated
-  /// arm's always is. Precondition: the arm is open. Real-time: never from the servo thread.
+  /// arm's always is. Precondition: the arms are open. Real-time: never from the servo thread.
   driver::Result<void> check_start_pose() const;
+  /// Lets forces through to all arms. Precondition: they are open. Real-time: never from the servo
+  /// thread.
+  driver::Result<void> activate();
 
   const scene::Scene& scene() const noexcept { return scene_; }
   scene::SceneObjects& objects() const noexcept { return *objects_; }
+  /// Returns how many arms touch the scene.
+  std::size_t arms() const noexcept { return 1 + scene_.more_arms.size(); }
+  /// Returns what the scene calls an arm, counted from 0; empty if it is the only one.
+  const std::string& arm_name(std::size_t arm) const noexcept {
+    return arm == 0 ? scene_.arm_name : scene_.more_arms[arm - 1].name;
+  }
+  /// Returns an arm's file.
+  const scene::ArmFile& arm_file(std::size_t arm) const noexcept {
+    return arm == 0 ? scene_.arm : scene_.more_arms[arm - 1].arm;
+  }
   /// Returns the arm as the loop drives it. Precondition: the arm is open, as for `clock`.
-  driver::Device& device() const noexcept { return *device_; }
+  driver::Device& device(std::size_t arm = 0) const noexcept { return *arms_[arm].device; }
   driver::Clock& clock() const noexcept { return *clock_; }
   /// Returns the simulation of the arm; null if the arm is real.
-  scene::ArmSimulation* simulation() const noexcept { return simulation_.get(); }
-  /// Returns where the tip of the real arm must be before it gets a force. Precondition: it is
-  /// real.
-  const StartPose& start_pose() const noexcept { return *start_pose_; }
+  scene::ArmSimulation* simulation(std::size_t arm = 0) const noexcept {
+    return arms_[arm].simulation.get();
+  }
+  /// Returns where the tip of an arm must be before it gets a force. Precondition: an arm of the
+  /// run is real.
+  const StartPose& start_pose(std::size_t arm = 0) const noexcept { return *arms_[arm].start_pose; }
   /// Returns the arm on the desk, if it is not simulated.
-  const std::optional<driver::FoundArm>& real_arm() const noexcept { return real_arm_; }
+  const std::optional<driver::FoundArm>& real_arm(std::size_t arm = 0) const noexcept {
+    return arms_[arm].real;
+  }
+  /// Returns whether an arm of the run is real.
+  bool any_real() const noexcept;
   /// Returns the firmware image for an arm that needs one; may be empty.
   const std::filesystem::path& firmware() const noexcept { return firmware_; }
 
@@ -60,6 +93,8 @@ class Setup {
   bool endless() const noexcept { return endless_; }
   /// Returns whether a viewer leads the simulated hand.
   bool hand_by_mouse() const noexcept { return hand_by_mouse_; }
+  /// Returns whether somebody leads the simulated hand in place of the scene's path.
+  bool hand_led() const noexcept { return hand_by_mouse_ || hand_by_program_; }
   std::int64_t period_ns() const noexcept { return period_ns_; }  ///< Between two ticks.
   /// Returns how many periods the run lasts; 0: until it is stopped.
   std::uint64_t ticks() const noexcept { return ticks_; }
@@ -67,41 +102,49 @@ class Setup {
   /// Returns what the user must know, a sentence each: what was put right, left out or guessed of
   /// the meshes, and what became of limits that the scene names, where the arm is real.
   const std::vector<std::string>& told() const noexcept { return told_; }
-  /// Returns what is known of the arm's feel check.
-  scene::FeelCheckState feel_check() const noexcept { return feel_check_; }
+  /// Returns what is known of an arm's feel check.
+  scene::FeelCheckState feel_check(std::size_t arm = 0) const noexcept {
+    return arms_[arm].feel_check;
+  }
   /// Returns "sim" or the name of the arm on the desk.
-  const std::string& device_name() const noexcept { return device_name_; }
+  std::string device_name(std::size_t arm = 0) const {
+    return arms_[arm].real ? arms_[arm].real->name() : "sim";
+  }
   /// Returns the scene's file, absolute.
   std::string scene_path() const;
   /// Returns what this is, for recordings. Real-time: never from the servo thread.
-  RecordingInfo recording_info() const;
+  RecordingInfo recording_info(std::size_t arm = 0) const;
 
  private:
   Setup() = default;
   driver::Result<void> read(const SessionOptions& options);
-  driver::Result<void> simulate_arm();
+  driver::Result<void> check_several(const SessionOptions& options) const;
+  scene::ArmFile& own_arm_file(std::size_t arm) noexcept {
+    return arm == 0 ? scene_.arm : scene_.more_arms[arm - 1].arm;
+  }
+  driver::Result<void> use_real_arms(const SessionOptions& options);
+  driver::Result<void> use_among_others(std::size_t arm, const RealArmUse& use);
+  driver::Result<void> simulate_arms();
+  driver::Result<void> open(std::size_t arm);
 
   std::filesystem::path scene_file_;
   scene::Scene scene_;
   std::vector<std::string> told_;
-  scene::FeelCheckState feel_check_ = scene::FeelCheckState::kSimulated;
-  std::string device_name_;
-  std::optional<driver::FoundArm> real_arm_;
   std::filesystem::path firmware_;
-  std::optional<StartPose> start_pose_;
-  decltype(SessionOptions::open_link) open_link_;
   bool real_time_ = false;
   bool endless_ = false;
   bool hand_by_mouse_ = false;
+  bool hand_by_program_ = false;
   bool homed_ = false;
   std::uint64_t seed_ = 0;
   std::uint64_t ticks_ = 0;
   std::int64_t period_ns_ = 0;
   std::unique_ptr<scene::SceneObjects> objects_;
   std::shared_ptr<driver::Clock> clock_;
-  std::unique_ptr<scene::ArmSimulation> simulation_;
-  std::unique_ptr<driver::Device> device_;  // holds the wire to the simulation, so it goes first
-  std::unique_ptr<scene::HeatKeeper> heat_keeper_;  // of a real arm whose file names its heat
+  std::vector<ArmOfRun> arms_;
 };
+
+/// Returns a terminal whose lines name an arm, where a run has several.
+Terminal terminal_of(const Setup& setup, std::size_t arm, Terminal terminal);
 
 }  // namespace thimble::session

@@ -13,25 +13,17 @@
 
 #include "report/figure.h"
 #include "text_file.h"
+#include "text_sum.h"
 
 namespace thimble::app {
 namespace {
-
-// FNV-1a, 64 bits [S Fowler, Noll, Vo; public domain constants].
-std::uint64_t hash_of(std::string_view text) {
-  std::uint64_t hash = 0xcbf29ce484222325;
-  for (const char c : text) {
-    hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
-  }
-  return hash;
-}
 
 std::string hex(std::uint64_t value) {
   return fmt::format("{:016x}", value);
 }
 
 std::string heading_of(const std::string& key, std::size_t cells) {
-  return "thimble-sweep 1 " + std::to_string(cells) + " " + hex(hash_of(key)) + "\n";
+  return "thimble-sweep 1 " + std::to_string(cells) + " " + hex(scene::text_sum(key)) + "\n";
 }
 
 /// Writes a cell as `CELL COUNT NUMBERS... CHECK`, each number as the bits that it is.
@@ -40,7 +32,7 @@ std::string line_of(std::size_t cell, std::span<const double> numbers) {
   for (const double number : numbers) {
     line.append(" ").append(hex(std::bit_cast<std::uint64_t>(number)));
   }
-  const std::string check = hex(hash_of(line));
+  const std::string check = hex(scene::text_sum(line));
   return line.append(" ").append(check).append("\n");
 }
 
@@ -65,7 +57,7 @@ bool read_line(std::string_view line, CellNumbers& numbers) {
   if (last == std::string_view::npos) return false;
   const auto check = whole_number(line.substr(last + 1), 16);
   std::string_view rest = line.substr(0, last);
-  if (!check || *check != hash_of(rest)) return false;
+  if (!check || *check != scene::text_sum(rest)) return false;
   const auto cell = whole_number(next_word(rest), 10);
   const auto count = whole_number(next_word(rest), 10);
   if (!cell || !count || *cell >= numbers.size()) return false;

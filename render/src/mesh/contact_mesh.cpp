@@ -7,8 +7,7 @@
 #include <utility>
 
 #include "mesh/adjacency.h"
-#include "mesh/repair/orient_mesh.h"
-#include "thimble/render/mesh/check_mesh.h"
+#include "mesh/repair/sound_mesh.h"
 
 namespace thimble::render {
 namespace {
@@ -59,46 +58,38 @@ Plane edge_plane(const Vector3d& from, const Vector3d& edge, const Vector3d& n_f
 
 driver::Result<ContactMesh> ContactMesh::build(const TriangleMesh& mesh,
                                                const ContactMeshOptions& options) {
-  const MeshFindings findings = check_mesh(mesh);
-  if (findings.triangles == 0) return driver::Error{"The mesh has no triangles."};
-  std::string refusal;
-  bool wrongly_wound = false;
-  bool broken = false;
-  for (const MeshFault& fault : findings.faults) {
-    const bool winding_only =
-        fault.kind == MeshFault::Kind::kInsideOut || fault.kind == MeshFault::Kind::kFlippedEdge;
-    if (winding_only && options.orient) {
-      wrongly_wound = true;
-      // Turned without the user's help in any case; a flipped edge may need a closed mesh first.
-      if (fault.kind == MeshFault::Kind::kInsideOut) continue;
-    } else {
-      broken = true;
-    }
-    refusal += ' ';
-    refusal += describe(fault);
-  }
-  if (broken) return driver::Error{"The mesh cannot be touched:" + refusal};
+  auto looked = look_at_mesh_beside(mesh, options.orient);
+  auto contact = assemble(mesh, options);
+  auto sound = looked.get();
+  // What the look found is told, whatever the assembly stumbled over.
+  if (!sound) return sound.error();
+  if (!sound->turned) return contact;
+  contact = assemble(*sound->turned, options);
+  if (contact) contact->orientation_ = std::move(sound->orientation);
+  return contact;
+}
 
-  ContactMesh contact;
-  TriangleMesh oriented = mesh;
-  if (wrongly_wound) contact.orientation_ = orient_mesh(oriented);
-  if (contact.orientation_.one_sided_components > 0) {
-    return driver::Error{"The mesh cannot be touched: " + describe(contact.orientation_)};
-  }
-  const auto neighbours = find_adjacency(oriented);
+driver::Result<ContactMesh> ContactMesh::assemble(const TriangleMesh& mesh,
+                                                  const ContactMeshOptions& options) {
+  const auto neighbours = find_adjacency(mesh);
   if (!neighbours) return neighbours.error();
-
-  contact.vertices_ = std::move(oriented.vertices);
-  contact.triangles_ = std::move(oriented.triangles);
+  Eigen::AlignedBox3d box;
+  for (const Vector3d& p : mesh.vertices) {
+    if (p.allFinite()) box.extend(p);
+  }
+  ContactMesh contact;
+  contact.vertices_ = mesh.vertices;
+  contact.triangles_ = mesh.triangles;
   contact.cells_.resize(contact.triangles_.size());
   for (std::size_t t = 0; t < contact.cells_.size(); ++t) {
     contact.cells_[t].neighbours = (*neighbours)[t];
   }
-  const Vector3d size = findings.box_max - findings.box_min;
+  const Vector3d size = box.isEmpty() ? Vector3d(0, 0, 0) : Vector3d(box.max() - box.min());
+  const Vector3d low = box.isEmpty() ? Vector3d(0, 0, 0) : Vector3d(box.min());
   const Vector3d room = Vector3d::Constant(std::max(options.room, 0.0) * size.maxCoeff());
-  contact.box_min_ = findings.box_min - room;
-  contact.box_max_ = findings.box_max + room;
-  contact.origin_ = findings.box_min + size / 2;
+  contact.box_min_ = low - room;
+  contact.box_max_ = (box.isEmpty() ? low : Vector3d(box.max())) + room;
+  contact.origin_ = low + size / 2;
   // Far from the world's origin the vertices themselves carry the rounding of their place.
   contact.depth_rounding_ = kDepthRounding * ((size + 2 * room).norm() + contact.origin_.norm());
   for (std::int32_t t = 0; t < contact.triangle_count(); ++t) contact.compute_face(t);

@@ -199,6 +199,8 @@ class ContactMesh {
   void make_room(std::size_t triangles_max);
   bool add_to_fan(std::int32_t vertex, std::int32_t triangle) noexcept;
   void change_fan(std::int32_t vertex, const EdgeSplit& split) noexcept;
+  static driver::Result<ContactMesh> assemble(const TriangleMesh& mesh,
+                                              const ContactMeshOptions& options);
   void compute_face(std::int32_t triangle) noexcept;
   void compute_edge(std::int32_t triangle, std::size_t k) noexcept;
   void collect_fans();

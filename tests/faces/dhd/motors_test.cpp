@@ -16,9 +16,7 @@ constexpr double kQuantum = 0.005;  // N, of a motor value
 
 TEST(FaceDhdMotors, PullWithTheForceThatWasAskedFor) {
   for (const char* arm : {"vintage_phantom", "woodenhaptics"}) {
-    ExecOptions options;
-    options.arms = {{.arm_file = arm}};
-    ExecRig rig(options);
+    ExecRig rig(in_step(arm));
     ASSERT_EQ(dhdOpenID(0), 0) << dhdErrorGetLastStr();
     for (const Vector3d& f : {Vector3d(0.5, -0.3, 0.2), Vector3d(0, 0, -0.4), Vector3d(0, 0, 0)}) {
       for (int i = 0; i < 500; ++i) ASSERT_EQ(dhdSetForce(f.x(), f.y(), f.z(), -1), 0);
@@ -30,7 +28,7 @@ TEST(FaceDhdMotors, PullWithTheForceThatWasAskedFor) {
 }
 
 TEST(FaceDhdMotors, PullInTheFrameThatTheProgramChose) {
-  ExecRig rig;
+  ExecRig rig(in_step());
   ASSERT_EQ(dhdOpenID(0), 0);
   ASSERT_EQ(dhdSetBaseAngleZDeg(90), 0);
   for (int i = 0; i < 500; ++i) ASSERT_EQ(dhdSetForce(0, 0.5, 0.1, -1), 0);
@@ -42,7 +40,7 @@ TEST(FaceDhdMotors, PullInTheFrameThatTheProgramChose) {
 }
 
 TEST(FaceDhdMotors, PullWithTheForceThatJointTorquesMake) {
-  ExecRig rig;
+  ExecRig rig(in_step());
   ASSERT_EQ(dhdOpenID(0), 0);
   dhdEnableExpertMode();
   const Vector3d f(0.3, 0.2, -0.1);
@@ -59,7 +57,7 @@ TEST(FaceDhdMotors, PullWithTheForceThatJointTorquesMake) {
 }
 
 TEST(FaceDhdMotors, RestWhenForceIsOffAndWhenTheArmIsClosed) {
-  ExecRig rig;
+  ExecRig rig(in_step());
   ASSERT_EQ(dhdOpenID(0), 0);
   for (int i = 0; i < 500; ++i) dhdSetForce(0.5, 0, 0, -1);
   EXPECT_GT(rig.motors.force_W().norm(), 0.4);
@@ -70,7 +68,7 @@ TEST(FaceDhdMotors, RestWhenForceIsOffAndWhenTheArmIsClosed) {
 }
 
 TEST(FaceDhdMotors, RestAfterAForceThatIsNoNumberUntilForceIsSwitchedOn) {
-  ExecRig rig;
+  ExecRig rig(in_step());
   ASSERT_EQ(dhdOpenID(0), 0);
   for (int i = 0; i < 500; ++i) dhdSetForce(0.5, 0, 0, -1);
   EXPECT_EQ(dhdSetForce(std::nan(""), 0, 0, -1), -1);

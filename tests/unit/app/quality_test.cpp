@@ -71,8 +71,9 @@ std::string resolved(const Scene& scene) {
 }
 
 Scene at_quality(const std::filesystem::path& file, Quality quality) {
-  auto scene =
-      load_scene(file, {.mesh_folder = THIMBLE_MESHES, .rate_factor = rate_factor_of(quality)});
+  auto scene = load_scene(file, {.mesh_folder = THIMBLE_MESHES,
+                                 .rate_factor = rate_factor_of(quality),
+                                 .several_arms = true});
   if (!scene) {
     ADD_FAILURE() << scene.error().message;
     return {};

@@ -46,6 +46,46 @@ TEST(ChooseRunArm, SaysSoWhereTheSimulatedArmStandsInAndFailsForANameThatIsNotTh
   }
 }
 
+TEST(ChooseRunArms, GivesEachArmOfASceneItsOwnBoard) {
+  const auto find = [] {
+    driver::FoundArm one, other;
+    one.kind = other.kind = driver::ArmKind::kPolhem;
+    one.arm = other.arm = "polhem";
+    one.accessible = other.accessible = true;
+    one.board = other.board = driver::BoardKind::kMbedHid14;
+    one.serial = "S1";
+    other.serial = "S2";
+    return driver::Result<std::vector<driver::FoundArm>>(std::vector<driver::FoundArm>{one, other});
+  };
+  scene::RealArmRequest request;
+  request.arm_file = std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms/polhem.yaml";
+  const auto two = session::choose_run_arms({"left=S1", "right=S2"}, request, find);
+  ASSERT_TRUE(two) << two.error().message;
+  EXPECT_TRUE(two->real());
+  EXPECT_FALSE(two->one.real);
+  ASSERT_EQ(two->several.size(), 2u);
+  EXPECT_EQ(two->several.at("left")->arm.serial, "S1");
+  EXPECT_EQ(two->several.at("right")->arm.serial, "S2");
+  EXPECT_EQ(two->told.at(0).find("The arm \"left\": "), 0u) << two->told.at(0);
+  const auto mixed = session::choose_run_arms({"right=S2", "left=sim"}, request, find);
+  ASSERT_TRUE(mixed) << mixed.error().message;
+  EXPECT_TRUE(mixed->real());
+  EXPECT_FALSE(mixed->several.at("left")) << "simulated, and its name is looked at";
+  const auto one = session::choose_run_arms({"S1"}, request, find);
+  ASSERT_TRUE(one) << one.error().message;
+  EXPECT_TRUE(one->one.real && one->several.empty());
+
+  const auto refused = [&](const std::vector<std::string>& devices) {
+    const auto arms = session::choose_run_arms(devices, request, find);
+    return arms ? std::string("taken") : arms.error().message;
+  };
+  EXPECT_NE(refused({"left=S1", "right=S1"}).find("\"left\" and \"right\" would both be S1"),
+            std::string::npos);
+  EXPECT_NE(refused({"left=S1", "S2"}).find("NAME=S2"), std::string::npos);
+  EXPECT_NE(refused({"left=S1", "left=S2"}).find("\"left\" twice"), std::string::npos);
+  EXPECT_NE(refused({"left=auto"}).find("The arm \"left\": "), std::string::npos) << "which of two";
+}
+
 TEST(OpensViewer, WhereItIsAskedForOrAPersonWatchesInRealTime) {
   EXPECT_TRUE(session::opens_viewer(ViewerChoice::kAsked, false, true, false));
   EXPECT_FALSE(session::opens_viewer(ViewerChoice::kAsked, true, false, true)) << "no screen";

@@ -42,6 +42,7 @@ ShotChoice small_choice() {
 bool play(const fs::path& scene, double time,
           const std::function<void(const DrawnScene&, DrawnMoment&, const Plots&)>& look) {
   session::SessionOptions options;
+  options.several_arms = true;
   options.mesh_folder = THIMBLE_MESHES;
   options.duration = time + 0.05;
   auto played = PlayedScene::open(scene, options);
@@ -61,9 +62,9 @@ ShotPainter painter_of(const DrawnScene& scene, const ShotChoice& choice) {
 
 /// Tells at which second a scene is drawn: in touch, where the usual one is not.
 double second_of(const std::string& scene) {
-  static const std::map<std::string, double> others = {{"clay", 3.0},    {"clay_tablet", 5.0},
-                                                       {"tin_can", 4.2}, {"held_block", 2.4},
-                                                       {"box", 2.2},     {"charges", 3.0}};
+  static const std::map<std::string, double> others = {
+      {"clay", 3.0}, {"clay_tablet", 5.0}, {"tin_can", 4.2},  {"held_block", 2.4},
+      {"box", 2.2},  {"charges", 3.0},     {"two_hands", 3.0}};
   const auto found = others.find(scene);
   return found == others.end() ? 1.6 : found->second;
 }

@@ -5,12 +5,12 @@
 #include <yaml-cpp/yaml.h>
 
 #include <charconv>
-#include <cstdint>
 #include <fstream>
 #include <optional>
 #include <string_view>
 #include <system_error>
 
+#include "text_sum.h"
 #include "user_folders.h"
 #include "yaml/yaml_reader.h"
 
@@ -18,13 +18,6 @@ namespace thimble::scene {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// FNV-1a, 64 bits [Fowler, Noll, Vo]: names a file, not against malice.
-std::uint64_t text_sum(std::string_view text) {
-  std::uint64_t sum = 0xcbf29ce484222325;
-  for (const char c : text) sum = (sum ^ static_cast<unsigned char>(c)) * 0x100000001b3;
-  return sum;
-}
 
 /// Returns the item of a list that a word means: its number, its name, or a key that it alone has.
 std::optional<YAML::Node> item_of(const YAML::Node& list, const std::string& word) {
@@ -103,7 +96,7 @@ bool make_absolute(YAML::Node map, const char* key, const fs::path& beside) {
   if (!map.IsMap() || !map[key] || !map[key].IsScalar()) return false;
   const fs::path named = map[key].Scalar();
   std::error_code status;
-  if (named.is_absolute() || !fs::is_regular_file(beside / named, status)) return false;
+  if (named.empty() || named.is_absolute() || !fs::exists(beside / named, status)) return false;
   map[key] = fs::absolute(beside / named).lexically_normal().string();
   return true;
 }
@@ -144,6 +137,12 @@ driver::Result<fs::path> keep_scene(const std::string& text,
       if (auto done = change_scene(root, one); !done) return done.error();
     }
     rewritten |= make_absolute(root, "arm", beside);
+    if (root["hand"]) rewritten |= make_absolute(root["hand"], "bag", beside);
+    if (root["arms"] && root["arms"].IsSequence()) {
+      for (YAML::Node arm : root["arms"]) {
+        if (arm.IsMap() && arm["hand"]) rewritten |= make_absolute(arm["hand"], "bag", beside);
+      }
+    }
     if (root["objects"] && root["objects"].IsSequence()) {
       for (YAML::Node object : root["objects"]) {
         rewritten |= make_absolute(object, "mesh", beside);

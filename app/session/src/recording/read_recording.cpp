@@ -91,8 +91,10 @@ bool read_info(const H5Handle& file, RecordingInfo& info) {
     if (!read) return false;
     *text = std::move(*read);
   }
+  info.arm_in_scene = read_text(file, "arm_in_scene").value_or("");
   // What a person is told of; the texts of files stay as they were.
-  for (std::string* name : {&info.scene, &info.arm, &info.device, &info.clock, &info.program}) {
+  for (std::string* name :
+       {&info.scene, &info.arm, &info.device, &info.clock, &info.program, &info.arm_in_scene}) {
     make_printable(*name);
   }
   return read_attribute(file, "rate", H5T_NATIVE_DOUBLE, info.rate) && info.rate > 0 &&

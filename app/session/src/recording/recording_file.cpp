@@ -86,6 +86,7 @@ bool write_info(const H5Handle& file, const RecordingInfo& info) {
          write_text(file, "arm_file", info.arm_file) &&
          write_text(file, "arm_text", info.arm_text) && write_text(file, "device", info.device) &&
          write_text(file, "clock", info.clock) && write_text(file, "program", info.program) &&
+         (info.arm_in_scene.empty() || write_text(file, "arm_in_scene", info.arm_in_scene)) &&
          write_text(file, "faults", faults) &&
          write_number(file, "rate", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, info.rate) &&
          write_number(file, "seed", H5T_STD_U64LE, H5T_NATIVE_UINT64, info.seed) &&
@@ -254,6 +255,13 @@ driver::Result<void> write_recording(const std::filesystem::path& path, const Re
   if (!file) return file.error();
   if (auto written = file->append(ticks); !written) return written;
   return file->finish();
+}
+
+std::filesystem::path file_of_arm(const std::filesystem::path& path,
+                                  const std::string& arm_in_scene) {
+  if (arm_in_scene.empty()) return path;
+  return path.parent_path() /
+         (path.stem().string() + "_" + arm_in_scene + path.extension().string());
 }
 
 }  // namespace thimble::session

@@ -6,6 +6,7 @@
 #include <memory>
 #include <utility>
 
+#include "recording/replay_watch.h"
 #include "text_file.h"
 #include "thimble/driver/device_state.h"
 #include "thimble/driver/force_law.h"
@@ -79,38 +80,146 @@ driver::Result<std::filesystem::path> scene_of(const Recording& recording,
   return scene::find_scene(scene);
 }
 
-}  // namespace
-
-driver::Result<Replay> replay(const Recording& recording, const std::string& scene_name) {
-  const auto file = scene_of(recording, scene_name);
-  if (!file) return file.error();
-  const auto scene = scene::load_scene(*file, {.arm = recording.info.arm_file});
-  if (!scene) return scene.error();
-  auto objects = scene::SceneObjects::build(*scene);
-  if (!objects) return objects.error();
-
+/// Begins a replay of a recording in a scene.
+Replay begin_replay(const Recording& recording, const scene::Scene& scene,
+                    const std::filesystem::path& file) {
   Replay replay;
   RecordingInfo& info = replay.felt.info;
   info = recording.info;
-  info.scene = scene->name;
-  info.scene_file = file->string();
-  info.scene_text = scene::text_of(*file);
+  info.scene = scene.name;
+  info.scene_file = file.string();
+  info.scene_text = scene::text_of(file);
   info.program = scene::program_name();
   info.device = "replay";
   info.clock = "virtual";
   replay.felt.complete = true;
   replay.felt.ticks.reserve(recording.ticks.size());
-  std::int64_t before_ns = recording.ticks.empty() ? 0 : recording.ticks.front().time_ns;
-  for (const TickRecord& then : recording.ticks) {
-    // As the device reckons it, so that it is the same to the bit.
-    const double dt = static_cast<double>(then.time_ns - before_ns) * 1e-9;
-    before_ns = then.time_ns;
-    const driver::ForceCommand command = (*objects)->touch()(state_of(then, dt));
+  return replay;
+}
+
+/// Gives the arm's state of one tick to a scene's force law again, and compares its answer. A hand
+/// whose arm was in fault felt nothing, and gives nothing.
+template <class Touch>
+void feel_again(const Recording& recording, std::size_t i, Touch& touch, Replay& replay) {
+  const TickRecord& then = recording.ticks[i];
+  const std::int64_t before_ns = recording.ticks[i == 0 ? 0 : i - 1].time_ns;
+  // As the device reckons it, so that it is the same to the bit.
+  const double dt = static_cast<double>(then.time_ns - before_ns) * 1e-9;
+  // A fault that the reading of the arm found came before the law, one of the gate after it; where
+  // the law was not asked nothing was felt.
+  const bool off = !recording.info.arm_in_scene.empty() && then.fault != driver::Fault::kNone &&
+                   !then.in_contact && vector(then.f_wanted_W).isZero(0);
+  const driver::ForceCommand command = off ? driver::ForceCommand{} : touch(state_of(then, dt));
+  replay.felt.ticks.push_back(with_answer(then, command));
+  compare(then, replay.felt.ticks.back(), replay.compared);
+}
+
+/// Returns which recording is each arm's, in the scene's order.
+driver::Result<std::vector<std::size_t>> arms_of(std::span<const Recording> recordings,
+                                                 const scene::Scene& scene,
+                                                 const std::filesystem::path& file) {
+  std::vector<std::string> names{scene.arm_name};
+  for (const scene::SceneArm& arm : scene.more_arms) names.push_back(arm.name);
+  std::vector<std::size_t> order;
+  for (const std::string& name : names) {
+    const auto is_it = [&name](const Recording& one) { return one.info.arm_in_scene == name; };
+    const auto found = std::find_if(recordings.begin(), recordings.end(), is_it);
+    if (found == recordings.end()) {
+      return driver::Error{file.string() + ": no recording of the arm \"" + name +
+                           "\" was given; the scene's arms touch together, so name all of them."};
+    }
+    order.push_back(static_cast<std::size_t>(found - recordings.begin()));
+  }
+  const Recording& first = recordings.front();
+  for (const Recording& one : recordings) {
+    const bool same = one.ticks.size() == first.ticks.size() && one.info.rate == first.info.rate &&
+                      one.info.scene_text == first.info.scene_text;
+    if (!same || recordings.size() != names.size()) {
+      return driver::Error{file.string() + ": the recordings are not of one run of its " +
+                           std::to_string(names.size()) + " arms."};
+    }
+  }
+  return order;
+}
+
+}  // namespace
+
+namespace {
+
+/// Builds the objects of a scene and shows them to who looks on.
+driver::Result<std::shared_ptr<scene::SceneObjects>> build(const scene::Scene& scene,
+                                                           ReplayWatch* watch) {
+  auto built = scene::SceneObjects::build(scene);
+  if (!built) return built.error();
+  std::shared_ptr<scene::SceneObjects> objects = std::move(built).value();
+  if (watch != nullptr) watch->begin(scene, objects);
+  return objects;
+}
+
+driver::Result<Replay> replay_alone(const Recording& recording, const std::string& scene_name,
+                                    ReplayWatch* watch) {
+  const auto file = scene_of(recording, scene_name);
+  if (!file) return file.error();
+  const auto scene = scene::load_scene(*file, {.arm = recording.info.arm_file});
+  if (!scene) return scene.error();
+  const auto objects = build(*scene, watch);
+  if (!objects) return objects.error();
+
+  Replay replay = begin_replay(recording, *scene, *file);
+  for (std::size_t i = 0; i < recording.ticks.size(); ++i) {
+    feel_again(recording, i, (*objects)->touch(), replay);
     (*objects)->serve_pages();
-    replay.felt.ticks.push_back(with_answer(then, command));
-    compare(then, replay.felt.ticks.back(), replay.compared);
+    if (watch != nullptr) watch->take(replay.felt.ticks.back());
   }
   return replay;
+}
+
+}  // namespace
+
+driver::Result<Replay> replay(const Recording& recording, const std::string& scene_name) {
+  return replay_alone(recording, scene_name, nullptr);
+}
+
+driver::Result<std::vector<Replay>> replay_together(std::span<const Recording> recordings,
+                                                    const std::string& scene_name) {
+  return replay_together(recordings, scene_name, nullptr);
+}
+
+driver::Result<std::vector<Replay>> replay_together(std::span<const Recording> recordings,
+                                                    const std::string& scene_name,
+                                                    ReplayWatch* watch) {
+  if (recordings.empty()) return driver::Error{"There is no recording to replay."};
+  if (recordings.size() == 1 && recordings.front().info.arm_in_scene.empty()) {
+    auto alone = replay_alone(recordings.front(), scene_name, watch);
+    if (!alone) return alone.error();
+    std::vector<Replay> one;
+    one.push_back(std::move(alone).value());
+    return one;
+  }
+  const auto file = scene_of(recordings.front(), scene_name);
+  if (!file) return file.error();
+  const auto scene = scene::load_scene(*file, {.arm = {}, .several_arms = true});
+  if (!scene) return scene.error();
+  const auto order = arms_of(recordings, *scene, *file);
+  if (!order) return order.error();
+  const auto objects = build(*scene, watch);
+  if (!objects) return objects.error();
+  std::vector<Replay> replays;
+  for (const Recording& recording : recordings) {
+    replays.push_back(begin_replay(recording, *scene, *file));
+  }
+  const double period = 1 / recordings.front().info.rate;
+  for (std::size_t i = 0; i < recordings.front().ticks.size(); ++i) {
+    // As in the run: each arm in the scene's order, then the bodies that all of them touch.
+    for (std::size_t arm = 0; arm < order->size(); ++arm) {
+      const std::size_t k = (*order)[arm];
+      feel_again(recordings[k], i, (*objects)->touch(arm), replays[k]);
+    }
+    (*objects)->step_bodies(period);
+    (*objects)->serve_pages();
+    if (watch != nullptr) watch->take(replays[order->front()].felt.ticks.back());
+  }
+  return replays;
 }
 
 driver::Result<void> check_repeatable(const Recording& recording, const std::string& scene) {

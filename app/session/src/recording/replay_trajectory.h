@@ -42,6 +42,13 @@ struct TrajectoryReplay {
   TrajectoryComparison compared;
 };
 
+/// Lets a probe that went along a trajectory touch the scene of a file. `frame` as below.
+/// Precondition: the trajectory has two points and lasts for a day at most. The error says what to
+/// mend. Real-time: never from the servo thread.
+driver::Result<TrajectoryReplay> touch_along(std::vector<TrajectoryPoint> trajectory,
+                                             const std::string& frame,
+                                             const std::filesystem::path& scene_file);
+
 /// Reads a trajectory file and lets its probe touch a scene. `frame`: the object whose mesh file
 /// has the trajectory's frame and unit; "world" or empty: it is told in the world. The error says
 /// what to mend. Real-time: never from the servo thread.

@@ -38,6 +38,33 @@ driver::Result<void> into_world(std::vector<TrajectoryPoint>& trajectory, const 
 
 }  // namespace
 
+driver::Result<TrajectoryReplay> touch_along(std::vector<TrajectoryPoint> trajectory,
+                                             const std::string& frame,
+                                             const std::filesystem::path& scene_file) {
+  const auto scene = scene::load_scene(scene_file);
+  if (!scene) return scene.error();
+  if (auto placed = into_world(trajectory, *scene, frame); !placed) return placed.error();
+  auto objects = scene::SceneObjects::build(*scene);
+  if (!objects) return objects.error();
+  TrajectoryReplay replay;
+  replay.compared =
+      replay_trajectory(trajectory, scene->rate, **objects,
+                        [&](const driver::TickRecord& tick) { replay.felt.ticks.push_back(tick); });
+  replay.felt.complete = true;
+  replay.felt.info = {.scene = scene->name,
+                      .scene_file = scene_file.string(),
+                      .scene_text = scene::text_of(scene_file),
+                      .arm = scene->arm.name,
+                      .arm_file = scene->arm_file.string(),
+                      .arm_text = scene::text_of(scene->arm_file),
+                      .device = {},
+                      .clock = "virtual",
+                      .program = scene::program_name(),
+                      .rate = scene->rate,
+                      .seed = scene->seed};
+  return replay;
+}
+
 driver::Result<TrajectoryReplay> replay_trajectory_file(const std::filesystem::path& file,
                                                         TrajectoryForm form,
                                                         const std::string& frame,
@@ -49,31 +76,12 @@ driver::Result<TrajectoryReplay> replay_trajectory_file(const std::filesystem::p
   }
   auto trajectory = read_trajectory(file, form);
   if (!trajectory) return trajectory.error();
-  const auto scene = scene::load_scene(scene_file);
-  if (!scene) return scene.error();
-  if (auto placed = into_world(*trajectory, *scene, frame); !placed) return placed.error();
   constexpr double kLongest = 86400;  // s
   if (!(trajectory->back().time - trajectory->front().time < kLongest)) {
     return driver::Error{file.string() + " lasts for more than a day; --time says the unit."};
   }
-  auto objects = scene::SceneObjects::build(*scene);
-  if (!objects) return objects.error();
-  TrajectoryReplay replay;
-  replay.compared =
-      replay_trajectory(*trajectory, scene->rate, **objects,
-                        [&](const driver::TickRecord& tick) { replay.felt.ticks.push_back(tick); });
-  replay.felt.complete = true;
-  replay.felt.info = {.scene = scene->name,
-                      .scene_file = scene_file.string(),
-                      .scene_text = scene::text_of(scene_file),
-                      .arm = scene->arm.name,
-                      .arm_file = scene->arm_file.string(),
-                      .arm_text = scene::text_of(scene->arm_file),
-                      .device = "trajectory " + file.string(),
-                      .clock = "virtual",
-                      .program = scene::program_name(),
-                      .rate = scene->rate,
-                      .seed = scene->seed};
+  auto replay = touch_along(std::move(trajectory).value(), frame, scene_file);
+  if (replay) replay->felt.info.device = "trajectory " + file.string();
   return replay;
 }
 

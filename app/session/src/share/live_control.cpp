@@ -13,6 +13,11 @@ LiveControl::LiveControl(const scene::Scene& scene, render::SceneTouch& touch,
   hand_.p_WH.fill(std::numeric_limits<double>::quiet_NaN());  // equals nothing that is asked for
 }
 
+void LiveControl::add_simulation(scene::ArmSimulation* simulation) {
+  several_ = true;
+  if (simulation != nullptr) others_.push_back(simulation);
+}
+
 void LiveControl::join(SharedRun& shared, bool hand_by_mouse, const std::atomic<bool>& stop) {
   shared_ = &shared;
   hand_by_mouse_ = hand_by_mouse;
@@ -20,7 +25,7 @@ void LiveControl::join(SharedRun& shared, bool hand_by_mouse, const std::atomic<
 }
 
 driver::ForceCommand LiveControl::operator()(const driver::DeviceState& state) noexcept {
-  knobs_.step(*shared_, last_, state.dt);
+  if (!several_) knobs_.step(*shared_, last_, state.dt);
   driver::ForceCommand command = touch_(state);
   if (real_time_) {
     const double way = state.dt / kFade;
@@ -38,6 +43,9 @@ void LiveControl::take(const driver::TickRecord& record) noexcept {
     paused_ = paused;
     shared_->set_state(paused ? RunState::kPaused : RunState::kRunning);
     if (simulation_ != nullptr && real_time_) simulation_->hold(paused);
+    for (scene::ArmSimulation* other : others_) {
+      if (real_time_) other->hold(paused);
+    }
   }
   if (hand_by_mouse_ && simulation_ != nullptr) lead_hand();
   if (paused_ && !real_time_) wait_while_paused();

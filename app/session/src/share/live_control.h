@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "share/live_knobs.h"
 #include "share/shared_run.h"
@@ -29,6 +30,10 @@ class LiveControl final : public TickObserver {
   /// Real-time: never from the servo thread.
   LiveControl(const scene::Scene& scene, render::SceneTouch& touch,
               scene::ArmSimulation* simulation, bool real_time);
+  /// Takes the simulation of an arm after the first, which stands still with the first one's. The
+  /// scene's knobs are for one arm, and are not turned then. Real-time: never from the servo
+  /// thread.
+  void add_simulation(scene::ArmSimulation* simulation);
 
   /// Gives the knobs, to be described. Real-time: never from the servo thread.
   const LiveKnobs& knobs() const { return knobs_; }
@@ -39,6 +44,10 @@ class LiveControl final : public TickObserver {
   /// Real-time: safe.
   driver::ForceCommand operator()(const driver::DeviceState& state) noexcept;
 
+  /// Returns the share of the scene's force that is felt: less than 1 while it is paused.
+  /// Real-time: safe.
+  double gain() const noexcept { return gain_; }
+
   /// Takes one tick. Real-time: safe; in virtual time it waits while the run is paused.
   void take(const driver::TickRecord& record) noexcept override;
 
@@ -48,7 +57,9 @@ class LiveControl final : public TickObserver {
 
   render::SceneTouch& touch_;
   scene::ArmSimulation* simulation_;
+  std::vector<scene::ArmSimulation*> others_;  // of the arms after the first
   bool real_time_;
+  bool several_ = false;
   LiveKnobs knobs_;
   SharedRun* shared_ = nullptr;
   const std::atomic<bool>* stop_ = nullptr;

@@ -45,4 +45,20 @@ class RunSharing final : public TickObserver {
   std::uint64_t drawings_ = 0;  // that were stored, or came before
 };
 
+/// What viewers see of an arm after the first.
+class OtherArmSharing final : public TickObserver {
+ public:
+  /// Stores the ticks of an arm, counted from 1, into `shared`, which must outlive it.
+  OtherArmSharing(SharedRun& shared, std::size_t arm) noexcept : shared_(shared), arm_(arm) {}
+
+  /// Stores one tick. Real-time: safe.
+  void take(const driver::TickRecord& record) noexcept override {
+    shared_.store_tick_of(arm_, record);
+  }
+
+ private:
+  SharedRun& shared_;
+  std::size_t arm_;
+};
+
 }  // namespace thimble::session

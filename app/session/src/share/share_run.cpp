@@ -24,7 +24,11 @@ driver::Result<std::unique_ptr<SharedRun>> share_run(const Setup& setup, const L
   scene.period_ns = setup.period_ns();
   scene.wall_clock = setup.real_time();
   scene.hand_by_mouse = setup.hand_by_mouse();
-  scene.knobs = knobs.described();
+  if (setup.arms() == 1) scene.knobs = knobs.described();
+  for (std::size_t i = 0; setup.arms() > 1 && i < setup.arms(); ++i) {
+    if (i > 0) scene.more_arms.push_back(describe_arm(setup.arm_file(i), setup.device_name(i)));
+    (i == 0 ? scene.arm : scene.more_arms.back()).in_scene = setup.arm_name(i);
+  }
   const auto ring = std::min(
       static_cast<std::size_t>(std::ceil(kShownSeconds * setup.scene().rate)), kShownTicksMost);
   const std::string asked = options.share_name.empty() ? setup.scene().name : options.share_name;
@@ -38,6 +42,24 @@ driver::Result<std::unique_ptr<SharedRun>> share_run(const Setup& setup, const L
     shared = SharedRun::create(next, scene, ring);
   }
   return shared;
+}
+
+std::vector<RunSharing::Shaped> shaped_objects(const Setup& setup) {
+  std::vector<RunSharing::Shaped> shaped;
+  std::size_t first = 0, first_split = 0;
+  for (std::size_t i = 0; i < setup.scene().objects.size(); ++i) {
+    if (!setup.scene().objects[i].body.shape.named()) continue;
+    const render::BodyShape* shape = setup.objects().touch().object(i).shape();
+    const std::size_t vertices =
+        setup.objects().place(i + 1).vertex - setup.objects().place(i).vertex;
+    shaped.push_back({.shape = shape,
+                      .first = first,
+                      .first_split = first_split,
+                      .vertices = static_cast<std::int32_t>(vertices)});
+    first += vertices + shape->splits_left();
+    first_split += shape->splits_left();
+  }
+  return shaped;
 }
 
 }  // namespace thimble::session

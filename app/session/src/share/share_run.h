@@ -1,9 +1,11 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "setup.h"
 #include "share/live_knobs.h"
+#include "share/run_sharing.h"
 #include "share/shared_run.h"
 #include "thimble/driver/result.h"
 #include "thimble/session/session.h"
@@ -16,5 +18,9 @@ namespace thimble::session {
 /// the servo thread.
 driver::Result<std::unique_ptr<SharedRun>> share_run(const Setup& setup, const LiveKnobs& knobs,
                                                      const SessionOptions& options);
+
+/// Returns the objects whose vertices move for good, as they lie in what is shared. Real-time:
+/// never from the servo thread.
+std::vector<RunSharing::Shaped> shaped_objects(const Setup& setup);
 
 }  // namespace thimble::session

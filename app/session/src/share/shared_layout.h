@@ -23,13 +23,14 @@ namespace thimble::session {
 // Frames: W world.
 
 /// Changes with every change of this file. A reader of another version refuses.
-inline constexpr std::uint32_t kSharedVersion = 5;
+inline constexpr std::uint32_t kSharedVersion = 6;
 /// Stands in `SharedHead::ready` of a segment that is complete: "thimble1" in ASCII.
 inline constexpr std::uint64_t kSharedReady = 0x31656c626d696874;
 
 inline constexpr std::size_t kViewersMost = 16;    ///< Chosen: more than look on at a time.
 inline constexpr std::size_t kKnobsMost = 64;      ///< Chosen: more than a person can find.
 inline constexpr std::size_t kObjectsMost = 1024;  ///< Chosen, as a bound for readers.
+inline constexpr std::size_t kMoreArmsMost = 7;    ///< After the first, as in a scene.
 /// The most bytes that a reader maps: 100 million triangles and a long ring. Chosen.
 inline constexpr std::uint64_t kSharedBytesMost = std::uint64_t{1} << 33;
 
@@ -64,8 +65,9 @@ constexpr const char* name_of(RunState state) noexcept {
 /// What a viewer needs to draw the arm from its joint angles.
 struct SharedArm {
   SharedText<64> name{};
-  SharedText<64> device{};  ///< "sim", or the name of the arm on the desk.
-  std::uint32_t shape = 0;  ///< How it is built: see shared_geometry.h.
+  SharedText<64> device{};    ///< "sim", or the name of the arm on the desk.
+  SharedText<64> in_scene{};  ///< What the scene calls it, where it has several.
+  std::uint32_t shape = 0;    ///< How it is built: see shared_geometry.h.
   std::uint32_t unused = 0;
   std::array<double, 12> numbers{};  ///< Of the build, m, rad.
   std::array<double, 9> R_WB{};      ///< Row by row.
@@ -92,6 +94,8 @@ struct SharedHead {
   SharedText<64> scene{};
   SharedText<1024> scene_file{};
   SharedArm arm;
+  std::uint64_t more_arms = 0;  ///< That there are of the next.
+  std::array<SharedArm, kMoreArmsMost> others{};
   SharedTable objects, knobs, vertices, triangles, shaped, splits, ring;
 };
 static_assert(std::is_standard_layout_v<SharedHead>);
@@ -180,6 +184,7 @@ struct SharedLive {
   driver::Snapshot<SharedText<1024>> recording_path;  ///< Of the current or last recording.
   driver::Snapshot<ScenePoses> poses;
   driver::Snapshot<render::BodyPatch> patch;
+  std::array<driver::Snapshot<driver::TickRecord>, kMoreArmsMost> others;  ///< Newest ticks.
   std::array<SharedKnobState, kKnobsMost> knobs;
   SharedRequests requests;
 };

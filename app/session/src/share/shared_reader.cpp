@@ -117,6 +117,14 @@ bool SharedReader::newest(driver::TickRecord& record) const noexcept {
   return false;
 }
 
+bool SharedReader::newest_of(std::size_t arm, driver::TickRecord& record) const noexcept {
+  if (arm < 1 || arm > scene_.more_arms.size()) return false;
+  driver::TickRecord tick;
+  if (!live_->others[arm - 1].load(tick) || !sound(tick)) return false;
+  record = tick;
+  return true;
+}
+
 std::uint64_t SharedReader::ticks_since(std::uint64_t& serial,
                                         std::vector<driver::TickRecord>& ticks) const {
   const std::uint64_t stored = live_->ticks.load(std::memory_order_acquire);

@@ -48,6 +48,8 @@ class SharedReader {
 
   /// Copies the newest tick; false if there is none yet, or if the memory holds nonsense.
   bool newest(driver::TickRecord& record) const noexcept;
+  /// Copies the newest tick of an arm after the first, counted from 1. As `newest`.
+  bool newest_of(std::size_t arm, driver::TickRecord& record) const noexcept;
   /// Appends the ticks after number `serial` (0: from the oldest that is kept), oldest first, and
   /// moves `serial` to the last one. Tells how many were overwritten before they could be read.
   std::uint64_t ticks_since(std::uint64_t& serial, std::vector<driver::TickRecord>& ticks) const;

@@ -63,6 +63,7 @@ std::array<double, 3> plain(const Eigen::Vector3d& v) {
 void put_arm(const SharedScene::Arm& arm, SharedArm& to) {
   put(arm.name, to.name);
   put(arm.device, to.device);
+  put(arm.in_scene, to.in_scene);
   put_geometry(arm.geometry, to);
   Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(to.R_WB.data()) = arm.R_WB;
   to.p_WB = plain(arm.p_WB);
@@ -112,6 +113,8 @@ void SharedRun::write(const SharedScene& scene, std::size_t ring_ticks) {
   put(scene.name, head_->scene);
   put(scene.file, head_->scene_file);
   put_arm(scene.arm, head_->arm);
+  head_->more_arms = std::min(scene.more_arms.size(), kMoreArmsMost);
+  for (std::size_t i = 0; i < head_->more_arms; ++i) put_arm(scene.more_arms[i], head_->others[i]);
 
   const auto objects = table_in<SharedObject>(memory, head_->objects);
   std::uint64_t shaped = 0, splits = 0;

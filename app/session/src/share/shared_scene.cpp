@@ -74,6 +74,7 @@ bool take_arm(const SharedArm& shared, SharedScene::Arm& arm) {
   }
   arm.name = text_of(shared.name);
   arm.device = text_of(shared.device);
+  arm.in_scene = text_of(shared.in_scene);
   arm.R_WB = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(shared.R_WB.data());
   arm.p_WB = vector_of(shared.p_WB);
   arm.min_W = vector_of(shared.min_W);
@@ -197,6 +198,11 @@ driver::Result<SharedScene> read_shared_scene(std::span<const std::byte> memory)
     return broken("its loop has no period or no limit");
   }
   if (!take_arm(head.arm, scene.arm)) return broken("its arm makes no sense");
+  if (head.more_arms > kMoreArmsMost) return broken("too many arms");
+  scene.more_arms.resize(head.more_arms);
+  for (std::size_t i = 0; i < scene.more_arms.size(); ++i) {
+    if (!take_arm(head.others[i], scene.more_arms[i])) return broken("an arm makes no sense");
+  }
   for (const SharedTriangle& triangle : scene.triangles) {
     for (const std::uint32_t vertex : triangle) {
       if (vertex >= head.vertices.count) return broken("a triangle has no vertex");

@@ -42,6 +42,7 @@ struct SharedScene {
   struct Arm {
     std::string name;
     std::string device;
+    std::string in_scene{};                              ///< What the scene calls it, of several.
     std::optional<driver::ArmGeometry> geometry{};       ///< How it is built; none: only its tip.
     Eigen::Matrix3d R_WB = Eigen::Matrix3d::Identity();  ///< Rotation of its base in the world.
     Eigen::Vector3d p_WB{0, 0, 0};                       ///< Where its base stands, m.
@@ -58,6 +59,7 @@ struct SharedScene {
   bool wall_clock = false;
   bool hand_by_mouse = false;
   Arm arm;
+  std::vector<Arm> more_arms;  ///< After the first; at most kMoreArmsMost.
   std::vector<Object> objects;
   std::vector<Knob> knobs;
   std::vector<Eigen::Vector3d> vertices;  ///< W, m, as they were before the first tick.

@@ -19,10 +19,11 @@ enum class Fault : std::uint8_t {
   kMotorsReversed,    ///< The tip gained speed against the force that was sent (motion_watch.h).
   kEncoderFrozen,     ///< A joint did not move under a changing force while others did.
   kCountsUnchanged,   ///< No encoder counted while a force was held (motion_watch.h).
+  kOtherArm,          ///< Another arm of the same run came to a fault.
 };
 
 /// The last of the faults: what is beyond it in a file or in shared memory is damaged.
-inline constexpr Fault kLastFault = Fault::kCountsUnchanged;
+inline constexpr Fault kLastFault = Fault::kOtherArm;
 
 /// Returns what a fault means and what to do, in one or two sentences for the user.
 /// Real-time: safe.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <variant>
 
 #include "body/motion/body_motions.h"
 #include "body/motion/held_touch.h"
@@ -31,21 +32,29 @@ constexpr double kHoldForceMax = 100;  // N
 // A round rim of half of them rolls over sides of 11 degrees.
 constexpr std::size_t kStandOn = RigidBody::kSupportMax;
 
-template <class Motion>
-Moved held(std::unique_ptr<MovingTouch<Motion>> object, const MotionChoice& choice,
-           const BodyCoupling& coupling) {
-  if (!choice.grip) return Moved(std::move(object));
+/// Fails if a hand cannot hold so.
+driver::Result<void> check_grip(const MotionChoice& choice) {
+  if (!choice.grip) return {};
   const Grip& grip = *choice.grip;
   // Written so that NaN is refused.
   if (!(grip.stiffness > 0 && grip.damping >= 0 && grip.force_max > 0) ||
       !std::isfinite(grip.stiffness + grip.damping + grip.force_max)) {
     return driver::Error{"A hand that holds needs a stiffness and a force above 0, and a damping."};
   }
-  return Moved(std::make_unique<HeldTouch<Motion>>(std::move(object), grip, coupling.step));
+  return {};
 }
 
-Moved move_three_ways(std::unique_ptr<ObjectTouch> surface, const TriangleMesh& mesh_W,
-                      const MotionChoice& choice, const BodyCoupling& coupling) {
+/// Returns the force law of an object that moves, held by the hand if the choice says so.
+template <class Motion>
+std::unique_ptr<ObjectTouch> moving(std::unique_ptr<ObjectTouch> surface, const Motion& motion,
+                                    const MotionChoice& choice, const BodyCoupling& coupling) {
+  auto object = std::make_unique<MovingTouch<Motion>>(std::move(surface), motion, coupling);
+  if (!choice.grip) return object;
+  return std::make_unique<HeldTouch<Motion>>(std::move(object), *choice.grip, coupling.step);
+}
+
+TranslatingMotion three_ways(const TriangleMesh& mesh_W, const MotionChoice& choice,
+                             const BodyCoupling& coupling) {
   TranslatingBody body(choice.mass, choice.damping, choice.time_scale, coupling.step);
   body.set_velocity(choice.v_W / choice.time_scale);
   TranslatingMotion::Settings settings{.mass = choice.mass,
@@ -58,9 +67,41 @@ Moved move_three_ways(std::unique_ptr<ObjectTouch> surface, const TriangleMesh& 
       settings.lowest = std::min(settings.lowest, choice.floor->n_W.dot(p));
     }
   }
-  return held(std::make_unique<MovingTouch<TranslatingMotion>>(
-                  std::move(surface), TranslatingMotion(body, settings), coupling),
-              choice, coupling);
+  return TranslatingMotion(body, settings);
+}
+
+using AnyMotion = std::variant<TranslatingMotion, RigidMotion>;
+
+/// Returns how an object moves. Errors: as `move_object`.
+driver::Result<AnyMotion> motion_of(const TriangleMesh& mesh_W, const MotionChoice& choice,
+                                    const BodyCoupling& coupling) {
+  if (!(choice.reach >= 0)) return driver::Error{"A body's reach must be 0 m or more."};
+  if (!choice.v_W.allFinite() || !choice.omega_W.allFinite()) {
+    return driver::Error{"A body's speed at first must be finite."};
+  }
+  const auto mass = mass_properties(mesh_W, choice.mass);
+  if (!mass) return mass.error();
+  RigidBodySettings settings{.mass = *mass,
+                             .gravity_W = choice.gravity_W,
+                             .damping = choice.damping,
+                             .angular_damping = choice.angular_damping,
+                             .time_scale = choice.time_scale,
+                             .floor = choice.floor,
+                             .support_B = {}};
+  if (choice.floor) {
+    for (const Eigen::Vector3d& p : support_points(mesh_W, kStandOn)) {
+      settings.support_B.push_back(mass->q_WB.conjugate() * (p - mass->p_WC));
+    }
+  }
+  auto body = RigidBody::build(settings);
+  if (!body) return body.error();
+  if (auto held = check_grip(choice); !held) return held.error();
+  // The numbers have been found right for both kinds.
+  if (choice.kind == MotionKind::kTranslate) return AnyMotion(three_ways(mesh_W, choice, coupling));
+  const Eigen::Vector3d omega_B = mass->q_WB.conjugate() * choice.omega_W;
+  body->set_momentum(choice.mass * choice.v_W / choice.time_scale,
+                     mass->q_WB * mass->inertia.cwiseProduct(omega_B) / choice.time_scale);
+  return AnyMotion(RigidMotion(*body, choice.reach));
 }
 
 }  // namespace
@@ -111,36 +152,30 @@ void MotionChoice::read(SettingsReader& reader) {
 
 Moved move_object(std::unique_ptr<ObjectTouch> surface, const TriangleMesh& mesh_W,
                   const MotionChoice& choice, const BodyCoupling& coupling) {
-  if (!(choice.reach >= 0)) return driver::Error{"A body's reach must be 0 m or more."};
-  if (!choice.v_W.allFinite() || !choice.omega_W.allFinite()) {
-    return driver::Error{"A body's speed at first must be finite."};
-  }
-  const auto mass = mass_properties(mesh_W, choice.mass);
-  if (!mass) return mass.error();
-  RigidBodySettings settings{.mass = *mass,
-                             .gravity_W = choice.gravity_W,
-                             .damping = choice.damping,
-                             .angular_damping = choice.angular_damping,
-                             .time_scale = choice.time_scale,
-                             .floor = choice.floor,
-                             .support_B = {}};
-  if (choice.floor) {
-    for (const Eigen::Vector3d& p : support_points(mesh_W, kStandOn)) {
-      settings.support_B.push_back(mass->q_WB.conjugate() * (p - mass->p_WC));
-    }
-  }
-  auto body = RigidBody::build(settings);
-  if (!body) return body.error();
-  // The numbers have been found right for both kinds.
-  if (choice.kind == MotionKind::kTranslate) {
-    return move_three_ways(std::move(surface), mesh_W, choice, coupling);
-  }
-  const Eigen::Vector3d omega_B = mass->q_WB.conjugate() * choice.omega_W;
-  body->set_momentum(choice.mass * choice.v_W / choice.time_scale,
-                     mass->q_WB * mass->inertia.cwiseProduct(omega_B) / choice.time_scale);
-  return held(std::make_unique<MovingTouch<RigidMotion>>(
-                  std::move(surface), RigidMotion(*body, choice.reach), coupling),
-              choice, coupling);
+  const auto motion = motion_of(mesh_W, choice, coupling);
+  if (!motion) return motion.error();
+  return std::visit(
+      [&](const auto& own) { return Moved(moving(std::move(surface), own, choice, coupling)); },
+      *motion);
+}
+
+driver::Result<SharedObject> move_shared_object(std::vector<std::unique_ptr<ObjectTouch>> surfaces,
+                                                const TriangleMesh& mesh_W,
+                                                const MotionChoice& choice,
+                                                const BodyCoupling& coupling) {
+  const auto motion = motion_of(mesh_W, choice, coupling);
+  if (!motion) return motion.error();
+  return std::visit(
+      [&]<class Motion>(const Motion& own) {
+        const auto body = std::make_shared<SharedBodyOf<Motion>>(own);
+        SharedObject object{.touches = {}, .body = body};
+        for (auto& surface : surfaces) {
+          object.touches.push_back(moving(
+              std::move(surface), SharedMotion<Motion>(body, surfaces.size()), choice, coupling));
+        }
+        return driver::Result<SharedObject>(std::move(object));
+      },
+      *motion);
 }
 
 }  // namespace thimble::render

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
+#include "body/motion/shared_body.h"
 #include "thimble/driver/result.h"
 #include "thimble/render/body/motion_choice.h"
 #include "thimble/render/mesh/triangle_mesh.h"
@@ -16,5 +18,18 @@ driver::Result<std::unique_ptr<ObjectTouch>> move_object(std::unique_ptr<ObjectT
                                                          const TriangleMesh& mesh_W,
                                                          const MotionChoice& choice,
                                                          const BodyCoupling& coupling);
+
+/// An object that several hands touch: its force law on each of them, and the body that they share.
+struct SharedObject {
+  std::vector<std::unique_ptr<ObjectTouch>> touches;  ///< One for each hand.
+  std::shared_ptr<SharedBody> body;                   ///< Moved on by whoever runs the loop.
+};
+
+/// Lets several hands move one object: wraps its force laws, made for `mesh_W`, one for each hand.
+/// Errors and time: as `move_object`.
+driver::Result<SharedObject> move_shared_object(std::vector<std::unique_ptr<ObjectTouch>> surfaces,
+                                                const TriangleMesh& mesh_W,
+                                                const MotionChoice& choice,
+                                                const BodyCoupling& coupling);
 
 }  // namespace thimble::render

@@ -23,6 +23,13 @@ namespace thimble::scene {
 struct WorkspaceBox {
   Eigen::Vector3d min_W{0, 0, 0};  ///< Lowest corner.
   Eigen::Vector3d max_W{0, 0, 0};  ///< Highest corner.
+
+  /// Returns whether a point (W, m) is in it or on its sides. Real-time: safe.
+  bool holds(const Eigen::Vector3d& p_W) const noexcept {
+    return (p_W.array() >= min_W.array()).all() && (p_W.array() <= max_W.array()).all();
+  }
+  /// Returns its middle, m. Real-time: safe.
+  Eigen::Vector3d middle() const noexcept { return (min_W + max_W) / 2; }
 };
 
 /// What an arm's maker or refitter declares of it; scenes that ask for more are told so.

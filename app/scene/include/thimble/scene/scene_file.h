@@ -58,6 +58,31 @@ struct SceneObject {
   render::BodyCoupling coupling;            ///< How stiff its surface answers, if it moves.
 };
 
+/// Where a scene puts one of several arms: turned about the vertical, then moved.
+struct ArmPlace {
+  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();  ///< By a multiple of 90 degrees.
+  Eigen::Vector3d p{0, 0, 0};                       ///< m
+
+  /// Returns an arm, whose file says how it stands alone, where it stands among others.
+  /// Real-time: never from the servo thread.
+  ArmFile put(ArmFile arm) const;
+};
+
+/// One of several arms of a scene, with the hand that leads it if it is simulated.
+struct SceneArm {
+  std::string name;                ///< Unlike any other of the scene ("left").
+  std::filesystem::path arm_file;  ///< Whence `arm` comes.
+  ArmPlace place;                  ///< Where the scene puts it.
+  ArmFile arm;                     ///< Put there.
+  std::vector<HandWaypoint> hand;  ///< What the simulated hand does.
+};
+
+/// What a fault of one of several arms does to the others.
+enum class FaultRule {
+  kTogether,  ///< It takes the force of all, and ends the run.
+  kApart,     ///< The others go on.
+};
+
 /// One scene: which arm touches what, how fast the loop runs, and what the simulated hand does.
 struct Scene {
   std::string name;                ///< For people.
@@ -75,6 +100,10 @@ struct Scene {
   int energy_line = 0;                        ///< Where in the scene's file; 0 if not named.
   std::vector<SceneObject> objects;           ///< What can be touched.
   std::vector<HandWaypoint> hand;             ///< What the simulated hand does.
+  std::string arm_name;                       ///< Of the first of several arms; else empty.
+  ArmPlace arm_place;                         ///< Of the first of several arms.
+  std::vector<SceneArm> more_arms;            ///< The arms after the first, if there are several.
+  FaultRule faults = FaultRule::kTogether;    ///< Of several arms.
 };
 
 /// What a scene is read with.
@@ -87,6 +116,9 @@ struct SceneReading {
   /// Below 1 only where the scene bears it: every stiffness at most half of what the law of the
   /// latency lets this arm and hand hold [PHYSICS 1.1], and no setting refused at that rate.
   double rate_factor = 1;
+  /// Whether the reader knows of several arms (Scene::more_arms); a scene that has them is an error
+  /// for all others.
+  bool several_arms = false;
 };
 
 /// Reads the scene that a person means: a name ("elephant") or a path, as `find_scene` finds it;

@@ -15,7 +15,8 @@
 
 namespace thimble::render {
 class PagedSurface;
-}
+class SharedBody;
+}  // namespace thimble::render
 
 namespace thimble::scene {
 
@@ -32,8 +33,13 @@ class SceneObjects {
   /// and what to mend. Real-time: never from the servo thread.
   static driver::Result<std::unique_ptr<SceneObjects>> build(const Scene& scene);
 
-  /// Returns the force law of the whole scene.
-  render::SceneTouch& touch() const { return *touch_; }
+  /// Returns the force law of the whole scene, on one of its arms.
+  render::SceneTouch& touch(std::size_t arm = 0) const { return *touches_[arm]; }
+  /// Moves on, by `step` s, the bodies that several arms touch; with one arm its force law does
+  /// that. Once, after the laws of all arms. Real-time: safe.
+  void step_bodies(double step) noexcept;
+  /// Returns the bodies that several arms touch, in the order of `moving`; none with one arm.
+  std::span<const std::shared_ptr<render::SharedBody>> shared_bodies() const { return bodies_; }
   /// Returns the meshes of all objects in the world as one (m), as they are at first: those that
   /// are touched, and those that stand for shapes; those on the disk are not in it.
   const render::TriangleMesh& mesh_W() const { return mesh_W_; }
@@ -63,7 +69,8 @@ class SceneObjects {
   SceneObjects() = default;
 
   std::vector<std::shared_ptr<render::PagedSurface>> pages_;  // of the objects on the disk
-  std::unique_ptr<render::SceneTouch> touch_;
+  std::vector<std::unique_ptr<render::SceneTouch>> touches_;  // one for each arm
+  std::vector<std::shared_ptr<render::SharedBody>> bodies_;
   render::TriangleMesh mesh_W_;
   std::vector<MeshPlace> places_;  // of each object in mesh_W_, and of its end
   std::vector<std::size_t> moving_;

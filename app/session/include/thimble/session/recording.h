@@ -29,7 +29,14 @@ struct RecordingInfo {
   std::string program;     ///< Version, revision, build type and compiler.
   double rate = 0;         ///< Hz
   std::uint64_t seed = 0;  ///< Of everything random in the simulation.
+  /// What the scene calls the arm, where it has several; each has a recording of its own.
+  std::string arm_in_scene{};
 };
+
+/// Returns where the recording of one of several arms lies that is asked for as `path`: beside it,
+/// with the arm's name (touch_left.h5); of a single arm, which has no name, `path` itself.
+std::filesystem::path file_of_arm(const std::filesystem::path& path,
+                                  const std::string& arm_in_scene);
 
 /// A recording in memory.
 struct Recording {
@@ -91,6 +98,13 @@ struct Replay {
 /// bit, is given to the scene's force law. `scene`: file or name; empty: that of the recording. The
 /// arm file is the recording's. The error names the file and what to mend.
 driver::Result<Replay> replay(const Recording& recording, const std::string& scene = {});
+
+/// Lets the recorded hands of a scene with several arms touch it again together, a recording each,
+/// in any order. The replays come in the order of the recordings. The error also says which arm is
+/// missing, or that the recordings are not of one run. Real arms' files are not put in place of the
+/// scene's.
+driver::Result<std::vector<Replay>> replay_together(std::span<const Recording> recordings,
+                                                    const std::string& scene = {});
 
 /// Fails with what keeps a replay from being the same to the bit: another scene, arm file or build,
 /// or ticks that the recording lacks. `scene` as for `replay`.

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -47,11 +48,23 @@ enum class ClockKind {
   kWall,     ///< In real time; a real arm always is.
 };
 
+/// Opens the link to a real arm in place of `scene::open_link`, for tests.
+using OpenLink = std::function<driver::Result<std::unique_ptr<driver::ArmLink>>(
+    const scene::ArmFile&, driver::Clock&)>;
+
+/// A real arm in place of one of a scene's several.
+struct RealArmUse {
+  driver::FoundArm arm;       ///< Which board it is.
+  scene::RealArmTerms terms;  ///< On which it may be used.
+  OpenLink open_link = {};    ///< In place of its own wire; empty: as it is.
+};
+
 /// What the user asks for beyond the scene.
 struct SessionOptions {
   ClockKind clock = ClockKind::kVirtual;  ///< which time it runs on
   /// Moves on the time of a virtual run in place of its own clock, which never waits: for runs that
-  /// go on only when somebody else has done his part. Not with a real arm.
+  /// go on only when somebody else has done his part. With a real arm only where `open_link` stands
+  /// in for its wire.
   std::shared_ptr<driver::Clock> own_clock = {};
   std::optional<double> duration = {};     ///< s; the scene's own if empty
   std::optional<std::uint64_t> seed = {};  ///< of everything random; the scene's own if empty
@@ -59,13 +72,19 @@ struct SessionOptions {
   std::filesystem::path arm_file = {};     ///< file or name, in place of the scene's own
   std::optional<driver::FoundArm> real_arm = {};  ///< in place of the simulated one
   std::optional<scene::RealArmTerms> terms = {};  ///< on which it may be used; needed with one
-  std::filesystem::path firmware = {};            ///< for a real arm that needs some (Falcon)
-  std::filesystem::path record = {};              ///< where every tick is written; empty: nowhere
-  bool share = false;                             ///< lets a viewer in this process see the run
-  bool share_if_possible = false;  ///< goes on unseen where there is no shared memory
-  bool share_out = false;          ///< lets viewers of other processes see it
+  /// Of a scene with several arms: which of them are real, by their names; one without a value, or
+  /// that is not named, is simulated.
+  std::map<std::string, std::optional<RealArmUse>> real_arms = {};
+  std::filesystem::path firmware = {};  ///< for a real arm that needs some (Falcon)
+  std::filesystem::path record = {};    ///< where every tick is written; empty: nowhere
+  bool share = false;                   ///< lets a viewer in this process see the run
+  bool share_if_possible = false;       ///< goes on unseen where there is no shared memory
+  bool share_out = false;               ///< lets viewers of other processes see it
   /// A viewer leads the simulated hand; the run ends when it is asked to.
   bool hand_by_mouse = false;
+  /// A program leads the simulated hand (Session::lead_hand): it waits where the scene's path
+  /// begins, and the run has no end of its own.
+  bool hand_by_program = false;
   std::string share_name = {};  ///< under which; empty: the scene's, with a number if it is taken
   double rate_factor = 1;  ///< of the loop, over the scene's (scene::SceneReading); not with a real
                            ///< arm, which has its own
@@ -76,10 +95,9 @@ struct SessionOptions {
   /// Runs until it is stopped: the simulated hand stays where its path ends, and faults leave the
   /// loop going with zero force. Not with a duration.
   bool endless = false;
-  /// Opens the link to the real arm in place of `scene::open_link`, for tests.
-  std::function<driver::Result<std::unique_ptr<driver::ArmLink>>(const scene::ArmFile&,
-                                                                 driver::Clock&)>
-      open_link = {};
+  /// The caller looks at every arm (Session::arms). For others a scene with several is an error.
+  bool several_arms = false;
+  OpenLink open_link = {};  ///< of `real_arm`
 };
 
 /// The stop flag of a run that nobody stops.
@@ -127,7 +145,7 @@ class Session {
   driver::ForceLaw own_law() noexcept;
   /// Adds an observer of every tick, after those that were added before; it must outlive the
   /// run. Fails once a tick has run. Real-time: never from the servo thread.
-  driver::Result<void> add_observer(TickObserver& observer);
+  driver::Result<void> add_observer(TickObserver& observer, std::size_t arm = 0);
 
   /// Runs the servo loop until the scene's time is over, `stop` is set, or, with the simulated arm,
   /// a fault; with a real arm the loop outlives faults with zero force, so that the arm can come
@@ -135,7 +153,8 @@ class Session {
   /// safe; it is the servo's thread.
   driver::ServoEnd run(const std::atomic<bool>& stop = kNeverStopped) noexcept;
   /// Runs the next tick alone; `run` is nothing but all of them. Returns why there is none any
-  /// more, once the run is over. Always with the same `stop`. Real-time: safe.
+  /// more, once the run is over. Always with the same `stop`. With several arms it is the tick of
+  /// each in turn, and then the step of the bodies that they touch. Real-time: safe.
   std::optional<driver::ServoEnd> step(const std::atomic<bool>& stop = kNeverStopped) noexcept;
   /// Leads the simulated hand to a point (W, m) from now on, in place of the scene's path; returns
   /// false if the arm does not reach it (ArmSimulation::lead). Precondition: the arm is simulated.
@@ -147,12 +166,16 @@ class Session {
   /// Returns the scene's force law, with its objects (render/scene_touch.h).
   render::SceneTouch& touch() noexcept;
   const render::SceneTouch& touch() const noexcept;  ///< As above.
+  /// Returns how many arms touch the scene; each is named by its number from 0 in what follows.
+  std::size_t arms() const noexcept;
+  /// Returns what the scene calls an arm; empty if it is the only one.
+  const std::string& arm_name(std::size_t arm) const noexcept;
   /// Returns the arm as the loop drives it. Precondition: the arm is open.
-  driver::Device& device() noexcept;
-  const driver::Device& device() const noexcept;  ///< As above.
+  driver::Device& device(std::size_t arm = 0) noexcept;
+  const driver::Device& device(std::size_t arm = 0) const noexcept;  ///< As above.
   /// Returns the simulation of the arm (scene/arm_simulation.h); null if the arm is real.
-  scene::ArmSimulation* simulation() noexcept;
-  const scene::ArmSimulation* simulation() const noexcept;  ///< As above.
+  scene::ArmSimulation* simulation(std::size_t arm = 0) noexcept;
+  const scene::ArmSimulation* simulation(std::size_t arm = 0) const noexcept;  ///< As above.
   /// Returns whether the run goes by the time of the world.
   bool real_time() const noexcept;
   /// Returns what the user must know, a sentence each: what was put right, left out or guessed of
@@ -160,9 +183,9 @@ class Session {
   const std::vector<std::string>& told() const noexcept;
 
   /// Returns the newest tick; any thread may load it.
-  const driver::Snapshot<driver::TickRecord>& newest() const noexcept;
+  const driver::Snapshot<driver::TickRecord>& newest(std::size_t arm = 0) const noexcept;
   /// Returns the ticks of the run, oldest first: every `stride`-th. Not beside a running servo.
-  std::span<const driver::TickRecord> ticks() const noexcept;
+  std::span<const driver::TickRecord> ticks(std::size_t arm = 0) const noexcept;
   /// Returns n where every n-th tick is kept: 1 up to a million ticks.
   std::uint64_t stride() const noexcept;
   /// Returns what the ticks sum up to. Not beside a running servo.
@@ -170,7 +193,7 @@ class Session {
   /// Returns the figures of a run that is over, or of one that is stopped here. Looks through the
   /// ticks for contacts that were lost. `grant`: what the kernel granted the servo's thread.
   /// Real-time: never from the servo thread.
-  RunFigures figures(const driver::RealTimeGrant& grant = {}) const;
+  RunFigures figures(const driver::RealTimeGrant& grant = {}, std::size_t arm = 0) const;
   /// Returns the number of the object of this name; empty if the scene has none.
   std::optional<int> find_object(const std::string& name) const;
   /// Returns the mesh of one object, or of all as one if `object` is negative, where it is now:
@@ -180,17 +203,19 @@ class Session {
   /// nothing was dented. As `mesh_now`.
   std::optional<render::TriangleMesh> deepest_dent() const;
 
-  /// Begins a recording of every tick from now on; ends the one before. One thread beside the
-  /// servo's. Real-time: never from the servo thread.
+  /// Begins a recording of every tick from now on; ends the one before. Of several arms each has a
+  /// file of its own (file_of_arm). One thread beside the servo's. Real-time: never from the servo
+  /// thread.
   driver::Result<void> begin_recording(const std::filesystem::path& path);
-  /// Ends the recording, if there is one, and returns its file. The error says which ticks it lacks
-  /// and why. As above.
+  /// Ends the recording, if there is one, and returns its file, of several arms that of the first.
+  /// The error says which ticks it lacks and why. As above.
   driver::Result<std::optional<std::filesystem::path>> end_recording();
   /// Writes the seconds around a fault, if one came, into the user's state folder and returns the
   /// file. As above.
   driver::Result<std::optional<std::filesystem::path>> keep_black_box();
-  /// Returns what this session is, for its recordings. Real-time: never from the servo thread.
-  RecordingInfo recording_info() const;
+  /// Returns what this session is, for the recordings of an arm. Real-time: never from the servo
+  /// thread.
+  RecordingInfo recording_info(std::size_t arm = 0) const;
 
   // What the program's own parts look into (app/session/src).
 

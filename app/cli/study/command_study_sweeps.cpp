@@ -6,8 +6,8 @@
 
 #include "cli/commands.h"
 #include "cli/complain.h"
-#include "cli/end_study.h"
 #include "cli/file_options.h"
+#include "cli/study/end_study.h"
 #include "interrupt.h"
 #include "studies/stability/study_stability.h"
 #include "studies/trouble/study_trouble.h"

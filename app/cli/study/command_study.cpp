@@ -5,7 +5,7 @@
 
 #include "cli/commands.h"
 #include "cli/complain.h"
-#include "cli/end_study.h"
+#include "cli/study/end_study.h"
 #include "studies/study.h"
 
 namespace thimble::app {

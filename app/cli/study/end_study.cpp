@@ -1,4 +1,4 @@
-#include "cli/end_study.h"
+#include "cli/study/end_study.h"
 
 #include <cstdio>
 

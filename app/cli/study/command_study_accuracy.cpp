@@ -7,8 +7,8 @@
 
 #include "cli/commands.h"
 #include "cli/complain.h"
-#include "cli/end_study.h"
 #include "cli/file_options.h"
+#include "cli/study/end_study.h"
 #include "report/figure.h"
 #include "studies/accuracy/gating/gating.h"
 #include "studies/accuracy/quality_points.h"

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+
+namespace thimble::bag {
+
+/// Along which axes the vectors of a bag are told.
+enum class BagAxes : std::uint8_t {
+  kPlain,  ///< Those of the world W: x to the user, y to the user's right, z up.
+  kOmni,   ///< Those of the Omni's drivers: x to the right, y away from the user, z up.
+};
+
+/// Returns a vector of a bag in the world's axes. Real-time: safe.
+Eigen::Vector3d in_world(BagAxes axes, const Eigen::Vector3d& v) noexcept;
+
+}  // namespace thimble::bag

@@ -1,0 +1,31 @@
+// Stands in for reading and writing of bags where there was no SQLite to build them with.
+#include "bag/read_bag.h"
+#include "bag/write_bag.h"
+
+namespace thimble::bag {
+namespace {
+
+driver::Error none(const std::filesystem::path& path) {
+  return {path.string() +
+          ": this build knows no ROS bags, for libsqlite3-dev was not there; install it and build "
+          "again."};
+}
+
+}  // namespace
+
+bool is_bag(const std::filesystem::path& path) {
+  const std::string end = path.extension().string();
+  return end == ".db3" || end == ".mcap" || std::filesystem::is_directory(path);
+}
+
+driver::Result<BagTopic> read_bag(const std::filesystem::path& path, BagKind /*kind*/,
+                                  const std::string& /*topic*/, BagClock /*clock*/) {
+  return none(path);
+}
+
+driver::Result<void> write_bag(const std::filesystem::path& folder,
+                               const std::vector<BagTrack>& /*tracks*/) {
+  return none(folder);
+}
+
+}  // namespace thimble::bag

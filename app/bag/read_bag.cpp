@@ -1,0 +1,289 @@
+#include "bag/read_bag.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <optional>
+#include <system_error>
+#include <utility>
+
+#include "bag/sqlite_file.h"
+
+namespace thimble::bag {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Five hours at 1 kHz; a file that means more is damaged, or more than a hand does. [chosen]
+constexpr std::size_t kMessagesMost = 20'000'000;
+constexpr std::int64_t kLongest = 86'400'000'000'000;  // ns; a day, so that a double tells ns apart
+constexpr std::int64_t kLatest = std::int64_t{1} << 62;  // ns; differences stay in range
+
+/// A message as it is kept: a stamp of its own and when it was received.
+struct Kept {
+  std::int64_t received_ns = 0, stamp_ns = 0;
+  Eigen::Vector3d value;
+};
+
+struct TopicRow {
+  std::int64_t id = 0;
+  std::string name, type, format;
+};
+
+struct OpenBag {
+  fs::path file;
+  SqliteFile data;
+  std::vector<TopicRow> topics;
+};
+
+std::string_view word_of(BagKind kind) {
+  return kind == BagKind::kPositions ? "/pose" : "/wrench";
+}
+
+/// Returns a text of a bag without what a terminal would obey.
+std::string printable(std::string_view text) {
+  std::string plain(text);
+  std::replace_if(
+      plain.begin(), plain.end(), [](char c) { return static_cast<unsigned char>(c) < ' '; }, '?');
+  return plain;
+}
+
+/// Finds the files of a bag, in the order of their names.
+driver::Result<std::vector<fs::path>> files_of(const fs::path& path) {
+  std::error_code status;
+  std::vector<fs::path> files;
+  std::string other;  // why there may be none
+  const auto judge = [&](const fs::path& file) {
+    const std::string end = file.extension().string();
+    if (end == ".mcap" || end == ".zstd") other = end;
+    return end == ".db3";
+  };
+  if (fs::is_directory(path, status)) {
+    for (fs::directory_iterator at(path, status), end; !status && at != end; at.increment(status)) {
+      if (judge(at->path())) files.push_back(at->path());
+    }
+    std::sort(files.begin(), files.end());
+  } else if (fs::is_regular_file(path, status)) {
+    judge(path);
+    if (other.empty()) files.push_back(path);
+  } else {
+    return driver::Error{path.string() +
+                         ": no such bag; expected a folder that `ros2 bag record` made, or the "
+                         ".db3 file in it."};
+  }
+  if (!files.empty()) return files;
+  if (other == ".mcap") {
+    return driver::Error{path.string() +
+                         ": is a bag in MCAP, which cannot be read here; `ros2 bag convert` "
+                         "writes it as sqlite3."};
+  }
+  if (other == ".zstd") {
+    return driver::Error{path.string() +
+                         ": is a compressed bag; `ros2 bag convert` writes it without "
+                         "compression."};
+  }
+  return driver::Error{path.string() + ": no bag is there; expected a file *.db3 in the folder."};
+}
+
+driver::Error damaged(const fs::path& file, const std::string& how) {
+  return {fmt::format("{}: is damaged, or no ROS bag ({}); copy or record it again.", file.string(),
+                      how)};
+}
+
+driver::Result<OpenBag> open_bag(const fs::path& file) {
+  auto data = SqliteFile::open(file);
+  if (!data) return damaged(file, data.error().message);
+  OpenBag bag{file, std::move(data).value(), {}};
+  auto tables = bag.data.ask(
+      "SELECT count(*) FROM sqlite_master WHERE type = 'table' AND name IN ('topics', 'messages')");
+  if (!tables) return damaged(file, tables.error().message);
+  auto counted = tables->next();
+  if (!counted) return damaged(file, counted.error().message);
+  if (!*counted || tables->number(0) != 2) {
+    return driver::Error{file.string() +
+                         ": is a file of SQLite but no ROS bag: it lacks the tables topics and "
+                         "messages."};
+  }
+  auto rows = bag.data.ask("SELECT id, name, type, serialization_format FROM topics ORDER BY id");
+  if (!rows) return damaged(file, rows.error().message);
+  for (;;) {
+    const auto row = rows->next();
+    if (!row) return damaged(file, row.error().message);
+    if (!*row) return bag;
+    bag.topics.push_back({rows->number(0), printable(rows->text(1)), printable(rows->text(2)),
+                          printable(rows->text(3))});
+  }
+}
+
+/// Lists the topics of bags: "/pose (geometry_msgs/msg/PoseStamped), ...".
+std::string topics_in(const std::vector<OpenBag>& bags) {
+  std::vector<std::string> names;
+  for (const OpenBag& bag : bags) {
+    for (const TopicRow& topic : bag.topics) {
+      std::string name = fmt::format("{} ({})", topic.name, topic.type);
+      if (std::find(names.begin(), names.end(), name) == names.end()) {
+        names.push_back(std::move(name));
+      }
+    }
+  }
+  if (names.empty()) return "none";
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+/// Returns the name of the topic that is meant.
+driver::Result<std::string> choose_topic(const fs::path& path, const std::vector<OpenBag>& bags,
+                                         BagKind kind, const std::string& asked) {
+  std::vector<std::string> fitting;
+  const TopicRow* named = nullptr;
+  for (const OpenBag& bag : bags) {
+    for (const TopicRow& topic : bag.topics) {
+      if (topic.name == asked) named = &topic;
+      if (topic.type == type_of(kind) &&
+          std::find(fitting.begin(), fitting.end(), topic.name) == fitting.end()) {
+        fitting.push_back(topic.name);
+      }
+    }
+  }
+  const auto found = [&](const std::string& name) {
+    return std::find(fitting.begin(), fitting.end(), name) != fitting.end();
+  };
+  if (!asked.empty()) {
+    if (found(asked)) return asked;
+    if (named != nullptr) {
+      return driver::Error{
+          fmt::format("{}: the topic {} is of type {}; expected {}. There are: {}.", path.string(),
+                      asked, named->type, type_of(kind), topics_in(bags))};
+    }
+    return driver::Error{
+        fmt::format("{}: has no topic {}. There are: {}.", path.string(), asked, topics_in(bags))};
+  }
+  if (fitting.size() == 1) return fitting.front();
+  if (found(std::string(word_of(kind)))) return std::string(word_of(kind));
+  return driver::Error{fmt::format("{}: has {} of type {}{}. There are: {}.", path.string(),
+                                   fitting.empty() ? "no topic" : "several topics", type_of(kind),
+                                   fitting.empty() ? "" : "; name one", topics_in(bags))};
+}
+
+/// Adds the messages of a topic in one file, in the order in which they were received.
+driver::Result<void> add_messages(const OpenBag& bag, const TopicRow& topic, BagKind kind,
+                                  std::optional<std::string>& frame, std::vector<Kept>& kept) {
+  auto rows = bag.data.ask(
+      "SELECT timestamp, data FROM messages WHERE topic_id = ? ORDER BY timestamp, id");
+  if (!rows) return damaged(bag.file, rows.error().message);
+  rows->put(1, topic.id);
+  for (std::size_t number = 1;; ++number) {
+    const auto row = rows->next();
+    if (!row) return damaged(bag.file, row.error().message);
+    if (!*row) return {};
+    const auto wrong = [&](std::string_view what) {
+      return driver::Error{
+          fmt::format("{}: message {} of {} {}", bag.file.string(), number, topic.name, what)};
+    };
+    const std::int64_t received_ns = rows->number(0);
+    const std::span<const unsigned char> bytes = rows->bytes(1);
+    const auto message = decode(kind, bytes);
+    if (!message || received_ns < 0 || received_ns > kLatest) {
+      constexpr std::array<unsigned char, 4> kZstd{0x28, 0xB5, 0x2F, 0xFD};  // [S RFC 8878, 3.1.1]
+      if (bytes.size() > 4 && std::equal(kZstd.begin(), kZstd.end(), bytes.begin())) {
+        return wrong("is compressed; `ros2 bag convert` writes a bag without compression.");
+      }
+      return wrong(
+          fmt::format("is no {}: the bag is damaged; record or convert it again.", type_of(kind)));
+    }
+    if (!message->value.allFinite()) {
+      return wrong("holds a number that is not finite; leave it out, or mend what published it.");
+    }
+    if (!frame) frame = message->frame;
+    if (*frame != message->frame) {
+      return wrong(
+          fmt::format("is told in the frame \"{}\", those before in \"{}\"; expected one "
+                      "frame for all.",
+                      printable(message->frame), printable(*frame)));
+    }
+    if (kept.size() == kMessagesMost) {
+      return wrong("is one too many: 20 million can be read; cut the bag.");
+    }
+    kept.push_back({received_ns, message->stamp_ns, message->value});
+  }
+}
+
+}  // namespace
+
+bool is_bag(const std::filesystem::path& path) {
+  std::error_code status;
+  if (fs::is_directory(path, status)) return true;
+  const std::string end = path.extension().string();
+  if (end == ".db3" || end == ".mcap") return true;
+  std::ifstream stream(path, std::ios::binary);
+  std::array<char, 16> head{};
+  stream.read(head.data(), head.size());
+  return std::string_view(head.data(), 15) == "SQLite format 3";
+}
+
+driver::Result<BagTopic> read_bag(const std::filesystem::path& path, BagKind kind,
+                                  const std::string& topic, BagClock clock) {
+  const auto files = files_of(path);
+  if (!files) return files.error();
+  std::vector<OpenBag> bags;
+  for (const fs::path& file : *files) {
+    auto bag = open_bag(file);
+    if (!bag) return bag.error();
+    bags.push_back(std::move(bag).value());
+  }
+  const auto name = choose_topic(path, bags, kind, topic);
+  if (!name) return name.error();
+  std::vector<Kept> kept;
+  std::optional<std::string> frame;
+  for (const OpenBag& bag : bags) {
+    for (const TopicRow& row : bag.topics) {
+      if (row.name != *name || row.type != type_of(kind)) continue;
+      if (row.format != "cdr") {
+        return driver::Error{fmt::format("{}: {} is serialized as \"{}\"; expected cdr.",
+                                         bag.file.string(), row.name, row.format)};
+      }
+      if (auto added = add_messages(bag, row, kind, frame, kept); !added) return added.error();
+    }
+  }
+  if (kept.empty()) {
+    return driver::Error{fmt::format("{}: {} holds no message.", path.string(), *name)};
+  }
+  // Files of one bag follow each other; their messages are in order already.
+  std::stable_sort(kept.begin(), kept.end(),
+                   [](const Kept& a, const Kept& b) { return a.received_ns < b.received_ns; });
+  const bool stamped = std::any_of(kept.begin(), kept.end(),
+                                   [](const Kept& message) { return message.stamp_ns != 0; });
+  BagTopic read;
+  read.name = *name;
+  read.frame = *frame;
+  read.clock = stamped ? clock : BagClock::kReceived;
+  const auto time_of = [&read](const Kept& message) {
+    return read.clock == BagClock::kStamps ? message.stamp_ns : message.received_ns;
+  };
+  read.start_ns = time_of(kept.front());
+  std::int64_t last_ns = 0;
+  for (const Kept& message : kept) {
+    const std::int64_t time_ns = time_of(message);
+    if (!read.samples.empty() && time_ns < last_ns) {
+      return driver::Error{fmt::format(
+          "{}: {} goes back in time after {:g} s, by {:g} s; record it again by one clock, or cut "
+          "the bag there.",
+          path.string(), *name, 1e-9 * static_cast<double>(last_ns - read.start_ns),
+          1e-9 * static_cast<double>(last_ns - time_ns))};
+    }
+    if (!read.samples.empty() && time_ns == last_ns) continue;
+    if (time_ns - read.start_ns > kLongest) {
+      return driver::Error{
+          fmt::format("{}: {} lasts for more than a day; mend its stamps, or cut the bag.",
+                      path.string(), *name)};
+    }
+    last_ns = time_ns;
+    read.samples.push_back({1e-9 * static_cast<double>(time_ns - read.start_ns), message.value});
+  }
+  return read;
+}
+
+}  // namespace thimble::bag

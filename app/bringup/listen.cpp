@@ -1,0 +1,28 @@
+#include "bringup/listen.h"
+
+#include <fmt/format.h>
+
+namespace thimble::app {
+
+std::string Listened::text() const {
+  return fmt::format(
+      "{:.0f} reports per second; {} ticks without one, {} skipped, {} rejected, {} messages "
+      "refused.",
+      static_cast<double>(reports) / seconds, missing, skipped, rejected, refused);
+}
+
+Listened listen(BenchArm& bench, double seconds, const std::atomic<bool>& stop) {
+  const auto rest = [](const driver::DeviceState&) { return Eigen::Vector3d(0, 0, 0); };
+  const driver::WireCounters before = bench.device().wire_counters();
+  const bool whole = bench.run(seconds, rest, stop);
+  const driver::WireCounters& after = bench.device().wire_counters();
+  return {.seconds = seconds,
+          .reports = after.reports - before.reports,
+          .missing = after.missing - before.missing,
+          .skipped = after.skipped - before.skipped,
+          .rejected = after.rejected - before.rejected,
+          .refused = after.refused - before.refused,
+          .whole = whole};
+}
+
+}  // namespace thimble::app

@@ -1,0 +1,75 @@
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "cli/commands.h"
+#include "cli/complain.h"
+#include "cli/file_options.h"
+#include "thimble/scene/arm_file.h"
+#include "thimble/session/recording.h"
+#include "twin/compare_twin.h"
+#include "twin/twin_files.h"
+
+namespace thimble::app {
+namespace {
+
+struct TwinCommand {
+  std::string recording;
+  std::string arm_file;
+  std::string output;
+  TwinOptions options;
+  double fit_least = 0;
+};
+
+int compare(const TwinCommand& command) {
+  const auto recording = session::read_recording(command.recording);
+  if (!recording) return complain(recording.error(), kExitBadInput);
+  const auto file = scene::load_arm(command.arm_file);
+  if (!file) return complain(file.error(), kExitBadInput);
+  const auto result = compare_twin(*recording, *file, command.options);
+  if (!result) return complain(result.error(), kExitBadInput);
+  std::printf("%s, recorded with the arm %s (%s), and its twin of %s:\n", command.recording.c_str(),
+              recording->info.arm.c_str(), recording->info.device.c_str(), file->name.c_str());
+  for (const std::string& sentence : result->comparison.told) std::printf("%s\n", sentence.c_str());
+  std::printf("%s", twin_table(result->comparison).c_str());
+  const auto figures = twin_figures(result->comparison, command.fit_least);
+  if (!command.output.empty()) {
+    const auto written = write_twin(*result, figures, file->name, command.output);
+    if (!written) return complain(written.error(), kExitTrouble);
+    std::printf("Figures and pictures are in %s.\n", command.output.c_str());
+  }
+  const std::string unmet = unmet_line(figures);
+  if (unmet.empty()) return kExitDone;
+  std::printf("%s\n", unmet.c_str());
+  return kExitUnmet;
+}
+
+}  // namespace
+
+void add_twin_command(CLI::App& app, int& exit_code) {
+  CLI::App* sub = app.add_subcommand(
+      "twin", "Let the simulated arm relive a recording, and tell how far both are apart");
+  auto command = std::make_shared<TwinCommand>();
+  sub->add_option("FILE", command->recording,
+                  "Recording of an arm that nobody held: of `thimble identify --record FILE`, or a "
+                  "part of one of `thimble run SCENE --record FILE`")
+      ->required();
+  add_arm_option(*sub, command->arm_file, "Arm file of the twin")->required();
+  sub->add_option("--window", command->options.window,
+                  "Length of the pieces that are relived, each from the recording's own state, s")
+      ->check(CLI::Range(0.05, 2.0))
+      ->capture_default_str();
+  sub->add_option("--from", command->options.span.from, "First second that is compared")
+      ->check(CLI::NonNegativeNumber);
+  sub->add_option("--until", command->options.span.until, "Last second that is compared")
+      ->check(CLI::NonNegativeNumber);
+  sub->add_option("--fit-least", command->fit_least,
+                  "Fit that each axis must reach, percent; else the exit code is 5")
+      ->check(CLI::Range(0.0, 100.0));
+  sub->add_option("--output", command->output,
+                  "Folder for figures.json and pictures of motion, error and spectrum");
+  sub->callback([command, &exit_code] { exit_code = compare(*command); });
+}
+
+}  // namespace thimble::app

@@ -1,0 +1,35 @@
+#include "cli/end_run.h"
+
+#include <cstddef>
+#include <cstdio>
+
+#include "print.h"
+#include "thimble/session/run_figures.h"
+
+namespace thimble::app {
+
+bool zero_assured(const session::Session& session) {
+  for (std::size_t arm = 0; arm < session.arms(); ++arm) {
+    if (!session.device(arm).zero_assured()) return false;
+  }
+  return true;
+}
+
+void print_summaries(const session::Session& session, const driver::RealTimeGrant& grant) {
+  for (std::size_t arm = 0; arm < session.arms(); ++arm) {
+    if (session.arms() > 1) session::print(stdout, "--- {}\n", session.arm_name(arm));
+    session::print(stdout, "{}", summary(session.figures(grant, arm)));
+  }
+}
+
+ExitCode end_of(const session::Session& session, bool by_viewer) {
+  ExitCode code = kExitDone;
+  for (std::size_t arm = session.arms(); arm-- > 0;) {
+    const session::RunFigures figures = session.figures({}, arm);
+    const ExitCode own = exit_code_of(figures.end, figures.fault, by_viewer);
+    if (code == kExitDone || figures.fault != driver::Fault::kNone) code = own;
+  }
+  return code;
+}
+
+}  // namespace thimble::app

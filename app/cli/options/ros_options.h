@@ -1,0 +1,23 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include "faces/ros2/ros_words.h"
+#include "thimble/driver/result.h"
+
+namespace thimble::app {
+
+/// What the arguments --ros2... of a command say.
+struct RosArguments {
+  bool asked = false;
+  faces::RosWords words;
+  faces::RosOptions options;  ///< What they mean; see check_ros_arguments.
+};
+
+/// Adds the options of a run as ROS 2 topics. The arguments must outlive the command.
+void add_ros_options(CLI::App& command, RosArguments& arguments);
+
+/// Reads the words among the arguments into their options; fails if they do not go together.
+driver::Result<void> check_ros_arguments(RosArguments& arguments);
+
+}  // namespace thimble::app

@@ -1,0 +1,165 @@
+#include "cli/options/run_options.h"
+
+#include <cstdlib>
+#include <vector>
+
+#include "cli/commands.h"
+#include "cli/file_options.h"
+#include "faces/ros2/ros_module.h"
+#include "log/logger.h"
+#include "print.h"
+#include "thimble/scene/quality.h"
+
+namespace thimble::app {
+
+driver::Result<void> check_run_options(RunOptions& options) {
+  if (options.budget && options.quality != "auto") {
+    return driver::Error{"--budget says what --quality auto may spend: name both, or neither."};
+  }
+  if (auto fits = check_ros_arguments(options.ros); !fits) return fits;
+  if (options.stepped() && options.devices != std::vector<std::string>{"sim"}) {
+    return driver::Error{"A real arm has the time of the world: leave --clock virtual away."};
+  }
+  if (options.by_topic() && !options.ros.asked) {
+    return driver::Error{"--hand topic needs the topics: add --ros2."};
+  }
+  options.ros.options.lead_hand = options.by_topic();
+  if (options.ros.asked) {
+    if (auto there = faces::check_ros_module(); !there) return there;
+  }
+  if (!options.by_mouse() && !options.by_topic()) return {};
+  if (options.devices != std::vector<std::string>{"sim"}) {
+    return driver::Error{"--hand " + options.hand +
+                         " leads the simulated arm's hand; a real arm has yours."};
+  }
+  if (options.by_topic()) return {};
+  if (options.clock == "virtual" && !options.duration) {
+    return driver::Error{
+        "--hand mouse without an end needs real time: leave --clock away, or give --duration."};
+  }
+  return {};
+}
+
+session::SessionOptions session_options(const RunOptions& options, const session::RunArms& arms) {
+  // A person who watches or leads does so in real time, unless he says otherwise.
+  const bool for_a_person = options.view || options.by_mouse();
+  const bool watched = for_a_person || options.ros.asked;
+  const bool wall = options.clock.empty() ? watched : options.clock == "wall";
+  const bool real_time = wall || arms.real();
+  session::SessionOptions asked;
+  asked.clock = real_time ? session::ClockKind::kWall : session::ClockKind::kVirtual;
+  asked.duration = options.duration;
+  asked.seed = options.seed;
+  asked.arm_file = options.arm_file;
+  asked.real_arm = arms.one.real;
+  asked.terms = arms.one.terms;
+  asked.real_arms = arms.several;
+  asked.firmware = options.firmware;
+  asked.record = options.record;
+  asked.log = true;
+  asked.share_out = !options.name.empty() || for_a_person || (real_time && !options.no_view);
+  asked.share_if_possible = options.name.empty() && !for_a_person;
+  asked.share_name = options.name;
+  asked.hand_by_mouse = options.by_mouse();
+  asked.hand_by_program = options.by_topic();
+  asked.homed = options.homed;
+  asked.several_arms = true;
+  const scene::Quality quality =
+      scene::quality_named(options.quality).value_or(scene::Quality::kNormal);
+  asked.rate_factor = scene::rate_factor_of(quality);
+  asked.adjust = [&options, quality](scene::Scene& scene) {
+    for (const std::string& choice : scene::apply_quality(quality, scene, options.budget)) {
+      session::print(stdout, "{}: {}\n", options.quality, choice);
+    }
+  };
+  return asked;
+}
+
+session::ViewerChoice viewer_choice(const RunOptions& options) {
+  const bool asked = options.view || options.by_mouse();
+  if (asked && !has_window()) {
+    scene::terminal().info(
+        "No window in this build (app/setup.sh release thimble makes one); `thimble view --text` "
+        "tells of "
+        "the run.");
+  }
+  if (options.no_view || !has_window()) return session::ViewerChoice::kNever;
+  return asked ? session::ViewerChoice::kAsked : session::ViewerChoice::kIfWatched;
+}
+
+void add_run_options(CLI::App& command, RunOptions& options) {
+  add_scene_option(command, options.scene)->required();
+  command
+      .add_option("--device", options.devices,
+                  "Arm to use: sim, auto, or a name that `thimble devices` lists; of a scene with "
+                  "several arms NAME=ARM for each real one")
+      ->take_all()
+      ->allow_extra_args(false)
+      ->capture_default_str();
+  add_arm_option(
+      command, options.arm_file,
+      "Arm file in place of the scene's own; of a real arm, in place of the one it brings");
+  command.add_option("--firmware", options.firmware, "Firmware image for an arm that needs one")
+      ->check(CLI::ExistingFile);
+  command.add_flag("--yes", options.yes, "Give a real arm forces without asking");
+  command.add_flag("--unchecked", options.unchecked,
+                   "Give a real arm its whole force though `thimble feel-check` was not passed; "
+                   "without it such an arm gets at most 0.5 N");
+  command.add_flag("--homed", options.homed,
+                   "A real arm was in its home pose when it got power: check only that its tip is "
+                   "in the workspace");
+  command.add_flag("--no-real-time", options.no_real_time,
+                   "Use a real arm though the loop gets no real-time priority");
+  command.add_option("--duration", options.duration, "Seconds to run; the scene's own if absent")
+      ->check(CLI::Validator(
+          [](const std::string& text) {
+            char* end = nullptr;
+            const double seconds = std::strtod(text.c_str(), &end);
+            // Written so that NaN is refused.
+            const bool good =
+                end != text.c_str() && *end == 0 && seconds >= 1e-3 && seconds <= 86400;
+            return good ? std::string() : "expected 0.001 to 86400 seconds, found " + text;
+          },
+          "SECONDS"));
+  command
+      .add_option("--clock", options.clock,
+                  "virtual: as fast as it computes, repeatable to the bit; wall: in real time "
+                  "(if absent: wall with --view, --ros2 or --hand mouse, virtual otherwise)")
+      ->check(CLI::IsMember({"virtual", "wall"}));
+  command
+      .add_option("--hand", options.hand,
+                  "Who leads the simulated hand: path, as the scene says; mouse, by the viewer, "
+                  "until its window is closed; topic, with --ros2, by the topic command/pose "
+                  "(crtk: servo_cp)")
+      ->check(CLI::IsMember({"path", "mouse", "topic"}))
+      ->capture_default_str();
+  CLI::Option* view = command.add_flag("--view", options.view, "Watch the run in a window");
+  command.add_flag("--no-view", options.no_view, "Show the run to nobody")->excludes(view);
+  command.add_option("--name", options.name,
+                     "Name of the run for `thimble view NAME`; the scene's if absent");
+  add_quality_option(
+      command, options.quality,
+      "draft, normal (what the scene says), reference or auto (the cheapest at which nothing wrong "
+      "can be felt): points on the diagrams of `thimble study accuracy`; each choice is printed");
+  command
+      .add_option("--budget", options.budget,
+                  "With --quality auto: the most accurate points within so many ns per tick, of "
+                  "all objects "
+                  "together, on the machine that the stored diagrams name")
+      ->check(CLI::Range(1.0, 1e9));
+  command.add_option("--report", options.report,
+                     "Folder for report.json, pictures and index.html, a page that plays the run");
+  command.add_option("--record", options.record,
+                     "Recording of every tick to write (HDF5; thimble export makes a table of it)");
+  CLI::Option* save = command.add_option(
+      "--save-mesh", options.save_mesh,
+      "OFF file for the meshes as they are at the end: moved, dented, sculpted (world, m)");
+  command
+      .add_option("--save-object", options.save_object,
+                  "Save the mesh of this object of the scene alone")
+      ->needs(save);
+  add_ros_options(command, options.ros);
+  command.add_option("--seed", options.seed, "Seed of everything random; the scene's if absent");
+}
+
+}  // namespace thimble::app

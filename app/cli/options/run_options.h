@@ -1,0 +1,61 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/options/ros_options.h"
+#include "run_arm.h"
+#include "share/viewer_request_handler.h"
+#include "thimble/driver/result.h"
+#include "thimble/session/session.h"
+
+namespace thimble::app {
+
+/// What `thimble run` is asked for.
+struct RunOptions {
+  std::string scene;
+  std::vector<std::string> devices = {"sim"};
+  std::string clock;  // empty: as suits
+  std::optional<double> duration;
+  std::optional<std::uint64_t> seed;
+  std::string report;
+  std::string arm_file;
+  std::string firmware;
+  std::string record;
+  std::string save_mesh;
+  std::string save_object;
+  std::string hand = "path";
+  std::string name;
+  bool view = false, no_view = false;
+  std::string quality = "normal";
+  std::optional<double> budget;  // ns
+  bool yes = false;
+  bool unchecked = false;
+  bool homed = false;
+  bool no_real_time = false;
+  RosArguments ros;
+
+  /// Returns whether a person leads the simulated hand in the viewer.
+  bool by_mouse() const { return hand == "mouse"; }
+  /// Returns whether a topic of ROS 2 leads it.
+  bool by_topic() const { return hand == "topic"; }
+  /// Returns whether a topic of ROS 2 moves the time on.
+  bool stepped() const { return ros.asked && clock == "virtual"; }
+};
+
+/// Adds the arguments of `thimble run`. The options must outlive the command.
+void add_run_options(CLI::App& command, RunOptions& options);
+
+/// Fails if the options do not go together, with what to write instead.
+driver::Result<void> check_run_options(RunOptions& options);
+
+/// Returns what the session is asked for. The options must outlive it.
+session::SessionOptions session_options(const RunOptions& options, const session::RunArms& arms);
+
+/// Returns whether a window shows the run.
+session::ViewerChoice viewer_choice(const RunOptions& options);
+
+}  // namespace thimble::app

@@ -1,0 +1,23 @@
+#include "faces/ros2/arm_health.h"
+
+#include <algorithm>
+
+#include "thimble/driver/heat_guard.h"
+
+namespace thimble::faces {
+
+ArmHealth health_of(const driver::TickRecord& tick) {
+  if (tick.fault != driver::Fault::kNone) {
+    return {ArmHealth::kError, std::string(driver::describe(tick.fault))};
+  }
+  if (tick.stage != driver::DeviceStage::kActive) {
+    return {ArmHealth::kWarn, "No forces: the arm is not activated."};
+  }
+  const double heat = *std::max_element(tick.heat.begin(), tick.heat.end());
+  if (heat >= driver::HeatGuard::kWarning) {
+    return {ArmHealth::kWarn, "A motor is hot; the force is lowered until it cools."};
+  }
+  return {ArmHealth::kOk, "Forces go through the safety gate."};
+}
+
+}  // namespace thimble::faces

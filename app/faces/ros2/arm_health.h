@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "thimble/driver/tick_record.h"
+
+namespace thimble::faces {
+
+/// How an arm is, as ROS 2 tells it (diagnostic_msgs/DiagnosticStatus).
+struct ArmHealth {
+  /// OK, WARN and ERROR of DiagnosticStatus [S ros2/common_interfaces, DiagnosticStatus.msg].
+  enum Level : std::uint8_t { kOk = 0, kWarn = 1, kError = 2 };
+
+  Level level = kOk;
+  std::string message;  ///< One sentence or two.
+
+  friend bool operator==(const ArmHealth&, const ArmHealth&) = default;
+};
+
+/// Returns how the arm was in a tick: in fault; without forces; with a motor near its heat limit;
+/// or well. Real-time: never from the servo thread.
+ArmHealth health_of(const driver::TickRecord& tick);
+
+}  // namespace thimble::faces

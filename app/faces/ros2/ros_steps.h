@@ -1,0 +1,80 @@
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <mutex>
+
+#include "thimble/driver/clock.h"
+
+namespace thimble::faces {
+
+/// How far a run in virtual time may go, and how far it is: one side permits ticks, the other does
+/// them and waits. Never of a run on a real arm. Any thread.
+class RosSteps {
+ public:
+  /// Lets the run go on until so many ticks are done in all; nothing if it may already.
+  void permit(std::uint64_t ticks) {
+    const std::scoped_lock lock(mutex_);
+    permitted_ = std::max(permitted_, ticks);
+    changed_.notify_all();
+  }
+  /// Says that so many ticks are done in all.
+  void done(std::uint64_t ticks) {
+    const std::scoped_lock lock(mutex_);
+    done_ = ticks;
+    if (done_ >= permitted_) changed_.notify_all();
+  }
+  /// Waits until a tick is permitted that is not done, at most for `longest`. Returns whether one
+  /// is.
+  bool wait_for_permit(std::chrono::milliseconds longest) {
+    std::unique_lock lock(mutex_);
+    return changed_.wait_for(lock, longest, [this] { return permitted_ > done_; });
+  }
+  /// Waits until all that is permitted is done, at most for `longest`. Returns how many ticks are
+  /// done.
+  std::uint64_t wait_for_ticks(std::chrono::milliseconds longest) {
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, longest, [this] { return done_ >= permitted_; });
+    return done_;
+  }
+  /// Returns whether all that was permitted is done.
+  bool idle() {
+    const std::scoped_lock lock(mutex_);
+    return done_ >= permitted_;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::uint64_t permitted_ = 0, done_ = 0;
+};
+
+/// Virtual time in which a tick waits until it is permitted, or the run is stopped. The same steps
+/// do the same each time, on a machine of any load. Never for a real arm, for which no tick may
+/// wait.
+class SteppedClock final : public driver::Clock {
+ public:
+  /// `stop` must outlive it.
+  explicit SteppedClock(const std::atomic<bool>& stop) noexcept : stop_(stop) {}
+
+  /// Any thread.
+  std::int64_t now_ns() const noexcept override { return now_ns_.load(); }
+  void sleep_until_ns(std::int64_t time_ns) noexcept override {
+    constexpr std::chrono::milliseconds kLook(100);
+    while (!stop_.load() && !steps_.wait_for_permit(kLook)) {
+    }
+    if (time_ns > now_ns_.load()) now_ns_.store(time_ns);
+  }
+  /// Returns what permits the ticks.
+  RosSteps& steps() noexcept { return steps_; }
+
+ private:
+  const std::atomic<bool>& stop_;
+  std::atomic<std::int64_t> now_ns_{0};
+  RosSteps steps_;
+};
+
+}  // namespace thimble::faces

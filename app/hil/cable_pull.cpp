@@ -1,0 +1,65 @@
+#include "hil/cable_pull.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <thread>
+
+namespace thimble::app {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr const char* kName = "cable_pull";
+constexpr double kForce = 0.2;     // N, that stands while the cable is pulled [chosen]
+constexpr double kPulled_s = 30;   // s, that a person gets for it
+constexpr double kPlugged_s = 60;  // s
+constexpr double kFar = 0.03;      // m; a tip that is let go goes no further
+
+}  // namespace
+
+HilResult check_cable_pull(const HilRig& rig, bool wanted) {
+  if (!wanted) return skipped(kName, "Nobody asked for it (--replug).");
+  if (!rig.told) return skipped(kName, "It needs a person who pulls the cable (--attended).");
+  if (!rig.prompt(
+          fmt::format("Hold the grip loosely: it pushes with {:g} N to your right. Pull the "
+                      "arm's cable within {:.0f} s.",
+                      kForce, kPulled_s))) {
+    return skipped(kName, "It was left.");
+  }
+  {
+    auto opened = open_active(rig, TipHold::kHand);
+    if (!opened) return broken_off(kName, opened.error().message, nullptr);
+    BenchArm& bench = **opened;
+    const double from = bench.device().state().p_WT.y();
+    const auto law = [&](const driver::DeviceState& state) -> Vector3d {
+      const bool far = !(std::abs(state.p_WT.y() - from) < kFar);
+      return far ? Vector3d(0, 0, 0) : Vector3d(0, kForce, 0);
+    };
+    const bool whole = bench.run(kPulled_s, law, rig.stop);
+    if (whole) {
+      bench.device().deactivate();
+      return judged(kName, fmt::format("Nobody pulled the cable within {:.0f} s.", kPulled_s),
+                    {{"loss_named", 0, "", "== 1", ""}});
+    }
+    if (rig.stop.load()) return skipped(kName, "It was left.");
+    const bool named = bench.device().lost() && bench.device().f_sent_W().isZero(0);
+    if (!named) return broken_off(kName, "The cable was not what ended it.", &bench);
+  }
+  if (!rig.prompt("Plug it in again, in its home pose if it is one that counts from there.")) {
+    return skipped(kName, "It was left.");
+  }
+  const auto until = std::chrono::steady_clock::now() + std::chrono::duration<double>(kPlugged_s);
+  while (std::chrono::steady_clock::now() < until && !rig.stop.load()) {
+    auto again = rig.open(TipHold::kFree);
+    if (again) {
+      return judged(kName, "The loss was named, the force was off, and the arm was found again.",
+                    {{"loss_named", 1, "", "== 1", ""}, {"found_again", 1, "", "== 1", ""}});
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  }
+  return judged(kName, "The loss was named, and the arm was not found again.",
+                {{"loss_named", 1, "", "== 1", ""}, {"found_again", 0, "", "== 1", ""}});
+}
+
+}  // namespace thimble::app

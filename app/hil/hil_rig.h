@@ -1,0 +1,86 @@
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bringup/bench_arm.h"
+#include "bringup/feel_check.h"
+#include "report/figure.h"
+#include "thimble/driver/result.h"
+#include "thimble/scene/arm_file.h"
+
+namespace thimble::app {
+
+/// The most that any check asks an arm for, N; the gate cuts what is above.
+inline constexpr double kHilForceMax = 1.0;
+
+/// What holds the tip during a check.
+enum class TipHold {
+  kFree,    ///< Nothing: the arm stands by itself, and no hand is on the grip.
+  kSpring,  ///< The spring of known stiffness that the user tied to it.
+  kHand,    ///< A hand that does what the prompts of the feel check ask.
+};
+
+/// How an arm is checked.
+struct HilOptions {
+  bool full = false;      ///< Longer, and finer steps of the wall.
+  bool attended = false;  ///< A person answers prompts.
+  /// The arm, as it is, has passed its feel check; without that nothing pushes, unless it passes
+  /// one now.
+  bool checked = false;
+  bool replug = false;      ///< A person pulls the cable and plugs it in again.
+  double spring = 0;        ///< Stiffness of the spring tied to the tip, N/m; 0: none.
+  double soak_minutes = 0;  ///< Of the soak; 0: half a minute, or an hour of the full suite.
+  double known_mass = 0;    ///< See IdentifyOptions.
+};
+
+/// What a check works with: the arm, opened anew for each of them.
+struct HilRig {
+  using Open = std::function<driver::Result<std::unique_ptr<BenchArm>>(TipHold hold)>;
+
+  const scene::ArmFile& file;
+  Open open;
+  const std::atomic<bool>& stop;
+  Prompt prompt;      ///< Tells a person what to do; answers false to leave the check.
+  bool told = false;  ///< A person is there to do it, or a simulated hand.
+};
+
+/// Opens the simulated arm of a file as a check needs it: free, tied to a spring (N/m), or held by
+/// a hand that does what the feel check asks. Real-time: never from the servo thread.
+driver::Result<std::unique_ptr<BenchArm>> open_simulated(const scene::ArmFile& file, double spring,
+                                                         TipHold hold);
+
+/// Opens the arm for a check, activates it, and waits with zero force until the soft start is over.
+driver::Result<std::unique_ptr<BenchArm>> open_active(const HilRig& rig, TipHold hold);
+
+/// How a check ended.
+enum class HilOutcome { kPassed, kFailed, kSkipped };
+
+/// What one check found.
+struct HilResult {
+  std::string name;  ///< In lower_snake_case.
+  HilOutcome outcome = HilOutcome::kSkipped;
+  std::string text;  ///< One or more sentences.
+  std::vector<Figure> figures;
+  double seconds = 0;  ///< Wall time that it took.
+  /// It was broken off: by a fault of the device, or by a motor that pulls the wrong way. Nothing
+  /// may push after it.
+  bool unsafe = false;
+};
+
+/// Returns a check that was not done, and why.
+inline HilResult skipped(std::string name, std::string why) {
+  return {std::move(name), HilOutcome::kSkipped, std::move(why), {}, 0, false};
+}
+
+/// Returns a check that ended before it found anything: its error, and the device's fault if that
+/// was the reason.
+HilResult broken_off(std::string name, const std::string& why, const BenchArm* bench);
+
+/// Returns a check that passed if all its figures meet their goals.
+HilResult judged(std::string name, std::string text, std::vector<Figure> figures);
+
+}  // namespace thimble::app

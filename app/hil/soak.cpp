@@ -1,0 +1,65 @@
+#include "hil/soak.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "bringup/identify/excitation.h"
+
+namespace thimble::app {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr const char* kName = "soak";
+constexpr double kTick = 1e-3;         // s, of BenchArm
+constexpr double kMissingMost = 0.05;  // of the ticks: what a loop without priority may cost
+
+}  // namespace
+
+HilResult check_soak(const HilRig& rig, double minutes) {
+  auto opened = open_active(rig, TipHold::kFree);
+  if (!opened) return broken_off(kName, opened.error().message, nullptr);
+  BenchArm& bench = **opened;
+  Excitation excitation(bench.device().state().p_WT, {0, 0, 0}, 1);
+  const driver::WireCounters before = bench.device().wire_counters();
+  const double begin = bench.now();
+  double ticks = 0, moved = 0;
+  const Vector3d p_start_W = bench.device().state().p_WT;
+  bool left = false;
+  const auto law = [&](const driver::DeviceState& state) -> Vector3d {
+    ++ticks;
+    moved = std::max(moved, (state.p_WT - p_start_W).norm());
+    left = left || !excitation.near(state.p_WT);
+    if (left) return {0, 0, 0};
+    return excitation.force(bench.now() - begin, kTick, state.p_WT, state.v_WT);
+  };
+  const bool whole = bench.run(60 * minutes, law, rig.stop);
+  const driver::WireCounters after = bench.device().wire_counters();
+  const bool heat_named = bench.device().heat().named();
+  const double heat = bench.device().heat().heat_most();
+  bench.device().deactivate();
+  const double done = (bench.now() - begin) / 60;
+  if (!whole) return broken_off(kName, fmt::format("It ended after {:.1f} minutes.", done), &bench);
+  const double missing = static_cast<double>(after.missing - before.missing) / ticks;
+  std::vector<Figure> figures{
+      {"soak_minutes", done, "min", "", ""},
+      {"tip_moved", 1e3 * moved, "mm", "> 1", "less: the tip is held, or no motor pulls"},
+      {"ticks_without_report", 100 * missing, "%", fmt::format("<= {:g}", 100 * kMissingMost), ""},
+      {"reports_rejected", static_cast<double>(after.rejected - before.rejected), "", "== 0", ""},
+      {"messages_refused", static_cast<double>(after.refused - before.refused), "", "== 0", ""},
+      {"tip_left_its_place", left ? 1.0 : 0.0, "", "== 0", ""}};
+  if (heat_named) figures.push_back({"motor_heat", heat, "of the limit", "< 1", ""});
+  return judged(
+      kName,
+      fmt::format(
+          "{:.1f} minutes of up to {:g} N{}: {:.3f} % of the ticks without a report{}.", done,
+          Excitation::kForceMost, left ? ", until the tip left the space that it may move in" : "",
+          100 * missing,
+          heat_named
+              ? fmt::format(", the hottest motor at {:.0f} % of its limit by the model", 100 * heat)
+              : ""),
+      std::move(figures));
+}
+
+}  // namespace thimble::app

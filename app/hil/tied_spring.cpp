@@ -1,0 +1,106 @@
+#include "hil/tied_spring.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <cmath>
+#include <vector>
+
+namespace thimble::app {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr const char* kName = "force_accuracy";
+constexpr int kAxis = 1;
+constexpr double kForceMost = 0.9;  // N
+constexpr int kSteps = 9;           // up, and as many down
+constexpr double kStep_s = 0.7;     // s, of each
+constexpr double kLooked_s = 0.2;   // s, the last of it
+constexpr double kDamping = 2;      // N s/m: a tip on a bare spring swings for long [chosen]
+constexpr double kFar = 0.04;       // m; a spring that gives more has come off
+
+/// Slope and its standard error of y over x, with an own offset for each of two groups.
+struct Slope {
+  double value = 0, error = 0;
+};
+Slope slope_of(const std::vector<Eigen::Vector3d>& rows, const std::vector<double>& y) {
+  Eigen::MatrixXd A(static_cast<Eigen::Index>(rows.size()), 3);
+  Eigen::VectorXd b(A.rows());
+  for (Eigen::Index i = 0; i < A.rows(); ++i) {
+    A.row(i) = rows[static_cast<std::size_t>(i)].transpose();
+    b[i] = y[static_cast<std::size_t>(i)];
+  }
+  const Eigen::Matrix3d N = (A.transpose() * A).inverse();
+  const Eigen::Vector3d theta = N * (A.transpose() * b);
+  const double variance = (A * theta - b).squaredNorm() / static_cast<double>(A.rows() - 3);
+  return {theta[0], std::sqrt(variance * N(0, 0))};
+}
+
+}  // namespace
+
+HilResult check_tied_spring(const HilRig& rig, double stiffness) {
+  if (stiffness == 0) {
+    return skipped(kName, "No spring of known stiffness was named (--spring).");
+  }
+  if (!rig.told) return skipped(kName, "It needs a person who ties the spring (--attended).");
+  if (!rig.prompt("Tie the spring to the tip and to something firm, along y (to your right), "
+                  "just not slack, and let go.")) {
+    return skipped(kName, "It was left.");
+  }
+  auto opened = open_active(rig, TipHold::kSpring);
+  if (!opened) return broken_off(kName, opened.error().message, nullptr);
+  BenchArm& bench = **opened;
+  const double from = bench.device().state().p_WT[kAxis];
+  std::vector<Vector3d> rows;  // asked force, and whether it was on the way up or down
+  std::vector<double> way;     // m
+  for (int i = 1; i < 2 * kSteps; ++i) {
+    const bool up = i <= kSteps;
+    const double asked = kForceMost * (up ? i : 2 * kSteps - i) / kSteps;
+    const double begin = bench.now();
+    double sum = 0, sent = 0;
+    int seen = 0;
+    bool off = false;
+    const auto law = [&](const driver::DeviceState& state) -> Vector3d {
+      const double gone = state.p_WT[kAxis] - from;
+      off = off || !(std::abs(gone) < kFar);
+      if (off) return {0, 0, 0};
+      if (bench.now() - begin > kStep_s - kLooked_s) {
+        sum += gone;
+        sent += bench.device().f_sent_W()[kAxis];
+        ++seen;
+      }
+      return (asked - kDamping * state.v_WT[kAxis]) * Vector3d::Unit(kAxis);
+    };
+    if (!bench.run(kStep_s, law, rig.stop)) return broken_off(kName, "", &bench);
+    if (off) {
+      bench.device().deactivate();
+      return broken_off(kName,
+                        "The tip went more than 4 cm, so the spring is not tied to it, or is "
+                        "softer than it was said to be.",
+                        &bench);
+    }
+    // A tip follows only once dry friction points the other way: by its size after the beginning,
+    // by twice that after the turn; half as much again for an arm that rubs more than its file
+    // says.
+    const double rubs = 1.5 * rig.file.simulated.plant.coulomb;
+    if (i == kSteps || (up ? asked < rubs : asked > kForceMost - 2 * rubs)) continue;
+    rows.emplace_back(sent / seen, up ? 1 : 0, up ? 0 : 1);
+    way.push_back(sum / seen);
+  }
+  bench.device().deactivate();
+  if (rows.size() < 6) {
+    return skipped(kName, "The arm's dry friction is too high for so weak a pull.");
+  }
+  const Slope slope = slope_of(rows, way);
+  const double ratio = stiffness * slope.value;
+  const double spread = 2 * stiffness * slope.error;
+  return judged(kName,
+                fmt::format("The motors make {:.3f} +- {:.3f} N for each newton that is asked for, "
+                            "by a spring of {:g} N/m.",
+                            ratio, spread, stiffness),
+                {{"force_ratio", ratio, "", ">= 0.95", ""},
+                 {"force_ratio_above", ratio, "", "<= 1.05", "the same, from above"}});
+}
+
+}  // namespace thimble::app

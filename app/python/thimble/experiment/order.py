@@ -1,0 +1,78 @@
+"""Conditions in an order: all combinations, shuffled from a seed or balanced over subjects."""
+
+from __future__ import annotations
+
+import itertools
+from typing import Any, Mapping, Optional, Sequence
+
+import numpy as np
+
+from .. import ArgumentError
+
+ORDERS = ("given", "random", "blocks", "balanced")
+
+
+def combinations(factors: Mapping[str, Sequence[Any]]) -> list[dict[str, Any]]:
+    """Give every combination of the factors' values, the last factor changing quickest."""
+    names = list(factors)
+    return [dict(zip(names, values)) for values in itertools.product(*factors.values())]
+
+
+def balanced_row(count: int, subject: int) -> list[int]:
+    """Give the order of `count` conditions for one subject, a row of a Williams design.
+
+    Over `count` subjects (twice that if it is odd) each condition stands in each place equally often,
+    and follows each other one equally often.
+    """
+    row = subject % count
+    order = [(row + (at + 1) // 2 if at % 2 else row - at // 2) % count for at in range(count)]
+    backwards = count % 2 == 1 and (subject // count) % 2 == 1
+    return order[::-1] if backwards else order
+
+
+class Trials:
+    """Conditions in an order that is known before the first trial.
+
+    conditions: values by the name of each factor (all combinations are taken), or a list of dicts.
+    repeats: how often each. order: "given"; "random", all shuffled; "blocks", each block has every
+    condition once, shuffled; "balanced", block k of subject s is row s + k of a Williams design.
+    seed: of the shuffling. subject: number from 0 on, for "balanced".
+    """
+
+    def __init__(
+        self,
+        conditions: Any,
+        *,
+        repeats: int = 1,
+        order: str = "random",
+        seed: int = 0,
+        subject: int = 0,
+    ) -> None:
+        each = combinations(conditions) if isinstance(conditions, Mapping) else [dict(one) for one in conditions]
+        if not each or repeats < 1:
+            raise ArgumentError("conditions: expected at least one, at least once.")
+        if order not in ORDERS:
+            raise ArgumentError(f"order: expected {', '.join(ORDERS)}, found {order!r}.")
+        random = np.random.default_rng([seed, subject])
+        places = [list(range(len(each))) for _ in range(repeats)]
+        if order == "balanced":
+            places = [balanced_row(len(each), subject + block) for block in range(repeats)]
+        elif order == "blocks":
+            places = [random.permutation(len(each)).tolist() for _ in range(repeats)]
+        row = list(itertools.chain.from_iterable(places))
+        if order == "random":
+            row = random.permutation(row).tolist()
+        self.conditions = [each[at] for at in row]  #: of all trials, in their order
+        self._next = 0
+
+    def condition(self) -> Optional[dict[str, Any]]:
+        """Give the next trial's condition; None after the last."""
+        return dict(self.conditions[self._next]) if self._next < len(self.conditions) else None
+
+    def take(self, answer: Mapping[str, Any]) -> None:
+        """Take the answer to that trial, and go on to the next."""
+        self._next += 1
+
+    def plan(self) -> dict[str, Any]:
+        """Tell all that decides which trials come, for the log."""
+        return {"trials": self.conditions}

@@ -1,0 +1,208 @@
+"""Psychometric functions: a logistic or a normal curve of answers over level, fitted by maximum likelihood."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from dataclasses import dataclass
+from typing import Any, Union
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .. import ArgumentError
+
+Array = NDArray[np.float64]
+
+_QUARTILE = {"logistic": math.log(3.0), "probit": 0.6744897501960817}  # from the middle to 75 %, in widths
+_LAPSES = np.linspace(0.0, 0.06, 13)  # looked through with lapse="fit"; more would be no lapse [chosen]
+_MIDDLES, _WIDTHS = np.linspace(0.05, 0.95, 10), (0.02, 0.07, 0.2, 0.6)  # to begin at, over the levels' span
+_STEPS_MOST = 100
+_NARROWEST = 1e-3  # width over the levels' span; what is narrower is a step as far as answers tell
+
+
+def rising(shape: str, z: ArrayLike) -> Array:
+    """Give the curve that goes from 0 to 1, at z widths from its middle; shape: "logistic" or "probit"."""
+    z = np.asarray(z, dtype=np.float64)
+    if shape == "logistic":
+        return 0.5 * (1.0 + np.tanh(0.5 * z))
+    if shape == "probit":
+        each = [0.5 * math.erfc(-one / math.sqrt(2.0)) for one in z.ravel().tolist()]
+        return np.array(each, dtype=np.float64).reshape(z.shape)
+    raise ArgumentError(f'shape: expected "logistic" or "probit", found {shape!r}.')
+
+
+def _slope(shape: str, z: Array) -> Array:
+    if shape == "logistic":
+        f = rising(shape, z)
+        return f * (1.0 - f)
+    return np.exp(-0.5 * z * z) / math.sqrt(2.0 * math.pi)
+
+
+@dataclass(frozen=True)
+class Psychometric:
+    """p(x) = guess + (1 - guess - lapse) F((x - middle) / width), F from 0 to 1 with F(0) = 1/2.
+
+    ``middle_error`` and ``width_error`` are standard errors by the Fisher information; NaN where the
+    answers do not hold the value (all levels right or wrong). ``deviance`` is twice the difference of
+    log likelihood to the answers' own rates, about the number of levels less 2 for a model that fits.
+    """
+
+    shape: str
+    middle: float
+    width: float
+    guess: float
+    lapse: float
+    middle_error: float
+    width_error: float
+    deviance: float
+
+    def __call__(self, level: ArrayLike) -> Array:
+        """Give the probability at a level."""
+        z = (np.asarray(level, dtype=np.float64) - self.middle) / self.width
+        return self.guess + (1.0 - self.guess - self.lapse) * rising(self.shape, z)
+
+    def level(self, probability: float) -> float:
+        """Give the level of a probability between guess and 1 - lapse: the threshold of a forced choice at 0.75, say."""
+        part = (probability - self.guess) / (1.0 - self.guess - self.lapse)
+        if not 0.0 < part < 1.0:
+            raise ArgumentError(f"probability: the curve does not pass {probability}.")
+        if self.shape == "logistic":
+            return self.middle + self.width * math.log(part / (1.0 - part))
+        low, high = -40.0, 40.0
+        for _ in range(80):
+            z = (low + high) / 2
+            low, high = (z, high) if rising(self.shape, z) < part else (low, z)
+        return self.middle + self.width * (low + high) / 2
+
+    @property
+    def jnd(self) -> float:
+        """Half of the way from F = 25 % to 75 %: the just noticeable difference, if answers say "more" of a comparison."""
+        return _QUARTILE[self.shape] * self.width
+
+
+def fit(
+    levels: ArrayLike,
+    successes: ArrayLike,
+    totals: ArrayLike = 1,
+    *,
+    shape: str = "logistic",
+    guess: float = 0.0,
+    lapse: Union[float, str] = 0.0,
+) -> Psychometric:
+    """Fit a rising psychometric function by maximum likelihood.
+
+    levels: (n,), equal ones may come again. successes: (n,), how many of `totals` trials were answered
+    "yes", "more" or correctly; without totals single trials, 0 or 1. guess: probability without any
+    stimulus, 0.5 for a forced choice between two. lapse: of answers beside the matter; "fit" looks for
+    the likeliest up to 0.06. Warns, and gives errors of NaN, if the answers do not hold the width.
+    Raises ArgumentError for fewer than two levels, or answers that do not rise with the level.
+    """
+    x, k, n = _counted(levels, successes, totals)
+    if len(x) < 2:
+        raise ArgumentError("levels: expected two or more that differ.")
+    if lapse == "fit":
+        curves = [_fitted(x, k, n, shape, guess, float(one)) for one in _LAPSES]
+        curve, held = min(curves, key=lambda one: one[0].deviance)
+    elif isinstance(lapse, str) or not 0.0 <= lapse < 1.0 - guess:
+        raise ArgumentError(f'lapse: expected "fit" or 0 to {1.0 - guess:g}, found {lapse!r}.')
+    else:
+        curve, held = _fitted(x, k, n, shape, guess, float(lapse))
+    if not held:
+        warnings.warn(
+            "The answers do not hold the curve's width: take levels closer to the threshold, or more trials.",
+            RuntimeWarning,
+            stacklevel=2,
+        )
+    return curve
+
+
+def _counted(levels: ArrayLike, successes: ArrayLike, totals: ArrayLike) -> tuple[Array, Array, Array]:
+    x, k, n = np.broadcast_arrays(*(np.asarray(one, dtype=np.float64) for one in (levels, successes, totals)))
+    good = np.isfinite(x) & (k >= 0) & (k <= n)
+    if x.ndim != 1 or not good.all():
+        raise ArgumentError("levels, successes, totals: expected rows of one length, successes 0 to totals.")
+    different, which = np.unique(x, return_inverse=True)
+    return different, np.bincount(which, k), np.bincount(which, n)
+
+
+def _loss(p: Array, k: Array, n: Array) -> float:
+    with np.errstate(divide="ignore", invalid="ignore"):
+        said = np.where(k > 0, k * np.log(p), 0.0) + np.where(n - k > 0, (n - k) * np.log(1.0 - p), 0.0)
+    return -float(said.sum()) if np.isfinite(said).all() else math.inf
+
+
+def _fitted(
+    x: Array, k: Array, n: Array, shape: str, guess: float, lapse: float
+) -> tuple[Psychometric, bool]:
+    """Fit middle and log of the width by Fisher's scoring with halved steps, from the best of a few."""
+    first, span = float(x[0]), float(x[-1] - x[0])
+    x = (x - first) / span  # from 0 to 1, whatever the unit
+    range_ = 1.0 - guess - lapse
+    narrowest = math.log(_NARROWEST)
+
+    def at(values: Array) -> tuple[Array, Array]:
+        z = (x - values[0]) / math.exp(values[1])
+        return np.clip(guess + range_ * rising(shape, z), 1e-12, 1.0 - 1e-12), z
+
+    def information(values: Array) -> tuple[Array, Array]:
+        p, z = at(values)
+        steep = range_ * _slope(shape, z)
+        by = np.stack([-steep / math.exp(values[1]), -steep * z])  # of p by middle and by log width
+        weight = 1.0 / (p * (1.0 - p))
+        return (by * weight * n) @ by.T, by @ (weight * (k - n * p))
+
+    def improved(values: Array) -> tuple[float, Array]:
+        loss = _loss(at(values)[0], k, n)
+        for _ in range(_STEPS_MOST):
+            matrix, ascent = information(values)
+            scale = 1e-9 * np.trace(matrix) + 1e-300
+            step = np.linalg.solve(matrix + scale * np.eye(2), ascent)
+            step *= min(1.0, 1.0 / max(np.abs(step).max(), 1e-300))
+            for halved in range(30):
+                tried = values + step * 0.5**halved
+                tried[1] = min(max(tried[1], narrowest), narrowest + 14.0)
+                there = _loss(at(tried)[0], k, n)
+                if there < loss:
+                    break
+            else:
+                return loss, values
+            gained, loss, values = loss - there, there, tried
+            if gained < 1e-12 * (1.0 + loss):
+                return loss, values
+        return loss, values
+
+    begins = [np.array([middle, math.log(width)]) for middle in _MIDDLES for width in _WIDTHS]
+    loss, best = improved(min(begins, key=lambda one: _loss(at(one)[0], k, n)))
+    _refuse_flat(k, n, loss)
+    matrix, _ = information(best)
+    errors = np.full(2, math.nan)
+    held = narrowest + 1e-6 < best[1] < narrowest + 13.9 and bool(np.linalg.cond(matrix) < 1e12)
+    if held:
+        told = np.sqrt(np.diag(np.linalg.inv(matrix)))
+        held = bool(told[1] < 1.0)  # the width is known better than by itself
+        errors = told if held else errors
+    own = _loss(k / n, k, n)
+    width = span * math.exp(best[1])
+    curve = Psychometric(
+        shape=shape,
+        middle=first + span * float(best[0]),
+        width=width,
+        guess=guess,
+        lapse=lapse,
+        middle_error=span * float(errors[0]),
+        width_error=float(errors[1]) * width,
+        deviance=max(0.0, 2.0 * (loss - own)),
+    )
+    return curve, held
+
+
+def _refuse_flat(k: Array, n: Array, loss: float) -> None:
+    flat = _loss(np.full(len(k), k.sum() / n.sum()), k, n)
+    if not loss < flat - 1e-9:
+        raise ArgumentError("The answers do not rise with the level: no curve and no threshold in them.")
+
+
+def count(levels: Any, answers: Any) -> tuple[Array, Array, Array]:
+    """Count single answers: levels that differ, successes and totals of each."""
+    return _counted(levels, np.asarray(answers, dtype=np.float64), 1)

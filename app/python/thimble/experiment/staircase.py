@@ -1,0 +1,155 @@
+"""Adaptive staircases: the level of a trial follows from the answers before."""
+
+from __future__ import annotations
+
+from typing import Any, Mapping, Optional, Sequence, Union
+
+import numpy as np
+
+from .. import ArgumentError
+
+
+class Staircase:
+    """An n-down m-up staircase, of steps that are added or that multiply.
+
+    After `down` correct answers in a row the level goes down by a step, after `up` wrong ones in a row
+    up by one. Trials tell their level as ``condition["level"]``; answers tell ``correct``.
+    """
+
+    def __init__(
+        self,
+        start: float,
+        step: Union[float, Sequence[float]],
+        *,
+        down: int = 3,
+        up: int = 1,
+        up_ratio: float = 1.0,
+        multiply: bool = False,
+        lowest: float = -np.inf,
+        highest: float = np.inf,
+        reversals: int = 12,
+        last: int = 8,
+        trials_most: int = 400,
+    ) -> None:
+        """Stand at the first level.
+
+        start: first level, in whatever unit. step: size of a step, or sizes: the first until the first
+        reversal, then the next, the last from then on. multiply: a step multiplies or divides by its size
+        (above 1), and averages are of logarithms. up_ratio: a step up is as many of these steps.
+        lowest, highest: the level stays between. reversals: the staircase ends after them, or after
+        trials_most. last: how many of the last reversals the threshold is the mean of.
+        """
+        self._steps = [float(one) for one in np.atleast_1d(np.asarray(step, dtype=np.float64))]
+        least = 1.0 if multiply else 0.0
+        if not self._steps or not all(np.isfinite(one) and one > least for one in self._steps):
+            raise ArgumentError(f"step: expected numbers above {least:g}, found {step!r}.")
+        if down < 1 or up < 1 or not up_ratio > 0:
+            raise ArgumentError("down, up: expected 1 or more; up_ratio: above 0.")
+        if not 1 <= last <= reversals or trials_most < 1:
+            raise ArgumentError(f"last: expected 1 to reversals ({reversals}), found {last}.")
+        if not lowest <= start <= highest or (multiply and not start > 0):
+            raise ArgumentError(f"start: expected a level between the bounds, found {start}.")
+        self.down, self.up, self.multiply = int(down), int(up), bool(multiply)
+        self._start, self._up_ratio = float(start), float(up_ratio)
+        self._lowest, self._highest = float(lowest), float(highest)
+        self._reversals_most, self._last, self._trials_most = int(reversals), int(last), int(trials_most)
+        self.level = float(start)  #: of the next trial
+        self.levels: list[float] = []  #: of the trials so far
+        self.answers: list[bool] = []  #: to them, whether correct
+        self.reversals: list[float] = []  #: levels at which it turned
+        self._right = self._wrong = 0  # in a row
+        self._heading = 0  # -1 while it goes down, 1 while it goes up
+
+    @property
+    def over(self) -> bool:
+        """Whether there are reversals, or trials, enough."""
+        return len(self.reversals) >= self._reversals_most or len(self.levels) >= self._trials_most
+
+    def condition(self) -> Optional[dict[str, Any]]:
+        """Give the next trial's condition, ``{"level": ...}``; None after the last."""
+        return None if self.over else {"level": self.level}
+
+    def check(self, answer: Mapping[str, Any]) -> None:
+        """Refuse an answer that does not say ``correct``."""
+        if not isinstance(answer.get("correct"), (bool, np.bool_)):
+            raise ArgumentError(f"A staircase's answer says correct=True or False, found {dict(answer)!r}.")
+
+    def take(self, answer: Mapping[str, Any]) -> None:
+        """Take the answer to the trial at the present level: ``correct``, and whatever else."""
+        self.check(answer)
+        correct = bool(answer["correct"])
+        self.levels.append(self.level)
+        self.answers.append(correct)
+        self._right, self._wrong = (self._right + 1, 0) if correct else (0, self._wrong + 1)
+        if self._right == self.down:
+            self._go(-1)
+        elif self._wrong == self.up:
+            self._go(1)
+
+    @property
+    def target(self) -> float:
+        """Probability of a correct answer at the level that the staircase settles at.
+
+        Where steps down and up balance: p^n = 1/2 for n down, 1 up and equal steps (79.4 % for 3).
+        """
+        low, high = 0.0, 1.0
+        for _ in range(60):
+            p = (low + high) / 2
+            wanders_up = _down_first(p, self.down, self.up) * (1 + self._up_ratio) < self._up_ratio
+            low, high = (p, high) if wanders_up else (low, p)
+        return (low + high) / 2
+
+    @property
+    def threshold(self) -> float:
+        """Mean of the levels at the last reversals (their geometric mean if steps multiply); NaN without enough."""
+        if len(self.reversals) < self._last:
+            return float("nan")
+        return float(self._back(np.mean(self._last_reversals())))
+
+    @property
+    def spread(self) -> float:
+        """Standard deviation of those levels, in the level's unit; as a factor if steps multiply."""
+        if len(self.reversals) < max(2, self._last):
+            return float("nan")
+        return float(self._back(np.std(self._last_reversals(), ddof=1)))
+
+    def plan(self) -> dict[str, Any]:
+        """Tell all that decides which trials come, for the log."""
+        bounds = [None if np.isinf(one) else one for one in (self._lowest, self._highest)]
+        return {
+            "staircase": {
+                "start": self._start,
+                "step": self._steps,
+                "down": self.down,
+                "up": self.up,
+                "up_ratio": self._up_ratio,
+                "multiply": self.multiply,
+                "bounds": bounds,
+                "reversals": self._reversals_most,
+                "trials_most": self._trials_most,
+            }
+        }
+
+    def _last_reversals(self) -> Any:
+        levels = np.array(self.reversals[-self._last :])
+        return np.log(levels) if self.multiply else levels
+
+    def _back(self, value: Any) -> Any:
+        return np.exp(value) if self.multiply else value
+
+    def _go(self, heading: int) -> None:
+        self._right = self._wrong = 0
+        if self._heading == -heading:
+            self.reversals.append(self.level)
+        self._heading = heading
+        step = self._steps[min(len(self.reversals), len(self._steps) - 1)]
+        size = self._up_ratio if heading > 0 else 1.0
+        level = self.level * step ** (heading * size) if self.multiply else self.level + heading * size * step
+        self.level = float(min(max(level, self._lowest), self._highest))
+
+
+def _down_first(p: float, down: int, up: int) -> float:
+    """Probability that `down` successes in a row come before `up` failures in a row, by their known law."""
+    q = 1 - p
+    right, wrong = p ** (down - 1), q ** (up - 1)
+    return right * (1 - q**up) / (right + wrong - right * wrong)

@@ -1,0 +1,12 @@
+"""Scenes as environments with Gymnasium's interface; Gymnasium itself need not be installed.
+
+    import thimble.gym
+    env = thimble.gym.TouchEnv("rubber", reward=lambda tick, action: -abs(float(tick.force[2]) - 1.0))
+    observation, info = env.reset(seed=1)
+    observation, reward, terminated, truncated, info = env.step((0.0, 0.0, 0.01))
+"""
+
+from .environment import TouchEnv
+from .vector import VectorEnv
+
+__all__ = ["TouchEnv", "VectorEnv"]

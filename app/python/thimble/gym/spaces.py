@@ -1,0 +1,99 @@
+"""Spaces and base classes of Gymnasium where it is installed, and small stand-ins where it is not.
+
+The stand-ins have what an agent needs to know of a space: shape, dtype, low, high, contains, sample.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Optional
+
+import numpy as np
+from numpy.typing import NDArray
+
+try:
+    import gymnasium
+    from gymnasium.spaces import Box
+    from gymnasium.vector import VectorEnv as VectorBase
+
+    Base: Any = gymnasium.Env
+    # How episodes of several begin anew; older versions have no word for it.
+    NEXT_STEP: Any = getattr(getattr(gymnasium.vector, "AutoresetMode", None), "NEXT_STEP", "NextStep")
+except ImportError:
+    NEXT_STEP = "NextStep"
+
+    class Box:  # type: ignore[no-redef]
+        """All arrays between two others, bounds included."""
+
+        def __init__(self, low: Any, high: Any, dtype: Any = np.float64) -> None:
+            self.dtype = np.dtype(dtype)
+            self.low = np.array(low, dtype=self.dtype)
+            self.high = np.array(high, dtype=self.dtype)
+            self.shape = self.low.shape
+            self._random = np.random.default_rng()
+
+        def seed(self, seed: Optional[int] = None) -> None:
+            """Let :meth:`sample` draw anew from this seed."""
+            self._random = np.random.default_rng(seed)
+
+        def sample(self) -> NDArray[Any]:
+            """Draw an array: evenly where both bounds are finite, by a normal law from the finite one or from 0 else."""
+            low, high = np.isfinite(self.low), np.isfinite(self.high)
+            even = self._random.random(self.shape)
+            normal = self._random.normal(size=self.shape)
+            with np.errstate(invalid="ignore"):
+                inside = self.low + even * (self.high - self.low)
+                from_one = np.where(low, self.low + np.abs(normal), np.where(high, self.high - np.abs(normal), normal))
+            return np.where(low & high, inside, from_one).astype(self.dtype)
+
+        def contains(self, x: Any) -> bool:
+            """Tell whether an array is one of the space's."""
+            x = np.asarray(x)
+            return x.shape == self.shape and bool((x >= self.low).all() and (x <= self.high).all())
+
+        __contains__ = contains
+
+        def __repr__(self) -> str:
+            return f"Box({self.low.min()}, {self.high.max()}, {self.shape}, {self.dtype})"
+
+    class Base:  # type: ignore[no-redef]
+        """What gymnasium.Env has of its own: the generator of random numbers, ``unwrapped``, ``with``."""
+
+        metadata: dict[str, Any] = {}
+        render_mode: Optional[str] = None
+        spec: Any = None
+        _np_random: Optional[np.random.Generator] = None
+
+        @property
+        def unwrapped(self) -> Any:
+            """This environment."""
+            return self
+
+        @property
+        def np_random(self) -> np.random.Generator:
+            """The environment's own generator; seeded by ``reset(seed=)``, or by the system."""
+            if self._np_random is None:
+                self._np_random = np.random.default_rng()
+            return self._np_random
+
+        def reset(self, *, seed: Optional[int] = None, options: Optional[dict[str, Any]] = None) -> Any:
+            """Seed the generator, if a seed is given."""
+            if seed is not None:
+                self._np_random = np.random.default_rng(seed)
+
+        def close(self) -> None:
+            """Release what the environment holds."""
+
+        def __enter__(self) -> Any:
+            return self
+
+        def __exit__(self, *_: object) -> None:
+            self.close()
+
+    VectorBase = Base  # type: ignore[misc,assignment]
+
+
+def batched(space: Any, count: int) -> Any:
+    """Give the space of `count` elements of a box, one below the other."""
+    low = np.repeat(space.low[np.newaxis], count, axis=0)
+    high = np.repeat(space.high[np.newaxis], count, axis=0)
+    return Box(low, high, dtype=space.dtype)

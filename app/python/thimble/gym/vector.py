@@ -1,0 +1,253 @@
+"""Several environments at once, in processes of their own."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import pickle
+import signal
+import sys
+import traceback
+import types
+import weakref
+from multiprocessing import get_context
+from multiprocessing.connection import Connection
+from multiprocessing.reduction import ForkingPickler
+from typing import Any, Callable, Iterator, Optional, Sequence, Union
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .. import ArgumentError, Error
+from .spaces import NEXT_STEP, VectorBase, batched
+
+Make = Callable[[], Any]
+
+
+class VectorEnv(VectorBase):
+    """Environments side by side, spread over processes; to the bit what each would be alone.
+
+    ``step`` takes the actions of all, (n, ...), and gives arrays of n. An environment whose episode
+    ended is reset by the next step, which ignores its action and gives reward 0 (Gymnasium's
+    NEXT_STEP). Each process holds its share of the environments and ends with this object: when it is
+    closed, and when this process is killed.
+
+    Functions are handed over by name, as `multiprocessing` does with "spawn": what a script defines
+    itself is found only if its own work stands below ``if __name__ == "__main__":``, and what a
+    notebook or an interactive session defines is not found at all; put it into a file and import it.
+    """
+
+    metadata: dict[str, Any] = {"render_modes": [], "autoreset_mode": NEXT_STEP}
+    closed = True  # until there is something to close
+
+    def __init__(
+        self,
+        make: Union[Make, Sequence[Make]],
+        count: Optional[int] = None,
+        *,
+        workers: Optional[int] = None,
+        start: str = "spawn",
+    ) -> None:
+        """Start the processes, and wait until each has its environments.
+
+        make: a function that gives an environment, for `count` of them, or one for each:
+        ``functools.partial(thimble.gym.TouchEnv, "rubber", reward=mine)``. workers: processes; one for
+        each core, and no more than environments, if absent. start: "spawn" or "forkserver".
+        """
+        makes = list(make) if isinstance(make, Sequence) else [make] * (1 if count is None else count)
+        if not makes or (count is not None and count != len(makes)):
+            raise ArgumentError(f"count: expected {max(1, len(makes))}, found {count}.")
+        if start not in ("spawn", "forkserver"):
+            raise ArgumentError(f'start: expected "spawn" or "forkserver", found {start!r}.')
+        if workers is not None and workers < 1:
+            raise ArgumentError(f"workers: expected 1 or more, found {workers}.")
+        most = workers if workers is not None else len(os.sched_getaffinity(0))
+        shares = np.array_split(np.arange(len(makes)), min(most, len(makes)))
+        self.num_envs = len(makes)
+        self.closed = False
+        self._workers: list[_Worker] = []
+        # Also when nobody closes it: at the end of the object or of the program.
+        self._closer = weakref.finalize(self, _close_all, self._workers)
+        try:
+            for share in shares:
+                self._workers.append(_Worker(share, [makes[i] for i in share], start))
+            spaces = [worker.receive() for worker in self._workers][0]
+        except BaseException:
+            self.close()
+            raise
+        self.single_observation_space, self.single_action_space = spaces
+        self.observation_space = batched(self.single_observation_space, self.num_envs)
+        self.action_space = batched(self.single_action_space, self.num_envs)
+        self._begun = False
+        self.render_mode = None
+
+    def __enter__(self) -> "VectorEnv":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def reset(
+        self,
+        *,
+        seed: Union[None, int, Sequence[Optional[int]]] = None,
+        options: Optional[dict[str, Any]] = None,
+    ) -> tuple[NDArray[Any], dict[str, Any]]:
+        """Begin an episode in each, and give observations (n, ...) and infos.
+
+        seed: one for each, or one number s for s, s + 1, s + 2 and so on. infos: an array for each key
+        of the environments' own, and below ``_key`` which of them told it.
+        """
+        if seed is None or isinstance(seed, (int, np.integer)):
+            seeds = [None if seed is None else int(seed) + i for i in range(self.num_envs)]
+        else:
+            seeds = list(seed)
+        if len(seeds) != self.num_envs:
+            raise ArgumentError(f"seed: expected {self.num_envs} of them, found {len(seeds)}.")
+        told = self._ask("reset", [(one, options) for one in seeds])
+        self._begun = True
+        return np.stack([observation for observation, _ in told]), _gathered([info for _, info in told])
+
+    def step(
+        self, actions: ArrayLike
+    ) -> tuple[NDArray[Any], NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_], dict[str, Any]]:
+        """Go on in each, and give observations, rewards, terminated, truncated (arrays of n) and infos."""
+        each = np.asarray(actions)
+        if each.shape != self.action_space.shape:
+            raise ArgumentError(f"actions: expected the shape {self.action_space.shape}, found {each.shape}.")
+        if not self._begun:
+            raise Error("The environments have no episodes: call reset().")
+        told = self._ask("step", list(each))
+        return (
+            np.stack([one[0] for one in told]),
+            np.array([one[1] for one in told], dtype=np.float64),
+            np.array([one[2] for one in told], dtype=np.bool_),
+            np.array([one[3] for one in told], dtype=np.bool_),
+            _gathered([one[4] for one in told]),
+        )
+
+    def close(self, **_: Any) -> None:
+        """End all processes, and wait for that. Again is nothing."""
+        self.closed = True
+        self._closer()
+
+    @property
+    def processes(self) -> list[int]:
+        """Process numbers of those that run; empty after :meth:`close`."""
+        return [worker.process.pid for worker in self._workers if worker.process.pid is not None]
+
+    def _ask(self, what: str, each: list[Any]) -> list[Any]:
+        if self.closed:
+            raise Error("The environments were closed.")
+        told: list[Any] = []
+        try:
+            for worker in self._workers:
+                worker.send((what, [each[i] for i in worker.share]))
+            for worker in self._workers:
+                told += worker.receive()
+        except BaseException:  # half an answer is in the pipes: nothing goes on after it, Ctrl-C included
+            self.close()
+            raise
+        return told
+
+
+class _Worker:
+    """A process with its share of the environments, as seen from here."""
+
+    def __init__(self, share: NDArray[Any], makes: list[Make], start: str) -> None:
+        self.share = share
+        context = get_context(start)
+        self._pipe, theirs = context.Pipe()
+        parcel = bytes(ForkingPickler.dumps(makes))
+        self.process = context.Process(target=_serve, args=(theirs, parcel), daemon=True)
+        # The caller's script runs in the process only if something of it is needed there.
+        with contextlib.nullcontext() if b"__main__" in parcel else _hidden_script():
+            self.process.start()
+        theirs.close()  # or the end of the process would not be seen here
+
+    def send(self, what: Any) -> None:
+        with contextlib.suppress(BrokenPipeError):  # receive() tells of it
+            self._pipe.send(what)
+
+    def receive(self) -> Any:
+        try:
+            kind, told = self._pipe.recv()
+        except (EOFError, ConnectionResetError):
+            self.process.join()
+            at = ", ".join(map(str, self.share))
+            raise Error(
+                f"The process of the environments {at} ended (exit code {self.process.exitcode}); all are closed."
+            ) from None
+        if kind == "wrong":
+            raise Error(f"In the process of environment {self.share[told[0]]}: {told[1]}")
+        return told
+
+    def close(self) -> None:
+        self._pipe.close()  # the process ends at that
+        self.process.join(timeout=5)
+        if self.process.is_alive():
+            self.process.kill()
+            self.process.join()
+
+
+def _close_all(workers: list[_Worker]) -> None:
+    while workers:
+        workers.pop().close()
+
+
+@contextlib.contextmanager
+def _hidden_script() -> Iterator[None]:
+    """Keep `multiprocessing` from running the caller's script again in the process that starts."""
+    script = sys.modules["__main__"]
+    sys.modules["__main__"] = types.ModuleType("__main__")
+    try:
+        yield
+    finally:
+        sys.modules["__main__"] = script
+
+
+def _serve(pipe: Connection, parcel: bytes) -> None:
+    """Hold environments, and answer until the other end of the pipe is closed or gone."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the parent's to hear, which then closes
+    at = 0
+    try:
+        environments = []
+        makes = pickle.loads(parcel)
+        for at, make in enumerate(makes):
+            environments.append(make())
+        over = [False] * len(environments)
+        pipe.send(("told", (environments[0].observation_space, environments[0].action_space)))
+        while True:
+            what, each = pipe.recv()
+            told = []
+            for at, environment in enumerate(environments):
+                if what == "reset":
+                    told.append(environment.reset(seed=each[at][0], options=each[at][1]))
+                    over[at] = False
+                elif over[at]:
+                    told.append((lambda begun: (begun[0], 0.0, False, False, begun[1]))(environment.reset()))
+                    over[at] = False
+                else:
+                    told.append(environment.step(each[at]))
+                    over[at] = bool(told[-1][2] or told[-1][3])
+            pipe.send(("told", told))
+    except (EOFError, BrokenPipeError, ConnectionResetError):
+        pass
+    except Exception:
+        with contextlib.suppress(OSError):
+            pipe.send(("wrong", (at, traceback.format_exc())))
+
+
+def _gathered(infos: list[dict[str, Any]]) -> dict[str, Any]:
+    """Give the infos of all as arrays by key, and below ``_key`` a mask of who told it."""
+    gathered: dict[str, Any] = {}
+    for key in dict.fromkeys(key for info in infos for key in info):
+        told = np.array([key in info for info in infos])
+        first = next(info[key] for info in infos if key in info)
+        plain = isinstance(first, (bool, int, float))
+        values = np.zeros(len(infos), dtype=type(first) if plain else object)
+        for at, info in enumerate(infos):
+            if key in info:
+                values[at] = info[key]
+        gathered[key], gathered["_" + key] = values, told
+    return gathered

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "report/figure.h"
+
+namespace thimble::app {
+
+/// Returns figures as `write_figures` writes them.
+nlohmann::ordered_json figures_json(const std::vector<Figure>& figures);
+
+}  // namespace thimble::app

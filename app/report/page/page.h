@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "report/figure.h"
+#include "report/page/body_trace.h"
+#include "report/page/dent_trace.h"
+#include "report/page/page_marks.h"
+#include "share/shared_scene.h"
+#include "thimble/driver/result.h"
+#include "thimble/driver/tick_record.h"
+#include "thimble/render/mesh/triangle_mesh.h"
+
+namespace thimble::app {
+
+/// One arm of a touch that a page plays.
+struct PageArm {
+  std::span<const driver::TickRecord> ticks;  ///< Oldest first; must outlive the writing.
+  double force_limit = 0;                     ///< N; 0: not known.
+  std::vector<PageMark> marks;                ///< What happened.
+  std::vector<Figure> figures;                ///< What it sums up to.
+};
+
+/// The mesh of an object that was shaped for good, as it was left.
+struct PageShape {
+  std::size_t object = 0;     ///< Of the scene, counted from 0.
+  render::TriangleMesh mesh;  ///< In the frame of the object's own mesh, m.
+};
+
+/// A touch that a page plays.
+struct PageTouch {
+  std::string title;         ///< In the page's head.
+  std::string subtitle;      ///< Under it; may be empty.
+  std::string program;       ///< Which build felt it.
+  double rate = 0;           ///< Of the loop, Hz.
+  bool virtual_time = true;  ///< Its ticks came as asked, and took no time.
+  /// The forces sent were felt before, those asked for are what the scene answers now.
+  bool replayed = false;
+  session::SharedScene scene{};  ///< Objects, their meshes (W, m), and the arms as they are drawn.
+  std::vector<PageArm> arms{};   ///< As many as the scene has, in its order.
+  const BodyTrace* bodies = nullptr;  ///< Where objects were that move; null if none does.
+  const DentTrace* dents = nullptr;   ///< How objects were dented; null if none can be.
+  std::vector<PageShape> left{};      ///< What objects were shaped to.
+};
+
+/// Ticks of all arms that a page shows: 60 s at 1 kHz. [chosen: below 10 MB with all else]
+inline constexpr std::size_t kPageRowsMost = 60'001;
+/// Triangles of all objects that a page draws. [chosen: 2.5 MB]
+inline constexpr std::size_t kPageTrianglesMost = 120'000;
+
+/// Writes a page that plays a touch in a browser: one file, which loads nothing. The error says
+/// what is missing on this system, or which file cannot be written. Real-time: never from the servo
+/// thread.
+driver::Result<void> write_page(const PageTouch& touch, const std::filesystem::path& file);
+
+}  // namespace thimble::app

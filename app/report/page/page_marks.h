@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "events/event_watch.h"
+#include "events/tick_event.h"
+#include "spsc_ring.h"
+#include "thimble/driver/device.h"
+#include "thimble/driver/tick_record.h"
+#include "thimble/session/tick_observer.h"
+
+namespace thimble::app {
+
+/// Something that happened in a run, as a page marks it.
+struct PageMark {
+  /// How much it matters.
+  enum class Kind : std::uint8_t { kFault, kWarning, kGate, kNote };
+
+  std::int64_t begin_ns = 0;  ///< On the loop's clock.
+  std::int64_t end_ns = 0;    ///< When it was over; `begin_ns` if it took no time.
+  Kind kind = Kind::kNote;    ///< Of the worst of it.
+  std::string words;          ///< A sentence.
+};
+
+/// Names a kind as the page does: fault, warning, gate, note.
+const char* name_of(PageMark::Kind kind) noexcept;
+
+/// The events of a run on one arm, kept until it is over.
+class EventKeeper final : public session::TickObserver {
+ public:
+  /// Events that are kept: the first so many, 500 kB. [chosen: a page shows a hundred at a time]
+  static constexpr std::size_t kEventsMost = 8192;
+
+  /// Watches ticks due every `period_ns` on `device`, which must be open and outlive it.
+  /// Real-time: never from the servo thread.
+  EventKeeper(const driver::Device& device, std::int64_t period_ns);
+
+  /// Takes one tick. Real-time: safe.
+  void take(const driver::TickRecord& tick) noexcept override { watch_.take(tick); }
+
+  /// Ends what goes on and returns everything that happened but touches, in order. After the last
+  /// tick, once.
+  std::vector<PageMark> finish();
+
+ private:
+  session::DeviceCounters counters_;
+  session::SpscRing<session::TickEvent> ring_{kEventsMost};
+  session::EventWatch watch_;
+};
+
+/// Returns what the ticks of a recording tell of the same: the arm's stages, faults, ticks missed,
+/// and when the force that was sent was not the one that was asked for; why the gate did that no
+/// recording tells. Real-time: never from the servo thread.
+std::vector<PageMark> marks_of_ticks(std::span<const driver::TickRecord> ticks,
+                                     std::int64_t period_ns);
+
+}  // namespace thimble::app

@@ -1,0 +1,77 @@
+'use strict';
+
+// What the page tells (`about`), and its numbers: typed arrays over one block of bytes, by name.
+const about = JSON.parse(document.getElementById('about').textContent);
+const numbers = (() => {
+  const types = {
+    f64: Float64Array, f32: Float32Array, u32: Uint32Array, u16: Uint16Array, i16: Int16Array,
+    u8: Uint8Array
+  };
+  const raw = atob(document.getElementById('numbers').textContent);
+  const bytes = new Uint8Array(raw.length);
+  for (let i = 0; i < raw.length; ++i) bytes[i] = raw.charCodeAt(i);
+  return name => {
+    const array = about.arrays[name];
+    return array ? new types[array.type](bytes.buffer, array.offset, array.count) : null;
+  };
+})();
+
+// Returns the last place of a rising array that is not above `t`; 0 if all are.
+function placeOf(times, t) {
+  let low = 0;
+  let high = times.length;
+  while (high - low > 1) {
+    const middle = (low + high) >> 1;
+    if (times[middle] <= t) low = middle;
+    else high = middle;
+  }
+  return low;
+}
+
+function lengthAt(array, i) {
+  return Math.hypot(array[3 * i], array[3 * i + 1], array[3 * i + 2]);
+}
+
+// Returns the least of 1, 2, 5 times a power of ten that is not below a value.
+function roundUp(value) {
+  if (!(value > 0)) return 1;
+  const power = Math.pow(10, Math.floor(Math.log10(value)));
+  for (const factor of [1, 2, 5]) if (factor * power >= value * 0.9999) return factor * power;
+  return 10 * power;
+}
+
+// The ticks of one arm, column by column.
+function armOf(number) {
+  const arm = Object.assign({}, about.arms[number]);
+  const column = name => numbers('arm' + number + '.' + name);
+  for (const name of ['t', 'tick', 'tip', 'proxy', 'sent', 'asked', 'depth', 'period', 'work',
+                      'speed', 'object', 'touching']) {
+    arm[name] = column(name);
+  }
+  arm.barTimes = column('bar_t');
+  arm.bars = column('bars');
+  arm.force = new Float32Array(arm.t.length);
+  arm.forceMost = 0;
+  for (let i = 0; i < arm.t.length; ++i) {
+    arm.force[i] = lengthAt(arm.sent, i);
+    if (arm.force[i] > arm.forceMost) arm.forceMost = arm.force[i];
+  }
+  return arm;
+}
+const arms = about.arms.map((_, number) => armOf(number));
+const duration = Math.max(0.001, ...arms.map(arm => (arm.t.length ? arm.t[arm.t.length - 1] : 0)));
+const forceScale = roundUp(Math.max(...arms.map(arm => arm.forceMost)));
+
+// Force as a colour: none is grey, then light to dark, apart for colour-blind eyes too.
+const kForceStops = [[0.98, 0.82, 0.30], [0.95, 0.56, 0.17], [0.84, 0.25, 0.05], [0.38, 0.03, 0.12]];
+function forceColour(force) {
+  if (!(force > 1e-4)) return [0.60, 0.64, 0.69];
+  const at = Math.min(0.9999, force / forceScale) * (kForceStops.length - 1);
+  const i = Math.floor(at);
+  return kForceStops[i].map((one, k) => one + (kForceStops[i + 1][k] - one) * (at - i));
+}
+
+const kObjectColours = ['#8fb3d1', '#e0b88a', '#96c3ac', '#c7a5c4', '#b9bfc7', '#d9cf9a'];
+function objectColour(i) {
+  return kObjectColours[i % kObjectColours.length];
+}

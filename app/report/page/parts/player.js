@@ -1,0 +1,168 @@
+// Time: plays, pauses, seeks, and tells stage, plots and strip.
+(() => {
+  // `fresh`: nobody has gone anywhere yet.
+  const player = {t: 0, arm: 0, speed: 1, playing: false, fresh: true};
+  const byId = id => document.getElementById(id);
+  let stage, plots, strip;
+  const contactsOf = arms.map(() => null);
+  // When an arm touches; gaps shorter than 20 ms are closed, as the report does.
+  player.contacts = () => {
+    if (contactsOf[player.arm]) return contactsOf[player.arm];
+    const arm = arms[player.arm];
+    const found = [];
+    for (let i = 0; i < arm.t.length; ++i) {
+      if (!arm.touching[i]) continue;
+      const end = arm.t[Math.min(i + 1, arm.t.length - 1)];
+      const last = found[found.length - 1];
+      if (last && arm.t[i] - last[1] <= 0.02) last[1] = end;
+      else found.push([arm.t[i], end]);
+    }
+    return contactsOf[player.arm] = found;
+  };
+  player.window = () => (plots ? plots.window : [0, duration]);
+  player.windowChanged = () => { if (strip) strip.paint(); };
+
+  function show() {
+    stage.show(player.t);
+    stage.draw();
+    plots.cursor(player.t);
+    strip.paint();
+    showReadout(player);
+    byId('clock').textContent = player.t.toFixed(3) + ' / ' + duration.toFixed(3) + ' s';
+  }
+  player.seek = t => {
+    player.t = Math.max(0, Math.min(duration, t));
+    player.fresh = false;
+    show();
+  };
+  player.play = on => {
+    if (on && (player.fresh || player.t >= duration)) player.seek(0);
+    player.playing = on;
+    byId('play').textContent = on ? 'Pause' : 'Play';
+    before = null;
+  };
+  // Goes by rows of the page: a tick, unless the run was longer than the page shows.
+  player.step = rows => {
+    const times = arms[player.arm].t;
+    if (times.length === 0) return;
+    player.play(false);
+    player.seek(times[Math.max(0, Math.min(times.length - 1, placeOf(times, player.t) + rows))]);
+  };
+
+  let before = null;
+  function frame(now) {
+    if (player.playing) {
+      const t = player.t + (before === null ? 0 : Math.min(0.25, (now - before) * 1e-3) * player.speed);
+      before = now;
+      player.seek(t);
+      if (player.t >= duration) player.play(false);
+    } else {
+      stage.draw();
+    }
+    requestAnimationFrame(frame);
+  }
+
+  function addChoice(name, words, on) {
+    const label = document.createElement('label');
+    const check = document.createElement('input');
+    check.type = 'checkbox';
+    check.checked = on;
+    check.dataset.shown = name;
+    label.append(check, ' ' + words);
+    check.addEventListener('change', () => {
+      stage.shown[name] = check.checked;
+      show();
+    });
+    byId('stage-choices').append(label);
+  }
+
+  function showScale() {
+    const bar = byId('scale-bar').getContext('2d');
+    for (let x = 0; x < 160; ++x) {
+      const colour = forceColour(Math.max(1e-3, x / 160 * forceScale));
+      bar.fillStyle = 'rgb(' + colour.map(one => Math.round(255 * one)).join(',') + ')';
+      bar.fillRect(x, 0, 1, 8);
+    }
+    byId('scale-least').textContent = '0';
+    byId('scale-most').textContent = +forceScale.toPrecision(3) + ' N';
+  }
+
+  function begin() {
+    byId('title').textContent = about.title;
+    byId('subtitle').textContent = about.subtitle;
+    byId('subtitle').title = about.subtitle;
+    byId('program').textContent = 'Felt by ' + about.program + '.';
+    for (const speed of [0.02, 0.05, 0.1, 0.25, 0.5, 1, 2, 4]) {
+      const option = textIn(byId('speed'), 'option', speed + ' \u00d7');
+      option.value = speed;
+      option.selected = speed === 1;
+    }
+    if (arms.length > 1) {
+      byId('arm-choice').hidden = false;
+      arms.forEach((arm, i) => { textIn(byId('arm'), 'option', arm.name || arm.arm).value = i; });
+    }
+    showScale();
+    showObjects();
+    showSide(player);
+    stage = makeStage(byId('stage'));
+    stage.resize();
+    if (stage.shown) {
+      addChoice('ahead', 'path to come', true);
+      if (arms.some(arm => arm.barTimes && arm.barTimes.length > 0)) addChoice('arm', 'arm', false);
+      if (about.objects.some(object => object.left)) addChoice('left', 'as it was left', false);
+      textIn(byId('stage-choices'), 'span', 'grid ' + +(1e3 * stage.cell).toPrecision(2) + ' mm').style.color = '#616e7c';
+    }
+    plots = makePlots(byId('plots'), player);
+    strip = makeStrip(byId('strip'), player);
+    plots.layOut();
+
+    byId('play').addEventListener('click', () => player.play(!player.playing));
+    byId('speed').addEventListener('change', event => { player.speed = Number(event.target.value); });
+    byId('arm').addEventListener('change', event => {
+      player.arm = Number(event.target.value);
+      strip.forget();
+      showSide(player);
+      plots.refresh();
+      show();
+    });
+    window.addEventListener('resize', () => {
+      stage.resize();
+      for (const graph of plots.graphs) if (!graph.box.hidden) graph.dygraph.resize();
+      show();
+    });
+    window.addEventListener('keydown', event => {
+      if (event.ctrlKey || event.altKey || event.metaKey || /SELECT|INPUT/.test(event.target.tagName)) return;
+      const steps = {ArrowLeft: -1, ArrowRight: 1, PageUp: -100, PageDown: 100};
+      if (event.key === ' ' && event.target.tagName !== 'BUTTON') player.play(!player.playing);
+      else if (steps[event.key]) player.step(steps[event.key] * (event.shiftKey ? 10 : 1));
+      else if (event.key === 'Home') player.seek(0);
+      else if (event.key === 'End') player.seek(duration);
+      else return;
+      event.preventDefault();
+    });
+    // Where the force is largest there is most to see.
+    const arm = arms[0];
+    let most = 0;
+    for (let i = 1; i < arm.t.length; ++i) if (arm.force[i] > arm.force[most]) most = i;
+    player.seek(arm.t.length ? arm.t[most] : 0);
+    player.fresh = true;  // who plays it first sees it from its beginning
+    requestAnimationFrame(frame);
+  }
+  begin();
+
+  // For whoever drives the page by a script: what is shown, and how to go elsewhere.
+  window.thimblePage = {
+    duration,
+    seek: player.seek,
+    play: player.play,
+    speed: speed => { player.speed = speed; },
+    zoom: (from, to) => plots.setWindow(from, to),
+    state: () => {
+      const arm = arms[player.arm];
+      const i = placeOf(arm.t, player.t);
+      return {t: player.t, tick: arm.tick[i], force: arm.force[i], depth: arm.depth[i],
+              playing: player.playing, drawn: stage.drawn, window: plots.window.slice(),
+              plotted: plots.graphs.map(graph => graph.box.hidden ? 0 : graph.dygraph.numRows())};
+    }
+  };
+})();

@@ -1,0 +1,172 @@
+// The scene in three dimensions. Without WebGL a sentence stands in its place, and the rest goes on.
+function makeStage(box) {
+  let renderer;
+  try {
+    renderer = new THREE.WebGLRenderer({antialias: true, alpha: true});
+  } catch (error) {
+    const note = document.getElementById('stage-note');
+    note.textContent = 'This browser draws no WebGL, so the scene is left out; plots and figures are below.';
+    note.hidden = false;
+    return {show() {}, draw() {}, resize() {}, drawn: 0};
+  }
+  const kOpening = 0.6;
+  renderer.setPixelRatio(Math.min(2, window.devicePixelRatio || 1));
+  renderer.domElement.className = 'view';
+  box.insertBefore(renderer.domElement, box.firstChild);
+  const scene = new THREE.Scene();
+  const camera = new THREE.PerspectiveCamera(kOpening * 180 / Math.PI, 1, 0.001, 10);
+  scene.add(new THREE.HemisphereLight(0xffffff, 0x9aa3ad, 0.72));
+  const lamp = new THREE.DirectionalLight(0xffffff, 0.36);
+  scene.add(lamp, lamp.target);
+
+  // Objects, as they are at first and as they were left.
+  const bounds = new THREE.Box3();
+  const objects = about.objects.map((object, i) => {
+    const prefix = 'object' + i + '.';
+    const of = which => meshGeometry(numbers(which + 'vertices'), numbers(which + 'corners'),
+                                     object.crease);
+    const first = of(prefix);
+    const left = object.left ? of(prefix + 'left.') : null;
+    const mesh = new THREE.Mesh(first, new THREE.MeshPhongMaterial({
+      color: objectColour(i), specular: 0x222222, shininess: 25, side: THREE.DoubleSide,
+      polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1}));
+    scene.add(mesh);
+    first.computeBoundingBox();
+    if (!object.endless && first.attributes.position.count > 0) bounds.union(first.boundingBox);
+    return {mesh, first, left};
+  });
+  for (const arm of arms) {
+    const p = new THREE.Vector3();
+    for (let i = 0; i < arm.t.length; i += 20) {
+      if (arm.touching[i] || bounds.isEmpty()) bounds.expandByPoint(p.fromArray(arm.tip, 3 * i));
+    }
+  }
+  if (bounds.isEmpty()) bounds.expandByPoint(new THREE.Vector3());
+  const size = Math.max(1e-3, bounds.getSize(new THREE.Vector3()).length());
+
+  // A grid of 10 mm (or a power of ten of it) under everything.
+  const cell = Math.pow(10, Math.round(Math.log10(size / 15)));
+  const cells = 2 * Math.ceil(0.55 * size / cell);
+  const grid = new THREE.GridHelper(cells * cell, cells, 0xb3bcc6, 0xccd3da);
+  grid.rotation.x = Math.PI / 2;
+  const middle = bounds.getCenter(new THREE.Vector3());
+  grid.position.set(Math.round(middle.x / cell) * cell, Math.round(middle.y / cell) * cell,
+                    bounds.min.z - 0.002 * size);
+  scene.add(grid);
+
+  // What is drawn of each arm.
+  const ball = new THREE.SphereBufferGeometry(1, 24, 16);
+  const rod = new THREE.CylinderBufferGeometry(1, 1, 1, 12);
+  const plain = colour => new THREE.MeshPhongMaterial({color: colour, shininess: 40});
+  const sides = arms.map(arm => {
+    const tube = pathTube(arm, size / 700, size / 330);
+    const paint = {vertexColors: THREE.VertexColors, shininess: 10};
+    const path = new THREE.Mesh(tube.geometry, new THREE.MeshPhongMaterial(paint));
+    const ahead = new THREE.Mesh(tube.geometry.clone(), new THREE.MeshPhongMaterial(Object.assign(
+        {transparent: true, opacity: 0.3, depthWrite: false}, paint)));
+    const tip = new THREE.Mesh(ball, plain('#0b3c5d'));
+    const proxy = new THREE.Mesh(ball, plain('#f5b700'));
+    const shaft = new THREE.Mesh(rod, plain('#d55e00'));
+    const head = new THREE.Mesh(new THREE.ConeBufferGeometry(1, 1, 20), plain('#d55e00'));
+    tip.scale.setScalar(size / 110);
+    proxy.scale.setScalar(size / 130);
+    const bars = [];
+    for (const count of arm.lines || []) {
+      for (let i = 0; i + 1 < count; ++i) bars.push(new THREE.Mesh(rod, plain('#8a94a0')));
+    }
+    scene.add(path, ahead, tip, proxy, shaft, head, ...bars);
+    return {tube, path, ahead, tip, proxy, shaft, head, bars};
+  });
+
+  // Where the forces point on the whole: the touched side is looked at first.
+  function touchedSide() {
+    const sum = new THREE.Vector3();
+    for (const arm of arms) {
+      for (let i = 0; i < arm.t.length; i += 5) {
+        sum.x += arm.sent[3 * i];
+        sum.y += arm.sent[3 * i + 1];
+        sum.z += arm.sent[3 * i + 2];
+      }
+    }
+    return sum;
+  }
+
+  const up = new THREE.Vector3(0, 1, 0);
+  const put = (mesh, a, b, thick) => {
+    const along = b.clone().sub(a);
+    const length = along.length();
+    mesh.visible = length > 1e-9;
+    if (!mesh.visible) return;
+    mesh.position.copy(a).addScaledVector(along, 0.5);
+    mesh.quaternion.setFromUnitVectors(up, along.normalize());
+    mesh.scale.set(thick, length, thick);
+  };
+  const stage = {shown: {ahead: true, arm: false, left: false}, drawn: 0, dirty: true};
+  const point = (array, i) => new THREE.Vector3(array[3 * i], array[3 * i + 1], array[3 * i + 2]);
+  const forceLength = 0.3 * size / forceScale;
+
+  function showArm(arm, side, t) {
+    const i = placeOf(arm.t, t);
+    const tip = point(arm.tip, i);
+    const proxy = point(arm.proxy, i);
+    side.tip.position.copy(tip);
+    side.proxy.position.copy(proxy);
+    side.proxy.visible = arm.touching[i] > 0;
+    const force = point(arm.sent, i).multiplyScalar(forceLength);
+    const felt = force.length();
+    const pointed = felt > 1e-6 * size;
+    side.shaft.visible = side.head.visible = pointed;
+    if (pointed) {
+      const end = proxy.clone().add(force);
+      const neck = proxy.clone().addScaledVector(force, Math.max(0, 1 - 0.05 * size / felt));
+      put(side.shaft, proxy, neck, size / 260);
+      put(side.head, neck, end, size / 90);
+    }
+    const rings = placeOf(side.tube.rows, i);
+    side.path.geometry.setDrawRange(0, rings * side.tube.perRing);
+    side.ahead.geometry.setDrawRange(rings * side.tube.perRing, Infinity);
+    side.ahead.visible = stage.shown.ahead;
+    for (const bar of side.bars) bar.visible = false;
+    if (!stage.shown.arm || !arm.barTimes || arm.barTimes.length === 0) return;
+    const all = arm.lines.reduce((sum, one) => sum + one, 0);
+    let at = all * placeOf(arm.barTimes, t);
+    let bar = 0;
+    for (const count of arm.lines) {
+      for (let k = 0; k + 1 < count; ++k, ++at) {
+        put(side.bars[bar++], point(arm.bars, at), point(arm.bars, at + 1), size / 100);
+      }
+      ++at;
+    }
+  }
+
+  const showBodies = makeBodies(objects);
+  const showDents = makeDents(objects);
+  const eye = makeEye(renderer.domElement, () => { stage.dirty = true; });
+  stage.show = t => {
+    objects.forEach(object => {
+      object.mesh.geometry = stage.shown.left && object.left ? object.left : object.first;
+    });
+    arms.forEach((arm, i) => showArm(arm, sides[i], t));
+    showBodies(t);
+    showDents(t, !stage.shown.left);
+    stage.dirty = true;
+  };
+  stage.draw = () => {
+    if (!stage.dirty) return;
+    stage.dirty = false;
+    eye.place(camera);
+    lamp.position.copy(camera.position).add(new THREE.Vector3(0, 0, eye.distance));
+    lamp.target.position.copy(eye.target);
+    renderer.render(scene, camera);
+    ++stage.drawn;
+  };
+  stage.resize = () => {
+    renderer.setSize(box.clientWidth, box.clientHeight, false);
+    camera.aspect = box.clientWidth / Math.max(1, box.clientHeight);
+    if (!eye.home) eye.frame(bounds, camera, touchedSide());
+    stage.dirty = true;
+  };
+  stage.cell = cell;
+  stage.eye = eye;
+  return stage;
+}

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "observers/dent_record.h"
+#include "recording/replay_watch.h"
+#include "report/page/body_trace.h"
+#include "report/page/dent_trace.h"
+#include "report/page/page_marks.h"
+#include "thimble/driver/real_time.h"
+#include "thimble/driver/result.h"
+#include "thimble/session/session.h"
+
+namespace thimble::app {
+
+/// What the page of a run needs beyond what a session keeps: where its objects have moved, and what
+/// happened to its arms. It observes the run's ticks.
+class RunPage {
+ public:
+  /// Looks at a session whose arm is open and whose first tick has not come; it must outlive the
+  /// run. Real-time: never from the servo thread.
+  explicit RunPage(session::Session& session);
+
+  /// Writes the page (write_page) of the run that is over; `grant` is what the kernel granted the
+  /// servo's thread. Once. Real-time: never from the servo thread.
+  driver::Result<void> write(const driver::RealTimeGrant& grant, const std::filesystem::path& file);
+
+ private:
+  session::Session& session_;
+  std::unique_ptr<BodyTrace> bodies_;  // null if nothing moves
+  std::unique_ptr<DentTrace> dents_;   // null if nothing dents
+  std::vector<std::unique_ptr<EventKeeper>> events_;
+};
+
+/// What the page of a replay needs of it: looks on while recorded hands touch a scene again.
+class ReplayPage final : public session::ReplayWatch {
+ public:
+  void begin(const scene::Scene& scene,
+             std::shared_ptr<const scene::SceneObjects> objects) override;
+  void take(const driver::TickRecord& tick) override;
+
+  /// Writes the page (write_page) of replays that are over. Real-time: never from the servo thread.
+  driver::Result<void> write(std::span<const session::Replay> replays,
+                             const std::filesystem::path& file);
+
+ private:
+  scene::Scene scene_;
+  std::shared_ptr<const scene::SceneObjects> objects_;
+  std::unique_ptr<BodyTrace> bodies_;              // null if nothing moves
+  std::unique_ptr<session::DentRecord> dent_now_;  // null if nothing dents, as the next
+  std::unique_ptr<DentTrace> dents_;
+};
+
+}  // namespace thimble::app

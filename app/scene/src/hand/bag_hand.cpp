@@ -1,0 +1,36 @@
+#include "hand/bag_hand.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "bag/read_bag.h"
+
+namespace thimble::scene {
+
+driver::Result<std::vector<HandWaypoint>> read_bag_hand(const std::filesystem::path& bag,
+                                                        const std::string& topic,
+                                                        bag::BagAxes axes) {
+  constexpr double kFarthest = 2;  // m, as of a path
+  // Ten times as often as a hand moves by itself; a nanosecond less, for times that are rounded.
+  constexpr double kApart = 0.01 - 1e-9;  // s [chosen]
+  const auto read = bag::read_bag(bag, bag::BagKind::kPositions, topic);
+  if (!read) return read.error();
+  std::vector<HandWaypoint> hand;
+  for (const bag::BagSample& sample : read->samples) {
+    HandWaypoint station;
+    station.time = sample.time;
+    station.p_W = bag::in_world(axes, sample.value);
+    if (!(station.p_W.cwiseAbs().maxCoeff() <= kFarthest)) {
+      return driver::Error{fmt::format(
+          "{}: {} is {:.3g} m from the origin after {:g} s; expected positions in m, within 2 m.",
+          bag.string(), read->name, station.p_W.norm(), sample.time)};
+    }
+    const bool last = &sample == &read->samples.back();
+    if (!hand.empty() && station.time - hand.back().time < kApart && !last) continue;
+    hand.push_back(std::move(station));
+  }
+  return hand;
+}
+
+}  // namespace thimble::scene

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "bag/bag_axes.h"
+#include "thimble/driver/result.h"
+#include "thimble/scene/hand_route.h"
+
+namespace thimble::scene {
+
+/// Reads the path of a simulated hand out of a ROS bag (bag/read_bag.h): a station per message, at
+/// least 10 ms apart, and the last one. Times count from the first message. `axes`: those of the
+/// bag. The error says what to mend, also where a position is beyond 2 m or the bag lasts for more
+/// than a day. Real-time: never from the servo thread.
+driver::Result<std::vector<HandWaypoint>> read_bag_hand(const std::filesystem::path& bag,
+                                                        const std::string& topic,
+                                                        bag::BagAxes axes);
+
+}  // namespace thimble::scene

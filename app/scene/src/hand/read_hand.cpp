@@ -1,0 +1,94 @@
+#include "hand/read_hand.h"
+
+#include <string>
+#include <utility>
+
+#include "hand/bag_hand.h"
+
+namespace thimble::scene {
+namespace {
+
+// Bounds catch slipped decimal points and values in mm, as those of the objects.
+constexpr double kPointMax = 2;     // m
+constexpr double kPushMax = 0.1;    // m
+constexpr double kTimeMax = 86400;  // s
+
+HandWaypoint read_waypoint(YamlMap map, const std::vector<SceneObject>& objects) {
+  HandWaypoint waypoint;
+  waypoint.time = map.require_number("t", "s", 0, kTimeMax);
+  waypoint.stop = map.optional_bool("stop", false);
+  if (map.has("at") == map.has("on")) {
+    map.reject("", "expected either at: [x, y, z] or on: OBJECT with near: [x, y, z]");
+  } else if (map.has("at")) {
+    waypoint.p_W = map.require_vector3("at", "m", -kPointMax, kPointMax);
+  } else {
+    waypoint.on = map.require_string("on");
+    waypoint.p_W = map.require_vector3("near", "m", -kPointMax, kPointMax);
+    waypoint.press = map.optional_number("press", 0, "m", -kPushMax, kPushMax);
+    bool known = false, is_field = false;
+    for (const SceneObject& object : objects) {
+      if (object.name != *waypoint.on) continue;
+      known = true;
+      is_field = object.build_field != nullptr;
+      if (object.paged) {
+        map.reject("on",
+                   "the surface of a mesh in pages is not in memory to plan on; give points "
+                   "of the path by at: [x, y, z]");
+      }
+    }
+    if (!known) map.reject("on", "expected an object of this scene, found \"" + *waypoint.on + '"');
+    if (is_field) map.reject("on", "a field has no surface to be on; use at: [x, y, z]");
+  }
+  map.finish();
+  return waypoint;
+}
+
+/// Reads how the simulated hand holds the arm, where the scene wants another one than the arm's
+/// file; limits as there.
+void read_grip(YamlMap map, device_sim::HandSettings& hand) {
+  hand.mass = map.optional_number("mass", hand.mass, "kg", 0, 10);
+  hand.stiffness = map.optional_number("stiffness", hand.stiffness, "N/m", 0, 1e5);
+  hand.damping = map.optional_number("damping", hand.damping, "N s/m", 0, 1000);
+  hand.tremor_amplitude = map.optional_number("tremor", hand.tremor_amplitude, "m", 0, 0.01);
+  map.finish();
+}
+
+/// Reads the path that a ROS bag holds; `folder`: the scene's.
+std::vector<HandWaypoint> read_bag_path(YamlMap& map, const std::filesystem::path& folder) {
+  const std::string text = map.require_string("bag");
+  const std::string topic = map.optional_string("topic", "");
+  const std::size_t axes = map.optional_choice("axes", 0, {"plain", "omni"});
+  if (map.has("path")) map.reject("path", "cannot stand beside bag; the hand follows one of them");
+  if (text.empty()) return {};
+  auto hand =
+      read_bag_hand((folder / text).lexically_normal(), topic, static_cast<bag::BagAxes>(axes));
+  if (hand) return std::move(hand).value();
+  std::string sentence = hand.error().message;  // here it stands within one
+  if (sentence.ends_with('.')) sentence.pop_back();
+  map.reject("bag", sentence);
+  return {};
+}
+
+}  // namespace
+
+std::vector<HandWaypoint> read_hand(YamlMap map, const std::vector<SceneObject>& objects,
+                                    const std::filesystem::path& folder,
+                                    device_sim::HandSettings& grip) {
+  std::vector<HandWaypoint> hand;
+  if (map.has("grip")) read_grip(map.require_map("grip"), grip);
+  if (map.has("bag")) {
+    hand = read_bag_path(map, folder);
+    map.finish();
+    return hand;
+  }
+  for (YamlMap& entry : map.require_maps("path")) {
+    hand.push_back(read_waypoint(entry, objects));
+    if (hand.size() > 1 && !(hand.back().time > hand[hand.size() - 2].time)) {
+      entry.reject("t", "expected a time after that of the station before");
+    }
+  }
+  map.finish();
+  return hand;
+}
+
+}  // namespace thimble::scene

@@ -1,0 +1,155 @@
+#include "hand/scene_arms.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include "hand/read_hand.h"
+#include "thimble/scene/shipped_files.h"
+
+namespace thimble::scene {
+namespace {
+
+constexpr double kPlaceMax = 2;       // m
+constexpr std::size_t kArmsMost = 8;  // [chosen: two users with two hands each, and room]
+
+/// Turns a box by quarters of a turn about z.
+WorkspaceBox box_turned(const WorkspaceBox& box, const Eigen::Matrix3d& R) {
+  const Eigen::Vector3d a = R * box.min_W, b = R * box.max_W;
+  return {.min_W = a.cwiseMin(b), .max_W = a.cwiseMax(b)};
+}
+
+/// Reads where an arm is put: turned about the vertical, as a desk allows, then moved.
+ArmPlace read_place(YamlMap map) {
+  const Eigen::Vector3d p =
+      map.optional_vector3("position", Eigen::Vector3d::Zero(), "m", -kPlaceMax, kPlaceMax);
+  const double degrees = map.optional_number("turn_degrees", 0, "degrees", -360, 360);
+  const double quarters = degrees / 90;
+  if (std::round(quarters) != quarters) {
+    map.reject("turn_degrees",
+               fmt::format("expected a multiple of 90, so that the workspace stays a box along the "
+                           "world's axes, found {:g}",
+                           degrees));
+  }
+  // Exact for quarters of a turn.
+  const double turn = std::round(quarters) * std::numbers::pi / 2;
+  const double c = std::round(std::cos(turn)), s = std::round(std::sin(turn));
+  ArmPlace place;
+  place.R << c, -s, 0, s, c, 0, 0, 0, 1;
+  place.p = p;
+  map.finish();
+  return place;
+}
+
+/// Returns the file of an arm that an entry names: beside the scene, or by name.
+driver::Result<std::filesystem::path> file_of(const std::string& text,
+                                              const std::filesystem::path& folder) {
+  const std::filesystem::path beside = (folder / text).lexically_normal();
+  std::error_code status;
+  if (std::filesystem::is_regular_file(beside, status)) return beside;
+  return find_arm_file(text);
+}
+
+driver::Result<SceneArm> read_arm_entry(YamlMap& map, const std::filesystem::path& folder) {
+  SceneArm entry;
+  entry.name = map.require_string("name");
+  // It names folders and groups of files.
+  const auto plain = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+  };
+  if (!std::all_of(entry.name.begin(), entry.name.end(), plain)) {
+    map.reject("name", "expected letters, digits and _, found \"" + entry.name + "\"");
+  }
+  const std::string text = map.require_string("arm");
+  const auto in_entry = [&entry](const driver::Error& error) {
+    return driver::Error{"The arm \"" + entry.name + "\": " + error.message};
+  };
+  if (!text.empty()) {
+    auto file = file_of(text, folder);
+    if (!file) return in_entry(file.error());
+    entry.arm_file = std::move(file).value();
+    auto arm = load_arm(entry.arm_file);
+    if (!arm) return in_entry(arm.error());
+    entry.arm = std::move(arm).value();
+  }
+  if (map.has("at")) {
+    entry.place = read_place(map.require_map("at"));
+    entry.arm = entry.place.put(std::move(entry.arm));
+  }
+  return entry;
+}
+
+}  // namespace
+
+ArmFile ArmPlace::put(ArmFile arm) const {
+  arm.R_WB = R * arm.R_WB;
+  arm.p_WB = R * arm.p_WB + p;
+  arm.workspace = box_turned(arm.workspace, R);
+  arm.workspace.min_W += p;
+  arm.workspace.max_W += p;
+  return arm;
+}
+
+driver::Result<void> read_arms(YamlMap& root, const std::filesystem::path& folder,
+                               const SceneReading& reading, std::vector<YamlMap>& arms,
+                               Scene& scene) {
+  arms = root.require_maps("arms");
+  scene.faults = static_cast<FaultRule>(root.optional_choice("faults", 0, {"together", "apart"}));
+  for (const char* key : {"arm", "hand"}) {
+    if (root.has(key)) {
+      root.reject(key, "cannot stand beside arms; each entry of arms has its own");
+    }
+  }
+  if (arms.size() == 1) root.reject("arms", "expected two arms or more; of one say arm and hand");
+  if (arms.size() > kArmsMost) {
+    root.reject("arms", fmt::format("expected at most {} arms, found {}", kArmsMost, arms.size()));
+    arms.resize(kArmsMost, arms.front());
+  }
+  std::vector<SceneArm> read;
+  for (YamlMap& map : arms) {
+    auto entry = read_arm_entry(map, folder);
+    if (!entry) return driver::Error{scene.file.string() + ": " + entry.error().message};
+    for (const SceneArm& other : read) {
+      if (other.name == entry->name) {
+        map.reject("name", "expected different names, found \"" + entry->name + "\" twice");
+      }
+    }
+    read.push_back(std::move(entry).value());
+  }
+  if (read.size() > 1 && !reading.several_arms) {
+    return driver::Error{fmt::format(
+        "{}: the scene has {} arms, and this knows of one alone; thimble run takes all of them.",
+        scene.file.string(), read.size())};
+  }
+  if (read.size() > 1 && !reading.arm.empty()) {
+    return driver::Error{
+        fmt::format("{}: the scene has {} arms, so one arm file cannot stand in place of all; "
+                    "change the entries of arms.",
+                    scene.file.string(), read.size())};
+  }
+  if (read.empty()) return {};
+  scene.arm_name = read.front().name;
+  scene.arm_place = read.front().place;
+  scene.arm_file = read.front().arm_file;
+  scene.arm = std::move(read.front().arm);
+  scene.more_arms.assign(std::make_move_iterator(read.begin() + 1),
+                         std::make_move_iterator(read.end()));
+  return {};
+}
+
+void read_hands(std::vector<YamlMap>& arms, const std::filesystem::path& folder, Scene& scene) {
+  for (std::size_t i = 0; i < arms.size(); ++i) {
+    auto& hand = i == 0 ? scene.hand : scene.more_arms[i - 1].hand;
+    ArmFile& arm = i == 0 ? scene.arm : scene.more_arms[i - 1].arm;
+    hand = read_hand(arms[i].require_map("hand"), scene.objects, folder, arm.simulated.hand);
+    arms[i].finish();
+  }
+}
+
+}  // namespace thimble::scene

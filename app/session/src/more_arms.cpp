@@ -1,0 +1,98 @@
+#include "more_arms.h"
+
+#include <fmt/format.h>
+
+namespace thimble::session {
+
+LoggedRun logged_run(const Setup& setup, std::size_t arm) {
+  const scene::Scene& scene = setup.scene();
+  const std::string& name = setup.arm_name(arm);
+  LoggedRun run;
+  run.name = name.empty() ? scene.name : scene.name + ", " + name;
+  run.what = fmt::format("{} ({}) feels {} at {:g} Hz in {} time", setup.arm_file(arm).name,
+                         setup.device_name(arm), scene.name, scene.rate,
+                         setup.real_time() ? "real" : "virtual");
+  run.period_ns = setup.period_ns();
+  run.now_ns = setup.clock().now_ns();
+  run.real_time = setup.real_time();
+  for (const scene::SceneObject& object : scene.objects) run.objects.push_back(object.name);
+  return run;
+}
+
+ArmRun::ArmRun(const Setup& setup) : records(setup.ticks(), setup.scene().rate) {
+  loop.add(records.latest);
+  loop.add(records.statistics);
+  loop.add(records.trace);
+  loop.add(records.black_box);
+  loop.add(records.recording);
+}
+
+MoreArms::MoreArms(Setup& setup) : setup_(setup) {
+  for (std::size_t i = 1; i < setup.arms(); ++i) runs_.push_back(std::make_unique<ArmRun>(setup));
+}
+
+void MoreArms::share(SharedRun& shared, LiveControl& control) {
+  if (empty()) return;
+  control_ = &control;
+  for (std::size_t i = 1; i < setup_.arms(); ++i) {
+    control.add_simulation(setup_.simulation(i));
+    sharing_.push_back(std::make_unique<OtherArmSharing>(shared, i));
+    run(i).loop.add(*sharing_.back());
+  }
+}
+
+void MoreArms::open(bool log) {
+  if (empty()) return;
+  for (std::size_t i = 0; i < setup_.arms(); ++i) {
+    laws_.push_back({setup_.objects().touch(i), setup_.device(i), control_, i == 0});
+    if (i == 0 || !log) continue;
+    run(i).event_log = std::make_unique<EventLog>(logged_run(setup_, i), setup_.device(i));
+    run(i).loop.add(*run(i).event_log);
+  }
+}
+
+void MoreArms::begin(RunLoop& first, const driver::ServoSettings& settings) noexcept {
+  for (std::size_t i = 0; i < laws_.size(); ++i) {
+    RunLoop& loop = i == 0 ? first : run(i).loop;
+    loop.begin(setup_.device(i), setup_.clock(), driver::ForceLaw(laws_[i]), settings);
+  }
+}
+
+void MoreArms::take_all_forces() noexcept {
+  if (setup_.scene().faults != scene::FaultRule::kTogether) return;
+  bool fault = false;
+  for (std::size_t i = 0; i < setup_.arms(); ++i) {
+    const driver::Fault own = setup_.device(i).fault();
+    fault = fault || (own != driver::Fault::kNone && own != driver::Fault::kOtherArm);
+  }
+  if (!fault) return;
+  for (std::size_t i = 0; i < setup_.arms(); ++i) {
+    driver::Device& device = setup_.device(i);
+    if (device.fault() != driver::Fault::kNone) continue;
+    device.trip(driver::Fault::kOtherArm);
+    device.deactivate();  // its force of this tick may stand already
+  }
+}
+
+std::optional<driver::ServoEnd> MoreArms::tick(RunLoop& first, std::optional<driver::ServoEnd> end,
+                                               const std::atomic<bool>& stop) noexcept {
+  if (end_) return end_;
+  for (auto& arm : runs_) {
+    if (end) break;
+    end = arm->loop.tick(stop);
+  }
+  take_all_forces();
+  if (!end) {
+    setup_.objects().step_bodies(1e-9 * static_cast<double>(setup_.period_ns()));
+    return end;
+  }
+  for (std::size_t i = 0; i < setup_.arms(); ++i) setup_.device(i).deactivate();
+  static constexpr std::atomic<bool> kStop{true};
+  for (std::size_t i = 0; i < setup_.arms(); ++i) {
+    RunLoop& loop = i == 0 ? first : run(i).loop;
+    if (!loop.end()) loop.tick(kStop);
+  }
+  return end_ = end;
+}
+
+}  // namespace thimble::session

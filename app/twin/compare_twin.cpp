@@ -1,0 +1,219 @@
+#include "twin/compare_twin.h"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <numbers>
+#include <unsupported/Eigen/FFT>
+#include <utility>
+
+#include "twin/twin_constants.h"
+
+namespace thimble::app {
+namespace {
+
+/// How an error hangs together with another: sums over all ticks that had a report.
+double dot(const std::vector<TwinWindow>& windows, const Relived& a, const Relived& b) {
+  double sum = 0;
+  for (std::size_t w = 0; w < windows.size(); ++w) {
+    for (std::size_t j = 0; j < windows[w].seen.size(); ++j) {
+      if (!windows[w].seen[j]) continue;
+      const auto k = static_cast<Eigen::Index>(j);
+      sum += a.error_B[w].col(k).dot(b.error_B[w].col(k));
+    }
+  }
+  return sum;
+}
+
+/// Finds the value of one constant with which the error is least.
+class Remedy {
+ public:
+  Remedy(Relive& relive, const scene::ArmFile& file, const TwinConstant& constant, Relived& now)
+      : relive_(relive), file_(file), constant_(constant), now_(now) {}
+
+  driver::Result<TwinRemedy> find() {
+    const double value = constant_.get(file_);
+    TwinRemedy remedy{.key = constant_.key,
+                      .unit = constant_.unit,
+                      .value = value,
+                      .best = value,
+                      .expected = now_.rms(),
+                      .error_rms = now_.rms()};
+    Relived at_best = now_;
+    for (int round = 0; round < kRounds; ++round) {
+      const auto step = step_from(remedy.best, at_best);
+      if (!step) return step.error();
+      if (round == 0) remedy.expected = now_.rms() * std::sqrt(std::max(0.0, 1 - step->second));
+      bool nearer = false;
+      double by = step->first;
+      for (int half = 0; half < kHalves && !nearer; ++half, by /= 2) {
+        const double to = std::max(constant_.least, remedy.best + by);
+        if (to == remedy.best) break;
+        auto there = at(to);
+        if (!there) return there.error();
+        if (!(there->square < at_best.square)) continue;
+        nearer = true;
+        const double gained = 1 - there->square / at_best.square;
+        remedy.best = to;
+        at_best = std::move(there).value();
+        if (gained < kSettled) round = kRounds;
+      }
+      if (!nearer) break;
+    }
+    remedy.error_rms = at_best.rms();
+    // A better start of some window, found on the way, is not the constant's merit.
+    auto again = at(value);
+    if (!again) return again.error();
+    if (again->square < now_.square) now_ = std::move(again).value();
+    return remedy;
+  }
+
+ private:
+  static constexpr int kRounds = 4, kHalves = 2;
+  static constexpr double kSettled = 0.02;
+
+  driver::Result<Relived> at(double value) {
+    scene::ArmFile other = file_;
+    constant_.set(other, value);
+    return relive_(other);
+  }
+
+  /// Returns the Gauss-Newton step from a value, and the share of the squared error that it should
+  /// take away.
+  driver::Result<std::pair<double, double>> step_from(double value, const Relived& here) {
+    const double low = std::max(constant_.least, value - constant_.step);
+    const double high = value + constant_.step;
+    auto below = at(low), above = at(high);
+    if (!below) return below.error();
+    if (!above) return above.error();
+    for (std::size_t w = 0; w < above->error_B.size(); ++w) {
+      above->error_B[w] = (above->error_B[w] - below->error_B[w]) / (high - low);
+    }
+    const double slope = dot(relive_.windows(), *above, *above);
+    const double along = dot(relive_.windows(), *above, here);
+    if (!(slope > 0) || !(here.square > 0)) return std::pair{0.0, 0.0};
+    return std::pair{-along / slope, along * along / (slope * here.square)};
+  }
+
+  Relive& relive_;
+  const scene::ArmFile& file_;
+  const TwinConstant& constant_;
+  Relived& now_;
+};
+
+void find_axes(const Relive& relive, const Relived& relived, TwinComparison& found) {
+  Eigen::Vector3d error(0, 0, 0), motion(0, 0, 0);
+  const Eigen::Matrix3d& R_WB = relive.motion().R_WB;
+  const auto& windows = relive.windows();
+  for (std::size_t w = 0; w < windows.size(); ++w) {
+    for (std::size_t j = 0; j < windows[w].seen.size(); ++j) {
+      if (!windows[w].seen[j]) continue;
+      const auto k = static_cast<Eigen::Index>(j);
+      error += (R_WB * relived.error_B[w].col(k)).cwiseAbs2();
+      motion += (R_WB * windows[w].motion_B.col(k)).cwiseAbs2();
+    }
+  }
+  const auto count = static_cast<double>(relived.count);
+  for (int i = 0; i < 3; ++i) {
+    TwinAxis& axis = found.axes[static_cast<std::size_t>(i)];
+    axis.name = "xyz"[i];
+    axis.error_rms = std::sqrt(error[i] / count);
+    axis.motion_rms = std::sqrt(motion[i] / count);
+    axis.fit = axis.motion_rms > found.step_error ? 100 * (1 - axis.error_rms / axis.motion_rms)
+                                                  : std::numeric_limits<double>::quiet_NaN();
+  }
+}
+
+/// Means the power of all windows, each under a bell, as Welch has it; ticks without a report hold
+/// the last.
+void find_spectrum(const Relive& relive, const Relived& relived, TwinComparison& found) {
+  const std::size_t n = relive.ticks() - 1;
+  const Eigen::Matrix3d& R_WB = relive.motion().R_WB;
+  std::vector<double> bell(n);
+  double area = 0;
+  for (std::size_t j = 0; j < n; ++j) {
+    bell[j] = 0.5 - 0.5 * std::cos(2 * std::numbers::pi * static_cast<double>(j) /
+                                   static_cast<double>(n));
+    area += bell[j];
+  }
+  found.spectrum.resize(n / 2);
+  for (std::size_t k = 0; k < n / 2; ++k) {
+    found.spectrum[k].frequency =
+        static_cast<double>(k) / (static_cast<double>(n) * relive.motion().dt);
+  }
+  Eigen::FFT<double> fft;
+  std::vector<double> signal(n);
+  std::vector<std::complex<double>> lines;
+  const auto add = [&](const Eigen::Matrix3Xd& of_B, const std::vector<bool>& seen, int axis,
+                       std::array<double, 3> TwinSpectrum::*into) {
+    double last = 0;
+    for (std::size_t j = 0; j < n; ++j) {
+      if (seen[j]) last = R_WB.row(axis).dot(of_B.col(static_cast<Eigen::Index>(j)));
+      signal[j] = bell[j] * last;
+    }
+    fft.fwd(lines, signal);
+    for (std::size_t k = 0; k < n / 2; ++k) {
+      (found.spectrum[k].*into)[static_cast<std::size_t>(axis)] +=
+          std::norm(2.0 * lines[k] / area) / static_cast<double>(relive.windows().size());
+    }
+  };
+  for (std::size_t w = 0; w < relive.windows().size(); ++w) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const TwinWindow& window = relive.windows()[w];
+      add(relived.error_B[w], window.seen, axis, &TwinSpectrum::error);
+      add(window.motion_B, window.seen, axis, &TwinSpectrum::motion);
+    }
+  }
+  for (TwinSpectrum& line : found.spectrum) {
+    for (double& value : line.error) value = std::sqrt(value);
+    for (double& value : line.motion) value = std::sqrt(value);
+  }
+}
+
+}  // namespace
+
+double TwinComparison::missed() const {
+  double square = 0;
+  for (const TwinAxis& axis : axes) square += axis.motion_rms * axis.motion_rms / 3;
+  const double error = remedies.empty() ? error_rms : remedies.front().error_rms;
+  return square > 0 ? error / std::sqrt(square) : 0;
+}
+
+driver::Result<TwinResult> compare_twin(const session::Recording& recording,
+                                        const scene::ArmFile& file, const TwinOptions& options) {
+  const auto motion = twin_motion(recording, file, options.span);
+  if (!motion) return motion.error();
+  auto relive = Relive::make(*motion, options.window);
+  if (!relive) return relive.error();
+  auto relived = (*relive)(file);
+  if (!relived) return relived.error();
+  TwinComparison found;
+  found.step_error = motion->step_error;
+  found.seconds = static_cast<double>(relive->windows().size()) * options.window;
+  found.told = motion->told;
+  for (const TwinConstant& constant : twin_constants(file)) {
+    auto remedy = Remedy(*relive, file, constant, *relived).find();
+    if (!remedy) return remedy.error();
+    found.remedies.push_back(std::move(remedy).value());
+  }
+  found.error_rms = relived->rms();
+  for (TwinRemedy& remedy : found.remedies) {
+    remedy.expected = std::min(remedy.expected, found.error_rms);
+    if (remedy.error_rms < found.error_rms) continue;
+    remedy.best = remedy.value;
+    remedy.error_rms = found.error_rms;
+  }
+  find_axes(*relive, *relived, found);
+  find_spectrum(*relive, *relived, found);
+  TwinTrace trace{.windows = relive->windows(),
+                  .relived = std::move(relived).value(),
+                  .dt = motion->dt,
+                  .R_WB = motion->R_WB};
+  std::stable_sort(
+      found.remedies.begin(), found.remedies.end(),
+      [](const TwinRemedy& a, const TwinRemedy& b) { return a.error_rms < b.error_rms; });
+  return TwinResult{.comparison = std::move(found), .trace = std::move(trace)};
+}
+
+}  // namespace thimble::app

@@ -1,0 +1,78 @@
+#include "twin/twin_constants.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace thimble::app {
+namespace {
+
+constexpr double kPart = 0.02;  // of a constant: the step of a difference
+
+/// Where the world's down is in the base.
+Eigen::Vector3d down_B(const scene::ArmFile& file) {
+  return file.R_WB.transpose() * Eigen::Vector3d(0, 0, -1);
+}
+
+}  // namespace
+
+std::vector<TwinConstant> twin_constants(const scene::ArmFile& file) {
+  const auto& plant = file.simulated.plant;
+  std::vector<TwinConstant> all;
+  all.push_back({.key = "simulation.tip.mass",
+                 .unit = "kg",
+                 .step = kPart * plant.mass,
+                 .least = 0.1 * plant.mass,
+                 .get = [](const scene::ArmFile& arm) { return arm.simulated.plant.mass; },
+                 .set = [](scene::ArmFile& arm, double to) { arm.simulated.plant.mass = to; }});
+  all.push_back({.key = "simulation.tip.viscous",
+                 .unit = "N s/m",
+                 .step = std::max(0.1 * plant.viscous, 1e-4),
+                 .least = 0,
+                 .get = [](const scene::ArmFile& arm) { return arm.simulated.plant.viscous; },
+                 .set = [](scene::ArmFile& arm, double to) { arm.simulated.plant.viscous = to; }});
+  all.push_back({.key = "simulation.tip.coulomb",
+                 .unit = "N",
+                 .step = std::max(kPart * plant.coulomb, 1e-4),
+                 .least = 0,
+                 .get = [](const scene::ArmFile& arm) { return arm.simulated.plant.coulomb; },
+                 .set = [](scene::ArmFile& arm, double to) { arm.simulated.plant.coulomb = to; }});
+  all.push_back(
+      {.key = "simulation.tip.weight",
+       .unit = "N",
+       .step = 1e-3,
+       .least = 0,
+       .get = [](const scene::ArmFile& arm) { return arm.simulated.weight_B.dot(down_B(arm)); },
+       .set = [](scene::ArmFile& arm, double to) { arm.simulated.weight_B = to * down_B(arm); }});
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double torque_constant = file.model.drives[i].torque_constant;
+    all.push_back(
+        {.key = fmt::format("joints.torque_constant[{}]", i + 1),
+         .unit = "N m/A",
+         .step = kPart * torque_constant,
+         .least = 0,
+         .get = [i](const scene::ArmFile& arm) { return arm.model.drives[i].torque_constant; },
+         .set = [i](scene::ArmFile& arm, double to) { arm.model.drives[i].torque_constant = to; }});
+  }
+  // Motion shows the sum of both ways alone.
+  all.push_back({.key = "simulation.wire.delay_in + delay_out",
+                 .unit = "s",
+                 .step = 5e-5,
+                 .least = 0,
+                 .get =
+                     [](const scene::ArmFile& arm) {
+                       const auto& wire = arm.simulated.wire;
+                       return 1e-9 * static_cast<double>(wire.delay_in_ns + wire.delay_out_ns);
+                     },
+                 .set =
+                     [](scene::ArmFile& arm, double to) {
+                       auto& wire = arm.simulated.wire;
+                       const auto sum_ns = static_cast<std::int64_t>(std::llround(1e9 * to));
+                       wire.delay_in_ns = std::min(wire.delay_in_ns, sum_ns);
+                       wire.delay_out_ns = sum_ns - wire.delay_in_ns;
+                     }});
+  return all;
+}
+
+}  // namespace thimble::app

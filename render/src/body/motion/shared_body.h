@@ -1,0 +1,85 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <utility>
+
+#include "body/motion/body_motions.h"
+
+namespace thimble::render {
+
+/// A body that several hands touch in one run: each hand has its own contact with it, and what they
+/// give in a tick adds up until whoever runs the loop moves the body on, once.
+class SharedBody {
+ public:
+  SharedBody() = default;
+  SharedBody(const SharedBody&) = delete;
+  SharedBody& operator=(const SharedBody&) = delete;
+  virtual ~SharedBody() = default;
+
+  /// Moves on by `step` s under what all hands gave since the last step. Real-time: safe.
+  virtual void step(double step) noexcept = 0;
+  /// Returns the momentum, kg m/s, in the body's own time. Real-time: safe.
+  virtual Eigen::Vector3d momentum_W() const noexcept = 0;
+  /// Returns the angular momentum about the centre, kg m^2/s, in the body's own time; zero for what
+  /// does not turn. Real-time: safe.
+  virtual Eigen::Vector3d angular_momentum_W() const noexcept = 0;
+};
+
+/// A SharedBody that moves in one way (BodyMotion).
+template <class Motion>
+class SharedBodyOf final : public SharedBody {
+ public:
+  explicit SharedBodyOf(Motion motion) : motion_(std::move(motion)) {}
+
+  void step(double step) noexcept override { motion_.step(step); }
+  Eigen::Vector3d momentum_W() const noexcept override { return motion_.body().momentum_W(); }
+  Eigen::Vector3d angular_momentum_W() const noexcept override {
+    if constexpr (requires { motion_.body().angular_momentum_W(); }) {
+      return motion_.body().angular_momentum_W();
+    } else {
+      return Eigen::Vector3d::Zero();
+    }
+  }
+
+  Motion& motion() noexcept { return motion_; }
+  const Motion& motion() const noexcept { return motion_; }
+
+ private:
+  Motion motion_;
+};
+
+/// One hand's side of a SharedBody, as a BodyMotion. Its `step` does nothing: a hand's tick does
+/// not move the body, so all hands of a tick find it at one place.
+///
+/// `gain_at` is told as if every hand gave the same impulse at the same point. Then the share that
+/// MovingTouch and HeldTouch give (shared_force) is stable for any number of hands: the body's step
+/// by all forces together gains at most the number of hands times what it gains by one
+/// (Cauchy and Schwarz), so the springs' energy falls as with one hand. All of it is Real-time:
+/// safe.
+template <class Motion>
+class SharedMotion {
+ public:
+  SharedMotion(std::shared_ptr<SharedBodyOf<Motion>> body, std::size_t hands) noexcept
+      : body_(std::move(body)), hands_(static_cast<double>(hands)) {}
+
+  Eigen::Matrix3d R_WB() const noexcept { return body_->motion().R_WB(); }
+  Eigen::Vector3d p_WB() const noexcept { return body_->motion().p_WB(); }
+  Eigen::Vector3d velocity_at(const Eigen::Vector3d& p_W) const noexcept {
+    return body_->motion().velocity_at(p_W);
+  }
+  Eigen::Vector3d gain_at(const Eigen::Vector3d& p_W,
+                          const Eigen::Vector3d& impulse) const noexcept {
+    return hands_ * body_->motion().gain_at(p_W, impulse);
+  }
+  void push(const Eigen::Vector3d& f_W, const Eigen::Vector3d& p_W) noexcept {
+    body_->motion().push(f_W, p_W);
+  }
+  void step(double) noexcept {}
+
+ private:
+  std::shared_ptr<SharedBodyOf<Motion>> body_;
+  double hands_;
+};
+
+}  // namespace thimble::render

@@ -1,0 +1,163 @@
+"""Drives a page in headless Chromium and says in JSON what it found: console errors, requests, what it shows.
+
+  page_browser.py CHROMIUM PAGE PICTURE TIME...     PICTURE: where a screenshot goes; TIME: s, at which the force is asked for
+
+Over Chromium's remote debugging, on a port of its own choice on this computer.
+"""
+import asyncio
+import base64
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import urllib.request
+
+import websockets
+
+
+class Tab:
+    """A page in Chromium: commands go out with a number and come back with it, events in between are kept."""
+
+    def __init__(self, socket):
+        self.socket = socket
+        self.number = 0
+        self.events = []
+
+    async def call(self, method, **parameters):
+        self.number += 1
+        await self.socket.send(json.dumps({"id": self.number, "method": method, "params": parameters}))
+        while True:
+            message = json.loads(await asyncio.wait_for(self.socket.recv(), 120))
+            if message.get("id") == self.number:
+                if "error" in message:
+                    raise RuntimeError(f"{method}: {message['error']}")
+                return message["result"]
+            self.events.append(message)
+
+    async def value(self, expression):
+        result = await self.call("Runtime.evaluate", expression=expression, returnByValue=True, awaitPromise=True)
+        if "exceptionDetails" in result:
+            raise RuntimeError(f"{expression}: {result['exceptionDetails']}")
+        return result["result"].get("value")
+
+    async def wait_for(self, expression):
+        for _ in range(600):
+            if await self.value(expression):
+                return
+            await asyncio.sleep(0.1)
+        raise RuntimeError(f"never came true: {expression}")
+
+    async def picture(self, path):
+        shot = await self.call("Page.captureScreenshot", format="png")
+        pathlib.Path(path).write_bytes(base64.b64decode(shot["data"]))
+
+
+# Waits until the browser has drawn what was asked for.
+DRAWN = "new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => done(true))))"
+
+
+def said(events):
+    """What the console was told as a warning or an error, and what was thrown."""
+    words = []
+    for event in events:
+        parameters = event.get("params", {})
+        if event.get("method") == "Runtime.exceptionThrown":
+            words.append(str(parameters["exceptionDetails"]))
+        if event.get("method") == "Runtime.consoleAPICalled" and parameters["type"] in ("error", "warning", "assert"):
+            words.append(" ".join(str(one.get("value", one.get("description"))) for one in parameters["args"]))
+        if event.get("method") == "Log.entryAdded" and parameters["entry"]["level"] in ("error", "warning"):
+            words.append(parameters["entry"]["text"])
+    # Chromium's own words about drawing without a graphics card.
+    return [one for one in words if "GPU stall" not in one and "swiftshader" not in one.lower()]
+
+
+async def look(address, page, picture, times):
+    async with websockets.connect(address, max_size=None) as socket:
+        tab = Tab(socket)
+        for domain in ("Page", "Runtime", "Log", "Network"):
+            await tab.call(domain + ".enable")
+        await tab.call("Emulation.setDeviceMetricsOverride", width=1280, height=960, deviceScaleFactor=1, mobile=False)
+        await tab.call("Page.navigate", url=page)
+        await tab.wait_for("window.thimblePage !== undefined")
+        await tab.value(DRAWN)
+        found = {"duration": await tab.value("thimblePage.duration")}
+        await tab.picture(picture)
+
+        found["forces"] = []
+        for time in times:
+            await tab.value(f"thimblePage.seek({time})")
+            found["forces"].append(await tab.value("thimblePage.state()"))
+
+        # It plays: time goes on by itself, pictures are drawn, and a pause holds it.
+        await tab.value("thimblePage.seek(0); document.getElementById('speed').value = '0.25';"
+                        "document.getElementById('speed').dispatchEvent(new Event('change'));"
+                        "document.getElementById('play').click()")
+        before = await tab.value("thimblePage.state()")
+        await tab.wait_for(f"thimblePage.state().drawn > {before['drawn']} + 3 && thimblePage.state().t > 0")
+        await tab.value("document.getElementById('play').click()")
+        paused = await tab.value("thimblePage.state()")
+        await tab.value(DRAWN)
+        found["played"] = paused["t"] > 0 and not paused["playing"]
+        found["held"] = (await tab.value("thimblePage.state()"))["t"] == paused["t"]
+
+        # It scrubs: a press in the middle of the strip goes there.
+        middle = await tab.value("(() => { const box = document.getElementById('strip').getBoundingClientRect();"
+                                 "return [box.left + box.width / 2, box.top + box.height / 2]; })()")
+        for kind in ("mousePressed", "mouseReleased"):
+            await tab.call("Input.dispatchMouseEvent", type=kind, x=middle[0], y=middle[1], button="left",
+                           buttons=1, clickCount=1)
+        found["scrubbed"] = (await tab.value("thimblePage.state()"))["t"]
+
+        # A zoom shows the part, with the plots' windows alike; a channel can be taken away.
+        await tab.value(f"thimblePage.zoom({found['duration'] / 4}, {found['duration'] / 2})")
+        found["window"] = (await tab.value("thimblePage.state()"))["window"]
+        await tab.value("document.querySelector('[data-channel=depth]').click()")
+        found["plotted"] = (await tab.value("thimblePage.state()"))["plotted"]
+        found["words"] = await tab.value("document.body.innerText")
+        # Does anything get out? Not even if the page's own scripts were to try: its policy says no before the network is asked.
+        await tab.value("fetch('http://127.0.0.1:1/').catch(() => 0)")
+        await tab.value(DRAWN)
+    asked = [event["params"] for event in tab.events if event.get("method") == "Network.requestWillBeSent"]
+    tried = {one["requestId"] for one in asked if "127.0.0.1:1/" in one["request"]["url"]}
+    refused = {event["params"]["requestId"] for event in tab.events
+               if event.get("method") == "Network.loadingFailed" and event["params"].get("blockedReason") == "csp"}
+    found["leaks"] = "went out" if tried - refused else "held"
+    found["requests"] = [one["request"]["url"] for one in asked
+                         if one["requestId"] not in tried and not one["request"]["url"].startswith("data:")]
+    found["said"] = [one for one in said(tab.events) if "127.0.0.1:1/" not in one]
+    return found
+
+
+def main():
+    chromium, page, picture, *times = sys.argv[1:]
+    with tempfile.TemporaryDirectory() as home:
+        browser = subprocess.Popen(
+            [chromium, "--headless=new", "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader",
+             "--enable-unsafe-swiftshader", "--hide-scrollbars", "--window-size=1280,960", "--no-first-run",
+             "--disable-background-networking", "--disable-component-update", "--remote-debugging-port=0",
+             "--user-data-dir=" + home, "about:blank"],
+            stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, start_new_session=True)
+        try:
+            for line in browser.stderr:
+                if line.startswith("DevTools listening on "):
+                    port = line.split("127.0.0.1:")[1].split("/")[0]
+                    break
+            else:
+                raise RuntimeError("Chromium does not start")
+            # What it says from here on nobody reads; the pipe must not fill.
+            threading.Thread(target=lambda: [None for _ in browser.stderr], daemon=True).start()
+            open_ones = json.load(urllib.request.urlopen(f"http://127.0.0.1:{port}/json"))
+            address = next(one["webSocketDebuggerUrl"] for one in open_ones if one["type"] == "page")
+            found = asyncio.run(look(address, pathlib.Path(page).resolve().as_uri(), picture, times))
+        finally:
+            os.killpg(browser.pid, signal.SIGTERM)
+            browser.wait()
+    print(json.dumps(found, indent=1))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,59 @@
+#!/usr/bin/env bash
+# The page that plays a touch, in a real browser: it plays, scrubs, shows the forces that were recorded, says nothing to the
+# console and asks for nothing. Without Chromium its files alone are looked at.
+source "$(dirname "$0")/expect.sh" "$@"
+here=$source_dir/tests/program
+scenes=$source_dir/app/scenes
+
+# Without what it is made of there is none; the run and its report go on.
+expect 0 'none/index.html is not written: .*apt install libjs-three libjs-dygraphs$' \
+  env XDG_DATA_DIRS=/nowhere "$thimble" run "$scenes/box.yaml" --duration 0.5 --report none
+expect 0 '"ticks"' cat none/report.json
+expect 1 '' test -e none/index.html
+expect 0 'Recording' "$thimble" run "$scenes/box.yaml" --duration 0.5 --record box.h5
+expect 1 'box.html is not written: .*apt install' env XDG_DATA_DIRS=/nowhere "$thimble" replay box.h5 --page box.html
+expect 1 '' test -e box.html
+
+for package in libjs-three libjs-dygraphs; do
+  dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q '^install ok installed$' && continue
+  echo "SKIPPED: $package is not installed"
+  exit 77
+done
+
+# A run, and the same from its recording: a body that floats, and clay that keeps its print.
+expect 0 '^Page that plays it: float/index.html' \
+  "$thimble" run "$scenes/floating_block.yaml" --report float --record float.h5
+expect 0 '^Page that plays it: float.html' "$thimble" replay float.h5 --page float.html
+expect 0 '^Page that plays it: clay/index.html' "$thimble" run "$scenes/clay.yaml" --report clay --record clay.h5
+expect 0 '^Page that plays it: two/index.html' "$thimble" run "$scenes/two_hands.yaml" --report two
+expect 0 '^MIT|Permission is hereby granted' cat float/index.html
+expect 0 'plays recordings' bash -c '"$0" replay "$1" --page x.html --scene box; [ $? = 2 ]' "$thimble" "$scenes/box.yaml"
+
+# A minute at 1 kHz is below 10 MB, the largest scan of ours with it.
+scene=water_balloon
+[ -f "${THIMBLE_MESHES:-}/elephant.off" ] && scene=elephant
+expect 0 'Page' "$thimble" run "$scenes/$scene.yaml" --duration 60 --report minute
+expect 0 '^[0-9]{6,7}$' stat -c %s minute/index.html
+
+if ! command -v chromium >/dev/null || ! /usr/bin/python3 -c 'import websockets' 2>/dev/null; then
+  echo "SKIPPED: no browser; Debian's chromium and python3-websockets look at the page"
+  [ "$failures" = 0 ] && exit 77
+  finish
+fi
+
+# browse PAGE RECORDING TIME...: drives the page, and compares its forces with the ticks that were recorded.
+browse() {
+  local page=$1 recording=$2
+  shift 2
+  "$thimble" export "$recording" --csv ticks.csv >/dev/null
+  /usr/bin/python3 "$here/page_browser.py" "$(command -v chromium)" "$page" "${page%.html}.png" "$@" >found.json || {
+    echo "FAILED: the browser did not get through $page"
+    failures=$((failures + 1))
+    return
+  }
+  expect 0 '^as it should be$' /usr/bin/python3 "$here/page_check.py" found.json ticks.csv "$@"
+}
+browse float/index.html float.h5 0.8005 3.6004 5.8006
+browse float.html float.h5 0.8005 3.6004 5.8006
+browse clay/index.html clay.h5 0.9003 1.8001 3.6008
+finish

@@ -1,0 +1,41 @@
+#!/usr/bin/env bash
+# An arm that is recorded while it is identified, and its twin: what is printed, files, exit codes.
+source "$(dirname "$0")/expect.sh" "$@"
+arm=$source_dir/app/arms/vintage_phantom.yaml
+
+expect 0 '^The motion was recorded in free\.h5\.$' \
+  "$thimble" identify --device sim --arm vintage_phantom --seconds 10 --record free.h5 --output same.yaml
+expect 0 'ticks of identify at 1000 Hz' "$thimble" export free.h5 --csv free.csv
+expect 0 '^No other value of a single constant' \
+  "$thimble" twin free.h5 --arm vintage_phantom --fit-least 95 --output same
+expect 0 '^x +99\.' "$thimble" twin free.h5 --arm vintage_phantom
+expect 0 'True True True$' /usr/bin/python3 -c '
+import json
+figures = {one["name"]: one for one in json.load(open("same/figures.json"))}
+print(*(figures["fit_" + axis]["met"] for axis in "xyz"))
+assert figures["error"]["value"] < 1.1 * figures["error_of_encoders"]["value"], figures'
+if command -v gnuplot >/dev/null; then
+  expect_plot same/twin_motion same/twin_error same/twin_spectrum
+fi
+expect 0 '^No other value' "$thimble" twin free.h5 --arm same.yaml
+
+# An arm file that says that the arm is heavier than it is.
+sed 's/mass: 0\.075 /mass: 0.0975 /' "$arm" >heavy.yaml
+expect 5 '^simulation\.tip\.mass reduces the error most: 0\.07[45]' \
+  "$thimble" twin free.h5 --arm heavy.yaml --fit-least 95 --from 2 --until 8
+expect 5 'fit_x' "$thimble" twin free.h5 --arm heavy.yaml --fit-least 95 --window 0.1
+expect 0 'simulation\.tip\.mass reduces' "$thimble" twin free.h5 --arm heavy.yaml
+
+expect 2 'another arm' "$thimble" twin free.h5 --arm polhem
+expect 2 'has no twin' "$thimble" twin free.h5 --arm falcon
+expect 2 'too short' "$thimble" twin free.h5 --arm vintage_phantom --until 1
+expect 2 'not a recording' "$thimble" twin "$arm" --arm vintage_phantom
+expect 2 'no such file' "$thimble" twin none.h5 --arm vintage_phantom
+expect 2 '--window' "$thimble" twin free.h5 --arm vintage_phantom --window 0.001
+expect 2 '--arm' "$thimble" twin free.h5
+head -c 20000 free.h5 >half.h5
+expect 2 'half\.h5' "$thimble" twin half.h5 --arm vintage_phantom
+expect 1 'annot' "$thimble" twin free.h5 --arm vintage_phantom --output "$arm/x"
+expect 1 'nowhere' "$thimble" identify --device sim --arm vintage_phantom --seconds 10 \
+  --record nowhere/free.h5 --output other.yaml
+finish

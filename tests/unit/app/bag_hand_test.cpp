@@ -1,0 +1,63 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "bag/write_bag.h"
+#include "hand/bag_hand.h"
+
+namespace thimble::scene {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Where a hand that sways by 2 Hz is, m.
+Eigen::Vector3d sway(double time) {
+  return {0.01 * std::sin(4 * M_PI * time), 0.02 * time, 0.005 * std::cos(4 * M_PI * time)};
+}
+
+TEST(BagHand, GoesWhereADenseBagWentToAHundredthOfAMillimetre) {
+  const fs::path bag = fs::path(::testing::TempDir()) / "thimble_bag_hand";
+  fs::remove_all(bag);
+  bag::BagTrack poses;
+  poses.name = "/pose";
+  for (int i = 0; i <= 2005; ++i) {
+    poses.messages.push_back({.time_ns = 1'000'000 * i, .value = sway(0.001 * i)});
+  }
+  ASSERT_TRUE(bag::write_bag(bag, {poses}));
+  const auto stations = read_bag_hand(bag, "/pose", bag::BagAxes::kPlain);
+  ASSERT_TRUE(stations) << stations.error().message;
+  // One in ten, and the last.
+  EXPECT_EQ(stations->size(), 202U);
+  EXPECT_DOUBLE_EQ(stations->back().time, 2.005);
+  EXPECT_EQ(stations->back().p_W, poses.messages.back().value);
+  const auto route = plan_hand(*stations, {});
+  ASSERT_TRUE(route) << route.error().message;
+  double most = 0;
+  for (const auto& [time, p_W] : *route) {
+    if (time < 0.01 || time > 1.99) continue;  // a hand begins and ends at rest
+    most = std::max(most, (p_W - sway(time)).norm());
+  }
+  EXPECT_LT(most, 1e-5);
+  const auto turned = read_bag_hand(bag, {}, bag::BagAxes::kOmni);
+  ASSERT_TRUE(turned);
+  EXPECT_EQ(turned->at(5).p_W.y(), stations->at(5).p_W.x());
+  fs::remove_all(bag);
+}
+
+TEST(BagHand, RefusesPositionsThatAreNoMetres) {
+  const fs::path bag = fs::path(::testing::TempDir()) / "thimble_bag_hand_far";
+  fs::remove_all(bag);
+  bag::BagTrack poses;
+  poses.name = "/pose";
+  poses.messages.push_back({.time_ns = 0, .value = {20, 30, 40}});
+  ASSERT_TRUE(bag::write_bag(bag, {poses}));
+  const auto hand = read_bag_hand(bag, {}, bag::BagAxes::kPlain);
+  ASSERT_FALSE(hand);
+  EXPECT_NE(hand.error().message.find("within 2 m"), std::string::npos) << hand.error().message;
+  fs::remove_all(bag);
+}
+
+}  // namespace
+}  // namespace thimble::scene

@@ -1,0 +1,376 @@
+// The page that plays a touch: what of a run is in it, and that it is what was recorded.
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "report/page/body_trace.h"
+#include "report/page/dent_trace.h"
+#include "report/page/light_mesh.h"
+#include "report/page/page.h"
+#include "report/page/page_block.h"
+#include "report/page/page_marks.h"
+#include "report/page/page_rows.h"
+#include "report/page/page_scene.h"
+#include "support/heap_guard.h"
+#include "support/random.h"
+#include "support/scratch.h"
+#include "text_file.h"
+#include "thimble/render/object_touch.h"
+
+namespace thimble::app {
+namespace {
+
+using driver::TickRecord;
+
+constexpr std::int64_t kMillisecond = 1'000'000;
+
+// A run with everything that a page plots going up and down, and one tick of each that stands out.
+std::vector<TickRecord> lively_run(std::size_t count) {
+  std::vector<TickRecord> ticks(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double phase = 0.01 * static_cast<double>(i);
+    TickRecord& tick = ticks[i];
+    tick.tick = i;
+    tick.time_ns = tick.due_ns = 5'000'000'000 + static_cast<std::int64_t>(i) * kMillisecond;
+    tick.p_WT = {0.03 * std::sin(phase), 0.03 * std::cos(phase), 0.01 * std::sin(3 * phase)};
+    tick.p_WP = {tick.p_WT[0], tick.p_WT[1], tick.p_WT[2] + 1e-3};
+    tick.v_WT = {0.1 * std::cos(phase), 0, 0};
+    tick.in_contact = std::sin(phase) > 0;
+    tick.object = tick.in_contact ? 0 : -1;
+    tick.depth = tick.in_contact ? 1e-3 * std::sin(phase) : 0;
+    tick.f_sent_W = {0, 0.3 * tick.depth / 1e-3, 0.8 * tick.depth / 1e-3};
+    tick.f_wanted_W = tick.f_sent_W;
+    tick.work_ns = 8000 + static_cast<std::int64_t>(i % 97);
+    tick.stage = driver::DeviceStage::kActive;
+  }
+  return ticks;
+}
+
+double size_of(const std::array<double, 3>& v) {
+  return std::hypot(v[0], v[1], v[2]);
+}
+
+template <class Number>
+std::vector<Number> numbers_of(const PageBlock& block, const std::string& name) {
+  const auto& array = block.arrays()[name];
+  std::vector<Number> numbers(array["count"].get<std::size_t>());
+  const auto offset = array["offset"].get<std::size_t>();
+  EXPECT_LE(offset + numbers.size() * sizeof(Number), block.bytes().size());
+  if (!numbers.empty())
+    std::memcpy(numbers.data(), block.bytes().data() + offset, numbers.size() * sizeof(Number));
+  return numbers;
+}
+
+TEST(PageBlock, WritesBase64AsTheStandardDoes) {
+  const auto of = [](const std::string& text) {
+    return base64({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+  };
+  // The test vectors of RFC 4648, section 10.
+  EXPECT_EQ(of(""), "");
+  EXPECT_EQ(of("f"), "Zg==");
+  EXPECT_EQ(of("fo"), "Zm8=");
+  EXPECT_EQ(of("foo"), "Zm9v");
+  EXPECT_EQ(of("foob"), "Zm9vYg==");
+  EXPECT_EQ(of("fooba"), "Zm9vYmE=");
+  EXPECT_EQ(of("foobar"), "Zm9vYmFy");
+}
+
+TEST(PageBlock, PutsEveryArrayWhereABrowserCanLookAtItInPlace) {
+  PageBlock block;
+  block.add("odd", std::vector<std::uint8_t>{1, 2, 3});
+  block.add("wide", std::vector<double>{0.1, -1e300});
+  block.add("none", std::vector<float>{});
+  block.add("short", std::vector<std::int16_t>{-1, 7});
+  for (const char* name : {"odd", "wide", "none", "short"}) {
+    EXPECT_EQ(block.arrays()[name]["offset"].get<std::size_t>() % 8, 0U) << name;
+  }
+  EXPECT_EQ(numbers_of<std::uint8_t>(block, "odd"), (std::vector<std::uint8_t>{1, 2, 3}));
+  EXPECT_EQ(numbers_of<double>(block, "wide"), (std::vector<double>{0.1, -1e300}));
+  EXPECT_EQ(numbers_of<float>(block, "none"), std::vector<float>{});
+  EXPECT_EQ(numbers_of<std::int16_t>(block, "short"), (std::vector<std::int16_t>{-1, 7}));
+}
+
+TEST(PageRows, KeepEveryTickThatFits) {
+  const auto ticks = lively_run(1000);
+  const auto kept = rows_kept(ticks, 1000);
+  ASSERT_EQ(kept.size(), 1000U);
+  for (std::size_t i = 0; i < kept.size(); ++i) ASSERT_EQ(kept[i], i);
+  EXPECT_TRUE(rows_kept({}, 1000).empty());
+}
+
+TEST(PageRows, KeepLeastAndMostOfALongRun) {
+  constexpr std::size_t kMost = 2000;
+  auto ticks = lively_run(100'000);
+  // Single ticks that no regular choice would meet.
+  ticks[12'345].f_sent_W = {0, 0, 4.5};
+  ticks[23'457].f_wanted_W = {0, 0, 9.5};
+  ticks[34'567].depth = 0.02;
+  ticks[45'679].time_ns += kMillisecond * 9 / 10;
+  ticks[56'789].work_ns = 700'000;
+  ticks[67'891].f_sent_W = {0, 0, 0};
+  const auto kept = rows_kept(ticks, kMost);
+  EXPECT_LE(kept.size(), kMost);
+  EXPECT_GE(kept.size(), kMost / 4);
+  EXPECT_EQ(kept.front(), 0U);
+  EXPECT_EQ(kept.back(), ticks.size() - 1);
+  for (std::size_t i = 1; i < kept.size(); ++i) ASSERT_LT(kept[i - 1], kept[i]);
+  for (const std::size_t one : {12'345U, 23'457U, 34'567U, 45'679U, 45'680U, 56'789U}) {
+    EXPECT_TRUE(std::binary_search(kept.begin(), kept.end(), one)) << "tick " << one;
+  }
+}
+
+TEST(PageRows, KeepLeastAndMostInEveryStretch) {
+  // What a plot of some hundred points shows of noise is its outline, all along.
+  constexpr std::size_t kCount = 50'000, kMost = 5500;
+  auto ticks = lively_run(kCount);
+  support::Random random(7);
+  for (TickRecord& tick : ticks) tick.f_sent_W = {0, 0, random.uniform(0.0, 5.0)};
+  const auto kept = rows_kept(ticks, kMost);
+  constexpr std::size_t kStretch = 1000;  // of which each holds many of the page's own
+  for (std::size_t begin = 0; begin < kCount; begin += kStretch) {
+    const auto first = std::lower_bound(kept.begin(), kept.end(), begin);
+    const auto last = std::lower_bound(kept.begin(), kept.end(), begin + kStretch);
+    double most = 0, most_kept = 0;
+    for (std::size_t i = begin; i < begin + kStretch; ++i) {
+      most = std::max(most, size_of(ticks[i].f_sent_W));
+    }
+    for (auto i = first; i != last; ++i)
+      most_kept = std::max(most_kept, size_of(ticks[*i].f_sent_W));
+    ASSERT_EQ(most_kept, most) << "from tick " << begin;
+  }
+}
+
+TEST(PageRows, AreTheTicksAsTheyWere) {
+  const auto ticks = lively_run(40'000);
+  const auto kept = rows_kept(ticks, 3000);
+  PageBlock block;
+  add_rows(block, "arm0.", ticks, kept);
+  const auto time = numbers_of<double>(block, "arm0.t");
+  const auto number = numbers_of<std::uint32_t>(block, "arm0.tick");
+  const auto tip = numbers_of<float>(block, "arm0.tip");
+  const auto sent = numbers_of<float>(block, "arm0.sent");
+  const auto depth = numbers_of<float>(block, "arm0.depth");
+  const auto period = numbers_of<float>(block, "arm0.period");
+  const auto touching = numbers_of<std::uint8_t>(block, "arm0.touching");
+  ASSERT_EQ(time.size(), kept.size());
+  ASSERT_EQ(tip.size(), 3 * kept.size());
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    const TickRecord& tick = ticks[kept[i]];
+    ASSERT_EQ(number[i], tick.tick);
+    ASSERT_EQ(time[i], 1e-9 * static_cast<double>(tick.time_ns - ticks[0].time_ns));
+    ASSERT_EQ(depth[i], static_cast<float>(tick.depth));
+    ASSERT_EQ(touching[i], tick.in_contact ? 1 : 0);
+    // The time since the tick before, which the page may not show.
+    ASSERT_EQ(period[i], 1e-3F);
+    for (std::size_t k = 0; k < 3; ++k) {
+      ASSERT_EQ(tip[3 * i + k], static_cast<float>(tick.p_WT[k]));
+      ASSERT_EQ(sent[3 * i + k], static_cast<float>(tick.f_sent_W[k]));
+    }
+  }
+}
+
+render::TriangleMesh wavy_plate(int cells) {
+  render::TriangleMesh mesh;
+  for (int i = 0; i <= cells; ++i) {
+    for (int k = 0; k <= cells; ++k) {
+      const double x = 0.1 * i / cells, y = 0.1 * k / cells;
+      mesh.vertices.push_back({x, y, 0.01 * std::sin(60 * x) * std::cos(50 * y)});
+    }
+  }
+  for (int i = 0; i < cells; ++i) {
+    for (int k = 0; k < cells; ++k) {
+      const int a = i * (cells + 1) + k, b = a + cells + 1;
+      mesh.triangles.push_back({a, b, a + 1});
+      mesh.triangles.push_back({b, b + 1, a + 1});
+    }
+  }
+  return mesh;
+}
+
+TEST(LightMesh, HasFewTrianglesAndStaysOnTheSurface) {
+  const auto mesh = wavy_plate(400);
+  const auto light = light_mesh(mesh, 10'000);
+  EXPECT_LE(light.triangles.size(), 10'000U);
+  EXPECT_GE(light.triangles.size(), 1000U);
+  for (const Eigen::Vector3d& v : light.vertices) {
+    ASSERT_NEAR(v.z(), 0.01 * std::sin(60 * v.x()) * std::cos(50 * v.y()), 1e-3);
+  }
+  EXPECT_EQ(light_mesh(mesh, mesh.triangles.size()).triangles, mesh.triangles);
+}
+
+TEST(Page, OfAMinuteAtAKilohertzIsBelowTenMegabytes) {
+  const auto ticks = lively_run(60'001);
+  const auto mesh = wavy_plate(400);  // 320,000 triangles
+  PageTouch touch;
+  touch.rate = 1000;
+  touch.scene.vertices = mesh.vertices;
+  for (const auto& [a, b, c] : mesh.triangles) {
+    touch.scene.triangles.push_back({static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b),
+                                     static_cast<std::uint32_t>(c)});
+  }
+  touch.scene.objects.push_back({.name = "plate",
+                                 .vertex_count = mesh.vertices.size(),
+                                 .triangle_count = mesh.triangles.size()});
+  touch.arms.emplace_back().ticks = ticks;
+  PageBlock block;
+  const auto objects = page_objects(touch, block);
+  const auto arm = page_arm(touch, 0, block);
+  EXPECT_EQ(arm["rows"], 60'001);  // every tick of it
+  EXPECT_EQ(objects[0]["triangles"], 320'000);
+  EXPECT_LE(objects[0]["drawn"].get<std::size_t>(), kPageTrianglesMost);
+  constexpr std::size_t kLibraries = 1'100'000;  // three.js and dygraphs as Debian 12 has them
+  EXPECT_LT(base64(block.bytes()).size() + kLibraries, 10'000'000U);
+}
+
+TEST(PageMarks, TellOfFaultsAndOfTheGateInARecording) {
+  auto ticks = lively_run(3000);
+  for (std::size_t i = 500; i < 520; ++i) ticks[i].f_sent_W = {0, 0, 0.1};
+  for (std::size_t i = 2500; i < 3000; ++i) {
+    ticks[i].stage = driver::DeviceStage::kFault;
+    ticks[i].fault = driver::Fault::kNoReports;
+    ticks[i].f_sent_W = {0, 0, 0};
+  }
+  const auto marks = marks_of_ticks(ticks, kMillisecond);
+  ASSERT_EQ(marks.size(), 3U);
+  EXPECT_EQ(marks[0].kind, PageMark::Kind::kNote);  // forces are let through
+  EXPECT_EQ(marks[1].kind, PageMark::Kind::kGate);
+  EXPECT_EQ(marks[1].begin_ns, ticks[500].time_ns);
+  EXPECT_EQ(marks[1].end_ns, ticks[519].time_ns);
+  EXPECT_NE(marks[1].words.find("20 ticks"), std::string::npos) << marks[1].words;
+  EXPECT_EQ(marks[2].kind, PageMark::Kind::kFault);
+  EXPECT_EQ(marks[2].begin_ns, ticks[2500].time_ns);
+}
+
+// An object that is as far as it was asked often.
+class Wanderer final : public render::ObjectTouch {
+ public:
+  driver::ForceCommand update(const driver::DeviceState&) noexcept override { return {}; }
+  bool inside(const Eigen::Vector3d&) const noexcept override { return false; }
+  render::BodyPose pose() const noexcept override { return {.p_WB = {at, 0, 0}}; }
+  double at = 0;
+};
+
+TEST(BodyTrace, KeepsALongRunInTheRoomOfAShortOneWithoutTheHeap) {
+  std::vector<std::unique_ptr<render::ObjectTouch>> objects;
+  auto one = std::make_unique<Wanderer>();
+  Wanderer& wanderer = *one;
+  objects.push_back(std::move(one));
+  const render::SceneTouch touch(std::move(objects));
+  const std::size_t moving[] = {0};
+  BodyTrace trace(touch, moving, 1000 * kMillisecond);  // asked for one second, run for a minute
+  EXPECT_EQ(support::heap_calls_of([&] {
+              TickRecord tick;
+              for (std::int64_t i = 0; i < 60'000; ++i) {
+                tick.time_ns = i * kMillisecond;
+                wanderer.at = 1e-3 * static_cast<double>(i);
+                trace.take(tick);
+              }
+            }),
+            0);
+  ASSERT_EQ(trace.times_ns().size(), trace.poses().size());
+  EXPECT_GT(trace.times_ns().size(), 25U);
+  EXPECT_EQ(trace.times_ns().front(), 0);
+  EXPECT_GT(trace.times_ns().back(), 57'000 * kMillisecond);
+  for (std::size_t i = 0; i < trace.times_ns().size(); ++i) {
+    ASSERT_NEAR(trace.poses()[i].p_WB[0], 1e-9 * static_cast<double>(trace.times_ns()[i]), 1e-9);
+  }
+}
+
+TEST(DentTrace, KeepsEveryEndOfADentWhenRoomIsShort) {
+  auto drawn = std::make_unique<session::DrawnDent>();
+  DentTrace trace(*drawn);
+  drawn->patch.object = 0;
+  drawn->patch.point_count = 30;
+  EXPECT_EQ(support::heap_calls_of([&] {
+              TickRecord tick;
+              for (int i = 0; i < 20'000; ++i) {
+                tick.time_ns = i * 16 * kMillisecond;
+                // Nine pictures of a dent that goes in, then it is gone.
+                drawn->patch.triangle_count = i % 10 == 9 ? 0 : 40;
+                drawn->patch.points[29].p = {0, 0, 1e-3 * i};
+                ++drawn->drawings;
+                trace.take(tick);
+                trace.take(tick);  // a tick in which nothing was drawn
+              }
+            }),
+            0);
+  const auto frames = trace.frames();
+  ASSERT_GT(frames.size(), 1000U);
+  EXPECT_LE(trace.points().size(), DentTrace::kPointsMost);
+  EXPECT_LE(trace.triangles().size(), DentTrace::kTrianglesMost);
+  std::size_t gone = 0;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const DentTrace::Frame& frame = frames[i];
+    if (frame.triangles == 0) {
+      ++gone;
+      ASSERT_EQ(frame.time_ns / kMillisecond / 16 % 10, 9);
+      continue;
+    }
+    // Its own points went with it when others made room.
+    const auto number = static_cast<double>(frame.time_ns / kMillisecond / 16);
+    ASSERT_NEAR(trace.points()[frame.point + 29][2], 1e-3 * number, 1e-5);
+  }
+  EXPECT_GE(gone, 500U);
+}
+
+// Stands in for what Debian's packages bring.
+void write_libraries(const std::filesystem::path& share) {
+  const auto write = [&](const std::string& file, const std::string& text) {
+    std::filesystem::create_directories((share / file).parent_path());
+    std::ofstream(share / file) << text;
+  };
+  write("javascript/three/three.min.js", "var THREE = '</script>@NUMBERS@';");
+  write("doc/libjs-three/copyright", "three's licence <three@example.org>");
+  write("javascript/dygraphs/dygraph.min.js", "var Dygraph;");
+  write("javascript/dygraphs/dygraph.min.css", ".dygraph-legend {}");
+  write("doc/libjs-dygraphs/copyright", "dygraphs' licence");
+}
+
+TEST(Page, HoldsWhatItIsMadeOfAndNoNameOfASceneGetsOut) {
+  const std::filesystem::path share = support::scratch_folder() / "share";
+  const char* before = std::getenv("XDG_DATA_DIRS");
+  const std::string kept = before != nullptr ? before : "";
+  setenv("XDG_DATA_DIRS", share.c_str(), 1);
+  const auto ticks = lively_run(100);
+  PageTouch touch;
+  touch.title = "</title><script>bad()</script>";
+  touch.scene.objects.push_back({.name = "</script><b>\xff"});
+  touch.arms.emplace_back().ticks = ticks;
+  const std::filesystem::path file = support::scratch_folder() / "page.html";
+  const auto missing = write_page(touch, file);
+  write_libraries(share);
+  const auto written = write_page(touch, file);
+  if (kept.empty()) {
+    unsetenv("XDG_DATA_DIRS");
+  } else {
+    setenv("XDG_DATA_DIRS", kept.c_str(), 1);
+  }
+  ASSERT_FALSE(missing.ok());
+  EXPECT_NE(missing.error().message.find("libjs-three libjs-dygraphs"), std::string::npos);
+  ASSERT_TRUE(written.ok()) << written.error().message;
+  const std::string page = scene::text_of(file);
+  const auto count = [&page](const std::string& text) {
+    std::size_t found = 0;
+    for (auto at = page.find(text); at != page.npos; at = page.find(text, at + 1)) ++found;
+    return found;
+  };
+  EXPECT_EQ(count("<script>bad()"), 0U);
+  EXPECT_EQ(count("</script><b>"), 0U);
+  EXPECT_EQ(count("<script"), count("</script>"));
+  EXPECT_EQ(count("@NUMBERS@"), 1U);  // the library's own, left alone
+  EXPECT_EQ(count("default-src 'none'"), 1U);
+  EXPECT_EQ(count("three&#39;s licence &lt;three@example.org&gt;"), 1U);
+  EXPECT_EQ(count("http://") + count("https://"), 0U);
+}
+
+}  // namespace
+}  // namespace thimble::app
