@@ -302,7 +302,7 @@ void add_exec_command(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command->add_option("--record", options.record, "Recording of every tick to write (HDF5)");
   command->add_flag("--view", options.view, "Watch the run in a window");
-  add_ros_options(*command, asked->ros);
+  add_ros_options(*command, asked->ros, RosTime::kReal);
   command->add_option("--firmware", options.firmware, "Firmware image for an arm that needs one")
       ->check(CLI::ExistingFile);
   command->add_flag("--yes", options.yes, "Give a real arm forces without asking");

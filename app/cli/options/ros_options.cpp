@@ -4,11 +4,14 @@
 
 namespace thimble::app {
 
-void add_ros_options(CLI::App& command, RosArguments& arguments) {
-  CLI::Option* ros2 = command.add_flag(
-      "--ros2", arguments.asked,
-      "Publish the run as topics of ROS 2, in real time or, with --clock virtual, as the "
-      "topic step moves it on (package thimble-ros2)");
+void add_ros_options(CLI::App& command, RosArguments& arguments, RosTime time) {
+  const std::string how = time == RosTime::kRealOrStepped
+                              ? ", in real time or, with --clock virtual, as the topic step moves "
+                                "it on"
+                              : ", in real time";
+  CLI::Option* ros2 =
+      command.add_flag("--ros2", arguments.asked,
+                       "Publish the run as topics of ROS 2" + how + " (package thimble-ros2)");
   command
       .add_option("--ros-namespace", arguments.words.name_space,
                   "Namespace of the topics, as /phantom; none if absent (omni: /phantom)")

@@ -14,8 +14,11 @@ struct RosArguments {
   faces::RosOptions options;  ///< What they mean; see check_ros_arguments.
 };
 
+/// Which time the topics of a command may have.
+enum class RosTime { kReal, kRealOrStepped };
+
 /// Adds the options of a run as ROS 2 topics. The arguments must outlive the command.
-void add_ros_options(CLI::App& command, RosArguments& arguments);
+void add_ros_options(CLI::App& command, RosArguments& arguments, RosTime time);
 
 /// Reads the words among the arguments into their options; fails if they do not go together.
 driver::Result<void> check_ros_arguments(RosArguments& arguments);

@@ -158,7 +158,7 @@ void add_run_options(CLI::App& command, RunOptions& options) {
       .add_option("--save-object", options.save_object,
                   "Save the mesh of this object of the scene alone")
       ->needs(save);
-  add_ros_options(command, options.ros);
+  add_ros_options(command, options.ros, RosTime::kRealOrStepped);
   command.add_option("--seed", options.seed, "Seed of everything random; the scene's if absent");
 }
 

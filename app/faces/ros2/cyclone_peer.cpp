@@ -75,7 +75,7 @@ class CyclonePeer final : public RosPeer {
   }
 
   /// Waits for the ticks that were permitted, and tells of the last of them; again now and then,
-  /// for those who came since.
+  /// for those who came since. That they are done is told once all arms have.
   void publish_steps() {
     constexpr std::chrono::milliseconds kLook(20), kAgain(100);
     const std::uint64_t done = channel_.steps->wait_for_ticks(kLook);
@@ -83,9 +83,11 @@ class CyclonePeer final : public RosPeer {
     if (!channel_.steps->idle() || (done == told_ && now - told_when_ < kAgain)) return;
     if (done == told_) shown_ = UINT64_MAX;
     publish_newest();
+    channel_.steps->tell(channel_.arm, done);
+    if (options_.moves_time && !channel_.steps->all_told(done)) return;
     told_ = done;
     told_when_ = now;
-    writers_->tell_step(done);
+    if (options_.moves_time) writers_->tell_step(done);
   }
 
   const RosOptions options_;

@@ -43,6 +43,10 @@ dds_entity_t make_any_reader(dds_entity_t participant, const dds_topic_descripto
 }  // namespace
 
 std::string dds_topic_name(const RosOptions& options, const std::string& name) {
+  return "rt" + options.name_space + options.arm_space + "/" + name;
+}
+
+std::string dds_run_topic_name(const RosOptions& options, const std::string& name) {
   return "rt" + options.name_space + "/" + name;
 }
 

@@ -10,8 +10,10 @@ namespace thimble::faces {
 /// What becomes of readers that come after a message.
 enum class LateReaders { kHearNothing, kHearTheLast };
 
-/// Returns the name of a topic in DDS: "rt", the namespace and the name.
+/// Returns the name of an arm's topic in DDS: "rt", the namespaces of run and arm, and the name.
 std::string dds_topic_name(const RosOptions& options, const std::string& name);
+/// Returns the name of a topic in DDS that is of all arms: "rt", the run's namespace and the name.
+std::string dds_run_topic_name(const RosOptions& options, const std::string& name);
 
 /// Makes the writer of a topic by its name in DDS: reliable, as drivers of ROS 2 do it, and with
 /// the hash of its type for those that compare it. Returns an error of DDS below 0.

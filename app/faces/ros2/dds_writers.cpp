@@ -39,9 +39,10 @@ DdsWriters::DdsWriters(dds_entity_t participant, const RosOptions& options, cons
   tf_ = kept(make_writer(participant, tf2_msgs_msg_dds__TFMessage__desc, "rt/tf"));
   health_ = kept(
       make_writer(participant, diagnostic_msgs_msg_dds__DiagnosticArray__desc, "rt/diagnostics"));
-  if (options.stepped) {
+  if (options.stepped && options.moves_time) {
     clock_ = kept(make_writer(participant, rosgraph_msgs_msg_dds__Clock__desc, "rt/clock"));
-    stepped_ = writer(std_msgs_msg_dds__UInt64__desc, "stepped");
+    stepped_ = kept(make_writer(participant, std_msgs_msg_dds__UInt64__desc,
+                                dds_run_topic_name(options, "stepped")));
   }
   kept(objects_.error());
   for (const std::string& name : scene.joints) joint_names_.push_back(dds_text(name));

@@ -34,7 +34,10 @@ MessageTaker::MessageTaker(dds_entity_t participant, const RosOptions& options, 
   if (options.lead_hand) {
     places_ = reader(geometry_msgs_msg_dds__PoseStamped__desc, names.hand_in);
   }
-  if (options.stepped) steps_ = reader(std_msgs_msg_dds__UInt64__desc, "step");
+  if (options.stepped && options.moves_time) {
+    steps_ = kept(make_reliable_reader(participant, std_msgs_msg_dds__UInt64__desc,
+                                       dds_run_topic_name(options, "step"), kTaken));
+  }
 }
 
 dds_entity_t MessageTaker::kept(dds_entity_t made) {

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -25,6 +26,7 @@ enum class RosForce : std::uint8_t {
 /// What the user asked of the topics of a run.
 struct RosOptions {
   std::string name_space = {};         ///< "/phantom"; empty: none
+  std::string arm_space = {};          ///< "/left", where there are several arms; else empty
   RosStyle style = RosStyle::kPlain;   ///< of names and axes
   std::string world_frame = "world";   ///< name of frame W, in the style's axes
   std::string tip_frame = "tip";       ///< name of frame T
@@ -34,6 +36,7 @@ struct RosOptions {
   std::int64_t stale_ns = 50'000'000;  ///< a force counts for so long
   bool lead_hand = false;              ///< a topic says where the simulated hand goes
   bool stepped = false;                ///< virtual time, which a topic moves on
+  bool moves_time = true;              ///< of a stepped run: this arm's topics do, and tell the time
 };
 
 /// One object of a scene as it is drawn.
@@ -87,6 +90,7 @@ struct RosChannel {
   driver::Snapshot<RosWrench> wrench;           ///< the newest force; by the topics' thread
   driver::Snapshot<RosHandPlace> hand;          ///< the newest place; by the topics' thread
   RosSteps* steps = nullptr;                    ///< of a run that is stepped; else null
+  std::size_t arm = 0;                          ///< which of the run's
   RosCounts counts;
 };
 

@@ -20,7 +20,7 @@ RosOptions options_of_arm(const session::Session& session, const RosOptions& opt
   RosOptions own = options;
   if (session.arms() == 1) return own;
   const std::string word = frame_word(session.arm_name(arm));
-  own.name_space += "/" + word;
+  own.arm_space = "/" + word;
   own.tip_frame = word + "_" + own.tip_frame;
   return own;
 }
@@ -33,8 +33,14 @@ driver::Result<std::unique_ptr<RosRun>> RosRun::open(session::Session& session,
   run->options_ = options_of_arm(session, options, arm);
   run->channel_.clock = &session.setup().clock();
   run->channel_.tick = &session.newest(arm);
-  if (clock != nullptr) run->channel_.steps = &clock->steps();
-  run->options_.stepped = clock != nullptr && arm == 0;
+  run->channel_.arm = arm;
+  if (clock != nullptr) {
+    run->channel_.steps = &clock->steps();
+    if (arm == 0) clock->steps().expect(session.arms());
+  }
+  run->options_.stepped = clock != nullptr;
+  run->options_.moves_time = arm == 0;
+  run->ends_tick_ = arm + 1 == session.arms();
   if (arm == 0) run->poses_ = session.records().poses.get();
   if (options.force != RosForce::kNone) {
     run->law_ = std::make_unique<WrenchLaw>(run->channel_, session.own_law(), options,
@@ -70,7 +76,7 @@ void RosRun::take(const driver::TickRecord& record) noexcept {
       if (!session_.lead_hand({place.p_W[0], place.p_W[1], place.p_W[2]})) ++places_refused_;
     }
   }
-  if (options_.stepped) channel_.steps->done(record.tick + 1);
+  if (options_.stepped && ends_tick_) channel_.steps->done(record.tick + 1);
 }
 
 std::string RosRun::report() const {

@@ -44,6 +44,7 @@ class RosRun final : public session::TickObserver {
   session::Session& session_;
   RosChannel channel_;
   RosOptions options_;
+  bool ends_tick_ = true;  // the arm is the last that the loop serves in a tick
   std::uint64_t places_taken_ = 0;
   std::uint64_t places_refused_ = 0;
   const session::PoseRecord* poses_ = nullptr;  // null: nothing moves

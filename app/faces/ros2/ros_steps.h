@@ -4,17 +4,25 @@
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
+#include <cstddef>
 #include <cstdint>
 #include <mutex>
+#include <vector>
 
 #include "thimble/driver/clock.h"
 
 namespace thimble::faces {
 
-/// How far a run in virtual time may go, and how far it is: one side permits ticks, the other does
-/// them and waits. Never of a run on a real arm. Any thread.
+/// How far a run in virtual time may go, and how far it is: the topics permit ticks, the run does
+/// them and waits, and the topics of each arm tell of them. Never of a run on a real arm. Any
+/// thread.
 class RosSteps {
  public:
+  /// Says that there are the topics of so many arms; before any of them tells.
+  void expect(std::size_t arms) {
+    const std::scoped_lock lock(mutex_);
+    told_.assign(arms, 0);
+  }
   /// Lets the run go on until so many ticks are done in all; nothing if it may already.
   void permit(std::uint64_t ticks) {
     const std::scoped_lock lock(mutex_);
@@ -45,10 +53,21 @@ class RosSteps {
     const std::scoped_lock lock(mutex_);
     return done_ >= permitted_;
   }
+  /// Says that the topics of an arm have told of so many ticks.
+  void tell(std::size_t arm, std::uint64_t ticks) {
+    const std::scoped_lock lock(mutex_);
+    told_[arm] = ticks;
+  }
+  /// Returns whether the topics of all arms have told of so many ticks.
+  bool all_told(std::uint64_t ticks) {
+    const std::scoped_lock lock(mutex_);
+    return *std::min_element(told_.begin(), told_.end()) >= ticks;
+  }
 
  private:
   std::mutex mutex_;
   std::condition_variable changed_;
+  std::vector<std::uint64_t> told_ = {0};  // by arm
   std::uint64_t permitted_ = 0, done_ = 0;
 };
 

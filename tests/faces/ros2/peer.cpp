@@ -4,6 +4,7 @@
 //   peer DOMAIN SECONDS hand       leads the hand in a circle, and asks for no force
 //   peer DOMAIN SECONDS omni       hears and speaks as programs for the Omni's drivers do
 //   peer DOMAIN STEPS step         moves a run on by so many steps of 10 ticks
+//   peer DOMAIN STEPS step_two     the same for a run of the arms left and right
 // Prints what it heard, a line for each topic, then the sums of the last second.
 #include "peer.h"
 
@@ -42,7 +43,8 @@ int main(int argc, char** argv) {
   const double force = garbage || leads ? 0 : std::atof(argv[3]);
   if (!enter(argv[1])) return 3;
   if (part == "omni") return play_omni(std::atof(argv[2]));
-  if (part == "step") return play_steps(std::atol(argv[2]));
+  if (part == "step") return play_steps(std::atol(argv[2]), {""});
+  if (part == "step_two") return play_steps(std::atol(argv[2]), {"/left", "/right"});
   Heard<JointState_, sensor_msgs::msg::dds_::JointState_PubSubType> joints("rt/joint_states");
   Heard<PoseStamped_, geometry_msgs::msg::dds_::PoseStamped_PubSubType> pose("rt/pose");
   Heard<TwistStamped_, geometry_msgs::msg::dds_::TwistStamped_PubSubType> twist("rt/twist");

@@ -20,6 +20,7 @@
 #include <mutex>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "ros_messagesPubSubTypes.h"
 
@@ -110,5 +111,6 @@ DataWriter* writer(const std::string& name) {
 
 /// Hears and speaks as a program that was written for the Omni's drivers.
 int play_omni(double seconds);
-/// Moves a run on by steps.
-int play_steps(long steps);
+/// Moves a run on by steps, and if it has one arm pulls at it; `spaces`: the namespace of each of
+/// its arms, "/left", or "".
+int play_steps(long steps, const std::vector<std::string>& spaces);

@@ -157,19 +157,26 @@ expect 0 'forces answer positions that are [0-9.]+ ms old \(median\), [0-9.]+ ms
   "$thimble" tune rest.yaml --ros2 --ros-domain "$domain"
 
 # Stepped: each step is answered, the same bits each time, faster than the world's time.
-step() {
-  timeout 80 "$thimble" run rubber --no-view --ros2 --ros-domain "$domain" --ros-force replace --clock virtual --duration 1 \
-    --record "$1" >step.log 2>&1 &
-  run=$!
-  "$peer" "$domain" 100 step && wait "$run"
+step() { # step SCENE SECONDS PART OPTIONS...
+  for run in one two; do
+    timeout 80 "$thimble" run "$1" --no-view --ros2 --ros-domain "$domain" --clock virtual --duration "$2" "${@:4}" \
+      --record "$1_$run.h5" >"$1.log" 2>&1 &
+    local pid=$!
+    "$peer" "$domain" $(($2 * 100)) "$3" >"$1_$run.log" || break
+    wait "$pid"
+  done
+  cat "$1_one.log"
+  expect 0 "^stepped $(($2 * 1000))\$" cat "$1_one.log"
+  expect 0 '^bad 0$' cat "$1_one.log"
+  expect 0 '' cmp "$1_one.log" "$1_two.log"
 }
-step one.h5 >one.log
-step two.h5 >two.log
-cat one.log
-expect 0 '^stepped 1000$' cat one.log
-expect 0 '^clock 0\.999$' cat one.log
-expect 0 '^bad 0$' cat one.log
-expect 0 '' cmp one.log two.log
-same() { for f in one two; do "$thimble" export "$f.h5" --csv "$f.csv" >/dev/null; done && cmp one.csv two.csv; }
-expect 0 '' same
+same() { # same RECORDING RECORDING
+  for f in "$@"; do "$thimble" export "$f.h5" --csv "$f.csv" >/dev/null; done && cmp "$1.csv" "$2.csv"
+}
+step rubber 1 step --ros-force replace
+expect 0 '^clock 0\.999$' cat rubber_one.log
+expect 0 '' same rubber_one rubber_two
+# With two arms the topics of both have the run's time.
+step two_hands 1 step_two
+for hand in left right; do expect 0 '' same "two_hands_one_$hand" "two_hands_two_$hand"; done
 finish

@@ -90,5 +90,18 @@ TEST(SteppedClock, WaitsForPermits) {
   EXPECT_EQ(times.size(), 10U);
 }
 
+TEST(RosSteps, AreToldOnceTheTopicsOfAllArmsHave) {
+  RosSteps steps;
+  steps.expect(2);
+  steps.permit(5);
+  steps.done(5);
+  steps.tell(0, 5);
+  EXPECT_FALSE(steps.all_told(5));
+  steps.tell(1, 4);
+  EXPECT_FALSE(steps.all_told(5));
+  steps.tell(1, 5);
+  EXPECT_TRUE(steps.all_told(5));
+}
+
 }  // namespace
 }  // namespace thimble::faces
