@@ -172,20 +172,21 @@ done
 
 # Every fault, both ways, one after another on the same plug: after each the arm must serve again.
 # All but a stalled message: the kernel never clears that halt for hidraw, only a new plug does; so
-# it comes last.
+# it comes last. The short form takes those that reach further than the arm's own checks.
+kinds="short|long|torn|stale|duplicate|silence|lost|bit_errors rate=0.01|stall"
+[ $ticks -lt 10000 ] && kinds="torn|lost|bit_errors rate=0.01|stall"
 for arm in $faulty; do
   image=
   [ $arm = falcon ] && image=/etc/falcon.bin
   plug $arm /tmp/fault.trace
-  for kind in short long torn stale duplicate silence lost "bit_errors rate=0.01" stall; do
+  echo "$kinds" | tr '|' '\n' | while read -r kind options; do
     for way in in out; do
-      set -- $kind
-      as tester "usb_check fault $arm $control '$1 $way for=100 $2' $image"
+      as tester "usb_check fault $arm $control '$kind $way for=100 $options' $image" </dev/null
     done
   done
   unplug
   # The arm's side counts too: each kind must have hit packets, or the checks above say nothing.
-  for kind in short long torn stale duplicate silence lost bit_errors stall; do
+  for kind in $(echo "$kinds" | tr '|' '\n' | cut -d' ' -f1); do
     hits=$(sed -n "s/^Fault $kind hit \([0-9]*\) packets.*/\1/p" /tmp/plug.log)
     [ "${hits:-0}" -gt 0 ] || echo "FAIL $arm with faults: no packet was hit by '$kind'"
   done

@@ -36,7 +36,7 @@ struct RosOptions {
   std::int64_t stale_ns = 50'000'000;  ///< a force counts for so long
   bool lead_hand = false;              ///< a topic says where the simulated hand goes
   bool stepped = false;                ///< virtual time, which a topic moves on
-  bool moves_time = true;              ///< of a stepped run: this arm's topics do, and tell the time
+  bool moves_time = true;  ///< of a stepped run: this arm's topics do, and tell the time
 };
 
 /// One object of a scene as it is drawn.
