@@ -23,7 +23,8 @@ packages=(
   libjs-three libjs-dygraphs             # put into pages that play a touch in a browser
   libepoxy-dev libegl-dev libgl-dev      # scenes drawn with OpenGL ...
   libegl-mesa0 libgl1-mesa-dri           # ... by the processor where there is no graphics card
-  libglfw3-dev libimgui-dev              # the window
+  libglfw3-dev libimgui-dev              # the window ...
+  libasound2-dev                         # ... and what is felt as sound
   libgtest-dev libbenchmark-dev          # tests and benchmarks
 )
 

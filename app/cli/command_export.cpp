@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -7,6 +8,8 @@
 #include "cli/complain.h"
 #include "recording/bag_export.h"
 #include "thimble/session/recording.h"
+#include "view/felt/touch_sound.h"
+#include "view/felt/wav_file.h"
 
 namespace thimble::app {
 namespace {
@@ -15,6 +18,7 @@ struct ExportOptions {
   std::string file;
   std::string csv;
   std::string bag;
+  std::string sound;
 };
 
 int export_recording(const ExportOptions& options) {
@@ -37,6 +41,13 @@ int export_recording(const ExportOptions& options) {
     }
     tell(options.bag);
   }
+  if (!options.sound.empty()) {
+    const auto samples = view::sound_of(recording->ticks, std::llround(1e9 / recording->info.rate));
+    if (auto written = view::write_wav(samples, view::TouchSound::kRate, options.sound); !written) {
+      return complain(written.error(), kExitTrouble);
+    }
+    tell(options.sound);
+  }
   return kExitDone;
 }
 
@@ -44,7 +55,7 @@ int export_recording(const ExportOptions& options) {
 
 void add_export_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
-      "export", "Write a recording as a table that any program reads, or as a ROS bag");
+      "export", "Write a recording as a table that any program reads, as a ROS bag, or as sound");
   auto options = std::make_shared<ExportOptions>();
   command->add_option("FILE", options->file, "Recording, made by `thimble run SCENE --record FILE`")
       ->required();
@@ -53,7 +64,9 @@ void add_export_command(CLI::App& app, int& exit_code) {
   as->add_option("--bag", options->bag,
                  "Folder to write: a bag of ROS 2 (SQLite) with /pose, /wrench (as sent) and "
                  "/wrench_wanted (before the gate)");
-  as->require_option(1, 2);
+  as->add_option("--sound", options->sound,
+                 "WAV file to write: what was felt as sound, as `thimble view --sound` plays it");
+  as->require_option(1, 3);
   command->callback([options, &exit_code] { exit_code = export_recording(*options); });
 }
 

@@ -173,7 +173,8 @@ int run_scene(RunOptions& options) {
         complain({"--save-object: the scene has no object \"" + options.save_object + "\"."},
                  kExitBadInput));
   }
-  const auto desk = session::open_viewer_requests(session, viewer_choice(options));
+  const auto desk =
+      session::open_viewer_requests(session, viewer_choice(options), viewer_arguments(options));
   session::ServoThread servo(session.real_time());
   if (arms->real()) {
     if (auto granted = session::check_real_time(servo.grant(), options.no_real_time); !granted) {

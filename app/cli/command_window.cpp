@@ -1,5 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "cli/commands.h"
 #include "cli/complain.h"
@@ -17,6 +19,21 @@ void add_window_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.get_subcommand("view");
   command->add_option("--picture", choice->last_picture, "PNG of the window to write then")
       ->needs("--for")
+      ->excludes("--text");
+  command
+      ->add_option_function<std::string>(
+          "--hand",
+          [choice](const std::string& name) {
+            choice->hand = view::hand_source_named(name).value_or(choice->hand);
+          },
+          "Who leads the simulated hand of a run that lets a viewer: mouse (if left out), "
+          "keyboard, gamepad or spacemouse")
+      ->check(CLI::IsMember(
+          std::vector<std::string>(view::kHandSources.begin(), view::kHandSources.end())))
+      ->excludes("--text");
+  command->add_flag("--sound", choice->felt.sound, "Play what is felt as sound")
+      ->excludes("--text");
+  command->add_flag("--rumble", choice->felt.rumble, "Let a gamepad rumble as hard as the touch is")
       ->excludes("--text");
 }
 

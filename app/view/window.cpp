@@ -18,7 +18,10 @@
 #include <utility>
 #include <vector>
 
+#include "print.h"
+#include "view/felt/touch_thread.h"
 #include "view/gl/picture_file.h"
+#include "view/hand/hand_panel.h"
 #include "view/run_follower.h"
 #include "view/scene_mouse.h"
 #include "view/side_panel.h"
@@ -154,8 +157,14 @@ bool software_draws() {
 /// The window's content from picture to picture.
 class Content {
  public:
-  Content(Screen& screen, session::RunAttachment& runs) : screen_(screen), follower_(runs) {
+  Content(Screen& screen, session::RunAttachment& runs, const WindowChoice& choice)
+      : screen_(screen), follower_(runs), felt_(choice.felt) {
     choice_.paint.fine = !software_draws();
+    hand_.input().choose(choice.hand);
+    if (!felt_.trouble().empty()) {
+      session::print(stderr, "{}\n", felt_.trouble());
+      tell(felt_.trouble());
+    }
   }
 
   /// Draws one picture into the window.
@@ -169,6 +178,7 @@ class Content {
 
  private:
   void draw_scene(const ScreenPart& part, float ratio);
+  void lead_hand(const ScreenPart& part);
   void take_picture();
   void tell(const std::string& message);
 
@@ -179,7 +189,12 @@ class Content {
   bool canvas_fine_ = true;
   Camera camera_;
   SceneMouse mouse_;
+  HandPanel hand_;
   bool led_ = false;
+  std::vector<int> keys_;  // pressed since the last picture
+  double frame_time_ = 0;  // s, of the last picture
+  TouchThread felt_;
+  bool felt_follows_ = false;
   ViewChoice choice_;
   ViewNotes notes_;
   std::chrono::steady_clock::time_point message_until_{};
@@ -197,6 +212,26 @@ void Content::take_picture() {
   tell(written ? "Picture: " + file : written.error().message);
 }
 
+// The mouse has the hand while it drags; what else leads it takes it anew afterwards.
+void Content::lead_hand(const ScreenPart& part) {
+  session::SharedReader& run = *follower_.reader();
+  const Eigen::Vector3d p_WT(follower_.moment().tick.p_WT.data());
+  const bool by_mouse = mouse_.hand().holds;
+  if (by_mouse) hand_.input().let_go();
+  const session::SharedScene::Arm& arm = run.scene().arm;
+  hand_.step(keys_, camera_, p_WT, {arm.min_W, arm.max_W}, frame_time_,
+             !by_mouse && follower_.has_moment() && run.state() == session::RunState::kRunning);
+  const HandWish& hand = by_mouse ? mouse_.hand() : hand_.input().hand();
+  if (hand.holds || led_) {
+    run.lead_hand(hand.p_WH, hand.holds);
+    led_ = hand.holds;
+  }
+  hand_.draw_target(hand, p_WT, camera_, part);
+  if (hand_.draw_box(hand.holds, part)) {
+    choice_.mouse_is_hand = hand_.input().source() == HandSource::kMouse;
+  }
+}
+
 void Content::draw_scene(const ScreenPart& part, float ratio) {
   const int width = std::max(1, static_cast<int>(part.width * ratio));
   const int height = std::max(1, static_cast<int>(part.height * ratio));
@@ -212,11 +247,7 @@ void Content::draw_scene(const ScreenPart& part, float ratio) {
   }
   const Eigen::Map<const Eigen::Vector3d> p_WT(moment.tick.p_WT.data());
   mouse_.step(camera_, p_WT, part, choice_.mouse_is_hand);
-  const HandWish& hand = mouse_.hand();
-  if (hand.holds || led_) {
-    follower_.reader()->lead_hand(hand.p_WH, hand.holds);
-    led_ = hand.holds;
-  }
+  if (follower_.reader()->scene().hand_by_mouse) lead_hand(part);
   const auto labels = painter_->paint(moment, camera_, choice_.paint, *canvas_);
   canvas_->show(0, 0);
   write_labels(labels, camera_, part);
@@ -233,7 +264,14 @@ driver::Result<void> Content::draw(double frame_time) {
     painter_ = std::make_unique<ScenePainter>(follower_.scene(), std::move(programs).value());
     choice_.frame = true;
     const session::SharedScene& scene = follower_.reader()->scene();
-    choice_.mouse_is_hand = scene.hand_by_mouse;
+    const bool by_mouse = hand_.input().source() == HandSource::kMouse;
+    choice_.mouse_is_hand = scene.hand_by_mouse && by_mouse;
+    hand_.input().let_go();
+    if (!by_mouse && !scene.hand_by_mouse) {
+      tell("The hand of this run follows its path: begin it with --hand to lead it.");
+    }
+    if (!felt_follows_) felt_.follow(follower_.reader()->name());
+    felt_follows_ = true;
     notes_.closing_ends = scene.hand_by_mouse && scene.pid == getppid();  // which has opened it
     glfwSetWindowTitle(screen_.window(), ("Thimble: " + follower_.scene().name).c_str());
   }
@@ -249,7 +287,9 @@ driver::Result<void> Content::draw(double frame_time) {
   glViewport(0, 0, pixels_x, pixels_y);
   glClearColor(kGroundColour[0], kGroundColour[1], kGroundColour[2], 1);
   glClear(GL_COLOR_BUFFER_BIT);
-  for (const int key : screen_.take_keys()) take_key(key, follower_.reader(), choice_);
+  keys_ = screen_.take_keys();
+  frame_time_ = frame_time;
+  for (const int key : keys_) take_key(key, follower_.reader(), choice_);
   if (painter_ != nullptr && scene.width >= 1 && scene.height >= 1) draw_scene(scene, ratio);
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
   glViewport(0, 0, pixels_x, pixels_y);
@@ -268,7 +308,7 @@ driver::Result<void> show_window(session::RunAttachment& runs, const WindowChoic
   auto screen = Screen::open();
   if (!screen) return screen.error();
   GLFWwindow* window = (*screen)->window();
-  Content content(**screen, runs);
+  Content content(**screen, runs, choice);
   const double began = glfwGetTime();
   double last = began;
   while (glfwWindowShouldClose(window) == GLFW_FALSE && !content.wants_to_close()) {

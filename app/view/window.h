@@ -4,11 +4,15 @@
 
 #include "share/run_attachment.h"
 #include "thimble/driver/result.h"
+#include "view/felt/touch_thread.h"
+#include "view/hand/hand_input.h"
 
 namespace thimble::app::view {
 
-/// Says when a window closes by itself, for tests.
+/// Says what a window begins with, and when it closes by itself, for tests.
 struct WindowChoice {
+  HandSource hand = HandSource::kMouse;  ///< Leads the simulated hand, where a run lets a viewer.
+  FeltChoice felt;
   double seconds = 0;        ///< Closes after so long; 0: when the user closes it.
   std::string last_picture;  ///< PNG of the whole window, written before it closes so; empty: none.
 };

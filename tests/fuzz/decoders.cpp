@@ -17,6 +17,7 @@
 #include "usb/usb_description.h"
 #include "usb/usbip_session.h"
 #include "usb/usbip_wire.h"
+#include "view/hand/space_mouse_report.h"
 
 namespace thimble::fuzz {
 namespace {
@@ -181,6 +182,15 @@ bool hid_descriptor(Bytes bytes) {
   return reports.in_bytes > 0;
 }
 
+/// What a SpaceMouse tells is whole, or leaves what was told before.
+bool space_mouse(Bytes bytes) {
+  const app::view::SpaceMouseState before{.translation = {1, 2, 3}, .rotation = {4, 5, 6}};
+  app::view::SpaceMouseState state = before;
+  if (app::view::take_space_mouse_report(bytes, state)) return true;
+  promise(state == before, "a rejected report leaves the state alone");
+  return false;
+}
+
 }  // namespace
 
 bool decode_anything(Bytes bytes) {
@@ -221,6 +231,8 @@ bool decode_anything(Bytes bytes) {
       return usbip_session(rest);
     case 12:
       return hid_descriptor(rest);
+    case 13:
+      return space_mouse(rest);
     default:
       return read_shared_memory(rest);
   }

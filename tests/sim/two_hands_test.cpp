@@ -314,7 +314,7 @@ TEST(TwoHands, AreRefusedWithASentenceWhereOneArmIsMeant) {
   EXPECT_EQ(refusal(options), "opened");
   session::SessionOptions other = options;
   other.hand_by_mouse = true;
-  EXPECT_NE(refusal(other).find("--hand mouse"), std::string::npos);
+  EXPECT_NE(refusal(other).find("leave --hand away"), std::string::npos);
   other = options;
   other.arm_file = "touch";
   EXPECT_NE(refusal(other).find("in place of all"), std::string::npos);

@@ -25,8 +25,21 @@ using thimble::support::fake_hidapi;
 
 extern "C" {
 
+hid_device_info* hid_enumerate(unsigned short, unsigned short) {
+  static char path[] = "/dev/hidraw7";
+  static hid_device_info only{};
+  if (fake_hidapi().listed_vendor == 0) return nullptr;
+  only.path = path;
+  only.vendor_id = fake_hidapi().listed_vendor;
+  only.product_id = fake_hidapi().listed_product;
+  only.usage_page = 1;
+  only.usage = 8;
+  return &only;
+}
+void hid_free_enumeration(hid_device_info*) {}
 hid_device* hid_open_path(const char*) {
   static int place = 0;
+  if (fake_hidapi().refused) return nullptr;
   ++fake_hidapi().open;
   return reinterpret_cast<hid_device*>(&place);
 }
@@ -37,6 +50,12 @@ int hid_read_timeout(hid_device*, unsigned char* data, std::size_t length, int m
   auto& hid = fake_hidapi();
   hid.last_timeout_ms = milliseconds;
   if (hid.gone) return -1;
+  if (!hid.script.empty()) {
+    const std::size_t told = hid.script[0];
+    std::copy_n(hid.script.data() + 1, std::min(told, length), data);
+    hid.script = hid.script.subspan(1 + told);
+    return static_cast<int>(std::min(told, length));
+  }
   int& left = hid.reports == 0 && milliseconds > 0 ? hid.coming : hid.reports;
   if (left == 0) return 0;
   --left;

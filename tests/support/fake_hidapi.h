@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 namespace thimble::support {
 
@@ -21,6 +22,11 @@ struct FakeHidapi {
   int coming = 0;            ///< Arrive when somebody waits.
   std::uint16_t number = 0;  ///< Of the last report that was read.
   bool gone = false;         ///< Reads fail.
+  /// Reports that are read in place of the numbered ones: each behind a byte that tells its length.
+  std::span<const unsigned char> script = {};
+  std::uint16_t listed_vendor = 0;  ///< Of the one multi-axis controller that is listed; 0: none.
+  std::uint16_t listed_product = 0;
+  bool refused = false;      ///< It cannot be opened.
   int write_error = 0;       ///< errno of a write; 0: it goes well.
   int last_timeout_ms = -1;  ///< Of the last read.
   std::uint64_t messages = 0;

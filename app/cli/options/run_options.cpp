@@ -27,7 +27,16 @@ driver::Result<void> check_run_options(RunOptions& options) {
   if (options.ros.asked) {
     if (auto there = faces::check_ros_module(); !there) return there;
   }
-  if (!options.by_mouse() && !options.by_topic()) return {};
+  const bool felt = options.sound || options.rumble;
+  if (felt && !options.view && !options.by_viewer()) {
+    return driver::Error{"--sound and --rumble are the window's: add --view."};
+  }
+  if (felt && options.clock == "virtual") {
+    return driver::Error{
+        "--sound and --rumble need real time: leave --clock away. Of a recording, `thimble export "
+        "REC.h5 --sound FILE.wav` makes the sound."};
+  }
+  if (!options.by_viewer() && !options.by_topic()) return {};
   if (options.devices != std::vector<std::string>{"sim"}) {
     return driver::Error{"--hand " + options.hand +
                          " leads the simulated arm's hand; a real arm has yours."};
@@ -35,14 +44,15 @@ driver::Result<void> check_run_options(RunOptions& options) {
   if (options.by_topic()) return {};
   if (options.clock == "virtual" && !options.duration) {
     return driver::Error{
-        "--hand mouse without an end needs real time: leave --clock away, or give --duration."};
+        "--hand " + options.hand +
+        " without an end needs real time: leave --clock away, or give --duration."};
   }
   return {};
 }
 
 session::SessionOptions session_options(const RunOptions& options, const session::RunArms& arms) {
   // A person who watches or leads does so in real time, unless he says otherwise.
-  const bool for_a_person = options.view || options.by_mouse();
+  const bool for_a_person = options.view || options.by_viewer();
   const bool watched = for_a_person || options.ros.asked;
   const bool wall = options.clock.empty() ? watched : options.clock == "wall";
   const bool real_time = wall || arms.real();
@@ -60,7 +70,7 @@ session::SessionOptions session_options(const RunOptions& options, const session
   asked.share_out = !options.name.empty() || for_a_person || (real_time && !options.no_view);
   asked.share_if_possible = options.name.empty() && !for_a_person;
   asked.share_name = options.name;
-  asked.hand_by_mouse = options.by_mouse();
+  asked.hand_by_mouse = options.by_viewer();
   asked.hand_by_program = options.by_topic();
   asked.homed = options.homed;
   asked.several_arms = true;
@@ -76,7 +86,7 @@ session::SessionOptions session_options(const RunOptions& options, const session
 }
 
 session::ViewerChoice viewer_choice(const RunOptions& options) {
-  const bool asked = options.view || options.by_mouse();
+  const bool asked = options.view || options.by_viewer();
   if (asked && !has_window()) {
     scene::terminal().info(
         "No window in this build (app/setup.sh release thimble makes one); `thimble view --text` "
@@ -85,6 +95,14 @@ session::ViewerChoice viewer_choice(const RunOptions& options) {
   }
   if (options.no_view || !has_window()) return session::ViewerChoice::kNever;
   return asked ? session::ViewerChoice::kAsked : session::ViewerChoice::kIfWatched;
+}
+
+std::vector<std::string> viewer_arguments(const RunOptions& options) {
+  std::vector<std::string> arguments;
+  if (options.by_viewer()) arguments = {"--hand", options.hand};
+  if (options.sound) arguments.emplace_back("--sound");
+  if (options.rumble) arguments.emplace_back("--rumble");
+  return arguments;
 }
 
 void add_run_options(CLI::App& command, RunOptions& options) {
@@ -124,17 +142,22 @@ void add_run_options(CLI::App& command, RunOptions& options) {
   command
       .add_option("--clock", options.clock,
                   "virtual: as fast as it computes, repeatable to the bit; wall: in real time "
-                  "(if absent: wall with --view, --ros2 or --hand mouse, virtual otherwise)")
+                  "(if absent: wall with --view, --ros2 or a hand led in the window, virtual "
+                  "otherwise)")
       ->check(CLI::IsMember({"virtual", "wall"}));
   command
       .add_option("--hand", options.hand,
-                  "Who leads the simulated hand: path, as the scene says; mouse, by the viewer, "
-                  "until its window is closed; topic, with --ros2, by the topic command/pose "
-                  "(crtk: servo_cp)")
-      ->check(CLI::IsMember({"path", "mouse", "topic"}))
+                  "Who leads the simulated hand: path, as the scene says; mouse, keyboard, gamepad "
+                  "or spacemouse (3Dconnexion), in the window, until it is closed; topic, with "
+                  "--ros2, by the topic command/pose (crtk: servo_cp)")
+      ->check(CLI::IsMember({"path", "mouse", "keyboard", "gamepad", "spacemouse", "topic"}))
       ->capture_default_str();
   CLI::Option* view = command.add_flag("--view", options.view, "Watch the run in a window");
   command.add_flag("--no-view", options.no_view, "Show the run to nobody")->excludes(view);
+  command.add_flag("--sound", options.sound,
+                   "With the window: play what is felt as sound (clicks, textures, friction)");
+  command.add_flag("--rumble", options.rumble,
+                   "With the window: let a gamepad rumble as hard as the touch is");
   command.add_option("--name", options.name,
                      "Name of the run for `thimble view NAME`; the scene's if absent");
   add_quality_option(

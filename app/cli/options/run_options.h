@@ -30,6 +30,7 @@ struct RunOptions {
   std::string hand = "path";
   std::string name;
   bool view = false, no_view = false;
+  bool sound = false, rumble = false;
   std::string quality = "normal";
   std::optional<double> budget;  // ns
   bool yes = false;
@@ -39,7 +40,7 @@ struct RunOptions {
   RosArguments ros;
 
   /// Returns whether a person leads the simulated hand in the viewer.
-  bool by_mouse() const { return hand == "mouse"; }
+  bool by_viewer() const { return hand != "path" && !by_topic(); }
   /// Returns whether a topic of ROS 2 leads it.
   bool by_topic() const { return hand == "topic"; }
   /// Returns whether a topic of ROS 2 moves the time on.
@@ -57,5 +58,8 @@ session::SessionOptions session_options(const RunOptions& options, const session
 
 /// Returns whether a window shows the run.
 session::ViewerChoice viewer_choice(const RunOptions& options);
+
+/// Returns what `thimble view` is told besides the run's name.
+std::vector<std::string> viewer_arguments(const RunOptions& options);
 
 }  // namespace thimble::app

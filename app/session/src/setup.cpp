@@ -113,7 +113,7 @@ driver::Result<void> Setup::check_several(const SessionOptions& options) const {
     }
   }
   if (options.hand_by_mouse) {
-    return refuse("a mouse leads one hand; leave --hand mouse away.");
+    return refuse("a viewer leads one hand; leave --hand away.");
   }
   if (options.hand_by_program) {
     return refuse("a program leads one hand; leave --hand topic away.");

@@ -5,9 +5,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <array>
 #include <cstdlib>
 #include <cstring>
+#include <utility>
 
 namespace thimble::session {
 
@@ -19,9 +19,12 @@ bool has_display() {
   return false;
 }
 
-driver::Result<std::unique_ptr<ViewerProcess>> ViewerProcess::start(const std::string& run) {
-  std::string program = "thimble", command = "view", name = run;
-  const std::array<char*, 4> arguments{program.data(), command.data(), name.data(), nullptr};
+driver::Result<std::unique_ptr<ViewerProcess>> ViewerProcess::start(
+    const std::string& run, std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), {"thimble", "view", run});
+  std::vector<char*> words;
+  for (std::string& argument : arguments) words.push_back(argument.data());
+  words.push_back(nullptr);
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   // A process group of its own: Ctrl-C in the run's terminal ends the run, and the viewer says so.
@@ -33,7 +36,7 @@ driver::Result<std::unique_ptr<ViewerProcess>> ViewerProcess::start(const std::s
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
   pid_t pid = 0;
   const int status =
-      posix_spawn(&pid, "/proc/self/exe", &actions, &attributes, arguments.data(), environ);
+      posix_spawn(&pid, "/proc/self/exe", &actions, &attributes, words.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
   posix_spawnattr_destroy(&attributes);
   if (status != 0) {

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "thimble/driver/result.h"
 
@@ -17,8 +18,9 @@ bool has_display();
 /// Real-time: never from the servo thread.
 class ViewerProcess {
  public:
-  /// Starts `thimble view RUN`. It stays when the run ends, and tells so.
-  static driver::Result<std::unique_ptr<ViewerProcess>> start(const std::string& run);
+  /// Starts `thimble view RUN`, with more `arguments`. It stays when the run ends, and tells so.
+  static driver::Result<std::unique_ptr<ViewerProcess>> start(
+      const std::string& run, std::vector<std::string> arguments = {});
 
   /// Returns whether a person has closed it, or a signal has ended it; one that could not open its
   /// window was not closed.

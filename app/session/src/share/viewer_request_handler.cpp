@@ -55,11 +55,12 @@ void ViewerRequestHandler::step() {
   }
 }
 
-std::unique_ptr<ViewerRequestHandler> open_viewer_requests(Session& session, ViewerChoice choice) {
+std::unique_ptr<ViewerRequestHandler> open_viewer_requests(
+    Session& session, ViewerChoice choice, const std::vector<std::string>& arguments) {
   if (session.shared() == nullptr) return nullptr;
   std::unique_ptr<ViewerProcess> viewer;
   if (opens_viewer(choice, session.real_time(), has_display(), isatty(STDERR_FILENO) != 0)) {
-    auto started = ViewerProcess::start(session.shared()->name());
+    auto started = ViewerProcess::start(session.shared()->name(), arguments);
     if (started) {
       viewer = std::move(started).value();
     } else {

@@ -2,6 +2,8 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "log/logger.h"
 #include "share/shared_run.h"
@@ -57,8 +59,9 @@ constexpr bool opens_viewer(ViewerChoice choice, bool real_time, bool display,
 }
 
 /// Opens the viewer of a session if one is asked for, or says on standard error how to watch
-/// without, and returns who serves all that come; null if the run is not shared. Real-time: never
-/// from the servo thread.
-std::unique_ptr<ViewerRequestHandler> open_viewer_requests(Session& session, ViewerChoice choice);
+/// without, and returns who serves all that come; null if the run is not shared. `arguments` are
+/// the viewer's, after its run. Real-time: never from the servo thread.
+std::unique_ptr<ViewerRequestHandler> open_viewer_requests(
+    Session& session, ViewerChoice choice, const std::vector<std::string>& arguments = {});
 
 }  // namespace thimble::session

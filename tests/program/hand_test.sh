@@ -1,0 +1,92 @@
+#!/usr/bin/env bash
+# The keyboard leads the simulated hand in the window, and the touch is heard, on a screen and a sound card in memory
+# (Debian: xvfb, xdotool, libasound2).
+source "$(dirname "$0")/expect.sh" "$@"
+unset DISPLAY WAYLAND_DISPLAY
+scene=$source_dir/tests/data/scenes/two_boxes.yaml
+me=hand$$
+
+# What does not go together is refused, with what to write instead.
+expect 2 'sound and --rumble are the window.s: add --view' "$thimble" run "$scene" --sound
+expect 2 'need real time: leave --clock away' "$thimble" run "$scene" --view --clock virtual --sound
+expect 2 'gamepad leads the simulated arm.s hand; a real arm has yours' \
+  "$thimble" run "$scene" --device auto --hand gamepad
+expect 2 'gamepad without an end needs real time' "$thimble" run "$scene" --hand gamepad --clock virtual
+
+# A recording as sound: a WAV file as long as the run, that is not silent.
+expect 0 'Recording' "$thimble" run "$scene" --record touch.h5 --no-view
+expect 0 '^touch.wav: 3000 ticks' "$thimble" export touch.h5 --sound touch.wav
+expect 0 '^288044$' stat -c %s touch.wav # 3 s of 48000 samples of 2 bytes
+expect 0 '^yes$' bash -c '[ "$(tail -c +45 touch.wav | tr -d "\0" | wc -c)" -gt 1000 ] && echo yes'
+expect 1 'touch.wav cannot be written' "$thimble" export touch.h5 --sound none/touch.wav
+
+for tool in Xvfb xdotool; do
+  command -v $tool >/dev/null || {
+    echo "NOT TESTED: the keyboard in the window, for want of $tool (as root: apt-get install xvfb xdotool)" >&2
+    finish
+  }
+done
+Xvfb -displayfd 3 -screen 0 1300x820x24 3>display.txt 2>/dev/null &
+xvfb=$!
+trap 'kill $xvfb' EXIT
+for _ in $(seq 100); do [ -s display.txt ] && break; sleep 0.1; done
+DISPLAY=:$(cat display.txt)
+export DISPLAY
+
+# wait_for SECONDS COMMAND...: until it succeeds.
+wait_for() {
+  local end=$((SECONDS + $1))
+  shift
+  until "$@" >/dev/null 2>&1; do
+    [ $SECONDS -lt $end ] || return 1
+    sleep 0.1
+  done
+}
+
+# A floor below the hand, and a card that writes what it plays into a file.
+cat >floor.yaml <<END
+name: floor
+duration: 1
+arm: $source_dir/app/arms/vintage_phantom.yaml
+objects:
+  - {name: floor, plane: {normal: [0, 0, 1]}, position: [0, 0, -0.01], stiffness: 600, damping: 1}
+hand:
+  path: [{t: 0, at: [0, 0, 0]}, {t: 1, at: [0, 0, 0]}]
+END
+cat >alsa.conf <<END
+pcm.!default {
+  type file
+  slave.pcm { type null }
+  file "$work/played.raw"
+  format raw
+}
+END
+ALSA_CONFIG_PATH=$work/alsa.conf "$thimble" run floor.yaml --hand keyboard --sound --rumble --name "$me" --record led.h5 \
+  >run.txt 2>&1 &
+run=$!
+wait_for 60 xdotool search --onlyvisible --name "Thimble: floor"
+window=$(xdotool search --onlyvisible --name "Thimble: floor" | head -1)
+xdotool windowfocus "$window" 2>/dev/null
+# Down, onto the floor, as often as it takes: the first pictures are slow where the processor draws them.
+touches() {
+  xdotool keydown Down
+  sleep 0.5
+  xdotool keyup Down
+  timeout 20 "$thimble" view "$me" --text --for 0.2 | grep -qE 'depth [0-9.]*[1-9]'
+}
+expect 0 '^touched$' bash -c "$(declare -f wait_for touches); thimble='$thimble' me='$me'; wait_for 60 touches && echo touched"
+xdotool key BackSpace
+expect 0 '' "$thimble" view "$me" --for 2 --hand keyboard --picture window.png
+expect 0 '^[0-9]{5,}$' stat -c %s window.png # a window with nothing in it takes 11 kB
+"$thimble" view "$me" --stop
+wait $run
+expect 0 '^0$' echo $?
+expect 0 'No rumble: no gamepad' cat run.txt
+expect 0 'ticks of floor' "$thimble" export led.h5 --csv led.csv
+if grep -q 'No sound: this thimble was built without ALSA' run.txt; then
+  echo "NOT TESTED: the sound card, for want of libasound2-dev." >&2
+else
+  expect 1 '' grep 'No sound' run.txt
+  expect 0 '^yes$' bash -c '[ "$(tr -d "\0" <played.raw | wc -c)" -gt 100 ] && echo yes'
+fi
+finish
