@@ -47,8 +47,8 @@ async def look(address, page, picture, stop):
         found["end"] = await tab.value("thimblePage.state()")
         found["words"] = await tab.value("document.body.innerText")
         found["forces"] = []
-        for time in (0.9, 1.8, 2.1, 4.0):  # in which the clay is touched
-            await tab.value(f"thimblePage.seek({time})")
+        for share in (0.2, 0.5, 0.7, 0.9):
+            await tab.value(f"thimblePage.seek(thimblePage.state().begin * (1 - {share}) + thimblePage.duration * {share})")
             found["forces"].append(await tab.value("thimblePage.state()"))
         await try_to_get_out(tab)
     found.update(what_went_out(tab))
