@@ -11,7 +11,7 @@ packages=(
   g++ cmake ninja-build pkg-config       # to build
   libeigen3-dev                          # vectors and matrices
   libusb-1.0-0-dev libhidapi-dev         # arms on USB
-  libboost-dev                           # the Inverse3, by its vendor's service (WebSocket)
+  libboost-dev                           # the Inverse3, by its vendor's service (WebSocket); thimble view --web
   libassimp-dev zlib1g-dev               # meshes but OFF and PLY; the unit of 3MF
   libpng-dev                             # pictures felt as heights
   libyaml-cpp-dev nlohmann-json3-dev     # scenes in, reports out

@@ -1,5 +1,6 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
+#include <cstdint>
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -9,9 +10,11 @@
 #include "cli/commands.h"
 #include "cli/complain.h"
 #include "interrupt.h"
+#include "report/page/page_libraries.h"
 #include "share/knob_order.h"
 #include "share/run_attachment.h"
 #include "share/shared_memory.h"
+#include "web/web_server.h"
 
 namespace thimble::app {
 namespace {
@@ -20,6 +23,8 @@ struct ViewOptions {
   std::string run;
   bool list = false;
   bool text = false;
+  bool web = false;
+  std::uint16_t port = 0;  // 0: one that is free
   bool follow = false;
   std::vector<std::string> turn;
   bool pause = false, resume = false, stop = false;
@@ -119,12 +124,51 @@ int tell(const ViewOptions& options) {
   return kExitInterrupted;
 }
 
+/// Shows a run in browsers on this computer.
+int serve(const ViewOptions& options) {
+  if (auto libraries = read_page_libraries(); !libraries) {
+    return complain(libraries.error(), kExitBadInput);
+  }
+  const std::atomic<bool>& stop = scene::catch_interrupts();
+  session::RunAttachment runs(options.run);
+  const session::SharedReader* watched = nullptr;
+  auto server = WebServer::listen(runs, options.port);
+  if (!server) return complain(server.error(), kExitBadInput);
+  std::printf("Open %s\n", (*server)->address().c_str());
+  std::string told;
+  const auto end =
+      std::chrono::steady_clock::now() + std::chrono::duration<double>(options.seconds);
+  int exit_code = kExitInterrupted;
+  while (!stop.load()) {
+    (*server)->step();
+    if (runs.reader() != watched) {
+      watched = runs.reader();
+      std::printf("Watching %s: %s\n", runs.name().c_str(), watched->scene().name.c_str());
+    }
+    const std::string notice = runs.notice();
+    if (!notice.empty() && notice != told) std::printf("%s\n", notice.c_str());
+    std::fflush(stdout);
+    told = notice;
+    const bool ended =
+        runs.reader() != nullptr && runs.reader()->state() == session::RunState::kEnded;
+    const bool over = options.seconds > 0 && std::chrono::steady_clock::now() >= end;
+    if ((!ended || options.follow) && !over) continue;
+    exit_code = kExitDone;
+    break;
+  }
+  (*server)->step();  // the last ticks
+  (*server)->leave(std::chrono::seconds(stop.load() ? 0 : 2));
+  return exit_code;
+}
+
 int view_run(const ViewOptions& options, const ShowWindow& show_window) {
   if (options.list) return list_runs();
   if (options.asks()) return ask(options);
   if (options.text) return tell(options);
+  if (options.web) return serve(options);
   if (!show_window) {
-    return complain({"This thimble was built without a window; use `thimble view --text`."},
+    return complain({"This thimble was built without a window; use `thimble view --text` or "
+                     "`thimble view --web`."},
                     kExitBadInput);
   }
   session::RunAttachment runs(options.run);
@@ -138,9 +182,16 @@ void add_view_command(CLI::App& app, int& exit_code, const ShowWindow& show_wind
   auto options = std::make_shared<ViewOptions>();
   command->add_option("RUN", options->run, "Name of the run; the newest if absent");
   command->add_flag("--list", options->list, "List the runs and their knobs, and leave");
-  command->add_flag("--text", options->text, "Print a line a second in place of a window");
+  CLI::Option* text =
+      command->add_flag("--text", options->text, "Print a line a second in place of a window");
+  CLI::Option* web =
+      command->add_flag("--web", options->web, "Show it in a browser on this computer")
+          ->excludes(text);
+  command->add_option("--port", options->port, "With --web: the port; one that is free if absent")
+      ->check(CLI::Range(1, 65535))
+      ->needs(web);
   command->add_flag("--follow", options->follow,
-                    "With --text: wait for the next run of that name when one ends");
+                    "With --text or --web: wait for the next run of that name when one ends");
   command->add_option("--turn", options->turn, "Turn a knob of the run, NAME=VALUE, and leave");
   CLI::Option* pause = command->add_flag("--pause", options->pause, "Pause the run, and leave");
   command->add_flag("--resume", options->resume, "Let a paused run go on, and leave")

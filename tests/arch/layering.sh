@@ -98,9 +98,9 @@ forbid app/python '(yaml|terms|recording|share|observers|report|studies|view|bri
 forbid_app() {
   forbid "app/$1" "$2" "a library above it or beside it"
 }
-forbid_app bag 'thimble/(device_sim|render|scene|session)/|(yaml|files|hand|recording|share|events|report|stability|studies|view|bringup|faces|hil|cli)/'
-forbid_app scene 'thimble/session/|(recording|share|events|report|stability|studies|view|bringup|faces|hil|cli)/'
-forbid_app session '(report|stability|studies|view|bringup|faces|hil|cli)/'
+forbid_app bag 'thimble/(device_sim|render|scene|session)/|(yaml|files|hand|recording|share|events|report|stability|studies|view|bringup|faces|hil|web|cli)/'
+forbid_app scene 'thimble/session/|(recording|share|events|report|stability|studies|view|bringup|faces|hil|web|cli)/'
+forbid_app session '(report|stability|studies|view|bringup|faces|hil|web|cli)/'
 # What a program of somebody else's includes needs nothing beside the sources; and observers of a run's
 # ticks know nothing of each other: only who registers them knows them all (run_records.h).
 forbid app/session/include '(observers|recording|share)/|[a-z_0-9]*\.h"|hdf5|yaml-cpp|fmt/' \
@@ -116,14 +116,15 @@ for observer in observers/black_box observers/dent_record observers/latest_tick 
     bad=1
   fi
 done
-forbid_app report '(stability|studies|view|bringup|faces|hil|cli)/'
-forbid_app stability '(studies|view|bringup|faces|hil|cli)/'
-forbid_app studies '(view|bringup|faces|hil|cli)/'
-forbid_app view '(report|stability|studies|bringup|faces|hil|cli)/'
-forbid_app bringup 'thimble/session/|(recording|share|events|report|stability|studies|view|faces|hil|cli)/'
-forbid_app hil '(share|events|view|faces|cli)/'
-forbid_app twin '(share|events|stability|studies|view|bringup|hil|faces|cli)/'
-forbid_app faces '(report|stability|studies|view|bringup|hil|cli)/'
+forbid_app report '(stability|studies|view|bringup|faces|hil|web|cli)/'
+forbid_app stability '(studies|view|bringup|faces|hil|web|cli)/'
+forbid_app studies '(view|bringup|faces|hil|web|cli)/'
+forbid_app view '(report|stability|studies|bringup|faces|hil|web|cli)/'
+forbid_app web '(stability|studies|view|bringup|hil|twin|faces|cli)/'
+forbid_app bringup 'thimble/session/|(recording|share|events|report|stability|studies|view|faces|hil|web|cli)/'
+forbid_app hil '(share|events|view|faces|web|cli)/'
+forbid_app twin '(share|events|stability|studies|view|bringup|hil|faces|web|cli)/'
+forbid_app faces '(report|stability|studies|view|bringup|hil|web|cli)/'
 # What a program of somebody else's loads brings no library of ours with it; and faces know the core alone.
 for part in core haply hd hdphantom dhd; do
   [ -d "app/faces/$part" ] || continue
@@ -133,10 +134,10 @@ done
 for part in core server; do
   forbid "app/faces/$part" 'faces/(haply|hd|hdphantom|dhd)/|(HD|HDU)/|d[hr]dc\.h' "a face"
 done
-for folder in bag scene session report stability studies bringup hil twin faces cli python; do
+for folder in bag scene session report web stability studies bringup hil twin faces cli python; do
   forbid "app/$folder" "$graphics" "graphics: they are app/view's"
 done
-for folder in bag scene session report stability studies bringup hil twin view faces python; do
+for folder in bag scene session report web stability studies bringup hil twin view faces python; do
   forbid "app/$folder" 'CLI/' "arguments: they are app/cli's"
 done
 

@@ -1,6 +1,7 @@
 """Drives a page in headless Chromium and says in JSON what it found: console errors, requests, what it shows.
 
-  page_browser.py CHROMIUM PAGE PICTURE TIME...     PICTURE: where a screenshot goes; TIME: s, at which the force is asked for
+  page_browser.py CHROMIUM PAGE PICTURE TIME...     PICTURE: where a screenshot goes, and beside it one of an eighth of its
+      size of the last time (PICTURE_small.png); TIME: s, at which the force is asked for
 
 Over Chromium's remote debugging, on a port of its own choice on this computer.
 """
@@ -51,8 +52,9 @@ class Tab:
             await asyncio.sleep(0.1)
         raise RuntimeError(f"never came true: {expression}")
 
-    async def picture(self, path):
-        shot = await self.call("Page.captureScreenshot", format="png")
+    async def picture(self, path, scale=1):
+        clip = {"x": 0, "y": 0, "width": 1280, "height": 960, "scale": scale}
+        shot = await self.call("Page.captureScreenshot", format="png", clip=clip)
         pathlib.Path(path).write_bytes(base64.b64decode(shot["data"]))
 
 
@@ -91,6 +93,8 @@ async def look(address, page, picture, times):
         for time in times:
             await tab.value(f"thimblePage.seek({time})")
             found["forces"].append(await tab.value("thimblePage.state()"))
+        await tab.value(DRAWN)
+        await tab.picture(picture.replace(".png", "_small.png"), 1 / 8)
 
         # It plays: time goes on by itself, pictures are drawn, and a pause holds it.
         await tab.value("thimblePage.seek(0); document.getElementById('speed').value = '0.25';"
@@ -118,9 +122,19 @@ async def look(address, page, picture, times):
         await tab.value("document.querySelector('[data-channel=depth]').click()")
         found["plotted"] = (await tab.value("thimblePage.state()"))["plotted"]
         found["words"] = await tab.value("document.body.innerText")
-        # Does anything get out? Not even if the page's own scripts were to try: its policy says no before the network is asked.
-        await tab.value("fetch('http://127.0.0.1:1/').catch(() => 0)")
-        await tab.value(DRAWN)
+        await try_to_get_out(tab)
+    found.update(what_went_out(tab))
+    return found
+
+
+async def try_to_get_out(tab):
+    """Does anything get out? Not even if the page's own scripts were to try: its policy says no before the network is asked."""
+    await tab.value("fetch('http://127.0.0.1:1/').catch(() => 0)")
+    await tab.value(DRAWN)
+
+
+def what_went_out(tab):
+    found = {}
     asked = [event["params"] for event in tab.events if event.get("method") == "Network.requestWillBeSent"]
     tried = {one["requestId"] for one in asked if "127.0.0.1:1/" in one["request"]["url"]}
     refused = {event["params"]["requestId"] for event in tab.events
@@ -132,8 +146,8 @@ async def look(address, page, picture, times):
     return found
 
 
-def main():
-    chromium, page, picture, *times = sys.argv[1:]
+def in_chromium(chromium, work):
+    """Starts Chromium without a screen and gives what `work` finds in its first tab, whose address that gets."""
     with tempfile.TemporaryDirectory() as home:
         browser = subprocess.Popen(
             [chromium, "--headless=new", "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader",
@@ -151,11 +165,15 @@ def main():
             # What it says from here on nobody reads; the pipe must not fill.
             threading.Thread(target=lambda: [None for _ in browser.stderr], daemon=True).start()
             open_ones = json.load(urllib.request.urlopen(f"http://127.0.0.1:{port}/json"))
-            address = next(one["webSocketDebuggerUrl"] for one in open_ones if one["type"] == "page")
-            found = asyncio.run(look(address, pathlib.Path(page).resolve().as_uri(), picture, times))
+            return asyncio.run(work(next(one["webSocketDebuggerUrl"] for one in open_ones if one["type"] == "page")))
         finally:
             os.killpg(browser.pid, signal.SIGTERM)
             browser.wait()
+
+
+def main():
+    chromium, page, picture, *times = sys.argv[1:]
+    found = in_chromium(chromium, lambda tab: look(tab, pathlib.Path(page).resolve().as_uri(), picture, times))
     print(json.dumps(found, indent=1))
 
 

@@ -56,4 +56,30 @@ browse() {
 browse float/index.html float.h5 0.8005 3.6004 5.8006
 browse float.html float.h5 0.8005 3.6004 5.8006
 browse clay/index.html clay.h5 0.9003 1.8001 3.6008
+# What they look like: `cp WORK/clay/index_small.png tests/data/shots/page_clay.png` after a change that is meant.
+expect 0 '^the same' /usr/bin/python3 "$here/picture_near.py" "$source_dir/tests/data/shots/page_float.png" float/index_small.png
+expect 0 '^the same' /usr/bin/python3 "$here/picture_near.py" "$source_dir/tests/data/shots/page_clay.png" clay/index_small.png
+
+# The same live: it goes along, holds, ends with the run, and its forces are ticks of the run.
+# The hand stays in the clay, so that there is something to be felt however long the browser takes.
+sed "/t: 8.0/d; s#arm: .*#arm: vintage_phantom#; s#clay_ball.off#$scenes/clay_ball.off#" "$scenes/clay.yaml" >pressed.yaml
+"$thimble" run pressed.yaml --clock wall --duration 300 --name "page_$$" --no-view --record live.h5 >run.txt 2>&1 &
+run=$!
+timeout 300 "$thimble" view "page_$$" --web >view.txt 2>&1 &
+viewer=$!
+for _ in $(seq 300); do grep -q '^Watching' view.txt && break; sleep 0.1; done
+address=$(sed -n 's/^Open //p' view.txt)
+expect 0 '^http://127\.0\.0\.1:[0-9]+/\?token=[0-9a-f]{32}$' echo "$address"
+if /usr/bin/python3 "$here/live_page_browser.py" "$(command -v chromium)" "$address" live.png \
+  "$thimble" view "page_$$" --stop >live.json; then
+  wait "$run"
+  "$thimble" export live.h5 --csv live.csv >/dev/null
+  expect 0 '^as it should be$' /usr/bin/python3 "$here/live_page_check.py" live.json live.csv "$address"
+else
+  echo "FAILED: the browser did not get through the live page"
+  failures=$((failures + 1))
+  kill -INT "$run"
+fi
+wait "$viewer"
+expect 0 '^0$' echo $?
 finish

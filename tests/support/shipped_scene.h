@@ -13,9 +13,10 @@ namespace thimble::support {
 
 /// Opens a scene that comes with the program, on the virtual clock; fails the test if that cannot
 /// be done.
-inline std::unique_ptr<session::Session> open_shipped(const std::string& name) {
+inline std::unique_ptr<session::Session> open_shipped(const std::string& name,
+                                                      const session::SessionOptions& options = {}) {
   auto opened = session::Session::open(
-      std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/scenes" / (name + ".yaml"), {});
+      std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/scenes" / (name + ".yaml"), options);
   if (!opened) {
     ADD_FAILURE() << opened.error().message;
     return nullptr;

@@ -63,6 +63,7 @@ Json about(const PageTouch& touch, PageBlock& block) {
   json["objects"] = page_objects(touch, block);
   json["bodies"] = page_bodies(touch, block);
   json["dents"] = page_dents(touch, block);
+  if (draws_all(touch.scene)) json["shapes"] = page_shapes(touch.shapes, block);
   json["arms"] = Json::array();
   for (std::size_t i = 0; i < touch.arms.size(); ++i) {
     json["arms"].push_back(page_arm(touch, i, block));
@@ -73,7 +74,7 @@ Json about(const PageTouch& touch, PageBlock& block) {
 
 }  // namespace
 
-driver::Result<void> write_page(const PageTouch& touch, const std::filesystem::path& file) {
+driver::Result<std::string> page_text(const PageTouch& touch, const PageSource* source) {
   const auto libraries = read_page_libraries();
   if (!libraries) return libraries.error();
   std::string scripts, styles, licences;
@@ -84,16 +85,28 @@ driver::Result<void> write_page(const PageTouch& touch, const std::filesystem::p
         "<h3>" + html_text(library.name) + "</h3>\n<pre>" + html_text(library.licence) + "</pre>\n";
   }
   PageBlock block;
-  const Json json = about(touch, block);
-  return write_text(filled(kPageHtml, {{"TITLE", html_text(touch.title)},
-                                       {"LIBRARY_STYLES", styles},
-                                       {"STYLE", std::string(kPageStyle)},
-                                       {"LICENCES", licences},
-                                       {"ABOUT", json_text(json)},
-                                       {"NUMBERS", base64(block.bytes())},
-                                       {"LIBRARIES", scripts},
-                                       {"SCRIPT", script_text(std::string(kPageScript))}}),
-                    file);
+  Json json = about(touch, block);
+  std::string connect;
+  if (source != nullptr) {
+    json["live"] = {{"rows", source->rows}};
+    const std::string port = std::to_string(source->port);
+    connect = "; connect-src ws://127.0.0.1:" + port + " ws://localhost:" + port;
+  }
+  return filled(kPageHtml, {{"TITLE", html_text(touch.title)},
+                            {"CONNECT", connect},
+                            {"LIBRARY_STYLES", styles},
+                            {"STYLE", std::string(kPageStyle)},
+                            {"LICENCES", licences},
+                            {"ABOUT", json_text(json)},
+                            {"NUMBERS", base64(block.bytes())},
+                            {"LIBRARIES", scripts},
+                            {"SCRIPT", script_text(std::string(kPageScript))}});
+}
+
+driver::Result<void> write_page(const PageTouch& touch, const std::filesystem::path& file) {
+  const auto text = page_text(touch);
+  if (!text) return text.error();
+  return write_text(*text, file);
 }
 
 }  // namespace thimble::app

@@ -12,6 +12,7 @@
 #include "report/page/body_trace.h"
 #include "report/page/dent_trace.h"
 #include "report/page/page_marks.h"
+#include "report/page/shape_steps.h"
 #include "share/shared_scene.h"
 #include "thimble/driver/result.h"
 #include "thimble/driver/tick_record.h"
@@ -46,6 +47,7 @@ struct PageTouch {
   std::vector<PageArm> arms{};   ///< As many as the scene has, in its order.
   const BodyTrace* bodies = nullptr;  ///< Where objects were that move; null if none does.
   const DentTrace* dents = nullptr;   ///< How objects were dented; null if none can be.
+  std::vector<ShapeStep> shapes{};    ///< How objects came to that, in s from the first tick.
   std::vector<PageShape> left{};      ///< What objects were shaped to.
 };
 
@@ -53,6 +55,17 @@ struct PageTouch {
 inline constexpr std::size_t kPageRowsMost = 60'001;
 /// Triangles of all objects that a page draws. [chosen: 2.5 MB]
 inline constexpr std::size_t kPageTrianglesMost = 120'000;
+
+/// Where a page that is live gets its ticks from.
+struct PageSource {
+  std::uint16_t port = 0;  ///< Of this computer (127.0.0.1), WebSocket.
+  std::size_t rows = 0;    ///< Ticks of all arms that it keeps.
+};
+
+/// Returns a page that plays a touch in a browser as text: one file, which loads nothing. With
+/// `source` it begins with what `touch` has, is led on from there, and asks nobody else. The error
+/// says what is missing on this system. Real-time: never from the servo thread.
+driver::Result<std::string> page_text(const PageTouch& touch, const PageSource* source = nullptr);
 
 /// Writes a page that plays a touch in a browser: one file, which loads nothing. The error says
 /// what is missing on this system, or which file cannot be written. Real-time: never from the servo

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -49,6 +50,31 @@ class EventKeeper final : public session::TickObserver {
   session::DeviceCounters counters_;
   session::SpscRing<session::TickEvent> ring_{kEventsMost};
   session::EventWatch watch_;
+};
+
+/// What the ticks of a run tell as they come of what `marks_of_ticks` tells at its end; the oldest
+/// marks are forgotten. Real-time: never from the servo thread.
+class MarksAsTheyCome {
+ public:
+  /// Marks that are kept. [chosen: what a page lists]
+  static constexpr std::size_t kMost = 500;
+
+  /// Watches ticks due every `period_ns`.
+  explicit MarksAsTheyCome(std::int64_t period_ns);
+  ~MarksAsTheyCome();
+
+  /// Takes the next ticks. Returns the numbers of the marks that are new or that have changed; they
+  /// count from 0 on.
+  std::vector<std::uint64_t> take(std::span<const driver::TickRecord> ticks);
+  /// Returns a mark; null if it is forgotten.
+  const PageMark* mark(std::uint64_t number) const noexcept;
+  /// Returns the number of the oldest mark that is kept, and one above that of the newest.
+  std::uint64_t oldest() const noexcept;
+  std::uint64_t end() const noexcept;  ///< As above.
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
 };
 
 /// Returns what the ticks of a recording tell of the same: the arm's stages, faults, ticks missed,

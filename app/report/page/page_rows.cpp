@@ -74,7 +74,7 @@ std::vector<std::size_t> rows_kept(std::span<const TickRecord> ticks, std::size_
 }
 
 void add_rows(PageBlock& block, const std::string& prefix, std::span<const TickRecord> ticks,
-              std::span<const std::size_t> kept) {
+              std::span<const std::size_t> kept, std::int64_t begin_ns) {
   std::vector<double> time;
   std::vector<std::uint32_t> number;
   std::vector<float> tip, proxy, sent, asked, depth, period, work, speed;
@@ -85,7 +85,7 @@ void add_rows(PageBlock& block, const std::string& prefix, std::span<const TickR
   };
   for (const std::size_t i : kept) {
     const TickRecord& tick = ticks[i];
-    time.push_back(1e-9 * static_cast<double>(tick.time_ns - ticks.front().time_ns));
+    time.push_back(1e-9 * static_cast<double>(tick.time_ns - begin_ns));
     number.push_back(static_cast<std::uint32_t>(tick.tick));
     push(tip, tick.p_WT);
     push(proxy, tick.in_contact ? tick.p_WP : tick.p_WT);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -18,10 +19,12 @@ namespace thimble::app {
 std::vector<std::size_t> rows_kept(std::span<const driver::TickRecord> ticks,
                                    std::size_t rows_most);
 
-/// Adds the ticks `kept` to a page under the names PREFIX + t (s from the first tick), tick, tip,
-/// proxy, sent, asked, depth, period, work, speed, object, touching; SI units, W. The period is the
-/// time since the tick before, kept or not. Real-time: never from the servo thread.
+/// Adds the ticks `kept` to a page under the names PREFIX + t (s from `begin_ns` on the loop's
+/// clock), tick, tip, proxy, sent, asked, depth, period, work, speed, object, touching; SI units,
+/// W. The period is the time since the tick before, kept or not. Real-time: never from the servo
+/// thread.
 void add_rows(PageBlock& block, const std::string& prefix,
-              std::span<const driver::TickRecord> ticks, std::span<const std::size_t> kept);
+              std::span<const driver::TickRecord> ticks, std::span<const std::size_t> kept,
+              std::int64_t begin_ns);
 
 }  // namespace thimble::app

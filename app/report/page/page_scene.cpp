@@ -35,6 +35,8 @@ const char* name_of(session::SharedKind kind) {
   return "mesh";
 }
 
+}  // namespace
+
 render::TriangleMesh mesh_of(const SharedScene& scene, const SharedScene::Object& object) {
   render::TriangleMesh mesh;
   const auto vertices = std::span(scene.vertices).subspan(object.first_vertex, object.vertex_count);
@@ -48,6 +50,14 @@ render::TriangleMesh mesh_of(const SharedScene& scene, const SharedScene::Object
   }
   return mesh;
 }
+
+bool draws_all(const SharedScene& scene) {
+  std::size_t all = 0;
+  for (const SharedScene::Object& object : scene.objects) all += object.triangle_count;
+  return all <= kPageTrianglesMost;
+}
+
+namespace {
 
 // Whether it stands for a plane, which has no end.
 bool is_flat(const render::TriangleMesh& mesh) {
@@ -83,9 +93,10 @@ void add_mesh(PageBlock& block, const std::string& prefix, const render::Triangl
   block.add(prefix + "corners", corners);
 }
 
-// The bars of an arm, about 60 times a second: `lines` says how many points each line has.
+}  // namespace
+
 void add_bars(const SharedScene::Arm& arm, std::span<const driver::TickRecord> ticks,
-              const std::string& prefix, Json& json, PageBlock& block) {
+              std::int64_t begin_ns, const std::string& prefix, Json& json, PageBlock& block) {
   std::vector<double> times;
   std::vector<float> points;
   std::vector<std::size_t> lines;
@@ -107,7 +118,7 @@ void add_bars(const SharedScene::Arm& arm, std::span<const driver::TickRecord> t
     }
     if (times.empty()) lines = now;
     if (now != lines) continue;  // out of reach for once: there is nothing to draw
-    times.push_back(1e-9 * static_cast<double>(tick.time_ns - ticks.front().time_ns));
+    times.push_back(1e-9 * static_cast<double>(tick.time_ns - begin_ns));
     points.insert(points.end(), own.begin(), own.end());
   }
   json["lines"] = lines;
@@ -115,7 +126,24 @@ void add_bars(const SharedScene::Arm& arm, std::span<const driver::TickRecord> t
   block.add(prefix + "bars", points);
 }
 
-}  // namespace
+Json page_mark(const PageMark& mark, std::int64_t begin_ns) {
+  return {{"begin", 1e-9 * static_cast<double>(mark.begin_ns - begin_ns)},
+          {"end", 1e-9 * static_cast<double>(mark.end_ns - begin_ns)},
+          {"kind", name_of(mark.kind)},
+          {"words", mark.words}};
+}
+
+Json page_figures(std::span<const Figure> figures) {
+  Json json = Json::array();
+  for (const Figure& figure : figures) {
+    json.push_back({{"name", figure.name},
+                    {"value", figure.value},
+                    {"unit", figure.unit},
+                    {"goal", figure.goal},
+                    {"met", figure.met()}});
+  }
+  return json;
+}
 
 Json page_objects(const PageTouch& touch, PageBlock& block) {
   Json objects = Json::array();
@@ -171,9 +199,7 @@ Json page_bodies(const PageTouch& touch, PageBlock& block) {
 }
 
 Json page_dents(const PageTouch& touch, PageBlock& block) {
-  std::size_t all = 0;
-  for (const SharedScene::Object& object : touch.scene.objects) all += object.triangle_count;
-  if (touch.dents == nullptr || touch.dents->frames().empty() || all > kPageTrianglesMost ||
+  if (touch.dents == nullptr || touch.dents->frames().empty() || !draws_all(touch.scene) ||
       touch.arms.empty() || touch.arms.front().ticks.empty()) {
     return {};
   }
@@ -214,26 +240,17 @@ Json page_arm(const PageTouch& touch, std::size_t number, PageBlock& block) {
   const SharedScene::Arm& drawn = number == 0 ? touch.scene.arm : touch.scene.more_arms[number - 1];
   const std::string prefix = "arm" + std::to_string(number) + ".";
   const auto kept = rows_kept(arm.ticks, kPageRowsMost / touch.arms.size());
-  add_rows(block, prefix, arm.ticks, kept);
+  const std::int64_t begin = arm.ticks.empty() ? 0 : arm.ticks.front().time_ns;
+  add_rows(block, prefix, arm.ticks, kept, begin);
   Json json{{"name", drawn.in_scene},   {"arm", drawn.name},         {"device", drawn.device},
             {"limit", arm.force_limit}, {"ticks", arm.ticks.size()}, {"rows", kept.size()}};
-  add_bars(drawn, arm.ticks, prefix, json, block);
+  for (const Eigen::Vector3d& corner : {drawn.min_W, drawn.max_W}) {
+    json["workspace"].push_back({corner.x(), corner.y(), corner.z()});
+  }
+  add_bars(drawn, arm.ticks, begin, prefix, json, block);
   json["marks"] = Json::array();
-  const std::int64_t begin = arm.ticks.empty() ? 0 : arm.ticks.front().time_ns;
-  for (const PageMark& mark : arm.marks) {
-    json["marks"].push_back({{"begin", 1e-9 * static_cast<double>(mark.begin_ns - begin)},
-                             {"end", 1e-9 * static_cast<double>(mark.end_ns - begin)},
-                             {"kind", name_of(mark.kind)},
-                             {"words", mark.words}});
-  }
-  json["figures"] = Json::array();
-  for (const Figure& figure : arm.figures) {
-    json["figures"].push_back({{"name", figure.name},
-                               {"value", figure.value},
-                               {"unit", figure.unit},
-                               {"goal", figure.goal},
-                               {"met", figure.met()}});
-  }
+  for (const PageMark& mark : arm.marks) json["marks"].push_back(page_mark(mark, begin));
+  json["figures"] = page_figures(arm.figures);
   return json;
 }
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "report/page/page.h"
+#include "report/page/page_scene.h"
 #include "run_records.h"
 #include "setup.h"
 #include "share/describe_scene.h"
@@ -34,6 +35,30 @@ std::vector<PageShape> shapes_left(const scene::Scene& scene, const scene::Scene
     left.push_back({.object = i, .mesh = objects.mesh_now(static_cast<int>(i))});
   }
   return left;
+}
+
+// What looks at the objects that are shaped for good; null if there are none.
+std::unique_ptr<ShapeTrace> trace_shapes(const scene::Scene& scene,
+                                         const scene::SceneObjects& objects) {
+  std::vector<ShapeTrace::Shaped> shaped;
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    if (!scene.objects[i].body.shape.named()) continue;
+    shaped.push_back({.object = i,
+                      .shape = objects.touch().object(i).shape(),
+                      .vertices = objects.place(i + 1).vertex - objects.place(i).vertex});
+  }
+  if (shaped.empty()) return nullptr;
+  return std::make_unique<ShapeTrace>(std::move(shaped));
+}
+
+std::vector<ShapeStep> steps_of(ShapeTrace* trace, const session::SharedScene& scene,
+                                std::span<const driver::TickRecord> ticks) {
+  if (trace == nullptr || ticks.empty()) return {};
+  std::vector<render::TriangleMesh> first;
+  for (const ShapeTrace::Shaped& one : trace->shaped()) {
+    first.push_back(mesh_of(scene, scene.objects[one.object]));
+  }
+  return trace->steps(std::move(first), ticks.front().time_ns);
 }
 
 // What the ticks of a recording sum up to.
@@ -66,6 +91,8 @@ RunPage::RunPage(session::Session& session) : session_(session) {
     dents_ = std::make_unique<DentTrace>(now->drawn());
     (void)session.add_observer(*dents_);
   }
+  shapes_ = trace_shapes(setup.scene(), setup.objects());
+  if (shapes_) (void)session.add_observer(*shapes_);
   for (std::size_t arm = 0; arm < session.arms(); ++arm) {
     events_.push_back(std::make_unique<EventKeeper>(session.device(arm), setup.period_ns()));
     (void)session.add_observer(*events_.back(), arm);
@@ -92,6 +119,7 @@ driver::Result<void> RunPage::write(const driver::RealTimeGrant& grant,
                           .figures = session::figures_of(session_.figures(grant, arm))});
   }
   touch.scene = described(setup.scene(), setup.objects(), devices);
+  touch.shapes = steps_of(shapes_.get(), touch.scene, touch.arms.front().ticks);
   return write_page(touch, file);
 }
 
@@ -102,6 +130,7 @@ void ReplayPage::begin(const scene::Scene& scene,
   if (!objects_->moving().empty()) {
     bodies_ = std::make_unique<BodyTrace>(objects_->touch(), objects_->moving(), 0);
   }
+  shapes_ = trace_shapes(scene, *objects_);
   const auto dents = [](const scene::SceneObject& object) { return object.body.dent.has_value(); };
   if (std::any_of(scene.objects.begin(), scene.objects.end(), dents)) {
     dent_now_ = std::make_unique<session::DentRecord>(
@@ -114,6 +143,7 @@ void ReplayPage::take(const driver::TickRecord& tick) {
   if (bodies_) bodies_->take(tick);
   if (dent_now_) dent_now_->take(tick);
   if (dents_) dents_->take(tick);
+  if (shapes_) shapes_->take(tick);
 }
 
 driver::Result<void> ReplayPage::write(std::span<const session::Replay> replays,
@@ -148,6 +178,7 @@ driver::Result<void> ReplayPage::write(std::span<const session::Replay> replays,
                           .figures = figures_of_ticks(felt.ticks, order[arm]->compared)});
   }
   touch.scene = described(scene_, *objects_, devices);
+  touch.shapes = steps_of(shapes_.get(), touch.scene, touch.arms.front().ticks);
   return write_page(touch, file);
 }
 

@@ -10,6 +10,7 @@
 #include "report/page/body_trace.h"
 #include "report/page/dent_trace.h"
 #include "report/page/page_marks.h"
+#include "report/page/shape_trace.h"
 #include "thimble/driver/real_time.h"
 #include "thimble/driver/result.h"
 #include "thimble/session/session.h"
@@ -30,8 +31,9 @@ class RunPage {
 
  private:
   session::Session& session_;
-  std::unique_ptr<BodyTrace> bodies_;  // null if nothing moves
-  std::unique_ptr<DentTrace> dents_;   // null if nothing dents
+  std::unique_ptr<BodyTrace> bodies_;   // null if nothing moves
+  std::unique_ptr<DentTrace> dents_;    // null if nothing dents
+  std::unique_ptr<ShapeTrace> shapes_;  // null if nothing is shaped for good
   std::vector<std::unique_ptr<EventKeeper>> events_;
 };
 
@@ -52,6 +54,7 @@ class ReplayPage final : public session::ReplayWatch {
   std::unique_ptr<BodyTrace> bodies_;              // null if nothing moves
   std::unique_ptr<session::DentRecord> dent_now_;  // null if nothing dents, as the next
   std::unique_ptr<DentTrace> dents_;
+  std::unique_ptr<ShapeTrace> shapes_;  // null if nothing is shaped for good
 };
 
 }  // namespace thimble::app

@@ -153,7 +153,7 @@ TEST(PageRows, AreTheTicksAsTheyWere) {
   const auto ticks = lively_run(40'000);
   const auto kept = rows_kept(ticks, 3000);
   PageBlock block;
-  add_rows(block, "arm0.", ticks, kept);
+  add_rows(block, "arm0.", ticks, kept, ticks.front().time_ns);
   const auto time = numbers_of<double>(block, "arm0.t");
   const auto number = numbers_of<std::uint32_t>(block, "arm0.tick");
   const auto tip = numbers_of<float>(block, "arm0.tip");

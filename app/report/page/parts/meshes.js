@@ -50,19 +50,19 @@ function meshGeometry(vertices, corners, crease) {
   return geometry;
 }
 
-// Returns the path of an arm's tip as a tube coloured by force; where it touches, of its point on the
-// surface. `rows` says to which tick each ring of the tube belongs.
-function pathTube(arm, step, radius) {
+// Returns the path of an arm's tip, over its ticks from row `begin` to `end`, as a tube coloured by force;
+// where it touches, of its point on the surface. `times` says to which tick each ring of the tube belongs.
+function pathTube(arm, begin, end, step, radius) {
   const kSides = 6;
   const rows = [];
   const forces = [];
   let most = 0;
   const at = i => new THREE.Vector3(arm.proxy[3 * i], arm.proxy[3 * i + 1], arm.proxy[3 * i + 2]);
   let last = null;
-  for (let i = 0; i < arm.t.length; ++i) {
+  for (let i = begin; i < end; ++i) {
     most = Math.max(most, arm.touching[i] ? arm.force[i] : 0);
     const p = at(i);
-    if (last && p.distanceTo(last) < step && i + 1 < arm.t.length) continue;
+    if (last && p.distanceTo(last) < step && i + 1 < end) continue;
     last = p;
     rows.push(i);
     forces.push(most);
@@ -100,5 +100,54 @@ function pathTube(arm, step, radius) {
   geometry.setAttribute('normal', new THREE.BufferAttribute(normals, 3));
   geometry.setAttribute('color', new THREE.BufferAttribute(colours, 3));
   geometry.setIndex(corners);
-  return {geometry, rows, perRing: 6 * kSides};
+  return {geometry, times: rows.map(i => arm.t[i]), perRing: 6 * kSides};
+}
+
+// The path of an arm: pieces of a tube, of which the last one grows while the run goes on and the oldest go
+// with their ticks. What is over is drawn solid, what is to come thin.
+function makePath(arm, step, radius) {
+  const kPiece = 1000;  // ticks, where the run goes on; of a run that is over there is one piece
+  const solid = new THREE.MeshPhongMaterial({vertexColors: THREE.VertexColors, shininess: 10});
+  const thin = new THREE.MeshPhongMaterial(
+      {vertexColors: THREE.VertexColors, shininess: 10, transparent: true, opacity: 0.3, depthWrite: false});
+  const path = {group: new THREE.Group()};
+  const pieces = [];
+  let scale = forceScale;
+  const rowOf = t => (arm.t.length > 0 && t >= arm.t[0] ? placeOf(arm.t, t) : 0);
+
+  function remove(piece) {
+    path.group.remove(piece.past, piece.ahead);
+    piece.past.geometry.dispose();
+    piece.ahead.geometry.dispose();
+  }
+  function add(begin, end, closed) {
+    const tube = pathTube(arm, begin, end, step, radius);
+    const piece = {tube, begin: arm.t[begin], end: arm.t[end - 1], closed};
+    piece.past = new THREE.Mesh(tube.geometry, solid);
+    piece.ahead = new THREE.Mesh(tube.geometry.clone(), thin);
+    path.group.add(piece.past, piece.ahead);
+    pieces.push(piece);
+  }
+  path.grow = () => {
+    while (pieces.length > 0 && (scale !== forceScale || arm.t.length === 0 || pieces[0].end < arm.t[0])) remove(pieces.shift());
+    scale = forceScale;
+    if (pieces.length > 0 && !pieces[pieces.length - 1].closed) remove(pieces.pop());
+    let begin = pieces.length > 0 ? rowOf(pieces[pieces.length - 1].end) : 0;
+    while (begin + 1 < arm.t.length) {
+      const end = about.live ? Math.min(arm.t.length, begin + kPiece) : arm.t.length;
+      add(begin, end, end - begin === kPiece);
+      begin = end - 1;
+    }
+  };
+  path.show = (t, showAhead) => {
+    for (const piece of pieces) {
+      const rings = t < piece.begin ? 0 : t >= piece.end ? Infinity : placeOf(piece.tube.times, t);
+      piece.past.visible = rings > 0;
+      piece.past.geometry.setDrawRange(0, rings * piece.tube.perRing);
+      piece.ahead.visible = showAhead && rings < Infinity;
+      if (piece.ahead.visible) piece.ahead.geometry.setDrawRange(rings * piece.tube.perRing, Infinity);
+    }
+  };
+  path.grow();
+  return path;
 }

@@ -2,18 +2,22 @@
 
 // What the page tells (`about`), and its numbers: typed arrays over one block of bytes, by name.
 const about = JSON.parse(document.getElementById('about').textContent);
-const numbers = (() => {
-  const types = {
-    f64: Float64Array, f32: Float32Array, u32: Uint32Array, u16: Uint16Array, i16: Int16Array,
-    u8: Uint8Array
+const kTypes = {
+  f64: Float64Array, f32: Float32Array, u32: Uint32Array, u16: Uint16Array, i16: Int16Array,
+  u8: Uint8Array
+};
+// Returns what gives arrays by name: `arrays` says where each lies, from `offset` of a buffer on.
+function arraysOf(arrays, buffer, offset) {
+  return name => {
+    const array = arrays[name];
+    return array ? new kTypes[array.type](buffer, offset + array.offset, array.count) : null;
   };
+}
+const numbers = (() => {
   const raw = atob(document.getElementById('numbers').textContent);
   const bytes = new Uint8Array(raw.length);
   for (let i = 0; i < raw.length; ++i) bytes[i] = raw.charCodeAt(i);
-  return name => {
-    const array = about.arrays[name];
-    return array ? new types[array.type](bytes.buffer, array.offset, array.count) : null;
-  };
+  return arraysOf(about.arrays, bytes.buffer, 0);
 })();
 
 // Returns the last place of a rising array that is not above `t`; 0 if all are.
@@ -40,14 +44,16 @@ function roundUp(value) {
   return 10 * power;
 }
 
+// The columns of an arm's ticks, with how many numbers a tick has in each.
+const kColumns = {
+  t: 1, tick: 1, tip: 3, proxy: 3, sent: 3, asked: 1, depth: 1, period: 1, work: 1, speed: 1,
+  object: 1, touching: 1
+};
 // The ticks of one arm, column by column.
 function armOf(number) {
   const arm = Object.assign({}, about.arms[number]);
   const column = name => numbers('arm' + number + '.' + name);
-  for (const name of ['t', 'tick', 'tip', 'proxy', 'sent', 'asked', 'depth', 'period', 'work',
-                      'speed', 'object', 'touching']) {
-    arm[name] = column(name);
-  }
+  for (const name of Object.keys(kColumns)) arm[name] = column(name);
   arm.barTimes = column('bar_t');
   arm.bars = column('bars');
   arm.force = new Float32Array(arm.t.length);
@@ -59,8 +65,9 @@ function armOf(number) {
   return arm;
 }
 const arms = about.arms.map((_, number) => armOf(number));
-const duration = Math.max(0.001, ...arms.map(arm => (arm.t.length ? arm.t[arm.t.length - 1] : 0)));
-const forceScale = roundUp(Math.max(...arms.map(arm => arm.forceMost)));
+// The time that the page shows, s; where the run goes on both ends do too.
+const span = {begin: 0, end: Math.max(0.001, ...arms.map(arm => (arm.t.length ? arm.t[arm.t.length - 1] : 0)))};
+let forceScale = roundUp(Math.max(...arms.map(arm => arm.forceMost)));
 
 // Force as a colour: none is grey, then light to dark, apart for colour-blind eyes too.
 const kForceStops = [[0.98, 0.82, 0.30], [0.95, 0.56, 0.17], [0.84, 0.25, 0.05], [0.38, 0.03, 0.12]];

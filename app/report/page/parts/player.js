@@ -1,9 +1,9 @@
 // Time: plays, pauses, seeks, and tells stage, plots and strip.
 (() => {
-  // `fresh`: nobody has gone anywhere yet.
-  const player = {t: 0, arm: 0, speed: 1, playing: false, fresh: true};
+  // `fresh`: nobody has gone anywhere yet; `following`: of a run that goes on, the newest is shown.
+  const player = {t: 0, arm: 0, speed: 1, playing: false, fresh: true, following: Boolean(about.live)};
   const byId = id => document.getElementById(id);
-  let stage, plots, strip;
+  let stage, plots, strip, live;
   const contactsOf = arms.map(() => null);
   // When an arm touches; gaps shorter than 20 ms are closed, as the report does.
   player.contacts = () => {
@@ -19,8 +19,14 @@
     }
     return contactsOf[player.arm] = found;
   };
-  player.window = () => (plots ? plots.window : [0, duration]);
-  player.windowChanged = () => { if (strip) strip.paint(); };
+  player.window = () => (plots ? plots.window : [span.begin, span.end]);
+  // How long a part the plots show of a run that goes on, s; who zooms chooses another.
+  let shownLast = 10;
+  let sliding = false;
+  player.windowChanged = ([from, to]) => {
+    if (about.live && !sliding) shownLast = Math.max(0.01, to - from);
+    if (strip) strip.paint();
+  };
 
   function show() {
     stage.show(player.t);
@@ -28,19 +34,37 @@
     plots.cursor(player.t);
     strip.paint();
     showReadout(player);
-    byId('clock').textContent = player.t.toFixed(3) + ' / ' + duration.toFixed(3) + ' s';
+    byId('clock').textContent = player.t.toFixed(3) + ' / ' + span.end.toFixed(3) + ' s';
   }
   player.seek = t => {
-    player.t = Math.max(0, Math.min(duration, t));
+    player.t = Math.max(span.begin, Math.min(span.end, t));
     player.fresh = false;
+    if (player.following) follow(false);
     show();
   };
+  function showPlay() {
+    byId('play').textContent = player.playing ? 'Pause' : player.following ? 'Hold' : 'Play';
+    byId('now').disabled = player.following || (live && live.state === 'ended');
+    if (live) showLive(live, player.following);
+  }
   player.play = on => {
-    if (on && (player.fresh || player.t >= duration)) player.seek(0);
+    if (on && (player.fresh || player.t >= span.end)) player.seek(span.begin);
     player.playing = on;
-    byId('play').textContent = on ? 'Pause' : 'Play';
+    showPlay();
     before = null;
   };
+  // Of a run that goes on: goes along with it, or stays where it is.
+  function follow(on) {
+    player.following = on;
+    if (on) {
+      player.playing = false;
+      player.t = span.end;
+      slow = 0;
+    }
+    showPlay();
+  }
+  player.now = () => follow(true);
+
   // Goes by rows of the page: a tick, unless the run was longer than the page shows.
   player.step = rows => {
     const times = arms[player.arm].t;
@@ -50,12 +74,38 @@
   };
 
   let before = null;
+  let slow = 0;  // when what takes long was drawn last
+  let grown = false;
+  // What has come of a run that goes on: the scene at once, plots and lists a few times a second.
+  function showGrown(now) {
+    grown = false;
+    stage.grow();
+    if (player.following) player.t = span.end;
+    player.t = Math.max(span.begin, player.t);
+    if (now - slow > 200 || live.state === 'ended') {
+      slow = now;
+      contactsOf.fill(null);
+      showScale();
+      if (live.marks || live.figures) showSide(player);
+      live.marks = live.figures = false;
+      sliding = true;
+      if (player.following) plots.setWindow(span.end - shownLast, span.end);
+      sliding = false;
+      strip.forget();
+    }
+    if (live.state === 'ended' && player.following) follow(false);
+    showLive(live, player.following);
+    show();
+  }
   function frame(now) {
+    if (grown) showGrown(now);
     if (player.playing) {
       const t = player.t + (before === null ? 0 : Math.min(0.25, (now - before) * 1e-3) * player.speed);
       before = now;
       player.seek(t);
-      if (player.t >= duration) player.play(false);
+      if (player.t < span.end) return requestAnimationFrame(frame);
+      player.play(false);
+      if (about.live) follow(true);
     } else {
       stage.draw();
     }
@@ -87,7 +137,9 @@
     byId('scale-most').textContent = +forceScale.toPrecision(3) + ' N';
   }
 
+  let begun = false;
   function begin() {
+    begun = true;
     byId('title').textContent = about.title;
     byId('subtitle').textContent = about.subtitle;
     byId('subtitle').title = about.subtitle;
@@ -112,11 +164,17 @@
       if (about.objects.some(object => object.left)) addChoice('left', 'as it was left', false);
       textIn(byId('stage-choices'), 'span', 'grid ' + +(1e3 * stage.cell).toPrecision(2) + ' mm').style.color = '#616e7c';
     }
+    sliding = true;
     plots = makePlots(byId('plots'), player);
     strip = makeStrip(byId('strip'), player);
     plots.layOut();
+    sliding = false;
 
-    byId('play').addEventListener('click', () => player.play(!player.playing));
+    byId('play').addEventListener('click', () => {
+      if (player.following) player.seek(player.t);
+      else player.play(!player.playing);
+    });
+    byId('now').addEventListener('click', player.now);
     byId('speed').addEventListener('change', event => { player.speed = Number(event.target.value); });
     byId('arm').addEventListener('change', event => {
       player.arm = Number(event.target.value);
@@ -135,24 +193,44 @@
       const steps = {ArrowLeft: -1, ArrowRight: 1, PageUp: -100, PageDown: 100};
       if (event.key === ' ' && event.target.tagName !== 'BUTTON') player.play(!player.playing);
       else if (steps[event.key]) player.step(steps[event.key] * (event.shiftKey ? 10 : 1));
-      else if (event.key === 'Home') player.seek(0);
-      else if (event.key === 'End') player.seek(duration);
+      else if (event.key === 'Home') player.seek(span.begin);
+      else if (event.key === 'End' && about.live) player.now();
+      else if (event.key === 'End') player.seek(span.end);
       else return;
       event.preventDefault();
     });
-    // Where the force is largest there is most to see.
-    const arm = arms[0];
-    let most = 0;
-    for (let i = 1; i < arm.t.length; ++i) if (arm.force[i] > arm.force[most]) most = i;
-    player.seek(arm.t.length ? arm.t[most] : 0);
-    player.fresh = true;  // who plays it first sees it from its beginning
+    if (about.live) {
+      byId('now').hidden = false;
+      player.fresh = false;
+      follow(true);
+      grown = true;
+    } else {
+      // Where the force is largest there is most to see.
+      const arm = arms[0];
+      let most = 0;
+      for (let i = 1; i < arm.t.length; ++i) if (arm.force[i] > arm.force[most]) most = i;
+      player.seek(arm.t.length ? arm.t[most] : 0);
+      player.fresh = true;  // who plays it first sees it from its beginning
+    }
     requestAnimationFrame(frame);
   }
-  begin();
+  if (about.live) {
+    live = makeLive(() => {
+      showLive(live, player.following);
+      // What the scene is drawn around is known with the first tick.
+      if (!begun && arms[0].t.length > 0) begin();
+      grown = begun;
+    });
+    showLive(live, true);
+  } else {
+    begin();
+  }
 
   // For whoever drives the page by a script: what is shown, and how to go elsewhere.
   window.thimblePage = {
-    duration,
+    get duration() { return span.end; },
+    get begun() { return begun; },
+    now: player.now,
     seek: player.seek,
     play: player.play,
     speed: speed => { player.speed = speed; },
@@ -160,7 +238,7 @@
     state: () => {
       const arm = arms[player.arm];
       const i = placeOf(arm.t, player.t);
-      return {t: player.t, tick: arm.tick[i], force: arm.force[i], depth: arm.depth[i],
+      return {following: player.following, begin: span.begin, live: live || null, rows: arm.t.length, t: player.t, tick: arm.tick[i], force: arm.force[i], depth: arm.depth[i],
               playing: player.playing, drawn: stage.drawn, window: plots.window.slice(),
               plotted: plots.graphs.map(graph => graph.box.hidden ? 0 : graph.dygraph.numRows())};
     }

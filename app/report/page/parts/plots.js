@@ -36,7 +36,7 @@ function rowsToDraw(arm, channels, begin, end) {
 }
 
 function makePlots(box, player) {
-  const plots = {window: [0, duration], graphs: []};
+  const plots = {window: [span.begin, span.end], graphs: []};
   const channelBox = document.getElementById('channels');
   let setting = false;
 
@@ -66,7 +66,7 @@ function makePlots(box, player) {
     }
   };
   plots.setWindow = (begin, end) => {
-    plots.window = [Math.max(0, begin), Math.min(duration, end)];
+    plots.window = [Math.max(span.begin, begin), Math.min(span.end, end)];
     setting = true;
     for (const graph of plots.graphs) {
       if (!graph.box.hidden) graph.dygraph.updateOptions({file: dataOf(graph), dateWindow: plots.window.slice()});

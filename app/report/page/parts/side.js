@@ -3,7 +3,7 @@ const kWords = {
   ticks: 'Ticks', rate: 'Rate', period_p99_9: 'Period, 99.9 %', period_max: 'Period, longest',
   touch_downs: 'Touch-downs', lost_contacts: 'Lost contacts', force_max: 'Force, most',
   force_rms: 'Force touching, rms', depth_max: 'Depth, most', energy_to_hand: 'Energy to the hand',
-  reports_missing: 'Reports missing', fault_ticks: 'Ticks in fault', current_at_exit: 'Current at the end',
+  reports_missing: 'Reports missing', fault_ticks: 'Ticks in fault', ticks_missed: 'Ticks missed', current_at_exit: 'Current at the end',
   page_misses: 'Ticks missing a page', pages_damaged: 'Pages damaged', tick_time_p50: 'Computing, median',
   tick_time_p99_9: 'Computing, 99.9 %', forces_differing: 'Forces not as recorded'
 };
@@ -35,7 +35,8 @@ function showSide(player) {
   list.textContent = '';
   document.getElementById('no-marks').hidden =
       arm.marks.some(mark => mark.kind === 'fault' || mark.kind === 'gate' || mark.kind === 'warning');
-  for (const mark of arm.marks.slice(0, 500)) {
+  // Of a run that goes on the newest stand first.
+  for (const mark of about.live ? arm.marks.slice().reverse() : arm.marks.slice(0, 500)) {
     const button = document.createElement('button');
     button.type = 'button';
     button.className = mark.kind;

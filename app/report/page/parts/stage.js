@@ -41,6 +41,10 @@ function makeStage(box) {
       if (arm.touching[i] || bounds.isEmpty()) bounds.expandByPoint(p.fromArray(arm.tip, 3 * i));
     }
   }
+  for (const arm of arms) {
+    if (!bounds.isEmpty() || !arm.workspace) continue;
+    for (const corner of arm.workspace) bounds.expandByPoint(new THREE.Vector3().fromArray(corner));
+  }
   if (bounds.isEmpty()) bounds.expandByPoint(new THREE.Vector3());
   const size = Math.max(1e-3, bounds.getSize(new THREE.Vector3()).length());
 
@@ -59,11 +63,7 @@ function makeStage(box) {
   const rod = new THREE.CylinderBufferGeometry(1, 1, 1, 12);
   const plain = colour => new THREE.MeshPhongMaterial({color: colour, shininess: 40});
   const sides = arms.map(arm => {
-    const tube = pathTube(arm, size / 700, size / 330);
-    const paint = {vertexColors: THREE.VertexColors, shininess: 10};
-    const path = new THREE.Mesh(tube.geometry, new THREE.MeshPhongMaterial(paint));
-    const ahead = new THREE.Mesh(tube.geometry.clone(), new THREE.MeshPhongMaterial(Object.assign(
-        {transparent: true, opacity: 0.3, depthWrite: false}, paint)));
+    const path = makePath(arm, size / 700, size / 330);
     const tip = new THREE.Mesh(ball, plain('#0b3c5d'));
     const proxy = new THREE.Mesh(ball, plain('#f5b700'));
     const shaft = new THREE.Mesh(rod, plain('#d55e00'));
@@ -74,8 +74,8 @@ function makeStage(box) {
     for (const count of arm.lines || []) {
       for (let i = 0; i + 1 < count; ++i) bars.push(new THREE.Mesh(rod, plain('#8a94a0')));
     }
-    scene.add(path, ahead, tip, proxy, shaft, head, ...bars);
-    return {tube, path, ahead, tip, proxy, shaft, head, bars};
+    scene.add(path.group, tip, proxy, shaft, head, ...bars);
+    return {path, tip, proxy, shaft, head, bars};
   });
 
   // Where the forces point on the whole: the touched side is looked at first.
@@ -103,16 +103,17 @@ function makeStage(box) {
   };
   const stage = {shown: {ahead: true, arm: false, left: false}, drawn: 0, dirty: true};
   const point = (array, i) => new THREE.Vector3(array[3 * i], array[3 * i + 1], array[3 * i + 2]);
-  const forceLength = 0.3 * size / forceScale;
 
   function showArm(arm, side, t) {
     const i = placeOf(arm.t, t);
+    side.tip.visible = arm.t.length > 0;
+    if (!side.tip.visible) return;
     const tip = point(arm.tip, i);
     const proxy = point(arm.proxy, i);
     side.tip.position.copy(tip);
     side.proxy.position.copy(proxy);
     side.proxy.visible = arm.touching[i] > 0;
-    const force = point(arm.sent, i).multiplyScalar(forceLength);
+    const force = point(arm.sent, i).multiplyScalar(0.3 * size / forceScale);
     const felt = force.length();
     const pointed = felt > 1e-6 * size;
     side.shaft.visible = side.head.visible = pointed;
@@ -122,10 +123,7 @@ function makeStage(box) {
       put(side.shaft, proxy, neck, size / 260);
       put(side.head, neck, end, size / 90);
     }
-    const rings = placeOf(side.tube.rows, i);
-    side.path.geometry.setDrawRange(0, rings * side.tube.perRing);
-    side.ahead.geometry.setDrawRange(rings * side.tube.perRing, Infinity);
-    side.ahead.visible = stage.shown.ahead;
+    side.path.show(t, stage.shown.ahead);
     for (const bar of side.bars) bar.visible = false;
     if (!stage.shown.arm || !arm.barTimes || arm.barTimes.length === 0) return;
     const all = arm.lines.reduce((sum, one) => sum + one, 0);
@@ -141,8 +139,12 @@ function makeStage(box) {
 
   const showBodies = makeBodies(objects);
   const showDents = makeDents(objects);
+  const showShapes = makeShapes(objects);
   const eye = makeEye(renderer.domElement, () => { stage.dirty = true; });
+  // What has come of the run since: paths grow.
+  stage.grow = () => sides.forEach(side => side.path.grow());
   stage.show = t => {
+    showShapes(t);
     objects.forEach(object => {
       object.mesh.geometry = stage.shown.left && object.left ? object.left : object.first;
     });

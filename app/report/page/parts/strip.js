@@ -15,15 +15,16 @@ function makeStrip(box, player) {
     pen.fillStyle = '#fff';
     pen.fillRect(0, 0, width, height);
     pen.fillStyle = '#dfe9f2';
+    const at = t => (t - span.begin) / (span.end - span.begin) * width;
     for (const [begin, end] of player.contacts()) {
-      pen.fillRect(begin / duration * width, 0, Math.max(1, (end - begin) / duration * width), height);
+      pen.fillRect(at(begin), 0, Math.max(1, at(end) - at(begin)), height);
     }
     // A force stands until the next tick, which may be some columns on.
     const most = new Float32Array(width);
     for (let i = 0; i < arm.t.length; ++i) {
-      const next = i + 1 < arm.t.length ? arm.t[i + 1] : duration;
-      const last = Math.min(width - 1, Math.floor(next / duration * width));
-      for (let x = Math.floor(arm.t[i] / duration * width); x <= last; ++x) {
+      const next = i + 1 < arm.t.length ? arm.t[i + 1] : span.end;
+      const last = Math.min(width - 1, Math.floor(at(next)));
+      for (let x = Math.max(0, Math.floor(at(arm.t[i]))); x <= last; ++x) {
         if (arm.force[i] > most[x]) most[x] = arm.force[i];
       }
     }
@@ -35,7 +36,7 @@ function makeStrip(box, player) {
     }
     for (const mark of arm.marks) {
       pen.fillStyle = kMarkColours[mark.kind];
-      const x = mark.begin / duration * width;
+      const x = at(mark.begin);
       pen.fillRect(x, 0, mark.kind === 'fault' ? 3 : 2, mark.kind === 'fault' ? height : 7);
     }
   }
@@ -50,11 +51,14 @@ function makeStrip(box, player) {
     const pen = canvas.getContext('2d');
     pen.drawImage(ground, 0, 0);
     const [begin, end] = player.window();
+    const at = t => (t - span.begin) / (span.end - span.begin) * width;
     pen.fillStyle = 'rgba(31, 41, 51, 0.16)';
-    if (begin > 0) pen.fillRect(0, 0, begin / duration * width, height);
-    if (end < duration) pen.fillRect(end / duration * width, 0, width, height);
+    if (begin > span.begin) pen.fillRect(0, 0, at(begin), height);
+    if (end < span.end) pen.fillRect(at(end), 0, width, height);
     pen.fillStyle = '#0b3c5d';
-    pen.fillRect(Math.min(width - 3, player.t / duration * width - 1), 0, 3, height);
+    pen.fillRect(Math.min(width - 3, at(player.t) - 1), 0, 3, height);
+    box.setAttribute('aria-valuemin', span.begin.toFixed(3));
+    box.setAttribute('aria-valuemax', span.end.toFixed(3));
     box.setAttribute('aria-valuenow', player.t.toFixed(3));
     box.setAttribute('aria-valuetext', player.t.toFixed(3) + ' s');
   };
@@ -62,9 +66,8 @@ function makeStrip(box, player) {
 
   const go = event => {
     const place = box.getBoundingClientRect();
-    player.seek((event.clientX - place.left) / place.width * duration);
+    player.seek(span.begin + (event.clientX - place.left) / place.width * (span.end - span.begin));
   };
-  box.setAttribute('aria-valuemax', duration.toFixed(3));
   box.addEventListener('pointerdown', event => {
     box.setPointerCapture(event.pointerId);
     box.focus({preventScroll: true});

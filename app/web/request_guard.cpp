@@ -1,0 +1,67 @@
+#include "web/request_guard.h"
+
+#include <sys/random.h>
+
+#include <array>
+#include <cstddef>
+
+namespace thimble::app {
+namespace {
+
+constexpr std::size_t kTokenBytes = 16;
+constexpr std::string_view kAsk = "?token=";
+
+// Takes as long for a token that is nearly right as for any other.
+bool same(std::string_view a, std::string_view b) {
+  unsigned different = a.size() == b.size() ? 0 : 1;
+  for (std::size_t i = 0; i < b.size(); ++i) {
+    different |=
+        static_cast<unsigned char>(b[i]) ^ static_cast<unsigned char>(i < a.size() ? a[i] : '\0');
+  }
+  return different == 0;
+}
+
+bool is_here(std::string_view host, std::uint16_t port) {
+  const std::string with_port = ":" + std::to_string(port);
+  return host == "127.0.0.1" + with_port || host == "localhost" + with_port;
+}
+
+}  // namespace
+
+driver::Result<RequestGuard> RequestGuard::make() {
+  std::array<unsigned char, kTokenBytes> bytes{};
+  if (::getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size())) {
+    return driver::Error{
+        "The kernel gave no random numbers (getrandom), without which nobody can be kept out; the "
+        "page is not served."};
+  }
+  std::string token;
+  for (const unsigned char byte : bytes) {
+    token += "0123456789abcdef"[byte >> 4];
+    token += "0123456789abcdef"[byte & 15];
+  }
+  return RequestGuard(std::move(token));
+}
+
+std::string RequestGuard::refuse(const Request& request, std::string_view path,
+                                 std::uint16_t port) const {
+  if (!is_here(request.host, port)) {
+    return "This page is asked for as 127.0.0.1 or localhost, with its own port; over ssh, forward "
+           "the same port (ssh -L).";
+  }
+  constexpr std::string_view kScheme = "http://";
+  if (!request.origin.empty() && (!request.origin.starts_with(kScheme) ||
+                                  !same(request.origin.substr(kScheme.size()), request.host))) {
+    return "A page of somebody else's asked; only this page's own may.";
+  }
+  const std::size_t query = request.target.find('?');
+  const std::string_view asked =
+      query == std::string_view::npos ? std::string_view{} : request.target.substr(query);
+  if (!asked.starts_with(kAsk) || !same(asked.substr(kAsk.size()), token_)) {
+    return "The token is not right; open the address that `thimble view --web` has printed.";
+  }
+  if (request.target.substr(0, query) != path) return "There is nothing else here.";
+  return {};
+}
+
+}  // namespace thimble::app

@@ -1,0 +1,29 @@
+// In place of the server where the library that it is made with was missing.
+#include "web/web_server.h"
+
+namespace thimble::app {
+
+class WebServer::Parts {};
+
+driver::Result<std::unique_ptr<WebServer>> WebServer::listen(session::RunAttachment&,
+                                                             std::uint16_t) {
+  return driver::Error{
+      "This thimble was built without Boost, by which pages are served; install libboost-dev and "
+      "build it again."};
+}
+
+WebServer::WebServer(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+WebServer::~WebServer() = default;
+std::string WebServer::address() const {
+  return {};
+}
+std::uint16_t WebServer::port() const noexcept {
+  return 0;
+}
+std::size_t WebServer::pages() const noexcept {
+  return 0;
+}
+void WebServer::step() {}
+void WebServer::leave(std::chrono::milliseconds) {}
+
+}  // namespace thimble::app

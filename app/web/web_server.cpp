@@ -1,0 +1,343 @@
+#include "web/web_server.h"
+
+#include <algorithm>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/beast/websocket.hpp>
+#include <list>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "web/live_feed.h"
+#include "web/request_guard.h"
+
+namespace thimble::app {
+namespace {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = beast::http;
+namespace websocket = beast::websocket;
+using asio::ip::tcp;
+using boost::system::error_code;
+
+constexpr std::size_t kConnectionsMost = 64;         // with those that are refused; chosen
+constexpr auto kPatience = std::chrono::seconds(5);  // with who connects and does not go on; chosen
+constexpr std::size_t kBodyMost = 1024;              // bytes of a request's; there need be none
+
+std::string_view view_of(beast::string_view text) {
+  return {text.data(), text.size()};
+}
+
+/// One connection: it asks for one thing and gets it, the page or what the page is told.
+class Visitor {
+ public:
+  explicit Visitor(asio::io_context& io) : stream_(io) {
+    parser_.body_limit(kBodyMost);
+    stream_.read_message_max(WebServer::kSaidMost);
+    stream_.binary(true);
+  }
+  Visitor(const Visitor&) = delete;
+  Visitor& operator=(const Visitor&) = delete;
+
+  tcp::socket& socket() { return stream_.next_layer().socket(); }
+  /// Returns whether nothing of it is under way any more.
+  bool done() const noexcept { return under_way_ == 0; }
+  /// Returns whether it is a page that is told what goes on.
+  bool is_page() const noexcept { return open_; }
+  /// Returns whether it has been sent all that there is.
+  bool has_all(const LiveFeed* feed) const noexcept {
+    return !sending_ && (feed == nullptr || !feed->has_message(place_));
+  }
+
+  /// Reads what it asks for; `answer` is called then, once.
+  template <class Answer>
+  void begin(Answer answer) {
+    error_code ignored;
+    socket().set_option(tcp::no_delay(true), ignored);
+    // What waits for a slow reader waits here, where it is counted, and not in the kernel.
+    socket().set_option(asio::socket_base::send_buffer_size(LiveFeed::kMessageBytes), ignored);
+    stream_.next_layer().expires_after(kPatience);
+    ++under_way_;
+    http::async_read(stream_.next_layer(), buffer_, parser_,
+                     [this, answer](const error_code& failed, std::size_t) {
+                       --under_way_;
+                       if (failed) return cut();
+                       answer(*this, parser_.get());
+                     });
+  }
+
+  void respond(http::response<http::string_body> response) {
+    response_ = std::move(response);
+    response_.keep_alive(false);
+    response_.prepare_payload();
+    ++under_way_;
+    stream_.next_layer().expires_after(kPatience);
+    http::async_write(stream_.next_layer(), response_, [this](const error_code&, std::size_t) {
+      --under_way_;
+      // Whoever is refused may still be speaking; the answer shall reach him.
+      error_code ignored;
+      socket().shutdown(tcp::socket::shutdown_send, ignored);
+      cut();
+    });
+  }
+
+  /// Becomes a page that is told what goes on.
+  void open() {
+    stream_.next_layer().expires_never();
+    stream_.set_option(websocket::stream_base::timeout{
+        .handshake_timeout = kPatience,
+        .idle_timeout = std::chrono::seconds(30),  // a browser answers for its page; chosen
+        .keep_alive_pings = true});
+    ++under_way_;
+    stream_.async_accept(parser_.get(), [this](const error_code& failed) {
+      --under_way_;
+      if (failed) return cut();
+      open_ = true;
+      listen();
+    });
+  }
+
+  /// Sends what is new; a page that is slow gets it with what comes meanwhile.
+  void tell(const LiveFeed& feed) {
+    if (!open_ || sending_ || !feed.has_message(place_)) return;
+    send(feed.message(place_));
+  }
+  /// Closes it with a word of why, once it has what is being sent.
+  void close(websocket::close_code why, const char* words) {
+    if (!open_ || closing_) return;
+    closing_ = true;
+    if (sending_) return cut();
+    ++under_way_;
+    stream_.async_close({why, words}, [this](const error_code&) {
+      --under_way_;
+      cut();
+    });
+  }
+  void cut() {
+    open_ = false;
+    stream_.next_layer().close();
+  }
+
+ private:
+  void send(std::string bytes) {
+    message_ = std::move(bytes);
+    sending_ = true;
+    ++under_way_;
+    stream_.async_write(asio::buffer(message_), [this](const error_code& failed, std::size_t) {
+      --under_way_;
+      sending_ = false;
+      if (failed) cut();
+    });
+  }
+  // Whatever a page says is read and forgotten, so that its closing is seen.
+  void listen() {
+    ++under_way_;
+    stream_.async_read(buffer_, [this](const error_code& failed, std::size_t) {
+      --under_way_;
+      buffer_.consume(buffer_.size());
+      if (failed) return cut();
+      listen();
+    });
+  }
+
+  websocket::stream<beast::tcp_stream> stream_;
+  beast::flat_buffer buffer_;
+  http::request_parser<http::string_body> parser_;
+  http::response<http::string_body> response_;
+  LiveFeed::Place place_;
+  std::string message_;
+  int under_way_ = 0;
+  bool open_ = false, sending_ = false, closing_ = false;
+};
+
+}  // namespace
+
+class WebServer::Parts {
+ public:
+  Parts(session::RunAttachment& runs, RequestGuard guard) : runs_(runs), guard_(std::move(guard)) {}
+  ~Parts() {
+    error_code ignored;
+    acceptor_.close(ignored);
+    cut_all();
+  }
+
+  /// Begins to listen; returns what is wrong, empty if nothing.
+  std::string begin(std::uint16_t port) {
+    const tcp::endpoint here(asio::ip::address_v4::loopback(), port);
+    error_code failed;
+    acceptor_.open(here.protocol(), failed);
+    if (!failed) acceptor_.set_option(tcp::acceptor::reuse_address(true), failed);
+    if (!failed) acceptor_.bind(here, failed);
+    if (!failed) acceptor_.listen(asio::socket_base::max_listen_connections, failed);
+    if (failed) return failed.message();
+    port_ = acceptor_.local_endpoint(failed).port();
+    accept();
+    return {};
+  }
+
+  const RequestGuard& guard() const noexcept { return guard_; }
+  std::uint16_t port() const noexcept { return port_; }
+  std::size_t pages() const noexcept {
+    return static_cast<std::size_t>(std::count_if(
+        visitors_.begin(), visitors_.end(), [](const Visitor& one) { return one.is_page(); }));
+  }
+
+  void step() {
+    serve_for(kStep);
+    if (runs_.step()) {
+      // Pages of the run before load themselves anew; who came before there was one waits for this.
+      for (Visitor& visitor : visitors_) {
+        if (feed_) visitor.close(websocket::close_code::service_restart, "another run");
+      }
+      feed_.emplace(*runs_.reader());
+    }
+    if (!feed_) return;
+    feed_->step();
+    for (Visitor& visitor : visitors_) visitor.tell(*feed_);
+  }
+
+  void leave(std::chrono::milliseconds most) {
+    error_code ignored;
+    acceptor_.close(ignored);
+    const auto end = std::chrono::steady_clock::now() + most;
+    const auto has_all = [this](const Visitor& one) {
+      return !one.is_page() || one.has_all(feed_ ? &*feed_ : nullptr);
+    };
+    while (!std::all_of(visitors_.begin(), visitors_.end(), has_all) &&
+           std::chrono::steady_clock::now() < end) {
+      for (Visitor& visitor : visitors_) {
+        if (feed_) visitor.tell(*feed_);
+      }
+      serve_for(std::chrono::milliseconds(10));
+    }
+    for (Visitor& visitor : visitors_) visitor.close(websocket::close_code::normal, "ended");
+    while (!visitors_.empty() && std::chrono::steady_clock::now() < end) {
+      serve_for(std::chrono::milliseconds(10));
+    }
+    cut_all();
+  }
+
+ private:
+  // All that is under way ends now, and calls back into visitors that are still there.
+  void cut_all() {
+    for (Visitor& visitor : visitors_) visitor.cut();
+    io_.restart();
+    io_.run();
+    visitors_.clear();
+  }
+  void serve_for(std::chrono::milliseconds time) {
+    io_.restart();
+    io_.run_for(time);
+    visitors_.remove_if([](const Visitor& visitor) { return visitor.done(); });
+  }
+
+  void accept() {
+    coming_.emplace_back(io_);
+    acceptor_.async_accept(coming_.front().socket(), [this](const error_code& failed) {
+      if (failed && !acceptor_.is_open()) return coming_.clear();
+      if (!failed && visitors_.size() < kConnectionsMost) {
+        Visitor& visitor = coming_.front();
+        visitors_.splice(visitors_.end(), coming_);
+        visitor.begin([this](Visitor& one, const auto& request) { answer(one, request); });
+      }
+      coming_.clear();
+      accept();
+    });
+  }
+
+  template <class Request>
+  void answer(Visitor& visitor, const Request& request) {
+    const bool live = websocket::is_upgrade(request);
+    const std::string wrong = guard_.refuse({.target = view_of(request.target()),
+                                             .host = view_of(request[http::field::host]),
+                                             .origin = view_of(request[http::field::origin])},
+                                            live ? "/live" : "/", port_);
+    if (!wrong.empty()) return refuse(visitor, http::status::forbidden, wrong);
+    if (live) {
+      if (pages() < kPagesMost) return visitor.open();
+      return refuse(visitor, http::status::service_unavailable, "Too many pages look on already.");
+    }
+    if (request.method() != http::verb::get && request.method() != http::verb::head) {
+      return refuse(visitor, http::status::method_not_allowed, "This page is only looked at.");
+    }
+    if (!feed_) return wait(visitor);
+    auto page = feed_->page(port_);
+    if (!page) {
+      return refuse(visitor, http::status::internal_server_error, page.error().message);
+    }
+    auto response = response_of(http::status::ok, "text/html; charset=utf-8");
+    response.body() = std::move(page).value();
+    visitor.respond(std::move(response));
+  }
+
+  static http::response<http::string_body> response_of(http::status status, const char* type) {
+    http::response<http::string_body> response(status, 11);
+    response.set(http::field::content_type, type);
+    response.set(http::field::cache_control, "no-store");
+    response.set("X-Content-Type-Options", "nosniff");
+    response.set("Referrer-Policy", "no-referrer");  // its address holds the token
+    response.set("Cross-Origin-Resource-Policy", "same-origin");
+    // The rest of what the page may do stands in the page itself.
+    response.set("Content-Security-Policy", "frame-ancestors 'none'");
+    return response;
+  }
+  static void refuse(Visitor& visitor, http::status status, const std::string& why) {
+    auto response = response_of(status, "text/plain; charset=utf-8");
+    response.body() = why + "\n";
+    visitor.respond(std::move(response));
+  }
+  void wait(Visitor& visitor) const {
+    auto response = response_of(http::status::service_unavailable, "text/plain; charset=utf-8");
+    response.set("Refresh", "1");
+    response.body() = runs_.notice() + "\n";
+    visitor.respond(std::move(response));
+  }
+
+  session::RunAttachment& runs_;
+  RequestGuard guard_;
+  asio::io_context io_{1};
+  tcp::acceptor acceptor_{io_};
+  std::list<Visitor> coming_;  // the one that is waited for
+  std::list<Visitor> visitors_;
+  std::optional<LiveFeed> feed_;
+  std::uint16_t port_ = 0;
+};
+
+driver::Result<std::unique_ptr<WebServer>> WebServer::listen(session::RunAttachment& runs,
+                                                             std::uint16_t port) {
+  auto guard = RequestGuard::make();
+  if (!guard) return guard.error();
+  auto parts = std::make_unique<Parts>(runs, std::move(guard).value());
+  const std::string wrong = parts->begin(port);
+  if (!wrong.empty()) {
+    return driver::Error{"Port " + std::to_string(port) +
+                         " of this computer cannot be had: " + wrong +
+                         ". Choose another one (--port), or none: then a free one is taken."};
+  }
+  return std::unique_ptr<WebServer>(new WebServer(std::move(parts)));
+}
+
+WebServer::WebServer(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+WebServer::~WebServer() = default;
+
+std::string WebServer::address() const {
+  return "http://127.0.0.1:" + std::to_string(port()) + "/?token=" + parts_->guard().token();
+}
+std::uint16_t WebServer::port() const noexcept {
+  return parts_->port();
+}
+std::size_t WebServer::pages() const noexcept {
+  return parts_->pages();
+}
+void WebServer::step() {
+  parts_->step();
+}
+void WebServer::leave(std::chrono::milliseconds most) {
+  parts_->leave(most);
+}
+
+}  // namespace thimble::app

@@ -1,0 +1,64 @@
+"""Drives the page of a run that goes on in headless Chromium and says in JSON what it found.
+
+  live_page_browser.py CHROMIUM ADDRESS PICTURE STOP...      ADDRESS: as `thimble view --web` prints it; STOP: the
+      command that ends the run
+"""
+import json
+import subprocess
+import sys
+
+import websockets
+
+from page_browser import DRAWN, Tab, in_chromium, try_to_get_out, what_went_out
+
+
+async def look(address, page, picture, stop):
+    async with websockets.connect(address, max_size=None) as socket:
+        tab = Tab(socket)
+        for domain in ("Page", "Runtime", "Log", "Network"):
+            await tab.call(domain + ".enable")
+        await tab.call("Emulation.setDeviceMetricsOverride", width=1280, height=960, deviceScaleFactor=1, mobile=False)
+        await tab.call("Page.navigate", url=page)
+        await tab.wait_for("window.thimblePage !== undefined && thimblePage.begun")
+
+        # It goes along with the run.
+        before = await tab.value("thimblePage.state()")
+        await tab.wait_for(f"thimblePage.state().t > {before['t']} + 1.5 && thimblePage.state().drawn > {before['drawn']} + 5")
+        await tab.value(DRAWN)
+        await tab.picture(picture)
+        found = {"followed": (await tab.value("thimblePage.state()"))["following"]}
+
+        # Who goes back stays there while the run goes on, and comes back by a button.
+        await tab.value("thimblePage.seek(thimblePage.state().t - 1)")
+        held = await tab.value("thimblePage.state()")
+        await tab.wait_for(f"thimblePage.duration > {held['t']} + 1.5")
+        still = await tab.value("thimblePage.state()")
+        found["held"] = still["t"] == held["t"] and still["tick"] == held["tick"] and not still["following"]
+        found["held_words"] = await tab.value("document.getElementById('live').textContent")
+        await tab.value("document.getElementById('now').click()")
+        await tab.value(DRAWN)
+        now = await tab.value("thimblePage.state()")
+        found["came_back"] = now["following"] and now["t"] > held["t"] + 1
+
+        # It ends with the run, and what it has can still be looked at.
+        subprocess.run(stop, check=True)
+        await tab.wait_for("thimblePage.state().live.state === 'ended'")
+        await tab.value(DRAWN)
+        found["end"] = await tab.value("thimblePage.state()")
+        found["words"] = await tab.value("document.body.innerText")
+        found["forces"] = []
+        for share in (0.2, 0.5, 0.7, 0.9):
+            await tab.value(f"thimblePage.seek(thimblePage.state().begin * (1 - {share}) + thimblePage.duration * {share})")
+            found["forces"].append(await tab.value("thimblePage.state()"))
+        await try_to_get_out(tab)
+    found.update(what_went_out(tab))
+    return found
+
+
+def main():
+    chromium, page, picture, *stop = sys.argv[1:]
+    print(json.dumps(in_chromium(chromium, lambda tab: look(tab, page, picture, stop)), indent=1))
+
+
+if __name__ == "__main__":
+    main()

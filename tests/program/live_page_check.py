@@ -1,0 +1,47 @@
+"""Holds what a browser found on the page of a run that went on (live_page_browser.py) against its recording.
+
+  live_page_check.py FOUND.json TICKS.csv ADDRESS     TICKS: by `thimble export`
+"""
+import csv
+import json
+import math
+import sys
+
+
+def main():
+    found = json.load(open(sys.argv[1], encoding="utf-8"))
+    with open(sys.argv[2], encoding="utf-8") as file:
+        rows = list(csv.reader(file))
+    place = {name.split(" ")[0]: i for i, name in enumerate(rows[0])}
+    ticks = {int(row[place["tick"]]): row for row in rows[1:]}
+    wrong = []
+
+    def check(true, what):
+        if not true:
+            wrong.append(what)
+
+    for shown in found["forces"]:
+        row = ticks.get(shown["tick"])
+        if row is None:
+            wrong.append(f"tick {shown['tick']} is none of the run")
+            continue
+        force = math.hypot(*(float(row[place[f"f_sent_W.{axis}"]]) for axis in "xyz"))
+        check(abs(shown["force"] - force) < 1e-6, f"in tick {shown['tick']} {shown['force']} N and not {force} N")
+    check(len({shown["tick"] for shown in found["forces"]}) == len(found["forces"]), "not every time was shown")
+    check(any(shown["force"] > 0.05 for shown in found["forces"]), "nothing was felt at any of these times")
+    end = found["end"]
+    check(end["tick"] == max(ticks), f"ends with tick {end['tick']} and not {max(ticks)}")
+    check(found["followed"] and found["came_back"], "it does not go along with the run")
+    check(found["held"], "it does not stay where it is")
+    check("the run goes on" in found["held_words"], f"it says {found['held_words']}")
+    check("Force, most" in found["words"] and "ended" in found["words"], "no figures, or not that it ended")
+    check(found["leaks"] == "held", "a request would have left")
+    socket = sys.argv[3].replace("http:", "ws:").replace("/?", "/live?")
+    check(all(one in (sys.argv[3], socket) for one in found["requests"]), f"asked for {found['requests']}")
+    check(not found["said"], f"the console says {found['said']}")
+    print("\n".join(wrong) if wrong else "as it should be")
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
