@@ -156,7 +156,7 @@ TEST(Pictures, KeepAllLabelsApartAndInsideWhateverTheNumbersAre) {
     double left = 0;   // where the panel stands, of the picture's width
     double right = 0;  // of the panel before it
     double name_at = 0;
-    for (std::string line; std::getline(lines, line);) {
+    for (std::string line; std::getline(lines, line) && line != "unset output";) {  // the PNG's
       if (line.starts_with("set lmargin")) {
         right = left > 0 ? left : 0;
         left = std::stod(line.substr(line.rfind(' ')));
