@@ -65,9 +65,7 @@ double text_width(const std::string& text, double points) {
 std::string fitted(const std::string& text, double pixels, double points) {
   std::string cut = text;
   while (!cut.empty() && text_width(cut + (cut.size() < text.size() ? "…" : ""), points) > pixels) {
-    while (!cut.empty() && (static_cast<unsigned char>(cut.back()) & 0xC0U) == 0x80U)
-      cut.pop_back();
-    if (!cut.empty()) cut.pop_back();
+    cut.pop_back();  // only a letter's first byte has a width, so whole letters go
   }
   return cut.size() < text.size() ? cut + "…" : text;
 }
