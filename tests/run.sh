@@ -37,6 +37,7 @@ tests/optional_packages.sh "pictures, tables and compiled laws of the Python pac
   python3-matplotlib python3-pandas python3-numba || true
 [ -z "${THIMBLE_LONG:-}" ] || tests/optional_packages.sh "its notebooks in Jupyter, its types" \
   python3-nbclient python3-ipykernel mypy || true
+tests/optional_packages.sh "animations as MP4 and GIF" ffmpeg || true
 tests/optional_packages.sh "the page in a real browser" chromium python3-websockets || true
 
 # What failed, again at the very end: a log of CI is often cut to its last lines.

@@ -11,6 +11,7 @@
 #include "bringup/board_advice.h"
 #include "bringup/doctor_links.h"
 #include "bringup/doctor_timing.h"
+#include "files/data_folders.h"
 #include "node_lock.h"
 #include "thimble/driver/discovery.h"
 
@@ -23,9 +24,22 @@ using driver::FoundArm;
 using driver::read_line;
 
 constexpr const char* kRule = "70-thimble.rules";
-constexpr const char* kInstallRule =
-    "sudo cp udev/70-thimble.rules /etc/udev/rules.d/ && sudo udevadm control --reload && "
-    "sudo udevadm trigger";
+
+// The rule that came with this program: beside app/ of the sources, or below the same prefix.
+fs::path own_rule() {
+  const fs::path own = scene::own_folder();
+  for (const fs::path& place : {own.parent_path() / "udev" / kRule,
+                                own.parent_path().parent_path() / "lib/udev/rules.d" / kRule}) {
+    std::error_code missing;
+    if (!own.empty() && fs::exists(place, missing)) return place;
+  }
+  return fs::path("udev") / kRule;
+}
+
+std::string install_rule() {
+  return "sudo cp " + own_rule().string() +
+         " /etc/udev/rules.d/ && sudo udevadm control --reload && sudo udevadm trigger";
+}
 
 class Examination {
  public:
@@ -56,7 +70,7 @@ class Examination {
       }
     }
     note(Health::kProblem, "The udev rule is not installed, so only root may open an arm.",
-         kInstallRule);
+         install_rule());
   }
 
   void look_at_arms() {
@@ -169,7 +183,7 @@ class Examination {
       note(Health::kGood, name + "you may open " + arm.node + ".");
     } else if (!rule_) {
       note(Health::kProblem, name + "you may not open " + arm.node + ": the rule is missing.",
-           kInstallRule);
+           install_rule());
     } else if (!system_.in_plugdev) {
       note(Health::kProblem,
            name + "you may not open " + arm.node +

@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "bringup/wiring_guess.h"
+#include "hand/place_text.h"
 #include "thimble/scene/arm_simulation.h"
 
 namespace thimble::app {
@@ -186,8 +187,8 @@ class Check {
     const bool right = farthest[axis] > 0.01 && farthest[axis] > 0.7 * farthest.norm();
     all_right = all_right && right;
     note(fmt::format("direction {}", "xyz"[axis]), right,
-         fmt::format("The tip went by ({:.1f}, {:.1f}, {:.1f}) mm when moved along {}{}",
-                     farthest.x() * 1e3, farthest.y() * 1e3, farthest.z() * 1e3, name,
+         fmt::format("The tip went by {} mm when moved along {}{}",
+                     scene::place_text(1e3 * farthest, 1), name,
                      right ? "." : ": run `thimble calibrate`."));
     return true;
   }
@@ -221,8 +222,8 @@ class Check {
     const bool right = moved[axis] > 0.0002 && moved[axis] > 0.5 * moved.norm();
     all_right = all_right && right;
     note(fmt::format("force {}", "xyz"[axis]), right,
-         fmt::format("{:.2f} N along {} moved the tip by ({:.2f}, {:.2f}, {:.2f}) mm{}", push_,
-                     name, moved.x() * 1e3, moved.y() * 1e3, moved.z() * 1e3,
+         fmt::format("{:.2f} N along {} moved the tip by {} mm{}", push_, name,
+                     scene::place_text(1e3 * moved, 2),
                      right ? "." : ": a motor is wrong, or you held it fast."));
     return true;
   }

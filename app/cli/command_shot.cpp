@@ -14,6 +14,7 @@
 #include "cli/file_options.h"
 #include "thimble/scene/scene_file.h"
 #include "view/gl/animated_picture_file.h"
+#include "view/gl/film_file.h"
 #include "view/gl/offscreen_context.h"
 #include "view/gl/picture_file.h"
 #include "view/shot.h"
@@ -58,16 +59,37 @@ void turn(view::Camera& camera, const std::vector<double>& wanted) {
   if (wanted.size() > 2) camera.zoom(wanted[2]);
 }
 
+bool is_png(const std::filesystem::path& file) {
+  return file.extension() == ".png" || file.extension() == ".PNG";
+}
+
 /// Returns what is wrong with the names of the pictures; empty if nothing is.
 std::string wrong_ending(const ShotOptions& options) {
-  for (const auto& [option, file] :
-       {std::pair{"--out", &options.out}, {"--animate", &options.animate}}) {
-    const std::string ending = std::filesystem::path(*file).extension().string();
-    if (file->empty() || ending == ".png" || ending == ".PNG") continue;
-    return std::string(option) +
-           ": pictures are written as PNG; expected a file that ends in .png, found " + *file + ".";
+  if (!options.out.empty() && !is_png(options.out)) {
+    return "--out: pictures are written as PNG; expected a file that ends in .png, found " +
+           options.out + ".";
+  }
+  if (!options.animate.empty() && !is_png(options.animate) && !view::is_film(options.animate)) {
+    return "--animate: expected a file that ends in .mp4, .gif or .png (animated PNG), found " +
+           options.animate + ".";
   }
   return {};
+}
+
+/// Writes the pictures as the file's ending says, and tells what was written.
+int write_animation(const std::vector<view::Picture>& pictures, const ShotOptions& options) {
+  const double frame_time = 1 / options.pace;
+  const bool film = view::is_film(options.animate);
+  const auto written = film ? view::write_film(pictures, frame_time, options.animate)
+                            : view::write_animated_png(pictures, frame_time, options.animate);
+  if (!written) return complain(written.error(), kExitTrouble);
+  std::error_code unknown;
+  const std::uintmax_t bytes = std::filesystem::file_size(options.animate, unknown);
+  fmt::print("Animated picture: {} ({}, {} pictures of {} x {}, {:.3g} s{})\n", options.animate,
+             film ? "by ffmpeg" : "animated PNG", pictures.size(), pictures.front().width,
+             pictures.front().height, frame_time * static_cast<double>(pictures.size()),
+             unknown ? std::string() : fmt::format(", {} kB", (bytes + 999) / 1000));
+  return kExitDone;
 }
 
 /// Returns how the times that are to be drawn miss the scene; empty if they do not.
@@ -91,11 +113,17 @@ int take_shot(const ShotOptions& options) {
         kExitBadInput);
   }
   if (options.out.empty() && options.animate.empty()) {
-    return complain({"Say where the picture goes: --out FILE.png, or --animate FILE.png."},
-                    kExitBadInput);
+    return complain(
+        {"Say where the picture goes: --out FILE.png, or --animate FILE.mp4, .gif or .png."},
+        kExitBadInput);
   }
   for (const std::string& wrong : {wrong_ending(options), beyond_the_end(options)}) {
     if (!wrong.empty()) return complain({wrong}, kExitBadInput);
+  }
+  if (view::is_film(options.animate)) {
+    if (const auto found = view::find_ffmpeg(); !found) {
+      return complain(found.error(), kExitTrouble);
+    }
   }
   choice.paint.shading =
       options.shading == "gouraud" ? view::Shading::kGouraud : view::Shading::kPhong;
@@ -146,12 +174,7 @@ int take_shot(const ShotOptions& options) {
     if (!written) return complain(written.error(), kExitTrouble);
     std::printf("Picture: %s\n", options.out.c_str());
   }
-  if (animated) {
-    const auto written = view::write_animated_png(pictures, 1 / options.pace, options.animate);
-    if (!written) return complain(written.error(), kExitTrouble);
-    std::printf("Animated picture: %s\n", options.animate.c_str());
-  }
-  return kExitDone;
+  return animated ? write_animation(pictures, options) : kExitDone;
 }
 
 }  // namespace
@@ -163,8 +186,9 @@ void add_shot_command(CLI::App& app, int& exit_code) {
   command->add_option("--out", options->out, "PNG file to write");
   command->add_option("--at", options->at, "Second to draw; when most is felt if absent")
       ->check(CLI::Range(0.0, 86400.0));
-  CLI::Option* animate =
-      command->add_option("--animate", options->animate, "Animated PNG to write, from --at");
+  CLI::Option* animate = command->add_option(
+      "--animate", options->animate,
+      "MP4, GIF (both by ffmpeg) or animated PNG to write, from --at, by the file's ending");
   command->add_option("--until", options->until, "Second at which the animation ends")
       ->needs(animate)
       ->check(CLI::Range(0.0, 86400.0));

@@ -23,7 +23,7 @@ figure() {  # NAME FILE: a figure as the program wrote it
 
 # The scene that scenes.md writes out.
 awk '/^```yaml$/ { inside = 1; next } /^```/ { inside = 0 } inside && /^name: / { keep = $2 == "my_ball" } inside && keep' \
-  "$here/pages/scenes.md" | sed "s|\.\./arms|$here/../arms|" >my_ball.yaml
+  "$here/pages/scenes.md" >my_ball.yaml
 "$program" shot my_ball.yaml --out "$pictures/my_ball.png" --size 480x320 --no-caption >/dev/null
 
 # Arms, each on the same ball.

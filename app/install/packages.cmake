@@ -28,7 +28,7 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
 # is opened at run time, plots, and what a page in the browser is made of.
 string(CONCAT CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "libcgal-demo, "
     "libegl1, libegl-mesa0, libgl1, libgl1-mesa-dri, gnuplot-nox, fonts-dejavu-core, libjs-three, libjs-dygraphs")
-set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "valgrind")
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "valgrind, ffmpeg")
 string(CONCAT CPACK_DEBIAN_DEV_PACKAGE_DEPENDS
     "thimble (= ${PROJECT_VERSION}), libeigen3-dev, libusb-1.0-0-dev, libhidapi-dev, libassimp-dev, zlib1g-dev, libpng-dev, "
     "libfmt-dev, libyaml-cpp-dev, libhdf5-dev, libsqlite3-dev, libspdlog-dev, pkg-config")

@@ -5,9 +5,11 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "own_laws.h"
@@ -129,6 +131,28 @@ void turn(HeldRun& held, const std::string& name, double value) {
   if (!turned) throw ArgumentError(turned.error().message);
 }
 
+/// Returns the stability warnings of a run's scene. They depend on its text, the arm's and the rate
+/// alone and take 12 ms to find, so those of the last scenes are kept: a script runs one scene
+/// often.
+std::vector<std::string> warnings_of(const HeldRun& held) {
+  constexpr std::size_t kMost = 64;                             // scenes
+  static std::map<std::string, std::vector<std::string>> kept;  // guarded by Python's own lock
+  const scene::Scene& scene = held.run->session().scene();
+  const session::RecordingInfo info = held.run->session().recording_info();
+  // More arms are of files, and a real arm of a calibration, that the text does not tell.
+  if (!scene.more_arms.empty() || info.device != "sim" || info.scene_text.empty()) {
+    return app::stability_warnings(scene);
+  }
+  std::string key = info.scene_text;
+  for (const std::string& part : {info.arm_text, std::to_string(info.rate)}) {
+    key.append(1, '\0').append(part);
+  }
+  const auto found = kept.find(key);
+  if (found != kept.end()) return found->second;
+  if (kept.size() >= kMost) kept.clear();
+  return kept.emplace(std::move(key), app::stability_warnings(scene)).first->second;
+}
+
 py::list figures_of(HeldRun& held, std::size_t arm) {
   py::list figures;
   for (const session::Figure& figure : session::figures_of(held.run->figures(arm_of(held, arm)))) {
@@ -238,8 +262,7 @@ void bind_run(py::module_& core) {
           },
           py::arg("arm") = 0)
       .def("figures", &figures_of, py::arg("arm") = 0)
-      .def("warnings",
-           [](const HeldRun& held) { return app::stability_warnings(held.run->session().scene()); })
+      .def("warnings", &warnings_of)
       .def(
           "info",
           [](const HeldRun& held, std::size_t arm) {

@@ -57,6 +57,7 @@ driver::Result<void> draw_force_and_depth(std::span<const driver::TickRecord> ro
   const double duration = std::max(time_of(rows.back(), rows.front()), 1e-6);
   const auto intervals = contact_intervals(rows, duration / 1000);
 
+  const bool touched = !intervals.empty();
   std::ostringstream c;
   c << quiet_style() << "set multiplot\nset xrange [0:" << number(duration) << "]\n"
     << "set lmargin at screen 0.075\nset rmargin at screen 0.975\nset style fill solid 1 "
@@ -74,15 +75,21 @@ driver::Result<void> draw_force_and_depth(std::span<const driver::TickRecord> ro
   // A requested force far beyond the limit must not flatten what was felt.
   const double force_top = 1.12 * std::max(force_max, std::min(wanted_max, 2 * force_max));
   const double depth_top = 1.12e3 * depth_max;
-  c << "set tmargin at screen 0.875\nset bmargin at screen 0.515\n"
-    << "set label 1 " << quote("Force and depth: " + info.title)
-    << " at screen 0.075, screen 0.945 font ',22' noenhanced textcolor rgb '" << kInk << "'\n"
-    << "set label 2 'tip in contact' at screen 0.975, screen 0.945 right textcolor rgb '" << kInk
-    << "'\nset object 100000 rectangle from screen 0.84, screen 0.932 to screen 0.86, screen 0.958 "
-    << "fc rgb '#d5e2ee' fs solid noborder front\n"
-    << "set yrange [0:" << number(force_top) << "]\nset ytics " << number(tic_step(force_top, 5))
-    << "\nset format x ''\nset xtics " << number(tic_step(duration, 10))
-    << "\nset ylabel 'force on the hand [N]' offset 0.5,0 textcolor rgb '" << kInk << "'\n"
+  const std::string title = (touched ? "Force and depth: " : "Force: ") + info.title;
+  const std::string time_axis =
+      "\nset format x '%g'\nset xlabel 'time [s]' textcolor rgb '" + std::string(kInk) + "'\n";
+  c << "set tmargin at screen 0.875\nset bmargin at screen " << (touched ? "0.515" : "0.115")
+    << "\nset label 1 " << quote(fitted(title, show_wanted ? 800 : 1140, 22))
+    << " at screen 0.075, screen 0.945 font ',22' noenhanced textcolor rgb '" << kInk << "'\n";
+  if (touched) {
+    c << "set label 2 'tip in contact' at screen 0.975, screen 0.945 right textcolor rgb '" << kInk
+      << "'\nset object 100000 rectangle from screen 0.84, screen 0.932 to screen 0.86, screen "
+         "0.958 fc rgb '#d5e2ee' fs solid noborder front\n";
+  }
+  c << "set yrange [0:" << number(force_top) << "]\nset ytics " << number(tic_step(force_top, 5))
+    << "\nset xtics " << number(tic_step(duration, 10))
+    << (touched ? "\nset format x ''\n" : time_axis)
+    << "set ylabel 'force on the hand [N]' offset 0.5,0 textcolor rgb '" << kInk << "'\n"
     << (show_wanted
             ? "set key at screen 0.82, screen 0.955 right horizontal samplen 2 textcolor rgb '" +
                   std::string(kInk) + "'\n"
@@ -90,17 +97,19 @@ driver::Result<void> draw_force_and_depth(std::span<const driver::TickRecord> ro
     << "plot ";
   if (show_wanted) {
     c << "'data/force_and_depth.dat' using 1:2 with lines lw 1.5 lc rgb '" << kFaintInk
-      << "' title 'wanted', ";
+      << "' title 'requested', ";
   }
   c << "'data/force_and_depth.dat' using 1:3 with lines lw 2 lc rgb '" << kForceInk
-    << "' title 'sent'\n"
-    << "unset label 1\nunset label 2\nunset object 100000\nunset key\n"
-    << "set tmargin at screen 0.475\nset bmargin at screen 0.115\nset yrange [0:"
-    << number(depth_top) << "]\nset ytics " << number(tic_step(depth_top, 5))
-    << "\nset format x '%g'\nset xlabel 'time [s]' textcolor rgb '" << kInk
-    << "'\nset ylabel 'depth of the tip [mm]'\n"
-    << "plot 'data/force_and_depth.dat' using 1:4 with lines lw 2 lc rgb '" << kDepthInk
-    << "' notitle\nunset multiplot\n";
+    << "' title 'sent'\n";
+  if (touched) {
+    c << "unset label 1\nunset label 2\nunset object 100000\nunset key\n"
+      << "set tmargin at screen 0.475\nset bmargin at screen 0.115\nset yrange [0:"
+      << number(depth_top) << "]\nset ytics " << number(tic_step(depth_top, 5)) << time_axis
+      << "set ylabel 'depth of the tip [mm]'\n"
+      << "plot 'data/force_and_depth.dat' using 1:4 with lines lw 2 lc rgb '" << kDepthInk
+      << "' notitle\n";
+  }
+  c << "unset multiplot\n";
   return draw_plot({"force_and_depth", 1600, 900, c.str()}, folder);
 }
 

@@ -13,6 +13,7 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr int kSupersampling = 2;
+constexpr int kGrazing = kSupersampling;  // samples around a point that must be hidden too: a pixel
 constexpr float kNothing = -std::numeric_limits<float>::infinity();
 
 // Light and matte, so that a coloured line stands out on it: shades run from kDark to kLight only.
@@ -88,10 +89,19 @@ Vector2d MeshView::project(const Vector3d& p_W) const {
 bool MeshView::hides(const Vector3d& p_W, double tolerance) const {
   const Vector2d sample = (project(p_W) - origin_) / pitch_;
   if (!(sample.minCoeff() >= 0 && sample.maxCoeff() < samples_)) return false;
-  const auto column = static_cast<std::size_t>(sample.x());
-  const auto row = static_cast<std::size_t>(sample.y());
-  return depth_[row * static_cast<std::size_t>(samples_) + column] >
-         direction_.w_W.dot(p_W) + tolerance;
+  const double depth = direction_.w_W.dot(p_W) + tolerance;
+  const auto column = static_cast<int>(sample.x());
+  const auto row = static_cast<int>(sample.y());
+  const int last = samples_ - 1;
+  for (int i = std::max(row - kGrazing, 0); i <= std::min(row + kGrazing, last); ++i) {
+    for (int k = std::max(column - kGrazing, 0); k <= std::min(column + kGrazing, last); ++k) {
+      if (!(depth_[static_cast<std::size_t>(i) * static_cast<std::size_t>(samples_) +
+                   static_cast<std::size_t>(k)] > depth)) {
+        return false;
+      }
+    }
+  }
+  return true;
 }
 
 void MeshView::draw(const std::array<Corner, 3>& corner) {

@@ -40,7 +40,8 @@ class MeshView {
   /// Returns where a point falls in the picture: right and up, m in the world's axes u and v.
   Eigen::Vector2d project(const Eigen::Vector3d& p_W) const;
 
-  /// Returns whether the mesh stands more than `tolerance` (m) before the point.
+  /// Returns whether the mesh stands more than `tolerance` (m) before the point and a pixel around
+  /// it: what lies on a face that is seen edge-on is not hidden.
   bool hides(const Eigen::Vector3d& p_W, double tolerance) const;
 
  private:

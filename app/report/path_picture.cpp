@@ -17,16 +17,28 @@ using Eigen::Vector3d;
 constexpr int kPixels = 760;  // of a view's side; a panel is about 500 wide in the PNG
 constexpr std::size_t kPointsMax = 4000;
 constexpr double kHiddenBy = 0.01;  // of the extent: the tip lies in the surface, not behind it
+// A body that gives way is drawn as it was: a dent in a face that is turned to the eye hides
+// nothing.
+constexpr double kDentHiddenBy = 0.1;  // of the extent
+constexpr double kTurnedToEye = 0.3;   // cosine between the force on the hand and the line of sight
 constexpr double kMarkHiddenBy = 0.004;  // of the extent: marks lie in the surface to rounding
-constexpr int kWidth = 1800;
-constexpr double kPanel = 0.25;       // side of a panel in widths of the picture
-constexpr double kWidePanel = 0.268;  // where no colours need a scale
+
+// The picture's layout, pixels. The panels take what the labels leave.
+constexpr double kWidth = 1800;
+constexpr double kEdge = 18;        // free around everything
+constexpr double kNameHeight = 30;  // of an axis's name
+constexpr double kTicGap = 18;      // between a panel and the numbers beside it
+constexpr double kBelow = 97;       // numbers and the name below a panel
+constexpr double kColours = 22;     // width of the colour scale, and its distance to the panel
+constexpr double kRow = 44;         // of a line of words
 
 // Viridis by van der Walt and Smith (CC0), at nine even steps; its light end is left out, for
 // yellow is lost on light grey.
 constexpr const char* kPalette =
     "set palette defined (0 '#440154', 0.125 '#472d7b', 0.25 '#3b528b', 0.375 '#2c728e', "
     "0.5 '#21918c', 0.625 '#28ae80', 0.75 '#5ec962', 0.875 '#addc30', 1 '#dce319')\n";
+
+constexpr const char* kHiddenInk = "#7d5a8a";  // of a path behind the mesh
 
 struct Window {
   Vector3d center{0, 0, 0};
@@ -37,25 +49,42 @@ Vector3d to_vector(const std::array<double, 3>& v) {
   return {v[0], v[1], v[2]};
 }
 
-// Shows the whole mesh and what of the path is near it: a far start would make the mesh tiny.
+// Shows the whole mesh and what of the path is near it: a far start would make the mesh tiny. What
+// is touched may move away with the tip, further.
 Window window_of(const render::TriangleMesh& mesh, std::span<const driver::TickRecord> rows) {
   const Eigen::AlignedBox3d mesh_box = box_of(mesh);
   const double side = std::max(mesh_box.sizes().maxCoeff(), 1e-9);
-  Eigen::AlignedBox3d most = mesh_box;
-  most.extend(mesh_box.min() - Vector3d::Constant(0.2 * side));
-  most.extend(mesh_box.max() + Vector3d::Constant(0.2 * side));
   Eigen::AlignedBox3d box = mesh_box;
   for (const driver::TickRecord& row : rows) {
-    const Vector3d p_WT = to_vector(row.p_WT).cwiseMax(most.min()).cwiseMin(most.max());
+    const Vector3d beyond = Vector3d::Constant((row.in_contact ? 2 : 0.2) * side);
+    const Vector3d p_WT =
+        to_vector(row.p_WT).cwiseMax(mesh_box.min() - beyond).cwiseMin(mesh_box.max() + beyond);
     if (p_WT.squaredNorm() < HUGE_VAL) box.extend(p_WT);
   }
   return {box.center(), 1.08 * box.sizes().maxCoeff()};
 }
 
+struct PanelText {
+  std::string title;
+  std::string unit;
+  double unit_scale = 1;
+  double force_max = 0;                          // N; 0: no path, no colours
+  const render::MeshFindings* faults = nullptr;  // null: none to mark
+};
+
+/// Where one panel stands, pixels from the lower left corner, and what it shows.
+struct Panel {
+  const ViewDirection* direction = nullptr;
+  Eigen::Vector2d low{0, 0}, high{0, 0};  // in the unit of its axes
+  double left = 0;                        // pixels
+  std::string u_tics, v_tics;
+  double room = 0;  // pixels that the numbers on its left take
+};
+
 // Writes the path as seen from one side: u, v, force; blank lines end a stretch. Three blocks:
 // free air, hidden by the mesh, and in sight.
-std::string way_table(std::span<const driver::TickRecord> rows, const MeshView& view,
-                      double tolerance, double scale) {
+std::string path_table(std::span<const driver::TickRecord> rows, const MeshView& view,
+                       const Panel& panel, double extent, double scale) {
   enum PathPart { kFree, kHidden, kSeen };
   std::array<std::ostringstream, 3> block;
   const std::size_t stride = (rows.size() + kPointsMax - 1) / kPointsMax;
@@ -63,6 +92,10 @@ std::string way_table(std::span<const driver::TickRecord> rows, const MeshView& 
   for (std::size_t i = 0; i < rows.size(); i += stride) {
     const driver::TickRecord& row = rows[i];
     const Vector3d p_W = to_vector(row.in_contact ? row.p_WP : row.p_WT);
+    const Vector3d f_W = to_vector(row.f_sent_W);
+    const bool turned_to_eye =
+        row.in_contact && f_W.dot(panel.direction->w_W) > kTurnedToEye * f_W.norm();
+    const double tolerance = (turned_to_eye ? kDentHiddenBy : kHiddenBy) * extent;
     const PathPart kind = view.hides(p_W, tolerance) ? kHidden : row.in_contact ? kSeen : kFree;
     const Eigen::Vector2d uv = scale * view.project(p_W);
     std::ostringstream line;
@@ -78,98 +111,157 @@ std::string way_table(std::span<const driver::TickRecord> rows, const MeshView& 
   return text;
 }
 
-std::string tics(double low, double high, double sign) {
-  const double step = tic_step(high - low, 6);
-  std::string text = "(";
-  for (double k = std::ceil(low / step); k * step <= high; ++k) {
-    const double value = k == 0 ? 0 : k * step;
-    text += (text.size() > 1 ? ", '" : "'") + number(value == 0 ? 0 : sign * value) + "' " +
-            number(value);
+/// Where everything stands, pixels.
+struct Layout {
+  double height = 0;
+  double side = 0;  // of a panel
+  std::array<Panel, 3> panels;
+  NamedTics force;
+
+  double x(double pixels) const { return pixels / kWidth; }
+  double y(double pixels) const { return pixels / height; }
+  double top() const { return kBelow + side; }
+};
+
+/// Gives numbers and names their places first, so that none meets another whatever they are; the
+/// panels get the rest.
+Layout lay_out(const Window& window, const PanelText& say, bool with_faults) {
+  Layout layout;
+  const bool with_path = say.force_max > 0;
+  const double half = 0.5 * say.unit_scale * window.extent;
+  double free = kWidth - kEdge;
+  if (with_path) {
+    layout.force = named_tics(0, say.force_max, 1, 5);
+    free -= 2 * kColours + kTicGap + layout.force.width + kNameHeight;
   }
-  return text + ")";
+  for (std::size_t i = 0; i < 3; ++i) {
+    Panel& panel = layout.panels[i];
+    panel.direction = &view_directions()[i];
+    const Eigen::Vector2d middle =
+        say.unit_scale * Eigen::Vector2d(panel.direction->u_W.dot(window.center),
+                                         panel.direction->v_W.dot(window.center));
+    panel.low = middle - Eigen::Vector2d::Constant(half);
+    panel.high = middle + Eigen::Vector2d::Constant(half);
+    const NamedTics v = named_tics(panel.low.y(), panel.high.y(), panel.direction->v_sign, 6);
+    panel.v_tics = v.list;
+    panel.room = kEdge + kNameHeight + v.width + kTicGap;
+    free -= panel.room;
+  }
+  layout.side = std::floor(free / 3);
+  double left = 0;
+  for (Panel& panel : layout.panels) {
+    panel.left = left + panel.room;
+    left = panel.left + layout.side;
+    // Numbers side by side need room for the widest.
+    int count = 6;
+    NamedTics u = named_tics(panel.low.x(), panel.high.x(), 1, count);
+    while (count > 1 && u.width + kTicGap > layout.side / (count + 1)) {
+      u = named_tics(panel.low.x(), panel.high.x(), 1, --count);
+    }
+    panel.u_tics = u.list;
+  }
+  layout.height = std::round(layout.top() + (with_faults ? 3 : 2) * kRow + 2 * kEdge);
+  return layout;
 }
 
-struct PanelText {
-  std::string title;
-  std::string unit;
-  double unit_scale = 1;
-  double force_max = 0;                          // N; 0: no way, no colours
-  const render::MeshFindings* faults = nullptr;  // null: none to mark
-};
+/// Puts the title, and at its right what the lines are.
+std::string headings(const Layout& layout, const PanelText& say, bool with_faults) {
+  const double y = layout.y(layout.height - kEdge - kRow / 2);
+  double right = kWidth - kEdge;
+  std::ostringstream c;
+  int id = 2;
+  const auto words = [&](const std::string& text, const char* ink) {
+    c << "set label " << id << ' ' << quote(text) << " at screen " << number(layout.x(right))
+      << ", screen " << number(y) << " right textcolor rgb '" << ink << "'\n";
+    right -= text_width(text) + 14;
+    ++id;
+  };
+  const auto line = [&](const std::string& style) {
+    c << "set arrow " << id << " from screen " << number(layout.x(right - 54)) << ", screen "
+      << number(y) << " to screen " << number(layout.x(right)) << ", screen " << number(y)
+      << " nohead " << style << "\n";
+    right -= 54 + 40;
+  };
+  if (say.force_max > 0) {
+    words("in air", kInk);
+    line(std::string("lw 1.5 lc rgb '") + kFaintInk + "'");
+    words("behind the mesh", kInk);
+    line(std::string("lw 2 dt '.' lc rgb '") + kHiddenInk + "'");
+  }
+  if (with_faults) words("thin and pale: behind the mesh", kFaintInk);
+  const double left = layout.panels[0].left;
+  c << "set label 1 " << quote(fitted(say.title, right - 20 - left, 22)) << " at screen "
+    << number(layout.x(left)) << ", screen " << number(y)
+    << " font ',22' noenhanced textcolor rgb '" << kInk << "'\n";
+  if (with_faults) {
+    c << fault_legend(*say.faults, layout.x(left), layout.y(layout.height - kEdge - 1.5 * kRow));
+  }
+  return c.str();
+}
+
+/// Sets the frame of a panel: where it stands, its numbers and names.
+std::string frame(const Panel& panel, const Layout& layout, const std::string& unit) {
+  std::ostringstream c;
+  c << "set lmargin at screen " << number(layout.x(panel.left)) << "\nset rmargin at screen "
+    << number(layout.x(panel.left + layout.side)) << "\nset bmargin at screen "
+    << number(layout.y(kBelow)) << "\nset tmargin at screen " << number(layout.y(layout.top()))
+    << "\nset xrange [" << number(panel.low.x()) << ":" << number(panel.high.x())
+    << "]\nset yrange [" << number(panel.low.y()) << ":" << number(panel.high.y())
+    << "]\nset xtics " << panel.u_tics << "\nset ytics " << panel.v_tics << "\nset xlabel "
+    << quote(std::string(panel.direction->u_label) + " [" + unit + "]")
+    << " noenhanced textcolor rgb '" << kInk << "'\nset label 50 "
+    << quote(std::string(panel.direction->v_label) + " [" + unit + "]") << " at screen "
+    << number(layout.x(panel.left - panel.room + kEdge + kNameHeight / 2)) << ", screen "
+    << number(layout.y(kBelow + layout.side / 2))
+    << " center rotate by 90 noenhanced textcolor rgb '" << kInk << "'\nset title '"
+    << panel.direction->name << "' offset 0,-0.5\n";
+  return c.str();
+}
+
+/// Sets the scale of the forces' colours, right of all panels.
+std::string colour_scale(const Layout& layout) {
+  const double left = layout.panels[2].left + layout.side + kColours;
+  std::ostringstream c;
+  c << "set colorbox user origin screen " << number(layout.x(left)) << ", screen "
+    << number(layout.y(kBelow)) << " size screen " << number(layout.x(kColours)) << ", screen "
+    << number(layout.y(layout.side)) << "\nset cbtics " << layout.force.list
+    << "\nset label 51 'force on the hand [N]' at screen "
+    << number(layout.x(left + kColours + kTicGap + layout.force.width + kNameHeight / 2))
+    << ", screen " << number(layout.y(kBelow + layout.side / 2))
+    << " center rotate by 90 textcolor rgb '" << kInk << "'\n";
+  return c.str();
+}
 
 driver::Result<void> draw_views(std::span<const driver::TickRecord> rows,
                                 const render::TriangleMesh& mesh, const PanelText& say,
                                 const std::string& name, const std::filesystem::path& folder) {
   const Window window = window_of(mesh, rows);
-  const bool with_way = say.force_max > 0;
+  const bool with_path = say.force_max > 0;
   const bool with_faults = say.faults != nullptr && has_marks(*say.faults);
-  // A square panel must be as many pixels high as it is wide.
-  const int height = with_faults ? 780 : with_way ? 690 : 740;
-  const double panel = with_way ? kPanel : kWidePanel;
-  const double margin = with_way ? 0.052 : 0.058;
-  const double panel_height = panel * kWidth / height;
+  const Layout layout = lay_out(window, say, with_faults);
   std::ostringstream c;
   c << quiet_style() << "set border 15 lw 1 lc rgb '" << kFaintInk << "'\nunset key\nunset grid\n"
-    << "set multiplot\nset label 1 " << quote(say.title) << " at screen " << number(margin)
-    << ", screen 0.94 font ',22' noenhanced textcolor rgb '" << kInk << "'\n";
-  if (with_way) {
-    c << kPalette << "set cbrange [0:" << number(say.force_max) << "]\n"
-      << "set label 2 'in air' at screen 0.86, screen 0.94 textcolor rgb '" << kInk << "'\n"
-      << "set label 3 'behind the mesh' at screen 0.79, screen 0.94 right textcolor rgb '" << kInk
-      << "'\nset arrow 1 from screen 0.82, screen 0.94 to screen 0.85, screen 0.94 nohead lw 1.5 "
-         "lc rgb '"
-      << kFaintInk
-      << "'\nset arrow 2 from screen 0.65, screen 0.94 to screen 0.68, screen 0.94 nohead lw 2 dt "
-         "'.' lc rgb '#7d5a8a'\n";
-  }
-  if (with_faults) {
-    c << fault_legend(*say.faults, margin, 0.875)
-      << "set label 2 'thin and pale: behind the mesh' at screen 0.984, screen 0.94 right "
-         "textcolor "
-         "rgb '"
-      << kFaintInk << "'\n";
-  }
+    << "set multiplot\n"
+    << headings(layout, say, with_faults);
+  if (with_path) c << kPalette << "set cbrange [0:" << number(say.force_max) << "]\n";
   int index = 0;
-  for (const ViewDirection& direction : view_directions()) {
-    const MeshView view(mesh, direction, window.center, window.extent, kPixels);
+  for (const Panel& panel : layout.panels) {
+    const MeshView view(mesh, *panel.direction, window.center, window.extent, kPixels);
     const std::string stem = "data/" + name + "_" + std::to_string(index + 1);
     const std::string image(view.rgb().begin(), view.rgb().end());
     if (auto done = write_text(image, folder / (stem + ".rgb")); !done) return done;
-    const Eigen::Vector2d middle = say.unit_scale * view.project(window.center);
-    const double half = 0.5 * say.unit_scale * window.extent;
-    const Eigen::Vector2d low = middle - Eigen::Vector2d::Constant(half);
-    const Eigen::Vector2d high = middle + Eigen::Vector2d::Constant(half);
-    const double pitch = 2 * half / kPixels;
-    const double left = margin + index * (panel + (with_way ? 0.058 : 0.062));
-    c << "set lmargin at screen " << number(left) << "\nset rmargin at screen "
-      << number(left + panel) << "\nset bmargin at screen 0.14\nset tmargin at screen "
-      << number(0.14 + panel_height) << "\n"
-      << "set xrange [" << number(low.x()) << ":" << number(high.x()) << "]\nset yrange ["
-      << number(low.y()) << ":" << number(high.y()) << "]\n"
-      << "set xtics " << tics(low.x(), high.x(), 1) << "\nset ytics "
-      << tics(low.y(), high.y(), direction.v_sign) << "\n"
-      << "set xlabel '" << direction.u_label << " [" << say.unit << "]' textcolor rgb '" << kInk
-      << "'\nset ylabel '" << direction.v_label << " [" << say.unit
-      << "]' offset 1.3,0 textcolor rgb '" << kInk << "'\nset title '" << direction.name
-      << "' offset 0,-0.5\n";
-    if (with_way && index == 2) {
-      c << "set colorbox user origin screen " << number(left + panel + 0.014)
-        << ", screen 0.14 size screen 0.011, screen " << number(panel_height)
-        << "\nset cblabel 'force on the hand [N]' offset 0.5,0 textcolor rgb '" << kInk
-        << "'\nset cbtics " << number(tic_step(say.force_max, 5)) << "\n";
-    } else {
-      c << "unset colorbox\n";
-    }
-    c << "plot '" << stem << ".rgb' binary array=(" << kPixels << "," << kPixels
-      << ") format='%uchar' origin=(" << number(low.x() + pitch / 2) << ","
-      << number(low.y() + pitch / 2) << ") dx=" << number(pitch) << " dy=" << number(pitch)
-      << " with rgbimage notitle";
-    if (with_way) {
-      const std::string way = way_table(rows, view, kHiddenBy * window.extent, say.unit_scale);
-      if (auto done = write_text(way, folder / (stem + ".dat")); !done) return done;
+    const double pitch = (panel.high.x() - panel.low.x()) / kPixels;
+    c << frame(panel, layout, say.unit)
+      << (with_path && index == 2 ? colour_scale(layout) : "unset colorbox\n") << "plot '" << stem
+      << ".rgb' binary array=(" << kPixels << "," << kPixels << ") format='%uchar' origin=("
+      << number(panel.low.x() + pitch / 2) << "," << number(panel.low.y() + pitch / 2)
+      << ") dx=" << number(pitch) << " dy=" << number(pitch) << " with rgbimage notitle";
+    if (with_path) {
+      const std::string path = path_table(rows, view, panel, window.extent, say.unit_scale);
+      if (auto done = write_text(path, folder / (stem + ".dat")); !done) return done;
       const std::string data = ", '" + stem + ".dat' index ";
       c << data << "0 using 1:2 with lines lw 1.2 lc rgb '" << kFaintInk << "'" << data
-        << "1 using 1:2 with lines lw 1.6 dt '.' lc rgb '#7d5a8a'" << data
+        << "1 using 1:2 with lines lw 1.6 dt '.' lc rgb '" << kHiddenInk << "'" << data
         << "2 using 1:2 with lines lw 6 lc rgb '#ffffff'" << data
         << "2 using 1:2:3 with lines lw 3.2 lc palette";
     }
@@ -178,12 +270,14 @@ driver::Result<void> draw_views(std::span<const driver::TickRecord> rows,
       if (auto done = write_text(marks, folder / (stem + ".dat")); !done) return done;
       c << fault_clauses(*say.faults, stem + ".dat");
     }
+    // The headings are drawn with the first panel.
     c << "\nunset label 1\nunset label 2\nunset label 3\nunset arrow\n";
     if (with_faults) c << end_of_legend(*say.faults);
     ++index;
   }
   c << "unset multiplot\n";
-  return draw_plot({name, kWidth, height, c.str()}, folder);
+  return draw_plot({name, static_cast<int>(kWidth), static_cast<int>(layout.height), c.str()},
+                   folder);
 }
 
 }  // namespace
@@ -195,7 +289,7 @@ driver::Result<void> draw_path_on_mesh(std::span<const driver::TickRecord> rows,
   for (const driver::TickRecord& row : rows) {
     force_max = std::max(force_max, length_of(row.f_sent_W));
   }
-  return draw_views(rows, mesh_W, {"Way of the tip: " + info.title, "mm", 1000, force_max},
+  return draw_views(rows, mesh_W, {"Path of the tip: " + info.title, "mm", 1000, force_max},
                     "path_on_mesh", folder);
 }
 

@@ -34,6 +34,24 @@ std::string quiet_style();
 /// Finds a tic distance (1, 2 or 5 times a power of ten) that cuts `range` (> 0) in about `count`.
 double tic_step(double range, int count);
 
+/// Numbers along an axis.
+struct NamedTics {
+  std::string list;  ///< As gnuplot's `set xtics` takes it.
+  double width = 0;  ///< Of the widest number, pixels.
+};
+
+/// Gives the multiples of a tic distance from `low` to `high` (> low), about `count` of them, each
+/// written times `sign`.
+NamedTics named_tics(double low, double high, double sign, int count);
+
+/// Returns how wide a text (UTF-8) in the pictures' font of so many points is at most about,
+/// pixels.
+double text_width(const std::string& text, double points = 17);
+
+/// Returns the text, its end cut off (…) where it is wider than `pixels` in a font of so many
+/// points.
+std::string fitted(const std::string& text, double pixels, double points);
+
 /// Finds the intervals of contact, s from the first row; gaps shorter than `gap` (s) are closed.
 std::vector<std::pair<double, double>> contact_intervals(std::span<const driver::TickRecord> rows,
                                                          double gap);

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <system_error>
 
@@ -38,6 +39,35 @@ double tic_step(double range, int count) {
     if (rough <= factor * power * 1.0001) return factor * power;
   }
   return 10 * power;
+}
+
+NamedTics named_tics(double low, double high, double sign, int count) {
+  const double step = tic_step(high - low, count);
+  NamedTics tics{"(", 0};
+  for (double k = std::ceil(low / step); k * step <= high; ++k) {
+    const std::string words = number(k == 0 ? 0 : sign * k * step);  // no -0
+    tics.list += (tics.list.size() > 1 ? ", '" : "'") + words + "' " + number(k * step);
+    tics.width = std::max(tics.width, text_width(words));
+  }
+  tics.list += ")";
+  return tics;
+}
+
+double text_width(const std::string& text, double points) {
+  // DejaVu Sans: digits are 0.64 em wide, words 0.6 on average; 72 points are 96 pixels [measured].
+  constexpr double kCharacter = 0.64 * 96 / 72;
+  const auto characters = std::count_if(text.begin(), text.end(), [](char c) {
+    return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;  // the first byte of one
+  });
+  return kCharacter * points * static_cast<double>(characters);
+}
+
+std::string fitted(const std::string& text, double pixels, double points) {
+  std::string cut = text;
+  while (!cut.empty() && text_width(cut + (cut.size() < text.size() ? "…" : ""), points) > pixels) {
+    cut.pop_back();  // only a letter's first byte has a width, so whole letters go
+  }
+  return cut.size() < text.size() ? cut + "…" : text;
 }
 
 double length_of(const std::array<double, 3>& v) {

@@ -23,9 +23,10 @@ struct PictureInfo {
   const session::Histogram* work_times = nullptr;
 };
 
-/// Draws a run into `folder`, each picture as PNG and SVG: force_and_depth (over time),
-/// path_on_mesh (the tip's way over the mesh, coloured by force, from three sides), and in the time
-/// of the world period_histogram. Numbers and scripts behind them go to data/.
+/// Draws a run into `folder`, each picture as PNG and SVG: force_and_depth (over time;
+/// force alone where nothing was touched),
+/// path_on_mesh (the tip's path over the mesh, coloured by force, from three sides), and in the
+/// time of the world period_histogram. Numbers and scripts behind them go to data/.
 ///
 /// `rows` are records in order of time (world frame, SI), `mesh_W` is the mesh in the world, m. No
 /// rows draw no picture. Fails if gnuplot is missing or a file cannot be written.

@@ -8,8 +8,9 @@ build=$1 source=$2
 here=$(cd "$(dirname "$0")" && pwd)
 work=$(mktemp -d)
 bare=$work/bare
+source "$here/bare_system.sh"
 leave() {
-  if mountpoint -q "$bare/proc"; then umount "$bare/proc"; fi
+  remove_bare
   rm -rf "$work"
 }
 trap leave EXIT
@@ -77,23 +78,13 @@ else
 fi
 
 [ -n "${THIMBLE_LONG:-}" ] || exit 0
-if [ "$(id -u)" != 0 ] || ! command -v debootstrap >/dev/null; then
+if ! can_make_bare; then
   echo "NOT TESTED: the packages on a bare Debian 12; that takes root and debootstrap."
   exit 0
 fi
 echo "Installing into a bare Debian 12 ..."
-mirror=$(apt-get indextargets --format '$(SITE)' 'Created-By: Packages' 2>/dev/null | head -n 1)
-debootstrap --variant=minbase --include=ca-certificates bookworm "$bare" ${mirror:+"$mirror"} >log 2>&1 ||
-  fail "no bare Debian: $(tail -n 5 log)"
+make_bare
 cp "$work"/*.deb "$bare/root/"
-cp /etc/resolv.conf /etc/hosts "$bare/etc/" 2>/dev/null || true
-if [ -d /etc/apt/apt.conf.d ]; then cp -n /etc/apt/apt.conf.d/* "$bare/etc/apt/apt.conf.d/"; fi
-mount -t proc proc "$bare/proc"
-in_bare() {  # COMMAND
-  chroot "$bare" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LANG=C.UTF-8 \
-    DEBIAN_FRONTEND=noninteractive bash -c "$1" </dev/null >log 2>&1
-}
-inside() { in_bare "$1" || fail "in a bare Debian: $1: $(tail -n 20 log)"; }
 inside 'apt-get update -q'
 inside 'apt-get install -y -q --no-install-recommends ./root/thimble_*.deb'
 inside 'cd /root && thimble run water_balloon'

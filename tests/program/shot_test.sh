@@ -8,7 +8,7 @@ expect 2 '--out FILE.png' "$thimble" shot "$scene"
 expect 2 'WIDTHxHEIGHT' "$thimble" shot "$scene" --out a.png --size 10x10
 expect 2 'WIDTHxHEIGHT' "$thimble" shot "$scene" --out a.png --size 640
 expect 2 '--out: .*ends in \.png, found a\.jpg' "$thimble" shot "$scene" --out a.jpg
-expect 2 '--animate: .*ends in \.png, found a\.gif' "$thimble" shot "$scene" --animate a.gif
+expect 2 '--animate: .*\.mp4, \.gif or \.png .*found a\.jpg' "$thimble" shot "$scene" --animate a.jpg
 expect 2 '--at 6\.5: the scene water_balloon ends at 6 s' "$thimble" shot "$scene" --at 6.5 --out a.png
 expect 2 '--until 7: the scene water_balloon ends at 6 s' "$thimble" shot "$scene" --at 1 --animate a.png --until 7
 expect 2 'no_such.yaml' "$thimble" shot no_such.yaml --out a.png
@@ -27,6 +27,21 @@ expect 0 '' cmp a.png b.png  # the same to the bit
 expect 0 'Animated' "$thimble" shot "$scene" --at 1 --until 1.2 --pace 10 --size 160x120 \
   --animate c.png
 expect 0 '^[1-9]' grep -ac fcTL c.png
+# Without ffmpeg a sentence, before anything is drawn.
+mkdir -p nothing
+expect 1 'apt install ffmpeg.*\.png' env PATH="$PWD/nothing" "$thimble" shot "$scene" --at 1 --animate d.mp4
+if command -v ffmpeg >/dev/null; then
+  # An odd size: an MP4 has none.
+  expect 0 'c\.mp4 \(by ffmpeg, 3 pictures of 161 x 121, 0\.3 s' "$thimble" shot "$scene" --at 1 --until 1.3 \
+    --pace 10 --size 161x121 --animate c.mp4
+  expect 0 '^162,122,3$' ffprobe -v error -select_streams v -count_frames -show_entries \
+    stream=width,height,nb_read_frames -of csv=p=0 c.mp4
+  expect 0 'by ffmpeg' "$thimble" shot "$scene" --at 1 --until 1.3 --pace 10 --size 160x120 --animate c.gif
+  expect 0 '^GIF89a$' head -c 6 c.gif
+  expect 1 'cannot be written by ffmpeg' "$thimble" shot "$scene" --at 1 --size 160x120 --animate no/such/c.gif
+else
+  echo "NOT TESTED: MP4 and GIF, for want of ffmpeg."
+fi
 expect 1 'cannot be written' "$thimble" shot "$scene" --at 1 --size 160x120 --out no/such/a.png
 expect 1 'screen' env -u DISPLAY -u WAYLAND_DISPLAY "$thimble" view --for 1
 

@@ -24,7 +24,6 @@ std::filesystem::path scene_with(const std::string& settings) {
     ASSERT_NE(at, std::string::npos) << old_text;
     text.replace(at, old_text.size(), new_text);
   };
-  put("../arms/", std::string(THIMBLE_SOURCE_DIR) + "/app/arms/");
   put("damping: 1 ", "effects: [{" + settings + "}]\n    damping: 1 ");
   const auto file = support::scratch_folder() / "rubbed_elephant.yaml";
   std::filesystem::create_directories(file.parent_path());

@@ -42,7 +42,6 @@ std::filesystem::path rubber_that_does_not_jump() {
   std::string text((std::istreambuf_iterator<char>(from)), {});
   const auto line = text.find("        static_coefficient");
   text.erase(line, text.find('\n', line) + 1 - line);
-  text.replace(text.find("../arms"), 7, std::string(THIMBLE_SOURCE_DIR) + "/app/arms");
   const auto path = support::scratch_folder() / "rubber.yaml";
   std::ofstream(path) << text;
   return path;

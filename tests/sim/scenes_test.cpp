@@ -144,7 +144,6 @@ TEST(SoftCoarse, IsBoundedAtATenthAndAtTenTimesItsStiffness) {
         soft ? "neighbour_stiffness: 1.5 " : "neighbour_stiffness: 150 ");
     const auto folder = std::filesystem::path(THIMBLE_SOURCE_DIR) / "app";
     put("mesh: soft_coarse.off", "mesh: " + (folder / "scenes/soft_coarse.off").string());
-    put("arm: ../arms/", "arm: " + (folder / "arms/").string());
     const auto file =
         std::filesystem::temp_directory_path() /
         ("thimble_soft_" + std::string(times) + "_" + std::to_string(getpid()) + ".yaml");

@@ -42,11 +42,8 @@ inline std::unique_ptr<session::Session> open_elephant(std::optional<double> dur
 
 /// Returns the demo's scene as text, to be put anywhere, with a `contact:` section.
 inline std::string elephant_text(const std::string& contact) {
-  const std::filesystem::path folder = elephant_scene().parent_path();
   std::ifstream stream(elephant_scene());
   std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-  const std::string arm = "../arms/";
-  text.replace(text.find(arm), arm.size(), (folder.parent_path() / "arms").string() + "/");
   const std::string damping = "    damping: 1 ";
   text.insert(text.find(damping), "    contact: {" + contact + "}\n");
   return text;

@@ -4,6 +4,7 @@
 
 #include "arm_table.h"
 #include "arms/falcon/falcon_boot.h"
+#include "hand/place_text.h"
 #include "sim_transport.h"
 #include "thimble/driver/wire_link.h"
 #include "usb/simulated_falcon.h"
@@ -46,9 +47,9 @@ driver::Result<void> check_reach(const ArmFile& file, const HandRoute& hand_W) {
   for (const auto& [time, p_WH] : hand_W) {
     if (!file.workspace.holds(p_WH) || !joint_angles_at(file, p_WH)) {
       return driver::Error{
-          fmt::format("At {:.3f} s the hand would be at ({:.3f}, {:.3f}, {:.3f}) m, where the arm "
+          fmt::format("At {:.3f} s the hand would be at {} m, where the arm "
                       "does not reach or may not work; move that waypoint or the object.",
-                      time, p_WH.x(), p_WH.y(), p_WH.z())};
+                      time, place_text(p_WH, 3))};
     }
   }
   return {};

@@ -22,6 +22,24 @@ constexpr std::size_t kTitleWidth = 50, kKnobWidth = 60, kErrorWidth = 26;  // l
 
 enum class View { kErrorOverCost, kErrorOverKnob, kCostOverKnob };
 
+// Tells the diagrams of one axis apart.
+const char* words_for(View view) {
+  switch (view) {
+    case View::kErrorOverCost:
+      return "error over cost";
+    case View::kErrorOverKnob:
+      return "error over the setting";
+    case View::kCostOverKnob:
+      break;
+  }
+  return "cost over the setting";
+}
+
+// Units as pictures write them.
+std::string shown_unit(const std::string& unit) {
+  return unit == "um" || unit == "us" ? "µ" + unit.substr(1) : unit;
+}
+
 // Words that stay together: a number and its unit.
 std::vector<std::string> words_of(const std::string& text) {
   std::istringstream stream(text);
@@ -29,7 +47,7 @@ std::vector<std::string> words_of(const std::string& text) {
   for (std::string word; stream >> word;) {
     const bool joins = !words.empty() && (std::isdigit(words.back().back()) || words.back() == "x");
     if (joins) {
-      words.back() += " " + word;
+      words.back() += " " + shown_unit(word);
     } else {
       words.push_back(word);
     }
@@ -72,7 +90,7 @@ std::string wrapped(const std::string& text, std::size_t width) {
 
 std::string labelled(const std::string& name, const std::string& unit, std::size_t width) {
   if (unit.empty()) return wrapped(name, width);
-  return wrapped(name + (unit[0] == '%' ? " in " : ", ") + unit, width);
+  return wrapped(name + (unit[0] == '%' ? " in " : ", ") + shown_unit(unit), width);
 }
 
 // Names 1, 2 and 5 of each decade where gnuplot would name one number only; 1 and 3 where the
@@ -224,7 +242,9 @@ Plot plot_of(const MeasuredAxis& axis, View view) {
     plots << ", '-' using 1:2 with points pt 6 ps 2.1 lw 2.2 lc rgb '" << kInk
           << (a.given ? "' title 'a PHANTOM-like arm'" : "' title 'default of the product'");
   }
-  text << "set title " << wrapped(a.title, kTitleWidth) << " font ',17'\n";
+  std::string title = wrapped(a.title, kTitleWidth);
+  title.insert(title.size() - 1, std::string("\\n{/*0.8 ") + words_for(view) + "}");
+  text << "set title " << title << " font ',17'\n";
   const bool over_cost = view == View::kErrorOverCost;
   const std::string cost = "ns" + std::string(a.cost_is_added ? " more" : "") + " per " + a.per;
   text << "set xlabel "
@@ -235,7 +255,7 @@ Plot plot_of(const MeasuredAxis& axis, View view) {
        << '\n';
   const std::size_t label_lines =
       broken(a.metric + ", " + a.unit, kErrorWidth).size();  // room for them, beside the numbers
-  text << "set lmargin " << 9 + 2 * label_lines << "\nset ylabel offset -1\n";
+  text << "set lmargin " << 9 + 2 * label_lines << "\nset rmargin 5\nset ylabel offset -1\n";
   if (over_cost && a.cost_is_added) {
     const double more = 0.08 * (high_x - std::min(low_x, 0.0));
     text << "set xrange [" << number(std::min(low_x, 0.0) - more / 4) << ':'
@@ -284,8 +304,8 @@ Plot plot_of(const MeasuredAxis& axis, View view) {
   }
   // The more the legend says, the taller, so that the diagram stays as large.
   return {.name = name,
-          .width = 800,
-          .height = static_cast<int>(560 + 24 * entries),
+          .width = 840,
+          .height = static_cast<int>(584 + 24 * entries),
           .commands = text.str()};
 }
 

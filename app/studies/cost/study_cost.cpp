@@ -135,7 +135,7 @@ Plot bar_plot(const std::string& name, const std::string& title, const std::stri
   text << "EOD\nset title " << quote(title) << "\nset xlabel " << quote(axis) << '\n'
        << "set key off\nset style fill solid 0.85 noborder\nunset grid\nset grid xtics\n"
        << "set yrange [" << number(static_cast<double>(bars.size()) - 0.4) << ":-0.6]\n"
-       << "set xrange [0:" << number(1.6 * most) << "]\nset ytics scale 0 noenhanced\n"
+       << "set xrange [0:" << number(1.75 * most) << "]\nset ytics scale 0 noenhanced\n"
        << "plot $bars using (0):1:(0):2:($1-0.28):($1+0.28):ytic(3) with boxxyerror lc rgb '"
        << kForceInk << "', $bars using 2:1:4 with labels left offset 0.8,0 noenhanced tc rgb '"
        << kInk << "'\n";

@@ -111,7 +111,7 @@ driver::Result<void> draw_friction_overview(const std::vector<FrictionMeasures>&
   c << quiet_style() << "set multiplot\n"
     << "set label 1 'Friction after the hand has stopped: 0.5 N, encoder of 0.03 mm, 1 kHz'"
     << " at screen 0.065, screen 0.96 font ',22' textcolor rgb '" << kInk << "'\n"
-    << "set xrange [-0.1:0.3]\nset yrange [-0.7:0.7]\nset ytics 0.5\nset xtics 0.1\n"
+    << "set xrange [-0.1:0.3]\nset yrange [-0.7:0.7]\nset ytics 0.5\nset xtics 0, 0.1\n"
     << "set arrow 1 from 0, graph 0 to 0, graph 1 nohead lc rgb '" << kFaintInk << "' dt 2\n";
   for (std::size_t i = 0; i < cases.size() && i < found.size(); ++i) {
     const auto column = static_cast<int>(i) % kColumns;

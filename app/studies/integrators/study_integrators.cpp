@@ -180,7 +180,7 @@ Plot work_precision(const Diagram& diagram) {
                        .append(diagram.lines[i][0].error < kFloor ? " (exact)" : ""));
   }
   text << "set title " << quote(diagram.title) << "\nset logscale xy\n"
-       << "set xlabel 'work per tick of 1 ms [us]'\n"
+       << "set xlabel 'work per tick of 1 ms [µs]'\n"
        << "set ylabel 'largest error [% of the largest motion]'\n"
        << "set format x '10^{%L}'\nset format y '10^{%L}'\n"
        << "set key outside right center Left reverse samplen 2\n"

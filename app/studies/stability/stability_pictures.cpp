@@ -31,16 +31,17 @@ std::string panel(double left, double right, double bottom, double top) {
 
 std::string heading(const std::string& title, const std::string& below) {
   std::ostringstream c;
-  c << "set label 101 " << quote(title) << " at screen 0.06, screen 0.955 font ',22' noenhanced "
-    << "textcolor rgb '" << kInk << "'\nset label 102 " << quote(below)
+  c << "set label 101 " << quote(fitted(title, 1400, 22))
+    << " at screen 0.06, screen 0.955 font ',22' noenhanced "
+    << "textcolor rgb '" << kInk << "'\nset label 102 " << quote(fitted(below, 1700, 15))
     << " at screen 0.06, screen 0.912 font ',15' noenhanced textcolor rgb '" << kFaintInk << "'\n";
   return c.str();
 }
 
-/// Puts a panel's own title above it, from its left edge.
+/// Puts a panel's own title above it, from its left edge, a line's height away from the frame.
 std::string panel_title(const std::string& title) {
-  return "set label 103 " + quote(title) + " at graph 0, graph 1.035 noenhanced textcolor rgb '" +
-         kInk + "'\n";
+  return "set label 103 " + quote(title) +
+         " at graph 0, graph 1 offset 0,0.9 noenhanced textcolor rgb '" + kInk + "'\n";
 }
 
 std::string axis_labels(const std::string& x, const std::string& y) {
@@ -155,16 +156,16 @@ driver::Result<void> draw_kb_map(const StabilitySetup& setup, const std::vector<
   c << quiet_style() << "set multiplot\n"
     << heading("Where a wall is stable: stiffness against damping", subject(setup, true))
     << "unset grid\nset border 15 lw 1 lc rgb '" << kFaintInk << "'\n"
-    << "set key at screen 0.06, screen 0.195 left top Left reverse samplen 2.2 spacing 1.2 "
+    << "set key at screen 0.065, screen 0.195 left top Left reverse samplen 2.2 spacing 1.2 "
        "maxrows 6 font ',15' textcolor rgb '"
     << kInk << "'\n"
     << axis_labels("damping B of the wall [N s/m]", "stiffness K of the wall [N/m]")
-    << decade_axes() << panel(0.06, 0.435, 0.29, 0.83)
-    << panel_title("The linear arm: ideal encoders, no dry friction, small oscillations")
+    << decade_axes() << panel(0.065, 0.42, 0.29, 0.83)
+    << panel_title("Linear arm: ideal encoders, no dry friction")
     << "set palette defined (-40 '#0072b2', -8 '#a9cfe6', 0 '#ffffff', 8 '#f3c19b', 40 '#d55e00')\n"
     << "set cbrange [-40:40]\nset cbtics 20\n"
     << "set cblabel 'growth of an oscillation [1/s]' textcolor rgb '" << kInk << "' offset 0.6,0\n"
-    << "set colorbox user origin screen 0.443, screen 0.29 size screen 0.012, screen 0.54\n"
+    << "set colorbox user origin screen 0.43, screen 0.29 size screen 0.012, screen 0.54\n"
     << "plot 'data/kb_linear.dat' using 1:2:3 with image pixels notitle, "
     << curve("kb_lines.dat", "1:2", kInk, "with points pt 7 ps 0.45", "measured edge") << ", "
     << curve("kb_lines.dat", "1:4", kInk, "with lines lw 1.5", "exact map of one tick") << ", "
@@ -174,15 +175,15 @@ driver::Result<void> draw_kb_map(const StabilitySetup& setup, const std::vector<
              "passive to any hand (Colgate, Schenkel)")
     << "\n";
   note = fmt::format("L = {:.3g} ms", 1e3 * latency);
-  c << "set key at screen 0.555, screen 0.195\nset ylabel ''\n"
-    << panel(0.555, 0.92, 0.29, 0.83)
-    << panel_title(setup.hand.stiffness > 0 ? "The arm without energy stage, pressed in by the hand"
-                                            : "The arm without energy stage, let go at 0.1 m/s")
+  c << "set key at screen 0.55, screen 0.195\nset ylabel ''\n"
+    << panel(0.55, 0.905, 0.29, 0.83)
+    << panel_title(setup.hand.stiffness > 0 ? "Arm without energy stage, pressed in by the hand"
+                                            : "Arm without energy stage, let go at 0.1 m/s")
     << "set palette defined (-2 '#ffffff', -1 '#f6e3c8', 0 '#f0c08a', 1 '#d55e00', 2 '#8c2d04', "
        "3 '#3b0f00')\n"
     << "set cbrange [-2:3]\nset cbtics ('rest' -2, '0.1' -1, '1' 0, '10' 1, '100' 2, '1000' 3)\n"
     << "set cblabel 'limit cycle at the end [encoder steps]' textcolor rgb '" << kInk << "'\n"
-    << "set colorbox user origin screen 0.928, screen 0.29 size screen 0.012, screen 0.54\n"
+    << "set colorbox user origin screen 0.915, screen 0.29 size screen 0.012, screen 0.54\n"
     << "plot 'data/kb_arm.dat' using 1:2:3 with image pixels notitle, "
     << curve("kb_lines.dat", "1:5", kInk, "with lines lw 2",
              "measured edge: limit cycle of 1/4 step")
@@ -250,7 +251,7 @@ driver::Result<void> draw_restitution(const StabilitySetup& setup,
     << "set arrow 1 from graph 0, first 1 to graph 1, first 1 nohead lw 1.5 lc rgb '" << kFaintInk
     << "'\n"
     << "set label 1 'above this line the wall gives energy away, below it takes some' at first "
-       "30000, first 0.98 right font "
+       "95, first 0.97 font "
        "',14' textcolor rgb '"
     << kFaintInk << "'\nplot ";
   for (std::size_t i = 0; i < series.size(); ++i) {
@@ -307,11 +308,11 @@ driver::Result<void> draw_cycles(const StabilitySetup& setup, const std::vector<
         return done;
       }
       const int column = index % 2, row = index / 2;
-      const double left = 0.075 + 0.43 * column, top = 0.84 - 0.4 * row;
+      const double left = 0.09 + 0.415 * column, top = 0.84 - 0.4 * row;
       const std::string title =
           fmt::format("{} start ({:.3g} steps), force {}", start < 10 ? "small" : "large", start,
                       delay > 0 ? "one period late" : "not delayed");
-      c << panel(left, left + 0.36, top - 0.3, top) << panel_title(title)
+      c << panel(left, left + 0.35, top - 0.3, top) << panel_title(title)
         << axis_labels(row == 1 ? "dry friction σ" : "", column == 0 ? "viscous friction β" : "")
         << "set yrange [" << 0.02 + delay << ":" << 1.53 + delay << "]\n"
         << "set arrow 1 from 0.5, graph 0 to 0.5, graph 1 nohead front lw 2 lc rgb '" << kForceInk
@@ -327,7 +328,7 @@ driver::Result<void> draw_cycles(const StabilitySetup& setup, const std::vector<
       region(3, large ? "too fast for dry friction: grows" : "holds so small an oscillation", 0.66,
              large ? 0.06 : 0.16, large ? "#ffffff" : kInk);
       region(4, large ? "grows" : "", 0.16, 0.06, "#ffffff");
-      c << (index == 0 ? "set colorbox user origin screen 0.92, screen 0.14 size screen 0.014, "
+      c << (index == 0 ? "set colorbox user origin screen 0.89, screen 0.14 size screen 0.014, "
                          "screen 0.7\n"
                        : "unset colorbox\n")
         << "plot 'data/" << name << ".dat' using 1:2:3 with image pixels notitle, 'data/" << name

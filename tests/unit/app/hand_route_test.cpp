@@ -16,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "hand/place_text.h"
 #include "hand/sphere_tree.h"
 #include "hand/surface_probe.h"
 #include "mesh/closest_point.h"
@@ -321,6 +322,11 @@ TEST(HandRoute, GoesStraightFromOneObjectToAnotherAndFollowsEach) {
   const auto lost = scene::plan_hand({there}, {{"sphere", &left}});
   ASSERT_FALSE(lost.ok());
   EXPECT_NE(lost.error().message.find("\"moon\""), std::string::npos);
+}
+
+TEST(PlaceText, HasNoNegativeZero) {
+  EXPECT_EQ(scene::place_text({-0.04, 29.94, -1e-300}, 1), "(0.0, 29.9, 0.0)");
+  EXPECT_EQ(scene::place_text({-0.06, -12, NAN}, 1), "(-0.1, -12.0, nan)");
 }
 
 }  // namespace

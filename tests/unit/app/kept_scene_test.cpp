@@ -7,6 +7,7 @@
 
 #include "support/scratch.h"
 #include "text_file.h"
+#include "thimble/scene/scene_file.h"
 
 namespace thimble::scene {
 namespace {
@@ -112,6 +113,24 @@ TEST(KeptScene, RefusesWhatIsNoSceneAndAFolderThatCannotBeWritten) {
   const auto nowhere = keep_scene(kTwoBalls, {}, "/nowhere", "/proc/thimble");
   ASSERT_FALSE(nowhere);
   EXPECT_NE(nowhere.error().message.find("XDG_STATE_HOME"), std::string::npos);
+}
+
+TEST(CopiedScene, RunsWhereverItLiesIfItCameWithThimble) {
+  const fs::path copy = support::scratch_folder() / "copies" / "mine.yaml";
+  fs::create_directories(copy.parent_path());
+  for (const ShippedFile& shipped : shipped_scenes()) {
+    fs::copy_file(shipped.path, copy, fs::copy_options::overwrite_existing);
+    const auto original = load_scene(shipped.path, {.several_arms = true});
+    if (!original && original.error().message.find("is a scan") != std::string::npos) continue;
+    ASSERT_TRUE(original.ok()) << original.error().message;
+    const auto copied = load_scene(copy, {.several_arms = true});
+    ASSERT_TRUE(copied.ok()) << copied.error().message;
+    EXPECT_EQ(fs::weakly_canonical(copied->arm_file), fs::weakly_canonical(original->arm_file));
+    for (std::size_t i = 0; i < original->objects.size(); ++i) {
+      EXPECT_EQ(fs::weakly_canonical(copied->objects[i].mesh_file),
+                fs::weakly_canonical(original->objects[i].mesh_file));
+    }
+  }
 }
 
 }  // namespace

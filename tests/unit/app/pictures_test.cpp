@@ -3,14 +3,17 @@
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "report/gnuplot.h"
 #include "report/mesh_view.h"
+#include "report/picture_parts.h"
 #include "support/scratch.h"
 
 namespace thimble::app {
@@ -63,6 +66,14 @@ TEST(MeshView, HidesWhatLiesBehindAndNothingBeside) {
   EXPECT_FALSE(view.hides({NAN, NAN, NAN}, 0.001));
 }
 
+TEST(MeshView, HidesNothingOnAFaceThatIsSeenEdgeOn) {
+  // The face x = 0 of the tetrahedron is seen edge-on from the left side, at the picture's left.
+  const auto& side = view_directions()[1];
+  const MeshView view(tetrahedron(), side, {0.02, 0.02, 0.02}, 0.08, 200);
+  EXPECT_FALSE(view.hides({0, 0.03, 0.01}, 0.001));
+  EXPECT_TRUE(view.hides({0.01, 0.03, 0.01}, 0.001));
+}
+
 TEST(MeshView, CoversTheTrianglesShareOfThePicture) {
   // Seen from the front the tetrahedron is a right triangle of 50 x 50 mm in a window of 80 x 80
   // mm.
@@ -113,6 +124,79 @@ TEST(Pictures, AreDrawnOfARunWithoutContactToo) {
   const std::filesystem::path folder = support::scratch_folder() / "thimble_empty";
   EXPECT_TRUE(draw_pictures(rows, tetrahedron(), {}, folder).ok());
   EXPECT_TRUE(draw_pictures({}, tetrahedron(), {}, folder).ok());
+}
+
+TEST(Pictures, ShowForceAloneWhereNothingWasTouched) {
+  if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  const std::filesystem::path folder = support::scratch_folder() / "untouched_pictures";
+  std::filesystem::remove_all(folder);
+  std::vector<driver::TickRecord> rows = stroke();
+  for (const bool touched : {true, false}) {
+    for (driver::TickRecord& row : rows) row.in_contact = row.in_contact && touched;
+    ASSERT_TRUE(draw_pictures(rows, {}, {.title = "test"}, folder).ok());
+    std::stringstream script;
+    script << std::ifstream(folder / "data/force_and_depth.gp").rdbuf();
+    EXPECT_EQ(script.str().find("depth of the tip") != std::string::npos, touched);
+    EXPECT_EQ(script.str().find("tip in contact") != std::string::npos, touched);
+  }
+}
+
+TEST(Pictures, KeepAllLabelsApartAndInsideWhateverTheNumbersAre) {
+  if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  const std::filesystem::path folder = support::scratch_folder() / "labels";
+  for (const double size : {1e-4, 70.0}) {
+    std::filesystem::remove_all(folder);
+    render::TriangleMesh mesh = tetrahedron();
+    for (auto& vertex : mesh.vertices)
+      vertex = vertex * (size / 0.05) - Eigen::Vector3d(size, 0, 0);
+    ASSERT_TRUE(draw_pictures(stroke(), mesh, {.title = std::string(300, 'M')}, folder).ok());
+    std::stringstream script;
+    script << std::ifstream(folder / "data/path_on_mesh.gp").rdbuf();
+    std::istringstream lines(script.str());
+    double left = 0;   // where the panel stands, of the picture's width
+    double right = 0;  // of the panel before it
+    double name_at = 0;
+    for (std::string line; std::getline(lines, line) && line != "unset output";) {  // the PNG's
+      if (line.starts_with("set lmargin")) {
+        right = left > 0 ? left : 0;
+        left = std::stod(line.substr(line.rfind(' ')));
+        EXPECT_GT(left, right);
+      }
+      if (line.starts_with("set label 1 ")) {  // the title ends before the legend
+        EXPECT_LT(std::count(line.begin(), line.end(), 'M'), 60);
+      }
+      if (line.starts_with("set label 50 ")) {
+        name_at = std::stod(line.substr(line.find("screen") + 6));
+      }
+      if (!line.starts_with("set ytics (")) continue;
+      std::size_t longest = 0;
+      for (std::size_t at = line.find('\''); at != std::string::npos;) {
+        const std::size_t end = line.find('\'', at + 1);
+        longest = std::max(longest, end - at - 1);
+        at = line.find('\'', end + 1);
+      }
+      // The panel's own name comes with the next lines; that of the panel before is at its left.
+      EXPECT_GE(left * 1800, static_cast<double>(longest) * 14 + 30) << line;
+      EXPECT_LT(name_at, left);
+    }
+  }
+}
+
+TEST(Pictures, CutOffATitleThatIsTooLongAndKeepItsLetters) {
+  EXPECT_EQ(fitted("box, vintage_phantom", 1000, 22), "box, vintage_phantom");
+  const std::string cut = fitted("Ölöffel und Öl", 150, 17);
+  EXPECT_EQ(cut, "Ölöffel u…");
+  EXPECT_LE(text_width(cut), 150);
+  EXPECT_EQ(text_width("Öl"), text_width("Ol"));
+}
+
+TEST(Pictures, WriteNoNegativeZeroOnAnAxis) {
+  for (const double sign : {1.0, -1.0}) {
+    const NamedTics tics = named_tics(-0.06, 0.06, sign, 6);
+    EXPECT_EQ(tics.list.find("'-0'"), std::string::npos) << tics.list;
+    EXPECT_NE(tics.list.find("'0' 0"), std::string::npos) << tics.list;
+    EXPECT_NEAR(tics.width, text_width("-0.04"), 1e-9);
+  }
 }
 
 TEST(Pictures, TellWhatGnuplotSaidAgainstACommand) {

@@ -5,6 +5,7 @@
 #include <system_error>
 #include <utility>
 
+#include "files/data_folders.h"
 #include "files/scanned_meshes.h"
 #include "thimble/scene/shipped_files.h"
 
@@ -27,15 +28,20 @@ fs::path find_mesh_file(YamlMap& map, const fs::path& folder, const fs::path& me
   if (text.empty()) return {};
   fs::path path = folder / text;
   if (text.starts_with(kMeshScheme)) {
-    const std::string scan = text.substr(kMeshScheme.size());
-    path = mesh_folder / scan;
+    const std::string name = text.substr(kMeshScheme.size());
+    path = mesh_folder / name;
     if (mesh_folder.empty()) {
-      auto found = find_scan(scan);
+      auto found = find_scan(name);
       if (!found) {
         map.reject("mesh", found.error().message);
         return {};
       }
       path = std::move(found).value();
+    }
+  }
+  if (!is_file(path) && !text.starts_with(kMeshScheme) && text.find('/') == std::string::npos) {
+    for (const fs::path& data : data_folders()) {
+      if (is_file(data / "scenes" / text)) return data / "scenes" / text;
     }
   }
   if (!is_file(path)) {

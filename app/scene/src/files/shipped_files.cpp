@@ -58,10 +58,12 @@ driver::Result<fs::path> find(const std::string& meant, const char* kind, const 
     if (meant == file.name || meant == file.name + ".yaml") return file.path;
     names += (names.empty() ? "" : ", ") + file.name;
   }
-  return driver::Error{meant + ": there is no such file, and no " + noun + " of that name. " +
-                       (names.empty()
-                            ? "None is known by name here; give the path of a file."
-                            : "Known by name: " + names + ". `thimble run --list` tells more.")};
+  return driver::Error{
+      meant + ": there is no such file, and no " + noun + " of that name. " +
+      (names.empty()
+           ? "None is known by name here; give the path of a file, or say in XDG_DATA_DIRS "
+             "which folder holds thimble/ with its scenes and arms."
+           : "Known by name: " + names + ". `thimble run --list` tells more.")};
 }
 
 }  // namespace

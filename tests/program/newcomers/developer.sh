@@ -1,0 +1,32 @@
+#!/usr/bin/env bash
+# A developer in C++: a program with a session and a force law of his own, by pkg-config or by CMake.
+source "$(dirname "$0")/follow.sh"
+
+has c++ || {
+  echo "  NOT TESTED: a program in C++; no compiler is here."
+  exit 0
+}
+says guide/cpp.md 'The program loads a scene by name, halves its force, records the run and replays it'
+awk '/^```cpp$/ { inside = 1; next } /^```/ { if (inside) exit } inside' "$DOCUMENTS/guide/cpp.md" >touch.cpp
+grep -q 'set_law' touch.cpp || fail "the guide's program has no law"
+sed -i 's/"elephant"/"rubber"/' touch.cpp  # which needs no scan
+says guide/cpp.md '`find_package(thimble)` gives the targets'
+says guide/cpp.md '`pkg-config thimble` works as well'
+if [ -n "${THIMBLE_LONG:-}" ]; then
+  says guide/cpp.md 'target_link_libraries(touch PRIVATE thimble::session)'
+  {
+    printf 'cmake_minimum_required(VERSION 3.25)\nproject(touch CXX)\nadd_executable(touch touch.cpp)\n'
+    awk '/^```cmake$/ { inside = 1; next } /^```/ { if (inside) exit } inside' "$DOCUMENTS/guide/cpp.md"
+  } >CMakeLists.txt
+  { cmake -S . -B build && cmake --build build; } >said 2>&1 || fail "CMake: $(cat said)"
+  mv build/touch by_cmake
+  see '^Force +[0-9.]+ N at most' ./by_cmake
+fi
+c++ $(pkg-config --cflags thimble) -O0 touch.cpp -o by_pkg_config $(pkg-config --libs thimble) 2>said ||
+  fail "pkg-config: $(cat said)"
+# Only below /usr are names found by themselves.
+says guide/cpp.md 'of another prefix say `export XDG_DATA_DIRS=~/thimble/share:/usr/share`'
+share=$(pkg-config --variable=prefix thimble)/share
+export XDG_DATA_DIRS=$share:/usr/share
+see '^Force +[0-9.]+ N at most' ./by_pkg_config
+see '6000 ticks of rubber' thimble export touch.h5 --csv touch.csv

@@ -1,0 +1,34 @@
+#!/usr/bin/env bash
+# A maker of an arm: what is plugged in and what is missing, firmware on a USB plug, the checks before the first
+# force, an arm file of his own. All on simulated arms.
+source "$(dirname "$0")/follow.sh"
+
+says guide/own_arm.md '`devices` lists what is plugged in. `doctor` says whether you may open it'
+see '^sim +simulated arm' thimble devices
+thimble doctor >doctor.txt 2>&1 || true  # no arm is plugged in
+see 'udev rule' cat doctor.txt
+rule=$(sed -n 's/^ *-> sudo cp \([^ ]*\) .*/\1/p' doctor.txt)
+[ -z "$rule" ] || [ -e "$rule" ] || fail "doctor names $rule, which is not there"
+
+says guide/commands.md 'a simulated arm as a USB device of this machine (root)'
+thimble plug falcon --port 0 >plug.txt 2>&1 &
+plug=$!
+wait_for 'waits on port [0-9]+ as USB device' plug.txt
+kill -INT $plug
+wait $plug || fail "plug ended with $?: $(cat plug.txt)"
+see '^Unplugged' cat plug.txt
+
+says guide/own_arm.md 'they try the simulated arm of `--arm`, say SIMULATED on the first and the last line, and keep nothing'
+see '^encoder_sign' thimble calibrate --device sim --arm polhem
+see '^ok +watchdog' thimble feel-check --device sim --arm polhem
+
+came=$(thimble run --list | awk '$1 == "polhem" { print $2 }')
+cp "$came" my_arm.yaml
+sed -i 's/^name: .*/name: my_arm/' my_arm.yaml
+says guide/own_arm.md 'thimble run app/scenes/elephant.yaml --arm app/arms/woodenhaptics.yaml --duration 2'
+see 'the simulated arm my_arm' thimble run rubber --arm my_arm.yaml --duration 2
+# A motor that is wired the wrong way round is found before it pushes anybody.
+says guide/own_arm.md '`feel-check` names a wire that is dead'
+sed 's/^simulation:/&\n  wiring: {motor_gain: [1, -1, 1]}/' my_arm.yaml >reversed.yaml
+thimble feel-check --device sim --arm reversed.yaml >check.txt 2>&1 </dev/null && fail "reversed: $(cat check.txt)"
+see 'Motor 2 pulls backwards' cat check.txt

@@ -1,0 +1,37 @@
+#!/usr/bin/env bash
+# A student without an arm: a first touch, a scene of her own out of one that came with Thimble, a plot of her own.
+source "$(dirname "$0")/follow.sh"
+
+says guide/index.md 'Without an arm on the desk you use a simulated one'
+says guide/index.md 'thimble run elephant --report out'
+says guide/index.md 'The summary tells what was felt'
+scene=water_balloon  # which needs no scan
+[ -z "${THIMBLE_LONG:-}" ] || scene=elephant
+see '^Force +[0-9.]+ N at most' thimble run $scene --report out
+says guide/index.md '`out/` holds pictures, `report.json`, and `index.html`'
+see '"force_N"' cat out/report.json
+! has gnuplot || see PNG head -c 4 out/path_on_mesh.png
+
+says guide/scenes.md 'so a copy of a scene that came with Thimble runs wherever you put it'
+says guide/index.md 'This lists all scenes and arms that have a name'
+came=$(thimble run --list | awk '$1 == "tin_can" { print $2 }')
+cp "$came" my_can.yaml
+sed -i 's/^name: .*/name: my_can/; s/stiffness: 600 /stiffness: 400 /' my_can.yaml
+see 'every run is the same' thimble run my_can.yaml --record can.h5
+says guide/scenes.md 'A mistake is answered with file, line, what was expected and what was found.'
+sed 's/stiffness: 400 /stifness: 400 /' my_can.yaml >wrong.yaml
+refused 'wrong\.yaml:[0-9]+: .*stifness' thimble run wrong.yaml
+says guide/scenes.md 'thimble run my_ball.yaml'
+awk '/^```yaml$/ { inside = 1; next } /^```/ { if (inside) exit } inside' "$DOCUMENTS/guide/scenes.md" >my_ball.yaml
+see 'touched it [1-9]' thimble run my_ball.yaml
+
+says guide/recording.md 'A line per tick, in SI units, with a header that names columns and units.'
+see '9000 ticks of my_can' thimble export can.h5 --csv can.csv
+if has gnuplot; then
+  gnuplot -e "set terminal png; set output 'mine.png'; set datafile separator ','; set xlabel 'time [s]';
+    plot 'can.csv' using (1e-9*column('time [ns]')):(1e3*column('depth [m]')) with lines title 'depth [mm]'" 2>said ||
+    fail "gnuplot: $(cat said)"
+  see PNG head -c 4 mine.png
+else
+  echo "  NOT TESTED: a plot of one's own, for want of gnuplot."
+fi

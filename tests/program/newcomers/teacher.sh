@@ -1,0 +1,42 @@
+#!/usr/bin/env bash
+# A teacher before a class: a run that others follow as text, a page for everybody's browser, a picture, an animation.
+source "$(dirname "$0")/follow.sh"
+
+says guide/commands.md '`thimble view RUN --text` does so without a screen'
+thimble run clay --clock wall --duration 60 --name class_$$ --no-view --record clay.h5 >run.txt 2>&1 &
+run=$!
+for _ in $(seq 100); do
+  if thimble view --list | grep -q "^class_$$:"; then break; fi
+  sleep 0.1
+done
+see 'running: .* N' thimble view class_$$ --text --for 1
+see '' thimble view class_$$ --stop
+wait $run || fail "the run ended with $?: $(cat run.txt)"
+see 'stopped early' cat run.txt
+
+says guide/recording.md 'It is one file and loads nothing, so it can be mailed or put on a web server as it is.'
+says guide/recording.md 'thimble replay can.h5 --page can.html'
+thimble run clay --duration 3 --record class.h5 >said 2>&1 || fail "$(cat said)"
+thimble replay class.h5 --page class.html >said 2>&1 || grep -q 'libjs-three' said || fail "$(cat said)"
+if [ -e class.html ]; then
+  grep -E '<(script|link)[^>]* (src|href)=' class.html | grep -qv 'href="data:' && fail "the page loads something"
+else
+  echo "  NOT TESTED: the page; libjs-three and libjs-dygraphs are missing."
+fi
+
+says guide/commands.md 'draws a moment of a scene without a screen'
+if ! thimble shot clay --at 2 --size 160x120 --out clay.png >said 2>&1; then
+  grep -q 'No OpenGL' said || fail "$(cat said)"
+  echo "  NOT TESTED: pictures. $(cat said)"
+  exit 0
+fi
+see PNG head -c 4 clay.png
+says guide/recording.md 'an animation of a moment'
+animate() { thimble shot clay --at 2 --until 2.5 --pace 8 --size 160x120 --animate "$1"; }
+see 'Animated picture: clay_film\.png \(animated PNG, 4 pictures' animate clay_film.png
+if has ffmpeg; then
+  see 'Animated picture: clay\.mp4 \(by ffmpeg, 4 pictures' animate clay.mp4
+else
+  animate clay.mp4 >said 2>&1 && fail "an MP4 without ffmpeg: $(cat said)"
+  see 'apt install ffmpeg' cat said
+fi
