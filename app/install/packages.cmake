@@ -57,7 +57,7 @@ if(THIMBLE_HAS_PYTHON)
   math(EXPR python_next "${Python_VERSION_MINOR} + 1")
   string(CONCAT CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "thimble (= ${PROJECT_VERSION}), python3-numpy, "
          "python3 (>= 3.${Python_VERSION_MINOR}), python3 (<< 3.${python_next})")
-  set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-matplotlib")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-matplotlib, python3-numba, jupyter-notebook")
   set(CPACK_COMPONENT_PYTHON_DESCRIPTION
 "touch virtual objects from Python
 The scenes, simulated arms, recordings and studies of Thimble as numpy arrays:

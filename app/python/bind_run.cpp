@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "own_laws.h"
 #include "scene_run.h"
 #include "stability/tuning.h"
 #include "thimble/render/scene_touch.h"
@@ -25,56 +26,14 @@ namespace {
 
 using driver::TickRecord;
 
-/// A force law written in Python, on the virtual clock: there a tick may last as long as it
-/// likes. Whatever goes wrong in it is zero force, the end of the run, and that error to whoever
-/// ran it.
-class PythonLaw {
- public:
-  PythonLaw(py::function law, SceneRun& run) : law_(std::move(law)), run_(run) {}
-
-  driver::ForceCommand operator()(const driver::DeviceState& state) noexcept {
-    driver::ForceCommand command = run_.session().touch()(state);
-    const py::gil_scoped_acquire python;
-    try {
-      if (error_) throw ThimbleError("The law has failed before.");
-      const py::object answer = law_(one(driver::record_of(state, command)));
-      if (!answer.is_none()) {
-        const auto force = py::array_t<double, py::array::forcecast>::ensure(answer);
-        if (!force || force.ndim() != 1 || force.shape(0) != 3) {
-          PyErr_Clear();
-          throw py::value_error(
-              "The force law must answer with three numbers (N, in the world), or None for the "
-              "scene's own force; it answered " +
-              py::repr(answer).cast<std::string>() + ".");
-        }
-        command.f_T_W = {force.at(0), force.at(1), force.at(2)};
-      }
-    } catch (...) {
-      if (!error_) error_ = std::current_exception();
-      command.f_T_W.setZero();
-      run_.ask_to_stop();
-    }
-    return command;
-  }
-
-  /// Throws what went wrong in the law.
-  void rethrow() {
-    if (error_) std::rethrow_exception(error_);
-  }
-
- private:
-  py::function law_;
-  SceneRun& run_;
-  std::exception_ptr error_;
-};
-
 /// A run with the law that Python gave it, if it did.
 struct HeldRun {
   explicit HeldRun(const RunOptions& options, const py::object& own_law)
       : run((py::gil_scoped_release(), std::make_unique<SceneRun>(options))) {
     if (own_law.is_none()) return;
-    law = std::make_unique<PythonLaw>(own_law.cast<py::function>(), *run);
-    if (const auto set = run->session().set_law(driver::ForceLaw(*law)); !set) {
+    scene_law.emplace(run->session().own_law());
+    law = make_law(own_law, *run);
+    if (const auto set = run->session().set_law(driver::ForceLaw(*this)); !set) {
       throw ThimbleError(set.error().message);
     }
   }
@@ -85,11 +44,17 @@ struct HeldRun {
   HeldRun(const HeldRun&) = delete;
   HeldRun& operator=(const HeldRun&) = delete;
 
+  driver::ForceCommand operator()(const driver::DeviceState& state) noexcept {
+    driver::ForceCommand command = (*scene_law)(state);
+    law->change(state, command);
+    return command;
+  }
   void rethrow() {
     if (law) law->rethrow();
   }
 
-  std::unique_ptr<PythonLaw> law;
+  std::optional<driver::ForceLaw> scene_law;  // while there is a law in its place
+  std::unique_ptr<OwnLaw> law;
   std::unique_ptr<SceneRun> run;
 };
 
@@ -113,7 +78,7 @@ bool step_once(HeldRun& held, const std::optional<Eigen::Vector3d>& hand) {
                        std::to_string(session.arms()) + ".");
   }
   if (hand && session.simulation() != nullptr && !session.lead_hand(*hand)) {
-    throw ThimbleError("The arm does not reach that point of the world (m); move the hand.");
+    throw ArgumentError("The arm does not reach that point of the world (m); move the hand.");
   }
   const bool more = held.run->step();
   held.rethrow();
@@ -126,7 +91,7 @@ py::tuple mesh_of(const HeldRun& held, const std::optional<std::string>& object)
   int number = -1;
   if (object) {
     number = session.find_object(*object).value_or(-1);
-    if (number < 0) throw ThimbleError("The scene has no object \"" + *object + "\".");
+    if (number < 0) throw ArgumentError("The scene has no object \"" + *object + "\".");
   }
   const render::TriangleMesh mesh = session.mesh_now(number);
   py::array_t<double> vertices({static_cast<py::ssize_t>(mesh.vertices.size()), py::ssize_t{3}});
@@ -146,8 +111,22 @@ py::tuple mesh_of(const HeldRun& held, const std::optional<std::string>& object)
 
 /// Returns the number of an arm that Python names by it.
 std::size_t arm_of(const HeldRun& held, std::size_t arm) {
-  if (arm >= held.run->session().arms()) throw ThimbleError("The scene has no such arm.");
+  if (arm >= held.run->session().arms()) throw ArgumentError("The scene has no such arm.");
   return arm;
+}
+
+py::list knobs_of(const HeldRun& held) {
+  py::list list;
+  for (const session::Knob& knob : held.run->session().knobs()) {
+    list.append(py::make_tuple(knob.name, knob.unit, knob.least, knob.most, knob.value));
+  }
+  return list;
+}
+
+void turn(HeldRun& held, const std::string& name, double value) {
+  if (held.run->end()) throw ThimbleError("The run is over: no knob of it turns any more.");
+  const auto turned = held.run->session().turn_knob(name, value);
+  if (!turned) throw ArgumentError(turned.error().message);
 }
 
 py::list figures_of(HeldRun& held, std::size_t arm) {
@@ -188,7 +167,7 @@ std::optional<faces::RosWords> topics_of(const py::object& asked) {
     } else if (name == "frames") {
       words.frames = py::str(value);
     } else {
-      throw ThimbleError(
+      throw ArgumentError(
           "ros2: expected namespace, names, domain, force, limit, stale_ms or frames, found \"" +
           name + "\".");
     }
@@ -267,6 +246,8 @@ void bind_run(py::module_& core) {
             return info_of(held.run->session().recording_info(arm_of(held, arm)));
           },
           py::arg("arm") = 0)
+      .def("knobs", &knobs_of)
+      .def("turn", &turn, py::arg("name"), py::arg("value"))
       .def_property_readonly("arms",
                              [](const HeldRun& held) {
                                const session::Session& session = held.run->session();

@@ -39,6 +39,8 @@ py::list named(const std::vector<scene::ShippedFile>& files) {
   return list;
 }
 
+using Rows = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
+
 py::list devices() {
   py::list list;
   for (const driver::FoundArm& arm : value_of(driver::find_arms())) {
@@ -56,16 +58,47 @@ py::list devices() {
   return list;
 }
 
+py::tuple workspace_of(const SimulatorSession& session) {
+  const scene::WorkspaceBox& box = session.device().arm().workspace;
+  return py::make_tuple(box.min_W, box.max_W);
+}
+
+/// Steps arms one after the other, each with its row of `forces` (n, 3; N), after all hands were
+/// led to their rows of `hands` (n, 3; m) if there are any: if one cannot be, no arm is stepped.
+py::array step_all(const std::vector<SimulatorSession*>& arms, const Rows& forces,
+                   const std::optional<Rows>& hands) {
+  for (std::size_t i = 0; hands && i < arms.size(); ++i) {
+    if (arms[i]->lead(hands->row(static_cast<Eigen::Index>(i)).transpose())) continue;
+    throw ArgumentError("hand: arm " + std::to_string(i) +
+                        " does not reach that point of the world (m); move it.");
+  }
+  std::vector<driver::TickRecord> ticks;
+  ticks.reserve(arms.size());
+  for (SimulatorSession* arm : arms) {
+    ticks.push_back(arm->step(forces.row(static_cast<Eigen::Index>(ticks.size())).transpose()));
+  }
+  return array_of(ticks);
+}
+
 void bind_simulator(py::module_& core) {
+  core.def("step_all", &step_all, py::arg("arms"), py::arg("forces"),
+           py::arg("hands") = py::none());
   py::class_<SimulatorSession>(core, "SimulatorSession")
       .def(py::init<const std::string&, const Eigen::Vector3d&, double, std::uint64_t>(),
            py::arg("arm"), py::arg("hand"), py::arg("rate"), py::arg("seed"))
       .def(
           "step",
           [](SimulatorSession& session, const Eigen::Vector3d& force,
-             const std::optional<Eigen::Vector3d>& hand) { return one(session.step(force, hand)); },
+             const std::optional<Eigen::Vector3d>& hand) {
+            if (hand && !session.lead(*hand)) {
+              throw ArgumentError(
+                  "The arm does not reach that point of the world (m); move the hand.");
+            }
+            return one(session.step(force));
+          },
           py::arg("force"), py::arg("hand") = py::none())
       .def("activate", &SimulatorSession::activate)
+      .def_property_readonly("in_fault", &SimulatorSession::in_fault)
       .def_property_readonly(
           "name", [](const SimulatorSession& session) { return session.device().arm().name; })
       .def_property_readonly(
@@ -74,10 +107,7 @@ void bind_simulator(py::module_& core) {
       .def_property_readonly(
           "force_max",
           [](const SimulatorSession& session) { return session.device().arm().limits.force_max; })
-      .def_property_readonly("workspace", [](const SimulatorSession& session) {
-        const scene::WorkspaceBox& box = session.device().arm().workspace;
-        return py::make_tuple(box.min_W, box.max_W);
-      });
+      .def_property_readonly("workspace", &workspace_of);
 }
 
 }  // namespace
@@ -86,20 +116,29 @@ void bind_simulator(py::module_& core) {
 PYBIND11_MODULE(_core, core) {
   using namespace thimble;
   using namespace thimble::python;
-  py::register_exception<ThimbleError>(core, "Error", PyExc_RuntimeError);
+  py::object error = py::register_exception<ThimbleError>(core, "Error", PyExc_RuntimeError);
+  error.attr("__doc__") = "What went wrong, and what to do; every error of this package is one.";
+  py::object argument_error = py::register_exception<ArgumentError>(
+      core, "ArgumentError", py::make_tuple(error, py::handle(PyExc_ValueError)));
+  argument_error.attr("__doc__") =
+      "An argument that names nothing that there is, or misses its bounds; the sentence says what "
+      "would do.";
+  for (py::object& one : {std::ref(error), std::ref(argument_error)}) {
+    one.attr("__module__") = "thimble";
+  }
   core.attr("version") = std::string(scene::build_info().version);
   core.attr("program") = scene::program_name();
   core.def("scenes", [] { return named(scene::shipped_scenes()); });
   core.def("arms", [] { return named(scene::shipped_arms()); });
   core.def("find_scene",
-           [](const std::string& name) { return value_of(scene::find_scene(name)).string(); });
+           [](const std::string& name) { return named_by(scene::find_scene(name)).string(); });
   core.def("find_arm",
-           [](const std::string& name) { return value_of(scene::find_arm_file(name)).string(); });
+           [](const std::string& name) { return named_by(scene::find_arm_file(name)).string(); });
   core.def("keep_scene", [](const std::string& text, const std::map<std::string, std::string>& set,
                             const std::string& beside, const std::string& into) {
     std::vector<scene::SceneChange> changes;
     for (const auto& [place, value] : set) changes.push_back({place, value});
-    return value_of(scene::keep_scene(text, changes, beside,
+    return named_by(scene::keep_scene(text, changes, beside,
                                       into.empty() ? scene::state_folder() / "scenes"
                                                    : std::filesystem::path(into)))
         .string();
@@ -117,7 +156,7 @@ PYBIND11_MODULE(_core, core) {
     return py::make_tuple(std::string(driver::name(fault)), std::string(driver::describe(fault)));
   });
   core.def("read_recording", [](const std::string& path) {
-    const session::Recording recording = value_of(session::read_recording(path));
+    const session::Recording recording = read_from(path, session::read_recording(path));
     return py::make_tuple(info_of(recording.info), array_of(recording.ticks), recording.complete);
   });
   bind_run(core);

@@ -1,5 +1,7 @@
 #include "scene_run.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "log/logger.h"
@@ -41,19 +43,19 @@ void tell(const std::vector<std::string>& sentences) {
 session::SessionOptions session_options(const RunOptions& options) {
   session::SessionOptions asked;
   if (options.seconds && !(*options.seconds >= 1e-3 && *options.seconds <= kSecondsMax)) {
-    throw ThimbleError("seconds: expected 0.001 to 86400, found " +
-                       std::to_string(*options.seconds) + ".");
+    throw ArgumentError(
+        fmt::format("seconds: expected 0.001 to 86400, found {:g}.", *options.seconds));
   }
   const auto quality = scene::quality_named(options.quality);
   if (!quality) {
-    throw ThimbleError("quality: expected draft, normal, reference or auto, found \"" +
-                       options.quality + "\".");
+    throw ArgumentError("quality: expected draft, normal, reference or auto, found \"" +
+                        options.quality + "\".");
   }
   const auto plugged_in =
       options.device == "sim"
           ? driver::Result<std::vector<driver::FoundArm>>(std::vector<driver::FoundArm>())
           : driver::find_arms();
-  asked.real_arm = value_of(scene::choose_arm(
+  asked.real_arm = named_by(scene::choose_arm(
       plugged_in ? *plugged_in : std::vector<driver::FoundArm>(), options.device));
   if (options.device == "auto" && !asked.real_arm) {
     throw ThimbleError(
@@ -67,13 +69,12 @@ session::SessionOptions session_options(const RunOptions& options) {
         " would get forces. Keep clear of it, hold its grip, keep its switch at hand, and "
         "say agree=True.");
   }
-  asked.arm_file = options.arm_file;
+  if (!options.arm_file.empty()) asked.arm_file = named_by(scene::find_arm_file(options.arm_file));
+  asked.knobs = true;
   if (asked.real_arm) {
-    const auto named = options.arm_file.empty() ? std::filesystem::path()
-                                                : value_of(scene::find_arm_file(options.arm_file));
-    asked.terms = value_of(scene::terms_for(
-        *asked.real_arm,
-        {.arm_file = named, .firmware = options.firmware, .unchecked = options.unchecked}));
+    asked.terms = value_of(scene::terms_for(*asked.real_arm, {.arm_file = asked.arm_file,
+                                                              .firmware = options.firmware,
+                                                              .unchecked = options.unchecked}));
     tell(asked.terms->told);
   }
   if (asked.real_arm) {  // asked on a thread that goes again, before the arm is opened
@@ -96,8 +97,10 @@ session::SessionOptions session_options(const RunOptions& options) {
 
 }  // namespace
 
-SceneRun::SceneRun(const RunOptions& options)
-    : session_(value_of(session::Session::open(options.scene, session_options(options)))) {
+SceneRun::SceneRun(const RunOptions& options) {
+  const std::filesystem::path scene = named_by(scene::find_scene(options.scene));
+  const session::SessionOptions asked = session_options(options);
+  session_ = read_from(scene, session::Session::open(scene, asked));
   tell(session_->told());
   if (!options.topics) return;
   if (!options.real_time) {

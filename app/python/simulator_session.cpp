@@ -6,7 +6,7 @@ namespace thimble::python {
 
 SimulatorSession::SimulatorSession(const std::string& arm, const Eigen::Vector3d& p_WH, double rate,
                                    std::uint64_t seed)
-    : device_(value_of(
+    : device_(named_by(
           scene::SimulatedDevice::open(arm, {{0.0, p_WH}}, {.rate = rate, .seed = seed}))) {
   activate();
   loop_.emplace(device_->device(), device_->clock(), driver::ForceLaw(*this),
@@ -14,11 +14,7 @@ SimulatorSession::SimulatorSession(const std::string& arm, const Eigen::Vector3d
                 driver::ServoSettings{.period_ns = device_->period_ns(), .outlive_faults = true});
 }
 
-const driver::TickRecord& SimulatorSession::step(const Eigen::Vector3d& f_T_W,
-                                                 const std::optional<Eigen::Vector3d>& p_WH) {
-  if (p_WH && !device_->simulation().lead(*p_WH)) {
-    throw ThimbleError("The arm does not reach that point of the world (m); move the hand.");
-  }
+const driver::TickRecord& SimulatorSession::step(const Eigen::Vector3d& f_T_W) noexcept {
   f_T_W_ = f_T_W;
   loop_->tick(never_);
   return last_;

@@ -22,13 +22,16 @@ class SimulatorSession {
   SimulatorSession(const std::string& arm, const Eigen::Vector3d& p_WH, double rate,
                    std::uint64_t seed);
 
-  /// Runs one tick with a force on the hand (N, world), which is led to `p_WH` (m, world) from now
-  /// on if that is given. Returns what it was: the tip as the driver saw it when the tick began,
-  /// and the force that went to the motors.
-  const driver::TickRecord& step(const Eigen::Vector3d& f_T_W,
-                                 const std::optional<Eigen::Vector3d>& p_WH);
+  /// Leads the hand to a point (m, world) from now on. False, and it stays, where the arm does not
+  /// reach it.
+  bool lead(const Eigen::Vector3d& p_WH) noexcept { return device_->simulation().lead(p_WH); }
+  /// Runs one tick with a force on the hand (N, world). Returns what it was: the tip as the driver
+  /// saw it when the tick began, and the force that went to the motors.
+  const driver::TickRecord& step(const Eigen::Vector3d& f_T_W) noexcept;
   /// Lets forces through again after a fault.
   void activate();
+  /// Returns whether the force is off because of a fault.
+  bool in_fault() const { return device_->device().fault() != driver::Fault::kNone; }
 
   /// Returns the arm on both sides of the wire.
   const scene::SimulatedDevice& device() const { return *device_; }

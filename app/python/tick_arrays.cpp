@@ -34,8 +34,7 @@ const char* numpy_type(const session::RecordingColumn& column) {
   return "";
 }
 
-/// Returns numpy's type of a tick: the columns of a recording, by the same names.
-py::dtype tick_type() {
+py::dtype make_tick_type() {
   py::list names, formats, offsets;
   for (const session::RecordingColumn& column : session::recording_columns()) {
     names.append(column.name);
@@ -45,6 +44,13 @@ py::dtype tick_type() {
     offsets.append(column.offset);
   }
   return py::dtype(names, formats, offsets, sizeof(TickRecord));
+}
+
+/// Returns numpy's type of a tick: the columns of a recording, by the same names. Made once, and
+/// never let go: Python is gone when C++ would do that.
+const py::dtype& tick_type() {
+  static const auto* const type = new py::dtype(make_tick_type());
+  return *type;
 }
 
 }  // namespace

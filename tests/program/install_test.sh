@@ -83,7 +83,7 @@ else
   PYTHONPATH=$work/usr/lib/python3/dist-packages /usr/bin/python3 -B -c '
 import sys, thimble, thimble.experiment, thimble.gym
 assert all(str(one.path).startswith(sys.argv[1]) for one in thimble.scenes()), thimble.scenes()
-assert thimble._program().startswith(sys.argv[1])' "$work/usr" || fail "the package uses files of another place"
+assert thimble._study.program().startswith(sys.argv[1])' "$work/usr" || fail "the package uses files of another place"
 fi
 [ -f "$work/usr/lib/udev/rules.d/70-thimble.rules" ] || fail "no udev rules"
 

@@ -37,7 +37,7 @@ import thimble.experiment
 import thimble.gym
 
 place = sys.argv[1]
-for path in (thimble.__file__, thimble.gym.__file__, thimble.experiment.__file__, thimble._program(), *(one.path for one in thimble.scenes() + thimble.arms())):
+for path in (thimble.__file__, thimble.gym.__file__, thimble.experiment.__file__, thimble._study.program(), *(one.path for one in thimble.scenes() + thimble.arms())):
     assert str(path).startswith(place), path
 touch = thimble.run("water_balloon", seconds=3)
 assert touch.end == "done" and touch.depth.max() > 1e-3, touch.summary()

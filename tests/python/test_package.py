@@ -56,6 +56,69 @@ def test_wrong_types_are_told_before_anything_runs():
     assert stepper.tick is None
 
 
+@pytest.mark.parametrize(
+    "wrong, said",
+    [
+        (lambda: thimble.run("nope"), "Known by name: .*elephant"),
+        (lambda: thimble.run("./nope.yaml"), "nope.yaml"),
+        (lambda: thimble.run("box", arm="nope"), "vintage_phantom"),
+        (lambda: thimble.run("box", seconds=-1), "seconds: expected 0.001 to 86400, found -1"),
+        (lambda: thimble.run("box", seed=-1), "seed: expected a whole number from 0"),
+        (lambda: thimble.run("box", seed=0.5), "seed: expected a whole number"),
+        (lambda: thimble.run("box", quality="best"), "quality: expected draft"),
+        (lambda: thimble.run("box", set={"nope.stiffness": 1}), 'no "nope"'),
+        (lambda: thimble.Stepper("box").step(hand=(0, 0)), "hand: expected three numbers"),
+        (lambda: thimble.Stepper("box").step(hand="left"), "hand: expected three numbers"),
+        (lambda: thimble.Stepper("box").mesh("nope"), "no object"),
+        (lambda: thimble.Simulator("nope"), "no arm file of that name"),
+        (lambda: thimble.Simulator(rate=0), "rate: expected"),
+        (lambda: thimble.Simulator().step(force=(1, 2)), "force: expected three numbers"),
+        (lambda: thimble.open("box", "WH99", agree=True), "WH99"),
+        (lambda: thimble.open("nope", "sim"), "Known by name"),
+        (lambda: thimble.open("box", "sim", ros2={"nope": 1}), "expected namespace"),
+        (lambda: thimble.read_recording("nope.h5"), "no such file"),
+        (lambda: thimble.study("nope"), "there are cost"),
+    ],
+)
+def test_arguments_that_name_nothing_or_miss_their_bounds_are_argument_errors(wrong, said):
+    with pytest.raises(thimble.ArgumentError, match=said) as caught:
+        wrong()
+    assert isinstance(caught.value, thimble.Error) and isinstance(caught.value, ValueError)
+
+
+@pytest.mark.parametrize(
+    "wrong, said",
+    [
+        (lambda: thimble.run(3), "scene: expected a file, a name, a dict or YAML text, found 3"),
+        (lambda: thimble.run("box", arm=3), "arm: expected a file or a name, found 3"),
+        (lambda: thimble.run("box", seconds="2"), "seconds: expected a number, found '2'"),
+        (lambda: thimble.run("box", seed="a"), "seed: expected a number, found 'a'"),
+        (lambda: thimble.run("box", quality=1), "quality: expected draft"),
+        (lambda: thimble.run("box", record=3), "record: expected a file"),
+        (lambda: thimble.run("box", set=[("ball.stiffness", 3)]), "set: expected a dict"),
+        (lambda: thimble.run("box", set={3: 4}), "set: expected places as text, found 3"),
+        (lambda: thimble.run("box", law="half"), "law: expected a function"),
+        (lambda: thimble.Simulator(rate=None), "rate: expected a number, found None"),
+        (lambda: thimble.open("box", 3), "device: expected"),
+        (lambda: thimble.read_recording(None), "path: expected a file"),
+        (lambda: thimble.study(3), "name: expected the name of a study, found 3"),
+        (lambda: thimble.study("box", 3), "arguments: expected a file"),
+    ],
+)
+def test_arguments_of_the_wrong_type_are_type_errors_that_say_what_was_expected(wrong, said):
+    with pytest.raises(TypeError, match=said):
+        wrong()
+
+
+def test_what_is_wrong_in_a_file_is_no_argument_error(tmp_path):
+    (tmp_path / "bad.yaml").write_text("name: bad\n")
+    (tmp_path / "bad.h5").write_text("no recording")
+    for wrong in (lambda: thimble.run(tmp_path / "bad.yaml"), lambda: thimble.read_recording(tmp_path / "bad.h5")):
+        with pytest.raises(thimble.Error) as caught:
+            wrong()
+        assert not isinstance(caught.value, thimble.ArgumentError)
+
+
 def test_bad_scenes_name_file_and_line(tmp_path, source):
     text = (source / "app/scenes/box.yaml").read_text().replace("../arms", str(source / "app/arms"))
     bad = tmp_path / "bad.yaml"

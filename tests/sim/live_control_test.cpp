@@ -190,6 +190,33 @@ TEST(LiveKnobs, TurnWithoutTheHeapAndEndOnTheValueThatIsWanted) {
   EXPECT_EQ(reader->knob(0), 123);
 }
 
+TEST(HeldKnobs, TurnWithoutTheHeapAndEndOnTheValueThatIsWanted) {
+  SessionOptions options;
+  const auto plain = open(shipped("rubber"), options);
+  EXPECT_TRUE(plain->knobs().empty());
+  EXPECT_FALSE(plain->turn_knob("ball: stiffness", 123));
+  options.knobs = true;
+  const auto session = open(shipped("rubber"), options);
+  ASSERT_EQ(session->knobs()[0].name, "ball: stiffness");
+  EXPECT_FALSE(session->turn_knob("ball: stiffness", -1));
+  EXPECT_FALSE(session->turn_knob("ball: stiffness", std::nan("")));
+  EXPECT_FALSE(session->turn_knob("no such knob", 1));
+  ASSERT_TRUE(session->turn_knob("ball: stiffness", 123));
+  EXPECT_NE(session->knobs()[0].value, 123);
+  driver::DeviceState state;
+  state.p_WT = {0, 0, 0.04};
+  state.dt = 1e-3;
+  const driver::ForceLaw law = session->own_law();
+  const int calls = support::heap_calls_of([&] {
+    for (int i = 0; i < 1000; ++i) law(state);
+  });
+  EXPECT_EQ(calls, 0);
+  EXPECT_EQ(session->knobs()[0].value, 123);
+  ASSERT_TRUE(session->turn_knob("ball: stiffness", 200));  // again, once it stands
+  for (int i = 0; i < 1000; ++i) law(state);
+  EXPECT_EQ(session->knobs()[0].value, 200);
+}
+
 TEST(LiveKnobs, LeaveTheLoopStableAtBothEndsOfEveryKnob) {
 #if defined(__SANITIZE_THREAD__)
   GTEST_SKIP() << "no threads meet in it";

@@ -3,12 +3,11 @@
 import os
 import sys
 
-from . import _program
+from ._study import program
 
 
 def main() -> None:
-    program = _program()
-    os.execv(program, ["thimble", *sys.argv[1:]])
+    os.execv(program(), ["thimble", *sys.argv[1:]])
 
 
 if __name__ == "__main__":

@@ -15,6 +15,7 @@
 #include "run_loop.h"
 #include "run_records.h"
 #include "setup.h"
+#include "share/held_knobs.h"
 #include "share/live_control.h"
 #include "share/run_sharing.h"
 #include "share/share_run.h"
@@ -36,6 +37,7 @@ struct Session::Parts {
         more_arms(*setup) {}
 
   void add_records();
+  void add_knobs();
   driver::Result<void> share(const SessionOptions& options);
   void begin(const std::atomic<bool>& stop) noexcept;
   driver::ForceLaw own_law() noexcept;
@@ -50,6 +52,7 @@ struct Session::Parts {
   std::unique_ptr<SharedRun> shared;
   std::unique_ptr<RunSharing> sharing;   // if it is shared, as is control
   std::unique_ptr<LiveControl> control;  // what viewers ask for
+  std::unique_ptr<HeldKnobs> knobs;      // that who holds the session turns
   std::optional<driver::ForceLaw> law;   // in place of the scene's
   bool log = false;                      // what happens in the run goes into the log
   std::unique_ptr<EventLog> event_log;   // once the arm is open, if so
@@ -77,6 +80,11 @@ void Session::Parts::add_records() {
     pages = std::make_unique<PageServer>(setup->objects());
     loop.add(*pages);
   }
+}
+
+void Session::Parts::add_knobs() {
+  knobs = std::make_unique<HeldKnobs>(setup->scene(), setup->objects().touch());
+  loop.add(*knobs);
 }
 
 driver::Result<void> Session::Parts::share(const SessionOptions& options) {
@@ -115,7 +123,8 @@ void Session::Parts::begin(const std::atomic<bool>& stop) noexcept {
 }
 
 driver::ForceLaw Session::Parts::own_law() noexcept {
-  return control ? driver::ForceLaw(*control) : driver::ForceLaw(setup->objects().touch());
+  if (control) return driver::ForceLaw(*control);
+  return knobs ? driver::ForceLaw(*knobs) : driver::ForceLaw(setup->objects().touch());
 }
 
 void Session::Parts::end() noexcept {
@@ -137,6 +146,7 @@ driver::Result<std::unique_ptr<Session>> Session::prepare(const std::filesystem:
   session->parts_ = std::make_unique<Parts>(std::move(setup).value());
   session->parts_->log = options.log;
   session->parts_->add_records();
+  if (options.knobs && session->arms() == 1) session->parts_->add_knobs();
   if (!options.record.empty()) {
     if (auto begun = session->begin_recording(options.record); !begun) return begun.error();
   }
@@ -226,6 +236,17 @@ std::optional<driver::ServoEnd> Session::step(const std::atomic<bool>& stop) noe
 
 bool Session::lead_hand(const Eigen::Vector3d& p_WH) noexcept {
   return parts_->setup->simulation()->lead(p_WH);
+}
+
+std::vector<Knob> Session::knobs() const {
+  return parts_->knobs ? parts_->knobs->list() : std::vector<Knob>();
+}
+
+driver::Result<void> Session::turn_knob(const std::string& name, double value) {
+  if (parts_->knobs) return parts_->knobs->turn(name, value);
+  return driver::Error{arms() > 1 ? "Knobs are turned where the scene has one arm; this one has " +
+                                        std::to_string(arms()) + "."
+                                  : "The session was opened without knobs."};
 }
 
 const scene::Scene& Session::scene() const noexcept {

@@ -123,7 +123,8 @@ def _counted(levels: ArrayLike, successes: ArrayLike, totals: ArrayLike) -> tupl
     if x.ndim != 1 or not good.all():
         raise ArgumentError("levels, successes, totals: expected rows of one length, successes 0 to totals.")
     different, which = np.unique(x, return_inverse=True)
-    return different, np.bincount(which, k), np.bincount(which, n)
+    counts = [np.asarray(np.bincount(which, one), np.float64) for one in (k, n)]
+    return different, counts[0], counts[1]
 
 
 def _loss(p: Array, k: Array, n: Array) -> float:

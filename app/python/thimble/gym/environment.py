@@ -61,7 +61,7 @@ class TouchEnv(Base):
         self._frame_skip = int(frame_skip)
         self._seconds = float(seconds)
         # A second more than asked: this class ends the episode, and knows by its own count when.
-        self._options = {"set": set, "arm": arm, "quality": quality, "seconds": self._seconds + 1.0}
+        self._options: dict[str, Any] = {"set": set, "arm": arm, "quality": quality, "seconds": self._seconds + 1.0}
         self._scene = scene
         info = Stepper(scene, **self._options).info
         self._rate = float(info["rate"])

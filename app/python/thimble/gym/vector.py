@@ -156,7 +156,7 @@ class _Worker:
 
     def __init__(self, share: NDArray[Any], makes: list[Make], start: str) -> None:
         self.share = share
-        context = get_context(start)
+        context: Any = get_context(start)
         self._pipe, theirs = context.Pipe()
         parcel = bytes(ForkingPickler.dumps(makes))
         self.process = context.Process(target=_serve, args=(theirs, parcel), daemon=True)

@@ -7,6 +7,23 @@
 
 namespace thimble::session {
 
+driver::Result<std::size_t> find_knob(const std::vector<SharedScene::Knob>& knobs,
+                                      const std::string& name, double value) {
+  std::string known;
+  for (std::size_t i = 0; i < knobs.size(); ++i) {
+    const SharedScene::Knob& knob = knobs[i];
+    if (knob.name == name) {
+      // Written so that NaN is refused.
+      if (value >= knob.least && value <= knob.most) return i;
+      return driver::Error{fmt::format("{} may be {:g} to {:g} {}, found {:g}; nothing was turned.",
+                                       name, knob.least, knob.most, knob.unit, value)};
+    }
+    known += "\n    " + knob.name;
+  }
+  return driver::Error{"the run has no knob \"" + name + "\"" +
+                       (known.empty() ? "." : "; it has" + known)};
+}
+
 driver::Result<void> turn_knob(SharedReader& reader, const std::string& order) {
   const std::size_t equals = order.rfind('=');
   const std::string name = order.substr(0, equals);
@@ -16,23 +33,10 @@ driver::Result<void> turn_knob(SharedReader& reader, const std::string& order) {
   if (end == text || *end != 0 || !std::isfinite(value)) {
     return driver::Error{"--turn: expected NAME=VALUE, found \"" + order + "\"."};
   }
-  std::string known;
-  for (std::size_t i = 0; i < reader.scene().knobs.size(); ++i) {
-    const SharedScene::Knob& knob = reader.scene().knobs[i];
-    if (knob.name == name) {
-      if (value < knob.least || value > knob.most) {
-        return driver::Error{
-            fmt::format("--turn: {} may be {:g} to {:g} {}, found {:g}; nothing was "
-                        "turned.",
-                        name, knob.least, knob.most, knob.unit, value)};
-      }
-      reader.turn_knob(i, value);
-      return {};
-    }
-    known += "\n    " + knob.name;
-  }
-  return driver::Error{"--turn: the run has no knob \"" + name + "\"" +
-                       (known.empty() ? "." : "; it has" + known)};
+  const auto knob = find_knob(reader.scene().knobs, name, value);
+  if (!knob) return driver::Error{"--turn: " + knob.error().message};
+  reader.turn_knob(*knob, value);
+  return {};
 }
 
 }  // namespace thimble::session

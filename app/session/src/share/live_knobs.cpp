@@ -59,11 +59,13 @@ std::vector<SharedScene::Knob> LiveKnobs::described() const {
   return described;
 }
 
-void LiveKnobs::step(SharedRun& shared, const driver::TickRecord& last, double dt) noexcept {
+bool LiveKnobs::step(KnobRequests& requests, const driver::TickRecord& last, double dt) noexcept {
+  bool turning = false;
   for (std::size_t i = 0; i < knobs_.size(); ++i) {
     Knob& knob = knobs_[i];
-    const double wanted = shared.knob_wanted(i).value_or(knob.now);
+    const double wanted = requests.knob_wanted(i).value_or(knob.now);
     if (wanted == knob.now) continue;
+    turning = true;
     const render::ForceSensitivity& sensitivity = knob.setting.sensitivity;
     const double stiffness =
         knob.stiffness >= 0 && static_cast<std::size_t>(knob.stiffness) < knobs_.size()
@@ -81,8 +83,9 @@ void LiveKnobs::step(SharedRun& shared, const driver::TickRecord& last, double d
     // Ends on the very value that is wanted.
     knob.now = std::abs(way) <= most ? wanted : knob.now + std::copysign(most, way);
     knob.setting.set(knob.setting.stage, knob.now);
-    shared.store_knob(i, knob.now);
+    requests.store_knob(i, knob.now);
   }
+  return turning;
 }
 
 }  // namespace thimble::session

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "share/shared_run.h"
+#include "share/knob_requests.h"
 #include "share/shared_scene.h"
 #include "thimble/driver/tick_record.h"
 #include "thimble/render/effect/live_settings.h"
@@ -12,8 +12,8 @@
 
 namespace thimble::session {
 
-/// Turns the settings of a scene that viewers want otherwise, on the servo's thread between two
-/// ticks, without a step of force.
+/// Turns the settings of a scene that viewers or programs want otherwise, on the servo's thread
+/// between two ticks, without a step of force.
 ///
 /// A setting goes from end to end of its bounds in kTurnTime at the quickest. While it is felt it
 /// goes no faster than changes the force by kForceRate: its ForceSensitivity, with the touch of the
@@ -33,9 +33,9 @@ class LiveKnobs {
   /// Says what they are. Real-time: never from the servo thread.
   std::vector<SharedScene::Knob> described() const;
 
-  /// Moves on by a tick of `dt` (s), towards what viewers want; `last` is the tick before.
-  /// Real-time: safe; does next to nothing while no knob turns.
-  void step(SharedRun& shared, const driver::TickRecord& last, double dt) noexcept;
+  /// Moves on by a tick of `dt` (s), towards what is wanted; `last` is the tick before. Returns
+  /// whether a knob is still on its way. Real-time: safe; does next to nothing while no knob turns.
+  bool step(KnobRequests& requests, const driver::TickRecord& last, double dt) noexcept;
 
   /// Returns a value as it is felt now. Real-time: safe.
   double value(std::size_t knob) const noexcept { return knobs_[knob].now; }

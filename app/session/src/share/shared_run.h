@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "share/knob_requests.h"
 #include "share/shared_layout.h"
 #include "share/shared_memory.h"
 #include "share/shared_scene.h"
@@ -21,7 +22,7 @@ namespace thimble::session {
 
 /// The run's side of the memory that it shares with its viewers: the servo stores what happens
 /// and looks at what is asked for, and never waits for anybody.
-class SharedRun {
+class SharedRun final : public KnobRequests {
  public:
   /// Makes the memory under `name`, or without a name for a viewer in this process if it is empty,
   /// and writes what does not change of the scene; pid, times and tables of `scene` are filled in
@@ -33,7 +34,7 @@ class SharedRun {
   SharedRun(const SharedRun&) = delete;
   SharedRun& operator=(const SharedRun&) = delete;
   /// Tells the viewers that the run has ended, and removes the name.
-  ~SharedRun();
+  ~SharedRun() override;
 
   /// Gives the memory, for a reader in this process.
   const SharedMemory& memory() const noexcept { return *memory_; }
@@ -54,7 +55,7 @@ class SharedRun {
   /// Stores that an edge of a shaped object was split; the place of its new vertex is stored
   /// before. `number` counts through the table; one outside is ignored.
   void store_split(std::size_t number, const render::EdgeSplit& split) noexcept;
-  void store_knob(std::size_t knob, double now) noexcept {
+  void store_knob(std::size_t knob, double now) noexcept override {
     live_->knobs[knob].now.store(now, std::memory_order_relaxed);
   }
 
@@ -74,7 +75,7 @@ class SharedRun {
     return live_->requests.stop.load(std::memory_order_relaxed) == 1;
   }
   /// Returns what a knob shall be: within its bounds, or empty if a viewer wrote nonsense.
-  std::optional<double> knob_wanted(std::size_t knob) const noexcept;
+  std::optional<double> knob_wanted(std::size_t knob) const noexcept override;
   std::size_t knob_count() const noexcept { return knobs_.size(); }
   /// Looks where a viewer wants the hand (W, m, finite); false if none ever did, or one is writing
   /// just now.

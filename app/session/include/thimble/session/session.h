@@ -97,7 +97,18 @@ struct SessionOptions {
   bool endless = false;
   /// The caller looks at every arm (Session::arms). For others a scene with several is an error.
   bool several_arms = false;
+  /// Who holds the session turns the knobs of a scene with one arm (Session::turn_knob). Not with
+  /// viewers, who turn them themselves.
+  bool knobs = false;
   OpenLink open_link = {};  ///< of `real_arm`
+};
+
+/// A setting of a scene's objects that can be turned while it is felt.
+struct Knob {
+  std::string name;            ///< "OBJECT: stiffness"
+  std::string unit;            ///< SI
+  double least = 0, most = 0;  ///< Its bounds.
+  double value = 0;            ///< What it is now.
 };
 
 /// The stop flag of a run that nobody stops.
@@ -140,8 +151,8 @@ class Session {
   /// neither waits nor allocates, and ends in a time of its own. It may ask `own_law`. Else as
   /// `set_law`. Real-time: never from the servo thread.
   driver::Result<void> set_servo_law(driver::ForceLaw law);
-  /// Returns the law that a session runs unless it is given another: the scene's, as viewers have
-  /// changed it. Real-time: safe.
+  /// Returns the law that a session runs unless it is given another: the scene's, as viewers or
+  /// knobs have changed it. Real-time: safe.
   driver::ForceLaw own_law() noexcept;
   /// Adds an observer of every tick, after those that were added before; it must outlive the
   /// run. Fails once a tick has run. Real-time: never from the servo thread.
@@ -160,6 +171,14 @@ class Session {
   /// false if the arm does not reach it (ArmSimulation::lead). Precondition: the arm is simulated.
   /// Between two ticks. Real-time: safe.
   bool lead_hand(const Eigen::Vector3d& p_WH) noexcept;
+
+  /// Returns the knobs as they are now; none unless SessionOptions::knobs asked for them, and with
+  /// several arms. Any thread. Real-time: never from the servo thread.
+  std::vector<Knob> knobs() const;
+  /// Turns a knob: it is on its way from the next tick on, without a step of force (50 ms from end
+  /// to end at the quickest). The error names the knobs that there are, or the bounds that the
+  /// value misses. Any thread. Real-time: never from the servo thread.
+  driver::Result<void> turn_knob(const std::string& name, double value);
 
   /// Returns the scene as it was read and adjusted (scene/scene_file.h).
   const scene::Scene& scene() const noexcept;

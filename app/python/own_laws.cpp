@@ -1,0 +1,95 @@
+#include "own_laws.h"
+
+#include <pybind11/numpy.h>
+
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "thimble/driver/tick_record.h"
+#include "thimble_error.h"
+#include "tick_arrays.h"
+
+namespace py = pybind11;
+
+namespace thimble::python {
+namespace {
+
+/// Three numbers that Python answered with.
+Eigen::Vector3d force_of(const py::object& answer) {
+  const auto force = py::array_t<double, py::array::forcecast>::ensure(answer);
+  if (!force || force.ndim() != 1 || force.shape(0) != 3) {
+    PyErr_Clear();
+    throw py::value_error(
+        "The force law must answer with three numbers (N, in the world), or None for the "
+        "scene's own force; it answered " +
+        py::repr(answer).cast<std::string>() + ".");
+  }
+  return {force.at(0), force.at(1), force.at(2)};
+}
+
+class PythonLaw final : public OwnLaw {
+ public:
+  PythonLaw(py::function law, SceneRun& run) : law_(std::move(law)), run_(run) {}
+
+  void change(const driver::DeviceState& state, driver::ForceCommand& command) noexcept override {
+    const py::gil_scoped_acquire python;
+    try {
+      if (error_) throw ThimbleError("The law has failed before.");
+      const py::object answer = law_(one(driver::record_of(state, command)));
+      if (!answer.is_none()) command.f_T_W = force_of(answer);
+    } catch (...) {
+      if (!error_) error_ = std::current_exception();
+      command.f_T_W.setZero();
+      run_.ask_to_stop();
+    }
+  }
+
+  void rethrow() override {
+    if (error_) std::rethrow_exception(error_);
+  }
+
+ private:
+  py::function law_;
+  SceneRun& run_;
+  std::exception_ptr error_;
+};
+
+/// A function by its address.
+class CompiledLaw final : public OwnLaw {
+ public:
+  using Function = void (*)(double time, const double tip[3], const double velocity[3],
+                            const double wanted[3], double force[3], void* data);
+
+  CompiledLaw(std::uintptr_t address, std::uintptr_t data, py::object kept)
+      : function_(reinterpret_cast<Function>(address)),
+        data_(reinterpret_cast<void*>(data)),
+        kept_(std::move(kept)) {}
+
+  void change(const driver::DeviceState& state, driver::ForceCommand& command) noexcept override {
+    const Eigen::Vector3d wanted = command.f_T_W;
+    // A function that leaves early has set no force, and what is no number is none for the gate.
+    command.f_T_W.setConstant(std::numeric_limits<double>::quiet_NaN());
+    function_(1e-9 * static_cast<double>(state.time_ns), state.p_WT.data(), state.v_WT.data(),
+              wanted.data(), command.f_T_W.data(), data_);
+  }
+
+ private:
+  Function function_;
+  void* data_;
+  py::object kept_;  // what must live as long: the compiled function, the data
+};
+
+}  // namespace
+
+std::unique_ptr<OwnLaw> make_law(const py::object& law, SceneRun& run) {
+  if (!py::isinstance<py::tuple>(law)) {
+    return std::make_unique<PythonLaw>(law.cast<py::function>(), run);
+  }
+  const auto parts = law.cast<py::tuple>();
+  return std::make_unique<CompiledLaw>(parts[0].cast<std::uintptr_t>(),
+                                       parts[1].cast<std::uintptr_t>(), law);
+}
+
+}  // namespace thimble::python

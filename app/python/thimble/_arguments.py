@@ -1,0 +1,69 @@
+"""What people pass: paths, numbers and vectors, checked, with a sentence for what does not do."""
+
+from __future__ import annotations
+
+import os
+from typing import Any, Optional, Union
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ._core import ArgumentError
+
+PathOrName = Union[str, "os.PathLike[str]"]
+Vector = NDArray[np.float64]
+
+_SEED_MOST = 2**64 - 1  # what the program keeps it in
+
+
+def path_of(name: str, value: PathOrName, meant: str = "a file or a name") -> str:
+    """Give a path or name as text; TypeError for what is none."""
+    try:
+        return str(os.fspath(value))
+    except TypeError:
+        raise TypeError(f"{name}: expected {meant}, found {value!r}.") from None
+
+
+def optional_path(name: str, value: Optional[PathOrName]) -> str:
+    """Give a path or name as text, "" for None."""
+    return "" if value is None else path_of(name, value)
+
+
+def number_of(name: str, value: Any) -> float:
+    """Give a number as float; TypeError for what is none."""
+    try:
+        if isinstance(value, (str, bytes, bool)):
+            raise TypeError
+        return float(value)
+    except (TypeError, ValueError):
+        raise TypeError(f"{name}: expected a number, found {value!r}.") from None
+
+
+def whole_of(name: str, value: Any, least: int = 0, most: int = _SEED_MOST) -> int:
+    """Give a whole number; TypeError for what is none, ArgumentError beyond its bounds."""
+    number = number_of(name, value)
+    if not number.is_integer() or not least <= int(value) <= most:
+        raise ArgumentError(f"{name}: expected a whole number from {least} to {most}, found {value!r}.")
+    return int(value)
+
+
+def vector_of(name: str, value: ArrayLike, finite: bool = True) -> Vector:
+    """Give three numbers, (3,); ArgumentError for anything else."""
+    return _array(name, value, (3,), "three numbers", finite)
+
+
+def rows_of(name: str, value: ArrayLike, rows: int, finite: bool = True) -> Vector:
+    """Give three numbers for each of `rows`, (rows, 3), of one (3,) that is meant for all or of as many."""
+    if np.shape(value) == (3,):
+        return np.tile(vector_of(name, value, finite), (rows, 1))
+    return _array(name, value, (rows, 3), f"the shape ({rows}, 3) or (3,)", finite)
+
+
+def _array(name: str, value: ArrayLike, shape: tuple[int, ...], meant: str, finite: bool) -> Vector:
+    try:
+        array = np.ascontiguousarray(value, dtype=np.float64)
+    except (TypeError, ValueError):
+        array = np.empty(0)
+    if array.shape != shape or (finite and not np.isfinite(array).all()):
+        raise ArgumentError(f"{name}: expected {meant}, found {value!r}")
+    return array

@@ -1,0 +1,140 @@
+"""What all that run a scene have in common."""
+
+from __future__ import annotations
+
+import warnings
+from typing import Any, Mapping, Optional, Union
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _core
+from ._arguments import PathOrName, Vector, number_of, optional_path, path_of, whole_of
+from ._core import ArgumentError
+from ._laws import Law, core_law
+from ._scene_text import Scene, scene_file
+from ._ticks import Figure, figure_of
+
+
+class Held:
+    """What all that run a scene have in common."""
+
+    _run: Any  # a _core.Run, or what is left of one: Past, OfArm
+
+    @property
+    def objects(self) -> list[str]:
+        """Names of the scene's objects, in its order."""
+        return self._run.objects
+
+    @property
+    def info(self) -> dict[str, Any]:
+        """What runs, as recordings say it: scene, arm, device, clock, program, rate [Hz], seed ..."""
+        return self._run.info()
+
+    @property
+    def end(self) -> str:
+        """Why the run ended: "done", "stopped" or "fault"; "" while it has not."""
+        return self._run.end or ""
+
+    @property
+    def stride(self) -> int:
+        """Every how many-th tick is kept: 1 for runs of up to a million ticks."""
+        return self._run.stride
+
+    def mesh(self, object: Optional[str] = None) -> tuple[Vector, NDArray[np.int32]]:
+        """Give the mesh of one object, or of all as one, as it is now: moved, dented, sculpted.
+
+        Returns vertices (v, 3) in the world, m, and triangles (t, 3), counter-clockwise from outside.
+        Shapes give the mesh that stands for them in pictures.
+        """
+        return self._run.mesh(object)
+
+    def summary(self) -> str:
+        """Tell a run that is over in plain words, as ``thimble run`` does."""
+        return self._run.summary()
+
+    def figures(self) -> list[Figure]:
+        """Tell the figures of a run that is over, with their goals."""
+        return [figure_of(one) for one in self._run.figures()]
+
+
+class Past:
+    """What a run that is over tells, apart from its ticks: what is left of it in another process."""
+
+    def __init__(self, run: Union[_core.Run, "Past", "OfArm"]) -> None:
+        self.objects: list[str] = list(run.objects)
+        self.end: Optional[str] = run.end
+        self.stride: int = run.stride
+        self._info = run.info()
+        self._summary = run.summary()
+        self._figures = run.figures()
+        self._meshes = {name: run.mesh(name) for name in (None, *self.objects)}
+
+    def info(self) -> dict[str, Any]:
+        return dict(self._info)
+
+    def summary(self) -> str:
+        return self._summary
+
+    def figures(self) -> list[dict[str, Any]]:
+        return self._figures
+
+    def mesh(self, object: Optional[str] = None) -> tuple[Vector, NDArray[np.int32]]:
+        if object not in self._meshes:
+            raise ArgumentError(f'The scene has no object "{object}".')
+        return self._meshes[object]
+
+
+class OfArm:
+    """A run as one of its arms had it."""
+
+    def __init__(self, run: _core.Run, arm: int) -> None:
+        self._run = run
+        self._arm = arm
+
+    def __getattr__(self, name: str) -> Any:
+        found = getattr(self._run, name)
+        if name in ("ticks", "latest", "summary", "figures", "info"):
+            return lambda: found(self._arm)
+        return found
+
+
+def begin(
+    scene: Scene,
+    *,
+    set: Optional[Mapping[str, Any]],
+    seconds: Optional[float],
+    seed: Optional[int],
+    arm: Optional[PathOrName],
+    quality: str,
+    record: Optional[PathOrName],
+    law: Optional[Law] = None,
+    device: str = "sim",
+    agreed: bool = False,
+    unchecked: bool = False,
+    real_time: bool = False,
+    firmware: Optional[PathOrName] = None,
+    homed: bool = False,
+    no_real_time: bool = False,
+    ros2: Union[None, bool, dict[str, Any]] = None,
+) -> _core.Run:
+    run = _core.Run(
+        scene_file(scene, set, keep=record is not None),
+        arm=optional_path("arm", arm),
+        device=path_of("device", device, "\"sim\", \"auto\" or a name"),
+        agreed=agreed,
+        unchecked=unchecked,
+        real_time=real_time,
+        seconds=None if seconds is None else number_of("seconds", seconds),
+        seed=None if seed is None else whole_of("seed", seed),
+        quality=path_of("quality", quality, "draft, normal, reference or auto"),
+        record=optional_path("record", record),
+        firmware=optional_path("firmware", firmware),
+        law=core_law(law),
+        homed=homed,
+        no_real_time=no_real_time,
+        ros2=ros2,
+    )
+    for warning in run.warnings():
+        warnings.warn(warning, RuntimeWarning, stacklevel=3)
+    return run

@@ -1,0 +1,114 @@
+"""Settings of a scene that are turned while it is felt."""
+
+from __future__ import annotations
+
+import re
+from html import escape
+from typing import Any, Iterator, NamedTuple
+
+from . import _core
+from ._arguments import number_of
+from ._core import ArgumentError
+
+
+class Knob(NamedTuple):
+    """One setting that can be turned: its name, unit (SI), bounds, and what it is now."""
+
+    name: str
+    unit: str
+    least: float
+    most: float
+    value: float
+
+
+class Knobs:
+    """The settings of a scene that can be turned while it is felt, by their names.
+
+        live.knobs["ball: stiffness"] = 300         # N/m; or live.knobs.ball_stiffness = 300
+        live.knobs["ball: stiffness"].value         # what it is now
+        print(live.knobs)                           # names, values, bounds, units
+
+    A knob is on its way from the next tick on. It goes from end to end of its bounds within 50 ms at
+    the quickest, and while it is felt no faster than changes the force by 40 N/s, so that no hand gets
+    a step of force; in virtual time and on a real arm alike. A knob that is turned at the same tick does
+    the same to the bit. A name that is not there, and a value beyond the bounds, is an ArgumentError
+    that tells them; nothing is turned then. Scenes of several arms have no knobs.
+    """
+
+    _run: _core.Run
+
+    def __init__(self, run: _core.Run) -> None:
+        object.__setattr__(self, "_run", run)
+
+    def __getitem__(self, name: str) -> Knob:
+        for knob in self.values():
+            if knob.name == name:
+                return knob
+        raise ArgumentError(f"The run has no knob {name!r}; it has {self._names()}.")
+
+    def __setitem__(self, name: str, value: float) -> None:
+        if name not in self:
+            self[name]  # tells which there are
+        self._run.turn(name, number_of(name, value))
+
+    def __getattr__(self, attribute: str) -> Knob:
+        name = self._by_attribute(attribute)
+        if name is None:
+            raise AttributeError(f"The run has no knob {attribute!r}; it has {', '.join(self._attributes())}.")
+        return self[name]
+
+    def __setattr__(self, attribute: str, value: float) -> None:
+        name = self._by_attribute(attribute)
+        if name is None:
+            raise AttributeError(f"The run has no knob {attribute!r}; it has {', '.join(self._attributes())}.")
+        self[name] = value
+
+    def __iter__(self) -> Iterator[str]:
+        return iter([knob.name for knob in self.values()])
+
+    def __len__(self) -> int:
+        return len(self.values())
+
+    def __contains__(self, name: object) -> bool:
+        return any(knob.name == name for knob in self.values())
+
+    def keys(self) -> list[str]:
+        """Give the names, in the order of the scene's objects."""
+        return list(self)
+
+    def values(self) -> list[Knob]:
+        """Give the knobs as they are now."""
+        return [Knob(*one) for one in self._run.knobs()]
+
+    def items(self) -> list[tuple[str, Knob]]:
+        """Give names and knobs."""
+        return [(knob.name, knob) for knob in self.values()]
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *self._attributes()]
+
+    def __repr__(self) -> str:
+        if not len(self):
+            return "no knobs"
+        width = max(map(len, self))
+        return "\n".join(
+            f"{knob.name:<{width}}  {knob.value:g} {knob.unit} ({knob.least:g} to {knob.most:g})"
+            for knob in self.values()
+        )
+
+    def _repr_html_(self) -> str:
+        rows = "".join(
+            f"<tr><td>{escape(knob.name)}</td><td>{knob.value:g}</td><td>{knob.least:g} to {knob.most:g}</td>"
+            f"<td>{escape(knob.unit)}</td></tr>"
+            for knob in self.values()
+        )
+        return f"<table><tr><th>knob</th><th>value</th><th>bounds</th><th>unit</th></tr>{rows}</table>"
+
+    def _attributes(self) -> dict[str, str]:
+        return {re.sub(r"\W+", "_", name).strip("_"): name for name in self}
+
+    def _by_attribute(self, attribute: str) -> Any:
+        return None if attribute.startswith("_") else self._attributes().get(attribute)
+
+    def _names(self) -> str:
+        return ", ".join(self) or "none"

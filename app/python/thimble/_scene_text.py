@@ -1,0 +1,57 @@
+"""Scenes that are a dict, a text, or changed, as files for the program."""
+
+from __future__ import annotations
+
+import atexit
+import functools
+import json
+import shutil
+import tempfile
+from pathlib import Path
+from typing import Any, Mapping, Optional, Union
+
+from . import _core
+from ._arguments import PathOrName, path_of
+from ._core import ArgumentError, Error
+
+Scene = Union[PathOrName, Mapping[str, Any]]
+
+
+def as_yaml(value: Any) -> str:
+    """Write a value as JSON, which YAML understands; numpy's are taken as Python's own."""
+    try:
+        return json.dumps(value, allow_nan=False, default=lambda one: one.tolist())
+    except (AttributeError, TypeError, ValueError) as wrong:
+        raise ArgumentError(f"A scene cannot hold {value!r}: {wrong}.") from wrong
+
+
+def scene_file(scene: Scene, changes: Optional[Mapping[str, Any]], keep: bool) -> str:
+    """Give the file of a scene; of one without a file, or changed, one that is written for it.
+
+    keep: in the user's state folder, where a recording's replay finds it, not for this process alone.
+    """
+    if changes is not None and not isinstance(changes, Mapping):
+        raise TypeError(f"set: expected a dict of places and values, found {changes!r}.")
+    beside = Path.cwd()
+    if isinstance(scene, Mapping):
+        text = as_yaml(scene)
+    elif isinstance(scene, str) and "\n" in scene:
+        text = scene
+    elif changes:
+        file = Path(_core.find_scene(path_of("scene", scene, "a file, a name, a dict or YAML text")))
+        try:
+            text, beside = file.read_text(encoding="utf-8"), file.parent
+        except (OSError, UnicodeDecodeError) as wrong:
+            raise Error(f"{file}: cannot be read: {wrong}.") from wrong
+    else:
+        return path_of("scene", scene, "a file, a name, a dict or YAML text")
+    into = "" if keep else str(_scratch())
+    values = {path_of("set", place, "places as text"): as_yaml(value) for place, value in (changes or {}).items()}
+    return _core.keep_scene(text, values, str(beside), into)
+
+
+@functools.lru_cache(maxsize=1)
+def _scratch() -> Path:
+    folder = tempfile.mkdtemp(prefix="thimble-")
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    return Path(folder)

@@ -1,0 +1,146 @@
+"""Simulated arms without a scene."""
+
+from __future__ import annotations
+
+from typing import Any, Optional, Sequence, Union
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _core
+from ._arguments import PathOrName, Vector, number_of, path_of, rows_of, vector_of, whole_of
+from ._core import ArgumentError
+from ._ticks import Tick, Ticks
+
+_ARMS_MOST = 1_000_000  # 10 GB and more; chosen against a wrong unit
+
+
+class Simulator:
+    """A simulated arm without a scene, in virtual time: you are its force law.
+
+    arm: arm file, or a name (:func:`arms`). hand: where the hand holds the tip, (3,) in the world, m.
+    rate: ticks per second, Hz. seed: of the hand's tremor. Forces go through the same safety gate and
+    the same bytes as those to a real arm.
+    """
+
+    def __init__(
+        self,
+        arm: PathOrName = "vintage_phantom",
+        *,
+        hand: ArrayLike = (0.0, 0.0, 0.0),
+        rate: float = 1000,
+        seed: int = 0,
+    ) -> None:
+        self._arm = _core.SimulatorSession(
+            path_of("arm", arm), vector_of("hand", hand), number_of("rate", rate), whole_of("seed", seed)
+        )
+
+    def step(self, force: ArrayLike = (0.0, 0.0, 0.0), hand: Optional[ArrayLike] = None) -> Tick:
+        """Run one tick with a force on the hand, (3,) in the world, N, and give it.
+
+        The tick tells the tip as it was read when the tick began, so before this force acted.
+        hand: where the hand is led to from now on, as in :meth:`Stepper.step`.
+        After a fault (``tick.fault``) the force stays off until :meth:`activate`.
+        """
+        goal = None if hand is None else vector_of("hand", hand)
+        return Tick(self._arm.step(vector_of("force", force, finite=False), goal))
+
+    def activate(self) -> None:
+        """Let forces through again after a fault, with a soft start."""
+        self._arm.activate()
+
+    @property
+    def name(self) -> str:
+        """Name of the arm."""
+        return self._arm.name
+
+    @property
+    def true_force(self) -> Vector:
+        """Force that the motors exert on the tip now, (3,) in the world, N: what no driver can see."""
+        return self._arm.true_force
+
+    @property
+    def force_max(self) -> float:
+        """Limit of the safety gate, N."""
+        return self._arm.force_max
+
+    @property
+    def workspace(self) -> tuple[Vector, Vector]:
+        """Lower and upper corner of the box in which the tip may work, (3,) in the world, m."""
+        return self._arm.workspace
+
+
+class Simulators:
+    """Many simulated arms without a scene, each as a :class:`Simulator` to the bit, stepped by one call.
+
+    You are their force law, and numpy computes it for all at once::
+
+        arms = thimble.Simulators(1000, hand=(0, 0, 0))
+        ticks = arms.step()
+        for _ in range(1000):
+            ticks = arms.step(-300 * ticks.tip - 1 * ticks.velocity)        # N, (1000, 3)
+
+    count: how many. arm: arm file, or a name (:func:`arms`). hand: where each hand holds its tip, (count, 3)
+    in the world, m, or (3,) for all. rate: ticks per second, Hz. seed: of the first hand's tremor, one more
+    for each that follows; or a sequence of count.
+    """
+
+    def __init__(
+        self,
+        count: int,
+        arm: PathOrName = "vintage_phantom",
+        *,
+        hand: ArrayLike = (0.0, 0.0, 0.0),
+        rate: float = 1000,
+        seed: Union[int, Sequence[int], NDArray[np.integer[Any]]] = 0,
+    ) -> None:
+        count = whole_of("count", count, 1, _ARMS_MOST)
+        hands = rows_of("hand", hand, count)
+        if not isinstance(seed, (Sequence, np.ndarray)):
+            first = whole_of("seed", seed)
+            seed = range(first, first + count)
+        seeds = [whole_of("seed", one) for one in seed]
+        if len(seeds) != count:
+            raise ArgumentError(f"seed: expected {count} of them, found {len(seeds)}.")
+        file, rate = path_of("arm", arm), number_of("rate", rate)
+        self._arms = [_core.SimulatorSession(file, *one) for one in zip(hands, [rate] * count, seeds)]
+
+    def __len__(self) -> int:
+        return len(self._arms)
+
+    def step(self, force: ArrayLike = (0.0, 0.0, 0.0), hand: Optional[ArrayLike] = None) -> Ticks:
+        """Run one tick of each, and give them: ``ticks.tip`` is (count, 3), a row for each arm.
+
+        force: on each hand, (count, 3) in the world, N, or (3,) for all; one that is no number switches its
+        arm alone off. hand: where the hands are led to from now on, (count, 3) or (3,), m; ArgumentError
+        where an arm does not reach it, and no arm is stepped then. Else as :meth:`Simulator.step`.
+        """
+        count = len(self)
+        hands = None if hand is None else rows_of("hand", hand, count)
+        return Ticks(_core.step_all(self._arms, rows_of("force", force, count, finite=False), hands))
+
+    def activate(self) -> None:
+        """Let forces through again to arms in fault, with a soft start; the others go on."""
+        for arm in self._arms:
+            if arm.in_fault:
+                arm.activate()
+
+    @property
+    def name(self) -> str:
+        """Name of the arm."""
+        return self._arms[0].name
+
+    @property
+    def true_force(self) -> Vector:
+        """Force that the motors exert on each tip now, (count, 3) in the world, N."""
+        return np.stack([arm.true_force for arm in self._arms])
+
+    @property
+    def force_max(self) -> float:
+        """Limit of the safety gate, N."""
+        return self._arms[0].force_max
+
+    @property
+    def workspace(self) -> tuple[Vector, Vector]:
+        """Lower and upper corner of the box in which each tip may work, (3,) in the world, m."""
+        return self._arms[0].workspace

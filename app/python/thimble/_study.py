@@ -1,0 +1,70 @@
+"""What runs in a process of its own: the program, and its studies."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shutil
+import subprocess
+from pathlib import Path
+from typing import Any, Optional, Sequence
+
+from ._arguments import PathOrName, path_of
+from ._core import ArgumentError, Error
+from ._ticks import Figure, figure_of
+
+
+def program() -> str:
+    """Find the program: $THIMBLE_PROGRAM, the one installed or built beside this package, or in $PATH."""
+    named = os.environ.get("THIMBLE_PROGRAM")
+    if named:
+        return named
+    for above in Path(__file__).resolve().parents:
+        for beside in (above / "bin" / "thimble", above / "app" / "thimble"):
+            if beside.is_file() and os.access(beside, os.X_OK):
+                return str(beside)
+    found = shutil.which("thimble")
+    if found is None:
+        raise Error("The program thimble was not found; install it, or name it in $THIMBLE_PROGRAM.")
+    return found
+
+
+BAD_INPUT = 2  # the program's exit code of wrong arguments, scene, arm file or mesh
+
+
+def _studies() -> list[str]:
+    told = subprocess.run([program(), "study", "--help"], capture_output=True, text=True, check=True).stdout
+    return re.findall(r"^  ([a-z][a-z-]*) ", told.partition("Subcommands:")[2], re.MULTILINE)
+
+
+def study(
+    name: str, *arguments: PathOrName, out: Optional[PathOrName] = None, **options: Any
+) -> list[Figure]:
+    """Run a study (``thimble study --help`` lists them), and give its figures.
+
+    It runs in a process of its own, as several count their own instructions or use all cores. Options
+    are those of the command line: ``study("stability", arm="vintage_phantom", coarse=True)``,
+    ``study("accuracy", axis=["velocity", "encoder"])``. out: folder for pictures, tables and
+    figures.json; "study-NAME" if absent. Raises ArgumentError if there is no such study, or it cannot
+    take an option; Error with what the program said if it fails.
+    """
+    path_of("name", name, "the name of a study")
+    names = _studies()
+    if name not in names:
+        raise ArgumentError(f'There is no study "{name}"; there are {", ".join(names)}.')
+    folder = Path(path_of("out", out)) if out is not None else Path(f"study-{name}")
+    command = [program(), "study", name, *(path_of("arguments", one) for one in arguments), "--out", str(folder)]
+    for key, value in options.items():
+        if value is None or value is False:
+            continue
+        command.append("--" + key.replace("_", "-"))
+        if value is not True:
+            several = isinstance(value, Sequence) and not isinstance(value, str)
+            command += [str(one) for one in (value if several else [value])]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        said = (done.stderr.strip() or done.stdout.strip()).removesuffix("\nRun with --help for more information.")
+        kind = ArgumentError if done.returncode == BAD_INPUT else Error
+        raise kind(f"thimble study {name}: {said}")
+    return [figure_of(one) for one in json.loads((folder / "figures.json").read_text())]

@@ -1,0 +1,48 @@
+#include "share/held_knobs.h"
+
+#include "share/knob_order.h"
+
+namespace thimble::session {
+
+HeldKnobs::HeldKnobs(const scene::Scene& scene, render::SceneTouch& touch)
+    : touch_(touch),
+      knobs_(scene, touch),
+      described_(knobs_.described()),
+      states_(described_.size()) {
+  for (std::size_t i = 0; i < described_.size(); ++i) {
+    states_[i].wanted.store(described_[i].initial);
+    states_[i].now.store(described_[i].initial);
+  }
+}
+
+std::vector<Knob> HeldKnobs::list() const {
+  std::vector<Knob> list;
+  for (std::size_t i = 0; i < described_.size(); ++i) {
+    const SharedScene::Knob& knob = described_[i];
+    list.push_back({knob.name, knob.unit, knob.least, knob.most,
+                    states_[i].now.load(std::memory_order_relaxed)});
+  }
+  return list;
+}
+
+driver::Result<void> HeldKnobs::turn(const std::string& name, double value) {
+  const auto knob = find_knob(described_, name, value);
+  if (!knob) return knob.error();
+  states_[*knob].wanted.store(value, std::memory_order_relaxed);
+  asked_.store(true, std::memory_order_release);
+  return {};
+}
+
+std::optional<double> HeldKnobs::knob_wanted(std::size_t knob) const noexcept {
+  return states_[knob].wanted.load(std::memory_order_relaxed);
+}
+
+driver::ForceCommand HeldKnobs::operator()(const driver::DeviceState& state) noexcept {
+  if (asked_.load(std::memory_order_relaxed)) {
+    turning_ = asked_.exchange(false, std::memory_order_acquire);
+  }
+  if (turning_) turning_ = knobs_.step(*this, last_, state.dt);
+  return touch_(state);
+}
+
+}  // namespace thimble::session

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "share/knob_requests.h"
+#include "share/live_knobs.h"
+#include "thimble/driver/device_state.h"
+#include "thimble/driver/force_law.h"
+#include "thimble/driver/result.h"
+#include "thimble/driver/tick_record.h"
+#include "thimble/render/scene_touch.h"
+#include "thimble/scene/scene_file.h"
+#include "thimble/session/session.h"
+#include "thimble/session/tick_observer.h"
+
+namespace thimble::session {
+
+/// The knobs of a run that the program which holds the session turns, without shared memory: the
+/// force law of the run (Session::set_servo_law), and an observer of its ticks
+/// (Session::add_observer). For scenes of one arm.
+class HeldKnobs final : public TickObserver, public KnobRequests {
+ public:
+  /// Finds the knobs of a scene. Both must outlive it. Real-time: never from the servo thread.
+  HeldKnobs(const scene::Scene& scene, render::SceneTouch& touch);
+
+  /// Returns the knobs as they are now. Any thread. Real-time: never from the servo thread.
+  std::vector<Knob> list() const;
+  /// Turns a knob: it is on its way from the next tick on, as quickly as LiveKnobs lets it. The
+  /// error is that of `find_knob`. Any thread. Real-time: never from the servo thread.
+  driver::Result<void> turn(const std::string& name, double value);
+
+  /// Finds the force of the scene, its knobs moved on (the servo loop's force law). Real-time:
+  /// safe.
+  driver::ForceCommand operator()(const driver::DeviceState& state) noexcept;
+
+  /// Takes one tick. Real-time: safe.
+  void take(const driver::TickRecord& record) noexcept override { last_ = record; }
+  std::optional<double> knob_wanted(std::size_t knob) const noexcept override;
+  void store_knob(std::size_t knob, double now) noexcept override {
+    states_[knob].now.store(now, std::memory_order_relaxed);
+  }
+
+ private:
+  struct State {
+    std::atomic<double> wanted{0}, now{0};
+  };
+
+  render::SceneTouch& touch_;
+  LiveKnobs knobs_;
+  std::vector<SharedScene::Knob> described_;
+  std::vector<State> states_;
+  std::atomic<bool> asked_{false};  // somebody has turned a knob since the last tick
+  bool turning_ = false;
+  driver::TickRecord last_;
+};
+
+}  // namespace thimble::session

@@ -1,0 +1,102 @@
+"""Settings of a scene that are turned from Python while it is felt."""
+
+import time
+
+import numpy as np
+import pytest
+import thimble
+
+
+def _stepped(turns, seconds=1.5, **options):
+    """Steps a scene, turns knobs at ticks, and gives its ticks."""
+    stepper = thimble.Stepper("rubber", seconds=seconds, **options)
+    for tick in range(round(1000 * seconds)):
+        for name, value in turns.get(tick, {}).items():
+            stepper.knobs[name] = value
+        stepper.step()
+    return stepper
+
+
+def test_knobs_are_listed_with_units_bounds_and_what_they_are_now():
+    knobs = thimble.Stepper("rubber").knobs
+    assert "ball: stiffness" in knobs and len(knobs) == len(list(knobs)) == len(knobs.keys()) > 1
+    stiffness = knobs["ball: stiffness"]
+    assert isinstance(stiffness, thimble.Knob) and stiffness.unit == "N/m"
+    assert stiffness.least < stiffness.value < stiffness.most
+    assert knobs.ball_stiffness == stiffness == dict(knobs.items())["ball: stiffness"]
+    assert "ball_stiffness" in dir(knobs)
+    assert f"{stiffness.value:g} N/m" in repr(knobs)
+    assert "<td>ball: stiffness</td>" in knobs._repr_html_()
+
+
+def test_a_knob_that_nobody_turns_changes_no_bit_and_a_turn_repeats_to_the_bit():
+    plain = _stepped({}).ticks().columns.tobytes()
+    assert plain == thimble.run("rubber", seconds=1.5).columns.tobytes()
+    turned = _stepped({400: {"ball: stiffness": 50}}).ticks()
+    assert turned.columns.tobytes() == _stepped({400: {"ball: stiffness": 50}}).ticks().columns.tobytes()
+    plain = _stepped({}).ticks()
+    assert (turned.force_wanted[:400] == plain.force_wanted[:400]).all()
+    assert np.abs(turned.force_wanted - plain.force_wanted).max() > 0.1  # N
+
+
+def test_a_turn_begins_with_the_next_tick_and_ends_on_the_very_value():
+    stepper = thimble.Stepper("rubber")
+    stepper.step()
+    before = stepper.knobs.ball_stiffness.value
+    stepper.knobs.ball_stiffness = 123
+    assert stepper.knobs.ball_stiffness.value == before
+    stepper.step()
+    assert 123 <= stepper.knobs.ball_stiffness.value < before
+    for _ in range(60):  # nothing is touched yet: 50 ms at the most
+        stepper.step()
+    assert stepper.knobs.ball_stiffness.value == 123
+
+
+def test_no_turn_of_a_felt_knob_is_a_step_of_force():
+    turns = {tick: {"ball: stiffness": 800 if tick // 100 % 2 else 50} for tick in range(300, 1500, 100)}
+    stepper = _stepped(turns)
+    plain = thimble.run("rubber", seconds=1.5)
+    step = np.abs(np.diff(stepper.ticks().force_wanted, axis=0)).max()
+    assert step < np.abs(np.diff(plain.force_wanted, axis=0)).max() + 0.1  # N
+    assert np.abs(stepper.ticks().force_wanted - plain.force_wanted).max() > 0.1  # and yet it is felt
+
+
+def test_a_law_of_ones_own_sees_the_scene_as_the_knobs_have_it():
+    turns = {200: {"ball: stiffness": 50}}
+    with_law = _stepped(turns, law=lambda tick: None)
+    assert with_law.ticks().force_wanted.tobytes() == _stepped(turns).ticks().force_wanted.tobytes()
+
+
+def test_mistakes_tell_the_knobs_and_the_bounds_and_turn_nothing():
+    stepper = thimble.Stepper("rubber")
+    knobs, before = stepper.knobs, stepper.knobs.values()
+    most = f"{knobs.ball_stiffness.most:g}"
+    for wrong, error, said in [
+        (lambda: knobs.__setitem__("ball: stifness", 3), thimble.ArgumentError, "no knob 'ball: stifness'.*ball: stiffness"),
+        (lambda: knobs["nothing"], thimble.ArgumentError, "it has ball: stiffness"),
+        (lambda: knobs.__setitem__("ball: stiffness", 1e9), ValueError, rf"may be 0 to {most} N/m, found 1e\+09; nothing was turned"),
+        (lambda: knobs.__setitem__("ball: stiffness", float("nan")), thimble.ArgumentError, "found nan"),
+        (lambda: knobs.__setitem__("ball: stiffness", "soft"), TypeError, "expected a number, found 'soft'"),
+        (lambda: setattr(knobs, "stifness", 3), AttributeError, "it has ball_stiffness"),
+        (lambda: knobs.stifness, AttributeError, "no knob 'stifness'"),
+    ]:
+        with pytest.raises(error, match=said):
+            wrong()
+    stepper.step()
+    assert knobs.values() == before and not hasattr(knobs, "stifness")
+    stepper.stop()
+    with pytest.raises(thimble.Error, match="over"):
+        knobs["ball: stiffness"] = 100
+    several = thimble.Stepper("two_hands").knobs
+    assert len(several) == 0 and repr(several) == "no knobs"
+    with pytest.raises(thimble.ArgumentError, match="it has none"):
+        several["anything"] = 1
+
+
+def test_knobs_of_a_run_in_real_time_turn_from_the_side():
+    with thimble.open("rubber", "sim", seconds=60) as live:
+        live.knobs["ball: stiffness"] = 123
+        deadline = time.monotonic() + 30
+        while live.knobs.ball_stiffness.value != 123 and time.monotonic() < deadline:
+            time.sleep(0.01)
+        assert live.knobs.ball_stiffness.value == 123
