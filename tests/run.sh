@@ -33,8 +33,10 @@ tests/fuzz/setup.sh || true  # optional: without it only the corpora are replaye
 [ -z "${THIMBLE_LONG:-}" ] || tests/faces/setup.sh || true  # optional: 64-bit ARM, and a window on a screen in memory
 tests/optional_packages.sh "the guide as web pages" mkdocs || true
 tests/optional_packages.sh "the format of the sources" clang-format-14 || true
-tests/optional_packages.sh "pictures and tables of the Python package, compiled laws, its notebooks in Jupyter, its types" \
-  python3-matplotlib python3-pandas python3-numba python3-nbclient python3-ipykernel mypy || true
+tests/optional_packages.sh "pictures, tables and compiled laws of the Python package" \
+  python3-matplotlib python3-pandas python3-numba || true
+[ -z "${THIMBLE_LONG:-}" ] || tests/optional_packages.sh "its notebooks in Jupyter, its types" \
+  python3-nbclient python3-ipykernel mypy || true
 tests/optional_packages.sh "the page in a real browser" chromium python3-websockets || true
 
 # What failed, again at the very end: a log of CI is often cut to its last lines.
