@@ -29,6 +29,8 @@
 #include "run_arm.h"
 #include "run_attendance.h"
 #include "setup.h"
+#include "share/shared_run.h"
+#include "share/steer/next_run.h"
 #include "share/viewer_request_handler.h"
 #include "stability/tuning.h"
 #include "terminal.h"
@@ -139,26 +141,66 @@ ExitCode run_session(session::Session& session, session::ServoThread& servo,
   return kExitDone;
 }
 
-int run_scene(RunOptions& options) {
-  if (const auto fits = check_run_options(options); !fits)
-    return complain(fits.error(), kExitBadInput);
-  const auto arms = session::choose_run_arms(
-      options.devices,
-      {.arm_file = options.arm_file, .firmware = options.firmware, .unchecked = options.unchecked});
-  if (!arms) return complain(arms.error(), kExitNoDevice);
-  tell(arms->told);
+/// Names what the n-th run of a command records: touch.h5, touch-2.h5.
+std::string numbered(const std::string& file, int number) {
+  if (file.empty() || number == 1) return file;
+  const std::filesystem::path path(file);
+  const std::string name =
+      fmt::format("{}-{}{}", path.stem().string(), number, path.extension().string());
+  return (path.parent_path() / name).string();
+}
 
-  // All that takes time comes before the arm is opened: an open arm is served in every millisecond.
-  const std::atomic<bool>& stop = scene::catch_interrupts();
-  if (arms->real()) scene::leave_rather_than_stop();
-  session::SessionOptions asked = session_options(options, *arms);
-  std::shared_ptr<faces::SteppedClock> clock;
-  if (options.stepped()) asked.own_clock = clock = std::make_shared<faces::SteppedClock>(stop);
-  auto prepared = session::Session::prepare(options.scene, asked);
-  if (!prepared) return complain(prepared.error(), kExitBadInput);
-  session::Session& session = **prepared;
+/// One command: what stays from run to run where a run is begun anew.
+struct RunCourse {
+  RunOptions& options;
+  const session::RunArms& arms;
+  const std::atomic<bool>& stop;
+  session::SessionOptions asked;
+  std::shared_ptr<faces::SteppedClock> clock;  // of a run that is stepped, or null
+  std::optional<session::NextRun> next;        // what comes after it, where anything may
+  std::unique_ptr<session::ViewerProcess> viewer;
+  int number = 1;  // of the run
+};
+
+/// Returns the object whose mesh is saved, -1 for all.
+driver::Result<int> find_saved(const session::Session& session, const RunOptions& options) {
+  if (options.save_object.empty()) return -1;
+  if (const auto object = session.find_object(options.save_object)) return *object;
+  return driver::Error{"--save-object: the scene has no object \"" + options.save_object + "\"."};
+}
+
+/// Prepares what comes next, unseen and unrecorded while the run before goes on.
+driver::Result<std::unique_ptr<session::Session>> prepare_next(const RunCourse& course,
+                                                               const std::filesystem::path& scene) {
+  session::SessionOptions asked = course.asked;
+  asked.share_out = false;
+  asked.record.clear();
+  auto prepared = session::Session::prepare(scene, asked);
+  if (!prepared) return prepared;
+  if (auto saved = find_saved(**prepared, course.options); !saved) return saved.error();
+  return prepared;
+}
+
+/// Lets what was prepared take the place of a run that is over.
+driver::Result<void> begin_next(RunCourse& course, session::Session& session,
+                                const std::string& name) {
+  session::SessionOptions asked = course.asked;
+  asked.share_name = name;
+  if (!asked.record.empty()) {
+    const auto file = numbered(course.options.record, course.number);
+    if (auto begun = session.begin_recording(file); !begun) return begun;
+  }
+  return session.share(asked);
+}
+
+/// Runs a session that is prepared to its end, and writes and prints what is asked for, unless
+/// `then` comes after it.
+ExitCode run_one(RunCourse& course, session::Session& session,
+                 std::unique_ptr<session::Session>& then) {
+  const RunOptions& options = course.options;
+  const bool first = course.number == 1;
   // Whoever leaves before the run leaves a recording that is whole, with no tick in it.
-  const auto leave = [&session](int code) {
+  const auto leave = [&session](ExitCode code) {
     if (const auto ended = session.end_recording(); !ended) complain(ended.error(), kExitTrouble);
     return code;
   };
@@ -166,43 +208,91 @@ int run_scene(RunOptions& options) {
   for (const std::string& warning : stability_warnings(session.scene())) {
     scene::logger().warn("{} See thimble tune.", warning);
   }
-  const auto object = options.save_object.empty() ? std::optional<int>(-1)
-                                                  : session.find_object(options.save_object);
-  if (!object) {
-    return leave(
-        complain({"--save-object: the scene has no object \"" + options.save_object + "\"."},
-                 kExitBadInput));
-  }
-  const auto desk =
-      session::open_viewer_requests(session, viewer_choice(options), viewer_arguments(options));
+  const auto object = find_saved(session, options);
+  if (!object) return leave(complain(object.error(), kExitBadInput));
+  session::NextRun* next = course.next ? &*course.next : nullptr;
+  const auto desk = first ? session::open_viewer_requests(session, viewer_choice(options),
+                                                          viewer_arguments(options), next)
+                          : std::make_unique<session::ViewerRequestHandler>(
+                                session, std::move(course.viewer), options.by_viewer(), next);
+  if (!desk) next = nullptr;
+  if (next != nullptr) next->begin(session);
   session::ServoThread servo(session.real_time());
-  if (arms->real()) {
+  if (course.arms.real()) {
     if (auto granted = session::check_real_time(servo.grant(), options.no_real_time); !granted) {
       return leave(complain(granted.error(), kExitBadInput));
     }
   }
   if (!servo.grant().advice.empty()) scene::logger().warn("{}", servo.grant().advice);
-  if (stop.load()) return leave(kExitInterrupted);
-  if (!session::agree_to_forces(session, options.yes, session::user_terminal(), stop)) {
-    return leave(stop.load() ? kExitInterrupted : kExitBadInput);
+  if (course.stop.load()) return leave(kExitInterrupted);
+  if (!session::agree_to_forces(session, options.yes, session::user_terminal(), course.stop)) {
+    return leave(course.stop.load() ? kExitInterrupted : kExitBadInput);
   }
   std::optional<scene::LeavingGuard> guard;
-  RunSides sides{.clock = clock, .topics = {}, .page = nullptr};
-  const ExitCode ran = run_session(session, servo, desk.get(), options, sides, guard, stop);
+  RunSides sides{.clock = course.clock, .topics = {}, .page = nullptr};
+  const std::atomic<bool>& end = next != nullptr ? next->ended() : course.stop;
+  const ExitCode ran = run_session(session, servo, desk.get(), options, sides, guard, end);
   if (ran != kExitDone) return leave(ran);
   // The touch went on, whatever became of the recording.
-  const ExitCode recorded = end_recording(session, options.record);
+  const ExitCode recorded = end_recording(session, numbered(options.record, course.number));
   // Zero force is out and the recording closed; who is impatient may kill what follows. Not so
   // where the arm took no zero.
   if (zero_assured(session)) guard.reset();
+  if (next != nullptr) then = next->take(servo.join(), course.stop.load());
   print_summaries(session, servo.grant());
   for (const auto& arm : sides.topics) session::print(stdout, "{}", arm->report());
+  if (then) {
+    std::fflush(stdout);
+    course.viewer = desk->take_viewer();
+    return recorded;
+  }
   const auto written = write_files(session, servo.grant(), options, sides.page.get(), *object);
   if (!written) {
     return complain(written.error(), kExitTrouble);
   }
   const ExitCode ended = end_of(session, desk && desk->ended());
   return ended == kExitDone ? recorded : ended;
+}
+
+int run_scene(RunOptions& options) {
+  if (const auto fits = check_run_options(options); !fits)
+    return complain(fits.error(), kExitBadInput);
+  const auto arms = session::choose_run_arms(
+      options.devices,
+      {.arm_file = options.arm_file, .firmware = options.firmware, .unchecked = options.unchecked});
+  if (!arms) return complain(arms.error(), kExitNoDevice);
+  if (const auto fits = check_course(options, *arms); !fits) {
+    return complain(fits.error(), kExitBadInput);
+  }
+  tell(arms->told);
+
+  // All that takes time comes before the arm is opened: an open arm is served in every millisecond.
+  const std::atomic<bool>& stop = scene::catch_interrupts();
+  if (arms->real()) scene::leave_rather_than_stop();
+  RunCourse course{options, *arms, stop, session_options(options, *arms), {}, {}, {}};
+  if (options.stepped()) {
+    course.asked.own_clock = course.clock = std::make_shared<faces::SteppedClock>(stop);
+  }
+  if (course.asked.restarts) {
+    course.next.emplace([&course](const auto& scene) { return prepare_next(course, scene); },
+                        options.reloads(), options.loop, options.speed.value_or(1));
+  }
+  auto prepared = session::Session::prepare(options.scene, course.asked);
+  if (!prepared) return complain(prepared.error(), kExitBadInput);
+  std::unique_ptr<session::Session> session = std::move(prepared).value();
+  for (;;) {
+    std::unique_ptr<session::Session> then;
+    const ExitCode code = run_one(course, *session, then);
+    if (!then) return code;
+    // Its name becomes free with it.
+    const std::string name = session->shared()->name();
+    session.reset();
+    session = std::move(then);
+    ++course.number;
+    if (auto begun = begin_next(course, *session, name); !begun) {
+      return complain(begun.error(), kExitTrouble);
+    }
+  }
 }
 
 std::string first_sentence(const std::string& text) {

@@ -2,7 +2,9 @@
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -14,6 +16,8 @@
 #include "share/knob_order.h"
 #include "share/run_attachment.h"
 #include "share/shared_memory.h"
+#include "share/steer/save_knobs.h"
+#include "thimble/scene/shipped_files.h"
 #include "web/web_server.h"
 
 namespace thimble::app {
@@ -27,13 +31,19 @@ struct ViewOptions {
   std::uint16_t port = 0;  // 0: one that is free
   bool follow = false;
   std::vector<std::string> turn;
-  bool pause = false, resume = false, stop = false;
+  bool pause = false, resume = false, stop = false, restart = false;
+  std::uint64_t steps = 0;
+  std::optional<double> speed;
+  std::string loop, scene;
+  bool save_knobs = false, overwrite = false;
+  std::string save_as;
   std::string record;
   bool record_stop = false;
   double seconds = 0;  // 0: without an end
 
   bool asks() const {
-    return !turn.empty() || pause || resume || stop || !record.empty() || record_stop;
+    return !turn.empty() || pause || resume || stop || !record.empty() || record_stop || restart ||
+           steps > 0 || speed || !loop.empty() || !scene.empty() || save_knobs;
   }
 };
 
@@ -59,6 +69,31 @@ int list_runs() {
   return kExitDone;
 }
 
+/// Asks for what concerns the course of the run.
+driver::Result<void> ask_course(session::SharedReader& reader, const ViewOptions& options) {
+  if (options.speed) {
+    if (auto asked = reader.ask_speed(*options.speed); !asked) return asked;
+  }
+  if (!options.loop.empty()) {
+    if (auto asked = reader.ask_loop(options.loop == "on"); !asked) return asked;
+  }
+  if (options.steps > 0) {
+    // Who has just asked for the pause means the ticks after it.
+    for (int i = 0;
+         i < 200 && reader.pause_asked() && reader.state() == session::RunState::kRunning; ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    if (auto asked = reader.ask_steps(options.steps); !asked) return asked;
+  }
+  if (!options.scene.empty()) {
+    auto found = scene::find_scene(options.scene);
+    if (!found) return found.error();
+    const auto file = std::filesystem::absolute(*found).lexically_normal().string();
+    if (auto asked = reader.ask_restart(file); !asked) return asked;
+  }
+  return options.restart ? reader.ask_restart() : driver::Result<void>();
+}
+
 int ask(const ViewOptions& options) {
   auto attached = session::SharedReader::attach(options.run);
   if (!attached) return complain(attached.error(), kExitBadInput);
@@ -69,8 +104,16 @@ int ask(const ViewOptions& options) {
     }
   }
   if (options.pause || options.resume) reader.ask_pause(options.pause);
+  if (auto asked = ask_course(reader, options); !asked)
+    return complain(asked.error(), kExitBadInput);
   const bool heard = (options.record.empty() || reader.ask_record(options.record)) &&
                      (!options.record_stop || reader.ask_record_stop());
+  if (options.save_knobs) {
+    const auto saved =
+        session::save_knobs(reader, {.file = options.save_as, .over = options.overwrite});
+    if (!saved) return complain(saved.error(), kExitBadInput);
+    std::printf("%s\n", saved->text().c_str());
+  }
   if (options.stop) reader.ask_stop();
   if (!heard) return complain({"Another viewer is just asking for something."}, kExitTrouble);
   return kExitDone;
@@ -86,9 +129,12 @@ void print_line(const session::SharedReader& reader) {
     std::printf("%.3f s, force %.2f N, depth %.2f mm, ", 1e-9 * static_cast<double>(tick.time_ns),
                 force, 1e3 * tick.depth);
   }
-  std::printf("%llu ticks, %llu missed%s%s\n", static_cast<unsigned long long>(counters.ticks),
-              static_cast<unsigned long long>(counters.missed),
-              counters.recording ? ", recording to " : "",
+  std::printf("%llu ticks, %llu missed", static_cast<unsigned long long>(counters.ticks),
+              static_cast<unsigned long long>(counters.missed));
+  if (counters.paused > 0) {
+    std::printf(", %llu paused", static_cast<unsigned long long>(counters.paused));
+  }
+  std::printf("%s%s\n", counters.recording ? ", recording to " : "",
               counters.recording ? reader.recording_path().c_str() : "");
   std::fflush(stdout);
 }
@@ -106,7 +152,8 @@ int tell(const ViewOptions& options) {
       std::printf("Watching %s: %s\n", runs.name().c_str(), runs.reader()->scene().name.c_str());
       told.clear();
     }
-    const std::string notice = runs.notice();
+    std::string notice = runs.notice();
+    if (notice.empty() && runs.reader() != nullptr) notice = runs.reader()->notice();
     const bool ended =
         runs.reader() != nullptr && runs.reader()->state() == session::RunState::kEnded;
     const auto now = std::chrono::steady_clock::now();
@@ -201,6 +248,37 @@ void add_view_command(CLI::App& app, int& exit_code, const ShowWindow& show_wind
   command->add_flag("--record-stop", options->record_stop, "End the recording, and leave")
       ->excludes(record);
   command->add_flag("--stop", options->stop, "End the run, and leave");
+  command
+      ->add_option("--step", options->steps,
+                   "Let a paused run go on by so many ticks, and leave; with a simulated arm and "
+                   "simulated time, as for the next")
+      ->check(CLI::Range(std::uint64_t{1}, session::kStepsMost));
+  command
+      ->add_option("--speed", options->speed,
+                   "Let the run go at this pace, times real time, and leave; its ticks stay the "
+                   "same to the bit")
+      ->check(CLI::Range(session::kSpeedLeast, session::kSpeedMost));
+  CLI::Option* restart =
+      command->add_flag("--restart", options->restart,
+                        "Begin the run anew from its first tick, with a simulated arm, and leave");
+  command
+      ->add_option("--scene", options->scene,
+                   "Let the run begin anew with this scene, a file or a name, and leave")
+      ->excludes(restart);
+  command->add_option("--loop", options->loop, "Begin the run anew whenever it ends, or no more")
+      ->check(CLI::IsMember({"on", "off"}));
+  CLI::Option* save = command->add_flag(
+      "--save-knobs", options->save_knobs,
+      "Write the run's scene with its knobs as they are into a new file beside it, tell which, and "
+      "leave; of a scene that came with Thimble into your own scenes");
+  CLI::Option* save_as =
+      command->add_option("--save-as", options->save_as, "With --save-knobs: into this new file")
+          ->needs(save);
+  command
+      ->add_flag("--overwrite", options->overwrite,
+                 "With --save-knobs: over the scene's file, if it is your own")
+      ->needs(save)
+      ->excludes(save_as);
   command->add_option("--for", options->seconds, "Stop looking on after so many seconds")
       ->check(CLI::Range(0.1, 86400.0));
   command->callback(

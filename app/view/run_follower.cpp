@@ -18,6 +18,7 @@ bool RunFollower::step() {
   reader->ticks_since(serial_, ticks_);
   for (const driver::TickRecord& tick : ticks_) plots_.add(tick);
   if (live_->update(*moment_)) has_moment_ = true;
+  if (notice_.empty()) notice_ = reader->notice();
   if (notice_.empty() && reader->pause_asked()) notice_ = "Paused. Space goes on.";
   return another;
 }

@@ -54,7 +54,7 @@ void draw_head(const session::SharedReader& reader, const driver::TickRecord& ti
   ImGui::TextUnformatted(scene.name.c_str());
   ImGui::TextDisabled("%s (%s), %.0f Hz%s", scene.arm.name.c_str(), scene.arm.device.c_str(),
                       1e9 / static_cast<double>(scene.period_ns),
-                      scene.wall_clock ? "" : ", virtual time");
+                      scene.wall_clock || scene.paced ? "" : ", virtual time");
   const auto& f = tick.f_sent_W;
   ImGui::TextColored(vec(kForceColour), "%5.2f N", std::hypot(f[0], f[1], f[2]));
   ImGui::SameLine(0, 2 * ImGui::GetFontSize());
@@ -77,14 +77,21 @@ void draw_head(const session::SharedReader& reader, const driver::TickRecord& ti
 void draw_buttons(session::SharedReader& reader, ViewChoice& choice) {
   const bool paused = reader.pause_asked();
   if (ImGui::Button(paused ? "Go on" : "Pause")) reader.ask_pause(!paused);
+  explain(reader.scene().wall_clock
+              ? "Fades the force out; the arm's time goes on, and its ticks count as paused (space)"
+              : "Lets the simulated time stand still, or go on (space)");
   ImGui::SameLine();
   if (ImGui::Button(reader.counters().recording ? "Stop recording" : "Record")) {
     toggle_record(reader);
   }
+  explain("Records every tick from now on, into the folder where the run was started (R)");
   ImGui::SameLine();
   if (ImGui::Button("Picture")) choice.screenshot = true;
+  explain("Writes a PNG of the scene (S)");
   ImGui::SameLine();
   if (ImGui::Button("?")) choice.help = !choice.help;
+  explain("Lists the keys (F1)");
+  choice.run.draw(reader);
   if (reader.counters().recording) {
     ImGui::TextColored(vec(kForceColour), "recording");
     ImGui::SameLine();
@@ -172,9 +179,7 @@ void draw_side_panel(const ScreenPart& part, session::SharedReader* reader,
     ImGui::Separator();
     draw_looks(choice);
     const auto counters = reader->counters();
-    ImGui::TextDisabled("%llu ticks, %llu periods missed; %.0f pictures/s",
-                        static_cast<unsigned long long>(counters.ticks),
-                        static_cast<unsigned long long>(counters.missed),
+    ImGui::TextDisabled("%s; %.0f pictures/s", counted(counters).c_str(),
                         notes.frame_time > 0 ? 1 / notes.frame_time : 0.0);
   }
   ImGui::End();
@@ -204,7 +209,9 @@ void draw_notices(const ScreenPart& part, const ViewNotes& notes, const ViewChoi
   const float margin = ImGui::GetFontSize();
   if (!notes.notice.empty()) {
     box("notice", middle, part.y + margin, 0);
+    ImGui::PushTextWrapPos(0.9F * part.width);
     ImGui::TextColored(vec(kForceColour), "%s", notes.notice.c_str());
+    ImGui::PopTextWrapPos();
     ImGui::End();
   }
   if (!notes.message.empty()) {
@@ -215,6 +222,11 @@ void draw_notices(const ScreenPart& part, const ViewNotes& notes, const ViewChoi
   if (choice.help) {
     box("help", middle, part.y + part.height / 2, 0.5F);
     for (const Key& key : kKeys) {
+      ImGui::TextColored(vec(kDepthColour), "%s", key.key);
+      ImGui::SameLine(10 * ImGui::GetFontSize());
+      ImGui::TextUnformatted(key.does);
+    }
+    for (const RunKey& key : kRunKeys) {
       ImGui::TextColored(vec(kDepthColour), "%s", key.key);
       ImGui::SameLine(10 * ImGui::GetFontSize());
       ImGui::TextUnformatted(key.does);
@@ -266,6 +278,8 @@ void take_key(int key, session::SharedReader* reader, ViewChoice& choice) {
       if (reader != nullptr) toggle_record(*reader);
       break;
     default:
+      if (reader == nullptr) break;
+      choice.run.take_key(key, ImGui::GetIO().KeyShift, ImGui::GetIO().KeyCtrl, *reader);
       break;
   }
 }

@@ -4,6 +4,7 @@
 
 #include "share/shared_reader.h"
 #include "view/plots.h"
+#include "view/run_buttons.h"
 #include "view/scene_painter.h"
 
 namespace thimble::app::view {
@@ -13,6 +14,7 @@ struct ViewChoice {
   PaintChoice paint;
   bool mouse_is_hand = false;  ///< A left drag leads the hand, and not the camera.
   bool help = false;
+  RunButtons run;  ///< Of the run's course.
   // Asked for once; whoever does it sets them back.
   bool frame = true;
   bool screenshot = false;

@@ -195,6 +195,7 @@ class Content {
   double frame_time_ = 0;  // s, of the last picture
   TouchThread felt_;
   bool felt_follows_ = false;
+  std::string shown_file_;  // the scene's, of the run that is shown
   ViewChoice choice_;
   ViewNotes notes_;
   std::chrono::steady_clock::time_point message_until_{};
@@ -262,10 +263,14 @@ driver::Result<void> Content::draw(double frame_time) {
     auto programs = ScenePrograms::make();
     if (!programs) return programs.error();
     painter_ = std::make_unique<ScenePainter>(follower_.scene(), std::move(programs).value());
-    choice_.frame = true;
     const session::SharedScene& scene = follower_.reader()->scene();
     const bool by_mouse = hand_.input().source() == HandSource::kMouse;
-    choice_.mouse_is_hand = scene.hand_by_mouse && by_mouse;
+    // A scene that is begun anew is seen from where it was seen.
+    if (scene.file.empty() || scene.file != shown_file_) {
+      choice_.frame = true;
+      choice_.mouse_is_hand = scene.hand_by_mouse && by_mouse;
+    }
+    shown_file_ = scene.file;
     hand_.input().let_go();
     if (!by_mouse && !scene.hand_by_mouse) {
       tell("The hand of this run follows its path: begin it with --hand to lead it.");
@@ -297,6 +302,7 @@ driver::Result<void> Content::draw(double frame_time) {
   if (std::chrono::steady_clock::now() > message_until_) notes_.message.clear();
   draw_side_panel({scene.width, 0, panel, size.y}, follower_.reader(), follower_.moment().tick,
                   follower_.plots(), notes_, choice_);
+  if (const std::string told = choice_.run.take_told(); !told.empty()) tell(told);
   draw_notices(scene, notes_, choice_);
   screen_.end();
   return {};

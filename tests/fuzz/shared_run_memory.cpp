@@ -27,6 +27,8 @@ std::vector<std::byte> sound_memory() {
   scene.name = "fuzz";
   scene.period_ns = 1'000'000;
   scene.force_max = 5;
+  scene.paced = scene.restarts = true;
+  scene.arm.device = "sim";
   scene.arm.geometry = driver::DeltaArm{.a = 0.05, .b = 0.05, .c = 0.05, .r = 0.05};
   scene.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
   scene.triangles = {{0, 1, 2}, {3, 4, 5}, {4, 3, 5}};
@@ -146,6 +148,15 @@ void read_everything(session::SharedReader& reader) {
   static_cast<void>(reader.state());
   static_cast<void>(reader.counters());
   static_cast<void>(reader.recording_path());
+  static_cast<void>(reader.notice());
+  promise(
+      reader.speed_asked() >= session::kSpeedLeast && reader.speed_asked() <= session::kSpeedMost,
+      "a speed is within its bounds");
+  static_cast<void>(reader.loop_asked());
+  static_cast<void>(reader.ask_speed(1e9));
+  static_cast<void>(reader.ask_steps(1'000'000));
+  static_cast<void>(reader.ask_loop(true));
+  static_cast<void>(reader.ask_restart("somewhere"));
   reader.ask_record("somewhere");
   reader.lead_hand({0, 0, 0}, true);
   reader.ask_record_stop();

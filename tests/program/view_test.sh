@@ -84,6 +84,50 @@ for end in view signal; do
   expect 1 '' test -e "$segment"
 done
 
+# Steered: at a pace, tick by tick, begun anew by hand, by its file, and with another scene.
+sed "s#\.\./arms#$source_dir/app/arms#; s/^duration:.*/duration: 60/" "$scenes/rubber.yaml" >ball.yaml
+"$thimble" run ball.yaml --clock paced --speed 2 --reload --loop --name "$me" >steered.log 2>&1 &
+run=$!
+# told PATTERN: waits until the run's line says so.
+told() {
+  for _ in $(seq 100); do
+    timeout 20 "$thimble" view "$me" --text --for 0.1 >told.txt 2>&1
+    grep -qE "$1" told.txt && break
+    sleep 0.1
+  done
+  expect 0 "$1" cat told.txt
+}
+told "$me running"
+expect 2 'pause it first' "$thimble" view "$me" --step 1
+expect 0 '' "$thimble" view "$me" --pause --step 10
+told "$me paused"
+"$thimble" view "$me" --text --for 0.1 >before.txt
+expect 0 '' "$thimble" view "$me" --step 100
+sleep 0.5
+ticks() { grep -oE '[0-9]+ ticks' "$1" | grep -oE '[0-9]+'; }
+"$thimble" view "$me" --text --for 0.1 >after.txt
+expect 0 '^100$' echo $(($(ticks after.txt) - $(ticks before.txt)))
+expect 0 ', 0 missed' cat after.txt
+expect 0 '' "$thimble" view "$me" --speed 4 --loop off
+expect 2 'Value 5 not in range' "$thimble" view "$me" --speed 5
+expect 0 '' "$thimble" view "$me" --restart
+told "$me running"
+expect 0 '' "$thimble" view "$me" --turn 'ball: stiffness=250' --save-knobs
+expect 0 'stiffness: 250 ' cat ball-turned.yaml
+sed -i 's/stiffness: 400/stiffness: soft/' ball.yaml
+told 'ball.yaml:15: stiffness: expected'
+cp ball-turned.yaml ball.yaml
+for _ in $(seq 100); do "$thimble" view --list | grep -q 'ball: stiffness = 250' && break; sleep 0.1; done
+expect 0 'ball: stiffness = 250' "$thimble" view --list
+expect 0 '' "$thimble" view "$me" --loop on --scene "$scenes/honey.yaml"
+for _ in $(seq 100); do "$thimble" view --list | grep -q "^$me: honey" && break; sleep 0.1; done
+expect 0 "^$me: honey" "$thimble" view --list
+expect 2 'there is no such file' "$thimble" view "$me" --scene sugar
+expect 0 '' "$thimble" view "$me" --stop
+wait $run
+expect 0 '^0$' echo $?
+expect 2 'leave --clock wall away' "$thimble" run ball.yaml --clock wall --speed 2
+
 # Killed while it records, at any moment: the recording opens and lacks 100 ms at most, the viewer
 # tells, and the next run clears away what was left.
 lost_most=0

@@ -1,5 +1,7 @@
 #include "cli/options/run_options.h"
 
+#include <fmt/core.h>
+
 #include <cstdlib>
 #include <vector>
 
@@ -8,6 +10,7 @@
 #include "faces/ros2/ros_module.h"
 #include "log/logger.h"
 #include "print.h"
+#include "share/shared_layout.h"
 #include "thimble/scene/quality.h"
 
 namespace thimble::app {
@@ -50,14 +53,41 @@ driver::Result<void> check_run_options(RunOptions& options) {
   return {};
 }
 
+driver::Result<void> check_course(const RunOptions& options, const session::RunArms& arms) {
+  const char* asked = options.loop                     ? "--loop"
+                      : options.reload.value_or(false) ? "--reload"
+                      : options.speed                  ? "--speed"
+                      : options.clock == "paced"       ? "--clock paced"
+                                                       : nullptr;
+  if (asked == nullptr) return {};
+  if (arms.real()) {
+    return driver::Error{fmt::format(
+        "{} is for simulated arms: a real one has the time of the world, and only a person at it "
+        "begins a run.",
+        asked)};
+  }
+  if (options.ros.asked) {
+    return driver::Error{
+        fmt::format("{} does not go with --ros2, whose topics belong to one run.", asked)};
+  }
+  if (options.speed && !options.clock.empty() && options.clock != "paced") {
+    return driver::Error{"--speed needs simulated time at a pace: leave --clock " + options.clock +
+                         " away."};
+  }
+  return {};
+}
+
 session::SessionOptions session_options(const RunOptions& options, const session::RunArms& arms) {
   // A person who watches or leads does so in real time, unless he says otherwise.
-  const bool for_a_person = options.view || options.by_viewer();
-  const bool watched = for_a_person || options.ros.asked;
-  const bool wall = options.clock.empty() ? watched : options.clock == "wall";
-  const bool real_time = wall || arms.real();
+  const bool for_a_person = options.for_a_person();
+  const bool wall = options.clock.empty() ? options.ros.asked : options.clock == "wall";
+  const bool paced =
+      options.clock.empty() ? for_a_person || options.speed : options.clock == "paced";
   session::SessionOptions asked;
-  asked.clock = real_time ? session::ClockKind::kWall : session::ClockKind::kVirtual;
+  asked.clock = wall || arms.real() ? session::ClockKind::kWall
+                : paced             ? session::ClockKind::kPaced
+                                    : session::ClockKind::kVirtual;
+  const bool real_time = asked.clock != session::ClockKind::kVirtual;
   asked.duration = options.duration;
   asked.seed = options.seed;
   asked.arm_file = options.arm_file;
@@ -67,8 +97,10 @@ session::SessionOptions session_options(const RunOptions& options, const session
   asked.firmware = options.firmware;
   asked.record = options.record;
   asked.log = true;
-  asked.share_out = !options.name.empty() || for_a_person || (real_time && !options.no_view);
-  asked.share_if_possible = options.name.empty() && !for_a_person;
+  asked.share_out =
+      !options.name.empty() || for_a_person || options.loop || (real_time && !options.no_view);
+  asked.share_if_possible = options.name.empty() && !for_a_person && !options.loop;
+  asked.restarts = !arms.real() && !options.ros.asked;
   asked.share_name = options.name;
   asked.hand_by_mouse = options.by_viewer();
   asked.hand_by_program = options.by_topic();
@@ -86,7 +118,7 @@ session::SessionOptions session_options(const RunOptions& options, const session
 }
 
 session::ViewerChoice viewer_choice(const RunOptions& options) {
-  const bool asked = options.view || options.by_viewer();
+  const bool asked = options.for_a_person();
   if (asked && !has_window()) {
     scene::terminal().info(
         "No window in this build (app/setup.sh release thimble makes one); `thimble view --text` "
@@ -141,10 +173,19 @@ void add_run_options(CLI::App& command, RunOptions& options) {
           "SECONDS"));
   command
       .add_option("--clock", options.clock,
-                  "virtual: as fast as it computes, repeatable to the bit; wall: in real time "
-                  "(if absent: wall with --view, --ros2 or a hand led in the window, virtual "
-                  "otherwise)")
-      ->check(CLI::IsMember({"virtual", "wall"}));
+                  "virtual: as fast as it computes, repeatable to the bit; paced: the same ticks, "
+                  "as fast as --speed says; wall: in real time, as with a real arm "
+                  "(if absent: paced with --view, a hand led in the window or --speed, wall with "
+                  "--ros2, virtual otherwise)")
+      ->check(CLI::IsMember({"virtual", "paced", "wall"}));
+  command
+      .add_option("--speed", options.speed,
+                  "Pace of a simulated arm's run, times real time; 1 if absent, and a viewer "
+                  "changes it")
+      ->check(CLI::Range(session::kSpeedLeast, session::kSpeedMost));
+  command.add_flag("--reload,!--no-reload", options.reload,
+                   "Begin anew when the file of the scene or of its arm changes, with a simulated "
+                   "arm (if absent: with --view or a hand led in the window)");
   command
       .add_option("--hand", options.hand,
                   "Who leads the simulated hand: path, as the scene says; mouse, keyboard, gamepad "
@@ -153,7 +194,13 @@ void add_run_options(CLI::App& command, RunOptions& options) {
       ->check(CLI::IsMember({"path", "mouse", "keyboard", "gamepad", "spacemouse", "topic"}))
       ->capture_default_str();
   CLI::Option* view = command.add_flag("--view", options.view, "Watch the run in a window");
-  command.add_flag("--no-view", options.no_view, "Show the run to nobody")->excludes(view);
+  CLI::Option* none =
+      command.add_flag("--no-view", options.no_view, "Show the run to nobody")->excludes(view);
+  command
+      .add_flag("--loop", options.loop,
+                "Begin anew whenever the scene is over, with a simulated arm, until Ctrl-C or a "
+                "viewer ends it; recordings after the first are FILE-2.h5 and so on")
+      ->excludes(none);
   command.add_flag("--sound", options.sound,
                    "With the window: play what is felt as sound (clicks, textures, friction)");
   command.add_flag("--rumble", options.rumble,

@@ -31,6 +31,9 @@ struct RunOptions {
   std::string name;
   bool view = false, no_view = false;
   bool sound = false, rumble = false;
+  bool loop = false;
+  std::optional<bool> reload;   // as suits
+  std::optional<double> speed;  // times real time
   std::string quality = "normal";
   std::optional<double> budget;  // ns
   bool yes = false;
@@ -45,6 +48,10 @@ struct RunOptions {
   bool by_topic() const { return hand == "topic"; }
   /// Returns whether a topic of ROS 2 moves the time on.
   bool stepped() const { return ros.asked && clock == "virtual"; }
+  /// Returns whether a person watches a simulated arm's run.
+  bool for_a_person() const { return view || by_viewer(); }
+  /// Returns whether the run begins anew when its scene's file changes.
+  bool reloads() const { return reload.value_or(for_a_person()); }
 };
 
 /// Adds the arguments of `thimble run`. The options must outlive the command.
@@ -52,6 +59,9 @@ void add_run_options(CLI::App& command, RunOptions& options);
 
 /// Fails if the options do not go together, with what to write instead.
 driver::Result<void> check_run_options(RunOptions& options);
+
+/// Fails if the arms have no course that can be chosen: one that is begun anew, or has a pace.
+driver::Result<void> check_course(const RunOptions& options, const session::RunArms& arms);
 
 /// Returns what the session is asked for. The options must outlive it.
 session::SessionOptions session_options(const RunOptions& options, const session::RunArms& arms);

@@ -109,7 +109,7 @@ driver::Result<void> Session::Parts::share(const SessionOptions& options) {
 
 void Session::Parts::begin(const std::atomic<bool>& stop) noexcept {
   if (shared) {
-    control->join(*shared, setup->hand_by_mouse(), stop);
+    control->join(*shared, setup->hand_by_mouse(), stop, setup->pace());
     shared->set_state(RunState::kRunning);
   }
   const bool go_on_with_the_others =
@@ -384,6 +384,9 @@ RunRecords& Session::records() noexcept {
 }
 const RunRecords& Session::records() const noexcept {
   return parts_->records;
+}
+driver::Result<void> Session::share(const SessionOptions& options) {
+  return parts_->share(options);
 }
 SharedRun* Session::shared() noexcept {
   return parts_->shared.get();

@@ -44,6 +44,7 @@ driver::Result<std::unique_ptr<Setup>> Setup::prepare(const std::filesystem::pat
   setup->homed_ = options.homed;
   setup->endless_ = options.endless;
   setup->real_time_ = options.clock == ClockKind::kWall || any_real_in(options);
+  setup->paced_ = options.clock == ClockKind::kPaced && !setup->real_time_ && !options.own_clock;
   const auto stood_in = [](const auto& use) { return use.second && use.second->open_link; };
   if (!setup->real_time_ || options.open_link ||
       std::any_of(options.real_arms.begin(), options.real_arms.end(), stood_in)) {
@@ -254,6 +255,11 @@ driver::Result<void> Setup::open_arm() {
   // The clock starts last, so that the arms' time begins with the session's. A real arm knows only
   // the time of the world.
   if (!clock_ && real_time_) clock_ = std::make_unique<driver::WallClock>();
+  if (!clock_ && paced_) {
+    auto clock = std::make_shared<PacedClock>();
+    pace_ = clock.get();
+    clock_ = std::move(clock);
+  }
   if (!clock_) clock_ = std::make_unique<driver::VirtualClock>();
   for (std::size_t i = 0; i < arms(); ++i) {
     if (auto opened = open(i); !opened) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "heat_keeper.h"
+#include "paced_clock.h"
 #include "start_pose.h"
 #include "terminal.h"
 #include "thimble/driver/clock.h"
@@ -68,6 +69,10 @@ class Setup {
   /// Returns the arm as the loop drives it. Precondition: the arm is open, as for `clock`.
   driver::Device& device(std::size_t arm = 0) const noexcept { return *arms_[arm].device; }
   driver::Clock& clock() const noexcept { return *clock_; }
+  /// Returns whether simulated time passes at a pace that viewers choose.
+  bool paced() const noexcept { return paced_; }
+  /// Returns the clock that has that pace; null if there is none. Precondition: the arm is open.
+  PacedClock* pace() const noexcept { return pace_; }
   /// Returns the simulation of the arm; null if the arm is real.
   scene::ArmSimulation* simulation(std::size_t arm = 0) const noexcept {
     return arms_[arm].simulation.get();
@@ -132,6 +137,7 @@ class Setup {
   std::vector<std::string> told_;
   std::filesystem::path firmware_;
   bool real_time_ = false;
+  bool paced_ = false;
   bool endless_ = false;
   bool hand_by_mouse_ = false;
   bool hand_by_program_ = false;
@@ -141,6 +147,7 @@ class Setup {
   std::int64_t period_ns_ = 0;
   std::unique_ptr<scene::SceneObjects> objects_;
   std::shared_ptr<driver::Clock> clock_;
+  PacedClock* pace_ = nullptr;  // the same, or null
   std::vector<ArmOfRun> arms_;
 };
 

@@ -172,6 +172,58 @@ TEST(Share, CountsPeriodsThatTheLoopMissed) {
   EXPECT_EQ(pair.reader->counters().ticks, 3U);
 }
 
+TEST(Share, CountsATickOfAPauseApartAndMissesNoneThen) {
+  for (const bool wall : {true, false}) {
+    session::SharedScene scene = small_scene();
+    scene.wall_clock = wall;
+    const Pair pair = joined(scene);
+    pair.run->set_state(session::RunState::kRunning);
+    pair.run->store_tick(tick_number(0));
+    pair.run->set_state(session::RunState::kPaused);
+    pair.run->store_tick(tick_number(1));
+    pair.run->store_tick(tick_number(5));
+    pair.run->set_state(session::RunState::kRunning);
+    pair.run->store_tick(tick_number(6));
+    const auto counters = pair.reader->counters();
+    EXPECT_EQ(counters.ticks, 4U);
+    // Simulated time stands in a pause: what ticks then was let go on, tick by tick.
+    EXPECT_EQ(counters.paused, wall ? 2U : 0U);
+    EXPECT_EQ(counters.missed, wall ? 0U : 3U);
+  }
+}
+
+TEST(Share, AsksForAPaceAndIgnoresNonsense) {
+  session::SharedScene scene = small_scene();
+  const auto refused = [](const driver::Result<void>& asked) {
+    return asked ? std::string() : asked.error().message;
+  };
+  {
+    const Pair pair = joined(scene);
+    EXPECT_NE(refused(pair.reader->ask_speed(2)).find("--clock paced"), std::string::npos);
+    EXPECT_NE(refused(pair.reader->ask_restart()).find("cannot be begun anew"), std::string::npos);
+  }
+  scene.paced = scene.restarts = true;
+  const Pair pair = joined(scene);
+  EXPECT_EQ(pair.run->speed_wanted(), 1);
+  ASSERT_TRUE(pair.reader->ask_speed(0.25));
+  EXPECT_EQ(pair.run->speed_wanted(), 0.25);
+  EXPECT_FALSE(pair.reader->ask_speed(std::numeric_limits<double>::quiet_NaN()));
+  pair.run->set_pace(std::numeric_limits<double>::quiet_NaN(), true);
+  EXPECT_FALSE(pair.run->speed_wanted());
+  EXPECT_EQ(pair.reader->speed_asked(), 1);
+  EXPECT_TRUE(pair.reader->loop_asked());
+  EXPECT_FALSE(pair.run->restart_order_after(0));
+  ASSERT_TRUE(pair.reader->ask_restart("/a/b.yaml"));
+  const auto order = pair.run->restart_order_after(0);
+  ASSERT_TRUE(order);
+  EXPECT_EQ(order->scene, "/a/b.yaml");
+  EXPECT_FALSE(pair.run->restart_order_after(order->number));
+  ASSERT_TRUE(pair.reader->ask_restart());
+  EXPECT_EQ(pair.run->restart_order_after(order->number)->scene, "");
+  pair.run->set_notice("line 3: \x1b wrong\nmore");
+  EXPECT_EQ(pair.reader->notice(), "line 3: ? wrong\nmore");
+}
+
 TEST(Share, TearsNoReadWhileTheWriterRunsAtFullSpeed) {
   const Pair pair = joined(small_scene(), 64);
   std::atomic<bool> stop{false};

@@ -18,10 +18,12 @@ void LiveControl::add_simulation(scene::ArmSimulation* simulation) {
   if (simulation != nullptr) others_.push_back(simulation);
 }
 
-void LiveControl::join(SharedRun& shared, bool hand_by_mouse, const std::atomic<bool>& stop) {
+void LiveControl::join(SharedRun& shared, bool hand_by_mouse, const std::atomic<bool>& stop,
+                       PacedClock* pace) {
   shared_ = &shared;
   hand_by_mouse_ = hand_by_mouse;
   stop_ = &stop;
+  pace_ = pace;
 }
 
 driver::ForceCommand LiveControl::operator()(const driver::DeviceState& state) noexcept {
@@ -41,6 +43,7 @@ void LiveControl::take(const driver::TickRecord& record) noexcept {
   const bool paused = shared_->pause_asked();
   if (paused != paused_) {
     paused_ = paused;
+    steps_ = shared_->steps_asked();  // those of before are let be
     shared_->set_state(paused ? RunState::kPaused : RunState::kRunning);
     if (simulation_ != nullptr && real_time_) simulation_->hold(paused);
     for (scene::ArmSimulation* other : others_) {
@@ -49,6 +52,8 @@ void LiveControl::take(const driver::TickRecord& record) noexcept {
   }
   if (hand_by_mouse_ && simulation_ != nullptr) lead_hand();
   if (paused_ && !real_time_) wait_while_paused();
+  if (pace_ == nullptr) return;
+  if (const auto speed = shared_->speed_wanted()) pace_->set_speed(*speed);
 }
 
 void LiveControl::lead_hand() noexcept {
@@ -60,6 +65,13 @@ void LiveControl::lead_hand() noexcept {
 
 void LiveControl::wait_while_paused() noexcept {
   while (shared_->pause_asked() && !stop_->load(std::memory_order_relaxed)) {
+    // Counts wrap as they are told to; what cannot be meant is let be.
+    const std::uint64_t wanted = shared_->steps_asked() - steps_;
+    if (wanted > kStepsMost) steps_ += wanted;
+    if (wanted > 0 && wanted <= kStepsMost) {
+      ++steps_;
+      return;
+    }
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
   paused_ = false;

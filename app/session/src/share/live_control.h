@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "paced_clock.h"
 #include "share/live_knobs.h"
 #include "share/shared_run.h"
 #include "thimble/driver/device_state.h"
@@ -21,7 +22,8 @@ namespace thimble::session {
 /// leads. It is the force law of a run that is shared; one that is not has none of it.
 ///
 /// Pause in real time: the loop goes on, the force fades out within kFade, the simulated hand
-/// stands still; afterwards the force fades in again. In virtual time the loop itself stands still.
+/// stands still; afterwards the force fades in again. In virtual time, paced or not, the loop
+/// itself stands still, and goes on by single ticks if that is asked for.
 class LiveControl final : public TickObserver {
  public:
   static constexpr double kFade = 0.3;  ///< s; 0.02 N per tick of 1 kHz for 6 N. [chosen]
@@ -38,7 +40,9 @@ class LiveControl final : public TickObserver {
   /// Gives the knobs, to be described. Real-time: never from the servo thread.
   const LiveKnobs& knobs() const { return knobs_; }
   /// Joins it to what viewers see. Real-time: never from the servo thread.
-  void join(SharedRun& shared, bool hand_by_mouse, const std::atomic<bool>& stop);
+  /// `pace`: the clock whose speed viewers choose; null if it has none.
+  void join(SharedRun& shared, bool hand_by_mouse, const std::atomic<bool>& stop,
+            PacedClock* pace = nullptr);
 
   /// Finds the force of the scene, less while it is paused (the servo loop's force law).
   /// Real-time: safe.
@@ -63,6 +67,8 @@ class LiveControl final : public TickObserver {
   LiveKnobs knobs_;
   SharedRun* shared_ = nullptr;
   const std::atomic<bool>* stop_ = nullptr;
+  PacedClock* pace_ = nullptr;
+  std::uint64_t steps_ = 0;  // of those asked for, that were taken or let be
   bool hand_by_mouse_ = false;
   bool paused_ = false;
   double gain_ = 1;

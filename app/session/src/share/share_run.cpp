@@ -24,6 +24,8 @@ driver::Result<std::unique_ptr<SharedRun>> share_run(const Setup& setup, const L
   scene.period_ns = setup.period_ns();
   scene.wall_clock = setup.real_time();
   scene.hand_by_mouse = setup.hand_by_mouse();
+  scene.paced = setup.paced();
+  scene.restarts = options.restarts && !setup.any_real();
   if (setup.arms() == 1) scene.knobs = knobs.described();
   for (std::size_t i = 0; setup.arms() > 1 && i < setup.arms(); ++i) {
     if (i > 0) scene.more_arms.push_back(describe_arm(setup.arm_file(i), setup.device_name(i)));

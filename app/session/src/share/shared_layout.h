@@ -23,7 +23,7 @@ namespace thimble::session {
 // Frames: W world.
 
 /// Changes with every change of this file. A reader of another version refuses.
-inline constexpr std::uint32_t kSharedVersion = 6;
+inline constexpr std::uint32_t kSharedVersion = 7;
 /// Stands in `SharedHead::ready` of a segment that is complete: "thimble1" in ASCII.
 inline constexpr std::uint64_t kSharedReady = 0x31656c626d696874;
 
@@ -31,6 +31,13 @@ inline constexpr std::size_t kViewersMost = 16;    ///< Chosen: more than look o
 inline constexpr std::size_t kKnobsMost = 64;      ///< Chosen: more than a person can find.
 inline constexpr std::size_t kObjectsMost = 1024;  ///< Chosen, as a bound for readers.
 inline constexpr std::size_t kMoreArmsMost = 7;    ///< After the first, as in a scene.
+/// The most ticks that one request lets a paused run go on by; what asks for more is nonsense.
+/// Chosen.
+inline constexpr std::uint64_t kStepsMost = 10'000;
+// How fast a run may go, times real time. Chosen: a touch of seconds is still watched in minutes,
+// and four times is what a small machine computes with a window beside it.
+inline constexpr double kSpeedLeast = 0.1;
+inline constexpr double kSpeedMost = 4;
 /// The most bytes that a reader maps: 100 million triangles and a long ring. Chosen.
 inline constexpr std::uint64_t kSharedBytesMost = std::uint64_t{1} << 33;
 
@@ -91,6 +98,8 @@ struct SharedHead {
   double force_max = 0;             ///< What the gate lets pass, N.
   std::uint32_t wall_clock = 0;     ///< 1: in real time; 0: as fast as it computes.
   std::uint32_t hand_by_mouse = 0;  ///< 1: a viewer leads the simulated hand.
+  std::uint32_t paced = 0;          ///< 1: simulated time, at a pace that viewers choose.
+  std::uint32_t restarts = 0;       ///< 1: it is begun anew, or with another scene, when asked.
   SharedText<64> scene{};
   SharedText<1024> scene_file{};
   SharedArm arm;
@@ -162,11 +171,21 @@ struct SharedHand {
   std::int64_t pid = 0;          ///< Of the viewer; should that die, it holds no longer.
 };
 
+/// What of its run a viewer asks to be begun anew.
+struct SharedRestart {
+  std::uint64_t number = 0;  ///< Grows with each order.
+  SharedText<1024> scene{};  ///< The file to run, absolute; empty: the same once more.
+};
+
 /// What viewers ask for. Viewers take turns by `writer`; the run never waits for them.
 struct SharedRequests {
-  std::atomic<std::uint64_t> writer;         ///< pid of the viewer that writes; 0: none.
-  std::atomic<std::uint32_t> pause;          ///< 1: hold the loop.
-  std::atomic<std::uint32_t> stop;           ///< 1: end the run.
+  std::atomic<std::uint64_t> writer;  ///< pid of the viewer that writes; 0: none.
+  std::atomic<std::uint32_t> pause;   ///< 1: hold the loop.
+  std::atomic<std::uint32_t> stop;    ///< 1: end the run.
+  std::atomic<std::uint32_t> loop;    ///< 1: begin anew whenever the run ends.
+  std::atomic<double> speed;          ///< Times real time; nonsense is ignored.
+  std::atomic<std::uint64_t> steps;   ///< Grows by the ticks that a paused run may go on by.
+  driver::Snapshot<SharedRestart> restart;
   std::atomic<std::uint64_t> record_number;  ///< Grows with each order; odd: record, even: stop.
   driver::Snapshot<SharedText<1024>> record_path;  ///< Where to; empty: the run chooses.
   driver::Snapshot<SharedHand> hand;
@@ -179,9 +198,11 @@ struct SharedLive {
   std::atomic<std::uint32_t> recording;               ///< 1 while ticks are recorded.
   std::atomic<std::uint64_t> ticks;                   ///< Ticks stored in the ring so far.
   std::atomic<std::uint64_t> missed;                  ///< Periods of the loop that were skipped.
+  std::atomic<std::uint64_t> paused;                  ///< Ticks that passed while it was paused.
   std::atomic<std::uint64_t> record_dropped;          ///< Ticks that a recording lacks.
   std::atomic<std::uint64_t> shape_moves;             ///< Vertices moved, edges split for good.
   driver::Snapshot<SharedText<1024>> recording_path;  ///< Of the current or last recording.
+  driver::Snapshot<SharedText<1024>> notice;          ///< What viewers must be told; empty: none.
   driver::Snapshot<ScenePoses> poses;
   driver::Snapshot<render::BodyPatch> patch;
   std::array<driver::Snapshot<driver::TickRecord>, kMoreArmsMost> others;  ///< Newest ticks.

@@ -26,6 +26,16 @@ bool finite(const std::array<double, N>& numbers) noexcept {
   return std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); });
 }
 
+template <std::size_t N>
+std::string printable(const SharedText<N>& shared, bool lines = false) {
+  std::string text(shared.data(), strnlen(shared.data(), shared.size() - 1));
+  for (char& c : text) {
+    if (lines && c == '\n') continue;
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+  }
+  return text;
+}
+
 template <class T>
 std::span<T> table_in(std::span<std::byte> memory, const SharedTable& table) {
   return {reinterpret_cast<T*>(memory.data() + table.offset), table.count};
@@ -186,18 +196,19 @@ void SharedReader::shape(std::size_t object, render::TriangleMesh& mesh) const {
 SharedReader::Counters SharedReader::counters() const noexcept {
   return {.ticks = live_->ticks.load(),
           .missed = live_->missed.load(),
+          .paused = live_->paused.load(),
           .recording = live_->recording.load() == 1,
           .record_dropped = live_->record_dropped.load()};
 }
 
 std::string SharedReader::recording_path() const {
   SharedText<1024> path{};
-  if (!live_->recording_path.load(path)) return {};
-  std::string text(path.data(), strnlen(path.data(), path.size() - 1));
-  for (char& c : text) {
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
-  }
-  return text;
+  return live_->recording_path.load(path) ? printable(path) : std::string();
+}
+
+std::string SharedReader::notice() const {
+  SharedText<1024> notice{};
+  return live_->notice.load(notice) ? printable(notice, true) : std::string();
 }
 
 double SharedReader::knob(std::size_t knob) const noexcept {

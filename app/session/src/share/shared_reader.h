@@ -69,11 +69,14 @@ class SharedReader {
   /// What a run counts.
   struct Counters {
     std::uint64_t ticks = 0;
-    std::uint64_t missed = 0;  ///< Periods of the loop that were skipped.
+    std::uint64_t missed = 0;  ///< Periods of the loop that were skipped, but for those in a pause.
+    std::uint64_t paused = 0;  ///< Ticks that passed in pauses: none where simulated time stands.
     bool recording = false;
     std::uint64_t record_dropped = 0;  ///< Ticks that the recording lacks.
   };
   Counters counters() const noexcept;
+  /// Returns what the run wants a person to know: why a scene was not taken, say; empty: nothing.
+  std::string notice() const;
   /// Returns where ticks are, or were last, recorded to; empty if nowhere.
   std::string recording_path() const;
 
@@ -87,6 +90,23 @@ class SharedReader {
 
   void ask_pause(bool pause) noexcept;
   bool pause_asked() const noexcept { return live_->requests.pause.load() == 1; }
+  /// Lets a paused run go on by so many ticks, 1 to kStepsMost. The error says why it cannot.
+  driver::Result<void> ask_steps(std::uint64_t ticks);
+  /// Asks for a pace, kSpeedLeast to kSpeedMost times real time. The error says why the run has
+  /// none.
+  driver::Result<void> ask_speed(double speed);
+  /// Returns what was asked for; 1 if the memory holds nonsense.
+  double speed_asked() const noexcept;
+  /// Asks the run to begin anew from its first tick, with `scene` (a file, absolute) or with its
+  /// own as it lies on the disk now. The error says why it cannot.
+  driver::Result<void> ask_restart(const std::string& scene = {});
+  /// Asks that the run begins anew whenever it ends. The error as above.
+  driver::Result<void> ask_loop(bool loop);
+  bool loop_asked() const noexcept { return live_->requests.loop.load() == 1; }
+  /// Returns why the run cannot be begun anew, be stepped, or go at another pace; empty if it can.
+  std::string why_no_restart() const;
+  std::string why_no_step() const;   ///< As above.
+  std::string why_no_speed() const;  ///< As above.
   /// Asks the run to end.
   void ask_stop() noexcept { live_->requests.stop.store(1); }
   /// Asks for a recording to `path` (HDF5); empty: beside where the run was started, by name and
@@ -108,6 +128,7 @@ class SharedReader {
   bool sound(render::BodyPatch& patch) const noexcept;
   bool take_turn() noexcept;
   void end_turn() noexcept;
+  std::string why_real() const;
 
   std::unique_ptr<SharedMemory> memory_;  // null if somebody else keeps it
   std::string name_;

@@ -110,6 +110,9 @@ void SharedRun::write(const SharedScene& scene, std::size_t ring_ticks) {
   head_->force_max = scene.force_max;
   head_->wall_clock = scene.wall_clock ? 1 : 0;
   head_->hand_by_mouse = scene.hand_by_mouse ? 1 : 0;
+  head_->paced = scene.paced ? 1 : 0;
+  head_->restarts = scene.restarts ? 1 : 0;
+  live_->requests.speed.store(1);
   put(scene.name, head_->scene);
   put(scene.file, head_->scene_file);
   put_arm(scene.arm, head_->arm);
@@ -172,7 +175,13 @@ SharedRun::~SharedRun() {
 }
 
 void SharedRun::store_tick(const driver::TickRecord& record) noexcept {
-  if (stored_ > 0) {
+  // Where the arm goes by the time of the world, its loop goes on in a pause; nothing is lost then.
+  const bool idle = head_->wall_clock == 1 && live_->state.load(std::memory_order_relaxed) ==
+                                                  static_cast<std::uint32_t>(RunState::kPaused);
+  if (idle) {
+    live_->paused.store(live_->paused.load(std::memory_order_relaxed) + 1,
+                        std::memory_order_relaxed);
+  } else if (stored_ > 0) {
     const std::int64_t skipped = (record.due_ns - last_due_ns_) / period_ns_ - 1;
     if (skipped > 0) {
       live_->missed.store(
@@ -242,6 +251,32 @@ std::optional<SharedRun::RecordOrder> SharedRun::record_order_after(std::uint64_
     order.path.assign(path.data(), strnlen(path.data(), path.size() - 1));
   }
   return order;
+}
+
+std::optional<double> SharedRun::speed_wanted() const noexcept {
+  const double wanted = live_->requests.speed.load(std::memory_order_relaxed);
+  // Written so that NaN is no request.
+  if (wanted >= kSpeedLeast && wanted <= kSpeedMost) return wanted;
+  return {};
+}
+
+void SharedRun::set_pace(double speed, bool loop) noexcept {
+  live_->requests.speed.store(speed);
+  live_->requests.loop.store(loop ? 1 : 0);
+}
+
+void SharedRun::set_notice(const std::string& notice) noexcept {
+  SharedText<1024> text{};
+  put(notice, text);
+  live_->notice.store(text);
+}
+
+std::optional<SharedRun::RestartOrder> SharedRun::restart_order_after(std::uint64_t number) const {
+  SharedRestart newest;
+  if (!live_->requests.restart.load(newest, 1) || newest.number <= number) return {};
+  return RestartOrder{
+      .number = newest.number,
+      .scene = {newest.scene.data(), strnlen(newest.scene.data(), newest.scene.size() - 1)}};
 }
 
 std::vector<std::uint64_t> SharedRun::viewers() const {

@@ -74,6 +74,15 @@ class SharedRun final : public KnobRequests {
   bool stop_asked() const noexcept {
     return live_->requests.stop.load(std::memory_order_relaxed) == 1;
   }
+  bool loop_asked() const noexcept {
+    return live_->requests.loop.load(std::memory_order_relaxed) == 1;
+  }
+  /// Returns how fast the run shall go, times real time; empty if a viewer wrote nonsense.
+  std::optional<double> speed_wanted() const noexcept;
+  /// Returns how many ticks a paused run was let go on by so far. Any number may stand there.
+  std::uint64_t steps_asked() const noexcept {
+    return live_->requests.steps.load(std::memory_order_relaxed);
+  }
   /// Returns what a knob shall be: within its bounds, or empty if a viewer wrote nonsense.
   std::optional<double> knob_wanted(std::size_t knob) const noexcept override;
   std::size_t knob_count() const noexcept { return knobs_.size(); }
@@ -90,6 +99,18 @@ class SharedRun final : public KnobRequests {
   /// Gives the newest order, if there is one after `number`. Real-time: never from the servo
   /// thread.
   std::optional<RecordOrder> record_order_after(std::uint64_t number) const;
+  /// An order to begin the run anew.
+  struct RestartOrder {
+    std::uint64_t number = 0;  ///< Grows with each order.
+    std::string scene;         ///< The file to run; empty: the same once more.
+  };
+  /// Gives the newest order, if there is one after `number`. Real-time: never from the servo
+  /// thread.
+  std::optional<RestartOrder> restart_order_after(std::uint64_t number) const;
+  /// Sets what viewers find as asked for: before the first tick.
+  void set_pace(double speed, bool loop) noexcept;
+  /// Tells viewers what a person must know; empty: nothing any more. One thread.
+  void set_notice(const std::string& notice) noexcept;
   /// Returns a knob by its number.
   const SharedScene::Knob& knob(std::size_t knob) const noexcept { return knobs_[knob]; }
   /// Returns the pids of the viewers that look on. Real-time: never from the servo thread.

@@ -53,13 +53,16 @@ void ViewerRequestHandler::step() {
     ended_ = true;
     scene::ask_to_stop();
   }
+  if (next_ != nullptr) next_->step(scene::stop_asked());
 }
 
 std::unique_ptr<ViewerRequestHandler> open_viewer_requests(
-    Session& session, ViewerChoice choice, const std::vector<std::string>& arguments) {
+    Session& session, ViewerChoice choice, const std::vector<std::string>& arguments,
+    NextRun* next) {
   if (session.shared() == nullptr) return nullptr;
   std::unique_ptr<ViewerProcess> viewer;
-  if (opens_viewer(choice, session.real_time(), has_display(), isatty(STDERR_FILENO) != 0)) {
+  const bool watchable = session.real_time() || session.setup().paced();
+  if (opens_viewer(choice, watchable, has_display(), isatty(STDERR_FILENO) != 0)) {
     auto started = ViewerProcess::start(session.shared()->name(), arguments);
     if (started) {
       viewer = std::move(started).value();
@@ -71,7 +74,7 @@ std::unique_ptr<ViewerRequestHandler> open_viewer_requests(
                            session.shared()->name());
   }
   return std::make_unique<ViewerRequestHandler>(session, std::move(viewer),
-                                                session.setup().hand_by_mouse());
+                                                session.setup().hand_by_mouse(), next);
 }
 
 }  // namespace thimble::session

@@ -3,10 +3,12 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "log/logger.h"
 #include "share/shared_run.h"
+#include "share/steer/next_run.h"
 #include "share/viewer_process.h"
 #include "share/viewer_watch.h"
 #include "thimble/scene/scene_file.h"
@@ -19,19 +21,23 @@ namespace thimble::session {
 class ViewerRequestHandler {
  public:
   /// Serves `session`, which must be shared. `viewer` is the one that was opened with the run, if
-  /// any; with `ends_with_viewer` the run ends when that is closed.
+  /// any; with `ends_with_viewer` the run ends when that is closed. `next`: what begins it anew, or
+  /// null; must outlive this.
   ViewerRequestHandler(Session& session, std::unique_ptr<ViewerProcess> viewer,
-                       bool ends_with_viewer)
+                       bool ends_with_viewer, NextRun* next = nullptr)
       : session_(session),
         viewer_(std::move(viewer)),
         watch_(*session.shared(), scene::run_logger(session.scene().name)),
-        ends_with_viewer_(ends_with_viewer) {}
+        ends_with_viewer_(ends_with_viewer),
+        next_(next) {}
 
   /// Looks once; call it about ten times a second.
   void step();
 
   /// Returns whether a viewer has ended the run.
   bool ended() const noexcept { return ended_; }
+  /// Gives the viewer away, to who serves the run that comes next.
+  std::unique_ptr<ViewerProcess> take_viewer() noexcept { return std::move(viewer_); }
 
  private:
   void record(const SharedRun::RecordOrder& order);
@@ -40,6 +46,7 @@ class ViewerRequestHandler {
   std::unique_ptr<ViewerProcess> viewer_;
   ViewerWatch watch_;
   bool ends_with_viewer_;
+  NextRun* next_;
   bool ended_ = false;
   std::uint64_t last_order_ = 0;
 };
@@ -60,8 +67,9 @@ constexpr bool opens_viewer(ViewerChoice choice, bool real_time, bool display,
 
 /// Opens the viewer of a session if one is asked for, or says on standard error how to watch
 /// without, and returns who serves all that come; null if the run is not shared. `arguments` are
-/// the viewer's, after its run. Real-time: never from the servo thread.
+/// the viewer's, after its run; `next` as for the handler. Real-time: never from the servo thread.
 std::unique_ptr<ViewerRequestHandler> open_viewer_requests(
-    Session& session, ViewerChoice choice, const std::vector<std::string>& arguments = {});
+    Session& session, ViewerChoice choice, const std::vector<std::string>& arguments = {},
+    NextRun* next = nullptr);
 
 }  // namespace thimble::session

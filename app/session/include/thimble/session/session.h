@@ -46,6 +46,7 @@ struct RunRecords;
 enum class ClockKind {
   kVirtual,  ///< As fast as it computes, and repeatable to the bit.
   kWall,     ///< In real time; a real arm always is.
+  kPaced,    ///< The ticks of kVirtual to the bit, at the pace of real time or a part of it.
 };
 
 /// Opens the link to a real arm in place of `scene::open_link`, for tests.
@@ -85,6 +86,8 @@ struct SessionOptions {
   /// A program leads the simulated hand (Session::lead_hand): it waits where the scene's path
   /// begins, and the run has no end of its own.
   bool hand_by_program = false;
+  /// Whoever runs it begins it anew when a viewer asks; a run with a real arm is never.
+  bool restarts = false;
   std::string share_name = {};  ///< under which; empty: the scene's, with a number if it is taken
   double rate_factor = 1;  ///< of the loop, over the scene's (scene::SceneReading); not with a real
                            ///< arm, which has its own
@@ -246,6 +249,9 @@ class Session {
   const RunRecords& records() const noexcept;  ///< As above.
   /// Returns what viewers see; null if the run is not shared.
   SharedRun* shared() noexcept;
+  /// Lets viewers see a run that was prepared without, as `options` asks. Before its first tick.
+  /// The error is that of `prepare`. Real-time: never from the servo thread.
+  driver::Result<void> share(const SessionOptions& options);
 
  private:
   struct Parts;

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "share/steer/file_watch.h"
+#include "thimble/driver/result.h"
+#include "thimble/driver/servo_loop.h"
+#include "thimble/session/session.h"
+
+namespace thimble::session {
+
+/// What comes after a run of simulated arms: the same scene from its first tick, or another one, as
+/// viewers ask, as its files change, or as the run comes to its end. What is next is prepared
+/// beside the run, which goes on where that fails. Real-time: never from the servo thread.
+class NextRun {
+ public:
+  /// Prepares a session of a scene's file that nobody sees yet, and records nothing.
+  using Prepare =
+      std::function<driver::Result<std::unique_ptr<Session>>(const std::filesystem::path& scene)>;
+
+  /// Prepares by `prepare`. `reload`: the run begins anew when its scene's or arm's file changes;
+  /// `loop`: when it has ended, and `speed`: times real time, until a viewer wants it otherwise.
+  NextRun(Prepare prepare, bool reload, bool loop, double speed)
+      : prepare_(std::move(prepare)), reload_(reload), loop_(loop), speed_(speed) {}
+
+  /// Serves `session` from now on, which is shared. A run with a real arm is none to begin anew:
+  /// then nothing here does anything.
+  void begin(Session& session);
+  /// Looks once, about ten times a second: what is asked for is prepared, or the viewers are told
+  /// why not. `stop`: the run shall end and nothing shall come after it.
+  void step(bool stop);
+  /// Returns the flag that ends the run that is served.
+  const std::atomic<bool>& ended() const noexcept { return end_; }
+  /// Returns what to run next, after the run has ended by `end`: what was prepared, or the same
+  /// scene once more where it loops. Null: nothing. What cannot be prepared is told in the log.
+  std::unique_ptr<Session> take(driver::ServoEnd end, bool stop);
+
+ private:
+  bool prepare(const std::filesystem::path& scene);
+
+  Prepare prepare_;
+  bool reload_;
+  bool loop_;
+  double speed_;
+  Session* session_ = nullptr;  // null: there is nothing to begin anew
+  std::filesystem::path scene_;
+  FileWatch files_;
+  std::uint64_t last_order_ = 0;
+  std::unique_ptr<Session> next_;
+  std::atomic<bool> end_{false};
+};
+
+}  // namespace thimble::session

@@ -1,0 +1,88 @@
+// What a viewer asks of a run's course: to begin anew, to go on by single ticks, or at another
+// pace.
+#include <algorithm>
+#include <cmath>
+
+#include "share/shared_reader.h"
+
+namespace thimble::session {
+
+std::string SharedReader::why_real() const {
+  const auto real = [](const SharedScene::Arm& arm) { return arm.device != "sim"; };
+  const SharedScene::Arm* found = real(scene_.arm) ? &scene_.arm : nullptr;
+  for (const SharedScene::Arm& arm : scene_.more_arms) {
+    if (found == nullptr && real(arm)) found = &arm;
+  }
+  if (found == nullptr) return {};
+  return "The run has a physical arm (" + found->device +
+         "): it can be paused and stopped; its time is that of the world, and only a person at the "
+         "arm begins a run.";
+}
+
+std::string SharedReader::why_no_restart() const {
+  if (std::string real = why_real(); !real.empty()) return real;
+  if (scene_.restarts) return {};
+  return "This run cannot be begun anew from a viewer; end it and start it again where it was "
+         "started.";
+}
+
+std::string SharedReader::why_no_step() const {
+  if (std::string real = why_real(); !real.empty()) return real;
+  if (!scene_.wall_clock) return {};
+  return "This run goes by the time of the world, which has no single ticks; start it with --clock "
+         "paced.";
+}
+
+std::string SharedReader::why_no_speed() const {
+  if (std::string real = why_real(); !real.empty()) return real;
+  if (scene_.paced) return {};
+  return scene_.wall_clock
+             ? "This run goes by the time of the world; start it with --clock paced to choose its "
+               "speed."
+             : "This run goes as fast as it computes; start it with --clock paced to choose its "
+               "speed.";
+}
+
+driver::Result<void> SharedReader::ask_steps(std::uint64_t ticks) {
+  if (std::string why = why_no_step(); !why.empty()) return driver::Error{why};
+  if (state() != RunState::kPaused) {
+    return driver::Error{"Single ticks are for a run that is paused; pause it first."};
+  }
+  live_->requests.steps.fetch_add(std::clamp<std::uint64_t>(ticks, 1, kStepsMost));
+  return {};
+}
+
+driver::Result<void> SharedReader::ask_speed(double speed) {
+  if (std::string why = why_no_speed(); !why.empty()) return driver::Error{why};
+  if (std::isnan(speed)) return driver::Error{"A speed is a number from 0.1 to 4."};
+  live_->requests.speed.store(std::clamp(speed, kSpeedLeast, kSpeedMost));
+  return {};
+}
+
+double SharedReader::speed_asked() const noexcept {
+  const double speed = live_->requests.speed.load();
+  return speed >= kSpeedLeast && speed <= kSpeedMost ? speed : 1;
+}
+
+driver::Result<void> SharedReader::ask_restart(const std::string& scene) {
+  if (std::string why = why_no_restart(); !why.empty()) return driver::Error{why};
+  SharedRestart order;
+  if (scene.size() >= order.scene.size()) {
+    return driver::Error{"The path of the scene is too long; copy the file elsewhere."};
+  }
+  if (!take_turn()) return driver::Error{"Another viewer is just asking for something."};
+  SharedRestart before;
+  order.number = live_->requests.restart.load(before) ? before.number + 1 : 1;
+  std::copy(scene.begin(), scene.end(), order.scene.begin());
+  live_->requests.restart.store(order);
+  end_turn();
+  return {};
+}
+
+driver::Result<void> SharedReader::ask_loop(bool loop) {
+  if (std::string why = why_no_restart(); !why.empty()) return driver::Error{why};
+  live_->requests.loop.store(loop ? 1 : 0);
+  return {};
+}
+
+}  // namespace thimble::session

@@ -1,0 +1,146 @@
+#include "view/run_buttons.h"
+
+#include <epoxy/gl.h>
+// After the above, which brings OpenGL.
+#include <GLFW/glfw3.h>
+#include <imgui.h>
+
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include "share/steer/save_knobs.h"
+
+namespace thimble::app::view {
+namespace {
+
+constexpr double kFaster = 1.25;  // of one press of a key
+
+/// Draws a button, grey where `why` says why it does nothing; returns whether it was pressed.
+bool button(const char* label, const char* what, const std::string& why) {
+  ImGui::BeginDisabled(!why.empty());
+  const bool pressed = ImGui::Button(label);
+  ImGui::EndDisabled();
+  explain(what, why);
+  return pressed;
+}
+
+std::string why_no_step_now(const session::SharedReader& reader) {
+  std::string why = reader.why_no_step();
+  if (why.empty() && reader.state() != session::RunState::kPaused) why = "Pause the run first.";
+  return why;
+}
+
+}  // namespace
+
+std::string counted(const session::SharedReader::Counters& counters) {
+  char text[128];
+  std::snprintf(text, sizeof text, "%llu ticks, %llu periods missed",
+                static_cast<unsigned long long>(counters.ticks),
+                static_cast<unsigned long long>(counters.missed));
+  std::string line = text;
+  if (counters.paused > 0) line += ", " + std::to_string(counters.paused) + " paused";
+  return line;
+}
+
+void explain(const char* what, const std::string& why) {
+  if (!ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
+  ImGui::BeginTooltip();
+  ImGui::PushTextWrapPos(22 * ImGui::GetFontSize());
+  ImGui::TextUnformatted(what);
+  if (!why.empty()) ImGui::TextDisabled("%s", why.c_str());
+  ImGui::PopTextWrapPos();
+  ImGui::EndTooltip();
+}
+
+void RunButtons::tell(const driver::Result<void>& asked) {
+  if (!asked) told_ = asked.error().message;
+}
+
+std::string RunButtons::take_told() {
+  return std::exchange(told_, {});
+}
+
+void RunButtons::step(session::SharedReader& reader, bool shift, bool ctrl) {
+  tell(reader.ask_steps(ctrl ? 100 : shift ? 10 : 1));
+}
+
+void RunButtons::save(const session::SharedReader& reader) {
+  const auto saved = session::save_knobs(reader);
+  told_ = saved ? "Saved: " + saved->text() : saved.error().message;
+}
+
+void RunButtons::draw(session::SharedReader& reader) {
+  const std::string no_restart = reader.why_no_restart();
+  const ImGuiIO& io = ImGui::GetIO();
+  if (button("Restart", "Begins the run anew, from its first tick (B)", no_restart)) {
+    tell(reader.ask_restart());
+  }
+  ImGui::SameLine();
+  if (button("Step", "Lets a paused run go on by a tick; with shift by 10, with ctrl by 100 (N)",
+             why_no_step_now(reader))) {
+    step(reader, io.KeyShift, io.KeyCtrl);
+  }
+  ImGui::SameLine();
+  bool loop = reader.loop_asked();
+  ImGui::BeginDisabled(!no_restart.empty());
+  if (ImGui::Checkbox("loop", &loop)) tell(reader.ask_loop(loop));
+  ImGui::EndDisabled();
+  explain("Begins the run anew whenever it ends (L)", no_restart);
+  ImGui::SameLine();
+  const std::string no_speed = reader.why_no_speed();
+  ImGui::BeginDisabled(!no_speed.empty());
+  double speed = reader.speed_asked();
+  ImGui::SetNextItemWidth(-1);
+  if (ImGui::SliderScalar("##speed", ImGuiDataType_Double, &speed, &session::kSpeedLeast,
+                          &session::kSpeedMost, "speed %.2f",
+                          ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic)) {
+    tell(reader.ask_speed(speed));
+  }
+  ImGui::EndDisabled();
+  explain("Times real time; the ticks stay the same to the bit (, and .)", no_speed);
+  if (button("Scene...", "Runs another scene in place of this one (O)", no_restart)) {
+    scenes_.toggle();
+  }
+  ImGui::SameLine();
+  if (button("Save knobs",
+             "Writes the scene with its knobs as they are into a new file beside it (K)",
+             reader.scene().knobs.empty() ? "This run has no knobs." : "")) {
+    save(reader);
+  }
+  if (std::string told = scenes_.draw(reader); !told.empty()) told_ = std::move(told);
+}
+
+void RunButtons::take_key(int key, bool shift, bool ctrl, session::SharedReader& reader) {
+  switch (key) {
+    case GLFW_KEY_B:
+      tell(reader.ask_restart());
+      break;
+    case GLFW_KEY_N:
+      step(reader, shift, ctrl);
+      break;
+    case GLFW_KEY_L:
+      tell(reader.ask_loop(!reader.loop_asked()));
+      break;
+    case GLFW_KEY_PERIOD:
+      tell(reader.ask_speed(reader.speed_asked() * kFaster));
+      break;
+    case GLFW_KEY_COMMA:
+      tell(reader.ask_speed(reader.speed_asked() / kFaster));
+      break;
+    case GLFW_KEY_O:
+      if (std::string why = reader.why_no_restart(); why.empty()) {
+        scenes_.toggle();
+      } else {
+        told_ = std::move(why);
+      }
+      break;
+    case GLFW_KEY_K:
+      save(reader);
+      break;
+    default:
+      break;
+  }
+}
+
+}  // namespace thimble::app::view

@@ -1,0 +1,281 @@
+#include "share/steer/next_run.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <fstream>
+#include <memory>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include "paced_clock.h"
+#include "setup.h"
+#include "share/shared_reader.h"
+#include "share/shared_run.h"
+#include "share/steer/file_watch.h"
+#include "support/run_hash.h"
+#include "support/scratch.h"
+#include "text_file.h"
+#include "thimble/scene/arm_file.h"
+
+namespace thimble::session {
+namespace {
+
+const std::filesystem::path kSource(THIMBLE_SOURCE_DIR);
+const std::atomic<bool> kGoesOn{false};
+
+/// A run of the rubber ball, of a file of its own, that viewers in this process look on.
+class NextRunTest : public ::testing::Test {
+ protected:
+  NextRunTest() {
+    file_ = support::scratch_folder() / "ball.yaml";
+    write("400");
+    options_.duration = 0.8;
+    options_.clock = ClockKind::kPaced;
+    options_.share = true;
+    options_.restarts = true;
+  }
+
+  /// Writes the scene with this stiffness (N/m).
+  void write(const std::string& stiffness) {
+    std::string text = scene::text_of(kSource / "app/scenes/rubber.yaml");
+    text.replace(text.find("../arms"), 7, (kSource / "app/arms").string());
+    text.replace(text.find("400"), 3, stiffness);
+    std::ofstream(file_) << text;
+  }
+
+  std::unique_ptr<Session> prepare() const { return Session::prepare(file_, options_).value(); }
+
+  NextRun next_of(bool reload = false, bool loop = false, double speed = 4) const {
+    return {[this](const std::filesystem::path& scene) {
+              SessionOptions unseen = options_;
+              unseen.share = false;
+              return Session::prepare(scene, unseen);
+            },
+            reload, loop, speed};
+  }
+
+  static std::unique_ptr<SharedReader> view(Session& session) {
+    return SharedReader::over(session.shared()->memory().again().value()).value();
+  }
+
+  static std::uint64_t hash_of(const Session& session) {
+    support::RunHash hash;
+    for (const auto& row : session.ticks()) hash.add(row);
+    return hash.value();
+  }
+
+  /// Returns what a run in virtual time feels that nobody looks at.
+  std::uint64_t hash_alone() const {
+    SessionOptions alone;
+    alone.duration = options_.duration;
+    const auto session = Session::open(file_, alone).value();
+    session->run();
+    return hash_of(*session);
+  }
+
+  std::filesystem::path file_;
+  SessionOptions options_;
+};
+
+TEST_F(NextRunTest, BeginsAnewWithTheBitsOfAFreshRun) {
+  const std::uint64_t fresh = hash_alone();
+  NextRun next = next_of();
+  auto session = prepare();
+  next.begin(*session);
+  ASSERT_TRUE(session->open_arm());
+  for (int i = 0; i < 30; ++i) ASSERT_FALSE(session->step(next.ended()));
+  ASSERT_TRUE(view(*session)->ask_restart());
+  next.step(false);
+  EXPECT_TRUE(next.ended());
+  EXPECT_EQ(session->run(next.ended()), driver::ServoEnd::kStopped);
+  auto again = next.take(driver::ServoEnd::kStopped, false);
+  ASSERT_TRUE(again);
+  session = std::move(again);
+  ASSERT_TRUE(session->share(options_));
+  next.begin(*session);
+  EXPECT_FALSE(next.ended());
+  EXPECT_EQ(view(*session)->speed_asked(), 4) << "the pace stays as it was chosen";
+  ASSERT_TRUE(session->open_arm());
+  EXPECT_EQ(session->run(next.ended()), driver::ServoEnd::kDone);
+  EXPECT_EQ(hash_of(*session), fresh);
+  EXPECT_FALSE(next.take(driver::ServoEnd::kDone, false)) << "it does not loop";
+}
+
+TEST_F(NextRunTest, FeelsTheSameToTheBitAtAnyPaceAndTickByTick) {
+  const std::uint64_t fresh = hash_alone();
+  NextRun next = next_of();
+  const auto session = prepare();
+  next.begin(*session);
+  const auto viewer = view(*session);
+  ASSERT_TRUE(session->open_arm());
+  EXPECT_FALSE(viewer->ask_steps(1)) << "it is not paused";
+  viewer->ask_pause(true);
+  std::thread servo([&] { session->run(next.ended()); });
+  // Wall time is waited for here, and never judged.
+  const auto wait_for = [](auto condition) {
+    while (!condition()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  };
+  wait_for([&] { return viewer->state() == RunState::kPaused; });
+  const std::uint64_t stood = viewer->counters().ticks;
+  std::this_thread::sleep_for(std::chrono::milliseconds(30));
+  EXPECT_EQ(viewer->counters().ticks, stood) << "simulated time stands";
+  for (const std::uint64_t ticks : {1, 10, 100}) {
+    const std::uint64_t before = viewer->counters().ticks;
+    EXPECT_TRUE(viewer->ask_steps(ticks));
+    wait_for([&] { return viewer->counters().ticks >= before + ticks; });
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    EXPECT_EQ(viewer->counters().ticks, before + ticks);
+    EXPECT_EQ(viewer->state(), RunState::kPaused);
+  }
+  // More than anybody means, written by somebody else.
+  auto& live = *reinterpret_cast<SharedLive*>(session->shared()->memory().bytes().data() +
+                                              kSharedLiveOffset);
+  const std::uint64_t before = viewer->counters().ticks;
+  live.requests.steps.fetch_add(1'000'000'000);
+  std::this_thread::sleep_for(std::chrono::milliseconds(30));
+  EXPECT_EQ(viewer->counters().ticks, before);
+  EXPECT_EQ(viewer->counters().missed, 0u) << "what stands misses nothing";
+  EXPECT_EQ(viewer->counters().paused, 0u);
+  viewer->ask_pause(false);
+  EXPECT_TRUE(viewer->ask_speed(2));
+  EXPECT_TRUE(viewer->ask_speed(1000));
+  EXPECT_EQ(viewer->speed_asked(), kSpeedMost);
+  servo.join();
+  EXPECT_EQ(viewer->counters().missed, 0u);
+  EXPECT_EQ(hash_of(*session), fresh);
+}
+
+TEST_F(NextRunTest, TakesAFileThatChangedAndGoesOnWhereItIsWrong) {
+  NextRun next = next_of(true);
+  const auto session = prepare();
+  next.begin(*session);
+  const auto viewer = view(*session);
+  const auto look = [&] {
+    for (int i = 0; i <= FileWatch::kSettled; ++i) next.step(false);
+  };
+  look();
+  EXPECT_FALSE(next.ended()) << "nothing has changed";
+  write("stiff");
+  look();
+  EXPECT_FALSE(next.ended()) << "the run goes on";
+  EXPECT_NE(viewer->notice().find("ball.yaml:15: stiffness: expected"), std::string::npos)
+      << viewer->notice();
+  write("400");
+  look();
+  EXPECT_FALSE(next.ended()) << "that runs already";
+  EXPECT_EQ(viewer->notice(), "");
+  write("300");
+  look();
+  EXPECT_TRUE(next.ended());
+  const auto changed = next.take(driver::ServoEnd::kStopped, false);
+  ASSERT_TRUE(changed);
+  EXPECT_EQ(changed->scene().objects[0].stiffness, 300);
+}
+
+TEST_F(NextRunTest, RunsAnotherSceneOrTellsWhyNot) {
+  NextRun next = next_of();
+  const auto session = prepare();
+  next.begin(*session);
+  const auto viewer = view(*session);
+  ASSERT_TRUE(viewer->ask_restart("/nowhere/none.yaml"));
+  next.step(false);
+  EXPECT_FALSE(next.ended());
+  EXPECT_NE(viewer->notice().find("/nowhere/none.yaml"), std::string::npos) << viewer->notice();
+  EXPECT_FALSE(viewer->ask_restart(std::string(5000, 'x'))) << "it cannot be told whole";
+  ASSERT_TRUE(viewer->ask_restart((kSource / "app/scenes/honey.yaml").string()));
+  next.step(false);
+  EXPECT_TRUE(next.ended());
+  const auto honey = next.take(driver::ServoEnd::kStopped, false);
+  ASSERT_TRUE(honey);
+  EXPECT_EQ(honey->scene().name, "honey");
+}
+
+TEST_F(NextRunTest, LoopsUntilAFaultOrAPersonEndsIt) {
+  NextRun next = next_of(false, true);
+  const auto session = prepare();
+  const auto viewer = view(*session);
+  next.begin(*session);
+  EXPECT_TRUE(viewer->loop_asked());
+  EXPECT_FALSE(next.take(driver::ServoEnd::kDone, true)) << "somebody pressed Ctrl-C";
+  EXPECT_FALSE(next.take(driver::ServoEnd::kFault, false)) << "after a fault a person looks first";
+  next.begin(*session);
+  EXPECT_TRUE(next.take(driver::ServoEnd::kDone, false));
+  next.begin(*session);
+  ASSERT_TRUE(viewer->ask_loop(false));
+  EXPECT_FALSE(next.take(driver::ServoEnd::kDone, false));
+  EXPECT_FALSE(next.ended());
+  next.begin(*session);
+  next.step(true);
+  EXPECT_TRUE(next.ended());
+}
+
+TEST_F(NextRunTest, DoesNothingOfItWithAPhysicalArm) {
+  RealArmUse use;
+  use.arm.kind = driver::ArmKind::kPolhem;
+  use.arm.serial = "on_the_desk";
+  use.terms.arm.path = kSource / "app/arms/vintage_phantom.yaml";
+  use.terms.arm.file = scene::load_arm(use.terms.arm.path).value();
+  use.terms.force_most = 1;
+  options_.real_arms["right"] = std::move(use);
+  options_.several_arms = true;
+  const auto session = Session::prepare(kSource / "app/scenes/two_hands.yaml", options_).value();
+  const auto viewer = view(*session);
+  EXPECT_FALSE(session->setup().paced());
+  for (const auto& refused : {viewer->ask_restart(), viewer->ask_loop(true), viewer->ask_speed(2),
+                              viewer->ask_steps(1)}) {
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.error().message.find("physical arm"), std::string::npos);
+  }
+  // Whatever stands in the memory.
+  auto& live = *reinterpret_cast<SharedLive*>(session->shared()->memory().bytes().data() +
+                                              kSharedLiveOffset);
+  NextRun next = next_of(true, true);
+  next.begin(*session);
+  live.requests.restart.store({.number = 7, .scene = {}});
+  live.requests.loop.store(1);
+  for (int i = 0; i < 5; ++i) next.step(false);
+  EXPECT_FALSE(next.ended());
+  EXPECT_FALSE(next.take(driver::ServoEnd::kDone, false));
+}
+
+TEST(FileWatch, WaitsUntilAFileStandsStillAndIsSomethingElse) {
+  const auto file = support::scratch_folder() / "watched.yaml";
+  const auto write = [&file](const char* text) { std::ofstream(file) << text; };
+  write("one");
+  FileWatch watch({file, {}});
+  for (int i = 0; i < 5; ++i) EXPECT_FALSE(watch.step());
+  write("one and more");
+  EXPECT_FALSE(watch.step()) << "it may be written to still";
+  write("one and more yet");
+  EXPECT_FALSE(watch.step());
+  EXPECT_FALSE(watch.step());
+  EXPECT_TRUE(watch.step());
+  EXPECT_FALSE(watch.step()) << "told once";
+  EXPECT_FALSE(watch.as_at_first());
+  std::filesystem::remove(file);
+  for (int i = 0; i < 5; ++i) EXPECT_FALSE(watch.step()) << "an editor puts it back";
+  write("one");
+  EXPECT_FALSE(watch.step());
+  EXPECT_FALSE(watch.step());
+  EXPECT_TRUE(watch.step());
+  EXPECT_TRUE(watch.as_at_first());
+}
+
+TEST(PacedClock, GoesByTheWorldTimesItsSpeedAndCatchesUpALittle) {
+  constexpr double kMs = 1e6;
+  EXPECT_EQ(paced_due(100 * kMs, 100 * kMs, kMs, 1), 101 * kMs);
+  EXPECT_EQ(paced_due(100 * kMs, 100 * kMs, kMs, 4), 100.25 * kMs);
+  EXPECT_EQ(paced_due(100 * kMs, 100 * kMs, kMs, 0.1), 110 * kMs);
+  EXPECT_EQ(paced_due(100 * kMs, 120 * kMs, kMs, 1), 101 * kMs) << "late, and runs after it";
+  EXPECT_EQ(paced_due(100 * kMs, 1000 * kMs, kMs, 1), 950 * kMs) << "too late for that";
+  PacedClock clock;
+  clock.sleep_until_ns(1000);
+  EXPECT_EQ(clock.now_ns(), 1000) << "never later than asked: no tick is missed";
+  clock.sleep_until_ns(500);
+  EXPECT_EQ(clock.now_ns(), 1000);
+}
+
+}  // namespace
+}  // namespace thimble::session
