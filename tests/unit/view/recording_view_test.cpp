@@ -98,6 +98,14 @@ void expect_as_seen(const std::string& scene, const std::vector<double>& times,
   const Seen seen = see(scene, times);
   ASSERT_EQ(seen.moments.size(), times.size());
   ASSERT_NE(seen.recorded, nullptr);
+  // What the test is to see must be there to be seen.
+  const auto& first = seen.moments.front();
+  const auto& last = seen.moments.back();
+  EXPECT_TRUE(last.patch.triangle_count > 0 ||
+              std::any_of(last.poses.begin(), last.poses.end(), [&](const auto& pose) {
+                return pose.p_WB !=
+                       first.poses[static_cast<std::size_t>(&pose - last.poses.data())].p_WB;
+              }));
   const auto now = std::make_unique<DrawnMoment>();
   // From the last to the first as well: it is shown in any order.
   for (std::size_t i = times.size(); i-- > 0;) {
@@ -120,7 +128,7 @@ TEST(RecordingView, ShowsDentsAsTheyWere) {
 }
 
 TEST(RecordingView, ShowsBodiesWhereTheyWere) {
-  expect_as_seen("box", {0.4, 1.2, 2.0});
+  expect_as_seen("floating_block", {0.4, 1.2, 2.0});
 }
 
 TEST(RecordingView, ShowsSeveralArms) {
