@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
@@ -24,7 +25,7 @@ namespace thimble::app {
 namespace {
 
 struct ViewOptions {
-  std::string run;
+  std::vector<std::string> shown;  // a run, or recordings
   bool list = false;
   bool text = false;
   bool web = false;
@@ -41,10 +42,13 @@ struct ViewOptions {
   bool record_stop = false;
   double seconds = 0;  // 0: without an end
 
+  /// Returns the run that is watched; empty: the newest.
+  std::string run() const { return shown.empty() ? "" : shown.front(); }
   bool asks() const {
     return !turn.empty() || pause || resume || stop || !record.empty() || record_stop || restart ||
            steps > 0 || speed || !loop.empty() || !scene.empty() || save_knobs;
   }
+  bool is_for_runs() const { return list || text || web || follow || asks(); }
 };
 
 int list_runs() {
@@ -95,7 +99,7 @@ driver::Result<void> ask_course(session::SharedReader& reader, const ViewOptions
 }
 
 int ask(const ViewOptions& options) {
-  auto attached = session::SharedReader::attach(options.run);
+  auto attached = session::SharedReader::attach(options.run());
   if (!attached) return complain(attached.error(), kExitBadInput);
   session::SharedReader& reader = **attached;
   for (const std::string& order : options.turn) {
@@ -142,7 +146,7 @@ void print_line(const session::SharedReader& reader) {
 /// Tells of a run once a second, without a screen.
 int tell(const ViewOptions& options) {
   const std::atomic<bool>& stop = scene::catch_interrupts();
-  session::RunAttachment runs(options.run);
+  session::RunAttachment runs(options.run());
   std::string told;
   auto next_line = std::chrono::steady_clock::now();
   const auto end = next_line + std::chrono::duration<double>(options.seconds);
@@ -177,7 +181,7 @@ int serve(const ViewOptions& options) {
     return complain(libraries.error(), kExitBadInput);
   }
   const std::atomic<bool>& stop = scene::catch_interrupts();
-  session::RunAttachment runs(options.run);
+  session::RunAttachment runs(options.run());
   const session::SharedReader* watched = nullptr;
   auto server = WebServer::listen(runs, options.port);
   if (!server) return complain(server.error(), kExitBadInput);
@@ -208,26 +212,60 @@ int serve(const ViewOptions& options) {
   return exit_code;
 }
 
-int view_run(const ViewOptions& options, const ShowWindow& show_window) {
+/// Tells a recording from the name of a run, which is no path and has no ending.
+bool is_recording(const std::string& shown) {
+  return shown.find('/') != std::string::npos || std::filesystem::path(shown).has_extension();
+}
+
+int view_recordings(const ViewOptions& options, const ShowWindow& show_window) {
+  for (const std::string& file : options.shown) {
+    if (is_recording(file)) continue;
+    return complain({file + " is the name of a run; show one run, or recordings."}, kExitBadInput);
+  }
+  if (options.is_for_runs()) {
+    return complain({options.shown.front() +
+                     " is a recording: nothing can be asked of it, and as text it is written by "
+                     "`thimble export`."},
+                    kExitBadInput);
+  }
+  if (!show_window.recordings) {
+    return complain({"This thimble was built without a window; `thimble replay FILE --page "
+                     "FILE.html` makes a page that a browser plays."},
+                    kExitBadInput);
+  }
+  return show_window.recordings(options.shown, options.seconds);
+}
+
+int show(const ViewOptions& options, const ShowWindow& show_window) {
+  if (std::any_of(options.shown.begin(), options.shown.end(), is_recording)) {
+    return view_recordings(options, show_window);
+  }
+  if (options.shown.size() > 1) {
+    return complain({"A window shows one run; open one for each."}, kExitBadInput);
+  }
   if (options.list) return list_runs();
   if (options.asks()) return ask(options);
   if (options.text) return tell(options);
   if (options.web) return serve(options);
-  if (!show_window) {
+  if (!show_window.runs) {
     return complain({"This thimble was built without a window; use `thimble view --text` or "
                      "`thimble view --web`."},
                     kExitBadInput);
   }
-  session::RunAttachment runs(options.run);
-  return show_window(runs, options.seconds);
+  session::RunAttachment runs(options.run());
+  return show_window.runs(runs, options.seconds);
 }
 
 }  // namespace
 
 void add_view_command(CLI::App& app, int& exit_code, const ShowWindow& show_window) {
-  CLI::App* command = app.add_subcommand("view", "Show a run that goes on in another process");
+  CLI::App* command =
+      app.add_subcommand("view", "Show a run that goes on in another process, or a recording");
   auto options = std::make_shared<ViewOptions>();
-  command->add_option("RUN", options->run, "Name of the run; the newest if absent");
+  command->add_option(
+      "RUN", options->shown,
+      "Name of the run, the newest if absent; or a recording (.h5), of a scene with "
+      "several arms one of each");
   command->add_flag("--list", options->list, "List the runs and their knobs, and leave");
   CLI::Option* text =
       command->add_flag("--text", options->text, "Print a line a second in place of a window");
@@ -282,7 +320,7 @@ void add_view_command(CLI::App& app, int& exit_code, const ShowWindow& show_wind
   command->add_option("--for", options->seconds, "Stop looking on after so many seconds")
       ->check(CLI::Range(0.1, 86400.0));
   command->callback(
-      [options, show_window, &exit_code] { exit_code = view_run(*options, show_window); });
+      [options, show_window, &exit_code] { exit_code = show(*options, show_window); });
 }
 
 }  // namespace thimble::app

@@ -5,17 +5,32 @@
 
 #include "cli/commands.h"
 #include "cli/complain.h"
+#include "view/time/recording_view.h"
 #include "view/window.h"
 
 namespace thimble::app {
 
 void add_window_command(CLI::App& app, int& exit_code) {
   auto choice = std::make_shared<view::WindowChoice>();
-  add_view_command(app, exit_code, [choice](session::RunAttachment& runs, double seconds) {
+  ShowWindow show;
+  show.runs = [choice](session::RunAttachment& runs, double seconds) -> int {
     choice->seconds = seconds;
     const auto shown = view::show_window(runs, *choice);
-    return shown ? static_cast<int>(kExitDone) : complain(shown.error(), kExitTrouble);
-  });
+    return shown ? kExitDone : complain(shown.error(), kExitTrouble);
+  };
+  show.recordings = [choice](const std::vector<std::string>& files, double seconds) -> int {
+    choice->seconds = seconds;
+    if (choice->felt.sound || choice->felt.rumble) {
+      return complain({"--sound and --rumble are for runs; `thimble export FILE --sound FILE.wav` "
+                       "writes the sound of a recording."},
+                      kExitBadInput);
+    }
+    const auto recording = view::RecordingView::open({files.begin(), files.end()});
+    if (!recording) return complain(recording.error(), kExitBadInput);
+    const auto shown = view::show_recording(**recording, files.front(), *choice);
+    return shown ? kExitDone : complain(shown.error(), kExitTrouble);
+  };
+  add_view_command(app, exit_code, show);
   CLI::App* command = app.get_subcommand("view");
   command->add_option("--picture", choice->last_picture, "PNG of the window to write then")
       ->needs("--for")
@@ -35,6 +50,8 @@ void add_window_command(CLI::App& app, int& exit_code) {
       ->excludes("--text");
   command->add_flag("--rumble", choice->felt.rumble, "Let a gamepad rumble as hard as the touch is")
       ->excludes("--text");
+  command->add_option("--at", choice->at, "Of a recording: stand still at this second at first")
+      ->check(CLI::Range(0.0, 86400.0));
 }
 
 bool has_window() {

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 // The argument library, which takes seconds to read.
 namespace CLI {
@@ -14,9 +15,12 @@ class RunAttachment;
 
 namespace thimble::app {
 
-/// Opens a window on runs until it is closed, or for so many seconds if they are above 0, and gives
-/// the exit code; empty where there is none.
-using ShowWindow = std::function<int(session::RunAttachment& runs, double seconds)>;
+/// Opens windows until they are closed, or for so many seconds if they are above 0, and gives the
+/// exit code; empty where there are none.
+struct ShowWindow {
+  std::function<int(session::RunAttachment& runs, double seconds)> runs;
+  std::function<int(const std::vector<std::string>& files, double seconds)> recordings;
+};
 
 // One function per command of the program. Each adds its sub-command with options and help to
 // `app`; when the user chose it, its exit code (exit_code.h) is left in `exit_code`.
@@ -25,7 +29,8 @@ using ShowWindow = std::function<int(session::RunAttachment& runs, double second
 void add_run_command(CLI::App& app, int& exit_code);
 /// `thimble shot SCENE`: draws a moment of a scene.
 void add_shot_command(CLI::App& app, int& exit_code);
-/// `thimble view RUN`: shows a run that goes on in another process, by `show_window` or as text.
+/// `thimble view RUN`: shows a run that goes on in another process, by `show_window` or as text, or
+/// a recording.
 void add_view_command(CLI::App& app, int& exit_code, const ShowWindow& show_window);
 /// `thimble view RUN` with the window of this program.
 void add_window_command(CLI::App& app, int& exit_code);

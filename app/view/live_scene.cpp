@@ -1,72 +1,15 @@
 #include "view/live_scene.h"
 
-#include <Eigen/Geometry>
-#include <algorithm>
 #include <cstddef>
 #include <memory>
-#include <span>
 #include <utility>
-#include <vector>
 
-#include "share/arm_lines.h"
+#include "view/drawn_from_shared.h"
 
 namespace thimble::app::view {
-namespace {
 
-/// Returns whether a mesh is flat: it stands for a plane, which has no end.
-bool is_flat(const render::TriangleMesh& mesh) {
-  Eigen::AlignedBox3d box;
-  for (const Eigen::Vector3d& vertex : mesh.vertices) box.extend(vertex);
-  if (box.isEmpty() || mesh.triangles.empty()) return false;
-  const auto& c = mesh.triangles[0];
-  const auto at = [&](std::int32_t v) { return mesh.vertices[static_cast<std::size_t>(v)]; };
-  const Eigen::Vector3d n = (at(c[1]) - at(c[0])).cross(at(c[2]) - at(c[0])).normalized();
-  return std::all_of(mesh.vertices.begin(), mesh.vertices.end(), [&](const auto& vertex) {
-    return std::abs((vertex - at(c[0])).dot(n)) < 1e-9 * (1 + box.diagonal().norm());
-  });
-}
-
-DrawnObject drawn_object(const session::SharedScene& scene,
-                         const session::SharedScene::Object& object) {
-  DrawnObject drawn;
-  drawn.name = object.name;
-  drawn.stands_for_shape = object.kind == session::SharedKind::kShape;
-  drawn.crease_angle = object.crease_angle;
-  const auto vertices = std::span(scene.vertices).subspan(object.first_vertex, object.vertex_count);
-  drawn.mesh.vertices.assign(vertices.begin(), vertices.end());
-  for (const auto& [a, b, c] :
-       std::span(scene.triangles).subspan(object.first_triangle, object.triangle_count)) {
-    drawn.mesh.triangles.push_back({static_cast<std::int32_t>(a - object.first_vertex),
-                                    static_cast<std::int32_t>(b - object.first_vertex),
-                                    static_cast<std::int32_t>(c - object.first_vertex)});
-  }
-  drawn.endless = drawn.stands_for_shape && is_flat(drawn.mesh);
-  return drawn;
-}
-
-/// Returns the rods of an arm, from its base to its tip.
-std::vector<DrawnRod> rods_of(const session::SharedScene::Arm& arm,
-                              const driver::TickRecord& tick) {
-  std::vector<DrawnRod> rods;
-  for (const session::ArmLine& line : session::arm_lines(arm, tick)) {
-    for (std::size_t i = 0; i + 1 < line.size(); ++i) rods.push_back({line[i], line[i + 1]});
-  }
-  return rods;
-}
-
-}  // namespace
-
-LiveScene::LiveScene(const session::SharedReader& reader) : reader_(reader) {
-  const session::SharedScene& scene = reader.scene();
-  scene_.name = scene.name;
-  scene_.arm = scene.arm.name;
-  scene_.arm_in_scene = scene.arm.in_scene;
-  scene_.force_limit = scene.force_max > 0 ? scene.force_max : 5;
-  scene_.rate = 1e9 / static_cast<double>(scene.period_ns);
-  for (const session::SharedScene::Object& object : scene.objects) {
-    scene_.objects.push_back(drawn_object(scene, object));
-  }
-}
+LiveScene::LiveScene(const session::SharedReader& reader)
+    : reader_(reader), scene_(drawn_scene_of(reader.scene())) {}
 
 bool LiveScene::update(DrawnMoment& moment) {
   moment.poses.resize(scene_.objects.size());

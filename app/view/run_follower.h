@@ -7,40 +7,47 @@
 
 #include "share/run_attachment.h"
 #include "view/live_scene.h"
-#include "view/plots.h"
+#include "view/time/moment_ring.h"
+#include "view/touch_source.h"
 
 namespace thimble::app::view {
 
-/// Keeps the newest moment of the runs that are watched, one after the other.
-/// Real-time: never from the servo thread.
-class RunFollower {
+/// Keeps the newest moment of the runs that are watched, one after the other, and those of the last
+/// minute to look back at. Real-time: never from the servo thread.
+class RunFollower final : public TouchSource {
  public:
   /// Keeps `runs`, which must outlive this.
   explicit RunFollower(session::RunAttachment& runs) : runs_(runs) {}
 
-  /// Looks what is new. Tells whether another run was taken, so that all must be drawn anew.
-  bool step();
-
-  /// Gives the run, which may have ended; nullptr if there was none so far.
-  session::SharedReader* reader() { return runs_.reader(); }
-  /// Gives what is drawn. Precondition: there is a reader; as for the moment.
-  const DrawnScene& scene() const { return live_->scene(); }
-  const DrawnMoment& moment() const { return *moment_; }
-  /// Returns whether the run has told of a tick so far.
-  bool has_moment() const { return has_moment_; }
-  const Plots& plots() const { return plots_; }
-  /// Says why nothing moves; empty if it does.
-  const std::string& notice() const { return notice_; }
+  bool step(double dt) override;
+  session::SharedReader* reader() override { return runs_.reader(); }
+  const DrawnScene& scene() const override { return live_->scene(); }
+  const DrawnMoment& moment() const override { return head_.live() ? *newest_ : *then_; }
+  bool has_scene() const override { return live_ != nullptr; }
+  bool has_moment() const override { return has_moment_; }
+  const Plots& plots() const override { return plots_; }
+  const std::string& notice() const override { return notice_; }
+  std::string name() const override { return runs_.reader() == nullptr ? "" : runs_.name(); }
+  PlayHead& head() override { return head_; }
+  double beside(int steps) const override {
+    return ring_.empty() ? 0 : ring_.beside(head_.time(), steps);
+  }
+  std::string kept() const override;
+  const std::vector<std::string>& about() const override { return about_; }
 
  private:
   session::RunAttachment& runs_;
   std::unique_ptr<LiveScene> live_;
-  std::unique_ptr<DrawnMoment> moment_ = std::make_unique<DrawnMoment>();
+  std::unique_ptr<DrawnMoment> newest_ = std::make_unique<DrawnMoment>();
+  std::unique_ptr<DrawnMoment> then_ = std::make_unique<DrawnMoment>();  // that is looked back at
   bool has_moment_ = false;
+  MomentRing ring_;
+  PlayHead head_ = PlayHead::of_run();
   Plots plots_;
   std::uint64_t serial_ = 0;
   std::vector<driver::TickRecord> ticks_;
   std::string notice_;
+  std::vector<std::string> about_;  // none
 };
 
 }  // namespace thimble::app::view

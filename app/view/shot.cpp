@@ -80,6 +80,7 @@ void PlayedScene::play(const std::vector<double>& times, const Look& look) {
       ++next;
     }
   });
+  (void)session_->end_recording();  // whoever reads it finds out what it lacks
 }
 
 driver::Result<double> strongest_moment(const std::filesystem::path& scene,
@@ -133,9 +134,10 @@ Picture ShotPainter::paint(const DrawnMoment& moment, const Plots& plots) {
     const float half = (width - 3 * pad) / 2;
     fill_part({0, scene.height, width, strip}, kGroundColour);
     ImDrawList& list = *ImGui::GetBackgroundDrawList();
-    plots.draw_force(list, {pad, scene.height + pad / 2, half, strip - 1.5F * pad},
-                     painter_.scene().force_limit);
-    plots.draw_depth(list, {2 * pad + half, scene.height + pad / 2, half, strip - 1.5F * pad});
+    const ScreenPart left{pad, scene.height + pad / 2, half, strip - pad};
+    const ScreenPart right{2 * pad + half, left.y, half, left.height};
+    plots.draw(list, left, Channel::kForce, plots.newest(), {});
+    plots.draw(list, right, Channel::kDepth, plots.newest(), {});
   }
   text_->end();
   return canvas_.read();

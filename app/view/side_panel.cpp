@@ -9,8 +9,11 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <optional>
+#include <string>
 
 #include "thimble/driver/heat_guard.h"
+#include "view/time/time_line.h"
 
 namespace thimble::app::view {
 namespace {
@@ -27,7 +30,10 @@ constexpr std::array kKeys = {Key{"left drag", "turn about the scene"},
                               Key{"ctrl + left drag", "lead the simulated hand; wheel: push"},
                               Key{"H", "swap the two left drags"},
                               Key{"F", "frame the scene"},
-                              Key{"space", "pause, go on"},
+                              Key{"space", "pause, go on; of a recording: play"},
+                              Key{"left, right", "a moment back, on (shift: a second)"},
+                              Key{"Home, End", "oldest moment; now, or the end"},
+                              Key{", .", "slower, faster"},
                               Key{"R", "record, stop recording"},
                               Key{"S", "screenshot"},
                               Key{"G", "Gouraud or Phong shading"},
@@ -49,19 +55,14 @@ void toggle_record(session::SharedReader& reader) {
   }
 }
 
-void draw_head(const session::SharedReader& reader, const driver::TickRecord& tick) {
-  const session::SharedScene& scene = reader.scene();
-  ImGui::TextUnformatted(scene.name.c_str());
-  ImGui::TextDisabled("%s (%s), %.0f Hz%s", scene.arm.name.c_str(), scene.arm.device.c_str(),
-                      1e9 / static_cast<double>(scene.period_ns),
-                      scene.wall_clock || scene.paced ? "" : ", virtual time");
+/// Draws what a tick was: force, depth, and what is wrong; `words` say when.
+void draw_tick(const driver::TickRecord& tick, const std::string& words) {
   const auto& f = tick.f_sent_W;
   ImGui::TextColored(vec(kForceColour), "%5.2f N", std::hypot(f[0], f[1], f[2]));
   ImGui::SameLine(0, 2 * ImGui::GetFontSize());
   ImGui::TextColored(vec(kDepthColour), "%5.2f mm", tick.in_contact ? tick.depth * 1e3 : 0.0);
   ImGui::SameLine(0, 2 * ImGui::GetFontSize());
-  ImGui::TextDisabled("%.1f s, %s", static_cast<double>(tick.time_ns) * 1e-9,
-                      session::name_of(reader.state()));
+  ImGui::TextDisabled("%.1f s, %s", static_cast<double>(tick.time_ns) * 1e-9, words.c_str());
   const double heat = *std::max_element(tick.heat.begin(), tick.heat.end());
   if (heat >= driver::HeatGuard::kWarning) {
     ImGui::TextColored(vec(kForceColour), "motors %.0f %% of their heat limit, force lowered",
@@ -72,6 +73,24 @@ void draw_head(const session::SharedReader& reader, const driver::TickRecord& ti
   if (tick.fault != driver::Fault::kNone) {
     ImGui::TextColored(vec(kForceColour), "%s", std::string(driver::describe(tick.fault)).c_str());
   }
+}
+
+void draw_head(const session::SharedReader& reader, TouchSource& source) {
+  const session::SharedScene& scene = reader.scene();
+  ImGui::TextUnformatted(scene.name.c_str());
+  ImGui::TextDisabled("%s (%s), %.0f Hz%s", scene.arm.name.c_str(), scene.arm.device.c_str(),
+                      1e9 / static_cast<double>(scene.period_ns),
+                      scene.wall_clock || scene.paced ? "" : ", virtual time");
+  draw_tick(source.moment().tick,
+            source.head().live() ? session::name_of(reader.state()) : words_of(source.head()));
+}
+
+void draw_recorded_head(TouchSource& source) {
+  ImGui::TextUnformatted(source.scene().name.c_str());
+  ImGui::PushTextWrapPos(0);
+  for (const std::string& sentence : source.about()) ImGui::TextDisabled("%s", sentence.c_str());
+  ImGui::PopTextWrapPos();
+  draw_tick(source.moment().tick, "recorded");
 }
 
 void draw_buttons(session::SharedReader& reader, ViewChoice& choice) {
@@ -99,18 +118,12 @@ void draw_buttons(session::SharedReader& reader, ViewChoice& choice) {
   }
 }
 
-void draw_plots(const session::SharedReader& reader, const Plots& plots, float height) {
-  const float width = ImGui::GetContentRegionAvail().x;
-  const auto next = [&](float share) {
-    const ImVec2 at = ImGui::GetCursorScreenPos();
-    ImGui::Dummy({width, share * height});
-    return ScreenPart{at.x, at.y, width, share * height};
-  };
-  ImDrawList& list = *ImGui::GetWindowDrawList();
-  plots.draw_force(list, next(0.30F), reader.scene().force_max);
-  plots.draw_depth(list, next(0.26F));
-  plots.draw_work(list, next(0.22F));
-  plots.draw_periods(list, next(0.22F), reader.scene().period_ns);
+void draw_plots(TouchSource& source, PlotPanel& panel, float height) {
+  const PlayHead& head = source.head();
+  const PlotTime time{.looked = head.live() ? std::nullopt : std::optional(head.time()),
+                      .recorded = !head.of_a_run(),
+                      .period_ns = std::llround(1e9 / source.scene().rate)};
+  if (const auto asked = panel.draw(source.plots(), time, height)) source.head().go(*asked);
 }
 
 void draw_knobs(session::SharedReader& reader) {
@@ -157,20 +170,19 @@ void draw_looks(ViewChoice& choice) {
 
 }  // namespace
 
-void draw_side_panel(const ScreenPart& part, session::SharedReader* reader,
-                     const driver::TickRecord& tick, const Plots& plots, const ViewNotes& notes,
+void draw_side_panel(const ScreenPart& part, TouchSource& source, const ViewNotes& notes,
                      ViewChoice& choice) {
+  session::SharedReader* const reader = source.reader();
   ImGui::SetNextWindowPos({part.x, part.y});
   ImGui::SetNextWindowSize({part.width, part.height});
   ImGui::Begin("panel", nullptr,
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus);
-  if (reader == nullptr) {
-    ImGui::TextDisabled("No run to show.");
-  } else {
-    draw_head(*reader, tick);
+  const float plots = std::max(0.48F * part.height, 19 * ImGui::GetFontSize());
+  if (reader != nullptr) {
+    draw_head(*reader, source);
     draw_buttons(*reader, choice);
-    draw_plots(*reader, plots, std::max(0.48F * part.height, 19 * ImGui::GetFontSize()));
+    draw_plots(source, choice.plots, plots);
     ImGui::Separator();
     const float rest = ImGui::GetContentRegionAvail().y - 3.4F * ImGui::GetFrameHeightWithSpacing();
     ImGui::BeginChild("knobs", {0, std::max(rest, 3 * ImGui::GetFontSize())});
@@ -181,6 +193,17 @@ void draw_side_panel(const ScreenPart& part, session::SharedReader* reader,
     const auto counters = reader->counters();
     ImGui::TextDisabled("%s; %.0f pictures/s", counted(counters).c_str(),
                         notes.frame_time > 0 ? 1 / notes.frame_time : 0.0);
+  } else if (source.has_scene()) {
+    draw_recorded_head(source);
+    if (ImGui::Button("Picture")) choice.screenshot = true;
+    ImGui::SameLine();
+    if (ImGui::Button("?")) choice.help = !choice.help;
+    const float rest = ImGui::GetContentRegionAvail().y - 2.4F * ImGui::GetFrameHeightWithSpacing();
+    draw_plots(source, choice.plots, std::max(rest, 0.5F * plots));
+    ImGui::Separator();
+    draw_looks(choice);
+  } else {
+    ImGui::TextDisabled("No run to show.");
   }
   ImGui::End();
 }

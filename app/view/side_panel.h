@@ -3,15 +3,17 @@
 #include <string>
 
 #include "share/shared_reader.h"
-#include "view/plots.h"
 #include "view/run_buttons.h"
 #include "view/scene_painter.h"
+#include "view/time/plot_panel.h"
+#include "view/touch_source.h"
 
 namespace thimble::app::view {
 
 /// What the user chose by panel and keys.
 struct ViewChoice {
   PaintChoice paint;
+  PlotPanel plots;
   bool mouse_is_hand = false;  ///< A left drag leads the hand, and not the camera.
   bool help = false;
   RunButtons run;  ///< Of the run's course.
@@ -34,10 +36,9 @@ struct ViewNotes {
 bool knob_slider(const session::SharedScene::Knob& knob, double& value);
 
 /// Draws the panel at the window's side: how the run is, force, depth and times over time, and the
-/// knobs. `reader` is null while no run is attached. To be called between ImGui's NewFrame and
-/// Render. Real-time: never from the servo thread.
-void draw_side_panel(const ScreenPart& part, session::SharedReader* reader,
-                     const driver::TickRecord& tick, const Plots& plots, const ViewNotes& notes,
+/// knobs; of a recording what it is. A click into a plot moves the head of `source`. To be called
+/// between ImGui's NewFrame and Render. Real-time: never from the servo thread.
+void draw_side_panel(const ScreenPart& part, TouchSource& source, const ViewNotes& notes,
                      ViewChoice& choice);
 
 /// Draws the notice, if there is one, and the help, if it is asked for, over the scene's part.

@@ -3,8 +3,6 @@
 #include <epoxy/gl.h>
 // After the above, which brings OpenGL.
 #include <GLFW/glfw3.h>
-#include <backends/imgui_impl_glfw.h>
-#include <backends/imgui_impl_opengl3.h>
 #include <imgui.h>
 #include <unistd.h>
 
@@ -12,6 +10,7 @@
 #include <chrono>
 #include <cmath>
 #include <ctime>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <thread>
@@ -24,7 +23,10 @@
 #include "view/hand/hand_panel.h"
 #include "view/run_follower.h"
 #include "view/scene_mouse.h"
+#include "view/screen.h"
 #include "view/side_panel.h"
+#include "view/time/recording_player.h"
+#include "view/time/time_line.h"
 
 namespace thimble::app::view {
 namespace {
@@ -32,12 +34,6 @@ namespace {
 constexpr float kPanelWidth = 380;   // pixels at scale 1
 constexpr double kFrame = 1.0 / 60;  // s
 constexpr double kMessageSeconds = 4;
-
-std::string glfw_words() {
-  const char* words = nullptr;
-  glfwGetError(&words);
-  return words == nullptr ? "GLFW gives no reason" : words;
-}
 
 /// Names a picture by run and time.
 std::string picture_name(const std::string& run) {
@@ -47,103 +43,6 @@ std::string picture_name(const std::string& run) {
   char text[32];
   std::strftime(text, sizeof text, "-%Y%m%d-%H%M%S.png", &local);
   return "thimble-" + (run.empty() ? "view" : run) + text;
-}
-
-/// The window with its OpenGL and ImGui; all go with it.
-class Screen {
- public:
-  static driver::Result<std::unique_ptr<Screen>> open() {
-    std::unique_ptr<Screen> screen(new Screen);
-    if (glfwInit() == GLFW_FALSE) {
-      return driver::Error{"No window: " + glfw_words() +
-                           ". Is there a screen? `thimble view --text` needs none."};
-    }
-    screen->glfw_ = true;
-    glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
-    glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
-    glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
-    glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
-    screen->window_ = glfwCreateWindow(1280, 800, "Thimble", nullptr, nullptr);
-    if (screen->window_ == nullptr) return driver::Error{"No window: " + glfw_words() + "."};
-    glfwMakeContextCurrent(screen->window_);
-    glfwSwapInterval(1);
-    // Heard one by one, so that none is lost where pictures take long.
-    glfwSetWindowUserPointer(screen->window_, screen.get());
-    glfwSetKeyCallback(screen->window_, [](GLFWwindow* window, int key, int, int action, int) {
-      auto* self = static_cast<Screen*>(glfwGetWindowUserPointer(window));
-      if (action == GLFW_PRESS) self->keys_.push_back(key);
-    });
-    ImGui::CreateContext();
-    screen->imgui_ = true;
-    ImGui_ImplGlfw_InitForOpenGL(screen->window_, true);
-    ImGui_ImplOpenGL3_Init("#version 330 core");
-    return screen;
-  }
-  Screen(const Screen&) = delete;
-  Screen& operator=(const Screen&) = delete;
-  ~Screen() {
-    if (imgui_) {
-      ImGui_ImplOpenGL3_Shutdown();
-      ImGui_ImplGlfw_Shutdown();
-      ImGui::DestroyContext();
-    }
-    if (window_ != nullptr) glfwDestroyWindow(window_);
-    if (glfw_) glfwTerminate();
-  }
-
-  GLFWwindow* window() { return window_; }
-  float scale() const { return scale_; }
-  /// Gives the keys pressed since it was asked last, but those typed into a field.
-  std::vector<int> take_keys() {
-    std::vector<int> keys = std::exchange(keys_, {});
-    if (ImGui::GetIO().WantTextInput) keys.clear();
-    return keys;
-  }
-
-  void begin() {
-    glfwPollEvents();
-    float x = 1;
-    float y = 1;
-    glfwGetWindowContentScale(window_, &x, &y);
-    if (std::max(x, y) != scale_) {
-      scale_ = std::max(x, y);
-      ImGui_ImplOpenGL3_DestroyFontsTexture();
-      set_text_style(scale_);
-    }
-    ImGui_ImplOpenGL3_NewFrame();
-    ImGui_ImplGlfw_NewFrame();
-    ImGui::NewFrame();
-  }
-
-  void end() {
-    ImGui::Render();
-    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
-  }
-
- private:
-  Screen() = default;
-
-  bool glfw_ = false;
-  bool imgui_ = false;
-  GLFWwindow* window_ = nullptr;
-  float scale_ = 0;
-  std::vector<int> keys_;
-};
-
-/// Reads what the window shows.
-Picture read_window(GLFWwindow* window) {
-  Picture picture;
-  glfwGetFramebufferSize(window, &picture.width, &picture.height);
-  const auto row = 3 * static_cast<std::size_t>(picture.width);
-  std::vector<std::uint8_t> upward(row * static_cast<std::size_t>(picture.height));
-  glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
-  glPixelStorei(GL_PACK_ALIGNMENT, 1);
-  glReadPixels(0, 0, picture.width, picture.height, GL_RGB, GL_UNSIGNED_BYTE, upward.data());
-  for (auto from = upward.end(); from != upward.begin();) {
-    from -= static_cast<std::ptrdiff_t>(row);
-    picture.rgb.insert(picture.rgb.end(), from, from + static_cast<std::ptrdiff_t>(row));
-  }
-  return picture;
 }
 
 /// Returns whether the processor draws in place of a graphics card: then a picture as fine as can
@@ -157,8 +56,8 @@ bool software_draws() {
 /// The window's content from picture to picture.
 class Content {
  public:
-  Content(Screen& screen, session::RunAttachment& runs, const WindowChoice& choice)
-      : screen_(screen), follower_(runs), felt_(choice.felt) {
+  Content(Screen& screen, TouchSource& source, const WindowChoice& choice)
+      : screen_(screen), source_(source), felt_(choice.felt) {
     choice_.paint.fine = !software_draws();
     hand_.input().choose(choice.hand);
     if (!felt_.trouble().empty()) {
@@ -170,20 +69,22 @@ class Content {
   /// Draws one picture into the window.
   driver::Result<void> draw(double frame_time);
   bool wants_to_close() const { return choice_.close; }
-  /// Returns whether nothing moves by itself: there is no run, or it has ended.
+  /// Returns whether nothing moves by itself: there is no run, or it has ended, and nothing plays.
   bool still() {
-    return follower_.reader() == nullptr ||
-           follower_.reader()->state() == session::RunState::kEnded;
+    return !source_.head().plays() &&
+           (source_.reader() == nullptr || source_.reader()->state() == session::RunState::kEnded);
   }
 
  private:
-  void draw_scene(const ScreenPart& part, float ratio);
+  void draw_scene(const ScreenPart& part, int below, float ratio);
   void lead_hand(const ScreenPart& part);
+  bool arrows_lead() const;
+  void begin_run(session::SharedReader& run, bool again);
   void take_picture();
   void tell(const std::string& message);
 
   Screen& screen_;
-  RunFollower follower_;
+  TouchSource& source_;
   std::unique_ptr<ScenePainter> painter_;
   std::optional<Canvas> canvas_;
   bool canvas_fine_ = true;
@@ -208,32 +109,44 @@ void Content::tell(const std::string& message) {
 }
 
 void Content::take_picture() {
-  const std::string file = picture_name(follower_.reader()->name());
+  const std::string file = picture_name(source_.name());
   const auto written = write_png(canvas_->read(), file, PngColours::kAll);
   tell(written ? "Picture: " + file : written.error().message);
 }
 
-// The mouse has the hand while it drags; what else leads it takes it anew afterwards.
+// The mouse has the hand while it drags; what else leads it takes it anew afterwards. Who looks at
+// a moment that was leads nothing.
 void Content::lead_hand(const ScreenPart& part) {
-  session::SharedReader& run = *follower_.reader();
-  const Eigen::Vector3d p_WT(follower_.moment().tick.p_WT.data());
-  const bool by_mouse = mouse_.hand().holds;
-  if (by_mouse) hand_.input().let_go();
+  session::SharedReader& run = *source_.reader();
+  const bool live = source_.head().live();
+  const Eigen::Vector3d p_WT(source_.moment().tick.p_WT.data());
+  const bool by_mouse = mouse_.hand().holds && live;
+  if (by_mouse || !live) hand_.input().let_go();
   const session::SharedScene::Arm& arm = run.scene().arm;
-  hand_.step(keys_, camera_, p_WT, {arm.min_W, arm.max_W}, frame_time_,
-             !by_mouse && follower_.has_moment() && run.state() == session::RunState::kRunning);
-  const HandWish& hand = by_mouse ? mouse_.hand() : hand_.input().hand();
+  hand_.step(
+      keys_, camera_, p_WT, {arm.min_W, arm.max_W}, frame_time_,
+      live && !by_mouse && source_.has_moment() && run.state() == session::RunState::kRunning);
+  HandWish hand = by_mouse ? mouse_.hand() : hand_.input().hand();
+  hand.holds = hand.holds && live;
   if (hand.holds || led_) {
     run.lead_hand(hand.p_WH, hand.holds);
     led_ = hand.holds;
   }
+  if (!live) return;
   hand_.draw_target(hand, p_WT, camera_, part);
   if (hand_.draw_box(hand.holds, part)) {
     choice_.mouse_is_hand = hand_.input().source() == HandSource::kMouse;
   }
 }
 
-void Content::draw_scene(const ScreenPart& part, float ratio) {
+// The arrows are the hand's where the keyboard leads it now, else those of the time.
+bool Content::arrows_lead() const {
+  session::SharedReader* const reader = source_.reader();
+  return reader != nullptr && reader->scene().hand_by_mouse && source_.head().live() &&
+         hand_.input().source() == HandSource::kKeyboard;
+}
+
+void Content::draw_scene(const ScreenPart& part, int below, float ratio) {
   const int width = std::max(1, static_cast<int>(part.width * ratio));
   const int height = std::max(1, static_cast<int>(part.height * ratio));
   if (!canvas_ || canvas_->width() != width || canvas_->height() != height ||
@@ -241,44 +154,49 @@ void Content::draw_scene(const ScreenPart& part, float ratio) {
     canvas_fine_ = choice_.paint.fine;
     canvas_.emplace(width, height, 0, canvas_fine_ ? Canvas::kSamples : 1);
   }
-  const DrawnMoment& moment = follower_.moment();
-  if (choice_.frame && follower_.has_moment()) {
-    camera_ = frame(follower_.scene(), moment, canvas_->aspect());
+  const DrawnMoment& moment = source_.moment();
+  if (choice_.frame && source_.has_moment()) {
+    camera_ = frame(source_.scene(), moment, canvas_->aspect());
     choice_.frame = false;
   }
   const Eigen::Map<const Eigen::Vector3d> p_WT(moment.tick.p_WT.data());
   mouse_.step(camera_, p_WT, part, choice_.mouse_is_hand);
-  if (follower_.reader()->scene().hand_by_mouse) lead_hand(part);
+  if (source_.reader() != nullptr && source_.reader()->scene().hand_by_mouse) lead_hand(part);
   const auto labels = painter_->paint(moment, camera_, choice_.paint, *canvas_);
-  canvas_->show(0, 0);
+  canvas_->show(0, below);
   write_labels(labels, camera_, part);
   write_caption(choice_.paint.grid ? "grid 10 mm; F1: help" : "F1: help", part);
   if (choice_.screenshot) take_picture();
   choice_.screenshot = false;
 }
 
+void Content::begin_run(session::SharedReader& run, bool again) {
+  const session::SharedScene& scene = run.scene();
+  const bool by_mouse = hand_.input().source() == HandSource::kMouse;
+  if (!again) choice_.mouse_is_hand = scene.hand_by_mouse && by_mouse;
+  hand_.input().let_go();
+  if (!by_mouse && !scene.hand_by_mouse) {
+    tell("The hand of this run follows its path: begin it with --hand to lead it.");
+  }
+  if (!felt_follows_) felt_.follow(run.name());
+  felt_follows_ = true;
+  notes_.closing_ends = scene.hand_by_mouse && scene.pid == getppid();  // which has opened it
+}
+
 driver::Result<void> Content::draw(double frame_time) {
   notes_.frame_time += (notes_.frame_time > 0 ? 0.05 : 1) * (frame_time - notes_.frame_time);
-  if (follower_.step()) {
+  if (source_.step(frame_time)) {
     auto programs = ScenePrograms::make();
     if (!programs) return programs.error();
-    painter_ = std::make_unique<ScenePainter>(follower_.scene(), std::move(programs).value());
-    const session::SharedScene& scene = follower_.reader()->scene();
-    const bool by_mouse = hand_.input().source() == HandSource::kMouse;
+    painter_ = std::make_unique<ScenePainter>(source_.scene(), std::move(programs).value());
+    session::SharedReader* const reader = source_.reader();
     // A scene that is begun anew is seen from where it was seen.
-    if (scene.file.empty() || scene.file != shown_file_) {
-      choice_.frame = true;
-      choice_.mouse_is_hand = scene.hand_by_mouse && by_mouse;
-    }
-    shown_file_ = scene.file;
-    hand_.input().let_go();
-    if (!by_mouse && !scene.hand_by_mouse) {
-      tell("The hand of this run follows its path: begin it with --hand to lead it.");
-    }
-    if (!felt_follows_) felt_.follow(follower_.reader()->name());
-    felt_follows_ = true;
-    notes_.closing_ends = scene.hand_by_mouse && scene.pid == getppid();  // which has opened it
-    glfwSetWindowTitle(screen_.window(), ("Thimble: " + follower_.scene().name).c_str());
+    const std::string file = reader != nullptr ? reader->scene().file : std::string();
+    const bool again = !file.empty() && file == shown_file_;
+    if (!again) choice_.frame = true;
+    shown_file_ = file;
+    if (reader != nullptr) begin_run(*reader, again);
+    glfwSetWindowTitle(screen_.window(), ("Thimble: " + source_.scene().name).c_str());
   }
   screen_.begin();
   int pixels_x = 0;
@@ -287,34 +205,37 @@ driver::Result<void> Content::draw(double frame_time) {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   const float ratio = size.x > 0 ? static_cast<float>(pixels_x) / size.x : 1;
   const float panel = std::min(kPanelWidth * screen_.scale(), 0.5F * size.x);
-  const ScreenPart scene{0, 0, size.x - panel, size.y};
+  const float line = painter_ != nullptr ? TimeLine::height(size.x - panel) : 0;
+  const ScreenPart scene{0, 0, size.x - panel, size.y - line};
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
   glViewport(0, 0, pixels_x, pixels_y);
   glClearColor(kGroundColour[0], kGroundColour[1], kGroundColour[2], 1);
   glClear(GL_COLOR_BUFFER_BIT);
   keys_ = screen_.take_keys();
   frame_time_ = frame_time;
-  for (const int key : keys_) take_key(key, follower_.reader(), choice_);
-  if (painter_ != nullptr && scene.width >= 1 && scene.height >= 1) draw_scene(scene, ratio);
+  for (const int key : keys_) {
+    if (!TimeLine::take_key(key, source_, !arrows_lead())) take_key(key, source_.reader(), choice_);
+  }
+  if (painter_ != nullptr && scene.width >= 1 && scene.height >= 1) {
+    draw_scene(scene, static_cast<int>(line * ratio), ratio);
+  }
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
   glViewport(0, 0, pixels_x, pixels_y);
-  notes_.notice = follower_.notice();
+  notes_.notice = source_.notice();
   if (std::chrono::steady_clock::now() > message_until_) notes_.message.clear();
-  draw_side_panel({scene.width, 0, panel, size.y}, follower_.reader(), follower_.moment().tick,
-                  follower_.plots(), notes_, choice_);
+  draw_side_panel({scene.width, 0, panel, size.y}, source_, notes_, choice_);
   if (const std::string told = choice_.run.take_told(); !told.empty()) tell(told);
+  if (painter_ != nullptr) TimeLine::draw({0, scene.height, scene.width, line}, source_);
   draw_notices(scene, notes_, choice_);
   screen_.end();
   return {};
 }
 
-}  // namespace
-
-driver::Result<void> show_window(session::RunAttachment& runs, const WindowChoice& choice) {
+driver::Result<void> show(TouchSource& source, const WindowChoice& choice) {
   auto screen = Screen::open();
   if (!screen) return screen.error();
   GLFWwindow* window = (*screen)->window();
-  Content content(**screen, runs, choice);
+  Content content(**screen, source, choice);
   const double began = glfwGetTime();
   double last = began;
   while (glfwWindowShouldClose(window) == GLFW_FALSE && !content.wants_to_close()) {
@@ -323,7 +244,7 @@ driver::Result<void> show_window(session::RunAttachment& runs, const WindowChoic
     last = now;
     const bool over = choice.seconds > 0 && now - began > choice.seconds;
     if (over && !choice.last_picture.empty()) {
-      const auto written = write_png(read_window(window), choice.last_picture, PngColours::kAll);
+      const auto written = write_png((*screen)->read(), choice.last_picture, PngColours::kAll);
       if (!written) return written.error();
     }
     if (over) break;
@@ -335,6 +256,20 @@ driver::Result<void> show_window(session::RunAttachment& runs, const WindowChoic
     if (rest > 0.002) std::this_thread::sleep_for(std::chrono::duration<double>(rest - 0.001));
   }
   return {};
+}
+
+}  // namespace
+
+driver::Result<void> show_window(session::RunAttachment& runs, const WindowChoice& choice) {
+  RunFollower follower(runs);
+  return show(follower, choice);
+}
+
+driver::Result<void> show_recording(const RecordingView& recording, const std::string& file,
+                                    const WindowChoice& choice) {
+  RecordingPlayer player(recording, std::filesystem::path(file).stem());
+  if (choice.at >= 0) player.head().stand_at(player.head().begin() + choice.at);
+  return show(player, choice);
 }
 
 }  // namespace thimble::app::view

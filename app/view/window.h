@@ -6,6 +6,7 @@
 #include "thimble/driver/result.h"
 #include "view/felt/touch_thread.h"
 #include "view/hand/hand_input.h"
+#include "view/time/recording_view.h"
 
 namespace thimble::app::view {
 
@@ -15,11 +16,17 @@ struct WindowChoice {
   FeltChoice felt;
   double seconds = 0;        ///< Closes after so long; 0: when the user closes it.
   std::string last_picture;  ///< PNG of the whole window, written before it closes so; empty: none.
+  double at = -1;  ///< Of a recording: second at which it stands still at first; below 0: it plays.
 };
 
 /// Opens a window on the runs that are watched and shows them until it is closed. Where there is no
 /// run, or it has ended, the window says so and takes the next. The runs never notice.
 /// The error says why there is no window. Real-time: never from the servo thread.
 driver::Result<void> show_window(session::RunAttachment& runs, const WindowChoice& choice);
+
+/// Opens a window that plays a recording until it is closed; `file` names it. The error says why
+/// there is no window. Real-time: never from the servo thread.
+driver::Result<void> show_recording(const RecordingView& recording, const std::string& file,
+                                    const WindowChoice& choice);
 
 }  // namespace thimble::app::view

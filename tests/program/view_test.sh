@@ -19,6 +19,11 @@ trace() {
 trace alone --no-view
 trace unwatched --name "$me"
 expect 0 '^$' bash -c 'cmp alone.csv unwatched.csv && echo'
+# A recording is shown in a window, and nothing can be asked of it.
+expect 2 'alone.h5 is a recording: nothing can be asked of it' "$thimble" view alone.h5 --pause
+expect 2 'alone.h5 is a recording' "$thimble" view alone.h5 --text
+expect 2 'missing.h5' "$thimble" view missing.h5
+expect 2 'is the name of a run' "$thimble" view alone.h5 "$me"
 
 harass() {
   local viewer

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "observers/body_trace.h"
+#include "observers/dent_trace.h"
 #include "report/figure.h"
-#include "report/page/body_trace.h"
-#include "report/page/dent_trace.h"
 #include "report/page/page_marks.h"
 #include "report/page/shape_steps.h"
 #include "share/shared_scene.h"
@@ -45,10 +45,10 @@ struct PageTouch {
   bool replayed = false;
   session::SharedScene scene{};  ///< Objects, their meshes (W, m), and the arms as they are drawn.
   std::vector<PageArm> arms{};   ///< As many as the scene has, in its order.
-  const BodyTrace* bodies = nullptr;  ///< Where objects were that move; null if none does.
-  const DentTrace* dents = nullptr;   ///< How objects were dented; null if none can be.
-  std::vector<ShapeStep> shapes{};    ///< How objects came to that, in s from the first tick.
-  std::vector<PageShape> left{};      ///< What objects were shaped to.
+  const session::BodyTrace* bodies = nullptr;  ///< Where objects were that move; null if none does.
+  const session::DentTrace* dents = nullptr;   ///< How objects were dented; null if none can be.
+  std::vector<ShapeStep> shapes{};  ///< How objects came to that, in s from the first tick.
+  std::vector<PageShape> left{};    ///< What objects were shaped to.
 };
 
 /// Ticks of all arms that a page shows: 60 s at 1 kHz. [chosen: below 10 MB with all else]

@@ -103,7 +103,7 @@ void add_bars(const SharedScene::Arm& arm, std::span<const driver::TickRecord> t
   if (!arm.geometry || ticks.empty()) return;
   const std::int64_t lasted = ticks.back().time_ns - ticks.front().time_ns;
   const std::int64_t step = std::max<std::int64_t>(
-      BodyTrace::kStep_ns, lasted / static_cast<std::int64_t>(kArmPicturesMost));
+      session::BodyTrace::kStep_ns, lasted / static_cast<std::int64_t>(kArmPicturesMost));
   std::int64_t next = ticks.front().time_ns;
   for (const driver::TickRecord& tick : ticks) {
     if (tick.time_ns < next) continue;
@@ -208,7 +208,7 @@ Json page_dents(const PageTouch& touch, PageBlock& block) {
   std::vector<std::int16_t> objects;
   std::vector<std::uint32_t> first_points, first_triangles;
   std::vector<std::uint16_t> points_of, triangles_of;
-  for (const DentTrace::Frame& frame : touch.dents->frames()) {
+  for (const session::DentTrace::Frame& frame : touch.dents->frames()) {
     times.push_back(1e-9 * static_cast<double>(frame.time_ns - begin));
     objects.push_back(frame.object);
     first_points.push_back(frame.point);

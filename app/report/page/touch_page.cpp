@@ -16,18 +16,6 @@
 namespace thimble::app {
 namespace {
 
-// What is drawn of a scene and its arms; `devices` are their names, in order.
-session::SharedScene described(const scene::Scene& scene, const scene::SceneObjects& objects,
-                               const std::vector<std::string>& devices) {
-  session::SharedScene all = session::describe_scene(scene, objects, devices.front());
-  all.arm.in_scene = scene.arm_name;
-  for (std::size_t i = 0; i < scene.more_arms.size(); ++i) {
-    all.more_arms.push_back(session::describe_arm(scene.more_arms[i].arm, devices[i + 1]));
-    all.more_arms.back().in_scene = scene.more_arms[i].name;
-  }
-  return all;
-}
-
 std::vector<PageShape> shapes_left(const scene::Scene& scene, const scene::SceneObjects& objects) {
   std::vector<PageShape> left;
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
@@ -84,11 +72,11 @@ RunPage::RunPage(session::Session& session) : session_(session) {
   const session::Setup& setup = session.setup();
   if (const auto moving = setup.objects().moving(); !moving.empty()) {
     const auto duration_ns = static_cast<std::int64_t>(setup.ticks()) * setup.period_ns();
-    bodies_ = std::make_unique<BodyTrace>(setup.objects().touch(), moving, duration_ns);
+    bodies_ = std::make_unique<session::BodyTrace>(setup.objects().touch(), moving, duration_ns);
     (void)session.add_observer(*bodies_);
   }
   if (const session::DentRecord* now = session.records().dents.get()) {
-    dents_ = std::make_unique<DentTrace>(now->drawn());
+    dents_ = std::make_unique<session::DentTrace>(now->drawn());
     (void)session.add_observer(*dents_);
   }
   shapes_ = trace_shapes(setup.scene(), setup.objects());
@@ -118,31 +106,19 @@ driver::Result<void> RunPage::write(const driver::RealTimeGrant& grant,
                           .marks = events_[arm]->finish(),
                           .figures = session::figures_of(session_.figures(grant, arm))});
   }
-  touch.scene = described(setup.scene(), setup.objects(), devices);
+  touch.scene = session::describe_scene(setup.scene(), setup.objects(), devices);
   touch.shapes = steps_of(shapes_.get(), touch.scene, touch.arms.front().ticks);
   return write_page(touch, file);
 }
 
 void ReplayPage::begin(const scene::Scene& scene,
                        std::shared_ptr<const scene::SceneObjects> objects) {
-  scene_ = scene;
-  objects_ = std::move(objects);
-  if (!objects_->moving().empty()) {
-    bodies_ = std::make_unique<BodyTrace>(objects_->touch(), objects_->moving(), 0);
-  }
-  shapes_ = trace_shapes(scene, *objects_);
-  const auto dents = [](const scene::SceneObject& object) { return object.body.dent.has_value(); };
-  if (std::any_of(scene.objects.begin(), scene.objects.end(), dents)) {
-    dent_now_ = std::make_unique<session::DentRecord>(
-        objects_->touch(), static_cast<std::int64_t>(std::llround(1e9 / scene.rate)));
-    dents_ = std::make_unique<DentTrace>(dent_now_->drawn());
-  }
+  session::ReplayFilm::begin(scene, std::move(objects));
+  shapes_ = trace_shapes(this->scene(), this->objects());
 }
 
 void ReplayPage::take(const driver::TickRecord& tick) {
-  if (bodies_) bodies_->take(tick);
-  if (dent_now_) dent_now_->take(tick);
-  if (dents_) dents_->take(tick);
+  session::ReplayFilm::take(tick);
   if (shapes_) shapes_->take(tick);
 }
 
@@ -150,34 +126,28 @@ driver::Result<void> ReplayPage::write(std::span<const session::Replay> replays,
                                        const std::filesystem::path& file) {
   const session::RecordingInfo& info = replays.front().felt.info;
   PageTouch touch{.title = info.scene,
-                  .subtitle = scene_.description,
+                  .subtitle = scene().description,
                   .program = info.program,
                   .rate = info.rate,
                   .replayed = true,
-                  .bodies = bodies_.get(),
-                  .dents = dents_.get(),
-                  .left = shapes_left(scene_, *objects_)};
+                  .bodies = bodies(),
+                  .dents = dents(),
+                  .left = shapes_left(scene(), objects())};
   const auto period_ns = static_cast<std::int64_t>(std::llround(1e9 / info.rate));
   // The recordings came in any order; the page shows the scene's arms in theirs.
-  std::vector<const session::Replay*> order(1 + scene_.more_arms.size(), nullptr);
-  for (const session::Replay& replay : replays) {
-    std::size_t arm = 0;
-    for (std::size_t i = 0; i < scene_.more_arms.size(); ++i) {
-      if (scene_.more_arms[i].name == replay.felt.info.arm_in_scene) arm = i + 1;
-    }
-    order[arm] = &replay;
-  }
+  std::vector<const session::Replay*> order(1 + scene().more_arms.size(), nullptr);
+  for (const session::Replay& replay : replays) order[arm_of(replay.felt.info)] = &replay;
   std::vector<std::string> devices;
   for (std::size_t arm = 0; arm < order.size(); ++arm) {
     const session::Recording& felt = order[arm]->felt;
     devices.push_back(felt.info.device);
-    const auto& limits = arm == 0 ? scene_.arm.limits : scene_.more_arms[arm - 1].arm.limits;
+    const auto& limits = arm == 0 ? scene().arm.limits : scene().more_arms[arm - 1].arm.limits;
     touch.arms.push_back({.ticks = felt.ticks,
                           .force_limit = limits.force_max,
                           .marks = marks_of_ticks(felt.ticks, period_ns),
                           .figures = figures_of_ticks(felt.ticks, order[arm]->compared)});
   }
-  touch.scene = described(scene_, *objects_, devices);
+  touch.scene = session::describe_scene(scene(), objects(), devices);
   touch.shapes = steps_of(shapes_.get(), touch.scene, touch.arms.front().ticks);
   return write_page(touch, file);
 }

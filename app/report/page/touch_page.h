@@ -5,10 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "observers/dent_record.h"
-#include "recording/replay_watch.h"
-#include "report/page/body_trace.h"
-#include "report/page/dent_trace.h"
+#include "observers/body_trace.h"
+#include "observers/dent_trace.h"
+#include "recording/replay_film.h"
 #include "report/page/page_marks.h"
 #include "report/page/shape_trace.h"
 #include "thimble/driver/real_time.h"
@@ -31,29 +30,23 @@ class RunPage {
 
  private:
   session::Session& session_;
-  std::unique_ptr<BodyTrace> bodies_;   // null if nothing moves
-  std::unique_ptr<DentTrace> dents_;    // null if nothing dents
-  std::unique_ptr<ShapeTrace> shapes_;  // null if nothing is shaped for good
+  std::unique_ptr<session::BodyTrace> bodies_;  // null if nothing moves
+  std::unique_ptr<session::DentTrace> dents_;   // null if nothing dents
+  std::unique_ptr<ShapeTrace> shapes_;          // null if nothing is shaped for good
   std::vector<std::unique_ptr<EventKeeper>> events_;
 };
 
-/// What the page of a replay needs of it: looks on while recorded hands touch a scene again.
-class ReplayPage final : public session::ReplayWatch {
+/// The film of a replay, and the page of it.
+class ReplayPage final : public session::ReplayFilm {
  public:
   void begin(const scene::Scene& scene,
              std::shared_ptr<const scene::SceneObjects> objects) override;
   void take(const driver::TickRecord& tick) override;
-
   /// Writes the page (write_page) of replays that are over. Real-time: never from the servo thread.
   driver::Result<void> write(std::span<const session::Replay> replays,
                              const std::filesystem::path& file);
 
  private:
-  scene::Scene scene_;
-  std::shared_ptr<const scene::SceneObjects> objects_;
-  std::unique_ptr<BodyTrace> bodies_;              // null if nothing moves
-  std::unique_ptr<session::DentRecord> dent_now_;  // null if nothing dents, as the next
-  std::unique_ptr<DentTrace> dents_;
   std::unique_ptr<ShapeTrace> shapes_;  // null if nothing is shaped for good
 };
 

@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "report/page/body_trace.h"
-#include "report/page/dent_trace.h"
+#include "observers/body_trace.h"
+#include "observers/dent_trace.h"
 #include "report/page/light_mesh.h"
 #include "report/page/page.h"
 #include "report/page/page_block.h"
@@ -266,7 +266,8 @@ TEST(BodyTrace, KeepsALongRunInTheRoomOfAShortOneWithoutTheHeap) {
   objects.push_back(std::move(one));
   const render::SceneTouch touch(std::move(objects));
   const std::size_t moving[] = {0};
-  BodyTrace trace(touch, moving, 1000 * kMillisecond);  // asked for one second, run for a minute
+  session::BodyTrace trace(touch, moving,
+                           1000 * kMillisecond);  // asked for one second, run for a minute
   EXPECT_EQ(support::heap_calls_of([&] {
               TickRecord tick;
               for (std::int64_t i = 0; i < 60'000; ++i) {
@@ -287,7 +288,7 @@ TEST(BodyTrace, KeepsALongRunInTheRoomOfAShortOneWithoutTheHeap) {
 
 TEST(DentTrace, KeepsEveryEndOfADentWhenRoomIsShort) {
   auto drawn = std::make_unique<session::DrawnDent>();
-  DentTrace trace(*drawn);
+  session::DentTrace trace(*drawn);
   drawn->patch.object = 0;
   drawn->patch.point_count = 30;
   EXPECT_EQ(support::heap_calls_of([&] {
@@ -305,11 +306,11 @@ TEST(DentTrace, KeepsEveryEndOfADentWhenRoomIsShort) {
             0);
   const auto frames = trace.frames();
   ASSERT_GT(frames.size(), 1000U);
-  EXPECT_LE(trace.points().size(), DentTrace::kPointsMost);
-  EXPECT_LE(trace.triangles().size(), DentTrace::kTrianglesMost);
+  EXPECT_LE(trace.points().size(), session::DentTrace::kPointsMost);
+  EXPECT_LE(trace.triangles().size(), session::DentTrace::kTrianglesMost);
   std::size_t gone = 0;
   for (std::size_t i = 0; i < frames.size(); ++i) {
-    const DentTrace::Frame& frame = frames[i];
+    const session::DentTrace::Frame& frame = frames[i];
     if (frame.triangles == 0) {
       ++gone;
       ASSERT_EQ(frame.time_ns / kMillisecond / 16 % 10, 9);

@@ -1,46 +1,30 @@
 #include "view/side_panel.h"
 
-#include <gtest/gtest.h>
-#include <imgui.h>
-
 #include <cmath>
+
+#include "screenless.h"
 
 namespace thimble::app::view {
 namespace {
 
-/// ImGui without a screen: what a person would do with the mouse is written into its state.
-class SidePanel : public ::testing::Test {
+class SidePanel : public Screenless {
  protected:
-  SidePanel() {
-    ImGui::CreateContext();
-    ImGuiIO& io = ImGui::GetIO();
-    io.DisplaySize = {600, 100};
-    io.IniFilename = nullptr;
-    unsigned char* pixels = nullptr;
-    int width = 0;
-    int height = 0;
-    io.Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
-  }
-  ~SidePanel() override { ImGui::DestroyContext(); }
+  SidePanel() : Screenless(600, 100) {}
 
   /// Presses the mouse on the slider, a share of its length from the left, and returns the value.
   static double pressed(const session::SharedScene::Knob& knob, float share) {
     double value = knob.initial;
-    for (int frame = 0; frame < 4; ++frame) {
-      ImGuiIO& io = ImGui::GetIO();
-      io.DeltaTime = 0.02F;
+    for (int i = 0; i < 4; ++i) {
       // The grab is a few points wide, and its middle follows the mouse.
-      io.MousePos = {16 + share * 500, 50};
-      io.MouseDown[0] = frame > 1;
-      ImGui::NewFrame();
-      ImGui::SetNextWindowPos({0, 0});
-      ImGui::SetNextWindowSize({600, 100});
-      ImGui::Begin("panel", nullptr, ImGuiWindowFlags_NoDecoration);
-      ImGui::SetCursorPos({16, 42});
-      ImGui::SetNextItemWidth(500);
-      knob_slider(knob, value);
-      ImGui::End();
-      ImGui::EndFrame();
+      frame({16 + share * 500, 50}, i > 1, 0, [&] {
+        ImGui::SetNextWindowPos({0, 0});
+        ImGui::SetNextWindowSize({600, 100});
+        ImGui::Begin("panel", nullptr, ImGuiWindowFlags_NoDecoration);
+        ImGui::SetCursorPos({16, 42});
+        ImGui::SetNextItemWidth(500);
+        knob_slider(knob, value);
+        ImGui::End();
+      });
     }
     return value;
   }

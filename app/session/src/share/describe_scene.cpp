@@ -72,4 +72,15 @@ SharedScene describe_scene(const scene::Scene& scene, const scene::SceneObjects&
   return described;
 }
 
+SharedScene describe_scene(const scene::Scene& scene, const scene::SceneObjects& objects,
+                           const std::vector<std::string>& devices) {
+  SharedScene all = describe_scene(scene, objects, devices.front());
+  all.arm.in_scene = scene.arm_name;
+  for (std::size_t i = 0; i < scene.more_arms.size(); ++i) {
+    all.more_arms.push_back(describe_arm(scene.more_arms[i].arm, devices[i + 1]));
+    all.more_arms.back().in_scene = scene.more_arms[i].name;
+  }
+  return all;
+}
+
 }  // namespace thimble::session

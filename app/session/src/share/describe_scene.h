@@ -1,5 +1,8 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "share/shared_scene.h"
 #include "thimble/scene/arm_file.h"
 #include "thimble/scene/scene_file.h"
@@ -14,5 +17,9 @@ SharedScene::Arm describe_arm(const scene::ArmFile& arm, const std::string& devi
 /// "sim" or the name of the arm on the desk. Real-time: never from the servo thread.
 SharedScene describe_scene(const scene::Scene& scene, const scene::SceneObjects& objects,
                            const std::string& device);
+
+/// As above, with all arms of the scene; `devices` are theirs, in order. Precondition: one each.
+SharedScene describe_scene(const scene::Scene& scene, const scene::SceneObjects& objects,
+                           const std::vector<std::string>& devices);
 
 }  // namespace thimble::session

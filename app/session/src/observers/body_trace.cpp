@@ -1,8 +1,8 @@
-#include "report/page/body_trace.h"
+#include "observers/body_trace.h"
 
 #include <algorithm>
 
-namespace thimble::app {
+namespace thimble::session {
 
 BodyTrace::BodyTrace(const render::SceneTouch& touch, std::span<const std::size_t> moving,
                      std::int64_t duration_ns)
@@ -36,4 +36,4 @@ void BodyTrace::halve() noexcept {
   step_ns_ *= 2;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::session

@@ -10,13 +10,13 @@
 #include "thimble/driver/tick_record.h"
 #include "thimble/session/tick_observer.h"
 
-namespace thimble::app {
+namespace thimble::session {
 
 /// The dents of a run as they were drawn (session::DentRecord), as many as there is room for. All
 /// memory is there and touched when it is made.
 class DentTrace final : public session::TickObserver {
  public:
-  /// Room for pictures, and for the points and triangles of all of them: 1.5 MB. [chosen]
+  /// Room for pictures, and for the points and triangles of all of them: 2.1 MB. [chosen]
   static constexpr std::size_t kFramesMost = 8192;
   static constexpr std::size_t kPointsMost = 40'000;     ///< As above.
   static constexpr std::size_t kTrianglesMost = 60'000;  ///< As above.
@@ -34,7 +34,7 @@ class DentTrace final : public session::TickObserver {
 
   /// Keeps what is drawn into `drawn`, which an observer before this one brings up to each tick
   /// and which must outlive it. Real-time: never from the servo thread.
-  explicit DentTrace(const session::DrawnDent& drawn);
+  explicit DentTrace(const DrawnDent& drawn);
 
   /// Keeps a dent that was drawn anew. Once there is no room for more, only every other picture
   /// stays, and from then on they are kept half as often.
@@ -45,6 +45,10 @@ class DentTrace final : public session::TickObserver {
   /// Returns the points of all dents, in the frame of their object's mesh, m.
   std::span<const std::array<float, 3>> points() const noexcept {
     return {points_.data(), point_count_};
+  }
+  /// Returns which vertex of the object's mesh each of them is (render::BodyPatch::Point::vertex).
+  std::span<const std::int32_t> vertices() const noexcept {
+    return {vertices_.data(), point_count_};
   }
   /// Returns their normals (render::BodyPatch::Point::n), 32767 for 1.
   std::span<const std::array<std::int16_t, 3>> normals() const noexcept {
@@ -63,16 +67,17 @@ class DentTrace final : public session::TickObserver {
   bool has_room(const render::BodyPatch& patch) const noexcept;
   void halve() noexcept;
 
-  const session::DrawnDent& drawn_;
+  const DrawnDent& drawn_;
   std::uint64_t drawings_;
   std::uint64_t every_ = 1;  // of the drawings that show a dent
   std::uint64_t until_next_ = 0;
   std::vector<Frame> frames_;
   std::vector<std::array<float, 3>> points_;
+  std::vector<std::int32_t> vertices_;
   std::vector<std::array<std::int16_t, 3>> normals_;
   std::vector<std::array<std::uint16_t, 3>> triangles_;
   std::vector<std::uint32_t> sources_;
   std::size_t frame_count_ = 0, point_count_ = 0, triangle_count_ = 0;
 };
 
-}  // namespace thimble::app
+}  // namespace thimble::session

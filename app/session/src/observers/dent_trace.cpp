@@ -1,14 +1,15 @@
-#include "report/page/dent_trace.h"
+#include "observers/dent_trace.h"
 
 #include <algorithm>
 
-namespace thimble::app {
+namespace thimble::session {
 
-DentTrace::DentTrace(const session::DrawnDent& drawn)
+DentTrace::DentTrace(const DrawnDent& drawn)
     : drawn_(drawn),
       drawings_(drawn.drawings),
       frames_(kFramesMost),
       points_(kPointsMost),
+      vertices_(kPointsMost),
       normals_(kPointsMost),
       triangles_(kTrianglesMost),
       sources_(kTrianglesMost) {}
@@ -43,6 +44,7 @@ void DentTrace::take(const driver::TickRecord& tick) noexcept {
     const auto& p = patch.points[i].p;
     points_[point_count_] = {static_cast<float>(p[0]), static_cast<float>(p[1]),
                              static_cast<float>(p[2])};
+    vertices_[point_count_] = patch.points[i].vertex;
     for (std::size_t k = 0; k < 3; ++k) {
       const float n = std::clamp(patch.points[i].n[k], -1.0F, 1.0F);
       normals_[point_count_][k] = static_cast<std::int16_t>(32767 * n);
@@ -67,6 +69,8 @@ void DentTrace::halve() noexcept {
     }
     std::copy_n(points_.begin() + frame.point, frame.points,
                 points_.begin() + static_cast<std::ptrdiff_t>(point));
+    std::copy_n(vertices_.begin() + frame.point, frame.points,
+                vertices_.begin() + static_cast<std::ptrdiff_t>(point));
     std::copy_n(normals_.begin() + frame.point, frame.points,
                 normals_.begin() + static_cast<std::ptrdiff_t>(point));
     std::copy_n(triangles_.begin() + frame.triangle, frame.triangles,
@@ -85,4 +89,4 @@ void DentTrace::halve() noexcept {
   every_ *= 2;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::session

@@ -10,7 +10,7 @@
 #include "thimble/render/scene_touch.h"
 #include "thimble/session/tick_observer.h"
 
-namespace thimble::app {
+namespace thimble::session {
 
 /// Where the objects of a run that move have been, often enough for a film of it. All memory is
 /// there and touched when it is made.
@@ -52,4 +52,4 @@ class BodyTrace final : public session::TickObserver {
   std::int64_t next_ns_ = INT64_MIN;
 };
 
-}  // namespace thimble::app
+}  // namespace thimble::session

@@ -1,0 +1,108 @@
+#include "view/screen.h"
+
+#include <epoxy/gl.h>
+// After the above, which brings OpenGL.
+#include <GLFW/glfw3.h>
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <utility>
+
+#include "view/text_style.h"
+
+namespace thimble::app::view {
+namespace {
+
+std::string glfw_words() {
+  const char* words = nullptr;
+  glfwGetError(&words);
+  return words == nullptr ? "GLFW gives no reason" : words;
+}
+
+}  // namespace
+
+driver::Result<std::unique_ptr<Screen>> Screen::open() {
+  std::unique_ptr<Screen> screen(new Screen);
+  if (glfwInit() == GLFW_FALSE) {
+    return driver::Error{"No window: " + glfw_words() +
+                         ". Is there a screen? `thimble view --text` needs none."};
+  }
+  screen->glfw_ = true;
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
+  glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+  glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
+  screen->window_ = glfwCreateWindow(1280, 800, "Thimble", nullptr, nullptr);
+  if (screen->window_ == nullptr) return driver::Error{"No window: " + glfw_words() + "."};
+  glfwMakeContextCurrent(screen->window_);
+  glfwSwapInterval(1);
+  // Heard one by one, so that none is lost where pictures take long.
+  glfwSetWindowUserPointer(screen->window_, screen.get());
+  glfwSetKeyCallback(screen->window_, [](GLFWwindow* window, int key, int, int action, int) {
+    auto* self = static_cast<Screen*>(glfwGetWindowUserPointer(window));
+    if (action == GLFW_PRESS) self->keys_.push_back(key);
+  });
+  ImGui::CreateContext();
+  screen->imgui_ = true;
+  ImGui_ImplGlfw_InitForOpenGL(screen->window_, true);
+  ImGui_ImplOpenGL3_Init("#version 330 core");
+  return screen;
+}
+
+Screen::~Screen() {
+  if (imgui_) {
+    ImGui_ImplOpenGL3_Shutdown();
+    ImGui_ImplGlfw_Shutdown();
+    ImGui::DestroyContext();
+  }
+  if (window_ != nullptr) glfwDestroyWindow(window_);
+  if (glfw_) glfwTerminate();
+}
+
+std::vector<int> Screen::take_keys() {
+  std::vector<int> keys = std::exchange(keys_, {});
+  if (ImGui::GetIO().WantTextInput) keys.clear();
+  return keys;
+}
+
+void Screen::begin() {
+  glfwPollEvents();
+  float x = 1;
+  float y = 1;
+  glfwGetWindowContentScale(window_, &x, &y);
+  if (std::max(x, y) != scale_) {
+    scale_ = std::max(x, y);
+    ImGui_ImplOpenGL3_DestroyFontsTexture();
+    set_text_style(scale_);
+  }
+  ImGui_ImplOpenGL3_NewFrame();
+  ImGui_ImplGlfw_NewFrame();
+  ImGui::NewFrame();
+}
+
+void Screen::end() {
+  ImGui::Render();
+  ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
+
+Picture Screen::read() {
+  Picture picture;
+  glfwGetFramebufferSize(window_, &picture.width, &picture.height);
+  const auto row = 3 * static_cast<std::size_t>(picture.width);
+  std::vector<std::uint8_t> upward(row * static_cast<std::size_t>(picture.height));
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glReadPixels(0, 0, picture.width, picture.height, GL_RGB, GL_UNSIGNED_BYTE, upward.data());
+  for (auto from = upward.end(); from != upward.begin();) {
+    from -= static_cast<std::ptrdiff_t>(row);
+    picture.rgb.insert(picture.rgb.end(), from, from + static_cast<std::ptrdiff_t>(row));
+  }
+  return picture;
+}
+
+}  // namespace thimble::app::view

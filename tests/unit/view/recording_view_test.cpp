@@ -1,0 +1,187 @@
+#include "view/time/recording_view.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "support/scratch.h"
+#include "view/shot.h"
+
+namespace thimble::app::view {
+namespace {
+
+namespace fs = std::filesystem;
+
+// What a viewer of the run saw at some times, and the recording of the same run.
+struct Seen {
+  std::vector<DrawnMoment> moments;
+  std::unique_ptr<RecordingView> recorded;
+};
+
+Seen see(const std::string& scene, const std::vector<double>& times) {
+  const fs::path folder = support::scratch_folder() / scene;
+  fs::create_directories(folder);
+  session::SessionOptions options;
+  options.several_arms = true;
+  options.duration = times.back() + 0.05;
+  options.record = folder / "run.h5";
+  std::vector<std::string> arms = {""};
+  Seen seen;
+  {
+    auto played =
+        PlayedScene::open(fs::path(THIMBLE_SOURCE_DIR) / "app/scenes" / (scene + ".yaml"), options);
+    if (!played) {
+      ADD_FAILURE() << played.error().message;
+      return seen;
+    }
+    (*played)->play(times,
+                    [&](DrawnMoment& moment, const Plots&) { seen.moments.push_back(moment); });
+    if (!seen.moments.back().others.empty()) {
+      arms = {(*played)->drawn().arm_in_scene, seen.moments.back().others[0].name};
+    }
+  }
+  std::vector<fs::path> files;
+  for (const std::string& arm : arms) files.push_back(session::file_of_arm(options.record, arm));
+  auto recorded = RecordingView::open(files);
+  EXPECT_TRUE(recorded) << recorded.error().message;
+  if (recorded) seen.recorded = std::move(recorded).value();
+  return seen;
+}
+
+// Positions in m that single precision tells apart no better.
+constexpr double kSingle = 1e-8;
+
+void expect_same(const DrawnMoment& then, const DrawnMoment& now, double exact) {
+  EXPECT_EQ(now.tick.tick, then.tick.tick);
+  EXPECT_EQ(now.tick.p_WT, then.tick.p_WT);
+  EXPECT_EQ(now.tick.f_sent_W, then.tick.f_sent_W);
+  ASSERT_EQ(now.poses.size(), then.poses.size());
+  for (std::size_t i = 0; i < then.poses.size(); ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_NEAR(now.poses[i].p_WB[k], then.poses[i].p_WB[k], exact);
+    }
+    for (std::size_t k = 0; k < 4; ++k) {
+      EXPECT_NEAR(now.poses[i].q_WB[k], then.poses[i].q_WB[k], exact);
+    }
+  }
+  ASSERT_EQ(now.patch.triangle_count, then.patch.triangle_count);
+  for (std::size_t i = 0; i < then.patch.triangle_count; ++i) {
+    EXPECT_EQ(now.patch.triangles[i], then.patch.triangles[i]);
+    EXPECT_EQ(now.patch.source[i], then.patch.source[i]);
+    for (const std::uint16_t point : then.patch.triangles[i]) {
+      EXPECT_EQ(now.patch.points[point].vertex, then.patch.points[point].vertex);
+      for (std::size_t k = 0; k < 3; ++k) {
+        EXPECT_NEAR(now.patch.points[point].p[k], then.patch.points[point].p[k], kSingle);
+      }
+    }
+  }
+  ASSERT_EQ(now.arm.size(), then.arm.size());
+  for (std::size_t i = 0; i < then.arm.size(); ++i) {
+    EXPECT_TRUE(now.arm[i].second.isApprox(then.arm[i].second, 1e-12));
+  }
+  ASSERT_EQ(now.others.size(), then.others.size());
+  for (std::size_t i = 0; i < then.others.size(); ++i) {
+    EXPECT_EQ(now.others[i].name, then.others[i].name);
+    EXPECT_EQ(now.others[i].rods.size(), then.others[i].rods.size());
+  }
+}
+
+// `exact`: of bodies, m and parts of quaternions.
+void expect_as_seen(const std::string& scene, const std::vector<double>& times,
+                    double exact = 1e-12) {
+  SCOPED_TRACE(scene);
+  const Seen seen = see(scene, times);
+  ASSERT_EQ(seen.moments.size(), times.size());
+  ASSERT_NE(seen.recorded, nullptr);
+  // What the test is to see must be there to be seen.
+  const auto& first = seen.moments.front();
+  const auto& last = seen.moments.back();
+  EXPECT_TRUE(last.patch.triangle_count > 0 ||
+              std::any_of(last.poses.begin(), last.poses.end(), [&](const auto& pose) {
+                return pose.p_WB !=
+                       first.poses[static_cast<std::size_t>(&pose - last.poses.data())].p_WB;
+              }));
+  const auto now = std::make_unique<DrawnMoment>();
+  // From the last to the first as well: it is shown in any order.
+  for (std::size_t i = times.size(); i-- > 0;) {
+    const DrawnMoment& then = seen.moments[i];
+    seen.recorded->show(1e-9 * static_cast<double>(then.tick.time_ns), *now);
+    expect_same(then, *now, exact);
+    for (std::size_t arm = 0; arm < then.others.size(); ++arm) {
+      // Who looks at a tick of the first arm sees the one before of the others, which come later.
+      const driver::TickRecord& told = then.others[arm].tick;
+      ASSERT_EQ(told.tick + 1, then.tick.tick);
+      EXPECT_EQ(now->others[arm].tick.tick, then.tick.tick);
+      EXPECT_EQ(seen.recorded->ticks(arm + 1)[told.tick].p_WT, told.p_WT);
+      EXPECT_EQ(seen.recorded->ticks(arm + 1)[told.tick].f_sent_W, told.f_sent_W);
+    }
+  }
+}
+
+TEST(RecordingView, ShowsDentsAsTheyWere) {
+  expect_as_seen("water_balloon", {0.4, 0.9, 1.4});
+}
+
+TEST(RecordingView, ShowsBodiesWhereTheyWere) {
+  expect_as_seen("floating_block", {0.4, 1.2, 2.0});
+}
+
+TEST(RecordingView, ShowsSeveralArms) {
+  expect_as_seen("two_hands", {0.2, 0.7, 1.2}, 1e-4);  // as far as it moves in a tick
+}
+
+TEST(RecordingView, ShowsWhatWasShapedForGood) {
+  const Seen seen = see("clay", {0.1, 3.0});
+  ASSERT_EQ(seen.moments.size(), 2U);
+  ASSERT_NE(seen.recorded, nullptr);
+  const auto now = std::make_unique<DrawnMoment>();
+  const auto moved = [&](const DrawnMoment& moment) {
+    double most = 0;  // m, of all vertices
+    if (!moment.shapes.at(0)) return most;
+    const auto& first = seen.recorded->scene().objects[0].mesh.vertices;
+    for (std::size_t i = 0; i < first.size(); ++i) {
+      most = std::max(most, (moment.shapes[0]->vertices[i] - first[i]).norm());
+    }
+    return most;
+  };
+  ASSERT_GT(moved(seen.moments[1]), 1e-4);
+  seen.recorded->show(0.1, *now);
+  EXPECT_LT(moved(*now), 1e-9);
+  seen.recorded->show(3.0, *now);
+  EXPECT_GT(moved(*now), 0.5 * moved(seen.moments[1]));
+  const auto& about = seen.recorded->about();
+  EXPECT_TRUE(std::any_of(about.begin(), about.end(), [](const std::string& sentence) {
+    return sentence.find("shaped for good is shown every 0.25 s") != std::string::npos;
+  }));
+}
+
+TEST(RecordingView, StepsFromTickToTick) {
+  const Seen seen = see("water_balloon", {0.1});
+  ASSERT_NE(seen.recorded, nullptr);
+  const RecordingView& recorded = *seen.recorded;
+  const auto now = std::make_unique<DrawnMoment>();
+  double time = recorded.time().begin;
+  for (std::uint64_t i = 0; i < 50; ++i) {
+    recorded.show(time, *now);
+    EXPECT_EQ(now->tick.tick, i);
+    time = recorded.beside(time, 1);
+  }
+  recorded.show(recorded.beside(time, -1), *now);
+  EXPECT_EQ(now->tick.tick, 49U);
+  EXPECT_EQ(recorded.beside(time, -1000), recorded.time().begin);
+  EXPECT_EQ(recorded.beside(time, 100'000), recorded.time().end);
+}
+
+TEST(RecordingView, SaysWhatAFileIsNot) {
+  const auto opened = RecordingView::open({fs::path(THIMBLE_SOURCE_DIR) / "README.md"});
+  ASSERT_FALSE(opened);
+  EXPECT_NE(opened.error().message.find("README.md"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace thimble::app::view

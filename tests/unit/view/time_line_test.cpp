@@ -1,0 +1,100 @@
+#include "view/time/time_line.h"
+
+#include <epoxy/gl.h>
+// After the above, which brings OpenGL.
+#include <GLFW/glfw3.h>
+
+#include "screenless.h"
+
+namespace thimble::app::view {
+namespace {
+
+/// A source of time alone.
+class Clockwork final : public TouchSource {
+ public:
+  explicit Clockwork(PlayHead head) : head_(head) {}
+  bool step(double dt) override {
+    head_.step(dt);
+    return false;
+  }
+  session::SharedReader* reader() override { return nullptr; }
+  const DrawnScene& scene() const override { return scene_; }
+  const DrawnMoment& moment() const override { return *moment_; }
+  bool has_scene() const override { return true; }
+  bool has_moment() const override { return true; }
+  const Plots& plots() const override { return plots_; }
+  const std::string& notice() const override { return notice_; }
+  std::string name() const override { return "clockwork"; }
+  PlayHead& head() override { return head_; }
+  double beside(int steps) const override { return head_.time() + 0.001 * steps; }
+  std::string kept() const override { return ""; }
+  const std::vector<std::string>& about() const override { return about_; }
+
+ private:
+  PlayHead head_;
+  DrawnScene scene_;
+  std::unique_ptr<DrawnMoment> moment_ = std::make_unique<DrawnMoment>();
+  Plots plots_;
+  std::string notice_;
+  std::vector<std::string> about_;
+};
+
+class TimeLineUsed : public Screenless {
+ protected:
+  TimeLineUsed() : Screenless(900, 40) {}
+
+  static void look(Clockwork& source, const ImVec2& mouse, bool left) {
+    frame(mouse, left, 0, [&source] { TimeLine::draw({0, 0, 900, 36}, source); });
+  }
+};
+
+TEST_F(TimeLineUsed, IsDraggedToAnyMomentOfARunAndBackToNow) {
+  Clockwork run(PlayHead::of_run());
+  run.head().set_span(10, 70);
+  EXPECT_EQ(words_of(run.head()), "now");
+  for (int i = 0; i < 3; ++i) look(run, {600, 20}, false);
+  look(run, {600, 20}, true);
+  look(run, {602, 20}, true);
+  EXPECT_FALSE(run.head().live());
+  const double then = run.head().time();
+  EXPECT_GT(then, 30);
+  EXPECT_LT(then, 65);
+  look(run, {602, 20}, false);
+  run.head().set_span(12, 72);
+  EXPECT_EQ(run.head().time(), then);
+  EXPECT_EQ(words_of(run.head()).substr(4), " s behind");
+  look(run, {602, 20}, true);
+  look(run, {899, 20}, true);
+  EXPECT_TRUE(run.head().live());
+}
+
+TEST_F(TimeLineUsed, TakesItsKeysAndNoOthers) {
+  Clockwork recording(PlayHead::of_recording());
+  PlayHead& head = recording.head();
+  head.set_span(0, 2);
+  EXPECT_TRUE(TimeLine::take_key(GLFW_KEY_SPACE, recording));
+  EXPECT_FALSE(head.plays());
+  EXPECT_TRUE(TimeLine::take_key(GLFW_KEY_RIGHT, recording));
+  EXPECT_DOUBLE_EQ(head.time(), 0.001);
+  ImGui::GetIO().KeyShift = true;
+  EXPECT_TRUE(TimeLine::take_key(GLFW_KEY_RIGHT, recording));
+  ImGui::GetIO().KeyShift = false;
+  EXPECT_DOUBLE_EQ(head.time(), 1.001);
+  EXPECT_EQ(words_of(head), "1.001 of 2.000 s");
+  EXPECT_TRUE(TimeLine::take_key(GLFW_KEY_LEFT, recording));
+  EXPECT_DOUBLE_EQ(head.time(), 1.0);
+  EXPECT_TRUE(TimeLine::take_key(GLFW_KEY_END, recording));
+  EXPECT_EQ(head.time(), 2);
+  EXPECT_TRUE(TimeLine::take_key(GLFW_KEY_HOME, recording));
+  EXPECT_EQ(head.time(), 0);
+  EXPECT_TRUE(TimeLine::take_key(GLFW_KEY_COMMA, recording));
+  EXPECT_EQ(head.speed(), 0.5);
+  EXPECT_FALSE(TimeLine::take_key(GLFW_KEY_S, recording));
+  EXPECT_FALSE(TimeLine::take_key(GLFW_KEY_LEFT, recording, false));  // the hand's
+
+  Clockwork run(PlayHead::of_run());
+  EXPECT_FALSE(TimeLine::take_key(GLFW_KEY_SPACE, run));  // that pauses the run itself
+}
+
+}  // namespace
+}  // namespace thimble::app::view
