@@ -32,6 +32,8 @@ DrawnObject drawn_object(const session::SharedScene& scene,
   drawn.name = object.name;
   drawn.stands_for_shape = object.kind == session::SharedKind::kShape;
   drawn.crease_angle = object.crease_angle;
+  drawn.texture = object.texture;
+  drawn.friction = object.friction;
   const auto vertices = std::span(scene.vertices).subspan(object.first_vertex, object.vertex_count);
   drawn.mesh.vertices.assign(vertices.begin(), vertices.end());
   for (const auto& [a, b, c] :
@@ -66,6 +68,7 @@ LiveScene::LiveScene(const session::SharedReader& reader) : reader_(reader) {
   for (const session::SharedScene::Object& object : scene.objects) {
     scene_.objects.push_back(drawn_object(scene, object));
   }
+  for (const auto& sample : scene.field) scene_.field.push_back({sample.p_W, sample.f_W});
 }
 
 bool LiveScene::update(DrawnMoment& moment) {

@@ -32,12 +32,12 @@ ScreenPart draw_box(ImDrawList& list, const ScreenPart& part, const char* title,
   const float pad = 0.35F * line;
   const ScreenPart inner = {part.x, part.y + 1.5F * line, part.width, part.height - 1.5F * line};
   list.AddRectFilled({inner.x, inner.y}, {inner.x + inner.width, inner.y + inner.height},
-                     packed(kSkyColour));
-  list.AddText({part.x, part.y + 0.2F * line}, packed(kTextColour), title);
+                     ImGui::GetColorU32(ImGuiCol_PopupBg));
+  list.AddText({part.x, part.y + 0.2F * line}, ImGui::GetColorU32(ImGuiCol_Text), title);
   const std::string text = fmt::format("{} {}", top, unit);
   const ImVec2 size = ImGui::CalcTextSize(text.c_str());
-  list.AddText({part.x + part.width - size.x, part.y + 0.2F * line}, packed(kQuietTextColour),
-               text.c_str());
+  list.AddText({part.x + part.width - size.x, part.y + 0.2F * line},
+               ImGui::GetColorU32(ImGuiCol_TextDisabled), text.c_str());
   for (int k = 1; k < 4; ++k) {
     const float y = inner.y + inner.height * static_cast<float>(k) / 4;
     list.AddLine({inner.x, y}, {inner.x + inner.width, y}, packed(kGridColour, 0.25F));

@@ -12,12 +12,17 @@ bool RunFollower::step() {
     *moment_ = {};
     has_moment_ = false;
     plots_.clear();
+    trail_.clear();
     serial_ = 0;
   }
   ticks_.clear();
   reader->ticks_since(serial_, ticks_);
-  for (const driver::TickRecord& tick : ticks_) plots_.add(tick);
+  for (const driver::TickRecord& tick : ticks_) {
+    plots_.add(tick);
+    trail_.add(tick);
+  }
   if (live_->update(*moment_)) has_moment_ = true;
+  trail_.give(moment_->trail);
   if (notice_.empty() && reader->pause_asked()) notice_ = "Paused. Space goes on.";
   return another;
 }

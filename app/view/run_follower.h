@@ -7,6 +7,7 @@
 
 #include "share/run_attachment.h"
 #include "view/live_scene.h"
+#include "view/marks/tip_trail.h"
 #include "view/plots.h"
 
 namespace thimble::app::view {
@@ -38,6 +39,7 @@ class RunFollower {
   std::unique_ptr<DrawnMoment> moment_ = std::make_unique<DrawnMoment>();
   bool has_moment_ = false;
   Plots plots_;
+  TipTrail trail_;
   std::uint64_t serial_ = 0;
   std::vector<driver::TickRecord> ticks_;
   std::string notice_;

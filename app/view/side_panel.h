@@ -27,13 +27,13 @@ struct ViewNotes {
   bool closing_ends = false;  ///< Whether the run ends with this window.
 };
 
-/// Draws the slider of a knob within its bounds; returns whether the user turned it to another
-/// `value`. As below.
-bool knob_slider(const session::SharedScene::Knob& knob, double& value);
+/// Returns how wide the panel is in a window, pixels: 380 at scale 1, at most half.
+float panel_width(float window_width, float scale);
 
-/// Draws the panel at the window's side: how the run is, force, depth and times over time, and the
-/// knobs. `reader` is null while no run is attached. To be called between ImGui's NewFrame and
-/// Render. Real-time: never from the servo thread.
+/// Draws the panel at the window's side: how the run is, force, depth and times over time, the
+/// knobs, and what is drawn. Where they have no room below each other they are tabs. `reader` is
+/// null while no run is attached. To be called between ImGui's NewFrame and Render. Real-time:
+/// never from the servo thread.
 void draw_side_panel(const ScreenPart& part, session::SharedReader* reader,
                      const driver::TickRecord& tick, const Plots& plots, const ViewNotes& notes,
                      ViewChoice& choice);

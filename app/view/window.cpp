@@ -22,6 +22,7 @@
 #include "view/felt/touch_thread.h"
 #include "view/gl/picture_file.h"
 #include "view/hand/hand_panel.h"
+#include "view/marks/legend.h"
 #include "view/run_follower.h"
 #include "view/scene_mouse.h"
 #include "view/side_panel.h"
@@ -29,7 +30,6 @@
 namespace thimble::app::view {
 namespace {
 
-constexpr float kPanelWidth = 380;   // pixels at scale 1
 constexpr double kFrame = 1.0 / 60;  // s
 constexpr double kMessageSeconds = 4;
 
@@ -93,6 +93,8 @@ class Screen {
 
   GLFWwindow* window() { return window_; }
   float scale() const { return scale_; }
+  /// Scales text and panel by this from now on; 0: as the monitor is.
+  void set_scale(double wanted) { wanted_scale_ = static_cast<float>(wanted); }
   /// Gives the keys pressed since it was asked last, but those typed into a field.
   std::vector<int> take_keys() {
     std::vector<int> keys = std::exchange(keys_, {});
@@ -100,15 +102,17 @@ class Screen {
     return keys;
   }
 
-  void begin() {
+  void begin(Theme theme) {
     glfwPollEvents();
     float x = 1;
     float y = 1;
     glfwGetWindowContentScale(window_, &x, &y);
-    if (std::max(x, y) != scale_) {
-      scale_ = std::max(x, y);
+    const float scale = wanted_scale_ > 0 ? wanted_scale_ : std::max(x, y);
+    if (scale != scale_ || theme != theme_) {
+      scale_ = scale;
+      theme_ = theme;
       ImGui_ImplOpenGL3_DestroyFontsTexture();
-      set_text_style(scale_);
+      set_text_style(scale_, theme_);
     }
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
@@ -127,6 +131,8 @@ class Screen {
   bool imgui_ = false;
   GLFWwindow* window_ = nullptr;
   float scale_ = 0;
+  float wanted_scale_ = 0;  // 0: the monitor's
+  Theme theme_ = Theme::kLight;
   std::vector<int> keys_;
 };
 
@@ -159,6 +165,8 @@ class Content {
  public:
   Content(Screen& screen, session::RunAttachment& runs, const WindowChoice& choice)
       : screen_(screen), follower_(runs), felt_(choice.felt) {
+    screen_.set_scale(choice.ui_scale);
+    choice_.paint.theme = choice.theme;
     choice_.paint.fine = !software_draws();
     hand_.input().choose(choice.hand);
     if (!felt_.trouble().empty()) {
@@ -250,8 +258,10 @@ void Content::draw_scene(const ScreenPart& part, float ratio) {
   if (follower_.reader()->scene().hand_by_mouse) lead_hand(part);
   const auto labels = painter_->paint(moment, camera_, choice_.paint, *canvas_);
   canvas_->show(0, 0);
-  write_labels(labels, camera_, part);
-  write_caption(choice_.paint.grid ? "grid 10 mm; F1: help" : "F1: help", part);
+  const Theme theme = choice_.paint.theme;
+  write_labels(labels, camera_, theme, part);
+  write_legend(legend_of(follower_.scene(), moment, choice_.paint), theme, part);
+  write_caption(choice_.paint.grid ? "grid 10 mm; F1: help" : "F1: help", theme, part);
   if (choice_.screenshot) take_picture();
   choice_.screenshot = false;
 }
@@ -275,17 +285,18 @@ driver::Result<void> Content::draw(double frame_time) {
     notes_.closing_ends = scene.hand_by_mouse && scene.pid == getppid();  // which has opened it
     glfwSetWindowTitle(screen_.window(), ("Thimble: " + follower_.scene().name).c_str());
   }
-  screen_.begin();
+  screen_.begin(choice_.paint.theme);
   int pixels_x = 0;
   int pixels_y = 0;
   glfwGetFramebufferSize(screen_.window(), &pixels_x, &pixels_y);
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   const float ratio = size.x > 0 ? static_cast<float>(pixels_x) / size.x : 1;
-  const float panel = std::min(kPanelWidth * screen_.scale(), 0.5F * size.x);
+  const float panel = panel_width(size.x, screen_.scale());
   const ScreenPart scene{0, 0, size.x - panel, size.y};
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
   glViewport(0, 0, pixels_x, pixels_y);
-  glClearColor(kGroundColour[0], kGroundColour[1], kGroundColour[2], 1);
+  const Colour ground = colours_of(choice_.paint.theme).ground;
+  glClearColor(ground[0], ground[1], ground[2], 1);
   glClear(GL_COLOR_BUFFER_BIT);
   keys_ = screen_.take_keys();
   frame_time_ = frame_time;
