@@ -51,6 +51,8 @@ TEST(ForceMarks, ScaleEndsAtARoundForceAboveAll) {
   EXPECT_DOUBLE_EQ(strongest_force(scene, moment), 2);
   moment.trail.push_back({{0, 0, 0}, 4.1});
   EXPECT_DOUBLE_EQ(strongest_force(scene, moment), 5);
+  moment.trail[0].force = 7.3;
+  EXPECT_DOUBLE_EQ(strongest_force(scene, moment), 10);
   moment.trail[0].force = NAN;
   EXPECT_TRUE(std::isfinite(strongest_force(scene, moment)));
 }

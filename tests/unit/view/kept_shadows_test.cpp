@@ -60,17 +60,20 @@ TEST(ClosedSurfaces, AreSeenFromWithinAsFromWithout) {
   const auto differs = [](double distance) {
     DrawnScene scene;
     scene.objects.push_back({.name = "ball", .mesh = support::icosphere(2, 0.05)});
-    ScenePainter with(scene, ScenePrograms::make().value());
-    ScenePainter without({}, ScenePrograms::make().value());
+    ScenePainter painter(scene, ScenePrograms::make().value());
+    DrawnMoment away;  // out of the picture
+    away.poses.resize(1);
+    away.poses[0].p_WB = {0, 100, 0};
     Canvas canvas(32, 32);
     Camera camera;
     camera.distance = distance;
     PaintChoice choice;
     choice.grid = choice.shadows = false;
+    choice.edges = Edges::kOff;
     choice.marks = {.arm = false, .tip = false, .force = false, .edge_planes = false};
-    with.paint({}, camera, choice, canvas);
+    painter.paint({}, camera, choice, canvas);
     const Picture one = canvas.read();
-    without.paint({}, camera, choice, canvas);
+    painter.paint(away, camera, choice, canvas);
     return one.rgb != canvas.read().rgb;
   };
   EXPECT_TRUE(differs(0.3));
