@@ -36,6 +36,11 @@ struct ShotOptions {
   std::string edges = "auto";
   bool edge_planes = false;
   bool plots = false;
+  bool fields = false;
+  bool contact = false;
+  bool trail = false;
+  bool surfaces = false;
+  std::string theme = "light";
   bool no_arm = false;
   bool no_caption = false;
   bool all_colours = false;
@@ -132,6 +137,11 @@ int take_shot(const ShotOptions& options) {
                                                 : view::Edges::kAuto;
   choice.paint.marks.edge_planes = options.edge_planes;
   choice.paint.marks.arm = !options.no_arm;
+  choice.paint.marks.contact = options.contact;
+  choice.paint.fields = options.fields;
+  choice.paint.trail = options.trail;
+  choice.paint.surfaces = options.surfaces;
+  choice.paint.theme = options.theme == "dark" ? view::Theme::kDark : view::Theme::kLight;
   choice.plots = options.plots;
   choice.caption = !options.no_caption;
 
@@ -211,6 +221,15 @@ void add_shot_command(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command->add_flag("--edge-planes", options->edge_planes,
                     "Show the active triangle and the planes that bound its touch");
+  command->add_flag("--contact", options->contact,
+                    "Show the normal at the touch and the force along the surface");
+  command->add_flag("--fields", options->fields, "Show the forces of fields as arrows");
+  command->add_flag("--trail", options->trail,
+                    "Show where the tip was in the last 4 s, coloured by force");
+  command->add_flag("--surfaces", options->surfaces, "Mark what has a texture or friction");
+  command->add_option("--theme", options->theme, "Background: light or dark")
+      ->check(CLI::IsMember({"light", "dark"}))
+      ->capture_default_str();
   command->add_flag("--plots", options->plots, "Show force and depth over time below");
   command->add_flag("--no-arm", options->no_arm, "Leave the arm out");
   command->add_flag("--no-caption", options->no_caption, "Leave the words below out");

@@ -32,6 +32,20 @@ void add_window_command(CLI::App& app, int& exit_code) {
   };
   add_view_command(app, exit_code, show);
   CLI::App* command = app.get_subcommand("view");
+  command
+      ->add_option("--ui-scale", choice->ui_scale,
+                   "Scale of text and panel; the monitor's if absent")
+      ->check(CLI::Range(0.75, 3.0))
+      ->excludes("--text");
+  command
+      ->add_option_function<std::string>(
+          "--theme",
+          [choice](const std::string& theme) {
+            choice->theme = theme == "dark" ? view::Theme::kDark : view::Theme::kLight;
+          },
+          "Looks: light or dark; light if absent")
+      ->check(CLI::IsMember({"light", "dark"}))
+      ->excludes("--text");
   command->add_option("--picture", choice->last_picture, "PNG of the window to write then")
       ->needs("--for")
       ->excludes("--text");

@@ -31,6 +31,8 @@ DrawnObject drawn_object(const session::SharedScene& scene,
   drawn.name = object.name;
   drawn.stands_for_shape = object.kind == session::SharedKind::kShape;
   drawn.crease_angle = object.crease_angle;
+  drawn.texture = object.texture;
+  drawn.friction = object.friction;
   const auto vertices = std::span(scene.vertices).subspan(object.first_vertex, object.vertex_count);
   drawn.mesh.vertices.assign(vertices.begin(), vertices.end());
   for (const auto& [a, b, c] :
@@ -55,6 +57,7 @@ DrawnScene drawn_scene_of(const session::SharedScene& scene) {
   for (const session::SharedScene::Object& object : scene.objects) {
     drawn.objects.push_back(drawn_object(scene, object));
   }
+  for (const auto& sample : scene.field) drawn.field.push_back({sample.p_W, sample.f_W});
   return drawn;
 }
 

@@ -16,13 +16,18 @@ bool RunFollower::step(double dt) {
     plots_.clear();
     ring_.clear();
     head_ = PlayHead::of_run();
+    trail_.clear();
     serial_ = 0;
   }
   ticks_.clear();
   reader->ticks_since(serial_, ticks_);
-  for (const driver::TickRecord& tick : ticks_) plots_.add(tick);
+  for (const driver::TickRecord& tick : ticks_) {
+    plots_.add(tick);
+    trail_.add(tick);
+  }
   if (live_->update(*newest_)) {
     has_moment_ = true;
+    trail_.give(newest_->trail);
     ring_.keep(*newest_);
   }
   if (!ring_.empty()) {

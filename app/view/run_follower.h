@@ -7,6 +7,7 @@
 
 #include "share/run_attachment.h"
 #include "view/live_scene.h"
+#include "view/marks/tip_trail.h"
 #include "view/time/moment_ring.h"
 #include "view/touch_source.h"
 
@@ -44,6 +45,7 @@ class RunFollower final : public TouchSource {
   MomentRing ring_;
   PlayHead head_ = PlayHead::of_run();
   Plots plots_;
+  TipTrail trail_;
   std::uint64_t serial_ = 0;
   std::vector<driver::TickRecord> ticks_;
   std::string notice_;

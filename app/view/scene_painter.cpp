@@ -6,26 +6,14 @@
 #include <utility>
 
 #include "bent_mesh.h"
+#include "view/marks/force_marks.h"
+#include "view/view_block.h"
 
 namespace thimble::app::view {
 namespace {
 
-constexpr GLsizei kShadowPixels = 1024;
 constexpr std::size_t kFewTriangles = 1500;  // so many can be told from each other in a picture
 constexpr GLuint kViewBinding = 0;
-
-/// Turns a colour as on the screen into amounts of light, as the shaders turn it back.
-Eigen::Vector3f linear(const Colour& colour) {
-  return Eigen::Array3f(colour[0], colour[1], colour[2]).square();
-}
-
-Eigen::Vector4f padded(const Eigen::Vector3f& v) {
-  return {v.x(), v.y(), v.z(), 0};
-}
-
-Eigen::Vector3d towards_light() {
-  return Eigen::Vector3d(0.45, -0.55, 1.0).normalized();
-}
 
 void set(const GlProgram& program, const char* name, const Eigen::Matrix4f& value) {
   glUniformMatrix4fv(program.at(name), 1, GL_FALSE, value.data());
@@ -45,6 +33,11 @@ void set_paint(const GlProgram& program, const Colour& colour, float cover) {
   glUniform4f(program.at("paint"), colour[0], colour[1], colour[2], cover);
 }
 
+/// Returns which marks an object has: 1 for dots, 2 for lines (gl/shaders.cpp).
+int marks_on(const DrawnObject& object) {
+  return (object.texture.empty() ? 0 : 1) + (object.friction.empty() ? 0 : 2);
+}
+
 /// Returns whether a plane's mesh is level, so that it can be drawn as the ground.
 bool is_level(const render::TriangleMesh& mesh) {
   return std::all_of(mesh.vertices.begin(), mesh.vertices.end(), [&](const auto& vertex) {
@@ -54,16 +47,9 @@ bool is_level(const render::TriangleMesh& mesh) {
 
 }  // namespace
 
-/// The block of the shaders that all programs read; std140 leaves no gaps between these.
-struct ScenePainter::ViewBlock {
-  Eigen::Matrix4f view_projection, shadow_from_world;
-  Eigen::Vector4f eye, key, sky, ground, grid, ground_place;
-};
-
 ScenePainter::ScenePainter(DrawnScene scene, ScenePrograms programs)
     : scene_(std::move(scene)), programs_(std::move(programs)) {
-  for (const GlProgram* program : {&programs_.surface, &programs_.dent, &programs_.shadow,
-                                   &programs_.plain, &programs_.backdrop, &programs_.ground}) {
+  for (const GlProgram* program : programs_.all()) {
     const GLuint block = glGetUniformBlockIndex(**program, "View");
     if (block != GL_INVALID_INDEX) glUniformBlockBinding(**program, block, kViewBinding);
   }
@@ -83,25 +69,6 @@ ScenePainter::ScenePainter(DrawnScene scene, ScenePrograms programs)
   if (floor_object_ >= 0) {
     ground_height_ = scene_.objects[static_cast<std::size_t>(floor_object_)].mesh.vertices[0].z();
   }
-
-  glBindTexture(GL_TEXTURE_2D, *shadow_map_);
-  glTexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT24, kShadowPixels, kShadowPixels, 0,
-               GL_DEPTH_COMPONENT, GL_FLOAT, nullptr);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
-  glBindFramebuffer(GL_FRAMEBUFFER, *shadow_frame_);
-  glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, *shadow_map_, 0);
-  glDrawBuffer(GL_NONE);
-  glReadBuffer(GL_NONE);
-
-  glBindVertexArray(*pane_array_);
-  glBindBuffer(GL_ARRAY_BUFFER, *pane_vertices_);
-  glEnableVertexAttribArray(0);
-  glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, 0, nullptr);
-  glBindVertexArray(0);
 }
 
 const SurfaceModel& ScenePainter::shown(std::size_t object) const {
@@ -112,10 +79,12 @@ void ScenePainter::place_objects(const DrawnMoment& moment, DentNormals normals)
   places_.assign(models_.size(), Eigen::Matrix4f::Identity());
   naive_.reset();
   shapes_.resize(models_.size());
+  changed_.resize(models_.size(), true);
   for (std::size_t i = 0; i < models_.size(); ++i) {
     if (i < moment.shapes.size() && moment.shapes[i] != nullptr && moment.shapes[i] != shapes_[i]) {
       shapes_[i] = moment.shapes[i];
       models_[i].reshape(*shapes_[i]);
+      changed_[i] = true;
     }
     if (i < moment.poses.size()) {
       const render::BodyPose& pose = moment.poses[i];
@@ -126,6 +95,7 @@ void ScenePainter::place_objects(const DrawnMoment& moment, DentNormals normals)
     }
     const bool bent =
         moment.patch.triangle_count > 0 && moment.patch.object == static_cast<std::int16_t>(i);
+    changed_[i] = changed_[i] || bent || models_[i].bent();
     if (!bent) {
       models_[i].unbend();
     } else if (normals == DentNormals::kSplit) {
@@ -139,85 +109,108 @@ void ScenePainter::place_objects(const DrawnMoment& moment, DentNormals normals)
   }
 }
 
-void ScenePainter::set_view(const Camera& camera, double aspect) {
-  // The light looks along -z of its own frame, straight, at a square about the scene.
-  Eigen::Matrix4d shadow = Eigen::Matrix4d::Identity();
-  const Eigen::Vector3d z = towards_light();
-  const Eigen::Vector3d x = Eigen::Vector3d::UnitZ().cross(z).normalized();
-  shadow.block<1, 3>(0, 0) = x.transpose() / light_radius_;
-  shadow.block<1, 3>(1, 0) = z.cross(x).transpose() / light_radius_;
-  shadow.block<1, 3>(2, 0) = -z.transpose() / (2 * light_radius_);
-  shadow.block<3, 1>(0, 3) = -shadow.block<3, 3>(0, 0) * light_centre_;
-  ViewBlock block;
-  block.view_projection = camera.projection(aspect) * camera.view();
-  block.shadow_from_world = shadow.cast<float>();
-  block.eye = padded(camera.p_WEye().cast<float>());
-  block.key = padded(z.cast<float>());
-  block.sky = padded(linear(kSkyColour));
-  block.ground = padded(linear(kGroundColour));
-  block.grid = padded(linear(kGridColour));
-  block.ground_place =
-      Eigen::Vector4d(light_centre_.x(), light_centre_.y(), ground_height_, 5 * light_radius_)
-          .cast<float>();
+void ScenePainter::set_view(const Camera& camera, double aspect, Theme theme) {
+  const ViewBlock block = view_block(
+      camera, aspect, theme,
+      {.centre = light_centre_, .radius = light_radius_, .ground_height = ground_height_});
   glBindBuffer(GL_UNIFORM_BUFFER, *view_block_);
   glBufferData(GL_UNIFORM_BUFFER, sizeof block, &block, GL_STREAM_DRAW);
   glBindBufferBase(GL_UNIFORM_BUFFER, kViewBinding, *view_block_);
 }
 
 void ScenePainter::paint_shadows(const std::vector<Solid>& solids) {
-  glBindFramebuffer(GL_FRAMEBUFFER, *shadow_frame_);
-  glViewport(0, 0, kShadowPixels, kShadowPixels);
-  glClear(GL_DEPTH_BUFFER_BIT);
   glUseProgram(*programs_.shadow);
   // Pushed back a little, or surfaces would cast shadows on themselves.
   glEnable(GL_POLYGON_OFFSET_FILL);
   glPolygonOffset(2.5F, 6.0F);
+  std::vector<bool> still(models_.size());
   for (std::size_t i = 0; i < models_.size(); ++i) {
-    if (scene_.objects[i].endless) continue;
-    set(programs_.shadow, "model", places_[i]);
-    shown(i).draw_mesh();
-    shown(i).draw_dent();
+    still[i] = !changed_[i] && i < last_places_.size() && places_[i] == last_places_[i];
   }
+  last_places_ = places_;
+  changed_.assign(models_.size(), false);
+  const bool any_still = std::find(still.begin(), still.end(), true) != still.end();
+  // What has moved was taken out at once, so that those that are kept are as they were.
+  if (any_still && still != kept_) {
+    shadow_map_.begin_kept();
+    for (std::size_t i = 0; i < models_.size(); ++i) {
+      if (still[i]) paint_shadow(i);
+    }
+  }
+  kept_ = still;
+  shadow_map_.begin(any_still);
+  for (std::size_t i = 0; i < models_.size(); ++i) {
+    if (!still[i]) paint_shadow(i);
+  }
+  glEnable(GL_CULL_FACE);
   for (const Solid& solid : solids) {
     if (!solid.casts_shadow) continue;
     set(programs_.shadow, "model", solid.model);
     solids_.model(solid.kind).draw_mesh();
   }
+  glDisable(GL_CULL_FACE);
   glDisable(GL_POLYGON_OFFSET_FILL);
+}
+
+void ScenePainter::paint_shadow(std::size_t object) {
+  if (scene_.objects[object].endless) return;
+  set(programs_.shadow, "model", places_[object]);
+  if (shown(object).closed()) glEnable(GL_CULL_FACE);
+  shown(object).draw_mesh();
+  shown(object).draw_dent();
+  glDisable(GL_CULL_FACE);
 }
 
 // Twice what a pixel of the light's map covers, m.
 float ScenePainter::shadow_offset() const {
-  return static_cast<float>(2 * 2 * light_radius_ / kShadowPixels);
+  return static_cast<float>(2 * 2 * light_radius_ / ShadowMap::kPixels);
 }
 
-void ScenePainter::paint_surfaces(const PaintChoice& choice) {
-  for (const GlProgram* program : {&programs_.surface, &programs_.dent}) {
-    glUseProgram(**program);
-    glUniform1i(program->at("gouraud"), choice.shading == Shading::kGouraud ? 1 : 0);
-    glUniform1f(program->at("shadow_strength"), choice.shadows ? 1.0F : 0.0F);
-    glUniform1f(program->at("shadow_offset"), shadow_offset());
-    glUniform1i(program->at("shadow_samples"), choice.fine ? 4 : 2);
-    for (std::size_t i = 0; i < models_.size(); ++i) {
-      if (static_cast<std::ptrdiff_t>(i) == floor_object_) continue;
+void ScenePainter::set_shadows(const GlProgram& program, const PaintChoice& choice) const {
+  glUniform1f(program.at("shadow_strength"), choice.shadows ? 1.0F : 0.0F);
+  glUniform1f(program.at("shadow_offset"), shadow_offset());
+  glUniform1i(program.at("shadow_samples"), choice.fine ? 4 : 2);
+}
+
+void ScenePainter::paint_surfaces(const PaintChoice& choice, const Camera& camera) {
+  const bool gouraud = choice.shading == Shading::kGouraud;
+  for (std::size_t i = 0; i < models_.size(); ++i) {
+    if (static_cast<std::ptrdiff_t>(i) == floor_object_) continue;
+    const int marks = choice.surfaces ? marks_on(scene_.objects[i]) : 0;
+    const GlProgram& surface = marks > 0 ? programs_.surface_marked
+                               : gouraud ? programs_.surface_gouraud
+                                         : programs_.surface;
+    const GlProgram& dent = marks > 0 ? programs_.dent_marked
+                            : gouraud ? programs_.dent_gouraud
+                                      : programs_.dent;
+    const Eigen::Vector3f eye = camera.p_WEye().cast<float>() - places_[i].block<3, 1>(0, 3);
+    const bool hides_back = shown(i).hides_back(places_[i].block<3, 3>(0, 0).transpose() * eye);
+    if (hides_back) glEnable(GL_CULL_FACE);
+    for (const GlProgram* program : {&surface, &dent}) {
+      glUseProgram(**program);
+      set_shadows(*program, choice);
       set(*program, "model", places_[i]);
       set(*program, "normal_matrix", Eigen::Matrix3f(places_[i].block<3, 3>(0, 0)));
       set_colour(*program, object_colour(i), 0.16F);
-      if (program == &programs_.surface) shown(i).draw_mesh();
-      if (program == &programs_.dent) shown(i).draw_dent();
+      glUniform1i(program->at("marks"), marks);
+      if (program == &surface) shown(i).draw_mesh();
+      if (program == &dent) shown(i).draw_dent();
     }
+    glDisable(GL_CULL_FACE);
   }
 }
 
-void ScenePainter::paint_solids(const std::vector<Solid>& solids) {
+void ScenePainter::paint_solids(const std::vector<Solid>& solids, const PaintChoice& choice) {
   glUseProgram(*programs_.surface);
-  glUniform1i(programs_.surface.at("gouraud"), 0);
+  set_shadows(programs_.surface, choice);
+  glEnable(GL_CULL_FACE);
   for (const Solid& solid : solids) {
     set(programs_.surface, "model", solid.model);
     set(programs_.surface, "normal_matrix", solid.normal_matrix);
     set_colour(programs_.surface, solid.colour, 0.2F);
     solids_.model(solid.kind).draw_mesh();
   }
+  glDisable(GL_CULL_FACE);
 }
 
 void ScenePainter::paint_what_shines_through(const std::vector<Solid>& solids) {
@@ -254,53 +247,48 @@ void ScenePainter::paint_edges(const PaintChoice& choice) {
 }
 
 void ScenePainter::paint_ground(const PaintChoice& choice) {
-  glUseProgram(*programs_.ground);
-  const Eigen::Vector3f colour = linear(
-      floor_object_ < 0 ? kGroundColour : object_colour(static_cast<std::size_t>(floor_object_)));
-  glUniform3fv(programs_.ground.at("colour"), 1, colour.data());
-  glUniform1f(programs_.ground.at("shadow_strength"), choice.shadows ? 1.0F : 0.0F);
-  glUniform1i(programs_.ground.at("shadow_samples"), choice.fine ? 4 : 2);
-  glUniform1f(programs_.ground.at("grid_strength"), choice.grid ? 1.0F : 0.0F);
+  const auto floor = static_cast<std::size_t>(floor_object_);
+  const int marks = choice.surfaces && floor_object_ >= 0 ? marks_on(scene_.objects[floor]) : 0;
+  const GlProgram& program = marks > 0 ? programs_.ground_marked : programs_.ground;
+  glUseProgram(*program);
+  const Eigen::Vector3f colour =
+      linear(floor_object_ < 0 ? colours_of(choice.theme).ground : object_colour(floor));
+  glUniform3fv(program.at("colour"), 1, colour.data());
+  set_shadows(program, choice);
+  glUniform1f(program.at("grid_strength"), choice.grid ? 1.0F : 0.0F);
+  glUniform1i(program.at("marks"), marks);
   glBindVertexArray(*nothing_);
   // Its depth counts, so that what is below it is not outlined above.
   glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
 }
 
-void ScenePainter::paint_panes(const std::vector<Pane>& panes, const Camera& camera) {
-  if (panes.empty()) return;
-  // The farthest first, so that each is seen through those before it.
-  std::vector<const Pane*> order;
-  order.reserve(panes.size());
-  for (const Pane& pane : panes) order.push_back(&pane);
-  const auto distance = [&](const Pane* pane) {
-    const auto& c = pane->corners_W;
-    return ((c[0] + c[1] + c[2] + c[3]) / 4 - camera.p_WEye()).squaredNorm();
-  };
-  std::sort(order.begin(), order.end(),
-            [&](const Pane* a, const Pane* b) { return distance(a) > distance(b); });
-  glUseProgram(*programs_.plain);
-  glUniform1f(programs_.plain.at("nearer"), 0.0005F);
-  set(programs_.plain, "model", Eigen::Matrix4f(Eigen::Matrix4f::Identity()));
-  glDepthMask(GL_FALSE);
-  glBindVertexArray(*pane_array_);
-  for (const Pane* pane : order) {
-    std::vector<Eigen::Vector3f> corners;
-    for (const Eigen::Vector3d& corner : pane->corners_W) corners.push_back(corner.cast<float>());
-    glBindBuffer(GL_ARRAY_BUFFER, *pane_vertices_);
-    glBufferData(GL_ARRAY_BUFFER, 4 * sizeof(Eigen::Vector3f), corners.data(), GL_STREAM_DRAW);
-    set_paint(programs_.plain, pane->colour, 0.38F);
-    glDrawArrays(GL_TRIANGLE_FAN, 0, 4);
-    set_paint(programs_.plain, pane->colour, 0.9F);
-    glDrawArrays(GL_LINE_LOOP, 0, 4);
+void ScenePainter::paint_forces(const DrawnMoment& moment, const PaintChoice& choice,
+                                double eye_distance) {
+  if (!choice.fields && !choice.trail) return;
+  const double strongest = strongest_force(scene_, moment);
+  glUseProgram(*programs_.coloured);
+  if (choice.fields) {
+    if (strongest != field_strongest_) {
+      ColouredMesh arrows;
+      add_field(scene_, strongest, arrows);
+      field_.set(arrows);
+      field_strongest_ = strongest;
+    }
+    field_.draw();
   }
-  glDepthMask(GL_TRUE);
+  if (choice.trail) {
+    ColouredMesh tube;
+    add_trail(moment.trail, strongest, 0.0016 * eye_distance, tube);
+    trail_.set(tube);
+    trail_.draw();
+  }
 }
 
 std::vector<Label> ScenePainter::paint(const DrawnMoment& moment, const Camera& camera,
                                        const PaintChoice& choice, Canvas& canvas) {
   const TouchMarks marks = mark_touch(scene_, moment, camera.distance, choice.marks);
   place_objects(moment, choice.dent_normals);
-  set_view(camera, canvas.aspect());
+  set_view(camera, canvas.aspect(), choice.theme);
   glDisable(GL_BLEND);
   glDisable(GL_SCISSOR_TEST);
   glDisable(GL_CULL_FACE);
@@ -312,19 +300,20 @@ std::vector<Label> ScenePainter::paint(const DrawnMoment& moment, const Camera& 
   canvas.begin();
   glClear(GL_DEPTH_BUFFER_BIT);
   glActiveTexture(GL_TEXTURE0);
-  glBindTexture(GL_TEXTURE_2D, *shadow_map_);
+  glBindTexture(GL_TEXTURE_2D, shadow_map_.texture());
   glDisable(GL_DEPTH_TEST);
   glUseProgram(*programs_.backdrop);
   glBindVertexArray(*nothing_);
   glDrawArrays(GL_TRIANGLES, 0, 3);
   glEnable(GL_DEPTH_TEST);
-  paint_surfaces(choice);
-  paint_solids(marks.solids);
+  paint_surfaces(choice, camera);
+  paint_solids(marks.solids, choice);
+  paint_forces(moment, choice, camera.distance);
   glEnable(GL_BLEND);
   glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
   paint_ground(choice);
   paint_edges(choice);
-  paint_panes(marks.panes, camera);
+  panes_.draw(marks.panes, camera, programs_.plain);
   paint_what_shines_through(marks.solids);
   glBindVertexArray(0);
   canvas.finish();

@@ -7,19 +7,17 @@
 #include "view/camera.h"
 #include "view/drawn_scene.h"
 #include "view/gl/canvas.h"
+#include "view/gl/coloured_model.h"
 #include "view/gl/gl_objects.h"
 #include "view/gl/scene_programs.h"
+#include "view/gl/shaders.h"
+#include "view/gl/shadow_map.h"
 #include "view/gl/solids.h"
 #include "view/gl/surface_model.h"
+#include "view/marks/pane_model.h"
 #include "view/touch_marks.h"
 
 namespace thimble::app::view {
-
-/// Says where the light on a surface is reckoned.
-enum class Shading {
-  kPhong,    ///< In every pixel, of the interpolated normal.
-  kGouraud,  ///< In every corner, and interpolated.
-};
 
 /// Says whether polygons are outlined.
 enum class Edges {
@@ -42,6 +40,10 @@ struct PaintChoice {
   bool shadows = true;
   bool fine = true;  ///< Soft rims of shadows: 16 samples; else 4, where software draws.
   bool grid = true;
+  bool fields = false;    ///< Forces of the scene's fields, as arrows.
+  bool trail = false;     ///< Where the tip was in the last seconds, coloured by force.
+  bool surfaces = false;  ///< Marks on what has a texture or friction.
+  Theme theme = Theme::kLight;
   MarkChoice marks;
 };
 
@@ -60,15 +62,16 @@ class ScenePainter {
                            const PaintChoice& choice, Canvas& canvas);
 
  private:
-  struct ViewBlock;
-  void set_view(const Camera& camera, double aspect);
+  void set_view(const Camera& camera, double aspect, Theme theme);
   void paint_shadows(const std::vector<Solid>& solids);
-  void paint_surfaces(const PaintChoice& choice);
-  void paint_solids(const std::vector<Solid>& solids);
+  void paint_shadow(std::size_t object);
+  void paint_surfaces(const PaintChoice& choice, const Camera& camera);
+  void set_shadows(const GlProgram& program, const PaintChoice& choice) const;
+  void paint_solids(const std::vector<Solid>& solids, const PaintChoice& choice);
   void paint_what_shines_through(const std::vector<Solid>& solids);
   void paint_edges(const PaintChoice& choice);
   void paint_ground(const PaintChoice& choice);
-  void paint_panes(const std::vector<Pane>& panes, const Camera& camera);
+  void paint_forces(const DrawnMoment& moment, const PaintChoice& choice, double eye_distance);
   void place_objects(const DrawnMoment& moment, DentNormals normals);
   float shadow_offset() const;
   const SurfaceModel& shown(std::size_t object) const;
@@ -81,10 +84,15 @@ class ScenePainter {
   std::size_t naive_object_ = 0;
   SolidModels solids_;
   std::vector<Eigen::Matrix4f> places_;  // of the objects in this picture
-  GlBuffer view_block_, pane_vertices_;
-  GlVertexArray nothing_, pane_array_;
-  GlTexture shadow_map_;
-  GlFramebuffer shadow_frame_;
+  GlBuffer view_block_;
+  GlVertexArray nothing_;
+  PaneModel panes_;
+  ColouredModel field_, trail_;
+  double field_strongest_ = -1;  // N, of the scale that the field has been coloured by
+  ShadowMap shadow_map_;
+  std::vector<Eigen::Matrix4f> last_places_;  // when shadows were drawn last
+  std::vector<bool> changed_;                 // of the objects: bent or shaped since then
+  std::vector<bool> kept_;                    // those whose shadows are kept
   Eigen::Vector3d light_centre_{0, 0, 0};
   double light_radius_ = 0.2;         // m: what is nearer to the centre casts shadows
   double ground_height_ = 0;          // m

@@ -70,15 +70,17 @@ std::vector<int> Screen::take_keys() {
   return keys;
 }
 
-void Screen::begin() {
+void Screen::begin(Theme theme) {
   glfwPollEvents();
   float x = 1;
   float y = 1;
   glfwGetWindowContentScale(window_, &x, &y);
-  if (std::max(x, y) != scale_) {
-    scale_ = std::max(x, y);
+  const float scale = wanted_scale_ > 0 ? wanted_scale_ : std::max(x, y);
+  if (scale != scale_ || theme != theme_) {
+    scale_ = scale;
+    theme_ = theme;
     ImGui_ImplOpenGL3_DestroyFontsTexture();
-    set_text_style(scale_);
+    set_text_style(scale_, theme_);
   }
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();

@@ -25,8 +25,10 @@ class Screen {
   /// Gives the keys pressed since it was asked last, but those typed into a field.
   std::vector<int> take_keys();
 
+  /// Scales text and panel by this from now on; 0: as the monitor is.
+  void set_scale(double wanted) { wanted_scale_ = static_cast<float>(wanted); }
   /// Begins a picture of ImGui: takes what mouse and keys did.
-  void begin();
+  void begin(Theme theme);
   /// Draws what was asked of ImGui since.
   void end();
   /// Reads what the window shows.
@@ -39,6 +41,8 @@ class Screen {
   bool imgui_ = false;
   GLFWwindow* window_ = nullptr;
   float scale_ = 0;
+  float wanted_scale_ = 0;  // 0: the monitor's
+  Theme theme_ = Theme::kLight;
   std::vector<int> keys_;
 };
 

@@ -10,6 +10,8 @@
 #include "observers/dent_record.h"
 #include "setup.h"
 #include "share/shared_run.h"
+#include "view/marks/legend.h"
+#include "view/marks/tip_trail.h"
 
 namespace thimble::app::view {
 namespace {
@@ -72,11 +74,16 @@ void PlayedScene::play(const std::vector<double>& times, const Look& look) {
   }
   const auto moment = std::make_unique<DrawnMoment>();
   Plots plots;
+  TipTrail trail;
   std::size_t next = 0;
   watch(*session_, [&](const driver::TickRecord& record) {
     plots.add(record);
+    trail.add(record);
     while (next < ticks.size() && record.tick >= ticks[next]) {
-      if (live_->update(*moment)) look(*moment, plots);
+      if (live_->update(*moment)) {
+        trail.give(moment->trail);
+        look(*moment, plots);
+      }
       ++next;
     }
   });
@@ -105,7 +112,7 @@ ShotPainter::ShotPainter(const DrawnScene& scene, const ShotChoice& choice, Scen
     : choice_(choice),
       painter_(scene, std::move(programs)),
       canvas_(choice.width, choice.height, strip_of(choice)),
-      text_(std::make_unique<PictureText>(scale_of(choice.height))),
+      text_(std::make_unique<PictureText>(scale_of(choice.height), choice.paint.theme)),
       scale_(scale_of(choice.height)) {}
 
 ShotPainter::~ShotPainter() = default;
@@ -122,17 +129,21 @@ Picture ShotPainter::paint(const DrawnMoment& moment, const Plots& plots) {
   const auto width = static_cast<float>(canvas_.width());
   const auto strip = static_cast<float>(canvas_.strip());
   const ScreenPart scene{0, 0, width, static_cast<float>(canvas_.height()) - strip};
-  write_labels(labels, *choice_.camera, scene);
+  const Theme theme = choice_.paint.theme;
+  write_labels(labels, *choice_.camera, theme, scene);
+  if (choice_.caption) {
+    write_legend(legend_of(painter_.scene(), moment, choice_.paint), theme, scene);
+  }
   if (choice_.caption) {
     const std::string text = fmt::format("{}, {:.2f} s{}", painter_.scene().name,
                                          static_cast<double>(moment.tick.time_ns) * 1e-9,
                                          choice_.paint.grid ? "; grid 10 mm" : "");
-    write_caption(text, scene);
+    write_caption(text, theme, scene);
   }
   if (canvas_.strip() > 0) {
     const float pad = 14 * scale_;
     const float half = (width - 3 * pad) / 2;
-    fill_part({0, scene.height, width, strip}, kGroundColour);
+    fill_part({0, scene.height, width, strip}, colours_of(theme).ground);
     ImDrawList& list = *ImGui::GetBackgroundDrawList();
     const ScreenPart left{pad, scene.height + pad / 2, half, strip - pad};
     const ScreenPart right{2 * pad + half, left.y, half, left.height};

@@ -3,16 +3,19 @@
 #include <epoxy/gl.h>
 // After the above, which brings OpenGL.
 #include <GLFW/glfw3.h>
+#include <fmt/core.h>
 #include <imgui.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 #include <string>
 
 #include "thimble/driver/heat_guard.h"
+#include "view/knob_panel.h"
+#include "view/number_text.h"
+#include "view/panel_flow.h"
 #include "view/time/time_line.h"
 
 namespace thimble::app::view {
@@ -43,10 +46,6 @@ constexpr std::array kKeys = {Key{"left drag", "turn about the scene"},
                               Key{"F1", "this help"},
                               Key{"Q", "close"}};
 
-ImVec4 vec(const Colour& colour) {
-  return {colour[0], colour[1], colour[2], 1};
-}
-
 void toggle_record(session::SharedReader& reader) {
   if (reader.counters().recording) {
     reader.ask_record_stop();
@@ -57,22 +56,27 @@ void toggle_record(session::SharedReader& reader) {
 
 /// Draws what a tick was: force, depth, and what is wrong; `words` say when.
 void draw_tick(const driver::TickRecord& tick, const std::string& words) {
+  ImGui::PushTextWrapPos(0);
   const auto& f = tick.f_sent_W;
-  ImGui::TextColored(vec(kForceColour), "%5.2f N", std::hypot(f[0], f[1], f[2]));
-  ImGui::SameLine(0, 2 * ImGui::GetFontSize());
-  ImGui::TextColored(vec(kDepthColour), "%5.2f mm", tick.in_contact ? tick.depth * 1e3 : 0.0);
-  ImGui::SameLine(0, 2 * ImGui::GetFontSize());
-  ImGui::TextDisabled("%.1f s, %s", static_cast<double>(tick.time_ns) * 1e-9, words.c_str());
+  Flow flow;
+  flow.value(kForceColour, force_text(std::hypot(f[0], f[1], f[2])), "888.88 mN");
+  flow.value(kDepthColour, length_text(tick.in_contact ? tick.depth : 0), "888.88 mm");
+  const std::string when =
+      fmt::format("{:.1f} s, {}", static_cast<double>(tick.time_ns) * 1e-9, words);
+  flow.next(ImGui::CalcTextSize("8888.8 s, running").x);
+  ImGui::TextDisabled("%s", when.c_str());
   const double heat = *std::max_element(tick.heat.begin(), tick.heat.end());
   if (heat >= driver::HeatGuard::kWarning) {
-    ImGui::TextColored(vec(kForceColour), "motors %.0f %% of their heat limit, force lowered",
-                       100 * heat);
+    ImGui::TextColored(shown_colour(kForceColour),
+                       "motors %.0f %% of their heat limit, force lowered", 100 * heat);
   } else if (heat > 0) {
     ImGui::TextDisabled("motors %.0f %% of their heat limit", 100 * heat);
   }
   if (tick.fault != driver::Fault::kNone) {
-    ImGui::TextColored(vec(kForceColour), "%s", std::string(driver::describe(tick.fault)).c_str());
+    ImGui::TextColored(shown_colour(kForceColour), "%s",
+                       std::string(driver::describe(tick.fault)).c_str());
   }
+  ImGui::PopTextWrapPos();
 }
 
 void draw_head(const session::SharedReader& reader, TouchSource& source) {
@@ -95,26 +99,32 @@ void draw_recorded_head(TouchSource& source) {
 
 void draw_buttons(session::SharedReader& reader, ViewChoice& choice) {
   const bool paused = reader.pause_asked();
-  if (ImGui::Button(paused ? "Go on" : "Pause")) reader.ask_pause(!paused);
-  explain(reader.scene().wall_clock
+  Flow flow;
+  const auto button = [&](const char* label, const char* what) {
+    flow.next(ImGui::CalcTextSize(label).x + 2 * ImGui::GetStyle().FramePadding.x);
+    const bool pressed = ImGui::Button(label);
+    explain(what);
+    return pressed;
+  };
+  if (button(
+          paused ? "Go on" : "Pause",
+          reader.scene().wall_clock
               ? "Fades the force out; the arm's time goes on, and its ticks count as paused (space)"
-              : "Lets the simulated time stand still, or go on (space)");
-  ImGui::SameLine();
-  if (ImGui::Button(reader.counters().recording ? "Stop recording" : "Record")) {
+              : "Lets the simulated time stand still, or go on (space)")) {
+    reader.ask_pause(!paused);
+  }
+  if (button(reader.counters().recording ? "Stop recording" : "Record",
+             "Records every tick from now on, into the folder where the run was started (R)")) {
     toggle_record(reader);
   }
-  explain("Records every tick from now on, into the folder where the run was started (R)");
-  ImGui::SameLine();
-  if (ImGui::Button("Picture")) choice.screenshot = true;
-  explain("Writes a PNG of the scene (S)");
-  ImGui::SameLine();
-  if (ImGui::Button("?")) choice.help = !choice.help;
-  explain("Lists the keys (F1)");
+  if (button("Picture", "Writes a PNG of the scene (S)")) choice.screenshot = true;
+  if (button("?", "Lists the keys (F1)")) choice.help = !choice.help;
   choice.run.draw(reader);
   if (reader.counters().recording) {
-    ImGui::TextColored(vec(kForceColour), "recording");
-    ImGui::SameLine();
+    ImGui::PushTextWrapPos(0);
+    ImGui::TextColored(shown_colour(kForceColour), "recording");
     ImGui::TextDisabled("%s", reader.recording_path().c_str());
+    ImGui::PopTextWrapPos();
   }
 }
 
@@ -126,98 +136,153 @@ void draw_plots(TouchSource& source, PlotPanel& panel, float height) {
   if (const auto asked = panel.draw(source.plots(), time, height)) source.head().go(*asked);
 }
 
-void draw_knobs(session::SharedReader& reader) {
-  const auto& knobs = reader.scene().knobs;
-  if (knobs.empty()) {
-    ImGui::TextDisabled("This run has no knobs.");
-    return;
-  }
-  for (std::size_t i = 0; i < knobs.size(); ++i) {
-    const session::SharedScene::Knob& knob = knobs[i];
-    ImGui::PushID(static_cast<int>(i));
-    double value = reader.knob_wanted(i);
-    ImGui::TextUnformatted(knob.name.c_str());
-    const float reset = ImGui::CalcTextSize("reset").x + 2 * ImGui::GetStyle().FramePadding.x;
-    ImGui::SetNextItemWidth(-reset - ImGui::GetStyle().ItemSpacing.x);
-    if (knob_slider(knob, value)) reader.turn_knob(i, value);
-    ImGui::SameLine();
-    if (ImGui::Button("reset")) reader.turn_knob(i, knob.initial);
-    ImGui::PopID();
-  }
+void draw_looks(const DrawnScene& scene, ViewChoice& choice) {
+  PaintChoice& paint = choice.paint;
+  Flow flow;
+  const auto box = [&](const char* label, bool& on) {
+    const ImGuiStyle& style = ImGui::GetStyle();
+    flow.next(ImGui::GetFrameHeight() + style.ItemInnerSpacing.x + ImGui::CalcTextSize(label).x);
+    return ImGui::Checkbox(label, &on);
+  };
+  if (!scene.field.empty()) box("fields", paint.fields);
+  box("trail", paint.trail);
+  box("normal, friction", paint.marks.contact);
+  box("textures", paint.surfaces);
+  box("arm", paint.marks.arm);
+  box("shadows", paint.shadows);
+  box("grid", paint.grid);
+  bool edges = paint.edges == Edges::kOn;
+  if (box("edges", edges)) paint.edges = edges ? Edges::kOn : Edges::kOff;
+  box("edge planes", paint.marks.edge_planes);
+  bool gouraud = paint.shading == Shading::kGouraud;
+  if (box("Gouraud", gouraud)) paint.shading = gouraud ? Shading::kGouraud : Shading::kPhong;
+  box("fine", paint.fine);
+  bool dark = paint.theme == Theme::kDark;
+  if (box("dark", dark)) paint.theme = dark ? Theme::kDark : Theme::kLight;
+  box("mouse is hand", choice.mouse_is_hand);
 }
 
-void draw_looks(ViewChoice& choice) {
-  PaintChoice& paint = choice.paint;
-  bool gouraud = paint.shading == Shading::kGouraud;
-  if (ImGui::Checkbox("Gouraud", &gouraud)) {
-    paint.shading = gouraud ? Shading::kGouraud : Shading::kPhong;
+void draw_status(const session::SharedReader& reader, const ViewNotes& notes) {
+  const auto counters = reader.counters();
+  ImGui::PushTextWrapPos(0);
+  ImGui::TextDisabled("%s; %.0f pictures/s", counted(counters).c_str(),
+                      notes.frame_time > 0 ? 1 / notes.frame_time : 0.0);
+  ImGui::PopTextWrapPos();
+}
+
+/// What the panel holds below its head, in a child each that is scrolled where it must be.
+class Parts {
+ public:
+  Parts(TouchSource& source, ViewChoice& choice) : source_(source), choice_(choice) {}
+
+  void stacked(float height) {
+    const float looks = looks_height();
+    const float gaps = 4 * ImGui::GetStyle().ItemSpacing.y;
+    if (source_.reader() == nullptr) {  // a recording has no knobs
+      plots_in(height - looks - gaps);
+      ImGui::Separator();
+      draw_looks(source_.scene(), choice_);
+      return;
+    }
+    const float plots = std::max(kPlotLines * ImGui::GetFontSize(), 0.5F * (height - looks));
+    plots_in(plots);
+    ImGui::Separator();
+    child("knobs", std::max(height - plots - looks - gaps, kKnobLines * ImGui::GetFontSize()),
+          [&] { draw_knobs(*source_.reader()); });
+    ImGui::Separator();
+    draw_looks(source_.scene(), choice_);
   }
-  ImGui::SameLine();
-  bool edges = paint.edges == Edges::kOn;
-  if (ImGui::Checkbox("edges", &edges)) paint.edges = edges ? Edges::kOn : Edges::kOff;
-  ImGui::SameLine();
-  ImGui::Checkbox("edge planes", &paint.marks.edge_planes);
-  ImGui::SameLine();
-  ImGui::Checkbox("fine", &paint.fine);
-  ImGui::Checkbox("arm", &paint.marks.arm);
-  ImGui::SameLine();
-  ImGui::Checkbox("shadows", &paint.shadows);
-  ImGui::SameLine();
-  ImGui::Checkbox("grid", &paint.grid);
-  ImGui::SameLine();
-  ImGui::Checkbox("mouse is hand", &choice.mouse_is_hand);
+
+  void tabbed(float height) {
+    if (!ImGui::BeginTabBar("parts")) return;
+    const float rest = height - ImGui::GetFrameHeightWithSpacing();
+    const auto tab = [&](const char* name, auto content) {
+      if (!ImGui::BeginTabItem(name)) return;
+      child(name, std::max(rest, 2 * ImGui::GetFontSize()), content);
+      ImGui::EndTabItem();
+    };
+    tab("Plots", [&] { plots_in(std::max(rest, kPlotLinesLeast * ImGui::GetFontSize())); });
+    if (source_.reader() != nullptr) tab("Knobs", [&] { draw_knobs(*source_.reader()); });
+    tab("Show", [&] { draw_looks(source_.scene(), choice_); });
+    ImGui::EndTabBar();
+  }
+
+  /// Returns whether all parts have room below each other.
+  bool fit(float height) const {
+    return height > (kPlotLines + kKnobLines) * ImGui::GetFontSize() + looks_height() +
+                        4 * ImGui::GetStyle().ItemSpacing.y;
+  }
+
+ private:
+  // In lines of text: four plots that can be read, two knobs. Chosen by looking.
+  static constexpr float kPlotLines = 15;
+  static constexpr float kPlotLinesLeast = 11;  // where they are alone
+  static constexpr float kKnobLines = 7;
+
+  void plots_in(float height) { draw_plots(source_, choice_.plots, height); }
+  template <class Content>
+  static void child(const char* name, float height, Content content) {
+    ImGui::BeginChild(name, {0, height});
+    content();
+    ImGui::EndChild();
+  }
+  /// Returns how high the switches are, about: 75 characters and 13 boxes, line by line.
+  static float looks_height() {
+    const ImGuiStyle& style = ImGui::GetStyle();
+    const float all =
+        44 * ImGui::GetFontSize() +
+        13 * (ImGui::GetFrameHeight() + style.ItemInnerSpacing.x + style.ItemSpacing.x);
+    const float lines = std::ceil(1.12F * all / std::max(1.0F, ImGui::GetContentRegionAvail().x));
+    return lines * ImGui::GetFrameHeightWithSpacing();
+  }
+
+  TouchSource& source_;
+  ViewChoice& choice_;
+};
+
+void draw_parts(TouchSource& source, ViewChoice& choice) {
+  const float height =
+      ImGui::GetContentRegionAvail().y - 2.2F * ImGui::GetTextLineHeightWithSpacing();
+  Parts parts(source, choice);
+  if (parts.fit(height)) {
+    parts.stacked(height);
+  } else {
+    parts.tabbed(height);
+  }
 }
 
 }  // namespace
+
+float panel_width(float window_width, float scale) {
+  constexpr float kWidth = 380;  // chosen: four switches beside each other
+  return std::min(kWidth * scale, 0.5F * window_width);
+}
 
 void draw_side_panel(const ScreenPart& part, TouchSource& source, const ViewNotes& notes,
                      ViewChoice& choice) {
   session::SharedReader* const reader = source.reader();
   ImGui::SetNextWindowPos({part.x, part.y});
   ImGui::SetNextWindowSize({part.width, part.height});
+  // Scrolled where even tabs have no room.
   ImGui::Begin("panel", nullptr,
-               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
+               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize |
+                   ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus);
-  const float plots = std::max(0.48F * part.height, 19 * ImGui::GetFontSize());
   if (reader != nullptr) {
     draw_head(*reader, source);
     draw_buttons(*reader, choice);
-    draw_plots(source, choice.plots, plots);
-    ImGui::Separator();
-    const float rest = ImGui::GetContentRegionAvail().y - 3.4F * ImGui::GetFrameHeightWithSpacing();
-    ImGui::BeginChild("knobs", {0, std::max(rest, 3 * ImGui::GetFontSize())});
-    draw_knobs(*reader);
-    ImGui::EndChild();
-    ImGui::Separator();
-    draw_looks(choice);
-    const auto counters = reader->counters();
-    ImGui::TextDisabled("%s; %.0f pictures/s", counted(counters).c_str(),
-                        notes.frame_time > 0 ? 1 / notes.frame_time : 0.0);
+    draw_parts(source, choice);
+    draw_status(*reader, notes);
   } else if (source.has_scene()) {
     draw_recorded_head(source);
     if (ImGui::Button("Picture")) choice.screenshot = true;
     ImGui::SameLine();
     if (ImGui::Button("?")) choice.help = !choice.help;
-    const float rest = ImGui::GetContentRegionAvail().y - 2.4F * ImGui::GetFrameHeightWithSpacing();
-    draw_plots(source, choice.plots, std::max(rest, 0.5F * plots));
-    ImGui::Separator();
-    draw_looks(choice);
+    draw_parts(source, choice);
   } else {
     ImGui::TextDisabled("No run to show.");
   }
   ImGui::End();
-}
-
-bool knob_slider(const session::SharedScene::Knob& knob, double& value) {
-  // What reaches over more than two powers of ten is turned by its logarithm. There ImGui takes for
-  // zero what is below a unit of the format's last digit: so it has digits enough for the least.
-  const bool wide = knob.least > 0 && knob.most > 100 * knob.least;
-  const int digits =
-      wide ? std::max(4, static_cast<int>(std::ceil(1 - std::log10(knob.least)))) : 4;
-  const std::string format = "%." + std::to_string(digits) + "g " + knob.unit;
-  return ImGui::SliderScalar(
-      "##value", ImGuiDataType_Double, &value, &knob.least, &knob.most, format.c_str(),
-      ImGuiSliderFlags_AlwaysClamp | (wide ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None));
 }
 
 void draw_notices(const ScreenPart& part, const ViewNotes& notes, const ViewChoice& choice) {
@@ -233,7 +298,7 @@ void draw_notices(const ScreenPart& part, const ViewNotes& notes, const ViewChoi
   if (!notes.notice.empty()) {
     box("notice", middle, part.y + margin, 0);
     ImGui::PushTextWrapPos(0.9F * part.width);
-    ImGui::TextColored(vec(kForceColour), "%s", notes.notice.c_str());
+    ImGui::TextColored(shown_colour(kForceColour), "%s", notes.notice.c_str());
     ImGui::PopTextWrapPos();
     ImGui::End();
   }
@@ -245,12 +310,12 @@ void draw_notices(const ScreenPart& part, const ViewNotes& notes, const ViewChoi
   if (choice.help) {
     box("help", middle, part.y + part.height / 2, 0.5F);
     for (const Key& key : kKeys) {
-      ImGui::TextColored(vec(kDepthColour), "%s", key.key);
+      ImGui::TextColored(shown_colour(kDepthColour), "%s", key.key);
       ImGui::SameLine(10 * ImGui::GetFontSize());
       ImGui::TextUnformatted(key.does);
     }
     for (const RunKey& key : kRunKeys) {
-      ImGui::TextColored(vec(kDepthColour), "%s", key.key);
+      ImGui::TextColored(shown_colour(kDepthColour), "%s", key.key);
       ImGui::SameLine(10 * ImGui::GetFontSize());
       ImGui::TextUnformatted(key.does);
     }

@@ -31,13 +31,13 @@ struct ViewNotes {
   bool closing_ends = false;  ///< Whether the run ends with this window.
 };
 
-/// Draws the slider of a knob within its bounds; returns whether the user turned it to another
-/// `value`. As below.
-bool knob_slider(const session::SharedScene::Knob& knob, double& value);
+/// Returns how wide the panel is in a window, pixels: 380 at scale 1, at most half.
+float panel_width(float window_width, float scale);
 
-/// Draws the panel at the window's side: how the run is, force, depth and times over time, and the
-/// knobs; of a recording what it is. A click into a plot moves the head of `source`. To be called
-/// between ImGui's NewFrame and Render. Real-time: never from the servo thread.
+/// Draws the panel at the window's side: how the run is, force, depth and times over time, the
+/// knobs, and what is drawn; of a recording what it is. Where they have no room below each other
+/// they are tabs. A click into a plot moves the head of `source`. To be called between ImGui's
+/// NewFrame and Render. Real-time: never from the servo thread.
 void draw_side_panel(const ScreenPart& part, TouchSource& source, const ViewNotes& notes,
                      ViewChoice& choice);
 

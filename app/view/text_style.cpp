@@ -18,19 +18,29 @@ ImU32 packed(const Colour& colour, float cover = 1) {
   return ImGui::ColorConvertFloat4ToU32({colour[0], colour[1], colour[2], cover});
 }
 
-void write_rimmed(ImDrawList& list, const ImVec2& at, const Colour& colour, const char* text) {
-  const float rim = std::max(1.0F, ImGui::GetFontSize() / 11);
-  for (int k = 0; k < 8; ++k) {
-    const float turn = static_cast<float>(k) * 0.785398F;
-    list.AddText({at.x + rim * std::cos(turn), at.y + rim * std::sin(turn)},
-                 packed(kSkyColour, 0.8F), text);
-  }
-  list.AddText(at, packed(colour), text);
+ImVec4 vec(const Colour& colour, float cover = 1) {
+  return {colour[0], colour[1], colour[2], cover};
+}
+
+Colour mix(const Colour& a, const Colour& b, float share) {
+  return {a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1]), a[2] + share * (b[2] - a[2])};
 }
 
 }  // namespace
 
-void set_text_style(float scale) {
+void write_rimmed(const ScreenPlace& at, Theme theme, const Colour& colour,
+                  const std::string& text) {
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  const float rim = std::max(1.0F, ImGui::GetFontSize() / 11);
+  for (int k = 0; k < 8; ++k) {
+    const float turn = static_cast<float>(k) * 0.785398F;
+    list.AddText({at.x + rim * std::cos(turn), at.y + rim * std::sin(turn)},
+                 packed(colours_of(theme).sky, 0.8F), text.c_str());
+  }
+  list.AddText({at.x, at.y}, packed(colour), text.c_str());
+}
+
+void set_text_style(float scale, Theme theme) {
   ImGuiIO& io = ImGui::GetIO();
   io.IniFilename = nullptr;  // leaves no files about
   const float size = std::round(kFontSize * scale);
@@ -43,7 +53,12 @@ void set_text_style(float scale) {
     io.Fonts->AddFontDefault(&plain);
   }
   ImGuiStyle style;
-  ImGui::StyleColorsLight(&style);
+  const ThemeColours colours = colours_of(theme);
+  if (theme == Theme::kDark) {
+    ImGui::StyleColorsDark(&style);
+  } else {
+    ImGui::StyleColorsLight(&style);
+  }
   style.WindowRounding = 0;
   style.WindowBorderSize = 0;
   style.FrameRounding = 4;
@@ -51,22 +66,33 @@ void set_text_style(float scale) {
   style.WindowPadding = {14, 14};
   style.ItemSpacing = {8, 7};
   style.FramePadding = {8, 4};
-  style.Colors[ImGuiCol_WindowBg] = {0.969F, 0.976F, 0.984F, 1};
-  style.Colors[ImGuiCol_Text] = {kTextColour[0], kTextColour[1], kTextColour[2], 1};
-  style.Colors[ImGuiCol_TextDisabled] = {kQuietTextColour[0], kQuietTextColour[1],
-                                         kQuietTextColour[2], 1};
-  style.Colors[ImGuiCol_FrameBg] = {0.89F, 0.91F, 0.93F, 1};
-  style.Colors[ImGuiCol_FrameBgHovered] = {0.84F, 0.88F, 0.92F, 1};
-  style.Colors[ImGuiCol_Button] = {0.85F, 0.89F, 0.93F, 1};
-  style.Colors[ImGuiCol_ButtonHovered] = {0.74F, 0.83F, 0.91F, 1};
-  style.Colors[ImGuiCol_SliderGrab] = {kDepthColour[0], kDepthColour[1], kDepthColour[2], 0.85F};
-  style.Colors[ImGuiCol_SliderGrabActive] = {kDepthColour[0], kDepthColour[1], kDepthColour[2], 1};
+  // Steps from the window's background towards the text, tinted with the blue of what can be moved.
+  const Colour window = mix(colours.sky, colours.ground, 0.2F);
+  const auto towards = [&](float text, float blue) {
+    return vec(mix(mix(window, colours.text, text), kDepthColour, blue));
+  };
+  style.Colors[ImGuiCol_WindowBg] = vec(window);
+  style.Colors[ImGuiCol_PopupBg] = vec(colours.sky);
+  style.Colors[ImGuiCol_Text] = vec(colours.text);
+  style.Colors[ImGuiCol_TextDisabled] = vec(colours.quiet_text);
+  style.Colors[ImGuiCol_FrameBg] = towards(0.09F, 0);
+  style.Colors[ImGuiCol_FrameBgHovered] = towards(0.11F, 0.06F);
+  style.Colors[ImGuiCol_FrameBgActive] = towards(0.12F, 0.12F);
+  style.Colors[ImGuiCol_Button] = towards(0.1F, 0.05F);
+  style.Colors[ImGuiCol_ButtonHovered] = towards(0.1F, 0.2F);
+  style.Colors[ImGuiCol_ButtonActive] = towards(0.1F, 0.35F);
+  style.Colors[ImGuiCol_Tab] = style.Colors[ImGuiCol_Button];
+  style.Colors[ImGuiCol_TabHovered] = style.Colors[ImGuiCol_ButtonHovered];
+  style.Colors[ImGuiCol_TabActive] = style.Colors[ImGuiCol_ButtonActive];
+  style.Colors[ImGuiCol_CheckMark] = vec(text_colour(kDepthColour, theme));
+  style.Colors[ImGuiCol_SliderGrab] = vec(kDepthColour, 0.85F);
+  style.Colors[ImGuiCol_SliderGrabActive] = vec(kDepthColour);
   style.ScaleAllSizes(scale);
   ImGui::GetStyle() = style;
 }
 
-void write_labels(const std::vector<Label>& labels, const Camera& camera, const ScreenPart& part) {
-  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+void write_labels(const std::vector<Label>& labels, const Camera& camera, Theme theme,
+                  const ScreenPart& part) {
   const float margin = 0.5F * ImGui::GetFontSize();
   for (const Label& label : labels) {
     if ((label.p_W - camera.p_WEye()).dot(camera.towards_eye()) >= 0) continue;
@@ -79,16 +105,15 @@ void write_labels(const std::vector<Label>& labels, const Camera& camera, const 
                                margin, part.width - size.x - margin);
     const float y = std::clamp(at.y() + away.y() * (0.5F * size.y + margin) - 0.5F * size.y, margin,
                                part.height - size.y - margin);
-    write_rimmed(list, {std::round(part.x + x), std::round(part.y + y)}, label.colour,
-                 label.text.c_str());
+    write_rimmed({std::round(part.x + x), std::round(part.y + y)}, theme,
+                 text_colour(label.colour, theme), label.text);
   }
 }
 
-void write_caption(const std::string& text, const ScreenPart& part) {
+void write_caption(const std::string& text, Theme theme, const ScreenPart& part) {
   const float margin = 0.7F * ImGui::GetFontSize();
-  write_rimmed(*ImGui::GetBackgroundDrawList(),
-               {part.x + margin, part.y + part.height - margin - ImGui::GetFontSize()},
-               kQuietTextColour, text.c_str());
+  write_rimmed({part.x + margin, part.y + part.height - margin - ImGui::GetFontSize()}, theme,
+               colours_of(theme).quiet_text, text);
 }
 
 void fill_part(const ScreenPart& part, const Colour& colour) {
@@ -96,9 +121,9 @@ void fill_part(const ScreenPart& part, const Colour& colour) {
       {part.x, part.y}, {part.x + part.width, part.y + part.height}, packed(colour));
 }
 
-PictureText::PictureText(float scale) : context_(ImGui::CreateContext()) {
+PictureText::PictureText(float scale, Theme theme) : context_(ImGui::CreateContext()) {
   ImGui::SetCurrentContext(context_);
-  set_text_style(scale);
+  set_text_style(scale, theme);
   ImGui_ImplOpenGL3_Init("#version 330 core");
 }
 

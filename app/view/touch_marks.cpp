@@ -10,7 +10,8 @@
 namespace thimble::app::view {
 namespace {
 
-constexpr double kThinnest = 0.05;  // N: less than this no hand feels in the arm's own friction
+constexpr double kThinnest = 0.05;    // N: less than this no hand feels in the arm's own friction
+constexpr double kLeastAlong = 0.02;  // N RMS: less is not felt [PHYSICS 6]
 
 using Point = Eigen::Vector3d;
 
@@ -83,6 +84,28 @@ void add_force(const DrawnScene& scene, const OneArm& moment, double thick, Touc
   marks.solids.push_back(rod(from, neck, thick, kForceColour));
   marks.solids.push_back(cone(neck, tip, 2.4 * thick, kForceColour));
   marks.labels.push_back({tip, along, fmt::format("{:.2f} N", size), kForceColour});
+}
+
+// The normal as a thin arrow of one length, and what of the force lies along the surface (friction,
+// textures) as one of the force's scale.
+void add_contact(const DrawnScene& scene, const OneArm& moment, double thick, TouchMarks& marks) {
+  const Point n = point(moment.tick.n_W);
+  const Point from = touched_point(moment);
+  if (!moment.tick.in_contact || !from.allFinite() || !(std::abs(n.norm() - 1) < 1e-3)) return;
+  const auto arrow = [&](const Point& to, double radius, const Colour& colour) {
+    const Point neck =
+        to - std::min(5 * radius, 0.6 * (to - from).norm()) * (to - from).normalized();
+    marks.solids.push_back(rod(from, neck, radius, colour));
+    marks.solids.push_back(cone(neck, to, 2.4 * radius, colour));
+  };
+  arrow(from + 0.2 * size_of(scene) * n, 0.5 * thick, kNormalColour);
+  const Point force = point(moment.tick.f_sent_W);
+  const Point along = force - force.dot(n) * n;
+  const double size = along.norm();
+  if (!(size > kLeastAlong)) return;  // NaN: no arrow
+  const Point tip = from + std::max(arrow_length(size, scene), 6 * thick) / size * along;
+  arrow(tip, 0.8 * thick, kFrictionColour);
+  marks.labels.push_back({tip, along / size, fmt::format("{:.2f} N", size), kFrictionColour});
 }
 
 void add_tip(const OneArm& moment, double thick, TouchMarks& marks) {
@@ -176,6 +199,7 @@ TouchMarks mark_touch(const DrawnScene& scene, const DrawnMoment& moment, double
     if (choice.arm) add_arm(arm, marks);
     if (choice.arm) add_stylus(arm, marks);
     if (choice.force) add_force(scene, arm, thick, marks);
+    if (choice.contact) add_contact(scene, arm, thick, marks);
     if (choice.tip) add_tip(arm, thick, marks);
     const Point tip = point(arm.tick.p_WT);
     if (choice.tip && !name.empty() && tip.allFinite()) {

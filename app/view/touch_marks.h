@@ -42,6 +42,7 @@ struct MarkChoice {
   bool arm = true;
   bool tip = true;
   bool force = true;
+  bool contact = false;      ///< The normal at the touch, and the force along the surface.
   bool edge_planes = false;  ///< The active triangle, and the planes that bound its touch.
 };
 

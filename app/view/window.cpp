@@ -21,6 +21,7 @@
 #include "view/felt/touch_thread.h"
 #include "view/gl/picture_file.h"
 #include "view/hand/hand_panel.h"
+#include "view/marks/legend.h"
 #include "view/run_follower.h"
 #include "view/scene_mouse.h"
 #include "view/screen.h"
@@ -31,7 +32,6 @@
 namespace thimble::app::view {
 namespace {
 
-constexpr float kPanelWidth = 380;   // pixels at scale 1
 constexpr double kFrame = 1.0 / 60;  // s
 constexpr double kMessageSeconds = 4;
 
@@ -58,6 +58,8 @@ class Content {
  public:
   Content(Screen& screen, TouchSource& source, const WindowChoice& choice)
       : screen_(screen), source_(source), felt_(choice.felt) {
+    screen_.set_scale(choice.ui_scale);
+    choice_.paint.theme = choice.theme;
     choice_.paint.fine = !software_draws();
     hand_.input().choose(choice.hand);
     if (!felt_.trouble().empty()) {
@@ -164,8 +166,10 @@ void Content::draw_scene(const ScreenPart& part, int below, float ratio) {
   if (source_.reader() != nullptr && source_.reader()->scene().hand_by_mouse) lead_hand(part);
   const auto labels = painter_->paint(moment, camera_, choice_.paint, *canvas_);
   canvas_->show(0, below);
-  write_labels(labels, camera_, part);
-  write_caption(choice_.paint.grid ? "grid 10 mm; F1: help" : "F1: help", part);
+  const Theme theme = choice_.paint.theme;
+  write_labels(labels, camera_, theme, part);
+  write_legend(legend_of(source_.scene(), moment, choice_.paint), theme, part);
+  write_caption(choice_.paint.grid ? "grid 10 mm; F1: help" : "F1: help", theme, part);
   if (choice_.screenshot) take_picture();
   choice_.screenshot = false;
 }
@@ -198,18 +202,19 @@ driver::Result<void> Content::draw(double frame_time) {
     if (reader != nullptr) begin_run(*reader, again);
     glfwSetWindowTitle(screen_.window(), ("Thimble: " + source_.scene().name).c_str());
   }
-  screen_.begin();
+  screen_.begin(choice_.paint.theme);
   int pixels_x = 0;
   int pixels_y = 0;
   glfwGetFramebufferSize(screen_.window(), &pixels_x, &pixels_y);
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   const float ratio = size.x > 0 ? static_cast<float>(pixels_x) / size.x : 1;
-  const float panel = std::min(kPanelWidth * screen_.scale(), 0.5F * size.x);
+  const float panel = panel_width(size.x, screen_.scale());
   const float line = painter_ != nullptr ? TimeLine::height(size.x - panel) : 0;
   const ScreenPart scene{0, 0, size.x - panel, size.y - line};
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
   glViewport(0, 0, pixels_x, pixels_y);
-  glClearColor(kGroundColour[0], kGroundColour[1], kGroundColour[2], 1);
+  const Colour ground = colours_of(choice_.paint.theme).ground;
+  glClearColor(ground[0], ground[1], ground[2], 1);
   glClear(GL_COLOR_BUFFER_BIT);
   keys_ = screen_.take_keys();
   frame_time_ = frame_time;

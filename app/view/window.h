@@ -5,6 +5,7 @@
 #include "share/run_attachment.h"
 #include "thimble/driver/result.h"
 #include "view/felt/touch_thread.h"
+#include "view/gl/palette.h"
 #include "view/hand/hand_input.h"
 #include "view/time/recording_view.h"
 
@@ -14,6 +15,8 @@ namespace thimble::app::view {
 struct WindowChoice {
   HandSource hand = HandSource::kMouse;  ///< Leads the simulated hand, where a run lets a viewer.
   FeltChoice felt;
+  double ui_scale = 0;  ///< Of text and panel; 0: the monitor's.
+  Theme theme = Theme::kLight;
   double seconds = 0;        ///< Closes after so long; 0: when the user closes it.
   std::string last_picture;  ///< PNG of the whole window, written before it closes so; empty: none.
   double at = -1;  ///< Of a recording: second at which it stands still at first; below 0: it plays.

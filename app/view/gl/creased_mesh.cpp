@@ -61,6 +61,11 @@ std::uint32_t corner_at(const render::TriangleMesh& mesh, std::uint32_t triangle
   return 3 * triangle + (c[0] == vertex ? 0U : c[1] == vertex ? 1U : 2U);
 }
 
+/// Returns whether a triangle goes along a side from the lower vertex to the higher.
+bool begins_low(const render::TriangleMesh& mesh, const Side& side) {
+  return mesh.triangles[side.triangle][side.corner] == side.low;
+}
+
 }  // namespace
 
 CreasedMesh crease(const render::TriangleMesh& mesh, double crease_angle, NormalWeights weights) {
@@ -76,12 +81,14 @@ CreasedMesh crease(const render::TriangleMesh& mesh, double crease_angle, Normal
   const std::vector<Side> sides = sides_of(mesh);
   Groups groups(3 * triangles);
   std::vector<const Side*> edges;
+  bool closed = triangles > 0;
   const double smooth = std::cos(crease_angle);
   for (std::size_t i = 0; i < sides.size();) {
     std::size_t end = i + 1;
     while (end < sides.size() && sides[end].low == sides[i].low && sides[end].high == sides[i].high)
       ++end;
     edges.push_back(&sides[i]);
+    closed = closed && end - i == 2 && begins_low(mesh, sides[i]) != begins_low(mesh, sides[i + 1]);
     // Where more than two meet there is no telling which belong together.
     if (end - i == 2) {
       const std::uint32_t a = sides[i].triangle;
@@ -95,6 +102,9 @@ CreasedMesh crease(const render::TriangleMesh& mesh, double crease_angle, Normal
   }
 
   CreasedMesh result;
+  double volume = 0;
+  for (std::size_t t = 0; t < triangles; ++t) volume += at(t, 0).dot(at(t, 1).cross(at(t, 2)));
+  result.closed = closed && volume > 0;
   constexpr std::uint32_t kNone = ~0U;
   std::vector<std::uint32_t> number(3 * triangles, kNone);
   std::vector<Eigen::Vector3d> sums;

@@ -22,6 +22,7 @@ struct CreasedMesh {
   std::vector<Eigen::Vector3f> normals;                 ///< Unit.
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< In the mesh's order.
   std::vector<std::array<std::uint32_t, 2>> edges;      ///< Each of the mesh's edges once.
+  bool closed = false;  ///< Each edge has two triangles that turn alike, outside is outside.
 };
 
 /// Splits a mesh at its creases: where the normals of two polygons differ by more than

@@ -18,11 +18,37 @@ inline constexpr Colour kTriangleColour = colour_of(0xF0E442);   // yellow: the 
 inline constexpr Colour kEdgePlaneColour = colour_of(0x009E73);  // bluish green: its edge planes
 inline constexpr Colour kArmColour = colour_of(0x8A94A0);        // slate
 inline constexpr Colour kJointColour = colour_of(0x4A525C);
-inline constexpr Colour kSkyColour = colour_of(0xFBFCFD);     // background above ...
-inline constexpr Colour kGroundColour = colour_of(0xE4E8EC);  // ... and below, and the ground
+inline constexpr Colour kNormalColour = colour_of(0x009E73);    // bluish green: of the touch
+inline constexpr Colour kFrictionColour = colour_of(0xCC79A7);  // reddish purple
+inline constexpr Colour kSkyColour = colour_of(0xFBFCFD);       // background above ...
+inline constexpr Colour kGroundColour = colour_of(0xE4E8EC);    // ... and below, and the ground
 inline constexpr Colour kGridColour = colour_of(0x9AA5B1);
 inline constexpr Colour kTextColour = colour_of(0x1F2933);
 inline constexpr Colour kQuietTextColour = colour_of(0x616E7C);
 inline constexpr Colour kDepthColour = colour_of(0x0072B2);  // blue, in plots
+
+/// Says what is behind everything: paper, or night.
+enum class Theme { kLight, kDark };
+
+/// What differs between the themes.
+struct ThemeColours {
+  Colour sky, ground, grid, text, quiet_text;
+};
+
+/// Returns the colours of a theme. In the dark one text keeps a contrast of 7 to 1 and quiet text
+/// of 4.5 to 1 to both backgrounds [WCAG 2.1, 1.4.6 and 1.4.3], as in the light one.
+constexpr ThemeColours colours_of(Theme theme) {
+  if (theme == Theme::kDark) {
+    return {colour_of(0x161B21), colour_of(0x262D35), colour_of(0x55616E), colour_of(0xE8ECF0),
+            colour_of(0xA3AFBB)};
+  }
+  return {kSkyColour, kGroundColour, kGridColour, kTextColour, kQuietTextColour};
+}
+
+/// Returns a colour as text is written in it: on the dark theme half way to white.
+constexpr Colour text_colour(const Colour& colour, Theme theme) {
+  if (theme == Theme::kLight) return colour;
+  return {0.5F + 0.5F * colour[0], 0.5F + 0.5F * colour[1], 0.5F + 0.5F * colour[2]};
+}
 
 }  // namespace thimble::app::view

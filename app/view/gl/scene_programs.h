@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 #include "view/gl/gl_objects.h"
 
 namespace thimble::app::view {
@@ -7,10 +9,15 @@ namespace thimble::app::view {
 /// The programs that a scene is drawn with. Precondition of all: the context they were made in is
 /// current.
 struct ScenePrograms {
-  GlProgram surface, dent, shadow, plain, backdrop, ground;
+  GlProgram surface, dent;                  // shaded in every pixel
+  GlProgram surface_gouraud, dent_gouraud;  // shaded in every corner
+  GlProgram surface_marked, dent_marked;    // as the first, with marks
+  GlProgram shadow, plain, coloured, backdrop, ground, ground_marked;
 
   /// Makes them out of the shaders. Fails as GlProgram::make does.
   static driver::Result<ScenePrograms> make();
+  /// Lists all of them.
+  std::array<const GlProgram*, 12> all() const;
 };
 
 }  // namespace thimble::app::view

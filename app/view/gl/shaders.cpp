@@ -16,6 +16,35 @@ layout(std140) uniform View {
 };
 )";
 
+// What follows is left out of a program that does not need it: software runs both sides of an `if`
+// [Mesa, gallivm: a condition masks lanes and does not jump], but leaves a loop when no lane is in
+// it.
+std::string choice(Shading shading) {
+  return shading == Shading::kGouraud  ? "#define GOURAUD\n"
+         : shading == Shading::kMarked ? "#define MARKED\n"
+                                       : "";
+}
+
+// Dots on what has a texture, lines on what has friction, in the object's own frame so that they
+// move with it; 2 and 3 mm apart, so that a few are seen on what a hand strokes.
+const std::string kMarks = R"(
+uniform int marks;  // 1: dots, 2: lines, 3: both
+float unmarked(vec3 p) {
+  // Turned, so that no face of a box lies along the lattice: what cuts it sees dots of all sizes.
+  const mat3 turn = mat3(0.36, 0.48, -0.8, -0.8, 0.6, 0.0, 0.48, 0.64, 0.6);
+  vec3 q = turn * p / 0.002;
+  float away = length(fract(q) - 0.5);
+  float soft = clamp(length(fwidth(q)), 0.01, 1.0);
+  float dots = (1.0 - smoothstep(0.26, 0.26 + soft, away)) * (1.0 - smoothstep(0.4, 1.0, soft));
+  float s = dot(p, vec3(0.57, 0.71, 0.41)) / 0.003;
+  float wide = clamp(fwidth(s), 0.005, 1.0);
+  float lines = (1.0 - smoothstep(0.05, 0.05 + wide, abs(fract(s) - 0.5))) *
+                (1.0 - smoothstep(0.3, 0.8, wide));
+  float cover = max(0.34 * float(marks & 1) * dots, 0.22 * float(marks >> 1) * lines);
+  return 1.0 - cover;
+}
+)";
+
 // Light from a window to the left (the key), from a pale wall to the right (the fill), from the sky
 // above and from the table below.
 const std::string kLight = R"(
@@ -43,24 +72,36 @@ void light(vec3 n_any, vec3 p, out vec3 around, out vec3 direct) {
 const std::string kShadow = R"(
 uniform sampler2DShadow shadow_map;
 uniform float shadow_strength;
-uniform int shadow_samples;   // along a side
+uniform int shadow_samples;   // along a side; >= 2
+float open_at(vec3 at, vec2 by) { return textureLod(shadow_map, vec3(at.xy + by, at.z), 0.0); }
 float lit(vec3 p) {
-  if (shadow_strength <= 0.0) return 1.0;
   vec3 at = (shadow_from_world * vec4(p, 1.0)).xyz * 0.5 + 0.5;
-  if (any(lessThan(at, vec3(0.0))) || any(greaterThan(at, vec3(1.0)))) return 1.0;
-  // Of a square of samples, each the mean of four already.
-  vec2 texel = 6.4 / float(shadow_samples) / vec2(textureSize(shadow_map, 0));
-  float middle = 0.5 * float(shadow_samples - 1);
-  float sum = 0.0;
-  for (int i = 0; i < shadow_samples; ++i) {
-    for (int j = 0; j < shadow_samples; ++j) {
-      sum += texture(shadow_map, vec3(at.xy + (vec2(i, j) - middle) * texel, at.z));
-    }
-  }
-  sum /= float(shadow_samples * shadow_samples);
   // Towards the rim of what the light's map holds, shadows fade: beyond nothing is known.
   float rim = 2.0 * max(abs(at.x - 0.5), abs(at.y - 0.5));
-  return mix(1.0, sum, shadow_strength * (1.0 - smoothstep(0.8, 0.98, rim)));
+  float strength = max(rim, 2.0 * abs(at.z - 0.5)) > 1.0 ? 0.0 : shadow_strength;
+  // Of a square of samples, each the mean of four already. Where its corners and its middle agree,
+  // the rest would as well: most of a picture is that.
+  int side = strength > 0.0 ? shadow_samples : 0;
+  float middle = 0.5 * float(shadow_samples - 1);
+  vec2 texel = 6.4 / float(shadow_samples) / vec2(textureSize(shadow_map, 0));
+  float open = 1.0;
+  for (int once = 0; once < min(side, 1); ++once) {
+    vec2 c = middle * texel;
+    float corners = open_at(at, c) + open_at(at, -c) + open_at(at, vec2(c.x, -c.y)) +
+                    open_at(at, vec2(-c.x, c.y));
+    float all = corners + open_at(at, vec2(0.0));
+    open = 0.25 * corners;
+    bool mixed = all > 0.001 && all < 4.999 && side > 2;
+    float sum = corners;
+    int rows = mixed ? side : 0;
+    for (int i = 0; i < rows; ++i) {
+      // The corners are known: their rows begin and end one further in.
+      int in_by = i == 0 || i == side - 1 ? 1 : 0;
+      for (int j = in_by; j < side - in_by; ++j) sum += open_at(at, (vec2(i, j) - middle) * texel);
+    }
+    open = mixed ? sum / float(side * side) : open;
+  }
+  return mix(1.0, open, strength * (1.0 - smoothstep(0.8, 0.98, rim)));
 }
 )";
 
@@ -71,30 +112,37 @@ vec3 to_screen(vec3 linear) { return sqrt(clamp(linear, 0.0, 1.0)); }
 
 }  // namespace
 
-std::string surface_vertex() {
-  return kHead + kLight + R"(
+std::string surface_vertex(Shading shading) {
+  return kHead + choice(shading) + kLight + R"(
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 uniform mat4 model;
 uniform mat3 normal_matrix;
-uniform int gouraud;
 out vec3 p_W;
 out vec3 n_W;
+#ifdef GOURAUD
 out vec3 around_v;
 out vec3 direct_v;
+#endif
+#ifdef MARKED
+out vec3 p_B;
+#endif
 void main() {
+#ifdef MARKED
+  p_B = position;
+#endif
   p_W = (model * vec4(position, 1.0)).xyz;
   n_W = normal_matrix * normal;
-  around_v = vec3(0.0);
-  direct_v = vec3(0.0);
-  if (gouraud != 0) light(n_W, p_W, around_v, direct_v);
+#ifdef GOURAUD
+  light(n_W, p_W, around_v, direct_v);
+#endif
   gl_Position = view_projection * vec4(p_W, 1.0);
 }
 )";
 }
 
-std::string dent_vertex() {
-  return kHead + kLight + R"(
+std::string dent_vertex(Shading shading) {
+  return kHead + choice(shading) + kLight + R"(
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec3 weights;
@@ -106,9 +154,9 @@ layout(location = 7) in vec3 p_c;
 layout(location = 8) in vec3 n_c;
 uniform mat4 model;
 uniform mat3 normal_matrix;
-uniform int gouraud;
 out vec3 p_W;
 out vec3 n_W;
+#ifdef GOURAUD
 out vec3 around_v;
 out vec3 direct_v;
 void add(float share, vec3 n, vec3 p, inout vec3 around, inout vec3 direct) {
@@ -117,39 +165,57 @@ void add(float share, vec3 n, vec3 p, inout vec3 around, inout vec3 direct) {
   around += share * one_around;
   direct += share * one_direct;
 }
+#endif
+#ifdef MARKED
+out vec3 p_B;
+#endif
 void main() {
+#ifdef MARKED
+  p_B = position;
+#endif
   p_W = (model * vec4(position, 1.0)).xyz;
   n_W = normal_matrix * normal;
+#ifdef GOURAUD
   around_v = vec3(0.0);
   direct_v = vec3(0.0);
-  if (gouraud != 0) {
-    // The shade that the whole triangle had here, and what the bending changed.
-    add(weights.x, n_a, p_a, around_v, direct_v);
-    add(weights.y, n_b, p_b, around_v, direct_v);
-    add(weights.z, n_c, p_c, around_v, direct_v);
-    vec3 n_rest = weights.x * n_a + weights.y * n_b + weights.z * n_c;
-    vec3 p_rest = weights.x * p_a + weights.y * p_b + weights.z * p_c;
-    add(-1.0, n_rest, p_rest, around_v, direct_v);
-    add(1.0, normal, position, around_v, direct_v);
-  }
+  // The shade that the whole triangle had here, and what the bending changed.
+  add(weights.x, n_a, p_a, around_v, direct_v);
+  add(weights.y, n_b, p_b, around_v, direct_v);
+  add(weights.z, n_c, p_c, around_v, direct_v);
+  vec3 n_rest = weights.x * n_a + weights.y * n_b + weights.z * n_c;
+  vec3 p_rest = weights.x * p_a + weights.y * p_b + weights.z * p_c;
+  add(-1.0, n_rest, p_rest, around_v, direct_v);
+  add(1.0, normal, position, around_v, direct_v);
+#endif
   gl_Position = view_projection * vec4(p_W, 1.0);
 }
 )";
 }
 
-std::string surface_fragment() {
-  return kHead + kLight + kShadow + kToScreen + R"(
+std::string surface_fragment(Shading shading) {
+  const std::string marks = shading == Shading::kMarked ? kMarks + "in vec3 p_B;\n" : "";
+  return kHead + choice(shading) + kLight + kShadow + kToScreen + marks + R"(
 in vec3 p_W;
 in vec3 n_W;
+#ifdef GOURAUD
 in vec3 around_v;
 in vec3 direct_v;
-uniform int gouraud;
+#endif
 uniform float shadow_offset;  // m
 out vec4 pixel;
 void main() {
+#ifdef GOURAUD
   vec3 around = around_v;
   vec3 direct = direct_v;
-  if (gouraud == 0) light(n_W, p_W, around, direct);
+#else
+  vec3 around, direct;
+  light(n_W, p_W, around, direct);
+#endif
+#ifdef MARKED
+  float plain = unmarked(p_B);
+  around *= plain;
+  direct *= plain;
+#endif
   // Asked a little off the surface, or it would cast shadows on itself.
   float open = lit(p_W + shadow_offset * normalize(n_W));
   pixel = vec4(to_screen(around * (0.82 + 0.18 * open) + direct * open), 1.0);
@@ -192,6 +258,28 @@ void main() { pixel = paint; }
 )";
 }
 
+std::string coloured_vertex() {
+  return kHead + R"(
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 normal;
+layout(location = 2) in vec3 colour;
+out vec3 shade;
+void main() {
+  // The colours stand for numbers: light changes them little.
+  shade = colour * colour * (0.72 + 0.28 * max(dot(normal, key.xyz), 0.0));
+  gl_Position = view_projection * vec4(position, 1.0);
+}
+)";
+}
+
+std::string coloured_fragment() {
+  return kHead + kToScreen + R"(
+in vec3 shade;
+out vec4 pixel;
+void main() { pixel = vec4(to_screen(shade), 1.0); }
+)";
+}
+
 std::string backdrop_vertex() {
   return kHead + R"(
 out float height;
@@ -224,8 +312,9 @@ void main() {
 )";
 }
 
-std::string ground_fragment() {
-  return kHead + kShadow + kToScreen + R"(
+std::string ground_fragment(Shading shading) {
+  const std::string marks = shading == Shading::kMarked ? kMarks : "";
+  return kHead + choice(shading) + kShadow + kToScreen + marks + R"(
 in vec3 p_W;
 uniform float grid_strength;
 uniform vec3 colour;   // linear
@@ -244,6 +333,9 @@ void main() {
   float grid_cover = max(0.28 * lines(0.01), 0.6 * lines(0.05)) * grid_strength;
   float open = lit(p_W);
   vec3 shown = mix(colour, grid.rgb, grid_cover) * mix(vec3(0.52, 0.545, 0.58), vec3(1.0), open);
+#ifdef MARKED
+  shown *= unmarked(p_W);
+#endif
   // Seen from below the ground is not in the way.
   float from_above = smoothstep(0.0, 0.02, eye.z - p_W.z);
   pixel = vec4(to_screen(shown), fade * from_above);

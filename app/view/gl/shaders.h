@@ -2,13 +2,24 @@
 
 #include <string>
 
+namespace thimble::app::view {
+
+/// Says where the light on a surface is reckoned.
+enum class Shading {
+  kPhong,    ///< In every pixel, of the interpolated normal.
+  kGouraud,  ///< In every corner, and interpolated.
+  kMarked,   ///< As kPhong, with marks on textures and friction.
+};
+
+}  // namespace thimble::app::view
+
 namespace thimble::app::view::shaders {
 
 // The texts of all shaders (GLSL 3.30). Those that light read the block `View` (view_block.h).
 
-std::string surface_vertex();  ///< Of meshes and solids: position 0, normal 1.
-std::string dent_vertex();     ///< Of DentVertex: its members, in order.
-std::string surface_fragment();
+std::string surface_vertex(Shading shading);  ///< Of meshes and solids: position 0, normal 1.
+std::string dent_vertex(Shading shading);     ///< Of DentVertex: its members, in order.
+std::string surface_fragment(Shading shading);
 std::string shadow_vertex();  ///< Position 0; the depth as the light sees it.
 std::string shadow_fragment();
 std::string plain_vertex();  ///< Position 0, in one colour: lines, planes, what shines through.
@@ -16,6 +27,8 @@ std::string plain_fragment();
 std::string backdrop_vertex();  ///< No attributes: one triangle that covers the picture.
 std::string backdrop_fragment();
 std::string ground_vertex();  ///< No attributes: a square on the ground.
-std::string ground_fragment();
+std::string ground_fragment(Shading shading);
+std::string coloured_vertex();  ///< Of ColouredVertex: its members, in order.
+std::string coloured_fragment();
 
 }  // namespace thimble::app::view::shaders

@@ -60,6 +60,13 @@ void SurfaceModel::reshape(const render::TriangleMesh& mesh) {
   dent_ = DentSurface(mesh, drawn);
   triangles_ = drawn.triangles.size();
   edges_ = drawn.edges.size();
+  closed_ = drawn.closed;
+  box_.setEmpty();
+  for (const Eigen::Vector3f& p : drawn.positions) box_.extend(p);
+  if (!box_.isEmpty()) {
+    const Eigen::Vector3f more = Eigen::Vector3f::Constant(0.1F * box_.diagonal().norm());
+    box_ = {box_.min() - more, box_.max() + more};
+  }
   upload(drawn);
   unbend();
 }
@@ -114,6 +121,10 @@ void SurfaceModel::find_ranges() {
   };
   for (const std::uint32_t hidden : dent_.hidden()) add(hidden);
   add(triangles_);
+}
+
+bool SurfaceModel::hides_back(const Eigen::Vector3f& p_BEye) const {
+  return closed_ && !box_.contains(p_BEye);
 }
 
 void SurfaceModel::draw_mesh() const {

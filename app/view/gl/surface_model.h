@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <vector>
 
 #include "view/gl/creased_mesh.h"
@@ -22,6 +23,7 @@ class SurfaceModel {
   /// Takes the dent of the next picture; nothing if it has no triangles.
   void bend(const render::BodyPatch& patch);
   void unbend();
+  bool bent() const { return !dent_.hidden().empty(); }
 
   /// Draws the mesh's triangles but those that are bent: position at 0, normal at 1.
   void draw_mesh() const;
@@ -29,6 +31,12 @@ class SurfaceModel {
   void draw_dent() const;
   /// Draws the edges of both: position at 0.
   void draw_edges() const;
+
+  /// Returns whether its back cannot be seen from a place (m, in the mesh's frame): it is closed,
+  /// and the place is outside its box and a little more, for what is bent.
+  bool hides_back(const Eigen::Vector3f& p_BEye) const;
+  /// Returns whether no light gets in: of a closed mesh only what faces the light casts shadows.
+  bool closed() const { return closed_; }
 
   bool empty() const { return triangles_ == 0; }
   std::size_t triangles() const { return triangles_; }
@@ -41,6 +49,8 @@ class SurfaceModel {
   NormalWeights weights_;
   std::size_t triangles_ = 0;
   std::size_t edges_ = 0;
+  bool closed_ = false;
+  Eigen::AlignedBox3f box_;  // of the mesh, and a tenth more
   DentSurface dent_;
   GlVertexArray mesh_array_, edge_array_, dent_array_, dent_edge_array_;
   GlBuffer vertices_, indices_, edge_indices_, dent_vertices_, dent_edge_indices_;

@@ -9,6 +9,8 @@
 #include <array>
 #include <cstdio>
 
+#include "view/panel_flow.h"
+
 namespace thimble::app::view {
 namespace {
 
@@ -149,8 +151,11 @@ bool HandPanel::draw_box(bool held, const ScreenPart& part) {
   const bool another = ImGui::Combo("##source", &chosen, kNames.data(), kNames.size());
   if (another) input_.choose(static_cast<HandSource>(chosen));
   ImGui::SameLine();
-  const Colour& colour = held ? kDepthColour : kQuietTextColour;
-  ImGui::TextColored({colour[0], colour[1], colour[2], 1}, held ? "held" : "let go");
+  if (held) {
+    ImGui::TextColored(shown_colour(kDepthColour), "held");
+  } else {
+    ImGui::TextDisabled("let go");
+  }
   if (input_.source() != HandSource::kMouse) {
     ImGui::SameLine();
     ImGui::TextDisabled("%.0f mm/s", 1e3 * input_.speed());

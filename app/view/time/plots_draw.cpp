@@ -40,6 +40,12 @@ ImU32 packed(const Colour& colour, float cover = 1) {
   return ImGui::ColorConvertFloat4ToU32({colour[0], colour[1], colour[2], cover});
 }
 
+// The colour of text, as the theme has it.
+Colour text_ink() {
+  const ImVec4& ink = ImGui::GetStyleColorVec4(ImGuiCol_Text);
+  return {ink.x, ink.y, ink.z};
+}
+
 float small_size() {
   return std::round(0.78F * ImGui::GetFontSize());
 }
@@ -49,21 +55,21 @@ void write_small(ImDrawList& list, float x, float y, float align, const std::str
   const float size = small_size();
   const float width = ImGui::GetFont()->CalcTextSizeA(size, 1e9F, 0, text.c_str()).x;
   list.AddText(ImGui::GetFont(), size, {std::round(x - align * width), std::round(y)},
-               packed(kQuietTextColour), text.c_str());
+               ImGui::GetColorU32(ImGuiCol_TextDisabled), text.c_str());
 }
 
 // Writes the title and, at the right, a value.
 void write_title(ImDrawList& list, const ScreenPart& part, const std::string& title,
                  const std::string& value, const Colour& colour) {
   const float y = part.y + 0.1F * ImGui::GetFontSize();
-  list.AddText({part.x, y}, packed(kTextColour), title.c_str());
+  list.AddText({part.x, y}, ImGui::GetColorU32(ImGuiCol_Text), title.c_str());
   const float width = ImGui::CalcTextSize(value.c_str()).x;
   list.AddText({part.x + part.width - width, y}, packed(colour), value.c_str());
 }
 
 void draw_frame(ImDrawList& list, const ScreenPart& inner) {
   list.AddRectFilled({inner.x, inner.y}, {inner.x + inner.width, inner.y + inner.height},
-                     packed(kSkyColour));
+                     ImGui::GetColorU32(ImGuiCol_PopupBg));
   list.AddLine({inner.x, inner.y + inner.height}, {inner.x + inner.width, inner.y + inner.height},
                packed(kGridColour));
   list.AddLine({inner.x, inner.y}, {inner.x, inner.y + inner.height}, packed(kGridColour));
@@ -190,7 +196,7 @@ void Plots::draw(ImDrawList& list, const ScreenPart& part, Channel channel, cons
   if (axis.count > 1) draw_line(list, inner, channel, range, axis, unit.per_si);
   if (marks.looked) draw_upright(list, inner, range, *marks.looked, kProxyColour, 2);
   const double told = marks.cursor.value_or(marks.looked.value_or(std::min(range.end, kept().end)));
-  if (marks.cursor) draw_upright(list, inner, range, *marks.cursor, kTextColour, 1);
+  if (marks.cursor) draw_upright(list, inner, range, *marks.cursor, text_ink(), 1);
   const auto value = value_at(channel, told);
   write_title(list, part, fmt::format("{}, {}", look.name, unit.name),
               value ? with_unit(look.quantity, *value) : "", look.colour);
@@ -219,7 +225,7 @@ void Plots::draw_periods(ImDrawList& list, const ScreenPart& part, const TimeRan
   }
   const ScreenPart inner = lines_of(part, true);
   draw_frame(list, inner);
-  write_title(list, part, "how often which period, us", "", kTextColour);
+  write_title(list, part, "how often which period, us", "", text_ink());
   const AxisTicks axis = ticks_within(1e6 * (wanted - reach), 1e6 * (wanted + reach), 5);
   for (std::size_t i = 0; i < axis.count; ++i) {
     const auto share = static_cast<float>(0.5 + 0.5 * (1e-6 * axis.at(i) - wanted) / reach);

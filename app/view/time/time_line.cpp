@@ -24,7 +24,7 @@ ImU32 packed(const Colour& colour, float cover = 1) {
 enum class Sign { kStart, kBack, kPlay, kStop, kForward, kEnd };
 
 void draw_sign(ImDrawList& list, Sign sign, const ImVec2& middle, float r) {
-  const ImU32 ink = packed(kTextColour);
+  const ImU32 ink = ImGui::GetColorU32(ImGuiCol_Text);
   const auto arrow = [&](float at, float way) {
     list.AddTriangleFilled({middle.x + at - 0.5F * way * r, middle.y - r},
                            {middle.x + at - 0.5F * way * r, middle.y + r},
@@ -144,10 +144,10 @@ void draw_bar(const ScreenPart& bar, TouchSource& source) {
   const auto share = static_cast<float>((head.time() - head.begin()) / span);
   const float x = bar.x + share * bar.width;
   list.AddLine({x, bar.y + 0.12F * bar.height}, {x, bar.y + 0.88F * bar.height},
-               packed(kTextColour), 2);
+               ImGui::GetColorU32(ImGuiCol_Text), 2);
   list.AddCircleFilled({x, middle}, 0.3F * bar.height,
                        packed(head.live() ? kEdgePlaneColour : kProxyColour));
-  list.AddCircle({x, middle}, 0.3F * bar.height, packed(kTextColour), 0, 1.5F);
+  list.AddCircle({x, middle}, 0.3F * bar.height, ImGui::GetColorU32(ImGuiCol_Text), 0, 1.5F);
 }
 
 }  // namespace
@@ -226,9 +226,9 @@ void TimeLine::draw(const ScreenPart& part, TouchSource& source) {
       narrow ? ScreenPart{part.x + pad.x + 0.3F * row, at.y + row + style.ItemSpacing.y,
                           part.width - 2 * pad.x - 0.6F * row, row}
              : ScreenPart{at.x, at.y, std::max(1.0F, words_x - at.x - ImGui::GetFontSize()), row};
-  const Colour& ink = head.of_a_run() && !head.live() ? kForceColour : kTextColour;
-  ImGui::GetWindowDrawList()->AddText({words_x, at.y + style.FramePadding.y}, packed(ink),
-                                      words.c_str());
+  const ImU32 ink =
+      head.of_a_run() && !head.live() ? packed(kForceColour) : ImGui::GetColorU32(ImGuiCol_Text);
+  ImGui::GetWindowDrawList()->AddText({words_x, at.y + style.FramePadding.y}, ink, words.c_str());
   draw_bar(bar, source);
   ImGui::End();
 }

@@ -48,6 +48,9 @@ session::SharedScene small_scene() {
                            .first_triangle = 1,
                            .triangle_count = 2,
                            .splits_most = 2});
+  scene.objects[0].texture = "sandpaper";
+  scene.objects[0].friction = "bristle, dahl";
+  scene.field = {{{0, 0, 0.1}, {0, 0, -1}}, {{0, 0, 0.2}, {0, 0.5, 0}}};
   scene.knobs.push_back({"stiff: stiffness", "N/m", 0, 1000, 800});
   return scene;
 }
@@ -133,6 +136,12 @@ TEST(Share, ShowsTheSceneAsItWasDescribed) {
   EXPECT_TRUE(seen.objects[0].dents);
   EXPECT_TRUE(seen.objects[1].shaped);
   EXPECT_EQ(seen.objects[1].first_vertex, 3U);
+  EXPECT_EQ(seen.objects[0].texture, "sandpaper");
+  EXPECT_EQ(seen.objects[0].friction, "bristle, dahl");
+  EXPECT_EQ(seen.objects[1].friction, "");
+  ASSERT_EQ(seen.field.size(), 2U);
+  EXPECT_EQ(seen.field[1].p_W, scene.field[1].p_W);
+  EXPECT_EQ(seen.field[1].f_W, scene.field[1].f_W);
   ASSERT_EQ(seen.knobs.size(), 1U);
   EXPECT_EQ(seen.knobs[0].name, "stiff: stiffness");
   EXPECT_EQ(seen.knobs[0].unit, "N/m");

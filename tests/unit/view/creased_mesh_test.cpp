@@ -44,6 +44,21 @@ TEST(CreasedMesh, IsTheMeshItselfWhereNothingIsSharp) {
   }
 }
 
+TEST(CreasedMesh, IsClosedWhereEachEdgeHasTwoSidesAndOutsideIsOutside) {
+  render::TriangleMesh ball = support::icosphere(1, 1.0);
+  EXPECT_TRUE(crease(ball, kSharp).closed);
+  EXPECT_TRUE(crease(support::box({1, 2, 3}), kSharp).closed);
+  render::TriangleMesh turned = ball;
+  for (auto& triangle : turned.triangles) std::swap(triangle[0], triangle[1]);
+  EXPECT_FALSE(crease(turned, kSharp).closed);
+  std::swap(ball.triangles[3][0], ball.triangles[3][1]);
+  EXPECT_FALSE(crease(ball, kSharp).closed);
+  render::TriangleMesh open = support::icosphere(1, 1.0);
+  open.triangles.pop_back();
+  EXPECT_FALSE(crease(open, kSharp).closed);
+  EXPECT_FALSE(crease({}, kSharp).closed);
+}
+
 TEST(CreasedMesh, MakesNoNormalOfTrianglesWithoutAreaOrOfSpikes) {
   render::TriangleMesh bad;
   bad.vertices = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 1, 0}};

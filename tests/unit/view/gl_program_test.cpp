@@ -29,8 +29,7 @@ TEST(ScenePrograms, AreAllTakenByADriver) {
   if (!context) GTEST_SKIP() << "no OpenGL";
   const auto programs = ScenePrograms::make();
   ASSERT_TRUE(programs) << programs.error().message;
-  for (const GlProgram* program : {&programs->surface, &programs->dent, &programs->shadow,
-                                   &programs->plain, &programs->backdrop, &programs->ground}) {
+  for (const GlProgram* program : programs->all()) {
     EXPECT_EQ(glIsProgram(**program), GL_TRUE);
   }
 }

@@ -140,6 +140,52 @@ TEST(Shots, OfEveryShippedSceneLookAsTheyDid) {
   }
 }
 
+/// A picture of what is felt, as it is stored.
+struct MarkedShot {
+  const char* name;
+  const char* scene;
+  double second;
+  void (*choose)(PaintChoice& paint);
+};
+
+TEST(Shots, OfFieldsTrailNormalAndTexturesLookAsTheyDid) {
+  const auto context = support::open_gl();
+  if (!context) GTEST_SKIP() << "no OpenGL";
+  const MarkedShot shots[] = {
+      {"charges_fields", "charges", 3.0,
+       [](PaintChoice& paint) {
+         paint.fields = true;
+         paint.theme = Theme::kDark;
+       }},
+      {"charges_trail", "charges", 3.0, [](PaintChoice& paint) { paint.trail = true; }},
+      {"sandpaper_surfaces", "sandpaper", 2.0, [](PaintChoice& paint) {
+         paint.surfaces = true;
+         paint.marks.contact = true;
+       }}};
+  for (const MarkedShot& shot : shots) {
+    const fs::path stored_file =
+        fs::path(THIMBLE_TEST_DATA) / "shots" / (std::string(shot.name) + ".png");
+    play(fs::path(THIMBLE_SOURCE_DIR) / "app/scenes" / (std::string(shot.scene) + ".yaml"),
+         shot.second, [&](const DrawnScene& drawn, DrawnMoment& moment, const Plots& plots) {
+           ShotChoice choice = small_choice();
+           choice.paint.marks.arm = false;
+           ShotPainter without = painter_of(drawn, choice);
+           const Picture bare = without.paint(moment, plots);
+           choice.camera = without.camera();
+           shot.choose(choice.paint);
+           const Picture picture = painter_of(drawn, choice).paint(moment, plots);
+           if (std::getenv("THIMBLE_WRITE_SHOTS") != nullptr) {
+             EXPECT_TRUE(write_png(picture, stored_file));
+             return;
+           }
+           const auto stored = read_png(stored_file);
+           ASSERT_TRUE(stored) << stored.error().message;
+           EXPECT_TRUE(alike(difference(*stored, picture))) << shot.name << " looks otherwise";
+           EXPECT_FALSE(alike(difference(*stored, bare))) << shot.name << " shows no marks";
+         });
+  }
+}
+
 TEST(Shots, AreTheSameEachTime) {
   const auto context = support::open_gl();
   if (!context) GTEST_SKIP() << "no OpenGL";

@@ -1,6 +1,16 @@
-#include "view/side_panel.h"
+#include "view/knob_panel.h"
+
+#include <gtest/gtest.h>
+#include <imgui.h>
+#include <imgui_internal.h>
 
 #include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "share/shared_run.h"
+#include "view/side_panel.h"
 
 #include "screenless.h"
 
@@ -53,6 +63,74 @@ TEST_F(SidePanel, TurnsANarrowKnobInProportion) {
   EXPECT_NEAR(pressed(knob(0, 2000), 0.25F), 500, 20);
   EXPECT_NEAR(pressed(knob(100, 300), 0.5F), 200, 4);
   EXPECT_EQ(pressed(knob(100, 300), 0.999F), 300);
+}
+
+TEST_F(SidePanel, WritesAKnobInTheUnitThatIsReadBest) {
+  auto rough = knob(1e-6, 1e-4);
+  EXPECT_EQ(knob_text(rough, 2e-5), "20 um");
+  rough.unit = "N/m";
+  EXPECT_EQ(knob_text(rough, 2e-5), "2e-05 N/m");
+  rough.unit = "";
+  EXPECT_EQ(knob_text(rough, 0.25), "0.25");
+}
+
+/// Draws the panel of a run with knobs and a field, and returns what of it is cut off.
+std::vector<std::string> cut_off(float width, float height, float scale) {
+  set_text_style(scale, Theme::kDark);
+  ImGuiIO& io = ImGui::GetIO();
+  unsigned char* pixels = nullptr;
+  int wide = 0;
+  int high = 0;
+  io.Fonts->GetTexDataAsRGBA32(&pixels, &wide, &high);
+  io.DisplaySize = {width, height};
+  session::SharedScene scene;
+  scene.name = "a scene with a name that is rather long";
+  scene.arm.name = "vintage_phantom";
+  scene.arm.device = "sim";
+  scene.period_ns = 1'000'000;
+  scene.field.push_back({{0, 0, 0}, {0, 0, 1}});
+  scene.knobs = {knob(1e-6, 1e-3), knob(0, 1000)};
+  scene.knobs[0].name = "sandpaper: texture roughness";
+  const auto run = session::SharedRun::create("", scene, 10).value();
+  const auto reader = session::SharedReader::over(run->memory().again().value()).value();
+  driver::TickRecord tick;
+  tick.in_contact = true;
+  tick.depth = 0.12345;
+  tick.f_sent_W = {0, 0, -7.77};
+  tick.heat = {0.97, 0, 0};
+  const float panel = panel_width(width, scale);
+  ViewChoice choice;
+  for (int frame = 0; frame < 3; ++frame) {
+    io.DeltaTime = 0.02F;
+    ImGui::NewFrame();
+    draw_side_panel({width - panel, 0, panel, height}, reader.get(), tick, {}, {}, choice);
+    ImGui::Render();
+  }
+  std::vector<std::string> cut;
+  for (const ImGuiWindow* window : ImGui::GetCurrentContext()->Windows) {
+    // The panel itself is scrolled only where its text is too large for the window.
+    const bool scrolls = (window->Flags & ImGuiWindowFlags_NoScrollbar) == 0 &&
+                         (std::string(window->Name) != "panel" || height < 420 * scale);
+    if (!window->WasActive || window->Hidden) continue;
+    if (window->ContentSize.x > window->ContentRegionRect.GetWidth() + 1) {
+      cut.push_back(std::string(window->Name) + " is cut at the right");
+    }
+    if (!scrolls && window->ContentSize.y > window->ContentRegionRect.GetHeight() + 1) {
+      cut.push_back(std::string(window->Name) + " is cut below");
+    }
+  }
+  return cut;
+}
+
+TEST_F(SidePanel, CutsNothingOffInWindowsOfAnyUsualSize) {
+  for (const auto& [width, height] :
+       {std::pair{700.0F, 420.0F}, {1280.0F, 800.0F}, {2560.0F, 1440.0F}}) {
+    for (const float scale : {0.75F, 1.0F, 1.5F}) {
+      EXPECT_EQ(cut_off(width, height, scale), std::vector<std::string>{})
+          << width << " x " << height << ", " << scale;
+    }
+  }
+  EXPECT_EQ(cut_off(2560, 1440, 3), std::vector<std::string>{});
 }
 
 }  // namespace

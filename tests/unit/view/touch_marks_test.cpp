@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <cmath>
 #include <numbers>
 
 #include "support/shapes.h"
@@ -56,6 +57,28 @@ TEST(TouchMarks, ShowNoStylusOfAnArmThatTellsNoOrientation) {
     return mark_touch({}, moment_with(R_WT), 1, only_arm).solids.back().model;
   };
   EXPECT_GT((rolled(0) - rolled(1)).norm(), 1e-3);
+}
+
+TEST(TouchMarks, ShowTheNormalAndWhatOfTheForceLiesAlongTheSurface) {
+  DrawnMoment moment;
+  moment.tick.in_contact = true;
+  moment.tick.n_W = {0, 0, 1};
+  moment.tick.f_sent_W = {0.3, 0, 1};
+  MarkChoice choice{.arm = false, .tip = false, .force = false, .edge_planes = false};
+  EXPECT_TRUE(mark_touch({}, moment, 1, choice).solids.empty());
+  choice.contact = true;
+  const TouchMarks both = mark_touch({}, moment, 1, choice);
+  EXPECT_EQ(both.solids.size(), 4U);
+  ASSERT_EQ(both.labels.size(), 1U);
+  EXPECT_EQ(both.labels[0].text, "0.30 N");
+  EXPECT_NEAR((both.labels[0].away_W - Vector3d(1, 0, 0)).norm(), 0, 1e-12);
+  moment.tick.f_sent_W = {0, 0, 1};
+  EXPECT_TRUE(mark_touch({}, moment, 1, choice).labels.empty());
+  moment.tick.in_contact = false;
+  EXPECT_TRUE(mark_touch({}, moment, 1, choice).solids.empty());
+  moment.tick.in_contact = true;
+  moment.tick.n_W = {NAN, 0, 1};
+  EXPECT_TRUE(mark_touch({}, moment, 1, choice).solids.empty());
 }
 
 }  // namespace

@@ -1,8 +1,10 @@
 #include "share/describe_scene.h"
 
 #include <numbers>
+#include <string_view>
 
 #include "body/shape/body_shape.h"
+#include "share/field_samples.h"
 
 namespace thimble::session {
 namespace {
@@ -31,6 +33,17 @@ SharedKind kind_of(const scene::SceneObject& object) {
   return object.paged ? SharedKind::kPaged : SharedKind::kMesh;
 }
 
+// Returns the names of an object's effects of one group, as the scene calls them.
+std::string names_of(const scene::SceneObject& object, std::string_view group) {
+  std::string names;
+  for (const render::EffectPlan& effect : object.effects) {
+    if (effect.kind->group != group) continue;
+    if (!names.empty()) names += ", ";
+    names += effect.kind->name;
+  }
+  return names;
+}
+
 // Returns how many edges of an object may be split while it is felt.
 std::size_t splits_most(const scene::SceneObject& object, const render::ObjectTouch& touch) {
   return object.body.shape.named() && touch.shape()->refines() ? touch.shape()->splits_left() : 0;
@@ -55,20 +68,22 @@ SharedScene describe_scene(const scene::Scene& scene, const scene::SceneObjects&
     const scene::SceneObject& object = scene.objects[i];
     const scene::MeshPlace& begin = objects.place(i);
     const scene::MeshPlace& end = objects.place(i + 1);
-    described.objects.push_back(
-        {.name = object.name,
-         .kind = kind_of(object),
-         .colour = static_cast<std::uint32_t>(i),
-         .moves = object.body.motion.has_value(),
-         .dents = object.body.dent.has_value(),
-         .shaped = object.body.shape.named(),
-         .first_vertex = begin.vertex,
-         .vertex_count = end.vertex - begin.vertex,
-         .first_triangle = begin.triangle,
-         .triangle_count = end.triangle - begin.triangle,
-         .splits_most = splits_most(object, objects.touch().object(i)),
-         .crease_angle = object.contact.crease_angle.value_or(kCreaseDrawn)});
+    described.objects.push_back({.name = object.name,
+                                 .kind = kind_of(object),
+                                 .colour = static_cast<std::uint32_t>(i),
+                                 .moves = object.body.motion.has_value(),
+                                 .dents = object.body.dent.has_value(),
+                                 .shaped = object.body.shape.named(),
+                                 .first_vertex = begin.vertex,
+                                 .vertex_count = end.vertex - begin.vertex,
+                                 .first_triangle = begin.triangle,
+                                 .triangle_count = end.triangle - begin.triangle,
+                                 .splits_most = splits_most(object, objects.touch().object(i)),
+                                 .crease_angle = object.contact.crease_angle.value_or(kCreaseDrawn),
+                                 .texture = names_of(object, "texture"),
+                                 .friction = names_of(object, "friction")});
   }
+  described.field = sample_fields(scene);
   return described;
 }
 

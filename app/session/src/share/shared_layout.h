@@ -17,19 +17,21 @@ namespace thimble::session {
 //
 //   SharedHead   written once, before `ready` is set; its hash covers the tables marked (*)
 //   SharedLive   changes while the run goes on: lock-free atomics and snapshots only
-//   tables       where the head says: objects*, knobs*, vertices*, triangles*, shaped, splits, ring
+//   tables       where the head says: objects*, knobs*, vertices*, triangles*, field, shaped,
+//   splits, ring
 //
 // Offsets count bytes from the head and are whole multiples of 64; nothing in it is a pointer.
 // Frames: W world.
 
 /// Changes with every change of this file. A reader of another version refuses.
-inline constexpr std::uint32_t kSharedVersion = 7;
+inline constexpr std::uint32_t kSharedVersion = 8;
 /// Stands in `SharedHead::ready` of a segment that is complete: "thimble1" in ASCII.
 inline constexpr std::uint64_t kSharedReady = 0x31656c626d696874;
 
 inline constexpr std::size_t kViewersMost = 16;    ///< Chosen: more than look on at a time.
 inline constexpr std::size_t kKnobsMost = 64;      ///< Chosen: more than a person can find.
 inline constexpr std::size_t kObjectsMost = 1024;  ///< Chosen, as a bound for readers.
+inline constexpr std::size_t kFieldSamplesMost = 4096;  ///< Chosen: more hide each other.
 inline constexpr std::size_t kMoreArmsMost = 7;    ///< After the first, as in a scene.
 /// The most ticks that one request lets a paused run go on by; what asks for more is nonsense.
 /// Chosen.
@@ -105,7 +107,7 @@ struct SharedHead {
   SharedArm arm;
   std::uint64_t more_arms = 0;  ///< That there are of the next.
   std::array<SharedArm, kMoreArmsMost> others{};
-  SharedTable objects, knobs, vertices, triangles, shaped, splits, ring;
+  SharedTable objects, knobs, vertices, triangles, field, shaped, splits, ring;
 };
 static_assert(std::is_standard_layout_v<SharedHead>);
 
@@ -126,6 +128,14 @@ struct SharedObject {
   std::uint64_t first_shaped = 0;  ///< In the table `shaped`; as many as vertices and splits.
   std::uint64_t first_split = 0, splits_most = 0;  ///< In the table `splits`.
   double crease_angle = 0;                         ///< Edges sharper than this stay sharp, rad.
+  SharedText<64> texture{};   ///< Names of its textures, as a scene calls them; empty: none.
+  SharedText<64> friction{};  ///< As above.
+};
+
+/// The force of all fields together on a tip that rests at a place (W), as the scene begins.
+struct SharedFieldSample {
+  std::array<double, 3> p_W{};  ///< m
+  std::array<double, 3> f_W{};  ///< N
 };
 
 /// One setting of the scene that can be changed while it is felt.

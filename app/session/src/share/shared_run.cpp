@@ -45,6 +45,7 @@ std::uint64_t lay_out(const SharedScene& scene, std::size_t ring_ticks, SharedHe
   lay(head.knobs, scene.knobs.size(), sizeof(SharedKnob));
   lay(head.vertices, scene.vertices.size(), sizeof(SharedVertex));
   lay(head.triangles, scene.triangles.size(), sizeof(SharedTriangle));
+  lay(head.field, std::min(scene.field.size(), kFieldSamplesMost), sizeof(SharedFieldSample));
   lay(head.shaped, shaped, sizeof(SharedShaped));
   lay(head.splits, splits, sizeof(SharedSplit));
   lay(head.ring, ring_ticks, sizeof(SharedRingSlot));
@@ -142,6 +143,8 @@ void SharedRun::write(const SharedScene& scene, std::size_t ring_ticks) {
       splits += object.splits_most;
     }
     to.crease_angle = object.crease_angle;
+    put(object.texture, to.texture);
+    put(object.friction, to.friction);
   }
   const auto knobs = table_in<SharedKnob>(memory, head_->knobs);
   knobs_.assign(scene.knobs.begin(),
@@ -159,6 +162,10 @@ void SharedRun::write(const SharedScene& scene, std::size_t ring_ticks) {
   for (std::size_t i = 0; i < vertices.size(); ++i) vertices[i] = plain(scene.vertices[i]);
   const auto triangles = table_in<SharedTriangle>(memory, head_->triangles);
   std::copy(scene.triangles.begin(), scene.triangles.end(), triangles.begin());
+  const auto field = table_in<SharedFieldSample>(memory, head_->field);
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    field[i] = {.p_W = plain(scene.field[i].p_W), .f_W = plain(scene.field[i].f_W)};
+  }
   shaped_ = table_in<SharedShaped>(memory, head_->shaped).data();
   shaped_count_ = head_->shaped.count;
   splits_ = table_in<SharedSplit>(memory, head_->splits).data();

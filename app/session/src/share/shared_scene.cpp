@@ -117,7 +117,9 @@ bool take_object(const SharedObject& shared, const SharedHead& head,
             .first_shaped = shared.first_shaped,
             .first_split = shared.first_split,
             .splits_most = shared.splits_most,
-            .crease_angle = shared.crease_angle};
+            .crease_angle = shared.crease_angle,
+            .texture = text_of(shared.texture),
+            .friction = text_of(shared.friction)};
   return true;
 }
 
@@ -175,12 +177,14 @@ driver::Result<SharedScene> read_shared_scene(std::span<const std::byte> memory)
       !lies_in(head.knobs, sizeof(SharedKnob), total) ||
       !lies_in(head.vertices, sizeof(SharedVertex), total) ||
       !lies_in(head.triangles, sizeof(SharedTriangle), total) ||
+      !lies_in(head.field, sizeof(SharedFieldSample), total) ||
       !lies_in(head.shaped, sizeof(SharedShaped), total) ||
       !lies_in(head.splits, sizeof(SharedSplit), total) ||
       !lies_in(head.ring, sizeof(SharedRingSlot), total)) {
     return broken("a table lies outside");
   }
-  if (head.objects.count > kObjectsMost || head.knobs.count > kKnobsMost || head.ring.count == 0 ||
+  if (head.objects.count > kObjectsMost || head.knobs.count > kKnobsMost ||
+      head.field.count > kFieldSamplesMost || head.ring.count == 0 ||
       head.vertices.count > UINT32_MAX) {
     return broken("a count is out of bounds");
   }
@@ -220,6 +224,10 @@ driver::Result<SharedScene> read_shared_scene(std::span<const std::byte> memory)
   for (const SharedVertex& vertex : vertices) {
     if (!all_finite(vertex)) return broken("a vertex is nowhere");
     scene.vertices.push_back(vector_of(vertex));
+  }
+  for (const auto& sample : copy_of<SharedFieldSample>(memory, head.field)) {
+    if (!all_finite(sample.p_W) || !all_finite(sample.f_W)) return broken("a field is nowhere");
+    scene.field.push_back({vector_of(sample.p_W), vector_of(sample.f_W)});
   }
   scene.name = text_of(head.scene);
   scene.file = text_of(head.scene_file);

@@ -31,6 +31,12 @@ struct SharedScene {
     std::size_t first_shaped = 0;
     std::size_t first_split = 0, splits_most = 0;  ///< Of its edges; 0: its triangles stay.
     double crease_angle = 0;                       ///< Edges sharper than this stay sharp, rad.
+    std::string texture{}, friction{};             ///< Their names; empty: it has none.
+  };
+  /// The force of all fields on a tip that rests at a place, as the scene begins.
+  struct FieldSample {
+    Eigen::Vector3d p_W{0, 0, 0};  ///< m
+    Eigen::Vector3d f_W{0, 0, 0};  ///< N
   };
   /// One setting of the scene that can be changed while it is felt.
   struct Knob {
@@ -64,6 +70,7 @@ struct SharedScene {
   std::vector<Arm> more_arms;  ///< After the first; at most kMoreArmsMost.
   std::vector<Object> objects;
   std::vector<Knob> knobs;
+  std::vector<FieldSample> field;         ///< At most kFieldSamplesMost; none: no field.
   std::vector<Eigen::Vector3d> vertices;  ///< W, m, as they were before the first tick.
   std::vector<std::array<std::uint32_t, 3>>
       triangles;                     ///< Of all `vertices`; outside is counter-clockwise.

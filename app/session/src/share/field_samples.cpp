@@ -1,0 +1,82 @@
+#include "share/field_samples.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+
+#include "thimble/render/object_touch.h"
+
+namespace thimble::session {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr int kLooks = 24;        // along each side of the workspace, to see where a field is
+constexpr double kFelt = 0.15;    // of the strongest; less is not drawn out to [chosen]
+constexpr double kSamples = 350;  // about as many as a person can tell apart [chosen]
+constexpr int kSideMost = 16;     // so that 16^3 are kFieldSamplesMost
+static_assert(kSideMost * kSideMost * kSideMost <= kFieldSamplesMost);
+
+/// The fields of a scene, apart from what is felt.
+class Fields {
+ public:
+  explicit Fields(const scene::Scene& scene) {
+    for (const scene::SceneObject& object : scene.objects) {
+      if (object.build_field) fields_.push_back(object.build_field());
+    }
+  }
+  bool empty() const { return fields_.empty(); }
+  Vector3d force(const Vector3d& p_W) const {
+    driver::DeviceState state;
+    state.p_WT = p_W;
+    Vector3d sum = Vector3d::Zero();
+    for (const auto& field : fields_) sum += field->update(state).f_T_W;
+    return sum.allFinite() ? sum : Vector3d::Zero();
+  }
+
+ private:
+  std::vector<std::unique_ptr<render::ObjectTouch>> fields_;
+};
+
+/// Samples the middles of `counts` cells along each side of a box.
+std::vector<SharedScene::FieldSample> sample(const Fields& fields, const Eigen::AlignedBox3d& box,
+                                             const Eigen::Array3i& counts) {
+  std::vector<SharedScene::FieldSample> samples;
+  const Eigen::Array3d step = box.sizes().array() / counts.cast<double>();
+  for (int i = 0; i < counts[0]; ++i) {
+    for (int j = 0; j < counts[1]; ++j) {
+      for (int k = 0; k < counts[2]; ++k) {
+        const Vector3d p_W = box.min() + ((Eigen::Array3d(i, j, k) + 0.5) * step).matrix();
+        samples.push_back({p_W, fields.force(p_W)});
+      }
+    }
+  }
+  return samples;
+}
+
+}  // namespace
+
+std::vector<SharedScene::FieldSample> sample_fields(const scene::Scene& scene) {
+  const Fields fields(scene);
+  const Eigen::AlignedBox3d workspace(scene.arm.workspace.min_W, scene.arm.workspace.max_W);
+  if (fields.empty() || workspace.isEmpty() || !workspace.sizes().allFinite()) return {};
+  const auto looks = sample(fields, workspace, Eigen::Array3i::Constant(kLooks));
+  double most = 0;
+  for (const auto& look : looks) most = std::max(most, look.f_W.norm());
+  if (!(most > 0)) return {};
+  Eigen::AlignedBox3d felt;
+  const Vector3d half = 0.5 * workspace.sizes() / kLooks;
+  for (const auto& look : looks) {
+    if (look.f_W.norm() < kFelt * most) continue;
+    felt.extend(Vector3d(look.p_W - half));
+    felt.extend(Vector3d(look.p_W + half));
+  }
+  const double step = std::cbrt(felt.volume() / kSamples);
+  const Eigen::Array3i counts =
+      (felt.sizes().array() / std::max(step, 1e-6)).round().max(1).min(kSideMost).cast<int>();
+  return sample(fields, felt, counts);
+}
+
+}  // namespace thimble::session

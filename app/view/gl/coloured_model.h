@@ -1,0 +1,50 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "view/gl/gl_objects.h"
+#include "view/gl/palette.h"
+
+namespace thimble::app::view {
+
+/// One corner of a mesh whose colour changes from place to place.
+struct ColouredVertex {
+  Eigen::Vector3f p;       ///< m, W.
+  Eigen::Vector3f n;       ///< Unit normal, W.
+  Eigen::Vector3f colour;  ///< As on the screen.
+};
+
+/// Many small things in one mesh, so that one call draws them all.
+struct ColouredMesh {
+  std::vector<ColouredVertex> vertices;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+
+/// Adds an arrow from one point to another (W, m), its shaft as thick as two of `radius` (m), of
+/// one colour. One without length adds nothing.
+void add_arrow(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double radius,
+               const Colour& colour, ColouredMesh& mesh);
+
+/// Adds a tube of this radius (m) through points (W, m), each with its colour. Precondition: as
+/// many colours as points. Points that are less than a nanometre from the last are left out.
+void add_tube(std::span<const Eigen::Vector3d> points, std::span<const Colour> colours,
+              double radius, ColouredMesh& mesh);
+
+/// A coloured mesh where OpenGL can draw it: position at 0, normal at 1, colour at 2.
+class ColouredModel {
+ public:
+  ColouredModel();
+  void set(const ColouredMesh& mesh);
+  void draw() const;
+
+ private:
+  GlVertexArray array_;
+  GlBuffer vertices_, indices_;
+  GLsizei indices_count_ = 0;
+};
+
+}  // namespace thimble::app::view

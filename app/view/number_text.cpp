@@ -1,0 +1,43 @@
+#include "view/number_text.h"
+
+#include <fmt/core.h>
+
+#include <cmath>
+
+namespace thimble::app::view {
+namespace {
+
+// Below this a micrometre or a millinewton is what is read. Chosen: one more digit than the larger
+// unit shows.
+constexpr double kMicrometres = 1e-4;  // m
+constexpr double kMillinewtons = 0.1;  // N
+
+/// Writes a number in six characters.
+std::string six(double value, int digits, const char* unit) {
+  return std::isfinite(value) ? fmt::format("{:6.{}f} {}", value, digits, unit)
+                              : fmt::format("     - {}", unit);
+}
+
+}  // namespace
+
+ReadUnit read_unit(const std::string& unit, double most) {
+  if (unit == "m") return most < 1e-3 ? ReadUnit{"um", 1e-6} : ReadUnit{"mm", 1e-3};
+  if (unit == "N" && most < kMillinewtons) return {"mN", 1e-3};
+  return {nullptr, 1};
+}
+
+std::string length_text(double length) {
+  if (std::abs(length) < kMicrometres && length != 0) return six(length * 1e6, 1, "um");
+  return six(length * 1e3, 2, "mm");
+}
+
+std::string force_text(double force) {
+  if (std::abs(force) < kMillinewtons && force != 0) return six(force * 1e3, 1, "mN");
+  return six(force, 2, "N ");
+}
+
+std::string plain_force(double force) {
+  return force < kMillinewtons ? fmt::format("{:g} mN", force * 1e3) : fmt::format("{:g} N", force);
+}
+
+}  // namespace thimble::app::view

@@ -1,0 +1,99 @@
+#include "view/marks/force_marks.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "view/marks/tip_trail.h"
+
+namespace thimble::app::view {
+namespace {
+
+driver::TickRecord tick_at(double seconds, double x, double force) {
+  driver::TickRecord tick;
+  tick.time_ns = static_cast<std::int64_t>(seconds * 1e9);
+  tick.p_WT = {x, 0, 0};
+  tick.f_sent_W = {0, 0, force};
+  return tick;
+}
+
+TEST(TipTrail, KeepsTheLastSecondsAndTheStrongestBlow) {
+  TipTrail trail;
+  std::vector<TrailPoint> points;
+  for (int i = 0; i <= 10'000; ++i) {
+    const double t = 1e-3 * i;
+    trail.add(tick_at(t, 0.01 * t, i == 9'555 ? 3.0 : 0.5));  // 10 mm/s, one blow
+  }
+  trail.give(points);
+  ASSERT_GT(points.size(), 50U);
+  EXPECT_LE(points.size(), 401U);
+  EXPECT_NEAR(points.front().p_WT.x(), 0.06, 5e-4);
+  EXPECT_NEAR(points.back().p_WT.x(), 0.1, 5e-4);
+  double most = 0;
+  for (const TrailPoint& point : points) most = std::max(most, point.force);
+  EXPECT_EQ(most, 3);
+  // Rest and nonsense add nothing; another run begins anew.
+  const std::size_t before = points.size();
+  trail.add(tick_at(10.001, 0.1, 0.5));
+  trail.add(tick_at(10.002, NAN, 0.5));
+  trail.give(points);
+  EXPECT_EQ(points.size(), before);
+  trail.add(tick_at(0, 0, 1));
+  trail.give(points);
+  EXPECT_EQ(points.size(), 1U);
+}
+
+TEST(ForceMarks, ScaleEndsAtARoundForceAboveAll) {
+  DrawnScene scene;
+  DrawnMoment moment;
+  EXPECT_EQ(strongest_force(scene, moment), 0);
+  scene.field.push_back({{0, 0, 0}, {0, 0, 1.2}});
+  EXPECT_DOUBLE_EQ(strongest_force(scene, moment), 2);
+  moment.trail.push_back({{0, 0, 0}, 4.1});
+  EXPECT_DOUBLE_EQ(strongest_force(scene, moment), 5);
+  moment.trail[0].force = 7.3;
+  EXPECT_DOUBLE_EQ(strongest_force(scene, moment), 10);
+  moment.trail[0].force = NAN;
+  EXPECT_TRUE(std::isfinite(strongest_force(scene, moment)));
+}
+
+TEST(ForceMarks, PointAsTheFieldPushesAndLeaveWeakPlacesOut) {
+  DrawnScene scene;
+  scene.field = {{{0, 0, 0}, {0, 0, 1}}, {{0.01, 0, 0}, {0, 0.5, 0}}, {{0.02, 0, 0}, {1e-3, 0, 0}}};
+  ColouredMesh mesh, one;
+  add_field(scene, 1, mesh);
+  add_arrow({0, 0, 0}, {0, 0, 0.01}, 1e-4, kForceColour, one);
+  EXPECT_EQ(mesh.vertices.size(), 2 * one.vertices.size());
+  // The first arrow stands on its place half and half, no longer than the samples are apart.
+  float least = 0, most = 0;
+  for (std::size_t i = 0; i < one.vertices.size(); ++i) {
+    least = std::min(least, mesh.vertices[i].p.z());
+    most = std::max(most, mesh.vertices[i].p.z());
+  }
+  EXPECT_NEAR(least, -0.0045, 1e-6);
+  EXPECT_NEAR(most, 0.0045, 1e-6);
+  for (const ColouredVertex& vertex : mesh.vertices) EXPECT_NEAR(vertex.n.norm(), 1, 1e-5);
+}
+
+TEST(ForceMarks, DrawATrailAlongItsPointsWithoutCollapsing) {
+  const std::vector<TrailPoint> trail = {{{0, 0, 0}, 0},
+                                         {{0.01, 0, 0}, 1},
+                                         {{0.01, 0, 0}, 1},  // the same once more
+                                         {{0.01, 0.01, 0}, 2},
+                                         {{0.01, 0.009, 0}, 0}};
+  ColouredMesh mesh;
+  add_trail(trail, 2, 1e-3, mesh);
+  ASSERT_EQ(mesh.vertices.size(), 4U * 6);
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    const std::size_t ring = i / 6;
+    const std::size_t point = ring < 2 ? ring : ring + 1;
+    EXPECT_NEAR((mesh.vertices[i].p.cast<double>() - trail[point].p_WT).norm(), 1e-3, 1e-6);
+  }
+  EXPECT_EQ(mesh.triangles.size(), 3U * 12);
+  ColouredMesh none;
+  add_trail({}, 2, 1e-3, none);
+  EXPECT_TRUE(none.vertices.empty());
+}
+
+}  // namespace
+}  // namespace thimble::app::view
