@@ -43,10 +43,7 @@ void write_legend(const Legend& legend, Theme theme, const ScreenPart& part) {
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   const float size = ImGui::GetFontSize();
   const float left = part.x + 0.7F * size;
-  // Above the caption: what is touched stands higher.
-  const float scale_height = legend.strongest > 0 ? 2.3F * size : 0;
-  float y = part.y + part.height - 2.6F * size - scale_height -
-            1.35F * size * static_cast<float>(legend.lines.size());
+  float y = part.y + 0.7F * size;
   if (legend.strongest > 0) {
     const float width = std::min(9 * size, 0.4F * part.width);
     constexpr int kSteps = 24;
@@ -60,7 +57,7 @@ void write_legend(const Legend& legend, Theme theme, const ScreenPart& part) {
     const std::string end = plain_force(legend.strongest);
     write_rimmed({left + width - ImGui::CalcTextSize(end.c_str()).x, y + 0.8F * size}, theme,
                  colours_of(theme).text, end);
-    y += scale_height;
+    y += 2.3F * size;
   }
   for (const Legend::Line& line : legend.lines) {
     list.AddRectFilled({left, y + 0.15F * size}, {left + 0.8F * size, y + 0.95F * size},

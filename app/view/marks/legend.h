@@ -24,7 +24,7 @@ struct Legend {
 /// Says what the marks that are chosen mean. Real-time: never from the servo thread.
 Legend legend_of(const DrawnScene& scene, const DrawnMoment& moment, const PaintChoice& choice);
 
-/// Writes a legend at the lower left of a part, above the caption. To be called between ImGui's
+/// Writes a legend at the upper left of a part. To be called between ImGui's
 /// NewFrame and Render.
 void write_legend(const Legend& legend, Theme theme, const ScreenPart& part);
 

@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "body/shape/body_shape.h"
-#include "share/field_samples.h"
+#include "share/describe/field_samples.h"
 
 namespace thimble::session {
 namespace {

@@ -1,4 +1,4 @@
-#include "share/field_samples.h"
+#include "share/describe/field_samples.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
