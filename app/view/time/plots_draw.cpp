@@ -198,8 +198,10 @@ void Plots::draw(ImDrawList& list, const ScreenPart& part, Channel channel, cons
   const double told = marks.cursor.value_or(marks.looked.value_or(std::min(range.end, kept().end)));
   if (marks.cursor) draw_upright(list, inner, range, *marks.cursor, text_ink(), 1);
   const auto value = value_at(channel, told);
-  write_title(list, part, fmt::format("{}, {}", look.name, unit.name),
-              value ? with_unit(look.quantity, *value) : "", look.colour);
+  std::string words;
+  if (value)
+    words = *value == 0 ? fmt::format("0 {}", unit.name) : with_unit(look.quantity, *value);
+  write_title(list, part, fmt::format("{}, {}", look.name, unit.name), words, look.colour);
 }
 
 void Plots::draw_periods(ImDrawList& list, const ScreenPart& part, const TimeRange& range,

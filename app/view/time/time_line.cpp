@@ -221,14 +221,16 @@ void TimeLine::draw(const ScreenPart& part, TouchSource& source) {
   const float right = part.x + part.width - pad.x;
   ImGui::SameLine(0, ImGui::GetFontSize());
   const ImVec2 at = ImGui::GetCursorScreenPos();
-  const float words_x = narrow ? at.x : right - words_width;
+  const float words_x = right - words_width;
+  const float words_y = narrow ? at.y + row + style.ItemSpacing.y : at.y;
   const ScreenPart bar =
       narrow ? ScreenPart{part.x + pad.x + 0.3F * row, at.y + row + style.ItemSpacing.y,
-                          part.width - 2 * pad.x - 0.6F * row, row}
+                          words_x - part.x - pad.x - 0.6F * row, row}
              : ScreenPart{at.x, at.y, std::max(1.0F, words_x - at.x - ImGui::GetFontSize()), row};
   const ImU32 ink =
       head.of_a_run() && !head.live() ? packed(kForceColour) : ImGui::GetColorU32(ImGuiCol_Text);
-  ImGui::GetWindowDrawList()->AddText({words_x, at.y + style.FramePadding.y}, ink, words.c_str());
+  ImGui::GetWindowDrawList()->AddText({words_x, words_y + style.FramePadding.y}, ink,
+                                      words.c_str());
   draw_bar(bar, source);
   ImGui::End();
 }
