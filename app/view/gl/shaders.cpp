@@ -16,8 +16,8 @@ layout(std140) uniform View {
 };
 )";
 
-// What follows is left out of a program that does not need it: Mesa's software runs both sides of an
-// `if`, for a condition masks lanes and does not jump, but leaves a loop when no lane is in it.
+// What follows is left out of a program that does not need it: Mesa's software runs both sides of
+// an `if`, for a condition masks lanes and does not jump, but leaves a loop when no lane is in it.
 std::string choice(Shading shading) {
   return shading == Shading::kGouraud  ? "#define GOURAUD\n"
          : shading == Shading::kMarked ? "#define MARKED\n"

@@ -28,11 +28,11 @@ inline constexpr std::uint32_t kSharedVersion = 8;
 /// Stands in `SharedHead::ready` of a segment that is complete: "thimble1" in ASCII.
 inline constexpr std::uint64_t kSharedReady = 0x31656c626d696874;
 
-inline constexpr std::size_t kViewersMost = 16;    ///< Chosen: more than look on at a time.
-inline constexpr std::size_t kKnobsMost = 64;      ///< Chosen: more than a person can find.
-inline constexpr std::size_t kObjectsMost = 1024;  ///< Chosen, as a bound for readers.
+inline constexpr std::size_t kViewersMost = 16;         ///< Chosen: more than look on at a time.
+inline constexpr std::size_t kKnobsMost = 64;           ///< Chosen: more than a person can find.
+inline constexpr std::size_t kObjectsMost = 1024;       ///< Chosen, as a bound for readers.
 inline constexpr std::size_t kFieldSamplesMost = 4096;  ///< Chosen: more hide each other.
-inline constexpr std::size_t kMoreArmsMost = 7;    ///< After the first, as in a scene.
+inline constexpr std::size_t kMoreArmsMost = 7;         ///< After the first, as in a scene.
 /// The most ticks that one request lets a paused run go on by; what asks for more is nonsense.
 /// Chosen.
 inline constexpr std::uint64_t kStepsMost = 10'000;
