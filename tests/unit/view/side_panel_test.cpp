@@ -12,6 +12,7 @@
 #include "share/shared_run.h"
 #include "view/side_panel.h"
 
+#include "clockwork.h"
 #include "screenless.h"
 
 namespace thimble::app::view {
@@ -93,7 +94,10 @@ std::vector<std::string> cut_off(float width, float height, float scale) {
   scene.knobs[0].name = "sandpaper: texture roughness";
   const auto run = session::SharedRun::create("", scene, 10).value();
   const auto reader = session::SharedReader::over(run->memory().again().value()).value();
-  driver::TickRecord tick;
+  Clockwork source(PlayHead::of_run(), reader.get());
+  source.shown_scene().name = scene.name;
+  source.shown_scene().field.push_back({{0, 0, 0}, {0, 0, 1}});
+  driver::TickRecord& tick = source.shown_moment().tick;
   tick.in_contact = true;
   tick.depth = 0.12345;
   tick.f_sent_W = {0, 0, -7.77};
@@ -103,7 +107,7 @@ std::vector<std::string> cut_off(float width, float height, float scale) {
   for (int frame = 0; frame < 3; ++frame) {
     io.DeltaTime = 0.02F;
     ImGui::NewFrame();
-    draw_side_panel({width - panel, 0, panel, height}, reader.get(), tick, {}, {}, choice);
+    draw_side_panel({width - panel, 0, panel, height}, source, {}, choice);
     ImGui::Render();
   }
   std::vector<std::string> cut;

@@ -4,40 +4,11 @@
 // After the above, which brings OpenGL.
 #include <GLFW/glfw3.h>
 
+#include "clockwork.h"
 #include "screenless.h"
 
 namespace thimble::app::view {
 namespace {
-
-/// A source of time alone.
-class Clockwork final : public TouchSource {
- public:
-  explicit Clockwork(PlayHead head) : head_(head) {}
-  bool step(double dt) override {
-    head_.step(dt);
-    return false;
-  }
-  session::SharedReader* reader() override { return nullptr; }
-  const DrawnScene& scene() const override { return scene_; }
-  const DrawnMoment& moment() const override { return *moment_; }
-  bool has_scene() const override { return true; }
-  bool has_moment() const override { return true; }
-  const Plots& plots() const override { return plots_; }
-  const std::string& notice() const override { return notice_; }
-  std::string name() const override { return "clockwork"; }
-  PlayHead& head() override { return head_; }
-  double beside(int steps) const override { return head_.time() + 0.001 * steps; }
-  std::string kept() const override { return ""; }
-  const std::vector<std::string>& about() const override { return about_; }
-
- private:
-  PlayHead head_;
-  DrawnScene scene_;
-  std::unique_ptr<DrawnMoment> moment_ = std::make_unique<DrawnMoment>();
-  Plots plots_;
-  std::string notice_;
-  std::vector<std::string> about_;
-};
 
 class TimeLineUsed : public Screenless {
  protected:
