@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "share/steer/save_knobs.h"
+#include "view/panel_flow.h"
 
 namespace thimble::app::view {
 namespace {
@@ -17,7 +18,8 @@ namespace {
 constexpr double kFaster = 1.25;  // of one press of a key
 
 /// Draws a button, grey where `why` says why it does nothing; returns whether it was pressed.
-bool button(const char* label, const char* what, const std::string& why) {
+bool button(Flow& flow, const char* label, const char* what, const std::string& why) {
+  flow.next(ImGui::CalcTextSize(label).x + 2 * ImGui::GetStyle().FramePadding.x);
   ImGui::BeginDisabled(!why.empty());
   const bool pressed = ImGui::Button(label);
   ImGui::EndDisabled();
@@ -73,24 +75,26 @@ void RunButtons::save(const session::SharedReader& reader) {
 void RunButtons::draw(session::SharedReader& reader) {
   const std::string no_restart = reader.why_no_restart();
   const ImGuiIO& io = ImGui::GetIO();
-  if (button("Restart", "Begins the run anew, from its first tick (B)", no_restart)) {
+  Flow flow;
+  if (button(flow, "Restart", "Begins the run anew, from its first tick (B)", no_restart)) {
     tell(reader.ask_restart());
   }
-  ImGui::SameLine();
-  if (button("Step", "Lets a paused run go on by a tick; with shift by 10, with ctrl by 100 (N)",
+  if (button(flow, "Step",
+             "Lets a paused run go on by a tick; with shift by 10, with ctrl by 100 (N)",
              why_no_step_now(reader))) {
     step(reader, io.KeyShift, io.KeyCtrl);
   }
-  ImGui::SameLine();
   bool loop = reader.loop_asked();
+  flow.next(ImGui::GetFrameHeight() + ImGui::GetStyle().ItemInnerSpacing.x +
+            ImGui::CalcTextSize("loop").x);
   ImGui::BeginDisabled(!no_restart.empty());
   if (ImGui::Checkbox("loop", &loop)) tell(reader.ask_loop(loop));
   ImGui::EndDisabled();
   explain("Begins the run anew whenever it ends (L)", no_restart);
-  ImGui::SameLine();
   const std::string no_speed = reader.why_no_speed();
   ImGui::BeginDisabled(!no_speed.empty());
   double speed = reader.speed_asked();
+  flow.next(ImGui::CalcTextSize("speed 0.00").x + 2 * ImGui::GetFrameHeight());
   ImGui::SetNextItemWidth(-1);
   if (ImGui::SliderScalar("##speed", ImGuiDataType_Double, &speed, &session::kSpeedLeast,
                           &session::kSpeedMost, "speed %.2f",
@@ -99,11 +103,10 @@ void RunButtons::draw(session::SharedReader& reader) {
   }
   ImGui::EndDisabled();
   explain("Times real time; the ticks stay the same to the bit (, and .)", no_speed);
-  if (button("Scene...", "Runs another scene in place of this one (O)", no_restart)) {
+  if (button(flow, "Scene...", "Runs another scene in place of this one (O)", no_restart)) {
     scenes_.toggle();
   }
-  ImGui::SameLine();
-  if (button("Save knobs",
+  if (button(flow, "Save knobs",
              "Writes the scene with its knobs as they are into a new file beside it (K)",
              reader.scene().knobs.empty() ? "This run has no knobs." : "")) {
     save(reader);

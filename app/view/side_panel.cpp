@@ -81,17 +81,19 @@ void draw_tick(const driver::TickRecord& tick, const std::string& words) {
 
 void draw_head(const session::SharedReader& reader, TouchSource& source) {
   const session::SharedScene& scene = reader.scene();
+  ImGui::PushTextWrapPos(0);
   ImGui::TextUnformatted(scene.name.c_str());
   ImGui::TextDisabled("%s (%s), %.0f Hz%s", scene.arm.name.c_str(), scene.arm.device.c_str(),
                       1e9 / static_cast<double>(scene.period_ns),
                       scene.wall_clock || scene.paced ? "" : ", virtual time");
+  ImGui::PopTextWrapPos();
   draw_tick(source.moment().tick,
             source.head().live() ? session::name_of(reader.state()) : words_of(source.head()));
 }
 
 void draw_recorded_head(TouchSource& source) {
-  ImGui::TextUnformatted(source.scene().name.c_str());
   ImGui::PushTextWrapPos(0);
+  ImGui::TextUnformatted(source.scene().name.c_str());
   for (const std::string& sentence : source.about()) ImGui::TextDisabled("%s", sentence.c_str());
   ImGui::PopTextWrapPos();
   draw_tick(source.moment().tick, "recorded");

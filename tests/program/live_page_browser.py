@@ -23,7 +23,7 @@ async def look(address, page, picture, stop):
 
         # It goes along with the run.
         before = await tab.value("thimblePage.state()")
-        await tab.wait_for(f"thimblePage.state().t > {before['t']} + 1.5 && thimblePage.state().drawn > {before['drawn']} + 5")
+        await tab.wait_for(f"thimblePage.state().t > {before['t']} + 1.5 && thimblePage.state().drawn > {before['drawn']} + 1")
         await tab.value(DRAWN)
         await tab.picture(picture)
         found = {"followed": (await tab.value("thimblePage.state()"))["following"]}

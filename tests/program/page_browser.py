@@ -46,7 +46,7 @@ class Tab:
         return result["result"].get("value")
 
     async def wait_for(self, expression):
-        for _ in range(600):
+        for _ in range(1800):
             if await self.value(expression):
                 return
             await asyncio.sleep(0.1)

@@ -58,7 +58,7 @@ void TouchPlayer::rumble(const RumbleLevel& level, std::int64_t now_ns) {
 void TouchPlayer::step(const session::SharedReader& run, std::int64_t now_ns) {
   ticks_.clear();
   run.ticks_since(serial_, ticks_);
-  if (!run.scene().wall_clock) return;
+  if (!run.scene().wall_clock && !run.scene().paced) return;  // nobody hears virtual time
   if (!ticks_.empty()) newest_ns_ = now_ns;
   if (sound_ && touch_sound_) {
     samples_.clear();

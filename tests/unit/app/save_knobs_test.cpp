@@ -34,7 +34,6 @@ class SaveKnobs : public ::testing::Test {
 
   fs::path own(const std::string& name) const {
     std::string text = scene::text_of(kSources / "app/scenes" / (name + ".yaml"));
-    text.replace(text.find("../arms"), 7, (kSources / "app/arms").string());
     const fs::path file = folder_ / (name + ".yaml");
     std::ofstream(file) << text;
     return file;

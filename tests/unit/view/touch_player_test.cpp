@@ -58,12 +58,13 @@ class TouchPlayerTest : public ::testing::Test {
     std::vector<RumbleLevel>& felt;
   };
 
-  void join(bool wall_clock) {
+  void join(bool wall_clock, bool paced = false) {
     session::SharedScene scene;
     scene.name = "felt";
     scene.period_ns = 1'000'000;
     scene.force_max = 4;
     scene.wall_clock = wall_clock;
+    scene.paced = paced;
     run_ = session::SharedRun::create("", scene, 1000).value();
     reader_ = session::SharedReader::over(run_->memory().again().value()).value();
     run_->set_state(session::RunState::kRunning);
@@ -141,6 +142,14 @@ TEST_F(TouchPlayerTest, StopsTheGamepadWhenNothingTouches) {
   run_->store_tick(free);
   look(1);
   EXPECT_EQ(felt_.back(), RumbleLevel{});
+}
+
+TEST_F(TouchPlayerTest, PlaysARunAtThePaceOfAPerson) {
+  join(false, true);
+  player_->begin(*reader_);
+  for (int i = 0; i < 10; ++i) go_on(20, i % 2 == 0 ? 1 : 2);
+  EXPECT_FALSE(heard_.empty());
+  EXPECT_FALSE(felt_.empty());
 }
 
 TEST_F(TouchPlayerTest, LeavesARunInVirtualTimeAlone) {
