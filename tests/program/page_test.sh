@@ -61,8 +61,12 @@ expect 0 '^the same' /usr/bin/python3 "$here/picture_near.py" "$source_dir/tests
 expect 0 '^the same' /usr/bin/python3 "$here/picture_near.py" "$source_dir/tests/data/shots/page_clay.png" clay/index_small.png
 
 # The same live: it goes along, holds, ends with the run, and its forces are ticks of the run.
-# The hand stays in the clay, so that there is something to be felt however long the browser takes.
+# The hand stays in the clay, so that there is something to be felt however long the browser takes, and sways there: an
+# arm that lies still for long looks like a broken one.
 sed "/t: 8.0/d; s#arm: .*#arm: vintage_phantom#; s#clay_ball.off#$scenes/clay_ball.off#" "$scenes/clay.yaml" >pressed.yaml
+for second in $(seq 9 2 299); do
+  echo "    - {t: $second.0, on: ball, near: [$((second / 2 % 2 * 4 + 6)).0e-3, 0.01, 0.0], press: 0.006}" >>pressed.yaml
+done
 "$thimble" run pressed.yaml --clock wall --duration 300 --name "page_$$" --no-view --record live.h5 >run.txt 2>&1 &
 run=$!
 timeout 300 "$thimble" view "page_$$" --web >view.txt 2>&1 &
