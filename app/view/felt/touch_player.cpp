@@ -58,9 +58,11 @@ void TouchPlayer::rumble(const RumbleLevel& level, std::int64_t now_ns) {
 void TouchPlayer::step(const session::SharedReader& run, std::int64_t now_ns) {
   ticks_.clear();
   run.ticks_since(serial_, ticks_);
+  // At another pace the samples would be too few or too many for the card.
+  const bool real_time = run.scene().wall_clock || (run.scene().paced && run.speed_asked() == 1);
   if (!run.scene().wall_clock && !run.scene().paced) return;  // nobody hears virtual time
   if (!ticks_.empty()) newest_ns_ = now_ns;
-  if (sound_ && touch_sound_) {
+  if (sound_ && touch_sound_ && real_time) {
     samples_.clear();
     for (const driver::TickRecord& tick : ticks_) touch_sound_->take(tick, samples_);
     if (!samples_.empty()) sound_->play(samples_);

@@ -18,7 +18,8 @@ namespace thimble::app::view {
 RumbleLevel rumble_of(std::span<const driver::TickRecord> ticks, double force_max);
 
 /// Hands what a run feels on to a sound card and a gamepad. Only what happens in real time: a run
-/// in virtual time has no sound. Used by one thread. Real-time: never from the servo thread.
+/// in virtual time has no sound, and one at another pace than that of real time only rumbles. Used
+/// by one thread. Real-time: never from the servo thread.
 class TouchPlayer {
  public:
   /// Takes where to; either may be null.

@@ -65,6 +65,7 @@ class TouchPlayerTest : public ::testing::Test {
     scene.force_max = 4;
     scene.wall_clock = wall_clock;
     scene.paced = paced;
+    scene.arm.device = "sim";
     run_ = session::SharedRun::create("", scene, 1000).value();
     reader_ = session::SharedReader::over(run_->memory().again().value()).value();
     run_->set_state(session::RunState::kRunning);
@@ -144,12 +145,17 @@ TEST_F(TouchPlayerTest, StopsTheGamepadWhenNothingTouches) {
   EXPECT_EQ(felt_.back(), RumbleLevel{});
 }
 
-TEST_F(TouchPlayerTest, PlaysARunAtThePaceOfAPerson) {
+TEST_F(TouchPlayerTest, PlaysAPacedRunWhereItsPaceIsThatOfRealTime) {
   join(false, true);
   player_->begin(*reader_);
-  for (int i = 0; i < 10; ++i) go_on(20, i % 2 == 0 ? 1 : 2);
-  EXPECT_FALSE(heard_.empty());
-  EXPECT_FALSE(felt_.empty());
+  go_on(20, 2);
+  EXPECT_EQ(heard_.size(), 20U * 48U);
+  EXPECT_EQ(felt_.size(), 1U);
+  ASSERT_TRUE(reader_->ask_speed(0.5));
+  heard_.clear();
+  for (int i = 0; i < 10; ++i) go_on(20, 2);
+  EXPECT_TRUE(heard_.empty()) << "half as many samples as the card plays";
+  EXPECT_GT(felt_.size(), 1U) << "a gamepad is told what is felt at any pace";
 }
 
 TEST_F(TouchPlayerTest, LeavesARunInVirtualTimeAlone) {
