@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Runs every test: sets the machine up, builds, and runs the tests as release, under the address and
-# undefined-behaviour sanitizers, and those in which threads meet under the thread sanitizer.
+# Runs every test: sets the machine up, builds, and runs the tests as release, all but those of
+# release_only.list under the address and undefined-behaviour sanitizers, and those in which threads
+# meet under the thread sanitizer.
 #   tests/run.sh [--long] [PRESET...]    --long: all tests under all sanitizers, at full length, the
 #                                        release built by clang, a build in which no sources are
 #                                        joined, then clang-tidy, coverage and mutants (40, 30 and 30
@@ -14,7 +15,7 @@ for argument in "$@"; do
     --long) export THIMBLE_LONG=1 ;;
     release | dev | clang | asan | tsan | tsan-all) presets+=("$argument") ;;
     *)
-      sed -n '2,8s/^# \{0,1\}//p' "$0"
+      sed -n '2,9s/^# \{0,1\}//p' "$0"
       exit 2
       ;;
   esac
