@@ -51,7 +51,7 @@ touch run_goes_on
 harass &
 for _ in $(seq 100); do [ -e "$segment" ] && break; sleep 0.1; done
 expect 0 '^600$' stat -c %a "$segment"
-timeout 60 "$thimble" view "$me" --text >view.log 2>&1 &
+timeout 300 "$thimble" view "$me" --text >view.log 2>&1 &
 viewer=$!
 sleep 1
 expect 0 "$me: rubber" "$thimble" view --list
@@ -60,7 +60,7 @@ expect 0 '' "$thimble" view "$me" --turn 'ball: stiffness=200'
 expect 2 'has no knob "ball: colour"; it has' "$thimble" view "$me" --turn 'ball: colour=2'
 expect 2 'expected NAME=VALUE' "$thimble" view "$me" --turn 'ball: stiffness=nan'
 expect 2 'ball: stiffness may be .* found 1e' "$thimble" view "$me" --turn 'ball: stiffness=1e9'
-expect 0 "$me running" timeout 20 "$thimble" view "$me" --text --for 0.5
+expect 0 "$me running" timeout 60 "$thimble" view "$me" --text --for 0.5
 expect 2 'is already shown' "$thimble" run "$scenes/honey.yaml" --name "$me"
 expect 0 '' "$thimble" view "$me" --record ordered.h5
 sleep 1
@@ -96,7 +96,7 @@ run=$!
 # told PATTERN: waits until the run's line says so.
 told() {
   for _ in $(seq 100); do
-    timeout 20 "$thimble" view "$me" --text --for 0.1 >told.txt 2>&1
+    timeout 60 "$thimble" view "$me" --text --for 0.1 >told.txt 2>&1
     grep -qE "$1" told.txt && break
     sleep 0.1
   done
@@ -144,7 +144,7 @@ for i in $(seq "$([ -n "${THIMBLE_LONG:-}" ] && echo 50 || echo 3)"); do
     run=$!
     # Only a run with more ticks than may be lost can show that no more were lost.
     for _ in $(seq 200); do
-      shown=$(timeout 20 "$thimble" view "$me" --text --for 0.3 2>/dev/null |
+      shown=$(timeout 60 "$thimble" view "$me" --text --for 0.3 2>/dev/null |
         sed -nE 's/.* running: .* ([0-9]+) ticks.*/\1/p' | tail -1)
       [ "$shown" -gt 1000 ] 2>/dev/null && break
       sleep 0.05
@@ -152,7 +152,7 @@ for i in $(seq "$([ -n "${THIMBLE_LONG:-}" ] && echo 50 || echo 3)"); do
     sleep "0.$((RANDOM % 900 + 100))"
     kill -9 $run
     wait $run 2>/dev/null
-    timeout 10 "$thimble" view "$me" --text >told.txt 2>&1
+    timeout 60 "$thimble" view "$me" --text >told.txt 2>&1
     status=$?
     [ -e "$segment" ] && break
   done
