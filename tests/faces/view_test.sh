@@ -11,22 +11,7 @@ done
 source "$(dirname "$0")/../program/expect.sh" "$1" "$2" "$3"
 clients=$4
 unset WAYLAND_DISPLAY
-Xvfb -displayfd 3 -screen 0 1300x820x24 -fbdir "$work" 3>display.txt 2>/dev/null &
-xvfb=$!
-trap 'kill $xvfb' EXIT
-for _ in $(seq 100); do [ -s display.txt ] && break; sleep 0.1; done
-DISPLAY=:$(cat display.txt)
-export DISPLAY
-
-# wait_for SECONDS COMMAND...: until it succeeds.
-wait_for() {
-  local end=$((SECONDS + $1))
-  shift
-  until "$@" >/dev/null 2>&1; do
-    [ $SECONDS -lt $end ] || return 1
-    sleep 0.1
-  done
-}
+source "$(dirname "$0")/../program/screen.sh"
 
 "$thimble" exec --scene "$source_dir/tests/data/scenes/two_boxes.yaml" --hand mouse --view "$clients/led" 60 >led.txt 2>&1 &
 run=$!

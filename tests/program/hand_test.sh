@@ -26,22 +26,7 @@ for tool in Xvfb xdotool; do
     finish
   }
 done
-Xvfb -displayfd 3 -screen 0 1300x820x24 3>display.txt 2>/dev/null &
-xvfb=$!
-trap 'kill $xvfb' EXIT
-for _ in $(seq 100); do [ -s display.txt ] && break; sleep 0.1; done
-DISPLAY=:$(cat display.txt)
-export DISPLAY
-
-# wait_for SECONDS COMMAND...: until it succeeds.
-wait_for() {
-  local end=$((SECONDS + $1))
-  shift
-  until "$@" >/dev/null 2>&1; do
-    [ $SECONDS -lt $end ] || return 1
-    sleep 0.1
-  done
-}
+source "$(dirname "$0")/screen.sh"
 
 # A floor below the hand, and a card that writes what it plays into a file.
 cat >floor.yaml <<END

@@ -1,0 +1,18 @@
+# A screen in memory for the rest of a test, which is its DISPLAY. Source it after expect.sh, where Xvfb is.
+#   $work/Xvfb_screen0: what it shows
+Xvfb -displayfd 3 -screen 0 1300x820x24 -fbdir "$work" 3>display.txt 2>/dev/null &
+xvfb=$!
+trap 'kill $xvfb' EXIT
+for _ in $(seq 100); do [ -s display.txt ] && break; sleep 0.1; done
+DISPLAY=:$(cat display.txt)
+export DISPLAY
+
+# wait_for SECONDS COMMAND...: until it succeeds.
+wait_for() {
+  local end=$((SECONDS + $1))
+  shift
+  until "$@" >/dev/null 2>&1; do
+    [ $SECONDS -lt $end ] || return 1
+    sleep 0.1
+  done
+}
