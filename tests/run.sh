@@ -4,8 +4,9 @@
 # meet under the thread sanitizer.
 #   tests/run.sh [--long] [PRESET...]    --long: all tests under all sanitizers, at full length, the
 #                                        release built by clang, a build in which no sources are
-#                                        joined, then clang-tidy, coverage and mutants (40, 30 and 30
-#                                        minutes of two cores), if what they need is installed;
+#                                        joined, then sines on 64-bit ARM under QEMU, clang-tidy,
+#                                        coverage and mutants (3, 40, 30 and 30 minutes of two cores),
+#                                        if what they need is installed;
 #                                        PRESET: only these
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -15,7 +16,7 @@ for argument in "$@"; do
     --long) export THIMBLE_LONG=1 ;;
     release | dev | clang | asan | tsan | tsan-all) presets+=("$argument") ;;
     *)
-      sed -n '2,9s/^# \{0,1\}//p' "$0"
+      sed -n '2,10s/^# \{0,1\}//p' "$0"
       exit 2
       ;;
   esac
@@ -24,7 +25,7 @@ more=()
 if [ ${#presets[@]} = 0 ]; then
   presets=(release asan "tsan${THIMBLE_LONG:+-all}")
   if [ -n "${THIMBLE_LONG:-}" ]; then
-    more=(tidy coverage mutate)
+    more=(arm64 tidy coverage mutate)
     if tests/optional_packages.sh "the build by clang" clang; then presets+=(clang); fi
   fi
 fi
@@ -32,6 +33,7 @@ fi
 tests/usb/setup.sh || true  # optional: without it the USB arms are not tested through a kernel
 tests/fuzz/setup.sh || true  # optional: without it only the corpora are replayed
 [ -z "${THIMBLE_LONG:-}" ] || tests/faces/setup.sh || true  # optional: 64-bit ARM, and a window on a screen in memory
+tests/optional_packages.sh "sines and exponentials against their true values" libmpfr-dev || true
 tests/optional_packages.sh "the guide as web pages" mkdocs || true
 tests/optional_packages.sh "the format of the sources" clang-format-14 || true
 tests/optional_packages.sh "pictures, tables and compiled laws of the Python package" \

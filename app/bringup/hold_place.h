@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "math/elementary.h"
+
 namespace thimble::app {
 
 /// A weak spring and damper that keep a free tip about a place of the world, so that nobody has to
@@ -23,7 +25,7 @@ class HoldPlace {
   /// Returns the force (N) on a tip at p_WT (m) with v_WT (m/s), `dt` (s) after the last.
   Eigen::Vector3d force(double dt, const Eigen::Vector3d& p_WT,
                         const Eigen::Vector3d& v_WT) noexcept {
-    v_slow_ += (v_WT - v_slow_) * -std::expm1(-kCorner * dt);
+    v_slow_ += (v_WT - v_slow_) * -math::expm1(-kCorner * dt);
     return f_carried_W_ + kStiffness * (p_WM_ - p_WT) - kDamping * v_slow_;
   }
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <string>
 
+#include "math/elementary.h"
+
 namespace thimble::device_sim {
 namespace {
 
@@ -86,7 +88,7 @@ Eigen::Vector3d DriveTrain::pass(double dt) noexcept {
   const double lag = settings_.current_lag;
   if (lag == 0) return asked_;
   const Eigen::Vector3d behind = amperes_ - asked_;
-  const double faded = -std::expm1(-dt / lag);
+  const double faded = -math::expm1(-dt / lag);
   amperes_ = asked_ + behind * (1 - faded);
   return asked_ + behind * (faded * lag / dt);
 }
@@ -96,7 +98,7 @@ Eigen::Vector3d DriveTrain::torque(const Eigen::Vector3d& amperes,
   Eigen::Vector3d tau = torque_per_ampere_.cwiseProduct(amperes);
   if (!wavy_) return tau;
   for (int i = 0; i < 3; ++i) {
-    const double wave = std::sin(settings_.periods_per_turn * ratio_[i] * q_rotor[i]);
+    const double wave = math::sin(settings_.periods_per_turn * ratio_[i] * q_rotor[i]);
     tau[i] += tau[i] * settings_.ripple[i] * wave - ratio_[i] * settings_.cogging[i] * wave;
   }
   return tau;

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "math/elementary.h"
+
 namespace thimble::device_sim {
 
 Eigen::Vector3d Hand::at(std::int64_t time_ns) noexcept {
@@ -44,7 +46,7 @@ void Hand::approach(double dt) noexcept {
   if (far > kFarMax) x *= kFarMax / far;
   const Eigen::Vector3d p_BG = p_BH_ - x;
   const Eigen::Vector3d a = v_BH_ + kQuickness * x;
-  const double fade = std::exp(-kQuickness * dt);
+  const double fade = math::exp(-kQuickness * dt);
   p_BH_ = p_BG + fade * (x + dt * a);
   v_BH_ = fade * (v_BH_ - kQuickness * dt * a);
 }

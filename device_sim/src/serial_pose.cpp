@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/elementary.h"
+
 namespace thimble::device_sim {
 
 SerialPose::SerialPose(const driver::SerialArm& arm, const Eigen::Vector3d& p_BT) noexcept
@@ -44,7 +46,7 @@ Eigen::Vector3d SerialPose::force_from(const Eigen::Vector3d& tau) const noexcep
 }
 
 Eigen::Vector3d SerialPose::angles() const noexcept {
-  return {std::atan2(sin_a_, cos_a_), std::atan2(sin_b_, cos_b_), std::atan2(sin_c_, cos_c_)};
+  return {math::atan2(sin_a_, cos_a_), math::atan2(sin_b_, cos_b_), math::atan2(sin_c_, cos_c_)};
 }
 
 bool SerialPose::angles_near(const SerialPose& from, const Eigen::Vector3d& q_from,

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "math/elementary.h"
 #include "split_mix.h"
 
 namespace thimble::device_sim {
@@ -35,8 +36,8 @@ Tremor::Tremor(const HandSettings& hand, std::uint64_t seed)
     for (int wave = 0; wave < 3; ++wave) {
       const double phase = 2 * std::numbers::pi * random.uniform();
       // sin(w t + phase), so that one sine and cosine per frequency serve all axes.
-      sines_(axis, wave) = hand.tremor_amplitude * kShares[wave] * std::cos(phase);
-      cosines_(axis, wave) = hand.tremor_amplitude * kShares[wave] * std::sin(phase);
+      sines_(axis, wave) = hand.tremor_amplitude * kShares[wave] * math::cos(phase);
+      cosines_(axis, wave) = hand.tremor_amplitude * kShares[wave] * math::sin(phase);
     }
   }
 }
@@ -46,8 +47,9 @@ Eigen::Vector3d Tremor::at(double time) const noexcept {
   Eigen::Vector3d sine, cosine;
   for (int wave = 0; wave < 3; ++wave) {
     const double angle = angular_frequencies_[wave] * time;
-    sine[wave] = std::sin(angle);
-    cosine[wave] = std::cos(angle);
+    const math::SineCosine both = math::sin_cos(angle);
+    sine[wave] = both.sine;
+    cosine[wave] = both.cosine;
   }
   return sines_ * sine + cosines_ * cosine;
 }

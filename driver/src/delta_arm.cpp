@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "math/elementary.h"
+
 namespace thimble::driver {
 namespace {
 
@@ -14,7 +16,7 @@ struct LegEnd {
 };
 
 LegEnd leg_end(const DeltaArm& arm, std::size_t leg, const Eigen::Vector3d& p_BT) noexcept {
-  const double cos_a = std::cos(arm.azimuth[leg]), sin_a = std::sin(arm.azimuth[leg]);
+  const auto [sin_a, cos_a] = math::sin_cos(arm.azimuth[leg]);
   return {cos_a * p_BT.x() + sin_a * p_BT.y() - arm.r + arm.c,
           -sin_a * p_BT.x() + cos_a * p_BT.y() - arm.s + arm.f, p_BT.z()};
 }
@@ -33,15 +35,15 @@ Closure closure_at(const DeltaArm& arm, const Eigen::Vector3d& q,
   for (std::size_t i = 0; i < 3; ++i) {
     const auto k = static_cast<Eigen::Index>(i);
     const LegEnd end = leg_end(arm, i, p_BT);
-    const double cos_q = std::cos(q[k]), sin_q = std::sin(q[k]);
+    const auto [sin_q, cos_q] = math::sin_cos(q[k]);
     const double u = end.u - arm.a * cos_q;
     const double w = end.w - arm.a * sin_q;
-    const double rho = std::hypot(u, w);
+    const double rho = math::hypot(u, w);
     const double reach = rho - offset;
     closure.error[k] = reach * reach + end.v * end.v - arm.b * arm.b;
     // d(reach^2) = 2 reach drho, drho = (u du + w dw) / rho
     const double by_u = 2 * reach * u / rho, by_w = 2 * reach * w / rho, by_v = 2 * end.v;
-    const double cos_a = std::cos(arm.azimuth[i]), sin_a = std::sin(arm.azimuth[i]);
+    const auto [sin_a, cos_a] = math::sin_cos(arm.azimuth[i]);
     closure.by_p.row(k) << by_u * cos_a - by_v * sin_a, by_u * sin_a + by_v * cos_a, by_w;
     closure.by_q[k] = arm.a * (by_u * sin_q - by_w * cos_q);
   }
@@ -90,10 +92,10 @@ std::optional<Eigen::Vector3d> DeltaArm::inverse(const Eigen::Vector3d& p_BT) co
     if (!(side_squared > 0)) return std::nullopt;
     // In the leg's plane a triangle remains: upper link a, the rest rho, and the leg's end.
     const double rho = std::sqrt(side_squared) + d + e;
-    const double distance = std::hypot(end.u, end.w);
+    const double distance = math::hypot(end.u, end.w);
     const double cos_inner = (a * a + distance * distance - rho * rho) / (2 * a * distance);
     if (!(std::abs(cos_inner) < 1)) return std::nullopt;
-    q[static_cast<Eigen::Index>(i)] = std::atan2(end.w, end.u) - std::acos(cos_inner);
+    q[static_cast<Eigen::Index>(i)] = math::atan2(end.w, end.u) - math::acos(cos_inner);
   }
   return q;
 }

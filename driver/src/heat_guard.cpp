@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/elementary.h"
+
 namespace thimble::driver {
 namespace {
 
@@ -30,7 +32,7 @@ HeatGuard::HeatGuard(const HeatSettings& settings, const std::array<MotorDrive, 
     current_max_[i] = drives[i].current_max;
     const double peak = current_max_[i] / settings.continuous_current[i];
     const double fall = std::max(0.0, (peak * peak - 1) / (1 - kWarning));
-    const double hold = -std::expm1(-longest_hold / settings.time_constant[i]);
+    const double hold = -math::expm1(-longest_hold / settings.time_constant[i]);
     slope_[i] = std::min(fall, 1 / hold - 1);
     cool_[i] = heat_of_full_current((current_max_[i] + kRounding) / settings.continuous_current[i],
                                     slope_[i]);
@@ -45,7 +47,7 @@ void HeatGuard::advance(double dt) noexcept {
   if (!(dt > 0 && dt < HUGE_VAL)) return;
   if (dt != gain_dt_) {
     gain_dt_ = dt;
-    for (std::size_t i = 0; i < 3; ++i) gain_[i] = -std::expm1(-dt / settings_.time_constant[i]);
+    for (std::size_t i = 0; i < 3; ++i) gain_[i] = -math::expm1(-dt / settings_.time_constant[i]);
   }
   for (std::size_t i = 0; i < 3; ++i) {
     heat_[i] += gain_[i] * (load_[i] - heat_[i]);

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "climbing_link.h"
+#include "math/elementary.h"
 
 namespace thimble::driver {
 namespace {
@@ -10,7 +11,7 @@ namespace {
 /// Finds the angle at the base of a triangle, between `base` and `side`, whose third side is
 /// `across` (m); NaN if there is no such triangle.
 double angle_between(double base, double side, double across) noexcept {
-  return std::acos((base * base + side * side - across * across) / (2 * base * side));
+  return math::acos((base * base + side * side - across * across) / (2 * base * side));
 }
 
 double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) noexcept {
@@ -21,8 +22,8 @@ double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) noexcept {
 
 void LinkageArm::forward(const Eigen::Vector3d& q, Eigen::Vector3d& p_BT,
                          Eigen::Matrix3d& J_BT) const noexcept {
-  const double cos_1 = std::cos(q[1]), sin_1 = std::sin(q[1]);
-  const double cos_2 = std::cos(q[2]), sin_2 = std::sin(q[2]);
+  const auto [sin_1, cos_1] = math::sin_cos(q[1]);
+  const auto [sin_2, cos_2] = math::sin_cos(q[2]);
   // From the crank's end to the elbow, and how that turns with q1 and q2.
   const Eigen::Vector2d D(length_0 + length_1 * cos_1 - length_2 * cos_2,
                           length_1 * sin_1 - length_2 * sin_2);
@@ -32,8 +33,9 @@ void LinkageArm::forward(const Eigen::Vector3d& q, Eigen::Vector3d& p_BT,
   const double along =
       (D.squaredNorm() + length_4 * length_4 - length_3 * length_3) / (2 * length_4);
   // acos of more than one is NaN, and stays NaN in all that follows.
-  const double lambda = std::atan2(D.y(), D.x()) - std::acos(along / D.norm());
-  const Eigen::Vector2d u(std::cos(lambda), std::sin(lambda));
+  const double lambda = math::atan2(D.y(), D.x()) - math::acos(along / D.norm());
+  const auto [sin_lambda, cos_lambda] = math::sin_cos(lambda);
+  const Eigen::Vector2d u(cos_lambda, sin_lambda);
   const Eigen::Vector2d across(-u.y(), u.x());
   const Eigen::Vector2d lambda_by_D = (D / length_4 - u) / D.dot(across);
   const Eigen::Vector2d lambda_by(lambda_by_D.dot(D_by_1), lambda_by_D.dot(D_by_2));
@@ -43,7 +45,7 @@ void LinkageArm::forward(const Eigen::Vector3d& q, Eigen::Vector3d& p_BT,
   const double r_by_2 = length_5 * across.x() * lambda_by[1];
   const double h_by_1 = length_1 * cos_1 + length_5 * across.y() * lambda_by[0];
   const double h_by_2 = length_5 * across.y() * lambda_by[1];
-  const double cos_0 = std::cos(q[0]), sin_0 = std::sin(q[0]);
+  const auto [sin_0, cos_0] = math::sin_cos(q[0]);
   p_BT = {r * cos_0, r * sin_0, length_1 * sin_1 + length_5 * u.y()};
   // clang-format off
   J_BT << -r * sin_0, r_by_1 * cos_0, r_by_2 * cos_0,
@@ -54,29 +56,30 @@ void LinkageArm::forward(const Eigen::Vector3d& q, Eigen::Vector3d& p_BT,
 
 Eigen::Matrix3d LinkageArm::last_link(const Eigen::Vector3d& q,
                                       const Eigen::Vector3d& p_BT) const noexcept {
-  const double cos_0 = std::cos(q[0]), sin_0 = std::sin(q[0]);
+  const auto [sin_0, cos_0] = math::sin_cos(q[0]);
   const double r = p_BT.x() * cos_0 + p_BT.y() * sin_0;
-  const double out = r - length_0 / 2 - length_1 * std::cos(q[1]);
-  const double up = p_BT.z() - length_1 * std::sin(q[1]);
+  const auto [sin_1, cos_1] = math::sin_cos(q[1]);
+  const double out = r - length_0 / 2 - length_1 * cos_1;
+  const double up = p_BT.z() - length_1 * sin_1;
   return climbing_link(cos_0, sin_0, out / length_5, up / length_5);
 }
 
 std::optional<Eigen::Vector3d> LinkageArm::inverse(const Eigen::Vector3d& p_BT) const noexcept {
   // In the arm's plane, with the front motor at the origin.
-  const double r = std::hypot(p_BT.x(), p_BT.y());
+  const double r = math::hypot(p_BT.x(), p_BT.y());
   const Eigen::Vector2d tip(r - length_0 / 2, p_BT.z());
-  const double q1 = std::atan2(tip.y(), tip.x()) + angle_between(tip.norm(), length_1, length_5);
-  const Eigen::Vector2d elbow = length_1 * Eigen::Vector2d(std::cos(q1), std::sin(q1));
+  const double q1 = math::atan2(tip.y(), tip.x()) + angle_between(tip.norm(), length_1, length_5);
+  const Eigen::Vector2d elbow = length_1 * Eigen::Vector2d(math::cos(q1), math::sin(q1));
   const Eigen::Vector2d u = (tip - elbow) / length_5;
   // From the back motor to where bar 3 meets the forearm's other end.
   const Eigen::Vector2d joint = elbow - length_4 * u + Eigen::Vector2d(length_0, 0);
-  const double middle = std::atan2(joint.y(), joint.x());
+  const double middle = math::atan2(joint.y(), joint.x());
   const double aside = angle_between(joint.norm(), length_2, length_3);
   for (const double q2 : {middle + aside, middle - aside}) {
     // `forward` turns clockwise from the crank's end to the forearm; so must this.
-    const Eigen::Vector2d bar_3 = joint - length_2 * Eigen::Vector2d(std::cos(q2), std::sin(q2));
+    const Eigen::Vector2d bar_3 = joint - length_2 * Eigen::Vector2d(math::cos(q2), math::sin(q2));
     if (!(cross(u, bar_3) > 0)) continue;
-    return Eigen::Vector3d(std::atan2(p_BT.y(), p_BT.x()), q1, q2);
+    return Eigen::Vector3d(math::atan2(p_BT.y(), p_BT.x()), q1, q2);
   }
   return std::nullopt;
 }

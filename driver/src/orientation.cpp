@@ -4,22 +4,25 @@
 #include <cmath>
 #include <numbers>
 
+#include "math/elementary.h"
+
 namespace thimble::driver {
 namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
 
+}  // namespace
+
 Eigen::Matrix3d rotation_about(FrameAxis axis, double angle) noexcept {
   const auto a = static_cast<Eigen::Index>(axis);
   const Eigen::Index b = (a + 1) % 3, c = (a + 2) % 3;
   Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
-  R(b, b) = R(c, c) = std::cos(angle);
-  R(c, b) = std::sin(angle);
+  const auto [sine, cosine] = math::sin_cos(angle);
+  R(b, b) = R(c, c) = cosine;
+  R(c, b) = sine;
   R(b, c) = -R(c, b);
   return R;
 }
-
-}  // namespace
 
 TipQuaternion quaternion_of(const Eigen::Matrix3d& R) noexcept {
   const Eigen::Quaterniond q(R);

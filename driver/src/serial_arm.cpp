@@ -3,14 +3,15 @@
 #include <cmath>
 
 #include "climbing_link.h"
+#include "math/elementary.h"
 
 namespace thimble::driver {
 
 void SerialArm::forward(const Eigen::Vector3d& q, Eigen::Vector3d& p_BT,
                         Eigen::Matrix3d& J_BT) const noexcept {
-  const double sin_a = std::sin(q[0]), cos_a = std::cos(q[0]);
-  const double sin_b = std::sin(q[1]), cos_b = std::cos(q[1]);
-  const double sin_c = std::sin(q[2]), cos_c = std::cos(q[2]);
+  const auto [sin_a, cos_a] = math::sin_cos(q[0]);
+  const auto [sin_b, cos_b] = math::sin_cos(q[1]);
+  const auto [sin_c, cos_c] = math::sin_cos(q[2]);
   const double r = length_b * sin_b + length_c * sin_c;
   p_BT = {r * cos_a, r * sin_a, height + length_b * cos_b - length_c * cos_c};
   // clang-format off
@@ -21,9 +22,11 @@ void SerialArm::forward(const Eigen::Vector3d& q, Eigen::Vector3d& p_BT,
 }
 
 Eigen::Vector3d SerialArm::forward(const Eigen::Vector3d& q) const noexcept {
-  const double r = length_b * std::sin(q[1]) + length_c * std::sin(q[2]);
-  return {r * std::cos(q[0]), r * std::sin(q[0]),
-          height + length_b * std::cos(q[1]) - length_c * std::cos(q[2])};
+  const auto [sin_a, cos_a] = math::sin_cos(q[0]);
+  const auto [sin_b, cos_b] = math::sin_cos(q[1]);
+  const auto [sin_c, cos_c] = math::sin_cos(q[2]);
+  const double r = length_b * sin_b + length_c * sin_c;
+  return {r * cos_a, r * sin_a, height + length_b * cos_b - length_c * cos_c};
 }
 
 Eigen::Matrix3d SerialArm::jacobian(const Eigen::Vector3d& q) const noexcept {
@@ -36,11 +39,13 @@ Eigen::Matrix3d SerialArm::jacobian(const Eigen::Vector3d& q) const noexcept {
 Eigen::Matrix3d SerialArm::last_link(const Eigen::Vector3d& q,
                                      const Eigen::Vector3d&) const noexcept {
   // Link C climbs by C - 90 degrees.
-  return climbing_link(std::cos(q[0]), std::sin(q[0]), std::sin(q[2]), -std::cos(q[2]));
+  const auto [sin_a, cos_a] = math::sin_cos(q[0]);
+  const auto [sin_c, cos_c] = math::sin_cos(q[2]);
+  return climbing_link(cos_a, sin_a, sin_c, -cos_c);
 }
 
 std::optional<Eigen::Vector3d> SerialArm::inverse(const Eigen::Vector3d& p_BT) const noexcept {
-  const double r = std::hypot(p_BT.x(), p_BT.y());
+  const double r = math::hypot(p_BT.x(), p_BT.y());
   const double z = p_BT.z() - height;
   const double distance_squared = r * r + z * z;
   // The law of cosines gives the angle between the links, B + C.
@@ -51,8 +56,8 @@ std::optional<Eigen::Vector3d> SerialArm::inverse(const Eigen::Vector3d& p_BT) c
   // r = u sin(B) + w cos(B) and z = u cos(B) - w sin(B), solved for B.
   const double u = length_b - length_c * cos_sum;
   const double w = length_c * sin_sum;
-  const double b = std::atan2(u * r - w * z, w * r + u * z);
-  return Eigen::Vector3d{std::atan2(p_BT.y(), p_BT.x()), b, std::atan2(sin_sum, cos_sum) - b};
+  const double b = math::atan2(u * r - w * z, w * r + u * z);
+  return Eigen::Vector3d{math::atan2(p_BT.y(), p_BT.x()), b, math::atan2(sin_sum, cos_sum) - b};
 }
 
 }  // namespace thimble::driver

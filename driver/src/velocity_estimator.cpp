@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "math/elementary.h"
+
 namespace thimble::driver {
 
 VelocityEstimator::VelocityEstimator(double corner_frequency) noexcept
@@ -18,7 +20,7 @@ Eigen::Vector3d VelocityEstimator::update(const Eigen::Vector3d& p, double dt) n
   if (!(dt > 0)) return v_;
   if (corner_frequency_ > 0 && dt != pole_dt_) {
     pole_dt_ = dt;
-    gain_ = -std::expm1(-2 * std::numbers::pi * corner_frequency_ * dt);
+    gain_ = -math::expm1(-2 * std::numbers::pi * corner_frequency_ * dt);
   }
   v_ += gain_ * ((p - p_) / dt - v_);
   p_ = p;

@@ -36,8 +36,9 @@ TEST(Determinism, TheRunIsTheOneThatWasStored) {
   THIMBLE_NEEDS_MESHES();
   // One hash for every build type: release, sanitizers and debug give the same bits. A change of
   // the scene, the arm's data or any force shows here; store the new hash only if it was meant. It
-  // holds for x86-64 with FMA and glibc 2.36, whose sine and cosine it contains.
-  constexpr std::uint64_t kStored = 0x4216be55b279413c;
+  // holds for any x86-64 and any C library: nothing in a run calls a sine of that one
+  // (arch.one_mathematics).
+  constexpr std::uint64_t kStored = 0xccbd688498ddf1c5;
   EXPECT_EQ(hash_of_run(1), kStored) << "new hash: 0x" << std::hex << hash_of_run(1);
 }
 
@@ -66,9 +67,9 @@ TEST(HardCase41, ScenesGiveTheBitsThatWereStoredAloneAndFourAtOnce) {
     std::uint64_t hash;
   };
   int others = 0, runs = 0;
-  for (const Stored& stored : {Stored{"box", 0xa23f75401db0979e},
+  for (const Stored& stored : {Stored{"box", 0x31be2ef0e15c24ea},
                                {"clay", 0x69b3cf6085094106},
-                               {"clay_tablet", 0x2bb8151dd77192aa},
+                               {"clay_tablet", 0xebbcbdf45956abd0},
                                {"floating_block", 0x5e14def3f8c3a7ef}}) {
     std::array<std::uint64_t, 5> found{};
     found[4] = hash_of_scene(stored.scene);

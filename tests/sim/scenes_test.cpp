@@ -81,13 +81,13 @@ TEST_P(ShippedScene, RunsForItsWholeTimeAlikeEachTimeWithoutAFaultALostContactOr
 INSTANTIATE_TEST_SUITE_P(
     ByName, ShippedScene,
     ::testing::Values(
-        SceneRun{"box", 0x7e4eadc0b6728987}, SceneRun{"charges", 0xd6e76a71dffd8cbc},
-        SceneRun{"clay", 0x435bc4b06f4086eb}, SceneRun{"clay_tablet", 0xf35f8ec61fe5a4cf},
-        SceneRun{"floating_block", 0xbdd15f73ab2d0fb2}, SceneRun{"held_block", 0xf824812d2806179e},
-        SceneRun{"honey", 0x7d98d88dfa39f30d}, SceneRun{"ice", 0x6e2ee3a159ae9abd},
-        SceneRun{"rubber", 0x9ea2389fd2adb60e}, SceneRun{"sandpaper", 0x9bdc666aaa8d1117},
-        SceneRun{"soft_coarse", 0xa3504a55e70fbb5e}, SceneRun{"tin_can", 0xf9ea692b6b907702},
-        SceneRun{"trampoline", 0x8b82dd842368ff6e}, SceneRun{"water_balloon", 0xe1610059b3ad5311}),
+        SceneRun{"box", 0xba50c397c9cd8e8c}, SceneRun{"charges", 0xb6c379285666609d},
+        SceneRun{"clay", 0xc8ff4682e3cacd48}, SceneRun{"clay_tablet", 0x54f6351a970f115c},
+        SceneRun{"floating_block", 0x4fb581957f1b5fa6}, SceneRun{"held_block", 0x3fcbf01b39d6a913},
+        SceneRun{"honey", 0x1e603288038b7890}, SceneRun{"ice", 0xef61daa9ee271ae8},
+        SceneRun{"rubber", 0xfc4623e024984446}, SceneRun{"sandpaper", 0xaf609a811233ef3d},
+        SceneRun{"soft_coarse", 0x616f62bc7419671e}, SceneRun{"tin_can", 0xdad6277291968491},
+        SceneRun{"trampoline", 0xa542e4775591bda}, SceneRun{"water_balloon", 0xe1610059b3ad5311}),
     [](const auto& scene) { return std::string(scene.param.name); });
 
 TEST(BoxScene, TurnsTheForceInWedgesButNotByTheEntryFace) {

@@ -166,6 +166,18 @@ DeclaredLimits read_declared(YamlMap map) {
   return declared;
 }
 
+/// Reads what of the arm's weight its motors carry: at most a third of the force that the gate lets
+/// through [chosen: so that most of it is left for the scene].
+double read_carried_weight(YamlMap map, const ArmFile& arm) {
+  const double weight = map.require_number("weight", "N", 0, 10);
+  if (weight > arm.limits.force_max / 3) {
+    map.reject("weight", fmt::format("expected at most a third of the gate's force_max, {:.3g} N",
+                                     arm.limits.force_max / 3));
+  }
+  map.finish();
+  return weight;
+}
+
 std::vector<driver::BoardKind> read_boards(YamlMap& root, const driver::ArmRow& row) {
   const std::span<const driver::BoardKind> fitting(row.boards.data(), row.board_count);
   std::vector<driver::BoardKind> boards;
@@ -255,6 +267,9 @@ driver::Result<ArmFile> read_arm(YamlFile& yaml) {
   arm.workspace = read_workspace(root.require_map("workspace"));
   arm.declared = read_declared(root.require_map("declared"));
   arm.limits = read_gate(root.require_map("gate"), arm);
+  if (root.has("gravity_compensation")) {
+    arm.carried_weight = read_carried_weight(root.require_map("gravity_compensation"), arm);
+  }
   arm.velocity_corner_frequency = root.require_number("velocity_corner_frequency", "Hz", 0, 1e5);
   if (arm.is<driver::ToldArm>() && root.has("simulation")) {
     root.reject("simulation", "an arm behind a vendor's service or library cannot be simulated");

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "loop_latency.h"
+#include "math/elementary.h"
 #include "worst_direction.h"
 
 namespace thimble::scene {
@@ -29,7 +30,7 @@ driver::EnergyGuardSettings energy_settings(const ArmFile& arm, double rate,
   settings.onset = kEnergyOnset;
   // One count moves the estimate by its gain times step over period.
   const double corner = 2 * std::numbers::pi * arm.velocity_corner_frequency;
-  const double gain = corner > 0 ? -std::expm1(-corner / rate) : 1;
+  const double gain = corner > 0 ? -math::expm1(-corner / rate) : 1;
   settings.speed_floor = gain * rate * worst_over_workspace(arm, 3).encoder_step;
   settings.slope = choice.slope.value_or(stiffness_limit(arm.simulated.plant.viscous, latency));
   // Nothing but a ring of torques depends on it: beyond the ring's end the last one stands.

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "log/logger.h"
+#include "math/elementary.h"
 #include "user_folders.h"
 #include "yaml/yaml_reader.h"
 
@@ -66,7 +67,7 @@ KnownHeat load_heat(const std::string& name, const driver::HeatSettings& setting
   const double passed = std::max(0.0, now - kept_at);
   for (std::size_t i = 0; i < 3; ++i) {
     known.heat[i] =
-        heat[static_cast<Eigen::Index>(i)] * std::exp(-passed / settings.time_constant[i]);
+        heat[static_cast<Eigen::Index>(i)] * math::exp(-passed / settings.time_constant[i]);
   }
   return known;
 }

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "math/elementary.h"
+
 namespace thimble::scene {
 
 double latency_of(const LoopTimes& times) {
@@ -13,7 +15,7 @@ double latency_of(const LoopTimes& times) {
 
 double low_pass_lag(double corner, double period) {
   if (corner == 0) return 0;
-  const double gain = -std::expm1(-2 * std::numbers::pi * corner * period);
+  const double gain = -math::expm1(-2 * std::numbers::pi * corner * period);
   return period * (1 - gain) / gain;
 }
 

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <numbers>
 
+#include "math/elementary.h"
+
 namespace thimble::scene {
 namespace {
 
@@ -46,8 +48,8 @@ render::TriangleMesh sphere_mesh(const render::Sphere& ball) {
     for (int k = 0; k < kAround; ++k) {
       const double round = 2 * std::numbers::pi * k / kAround;
       mesh.vertices.emplace_back(
-          ball.p_WO + ball.radius * Vector3d(std::sin(down) * std::cos(round),
-                                             std::sin(down) * std::sin(round), std::cos(down)));
+          ball.p_WO + ball.radius * Vector3d(math::sin(down) * math::cos(round),
+                                             math::sin(down) * math::sin(round), math::cos(down)));
     }
   }
   mesh.vertices.emplace_back(ball.p_WO - ball.radius * Vector3d::UnitZ());

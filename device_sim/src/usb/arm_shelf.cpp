@@ -9,6 +9,7 @@
 #include "arms/hfab/hfab_models.h"
 #include "arms/hfab/hfab_report.h"
 #include "arms/woody/woody_report.h"
+#include "math/elementary.h"
 #include "usb/board_descriptions.h"
 #include "usb/falcon_on_usb.h"
 #include "usb/hid_arm.h"
@@ -36,9 +37,9 @@ Eigen::Vector3d offset(HandMotion motion, double reach, double time) {
     case HandMotion::kRest:
       break;
     case HandMotion::kTap:
-      return {0, 0, -reach * std::sin(kTwoPi * time)};
+      return {0, 0, -reach * math::sin(kTwoPi * time)};
     case HandMotion::kStroke:
-      return {0, reach * std::sin(kTwoPi * time / 2), kReach * (std::cos(kTwoPi * time / 2) - 1)};
+      return {0, reach * math::sin(kTwoPi * time / 2), kReach * (math::cos(kTwoPi * time / 2) - 1)};
   }
   return {0, 0, 0};
 }

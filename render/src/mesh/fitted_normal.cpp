@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "math/elementary.h"
+
 namespace thimble::render {
 namespace {
 
@@ -52,7 +54,7 @@ Vector3d fitted_normal(const Vector3d& vertex, std::span<const Vector3d> around,
   const auto pivots = solver.vectorD();
   if (!(pivots.minCoeff() > kPivotMin * pivots.maxCoeff())) return about;
   const Coefficients fit = solver.solve(right);
-  if (!(std::hypot(fit[0], fit[1]) <= kLeanMax)) return about;
+  if (!(math::hypot(fit[0], fit[1]) <= kLeanMax)) return about;
   return (about - fit[0] * axis_u - fit[1] * axis_v).normalized();
 }
 

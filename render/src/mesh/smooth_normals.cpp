@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/elementary.h"
 #include "mesh/fitted_normal.h"
 #include "mesh/vertex_normals.h"
 
@@ -26,7 +27,7 @@ double weight_of(const ContactMesh& mesh, NormalWeights weights, std::int32_t tr
 SmoothNormals::SmoothNormals(const ContactMesh& mesh, double crease_angle, NormalWeights weights,
                              double hollow_crease_angle)
     : crease_angle_(crease_angle),
-      crease_cosine_(std::cos(crease_angle)),
+      crease_cosine_(math::cos(crease_angle)),
       hollow_crease_angle_(std::min(crease_angle, hollow_crease_angle)),
       weights_(weights) {
   const auto count = static_cast<std::size_t>(mesh.triangle_count());
@@ -66,7 +67,7 @@ void SmoothNormals::find_crease(const ContactMesh& mesh, std::int32_t triangle,
   const double cosine = n.dot(behind);
   const bool hollow = cell.hollow_edge(k);
   const double limit = hollow ? hollow_crease_angle_ : crease_angle_;
-  const double limit_cosine = hollow ? std::cos(hollow_crease_angle_) : crease_cosine_;
+  const double limit_cosine = hollow ? math::cos(hollow_crease_angle_) : crease_cosine_;
   const bool clear = std::abs(cosine - limit_cosine) > kClear;
   const bool sharp = clear ? cosine < limit_cosine : corner_angle(n, behind) > limit;
   const auto bit = static_cast<std::uint8_t>(1U << k);

@@ -4,12 +4,14 @@
 #include <array>
 #include <cmath>
 
+#include "math/elementary.h"
+
 namespace thimble::render {
 
 using Eigen::Vector3d;
 
 double corner_angle(const Vector3d& to_next, const Vector3d& to_last) noexcept {
-  return std::atan2(to_next.cross(to_last).norm(), to_next.dot(to_last));
+  return math::atan2(to_next.cross(to_last).norm(), to_next.dot(to_last));
 }
 
 std::vector<Vector3d> vertex_normals(const TriangleMesh& mesh) {

@@ -1,11 +1,11 @@
 #include "packed/block_order.h"
 
-#include <xmmintrin.h>
-
 #include <algorithm>
 #include <cstddef>
 #include <limits>
 #include <tuple>
+
+#include "packed/sse2.h"
 
 namespace thimble::render {
 namespace {

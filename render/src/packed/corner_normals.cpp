@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "math/elementary.h"
 #include "mesh/smooth_normals.h"
 
 namespace thimble::render {
@@ -93,13 +94,13 @@ std::ptrdiff_t assign_corner_normals(const std::vector<Vector3d>& vertices,
     const double twice_area = area.stableNorm();
     if (!(twice_area > 0)) return static_cast<std::ptrdiff_t>(t);
     faces.normals[t] = area / twice_area;
-    const double at_a = std::atan2(twice_area, ab.dot(ac));
-    const double at_b = std::atan2(twice_area, -ab.dot(ac - ab));
+    const double at_a = math::atan2(twice_area, ab.dot(ac));
+    const double at_b = math::atan2(twice_area, -ab.dot(ac - ab));
     faces.angles[t] = {static_cast<float>(at_a), static_cast<float>(at_b),
                        static_cast<float>(std::numbers::pi - at_a - at_b)};
   }
-  const double crease_cosine = std::cos(crease_angle);
-  const double hollow_cosine = std::cos(std::min(crease_angle, kHollowCreaseAngle));
+  const double crease_cosine = math::cos(crease_angle);
+  const double hollow_cosine = math::cos(std::min(crease_angle, kHollowCreaseAngle));
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     std::uint32_t flags = 0;
     for (std::size_t k = 0; k < 3; ++k) {

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <emmintrin.h>
-
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
@@ -12,6 +10,7 @@
 #include "mesh/depth_below_hollow.h"
 #include "packed/offset_place.h"
 #include "packed/packed_surface.h"
+#include "packed/sse2.h"
 #include "packed/wide_lanes.h"
 
 namespace thimble::render {

@@ -1,7 +1,5 @@
 #include "packed/packed_surface.h"
 
-#include <emmintrin.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,6 +10,7 @@
 #include "mesh/half_edges.h"
 #include "packed/block_order.h"
 #include "packed/corner_normals.h"
+#include "packed/sse2.h"
 #include "packed/surface_rise.h"
 
 namespace thimble::render {

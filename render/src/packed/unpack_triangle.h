@@ -1,10 +1,9 @@
 #pragma once
 
-#include <emmintrin.h>
-
 #include <cstdint>
 
 #include "packed/packed_surface.h"
+#include "packed/sse2.h"
 
 // One packed triangle unpacked into lanes, three vectors or two sides at once: what OffsetTriangle
 // and rise_above are made from. Real-time: safe.

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <emmintrin.h>
 #if defined(__x86_64__)
 #include <immintrin.h>
 #endif
@@ -15,6 +14,7 @@
 
 #include "mesh/contact_mesh.h"
 #include "packed/packed_surface.h"
+#include "packed/sse2.h"
 #include "search/box_node.h"
 #include "search/near_list.h"
 #include "search/nearest_so_far.h"

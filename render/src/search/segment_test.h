@@ -1,7 +1,5 @@
 #pragma once
 
-#include <emmintrin.h>
-
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
@@ -10,6 +8,7 @@
 
 #include "mesh/segment_crossing.h"
 #include "packed/packed_surface.h"
+#include "packed/sse2.h"
 #include "search/contact_search.h"
 
 namespace thimble::render {

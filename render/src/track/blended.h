@@ -36,6 +36,9 @@ class Blended {
   Blended(Contact contact, Shading shading, std::shared_ptr<const SmoothNormals> normals)
       : Blended(std::move(contact), std::move(shading), std::move(normals), kCreaseAngle) {}
 
+  /// As its contact's does.
+  static constexpr bool kCopiesCheaply = Contact::kCopiesCheaply;
+
   /// Finds the contact at `state.p_WT` (W, m) and keeps it until the next call.
   const ContactState& update(const driver::DeviceState& state) noexcept {
     state_ = contact_.update(state);

@@ -61,6 +61,9 @@ class GodObjectContact {
                                                 const ContactMeshOptions& options = {},
                                                 std::optional<SearchChoice> search = {});
 
+  /// A copy shares mesh and search, and takes nothing from the heap.
+  static constexpr bool kCopiesCheaply = true;
+
   /// Finds the contact at `state.p_WT` (W, m) and keeps it until the next call.
   ///
   /// `p_WP` is the proxy: outside the mesh by about its rounding.

@@ -75,6 +75,9 @@ class MemoryContact : public PackedContact<MemoryStore> {
   static driver::Result<MemoryContact> build(const TriangleMesh& mesh,
                                              const PackedSurfaceOptions& options = {});
 
+  /// A copy shares mesh and search, and takes nothing from the heap.
+  static constexpr bool kCopiesCheaply = true;
+
   const PackedSurface& surface() const noexcept { return store().surface(); }
   const ContactSearch& search() const noexcept { return store().search(); }
 };

@@ -60,6 +60,9 @@ class TrackedContact {
     return TrackedContact(std::move(prepared).value(), search);
   }
 
+  /// A copy shares mesh and search, and takes nothing from the heap.
+  static constexpr bool kCopiesCheaply = true;
+
   /// Finds the contact at `state.p_WT` (W, m) and keeps it until the next call.
   ///
   /// Contact begins when the path since the last tick enters the mesh, however fast, and the

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <emmintrin.h>
-
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
@@ -9,6 +7,7 @@
 #include <cstdint>
 
 #include "packed/packed_surface.h"
+#include "packed/sse2.h"
 
 namespace thimble::render {
 

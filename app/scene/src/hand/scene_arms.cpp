@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "hand/read_hand.h"
+#include "math/elementary.h"
 #include "thimble/scene/shipped_files.h"
 
 namespace thimble::scene {
@@ -39,7 +40,7 @@ ArmPlace read_place(YamlMap map) {
   }
   // Exact for quarters of a turn.
   const double turn = std::round(quarters) * std::numbers::pi / 2;
-  const double c = std::round(std::cos(turn)), s = std::round(std::sin(turn));
+  const double c = std::round(math::cos(turn)), s = std::round(math::sin(turn));
   ArmPlace place;
   place.R << c, -s, 0, s, c, 0, 0, 0, 1;
   place.p = p;

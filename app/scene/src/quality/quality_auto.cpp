@@ -9,6 +9,7 @@
 #include <numbers>
 #include <utility>
 
+#include "math/elementary.h"
 #include "mesh/repair/orient_mesh.h"
 #include "place_mesh.h"
 #include "quality/quality_table.h"
@@ -41,8 +42,8 @@ struct Knob {
 // nearer one.
 double between(double x, const ContactPoint& a, const ContactPoint& b, double of_a, double of_b) {
   if (!(of_a > 0 && of_b > 0)) return of_a;
-  const double share = std::clamp(std::log(x / a.turn) / std::log(b.turn / a.turn), 0.0, 1.0);
-  return std::exp((1 - share) * std::log(of_a) + share * std::log(of_b));
+  const double share = std::clamp(math::log(x / a.turn) / math::log(b.turn / a.turn), 0.0, 1.0);
+  return math::exp((1 - share) * math::log(of_a) + share * math::log(of_b));
 }
 
 std::string words_of(const ContactPoint& point) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "math/elementary.h"
 #include "mesh/smooth_normals.h"
 
 namespace thimble::scene {
@@ -32,7 +33,7 @@ double typical_turn(const render::ContactMesh& mesh) {
       if (other < t) continue;
       const Eigen::Vector3d& n = mesh.cell(t).face.n;
       const Eigen::Vector3d& m = mesh.cell(other).face.n;
-      const double turn = std::atan2(n.cross(m).norm(), n.dot(m));
+      const double turn = math::atan2(n.cross(m).norm(), n.dot(m));
       if (turn < render::kCreaseAngle) turns.push_back(turn);
     }
   }

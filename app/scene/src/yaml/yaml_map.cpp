@@ -1,12 +1,13 @@
 #include "yaml/yaml_reader.h"
 
-#include <Eigen/Geometry>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
 #include <optional>
 
+#include "thimble/driver/orientation.h"
 #include "yaml/renamed_keys.h"
 #include "yaml/yaml_words.h"
 
@@ -160,8 +161,9 @@ Eigen::Matrix3d YamlMap::optional_rotation(std::string_view key) {
     if (!read_number(*entry, turn[1], number_in_words("degrees", -360, 360), -360, 360, degrees)) {
       return Eigen::Matrix3d::Identity();
     }
-    const Eigen::Vector3d direction = Eigen::Vector3d::Unit(axis[0] - 'x');
-    R = Eigen::AngleAxisd(degrees * std::numbers::pi / 180, direction).toRotationMatrix() * R;
+    R = driver::rotation_about(static_cast<driver::FrameAxis>(axis[0] - 'x'),
+                               degrees * std::numbers::pi / 180) *
+        R;
   }
   return R;
 }

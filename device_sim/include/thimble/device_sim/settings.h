@@ -2,9 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <cmath>
 #include <cstdint>
-#include <numbers>
 
 #include "thimble/driver/board.h"
 #include "thimble/driver/result.h"
@@ -39,15 +37,7 @@ struct GimbalMotion {
   double period = 2;                   ///< s. Must be > 0.
 
   /// Returns the angles of the gimbal at a time (s), rad. Real-time: safe.
-  Eigen::Vector3d at(double time) const noexcept {
-    if (amplitude.isZero(0)) return middle;
-    Eigen::Vector3d angles = middle;
-    for (Eigen::Index i = 0; i < 3; ++i) {
-      const double turns = time / period - static_cast<double>(i) / 3;
-      angles[i] += amplitude[i] * std::sin(2 * std::numbers::pi * turns);
-    }
-    return angles;
-  }
+  Eigen::Vector3d at(double time) const noexcept;
 };
 
 /// Describes motors and amplifiers.

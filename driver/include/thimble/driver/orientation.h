@@ -24,6 +24,10 @@ enum class FrameAxis : std::uint8_t {
   kZ,  ///< z
 };
 
+/// Returns the rotation about an axis by an angle (rad), anticlockwise as seen from the axis's end.
+/// Real-time: safe.
+Eigen::Matrix3d rotation_about(FrameAxis axis, double angle) noexcept;
+
 /// A gimbal between the last link of an arm and the stylus that the hand holds: three axes, one
 /// behind the other, each with an encoder and no motor. Data of one model, no state.
 ///

@@ -4,6 +4,8 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "math/elementary.h"
+
 namespace thimble::render {
 
 /// Turn of a free rigid body in time: order 4, and the angular momentum kept whatever the step is.
@@ -59,7 +61,8 @@ class FreeTurn {
   static HalfTurn half_turn(double x2) noexcept {
     if (!(x2 <= 0.0625)) {
       const double x = std::sqrt(x2);
-      return {std::cos(x), std::sin(x) / x};
+      const auto [sine, cosine] = math::sin_cos(x);
+      return {cosine, sine / x};
     }
     const double x4 = x2 * x2;
     const double cosine =

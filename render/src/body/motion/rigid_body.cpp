@@ -5,6 +5,8 @@
 #include <cmath>
 #include <string>
 
+#include "math/elementary.h"
+
 namespace thimble::render {
 namespace {
 
@@ -93,10 +95,10 @@ void RigidBody::fade() noexcept {
 void RigidBody::prepare_fading(double time) noexcept {
   if (fading_.time == time) return;
   fading_.time = time;
-  fading_.momentum = std::exp(-settings_.damping / settings_.mass.mass * time / 2);
+  fading_.momentum = math::exp(-settings_.damping / settings_.mass.mass * time / 2);
   for (int k = 0; k < 3; ++k) {
     fading_.angular[k] =
-        std::exp(-settings_.angular_damping / settings_.mass.inertia[k] * time / 2);
+        math::exp(-settings_.angular_damping / settings_.mass.inertia[k] * time / 2);
   }
 }
 

@@ -5,6 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include "math/elementary.h"
+
 namespace thimble::render {
 namespace {
 
@@ -17,7 +19,7 @@ Vector3d direction(int i) {
   const double z = 1 - (2 * i + 1.0) / kDirections;
   const double turn = std::numbers::pi * (3 - std::sqrt(5.0)) * i;  // the golden angle
   const double r = std::sqrt(1 - z * z);
-  return {r * std::cos(turn), r * std::sin(turn), z};
+  return {r * math::cos(turn), r * math::sin(turn), z};
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "math/elementary.h"
+
 namespace thimble::render {
 namespace {
 
@@ -43,7 +45,7 @@ SnapShape::SnapShape(const SnapChoice& choice, double stiffness, const ContactMe
 double SnapShape::profile(double distance) const noexcept {
   const double s = (distance / choice_.radius - kPlateau) / (1 - kPlateau);
   if (!(s < 1)) return 0;
-  const double half = std::cos(std::numbers::pi / 2 * std::max(s, 0.0));
+  const double half = math::cos(std::numbers::pi / 2 * std::max(s, 0.0));
   return half * half;
 }
 

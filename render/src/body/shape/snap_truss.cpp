@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/elementary.h"
+
 namespace thimble::render {
 
 SnapTruss::SnapTruss(double half_span, double rise, double bar_stiffness) noexcept {
@@ -11,7 +13,7 @@ SnapTruss::SnapTruss(double half_span, double rise, double bar_stiffness) noexce
   half_span_ = half_span;
   rise_ = rise;
   k_ = bar_stiffness;
-  bar_ = std::hypot(half_span, rise);
+  bar_ = math::hypot(half_span, rise);
 }
 
 // How much shorter the bars are than at rest: L0^2 - L^2 = u (2 H - u), without the cancellation of
@@ -22,24 +24,24 @@ double SnapTruss::shortening(double u, double length) const noexcept {
 
 double SnapTruss::force(double u) const noexcept {
   const double y = rise_ - u;
-  const double length = std::hypot(half_span_, y);
+  const double length = math::hypot(half_span_, y);
   return 2 * k_ * shortening(u, length) / length * y;
 }
 
 double SnapTruss::energy(double u) const noexcept {
-  const double shorter = shortening(u, std::hypot(half_span_, rise_ - u));
+  const double shorter = shortening(u, math::hypot(half_span_, rise_ - u));
   return k_ * shorter * shorter;
 }
 
 double SnapTruss::stiffness(double u) const noexcept {
-  const double length = std::hypot(half_span_, rise_ - u);
+  const double length = math::hypot(half_span_, rise_ - u);
   return 2 * k_ * (1 - bar_ * half_span_ * half_span_ / (length * length * length));
 }
 
 std::optional<double> SnapTruss::limit_point(double spring) const noexcept {
   // Where the stiffness of the truss is minus that of the spring.
   if (!valid() || !(spring >= 0)) return std::nullopt;
-  const double length = std::cbrt(bar_ * half_span_ * half_span_ / (1 + spring / (2 * k_)));
+  const double length = math::cbrt(bar_ * half_span_ * half_span_ / (1 + spring / (2 * k_)));
   if (!(length > half_span_)) return std::nullopt;
   return rise_ - std::sqrt((length - half_span_) * (length + half_span_));
 }

@@ -3,18 +3,20 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/wide.h"
+
 namespace thimble::render {
 namespace {
 
-// Long double throughout: at k = 1e5 N/m, m = 1 mg and 30 ms the phase is 9,500 rad, and in double
-// its rounding alone would be 1e-12.
-using Real = long double;
+// Twice the bits of a double throughout: at k = 1e5 N/m, m = 1 mg and 30 ms the phase is 9,500 rad,
+// and in double its rounding alone would be 1e-12. A long double has other bits on each processor.
+using Real = math::DoubleDouble;
 
 // Per unit mass: x'' + 2 a x' + w2 x = g.
 struct Rates {
-  Real a;   // 1/s
-  Real w2;  // 1/s^2
-  Real h;   // s
+  Real a;    // 1/s
+  Real w2;   // 1/s^2
+  double h;  // s
 };
 
 struct Flow {
@@ -23,7 +25,7 @@ struct Flow {
 
 // Below this phase and damping per step the series is short and loses no digits; it also holds
 // where the spring is so soft that 1 - xx would.
-constexpr Real kSeriesPhase = 1.5L;
+constexpr double kSeriesPhase = 1.5;
 
 // Sums the series of the matrix exponential: 3^40 / 40! is below 1e-28.
 Flow by_series(const Rates& r) {
@@ -32,22 +34,17 @@ Flow by_series(const Rates& r) {
   // Columns of (A h)^n / n!, beginning with the unit vectors; the third is that of the force.
   Real x1 = 1, v1 = 0, x2 = 0, v2 = 1, x3 = 0, v3 = 0;
   for (int n = 1; n <= kTerms; ++n) {
-    const Real s = r.h / static_cast<Real>(n);
-    const Real held = n == 1 ? 1.0L : 0.0L;
+    const Real s = r.h / static_cast<double>(n);
+    const double held = n == 1 ? 1 : 0;
     const auto next = [&](Real& x, Real& v, Real push) {
       const Real x_new = s * v;
-      v = s * (-r.w2 * x - 2 * r.a * v + push);
+      v = s * (push - r.w2 * x - r.a * v * 2);
       x = x_new;
     };
     next(x1, v1, 0);
     next(x2, v2, 0);
     next(x3, v3, held);
-    flow.xx += x1;
-    flow.vx += v1;
-    flow.xv += x2;
-    flow.vv += v2;
-    flow.xf += x3;
-    flow.vf += v3;
+    flow = {flow.xx + x1, flow.xv + x2, flow.xf + x3, flow.vx + v1, flow.vv + v2, flow.vf + v3};
   }
   return flow;
 }
@@ -65,38 +62,39 @@ Flow near_critical(const Rates& r, Real squared) {
   Real q = 0;
   Real term = 1;
   for (int n = 0; n < kTerms; ++n) {
-    c += term;
-    term /= static_cast<Real>(2 * n + 1);
-    q += term;
-    term *= squared / static_cast<Real>(2 * n + 2);
+    c = c + term;
+    term = term / (2.0 * n + 1);
+    q = q + term;
+    term = term * squared / (2.0 * n + 2);
   }
-  const Real fade = std::exp(-r.a * r.h);
+  const Real fade = math::wide_exp(-r.a * r.h);
   return from(r, fade * c, fade * q * r.h);
 }
 
 Flow over_damped(const Rates& r, Real s) {
   const Real fast = r.a + s;
   const Real slow = r.w2 / fast;  // a - s without its cancellation
-  const Real fast_end = std::exp(-fast * r.h);
-  const Real slow_end = std::exp(-slow * r.h);
-  const Real way = slow > 0 ? -std::expm1(-slow * r.h) / slow : r.h;
-  const Real two_s = 2 * s;
+  const Real fast_end = math::wide_exp(-fast * r.h);
+  const Real slow_end = math::wide_exp(-slow * r.h);
+  const Real way = slow.hi > 0 ? -math::wide_expm1(-slow * r.h) / slow : r.h;
+  const Real two_s = s * 2;
   const Real q = (slow_end - fast_end) / two_s;
-  return {(fast * slow_end - slow * fast_end) / two_s,    q,
-          (way + std::expm1(-fast * r.h) / fast) / two_s, -r.w2 * q,
-          (fast * fast_end - slow * slow_end) / two_s,    q};
+  return {(fast * slow_end - slow * fast_end) / two_s,          q,
+          (way + math::wide_expm1(-fast * r.h) / fast) / two_s, -r.w2 * q,
+          (fast * fast_end - slow * slow_end) / two_s,          q};
 }
 
 Flow flow_of(const Rates& r) {
-  const Real w = std::sqrt(r.w2);
-  if (std::max(r.a, w) * r.h < kSeriesPhase) return by_series(r);
+  const Real w = r.w2.hi > 0 ? math::square_root(r.w2) : Real();
+  if (std::max(r.a.hi, w.hi) * r.h < kSeriesPhase) return by_series(r);
   const Real d = (r.a - w) * (r.a + w);
   const Real squared = d * r.h * r.h;
-  if (std::abs(squared) < 1) return near_critical(r, squared);
-  if (d > 0) return over_damped(r, std::sqrt(d));
-  const Real s = std::sqrt(-d);
-  const Real fade = std::exp(-r.a * r.h);
-  return from(r, fade * std::cos(s * r.h), fade * std::sin(s * r.h) / s);
+  if (std::abs(squared.hi) < 1) return near_critical(r, squared);
+  if (d.hi > 0) return over_damped(r, math::square_root(d));
+  const Real s = math::square_root(-d);
+  const Real fade = math::wide_exp(-r.a * r.h);
+  const auto [sine, cosine] = math::wide_sine_cosine(s * r.h);
+  return from(r, fade * cosine, fade * sine / s);
 }
 
 }  // namespace
@@ -109,9 +107,8 @@ OscillatorStep OscillatorStep::of(double mass, double stiffness, double damping,
   if (!(mass > 0) || !std::isfinite(mass)) return stopped;
   if (!fine(stiffness) || !fine(damping) || !fine(step)) return stopped;
   const Real m = mass;
-  const Flow flow = flow_of({damping / (2 * m), stiffness / m, step});
-  const auto d = [](Real x) { return static_cast<double>(x); };
-  return {d(flow.xx), d(flow.xv), d(flow.xf / m), d(flow.vx), d(flow.vv), d(flow.vf / m)};
+  const Flow flow = flow_of({damping / (m * 2), stiffness / m, step});
+  return {flow.xx.hi, flow.xv.hi, (flow.xf / m).hi, flow.vx.hi, flow.vv.hi, (flow.vf / m).hi};
 }
 
 }  // namespace thimble::render

@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <numbers>
 
+#include "math/elementary.h"
+
 namespace thimble::render {
 namespace {
 
@@ -51,7 +53,7 @@ std::vector<EdgeUse> around_edge(const TriangleMesh& mesh, std::span<const EdgeU
   const Vector3d x = (sides[0].out - along.dot(sides[0].out) * along).stableNormalized();
   const Vector3d y = along.cross(x);
   for (Side& side : sides) {
-    double angle = std::atan2(y.dot(side.out), x.dot(side.out));
+    double angle = math::atan2(y.dot(side.out), x.dot(side.out));
     if (!(angle > -kSameAngle)) angle += 2 * std::numbers::pi;
     side.angle = std::isfinite(angle) ? angle : 0;
   }

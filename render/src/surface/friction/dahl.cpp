@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "math/elementary.h"
+
 namespace thimble::render {
 
 void DahlLaw::Settings::read(SettingsReader& reader, const EffectContext& context) {
@@ -16,7 +18,7 @@ Eigen::Vector3d DahlLaw::pull(const SlideTick& tick) noexcept {
   pull_ = shortened(pull_, limit);
   if (way > 0 && limit > 0) {
     const Eigen::Vector3d end = limit / way * tick.slip;
-    pull_ = end + (pull_ - end) * std::exp(-settings_.stiffness * way / limit);
+    pull_ = end + (pull_ - end) * math::exp(-settings_.stiffness * way / limit);
   }
   return pull_;
 }

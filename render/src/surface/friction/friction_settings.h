@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "math/elementary.h"
 #include "surface/friction/tangent_motion.h"
 #include "thimble/render/effect/effect_context.h"
 #include "thimble/render/effect/settings_reader.h"
@@ -71,7 +72,7 @@ class VectorLowPass {
   const Eigen::Vector3d& update(const Eigen::Vector3d& input, double dt) noexcept {
     if (dt != gain_dt_) {
       gain_dt_ = dt;
-      gain_ = -std::expm1(-2 * std::numbers::pi * corner_frequency_ * dt);
+      gain_ = -math::expm1(-2 * std::numbers::pi * corner_frequency_ * dt);
     }
     value_ += gain_ * (input - value_);
     return value_;

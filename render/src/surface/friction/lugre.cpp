@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "math/elementary.h"
+
 namespace thimble::render {
 
 void LugreLaw::Settings::read(SettingsReader& reader, const EffectContext& context) {
@@ -27,13 +29,13 @@ Eigen::Vector3d LugreLaw::pull(const SlideTick& tick) noexcept {
   const double holding = settings_.coulomb.holding * tick.load;
   const double relative2 =
       velocity.squaredNorm() / (settings_.stribeck_speed * settings_.stribeck_speed);
-  const double level = sliding + (holding - sliding) * std::exp(-relative2);  // g(v)
+  const double level = sliding + (holding - sliding) * math::exp(-relative2);  // g(v)
   const double way = tick.slip.norm();
   spring_ = shortened(spring_, holding);
   const Eigen::Vector3d before = spring_;
   if (way > 0 && level > 0) {
     const Eigen::Vector3d end = level / way * tick.slip;
-    spring_ = end + (spring_ - end) * std::exp(-settings_.stiffness * way / level);
+    spring_ = end + (spring_ - end) * math::exp(-settings_.stiffness * way / level);
   }
   const double rate = settings_.stiffness > 0 ? settings_.damping / settings_.stiffness : 0;
   const Eigen::Vector3d damped = spring_ + rate / tick.dt * (spring_ - before);

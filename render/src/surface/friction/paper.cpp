@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "math/elementary.h"
+
 namespace thimble::render {
 
 void PaperFrictionLaw::Settings::read(SettingsReader& reader, const EffectContext& context) {
@@ -28,7 +30,7 @@ Eigen::Vector3d PaperFrictionLaw::dry(const SlideTick& tick) noexcept {
       return direction_.update(last_move_, tick.dt);
     }
     case Smooth::kTwice:
-      return direction_.update(direction_of(relative) * std::tanh(relative.norm()), tick.dt);
+      return direction_.update(direction_of(relative) * math::tanh(relative.norm()), tick.dt);
   }
   return Eigen::Vector3d::Zero();
 }

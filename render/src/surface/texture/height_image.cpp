@@ -6,6 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "math/elementary.h"
+
 namespace thimble::render {
 namespace {
 
@@ -53,7 +55,7 @@ HeightImage::HeightImage(std::size_t width, std::size_t height, std::vector<floa
       up = std::max(up, std::abs(value(column, (row + 1) % height_) - here));
     }
   }
-  slope_max_ = std::hypot(across, up);
+  slope_max_ = math::hypot(across, up);
 }
 
 HeightImage::Sample HeightImage::at(double u, double v) const noexcept {

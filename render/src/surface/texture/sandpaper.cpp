@@ -5,6 +5,8 @@
 #include <numbers>
 #include <random>
 
+#include "math/elementary.h"
+
 namespace thimble::render {
 namespace {
 
@@ -21,8 +23,8 @@ std::vector<Wave> random_waves(const Sandpaper::Settings& settings, const Effect
     const double z = 2 * uniform() - 1;
     const double turn = 2 * std::numbers::pi * uniform();
     const double across = std::sqrt(1 - z * z);
-    const Eigen::Vector3d direction_O(across * std::cos(turn), across * std::sin(turn), z);
-    const double wavelength = settings.wavelength * std::exp2(uniform() - 0.5);
+    const Eigen::Vector3d direction_O(across * math::cos(turn), across * math::sin(turn), z);
+    const double wavelength = settings.wavelength * math::exp2(uniform() - 0.5);
     const Eigen::Vector3d k_M = 2 * std::numbers::pi / wavelength * (context.R_WO * direction_O);
     const double phase = 2 * std::numbers::pi * uniform();
     // A sine's mean square is half its amplitude's; those of different waves add.

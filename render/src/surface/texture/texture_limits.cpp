@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/elementary.h"
+
 namespace thimble::render {
 
 void TextureSettings::read(SettingsReader& reader) {
@@ -27,7 +29,7 @@ double texture_headroom(const TextureExtent& extent, const EffectContext& contex
 
 ForceSensitivity texture_lever(const TextureExtent& extent) {
   return {.per_force = extent.slope,
-          .per_stiffness = extent.relief * std::hypot(1, kTextureSlopeMax)};
+          .per_stiffness = extent.relief * math::hypot(1, kTextureSlopeMax)};
 }
 
 void check_texture(SettingsReader& reader, std::string_view key, const TextureExtent& extent,

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "math/elementary.h"
 #include "surface/texture/texture_height.h"
 
 namespace thimble::render {
@@ -29,8 +30,9 @@ class WaveSum {
     TextureHeight texture{.height = -peak_};
     for (const Wave& wave : waves_) {
       const double angle = wave.k_M.dot(p_M) + wave.phase;
-      texture.height += wave.amplitude * std::sin(angle);
-      texture.slope_M += wave.amplitude * std::cos(angle) * wave.k_M;
+      const auto [sine, cosine] = math::sin_cos(angle);
+      texture.height += wave.amplitude * sine;
+      texture.slope_M += wave.amplitude * cosine * wave.k_M;
     }
     return texture;
   }

@@ -1,0 +1,9 @@
+#!/usr/bin/env bash
+# The tables of driver/src/math are what its script writes.
+#   math_tables.sh SOURCE_DIR
+set -euo pipefail
+folder=$1/driver/src/math
+python3 "$folder/make_tables.py" | diff - "$folder/tables.h" || {
+  echo "FAILED: driver/src/math/tables.h is not what make_tables.py writes" >&2
+  exit 1
+}
