@@ -63,6 +63,7 @@ ServoLoop::ServoLoop(Device& device, Clock& clock, ForceLaw law, TickSink sink,
 std::optional<ServoEnd> ServoLoop::tick(const std::atomic<bool>& stop) noexcept {
   if (end_) return end_;
   if (settings_.ticks != 0 && due_ns_ >= end_ns_) return end_with(ServoEnd::kDone);
+  if (settings_.prepare_ns > 0) prepare();
   clock_.sleep_until_ns(due_ns_);
   if (stop.load(std::memory_order_relaxed)) return end_with(ServoEnd::kStopped);
   const std::int64_t now_ns = clock_.now_ns();
@@ -85,6 +86,16 @@ std::optional<ServoEnd> ServoLoop::tick(const std::atomic<bool>& stop) noexcept 
   const std::int64_t late_ns = now_ns - due_ns_;
   if (late_ns >= 0) due_ns_ += (late_ns / settings_.period_ns + 1) * settings_.period_ns;
   return std::nullopt;
+}
+
+// The tip is expected to go on as it goes.
+void ServoLoop::prepare() noexcept {
+  clock_.sleep_until_ns(due_ns_ - settings_.prepare_ns);
+  if (clock_.now_ns() >= due_ns_) return;
+  DeviceState expected = device_.state();
+  expected.dt = 1e-9 * static_cast<double>(settings_.period_ns);
+  expected.p_WT += expected.dt * expected.v_WT;
+  law_.prepare(expected);
 }
 
 std::optional<ServoEnd> ServoLoop::end_with(ServoEnd end) noexcept {

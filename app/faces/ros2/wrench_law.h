@@ -28,6 +28,9 @@ class WrenchLaw {
   /// Returns the force of a tick. Real-time: safe.
   driver::ForceCommand operator()(const driver::DeviceState& state) noexcept;
 
+  /// Lets the scene's law prepare itself (driver::ForceLaw::prepare). Real-time: safe.
+  void prepare(const driver::DeviceState& expected) const noexcept { scene_.prepare(expected); }
+
   /// Returns how often a force grew stale. Any thread.
   std::uint64_t stalls() const noexcept { return stalls_.load(std::memory_order_relaxed); }
   /// Returns how many forces were cut to the limit. Any thread.

@@ -40,13 +40,17 @@ class LateClock final : public Clock {
   std::int64_t now_ns_ = 0;
 };
 
-/// A transport that always has a report of the arm at home.
+/// A transport that always has a report of the arm at home, or moved on by some counts since the
+/// last one.
 class HomeTransport final : public Transport {
  public:
-  explicit HomeTransport(support::Wire& wire) : wire_(wire) {}
+  HomeTransport(support::Wire& wire, const std::int16_t& counts) : wire_(wire), counts_(counts) {}
   TransportRead read_latest(std::span<std::byte> buffer, std::int64_t) noexcept override {
     if (wire_.lost) return {.status = TransportStatus::kLost};
-    const auto bytes = hfab::encode_input({});
+    hfab::InputReport report;
+    for (auto& count : report.counts) count = at_;
+    at_ = static_cast<std::int16_t>(at_ + counts_);
+    const auto bytes = hfab::encode_input(report);
     std::copy(bytes.begin(), bytes.end(), buffer.begin());
     return {.status = TransportStatus::kOk, .size = bytes.size()};
   }
@@ -58,13 +62,15 @@ class HomeTransport final : public Transport {
 
  private:
   support::Wire& wire_;
+  const std::int16_t& counts_;  // from one report to the next
+  std::int16_t at_ = 0;
 };
 
 class ServoLoopTest : public ::testing::Test {
  protected:
   void SetUp() override {
     auto opened = Device::open(
-        std::make_unique<WireLink>(std::make_unique<HomeTransport>(wire_),
+        std::make_unique<WireLink>(std::make_unique<HomeTransport>(wire_, counts_),
                                    std::make_unique<hfab::HfabArm>(support::vintage_model())),
         support::vintage_settings(), 0);
     ASSERT_TRUE(opened) << opened.error().message;
@@ -77,6 +83,7 @@ class ServoLoopTest : public ::testing::Test {
   }
 
   support::Wire wire_;
+  std::int16_t counts_ = 0;
   std::unique_ptr<Device> device_;
   std::atomic<bool> stop_{false};
 };
@@ -156,6 +163,65 @@ TEST_F(ServoLoopTest, SkipsMissedTicksInsteadOfRunningThemInABurst) {
   // The tick due at 5.0 ms ran at 7.3 ms; the ones due at 6 and 7 ms were skipped.
   EXPECT_EQ(times, (std::vector<std::int64_t>{0, 10, 20, 30, 40, 73, 80, 90}));
   EXPECT_EQ(records.rows[5].due_ns, 5'000'000);
+}
+
+/// A law that keeps when it was told to prepare itself, and for what.
+struct PreparedLaw {
+  const Clock& clock;
+  struct Call {
+    std::int64_t time_ns;
+    std::uint64_t ticks_before;
+    Eigen::Vector3d expected_p_WT, p_WT, v_WT;  // of the tick before
+  };
+  mutable std::vector<Call> calls;
+  std::uint64_t ticks = 0;
+  Eigen::Vector3d last_p_WT{0, 0, 0}, last_v_WT{0, 0, 0};
+
+  explicit PreparedLaw(const Clock& of) : clock(of) { calls.reserve(100); }
+  ForceCommand operator()(const DeviceState& state) noexcept {
+    ++ticks;
+    last_p_WT = state.p_WT;
+    last_v_WT = state.v_WT;
+    return {};
+  }
+  void prepare(const DeviceState& expected) const noexcept {
+    calls.push_back({clock.now_ns(), ticks, expected.p_WT, last_p_WT, last_v_WT});
+  }
+};
+
+TEST_F(ServoLoopTest, LetsTheLawPrepareItselfShortlyBeforeEachTickThatIsNotLate) {
+  LateClock clock;
+  clock.late_at_ns = 4'990'000;  // woken 2.3 ms too late for what comes before the tick at 5 ms
+  clock.late_by_ns = 2'300'000;
+  Records records(100);
+  PreparedLaw law(clock);
+  counts_ = 2;
+  run_servo(*device_, clock, ForceLaw(law), TickSink(records), {.ticks = 10, .prepare_ns = 10'000},
+            stop_);
+  std::vector<std::int64_t> times;
+  for (const auto& row : records.rows) times.push_back(row.time_ns / 100'000);
+  EXPECT_EQ(times, (std::vector<std::int64_t>{0, 10, 20, 30, 40, 72, 80, 90}));
+  std::vector<std::int64_t> calls;
+  std::vector<std::uint64_t> before;
+  for (const auto& call : law.calls) {
+    calls.push_back(call.time_ns / 1000);
+    before.push_back(call.ticks_before);
+    const Eigen::Vector3d on_its_way = call.p_WT + 1e-3 * call.v_WT;
+    EXPECT_EQ(call.expected_p_WT, on_its_way);
+  }
+  EXPECT_GT(law.calls.back().v_WT.norm(), 1e-3);
+  // None before the first tick, which is due at once, and none before the late one.
+  EXPECT_EQ(calls, (std::vector<std::int64_t>{990, 1990, 2990, 3990, 7990, 8990}));
+  EXPECT_EQ(before, (std::vector<std::uint64_t>{1, 2, 3, 4, 6, 7}));
+}
+
+TEST_F(ServoLoopTest, LetsNoLawPrepareItselfUnasked) {
+  VirtualClock clock;
+  Records records(100);
+  PreparedLaw law(clock);
+  run_servo(*device_, clock, ForceLaw(law), TickSink(records), {.ticks = 10}, stop_);
+  EXPECT_EQ(records.rows.size(), 10u);
+  EXPECT_TRUE(law.calls.empty());
 }
 
 TEST_F(ServoLoopTest, StopsWithinOneTickOfTheStopFlagAndSendsZero) {

@@ -461,6 +461,37 @@ TEST(PathBounded, DoesNotPushATipToAndFroAcrossAGroove) {
   }
 }
 
+// A contact that counts what it is asked, the copies and itself together.
+struct CountedContact {
+  static constexpr bool kCopiesCheaply = true;
+  std::vector<Vector3d>* asked;
+  ContactState state_;
+  const ContactState& update(const driver::DeviceState& state) noexcept {
+    asked->push_back(state.p_WT);
+    state_.hops = static_cast<std::uint16_t>(asked->size());
+    return state_;
+  }
+  const ContactState& state() const noexcept { return state_; }
+};
+
+TEST(PathBounded, AsksACopyOfItsStageWhereTheTipIsExpected) {
+  std::vector<Vector3d> asked;
+  const PathBounded contact(CountedContact{&asked, {}});
+  driver::DeviceState expected;
+  expected.p_WT = {1, 2, 3};
+  contact.prepare(expected);
+  ASSERT_EQ(asked.size(), 1u);
+  EXPECT_EQ(asked[0], Vector3d(1, 2, 3));
+  EXPECT_EQ(contact.state().hops, 0);
+}
+
+TEST(PathBounded, PreparesEachContactOnAMeshThatStandsStill) {
+  with_each_contact(support::icosphere(1, 0.05), [](int, auto contact) {
+    const PathBounded bounded(std::move(contact));
+    static_assert(requires(const driver::DeviceState& state) { bounded.prepare(state); });
+  });
+}
+
 TEST(PathBounded, AsksNothingOfTheHeap) {
   const TriangleMesh shape = support::box({0.05, 0.05, 0.05});
   const ContactMesh mesh = ContactMesh::build(shape).value();

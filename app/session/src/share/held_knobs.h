@@ -37,6 +37,10 @@ class HeldKnobs final : public TickObserver, public KnobRequests {
   /// safe.
   driver::ForceCommand operator()(const driver::DeviceState& state) noexcept;
 
+  /// Reads what the scene will need in a tick like this (driver::ForceLaw::prepare).
+  /// Real-time: safe.
+  void prepare(const driver::DeviceState& expected) const noexcept { touch_.prepare(expected); }
+
   /// Takes one tick. Real-time: safe.
   void take(const driver::TickRecord& record) noexcept override { last_ = record; }
   std::optional<double> knob_wanted(std::size_t knob) const noexcept override;

@@ -48,6 +48,10 @@ class LiveControl final : public TickObserver {
   /// Real-time: safe.
   driver::ForceCommand operator()(const driver::DeviceState& state) noexcept;
 
+  /// Reads what the scene will need in a tick like this (driver::ForceLaw::prepare).
+  /// Real-time: safe.
+  void prepare(const driver::DeviceState& expected) const noexcept { touch_.prepare(expected); }
+
   /// Returns the share of the scene's force that is felt: less than 1 while it is paused.
   /// Real-time: safe.
   double gain() const noexcept { return gain_; }

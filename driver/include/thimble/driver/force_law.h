@@ -28,6 +28,10 @@ struct ForceCommand {
 
 /// Refers to a force law: any object callable as `ForceCommand law(const DeviceState&) noexcept`.
 ///
+/// A law may also have `void prepare(const DeviceState& expected) const noexcept`, which a loop
+/// calls in the time that is left before a tick (ServoSettings::prepare_ns): it reads what the tick
+/// will read, so that the tick waits for no memory, and changes nothing.
+///
 /// It does not own the law; whoever makes a ForceLaw keeps the law alive while the loop runs.
 /// Real-time: safe if the law is; one indirect call.
 class ForceLaw {
@@ -40,14 +44,29 @@ class ForceLaw {
           static_assert(noexcept((*static_cast<Law*>(self))(state)),
                         "A force law runs on the servo thread and must be noexcept.");
           return (*static_cast<Law*>(self))(state);
-        }) {}
+        }) {
+    if constexpr (requires(const Law& own, const DeviceState& state) { own.prepare(state); }) {
+      prepare_ = [](const void* self, const DeviceState& expected) noexcept {
+        static_assert(noexcept(static_cast<const Law*>(self)->prepare(expected)),
+                      "A force law runs on the servo thread and must be noexcept.");
+        static_cast<const Law*>(self)->prepare(expected);
+      };
+    }
+  }
 
   /// Asks the law for the force of a tick. Real-time: safe if the law is.
   ForceCommand operator()(const DeviceState& state) const noexcept { return call_(law_, state); }
 
+  /// Lets the law read what it will need in a tick that is expected to be like this; the next force
+  /// is the same with it and without. Real-time: safe if the law is.
+  void prepare(const DeviceState& expected) const noexcept {
+    if (prepare_ != nullptr) prepare_(law_, expected);
+  }
+
  private:
   void* law_;
   ForceCommand (*call_)(void*, const DeviceState&) noexcept;
+  void (*prepare_)(const void*, const DeviceState&) noexcept = nullptr;
 };
 
 }  // namespace thimble::driver

@@ -44,6 +44,13 @@ struct ServoSettings {
       0;  ///< Ends after so many periods (missed ticks count); 0: never by itself.
   bool outlive_faults = false;  ///< Goes on with zero force after a fault, so that positions are
                                 ///< still seen and a pulled arm can come back.
+  /// How long before a tick the law prepares itself for it (ForceLaw::prepare), where the loop is
+  /// not late; 0: never. Makes no difference to any force, only to how long a tick takes.
+  std::int64_t prepare_ns = 0;
+
+  /// For loops in real time: 1 % of a tick at 1 kHz. Five times the 99th of 100 of what a contact
+  /// takes whose memory has grown cold [measured: 2 us at 10^6 triangles].
+  static constexpr std::int64_t kPrepare_ns = 10'000;
 };
 
 /// Says why a servo loop ended.
@@ -59,8 +66,9 @@ std::string_view name(ServoEnd end) noexcept;
 /// A servo loop, tick by tick, for whoever has something to do of his own between two ticks of
 /// virtual time. `run_servo` is nothing but all its ticks.
 ///
-/// Each tick: wait, read, ask the law, write, tell the sink. Ticks are due at fixed times; after a
-/// gap the missed ones are skipped, not run in a burst. Used by one thread.
+/// Each tick: wait (and let the law prepare itself), read, ask the law, write, tell the sink. Ticks
+/// are due at fixed times; after a gap the missed ones are skipped, not run in a burst. Used by one
+/// thread.
 class ServoLoop {
  public:
   /// Takes an activated device and what it runs with, all of which must outlive the loop. The first
@@ -76,6 +84,7 @@ class ServoLoop {
 
  private:
   std::optional<ServoEnd> end_with(ServoEnd end) noexcept;
+  void prepare() noexcept;
 
   Device& device_;
   Clock& clock_;

@@ -30,6 +30,10 @@ class ObjectTouch {
   /// Finds the force of this object on the hand. Real-time: safe.
   virtual driver::ForceCommand update(const driver::DeviceState& state) noexcept = 0;
 
+  /// Reads what a tick like this will read of the object, so that the tick waits for no memory, and
+  /// changes nothing (ForceLaw::prepare). Real-time: safe; about as long as the tick's contact.
+  virtual void prepare(const driver::DeviceState& /*expected*/) const noexcept {}
+
   /// Returns whether a point (W, m) lies inside the object; for checks beside the servo.
   /// Real-time: safe unless the object is on the disk; one question to its search.
   virtual bool inside(const Eigen::Vector3d& p_W) const noexcept = 0;
@@ -76,6 +80,9 @@ class ObjectTouchOf final : public ObjectTouch {
 
   driver::ForceCommand update(const driver::DeviceState& state) noexcept override {
     return stages_(state);
+  }
+  void prepare(const driver::DeviceState& expected) const noexcept override {
+    if constexpr (requires { stages_.prepare(expected); }) stages_.prepare(expected);
   }
   bool inside(const Eigen::Vector3d& p_W) const noexcept override {
     return stages_.contact().search().inside(p_W);

@@ -35,6 +35,11 @@ class SceneTouch {
     return sum;
   }
 
+  /// Reads what the objects will need in a tick like this (ForceLaw::prepare). Real-time: safe.
+  void prepare(const driver::DeviceState& expected) const noexcept {
+    for (const auto& object : objects_) object->prepare(expected);
+  }
+
   /// Returns whether a point (W, m) lies inside any object that stands still; for checks beside the
   /// servo. Real-time: safe; time grows with the objects' size.
   bool inside(const Eigen::Vector3d& p_W) const noexcept {

@@ -47,6 +47,11 @@ class Touch {
     return command;
   }
 
+  /// Reads what the contact will need in a tick like this (ForceLaw::prepare). Real-time: safe.
+  void prepare(const driver::DeviceState& expected) const noexcept {
+    if constexpr (requires { contact_.prepare(expected); }) contact_.prepare(expected);
+  }
+
   /// Lists the stages' settings that can be changed between two ticks. Real-time: never from the
   /// servo thread.
   void list_settings(LiveSettings& settings) {
