@@ -153,7 +153,7 @@ int identify_arm(IdentifyCommand command) {
 
 void add_identify_command(CLI::App& app, int& exit_code) {
   CLI::App* sub = app.add_subcommand(
-      "identify", "Measure an arm's mass, friction, gains and delay by small forces");
+      "identify", "Measure an arm's mass, friction, gains, delay and cables by small forces");
   auto command = std::make_shared<IdentifyCommand>();
   command->choice.add_options(*sub);
   sub->add_option(

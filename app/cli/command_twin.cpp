@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "cli/commands.h"
 #include "cli/complain.h"
@@ -10,6 +11,8 @@
 #include "thimble/session/recording.h"
 #include "twin/compare_twin.h"
 #include "twin/twin_files.h"
+#include "twin/twin_forces.h"
+#include "twin/twin_prediction.h"
 
 namespace thimble::app {
 namespace {
@@ -33,7 +36,15 @@ int compare(const TwinCommand& command) {
               recording->info.arm.c_str(), recording->info.device.c_str(), file->name.c_str());
   for (const std::string& sentence : result->comparison.told) std::printf("%s\n", sentence.c_str());
   std::printf("%s", twin_table(result->comparison).c_str());
-  const auto figures = twin_figures(result->comparison, command.fit_least);
+  auto figures = twin_figures(result->comparison, command.fit_least);
+  std::printf("\n%s", force_table(result->forces).c_str());
+  for (Figure& figure : force_figures(result->forces)) figures.push_back(std::move(figure));
+  if (const auto foretold = twin_prediction(*file)) {
+    std::printf("\nWhat the twin foretells of its arm:\n%s", prediction_text(*foretold).c_str());
+    for (Figure& figure : prediction_figures(*foretold)) figures.push_back(std::move(figure));
+  } else {
+    std::printf("\nNo wall and no bounce is foretold: %s\n", foretold.error().message.c_str());
+  }
   if (!command.output.empty()) {
     const auto written = write_twin(*result, figures, file->name, command.output);
     if (!written) return complain(written.error(), kExitTrouble);

@@ -40,6 +40,7 @@ shot effect_field charges
 figure friction friction/overview.png
 "$program" study stability --arm vintage_phantom --coarse --out stability >/dev/null || [ $? = 5 ]
 figure stability_map stability/kb_map.png
+figure stability_drive_train stability/drive_train.png
 
 # A recording, as a plot.
 "$program" run "$scenes/tin_can.yaml" --report can >/dev/null

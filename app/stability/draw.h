@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <random>
 
+#include "math/elementary.h"
+
 namespace thimble::app {
 
 /// Draws numbers that are the same with every standard library: raw bits of the Mersenne twister,
@@ -20,7 +22,7 @@ class Draw {
     return low + (high - low) * static_cast<double>(bits_() >> 11) * 0x1p-53;
   }
   /// Draws from [low, high) so that each octave is as likely as any other; both above 0.
-  double octave(double low, double high) { return low * std::pow(high / low, uniform(0, 1)); }
+  double octave(double low, double high) { return low * math::pow(high / low, uniform(0, 1)); }
   /// Returns whether something of this probability happens.
   bool chance(double probability) { return uniform(0, 1) < probability; }
   /// Draws one of 0 to count - 1.

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "energy_choice.h"
+#include "math/elementary.h"
 #include "mesh/contact_mesh.h"
 #include "mesh/smooth_normals.h"
 #include "object_mesh.h"
@@ -79,7 +80,7 @@ void warn_of_facets(const scene::SceneObject& object, std::vector<std::string>& 
   const auto mesh = render::ContactMesh::build(file->mesh_W);
   if (!mesh) return;
   // A jump of 2 F sin(angle / 2), to and fro, has half of it as its RMS.
-  const double felt = 2 * std::asin(kFelt / kPressed);
+  const double felt = 2 * math::asin(kFelt / kPressed);
   const double smooth_up_to = object.contact.crease_angle.value_or(render::kCreaseAngle);
   const double hollow = sharpest_hollow(*mesh, flat ? felt : std::max(felt, smooth_up_to));
   if (!(hollow > 0)) return;
@@ -87,7 +88,7 @@ void warn_of_facets(const scene::SceneObject& object, std::vector<std::string>& 
       "{} has hollows with edges of up to {:.0f} degrees and is felt by flat facets there: a tip "
       "that rests on such an edge jumps sideways by {:.2g} N for each newton pressed, at every "
       "count of an encoder: take another tracker.",
-      object.name, hollow / kDegree, 2 * std::sin(hollow / 2)));
+      object.name, hollow / kDegree, 2 * math::sin(hollow / 2)));
 }
 
 /// What a loop carries with the hand of the scene.
@@ -248,7 +249,7 @@ double sharpest_hollow(const render::ContactMesh& mesh, double from) {
     for (std::size_t k = 0; k < 3; ++k) {
       if (!cell.hollow_edge(k)) continue;
       // An edge plane leans back by half the angle.
-      const double angle = 2 * std::asin(std::min(1.0, -cell.edges[k].n.dot(cell.face.n)));
+      const double angle = 2 * math::asin(std::min(1.0, -cell.edges[k].n.dot(cell.face.n)));
       if (angle > from) most = std::max(most, angle);
     }
   }
@@ -259,7 +260,7 @@ double quantisation_noise_of(double damping, double step, double speed, double c
                              double period) {
   if (!(step > 0)) return 0;
   const double p = std::min(0.5, speed * period / step);
-  const double gain = corner > 0 ? -std::expm1(-2 * std::numbers::pi * corner * period) : 1;
+  const double gain = corner > 0 ? -math::expm1(-2 * std::numbers::pi * corner * period) : 1;
   return damping * step / period * std::sqrt(p * (1 - p) * gain / (2 - gain));
 }
 
@@ -269,6 +270,13 @@ std::vector<std::string> energy_warnings(const scene::Scene& scene) {
   if (stage == driver::EnergyStage::kNone) return warnings;
   // Over the workspace that is more than the stage lets go [kEnergyAllowance].
   const double path = (scene.arm.workspace.max_W - scene.arm.workspace.min_W).maxCoeff();
+  if (scene.arm.carried_weight * path > scene::kEnergyAllowance + scene::kEnergyOnset) {
+    warnings.push_back(fmt::format(
+        "The motors carry {:.2g} N of the arm and give energy by right where it is lifted, but the "
+        "gate's energy stage takes back what is more than {:.0f} mJ: it brakes the hand and lets "
+        "all forces fade. Set gate: {{energy: none}} in the scene.",
+        scene.arm.carried_weight, 1e3 * scene::kEnergyAllowance));
+  }
   for (const scene::SceneObject& object : scene.objects) {
     const bool field = static_cast<bool>(object.build_field);
     double push = 0;

@@ -4,6 +4,8 @@
 #include <complex>
 #include <numbers>
 
+#include "math/elementary.h"
+
 namespace thimble::app {
 namespace {
 
@@ -30,9 +32,9 @@ std::vector<double> high_passed(std::span<const double> signal, double rate, dou
   if (out.empty()) return out;
   // From rest at the first value, so that an offset rings nothing.
   for (double& value : out) value -= signal.front();
-  const double warped = std::tan(std::numbers::pi * corner / rate);
+  const double warped = math::tan(std::numbers::pi * corner / rate);
   for (const double angle : {std::numbers::pi / 8, 3 * std::numbers::pi / 8}) {
-    high_pass_section(out, warped, 1 / (2 * std::cos(angle)));
+    high_pass_section(out, warped, 1 / (2 * math::cos(angle)));
   }
   return out;
 }
@@ -65,7 +67,7 @@ std::vector<SpectralLine> spectrum(std::span<const double> signal, double rate) 
   std::vector<SpectralLine> lines;
   for (std::size_t k = 1; 2 * k <= size; ++k) {
     const double turn = 2 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(size);
-    const std::complex<double> step = std::polar(1.0, -turn);
+    const std::complex<double> step = {math::cos(turn), -math::sin(turn)};
     std::complex<double> phase = 1;
     std::complex<double> sum = 0;
     for (const double value : signal) {

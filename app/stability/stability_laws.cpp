@@ -3,8 +3,11 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <limits>
 #include <numbers>
+
+#include "math/elementary.h"
 
 namespace thimble::app {
 namespace {
@@ -23,8 +26,9 @@ struct AngleTerms {
 
 AngleTerms terms_at(double angle, double period, double delay) {
   const double d = delay / period;
-  const double ratio = angle > 0 ? std::sin((d + 0.5) * angle) / std::sin(0.5 * angle) : 2 * d + 1;
-  return {0.5 * period * ratio, -std::cos((1 + d) * angle)};
+  const double ratio =
+      angle > 0 ? math::sin((d + 0.5) * angle) / math::sin(0.5 * angle) : 2 * d + 1;
+  return {0.5 * period * ratio, -math::cos((1 + d) * angle)};
 }
 
 /// Finds exp(A) by halving, a series, and squaring; A is small.
@@ -41,14 +45,30 @@ Eigen::MatrixXd exponential(const Eigen::MatrixXd& A) {
   return sum;
 }
 
-/// Moves (x, v, motor force) and a held command by `time`: columns are the four unit states.
-Eigen::Matrix4d plant_map(const SampledWall& wall, double time) {
-  Eigen::Matrix4d rate = Eigen::Matrix4d::Zero();
+/// Moves (x, v, motor force), a held command, and the motor's own (x, v) by `time`: columns are the
+/// unit states. The motor's are there for a cable that stretches alone.
+Eigen::MatrixXd plant_map(const SampledWall& wall, double time) {
+  const bool stretches = wall.cable_stiffness > 0;
+  Eigen::MatrixXd rate = Eigen::MatrixXd::Zero(stretches ? 6 : 4, stretches ? 6 : 4);
   rate(0, 1) = 1;
   rate(1, 0) = -wall.hand_stiffness / wall.mass;
   rate(1, 1) = -wall.viscous / wall.mass;
   const int force = wall.amplifier_lag > 0 ? 2 : 3;
-  rate(1, force) = 1 / wall.mass;
+  if (stretches) {
+    rate(4, 5) = 1;
+    // What the cable pulls the tip (rows 0 and 1) and the motor (4 and 5) with.
+    for (const int x : {0, 4}) {
+      const double per_mass = 1 / (x == 0 ? wall.mass : wall.rotor_mass);
+      const int other = 4 - x;
+      rate(x + 1, x) -= wall.cable_stiffness * per_mass;
+      rate(x + 1, x + 1) -= wall.cable_damping * per_mass;
+      rate(x + 1, other) += wall.cable_stiffness * per_mass;
+      rate(x + 1, other + 1) += wall.cable_damping * per_mass;
+    }
+    rate(5, force) = 1 / wall.rotor_mass;
+  } else {
+    rate(1, force) = 1 / wall.mass;
+  }
   if (wall.amplifier_lag > 0) {
     rate(2, 2) = -1 / wall.amplifier_lag;
     rate(2, 3) = 1 / wall.amplifier_lag;
@@ -63,10 +83,10 @@ double late_stiffness_limit(double damping, double latency, double mass) {
   double low = 0, high = kPi / 2;
   for (int i = 0; i < 60; ++i) {
     const double u = 0.5 * (low + high);
-    (u * std::tan(u) < target ? low : high) = u;
+    (u * math::tan(u) < target ? low : high) = u;
   }
   const double u = 0.5 * (low + high);
-  return damping / latency * (u > 1e-9 ? u / std::sin(u) : 1);
+  return damping / latency * (u > 1e-9 ? u / math::sin(u) : 1);
 }
 
 double passive_stiffness(double viscous, double wall_damping, double period, double delay) {
@@ -93,7 +113,7 @@ double oscillation_speed_limit(double stiffness, double viscous, double coulomb,
 }
 
 double restitution(double stiffness, double damping, double mass, double latency) {
-  return std::exp(-kPi * (damping - stiffness * latency) / (2 * std::sqrt(stiffness * mass)));
+  return math::exp(-kPi * (damping - stiffness * latency) / (2 * std::sqrt(stiffness * mass)));
 }
 
 double bristle_length(double friction_force, double latency, double damping, double encoder_step,
@@ -114,12 +134,12 @@ double spectral_radius(Eigen::MatrixXd power) {
   for (int squared = 0; squared < 60; ++squared) {
     const double norm = power.norm();
     if (!(norm > 0) || !std::isfinite(norm)) return norm;
-    exponent += share * std::log(norm);
+    exponent += share * math::log(norm);
     power /= norm;
     power = power.lazyProduct(power).eval();
     share *= 0.5;
   }
-  return std::exp(exponent);
+  return math::exp(exponent);
 }
 
 }  // namespace
@@ -127,26 +147,31 @@ double spectral_radius(Eigen::MatrixXd power) {
 double growth_per_tick(const SampledWall& wall) {
   const int whole = static_cast<int>(std::floor(wall.delay / wall.period + 1e-9));
   const double rest = std::max(0.0, wall.delay - whole * wall.period);
-  const Eigen::Matrix4d before = plant_map(wall, rest);
-  const Eigen::Matrix4d after = plant_map(wall, wall.period - rest);
+  const Eigen::MatrixXd before = plant_map(wall, rest);
+  const Eigen::MatrixXd after = plant_map(wall, wall.period - rest);
   const double gain =
-      wall.velocity_corner > 0 ? -std::expm1(-2 * kPi * wall.velocity_corner * wall.period) : 1;
-  // One entry each for x, v, motor force, last x, velocity estimate, and the commands on their way,
-  // the newest first.
-  const int size = 5 + whole + 1;
+      wall.velocity_corner > 0 ? -math::expm1(-2 * kPi * wall.velocity_corner * wall.period) : 1;
+  // One entry each for x, v, motor force, last x, velocity estimate, the motor's x and v if its
+  // cable stretches, and the commands on their way, the newest first.
+  const bool stretches = wall.cable_stiffness > 0;
+  const int sent = stretches ? 7 : 5;
+  const int size = sent + whole + 1;
   Eigen::MatrixXd tick(size, size);
   for (int column = 0; column < size; ++column) {
     Eigen::VectorXd state = Eigen::VectorXd::Unit(size, column);
-    const double x = state[0];
+    const double x = state[stretches ? 5 : 0];
     const double estimate = state[4] + gain * ((x - state[3]) / wall.period - state[4]);
     const double command = -wall.stiffness * x - wall.damping * estimate;
-    Eigen::Vector4d plant(state[0], state[1], state[2], state[5 + whole]);
+    Eigen::VectorXd plant(before.rows());
+    plant.head<4>() << state[0], state[1], state[2], state[sent + whole];
+    if (stretches) plant.tail<2>() = state.segment<2>(5);
     plant = before * plant;
-    plant[3] = whole == 0 ? command : state[5 + whole - 1];
+    plant[3] = whole == 0 ? command : state[sent + whole - 1];
     plant = after * plant;
-    for (int i = whole; i > 0; --i) state[5 + i] = state[5 + i - 1];
-    state[5] = command;
+    for (int i = whole; i > 0; --i) state[sent + i] = state[sent + i - 1];
+    state[sent] = command;
     state.head<3>() = plant.head<3>();
+    if (stretches) state.segment<2>(5) = plant.tail<2>();
     if (!(wall.amplifier_lag > 0)) state[2] = 0;
     state[3] = x;
     state[4] = estimate;
@@ -156,7 +181,43 @@ double growth_per_tick(const SampledWall& wall) {
   const double of_velocity = wall.period, of_force = wall.period * wall.period / wall.mass;
   Eigen::VectorXd metres = Eigen::VectorXd::Constant(size, of_force);
   metres.head<5>() << 1, of_velocity, of_force, 1, of_velocity;
+  if (stretches) metres.segment<2>(5) << 1, of_velocity;
   return spectral_radius(metres.asDiagonal() * tick * metres.cwiseInverse().asDiagonal());
+}
+
+double limit_by_phase(const SampledWall& wall) {
+  using Complex = std::complex<double>;
+  const double latency = 0.5 * wall.period + wall.delay + wall.amplifier_lag;
+  // The stiffness that would be needed, turned back by the latency: real where there is one.
+  const auto needed = [&](double w) {
+    const Complex tip(wall.hand_stiffness - w * w * wall.mass, w * wall.viscous);
+    Complex arm = tip;
+    if (wall.cable_stiffness > 0) {
+      const Complex cable(wall.cable_stiffness, w * wall.cable_damping);
+      arm = cable * tip / (cable + tip) - w * w * wall.rotor_mass;
+    }
+    const double half = 0.5 * w * wall.period;
+    const Complex late(math::cos(w * latency), math::sin(w * latency));
+    return -arm * (half / math::sin(half)) * late;
+  };
+  const double highest = kPi / wall.period;  // half the rate
+  double least = 0;
+  double below = highest / kAngles;
+  for (int i = 2; i <= kAngles; ++i) {
+    const double above = highest * i / kAngles;
+    if ((needed(below).imag() < 0) != (needed(above).imag() < 0)) {
+      double low = below, high = above;
+      const bool sign = needed(low).imag() < 0;
+      for (int half = 0; half < 50; ++half) {
+        const double middle = 0.5 * (low + high);
+        ((needed(middle).imag() < 0) == sign ? low : high) = middle;
+      }
+      const double stiffness = needed(low).real();
+      if (stiffness > 0 && (least == 0 || stiffness < least)) least = stiffness;
+    }
+    below = above;
+  }
+  return least;
 }
 
 double stiffness_edge(SampledWall wall) {

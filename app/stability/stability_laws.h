@@ -51,11 +51,25 @@ struct SampledWall {
   double period = 0.001;       ///< s
   double delay = 0;            ///< s, any multiple of the period up to 32.
   double amplifier_lag = 0;    ///< s
+  /// Of a cable between the motor, which the wall pushes and whose encoder it sees, and the tip
+  /// with the hand, N/m; 0: it does not stretch.
+  double cable_stiffness = 0;
+  double cable_damping = 0;  ///< N s/m
+  double rotor_mass = 0;     ///< What the motor weighs at the tip, kg; of a cable that stretches.
 };
 
 /// Finds by how much the wall's slowest mode grows per tick: the spectral radius of the exact map
 /// of one tick; below 1 it dies out. For regimes in which `stiffness_limit` is not yet exact.
 double growth_per_tick(const SampledWall& wall);
+
+/// Finds the largest stiffness at which a late spring balances the arm, N/m: the smallest K with
+/// K S e^(-i w L) = -Z(w) at some w > 0 below half the loop's rate, where L is half a period, the
+/// delay and the amplifier's lag, which counts by its phase at low frequency [PHYSICS 1.1], S =
+/// sin(w T / 2) / (w T / 2) what the hold leaves of the force, and Z the arm's force over
+/// displacement at the motor, Z = -w^2 M + C H / (C + H), with H = h + i w b - w^2 m of tip and
+/// hand and C = k + i w d of the cable; without one Z = H. `wall.stiffness`, `damping` and
+/// `velocity_corner` are not looked at. 0 where there is none.
+double limit_by_phase(const SampledWall& wall);
 
 /// Finds the largest stiffness for which the wall does not grow, N/m, by bisection to 1e-6 of it;
 /// 0 if even 1 N/m grows. `wall.stiffness` is not looked at.

@@ -47,8 +47,7 @@ Edges try_walls(const scene::ArmFile& file, double rate, double damping, const C
   arm.workspace.min_W += room;
   arm.workspace.max_W -= room;
   const scene::ArmFile smooth = without_friction(arm);
-  // What oscillates by less than that is count-level flicker or the end of a slow creep [chosen].
-  const double quiet = 2e-4 + 5 * carried.tip.encoder_step;
+  const double quiet = kQuietAtRest + kQuietSteps * carried.tip.encoder_step;
   Edges edges;
   for (const Eigen::Vector3d& p_W : scene::points_of_workspace(arm, per_side)) {
     for (int axis = 0; axis < 3; ++axis) {

@@ -183,6 +183,7 @@ driver::Result<WallRun> run_wall(const scene::ArmFile& file, const WallCase& wal
   const double period = static_cast<double>(wall.period_ns) * 1e-9;
   const auto end_ns = static_cast<std::int64_t>(wall.duration * 1e9);
   const auto kick_ns = static_cast<std::int64_t>(wall.kick_start * 1e9);
+  const auto pull_ns = static_cast<std::int64_t>(wall.pull_start * 1e9);
   int kick_ticks = 0;
   std::size_t gap = 0;
   // On a late wire the first report has taken its time.
@@ -202,12 +203,14 @@ driver::Result<WallRun> run_wall(const scene::ArmFile& file, const WallCase& wal
       force = kicks ? -wall.kick * mass / (kKickTicks * period) : 0;
       if (kicks) ++kick_ticks;
     }
+    if (wall.pull != 0 && tick_ns >= pull_ns) force -= wall.pull;
     device.write({.f_T_W = force * n_W, .touch = {}});
     const Vector3d p_WT = arm.p_WB + arm.R_WB * board->plant().p_BT();
     run.time.push_back(static_cast<double>(tick_ns) * 1e-9);
     run.x.push_back(n_W.dot(p_WT - home_W));
     run.v.push_back(n_W.dot(arm.R_WB * board->plant().v_BT()));
     run.f.push_back(device.f_sent_W().norm());
+    run.push.push_back(n_W.dot(device.f_sent_W()));
     work += (*simulation)->f_T_W().dot(p_WT - p_last_W);
     p_last_W = p_WT;
     run.work.push_back(work);

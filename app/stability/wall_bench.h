@@ -59,6 +59,8 @@ struct WallCase {
   double offset = 0;      ///< Where the wall stands or the spring's middle lies, from home, m.
   double kick = 0;        ///< Speed that four ticks give the free tip, against the direction, m/s.
   double kick_start = 0;  ///< Time of the first of them, s; there is no wall before.
+  double pull = 0;        ///< Force that draws the tip against the direction, N,
+  double pull_start = 0;  ///< from this time on, s.
   double hand_from = 0, hand_to = 0;    ///< The hand's target moves between them, from home, m,
   double hand_start = 0, hand_end = 0;  ///< between these times, s.
   double duration = 1;                  ///< s
@@ -71,6 +73,7 @@ struct WallRun {
   std::vector<double> x;     ///< m
   std::vector<double> v;     ///< m/s
   std::vector<double> f;     ///< Length of the force that was sent, N.
+  std::vector<double> push;  ///< The same along the direction, N.
   std::vector<double> work;  ///< What the motors truly gave the tip so far, J.
   bool gave_up = false;      ///< It went too far, or the device made a fault.
   bool fault = false;        ///< The device made a fault.

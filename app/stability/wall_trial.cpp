@@ -80,6 +80,13 @@ driver::Result<WallTouch> press_on_wall(const scene::ArmFile& arm, const WallTri
       .gate = run->gate};
 }
 
+bool comes_to_rest(const WallTouch& touch, double quiet) {
+  // Near the edge an oscillation takes long to die, so that it becomes less is enough: 5 % in 0.4 s
+  // are 0.5 % below the edge for 0.1 kg and a latency of 1.5 ms. Written so that NaN is not quiet.
+  return !touch.fault &&
+         (touch.oscillation <= quiet || touch.oscillation < 0.95 * touch.oscillation_before);
+}
+
 driver::Result<double> simulated_edge(const scene::ArmFile& arm, WallTrial trial, double guess,
                                       double quiet) {
   double low = guess / 10, high = guess * 10;
@@ -87,12 +94,7 @@ driver::Result<double> simulated_edge(const scene::ArmFile& arm, WallTrial trial
     trial.stiffness = std::sqrt(low * high);
     const auto touch = press_on_wall(arm, trial);
     if (!touch) return touch.error();
-    // Near the edge an oscillation takes long to die, so that it becomes less is enough: 5 % in 0.4
-    // s are 0.5 % below the edge for 0.1 kg and a latency of 1.5 ms. Written so that NaN is not
-    // quiet.
-    const bool rests = !touch->fault && (touch->oscillation <= quiet ||
-                                         touch->oscillation < 0.95 * touch->oscillation_before);
-    (rests ? low : high) = trial.stiffness;
+    (comes_to_rest(*touch, quiet) ? low : high) = trial.stiffness;
   }
   return low;
 }

@@ -36,8 +36,17 @@ struct WallTouch {
 /// Real-time: never from the servo thread.
 driver::Result<WallTouch> press_on_wall(const scene::ArmFile& arm, const WallTrial& trial);
 
-/// Finds the largest stiffness at which the tip comes to rest on the wall (it oscillates by no more
-/// than `quiet`, m, or ever less), N/m, between a tenth and ten times `guess` to 1 %;
+/// What oscillates by less than this (m) plus so many steps of the encoders is count-level flicker
+/// or the end of a slow creep [chosen].
+inline constexpr double kQuietAtRest = 2e-4;
+inline constexpr double kQuietSteps = 5;  ///< See kQuietAtRest.
+
+/// Returns whether the tip came to rest: it oscillates by no more than `quiet` (m), or ever less,
+/// and the device made no fault.
+bool comes_to_rest(const WallTouch& touch, double quiet);
+
+/// Finds the largest stiffness at which the tip comes to rest on the wall (`comes_to_rest`), N/m,
+/// between a tenth and ten times `guess` to 1 %;
 /// `trial.stiffness` is not looked at. Fails as `press_on_wall`.
 driver::Result<double> simulated_edge(const scene::ArmFile& arm, WallTrial trial, double guess,
                                       double quiet);

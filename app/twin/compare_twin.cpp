@@ -8,6 +8,7 @@
 #include <unsupported/Eigen/FFT>
 #include <utility>
 
+#include "math/elementary.h"
 #include "twin/twin_constants.h"
 
 namespace thimble::app {
@@ -133,8 +134,8 @@ void find_spectrum(const Relive& relive, const Relived& relived, TwinComparison&
   std::vector<double> bell(n);
   double area = 0;
   for (std::size_t j = 0; j < n; ++j) {
-    bell[j] = 0.5 - 0.5 * std::cos(2 * std::numbers::pi * static_cast<double>(j) /
-                                   static_cast<double>(n));
+    bell[j] = 0.5 - 0.5 * math::cos(2 * std::numbers::pi * static_cast<double>(j) /
+                                    static_cast<double>(n));
     area += bell[j];
   }
   found.spectrum.resize(n / 2);
@@ -213,7 +214,9 @@ driver::Result<TwinResult> compare_twin(const session::Recording& recording,
   std::stable_sort(
       found.remedies.begin(), found.remedies.end(),
       [](const TwinRemedy& a, const TwinRemedy& b) { return a.error_rms < b.error_rms; });
-  return TwinResult{.comparison = std::move(found), .trace = std::move(trace)};
+  return TwinResult{.comparison = std::move(found),
+                    .forces = twin_forces(*motion, file),
+                    .trace = std::move(trace)};
 }
 
 }  // namespace thimble::app

@@ -7,6 +7,7 @@
 #include "thimble/driver/result.h"
 #include "thimble/scene/arm_file.h"
 #include "twin/relive.h"
+#include "twin/twin_forces.h"
 #include "twin/twin_motion.h"
 
 namespace thimble::app {
@@ -78,6 +79,7 @@ struct TwinTrace {
 /// A comparison with what it rests on.
 struct TwinResult {
   TwinComparison comparison;
+  TwinForces forces;
   TwinTrace trace;
 };
 

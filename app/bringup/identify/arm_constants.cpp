@@ -3,6 +3,8 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 
+#include "math/elementary.h"
+
 namespace thimble::app {
 namespace {
 
@@ -42,9 +44,9 @@ ArmConstants constants_of(const Wanted& x, const Eigen::Matrix<double, kWanted, 
 ArmConstants by_declared_torque(const PerMass& bare, const Eigen::Vector3d& down_B) {
   const Seen z = bare.theta.head<kSeen>();
   double log_gain = 0;
-  for (int i = 0; i < 3; ++i) log_gain += std::log(std::abs(z[i])) / 3;
+  for (int i = 0; i < 3; ++i) log_gain += math::log(std::abs(z[i])) / 3;
   Wanted x;
-  x[0] = std::exp(-log_gain);
+  x[0] = math::exp(-log_gain);
   x.tail<kSeen>() = x[0] * z;
   Eigen::Matrix<double, kWanted, kSeen> slope = Eigen::Matrix<double, kWanted, kSeen>::Zero();
   for (int i = 0; i < 3; ++i) slope(0, i) = -x[0] / (3 * z[i]);

@@ -10,6 +10,15 @@ namespace thimble::app {
 /// Standard gravity, m/s^2.
 inline constexpr double kStandardGravity = 9.80665;
 
+/// One joint's motor and cable as they are written into an arm file, with their intervals.
+struct CableConstants {
+  Estimate inertia;        ///< Of motor and pulley, kg m^2 at the joint.
+  Estimate stiffness;      ///< Of the cable, N m/rad at the joint.
+  Estimate damping;        ///< N m s/rad
+  Estimate antiresonance;  ///< At which the link oscillates on its cable, the motor held, Hz.
+  Estimate resonance;      ///< At which motor and link oscillate against each other, Hz.
+};
+
 /// Constants of an arm as they are written into its file, with their intervals.
 struct ArmConstants {
   Estimate mass;                 ///< At the tip, kg.
@@ -21,6 +30,9 @@ struct ArmConstants {
   /// The scale of masses and forces was measured with a known mass. If not, the gains' geometric
   /// mean was taken to be 1, and all but the delay are as wrong as that.
   bool absolute = false;
+  /// Of motors and cables, where these were seen to stretch. Mass, friction and weight are those of
+  /// the links then.
+  std::optional<std::array<CableConstants, 3>> cables;
   double misfit = 0;  ///< With a known mass: chi^2 per degree of freedom of both motions together.
 };
 

@@ -9,11 +9,15 @@ namespace thimble::app {
 /// What was seen of an arm at one tick, and what its motors were asked for. Frames: B base, T tip.
 struct MotionSample {
   Eigen::Vector3d p_BT{0, 0, 0};  ///< Where the encoders say the tip is, m.
+  Eigen::Vector3d q{0, 0, 0};     ///< What the encoders say of the joints, rad.
   /// d q / d p_BT there, rad/m: torques pull on the tip by `G^T tau`.
   Eigen::Matrix3d G = Eigen::Matrix3d::Zero();
   /// Torques that were sent and stand until the next tick, by the arm file's constants, N m at the
   /// joints.
   Eigen::Vector3d tau{0, 0, 0};
+  /// Angular accelerations of the motors, as late as torques are, rad/s^2 at the joints; zero where
+  /// they are not known.
+  Eigen::Vector3d ddq{0, 0, 0};
   bool fresh = false;  ///< A new report told the position.
 };
 

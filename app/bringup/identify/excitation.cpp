@@ -5,6 +5,8 @@
 #include <numbers>
 #include <random>
 
+#include "math/elementary.h"
+
 namespace thimble::app {
 namespace {
 
@@ -14,15 +16,15 @@ constexpr double kLowest = 0.7, kHighest = 13;  // Hz
 }  // namespace
 
 Excitation::Excitation(const Eigen::Vector3d& p_WM, const Eigen::Vector3d& f_carried_W,
-                       std::uint64_t seed)
-    : hold_(p_WM, f_carried_W) {
+                       std::uint64_t seed, Lines lines)
+    : hold_(p_WM, f_carried_W), lines_(seed + 1), with_lines_(lines == Lines::kWith) {
   std::mt19937_64 bits(seed);
   const double steps = 3 * kSines - 1;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (std::size_t i = 0; i < kSines; ++i) {
       // All frequencies differ, evenly in their logarithm, the axes by turns.
       const double share = static_cast<double>(3 * i + axis) / steps;
-      frequency_[axis][i] = 2 * std::numbers::pi * kLowest * std::pow(kHighest / kLowest, share);
+      frequency_[axis][i] = 2 * std::numbers::pi * kLowest * math::pow(kHighest / kLowest, share);
       phase_[axis][i] = 2 * std::numbers::pi * 0x1p-53 * static_cast<double>(bits() >> 11);
     }
   }
@@ -37,9 +39,10 @@ Eigen::Vector3d Excitation::force(double time, double dt, const Eigen::Vector3d&
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (std::size_t i = 0; i < kSines; ++i) {
       f[static_cast<Eigen::Index>(axis)] +=
-          share * kAmplitude * std::sin(frequency_[axis][i] * time + phase_[axis][i]);
+          share * kAmplitude * math::sin(frequency_[axis][i] * time + phase_[axis][i]);
     }
   }
+  if (with_lines_) f += share * lines_.force(time);
   const double length = f.norm();
   if (!(length > kForceMost)) return f;
   return f * (kForceMost / length);

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "bringup/hold_place.h"
+#include "bringup/identify/line_forces.h"
 
 namespace thimble::app {
 
@@ -16,10 +17,13 @@ class Excitation {
   static constexpr double kForceMost = 0.95;  ///< N, below the 1 N that identifying is allowed.
   static constexpr double kFar = 0.04;        ///< How far the tip may go from the middle, m.
   static constexpr int kSines = 8;            ///< Per axis.
+  /// Whether LineForces come on top, which show what the arm does at high frequencies.
+  enum class Lines { kWithout, kWith };
 
   /// Takes where the tip shall stay (m), the force that carries a known mass (N), and what the
   /// phases are drawn by.
-  Excitation(const Eigen::Vector3d& p_WM, const Eigen::Vector3d& f_carried_W, std::uint64_t seed);
+  Excitation(const Eigen::Vector3d& p_WM, const Eigen::Vector3d& f_carried_W, std::uint64_t seed,
+             Lines lines = Lines::kWithout);
 
   /// Returns the force (N) at a time since the beginning (s), `dt` (s) after the last, for a tip at
   /// p_WT (m) with v_WT (m/s); zero for a tip that has left the space it may move in. Real-time:
@@ -34,6 +38,8 @@ class Excitation {
 
  private:
   HoldPlace hold_;
+  LineForces lines_;
+  bool with_lines_;
   std::array<std::array<double, kSines>, 3> frequency_{};  // rad/s
   std::array<std::array<double, kSines>, 3> phase_{};
 };

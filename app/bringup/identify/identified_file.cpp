@@ -45,6 +45,17 @@ class Lines {
     return true;
   }
 
+  /// Puts lines before that of a key, as far in as it.
+  bool add_before(const YAML::Node& key, const std::vector<std::string>& lines) {
+    const YAML::Mark mark = key.Mark();
+    const auto at = static_cast<std::size_t>(mark.line);
+    if (mark.is_null() || at == 0 || at >= lines_.size()) return false;
+    for (const std::string& line : lines) {
+      added_.emplace_back(at - 1, std::string(static_cast<std::size_t>(mark.column), ' ') + line);
+    }
+    return true;
+  }
+
   std::string text() const {
     std::string whole;
     for (std::size_t i = 0; i < lines_.size(); ++i) {
@@ -78,6 +89,10 @@ bool near(double value, double wanted) {
   return std::abs(value - wanted) <= 1e-5 * std::abs(wanted) + 1e-12;
 }
 
+bool near_train(double value, double wanted) {
+  return std::abs(value - wanted) <= 1e-4 * wanted;
+}
+
 /// Exchanges the torque constants, and returns them. Those of some arms are built into the program:
 /// theirs must be what was found.
 driver::Result<void> put_torques(const YAML::Node& root, const scene::ArmFile& before,
@@ -108,6 +123,61 @@ driver::Result<void> put_torques(const YAML::Node& root, const scene::ArmFile& b
     return {};
   }
   return bad_form("joints.torque_constant");
+}
+
+/// One constant of the drive train, joint by joint.
+struct TrainConstant {
+  const char* key;
+  const char* unit;
+  Estimate CableConstants::*member;
+
+  std::string values(const std::array<CableConstants, 3>& cables) const {
+    return fmt::format("[{:.5g}, {:.5g}, {:.5g}]", (cables[0].*member).value,
+                       (cables[1].*member).value, (cables[2].*member).value);
+  }
+
+  std::string text(const std::array<CableConstants, 3>& cables, const IdentifiedMark& mark) const {
+    return fmt::format("{}  # {} at the joints [I {}, {}, +- {:.2g}, {:.2g}, {:.2g}]",
+                       values(cables), unit, mark.date, mark.arm, (cables[0].*member).plus_minus,
+                       (cables[1].*member).plus_minus, (cables[2].*member).plus_minus);
+  }
+};
+
+constexpr TrainConstant kTrainConstants[] = {{"stiffness", "N m/rad", &CableConstants::stiffness},
+                                             {"inertia", "kg m^2", &CableConstants::inertia},
+                                             {"damping", "N m s/rad", &CableConstants::damping}};
+
+/// Exchanges stiffness, inertia and damping of the drive train, or adds the section before `tip`.
+bool put_train(const YAML::Node& simulation, const std::array<CableConstants, 3>& cables,
+               const IdentifiedMark& mark, Lines& lines) {
+  const YAML::Node train = simulation["drive_train"];
+  if (train && train.Style() == YAML::EmitterStyle::Flow) {
+    // On one line: the marks of all that it says behind it.
+    YAML::Node changed = YAML::Clone(train);
+    std::string marks;
+    for (const TrainConstant& constant : kTrainConstants) {
+      changed[constant.key] = YAML::Load(constant.values(cables));
+      marks += fmt::format("; {}: {}", constant.key,
+                           constant.text(cables, mark).substr(constant.values(cables).size() + 4));
+    }
+    changed.SetStyle(YAML::EmitterStyle::Flow);
+    return lines.exchange(train, YAML::Dump(changed) + "  # " + marks.substr(2));
+  }
+  if (train) {
+    return std::all_of(std::begin(kTrainConstants), std::end(kTrainConstants),
+                       [&](const TrainConstant& constant) {
+                         return train[constant.key] &&
+                                lines.exchange(train[constant.key], constant.text(cables, mark));
+                       });
+  }
+  std::vector<std::string> section{"drive_train:"};
+  for (const TrainConstant& constant : kTrainConstants) {
+    section.push_back(fmt::format("  {}: {}", constant.key, constant.text(cables, mark)));
+  }
+  for (const auto& entry : simulation) {
+    if (entry.first.as<std::string>() == "tip") return lines.add_before(entry.first, section);
+  }
+  return false;
 }
 
 }  // namespace
@@ -158,6 +228,9 @@ driver::Result<std::string> identified_text(const std::string& text, const ArmCo
            found.delay.plus_minus)) {
     return bad_form("simulation.wire");
   }
+  if (found.cables && !put_train(root["simulation"], *found.cables, mark, lines)) {
+    return bad_form("section drive_train");
+  }
   std::array<double, 3> torque{};
   if (auto put_torque = put_torques(root, *before, found, mark, lines, torque); !put_torque) {
     return put_torque.error();
@@ -171,7 +244,11 @@ driver::Result<std::string> identified_text(const std::string& text, const ArmCo
                near(read->simulated.plant.viscous, viscous) &&
                near(read->simulated.plant.coulomb, coulomb) &&
                near(read->simulated.weight_B.norm(), has_weight || weighs ? weight : 0);
+  const auto& train = read->simulated.drive_train;
   for (std::size_t i = 0; i < 3; ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    right = right &&
+            (!found.cables || near_train(train.stiffness[k], (*found.cables)[i].stiffness.value));
     right = right && near(read->model.drives[i].torque_constant, torque[i]);
   }
   if (!right) return bad_form("form");

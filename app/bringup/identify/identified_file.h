@@ -16,7 +16,8 @@ struct IdentifiedMark {
 };
 
 /// Returns an arm file's text with identified constants in place of its own: mass, friction, weight
-/// and delay of its section `simulation`, and the torque constants. Each is marked with date, arm
+/// and delay of its section `simulation`, motors and cables if they were seen to stretch, and the
+/// torque constants. Each is marked with date, arm
 /// and interval behind it; all other lines stay as they are. Fails if the text has no section
 /// `simulation`, or a form in which that cannot be done. Real-time: never from the servo thread.
 driver::Result<std::string> identified_text(const std::string& text, const ArmConstants& constants,

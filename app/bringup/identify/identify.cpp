@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "bringup/identify/record_motion.h"
+#include "math/elementary.h"
 
 namespace thimble::app {
 namespace {
@@ -16,6 +17,15 @@ constexpr double kMethodShare = 0.0004;   // of mass and Coulomb friction
 constexpr double kMethodViscous = 0.003;  // N s/m for each N of Coulomb friction
 constexpr double kMethodGain = 0.0002;    // of a gain
 constexpr double kMethodDelay = 2e-6;     // s
+// What a motion behind cables costs beyond that [chosen likewise, with soft arms 1 to 20 and 101 to
+// 120].
+constexpr double kCableMass = 0.01;       // of mass; of the link's inertia for a motor's
+constexpr double kCableFriction = 0.004;  // N of friction and weight for each N of Coulomb friction
+constexpr double kCableViscous = 0.02;    // N s/m for each N of Coulomb friction
+constexpr double kCableGain = 0.004;      // of a gain
+constexpr double kCableDelay = 1.2e-5;    // s
+constexpr double kCableDamping = 0.05;    // of a cable's damping, with which dry friction mixes
+constexpr double kCableLines = 2;         // times what the lines' noise says
 // A right arm leaves 1 to 4 times what its encoders' steps do, or below 1 % of its acceleration
 // where it is light; one that is another leaves more of both.
 constexpr double kResidualMost = 4;
@@ -24,9 +34,13 @@ constexpr double kUnexplainedMost = 0.02;
 constexpr double kSpringLeast = 10;  // N/m
 // Of the pieces of motion, how many may be left out because an axis stood.
 constexpr double kLeftOutMost = 0.75;
+// Lines are fitted to 1 to 1.5; bent geometry and friction leave the rest.
+constexpr double kLinesMisfitMost = 10;
+// Half-width of an interval over the value, of a motor's inertia or a cable.
+constexpr double kCableUnknownMost = 0.6;
 
 void widen(Estimate& estimate, double method) {
-  estimate.plus_minus = std::hypot(estimate.plus_minus, kNormal95 * method);
+  estimate.plus_minus = math::hypot(estimate.plus_minus, kNormal95 * method);
 }
 
 void widen(ArmConstants& constants) {
@@ -40,6 +54,83 @@ void widen(ArmConstants& constants) {
 std::string line(const char* name, const Estimate& estimate, double scale, const char* unit) {
   return fmt::format("  {:<22} {:>10.5g} +- {:<9.2g} {}\n", name, scale * estimate.value,
                      scale * estimate.plus_minus, unit);
+}
+
+/// Fits the links behind cables that stretch, and with `refine` the cables again by what the slow
+/// part of their motion says. Returns the motion of the links.
+driver::Result<ArmMotion> behind_cables(const ArmMotion& motion, const scene::ArmFile& file,
+                                        CableFit& lines, bool refine, PerMass& fit) {
+  constexpr int kRounds = 2;
+  // The method's errors beside those of the statistics [chosen as those above]: times a deviation,
+  // and of the link's inertia.
+  constexpr double kTrust = 3, kShareError = 0.02;
+  const LineSpectrum spectrum = refine ? line_spectrum(motion) : LineSpectrum{};
+  for (int round = 0;; ++round) {
+    auto links = motion_of_links(motion, lines, file);
+    if (!links) return links.error();
+    const bool last = !refine || round == kRounds;
+    auto seen = fit_motion(*links, false, !last);
+    if (!seen) return seen.error();
+    fit = *seen;
+    fit.delay.value += lines.elastic.theta[TwoMass::kDelay] - kHeldBack * motion.dt;
+    if (last) return links;
+    SlowPart slow;
+    slow.gain = fit.theta.segment<3>(PerMass::kGain);
+    for (int i = 0; i < 3; ++i) {
+      const int g = TwoMass::kGain + i, J = TwoMass::kInertia + i;
+      slow.ratio[i] = std::max(0.0, lines.elastic.theta[J] / lines.elastic.theta[g] +
+                                        fit.theta[PerMass::kInertia + i] / slow.gain[i]);
+      slow.gain_error[i] = kTrust * std::sqrt(fit.covariance(i, i));
+      const double error =
+          kTrust * std::sqrt(fit.covariance(PerMass::kInertia + i, PerMass::kInertia + i));
+      slow.ratio_error[i] = math::hypot(error, kShareError * spectrum.JTJ(i, i)) / slow.gain[i];
+    }
+    slow.delay = fit.delay.value;
+    slow.delay_error = kTrust * std::max(2e-6, fit.delay.plus_minus / kNormal95);
+    refine_cables(lines, spectrum, slow, motion.dt);
+  }
+}
+
+/// Adds what the lines say of motors and cables, and what their errors make of the rest.
+void put_cables(Identified& found) {
+  ArmConstants& constants = found.constants;
+  widen(constants.mass, kCableMass * constants.mass.value);
+  widen(constants.coulomb, kCableFriction * constants.coulomb.value);
+  widen(constants.viscous, kCableViscous * constants.coulomb.value);
+  widen(constants.weight, kCableFriction * constants.coulomb.value);
+  widen(constants.delay, kCableDelay);
+  for (Estimate& gain : constants.gain) widen(gain, kCableGain * gain.value);
+  constants.cables = cable_constants(found.lines, constants.gain);
+  for (std::size_t i = 0; i < 3; ++i) {
+    CableConstants& cable = (*constants.cables)[i];
+    // What a motor's inertia is taken for too much, the link's is taken for too little.
+    const auto k = static_cast<Eigen::Index>(i);
+    widen(cable.inertia, kCableMass * constants.mass.value * found.lines.JTJ(k, k));
+    for (Estimate* estimate :
+         {&cable.stiffness, &cable.damping, &cable.antiresonance, &cable.resonance}) {
+      estimate->plus_minus *= kCableLines;
+    }
+    widen(cable.damping, kCableDamping * cable.damping.value);
+  }
+  if (found.lines.elastic.misfit > kLinesMisfitMost) {
+    found.against.push_back(fmt::format(
+        "Above {:g} Hz the arm moves neither like a rigid one nor like one with a mass behind each "
+        "cable (chi^2 {:.0f} per degree of freedom): play, a second resonance or a hand do that.",
+        LineForces::kLowest, found.lines.elastic.misfit));
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    const CableConstants& cable = (*constants.cables)[i];
+    if (cable.inertia.plus_minus < kCableUnknownMost * cable.inertia.value &&
+        cable.stiffness.plus_minus < kCableUnknownMost * cable.stiffness.value) {
+      continue;
+    }
+    found.against.push_back(fmt::format(
+        "The cable of joint {} stretches (its link oscillates on it at {:.0f} Hz), but motor and "
+        "cable are not known well enough to be written: {:.2g} +- {:.2g} kg m^2, {:.3g} +- {:.2g} "
+        "N m/rad. Take more time (--seconds).",
+        i + 1, cable.antiresonance.value, cable.inertia.value, cable.inertia.plus_minus,
+        cable.stiffness.value, cable.stiffness.plus_minus));
+  }
 }
 
 }  // namespace
@@ -102,8 +193,18 @@ driver::Result<Identified> identify(const OpenBench& open, const scene::ArmFile&
                                        .seed = options.seed + (loaded ? 1 : 0)},
                                       stop);
     if (!motion) return motion.error();
-    const auto fit = fit_motion(*motion, false), held = fit_motion(*motion, true);
+    auto fit = fit_motion(*motion, false);
     if (!fit) return fit.error();
+    if (!loaded && options.cables)
+      found.lines = fit_cables(line_spectrum(*motion), *fit, motion->dt);
+    driver::Result<ArmMotion> links = *motion;
+    // A mass on the tip changes neither motors nor cables.
+    if (found.lines.stretches) {
+      auto behind = behind_cables(*motion, file, found.lines, !loaded, *fit);
+      if (!behind) return behind.error();
+      links = std::move(behind).value();
+    }
+    const auto held = fit_motion(*links, true);
     if (!held) return held.error();
     down_B = motion->down_B;
     if (loaded) {
@@ -128,7 +229,34 @@ driver::Result<Identified> identify(const OpenBench& open, const scene::ArmFile&
         options.known_mass, found.constants.misfit));
   }
   widen(found.constants);
+  if (found.lines.stretches) put_cables(found);
   return found;
+}
+
+std::string cables_text(const Identified& identified) {
+  const CableFit& lines = identified.lines;
+  if (lines.noise.empty()) return "Cables that stretch were not looked for.\n";
+  const auto& cables = identified.constants.cables;
+  if (!cables) {
+    const Eigen::Vector3d from =
+        lines.unseen_from.cwiseMin(Eigen::Vector3d::Constant(LineForces::kHighest));
+    return fmt::format(
+        "No compliance was seen: a link that oscillates on its cable below {:.0f}, {:.0f}, {:.0f} "
+        "Hz "
+        "(joint by joint) would have been.\n",
+        from[0], from[1], from[2]);
+  }
+  std::string text = "The cables stretch. Motors and cables, at the joints:\n";
+  for (std::size_t i = 0; i < 3; ++i) {
+    const CableConstants& cable = (*cables)[i];
+    const auto name = [i](const char* what) { return fmt::format("{} {}", what, i + 1); };
+    text += line(name("inertia of motor").c_str(), cable.inertia, 1e3, "g m^2");
+    text += line(name("stiffness of cable").c_str(), cable.stiffness, 1, "N m/rad");
+    text += line(name("damping of cable").c_str(), cable.damping, 1, "N m s/rad");
+    text += line(name("antiresonance").c_str(), cable.antiresonance, 1, "Hz, link on its cable");
+    text += line(name("resonance").c_str(), cable.resonance, 1, "Hz, motor against link");
+  }
+  return text;
 }
 
 std::string constants_table(const Identified& identified) {
@@ -153,9 +281,8 @@ std::string constants_table(const Identified& identified) {
               : "Motion alone shows no mass without a force: the torque constants of the arm file "
                 "were taken to be right on average. All but the delay is as wrong as they are; a "
                 "known mass on the tip (--known-mass) measures them.\n";
-  text +=
-      "Not measured: cable stretch and play, cogging, how the mass changes over the "
-      "workspace.\n";
+  text += cables_text(identified);
+  text += "Not measured: play, cogging, how the mass changes over the workspace.\n";
   return text;
 }
 

@@ -7,6 +7,7 @@
 
 #include "bringup/bench_arm.h"
 #include "bringup/identify/arm_constants.h"
+#include "bringup/identify/cables.h"
 #include "thimble/driver/result.h"
 #include "thimble/driver/tick_record.h"
 
@@ -17,8 +18,10 @@ inline constexpr double kIdentifyForceMax = 1.0;
 
 /// How an arm is identified.
 struct IdentifyOptions {
-  double seconds = 60;     ///< Of each motion; 10 at the least.
-  double lead = 1;         ///< That it moves before each, s.
+  double seconds = 60;  ///< Of each motion; 10 at the least.
+  double lead = 1;      ///< That it moves before each, s.
+  /// Whether cables that stretch are looked for; if not, an arm that has some is a bad fit.
+  bool cables = true;
   double known_mass = 0;   ///< That the user fixes to the tip for the second motion, kg; 0: none.
   std::uint64_t seed = 1;  ///< Of the excitation's phases.
   /// Handed each tick of the motion with the bare tip, for a recording; may be empty.
@@ -30,6 +33,7 @@ struct Identified {
   ArmConstants constants;
   PerMass bare;                   ///< The fit of the motion without the known mass.
   std::optional<PerMass> loaded;  ///< Of that with it, if there was one.
+  CableFit lines;                 ///< What the lines of the motion without it say of its cables.
   /// Why the model of a rigid arm does not fit, a sentence each; empty: it does. Nothing may be
   /// written then.
   std::vector<std::string> against;
@@ -48,6 +52,9 @@ using OpenBench = std::function<driver::Result<std::unique_ptr<BenchArm>>(bool l
 /// there is nothing to tell. Real-time: never from the servo thread.
 driver::Result<Identified> identify(const OpenBench& open, const scene::ArmFile& file,
                                     const IdentifyOptions& options, const std::atomic<bool>& stop);
+
+/// Returns what was seen of cables that stretch, or from which frequency on none would have been.
+std::string cables_text(const Identified& identified);
 
 /// Returns a table of the constants with their intervals, and what they rest on.
 std::string constants_table(const Identified& identified);

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "bringup/identify/smooth_bump.h"
+
 namespace thimble::app {
 namespace {
 
@@ -15,41 +17,30 @@ constexpr int kSmooth = 10;      // ticks to either side, for the sign of a velo
 constexpr int kCluster = 500;    // ticks whose residuals may hang together
 constexpr double kSlow = 0.003;  // m/s, below which the sign of a velocity is not known
 constexpr int kSlowMost = 3;  // ticks that an axis may be so slow, which turns and does not stick
-constexpr double kDelayMost = 0.02;  // s
+constexpr double kDelayMost = 0.02;    // s
+constexpr std::size_t kLateMost = 24;  // ticks, kDelayMost and what the line search looks beyond it
 
 using Row = Eigen::Matrix<double, PerMass::kCount + 1, 1>;  // the delay's column is the last
-
-/// A smooth bump (1 - x^2)^4 over |x| < 1 with its derivatives, at the ticks, per second.
-struct Bump {
-  std::array<double, 2 * kHalf + 1> value{}, slope{}, curvature{};
-
-  Bump(int half, double dt) {
-    const double width = half * dt;
-    for (int j = -half; j <= half; ++j) {
-      const double x = static_cast<double>(j) / half, y = 1 - x * x;
-      const auto i = static_cast<std::size_t>(j + half);
-      value[i] = y * y * y * y;
-      slope[i] = -8 * x * y * y * y / width;
-      curvature[i] = (-8 * y * y * y + 48 * x * x * y * y) / (width * width);
-    }
-  }
-};
 
 /// One bump of one axis: what stands on the left, and what the constants multiply.
 struct Equation {
   int middle = 0;  // tick
   int axis = 0;
   double left = 0;  // m/s^2
+  double viscous = 0, coulomb = 0, stiffness = 0;
 };
 
 class Fit {
  public:
-  Fit(const ArmMotion& motion, bool with_stiffness)
-      : motion_(motion), with_stiffness_(with_stiffness), bump_(kHalf, motion.dt) {
+  Fit(const ArmMotion& motion, bool with_stiffness, bool with_inertia)
+      : motion_(motion),
+        with_stiffness_(with_stiffness),
+        with_inertia_(with_inertia),
+        bump_(motion.dt) {
     for (const double value : bump_.value) area_ += value;
     find_velocities();
-    find_signs(0);
     gather();
+    find_signs(0);
   }
 
   driver::Result<PerMass> run() {
@@ -82,35 +73,17 @@ class Fit {
  private:
   const MotionSample& at(int tick) const { return motion_.samples[static_cast<std::size_t>(tick)]; }
 
-  /// Smooths by a bump times 1 - b x^2, whose second moment is zero: where a velocity turns,
-  /// neither its slope nor how that changes moves the place.
   void find_velocities() {
-    const Bump smooth(kSmooth, motion_.dt);
-    const double width = kSmooth * motion_.dt;
-    double second = 0, fourth = 0, area = 0;
-    for (int j = -kSmooth; j <= kSmooth; ++j) {
-      const double x2 = static_cast<double>(j * j) / (kSmooth * kSmooth);
-      second += smooth.value[static_cast<std::size_t>(j + kSmooth)] * x2;
-      fourth += smooth.value[static_cast<std::size_t>(j + kSmooth)] * x2 * x2;
-    }
-    const double b = second / fourth;
-    std::array<double, 2 * kSmooth + 1> slope{};
-    for (int j = -kSmooth; j <= kSmooth; ++j) {
-      const auto i = static_cast<std::size_t>(j + kSmooth);
-      const double x = static_cast<double>(j) / kSmooth, y = 1 - b * x * x;
-      slope[i] = smooth.slope[i] * y - smooth.value[i] * 2 * b * x / width;
-      area += smooth.value[i] * y;
-      mean_distance_ += smooth.value[i] * y * std::abs(j) * motion_.dt;
-    }
-    mean_distance_ /= area;
+    const TurnSmoothing<kSmooth> smooth(motion_.dt);
+    mean_distance_ = smooth.mean_distance;
     velocity_.assign(motion_.samples.size(), Eigen::Vector3d::Zero());
     const int end = static_cast<int>(motion_.samples.size()) - kSmooth;
     for (int k = kSmooth; k < end; ++k) {
       Eigen::Vector3d sum(0, 0, 0);
       for (int j = -kSmooth; j <= kSmooth; ++j) {
-        sum -= slope[static_cast<std::size_t>(j + kSmooth)] * at(k + j).p_BT;
+        sum -= smooth.slope[static_cast<std::size_t>(j + kSmooth)] * at(k + j).p_BT;
       }
-      velocity_[static_cast<std::size_t>(k)] = sum / area;
+      velocity_[static_cast<std::size_t>(k)] = sum;
     }
   }
 
@@ -128,6 +101,7 @@ class Fit {
         sign_[k][axis] = std::abs(v) < half_tick ? v / half_tick : v > 0 ? 1 : v < 0 ? -1 : 0;
       }
     }
+    sum_frictions();
   }
 
   void gather() {
@@ -160,33 +134,67 @@ class Fit {
     }
   }
 
+  /// What torques do to an equation when they are a number of ticks late: sums over the bump, of
+  /// its value at the beginning of each tick and of its rise over it, joint by joint.
+  struct Pushed {
+    Eigen::Vector3d from{0, 0, 0}, rise{0, 0, 0}, inert{0, 0, 0};
+    bool summed = false;
+  };
+
+  /// The line search asks for the same ticks again and again, so each is summed up once.
+  const Pushed& pushed(std::size_t number, int late) const {
+    auto& all = pushed_[static_cast<std::size_t>(late)];
+    if (all.empty()) all.resize(equations_.size());
+    Pushed& sums = all[number];
+    if (sums.summed) return sums;
+    const int axis = equations_[number].axis, middle = equations_[number].middle;
+    for (int j = -kHalf; j < kHalf; ++j) {
+      const auto i = static_cast<std::size_t>(j + kHalf);
+      const MotionSample &here = at(middle + j), &next = at(middle + j + 1);
+      const Eigen::Vector3d& tau = at(middle + j - late).tau;
+      const Eigen::Vector3d from = bump_.value[i] * here.G.col(axis);
+      const Eigen::Vector3d rise = bump_.value[i + 1] * next.G.col(axis) - from;
+      sums.from += tau.cwiseProduct(from);
+      sums.rise += tau.cwiseProduct(rise);
+      // That of accelerations moves little within a tick.
+      if (with_inertia_) sums.inert -= at(middle + j - late).ddq.cwiseProduct(from + 0.5 * rise);
+    }
+    sums.summed = true;
+    return sums;
+  }
+
+  /// Sums up what does not hang on the delay. Dry friction hangs on where the signs turn.
+  void sum_frictions() {
+    for (Equation& equation : equations_) {
+      const int axis = equation.axis, middle = equation.middle;
+      equation.viscous = equation.coulomb = equation.stiffness = 0;
+      for (int j = -kHalf; j < kHalf; ++j) {
+        const auto i = static_cast<std::size_t>(j + kHalf);
+        const double p = at(middle + j).p_BT[axis];
+        equation.viscous += bump_.slope[i] * (p - at(middle).p_BT[axis]);
+        equation.coulomb -= bump_.value[i] * sign_[static_cast<std::size_t>(middle + j)][axis];
+        equation.stiffness -= bump_.value[i] * p;
+      }
+    }
+  }
+
   /// What the constants of an equation multiply, at a delay (s). Torques stand from tick to tick:
   /// within the tick that they arrive in, the older ones last for the delay's fraction.
-  Row row(const Equation& equation, double delay) const {
+  Row row(std::size_t number, double delay) const {
     Row row = Row::Zero();
+    const Equation& equation = equations_[number];
     const double ticks = delay / motion_.dt;
     const int whole = static_cast<int>(std::floor(ticks));
     const double part = ticks - whole;
-    const int axis = equation.axis, middle = equation.middle;
-    for (int j = -kHalf; j < kHalf; ++j) {
-      const auto i = static_cast<std::size_t>(j + kHalf);
-      const int tick = middle + j;
-      const MotionSample &here = at(tick), &next = at(tick + 1);
-      const Eigen::Vector3d& older = at(tick - whole - 1).tau;
-      const Eigen::Vector3d& newer = at(tick - whole).tau;
-      for (int joint = 0; joint < 3; ++joint) {
-        const double from = bump_.value[i] * here.G(joint, axis);
-        const double rise = bump_.value[i + 1] * next.G(joint, axis) - from;
-        row[PerMass::kGain + joint] += part * older[joint] * (from + 0.5 * part * rise) +
-                                       (1 - part) * newer[joint] * (from + 0.5 * (1 + part) * rise);
-      }
-      const double value = bump_.value[i];
-      row[PerMass::kViscous] += bump_.slope[i] * (here.p_BT[axis] - at(middle).p_BT[axis]);
-      row[PerMass::kCoulomb] -= value * sign_[static_cast<std::size_t>(tick)][axis];
-      row[PerMass::kStiffness] -= value * here.p_BT[axis];
-    }
+    const Pushed &older = pushed(number, whole + 1), &newer = pushed(number, whole);
+    row.segment<3>(PerMass::kGain) = part * (older.from + 0.5 * part * older.rise) +
+                                     (1 - part) * (newer.from + 0.5 * (1 + part) * newer.rise);
+    row.segment<3>(PerMass::kInertia) = part * older.inert + (1 - part) * newer.inert;
+    row[PerMass::kViscous] = equation.viscous;
+    row[PerMass::kCoulomb] = equation.coulomb;
+    row[PerMass::kStiffness] = equation.stiffness;
     row /= area_;
-    row[PerMass::kWeight + axis] = 1;
+    row[PerMass::kWeight + equation.axis] = 1;
     return row;
   }
 
@@ -199,21 +207,32 @@ class Fit {
     Row right = Row::Zero();
     double square = 0;
     for (std::size_t i = 0; i < equations_.size(); i += stride) {
-      const Row one = row(equations_[i], delay);
+      const Row one = row(i, delay);
       if (rows != nullptr) rows->row(static_cast<Eigen::Index>(i)) = one.transpose();
       normal += one * one.transpose();
       right += equations_[i].left * one;
       square += equations_[i].left * equations_[i].left;
     }
     normal(PerMass::kCount, PerMass::kCount) = 1;
-    if (!with_stiffness_) {
-      normal.row(PerMass::kStiffness).setZero();
-      normal.col(PerMass::kStiffness).setZero();
-      normal(PerMass::kStiffness, PerMass::kStiffness) = 1;
-      right[PerMass::kStiffness] = 0;
-    }
+    leave_out(normal);
+    for (int k = 0; k < PerMass::kCount; ++k) right[k] = is_asked(k) ? right[k] : 0;
     theta = normal.ldlt().solve(right);
     return square - theta.dot(right);
+  }
+
+  bool is_asked(int k) const {
+    return k < PerMass::kStiffness || k == PerMass::kCount ||
+           (k == PerMass::kStiffness ? with_stiffness_ : with_inertia_);
+  }
+
+  /// Makes equations that say nothing of what is not asked.
+  void leave_out(Eigen::Matrix<double, PerMass::kCount + 1, PerMass::kCount + 1>& normal) const {
+    for (int k = 0; k < PerMass::kCount; ++k) {
+      if (is_asked(k)) continue;
+      normal.row(k).setZero();
+      normal.col(k).setZero();
+      normal(k, k) = 1;
+    }
   }
 
   double residual_at(double delay, std::size_t stride = 1) const {
@@ -252,16 +271,18 @@ class Fit {
     // How the residual changes with the delay, by a central difference.
     constexpr double kStep = 2e-5;
     for (Eigen::Index i = 0; i < count; ++i) {
-      const Equation& equation = equations_[static_cast<std::size_t>(i)];
+      const auto number = static_cast<std::size_t>(i);
       const double early = std::max(0.0, delay - kStep);
-      rows(i, PerMass::kCount) = (row(equation, delay + kStep) - row(equation, early)).dot(theta) /
-                                 (delay + kStep - early);
+      rows(i, PerMass::kCount) =
+          (row(number, delay + kStep) - row(number, early)).dot(theta) / (delay + kStep - early);
     }
-    if (!with_stiffness_) rows.col(PerMass::kStiffness).setZero();
     Eigen::Matrix<double, kAll, kAll> normal = rows.transpose() * rows;
-    if (!with_stiffness_) normal(PerMass::kStiffness, PerMass::kStiffness) = 1;
+    leave_out(normal);
     const Eigen::Matrix<double, kAll, kAll> inverse =
         normal.ldlt().solve(Eigen::Matrix<double, kAll, kAll>::Identity());
+    for (int k = 0; k < PerMass::kCount; ++k) {
+      if (!is_asked(k)) rows.col(k).setZero();
+    }
     Eigen::Matrix<double, kAll, kAll> meat = Eigen::Matrix<double, kAll, kAll>::Zero();
     Row score = Row::Zero();
     int cluster = -1, clusters = 0;
@@ -301,20 +322,22 @@ class Fit {
   }
 
   const ArmMotion& motion_;
-  bool with_stiffness_;
-  Bump bump_;
+  bool with_stiffness_, with_inertia_;
+  SmoothBump<kHalf> bump_;
   double area_ = 0;
   std::vector<Eigen::Vector3d> velocity_, sign_;
   double mean_distance_ = 0;  // of a tick from the middle of the smoothing bump, s
   std::vector<Equation> equations_;
+  mutable std::array<std::vector<Pushed>, kLateMost> pushed_;  // by ticks, for each equation
   std::size_t left_out_ = 0;
   std::size_t whole_ = 0, torn_ = 0;  // pieces of motion without and with ticks that saw no report
 };
 
 }  // namespace
 
-driver::Result<PerMass> fit_motion(const ArmMotion& motion, bool with_stiffness) {
-  return Fit(motion, with_stiffness).run();
+driver::Result<PerMass> fit_motion(const ArmMotion& motion, bool with_stiffness,
+                                   bool with_inertia) {
+  return Fit(motion, with_stiffness, with_inertia).run();
 }
 
 }  // namespace thimble::app

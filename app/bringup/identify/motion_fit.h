@@ -22,12 +22,22 @@ struct Estimate {
 
 /// Constants of a motion, per moved mass: what motion alone can tell.
 ///
-///     p'' = sum_i g_i G_i^T tau_i(t - delay) - b p' - c sgn(p') + w - k (p - p_0),
+///     p'' = sum_i g_i G_i^T tau_i(t - delay) - b p' - c sgn(p') + w - k (p - p_0)
+///           - sum_i j_i G_i^T q_i'',
 ///
-/// row i of G for joint i. Torques and mass scale together, so that only the ratios are seen.
+/// row i of G for joint i, j_i the inertia of a motor that is not in its torque yet. Torques and
+/// mass scale together, so that only the ratios are seen.
 struct PerMass {
   /// Index of each constant in `theta`.
-  enum Index { kGain = 0, kViscous = 3, kCoulomb = 4, kWeight = 5, kStiffness = 8, kCount = 9 };
+  enum Index {
+    kGain = 0,
+    kViscous = 3,
+    kCoulomb = 4,
+    kWeight = 5,
+    kStiffness = 8,
+    kInertia = 9,
+    kCount = 12
+  };
 
   Eigen::Matrix<double, kCount, 1> theta = Eigen::Matrix<double, kCount, 1>::Zero();
   Eigen::Matrix<double, kCount, kCount> covariance = Eigen::Matrix<double, kCount, kCount>::Zero();
@@ -43,7 +53,9 @@ struct PerMass {
 /// positions need no differentiation; linear least squares for all constants but the delay, which a
 /// line search finds to a fraction of a tick. The covariance is that of clusters of half a second,
 /// whatever their residuals' correlation. `with_stiffness`: a spring holds the tip (a hand).
-/// Fails if the motion is too short or its windows too few. Real-time: never from the servo thread.
-driver::Result<PerMass> fit_motion(const ArmMotion& motion, bool with_stiffness);
+/// `with_inertia`: motors have an inertia, whose accelerations the samples know. Fails if the
+/// motion is too short or its windows too few. Real-time: never from the servo thread.
+driver::Result<PerMass> fit_motion(const ArmMotion& motion, bool with_stiffness,
+                                   bool with_inertia = false);
 
 }  // namespace thimble::app

@@ -22,6 +22,7 @@ MotionSample sample_of(const scene::ArmFile& file, const driver::DeviceState& st
   std::visit([&](const auto& build) { build.forward(state.q, sample.p_BT, J); },
              file.model.geometry);
   sample.G = J.inverse();
+  sample.q = state.q;
   sample.fresh = state.fresh;
   return sample;
 }
@@ -36,6 +37,7 @@ class Recorder {
     if (auto active = bench_.device().activate(); !active) return active.error();
     // Until the soft start is over; an arm with its bare tip stays where it is put.
     if (bare && !bench_.run(file_.limits.soft_start + 0.05, rest, stop_)) return why();
+    p_WM_ = bench_.device().state().p_WT;
     return {};
   }
 
@@ -55,6 +57,8 @@ class Recorder {
       const auto law = [&](const driver::DeviceState& state) -> Eigen::Vector3d {
         if (begin < 0) begin = bench_.now(), q0 = state.q[joint];
         const double t = bench_.now() - begin;
+        left_ = left_ || !within(state.p_WT);
+        if (left_) return {0, 0, 0};
         // +, -, -, +: while it is pushed to and stopped, the joint goes one way and comes back.
         const double phase = t / kPulse;
         const double sign = phase < 1 ? 1 : phase < 3 ? -1 : phase < 4 ? 1 : 0;
@@ -66,6 +70,7 @@ class Recorder {
         return file_.R_WB * (sign * kPulseForce * push_B);
       };
       if (!bench_.run(5 * kPulse, law, stop_)) return why();
+      if (left_) return went_away();
       const double counts = moved / file_.model.step(static_cast<std::size_t>(joint));
       constexpr double kNoticed = 3;  // counts
       if (counts < -kNoticed) {
@@ -93,32 +98,38 @@ class Recorder {
       motion.step[static_cast<Eigen::Index>(i)] = file_.model.step(i);
     }
     motion.samples.reserve(static_cast<std::size_t>(order.seconds / kTick) + 1);
-    Excitation excitation(bench_.device().state().p_WT, {0, 0, kStandardGravity * order.added_mass},
-                          order.seed);
+    Excitation excitation(p_WM_, {0, 0, kStandardGravity * order.added_mass}, order.seed,
+                          Excitation::Lines::kWith);
     const double begin = bench_.now();
-    bool left = false;
     const auto law = [&](const driver::DeviceState& state) -> Eigen::Vector3d {
       const double t = bench_.now() - begin;
       // What was sent in the tick before stands until now.
       if (!motion.samples.empty()) motion.samples.back().tau = sent_torque(motion.samples.back());
       if (t >= lead_) motion.samples.push_back(sample_of(file_, state));
-      left = left || !excitation.near(state.p_WT) || !file_.workspace.holds(state.p_WT);
-      if (left) return {0, 0, 0};
+      left_ = left_ || !within(state.p_WT);
+      if (left_) return {0, 0, 0};
       return excitation.force(t, kTick, state.p_WT, state.v_WT);
     };
     const bool whole = bench_.run(lead_ + order.seconds, law, stop_);
-    if (left) {
-      return driver::Error{
-          "The tip left the space of 4 cm that it may move in, so the motors went off and nothing "
-          "was kept: something pulls at it, or its motors are far stronger than the arm file says. "
-          "Begin in the middle of the workspace, without a hand on the grip."};
-    }
+    if (left_) return went_away();
     if (!whole) return why();
     if (!motion.samples.empty()) motion.samples.back().tau = sent_torque(motion.samples.back());
     return motion;
   }
 
  private:
+  /// Returns whether the tip is where it may be pushed: near where it began, in the workspace.
+  bool within(const Eigen::Vector3d& p_WT) const {
+    return (p_WT - p_WM_).norm() < Excitation::kFar && file_.workspace.holds(p_WT);
+  }
+
+  static driver::Error went_away() {
+    return driver::Error{
+        "The tip left the space of 4 cm that it may move in, so the motors went off and nothing "
+        "was kept: something pulls at it, or its motors are far stronger than the arm file says. "
+        "Begin in the middle of the workspace, without a hand on the grip."};
+  }
+
   /// Returns the torques of the force that stands, in the pose that it was sent for.
   Eigen::Vector3d sent_torque(const MotionSample& then) const {
     const Eigen::Vector3d f_T_B = file_.R_WB.transpose() * bench_.device().f_sent_W();
@@ -127,7 +138,9 @@ class Recorder {
 
   BenchArm& bench_;
   const scene::ArmFile& file_;
-  double lead_;  // s
+  double lead_;                    // s
+  Eigen::Vector3d p_WM_{0, 0, 0};  // where it began, m
+  bool left_ = false;              // that space, for good
   const std::atomic<bool>& stop_;
 };
 

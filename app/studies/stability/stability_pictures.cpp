@@ -13,41 +13,11 @@
 #include "report/gnuplot.h"
 #include "report/picture_parts.h"
 #include "stability/stability_laws.h"
+#include "studies/stability/drive_train_walls.h"
+#include "studies/stability/stability_picture_parts.h"
 
 namespace thimble::app {
 namespace {
-
-// Colours apart for colour-blind eyes too, beside those of picture_parts.h [M Okabe and Ito].
-constexpr const char* kGreenInk = "#009e73";
-constexpr const char* kPurpleInk = "#8a3d6b";
-constexpr const char* kGoldInk = "#b8860b";
-
-std::string panel(double left, double right, double bottom, double top) {
-  std::ostringstream c;
-  c << "set lmargin at screen " << left << "\nset rmargin at screen " << right
-    << "\nset bmargin at screen " << bottom << "\nset tmargin at screen " << top << "\n";
-  return c.str();
-}
-
-std::string heading(const std::string& title, const std::string& below) {
-  std::ostringstream c;
-  c << "set label 101 " << quote(fitted(title, 1400, 22))
-    << " at screen 0.06, screen 0.955 font ',22' noenhanced "
-    << "textcolor rgb '" << kInk << "'\nset label 102 " << quote(fitted(below, 1700, 15))
-    << " at screen 0.06, screen 0.912 font ',15' noenhanced textcolor rgb '" << kFaintInk << "'\n";
-  return c.str();
-}
-
-/// Puts a panel's own title above it, from its left edge, a line's height away from the frame.
-std::string panel_title(const std::string& title) {
-  return "set label 103 " + quote(title) +
-         " at graph 0, graph 1 offset 0,0.9 noenhanced textcolor rgb '" + kInk + "'\n";
-}
-
-std::string axis_labels(const std::string& x, const std::string& y) {
-  return "set xlabel " + quote(x) + " noenhanced textcolor rgb '" + kInk + "'\nset ylabel " +
-         quote(y) + " noenhanced textcolor rgb '" + kInk + "'\n";
-}
 
 /// Says which arm, hand and loop it is.
 std::string subject(const StabilitySetup& setup, bool with_hand) {
@@ -61,19 +31,6 @@ std::string subject(const StabilitySetup& setup, bool with_hand) {
     text += "; no hand";
   }
   return text;
-}
-
-/// Writes columns of numbers as gnuplot reads them; what is no number leaves a gap.
-driver::Result<void> write_data(const std::vector<std::vector<double>>& rows,
-                                const std::filesystem::path& file) {
-  std::string text;
-  for (const auto& row : rows) {
-    for (const double value : row) {
-      text += std::isfinite(value) ? fmt::format("{:.9g} ", value) : "? ";
-    }
-    text += "\n";
-  }
-  return write_text(text, file);
 }
 
 double log_of(double value) {
@@ -418,7 +375,8 @@ driver::Result<void> draw_stability(const StabilitySetup& setup,
   if (auto done = draw_kb_map(setup, rows, folder); !done) return done;
   if (auto done = draw_restitution(setup, rows, folder); !done) return done;
   if (auto done = draw_cycles(setup, rows, folder); !done) return done;
-  return draw_largest(setup, rows, folder);
+  if (auto done = draw_largest(setup, rows, folder); !done) return done;
+  return draw_drive_train_walls(setup, rows, folder);
 }
 
 }  // namespace thimble::app

@@ -6,6 +6,7 @@
 
 #include "energy_choice.h"
 #include "stability/stability_laws.h"
+#include "studies/stability/drive_train_walls.h"
 #include "studies/stability/wall_measures.h"
 
 namespace thimble::app {
@@ -215,6 +216,7 @@ std::vector<StabilityCell> stability_cells(const StabilitySetup& setup) {
   add_restitution(setup, cells);
   add_cycles(setup, cells);
   add_edges(setup, cells);
+  add_drive_train_walls(setup, cells);
   return cells;
 }
 
@@ -280,6 +282,9 @@ driver::Result<std::vector<double>> measure_stability(const StabilitySetup& setu
     }
     case StabilityPart::kStepEdge:
       return alone(step_edge(setup, cell.a));
+    case StabilityPart::kLagEdge:
+    case StabilityPart::kCableEdge:
+      return alone(drive_train_edge(setup, cell));
   }
   return std::vector<double>{};  // of no part: a sweep takes no cell without numbers
 }

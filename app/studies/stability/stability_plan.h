@@ -38,7 +38,9 @@ enum class StabilityPart {
   kDelayEdge,   ///< c: period s, d: delay s -> the same.
   kLateEdge,    ///< a: share of ticks that come three late -> the same.
   kSpreadEdge,  ///< a: spread of the period -> the same.
-  kStepEdge     ///< a: encoder step m -> largest stiffness that comes to rest, with the hand.
+  kStepEdge,    ///< a: encoder step m -> largest stiffness that comes to rest, with the hand.
+  kLagEdge,     ///< a: lag of the amplifiers s -> largest stiffness of an arm with b = 1.
+  kCableEdge    ///< a: stiffness of the cable at the tip N/m, b: its damping -> the same.
 };
 
 /// One cell of the study's sweep.

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "stability/stability_laws.h"
+#include "studies/stability/drive_train_walls.h"
 
 namespace thimble::app {
 namespace {
@@ -87,6 +88,11 @@ void add_laws(const StabilitySetup& setup, StabilityRow& row) {
     case StabilityPart::kStepEdge:
       row.law = step_law(setup, cell.a);
       break;
+    case StabilityPart::kLagEdge:
+    case StabilityPart::kCableEdge:
+      row.law = limit_by_phase(drive_train_wall(setup, cell));
+      row.exact = stiffness_edge(drive_train_wall(setup, cell));
+      break;
     default:
       break;
   }
@@ -116,7 +122,11 @@ const std::vector<Table>& tables() {
       {"stiffness_by_delay.csv", "period_s,delay_s,stiffness_N_m,law_N_m,exact_N_m", {kDelayEdge}},
       {"stiffness_by_late_ticks.csv", "late_share,stiffness_N_m,law_N_m", {kLateEdge}},
       {"stiffness_by_spread.csv", "spread_of_period,stiffness_N_m,law_N_m", {kSpreadEdge}},
-      {"stiffness_by_encoder_step.csv", "step_m,stiffness_N_m,law_N_m", {kStepEdge}}};
+      {"stiffness_by_encoder_step.csv", "step_m,stiffness_N_m,law_N_m", {kStepEdge}},
+      {"stiffness_by_lag.csv", "lag_s,stiffness_N_m,law_N_m,exact_N_m", {kLagEdge}},
+      {"stiffness_by_cable.csv",
+       "cable_N_m,cable_damping_Ns_m,stiffness_N_m,law_N_m,exact_N_m",
+       {kCableEdge}}};
   return list;
 }
 
@@ -144,6 +154,10 @@ std::vector<double> columns(const StabilityRow& row) {
     case StabilityPart::kSpreadEdge:
     case StabilityPart::kStepEdge:
       return {c.a, found, row.law};
+    case StabilityPart::kLagEdge:
+      return {c.a, found, row.law, row.exact};
+    case StabilityPart::kCableEdge:
+      return {c.a, c.b, found, row.law, row.exact};
   }
   return {};
 }
@@ -174,6 +188,10 @@ std::string place_of(const StabilityCell& c) {
       return fmt::format("with periods spread by {:.3g} %", 100 * c.a);
     case StabilityPart::kStepEdge:
       return fmt::format("with encoder steps of {:.3g} um", 1e6 * c.a);
+    case StabilityPart::kLagEdge:
+      return fmt::format("with amplifiers that lag by {:.3g} ms", 1e3 * c.a);
+    case StabilityPart::kCableEdge:
+      return fmt::format("with a cable of {:.3g} N/m and {:.3g} N s/m", c.a, c.b);
     default:
       return {};
   }
@@ -307,12 +325,13 @@ driver::Result<void> write_stability_tables(const StabilitySetup&,
 std::vector<Figure> stability_figures(const StabilitySetup& setup,
                                       const std::vector<StabilityRow>& rows) {
   std::vector<Figure> figures;
-  const auto percent = [&figures](const char* name, double error, const char* goal,
+  const auto percent = [&figures](const std::string& name, double error, const char* goal,
                                   const std::string& note = {}) {
     figures.push_back({name, 100 * error, "%", goal, note});
   };
   // An error is judged where there is one.
-  const auto judge = [&percent](const char* name, const WorstError& worst, const char* goal) {
+  const auto judge = [&percent](const std::string& name, const WorstError& worst,
+                                const char* goal) {
     percent(name, worst.error, worst.unjudged ? "" : goal, worst.note);
   };
   const auto linear = part_of(rows, StabilityPart::kLinearEdge);
@@ -358,6 +377,13 @@ std::vector<Figure> stability_figures(const StabilitySetup& setup,
         worst_error(part_of(rows, StabilityPart::kLateEdge), &StabilityRow::law, kAll), "<= 3");
   judge("agreement.spread_with_law",
         worst_error(part_of(rows, StabilityPart::kSpreadEdge), &StabilityRow::law, kAll), "<= 3");
+  for (const auto& [part, name] : {std::pair(StabilityPart::kLagEdge, "agreement.lag_with_"),
+                                   {StabilityPart::kCableEdge, "agreement.cable_with_"}}) {
+    const auto edges = part_of(rows, part);
+    if (edges.empty()) continue;  // an arm on which no joint moves the tip along a way of its own
+    judge(std::string(name) + "law", worst_error(edges, &StabilityRow::law, kAll), "<= 5");
+    judge(std::string(name) + "exact_map", worst_error(edges, &StabilityRow::exact, kAll), "<= 5");
+  }
   const auto bounces = part_of(rows, StabilityPart::kRestitution);
   const auto soft = [&setup](const StabilityRow& row, bool damped) {
     const double l = row.cell.c / 2 + row.cell.d;

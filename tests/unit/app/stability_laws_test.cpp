@@ -114,6 +114,66 @@ TEST(SampledWall, HasTheEdgeOfTheLatencyBudgetWhereItsLawHolds) {
   EXPECT_NEAR(stiffness_edge(lagging) / scene::stiffness_limit(0.2, 0.0015), 1, 0.03);
 }
 
+TEST(SampledWall, LosesWhatAnAmplifierLagsLikeADelay) {
+  for (const double lag : {0.0002, 0.0005, 0.001, 0.002}) {
+    const SampledWall wall{.mass = kMass, .viscous = 0.2, .period = 0.001, .amplifier_lag = lag};
+    EXPECT_NEAR(limit_by_phase(wall) / stiffness_edge(wall), 1, 0.01) << lag;
+    const SampledWall late{.mass = kMass, .viscous = 0.2, .period = 0.001, .delay = lag};
+    EXPECT_NEAR(stiffness_edge(late) / stiffness_edge(wall), 1, 0.01) << lag;
+  }
+}
+
+TEST(SampledWall, IsThatOfARigidArmWhereTheCableIsStiff) {
+  SampledWall wall{.mass = kMass, .viscous = 1, .period = 0.001, .delay = 0.0015};
+  const double mass = wall.mass;
+  const double rigid = stiffness_edge(wall);
+  EXPECT_NEAR(limit_by_phase(wall) / late_stiffness_limit(1, 0.002, mass), 1, 1e-3);
+  wall.mass = 0.7 * mass;
+  wall.rotor_mass = 0.3 * mass;
+  wall.cable_damping = 5;
+  wall.cable_stiffness = 1e7;
+  EXPECT_NEAR(stiffness_edge(wall) / rigid, 1, 1e-3);
+  EXPECT_NEAR(limit_by_phase(wall) / late_stiffness_limit(1, 0.002, mass), 1, 1e-3);
+}
+
+TEST(SampledWall, IsShiftedByACableThatStretchesAsTheLawOfTwoMassesSays) {
+  // The same two masses by steps of 2 us, in place of the exact map.
+  const auto grows = [](const SampledWall& wall, double stiffness) {
+    double x = 0, v = 0.01, rotor = 0, rate = 0.01, force = 0, early = 0, late = 0;
+    const double h = 2e-6;
+    const auto per_tick = static_cast<int>(std::lround(wall.period / h));
+    const int ticks = 3000;
+    for (int tick = 0; tick < ticks; ++tick) {
+      force = -stiffness * rotor;
+      double most = 0;
+      for (int i = 0; i < per_tick; ++i) {
+        const double cable = wall.cable_stiffness * (rotor - x) + wall.cable_damping * (rate - v);
+        v += h * (cable - wall.viscous * v) / wall.mass;
+        rate += h * (force - cable) / wall.rotor_mass;
+        x += h * v;
+        rotor += h * rate;
+        most = std::max(most, std::abs(rotor));
+      }
+      if (tick >= ticks / 4 && tick < ticks / 2) early = std::max(early, most);
+      if (tick >= 3 * ticks / 4) late = std::max(late, most);
+      if (most > 1) return true;
+    }
+    return late > early;
+  };
+  for (const double cable : {2e3, 5e3, 2e4, 2e5}) {
+    const SampledWall wall{.mass = kMass,
+                           .viscous = 1,
+                           .period = 0.001,
+                           .cable_stiffness = cable,
+                           .cable_damping = 1,
+                           .rotor_mass = 0.3 * kMass};
+    const double edge = stiffness_edge(wall);
+    EXPECT_FALSE(grows(wall, 0.97 * edge)) << cable;
+    EXPECT_TRUE(grows(wall, 1.03 * edge)) << cable;
+    EXPECT_NEAR(limit_by_phase(wall) / edge, 1, 0.01) << cable;
+  }
+}
+
 TEST(SampledWall, LosesWhatALowPassOnItsVelocityCosts) {
   // B = 2 N s/m, simulated [PHYSICS 1.1]; the exact map agrees within 0.3 %.
   SampledWall wall{.mass = kMass, .viscous = kViscous, .damping = 2, .period = 0.001};

@@ -65,9 +65,11 @@ struct ArmFile {
   EnergyChoice energy;                                 ///< Of the safety gate.
   /// Longest time a force is held while no encoder counts, s; none: the driver's own.
   std::optional<double> hold_unchanged{};
-  driver::HeatSettings heat{};           ///< What the motors carry for long; none: not known.
-  DeclaredLimits declared;               ///< What its maker promises.
-  double velocity_corner_frequency = 0;  ///< Hz
+  driver::HeatSettings heat{};  ///< What the motors carry for long; none: not known.
+  DeclaredLimits declared;      ///< What its maker promises.
+  /// What the motors carry of the arm's own weight at the tip in every run, N; 0: nothing.
+  double carried_weight = 0;
+  double velocity_corner_frequency = 0;                ///< Hz
   Eigen::Matrix3d R_WB = Eigen::Matrix3d::Identity();  ///< Rotation of the base in the world.
   Eigen::Vector3d p_WB{0, 0, 0};                       ///< Position of the base, m.
   WorkspaceBox workspace;                              ///< Where the tip may work.

@@ -1,0 +1,164 @@
+#include "bringup/identify/cables.h"
+
+#include <Eigen/LU>
+#include <cmath>
+#include <numbers>
+#include <unsupported/Eigen/FFT>
+
+#include "math/elementary.h"
+
+namespace thimble::app {
+namespace {
+
+using Complex = std::complex<double>;
+using Wave = std::vector<Complex>;
+
+constexpr double kWhole = 90, kNone = 150;  // Hz; between them what is kept fades [chosen: far
+                                            // above what 60 ms of smoothing leave of it]
+constexpr double kEnds = 0.5;               // s, where the ends of the record are felt
+
+/// A series without the straight line between its ends, which a transform would see as a step.
+struct Leant {
+  Wave wave;
+  double first = 0, rise = 0;  // of the line, per tick
+
+  explicit Leant(const std::vector<double>& series) {
+    first = series.front();
+    rise = (series.back() - first) / static_cast<double>(series.size() - 1);
+    std::vector<double> rest(series);
+    for (std::size_t i = 0; i < rest.size(); ++i) rest[i] -= at(i);
+    Eigen::FFT<double> transform;
+    transform.fwd(wave, rest);
+  }
+
+  double at(std::size_t i) const { return first + rise * static_cast<double>(i); }
+};
+
+std::vector<double> series_of(const Wave& wave) {
+  Eigen::FFT<double> transform;
+  std::vector<double> series;
+  transform.inv(series, wave);
+  return series;
+}
+
+double kept(double hz) {
+  if (hz < kWhole) return 1;
+  if (hz > kNone) return 0;
+  return 0.5 + 0.5 * math::cos(std::numbers::pi * (hz - kWhole) / (kNone - kWhole));
+}
+
+/// How a joint's torque and angle make what its cable does to the link: torque of an equal motor
+/// without inertia, and angle.
+struct JointOfLink {
+  std::vector<double> tau, q, ddq;
+};
+
+JointOfLink behind_cable(const ArmMotion& motion, const TwoMass& fit, int joint) {
+  const std::size_t count = motion.samples.size();
+  std::vector<double> tau(count), q(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    tau[i] = motion.samples[i].tau[joint];
+    q[i] = motion.samples[i].q[joint];
+  }
+  Leant pushed(tau), turned(q);
+  Wave faster(count);
+  const double gain = fit.theta[TwoMass::kGain + joint];
+  const double inertia = fit.theta[TwoMass::kInertia + joint];
+  const double give = fit.theta[TwoMass::kCompliance + joint];
+  const double fade = fit.theta[TwoMass::kFade + joint];
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto k = static_cast<double>(i <= count / 2 ? i : count - i);
+    const double hz = k / (static_cast<double>(count) * motion.dt);
+    const double sign = i <= count / 2 ? 1 : -1;
+    const Complex s(0, sign * 2 * std::numbers::pi * hz);
+    // The torque of a tick is its mean over the tick that it is late.
+    const Complex pull = gain * turn_by(-s.imag() * fit.theta[TwoMass::kDelay]) * pushed.wave[i] -
+                         inertia * s * s * turned.wave[i] * turn_by(0.5 * s.imag() * motion.dt);
+    const double share = kept(hz);
+    faster[i] = share * s * s * turned.wave[i] * turn_by(0.5 * s.imag() * motion.dt);
+    turned.wave[i] = share * (turned.wave[i] - give / (1.0 + fade * s) * pull *
+                                                   turn_by(-0.5 * s.imag() * motion.dt));
+    pushed.wave[i] = share * pull / gain;
+  }
+  JointOfLink link{series_of(pushed.wave), series_of(turned.wave), series_of(faster)};
+  for (std::size_t i = 0; i < count; ++i) {
+    // The lines that were taken off bend nothing: a steady torque stretches the cable.
+    link.tau[i] += pushed.at(i);
+    link.q[i] += turned.at(i) - give * gain * pushed.at(i);
+  }
+  return link;
+}
+
+}  // namespace
+
+std::array<CableConstants, 3> cable_constants(const CableFit& fit,
+                                              const std::array<Estimate, 3>& gain) {
+  std::array<CableConstants, 3> found;
+  const auto& theta = fit.elastic.theta;
+  const auto& covariance = fit.elastic.covariance;
+  for (int i = 0; i < 3; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    using Slope = Eigen::Matrix<double, TwoMass::kCount, 1>;
+    // Each is a product of powers, so that its relative error is a sum of theirs.
+    const auto estimate = [&](double value, const Slope& relative, double of_gain) {
+      Slope slope = relative;
+      for (int j = 0; j < TwoMass::kCount; ++j) slope[j] /= theta[j] != 0 ? theta[j] : 1;
+      const double error = kNormal95 * std::sqrt(slope.dot(covariance * slope));
+      return Estimate{value, std::abs(value) *
+                                 math::hypot(error, of_gain * gain[k].plus_minus / gain[k].value)};
+    };
+    const auto power = [](std::initializer_list<std::pair<int, double>> powers) {
+      Slope slope = Slope::Zero();
+      for (const auto& [index, by] : powers) slope[index] = by;
+      return slope;
+    };
+    const int g = TwoMass::kGain + i, J = TwoMass::kInertia + i, c = TwoMass::kCompliance + i;
+    const int t = TwoMass::kFade + i;
+    const double scale = gain[k].value / theta[g];
+    found[k].inertia = estimate(scale * theta[J], power({{J, 1}, {g, -1}}), 1);
+    found[k].stiffness = estimate(scale / theta[c], power({{c, -1}, {g, -1}}), 1);
+    found[k].damping = estimate(scale * theta[t] / theta[c], power({{t, 1}, {c, -1}, {g, -1}}), 1);
+    found[k].antiresonance = estimate(fit.elastic.antiresonance(i, fit.JTJ), power({{c, -0.5}}), 0);
+    const double link = fit.JTJ(i, i), rotor = theta[J];
+    found[k].resonance = estimate(fit.elastic.resonance(i, fit.JTJ),
+                                  power({{c, -0.5}, {J, -0.5 * link / (link + rotor)}}), 0);
+  }
+  return found;
+}
+
+driver::Result<ArmMotion> motion_of_links(const ArmMotion& motion, const CableFit& fit,
+                                          const scene::ArmFile& file) {
+  // A number of ticks with small factors, which transforms are quick for.
+  ArmMotion whole = motion;
+  const auto over = static_cast<std::ptrdiff_t>(motion.samples.size() % 500);
+  whole.samples.erase(whole.samples.begin(), whole.samples.begin() + over);
+  std::array<JointOfLink, 3> links;
+  for (int joint = 0; joint < 3; ++joint) {
+    links[static_cast<std::size_t>(joint)] = behind_cable(whole, fit.elastic, joint);
+  }
+  ArmMotion seen = whole;
+  const auto ends = static_cast<std::size_t>(std::llround(kEnds / motion.dt));
+  seen.samples.clear();
+  for (std::size_t i = ends; i + ends < whole.samples.size(); ++i) {
+    MotionSample sample = whole.samples[i];
+    Eigen::Matrix3d J;
+    for (int joint = 0; joint < 3; ++joint) {
+      const JointOfLink& link = links[static_cast<std::size_t>(joint)];
+      sample.q[joint] = link.q[i];
+      sample.tau[joint] = link.tau[i + kHeldBack];
+      sample.ddq[joint] = link.ddq[i + kHeldBack];
+    }
+    std::visit([&](const auto& build) { build.forward(sample.q, sample.p_BT, J); },
+               file.model.geometry);
+    sample.G = J.inverse();
+    if (!sample.p_BT.allFinite() || !sample.G.allFinite()) {
+      return driver::Error{
+          "The links behind the cables that were found would have been out of reach, so these are "
+          "not the arm's cables."};
+    }
+    seen.samples.push_back(sample);
+  }
+  return seen;
+}
+
+}  // namespace thimble::app

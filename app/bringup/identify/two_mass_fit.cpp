@@ -1,0 +1,139 @@
+#include "bringup/identify/two_mass_fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "bringup/identify/two_mass_search.h"
+#include "math/elementary.h"
+
+namespace thimble::app {
+namespace {
+
+constexpr double kTurn = 2 * std::numbers::pi;
+constexpr int kRoundsMost = 100;
+
+/// Looks for cables in many places, for each of several delays: lines have many a valley. Where a
+/// rigid arm fits already, few places do.
+TwoMassTheta first_guess(const TwoMassSearch& search, const LineSpectrum& spectrum,
+                         const TwoMassTheta& rigid, const PerMass& slow, double stiff) {
+  constexpr double kSoftest = 8, kStiffest = 400;  // Hz
+  constexpr double kRotor = 0.3;                   // of the link's inertia
+  constexpr double kFitsWell = 3;                  // chi^2 per degree of freedom
+  constexpr int kFirstRounds = 5;
+  const bool fits = stiff < kFitsWell * static_cast<double>(search.rows());
+  const int stiffnesses = fits ? 3 : 8, delays = fits ? 1 : 9;
+  struct Start {
+    double sum;
+    TwoMassTheta x;
+  };
+  std::vector<Start> starts;
+  for (int i = 0; i < stiffnesses; ++i) {
+    const double share = fits ? 1 - 0.15 * i : static_cast<double>(i) / (stiffnesses - 1);
+    const double omega = kTurn * kSoftest * math::pow(kStiffest / kSoftest, share);
+    for (int late = 0; late < delays; ++late) {
+      TwoMassTheta x = rigid;
+      if (!fits) x[TwoMass::kDelay] = 0.0007 * late;
+      for (int joint = 0; joint < 3; ++joint) {
+        const double inertia = spectrum.JTJ(joint, joint);
+        x[TwoMass::kGain + joint] = slow.theta[joint] * (1 + kRotor);
+        x[TwoMass::kInertia + joint] = kRotor * inertia;
+        x[TwoMass::kRotorViscous + joint] = 0.1 * inertia;
+        x[TwoMass::kCompliance + joint] = 1 / (omega * omega * inertia);
+        x[TwoMass::kFade + joint] = 0.1 / omega;
+      }
+      x = into_search(x);
+      const double sum = search.go(x, true, kFirstRounds);
+      starts.push_back({sum, x});
+    }
+  }
+  std::sort(starts.begin(), starts.end(),
+            [](const Start& a, const Start& b) { return a.sum < b.sum; });
+  starts.resize(std::min<std::size_t>(starts.size(), 3));
+  for (Start& start : starts) start.sum = search.go(start.x, true, kRoundsMost);
+  return std::min_element(starts.begin(), starts.end(),
+                          [](const Start& a, const Start& b) { return a.sum < b.sum; })
+      ->x;
+}
+
+void put_elastic(CableFit& found, const TwoMassSearch& search, const TwoMassTheta& x,
+                 double least) {
+  TwoMass& elastic = found.elastic;
+  elastic.theta = from_search(x);
+  elastic.misfit = least / static_cast<double>(search.rows() - TwoMass::kCount);
+  elastic.covariance = std::max(1.0, elastic.misfit) * search.covariance(x, true);
+  // The logarithms' deviations are relative.
+  for (int k = 0; k < TwoMass::kCount; ++k) {
+    if (!is_log(k)) continue;
+    elastic.covariance.row(k) *= elastic.theta[k];
+    elastic.covariance.col(k) *= elastic.theta[k];
+  }
+}
+
+}  // namespace
+
+double TwoMass::antiresonance(int joint, const Eigen::Matrix3d& JTJ) const {
+  return std::sqrt(1 / (theta[kCompliance + joint] * JTJ(joint, joint))) / kTurn;
+}
+
+double TwoMass::resonance(int joint, const Eigen::Matrix3d& JTJ) const {
+  return std::sqrt((1 / JTJ(joint, joint) + 1 / theta[kInertia + joint]) /
+                   theta[kCompliance + joint]) /
+         kTurn;
+}
+
+void refine_cables(CableFit& found, const LineSpectrum& spectrum, const SlowPart& slow, double dt) {
+  TwoMassSearch search(spectrum, dt);
+  search.measure_noise(found.elastic.theta, true);
+  search.take_slow_part(slow);
+  TwoMassTheta start = found.elastic.theta;
+  start.segment<3>(TwoMass::kGain) = slow.gain;
+  start.segment<3>(TwoMass::kInertia) = slow.gain.cwiseProduct(slow.ratio);
+  start[TwoMass::kDelay] = slow.delay;
+  // From where the lines alone led, and from where the slow part is.
+  TwoMassTheta elastic = into_search(found.elastic.theta), other = into_search(start);
+  double least = search.go(elastic, true, kRoundsMost);
+  const double sum = search.go(other, true, kRoundsMost);
+  if (sum < least) least = sum, elastic = other;
+  put_elastic(found, search, elastic, least);
+}
+
+CableFit fit_cables(const LineSpectrum& spectrum, const PerMass& slow, double dt) {
+  CableFit found;
+  found.JTJ = spectrum.JTJ;
+  TwoMassSearch search(spectrum, dt);
+  TwoMassTheta rigid = TwoMassTheta::Zero();
+  rigid.head<3>() = slow.theta.head<3>();
+  rigid[TwoMass::kViscous] = std::max(0.0, slow.theta[PerMass::kViscous]);
+  rigid[TwoMass::kDelay] = slow.delay.value;
+  search.measure_noise(rigid, false);
+  rigid = into_search(rigid);
+  double stiff = search.go(rigid, false, kRoundsMost), least = HUGE_VAL;
+  TwoMassTheta elastic = first_guess(search, spectrum, from_search(rigid), slow, stiff);
+  // The noise is what the better of both leaves beside the lines.
+  for (int round = 0; round < 2; ++round) {
+    stiff = search.go(rigid, false, kRoundsMost);
+    least = search.go(elastic, true, kRoundsMost);
+    if (round == 0) {
+      search.measure_noise(from_search(least < stiff ? elastic : rigid), least < stiff);
+    }
+  }
+  const auto count = static_cast<double>(search.rows());
+  found.better = count * math::log(stiff / least) - 6 * math::log(count);
+  found.rigid.theta = from_search(rigid);
+  found.rigid.theta.tail<6>().setZero();
+  found.rigid.misfit = stiff / static_cast<double>(search.rows() - TwoMass::kRigidCount);
+  put_elastic(found, search, elastic, least);
+  constexpr double kBetter = 20;
+  found.stretches = found.better > kBetter;
+  Eigen::Vector3d give, error;
+  search.look_for_give(found.rigid.theta, give, error);
+  for (int i = 0; i < 3; ++i) {
+    const double most = std::max(0.0, give[i]) + kNormal95 * error[i];
+    found.unseen_from[i] = 1 / std::sqrt(most * spectrum.JTJ(i, i)) / kTurn;
+  }
+  found.noise = search.sigma();
+  return found;
+}
+
+}  // namespace thimble::app

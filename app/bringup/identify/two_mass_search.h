@@ -1,0 +1,251 @@
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "bringup/identify/two_mass_fit.h"
+
+namespace thimble::app {
+
+// The search for the constants of two_mass_fit.cpp.
+
+using TwoMassTheta = Eigen::Matrix<double, TwoMass::kCount, 1>;
+
+inline constexpr int kSlowRows = 7;  // of a SlowPart
+
+inline constexpr double kNoiseLeast = 1e-12;  // rad, below any encoder's
+
+/// Returns whether the search goes by the logarithm of a constant.
+inline bool is_log(int k) {
+  return k >= TwoMass::kCompliance || (k >= TwoMass::kInertia && k < TwoMass::kRotorViscous);
+}
+
+inline double log_of(double amount) {
+  return math::log(std::max(amount, 1e-12));
+}
+
+/// Search space: inertias, compliances and how these fade go by logarithms, which keeps them
+/// positive.
+inline TwoMassTheta into_search(TwoMassTheta theta) {
+  theta.tail<6>() = theta.tail<6>().unaryExpr(&log_of);
+  theta.segment<3>(TwoMass::kInertia) = theta.segment<3>(TwoMass::kInertia).unaryExpr(&log_of);
+  return theta;
+}
+
+inline TwoMassTheta from_search(TwoMassTheta x) {
+  x.tail<6>() = x.tail<6>().unaryExpr(&math::exp);
+  x.segment<3>(TwoMass::kInertia) = x.segment<3>(TwoMass::kInertia).unaryExpr(&math::exp);
+  return x;
+}
+
+/// Returns the joints' oscillation at a frequency, rad.
+inline Eigen::Vector3cd two_mass_answer(const TwoMassTheta& theta, const SpectralLine& line,
+                                        const Eigen::Matrix3d& JTJ, double dt, bool elastic) {
+  const std::complex<double> s(0, line.omega);
+  const double half = 0.5 * line.omega * dt;
+  const std::complex<double> held =
+      math::sin(half) / half * turn_by(-line.omega * (0.5 * dt + theta[TwoMass::kDelay]));
+  Eigen::Matrix3cd Z = JTJ.cast<std::complex<double>>() * (s * s + theta[TwoMass::kViscous] * s);
+  if (elastic) {
+    Eigen::Matrix3cd give = Z.inverse();
+    for (int i = 0; i < 3; ++i) {
+      give(i, i) += theta[TwoMass::kCompliance + i] / (1.0 + s * theta[TwoMass::kFade + i]);
+    }
+    Z = give.inverse();
+  }
+  for (int i = 0; i < 3; ++i) {
+    Z(i, i) += s * s * theta[TwoMass::kInertia + i] + s * theta[TwoMass::kRotorViscous + i];
+  }
+  const Eigen::Vector3cd push =
+      held * theta.segment<3>(TwoMass::kGain).cast<std::complex<double>>().cwiseProduct(line.tau);
+  return Z.inverse() * push;
+}
+
+/// Levenberg's and Marquardt's search over the constants that fit the lines best.
+class TwoMassSearch {
+ public:
+  TwoMassSearch(const LineSpectrum& spectrum, double dt) : spectrum_(spectrum), dt_(dt) {
+    sigma_.resize(spectrum.lines.size());
+  }
+
+  /// Takes what is beside the lines, less the model's answer to it, for their noise.
+  void measure_noise(const TwoMassTheta& theta, bool elastic) {
+    constexpr std::size_t kBeside = LineSpectrum::kBeside;
+    std::vector<Eigen::Vector3d> power(sigma_.size(), Eigen::Vector3d::Zero());
+    for (std::size_t i = 0; i < spectrum_.beside.size(); ++i) {
+      const SpectralLine& line = spectrum_.beside[i];
+      const Eigen::Vector3cd rest =
+          line.q - two_mass_answer(theta, line, spectrum_.JTJ, dt_, elastic);
+      power[i / kBeside] += rest.cwiseAbs2() / static_cast<double>(kBeside);
+    }
+    for (std::size_t i = 0; i < sigma_.size(); ++i) {
+      // With that of its neighbours: eight frequencies alone know it to a third.
+      const std::size_t low = i == 0 ? 0 : i - 1, high = std::min(i + 1, sigma_.size() - 1);
+      Eigen::Vector3d sum(0, 0, 0);
+      for (std::size_t k = low; k <= high; ++k)
+        sum += power[k] / static_cast<double>(high - low + 1);
+      sigma_[i] = sum.cwiseSqrt().cwiseMax(kNoiseLeast);
+    }
+  }
+
+  /// Goes down from `x` by Levenberg's and Marquardt's steps. Returns chi^2.
+  double go(TwoMassTheta& x, bool elastic, int rounds) const {
+    const int count = elastic ? TwoMass::kCount : TwoMass::kRigidCount;
+    double best = look(x, elastic, nullptr), damping = 1e-2;
+    Eigen::MatrixXd slope;
+    Eigen::VectorXd rest;
+    for (int round = 0; round < rounds && damping < 1e6; ++round) {
+      slopes(x, elastic, count, slope, rest);
+      const Eigen::MatrixXd normal = slope.transpose() * slope;
+      const Eigen::VectorXd down = slope.transpose() * rest;
+      bool better = false;
+      double gained = 0;
+      for (int tries = 0; tries < 8 && !better && damping < 1e6; ++tries) {
+        Eigen::MatrixXd damped = normal;
+        damped.diagonal() *= 1 + damping;
+        damped.diagonal().array() += 1e-12 * normal.diagonal().maxCoeff();
+        TwoMassTheta next = x;
+        next.head(count) -=
+            damped.ldlt().solve(down).cwiseMax(-bound(count)).cwiseMin(bound(count));
+        const double sum = look(next, elastic, nullptr);
+        better = sum < best;
+        if (better) gained = best - sum, best = sum, x = next;
+        damping *= better ? 0.2 : 5;
+      }
+      if (!better || gained < 1e-6 * best) break;
+    }
+    return best;
+  }
+
+  Eigen::MatrixXd covariance(const TwoMassTheta& x, bool elastic) const {
+    const int count = elastic ? TwoMass::kCount : TwoMass::kRigidCount;
+    Eigen::MatrixXd slope;
+    Eigen::VectorXd rest;
+    slopes(x, elastic, count, slope, rest);
+    Eigen::MatrixXd normal = slope.transpose() * slope;
+    const Eigen::VectorXd scale = normal.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+    normal = scale.asDiagonal() * normal * scale.asDiagonal();
+    normal.diagonal().array() += 1e-10;
+    const Eigen::MatrixXd inverse = normal.ldlt().solve(Eigen::MatrixXd::Identity(count, count));
+    return scale.asDiagonal() * inverse * scale.asDiagonal();
+  }
+
+  /// What is known of compliances about a rigid arm: their values and deviations.
+  void look_for_give(const TwoMassTheta& rigid, Eigen::Vector3d& give,
+                     Eigen::Vector3d& error) const {
+    Eigen::MatrixXd slope, all(rows(), TwoMass::kRigidCount + 3);
+    Eigen::VectorXd rest, other(rows());
+    slopes(into_search(rigid), false, TwoMass::kRigidCount, slope, rest);
+    all.leftCols(TwoMass::kRigidCount) = slope;
+    for (int i = 0; i < 3; ++i) {
+      TwoMassTheta soft = rigid;
+      soft.tail<6>().setZero();
+      soft[TwoMass::kCompliance + i] = 1e-7 / spectrum_.JTJ(i, i);
+      residuals(soft, true, other);
+      all.col(TwoMass::kRigidCount + i) = (other - rest) / soft[TwoMass::kCompliance + i];
+    }
+    Eigen::MatrixXd normal = all.transpose() * all;
+    const Eigen::VectorXd scale = normal.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+    normal = scale.asDiagonal() * normal * scale.asDiagonal();
+    normal.diagonal().array() += 1e-10;
+    const Eigen::MatrixXd inverse =
+        normal.ldlt().solve(Eigen::MatrixXd::Identity(normal.rows(), normal.rows()));
+    const Eigen::VectorXd step =
+        scale.asDiagonal() * (inverse * (scale.asDiagonal() * (all.transpose() * rest)));
+    const double spread =
+        std::max(1.0, rest.squaredNorm() / static_cast<double>(rows() - TwoMass::kRigidCount));
+    for (int i = 0; i < 3; ++i) {
+      const int k = TwoMass::kRigidCount + i;
+      give[i] = -step[k];
+      error[i] = scale[k] * std::sqrt(spread * inverse(k, k));
+    }
+  }
+
+  Eigen::Index rows() const {
+    return static_cast<Eigen::Index>(6 * spectrum_.lines.size()) +
+           (slow_ != nullptr ? kSlowRows : 0);
+  }
+
+  /// From now on the slow part of the motion counts too.
+  void take_slow_part(const SlowPart& slow) { slow_ = &slow; }
+  const std::vector<Eigen::Vector3d>& sigma() const { return sigma_; }
+
+ private:
+  static Eigen::VectorXd bound(int count) {
+    Eigen::VectorXd most = Eigen::VectorXd::Constant(count, 1e9);
+    most.segment<3>(TwoMass::kInertia).setConstant(1);
+    if (count == TwoMass::kCount) most.tail<6>().setConstant(1);
+    return most;
+  }
+
+  void residuals(const TwoMassTheta& theta, bool elastic, Eigen::VectorXd& rest) const {
+    for (std::size_t i = 0; i < spectrum_.lines.size(); ++i) {
+      const SpectralLine& line = spectrum_.lines[i];
+      const Eigen::Vector3cd off =
+          two_mass_answer(theta, line, spectrum_.JTJ, dt_, elastic) - line.q;
+      for (int joint = 0; joint < 3; ++joint) {
+        // Half of the noise's power is in either part.
+        const std::complex<double> one = std::sqrt(2.0) * off[joint] / sigma_[i][joint];
+        rest[static_cast<Eigen::Index>(6 * i) + 2 * joint] = one.real();
+        rest[static_cast<Eigen::Index>(6 * i) + 2 * joint + 1] = one.imag();
+      }
+    }
+    if (slow_ != nullptr) rest.tail<kSlowRows>() = slow_rest(theta);
+  }
+
+  /// How far the constants are from what the slow part says, in its deviations.
+  Eigen::Matrix<double, kSlowRows, 1> slow_rest(const TwoMassTheta& theta) const {
+    Eigen::Matrix<double, kSlowRows, 1> rest;
+    const Eigen::Vector3d gain = theta.segment<3>(TwoMass::kGain);
+    const Eigen::Vector3d ratio = theta.segment<3>(TwoMass::kInertia).cwiseQuotient(gain);
+    rest << (gain - slow_->gain).cwiseQuotient(slow_->gain_error),
+        (ratio - slow_->ratio).cwiseQuotient(slow_->ratio_error),
+        (theta[TwoMass::kDelay] - slow_->delay) / slow_->delay_error;
+    return rest;
+  }
+
+  double look(const TwoMassTheta& x, bool elastic, Eigen::VectorXd* rest) const {
+    Eigen::VectorXd mine(rows());
+    Eigen::VectorXd& out = rest != nullptr ? *rest : mine;
+    residuals(from_search(x), elastic, out);
+    const double sum = out.squaredNorm();
+    return std::isfinite(sum) ? sum : HUGE_VAL;
+  }
+
+  void slopes(const TwoMassTheta& x, bool elastic, int count, Eigen::MatrixXd& slope,
+              Eigen::VectorXd& rest) const {
+    rest.resize(rows());
+    slope.resize(rows(), count);
+    look(x, elastic, &rest);
+    Eigen::VectorXd other(rows());
+    for (int k = 0; k < count; ++k) {
+      TwoMassTheta next = x;
+      const double step = k == TwoMass::kDelay ? 1e-7
+                          : is_log(k)          ? 1e-5
+                                               : 1e-5 * std::max(std::abs(x[k]), floor_of(k));
+      next[k] += step;
+      look(next, elastic, &other);
+      slope.col(k) = (other - rest) / step;
+    }
+  }
+
+  /// What a constant that may be zero is measured by.
+  double floor_of(int k) const {
+    if (k == TwoMass::kViscous) return 0.1;
+    if (k >= TwoMass::kRotorViscous && k < TwoMass::kCompliance) {
+      return 0.1 * spectrum_.JTJ(k - TwoMass::kRotorViscous, k - TwoMass::kRotorViscous);
+    }
+    return 1e-9;
+  }
+
+  const LineSpectrum& spectrum_;
+  const SlowPart* slow_ = nullptr;
+  double dt_;
+  std::vector<Eigen::Vector3d> sigma_;  // RMS of the noise of a line, rad
+};
+
+}  // namespace thimble::app

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <filesystem>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "report/figure.h"
+#include "report/gnuplot.h"
+#include "report/picture_parts.h"
+#include "thimble/driver/result.h"
+
+namespace thimble::app {
+
+// What the pictures of this study share.
+
+// Colours apart for colour-blind eyes too, beside those of picture_parts.h [M Okabe and Ito].
+inline constexpr const char* kGreenInk = "#009e73";
+inline constexpr const char* kPurpleInk = "#8a3d6b";
+inline constexpr const char* kGoldInk = "#b8860b";
+
+/// Places a panel, in shares of the picture.
+inline std::string panel(double left, double right, double bottom, double top) {
+  std::ostringstream c;
+  c << "set lmargin at screen " << left << "\nset rmargin at screen " << right
+    << "\nset bmargin at screen " << bottom << "\nset tmargin at screen " << top << "\n";
+  return c.str();
+}
+
+/// Puts title and subtitle above a picture.
+inline std::string heading(const std::string& title, const std::string& below) {
+  std::ostringstream c;
+  c << "set label 101 " << quote(fitted(title, 1400, 22))
+    << " at screen 0.06, screen 0.955 font ',22' noenhanced "
+    << "textcolor rgb '" << kInk << "'\nset label 102 " << quote(fitted(below, 1700, 15))
+    << " at screen 0.06, screen 0.912 font ',15' noenhanced textcolor rgb '" << kFaintInk << "'\n";
+  return c.str();
+}
+
+/// Puts a panel's own title above it, from its left edge, a line's height away from the frame.
+inline std::string panel_title(const std::string& title) {
+  return "set label 103 " + quote(title) +
+         " at graph 0, graph 1 offset 0,0.9 noenhanced textcolor rgb '" + kInk + "'\n";
+}
+
+/// Labels both axes.
+inline std::string axis_labels(const std::string& x, const std::string& y) {
+  return "set xlabel " + quote(x) + " noenhanced textcolor rgb '" + kInk + "'\nset ylabel " +
+         quote(y) + " noenhanced textcolor rgb '" + kInk + "'\n";
+}
+
+/// Writes columns of numbers as gnuplot reads them; what is no number leaves a gap.
+inline driver::Result<void> write_data(const std::vector<std::vector<double>>& rows,
+                                       const std::filesystem::path& file) {
+  std::string text;
+  for (const auto& row : rows) {
+    for (const double value : row) {
+      text += std::isfinite(value) ? fmt::format("{:.9g} ", value) : "? ";
+    }
+    text += "\n";
+  }
+  return write_text(text, file);
+}
+
+}  // namespace thimble::app

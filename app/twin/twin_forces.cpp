@@ -1,0 +1,260 @@
+#include "twin/twin_forces.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "twin/twin_motors.h"
+
+namespace thimble::app {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kHalf = 0.03;            // s, half of a bump [as identify has it]
+constexpr double kBetween = 0.01;         // s from one piece to the next
+constexpr double kDirectionSpan = 0.005;  // s to each side, over which the direction is taken
+constexpr double kStands = 3;             // times the encoders' error: a way that is none
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+/// A bump (1 - s^2)^3 with its first two derivatives at each tick of a piece, and between two.
+struct Bump {
+  std::vector<double> value, first, second;  // at ticks -half to half
+  std::vector<double> between;               // from each tick to the next
+  std::ptrdiff_t half;
+
+  explicit Bump(double dt) : half(std::lround(kHalf / dt)) {
+    const double width = static_cast<double>(half) * dt;
+    // So that its integral is 1: that of (1 - s^2)^3 from -1 to 1 is 32/35.
+    const double scale = 35.0 / 32 / width;
+    const auto value_at = [&](double s) {
+      const double u = 1 - s * s;
+      return scale * u * u * u;
+    };
+    for (std::ptrdiff_t j = -half; j <= half; ++j) {
+      const double s = static_cast<double>(j) / static_cast<double>(half);
+      const double u = 1 - s * s;
+      value.push_back(dt * value_at(s));
+      first.push_back(dt * scale / width * -6 * s * u * u);
+      second.push_back(dt * scale / (width * width) * (-6 * u * u + 24 * s * s * u));
+      if (j < half) between.push_back(dt * value_at(s + 0.5 / static_cast<double>(half)));
+    }
+  }
+};
+
+/// One piece of motion, smoothed, in the base.
+struct Piece {
+  Vector3d p{0, 0, 0}, v{0, 0, 0}, a{0, 0, 0};
+  Vector3d direction{0, 0, 0};  // mean of the velocity's sign; not a number on an axis that stands
+  Vector3d motors{0, 0, 0};     // N
+};
+
+Piece piece_at(const std::vector<TwinSample>& stretch, const std::vector<Vector3d>& pulls,
+               std::size_t middle, const Bump& bump, double dt, double stands) {
+  Piece piece;
+  const auto at = [&](std::ptrdiff_t j) -> const TwinSample& {
+    return stretch[static_cast<std::size_t>(static_cast<std::ptrdiff_t>(middle) + j)];
+  };
+  const Vector3d p0 = at(0).p_BT;
+  const std::ptrdiff_t slope = std::max<std::ptrdiff_t>(1, std::lround(kDirectionSpan / dt));
+  for (std::ptrdiff_t j = -bump.half; j <= bump.half; ++j) {
+    const auto k = static_cast<std::size_t>(j + bump.half);
+    const Vector3d p = at(j).p_BT - p0;
+    piece.p += bump.value[k] * p;
+    piece.v -= bump.first[k] * p;
+    piece.a += bump.second[k] * p;
+    const Vector3d way = at(j + slope).p_BT - at(j - slope).p_BT;
+    for (int i = 0; i < 3; ++i) {
+      // Written so that an axis that once stood stays out.
+      piece.direction[i] +=
+          std::abs(way[i]) > stands ? bump.value[k] * (way[i] > 0 ? 1 : -1) : kNone;
+    }
+    if (j < bump.half) {
+      piece.motors += bump.between[k] *
+                      pulls[static_cast<std::size_t>(static_cast<std::ptrdiff_t>(middle) + j)];
+    }
+  }
+  piece.p += p0;
+  return piece;
+}
+
+/// Returns what the motors pulled a tip with in each tick of a stretch, N in the base.
+std::vector<Vector3d> pulls_of(const std::vector<TwinSample>& stretch, const TwinMotors& motors,
+                               const TwinDelay& delay, double dt) {
+  std::vector<Vector3d> pulls(stretch.size(), Vector3d::Zero());
+  const double older = 1e-9 * static_cast<double>(delay.part_ns) / dt;
+  for (std::size_t k = delay.whole + 1; k + 1 < stretch.size(); ++k) {
+    const Eigen::Matrix3d G = 0.5 * (stretch[k].G + stretch[k + 1].G);
+    const Vector3d before = motors.torque(stretch[k - delay.whole - 1].amperes);
+    const Vector3d now = motors.torque(stretch[k - delay.whole].amperes);
+    pulls[k] = G.transpose() * (older * before + (1 - older) * now);
+  }
+  return pulls;
+}
+
+/// Turns a force into the world: an axis that stands spoils those alone that it has a part in.
+Vector3d turned(const Eigen::Matrix3d& R_WB, const Vector3d& f_B) {
+  constexpr double kNoPart = 1e-9;
+  Vector3d f_W(0, 0, 0);
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      if (std::abs(R_WB(i, j)) > kNoPart) f_W[i] += R_WB(i, j) * f_B[j];
+    }
+  }
+  return f_W;
+}
+
+/// The normal equations of a hand: other = -mass a - damping v - stiffness p + what holds it there.
+class HandFit {
+ public:
+  void add(const Piece& piece, const Vector3d& other) {
+    for (int i = 0; i < 3; ++i) {
+      if (std::isnan(other[i])) continue;
+      Eigen::Matrix<double, 6, 1> row = Eigen::Matrix<double, 6, 1>::Zero();
+      row[0] = -piece.a[i];
+      row[1] = -piece.v[i];
+      row[2] = -piece.p[i];
+      row[3 + i] = 1;
+      normal_ += row * row.transpose();
+      right_ += row * other[i];
+      square_ += other[i] * other[i];
+    }
+  }
+  TwinHand hand() const {
+    if (!(square_ > 0)) return {};
+    // In units in which all have the same weight.
+    const Eigen::Matrix<double, 6, 1> scale =
+        normal_.diagonal().cwiseMax(std::numeric_limits<double>::min()).cwiseSqrt().cwiseInverse();
+    const Eigen::Matrix<double, 6, 6> scaled = scale.asDiagonal() * normal_ * scale.asDiagonal();
+    const Eigen::Matrix<double, 6, 1> best =
+        scale.asDiagonal() *
+        scaled.ldlt().solve(Eigen::Matrix<double, 6, 1>(scale.asDiagonal() * right_));
+    return {.mass = best[0],
+            .stiffness = best[2],
+            .damping = best[1],
+            .explained = best.dot(right_) / square_};
+  }
+
+ private:
+  Eigen::Matrix<double, 6, 6> normal_ = Eigen::Matrix<double, 6, 6>::Zero();
+  Eigen::Matrix<double, 6, 1> right_ = Eigen::Matrix<double, 6, 1>::Zero();
+  double square_ = 0;
+};
+
+}  // namespace
+
+bool TwinForces::other_acted() const {
+  for (const TwinForceAxis& axis : axes) {
+    if (axis.other_rms > std::max(kSeen * noise, kShare * axis.motors_rms)) return true;
+  }
+  return false;
+}
+
+bool TwinForces::hand_held() const {
+  return other_acted() && hand.explained > kHandExplains && hand.stiffness > 0;
+}
+
+TwinForces twin_forces(const TwinMotion& motion, const scene::ArmFile& file) {
+  const auto& plant = file.simulated.plant;
+  const TwinMotors motors(file);
+  const TwinDelay delay(file, motion.dt);
+  const Bump bump(motion.dt);
+  const auto every = static_cast<std::size_t>(std::max(1L, std::lround(kBetween / motion.dt)));
+  const auto lead = static_cast<std::size_t>(bump.half) +
+                    static_cast<std::size_t>(std::lround(TwinMotion::kLead / motion.dt)) + 1;
+  TwinForces found;
+  HandFit fit;
+  Vector3d squares_motors(0, 0, 0), squares_needed(0, 0, 0), squares_other(0, 0, 0);
+  double before = 0;  // s, of the stretches before
+  for (const auto& stretch : motion.stretches) {
+    const std::vector<Vector3d> pulls = pulls_of(stretch, motors, delay, motion.dt);
+    for (std::size_t k = lead; k + lead < stretch.size(); k += every) {
+      const Piece piece = piece_at(stretch, pulls, k, bump, motion.dt, kStands * motion.step_error);
+      const Vector3d needed_B = plant.mass * piece.a + plant.viscous * piece.v +
+                                plant.coulomb * piece.direction - file.simulated.weight_B;
+      const Vector3d other_B = needed_B - piece.motors;
+      fit.add(piece, other_B);
+      const Vector3d other_W = turned(motion.R_WB, other_B);
+      const Vector3d motors_W = motion.R_WB * piece.motors;
+      const Vector3d needed_W = turned(motion.R_WB, needed_B);
+      found.samples.push_back({.time = before + static_cast<double>(k) * motion.dt,
+                               .f_motors_W = motors_W,
+                               .f_other_W = other_W});
+      for (int i = 0; i < 3; ++i) {
+        if (std::isnan(other_W[i])) continue;
+        ++found.axes[static_cast<std::size_t>(i)].counted;
+        squares_motors[i] += motors_W[i] * motors_W[i];
+        squares_needed[i] += needed_W[i] * needed_W[i];
+        squares_other[i] += other_W[i] * other_W[i];
+      }
+    }
+    before += static_cast<double>(stretch.size()) * motion.dt;
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    TwinForceAxis& axis = found.axes[i];
+    const auto k = static_cast<Eigen::Index>(i);
+    axis.name = "xyz"[i];
+    if (axis.counted == 0) continue;
+    const auto count = static_cast<double>(axis.counted);
+    axis.motors_rms = std::sqrt(squares_motors[k] / count);
+    axis.needed_rms = std::sqrt(squares_needed[k] / count);
+    axis.other_rms = std::sqrt(squares_other[k] / count);
+  }
+  double square = 0;
+  for (const double second : bump.second) square += second * second;
+  found.noise = plant.mass * motion.step_error * std::sqrt(square);
+  found.hand = fit.hand();
+  return found;
+}
+
+std::vector<Figure> force_figures(const TwinForces& forces) {
+  std::vector<Figure> figures;
+  for (const TwinForceAxis& axis : forces.axes) {
+    figures.push_back(
+        {fmt::format("force_of_motors_{}", axis.name), axis.motors_rms, "N", "", "RMS"});
+    figures.push_back({fmt::format("force_needed_{}", axis.name), axis.needed_rms, "N", "", "RMS"});
+    figures.push_back({fmt::format("other_force_{}", axis.name), axis.other_rms, "N", "",
+                       "RMS; a hand's, or an error of the file"});
+  }
+  figures.push_back({"other_force_of_encoders", forces.noise, "N", "", "what steps leave"});
+  if (forces.hand_held()) {
+    figures.push_back({"hand_stiffness", forces.hand.stiffness, "N/m", "", ""});
+    figures.push_back({"hand_damping", forces.hand.damping, "N s/m", "", ""});
+    figures.push_back({"hand_mass", forces.hand.mass, "kg", "", ""});
+  }
+  return figures;
+}
+
+std::string force_table(const TwinForces& forces) {
+  std::string text = fmt::format("{:<5} {:>12} {:>16} {:>16}   forces, RMS over pieces of 60 ms\n",
+                                 "axis", "motors gave", "motion needs", "something else");
+  for (const TwinForceAxis& axis : forces.axes) {
+    if (axis.counted == 0) {
+      text += fmt::format("{:<5} {:>12}\n", axis.name, "stood still");
+      continue;
+    }
+    text += fmt::format("{:<5} {:>9.1f} mN {:>13.1f} mN {:>13.1f} mN\n", axis.name,
+                        1e3 * axis.motors_rms, 1e3 * axis.needed_rms, 1e3 * axis.other_rms);
+  }
+  if (forces.hand_held()) {
+    const TwinHand& hand = forces.hand;
+    text += fmt::format(
+        "Something held the tip like a hand of {:.2g} N/m, {:.2g} N s/m and {:.2g} kg; that is "
+        "{:.0f} "
+        "% of what the motors did not give. What is said of the file's constants is worth nothing "
+        "then: record without a hand.\n",
+        hand.stiffness, hand.damping, std::max(0.0, hand.mass), 100 * hand.explained);
+  } else if (forces.other_acted()) {
+    text +=
+        "More acted than the motors gave, and it is not like a hand that stays: constants of the "
+        "file are wrong, or a hand moved the tip.\n";
+  } else {
+    text += "Nothing but the motors acted on the tip, as far as its encoders can tell.\n";
+  }
+  return text;
+}
+
+}  // namespace thimble::app

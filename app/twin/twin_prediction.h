@@ -1,0 +1,31 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "report/figure.h"
+#include "stability/drop_trial.h"
+#include "thimble/driver/result.h"
+#include "thimble/scene/arm_file.h"
+
+namespace thimble::app {
+
+/// What a twin says of its arm before anybody tries it: a wall and a bounce.
+struct TwinPrediction {
+  Eigen::Vector3d n_W{0, 0, 1};  ///< The axis that both are along, the worst one at home.
+  double stiffest_wall = 0;      ///< On which the hand of the arm's file comes to rest, N/m.
+  DropTrial drop;                ///< The wall that the tip is dropped on.
+  Bounce bounce;                 ///< Free of the hand.
+};
+
+/// Tries both with the simulated arm of a file, through the whole loop at 1 kHz. Fails if the arm
+/// has no board of its own to simulate, or nothing bounces. Real-time: never from the servo thread.
+driver::Result<TwinPrediction> twin_prediction(const scene::ArmFile& file);
+
+/// Returns a prediction as figures: the stiffest wall, restitution and time of flight.
+std::vector<Figure> prediction_figures(const TwinPrediction& prediction);
+
+/// Returns a prediction as two sentences.
+std::string prediction_text(const TwinPrediction& prediction);
+
+}  // namespace thimble::app

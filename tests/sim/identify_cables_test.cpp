@@ -1,0 +1,103 @@
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <numbers>
+#include <set>
+
+#include "bringup/identify/line_forces.h"
+#include "support/identified_arm.h"
+#include "support/random.h"
+
+namespace thimble::app {
+namespace {
+
+using support::hidden_arm;
+using support::HiddenArm;
+using support::identified;
+using support::is_long;
+using support::kKnownMass;
+using support::Score;
+
+/// A hidden arm behind cables that stretch: 20 to 200 N m/rad, motors of 1e-4 to 9e-4 kg m^2.
+HiddenArm soft_arm(std::uint64_t seed) {
+  HiddenArm arm = hidden_arm(seed);
+  support::Random random(seed + 1000);
+  auto& train = arm.file.simulated.drive_train;
+  for (int i = 0; i < 3; ++i) {
+    train.stiffness[i] = 20 * std::pow(10, random.uniform(0, 1));
+    train.inertia[i] = 1e-4 * std::pow(9, random.uniform(0, 1));
+    train.damping[i] = train.stiffness[i] * random.uniform(1e-4, 1e-3);
+  }
+  return arm;
+}
+
+TEST(IdentifyCables, FindsCablesThatStretchAndWhatIsBehindThem) {
+  const int arms = is_long() ? 100 : 1;
+  Score mass{"mass", 0.03}, gain{"gain", 0.02}, delay{"delay", 1e-4}, coulomb{"Coulomb", 0.05};
+  Score resonance{"resonance", 0.05}, antiresonance{"antires.", 0.08}, inertia{"motor", 0.06};
+  for (int k = 0; k < arms; ++k) {
+    const auto seed = static_cast<std::uint64_t>(6000 + k);
+    const HiddenArm arm = soft_arm(seed);
+    const auto found = identified(arm, {.seconds = 30, .known_mass = kKnownMass, .seed = seed});
+    if (!found || !found->constants.cables || !found->against.empty()) {
+      ADD_FAILURE() << "arm " << k << ": "
+                    << (found ? (found->against.empty() ? "no cables" : found->against.front())
+                              : found.error().message);
+      continue;
+    }
+    const auto& plant = arm.file.simulated.plant;
+    const auto& train = arm.file.simulated.drive_train;
+    const ArmConstants& constants = found->constants;
+    mass.add(constants.mass, plant.mass);
+    coulomb.add(constants.coulomb, plant.coulomb);
+    delay.add(constants.delay, arm.delay, false);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto joint = static_cast<Eigen::Index>(i);
+      const CableConstants& cable = (*constants.cables)[i];
+      const double link = plant.mass * found->lines.JTJ(joint, joint);
+      const double motor = train.inertia[joint], stiffness = train.stiffness[joint];
+      const double turn = 2 * std::numbers::pi;
+      gain.add(constants.gain[i], arm.gain[i]);
+      inertia.add(cable.inertia, motor);
+      antiresonance.add(cable.antiresonance, std::sqrt(stiffness / link) / turn);
+      resonance.add(cable.resonance, std::sqrt(stiffness * (1 / link + 1 / motor)) / turn);
+    }
+  }
+  int held = 0, all = 0;
+  for (const Score* score :
+       {&mass, &coulomb, &gain, &delay, &resonance, &antiresonance, &inertia}) {
+    std::printf("%-9s worst %.3g of %.3g, %d of %d intervals hold the truth\n", score->name,
+                score->worst, score->most, score->held, score->all);
+    EXPECT_LT(score->worst, score->most) << score->name;
+    held += score->held;
+    all += score->all;
+  }
+  EXPECT_GT(held, 0.85 * all);
+}
+
+TEST(IdentifyCables, SaysFromWhereOnAStretchIsUnseen) {
+  const auto found = identified(hidden_arm(7), {.seconds = 20});
+  ASSERT_TRUE(found.ok()) << found.error().message;
+  EXPECT_GT(found->lines.unseen_from.minCoeff(), 100);
+  EXPECT_NE(cables_text(*found).find("No compliance was seen"), std::string::npos);
+}
+
+TEST(LineForces, AreOddMultiplesOfWhichNoTwoAreAlikeAndStaySmall) {
+  std::set<long> seen;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int line = 0; line < LineForces::kLines; ++line) {
+      const double multiple = LineForces::frequency(axis, line) / LineForces::kBase;
+      EXPECT_EQ(multiple, std::round(multiple));
+      EXPECT_TRUE(seen.insert(std::lround(multiple)).second) << multiple;
+      EXPECT_EQ(std::lround(multiple) % 2, 1);
+    }
+  }
+  const LineForces forces(1);
+  double square = 0;
+  constexpr int kTicks = 4000;
+  for (int i = 0; i < kTicks; ++i) square += forces.force(1e-3 * i).squaredNorm() / kTicks;
+  EXPECT_LT(std::sqrt(square), 0.4);
+}
+
+}  // namespace
+}  // namespace thimble::app

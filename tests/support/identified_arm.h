@@ -1,0 +1,47 @@
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstdlib>
+
+#include "bringup/identify/identify.h"
+#include "bringup/identify/simulated_bench.h"
+#include "support/hidden_arm.h"
+
+namespace thimble::support {
+
+inline constexpr double kKnownMass = 0.025;  // kg
+
+/// Returns whether tests shall take their time.
+inline bool is_long() {
+  return std::getenv("THIMBLE_LONG") != nullptr;
+}
+
+/// Identifies one; `hold_it` leaves the hand on it that its file names.
+inline driver::Result<app::Identified> identified(const HiddenArm& arm,
+                                                  const app::IdentifyOptions& options,
+                                                  bool hold_it = false) {
+  const app::OpenBench open = [&](bool loaded) {
+    return app::simulated_bench(arm.file, loaded ? options.known_mass : 0, hold_it);
+  };
+  const std::atomic<bool> never{false};
+  return app::identify(open, arm.file, options, never);
+}
+
+/// How far estimates of one constant were off, and how often their intervals held it.
+struct Score {
+  const char* name;
+  double most;       // allowed, relative or in s
+  double worst = 0;  // of |estimate - truth|, in the same unit
+  int held = 0, all = 0;
+
+  void add(const app::Estimate& estimate, double truth, bool relative = true) {
+    const double off = std::abs(estimate.value - truth) / (relative ? std::abs(truth) : 1);
+    worst = std::max(worst, off);
+    ++all;
+    held += estimate.holds(truth) ? 1 : 0;
+  }
+};
+
+}  // namespace thimble::support

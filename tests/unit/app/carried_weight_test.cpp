@@ -1,0 +1,137 @@
+// Gravity compensation: what an arm file says its motors carry.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <type_traits>
+
+#include "support/refuses.h"
+#include "support/scratch.h"
+#include "thimble/scene/arm_file.h"
+#include "thimble/session/run_figures.h"
+#include "thimble/session/session.h"
+
+namespace thimble {
+namespace {
+
+constexpr double kWeight = 0.06;  // N, above the dry friction of 0.04 N
+
+void replace(std::string& text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  ASSERT_NE(at, std::string::npos) << from;
+  text.replace(at, from.size(), to);
+}
+
+/// The folder of a scene in which nothing is touched, with an arm that weighs kWeight and that
+/// nobody holds, whose motors carry `carried` (N).
+std::filesystem::path files(double carried) {
+  const auto folder = support::scratch_folder() / "carried_weight";
+  std::filesystem::create_directories(folder);
+  std::ostringstream arm;
+  arm << std::ifstream(std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms/vintage_phantom.yaml")
+             .rdbuf();
+  std::string text = arm.str();
+  replace(text, "energy: passivity", "energy: none");
+  replace(text, "coulomb: 0.04", "weight: 0.06\n    coulomb: 0.04");
+  replace(text, "mass: 0.025 ", "mass: 0 ");
+  replace(text, "stiffness: 300 ", "stiffness: 0 ");
+  replace(text, "damping: 3 ", "damping: 0 ");
+  if (carried > 0) {
+    replace(text, "simulation:\n",
+            "gravity_compensation: {weight: " + std::to_string(carried) + "}\nsimulation:\n");
+  }
+  std::ofstream(folder / "arm.yaml") << text;
+  std::ofstream(folder / "scene.yaml")
+      << "name: carried\narm: arm.yaml\nrate: 1000\nduration: 0.6\n"
+         "objects:\n  - {name: ball, sphere: {radius: 0.01}, position: [0, 0, 0.09], stiffness: "
+         "500}\nhand:\n  path:\n    - {t: 0, at: [0, 0, 0]}\n";
+  return folder;
+}
+
+/// What a run shows of where the tip was and of its forces.
+class Seen final : public session::TickObserver {
+ public:
+  void take(const driver::TickRecord& record) noexcept override {
+    lowest = std::min(lowest, record.p_WT[2]);
+    highest = std::max(highest, record.p_WT[2]);
+    const auto& f = record.f_sent_W;
+    most = std::max(most, std::hypot(f[0], f[1], f[2]));
+    wanted = std::max(wanted, record.f_wanted_W[2]);
+    last = record;
+  }
+  double lowest = 1, highest = -1;  // m
+  double most = 0, wanted = 0;      // N
+  driver::TickRecord last;
+};
+
+struct WholeRun {
+  Seen seen;
+  session::RunFigures figures;
+};
+
+/// Runs the scene; `law` asks for forces in its place, if there is one.
+template <class Law = std::nullptr_t>
+WholeRun run(double carried, Law law = {}) {
+  WholeRun result;
+  auto opened = session::Session::open(files(carried) / "scene.yaml", {});
+  if (!opened) {
+    ADD_FAILURE() << opened.error().message;
+    return result;
+  }
+  if constexpr (!std::is_null_pointer_v<Law>) {
+    EXPECT_TRUE((*opened)->set_law(driver::ForceLaw(law)));
+  }
+  EXPECT_TRUE((*opened)->add_observer(result.seen));
+  const std::atomic<bool> stop{false};
+  (*opened)->run(stop);
+  result.figures = (*opened)->figures();
+  return result;
+}
+
+TEST(CarriedWeight, LetsATipFloatThatFallsWithoutIt) {
+  const WholeRun falls = run(0), floats = run(kWeight);
+  EXPECT_LT(falls.seen.lowest, -0.03);
+  // It sinks until the soft start lets through what friction leaves.
+  EXPECT_GT(floats.seen.lowest, -0.002);
+  EXPECT_LT(floats.seen.highest, 1e-4);
+  EXPECT_NEAR(floats.seen.last.v_WT[2], 0, 1e-4);
+  EXPECT_NEAR(floats.seen.last.f_sent_W[2], kWeight, 0.01);
+  EXPECT_EQ(falls.seen.most, 0);
+  EXPECT_EQ(falls.figures.carried_weight, 0);
+  EXPECT_DOUBLE_EQ(floats.figures.carried_weight, kWeight);
+  EXPECT_NE(session::summary(floats.figures).find("carried 0.06 N of the arm"), std::string::npos);
+  EXPECT_EQ(session::summary(falls.figures).find("of the arm"), std::string::npos);
+}
+
+TEST(CarriedWeight, CountsTowardsTheForceLimitAndNeverGoesBeyondIt) {
+  const auto up = [](const driver::DeviceState&) noexcept {
+    return driver::ForceCommand{.f_T_W = {0, 0, 5}, .touch = {}};
+  };
+  const WholeRun pushed = run(kWeight, up);
+  EXPECT_DOUBLE_EQ(pushed.seen.wanted, 5 + kWeight);
+  EXPECT_LE(pushed.seen.most, pushed.figures.force_limit + 0.01);  // currents are rounded
+  EXPECT_GT(pushed.figures.gate.limited, 0U);
+}
+
+TEST(CarriedWeight, IsGoneWithEveryOtherForceAfterAFault) {
+  const auto broken = [](const driver::DeviceState& state) noexcept {
+    return driver::ForceCommand{.f_T_W = {0, 0, state.tick < 400 ? 0 : NAN}, .touch = {}};
+  };
+  const WholeRun run_broken = run(kWeight, broken);
+  EXPECT_EQ(run_broken.figures.fault, driver::Fault::kForceNotFinite);
+  EXPECT_EQ(run_broken.seen.last.f_sent_W[2], 0);
+}
+
+TEST(CarriedWeight, IsAThirdOfTheGatesForceAtTheMost) {
+  EXPECT_TRUE(support::refuses(scene::load_arm(files(2) / "arm.yaml"), "a third of the gate's"));
+  EXPECT_TRUE(scene::load_arm(files(1.6) / "arm.yaml").ok());
+  EXPECT_EQ(scene::load_arm("polhem").value().carried_weight, 0);
+}
+
+}  // namespace
+}  // namespace thimble
