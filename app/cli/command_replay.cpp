@@ -127,6 +127,14 @@ void print_replay(const std::string& file, const session::Replay& replay) {
   }
 }
 
+/// Says what else may have changed the forces where scene, arm and program are the recording's own.
+void print_reason(const session::Recording& recording, const std::string& scene) {
+  if (!session::check_repeatable(recording, scene)) return;
+  session::print(stdout,
+                 "Scene, arm and program are those of the recording. A recording does not hold "
+                 "what was turned or commanded from outside: were knobs turned in that run?\n");
+}
+
 int replay_recordings(const ReplayOptions& options) {
   if (options.files.size() == 1 && bag::is_bag(options.files.front())) {
     return replay_a_bag(options);
@@ -157,6 +165,7 @@ int replay_recordings(const ReplayOptions& options) {
   for (std::size_t i = 0; i < replays->size(); ++i) {
     session::Replay& replay = (*replays)[i];
     print_replay(options.files[i], replay);
+    if (replay.compared.differing > 0) print_reason(recordings[i], options.scene);
     differs = differs || replay.compared.differing > 0;
     if (options.record.empty()) continue;
     replay.felt.info.device = "replay of " + options.files[i];

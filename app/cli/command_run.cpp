@@ -181,16 +181,14 @@ driver::Result<std::unique_ptr<session::Session>> prepare_next(const RunCourse& 
   return prepared;
 }
 
-/// Lets what was prepared take the place of a run that is over.
+/// Lets what was prepared take the place of a run that is over, whose name is never without a run.
 driver::Result<void> begin_next(RunCourse& course, session::Session& session,
-                                const std::string& name) {
-  session::SessionOptions asked = course.asked;
-  asked.share_name = name;
-  if (!asked.record.empty()) {
+                                session::Session& before) {
+  if (!course.asked.record.empty()) {
     const auto file = numbered(course.options.record, course.number);
     if (auto begun = session.begin_recording(file); !begun) return begun;
   }
-  return session.share(asked);
+  return session.share(course.asked, before.shared());
 }
 
 /// Runs a session that is prepared to its end, and writes and prints what is asked for, unless
@@ -238,6 +236,7 @@ ExitCode run_one(RunCourse& course, session::Session& session,
   // Zero force is out and the recording closed; who is impatient may kill what follows. Not so
   // where the arm took no zero.
   if (zero_assured(session)) guard.reset();
+  if (desk) desk->close();
   if (next != nullptr) then = next->take(servo.join(), course.stop.load());
   print_summaries(session, servo.grant());
   for (const auto& arm : sides.topics) session::print(stdout, "{}", arm->report());
@@ -284,14 +283,11 @@ int run_scene(RunOptions& options) {
     std::unique_ptr<session::Session> then;
     const ExitCode code = run_one(course, *session, then);
     if (!then) return code;
-    // Its name becomes free with it.
-    const std::string name = session->shared()->name();
-    session.reset();
-    session = std::move(then);
     ++course.number;
-    if (auto begun = begin_next(course, *session, name); !begun) {
+    if (auto begun = begin_next(course, *then, *session); !begun) {
       return complain(begun.error(), kExitTrouble);
     }
+    session = std::move(then);
   }
 }
 

@@ -24,6 +24,10 @@
 namespace thimble::app {
 namespace {
 
+// How long the run that takes the place of one that ends is waited for: it is prepared by then, and
+// what was recorded is closed. Chosen.
+constexpr std::chrono::seconds kNextRunMost{10};
+
 struct ViewOptions {
   std::vector<std::string> shown;  // a run, or recordings
   bool list = false;
@@ -98,29 +102,47 @@ driver::Result<void> ask_course(session::SharedReader& reader, const ViewOptions
   return options.restart ? reader.ask_restart() : driver::Result<void>();
 }
 
-int ask(const ViewOptions& options) {
-  auto attached = session::SharedReader::attach(options.run());
-  if (!attached) return complain(attached.error(), kExitBadInput);
-  session::SharedReader& reader = **attached;
+/// Writes the knobs of a run as they are, and tells where to.
+int save(const session::SharedReader& reader, const ViewOptions& options) {
+  const auto saved =
+      session::save_knobs(reader, {.file = options.save_as, .over = options.overwrite});
+  if (!saved) return complain(saved.error(), kExitBadInput);
+  std::printf("%s\n", saved->text().c_str());
+  return kExitDone;
+}
+
+/// Asks a run for everything, once.
+driver::Result<void> ask_once(session::SharedReader& reader, const ViewOptions& options) {
   for (const std::string& order : options.turn) {
-    if (auto turned = session::turn_knob(reader, order); !turned) {
-      return complain(turned.error(), kExitBadInput);
-    }
+    if (auto turned = session::turn_knob(reader, order); !turned) return turned;
   }
   if (options.pause || options.resume) reader.ask_pause(options.pause);
-  if (auto asked = ask_course(reader, options); !asked)
-    return complain(asked.error(), kExitBadInput);
-  const bool heard = (options.record.empty() || reader.ask_record(options.record)) &&
+  if (auto asked = ask_course(reader, options); !asked) return asked;
+  const bool taken = (options.record.empty() || reader.ask_record(options.record)) &&
                      (!options.record_stop || reader.ask_record_stop());
-  if (options.save_knobs) {
-    const auto saved =
-        session::save_knobs(reader, {.file = options.save_as, .over = options.overwrite});
-    if (!saved) return complain(saved.error(), kExitBadInput);
-    std::printf("%s\n", saved->text().c_str());
-  }
+  if (!taken) return driver::Error{"Another viewer is just asking for something."};
   if (options.stop) reader.ask_stop();
-  if (!heard) return complain({"Another viewer is just asking for something."}, kExitTrouble);
-  return kExitDone;
+  return {};
+}
+
+/// Asks for everything, and of the run that comes next once more where the one that is there ends
+/// meanwhile.
+int ask(const ViewOptions& options) {
+  const auto latest = std::chrono::steady_clock::now() + kNextRunMost;
+  std::string run = options.run();
+  for (bool first = true;; first = false) {
+    auto attached = session::SharedReader::attach(run);
+    if (!attached && options.stop && !first) return kExitDone;  // it has ended by itself
+    if (!attached) return complain(attached.error(), kExitBadInput);
+    session::SharedReader& reader = **attached;
+    run = reader.name();
+    const auto asked = reader.heard() ? ask_once(reader, options) : reader.heard();
+    const auto heard = reader.heard();
+    if (heard && !asked) return complain(asked.error(), kExitBadInput);
+    if (heard) return options.save_knobs ? save(reader, options) : kExitDone;
+    if (std::chrono::steady_clock::now() >= latest) return complain(heard.error(), kExitBadInput);
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
 }
 
 void print_line(const session::SharedReader& reader) {
@@ -169,7 +191,7 @@ int tell(const ViewOptions& options) {
     if (!notice.empty() && notice != told) std::printf("%s\n", notice.c_str());
     std::fflush(stdout);
     told = notice;
-    if (ended && !options.follow) return kExitDone;
+    if (runs.over() && !options.follow) return kExitDone;
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
   return kExitInterrupted;
@@ -200,10 +222,8 @@ int serve(const ViewOptions& options) {
     if (!notice.empty() && notice != told) std::printf("%s\n", notice.c_str());
     std::fflush(stdout);
     told = notice;
-    const bool ended =
-        runs.reader() != nullptr && runs.reader()->state() == session::RunState::kEnded;
-    const bool over = options.seconds > 0 && std::chrono::steady_clock::now() >= end;
-    if ((!ended || options.follow) && !over) continue;
+    const bool late = options.seconds > 0 && std::chrono::steady_clock::now() >= end;
+    if ((!runs.over() || options.follow) && !late) continue;
     exit_code = kExitDone;
     break;
   }

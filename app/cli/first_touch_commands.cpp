@@ -36,7 +36,7 @@ void add_feel_check_command(CLI::App& app, int& exit_code) {
 
 void add_identify_command(CLI::App& app, int& exit_code) {
   add_absent_command(app, exit_code, "identify",
-                     "Measure an arm's mass, friction, gains and delay by small forces");
+                     "Measure an arm's mass, friction, gains, delay and cables by small forces");
 }
 
 void add_twin_command(CLI::App& app, int& exit_code) {

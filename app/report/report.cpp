@@ -73,6 +73,7 @@ Json to_json(const session::RunFigures& report) {
                   {"damped", report.gate.damped},
                   {"bounded", report.gate.bounded},
                   {"energy_least_J", report.gate.energy_least}};
+  if (report.carried_weight > 0) json["carried_weight_N"] = report.carried_weight;
   if (report.heat_known) {
     json["heat"] = {{"motors", report.heat},
                     {"most", report.heat_most},

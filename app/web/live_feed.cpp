@@ -97,7 +97,10 @@ driver::Result<std::string> LiveFeed::page(std::uint16_t port) const {
     touch.arms.emplace_back();
     touch.arms.back().force_limit = scene.force_max;
   }
-  const PageSource source{.port = port, .rows = kTicksMost};
+  const PageSource source{.port = port,
+                          .rows = kTicksMost,
+                          .no_restart = reader_.why_no_restart(),
+                          .no_step = reader_.why_no_step()};
   return page_text(touch, &source);
 }
 
@@ -108,7 +111,12 @@ void LiveFeed::step() {
   Json json{{"state", session::name_of(reader_.state())},
             {"paused", reader_.pause_asked()},
             {"died", reader_.died()},
-            {"recording", counters.recording ? reader_.recording_path() : ""}};
+            {"recording", counters.recording ? reader_.recording_path() : ""},
+            {"notice", reader_.notice()},
+            {"knobs", Json::array()}};
+  for (std::size_t i = 0; i < reader_.scene().knobs.size(); ++i) {
+    json["knobs"].push_back(reader_.knob_wanted(i));
+  }
   const std::string told = json.dump(-1, ' ', false, Json::error_handler_t::replace);
   take_ticks(json, block, update);
   if (update.ticks == 0 && told == told_) return;
@@ -119,8 +127,8 @@ void LiveFeed::step() {
   take_other_arms(json, block);
   take_bodies(json, block);
   take_shapes(json, block, update);
-  const bool over = reader_.state() == session::RunState::kEnded;
-  if (over || until_figures_-- <= 0) add_figures(json);
+  const bool stands = reader_.state() != session::RunState::kRunning;
+  if (stands || until_figures_-- <= 0) add_figures(json);
   update.bytes = update_of(std::move(json), block);
   take_dent(update);
   kept_ticks_ += update.ticks;

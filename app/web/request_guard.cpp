@@ -10,6 +10,10 @@ namespace {
 
 constexpr std::size_t kTokenBytes = 16;
 constexpr std::string_view kAsk = "?token=";
+constexpr const char* kNotOurs = "A page of somebody else's asked; only this page's own may.";
+constexpr const char* kWrongToken =
+    "The token is not right; open the address that `thimble view --web` has printed.";
+constexpr const char* kNothingElse = "There is nothing else here.";
 
 // Takes as long for a token that is nearly right as for any other.
 bool same(std::string_view a, std::string_view b) {
@@ -43,8 +47,7 @@ driver::Result<RequestGuard> RequestGuard::make() {
   return RequestGuard(std::move(token));
 }
 
-std::string RequestGuard::refuse(const Request& request, std::string_view path,
-                                 std::uint16_t port) const {
+std::string RequestGuard::refuse_place(const Request& request, std::uint16_t port) {
   if (!is_here(request.host, port)) {
     return "This page is asked for as 127.0.0.1 or localhost, with its own port; over ssh, forward "
            "the same port (ssh -L).";
@@ -52,15 +55,30 @@ std::string RequestGuard::refuse(const Request& request, std::string_view path,
   constexpr std::string_view kScheme = "http://";
   if (!request.origin.empty() && (!request.origin.starts_with(kScheme) ||
                                   !same(request.origin.substr(kScheme.size()), request.host))) {
-    return "A page of somebody else's asked; only this page's own may.";
+    return kNotOurs;
   }
+  return {};
+}
+
+std::string RequestGuard::refuse(const Request& request, std::string_view path,
+                                 std::uint16_t port) const {
+  if (std::string wrong = refuse_place(request, port); !wrong.empty()) return wrong;
   const std::size_t query = request.target.find('?');
   const std::string_view asked =
       query == std::string_view::npos ? std::string_view{} : request.target.substr(query);
   if (!asked.starts_with(kAsk) || !same(asked.substr(kAsk.size()), token_)) {
-    return "The token is not right; open the address that `thimble view --web` has printed.";
+    return kWrongToken;
   }
-  if (request.target.substr(0, query) != path) return "There is nothing else here.";
+  if (request.target.substr(0, query) != path) return kNothingElse;
+  return {};
+}
+
+std::string RequestGuard::refuse_change(const Request& request, std::string_view path,
+                                        std::uint16_t port) const {
+  if (std::string wrong = refuse_place(request, port); !wrong.empty()) return wrong;
+  if (request.origin.empty()) return kNotOurs;
+  if (!same(request.token, token_)) return kWrongToken;
+  if (request.target != path) return kNothingElse;
   return {};
 }
 

@@ -13,6 +13,8 @@
 
 #include "web/live_feed.h"
 #include "web/request_guard.h"
+#include "web/steer_run.h"
+#include "web/visitor.h"
 
 namespace thimble::app {
 namespace {
@@ -24,135 +26,11 @@ namespace websocket = beast::websocket;
 using asio::ip::tcp;
 using boost::system::error_code;
 
-constexpr std::size_t kConnectionsMost = 64;         // with those that are refused; chosen
-constexpr auto kPatience = std::chrono::seconds(5);  // with who connects and does not go on; chosen
-constexpr std::size_t kBodyMost = 1024;              // bytes of a request's; there need be none
+constexpr std::size_t kConnectionsMost = 64;  // with those that are refused; chosen
 
 std::string_view view_of(beast::string_view text) {
   return {text.data(), text.size()};
 }
-
-/// One connection: it asks for one thing and gets it, the page or what the page is told.
-class Visitor {
- public:
-  explicit Visitor(asio::io_context& io) : stream_(io) {
-    parser_.body_limit(kBodyMost);
-    stream_.read_message_max(WebServer::kSaidMost);
-    stream_.binary(true);
-  }
-  Visitor(const Visitor&) = delete;
-  Visitor& operator=(const Visitor&) = delete;
-
-  tcp::socket& socket() { return stream_.next_layer().socket(); }
-  /// Returns whether nothing of it is under way any more.
-  bool done() const noexcept { return under_way_ == 0; }
-  /// Returns whether it is a page that is told what goes on.
-  bool is_page() const noexcept { return open_; }
-  /// Returns whether it has been sent all that there is.
-  bool has_all(const LiveFeed* feed) const noexcept {
-    return !sending_ && (feed == nullptr || !feed->has_message(place_));
-  }
-
-  /// Reads what it asks for; `answer` is called then, once.
-  template <class Answer>
-  void begin(Answer answer) {
-    error_code ignored;
-    socket().set_option(tcp::no_delay(true), ignored);
-    // What waits for a slow reader waits here, where it is counted, and not in the kernel.
-    socket().set_option(asio::socket_base::send_buffer_size(LiveFeed::kMessageBytes), ignored);
-    stream_.next_layer().expires_after(kPatience);
-    ++under_way_;
-    http::async_read(stream_.next_layer(), buffer_, parser_,
-                     [this, answer](const error_code& failed, std::size_t) {
-                       --under_way_;
-                       if (failed) return cut();
-                       answer(*this, parser_.get());
-                     });
-  }
-
-  void respond(http::response<http::string_body> response) {
-    response_ = std::move(response);
-    response_.keep_alive(false);
-    response_.prepare_payload();
-    ++under_way_;
-    stream_.next_layer().expires_after(kPatience);
-    http::async_write(stream_.next_layer(), response_, [this](const error_code&, std::size_t) {
-      --under_way_;
-      // Whoever is refused may still be speaking; the answer shall reach him.
-      error_code ignored;
-      socket().shutdown(tcp::socket::shutdown_send, ignored);
-      cut();
-    });
-  }
-
-  /// Becomes a page that is told what goes on.
-  void open() {
-    stream_.next_layer().expires_never();
-    stream_.set_option(websocket::stream_base::timeout{
-        .handshake_timeout = kPatience,
-        .idle_timeout = std::chrono::seconds(30),  // a browser answers for its page; chosen
-        .keep_alive_pings = true});
-    ++under_way_;
-    stream_.async_accept(parser_.get(), [this](const error_code& failed) {
-      --under_way_;
-      if (failed) return cut();
-      open_ = true;
-      listen();
-    });
-  }
-
-  /// Sends what is new; a page that is slow gets it with what comes meanwhile.
-  void tell(const LiveFeed& feed) {
-    if (!open_ || sending_ || !feed.has_message(place_)) return;
-    send(feed.message(place_));
-  }
-  /// Closes it with a word of why, once it has what is being sent.
-  void close(websocket::close_code why, const char* words) {
-    if (!open_ || closing_) return;
-    closing_ = true;
-    if (sending_) return cut();
-    ++under_way_;
-    stream_.async_close({why, words}, [this](const error_code&) {
-      --under_way_;
-      cut();
-    });
-  }
-  void cut() {
-    open_ = false;
-    stream_.next_layer().close();
-  }
-
- private:
-  void send(std::string bytes) {
-    message_ = std::move(bytes);
-    sending_ = true;
-    ++under_way_;
-    stream_.async_write(asio::buffer(message_), [this](const error_code& failed, std::size_t) {
-      --under_way_;
-      sending_ = false;
-      if (failed) cut();
-    });
-  }
-  // Whatever a page says is read and forgotten, so that its closing is seen.
-  void listen() {
-    ++under_way_;
-    stream_.async_read(buffer_, [this](const error_code& failed, std::size_t) {
-      --under_way_;
-      buffer_.consume(buffer_.size());
-      if (failed) return cut();
-      listen();
-    });
-  }
-
-  websocket::stream<beast::tcp_stream> stream_;
-  beast::flat_buffer buffer_;
-  http::request_parser<http::string_body> parser_;
-  http::response<http::string_body> response_;
-  LiveFeed::Place place_;
-  std::string message_;
-  int under_way_ = 0;
-  bool open_ = false, sending_ = false, closing_ = false;
-};
 
 }  // namespace
 
@@ -236,7 +114,7 @@ class WebServer::Parts {
   }
 
   void accept() {
-    coming_.emplace_back(io_);
+    coming_.emplace_back(io_, kSaidMost);
     acceptor_.async_accept(coming_.front().socket(), [this](const error_code& failed) {
       if (failed && !acceptor_.is_open()) return coming_.clear();
       if (!failed && visitors_.size() < kConnectionsMost) {
@@ -252,19 +130,23 @@ class WebServer::Parts {
   template <class Request>
   void answer(Visitor& visitor, const Request& request) {
     const bool live = websocket::is_upgrade(request);
-    const std::string wrong = guard_.refuse({.target = view_of(request.target()),
-                                             .host = view_of(request[http::field::host]),
-                                             .origin = view_of(request[http::field::origin])},
-                                            live ? "/live" : "/", port_);
+    const bool asks = !live && request.method() == http::verb::post;
+    const RequestGuard::Request named{.target = view_of(request.target()),
+                                      .host = view_of(request[http::field::host]),
+                                      .origin = view_of(request[http::field::origin]),
+                                      .token = view_of(request["X-Thimble-Token"])};
+    const std::string wrong = asks ? guard_.refuse_change(named, "/steer", port_)
+                                   : guard_.refuse(named, live ? "/live" : "/", port_);
     if (!wrong.empty()) return refuse(visitor, http::status::forbidden, wrong);
     if (live) {
       if (pages() < kPagesMost) return visitor.open();
       return refuse(visitor, http::status::service_unavailable, "Too many pages look on already.");
     }
-    if (request.method() != http::verb::get && request.method() != http::verb::head) {
-      return refuse(visitor, http::status::method_not_allowed, "This page is only looked at.");
+    if (!asks && request.method() != http::verb::get && request.method() != http::verb::head) {
+      return refuse(visitor, http::status::method_not_allowed, "Pages are looked at by GET.");
     }
     if (!feed_) return wait(visitor);
+    if (asks) return steer(visitor, request.body());
     auto page = feed_->page(port_);
     if (!page) {
       return refuse(visitor, http::status::internal_server_error, page.error().message);
@@ -272,6 +154,13 @@ class WebServer::Parts {
     auto response = response_of(http::status::ok, "text/html; charset=utf-8");
     response.body() = std::move(page).value();
     visitor.respond(std::move(response));
+  }
+
+  void steer(Visitor& visitor, const std::string& asked) {
+    if (const auto done = steer_run(*runs_.reader(), asked); !done) {
+      return refuse(visitor, http::status::conflict, done.error().message);
+    }
+    visitor.respond(response_of(http::status::ok, "text/plain; charset=utf-8"));
   }
 
   static http::response<http::string_body> response_of(http::status status, const char* type) {

@@ -12,8 +12,9 @@ namespace thimble::app {
 
 /// Serves the page of a run that goes on to browsers on this computer: over HTTP the page, over
 /// WebSocket what it is told (LiveFeed). Who has not the token, or asks for a page of somebody
-/// else's, is refused with a sentence (RequestGuard). What pages say is not listened to: they only
-/// look. All of it goes on in the thread that calls `step`, and reaches the run by SharedReader
+/// else's, is refused with a sentence (RequestGuard). What pages say over WebSocket is not listened
+/// to; what they ask of the run comes by POST and goes the way of all viewers (steer_run). All of
+/// it goes on in the thread that calls `step`, and reaches the run by SharedReader
 /// alone. Real-time: never from the servo thread.
 class WebServer {
  public:

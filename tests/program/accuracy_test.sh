@@ -9,6 +9,8 @@ expect 0 'More accuracy can no longer be felt' \
 for file in index.html velocity.csv summary.json figures.json; do
   expect 0 '' test -s "out/$file"
 done
+expect_links out/index.html 1
+expect_links out/runs/index.html 3
 expect 1 '' grep -E 'src="http|href="http' out/index.html
 expect 0 '"default_point"' cat out/summary.json
 expect 0 'Enough|Not enough' "$thimble" bench "$source_dir/app/scenes/box.yaml" --rate 1000 --seconds 0.3

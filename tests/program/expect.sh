@@ -29,6 +29,19 @@ expect() {
   fi
 }
 
+# expect_links PAGE COUNT: PAGE links COUNT files, which are there, and those that are pages are below 10 MB each. Where what pages of
+# runs are made of is not installed, the page says so, and links fewer.
+expect_links() {
+  local page=$1 count=$2 links found=0 target
+  links=$(grep -oE 'href="[^"#]+"' "$page" | sed 's/href="//; s/"$//')
+  for target in $links; do
+    expect 0 "^$target\$" bash -c '[ -s "$1/$2" ] && [ "$(stat -c %s "$1/$2")" -lt 10000000 ] && echo "$2"' _ "$(dirname "$page")" "$target"
+    found=$((found + 1))
+  done
+  grep -q 'No page: .*apt install' "$page" && return
+  expect 0 "^$count\$" echo "$found"
+}
+
 # expect_plot STEM...: there are STEM.png and STEM.svg, and they are what their names say.
 expect_plot() {
   local stem

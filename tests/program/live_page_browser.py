@@ -1,8 +1,9 @@
 """Drives the page of a run that goes on in headless Chromium and says in JSON what it found.
 
   live_page_browser.py CHROMIUM ADDRESS PICTURE STOP...      ADDRESS: as `thimble view --web` prints it; STOP: the
-      command that ends the run
+      command that ends the run. Without it there is a picture alone, of an eighth of the size
 """
+import asyncio
 import json
 import subprocess
 import sys
@@ -10,6 +11,28 @@ import sys
 import websockets
 
 from page_browser import DRAWN, Tab, in_chromium, try_to_get_out, what_went_out
+
+
+async def steer(tab):
+    """Turns a knob, pauses and begins anew, by what the page has for it; the run itself tells the page of it."""
+    found = {}
+    knob = "document.querySelector('#knobs input')"
+    await tab.wait_for("thimblePage.state().live.knobs !== undefined")
+    initial = await tab.value("thimblePage.state().live.knobs[0]")
+    await tab.value(f"{knob}.value = {knob}.value > 500 ? 200 : 800; {knob}.dispatchEvent(new Event('input'))")
+    await tab.wait_for(f"thimblePage.state().live.knobs[0] !== {initial}")
+    await tab.value("document.getElementById('steer-pause').click()")
+    await tab.wait_for("thimblePage.state().live.state === 'paused'")
+    found["paused_words"] = await tab.value("document.getElementById('steer-pause').textContent")
+    found["steps_by_the_wall"] = not await tab.value("document.getElementById('steer-step').disabled")
+    await tab.value("document.getElementById('steer-pause').click()")
+    await tab.wait_for("thimblePage.state().live.state === 'running'")
+    await tab.value("window.before = true; document.getElementById('steer-restart').click()")
+    await tab.wait_for("window.before === undefined && window.thimblePage !== undefined && thimblePage.begun")
+    await tab.wait_for("thimblePage.state().live.knobs !== undefined")
+    found["knob_anew"] = await tab.value("thimblePage.state().live.knobs[0]") == initial
+    found["steer_note"] = await tab.value("document.getElementById('steer-note').textContent")
+    return found
 
 
 async def look(address, page, picture, stop):
@@ -20,13 +43,20 @@ async def look(address, page, picture, stop):
         await tab.call("Emulation.setDeviceMetricsOverride", width=1280, height=960, deviceScaleFactor=1, mobile=False)
         await tab.call("Page.navigate", url=page)
         await tab.wait_for("window.thimblePage !== undefined && thimblePage.begun")
+        if not stop:
+            await tab.value(DRAWN)
+            await asyncio.sleep(1)  # lists and plots are drawn a few times a second
+            await tab.value(DRAWN)
+            await tab.picture(picture, 1 / 8)
+            return {}
+        found = await steer(tab)
 
         # It goes along with the run.
         before = await tab.value("thimblePage.state()")
         await tab.wait_for(f"thimblePage.state().t > {before['t']} + 1.5 && thimblePage.state().drawn > {before['drawn']} + 1")
         await tab.value(DRAWN)
         await tab.picture(picture)
-        found = {"followed": (await tab.value("thimblePage.state()"))["following"]}
+        found["followed"] = (await tab.value("thimblePage.state()"))["following"]
 
         # Who goes back stays there while the run goes on, and comes back by a button.
         await tab.value("thimblePage.seek(thimblePage.state().t - 1)")

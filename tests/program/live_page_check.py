@@ -35,9 +35,12 @@ def main():
     check(found["held"], "it does not stay where it is")
     check("the run goes on" in found["held_words"], f"it says {found['held_words']}")
     check("Force, most" in found["words"] and "ended" in found["words"], "no figures, or not that it ended")
+    check(found["paused_words"] == "Resume run" and not found["steps_by_the_wall"], "the buttons do not show how the run stands")
+    check(found["knob_anew"] and not found["steer_note"], f"it was not begun anew as it is in its file: {found['steer_note']}")
     check(found["leaks"] == "held", "a request would have left")
     socket = sys.argv[3].replace("http:", "ws:").replace("/?", "/live?")
-    check(all(one in (sys.argv[3], socket) for one in found["requests"]), f"asked for {found['requests']}")
+    steer = sys.argv[3].split("?")[0] + "steer"
+    check(all(one in (sys.argv[3], socket, steer) for one in found["requests"]), f"asked for {found['requests']}")
     check(not found["said"], f"the console says {found['said']}")
     print("\n".join(wrong) if wrong else "as it should be")
     return 1 if wrong else 0

@@ -56,11 +56,39 @@ browse() {
 browse float/index.html float.h5 0.8005 3.6004 5.8006
 browse float.html float.h5 0.8005 3.6004 5.8006
 browse clay/index.html clay.h5 0.9003 1.8001 3.6008
-# What they look like: `cp WORK/clay/index_small.png tests/data/shots/page_clay.png` after a change that is meant.
-expect 0 '^the same' /usr/bin/python3 "$here/picture_near.py" "$source_dir/tests/data/shots/page_float.png" float/index_small.png
-expect 0 '^the same' /usr/bin/python3 "$here/picture_near.py" "$source_dir/tests/data/shots/page_clay.png" clay/index_small.png
+# What they look like; THIMBLE_WRITE_SHOTS=1 keeps what there is now, after a change that is meant.
+kept() {
+  local stored=$source_dir/tests/data/shots/$1.png
+  [ -z "${THIMBLE_WRITE_SHOTS:-}" ] || cp "$2" "$stored"
+  expect 0 '^the same' /usr/bin/python3 "$here/picture_near.py" "$stored" "$2"
+}
+kept page_float float/index_small.png
+kept page_clay clay/index_small.png
 
-# The same live: it goes along, holds, ends with the run, and its forces are ticks of the run.
+# serve RUN: serves the run's page; its address is in $address, who serves it in $viewer.
+serve() {
+  timeout 300 "$thimble" view "$1" --web >view.txt 2>&1 &
+  viewer=$!
+  for _ in $(seq 300); do grep -q '^Watching' view.txt && break; sleep 0.1; done
+  address=$(sed -n 's/^Open //p' view.txt)
+}
+
+# What it looks like live: a run that stands at a tick that is always the same one.
+"$thimble" run "$scenes/tin_can.yaml" --clock paced --speed 4 --duration 60 --name "stands_$$" --no-view >stands.txt 2>&1 &
+run=$!
+for _ in $(seq 300); do "$thimble" view "stands_$$" --pause >/dev/null 2>&1 && break; sleep 0.1; done
+ticks() { timeout 60 "$thimble" view "stands_$$" --text --for 0.2 | grep -oE 'paused: .* [0-9]+ ticks' | grep -oE '[0-9]+ ticks' | tail -1; }
+for _ in $(seq 100); do at=$(ticks) && [ -n "$at" ] && break; sleep 0.1; done
+expect 0 '' "$thimble" view "stands_$$" --step $((7500 - ${at% ticks}))
+for _ in $(seq 300); do [ "$(ticks)" = '7500 ticks' ] && break; sleep 0.1; done
+expect 0 '^7500 ticks$' ticks
+serve "stands_$$"
+expect 0 '' /usr/bin/python3 "$here/live_page_browser.py" "$(command -v chromium)" "$address" live_small.png
+kept page_live live_small.png
+expect 0 '' "$thimble" view "stands_$$" --stop
+wait "$run" "$viewer"
+
+# The same live: it is steered from there, goes along, holds, ends with the run, and its forces are ticks of the run.
 # The hand stays in the clay, so that there is something to be felt however long the browser takes, and sways there: an
 # arm that lies still for long looks like a broken one.
 sed "/t: 8.0/d; s#arm: .*#arm: vintage_phantom#; s#clay_ball.off#$scenes/clay_ball.off#" "$scenes/clay.yaml" >pressed.yaml
@@ -69,15 +97,12 @@ for second in $(seq 9 2 299); do
 done
 "$thimble" run pressed.yaml --clock wall --duration 300 --name "page_$$" --no-view --record live.h5 >run.txt 2>&1 &
 run=$!
-timeout 300 "$thimble" view "page_$$" --web >view.txt 2>&1 &
-viewer=$!
-for _ in $(seq 300); do grep -q '^Watching' view.txt && break; sleep 0.1; done
-address=$(sed -n 's/^Open //p' view.txt)
+serve "page_$$"
 expect 0 '^http://127\.0\.0\.1:[0-9]+/\?token=[0-9a-f]{32}$' echo "$address"
 if /usr/bin/python3 "$here/live_page_browser.py" "$(command -v chromium)" "$address" live.png \
   "$thimble" view "page_$$" --stop >live.json; then
   wait "$run"
-  "$thimble" export live.h5 --csv live.csv >/dev/null
+  "$thimble" export live-2.h5 --csv live.csv >/dev/null
   expect 0 '^as it should be$' /usr/bin/python3 "$here/live_page_check.py" live.json live.csv "$address"
 else
   echo "FAILED: the browser did not get through the live page"

@@ -13,6 +13,7 @@
 #include "studies/accuracy/gating/gating.h"
 #include "studies/accuracy/quality_points.h"
 #include "studies/accuracy/study_accuracy.h"
+#include "studies/run_pages.h"
 
 namespace thimble::app {
 namespace {
@@ -50,6 +51,25 @@ struct GatingOptions {
   bool no_count = false;
 };
 
+/// Writes pages of the two runs that are compared.
+driver::Result<void> write_gating_runs(const std::string& scene, const GatingReport& report,
+                                       const std::filesystem::path& folder) {
+  RunPages pages(folder, "Which effects of the arm the scene could do without",
+                 "The decisions are in gating.txt; these are the runs that were compared.");
+  if (auto added = pages.add(scene, "full", "with all effects of the arm"); !added) return added;
+  session::SessionOptions reduced;
+  reduced.adjust = [&report](scene::Scene& changed) {
+    for (const GateDecision& one : report.decisions) {
+      if (one.left_out) leave_out(one.name, changed);
+    }
+  };
+  if (auto added = pages.add(scene, "reduced", "without those it could do without", reduced);
+      !added) {
+    return added;
+  }
+  return pages.write();
+}
+
 int run_gating(const GatingOptions& options) {
   const std::filesystem::path folder = options.out;
   std::error_code status;
@@ -59,10 +79,11 @@ int run_gating(const GatingOptions& options) {
   const std::string text = gating_text(*report);
   std::printf("%s", text.c_str());
   for (const auto& written : {write_figures(figures_of(*report), folder / "figures.json"),
-                              write_text(text, folder / "gating.txt")}) {
+                              write_text(text, folder / "gating.txt"),
+                              write_gating_runs(options.scene, *report, folder)}) {
     if (!written) return complain(written.error(), kExitTrouble);
   }
-  std::printf("Written to %s.\n", folder.c_str());
+  std::printf("Written to %s; index.html there lists pages of the runs.\n", folder.c_str());
   return kExitDone;
 }
 

@@ -72,6 +72,21 @@ Json about(const PageTouch& touch, PageBlock& block) {
   return json;
 }
 
+Json live_part(const PageTouch& touch, const PageSource& source) {
+  Json knobs = Json::array();
+  for (const session::SharedScene::Knob& knob : touch.scene.knobs) {
+    knobs.push_back({{"name", knob.name},
+                     {"unit", knob.unit},
+                     {"least", knob.least},
+                     {"most", knob.most},
+                     {"initial", knob.initial}});
+  }
+  return {{"rows", source.rows},
+          {"knobs", knobs},
+          {"no_restart", source.no_restart},
+          {"no_step", source.no_step}};
+}
+
 }  // namespace
 
 driver::Result<std::string> page_text(const PageTouch& touch, const PageSource* source) {
@@ -88,9 +103,12 @@ driver::Result<std::string> page_text(const PageTouch& touch, const PageSource* 
   Json json = about(touch, block);
   std::string connect;
   if (source != nullptr) {
-    json["live"] = {{"rows", source->rows}};
-    const std::string port = std::to_string(source->port);
-    connect = "; connect-src ws://127.0.0.1:" + port + " ws://localhost:" + port;
+    json["live"] = live_part(touch, *source);
+    connect = "; connect-src";
+    for (const char* from :
+         {" ws://127.0.0.1:", " ws://localhost:", " http://127.0.0.1:", " http://localhost:"}) {
+      connect += from + std::to_string(source->port);
+    }
   }
   return filled(kPageHtml, {{"TITLE", html_text(touch.title)},
                             {"CONNECT", connect},

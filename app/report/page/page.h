@@ -56,10 +56,12 @@ inline constexpr std::size_t kPageRowsMost = 60'001;
 /// Triangles of all objects that a page draws. [chosen: 2.5 MB]
 inline constexpr std::size_t kPageTrianglesMost = 120'000;
 
-/// Where a page that is live gets its ticks from.
+/// Where a page that is live gets its ticks from, and asks what of the run.
 struct PageSource {
-  std::uint16_t port = 0;  ///< Of this computer (127.0.0.1), WebSocket.
-  std::size_t rows = 0;    ///< Ticks of all arms that it keeps.
+  std::uint16_t port = 0;       ///< Of this computer (127.0.0.1), WebSocket and HTTP.
+  std::size_t rows = 0;         ///< Ticks of all arms that it keeps.
+  std::string no_restart = {};  ///< Why the run cannot be begun anew; empty: it can.
+  std::string no_step = {};     ///< Why it cannot go on by single ticks; empty: it can.
 };
 
 /// Returns a page that plays a touch in a browser as text: one file, which loads nothing. With

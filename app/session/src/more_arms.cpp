@@ -54,6 +54,7 @@ void MoreArms::open(bool log) {
 void MoreArms::begin(RunLoop& first, const driver::ServoSettings& settings) noexcept {
   for (std::size_t i = 0; i < laws_.size(); ++i) {
     RunLoop& loop = i == 0 ? first : run(i).loop;
+    loop.carry(setup_.arm_file(i).carried_weight);
     loop.begin(setup_.device(i), setup_.clock(), driver::ForceLaw(laws_[i]), settings);
   }
 }

@@ -37,6 +37,10 @@ struct ArmLaw {
     if (const double gain = control->gain(); gain < 1) command.f_T_W *= gain;
     return command;
   }
+
+  /// Reads what the scene will need in a tick like this (driver::ForceLaw::prepare).
+  /// Real-time: safe.
+  void prepare(const driver::DeviceState& expected) const noexcept { touch.prepare(expected); }
 };
 
 /// The loop over one of several arms after the first, and the observers of its ticks.

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "carried_weight.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/device.h"
 #include "thimble/driver/force_law.h"
@@ -20,10 +21,15 @@ class RunLoop {
   /// Real-time: never from the servo thread.
   void add(TickObserver& observer) { observers_.push_back(&observer); }
 
+  /// Lets the loop carry a weight of the arm (N, down) beside what its law asks for; of none it
+  /// does nothing. Precondition: the loop has not begun. Real-time: never from the servo thread.
+  void carry(double weight) noexcept { weight_ = weight; }
+
   /// Begins the loop; its first tick is due now. All parts must outlive it, and it may not be moved
   /// from then on. Real-time: safe.
   void begin(driver::Device& device, driver::Clock& clock, driver::ForceLaw law,
              const driver::ServoSettings& settings) noexcept {
+    if (weight_ > 0) law = driver::ForceLaw(carried_.emplace(law, Eigen::Vector3d(0, 0, weight_)));
     loop_.emplace(device, clock, law, driver::TickSink(*this), settings);
   }
   /// Returns whether the loop has begun.
@@ -44,6 +50,8 @@ class RunLoop {
   }
 
  private:
+  double weight_ = 0;                     // N, that is carried
+  std::optional<CarriedWeight> carried_;  // if it is above 0
   std::vector<TickObserver*> observers_;
   std::optional<driver::ServoLoop> loop_;
   std::optional<driver::ServoEnd> end_;

@@ -38,7 +38,7 @@ struct Session::Parts {
 
   void add_records();
   void add_knobs();
-  driver::Result<void> share(const SessionOptions& options);
+  driver::Result<void> share(const SessionOptions& options, SharedRun* before = nullptr);
   void begin(const std::atomic<bool>& stop) noexcept;
   driver::ForceLaw own_law() noexcept;
   RunRecords& records_of(std::size_t arm) noexcept {
@@ -87,10 +87,10 @@ void Session::Parts::add_knobs() {
   loop.add(*knobs);
 }
 
-driver::Result<void> Session::Parts::share(const SessionOptions& options) {
+driver::Result<void> Session::Parts::share(const SessionOptions& options, SharedRun* before) {
   auto own = std::make_unique<LiveControl>(setup->scene(), setup->objects().touch(),
                                            setup->simulation(), setup->real_time());
-  auto made = share_run(*setup, own->knobs(), options);
+  auto made = share_run(*setup, own->knobs(), options, before);
   if (!made) return made.error();
   shared = std::move(made).value();
   control = std::move(own);
@@ -117,7 +117,9 @@ void Session::Parts::begin(const std::atomic<bool>& stop) noexcept {
   const driver::ServoSettings settings{
       .period_ns = setup->period_ns(),
       .ticks = setup->ticks(),
-      .outlive_faults = setup->any_real() || setup->endless() || go_on_with_the_others};
+      .outlive_faults = setup->any_real() || setup->endless() || go_on_with_the_others,
+      .prepare_ns = setup->real_time() ? driver::ServoSettings::kPrepare_ns : 0};
+  loop.carry(setup->arm_file(0).carried_weight);
   if (!more_arms.empty()) return more_arms.begin(loop, settings);
   loop.begin(setup->device(), setup->clock(), law.value_or(own_law()), settings);
 }
@@ -385,8 +387,8 @@ RunRecords& Session::records() noexcept {
 const RunRecords& Session::records() const noexcept {
   return parts_->records;
 }
-driver::Result<void> Session::share(const SessionOptions& options) {
-  return parts_->share(options);
+driver::Result<void> Session::share(const SessionOptions& options, SharedRun* before) {
+  return parts_->share(options, before);
 }
 SharedRun* Session::shared() noexcept {
   return parts_->shared.get();

@@ -140,6 +140,8 @@ driver::Result<void> write_accuracy_page(const std::vector<AxisSection>& section
     add_table(axis, page);
   }
   const scene::BuildInfo build = scene::build_info();
+  page << "<p><a href=\"runs/index.html\">One touch at each quality</a>: what the knobs come to "
+          "together, to be looked at.</p>\n";
   page << "<p class=\"small\">thimble " << build.version << ", " << build.type << ", "
        << build.compiler << ".</p>\n</body></html>\n";
   return write_text(page.str(), folder / "index.html");

@@ -1,8 +1,10 @@
 #include "studies/accuracy/study_accuracy.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <memory>
+#include <utility>
 
 #include "report/gnuplot.h"
 #include "report/picture_parts.h"
@@ -11,6 +13,9 @@
 #include "studies/accuracy/axis_picture.h"
 #include "studies/accuracy/axis_words.h"
 #include "studies/accuracy/measure_axis.h"
+#include "studies/run_pages.h"
+#include "thimble/scene/quality.h"
+#include "thimble/scene/shipped_files.h"
 
 namespace thimble::app {
 namespace {
@@ -26,6 +31,32 @@ driver::Result<std::vector<const AxisMaker*>> named_axes(const std::vector<std::
   std::string message = "--axis: known are";
   for (const AxisMaker& maker : accuracy_axes()) message.append(" ").append(maker.name);
   return driver::Error{message + "; each once."};
+}
+
+/// Writes pages of one touch at each quality, which is a point on every axis, into `folder`.
+driver::Result<void> write_runs(const std::filesystem::path& folder) {
+  std::error_code status;
+  std::filesystem::create_directories(folder, status);
+  RunPages pages(folder, "One touch at each quality",
+                 "The first three seconds of the scene rubber, as `thimble run rubber --quality "
+                 "...` runs it: each quality is a point on every diagram of the study.");
+  const auto scene = scene::find_scene("rubber");
+  const std::array<std::pair<scene::Quality, const char*>, 3> qualities{
+      {{scene::Quality::kDraft, "the cheapest that still behaves"},
+       {scene::Quality::kNormal, "as the scene says"},
+       {scene::Quality::kReference, "beyond what can be felt"}}};
+  for (const auto& [quality, words] : qualities) {
+    if (!scene) break;  // an own build without the shipped scenes: the list is empty
+    session::SessionOptions options;
+    options.duration = 3;
+    options.rate_factor = scene::rate_factor_of(quality);
+    options.adjust = [asked = quality](scene::Scene& changed) {
+      scene::apply_quality(asked, changed);
+    };
+    const std::string name(scene::kQualityNames[static_cast<std::size_t>(quality)]);
+    if (auto added = pages.add(*scene, name, words, options); !added) return added;
+  }
+  return pages.write();
 }
 
 }  // namespace
@@ -64,6 +95,7 @@ driver::Result<std::vector<Figure>> study_accuracy(const std::vector<std::string
   }
   std::printf("\r%60s\r", "");
   if (!draws) std::printf("No pictures: gnuplot is not installed (apt install gnuplot-nox).\n");
+  if (auto written = write_runs(folder / "runs"); !written) return written.error();
   if (auto written = write_accuracy_page(sections, folder); !written) return written.error();
   if (auto written = write_accuracy_summary(sections, folder / "summary.json"); !written) {
     return written.error();

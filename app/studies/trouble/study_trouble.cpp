@@ -9,6 +9,7 @@
 #include <system_error>
 #include <utility>
 
+#include "studies/run_pages.h"
 #include "studies/trouble/random_scene.h"
 #include "studies/trouble/small_meshes.h"
 #include "studies/trouble/trouble_run.h"
@@ -20,6 +21,7 @@ namespace {
 
 constexpr int kTries = 12;           // a scene that the loader refuses is drawn anew
 constexpr std::size_t kWorst = 10;   // kept
+constexpr std::size_t kShown = 3;    // of them, with a page; chosen: what somebody looks at
 constexpr double kGivenMuch = 1e-3;  // J, told
 
 /// A folder for scene files of this process; it goes with the object.
@@ -84,7 +86,8 @@ std::string table_of(const CellNumbers& cells, std::uint64_t seed) {
   return csv;
 }
 
-/// Writes the worst scenes with what they showed, so that they can be run by themselves.
+/// Writes the worst scenes with what they showed, so that they can be run by themselves, and pages
+/// of the very worst.
 driver::Result<void> keep_worst(const CellNumbers& cells, std::uint64_t seed,
                                 RandomSceneLimits limits, const std::filesystem::path& folder) {
   std::vector<std::size_t> order(cells.size());
@@ -97,21 +100,27 @@ driver::Result<void> keep_worst(const CellNumbers& cells, std::uint64_t seed,
   std::filesystem::remove_all(folder, status);
   if (auto done = write_small_meshes(folder / "meshes"); !done) return done;
   order.resize(std::min(order.size(), kWorst));
+  RunPages pages(folder, "The worst of the random scenes",
+                 "Each is a scene file to run by itself (thimble run FILE --view).");
   for (std::size_t rank = 0; rank < order.size(); ++rank) {
     const std::size_t cell = order[rank];
     const TroubleFound f = trouble_of(cells[cell]);
     const std::uint64_t drawn = try_seed(seed, cell, static_cast<int>(cells[cell].back()));
     const RandomScene scene = random_scene(drawn, limits);
-    const std::string heading = fmt::format(
-        "# own_energy: {:.9g} J; showed a limit cycle of {:.3g} N, fault {:.0f}, {:.3g} of the "
-        "arm's "
-        "force; "
-        "{:.3g} J given in one window, {:.3g} allowed.\n",
-        scene.own_energy, f.limit_cycle, f.fault, f.force_share, f.given, f.given_bound);
-    const std::string name = fmt::format("{:02}_{}.yaml", rank + 1, seed_name(drawn));
-    if (auto done = write_text(heading + scene.text, folder / name); !done) return done;
+    const std::string showed = fmt::format(
+        "showed a limit cycle of {:.3g} N, fault {:.0f}, {:.3g} of the arm's force; {:.3g} J given "
+        "in one window, {:.3g} allowed.",
+        f.limit_cycle, f.fault, f.force_share, f.given, f.given_bound);
+    const std::string heading =
+        fmt::format("# own_energy: {:.9g} J; {}\n", scene.own_energy, showed);
+    const std::string name = fmt::format("{:02}_{}", rank + 1, seed_name(drawn));
+    const std::filesystem::path file = folder / (name + ".yaml");
+    if (auto done = write_text(heading + scene.text, file); !done) return done;
+    pages.list(name + ".yaml", showed);
+    if (rank >= kShown) continue;
+    if (auto done = pages.add(file, name, "its run, to be looked at."); !done) return done;
   }
-  return {};
+  return pages.write();
 }
 
 }  // namespace

@@ -26,7 +26,8 @@ struct TroubleReport {
 };
 
 /// Touches `count` random scenes by random hands (random_scene.h), and writes
-/// trouble.csv and the ten worst scenes into `worst/` of the sweep's folder. The promises: no
+/// trouble.csv and the ten worst scenes into `worst/` of the sweep's folder, listed in its
+/// index.html with pages of the runs of the first. The promises: no
 /// number that is none, no force above the arm's limit, no fault, no energy beyond what the hand
 /// put in. Real-time: never from the servo thread.
 driver::Result<TroubleReport> study_trouble(const TroubleOptions& options,

@@ -47,12 +47,16 @@ class NextRunTest : public ::testing::Test {
   std::unique_ptr<Session> prepare() const { return Session::prepare(file_, options_).value(); }
 
   NextRun next_of(bool reload = false, bool loop = false, double speed = 4) const {
-    return {[this](const std::filesystem::path& scene) {
-              SessionOptions unseen = options_;
-              unseen.share = false;
-              return Session::prepare(scene, unseen);
-            },
-            reload, loop, speed};
+    return {[this](const std::filesystem::path& scene) { return prepare_unseen(scene); }, reload,
+            loop, speed};
+  }
+
+  /// Prepares what comes next, which nobody sees yet.
+  driver::Result<std::unique_ptr<Session>> prepare_unseen(
+      const std::filesystem::path& scene) const {
+    SessionOptions unseen = options_;
+    unseen.share = false;
+    return Session::prepare(scene, unseen);
   }
 
   static std::unique_ptr<SharedReader> view(Session& session) {
@@ -191,6 +195,127 @@ TEST_F(NextRunTest, RunsAnotherSceneOrTellsWhyNot) {
   EXPECT_EQ(honey->scene().name, "honey");
 }
 
+TEST_F(NextRunTest, HearsWhatIsAskedWhileItPreparesAndTellsWhoComesLater) {
+  std::unique_ptr<SharedReader> viewer;
+  std::string asked_meanwhile = (kSource / "app/scenes/honey.yaml").string();
+  int prepared = 0;
+  NextRun next(
+      [&](const std::filesystem::path& scene) {
+        ++prepared;
+        auto session = prepare_unseen(scene);
+        // While the ball is prepared, somebody asks for something else.
+        if (prepared == 1) {
+          EXPECT_TRUE(viewer->ask_restart(asked_meanwhile));
+          EXPECT_TRUE(viewer->ask_loop(true));
+          EXPECT_TRUE(viewer->ask_speed(0.5));
+        }
+        return session;
+      },
+      false, false, 4);
+  const auto session = prepare();
+  viewer = view(*session);
+  next.begin(*session);
+  ASSERT_TRUE(viewer->ask_restart());
+  next.step(false);
+  EXPECT_TRUE(next.ended());
+  EXPECT_EQ(prepared, 2) << "beside the run, which goes on";
+  // The servo may run on for a while; what is asked of it now could only be lost.
+  EXPECT_FALSE(viewer->heard());
+  const auto late = viewer->ask_restart();
+  ASSERT_FALSE(late);
+  EXPECT_NE(late.error().message.find("ask again"), std::string::npos) << late.error().message;
+  const auto then = next.take(driver::ServoEnd::kStopped, false);
+  ASSERT_TRUE(then);
+  EXPECT_EQ(then->scene().name, "honey");
+  EXPECT_EQ(prepared, 2);
+  ASSERT_TRUE(then->share(options_, session->shared()));
+  next.begin(*then);
+  const auto anew = view(*then);
+  EXPECT_TRUE(anew->heard());
+  EXPECT_TRUE(anew->loop_asked());
+  EXPECT_EQ(anew->speed_asked(), 0.5);
+  EXPECT_EQ(anew->notice(), "");
+}
+
+TEST_F(NextRunTest, TellsTheNextRunsViewersWhyTheirSceneIsNotShown) {
+  std::unique_ptr<SharedReader> viewer;
+  bool first = true;
+  NextRun next(
+      [&](const std::filesystem::path& scene) {
+        if (first) {
+          EXPECT_TRUE(viewer->ask_restart("/nowhere/none.yaml"));
+        }
+        first = false;
+        return prepare_unseen(scene);
+      },
+      false, false, 4);
+  const auto session = prepare();
+  viewer = view(*session);
+  next.begin(*session);
+  ASSERT_TRUE(viewer->ask_restart());
+  next.step(false);
+  const auto then = next.take(driver::ServoEnd::kStopped, false);
+  ASSERT_TRUE(then) << "what was asked before stands ready";
+  ASSERT_TRUE(then->share(options_));
+  next.begin(*then);
+  EXPECT_NE(view(*then)->notice().find("/nowhere/none.yaml"), std::string::npos);
+}
+
+TEST_F(NextRunTest, HearsWhatIsAskedBetweenTheLastTickAndTheEnd) {
+  NextRun next = next_of();
+  auto session = prepare();
+  auto viewer = view(*session);
+  next.begin(*session);
+  ASSERT_TRUE(viewer->ask_restart());
+  const auto again = next.take(driver::ServoEnd::kDone, false);
+  ASSERT_TRUE(again) << "asked after the last look beside the run";
+  EXPECT_FALSE(viewer->ask_restart());
+
+  session = prepare();
+  viewer = view(*session);
+  next.begin(*session);
+  ASSERT_TRUE(viewer->ask_loop(true));
+  viewer->ask_stop();
+  EXPECT_FALSE(next.take(driver::ServoEnd::kDone, false)) << "a viewer has ended it";
+
+  session = prepare();
+  viewer = view(*session);
+  next.begin(*session);
+  ASSERT_TRUE(viewer->ask_restart());
+  EXPECT_FALSE(next.take(driver::ServoEnd::kFault, false));
+  EXPECT_NE(viewer->notice().find("fault"), std::string::npos) << viewer->notice();
+}
+
+TEST_F(NextRunTest, BeginsPausedWhereTheRunBeforeEndedBeforeItHeardOfIt) {
+  NextRun next = next_of(false, true);
+  const auto session = prepare();
+  next.begin(*session);
+  view(*session)->ask_pause(true);
+  const auto then = next.take(driver::ServoEnd::kDone, false);
+  ASSERT_TRUE(then);
+  ASSERT_TRUE(then->share(options_, session->shared()));
+  next.begin(*then);
+  EXPECT_TRUE(view(*then)->pause_asked());
+  ASSERT_TRUE(view(*then)->ask_restart());
+  next.step(false);
+  const auto anew = next.take(driver::ServoEnd::kStopped, false);
+  ASSERT_TRUE(anew);
+  ASSERT_TRUE(anew->share(options_, then->shared()));
+  next.begin(*anew);
+  EXPECT_FALSE(view(*anew)->pause_asked()) << "who begins anew wants it to run";
+}
+
+TEST_F(NextRunTest, KeepsThePaceThatIsAskedForBeforeItBegins) {
+  NextRun next = next_of(false, false, 4);
+  const auto session = prepare();
+  const auto viewer = view(*session);
+  ASSERT_TRUE(viewer->ask_speed(0.25));
+  ASSERT_TRUE(viewer->ask_loop(true));
+  next.begin(*session);
+  EXPECT_EQ(viewer->speed_asked(), 0.25);
+  EXPECT_TRUE(viewer->loop_asked());
+}
+
 TEST_F(NextRunTest, LoopsUntilAFaultOrAPersonEndsIt) {
   NextRun next = next_of(false, true);
   const auto session = prepare();
@@ -201,11 +326,12 @@ TEST_F(NextRunTest, LoopsUntilAFaultOrAPersonEndsIt) {
   EXPECT_FALSE(next.take(driver::ServoEnd::kFault, false)) << "after a fault a person looks first";
   next.begin(*session);
   EXPECT_TRUE(next.take(driver::ServoEnd::kDone, false));
-  next.begin(*session);
-  ASSERT_TRUE(viewer->ask_loop(false));
+  const auto again = prepare();
+  next.begin(*again);
+  ASSERT_TRUE(view(*again)->ask_loop(false));
   EXPECT_FALSE(next.take(driver::ServoEnd::kDone, false));
   EXPECT_FALSE(next.ended());
-  next.begin(*session);
+  next.begin(*again);
   next.step(true);
   EXPECT_TRUE(next.ended());
 }

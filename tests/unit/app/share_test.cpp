@@ -213,14 +213,19 @@ TEST(Share, AsksForAPaceAndIgnoresNonsense) {
   }
   scene.paced = scene.restarts = true;
   const Pair pair = joined(scene);
-  EXPECT_EQ(pair.run->speed_wanted(), 1);
+  EXPECT_FALSE(pair.run->speed_wanted()) << "nobody has asked";
+  EXPECT_EQ(pair.reader->speed_asked(), 1);
   ASSERT_TRUE(pair.reader->ask_speed(0.25));
   EXPECT_EQ(pair.run->speed_wanted(), 0.25);
   EXPECT_FALSE(pair.reader->ask_speed(std::numeric_limits<double>::quiet_NaN()));
-  pair.run->set_pace(std::numeric_limits<double>::quiet_NaN(), true);
+  pair.run->set_pace(4, true);
+  EXPECT_EQ(pair.reader->speed_asked(), 0.25) << "a viewer was quicker than the run";
+  EXPECT_TRUE(pair.reader->loop_asked());
+  auto& live = *reinterpret_cast<session::SharedLive*>(pair.run->memory().bytes().data() +
+                                                       session::kSharedLiveOffset);
+  live.requests.speed.store(std::numeric_limits<double>::quiet_NaN());
   EXPECT_FALSE(pair.run->speed_wanted());
   EXPECT_EQ(pair.reader->speed_asked(), 1);
-  EXPECT_TRUE(pair.reader->loop_asked());
   EXPECT_FALSE(pair.run->restart_order_after(0));
   ASSERT_TRUE(pair.reader->ask_restart("/a/b.yaml"));
   const auto order = pair.run->restart_order_after(0);
@@ -482,6 +487,46 @@ TEST(Share, IsForThisUserAloneAndGoneAfterwards) {
   const auto gone = session::SharedReader::attach(name);
   ASSERT_FALSE(gone);
   EXPECT_NE(gone.error().message.find("--list"), std::string::npos) << gone.error().message;
+}
+
+TEST(Share, GivesItsNameToTheNextRunWithoutAMomentInWhichThereIsNone) {
+  const std::string name = name_for("next");
+  auto run = session::SharedRun::create(name, small_scene(), 10).value();
+  session::SharedScene other = small_scene();
+  other.name = "other";
+  {
+    // Complete, but not yet in its place: nobody sees it, and who looks finds the run before.
+    const auto memory = session::SharedMemory::create_next(run->memory(), 1 << 20).value();
+    int listed = 0;
+    for (const session::RunningRun& one : session::running_runs()) {
+      listed += one.name.starts_with(name) ? 1 : 0;
+    }
+    EXPECT_EQ(listed, 1);
+    EXPECT_EQ(session::SharedReader::attach(name).value()->scene().name, "small");
+  }
+  auto next = session::SharedRun::create_next(*run, other, 10).value();
+  EXPECT_EQ(next->name(), name);
+  EXPECT_EQ(session::SharedReader::attach(name).value()->scene().name, "other");
+  run.reset();
+  EXPECT_TRUE(session::SharedReader::attach(name)) << "the name was not its own any more";
+  next.reset();
+  EXPECT_FALSE(session::SharedReader::attach(name));
+}
+
+TEST(Share, TellsThatNobodyHearsWhatIsAskedOfARunThatIsOver) {
+  session::SharedScene scene = small_scene();
+  scene.paced = scene.restarts = true;
+  const Pair pair = joined(scene);
+  ASSERT_TRUE(pair.reader->ask_restart("/kept.yaml"));
+  EXPECT_TRUE(pair.reader->heard());
+  pair.run->close();
+  EXPECT_EQ(pair.run->restart_order_after(0)->scene, "/kept.yaml") << "asked before";
+  for (const auto& answer : {pair.reader->heard(), pair.reader->ask_restart("/lost.yaml"),
+                             pair.reader->ask_loop(true), pair.reader->ask_speed(2)}) {
+    ASSERT_FALSE(answer);
+    EXPECT_NE(answer.error().message.find("ask again"), std::string::npos);
+  }
+  EXPECT_EQ(pair.run->restart_order_after(0)->scene, "/kept.yaml");
 }
 
 TEST(Share, TellsThatARunWasKilledAndClearsItAway) {

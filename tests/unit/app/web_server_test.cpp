@@ -94,6 +94,22 @@ class WebServerTest : public ::testing::Test {
     return {parser.get().result_int(), parser.get().body()};
   }
 
+  /// Asks something of the run, as a page does; returns the status.
+  unsigned post(const std::string& words, const Asking& asking, const std::string& token) {
+    tcp::socket socket = connect();
+    http::request<http::string_body> request(http::verb::post, asking.target, 11);
+    request.set(http::field::host, here());
+    request.set(http::field::origin, asking.origin);
+    if (!token.empty()) request.set("X-Thimble-Token", token);
+    request.body() = words;
+    request.prepare_payload();
+    http::write(socket, request);
+    beast::flat_buffer buffer;
+    http::response<http::string_body> response;
+    http::read(socket, buffer, response);
+    return response.result_int();
+  }
+
   using Page = websocket::stream<tcp::socket>;
   /// Opens a page; returns the status of the answer, 101 if it is open.
   unsigned open(Page& page) {
@@ -193,10 +209,27 @@ TEST_F(WebServerTest, ToldToNobodyWithoutTheTokenNorToAPageOfSomebodyElse) {
     EXPECT_EQ(status, 200U);
     EXPECT_NE(body.find("connect-src ws://127.0.0.1:" + std::to_string(port_) + " ws://localhost:"),
               std::string::npos);
+    EXPECT_NE(body.find(" http://localhost:" + std::to_string(port_) + "\""), std::string::npos);
   } else {
     EXPECT_EQ(status, 500U);
     EXPECT_NE(body.find("apt install"), std::string::npos) << body;
   }
+}
+
+TEST_F(WebServerTest, AsksOfTheRunWhatThePageItselfPostsAlone) {
+  const std::string own = "http://" + here(), token = token_.substr(7);
+  run_ticks(1);
+  Page page(io_);
+  ASSERT_EQ(open(page), 101U);
+  ASSERT_EQ(read_ticks(page, 1).size(), 1U);
+  EXPECT_EQ(post("pause", {"/steer", {}, "http://evil.example"}, token), 403U);
+  EXPECT_EQ(post("pause", {"/steer", {}, own}, ""), 403U);
+  EXPECT_EQ(post("pause", {"/steer" + token_, {}, own}, ""), 403U);
+  EXPECT_EQ(get({"/steer" + token_, {}, own}).first, 403U) << "nothing is asked for by GET";
+  EXPECT_FALSE(run_->pause_asked());
+  EXPECT_EQ(post("pause", {"/steer", {}, own}, token), 200U);
+  EXPECT_TRUE(run_->pause_asked());
+  EXPECT_EQ(post("restart", {"/steer", {}, own}, token), 409U) << "nobody would begin it anew";
 }
 
 TEST_F(WebServerTest, GarbageAndWhatIsTooLongEndAConnectionAndNothingElse) {

@@ -110,6 +110,8 @@ function makeLive(changed) {
       live.recording = update.recording;
       live.lost = update.lost;
       live.missed = update.missed;
+      live.knobs = update.knobs;
+      live.notice = update.notice;
     }
     ++live.updates;
   }

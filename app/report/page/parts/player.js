@@ -3,7 +3,7 @@
   // `fresh`: nobody has gone anywhere yet; `following`: of a run that goes on, the newest is shown.
   const player = {t: 0, arm: 0, speed: 1, playing: false, fresh: true, following: Boolean(about.live)};
   const byId = id => document.getElementById(id);
-  let stage, plots, strip, live;
+  let stage, plots, strip, live, steer;
   const contactsOf = arms.map(() => null);
   // When an arm touches; gaps shorter than 20 ms are closed, as the report does.
   player.contacts = () => {
@@ -215,13 +215,16 @@
     requestAnimationFrame(frame);
   }
   if (about.live) {
+    steer = makeSteer();
     live = makeLive(() => {
       showLive(live, player.following);
+      steer.show(live);
       // What the scene is drawn around is known with the first tick.
       if (!begun && arms[0].t.length > 0) begin();
       grown = begun;
     });
     showLive(live, true);
+    steer.show(live);
   } else {
     begin();
   }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/elementary.h"
 #include "thimble/driver/device_state.h"
 #include "thimble/driver/force_law.h"
 
@@ -12,7 +13,7 @@ namespace {
 
 double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   // Exact for small angles too.
-  return std::atan2(a.cross(b).norm(), a.dot(b));
+  return math::atan2(a.cross(b).norm(), a.dot(b));
 }
 
 }  // namespace

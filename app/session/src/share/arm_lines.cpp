@@ -3,26 +3,28 @@
 #include <cmath>
 #include <variant>
 
+#include "math/elementary.h"
+
 namespace thimble::session {
 namespace {
 
 using Eigen::Vector3d;
 
 std::vector<ArmLine> lines_of(const driver::SerialArm& arm, const Vector3d& q, const Vector3d&) {
-  const Vector3d outwards(std::cos(q[0]), std::sin(q[0]), 0);
+  const Vector3d outwards(math::cos(q[0]), math::sin(q[0]), 0);
   const Vector3d shoulder(0, 0, arm.height);
   const Vector3d elbow =
-      shoulder + arm.length_b * (std::sin(q[1]) * outwards + std::cos(q[1]) * Vector3d::UnitZ());
+      shoulder + arm.length_b * (math::sin(q[1]) * outwards + math::cos(q[1]) * Vector3d::UnitZ());
   const Vector3d tip =
-      elbow + arm.length_c * (std::sin(q[2]) * outwards - std::cos(q[2]) * Vector3d::UnitZ());
+      elbow + arm.length_c * (math::sin(q[2]) * outwards - math::cos(q[2]) * Vector3d::UnitZ());
   return {{Vector3d::Zero(), shoulder, elbow, tip}};
 }
 
 std::vector<ArmLine> lines_of(const driver::LinkageArm& arm, const Vector3d& q,
                               const Vector3d& p_BT) {
-  const Vector3d outwards(std::cos(q[0]), std::sin(q[0]), 0);
+  const Vector3d outwards(math::cos(q[0]), math::sin(q[0]), 0);
   const auto at_angle = [&](double angle) -> Vector3d {
-    return std::cos(angle) * outwards + std::sin(angle) * Vector3d::UnitZ();
+    return math::cos(angle) * outwards + math::sin(angle) * Vector3d::UnitZ();
   };
   const Vector3d front = 0.5 * arm.length_0 * outwards, back = -front;
   const Vector3d elbow = front + arm.length_1 * at_angle(q[1]);
@@ -38,11 +40,11 @@ std::vector<ArmLine> lines_of(const driver::DeltaArm& arm, const Vector3d& q,
   for (std::size_t leg = 0; leg < 3; ++leg) {
     const double azimuth = arm.azimuth[leg];
     const double angle = q[static_cast<Eigen::Index>(leg)];
-    const Vector3d u(std::cos(azimuth), std::sin(azimuth), 0);
-    const Vector3d v(-std::sin(azimuth), std::cos(azimuth), 0);
+    const Vector3d u(math::cos(azimuth), math::sin(azimuth), 0);
+    const Vector3d v(-math::sin(azimuth), math::cos(azimuth), 0);
     const Vector3d joint = arm.r * u + arm.s * v;
     const Vector3d elbow =
-        joint + arm.a * (std::cos(angle) * u + std::sin(angle) * Vector3d::UnitZ());
+        joint + arm.a * (math::cos(angle) * u + math::sin(angle) * Vector3d::UnitZ());
     const Vector3d end = p_BT + arm.c * u + arm.f * v;
     lines.push_back({joint, elbow, end});
     base.push_back(joint);

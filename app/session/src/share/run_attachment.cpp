@@ -34,6 +34,12 @@ bool RunAttachment::step() {
   return true;
 }
 
+bool RunAttachment::over() const {
+  if (!reader_ || reader_->state() != RunState::kEnded) return false;
+  // As long as it has its name it may give that to the next one.
+  return reader_->died() || !run_name_taken(name_);
+}
+
 std::string RunAttachment::notice() const {
   if (!trouble_.empty()) return trouble_;
   if (!reader_) {

@@ -23,6 +23,9 @@ class RunAttachment {
   SharedReader* reader() noexcept { return reader_.get(); }
   const std::string& name() const noexcept { return name_; }
 
+  /// Returns whether the run has ended for good: one that is just being begun anew has not.
+  bool over() const;
+
   /// Says what a person must know: that a run is waited for, has ended or died, or why it cannot be
   /// watched. Empty while all is well.
   std::string notice() const;

@@ -18,7 +18,8 @@ constexpr int kRunsOfAScene = 100;  // at the same time; chosen
 }  // namespace
 
 driver::Result<std::unique_ptr<SharedRun>> share_run(const Setup& setup, const LiveKnobs& knobs,
-                                                     const SessionOptions& options) {
+                                                     const SessionOptions& options,
+                                                     SharedRun* before) {
   SharedScene scene = describe_scene(setup.scene(), setup.objects(), setup.device_name());
   scene.file = setup.scene_path();
   scene.period_ns = setup.period_ns();
@@ -33,6 +34,7 @@ driver::Result<std::unique_ptr<SharedRun>> share_run(const Setup& setup, const L
   }
   const auto ring = std::min(
       static_cast<std::size_t>(std::ceil(kShownSeconds * setup.scene().rate)), kShownTicksMost);
+  if (before != nullptr) return SharedRun::create_next(*before, scene, ring);
   const std::string asked = options.share_name.empty() ? setup.scene().name : options.share_name;
   const std::string name = options.share_out ? run_name_of(asked) : "";
   auto shared = SharedRun::create(name, scene, ring);

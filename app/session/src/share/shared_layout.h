@@ -24,7 +24,7 @@ namespace thimble::session {
 // Frames: W world.
 
 /// Changes with every change of this file. A reader of another version refuses.
-inline constexpr std::uint32_t kSharedVersion = 8;
+inline constexpr std::uint32_t kSharedVersion = 9;
 /// Stands in `SharedHead::ready` of a segment that is complete: "thimble1" in ASCII.
 inline constexpr std::uint64_t kSharedReady = 0x31656c626d696874;
 
@@ -192,7 +192,7 @@ struct SharedRequests {
   std::atomic<std::uint64_t> writer;  ///< pid of the viewer that writes; 0: none.
   std::atomic<std::uint32_t> pause;   ///< 1: hold the loop.
   std::atomic<std::uint32_t> stop;    ///< 1: end the run.
-  std::atomic<std::uint32_t> loop;    ///< 1: begin anew whenever the run ends.
+  std::atomic<std::uint32_t> loop;    ///< 1: begin anew whenever the run ends; 0: not.
   std::atomic<double> speed;          ///< Times real time; nonsense is ignored.
   std::atomic<std::uint64_t> steps;   ///< Grows by the ticks that a paused run may go on by.
   driver::Snapshot<SharedRestart> restart;
@@ -202,9 +202,14 @@ struct SharedRequests {
   std::array<std::atomic<std::uint64_t>, kViewersMost> viewers;  ///< Their pids; 0: a free place.
 };
 
+/// Stand in `loop` and `speed` until somebody has asked for anything.
+inline constexpr std::uint32_t kLoopUnasked = 2;
+inline constexpr double kSpeedUnasked = 0;
+
 /// What changes while the run goes on.
 struct SharedLive {
   std::atomic<std::uint32_t> state;                   ///< A RunState.
+  std::atomic<std::uint32_t> closed;                  ///< 1: what is asked now is not looked at.
   std::atomic<std::uint32_t> recording;               ///< 1 while ticks are recorded.
   std::atomic<std::uint64_t> ticks;                   ///< Ticks stored in the ring so far.
   std::atomic<std::uint64_t> missed;                  ///< Periods of the loop that were skipped.

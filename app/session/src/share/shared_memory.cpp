@@ -23,6 +23,9 @@ namespace {
 constexpr const char* kFolder = "/dev/shm";
 // A segment without an owner's pid for so long is one whose run died while it made it.
 constexpr std::time_t kMakingMost = 10;  // s, chosen
+// After the name of a run whose memory takes that name when it is complete. No run's name has a
+// dot.
+constexpr const char* kNext = ".next";
 
 std::string prefix() {
   std::string text = "thimble-";
@@ -105,6 +108,22 @@ driver::Result<std::unique_ptr<SharedMemory>> SharedMemory::map(int file, std::s
   }
   return std::unique_ptr<SharedMemory>(
       new SharedMemory(file, {static_cast<std::byte*>(at), bytes}, run, made));
+}
+
+driver::Result<std::unique_ptr<SharedMemory>> SharedMemory::create_next(const SharedMemory& before,
+                                                                        std::size_t bytes) {
+  return create(before.run_ + kNext, bytes);
+}
+
+driver::Result<void> SharedMemory::take_name(SharedMemory& before) {
+  const std::string from = kFolder + path_of(run_), to = kFolder + path_of(before.run_);
+  // In one step for whoever looks [rename(2)].
+  if (rename(from.c_str(), to.c_str()) != 0) {
+    return trouble("The name \"" + before.run_ + "\" cannot be taken over");
+  }
+  run_ = before.run_;
+  before.made_ = false;
+  return {};
 }
 
 driver::Result<std::unique_ptr<SharedMemory>> SharedMemory::create(const std::string& run,
@@ -191,6 +210,7 @@ void SharedMemory::remove_name() {
 std::vector<RunningRun> running_runs() {
   std::vector<RunningRun> runs;
   for (const std::string& name : names()) {
+    if (name.ends_with(kNext)) continue;
     struct stat status {};
     const int file = open_own(name, O_RDONLY, status);
     if (file < 0) continue;

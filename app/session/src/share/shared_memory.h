@@ -36,6 +36,13 @@ class SharedMemory {
   /// Removes the name if this made it, and ends the mapping.
   ~SharedMemory();
 
+  /// Makes memory of zeros for a run that shall take the name of one that is over; nobody finds it
+  /// before `take_name`. The error is that of `create`. Real-time: never from the servo thread.
+  static driver::Result<std::unique_ptr<SharedMemory>> create_next(const SharedMemory& before,
+                                                                   std::size_t bytes);
+  /// Takes the name of the memory before, at once: there is no moment in which there is none of
+  /// that name. Real-time: never from the servo thread.
+  driver::Result<void> take_name(SharedMemory& before);
   /// Removes the name, so that no more viewers come. Real-time: never from the servo thread.
   void remove_name();
 

@@ -88,6 +88,9 @@ class SharedReader {
   /// Turns a knob; what is outside its bounds is brought within, NaN is ignored.
   void turn_knob(std::size_t knob, double value) noexcept;
 
+  /// Answers whether the run looks at all that has been asked of it so far. The error: it has
+  /// ended, and if another one takes its place, that is to be asked.
+  driver::Result<void> heard() const;
   void ask_pause(bool pause) noexcept;
   bool pause_asked() const noexcept { return live_->requests.pause.load() == 1; }
   /// Lets a paused run go on by so many ticks, 1 to kStepsMost. The error says why it cannot.

@@ -77,6 +77,23 @@ void put_arm(const SharedScene::Arm& arm, SharedArm& to) {
 driver::Result<std::unique_ptr<SharedRun>> SharedRun::create(const std::string& name,
                                                              const SharedScene& scene,
                                                              std::size_t ring_ticks) {
+  return make(name, nullptr, scene, ring_ticks);
+}
+
+driver::Result<std::unique_ptr<SharedRun>> SharedRun::create_next(SharedRun& before,
+                                                                  const SharedScene& scene,
+                                                                  std::size_t ring_ticks) {
+  const std::string& name = before.name();
+  auto made = make(name, name.empty() ? nullptr : &before.memory(), scene, ring_ticks);
+  if (!made || name.empty()) return made;
+  if (auto taken = (*made)->memory_->take_name(*before.memory_); !taken) return taken.error();
+  return made;
+}
+
+driver::Result<std::unique_ptr<SharedRun>> SharedRun::make(const std::string& name,
+                                                           const SharedMemory* before,
+                                                           const SharedScene& scene,
+                                                           std::size_t ring_ticks) {
   if (scene.objects.size() > kObjectsMost) {
     return driver::Error{"A scene of more than " + std::to_string(kObjectsMost) +
                          " objects cannot be shown; run it with --no-view."};
@@ -84,8 +101,9 @@ driver::Result<std::unique_ptr<SharedRun>> SharedRun::create(const std::string& 
   SharedHead head{};
   const std::uint64_t bytes = lay_out(scene, ring_ticks, head);
   if (!name.empty()) remove_dead_runs();
-  auto memory =
-      name.empty() ? SharedMemory::create_nameless(bytes) : SharedMemory::create(name, bytes);
+  auto memory = name.empty()        ? SharedMemory::create_nameless(bytes)
+                : before != nullptr ? SharedMemory::create_next(*before, bytes)
+                                    : SharedMemory::create(name, bytes);
   if (!memory) return memory.error();
   std::unique_ptr<SharedRun> run(new SharedRun(std::move(memory).value()));
   run->write(scene, ring_ticks);
@@ -113,7 +131,8 @@ void SharedRun::write(const SharedScene& scene, std::size_t ring_ticks) {
   head_->hand_by_mouse = scene.hand_by_mouse ? 1 : 0;
   head_->paced = scene.paced ? 1 : 0;
   head_->restarts = scene.restarts ? 1 : 0;
-  live_->requests.speed.store(1);
+  live_->requests.speed.store(kSpeedUnasked);
+  live_->requests.loop.store(kLoopUnasked);
   put(scene.name, head_->scene);
   put(scene.file, head_->scene_file);
   put_arm(scene.arm, head_->arm);
@@ -268,8 +287,16 @@ std::optional<double> SharedRun::speed_wanted() const noexcept {
 }
 
 void SharedRun::set_pace(double speed, bool loop) noexcept {
-  live_->requests.speed.store(speed);
-  live_->requests.loop.store(loop ? 1 : 0);
+  double unasked_speed = kSpeedUnasked;
+  live_->requests.speed.compare_exchange_strong(unasked_speed, speed);
+  std::uint32_t unasked_loop = kLoopUnasked;
+  live_->requests.loop.compare_exchange_strong(unasked_loop, loop ? 1 : 0);
+}
+
+void SharedRun::close() noexcept {
+  live_->closed.store(1);
+  // Pairs with SharedReader::heard: of a request and this, one of the two sides sees the other.
+  std::atomic_thread_fence(std::memory_order_seq_cst);
 }
 
 void SharedRun::set_notice(const std::string& notice) noexcept {

@@ -31,6 +31,11 @@ class SharedRun final : public KnobRequests {
   static driver::Result<std::unique_ptr<SharedRun>> create(const std::string& name,
                                                            const SharedScene& scene,
                                                            std::size_t ring_ticks);
+  /// As above, of a run that follows one that is over: it takes the name of that, if it has one, as
+  /// soon as it is complete, so that viewers always find a run of that name.
+  static driver::Result<std::unique_ptr<SharedRun>> create_next(SharedRun& before,
+                                                                const SharedScene& scene,
+                                                                std::size_t ring_ticks);
   SharedRun(const SharedRun&) = delete;
   SharedRun& operator=(const SharedRun&) = delete;
   /// Tells the viewers that the run has ended, and removes the name.
@@ -107,8 +112,16 @@ class SharedRun final : public KnobRequests {
   /// Gives the newest order, if there is one after `number`. Real-time: never from the servo
   /// thread.
   std::optional<RestartOrder> restart_order_after(std::uint64_t number) const;
-  /// Sets what viewers find as asked for: before the first tick.
+  /// Sets what viewers find as asked for, unless one has asked already.
   void set_pace(double speed, bool loop) noexcept;
+  /// Lets the run begin paused, as one was asked to be that ended before it could.
+  void begin_paused() noexcept { live_->requests.pause.store(1); }
+  /// Ends the hearing: what a viewer asks from now on it is told that nobody hears. What was asked
+  /// before can be seen when this returns, and must be looked at once more. Any thread but the
+  /// servo's.
+  void close() noexcept;
+  /// Returns whether the hearing has ended.
+  bool closed() const noexcept { return live_->closed.load() == 1; }
   /// Tells viewers what a person must know; empty: nothing any more. One thread.
   void set_notice(const std::string& notice) noexcept;
   /// Returns a knob by its number.
@@ -121,6 +134,10 @@ class SharedRun final : public KnobRequests {
 
  private:
   explicit SharedRun(std::unique_ptr<SharedMemory> memory) : memory_(std::move(memory)) {}
+  static driver::Result<std::unique_ptr<SharedRun>> make(const std::string& name,
+                                                         const SharedMemory* before,
+                                                         const SharedScene& scene,
+                                                         std::size_t ring_ticks);
   void write(const SharedScene& scene, std::size_t ring_ticks);
 
   std::unique_ptr<SharedMemory> memory_;

@@ -39,21 +39,41 @@ void ViewerRequestHandler::record(const SharedRun::RecordOrder& order) {
   }
 }
 
+void ViewerRequestHandler::hear_records() {
+  if (const auto order = session_.shared()->record_order_after(last_order_)) record(*order);
+}
+
+void ViewerRequestHandler::hear_stop() {
+  const bool closed = viewer_ && viewer_->closed();
+  if (!session_.shared()->stop_asked() && !(closed && ends_with_viewer_)) return;
+  if (!ended_) scene::logger().info("The run was ended by a viewer.");
+  ended_ = true;
+  scene::ask_to_stop();
+}
+
 void ViewerRequestHandler::step() {
   SharedRun& shared = *session_.shared();
   const RecordingSwitch& recording = session_.records().recording;
   shared.watch_viewers();
   driver::TickRecord newest;
   if (session_.newest().load(newest)) watch_.step(at_tick(newest.tick, newest.time_ns));
-  if (const auto order = shared.record_order_after(last_order_)) record(*order);
+  hear_records();
   shared.set_recording(recording.on(), recording.dropped());
-  const bool closed = viewer_ && viewer_->closed();
-  if (shared.stop_asked() || (closed && ends_with_viewer_)) {
-    if (!ended_) scene::logger().info("The run was ended by a viewer.");
-    ended_ = true;
-    scene::ask_to_stop();
-  }
-  if (next_ != nullptr) next_->step(scene::stop_asked());
+  hear_stop();
+  if (next_ == nullptr) return;
+  next_->step(scene::stop_asked());
+  if (shared.closed()) hear_records();  // what was asked before
+}
+
+void ViewerRequestHandler::close() {
+  SharedRun& shared = *session_.shared();
+  shared.close();
+  hear_stop();
+  const auto order = shared.record_order_after(last_order_);
+  if (!order || !order->record) return;
+  const std::string told = "Nothing is recorded: the run had ended when it was asked for.";
+  scene::logger().error("{}", told);
+  shared.set_notice(told);
 }
 
 std::unique_ptr<ViewerRequestHandler> open_viewer_requests(

@@ -33,6 +33,9 @@ class ViewerRequestHandler {
 
   /// Looks once; call it about ten times a second.
   void step();
+  /// Looks for the last time, when the run is over: what viewers ask from now on they are told that
+  /// nobody hears.
+  void close();
 
   /// Returns whether a viewer has ended the run.
   bool ended() const noexcept { return ended_; }
@@ -41,6 +44,8 @@ class ViewerRequestHandler {
 
  private:
   void record(const SharedRun::RecordOrder& order);
+  void hear_records();
+  void hear_stop();
 
   Session& session_;
   std::unique_ptr<ViewerProcess> viewer_;

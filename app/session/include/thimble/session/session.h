@@ -249,9 +249,10 @@ class Session {
   const RunRecords& records() const noexcept;  ///< As above.
   /// Returns what viewers see; null if the run is not shared.
   SharedRun* shared() noexcept;
-  /// Lets viewers see a run that was prepared without, as `options` asks. Before its first tick.
-  /// The error is that of `prepare`. Real-time: never from the servo thread.
-  driver::Result<void> share(const SessionOptions& options);
+  /// Lets viewers see a run that was prepared without, as `options` asks; under the name of
+  /// `before`, a run that is over, if it is not null. Before its first tick. The error is that of
+  /// `prepare`. Real-time: never from the servo thread.
+  driver::Result<void> share(const SessionOptions& options, SharedRun* before = nullptr);
 
  private:
   struct Parts;

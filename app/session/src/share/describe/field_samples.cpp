@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 
+#include "math/elementary.h"
 #include "thimble/render/object_touch.h"
 
 namespace thimble::session {
@@ -73,7 +74,7 @@ std::vector<SharedScene::FieldSample> sample_fields(const scene::Scene& scene) {
     felt.extend(Vector3d(look.p_W - half));
     felt.extend(Vector3d(look.p_W + half));
   }
-  const double step = std::cbrt(felt.volume() / kSamples);
+  const double step = math::cbrt(felt.volume() / kSamples);
   const Eigen::Array3i counts =
       (felt.sizes().array() / std::max(step, 1e-6)).round().max(1).min(kSideMost).cast<int>();
   return sample(fields, felt, counts);

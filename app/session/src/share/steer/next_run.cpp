@@ -18,6 +18,10 @@ void NextRun::begin(Session& session) {
   scene_ = session.setup().scene_path();
   last_order_ = 0;
   session.shared()->set_pace(speed_, loop_);
+  if (pause_) session.shared()->begin_paused();
+  pause_ = false;
+  session.shared()->set_notice(notice_);
+  notice_.clear();
   if (!reload_) return;
   std::vector<std::filesystem::path> files{scene_, session.scene().arm_file};
   for (const scene::SceneArm& arm : session.scene().more_arms) files.push_back(arm.arm_file);
@@ -28,39 +32,64 @@ bool NextRun::prepare(const std::filesystem::path& scene) {
   auto prepared = prepare_(scene);
   if (prepared) {
     next_ = std::move(prepared).value();
-    end_.store(true);
+    notice_.clear();
     return true;
   }
   scene::logger().error("{}", prepared.error().message);
-  session_->shared()->set_notice(prepared.error().message);
+  notice_ = prepared.error().message;
+  session_->shared()->set_notice(notice_);
   return false;
+}
+
+/// Prepares what a viewer has asked for since the last look, if one has; tells whether it could.
+bool NextRun::prepare_ordered() {
+  const auto order = session_->shared()->restart_order_after(last_order_);
+  if (!order) return false;
+  last_order_ = order->number;
+  scene::logger().info("A viewer asks for {}.",
+                       order->scene.empty() ? "the run from its first tick" : order->scene);
+  return prepare(order->scene.empty() ? scene_ : std::filesystem::path(order->scene));
+}
+
+/// Prepares the scene once more if its files have changed; tells whether it could.
+bool NextRun::prepare_changed() {
+  if (!reload_ || !files_.step()) return false;
+  if (files_.as_at_first()) {  // what runs lies there again
+    session_->shared()->set_notice("");
+    return false;
+  }
+  scene::logger().info("{} or its arm's file has changed.", scene_.string());
+  return prepare(scene_);
+}
+
+void NextRun::hear_pace() {
+  loop_ = session_->shared()->loop_asked();
+  speed_ = session_->shared()->speed_wanted().value_or(speed_);
 }
 
 void NextRun::step(bool stop) {
   if (stop) end_.store(true);
   if (session_ == nullptr || end_.load()) return;
-  SharedRun& shared = *session_->shared();
-  loop_ = shared.loop_asked();
-  speed_ = shared.speed_wanted().value_or(speed_);
-  if (const auto order = shared.restart_order_after(last_order_)) {
-    last_order_ = order->number;
-    scene::logger().info("A viewer asks for {}.",
-                         order->scene.empty() ? "the run from its first tick" : order->scene);
-    if (prepare(order->scene.empty() ? scene_ : std::filesystem::path(order->scene))) return;
-  }
-  if (!reload_ || !files_.step()) return;
-  if (files_.as_at_first()) {  // what runs lies there again
-    shared.set_notice("");
-    return;
-  }
-  scene::logger().info("{} or its arm's file has changed.", scene_.string());
-  prepare(scene_);
+  hear_pace();
+  if (!prepare_ordered() && !prepare_changed()) return;
+  session_->shared()->close();
+  prepare_ordered();  // what was asked while the other was prepared
+  end_.store(true);
 }
 
 std::unique_ptr<Session> NextRun::take(driver::ServoEnd end, bool stop) {
   if (stop || session_ == nullptr) return nullptr;
-  loop_ = session_->shared()->loop_asked();
+  SharedRun& shared = *session_->shared();
+  shared.close();
+  hear_pace();
+  if (shared.stop_asked()) return nullptr;
   // After a fault somebody is to look first.
+  const bool fault = end == driver::ServoEnd::kFault;
+  if (fault && shared.restart_order_after(last_order_)) {
+    shared.set_notice("The run is not begun anew: it has ended by a fault, look at that first.");
+  }
+  if (!fault) prepare_ordered();
+  pause_ = end == driver::ServoEnd::kDone && shared.pause_asked();
   if (!next_ && loop_ && end == driver::ServoEnd::kDone && !prepare(scene_)) return nullptr;
   session_ = nullptr;
   return std::move(next_);

@@ -34,16 +34,21 @@ class NextRun {
   /// then nothing here does anything.
   void begin(Session& session);
   /// Looks once, about ten times a second: what is asked for is prepared, or the viewers are told
-  /// why not. `stop`: the run shall end and nothing shall come after it.
+  /// why not. As soon as it is, the run is closed to what viewers ask (SharedRun::close): they ask
+  /// the next one. `stop`: the run shall end and nothing shall come after it.
   void step(bool stop);
   /// Returns the flag that ends the run that is served.
   const std::atomic<bool>& ended() const noexcept { return end_; }
-  /// Returns what to run next, after the run has ended by `end`: what was prepared, or the same
-  /// scene once more where it loops. Null: nothing. What cannot be prepared is told in the log.
+  /// Returns what to run next, after the run has ended by `end`: what was prepared, what a viewer
+  /// has asked for last, or the same scene once more where it loops. Null: nothing. What cannot be
+  /// prepared is told in the log, and to the viewers. The run is closed to what viewers ask.
   std::unique_ptr<Session> take(driver::ServoEnd end, bool stop);
 
  private:
   bool prepare(const std::filesystem::path& scene);
+  bool prepare_ordered();
+  bool prepare_changed();
+  void hear_pace();
 
   Prepare prepare_;
   bool reload_;
@@ -54,6 +59,8 @@ class NextRun {
   FileWatch files_;
   std::uint64_t last_order_ = 0;
   std::unique_ptr<Session> next_;
+  bool pause_ = false;  // asked of a run that ended by itself, and of what is next
+  std::string notice_;  // why what was asked for last is not what is next; empty: it is
   std::atomic<bool> end_{false};
 };
 

@@ -19,6 +19,14 @@ std::string SharedReader::why_real() const {
          "arm begins a run.";
 }
 
+driver::Result<void> SharedReader::heard() const {
+  // Pairs with SharedRun::close: of a request and the closing, one of the two sides sees the other.
+  std::atomic_thread_fence(std::memory_order_seq_cst);
+  if (live_->closed.load() != 1) return {};
+  return driver::Error{
+      "The run has just ended and hears nothing more; if it begins anew, ask again in a moment."};
+}
+
 std::string SharedReader::why_no_restart() const {
   if (std::string real = why_real(); !real.empty()) return real;
   if (scene_.restarts) return {};
@@ -45,18 +53,20 @@ std::string SharedReader::why_no_speed() const {
 
 driver::Result<void> SharedReader::ask_steps(std::uint64_t ticks) {
   if (std::string why = why_no_step(); !why.empty()) return driver::Error{why};
+  if (auto now = heard(); !now) return now;
   if (state() != RunState::kPaused) {
     return driver::Error{"Single ticks are for a run that is paused; pause it first."};
   }
   live_->requests.steps.fetch_add(std::clamp<std::uint64_t>(ticks, 1, kStepsMost));
-  return {};
+  return heard();
 }
 
 driver::Result<void> SharedReader::ask_speed(double speed) {
   if (std::string why = why_no_speed(); !why.empty()) return driver::Error{why};
+  if (auto now = heard(); !now) return now;
   if (std::isnan(speed)) return driver::Error{"A speed is a number from 0.1 to 4."};
   live_->requests.speed.store(std::clamp(speed, kSpeedLeast, kSpeedMost));
-  return {};
+  return heard();
 }
 
 double SharedReader::speed_asked() const noexcept {
@@ -66,6 +76,7 @@ double SharedReader::speed_asked() const noexcept {
 
 driver::Result<void> SharedReader::ask_restart(const std::string& scene) {
   if (std::string why = why_no_restart(); !why.empty()) return driver::Error{why};
+  if (auto now = heard(); !now) return now;
   SharedRestart order;
   if (scene.size() >= order.scene.size()) {
     return driver::Error{"The path of the scene is too long; copy the file elsewhere."};
@@ -76,13 +87,14 @@ driver::Result<void> SharedReader::ask_restart(const std::string& scene) {
   std::copy(scene.begin(), scene.end(), order.scene.begin());
   live_->requests.restart.store(order);
   end_turn();
-  return {};
+  return heard();
 }
 
 driver::Result<void> SharedReader::ask_loop(bool loop) {
   if (std::string why = why_no_restart(); !why.empty()) return driver::Error{why};
+  if (auto now = heard(); !now) return now;
   live_->requests.loop.store(loop ? 1 : 0);
-  return {};
+  return heard();
 }
 
 }  // namespace thimble::session
