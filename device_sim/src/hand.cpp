@@ -9,7 +9,7 @@ namespace thimble::device_sim {
 Eigen::Vector3d Hand::at(std::int64_t time_ns) noexcept {
   last_ns_ = time_ns;
   const std::int64_t own_ns = own_time_ns(time_ns);
-  const Eigen::Vector3d tremor = tremor_.at(static_cast<double>(own_ns) * 1e-9);
+  const Eigen::Vector3d tremor = tremor_.at(own_ns);
   if (!led_) return path_.at(static_cast<double>(own_ns - begin_ns_) * 1e-9) + tremor;
   if (own_ns > led_ns_) approach(static_cast<double>(own_ns - led_ns_) * 1e-9);
   led_ns_ = own_ns;

@@ -10,7 +10,8 @@ namespace {
 /// Finds where the hand wants the tip at the beginning.
 Eigen::Vector3d wanted_first(const HandPath& path, const Tremor& tremor) {
   HandPath way = path;
-  return way.at(0) + tremor.at(0);
+  Tremor first = tremor;
+  return way.at(0) + first.at(0);
 }
 
 bool needs_drive_train(const SimulatedArmSettings& settings) {

@@ -42,16 +42,42 @@ Tremor::Tremor(const HandSettings& hand, std::uint64_t seed)
   }
 }
 
-Eigen::Vector3d Tremor::at(double time) const noexcept {
+Eigen::Vector3d Tremor::at(std::int64_t time_ns) noexcept {
   if (still_) return Eigen::Vector3d::Zero();
-  Eigen::Vector3d sine, cosine;
-  for (int wave = 0; wave < 3; ++wave) {
-    const double angle = angular_frequencies_[wave] * time;
-    const math::SineCosine both = math::sin_cos(angle);
-    sine[wave] = both.sine;
-    cosine[wave] = both.cosine;
+  if (time_ns != time_ns_) {
+    const std::int64_t step_ns = time_ns - time_ns_;
+    time_ns_ = time_ns;
+    if (step_ns == step_ns_ && turns_left_ > 0) {
+      turn();
+    } else {
+      compute(step_ns);
+    }
   }
-  return sines_ * sine + cosines_ * cosine;
+  return sines_ * sine_ + cosines_ * cosine_;
+}
+
+void Tremor::turn() noexcept {
+  const Eigen::Vector3d sine = sine_.cwiseProduct(step_cosine_) + cosine_.cwiseProduct(step_sine_);
+  cosine_ = cosine_.cwiseProduct(step_cosine_) - sine_.cwiseProduct(step_sine_);
+  sine_ = sine;
+  --turns_left_;
+}
+
+// The angle of a step is worth computing where the step comes again.
+void Tremor::compute(std::int64_t step_ns) noexcept {
+  const bool again = step_ns == step_ns_;
+  step_ns_ = step_ns;
+  turns_left_ = again ? kTurns : 0;
+  for (int wave = 0; wave < 3; ++wave) {
+    const double w = angular_frequencies_[wave];
+    const math::SineCosine now = math::sin_cos(w * (static_cast<double>(time_ns_) * 1e-9));
+    sine_[wave] = now.sine;
+    cosine_[wave] = now.cosine;
+    if (!again) continue;
+    const math::SineCosine step = math::sin_cos(w * (static_cast<double>(step_ns) * 1e-9));
+    step_sine_[wave] = step.sine;
+    step_cosine_[wave] = step.cosine;
+  }
 }
 
 }  // namespace thimble::device_sim

@@ -13,6 +13,8 @@ namespace {
 
 using support::refuses;
 
+constexpr std::int64_t kTick = 1'000'000;  // ns
+
 HandSettings tremulous(double amplitude) {
   HandSettings hand;
   hand.tremor_amplitude = amplitude;
@@ -21,9 +23,9 @@ HandSettings tremulous(double amplitude) {
 }
 
 TEST(Tremor, NeverExceedsItsAmplitudeAndComesNearIt) {
-  const Tremor tremor = Tremor::make(tremulous(300e-6), 1).value();
+  Tremor tremor = Tremor::make(tremulous(300e-6), 1).value();
   Eigen::Vector3d largest(0, 0, 0);
-  for (int k = 0; k < 200000; ++k) largest = largest.cwiseMax(tremor.at(k * 1e-3).cwiseAbs());
+  for (int k = 0; k < 200000; ++k) largest = largest.cwiseMax(tremor.at(k * kTick).cwiseAbs());
   for (int axis = 0; axis < 3; ++axis) {
     EXPECT_LE(largest[axis], 300e-6 * (1 + 1e-12));
     EXPECT_GT(largest[axis], 0.9 * 300e-6);
@@ -31,7 +33,7 @@ TEST(Tremor, NeverExceedsItsAmplitudeAndComesNearIt) {
 }
 
 TEST(Tremor, KeepsItsPowerBetweenEightAndTwelveHertz) {
-  const Tremor tremor = Tremor::make(tremulous(1), 2).value();
+  Tremor tremor = Tremor::make(tremulous(1), 2).value();
   double inside = 0, outside = 0;
   // 100 s hold a whole number of periods of all three sines (8.3, 10 and 11.9 Hz), so no power
   // leaks.
@@ -39,7 +41,7 @@ TEST(Tremor, KeepsItsPowerBetweenEightAndTwelveHertz) {
     std::complex<double> sum = 0;
     for (int k = 0; k < 10000; ++k) {
       const double angle = -2 * std::numbers::pi * cycle * k / 10000.0;
-      sum += tremor.at(k * 0.01).x() * std::polar(1e-4, angle);
+      sum += tremor.at(10 * k * kTick).x() * std::polar(1e-4, angle);
     }
     (cycle >= 800 && cycle <= 1200 ? inside : outside) += std::norm(sum);
   }
@@ -48,16 +50,35 @@ TEST(Tremor, KeepsItsPowerBetweenEightAndTwelveHertz) {
 }
 
 TEST(Tremor, DependsOnItsSeedAlone) {
-  const Tremor one = Tremor::make(tremulous(1), 5).value();
-  const Tremor same = Tremor::make(tremulous(1), 5).value();
-  const Tremor other = Tremor::make(tremulous(1), 6).value();
-  EXPECT_EQ(one.at(1.234), same.at(1.234));
-  EXPECT_NE(one.at(1.234), other.at(1.234));
+  Tremor one = Tremor::make(tremulous(1), 5).value();
+  Tremor same = Tremor::make(tremulous(1), 5).value();
+  Tremor other = Tremor::make(tremulous(1), 6).value();
+  EXPECT_EQ(one.at(1234 * kTick), same.at(1234 * kTick));
+  EXPECT_NE(one.at(1234 * kTick), other.at(1234 * kTick));
+}
+
+// By even steps, by uneven ones, by steps that change, held and going back.
+TEST(Tremor, IsTheSameByWhateverStepsItIsAsked) {
+  const Tremor fresh = Tremor::make(tremulous(1), 7).value();
+  Tremor tremor = fresh;
+  std::int64_t time_ns = 0;
+  double worst = 0;
+  for (int k = 0; k < 100000; ++k) {
+    const int part = k / 20000;
+    if (part == 0) time_ns += kTick;
+    if (part == 1) time_ns += kTick / 4;
+    if (part == 2) time_ns += k % 3 == 0 ? 2 * kTick : kTick;
+    if (part == 3) time_ns += k % 100 < 50 ? kTick : 0;
+    if (part == 4) time_ns -= kTick;
+    Tremor once = fresh;
+    worst = std::max(worst, (tremor.at(time_ns) - once.at(time_ns)).norm());
+  }
+  EXPECT_LT(worst, 1e-12);
 }
 
 TEST(Tremor, IsExactlyStillWithoutAmplitude) {
-  const Tremor tremor = Tremor::make(tremulous(0), 1).value();
-  EXPECT_EQ(tremor.at(3.21), Eigen::Vector3d(0, 0, 0));
+  Tremor tremor = Tremor::make(tremulous(0), 1).value();
+  EXPECT_EQ(tremor.at(3210 * kTick), Eigen::Vector3d(0, 0, 0));
 }
 
 TEST(Tremor, RefusesAmplitudesAndFrequenciesOutOfRange) {
