@@ -44,7 +44,7 @@ if [ -n "${THIMBLE_LONG:-}" ]; then
 fi
 # Motors whose current has steps of 0.1 N are not those of the laws: the last line and the exit code tell.
 sed 's/torque_constant: .*/torque_constant: [2.34, 2.34, 2.34]/' "$arm" >coarse_motors.yaml
-expect 5 '^NOT MET: .* of 24 figures: agreement.edge_with_exact_map = .*at B = ' \
+expect 5 '^NOT MET: .* of 28 figures: agreement.edge_with_exact_map = .*at B = ' \
   "$thimble" study stability --arm coarse_motors.yaml --coarse --out unmet
 
 # Random scenes: none may break a promise.
