@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <memory>
+#include <optional>
 
 #include "share/shared_run.h"
 #include "support/scratch.h"
@@ -83,7 +84,7 @@ TEST(RunButtons, AreDrawnForAnyRunAndTellWhyAPhysicalArmRefuses) {
     EXPECT_EQ(buttons.take_told().find("physical arm (polhem_1)") != std::string::npos, real);
     EXPECT_EQ(run->restart_order_after(0).has_value(), !real);
     buttons.take_key(',', false, false, *reader);
-    EXPECT_EQ(run->speed_wanted(), real ? 1 : 1 / 1.25);
+    EXPECT_EQ(run->speed_wanted(), real ? std::nullopt : std::optional(1 / 1.25));
     buttons.take_key('L', false, false, *reader);
     EXPECT_EQ(run->loop_asked(), !real);
     static_cast<void>(buttons.take_told());
