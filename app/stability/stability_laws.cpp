@@ -226,11 +226,13 @@ double stiffness_edge(SampledWall wall) {
     // Written so that NaN grows.
     return !(growth_per_tick(wall) < 1);
   };
+  const double band = wall.cable_stiffness > 0 ? 1.02 * limit_by_phase(wall) : 0;
   double low = 0, high = 1;  // N/m
   if (grows(high)) return 0;
   while (high < 1e9 && !grows(high)) {
     low = high;
     high *= 2;
+    if (low < band && band < high && grows(band)) high = band;
   }
   while (high - low > 1e-6 * high) {
     const double middle = 0.5 * (low + high);

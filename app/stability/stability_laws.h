@@ -71,8 +71,10 @@ double growth_per_tick(const SampledWall& wall);
 /// `velocity_corner` are not looked at. 0 where there is none.
 double limit_by_phase(const SampledWall& wall);
 
-/// Finds the largest stiffness for which the wall does not grow, N/m, by bisection to 1e-6 of it;
-/// 0 if even 1 N/m grows. `wall.stiffness` is not looked at.
+/// Finds the largest stiffness up to which the wall does not grow, N/m, by bisection to 1e-6 of
+/// it; 0 if even 1 N/m grows. Behind a cable a stiffer wall may rest again: a narrow band of
+/// stiffness that grows is looked for where `limit_by_phase` has it begin. `wall.stiffness` is not
+/// looked at.
 double stiffness_edge(SampledWall wall);
 
 }  // namespace thimble::app

@@ -174,6 +174,22 @@ TEST(SampledWall, IsShiftedByACableThatStretchesAsTheLawOfTwoMassesSays) {
   }
 }
 
+// From 4.4 to 7.1 kN/m the motor oscillates against the tip; up to 10.2 kN/m it rests again.
+TEST(SampledWall, BehindACableGrowsFromItsFirstBandOn) {
+  SampledWall wall{.mass = 0.7 * 0.075,
+                   .viscous = 1,
+                   .period = 0.001,
+                   .cable_stiffness = 9441,
+                   .cable_damping = 3,
+                   .rotor_mass = 0.3 * 0.075};
+  const double edge = stiffness_edge(wall);
+  EXPECT_NEAR(edge / limit_by_phase(wall), 1, 0.01);
+  wall.stiffness = 1.3 * edge;
+  EXPECT_GT(growth_per_tick(wall), 1);
+  wall.stiffness = 2 * edge;
+  EXPECT_LT(growth_per_tick(wall), 1);
+}
+
 TEST(SampledWall, LosesWhatALowPassOnItsVelocityCosts) {
   // B = 2 N s/m, simulated [PHYSICS 1.1]; the exact map agrees within 0.3 %.
   SampledWall wall{.mass = kMass, .viscous = kViscous, .damping = 2, .period = 0.001};
