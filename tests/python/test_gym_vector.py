@@ -77,7 +77,7 @@ def test_each_arm_is_to_the_bit_what_it_is_alone(scene):
     envs = thimble.gym.TouchVectorEnv(scene, COUNT, lightly_all, terminated=deep_all, **common)
     together = told_together(envs, 20, steps)
     assert together == alone
-    assert any(True in one[3::5] for one in alone) and any(True in one[4::5] for one in alone)  # both kinds of ends
+    assert any(True in one[4::5] for one in alone) and any(True in one[5::5] for one in alone)  # both kinds of ends
     assert told_together(envs, 20, steps) == alone  # and again
 
 

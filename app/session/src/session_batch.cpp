@@ -55,11 +55,12 @@ void SessionBatch::step(std::span<const std::uint32_t> ticks, std::span<const Ei
 }
 
 void SessionBatch::step_one(std::size_t i, std::uint32_t ticks) noexcept {
+  if (ticks == 0) return;
   Session& run = *runs_[i];
   for (std::uint32_t k = 0; k < ticks; ++k) {
     if (run.step()) break;
   }
-  if (ticks > 0) run.newest().load(newest_[i]);
+  run.newest().load(newest_[i]);
 }
 
 driver::Result<void> SessionBatch::restart(std::size_t i, std::uint64_t seed) {
