@@ -203,34 +203,35 @@ std::optional<faces::RosWords> topics_of(const py::object& asked) {
 
 void bind_run(py::module_& core) {
   py::class_<HeldRun>(core, "Run")
-      .def(
-          py::init([](const std::string& scene, const std::string& arm, const std::string& device,
-                      bool agreed, bool unchecked, bool real_time, std::optional<double> seconds,
-                      std::optional<std::uint64_t> seed, const std::string& quality,
-                      const std::string& record, const std::string& firmware, const py::object& law,
-                      bool homed, bool no_real_time, const py::object& ros2) {
-            return std::make_unique<HeldRun>(RunOptions{.scene = scene,
-                                                        .arm_file = arm,
-                                                        .device = device,
-                                                        .unchecked = unchecked,
-                                                        .agreed = agreed,
-                                                        .real_time = real_time,
-                                                        .seconds = seconds,
-                                                        .seed = seed,
-                                                        .quality = quality,
-                                                        .record = record,
-                                                        .firmware = firmware,
-                                                        .homed = homed,
-                                                        .topics = topics_of(ros2),
-                                                        .no_real_time = no_real_time},
-                                             law);
-          }),
-          py::arg("scene"), py::kw_only(), py::arg("arm") = "", py::arg("device") = "sim",
-          py::arg("agreed") = false, py::arg("unchecked") = false, py::arg("real_time") = false,
-          py::arg("seconds") = py::none(), py::arg("seed") = py::none(),
-          py::arg("quality") = "normal", py::arg("record") = "", py::arg("firmware") = "",
-          py::arg("law") = py::none(), py::arg("homed") = false, py::arg("no_real_time") = false,
-          py::arg("ros2") = py::none())
+      .def(py::init([](const std::string& scene, const std::string& arm, const std::string& device,
+                       bool agreed, bool unchecked, bool real_time, std::optional<double> seconds,
+                       std::optional<std::uint64_t> seed, const std::string& quality,
+                       const std::string& record, const std::string& firmware,
+                       const py::object& law, bool homed, bool no_real_time, const py::object& ros2,
+                       std::shared_ptr<scene::SharedMeshes> meshes) {
+             return std::make_unique<HeldRun>(RunOptions{.scene = scene,
+                                                         .arm_file = arm,
+                                                         .device = device,
+                                                         .unchecked = unchecked,
+                                                         .agreed = agreed,
+                                                         .real_time = real_time,
+                                                         .seconds = seconds,
+                                                         .seed = seed,
+                                                         .quality = quality,
+                                                         .record = record,
+                                                         .firmware = firmware,
+                                                         .homed = homed,
+                                                         .topics = topics_of(ros2),
+                                                         .no_real_time = no_real_time,
+                                                         .meshes = std::move(meshes)},
+                                              law);
+           }),
+           py::arg("scene"), py::kw_only(), py::arg("arm") = "", py::arg("device") = "sim",
+           py::arg("agreed") = false, py::arg("unchecked") = false, py::arg("real_time") = false,
+           py::arg("seconds") = py::none(), py::arg("seed") = py::none(),
+           py::arg("quality") = "normal", py::arg("record") = "", py::arg("firmware") = "",
+           py::arg("law") = py::none(), py::arg("homed") = false, py::arg("no_real_time") = false,
+           py::arg("ros2") = py::none(), py::arg("meshes") = py::none())
       .def("topics_report", [](const HeldRun& held) { return held.run->topics_report(); })
       .def("run", &run_all)
       .def("step", &step_once, py::arg("hand") = py::none())

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "bind_batch.h"
 #include "bind_run.h"
 #include "files/kept_scene.h"
 #include "simulator_session.h"
@@ -159,6 +160,7 @@ PYBIND11_MODULE(_core, core) {
     const session::Recording recording = read_from(path, session::read_recording(path));
     return py::make_tuple(info_of(recording.info), array_of(recording.ticks), recording.complete);
   });
+  bind_batch(core);
   bind_run(core);
   bind_simulator(core);
 }

@@ -40,6 +40,8 @@ void tell(const std::vector<std::string>& sentences) {
   }
 }
 
+}  // namespace
+
 session::SessionOptions session_options(const RunOptions& options) {
   session::SessionOptions asked;
   if (options.seconds && !(*options.seconds >= 1e-3 && *options.seconds <= kSecondsMax)) {
@@ -90,12 +92,11 @@ session::SessionOptions session_options(const RunOptions& options) {
   asked.seed = options.seed;
   asked.firmware = options.firmware;
   asked.record = options.record;
+  asked.meshes = options.meshes;
   asked.rate_factor = scene::rate_factor_of(*quality);
   asked.adjust = [quality](scene::Scene& scene) { scene::apply_quality(*quality, scene); };
   return asked;
 }
-
-}  // namespace
 
 SceneRun::SceneRun(const RunOptions& options) {
   const std::filesystem::path scene = named_by(scene::find_scene(options.scene));

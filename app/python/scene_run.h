@@ -11,6 +11,7 @@
 #include "faces/ros2/ros_words.h"
 #include "thimble/driver/real_time.h"
 #include "thimble/driver/servo_loop.h"
+#include "thimble/scene/shared_meshes.h"
 #include "thimble/session/servo_thread.h"
 #include "thimble/session/session.h"
 
@@ -24,15 +25,19 @@ struct RunOptions {
   bool unchecked = false;      ///< Whole force on a real arm without a passed feel check.
   bool agreed = false;         ///< Whether the user agreed that a real arm gets forces.
   bool real_time = false;      ///< By the time of the world; always so on a real arm.
-  std::optional<double> seconds;
-  std::optional<std::uint64_t> seed;
+  std::optional<double> seconds = {};
+  std::optional<std::uint64_t> seed = {};
   std::string quality = "normal";
-  std::string record;    ///< HDF5 file; empty: none.
-  std::string firmware;  ///< For a real arm that needs some.
-  bool homed = false;    ///< A real arm was in its home pose when it got power: do not ask for it.
+  std::string record = {};    ///< HDF5 file; empty: none.
+  std::string firmware = {};  ///< For a real arm that needs some.
+  bool homed = false;  ///< A real arm was in its home pose when it got power: do not ask for it.
   std::optional<faces::RosWords> topics = {};  ///< Of ROS 2; in real time only.
   bool no_real_time = false;  ///< Use a real arm though the loop gets no real-time priority.
+  std::shared_ptr<scene::SharedMeshes> meshes = {};  ///< That it shares with others; null: its own.
 };
+
+/// Returns what a session is opened with. Throws ThimbleError, or ArgumentError, with a sentence.
+session::SessionOptions session_options(const RunOptions& options);
 
 /// A session as Python holds it: all at once, tick by tick, or in real time on a thread of its
 /// own. Every function but those of `driver::` throws ThimbleError with a sentence for the

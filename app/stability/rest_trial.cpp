@@ -10,6 +10,7 @@
 
 #include "stability/signal.h"
 #include "thimble/scene/arm_simulation.h"
+#include "thimble/scene/shared_meshes.h"
 #include "thimble/session/session.h"
 
 namespace thimble::app {
@@ -64,9 +65,10 @@ std::vector<Stretch> prolong_rests(scene::Scene& scene) {
 class Run {
  public:
   /// Runs the scene; the hand is held still for kSettling at each of `stops` (ticks, growing).
-  static driver::Result<Run> make(const scene::Scene& scene,
-                                  const std::vector<std::size_t>& stops) {
-    session::SessionOptions options{.adjust = [&](scene::Scene& read) { read = scene; }};
+  static driver::Result<Run> make(const scene::Scene& scene, const std::vector<std::size_t>& stops,
+                                  const std::shared_ptr<scene::SharedMeshes>& meshes) {
+    session::SessionOptions options{.adjust = [&](scene::Scene& read) { read = scene; },
+                                    .meshes = meshes};
     options.duration = scene.duration + kSettling * static_cast<double>(stops.size());
     options.arm_file = scene.arm_file;
     auto opened = session::Session::open(scene.file, options);
@@ -168,13 +170,13 @@ const Rest* RestTrial::worst() const {
   return most == rests.end() ? nullptr : &*most;
 }
 
-driver::Result<RestTrial> try_rests(const scene::Scene& scene,
-                                    const device_sim::HandSettings& hand) {
+driver::Result<RestTrial> try_rests(const scene::Scene& scene, const device_sim::HandSettings& hand,
+                                    const std::shared_ptr<scene::SharedMeshes>& meshes) {
   scene::Scene resting = scene;
   resting.arm.simulated.hand = hand;
   scene::Scene stopped = resting;
   const std::vector<Stretch> stretches = prolong_rests(resting);
-  auto run = Run::make(resting, {});
+  auto run = Run::make(resting, {}, meshes);
   if (!run) return run.error();
   RestTrial trial;
   const auto tick_of = [&](double time) {
@@ -192,7 +194,7 @@ driver::Result<RestTrial> try_rests(const scene::Scene& scene,
   // Nowhere does the path rest on anything: stop the hand in what it touches.
   const auto stops = deepest_ticks(scene, run->rows());
   if (stops.empty()) return trial;
-  auto again = Run::make(stopped, stops);
+  auto again = Run::make(stopped, stops, meshes);
   if (!again) return again.error();
   const auto settling = static_cast<std::size_t>(kSettling * scene.rate);
   for (std::size_t i = 0; i < stops.size(); ++i) {

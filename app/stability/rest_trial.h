@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -7,6 +8,10 @@
 #include "thimble/driver/fault.h"
 #include "thimble/driver/result.h"
 #include "thimble/scene/scene_file.h"
+
+namespace thimble::scene {
+class SharedMeshes;
+}
 
 namespace thimble::app {
 
@@ -34,9 +39,9 @@ struct RestTrial {
 /// Runs a scene with its simulated arm and a hand of these constants on the virtual clock, and
 /// watches the hand at rest: wherever its path holds for 0.3 s or more, and at its end, each for
 /// 1.6 s. If none of these rests touches anything, the hand is stopped where it is deepest in each
-/// object that it touches, and watched there. The error says why the scene cannot be run.
-/// Real-time: never from the servo thread.
-driver::Result<RestTrial> try_rests(const scene::Scene& scene,
-                                    const device_sim::HandSettings& hand);
+/// object that it touches, and watched there. Trials of one scene may share `meshes`. The error
+/// says why the scene cannot be run. Real-time: never from the servo thread.
+driver::Result<RestTrial> try_rests(const scene::Scene& scene, const device_sim::HandSettings& hand,
+                                    const std::shared_ptr<scene::SharedMeshes>& meshes = nullptr);
 
 }  // namespace thimble::app

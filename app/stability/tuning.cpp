@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <utility>
 
 #include "energy_choice.h"
 #include "stability/rest_trial.h"
 #include "stability/rest_warnings.h"
 #include "stability/wall_trial.h"
+#include "thimble/scene/shared_meshes.h"
 
 namespace thimble::app {
 namespace {
@@ -80,7 +82,8 @@ std::string advice(const scene::Scene& scene, const scene::SceneObject& object,
 /// Returns how the hand rests on what the scene has, and how hands of other firmness would.
 void tell_rests(const scene::Scene& scene, TuneResult& result) {
   const device_sim::HandSettings& own = scene.arm.simulated.hand;
-  const auto trial = try_rests(scene, own);
+  const auto meshes = std::make_shared<scene::SharedMeshes>();  // of all hands
+  const auto trial = try_rests(scene, own, meshes);
   if (!trial) {
     result.text += fmt::format("Rest      not simulated: {}\n", trial.error().message);
     return;
@@ -118,7 +121,7 @@ void tell_rests(const scene::Scene& scene, TuneResult& result) {
     others.emplace_back("the worst of those", carried.worst_hand);
   }
   for (const auto& [words, hand] : others) {
-    const auto found = try_rests(scene, hand);
+    const auto found = try_rests(scene, hand, meshes);
     if (!found) continue;
     const Rest* const most = found->worst();
     if (most == nullptr) continue;

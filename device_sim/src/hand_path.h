@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -9,7 +11,8 @@
 namespace thimble::device_sim {
 
 /// Where the hand wants to be over time: points joined by straight lines. Before the first point
-/// it waits at the first, after the last point at the last. Frame B: base of the arm.
+/// it waits at the first, after the last point at the last. Frame B: base of the arm. Copies share
+/// the points.
 class HandPath {
  public:
   /// One point of the path.
@@ -25,12 +28,14 @@ class HandPath {
   /// Finds the wanted point (m) at a time (s). Fast when times asked for grow. Real-time: safe.
   Eigen::Vector3d at(double time) noexcept;
 
-  const std::vector<Point>& points() const noexcept { return points_; }  ///< Lists its points.
+  std::span<const Point> points() const noexcept { return points_; }  ///< Lists its points.
 
  private:
-  explicit HandPath(std::vector<Point> points) : points_(std::move(points)) {}
+  explicit HandPath(std::vector<Point> points)
+      : held_(std::make_shared<const std::vector<Point>>(std::move(points))), points_(*held_) {}
 
-  std::vector<Point> points_;
+  std::shared_ptr<const std::vector<Point>> held_;
+  std::span<const Point> points_;  // the same, without a way round
   std::size_t segment_ = 0;  // where the last question fell
 };
 

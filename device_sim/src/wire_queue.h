@@ -41,11 +41,8 @@ class WireQueue {
   /// Sends bytes that will arrive at `due_ns`; if that lies before the time of the frame sent last,
   /// they arrive with that one.
   void push(std::span<const std::byte> bytes, std::int64_t due_ns) noexcept {
-    if (count_ == kFrames) {
-      pop();
-      ++dropped_;
-    }
-    WireFrame& frame = frames_[(first_ + count_) % kFrames];
+    if (count_ == room_) make_room();
+    WireFrame& frame = frames_[(first_ + count_) & (room_ - 1)];
     frame.due_ns = due_ns;
     frame.size = std::min(bytes.size(), WireFrame::kCapacity);
     std::copy_n(bytes.begin(), frame.size, frame.bytes.begin());
@@ -58,17 +55,33 @@ class WireQueue {
     --count_;
     // An empty queue begins anew: a wire without delay writes to one frame, which stays in the
     // cache.
-    first_ = count_ == 0 ? 0 : (first_ + 1) % kFrames;
+    first_ = count_ == 0 ? 0 : (first_ + 1) & (room_ - 1);
   }
 
   /// Returns how many frames were lost because too many were in flight.
   std::uint64_t dropped() const noexcept { return dropped_; }
 
  private:
-  std::array<WireFrame, kFrames> frames_{};
+  [[gnu::noinline, gnu::cold]] void make_room() noexcept {
+    if (room_ == kFrames) {
+      pop();
+      ++dropped_;
+      return;
+    }
+    const auto begin = frames_.begin();
+    std::rotate(begin, begin + static_cast<std::ptrdiff_t>(first_),
+                begin + static_cast<std::ptrdiff_t>(room_));
+    first_ = 0;
+    room_ *= 2;
+  }
+
   std::size_t first_ = 0;
   std::size_t count_ = 0;
+  // Frames that are gone round: no more than were ever in flight, so that a wire with delay stays
+  // in the cache too. A power of two.
+  std::size_t room_ = 4;
   std::uint64_t dropped_ = 0;
+  std::array<WireFrame, kFrames> frames_{};
 };
 
 }  // namespace thimble::device_sim

@@ -7,9 +7,9 @@
 
 #include "body/dent/bendable_polygon.h"
 #include "body/dent/dented_touch.h"
-#include "mesh/repair/sound_mesh.h"
 #include "mesh/smooth_normals.h"
 #include "shape_object.h"
+#include "still_surface.h"
 #include "touch_of.h"
 #include "track/blended.h"
 #include "track/curved_depth.h"
@@ -24,12 +24,6 @@ namespace thimble::render {
 namespace {
 
 using Built = driver::Result<std::unique_ptr<ObjectTouch>>;
-
-driver::Error apart(const ContactChoice& choice, const std::string& why) {
-  return driver::Error{"The tracker \"" +
-                       std::string(kTrackerNames[static_cast<std::size_t>(choice.tracker)]) +
-                       "\" " + why};
-}
 
 using Normals = std::shared_ptr<const SmoothNormals>;
 
@@ -72,99 +66,44 @@ Built tracked_touch(Contact contact, const ChosenShading& shading, bool curved,
                   surface);
 }
 
-Built packed_touch(const TriangleMesh& mesh_W, const ContactChoice& choice,
-                   const SurfaceChoice& surface) {
-  if (choice.blending.value_or(BlendingChoice::kPhong) != BlendingChoice::kPhong ||
-      !choice.curved_depth.value_or(true)) {
-    return apart(choice,
-                 "always feels smooth (phong, curved depth): leave blending and curved_depth away, "
-                 "or take the tracker \"offset\" or \"edge_planes\".");
-  }
-  if (choice.normals.value_or(NormalWeights::kAngle) != NormalWeights::kAngle) {
-    return apart(choice,
-                 "has the mean of the faces by their angles at its corners: leave normals away, or "
-                 "take the tracker \"offset\".");
-  }
-  // Looks at the whole mesh as well, so that faults are told as for every other way.
-  auto looked = look_at_mesh_beside(mesh_W, true);
-  PackedSurfaceOptions options;
-  if (choice.crease_angle) options.crease_angle = *choice.crease_angle;
-  auto packed = PackedSurface::build(mesh_W, options);
-  const auto sound = looked.get();
-  if (!sound) return sound.error();
-  if (sound->turned) packed = PackedSurface::build(*sound->turned, options);
-  if (!packed) return packed.error();
-  return touch_of(MemoryContact(std::move(packed).value(), choice.search), surface);
-}
-
 template <class Contact>
-Built mesh_touch(const TriangleMesh& mesh_W, const ContactChoice& choice,
+Built mesh_touch(const StillSurface& still, const ContactChoice& choice,
                  const SurfaceChoice& surface) {
   // This tracker walks on the normals themselves, and shares them with what is felt.
   constexpr bool kSmooth = std::is_same_v<Contact, OffsetContact>;
-  const BlendingChoice blending =
-      choice.blending.value_or(kSmooth ? BlendingChoice::kPhong : BlendingChoice::kFlat);
-  const bool curved = choice.curved_depth.value_or(kSmooth);
-  auto prepared = ContactMesh::build(mesh_W);
-  if (!prepared) return prepared.error();
-  const auto mesh = std::make_shared<const ContactMesh>(std::move(prepared).value());
-  const auto search = make_search(*mesh, choice.search);
-  const bool in_bands =
-      blending == BlendingChoice::kFixedBand || blending == BlendingChoice::kSizedBand;
-  Normals normals;
-  if (kSmooth || curved || blending != BlendingChoice::kFlat) {
-    normals = std::make_shared<const SmoothNormals>(
-        *mesh, choice.crease_angle.value_or(kCreaseAngle),
-        choice.normals.value_or(NormalWeights::kFitted),
-        in_bands ? kHollowCreaseAngleOfBands : kHollowCreaseAngle);
-  }
-  const ChosenShading shading{.blending = blending,
+  const ChosenShading shading{.blending = choice.blending.value_or(kSmooth ? BlendingChoice::kPhong
+                                                                           : BlendingChoice::kFlat),
                               .width = choice.band,
                               .profile = choice.profile.value_or(BlendProfile::kLinear)};
+  const bool curved = choice.curved_depth.value_or(kSmooth);
   if constexpr (kSmooth) {
-    return tracked_touch(Contact(mesh, search, normals), shading, curved, normals, surface);
+    return tracked_touch(Contact(still.mesh, still.search, still.normals), shading, curved,
+                         still.normals, surface);
   } else {
-    return tracked_touch(Contact(mesh, search), shading, curved, normals, surface);
+    return tracked_touch(Contact(still.mesh, still.search), shading, curved, still.normals,
+                         surface);
   }
 }
 
-Built stiff_touch(const TriangleMesh& mesh_W, const ContactChoice& choice,
+Built stiff_touch(const StillSurface& still, const ContactChoice& choice,
                   const SurfaceChoice& surface) {
   switch (choice.tracker) {
     case TrackerChoice::kEdgePlanes:
-      return mesh_touch<MeshContact>(mesh_W, choice, surface);
+      break;
     case TrackerChoice::kNormalProjection:
-      return mesh_touch<TrackedContact<NormalProjectionTracker>>(mesh_W, choice, surface);
+      return mesh_touch<TrackedContact<NormalProjectionTracker>>(still, choice, surface);
     case TrackerChoice::kOffset:
-      return mesh_touch<OffsetContact>(mesh_W, choice, surface);
-    case TrackerChoice::kGodObject: {
-      if (choice.blending.value_or(BlendingChoice::kFlat) != BlendingChoice::kFlat ||
-          choice.curved_depth.value_or(false)) {
-        return apart(choice, "pushes towards its proxy: it goes with the blending \"flat\" only.");
-      }
-      if (choice.normals) return apart(choice, "feels no normals of corners: leave normals away.");
-      auto contact = GodObjectContact::build(mesh_W, {}, choice.search);
-      if (!contact) return contact.error();
-      return touch_of(std::move(contact).value(), surface);
-    }
+      return mesh_touch<OffsetContact>(still, choice, surface);
+    case TrackerChoice::kGodObject:
+      return touch_of(GodObjectContact(still.mesh, still.search), surface);
     case TrackerChoice::kPacked:
-      return packed_touch(mesh_W, choice, surface);
+      return touch_of(MemoryContact(still.packed, still.search), surface);
   }
-  return apart(choice, "is not known.");
+  return mesh_touch<MeshContact>(still, choice, surface);
 }
 
-}  // namespace
-
-Built build_object_touch(const TriangleMesh& mesh_W, const ContactChoice& choice,
-                         const SurfaceChoice& surface) {
-  if (choice.profile && choice.blending != BlendingChoice::kFixedBand &&
-      choice.blending != BlendingChoice::kSizedBand) {
-    return driver::Error{
-        "A profile says how the normal turns within a band: it goes with the blending "
-        "\"fixed_band\" or \"sized_band\" only."};
-  }
-  auto touch = surface.shape.named() ? shaped_touch(mesh_W, choice, surface)
-                                     : stiff_touch(mesh_W, choice, surface);
+/// Puts a dent around an object, if its surface has one.
+Built dented(Built touch, const TriangleMesh& mesh_W, const SurfaceChoice& surface) {
   if (!touch || !surface.dent) return touch;
   std::shared_ptr<const ContactMesh> mesh;
   if (const ContactMesh* touched = (*touch)->mesh()) {
@@ -179,6 +118,24 @@ Built build_object_touch(const TriangleMesh& mesh_W, const ContactChoice& choice
   auto dent = BendablePolygon::build(std::move(mesh), *surface.dent);
   if (!dent) return dent.error();
   return Built(std::make_unique<DentedTouch>(std::move(touch).value(), std::move(dent).value()));
+}
+
+}  // namespace
+
+Built build_object_touch(const StillSurface& still, const TriangleMesh& mesh_W,
+                         const ContactChoice& choice, const SurfaceChoice& surface) {
+  return dented(stiff_touch(still, choice, surface), mesh_W, surface);
+}
+
+Built build_object_touch(const TriangleMesh& mesh_W, const ContactChoice& choice,
+                         const SurfaceChoice& surface) {
+  if (surface.shape.named()) {
+    if (auto fits = check_profile(choice); !fits) return fits.error();
+    return dented(shaped_touch(mesh_W, choice, surface), mesh_W, surface);
+  }
+  const auto still = prepare_still_surface(mesh_W, choice);
+  if (!still) return still.error();
+  return build_object_touch(*still, mesh_W, choice, surface);
 }
 
 }  // namespace thimble::render

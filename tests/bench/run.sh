@@ -1,19 +1,21 @@
 #!/usr/bin/env bash
 # Measures how long a tick takes on this machine, whole and part by part, contact on meshes of many
 # sizes against other libraries where they are installed (Debian: libembree-dev libcgal-dev
-# libfcl-dev), and contact with pages on the disk (640 MB for two minutes); prints tables and writes
+# libfcl-dev), contact with pages on the disk (640 MB for two minutes), and many arms side by side; prints tables and writes
 # figures.json. Figures are reported, never pass criteria.
 #   tests/bench/run.sh [FOLDER]      FOLDER: where to write (default build/bench)
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 folder=${1:-build/bench}
-app/setup.sh release bench_tick bench_contact bench_paged bench_body bench_view
+app/setup.sh release bench_tick bench_batch bench_contact bench_paged bench_body bench_view
 mkdir -p "$folder"
 build/release/tests/bench/bench_tick --benchmark_repetitions=5 \
   --benchmark_enable_random_interleaving=true \
   --benchmark_report_aggregates_only=true \
   --benchmark_out="$folder/bench_tick.json" --benchmark_out_format=json \
   --figures="$folder/figures.json"
+mkdir -p "$folder/batch"
+build/release/tests/bench/bench_batch --figures="$folder/batch/figures.json"
 mkdir -p "$folder/contact"
 build/release/tests/bench/bench_contact --figures="$folder/contact/figures.json"
 mkdir -p "$folder/paged"

@@ -27,6 +27,7 @@ from ._core import ArgumentError, Error
 from ._knobs import Knob, Knobs
 from ._laws import CompiledLaw, Law, LawFunction, compiled_law
 from ._live import Live, open
+from ._meshes import Meshes
 from ._runs import Run, Stepper, run
 from ._scene_text import Scene
 from ._shot import Shot, shot
@@ -44,6 +45,7 @@ __all__ = [
     "Knobs",
     "LawFunction",
     "Live",
+    "Meshes",
     "NamedFile",
     "Recording",
     "Run",

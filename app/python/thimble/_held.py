@@ -12,6 +12,7 @@ from . import _core
 from ._arguments import PathOrName, Vector, number_of, optional_path, path_of, whole_of
 from ._core import ArgumentError
 from ._laws import Law, core_law
+from ._meshes import Meshes, core_meshes
 from ._scene_text import Scene, scene_file
 from ._ticks import Figure, figure_of
 
@@ -117,6 +118,7 @@ def begin(
     homed: bool = False,
     no_real_time: bool = False,
     ros2: Union[None, bool, dict[str, Any]] = None,
+    meshes: Optional[Meshes] = None,
 ) -> _core.Run:
     run = _core.Run(
         scene_file(scene, set, keep=record is not None),
@@ -134,6 +136,7 @@ def begin(
         homed=homed,
         no_real_time=no_real_time,
         ros2=ros2,
+        meshes=core_meshes(meshes),
     )
     for warning in run.warnings():
         warnings.warn(warning, RuntimeWarning, stacklevel=3)

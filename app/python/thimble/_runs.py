@@ -11,6 +11,7 @@ from ._arguments import PathOrName, vector_of
 from ._held import Held, OfArm, Past, begin
 from ._knobs import Knobs
 from ._laws import Law
+from ._meshes import Meshes
 from ._scene_text import Scene
 from ._shot import Shot, Touched
 from ._ticks import Figure, Tick, Ticks
@@ -70,6 +71,7 @@ def run(
     quality: str = "normal",
     record: Optional[PathOrName] = None,
     law: Optional[Law] = None,
+    meshes: Optional[Meshes] = None,
 ) -> Run:
     """Let the simulated hand touch a scene in virtual time, and give what was felt.
 
@@ -88,10 +90,12 @@ def run(
     zero force, the end of the run, and comes out here. A compiled one (:func:`compiled_law`) runs as fast
     as the scene's.
 
+    meshes: :class:`Meshes` that this run shares with others.
+
     Raises Error, with what to do, if scene, arm or mesh cannot be had. A fault of the arm is no
     exception: ``end`` is "fault" then, and the last tick names it.
     """
-    held = begin(scene, set=set, seconds=seconds, seed=seed, arm=arm, quality=quality, record=record, law=law)
+    held = begin(scene, set=set, seconds=seconds, seed=seed, arm=arm, quality=quality, record=record, law=law, meshes=meshes)
     held.run()
     why_not = "it had a force law of its own" if law is not None else ""
     if quality != "normal":
@@ -118,9 +122,10 @@ class Stepper(Held):
         quality: str = "normal",
         record: Optional[PathOrName] = None,
         law: Optional[Law] = None,
+        meshes: Optional[Meshes] = None,
     ) -> None:
         self._run = begin(
-            scene, set=set, seconds=seconds, seed=seed, arm=arm, quality=quality, record=record, law=law
+            scene, set=set, seconds=seconds, seed=seed, arm=arm, quality=quality, record=record, law=law, meshes=meshes
         )
 
     def step(self, hand: Optional[ArrayLike] = None) -> bool:

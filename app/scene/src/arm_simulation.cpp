@@ -36,7 +36,9 @@ device_sim::SimulatedArmSettings settings_of(const ArmFile& file) {
 
 }  // namespace
 
-ArmSimulation::ArmSimulation(const ArmFile& file) : file_(file) {}
+ArmSimulation::ArmSimulation(const ArmFile& file, const device_sim::HandPath& path,
+                             const std::filesystem::path& firmware)
+    : file_(file), firmware_(firmware), path_(std::make_unique<const device_sim::HandPath>(path)) {}
 ArmSimulation::~ArmSimulation() = default;
 
 std::optional<Eigen::Vector3d> joint_angles_at(const ArmFile& file, const Eigen::Vector3d& p_WT) {
@@ -69,12 +71,22 @@ driver::Result<std::unique_ptr<ArmSimulation>> ArmSimulation::make(
                          " has no section 'simulation', so the arm cannot be simulated. Add one "
                          "(app/arms/vintage_phantom.yaml shows it), or plug the arm in."};
   }
-  std::unique_ptr<ArmSimulation> simulation(new ArmSimulation(file));
+  const auto path = path_in_base(hand_W, file);
+  if (!path) return driver::Error{file.name + ": " + path.error().message};
+  return build(file, *path, firmware, seed);
+}
+
+driver::Result<std::unique_ptr<ArmSimulation>> ArmSimulation::another(std::uint64_t seed) const {
+  return build(file_, *path_, firmware_, seed);
+}
+
+driver::Result<std::unique_ptr<ArmSimulation>> ArmSimulation::build(
+    const ArmFile& file, const device_sim::HandPath& path, const std::filesystem::path& firmware,
+    std::uint64_t seed) {
+  std::unique_ptr<ArmSimulation> simulation(new ArmSimulation(file, path, firmware));
   const auto wrong = [&file](const driver::Error& error) {
     return driver::Error{file.name + ": " + error.message};
   };
-  auto path = path_in_base(hand_W, file);
-  if (!path) return wrong(path.error());
   if (file.is<driver::DeltaArm>()) {
     std::vector<std::byte> image;
     if (!firmware.empty()) {
@@ -82,8 +94,8 @@ driver::Result<std::unique_ptr<ArmSimulation>> ArmSimulation::make(
       if (!read) return read.error();
       image = std::move(read).value();
     }
-    auto falcon = device_sim::usb::SimulatedFalcon::make(file.simulated, std::move(path).value(),
-                                                         std::move(image), seed);
+    auto falcon =
+        device_sim::usb::SimulatedFalcon::make(file.simulated, path, std::move(image), seed);
     if (!falcon) return wrong(falcon.error());
     simulation->falcon_ = std::move(falcon).value();
     return simulation;
@@ -91,9 +103,9 @@ driver::Result<std::unique_ptr<ArmSimulation>> ArmSimulation::make(
   const device_sim::SimulatedArmSettings settings = settings_of(file);
   auto arm = file.is<driver::LinkageArm>()
                  ? device_sim::SimulatedArm::make(driver::model_as<driver::LinkageArm>(file.model),
-                                                  settings, std::move(path).value(), seed)
+                                                  settings, path, seed)
                  : device_sim::SimulatedArm::make(driver::model_as<driver::SerialArm>(file.model),
-                                                  settings, std::move(path).value(), seed);
+                                                  settings, path, seed);
   if (!arm) return wrong(arm.error());
   simulation->board_arm_ = std::make_unique<device_sim::SimulatedArm>(std::move(arm).value());
   return simulation;

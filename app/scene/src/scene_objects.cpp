@@ -8,31 +8,38 @@
 #include "body/motion/move_object.h"
 #include "body/motion/shared_body.h"
 #include "build_paged_touch.h"
+#include "mesh_join.h"
 #include "object_mesh.h"
 #include "page/paged_surface.h"
 #include "place_mesh.h"
+#include "still_surface.h"
 #include "thimble/render/build_object_touch.h"
 #include "thimble/render/mesh/check_mesh.h"
+#include "thimble/scene/shared_meshes.h"
 
 namespace thimble::scene {
 namespace {
 
+using MeshPointer = std::shared_ptr<const render::TriangleMesh>;
+
 /// Reads the mesh of every object and puts it into the world (m); a shape has one to be drawn, a
 /// field and a mesh on the disk an empty one.
-driver::Result<std::vector<render::TriangleMesh>> load_meshes(const Scene& scene,
-                                                              std::vector<std::string>& notes) {
-  std::vector<render::TriangleMesh> meshes;
+driver::Result<std::vector<MeshPointer>> load_meshes(const Scene& scene, SharedMeshes& meshes,
+                                                     std::vector<std::string>& notes) {
+  std::vector<MeshPointer> meshes_W;
   for (const SceneObject& object : scene.objects) {
     if (object.shape || object.build_field || object.paged) {
-      meshes.push_back(object.shape ? object.shape->mesh_W : render::TriangleMesh());
+      meshes_W.push_back(
+          meshes.mesh_like(object.shape ? object.shape->mesh_W : render::TriangleMesh()));
       continue;
     }
-    auto loaded = load_object_mesh(object);
+    const auto loaded = meshes.object_mesh(object);
     if (!loaded) return loaded.error();
-    notes.insert(notes.end(), loaded->notes.begin(), loaded->notes.end());
-    meshes.push_back(std::move(loaded->mesh_W));
+    const ObjectMesh& mesh = **loaded;
+    notes.insert(notes.end(), mesh.notes.begin(), mesh.notes.end());
+    meshes_W.emplace_back(*loaded, &mesh.mesh_W);
   }
-  return meshes;
+  return meshes_W;
 }
 
 using Touched = driver::Result<std::unique_ptr<render::ObjectTouch>>;
@@ -66,15 +73,19 @@ driver::Error refused(const SceneObject& object, const render::TriangleMesh& mes
   return driver::Error{name_of(object) + ": " + error.message + remedy_for(object, mesh_W)};
 }
 
-/// Builds the force law of what is touched in memory, as it stands still.
-Touched build_still(const SceneObject& object, const render::TriangleMesh& mesh_W) {
+/// Builds the force law of what is touched in memory, as it stands still. Base points that move
+/// have a mesh and a search of their own.
+Touched build_still(const SceneObject& object, const MeshPointer& mesh_W, SharedMeshes& meshes) {
   const render::SurfaceChoice surface = surface_of(object);
-  return object.shape ? Touched(render::build_primitive_touch(object.shape->shape_W, surface))
-                      : render::build_object_touch(mesh_W, object.contact, surface);
+  if (object.shape) return render::build_primitive_touch(object.shape->shape_W, surface);
+  if (surface.shape.named()) return render::build_object_touch(*mesh_W, object.contact, surface);
+  const auto still = meshes.surface(mesh_W, object.contact);
+  if (!still) return still.error();
+  return render::build_object_touch(**still, *mesh_W, object.contact, surface);
 }
 
 /// Builds the force law of one object that one arm touches.
-Touched build_one(const SceneObject& object, const render::TriangleMesh& mesh_W,
+Touched build_one(const SceneObject& object, const MeshPointer& mesh_W, SharedMeshes& meshes,
                   std::vector<std::shared_ptr<render::PagedSurface>>& pages) {
   if (object.build_field) return object.build_field();
   if (object.paged) {
@@ -84,19 +95,19 @@ Touched build_one(const SceneObject& object, const render::TriangleMesh& mesh_W,
     const render::PagedPlace place = place_pages(pages.back()->file(), object);
     return render::build_paged_touch(pages.back(), place, surface_of(object));
   }
-  auto touch = build_still(object, mesh_W);
+  auto touch = build_still(object, mesh_W, meshes);
   if (touch && object.body.motion) {
-    touch =
-        render::move_object(std::move(touch).value(), mesh_W, *object.body.motion, object.coupling);
+    touch = render::move_object(std::move(touch).value(), *mesh_W, *object.body.motion,
+                                object.coupling);
   }
-  if (!touch) return refused(object, mesh_W, touch.error());
+  if (!touch) return refused(object, *mesh_W, touch.error());
   return touch;
 }
 
 /// Builds the force law of one object on each of several arms: each has its own contact with it,
 /// and all of them the body that moves.
 driver::Result<render::SharedObject> build_shared(const SceneObject& object,
-                                                  const render::TriangleMesh& mesh_W,
+                                                  const MeshPointer& mesh_W, SharedMeshes& meshes,
                                                   std::size_t arms) {
   render::SharedObject shared;
   const bool gives_way = object.body.dent || object.body.shape.named();
@@ -111,58 +122,37 @@ driver::Result<render::SharedObject> build_shared(const SceneObject& object,
       shared.touches.push_back(object.build_field());
       continue;
     }
-    auto touch = build_still(object, mesh_W);
-    if (!touch) return refused(object, mesh_W, touch.error());
+    auto touch = build_still(object, mesh_W, meshes);
+    if (!touch) return refused(object, *mesh_W, touch.error());
     shared.touches.push_back(std::move(touch).value());
   }
   if (!object.body.motion) return shared;
-  auto moved = render::move_shared_object(std::move(shared.touches), mesh_W, *object.body.motion,
+  auto moved = render::move_shared_object(std::move(shared.touches), *mesh_W, *object.body.motion,
                                           object.coupling);
-  if (!moved) return refused(object, mesh_W, moved.error());
+  if (!moved) return refused(object, *mesh_W, moved.error());
   return moved;
-}
-
-/// Adds the triangles of one mesh to another.
-void append(const render::TriangleMesh& mesh, render::TriangleMesh& whole) {
-  const auto first = static_cast<std::int32_t>(whole.vertices.size());
-  whole.vertices.insert(whole.vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
-  for (const auto& [a, b, c] : mesh.triangles) {
-    whole.triangles.push_back({first + a, first + b, first + c});
-  }
-}
-
-/// Cuts one object out of a mesh of several.
-render::TriangleMesh part_of(const render::TriangleMesh& mesh, const MeshPlace& begin,
-                             const MeshPlace& end) {
-  const auto at = [](auto& list, std::size_t i) {
-    return list.begin() + static_cast<std::ptrdiff_t>(i);
-  };
-  render::TriangleMesh part;
-  part.vertices.assign(at(mesh.vertices, begin.vertex), at(mesh.vertices, end.vertex));
-  part.triangles.assign(at(mesh.triangles, begin.triangle), at(mesh.triangles, end.triangle));
-  for (auto& triangle : part.triangles) {
-    for (std::int32_t& vertex : triangle) vertex -= static_cast<std::int32_t>(begin.vertex);
-  }
-  return part;
 }
 
 }  // namespace
 
-driver::Result<std::unique_ptr<SceneObjects>> SceneObjects::build(const Scene& scene) {
+driver::Result<std::unique_ptr<SceneObjects>> SceneObjects::build(
+    const Scene& scene, const std::shared_ptr<SharedMeshes>& meshes) {
+  const auto held = meshes ? meshes : std::make_shared<SharedMeshes>();
   std::unique_ptr<SceneObjects> objects(new SceneObjects);
-  const auto meshes = load_meshes(scene, objects->notes_);
-  if (!meshes) return meshes.error();
+  auto loaded = load_meshes(scene, *held, objects->notes_);
+  if (!loaded) return loaded.error();
+  const std::vector<MeshPointer>& meshes_W = objects->meshes_W_ = std::move(loaded).value();
   const std::size_t arms = 1 + scene.more_arms.size();
   std::vector<std::vector<std::unique_ptr<render::ObjectTouch>>> touches(arms);
-  for (std::size_t i = 0; i < meshes->size(); ++i) {
+  for (std::size_t i = 0; i < meshes_W.size(); ++i) {
     const SceneObject& object = scene.objects[i];
     if (arms == 1) {
-      auto touch = build_one(object, (*meshes)[i], objects->pages_);
+      auto touch = build_one(object, meshes_W[i], *held, objects->pages_);
       if (!touch) return touch.error();
       touches[0].push_back(std::move(touch).value());
       continue;
     }
-    auto shared = build_shared(object, (*meshes)[i], arms);
+    auto shared = build_shared(object, meshes_W[i], *held, arms);
     if (!shared) return shared.error();
     for (std::size_t arm = 0; arm < arms; ++arm) {
       touches[arm].push_back(std::move(shared->touches[arm]));
@@ -172,22 +162,20 @@ driver::Result<std::unique_ptr<SceneObjects>> SceneObjects::build(const Scene& s
   for (auto& objects_of_arm : touches) {
     objects->touches_.push_back(std::make_unique<render::SceneTouch>(std::move(objects_of_arm)));
   }
-  for (std::size_t i = 0; i < meshes->size(); ++i) {
-    if (!scene.objects[i].shape) objects->triangles_ += (*meshes)[i].triangles.size();
+  objects->mesh_W_ = held->joined(meshes_W);
+  objects->places_.emplace_back();
+  for (std::size_t i = 0; i < meshes_W.size(); ++i) {
+    const render::TriangleMesh& mesh_W = *meshes_W[i];
+    if (!scene.objects[i].shape) objects->triangles_ += mesh_W.triangles.size();
+    const MeshPlace begin = objects->places_.back();
     objects->places_.push_back(
-        {objects->mesh_W_.vertices.size(), objects->mesh_W_.triangles.size()});
-    append((*meshes)[i], objects->mesh_W_);
+        {begin.vertex + mesh_W.vertices.size(), begin.triangle + mesh_W.triangles.size()});
     if (scene.objects[i].body.motion) objects->moving_.push_back(i);
   }
-  objects->places_.push_back({objects->mesh_W_.vertices.size(), objects->mesh_W_.triangles.size()});
   for (const auto& pages : objects->pages_) {
     objects->triangles_ += static_cast<std::size_t>(pages->triangle_count());
   }
   return objects;
-}
-
-render::TriangleMesh SceneObjects::mesh_W(std::size_t object) const {
-  return part_of(mesh_W_, places_[object], places_[object + 1]);
 }
 
 render::TriangleMesh SceneObjects::mesh_now(int object) const {

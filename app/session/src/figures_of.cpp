@@ -21,8 +21,6 @@ RunFigures figures_of(const Setup& setup, std::size_t arm, const RunRecords& rec
   figures.force_limit = setup.arm_file(arm).limits.force_max;
   figures.triangles = setup.objects().triangles();
   figures.paging = setup.objects().paging();
-  figures.statistics = records.statistics;
-  figures.lost_contacts = count_lost_contacts(records.trace.rows(), setup.objects().touch(arm));
   figures.wire = device.wire_counters();
   figures.gate = device.gate_counters();
   figures.energy_stage = device.gate().energy_stage();
@@ -39,8 +37,13 @@ RunFigures figures_of(const Setup& setup, std::size_t arm, const RunRecords& rec
   if (const auto* simulation = setup.simulation(arm)) {
     figures.current_at_exit = simulation->currents().cwiseAbs().maxCoeff();
   }
-  figures.trace_stride = records.trace.stride();
-  figures.trace_dropped = records.trace.dropped();
+  if (records.kept) {
+    const Trace& trace = records.kept->trace;
+    figures.statistics = records.kept->statistics;
+    figures.lost_contacts = count_lost_contacts(trace.rows(), setup.objects().touch(arm));
+    figures.trace_stride = trace.stride();
+    figures.trace_dropped = trace.dropped();
+  }
   return figures;
 }
 

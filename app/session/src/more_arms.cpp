@@ -19,11 +19,8 @@ LoggedRun logged_run(const Setup& setup, std::size_t arm) {
   return run;
 }
 
-ArmRun::ArmRun(const Setup& setup) : records(setup.ticks(), setup.scene().rate) {
-  loop.add(records.latest);
-  loop.add(records.statistics);
-  loop.add(records.trace);
-  loop.add(records.black_box);
+ArmRun::ArmRun(const Setup& setup) : records(setup.ticks(), setup.scene().rate, setup.keep()) {
+  records.join(loop);
   loop.add(records.recording);
 }
 

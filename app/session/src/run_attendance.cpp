@@ -52,7 +52,8 @@ RunAttendance::RunAttendance(Session& session, ReplugWatches* watch, ViewerReque
 void RunAttendance::step() {
   if (watch_ != nullptr) watch_->step();
   if (desk_ != nullptr) desk_->step();
-  if (session_.records().black_box.full()) keep_black_box(session_);
+  const KeptTicks* kept = session_.records().kept.get();
+  if (kept != nullptr && kept->black_box.full()) keep_black_box(session_);
   driver::TickRecord record;
   if (!session_.newest().load(record)) return;
   if (const std::string hot = heat_.look(record); !hot.empty()) {

@@ -33,7 +33,7 @@ bool dents(const scene::SceneObject& object) {
 struct Session::Parts {
   explicit Parts(std::unique_ptr<Setup> prepared)
       : setup(std::move(prepared)),
-        records(setup->ticks(), setup->scene().rate),
+        records(setup->ticks(), setup->scene().rate, setup->keep()),
         more_arms(*setup) {}
 
   void add_records();
@@ -63,16 +63,14 @@ struct Session::Parts {
 void Session::Parts::add_records() {
   render::SceneTouch& touch = setup->objects().touch();
   const auto& objects = setup->scene().objects;
-  if (std::any_of(objects.begin(), objects.end(), dents)) {
+  const bool all = setup->keep() == Keep::kRun;
+  if (all && std::any_of(objects.begin(), objects.end(), dents)) {
     records.dents = std::make_unique<DentRecord>(touch, setup->period_ns());
   }
-  if (const auto moving = setup->objects().moving(); !moving.empty()) {
+  if (const auto moving = setup->objects().moving(); all && !moving.empty()) {
     records.poses = std::make_unique<PoseRecord>(touch, moving);
   }
-  loop.add(records.latest);
-  loop.add(records.statistics);
-  loop.add(records.trace);
-  loop.add(records.black_box);
+  records.join(loop);
   if (records.dents) loop.add(*records.dents);
   if (records.poses) loop.add(*records.poses);
   loop.add(records.recording);
@@ -88,6 +86,9 @@ void Session::Parts::add_knobs() {
 }
 
 driver::Result<void> Session::Parts::share(const SessionOptions& options, SharedRun* before) {
+  if (setup->keep() == Keep::kNewest) {
+    return driver::Error{"A session that keeps its newest tick alone cannot be watched."};
+  }
   auto own = std::make_unique<LiveControl>(setup->scene(), setup->objects().touch(),
                                            setup->simulation(), setup->real_time());
   auto made = share_run(*setup, own->knobs(), options, before);
@@ -168,6 +169,19 @@ driver::Result<std::unique_ptr<Session>> Session::open(const std::filesystem::pa
   if (!(*session)->setup().any_real()) return session;
   if (auto placed = (*session)->setup().check_start_pose(); !placed) return placed.error();
   if (auto activated = (*session)->activate(); !activated) return activated.error();
+  return session;
+}
+
+driver::Result<std::unique_ptr<Session>> Session::open_like(const Session& other,
+                                                            std::uint64_t seed) {
+  auto setup = Setup::prepare_like(other.setup(), seed);
+  if (!setup) return setup.error();
+  std::unique_ptr<Session> session(new Session);
+  session->parts_ = std::make_unique<Parts>(std::move(setup).value());
+  session->parts_->log = other.parts_->log;
+  session->parts_->add_records();
+  if (other.parts_->knobs) session->parts_->add_knobs();
+  if (auto opened = session->open_arm(); !opened) return opened.error();
   return session;
 }
 
@@ -289,13 +303,15 @@ const driver::Snapshot<driver::TickRecord>& Session::newest(std::size_t arm) con
   return parts_->records_of(arm).latest.snapshot();
 }
 std::span<const driver::TickRecord> Session::ticks(std::size_t arm) const noexcept {
-  return parts_->records_of(arm).trace.rows();
+  const KeptTicks* kept = parts_->records_of(arm).kept.get();
+  return kept ? kept->trace.rows() : std::span<const driver::TickRecord>();
 }
 std::uint64_t Session::stride() const noexcept {
-  return parts_->records.trace.stride();
+  return parts_->records.kept ? parts_->records.kept->trace.stride() : 1;
 }
 const RunStatistics& Session::statistics() const noexcept {
-  return parts_->records.statistics;
+  static const RunStatistics kNone;
+  return parts_->records.kept ? parts_->records.kept->statistics : kNone;
 }
 
 RunFigures Session::figures(const driver::RealTimeGrant& grant, std::size_t arm) const {
@@ -360,7 +376,9 @@ driver::Result<std::optional<std::filesystem::path>> Session::end_recording() {
 driver::Result<std::optional<std::filesystem::path>> Session::keep_black_box() {
   std::optional<std::filesystem::path> first;
   for (std::size_t arm = 0; arm < arms(); ++arm) {
-    const auto ticks = parts_->records_of(arm).black_box.release();
+    KeptTicks* kept = parts_->records_of(arm).kept.get();
+    if (kept == nullptr) continue;
+    const auto ticks = kept->black_box.release();
     if (ticks.empty()) continue;
     RecordingInfo info = parts_->setup->recording_info(arm);
     if (arms() > 1) info.scene += "_" + arm_name(arm);

@@ -43,18 +43,19 @@ driver::Result<std::unique_ptr<Setup>> Setup::prepare(const std::filesystem::pat
   setup->hand_by_program_ = options.hand_by_program;
   setup->homed_ = options.homed;
   setup->endless_ = options.endless;
+  setup->keep_ = options.keep;
+  setup->meshes_ = options.meshes ? options.meshes : std::make_shared<scene::SharedMeshes>();
   setup->real_time_ = options.clock == ClockKind::kWall || any_real_in(options);
   setup->paced_ = options.clock == ClockKind::kPaced && !setup->real_time_ && !options.own_clock;
   const auto stood_in = [](const auto& use) { return use.second && use.second->open_link; };
   if (!setup->real_time_ || options.open_link ||
       std::any_of(options.real_arms.begin(), options.real_arms.end(), stood_in)) {
     setup->clock_ = options.own_clock;
+    setup->own_clock_ = options.own_clock != nullptr;
   }
   if (auto read = setup->read(options); !read) return read.error();
 
-  auto objects = scene::SceneObjects::build(setup->scene_);
-  if (!objects) return objects.error();
-  setup->objects_ = std::move(objects).value();
+  if (auto built = setup->build_objects(); !built) return built.error();
   const std::vector<std::string>& notes = setup->objects_->notes();
   setup->told_.insert(setup->told_.end(), notes.begin(), notes.end());
   if (setup->objects_->moving().size() > ScenePoses::kMost) {
@@ -62,8 +63,46 @@ driver::Result<std::unique_ptr<Setup>> Setup::prepare(const std::filesystem::pat
                                      setup->scene_file_.string(), ScenePoses::kMost)};
   }
   if (auto simulated = setup->simulate_arms(); !simulated) return simulated.error();
+  if (!options.meshes) setup->meshes_->drop_unused();  // the path, which the arm has
   if (setup->real_time_) setup->objects_->start_loaders();
   return setup;
+}
+
+driver::Result<std::unique_ptr<Setup>> Setup::prepare_like(const Setup& other, std::uint64_t seed) {
+  if (other.real_time_ || other.own_clock_) {
+    return driver::Error{
+        "A session like another is in virtual time, on a clock of its own, as that one must be."};
+  }
+  std::unique_ptr<Setup> setup(new Setup);
+  setup->scene_file_ = other.scene_file_;
+  setup->scene_ = other.scene_;
+  setup->told_ = other.told_;
+  setup->firmware_ = other.firmware_;
+  setup->paced_ = other.paced_;
+  setup->endless_ = other.endless_;
+  setup->hand_by_mouse_ = other.hand_by_mouse_;
+  setup->hand_by_program_ = other.hand_by_program_;
+  setup->seed_ = seed;
+  setup->ticks_ = other.ticks_;
+  setup->period_ns_ = other.period_ns_;
+  setup->keep_ = other.keep_;
+  setup->meshes_ = other.meshes_;
+  if (auto built = setup->build_objects(); !built) return built.error();
+  setup->arms_.resize(other.arms_.size());
+  for (std::size_t i = 0; i < setup->arms_.size(); ++i) {
+    setup->arms_[i].energy = other.arms_[i].energy;
+    auto simulation = other.arms_[i].simulation->another(seed + i);
+    if (!simulation) return simulation.error();
+    setup->arms_[i].simulation = std::move(simulation).value();
+  }
+  return setup;
+}
+
+driver::Result<void> Setup::build_objects() {
+  auto objects = scene::SceneObjects::build(*scene_, meshes_);
+  if (!objects) return objects.error();
+  objects_ = std::move(objects).value();
+  return {};
 }
 
 driver::Result<void> Setup::read(const SessionOptions& options) {
@@ -74,13 +113,13 @@ driver::Result<void> Setup::read(const SessionOptions& options) {
                     .rate_factor = real ? 1 : options.rate_factor,
                     .several_arms = options.several_arms});
   if (!scene) return scene.error();
-  scene_ = std::move(scene).value();
+  scene_ = std::make_shared<scene::Scene>(std::move(scene).value());
   if (auto fits = check_several(options); !fits) return fits;
-  if (options.adjust) options.adjust(scene_);
+  if (options.adjust) options.adjust(*scene_);
   if (auto used = use_real_arms(options); !used) return used;
-  seed_ = options.seed.value_or(scene_.seed);
-  period_ns_ = std::llround(1e9 / scene_.rate);
-  const double duration = options.duration.value_or(scene_.duration);
+  seed_ = options.seed.value_or(scene_->seed);
+  period_ns_ = std::llround(1e9 / scene_->rate);
+  const double duration = options.duration.value_or(scene_->duration);
   // Led by a person, or by another program, it goes on until he has enough, unless he says how
   // long.
   if ((!hand_led() && !options.endless) || options.duration) {
@@ -108,8 +147,8 @@ driver::Result<void> Setup::check_several(const SessionOptions& options) const {
   for (std::size_t i = 1; i < arms(); ++i) names += ", " + arm_name(i);
   for (const auto& [name, use] : options.real_arms) {
     const auto same = [&name](const scene::SceneArm& arm) { return arm.name == name; };
-    if (name != scene_.arm_name &&
-        std::none_of(scene_.more_arms.begin(), scene_.more_arms.end(), same)) {
+    if (name != scene_->arm_name &&
+        std::none_of(scene_->more_arms.begin(), scene_->more_arms.end(), same)) {
       return refuse(fmt::format("none is called \"{}\": {}.", name, names).c_str());
     }
   }
@@ -124,16 +163,16 @@ driver::Result<void> Setup::check_several(const SessionOptions& options) const {
 
 driver::Result<void> Setup::use_real_arms(const SessionOptions& options) {
   arms_.resize(arms());
-  for (ArmOfRun& arm : arms_) arm.energy = scene_.energy;
+  for (ArmOfRun& arm : arms_) arm.energy = scene_->energy;
   if (options.real_arm) {
     ArmOfRun& arm = arms_.front();
     arm.real = options.real_arm;
     arm.open_link = options.open_link;
-    arm.start_pose = StartPose::of(scene_.arm, arm.real->kind);
-    auto told = scene::put_on_terms(scene_, scene_file_, *options.terms);
+    arm.start_pose = StartPose::of(scene_->arm, arm.real->kind);
+    auto told = scene::put_on_terms(*scene_, scene_file_, *options.terms);
     if (!told) return told.error();
     told_ = std::move(told).value();
-    arm.energy = scene_.energy;
+    arm.energy = scene_->energy;
     arm.feel_check = options.terms->feel_check;
     return {};
   }
@@ -150,8 +189,8 @@ driver::Result<void> Setup::use_real_arms(const SessionOptions& options) {
 }
 
 driver::Result<void> Setup::use_among_others(std::size_t i, const RealArmUse& use) {
-  const scene::ArmPlace& place = i == 0 ? scene_.arm_place : scene_.more_arms[i - 1].place;
-  auto& path = i == 0 ? scene_.arm_file : scene_.more_arms[i - 1].arm_file;
+  const scene::ArmPlace& place = i == 0 ? scene_->arm_place : scene_->more_arms[i - 1].place;
+  auto& path = i == 0 ? scene_->arm_file : scene_->more_arms[i - 1].arm_file;
   const auto of_arm = [&](const std::string& what) {
     return "The arm \"" + arm_name(i) + "\": " + what;
   };
@@ -166,8 +205,8 @@ driver::Result<void> Setup::use_among_others(std::size_t i, const RealArmUse& us
   // What the scene says of limits is kept as with one arm, for this one.
   scene::Scene alone;
   alone.own_arm_file = path;
-  alone.energy = scene_.energy;
-  alone.energy_line = scene_.energy_line;
+  alone.energy = scene_->energy;
+  alone.energy_line = scene_->energy_line;
   auto told = scene::put_on_terms(alone, scene_file_, use.terms);
   if (!told) return driver::Error{of_arm(told.error().message)};
   for (const std::string& sentence : *told) told_.push_back(of_arm(sentence));
@@ -178,12 +217,11 @@ driver::Result<void> Setup::use_among_others(std::size_t i, const RealArmUse& us
 }
 
 driver::Result<void> Setup::simulate_arms() {
-  std::vector<render::TriangleMesh> meshes_W;
-  for (std::size_t i = 0; i < scene_.objects.size(); ++i) meshes_W.push_back(objects_->mesh_W(i));
-  std::vector<scene::NamedMesh> named;
-  for (std::size_t i = 0; i < meshes_W.size(); ++i) {
-    const scene::SceneObject& object = scene_.objects[i];
-    if (!object.build_field && !object.paged) named.push_back({object.name, &meshes_W[i]});
+  std::vector<std::pair<std::string, std::shared_ptr<const render::TriangleMesh>>> named;
+  for (std::size_t i = 0; i < scene_->objects.size(); ++i) {
+    const scene::SceneObject& object = scene_->objects[i];
+    if (object.build_field || object.paged) continue;
+    named.emplace_back(object.name, objects_->shared_mesh_W(i));
   }
   using Simulated = driver::Result<std::unique_ptr<scene::ArmSimulation>>;
   const auto simulate = [&](const scene::ArmFile& arm, const std::filesystem::path& arm_file,
@@ -193,13 +231,15 @@ driver::Result<void> Setup::simulate_arms() {
     const auto in_file = [&whose](const std::filesystem::path& file, const driver::Error& error) {
       return driver::Error{file.string() + ": " + whose + error.message};
     };
-    auto route = scene::plan_hand(hand, named);
-    if (!route) return in_file(scene_file_, route.error());
-    if (auto reach = scene::check_reach(arm, *route); !reach) {
+    const auto planned = meshes_->hand_route(hand, named);
+    if (!planned) return in_file(scene_file_, planned.error());
+    const scene::HandRoute& route = **planned;
+    if (auto reach = scene::check_reach(arm, route); !reach) {
       return in_file(scene_file_, reach.error());
     }
-    if (hand_led()) route->resize(1);  // waits where the planned path begins
-    auto simulation = scene::ArmSimulation::make(arm, *route, firmware_, seed);
+    // A hand that is led waits where the planned path begins.
+    auto simulation = scene::ArmSimulation::make(
+        arm, hand_led() ? scene::HandRoute{route.front()} : route, firmware_, seed);
     if (!simulation) return in_file(arm_file, simulation.error());
     return simulation;
   };
@@ -208,8 +248,8 @@ driver::Result<void> Setup::simulate_arms() {
     // A seed of its own each, so that two hands do not tremble as one.
     const bool first = i == 0;
     auto simulation =
-        simulate(arm_file(i), first ? scene_.arm_file : scene_.more_arms[i - 1].arm_file,
-                 first ? scene_.hand : scene_.more_arms[i - 1].hand, arm_name(i), seed_ + i);
+        simulate(arm_file(i), first ? scene_->arm_file : scene_->more_arms[i - 1].arm_file,
+                 first ? scene_->hand : scene_->more_arms[i - 1].hand, arm_name(i), seed_ + i);
     if (!simulation) return simulation.error();
     arms_[i].simulation = std::move(simulation).value();
   }
@@ -232,7 +272,7 @@ driver::Result<void> Setup::open(std::size_t i) {
   } else {
     link = arm.simulation->link(*clock_);
   }
-  driver::DeviceSettings settings = scene::device_settings(arm_file(i), scene_.rate, arm.energy);
+  driver::DeviceSettings settings = scene::device_settings(arm_file(i), scene_->rate, arm.energy);
   // A simulated hand that is led has no tremor, and its arm sends no old positions.
   constexpr double kAnyTime = 1e9;  // s
   if (hand_led()) settings.motion.hold_most = kAnyTime;
@@ -315,8 +355,8 @@ std::string Setup::scene_path() const {
 }
 
 RecordingInfo Setup::recording_info(std::size_t arm) const {
-  const auto& file = arm == 0 ? scene_.arm_file : scene_.more_arms[arm - 1].arm_file;
-  return {.scene = scene_.name,
+  const auto& file = arm == 0 ? scene_->arm_file : scene_->more_arms[arm - 1].arm_file;
+  return {.scene = scene_->name,
           .scene_file = full_path(scene_file_),
           .scene_text = scene::text_of(scene_file_),
           .arm = arm_file(arm).name,
@@ -325,7 +365,7 @@ RecordingInfo Setup::recording_info(std::size_t arm) const {
           .device = device_name(arm),
           .clock = real_time_ ? "wall" : "virtual",
           .program = scene::program_name(),
-          .rate = scene_.rate,
+          .rate = scene_->rate,
           .seed = seed_ + arm,
           .arm_in_scene = arm_name(arm)};
 }

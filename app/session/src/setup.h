@@ -18,6 +18,7 @@
 #include "thimble/scene/real_arm_terms.h"
 #include "thimble/scene/scene_file.h"
 #include "thimble/scene/scene_objects.h"
+#include "thimble/scene/shared_meshes.h"
 #include "thimble/session/recording.h"
 #include "thimble/session/session.h"
 
@@ -44,6 +45,11 @@ class Setup {
   /// Real-time: never from the servo thread.
   static driver::Result<std::unique_ptr<Setup>> prepare(const std::filesystem::path& scene,
                                                         const SessionOptions& options);
+  /// Does the same for another run of what `other` runs, by another seed: the scene as it was read
+  /// there, its meshes, and the hands' paths are the same objects. Fails unless `other` is in
+  /// virtual time on a clock of its own. Real-time: never from the servo thread.
+  static driver::Result<std::unique_ptr<Setup>> prepare_like(const Setup& other,
+                                                             std::uint64_t seed);
   /// Starts the clock and opens the arms: simulated ones alone may get forces from then on; where
   /// one is real all are idle. Once. Real-time: never from the servo thread.
   driver::Result<void> open_arm();
@@ -54,17 +60,17 @@ class Setup {
   /// thread.
   driver::Result<void> activate();
 
-  const scene::Scene& scene() const noexcept { return scene_; }
+  const scene::Scene& scene() const noexcept { return *scene_; }
   scene::SceneObjects& objects() const noexcept { return *objects_; }
   /// Returns how many arms touch the scene.
-  std::size_t arms() const noexcept { return 1 + scene_.more_arms.size(); }
+  std::size_t arms() const noexcept { return 1 + scene_->more_arms.size(); }
   /// Returns what the scene calls an arm, counted from 0; empty if it is the only one.
   const std::string& arm_name(std::size_t arm) const noexcept {
-    return arm == 0 ? scene_.arm_name : scene_.more_arms[arm - 1].name;
+    return arm == 0 ? scene_->arm_name : scene_->more_arms[arm - 1].name;
   }
   /// Returns an arm's file.
   const scene::ArmFile& arm_file(std::size_t arm) const noexcept {
-    return arm == 0 ? scene_.arm : scene_.more_arms[arm - 1].arm;
+    return arm == 0 ? scene_->arm : scene_->more_arms[arm - 1].arm;
   }
   /// Returns the arm as the loop drives it. Precondition: the arm is open, as for `clock`.
   driver::Device& device(std::size_t arm = 0) const noexcept { return *arms_[arm].device; }
@@ -89,6 +95,8 @@ class Setup {
   /// Returns the firmware image for an arm that needs one; may be empty.
   const std::filesystem::path& firmware() const noexcept { return firmware_; }
 
+  /// Returns what is kept of the ticks.
+  Keep keep() const noexcept { return keep_; }
   /// Returns whether the run goes by the time of the world; threads load pages and write then.
   bool real_time() const noexcept { return real_time_; }
   /// Returns whether a real arm's counters are known to be right: it was in its home pose when it
@@ -125,19 +133,21 @@ class Setup {
   driver::Result<void> read(const SessionOptions& options);
   driver::Result<void> check_several(const SessionOptions& options) const;
   scene::ArmFile& own_arm_file(std::size_t arm) noexcept {
-    return arm == 0 ? scene_.arm : scene_.more_arms[arm - 1].arm;
+    return arm == 0 ? scene_->arm : scene_->more_arms[arm - 1].arm;
   }
   driver::Result<void> use_real_arms(const SessionOptions& options);
   driver::Result<void> use_among_others(std::size_t arm, const RealArmUse& use);
+  driver::Result<void> build_objects();
   driver::Result<void> simulate_arms();
   driver::Result<void> open(std::size_t arm);
 
   std::filesystem::path scene_file_;
-  scene::Scene scene_;
+  std::shared_ptr<scene::Scene> scene_;  // of sessions alike; changed only while it is read
   std::vector<std::string> told_;
   std::filesystem::path firmware_;
   bool real_time_ = false;
   bool paced_ = false;
+  bool own_clock_ = false;  // that the caller moves on
   bool endless_ = false;
   bool hand_by_mouse_ = false;
   bool hand_by_program_ = false;
@@ -145,6 +155,8 @@ class Setup {
   std::uint64_t seed_ = 0;
   std::uint64_t ticks_ = 0;
   std::int64_t period_ns_ = 0;
+  Keep keep_ = Keep::kRun;
+  std::shared_ptr<scene::SharedMeshes> meshes_;
   std::unique_ptr<scene::SceneObjects> objects_;
   std::shared_ptr<driver::Clock> clock_;
   PacedClock* pace_ = nullptr;  // the same, or null

@@ -23,6 +23,10 @@ class MemoryStore {
   /// Takes a prepared surface and builds how it is searched (make_search). Real-time: never from
   /// the servo thread.
   explicit MemoryStore(PackedSurface surface, std::optional<SearchChoice> search = {});
+  /// Takes a surface and a search over it that others share. Real-time: never from the servo
+  /// thread.
+  MemoryStore(std::shared_ptr<const PackedSurface> surface,
+              std::shared_ptr<const ContactSearch> search);
 
   // As PackedStore says. Real-time: safe.
 
@@ -69,6 +73,10 @@ class MemoryContact : public PackedContact<MemoryStore> {
   /// Takes a prepared surface and builds how it is searched (make_search). Real-time: never from
   /// the servo thread.
   explicit MemoryContact(PackedSurface surface, std::optional<SearchChoice> search = {});
+  /// Takes a surface and a search over it that others share. Real-time: never from the servo
+  /// thread.
+  MemoryContact(std::shared_ptr<const PackedSurface> surface,
+                std::shared_ptr<const ContactSearch> search);
 
   /// Prepares a mesh (W, m); the error is that of PackedSurface::build.
   /// Real-time: never from the servo thread.

@@ -7,7 +7,7 @@ from typing import Any, Callable, Mapping, Optional
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .. import ArgumentError, Error, PathOrName, Scene, Simulator, Stepper, Tick
+from .. import ArgumentError, Error, Meshes, PathOrName, Scene, Simulator, Stepper, Tick
 from .spaces import Base, Box
 
 Vector = NDArray[np.float64]
@@ -45,6 +45,7 @@ class TouchEnv(Base):
         set: Optional[Mapping[str, Any]] = None,
         arm: Optional[PathOrName] = None,
         quality: str = "normal",
+        meshes: Optional[Meshes] = None,
     ) -> None:
         """Open the scene once, to learn its arm.
 
@@ -52,7 +53,8 @@ class TouchEnv(Base):
         terminated: ``terminated(tick, action)``, whether the goal was reached; never if absent.
         frame_skip: ticks of the servo loop per step. seconds: an episode is truncated after them.
         workspace: lower and upper corner of the box of actions, (3,) in the world, m; the arm's own if
-        absent. Others as of :func:`thimble.run`. Raises thimble.Error as it does.
+        absent. meshes: that it shares with other environments; all its episodes share them in any case.
+        Others as of :func:`thimble.run`. Raises thimble.Error as it does.
         """
         if frame_skip < 1 or frame_skip != int(frame_skip):
             raise ArgumentError(f"frame_skip: expected a whole number of 1 or more, found {frame_skip}.")
@@ -62,16 +64,12 @@ class TouchEnv(Base):
         self._seconds = float(seconds)
         # A second more than asked: this class ends the episode, and knows by its own count when.
         self._options: dict[str, Any] = {"set": set, "arm": arm, "quality": quality, "seconds": self._seconds + 1.0}
+        self._options["meshes"] = Meshes() if meshes is None else meshes
         self._scene = scene
         info = Stepper(scene, **self._options).info
         self._rate = float(info["rate"])
         self._ticks_most = max(1, round(self._seconds * self._rate))
-        low, high = workspace if workspace is not None else _workspace_of(info)
-        self.action_space = Box(np.asarray(low, np.float64), np.asarray(high, np.float64), dtype=np.float64)
-        endless = np.full(9, np.inf)
-        self.observation_space = Box(
-            np.concatenate([-endless, [0.0, 0.0]]), np.concatenate([endless, [np.inf, 1.0]]), dtype=np.float64
-        )
+        self.action_space, self.observation_space = spaces_of(info, workspace)
         self.render_mode = None
         self._stepper: Optional[Stepper] = None
         self._ticks = 0
@@ -160,6 +158,17 @@ def _lead(stepper: Stepper, goal: Vector) -> bool:
             raise
     stepper.step()  # the point was refused before anything ran
     return False
+
+
+def spaces_of(info: Mapping[str, Any], workspace: Optional[tuple[ArrayLike, ArrayLike]]) -> tuple[Box, Box]:
+    """Give the spaces of actions and observations of a scene, by what its run tells of itself."""
+    low, high = workspace if workspace is not None else _workspace_of(info)
+    actions = Box(np.asarray(low, np.float64), np.asarray(high, np.float64), dtype=np.float64)
+    endless = np.full(9, np.inf)
+    observations = Box(
+        np.concatenate([-endless, [0.0, 0.0]]), np.concatenate([endless, [np.inf, 1.0]]), dtype=np.float64
+    )
+    return actions, observations
 
 
 def _workspace_of(info: Mapping[str, Any]) -> tuple[Vector, Vector]:

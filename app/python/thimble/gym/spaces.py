@@ -5,10 +5,12 @@ The stand-ins have what an agent needs to know of a space: shape, dtype, low, hi
 
 from __future__ import annotations
 
-from typing import Any, Optional
+from typing import Any, Optional, Sequence, Union
 
 import numpy as np
 from numpy.typing import NDArray
+
+from .. import ArgumentError
 
 try:
     import gymnasium
@@ -97,3 +99,13 @@ def batched(space: Any, count: int) -> Any:
     low = np.repeat(space.low[np.newaxis], count, axis=0)
     high = np.repeat(space.high[np.newaxis], count, axis=0)
     return Box(low, high, dtype=space.dtype)
+
+
+def seeds_of(seed: Union[None, int, Sequence[Optional[int]]], count: int) -> list[Optional[int]]:
+    """Give a seed for each of `count`: one number s is s, s + 1, s + 2 and so on."""
+    if seed is None or isinstance(seed, (int, np.integer)):
+        return [None if seed is None else int(seed) + i for i in range(count)]
+    seeds = list(seed)
+    if len(seeds) != count:
+        raise ArgumentError(f"seed: expected {count} of them, found {len(seeds)}.")
+    return seeds

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .. import ArgumentError, Error
-from .spaces import NEXT_STEP, VectorBase, batched
+from .spaces import NEXT_STEP, VectorBase, batched, seeds_of
 
 Make = Callable[[], Any]
 
@@ -52,7 +52,8 @@ class VectorEnv(VectorBase):
 
         make: a function that gives an environment, for `count` of them, or one for each:
         ``functools.partial(thimble.gym.TouchEnv, "rubber", reward=mine)``. workers: processes; one for
-        each core, and no more than environments, if absent. start: "spawn" or "forkserver".
+        each core, and no more than environments, if absent. With ``meshes=thimble.Meshes()`` in `make`
+        the environments of a process share their meshes. start: "spawn" or "forkserver".
         """
         makes = list(make) if isinstance(make, Sequence) else [make] * (1 if count is None else count)
         if not makes or (count is not None and count != len(makes)):
@@ -98,12 +99,7 @@ class VectorEnv(VectorBase):
         seed: one for each, or one number s for s, s + 1, s + 2 and so on. infos: an array for each key
         of the environments' own, and below ``_key`` which of them told it.
         """
-        if seed is None or isinstance(seed, (int, np.integer)):
-            seeds = [None if seed is None else int(seed) + i for i in range(self.num_envs)]
-        else:
-            seeds = list(seed)
-        if len(seeds) != self.num_envs:
-            raise ArgumentError(f"seed: expected {self.num_envs} of them, found {len(seeds)}.")
+        seeds = seeds_of(seed, self.num_envs)
         told = self._ask("reset", [(one, options) for one in seeds])
         self._begun = True
         return np.stack([observation for observation, _ in told]), _gathered([info for _, info in told])

@@ -12,6 +12,7 @@
 #include "studies/accuracy/probed_stroke.h"
 #include "thimble/scene/arm_simulation.h"
 #include "thimble/scene/scene_file.h"
+#include "thimble/scene/shared_meshes.h"
 #include "thimble/session/session.h"
 
 namespace thimble::app {
@@ -20,11 +21,14 @@ namespace {
 constexpr int kRounds = 5;
 
 using Adjust = std::function<void(scene::Scene&)>;
+using Meshes = std::shared_ptr<scene::SharedMeshes>;  // of all runs that are compared
 
 driver::Result<std::unique_ptr<session::Session>> open_with(const std::filesystem::path& scene,
-                                                            const Adjust& adjust) {
+                                                            const Adjust& adjust,
+                                                            const Meshes& meshes = {}) {
   session::SessionOptions options;
   options.adjust = adjust;
+  options.meshes = meshes;
   return session::Session::open(scene, options);
 }
 
@@ -50,11 +54,11 @@ double compare(std::span<const driver::TickRecord> full, std::span<const driver:
 
 // ns per tick of both, in turns, by the processor time of this thread.
 driver::Result<std::pair<double, double>> time_both(const std::filesystem::path& scene,
-                                                    const Adjust& reduced) {
+                                                    const Adjust& reduced, const Meshes& meshes) {
   std::vector<double> ns[2];
   for (int round = 0; round < kRounds; ++round) {
     for (const int which : {0, 1}) {
-      auto session = open_with(scene, which == 0 ? Adjust() : reduced);
+      auto session = open_with(scene, which == 0 ? Adjust() : reduced, meshes);
       if (!session) return session.error();
       const std::atomic<bool> stop{false};
       timespec begin{}, end{};
@@ -71,8 +75,9 @@ driver::Result<std::pair<double, double>> time_both(const std::filesystem::path&
 }
 
 driver::Result<std::vector<driver::TickRecord>> trace_of(const std::filesystem::path& scene,
-                                                         const Adjust& adjust) {
-  auto session = open_with(scene, adjust);
+                                                         const Adjust& adjust,
+                                                         const Meshes& meshes) {
+  auto session = open_with(scene, adjust, meshes);
   if (!session) return session.error();
   const std::atomic<bool> stop{false};
   (*session)->run(stop);
@@ -90,7 +95,8 @@ std::optional<double> instructions_per_tick_of(const std::string& kind,
 }  // namespace
 
 driver::Result<GatingReport> decide_gating(const std::filesystem::path& scene, bool count) {
-  auto session = open_with(scene, {});
+  const auto meshes = std::make_shared<scene::SharedMeshes>();
+  auto session = open_with(scene, {}, meshes);
   if (!session) return session.error();
   if ((*session)->simulation() == nullptr) return driver::Error{"The arm is not simulated."};
   const double ticks = static_cast<double>((*session)->setup().ticks());
@@ -104,7 +110,8 @@ driver::Result<GatingReport> decide_gating(const std::filesystem::path& scene, b
   // Each effect alone, whatever was decided: the check on the rule.
   for (GateDecision& one : report.decisions) {
     if (!one.changes) continue;
-    const auto rows = trace_of(scene, [&](scene::Scene& changed) { leave_out(one.name, changed); });
+    const auto rows = trace_of(
+        scene, [&](scene::Scene& changed) { leave_out(one.name, changed); }, meshes);
     if (!rows) return rows.error();
     one.change = compare(full, *rows);
     // Rules look at sizes; only the run knows what a hand makes of them.
@@ -114,11 +121,11 @@ driver::Result<GatingReport> decide_gating(const std::filesystem::path& scene, b
     }
   }
   const Adjust reduced = without(report.decisions);
-  const auto rows = trace_of(scene, reduced);
+  const auto rows = trace_of(scene, reduced, meshes);
   if (!rows) return rows.error();
   report.change = compare(full, *rows);
   report.holds = report.change <= kShareFelt;
-  const auto times = time_both(scene, reduced);
+  const auto times = time_both(scene, reduced, meshes);
   if (!times) return times.error();
   report.full_ns = times->first;
   report.reduced_ns = times->second;

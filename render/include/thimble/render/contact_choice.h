@@ -52,6 +52,9 @@ struct ContactChoice {
   double band = 0.001;                      ///< Width of the band of `fixed_band`, m.
   /// How the normal turns within a band; linear if empty. With `fixed_band` and `sized_band` only.
   std::optional<BlendProfile> profile = {};
+
+  /// Returns whether two objects are touched in the same way.
+  bool operator==(const ContactChoice&) const = default;
 };
 
 }  // namespace thimble::render

@@ -15,6 +15,7 @@
 
 namespace thimble::device_sim {
 class Hand;
+class HandPath;
 class SimulatedArm;
 namespace usb {
 class SimulatedFalcon;
@@ -45,6 +46,11 @@ class ArmSimulation {
       const ArmFile& file, const HandRoute& hand_W, const std::filesystem::path& firmware = {},
       std::uint64_t seed = 0);
 
+  /// Builds another arm of the same file, whose hand goes along the same path, with another seed: as
+  /// `make` would, without its checks, and with one path for both. The error is that of `make`.
+  /// Real-time: never from the servo thread.
+  driver::Result<std::unique_ptr<ArmSimulation>> another(std::uint64_t seed) const;
+
   /// Makes the link to it, over its own wire; keeps neither arm nor clock alive. Real-time: never
   /// from the servo thread.
   std::unique_ptr<driver::ArmLink> link(driver::Clock& clock);
@@ -72,9 +78,16 @@ class ArmSimulation {
 
  private:
   device_sim::Hand& hand() noexcept;
-  explicit ArmSimulation(const ArmFile& file);
+  ArmSimulation(const ArmFile& file, const device_sim::HandPath& path,
+                const std::filesystem::path& firmware);
+  static driver::Result<std::unique_ptr<ArmSimulation>> build(const ArmFile& file,
+                                                              const device_sim::HandPath& path,
+                                                              const std::filesystem::path& firmware,
+                                                              std::uint64_t seed);
 
   ArmFile file_;
+  std::filesystem::path firmware_;
+  std::unique_ptr<const device_sim::HandPath> path_;  // as it was planned
   std::unique_ptr<device_sim::SimulatedArm> board_arm_;
   std::unique_ptr<device_sim::usb::SimulatedFalcon> falcon_;
 };

@@ -18,6 +18,9 @@ struct HandWaypoint {
   Eigen::Vector3d p_W{0, 0, 0};   ///< The free point, or where near the surface to look for one, m.
   double press = 0;               ///< How far below the surface the hand wants to be, m.
   bool stop = false;              ///< True if the hand shall come to rest here.
+
+  /// Returns whether two stations are the same.
+  bool operator==(const HandWaypoint&) const = default;
 };
 
 /// Where the hand wants to be over time: seconds and points in the world (m).

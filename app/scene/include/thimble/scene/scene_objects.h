@@ -20,6 +20,8 @@ class SharedBody;
 
 namespace thimble::scene {
 
+class SharedMeshes;
+
 /// Where an object begins in a mesh of several.
 struct MeshPlace {
   std::size_t vertex = 0;    ///< Its first vertex.
@@ -30,8 +32,10 @@ struct MeshPlace {
 class SceneObjects {
  public:
   /// Reads the meshes and builds the force law that the scene calls for. The error names the object
-  /// and what to mend. Real-time: never from the servo thread.
-  static driver::Result<std::unique_ptr<SceneObjects>> build(const Scene& scene);
+  /// and what to mend. Meshes, and what is built over them and no touch changes, are those of
+  /// `meshes`; without it this scene has its own. Real-time: never from the servo thread.
+  static driver::Result<std::unique_ptr<SceneObjects>> build(
+      const Scene& scene, const std::shared_ptr<SharedMeshes>& meshes = nullptr);
 
   /// Returns the force law of the whole scene, on one of its arms.
   render::SceneTouch& touch(std::size_t arm = 0) const { return *touches_[arm]; }
@@ -42,9 +46,13 @@ class SceneObjects {
   std::span<const std::shared_ptr<render::SharedBody>> shared_bodies() const { return bodies_; }
   /// Returns the meshes of all objects in the world as one (m), as they are at first: those that
   /// are touched, and those that stand for shapes; those on the disk are not in it.
-  const render::TriangleMesh& mesh_W() const { return mesh_W_; }
+  const render::TriangleMesh& mesh_W() const { return *mesh_W_; }
   /// Returns the mesh of one object alone; empty for a field and for one on the disk.
-  render::TriangleMesh mesh_W(std::size_t object) const;
+  const render::TriangleMesh& mesh_W(std::size_t object) const { return *meshes_W_[object]; }
+  /// Returns the same for who keeps it, or compares it with that of another scene.
+  const std::shared_ptr<const render::TriangleMesh>& shared_mesh_W(std::size_t object) const {
+    return meshes_W_[object];
+  }
   /// Returns where an object begins in `mesh_W`.
   const MeshPlace& place(std::size_t object) const { return places_[object]; }
   /// Returns the mesh of one object, or of all as one if `object` is negative, where it is now:
@@ -71,7 +79,8 @@ class SceneObjects {
   std::vector<std::shared_ptr<render::PagedSurface>> pages_;  // of the objects on the disk
   std::vector<std::unique_ptr<render::SceneTouch>> touches_;  // one for each arm
   std::vector<std::shared_ptr<render::SharedBody>> bodies_;
-  render::TriangleMesh mesh_W_;
+  std::vector<std::shared_ptr<const render::TriangleMesh>> meshes_W_;  // of each object
+  std::shared_ptr<const render::TriangleMesh> mesh_W_;                 // of all
   std::vector<MeshPlace> places_;  // of each object in mesh_W_, and of its end
   std::vector<std::size_t> moving_;
   std::size_t triangles_ = 0;

@@ -1,0 +1,129 @@
+#include "bind_batch.h"
+
+#include <pybind11/eigen.h>
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "scene_run.h"
+#include "stability/tuning.h"
+#include "thimble/scene/scene_file.h"
+#include "thimble/scene/shared_meshes.h"
+#include "thimble/session/session_batch.h"
+#include "thimble_error.h"
+#include "tick_arrays.h"
+
+namespace py = pybind11;
+
+namespace thimble::python {
+namespace {
+
+using Counts = py::array_t<std::uint32_t, py::array::c_style | py::array::forcecast>;
+using Places = py::array_t<double, py::array::c_style | py::array::forcecast>;
+using Seeds = py::array_t<std::uint64_t, py::array::c_style | py::array::forcecast>;
+
+/// Many runs of one scene as Python holds them. One thread at a time, which Python's own lock does
+/// not see to while they step: a second one gets a sentence.
+class HeldBatch {
+ public:
+  HeldBatch(RunOptions options, std::size_t count) {
+    session::SessionOptions asked = session_options(options);
+    asked.knobs = false;
+    asked.several_arms = false;
+    asked.keep = session::Keep::kNewest;
+    const std::filesystem::path scene = named_by(scene::find_scene(options.scene));
+    const py::gil_scoped_release others;
+    batch_ = read_from(scene, session::SessionBatch::open(scene, count, asked));
+  }
+
+  std::size_t size() const { return batch_->size(); }
+  const session::Session& first() const { return batch_->run(0); }
+
+  /// Runs `ticks` (n,) ticks of each, after its hand was led to its row of `hands` (n, 3; m), and
+  /// returns the newest tick of each and which hands the arms reach.
+  py::tuple step(const Counts& ticks, const py::object& hands) {
+    const auto count = static_cast<py::ssize_t>(size());
+    if (ticks.size() != count) throw ArgumentError("ticks: expected one number for each run.");
+    std::vector<Eigen::Vector3d> places;
+    if (!hands.is_none()) {
+      const auto rows = hands.cast<Places>();
+      if (rows.size() != 3 * count) throw ArgumentError("hands: expected a point for each run.");
+      for (py::ssize_t i = 0; i < count; ++i) {
+        places.emplace_back(Eigen::Map<const Eigen::Vector3d>(rows.data() + 3 * i));
+      }
+    }
+    py::array_t<std::uint8_t> reached(count);
+    const std::span<std::uint8_t> answers(reached.mutable_data(), size());
+    alone([&] { batch_->step({ticks.data(), size()}, places, answers); });
+    return py::make_tuple(array_of(batch_->newest()), reached);
+  }
+
+  /// Begins some of the runs anew, each by its seed.
+  void restart(const Counts& which, const Seeds& seeds) {
+    if (which.size() != seeds.size()) throw ArgumentError("seeds: expected one for each run.");
+    alone([&] {
+      for (py::ssize_t k = 0; k < which.size(); ++k) {
+        const std::size_t i = which.data()[k];
+        if (i >= size()) throw ArgumentError("There is no such run.");
+        if (auto begun = batch_->restart(i, seeds.data()[k]); !begun) {
+          throw ThimbleError(begun.error().message);
+        }
+      }
+    });
+  }
+
+ private:
+  template <class Work>
+  void alone(const Work& work) {
+    if (busy_) throw ThimbleError("These runs are already being stepped.");
+    busy_ = true;
+    try {
+      const py::gil_scoped_release others;
+      work();
+    } catch (...) {
+      busy_ = false;
+      throw;
+    }
+    busy_ = false;
+  }
+
+  std::unique_ptr<session::SessionBatch> batch_;
+  bool busy_ = false;  // guarded by Python's own lock
+};
+
+}  // namespace
+
+void bind_batch(py::module_& core) {
+  py::class_<scene::SharedMeshes, std::shared_ptr<scene::SharedMeshes>>(core, "Meshes")
+      .def(py::init<>())
+      .def("drop_unused", &scene::SharedMeshes::drop_unused)
+      .def_property_readonly("meshes", &scene::SharedMeshes::meshes)
+      .def_property_readonly("surfaces", &scene::SharedMeshes::surfaces);
+  py::class_<HeldBatch>(core, "Batch")
+      .def(py::init([](const std::string& scene, std::size_t count, const std::string& arm,
+                       std::optional<double> seconds, const std::string& quality,
+                       std::shared_ptr<scene::SharedMeshes> meshes) {
+             return std::make_unique<HeldBatch>(RunOptions{.scene = scene,
+                                                           .arm_file = arm,
+                                                           .seconds = seconds,
+                                                           .quality = quality,
+                                                           .meshes = std::move(meshes)},
+                                                count);
+           }),
+           py::arg("scene"), py::arg("count"), py::kw_only(), py::arg("arm") = "",
+           py::arg("seconds") = py::none(), py::arg("quality") = "normal",
+           py::arg("meshes") = py::none())
+      .def("__len__", &HeldBatch::size)
+      .def("step", &HeldBatch::step, py::arg("ticks"), py::arg("hands") = py::none())
+      .def("restart", &HeldBatch::restart, py::arg("which"), py::arg("seeds"))
+      .def("warnings",
+           [](const HeldBatch& held) { return app::stability_warnings(held.first().scene()); })
+      .def("info", [](const HeldBatch& held) { return info_of(held.first().recording_info()); });
+}
+
+}  // namespace thimble::python

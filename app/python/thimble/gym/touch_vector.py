@@ -1,0 +1,214 @@
+"""Many arms of one scene in one process, as one environment."""
+
+from __future__ import annotations
+
+import warnings
+from typing import Any, Callable, Mapping, Optional, Sequence, Union
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .. import ArgumentError, Error, Meshes, PathOrName, Scene, Ticks, _core
+from .._arguments import optional_path, path_of, whole_of
+from .._meshes import core_meshes
+from .._scene_text import scene_file
+from .environment import spaces_of
+from .spaces import NEXT_STEP, VectorBase, batched, seeds_of
+
+Vector = NDArray[np.float64]
+Rewards = Callable[[Ticks, Vector], ArrayLike]
+Ends = Callable[[Ticks, Vector], ArrayLike]
+
+_ARMS_MOST = 1_000_000  # 100 GB and more; chosen against a wrong unit
+
+
+class TouchVectorEnv(VectorBase):
+    """Arms of one scene side by side in this process, stepped by one call; Gymnasium's ``VectorEnv``.
+
+    Each is, to the bit, what :class:`TouchEnv` of its seed is alone, and a thousand take hardly longer
+    per arm than one: the scene is read once, its meshes are there once, and the loop over the arms is
+    not Python's. Actions, observations and infos are those of `TouchEnv`, one row for each arm. An arm
+    whose episode ended is begun anew by the next step, which ignores its action and gives reward 0
+    (Gymnasium's NEXT_STEP).
+
+    For several cores start several of them in processes of their own, each with seeds of its own.
+    """
+
+    metadata: dict[str, Any] = {"render_modes": [], "autoreset_mode": NEXT_STEP}
+    closed = True  # until there is something to close
+
+    def __init__(
+        self,
+        scene: Scene,
+        count: int,
+        reward: Optional[Rewards] = None,
+        *,
+        terminated: Optional[Ends] = None,
+        frame_skip: int = 10,
+        seconds: float = 10.0,
+        workspace: Optional[tuple[ArrayLike, ArrayLike]] = None,
+        set: Optional[Mapping[str, Any]] = None,
+        arm: Optional[PathOrName] = None,
+        quality: str = "normal",
+        meshes: Optional[Meshes] = None,
+    ) -> None:
+        """Open the scene for `count` arms.
+
+        reward: ``reward(ticks, actions)``, asked once per step with the last tick of each arm
+        (``ticks.force`` is (count, 3)) and the actions, (count, 3); gives (count,) numbers; 0 if absent.
+        terminated: ``terminated(ticks, actions)``, whether each goal was reached, (count,); never if
+        absent. What both say of an arm that is begun anew does not count. Others as of
+        :class:`TouchEnv`. Raises thimble.Error as it does.
+        """
+        self.num_envs = whole_of("count", count, 1, _ARMS_MOST)
+        self._frame_skip = whole_of("frame_skip", frame_skip, 1)
+        self._reward = reward
+        self._terminated = terminated
+        self._batch: Optional[_core.Batch] = _core.Batch(
+            scene_file(scene, set, keep=False),
+            self.num_envs,
+            arm=optional_path("arm", arm),
+            # A second more than asked: this class ends the episodes, and knows by its own count when.
+            seconds=float(seconds) + 1.0,
+            quality=path_of("quality", quality, "draft, normal, reference or auto"),
+            meshes=core_meshes(meshes),
+        )
+        for warning in self._batch.warnings():
+            warnings.warn(warning, RuntimeWarning, stacklevel=2)
+        info = self._batch.info()
+        self._rate = float(info["rate"])
+        self._ticks_most = max(1, round(float(seconds) * self._rate))
+        self.single_action_space, self.single_observation_space = spaces_of(info, workspace)
+        self.action_space = batched(self.single_action_space, self.num_envs)
+        self.observation_space = batched(self.single_observation_space, self.num_envs)
+        self.render_mode = None
+        self.closed = False
+        self._randoms: list[np.random.Generator] = []
+        self._ticks = np.zeros(self.num_envs, np.int64)  # of each episode
+        self._over = np.ones(self.num_envs, np.bool_)
+        self._newest: Optional[Ticks] = None
+
+    def __enter__(self) -> "TouchVectorEnv":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    @property
+    def seconds_per_step(self) -> float:
+        """Virtual time that a step takes, s."""
+        return self._frame_skip / self._rate
+
+    @property
+    def ticks(self) -> Ticks:
+        """The newest tick of each arm. Error before the first reset."""
+        if self._newest is None:
+            raise Error("The environments have no episodes: call reset().")
+        return self._newest
+
+    def reset(
+        self,
+        *,
+        seed: Union[None, int, Sequence[Optional[int]]] = None,
+        options: Optional[dict[str, Any]] = None,
+    ) -> tuple[Vector, dict[str, Any]]:
+        """Begin an episode in each, and give observations (count, 11) and infos.
+
+        seed: one for each, or one number s for s, s + 1, s + 2 and so on; of all episodes from now on.
+        options: ``{"seed": 3}`` seeds these episodes' tremor itself, of all alike.
+        """
+        seeds = seeds_of(seed, self.num_envs)
+        if not self._randoms:
+            self._randoms = [np.random.default_rng(one) for one in seeds]
+        for i, one in enumerate(seeds):
+            if one is not None:
+                self._randoms[i] = np.random.default_rng(one)
+        everyone = np.ones(self.num_envs, np.bool_)
+        begun = self._begin(everyone, (options or {}).get("seed"))
+        return self._felt(everyone, begun, everyone)
+
+    def step(
+        self, actions: ArrayLike
+    ) -> tuple[Vector, Vector, NDArray[np.bool_], NDArray[np.bool_], dict[str, Any]]:
+        """Lead each hand for ``frame_skip`` ticks, and give observations, rewards, terminated, truncated, infos."""
+        goals = np.ascontiguousarray(actions, dtype=np.float64)
+        if goals.shape != self.action_space.shape:
+            raise ArgumentError(f"actions: expected the shape {self.action_space.shape}, found {goals.shape}.")
+        if self._newest is None:
+            raise Error("The environments have no episodes: call reset().")
+        anew = self._over.copy()
+        if not np.isfinite(goals[~anew]).all():
+            raise ArgumentError("actions: expected three numbers for each arm.")
+        ticks = np.where(anew, 0, np.minimum(self._frame_skip, self._ticks_most - self._ticks))
+        columns, reached = self._core().step(ticks.astype(np.uint32), goals)
+        self._ticks += ticks
+        self._newest = Ticks(columns)
+        begun = self._begin(anew, None)
+        felt = self._newest
+        terminated = felt.columns["fault"] != 0
+        if self._terminated is not None:
+            terminated = terminated | self._asked("terminated", self._terminated(felt, goals), np.bool_)
+        rewards = np.zeros(self.num_envs)
+        if self._reward is not None:
+            rewards = self._asked("reward", self._reward(felt, goals), np.float64)
+        rewards[anew] = 0.0
+        terminated &= ~anew
+        truncated = (self._ticks >= self._ticks_most) & ~anew
+        self._over = terminated | truncated
+        observations, infos = self._felt(anew, begun, reached.astype(np.bool_))
+        return observations, rewards, terminated, truncated, infos
+
+    def close(self, **_: Any) -> None:
+        """Let the arms go. Again is nothing."""
+        self._batch = None
+        self._newest = None
+        self.closed = True
+
+    def _core(self) -> _core.Batch:
+        if self._batch is None:
+            raise Error("The environments were closed.")
+        return self._batch
+
+    def _asked(self, name: str, told: ArrayLike, kind: Any) -> NDArray[Any]:
+        array = np.array(told, dtype=kind)
+        if array.shape != (self.num_envs,):
+            raise ArgumentError(f"{name}: expected {self.num_envs} of them, found the shape {array.shape}.")
+        return array
+
+    def _begin(self, which: NDArray[np.bool_], seed: Optional[int]) -> NDArray[np.uint64]:
+        """Begin some episodes with their first tick, and give the seeds of all, 0 of the others."""
+        seeds = np.zeros(self.num_envs, np.uint64)
+        numbers = np.flatnonzero(which).astype(np.uint32)
+        if not len(numbers):
+            return seeds
+        for i in numbers:
+            drawn = int(self._randoms[i].integers(2**31))
+            seeds[i] = drawn if seed is None else int(seed)
+        self._core().restart(numbers, seeds[numbers])
+        columns, _ = self._core().step(which.astype(np.uint32))
+        self._newest = Ticks(columns)
+        self._ticks[which] = 1
+        self._over[which] = False
+        return seeds
+
+    def _felt(
+        self, begun: NDArray[np.bool_], seeds: NDArray[np.uint64], reached: NDArray[np.bool_]
+    ) -> tuple[Vector, dict[str, Any]]:
+        ticks = self.ticks
+        observations = np.concatenate(
+            [ticks.tip, ticks.velocity, ticks.force, ticks.depth[:, np.newaxis], ticks.in_contact[:, np.newaxis]],
+            axis=1,
+        )
+        faults = np.array([_core.fault(int(one))[0] if one else "" for one in ticks.columns["fault"]], dtype=object)
+        told: dict[str, NDArray[Any]] = {
+            "reached": reached,
+            "time": np.array(ticks.time),
+            "object": ticks.object.astype(np.int64),
+            "fault": faults,
+        }
+        infos: dict[str, Any] = {}
+        for key, values in told.items():
+            infos[key], infos["_" + key] = values, np.ones(self.num_envs, np.bool_)
+        if begun.any():
+            infos["seed"], infos["_seed"] = seeds.astype(np.int64), begun.copy()
+        return observations, infos

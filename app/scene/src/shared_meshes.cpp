@@ -1,0 +1,170 @@
+#include "thimble/scene/shared_meshes.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <filesystem>
+#include <mutex>
+#include <optional>
+#include <system_error>
+#include <tuple>
+#include <utility>
+
+#include "mesh_join.h"
+#include "object_mesh.h"
+#include "still_surface.h"
+#include "thimble/scene/scene_file.h"
+
+namespace thimble::scene {
+namespace {
+
+using MeshPointer = std::shared_ptr<const render::TriangleMesh>;
+using NamedPointers = std::vector<std::pair<std::string, MeshPointer>>;
+
+/// What tells a file from the same one before it was changed.
+struct FileState {
+  std::uintmax_t size = 0;
+  std::filesystem::file_time_type changed;
+
+  bool operator==(const FileState&) const = default;
+};
+
+FileState state_of(const std::filesystem::path& file) {
+  std::error_code absent;  // who reads it says so
+  return {std::filesystem::file_size(file, absent), std::filesystem::last_write_time(file, absent)};
+}
+
+/// What a mesh depends on that is read from a file.
+struct MeshKey {
+  explicit MeshKey(const SceneObject& object)
+      : file(std::filesystem::absolute(object.mesh_file).lexically_normal()),
+        state(state_of(file)),
+        size(object.size),
+        scale(object.scale),
+        repair(object.repair),
+        sheet_thickness(object.sheet_thickness),
+        R_WO(object.R_WO),
+        p_WO(object.p_WO) {}
+
+  bool operator==(const MeshKey&) const = default;
+
+  std::filesystem::path file;
+  FileState state;
+  std::optional<double> size, scale;
+  bool repair;
+  std::optional<double> sheet_thickness;
+  Eigen::Matrix3d R_WO;
+  Eigen::Vector3d p_WO;
+};
+
+/// Things by what they are made of; few enough to be looked through.
+template <class Key, class Value>
+class Shelf {
+ public:
+  std::shared_ptr<const Value> find(const Key& key) const {
+    const auto found = std::find_if(things_.begin(), things_.end(),
+                                    [&key](const auto& thing) { return thing.first == key; });
+    return found == things_.end() ? nullptr : found->second;
+  }
+  std::shared_ptr<const Value> keep(Key key, Value value) {
+    return things_.emplace_back(std::move(key), std::make_shared<const Value>(std::move(value)))
+        .second;
+  }
+  std::size_t size() const { return things_.size(); }
+  void drop_unused() {
+    drop_if([](const std::shared_ptr<const Value>& value) { return value.use_count() == 1; });
+  }
+  template <class Unused>
+  void drop_if(const Unused& unused) {
+    std::erase_if(things_, [&](const auto& thing) { return unused(thing.second); });
+  }
+
+ private:
+  std::vector<std::pair<Key, std::shared_ptr<const Value>>> things_;
+};
+
+bool same(const render::TriangleMesh& a, const render::TriangleMesh& b) {
+  return a.vertices == b.vertices && a.triangles == b.triangles;
+}
+
+}  // namespace
+
+struct SharedMeshes::Held {
+  std::mutex mutex;
+  Shelf<MeshKey, ObjectMesh> files;
+  std::vector<MeshPointer> shapes;
+  Shelf<std::vector<MeshPointer>, render::TriangleMesh> joined;
+  Shelf<std::pair<MeshPointer, render::ContactChoice>, render::StillSurface> surfaces;
+  Shelf<std::pair<std::vector<HandWaypoint>, NamedPointers>, HandRoute> routes;
+};
+
+SharedMeshes::SharedMeshes() : held_(std::make_unique<Held>()) {}
+SharedMeshes::~SharedMeshes() = default;
+
+std::size_t SharedMeshes::meshes() const {
+  const std::scoped_lock lock(held_->mutex);
+  return held_->files.size() + held_->shapes.size() + held_->joined.size();
+}
+
+std::size_t SharedMeshes::surfaces() const {
+  const std::scoped_lock lock(held_->mutex);
+  return held_->surfaces.size();
+}
+
+void SharedMeshes::drop_unused() {
+  const std::scoped_lock lock(held_->mutex);
+  // What is made of others goes before them.
+  held_->routes.drop_unused();
+  held_->surfaces.drop_if([](const auto& still) { return still->search.use_count() == 1; });
+  held_->joined.drop_unused();
+  held_->files.drop_unused();
+  std::erase_if(held_->shapes, [](const MeshPointer& mesh) { return mesh.use_count() == 1; });
+}
+
+driver::Result<std::shared_ptr<const ObjectMesh>> SharedMeshes::object_mesh(
+    const SceneObject& object) {
+  const std::scoped_lock lock(held_->mutex);
+  MeshKey key(object);
+  if (auto found = held_->files.find(key)) return found;
+  auto loaded = load_object_mesh(object);
+  if (!loaded) return loaded.error();
+  return held_->files.keep(std::move(key), std::move(loaded).value());
+}
+
+MeshPointer SharedMeshes::mesh_like(const render::TriangleMesh& mesh_W) {
+  const std::scoped_lock lock(held_->mutex);
+  for (const MeshPointer& shape : held_->shapes) {
+    if (same(*shape, mesh_W)) return shape;
+  }
+  return held_->shapes.emplace_back(std::make_shared<const render::TriangleMesh>(mesh_W));
+}
+
+MeshPointer SharedMeshes::joined(const std::vector<MeshPointer>& meshes_W) {
+  if (meshes_W.size() == 1) return meshes_W.front();
+  const std::scoped_lock lock(held_->mutex);
+  if (auto found = held_->joined.find(meshes_W)) return found;
+  render::TriangleMesh whole;
+  for (const MeshPointer& mesh_W : meshes_W) append(*mesh_W, whole);
+  return held_->joined.keep(meshes_W, std::move(whole));
+}
+
+driver::Result<std::shared_ptr<const render::StillSurface>> SharedMeshes::surface(
+    const MeshPointer& mesh_W, const render::ContactChoice& contact) {
+  const std::scoped_lock lock(held_->mutex);
+  if (auto found = held_->surfaces.find({mesh_W, contact})) return found;
+  auto made = render::prepare_still_surface(*mesh_W, contact);
+  if (!made) return made.error();
+  return held_->surfaces.keep({mesh_W, contact}, std::move(made).value());
+}
+
+driver::Result<std::shared_ptr<const HandRoute>> SharedMeshes::hand_route(
+    const std::vector<HandWaypoint>& stations, const NamedPointers& objects) {
+  const std::scoped_lock lock(held_->mutex);
+  if (auto found = held_->routes.find({stations, objects})) return found;
+  std::vector<NamedMesh> named;
+  for (const auto& [name, mesh_W] : objects) named.push_back({name, mesh_W.get()});
+  auto planned = plan_hand(stations, named);
+  if (!planned) return planned.error();
+  return held_->routes.keep({stations, objects}, std::move(planned).value());
+}
+
+}  // namespace thimble::scene

@@ -1,0 +1,99 @@
+#include "still_surface.h"
+
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "mesh/repair/sound_mesh.h"
+#include "search/make_search.h"
+
+namespace thimble::render {
+namespace {
+
+driver::Error apart(const ContactChoice& choice, const std::string& why) {
+  return driver::Error{"The tracker \"" +
+                       std::string(kTrackerNames[static_cast<std::size_t>(choice.tracker)]) +
+                       "\" " + why};
+}
+
+/// Says which stages of a choice do not go together.
+driver::Result<void> check_choice(const ContactChoice& choice) {
+  if (auto fits = check_profile(choice); !fits) return fits;
+  if (choice.tracker == TrackerChoice::kGodObject) {
+    if (choice.blending.value_or(BlendingChoice::kFlat) != BlendingChoice::kFlat ||
+        choice.curved_depth.value_or(false)) {
+      return apart(choice, "pushes towards its proxy: it goes with the blending \"flat\" only.");
+    }
+    if (choice.normals) return apart(choice, "feels no normals of corners: leave normals away.");
+  }
+  if (choice.tracker != TrackerChoice::kPacked) return {};
+  if (choice.blending.value_or(BlendingChoice::kPhong) != BlendingChoice::kPhong ||
+      !choice.curved_depth.value_or(true)) {
+    return apart(choice,
+                 "always feels smooth (phong, curved depth): leave blending and curved_depth away, "
+                 "or take the tracker \"offset\" or \"edge_planes\".");
+  }
+  if (choice.normals.value_or(NormalWeights::kAngle) != NormalWeights::kAngle) {
+    return apart(choice,
+                 "has the mean of the faces by their angles at its corners: leave normals away, or "
+                 "take the tracker \"offset\".");
+  }
+  return {};
+}
+
+driver::Result<StillSurface> prepare_packed(const TriangleMesh& mesh_W,
+                                            const ContactChoice& choice) {
+  // Looks at the whole mesh as well, so that faults are told as for every other way.
+  auto looked = look_at_mesh_beside(mesh_W, true);
+  PackedSurfaceOptions options;
+  if (choice.crease_angle) options.crease_angle = *choice.crease_angle;
+  auto packed = PackedSurface::build(mesh_W, options);
+  const auto sound = looked.get();
+  if (!sound) return sound.error();
+  if (sound->turned) packed = PackedSurface::build(*sound->turned, options);
+  if (!packed) return packed.error();
+  StillSurface still;
+  still.packed = std::make_shared<const PackedSurface>(std::move(packed).value());
+  still.search = make_search(*still.packed, choice.search);
+  return still;
+}
+
+/// Returns whether the corners' normals are asked for, to be walked on or to be felt.
+bool needs_normals(const ContactChoice& choice) {
+  if (choice.tracker == TrackerChoice::kGodObject) return false;
+  return choice.tracker == TrackerChoice::kOffset || choice.curved_depth.value_or(false) ||
+         choice.blending.value_or(BlendingChoice::kFlat) != BlendingChoice::kFlat;
+}
+
+}  // namespace
+
+driver::Result<void> check_profile(const ContactChoice& choice) {
+  if (!choice.profile || choice.blending == BlendingChoice::kFixedBand ||
+      choice.blending == BlendingChoice::kSizedBand) {
+    return {};
+  }
+  return driver::Error{
+      "A profile says how the normal turns within a band: it goes with the blending "
+      "\"fixed_band\" or \"sized_band\" only."};
+}
+
+driver::Result<StillSurface> prepare_still_surface(const TriangleMesh& mesh_W,
+                                                   const ContactChoice& choice) {
+  if (auto fits = check_choice(choice); !fits) return fits.error();
+  if (choice.tracker == TrackerChoice::kPacked) return prepare_packed(mesh_W, choice);
+  auto prepared = ContactMesh::build(mesh_W);
+  if (!prepared) return prepared.error();
+  StillSurface still;
+  still.mesh = std::make_shared<const ContactMesh>(std::move(prepared).value());
+  still.search = make_search(*still.mesh, choice.search);
+  if (!needs_normals(choice)) return still;
+  const bool in_bands = choice.blending == BlendingChoice::kFixedBand ||
+                        choice.blending == BlendingChoice::kSizedBand;
+  still.normals = std::make_shared<const SmoothNormals>(
+      *still.mesh, choice.crease_angle.value_or(kCreaseAngle),
+      choice.normals.value_or(NormalWeights::kFitted),
+      in_bands ? kHollowCreaseAngleOfBands : kHollowCreaseAngle);
+  return still;
+}
+
+}  // namespace thimble::render
