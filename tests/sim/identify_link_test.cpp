@@ -128,7 +128,8 @@ TEST(WatchdogTime, SaysWhyItIsNotKnown) {
   const auto sentence_of = [](WatchdogEnd end) {
     Identified found;
     found.reports = ReportTiming{};
-    found.watchdog = WatchdogTime{.last = {.end = end, .time = 0.15, .way = 0.015}};
+    found.watchdog.emplace();
+    found.watchdog->last = {.end = end, .time = 0.15, .way = 0.015, .force = 0.1};
     for (const std::string& sentence : not_identified(found)) {
       if (sentence.find("Watchdog of the firmware: ") == 0) return sentence;
     }
