@@ -137,8 +137,9 @@ void look_at_link(BenchArm& bench, const scene::ArmFile& file, const ArmConstant
   constexpr double kListened = 2;  // s
   bench.watch({});
   found.reports = time_reports(bench, kListened, stop);
-  // What moves otherwise than it is understood is not pushed further.
-  if (!found.against.empty()) return;
+  // What moves otherwise than it is understood is not pushed further; behind a cable that stretches
+  // the oscillation of the link hides when the force goes off.
+  if (!found.against.empty() || found.lines.stretches) return;
   // Of a force along y, what these motors make of it.
   const Eigen::Matrix3d J_T = found.moved.samples.back().G.inverse().transpose();
   const Eigen::Vector3d y_B = file.R_WB.transpose() * Eigen::Vector3d::UnitY();
