@@ -40,7 +40,7 @@ std::string paragraph(const std::string& text, const char* kind = nullptr) {
 std::string rounded(double value, double plus_minus) {
   if (!(plus_minus > 0)) return fmt::format("{:.5g}", value);
   const int digits = std::max(0, 1 - static_cast<int>(std::floor(std::log10(plus_minus))));
-  return fmt::format("{:.{}f}", value, std::min(digits, 9));
+  return fmt::format("{:.{}f}", value, std::min(digits, 6));
 }
 
 std::string verdict(const Identified& found) {

@@ -46,7 +46,7 @@ std::string beside(const std::string& commands, const std::string& x, const std:
   text += fmt::format("set xlabel '{}' font ',15'\n", x);
   for (std::size_t i = 0; i < 3; ++i) {
     text += fmt::format("set title 'joint {}' font ',16'\n", i + 1);
-    text += i == 0 ? fmt::format("set ylabel '{}' font ',15'\n", y) : "unset ylabel\n";
+    text += i == 0 ? fmt::format("set ylabel '{}' font ',15' offset 1.5,0\n", y) : "unset ylabel\n";
     text += plots[i] + "\n";
   }
   return text + "unset multiplot\n";

@@ -99,7 +99,7 @@ page = open("report/index.html").read()
 assert "The fit is good" in page and "watchdog of the firmware" in page and "src=" not in page, page[:2000]
 figures = {one["name"]: one for one in json.load(open("report/figures.json"))}
 assert abs(figures["report period"]["value"] - 1) < 1e-6 and figures["model_misfits"]["met"], figures
-assert abs(figures["watchdog of the firmware"]["value"] - 100) < 3, figures
+assert abs(figures["watchdog of the firmware"]["value"] - 100) < 2, figures
 print("good")'
 if command -v gnuplot >/dev/null; then
   expect_plot report/identify_fit report/identify_rest report/identify_friction report/identify_lines

@@ -119,10 +119,12 @@ void of_link(const Identified& identified, Sentences& all) {
         "cannot be told apart; both figures are rough.");
   }
   if (!identified.watchdog) {
-    all.emplace_back(
-        identified.reports && !identified.against.empty()
-            ? "Watchdog of the firmware: an arm whose fit is bad is not pushed further."
-            : "Watchdog of the firmware: not asked for.");
+    all.push_back("Watchdog of the firmware: " +
+                  std::string(!identified.reports ? "not asked for."
+                              : identified.lines.stretches
+                                  ? "behind cables that stretch the oscillation of the links hides "
+                                    "when the force goes off."
+                                  : "an arm whose fit is bad is not pushed further."));
   } else if (!identified.watchdog->known()) {
     all.push_back("Watchdog of the firmware: " + watchdog_text(identified.watchdog->last));
   }
