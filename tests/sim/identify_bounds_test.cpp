@@ -61,7 +61,7 @@ std::vector<Trouble> troubles() {
       {"a hand that carries the tip away",
        [](Case& one, Random& random) {
          take_in_hand(one, random);
-         const double start = random.uniform(0.2, 6), ms = random.uniform(0.1, 1);
+         const double start = random.uniform(0.2, 4), ms = random.uniform(0.1, 1);
          const Eigen::Vector3d from = one.hand_W.front().second;
          const Eigen::Vector3d to = beyond_side(one.arm.file.workspace, 0.02, random);
          one.hand_W.emplace_back(start, from);
@@ -173,7 +173,7 @@ Seen watched(const Case& one, std::uint64_t seed) {
     }
     (*bench)->watch(watch);
     const auto motion = record_motion(**bench, file,
-                                      {.seconds = is_long() ? 20.0 : 5.0,
+                                      {.seconds = is_long() ? 20.0 : 3.0,
                                        .lead = 0.5,
                                        .added_mass = loaded ? support::kKnownMass : 0,
                                        .seed = seed},

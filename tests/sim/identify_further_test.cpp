@@ -60,6 +60,7 @@ TEST(IdentifyFriction, IsToldInBothDirectionsWhereItDiffers) {
 
 TEST(IdentifySaturation, NamesTheMotorThatGivesTooLittle) {
   const int arms = is_long() ? 30 : 1;
+  int held = 0, all = 0;
   double worst = 0;
   for (int k = 0; k < arms; ++k) {
     const auto seed = static_cast<std::uint64_t>(13'000 + k);
@@ -80,12 +81,16 @@ TEST(IdentifySaturation, NamesTheMotorThatGivesTooLittle) {
       std::printf("motor %zu: %.4g +- %.2g N m, true %.4g\n", i + 1, one.most.value,
                   one.most.plus_minus, truth);
       worst = std::max(worst, std::abs(one.most.value / truth - 1));
+      held += one.most.holds(truth) ? 1 : 0;
+      ++all;
     }
     EXPECT_GE(seen, 1);
     ASSERT_FALSE(found->against.empty());
     EXPECT_NE(found->against.front().find("gives no more than"), std::string::npos);
   }
+  std::printf("worst %.3g, %d of %d intervals hold\n", worst, held, all);
   EXPECT_LT(worst, 0.1);
+  EXPECT_GT(held, 0.85 * all);
 }
 
 }  // namespace

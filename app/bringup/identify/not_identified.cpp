@@ -121,10 +121,10 @@ void of_link(const Identified& identified, Sentences& all) {
   if (!identified.watchdog) {
     all.push_back("Watchdog of the firmware: " +
                   std::string(!identified.reports ? "not asked for."
-                              : identified.lines.stretches
-                                  ? "behind cables that stretch the oscillation of the links hides "
-                                    "when the force goes off."
-                                  : "an arm whose fit is bad is not pushed further."));
+                              : !identified.against.empty()
+                                  ? "an arm whose fit is bad is not pushed further."
+                                  : "behind cables that stretch the oscillation of the links hides "
+                                    "when the force goes off."));
   } else if (!identified.watchdog->known()) {
     all.push_back("Watchdog of the firmware: " + watchdog_text(identified.watchdog->last));
   }
