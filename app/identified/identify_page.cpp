@@ -49,8 +49,11 @@ std::string verdict(const Identified& found) {
            paragraph("The fit is good: what it leaves is what an arm of this kind leaves.") +
            "</div>\n";
   }
-  std::string text = "<div class=\"verdict bad\">" +
-                     paragraph("The fit is bad, and nothing was written into an arm file:");
+  std::string text =
+      "<div class=\"verdict bad\">" +
+      paragraph(
+          "The fit is bad, and nothing was written into an arm file. What stands below "
+          "are the constants of a model that this arm does not follow:");
   for (const std::string& sentence : found.against) text += paragraph(sentence);
   return text + "</div>\n";
 }

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 #include "bringup/identify/line_forces.h"
@@ -42,7 +43,7 @@ std::string stacked(const std::string& commands, const std::string& unit,
 std::string beside(const std::string& commands, const std::string& x, const std::string& y,
                    const std::array<std::string, 3>& plots) {
   std::string text = quiet("") + commands +
-                     "set multiplot layout 1,3 margins 0.085,0.985,0.2,0.91 spacing 0.055\n";
+                     "set multiplot layout 1,3 margins 0.085,0.985,0.2,0.885 spacing 0.055\n";
   text += fmt::format("set xlabel '{}' font ',15'\n", x);
   for (std::size_t i = 0; i < 3; ++i) {
     text += fmt::format("set title 'joint {}' font ',16'\n", i + 1);
@@ -97,14 +98,16 @@ std::string lines_plot(const Identified& identified) {
     std::string marks = "unset arrow\nunset label\n";
     if (identified.constants.cables) {
       const CableConstants& cable = (*identified.constants.cables)[i];
-      for (const auto& [at, name] : {std::pair{cable.antiresonance.value, "antiresonance"},
-                                     std::pair{cable.resonance.value, "resonance"}}) {
+      // A dip has room above it, a peak below.
+      for (const auto& [at, name, place] :
+           {std::tuple{cable.antiresonance.value, "antiresonance", "0.97 right"},
+            std::tuple{cable.resonance.value, "resonance", "0.03 left"}}) {
         if (at < LineForces::kLowest || at > LineForces::kHighest) continue;
         marks += fmt::format(
             "set arrow from {0:.5g}, graph 0 to {0:.5g}, graph 1 nohead dt 2 lw "
-            "1.5 lc rgb '{1}'\nset label '{2} {0:.0f} Hz' at {0:.5g}, graph 0.03 "
-            "rotate left offset -0.6,0 font ',13' textcolor rgb '{1}'\n",
-            at, kMarkInk, name);
+            "1.5 lc rgb '{1}'\nset label '{2} {0:.0f} Hz' at {0:.5g}, graph {3} "
+            "rotate offset -0.6,0 font ',13' textcolor rgb '{1}'\n",
+            at, kMarkInk, name, place);
       }
     }
     plots[i] = marks + fmt::format(
