@@ -10,6 +10,7 @@ output=${2:-tests/FAULTS.md}
 lines=$(mktemp)
 trap 'rm -f "$lines"' EXIT
 THIMBLE_FAULTS=$lines "$build/tests/sim/test_hard_cases" --gtest_filter="*FaultMatrix*" >/dev/null
+THIMBLE_FAULTS=$lines "$build/tests/sim/test_identify" --gtest_filter='IdentifyBounds.*' >/dev/null
 [ ! -e "$build/tests/unit/driver/test_links" ] ||
   THIMBLE_FAULTS=$lines "$build/tests/unit/driver/test_links" --gtest_filter='*Link*Names*' >/dev/null
 [ ! -e "$build/app/thimble" ] ||
@@ -20,7 +21,7 @@ THIMBLE_FAULTS=$lines "$build/tests/sim/test_hard_cases" --gtest_filter="*FaultM
 # Faults: what is promised, and what was measured
 
 Written by `tests/faults.sh`; do not edit. The promises are data in `tests/sim/fault_promises.h`, the cells are
-`tests/sim/fault_matrix_test.cpp` (simulated time, the whole way from hand to motors),
+`tests/sim/fault_matrix_test.cpp` (simulated time, the whole way from hand to motors), `tests/sim/identify_bounds_test.cpp`,
 `tests/unit/driver/*_link_test.cpp` (arms behind vendors' libraries and services) and `tests/program/faults_test.sh` (real
 processes).
 
@@ -38,7 +39,7 @@ checksum. Forces on the way out that a cable has changed are the board's busines
 |---|---|---|---|---|---|---|---|---|---|
 TEXT
   awk -F'|' '
-    $3 == "process" || $4 == "link" { next }
+    $3 == "process" || $4 == "link" || $4 == "identify" { next }
     {
       key = $2 "|" $3
       if (!(key in seen)) { seen[key] = 1; order[++n] = key }
@@ -56,6 +57,17 @@ TEXT
         print line
       }
     }' "$lines" | sort -t'|' -s -k2,2
+  cat <<'TEXT'
+
+## While an arm is identified, in simulated time
+
+Arms with hidden constants (2 for each row, 40 in the long form). Every command of `thimble identify` counts, from opening to end,
+as it was asked for and as it was sent.
+
+| fault | promise | result |
+|---|---|---|
+TEXT
+  awk -F'|' '$4 == "identify" { print "| " $2 " | " $5 " | " $6 " |" }' "$lines"
   cat <<'TEXT'
 
 ## Behind a vendor's library or service, on the wall clock

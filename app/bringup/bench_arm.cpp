@@ -10,6 +10,8 @@ namespace thimble::app {
 namespace {
 
 constexpr std::int64_t kPeriod_ns = 1'000'000;
+constexpr std::int64_t kWait_ns = 5'000'000;  // for a report, before zero is said again
+constexpr std::int64_t kLook_ns = 20'000;
 
 }  // namespace
 
@@ -63,6 +65,17 @@ bool BenchArm::run(double duration, const Law& law, const std::atomic<bool>& sto
     if (device_->fault() != driver::Fault::kNone && !seen_only) return false;
   }
   return true;
+}
+
+void BenchArm::listen(double duration, const std::function<void(double)>& heard,
+                      const std::atomic<bool>& stop) {
+  const std::int64_t end_ns = clock_->now_ns() + std::llround(duration * 1e9);
+  while (clock_->now_ns() < end_ns && !stop.load(std::memory_order_relaxed) && !device_->lost()) {
+    const std::int64_t now_ns = clock_->now_ns();
+    if (device_->idle(now_ns, std::min(end_ns, now_ns + kWait_ns)).fresh) heard(now());
+    // A link that does not wait for its deadline is asked again later.
+    if (clock_->now_ns() == now_ns) clock_->sleep_until_ns(now_ns + kLook_ns);
+  }
 }
 
 void BenchArm::tell(std::int64_t due_ns, std::int64_t now_ns, const Eigen::Vector3d& f_T_W) {

@@ -40,6 +40,11 @@ class BenchArm {
   /// Runs with zero force until `done` answers true or `stop` is set.
   bool hold(const std::function<bool()>& done, const std::atomic<bool>& stop);
 
+  /// Waits for the reports of an idle arm as they come, for `duration` (s) or until `stop` is set:
+  /// hands the time of each (s) to `heard`, and answers it by zero force.
+  void listen(double duration, const std::function<void(double)>& heard,
+              const std::atomic<bool>& stop);
+
   /// Hands each tick from now on to `sink`, after its force was sent; an empty one ends that.
   /// Silent ticks are left out.
   void watch(std::function<void(const driver::TickRecord&)> sink) { sink_ = std::move(sink); }

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "bringup/identify/constants_table.h"
 #include "bringup/identify/identified_file.h"
 #include "bringup/identify/identify.h"
 #include "bringup/identify/simulated_bench.h"
@@ -14,6 +15,7 @@
 #include "cli/commands.h"
 #include "cli/complain.h"
 #include "enter_key.h"
+#include "identified/identify_page.h"
 #include "interrupt.h"
 #include "log/logger.h"
 #include "terms/feel_check_record.h"
@@ -29,6 +31,7 @@ struct IdentifyCommand {
   IdentifyOptions options;
   std::string output;
   std::string record;
+  std::string report;
 };
 
 std::string today() {
@@ -111,6 +114,7 @@ int identify_arm(IdentifyCommand command) {
   const scene::LeavingGuard guard;
   // A person needs time to let go of the mass.
   if (chosen->real_arm) command.options.lead = 4;
+  command.options.link = true;
   const OpenBench open = [&](bool loaded) {
     return chosen->real_arm
                ? open_real(*chosen, command, loaded, stop)
@@ -131,7 +135,20 @@ int identify_arm(IdentifyCommand command) {
     std::printf("The motion was recorded in %s.\n", command.record.c_str());
   }
   if (!found) return complain(found.error(), kExitFault);
-  std::printf("%s", constants_table(*found).c_str());
+  std::printf("%s", constants_table(*found, chosen->file).c_str());
+  if (!command.report.empty()) {
+    const auto written = write_identify_page(*found, chosen->file,
+                                             {.arm = chosen->file.name,
+                                              .device = chosen->name,
+                                              .simulated = !chosen->real_arm,
+                                              .date = today(),
+                                              .program = scene::program_name(),
+                                              .seconds = command.options.seconds,
+                                              .known_mass = command.options.known_mass},
+                                             command.report);
+    if (!written) return complain(written.error(), kExitTrouble);
+    std::printf("Report in %s/index.html.\n", command.report.c_str());
+  }
   scene::logger().info("The arm {} was identified{}.", chosen->name,
                        found->against.empty() ? "" : ", and its fit is bad");
   if (!found->against.empty()) {
@@ -168,6 +185,8 @@ void add_identify_command(CLI::App& app, int& exit_code) {
                   "New arm file to write; left out: NAME_identified.yaml in this folder");
   sub->add_option("--record", command->record,
                   "Recording of the motion with the bare tip to write, for `thimble twin`");
+  sub->add_option("--report", command->report,
+                  "Folder for a page with plots, constants and what was not identified, and why");
   sub->callback([command, &exit_code] { exit_code = identify_arm(*command); });
 }
 

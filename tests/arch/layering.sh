@@ -123,7 +123,8 @@ forbid_app studies '(view|bringup|faces|hil|web|cli)/'
 forbid_app view '(report|stability|studies|bringup|faces|hil|web|cli)/'
 forbid_app web '(stability|studies|view|bringup|hil|twin|faces|cli)/'
 forbid_app bringup 'thimble/session/|(recording|share|events|report|stability|studies|view|faces|hil|web|cli)/'
-forbid_app hil '(share|events|view|faces|web|cli)/'
+forbid_app identified '(session|recording|share|events|stability|studies|view|faces|hil|twin|web|cli)/'
+forbid_app hil '(identified|share|events|view|faces|web|cli)/'
 forbid_app twin '(share|events|studies|view|bringup|hil|faces|web|cli)/'
 forbid_app faces '(report|stability|studies|view|bringup|hil|web|cli)/'
 # What a program of somebody else's loads brings no library of ours with it; and faces know the core alone.
@@ -135,10 +136,10 @@ done
 for part in core server; do
   forbid "app/faces/$part" 'faces/(haply|hd|hdphantom|dhd)/|(HD|HDU)/|d[hr]dc\.h' "a face"
 done
-for folder in bag scene session report web stability studies bringup hil twin faces cli python; do
+for folder in bag scene session report web stability studies bringup identified hil twin faces cli python; do
   forbid "app/$folder" "$graphics" "graphics: they are app/view's"
 done
-for folder in bag scene session report web stability studies bringup hil twin view faces python; do
+for folder in bag scene session report web stability studies bringup identified hil twin view faces python; do
   forbid "app/$folder" 'CLI/' "arguments: they are app/cli's"
 done
 

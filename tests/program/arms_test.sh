@@ -91,6 +91,20 @@ expect 0 '^Written to twin\.yaml' "$thimble" identify --arm "$vintage" --seconds
   --output twin.yaml
 expect 0 'mass: 0\.07[45][0-9]*  # kg, apparent \[I ' cat twin.yaml
 expect 0 'touched it [1-9]' "$thimble" run "$source_dir/tests/data/scenes/two_boxes.yaml" --arm twin.yaml
+expect 0 '^Report in report/index\.html' "$thimble" identify --arm "$vintage" --seconds 10 --output told.yaml --report report
+expect 0 '<li><b>Scale</b>: motion alone' cat report/index.html
+expect 0 '^good$' /usr/bin/python3 -c '
+import json, re
+page = open("report/index.html").read()
+assert "The fit is good" in page and "watchdog of the firmware" in page and "src=" not in page, page[:2000]
+figures = {one["name"]: one for one in json.load(open("report/figures.json"))}
+assert abs(figures["report period"]["value"] - 1) < 1e-6 and figures["model_misfits"]["met"], figures
+assert abs(figures["watchdog of the firmware"]["value"] - 100) < 2, figures
+print("good")'
+if command -v gnuplot >/dev/null; then
+  expect_plot report/identify_fit report/identify_rest report/identify_friction report/identify_lines
+  expect 0 '^4$' grep -c '^<svg' report/index.html
+fi
 expect 1 'twin\.yaml is there already' "$thimble" identify --arm "$vintage" --seconds 10 --output twin.yaml
 expect 4 'Motor 1 pulls against its encoder' "$thimble" identify --arm reversed.yaml --output no.yaml
 expect 1 '' test -e no.yaml
@@ -99,7 +113,9 @@ sed 's/^simulation:/&\n  drive_train: {stiffness: [20, 20, 20], inertia: [0.0005
 expect 0 '^Written to soft\.yaml' "$thimble" identify --arm springy.yaml --seconds 10 --output soft.yaml
 expect 0 'drive_train: .*stiffness: \[(19|20)[.0-9]*, (19|20)[.0-9]*, (19|20)[.0-9]*\]' cat soft.yaml
 sed 's/damping: \[0.01/coulomb: [0, 0.02, 0], &/' springy.yaml >sticky.yaml
-expect 5 '^BAD FIT' "$thimble" identify --arm sticky.yaml --seconds 10 --output no.yaml
+expect 5 '^BAD FIT' "$thimble" identify --arm sticky.yaml --seconds 10 --output no.yaml --report bad
+expect 0 'The fit is bad, and nothing was written' cat bad/index.html
+expect 0 'an arm whose fit is bad is not pushed' cat bad/index.html
 expect 1 '' test -e no.yaml
 expect 4 'Falcon' "$thimble" identify --arm falcon
 

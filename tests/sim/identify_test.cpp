@@ -6,6 +6,7 @@
 #include <functional>
 #include <string>
 
+#include "bringup/identify/constants_table.h"
 #include "bringup/identify/excitation.h"
 #include "bringup/identify/record_motion.h"
 #include "bringup/identify/simulated_bench.h"
@@ -41,6 +42,8 @@ TEST(Identify, FindsTheConstantsOfHiddenArms) {
     const auto& plant = arm.file.simulated.plant;
     const ArmConstants& constants = found->constants;
     EXPECT_TRUE(constants.absolute);
+    EXPECT_FALSE(found->friction.axes_differ || found->friction.directions_differ) << "arm " << k;
+    for (const Saturation& one : found->saturation) EXPECT_TRUE(one.searched && !one.seen);
     mass.add(constants.mass, plant.mass);
     coulomb.add(constants.coulomb, plant.coulomb);
     viscous.add(constants.viscous, plant.viscous);
@@ -90,7 +93,7 @@ TEST(Identify, SeesOnlyRatiosWithoutAKnownMass) {
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_NEAR(constants.gain[i].value * scale / arm.gain[i], 1, 0.01);
   }
-  EXPECT_NE(constants_table(*found).find("--known-mass"), std::string::npos);
+  EXPECT_NE(constants_table(*found, arm.file).find("--known-mass"), std::string::npos);
 }
 
 /// What is said of an arm that is another than the model's: an error, or what speaks against the

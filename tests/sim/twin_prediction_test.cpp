@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <numbers>
+#include <string>
 #include <vector>
 
 #include "bringup/identify/identify.h"
@@ -146,6 +147,34 @@ TEST(TwinPrediction, OfAnIdentifiedArmIsItsWallItsBounceAndItsFreeMotion) {
     }
     if (arms > 0) tell(lag > 0 ? "hidden arms that lag" : "hidden arms", arms, worst);
   }
+}
+
+TEST(TwinPrediction, OfAnArmThatCogsIsRefusedOrHoldsForWallAndBounce) {
+  if (std::getenv("THIMBLE_LONG") == nullptr) GTEST_SKIP() << "12 arms: in the long form alone";
+  constexpr int kArms = 12;
+  int refused = 0;
+  for (std::uint64_t seed = 1; seed <= kArms; ++seed) {
+    HiddenArm hidden = hidden_arm(seed);
+    hidden.file.simulated.drive_train.cogging.setConstant(2e-4);
+    hidden.file.simulated.drive_train.periods_per_turn = 7;
+    const auto both = identified(hidden, seed);
+    if (!both) {
+      EXPECT_NE(both.error().message.find("not that of a rigid arm"), std::string::npos);
+      ++refused;
+      continue;
+    }
+    const auto true_of = twin_prediction(both->arm), told = twin_prediction(both->twin);
+    ASSERT_TRUE(true_of.ok() && told.ok());
+    const double motion = apart(free_motion(both->arm, ~seed), free_motion(both->twin, ~seed));
+    std::printf("arm %d: wall %.4g of %.4g, motion %.3f apart\n", static_cast<int>(seed),
+                told->stiffest_wall, true_of->stiffest_wall, motion);
+    EXPECT_NEAR(told->stiffest_wall / true_of->stiffest_wall, 1, 0.02);
+    EXPECT_NEAR(told->bounce.restitution / true_of->bounce.restitution, 1, 0.02);
+    EXPECT_NEAR(told->bounce.flight / true_of->bounce.flight, 1, 0.02);
+    EXPECT_LT(motion, 0.12);
+  }
+  std::printf("%d of %d arms refused\n", refused, kArms);
+  EXPECT_GE(refused, 9);
 }
 
 TEST(DropTrial, BouncesAsTheLawOfRestitutionSays) {

@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/LU>
+
 #include <algorithm>
 #include <cmath>
 
+#include "bringup/identify/line_forces.h"
 #include "bringup/identify/record_motion.h"
 #include "math/elementary.h"
 
@@ -49,11 +52,6 @@ void widen(ArmConstants& constants) {
   widen(constants.viscous, kMethodViscous * constants.coulomb.value);
   for (Estimate& gain : constants.gain) widen(gain, kMethodGain * gain.value);
   widen(constants.delay, kMethodDelay);
-}
-
-std::string line(const char* name, const Estimate& estimate, double scale, const char* unit) {
-  return fmt::format("  {:<22} {:>10.5g} +- {:<9.2g} {}\n", name, scale * estimate.value,
-                     scale * estimate.plus_minus, unit);
 }
 
 /// Fits the links behind cables that stretch, and with `refine` the cables again by what the slow
@@ -133,6 +131,49 @@ void put_cables(Identified& found) {
   }
 }
 
+/// Measures what does not hang on the motion: how reports come, and the firmware's watchdog.
+void look_at_link(BenchArm& bench, const scene::ArmFile& file, const ArmConstants& bare,
+                  const std::atomic<bool>& stop, Identified& found) {
+  constexpr double kListened = 2;  // s
+  bench.watch({});
+  found.reports = time_reports(bench, kListened, stop);
+  // What moves otherwise than it is understood is not pushed further; behind a cable that stretches
+  // the oscillation of the link hides when the force goes off.
+  if (!found.against.empty() || found.lines.stretches) return;
+  // Of a force along y, what these motors make of it.
+  const Eigen::Matrix3d J_T = found.moved.samples.back().G.inverse().transpose();
+  const Eigen::Vector3d y_B = file.R_WB.transpose() * Eigen::Vector3d::UnitY();
+  Eigen::Vector3d tau = J_T * y_B;
+  for (std::size_t i = 0; i < 3; ++i) tau[static_cast<Eigen::Index>(i)] *= bare.gain[i].value;
+  const double share = y_B.dot(J_T.inverse() * tau);
+  if (!(share > 0.2)) return;
+  found.watchdog = watchdog_time(bench,
+                                 {.named = 1e-9 * static_cast<double>(file.limits.watchdog_ns),
+                                  .mass = bare.mass.value / share,
+                                  .coulomb = bare.coulomb.value / share,
+                                  .delay = bare.delay.value,
+                                  .workspace = file.workspace},
+                                 file.limits.soft_start, stop);
+}
+
+/// Looks in what the fit leaves for what it does not know of.
+void look_closer(Identified& found) {
+  const FittedMotion motion = found.fitted();
+  found.friction = friction_directions(motion, found.constants.mass);
+  if (found.lines.stretches) return;
+  found.saturation = saturations(motion);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Saturation& one = found.saturation[i];
+    if (!one.seen) continue;
+    found.against.insert(
+        found.against.begin(),
+        fmt::format("Motor {} gives no more than {:.3g} +- {:.1g} N m at the joint, and was asked "
+                    "for up to {:.3g}: its amplifier saturates, or current_max of the arm file is "
+                    "more than it gives.",
+                    i + 1, one.most.value, one.most.plus_minus, one.asked));
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> speaks_against(const PerMass& fit, const PerMass& held, double mass) {
@@ -195,8 +236,8 @@ driver::Result<Identified> identify(const OpenBench& open, const scene::ArmFile&
     if (!motion) return motion.error();
     auto fit = fit_motion(*motion, false);
     if (!fit) return fit.error();
-    if (!loaded && options.cables)
-      found.lines = fit_cables(line_spectrum(*motion), *fit, motion->dt);
+    if (!loaded) found.spectrum = line_spectrum(*motion);
+    if (!loaded && options.cables) found.lines = fit_cables(found.spectrum, *fit, motion->dt);
     driver::Result<ArmMotion> links = *motion;
     // A mass on the tip changes neither motors nor cables.
     if (found.lines.stretches) {
@@ -211,12 +252,17 @@ driver::Result<Identified> identify(const OpenBench& open, const scene::ArmFile&
       found.loaded = *fit;
     } else {
       found.bare = *fit;
+      found.moved = std::move(links).value();
+      if (found.lines.stretches) {
+        found.moved_ahead = found.lines.elastic.theta[TwoMass::kDelay] - kHeldBack * motion->dt;
+      }
     }
     const auto alone = arm_constants(*fit, down_B, {}, 0);
     if (!alone) return alone.error();
     for (std::string& sentence : speaks_against(*fit, *held, alone->mass.value)) {
       found.against.push_back((loaded ? "With the known mass: " : "") + sentence);
     }
+    if (!loaded && options.link) look_at_link(**bench, file, *alone, stop, found);
   }
   auto constants = arm_constants(found.bare, down_B, found.loaded, options.known_mass);
   if (!constants) return constants.error();
@@ -230,60 +276,8 @@ driver::Result<Identified> identify(const OpenBench& open, const scene::ArmFile&
   }
   widen(found.constants);
   if (found.lines.stretches) put_cables(found);
+  look_closer(found);
   return found;
-}
-
-std::string cables_text(const Identified& identified) {
-  const CableFit& lines = identified.lines;
-  if (lines.noise.empty()) return "Cables that stretch were not looked for.\n";
-  const auto& cables = identified.constants.cables;
-  if (!cables) {
-    const Eigen::Vector3d from =
-        lines.unseen_from.cwiseMin(Eigen::Vector3d::Constant(LineForces::kHighest));
-    return fmt::format(
-        "No compliance was seen: a link that oscillates on its cable below {:.0f}, {:.0f}, {:.0f} "
-        "Hz "
-        "(joint by joint) would have been.\n",
-        from[0], from[1], from[2]);
-  }
-  std::string text = "The cables stretch. Motors and cables, at the joints:\n";
-  for (std::size_t i = 0; i < 3; ++i) {
-    const CableConstants& cable = (*cables)[i];
-    const auto name = [i](const char* what) { return fmt::format("{} {}", what, i + 1); };
-    text += line(name("inertia of motor").c_str(), cable.inertia, 1e3, "g m^2");
-    text += line(name("stiffness of cable").c_str(), cable.stiffness, 1, "N m/rad");
-    text += line(name("damping of cable").c_str(), cable.damping, 1, "N m s/rad");
-    text += line(name("antiresonance").c_str(), cable.antiresonance, 1, "Hz, link on its cable");
-    text += line(name("resonance").c_str(), cable.resonance, 1, "Hz, motor against link");
-  }
-  return text;
-}
-
-std::string constants_table(const Identified& identified) {
-  const ArmConstants& found = identified.constants;
-  std::string text = "Constants, each with its 95 % interval:\n";
-  text += line("mass at the tip", found.mass, 1e3, "g");
-  text += line("viscous friction", found.viscous, 1, "N s/m");
-  text += line("Coulomb friction", found.coulomb, 1e3, "mN per axis");
-  text += line("weight", found.weight, 1e3, "mN");
-  for (std::size_t i = 0; i < 3; ++i) {
-    text += line(fmt::format("gain of motor {}", i + 1).c_str(), found.gain[i], 1,
-                 "of the arm file's torque constant");
-  }
-  text += line("delay, force to motion", found.delay, 1e3, "ms");
-  const PerMass& fit = identified.bare;
-  text += fmt::format(
-      "Fitted to {} pieces of motion ({} left out, in which an axis stood); {:.3f} % of the "
-      "acceleration is explained, what is left is {:.1f} times the encoders' steps.\n",
-      fit.windows, fit.left_out, 100 * fit.explained, fit.residual / fit.noise);
-  text += found.absolute
-              ? "Mass and forces were measured with the known mass.\n"
-              : "Motion alone shows no mass without a force: the torque constants of the arm file "
-                "were taken to be right on average. All but the delay is as wrong as they are; a "
-                "known mass on the tip (--known-mass) measures them.\n";
-  text += cables_text(identified);
-  text += "Not measured: play, cogging, how the mass changes over the workspace.\n";
-  return text;
 }
 
 }  // namespace thimble::app

@@ -8,6 +8,11 @@
 #include "bringup/bench_arm.h"
 #include "bringup/identify/arm_constants.h"
 #include "bringup/identify/cables.h"
+#include "bringup/identify/friction_directions.h"
+#include "bringup/identify/saturation.h"
+#include "bringup/identify/weak_form/fitted_motion.h"
+#include "bringup/report_timing.h"
+#include "bringup/watchdog_time.h"
 #include "thimble/driver/result.h"
 #include "thimble/driver/tick_record.h"
 
@@ -22,7 +27,10 @@ struct IdentifyOptions {
   double lead = 1;      ///< That it moves before each, s.
   /// Whether cables that stretch are looked for; if not, an arm that has some is a bad fit.
   bool cables = true;
-  double known_mass = 0;   ///< That the user fixes to the tip for the second motion, kg; 0: none.
+  double known_mass = 0;  ///< That the user fixes to the tip for the second motion, kg; 0: none.
+  /// Whether the reports' timing and the firmware's watchdog are measured after the motion; the
+  /// watchdog by pushes of a little more than the friction that was found.
+  bool link = false;
   std::uint64_t seed = 1;  ///< Of the excitation's phases.
   /// Handed each tick of the motion with the bare tip, for a recording; may be empty.
   std::function<void(const driver::TickRecord&)> watch{};
@@ -34,9 +42,25 @@ struct Identified {
   PerMass bare;                   ///< The fit of the motion without the known mass.
   std::optional<PerMass> loaded;  ///< Of that with it, if there was one.
   CableFit lines;                 ///< What the lines of the motion without it say of its cables.
+  LineSpectrum spectrum;          ///< These lines.
+  /// The motion without the known mass, of the links where cables stretch: what `bare` fits.
+  ArmMotion moved;
+  double moved_ahead = 0;  ///< Of the delay, what that motion was freed from already, s.
+  FrictionDirections friction;
+  /// Joint by joint; nothing is searched for behind cables that stretch.
+  std::array<Saturation, 3> saturation;
+  std::optional<ReportTiming> reports;   ///< If they were asked for.
+  std::optional<WatchdogTime> watchdog;  ///< If it was asked for, and the fit is good.
   /// Why the model of a rigid arm does not fit, a sentence each; empty: it does. Nothing may be
   /// written then.
   std::vector<std::string> against;
+
+  /// Returns the motion with what its fit leaves. It must not outlive this.
+  FittedMotion fitted() const {
+    PerMass fit = bare;
+    fit.delay.value -= moved_ahead;
+    return {moved, fit};
+  }
 };
 
 /// Returns why fits do not mean what they say, a sentence each: a hand or a spring at the tip, a
@@ -52,11 +76,5 @@ using OpenBench = std::function<driver::Result<std::unique_ptr<BenchArm>>(bool l
 /// there is nothing to tell. Real-time: never from the servo thread.
 driver::Result<Identified> identify(const OpenBench& open, const scene::ArmFile& file,
                                     const IdentifyOptions& options, const std::atomic<bool>& stop);
-
-/// Returns what was seen of cables that stretch, or from which frequency on none would have been.
-std::string cables_text(const Identified& identified);
-
-/// Returns a table of the constants with their intervals, and what they rest on.
-std::string constants_table(const Identified& identified);
 
 }  // namespace thimble::app

@@ -38,7 +38,11 @@ class Recorder {
     // Until the soft start is over; an arm with its bare tip stays where it is put.
     if (bare && !bench_.run(file_.limits.soft_start + 0.05, rest, stop_)) return why();
     p_WM_ = bench_.device().state().p_WT;
-    return {};
+    if (file_.workspace.holds(p_WM_)) return {};
+    return driver::Error{
+        "The tip is outside the workspace of the arm file, so nothing was asked of the motors. Put "
+        "it into the middle of the workspace, and run `thimble doctor` if it is there: the arm may "
+        "not be calibrated."};
   }
 
   driver::Error why() const {
@@ -125,8 +129,10 @@ class Recorder {
 
   static driver::Error went_away() {
     return driver::Error{
-        "The tip left the space of 4 cm that it may move in, so the motors went off and nothing "
-        "was kept: something pulls at it, or its motors are far stronger than the arm file says. "
+        "The tip left the space that it may move in, 4 cm about where it began and inside the "
+        "workspace of the arm file, so the motors went off and nothing was kept: something pulls "
+        "at "
+        "it, or its motors are far stronger than the arm file says. "
         "Begin in the middle of the workspace, without a hand on the grip."};
   }
 

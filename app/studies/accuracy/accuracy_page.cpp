@@ -1,12 +1,12 @@
 #include "studies/accuracy/accuracy_page.h"
 
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <utility>
 
 #include "report/figure.h"
+#include "report/inline_picture.h"
 #include "studies/accuracy/axis_words.h"
 #include "thimble/scene/build_info.h"
 
@@ -55,26 +55,6 @@ std::string escaped(const std::string& text) {
     }
   }
   return out;
-}
-
-// Reads a picture without what stands before <svg, its numbers made its own: ids of several
-// pictures in one page must not be the same.
-std::string inline_picture(const std::filesystem::path& file, const std::string& mark) {
-  std::ostringstream text;
-  text << std::ifstream(file).rdbuf();
-  std::string svg = text.str();
-  const auto begin = svg.find("<svg");
-  if (begin == std::string::npos) return {};
-  svg.erase(0, begin);
-  for (const std::string& key :
-       {std::string("id=\""), std::string("xlink:href=\"#"), std::string("xlink:href='#"),
-        std::string("id='"), std::string("url(#")}) {
-    for (auto at = svg.find(key); at != std::string::npos;
-         at = svg.find(key, at + key.size() + mark.size())) {
-      svg.insert(at + key.size(), mark);
-    }
-  }
-  return svg;
 }
 
 std::string cell(const std::string& text) {

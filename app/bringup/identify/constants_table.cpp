@@ -1,0 +1,121 @@
+#include "bringup/identify/constants_table.h"
+
+#include <fmt/format.h>
+
+#include "math/elementary.h"
+
+#include "bringup/identify/not_identified.h"
+
+namespace thimble::app {
+namespace {
+
+class Rows {
+ public:
+  /// Adds a constant of SI, `scale` of whose `unit` are one.
+  void add(std::string name, const Estimate& found, double scale, std::string unit,
+           std::optional<double> named = {}) {
+    if (named) named = scale * *named;
+    rows_.push_back(
+        {std::move(name), {scale * found.value, scale * found.plus_minus}, std::move(unit), named});
+  }
+  std::vector<ConstantRow> take() { return std::move(rows_); }
+
+ private:
+  std::vector<ConstantRow> rows_;
+};
+
+void add_friction(const FrictionDirections& friction, Rows& rows) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    const char axis = "xyz"[i];
+    const Estimate &mean = friction.mean[i], &uneven = friction.uneven[i];
+    if (friction.directions_differ && friction.tells(static_cast<int>(i))) {
+      const double error = math::hypot(mean.plus_minus, uneven.plus_minus);
+      rows.add(fmt::format("Coulomb friction, +{}", axis), {mean.value - uneven.value, error}, 1e3,
+               "mN, base");
+      rows.add(fmt::format("Coulomb friction, -{}", axis), {mean.value + uneven.value, error}, 1e3,
+               "mN, base");
+    } else if (friction.axes_differ || friction.directions_differ) {
+      rows.add(fmt::format("Coulomb friction, {}", axis), mean, 1e3, "mN, base");
+    }
+  }
+}
+
+void add_cables(const ArmConstants& found, const scene::ArmFile& file, Rows& rows) {
+  const auto& train = file.simulated.drive_train;
+  const bool named = train.compliant();
+  for (std::size_t i = 0; i < 3; ++i) {
+    const CableConstants& cable = (*found.cables)[i];
+    const auto name = [i](const char* what) { return fmt::format("{} {}", what, i + 1); };
+    const auto of = [&](const Eigen::Vector3d& values) {
+      return named ? std::optional(values[static_cast<Eigen::Index>(i)]) : std::nullopt;
+    };
+    rows.add(name("inertia of motor"), cable.inertia, 1e3, "g m^2", of(train.inertia));
+    rows.add(name("stiffness of cable"), cable.stiffness, 1, "N m/rad", of(train.stiffness));
+    rows.add(name("damping of cable"), cable.damping, 1, "N m s/rad", of(train.damping));
+    rows.add(name("antiresonance"), cable.antiresonance, 1, "Hz, link on its cable");
+    rows.add(name("resonance"), cable.resonance, 1, "Hz, motor against link");
+  }
+}
+
+}  // namespace
+
+std::vector<ConstantRow> constant_rows(const Identified& identified, const scene::ArmFile& file) {
+  const ArmConstants& found = identified.constants;
+  const auto& simulated = file.simulated;
+  const auto named = [&](double value) {
+    return file.can_simulate ? std::optional(value) : std::nullopt;
+  };
+  Rows rows;
+  rows.add("mass at the tip", found.mass, 1e3, "g", named(simulated.plant.mass));
+  rows.add("viscous friction", found.viscous, 1, "N s/m", named(simulated.plant.viscous));
+  rows.add("Coulomb friction", found.coulomb, 1e3, "mN per axis", named(simulated.plant.coulomb));
+  add_friction(identified.friction, rows);
+  rows.add("weight", found.weight, 1e3, "mN", named(simulated.weight_B.norm()));
+  for (std::size_t i = 0; i < 3; ++i) {
+    rows.add(fmt::format("gain of motor {}", i + 1), found.gain[i], 1,
+             "of the arm file's torque constant", 1.0);
+  }
+  const double delay =
+      1e-9 * static_cast<double>(simulated.wire.delay_in_ns + simulated.wire.delay_out_ns);
+  rows.add("delay, force to motion", found.delay, 1e3, "ms", named(delay));
+  if (found.cables) add_cables(found, file, rows);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Saturation& one = identified.saturation[i];
+    if (one.seen) {
+      rows.add(fmt::format("most torque of motor {}", i + 1), one.most, 1,
+               "N m at the joint, by the arm file's constants");
+    }
+  }
+  if (identified.reports && identified.reports->period.value > 0) {
+    const double period = 1e-9 * static_cast<double>(simulated.firmware.report_period_ns);
+    rows.add("report period", identified.reports->period, 1e3, "ms", named(period));
+    rows.add("jitter of reports, RMS", identified.reports->jitter, 1e3, "ms");
+  }
+  if (identified.watchdog && identified.watchdog->known()) {
+    rows.add("watchdog of the firmware", identified.watchdog->time, 1e3, "ms after a message",
+             1e-9 * static_cast<double>(file.limits.watchdog_ns));
+  }
+  return rows.take();
+}
+
+std::string fit_text(const PerMass& fit) {
+  return fmt::format(
+      "Fitted to {} pieces of motion ({} left out, in which an axis stood); {:.3f} % of the "
+      "acceleration is explained, what is left is {:.1f} times the encoders' steps.",
+      fit.windows, fit.left_out, 100 * fit.explained, fit.residual / fit.noise);
+}
+
+std::string constants_table(const Identified& identified, const scene::ArmFile& file) {
+  std::string text = "Constants, each with its 95 % interval:\n";
+  for (const ConstantRow& row : constant_rows(identified, file)) {
+    text += fmt::format("  {:<24} {:>10.5g} +- {:<9.2g} {}\n", row.name, row.found.value,
+                        row.found.plus_minus, row.unit);
+  }
+  text += fit_text(identified.bare) + "\n";
+  if (identified.constants.absolute) text += "Mass and forces were measured with the known mass.\n";
+  text += "Not identified:\n";
+  for (const std::string& sentence : not_identified(identified)) text += "  " + sentence + "\n";
+  return text;
+}
+
+}  // namespace thimble::app

@@ -1,0 +1,35 @@
+#include "bringup/identify/joint_friction.h"
+
+#include <Eigen/LU>
+
+namespace thimble::app {
+
+std::array<std::vector<FrictionPoint>, 3> joint_friction(const FittedMotion& motion, double mass) {
+  std::array<std::vector<FrictionPoint>, 3> points;
+  const auto& equations = motion.equations.equations();
+  for (std::size_t i = 0; i + 2 < equations.size(); ++i) {
+    const int middle = equations[i].middle;
+    if (equations[i].axis != 0 || equations[i + 2].middle != middle) continue;
+    Eigen::Vector3d seen, fitted;  // N at the tip
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto& equation = equations[i + static_cast<std::size_t>(axis)];
+      const auto row = static_cast<Eigen::Index>(i) + axis;
+      const double friction =
+          motion.residual.rows(row, PerMass::kViscous) * motion.fit.theta[PerMass::kViscous] +
+          motion.residual.rows(row, PerMass::kCoulomb) * motion.fit.theta[PerMass::kCoulomb];
+      fitted[equation.axis] = -mass * friction;
+      seen[equation.axis] = -mass * (friction + motion.residual.rest[row]);
+    }
+    const Eigen::Matrix3d& G = motion.motion().samples[static_cast<std::size_t>(middle)].G;
+    const Eigen::Matrix3d J_T = G.inverse().transpose();
+    const Eigen::Vector3d speed = G * motion.equations.velocity(middle);
+    const Eigen::Vector3d of_seen = J_T * seen, of_fitted = J_T * fitted;
+    for (int joint = 0; joint < 3; ++joint) {
+      points[static_cast<std::size_t>(joint)].push_back(
+          {speed[joint], of_seen[joint], of_fitted[joint]});
+    }
+  }
+  return points;
+}
+
+}  // namespace thimble::app

@@ -1,0 +1,149 @@
+#include "bringup/identify/not_identified.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "bringup/identify/line_forces.h"
+
+namespace thimble::app {
+namespace {
+
+using Sentences = std::vector<std::string>;
+
+void of_constants(const ArmConstants& found, Sentences& all) {
+  if (!found.absolute) {
+    all.emplace_back(
+        "Scale: motion alone shows no mass without a force, so the torque constants of the arm "
+        "file were taken to be right on average. All but the delay is as wrong as they are; a "
+        "known mass on the tip (--known-mass) measures them.");
+  }
+  if (found.viscous.holds(0)) {
+    all.push_back(fmt::format(
+        "Viscous friction: too weak beside dry friction to be seen; below {:.3g} N s/m.",
+        std::max(0.0, found.viscous.value + found.viscous.plus_minus)));
+  }
+  if (found.weight.holds(0)) {
+    all.push_back(fmt::format("Weight: none seen; below {:.2g} mN.",
+                              1e3 * (found.weight.value + found.weight.plus_minus)));
+  }
+}
+
+void of_cables(const Identified& identified, Sentences& all) {
+  const CableFit& lines = identified.lines;
+  if (lines.noise.empty()) {
+    all.emplace_back("Cables that stretch: they were not looked for.");
+  } else if (!lines.stretches) {
+    const Eigen::Vector3d from =
+        lines.unseen_from.cwiseMin(Eigen::Vector3d::Constant(LineForces::kHighest));
+    all.push_back(fmt::format(
+        "Cables that stretch: no compliance was seen; a link that oscillates on its cable below "
+        "{:.0f}, {:.0f}, {:.0f} Hz (joint by joint) would have been.",
+        from[0], from[1], from[2]));
+  }
+}
+
+void of_friction(const FrictionDirections& friction, Sentences& all) {
+  if (!friction.axes_differ && !friction.directions_differ) {
+    double most = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      most = std::max({most, friction.mean[i].plus_minus, friction.uneven[i].plus_minus});
+    }
+    all.push_back(fmt::format(
+        "Dry friction that differs between axes or directions: none seen beyond {:.2g} mN.",
+        1e3 * most));
+  }
+  all.emplace_back(
+      "Dry friction up and down: what it differs by is the same as weight, in motion and at rest, "
+      "and stands there.");
+}
+
+void of_saturation(const Identified& identified, Sentences& all) {
+  if (identified.lines.stretches) {
+    all.emplace_back("Saturation of the amplifiers: not looked for behind cables that stretch.");
+    return;
+  }
+  std::string none, blind;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Saturation& one = identified.saturation[i];
+    if (one.seen) continue;
+    std::string& text = one.searched ? none : blind;
+    text += fmt::format("{}{:.2g} N m (joint {})", text.empty() ? "" : ", ", one.asked, i + 1);
+  }
+  if (!none.empty()) {
+    all.push_back("Saturation of the amplifiers: none seen up to " + none +
+                  ", the most that was asked for.");
+  }
+  if (!blind.empty()) {
+    all.push_back("Saturation of the amplifiers: up to " + blind +
+                  " too little was asked for beyond friction to see it.");
+  }
+}
+
+std::string watchdog_text(const WatchdogSeen& seen) {
+  switch (seen.end) {
+    case WatchdogEnd::kTooLong:
+      return fmt::format(
+          "within its time a free tip would go farther than {:.0f} mm, so nothing "
+          "was pushed. `thimble feel-check` measures it on a hand.",
+          1e3 * kWatchdogWayMost);
+    case WatchdogEnd::kNoRoom:
+      return "a side of the workspace was too near for a push.";
+    case WatchdogEnd::kAnswersOnly:
+      return "the arm speaks only when spoken to, so nobody sees what it does in silence.";
+    case WatchdogEnd::kHeld:
+      return fmt::format("the tip did not move under {:.2f} N.", seen.force);
+    case WatchdogEnd::kLetGo:
+    case WatchdogEnd::kStillOn:
+      return fmt::format(
+          "the motors were still on {:.0f} ms after the last message, when the tip "
+          "had gone {:.0f} mm and was let go.",
+          1e3 * seen.time, 1e3 * seen.way);
+    case WatchdogEnd::kStopped:
+    case WatchdogEnd::kSeen:
+      break;
+  }
+  return "a fault, or a tip that left the workspace, ended it.";
+}
+
+void of_link(const Identified& identified, Sentences& all) {
+  if (!identified.reports) {
+    all.emplace_back("Report period and jitter: not asked for.");
+  } else if (identified.reports->period.value == 0) {
+    all.push_back(fmt::format("Report period and jitter: only {} reports came in the time.",
+                              identified.reports->reports));
+  } else if (identified.reports->blurred) {
+    all.emplace_back(
+        "Report period and jitter: reports come so unevenly that a late one and a missing one "
+        "cannot be told apart; both figures are rough.");
+  }
+  if (!identified.watchdog) {
+    all.push_back("Watchdog of the firmware: " +
+                  std::string(!identified.reports ? "not asked for."
+                              : !identified.against.empty()
+                                  ? "an arm whose fit is bad is not pushed further."
+                                  : "behind cables that stretch the oscillation of the links hides "
+                                    "when the force goes off."));
+  } else if (!identified.watchdog->known()) {
+    all.push_back("Watchdog of the firmware: " + watchdog_text(identified.watchdog->last));
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> not_identified(const Identified& identified) {
+  Sentences all;
+  of_constants(identified.constants, all);
+  of_cables(identified, all);
+  of_friction(identified.friction, all);
+  of_saturation(identified, all);
+  of_link(identified, all);
+  all.emplace_back("Play and cogging: not looked for.");
+  all.emplace_back(
+      "Mass over the workspace: the tip moved in one place, within 4 cm; links whose share changes "
+      "with the pose look like one mass there.");
+  return all;
+}
+
+}  // namespace thimble::app

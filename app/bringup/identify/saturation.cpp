@@ -1,0 +1,147 @@
+#include "bringup/identify/saturation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "bringup/identify/weak_form/clustered_fit.h"
+#include "math/elementary.h"
+
+namespace thimble::app {
+namespace {
+
+// Information by which it must be better before it is believed, and how much of the torque beyond
+// must be missing [chosen: none of 200 hidden arms without is told to have one].
+constexpr double kBetter = 10;
+constexpr double kMissingLeast = 0.3;
+// Half-width of the interval of the share that is missing, up to which a search is one.
+constexpr double kSearched = 0.3;
+// Share of the residual's square that may be left with all of them: what else makes a fit bad
+// (cogging, a hand) looks a little like an amplifier that saturates, and is not explained by one.
+constexpr double kLeftMost = 0.3;
+// Of a torque that was found, what the held torques and the friction's signs cost, as a standard
+// deviation [chosen so that intervals hold 95 % of the truths, identify_further_test].
+constexpr double kMethod = 0.02;
+constexpr int kRounds = 6;  // of Newton's search for the torque
+
+/// Torques of all ticks of one joint, the others' zero.
+template <class Of>
+std::vector<Eigen::Vector3d> torques_of(const ArmMotion& motion, int joint, const Of& of) {
+  std::vector<Eigen::Vector3d> all(motion.samples.size(), Eigen::Vector3d::Zero());
+  for (std::size_t i = 0; i < all.size(); ++i) all[i][joint] = of(motion.samples[i].tau[joint]);
+  return all;
+}
+
+/// What torques of a joint do to all equations, per mass.
+Eigen::VectorXd pushed(const FittedMotion& motion, int joint,
+                       const std::vector<Eigen::Vector3d>& torques) {
+  Eigen::VectorXd column(motion.residual.rows.rows());
+  for (Eigen::Index i = 0; i < column.size(); ++i) {
+    column[i] = motion.equations.pushed(static_cast<std::size_t>(i), motion.fit.delay.value,
+                                        torques)[joint];
+  }
+  return column;
+}
+
+double beyond(double torque, double most) {
+  return torque - std::clamp(torque, -most, most);
+}
+
+/// The joints whose motors seem to saturate.
+std::vector<int> seen_of(const std::array<Saturation, 3>& all) {
+  std::vector<int> joints;
+  for (int joint = 0; joint < 3; ++joint) {
+    if (all[static_cast<std::size_t>(joint)].seen) joints.push_back(joint);
+  }
+  return joints;
+}
+
+/// Of motors that were found to give no more than about `most`: finds all of these together, by
+/// Newton's rule. What is missing is taken off, and what a little more would give is looked for.
+void refine(const FittedMotion& motion, std::array<Saturation, 3>& all) {
+  const std::vector<int> joints = seen_of(all);
+  Eigen::Vector3d gain = motion.fit.theta.segment<3>(PerMass::kGain);
+  for (int round = 0; round < kRounds && !joints.empty(); ++round) {
+    Eigen::VectorXd rest = motion.residual.rest;
+    Eigen::MatrixXd edges(rest.size(), static_cast<Eigen::Index>(joints.size()));
+    for (std::size_t i = 0; i < joints.size(); ++i) {
+      const int joint = joints[i];
+      const double most = all[static_cast<std::size_t>(joint)].most.value;
+      rest += gain[joint] * pushed(motion, joint,
+                                   torques_of(motion.motion(), joint,
+                                              [&](double tau) { return beyond(tau, most); }));
+      edges.col(static_cast<Eigen::Index>(i)) =
+          gain[joint] * pushed(motion, joint, torques_of(motion.motion(), joint, [&](double tau) {
+                                 return std::abs(tau) > most ? std::copysign(1.0, tau) : 0.0;
+                               }));
+    }
+    const FurtherColumns found =
+        fit_further(motion.residual.rows, rest, edges, motion.residual.clusters);
+    gain = motion.fit.theta.segment<3>(PerMass::kGain) + found.change.segment<3>(PerMass::kGain);
+    for (std::size_t i = 0; i < joints.size(); ++i) {
+      Estimate& most = all[static_cast<std::size_t>(joints[i])].most;
+      const auto k = static_cast<Eigen::Index>(i);
+      most.value += std::clamp(found.factor[k], -0.3 * most.value, 0.3 * most.value);
+      most.plus_minus =
+          kNormal95 * math::hypot(std::sqrt(found.covariance(k, k)), kMethod * most.value);
+    }
+  }
+}
+
+/// Returns whether the amplifiers that seem to saturate are what makes the fit bad.
+bool explain(const FittedMotion& motion, const std::array<Saturation, 3>& all) {
+  std::vector<Eigen::VectorXd> columns;
+  for (const int joint : seen_of(all)) {
+    const Saturation& one = all[static_cast<std::size_t>(joint)];
+    columns.push_back(pushed(motion, joint, torques_of(motion.motion(), joint, [&](double tau) {
+                               return -beyond(tau, one.most.value);
+                             })));
+  }
+  if (columns.empty()) return false;
+  Eigen::MatrixXd together(columns.front().size(), static_cast<Eigen::Index>(columns.size()));
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    together.col(static_cast<Eigen::Index>(i)) = columns[i];
+  }
+  return fit_further(motion.residual.rows, motion.residual.rest, together, motion.residual.clusters)
+             .left < kLeftMost;
+}
+
+}  // namespace
+
+std::array<Saturation, 3> saturations(const FittedMotion& motion) {
+  std::array<Saturation, 3> all;
+  for (int joint = 0; joint < 3; ++joint) {
+    Saturation& one = all[static_cast<std::size_t>(joint)];
+    std::vector<double> asked;
+    for (const MotionSample& sample : motion.motion().samples) {
+      asked.push_back(std::abs(sample.tau[joint]));
+    }
+    std::sort(asked.begin(), asked.end());
+    one.asked = asked.back();
+    const double gain = motion.fit.theta[PerMass::kGain + joint];
+    double best = 0;
+    for (const double share : {0.5, 0.7, 0.85, 0.95, 0.98}) {
+      const double most =
+          asked[static_cast<std::size_t>(share * static_cast<double>(asked.size() - 1))];
+      const Eigen::MatrixXd column = pushed(
+          motion, joint,
+          torques_of(motion.motion(), joint, [&](double tau) { return -beyond(tau, most); }));
+      const FurtherColumns found =
+          fit_further(motion.residual.rows, motion.residual.rest, column, motion.residual.clusters);
+      const double missing = found.factor[0] / gain;
+      const double error = kNormal95 * std::sqrt(found.covariance(0, 0)) / gain;
+      one.searched = one.searched || error < kSearched;
+      if (found.better < std::max(best, kBetter) || missing < kMissingLeast) continue;
+      best = found.better;
+      one.seen = true;
+      one.most.value = most;
+    }
+  }
+  refine(motion, all);
+  if (!explain(motion, all)) {
+    for (Saturation& one : all) one.seen = false;
+  }
+  return all;
+}
+
+}  // namespace thimble::app

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "bringup/identify/weak_form/fit_residual.h"
+#include "bringup/identify/weak_form/motion_equations.h"
+
+namespace thimble::app {
+
+/// A motion, the constants that were fitted to it, and what these leave: what further constants are
+/// looked for in. The motion must outlive it. Real-time: never from the servo thread.
+struct FittedMotion {
+  PerMass fit;
+  MotionEquations equations;
+  FitResidual residual;
+
+  FittedMotion(const ArmMotion& motion, const PerMass& fitted)
+      : fit(fitted), equations(motion, !fitted.theta.tail<3>().isZero(0)) {
+    equations.find_signs(fit.theta[PerMass::kCoulomb]);
+    residual = residual_of(equations, fit);
+  }
+
+  const ArmMotion& motion() const { return equations.motion(); }
+};
+
+}  // namespace thimble::app

@@ -1,0 +1,176 @@
+#include "bringup/identify/weak_form/motion_equations.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+namespace thimble::app {
+namespace {
+
+constexpr int kHop = 15;         // ticks between bumps
+constexpr int kSmooth = 10;      // ticks to either side, for the sign of a velocity
+constexpr double kSlow = 0.003;  // m/s, below which the sign of a velocity is not known
+constexpr int kSlowMost = 3;  // ticks that an axis may be so slow, which turns and does not stick
+
+}  // namespace
+
+MotionEquations::MotionEquations(const ArmMotion& motion, bool with_inertia)
+    : motion_(motion), with_inertia_(with_inertia), bump_(motion.dt) {
+  for (const double value : bump_.value) area_ += value;
+  find_velocities();
+  gather();
+  find_signs(0);
+}
+
+void MotionEquations::find_velocities() {
+  const TurnSmoothing<kSmooth> smooth(motion_.dt);
+  mean_distance_ = smooth.mean_distance;
+  velocity_.assign(motion_.samples.size(), Eigen::Vector3d::Zero());
+  const int end = static_cast<int>(motion_.samples.size()) - kSmooth;
+  for (int k = kSmooth; k < end; ++k) {
+    Eigen::Vector3d sum(0, 0, 0);
+    for (int j = -kSmooth; j <= kSmooth; ++j) {
+      sum -= smooth.slope[static_cast<std::size_t>(j + kSmooth)] * at(k + j).p_BT;
+    }
+    velocity_[static_cast<std::size_t>(k)] = sum;
+  }
+}
+
+void MotionEquations::find_signs(double coulomb) {
+  sign_.assign(velocity_.size(), Eigen::Vector3d::Zero());
+  const double lift = std::max(0.0, coulomb) * mean_distance_;
+  for (std::size_t k = 1; k + 1 < velocity_.size(); ++k) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const double rise = velocity_[k + 1][axis] - velocity_[k - 1][axis];
+      const double v = velocity_[k][axis] + std::copysign(lift, rise);
+      const double half_tick = 0.25 * std::abs(rise);
+      sign_[k][axis] = std::abs(v) < half_tick ? v / half_tick : v > 0 ? 1 : v < 0 ? -1 : 0;
+    }
+  }
+  sum_frictions();
+}
+
+void MotionEquations::gather() {
+  const int first = kHalf + static_cast<int>(kDelayMost / motion_.dt) + 2;
+  const int end = static_cast<int>(motion_.samples.size()) - kHalf - kSmooth;
+  for (int middle = first; middle < end; middle += kHop) {
+    bool whole = true;
+    for (int j = -kHalf; j <= kHalf; ++j) whole = whole && at(middle + j).fresh;
+    if (!whole) {
+      ++torn_;
+      continue;
+    }
+    ++whole_;
+    for (int axis = 0; axis < 3; ++axis) {
+      int slow = 0, slowest = 0;
+      double left = 0;
+      for (int j = -kHalf; j <= kHalf; ++j) {
+        const auto i = static_cast<std::size_t>(j + kHalf);
+        const double v = velocity_[static_cast<std::size_t>(middle + j)][axis];
+        slow = std::abs(v) < kSlow ? slow + 1 : 0;
+        slowest = std::max(slowest, slow);
+        left += bump_.curvature[i] * (at(middle + j).p_BT[axis] - at(middle).p_BT[axis]);
+      }
+      if (slowest > kSlowMost) {
+        ++left_out_;
+        continue;
+      }
+      equations_.push_back({.middle = middle, .axis = axis, .left = left / area_});
+    }
+  }
+}
+
+void MotionEquations::sum_frictions() {
+  // Dry friction hangs on where the signs turn, nothing here on the delay.
+  for (Equation& equation : equations_) {
+    const int axis = equation.axis, middle = equation.middle;
+    equation.viscous = equation.coulomb = equation.stiffness = 0;
+    for (int j = -kHalf; j < kHalf; ++j) {
+      const auto i = static_cast<std::size_t>(j + kHalf);
+      const double p = at(middle + j).p_BT[axis];
+      equation.viscous += bump_.slope[i] * (p - at(middle).p_BT[axis]);
+      equation.coulomb -= bump_.value[i] * sign_[static_cast<std::size_t>(middle + j)][axis];
+      equation.stiffness -= bump_.value[i] * p;
+    }
+  }
+}
+
+template <class TorqueAt>
+MotionEquations::Pushed MotionEquations::sum_of(std::size_t number, int late,
+                                                const TorqueAt& torque_at) const {
+  Pushed sums;
+  const int axis = equations_[number].axis, middle = equations_[number].middle;
+  for (int j = -kHalf; j < kHalf; ++j) {
+    const auto i = static_cast<std::size_t>(j + kHalf);
+    const MotionSample &here = at(middle + j), &next = at(middle + j + 1);
+    const Eigen::Vector3d& tau = torque_at(middle + j - late);
+    const Eigen::Vector3d from = bump_.value[i] * here.G.col(axis);
+    const Eigen::Vector3d rise = bump_.value[i + 1] * next.G.col(axis) - from;
+    sums.from += tau.cwiseProduct(from);
+    sums.rise += tau.cwiseProduct(rise);
+    // That of accelerations moves little within a tick.
+    if (with_inertia_) sums.inert -= at(middle + j - late).ddq.cwiseProduct(from + 0.5 * rise);
+  }
+  sums.summed = true;
+  return sums;
+}
+
+const MotionEquations::Pushed& MotionEquations::pushed_late(std::size_t number, int late) const {
+  // A line search asks for the same ticks again and again, so each is summed up once.
+  auto& all = pushed_[static_cast<std::size_t>(late)];
+  if (all.empty()) all.resize(equations_.size());
+  Pushed& sums = all[number];
+  if (!sums.summed) {
+    sums =
+        sum_of(number, late, [this](int tick) -> const Eigen::Vector3d& { return at(tick).tau; });
+  }
+  return sums;
+}
+
+double MotionEquations::part_of(double delay, int& whole) const {
+  const double ticks = delay / motion_.dt;
+  whole = static_cast<int>(std::floor(ticks));
+  return ticks - whole;
+}
+
+Eigen::Vector3d MotionEquations::joined(const Pushed& older, const Pushed& newer, double part) {
+  return part * (older.from + 0.5 * part * older.rise) +
+         (1 - part) * (newer.from + 0.5 * (1 + part) * newer.rise);
+}
+
+MotionEquations::Row MotionEquations::row(std::size_t number, double delay) const {
+  Row row = Row::Zero();
+  const Equation& equation = equations_[number];
+  int whole = 0;
+  const double part = part_of(delay, whole);
+  const Pushed &older = pushed_late(number, whole + 1), &newer = pushed_late(number, whole);
+  row.segment<3>(PerMass::kGain) = joined(older, newer, part);
+  row.segment<3>(PerMass::kInertia) = part * older.inert + (1 - part) * newer.inert;
+  row[PerMass::kViscous] = equation.viscous;
+  row[PerMass::kCoulomb] = equation.coulomb;
+  row[PerMass::kStiffness] = equation.stiffness;
+  row /= area_;
+  row[PerMass::kWeight + equation.axis] = 1;
+  return row;
+}
+
+Eigen::Vector3d MotionEquations::pushed(std::size_t number, double delay,
+                                        const std::vector<Eigen::Vector3d>& torques) const {
+  int whole = 0;
+  const double part = part_of(delay, whole);
+  const auto torque_at = [&](int tick) -> const Eigen::Vector3d& {
+    return torques[static_cast<std::size_t>(tick)];
+  };
+  return joined(sum_of(number, whole + 1, torque_at), sum_of(number, whole, torque_at), part) /
+         area_;
+}
+
+double MotionEquations::noise() const {
+  double curvature = 0;
+  for (const double value : bump_.curvature) curvature += value * value;
+  const Eigen::Matrix3d J = at(equations_.front().middle).G.inverse();
+  const double at_tip = (J * motion_.step.asDiagonal()).squaredNorm() / 3;
+  return std::sqrt(curvature * at_tip / 12) / area_;
+}
+
+}  // namespace thimble::app

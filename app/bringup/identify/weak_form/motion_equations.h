@@ -1,0 +1,122 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "bringup/identify/arm_motion.h"
+#include "bringup/identify/motion_fit.h"
+#include "bringup/identify/smooth_bump.h"
+
+namespace thimble::app {
+
+/// A motion in the weak form: both sides of the law of PerMass integrated against smooth bumps of
+/// 60 ms, an equation for each bump and axis of the base in which the axis did not stand. The
+/// motion must outlive it. Real-time: never from the servo thread.
+class MotionEquations {
+ public:
+  static constexpr int kHalf = 30;            ///< Ticks to either side of a bump's middle.
+  static constexpr int kCluster = 500;        ///< Ticks whose residuals may hang together.
+  static constexpr double kDelayMost = 0.02;  ///< s
+  /// What the constants of PerMass::theta multiply; the last column is the delay's.
+  using Row = Eigen::Matrix<double, PerMass::kCount + 1, 1>;
+
+  /// One bump of one axis: what stands on the left, and what the frictions multiply.
+  struct Equation {
+    int middle = 0;   ///< Tick.
+    int axis = 0;     ///< Of the base.
+    double left = 0;  ///< Acceleration, m/s^2.
+    double viscous = 0, coulomb = 0, stiffness = 0;
+  };
+
+  /// Takes a motion; `with_inertia`: rows have the columns of the motors' accelerations.
+  MotionEquations(const ArmMotion& motion, bool with_inertia);
+
+  /// Finds the mean sign of the velocity over each tick. Where the velocity turns, dry friction
+  /// `coulomb` (per mass, m/s^2) bends it by 2 c |t| / 2, which smoothing lifts by c times the
+  /// bump's mean distance: the axis turns when the smoothed velocity is that far from zero.
+  void find_signs(double coulomb);
+
+  /// Returns what the constants multiply at a delay (s). Torques stand from tick to tick: within
+  /// the tick that they arrive in, the older ones last for the delay's fraction.
+  Row row(std::size_t number, double delay) const;
+
+  /// Returns what the joints' torques of `torques` (N m, tick by tick) do to an equation when they
+  /// come `delay` (s) late: what a row holds of the motion's own.
+  Eigen::Vector3d pushed(std::size_t number, double delay,
+                         const std::vector<Eigen::Vector3d>& torques) const;
+
+  /// Returns the mean of a quantity of an axis over an equation's bump, `of(tick, axis)`.
+  template <class Of>
+  double mean(std::size_t number, const Of& of) const {
+    const Equation& equation = equations_[number];
+    double sum = 0;
+    for (int j = -kHalf; j <= kHalf; ++j) {
+      sum +=
+          bump_.value[static_cast<std::size_t>(j + kHalf)] * of(equation.middle + j, equation.axis);
+    }
+    return sum / area_;
+  }
+  /// Returns what a shift of the seen tip, `of(tick, axis)` (m), adds to an equation's left side.
+  template <class Of>
+  double curved(std::size_t number, const Of& of) const {
+    const Equation& equation = equations_[number];
+    const double middle = of(equation.middle, equation.axis);
+    double sum = 0;
+    for (int j = -kHalf; j <= kHalf; ++j) {
+      sum += bump_.curvature[static_cast<std::size_t>(j + kHalf)] *
+             (of(equation.middle + j, equation.axis) - middle);
+    }
+    return sum / area_;
+  }
+
+  const std::vector<Equation>& equations() const { return equations_; }
+  const ArmMotion& motion() const { return motion_; }
+  /// Returns the smoothed velocity of the tip at a tick, base, m/s.
+  const Eigen::Vector3d& velocity(int tick) const {
+    return velocity_[static_cast<std::size_t>(tick)];
+  }
+  /// Returns the mean sign of the velocity over a tick, axis by axis.
+  const Eigen::Vector3d& sign(int tick) const { return sign_[static_cast<std::size_t>(tick)]; }
+  /// Returns the RMS that the steps of the encoders leave, were they evenly spread noise, m/s^2.
+  double noise() const;
+  /// Returns in how many pieces an axis stood too long to know its friction.
+  std::size_t left_out() const { return left_out_; }
+  /// Returns whether most pieces hold ticks that saw no report.
+  bool torn() const { return torn_ > whole_; }
+
+ private:
+  static constexpr std::size_t kLateMost = 24;  // ticks, kDelayMost and what a search looks beyond
+
+  /// What torques do to an equation when they are a number of ticks late: sums over the bump, of
+  /// its value at the beginning of each tick and of its rise over it, joint by joint.
+  struct Pushed {
+    Eigen::Vector3d from{0, 0, 0}, rise{0, 0, 0}, inert{0, 0, 0};
+    bool summed = false;
+  };
+
+  const MotionSample& at(int tick) const { return motion_.samples[static_cast<std::size_t>(tick)]; }
+  void find_velocities();
+  void gather();
+  void sum_frictions();
+  template <class TorqueAt>
+  Pushed sum_of(std::size_t number, int late, const TorqueAt& torque_at) const;
+  const Pushed& pushed_late(std::size_t number, int late) const;
+  /// Returns the part of the delay within a tick, and sets the whole ticks of it.
+  double part_of(double delay, int& whole) const;
+  static Eigen::Vector3d joined(const Pushed& older, const Pushed& newer, double part);
+
+  const ArmMotion& motion_;
+  bool with_inertia_;
+  SmoothBump<kHalf> bump_;
+  double area_ = 0;
+  std::vector<Eigen::Vector3d> velocity_, sign_;
+  double mean_distance_ = 0;  // of a tick from the middle of the smoothing bump, s
+  std::vector<Equation> equations_;
+  mutable std::array<std::vector<Pushed>, kLateMost> pushed_;  // by ticks, for each equation
+  std::size_t left_out_ = 0;
+  std::size_t whole_ = 0, torn_ = 0;  // pieces of motion without and with ticks that saw no report
+};
+
+}  // namespace thimble::app

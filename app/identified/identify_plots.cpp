@@ -1,0 +1,175 @@
+#include "identified/identify_plots.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <tuple>
+#include <utility>
+
+#include "bringup/identify/line_forces.h"
+#include "identified/plot_tables.h"
+#include "report/figure.h"
+#include "report/gnuplot.h"
+#include "report/picture_parts.h"
+
+namespace thimble::app {
+namespace {
+
+constexpr const char* kSeenInk = "#9aa5b1";
+constexpr const char* kFitInk = "#0072b2";
+constexpr const char* kMarkInk = "#d55e00";
+constexpr int kWidth = 1200;  // pixels
+
+std::string quiet(const char* more) {
+  return quiet_style() + "set key off\nset tics font ',14'\n" + more;
+}
+
+/// Three panels one below the other, a title at each one's left.
+std::string stacked(const std::string& commands, const std::string& unit,
+                    const std::array<std::string, 3>& plots) {
+  std::string text = quiet("set tmargin 0.6\nset bmargin 0.6\nset lmargin 11\nset rmargin 2\n") +
+                     commands +
+                     "set multiplot layout 3,1 margins 0.09,0.985,0.11,0.97 spacing 0.03\n";
+  for (std::size_t i = 0; i < 3; ++i) {
+    text += fmt::format("set ylabel '{} [{}]' font ',15'\n", "xyz"[i], unit);
+    text += i == 2 ? "set format x '%g'\nset xlabel 'time [s]' font ',15'\n" : "set format x ''\n";
+    text += plots[i] + "\n";
+  }
+  return text + "unset multiplot\n";
+}
+
+/// Three panels side by side, one for each joint.
+std::string beside(const std::string& commands, const std::string& x, const std::string& y,
+                   const std::array<std::string, 3>& plots) {
+  std::string text = quiet("") + commands +
+                     "set multiplot layout 1,3 margins 0.085,0.985,0.2,0.885 spacing 0.055\n";
+  text += fmt::format("set xlabel '{}' font ',15'\n", x);
+  for (std::size_t i = 0; i < 3; ++i) {
+    text += fmt::format("set title 'joint {}' font ',16'\n", i + 1);
+    text += i == 0 ? fmt::format("set ylabel '{}' font ',15' offset 1.5,0\n", y) : "unset ylabel\n";
+    text += plots[i] + "\n";
+  }
+  return text + "unset multiplot\n";
+}
+
+std::string fit_plot() {
+  std::array<std::string, 3> plots;
+  for (std::size_t i = 0; i < 3; ++i) {
+    plots[i] = fmt::format(
+        "plot 'data/identify_fit.dat' index {0} using 1:2 with points pt 7 ps 0.75 lc rgb '{1}', "
+        "'data/identify_fit.dat' index {0} using 1:3 with lines lw 2 lc rgb '{2}'",
+        i, kSeenInk, kFitInk);
+  }
+  return stacked("", "m/s²", plots);
+}
+
+std::string rest_plot(double noise) {
+  std::array<std::string, 3> plots;
+  for (std::size_t i = 0; i < 3; ++i) {
+    plots[i] = fmt::format(
+        "plot 'data/identify_rest.dat' index {} using 1:2 with points pt 7 ps 0.22 lc rgb '{}', "
+        "{:.5g} "
+        "with "
+        "lines lw 1.5 dt 2 lc rgb '{}', {:.5g} with lines lw 1.5 dt 2 lc rgb '{}'",
+        i, kFitInk, 2 * noise, kMarkInk, -2 * noise, kMarkInk);
+  }
+  return stacked("", "m/s²", plots);
+}
+
+std::string friction_plot() {
+  std::array<std::string, 3> plots;
+  for (std::size_t i = 0; i < 3; ++i) {
+    plots[i] = fmt::format(
+        "plot 'data/identify_friction.dat' index {0} using 1:(1e3*$2) with points pt 7 ps 0.2 lc "
+        "rgb '#d5dae0', 'data/identify_friction_medians.dat' index {0} using "
+        "1:(1e3*$2):(1e3*$3):(1e3*$4) with yerrorbars pt 7 ps 0.7 lw 1.5 lc rgb '{1}', "
+        "'data/identify_friction_medians.dat' index {0} using 1:(1e3*$5) with lines lw 2.5 lc rgb "
+        "'{2}'",
+        i, kInk, kFitInk);
+  }
+  return beside("set yzeroaxis lw 1 lc rgb '#b8c2cc'\nset xzeroaxis lw 1 lc rgb '#b8c2cc'\n",
+                "speed of the joint [rad/s]", "torque of friction [mN m]", plots);
+}
+
+std::string lines_plot(const Identified& identified) {
+  std::array<std::string, 3> plots;
+  for (std::size_t i = 0; i < 3; ++i) {
+    std::string marks = "unset arrow\nunset label\n";
+    if (identified.constants.cables) {
+      const CableConstants& cable = (*identified.constants.cables)[i];
+      // A dip has room above it, a peak below.
+      for (const auto& [at, name, place] :
+           {std::tuple{cable.antiresonance.value, "antiresonance", "0.97 right"},
+            std::tuple{cable.resonance.value, "resonance", "0.03 left"}}) {
+        if (at < LineForces::kLowest || at > LineForces::kHighest) continue;
+        marks += fmt::format(
+            "set arrow from {0:.5g}, graph 0 to {0:.5g}, graph 1 nohead dt 2 lw "
+            "1.5 lc rgb '{1}'\nset label '{2} {0:.0f} Hz' at {0:.5g}, graph {3} "
+            "rotate offset -0.6,0 font ',13' textcolor rgb '{1}'\n",
+            at, kMarkInk, name, place);
+      }
+    }
+    plots[i] = marks + fmt::format(
+                           "plot 'data/identify_resonance.dat' index {0} using 1:2 with lines lw 2 "
+                           "lc rgb '{1}', 'data/identify_lines.dat' index {0} using 1:2:3 with "
+                           "yerrorbars pt 7 ps 0.7 lw 1.5 lc rgb '{2}'",
+                           i, kFitInk, kInk);
+  }
+  return beside("set logscale xy\nset xrange [14:400]\nset xtics (15, 30, 60, 120, 240)\n",
+                "frequency [Hz]", "motion over that of stiff cables", plots);
+}
+
+}  // namespace
+
+driver::Result<std::vector<IdentifyPlot>> draw_identified(const Identified& identified,
+                                                          const std::filesystem::path& folder) {
+  const FittedMotion motion = identified.fitted();
+  const double mass = identified.constants.mass.value;
+  const double dt = identified.moved.dt;
+  const bool lines = !identified.lines.noise.empty();
+  std::vector<std::pair<const char*, std::string>> tables{
+      {"identify_fit", fit_table(motion)},
+      {"identify_rest", rest_table(motion)},
+      {"identify_friction", friction_table(motion, mass)},
+      {"identify_friction_medians", friction_medians(motion, mass)}};
+  if (lines) {
+    tables.emplace_back("identify_lines", lines_table(identified, dt));
+    tables.emplace_back("identify_resonance", resonance_table(identified, dt));
+  }
+  for (const auto& [name, text] : tables) {
+    if (auto done = write_text(text, folder / "data" / (std::string(name) + ".dat")); !done) {
+      return done.error();
+    }
+  }
+  std::vector<IdentifyPlot> shown{
+      {"identify_fit", "Fit over data",
+       "Acceleration of the tip along the axes of the base, each point the mean over a piece of 60 "
+       "ms, for two seconds from the middle of the motion. Dots: seen. Line: by the constants."},
+      {"identify_rest", "What the fit leaves",
+       "The same, seen less fitted, over the whole motion. Between the dashed lines lies what the "
+       "steps of the encoders alone would leave (two standard deviations)."},
+      {"identify_friction", "Friction over speed, joint by joint",
+       "What moved beside motors, mass and weight, turned into torques at the joints. Faint: "
+       "pieces "
+       "of 60 ms. Dots: their medians with quartiles. Line: the constants of friction on the same "
+       "motion. A step at zero is dry friction, a slope viscous friction."}};
+  std::vector<std::string> commands{fit_plot(), rest_plot(identified.bare.noise), friction_plot()};
+  if (lines) {
+    shown.push_back(
+        {"identify_lines", "Cables: the answer to 48 small forces",
+         "How far each joint oscillates over what it would if no cable stretched. Dots: seen, with "
+         "what the noise beside the line allows; lines that the noise hides are left out. Line: by "
+         "the constants. A dip is the link's oscillation on its cable, a peak that of motor "
+         "against link; all at 1: nothing stretches."});
+    commands.push_back(lines_plot(identified));
+  }
+  if (!has_gnuplot()) return std::vector<IdentifyPlot>{};
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    const Plot plot{shown[i].name, kWidth, i < 2 ? 720 : 480, commands[i]};
+    if (auto drawn = draw_plot(plot, folder); !drawn) return drawn.error();
+  }
+  return shown;
+}
+
+}  // namespace thimble::app

@@ -1,0 +1,163 @@
+#include "identified/plot_tables.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "bringup/identify/joint_friction.h"
+#include "bringup/identify/line_forces.h"
+#include "bringup/identify/two_mass_search.h"
+
+namespace thimble::app {
+namespace {
+
+constexpr double kExcerpt = 2;  // s
+constexpr double kGap = 0.02;   // s, more than from piece to piece
+constexpr std::size_t kPointsMost = 1500;
+constexpr int kSteps = 21;               // of speed
+constexpr std::size_t kInStepLeast = 8;  // pieces of motion, for a median
+constexpr int kFrequencies = 400;
+
+/// Writes a block for each axis: `line(number of the equation, time)`.
+template <class Line>
+std::string by_axis(const FittedMotion& motion, double from, double until, const Line& line) {
+  std::string text;
+  const auto& equations = motion.equations.equations();
+  for (int axis = 0; axis < 3; ++axis) {
+    double before = HUGE_VAL;
+    for (std::size_t i = 0; i < equations.size(); ++i) {
+      const double time = equations[i].middle * motion.motion().dt;
+      if (equations[i].axis != axis || time < from || time > until) continue;
+      // A line ends where pieces were left out.
+      if (time - before > kGap) text += "\n";
+      text += line(i, time);
+      before = time;
+    }
+    text += "\n\n";
+  }
+  return text;
+}
+
+/// The value below which a share of some lies.
+double quantile(std::vector<double> values, double share) {
+  const auto at =
+      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+/// The constants of an arm like this whose cables do not stretch.
+TwoMassTheta stiff_of(const CableFit& lines) {
+  TwoMassTheta stiff = lines.stretches ? lines.elastic.theta : lines.rigid.theta;
+  stiff.tail<6>().setZero();
+  return stiff;
+}
+
+}  // namespace
+
+std::string fit_table(const FittedMotion& motion) {
+  const double middle =
+      0.5 * static_cast<double>(motion.motion().samples.size()) * motion.motion().dt;
+  return "# time s, acceleration seen, by the fit, m/s^2\n" +
+         by_axis(motion, middle - kExcerpt / 2, middle + kExcerpt / 2,
+                 [&](std::size_t i, double time) {
+                   const double left = motion.equations.equations()[i].left;
+                   return fmt::format("{:.4f} {:.6g} {:.6g}\n", time, left,
+                                      left - motion.residual.rest[static_cast<Eigen::Index>(i)]);
+                 });
+}
+
+std::string rest_table(const FittedMotion& motion) {
+  return "# time s, what the fit leaves, m/s^2\n" +
+         by_axis(motion, 0, HUGE_VAL, [&](std::size_t i, double time) {
+           return fmt::format("{:.4f} {:.6g}\n", time,
+                              motion.residual.rest[static_cast<Eigen::Index>(i)]);
+         });
+}
+
+std::string friction_table(const FittedMotion& motion, double mass) {
+  std::string text = "# speed rad/s, torque of friction N m\n";
+  for (const auto& points : joint_friction(motion, mass)) {
+    const std::size_t stride = points.size() / kPointsMost + 1;
+    for (std::size_t i = 0; i < points.size(); i += stride) {
+      text += fmt::format("{:.6g} {:.6g}\n", points[i].speed, points[i].torque);
+    }
+    text += "\n\n";
+  }
+  return text;
+}
+
+std::string friction_medians(const FittedMotion& motion, double mass) {
+  std::string text = "# speed rad/s, torque N m: median, lower and upper quartile, fit\n";
+  for (const auto& points : joint_friction(motion, mass)) {
+    std::vector<double> speeds;
+    for (const FrictionPoint& point : points) speeds.push_back(std::abs(point.speed));
+    const double most = speeds.empty() ? 0 : quantile(speeds, 0.98);
+    const double step = 2 * most / kSteps;
+    for (int k = 0; k < kSteps; ++k) {
+      const double from = -most + k * step;
+      std::vector<double> seen, fitted;
+      for (const FrictionPoint& point : points) {
+        if (point.speed < from || point.speed >= from + step) continue;
+        seen.push_back(point.torque);
+        fitted.push_back(point.fitted);
+      }
+      if (seen.size() < kInStepLeast) continue;
+      text += fmt::format("{:.6g} {:.6g} {:.6g} {:.6g} {:.6g}\n", from + 0.5 * step,
+                          quantile(seen, 0.5), quantile(seen, 0.25), quantile(seen, 0.75),
+                          quantile(fitted, 0.5));
+    }
+    text += "\n\n";
+  }
+  return text;
+}
+
+std::string lines_table(const Identified& identified, double dt) {
+  const CableFit& lines = identified.lines;
+  const TwoMassTheta stiff = stiff_of(lines);
+  std::string text = "# frequency Hz, motion over that of stiff cables, half the interval\n";
+  for (int joint = 0; joint < 3; ++joint) {
+    for (std::size_t i = 0; i < identified.spectrum.lines.size(); ++i) {
+      const SpectralLine& line = identified.spectrum.lines[i];
+      const double rigid = std::abs(two_mass_answer(stiff, line, lines.JTJ, dt, false)[joint]);
+      const double seen = std::abs(line.q[joint]) / rigid;
+      const double error = kNormal95 * lines.noise[i][joint] / rigid;
+      // What the noise hides says nothing.
+      if (!(error < 0.5 * seen)) continue;
+      text +=
+          fmt::format("{:.6g} {:.6g} {:.6g}\n", line.omega / (2 * std::numbers::pi), seen, error);
+    }
+    text += "\n\n";
+  }
+  return text;
+}
+
+std::string resonance_table(const Identified& identified, double dt) {
+  const CableFit& lines = identified.lines;
+  const TwoMassTheta stiff = stiff_of(lines);
+  std::string text = "# frequency Hz, motion over that of stiff cables by the constants\n";
+  for (int joint = 0; joint < 3; ++joint) {
+    for (int k = 0; k <= kFrequencies; ++k) {
+      const double share = static_cast<double>(k) / kFrequencies;
+      SpectralLine line;
+      const double hz =
+          LineForces::kLowest * math::pow(LineForces::kHighest / LineForces::kLowest, share);
+      line.omega = 2 * std::numbers::pi * hz;
+      line.tau[joint] = 1;
+      const double rigid = std::abs(two_mass_answer(stiff, line, lines.JTJ, dt, false)[joint]);
+      const double found =
+          lines.stretches
+              ? std::abs(two_mass_answer(lines.elastic.theta, line, lines.JTJ, dt, true)[joint])
+              : rigid;
+      text += fmt::format("{:.6g} {:.6g}\n", hz, found / rigid);
+    }
+    text += "\n\n";
+  }
+  return text;
+}
+
+}  // namespace thimble::app

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+
+#include "bringup/identify/identify.h"
+
+namespace thimble::app {
+
+// The numbers behind the plots, as gnuplot reads them; blocks of one file, two empty lines between
+// them, go axis by axis or joint by joint.
+
+/// Returns acceleration as it was seen and as the fit says, for the two seconds in the middle.
+std::string fit_table(const FittedMotion& motion);
+
+/// Returns what the fit leaves of the acceleration over the whole motion.
+std::string rest_table(const FittedMotion& motion);
+
+/// Returns friction over speed of the joints: each piece of motion, at most some thousand of them.
+std::string friction_table(const FittedMotion& motion, double mass);
+
+/// Returns the same as medians over equal steps of speed, with the quartiles and the median of the
+/// fit.
+std::string friction_medians(const FittedMotion& motion, double mass);
+
+/// Returns how far the joints oscillate at each line over what they would with cables that do not
+/// stretch, with the interval that the noise beside the line makes.
+std::string lines_table(const Identified& identified, double dt);
+
+/// Returns the same by the constants that were found, over all frequencies.
+std::string resonance_table(const Identified& identified, double dt);
+
+}  // namespace thimble::app
