@@ -12,7 +12,7 @@
 #include "math/elementary.h"
 #include "mesh/contact_mesh.h"
 #include "mesh/smooth_normals.h"
-#include "object_mesh.h"
+#include "meshes/object_mesh.h"
 #include "stability/draw.h"
 #include "stability/tuning.h"
 

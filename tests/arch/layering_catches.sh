@@ -70,7 +70,7 @@ plant render/src/multirate/model_slot.cpp '"track/god_object.h"'
 plant render/src/track/packed_contact.h '"page/page_file.h"'
 # One forbidden include for each library of app.
 plant app/scene/include/thimble/scene/arm_file.h '"thimble/session/session.h"'
-plant app/scene/src/place_mesh.cpp '"report/figure.h"'
+plant app/scene/src/meshes/place_mesh.cpp '"report/figure.h"'
 plant app/session/src/session.cpp '"report/report.h"'
 plant app/session/src/share/live_control.h '"cli/exit_code.h"'
 plant app/session/include/thimble/session/session.h '"setup.h"'

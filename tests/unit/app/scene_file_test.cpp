@@ -1,5 +1,5 @@
 #include "thimble/scene/scene_file.h"
-#include "place_mesh.h"
+#include "meshes/place_mesh.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 #include <memory>
 #include <utility>
 
-#include "object_mesh.h"
+#include "meshes/object_mesh.h"
 #include "recording/replay_trajectory.h"
 #include "text_file.h"
 #include "thimble/scene/build_info.h"

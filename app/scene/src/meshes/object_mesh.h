@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "place_mesh.h"
+#include "meshes/place_mesh.h"
 #include "thimble/driver/result.h"
 #include "thimble/render/mesh/triangle_mesh.h"
 #include "thimble/scene/scene_file.h"

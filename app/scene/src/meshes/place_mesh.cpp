@@ -1,4 +1,4 @@
-#include "place_mesh.h"
+#include "meshes/place_mesh.h"
 
 #include <Eigen/Geometry>
 

@@ -1,4 +1,4 @@
-#include "object_mesh.h"
+#include "meshes/object_mesh.h"
 
 #include <utility>
 
