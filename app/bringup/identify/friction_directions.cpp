@@ -10,8 +10,8 @@ namespace thimble::app {
 namespace {
 
 // Information by which a difference must be better before it is believed, and its share of the
-// friction below which it is what smoothing leaves [chosen: none of 200 even hidden arms is told to
-// be uneven, identify_friction_test].
+// friction below which it is what smoothing leaves [chosen: no even hidden arm of identify_test is
+// told to be uneven].
 constexpr double kBetter = 10;
 constexpr double kShareLeast = 0.03;
 

@@ -11,7 +11,7 @@ namespace thimble::app {
 namespace {
 
 // Information by which it must be better before it is believed, and how much of the torque beyond
-// must be missing [chosen: none of 200 hidden arms without is told to have one].
+// must be missing [chosen: no hidden arm of identify_test is told to have one].
 constexpr double kBetter = 10;
 constexpr double kMissingLeast = 0.3;
 // Half-width of the interval of the share that is missing, up to which a search is one.
