@@ -36,7 +36,7 @@ class HandPath {
 
   std::shared_ptr<const std::vector<Point>> held_;
   std::span<const Point> points_;  // the same, without a way round
-  std::size_t segment_ = 0;  // where the last question fell
+  std::size_t segment_ = 0;        // where the last question fell
 };
 
 }  // namespace thimble::device_sim

@@ -46,8 +46,8 @@ class ArmSimulation {
       const ArmFile& file, const HandRoute& hand_W, const std::filesystem::path& firmware = {},
       std::uint64_t seed = 0);
 
-  /// Builds another arm of the same file, whose hand goes along the same path, with another seed: as
-  /// `make` would, without its checks, and with one path for both. The error is that of `make`.
+  /// Builds another arm of the same file, whose hand goes along the same path, with another seed:
+  /// as `make` would, without its checks, and with one path for both. The error is that of `make`.
   /// Real-time: never from the servo thread.
   driver::Result<std::unique_ptr<ArmSimulation>> another(std::uint64_t seed) const;
 

@@ -9,8 +9,8 @@
 #include <tuple>
 #include <utility>
 
-#include "mesh_join.h"
 #include "object_mesh.h"
+#include "shared/mesh_join.h"
 #include "still_surface.h"
 #include "thimble/scene/scene_file.h"
 
