@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Measures how long a tick takes on this machine, whole and part by part, contact on meshes of many
 # sizes against other libraries where they are installed (Debian: libembree-dev libcgal-dev
-# libfcl-dev), contact with pages on the disk (640 MB for two minutes), and many arms side by side; prints tables and writes
-# figures.json. Figures are reported, never pass criteria.
+# libfcl-dev), contact with pages on the disk (640 MB for two minutes), and many arms side by side;
+# prints tables and writes figures.json. Figures are reported, never pass criteria.
 #   tests/bench/run.sh [FOLDER]      FOLDER: where to write (default build/bench)
 set -euo pipefail
 cd "$(dirname "$0")/../.."

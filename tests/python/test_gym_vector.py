@@ -32,7 +32,8 @@ def ones(ticks, actions):
 
 
 def into(k, i):
-    return np.array([0.002 * np.sin(k), 0.001 * i, 0.01 - 0.0015 * k])
+    """Into the object; the first arm stays above it, so that time ends its episodes."""
+    return np.array([0.002 * np.sin(k), 0.001 * i, 0.01 - 0.0015 * k if i > 0 else 0.03])
 
 
 def of(infos, i):

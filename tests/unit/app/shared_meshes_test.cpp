@@ -134,7 +134,12 @@ TEST_F(SharedMeshesTest, OfOneSceneAreSharedByItsArms) {
   // A ball that stands still in place of the beam.
   const auto mesh = ball_scene(0.03).parent_path() / "ball.off";
   const auto with_ball = [&mesh](scene::Scene& read) {
-    read.objects[0] = {.name = "ball", .mesh_file = mesh, .scale = 1, .stiffness = 500};
+    scene::SceneObject ball;
+    ball.name = "ball";
+    ball.mesh_file = mesh;
+    ball.scale = 1;
+    ball.stiffness = 500;
+    read.objects[0] = ball;
   };
   const auto opened = Session::open("two_hands", {.adjust = with_ball, .several_arms = true});
   ASSERT_TRUE(opened) << opened.error().message;

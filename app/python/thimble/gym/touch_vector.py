@@ -25,11 +25,10 @@ _ARMS_MOST = 1_000_000  # 100 GB and more; chosen against a wrong unit
 class TouchVectorEnv(VectorBase):
     """Arms of one scene side by side in this process, stepped by one call; Gymnasium's ``VectorEnv``.
 
-    Each is, to the bit, what :class:`TouchEnv` of its seed is alone, and a thousand take hardly longer
-    per arm than one: the scene is read once, its meshes are there once, and the loop over the arms is
-    not Python's. Actions, observations and infos are those of `TouchEnv`, one row for each arm. An arm
-    whose episode ended is begun anew by the next step, which ignores its action and gives reward 0
-    (Gymnasium's NEXT_STEP).
+    Each is, to the bit, what :class:`TouchEnv` of its seed is alone: the scene is read once, its meshes
+    are there once, and the loop over the arms is not Python's. Actions, observations and infos are
+    those of `TouchEnv`, one row for each arm. An arm whose episode ended is begun anew by the next step,
+    which ignores its action and gives reward 0 (Gymnasium's NEXT_STEP).
 
     For several cores start several of them in processes of their own, each with seeds of its own.
     """

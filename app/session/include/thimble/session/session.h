@@ -53,7 +53,7 @@ enum class ClockKind {
 /// What a session keeps of its ticks.
 enum class Keep {
   kRun,     ///< The ticks, their statistics, and the seconds before a fault.
-  kNewest,  ///< The newest tick alone, for many sessions side by side: some 4 MB less for each, and
+  kNewest,  ///< The newest tick alone, for many sessions side by side: some 3 MB less for each, and
             ///< 0.3 MB less per second. Not with viewers.
 };
 
