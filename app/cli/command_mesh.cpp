@@ -14,9 +14,8 @@
 #include "page/page_file.h"
 #include "report/pictures.h"
 #include "thimble/render/mesh/check_mesh.h"
-#include "thimble/render/mesh/load_mesh.h"
+#include "thimble/render/mesh/mesh_file.h"
 #include "thimble/render/mesh/repair_mesh.h"
-#include "thimble/render/mesh/save_mesh.h"
 #include "thimble/render/mesh/thicken_sheets.h"
 
 namespace thimble::app {

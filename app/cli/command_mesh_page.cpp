@@ -8,7 +8,7 @@
 #include "mesh/contact_mesh.h"
 #include "packed/packed_surface.h"
 #include "page/page_file.h"
-#include "thimble/render/mesh/load_mesh.h"
+#include "thimble/render/mesh/mesh_file.h"
 
 namespace thimble::app {
 namespace {

@@ -35,7 +35,7 @@
 #include "stability/tuning.h"
 #include "terminal.h"
 #include "thimble/driver/discovery.h"
-#include "thimble/render/mesh/save_mesh.h"
+#include "thimble/render/mesh/mesh_file.h"
 #include "thimble/scene/quality.h"
 #include "thimble/scene/shipped_files.h"
 #include "thimble/session/servo_thread.h"

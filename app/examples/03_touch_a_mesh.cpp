@@ -5,7 +5,7 @@
 #include <string>
 
 #include "thimble/render/build_object_touch.h"
-#include "thimble/render/mesh/load_mesh.h"
+#include "thimble/render/mesh/mesh_file.h"
 #include "thimble/scene/simulated_device.h"
 
 using thimble::driver::DeviceState;

@@ -18,7 +18,7 @@
 #include "report/figure.h"
 #include "studies/resident_memory.h"
 #include "support/bench_meshes.h"
-#include "thimble/render/mesh/save_mesh.h"
+#include "thimble/render/mesh/mesh_file.h"
 #include "thimble/session/session_batch.h"
 
 // Many arms of one scene, stepped in turns on one core, against one arm alone; and several

@@ -18,7 +18,7 @@
 #include "page/page_file.h"
 #include "recording/recording_file.h"
 #include "thimble/render/mesh/check_mesh.h"
-#include "thimble/render/mesh/load_mesh.h"
+#include "thimble/render/mesh/mesh_file.h"
 #include "thimble/render/mesh/repair_mesh.h"
 #include "thimble/render/mesh/thicken_sheets.h"
 #include "thimble/scene/arm_file.h"

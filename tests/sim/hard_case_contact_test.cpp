@@ -22,7 +22,7 @@
 #include "support/shapes.h"
 #include "support/smooth_surfaces.h"
 #include "thimble/render/build_object_touch.h"
-#include "thimble/render/mesh/placed_mesh.h"
+#include "thimble/render/mesh/mesh_file.h"
 #include "track/surface_tracker.h"
 
 namespace thimble::render {

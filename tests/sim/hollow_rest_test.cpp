@@ -18,7 +18,7 @@
 #include "support/hollows.h"
 #include "support/random.h"
 #include "support/scratch.h"
-#include "thimble/render/mesh/save_mesh.h"
+#include "thimble/render/mesh/mesh_file.h"
 #include "thimble/session/session.h"
 
 namespace thimble {

@@ -21,7 +21,7 @@
 #include "support/contact_walk.h"
 #include "support/hollows.h"
 #include "support/scratch.h"
-#include "thimble/render/mesh/save_mesh.h"
+#include "thimble/render/mesh/mesh_file.h"
 #include "thimble/scene/arm_simulation.h"
 #include "thimble/session/session.h"
 

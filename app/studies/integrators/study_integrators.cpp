@@ -15,7 +15,7 @@
 #include "report/picture_parts.h"
 #include "studies/integrators/membrane.h"
 #include "studies/integrators/poked_body.h"
-#include "thimble/render/mesh/load_mesh.h"
+#include "thimble/render/mesh/mesh_file.h"
 
 namespace thimble::app {
 namespace {

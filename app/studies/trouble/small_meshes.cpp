@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "studies/tube_mesh.h"
-#include "thimble/render/mesh/save_mesh.h"
+#include "thimble/render/mesh/mesh_file.h"
 
 namespace thimble::app {
 namespace {

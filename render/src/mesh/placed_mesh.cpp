@@ -1,4 +1,4 @@
-#include "thimble/render/mesh/placed_mesh.h"
+#include "thimble/render/mesh/mesh_file.h"
 
 #include <utility>
 

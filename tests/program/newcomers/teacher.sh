@@ -9,7 +9,7 @@ for _ in $(seq 100); do
   if thimble view --list | grep -q "^class_$$:"; then break; fi
   sleep 0.1
 done
-see 'running: .* N' thimble view class_$$ --text --for 1
+see 'running: .* N' thimble view class_$$ --text --for 3
 see '' thimble view class_$$ --stop
 wait $run || fail "the run ended with $?: $(cat run.txt)"
 see 'stopped early' cat run.txt

@@ -21,8 +21,7 @@
 #include "hand/surface_probe.h"
 #include "mesh/closest_point.h"
 #include "support/shapes.h"
-#include "thimble/render/mesh/load_mesh.h"
-#include "thimble/render/mesh/placed_mesh.h"
+#include "thimble/render/mesh/mesh_file.h"
 
 namespace thimble::app {
 namespace {

@@ -13,7 +13,7 @@
 #include "studies/accuracy/quality_points.h"
 #include "studies/cost/cost_subjects.h"
 #include "support/scratch.h"
-#include "thimble/render/mesh/save_mesh.h"
+#include "thimble/render/mesh/mesh_file.h"
 
 namespace thimble::scene {
 namespace {

@@ -16,7 +16,7 @@
 #include "support/run_hash.h"
 #include "support/scratch.h"
 #include "support/shapes.h"
-#include "thimble/render/mesh/save_mesh.h"
+#include "thimble/render/mesh/mesh_file.h"
 #include "thimble/render/scene_touch.h"
 #include "thimble/session/session.h"
 

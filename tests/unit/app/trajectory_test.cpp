@@ -12,7 +12,7 @@
 #include "recording/replay_trajectory.h"
 #include "recording/trajectory_file.h"
 #include "support/scratch.h"
-#include "thimble/render/mesh/load_mesh.h"
+#include "thimble/render/mesh/mesh_file.h"
 #include "thimble/scene/scene_file.h"
 
 namespace thimble::app {

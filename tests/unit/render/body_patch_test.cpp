@@ -18,8 +18,7 @@
 #include "mesh/vertex_normals.h"
 #include "support/body_meshes.h"
 #include "support/contact_walk.h"
-#include "thimble/render/mesh/load_mesh.h"
-#include "thimble/render/mesh/placed_mesh.h"
+#include "thimble/render/mesh/mesh_file.h"
 
 namespace thimble::render {
 namespace {

@@ -7,8 +7,7 @@
 
 #include "god_object_shapes.h"
 #include "support/heap_guard.h"
-#include "thimble/render/mesh/load_mesh.h"
-#include "thimble/render/mesh/placed_mesh.h"
+#include "thimble/render/mesh/mesh_file.h"
 #include "thimble/render/surface/spring_damper.h"
 #include "thimble/render/touch.h"
 

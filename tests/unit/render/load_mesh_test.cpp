@@ -1,4 +1,4 @@
-#include "thimble/render/mesh/load_mesh.h"
+#include "thimble/render/mesh/mesh_file.h"
 
 #include <gtest/gtest.h>
 

@@ -16,8 +16,7 @@
 #include "support/heap_guard.h"
 #include "support/random.h"
 #include "support/shapes.h"
-#include "thimble/render/mesh/load_mesh.h"
-#include "thimble/render/mesh/placed_mesh.h"
+#include "thimble/render/mesh/mesh_file.h"
 
 namespace thimble::render {
 namespace {

@@ -13,8 +13,7 @@
 
 #include "support/random.h"
 #include "thimble/render/mesh/check_mesh.h"
-#include "thimble/render/mesh/load_mesh.h"
-#include "thimble/render/mesh/placed_mesh.h"
+#include "thimble/render/mesh/mesh_file.h"
 #include "track/mesh_contact.h"
 
 namespace thimble::render {

@@ -7,7 +7,7 @@
 
 #include "support/reference_geometry.h"
 #include "support/shapes.h"
-#include "thimble/render/mesh/placed_mesh.h"
+#include "thimble/render/mesh/mesh_file.h"
 
 namespace thimble::render {
 namespace {

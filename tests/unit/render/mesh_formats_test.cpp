@@ -12,7 +12,7 @@
 #include "mesh/file/run_apart.h"
 #include "support/scratch.h"
 #include "thimble/render/mesh/check_mesh.h"
-#include "thimble/render/mesh/load_mesh.h"
+#include "thimble/render/mesh/mesh_file.h"
 
 namespace thimble::render {
 namespace {

@@ -6,7 +6,7 @@
 #include "mesh/file/weld_mesh.h"
 #include "support/shapes.h"
 #include "thimble/render/mesh/check_mesh.h"
-#include "thimble/render/mesh/placed_mesh.h"
+#include "thimble/render/mesh/mesh_file.h"
 
 namespace thimble::render {
 namespace {

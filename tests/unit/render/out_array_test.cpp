@@ -18,7 +18,7 @@
 #include "support/reference_geometry.h"
 #include "support/shapes.h"
 #include "thimble/render/mesh/check_mesh.h"
-#include "thimble/render/mesh/load_mesh.h"
+#include "thimble/render/mesh/mesh_file.h"
 
 namespace thimble::render {
 namespace {

@@ -16,8 +16,7 @@
 #include "support/scratch.h"
 #include "support/shapes.h"
 #include "thimble/render/mesh/check_mesh.h"
-#include "thimble/render/mesh/load_mesh.h"
-#include "thimble/render/mesh/save_mesh.h"
+#include "thimble/render/mesh/mesh_file.h"
 #include "track/mesh_contact.h"
 
 namespace thimble::render {

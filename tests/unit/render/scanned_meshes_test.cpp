@@ -10,8 +10,7 @@
 
 #include "support/reference_geometry.h"
 #include "thimble/render/mesh/check_mesh.h"
-#include "thimble/render/mesh/load_mesh.h"
-#include "thimble/render/mesh/placed_mesh.h"
+#include "thimble/render/mesh/mesh_file.h"
 #include "track/mesh_contact.h"
 
 namespace thimble::render {

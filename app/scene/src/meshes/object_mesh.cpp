@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "mesh/repair/orient_mesh.h"
-#include "thimble/render/mesh/load_mesh.h"
+#include "thimble/render/mesh/mesh_file.h"
 #include "thimble/render/mesh/repair_mesh.h"
 #include "thimble/render/mesh/thicken_sheets.h"
 

@@ -2,7 +2,7 @@
 
 #include <Eigen/Geometry>
 
-#include "thimble/render/mesh/placed_mesh.h"
+#include "thimble/render/mesh/mesh_file.h"
 
 namespace thimble::scene {
 

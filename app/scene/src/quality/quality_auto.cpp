@@ -13,7 +13,7 @@
 #include "mesh/repair/orient_mesh.h"
 #include "meshes/place_mesh.h"
 #include "quality/quality_table.h"
-#include "thimble/render/mesh/load_mesh.h"
+#include "thimble/render/mesh/mesh_file.h"
 
 namespace thimble::scene {
 namespace {

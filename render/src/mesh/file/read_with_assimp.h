@@ -4,7 +4,7 @@
 #include <string>
 
 #include "thimble/driver/result.h"
-#include "thimble/render/mesh/load_mesh.h"
+#include "thimble/render/mesh/mesh_file.h"
 #include "thimble/render/mesh/triangle_mesh.h"
 
 namespace thimble::render {

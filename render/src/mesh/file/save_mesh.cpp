@@ -1,4 +1,4 @@
-#include "thimble/render/mesh/save_mesh.h"
+#include "thimble/render/mesh/mesh_file.h"
 
 #include <fmt/core.h>
 
