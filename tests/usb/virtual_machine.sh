@@ -15,7 +15,7 @@ long=${THIMBLE_LONG:+--long}
 
 skip() {
   echo "SKIPPED: the USB arms were NOT tested through a kernel: $1" >&2
-  echo "  As root: apt-get install qemu-system-x86 linux-image-amd64 busybox-static cpio udev" >&2
+  echo "  tests/usb/setup.sh fetches what it takes." >&2
   exit 77
 }
 [ "$(uname -m)" = x86_64 ] || skip "it needs an x86_64 machine"
@@ -30,14 +30,7 @@ for rule in $rules; do
 done
 busybox=$(command -v busybox || true)
 [ -n "$busybox" ] && ! ldd "$busybox" >/dev/null 2>&1 || skip "a static busybox is missing"
-kernel=
-for image in /boot/vmlinuz-*; do
-  version=${image#/boot/vmlinuz-}
-  [ -f "/lib/modules/$version/kernel/drivers/usb/usbip/vhci-hcd.ko" ] && [ -r "$image" ] &&
-    kernel=$image
-done
-[ -n "$kernel" ] || skip "no readable kernel with the module vhci-hcd"
-version=${kernel#/boot/vmlinuz-}
+kernel=$("$source/tests/usb/kernel.sh") || skip "no readable kernel with the module vhci-hcd"
 
 rm -rf "$work"
 root=$work/root
@@ -67,7 +60,7 @@ cp -L "$(dirname "$thimble")"/faces/lib/*.so* "$root/bin/faces/lib/"
 # systemd-udevd and udevadm are one program that looks at its name.
 add /bin/udevadm /bin/udevadm
 add $udevd $udevd
-drivers=/lib/modules/$version/kernel/drivers
+drivers=${kernel%boot/vmlinuz-*}lib/modules/${kernel##*/vmlinuz-}/kernel/drivers
 for module in usb/common/usb-common usb/core/usbcore hid/hid usb/usbip/usbip-core \
   usb/usbip/vhci-hcd hid/usbhid/usbhid hid/hid-generic; do
   cp "$drivers/$module.ko" "$root/lib/modules/"

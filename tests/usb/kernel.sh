@@ -1,0 +1,13 @@
+#!/usr/bin/env bash
+# Prints the newest Debian kernel whose modules simulate USB devices: one of this system, else the one in build/kernel
+# (tests/usb/setup.sh). Its modules lie in lib/modules beside its folder. Ends with 1 if there is none.
+set -euo pipefail
+here=$(cd "$(dirname "$0")/../.." && pwd)
+for folder in / "$here/build/kernel/"; do
+  found=
+  for image in $(ls -v "$folder"boot/vmlinuz-* 2>/dev/null); do
+    [ -r "$image" ] && [ -f "${folder}lib/modules/${image##*/vmlinuz-}/kernel/drivers/usb/usbip/vhci-hcd.ko" ] && found=$image
+  done
+  [ -z "$found" ] || { echo "$found" && exit 0; }
+done
+exit 1
