@@ -32,7 +32,8 @@ fi
 
 tests/usb/setup.sh || true  # optional: without it the USB arms are not tested through a kernel
 tests/fuzz/setup.sh || true  # optional: without it only the corpora are replayed
-[ -z "${THIMBLE_LONG:-}" ] || tests/faces/setup.sh || true  # optional: 64-bit ARM, and a window on a screen in memory
+[ -z "${THIMBLE_LONG:-}" ] || tests/faces/setup.sh || true  # optional: 64-bit ARM
+tests/optional_packages.sh "the window on a screen in memory" xvfb xdotool || true
 tests/optional_packages.sh "sines and exponentials against their true values" libmpfr-dev || true
 tests/optional_packages.sh "the guide as web pages" mkdocs || true
 tests/optional_packages.sh "the format of the sources" clang-format-14 || true

@@ -4,6 +4,5 @@ set -euo pipefail
 packages=(
   g++-aarch64-linux-gnu # builds libraries and programs for 64-bit ARM
   qemu-user             # runs them
-  xvfb xdotool          # a screen in memory, and a mouse on it
 )
-exec "$(dirname "$0")/../optional_packages.sh" "other makers' interfaces on ARM and in a window" "${packages[@]}"
+exec "$(dirname "$0")/../optional_packages.sh" "other makers' interfaces on ARM" "${packages[@]}"
