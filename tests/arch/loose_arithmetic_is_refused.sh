@@ -11,7 +11,7 @@ configure() { cmake -S "$1" -B "$folder/build" "-DCMAKE_CXX_COMPILER=${compiler:
 
 for option in -Ofast -ffast-math -funsafe-math-optimizations -fassociative-math -freciprocal-math -ffinite-math-only \
     -fno-signed-zeros -fno-trapping-math -ffp-contract=fast -ffp-contract=on -fsingle-precision-constant -mrecip \
-    -mfpmath=387 -ffp-model=fast -fapprox-func -fdenormal-fp-math=preserve-sign; do
+    -mfpmath=387 -march=native -march=x86-64-v3 -mfma -mavx2 -msse4.2 -ffp-model=fast -fapprox-func -fdenormal-fp-math=preserve-sign; do
   compiler=c++
   case $option in -ffp-model=* | -fapprox-func | -fdenormal-fp-math=*)  # clang's own: GCC knows none of them
     compiler=clang++
@@ -30,13 +30,13 @@ for option in -Ofast -ffast-math -funsafe-math-optimizations -fassociative-math 
   done
 done
 rm -rf "$folder/build"
-if configure "$1" 'CMAKE_CXX_FLAGS=-march=native -O2' | grep -q 'forces would'; then
-  echo "-march=native was refused"
+if configure "$1" 'CMAKE_CXX_FLAGS=-march=x86-64 -mtune=native -O2' | grep -q 'forces would'; then
+  echo "-march=x86-64 was refused"
   bad=1
 fi
 
 # What comes in beside CMake's variables is refused by the compiler.
-for option in -ffast-math -Ofast -ffinite-math-only; do
+for option in -ffast-math -Ofast -ffinite-math-only -march=haswell -mfma -mavx -msse4; do
   said=$(echo '#include "math/double_double.h"' | c++ -std=c++20 -O2 $option -I"$1/driver/src" -fsyntax-only -x c++ - 2>&1 || true)
   if ! grep -q 'forces would have other bits' <<<"$said"; then
     echo "the compiler with $option was not refused"

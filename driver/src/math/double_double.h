@@ -11,6 +11,10 @@
 #error \
     "This compiler computes with more bits than a number has (x87): forces would have other bits than those that the tests store. Build for 64 bits, or with -msse2 -mfpmath=sse."
 #endif
+#if defined(__x86_64__) && defined(__SSE3__)
+#error \
+    "-march, -mavx or the like: Eigen would add in another order and fuse products with sums, and forces would have other bits than those that the tests store. Leave them out."
+#endif
 
 namespace thimble::math {
 
