@@ -63,6 +63,7 @@ int check_arm(const ArmChoice& choice, double listen) {
   }
   const Prompt prompt = [&](const std::string& what) {
     std::printf("%s%s\n", what.c_str(), person ? " Press Enter to begin." : "");
+    std::fflush(stdout);
     if (!person) return true;
     session::EnterKey key = session::EnterKey::kNothing;
     const auto done = [&key] {

@@ -62,6 +62,7 @@ driver::Result<std::unique_ptr<BenchArm>> open_real(const ChosenArm& chosen,
         "Enter to begin.\n",
         kIdentifyForceMax, command.options.seconds);
   }
+  std::fflush(stdout);
   session::EnterKey key = session::EnterKey::kNothing;
   const auto done = [&key] {
     return (key = session::look_for_enter()) != session::EnterKey::kNothing;

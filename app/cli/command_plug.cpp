@@ -10,6 +10,7 @@
 #include <fstream>
 #include <memory>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <utility>
@@ -17,12 +18,14 @@
 #include "arms/falcon/falcon_boot.h"
 #include "cli/commands.h"
 #include "cli/complain.h"
+#include "cli/file_options.h"
 #include "interrupt.h"
 #include "log/logger.h"
 #include "thimble/device_sim/usb/arm_shelf.h"
 #include "thimble/device_sim/usb/usb_fault.h"
 #include "thimble/device_sim/usb/usbip_server.h"
 #include "thimble/device_sim/usb/vhci.h"
+#include "thimble/scene/arm_file.h"
 
 namespace thimble::app {
 namespace {
@@ -35,7 +38,7 @@ struct PlugOptions {
   std::uint16_t port = usb::kUsbipPort;
   bool attach = false;
   std::string motion = "tap";
-  std::string serial;
+  std::string serial, arm_file;
   std::uint64_t seed = 0;
   std::string firmware, faults, control, trace;
 };
@@ -79,13 +82,43 @@ class KernelAttachment {
   std::atomic<bool> busy_{false}, failed_{false};
 };
 
+/// What a script orders: faults of the plug, and what the hand on the arm does.
+struct Plugged {
+  usb::FaultyDevice& device;
+  usb::UsbArm& arm;
+  Eigen::Vector3d p_BH{0, 0, 0};  // where the hand began, m
+};
+
+/// Carries out what the hand is told: `off`, `on`, or how far it goes from where it began.
+bool obey_hand(Plugged& plugged, const std::string& words) {
+  if (words == "off" || words == "on") {
+    plugged.arm.hold_tip(words == "on");
+    return true;
+  }
+  std::istringstream numbers(words);
+  Eigen::Vector3d away;
+  std::string more;
+  const bool read = static_cast<bool>(numbers >> away.x() >> away.y() >> away.z());
+  if (!read || numbers >> more || !away.allFinite()) {
+    scene::logger().error(
+        "'hand {}' is not understood; say 'hand X Y Z' (m along the base's axes from where the "
+        "hand began), 'hand off' or 'hand on'.",
+        words);
+    return false;
+  }
+  plugged.arm.lead_hand(plugged.p_BH + away);
+  return true;
+}
+
 /// Carries out one line of a script; a mistake is told and changes nothing.
-bool obey(usb::FaultyDevice& device, const std::string& line) {
+bool obey(Plugged& plugged, const std::string& line) {
+  usb::FaultyDevice& device = plugged.device;
   if (line.empty() || line[0] == '#') return true;
   if (line == "heal") {
     device.heal();
     return true;
   }
+  if (line.starts_with("hand ")) return obey_hand(plugged, line.substr(5));
   const auto order = usb::parse_fault(line);
   if (!order) {
     scene::logger().error("{}", order.error().message);
@@ -95,7 +128,7 @@ bool obey(usb::FaultyDevice& device, const std::string& line) {
   return true;
 }
 
-/// The pipe that orders faults while the arm is plugged in.
+/// The pipe that takes orders while the arm is plugged in.
 class ControlPipeFile {
  public:
   ControlPipeFile() = default;
@@ -115,7 +148,7 @@ class ControlPipeFile {
     return file_ >= 0;
   }
 
-  void poll(usb::FaultyDevice& device) {
+  void poll(Plugged& plugged) {
     if (file_ < 0) return;
     std::array<char, 512> bytes;
     const ssize_t size = read(file_, bytes.data(), bytes.size());
@@ -124,7 +157,7 @@ class ControlPipeFile {
       if (letter != '\n') {
         line_ += letter;
       } else {
-        obey(device, line_);
+        obey(plugged, line_);
         line_.clear();
       }
     }
@@ -178,18 +211,19 @@ class TruthTrace {
 };
 
 usb::HandMotion motion_of(const std::string& name) {
+  if (name == "none") return usb::HandMotion::kNone;
   if (name == "rest") return usb::HandMotion::kRest;
   return name == "tap" ? usb::HandMotion::kTap : usb::HandMotion::kStroke;
 }
 
-bool obey_file(usb::FaultyDevice& device, const std::string& path) {
+bool obey_file(Plugged& plugged, const std::string& path) {
   std::ifstream file(path);
   if (!file) {
     scene::logger().error("cannot read the fault script {}.", path);
     return false;
   }
   for (std::string line; std::getline(file, line);) {
-    if (!obey(device, line)) return false;
+    if (!obey(plugged, line)) return false;
   }
   return true;
 }
@@ -207,6 +241,17 @@ void say_what_to_do(const usb::UsbipServer& server, const PlugOptions& options) 
   std::fflush(stdout);
 }
 
+/// Returns the arm of a file as one on a board of the shelf.
+driver::Result<usb::ShelfArm> shelf_arm(const std::string& path) {
+  const auto file = scene::load_arm(path);
+  if (!file) return file.error();
+  if (!file->can_simulate) {
+    return driver::Error{"The arm file " + path +
+                         " has no section 'simulation', so the arm cannot be simulated."};
+  }
+  return usb::ShelfArm{.model = file->model, .settings = file->simulated};
+}
+
 int plug(const PlugOptions& options) {
   usb::ShelfOptions shelf;
   shelf.motion = motion_of(options.motion);
@@ -219,12 +264,18 @@ int plug(const PlugOptions& options) {
     }
     shelf.firmware = std::move(*image);
   }
+  if (!options.arm_file.empty()) {
+    auto of_file = shelf_arm(options.arm_file);
+    if (!of_file) return complain(of_file.error(), kExitBadInput);
+    shelf.arm = std::move(*of_file);
+  }
   auto arm = usb::make_usb_arm(options.arm, shelf);
   if (!arm) {
     return complain(arm.error(), kExitBadInput);
   }
   usb::FaultyDevice device(**arm, options.seed);
-  if (!options.faults.empty() && !obey_file(device, options.faults)) return kExitBadInput;
+  Plugged plugged{.device = device, .arm = **arm, .p_BH = (*arm)->truth().p_BT};
+  if (!options.faults.empty() && !obey_file(plugged, options.faults)) return kExitBadInput;
   ControlPipeFile control;
   if (!options.control.empty() && !control.open(options.control)) {
     return complain(
@@ -249,7 +300,7 @@ int plug(const PlugOptions& options) {
   bool was_plugged = true;
   (*server)->run(stop, [&](std::int64_t frame) {
     if (trace) trace->add(frame, (*arm)->truth());
-    control.poll(device);
+    control.poll(plugged);
     if (options.attach && device.plugged() && !was_plugged) attachment.begin();
     was_plugged = device.plugged();
     if (interrupted.load() || attachment.failed()) stop.store(true);
@@ -297,8 +348,11 @@ void add_plug_command(CLI::App& app, int& exit_code) {
   command->add_flag("--attach", options->attach,
                     "Plug it into this kernel too (root; module vhci-hcd)");
   command->add_option("--hand", options->motion, "What the simulated hand does")
-      ->check(CLI::IsMember({"rest", "tap", "stroke"}))
+      ->check(CLI::IsMember({"none", "rest", "tap", "stroke"}))
       ->capture_default_str();
+  add_arm_option(*command, options->arm_file,
+                 "Arm file of its constants, in place of the shelf's own: torque constants, tip, "
+                 "weight, drive train, hand, wiring; a driver need not know it");
   command->add_option("--serial", options->serial,
                       "Serial number; without it that of the board (all mbed boards: 0123456789)");
   command->add_option("--seed", options->seed, "Seed of everything random")->capture_default_str();
@@ -308,8 +362,11 @@ void add_plug_command(CLI::App& app, int& exit_code) {
                       "File of faults, one a line: KIND [in|out] [after=FRAMES] [for=FRAMES] "
                       "[rate=CHANCE];\nKIND: stall, short, long, torn, stale, duplicate, silence, "
                       "bit_errors, unplug, lost");
-  command->add_option("--control", options->control,
-                      "Make a named pipe that takes such lines, and 'heal', while it runs");
+  command->add_option(
+      "--control", options->control,
+      "Make a named pipe that takes such lines, and 'heal', while it runs; and "
+      "'hand X Y Z' (m\nalong the base's axes from where the hand began), 'hand off', "
+      "'hand on'");
   command->add_option("--trace", options->trace,
                       "Write what was true of the arm, a line for each frame with packets");
   command->callback([options, &exit_code] { exit_code = plug(*options); });

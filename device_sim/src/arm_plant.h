@@ -38,6 +38,7 @@ class ArmPlant final : public Plant {
 
   void set_currents(const Eigen::Vector3d& amperes) noexcept override;
   void step(const Eigen::Vector3d& p_BH, std::int64_t dt_ns) noexcept override;
+  void take_tip(const AxisDynamics& tip) noexcept override { dynamics_ = tip; }
   Eigen::Vector3d p_BT() const noexcept override { return {axes_[0].x, axes_[1].x, axes_[2].x}; }
   Eigen::Vector3d v_BT() const noexcept override { return {axes_[0].v, axes_[1].v, axes_[2].v}; }
   const Eigen::Vector3d& p_BH() const noexcept override { return p_BH_; }

@@ -42,6 +42,7 @@ class DriveTrainPlant final : public Plant {
 
   void set_currents(const Eigen::Vector3d& amperes) noexcept override { train_.ask(amperes); }
   void step(const Eigen::Vector3d& p_BH, std::int64_t dt_ns) noexcept override;
+  void take_tip(const AxisDynamics& tip) noexcept override { tip_dynamics_ = tip; }
   Eigen::Vector3d p_BT() const noexcept override { return {tip_[0].x, tip_[1].x, tip_[2].x}; }
   Eigen::Vector3d v_BT() const noexcept override { return {tip_[0].v, tip_[1].v, tip_[2].v}; }
   const Eigen::Vector3d& p_BH() const noexcept override { return p_BH_; }

@@ -76,7 +76,7 @@ Eigen::Vector3d InversePlant<Geometry>::f_T_B() const noexcept {
 template <class Geometry>
 void InversePlant<Geometry>::step(const Eigen::Vector3d& p_BH, std::int64_t dt_ns) noexcept {
   if (!(dt_ns > 0)) return;
-  const Eigen::Vector3d force = f_T_B();
+  const Eigen::Vector3d force = f_T_B() + pull_B_;
   const Eigen::Vector3d v_BH = (p_BH - p_BH_) / (static_cast<double>(dt_ns) * 1e-9);
   const std::array<AxisState, 3> before = axes_;
   for (int i = 0; i < 3; ++i) {

@@ -31,6 +31,9 @@ class InversePlant final : public Plant {
 
   void set_currents(const Eigen::Vector3d& amperes) noexcept override;
   void step(const Eigen::Vector3d& p_BH, std::int64_t dt_ns) noexcept override;
+  void take_tip(const AxisDynamics& tip) noexcept override { dynamics_ = tip; }
+  /// Sets what pulls on the tip beside motors and hand, such as its weight, N in the base.
+  void set_pull(const Eigen::Vector3d& f_T_B) noexcept { pull_B_ = f_T_B; }
   Eigen::Vector3d p_BT() const noexcept override { return {axes_[0].x, axes_[1].x, axes_[2].x}; }
   Eigen::Vector3d v_BT() const noexcept override { return {axes_[0].v, axes_[1].v, axes_[2].v}; }
   const Eigen::Vector3d& p_BH() const noexcept override { return p_BH_; }
@@ -55,6 +58,7 @@ class InversePlant final : public Plant {
   Eigen::Vector3d p_BH_;
   Eigen::Vector3d q_;
   Eigen::Vector3d amperes_{0, 0, 0};
+  Eigen::Vector3d pull_B_{0, 0, 0};  // N
   std::uint64_t stops_ = 0;
 };
 

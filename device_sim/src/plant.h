@@ -3,6 +3,8 @@
 #include <Eigen/Core>
 #include <cstdint>
 
+#include "axis_dynamics.h"
+
 namespace thimble::device_sim {
 
 /// The mechanics of an arm with a hand on it, whatever its build: motors pull on the joints, the
@@ -18,6 +20,10 @@ class Plant {
   /// Lets 0 < dt_ns <= 1 ms pass, while the point the hand wants moves evenly to p_BH (m). At the
   /// end of reach the tip stays where it was, with no velocity.
   virtual void step(const Eigen::Vector3d& p_BH, std::int64_t dt_ns) noexcept = 0;
+
+  /// Gives mass, friction and hand at the tip other constants from now on: a hand lets go of the
+  /// tip, or takes it. How the tip moves stays as it is.
+  virtual void take_tip(const AxisDynamics& tip) noexcept = 0;
 
   /// Returns where the tip is, m.
   virtual Eigen::Vector3d p_BT() const noexcept = 0;

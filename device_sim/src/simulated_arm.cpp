@@ -48,11 +48,17 @@ driver::Result<SimulatedArm> SimulatedArm::make_of(const driver::ArmModel& board
   if (!plant) return plant.error();
   const auto firmware = Firmware::make(board, settings.firmware);
   if (!firmware) return firmware.error();
-  return SimulatedArm(settings, Hand(std::move(path), *tremor), std::move(plant).value(), *firmware,
-                      seed);
+  // The plant was made of the same constants.
+  const auto held = AxisDynamics::make(settings.plant, settings.hand);
+  if (!held) return held.error();
+  const auto free = AxisDynamics::make(settings.plant, {});
+  if (!free) return free.error();
+  return SimulatedArm(settings, Hand(std::move(path), *tremor), std::move(plant).value(), *held,
+                      *free, *firmware, seed);
 }
 
 SimulatedArm::SimulatedArm(const SimulatedArmSettings& settings, Hand hand, AnyPlant plant,
+                           const AxisDynamics& held_tip, const AxisDynamics& free_tip,
                            const Firmware& firmware, std::uint64_t seed) noexcept
     : report_period_ns_(settings.firmware.report_period_ns),
       wire_(settings.wire),
@@ -63,6 +69,8 @@ SimulatedArm::SimulatedArm(const SimulatedArmSettings& settings, Hand hand, AnyP
       hand_(std::move(hand)),
       gimbal_(settings.gimbal),
       plant_(std::move(plant)),
+      held_tip_(held_tip),
+      free_tip_(free_tip),
       firmware_(firmware) {
   sample();
   deliver();

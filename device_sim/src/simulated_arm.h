@@ -7,6 +7,7 @@
 #include <variant>
 
 #include "arm_plant.h"
+#include "axis_dynamics.h"
 #include "drive_train_plant.h"
 #include "firmware.h"
 #include "hand.h"
@@ -71,6 +72,10 @@ class SimulatedArm {
   /// Gives the hand, to be led or held by whoever lets time pass.
   Hand& hand() noexcept { return hand_; }
 
+  /// Lets the hand take the tip (which it does from the beginning) or let go of it: then nothing
+  /// but the arm's own mass and friction is there.
+  void hold_tip(bool held) noexcept { mechanics().take_tip(held ? held_tip_ : free_tip_); }
+
   /// Presses the button on the arm, as a hand would.
   void press_button() noexcept { firmware_.press_button(); }
 
@@ -101,7 +106,8 @@ class SimulatedArm {
       std::variant<ArmPlant, LinkagePlant, SerialDriveTrainPlant, LinkageDriveTrainPlant>;
 
   SimulatedArm(const SimulatedArmSettings& settings, Hand hand, AnyPlant plant,
-               const Firmware& firmware, std::uint64_t seed) noexcept;
+               const AxisDynamics& held_tip, const AxisDynamics& free_tip, const Firmware& firmware,
+               std::uint64_t seed) noexcept;
   template <class MakePlant>
   static driver::Result<SimulatedArm> make_of(const driver::ArmModel& board,
                                               const SimulatedArmSettings& settings, HandPath path,
@@ -122,6 +128,7 @@ class SimulatedArm {
   Hand hand_;
   GimbalMotion gimbal_;
   AnyPlant plant_;
+  AxisDynamics held_tip_, free_tip_;
   Firmware firmware_;
   std::int64_t time_ns_ = 0;
   std::int64_t next_sample_ns_ = 0;

@@ -45,6 +45,18 @@ std::vector<fs::path> entries(const fs::path& folder) {
   return found;
 }
 
+/// Lists what is named after a bus, a colon and more: of a device's folder its interfaces
+/// ("1-1:1.0"), of an interface's its HID devices ("0003:1234:0006.0001") [S
+/// linux/drivers/usb/core, drivers/hid/hid-core.c]. All else there is attributes, and links through
+/// which half of /sys would be read.
+std::vector<fs::path> bus_entries(const fs::path& folder) {
+  std::vector<fs::path> found = entries(folder);
+  std::erase_if(found, [](const fs::path& entry) {
+    return entry.filename().string().find(':') == std::string::npos;
+  });
+  return found;
+}
+
 HidReports descriptor_of(const fs::path& hid) {
   constexpr std::size_t kDescriptorMax =
       4096;  // HID_MAX_DESCRIPTOR_SIZE, linux/include/linux/hid.h
@@ -66,8 +78,8 @@ struct HidNode {
 /// the first stands in where none has it.
 HidNode hidraw_node(const fs::path& device) {
   HidNode found;
-  for (const fs::path& interface : entries(device)) {
-    for (const fs::path& hid : entries(interface)) {
+  for (const fs::path& interface : bus_entries(device)) {
+    for (const fs::path& hid : bus_entries(interface)) {
       for (const fs::path& node : entries(hid / "hidraw")) {
         const HidReports reports = descriptor_of(hid);
         const bool raw = reports.usage_page == kRawHidPage && reports.usage == kRawHidUsage;
@@ -82,7 +94,7 @@ HidNode hidraw_node(const fs::path& device) {
 
 /// Finds the first serial port of a device: interface/tty/ttyACM0.
 std::string tty_node(const fs::path& device) {
-  for (const fs::path& interface : entries(device)) {
+  for (const fs::path& interface : bus_entries(device)) {
     for (const fs::path& node : entries(interface / "tty")) {
       return "/dev/" + node.filename().string();
     }

@@ -117,7 +117,12 @@ expect 5 '^BAD FIT' "$thimble" identify --arm sticky.yaml --seconds 10 --output 
 expect 0 'The fit is bad, and nothing was written' cat bad/index.html
 expect 0 'an arm whose fit is bad is not pushed' cat bad/index.html
 expect 1 '' test -e no.yaml
-expect 4 'Falcon' "$thimble" identify --arm falcon
+# Arms whose motors are code: what was found stands in the new file, from which they run.
+expect 0 '^Written to found\.yaml' "$thimble" identify --arm falcon --seconds 10 --output found.yaml
+expect 0 'torque_constant: .* 1 A being 1000 motor values \[I ' cat found.yaml
+expect 0 '^ *# delay from force to motion: 0\.00[0-9]* ' cat found.yaml
+expect 0 'N ' "$thimble" run "$source_dir/tests/data/scenes/two_boxes.yaml" --arm found.yaml --duration 0.1
+expect 4 "vendor's software" "$thimble" identify --arm inverse3
 
 # Limits that protect nobody: an error with file and line, whoever names them.
 for wrong in 's/force_max: 5 /force_max: 100 /' 's/soft_start: 0.3/soft_start: 0/' \

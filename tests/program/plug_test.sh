@@ -19,8 +19,13 @@ if [ ! -e /sys/devices/platform/vhci_hcd.0 ]; then
   expect 1 'modprobe vhci-hcd' "$thimble" plug polhem --port 0 --attach
 fi
 
+# An arm of other constants, on the board that drives it.
+expect 2 'another build' "$thimble" plug falcon --port 0 --arm polhem
+expect 2 "no section 'simulation'" "$thimble" plug polhem --port 0 --arm inverse3
+expect 0 "Arm file of its constants" "$thimble" plug --help
+
 # It runs until it is told to end; meanwhile the pipe takes orders.
-"$thimble" plug woodenhaptics --port 0 --control pipe --trace trace.txt >out.txt 2>&1 &
+"$thimble" plug woodenhaptics --port 0 --arm woodenhaptics --hand none --control pipe --trace trace.txt >out.txt 2>&1 &
 plug=$!
 for _ in $(seq 100); do
   grep -q 'Ctrl-C unplugs it' out.txt && break
@@ -28,6 +33,9 @@ for _ in $(seq 100); do
 done
 echo 'short in for=5' >pipe
 echo 'lost out for=5' >pipe
+echo 'hand 0 0.01 0' >pipe
+echo 'hand on' >pipe
+echo 'hand 1 2' >pipe
 echo 'quake' >pipe
 for _ in $(seq 100); do
   grep -q 'is not a kind of fault' out.txt && break
@@ -39,6 +47,8 @@ status=$?
 expect 0 '^0$' echo $status
 expect 0 'waits on port [0-9]+ as USB device 1-1' cat out.txt
 expect 0 "'quake' is not a kind of fault" cat out.txt
+expect 0 "'hand 1 2' is not understood" cat out.txt
+expect 1 '' grep -E "'hand (0|on)" out.txt
 expect 0 '^Unplugged' cat out.txt
 expect 0 'frame reports sampled_frame' cat trace.txt
 expect 1 '' test -e pipe

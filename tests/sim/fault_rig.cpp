@@ -117,7 +117,8 @@ void FaultRig::build_arm() {
   device_sim::HandPath path = device_sim::HandPath::make(hand_way(phase_, file_)).value();
   const auto serial = [&] { return driver::model_as<driver::SerialArm>(file_.model); };
   if (tested_.kind == driver::ArmKind::kFalcon) {
-    auto falcon = usb::SimulatedFalcon::make(file_.simulated, std::move(path), {});
+    auto falcon = usb::SimulatedFalcon::make(driver::model_as<driver::DeltaArm>(file_.model),
+                                             file_.simulated, std::move(path), {});
     ASSERT_TRUE(falcon) << falcon.error().message;
     falcon_ = std::move(falcon).value();
     falcon_->home_when_asked();

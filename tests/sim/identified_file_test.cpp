@@ -106,14 +106,6 @@ TEST(IdentifiedFile, LeavesOutAWeightThatIsNotToldFromNone) {
   EXPECT_EQ(text->find("weight:"), std::string::npos);
 }
 
-TEST(IdentifiedFile, KeepsTorqueConstantsThatAreBuiltInAndTellsOnesThatAreNot) {
-  ArmConstants found = some_constants();
-  EXPECT_TRUE(
-      support::refuses(identified_text(text_of("polhem"), found, {}), "built into the program"));
-  found.gain = {Estimate{1.001, 0.01}, {0.999, 0.01}, {1.01, 0.02}};
-  EXPECT_TRUE(identified_text(text_of("polhem"), found, {}).ok());
-}
-
 TEST(IdentifiedFile, RefusesAFormThatItCannotChange) {
   EXPECT_TRUE(support::refuses(identified_text("a: [", some_constants(), {}), "no YAML"));
   std::string text = text_of("vintage_phantom");

@@ -61,6 +61,8 @@ class LineArm final : public device_sim::usb::UsbArm {
     truth.motors_on = arm_.firmware().motors_on();
     return truth;
   }
+  void lead_hand(const Eigen::Vector3d& p_BH) noexcept override { arm_.hand().lead(p_BH); }
+  void hold_tip(bool held) noexcept override { arm_.hold_tip(held); }
 
  private:
   void answer(std::span<const std::byte> line) noexcept {

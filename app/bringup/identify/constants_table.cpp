@@ -77,7 +77,10 @@ std::vector<ConstantRow> constant_rows(const Identified& identified, const scene
   }
   const double delay =
       1e-9 * static_cast<double>(simulated.wire.delay_in_ns + simulated.wire.delay_out_ns);
-  rows.add("delay, force to motion", found.delay, 1e3, "ms", named(delay));
+  // Of an arm whose converter and bus are code the file names none.
+  const bool names_delay = !file.is<driver::DeltaArm>();
+  rows.add("delay, force to motion", found.delay, 1e3, "ms",
+           names_delay ? named(delay) : std::nullopt);
   if (found.cables) add_cables(found, file, rows);
   for (std::size_t i = 0; i < 3; ++i) {
     const Saturation& one = identified.saturation[i];

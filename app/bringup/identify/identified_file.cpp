@@ -93,36 +93,56 @@ bool near_train(double value, double wanted) {
   return std::abs(value - wanted) <= 1e-4 * wanted;
 }
 
-/// Exchanges the torque constants, and returns them. Those of some arms are built into the program:
-/// theirs must be what was found.
+/// Exchanges the torque constants, or adds them where the file leaves them to the program, and
+/// returns them.
 driver::Result<void> put_torques(const YAML::Node& root, const scene::ArmFile& before,
                                  const ArmConstants& found, const IdentifiedMark& mark,
                                  Lines& lines, std::array<double, 3>& torque) {
-  constexpr double kSame = 0.02;
-  const YAML::Node joints = root["joints"];
-  const bool built_in = !joints || !joints["torque_constant"];
   double error = 0;
   for (std::size_t i = 0; i < 3; ++i) {
     const double declared = before.model.drives[i].torque_constant;
-    const Estimate& gain = found.gain[i];
-    torque[i] = built_in ? declared : declared * gain.value;
-    error = std::max(error, declared * gain.plus_minus);
-    if (built_in && std::abs(gain.value - 1) > std::max(kSame, gain.plus_minus)) {
-      return driver::Error{fmt::format(
-          "This arm's torque constants are built into the program and cannot stand in its file, "
-          "but motor {} has {:.3f} times its own. Check its amplifier; nothing was written.",
-          i + 1, gain.value)};
+    torque[i] = declared * found.gain[i].value;
+    error = std::max(error, declared * found.gain[i].plus_minus);
+  }
+  const std::string values = fmt::format(
+      "[{:.6g}, {:.6g}, {:.6g}]  # N m/A at the motor{} [I {}, {}, +- {:.2g}{}]", torque[0],
+      torque[1], torque[2], before.is<driver::DeltaArm>() ? ", 1 A being 1000 motor values" : "",
+      mark.date, mark.arm, error, found.absolute ? "" : "; their mean is the declared one's");
+  const YAML::Node joints = root["joints"];
+  bool put = false;
+  if (joints && joints["torque_constant"]) {
+    put = lines.exchange(joints["torque_constant"], values);
+  } else if (joints && joints.IsMap() && joints.size() > 0) {
+    put = joints.Style() != YAML::EmitterStyle::Flow &&
+          lines.add_before(joints.begin()->first, {"torque_constant: " + values});
+  } else {
+    for (const auto& entry : root) {
+      if (entry.first.as<std::string>() != "base") continue;
+      put = lines.add_before(entry.first, {"joints:", "  torque_constant: " + values, ""});
     }
   }
-  if (built_in) return {};
-  if (lines.exchange(joints["torque_constant"],
-                     fmt::format("[{:.6g}, {:.6g}, {:.6g}]  # N m/A at the motor [I {}, {}, +- "
-                                 "{:.2g}{}]",
-                                 torque[0], torque[1], torque[2], mark.date, mark.arm, error,
-                                 found.absolute ? "" : "; their mean is the declared one's"))) {
-    return {};
-  }
+  if (put) return {};
   return bad_form("joints.torque_constant");
+}
+
+/// Exchanges the delays. The bus and the converter of a Falcon are code: what was measured of them
+/// is a remark.
+bool put_delay(const YAML::Node& simulation, const scene::ArmFile& before, const Estimate& delay,
+               const IdentifiedMark& mark, Lines& lines) {
+  if (before.is<driver::DeltaArm>()) {
+    return lines.add_behind(
+        simulation["tip"]["coulomb"],
+        "# delay from force to motion: " + marked(delay.value, "s", delay.plus_minus, mark));
+  }
+  const YAML::Node wire = simulation["wire"];
+  if (!wire || !wire["delay_in"] || !wire["delay_out"]) return false;
+  // Motion shows the sum of both ways alone.
+  const double in =
+      std::min(delay.value, 1e-9 * static_cast<double>(before.simulated.wire.delay_in_ns));
+  const double out = std::round(1e9 * (delay.value - in)) * 1e-9;
+  const char* unit = "s; the sum of both is measured";
+  return lines.exchange(wire["delay_in"], marked(in, unit, delay.plus_minus, mark)) &&
+         lines.exchange(wire["delay_out"], marked(out, unit, delay.plus_minus, mark));
 }
 
 /// One constant of the drive train, joint by joint.
@@ -194,9 +214,9 @@ driver::Result<std::string> identified_text(const std::string& text, const ArmCo
   if (!was) return was.error();
   const auto before = scene::read_arm(*was);
   if (!before) return before.error();
-  if (!before->can_simulate || !root["simulation"]["wire"]) return bad_form("section simulation");
+  if (!before->can_simulate) return bad_form("section simulation");
   Lines lines(text);
-  const YAML::Node tip = root["simulation"]["tip"], wire = root["simulation"]["wire"];
+  const YAML::Node tip = root["simulation"]["tip"];
   const auto put = [&](const YAML::Node& node, double value, const char* unit, double plus_minus) {
     return node && lines.exchange(node, marked(value, unit, plus_minus, mark));
   };
@@ -219,14 +239,13 @@ driver::Result<std::string> identified_text(const std::string& text, const ArmCo
                  : weighs && !lines.add_behind(tip["coulomb"], "weight: " + weighed)) {
     return bad_form("simulation.tip");
   }
-  // Motion shows the sum of both ways alone.
-  const double delay_in =
-      std::min(found.delay.value, 1e-9 * static_cast<double>(before->simulated.wire.delay_in_ns));
-  const double delay_out = std::round(1e9 * (found.delay.value - delay_in)) * 1e-9;
-  if (!put(wire["delay_in"], delay_in, "s; the sum of both is measured", found.delay.plus_minus) ||
-      !put(wire["delay_out"], delay_out, "s; the sum of both is measured",
-           found.delay.plus_minus)) {
+  if (!put_delay(root["simulation"], *before, found.delay, mark, lines)) {
     return bad_form("simulation.wire");
+  }
+  if (found.cables && before->is<driver::DeltaArm>()) {
+    return driver::Error{
+        "The cables of this arm stretch, which is not simulated of its build; nothing was "
+        "written."};
   }
   if (found.cables && !put_train(root["simulation"], *found.cables, mark, lines)) {
     return bad_form("section drive_train");

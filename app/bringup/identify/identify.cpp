@@ -207,11 +207,11 @@ std::vector<std::string> speaks_against(const PerMass& fit, const PerMass& held,
 
 driver::Result<Identified> identify(const OpenBench& open, const scene::ArmFile& file,
                                     const IdentifyOptions& options, const std::atomic<bool>& stop) {
-  if (file.is<driver::DeltaArm>() || file.is<driver::ToldArm>()) {
+  if (file.is<driver::ToldArm>()) {
     return driver::Error{
-        "Identifying needs an arm whose motors turn its joints by currents: a serial arm or a "
-        "linkage (PHANTOM, WoodenHaptics, Polhem). For a Falcon, or an arm behind its vendor's "
-        "software, there is none yet."};
+        "Identifying needs an arm whose motors turn its joints by currents (PHANTOM, "
+        "WoodenHaptics, Polhem, Falcon). What an arm behind its vendor's software does with a "
+        "force is not told."};
   }
   if (!(options.seconds >= 10 && options.seconds <= 600)) {
     return driver::Error{"Each motion takes from 10 to 600 s."};

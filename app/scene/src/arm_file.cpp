@@ -51,6 +51,20 @@ driver::HeatSettings read_heat(YamlMap& map) {
   return heat;
 }
 
+/// Reads what may differ between two arms of a build whose geometry, drives and encoders are code.
+void read_built_in_joints(YamlMap map, driver::ArmModel& model, driver::HeatSettings& heat) {
+  Eigen::Vector3d torque;
+  for (std::size_t i = 0; i < 3; ++i) {
+    torque[static_cast<Eigen::Index>(i)] = model.drives[i].torque_constant;
+  }
+  torque = map.optional_vector3("torque_constant", torque, "N m/A", 1e-4, 10);
+  for (std::size_t i = 0; i < 3; ++i) {
+    model.drives[i].torque_constant = torque[static_cast<Eigen::Index>(i)];
+  }
+  heat = read_heat(map);
+  map.finish();
+}
+
 void read_joints(YamlMap map, driver::ArmModel& model, driver::HeatSettings& heat) {
   const Eigen::Vector3d ratio = map.require_vector3("ratio", "motor turns per joint turn", 1, 1000);
   const Eigen::Vector3d torque = map.require_vector3("torque_constant", "N m/A", 1e-4, 10);
@@ -221,10 +235,8 @@ void read_kind(YamlMap& root, ArmFile& arm) {
   arm.board_model = static_cast<int>(root.optional_number("board_model", 0, "", 0, 1000));
   if (shape.built_in != nullptr) {
     arm.model = shape.built_in();
-    if (root.has("joints")) {  // its drives and encoders are code
-      YamlMap joints = root.require_map("joints");
-      arm.heat = read_heat(joints);
-      joints.finish();
+    if (root.has("joints")) {
+      read_built_in_joints(root.require_map("joints"), arm.model, arm.heat);
     }
   } else {
     arm.model.geometry = read_geometry(root.require_map("geometry"));

@@ -95,7 +95,8 @@ driver::Result<std::unique_ptr<ArmSimulation>> ArmSimulation::build(
       image = std::move(read).value();
     }
     auto falcon =
-        device_sim::usb::SimulatedFalcon::make(file.simulated, path, std::move(image), seed);
+        device_sim::usb::SimulatedFalcon::make(driver::model_as<driver::DeltaArm>(file.model),
+                                               file.simulated, path, std::move(image), seed);
     if (!falcon) return wrong(falcon.error());
     simulation->falcon_ = std::move(falcon).value();
     return simulation;

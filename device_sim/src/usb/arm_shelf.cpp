@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "arms/falcon/falcon_arm.h"
@@ -13,6 +14,7 @@
 #include "usb/board_descriptions.h"
 #include "usb/falcon_on_usb.h"
 #include "usb/hid_arm.h"
+#include "usb/hid_board.h"
 #include "usb/usb_description.h"
 
 namespace thimble::device_sim::usb {
@@ -35,6 +37,7 @@ Eigen::Vector3d offset(HandMotion motion, double reach, double time) {
   if (time <= 0) return {0, 0, 0};
   switch (motion) {
     case HandMotion::kRest:
+    case HandMotion::kNone:
       break;
     case HandMotion::kTap:
       return {0, 0, -reach * math::sin(kTwoPi * time)};
@@ -47,7 +50,9 @@ Eigen::Vector3d offset(HandMotion motion, double reach, double time) {
 // Its points are finite, and their times grow.
 HandPath hand_path(const Eigen::Vector3d& p_BT, HandMotion motion, double reach = kReach) {
   std::vector<HandPath::Point> points{{0, p_BT}};
-  if (motion == HandMotion::kRest) return HandPath::make(points).value();
+  if (motion == HandMotion::kRest || motion == HandMotion::kNone) {
+    return HandPath::make(points).value();
+  }
   for (int i = 0; i * kMotionStep <= kMotionTime; ++i) {
     const double time = i * kMotionStep;
     points.push_back({kQuiet + time, p_BT + offset(motion, reach, time)});
@@ -71,10 +76,71 @@ SimulatedArmSettings settings_of_board(double tip_mass, double current_max) {
   return settings;
 }
 
+/// Puts the constants of another arm into a board's settings. Delays, and what the board speaks,
+/// stay its own.
+SimulatedArmSettings with_arm(SimulatedArmSettings board, const ShelfArm& arm) {
+  const SimulatedArmSettings& own = arm.settings;
+  board.plant = own.plant;
+  board.hand = own.hand;
+  board.motors = own.motors;
+  board.drive_train = own.drive_train;
+  board.weight_B = own.weight_B;
+  board.gimbal = own.gimbal;
+  board.firmware.wiring = own.firmware.wiring;
+  board.firmware.watchdog_ns = own.firmware.watchdog_ns;
+  board.firmware.missed_edges = own.firmware.missed_edges;
+  return board;
+}
+
+driver::Error other_build(std::string_view name) {
+  return driver::Error{"The board '" + std::string(name) +
+                       "' drives arms of another build than that of the arm file."};
+}
+
 template <class AnyArm>
-driver::Result<std::unique_ptr<UsbArm>> plugged(driver::Result<std::unique_ptr<AnyArm>> arm) {
+driver::Result<std::unique_ptr<UsbArm>> plugged(driver::Result<std::unique_ptr<AnyArm>> arm,
+                                                HandMotion motion) {
   if (!arm) return arm.error();
+  if (motion == HandMotion::kNone) (*arm)->hold_tip(false);
   return {std::move(arm).value()};
+}
+
+/// What stands on the shelf: a HID board and the arm on it.
+struct OnBoard {
+  const HidBoard& board;
+  UsbDescription description;
+  SimulatedArmSettings settings;
+  Eigen::Vector3d p_BT;  // where its hand begins, m
+};
+
+template <class Geometry>
+driver::Result<std::unique_ptr<UsbArm>> hid_arm(OnBoard what,
+                                                const driver::JointModel<Geometry>& model,
+                                                const ShelfOptions& options) {
+  if (options.arm && !std::holds_alternative<Geometry>(options.arm->model.geometry)) {
+    return other_build(what.board.layout == HidLayout::kWoodenHaptics ? "woodenhaptics" : "polhem");
+  }
+  return plugged(HidArm::make(what.board, std::move(what.description),
+                              options.arm ? driver::model_as<Geometry>(options.arm->model) : model,
+                              options.arm ? with_arm(what.settings, *options.arm) : what.settings,
+                              hand_path(what.p_BT, options.motion), options.seed),
+                 options.motion);
+}
+
+driver::Result<std::unique_ptr<UsbArm>> falcon_arm(const ShelfOptions& options) {
+  if (options.arm && !std::holds_alternative<driver::DeltaArm>(options.arm->model.geometry)) {
+    return other_build("falcon");
+  }
+  const auto model = options.arm ? driver::model_as<driver::DeltaArm>(options.arm->model)
+                                 : driver::falcon::falcon_model();
+  // Tip mass and friction of a Falcon are not known [DEVICES 3]; those of the PHANTOM stand in.
+  SimulatedArmSettings settings = settings_of_board(0.15, 1);
+  if (options.arm) settings = with_arm(settings, *options.arm);
+  auto falcon = FalconOnUsb::make(falcon_description(options.serial), model, settings,
+                                  hand_path(model.geometry.p_BM, options.motion, kFalconReach),
+                                  options.firmware);
+  if (falcon) (*falcon)->home_when_asked();
+  return plugged(std::move(falcon), options.motion);
 }
 
 }  // namespace
@@ -83,17 +149,20 @@ driver::Result<std::unique_ptr<UsbArm>> make_usb_arm(std::string_view name,
                                                      const ShelfOptions& options) {
   if (name == "woodenhaptics") {
     const auto model = driver::hfab::woody_model();
-    const Eigen::Vector3d p_BT = model.geometry.forward(model.joint_angles({}));
     // 0.2 kg is about what links of 170 and 110 g weigh at the tip [guess].
-    return plugged(HidArm::make(
-        kWoodenHapticsBoard, mbed_hid_description(driver::woody::kReportSize, options.serial),
-        model, settings_of_board(0.2, 3), hand_path(p_BT, options.motion), options.seed));
+    return hid_arm({.board = kWoodenHapticsBoard,
+                    .description = mbed_hid_description(driver::woody::kReportSize, options.serial),
+                    .settings = settings_of_board(0.2, 3),
+                    .p_BT = model.geometry.forward(model.joint_angles({}))},
+                   model, options);
   }
   const auto polhem = [&](const HidBoard& board, UsbDescription description) {
     // Its home is where it is parked; the hand works in the middle of its room.
-    return plugged(HidArm::make(board, std::move(description), driver::hfab::polhem_model(),
-                                settings_of_board(kPolhemMass, 3),
-                                hand_path(polhem_middle(), options.motion), options.seed));
+    return hid_arm({.board = board,
+                    .description = std::move(description),
+                    .settings = settings_of_board(kPolhemMass, 3),
+                    .p_BT = polhem_middle()},
+                   driver::hfab::polhem_model(), options);
   };
   if (name == "polhem") {
     return polhem(kMbed14Board, mbed_hid_description(driver::hfab::kReportSize, options.serial));
@@ -101,16 +170,7 @@ driver::Result<std::unique_ptr<UsbArm>> make_usb_arm(std::string_view name,
   if (name == "polhem-64") {
     return polhem(kTeensy64Board, teensy_raw_hid_description(options.serial));
   }
-  if (name == "falcon") {
-    const Eigen::Vector3d p_BM = driver::falcon::falcon_geometry().p_BM;
-    // Tip mass and friction of a Falcon are not known [DEVICES 3]; those of the PHANTOM stand in.
-    const SimulatedArmSettings grip = settings_of_board(0.15, 1);
-    auto falcon =
-        FalconOnUsb::make(falcon_description(options.serial), grip.plant, grip.hand,
-                          hand_path(p_BM, options.motion, kFalconReach), options.firmware);
-    if (falcon) (*falcon)->home_when_asked();
-    return plugged(std::move(falcon));
-  }
+  if (name == "falcon") return falcon_arm(options);
   std::string names;
   for (const ShelfEntry& entry : kShelf) {
     names += (names.empty() ? "" : ", ") + std::string(entry.name);

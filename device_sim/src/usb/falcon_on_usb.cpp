@@ -17,27 +17,41 @@ constexpr double kMotorValueMax = 4096;         // what users of libnifalcon cla
 }  // namespace
 
 driver::Result<std::unique_ptr<FalconOnUsb>> FalconOnUsb::make(
-    UsbDescription description, const PlantSettings& plant, const HandSettings& hand, HandPath path,
-    std::vector<std::byte> image, const WiringSettings& wiring, std::uint64_t seed) {
+    UsbDescription description, const driver::JointModel<driver::DeltaArm>& model,
+    const SimulatedArmSettings& settings, HandPath path, std::vector<std::byte> image,
+    std::uint64_t seed) {
+  const WiringSettings& wiring = settings.firmware.wiring;
   if (auto wired = wiring.check(); !wired) return wired.error();
-  const auto tremor = Tremor::make(hand, seed);
+  if (!settings.weight_B.allFinite()) {
+    return driver::Error{"The simulated arm's weight must be finite (N)."};
+  }
+  const auto tremor = Tremor::make(settings.hand, seed);
   if (!tremor) return tremor.error();
   const Eigen::Vector3d p_BT = path.points().front().p_BH;
-  const auto mechanics =
-      DeltaPlant::make(driver::falcon::falcon_model(), plant, hand,
+  auto mechanics =
+      DeltaPlant::make(model, settings.plant, settings.hand,
                        {.current_max = kMotorValueMax / kMotorValuesPerAmpere}, p_BT, p_BT);
   if (!mechanics) return mechanics.error();
-  return std::unique_ptr<FalconOnUsb>(new FalconOnUsb(
-      std::move(description), *tremor, std::move(path), *mechanics, std::move(image), wiring));
+  mechanics->set_pull(settings.weight_B);
+  const auto held = AxisDynamics::make(settings.plant, settings.hand);
+  if (!held) return held.error();
+  const auto free = AxisDynamics::make(settings.plant, {});
+  if (!free) return free.error();
+  return std::unique_ptr<FalconOnUsb>(new FalconOnUsb(std::move(description), *tremor,
+                                                      std::move(path), *mechanics, *held, *free,
+                                                      std::move(image), wiring));
 }
 
 FalconOnUsb::FalconOnUsb(UsbDescription description, const Tremor& tremor, HandPath path,
-                         const DeltaPlant& plant, std::vector<std::byte> image,
+                         const DeltaPlant& plant, const AxisDynamics& held_tip,
+                         const AxisDynamics& free_tip, std::vector<std::byte> image,
                          const WiringSettings& wiring)
     : description_(std::move(description)),
       tremor_(tremor),
       hand_(std::move(path), tremor),
       homing_hand_(driver::falcon::falcon_geometry().p_BM),
+      held_tip_(held_tip),
+      free_tip_(free_tip),
       wiring_(wiring),
       plant_(plant),
       board_(std::move(image)),
@@ -47,12 +61,33 @@ void FalconOnUsb::lead(HandPath path) {
   hand_ = Hand(std::move(path), tremor_, time_ns_);
 }
 
+driver::Result<void> FalconOnUsb::take_hand(const PlantSettings& plant, const HandSettings& hand) {
+  const auto tip = AxisDynamics::make(plant, hand);
+  if (!tip) return tip.error();
+  held_tip_ = *tip;
+  plant_.take_tip(held_ ? held_tip_ : free_tip_);
+  return {};
+}
+
+void FalconOnUsb::hold_tip(bool held) noexcept {
+  wanted_held_ = held;
+  put_tip();
+}
+
+void FalconOnUsb::put_tip() noexcept {
+  const bool held = wanted_held_ || homing_hand_.busy();
+  if (held == held_) return;
+  held_ = held;
+  plant_.take_tip(held ? held_tip_ : free_tip_);
+}
+
 void FalconOnUsb::move_to(std::int64_t time_ns) noexcept {
   if (time_ns <= time_ns_) return;
   Eigen::Vector3d p_BH = hand_.at(time_ns);
   if (homes_) {
     p_BH = homing_hand_.at(p_BH, time_ns, board_.wants_homing());
     hand_.hold(homing_hand_.busy());
+    put_tip();
   }
   plant_.step(p_BH, time_ns - time_ns_);
   time_ns_ = time_ns;

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "axis_dynamics.h"
 #include "hand.h"
 #include "hand_path.h"
 #include "inverse_plant.h"
@@ -23,22 +24,27 @@ namespace thimble::device_sim::usb {
 /// packet is complete, and its answer goes to the host when the latency timer of 1 ms is over.
 class FalconOnUsb final : public UsbArm {
  public:
-  /// Makes the arm at rest at the path's first point. `image` is the firmware that it can run;
-  /// empty if any will do. Fails as DeltaPlant::make does. Real-time: never from the servo thread.
-  static driver::Result<std::unique_ptr<FalconOnUsb>> make(UsbDescription description,
-                                                           const PlantSettings& plant,
-                                                           const HandSettings& hand, HandPath path,
-                                                           std::vector<std::byte> image,
-                                                           const WiringSettings& wiring = {},
-                                                           std::uint64_t seed = 0);
+  /// Makes the arm at rest at the path's first point, with motors and encoders of `model`. Of the
+  /// settings it takes plant, hand, weight and wiring; board and bus are its own. `image` is the
+  /// firmware that it can run; empty if any will do. Fails as DeltaPlant::make does. Real-time:
+  /// never from the servo thread.
+  static driver::Result<std::unique_ptr<FalconOnUsb>> make(
+      UsbDescription description, const driver::JointModel<driver::DeltaArm>& model,
+      const SimulatedArmSettings& settings, HandPath path, std::vector<std::byte> image,
+      std::uint64_t seed = 0);
 
   /// Gives the hand another way, whose time 0 is now. Real-time: never from the servo thread.
   void lead(HandPath path);
   /// Lets the hand home the arm from now on whenever a host asks for it; its own way waits
-  /// meanwhile. Real-time: safe.
+  /// meanwhile. A hand that has let go takes the tip for that long. Real-time: safe.
   void home_when_asked() noexcept { homes_ = true; }
   /// Gives the hand, to be led or held by whoever lets time pass. Real-time: safe.
   Hand& hand() noexcept { return hand_; }
+  /// Lets a hand of other constants take the place of the one on the tip; it homes the arm no
+  /// longer. Fails if they are out of range. Real-time: never from the servo thread.
+  driver::Result<void> take_hand(const PlantSettings& plant, const HandSettings& hand);
+  void lead_hand(const Eigen::Vector3d& p_BH) noexcept override { hand_.lead(p_BH); }
+  void hold_tip(bool held) noexcept override;
   /// Sets the guessed watchdog of the board, ns; 0: none (FalconBoard). Real-time: safe.
   void set_watchdog(std::int64_t time_ns) noexcept { board_.set_watchdog(time_ns); }
 
@@ -56,7 +62,9 @@ class FalconOnUsb final : public UsbArm {
 
  private:
   FalconOnUsb(UsbDescription description, const Tremor& tremor, HandPath path,
-              const DeltaPlant& plant, std::vector<std::byte> image, const WiringSettings& wiring);
+              const DeltaPlant& plant, const AxisDynamics& held_tip, const AxisDynamics& free_tip,
+              std::vector<std::byte> image, const WiringSettings& wiring);
+  void put_tip() noexcept;
   void move_to(std::int64_t time_ns) noexcept;
   void hear_line(std::int64_t dt_ns) noexcept;
 
@@ -65,6 +73,8 @@ class FalconOnUsb final : public UsbArm {
   Hand hand_;
   HomingHand homing_hand_;
   bool homes_ = false;
+  AxisDynamics held_tip_, free_tip_;
+  bool wanted_held_ = true, held_ = true;  // what was asked for; homing takes the tip as well
   WiringSettings wiring_;
   DeltaPlant plant_;
   FalconBoard board_;

@@ -36,6 +36,8 @@ class HidArm final : public UsbArm {
   PacketResult in(std::uint8_t address, std::span<std::byte> packet) noexcept override;
   PacketResult out(std::uint8_t address, std::span<const std::byte> packet) noexcept override;
   ArmTruth truth() const noexcept override;
+  void lead_hand(const Eigen::Vector3d& p_BH) noexcept override { arm_.hand().lead(p_BH); }
+  void hold_tip(bool held) noexcept override { arm_.hold_tip(held); }
 
   /// Shows the arm behind the plug. Real-time: safe.
   const SimulatedArm& arm() const noexcept { return arm_; }

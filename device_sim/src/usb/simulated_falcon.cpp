@@ -13,8 +13,10 @@ namespace {
 
 // The hand pulls the grip out and pushes it in; the legs pass their homes within 15 mm of the
 // middle, whatever the rest of its way is.
-constexpr double kHomingReach = 0.020;          // m
-constexpr double kHomingStroke = 0.5;           // s from one end to the other
+constexpr double kHomingReach = 0.020;  // m
+constexpr double kHomingStroke = 0.5;   // s from one end to the other
+// A pinch grip [M DEVICES 3].
+constexpr HandSettings kHomingHand{.mass = 0.025, .stiffness = 300, .damping = 3};
 constexpr std::int64_t kRest_ns = 500'000'000;  // until the grip stands still again
 
 // These points are finite, and their times grow.
@@ -37,15 +39,23 @@ HandPath homing_path(const Eigen::Vector3d& p_BH) {
 }  // namespace
 
 driver::Result<std::unique_ptr<SimulatedFalcon>> SimulatedFalcon::make(
-    const SimulatedArmSettings& settings, HandPath path, std::vector<std::byte> firmware,
-    std::uint64_t seed) {
+    const driver::JointModel<driver::DeltaArm>& model, const SimulatedArmSettings& settings,
+    HandPath path, std::vector<std::byte> firmware, std::uint64_t seed) {
   const Eigen::Vector3d p_BH = path.points().front().p_BH;
-  auto falcon = FalconOnUsb::make(falcon_description("SIM0001"), settings.plant, settings.hand,
-                                  resting_at(p_BH), {}, settings.firmware.wiring, seed);
+  const bool another_homes = settings.hand.stiffness == 0;
+  SimulatedArmSettings homed = settings;
+  if (another_homes) homed.hand = kHomingHand;
+  auto falcon =
+      FalconOnUsb::make(falcon_description("SIM0001"), model, homed, resting_at(p_BH), {}, seed);
   if (!falcon) return falcon.error();
   std::unique_ptr<SimulatedFalcon> arm(new SimulatedFalcon(std::move(falcon).value()));
   if (auto up = arm->bring_up(std::move(firmware), p_BH); !up) {
     return up.error();
+  }
+  if (another_homes) {
+    if (auto taken = arm->falcon_->take_hand(settings.plant, settings.hand); !taken) {
+      return taken.error();
+    }
   }
   arm->falcon_->lead(std::move(path));
   return arm;

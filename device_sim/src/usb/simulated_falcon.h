@@ -18,14 +18,14 @@ namespace thimble::device_sim::usb {
 /// bytes of a real one, before the path of the hand begins.
 class SimulatedFalcon {
  public:
-  /// Builds the arm and brings it up; its hand then rests at the first point of `path`, with time 0
-  /// before it. Any firmware will do; without one it takes some bytes of its own. Fails as
-  /// FalconOnUsb::make does, or if the arm does not come up. Real-time: never from the servo
-  /// thread.
-  static driver::Result<std::unique_ptr<SimulatedFalcon>> make(const SimulatedArmSettings& settings,
-                                                               HandPath path,
-                                                               std::vector<std::byte> firmware,
-                                                               std::uint64_t seed = 0);
+  /// Builds the arm, with motors and encoders of `model`, and brings it up; its hand then rests at
+  /// the first point of `path`, with time 0 before it. Where `settings` has a hand without a
+  /// spring, which could not home the arm, another one homes it and lets go. Any firmware will do;
+  /// without one it takes some bytes of its own. Fails as FalconOnUsb::make does, or if the arm
+  /// does not come up. Real-time: never from the servo thread.
+  static driver::Result<std::unique_ptr<SimulatedFalcon>> make(
+      const driver::JointModel<driver::DeltaArm>& model, const SimulatedArmSettings& settings,
+      HandPath path, std::vector<std::byte> firmware, std::uint64_t seed = 0);
 
   /// Makes the wire to it, whose frames of a millisecond pass as the clock does from time 0. Keeps
   /// neither clock nor arm alive. Real-time: never from the servo thread.

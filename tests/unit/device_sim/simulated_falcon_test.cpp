@@ -25,8 +25,9 @@ struct InProgram {
     settings.hand.stiffness = 300;
     settings.hand.damping = 3;
     const Eigen::Vector3d p_BM = driver::falcon::falcon_geometry().p_BM;
-    auto made = SimulatedFalcon::make(
-        settings, HandPath::make({{0, p_BM}, {1, p_BM + p_MH}}).value(), std::move(firmware));
+    auto made = SimulatedFalcon::make(driver::falcon::falcon_model(), settings,
+                                      HandPath::make({{0, p_BM}, {1, p_BM + p_MH}}).value(),
+                                      std::move(firmware));
     EXPECT_TRUE(made) << made.error().message;
     falcon = std::move(made).value();
     driver::DeviceSettings limits;
@@ -165,14 +166,65 @@ TEST(SimulatedFalcon, PushesItsHandAndRepeatsItself) {
   EXPECT_EQ(first.falcon->arm().truth().currents.norm(), 0);
 }
 
+/// Returns how far along y a driver that asks for 0.3 N moves the tip of a Falcon in 60 ms, m.
+double pushed(const driver::JointModel<driver::DeltaArm>& model,
+              const SimulatedArmSettings& settings) {
+  const Eigen::Vector3d p_BM = driver::falcon::falcon_geometry().p_BM;
+  auto made = SimulatedFalcon::make(model, settings, HandPath::make({{0, p_BM}}).value(), {});
+  EXPECT_TRUE(made) << made.error().message;
+  driver::VirtualClock clock;
+  driver::DeviceSettings limits;
+  limits.limits = {.force_max = 2,
+                   .speed_max = 3,
+                   .rise_max = 20000,
+                   .soft_start = 0.05,
+                   .stall_ns = 20'000'000,
+                   .watchdog_ns = 100'000'000};
+  auto device = driver::Device::open(
+      std::make_unique<driver::WireLink>(
+          (*made)->wire(clock),
+          std::make_unique<driver::falcon::FalconArm>(driver::falcon::falcon_model())),
+      limits, 0);
+  EXPECT_TRUE(device) << device.error().message;
+  EXPECT_TRUE((*device)->activate());
+  double begin = 0;
+  for (int k = 0; k < 160; ++k) {
+    clock.sleep_until_ns(clock.now_ns() + 1'000'000);
+    (*device)->read(clock.now_ns(), clock.now_ns());
+    (*device)->write({.f_T_W = {0, k < 100 ? 0 : 0.3, 0}, .touch = {}});
+    if (k == 100) begin = (*made)->arm().plant().p_BT().y();
+  }
+  return (*made)->arm().plant().p_BT().y() - begin;
+}
+
+TEST(SimulatedFalcon, PullsAsItsOwnMotorsWhateverTheDriverBelieves) {
+  SimulatedArmSettings settings;
+  settings.plant.mass = 0.15;
+  auto weak = driver::falcon::falcon_model();
+  for (driver::MotorDrive& drive : weak.drives) drive.torque_constant *= 0.5;
+  const double whole = pushed(driver::falcon::falcon_model(), settings);
+  // Nobody holds it, though a hand has homed it: 0.3 N of 57 ms or so.
+  EXPECT_NEAR(whole, 0.5 * 0.3 / 0.15 * 0.0575 * 0.0575, 2e-4);
+  EXPECT_NEAR(pushed(weak, settings) / whole, 0.5, 0.01);
+  settings.weight_B = {0, -0.15, 0};
+  settings.plant.coulomb = 0.2;  // so that it stays until it is pushed
+  const double dry = pushed(driver::falcon::falcon_model(), settings);
+  EXPECT_EQ(dry, 0) << "0.3 N less 0.15 N of weight do not overcome 0.2 N of friction";
+  settings.weight_B = {0, 0.15, 0};
+  EXPECT_NEAR(pushed(driver::falcon::falcon_model(), settings), 0.5 * 0.25 / 0.15 * 0.0575 * 0.0575,
+              2e-4);
+}
+
 TEST(SimulatedFalcon, MustBeginWithinReach) {
   SimulatedArmSettings settings;
   settings.plant.mass = 0.1;
-  const auto falcon = SimulatedFalcon::make(settings, HandPath::make({{0, {1, 0, 0}}}).value(), {});
+  const auto falcon = SimulatedFalcon::make(driver::falcon::falcon_model(), settings,
+                                            HandPath::make({{0, {1, 0, 0}}}).value(), {});
   EXPECT_TRUE(refuses(falcon, "starting point"));
   settings.firmware.wiring.encoder_of = {0, 1, 7};
   const auto miswired = SimulatedFalcon::make(
-      settings, HandPath::make({{0, driver::falcon::falcon_geometry().p_BM}}).value(), {});
+      driver::falcon::falcon_model(), settings,
+      HandPath::make({{0, driver::falcon::falcon_geometry().p_BM}}).value(), {});
   EXPECT_TRUE(refuses(miswired, "wiring"));
 }
 

@@ -16,6 +16,18 @@ TEST(Discovery, ListsOnThisMachineWhatItCanOrSaysWhyItCannot) {
   EXPECT_TRUE(arms || arms.error().message.find("cannot be listed") != std::string::npos);
 }
 
+TEST(Discovery, LooksIntoNothingOfADeviceButItsInterfaces) {
+  const support::FakeUsb usb("discovery_links");
+  usb.plug("1-1", "1234", "0006", "WH01", 1, 2);
+  // As behind a link to the bus, which has all other devices in it.
+  const auto elsewhere = usb.root() / usb.device_folder("1-1") / "subsystem";
+  std::filesystem::create_directories(elsewhere / "devices/hidraw/hidraw9");
+  std::filesystem::create_directories(elsewhere / "tty/ttyACM9");
+  const auto arms = find_arms(usb.root());
+  ASSERT_TRUE(arms) << arms.error().message;
+  for (const FoundArm& arm : *arms) EXPECT_EQ(arm.node, "") << arm.arm;
+}
+
 TEST(Discovery, FindsEachArmWithItsNodeAndItsName) {
   const support::FakeUsb usb("discovery_each");
   usb.plug("1-1", "1234", "0006", "WH01", 1, 2);

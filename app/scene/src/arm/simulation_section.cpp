@@ -117,9 +117,9 @@ device_sim::SimulatedArmSettings read_simulation(YamlMap map, const ArmFile& arm
   settings.plant.mass = tip.require_number("mass", "kg", 1e-3, 10);
   settings.plant.viscous = tip.require_number("viscous", "N s/m", 0, 100);
   settings.plant.coulomb = tip.require_number("coulomb", "N", 0, 10);
+  const double weight = tip.optional_number("weight", 0, "N", 0, 10);
+  settings.weight_B = arm.R_WB.transpose() * Eigen::Vector3d(0, 0, -weight);
   if (!arm.is<driver::DeltaArm>()) {
-    const double weight = tip.optional_number("weight", 0, "N", 0, 10);
-    settings.weight_B = arm.R_WB.transpose() * Eigen::Vector3d(0, 0, -weight);
     if (map.has("drive_train")) {
       settings.drive_train = read_drive_train(map.require_map("drive_train"));
     }

@@ -29,6 +29,11 @@ class UsbArm : public UsbDevice {
  public:
   /// Shows what is true. Real-time: safe.
   virtual ArmTruth truth() const noexcept = 0;
+  /// Leads the hand to a place (m, base) from now on, in place of its path. Real-time: safe.
+  virtual void lead_hand(const Eigen::Vector3d& p_BH) noexcept = 0;
+  /// Lets the hand take the tip, which it does from the beginning, or let go of it. Real-time:
+  /// safe.
+  virtual void hold_tip(bool held) noexcept = 0;
 };
 
 }  // namespace thimble::device_sim::usb

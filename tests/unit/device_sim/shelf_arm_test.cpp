@@ -1,0 +1,99 @@
+// A plugged arm of other constants than the shelf's, and what the hand on it is told.
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "arms/falcon/falcon_arm.h"
+#include "arms/hfab/hfab_models.h"
+#include "support/refuses.h"
+#include "thimble/device_sim/usb/arm_shelf.h"
+#include "usb/hid_arm.h"
+
+namespace thimble::device_sim::usb {
+namespace {
+
+using driver::arm_model;
+using support::refuses;
+
+/// An arm without friction, whose motors are so many times as strong as its driver believes.
+ShelfArm shelf_arm(driver::ArmModel model, double gain) {
+  for (driver::MotorDrive& drive : model.drives) drive.torque_constant *= gain;
+  SimulatedArmSettings settings;
+  settings.plant.mass = 0.2;
+  settings.hand = {.mass = 0.02, .stiffness = 300, .damping = 5};
+  settings.motors.current_max = 3;
+  return {.model = std::move(model), .settings = settings};
+}
+
+std::unique_ptr<UsbArm> plugged(const char* name, ShelfArm arm, HandMotion motion) {
+  auto made =
+      make_usb_arm(name, {.motion = motion, .serial = {}, .firmware = {}, .arm = std::move(arm)});
+  EXPECT_TRUE(made.ok());
+  return std::move(made).value();
+}
+
+/// Returns how far 0.1 A in the first motor drive a free tip in 50 ms, m.
+double driven(UsbArm& arm) {
+  const auto& hid = dynamic_cast<const HidArm&>(arm);
+  std::vector<std::byte> message(hid.report_size());
+  message[0] = std::byte{100};  // mA
+  const Eigen::Vector3d begin = arm.truth().p_BT;
+  for (int frame = 1; frame <= 50; ++frame) {
+    arm.advance_to(frame * UsbDevice::kFrame_ns);
+    std::vector<std::byte> report(UsbDevice::kPacketMax);
+    arm.in(hid.board().in, report);
+    EXPECT_EQ(arm.out(hid.board().out, message).answer, Answer::kDone);
+  }
+  return (arm.truth().p_BT - begin).norm();
+}
+
+TEST(ShelfArm, PullsAsItsOwnConstantsSay) {
+  const std::vector<std::pair<const char*, driver::ArmModel>> boards{
+      {"woodenhaptics", arm_model(driver::hfab::woody_model())},
+      {"polhem", arm_model(driver::hfab::polhem_model())},
+      {"polhem-64", arm_model(driver::hfab::polhem_model())}};
+  for (const auto& [name, model] : boards) {
+    const double whole = driven(*plugged(name, shelf_arm(model, 1), HandMotion::kNone));
+    const double half = driven(*plugged(name, shelf_arm(model, 0.5), HandMotion::kNone));
+    EXPECT_GT(whole, 0.001) << name;
+    EXPECT_NEAR(half / whole, 0.5, 0.01) << name;
+    // A hand holds it back.
+    EXPECT_LT(driven(*plugged(name, shelf_arm(model, 1), HandMotion::kRest)), 0.9 * whole) << name;
+  }
+}
+
+TEST(ShelfArm, IsRefusedOnABoardThatDrivesAnotherBuild) {
+  const auto of = [](const char* name, const driver::ArmModel& model) {
+    return make_usb_arm(name, {.serial = {}, .firmware = {}, .arm = shelf_arm(model, 1)});
+  };
+  const auto woody = arm_model(driver::hfab::woody_model());
+  EXPECT_TRUE(refuses(of("polhem", woody), "another build"));
+  EXPECT_TRUE(refuses(of("polhem-64", woody), "another build"));
+  EXPECT_TRUE(refuses(of("falcon", woody), "another build"));
+  EXPECT_TRUE(
+      refuses(of("woodenhaptics", arm_model(driver::falcon::falcon_model())), "another build"));
+}
+
+TEST(ShelfArm, FollowsAHandThatIsLedUntilItLetsGo) {
+  for (const char* name : {"woodenhaptics", "falcon"}) {
+    const auto model = std::string(name) == "falcon" ? arm_model(driver::falcon::falcon_model())
+                                                     : arm_model(driver::hfab::woody_model());
+    const auto arm = plugged(name, shelf_arm(model, 1), HandMotion::kRest);
+    const Eigen::Vector3d begin = arm->truth().p_BT, away(0, 0.02, 0);
+    arm->lead_hand(begin + away);
+    arm->advance_to(1'000'000'000);
+    EXPECT_LT((arm->truth().p_BT - begin - away).norm(), 0.001) << name;
+    arm->hold_tip(false);
+    arm->lead_hand(begin);
+    arm->advance_to(2'000'000'000);
+    EXPECT_LT((arm->truth().p_BT - begin - away).norm(), 0.002) << name << ": nobody holds it";
+    arm->hold_tip(true);
+    arm->advance_to(3'000'000'000);
+    EXPECT_LT((arm->truth().p_BT - begin).norm(), 0.001) << name;
+  }
+}
+
+}  // namespace
+}  // namespace thimble::device_sim::usb
