@@ -30,6 +30,7 @@ DrawnObject drawn_object(const session::SharedScene& scene,
   DrawnObject drawn;
   drawn.name = object.name;
   drawn.stands_for_shape = object.kind == session::SharedKind::kShape;
+  drawn.field = object.kind == session::SharedKind::kField;
   drawn.crease_angle = object.crease_angle;
   drawn.texture = object.texture;
   drawn.friction = object.friction;

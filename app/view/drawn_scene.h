@@ -22,6 +22,7 @@ struct DrawnObject {
   std::string texture{};          ///< What is felt of it, by name; empty: none.
   std::string friction{};         ///< As above.
   bool endless = false;           ///< A plane: drawn, but no part of what must fit in the picture.
+  bool field = false;             ///< Felt everywhere, and has no triangles.
 };
 
 /// The force of a scene's fields on a tip that rests at a place.

@@ -146,7 +146,9 @@ void draw_looks(const DrawnScene& scene, ViewChoice& choice) {
     flow.next(ImGui::GetFrameHeight() + style.ItemInnerSpacing.x + ImGui::CalcTextSize(label).x);
     return ImGui::Checkbox(label, &on);
   };
-  if (!scene.field.empty()) box("fields", paint.fields);
+  const bool fields = std::any_of(scene.objects.begin(), scene.objects.end(),
+                                  [](const DrawnObject& object) { return object.field; });
+  if (fields) box("fields", paint.fields);
   box("trail", paint.trail);
   box("normal, friction", paint.marks.contact);
   box("textures", paint.surfaces);

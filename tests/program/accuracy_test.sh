@@ -10,6 +10,10 @@ for file in index.html velocity.csv summary.json figures.json; do
   expect 0 '' test -s "out/$file"
 done
 expect_links out/index.html 1
+# Two diagrams of one axis, each with a title of its own.
+if command -v gnuplot >/dev/null; then
+  expect 0 '^2 2$' bash -c 'titles=$(grep -h -m 1 "^set title \"" out/data/*.gp); echo "$(wc -l <<<"$titles") $(sort -u <<<"$titles" | wc -l)"'
+fi
 expect_links out/runs/index.html 3
 expect 1 '' grep -E 'src="http|href="http' out/index.html
 expect 0 '"default_point"' cat out/summary.json

@@ -23,6 +23,11 @@ expect 0 '"z_width.area"' cat laws/summary.json
 expect 0 '^damping_Ns_m,stiffness_N_m,law_N_m,exact_N_m' head -1 laws/kb_edge_linear.csv
 if command -v gnuplot >/dev/null; then
   expect_plot laws/{kb_map,restitution,limit_cycles,stiffness}
+  # Letters of 17 points are 12 of 1700 pixels wide on average [measured]: no panel's title reaches its colour bar.
+  expect 0 '^4 titles$' awk -F "'" '/^set lmargin at screen / { split($0, word, " "); left = word[5] }
+      /^set label 103 / { title = $2 }
+      /^set colorbox user origin screen / { split($0, word, " "); titles += left + 12 * length(title) / 1700 < word[6] + 0 }
+      END { print titles, "titles" }' laws/data/kb_map.gp
 fi
 
 # The same without a hand, where the damping is the arm's alone and slow: also through its own gate.

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Makes the wheel of a build by pip, and touches from it in a virtual environment, where nothing else of Thimble is.
-# With THIMBLE_LONG it is built from the sources, as `pip install .` does.
+# With THIMBLE_LONG it is built from the sources by `pip install .`: isolated, as pip does unless told otherwise, with what it
+# builds by taken from Debian's wheels instead of an index.
 #   wheel_test.sh BUILD_FOLDER SOURCE_FOLDER
 set -euo pipefail
 build=$1 source=$2
@@ -19,12 +20,29 @@ fail() {
 mkdir "$work/source"
 tar -C "$source" --exclude=./build --exclude=./.git -c . | tar -C "$work/source" -x
 cd "$work"
-[ -n "${THIMBLE_LONG:-}" ] || export THIMBLE_BUILD_FOLDER=$build
-/usr/bin/python3 -m pip wheel --no-build-isolation --no-deps --no-index -w . "$work/source" >log 2>&1 ||
-  fail "pip wheel: $(tail -n 20 log)"
 /usr/bin/python3 -m venv --system-site-packages --without-pip place
-/usr/bin/python3 -m pip --python place install --no-deps --no-index ./thimble-*.whl >log 2>&1 ||
-  fail "pip install: $(tail -n 20 log)"
+wheels=/usr/share/python-wheels
+isolated=
+if [ -n "${THIMBLE_LONG:-}" ]; then
+  if compgen -G "$wheels/setuptools-*.whl" >/dev/null && compgen -G "$wheels/wheel-*.whl" >/dev/null; then
+    isolated=1
+  else
+    echo "NOT TESTED: an isolated pip install; install python3-setuptools-whl python3-wheel-whl."
+  fi
+else
+  export THIMBLE_BUILD_FOLDER=$build
+fi
+if [ -n "$isolated" ]; then
+  (cd source && PIP_NO_INDEX=1 PIP_FIND_LINKS=$wheels /usr/bin/python3 -m pip --python "$work/place" install .) >log 2>&1 ||
+    fail "pip install .: $(tail -n 20 log)"
+  made="pip install ."
+else
+  /usr/bin/python3 -m pip wheel --no-build-isolation --no-deps --no-index -w . "$work/source" >log 2>&1 ||
+    fail "pip wheel: $(tail -n 20 log)"
+  /usr/bin/python3 -m pip --python place install --no-deps --no-index ./thimble-*.whl >log 2>&1 ||
+    fail "pip install: $(tail -n 20 log)"
+  made=$(ls -- *.whl)
+fi
 
 unset THIMBLE_BUILD_FOLDER THIMBLE_PROGRAM PYTHONPATH
 mkdir elsewhere && cd elsewhere
@@ -50,4 +68,4 @@ grep -qx "$(sed -nE 's/^project\(thimble VERSION ([0-9.]+).*/\1/p' "$source/CMak
 grep -q '^Loop  *100 ticks' said || fail "the wheel's program said: $(cat said)"
 "$work/place/bin/python" -m thimble run nothing >said 2>&1 && fail "a scene that is not there was run"
 grep -q 'Known by name: .*water_balloon' said || fail "python3 -m thimble said: $(cat said)"
-echo "$(cd "$work" && ls -- *.whl): module, program and $(ls "$work"/place/lib/python3*/site-packages/thimble/share/thimble/scenes/*.yaml | wc -l) scenes."
+echo "$made: module, program and $(ls "$work"/place/lib/python3*/site-packages/thimble/share/thimble/scenes/*.yaml | wc -l) scenes."

@@ -58,9 +58,20 @@ def test_a_compiled_law_that_raises_leaves_zero_force_and_the_reason():
     assert (run.force_wanted[0] == 0.1).all()
 
 
-def test_numba_compiles_a_law_and_a_law_of_numba_that_raises_leaves_zero_force():
+def test_numba_compiles_a_law():
+    pytest.importorskip("numba", reason="install python3-numba")
+
+    @thimble.compiled_law
+    def half(time, tip, velocity, wanted, force):
+        for k in range(3):
+            force[k] = 0.5 * wanted[k]
+
+    assert thimble.run("box", seconds=1, law=half).columns.tobytes() == thimble.run("box", seconds=1, law=_half).columns.tobytes()
+
+
+def test_a_law_of_numba_that_raises_leaves_zero_force():
     if "THIMBLE_LONG" not in os.environ:
-        pytest.skip("the long form (THIMBLE_LONG=1) compiles by numba")
+        pytest.skip("the long form (THIMBLE_LONG=1) compiles more by numba")
     numba = pytest.importorskip("numba", reason="install python3-numba")
 
     @thimble.compiled_law

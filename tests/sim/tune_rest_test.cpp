@@ -115,6 +115,23 @@ TEST(TuneRest, WarnsOfRandomScenesThatOscillateAndOfNoOthers) {
   EXPECT_LT(wrong, 0.05 * alarms + 1e-9);
 }
 
+TEST(TuneRest, IsSilentOnShippedScenes) {
+  int scenes = 0;
+  for (const auto& entry :
+       std::filesystem::directory_iterator(kArm.parent_path().parent_path() / "scenes")) {
+    if (entry.path().extension() != ".yaml") continue;
+    const auto scene = scene::load_scene(entry.path());
+    if (!scene) {  // two hands, or a scan that is not there
+      std::printf("  not tried: %s\n", scene.error().message.c_str());
+      continue;
+    }
+    ++scenes;
+    const auto warnings = warnings_of(*scene);
+    EXPECT_TRUE(warnings.empty()) << scene->name << ": " << warnings[0];
+  }
+  EXPECT_GE(scenes, 14);
+}
+
 // Two faces hold the tip at once, so there is nothing to warn of.
 TEST(TuneRest, IsSilentInAGroove) {
   const auto folder = support::scratch_folder();

@@ -21,6 +21,13 @@ ImU32 screen_colour(const Colour& colour) {
 Legend legend_of(const DrawnScene& scene, const DrawnMoment& moment, const PaintChoice& choice) {
   Legend legend;
   if (choice.fields || choice.trail) legend.strongest = strongest_force(scene, moment);
+  if (choice.fields && scene.field.empty()) {  // they push nothing that rests: viscous ones
+    for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+      if (!scene.objects[i].field) continue;
+      legend.lines.push_back(
+          {object_colour(i), scene.objects[i].name + ": no force at rest, so no arrows"});
+    }
+  }
   if (choice.marks.contact && moment.tick.in_contact) {
     legend.lines.push_back({kNormalColour, "contact normal"});
     legend.lines.push_back({kFrictionColour, "force along the surface"});

@@ -36,11 +36,12 @@ bool is_costly(const AccuracyAxis& axis) {
 }
 
 TEST(AccuracyAxes, SayAllThatAReaderNeeds) {
-  std::set<std::string> names;
+  std::set<std::string> names, titles;
   for (const AxisMaker& maker : accuracy_axes()) {
     const AccuracyAxis axis = maker.make();
     EXPECT_EQ(axis.name, maker.name);
     EXPECT_TRUE(names.insert(axis.name).second) << axis.name;
+    EXPECT_TRUE(titles.insert(axis.title).second) << axis.title;
     for (const std::string* text :
          {&axis.title, &axis.metric, &axis.unit, &axis.truth, &axis.left_out}) {
       EXPECT_FALSE(text->empty()) << axis.name;

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "view/marks/legend.h"
 #include "view/marks/tip_trail.h"
 
 namespace thimble::app::view {
@@ -73,6 +74,24 @@ TEST(ForceMarks, PointAsTheFieldPushesAndLeaveWeakPlacesOut) {
   EXPECT_NEAR(least, -0.0045, 1e-6);
   EXPECT_NEAR(most, 0.0045, 1e-6);
   for (const ColouredVertex& vertex : mesh.vertices) EXPECT_NEAR(vertex.n.norm(), 1, 1e-5);
+}
+
+TEST(ForceMarks, SayWhyAViscousFieldHasNoArrows) {
+  DrawnScene scene;
+  scene.objects.resize(2);
+  scene.objects[1].name = "honey";
+  scene.objects[1].field = true;
+  PaintChoice choice;
+  choice.fields = true;
+  const Legend legend = legend_of(scene, {}, choice);
+  ASSERT_EQ(legend.lines.size(), 1U);
+  EXPECT_EQ(legend.lines[0].text, "honey: no force at rest, so no arrows");
+  EXPECT_EQ(legend.strongest, 0);
+  choice.fields = false;
+  EXPECT_TRUE(legend_of(scene, {}, choice).lines.empty());
+  choice.fields = true;
+  scene.field.push_back({{0, 0, 0}, {0, 0, 1}});  // one that pushes
+  EXPECT_TRUE(legend_of(scene, {}, choice).lines.empty());
 }
 
 TEST(ForceMarks, DrawATrailAlongItsPointsWithoutCollapsing) {

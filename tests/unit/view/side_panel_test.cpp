@@ -96,7 +96,7 @@ std::vector<std::string> cut_off(float width, float height, float scale) {
   const auto reader = session::SharedReader::over(run->memory().again().value()).value();
   Clockwork source(PlayHead::of_run(), reader.get());
   source.shown_scene().name = scene.name;
-  source.shown_scene().field.push_back({{0, 0, 0}, {0, 0, 1}});
+  source.shown_scene().objects.push_back({.name = "field", .mesh = {}, .field = true});
   driver::TickRecord& tick = source.shown_moment().tick;
   tick.in_contact = true;
   tick.depth = 0.12345;
@@ -124,6 +124,36 @@ std::vector<std::string> cut_off(float width, float height, float scale) {
     }
   }
   return cut;
+}
+
+/// Returns the help as it is read, line by line.
+std::string help_text(bool closing_ends) {
+  ViewNotes notes;
+  notes.closing_ends = closing_ends;
+  static std::string taken;
+  taken.clear();
+  ImGuiIO& io = ImGui::GetIO();
+  io.DisplaySize = {1280, 800};
+  io.SetClipboardTextFn = [](void*, const char* text) { taken = text; };
+  ViewChoice choice;
+  choice.help = true;
+  for (int frame = 0; frame < 3; ++frame) {  // a window that finds its size is hidden at first
+    io.DeltaTime = 0.02F;
+    ImGui::NewFrame();
+    if (frame == 2) ImGui::LogToClipboard();  // until the window ends
+    draw_notices({0, 0, 1280, 800}, notes, choice);
+    ImGui::Render();
+  }
+  return taken;
+}
+
+TEST_F(SidePanel, SaysInItsHelpWhetherClosingEndsTheRun) {
+  const std::string watching = help_text(false), leading = help_text(true);
+  EXPECT_NE(watching.find("Q close"), std::string::npos) << watching;
+  EXPECT_NE(watching.find("Closing leaves the run on."), std::string::npos) << watching;
+  EXPECT_EQ(leading.find("leaves the run on"), std::string::npos) << leading;
+  EXPECT_NE(leading.find("Closing ends the run: its hand is in this window."), std::string::npos)
+      << leading;
 }
 
 TEST_F(SidePanel, CutsNothingOffInWindowsOfAnyUsualSize) {
