@@ -57,6 +57,10 @@ class AxisDynamics {
 
   /// Returns the moving mass of arm and hand, kg. Real-time: safe.
   double mass() const noexcept { return mass_; }
+  double viscous() const noexcept { return damping_ * mass_; }        ///< Of both, N s/m.
+  double coulomb() const noexcept { return friction_; }               ///< N
+  double hand_stiffness() const noexcept { return hand_stiffness_; }  ///< N/m
+  double hand_damping() const noexcept { return hand_damping_; }      ///< N s/m
   /// Returns what happened in all steps so far. Real-time: safe.
   const AxisCounters& counters() const noexcept { return counters_; }
 

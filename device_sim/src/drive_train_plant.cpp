@@ -4,11 +4,11 @@
 
 namespace thimble::device_sim {
 
-template <class Geometry>
-driver::Result<DriveTrainPlant<Geometry>> DriveTrainPlant<Geometry>::make(
+template <class Geometry, class Tip>
+driver::Result<DriveTrainPlant<Geometry, Tip>> DriveTrainPlant<Geometry, Tip>::make(
     const driver::JointModel<Geometry>& model, const SimulatedArmSettings& settings,
     const Eigen::Vector3d& p_BT, const Eigen::Vector3d& p_BH) {
-  const auto tip = AxisDynamics::make(settings.plant, settings.hand);
+  const auto tip = Tip::make(model.geometry, settings, p_BT);
   if (!tip) return tip.error();
   const DriveTrainSettings& wanted = settings.drive_train;
   const auto train = DriveTrain::make(wanted, model.drives, settings.motors.current_max);
@@ -21,7 +21,9 @@ driver::Result<DriveTrainPlant<Geometry>> DriveTrainPlant<Geometry>::make(
     return driver::Error{
         "The simulated arm cannot reach its starting point; start the hand's path within reach."};
   }
-  std::array<AxisDynamics, 3> rotors{*tip, *tip, *tip};  // not used where no cable stretches
+  const auto unused = AxisDynamics::make(settings.plant, {});  // where no cable stretches
+  if (!unused) return unused.error();
+  std::array<AxisDynamics, 3> rotors{*unused, *unused, *unused};
   for (std::size_t i = 0; wanted.compliant() && i < 3; ++i) {
     const auto k = static_cast<Eigen::Index>(i);
     const auto rotor = AxisDynamics::make(
@@ -30,31 +32,30 @@ driver::Result<DriveTrainPlant<Geometry>> DriveTrainPlant<Geometry>::make(
     if (!rotor) return rotor.error();
     rotors[i] = *rotor;
   }
-  return DriveTrainPlant(model, settings, *train, *tip, rotors, p_BT, p_BH, *pose);
+  return DriveTrainPlant(model, settings, *train, *tip, rotors, p_BH, *pose);
 }
 
-template <class Geometry>
-DriveTrainPlant<Geometry>::DriveTrainPlant(const driver::JointModel<Geometry>& model,
-                                           const SimulatedArmSettings& settings,
-                                           const DriveTrain& train, const AxisDynamics& tip,
-                                           const std::array<AxisDynamics, 3>& rotors,
-                                           const Eigen::Vector3d& p_BT, const Eigen::Vector3d& p_BH,
-                                           const TipPose& pose) noexcept
+template <class Geometry, class Tip>
+DriveTrainPlant<Geometry, Tip>::DriveTrainPlant(const driver::JointModel<Geometry>& model,
+                                                const SimulatedArmSettings& settings,
+                                                const DriveTrain& train, const Tip& tip,
+                                                const std::array<AxisDynamics, 3>& rotors,
+                                                const Eigen::Vector3d& p_BH,
+                                                const TipPose& pose) noexcept
     : geometry_(model.geometry),
       weight_B_(settings.weight_B),
       compliant_(settings.drive_train.compliant()),
       train_(train),
-      tip_dynamics_(tip),
+      tip_(tip),
       rotor_dynamics_(rotors),
-      tip_{AxisState{p_BT.x(), 0}, AxisState{p_BT.y(), 0}, AxisState{p_BT.z(), 0}},
       rotor_{AxisState{pose.q[0], 0}, AxisState{pose.q[1], 0}, AxisState{pose.q[2], 0}},
       p_BH_(p_BH) {}
 
 /// Finds the torques in the cables half-way (N m at the joints). Half-way, rates have changed as
 /// much again as in half of the sub-step before.
-template <class Geometry>
-Eigen::Vector3d DriveTrainPlant<Geometry>::cable_pull(const TipPose& half_way,
-                                                      const Eigen::Vector3d& rotor) noexcept {
+template <class Geometry, class Tip>
+Eigen::Vector3d DriveTrainPlant<Geometry, Tip>::cable_pull(const TipPose& half_way,
+                                                           const Eigen::Vector3d& rotor) noexcept {
   const Eigen::Vector3d turned = rotor - half_way.q;
   const Eigen::Vector3d rate = rotor_rate() - half_way.G * v_BT();
   const Eigen::Vector3d rate_half_way = 1.5 * rate - 0.5 * rate_before_;
@@ -63,20 +64,21 @@ Eigen::Vector3d DriveTrainPlant<Geometry>::cable_pull(const TipPose& half_way,
           train_.pull(2, turned[2], rate_half_way[2])};
 }
 
-template <class Geometry>
-void DriveTrainPlant<Geometry>::turn_rotors(const Eigen::Vector3d& motor,
-                                            const Eigen::Vector3d& cable,
-                                            std::int64_t dt_ns) noexcept {
+template <class Geometry, class Tip>
+void DriveTrainPlant<Geometry, Tip>::turn_rotors(const Eigen::Vector3d& motor,
+                                                 const Eigen::Vector3d& cable,
+                                                 std::int64_t dt_ns) noexcept {
   for (int i = 0; i < 3; ++i) {
     const auto k = static_cast<std::size_t>(i);
     rotor_dynamics_[k].step(rotor_[k], {.force = motor[i] - cable[i]}, dt_ns);
   }
 }
 
-template <class Geometry>
-void DriveTrainPlant<Geometry>::sub_step(const Eigen::Vector3d& v_BH, std::int64_t dt_ns) noexcept {
+template <class Geometry, class Tip>
+void DriveTrainPlant<Geometry, Tip>::sub_step(const Eigen::Vector3d& v_BH,
+                                              std::int64_t dt_ns) noexcept {
   const double dt = static_cast<double>(dt_ns) * 1e-9;
-  const std::array<AxisState, 3> before = tip_;
+  const typename Tip::State before = tip_.state();
   auto half_way = tip_pose(geometry_, p_BT() + 0.5 * dt * v_BT());
   if (!half_way) half_way = tip_pose(geometry_, p_BT());
   if (half_way) {
@@ -88,23 +90,20 @@ void DriveTrainPlant<Geometry>::sub_step(const Eigen::Vector3d& v_BH, std::int64
     if (compliant_) turn_rotors(motor, cable, dt_ns);
   }
   const Eigen::Vector3d force = f_T_B_ + weight_B_;
-  for (int i = 0; i < 3; ++i) {
-    tip_dynamics_.step(tip_[static_cast<std::size_t>(i)],
-                       {.force = force[i], .anchor = p_BH_[i], .anchor_speed = v_BH[i]}, dt_ns);
-  }
+  tip_.step(half_way, force, p_BH_, v_BH, dt_ns);
   p_BH_ += dt * v_BH;
   const auto after = tip_pose(geometry_, p_BT());
   if (!after) {
     ++stops_;
-    tip_ = before;
-    for (AxisState& axis : tip_) axis.v = 0;
+    tip_.stop_at(before);
   } else if (!compliant_) {
     for (int i = 0; i < 3; ++i) rotor_[static_cast<std::size_t>(i)].x = after->q[i];
   }
 }
 
-template <class Geometry>
-void DriveTrainPlant<Geometry>::step(const Eigen::Vector3d& p_BH, std::int64_t dt_ns) noexcept {
+template <class Geometry, class Tip>
+void DriveTrainPlant<Geometry, Tip>::step(const Eigen::Vector3d& p_BH,
+                                          std::int64_t dt_ns) noexcept {
   if (!(dt_ns > 0)) return;
   const Eigen::Vector3d v_BH = (p_BH - p_BH_) * (1e9 / static_cast<double>(dt_ns));
   while (dt_ns > 0) {
@@ -115,7 +114,8 @@ void DriveTrainPlant<Geometry>::step(const Eigen::Vector3d& p_BH, std::int64_t d
   p_BH_ = p_BH;
 }
 
-template class DriveTrainPlant<driver::SerialArm>;
-template class DriveTrainPlant<driver::LinkageArm>;
+template class DriveTrainPlant<driver::SerialArm, PointTip>;
+template class DriveTrainPlant<driver::SerialArm, LinkedTip>;
+template class DriveTrainPlant<driver::LinkageArm, PointTip>;
 
 }  // namespace thimble::device_sim

@@ -6,7 +6,9 @@
 
 #include "axis_dynamics.h"
 #include "drive_train.h"
+#include "linked_tip.h"
 #include "plant.h"
+#include "point_tip.h"
 #include "thimble/device_sim/settings.h"
 #include "thimble/driver/joint_model.h"
 #include "thimble/driver/linkage_arm.h"
@@ -16,17 +18,18 @@
 
 namespace thimble::device_sim {
 
-/// The mechanics of an arm whose drive train or weight is simulated, with a hand on it. The tip is
-/// the mass of ArmPlant. Without a cable that stretches the motors pull on it at once; with one
-/// each motor is a mass of its own, and the encoders, which sit on the motors, see their angles.
+/// The mechanics of an arm whose drive train, weight or links are simulated, with a hand on it. The
+/// tip is the mass of ArmPlant (PointTip), or one that links hang on (LinkedTip). Without a cable
+/// that stretches the motors pull on it at once; with one each motor is a mass of its own, and the
+/// encoders, which sit on the motors, see their angles.
 ///
 /// Time passes in sub-steps of at most 25 us. In each, all forces but friction, hand and anchor are
 /// held at what they are half-way, where tip and rotors would be then at their present velocities;
-/// then every axis moves exactly (AxisDynamics). For a spring between masses that is the
-/// Stoermer-Verlet rule: it neither gains nor loses energy, and a resonance of w (rad/s) is too
-/// high by (w 25 us)^2 / 24, 1e-5 at 100 Hz. Defined for SerialArm and LinkageArm. All functions
-/// but `make` are Real-time: safe.
-template <class Geometry>
+/// then every axis moves exactly (AxisDynamics), a tip with links by LinkedTip's rule. For a spring
+/// between masses that is the Stoermer-Verlet rule: it neither gains nor loses energy, and a
+/// resonance of w (rad/s) is too high by (w 25 us)^2 / 24, 1e-5 at 100 Hz. Defined for SerialArm
+/// and LinkageArm, with links for SerialArm. All functions but `make` are Real-time: safe.
+template <class Geometry, class Tip = PointTip>
 class DriveTrainPlant final : public Plant {
  public:
   /// The longest sub-step, ns.
@@ -42,9 +45,9 @@ class DriveTrainPlant final : public Plant {
 
   void set_currents(const Eigen::Vector3d& amperes) noexcept override { train_.ask(amperes); }
   void step(const Eigen::Vector3d& p_BH, std::int64_t dt_ns) noexcept override;
-  void take_tip(const AxisDynamics& tip) noexcept override { tip_dynamics_ = tip; }
-  Eigen::Vector3d p_BT() const noexcept override { return {tip_[0].x, tip_[1].x, tip_[2].x}; }
-  Eigen::Vector3d v_BT() const noexcept override { return {tip_[0].v, tip_[1].v, tip_[2].v}; }
+  void take_tip(const AxisDynamics& tip) noexcept override { tip_.take(tip); }
+  Eigen::Vector3d p_BT() const noexcept override { return tip_.p_BT(); }
+  Eigen::Vector3d v_BT() const noexcept override { return tip_.v_BT(); }
   const Eigen::Vector3d& p_BH() const noexcept override { return p_BH_; }
   /// Returns the angles of the rotors, rad at the joints: what the encoders see.
   Eigen::Vector3d q() const noexcept override { return rotor(); }
@@ -55,9 +58,9 @@ class DriveTrainPlant final : public Plant {
 
  private:
   DriveTrainPlant(const driver::JointModel<Geometry>& model, const SimulatedArmSettings& settings,
-                  const DriveTrain& train, const AxisDynamics& tip,
-                  const std::array<AxisDynamics, 3>& rotors, const Eigen::Vector3d& p_BT,
-                  const Eigen::Vector3d& p_BH, const TipPose& pose) noexcept;
+                  const DriveTrain& train, const Tip& tip,
+                  const std::array<AxisDynamics, 3>& rotors, const Eigen::Vector3d& p_BH,
+                  const TipPose& pose) noexcept;
 
   Eigen::Vector3d rotor() const noexcept { return {rotor_[0].x, rotor_[1].x, rotor_[2].x}; }
   Eigen::Vector3d rotor_rate() const noexcept { return {rotor_[0].v, rotor_[1].v, rotor_[2].v}; }
@@ -70,17 +73,17 @@ class DriveTrainPlant final : public Plant {
   Eigen::Vector3d weight_B_;  // N
   bool compliant_;
   DriveTrain train_;
-  AxisDynamics tip_dynamics_;
+  Tip tip_;
   std::array<AxisDynamics, 3> rotor_dynamics_;  // of cables that stretch
-  std::array<AxisState, 3> tip_;
-  std::array<AxisState, 3> rotor_;        // rad at the joint
-  Eigen::Vector3d rate_before_{0, 0, 0};  // of the stretch, one sub-step ago, rad/s
+  std::array<AxisState, 3> rotor_;              // rad at the joint
+  Eigen::Vector3d rate_before_{0, 0, 0};        // of the stretch, one sub-step ago, rad/s
   Eigen::Vector3d p_BH_;
   Eigen::Vector3d f_T_B_{0, 0, 0};
   std::uint64_t stops_ = 0;
 };
 
 using SerialDriveTrainPlant = DriveTrainPlant<driver::SerialArm>;
+using LinkedSerialPlant = DriveTrainPlant<driver::SerialArm, LinkedTip>;
 using LinkageDriveTrainPlant = DriveTrainPlant<driver::LinkageArm>;
 
 }  // namespace thimble::device_sim

@@ -102,8 +102,8 @@ class SimulatedArm {
   std::uint64_t wire_overflows() const noexcept { return reports_.dropped() + messages_.dropped(); }
 
  private:
-  using AnyPlant =
-      std::variant<ArmPlant, LinkagePlant, SerialDriveTrainPlant, LinkageDriveTrainPlant>;
+  using AnyPlant = std::variant<ArmPlant, LinkagePlant, SerialDriveTrainPlant,
+                                LinkageDriveTrainPlant, LinkedSerialPlant>;
 
   SimulatedArm(const SimulatedArmSettings& settings, Hand hand, AnyPlant plant,
                const AxisDynamics& held_tip, const AxisDynamics& free_tip, const Firmware& firmware,

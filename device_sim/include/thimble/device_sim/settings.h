@@ -71,6 +71,32 @@ struct DriveTrainSettings {
   }
 };
 
+/// Describes the links of a serial arm beside the tip's own mass, by all that motion and weight can
+/// tell of them: all zero is an arm whose mass is at its tip. Angles A, B, C are those of
+/// driver::SerialArm. A link of mass m along B, its centre s from the shoulder, with the inertia I
+/// about an axis across it through its centre, adds m s^2 + I to inertia B and to yaw_b, and m s to
+/// moment_b; one along C that hangs on the elbow adds m length_b^2 to inertia B and yaw_b,
+/// m s^2 + I to inertia C and yaw_c, m length_b s to coupling, m length_b to moment_b, and m s to
+/// moment_c.
+struct LinkSettings {
+  /// About the yaw with both links upright, and about B and C, kg m^2. It includes rotors that turn
+  /// with the joints, unless the drive train has them.
+  Eigen::Vector3d inertia{0, 0, 0};
+  double yaw_b = 0;  ///< What comes about the yaw with sin^2 B, kg m^2.
+  double yaw_c = 0;  ///< With sin^2 C, kg m^2.
+  double coupling =
+      0;  ///< Between B and C with cos(B + C), about the yaw with sin B sin C, kg m^2.
+  double moment_b = 0;  ///< First moment of mass along link B, counterweights negative, kg m.
+  double moment_c = 0;  ///< Along link C, kg m.
+  Eigen::Vector3d gravity_B{0, 0, 0};  ///< Gravity in the base, m/s^2.
+
+  /// Returns whether there is anything to simulate. Real-time: safe.
+  bool named() const noexcept {
+    return !inertia.isZero(0) || yaw_b != 0 || yaw_c != 0 || coupling != 0 || moment_b != 0 ||
+           moment_c != 0;
+  }
+};
+
 /// Describes how encoders and motors are plugged into the board: a well-made arm has the defaults,
 /// anything else is a mistake for a check to find.
 struct WiringSettings {
@@ -131,6 +157,7 @@ struct SimulatedArmSettings {
   HandSettings hand;                  ///< How the hand holds it.
   MotorSettings motors;               ///< What the motors make of currents.
   DriveTrainSettings drive_train{};   ///< What lies between motors and links.
+  LinkSettings links{};               ///< What hangs on the tip; of serial arms.
   Eigen::Vector3d weight_B{0, 0, 0};  ///< What gravity pulls on the tip with, in the base, N.
   FirmwareSettings firmware;          ///< What the board does, and when it gives up.
   WireSettings wire;                  ///< How long messages are on their way.

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+
+#include "axis_dynamics.h"
+#include "link_mechanics.h"
+#include "thimble/device_sim/settings.h"
+#include "thimble/driver/result.h"
+#include "thimble/driver/serial_arm.h"
+#include "tip_kinematics.h"
+
+namespace thimble::device_sim {
+
+/// A tip that links hang on: its mass is the matrix m + G^T M(q) G, which changes with the pose,
+/// and its dry friction, along x, y and z of the base, is set-valued as AxisDynamics has it.
+///
+/// A step of dt moves the tip half-way, changes its velocity there, and moves it on
+/// (drift, kick, drift): second order in dt. What hangs on the velocity is taken at that half-way
+/// through the step, as the acceleration before says. Where an axis comes to rest or breaks loose
+/// within a step, friction acts as it does at its end (Moreau's rule), which is of first order: off
+/// by at most its momentum c dt. All functions but `make` are Real-time: safe.
+class LinkedTip {
+ public:
+  struct State {
+    Eigen::Vector3d p{0, 0, 0};  ///< m
+    Eigen::Vector3d v{0, 0, 0};  ///< m/s; exactly 0 in an axis that friction holds.
+  };
+
+  /// Makes it at rest at p_BT (m). Fails if a constant is out of range. Real-time: never from the
+  /// servo thread.
+  static driver::Result<LinkedTip> make(const driver::SerialArm& arm,
+                                        const SimulatedArmSettings& settings,
+                                        const Eigen::Vector3d& p_BT);
+
+  /// Lets dt_ns pass under a held force (N), the hand's point moving evenly from p_BH (m);
+  /// `half_way` is the pose where the tip would be then at its velocity.
+  void step(const std::optional<TipPose>& half_way, const Eigen::Vector3d& force,
+            const Eigen::Vector3d& p_BH, const Eigen::Vector3d& v_BH, std::int64_t dt_ns) noexcept;
+
+  /// Takes other constants of mass, friction and hand; how it moves stays as it is.
+  void take(const AxisDynamics& tip) noexcept;
+
+  const Eigen::Vector3d& p_BT() const noexcept { return state_.p; }
+  const Eigen::Vector3d& v_BT() const noexcept { return state_.v; }
+  const State& state() const noexcept { return state_; }
+  /// Puts it back to where it was, at rest.
+  void stop_at(const State& before) noexcept {
+    state_ = {.p = before.p, .v = {0, 0, 0}};
+    acceleration_.setZero();
+  }
+
+ private:
+  LinkedTip(const driver::SerialArm& arm, const SimulatedArmSettings& settings,
+            const Eigen::Vector3d& p_BT) noexcept;
+
+  LinkMechanics links_;
+  double mass_;     // of tip and hand, kg
+  double coulomb_;  // N
+  double viscous_;  // N s/m
+  HandSettings hand_;
+  State state_;
+  Eigen::Vector3d acceleration_{0, 0, 0};  // in the last step, m/s^2
+};
+
+/// Finds the velocity v (m/s) after a step: inertia v + s = momentum, where friction takes any s_i
+/// up to `most` (N s) while v_i is zero, and `most` against v_i else. It is the one least point of
+/// a convex function, found directly where no axis turns or rests, else by descending along each
+/// axis by turns. `inertia` is symmetric and positive. Real-time: safe.
+Eigen::Vector3d velocity_after_friction(const Eigen::Matrix3d& inertia,
+                                        const Eigen::Vector3d& momentum, double most,
+                                        const Eigen::Vector3d& v_before) noexcept;
+
+}  // namespace thimble::device_sim
