@@ -7,7 +7,7 @@ namespace thimble::device_sim {
 template <class Geometry>
 driver::Result<DriveTrainPlant<Geometry>> DriveTrainPlant<Geometry>::make(
     const driver::JointModel<Geometry>& model, const SimulatedArmSettings& settings,
-    const Eigen::Vector3d& p_BT, const Eigen::Vector3d& p_BH) {
+    const Eigen::Vector3d& p_BT, const Eigen::Vector3d& p_BH, std::int64_t sub_step_ns) {
   const auto tip = AxisDynamics::make(settings.plant, settings.hand);
   if (!tip) return tip.error();
   const DriveTrainSettings& wanted = settings.drive_train;
@@ -30,7 +30,7 @@ driver::Result<DriveTrainPlant<Geometry>> DriveTrainPlant<Geometry>::make(
     if (!rotor) return rotor.error();
     rotors[i] = *rotor;
   }
-  return DriveTrainPlant(model, settings, *train, *tip, rotors, p_BT, p_BH, *pose);
+  return DriveTrainPlant(model, settings, *train, *tip, rotors, p_BT, p_BH, *pose, sub_step_ns);
 }
 
 template <class Geometry>
@@ -39,7 +39,7 @@ DriveTrainPlant<Geometry>::DriveTrainPlant(const driver::JointModel<Geometry>& m
                                            const DriveTrain& train, const AxisDynamics& tip,
                                            const std::array<AxisDynamics, 3>& rotors,
                                            const Eigen::Vector3d& p_BT, const Eigen::Vector3d& p_BH,
-                                           const TipPose& pose) noexcept
+                                           const TipPose& pose, std::int64_t sub_step_ns) noexcept
     : geometry_(model.geometry),
       weight_B_(settings.weight_B),
       compliant_(settings.drive_train.compliant()),
@@ -48,7 +48,22 @@ DriveTrainPlant<Geometry>::DriveTrainPlant(const driver::JointModel<Geometry>& m
       rotor_dynamics_(rotors),
       tip_{AxisState{p_BT.x(), 0}, AxisState{p_BT.y(), 0}, AxisState{p_BT.z(), 0}},
       rotor_{AxisState{pose.q[0], 0}, AxisState{pose.q[1], 0}, AxisState{pose.q[2], 0}},
-      p_BH_(p_BH) {}
+      p_BH_(p_BH),
+      sub_step_ns_(sub_step_ns) {}
+
+template <class Geometry>
+void DriveTrainPlant<Geometry>::put(const DriveTrainState& state) noexcept {
+  const auto pose = tip_pose(geometry_, state.p_BT);
+  if (!pose) return;
+  for (int i = 0; i < 3; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    tip_[k] = {state.p_BT[i], state.v_BT[i]};
+    rotor_[k] =
+        compliant_ ? AxisState{state.q_rotor[i], state.rate_rotor[i]} : AxisState{pose->q[i], 0};
+  }
+  if (compliant_) rate_before_ = state.rate_rotor - pose->G * state.v_BT;
+  train_.put(state.amperes);
+}
 
 /// Finds the torques in the cables half-way (N m at the joints). Half-way, rates have changed as
 /// much again as in half of the sub-step before.
@@ -108,7 +123,7 @@ void DriveTrainPlant<Geometry>::step(const Eigen::Vector3d& p_BH, std::int64_t d
   if (!(dt_ns > 0)) return;
   const Eigen::Vector3d v_BH = (p_BH - p_BH_) * (1e9 / static_cast<double>(dt_ns));
   while (dt_ns > 0) {
-    const std::int64_t sub_ns = std::min(dt_ns, kSubStep_ns);
+    const std::int64_t sub_ns = std::min(dt_ns, sub_step_ns_);
     sub_step(v_BH, sub_ns);
     dt_ns -= sub_ns;
   }
