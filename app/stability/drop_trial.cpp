@@ -68,17 +68,17 @@ driver::Result<Bounce> drop_on_wall(const scene::ArmFile& arm, const DropTrial& 
   if (!scene::joint_angles_at(arm, direction->p_WT - deepest * direction->n_W)) {
     return driver::Error{"The wall stands out of the arm's reach."};
   }
+  const double mass = moved_mass(arm, direction->n_W);
   Bounce mean;
   for (int i = 0; i < trial.falls; ++i) {
     const double further = (i + 0.5) / trial.falls;
     // The speed at the wall without friction: so far the tip moves between two ticks there.
-    const double speed = std::sqrt(2 * trial.pull * trial.height / wall.tip.mass);
+    const double speed = std::sqrt(2 * trial.pull * trial.height / mass);
     wall.offset = -(trial.height + further * speed / trial.rate);
     // There and back twice and again, with half of the pull left by friction, and half an
     // oscillation in the wall.
-    const double fall = std::sqrt(4 * trial.height * wall.tip.mass / trial.pull);
-    wall.duration =
-        wall.pull_start + 6 * fall + 4 * std::sqrt(wall.tip.mass / trial.stiffness) + 0.05;
+    const double fall = std::sqrt(4 * trial.height * mass / trial.pull);
+    wall.duration = wall.pull_start + 6 * fall + 4 * std::sqrt(mass / trial.stiffness) + 0.05;
     const auto run = run_wall(arm, wall);
     if (!run) return run.error();
     if (run->fault) return driver::Error{"The arm made a fault while the tip fell."};

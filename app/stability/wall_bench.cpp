@@ -1,5 +1,6 @@
 #include "stability/wall_bench.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -143,6 +144,15 @@ driver::Result<ArmDirection> direction_at_home(const scene::ArmFile& arm, const 
   const auto home = home_steps(arm);
   if (!home) return home.error();
   return along(way_W, *home);
+}
+
+double moved_mass(const scene::ArmFile& arm, const Vector3d& n_W) {
+  Vector3d p_BT;
+  Matrix3d J_BT;
+  const Vector3d q = arm.model.joint_angles({});
+  std::visit([&](const auto& build) { build.forward(q, p_BT, J_BT); }, arm.model.geometry);
+  const Vector3d turned = J_BT.inverse() * (arm.R_WB.transpose() * n_W);
+  return arm.simulated.plant.mass + turned.cwiseAbs2().dot(arm.simulated.drive_train.inertia);
 }
 
 driver::Result<WallRun> run_wall(const scene::ArmFile& file, const WallCase& wall) {

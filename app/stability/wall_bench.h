@@ -37,6 +37,10 @@ driver::Result<ArmDirection> diagonal_direction_at_home(const scene::ArmFile& ar
 driver::Result<ArmDirection> direction_at_home(const scene::ArmFile& arm,
                                                const Eigen::Vector3d& way_W);
 
+/// Returns what moves along a direction at home, kg: the tip, and the rotors of a drive train where
+/// cables stretch, J^-T diag(inertia) J^-1. Precondition: the direction is of this arm.
+double moved_mass(const scene::ArmFile& arm, const Eigen::Vector3d& n_W);
+
 /// One wall in front of one arm, and how it is begun; the one way in which walls are tried
 /// (wall_trial.h and study/wall_measures.h say what is looked at). SI units.
 struct WallCase {

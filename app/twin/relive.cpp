@@ -185,10 +185,14 @@ driver::Result<Relived> Relive::operator()(const scene::ArmFile& file) {
   if (!mover) return mover.error();
   seen_.resize(ticks_);
   Relived relived;
-  for (TwinWindow& window : windows_) {
-    if (!settled_) settle(**mover, window);
+  const bool soft = (*mover)->stretches();
+  if (soft) soft_.resize(windows_.size());
+  for (std::size_t w = 0; w < windows_.size(); ++w) {
+    TwinWindow& window = windows_[w];
+    if (!settled_ && !soft) settle(**mover, window);
     Eigen::Vector3d square;
-    relived.error_B.push_back(relive(**mover, window, square));
+    relived.error_B.push_back(soft ? soft_[w](**mover, *motion_, window, square)
+                                   : relive(**mover, window, square));
     relived.square += square.sum();
     relived.count +=
         static_cast<std::size_t>(std::count(window.seen.begin(), window.seen.end(), true));

@@ -5,6 +5,7 @@
 
 #include "thimble/driver/result.h"
 #include "thimble/scene/arm_file.h"
+#include "twin/start_fit.h"
 #include "twin/twin_motion.h"
 #include "twin/twin_mover.h"
 
@@ -34,7 +35,8 @@ struct Relived {
 ///
 /// Where and how fast the tip was when a window began is known from encoders' steps alone, so each
 /// twin begins where it comes nearest: place and velocity of each axis are fitted by Gauss-Newton,
-/// and every other difference is the constants'. Real-time: never from the servo thread.
+/// and with them how cables are stretched (start_fit.h); every other difference is the constants'.
+/// Real-time: never from the servo thread.
 class Relive {
  public:
   /// Cuts a recording into windows of `length` (s), one behind the other. Fails if there are none.
@@ -59,6 +61,7 @@ class Relive {
   const TwinMotion* motion_;
   std::size_t ticks_;
   std::vector<TwinWindow> windows_;
+  std::vector<StartFit> soft_;  // of each window, where cables stretch
   std::vector<Eigen::Vector3d> seen_;
   bool settled_ = false;  // the starts were sought widely
 };

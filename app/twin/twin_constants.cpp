@@ -15,6 +15,51 @@ Eigen::Vector3d down_B(const scene::ArmFile& file) {
   return file.R_WB.transpose() * Eigen::Vector3d(0, 0, -1);
 }
 
+/// One number of each joint of the drive train.
+struct JointConstant {
+  const char* key;
+  const char* unit;
+  Eigen::Vector3d device_sim::DriveTrainSettings::*member;
+};
+
+/// Adds motors and cables, which the motion shows where the cables stretch, and the currents' lag.
+void add_drive_train(const scene::ArmFile& file, std::vector<TwinConstant>& all) {
+  using device_sim::DriveTrainSettings;
+  const DriveTrainSettings& train = file.simulated.drive_train;
+  if (train.current_lag > 0) {
+    all.push_back(
+        {.key = "simulation.drive_train.current_lag",
+         .unit = "s",
+         .step = 0.1 * train.current_lag,
+         .least = 0,
+         .get = [](const scene::ArmFile& arm) { return arm.simulated.drive_train.current_lag; },
+         .set = [](scene::ArmFile& arm,
+                   double to) { arm.simulated.drive_train.current_lag = to; }});
+  }
+  if (!train.compliant()) return;
+  constexpr JointConstant kOfCables[] = {
+      {"stiffness", "N m/rad", &DriveTrainSettings::stiffness},
+      {"inertia", "kg m^2", &DriveTrainSettings::inertia},
+      {"damping", "N m s/rad", &DriveTrainSettings::damping},
+  };
+  for (const JointConstant& one : kOfCables) {
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      const double value = (train.*one.member)[i];
+      if (!(value > 0)) continue;
+      all.push_back(
+          {.key = fmt::format("simulation.drive_train.{}[{}]", one.key, i + 1),
+           .unit = one.unit,
+           .step = kPart * value,
+           .least = 0.1 * value,
+           .get = [member = one.member,
+                   i](const scene::ArmFile& arm) { return (arm.simulated.drive_train.*member)[i]; },
+           .set = [member = one.member, i](
+                      scene::ArmFile& arm,
+                      double to) { (arm.simulated.drive_train.*member)[i] = to; }});
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<TwinConstant> twin_constants(const scene::ArmFile& file) {
@@ -72,6 +117,7 @@ std::vector<TwinConstant> twin_constants(const scene::ArmFile& file) {
                        wire.delay_in_ns = std::min(wire.delay_in_ns, sum_ns);
                        wire.delay_out_ns = sum_ns - wire.delay_in_ns;
                      }});
+  add_drive_train(file, all);
   return all;
 }
 

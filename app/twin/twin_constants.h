@@ -19,7 +19,8 @@ struct TwinConstant {
 };
 
 /// Returns the constants of a file that motion shows: mass, friction, weight, each motor's torque
-/// constant, and the delay. Real-time: never from the servo thread.
+/// constant, and the delay; where the file names them, stiffness and damping of each cable, each
+/// motor's inertia, and the currents' lag. Real-time: never from the servo thread.
 std::vector<TwinConstant> twin_constants(const scene::ArmFile& file);
 
 }  // namespace thimble::app

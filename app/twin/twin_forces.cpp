@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -20,27 +21,44 @@ constexpr double kDirectionSpan = 0.005;  // s to each side, over which the dire
 constexpr double kStands = 3;             // times the encoders' error: a way that is none
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-/// A bump (1 - s^2)^3 with its first two derivatives at each tick of a piece, and between two.
+/// A bump (1 - s^2)^n with its derivatives at each tick of a piece, and between two. Four of them
+/// vanish at its ends with n = 5, two with n = 3.
 struct Bump {
-  std::vector<double> value, first, second;  // at ticks -half to half
-  std::vector<double> between;               // from each tick to the next
+  std::vector<double> value, first, second, fourth;  // at ticks -half to half
+  std::vector<double> between, between_second;       // from each tick to the next
   std::ptrdiff_t half;
 
-  explicit Bump(double dt) : half(std::lround(kHalf / dt)) {
+  Bump(double dt, int n) : half(std::lround(kHalf / dt)) {
     const double width = static_cast<double>(half) * dt;
-    // So that its integral is 1: that of (1 - s^2)^3 from -1 to 1 is 32/35.
-    const double scale = 35.0 / 32 / width;
-    const auto value_at = [&](double s) {
+    // So that its integral is 1: those of (1 - s^2)^3 and (1 - s^2)^5 from -1 to 1.
+    const double scale = (n == 3 ? 35.0 / 32 : 693.0 / 512) / width;
+    const auto power = [](double u, int times) {
+      double product = 1;
+      for (; times > 0; --times) product *= u;
+      return product;
+    };
+    const double n2 = n * (n - 1), n3 = n2 * (n - 2), n4 = n3 * (n - 3);
+    const auto value_at = [&](double s) { return scale * power(1 - s * s, n); };
+    const auto second_at = [&](double s) {
       const double u = 1 - s * s;
-      return scale * u * u * u;
+      return scale / (width * width) *
+             (-2 * n * power(u, n - 1) + 4 * n2 * s * s * power(u, n - 2));
     };
     for (std::ptrdiff_t j = -half; j <= half; ++j) {
       const double s = static_cast<double>(j) / static_cast<double>(half);
-      const double u = 1 - s * s;
+      const double u = 1 - s * s, s2 = s * s;
       value.push_back(dt * value_at(s));
-      first.push_back(dt * scale / width * -6 * s * u * u);
-      second.push_back(dt * scale / (width * width) * (-6 * u * u + 24 * s * s * u));
-      if (j < half) between.push_back(dt * value_at(s + 0.5 / static_cast<double>(half)));
+      first.push_back(dt * scale / width * -2 * n * s * power(u, n - 1));
+      second.push_back(dt * second_at(s));
+      if (n > 4) {
+        fourth.push_back(dt * scale / power(width, 4) *
+                         (12 * n2 * power(u, n - 2) - 48 * n3 * s2 * power(u, n - 3) +
+                          16 * n4 * s2 * s2 * power(u, n - 4)));
+      }
+      if (j == half) break;
+      const double after = s + 0.5 / static_cast<double>(half);
+      between.push_back(dt * value_at(after));
+      between_second.push_back(dt * second_at(after));
     }
   }
 };
@@ -50,6 +68,8 @@ struct Piece {
   Vector3d p{0, 0, 0}, v{0, 0, 0}, a{0, 0, 0};
   Vector3d direction{0, 0, 0};  // mean of the velocity's sign; not a number on an axis that stands
   Vector3d motors{0, 0, 0};     // N
+  Vector3d fourth{0, 0, 0};     // derivative of the place, m/s^4
+  Vector3d motors_second{0, 0, 0};  // derivative of their force, N/s^2
 };
 
 Piece piece_at(const std::vector<TwinSample>& stretch, const std::vector<Vector3d>& pulls,
@@ -66,6 +86,7 @@ Piece piece_at(const std::vector<TwinSample>& stretch, const std::vector<Vector3
     piece.p += bump.value[k] * p;
     piece.v -= bump.first[k] * p;
     piece.a += bump.second[k] * p;
+    if (!bump.fourth.empty()) piece.fourth += bump.fourth[k] * p;
     const Vector3d way = at(j + slope).p_BT - at(j - slope).p_BT;
     for (int i = 0; i < 3; ++i) {
       // Written so that an axis that once stood stays out.
@@ -73,8 +94,10 @@ Piece piece_at(const std::vector<TwinSample>& stretch, const std::vector<Vector3
           std::abs(way[i]) > stands ? bump.value[k] * (way[i] > 0 ? 1 : -1) : kNone;
     }
     if (j < bump.half) {
-      piece.motors += bump.between[k] *
-                      pulls[static_cast<std::size_t>(static_cast<std::ptrdiff_t>(middle) + j)];
+      const Vector3d& pull =
+          pulls[static_cast<std::size_t>(static_cast<std::ptrdiff_t>(middle) + j)];
+      piece.motors += bump.between[k] * pull;
+      piece.motors_second += bump.between_second[k] * pull;
     }
   }
   piece.p += p0;
@@ -94,6 +117,28 @@ std::vector<Vector3d> pulls_of(const std::vector<TwinSample>& stretch, const Twi
   }
   return pulls;
 }
+
+/// What cables that stretch do to forces on the tip in one pose. Motors move as the encoders say,
+/// x, and pull the tip by what is left of their force f, c = f - M_r x'' - b_r x'; the tip is
+/// behind them by C c, with M_r = G^T I G, b_r = G^T b G and C = G^-1 K^-1 G^-T. So m times its
+/// acceleration is m (x'' - C c''), in which damping of cables and derivatives of friction are left
+/// out: below 20 Hz they are a hundredth.
+struct CablesInPose {
+  Eigen::Matrix3d rotors, rubbing, give;
+
+  CablesInPose(const device_sim::DriveTrainSettings& train, const Eigen::Matrix3d& G)
+      : rotors(G.transpose() * train.inertia.asDiagonal() * G),
+        rubbing(G.transpose() * train.viscous.asDiagonal() * G) {
+    const Eigen::Matrix3d J = G.inverse();
+    give = J * train.stiffness.cwiseInverse().asDiagonal() * J.transpose();
+  }
+
+  /// Returns what motion needs beyond a rigid arm's, N in the base.
+  Vector3d needed(const Piece& piece, double mass) const {
+    return rotors * piece.a + rubbing * piece.v -
+           mass * (give * (piece.motors_second - rotors * piece.fourth));
+  }
+};
 
 /// Turns a force into the world: an axis that stands spoils those alone that it has a part in.
 Vector3d turned(const Eigen::Matrix3d& R_WB, const Vector3d& f_B) {
@@ -144,6 +189,24 @@ class HandFit {
   double square_ = 0;
 };
 
+/// Returns what a piece makes of noise of 1 m at each tick, N RMS of an axis.
+double noise_of(const Bump& bump, double mass, const device_sim::DriveTrainSettings& train,
+                const TwinMotion& motion) {
+  double of_second = mass, of_fourth = 0;  // kg, kg s^2
+  if (train.compliant()) {
+    const CablesInPose cables(train, motion.stretches.front().front().G);
+    of_second += cables.rotors.trace() / 3;
+    of_fourth = mass * (cables.give * cables.rotors).trace() / 3;
+  }
+  double square = 0;
+  for (std::size_t k = 0; k < bump.second.size(); ++k) {
+    const double one =
+        of_second * bump.second[k] + (bump.fourth.empty() ? 0 : of_fourth * bump.fourth[k]);
+    square += one * one;
+  }
+  return std::sqrt(square);
+}
+
 }  // namespace
 
 bool TwinForces::other_acted() const {
@@ -161,7 +224,9 @@ TwinForces twin_forces(const TwinMotion& motion, const scene::ArmFile& file) {
   const auto& plant = file.simulated.plant;
   const TwinMotors motors(file);
   const TwinDelay delay(file, motion.dt);
-  const Bump bump(motion.dt);
+  const device_sim::DriveTrainSettings& train = file.simulated.drive_train;
+  const bool soft = train.compliant();
+  const Bump bump(motion.dt, soft ? 5 : 3);
   const auto every = static_cast<std::size_t>(std::max(1L, std::lround(kBetween / motion.dt)));
   const auto lead = static_cast<std::size_t>(bump.half) +
                     static_cast<std::size_t>(std::lround(TwinMotion::kLead / motion.dt)) + 1;
@@ -173,8 +238,9 @@ TwinForces twin_forces(const TwinMotion& motion, const scene::ArmFile& file) {
     const std::vector<Vector3d> pulls = pulls_of(stretch, motors, delay, motion.dt);
     for (std::size_t k = lead; k + lead < stretch.size(); k += every) {
       const Piece piece = piece_at(stretch, pulls, k, bump, motion.dt, kStands * motion.step_error);
-      const Vector3d needed_B = plant.mass * piece.a + plant.viscous * piece.v +
-                                plant.coulomb * piece.direction - file.simulated.weight_B;
+      Vector3d needed_B = plant.mass * piece.a + plant.viscous * piece.v +
+                          plant.coulomb * piece.direction - file.simulated.weight_B;
+      if (soft) needed_B += CablesInPose(train, stretch[k].G).needed(piece, plant.mass);
       const Vector3d other_B = needed_B - piece.motors;
       fit.add(piece, other_B);
       const Vector3d other_W = turned(motion.R_WB, other_B);
@@ -203,9 +269,7 @@ TwinForces twin_forces(const TwinMotion& motion, const scene::ArmFile& file) {
     axis.needed_rms = std::sqrt(squares_needed[k] / count);
     axis.other_rms = std::sqrt(squares_other[k] / count);
   }
-  double square = 0;
-  for (const double second : bump.second) square += second * second;
-  found.noise = plant.mass * motion.step_error * std::sqrt(square);
+  found.noise = motion.step_error * noise_of(bump, plant.mass, train, motion);
   found.hand = fit.hand();
   return found;
 }

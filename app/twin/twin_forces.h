@@ -55,9 +55,11 @@ struct TwinForces {
 };
 
 /// Finds the forces of a recorded motion: what the arm of a file needs for it, m p'' + b p' + c
-/// sgn(p') - w, less what its motors gave. Both are integrated against smooth bumps of 60 ms
-/// ((1 - s^2)^3), so that positions need no differentiation: what acts for a shorter time is
-/// smoothed. No constant is fitted. Real-time: never from the servo thread.
+/// sgn(p') - w, less what its motors gave; where cables stretch, the tip moves otherwise than its
+/// encoders say, as far as motors and cables of the file make it. Dry friction of motors, play,
+/// cogging and lag are left out. Both are integrated against smooth bumps of 60 ms
+/// ((1 - s^2)^3, or ^5 with cables), so that positions need no differentiation: what acts for a
+/// shorter time is smoothed. No constant is fitted. Real-time: never from the servo thread.
 TwinForces twin_forces(const TwinMotion& motion, const scene::ArmFile& file);
 
 /// Returns them as figures.

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "axis_dynamics.h"
+#include "twin/drive_train_twin.h"
 #include "twin/twin_motors.h"
 
 namespace thimble::app {
@@ -64,11 +65,7 @@ class RigidTwin final : public TwinMover {
 
 driver::Result<std::unique_ptr<TwinMover>> make_twin_mover(const TwinMotion& motion,
                                                            const scene::ArmFile& file) {
-  if (file.simulated.drive_train.named()) {
-    return driver::Error{
-        "The arm file names a drive train (simulation.drive_train), of which there is no twin yet; "
-        "take that section out of a copy."};
-  }
+  if (file.simulated.drive_train.named()) return make_drive_train_twin(motion, file);
   const auto dynamics = device_sim::AxisDynamics::make(file.simulated.plant, {});
   if (!dynamics) return dynamics.error();
   return std::unique_ptr<TwinMover>(std::make_unique<RigidTwin>(motion, file, *dynamics));

@@ -11,10 +11,12 @@
 
 namespace thimble::app {
 
-/// How a tip moves at a moment, in the base.
+/// How an arm moves at a moment.
 struct TwinStart {
-  Eigen::Vector3d p_BT{0, 0, 0};  ///< m
-  Eigen::Vector3d v_BT{0, 0, 0};  ///< m/s
+  Eigen::Vector3d p_BT{0, 0, 0};     ///< Where the encoders say the tip is, in the base, m.
+  Eigen::Vector3d v_BT{0, 0, 0};     ///< m/s
+  Eigen::Vector3d stretch{0, 0, 0};  ///< By which motors are ahead of links, rad at the joints.
+  Eigen::Vector3d stretch_rate{0, 0, 0};  ///< rad/s
 };
 
 /// The simulated arm of a file with nobody's hand on it, moved by recorded currents from any state.
@@ -28,6 +30,9 @@ class TwinMover {
   /// before `begin`, and the stretch goes on for as long as `seen`.
   virtual void move(std::size_t stretch, std::size_t begin, const TwinStart& start,
                     std::span<Eigen::Vector3d> seen) = 0;
+
+  /// Returns whether motors and links move apart. If not, a start's stretch is not looked at.
+  virtual bool stretches() const noexcept { return false; }
 
  protected:
   TwinMover() = default;

@@ -24,6 +24,9 @@ class DriveTrain {
   /// Real-time: safe.
   void ask(const Eigen::Vector3d& amperes) noexcept;
 
+  void put(const Eigen::Vector3d& amperes) noexcept {
+    if (settings_.current_lag > 0) amperes_ = amperes;
+  }
   /// Lets dt > 0 (s) pass: the currents approach what is asked for by their exact map. Returns
   /// their mean over that time, A. Real-time: safe.
   Eigen::Vector3d pass(double dt) noexcept;

@@ -7,7 +7,7 @@ namespace thimble::device_sim {
 template <class Geometry, class Tip>
 driver::Result<DriveTrainPlant<Geometry, Tip>> DriveTrainPlant<Geometry, Tip>::make(
     const driver::JointModel<Geometry>& model, const SimulatedArmSettings& settings,
-    const Eigen::Vector3d& p_BT, const Eigen::Vector3d& p_BH) {
+    const Eigen::Vector3d& p_BT, const Eigen::Vector3d& p_BH, std::int64_t sub_step_ns) {
   const auto tip = Tip::make(model.geometry, settings, p_BT);
   if (!tip) return tip.error();
   const DriveTrainSettings& wanted = settings.drive_train;
@@ -32,7 +32,7 @@ driver::Result<DriveTrainPlant<Geometry, Tip>> DriveTrainPlant<Geometry, Tip>::m
     if (!rotor) return rotor.error();
     rotors[i] = *rotor;
   }
-  return DriveTrainPlant(model, settings, *train, *tip, rotors, p_BH, *pose);
+  return DriveTrainPlant(model, settings, *train, *tip, rotors, p_BH, *pose, sub_step_ns);
 }
 
 template <class Geometry, class Tip>
@@ -40,8 +40,8 @@ DriveTrainPlant<Geometry, Tip>::DriveTrainPlant(const driver::JointModel<Geometr
                                                 const SimulatedArmSettings& settings,
                                                 const DriveTrain& train, const Tip& tip,
                                                 const std::array<AxisDynamics, 3>& rotors,
-                                                const Eigen::Vector3d& p_BH,
-                                                const TipPose& pose) noexcept
+                                                const Eigen::Vector3d& p_BH, const TipPose& pose,
+                                                std::int64_t sub_step_ns) noexcept
     : geometry_(model.geometry),
       weight_B_(settings.weight_B),
       compliant_(settings.drive_train.compliant()),
@@ -49,7 +49,22 @@ DriveTrainPlant<Geometry, Tip>::DriveTrainPlant(const driver::JointModel<Geometr
       tip_(tip),
       rotor_dynamics_(rotors),
       rotor_{AxisState{pose.q[0], 0}, AxisState{pose.q[1], 0}, AxisState{pose.q[2], 0}},
-      p_BH_(p_BH) {}
+      p_BH_(p_BH),
+      sub_step_ns_(sub_step_ns) {}
+
+template <class Geometry, class Tip>
+void DriveTrainPlant<Geometry, Tip>::put(const DriveTrainState& state) noexcept {
+  const auto pose = tip_pose(geometry_, state.p_BT);
+  if (!pose) return;
+  tip_.put(state.p_BT, state.v_BT);
+  for (int i = 0; i < 3; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    rotor_[k] =
+        compliant_ ? AxisState{state.q_rotor[i], state.rate_rotor[i]} : AxisState{pose->q[i], 0};
+  }
+  if (compliant_) rate_before_ = state.rate_rotor - pose->G * state.v_BT;
+  train_.put(state.amperes);
+}
 
 /// Finds the torques in the cables half-way (N m at the joints). Half-way, rates have changed as
 /// much again as in half of the sub-step before.
@@ -107,7 +122,7 @@ void DriveTrainPlant<Geometry, Tip>::step(const Eigen::Vector3d& p_BH,
   if (!(dt_ns > 0)) return;
   const Eigen::Vector3d v_BH = (p_BH - p_BH_) * (1e9 / static_cast<double>(dt_ns));
   while (dt_ns > 0) {
-    const std::int64_t sub_ns = std::min(dt_ns, kSubStep_ns);
+    const std::int64_t sub_ns = std::min(dt_ns, sub_step_ns_);
     sub_step(v_BH, sub_ns);
     dt_ns -= sub_ns;
   }

@@ -18,17 +18,27 @@
 
 namespace thimble::device_sim {
 
+/// How an arm with a drive train moves at a moment.
+struct DriveTrainState {
+  Eigen::Vector3d p_BT{0, 0, 0};        ///< Tip, m.
+  Eigen::Vector3d v_BT{0, 0, 0};        ///< m/s
+  Eigen::Vector3d q_rotor{0, 0, 0};     ///< Rotors, rad at the joints; not looked at without cables
+  Eigen::Vector3d rate_rotor{0, 0, 0};  ///< that stretch, and these neither, rad/s.
+  Eigen::Vector3d amperes{0, 0, 0};     ///< That flow in the motors, A.
+};
+
 /// The mechanics of an arm whose drive train, weight or links are simulated, with a hand on it. The
 /// tip is the mass of ArmPlant (PointTip), or one that links hang on (LinkedTip). Without a cable
 /// that stretches the motors pull on it at once; with one each motor is a mass of its own, and the
 /// encoders, which sit on the motors, see their angles.
 ///
-/// Time passes in sub-steps of at most 25 us. In each, all forces but friction, hand and anchor are
-/// held at what they are half-way, where tip and rotors would be then at their present velocities;
-/// then every axis moves exactly (AxisDynamics), a tip with links by LinkedTip's rule. For a spring
-/// between masses that is the Stoermer-Verlet rule: it neither gains nor loses energy, and a
-/// resonance of w (rad/s) is too high by (w 25 us)^2 / 24, 1e-5 at 100 Hz. Defined for SerialArm
-/// and LinkageArm, with links for SerialArm. All functions but `make` are Real-time: safe.
+/// Time passes in sub-steps of at most 25 us, or as its maker asks. In each, all forces but
+/// friction, hand and anchor are held at what they are half-way, where tip and rotors would be then
+/// at their present velocities; then every axis moves exactly (AxisDynamics), a tip with links by
+/// LinkedTip's rule. For a spring between masses that is the Stoermer-Verlet rule: it neither gains
+/// nor loses energy, and a resonance of w (rad/s) is too high by (w 25 us)^2 / 24, 1e-5 at 100 Hz.
+/// Defined for SerialArm and LinkageArm, with links for SerialArm. All functions but `make` are
+/// Real-time: safe.
 template <class Geometry, class Tip = PointTip>
 class DriveTrainPlant final : public Plant {
  public:
@@ -36,12 +46,17 @@ class DriveTrainPlant final : public Plant {
   static constexpr std::int64_t kSubStep_ns = 25'000;
 
   /// Makes the arm at rest at p_BT (m), its cables without stretch, with the hand wanting to be at
-  /// p_BH (m). Fails if a constant is out of range or p_BT out of reach. Real-time: never from the
-  /// servo thread.
+  /// p_BH (m), in sub-steps of at most `sub_step_ns` > 0. Fails if a constant is out of range or
+  /// p_BT out of reach. Real-time: never from the servo thread.
   static driver::Result<DriveTrainPlant> make(const driver::JointModel<Geometry>& model,
                                               const SimulatedArmSettings& settings,
                                               const Eigen::Vector3d& p_BT,
-                                              const Eigen::Vector3d& p_BH);
+                                              const Eigen::Vector3d& p_BH,
+                                              std::int64_t sub_step_ns = kSubStep_ns);
+
+  /// Puts the arm elsewhere, as it moves there; a tip out of reach leaves it where it was. Motors
+  /// stay as warm as they are.
+  void put(const DriveTrainState& state) noexcept;
 
   void set_currents(const Eigen::Vector3d& amperes) noexcept override { train_.ask(amperes); }
   void step(const Eigen::Vector3d& p_BH, std::int64_t dt_ns) noexcept override;
@@ -60,7 +75,7 @@ class DriveTrainPlant final : public Plant {
   DriveTrainPlant(const driver::JointModel<Geometry>& model, const SimulatedArmSettings& settings,
                   const DriveTrain& train, const Tip& tip,
                   const std::array<AxisDynamics, 3>& rotors, const Eigen::Vector3d& p_BH,
-                  const TipPose& pose) noexcept;
+                  const TipPose& pose, std::int64_t sub_step_ns) noexcept;
 
   Eigen::Vector3d rotor() const noexcept { return {rotor_[0].x, rotor_[1].x, rotor_[2].x}; }
   Eigen::Vector3d rotor_rate() const noexcept { return {rotor_[0].v, rotor_[1].v, rotor_[2].v}; }
@@ -79,6 +94,7 @@ class DriveTrainPlant final : public Plant {
   Eigen::Vector3d rate_before_{0, 0, 0};        // of the stretch, one sub-step ago, rad/s
   Eigen::Vector3d p_BH_;
   Eigen::Vector3d f_T_B_{0, 0, 0};
+  std::int64_t sub_step_ns_;
   std::uint64_t stops_ = 0;
 };
 

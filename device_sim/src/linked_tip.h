@@ -45,6 +45,11 @@ class LinkedTip {
   const Eigen::Vector3d& p_BT() const noexcept { return state_.p; }
   const Eigen::Vector3d& v_BT() const noexcept { return state_.v; }
   const State& state() const noexcept { return state_; }
+  /// Puts it elsewhere (m), moving (m/s).
+  void put(const Eigen::Vector3d& p_BT, const Eigen::Vector3d& v_BT) noexcept {
+    state_ = {.p = p_BT, .v = v_BT};
+    acceleration_.setZero();
+  }
   /// Puts it back to where it was, at rest.
   void stop_at(const State& before) noexcept {
     state_ = {.p = before.p, .v = {0, 0, 0}};

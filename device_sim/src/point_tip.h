@@ -44,6 +44,10 @@ class PointTip {
   Eigen::Vector3d p_BT() const noexcept { return {axes_[0].x, axes_[1].x, axes_[2].x}; }
   Eigen::Vector3d v_BT() const noexcept { return {axes_[0].v, axes_[1].v, axes_[2].v}; }
   const State& state() const noexcept { return axes_; }
+  /// Puts it elsewhere (m), moving (m/s).
+  void put(const Eigen::Vector3d& p_BT, const Eigen::Vector3d& v_BT) noexcept {
+    for (int i = 0; i < 3; ++i) axes_[static_cast<std::size_t>(i)] = {p_BT[i], v_BT[i]};
+  }
   /// Puts it back to where it was, at rest.
   void stop_at(const State& before) noexcept {
     axes_ = before;

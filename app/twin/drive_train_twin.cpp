@@ -1,0 +1,131 @@
+#include "twin/drive_train_twin.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+
+#include "drive_train_plant.h"
+#include "math/elementary.h"
+#include "twin/twin_motors.h"
+
+namespace thimble::app {
+namespace {
+
+constexpr std::int64_t kSubStep_ns = 100'000;
+constexpr double kLagsKept = 20;  // after which a current is forgotten to 2e-9
+
+/// An arm with a drive train: the encoders see the motors, and the tip is behind cables.
+template <class Geometry>
+class DriveTrainTwin final : public TwinMover {
+ public:
+  using Plant = device_sim::DriveTrainPlant<Geometry>;
+
+  DriveTrainTwin(const TwinMotion& motion, const scene::ArmFile& file, Plant plant)
+      : motion_(motion),
+        delay_(file, motion.dt),
+        geometry_(std::get<Geometry>(file.model.geometry)),
+        train_(file.simulated.drive_train),
+        wiring_(file.simulated.firmware.wiring),
+        current_max_(file.simulated.motors.current_max),
+        plant_(std::move(plant)) {}
+
+  bool stretches() const noexcept override { return train_.compliant(); }
+
+  void move(std::size_t stretch, std::size_t begin, const TwinStart& start,
+            std::span<Eigen::Vector3d> seen) override {
+    const std::vector<TwinSample>& samples = motion_.stretches[stretch];
+    plant_.put(state_at(samples, begin, start));
+    for (std::size_t j = 0; j < seen.size(); ++j) {
+      if (j > 0) pass(samples, begin + j - 1);
+      Eigen::Matrix3d J;
+      geometry_.forward(plant_.q(), seen[j], J);
+    }
+  }
+
+ private:
+  /// Returns what the motors were sent `late` ticks before, A.
+  Eigen::Vector3d sent(const std::vector<TwinSample>& samples, std::size_t k,
+                       std::size_t late) const {
+    return wiring_.motors(samples[k - late].amperes);
+  }
+
+  void pass(const std::vector<TwinSample>& samples, std::size_t k) {
+    plant_.set_currents(sent(samples, k, delay_.whole + 1));
+    plant_.step(plant_.p_BH(), delay_.part_ns);
+    plant_.set_currents(sent(samples, k, delay_.whole));
+    plant_.step(plant_.p_BH(), delay_.rest_ns);
+  }
+
+  /// Returns the currents that flow when the tick `begin` comes, A.
+  Eigen::Vector3d currents_at(const std::vector<TwinSample>& samples, std::size_t begin) const {
+    const double lag = train_.current_lag;
+    const Eigen::Vector3d most = Eigen::Vector3d::Constant(current_max_);
+    const auto asked = [&](std::size_t k, std::size_t late) -> Eigen::Vector3d {
+      return sent(samples, k, late).cwiseMax(-most).cwiseMin(most);
+    };
+    if (!(lag > 0)) return asked(begin - 1, delay_.whole);
+    const double part = math::exp(-1e-9 * static_cast<double>(delay_.part_ns) / lag);
+    const double rest = math::exp(-1e-9 * static_cast<double>(delay_.rest_ns) / lag);
+    const auto memory = static_cast<std::size_t>(std::ceil(kLagsKept * lag / motion_.dt));
+    std::size_t k = std::max(delay_.whole + 1, begin > memory ? begin - memory : 0);
+    Eigen::Vector3d amperes = asked(k, delay_.whole + 1);
+    for (; k < begin; ++k) {
+      const Eigen::Vector3d older = asked(k, delay_.whole + 1), newer = asked(k, delay_.whole);
+      amperes = older + part * (amperes - older);
+      amperes = newer + rest * (amperes - newer);
+    }
+    return amperes;
+  }
+
+  /// Motors turn as the encoders say, links as far behind as the cables are stretched; the currents
+  /// come from what was sent in all the ticks that lead to the window.
+  device_sim::DriveTrainState state_at(const std::vector<TwinSample>& samples, std::size_t begin,
+                                       const TwinStart& start) {
+    device_sim::DriveTrainState state{.p_BT = start.p_BT, .v_BT = start.v_BT};
+    const auto q = geometry_.inverse(start.p_BT);
+    if (!q) return state;  // out of reach: it stays at the end of it
+    Eigen::Vector3d p_BT;
+    Eigen::Matrix3d J;
+    geometry_.forward(*q, p_BT, J);
+    state.q_rotor = *q;
+    state.rate_rotor = J.inverse() * start.v_BT;
+    if (train_.compliant()) {
+      geometry_.forward(*q - start.stretch, state.p_BT, J);
+      state.v_BT = J * (state.rate_rotor - start.stretch_rate);
+    }
+    state.amperes = currents_at(samples, begin);
+    return state;
+  }
+
+  const TwinMotion& motion_;
+  TwinDelay delay_;
+  Geometry geometry_;
+  device_sim::DriveTrainSettings train_;
+  device_sim::WiringSettings wiring_;
+  double current_max_;  // A
+  Plant plant_;
+};
+
+template <class Geometry>
+driver::Result<std::unique_ptr<TwinMover>> make_of(const TwinMotion& motion,
+                                                   const scene::ArmFile& file) {
+  device_sim::SimulatedArmSettings settings = file.simulated;
+  settings.hand = {};  // nobody's
+  const Eigen::Vector3d& p_BT = motion.stretches.front().front().p_BT;
+  auto plant = device_sim::DriveTrainPlant<Geometry>::make(driver::model_as<Geometry>(file.model),
+                                                           settings, p_BT, p_BT, kSubStep_ns);
+  if (!plant) return plant.error();
+  return std::unique_ptr<TwinMover>(
+      std::make_unique<DriveTrainTwin<Geometry>>(motion, file, std::move(plant).value()));
+}
+
+}  // namespace
+
+driver::Result<std::unique_ptr<TwinMover>> make_drive_train_twin(const TwinMotion& motion,
+                                                                 const scene::ArmFile& file) {
+  return file.is<driver::LinkageArm>() ? make_of<driver::LinkageArm>(motion, file)
+                                       : make_of<driver::SerialArm>(motion, file);
+}
+
+}  // namespace thimble::app
