@@ -1,0 +1,44 @@
+#include <atomic>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <numbers>
+
+#include "bringup/bench_arm.h"
+#include "math/elementary.h"
+
+namespace {
+
+using namespace thimble;
+
+constexpr double kTick = 1e-3;  // s
+
+/// Moves the tip to and fro by motors. What runs in here is counted, and nothing else.
+[[gnu::noinline]] bool counted_ticks(app::BenchArm& bench, long ticks) {
+  const std::atomic<bool> never{false};
+  const auto push = [&bench](const driver::DeviceState&) -> Eigen::Vector3d {
+    const double turn = 2 * std::numbers::pi * 3 * bench.now();
+    return {0.3 * math::sin(turn), 0.3 * math::cos(turn), 0.1};
+  };
+  return bench.run(kTick * static_cast<double>(ticks), push, never);
+}
+
+}  // namespace
+
+// Lets an arm be simulated for some ticks, driver and gate in front of it, so that somebody else
+// can count what they execute:
+//   plant_ticks ARM_FILE TICKS      prints how far the tip ended from where it began, um
+int main(int argc, char** argv) {
+  if (argc != 3) return 2;
+  const auto file = scene::load_arm(argv[1]);
+  if (!file) {
+    std::fprintf(stderr, "%s\n", file.error().message.c_str());
+    return 1;
+  }
+  const Eigen::Vector3d middle = file->workspace.middle();
+  auto bench = app::BenchArm::open(*file, {}, {}, {{0, middle}}, 1);
+  if (!bench || !(*bench)->device().activate()) return 1;
+  if (!counted_ticks(**bench, std::atol(argv[2]))) return 1;
+  std::printf("%.1f\n", 1e6 * ((*bench)->device().state().p_WT - middle).norm());
+  return 0;
+}

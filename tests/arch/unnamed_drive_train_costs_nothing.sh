@@ -1,0 +1,78 @@
+#!/usr/bin/env bash
+# Shows that what an arm file does not name of the simulated plant costs nothing: without a drive train, weight, jitter, loss and missed edges,
+# and with each of them named as zero, a tick executes the same instructions, and no function of any of them runs. Prints what each term costs.
+#   unnamed_drive_train_costs_nothing.sh PLANT_TICKS SOURCE_DIR
+set -euo pipefail
+program=$1 source=$2
+command -v valgrind >/dev/null || {
+  echo "NOTE: valgrind is not installed; nothing was counted (Debian: valgrind)."
+  exit 0
+}
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+arm=$source/app/arms/vintage_phantom.yaml
+ticks=200
+bad=0
+
+# variant NAME [SED...]: the arm's file with lines of its own.
+variant() {
+  local name=$1
+  shift
+  cp "$arm" "$folder/$name.yaml"
+  for edit in "$@"; do sed -i "$edit" "$folder/$name.yaml"; done
+}
+train() { echo "s/^simulation:/&\n  drive_train: {$1}/"; }
+cables='stiffness: [500, 500, 500], inertia: [0.0001, 0.0001, 0.0001], damping: [0.01, 0.01, 0.01]'
+variant none
+variant zeros "$(train 'current_lag: 0, cogging: [0, 0, 0], ripple: [0, 0, 0], periods_per_turn: 0, inertia: [0, 0, 0], stiffness: [0, 0, 0], damping: [0, 0, 0], play: [0, 0, 0], viscous: [0, 0, 0], coulomb: [0, 0, 0]')" \
+  's/^  tip:/&\n    weight: 0/' 's/^  wire:/&\n    jitter: 0\n    loss: 0/' 's/^  firmware:/&\n    missed_edges: 0/'
+variant weight 's/^  tip:/&\n    weight: 0.02/'
+variant current_lag "$(train 'current_lag: 0.0005')"
+variant cogging "$(train 'cogging: [0.0005, 0.0005, 0.0005], periods_per_turn: 7')"
+variant ripple "$(train 'ripple: [0.02, 0.02, 0.02], periods_per_turn: 7')"
+variant cables "$(train "$cables")"
+variant cables_and_play "$(train "$cables, play: [0.001, 0.001, 0.001]")"
+variant jitter 's/^  wire:/&\n    jitter: 0.0001/'
+variant loss 's/^  wire:/&\n    loss: 0.01/'
+variant missed_edges 's/^  firmware:/&\n    missed_edges: 0.001/'
+
+# Symbols are bound before, so that no tick has the linker's work in it.
+export LD_BIND_NOW=1
+# count NAME: instructions of a tick; the functions that ran stand in NAME.out.
+count() {
+  valgrind --tool=callgrind --compress-strings=no --toggle-collect='*counted_ticks*' --callgrind-out-file="$folder/$1.out" \
+    "$program" "$folder/$1.yaml" $ticks 2>&1 >"$folder/$1.moved" | sed -n 's/.*Collected : //p'
+}
+# ran NAME FUNCTIONS: whether any of them did.
+ran() { grep -qE "^c?fn=.*($2)" "$folder/$1.out"; }
+train_functions='DriveTrain(Plant<.*>)?::(ask|step|sub_step|turn_rotors|cable_pull|set_currents|advance)'
+
+names='none zeros weight current_lag cogging ripple cables cables_and_play jitter loss missed_edges'
+for name in $names; do
+  count "$name" >"$folder/$name.count"
+  whole=$(cat "$folder/$name.count")
+  if [ -z "$whole" ] || [ "$whole" -lt $((1000 * ticks)) ]; then
+    echo "$name: ${whole:-no} instructions: too few for $ticks ticks"
+    exit 1
+  fi
+  plain=$(cat "$folder/none.count")
+  printf '%-16s %8d instructions per tick, %+d\n' "$name" $((whole / ticks)) $(((whole - plain) / ticks))
+done
+if [ "$(($(cat "$folder/zeros.count") / ticks))" != "$(($(cat "$folder/none.count") / ticks))" ]; then
+  echo "Terms that are named as zero cost something."
+  bad=1
+fi
+for name in none zeros; do
+  if ran "$name" "$train_functions"; then
+    echo "$name: the drive train runs though it is not there"
+    bad=1
+  fi
+done
+for name in weight current_lag cogging ripple cables cables_and_play; do
+  ran "$name" "$train_functions" || { echo "$name: no function of the drive train ran: this test could not fail"; bad=1; }
+done
+for name in jitter loss missed_edges; do
+  # What draws by chance stands in its caller, and is seen by what it costs.
+  [ "$(cat "$folder/$name.count")" -gt "$(cat "$folder/none.count")" ] || { echo "$name: nothing was drawn: this test could not fail"; bad=1; }
+done
+exit $bad
