@@ -22,7 +22,7 @@ expect 1 'touch.wav cannot be written' "$thimble" export touch.h5 --sound none/t
 
 for tool in Xvfb xdotool; do
   command -v $tool >/dev/null || {
-    echo "NOT TESTED: the keyboard in the window, for want of $tool (as root: apt-get install xvfb xdotool)" >&2
+    leave_out "the keyboard in the window, for want of $tool (as root: apt-get install xvfb xdotool)"
     finish
   }
 done
