@@ -247,9 +247,9 @@ double sharpest_hollow(const render::ContactMesh& mesh, double from) {
   for (std::int32_t t = 0; t < mesh.triangle_count(); ++t) {
     const render::TriangleCell& cell = mesh.cell(t);
     for (std::size_t k = 0; k < 3; ++k) {
-      if (!cell.hollow_edge(k)) continue;
+      if (!mesh.hollow_edge(t, k)) continue;
       // An edge plane leans back by half the angle.
-      const double angle = 2 * math::asin(std::min(1.0, -cell.edges[k].n.dot(cell.face.n)));
+      const double angle = 2 * math::asin(std::min(1.0, -mesh.edge_plane(t, k).n.dot(cell.face.n)));
       if (angle > from) most = std::max(most, angle);
     }
   }

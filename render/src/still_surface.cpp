@@ -81,7 +81,9 @@ driver::Result<StillSurface> prepare_still_surface(const TriangleMesh& mesh_W,
                                                    const ContactChoice& choice) {
   if (auto fits = check_choice(choice); !fits) return fits.error();
   if (choice.tracker == TrackerChoice::kPacked) return prepare_packed(mesh_W, choice);
-  auto prepared = ContactMesh::build(mesh_W);
+  // The god-object asks no edge planes.
+  auto prepared =
+      ContactMesh::build(mesh_W, {.edge_planes = choice.tracker != TrackerChoice::kGodObject});
   if (!prepared) return prepared.error();
   StillSurface still;
   still.mesh = std::make_shared<const ContactMesh>(std::move(prepared).value());

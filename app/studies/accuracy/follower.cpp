@@ -108,7 +108,7 @@ class HoppingFollower final : public CopiedFollower<HoppingFollower> {
       std::size_t worst = 0;
       double least = 0;
       for (std::size_t k = 0; k < 3; ++k) {
-        const double distance = cell.edges[k].distance(p);
+        const double distance = mesh_->edge_planes(active_)[k].distance(p);
         if (distance < least) {
           least = distance;
           worst = k;

@@ -32,20 +32,10 @@ std::uint16_t rounded_up(double sine) {
       std::min(std::ceil(sine * TriangleCell::kSineUnit), TriangleCell::kSineUnit));
 }
 
-// An edge plane leans over its face by half the angle there: back if the edge is hollow.
-void measure_edges(TriangleCell& cell) {
-  double hollow = 0;
-  for (const Plane& edge : cell.edges) {
-    const double lean = edge.n.dot(cell.face.n);
-    if (lean < -TriangleCell::kFlat) hollow = std::max(hollow, -lean);
-  }
-  cell.hollow = rounded_up(hollow);
-}
-
 // Finds the edge plane of two triangles, positive on the side of the first, which runs the edge
 // from `from` along `edge`. Of faces back to back with no matter between, the first keeps all
 // outside its face; a gap of no width is not told apart from that.
-Plane edge_plane(const Vector3d& from, const Vector3d& edge, const Vector3d& n_first,
+Plane plane_over(const Vector3d& from, const Vector3d& edge, const Vector3d& n_first,
                  const Vector3d& n_second) {
   const Vector3d average = n_first + n_second;
   Plane plane;
@@ -93,14 +83,11 @@ driver::Result<ContactMesh> ContactMesh::assemble(const TriangleMesh& mesh,
   // Far from the world's origin the vertices themselves carry the rounding of their place.
   contact.depth_rounding_ = kDepthRounding * ((size + 2 * room).norm() + contact.origin_.norm());
   for (std::int32_t t = 0; t < contact.triangle_count(); ++t) contact.compute_face(t);
-  for (std::int32_t t = 0; t < contact.triangle_count(); ++t) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      // Each edge is done once, by the triangle that runs it upwards.
-      if (contact.corners(t)[k] < contact.corners(t)[(k + 1) % 3]) contact.compute_edge(t, k);
-    }
-  }
   contact.collect_fans();
-  contact.measure_around();
+  if (options.edge_planes) {
+    contact.compute_edges();
+    contact.measure_around();
+  }
   if (options.triangles_max > contact.triangles_.size()) contact.make_room(options.triangles_max);
   return contact;
 }
@@ -122,23 +109,51 @@ void ContactMesh::compute_face(std::int32_t triangle) noexcept {
 
 // Finds the plane over an edge and gives both its triangles the same numbers, whichever asks.
 void ContactMesh::compute_edge(std::int32_t triangle, std::size_t k) noexcept {
-  TriangleCell& asking = cells_[static_cast<std::size_t>(triangle)];
-  const std::int32_t other = asking.neighbours[k];
-  TriangleCell& asked = cells_[static_cast<std::size_t>(other)];
+  const std::int32_t other = cell(triangle).neighbours[k];
   const std::int32_t from = corners(triangle)[k];
   const std::int32_t to = corners(triangle)[(k + 1) % 3];
   std::size_t j = 0;
   while (j < 2 && !(corners(other)[j] == to && corners(other)[(j + 1) % 3] == from)) ++j;
+  const Plane plane = made_edge_plane(triangle, k);
+  edges_[static_cast<std::size_t>(triangle)][k] = plane;
+  edges_[static_cast<std::size_t>(other)][j] = {-plane.n, -plane.d};
+  measure_edges(triangle);
+  measure_edges(other);
+}
+
+// It is found for the triangle that runs the edge upwards, so that both have the same numbers.
+Plane ContactMesh::made_edge_plane(std::int32_t triangle, std::size_t k) const noexcept {
+  const std::int32_t other = cell(triangle).neighbours[k];
+  const std::int32_t from = corners(triangle)[k];
+  const std::int32_t to = corners(triangle)[(k + 1) % 3];
   const bool upwards = from < to;
-  Plane& mine = upwards ? asking.edges[k] : asked.edges[j];
-  Plane& theirs = upwards ? asked.edges[j] : asking.edges[k];
   const std::int32_t low = upwards ? from : to;
   const std::int32_t high = upwards ? to : from;
-  mine = edge_plane(position(low) - origin_, position(high) - position(low),
-                    upwards ? asking.face.n : asked.face.n, upwards ? asked.face.n : asking.face.n);
-  theirs = {-mine.n, -mine.d};
-  measure_edges(asking);
-  measure_edges(asked);
+  const Plane plane =
+      plane_over(position(low) - origin_, position(high) - position(low),
+                 cell(upwards ? triangle : other).face.n, cell(upwards ? other : triangle).face.n);
+  return upwards ? plane : Plane{-plane.n, -plane.d};
+}
+
+void ContactMesh::compute_edges() {
+  edges_.resize(triangles_.size());
+  for (std::int32_t t = 0; t < triangle_count(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      // Each edge is done once, by the triangle that runs it upwards.
+      if (corners(t)[k] < corners(t)[(k + 1) % 3]) compute_edge(t, k);
+    }
+  }
+}
+
+// An edge plane leans over its face by half the angle there: back if the edge is hollow.
+void ContactMesh::measure_edges(std::int32_t triangle) noexcept {
+  TriangleCell& measured = cells_[static_cast<std::size_t>(triangle)];
+  double hollow = 0;
+  for (const Plane& edge : edge_planes(triangle)) {
+    const double lean = edge.n.dot(measured.face.n);
+    if (lean < -TriangleCell::kFlat) hollow = std::max(hollow, -lean);
+  }
+  measured.hollow = rounded_up(hollow);
 }
 
 void ContactMesh::collect_fans() {

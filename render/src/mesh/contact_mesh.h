@@ -26,15 +26,14 @@ struct Plane {
 /// Holds what a tracker needs of one triangle, in one place of memory. Points are given relative to
 /// ContactMesh::origin, so that a mesh far from the world's origin loses no digits.
 struct TriangleCell {
-  Plane face;  ///< Normal outwards; positive outside.
-  std::array<Plane, 3>
-      edges;  ///< Over the edge from corner k to k + 1; positive on this side [BP 4b].
-  std::array<std::int32_t, 3> neighbours;  ///< Triangle behind each edge plane.
+  Plane face;                              ///< Normal outwards; positive outside.
+  std::array<std::int32_t, 3> neighbours;  ///< Triangle behind the edge from corner k to k + 1.
   /// How sharp its hollow edges are: sine of half the angle between the normals over the sharpest
-  /// of them, in 1 / kSineUnit, rounded up; 0 if there is none.
+  /// of them, in 1 / kSineUnit, rounded up; 0 if there is none, or the mesh has no edge planes.
   std::uint16_t hollow = 0;
   /// How far the faces around its corners lean away: the same of the largest angle to one of them,
-  /// as the mesh was built; kSineUnit at a corner of more than `kFanMax` faces.
+  /// as the mesh was built; kSineUnit at a corner of more than `kFanMax` faces; 0 without edge
+  /// planes.
   std::uint16_t around = 0;
 
   static constexpr double kSineUnit = 65535;
@@ -43,8 +42,6 @@ struct TriangleCell {
   /// Sine of half an angle that is rounding: two faces in one plane.
   static constexpr double kFlat = 1e-9;
 
-  /// Returns whether edge `k` is hollow: whether the faces rise from it. Real-time: safe.
-  bool hollow_edge(std::size_t k) const noexcept { return edges[k].n.dot(face.n) < -kFlat; }
   /// Returns how far on this side of a hollow edge's plane (m) a tip `depth` (m) below the face may
   /// be and still be beside the face, not under it; 0 if no edge is hollow. Real-time: safe.
   double beside_hollow(double depth) const noexcept { return depth * (hollow / kSineUnit); }
@@ -55,6 +52,9 @@ struct ContactMeshOptions {
   /// Winds triangles alike and outwards (see orient_mesh): for a closed surface only one answer is
   /// right. If false, meshes that need it are refused.
   bool orient = true;
+  /// Keeps edge planes, 96 of 200 bytes per triangle, and what else only those ask for who walk
+  /// over edges. If false, the mesh must keep its shape.
+  bool edge_planes = true;
   /// How far vertices may later move out of the box, as a share of its longest side, >= 0:
   /// `box_min` and `box_max` grow by it on all sides. 0 for a mesh that keeps its shape.
   double room = 0;
@@ -145,9 +145,25 @@ class ContactMesh {
     return position(corners(triangle)[k]);
   }
 
-  /// Gives the planes and neighbours of a triangle, relative to `origin`.
+  /// Gives the face and the neighbours of a triangle, relative to `origin`.
   const TriangleCell& cell(std::int32_t triangle) const noexcept {
     return cells_[static_cast<std::size_t>(triangle)];
+  }
+
+  /// Gives the planes over the edges of a triangle from corner k to k + 1, positive on its side [BP
+  /// 4b], relative to `origin`. Precondition: ContactMeshOptions::edge_planes.
+  const std::array<Plane, 3>& edge_planes(std::int32_t triangle) const noexcept {
+    return edges_[static_cast<std::size_t>(triangle)];
+  }
+
+  /// Returns one of them, the same to the bit where none is kept; some 60 ns then.
+  Plane edge_plane(std::int32_t triangle, std::size_t k) const noexcept {
+    return edges_.empty() ? made_edge_plane(triangle, k) : edge_planes(triangle)[k];
+  }
+
+  /// Returns whether edge `k` is hollow: whether the faces rise from it.
+  bool hollow_edge(std::int32_t triangle, std::size_t k) const noexcept {
+    return edge_plane(triangle, k).n.dot(cell(triangle).face.n) < -TriangleCell::kFlat;
   }
 
   /// Lists the triangles around a vertex.
@@ -203,12 +219,16 @@ class ContactMesh {
                                               const ContactMeshOptions& options);
   void compute_face(std::int32_t triangle) noexcept;
   void compute_edge(std::int32_t triangle, std::size_t k) noexcept;
+  Plane made_edge_plane(std::int32_t triangle, std::size_t k) const noexcept;
+  void compute_edges();
+  void measure_edges(std::int32_t triangle) noexcept;
   void collect_fans();
   void measure_around();
 
   std::vector<Eigen::Vector3d> vertices_;
   std::vector<std::array<std::int32_t, 3>> triangles_;
   std::vector<TriangleCell> cells_;
+  std::vector<std::array<Plane, 3>> edges_;  // empty where nobody walks over edges
   std::vector<Fan> fan_of_;
   std::vector<std::int32_t> fans_;
   std::size_t fans_built_ = 0;  // of fans_; behind it stand those that have grown

@@ -65,7 +65,7 @@ void SmoothNormals::find_crease(const ContactMesh& mesh, std::int32_t triangle,
   // The cosine is wrong by some 2^-53: where it is clear of the limit, that decides.
   constexpr double kClear = 1e-12;
   const double cosine = n.dot(behind);
-  const bool hollow = cell.hollow_edge(k);
+  const bool hollow = mesh.hollow_edge(triangle, k);
   const double limit = hollow ? hollow_crease_angle_ : crease_angle_;
   const double limit_cosine = hollow ? math::cos(hollow_crease_angle_) : crease_cosine_;
   const bool clear = std::abs(cosine - limit_cosine) > kClear;

@@ -21,6 +21,7 @@ void ContactMesh::make_room(std::size_t triangles_max) {
   fan_of_.reserve(vertices_max());
   triangles_.reserve(triangles_max);
   cells_.reserve(triangles_max);
+  edges_.reserve(triangles_max);
   fans_.reserve(fans_.size() + kFanRoom * triangles_max);
 }
 
@@ -88,6 +89,7 @@ EdgeSplit ContactMesh::split_edge(std::int32_t triangle, std::size_t k, bool kee
     const std::size_t kept_edge = loses_begin ? (edge + 1) % 3 : (edge + 2) % 3;
     triangles_.push_back(corners(old));
     cells_.push_back(cell(old));
+    edges_.push_back(edge_planes(old));
     std::replace(triangles_[static_cast<std::size_t>(old)].begin(),
                  triangles_[static_cast<std::size_t>(old)].end(), lost, m);
     std::replace(triangles_.back().begin(), triangles_.back().end(), kept, m);

@@ -21,7 +21,7 @@ EdgePlaneSides edge_plane_sides(const ContactMesh& mesh, std::int32_t triangle,
   const Vector3d p = p_WT - mesh.origin();
   EdgePlaneSides sides;
   for (std::size_t k = 0; k < 3; ++k) {
-    const Plane& plane = cell.edges[k];
+    const Plane plane = mesh.edge_plane(triangle, k);
     // Edge planes lean by half the angle between the faces: a point of the face at distance h from
     // the edge is at h cos(lean) from the plane.
     const double lean = plane.n.dot(cell.face.n);

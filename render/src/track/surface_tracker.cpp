@@ -71,11 +71,12 @@ class NearestAbove {
 
 }  // namespace
 
-inline SurfaceTracker::EdgeDistances SurfaceTracker::edge_distances(const TriangleCell& cell,
-                                                                    const Vector3d& p) noexcept {
-  const double d0 = cell.edges[0].distance(p);
-  const double d1 = cell.edges[1].distance(p);
-  const double d2 = cell.edges[2].distance(p);
+inline SurfaceTracker::EdgeDistances SurfaceTracker::edge_distances(
+    std::int32_t triangle, const Vector3d& p) const noexcept {
+  const std::array<Plane, 3>& edge = mesh_->edge_planes(triangle);
+  const double d0 = edge[0].distance(p);
+  const double d1 = edge[1].distance(p);
+  const double d2 = edge[2].distance(p);
   EdgeDistances found{.worst = 0, .least = d0};
   if (d1 < found.least) {
     found.worst = 1;
@@ -100,12 +101,12 @@ TrackerStep SurfaceTracker::follow(const Vector3d& p_WT) noexcept {
     if (!search_->inside(p_WT)) return step;
     reacquire(p_WT);
     ++counters_.found_far;
-    edges = edge_distances(mesh_->cell(active_), p);
+    edges = edge_distances(active_, p);
   }
   double depth = mesh_->depth(active_, p_WT);
   if (step.hops > 0 && !far && too_deep(p_WT, before, depth)) {
     depth = reject_hop(p_WT, before, depth);
-    edges = edge_distances(mesh_->cell(active_), p);
+    edges = edge_distances(active_, p);
   }
   if (!(depth >= 0)) {
     if (!search_->inside(p_WT)) return step;
@@ -118,7 +119,7 @@ TrackerStep SurfaceTracker::follow(const Vector3d& p_WT) noexcept {
         ++counters_.found_far;
       }
       depth = mesh_->depth(active_, p_WT);
-      edges = edge_distances(mesh_->cell(active_), p);
+      edges = edge_distances(active_, p);
     }
   }
   step.touching = true;
@@ -126,7 +127,7 @@ TrackerStep SurfaceTracker::follow(const Vector3d& p_WT) noexcept {
   held_.triangle = -1;
   if ((mesh_->cell(active_).around > kLean || mesh_->moved()) &&
       !(edges.least >= 0 && is_quiet(p_WT)) && look_around(p_WT, step)) {
-    edges = edge_distances(mesh_->cell(active_), p);
+    edges = edge_distances(active_, p);
   }
   // Beside a hollow edge it is not the face alone that holds the tip.
   const TriangleCell& cell = mesh_->cell(active_);
@@ -234,7 +235,7 @@ bool SurfaceTracker::too_deep(const Vector3d& p_WT, std::int32_t before,
 
 std::uint16_t SurfaceTracker::walk(const Vector3d& p, EdgeDistances& edges) noexcept {
   // Nearly every tick ends here or one hop on, without the memory that a long walk needs.
-  edges = edge_distances(mesh_->cell(active_), p);
+  edges = edge_distances(active_, p);
   if (!(edges.least < 0)) return 0;
   return settle(p, edges);
 }
@@ -246,7 +247,7 @@ std::uint16_t SurfaceTracker::settle(const Vector3d& p, EdgeDistances& edges) no
   best_edges.least = -std::numeric_limits<double>::infinity();
   for (std::uint16_t hops = 0; hops < kHopsMax; ++hops) {
     const TriangleCell& cell = mesh_->cell(active_);
-    edges = edge_distances(cell, p);
+    edges = edge_distances(active_, p);
     if (!(edges.least < 0)) return hops;
     if (edges.least > best_edges.least) {
       best = active_;

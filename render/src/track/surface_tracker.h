@@ -108,7 +108,7 @@ class SurfaceTracker {
     std::size_t worst = 0;
     double least = 0;
   };
-  static EdgeDistances edge_distances(const TriangleCell& cell, const Eigen::Vector3d& p) noexcept;
+  EdgeDistances edge_distances(std::int32_t triangle, const Eigen::Vector3d& p) const noexcept;
   // No distance changes by more than the tip moves: until it has gone half of what the faces around
   // are farther away, nothing needs to be looked at again.
   bool is_quiet(const Eigen::Vector3d& p_WT) const noexcept {

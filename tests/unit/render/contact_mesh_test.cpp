@@ -18,15 +18,35 @@ TEST(ContactMesh, GivesNeighboursTheSameEdgePlaneWithOppositeSign) {
     ASSERT_TRUE(built.ok());
     for (std::int32_t t = 0; t < built->triangle_count(); ++t) {
       for (std::size_t k = 0; k < 3; ++k) {
-        const Plane& mine = built->cell(t).edges[k];
-        const TriangleCell& other = built->cell(built->cell(t).neighbours[k]);
+        const Plane& mine = built->edge_planes(t)[k];
+        const std::int32_t other = built->cell(t).neighbours[k];
         int negations = 0;
         for (std::size_t j = 0; j < 3; ++j) {
-          negations += other.neighbours[j] == t && other.edges[j].n == -mine.n &&
-                       other.edges[j].d == -mine.d;
+          const Plane& theirs = built->edge_planes(other)[j];
+          negations +=
+              built->cell(other).neighbours[j] == t && theirs.n == -mine.n && theirs.d == -mine.d;
         }
         EXPECT_EQ(negations, 1);
         EXPECT_NEAR(mine.n.norm(), 1, 1e-14);
+      }
+    }
+  }
+}
+
+TEST(ContactMesh, GivesTheSameEdgePlanesWhereItKeepsNone) {
+  for (const TriangleMesh& mesh :
+       {support::bumpy_sphere(3, 0.05, 0.3, 6), support::wedge(0.08, 0.1, 0.1),
+        support::plate(0.1, 0.0002, 3)}) {
+    const auto kept = ContactMesh::build(mesh);
+    const auto made = ContactMesh::build(mesh, {.edge_planes = false});
+    ASSERT_TRUE(kept.ok() && made.ok());
+    for (std::int32_t t = 0; t < kept->triangle_count(); ++t) {
+      EXPECT_EQ(made->cell(t).face.n, kept->cell(t).face.n);
+      EXPECT_EQ(made->cell(t).neighbours, kept->cell(t).neighbours);
+      for (std::size_t k = 0; k < 3; ++k) {
+        EXPECT_EQ(made->edge_plane(t, k).n, kept->edge_planes(t)[k].n);
+        EXPECT_EQ(made->edge_plane(t, k).d, kept->edge_planes(t)[k].d);
+        EXPECT_EQ(made->hollow_edge(t, k), kept->hollow_edge(t, k));
       }
     }
   }
@@ -40,7 +60,7 @@ TEST(ContactMesh, PutsEdgePlanesThroughTheEdgeAndTheAverageNormal) {
     const Vector3d middle =
         (built->position(t, 0) + built->position(t, 1) + built->position(t, 2)) / 3;
     for (std::size_t k = 0; k < 3; ++k) {
-      const Plane& plane = built->cell(t).edges[k];
+      const Plane& plane = built->edge_planes(t)[k];
       const auto other = static_cast<std::size_t>(built->cell(t).neighbours[k]);
       const Vector3d average = support::outward_normal(mesh, static_cast<std::size_t>(t)) +
                                support::outward_normal(mesh, other);

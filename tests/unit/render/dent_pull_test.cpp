@@ -233,7 +233,7 @@ Loop work_across_an_edge(const TriangleMesh& mesh, const DentSettings& settings)
   const std::int32_t here = 3;
   const Corner corner(mesh, 3);
   const Vector3d along = (corner.p[1] - corner.p[0]).normalized();
-  const Vector3d aside = contact.cell(here).edges[0].n;  // to this side
+  const Vector3d aside = contact.edge_planes(here)[0].n;  // to this side
   const Vector3d down = aside.cross(along).dot(corner.n) < 0 ? Vector3d(aside.cross(along))
                                                              : Vector3d(along.cross(aside));
   const double side = (corner.p[1] - corner.p[0]).norm();

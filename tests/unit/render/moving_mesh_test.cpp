@@ -42,7 +42,8 @@ TEST(MovingMesh, HasThePlanesOfAMeshBuiltAnew) {
   ASSERT_EQ(anew.origin(), moved.origin());
   for (std::int32_t t = 0; t < anew.triangle_count(); ++t) {
     expect_equal(moved.cell(t).face, anew.cell(t).face);
-    for (std::size_t k = 0; k < 3; ++k) expect_equal(moved.cell(t).edges[k], anew.cell(t).edges[k]);
+    for (std::size_t k = 0; k < 3; ++k)
+      expect_equal(moved.edge_planes(t)[k], anew.edge_planes(t)[k]);
   }
 }
 
@@ -96,7 +97,7 @@ TEST(MovingMesh, IsFollowedWhereItSwellsAndRunsUnderAStillTip) {
     hops += step.hops;
     // Edge planes of a ball all go through its centre: the cell is what the centre sees.
     double least = INFINITY;
-    for (const Plane& plane : mesh.cell(active).edges) {
+    for (const Plane& plane : mesh.edge_planes(active)) {
       least = std::min(least, plane.distance(p - mesh.origin()));
     }
     ASSERT_GE(least, -1e-12) << tick;

@@ -38,7 +38,7 @@ struct EdgeJumps {
             (mesh.position(t, (k + 1) % 3) - mesh.position(t, k)).cross(n).normalized();
         if (!(out.dot(n_next) > 0)) continue;  // concave
         // Where the cell ends: straight below the edge for 4a, on the edge plane for 4b.
-        const Plane& plane = mesh.cell(t).edges[k];
+        const Plane& plane = mesh.edge_planes(t)[k];
         const Vector3d below = middle - depth * n;
         const double to_plane = plane.distance(below - mesh.origin()) / -plane.n.dot(out);
         const bool projects = std::is_same_v<Tracker, NormalProjectionTracker>;

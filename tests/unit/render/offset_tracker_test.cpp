@@ -322,7 +322,7 @@ TEST(HardCase26, TrackersAreOnTheTriangleThatBruteForceNamesInAFastStroke) {
         ASSERT_EQ(t, state.triangle);
       }
       bool holds = true;
-      for (const Plane& plane : mesh.cell(t).edges) {
+      for (const Plane& plane : mesh.edge_planes(t)) {
         holds = holds && plane.distance(p - mesh.origin()) >= 0;
       }
       any_flat_holds = any_flat_holds || holds;

@@ -125,8 +125,8 @@ TEST(MovingMesh, HasThePlanesAndNormalsOfOneBuiltAnew) {
         for (std::int32_t t = 0; t < surface.mesh().triangle_count(); ++t) {
           ASSERT_EQ(surface.mesh().cell(t).face.n, planes.cell(t).face.n);
           for (std::size_t k = 0; k < 3; ++k) {
-            ASSERT_EQ(surface.mesh().cell(t).edges[k].n, planes.cell(t).edges[k].n);
-            ASSERT_EQ(surface.mesh().cell(t).edges[k].d, planes.cell(t).edges[k].d);
+            ASSERT_EQ(surface.mesh().edge_planes(t)[k].n, planes.edge_planes(t)[k].n);
+            ASSERT_EQ(surface.mesh().edge_planes(t)[k].d, planes.edge_planes(t)[k].d);
             ASSERT_EQ(surface.normals()->corners(t)[k], anew.corners(t)[k]) << t;  // to the bit
             ASSERT_EQ(surface.normals()->crease(t, k), anew.crease(t, k)) << t;
             changed += before.crease(t, k) != anew.crease(t, k);

@@ -60,7 +60,7 @@ TEST(SplitEdge, LeavesTheMeshAndAllOverItAsIfBuiltAnew) {
         ASSERT_EQ(mesh.cell(t).face.n, anew.cell(t).face.n);
         ASSERT_EQ(grown.normals()->corners(t), normals.corners(t));
         for (std::size_t k = 0; k < 3; ++k) {
-          ASSERT_EQ(mesh.cell(t).edges[k].n, anew.cell(t).edges[k].n);
+          ASSERT_EQ(mesh.edge_planes(t)[k].n, anew.edge_planes(t)[k].n);
           ASSERT_EQ(grown.normals()->crease(t, k), normals.crease(t, k));
         }
       }

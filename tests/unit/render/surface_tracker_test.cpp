@@ -123,7 +123,7 @@ TEST(SurfaceTracker, KeepsDepthWhenCrossingAnEdge) {
       const double along = uniform(random);
       Vector3d p = (1 - along) * contact.position(t, k) + along * contact.position(t, (k + 1) % 3) -
                    0.004 * uniform(random) * contact.cell(t).face.n;
-      const Plane& crossed = contact.cell(t).edges[k];
+      const Plane& crossed = contact.edge_planes(t)[k];
       p -= crossed.distance(p - contact.origin()) * crossed.n;
       EXPECT_NEAR(contact.depth(t, p), contact.depth(other, p), 1e-16);
     }
