@@ -48,7 +48,7 @@ expect 0 '^0$' echo $status
 expect 0 'waits on port [0-9]+ as USB device 1-1' cat out.txt
 expect 0 "'quake' is not a kind of fault" cat out.txt
 expect 0 "'hand 1 2' is not understood" cat out.txt
-expect 1 '' grep -E "'hand (0|on)" out.txt
+expect 1 '' grep -E "^thimble: 'hand (0|on)" out.txt
 expect 0 '^Unplugged' cat out.txt
 expect 0 'frame reports sampled_frame' cat trace.txt
 expect 1 '' test -e pipe
