@@ -111,7 +111,8 @@ template <class Geometry>
 driver::Result<std::unique_ptr<TwinMover>> make_of(const TwinMotion& motion,
                                                    const scene::ArmFile& file) {
   device_sim::SimulatedArmSettings settings = file.simulated;
-  settings.hand = {};  // nobody's
+  settings.hand = {};              // nobody's
+  settings.drive_train.heat = {};  // a window warms nothing, and each is moved many times
   const Eigen::Vector3d& p_BT = motion.stretches.front().front().p_BT;
   auto plant = device_sim::DriveTrainPlant<Geometry>::make(driver::model_as<Geometry>(file.model),
                                                            settings, p_BT, p_BT, kSubStep_ns);

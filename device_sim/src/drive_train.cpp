@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "math/elementary.h"
 
@@ -55,7 +56,13 @@ driver::Result<DriveTrain> DriveTrain::make(const DriveTrainSettings& settings,
                settings.coulomb.isZero(0))) {
     return wrong("inertia, damping, play, viscous and coulomb need a stiffness of the cable");
   }
-  DriveTrain made(settings, drives, current_max);
+  std::optional<MotorHeat> heat;
+  if (settings.heat.named()) {
+    auto made = MotorHeat::make(settings.heat);
+    if (!made) return made.error();
+    heat = std::move(made).value();
+  }
+  DriveTrain made(settings, drives, current_max, heat);
   if (!made.torque_per_ampere_.allFinite()) {
     return driver::Error{
         "The simulated arm's motor drives must be finite numbers: sign, ratio and torque constant "
@@ -65,8 +72,10 @@ driver::Result<DriveTrain> DriveTrain::make(const DriveTrainSettings& settings,
 }
 
 DriveTrain::DriveTrain(const DriveTrainSettings& settings,
-                       const std::array<driver::MotorDrive, 3>& drives, double current_max) noexcept
+                       const std::array<driver::MotorDrive, 3>& drives, double current_max,
+                       const std::optional<MotorHeat>& heat) noexcept
     : settings_(settings),
+      heat_(heat),
       current_max_(current_max),
       wavy_(!settings.cogging.isZero(0) || !settings.ripple.isZero(0)) {
   for (int i = 0; i < 3; ++i) {
@@ -85,6 +94,12 @@ void DriveTrain::ask(const Eigen::Vector3d& amperes) noexcept {
 }
 
 Eigen::Vector3d DriveTrain::pass(double dt) noexcept {
+  const Eigen::Vector3d mean = mean_current(dt);
+  if (heat_) heat_->pass(mean, dt);
+  return mean;
+}
+
+Eigen::Vector3d DriveTrain::mean_current(double dt) noexcept {
   const double lag = settings_.current_lag;
   if (lag == 0) return asked_;
   const Eigen::Vector3d behind = amperes_ - asked_;
@@ -96,6 +111,7 @@ Eigen::Vector3d DriveTrain::pass(double dt) noexcept {
 Eigen::Vector3d DriveTrain::torque(const Eigen::Vector3d& amperes,
                                    const Eigen::Vector3d& q_rotor) const noexcept {
   Eigen::Vector3d tau = torque_per_ampere_.cwiseProduct(amperes);
+  if (heat_) tau = tau.cwiseProduct(heat_->torque_share());
   if (!wavy_) return tau;
   for (int i = 0; i < 3; ++i) {
     const double wave = math::sin(settings_.periods_per_turn * ratio_[i] * q_rotor[i]);

@@ -2,15 +2,18 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <optional>
 
+#include "motor_heat.h"
 #include "thimble/device_sim/settings.h"
 #include "thimble/driver/motor_currents.h"
 #include "thimble/driver/result.h"
 
 namespace thimble::device_sim {
 
-/// What amplifiers, motors and cables make of currents: lag, saturation, cogging and ripple,
-/// stretch and play. It holds the currents and no mechanics. All vectors go joint by joint.
+/// What amplifiers, motors and cables make of currents: lag, saturation, cogging and ripple, heat,
+/// stretch and play. It holds currents and temperatures and no mechanics. All vectors go joint by
+/// joint.
 class DriveTrain {
  public:
   /// Makes one without current. Fails if a constant is out of range, if only some cables stretch,
@@ -24,15 +27,17 @@ class DriveTrain {
   /// Real-time: safe.
   void ask(const Eigen::Vector3d& amperes) noexcept;
 
+  /// Lets other currents flow, A; without lag what is asked for flows. Real-time: safe.
   void put(const Eigen::Vector3d& amperes) noexcept {
     if (settings_.current_lag > 0) amperes_ = amperes;
   }
-  /// Lets dt > 0 (s) pass: the currents approach what is asked for by their exact map. Returns
-  /// their mean over that time, A. Real-time: safe.
+
+  /// Lets dt > 0 (s) pass: the currents approach what is asked for by their exact map, and warm the
+  /// motors. Returns their mean over that time, A. Real-time: safe.
   Eigen::Vector3d pass(double dt) noexcept;
 
   /// Returns the torque of the motors at the joints (N m) at the joint angles of their rotors
-  /// (rad): torque constant with its ripple, and the cogging. Real-time: safe.
+  /// (rad): torque constant with its ripple and as warm as it is, and the cogging. Real-time: safe.
   Eigen::Vector3d torque(const Eigen::Vector3d& amperes,
                          const Eigen::Vector3d& q_rotor) const noexcept;
 
@@ -43,13 +48,19 @@ class DriveTrain {
 
   /// Returns the currents that flow, A. Real-time: safe.
   const Eigen::Vector3d& currents() const noexcept { return amperes_; }
+  /// Returns how much warmer than the room each winding is, K. Real-time: safe.
+  Eigen::Vector3d winding_rise() const noexcept {
+    return heat_ ? heat_->rise() : Eigen::Vector3d(0, 0, 0);
+  }
   const DriveTrainSettings& settings() const noexcept { return settings_; }
 
  private:
   DriveTrain(const DriveTrainSettings& settings, const std::array<driver::MotorDrive, 3>& drives,
-             double current_max) noexcept;
+             double current_max, const std::optional<MotorHeat>& heat) noexcept;
+  Eigen::Vector3d mean_current(double dt) noexcept;
 
   DriveTrainSettings settings_;
+  std::optional<MotorHeat> heat_;
   Eigen::Vector3d torque_per_ampere_;  // at the joints, N m/A
   Eigen::Vector3d ratio_;              // motor turns per joint turn
   double current_max_;                 // A

@@ -69,6 +69,7 @@ class DriveTrainPlant final : public Plant {
   const Eigen::Vector3d& currents() const noexcept override { return train_.currents(); }
   /// Returns what the cables pulled the tip with in the last sub-step, N.
   Eigen::Vector3d f_T_B() const noexcept override { return f_T_B_; }
+  Eigen::Vector3d winding_rise() const noexcept override { return train_.winding_rise(); }
   std::uint64_t stops() const noexcept override { return stops_; }
 
  private:

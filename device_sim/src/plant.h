@@ -41,6 +41,8 @@ class Plant {
   virtual const Eigen::Vector3d& currents() const noexcept = 0;
   /// Returns the motors' force on the tip, N.
   virtual Eigen::Vector3d f_T_B() const noexcept = 0;
+  /// Returns how much warmer than the room each motor's winding is, K; 0 where heat is not named.
+  virtual Eigen::Vector3d winding_rise() const noexcept { return {0, 0, 0}; }
   /// Returns how many sub-steps ended at a mechanical stop.
   virtual std::uint64_t stops() const noexcept = 0;
 

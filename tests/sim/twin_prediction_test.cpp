@@ -9,15 +9,21 @@
 #include <cstdlib>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "bringup/identify/identified_file.h"
 #include "bringup/identify/identify.h"
 #include "bringup/identify/record_motion.h"
 #include "bringup/identify/simulated_bench.h"
+#include "read_scene.h"
 #include "stability/stability_laws.h"
 #include "stability/wall_bench.h"
+#include "support/cabled_arm.h"
 #include "support/hidden_arm.h"
+#include "support/recorded_motion.h"
 #include "support/refuses.h"
+#include "yaml/yaml_reader.h"
 
 namespace thimble::app {
 namespace {
@@ -28,35 +34,35 @@ using support::HiddenArm;
 constexpr double kKnownMass = 0.025;  // kg
 
 /// A hidden arm whose driver was given what identifying it found, and its twin: the simulated arm
-/// that has these constants and nothing else.
+/// of the file that `thimble identify` writes.
 struct HiddenAndTwin {
   scene::ArmFile arm, twin;
 };
 
-driver::Result<HiddenAndTwin> identified(const HiddenArm& hidden, std::uint64_t seed) {
+driver::Result<HiddenAndTwin> identified(const HiddenArm& hidden, std::uint64_t seed,
+                                         double seconds = 15) {
   const OpenBench open = [&](bool loaded) {
     return simulated_bench(hidden.file, loaded ? kKnownMass : 0);
   };
   const std::atomic<bool> never{false};
-  const auto found =
-      identify(open, hidden.file, {.seconds = 15, .known_mass = kKnownMass, .seed = seed}, never);
+  const auto found = identify(open, hidden.file,
+                              {.seconds = seconds, .known_mass = kKnownMass, .seed = seed}, never);
   if (!found) return found.error();
   if (!found->against.empty()) return driver::Error{found->against.front()};
-  const ArmConstants& constants = found->constants;
-  HiddenAndTwin both{hidden.file, scene::load_arm("vintage_phantom").value()};
-  auto& simulated = both.twin.simulated;
-  simulated.plant = {.mass = constants.mass.value,
-                     .viscous = std::max(0.0, constants.viscous.value),
-                     .coulomb = constants.coulomb.value};
-  simulated.weight_B = both.twin.R_WB.transpose() * Eigen::Vector3d(0, 0, -constants.weight.value);
-  const auto delay_ns = static_cast<std::int64_t>(std::llround(1e9 * constants.delay.value));
-  simulated.wire.delay_in_ns = std::min(simulated.wire.delay_in_ns, delay_ns);
-  simulated.wire.delay_out_ns = delay_ns - simulated.wire.delay_in_ns;
+  const auto text = identified_text(support::text_of_arm("vintage_phantom"), found->constants,
+                                    {.date = "2026-11-25", .arm = "hidden"});
+  if (!text) return text.error();
+  auto yaml = scene::YamlFile::parse(*text, "arm file");
+  if (!yaml) return yaml.error();
+  auto twin = scene::read_arm(*yaml);
+  if (!twin) return twin.error();
+  HiddenAndTwin both{hidden.file, std::move(twin).value()};
   for (std::size_t i = 0; i < 3; ++i) {
-    const double gain = constants.gain[i].value;
-    both.twin.model.drives[i].torque_constant *= gain;
-    both.arm.model.drives[i].torque_constant *= gain;
-    both.arm.simulated.firmware.wiring.motor_gain[static_cast<Eigen::Index>(i)] /= gain;
+    double& believed = both.arm.model.drives[i].torque_constant;
+    const double written = both.twin.model.drives[i].torque_constant;
+    both.arm.simulated.firmware.wiring.motor_gain[static_cast<Eigen::Index>(i)] *=
+        believed / written;
+    believed = written;
   }
   return both;
 }
@@ -94,29 +100,22 @@ double apart(const std::vector<Eigen::Vector3d>& a, const std::vector<Eigen::Vec
 /// The farthest that predictions were off, as shares.
 struct Worst {
   double wall = 0, restitution = 0, flight = 0, motion = 0;
-  int walls_far = 0;  // that were off by more than kWallMost
 };
 
-/// Of 20 walls one may be farther off: near its edge a stiff wall rests or does not by where
-/// between two steps of the encoders each oscillation turns round, and an arm that differs by
-/// nothing but where it was let go then carries another.
-constexpr double kWallMost = 0.05;
-
-void try_arm(const HiddenArm& hidden, std::uint64_t seed, Worst& worst) {
-  const auto both = identified(hidden, seed);
-  ASSERT_TRUE(both.ok()) << both.error().message;
-  const auto true_of = twin_prediction(both->arm), told = twin_prediction(both->twin);
+void try_twin(const HiddenAndTwin& both, std::uint64_t seed, Worst& worst) {
+  const auto true_of = twin_prediction(both.arm), told = twin_prediction(both.twin);
   ASSERT_TRUE(true_of.ok()) << true_of.error().message;
   ASSERT_TRUE(told.ok()) << told.error().message;
   const auto off = [](double value, double truth) { return std::abs(value / truth - 1); };
   const double wall = off(told->stiffest_wall, true_of->stiffest_wall);
   const double restitution = off(told->bounce.restitution, true_of->bounce.restitution);
   const double flight = off(told->bounce.flight, true_of->bounce.flight);
-  const double motion = apart(free_motion(both->arm, ~seed), free_motion(both->twin, ~seed));
+  const double motion = apart(free_motion(both.arm, ~seed), free_motion(both.twin, ~seed));
+  EXPECT_LT(wall, 0.05) << "arm " << seed << ": " << told->stiffest_wall << " N/m, in truth "
+                        << true_of->stiffest_wall;
   EXPECT_LT(restitution, 0.05) << "arm " << seed;
   EXPECT_LT(flight, 0.05) << "arm " << seed;
   EXPECT_LT(motion, 0.02) << "arm " << seed;
-  worst.walls_far += wall > kWallMost ? 1 : 0;
   worst.wall = std::max(worst.wall, wall);
   worst.restitution = std::max(worst.restitution, restitution);
   worst.flight = std::max(worst.flight, flight);
@@ -125,12 +124,10 @@ void try_arm(const HiddenArm& hidden, std::uint64_t seed, Worst& worst) {
 
 void tell(const char* what, int arms, const Worst& worst) {
   std::printf(
-      "%d %s: wall %.2f %% (%d by more than 5 %%), restitution %.2f %%, flight %.2f %%, motion "
-      "%.2f %% "
-      "off\n",
-      arms, what, 100 * worst.wall, worst.walls_far, 100 * worst.restitution, 100 * worst.flight,
+      "%d %s: wall %.2f %%, restitution %.2f %%, flight %.2f %%, motion %.2f %% off at most\n",
+      arms, what, 100 * worst.wall, 100 * worst.restitution, 100 * worst.flight,
       100 * worst.motion);
-  EXPECT_LE(20 * worst.walls_far, arms);
+  std::fflush(stdout);
 }
 
 TEST(TwinPrediction, OfAnIdentifiedArmIsItsWallItsBounceAndItsFreeMotion) {
@@ -143,10 +140,30 @@ TEST(TwinPrediction, OfAnIdentifiedArmIsItsWallItsBounceAndItsFreeMotion) {
       const auto seed = static_cast<std::uint64_t>(7000 + k);
       HiddenArm hidden = hidden_arm(seed);
       hidden.file.simulated.drive_train.current_lag = lag;
-      try_arm(hidden, seed, worst);
+      const auto both = identified(hidden, seed);
+      ASSERT_TRUE(both.ok()) << "arm " << seed << ": " << both.error().message;
+      try_twin(*both, seed, worst);
     }
     if (arms > 0) tell(lag > 0 ? "hidden arms that lag" : "hidden arms", arms, worst);
   }
+}
+
+TEST(TwinPrediction, OfAnIdentifiedArmBehindCablesHoldsAsWell) {
+  if (std::getenv("THIMBLE_LONG") == nullptr) GTEST_SKIP() << "20 arms: in the long form alone";
+  constexpr int kArms = 20;
+  int written = 0;
+  Worst worst;
+  for (int k = 0; k < kArms; ++k) {
+    // Those of IdentifyCables: some are told to be a bad fit, and nothing is written of them.
+    const auto seed = static_cast<std::uint64_t>(6000 + k);
+    const auto both = identified(support::cabled_arm(seed), seed, 30);
+    if (!both) continue;
+    EXPECT_TRUE(both->twin.simulated.drive_train.compliant()) << "arm " << seed;
+    ++written;
+    try_twin(*both, seed, worst);
+  }
+  tell("hidden arms behind cables", written, worst);
+  EXPECT_GE(2 * written, kArms);
 }
 
 TEST(TwinPrediction, OfAnArmThatCogsIsRefusedOrHoldsForWallAndBounce) {

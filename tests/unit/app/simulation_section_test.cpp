@@ -18,7 +18,8 @@ const std::string kTrain =
     "  drive_train: {current_lag: 0.0003, cogging: [0.001, 0.002, 0.003], ripple: [0.01, 0.02, "
     "0.03], periods_per_turn: 7, inertia: [0.001, 0.002, 0.003], stiffness: [100, 200, 300], "
     "damping: [0.01, 0.02, 0.03], play: [0.001, 0.002, 0.003], viscous: [0.004, 0.005, 0.006], "
-    "coulomb: [0.007, 0.008, 0.009]}\n";
+    "coulomb: [0.007, 0.008, 0.009], heat: {rise: 80, continuous_current: [0.9, 1.1, 0.8], "
+    "time_constant: [60, 40, 20], torque: -0.0019, at_start: [1, 2, 3]}}\n";
 
 using Change = std::pair<std::string, std::string>;
 
@@ -67,6 +68,12 @@ TEST(SimulationSection, ReadsADriveTrainToItsLastConstant) {
   EXPECT_EQ(train.play, Eigen::Vector3d(0.001, 0.002, 0.003));
   EXPECT_EQ(train.viscous, Eigen::Vector3d(0.004, 0.005, 0.006));
   EXPECT_EQ(train.coulomb, Eigen::Vector3d(0.007, 0.008, 0.009));
+  EXPECT_EQ(train.heat.rise, 80);
+  EXPECT_EQ(train.heat.continuous_current, Eigen::Vector3d(0.9, 1.1, 0.8));
+  EXPECT_EQ(train.heat.time_constant, Eigen::Vector3d(60, 40, 20));
+  EXPECT_EQ(train.heat.resistance, 0.00393);
+  EXPECT_EQ(train.heat.torque, -0.0019);
+  EXPECT_EQ(train.heat.at_start, Eigen::Vector3d(1, 2, 3));
   EXPECT_TRUE(scene::ArmSimulation::make(*arm, {{0, Eigen::Vector3d::Zero()}}).ok());
 }
 
@@ -106,6 +113,8 @@ TEST(SimulationSection, RefusesADriveTrainThatDoesNotFitTogether) {
   EXPECT_NE(mistake("play: [0.001, 0, 0]").find("expected stiffness beside"), std::string::npos);
   EXPECT_NE(mistake("cogging: [0.001, 0, 0]").find("expected periods_per_turn"), std::string::npos);
   EXPECT_NE(mistake("current_lag: -1").find("current_lag: expected a number from 0 to 0.1 s"),
+            std::string::npos);
+  EXPECT_NE(mistake("heat: {rise: 80, time_constant: [60, 60, 60]}").find("continuous_current"),
             std::string::npos);
   EXPECT_NE(mistake("current_lagg: 0.1").find("perhaps \"current_lag\" was meant"),
             std::string::npos);

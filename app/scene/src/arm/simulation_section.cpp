@@ -11,6 +11,9 @@
 namespace thimble::scene {
 namespace {
 
+// By which copper's resistance rises from 20 degrees Celsius on, 1/K [M IEC 60028].
+constexpr double kCopperResistance = 0.00393;
+
 std::array<std::uint8_t, 3> joints_of(YamlMap& map, std::string_view key) {
   const Eigen::Vector3d named = map.optional_vector3(key, {1, 2, 3}, "", 1, 3);
   std::array<std::uint8_t, 3> joints{};
@@ -65,6 +68,20 @@ device_sim::GimbalMotion read_gimbal_motion(YamlMap map) {
   return motion;
 }
 
+/// Reads how motors warm up. It is not what the driver believes of them (section joints).
+device_sim::MotorHeatSettings read_motor_heat(YamlMap map) {
+  device_sim::MotorHeatSettings heat;
+  heat.rise = map.require_number("rise", "K", 1, device_sim::MotorHeatSettings::kRiseMost);
+  heat.continuous_current = map.require_vector3("continuous_current", "A", 0.001, 100);
+  heat.time_constant = map.require_vector3("time_constant", "s", 0.1, 1e5);
+  heat.resistance = map.optional_number("resistance", kCopperResistance, "1/K", 0, 0.1);
+  heat.torque = map.optional_number("torque", 0, "1/K", -0.1, 0);
+  heat.at_start =
+      map.optional_vector3("at_start", {0, 0, 0}, "K", 0, device_sim::MotorHeatSettings::kRiseMost);
+  map.finish();
+  return heat;
+}
+
 /// Reads what lies between motors and links. What does not fit together is told by the plant.
 device_sim::DriveTrainSettings read_drive_train(YamlMap map) {
   const auto amounts = [&map](std::string_view key, std::string_view unit, double most) {
@@ -81,6 +98,7 @@ device_sim::DriveTrainSettings read_drive_train(YamlMap map) {
   train.play = amounts("play", "rad at the joint", 0.2);
   train.viscous = amounts("viscous", "N m s/rad at the joint", 100);
   train.coulomb = amounts("coulomb", "N m at the joint", 10);
+  if (map.has("heat")) train.heat = read_motor_heat(map.require_map("heat"));
   const bool wavy = !train.cogging.isZero(0) || !train.ripple.isZero(0);
   if (wavy && train.periods_per_turn == 0) {
     map.reject("", "expected periods_per_turn beside cogging or ripple");

@@ -45,6 +45,22 @@ struct MotorSettings {
   double current_max = 0;  ///< The amplifier saturates here, A. Must be > 0.
 };
 
+/// Describes how motors warm up by their currents, and what that makes of them. Vectors go joint by
+/// joint.
+struct MotorHeatSettings {
+  static constexpr double kRiseMost = 1000;  ///< K; copper melts at about 1060.
+
+  double rise = 0;  ///< Of a winding above the room, by its continuous current in the end, K.
+  Eigen::Vector3d continuous_current{0, 0, 0};  ///< A
+  Eigen::Vector3d time_constant{0, 0, 0};       ///< Of a winding's temperature, s.
+  double resistance = 0;                        ///< Of the copper, by which it rises, 1/K.
+  double torque = 0;                  ///< Of the torque constant, by which it changes, 1/K; <= 0.
+  Eigen::Vector3d at_start{0, 0, 0};  ///< How much warmer than the room they are, K.
+
+  /// Returns whether there is anything to simulate. Real-time: safe.
+  bool named() const noexcept { return rise != 0; }
+};
+
 /// Describes what lies between the amplifiers and the links: all of it zero is an ideal drive
 /// train. Vectors go joint by joint.
 struct DriveTrainSettings {
@@ -60,6 +76,7 @@ struct DriveTrainSettings {
   Eigen::Vector3d play{0, 0, 0};       ///< Whole width of the backlash, rad at the joint.
   Eigen::Vector3d viscous{0, 0, 0};    ///< Friction of the motor's side, N m s/rad at the joint.
   Eigen::Vector3d coulomb{0, 0, 0};    ///< Dry friction of the motor's side, N m at the joint.
+  MotorHeatSettings heat{};            ///< Of the motors; none: their torque never changes.
 
   /// Returns whether the cable stretches, so that motors and links move apart. Real-time: safe.
   bool compliant() const noexcept { return !stiffness.isZero(0); }
@@ -67,7 +84,7 @@ struct DriveTrainSettings {
   bool named() const noexcept {
     return current_lag != 0 || !cogging.isZero(0) || !ripple.isZero(0) || periods_per_turn != 0 ||
            !inertia.isZero(0) || compliant() || !damping.isZero(0) || !play.isZero(0) ||
-           !viscous.isZero(0) || !coulomb.isZero(0);
+           !viscous.isZero(0) || !coulomb.isZero(0) || heat.named();
   }
 };
 
