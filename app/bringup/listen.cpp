@@ -6,7 +6,7 @@ namespace thimble::app {
 
 std::string Listened::text() const {
   return fmt::format(
-      "{:.0f} reports per second; {} ticks without one, {} skipped, {} rejected, {} messages "
+      "{:.0f} reports per second; {} ticks had none, {} reports skipped, {} rejected, {} messages "
       "refused.",
       static_cast<double>(reports) / seconds, missing, skipped, rejected, refused);
 }

@@ -78,9 +78,12 @@ WatchdogSeen see_watchdog(BenchArm& bench, const WatchdogOrder& order, double si
   // What it goes on while it is let go.
   const Vector3d p_WE = p_WT + sign * 1.5 * kWatchdogWayMost * Vector3d::Unit(kAxis);
   const bool room = order.workspace.holds(p_WT) && order.workspace.holds(p_WE);
-  if (!(excess >= kExcessLeast) || !room) {
+  const bool allowed = seen.force <= order.force_most;
+  if (!(excess >= kExcessLeast) || !room || !allowed) {
     bench.device().deactivate();
-    seen.end = room ? WatchdogEnd::kTooLong : WatchdogEnd::kNoRoom;
+    seen.end = !room      ? WatchdogEnd::kNoRoom
+               : !allowed ? WatchdogEnd::kTooMuch
+                          : WatchdogEnd::kTooLong;
     return seen;
   }
   const double from = p_WT[kAxis];

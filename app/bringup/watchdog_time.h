@@ -15,6 +15,7 @@ struct WatchdogOrder {
   double coulomb = 0;               ///< Dry friction per axis, N.
   double delay = 0;                 ///< From a force to the motion that the host sees, s.
   scene::WorkspaceBox workspace{};  ///< Outside of it nothing is pushed.
+  double force_most = 1;            ///< The most that may be asked for, N.
 };
 
 /// How a search for the watchdog's time ended.
@@ -22,6 +23,7 @@ enum class WatchdogEnd {
   kSeen,         ///< The motors went off by themselves.
   kTooLong,      ///< A free tip would go too far in that time, so nothing was pushed.
   kNoRoom,       ///< The workspace ends within that way, so nothing was pushed.
+  kTooMuch,      ///< Its dry friction needs more force than is allowed, so nothing was pushed.
   kAnswersOnly,  ///< The arm speaks only when spoken to, so nobody sees what it does in silence.
   kHeld,         ///< The tip did not move under the push.
   kLetGo,        ///< The tip went so far that it was let go before the file's time was over.

@@ -81,7 +81,7 @@ int end_of(const std::vector<HilResult>& results) {
 int run_hil(HilCommand command) {
   const auto chosen = resolve(command.choice, false);
   if (!chosen) return complain(chosen.error(), kExitNoDevice);
-  const SimulatedNote simulated(*chosen, "word about an arm on the desk");
+  const SimulatedNote simulated(*chosen, "result of a real arm");
   for (const std::string& sentence : chosen->told) std::printf("%s\n", sentence.c_str());
   const std::atomic<bool>& stop = scene::catch_interrupts();
   if (chosen->real_arm) scene::leave_rather_than_stop();
@@ -139,19 +139,21 @@ int run_hil(HilCommand command) {
 void add_hil_command(CLI::App& app, int& exit_code) {
   CLI::App* sub = app.add_subcommand(
       "hil",
-      "Check an arm as a test server does: reports, delays, watchdog, friction, walls, soak");
+      "Check an arm and end with an exit code: reports, delay, watchdog, friction, walls, soak");
   auto command = std::make_shared<HilCommand>();
   command->choice.add_options(*sub);
   sub->add_option("--suite", command->suite, "quick: a minute or two; full: over an hour")
       ->check(CLI::IsMember({"quick", "full"}))
       ->capture_default_str();
   sub->add_flag("--attended", command->options.attended,
-                "Somebody is there: also the feel check, and what else needs a hand");
-  sub->add_flag("--replug", command->options.replug, "Ask for the cable to be pulled");
+                "Somebody is at the arm: also run the feel check, and the checks that need a hand");
+  sub->add_flag("--replug", command->options.replug,
+                "Also ask for the cable to be pulled (with --attended)");
   sub->add_option("--spring", command->options.spring,
                   "Stiffness of a spring that you tie to the tip when asked, N/m")
       ->check(CLI::Range(50.0, 2000.0));
-  sub->add_option("--soak", command->options.soak_minutes, "Length of the soak, minutes")
+  sub->add_option("--soak", command->options.soak_minutes,
+                  "Length of the soak, minutes; left out: half a minute, or 60 in the full suite")
       ->check(CLI::Range(0.1, 1440.0));
   sub->add_option("--json", command->json, "Write the results to this file as JSON");
   sub->add_option("--junit", command->junit, "Write the results to this file as JUnit XML");

@@ -3,6 +3,7 @@
 #include <ctime>
 #include <fstream>
 #include <memory>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -14,6 +15,8 @@
 #include "cli/arm_choice.h"
 #include "cli/commands.h"
 #include "cli/complain.h"
+#include "cli/terminal/key_stop.h"
+#include "cli/terminal/yes_question.h"
 #include "enter_key.h"
 #include "identified/identify_page.h"
 #include "interrupt.h"
@@ -32,6 +35,8 @@ struct IdentifyCommand {
   std::string output;
   std::string record;
   std::string report;
+  bool yes = false;
+  bool write_bad_fit = false;
 };
 
 std::string today() {
@@ -43,12 +48,17 @@ std::string today() {
   return text;
 }
 
+/// Says how motion is ended.
+const char* how_to_stop(bool terminal) {
+  return terminal ? "any key ends it" : "Ctrl-C ends it";
+}
+
 /// Opens a real arm and asks for what the motion needs; the arm is idle meanwhile.
 driver::Result<std::unique_ptr<BenchArm>> open_real(const ChosenArm& chosen,
                                                     const IdentifyCommand& command, bool loaded,
                                                     const std::atomic<bool>& stop) {
-  auto bench =
-      BenchArm::open(chosen.file, chosen.real_arm, command.choice.firmware, {}, kIdentifyForceMax);
+  auto bench = BenchArm::open(chosen.file, chosen.real_arm, command.choice.firmware, {},
+                              command.options.force_most);
   if (!bench) return bench;
   if (loaded) {
     std::printf(
@@ -58,9 +68,9 @@ driver::Result<std::unique_ptr<BenchArm>> open_real(const ChosenArm& chosen,
   } else {
     std::printf(
         "Put the tip into the middle of the workspace, so that it stays there, and take your hand "
-        "off. It will shake by some millimetres with at most %g N for %g s; Ctrl-C ends it. Press "
-        "Enter to begin.\n",
-        kIdentifyForceMax, command.options.seconds);
+        "off. It will shake by some millimetres with at most %g N for %g s; %s. Press Enter to "
+        "begin.\n",
+        command.options.force_most, command.options.seconds, how_to_stop(has_terminal()));
   }
   std::fflush(stdout);
   session::EnterKey key = session::EnterKey::kNothing;
@@ -99,27 +109,73 @@ driver::Result<void> write_motion(const ChosenArm& chosen, const std::string& pa
   return session::write_recording(path, info, ticks);
 }
 
+/// Writes what was found into the new file, if the user says so. A bad fit is kept only if that was
+/// asked for by name.
+int keep(const IdentifyCommand& command, const ChosenArm& chosen, const Identified& found,
+         bool writes, const std::atomic<bool>& stop) {
+  const bool bad = !found.against.empty();
+  const int done = bad ? kExitUnmet : kExitDone;
+  for (const std::string& sentence : found.against) std::printf("BAD FIT  %s\n", sentence.c_str());
+  const auto left = [done](const char* why) {
+    std::printf("Nothing was written%s\n", why);
+    return done;
+  };
+  if (bad && !command.write_bad_fit) return left(".");
+  if (!writes) return left(": name the new file by --output, or answer by --yes.");
+  if (!command.yes && has_terminal()) {
+    const std::string question = (bad ? "The fit is bad. Write it all the same, marked BAD FIT, to "
+                                      : "Write these constants to the new arm file ") +
+                                 command.output + "?";
+    if (!says_yes(question, stop)) return stop.load() ? kExitInterrupted : left(".");
+  }
+  const auto file = scene::find_arm_file(chosen.path.string());
+  if (!file) return complain(file.error(), kExitBadInput);
+  const auto written =
+      write_identified(*file, command.output, found, {.date = today(), .arm = chosen.name});
+  if (!written) return complain(written.error(), kExitTrouble);
+  std::printf("Written to %s%s.\n", command.output.c_str(), bad ? ", each mark with BAD FIT" : "");
+  return done;
+}
+
 int identify_arm(IdentifyCommand command) {
   const auto chosen = resolve(command.choice, false);
   if (!chosen) return complain(chosen.error(), kExitNoDevice);
   const SimulatedNote simulated(*chosen, "constant of an arm on the desk");
   for (const std::string& sentence : chosen->told) std::printf("%s\n", sentence.c_str());
   if (chosen->real_arm && !checked(*chosen, command.choice.firmware)) {
-    return complain({"Identifying asks for up to 1 N, and this arm, with this arm file, has not "
-                     "passed its feel check. Run `thimble feel-check` first."},
+    return complain({"Identifying pushes the arm by itself, and this arm, with this arm file, has "
+                     "not passed its feel check. Run `thimble feel-check` first."},
                     kExitBadInput);
   }
+  if (auto right = check_forces(chosen->file, command.options); !right) {
+    return complain(right.error(), kExitBadInput);
+  }
+  // Who names the file, or answers, says that it is to be written.
+  const bool writes = !command.output.empty() || command.yes || has_terminal();
   if (command.output.empty()) command.output = chosen->file.name + "_identified.yaml";
+  if (auto free = check_new_file(command.output); writes && !free) {
+    return complain(free.error(), kExitTrouble);
+  }
   const std::atomic<bool>& stop = scene::catch_interrupts();
   if (chosen->real_arm) scene::leave_rather_than_stop();
   const scene::LeavingGuard guard;
   // A person needs time to let go of the mass.
   if (chosen->real_arm) command.options.lead = 4;
   command.options.link = true;
+  std::optional<KeyStop> keys;
   const OpenBench open = [&](bool loaded) {
-    return chosen->real_arm
-               ? open_real(*chosen, command, loaded, stop)
-               : simulated_bench(chosen->file, loaded ? command.options.known_mass : 0);
+    keys.reset();  // Enter begins, and is no key that stops
+    auto bench = chosen->real_arm
+                     ? open_real(*chosen, command, loaded, stop)
+                     : simulated_bench(chosen->file, loaded ? command.options.known_mass : 0, false,
+                                       command.options.force_most);
+    if (!bench) return bench;
+    keys.emplace();
+    std::printf("The tip %s; %s.\n",
+                loaded ? "with the known mass is shaken" : "is shaken by small forces",
+                how_to_stop(keys->listens()));
+    std::fflush(stdout);
+    return bench;
   };
   std::vector<driver::TickRecord> ticks;
   if (!command.record.empty()) {
@@ -128,7 +184,12 @@ int identify_arm(IdentifyCommand command) {
     command.options.watch = [&ticks](const driver::TickRecord& tick) { ticks.push_back(tick); };
   }
   const auto found = identify(open, chosen->file, command.options, stop);
-  if (stop.load()) return kExitInterrupted;
+  const bool by_key = keys && keys->pressed();
+  keys.reset();
+  if (stop.load()) {
+    std::printf("%s; nothing was kept.\n", by_key ? "Stopped by a key" : "Stopped");
+    return kExitInterrupted;
+  }
   if (!ticks.empty()) {
     if (auto written = write_motion(*chosen, command.record, ticks); !written) {
       return complain(written.error(), kExitTrouble);
@@ -145,6 +206,8 @@ int identify_arm(IdentifyCommand command) {
                                               .date = today(),
                                               .program = scene::program_name(),
                                               .seconds = command.options.seconds,
+                                              .force_most = command.options.force_most,
+                                              .bad_fit_is_written = command.write_bad_fit,
                                               .known_mass = command.options.known_mass},
                                              command.report);
     if (!written) return complain(written.error(), kExitTrouble);
@@ -152,19 +215,7 @@ int identify_arm(IdentifyCommand command) {
   }
   scene::logger().info("The arm {} was identified{}.", chosen->name,
                        found->against.empty() ? "" : ", and its fit is bad");
-  if (!found->against.empty()) {
-    for (const std::string& sentence : found->against)
-      std::printf("BAD FIT  %s\n", sentence.c_str());
-    std::printf("Nothing was written.\n");
-    return kExitUnmet;
-  }
-  const auto file = scene::find_arm_file(chosen->path.string());
-  if (!file) return complain(file.error(), kExitBadInput);
-  const auto written = write_identified(*file, command.output, found->constants,
-                                        {.date = today(), .arm = chosen->name});
-  if (!written) return complain(written.error(), kExitTrouble);
-  std::printf("Written to %s.\n", command.output.c_str());
-  return kExitDone;
+  return keep(command, *chosen, *found, writes, stop);
 }
 
 }  // namespace
@@ -182,8 +233,17 @@ void add_identify_command(CLI::App& app, int& exit_code) {
   sub->add_option("--seconds", command->options.seconds, "Of each motion")
       ->check(CLI::Range(10.0, 600.0))
       ->capture_default_str();
+  sub->add_option("--force-most", command->options.force_most,
+                  "Largest force, N; no more than gate.force_max of the arm file")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   sub->add_option("--output", command->output,
                   "New arm file to write; left out: NAME_identified.yaml in this folder");
+  sub->add_flag("--yes", command->yes,
+                "Write the new file without asking; without it you are asked at a terminal, and "
+                "elsewhere --output is your word");
+  sub->add_flag("--write-bad-fit", command->write_bad_fit,
+                "Write the file of a bad fit too, with BAD FIT in each mark");
   sub->add_option("--record", command->record,
                   "Recording of the motion with the bare tip to write, for `thimble twin`");
   sub->add_option("--report", command->report,

@@ -32,12 +32,13 @@ int compare(const TwinCommand& command) {
   if (!file) return complain(file.error(), kExitBadInput);
   const auto result = compare_twin(*recording, *file, command.options);
   if (!result) return complain(result.error(), kExitBadInput);
-  std::printf("%s, recorded with the arm %s (%s), and its twin of %s:\n", command.recording.c_str(),
-              recording->info.arm.c_str(), recording->info.device.c_str(), file->name.c_str());
+  std::printf("Recording: %s, of the arm %s (%s). Twin: the simulated arm of %s.\n",
+              command.recording.c_str(), recording->info.arm.c_str(),
+              recording->info.device.c_str(), command.arm_file.c_str());
   for (const std::string& sentence : result->comparison.told) std::printf("%s\n", sentence.c_str());
   std::printf("%s", twin_table(result->comparison).c_str());
   auto figures = twin_figures(result->comparison, command.fit_least);
-  std::printf("\n%s", force_table(result->forces).c_str());
+  std::printf("\nForces, RMS over pieces of 60 ms:\n%s", force_table(result->forces).c_str());
   for (Figure& figure : force_figures(result->forces)) figures.push_back(std::move(figure));
   if (const auto foretold = twin_prediction(*file)) {
     std::printf("\nWhat the twin foretells of its arm:\n%s", prediction_text(*foretold).c_str());
@@ -60,23 +61,26 @@ int compare(const TwinCommand& command) {
 
 void add_twin_command(CLI::App& app, int& exit_code) {
   CLI::App* sub = app.add_subcommand(
-      "twin", "Let the simulated arm relive a recording, and tell how far both are apart");
+      "twin",
+      "Compare a recorded arm with the simulated arm of a file: same forces in, both motions out");
   auto command = std::make_shared<TwinCommand>();
   sub->add_option("FILE", command->recording,
                   "Recording of an arm that nobody held: of `thimble identify --record FILE`, or a "
                   "part of one of `thimble run SCENE --record FILE`")
       ->required();
   add_arm_option(*sub, command->arm_file, "Arm file of the twin")->required();
-  sub->add_option("--window", command->options.window,
-                  "Length of the pieces that are relived, each from the recording's own state, s")
+  sub->add_option(
+         "--window", command->options.window,
+         "Length of the pieces that are compared, s; each begins as the recording was then")
       ->check(CLI::Range(0.05, 2.0))
       ->capture_default_str();
   sub->add_option("--from", command->options.span.from, "First second that is compared")
       ->check(CLI::NonNegativeNumber);
   sub->add_option("--until", command->options.span.until, "Last second that is compared")
       ->check(CLI::NonNegativeNumber);
-  sub->add_option("--fit-least", command->fit_least,
-                  "Fit that each axis must reach, percent; else the exit code is 5")
+  sub->add_option(
+         "--fit-least", command->fit_least,
+         "Percent that the fit of each axis must reach; if one does not, the exit code is 5")
       ->check(CLI::Range(0.0, 100.0));
   sub->add_option("--output", command->output,
                   "Folder for figures.json and pictures of motion, error and spectrum");

@@ -16,7 +16,7 @@ namespace {
 
 constexpr const char* kFooter =
     "Exit codes: 0 done, 1 unexpected trouble, 2 wrong arguments or input, 3 no arm,\n"
-    "4 the force went off with a fault, 5 a study has a figure that misses its goal,\n"
+    "4 the force went off with a fault, 5 a figure, a fit or a check misses its goal,\n"
     "130 ended early by Ctrl-C.\n"
     "A physical arm moves by itself: keep clear of it, and keep its power switch at hand.";
 

@@ -50,6 +50,11 @@ figure recording can/force_and_depth.png
 "$program" run "$scenes/water_balloon.yaml" --report balloon >/dev/null
 /usr/bin/python3 "$here/../../tests/program/page_browser.py" chromium balloon/index.html "$pictures/page.png" 1 >/dev/null
 
+# The page of an identified arm, down to its first plot.
+"$program" identify --device sim --arm woodenhaptics --known-mass 0.03 --report my_arm >/dev/null
+chromium --headless --no-sandbox --disable-gpu --hide-scrollbars --window-size=900,1490 \
+  --screenshot="$pictures/identify.png" "file://$work/my_arm/index.html" >/dev/null 2>&1
+
 # The guide's own table of peers, as a plot.
 awk -F'|' '/^\| 10\^[0-9]/ && NF == 7 { sub(/.*\^/, "", $2); print 10 ^ $2, $3, $4, $5, $6 }' \
   "$here/pages/compare.md" >peers.dat

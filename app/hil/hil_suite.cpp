@@ -35,7 +35,7 @@ HilResult check_reports(const HilRig& rig, double seconds) {
     figures.push_back({fmt::format("reports_are_good_{}", i), heard.good() ? 1.0 : 0.0, "", "== 1",
                        heard.text()});
   }
-  return judged(kName, "Opened three times. " + text, std::move(figures));
+  return judged(kName, "Opened three times: " + text, std::move(figures));
 }
 
 HilResult check_feel(const HilRig& rig, const HilOptions& options) {
@@ -89,8 +89,8 @@ HilResult check_edge(const HilRig& rig, bool full) {
   return judged(
       kName,
       fmt::format(
-          "{}{:.0f} N/m at {:g} mm/s; the simulated arm of the file carries {}{:.0f}, the law "
-          "says {:.0f}.",
+          "The stiffest wall that gives a tip at {2:g} mm/s no energy has {0}{1:.0f} N/m; with the "
+          "simulated arm of the file {3}{4:.0f}, by the law {5:.0f}.",
           found->grew ? "" : "at least ", found->stiffness, 1e3 * search.speed,
           twin->grew ? "" : "at least ", twin->stiffness, law),
       {{"stiffest_wall", found->stiffness, "N/m", "", ""},

@@ -52,13 +52,14 @@ HilResult check_soak(const HilRig& rig, double minutes) {
   if (heat_named) figures.push_back({"motor_heat", heat, "of the limit", "< 1", ""});
   return judged(
       kName,
-      fmt::format(
-          "{:.1f} minutes of up to {:g} N{}: {:.3f} % of the ticks without a report{}.", done,
-          Excitation::kForceMost, left ? ", until the tip left the space that it may move in" : "",
-          100 * missing,
-          heat_named
-              ? fmt::format(", the hottest motor at {:.0f} % of its limit by the model", 100 * heat)
-              : ""),
+      fmt::format("For {:.1f} minutes it was pushed with up to {:g} N{}; {:.3f} % of the ticks had "
+                  "no report{}.",
+                  done, Excitation::kForceMost,
+                  left ? ", until the tip left the space that it may move in" : "", 100 * missing,
+                  heat_named
+                      ? fmt::format("; by the model the hottest motor was at {:.0f} % of its limit",
+                                    100 * heat)
+                      : ""),
       std::move(figures));
 }
 

@@ -36,6 +36,11 @@ HilResult check_watchdog_time(const HilRig& rig) {
                      fmt::format("The tip is too near to a side of the workspace to be pushed for "
                                  "{:.0f} mm; put it into the middle.",
                                  1e3 * kWatchdogWayMost));
+    case WatchdogEnd::kTooMuch:
+      return skipped(kName,
+                     fmt::format("The file's dry friction needs a push of {:.2f} N, which is "
+                                 "more than is allowed.",
+                                 seen.force));
     case WatchdogEnd::kAnswersOnly:
       return skipped(kName,
                      "The arm speaks only when spoken to, so its watchdog's time cannot be seen.");

@@ -43,7 +43,7 @@ std::string rounded(double value, double plus_minus) {
   return fmt::format("{:.{}f}", value, std::min(digits, 6));
 }
 
-std::string verdict(const Identified& found) {
+std::string verdict(const Identified& found, bool bad_fit_is_written) {
   if (found.against.empty()) {
     return "<div class=\"verdict\">" +
            paragraph("The fit is good: what it leaves is what an arm of this kind leaves.") +
@@ -51,9 +51,10 @@ std::string verdict(const Identified& found) {
   }
   std::string text =
       "<div class=\"verdict bad\">" +
-      paragraph(
-          "The fit is bad, and nothing was written into an arm file. What stands below "
-          "are the constants of a model that this arm does not follow:");
+      paragraph(std::string("The fit is bad, and ") +
+                (bad_fit_is_written ? "an arm file that holds it says so in every mark"
+                                    : "nothing was written into an arm file") +
+                ". What stands below are the constants of a model that this arm does not follow:");
   for (const std::string& sentence : found.against) text += paragraph(sentence);
   return text + "</div>\n";
 }
@@ -85,12 +86,12 @@ std::string page_text(const Identified& found, const scene::ArmFile& file,
           "{}, {}; {:g} s of motion under at most {:g} N{}.",
           heading.simulated ? "The simulated arm of this file: no constant of an arm on a desk"
                             : "Arm " + heading.device,
-          heading.date, heading.seconds, kIdentifyForceMax,
+          heading.date, heading.seconds, heading.force_most,
           heading.known_mass > 0
               ? fmt::format(", and again with {:g} g fixed to the tip", 1e3 * heading.known_mass)
               : ""),
       "small");
-  page += verdict(found);
+  page += verdict(found, heading.bad_fit_is_written);
   page += "<h2>Constants</h2>\n" + table(found, file) + paragraph(fit_text(found.bare), "small");
   for (const IdentifyPlot& plot : plots) {
     page += fmt::format("<h2>{}</h2>\n", html_text(plot.title)) + paragraph(plot.caption, "small") +

@@ -17,7 +17,9 @@ struct IdentifyHeading {
   std::string date;        ///< "2026-11-23"
   std::string program;     ///< Which build measured.
   double seconds = 0;      ///< Of each motion.
-  double known_mass = 0;   ///< kg; 0: none.
+  double force_most = kIdentifyForceMax;  ///< The most that was allowed, N.
+  bool bad_fit_is_written = false;        ///< Into an arm file, if the user agrees.
+  double known_mass = 0;                  ///< kg; 0: none.
 };
 
 /// Returns the constants as figures, their intervals as notes.

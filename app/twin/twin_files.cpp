@@ -14,9 +14,10 @@ namespace {
 
 constexpr double kMicro = 1e6;
 
-/// Returns how many percent less an error is.
-double mended(double before, double after) {
-  return before > 0 ? 100 * (1 - after / before) : 0;
+/// Returns by how many percent an error changes; what rounds to nothing is 0, not -0.
+double changed(double before, double after) {
+  const double percent = before > 0 ? 100 * (after / before - 1) : 0;
+  return std::abs(percent) < 0.05 ? 0 : percent;
 }
 
 std::string error_table(const TwinTrace& trace) {
@@ -163,18 +164,17 @@ std::string twin_table(const TwinComparison& found) {
       "{:.1f} s compared; error {:.3g} um, of which the encoders' steps leave {:.3g}.\n",
       found.seconds, kMicro * found.error_rms, kMicro * found.step_error);
   text += fmt::format("\n{:<34} {:>10} {:>10} {:<6} {:>12} {:>9}\n", "constant", "file", "best", "",
-                      "error then", "expected");
+                      "error by it", "expected");
   for (const TwinRemedy& remedy : found.remedies) {
     text += fmt::format("{:<34} {:>10.5g} {:>10.5g} {:<6} {:>10.1f} % {:>7.1f} %\n", remedy.key,
                         remedy.value, remedy.best, remedy.unit,
-                        -mended(found.error_rms, remedy.error_rms),
-                        -mended(found.error_rms, remedy.expected));
+                        changed(found.error_rms, remedy.error_rms),
+                        changed(found.error_rms, remedy.expected));
   }
   if (found.has_remedy()) {
     const TwinRemedy& first = found.remedies.front();
     text += fmt::format(
-        "\n{} reduces the error most: {:.5g} {} in place of {:.5g} leaves {:.3g} um of {:.3g} "
-        "um.\n",
+        "\n{} reduces the error most: {:.5g} {} in place of {:.5g} makes {:.3g} um of {:.3g} um.\n",
         first.key, first.best, first.unit, first.value, kMicro * first.error_rms,
         kMicro * found.error_rms);
   } else {
@@ -182,9 +182,8 @@ std::string twin_table(const TwinComparison& found) {
   }
   if (found.missed() > TwinComparison::kMissed) {
     text += fmt::format(
-        "Even then {:.0f} % of the motion are missed: several constants are wrong, something held "
-        "the "
-        "tip, or the arm has what its file does not name.\n",
+        "Even then the twin misses {:.0f} % of the motion: several constants are wrong, something "
+        "held the tip, or the arm has something that its file does not name.\n",
         100 * found.missed());
   }
   return text;

@@ -293,8 +293,8 @@ std::vector<Figure> force_figures(const TwinForces& forces) {
 }
 
 std::string force_table(const TwinForces& forces) {
-  std::string text = fmt::format("{:<5} {:>12} {:>16} {:>16}   forces, RMS over pieces of 60 ms\n",
-                                 "axis", "motors gave", "motion needs", "something else");
+  std::string text = fmt::format("{:<5} {:>12} {:>16} {:>16}\n", "axis", "motors gave",
+                                 "motion needs", "something else");
   for (const TwinForceAxis& axis : forces.axes) {
     if (axis.counted == 0) {
       text += fmt::format("{:<5} {:>12}\n", axis.name, "stood still");
@@ -306,15 +306,15 @@ std::string force_table(const TwinForces& forces) {
   if (forces.hand_held()) {
     const TwinHand& hand = forces.hand;
     text += fmt::format(
-        "Something held the tip like a hand of {:.2g} N/m, {:.2g} N s/m and {:.2g} kg; that is "
-        "{:.0f} "
-        "% of what the motors did not give. What is said of the file's constants is worth nothing "
-        "then: record without a hand.\n",
+        "Something held the tip like a hand of {:.2g} N/m, {:.2g} N s/m and {:.2g} kg: {:.0f} % of "
+        "what the motors did not give. Do not believe what is said of the constants above; record "
+        "without a hand.\n",
         hand.stiffness, hand.damping, std::max(0.0, hand.mass), 100 * hand.explained);
   } else if (forces.other_acted()) {
     text +=
-        "More acted than the motors gave, and it is not like a hand that stays: constants of the "
-        "file are wrong, or a hand moved the tip.\n";
+        "More acted on the tip than the motors gave, and not like a hand that keeps still: "
+        "constants "
+        "of the file are wrong, or a hand moved the tip.\n";
   } else {
     text += "Nothing but the motors acted on the tip, as far as its encoders can tell.\n";
   }

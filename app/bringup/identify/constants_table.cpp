@@ -40,6 +40,22 @@ void add_friction(const FrictionDirections& friction, Rows& rows) {
   }
 }
 
+void add_encoders(const Encoders& found, const scene::ArmFile& file, Rows& rows) {
+  constexpr double kMicro = 1e6;
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (found.step[i].counts == 0) continue;
+    const double step = file.model.step(i);
+    rows.add(fmt::format("step of encoder {}", i + 1), {found.step[i].counts * step, 0}, kMicro,
+             "urad at the joint", step);
+  }
+  for (std::size_t i = 0; found.rest && i < 3; ++i) {
+    if (!found.rest->at_rest[i]) continue;
+    const Estimate& noise = found.rest->noise[i];
+    rows.add(fmt::format("noise of encoder {}, RMS", i + 1), noise, kMicro * file.model.step(i),
+             "urad at the joint, at rest");
+  }
+}
+
 void add_cables(const ArmConstants& found, const scene::ArmFile& file, Rows& rows) {
   const auto& train = file.simulated.drive_train;
   const bool named = train.compliant();
@@ -89,6 +105,7 @@ std::vector<ConstantRow> constant_rows(const Identified& identified, const scene
                "N m at the joint, by the arm file's constants");
     }
   }
+  add_encoders(identified.encoders, file, rows);
   if (identified.reports && identified.reports->period.value > 0) {
     const double period = 1e-9 * static_cast<double>(simulated.firmware.report_period_ns);
     rows.add("report period", identified.reports->period, 1e3, "ms", named(period));

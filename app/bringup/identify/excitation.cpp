@@ -10,14 +10,17 @@
 namespace thimble::app {
 namespace {
 
-constexpr double kAmplitude = 0.11;             // N, of each sine
+constexpr double kAmplitude = 0.11;             // of each sine, of what is allowed
 constexpr double kLowest = 0.7, kHighest = 13;  // Hz
 
 }  // namespace
 
 Excitation::Excitation(const Eigen::Vector3d& p_WM, const Eigen::Vector3d& f_carried_W,
-                       std::uint64_t seed, Lines lines)
-    : hold_(p_WM, f_carried_W), lines_(seed + 1), with_lines_(lines == Lines::kWith) {
+                       std::uint64_t seed, Lines lines, double allowed)
+    : hold_(p_WM, f_carried_W),
+      lines_(seed + 1),
+      with_lines_(lines == Lines::kWith),
+      allowed_(allowed) {
   std::mt19937_64 bits(seed);
   const double steps = 3 * kSines - 1;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -39,13 +42,13 @@ Eigen::Vector3d Excitation::force(double time, double dt, const Eigen::Vector3d&
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (std::size_t i = 0; i < kSines; ++i) {
       f[static_cast<Eigen::Index>(axis)] +=
-          share * kAmplitude * math::sin(frequency_[axis][i] * time + phase_[axis][i]);
+          share * kAmplitude * allowed_ * math::sin(frequency_[axis][i] * time + phase_[axis][i]);
     }
   }
-  if (with_lines_) f += share * lines_.force(time);
-  const double length = f.norm();
-  if (!(length > kForceMost)) return f;
-  return f * (kForceMost / length);
+  if (with_lines_) f += share * allowed_ * lines_.force(time);
+  const double length = f.norm(), most = kShareMost * allowed_;
+  if (!(length > most)) return f;
+  return f * (most / length);
 }
 
 }  // namespace thimble::app

@@ -11,19 +11,20 @@ namespace thimble::app {
 
 /// A force that moves a free arm in all directions at once, so that mass, friction and gains show
 /// in its motion: sines of many frequencies per axis, and a weak spring and damper that keep the
-/// tip where it began. Never longer than `kForceMost`. Frame W: world.
+/// tip where it began. Never longer than `kShareMost` of what is allowed. Frame W: world.
 class Excitation {
  public:
-  static constexpr double kForceMost = 0.95;  ///< N, below the 1 N that identifying is allowed.
+  static constexpr double kForceMost = 0.95;  ///< N, below the 1 N that is allowed unless said.
+  static constexpr double kShareMost = 0.95;  ///< Of what is allowed.
   static constexpr double kFar = 0.04;        ///< How far the tip may go from the middle, m.
   static constexpr int kSines = 8;            ///< Per axis.
   /// Whether LineForces come on top, which show what the arm does at high frequencies.
   enum class Lines { kWithout, kWith };
 
-  /// Takes where the tip shall stay (m), the force that carries a known mass (N), and what the
-  /// phases are drawn by.
+  /// Takes where the tip shall stay (m), the force that carries a known mass (N), what the phases
+  /// are drawn by, and the largest force that is allowed (N): all sines grow and shrink with it.
   Excitation(const Eigen::Vector3d& p_WM, const Eigen::Vector3d& f_carried_W, std::uint64_t seed,
-             Lines lines = Lines::kWithout);
+             Lines lines = Lines::kWithout, double allowed = 1);
 
   /// Returns the force (N) at a time since the beginning (s), `dt` (s) after the last, for a tip at
   /// p_WT (m) with v_WT (m/s); zero for a tip that has left the space it may move in. Real-time:
@@ -40,6 +41,7 @@ class Excitation {
   HoldPlace hold_;
   LineForces lines_;
   bool with_lines_;
+  double allowed_;                                         // N
   std::array<std::array<double, kSines>, 3> frequency_{};  // rad/s
   std::array<std::array<double, kSines>, 3> phase_{};
 };

@@ -11,66 +11,13 @@
 #include <string_view>
 #include <vector>
 
+#include "bringup/identify/file_lines.h"
+#include "bringup/identify/identified_further.h"
 #include "read_scene.h"
 #include "yaml/yaml_reader.h"
 
 namespace thimble::app {
 namespace {
-
-/// The lines of a text in which the rest of a line can be exchanged, from where a value stands.
-class Lines {
- public:
-  explicit Lines(const std::string& text) {
-    std::istringstream stream(text);
-    for (std::string line; std::getline(stream, line);) lines_.push_back(line);
-  }
-
-  bool exchange(const YAML::Node& value, const std::string& by) {
-    const YAML::Mark mark = value.Mark();
-    const auto at = static_cast<std::size_t>(mark.line);
-    const auto column = static_cast<std::size_t>(mark.column);
-    if (mark.is_null() || at >= lines_.size() || column > lines_[at].size()) return false;
-    lines_[at] = lines_[at].substr(0, column) + by;
-    return true;
-  }
-
-  /// Puts a line behind that of a value, as far in as its key.
-  bool add_behind(const YAML::Node& value, const std::string& line) {
-    const YAML::Mark mark = value.Mark();
-    const auto at = static_cast<std::size_t>(mark.line);
-    if (mark.is_null() || at >= lines_.size()) return false;
-    const std::size_t indent = lines_[at].find_first_not_of(' ');
-    if (indent == std::string::npos) return false;
-    added_.emplace_back(at, std::string(indent, ' ') + line);
-    return true;
-  }
-
-  /// Puts lines before that of a key, as far in as it.
-  bool add_before(const YAML::Node& key, const std::vector<std::string>& lines) {
-    const YAML::Mark mark = key.Mark();
-    const auto at = static_cast<std::size_t>(mark.line);
-    if (mark.is_null() || at == 0 || at >= lines_.size()) return false;
-    for (const std::string& line : lines) {
-      added_.emplace_back(at - 1, std::string(static_cast<std::size_t>(mark.column), ' ') + line);
-    }
-    return true;
-  }
-
-  std::string text() const {
-    std::string whole;
-    for (std::size_t i = 0; i < lines_.size(); ++i) {
-      whole += lines_[i] + '\n';
-      for (const auto& [at, line] : added_) {
-        if (at == i) whole += line + '\n';
-      }
-    }
-    return whole;
-  }
-
- private:
-  std::vector<std::string> lines_;
-  std::vector<std::pair<std::size_t, std::string>> added_;
-};
 
 driver::Error bad_form(std::string_view key) {
   return driver::Error{
@@ -78,11 +25,6 @@ driver::Error bad_form(std::string_view key) {
                   "line of its own, "
                   "as app/arms/vintage_phantom.yaml does.",
                   key)};
-}
-
-std::string marked(double value, const char* unit, double plus_minus, const IdentifiedMark& mark) {
-  return fmt::format("{:.6g}  # {} [I {}, {}, +- {:.2g}]", value, unit, mark.date, mark.arm,
-                     plus_minus);
 }
 
 bool near(double value, double wanted) {
@@ -97,7 +39,7 @@ bool near_train(double value, double wanted) {
 /// returns them.
 driver::Result<void> put_torques(const YAML::Node& root, const scene::ArmFile& before,
                                  const ArmConstants& found, const IdentifiedMark& mark,
-                                 Lines& lines, std::array<double, 3>& torque) {
+                                 FileLines& lines, std::array<double, 3>& torque) {
   double error = 0;
   for (std::size_t i = 0; i < 3; ++i) {
     const double declared = before.model.drives[i].torque_constant;
@@ -128,7 +70,7 @@ driver::Result<void> put_torques(const YAML::Node& root, const scene::ArmFile& b
 /// Exchanges the delays. The bus and the converter of a Falcon are code: what was measured of them
 /// is a remark.
 bool put_delay(const YAML::Node& simulation, const scene::ArmFile& before, const Estimate& delay,
-               const IdentifiedMark& mark, Lines& lines) {
+               const IdentifiedMark& mark, FileLines& lines) {
   if (before.is<driver::DeltaArm>()) {
     return lines.add_behind(
         simulation["tip"]["coulomb"],
@@ -169,7 +111,7 @@ constexpr TrainConstant kTrainConstants[] = {{"stiffness", "N m/rad", &CableCons
 
 /// Exchanges stiffness, inertia and damping of the drive train, or adds the section before `tip`.
 bool put_train(const YAML::Node& simulation, const std::array<CableConstants, 3>& cables,
-               const IdentifiedMark& mark, Lines& lines) {
+               const IdentifiedMark& mark, FileLines& lines) {
   const YAML::Node train = simulation["drive_train"];
   if (train && train.Style() == YAML::EmitterStyle::Flow) {
     // On one line: the marks of all that it says behind it.
@@ -202,6 +144,12 @@ bool put_train(const YAML::Node& simulation, const std::array<CableConstants, 3>
 
 }  // namespace
 
+std::string marked(double value, const std::string& unit, double plus_minus,
+                   const IdentifiedMark& mark) {
+  return fmt::format("{:.6g}  # {} [I {}, {}, +- {:.2g}]", value, unit, mark.date, mark.arm,
+                     plus_minus);
+}
+
 driver::Result<std::string> identified_text(const std::string& text, const ArmConstants& found,
                                             const IdentifiedMark& mark) {
   YAML::Node root;
@@ -215,7 +163,7 @@ driver::Result<std::string> identified_text(const std::string& text, const ArmCo
   const auto before = scene::read_arm(*was);
   if (!before) return before.error();
   if (!before->can_simulate) return bad_form("section simulation");
-  Lines lines(text);
+  FileLines lines(text);
   const YAML::Node tip = root["simulation"]["tip"];
   const auto put = [&](const YAML::Node& node, double value, const char* unit, double plus_minus) {
     return node && lines.exchange(node, marked(value, unit, plus_minus, mark));
@@ -274,29 +222,63 @@ driver::Result<std::string> identified_text(const std::string& text, const ArmCo
   return written;
 }
 
-driver::Result<void> write_identified(const std::filesystem::path& arm_file,
-                                      const std::filesystem::path& new_file,
-                                      const ArmConstants& constants, const IdentifiedMark& mark) {
-  std::error_code failed;
-  if (std::filesystem::exists(new_file, failed) || failed) {
-    return driver::Error{new_file.string() +
-                         " is there already, and no file is written over; name another by "
-                         "--output."};
-  }
+namespace {
+
+driver::Result<std::string> text_of(const std::filesystem::path& arm_file) {
   std::ifstream in(arm_file);
   std::ostringstream content;
   content << in.rdbuf();
   if (!in) return driver::Error{"The arm file " + arm_file.string() + " cannot be read."};
-  const auto text = identified_text(content.str(), constants, mark);
-  if (!text) return text.error();
+  return content.str();
+}
+
+driver::Result<void> write_new(const std::filesystem::path& new_file, const std::string& text) {
   std::ofstream out(new_file);
-  out << *text;
+  out << text;
   out.close();
   if (!out) {
     return driver::Error{new_file.string() +
                          " cannot be written; look at its folder and its disk."};
   }
   return {};
+}
+
+}  // namespace
+
+driver::Result<void> check_new_file(const std::filesystem::path& new_file) {
+  std::error_code failed;
+  if (!std::filesystem::exists(new_file, failed) && !failed) return {};
+  return driver::Error{new_file.string() +
+                       " is there already, and no file is written over; name another by "
+                       "--output."};
+}
+
+driver::Result<void> write_identified(const std::filesystem::path& arm_file,
+                                      const std::filesystem::path& new_file,
+                                      const ArmConstants& constants, const IdentifiedMark& mark) {
+  if (auto free = check_new_file(new_file); !free) return free;
+  const auto content = text_of(arm_file);
+  if (!content) return content.error();
+  const auto text = identified_text(*content, constants, mark);
+  if (!text) return text.error();
+  return write_new(new_file, *text);
+}
+
+driver::Result<void> write_identified(const std::filesystem::path& arm_file,
+                                      const std::filesystem::path& new_file,
+                                      const Identified& found, const IdentifiedMark& mark) {
+  if (auto free = check_new_file(new_file); !free) return free;
+  const auto content = text_of(arm_file);
+  if (!content) return content.error();
+  IdentifiedMark said = mark;
+  std::string head;
+  for (const std::string& sentence : found.against) head += "# BAD FIT: " + sentence + "\n";
+  if (!found.against.empty()) said.arm += ", BAD FIT";
+  const auto text = identified_text(*content, found.constants, said);
+  if (!text) return text.error();
+  const auto whole = further_text(*text, found, said);
+  if (!whole) return whole.error();
+  return write_new(new_file, head + *whole);
 }
 
 }  // namespace thimble::app

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "bringup/identify/arm_constants.h"
+#include "bringup/identify/identify.h"
 #include "thimble/driver/result.h"
 #include "thimble/scene/arm_file.h"
 
@@ -23,10 +24,24 @@ struct IdentifiedMark {
 driver::Result<std::string> identified_text(const std::string& text, const ArmConstants& constants,
                                             const IdentifiedMark& mark);
 
+/// Returns a value as it stands behind its key, marked with unit, date, arm and interval.
+std::string marked(double value, const std::string& unit, double plus_minus,
+                   const IdentifiedMark& mark);
+
+/// Says that a new file would be written over one that is there already. Real-time: never from the
+/// servo thread.
+driver::Result<void> check_new_file(const std::filesystem::path& new_file);
+
 /// Writes that into a new file. Fails if there is one already: nobody's own file is written over.
 /// Real-time: never from the servo thread.
 driver::Result<void> write_identified(const std::filesystem::path& arm_file,
                                       const std::filesystem::path& new_file,
                                       const ArmConstants& constants, const IdentifiedMark& mark);
+
+/// Writes all that was found that an arm file has keys for (`further_text`). A bad fit is written
+/// too, as one: what speaks against it stands above the file, and BAD FIT in every mark.
+driver::Result<void> write_identified(const std::filesystem::path& arm_file,
+                                      const std::filesystem::path& new_file,
+                                      const Identified& found, const IdentifiedMark& mark);
 
 }  // namespace thimble::app

@@ -39,6 +39,9 @@ constexpr double kSpringLeast = 10;  // N/m
 constexpr double kLeftOutMost = 0.75;
 // Lines are fitted to 1 to 1.5; bent geometry and friction leave the rest.
 constexpr double kLinesMisfitMost = 10;
+constexpr double kForceLeast = 0.2;   // N [chosen: twice the dry friction of the arms that we know]
+constexpr double kCarriedMost = 0.6;  // of the largest force, to carry a known mass
+constexpr double kKnownMassMost = 0.06;  // kg [chosen: no grip should be heavier than its arm]
 // Half-width of an interval over the value, of a motor's inertia or a cable.
 constexpr double kCableUnknownMost = 0.6;
 
@@ -133,10 +136,11 @@ void put_cables(Identified& found) {
 
 /// Measures what does not hang on the motion: how reports come, and the firmware's watchdog.
 void look_at_link(BenchArm& bench, const scene::ArmFile& file, const ArmConstants& bare,
-                  const std::atomic<bool>& stop, Identified& found) {
-  constexpr double kListened = 2;  // s
+                  double force_most, const std::atomic<bool>& stop, Identified& found) {
+  constexpr double kListened = 2, kRested = 1;  // s
   bench.watch({});
   found.reports = time_reports(bench, kListened, stop);
+  found.encoders.rest = encoders_at_rest(bench, kRested, stop);
   // What moves otherwise than it is understood is not pushed further; behind a cable that stretches
   // the oscillation of the link hides when the force goes off.
   if (!found.against.empty() || found.lines.stretches) return;
@@ -152,7 +156,8 @@ void look_at_link(BenchArm& bench, const scene::ArmFile& file, const ArmConstant
                                   .mass = bare.mass.value / share,
                                   .coulomb = bare.coulomb.value / share,
                                   .delay = bare.delay.value,
-                                  .workspace = file.workspace},
+                                  .workspace = file.workspace,
+                                  .force_most = force_most},
                                  file.limits.soft_start, stop);
 }
 
@@ -205,6 +210,29 @@ std::vector<std::string> speaks_against(const PerMass& fit, const PerMass& held,
   return against;
 }
 
+driver::Result<void> check_forces(const scene::ArmFile& file, const IdentifyOptions& options) {
+  if (!(options.force_most >= kForceLeast)) {
+    return driver::Error{fmt::format(
+        "The largest force must be {:g} N at least: less moves no arm that we know.", kForceLeast)};
+  }
+  if (!(options.force_most <= file.limits.force_max)) {
+    return driver::Error{
+        fmt::format("A largest force of {:g} N is more than the {:g} N that the arm file allows "
+                    "(gate.force_max).",
+                    options.force_most, file.limits.force_max)};
+  }
+  // Beside what carries the mass something must be left that moves it.
+  const double carried = kCarriedMost * options.force_most / kStandardGravity;
+  const double most = std::min(kKnownMassMost, carried);
+  if (!(options.known_mass >= 0 && options.known_mass <= most)) {
+    return driver::Error{
+        fmt::format("The known mass must be {:.2g} kg at most: with no more than {:g} N its weight "
+                    "has to be carried, and shaken.",
+                    most, options.force_most)};
+  }
+  return {};
+}
+
 driver::Result<Identified> identify(const OpenBench& open, const scene::ArmFile& file,
                                     const IdentifyOptions& options, const std::atomic<bool>& stop) {
   if (file.is<driver::ToldArm>()) {
@@ -216,10 +244,7 @@ driver::Result<Identified> identify(const OpenBench& open, const scene::ArmFile&
   if (!(options.seconds >= 10 && options.seconds <= 600)) {
     return driver::Error{"Each motion takes from 10 to 600 s."};
   }
-  if (!(options.known_mass >= 0 && options.known_mass <= 0.06)) {
-    return driver::Error{
-        "The known mass must be 0.06 kg at most: its weight has to be carried with less than 1 N."};
-  }
+  if (auto right = check_forces(file, options); !right) return right.error();
   Identified found;
   Eigen::Vector3d down_B(0, 0, -1);
   for (const bool loaded : {false, true}) {
@@ -231,11 +256,13 @@ driver::Result<Identified> identify(const OpenBench& open, const scene::ArmFile&
                                       {.seconds = options.seconds,
                                        .lead = options.lead,
                                        .added_mass = loaded ? options.known_mass : 0,
+                                       .force_most = options.force_most,
                                        .seed = options.seed + (loaded ? 1 : 0)},
                                       stop);
     if (!motion) return motion.error();
     auto fit = fit_motion(*motion, false);
     if (!fit) return fit.error();
+    if (!loaded) found.encoders.step = encoder_steps(*motion);
     if (!loaded) found.spectrum = line_spectrum(*motion);
     if (!loaded && options.cables) found.lines = fit_cables(found.spectrum, *fit, motion->dt);
     driver::Result<ArmMotion> links = *motion;
@@ -262,7 +289,9 @@ driver::Result<Identified> identify(const OpenBench& open, const scene::ArmFile&
     for (std::string& sentence : speaks_against(*fit, *held, alone->mass.value)) {
       found.against.push_back((loaded ? "With the known mass: " : "") + sentence);
     }
-    if (!loaded && options.link) look_at_link(**bench, file, *alone, stop, found);
+    if (!loaded && options.link) {
+      look_at_link(**bench, file, *alone, options.force_most, stop, found);
+    }
   }
   auto constants = arm_constants(found.bare, down_B, found.loaded, options.known_mass);
   if (!constants) return constants.error();

@@ -8,6 +8,7 @@
 #include "bringup/bench_arm.h"
 #include "bringup/identify/arm_constants.h"
 #include "bringup/identify/cables.h"
+#include "bringup/identify/encoders.h"
 #include "bringup/identify/friction_directions.h"
 #include "bringup/identify/saturation.h"
 #include "bringup/identify/weak_form/fitted_motion.h"
@@ -18,7 +19,7 @@
 
 namespace thimble::app {
 
-/// The most that identifying asks an arm for, N.
+/// The most that identifying asks an arm for unless the user says another, N.
 inline constexpr double kIdentifyForceMax = 1.0;
 
 /// How an arm is identified.
@@ -28,6 +29,7 @@ struct IdentifyOptions {
   /// Whether cables that stretch are looked for; if not, an arm that has some is a bad fit.
   bool cables = true;
   double known_mass = 0;  ///< That the user fixes to the tip for the second motion, kg; 0: none.
+  double force_most = kIdentifyForceMax;  ///< The most that is asked for, N; the file's at most.
   /// Whether the reports' timing and the firmware's watchdog are measured after the motion; the
   /// watchdog by pushes of a little more than the friction that was found.
   bool link = false;
@@ -47,6 +49,7 @@ struct Identified {
   ArmMotion moved;
   double moved_ahead = 0;  ///< Of the delay, what that motion was freed from already, s.
   FrictionDirections friction;
+  Encoders encoders;  ///< At rest only if the reports' timing was asked for.
   /// Joint by joint; nothing is searched for behind cables that stretch.
   std::array<Saturation, 3> saturation;
   std::optional<ReportTiming> reports;   ///< If they were asked for.
@@ -71,9 +74,12 @@ std::vector<std::string> speaks_against(const PerMass& fit, const PerMass& held,
 /// Opens the bench for one motion: with the known mass on the tip, or without it.
 using OpenBench = std::function<driver::Result<std::unique_ptr<BenchArm>>(bool loaded)>;
 
-/// Moves a free arm, with and without a known mass, and finds its constants. No force beyond what
-/// the bench was opened with (kIdentifyForceMax), all of it through the gate. The error says why
-/// there is nothing to tell. Real-time: never from the servo thread.
+/// Says why a largest force and a known mass do not go together, or not with the file's limits.
+driver::Result<void> check_forces(const scene::ArmFile& file, const IdentifyOptions& options);
+
+/// Moves a free arm, with and without a known mass, and finds its constants. No force beyond
+/// `force_most`, which the bench was opened with too, all of it through the gate. The error says
+/// why there is nothing to tell. Real-time: never from the servo thread.
 driver::Result<Identified> identify(const OpenBench& open, const scene::ArmFile& file,
                                     const IdentifyOptions& options, const std::atomic<bool>& stop);
 

@@ -81,6 +81,30 @@ void of_saturation(const Identified& identified, Sentences& all) {
   }
 }
 
+void of_encoders(const Encoders& encoders, Sentences& all) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (encoders.step[i].counts == 0) {
+      all.push_back(fmt::format(
+          "Step of encoder {}: it did not count step by step, so the smallest step is not known.",
+          i + 1));
+    }
+  }
+  all.emplace_back(
+      "Counts of a turn: the steps of the encoders are those of the arm file; what was seen is how "
+      "many of them a report differs from the next at the least.");
+  if (!encoders.rest) {
+    all.emplace_back("Noise of the encoders: not asked for.");
+    return;
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (encoders.rest->at_rest[i]) continue;
+    all.push_back(fmt::format(
+        "Noise of encoder {}: the joint did not come to rest, so noise and motion are not told "
+        "apart.",
+        i + 1));
+  }
+}
+
 std::string watchdog_text(const WatchdogSeen& seen) {
   switch (seen.end) {
     case WatchdogEnd::kTooLong:
@@ -90,6 +114,8 @@ std::string watchdog_text(const WatchdogSeen& seen) {
           1e3 * kWatchdogWayMost);
     case WatchdogEnd::kNoRoom:
       return "a side of the workspace was too near for a push.";
+    case WatchdogEnd::kTooMuch:
+      return fmt::format("its dry friction needs {:.2f} N, more than is allowed.", seen.force);
     case WatchdogEnd::kAnswersOnly:
       return "the arm speaks only when spoken to, so nobody sees what it does in silence.";
     case WatchdogEnd::kHeld:
@@ -138,6 +164,7 @@ std::vector<std::string> not_identified(const Identified& identified) {
   of_cables(identified, all);
   of_friction(identified.friction, all);
   of_saturation(identified, all);
+  of_encoders(identified.encoders, all);
   of_link(identified, all);
   all.emplace_back("Play and cogging: not looked for.");
   all.emplace_back(

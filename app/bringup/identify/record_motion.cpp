@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kTick = 1e-3;       // s, of BenchArm
 constexpr double kPulse = 0.04;      // s
-constexpr double kPulseForce = 0.4;  // N, the most that a first pulse pushes with
+constexpr double kPulseShare = 0.4;  // of the most that is allowed, in a first pulse
 
 /// Fills in what a tick showed: the tip, and how it hangs together with the joints.
 MotionSample sample_of(const scene::ArmFile& file, const driver::DeviceState& state) {
@@ -29,8 +29,13 @@ MotionSample sample_of(const scene::ArmFile& file, const driver::DeviceState& st
 
 class Recorder {
  public:
-  Recorder(BenchArm& bench, const scene::ArmFile& file, double lead, const std::atomic<bool>& stop)
-      : bench_(bench), file_(file), lead_(lead), stop_(stop) {}
+  Recorder(BenchArm& bench, const scene::ArmFile& file, const MotionOrder& order,
+           const std::atomic<bool>& stop)
+      : bench_(bench),
+        file_(file),
+        lead_(order.lead),
+        pulse_(kPulseShare * order.force_most),
+        stop_(stop) {}
 
   driver::Result<void> begin(bool bare) {
     const auto rest = [](const driver::DeviceState&) { return Eigen::Vector3d(0, 0, 0); };
@@ -71,7 +76,7 @@ class Recorder {
         if (phase < 1.1) moved = std::abs(away) > std::abs(moved) ? away : moved;
         const MotionSample here = sample_of(file_, state);
         const Eigen::Vector3d push_B = here.G.row(joint).transpose().normalized();
-        return file_.R_WB * (sign * kPulseForce * push_B);
+        return file_.R_WB * (sign * pulse_ * push_B);
       };
       if (!bench_.run(5 * kPulse, law, stop_)) return why();
       if (left_) return went_away();
@@ -87,7 +92,7 @@ class Recorder {
         return driver::Error{fmt::format(
             "Motor {} moved its joint by {:.0f} counts under {:g} N: the tip is held, the joint "
             "sticks, or the motor is dead. Let go of the grip, and run `thimble feel-check`.",
-            joint + 1, counts, kPulseForce)};
+            joint + 1, counts, pulse_)};
       }
     }
     return {};
@@ -103,7 +108,7 @@ class Recorder {
     }
     motion.samples.reserve(static_cast<std::size_t>(order.seconds / kTick) + 1);
     Excitation excitation(p_WM_, {0, 0, kStandardGravity * order.added_mass}, order.seed,
-                          Excitation::Lines::kWith);
+                          Excitation::Lines::kWith, order.force_most);
     const double begin = bench_.now();
     const auto law = [&](const driver::DeviceState& state) -> Eigen::Vector3d {
       const double t = bench_.now() - begin;
@@ -145,6 +150,7 @@ class Recorder {
   BenchArm& bench_;
   const scene::ArmFile& file_;
   double lead_;                    // s
+  double pulse_;                   // N
   Eigen::Vector3d p_WM_{0, 0, 0};  // where it began, m
   bool left_ = false;              // that space, for good
   const std::atomic<bool>& stop_;
@@ -154,7 +160,7 @@ class Recorder {
 
 driver::Result<ArmMotion> record_motion(BenchArm& bench, const scene::ArmFile& file,
                                         const MotionOrder& order, const std::atomic<bool>& stop) {
-  Recorder recorder(bench, file, order.lead, stop);
+  Recorder recorder(bench, file, order, stop);
   const bool bare = order.added_mass == 0;
   if (auto begun = recorder.begin(bare); !begun) {
     bench.device().deactivate();

@@ -14,6 +14,7 @@ struct MotionOrder {
   double seconds = 60;     ///< That are recorded.
   double lead = 1;         ///< That it moves before, s: soft start, and a person who lets go.
   double added_mass = 0;   ///< That is fixed to the tip, kg.
+  double force_most = 1;   ///< The most that is asked for, N.
   std::uint64_t seed = 1;  ///< Of the excitation's phases.
 };
 

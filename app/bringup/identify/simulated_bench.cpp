@@ -1,11 +1,12 @@
 #include "bringup/identify/simulated_bench.h"
 
-#include "bringup/identify/identify.h"
+#include "bringup/identify/arm_constants.h"
 
 namespace thimble::app {
 
 driver::Result<std::unique_ptr<BenchArm>> simulated_bench(const scene::ArmFile& file,
-                                                          double added_mass, bool hold_it) {
+                                                          double added_mass, bool hold_it,
+                                                          double force_most) {
   scene::ArmFile bench = file;
   if (!hold_it) bench.simulated.hand = {};
   bench.simulated.hand.mass += added_mass;
@@ -14,7 +15,7 @@ driver::Result<std::unique_ptr<BenchArm>> simulated_bench(const scene::ArmFile& 
   // Nobody holds the mass from below until it is carried.
   if (added_mass > 0) bench.limits.soft_start = driver::GateLimits::kSoftStartLeast;
   const Eigen::Vector3d middle = file.workspace.middle();
-  return BenchArm::open(bench, {}, {}, {{0, middle}}, kIdentifyForceMax);
+  return BenchArm::open(bench, {}, {}, {{0, middle}}, force_most);
 }
 
 }  // namespace thimble::app

@@ -1,0 +1,64 @@
+#!/usr/bin/env bash
+# Identifying an arm as a person at a terminal meets it: keys that stop, questions, largest force; and what a script gets.
+source "$(dirname "$0")/expect.sh" "$@"
+python=/usr/bin/python3
+at_terminal="$python $source_dir/tests/program/at_terminal.py"
+arm=$source_dir/app/arms/vintage_phantom.yaml
+brief="identify --device sim --arm vintage_phantom --seconds 10"
+# Motion of ten minutes is simulated for much longer than it takes to press a key.
+endless="identify --device sim --arm vintage_phantom --seconds 600"
+
+# Any key ends it while the tip moves, and so does Ctrl-C; then the terminal is what it was.
+expect 130 '^Stopped by a key; nothing was kept' $at_terminal wait 'any key ends it' raw keys x -- "$thimble" $endless --output never.yaml
+expect 130 '^The terminal was left as it was' $at_terminal wait 'any key ends it' raw keys ' ' -- "$thimble" $endless --output never.yaml
+expect 130 '^Stopped; nothing was kept' $at_terminal wait 'any key ends it' raw keys '\x03' -- "$thimble" $endless --output never.yaml
+expect 130 '^The terminal was left as it was' $at_terminal wait 'any key ends it' raw keys '\x03' -- "$thimble" $endless --output never.yaml
+# A terminal that is gone ends it as well.
+expect 130 '' $at_terminal wait 'any key ends it' hangup -- "$thimble" $endless --output never.yaml
+expect 1 '' test -e never.yaml
+# What is no terminal stops nothing, whatever comes out of it.
+expect 0 'Ctrl-C ends it' bash -c '(sleep 0.3; echo x) | "$@"' _ "$thimble" $brief --output piped.yaml
+expect 0 'mass: ' cat piped.yaml
+
+# At a terminal nothing is written without a yes.
+expect 0 '^Nothing was written\.' $at_terminal wait 'Write these constants to the new arm file asked.yaml? [y/N]' keys 'n\n' -- "$thimble" $brief --output asked.yaml
+expect 1 '' test -e asked.yaml
+expect 0 'Written to asked\.yaml\.' $at_terminal wait 'asked.yaml? [y/N]' keys 'y\n' -- "$thimble" $brief --output asked.yaml
+expect 0 'mass: 0\.07.*\[I ' cat asked.yaml
+expect 1 'asked\.yaml is there already' $at_terminal -- "$thimble" $endless --output asked.yaml
+expect 0 'Written to said\.yaml\.' $at_terminal -- "$thimble" $brief --output said.yaml --yes
+# A script says it by --output or --yes.
+expect 0 '^Nothing was written: name the new file by --output, or answer by --yes' "$thimble" $brief
+expect 1 '' test -e vintage_phantom_identified.yaml
+expect 0 '^Written to vintage_phantom_identified\.yaml' "$thimble" $brief --yes
+
+# A bad fit is written by name alone, and says so in each mark; a yes is not enough.
+sed 's/^simulation:/&\n  drive_train: {coulomb: [0, 0.02, 0], stiffness: [20, 20, 20], inertia: [0.0005, 0.0005, 0.0005], damping: [0.01, 0.01, 0.01]}/' \
+  "$arm" >sticky.yaml
+bad="identify --device sim --arm sticky.yaml --seconds 10 --output bad.yaml"
+expect 5 '^Nothing was written\.' "$thimble" $bad --yes
+expect 1 '' test -e bad.yaml
+expect 5 '^Nothing was written\.' $at_terminal wait 'marked BAD FIT, to bad.yaml? [y/N]' keys '\n' -- "$thimble" $bad --write-bad-fit
+expect 1 '' test -e bad.yaml
+expect 5 '^Written to bad\.yaml, each mark with BAD FIT' "$thimble" $bad --write-bad-fit --report bad
+expect 0 '^# BAD FIT: ' head -n 1 bad.yaml
+expect 0 'says so in every mark' cat bad/index.html
+expect 0 '^[1-9][0-9]* 0$' bash -c 'echo "$(grep -c "\[I .*BAD FIT" bad.yaml) $(grep "\[I " bad.yaml | grep -vc "BAD FIT")"'
+
+# The largest force is the user's, and the arm file's at the most.
+most() { # FILE: the largest force that was asked for, N
+  "$thimble" export "$1" --csv "$1.csv" >/dev/null
+  awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i ~ /^f_wanted_W\.[xyz]/) at[++n] = i; next }
+    n == 3 { s = $at[1] ^ 2 + $at[2] ^ 2 + $at[3] ^ 2; if (s > most) most = s }
+    END { m = sqrt(most); print n, (m > '"$2"' && m <= '"$3"') ? "within" : m }' "$1.csv"
+}
+for force in 0.5 2; do
+  expect 0 '^Written' "$thimble" $brief --force-most $force --record "$force.h5" --output "$force.yaml"
+done
+expect 0 '^3 within$' most 0.5.h5 0.4 0.5
+expect 0 '^3 within$' most 2.h5 1 2
+expect 2 'more than the 5 N that the arm file allows' "$thimble" $brief --force-most 6
+expect 2 'at least' "$thimble" $brief --force-most 0.1
+expect 2 'known mass must be' "$thimble" $brief --force-most 0.5 --known-mass 0.05
+expect 2 'force-most' "$thimble" $brief --force-most -1
+finish
