@@ -15,6 +15,9 @@ struct MotionOrder {
   double lead = 1;         ///< That it moves before, s: soft start, and a person who lets go.
   double added_mass = 0;   ///< That is fixed to the tip, kg.
   std::uint64_t seed = 1;  ///< Of the excitation's phases.
+  /// Of the torque that is asked for, for an arm with a mass on it: ArmMotion::share of its bare
+  /// tip, which is probed instead.
+  Eigen::Vector3d share{1, 1, 1};
 };
 
 /// Moves a free arm by an Excitation and records it. The device is idle before and after. Fails,
