@@ -2,9 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <functional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "bringup/identify/constants_table.h"
 #include "bringup/identify/excitation.h"
@@ -21,29 +24,47 @@ using support::HiddenArm;
 using support::identified;
 using support::is_long;
 using support::kKnownMass;
+using support::random_hand;
 using support::Score;
+using support::wide_hidden_arm;
 
-TEST(Identify, FindsTheConstantsOfHiddenArms) {
-  const int arms = is_long() ? 200 : 3;
+/// Returns whether an arm's friction is too much for its motors to be told by 0.95 N along all
+/// axes.
+bool is_too_stiff(const HiddenArm& arm) {
+  const double weakest = *std::min_element(arm.gain.begin(), arm.gain.end());
+  return 6 * arm.file.simulated.plant.coulomb > weakest;
+}
+
+TEST(Identify, FindsTheConstantsOfHiddenArmsOrSaysThatTheirFrictionIsTooHigh) {
+  // Polhems, whose linkage takes ten times as long to simulate, are left to the long form. The
+  // method was made with arms 1000 to 1019 in view; these are others.
+  std::vector<std::uint64_t> seeds = {5001, 5002, 5005};
+  for (std::uint64_t k = 0; is_long() && k < 200; ++k) {
+    if (k == 0) seeds.clear();
+    seeds.push_back(5000 + k);
+  }
   Score mass{"mass", 0.03}, coulomb{"Coulomb", 0.05}, gain{"gain", 0.02}, delay{"delay", 1e-4};
   Score viscous{"viscous", 0.1}, weight{"weight", 0.1};
-  int viscous_right = 0;
-  for (int k = 0; k < arms; ++k) {
-    // The method was made with arms 1000 to 1019 in view; these are others.
-    const auto seed = static_cast<std::uint64_t>(5000 + k);
-    const HiddenArm arm = hidden_arm(seed);
-    const auto found = identified(arm, {.seconds = 30, .known_mass = kKnownMass, .seed = seed});
-    if (!found) {
-      ADD_FAILURE() << "arm " << k << ": " << found.error().message;
+  int viscous_right = 0, refused = 0;
+  for (const std::uint64_t seed : seeds) {
+    SCOPED_TRACE(seed);
+    const HiddenArm arm = wide_hidden_arm(seed);
+    const auto found = identified(
+        arm, {.seconds = is_long() ? 30.0 : 12.0, .known_mass = kKnownMass, .seed = seed});
+    if (!found || !found->against.empty()) {
+      const std::string said = found ? found->against.front() : found.error().message;
+      EXPECT_TRUE(is_too_stiff(arm)) << said;
+      EXPECT_TRUE(said.find("The tip stood still") != std::string::npos ||
+                  said.find("moved its joint by") != std::string::npos ||
+                  said.find("beside its dry friction") != std::string::npos)
+          << said;
+      ++refused;
       continue;
     }
-    EXPECT_TRUE(found->against.empty()) << "arm " << k << ": " << found->against.front();
-    EXPECT_FALSE(found->constants.cables) << "arm " << k << " has none that stretches";
+    EXPECT_FALSE(found->constants.cables) << "it has none that stretches";
     const auto& plant = arm.file.simulated.plant;
     const ArmConstants& constants = found->constants;
     EXPECT_TRUE(constants.absolute);
-    EXPECT_FALSE(found->friction.axes_differ || found->friction.directions_differ) << "arm " << k;
-    for (const Saturation& one : found->saturation) EXPECT_TRUE(one.searched && !one.seen);
     mass.add(constants.mass, plant.mass);
     coulomb.add(constants.coulomb, plant.coulomb);
     viscous.add(constants.viscous, plant.viscous);
@@ -51,7 +72,7 @@ TEST(Identify, FindsTheConstantsOfHiddenArms) {
     delay.add(constants.delay, arm.delay, false);
     for (std::size_t i = 0; i < 3; ++i) {
       gain.add(constants.gain[i], arm.gain[i]);
-      EXPECT_GT(constants.gain[i].value, 0) << "the sign of motor " << i + 1 << " of arm " << k;
+      EXPECT_GT(constants.gain[i].value, 0) << "the sign of motor " << i + 1;
     }
     // What is too weak to be seen must be said by its interval.
     viscous_right += std::abs(constants.viscous.value / plant.viscous - 1) < viscous.most ||
@@ -59,7 +80,9 @@ TEST(Identify, FindsTheConstantsOfHiddenArms) {
                          ? 1
                          : 0;
   }
+  const int arms = static_cast<int>(seeds.size());
   int held = 0, all = 0;
+  std::printf("%d of %d arms refused\n", refused, arms);
   for (const Score* score : {&mass, &coulomb, &gain, &delay, &viscous, &weight}) {
     std::printf("%-8s worst %.3g of %.3g, %d of %d intervals hold the truth\n", score->name,
                 score->worst, score->most, score->held, score->all);
@@ -69,11 +92,25 @@ TEST(Identify, FindsTheConstantsOfHiddenArms) {
   for (const Score* score : {&mass, &coulomb, &gain, &delay}) {
     EXPECT_LT(score->worst, score->most) << score->name;
   }
-  EXPECT_GE(viscous_right, 0.95 * arms);
-  // Of 24 intervals in the short form all may hold by chance.
-  EXPECT_GT(held, 0.90 * all);
-  if (arms == 200) {
-    EXPECT_LE(held, 0.99 * all);
+  EXPECT_LT(refused, 0.5 * arms);
+  EXPECT_GE(viscous_right, 0.95 * (arms - refused));
+  // Of the few intervals in the short form all may hold by chance, or one may not.
+  EXPECT_GT(held, (is_long() ? 0.90 : 0.80) * all);
+}
+
+TEST(Identify, SaysThatAHandHoldsTheTip) {
+  // As soft as two fingers that barely touch it, or a firm grip.
+  for (std::uint64_t seed = 1; seed <= (is_long() ? 60 : 2); ++seed) {
+    SCOPED_TRACE(seed);
+    HiddenArm arm = is_long() && seed % 3 != 2 ? wide_hidden_arm(seed) : hidden_arm(seed);
+    arm.file.simulated.hand = random_hand(seed);
+    const auto found = identified(arm, {.seconds = 12, .seed = seed}, true);
+    ASSERT_FALSE(found.ok() && found->against.empty()) << "a hand was taken for the arm";
+    const std::string said = found ? found->against.front() : found.error().message;
+    EXPECT_EQ(said.find("pulls against its encoder"), std::string::npos) << "no sign is wrong";
+    EXPECT_TRUE(said.find("grip") != std::string::npos ||
+                said.find("The tip stood still") != std::string::npos)
+        << said;
   }
 }
 
@@ -96,17 +133,20 @@ TEST(Identify, SeesOnlyRatiosWithoutAKnownMass) {
   EXPECT_NE(constants_table(*found, arm.file).find("--known-mass"), std::string::npos);
 }
 
-/// What is said of an arm that is another than the model's: an error, or what speaks against the
-/// fit; empty if nothing is.
+/// What is said of a fit: an error, or what speaks against it; empty if nothing is.
+std::string said_of(const driver::Result<Identified>& found) {
+  if (!found) return found.error().message;
+  return found->against.empty() ? "" : found->against.front();
+}
+
+/// What is said of an arm that is another than the model's.
 std::string said_of(std::uint64_t seed, const std::function<void(scene::ArmFile&)>& change,
                     bool hold_it = false, bool cables = true) {
   HiddenArm arm = hidden_arm(seed);
   arm.file.simulated.hand = {};
   change(arm.file);
-  const auto found = identified(
-      arm, {.seconds = is_long() ? 20.0 : 12.0, .cables = cables, .seed = seed}, hold_it);
-  if (!found) return found.error().message;
-  return found->against.empty() ? "" : found->against.front();
+  return said_of(identified(
+      arm, {.seconds = is_long() ? 20.0 : 12.0, .cables = cables, .seed = seed}, hold_it));
 }
 
 TEST(Identify, TellsAWrongModelApart) {
@@ -128,15 +168,13 @@ TEST(Identify, TellsAWrongModelApart) {
                       })
                   .find("not that of a rigid arm"),
               std::string::npos);
-    EXPECT_NE(said_of(seed,
-                      [&](scene::ArmFile& file) {
-                        cable(file);
-                        file.simulated.drive_train.stiffness.setConstant(2000);
-                        file.simulated.drive_train.inertia.setConstant(1e-5);
-                        file.simulated.drive_train.coulomb.y() = 0.02;
-                      }),
-              "")
-        << "a joint that sticks";
+    const std::string stuck = said_of(seed, [&](scene::ArmFile& file) {
+      cable(file);
+      file.simulated.drive_train.stiffness.setConstant(2000);
+      file.simulated.drive_train.inertia.setConstant(1e-5);
+      file.simulated.drive_train.coulomb.y() = 0.02;
+    });
+    EXPECT_EQ(stuck.find("Joint 2 sticks"), 0U) << stuck;
     EXPECT_NE(said_of(
                   seed,
                   [](scene::ArmFile& file) {
@@ -156,6 +194,43 @@ TEST(Identify, TellsAWrongModelApart) {
     EXPECT_NE(said_of(seed, [](scene::ArmFile& file) { file.simulated.wire.jitter_ns = 500'000; })
                   .find("without a new report"),
               std::string::npos);
+  }
+}
+
+TEST(Identify, BlamesCablesThatWereNotLookedFor) {
+  for (std::uint64_t seed = 1; seed <= (is_long() ? 10 : 1); ++seed) {
+    for (const double stiffness : {200.0, 2000.0}) {
+      HiddenArm arm = hidden_arm(seed);
+      auto& train = arm.file.simulated.drive_train;
+      train.stiffness.setConstant(stiffness);
+      train.inertia.setConstant(1e-4);
+      train.damping.setConstant(0.01);
+      const auto found = identified(arm, {.seconds = 12, .cables = false, .seed = seed});
+      ASSERT_TRUE(found.ok()) << found.error().message;
+      EXPECT_TRUE(std::any_of(
+          found->against.begin(), found->against.end(),
+          [](const auto& one) { return one.find("cables stretch") != std::string::npos; }))
+          << stiffness << ": " << said_of(found);
+    }
+  }
+}
+
+TEST(Identify, SaysThatAHandPullsTheTipToAndFro) {
+  for (std::uint64_t seed = 1; seed <= (is_long() ? 10 : 1); ++seed) {
+    HiddenArm arm = hidden_arm(seed);
+    arm.file.simulated.hand = {.mass = 0.02, .stiffness = 60, .damping = 1};
+    const Eigen::Vector3d middle = arm.file.workspace.middle();
+    std::vector<std::pair<double, Eigen::Vector3d>> path = {{0, middle}};
+    for (int k = 1; k < 30; ++k) {
+      path.emplace_back(k, middle + Eigen::Vector3d(k % 2 == 0 ? 0.008 : -0.008, 0, 0));
+    }
+    const OpenBench open = [&](bool) {
+      return BenchArm::open(arm.file, {}, {}, path, kIdentifyForceMax);
+    };
+    const std::atomic<bool> never{false};
+    const std::string said =
+        said_of(identify(open, arm.file, {.seconds = 12, .seed = seed}, never));
+    EXPECT_NE(said.find("the grip"), std::string::npos) << said;
   }
 }
 

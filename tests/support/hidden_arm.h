@@ -40,4 +40,37 @@ inline HiddenArm hidden_arm(std::uint64_t seed) {
   return arm;
 }
 
+/// Draws one of the serial arms: mass, friction and each gain 1/3 to 3 times the published, delays
+/// up to 4 ms, and no more weight than its friction carries.
+inline HiddenArm wide_hidden_arm(std::uint64_t seed) {
+  constexpr std::array kNames = {"vintage_phantom", "woodenhaptics", "polhem"};
+  Random random(seed);
+  HiddenArm arm{.file = scene::load_arm(kNames[seed % kNames.size()]).value()};
+  const auto third_to_three = [&](double value) {
+    return value * std::exp(random.uniform(-1, 1) * std::log(3.0));
+  };
+  auto& simulated = arm.file.simulated;
+  simulated.plant.mass = third_to_three(simulated.plant.mass);
+  simulated.plant.viscous = third_to_three(simulated.plant.viscous);
+  simulated.plant.coulomb = third_to_three(simulated.plant.coulomb);
+  simulated.wire.delay_out_ns = static_cast<std::int64_t>(random.uniform(0, 4e6));
+  arm.delay = 1e-9 * static_cast<double>(simulated.wire.delay_in_ns + simulated.wire.delay_out_ns);
+  for (std::size_t i = 0; i < 3; ++i) {
+    arm.gain[i] = third_to_three(1);
+    simulated.firmware.wiring.motor_gain[static_cast<Eigen::Index>(i)] = arm.gain[i];
+  }
+  arm.weight = random.uniform(0, 0.8) * simulated.plant.coulomb;
+  simulated.weight_B = arm.file.R_WB.transpose() * Eigen::Vector3d(0, 0, -arm.weight);
+  return arm;
+}
+
+/// Draws a hand that rests at the tip: from two fingers that barely touch it to a firm grip.
+inline device_sim::HandSettings random_hand(std::uint64_t seed) {
+  Random random(seed + 77);
+  return {.mass = random.uniform(0, 0.05),
+          .stiffness = 20 * std::exp(random.uniform(0, 1) * std::log(50.0)),
+          .damping = random.uniform(0.5, 8),
+          .tremor_amplitude = random.uniform(0, 2e-4)};
+}
+
 }  // namespace thimble::support

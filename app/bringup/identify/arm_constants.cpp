@@ -63,9 +63,10 @@ driver::Result<ArmConstants> arm_constants(const PerMass& bare, const Eigen::Vec
                                            double added_mass) {
   for (int i = 0; i < 3; ++i) {
     if (bare.theta[i] > 0) continue;
-    return driver::Error{"Joint " + std::to_string(i + 1) +
-                         " does not follow its motor: what was recorded has another cause. Run "
-                         "`thimble feel-check`."};
+    return driver::Error{
+        "Joint " + std::to_string(i + 1) +
+        " does not follow its motor: what was recorded has another cause, such as a "
+        "hand. Let go of the grip, and run `thimble feel-check`."};
   }
   ArmConstants found = by_declared_torque(bare, down_B);
   found.delay = bare.delay;

@@ -3,6 +3,7 @@
 #include <array>
 #include <optional>
 
+#include "bringup/identify/line_forces.h"
 #include "bringup/identify/motion_fit.h"
 
 namespace thimble::app {
@@ -17,6 +18,12 @@ struct CableConstants {
   Estimate damping;        ///< N m s/rad
   Estimate antiresonance;  ///< At which the link oscillates on its cable, the motor held, Hz.
   Estimate resonance;      ///< At which motor and link oscillate against each other, Hz.
+
+  /// Returns whether one of the two is seen: below the highest line, and to 5 %. What is above is
+  /// concluded from inertia and stiffness.
+  static bool sees(const Estimate& frequency) {
+    return frequency.value < LineForces::kHighest && frequency.plus_minus < 0.05 * frequency.value;
+  }
 };
 
 /// Constants of an arm as they are written into its file, with their intervals.

@@ -26,6 +26,7 @@ struct ArmMotion {
   double dt = 0.001;                  ///< s between ticks
   double added_mass = 0;              ///< That the user fixed to the tip, kg.
   Eigen::Vector3d down_B{0, 0, -1};   ///< Where the world's down is in the base.
+  Eigen::Vector3d share{1, 1, 1};     ///< Of the torque that was asked for, joint by joint.
   Eigen::Vector3d step{0, 0, 0};      ///< Of the encoders, rad at the joints.
   std::vector<MotionSample> samples;  ///< One for each tick.
 };

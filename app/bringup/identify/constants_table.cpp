@@ -68,8 +68,12 @@ void add_cables(const ArmConstants& found, const scene::ArmFile& file, Rows& row
     rows.add(name("inertia of motor"), cable.inertia, 1e3, "g m^2", of(train.inertia));
     rows.add(name("stiffness of cable"), cable.stiffness, 1, "N m/rad", of(train.stiffness));
     rows.add(name("damping of cable"), cable.damping, 1, "N m s/rad", of(train.damping));
-    rows.add(name("antiresonance"), cable.antiresonance, 1, "Hz, link on its cable");
-    rows.add(name("resonance"), cable.resonance, 1, "Hz, motor against link");
+    if (CableConstants::sees(cable.antiresonance)) {
+      rows.add(name("antiresonance"), cable.antiresonance, 1, "Hz, link on its cable");
+    }
+    if (CableConstants::sees(cable.resonance)) {
+      rows.add(name("resonance"), cable.resonance, 1, "Hz, motor against link");
+    }
   }
 }
 

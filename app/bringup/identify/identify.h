@@ -68,8 +68,9 @@ struct Identified {
 
 /// Returns why fits do not mean what they say, a sentence each: a hand or a spring at the tip, a
 /// motion that mass, friction and weight do not explain, frames that are missing. `held` is the
-/// first motion with a spring to be found in it.
-std::vector<std::string> speaks_against(const PerMass& fit, const PerMass& held, double mass);
+/// same motion with a spring to be found in it; `stretches`: it is that of links behind cables.
+std::vector<std::string> speaks_against(const PerMass& fit, const PerMass& held, double mass,
+                                        bool stretches = false);
 
 /// Opens the bench for one motion: with the known mass on the tip, or without it.
 using OpenBench = std::function<driver::Result<std::unique_ptr<BenchArm>>(bool loaded)>;

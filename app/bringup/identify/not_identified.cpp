@@ -41,6 +41,16 @@ void of_cables(const Identified& identified, Sentences& all) {
         "Cables that stretch: no compliance was seen; a link that oscillates on its cable below "
         "{:.0f}, {:.0f}, {:.0f} Hz (joint by joint) would have been.",
         from[0], from[1], from[2]));
+  } else if (identified.constants.cables) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const CableConstants& cable = (*identified.constants.cables)[i];
+      if (CableConstants::sees(cable.resonance)) continue;
+      all.push_back(fmt::format(
+          "Resonance of motor and link {}: not seen to 5 % below {:g} Hz; inertia and stiffness "
+          "make "
+          "it {:.0f} +- {:.0f} Hz.",
+          i + 1, LineForces::kHighest, cable.resonance.value, cable.resonance.plus_minus));
+    }
   }
 }
 

@@ -7,13 +7,16 @@
 
 #include "bringup/identify/arm_constants.h"
 #include "bringup/identify/excitation.h"
+#include "bringup/identify/motor_probe.h"
 
 namespace thimble::app {
 namespace {
 
 constexpr double kTick = 1e-3;       // s, of BenchArm
-constexpr double kPulse = 0.04;      // s
-constexpr double kPulseShare = 0.4;  // of the most that is allowed, in a first pulse
+constexpr double kProbeShare = 0.4;  // of the most that is allowed, while motors are tried
+// How fast a force that carries a known mass is found, N/s for each m that it hangs too low: the
+// spring of HoldPlace over 0.4 s, long against its oscillation.
+constexpr double kCarry = 150;
 
 /// Fills in what a tick showed: the tip, and how it hangs together with the joints.
 MotionSample sample_of(const scene::ArmFile& file, const driver::DeviceState& state) {
@@ -34,7 +37,8 @@ class Recorder {
       : bench_(bench),
         file_(file),
         lead_(order.lead),
-        pulse_(kPulseShare * order.force_most),
+        force_most_(order.force_most),
+        share_(order.share),
         stop_(stop) {}
 
   driver::Result<void> begin(bool bare) {
@@ -57,44 +61,19 @@ class Recorder {
                          " The motors are off; nothing was kept."};
   }
 
-  /// Pushes each joint to and fro for an instant, before any force follows the motion: one that is
-  /// turned round would drive the tip away. A pulse and its opposite leave the tip where it was.
-  driver::Result<void> check_signs() {
-    for (int joint = 0; joint < 3; ++joint) {
-      double moved = 0;  // rad, in the direction of the torque
-      double q0 = 0, begin = -1;
-      const auto law = [&](const driver::DeviceState& state) -> Eigen::Vector3d {
-        if (begin < 0) begin = bench_.now(), q0 = state.q[joint];
-        const double t = bench_.now() - begin;
-        left_ = left_ || !within(state.p_WT);
-        if (left_) return {0, 0, 0};
-        // +, -, -, +: while it is pushed to and stopped, the joint goes one way and comes back.
-        const double phase = t / kPulse;
-        const double sign = phase < 1 ? 1 : phase < 3 ? -1 : phase < 4 ? 1 : 0;
-        const double away = state.q[joint] - q0;
-        // Before a hand's spring, or the second pulse, can have turned it round.
-        if (phase < 1.1) moved = std::abs(away) > std::abs(moved) ? away : moved;
-        const MotionSample here = sample_of(file_, state);
-        const Eigen::Vector3d push_B = here.G.row(joint).transpose().normalized();
-        return file_.R_WB * (sign * pulse_ * push_B);
-      };
-      if (!bench_.run(5 * kPulse, law, stop_)) return why();
-      if (left_) return went_away();
-      const double counts = moved / file_.model.step(static_cast<std::size_t>(joint));
-      constexpr double kNoticed = 3;  // counts
-      if (counts < -kNoticed) {
-        return driver::Error{fmt::format(
-            "Motor {} pulls against its encoder: its joint went {:.0f} counts the wrong way. Run "
-            "`thimble feel-check`, which names the wire, and mend it or its sign in the arm file.",
-            joint + 1, -counts)};
-      }
-      if (counts < kNoticed) {
-        return driver::Error{fmt::format(
-            "Motor {} moved its joint by {:.0f} counts under {:g} N: the tip is held, the joint "
-            "sticks, or the motor is dead. Let go of the grip, and run `thimble feel-check`.",
-            joint + 1, counts, pulse_)};
-      }
-    }
+  /// Finds how strong the motors are, and that none pulls the wrong way.
+  driver::Result<void> probe() {
+    const auto share = probe_motors(
+        bench_, file_, kProbeShare * force_most_,
+        [this](const Eigen::Vector3d& p_WT) {
+          left_ = left_ || !within(p_WT);
+          return !left_;
+        },
+        stop_);
+    if (left_) return went_away();
+    if (!share && share.error().message.empty()) return why();
+    if (!share) return share.error();
+    share_ = *share;
     return {};
   }
 
@@ -107,8 +86,9 @@ class Recorder {
       motion.step[static_cast<Eigen::Index>(i)] = file_.model.step(i);
     }
     motion.samples.reserve(static_cast<std::size_t>(order.seconds / kTick) + 1);
-    Excitation excitation(p_WM_, {0, 0, kStandardGravity * order.added_mass}, order.seed,
-                          Excitation::Lines::kWith, order.force_most);
+    motion.share = share_;
+    Excitation excitation(p_WM_, {0, 0, 0}, order.seed, Excitation::Lines::kWith, force_most_);
+    carried_W_ = {0, 0, kStandardGravity * order.added_mass};
     const double begin = bench_.now();
     const auto law = [&](const driver::DeviceState& state) -> Eigen::Vector3d {
       const double t = bench_.now() - begin;
@@ -117,7 +97,9 @@ class Recorder {
       if (t >= lead_) motion.samples.push_back(sample_of(file_, state));
       left_ = left_ || !within(state.p_WT);
       if (left_) return {0, 0, 0};
-      return excitation.force(t, kTick, state.p_WT, state.v_WT);
+      // Motors that are not as strong as the file says do not carry what they are asked to.
+      if (order.added_mass > 0 && t < lead_) carried_W_ += kCarry * kTick * (p_WM_ - state.p_WT);
+      return shared(excitation.force(t, kTick, state.p_WT, state.v_WT), sample_of(file_, state).G);
     };
     const bool whole = bench_.run(lead_ + order.seconds, law, stop_);
     if (left_) return went_away();
@@ -141,6 +123,19 @@ class Recorder {
         "Begin in the middle of the workspace, without a hand on the grip."};
   }
 
+  /// Returns a force (W, N) of which each motor gives its share, with what it carries on top; G as
+  /// in MotionSample.
+  Eigen::Vector3d shared(const Eigen::Vector3d& f_W, const Eigen::Matrix3d& G) const {
+    Eigen::Vector3d f = f_W;
+    if (share_ != Eigen::Vector3d::Ones()) {
+      const Eigen::Vector3d tau = G.transpose().inverse() * (file_.R_WB.transpose() * f_W);
+      f = file_.R_WB * (G.transpose() * share_.cwiseProduct(tau));
+    }
+    f += carried_W_;
+    const double length = f.norm();
+    return length > force_most_ ? Eigen::Vector3d(f * (force_most_ / length)) : f;
+  }
+
   /// Returns the torques of the force that stands, in the pose that it was sent for.
   Eigen::Vector3d sent_torque(const MotionSample& then) const {
     const Eigen::Vector3d f_T_B = file_.R_WB.transpose() * bench_.device().f_sent_W();
@@ -149,10 +144,12 @@ class Recorder {
 
   BenchArm& bench_;
   const scene::ArmFile& file_;
-  double lead_;                    // s
-  double pulse_;                   // N
-  Eigen::Vector3d p_WM_{0, 0, 0};  // where it began, m
-  bool left_ = false;              // that space, for good
+  double lead_;                         // s
+  double force_most_;                   // N
+  Eigen::Vector3d share_;               // of the torques that are asked for, joint by joint
+  Eigen::Vector3d p_WM_{0, 0, 0};       // where it began, m
+  Eigen::Vector3d carried_W_{0, 0, 0};  // N
+  bool left_ = false;                   // that space, for good
   const std::atomic<bool>& stop_;
 };
 
@@ -166,8 +163,8 @@ driver::Result<ArmMotion> record_motion(BenchArm& bench, const scene::ArmFile& f
     bench.device().deactivate();
     return begun.error();
   }
-  auto signs = bare ? recorder.check_signs() : driver::Result<void>();
-  auto motion = signs ? recorder.record(order) : driver::Result<ArmMotion>(signs.error());
+  auto probed = bare ? recorder.probe() : driver::Result<void>();
+  auto motion = probed ? recorder.record(order) : driver::Result<ArmMotion>(probed.error());
   bench.device().deactivate();
   return motion;
 }

@@ -16,6 +16,9 @@ struct MotionOrder {
   double added_mass = 0;   ///< That is fixed to the tip, kg.
   double force_most = 1;   ///< The most that is asked for, N.
   std::uint64_t seed = 1;  ///< Of the excitation's phases.
+  /// Of the torque that is asked for, for an arm with a mass on it: ArmMotion::share of its bare
+  /// tip, which is probed instead.
+  Eigen::Vector3d share{1, 1, 1};
 };
 
 /// Moves a free arm by an Excitation and records it. The device is idle before and after. Fails,

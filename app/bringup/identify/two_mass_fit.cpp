@@ -12,6 +12,25 @@ namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
 constexpr int kRoundsMost = 100;
+constexpr double kFitsWell = 3;  // chi^2 per degree of freedom
+
+/// Looks about a fit that is no good for a better one, where single cables are several times softer
+/// or stiffer: places that have all joints alike lie in other valleys.
+void look_about(const TwoMassSearch& search, double enough, TwoMassTheta& x, double& least) {
+  constexpr int kSweeps = 2, kSomeRounds = 30;
+  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+    for (int joint = 0; joint < 3; ++joint) {
+      for (const double softer : {0.1, 0.3, 3.0, 10.0}) {
+        if (least < enough) return;
+        TwoMassTheta other = x;
+        other[TwoMass::kCompliance + joint] += math::log(softer);
+        other[TwoMass::kFade + joint] = math::log(1e-3);
+        const double sum = search.go(other, true, kSomeRounds);
+        if (sum < least) least = sum, x = other;
+      }
+    }
+  }
+}
 
 /// Looks for cables in many places, for each of several delays: lines have many a valley. Where a
 /// rigid arm fits already, few places do.
@@ -19,7 +38,6 @@ TwoMassTheta first_guess(const TwoMassSearch& search, const LineSpectrum& spectr
                          const TwoMassTheta& rigid, const PerMass& slow, double stiff) {
   constexpr double kSoftest = 8, kStiffest = 400;  // Hz
   constexpr double kRotor = 0.3;                   // of the link's inertia
-  constexpr double kFitsWell = 3;                  // chi^2 per degree of freedom
   constexpr int kFirstRounds = 5;
   const bool fits = stiff < kFitsWell * static_cast<double>(search.rows());
   const int stiffnesses = fits ? 3 : 8, delays = fits ? 1 : 9;
@@ -119,6 +137,12 @@ CableFit fit_cables(const LineSpectrum& spectrum, const PerMass& slow, double dt
     }
   }
   const auto count = static_cast<double>(search.rows());
+  if (least < stiff && least > kFitsWell * count) {
+    look_about(search, kFitsWell * count, elastic, least);
+    search.measure_noise(from_search(elastic), true);
+    stiff = search.go(rigid, false, kRoundsMost);
+    least = search.go(elastic, true, kRoundsMost);
+  }
   found.better = count * math::log(stiff / least) - 6 * math::log(count);
   found.rigid.theta = from_search(rigid);
   found.rigid.theta.tail<6>().setZero();

@@ -212,6 +212,8 @@ class TwoMassSearch {
     Eigen::VectorXd mine(rows());
     Eigen::VectorXd& out = rest != nullptr ? *rest : mine;
     residuals(from_search(x), elastic, out);
+    // Which way the motors pull was seen before.
+    if (rest == nullptr && !(x.segment<3>(TwoMass::kGain).minCoeff() > 0)) return HUGE_VAL;
     const double sum = out.squaredNorm();
     return std::isfinite(sum) ? sum : HUGE_VAL;
   }

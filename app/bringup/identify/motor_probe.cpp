@@ -1,0 +1,169 @@
+#include "bringup/identify/motor_probe.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+namespace thimble::app {
+namespace {
+
+constexpr double kWeakest = 0.05;  // N, of the first push
+constexpr double kPulse = 0.04;    // s, the longest
+constexpr double kReach = 0.002;   // m, where a push turns round [chosen: a twentieth of the space]
+constexpr double kNoticed = 3, kClear = 10;  // counts
+// Tip accelerations for each N asked for, 1/kg, up to which HoldPlace is stable behind a delay of
+// 5 ms: at the frequency sqrt(60 N/m times this) its phase lead, atan(0.0206 w) - atan(0.0106 w),
+// is then as large as what 5.5 ms turn.
+constexpr double kLivelyMost = 30;
+
+/// What one push did.
+struct Pushed {
+  double counts = 0;        ///< Farthest that the joint went, in the direction of the torque.
+  double acceleration = 0;  ///< Of the tip along the push, m/s^2.
+};
+
+class Probe {
+ public:
+  Probe(BenchArm& bench, const scene::ArmFile& file, double force_most,
+        const std::function<bool(const Eigen::Vector3d&)>& within, const std::atomic<bool>& stop)
+      : bench_(bench), file_(file), force_most_(force_most), within_(within), stop_(stop) {}
+
+  /// Returns the share of one motor, or why it has none; nothing where the run has ended.
+  driver::Result<double> share_of(int joint) {
+    Pushed before, now;
+    double force = 0, force_before = 0;
+    while (force < force_most_) {
+      const bool moved = std::abs(now.counts) >= kClear;
+      before = now, force_before = force;
+      force = std::min(force_most_, force > 0 ? 2 * force : kWeakest);
+      const auto pushed = push(joint, force);
+      if (!pushed) return ended(joint, now.counts, force);
+      now = *pushed;
+      if (moved) break;
+    }
+    if (now.counts < -kNoticed) {
+      // Something else may have moved the tip just then; it does not move to both sides.
+      const auto again = push(joint, -force);
+      if (!again) return ended(joint, now.counts, force);
+      if (again->counts < -kNoticed) return against(joint, now.counts);
+      return moves_by_itself(joint);
+    }
+    if (now.counts < kNoticed) return unmoved(joint, now.counts, force);
+    // Dry friction takes the same off both.
+    const double lively = (now.acceleration - before.acceleration) / (force - force_before);
+    return std::min(1.0, kLivelyMost / std::max(lively, 1e-9));
+  }
+
+ private:
+  std::optional<Pushed> push(int joint, double force) {
+    const Eigen::Vector3d begin_W = bench_.device().state().p_WT;
+    const double q0 = bench_.device().state().q[joint], begin = bench_.now();
+    double turn = -1;  // when the push turned round, s
+    Pushed seen;
+    std::vector<std::pair<double, double>> way;  // s, m along the push, up to there
+    bool left = false;
+    const auto law = [&](const driver::DeviceState& state) -> Eigen::Vector3d {
+      const double t = bench_.now() - begin;
+      left = left || !within_(state.p_WT);
+      if (left) return {0, 0, 0};
+      const Eigen::Vector3d push_W = direction(joint, state.q);
+      const double gone = std::copysign(1.0, force) * push_W.dot(state.p_WT - begin_W);
+      if (turn < 0) way.emplace_back(t, gone);
+      if (turn < 0 && (t >= kPulse || std::abs(gone) >= kReach)) turn = t;
+      // Before a hand's spring, or what comes next, can have turned it round.
+      const double away = std::copysign(1.0, force) * (state.q[joint] - q0);
+      if (turn < 0 || t < 1.1 * turn) {
+        seen.counts = std::abs(away) > std::abs(seen.counts) ? away : seen.counts;
+      }
+      // +, -, -, +: while it is pushed to and stopped, the joint goes one way and comes back.
+      const double phase = turn < 0 ? 0 : t / turn;
+      const double sign = phase < 1 ? 1 : phase < 3 ? -1 : phase < 4 ? 1 : 0;
+      return sign * force * push_W;
+    };
+    if (!bench_.run(5 * kPulse, law, stop_) || left) return {};
+    seen.counts /= file_.model.step(static_cast<std::size_t>(joint));
+    seen.acceleration = acceleration_of(way);
+    return seen;
+  }
+
+  /// Returns the unit force that one motor alone makes at the tip (W).
+  Eigen::Vector3d direction(int joint, const Eigen::Vector3d& q) const {
+    Eigen::Vector3d p_BT;
+    Eigen::Matrix3d J;
+    std::visit([&](const auto& build) { build.forward(q, p_BT, J); }, file_.model.geometry);
+    return file_.R_WB * J.inverse().row(joint).transpose().normalized();
+  }
+
+  /// Returns the acceleration of a way from rest that began at an unknown time: x = a (t - t0)^2 /
+  /// 2 goes from a quarter of its end to its end in half of its time.
+  static double acceleration_of(const std::vector<std::pair<double, double>>& way) {
+    if (way.empty() || way.back().second <= 0) return 0;
+    const auto [end, far] = way.back();
+    double quarter = 0;
+    for (const auto& [t, gone] : way) {
+      if (gone < 0.25 * far) quarter = t;
+    }
+    return 0.5 * far / ((end - quarter) * (end - quarter));
+  }
+
+  /// Says what ended a push: the gate sees a motor that moves nothing, or the wrong way, as well.
+  /// Empty if it was something else.
+  driver::Error ended(int joint, double counts, double force) const {
+    switch (bench_.device().fault()) {
+      case driver::Fault::kEncoderFrozen:
+        return unmoved(joint, counts, force);
+      case driver::Fault::kMotorsReversed:
+        return against(joint, counts);
+      default:
+        return {};
+    }
+  }
+
+  static driver::Error against(int joint, double counts) {
+    return {fmt::format(
+        "Motor {} pulls against its encoder: its joint went {:.0f} counts the wrong way. Run "
+        "`thimble feel-check`, which names the wire, and mend it or its sign in the arm file.",
+        joint + 1, std::max(0.0, -counts))};
+  }
+
+  static driver::Error moves_by_itself(int joint) {
+    return {fmt::format(
+        "The joint of motor {} moved to the same side whichever way it was pushed: something else "
+        "moves the tip. Let go of the grip, and keep cables off the arm.",
+        joint + 1)};
+  }
+
+  static driver::Error unmoved(int joint, double counts, double force) {
+    return {fmt::format(
+        "Motor {} moved its joint by {:.0f} counts under {:g} N: the tip is held, the joint "
+        "sticks, or the motor is dead. Let go of the grip, and run `thimble feel-check`.",
+        joint + 1, counts, force)};
+  }
+
+  BenchArm& bench_;
+  const scene::ArmFile& file_;
+  double force_most_;  // N
+  const std::function<bool(const Eigen::Vector3d&)>& within_;
+  const std::atomic<bool>& stop_;
+};
+
+}  // namespace
+
+driver::Result<Eigen::Vector3d> probe_motors(
+    BenchArm& bench, const scene::ArmFile& file, double force_most,
+    const std::function<bool(const Eigen::Vector3d&)>& within, const std::atomic<bool>& stop) {
+  Probe probe(bench, file, force_most, within, stop);
+  Eigen::Vector3d shares(1, 1, 1);
+  for (int joint = 0; joint < 3; ++joint) {
+    const auto share = probe.share_of(joint);
+    if (!share) return share.error();
+    shares[joint] = *share;
+  }
+  return shares;
+}
+
+}  // namespace thimble::app
