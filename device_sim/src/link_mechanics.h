@@ -22,7 +22,7 @@ struct LinkMotion {
 ///
 ///     M(q) q'' + C(q, q') q' - g(q) = tau.
 ///
-/// It is the form that [Cavusoglu, Feygin, Tendick 2002] give for the PHANTOM with its sums of
+/// It is the form that [Cavusoglu] gives for the PHANTOM with its sums of
 /// masses and lengths drawn together: 2 T = q'^T M q' with
 ///
 ///     M_AA = I_A + Y_B sin^2 B + Y_C sin^2 C + 2 K sin B sin C,
