@@ -64,6 +64,11 @@ class RigidTwin final : public TwinMover {
 
 driver::Result<std::unique_ptr<TwinMover>> make_twin_mover(const TwinMotion& motion,
                                                            const scene::ArmFile& file) {
+  if (file.simulated.links.named()) {
+    return driver::Error{
+        "The arm file names links (simulation.links), of which there is no twin yet; take that "
+        "section out of a copy and name it by --arm."};
+  }
   if (file.simulated.drive_train.named()) {
     return driver::Error{
         "The arm file names a drive train (simulation.drive_train), of which there is no twin yet; "
