@@ -270,12 +270,12 @@ std::vector<std::string> energy_warnings(const scene::Scene& scene) {
   if (stage == driver::EnergyStage::kNone) return warnings;
   // Over the workspace that is more than the stage lets go [kEnergyAllowance].
   const double path = (scene.arm.workspace.max_W - scene.arm.workspace.min_W).maxCoeff();
-  if (scene.arm.carried_weight * path > scene::kEnergyAllowance + scene::kEnergyOnset) {
+  if (scene.arm.carried_most * path > scene::kEnergyAllowance + scene::kEnergyOnset) {
     warnings.push_back(fmt::format(
         "The motors carry {:.2g} N of the arm and give energy by right where it is lifted, but the "
         "gate's energy stage takes back what is more than {:.0f} mJ: it brakes the hand and lets "
         "all forces fade. Set gate: {{energy: none}} in the scene.",
-        scene.arm.carried_weight, 1e3 * scene::kEnergyAllowance));
+        scene.arm.carried_most, 1e3 * scene::kEnergyAllowance));
   }
   for (const scene::SceneObject& object : scene.objects) {
     const bool field = static_cast<bool>(object.build_field);

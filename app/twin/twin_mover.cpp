@@ -65,6 +65,11 @@ class RigidTwin final : public TwinMover {
 
 driver::Result<std::unique_ptr<TwinMover>> make_twin_mover(const TwinMotion& motion,
                                                            const scene::ArmFile& file) {
+  if (file.simulated.links.named()) {
+    return driver::Error{
+        "The arm file names links (simulation.links), of which there is no twin yet; take that "
+        "section out of a copy and name it by --arm."};
+  }
   if (file.simulated.drive_train.named()) return make_drive_train_twin(motion, file);
   const auto dynamics = device_sim::AxisDynamics::make(file.simulated.plant, {});
   if (!dynamics) return dynamics.error();

@@ -163,6 +163,13 @@ driver::Result<std::string> identified_text(const std::string& text, const ArmCo
   const auto before = scene::read_arm(*was);
   if (!before) return before.error();
   if (!before->can_simulate) return bad_form("section simulation");
+  if (before->simulated.links.named()) {
+    return driver::Error{
+        "The arm file names links (simulation.links), whose inertia would be in the identified "
+        "mass "
+        "of the tip as well: motion in one place tells no more than a mass. Take that section out "
+        "of a copy, and name it by --arm."};
+  }
   FileLines lines(text);
   const YAML::Node tip = root["simulation"]["tip"];
   const auto put = [&](const YAML::Node& node, double value, const char* unit, double plus_minus) {

@@ -15,6 +15,7 @@
 #include "arm/simulation_section.h"
 #include "arm_table.h"
 #include "energy_choice.h"
+#include "link_gravity.h"
 #include "read_scene.h"
 #include "thimble/scene/shipped_files.h"
 #include "yaml/yaml_reader.h"
@@ -180,16 +181,50 @@ DeclaredLimits read_declared(YamlMap map) {
   return declared;
 }
 
+/// Returns the most that the motors carry over the workspace, N.
+double most_carried(const ArmFile& arm) {
+  if (arm.carried_moments.isZero(0)) return arm.carried_weight;
+  constexpr int kPlaces = 5;  // along each side of the workspace
+  const LinkGravity links = link_gravity(arm);
+  const Eigen::Vector3d side = (arm.workspace.max_W - arm.workspace.min_W) / (kPlaces - 1);
+  double most = 0;
+  for (int i = 0; i < kPlaces * kPlaces * kPlaces; ++i) {
+    const Eigen::Vector3d at(i % kPlaces, i / kPlaces % kPlaces, i / (kPlaces * kPlaces));
+    const Eigen::Vector3d p_WT = arm.workspace.min_W + side.cwiseProduct(at);
+    const auto q = links.arm.inverse(arm.R_WB.transpose() * (p_WT - arm.p_WB));
+    if (!q) continue;
+    most = std::max(most, (links.carried(*q) + Eigen::Vector3d(0, 0, arm.carried_weight)).norm());
+  }
+  return most;
+}
+
 /// Reads what of the arm's weight its motors carry: at most a third of the force that the gate lets
-/// through [chosen: so that most of it is left for the scene].
-double read_carried_weight(YamlMap map, const ArmFile& arm) {
-  const double weight = map.require_number("weight", "N", 0, 10);
-  if (weight > arm.limits.force_max / 3) {
-    map.reject("weight", fmt::format("expected at most a third of the gate's force_max, {:.3g} N",
-                                     arm.limits.force_max / 3));
+/// through [chosen: so that most of it is left for the scene]. Of links that weigh more in some
+/// poses that third is given there.
+void read_carried(YamlMap map, ArmFile& arm) {
+  const double third = arm.limits.force_max / 3;
+  arm.carried_weight = map.optional_number("weight", 0, "N", 0, 10);
+  if (arm.carried_weight > third) {
+    map.reject("weight",
+               fmt::format("expected at most a third of the gate's force_max, {:.3g} N", third));
+  }
+  if (arm.is<driver::SerialArm>()) {
+    arm.carried_moments = {map.optional_number("moment_b", 0, "kg m", -1, 1),
+                           map.optional_number("moment_c", 0, "kg m", -1, 1)};
+  }
+  if (!arm.carried_moments.isZero(0)) {
+    LinkGravity links = link_gravity(arm);
+    links.most = HUGE_VAL;
+    const auto q = links.arm.inverse(arm.R_WB.transpose() * (arm.workspace.middle() - arm.p_WB));
+    const double weight = q ? links.carried(*q).norm() + arm.carried_weight : 0;
+    if (weight > third) {
+      map.reject("", fmt::format("expected at most a third of the gate's force_max, {:.3g} N, to "
+                                 "be carried in the middle of the workspace, and it is {:.3g} N",
+                                 third, weight));
+    }
   }
   map.finish();
-  return weight;
+  arm.carried_most = most_carried(arm);
 }
 
 std::vector<driver::BoardKind> read_boards(YamlMap& root, const driver::ArmRow& row) {
@@ -280,7 +315,7 @@ driver::Result<ArmFile> read_arm(YamlFile& yaml) {
   arm.declared = read_declared(root.require_map("declared"));
   arm.limits = read_gate(root.require_map("gate"), arm);
   if (root.has("gravity_compensation")) {
-    arm.carried_weight = read_carried_weight(root.require_map("gravity_compensation"), arm);
+    read_carried(root.require_map("gravity_compensation"), arm);
   }
   arm.velocity_corner_frequency = root.require_number("velocity_corner_frequency", "Hz", 0, 1e5);
   if (arm.is<driver::ToldArm>() && root.has("simulation")) {

@@ -25,7 +25,8 @@ RunFigures figures_of(const Setup& setup, std::size_t arm, const RunRecords& rec
   figures.gate = device.gate_counters();
   figures.energy_stage = device.gate().energy_stage();
   figures.reopen = device.gate().limits().reopen;
-  figures.carried_weight = setup.arm_file(arm).carried_weight;
+  figures.carried_weight = setup.arm_file(arm).carried_most;
+  figures.carried_by_pose = !setup.arm_file(arm).carried_moments.isZero(0);
   figures.heat_known = device.heat().named();
   figures.heat = device.heat().heat();
   figures.heat_most = device.heat().heat_most();

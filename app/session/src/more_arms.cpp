@@ -51,7 +51,7 @@ void MoreArms::open(bool log) {
 void MoreArms::begin(RunLoop& first, const driver::ServoSettings& settings) noexcept {
   for (std::size_t i = 0; i < laws_.size(); ++i) {
     RunLoop& loop = i == 0 ? first : run(i).loop;
-    loop.carry(setup_.arm_file(i).carried_weight);
+    loop.carry(setup_.arm_file(i));
     loop.begin(setup_.device(i), setup_.clock(), driver::ForceLaw(laws_[i]), settings);
   }
 }

@@ -105,9 +105,9 @@ std::string summary(const RunFigures& report) {
       "Safety    force cut to the limit in {} ticks, rise held back in {}, soft start in {}.\n",
       report.gate.limited, report.gate.rise_limited, report.gate.soft_started);
   if (report.carried_weight > 0) {
-    s +=
-        fmt::format("Gravity   the motors carried {:.3g} N of the arm beside the scene's forces.\n",
-                    report.carried_weight);
+    s += fmt::format(
+        "Gravity   the motors carried {}{:.3g} N of the arm beside the scene's forces.\n",
+        report.carried_by_pose ? "up to " : "", report.carried_weight);
   }
   if (report.energy_stage == driver::EnergyStage::kPassivity) {
     s += fmt::format(

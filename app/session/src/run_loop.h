@@ -4,7 +4,9 @@
 #include <optional>
 #include <vector>
 
+#include "carried_links.h"
 #include "carried_weight.h"
+#include "link_gravity.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/device.h"
 #include "thimble/driver/force_law.h"
@@ -21,14 +23,19 @@ class RunLoop {
   /// Real-time: never from the servo thread.
   void add(TickObserver& observer) { observers_.push_back(&observer); }
 
-  /// Lets the loop carry a weight of the arm (N, down) beside what its law asks for; of none it
-  /// does nothing. Precondition: the loop has not begun. Real-time: never from the servo thread.
-  void carry(double weight) noexcept { weight_ = weight; }
+  /// Lets the loop carry what an arm's file says of its weight beside what its law asks for; of
+  /// none it does nothing. Precondition: the loop has not begun. Real-time: never from the servo
+  /// thread.
+  void carry(const scene::ArmFile& file) noexcept {
+    weight_ = file.carried_weight;
+    if (!file.carried_moments.isZero(0)) links_ = scene::link_gravity(file);
+  }
 
   /// Begins the loop; its first tick is due now. All parts must outlive it, and it may not be moved
   /// from then on. Real-time: safe.
   void begin(driver::Device& device, driver::Clock& clock, driver::ForceLaw law,
              const driver::ServoSettings& settings) noexcept {
+    if (links_.most > 0) law = driver::ForceLaw(carried_links_.emplace(law, links_));
     if (weight_ > 0) law = driver::ForceLaw(carried_.emplace(law, Eigen::Vector3d(0, 0, weight_)));
     loop_.emplace(device, clock, law, driver::TickSink(*this), settings);
   }
@@ -52,6 +59,8 @@ class RunLoop {
  private:
   double weight_ = 0;                     // N, that is carried
   std::optional<CarriedWeight> carried_;  // if it is above 0
+  scene::LinkGravity links_;              // that are carried, if any force may be
+  std::optional<CarriedLinks> carried_links_;
   std::vector<TickObserver*> observers_;
   std::optional<driver::ServoLoop> loop_;
   std::optional<driver::ServoEnd> end_;

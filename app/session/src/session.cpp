@@ -120,7 +120,7 @@ void Session::Parts::begin(const std::atomic<bool>& stop) noexcept {
       .ticks = setup->ticks(),
       .outlive_faults = setup->any_real() || setup->endless() || go_on_with_the_others,
       .prepare_ns = setup->real_time() ? driver::ServoSettings::kPrepare_ns : 0};
-  loop.carry(setup->arm_file(0).carried_weight);
+  loop.carry(setup->arm_file(0));
   if (!more_arms.empty()) return more_arms.begin(loop, settings);
   loop.begin(setup->device(), setup->clock(), law.value_or(own_law()), settings);
 }

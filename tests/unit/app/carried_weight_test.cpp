@@ -6,10 +6,12 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <type_traits>
 
+#include "link_gravity.h"
 #include "support/refuses.h"
 #include "support/scratch.h"
 #include "thimble/scene/arm_file.h"
@@ -20,6 +22,8 @@ namespace thimble {
 namespace {
 
 constexpr double kWeight = 0.06;  // N, above the dry friction of 0.04 N
+// First moments of links, kg m, that pull on the tip with more than friction holds.
+constexpr double kMomentB = 0.0009, kMomentC = 0.0012;
 
 void replace(std::string& text, const std::string& from, const std::string& to) {
   const std::size_t at = text.find(from);
@@ -29,7 +33,9 @@ void replace(std::string& text, const std::string& from, const std::string& to) 
 
 /// The folder of a scene in which nothing is touched, with an arm that weighs kWeight and that
 /// nobody holds, whose motors carry `carried` (N).
-std::filesystem::path files(double carried) {
+/// With `links` it is links that weigh, and `carried` what their moments are carried by, a share.
+std::filesystem::path files(double carried, bool links = false,
+                            const std::string& at = "[0, 0, 0]") {
   const auto folder = support::scratch_folder() / "carried_weight";
   std::filesystem::create_directories(folder);
   std::ostringstream arm;
@@ -37,19 +43,27 @@ std::filesystem::path files(double carried) {
              .rdbuf();
   std::string text = arm.str();
   replace(text, "energy: passivity", "energy: none");
-  replace(text, "coulomb: 0.04", "weight: 0.06\n    coulomb: 0.04");
+  if (!links) replace(text, "coulomb: 0.04", "weight: 0.06\n    coulomb: 0.04");
   replace(text, "mass: 0.025 ", "mass: 0 ");
   replace(text, "stiffness: 300 ", "stiffness: 0 ");
   replace(text, "damping: 3 ", "damping: 0 ");
+  const std::string named = links ? "moment_b: " + std::to_string(carried * kMomentB) +
+                                        ", moment_c: " + std::to_string(carried * kMomentC)
+                                  : "weight: " + std::to_string(carried);
   if (carried > 0) {
+    replace(text, "simulation:\n", "gravity_compensation: {" + named + "}\nsimulation:\n");
+  }
+  if (links) {
     replace(text, "simulation:\n",
-            "gravity_compensation: {weight: " + std::to_string(carried) + "}\nsimulation:\n");
+            "simulation:\n  links: {inertia: [1e-4, 1e-4, 1e-4], moment_b: " +
+                std::to_string(kMomentB) + ", moment_c: " + std::to_string(kMomentC) + "}\n");
   }
   std::ofstream(folder / "arm.yaml") << text;
   std::ofstream(folder / "scene.yaml")
       << "name: carried\narm: arm.yaml\nrate: 1000\nduration: 0.6\n"
          "objects:\n  - {name: ball, sphere: {radius: 0.01}, position: [0, 0, 0.09], stiffness: "
-         "500}\nhand:\n  path:\n    - {t: 0, at: [0, 0, 0]}\n";
+         "500}\nhand:\n  path:\n    - {t: 0, at: "
+      << at << "}\n";
   return folder;
 }
 
@@ -62,10 +76,18 @@ class Seen final : public session::TickObserver {
     const auto& f = record.f_sent_W;
     most = std::max(most, std::hypot(f[0], f[1], f[2]));
     wanted = std::max(wanted, record.f_wanted_W[2]);
+    if (!first) first = record;
     last = record;
   }
+  /// How far the tip went from where it began, m.
+  double way() const {
+    return std::hypot(last.p_WT[0] - first->p_WT[0], last.p_WT[1] - first->p_WT[1],
+                      last.p_WT[2] - first->p_WT[2]);
+  }
+
   double lowest = 1, highest = -1;  // m
   double most = 0, wanted = 0;      // N
+  std::optional<driver::TickRecord> first;
   driver::TickRecord last;
 };
 
@@ -74,11 +96,11 @@ struct WholeRun {
   session::RunFigures figures;
 };
 
-/// Runs the scene; `law` asks for forces in its place, if there is one.
+/// Runs the scene of a folder; `law` asks for forces in its place, if there is one.
 template <class Law = std::nullptr_t>
-WholeRun run(double carried, Law law = {}) {
+WholeRun run_in(const std::filesystem::path& folder, Law law = {}) {
   WholeRun result;
-  auto opened = session::Session::open(files(carried) / "scene.yaml", {});
+  auto opened = session::Session::open(folder / "scene.yaml", {});
   if (!opened) {
     ADD_FAILURE() << opened.error().message;
     return result;
@@ -91,6 +113,11 @@ WholeRun run(double carried, Law law = {}) {
   (*opened)->run(stop);
   result.figures = (*opened)->figures();
   return result;
+}
+
+template <class Law = std::nullptr_t>
+WholeRun run(double carried, Law law = {}) {
+  return run_in(files(carried), law);
 }
 
 TEST(CarriedWeight, LetsATipFloatThatFallsWithoutIt) {
@@ -106,6 +133,39 @@ TEST(CarriedWeight, LetsATipFloatThatFallsWithoutIt) {
   EXPECT_DOUBLE_EQ(floats.figures.carried_weight, kWeight);
   EXPECT_NE(session::summary(floats.figures).find("carried 0.06 N of the arm"), std::string::npos);
   EXPECT_EQ(session::summary(falls.figures).find("of the arm"), std::string::npos);
+}
+
+TEST(CarriedWeight, LetsLinksFloatInEachPoseThatFallWithoutIt) {
+  double least = 1, most = 0;  // N
+  for (const char* at : {"[0, 0, 0]", "[0.04, 0.03, 0.05]", "[-0.03, -0.05, 0.04]"}) {
+    const WholeRun falls = run_in(files(0, true, at)), floats = run_in(files(1, true, at));
+    EXPECT_GT(falls.seen.way(), 0.02) << at;
+    // It sinks until the soft start lets through what friction leaves.
+    EXPECT_LT(floats.seen.way(), 0.1 * falls.seen.way()) << at;
+    const auto& last = floats.seen.last;
+    EXPECT_EQ(
+        Eigen::Vector3d(last.v_WT[0], last.v_WT[1], last.v_WT[2]).cwiseAbs().maxCoeff() < 1e-3,
+        true)
+        << at;
+    const double force = std::hypot(last.f_sent_W[0], last.f_sent_W[1], last.f_sent_W[2]);
+    least = std::min(least, force), most = std::max(most, force);
+    EXPECT_TRUE(floats.figures.carried_by_pose);
+    EXPECT_LE(force, floats.figures.carried_weight + 0.01);
+    EXPECT_NE(session::summary(floats.figures).find("carried up to"), std::string::npos);
+  }
+  EXPECT_GT(most, 1.1 * least);
+}
+
+TEST(CarriedWeight, GivesNoPoseMoreForItsLinksThanAThirdOfTheGatesForce) {
+  const auto arm = scene::load_arm(files(1, true) / "arm.yaml");
+  ASSERT_TRUE(arm.ok()) << arm.error().message;
+  scene::LinkGravity links = scene::link_gravity(*arm);
+  links.moments.length_b *= 1000, links.moments.length_c *= 1000;
+  const Eigen::Vector3d q(0.2, 1.4, 0.1);
+  EXPECT_NEAR(links.carried(q).norm(), arm->limits.force_max / 3, 1e-12);
+  EXPECT_EQ(links.carried({NAN, 0, 0}), Eigen::Vector3d(0, 0, 0));
+  EXPECT_TRUE(support::refuses(scene::load_arm(files(30, true) / "arm.yaml"),
+                               "in the middle of the workspace"));
 }
 
 TEST(CarriedWeight, CountsTowardsTheForceLimitAndNeverGoesBeyondIt) {

@@ -121,6 +121,35 @@ TEST(SimulationSection, RefusesADriveTrainThatDoesNotFitTogether) {
   EXPECT_EQ(mistake("stiffness: [100, 100, 100], " + inertia), "");
 }
 
+TEST(SimulationSection, ReadsLinksAndTurnsTheirGravityIntoTheBase) {
+  const std::string links =
+      "  links: {inertia: [0.001, 0.002, 0.003], yaw_b: 0.0021, yaw_c: 0.0031, coupling: 0.0004, "
+      "moment_b: 0.005, moment_c: -0.006}\n  encoders: quantised";
+  const auto arm = read_with(
+      {{"  encoders: quantised", links}, {"rotate_degrees: []", "rotate_degrees: [[x, 90]]"}});
+  ASSERT_TRUE(arm.ok()) << arm.error().message;
+  const device_sim::LinkSettings& read = arm->simulated.links;
+  EXPECT_EQ(read.inertia, Eigen::Vector3d(0.001, 0.002, 0.003));
+  EXPECT_EQ(read.yaw_b, 0.0021);
+  EXPECT_EQ(read.yaw_c, 0.0031);
+  EXPECT_EQ(read.coupling, 0.0004);
+  EXPECT_EQ(read.moment_b, 0.005);
+  EXPECT_EQ(read.moment_c, -0.006);
+  EXPECT_LT((read.gravity_B - Eigen::Vector3d(0, -9.80665, 0)).norm(), 1e-14);
+  EXPECT_TRUE(scene::ArmSimulation::make(*arm, {{0, Eigen::Vector3d::Zero()}}).ok());
+  EXPECT_FALSE(scene::load_arm("vintage_phantom")->simulated.links.named());
+}
+
+TEST(SimulationSection, RefusesLinksThatCannotBeAndThoseOfALinkage) {
+  EXPECT_NE(
+      mistake_with("  encoders: quantised", "  links: {coupling: 0.001}\n  encoders: quantised")
+          .find("square of coupling"),
+      std::string::npos);
+  EXPECT_NE(mistake_with("  tip:\n", "  links: {yaw_b: 0.001}\n  tip:\n", "polhem")
+                .find("links: is no key that is known here"),
+            std::string::npos);
+}
+
 TEST(SimulationSection, TellsTheFalconThatItsDriveTrainIsNotSimulated) {
   EXPECT_NE(mistake_with("  tip:\n", "  drive_train: {current_lag: 0.001}\n  tip:\n", "falcon")
                 .find("drive_train: is no key that is known here"),

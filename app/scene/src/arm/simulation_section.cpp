@@ -7,6 +7,8 @@
 #include <string_view>
 
 #include "arm/nanoseconds.h"
+#include "link_gravity.h"
+#include "link_mechanics.h"
 
 namespace thimble::scene {
 namespace {
@@ -116,6 +118,26 @@ device_sim::DriveTrainSettings read_drive_train(YamlMap map) {
   return train;
 }
 
+/// Reads what hangs on the tip of a serial arm.
+device_sim::LinkSettings read_links(YamlMap map, const ArmFile& arm) {
+  const auto value = [&map](std::string_view key, std::string_view unit) {
+    return map.optional_number(key, 0, unit, -1, 1);
+  };
+  device_sim::LinkSettings links;
+  links.inertia = map.optional_vector3("inertia", {0, 0, 0}, "kg m^2 about the joint", 0, 1);
+  links.yaw_b = value("yaw_b", "kg m^2");
+  links.yaw_c = value("yaw_c", "kg m^2");
+  links.coupling = value("coupling", "kg m^2");
+  links.moment_b = value("moment_b", "kg m");
+  links.moment_c = value("moment_c", "kg m");
+  links.gravity_B = arm.R_WB.transpose() * Eigen::Vector3d(0, 0, -kGravity);
+  if (const auto good = device_sim::check_links(links); !good) {
+    map.reject("", good.error().message);
+  }
+  map.finish();
+  return links;
+}
+
 }  // namespace
 
 device_sim::SimulatedArmSettings read_simulation(YamlMap map, const ArmFile& arm) {
@@ -140,6 +162,9 @@ device_sim::SimulatedArmSettings read_simulation(YamlMap map, const ArmFile& arm
   if (!arm.is<driver::DeltaArm>()) {
     if (map.has("drive_train")) {
       settings.drive_train = read_drive_train(map.require_map("drive_train"));
+    }
+    if (arm.is<driver::SerialArm>() && map.has("links")) {
+      settings.links = read_links(map.require_map("links"), arm);
     }
     read_board(map, settings);
   }

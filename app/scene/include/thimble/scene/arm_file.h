@@ -69,7 +69,10 @@ struct ArmFile {
   DeclaredLimits declared;      ///< What its maker promises.
   /// What the motors carry of the arm's own weight at the tip in every run, N; 0: nothing.
   double carried_weight = 0;
-  double velocity_corner_frequency = 0;                ///< Hz
+  /// First moments of mass along links B and C of a serial arm that they carry as well, kg m.
+  Eigen::Vector2d carried_moments{0, 0};
+  double carried_most = 0;               ///< The most of all that over the workspace, N.
+  double velocity_corner_frequency = 0;  ///< Hz
   Eigen::Matrix3d R_WB = Eigen::Matrix3d::Identity();  ///< Rotation of the base in the world.
   Eigen::Vector3d p_WB{0, 0, 0};                       ///< Position of the base, m.
   WorkspaceBox workspace;                              ///< Where the tip may work.

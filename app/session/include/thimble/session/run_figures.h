@@ -42,6 +42,7 @@ struct RunFigures {
   driver::EnergyStage energy_stage = driver::EnergyStage::kNone;  ///< Of the gate.
   double reopen = 0;                                              ///< The gate's, s.
   double carried_weight = 0;        ///< What of the requested force carried the arm, N; 0: nothing.
+  bool carried_by_pose = false;     ///< That hangs on the pose, and is the most over the workspace.
   bool heat_known = false;          ///< The arm file says what the motors carry for long.
   std::array<double, 3> heat{};     ///< Of the motors at the end; 1: the winding's limit.
   double heat_most = 0;             ///< The most that any motor reached.

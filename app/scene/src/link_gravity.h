@@ -1,0 +1,48 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+#include <cmath>
+
+#include "thimble/driver/serial_arm.h"
+#include "thimble/scene/arm_file.h"
+
+namespace thimble::scene {
+
+/// Standard gravity, m/s^2 [CGPM 1901].
+inline constexpr double kGravity = 9.80665;
+
+/// The force at the tip that carries the links of a serial arm in each pose, from their first
+/// moments of mass (ArmFile::carried_moments). Frames: W world, B base.
+struct LinkGravity {
+  driver::SerialArm arm;      ///< Its geometry.
+  driver::SerialArm moments;  ///< Moments along B and C in place of lengths, kg m.
+  Eigen::Matrix3d R_WB = Eigen::Matrix3d::Identity();
+  double most = 0;  ///< No pose gets more, N.
+
+  /// Returns it at joint angles q (rad), N in the world; zero where the Jacobian is singular.
+  /// Real-time: safe.
+  Eigen::Vector3d carried(const Eigen::Vector3d& q) const noexcept {
+    const Eigen::Vector3d up_B = R_WB.transpose() * Eigen::Vector3d(0, 0, kGravity);
+    // The moments hang on the links as the tip does, which is at both lengths.
+    const Eigen::Vector3d tau = moments.jacobian(q).transpose() * up_B;
+    const Eigen::Vector3d f_W = R_WB * (arm.jacobian(q).transpose().inverse() * tau);
+    const double length = f_W.norm();
+    if (length <= most) return f_W;
+    if (!(length < HUGE_VAL)) return {0, 0, 0};
+    return f_W * (most / length);
+  }
+};
+
+/// Returns that of an arm's file. Precondition: it is a serial arm. Real-time: never from the servo
+/// thread.
+inline LinkGravity link_gravity(const ArmFile& file) {
+  return {.arm = std::get<driver::SerialArm>(file.model.geometry),
+          .moments = {.height = 0,
+                      .length_b = file.carried_moments[0],
+                      .length_c = file.carried_moments[1]},
+          .R_WB = file.R_WB,
+          .most = file.limits.force_max / 3 - file.carried_weight};
+}
+
+}  // namespace thimble::scene
