@@ -23,14 +23,9 @@ void set(const GlProgram& program, const char* name, const Eigen::Matrix3f& valu
   glUniformMatrix3fv(program.at(name), 1, GL_FALSE, value.data());
 }
 
-void set_colour(const GlProgram& program, const Colour& colour, float gloss) {
-  const Eigen::Vector3f light = linear(colour);
-  glUniform3fv(program.at("colour"), 1, light.data());
-  glUniform1f(program.at("gloss"), gloss);
-}
-
-void set_paint(const GlProgram& program, const Colour& colour, float cover) {
-  glUniform4f(program.at("paint"), colour[0], colour[1], colour[2], cover);
+/// `more`: what covers of it, or its gloss, the share of the light's mirror image.
+void set_paint(const GlProgram& program, const Colour& colour, float more) {
+  glUniform4f(program.at("paint"), colour[0], colour[1], colour[2], more);
 }
 
 /// Returns which marks an object has: 1 for dots, 2 for lines (gl/shaders.cpp).
@@ -52,6 +47,12 @@ ScenePainter::ScenePainter(DrawnScene scene, ScenePrograms programs)
   for (const GlProgram* program : programs_.all()) {
     const GLuint block = glGetUniformBlockIndex(**program, "View");
     if (block != GL_INVALID_INDEX) glUniformBlockBinding(**program, block, kViewBinding);
+    // As the canvas binds them; the shadows' map is texture 0.
+    glUseProgram(**program);
+    glUniform1i(program->at("normals"), 1);
+    glUniform1i(program->at("paints"), 2);
+    glUniform1i(program->at("depths"), 3);
+    glUniform1i(program->at("picture"), 1);
   }
   Eigen::AlignedBox3d box;
   for (const DrawnObject& object : scene_.objects) {
@@ -109,10 +110,27 @@ void ScenePainter::place_objects(const DrawnMoment& moment, DentNormals normals)
   }
 }
 
-void ScenePainter::set_view(const Camera& camera, double aspect, Theme theme) {
-  const ViewBlock block = view_block(
-      camera, aspect, theme,
-      {.centre = light_centre_, .radius = light_radius_, .ground_height = ground_height_});
+void ScenePainter::set_view(const Camera& camera, double aspect, Theme theme,
+                            const std::vector<Solid>& solids) {
+  const LitPlace place{
+      .centre = light_centre_, .radius = light_radius_, .ground_height = ground_height_};
+  const Eigen::Matrix4f shadow = shadow_from_world(place);
+  Eigen::AlignedBox2f casters;
+  for (std::size_t i = 0; i < models_.size(); ++i) {
+    if (!scene_.objects[i].endless) add_caster(shadow, places_[i], shown(i).box(), casters);
+  }
+  for (const Solid& solid : solids) {
+    if (solid.casts_shadow) {
+      add_caster(shadow, solid.model, solids_.model(solid.kind).box(), casters);
+    }
+  }
+  // And what of the map a sample reaches: 3.2 pixels, one more for the mean of four, and two that
+  // it is asked off the surface.
+  const Eigen::Vector2f reach = Eigen::Vector2f::Constant(8.0F / ShadowMap::kPixels);
+  if (!casters.isEmpty()) {
+    casters = Eigen::AlignedBox2f(casters.min() - reach, casters.max() + reach);
+  }
+  const ViewBlock block = view_block(camera, aspect, theme, place, casters);
   glBindBuffer(GL_UNIFORM_BUFFER, *view_block_);
   glBufferData(GL_UNIFORM_BUFFER, sizeof block, &block, GL_STREAM_DRAW);
   glBindBufferBase(GL_UNIFORM_BUFFER, kViewBinding, *view_block_);
@@ -172,11 +190,11 @@ void ScenePainter::set_shadows(const GlProgram& program, const PaintChoice& choi
   glUniform1i(program.at("shadow_samples"), choice.fine ? 4 : 2);
 }
 
-void ScenePainter::paint_surfaces(const PaintChoice& choice, const Camera& camera) {
-  const bool gouraud = choice.shading == Shading::kGouraud;
+void ScenePainter::paint_surfaces(const PaintChoice& choice, const Camera& camera, bool gouraud) {
   for (std::size_t i = 0; i < models_.size(); ++i) {
     if (static_cast<std::ptrdiff_t>(i) == floor_object_) continue;
     const int marks = choice.surfaces ? marks_on(scene_.objects[i]) : 0;
+    if (gouraud != (choice.shading == Shading::kGouraud && marks == 0)) continue;
     const GlProgram& surface = marks > 0 ? programs_.surface_marked
                                : gouraud ? programs_.surface_gouraud
                                          : programs_.surface;
@@ -188,10 +206,10 @@ void ScenePainter::paint_surfaces(const PaintChoice& choice, const Camera& camer
     if (hides_back) glEnable(GL_CULL_FACE);
     for (const GlProgram* program : {&surface, &dent}) {
       glUseProgram(**program);
-      set_shadows(*program, choice);
+      if (gouraud) set_shadows(*program, choice);
       set(*program, "model", places_[i]);
       set(*program, "normal_matrix", Eigen::Matrix3f(places_[i].block<3, 3>(0, 0)));
-      set_colour(*program, object_colour(i), 0.16F);
+      set_paint(*program, object_colour(i), 0.16F);
       glUniform1i(program->at("marks"), marks);
       if (program == &surface) shown(i).draw_mesh();
       if (program == &dent) shown(i).draw_dent();
@@ -200,17 +218,37 @@ void ScenePainter::paint_surfaces(const PaintChoice& choice, const Camera& camer
   }
 }
 
-void ScenePainter::paint_solids(const std::vector<Solid>& solids, const PaintChoice& choice) {
+void ScenePainter::paint_solids(const std::vector<Solid>& solids) {
   glUseProgram(*programs_.surface);
-  set_shadows(programs_.surface, choice);
   glEnable(GL_CULL_FACE);
   for (const Solid& solid : solids) {
     set(programs_.surface, "model", solid.model);
     set(programs_.surface, "normal_matrix", solid.normal_matrix);
-    set_colour(programs_.surface, solid.colour, 0.2F);
+    set_paint(programs_.surface, solid.colour, 0.2F);
     solids_.model(solid.kind).draw_mesh();
   }
   glDisable(GL_CULL_FACE);
+}
+
+void ScenePainter::paint_light(const PaintChoice& choice) {
+  glBindVertexArray(*nothing_);
+  glUseProgram(*programs_.backdrop);
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  glUseProgram(*programs_.light);
+  set_shadows(programs_.light, choice);
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+void ScenePainter::paint_pixels(const PaintChoice& choice, Canvas& canvas) {
+  canvas.finish();
+  if (!choice.fine) return;
+  canvas.begin_pixels();
+  glDisable(GL_BLEND);
+  glDisable(GL_DEPTH_TEST);
+  glUseProgram(*programs_.smooth);
+  glUniform1i(programs_.smooth.at("lowest"), canvas.strip());
+  glBindVertexArray(*nothing_);
+  glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
 void ScenePainter::paint_what_shines_through(const std::vector<Solid>& solids) {
@@ -236,6 +274,7 @@ void ScenePainter::paint_edges(const PaintChoice& choice) {
   glUseProgram(*programs_.plain);
   glUniform1f(programs_.plain.at("nearer"), 0.0008F);
   glDepthMask(GL_FALSE);
+  glEnable(GL_LINE_SMOOTH);
   for (std::size_t i = 0; i < models_.size(); ++i) {
     const bool few = models_[i].triangles() <= kFewTriangles && !scene_.objects[i].stands_for_shape;
     if (scene_.objects[i].endless || (choice.edges == Edges::kAuto && !few)) continue;
@@ -243,6 +282,7 @@ void ScenePainter::paint_edges(const PaintChoice& choice) {
     set_paint(programs_.plain, kTextColour, 0.22F);
     shown(i).draw_edges();
   }
+  glDisable(GL_LINE_SMOOTH);
   glDepthMask(GL_TRUE);
 }
 
@@ -288,7 +328,7 @@ std::vector<Label> ScenePainter::paint(const DrawnMoment& moment, const Camera& 
                                        const PaintChoice& choice, Canvas& canvas) {
   const TouchMarks marks = mark_touch(scene_, moment, camera.distance, choice.marks);
   place_objects(moment, choice.dent_normals);
-  set_view(camera, canvas.aspect(), choice.theme);
+  set_view(camera, canvas.aspect(), choice.theme, marks.solids);
   glDisable(GL_BLEND);
   glDisable(GL_SCISSOR_TEST);
   glDisable(GL_CULL_FACE);
@@ -297,17 +337,16 @@ std::vector<Label> ScenePainter::paint(const DrawnMoment& moment, const Camera& 
   glDepthMask(GL_TRUE);
   if (choice.shadows) paint_shadows(marks.solids);
 
-  canvas.begin();
-  glClear(GL_DEPTH_BUFFER_BIT);
-  glActiveTexture(GL_TEXTURE0);
+  canvas.begin_surfaces();
+  paint_surfaces(choice, camera, false);
+  paint_solids(marks.solids);
+  canvas.begin_light();
   glBindTexture(GL_TEXTURE_2D, shadow_map_.texture());
   glDisable(GL_DEPTH_TEST);
-  glUseProgram(*programs_.backdrop);
-  glBindVertexArray(*nothing_);
-  glDrawArrays(GL_TRIANGLES, 0, 3);
+  paint_light(choice);
   glEnable(GL_DEPTH_TEST);
-  paint_surfaces(choice, camera);
-  paint_solids(marks.solids, choice);
+  canvas.begin_marks();
+  paint_surfaces(choice, camera, true);
   paint_forces(moment, choice, camera.distance);
   glEnable(GL_BLEND);
   glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
@@ -315,8 +354,8 @@ std::vector<Label> ScenePainter::paint(const DrawnMoment& moment, const Camera& 
   paint_edges(choice);
   panes_.draw(marks.panes, camera, programs_.plain);
   paint_what_shines_through(marks.solids);
+  paint_pixels(choice, canvas);
   glBindVertexArray(0);
-  canvas.finish();
   return marks.labels;
 }
 

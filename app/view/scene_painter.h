@@ -38,7 +38,8 @@ struct PaintChoice {
   Edges edges = Edges::kAuto;
   DentNormals dent_normals = DentNormals::kSplit;
   bool shadows = true;
-  bool fine = true;  ///< Soft rims of shadows: 16 samples; else 4, where software draws.
+  /// Smooth edges, and soft rims of shadows of 16 samples, else 4.
+  bool fine = true;
   bool grid = true;
   bool fields = false;    ///< Forces of the scene's fields, as arrows.
   bool trail = false;     ///< Where the tip was in the last seconds, coloured by force.
@@ -62,12 +63,14 @@ class ScenePainter {
                            const PaintChoice& choice, Canvas& canvas);
 
  private:
-  void set_view(const Camera& camera, double aspect, Theme theme);
+  void set_view(const Camera& camera, double aspect, Theme theme, const std::vector<Solid>& solids);
   void paint_shadows(const std::vector<Solid>& solids);
   void paint_shadow(std::size_t object);
-  void paint_surfaces(const PaintChoice& choice, const Camera& camera);
+  void paint_surfaces(const PaintChoice& choice, const Camera& camera, bool gouraud);
+  void paint_light(const PaintChoice& choice);
+  void paint_pixels(const PaintChoice& choice, Canvas& canvas);
   void set_shadows(const GlProgram& program, const PaintChoice& choice) const;
-  void paint_solids(const std::vector<Solid>& solids, const PaintChoice& choice);
+  void paint_solids(const std::vector<Solid>& solids);
   void paint_what_shines_through(const std::vector<Solid>& solids);
   void paint_edges(const PaintChoice& choice);
   void paint_ground(const PaintChoice& choice);

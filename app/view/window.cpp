@@ -46,7 +46,7 @@ std::string picture_name(const std::string& run) {
 }
 
 /// Returns whether the processor draws in place of a graphics card: then a picture as fine as can
-/// be takes 2.5 times as long as need be (tests/bench/view_bench).
+/// be takes 1.6 times as long as need be (tests/bench/view_bench).
 bool software_draws() {
   const auto* words = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
   const std::string name = words == nullptr ? "" : words;
@@ -89,7 +89,6 @@ class Content {
   TouchSource& source_;
   std::unique_ptr<ScenePainter> painter_;
   std::optional<Canvas> canvas_;
-  bool canvas_fine_ = true;
   Camera camera_;
   SceneMouse mouse_;
   HandPanel hand_;
@@ -151,10 +150,8 @@ bool Content::arrows_lead() const {
 void Content::draw_scene(const ScreenPart& part, int below, float ratio) {
   const int width = std::max(1, static_cast<int>(part.width * ratio));
   const int height = std::max(1, static_cast<int>(part.height * ratio));
-  if (!canvas_ || canvas_->width() != width || canvas_->height() != height ||
-      canvas_fine_ != choice_.paint.fine) {
-    canvas_fine_ = choice_.paint.fine;
-    canvas_.emplace(width, height, 0, canvas_fine_ ? Canvas::kSamples : 1);
+  if (!canvas_ || canvas_->width() != width || canvas_->height() != height) {
+    canvas_.emplace(width, height);
   }
   const DrawnMoment& moment = source_.moment();
   if (choice_.frame && source_.has_moment()) {

@@ -1,6 +1,8 @@
 #include <benchmark/benchmark.h>
+#include <sys/resource.h>
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <memory>
@@ -10,7 +12,9 @@
 #include "view/scene_painter.h"
 
 // How long one picture of 960 x 640 takes, by triangles: wall time, and time of all processors
-// together, for software draws with all of them. Name of what draws: see `renderer`.
+// together, for software draws with all of them. `least` is the least such time of a picture, ms:
+// what is left where others keep the machine busy. Name of what draws: see `renderer`.
+// `all`: soft rims of shadows and smooth edges; `turns`: the camera, by a degree a picture.
 
 namespace thimble::bench {
 namespace {
@@ -18,6 +22,16 @@ namespace {
 using app::view::Canvas;
 using app::view::DrawnMoment;
 using app::view::PaintChoice;
+
+/// Returns the time that all processors have spent on this process, ms.
+double processor_ms() {
+  rusage used{};
+  getrusage(RUSAGE_SELF, &used);
+  const auto ms = [](const timeval& time) {
+    return 1e3 * static_cast<double>(time.tv_sec) + 1e-3 * static_cast<double>(time.tv_usec);
+  };
+  return ms(used.ru_utime) + ms(used.ru_stime);
+}
 
 void paint(benchmark::State& state) {
   const auto context = app::view::OffscreenContext::open();
@@ -30,25 +44,29 @@ void paint(benchmark::State& state) {
   auto programs = app::view::ScenePrograms::make();
   if (!programs) return state.SkipWithError(programs.error().message.c_str());
   app::view::ScenePainter painter(scene, std::move(programs).value());
-  Canvas canvas(960, 640, 0, state.range(2) == 1 ? Canvas::kSamples : 1);
+  Canvas canvas(960, 640);
   const DrawnMoment moment{};
-  const auto camera = app::view::frame(scene, moment, canvas.aspect());
+  auto camera = app::view::frame(scene, moment, canvas.aspect());
   PaintChoice choice;
-  choice.shadows = state.range(1) == 1;
-  choice.fine = state.range(2) == 1;
+  choice.fine = state.range(1) == 1;
   // The first pictures translate the shaders.
   for (int i = 0; i < 2; ++i) painter.paint(moment, camera, choice, canvas);
   glFinish();
+  double least = 1e9;
   for (auto _ : state) {
+    if (state.range(2) == 1) camera.orbit(0.0175, 0);
+    const double before = processor_ms();
     painter.paint(moment, camera, choice, canvas);
     glFinish();
+    least = std::min(least, processor_ms() - before);
   }
+  state.counters["least"] = least;
   state.counters["triangles"] = static_cast<double>(scene.objects[0].mesh.triangles.size());
   state.counters["pictures/s"] =
       benchmark::Counter(static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
 }
 BENCHMARK(paint)
-    ->ArgNames({"subdivisions", "shadows", "fine"})
+    ->ArgNames({"subdivisions", "all", "turns"})
     ->ArgsProduct({{4, 6, 8}, {0, 1}, {0, 1}})
     ->Unit(benchmark::kMillisecond)
     ->MeasureProcessCPUTime()

@@ -1,38 +1,84 @@
 #include "view/gl/canvas.h"
 
-#include <algorithm>
 #include <cstddef>
 
 namespace thimble::app::view {
-Canvas::Canvas(int width, int height, int strip, int samples_wanted)
-    : width_(width), height_(height), strip_(strip) {
-  GLint most = 0;
-  glGetIntegerv(GL_MAX_SAMPLES, &most);
-  const GLint samples = samples_wanted > 1 ? std::min(samples_wanted, most) : 0;
-  const auto storage = [&](const GlRenderbuffer& buffer, GLint count, GLenum format) {
-    glBindRenderbuffer(GL_RENDERBUFFER, *buffer);
-    glRenderbufferStorageMultisample(GL_RENDERBUFFER, count, format, width, height);
-  };
-  storage(sample_colours_, samples, GL_RGBA8);
-  storage(sample_depths_, samples, GL_DEPTH_COMPONENT24);
-  storage(pixel_colours_, 0, GL_RGBA8);
-  const auto attach = [](GLenum place, const GlRenderbuffer& buffer) {
-    glFramebufferRenderbuffer(GL_FRAMEBUFFER, place, GL_RENDERBUFFER, *buffer);
-  };
-  glBindFramebuffer(GL_FRAMEBUFFER, *samples_);
-  attach(GL_COLOR_ATTACHMENT0, sample_colours_);
-  attach(GL_DEPTH_ATTACHMENT, sample_depths_);
-  glBindFramebuffer(GL_FRAMEBUFFER, *pixels_);
-  attach(GL_COLOR_ATTACHMENT0, pixel_colours_);
+namespace {
+
+void store(const GlTexture& texture, GLint format, GLenum kind, GLint filter, int width,
+           int height) {
+  glBindTexture(GL_TEXTURE_2D, *texture);
+  glTexImage2D(GL_TEXTURE_2D, 0, format, width, height, 0, kind, GL_FLOAT, nullptr);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, filter);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, filter);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
 }
 
-void Canvas::begin() {
-  glBindFramebuffer(GL_FRAMEBUFFER, *samples_);
+void attach(GLenum place, const GlTexture& texture) {
+  glFramebufferTexture2D(GL_FRAMEBUFFER, place, GL_TEXTURE_2D, *texture, 0);
+}
+
+void bind_texture(GLenum unit, const GlTexture& texture) {
+  glActiveTexture(unit);
+  glBindTexture(GL_TEXTURE_2D, *texture);
+}
+
+}  // namespace
+
+Canvas::Canvas(int width, int height, int strip) : width_(width), height_(height), strip_(strip) {
+  // Normals of 16 bits: with 8 a gloss shows steps.
+  store(normals_, GL_RGBA16, GL_RGBA, GL_NEAREST, width, height);
+  store(paints_, GL_RGBA8, GL_RGBA, GL_NEAREST, width, height);
+  store(depths_, GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT, GL_NEAREST, width, height);
+  store(lit_colours_, GL_RGBA8, GL_RGBA, GL_LINEAR, width, height);
+  glBindRenderbuffer(GL_RENDERBUFFER, *pixel_colours_);
+  glRenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, width, height);
+  glBindFramebuffer(GL_FRAMEBUFFER, *surfaces_);
+  attach(GL_COLOR_ATTACHMENT0, normals_);
+  attach(GL_COLOR_ATTACHMENT1, paints_);
+  attach(GL_DEPTH_ATTACHMENT, depths_);
+  const GLenum both[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
+  glDrawBuffers(2, both);
+  glBindFramebuffer(GL_FRAMEBUFFER, *lit_);
+  attach(GL_COLOR_ATTACHMENT0, lit_colours_);
+  glBindFramebuffer(GL_FRAMEBUFFER, *marked_);
+  attach(GL_COLOR_ATTACHMENT0, lit_colours_);
+  attach(GL_DEPTH_ATTACHMENT, depths_);
+  glBindFramebuffer(GL_FRAMEBUFFER, *pixels_);
+  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, *pixel_colours_);
+}
+
+void Canvas::bind(const GlFramebuffer& frame) {
+  glBindFramebuffer(GL_FRAMEBUFFER, *frame);
   glViewport(0, strip_, width_, height_ - strip_);
 }
 
+void Canvas::begin_surfaces() {
+  bind(surfaces_);
+  glClear(GL_DEPTH_BUFFER_BIT);
+}
+
+void Canvas::begin_light() {
+  bind(lit_);
+  bind_texture(GL_TEXTURE1, normals_);
+  bind_texture(GL_TEXTURE2, paints_);
+  bind_texture(GL_TEXTURE3, depths_);
+  glActiveTexture(GL_TEXTURE0);
+}
+
+void Canvas::begin_marks() {
+  bind(marked_);
+}
+
+void Canvas::begin_pixels() {
+  bind(pixels_);
+  bind_texture(GL_TEXTURE1, lit_colours_);
+  glActiveTexture(GL_TEXTURE0);
+}
+
 void Canvas::finish() {
-  glBindFramebuffer(GL_READ_FRAMEBUFFER, *samples_);
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, *lit_);
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, *pixels_);
   glBlitFramebuffer(0, 0, width_, height_, 0, 0, width_, height_, GL_COLOR_BUFFER_BIT, GL_NEAREST);
   glBindFramebuffer(GL_FRAMEBUFFER, *pixels_);

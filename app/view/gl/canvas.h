@@ -14,15 +14,13 @@ struct Picture {
   std::vector<std::uint8_t> rgb;
 };
 
-/// What a scene is painted on: several samples a pixel, whatever is shown in the end.
+/// What a scene is painted on, in layers: surfaces as normals and paints, then lit in one go, with
+/// marks over them; then the pixels. A surface is lit once a pixel, however small its triangles.
 class Canvas {
  public:
   /// Makes one of this size (pixels, > 0), of which the lowest `strip` rows are left for plots.
   /// Precondition: a context of OpenGL 3.3 is current.
-  Canvas(int width, int height, int strip = 0, int samples = kSamples);
-
-  /// Samples a pixel for smooth rims: what Mesa's software can; more is hardly seen.
-  static constexpr int kSamples = 4;
+  Canvas(int width, int height, int strip = 0);
 
   int width() const { return width_; }
   int height() const { return height_; }
@@ -30,9 +28,16 @@ class Canvas {
   /// Returns width by height of the part that shows the scene.
   double aspect() const { return static_cast<double>(width_) / (height_ - strip_); }
 
-  /// Lets everything drawn from now on go to the samples.
-  void begin();
-  /// Makes pixels of the samples and lets everything drawn from now on go to the pixels.
+  /// Lets everything drawn from now on be surfaces, with depths: there are none yet.
+  void begin_surfaces();
+  /// Lets everything drawn from now on go over the lit picture, without depths; binds what there is
+  /// of surfaces as textures 1 (normals), 2 (paints) and 3 (depths).
+  void begin_light();
+  /// Lets everything drawn from now on go over the lit picture, with the surfaces' depths.
+  void begin_marks();
+  /// Lets everything drawn from now on go to the pixels; binds the lit picture as texture 1.
+  void begin_pixels();
+  /// Makes pixels of the lit picture as it is and lets everything drawn from now on go to them.
   void finish();
   /// Copies the pixels to the window's own (framebuffer 0), at this place from the lower left.
   void show(int x, int y);
@@ -43,8 +48,11 @@ class Canvas {
   int width_;
   int height_;
   int strip_;
-  GlFramebuffer samples_, pixels_;
-  GlRenderbuffer sample_colours_, sample_depths_, pixel_colours_;
+  void bind(const GlFramebuffer& frame);
+
+  GlTexture normals_, paints_, depths_, lit_colours_;
+  GlRenderbuffer pixel_colours_;
+  GlFramebuffer surfaces_, lit_, marked_, pixels_;
 };
 
 }  // namespace thimble::app::view

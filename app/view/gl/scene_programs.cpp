@@ -6,7 +6,10 @@ namespace thimble::app::view {
 
 driver::Result<ScenePrograms> ScenePrograms::make() {
   const auto shaded = [](std::string (*vertex)(Shading), Shading shading) {
-    return GlProgram::make(vertex(shading), shaders::surface_fragment(shading));
+    const bool bent = vertex == shaders::dent_vertex;
+    return GlProgram::make(vertex(shading), shading == Shading::kGouraud
+                                                ? shaders::gouraud_fragment()
+                                                : shaders::surface_fragment(shading, bent));
   };
   const auto grounded = [](Shading shading) {
     return GlProgram::make(shaders::ground_vertex(), shaders::ground_fragment(shading));
@@ -20,12 +23,14 @@ driver::Result<ScenePrograms> ScenePrograms::make() {
   auto shadow = GlProgram::make(shaders::shadow_vertex(), shaders::shadow_fragment());
   auto plain = GlProgram::make(shaders::plain_vertex(), shaders::plain_fragment());
   auto coloured = GlProgram::make(shaders::coloured_vertex(), shaders::coloured_fragment());
-  auto backdrop = GlProgram::make(shaders::backdrop_vertex(), shaders::backdrop_fragment());
   auto ground = grounded(Shading::kPhong);
   auto ground_marked = grounded(Shading::kMarked);
+  auto backdrop = GlProgram::make(shaders::picture_vertex(), shaders::backdrop_fragment());
+  auto light = GlProgram::make(shaders::picture_vertex(), shaders::light_fragment());
+  auto smooth = GlProgram::make(shaders::picture_vertex(), shaders::smooth_fragment());
   for (const auto* program :
        {&surface, &dent, &surface_gouraud, &dent_gouraud, &surface_marked, &dent_marked, &shadow,
-        &plain, &coloured, &backdrop, &ground, &ground_marked}) {
+        &plain, &coloured, &ground, &ground_marked, &backdrop, &light, &smooth}) {
     if (!*program) return program->error();
   }
   return ScenePrograms{.surface = std::move(surface).value(),
@@ -37,14 +42,17 @@ driver::Result<ScenePrograms> ScenePrograms::make() {
                        .shadow = std::move(shadow).value(),
                        .plain = std::move(plain).value(),
                        .coloured = std::move(coloured).value(),
-                       .backdrop = std::move(backdrop).value(),
                        .ground = std::move(ground).value(),
-                       .ground_marked = std::move(ground_marked).value()};
+                       .ground_marked = std::move(ground_marked).value(),
+                       .backdrop = std::move(backdrop).value(),
+                       .light = std::move(light).value(),
+                       .smooth = std::move(smooth).value()};
 }
 
-std::array<const GlProgram*, 12> ScenePrograms::all() const {
-  return {&surface, &dent,  &surface_gouraud, &dent_gouraud, &surface_marked, &dent_marked,
-          &shadow,  &plain, &coloured,        &backdrop,     &ground,         &ground_marked};
+std::array<const GlProgram*, 14> ScenePrograms::all() const {
+  return {&surface,       &dent,     &surface_gouraud, &dent_gouraud, &surface_marked,
+          &dent_marked,   &shadow,   &plain,           &coloured,     &ground,
+          &ground_marked, &backdrop, &light,           &smooth};
 }
 
 }  // namespace thimble::app::view

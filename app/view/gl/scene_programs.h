@@ -9,15 +9,16 @@ namespace thimble::app::view {
 /// The programs that a scene is drawn with. Precondition of all: the context they were made in is
 /// current.
 struct ScenePrograms {
-  GlProgram surface, dent;                  // shaded in every pixel
+  GlProgram surface, dent;                  // what `light` shades in every pixel
   GlProgram surface_gouraud, dent_gouraud;  // shaded in every corner
   GlProgram surface_marked, dent_marked;    // as the first, with marks
-  GlProgram shadow, plain, coloured, backdrop, ground, ground_marked;
+  GlProgram shadow, plain, coloured, ground, ground_marked;
+  GlProgram backdrop, light, smooth;  // over the whole picture
 
   /// Makes them out of the shaders. Fails as GlProgram::make does.
   static driver::Result<ScenePrograms> make();
   /// Lists all of them.
-  std::array<const GlProgram*, 12> all() const;
+  std::array<const GlProgram*, 14> all() const;
 };
 
 }  // namespace thimble::app::view

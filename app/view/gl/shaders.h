@@ -19,16 +19,23 @@ namespace thimble::app::view::shaders {
 
 std::string surface_vertex(Shading shading);  ///< Of meshes and solids: position 0, normal 1.
 std::string dent_vertex(Shading shading);     ///< Of DentVertex: its members, in order.
-std::string surface_fragment(Shading shading);
-std::string shadow_vertex();  ///< Position 0; the depth as the light sees it.
+/// Writes normal and paint, to be lit (light_fragment); `bent`: normals of any length.
+std::string surface_fragment(Shading shading, bool bent);
+std::string gouraud_fragment();  ///< Lit in the corners, shadows in the pixel.
+std::string shadow_vertex();     ///< Position 0; the depth as the light sees it.
 std::string shadow_fragment();
 std::string plain_vertex();  ///< Position 0, in one colour: lines, planes, what shines through.
 std::string plain_fragment();
-std::string backdrop_vertex();  ///< No attributes: one triangle that covers the picture.
-std::string backdrop_fragment();
 std::string ground_vertex();  ///< No attributes: a square on the ground.
 std::string ground_fragment(Shading shading);
 std::string coloured_vertex();  ///< Of ColouredVertex: its members, in order.
 std::string coloured_fragment();
+std::string picture_vertex();  ///< No attributes: one triangle that covers the picture.
+std::string backdrop_fragment();
+std::string light_fragment();  ///< Lights what surface_fragment wrote.
+/// Smooths the edges of what is in a picture, and leaves out all other pixels: where neighbours
+/// differ in brightness, along the edge to both its ends, and each pixel takes of its neighbour
+/// what the edge between those leaves it [FXAA].
+std::string smooth_fragment();
 
 }  // namespace thimble::app::view::shaders

@@ -38,6 +38,9 @@ class SurfaceModel {
   /// Returns whether no light gets in: of a closed mesh only what faces the light casts shadows.
   bool closed() const { return closed_; }
 
+  /// Returns what it is in: its box and a little more, for what is bent. Mesh's frame, m.
+  const Eigen::AlignedBox3f& box() const { return box_; }
+
   bool empty() const { return triangles_ == 0; }
   std::size_t triangles() const { return triangles_; }
 

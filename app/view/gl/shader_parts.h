@@ -1,0 +1,126 @@
+#pragma once
+
+#include <string>
+
+#include "view/gl/shaders.h"
+
+// Parts that several shaders have in common.
+namespace thimble::app::view::shaders {
+
+inline const std::string kHead = R"(#version 330 core
+layout(std140) uniform View {
+  mat4 view_projection;
+  mat4 shadow_from_world;
+  vec4 eye;          // m, W
+  vec4 key;          // towards the light
+  vec4 sky;          // colours of the background, linear
+  vec4 ground;
+  vec4 grid;
+  vec4 ground_place; // centre x, y; height; radius, m
+  vec4 ray_right;    // from the middle of the picture to its right rim, one metre before the eye
+  vec4 ray_up;       // and to its upper rim
+  vec4 ray_ahead;    // from the eye to the middle
+  vec4 from_depth;   // x, y: the distance ahead is x / (depth + y), depth in -1 to 1
+  vec4 casters;      // what casts shadows, in the light's map: least x, y; most x, y
+};
+)";
+
+// What follows is left out of a program that does not need it: Mesa's software runs both sides of
+// an `if`, for a condition masks lanes and does not jump. It jumps where all lanes are discarded,
+// and out of a loop that no lane goes on with, whose body it has run once.
+inline std::string choice(Shading shading) {
+  return shading == Shading::kGouraud  ? "#define GOURAUD\n"
+         : shading == Shading::kMarked ? "#define MARKED\n"
+                                       : "";
+}
+
+// Dots on what has a texture, lines on what has friction, in the object's own frame so that they
+// move with it; 2 and 3 mm apart, so that a few are seen on what a hand strokes.
+inline const std::string kMarks = R"(
+uniform int marks;  // 1: dots, 2: lines, 3: both
+float unmarked(vec3 p) {
+  // Turned, so that no face of a box lies along the lattice: what cuts it sees dots of all sizes.
+  const mat3 turn = mat3(0.36, 0.48, -0.8, -0.8, 0.6, 0.0, 0.48, 0.64, 0.6);
+  vec3 q = turn * p / 0.002;
+  float away = length(fract(q) - 0.5);
+  float soft = clamp(length(fwidth(q)), 0.01, 1.0);
+  float dots = (1.0 - smoothstep(0.26, 0.26 + soft, away)) * (1.0 - smoothstep(0.4, 1.0, soft));
+  float s = dot(p, vec3(0.57, 0.71, 0.41)) / 0.003;
+  float wide = clamp(fwidth(s), 0.005, 1.0);
+  float lines = (1.0 - smoothstep(0.05, 0.05 + wide, abs(fract(s) - 0.5))) *
+                (1.0 - smoothstep(0.3, 0.8, wide));
+  float cover = max(0.34 * float(marks & 1) * dots, 0.22 * float(marks >> 1) * lines);
+  return 1.0 - cover;
+}
+)";
+
+// Light from a window to the left (the key), from a pale wall to the right (the fill), from the sky
+// above and from the table below.
+inline const std::string kLight = R"(
+// `colour` linear; `gloss` the share of the key's mirror image; `n` a unit vector.
+void light(vec3 n, vec3 p, vec3 colour, float gloss, out vec3 around, out vec3 direct) {
+  vec3 to_eye = normalize(eye.xyz - p);
+  float up = 0.5 + 0.5 * n.z;
+  vec3 fill = normalize(vec3(0.35, 0.85, 0.15));
+  around = colour * (mix(vec3(0.17, 0.155, 0.15), vec3(0.36, 0.39, 0.43), up) +
+                     0.18 * max(dot(n, fill), 0.0));
+  float facing = max(dot(n, key.xyz), 0.0);
+  // To the 48th power by multiplying, which software does faster.
+  float mirror = max(dot(n, normalize(key.xyz + to_eye)), 0.0);
+  mirror *= mirror;
+  mirror *= mirror;
+  mirror *= mirror;
+  mirror *= mirror;
+  mirror *= mirror * mirror;
+  direct = colour * (0.90 * facing) + vec3(gloss * mirror * smoothstep(0.0, 0.2, facing));
+}
+)";
+
+inline const std::string kShadow = R"(
+uniform sampler2DShadow shadow_map;
+uniform float shadow_strength;
+uniform int shadow_samples;   // along a side; >= 2
+float open_at(vec3 at, vec2 by) { return textureLod(shadow_map, vec3(at.xy + by, at.z), 0.0); }
+float lit(vec3 p) {
+  vec3 at = (shadow_from_world * vec4(p, 1.0)).xyz * 0.5 + 0.5;
+  // Towards the rim of what the light's map holds, shadows fade: beyond nothing is known.
+  float rim = 2.0 * max(abs(at.x - 0.5), abs(at.y - 0.5));
+  float strength = max(rim, 2.0 * abs(at.z - 0.5)) > 1.0 ? 0.0 : shadow_strength;
+  // Beside all that casts shadows there are none.
+  bool beside = any(lessThan(at.xy, casters.xy)) || any(greaterThan(at.xy, casters.zw));
+  // Of a square of samples, each the mean of four already. Where its corners and its middle agree,
+  // the rest would as well: most of a picture is that.
+  int side = strength > 0.0 && !beside ? shadow_samples : 0;
+  float middle = 0.5 * float(shadow_samples - 1);
+  vec2 texel = 6.4 / float(shadow_samples) / vec2(textureSize(shadow_map, 0));
+  // One sample in a turn: where none is needed, one is all that software takes.
+  vec2 c = middle * texel;
+  float corners = 0.0;
+  float centre = 0.0;
+  int looks = side > 2 ? 5 : min(side, 1) * 4;
+  for (int i = 0; i < looks; ++i) {
+    vec2 by = i == 4 ? vec2(0.0) : c * vec2(float(i & 1) * 2.0 - 1.0, float(i & 2) - 1.0);
+    float one = open_at(at, by);
+    corners += i == 4 ? 0.0 : one;
+    centre += i == 4 ? one : 0.0;
+  }
+  bool mixed = side > 2 && corners + centre > 0.001 && corners + centre < 4.999;
+  float sum = corners;
+  // The corners are known.
+  int last = side * side - 1;
+  for (int i = 1; i < (mixed ? last : 0); ++i) {
+    if (i == side - 1 || i == last - side + 1) continue;
+    vec2 place = vec2(float(i % side), float(i / side));
+    sum += open_at(at, (place - middle) * texel);
+  }
+  float open = side == 0 ? 1.0 : mixed ? sum / float(last + 1) : 0.25 * corners;
+  return mix(1.0, open, strength * (1.0 - smoothstep(0.8, 0.98, rim)));
+}
+)";
+
+inline const std::string kToScreen = R"(
+// The screen's 2.2 taken as 2: colours come in by the same, and software is twice as fast.
+vec3 to_screen(vec3 linear) { return sqrt(clamp(linear, 0.0, 1.0)); }
+)";
+
+}  // namespace thimble::app::view::shaders
