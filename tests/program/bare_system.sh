@@ -11,6 +11,7 @@ make_bare() {
     fail "no bare Debian: $(tail -n 5 log)"
   cp /etc/resolv.conf /etc/hosts "$bare/etc/" 2>/dev/null || true
   if [ -d /etc/apt/apt.conf.d ]; then cp -n /etc/apt/apt.conf.d/* "$bare/etc/apt/apt.conf.d/"; fi
+  echo force-unsafe-io >"$bare/etc/dpkg/dpkg.cfg.d/unsafe-io"  # nothing there must survive a loss of power
   mount -t proc proc "$bare/proc"
 }
 

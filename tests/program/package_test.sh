@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Makes the Debian packages, lets lintian judge them, and looks at what they hold. With THIMBLE_LONG and as
-# root it installs them into a bare Debian 12 and there touches without and with the scans, runs every command of
-# the guide, and builds and runs the examples.
+# root it installs them into a bare Debian 12 and there touches without and with the scans, publishes topics of ROS 2, runs
+# every command of the guide (of studies the first second: they take minutes and have tests of their own), and builds and
+# runs the examples.
 #   package_test.sh BUILD_FOLDER SOURCE_FOLDER
 set -euo pipefail
 build=$1 source=$2
@@ -38,7 +39,8 @@ for file in usr/bin/thimble usr/share/man/man1/thimble.1.gz usr/lib/udev/rules.d
   holds "$program" "$file"
 done
 for file in usr/include/thimble/driver/safety_gate.h usr/include/thimble/scene/scene_file.h \
-  usr/include/thimble/session/session.h usr/lib/cmake/thimble/thimbleConfig.cmake; do
+  usr/include/thimble/session/session.h usr/lib/cmake/thimble/thimbleConfig.cmake \
+  "usr/lib/$(dpkg-architecture -qDEB_HOST_MULTIARCH)/pkgconfig/thimble.pc"; do
   holds "$development" "$file"
 done
 # What thimbleConfig.cmake asks for, by the names that pkg-config and then Debian know it by.
@@ -99,6 +101,13 @@ inside 'apt-get install -y -q ./root/thimble_*.deb $(dpkg-deb -f /root/thimble_*
 if ls "$bare"/root/python3-thimble_*.deb >/dev/null 2>&1; then
   inside 'apt-get install -y -q --no-install-recommends ./root/python3-thimble_*.deb'
 fi
+if ls "$bare"/root/thimble-ros2_*.deb >/dev/null 2>&1; then
+  inside 'cd /root && thimble run rubber --ros2 --duration 1 | grep thimble-ros2; [ ${PIPESTATUS[0]} != 0 ]'
+  inside 'apt-get install -y -q --no-install-recommends ./root/thimble-ros2_*.deb'
+  inside 'cd /root && thimble run rubber --ros2 --duration 1'
+  grep -qE '^ROS 2 +[1-9][0-9]* ticks published' log || fail "with the package thimble-ros2 a run said: $(cat log)"
+  echo "  topics of ROS 2: $(grep -m 1 '^ROS 2' log)"
+fi
 inside 'apt-get install -y -q --no-install-recommends ./root/libthimble-dev_*.deb g++ cmake make'
 inside 'cd /root && thimble run elephant --report out && ls out/index.html out/force_and_depth.png && ls ~/.cache/thimble/meshes/elephant.off'
 echo "  the README's first touch: $(grep -m 1 '^Contact' log || head -n 1 log)"
@@ -131,5 +140,5 @@ inside 'cmake -S /usr/share/doc/thimble/examples -B /root/built && cmake --build
 inside 'cd /root && for example in built/0?_*; do
           [ -x $example ] && [ -f $example ] || continue; $example || exit 1; done'
 echo "  the examples: $(tail -n 1 log)"
-inside 'apt-get purge -y -q thimble libthimble-dev $(dpkg-query -W -f "\${Package} " python3-thimble 2>/dev/null) && ! ls /usr/share/thimble'
+inside 'apt-get purge -y -q thimble libthimble-dev $(dpkg-query -W -f "\${Package} " python3-thimble thimble-ros2 2>/dev/null) && ! ls /usr/share/thimble'
 echo "Done."
