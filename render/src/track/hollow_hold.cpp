@@ -65,7 +65,7 @@ HollowHold hold_in_hollow(const ContactMesh& mesh, std::int32_t triangle,
 bool on_hollow_crease(const ContactMesh& mesh, const SmoothNormals& normals,
                       const SurfacePlace& place) noexcept {
   const auto hollow_crease = [&](std::int32_t t, std::size_t k) {
-    return normals.crease(t, k) && mesh.cell(t).hollow_edge(k);
+    return normals.crease(t, k) && mesh.hollow_edge(t, k);
   };
   if (place.on == SurfacePlace::On::kFace) return false;
   if (place.on == SurfacePlace::On::kEdge) return hollow_crease(place.triangle, place.k);
