@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "bringup/identify/constants_table.h"
-#include "bringup/identify/identified_file.h"
 #include "bringup/identify/identify.h"
+#include "bringup/identify/new_file/identified_file.h"
 #include "bringup/identify/simulated_bench.h"
 #include "cli/arm_choice.h"
 #include "cli/commands.h"

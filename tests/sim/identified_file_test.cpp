@@ -1,4 +1,4 @@
-#include "bringup/identify/identified_file.h"
+#include "bringup/identify/new_file/identified_file.h"
 
 #include <gtest/gtest.h>
 

@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "bringup/identify/identified_file.h"
 #include "bringup/identify/identify.h"
+#include "bringup/identify/new_file/identified_file.h"
 #include "bringup/identify/record_motion.h"
 #include "bringup/identify/simulated_bench.h"
 #include "read_scene.h"

@@ -1,4 +1,4 @@
-#include "bringup/identify/identified_file.h"
+#include "bringup/identify/new_file/identified_file.h"
 
 #include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
@@ -11,8 +11,8 @@
 #include <string_view>
 #include <vector>
 
-#include "bringup/identify/file_lines.h"
-#include "bringup/identify/identified_further.h"
+#include "bringup/identify/new_file/file_lines.h"
+#include "bringup/identify/new_file/identified_further.h"
 #include "read_scene.h"
 #include "yaml/yaml_reader.h"
 

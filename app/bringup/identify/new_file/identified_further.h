@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "bringup/identify/identified_file.h"
 #include "bringup/identify/identify.h"
+#include "bringup/identify/new_file/identified_file.h"
 #include "thimble/driver/result.h"
 
 namespace thimble::app {
