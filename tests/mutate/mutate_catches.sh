@@ -2,6 +2,7 @@
 # Shows that the mutants' tool tells what it must, on a small project of its own (sample): which mutants are
 # killed, which survive, which hang or do not compile, and that its exit code says whether enough are killed.
 set -euo pipefail
+[ -n "${THIMBLE_LONG:-}" ] || { echo "SKIPPED: the mutants' tool is tried in the long form, which runs it." && exit 77; }
 for tool in python3 git ninja; do command -v "$tool" >/dev/null || exit 77; done
 here=$(cd "$(dirname "$0")" && pwd)
 scratch=$(mktemp -d)
