@@ -91,7 +91,7 @@ WatchdogSeen see_watchdog(BenchArm& bench, const WatchdogOrder& order, double si
   std::vector<double> way;  // m, a tick each
   double last = -1;         // s
   int reports = 0;
-  bool outside = false;
+  bool outside = false, faulted = false;
   const auto push = [&](const driver::DeviceState& state) -> Vector3d {
     // A run begins in the tick in which the one before it ended.
     if (bench.now() - last > 0.5 * kSecond) way.push_back(sign * (state.p_WT[kAxis] - from));
@@ -106,12 +106,13 @@ WatchdogSeen see_watchdog(BenchArm& bench, const WatchdogOrder& order, double si
   while (pushed && !outside &&
          way.size() < silent_from + static_cast<std::size_t>(3 * order.named / kSecond) &&
          std::abs(way.back()) < kWatchdogWayMost) {
-    // Whether the driver notices its own silence is not asked here.
-    bench.run(kSilent, push, stop, true);
-    if (stop.load()) break;
+    // Whether the driver notices its own silence is not asked here; that no report comes is.
+    faulted = !bench.run(kSilent, push, stop, true);
+    if (faulted) break;
   }
   bench.device().deactivate();
   if (!pushed || outside || stop.load()) return seen;
+  if (faulted && reports > kUnasked) return seen;
   seen.way = way.back();
   if (reports <= kUnasked) {
     seen.end = WatchdogEnd::kAnswersOnly;

@@ -133,7 +133,8 @@ class Recorder {
     }
     f += carried_W_;
     const double length = f.norm();
-    return length > force_most_ ? Eigen::Vector3d(f * (force_most_ / length)) : f;
+    const double most = Excitation::kShareMost * force_most_;
+    return length > most ? Eigen::Vector3d(f * (most / length)) : f;
   }
 
   /// Returns the torques of the force that stands, in the pose that it was sent for.
