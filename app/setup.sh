@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Makes a Debian 12 machine ready and builds one preset: installs the Debian packages that are missing,
 # unpacks the scanned meshes, configures, builds. Quick when there is nothing to do.
-#   app/setup.sh [PRESET [TARGET...]]      PRESET: release (default), dev, clang, asan, tsan, tsan-all, coverage
+#   app/setup.sh [PRESET [TARGET...]]      PRESET: release (default), dev, clang, asan, asan-all, tsan, tsan-all,
+#                                        coverage
 set -euo pipefail
 cd "$(dirname "$0")/.."
 preset=${1:-release}

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Runs every test: sets the machine up, builds, and runs the tests as release, all but those of
-# release_only.list under the address and undefined-behaviour sanitizers, and the GoogleTest programs in
-# which threads meet under the thread sanitizer.
+# Runs every test: sets the machine up, builds, and runs all tests as release, those of the libraries of a run
+# (tests/CMakeLists.txt) but for release_only.list under the address and undefined-behaviour sanitizers, and of these
+# the ones in which threads meet under the thread sanitizer.
 #   tests/run.sh [--long] [PRESET...]    --long: all tests under all sanitizers, at full length, the
 #                                        release built by clang, a build in which no sources are
 #                                        joined, then sines on 64-bit ARM under QEMU, clang-tidy,
@@ -14,7 +14,7 @@ presets=()
 for argument in "$@"; do
   case $argument in
     --long) export THIMBLE_LONG=1 ;;
-    release | dev | clang | asan | tsan | tsan-all) presets+=("$argument") ;;
+    release | dev | clang | asan | asan-all | tsan | tsan-all) presets+=("$argument") ;;
     *)
       sed -n '2,10s/^# \{0,1\}//p' "$0"
       exit 2
@@ -23,7 +23,7 @@ for argument in "$@"; do
 done
 more=()
 if [ ${#presets[@]} = 0 ]; then
-  presets=(release asan "tsan${THIMBLE_LONG:+-all}")
+  presets=(release "asan${THIMBLE_LONG:+-all}" "tsan${THIMBLE_LONG:+-all}")
   if [ -n "${THIMBLE_LONG:-}" ]; then
     more=(arm64 tidy coverage mutate)
     if tests/optional_packages.sh "the build by clang" clang; then presets+=(clang); fi
@@ -59,15 +59,16 @@ tell_failures() {  # tell_failures PRESET
 failed=()
 for preset in "${presets[@]}"; do
   leave=() targets=()
-  # Programs of threads alone, and what they link: `thimble` itself runs under the thread sanitizer in the long form.
-  if [ "$preset" = tsan ]; then
-    targets=(tests_app tests_dhd tests_driver tests_faces tests_render tests_rt tests_sim)
-    leave=(-L .)
-  fi
+  case $preset in
+    asan | tsan)
+      targets=(tests)
+      leave=(-L .) # what lies in sources, and not in a program, was tested with the release
+      ;;
+  esac
   app/setup.sh "$preset" "${targets[@]}"
   echo "== Tests: $preset"
   if [ "$preset" = asan ] && [ -z "${THIMBLE_LONG:-}" ]; then
-    leave=(-E "$(tests/release_only.sh)")
+    leave+=(-E "$(tests/release_only.sh)")
     echo "Left to the release and to --long: the tests of tests/release_only.list"
   fi
   # Tests by the wall clock fail where the machine stands still for longer than an arm's watchdog allows; what fails by

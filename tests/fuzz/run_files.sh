@@ -1,25 +1,17 @@
 #!/usr/bin/env bash
-# Fuzzes what reads scenes and arms, what reads meshes, what reads pages and what reads recordings for 4 s
-# each (THIMBLE_FUZZ_SECONDS says another time), which the kinds of such a file share, 1 s at least; or with
-# THIMBLE_LONG each kind for 60 s, as many at once as there are processors. Skipped where the fuzzer was
-# not built.
+# Fuzzes what reads scenes and arms, what reads meshes, what reads pages and what reads recordings, each kind of
+# file for 60 s (THIMBLE_FUZZ_SECONDS says another time), as many at once as there are processors. In the long form
+# (THIMBLE_LONG) it builds the fuzzer before; without it and without a fuzzer it is skipped.
 #   tests/fuzz/run_files.sh BUILD_DIR CORPUS
 set -euo pipefail
 fuzzer=$(realpath "$1")/fuzz_files
 corpus=$(realpath "$2")
+[ -z "${THIMBLE_LONG:-}" ] || ninja -C "$1/../.." file_fuzzer
 if [ ! -x "$fuzzer" ]; then
-  echo "FUZZING SKIPPED: build it with: cmake --build --preset release --target fuzz"
+  echo "FUZZING SKIPPED: build it with: cmake --build --preset release --target file_fuzzer"
   exit 77
 fi
-seconds_of() {  # seconds_of KIND
-  local all=${THIMBLE_FUZZ_SECONDS:-4}
-  [ -z "${THIMBLE_LONG:-}" ] || { echo 60; return; }
-  case $1 in
-    scene | arm) echo $(((all + 1) / 2)) ;;  # 0 s would be for ever
-    off | obj | stl | ply | gltf | glb | 3mf | dae | amf | 3ds) echo $(((all + 9) / 10)) ;;
-    *) echo "$all" ;;
-  esac
-}
+seconds=${THIMBLE_FUZZ_SECONDS:-60}
 [ -n "${TMPDIR:-}" ] || [ ! -w /dev/shm ] || export TMPDIR=/dev/shm  # some disks are slow
 work=$(mktemp -d)
 export TMPDIR=$work  # the files that are read
@@ -32,7 +24,7 @@ cd "$work"
 # A crash is shown: copy it into the corpus of its kind, named after the fault.
 fuzz() {  # fuzz KIND
   mkdir "found_$1"
-  THIMBLE_FILE_KIND=$1 "$fuzzer" -max_total_time="$(seconds_of "$1")" -max_len=2000 -timeout=20 \
+  THIMBLE_FILE_KIND=$1 "$fuzzer" -max_total_time="$seconds" -max_len=2000 -timeout=20 \
     -malloc_limit_mb=65536 -rss_limit_mb=4096 -seed=1 -print_final_stats=1 \
     -artifact_prefix="$work/$1_" "found_$1" "$corpus/$1" >"$1.log" 2>&1 || {
     tail -n 40 "$1.log"
@@ -43,8 +35,7 @@ fuzz() {  # fuzz KIND
   }
   echo "$1: $(grep -oE 'number_of_executed_units: *[0-9]+' "$1.log")"
 }
-export -f fuzz seconds_of
-export fuzzer corpus work
+export -f fuzz
+export fuzzer corpus work seconds
 for kind in "$corpus"/*; do basename "$kind"; done |
-  xargs -P "$([ -z "${THIMBLE_LONG:-}" ] && echo 1 || nproc)" -I{} \
-    bash -c 'set -euo pipefail; fuzz {}'
+  xargs -P "$(nproc)" -I{} bash -c 'set -euo pipefail; fuzz {}'
