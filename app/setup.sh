@@ -85,8 +85,8 @@ run() {
 [ -f "build/$preset/build.ninja" ] || run cmake --preset "$preset"
 if [ ${#targets[@]} -gt 0 ]; then
   echo "Building ${targets[*]} ($preset) ..."
-  run cmake --build --preset "$preset" --target "${targets[@]}"
+  run cmake --build --preset "$preset" --parallel "$(nproc)" --target "${targets[@]}"
 else
   echo "Building everything ($preset) ..."
-  run cmake --build --preset "$preset"
+  run cmake --build --preset "$preset" --parallel "$(nproc)"
 fi

@@ -34,7 +34,7 @@ class PathBounded {
   /// what it needs, code as well, and nothing has changed (ForceLaw::prepare). Only for stages of
   /// which a copy costs a few pointers (kCopiesCheaply). Real-time: safe.
   void prepare(const driver::DeviceState& expected) const noexcept
-      requires(Contact::kCopiesCheaply) {
+      requires requires { requires Contact::kCopiesCheaply; } {
     Contact guess = contact_;
     const ContactState* found = &guess.update(expected);
     // Whoever compiles this may not leave out what nobody reads.
