@@ -11,6 +11,10 @@
 
 namespace thimble::render {
 
+/// A stage says that a copy of it costs a few pointers.
+template <class Contact>
+concept CopiesCheaply = Contact::kCopiesCheaply;
+
 /// A `Contact` stage of Touch around another one, of any kind: what is felt changes by no more than
 /// the tip's path implies, at any depth (felt_anchor.h). Depth, normal and proxy are those that are
 /// felt; triangle and hops are those that were found.
@@ -33,8 +37,7 @@ class PathBounded {
   /// Asks a copy of the stage inside where the tip is expected: the tick then finds in the cache
   /// what it needs, code as well, and nothing has changed (ForceLaw::prepare). Only for stages of
   /// which a copy costs a few pointers (kCopiesCheaply). Real-time: safe.
-  void prepare(const driver::DeviceState& expected) const noexcept
-      requires requires { requires Contact::kCopiesCheaply; } {
+  void prepare(const driver::DeviceState& expected) const noexcept requires CopiesCheaply<Contact> {
     Contact guess = contact_;
     const ContactState* found = &guess.update(expected);
     // Whoever compiles this may not leave out what nobody reads.
