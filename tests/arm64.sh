@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Builds tests for 64-bit ARM and runs them by QEMU, with the hashes that x86-64 stored. Emulated: no board was asked.
-#   tests/arm64.sh [PROGRAM...]    PROGRAM: of the tests, such as test_packed; without one test_math, which is quick
+#   tests/arm64.sh [--all | PROGRAM...]    PROGRAM: of the tests, such as test_packed; without one test_math, which
+#                                          is quick; --all: those of driver, device_sim, render and tests/sim, hours
 # Ends with 3 where the cross compiler or QEMU is not installed.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -10,19 +11,27 @@ for tool in aarch64-linux-gnu-g++ qemu-aarch64; do
     exit 3
   }
 done
-programs=("${@:-test_math}")
 tests/arm64_sysroot.sh build/arm64_sysroot
 cmake --preset arm64 >build/arm64.log 2>&1 || {
   tail -n 20 build/arm64.log >&2
   exit 1
 }
-cmake --build --preset arm64 --target "${programs[@]}"
+if [ "${1:-}" = --all ]; then
+  cmake --build --preset arm64 --parallel "$(nproc)" --target tests_driver tests_device_sim tests_render tests_sim
+  mapfile -t paths < <(find build/arm64/tests/unit/{driver,device_sim,render} build/arm64/tests/sim \
+    -type f -name 'test_*' -perm -u+x | sort)
+else
+  programs=("${@:-test_math}")
+  cmake --build --preset arm64 --parallel "$(nproc)" --target "${programs[@]}"
+  mapfile -t paths < <(for program in "${programs[@]}"; do
+    find build/arm64/tests -type f -name "$program" -perm -u+x
+  done)
+fi
 
 failed=()
-for program in "${programs[@]}"; do
-  path=$(find build/arm64/tests -type f -name "$program" -perm -u+x)
-  echo "== $program on 64-bit ARM"
-  qemu-aarch64 -L build/arm64_sysroot "$path" --gtest_brief=1 || failed+=("$program")
+for path in "${paths[@]}"; do
+  echo "== $(basename "$path") on 64-bit ARM"
+  qemu-aarch64 -L build/arm64_sysroot "$path" --gtest_brief=1 || failed+=("$(basename "$path")")
 done
 if [ ${#failed[@]} -gt 0 ]; then
   echo "FAILED on 64-bit ARM: ${failed[*]}" >&2
