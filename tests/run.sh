@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Runs every test: sets the machine up, builds, and runs all tests as release, those of the libraries of a run
 # (tests/CMakeLists.txt) but for release_only.list under the address and undefined-behaviour sanitizers, and of these
-# the ones in which threads meet under the thread sanitizer.
+# the ones in which threads of a run meet under the thread sanitizer.
 #   tests/run.sh [--long] [PRESET...]    --long: all tests under all sanitizers, at full length, the
 #                                        release built by clang, a build in which no sources are
 #                                        joined, then sines on 64-bit ARM under QEMU, clang-tidy,
