@@ -37,12 +37,32 @@ struct Swing {
   double width() const { return std::max(0.0, most - least); }
 };
 
+/// One of the starts: they are spread evenly however many there are, by multiples of the golden
+/// section and of roots.
+struct Start {
+  double speed;   // m/s
+  double beside;  // of the tip's place the wall stands, m
+  double dither;  // of a fine step, that its search begins higher, -0.5 to 0.5
+
+  Start(int number, const EdgeSearch& search, double step) {
+    const auto spread = [number](double by) {
+      const double at = by * (number + 0.5);
+      return at - std::floor(at) - 0.5;
+    };
+    speed = search.speed * (1 + search.speed_span * spread(std::numbers::sqrt2));
+    beside = step * spread(std::numbers::phi - 1);
+    dither = spread(std::numbers::sqrt3);
+  }
+};
+
 /// One wall in front of a free tip: settle, kick, spring, and what became of it.
 class Trial {
  public:
-  Trial(const EdgeSearch& search, double mass, double stiffness, const Vector3d& p_WT)
-      : axis_(search.axis), mass_(mass), stiffness_(stiffness), hold_(p_WT) {
-    kick_ = mass * search.speed / kKickForce;
+  Trial(int axis, const Start& start, double mass, double stiffness, const Vector3d& p_WT)
+      : axis_(axis), start_(start), mass_(mass), stiffness_(stiffness), hold_(p_WT) {
+    // Whole ticks, and the force that gives the speed within them.
+    kick_ = kTick * std::max(1.0, std::ceil(mass * start.speed / kKickForce / kTick));
+    kick_force_ = mass * start.speed / kick_;
     const double period = 2 * std::numbers::pi * std::sqrt(mass / stiffness);
     window_ = std::max(kWindowLeast, 1.2 * period);
     watched_ = std::max(kWatchedLeast, 4 * window_);
@@ -55,12 +75,12 @@ class Trial {
     if (time < kSettle || over_) return shortened(f_W);
     f_W[axis_] = 0;
     if (time < kSettle + kick_) {
-      f_W[axis_] = kKickForce;
+      f_W[axis_] = kick_force_;
       return shortened(f_W);
     }
     if (!walled_) {
       walled_ = true;
-      place_ = state.p_WT[axis_];
+      place_ = state.p_WT[axis_] + start_.beside;
       given_ = 0;
     } else {
       given_ += f_sent_W.dot(way);
@@ -71,7 +91,8 @@ class Trial {
     if (since > watched_ - window_) last_.add(away);
     given_most_ = std::max(given_most_, given_);
     // Written so that NaN grows.
-    const bool tame = given_ < kEnergyTimes * 0.5 * mass_ * speed2() && std::abs(away) < kFar;
+    const bool tame =
+        given_ < kEnergyTimes * 0.5 * mass_ * start_.speed * start_.speed && std::abs(away) < kFar;
     if (!tame) {
       grew_ = over_ = true;
       hold_.go_to(state.p_WT);
@@ -88,17 +109,15 @@ class Trial {
   double given_most() const { return given_most_; }
 
  private:
-  double speed2() const {
-    const double speed = kick_ * kKickForce / mass_;
-    return speed * speed;
-  }
   static Vector3d shortened(const Vector3d& f_W) {
     const double length = f_W.norm();
     return length > kForceMost ? Vector3d(f_W * (kForceMost / length)) : f_W;
   }
 
   int axis_;
+  Start start_;
   double mass_, stiffness_;
+  double kick_force_ = 0;                       // N
   double kick_ = 0, window_ = 0, watched_ = 0;  // s
   HoldPlace hold_;
   bool walled_ = false, over_ = false, grew_ = false;
@@ -109,56 +128,116 @@ class Trial {
   Vector3d p_last_W_{0, 0, 0};
 };
 
+driver::Error ended(const BenchArm& bench) {
+  const driver::Fault fault = bench.fault();
+  if (fault == driver::Fault::kNone) return {"It was stopped."};
+  return {std::string(driver::describe(fault)) + " The motors are off."};
+}
+
+/// Tries walls one after the other, each from the place where the first began.
+class Search {
+ public:
+  Search(BenchArm& bench, const scene::ArmFile& file, const EdgeSearch& search,
+         const std::atomic<bool>& stop)
+      : bench_(bench),
+        search_(search),
+        stop_(stop),
+        mass_(file.simulated.plant.mass > 0 ? file.simulated.plant.mass : kMassUnknown),
+        step_(scene::worst_over_workspace(file).encoder_step),
+        p_start_W_(bench.device().state().p_WT) {}
+
+  driver::Result<EdgeOfWall> run() {
+    auto softest = first_rise();
+    if (!softest) return softest.error();
+    double begin = *softest;
+    for (int i = 0; i < search_.starts; ++i) {
+      const Start start(i, search_, step_);
+      auto edge = from(start, begin * std::pow(search_.factor, start.dither));
+      if (!edge) return edge.error();
+      edge_.at_start.push_back(*edge);
+      edge_.stiffness = median_interval(edge_.at_start);
+      begin = edge_.stiffness.median;
+    }
+    edge_.grew = edge_.stiffness.median < search_.last;
+    return edge_;
+  }
+
+ private:
+  /// Returns the stiffest wall that rests before the first that grows, in coarse steps.
+  driver::Result<double> first_rise() {
+    double rested = 0;
+    const Start start(0, search_, step_);
+    for (double k = search_.first; k <= search_.last; k *= search_.coarse) {
+      const auto grows = grew(start, k);
+      if (!grows) return grows.error();
+      if (*grows) break;
+      rested = k;
+    }
+    if (rested > 0) return rested;
+    return driver::Error{
+        "Even the softest wall grew: an encoder or a motor is turned round, or the loop is far "
+        "later than the arm file says."};
+  }
+
+  /// Returns where the outcome changes, by fine steps from a stiffness on; one that rests at the
+  /// last is the last, and one that still grows at the first is the first.
+  driver::Result<double> from(const Start& start, double stiffness) {
+    auto grows = grew(start, stiffness);
+    if (!grows) return grows.error();
+    const bool down = *grows;
+    while (*grows == down) {
+      const double next = down ? stiffness / search_.factor : stiffness * search_.factor;
+      if (next > search_.last) return search_.last;
+      if (next < search_.first) return search_.first;
+      grows = grew(start, next);
+      if (!grows) return grows.error();
+      if (*grows != down) return std::sqrt(stiffness * next);
+      stiffness = next;
+    }
+    return stiffness;
+  }
+
+  driver::Result<bool> grew(const Start& start, double stiffness) {
+    Trial trial(search_.axis, start, mass_, stiffness, p_start_W_);
+    const double begin = bench_.now();
+    const auto law = [&](const driver::DeviceState& state) -> Vector3d {
+      const Vector3d& f_sent_W = bench_.device().f_sent_W();
+      edge_.force_most = std::max(edge_.force_most, f_sent_W.norm());
+      return trial.force(state, f_sent_W, bench_.now() - begin);
+    };
+    if (!bench_.run(trial.duration(), law, stop_)) return ended(bench_);
+    ++edge_.walls;
+    edge_.given_most = std::max(edge_.given_most, trial.given_most());
+    if (!((bench_.device().state().p_WT - p_start_W_).norm() < 5 * kFar)) {
+      return driver::Error{
+          "The tip does not stay where it is let go, so no wall was tried further: put the arm "
+          "into the middle of its workspace, or balance it."};
+    }
+    return trial.grew(step_);
+  }
+
+  BenchArm& bench_;
+  const EdgeSearch& search_;
+  const std::atomic<bool>& stop_;
+  double mass_;  // kg
+  double step_;  // of the encoders at the tip, m
+  Vector3d p_start_W_;
+  EdgeOfWall edge_;
+};
+
 }  // namespace
 
 driver::Result<EdgeOfWall> find_edge_of_wall(BenchArm& bench, const scene::ArmFile& file,
                                              const EdgeSearch& search,
                                              const std::atomic<bool>& stop) {
   const auto rest = [](const driver::DeviceState&) { return Vector3d(0, 0, 0); };
-  const auto why = [&] {
-    const driver::Fault fault = bench.fault();
-    if (fault == driver::Fault::kNone) return driver::Error{"It was stopped."};
-    return driver::Error{std::string(driver::describe(fault)) + " The motors are off."};
-  };
   if (auto active = bench.device().activate(); !active) return active.error();
-  const auto off = [&](driver::Result<EdgeOfWall> result) {
-    bench.device().deactivate();
-    return result;
-  };
-  if (!bench.run(file.limits.soft_start + 0.05, rest, stop)) return off(why());
-  const double mass = file.simulated.plant.mass > 0 ? file.simulated.plant.mass : kMassUnknown;
-  const double step = scene::worst_over_workspace(file).encoder_step;
-  const Vector3d p_start_W = bench.device().state().p_WT;
-  EdgeOfWall edge;
-  for (double stiffness = search.first; stiffness <= search.last; stiffness *= search.factor) {
-    Trial trial(search, mass, stiffness, p_start_W);
-    const double begin = bench.now();
-    const auto law = [&](const driver::DeviceState& state) -> Vector3d {
-      const Vector3d& f_sent_W = bench.device().f_sent_W();
-      edge.force_most = std::max(edge.force_most, f_sent_W.norm());
-      return trial.force(state, f_sent_W, bench.now() - begin);
-    };
-    if (!bench.run(trial.duration(), law, stop)) return off(why());
-    ++edge.walls;
-    edge.given_most = std::max(edge.given_most, trial.given_most());
-    if (!((bench.device().state().p_WT - p_start_W).norm() < 5 * kFar)) {
-      return off(
-          driver::Error{"The tip does not stay where it is let go, so no wall was tried further: "
-                        "put the arm into "
-                        "the middle of its workspace, or balance it."});
-    }
-    if (trial.grew(step)) {
-      edge.grew = true;
-      break;
-    }
-    edge.stiffness = stiffness;
-  }
-  if (edge.stiffness == 0) {
-    return off(
-        driver::Error{"Even the softest wall grew: an encoder or a motor is turned round, or "
-                      "the loop is far later than the arm file says."});
-  }
-  return off(edge);
+  const auto found = [&]() -> driver::Result<EdgeOfWall> {
+    if (!bench.run(file.limits.soft_start + 0.05, rest, stop)) return ended(bench);
+    return Search(bench, file, search, stop).run();
+  }();
+  bench.device().deactivate();
+  return found;
 }
 
 double edge_by_law(const scene::ArmFile& file, double speed) {

@@ -6,14 +6,13 @@
 #include <chrono>
 #include <utility>
 
-#include "bringup/identify/simulated_bench.h"
 #include "bringup/listen.h"
 #include "hil/cable_pull.h"
 #include "hil/constants_check.h"
-#include "hil/edge_of_wall.h"
 #include "hil/friction_at_rest.h"
 #include "hil/soak.h"
 #include "hil/tied_spring.h"
+#include "hil/wall_check.h"
 #include "hil/watchdog_time.h"
 
 namespace thimble::app {
@@ -64,45 +63,6 @@ HilResult check_feel(const HilRig& rig, const HilOptions& options) {
   return result;
 }
 
-HilResult check_edge(const HilRig& rig, bool full) {
-  constexpr const char* kName = "stiffest_wall";
-  EdgeSearch search;
-  if (!full) search.factor = 1.1;
-  const double law = edge_by_law(rig.file, search.speed);
-  search.first = std::max(20.0, 0.25 * law);
-  auto twin_bench = simulated_bench(rig.file, 0);
-  if (!twin_bench) return broken_off(kName, twin_bench.error().message, nullptr);
-  const auto twin = find_edge_of_wall(**twin_bench, rig.file, search, rig.stop);
-  if (!twin) {
-    return skipped(kName,
-                   "The simulated arm of the file carries no such wall, so there is nothing "
-                   "to compare with: " +
-                       twin.error().message);
-  }
-  auto bench = rig.open(TipHold::kFree);
-  if (!bench) return broken_off(kName, bench.error().message, nullptr);
-  const auto found = find_edge_of_wall(**bench, rig.file, search, rig.stop);
-  if (!found) return broken_off(kName, found.error().message, bench->get());
-  // A step of the search, and what mass and friction may differ by.
-  constexpr double kAllowed = 0.25;
-  const double ratio = found->stiffness / twin->stiffness;
-  return judged(
-      kName,
-      fmt::format(
-          "The stiffest wall that gives a tip at {2:g} mm/s no energy has {0}{1:.0f} N/m; with the "
-          "simulated arm of the file {3}{4:.0f}, by the law {5:.0f}.",
-          found->grew ? "" : "at least ", found->stiffness, 1e3 * search.speed,
-          twin->grew ? "" : "at least ", twin->stiffness, law),
-      {{"stiffest_wall", found->stiffness, "N/m", "", ""},
-       {"stiffest_wall_by_law", law, "N/m", "", ""},
-       {"stiffest_wall_of_twin", twin->stiffness, "N/m", "", ""},
-       {"wall_over_twin", ratio, "", fmt::format(">= {:g}", 1 - kAllowed), ""},
-       {"wall_over_twin_above", ratio, "", fmt::format("<= {:g}", 1 / (1 - kAllowed)),
-        "the same, from above"},
-       {"energy_given", 1e3 * found->given_most, "mJ", "", "by the wall that gave most"},
-       {"force_most", found->force_most, "N", fmt::format("<= {:g}", kHilForceMax), ""}});
-}
-
 }  // namespace
 
 std::vector<HilResult> run_hil_suite(const HilRig& rig, const HilOptions& options,
@@ -133,7 +93,7 @@ std::vector<HilResult> run_hil_suite(const HilRig& rig, const HilOptions& option
   take([&] { return check_constants(rig, options.full ? 60 : 15); }, "constants");
   take([&] { return check_watchdog_time(rig); }, "watchdog");
   take([&] { return check_friction_at_rest(rig); }, "friction_at_rest");
-  take([&] { return check_edge(rig, options.full); }, "stiffest_wall");
+  take([&] { return check_stiffest_wall(rig, options.full); }, "stiffest_wall");
   take([&] { return check_tied_spring(rig, options.spring); }, "force_accuracy");
   const double minutes = options.soak_minutes > 0 ? options.soak_minutes
                          : options.full           ? kHourOfFull

@@ -12,7 +12,9 @@ print(whole["arm_file"], whole["suite"], whole["simulated"], *[one["name"] for o
 assert all(one["outcome"] == "passed" for one in whole["checks"][:-1]), whole
 wall = next(one for one in whole["checks"] if one["name"] == "stiffest_wall")
 figures = {one["name"]: one["value"] for one in wall["figures"]}
-assert 500 < figures["stiffest_wall"] < 2000 and figures["force_most"] <= 1, figures'
+assert 500 < figures["stiffest_wall_low"] < figures["stiffest_wall_high"] < 2000
+assert figures["wall_over_twin_low"] <= figures["wall_over_twin"] <= figures["wall_over_twin_high"]
+assert figures["force_most"] <= 1, figures'
 expect 0 '^9 0 1 9 1$' /usr/bin/python3 -c '
 from xml.etree import ElementTree
 suite = ElementTree.parse("good.xml").getroot()
