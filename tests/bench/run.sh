@@ -1,13 +1,14 @@
 #!/usr/bin/env bash
 # Measures how long a tick takes on this machine, whole and part by part, contact on meshes of many
 # sizes against other libraries where they are installed (Debian: libembree-dev libcgal-dev
-# libfcl-dev), contact with pages on the disk (640 MB for two minutes), and many arms side by side;
+# libfcl-dev), contact with pages on the disk (640 MB for two minutes), many arms side by side, and
+# what it costs to watch (Debian: chromium python3-websockets libjs-three libjs-dygraphs);
 # prints tables and writes figures.json. Figures are reported, never pass criteria.
 #   tests/bench/run.sh [FOLDER]      FOLDER: where to write (default build/bench)
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 folder=${1:-build/bench}
-app/setup.sh release bench_tick bench_batch bench_contact bench_paged bench_body bench_view
+app/setup.sh release thimble bench_tick bench_batch bench_contact bench_paged bench_body bench_view
 mkdir -p "$folder"
 build/release/tests/bench/bench_tick --benchmark_repetitions=5 \
   --benchmark_enable_random_interleaving=true \
@@ -25,3 +26,10 @@ mkdir -p "$folder/body"
 build/release/tests/bench/bench_body --benchmark_repetitions=5 \
   --benchmark_report_aggregates_only=true --figures="$folder/body/figures.json"
 build/release/tests/bench/bench_view
+if tests/optional_packages.sh "what it costs to watch" chromium python3-websockets libjs-three \
+  libjs-dygraphs; then
+  app/fetch_meshes.sh >/dev/null
+  mkdir -p "$folder/watch"
+  /usr/bin/python3 tests/bench/watch_bench.py build/release app/scenes/elephant.yaml \
+    "$folder/watch/figures.json"
+fi
