@@ -1,11 +1,11 @@
 #include "view/panel_flow.h"
 
+#include "view/text_style.h"
+
 namespace thimble::app::view {
 
 ImVec4 shown_colour(const Colour& colour) {
-  // Text is pale on the dark theme.
-  const bool dark = ImGui::GetStyleColorVec4(ImGuiCol_Text).x > 0.5F;
-  const Colour text = text_colour(colour, dark ? Theme::kDark : Theme::kLight);
+  const Colour text = text_colour(colour, shown_theme());
   return {text[0], text[1], text[2], 1};
 }
 

@@ -138,7 +138,8 @@ void draw_plots(TouchSource& source, PlotPanel& panel, float height) {
   if (const auto asked = panel.draw(source.plots(), time, height)) source.head().go(*asked);
 }
 
-void draw_looks(const DrawnScene& scene, ViewChoice& choice) {
+// `of_a_run`: it has a hand that a mouse may lead.
+void draw_looks(const DrawnScene& scene, bool of_a_run, ViewChoice& choice) {
   PaintChoice& paint = choice.paint;
   Flow flow;
   const auto box = [&](const char* label, bool& on) {
@@ -163,7 +164,7 @@ void draw_looks(const DrawnScene& scene, ViewChoice& choice) {
   box("fine", paint.fine);
   bool dark = paint.theme == Theme::kDark;
   if (box("dark", dark)) paint.theme = dark ? Theme::kDark : Theme::kLight;
-  box("mouse is hand", choice.mouse_is_hand);
+  if (of_a_run) box("mouse is hand", choice.mouse_is_hand);
 }
 
 void draw_status(const session::SharedReader& reader, const ViewNotes& notes) {
@@ -185,7 +186,7 @@ class Parts {
     if (source_.reader() == nullptr) {  // a recording has no knobs
       plots_in(height - looks - gaps);
       ImGui::Separator();
-      draw_looks(source_.scene(), choice_);
+      draw_looks(source_.scene(), false, choice_);
       return;
     }
     const float plots = std::max(kPlotLines * ImGui::GetFontSize(), 0.5F * (height - looks));
@@ -194,7 +195,7 @@ class Parts {
     child("knobs", std::max(height - plots - looks - gaps, kKnobLines * ImGui::GetFontSize()),
           [&] { draw_knobs(*source_.reader()); });
     ImGui::Separator();
-    draw_looks(source_.scene(), choice_);
+    draw_looks(source_.scene(), true, choice_);
   }
 
   void tabbed(float height) {
@@ -207,7 +208,7 @@ class Parts {
     };
     tab("Plots", [&] { plots_in(std::max(rest, kPlotLinesLeast * ImGui::GetFontSize())); });
     if (source_.reader() != nullptr) tab("Knobs", [&] { draw_knobs(*source_.reader()); });
-    tab("Show", [&] { draw_looks(source_.scene(), choice_); });
+    tab("Show", [&] { draw_looks(source_.scene(), source_.reader() != nullptr, choice_); });
     ImGui::EndTabBar();
   }
 

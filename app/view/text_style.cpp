@@ -91,6 +91,11 @@ void set_text_style(float scale, Theme theme) {
   ImGui::GetStyle() = style;
 }
 
+Theme shown_theme() {
+  // Text is pale on the dark theme.
+  return ImGui::GetStyleColorVec4(ImGuiCol_Text).x > 0.5F ? Theme::kDark : Theme::kLight;
+}
+
 void write_labels(const std::vector<Label>& labels, const Camera& camera, Theme theme,
                   const ScreenPart& part) {
   const float margin = 0.5F * ImGui::GetFontSize();

@@ -15,6 +15,9 @@ namespace thimble::app::view {
 /// on a usual screen (1 for 96 pixels an inch). Real-time: never from the servo thread.
 void set_text_style(float scale, Theme theme = Theme::kLight);
 
+/// Returns the theme that the looks of the current ImGui context are of.
+Theme shown_theme();
+
 /// A part of a window or picture, in pixels from the upper left corner.
 struct ScreenPart {
   float x = 0, y = 0, width = 0, height = 0;

@@ -40,6 +40,11 @@ ImU32 packed(const Colour& colour, float cover = 1) {
   return ImGui::ColorConvertFloat4ToU32({colour[0], colour[1], colour[2], cover});
 }
 
+// A channel's colour, as the theme has it.
+Colour shown(const Colour& colour) {
+  return text_colour(colour, shown_theme());
+}
+
 // The colour of text, as the theme has it.
 Colour text_ink() {
   const ImVec4& ink = ImGui::GetStyleColorVec4(ImGuiCol_Text);
@@ -158,16 +163,19 @@ void Plots::draw_line(ImDrawList& list, const ScreenPart& inner, Channel channel
       line.push_back({x, y(spans.least)});
       if (spans.most > spans.least) line.push_back({x, y(spans.most)});
       if (look.from_zero) {
-        list.AddLine({x, inner.y + inner.height}, {x, y(spans.most)}, packed(look.colour, 0.10F));
+        list.AddLine({x, inner.y + inner.height}, {x, y(spans.most)},
+                     packed(shown(look.colour), 0.10F));
       }
     }
   }
   list.PushClipRect({inner.x, inner.y - 2}, {inner.x + inner.width, inner.y + inner.height + 2},
                     true);
   const float width = std::max(1.5F, ImGui::GetFontSize() / 9);
-  list.AddPolyline(line.data(), static_cast<int>(line.size()), packed(look.colour), 0, width);
+  list.AddPolyline(line.data(), static_cast<int>(line.size()), packed(shown(look.colour)), 0,
+                   width);
   if (last - first < columns / 8) {
-    for (const ImVec2& at : line) list.AddCircleFilled(at, 1.4F * width, packed(look.colour));
+    for (const ImVec2& at : line)
+      list.AddCircleFilled(at, 1.4F * width, packed(shown(look.colour)));
   }
   list.PopClipRect();
 }
@@ -201,7 +209,7 @@ void Plots::draw(ImDrawList& list, const ScreenPart& part, Channel channel, cons
   std::string words;
   if (value)
     words = *value == 0 ? fmt::format("0 {}", unit.name) : with_unit(look.quantity, *value);
-  write_title(list, part, fmt::format("{}, {}", look.name, unit.name), words, look.colour);
+  write_title(list, part, fmt::format("{}, {}", look.name, unit.name), words, shown(look.colour));
 }
 
 void Plots::draw_periods(ImDrawList& list, const ScreenPart& part, const TimeRange& range,
@@ -246,7 +254,7 @@ void Plots::draw_periods(ImDrawList& list, const ScreenPart& part, const TimeRan
     const float x = inner.x + width * static_cast<float>(i);
     const float top = inner.y + inner.height * static_cast<float>(1 - share);
     list.AddRectFilled({x, top}, {x + std::max(1.0F, width - 1), inner.y + inner.height},
-                       packed(kDepthColour, 0.8F));
+                       packed(shown(kDepthColour), 0.8F));
   }
 }
 

@@ -1,0 +1,30 @@
+"""Writes a picture in a part of its size, for picture_near.py: each pixel the mean of a square of the larger one.
+
+  shrink_picture.py LARGE.png SMALL.png TIMES      TIMES: how many times smaller, a whole number
+"""
+import struct
+import sys
+import zlib
+
+from picture_near import pixels
+
+
+def main():
+    large, small, times = pixels(sys.argv[1]), sys.argv[2], int(sys.argv[3])
+    height, width = len(large) // times, len(large[0]) // times
+    raw = bytearray()
+    for y in range(height):
+        raw.append(0)  # no filter
+        for x in range(width):
+            square = [large[times * y + j][times * x + i] for j in range(times) for i in range(times)]
+            raw.extend(sum(one[c] for one in square) // len(square) for c in range(3))
+
+    def part(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+    with open(small, "wb") as file:
+        file.write(b"\x89PNG\r\n\x1a\n" + part(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)) +
+                   part(b"IDAT", zlib.compress(bytes(raw), 9)) + part(b"IEND", b""))
+
+
+main()
