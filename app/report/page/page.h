@@ -28,7 +28,8 @@ struct PageArm {
   std::vector<Figure> figures;                ///< What it sums up to.
 };
 
-/// The mesh of an object that was shaped for good, as it was left.
+/// The mesh of an object that was shaped for good, as it was left; where the object was at first
+/// (B, m).
 struct PageShape {
   std::size_t object = 0;     ///< Of the scene, counted from 0.
   render::TriangleMesh mesh;  ///< In the frame of the object's own mesh, m.

@@ -20,7 +20,7 @@ std::vector<PageShape> shapes_left(const scene::Scene& scene, const scene::Scene
   std::vector<PageShape> left;
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     if (!scene.objects[i].body.shape.named()) continue;
-    left.push_back({.object = i, .mesh = objects.mesh_now(static_cast<int>(i))});
+    left.push_back({.object = i, .mesh = objects.mesh_bent(i)});
   }
   return left;
 }

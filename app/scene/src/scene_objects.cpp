@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <string>
 #include <utility>
 
@@ -188,6 +189,15 @@ render::TriangleMesh SceneObjects::mesh_now(int object) const {
   render::TriangleMesh all;
   for (std::size_t i = 0; i < touches_.front()->size(); ++i) append(now(i), all);
   return all;
+}
+
+render::TriangleMesh SceneObjects::mesh_bent(std::size_t object) const {
+  render::TriangleMesh mesh = mesh_now(static_cast<int>(object));
+  const render::BodyPose pose = touches_.front()->object(object).pose();
+  const Eigen::Quaterniond q_BW(pose.q_WB[0], -pose.q_WB[1], -pose.q_WB[2], -pose.q_WB[3]);
+  const Eigen::Vector3d p_WB(pose.p_WB[0], pose.p_WB[1], pose.p_WB[2]);
+  for (Eigen::Vector3d& p : mesh.vertices) p = q_BW * (p - p_WB);
+  return mesh;
 }
 
 void SceneObjects::step_bodies(double step) noexcept {

@@ -20,7 +20,7 @@ void ShapeFilm::take(const driver::TickRecord& tick) {
   next_ns_ = tick.time_ns + step_ns_;
   times_ns_.push_back(tick.time_ns);
   for (Shaped& shaped : shaped_) {
-    auto now = objects().mesh_now(static_cast<int>(shaped.object));
+    auto now = objects().mesh_bent(shaped.object);
     // An object that nobody touches stays one mesh in memory, and is drawn as one.
     const bool same = !shaped.meshes.empty() && shaped.meshes.back()->vertices == now.vertices &&
                       shaped.meshes.back()->triangles == now.triangles;

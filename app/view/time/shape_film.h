@@ -26,8 +26,8 @@ class ShapeFilm final : public session::ReplayFilm {
              std::shared_ptr<const scene::SceneObjects> objects) override;
   void take(const driver::TickRecord& tick) override;
 
-  /// Returns what an object had been shaped to at a time, ns; null if it has no shape to be left
-  /// in.
+  /// Returns what an object had been shaped to at a time, ns, where the object was at first (B, m);
+  /// null if it has no shape to be left in.
   Mesh shape_at(std::size_t object, std::int64_t time_ns) const;
   /// Returns whether any object is shaped for good.
   bool shapes() const { return !shaped_.empty(); }

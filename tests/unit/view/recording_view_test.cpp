@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -158,6 +159,32 @@ TEST(RecordingView, ShowsWhatWasShapedForGood) {
   EXPECT_TRUE(std::any_of(about.begin(), about.end(), [](const std::string& sentence) {
     return sentence.find("shaped for good is shown every 0.25 s") != std::string::npos;
   }));
+}
+
+// A can that rolls, before its wall snaps in: what is shaped for good is drawn by the object's
+// pose, as its dent is.
+TEST(RecordingView, ShowsWhatWasShapedForGoodWhereTheObjectHasMovedTo) {
+  const Seen seen = see("tin_can", {3.6});
+  ASSERT_NE(seen.recorded, nullptr);
+  const auto now = std::make_unique<DrawnMoment>();
+  seen.recorded->show(3.6, *now);
+  const auto& p_WB = now->poses.at(0).p_WB;
+  ASSERT_GT(std::hypot(p_WB[0], p_WB[1], p_WB[2]), 1e-3);
+  ASSERT_NE(now->shapes.at(0), nullptr);
+  const auto& first = seen.recorded->scene().objects[0].mesh.vertices;
+  std::vector<double> off(first.size());  // m
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    off[i] = (now->shapes[0]->vertices.at(i) - first[i]).norm();
+  }
+  // The dent under the finger is a part of it.
+  std::nth_element(off.begin(), off.begin() + off.size() / 2, off.end());
+  EXPECT_LT(off[off.size() / 2], kSingle);
+  for (std::size_t i = 0; i < now->patch.point_count; ++i) {
+    const auto& point = now->patch.points[i];
+    if (point.vertex < 0) continue;
+    const auto& p = now->shapes[0]->vertices.at(static_cast<std::size_t>(point.vertex));
+    EXPECT_LT(std::hypot(p[0] - point.p[0], p[1] - point.p[1], p[2] - point.p[2]), 2e-3);
+  }
 }
 
 TEST(RecordingView, StepsFromTickToTick) {

@@ -58,6 +58,9 @@ class SceneObjects {
   /// Returns the mesh of one object, or of all as one if `object` is negative, where it is now:
   /// moved and bent (W, m). Not beside a running servo.
   render::TriangleMesh mesh_now(int object = -1) const;
+  /// Returns the mesh of one object as it is bent now, where the object was at first: whoever draws
+  /// it moves it to the object's `pose` (B, m). Not beside a running servo.
+  render::TriangleMesh mesh_bent(std::size_t object) const;
   /// Returns how many triangles can be touched, in memory and on the disk.
   std::size_t triangles() const { return triangles_; }
   /// Returns what was put right, left out or guessed of the meshes, a sentence each.
