@@ -232,23 +232,38 @@ void ScenePainter::paint_solids(const std::vector<Solid>& solids) {
 
 void ScenePainter::paint_light(const PaintChoice& choice) {
   glBindVertexArray(*nothing_);
+  // Which pixels have a surface is told by the depths, before a shader runs.
+  glDepthMask(GL_FALSE);
+  glDepthFunc(GL_EQUAL);
   glUseProgram(*programs_.backdrop);
   glDrawArrays(GL_TRIANGLES, 0, 3);
+  glDepthFunc(GL_GREATER);
   glUseProgram(*programs_.light);
   set_shadows(programs_.light, choice);
   glDrawArrays(GL_TRIANGLES, 0, 3);
+  glDepthFunc(GL_LESS);
+  glDepthMask(GL_TRUE);
 }
 
 void ScenePainter::paint_pixels(const PaintChoice& choice, Canvas& canvas) {
-  canvas.finish();
-  if (!choice.fine) return;
   canvas.begin_pixels();
+  if (!choice.fine) return;
   glDisable(GL_BLEND);
-  glDisable(GL_DEPTH_TEST);
+  glBindVertexArray(*nothing_);
+  // The first marks by its depth the pixels that the second goes over.
+  glDepthFunc(GL_ALWAYS);
+  glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+  glUseProgram(*programs_.edges);
+  glUniform1i(programs_.edges.at("lowest"), canvas.strip());
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  glDepthFunc(GL_EQUAL);
+  glDepthMask(GL_FALSE);
   glUseProgram(*programs_.smooth);
   glUniform1i(programs_.smooth.at("lowest"), canvas.strip());
-  glBindVertexArray(*nothing_);
   glDrawArrays(GL_TRIANGLES, 0, 3);
+  glDepthMask(GL_TRUE);
+  glDepthFunc(GL_LESS);
 }
 
 void ScenePainter::paint_what_shines_through(const std::vector<Solid>& solids) {
@@ -342,10 +357,7 @@ std::vector<Label> ScenePainter::paint(const DrawnMoment& moment, const Camera& 
   paint_solids(marks.solids);
   canvas.begin_light();
   glBindTexture(GL_TEXTURE_2D, shadow_map_.texture());
-  glDisable(GL_DEPTH_TEST);
   paint_light(choice);
-  glEnable(GL_DEPTH_TEST);
-  canvas.begin_marks();
   paint_surfaces(choice, camera, true);
   paint_forces(moment, choice, camera.distance);
   glEnable(GL_BLEND);

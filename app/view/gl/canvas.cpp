@@ -19,6 +19,10 @@ void attach(GLenum place, const GlTexture& texture) {
   glFramebufferTexture2D(GL_FRAMEBUFFER, place, GL_TEXTURE_2D, *texture, 0);
 }
 
+void attach(GLenum place, const GlRenderbuffer& buffer) {
+  glFramebufferRenderbuffer(GL_FRAMEBUFFER, place, GL_RENDERBUFFER, *buffer);
+}
+
 void bind_texture(GLenum unit, const GlTexture& texture) {
   glActiveTexture(unit);
   glBindTexture(GL_TEXTURE_2D, *texture);
@@ -34,6 +38,8 @@ Canvas::Canvas(int width, int height, int strip) : width_(width), height_(height
   store(lit_colours_, GL_RGBA8, GL_RGBA, GL_LINEAR, width, height);
   glBindRenderbuffer(GL_RENDERBUFFER, *pixel_colours_);
   glRenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, width, height);
+  glBindRenderbuffer(GL_RENDERBUFFER, *covered_depths_);
+  glRenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT24, width, height);
   glBindFramebuffer(GL_FRAMEBUFFER, *surfaces_);
   attach(GL_COLOR_ATTACHMENT0, normals_);
   attach(GL_COLOR_ATTACHMENT1, paints_);
@@ -42,11 +48,10 @@ Canvas::Canvas(int width, int height, int strip) : width_(width), height_(height
   glDrawBuffers(2, both);
   glBindFramebuffer(GL_FRAMEBUFFER, *lit_);
   attach(GL_COLOR_ATTACHMENT0, lit_colours_);
-  glBindFramebuffer(GL_FRAMEBUFFER, *marked_);
-  attach(GL_COLOR_ATTACHMENT0, lit_colours_);
-  attach(GL_DEPTH_ATTACHMENT, depths_);
+  attach(GL_DEPTH_ATTACHMENT, covered_depths_);
   glBindFramebuffer(GL_FRAMEBUFFER, *pixels_);
-  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, *pixel_colours_);
+  attach(GL_COLOR_ATTACHMENT0, pixel_colours_);
+  attach(GL_DEPTH_ATTACHMENT, covered_depths_);
 }
 
 void Canvas::bind(const GlFramebuffer& frame) {
@@ -59,29 +64,28 @@ void Canvas::begin_surfaces() {
   glClear(GL_DEPTH_BUFFER_BIT);
 }
 
+void Canvas::copy(const GlFramebuffer& from, const GlFramebuffer& to, GLbitfield what) {
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, *from);
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, *to);
+  glBlitFramebuffer(0, 0, width_, height_, 0, 0, width_, height_, what, GL_NEAREST);
+  bind(to);
+}
+
 void Canvas::begin_light() {
-  bind(lit_);
+  copy(surfaces_, lit_, GL_DEPTH_BUFFER_BIT);
   bind_texture(GL_TEXTURE1, normals_);
   bind_texture(GL_TEXTURE2, paints_);
   bind_texture(GL_TEXTURE3, depths_);
   glActiveTexture(GL_TEXTURE0);
 }
 
-void Canvas::begin_marks() {
-  bind(marked_);
-}
-
 void Canvas::begin_pixels() {
-  bind(pixels_);
+  copy(lit_, pixels_, GL_COLOR_BUFFER_BIT);
+  glClearDepth(0);
+  glClear(GL_DEPTH_BUFFER_BIT);
+  glClearDepth(1);
   bind_texture(GL_TEXTURE1, lit_colours_);
   glActiveTexture(GL_TEXTURE0);
-}
-
-void Canvas::finish() {
-  glBindFramebuffer(GL_READ_FRAMEBUFFER, *lit_);
-  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, *pixels_);
-  glBlitFramebuffer(0, 0, width_, height_, 0, 0, width_, height_, GL_COLOR_BUFFER_BIT, GL_NEAREST);
-  glBindFramebuffer(GL_FRAMEBUFFER, *pixels_);
 }
 
 void Canvas::show(int x, int y) {

@@ -30,15 +30,12 @@ class Canvas {
 
   /// Lets everything drawn from now on be surfaces, with depths: there are none yet.
   void begin_surfaces();
-  /// Lets everything drawn from now on go over the lit picture, without depths; binds what there is
-  /// of surfaces as textures 1 (normals), 2 (paints) and 3 (depths).
+  /// Lets everything drawn from now on go over the lit picture, with the surfaces' depths; binds
+  /// what there is of surfaces as textures 1 (normals), 2 (paints) and 3 (depths).
   void begin_light();
-  /// Lets everything drawn from now on go over the lit picture, with the surfaces' depths.
-  void begin_marks();
-  /// Lets everything drawn from now on go to the pixels; binds the lit picture as texture 1.
+  /// Makes pixels of the lit picture as it is and lets everything drawn from now on go to them,
+  /// with depths of 0; binds the lit picture as texture 1.
   void begin_pixels();
-  /// Makes pixels of the lit picture as it is and lets everything drawn from now on go to them.
-  void finish();
   /// Copies the pixels to the window's own (framebuffer 0), at this place from the lower left.
   void show(int x, int y);
   /// Reads the pixels.
@@ -49,10 +46,11 @@ class Canvas {
   int height_;
   int strip_;
   void bind(const GlFramebuffer& frame);
+  void copy(const GlFramebuffer& from, const GlFramebuffer& to, GLbitfield what);
 
   GlTexture normals_, paints_, depths_, lit_colours_;
-  GlRenderbuffer pixel_colours_;
-  GlFramebuffer surfaces_, lit_, marked_, pixels_;
+  GlRenderbuffer pixel_colours_, covered_depths_;
+  GlFramebuffer surfaces_, lit_, pixels_;
 };
 
 }  // namespace thimble::app::view

@@ -38,7 +38,6 @@ out vec4 pixel;
 void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
   float depth = texelFetch(depths, at, 0).r;
-  if (depth >= 1.0) discard;
   vec3 p = eye.xyz + ray * (from_depth.x / (2.0 * depth - 1.0 + from_depth.y));
   vec4 normal = texelFetch(normals, at, 0);
   vec3 n = normalize(2.0 * normal.xyz - 1.0);
@@ -52,30 +51,50 @@ void main() {
 )";
 }
 
-std::string smooth_fragment() {
-  return R"(#version 330 core
+namespace {
+
+// Where there is an edge: the brightness of a pixel and of its neighbours, and how far they differ.
+const std::string kEdge = R"(
 uniform sampler2D picture;
 uniform int lowest;  // row of the picture
-out vec4 pixel;
-ivec2 most_at;
 float bright(vec3 c) { return dot(c, vec3(0.299, 0.587, 0.114)); }
 float beside(ivec2 at) {
+  ivec2 most_at = textureSize(picture, 0) - 1;
   return bright(texelFetch(picture, clamp(at, ivec2(0, lowest), most_at), 0).rgb);
 }
+struct Cross { float m, s, n, w, e, most, range; };
+Cross cross_at(ivec2 at) {
+  Cross c;
+  c.m = beside(at);
+  c.s = beside(at - ivec2(0, 1));
+  c.n = beside(at + ivec2(0, 1));
+  c.w = beside(at - ivec2(1, 0));
+  c.e = beside(at + ivec2(1, 0));
+  c.most = max(c.m, max(max(c.s, c.n), max(c.w, c.e)));
+  c.range = c.most - min(c.m, min(min(c.s, c.n), min(c.w, c.e)));
+  return c;
+}
+)";
+
+}  // namespace
+
+std::string edges_fragment() {
+  return "#version 330 core\n" + kEdge + R"(
+void main() {
+  Cross c = cross_at(ivec2(gl_FragCoord.xy));
+  if (c.range <= max(0.04, 0.125 * c.most)) discard;
+}
+)";
+}
+
+std::string smooth_fragment() {
+  return "#version 330 core\n" + kEdge + R"(
+out vec4 pixel;
 float off(vec2 at, float level) { return bright(textureLod(picture, at, 0.0).rgb) - level; }
 void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
-  ivec2 size = textureSize(picture, 0);
-  most_at = size - 1;
-  pixel = vec4(texelFetch(picture, at, 0).rgb, 1.0);
-  float m = bright(pixel.rgb);
-  float s = beside(at - ivec2(0, 1));
-  float n = beside(at + ivec2(0, 1));
-  float w = beside(at - ivec2(1, 0));
-  float e = beside(at + ivec2(1, 0));
-  float most = max(m, max(max(s, n), max(w, e)));
-  float range = most - min(m, min(min(s, n), min(w, e)));
-  if (range <= max(0.04, 0.125 * most)) discard;
+  Cross c = cross_at(at);
+  float m = c.m, s = c.s, n = c.n, w = c.w, e = c.e;
   float sw = beside(at + ivec2(-1, -1));
   float se = beside(at + ivec2(1, -1));
   float nw = beside(at + ivec2(-1, 1));
@@ -89,7 +108,7 @@ void main() {
   float across = to_one ? one : other;
   float level = 0.5 * (across + m);
   float ends = 0.25 * abs(across - m);
-  vec2 texel = 1.0 / vec2(size);
+  vec2 texel = 1.0 / vec2(textureSize(picture, 0));
   vec2 here = gl_FragCoord.xy * texel;
   vec2 over = (lies ? vec2(0.0, texel.y) : vec2(texel.x, 0.0)) * (to_one ? -1.0 : 1.0);
   vec2 along = lies ? vec2(texel.x, 0.0) : vec2(0.0, texel.y);
@@ -115,8 +134,8 @@ void main() {
   float share = gives ? 0.5 - min(back, forth) / (back + forth) : 0.0;
   // What is smaller than a pixel is softened as well.
   float around = (2.0 * (n + s + w + e) + nw + ne + sw + se) / 12.0;
-  float small = smoothstep(0.0, 1.0, min(abs(around - m) / range, 1.0));
-  pixel.rgb = textureLod(picture, here + max(share, 0.5 * small * small) * over, 0.0).rgb;
+  float small = smoothstep(0.0, 1.0, min(abs(around - m) / c.range, 1.0));
+  pixel = vec4(textureLod(picture, here + max(share, 0.5 * small * small) * over, 0.0).rgb, 1.0);
 }
 )";
 }

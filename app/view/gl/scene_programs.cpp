@@ -27,10 +27,11 @@ driver::Result<ScenePrograms> ScenePrograms::make() {
   auto ground_marked = grounded(Shading::kMarked);
   auto backdrop = GlProgram::make(shaders::picture_vertex(), shaders::backdrop_fragment());
   auto light = GlProgram::make(shaders::picture_vertex(), shaders::light_fragment());
+  auto edges = GlProgram::make(shaders::picture_vertex(), shaders::edges_fragment());
   auto smooth = GlProgram::make(shaders::picture_vertex(), shaders::smooth_fragment());
   for (const auto* program :
        {&surface, &dent, &surface_gouraud, &dent_gouraud, &surface_marked, &dent_marked, &shadow,
-        &plain, &coloured, &ground, &ground_marked, &backdrop, &light, &smooth}) {
+        &plain, &coloured, &ground, &ground_marked, &backdrop, &light, &edges, &smooth}) {
     if (!*program) return program->error();
   }
   return ScenePrograms{.surface = std::move(surface).value(),
@@ -46,13 +47,14 @@ driver::Result<ScenePrograms> ScenePrograms::make() {
                        .ground_marked = std::move(ground_marked).value(),
                        .backdrop = std::move(backdrop).value(),
                        .light = std::move(light).value(),
+                       .edges = std::move(edges).value(),
                        .smooth = std::move(smooth).value()};
 }
 
-std::array<const GlProgram*, 14> ScenePrograms::all() const {
+std::array<const GlProgram*, 15> ScenePrograms::all() const {
   return {&surface,       &dent,     &surface_gouraud, &dent_gouraud, &surface_marked,
           &dent_marked,   &shadow,   &plain,           &coloured,     &ground,
-          &ground_marked, &backdrop, &light,           &smooth};
+          &ground_marked, &backdrop, &light,           &edges,        &smooth};
 }
 
 }  // namespace thimble::app::view

@@ -13,12 +13,12 @@ struct ScenePrograms {
   GlProgram surface_gouraud, dent_gouraud;  // shaded in every corner
   GlProgram surface_marked, dent_marked;    // as the first, with marks
   GlProgram shadow, plain, coloured, ground, ground_marked;
-  GlProgram backdrop, light, smooth;  // over the whole picture
+  GlProgram backdrop, light, edges, smooth;  // over the whole picture
 
   /// Makes them out of the shaders. Fails as GlProgram::make does.
   static driver::Result<ScenePrograms> make();
   /// Lists all of them.
-  std::array<const GlProgram*, 14> all() const;
+  std::array<const GlProgram*, 15> all() const;
 };
 
 }  // namespace thimble::app::view

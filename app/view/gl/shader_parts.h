@@ -26,8 +26,9 @@ layout(std140) uniform View {
 )";
 
 // What follows is left out of a program that does not need it: Mesa's software runs both sides of
-// an `if`, for a condition masks lanes and does not jump. It jumps where all lanes are discarded,
-// and out of a loop that no lane goes on with, whose body it has run once.
+// an `if`, and what comes after a `discard`, with lanes masked. It skips where the depths say that
+// none of eight pixels is seen, and goes out of a loop that no lane goes on with, whose body it has
+// run once.
 inline std::string choice(Shading shading) {
   return shading == Shading::kGouraud  ? "#define GOURAUD\n"
          : shading == Shading::kMarked ? "#define MARKED\n"
@@ -79,7 +80,7 @@ void light(vec3 n, vec3 p, vec3 colour, float gloss, out vec3 around, out vec3 d
 inline const std::string kShadow = R"(
 uniform sampler2DShadow shadow_map;
 uniform float shadow_strength;
-uniform int shadow_samples;   // along a side; >= 2
+uniform int shadow_samples;   // along a side: 2 or 4
 float open_at(vec3 at, vec2 by) { return textureLod(shadow_map, vec3(at.xy + by, at.z), 0.0); }
 float lit(vec3 p) {
   vec3 at = (shadow_from_world * vec4(p, 1.0)).xyz * 0.5 + 0.5;
@@ -93,27 +94,21 @@ float lit(vec3 p) {
   int side = strength > 0.0 && !beside ? shadow_samples : 0;
   float middle = 0.5 * float(shadow_samples - 1);
   vec2 texel = 6.4 / float(shadow_samples) / vec2(textureSize(shadow_map, 0));
-  // One sample in a turn: where none is needed, one is all that software takes.
-  vec2 c = middle * texel;
-  float corners = 0.0;
+  // One sample in a turn of one loop: where none is needed, one is all that software takes.
+  // Corners, middle, and where those differ the other twelve of four by four.
+  float sum = 0.0;
   float centre = 0.0;
-  int looks = side > 2 ? 5 : min(side, 1) * 4;
+  int looks = side > 2 ? 5 : 2 * side;
   for (int i = 0; i < looks; ++i) {
-    vec2 by = i == 4 ? vec2(0.0) : c * vec2(float(i & 1) * 2.0 - 1.0, float(i & 2) - 1.0);
-    float one = open_at(at, by);
-    corners += i == 4 ? 0.0 : one;
+    int k = i < 7 ? i - 4 : i < 15 ? i - 3 : i - 2;
+    vec2 grid = vec2(float(k & 3), float(k >> 2)) - 1.5;
+    vec2 corner = middle * vec2(float(i & 1) * 2.0 - 1.0, float(i & 2) - 1.0);
+    float one = open_at(at, texel * (i < 4 ? corner : i > 4 ? grid : vec2(0.0)));
+    sum += i == 4 ? 0.0 : one;
     centre += i == 4 ? one : 0.0;
+    if (i == 4 && sum + centre > 0.001 && sum + centre < 4.999) looks = 17;
   }
-  bool mixed = side > 2 && corners + centre > 0.001 && corners + centre < 4.999;
-  float sum = corners;
-  // The corners are known.
-  int last = side * side - 1;
-  for (int i = 1; i < (mixed ? last : 0); ++i) {
-    if (i == side - 1 || i == last - side + 1) continue;
-    vec2 place = vec2(float(i % side), float(i / side));
-    sum += open_at(at, (place - middle) * texel);
-  }
-  float open = side == 0 ? 1.0 : mixed ? sum / float(last + 1) : 0.25 * corners;
+  float open = side == 0 ? 1.0 : looks == 17 ? sum / 16.0 : 0.25 * sum;
   return mix(1.0, open, strength * (1.0 - smoothstep(0.8, 0.98, rim)));
 }
 )";

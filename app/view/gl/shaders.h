@@ -33,9 +33,11 @@ std::string coloured_fragment();
 std::string picture_vertex();  ///< No attributes: one triangle that covers the picture.
 std::string backdrop_fragment();
 std::string light_fragment();  ///< Lights what surface_fragment wrote.
-/// Smooths the edges of what is in a picture, and leaves out all other pixels: where neighbours
-/// differ in brightness, along the edge to both its ends, and each pixel takes of its neighbour
-/// what the edge between those leaves it [FXAA].
+/// Leaves out all pixels of a picture but those at an edge: where neighbours differ in brightness
+/// [FXAA]. It writes nothing but depths.
+std::string edges_fragment();
+/// Smooths an edge: along it to both its ends, and each pixel takes of its neighbour what the edge
+/// between those leaves it [FXAA].
 std::string smooth_fragment();
 
 }  // namespace thimble::app::view::shaders
