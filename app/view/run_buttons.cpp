@@ -94,10 +94,15 @@ void RunButtons::draw(session::SharedReader& reader) {
   const std::string no_speed = reader.why_no_speed();
   ImGui::BeginDisabled(!no_speed.empty());
   double speed = reader.speed_asked();
-  flow.next(ImGui::CalcTextSize("speed 0.00").x + 2 * ImGui::GetFrameHeight());
+  // Beside the slider: its grip would cover it.
+  const float gap = ImGui::GetStyle().ItemInnerSpacing.x;
+  flow.next(ImGui::CalcTextSize("speed 0.00").x + gap + 2 * ImGui::GetFrameHeight());
+  ImGui::AlignTextToFramePadding();
+  ImGui::Text("speed %.2f", speed);
+  ImGui::SameLine(0, gap);
   ImGui::SetNextItemWidth(-1);
   if (ImGui::SliderScalar("##speed", ImGuiDataType_Double, &speed, &session::kSpeedLeast,
-                          &session::kSpeedMost, "speed %.2f",
+                          &session::kSpeedMost, "",
                           ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic)) {
     tell(reader.ask_speed(speed));
   }

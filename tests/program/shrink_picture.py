@@ -1,6 +1,8 @@
 """Writes a picture in a part of its size, for picture_near.py: each pixel the mean of a square of the larger one.
 
-  shrink_picture.py LARGE.png SMALL.png TIMES      TIMES: how many times smaller, a whole number
+  shrink_picture.py LARGE.png SMALL.png TIMES [LEFT TOP WIDTH HEIGHT]
+
+TIMES: how many times smaller, a whole number; then the part of the larger one that is taken, pixels, all if absent
 """
 import struct
 import sys
@@ -11,6 +13,9 @@ from picture_near import pixels
 
 def main():
     large, small, times = pixels(sys.argv[1]), sys.argv[2], int(sys.argv[3])
+    if len(sys.argv) > 4:
+        left, top, wide, high = map(int, sys.argv[4:])
+        large = [row[left:left + wide] for row in large[top:top + high]]
     height, width = len(large) // times, len(large[0]) // times
     raw = bytearray()
     for y in range(height):

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # What the window looks like, on a screen in memory (Debian: xvfb, xdotool): a recording that stands still, light, dark and as
-# small as a window may be, against kept pictures of a quarter of the size. THIMBLE_WRITE_SHOTS=1 keeps what there is now, after a
-# change that is meant.
+# small as a window may be, and the target of a hand that the keyboard leads, against kept pictures that are smaller.
+# THIMBLE_WRITE_SHOTS=1 keeps what there is now, after a change that is meant.
 source "$(dirname "$0")/expect.sh" "$@"
 unset DISPLAY WAYLAND_DISPLAY
 here=$source_dir/tests/program
@@ -15,6 +15,13 @@ source "$here/screen.sh"
 
 expect 0 'Recording' "$thimble" run "$source_dir/app/scenes/tin_can.yaml" --record touch.h5 --no-view
 
+# same_as_kept NAME PICTURE TIMES [LEFT TOP WIDTH HEIGHT]: the picture, or a part of it, so many times smaller is the kept one.
+same_as_kept() {
+  local kept=$source_dir/tests/data/shots/window_$1.png
+  /usr/bin/python3 "$here/shrink_picture.py" "$2" "$1.small.png" "${@:3}"
+  [ -z "${THIMBLE_WRITE_SHOTS:-}" ] || cp "$1.small.png" "$kept"
+  expect 0 '^the same' /usr/bin/python3 "$here/picture_near.py" "$kept" "$1.small.png"
+}
 # looks NAME WIDTH HEIGHT OPTION...: the window of that size shows what is kept.
 looks() {
   local name=$1 width=$2 height=$3
@@ -25,12 +32,45 @@ looks() {
   xdotool search --onlyvisible --name "Thimble: tin_can" windowsize "$width" "$height"
   wait $viewer
   expect 0 '^0$' echo $?
-  /usr/bin/python3 "$here/shrink_picture.py" "$name.png" "$name.small.png" 4
-  local kept=$source_dir/tests/data/shots/window_$name.png
-  [ -z "${THIMBLE_WRITE_SHOTS:-}" ] || cp "$name.small.png" "$kept"
-  expect 0 '^the same' /usr/bin/python3 "$here/picture_near.py" "$kept" "$name.small.png"
+  same_as_kept "$name" "$name.png" 4
 }
 looks light 960 640
 looks dark 960 640 --theme dark
 looks least 700 420
+
+# The hand is led into the side of a rough cube, as far as the target goes from the tip.
+cat >cube.yaml <<END
+name: cube
+duration: 1
+arm: $source_dir/app/arms/vintage_phantom.yaml
+objects:
+  - name: cube
+    box: {sides: [0.05, 0.05, 0.05]}
+    position: [0, -0.03, 0]
+    stiffness: 600
+    damping: 1
+    effects:
+      - {friction: bristle, coefficient: 1.5}
+hand:
+  grip: {stiffness: 40, damping: 2}
+  path: [{t: 0, at: [0, 0.02, 0]}, {t: 1, at: [0, 0.02, 0]}]
+END
+me=window$$
+"$thimble" run cube.yaml --hand keyboard --no-view --name "$me" >run.txt 2>&1 &
+run=$!
+expect 0 '' bash -c "$(declare -f wait_for); wait_for 60 '$thimble' view '$me' --text --for 0.1"
+"$thimble" view "$me" --hand keyboard --for 8 --picture led.png 2>led.txt &
+viewer=$!
+wait_for 60 xdotool search --onlyvisible --name "Thimble: cube"
+window=$(xdotool search --onlyvisible --name "Thimble: cube" | head -1)
+xdotool windowsize "$window" 960 640
+xdotool windowfocus "$window" 2>/dev/null
+xdotool keydown Left
+wait $viewer
+expect 0 '^0$' echo $?
+xdotool keyup Left
+"$thimble" view "$me" --stop
+wait $run
+# The target and the line from it to the tip, alone: in a larger part they would hardly count.
+same_as_kept led led.png 2 50 330 280 30
 finish
