@@ -87,7 +87,7 @@ TEST(TimeShots, OfPlotsLookAsTheyDid) {
   plots.draw(list, {10, 105, 460, 100}, Channel::kDepth, {0, 4}, marks);
   plots.draw(list, {10, 205, 460, 110}, Channel::kX, {2.19, 2.21}, {});
   plots.draw_periods(list, {10, 315, 460, 100}, {0, 4}, 1'000'000);
-  canvas.finish();
+  canvas.begin_pixels();
   text.end();
   const Picture drawn = canvas.read();
   const fs::path stored_file = fs::path(THIMBLE_TEST_DATA) / "shots/plots/plots.png";
