@@ -67,10 +67,6 @@ for preset in "${presets[@]}"; do
   esac
   app/setup.sh "$preset" "${targets[@]}"
   echo "== Tests: $preset"
-  if [ "$preset" = asan ] && [ -z "${THIMBLE_LONG:-}" ]; then
-    leave+=(-E "$(tests/release_only.sh)")
-    echo "Left to the release and to --long: the tests of tests/release_only.list"
-  fi
   # Tests by the wall clock fail where the machine stands still for longer than an arm's watchdog allows; what fails by
   # itself fails each time. Those that passed at a further try are named below.
   ctest --preset "$preset" --repeat until-pass:3 "${leave[@]}" | tee "build/$preset.tests" || failed+=("$preset")
