@@ -163,8 +163,8 @@ class ContactMesh {
   /// Returns whether edge planes are kept (ContactMeshOptions).
   bool keeps_planes() const noexcept { return !edges_.empty(); }
 
-  /// Returns one of them, the same to the bit where none is kept; some 60 ns then, 10 where what it
-  /// is made from is (ContactMeshOptions::keep_planes).
+  /// Returns one of them, the same to the bit where none is kept; some 60 ns then, 25 to 50 where
+  /// what it is made from is (ContactMeshOptions::keep_planes).
   Plane edge_plane(std::int32_t triangle, std::size_t k) const noexcept {
     return edges_.empty() ? made_edge_plane(triangle, k) : edge_planes(triangle)[k];
   }
