@@ -65,6 +65,16 @@ bool needs_normals(const ContactChoice& choice) {
          choice.blending.value_or(BlendingChoice::kFlat) != BlendingChoice::kFlat;
 }
 
+// From here on memory counts, 20 MB and more: planes are made when a triangle is entered, which
+// costs 70 to 150 ns each time. [chosen]
+constexpr std::size_t kPlanesKeptMax = 100000;
+
+/// Returns whether edge planes are kept: where there are few, and for those who ask for them in
+/// each tick.
+bool keeps_planes(const TriangleMesh& mesh_W, const ContactChoice& choice) {
+  return mesh_W.triangles.size() <= kPlanesKeptMax || needs_normals(choice);
+}
+
 }  // namespace
 
 driver::Result<void> check_profile(const ContactChoice& choice) {
@@ -83,7 +93,8 @@ driver::Result<StillSurface> prepare_still_surface(const TriangleMesh& mesh_W,
   if (choice.tracker == TrackerChoice::kPacked) return prepare_packed(mesh_W, choice);
   // The god-object asks no edge planes.
   auto prepared =
-      ContactMesh::build(mesh_W, {.edge_planes = choice.tracker != TrackerChoice::kGodObject});
+      ContactMesh::build(mesh_W, {.edge_planes = choice.tracker != TrackerChoice::kGodObject,
+                                  .keep_planes = keeps_planes(mesh_W, choice)});
   if (!prepared) return prepared.error();
   StillSurface still;
   still.mesh = std::make_shared<const ContactMesh>(std::move(prepared).value());

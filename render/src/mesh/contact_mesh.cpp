@@ -3,10 +3,12 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include "mesh/adjacency.h"
+#include "mesh/in_halves.h"
 #include "mesh/repair/sound_mesh.h"
 
 namespace thimble::render {
@@ -32,37 +34,64 @@ std::uint16_t rounded_up(double sine) {
       std::min(std::ceil(sine * TriangleCell::kSineUnit), TriangleCell::kSineUnit));
 }
 
-// Finds the edge plane of two triangles, positive on the side of the first, which runs the edge
-// from `from` along `edge`. Of faces back to back with no matter between, the first keeps all
-// outside its face; a gap of no width is not told apart from that.
-Plane plane_over(const Vector3d& from, const Vector3d& edge, const Vector3d& n_first,
-                 const Vector3d& n_second) {
-  const Vector3d average = n_first + n_second;
-  Plane plane;
-  plane.n = average.norm() > kOpposite ? average.cross(edge).stableNormalized() : n_first;
-  plane.d = -plane.n.dot(from);
-  return plane;
-}
-
 }  // namespace
+
+// The face of `n_first` runs the shared edge upwards: from `from` along `edge`.
+struct ContactMesh::EdgeSides {
+  Vector3d from, edge, n_first, n_second;
+  bool turned;  // for who runs it downwards
+
+  // Normal to the plane, positive on the side of the first face; of any length.
+  Vector3d across() const noexcept { return (n_first + n_second).cross(edge); }
+
+  // What that is divided by; 0 where the normal is the first face's. Of faces back to back with no
+  // matter between, the first keeps all outside its face; a gap of no width is not told apart from
+  // that.
+  double size() const noexcept {
+    if (!((n_first + n_second).norm() > kOpposite)) return 0;
+    const Vector3d wide = across();
+    // By its largest part, so that no square is too large or too small.
+    const double most = wide.cwiseAbs().maxCoeff();
+    const double squared = (wide / most).squaredNorm();
+    return squared > 0 ? std::sqrt(squared) * most : 1;
+  }
+
+  Plane plane(double size) const noexcept {
+    const Vector3d n = size > 0 ? Vector3d(across() / size) : n_first;
+    const double d = -n.dot(from);
+    return turned ? Plane{-n, -d} : Plane{n, d};
+  }
+};
+
+template <class Work>
+void ContactMesh::for_all(const Work& work) const {
+  in_halves(triangles_.size(), [&work](std::size_t begin, std::size_t end) noexcept {
+    for (std::size_t t = begin; t < end; ++t) work(static_cast<std::int32_t>(t));
+  });
+}
 
 driver::Result<ContactMesh> ContactMesh::build(const TriangleMesh& mesh,
                                                const ContactMeshOptions& options) {
-  auto looked = look_at_mesh_beside(mesh, options.orient);
-  auto contact = assemble(mesh, options);
+  const auto neighbours = find_adjacency(mesh);
+  auto looked = look_at_mesh_beside(mesh, neighbours, options.orient);
+  // What the look finds is told, whatever else is wrong.
+  std::optional<ContactMesh> contact;
+  if (neighbours) contact = assemble(mesh, *neighbours, options);
   auto sound = looked.get();
-  // What the look found is told, whatever the assembly stumbled over.
   if (!sound) return sound.error();
-  if (!sound->turned) return contact;
-  contact = assemble(*sound->turned, options);
-  if (contact) contact->orientation_ = std::move(sound->orientation);
-  return contact;
+  if (sound->turned) {
+    const auto turned = find_adjacency(*sound->turned);
+    if (!turned) return turned.error();
+    contact = assemble(*sound->turned, *turned, options);
+    contact->orientation_ = std::move(sound->orientation);
+  } else if (!neighbours) {
+    return neighbours.error();
+  }
+  return std::move(*contact);
 }
 
-driver::Result<ContactMesh> ContactMesh::assemble(const TriangleMesh& mesh,
-                                                  const ContactMeshOptions& options) {
-  const auto neighbours = find_adjacency(mesh);
-  if (!neighbours) return neighbours.error();
+ContactMesh ContactMesh::assemble(const TriangleMesh& mesh, const Adjacency& neighbours,
+                                  const ContactMeshOptions& options) {
   Eigen::AlignedBox3d box;
   for (const Vector3d& p : mesh.vertices) {
     if (p.allFinite()) box.extend(p);
@@ -72,7 +101,7 @@ driver::Result<ContactMesh> ContactMesh::assemble(const TriangleMesh& mesh,
   contact.triangles_ = mesh.triangles;
   contact.cells_.resize(contact.triangles_.size());
   for (std::size_t t = 0; t < contact.cells_.size(); ++t) {
-    contact.cells_[t].neighbours = (*neighbours)[t];
+    contact.cells_[t].neighbours = neighbours[t];
   }
   const Vector3d size = box.isEmpty() ? Vector3d(0, 0, 0) : Vector3d(box.max() - box.min());
   const Vector3d low = box.isEmpty() ? Vector3d(0, 0, 0) : Vector3d(box.min());
@@ -82,10 +111,15 @@ driver::Result<ContactMesh> ContactMesh::assemble(const TriangleMesh& mesh,
   contact.origin_ = low + size / 2;
   // Far from the world's origin the vertices themselves carry the rounding of their place.
   contact.depth_rounding_ = kDepthRounding * ((size + 2 * room).norm() + contact.origin_.norm());
-  for (std::int32_t t = 0; t < contact.triangle_count(); ++t) contact.compute_face(t);
+  contact.for_all([&contact](std::int32_t t) noexcept { contact.compute_face(t); });
   contact.collect_fans();
   if (options.edge_planes) {
-    contact.compute_edges();
+    if (options.keep_planes) {
+      contact.compute_edges();
+    } else {
+      contact.compute_edge_sizes();
+    }
+    contact.for_all([&contact](std::int32_t t) noexcept { contact.measure_edges(t); });
     contact.measure_around();
   }
   if (options.triangles_max > contact.triangles_.size()) contact.make_room(options.triangles_max);
@@ -107,8 +141,15 @@ void ContactMesh::compute_face(std::int32_t triangle) noexcept {
   face.d = -face.n.dot(position(triangle, 0) - origin_);
 }
 
-// Finds the plane over an edge and gives both its triangles the same numbers, whichever asks.
 void ContactMesh::compute_edge(std::int32_t triangle, std::size_t k) noexcept {
+  const std::int32_t other = place_edge(triangle, k);
+  measure_edges(triangle);
+  measure_edges(other);
+}
+
+// Finds the plane over an edge and gives both its triangles the same numbers, whichever asks; names
+// the one behind.
+std::int32_t ContactMesh::place_edge(std::int32_t triangle, std::size_t k) noexcept {
   const std::int32_t other = cell(triangle).neighbours[k];
   const std::int32_t from = corners(triangle)[k];
   const std::int32_t to = corners(triangle)[(k + 1) % 3];
@@ -117,40 +158,56 @@ void ContactMesh::compute_edge(std::int32_t triangle, std::size_t k) noexcept {
   const Plane plane = made_edge_plane(triangle, k);
   edges_[static_cast<std::size_t>(triangle)][k] = plane;
   edges_[static_cast<std::size_t>(other)][j] = {-plane.n, -plane.d};
-  measure_edges(triangle);
-  measure_edges(other);
+  return other;
 }
 
-// It is found for the triangle that runs the edge upwards, so that both have the same numbers.
-Plane ContactMesh::made_edge_plane(std::int32_t triangle, std::size_t k) const noexcept {
+// Found for the triangle that runs the edge upwards, so that both have the same numbers.
+ContactMesh::EdgeSides ContactMesh::edge_sides(std::int32_t triangle,
+                                               std::size_t k) const noexcept {
   const std::int32_t other = cell(triangle).neighbours[k];
   const std::int32_t from = corners(triangle)[k];
   const std::int32_t to = corners(triangle)[(k + 1) % 3];
   const bool upwards = from < to;
   const std::int32_t low = upwards ? from : to;
   const std::int32_t high = upwards ? to : from;
-  const Plane plane =
-      plane_over(position(low) - origin_, position(high) - position(low),
-                 cell(upwards ? triangle : other).face.n, cell(upwards ? other : triangle).face.n);
-  return upwards ? plane : Plane{-plane.n, -plane.d};
+  return {.from = position(low) - origin_,
+          .edge = position(high) - position(low),
+          .n_first = cell(upwards ? triangle : other).face.n,
+          .n_second = cell(upwards ? other : triangle).face.n,
+          .turned = !upwards};
+}
+
+Plane ContactMesh::made_edge_plane(std::int32_t triangle, std::size_t k) const noexcept {
+  const EdgeSides sides = edge_sides(triangle, k);
+  return sides.plane(edge_sizes_.empty() ? sides.size()
+                                         : edge_sizes_[static_cast<std::size_t>(triangle)][k]);
+}
+
+void ContactMesh::compute_edge_sizes() {
+  edge_sizes_.resize(triangles_.size());
+  for_all([this](std::int32_t t) noexcept {
+    for (std::size_t k = 0; k < 3; ++k) {
+      edge_sizes_[static_cast<std::size_t>(t)][k] = edge_sides(t, k).size();
+    }
+  });
 }
 
 void ContactMesh::compute_edges() {
   edges_.resize(triangles_.size());
-  for (std::int32_t t = 0; t < triangle_count(); ++t) {
+  for_all([this](std::int32_t t) noexcept {
     for (std::size_t k = 0; k < 3; ++k) {
       // Each edge is done once, by the triangle that runs it upwards.
-      if (corners(t)[k] < corners(t)[(k + 1) % 3]) compute_edge(t, k);
+      if (corners(t)[k] < corners(t)[(k + 1) % 3]) place_edge(t, k);
     }
-  }
+  });
 }
 
 // An edge plane leans over its face by half the angle there: back if the edge is hollow.
 void ContactMesh::measure_edges(std::int32_t triangle) noexcept {
   TriangleCell& measured = cells_[static_cast<std::size_t>(triangle)];
   double hollow = 0;
-  for (const Plane& edge : edge_planes(triangle)) {
-    const double lean = edge.n.dot(measured.face.n);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double lean = edge_plane(triangle, k).n.dot(measured.face.n);
     if (lean < -TriangleCell::kFlat) hollow = std::max(hollow, -lean);
   }
   measured.hollow = rounded_up(hollow);
@@ -180,18 +237,19 @@ void ContactMesh::collect_fans() {
 
 // Half the difference of two unit normals is the sine of half the angle between them.
 void ContactMesh::measure_around() {
-  for (std::size_t i = 0; i < cells_.size(); ++i) {
+  for_all([this](std::int32_t triangle) noexcept {
+    TriangleCell& measured = cells_[static_cast<std::size_t>(triangle)];
     double most_squared = 0;
-    for (const std::int32_t v : triangles_[i]) {
+    for (const std::int32_t v : corners(triangle)) {
       const auto around = fan(v);
       if (around.size() > TriangleCell::kFanMax) most_squared = 4;
       if (most_squared == 4) break;
       for (const std::int32_t t : around) {
-        most_squared = std::max(most_squared, (cell(t).face.n - cells_[i].face.n).squaredNorm());
+        most_squared = std::max(most_squared, (cell(t).face.n - measured.face.n).squaredNorm());
       }
     }
-    cells_[i].around = rounded_up(std::sqrt(most_squared) / 2);
-  }
+    measured.around = rounded_up(std::sqrt(most_squared) / 2);
+  });
 }
 
 }  // namespace thimble::render

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "mesh/adjacency.h"
 #include "mesh/repair/orient_mesh.h"
 #include "thimble/driver/result.h"
 #include "thimble/render/mesh/triangle_mesh.h"
@@ -52,9 +53,12 @@ struct ContactMeshOptions {
   /// Winds triangles alike and outwards (see orient_mesh): for a closed surface only one answer is
   /// right. If false, meshes that need it are refused.
   bool orient = true;
-  /// Keeps edge planes, 96 of 200 bytes per triangle, and what else only those ask for who walk
-  /// over edges. If false, the mesh must keep its shape.
+  /// Knows what only those ask for who walk over edges. If false, the mesh must keep its shape.
   bool edge_planes = true;
+  /// Keeps edge planes, 96 of 200 bytes per triangle. If false, 24 bytes from which each is made
+  /// anew when it is asked for (`edge_plane`), and the mesh must keep its shape. Nothing without
+  /// `edge_planes`.
+  bool keep_planes = true;
   /// How far vertices may later move out of the box, as a share of its longest side, >= 0:
   /// `box_min` and `box_max` grow by it on all sides. 0 for a mesh that keeps its shape.
   double room = 0;
@@ -151,12 +155,16 @@ class ContactMesh {
   }
 
   /// Gives the planes over the edges of a triangle from corner k to k + 1, positive on its side [BP
-  /// 4b], relative to `origin`. Precondition: ContactMeshOptions::edge_planes.
+  /// 4b], relative to `origin`. Precondition: `keeps_planes`.
   const std::array<Plane, 3>& edge_planes(std::int32_t triangle) const noexcept {
     return edges_[static_cast<std::size_t>(triangle)];
   }
 
-  /// Returns one of them, the same to the bit where none is kept; some 60 ns then.
+  /// Returns whether edge planes are kept (ContactMeshOptions).
+  bool keeps_planes() const noexcept { return !edges_.empty(); }
+
+  /// Returns one of them, the same to the bit where none is kept; some 60 ns then, 25 to 50 where
+  /// what it is made from is (ContactMeshOptions::keep_planes).
   Plane edge_plane(std::int32_t triangle, std::size_t k) const noexcept {
     return edges_.empty() ? made_edge_plane(triangle, k) : edge_planes(triangle)[k];
   }
@@ -212,15 +220,21 @@ class ContactMesh {
   };
 
   ContactMesh() = default;
+  template <class Work>
+  void for_all(const Work& work) const;
   void make_room(std::size_t triangles_max);
   bool add_to_fan(std::int32_t vertex, std::int32_t triangle) noexcept;
   void change_fan(std::int32_t vertex, const EdgeSplit& split) noexcept;
-  static driver::Result<ContactMesh> assemble(const TriangleMesh& mesh,
-                                              const ContactMeshOptions& options);
+  static ContactMesh assemble(const TriangleMesh& mesh, const Adjacency& neighbours,
+                              const ContactMeshOptions& options);
   void compute_face(std::int32_t triangle) noexcept;
   void compute_edge(std::int32_t triangle, std::size_t k) noexcept;
+  std::int32_t place_edge(std::int32_t triangle, std::size_t k) noexcept;
+  struct EdgeSides;  // what two faces make an edge plane from
+  EdgeSides edge_sides(std::int32_t triangle, std::size_t k) const noexcept;
   Plane made_edge_plane(std::int32_t triangle, std::size_t k) const noexcept;
   void compute_edges();
+  void compute_edge_sizes();
   void measure_edges(std::int32_t triangle) noexcept;
   void collect_fans();
   void measure_around();
@@ -228,7 +242,8 @@ class ContactMesh {
   std::vector<Eigen::Vector3d> vertices_;
   std::vector<std::array<std::int32_t, 3>> triangles_;
   std::vector<TriangleCell> cells_;
-  std::vector<std::array<Plane, 3>> edges_;  // empty where nobody walks over edges
+  std::vector<std::array<Plane, 3>> edges_;  // empty where nobody walks over edges, or there are
+  std::vector<std::array<double, 3>> edge_sizes_;  // what their normals are divided by, 0: a face's
   std::vector<Fan> fan_of_;
   std::vector<std::int32_t> fans_;
   std::size_t fans_built_ = 0;  // of fans_; behind it stand those that have grown

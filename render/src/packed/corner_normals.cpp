@@ -2,12 +2,15 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <numbers>
 #include <span>
 #include <vector>
 
 #include "math/elementary.h"
+#include "math/rough_arc.h"
+#include "mesh/in_halves.h"
 #include "mesh/smooth_normals.h"
 
 namespace thimble::render {
@@ -77,6 +80,103 @@ void assign_group(const std::vector<std::array<std::int32_t, 3>>& triangles, con
   });
 }
 
+// The angles of a triangle at its corners, rounded to single precision.
+std::array<float, 3> corner_angles(const Vector3d& ab, const Vector3d& ac,
+                                   double twice_area) noexcept {
+  const double along_a = ab.dot(ac), along_b = -ab.dot(ac - ab);
+  const math::RoughAngle a = math::rough_atan2(twice_area, along_a);
+  const math::RoughAngle b = math::rough_atan2(twice_area, along_b);
+  // Rounding is monotone: where the least and the most that angles may be round to the same, so
+  // does what is in between.
+  const auto rounded = [](const math::RoughAngle& at_a, const math::RoughAngle& at_b, double side) {
+    const double first = at_a.angle + side * at_a.wrong, second = at_b.angle + side * at_b.wrong;
+    return std::array<float, 3>{static_cast<float>(first), static_cast<float>(second),
+                                static_cast<float>(std::numbers::pi - first - second)};
+  };
+  const std::array<float, 3> least = rounded(a, b, -1);
+  if (least == rounded(a, b, 1)) return least;
+  const double at_a = math::atan2(twice_area, along_a);
+  const double at_b = math::atan2(twice_area, along_b);
+  return {static_cast<float>(at_a), static_cast<float>(at_b),
+          static_cast<float>(std::numbers::pi - at_a - at_b)};
+}
+
+// False if the triangle has no area.
+bool measure_face(const std::vector<Vector3d>& vertices,
+                  const std::vector<std::array<std::int32_t, 3>>& triangles, std::size_t t,
+                  Faces& faces) noexcept {
+  const Vector3d& a = vertices[index(triangles[t][0])];
+  const Vector3d ab = vertices[index(triangles[t][1])] - a;
+  const Vector3d ac = vertices[index(triangles[t][2])] - a;
+  const Vector3d area = ab.cross(ac);
+  const double twice_area = area.stableNorm();
+  if (!(twice_area > 0)) return false;
+  faces.normals[t] = area / twice_area;
+  faces.angles[t] = corner_angles(ab, ac, twice_area);
+  return true;
+}
+
+void find_creases(const std::vector<Vector3d>& vertices,
+                  const std::vector<std::array<std::int32_t, 3>>& triangles, const Faces& faces,
+                  double crease_angle, std::span<PackedTriangle> packed) {
+  const double crease_cosine = math::cos(crease_angle);
+  const double hollow_cosine = math::cos(std::min(crease_angle, kHollowCreaseAngle));
+  in_halves(triangles.size(), [&](std::size_t first, std::size_t end) noexcept {
+    for (std::size_t t = first; t < end; ++t) {
+      std::uint32_t flags = 0;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t behind = index(packed[t].neighbours[k]);
+        const Vector3d& other = faces.normals[behind];
+        const double cosine = faces.normals[t].dot(other);
+        // The corner behind the edge stands above this face.
+        const auto is_hollow = [&] {
+          const Vector3d& begin = vertices[index(triangles[t][k])];
+          for (const std::int32_t v : triangles[behind]) {
+            if (v == triangles[t][k] || v == triangles[t][(k + 1) % 3]) continue;
+            return faces.normals[t].dot(vertices[index(v)] - begin) > 0;
+          }
+          return false;
+        };
+        const bool sharp = !(cosine >= crease_cosine) || (cosine < hollow_cosine && is_hollow());
+        if (sharp) flags |= 1u << k;
+      }
+      packed[t].flags |= flags;
+    }
+  });
+}
+
+// Gives all corners at a vertex their normals. `done` is empty or false everywhere, and stays so.
+void assign_vertex(const std::vector<std::array<std::int32_t, 3>>& triangles,
+                   const HalfEdges& half_edges, const Faces& faces, std::int32_t vertex,
+                   std::vector<bool>& done, std::span<PackedTriangle> packed) {
+  const auto fan = half_edges.around(vertex);
+  bool smooth = true;
+  Vector3d sum{0, 0, 0};
+  for (const auto& side : fan) {
+    const std::size_t t = index(side.triangle);
+    const std::size_t k = corner_of(triangles[t], vertex);
+    smooth &= !packed[t].crease(k);
+    sum += static_cast<double>(faces.angles[t][k]) * faces.normals[t];
+  }
+  if (!smooth && fan.size() > kHub) {
+    done.resize(triangles.size(), false);
+    for (const auto& side : fan) {
+      if (done[index(side.triangle)]) continue;
+      assign_group(triangles, faces, vertex, side.triangle, done, packed);
+    }
+    for (const auto& side : fan) done[index(side.triangle)] = false;
+    return;
+  }
+  const std::uint32_t code = smooth && sum.norm() > 0 ? pack_normal(sum) : 0;
+  for (const auto& side : fan) {
+    const std::size_t t = index(side.triangle);
+    Vector3d own = sum;
+    if (!smooth) own = fan_normal(triangles, packed, faces, vertex, side.triangle);
+    if (!(own.norm() > 0)) own = faces.normals[t];
+    packed[t].normals[corner_of(triangles[t], vertex)] = code != 0 ? code : pack_normal(own);
+  }
+}
+
 }  // namespace
 
 std::ptrdiff_t assign_corner_normals(const std::vector<Vector3d>& vertices,
@@ -86,71 +186,24 @@ std::ptrdiff_t assign_corner_normals(const std::vector<Vector3d>& vertices,
   Faces faces;
   faces.normals.resize(triangles.size());
   faces.angles.resize(triangles.size());
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    const Vector3d& a = vertices[index(triangles[t][0])];
-    const Vector3d ab = vertices[index(triangles[t][1])] - a;
-    const Vector3d ac = vertices[index(triangles[t][2])] - a;
-    const Vector3d area = ab.cross(ac);
-    const double twice_area = area.stableNorm();
-    if (!(twice_area > 0)) return static_cast<std::ptrdiff_t>(t);
-    faces.normals[t] = area / twice_area;
-    const double at_a = math::atan2(twice_area, ab.dot(ac));
-    const double at_b = math::atan2(twice_area, -ab.dot(ac - ab));
-    faces.angles[t] = {static_cast<float>(at_a), static_cast<float>(at_b),
-                       static_cast<float>(std::numbers::pi - at_a - at_b)};
-  }
-  const double crease_cosine = math::cos(crease_angle);
-  const double hollow_cosine = math::cos(std::min(crease_angle, kHollowCreaseAngle));
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    std::uint32_t flags = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::size_t behind = index(packed[t].neighbours[k]);
-      const Vector3d& other = faces.normals[behind];
-      const double cosine = faces.normals[t].dot(other);
-      // The corner behind the edge stands above this face.
-      const auto is_hollow = [&] {
-        const Vector3d& begin = vertices[index(triangles[t][k])];
-        for (const std::int32_t v : triangles[behind]) {
-          if (v == triangles[t][k] || v == triangles[t][(k + 1) % 3]) continue;
-          return faces.normals[t].dot(vertices[index(v)] - begin) > 0;
-        }
-        return false;
-      };
-      const bool sharp = !(cosine >= crease_cosine) || (cosine < hollow_cosine && is_hollow());
-      if (sharp) flags |= 1u << k;
+  std::atomic<std::size_t> flat = triangles.size();
+  in_halves(triangles.size(), [&](std::size_t begin, std::size_t end) noexcept {
+    for (std::size_t t = begin; t < end; ++t) {
+      if (measure_face(vertices, triangles, t, faces)) continue;
+      // The first of all counts.
+      std::size_t first = flat;
+      while (t < first && !flat.compare_exchange_weak(first, t)) continue;
+      return;
     }
-    packed[t].flags |= flags;
-  }
-  std::vector<bool> done;
-  for (std::size_t v = 0; v < vertices.size(); ++v) {
-    const auto vertex = static_cast<std::int32_t>(v);
-    const auto fan = half_edges.around(vertex);
-    bool smooth = true;
-    Vector3d sum{0, 0, 0};
-    for (const auto& side : fan) {
-      const std::size_t t = index(side.triangle);
-      const std::size_t k = corner_of(triangles[t], vertex);
-      smooth &= !packed[t].crease(k);
-      sum += static_cast<double>(faces.angles[t][k]) * faces.normals[t];
+  });
+  if (flat < triangles.size()) return static_cast<std::ptrdiff_t>(flat.load());
+  find_creases(vertices, triangles, faces, crease_angle, packed);
+  in_halves(vertices.size(), [&](std::size_t begin, std::size_t end) {
+    std::vector<bool> done;
+    for (std::size_t v = begin; v < end; ++v) {
+      assign_vertex(triangles, half_edges, faces, static_cast<std::int32_t>(v), done, packed);
     }
-    if (!smooth && fan.size() > kHub) {
-      done.resize(triangles.size(), false);
-      for (const auto& side : fan) {
-        if (done[index(side.triangle)]) continue;
-        assign_group(triangles, faces, vertex, side.triangle, done, packed);
-      }
-      for (const auto& side : fan) done[index(side.triangle)] = false;
-      continue;
-    }
-    const std::uint32_t code = smooth && sum.norm() > 0 ? pack_normal(sum) : 0;
-    for (const auto& side : fan) {
-      const std::size_t t = index(side.triangle);
-      Vector3d own = sum;
-      if (!smooth) own = fan_normal(triangles, packed, faces, vertex, side.triangle);
-      if (!(own.norm() > 0)) own = faces.normals[t];
-      packed[t].normals[corner_of(triangles[t], vertex)] = code != 0 ? code : pack_normal(own);
-    }
-  }
+  });
   return -1;
 }
 

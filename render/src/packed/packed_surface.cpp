@@ -1,6 +1,7 @@
 #include "packed/packed_surface.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -8,6 +9,7 @@
 #include <utility>
 
 #include "mesh/half_edges.h"
+#include "mesh/in_halves.h"
 #include "packed/block_order.h"
 #include "packed/corner_normals.h"
 #include "packed/sse2.h"
@@ -63,15 +65,17 @@ LatticePoint on_lattice(const Vector3d& p) noexcept {
 // Gives the triangles in the order in which their packed triangles shall stand.
 std::vector<PlacedIndex> order_of(const TriangleMesh& mesh, std::span<const LatticePoint> points) {
   std::vector<PlacedIndex> order(mesh.triangles.size());
-  for (std::size_t t = 0; t < order.size(); ++t) {
-    const auto& [i, j, k] = mesh.triangles[t];
-    const LatticePoint &a = points[index(i)], &b = points[index(j)], &c = points[index(k)];
-    const auto middle = [](std::int32_t u, std::int32_t v, std::int32_t w) noexcept {
-      return static_cast<float>(u) + static_cast<float>(v) + static_cast<float>(w);
-    };
-    order[t] = {{middle(a.x, b.x, c.x), middle(a.y, b.y, c.y), middle(a.z, b.z, c.z)},
-                static_cast<std::int32_t>(t)};
-  }
+  in_halves(order.size(), [&](std::size_t begin, std::size_t end) noexcept {
+    for (std::size_t t = begin; t < end; ++t) {
+      const auto& [i, j, k] = mesh.triangles[t];
+      const LatticePoint &a = points[index(i)], &b = points[index(j)], &c = points[index(k)];
+      const auto middle = [](std::int32_t u, std::int32_t v, std::int32_t w) noexcept {
+        return static_cast<float>(u) + static_cast<float>(v) + static_cast<float>(w);
+      };
+      order[t] = {{middle(a.x, b.x, c.x), middle(a.y, b.y, c.y), middle(a.z, b.z, c.z)},
+                  static_cast<std::int32_t>(t)};
+    }
+  });
   order_in_blocks(order);
   return order;
 }
@@ -149,33 +153,39 @@ driver::Result<PackedSurface> PackedSurface::build(const TriangleMesh& mesh,
   surface.triangles_.resize(count);
   {
     std::vector<LatticePoint> points(mesh.vertices.size());
-    for (std::size_t v = 0; v < points.size(); ++v) {
-      points[v] = on_lattice(surface.to_lattice(mesh.vertices[v]));
-    }
-    const std::vector<PlacedIndex> order = order_of(mesh, points);
-    for (std::size_t t = 0; t < count; ++t) {
-      PackedTriangle& packed = surface.triangles_[t];
-      triangles[t] = mesh.triangles[index(order[t].index)];
-      for (std::size_t k = 0; k < 3; ++k) {
-        const LatticePoint& p = points[index(triangles[t][k])];
-        packed.x[k] = p.x;
-        packed.y[k] = p.y;
-        packed.z[k] = p.z;
+    in_halves(points.size(), [&](std::size_t begin, std::size_t end) noexcept {
+      for (std::size_t v = begin; v < end; ++v) {
+        points[v] = on_lattice(surface.to_lattice(mesh.vertices[v]));
       }
-      packed.flags = static_cast<std::uint32_t>(order[t].index) << PackedTriangle::kSourceShift;
-    }
+    });
+    const std::vector<PlacedIndex> order = order_of(mesh, points);
+    in_halves(count, [&](std::size_t begin, std::size_t end) noexcept {
+      for (std::size_t t = begin; t < end; ++t) {
+        PackedTriangle& packed = surface.triangles_[t];
+        triangles[t] = mesh.triangles[index(order[t].index)];
+        for (std::size_t k = 0; k < 3; ++k) {
+          const LatticePoint& p = points[index(triangles[t][k])];
+          packed.x[k] = p.x;
+          packed.y[k] = p.y;
+          packed.z[k] = p.z;
+        }
+        packed.flags = static_cast<std::uint32_t>(order[t].index) << PackedTriangle::kSourceShift;
+      }
+    });
   }
 
   const HalfEdges half_edges(triangles, mesh.vertices.size());
   // Who runs an edge besides another is found by the one behind that edge, who sees two.
-  bool all_paired = true;
-  for (std::size_t t = 0; t < count; ++t) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::int32_t behind = half_edges.opposite(triangles[t][(k + 1) % 3], triangles[t][k]);
-      surface.triangles_[t].neighbours[k] = behind;
-      all_paired &= behind >= 0;
+  std::atomic<bool> all_paired = true;
+  in_halves(count, [&](std::size_t begin, std::size_t end) noexcept {
+    for (std::size_t t = begin; t < end; ++t) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::int32_t behind = half_edges.opposite(triangles[t][(k + 1) % 3], triangles[t][k]);
+        surface.triangles_[t].neighbours[k] = behind;
+        if (behind < 0) all_paired = false;
+      }
     }
-  }
+  });
   if (!all_paired) return first_unpaired(surface.triangles_, triangles, half_edges);
   const std::ptrdiff_t flat = assign_corner_normals(mesh.vertices, triangles, half_edges,
                                                     options.crease_angle, surface.triangles_);

@@ -1,3 +1,4 @@
+#include "mesh/in_halves.h"
 #include "packed/block_order.h"
 #include "search/tree_search.h"
 
@@ -14,13 +15,15 @@ std::vector<std::int32_t> order_of(const PackedSurface&, const SearchFrame&) {
 
 std::vector<std::int32_t> order_of(const ContactMesh& mesh, const SearchFrame& frame) {
   std::vector<PlacedIndex> items(static_cast<std::size_t>(mesh.triangle_count()));
-  for (std::size_t i = 0; i < items.size(); ++i) {
-    const auto t = static_cast<std::int32_t>(i);
-    const Eigen::Vector3f middle =
-        (corner_in(frame, mesh, t, 0) + corner_in(frame, mesh, t, 1) + corner_in(frame, mesh, t, 2))
-            .cast<float>();
-    items[i] = {{middle.x(), middle.y(), middle.z()}, t};
-  }
+  in_halves(items.size(), [&](std::size_t begin, std::size_t end) noexcept {
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto t = static_cast<std::int32_t>(i);
+      const Eigen::Vector3f middle = (corner_in(frame, mesh, t, 0) + corner_in(frame, mesh, t, 1) +
+                                      corner_in(frame, mesh, t, 2))
+                                         .cast<float>();
+      items[i] = {{middle.x(), middle.y(), middle.z()}, t};
+    }
+  });
   order_in_blocks(items);
   std::vector<std::int32_t> order;
   order.reserve(items.size());

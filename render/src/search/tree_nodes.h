@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "mesh/in_halves.h"
 #include "packed/large_pages.h"
 #include "search/box_node.h"
 
@@ -25,7 +26,8 @@ class TreeNodes {
   static constexpr std::size_t kLevelsMax = 10;                                   ///< 8^10 things.
   static constexpr std::size_t kThingsMax = std::size_t{1} << (kNumberBits + 2);  ///< Most.
 
-  /// Builds the tree in linear time. `box_of(place)` gives the LatticeAabb of a thing.
+  /// Builds the tree in linear time. `box_of(place)` gives the LatticeAabb of a thing, to two
+  /// threads at once.
   /// Sets room aside for things that come later (`grow`), up to `room` in all.
   /// Precondition: one to `kThingsMax` things. Real-time: never from the servo thread.
   template <class BoxOf>
@@ -112,7 +114,9 @@ void TreeNodes::build(std::size_t things, BoxOf box_of, std::size_t room) {
   for (std::size_t level = 0; level < levels_; ++level) {
     all -= most[level + 1];
     begins_[level] = static_cast<std::uint32_t>(all);
-    for (std::size_t i = 0; i < counts_[level + 1]; ++i) nodes_[all + i] = made(level, i, box_of);
+    in_halves(counts_[level + 1], [this, all, level, &box_of](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) nodes_[all + i] = made(level, i, box_of);
+    });
   }
 }
 

@@ -25,8 +25,8 @@ void TreeSearch<Surface>::visit_reached(const Vector3d& from, const Vector3d& wa
   };
   const std::int32_t* const order = order_.empty() ? nullptr : order_.data();
   NearList near;
-  if (wide_ ? lanes_avx2::list_near(nodes_, part, near)
-            : lanes_plain::list_near(nodes_, part, near)) {
+  if (wide_ ? lanes_avx2::list_near(nodes_, *surface_, part, near)
+            : lanes_plain::list_near(nodes_, *surface_, part, near)) {
     if (near.count == 0) return;
     std::array<std::int32_t, NearList::kMost> list;
     for (std::size_t i = 0; i < near.count; ++i) list[i] = triangle_at(near.numbers[i]);

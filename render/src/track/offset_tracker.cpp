@@ -36,7 +36,7 @@ std::array<double, 3> edge_shares(const ContactMesh& mesh, const SmoothNormals& 
   for (std::size_t k = 0; k < 3; ++k) {
     const std::size_t opposite = (k + 2) % 3;
     if (normals.crease(triangle, k) || !foot.found) {
-      const Plane& plane = mesh.edge_planes(triangle)[k];
+      const Plane plane = mesh.edge_plane(triangle, k);
       const double height = plane.distance(mesh.position(triangle, opposite) - mesh.origin());
       shares[k] = plane.distance(p_WT - mesh.origin()) / std::abs(height);
     } else {

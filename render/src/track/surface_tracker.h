@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -108,7 +109,8 @@ class SurfaceTracker {
     std::size_t worst = 0;
     double least = 0;
   };
-  EdgeDistances edge_distances(std::int32_t triangle, const Eigen::Vector3d& p) const noexcept;
+  EdgeDistances edge_distances(std::int32_t triangle, const Eigen::Vector3d& p) noexcept;
+  const std::array<Plane, 3>& edge_planes(std::int32_t triangle) noexcept;
   // No distance changes by more than the tip moves: until it has gone half of what the faces around
   // are farther away, nothing needs to be looked at again.
   bool is_quiet(const Eigen::Vector3d& p_WT) const noexcept {
@@ -134,7 +136,9 @@ class SurfaceTracker {
   double depth_before_ = 0;
   std::int32_t looked_ = -1;  // the triangle whose surroundings were looked at last, from where,
   Eigen::Vector3d p_WT_looked_{0, 0, 0};
-  double quiet_squared_ = 0;  // and how far from there nothing around can be nearer, m^2
+  double quiet_squared_ = 0;     // and how far from there nothing around can be nearer, m^2
+  std::int32_t planes_of_ = -1;  // whose planes were made last, where the mesh keeps none
+  std::array<Plane, 3> planes_;
   TrackerCounters counters_;
 };
 

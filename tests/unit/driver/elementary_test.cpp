@@ -4,6 +4,8 @@
 
 #include <limits>
 
+#include "math/rough_arc.h"
+#include "support/random.h"
 #include "support/run_hash.h"
 #include "unit/driver/elementary_functions.h"
 
@@ -152,6 +154,31 @@ TEST(Elementary, BothAtOnceAreThoseOfEachAlone) {
     const double x = draw(random);
     expect_same(sin_cos(x).sine, sin(x));
     expect_same(sin_cos(x).cosine, cos(x));
+  }
+}
+
+TEST(RoughArc, IsNoFartherFromTheTrueAngleThanItSays) {
+  support::Random random(12);
+  int known = 0;
+  for (int i = 0; i < 200000; ++i) {
+    const double y = random.uniform(-1, 1) * exp2(random.uniform(-40, 40));
+    const double x = random.uniform(-1, 1) * exp2(random.uniform(-40, 40));
+    const auto [angle, wrong] = rough_atan2(y, x);
+    if (wrong == kInfinity) continue;
+    ++known;
+    const double true_angle = atan2(y, x);
+    ASSERT_LE(std::abs(angle - true_angle), wrong) << y << ' ' << x;
+    ASSERT_LE(wrong, 1e-12 * std::abs(true_angle));
+  }
+  EXPECT_GT(known, 150000);
+  // The most that the series is wrong by: halfway between two eighths.
+  for (double slope = 0x1p-30; slope < 2; slope *= 1.0001) {
+    const auto [angle, wrong] = rough_atan2(slope, 1);
+    ASSERT_LE(std::abs(angle - atan2(slope, 1)), wrong) << slope;
+  }
+  for (const double far : {kInfinity, std::numeric_limits<double>::quiet_NaN(), 0.0, 0x1p-1000}) {
+    EXPECT_EQ(rough_atan2(far, 1).wrong, kInfinity);
+    EXPECT_EQ(rough_atan2(1, far).wrong, kInfinity);
   }
 }
 

@@ -39,10 +39,15 @@ TEST(ContactMesh, GivesTheSameEdgePlanesWhereItKeepsNone) {
         support::plate(0.1, 0.0002, 3)}) {
     const auto kept = ContactMesh::build(mesh);
     const auto made = ContactMesh::build(mesh, {.edge_planes = false});
-    ASSERT_TRUE(kept.ok() && made.ok());
+    const auto measured = ContactMesh::build(mesh, {.keep_planes = false});
+    ASSERT_TRUE(kept.ok() && made.ok() && measured.ok());
+    EXPECT_TRUE(kept->keeps_planes());
+    EXPECT_FALSE(made->keeps_planes() || measured->keeps_planes());
     for (std::int32_t t = 0; t < kept->triangle_count(); ++t) {
       EXPECT_EQ(made->cell(t).face.n, kept->cell(t).face.n);
       EXPECT_EQ(made->cell(t).neighbours, kept->cell(t).neighbours);
+      EXPECT_EQ(measured->cell(t).hollow, kept->cell(t).hollow);
+      EXPECT_EQ(measured->cell(t).around, kept->cell(t).around);
       for (std::size_t k = 0; k < 3; ++k) {
         EXPECT_EQ(made->edge_plane(t, k).n, kept->edge_planes(t)[k].n);
         EXPECT_EQ(made->edge_plane(t, k).d, kept->edge_planes(t)[k].d);

@@ -341,10 +341,10 @@ TEST(EverySearch, AnswersWithoutTheHeap) {
   EXPECT_GT(sum, 0);
 }
 
-TEST(MakeSearch, TakesTheTreeFromFourThousandTriangles) {
-  const ContactMesh fewer = ContactMesh::build(support::icosphere(3, 0.05)).value();  // 1,280
+TEST(MakeSearch, TakesTheTreeFromTwelveThousandTriangles) {
+  const ContactMesh fewer = ContactMesh::build(support::icosphere(4, 0.05)).value();  // 5,120
   EXPECT_NE(dynamic_cast<const GridSearch<ContactMesh>*>(make_search(fewer).get()), nullptr);
-  const ContactMesh more = ContactMesh::build(support::icosphere(4, 0.05)).value();  // 5,120
+  const ContactMesh more = ContactMesh::build(support::icosphere(5, 0.05)).value();  // 20,480
   EXPECT_NE(dynamic_cast<const TreeSearch<ContactMesh>*>(make_search(more).get()), nullptr);
 }
 

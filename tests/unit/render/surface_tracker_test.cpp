@@ -253,5 +253,42 @@ TEST(SurfaceTracker, NeverPopsThroughAThinPlate) {
   }
 }
 
+TEST(SurfaceTracker, FollowsToTheBitWhereTheMeshKeepsNoPlanes) {
+  for (const TriangleMesh& mesh :
+       {support::bumpy_sphere(4, 0.05, 0.3, 9), support::torus(0.04, 0.015, 30, 12)}) {
+    const ContactMesh kept = ContactMesh::build(mesh).value();
+    const ContactMesh made = ContactMesh::build(mesh, {.keep_planes = false}).value();
+    const auto search = make_search(kept);
+    SurfaceTracker one(kept, *search), other(made, *search);
+    support::Random random(8);
+    one.start(0);
+    other.start(0);
+    Vector3d p = kept.position(0, 0) - 1e-3 * kept.cell(0).face.n;
+    int hops = 0, held = 0;
+    for (int i = 0; i < 20000; ++i) {
+      const TrackerStep a = one.follow(p), b = other.follow(p);
+      ASSERT_EQ(a.touching, b.touching);
+      ASSERT_EQ(a.depth, b.depth);
+      ASSERT_EQ(a.hops, b.hops);
+      ASSERT_EQ(one.active(), other.active());
+      ASSERT_EQ(one.normal(), other.normal());
+      ASSERT_EQ(one.held().triangle, other.held().triangle);
+      hops += a.hops;
+      held += one.held().triangle >= 0 ? 1 : 0;
+      // Back to 1 mm below the surface, and on: anew where it has left.
+      if (a.touching) {
+        p += (a.depth - 1e-3) * one.normal() + 2e-3 * random.direction();
+      } else {
+        const auto t = static_cast<std::int32_t>(random.bits() % mesh.triangles.size());
+        one.start(t);
+        other.start(t);
+        p = kept.position(t, 1) - 1e-3 * kept.cell(t).face.n;
+      }
+    }
+    EXPECT_GT(hops, 2000);
+    EXPECT_GT(held, 0);
+  }
+}
+
 }  // namespace
 }  // namespace thimble::render

@@ -3,6 +3,7 @@
 #include <future>
 #include <optional>
 
+#include "mesh/adjacency.h"
 #include "mesh/repair/orient_mesh.h"
 #include "thimble/driver/result.h"
 #include "thimble/render/mesh/triangle_mesh.h"
@@ -25,5 +26,10 @@ driver::Result<SoundMesh> look_at_mesh(const TriangleMesh& mesh, bool orient);
 /// sound and drop what he has if it is not; small meshes are looked at when the answer is asked
 /// for. The mesh must outlive the answer. Real-time: never from the servo thread.
 std::future<driver::Result<SoundMesh>> look_at_mesh_beside(const TriangleMesh& mesh, bool orient);
+
+/// Does the same for who knows `neighbours`, what find_adjacency says of the mesh; they must
+/// outlive the answer as well.
+std::future<driver::Result<SoundMesh>> look_at_mesh_beside(
+    const TriangleMesh& mesh, const driver::Result<Adjacency>& neighbours, bool orient);
 
 }  // namespace thimble::render

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstddef>
+#include <future>
+
+namespace thimble::render {
+
+/// Calls `work(begin, end)` for both halves of [0, count), side by side on two threads where that
+/// is worth a thread; small counts are done at once. `work` must do each item by itself, so that
+/// the answer hangs neither on where the halves meet nor on which is done first. Real-time: never
+/// from the servo thread.
+template <class Work>
+void in_halves(std::size_t count, const Work& work) {
+  // Below, a thread costs more than it saves [measured: 10 us against 5 ns and more per item].
+  constexpr std::size_t kWorthAThread = 20000;
+  if (count < kWorthAThread) return work(std::size_t{0}, count);
+  const std::size_t middle = count / 2;
+  // Where no thread is to be had it is done here, by `get`.
+  auto second = std::async(std::launch::async | std::launch::deferred,
+                           [&work, middle, count] { work(middle, count); });
+  work(std::size_t{0}, middle);
+  second.get();
+}
+
+}  // namespace thimble::render
