@@ -50,12 +50,18 @@ class BenchArm {
   void watch(std::function<void(const driver::TickRecord&)> sink) { sink_ = std::move(sink); }
 
   driver::Device& device() { return *device_; }
+  const driver::Device& device() const { return *device_; }
   driver::Fault fault() const { return device_->fault(); }
   /// Returns whether the arm is simulated.
   bool simulated() const { return simulation_ != nullptr; }
   /// Returns the largest force that the motors made on the tip in any run, N: what was true of a
   /// simulated arm, whatever its driver believes; 0 for a real one.
   double true_force_max() const { return true_force_max_; }
+  /// Returns how much warmer than the room each winding of a simulated arm is, K: what is true,
+  /// whatever its driver thinks; empty for a real one, and where the simulation has no heat.
+  std::optional<Eigen::Vector3d> winding_rise() const {
+    return simulation_ ? simulation_->winding_rise() : std::nullopt;
+  }
   /// Returns the time, s.
   double now() const { return static_cast<double>(clock_->now_ns()) * 1e-9; }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "bringup/identify/excitation.h"
+#include "hil/heat_watch.h"
 
 namespace thimble::app {
 namespace {
@@ -27,8 +28,10 @@ HilResult check_soak(const HilRig& rig, double minutes) {
   double ticks = 0, moved = 0;
   const Vector3d p_start_W = bench.device().state().p_WT;
   bool left = false;
+  HeatWatch heat(rig.file, bench);
   const auto law = [&](const driver::DeviceState& state) -> Vector3d {
     ++ticks;
+    heat.tick(state);
     moved = std::max(moved, (state.p_WT - p_start_W).norm());
     left = left || !excitation.near(state.p_WT);
     if (left) return {0, 0, 0};
@@ -36,8 +39,6 @@ HilResult check_soak(const HilRig& rig, double minutes) {
   };
   const bool whole = bench.run(60 * minutes, law, rig.stop);
   const driver::WireCounters after = bench.device().wire_counters();
-  const bool heat_named = bench.device().heat().named();
-  const double heat = bench.device().heat().heat_most();
   bench.device().deactivate();
   const double done = (bench.now() - begin) / 60;
   if (!whole) return broken_off(kName, fmt::format("It ended after {:.1f} minutes.", done), &bench);
@@ -49,17 +50,14 @@ HilResult check_soak(const HilRig& rig, double minutes) {
       {"reports_rejected", static_cast<double>(after.rejected - before.rejected), "", "== 0", ""},
       {"messages_refused", static_cast<double>(after.refused - before.refused), "", "== 0", ""},
       {"tip_left_its_place", left ? 1.0 : 0.0, "", "== 0", ""}};
-  if (heat_named) figures.push_back({"motor_heat", heat, "of the limit", "< 1", ""});
+  for (Figure& figure : heat.figures()) figures.push_back(std::move(figure));
   return judged(
       kName,
       fmt::format("For {:.1f} minutes it was pushed with up to {:g} N{}; {:.3f} % of the ticks had "
-                  "no report{}.",
+                  "no report.",
                   done, Excitation::kForceMost,
-                  left ? ", until the tip left the space that it may move in" : "", 100 * missing,
-                  heat_named
-                      ? fmt::format("; by the model the hottest motor was at {:.0f} % of its limit",
-                                    100 * heat)
-                      : ""),
+                  left ? ", until the tip left the space that it may move in" : "", 100 * missing) +
+          heat.text(),
       std::move(figures));
 }
 

@@ -16,9 +16,12 @@
 
 #include "hil/edge_of_wall.h"
 #include "hil/wall_check.h"
+#include "support/figure_value.h"
 
 namespace thimble::app {
 namespace {
+
+using support::figure_value;
 
 /// What is tried: the file that the user has, and the arm that stands on the desk.
 struct Bench {
@@ -55,12 +58,6 @@ std::string failed(const std::map<std::string, HilResult>& results) {
   return names;
 }
 
-double figure(const HilResult& result, const std::string& name) {
-  const auto found = std::find_if(result.figures.begin(), result.figures.end(),
-                                  [&](const Figure& one) { return one.name == name; });
-  return found == result.figures.end() ? -1 : found->value;
-}
-
 TEST(Hil, PassesAnArmThatIsAsItsFileSays) {
   for (const char* name : {"vintage_phantom", "woodenhaptics_teensy", "polhem"}) {
     SCOPED_TRACE(name);
@@ -75,9 +72,9 @@ TEST(Hil, PassesAnArmThatIsAsItsFileSays) {
           << check << ": " << results.at(check).text;
     }
     const HilResult& wall = results.at("stiffest_wall");
-    EXPECT_EQ(figure(wall, "wall_over_twin"), 1);
-    EXPECT_LE(figure(wall, "force_most"), kHilForceMax);
-    EXPECT_NEAR(figure(results.at("force_accuracy"), "force_ratio"), 1, 0.02);
+    EXPECT_EQ(figure_value(wall.figures, "wall_over_twin"), 1);
+    EXPECT_LE(figure_value(wall.figures, "force_most"), kHilForceMax);
+    EXPECT_NEAR(figure_value(results.at("force_accuracy").figures, "force_ratio"), 1, 0.02);
   }
 }
 
@@ -202,11 +199,14 @@ TEST(Hil, JudgesTheStiffestWallToATenth) {
         EXPECT_EQ(wall.outcome, times == 1 ? HilOutcome::kPassed : HilOutcome::kFailed)
             << name << " " << seed << ", " << times << ": " << wall.text;
         std::printf("%s %2d, %.3f times by law: %.3f (%.3f to %.3f)\n", name, seed, times,
-                    figure(wall, "wall_over_twin"), figure(wall, "wall_over_twin_low"),
-                    figure(wall, "wall_over_twin_high"));
-        EXPECT_LE(figure(wall, "wall_over_twin_low"), figure(wall, "wall_over_twin"));
-        EXPECT_GE(figure(wall, "wall_over_twin_high"), figure(wall, "wall_over_twin"));
-        EXPECT_LE(figure(wall, "force_most"), kHilForceMax);
+                    figure_value(wall.figures, "wall_over_twin"),
+                    figure_value(wall.figures, "wall_over_twin_low"),
+                    figure_value(wall.figures, "wall_over_twin_high"));
+        EXPECT_LE(figure_value(wall.figures, "wall_over_twin_low"),
+                  figure_value(wall.figures, "wall_over_twin"));
+        EXPECT_GE(figure_value(wall.figures, "wall_over_twin_high"),
+                  figure_value(wall.figures, "wall_over_twin"));
+        EXPECT_LE(figure_value(wall.figures, "force_most"), kHilForceMax);
       }
     }
   }
@@ -245,11 +245,11 @@ TEST(Hil, MeasuresTheWatchdogOfAFreeArm) {
     const HilResult watchdog = bench.results().at("watchdog");
     if (time_ms <= 120) {
       EXPECT_EQ(watchdog.outcome, HilOutcome::kPassed) << watchdog.text;
-      EXPECT_NEAR(figure(watchdog, "watchdog_time"), static_cast<double>(time_ms), 5);
+      EXPECT_NEAR(figure_value(watchdog.figures, "watchdog_time"), static_cast<double>(time_ms), 5);
     } else if (time_ms == 300) {
       // The tip has gone 15 mm long before, and is let go.
       EXPECT_EQ(watchdog.outcome, HilOutcome::kFailed) << watchdog.text;
-      EXPECT_EQ(figure(watchdog, "watchdog_seen"), 0);
+      EXPECT_EQ(figure_value(watchdog.figures, "watchdog_seen"), 0);
     }
   }
 }

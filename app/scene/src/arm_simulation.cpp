@@ -158,4 +158,9 @@ Eigen::Vector3d ArmSimulation::f_T_W() const {
   return file_.R_WB * (falcon_ ? falcon_->arm().plant().f_T_B() : board_arm_->plant().f_T_B());
 }
 
+std::optional<Eigen::Vector3d> ArmSimulation::winding_rise() const {
+  if (!board_arm_ || !file_.simulated.drive_train.heat.named()) return std::nullopt;
+  return board_arm_->plant().winding_rise();
+}
+
 }  // namespace thimble::scene

@@ -72,6 +72,9 @@ class ArmSimulation {
   Eigen::Vector3d currents() const;
   /// Returns the force of the motors on the tip, N in the world: what is true, not what was sent.
   Eigen::Vector3d f_T_W() const;
+  /// Returns how much warmer than the room each motor's winding is, K; empty if the arm file does
+  /// not say how they warm (drive_train: heat).
+  std::optional<Eigen::Vector3d> winding_rise() const;
 
   /// Returns the arm, if it has a board that reports by itself (all but the Falcon).
   const device_sim::SimulatedArm* board_arm() const { return board_arm_.get(); }

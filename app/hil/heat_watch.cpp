@@ -1,0 +1,163 @@
+#include "hil/heat_watch.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace thimble::app {
+namespace {
+
+using driver::HeatGuard;
+
+// Both accounts take the same whole mA over the same times: what is left are rounding errors.
+constexpr double kApartMost = 1e-4;       // of the limit
+constexpr double kHeatSlack = 1e-3;       // of the limit: by how much less hot a motor may count
+constexpr double kCurrentSlack = 0.0005;  // A: a message holds whole mA
+// A winding must be so warm before it is compared: colder ones show delays, not constants.
+constexpr double kComparedFrom = 0.002;  // of the limit
+// A winding is never warmer than the driver thinks if the file is right (motor_heat.h); a message
+// that comes late makes it so for a moment.
+constexpr double kRatioMost = 1.02;
+
+}  // namespace
+
+HeatWatch::HeatWatch(const scene::ArmFile& file, const BenchArm& bench)
+    : file_(file),
+      bench_(bench),
+      named_(bench.device().heat().named()),
+      model_(driver_heat()),
+      hottest_(model_.maxCoeff()),
+      lowered_before_(bench.device().heat().lowered()) {
+  if (!named_) return;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    continuous_[k] = file.heat.continuous_current[i];
+    time_constant_[k] = file.heat.time_constant[i];
+    peak_[k] = file.model.drives[i].current_max;
+  }
+}
+
+HeatWatch::Array HeatWatch::driver_heat() const {
+  const std::array<double, 3>& heat = bench_.device().heat().heat();
+  return {heat[0], heat[1], heat[2]};
+}
+
+/// Returns the currents of the force that stands, as the message held them, A without sign.
+HeatWatch::Array HeatWatch::currents() const {
+  const Eigen::Vector3d f_T_B = file_.R_WB.transpose() * bench_.device().f_sent_W();
+  Array amperes = (J_BT_.transpose() * f_T_B).array().abs();
+  for (std::size_t i = 0; i < 3; ++i) {
+    const driver::MotorDrive& drive = file_.model.drives[i];
+    amperes[static_cast<Eigen::Index>(i)] /= drive.ratio * drive.torque_constant;
+  }
+  return 1e-3 * (1e3 * amperes).round();
+}
+
+/// Returns the largest currents for motors so hot, as HeatGuard promises them, A: whatever is held
+/// until the arm's watchdog fires must not bring a motor past its limit.
+HeatWatch::Array HeatWatch::allowed(const Array& heat) const {
+  constexpr double kFrom = HeatGuard::kWarning;
+  const double hold = 1e-9 * static_cast<double>(file_.limits.watchdog_ns);  // s
+  const Array held = 1 / (1 - (-hold / time_constant_).exp()) - 1;
+  const Array fall = (((peak_ / continuous_).square() - 1).max(0) / (1 - kFrom)).min(held);
+  const Array lowered = continuous_ * (1 + fall * (1 - heat).max(0)).sqrt();
+  return (heat > kFrom).select(lowered.min(peak_), peak_);
+}
+
+void HeatWatch::tick(const driver::DeviceState& state) {
+  if (!named_) return;
+  // What was sent in the tick before stands until now, and the driver counts its heat up to then.
+  const Array thought = driver_heat();
+  hottest_ = std::max(hottest_, thought.maxCoeff());
+  apart_ = std::max(apart_, (thought - model_).abs().maxCoeff());
+  const Array amperes = currents();
+  const Array most = allowed(model_ - kHeatSlack) + kCurrentSlack;
+  over_ = std::max(over_, (amperes / most).maxCoeff());
+  const Array load = (amperes / continuous_).square();
+  load_ += state.dt * load;
+  time_ += state.dt;
+  model_ += (1 - (-state.dt / time_constant_).exp()) * (load - model_);
+  compare_windings(thought);
+  Eigen::Vector3d p_BT;
+  std::visit([&](const auto& build) { build.forward(state.q, p_BT, J_BT_); }, file_.model.geometry);
+}
+
+void HeatWatch::compare_windings(const Array& thought) {
+  const auto rise = bench_.winding_rise();
+  const double limit = file_.simulated.drive_train.heat.rise;  // K
+  if (!rise || !(limit > 0)) return;
+  const Array winding = rise->array() / limit;
+  winding_most_ = std::max(winding_most_, winding.maxCoeff());
+  for (int i = 0; i < 3; ++i) {
+    if (std::max(winding[i], thought[i]) < kComparedFrom) continue;
+    const double ratio = winding[i] / std::max(thought[i], kComparedFrom);
+    if (ratio <= winding_ratio_) continue;
+    winding_ratio_ = ratio;
+    winding_there_ = winding[i];
+    thought_there_ = thought[i];
+    winding_motor_ = i + 1;
+  }
+}
+
+std::vector<Figure> HeatWatch::figures() const {
+  if (!named_) return {};
+  std::vector<Figure> figures{
+      {"motor_heat", hottest_, "of the limit", "<= 1", "by the driver's model"},
+      {"heat_from_model", apart_, "of the limit", fmt::format("<= {:g}", kApartMost),
+       "how far the driver's heat was from that of the arm file's model"},
+      {"heat_in_the_end", (load_ / time_).maxCoeff(), "of the limit", "",
+       "where this motion would bring it if it went on for ever"},
+      {"current_of_allowed", over_, "", "<= 1", "of what a motor so hot may get"},
+      {"ticks_lowered_by_heat",
+       static_cast<double>(bench_.device().heat().lowered() - lowered_before_), "", "", ""}};
+  if (winding_motor_ > 0) {
+    figures.push_back({"winding_heat", winding_most_, "of the limit", "<= 1",
+                       "what is true of the simulated motors"});
+    figures.push_back({"winding_of_thought", winding_ratio_, "", fmt::format("<= {:g}", kRatioMost),
+                       "how warm a winding was, of what the driver thought"});
+  }
+  return figures;
+}
+
+std::string HeatWatch::text() const {
+  if (!named_) {
+    return " The arm file does not say what its motors carry for long (joints: "
+           "continuous_current), so nothing is known of their heat.";
+  }
+  std::string text = fmt::format(
+      " By the driver's model the hottest motor was at {:.0f} % of its limit, and would come to "
+      "{:.0f} % if this went on for ever{}.",
+      100 * hottest_, 100 * (load_ / time_).maxCoeff(),
+      apart_ <= kApartMost ? ", as the arm file's model has it"
+                           : fmt::format("; the arm file's model is up to {:.1f} % of the limit "
+                                         "from that",
+                                         100 * apart_));
+  const auto lowered = bench_.device().heat().lowered() - lowered_before_;
+  if (lowered > 0) text += fmt::format(" Heat lowered the force in {} ticks.", lowered);
+  if (over_ > 1) {
+    text += fmt::format(" A motor got {:.2f} times the current that its heat allows.", over_);
+  }
+  if (!bench_.simulated()) {
+    return text +
+           " How warm the windings really are no sensor says: motors that heat more than "
+           "the arm file says cannot be seen here.";
+  }
+  if (winding_motor_ == 0) {
+    return text + (bench_.winding_rise() && file_.simulated.drive_train.heat.named()
+                       ? " Its windings stayed too cold to be compared."
+                       : " Its motors do not warm in the simulation (drive_train: heat), so that "
+                         "was not compared with their windings.");
+  }
+  if (winding_ratio_ <= kRatioMost) {
+    return text + fmt::format(" Its windings were never warmer than that: {:.0f} % at the most.",
+                              100 * winding_most_);
+  }
+  return text + fmt::format(
+                    " Motor {} was at {:.2g} % of its limit where the driver thought {:.2g} %: it "
+                    "heats more than the arm file says (joints: continuous_current, "
+                    "thermal_time_constant).",
+                    winding_motor_, 100 * winding_there_, 100 * thought_there_);
+}
+
+}  // namespace thimble::app

@@ -1,0 +1,134 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+
+#include "hil/soak.h"
+#include "support/figure_value.h"
+
+namespace thimble::app {
+namespace {
+
+using support::figure_value;
+
+constexpr double kRise = 80;      // K, of a winding at its continuous current in the end
+constexpr double kCurrent = 0.3;  // A
+
+/// A file whose motors carry so much (A), and are as warm after so long (s) as 63 % of the end;
+/// its simulated motors are as it says.
+scene::ArmFile warm_arm(double current, double time_constant) {
+  scene::ArmFile file = scene::load_arm("vintage_phantom").value();
+  file.heat.continuous_current.fill(current);
+  file.heat.time_constant.fill(time_constant);
+  auto& heat = file.simulated.drive_train.heat;
+  heat.rise = kRise;
+  heat.continuous_current.setConstant(current);
+  heat.time_constant.setConstant(time_constant);
+  heat.resistance = 0.0039;  // of copper
+  return file;
+}
+
+HilResult soak_of(const scene::ArmFile& file, const scene::ArmFile& arm, double minutes) {
+  const std::atomic<bool> never{false};
+  return check_soak({.file = file,
+                     .open = [&](TipHold hold) { return open_simulated(arm, 0, hold); },
+                     .stop = never,
+                     .prompt = {}},
+                    minutes);
+}
+
+/// The names of the figures that miss their goals.
+std::string missed(const HilResult& result) {
+  std::string names;
+  for (const Figure& one : result.figures) {
+    if (!one.met()) names += (names.empty() ? "" : " ") + one.name;
+  }
+  return names;
+}
+
+bool is_long() {
+  return std::getenv("THIMBLE_LONG") != nullptr;
+}
+
+TEST(HilSoak, PassesMotorsThatWarmAsTheirFileSays) {
+  // The short form is three time constants of motors that warm quickly; the long one an hour.
+  const scene::ArmFile file = is_long() ? warm_arm(kCurrent, 60) : warm_arm(kCurrent, 6);
+  const HilResult soak = soak_of(file, file, is_long() ? 60 : 0.3);
+  std::printf("%s\n", soak.text.c_str());
+  EXPECT_EQ(soak.outcome, HilOutcome::kPassed) << soak.text;
+  EXPECT_GT(figure_value(soak.figures, "motor_heat"), 0.2);
+  EXPECT_NEAR(
+      figure_value(soak.figures, "motor_heat") / figure_value(soak.figures, "heat_in_the_end"), 1,
+      0.3);
+  EXPECT_LT(figure_value(soak.figures, "heat_from_model"), 1e-6);
+  // Cooler copper resists less than at its limit, and is never warmer than the driver thinks.
+  EXPECT_LE(figure_value(soak.figures, "winding_of_thought"), 1);
+  EXPECT_GT(figure_value(soak.figures, "winding_of_thought"), 0.7);
+  EXPECT_NE(soak.text.find("never warmer than that"), std::string::npos) << soak.text;
+}
+
+TEST(HilSoak, FindsMotorsThatHeatMoreThanTheirFileSays) {
+  for (const double times : {1.2, 1.5, 2.0}) {
+    scene::ArmFile file = warm_arm(kCurrent, 60);
+    // Cold copper resists a quarter less than at its limit, which hides a fifth.
+    if (times < 1.5) file.simulated.drive_train.heat.resistance = 0;
+    scene::ArmFile arm = file;
+    arm.simulated.drive_train.heat.continuous_current /= std::sqrt(times);
+    const HilResult soak = soak_of(file, arm, 0.2);
+    EXPECT_EQ(soak.outcome, HilOutcome::kFailed) << times << soak.text;
+    EXPECT_EQ(missed(soak), "winding_of_thought") << times;
+    const double cold = 1 + file.simulated.drive_train.heat.resistance * kRise;
+    EXPECT_NEAR(figure_value(soak.figures, "winding_of_thought") * cold, times, 0.1 * times);
+  }
+}
+
+TEST(HilSoak, FindsMotorsThatWarmMoreQuickly) {
+  const scene::ArmFile file = warm_arm(kCurrent, 60);
+  scene::ArmFile arm = file;
+  arm.simulated.drive_train.heat.time_constant[1] = 20;
+  const HilResult soak = soak_of(file, arm, 0.2);
+  EXPECT_EQ(missed(soak), "winding_of_thought");
+  EXPECT_NE(soak.text.find("Motor 2"), std::string::npos) << soak.text;
+  EXPECT_NE(soak.text.find("heats more than the arm file says"), std::string::npos) << soak.text;
+}
+
+TEST(HilSoak, FindsMotorsThatWereWarmBefore) {
+  const scene::ArmFile file = warm_arm(kCurrent, 60);
+  scene::ArmFile arm = file;
+  arm.simulated.drive_train.heat.at_start.setConstant(30);
+  EXPECT_EQ(missed(soak_of(file, arm, 0.1)), "winding_of_thought");
+}
+
+TEST(HilSoak, SeesHeatLowerTheForceAndNeverPassTheLimit) {
+  // Motors so weak that this motion is far too much for them.
+  const scene::ArmFile file = warm_arm(0.06, 3);
+  const HilResult soak = soak_of(file, file, 0.3);
+  EXPECT_EQ(missed(soak), "") << soak.text;
+  EXPECT_GT(figure_value(soak.figures, "ticks_lowered_by_heat"), 100);
+  EXPECT_GT(figure_value(soak.figures, "motor_heat"), 0.85);
+  EXPECT_LE(figure_value(soak.figures, "motor_heat"), 1);
+  EXPECT_GT(figure_value(soak.figures, "current_of_allowed"), 0.95);
+  EXPECT_LE(figure_value(soak.figures, "winding_heat"), 1);
+  EXPECT_NE(soak.text.find("Heat lowered the force in"), std::string::npos) << soak.text;
+}
+
+TEST(HilSoak, SaysWhatCannotBeKnownOfAnArm) {
+  scene::ArmFile file = scene::load_arm("vintage_phantom").value();
+  const HilResult cold = soak_of(file, file, 0.1);
+  EXPECT_EQ(cold.outcome, HilOutcome::kPassed) << cold.text;
+  EXPECT_NE(cold.text.find("Its motors do not warm in the simulation"), std::string::npos)
+      << cold.text;
+  file.heat = {};
+  const HilResult unknown = soak_of(file, file, 0.1);
+  EXPECT_EQ(unknown.outcome, HilOutcome::kPassed) << unknown.text;
+  EXPECT_EQ(figure_value(unknown.figures, "motor_heat"), -1);
+  EXPECT_NE(unknown.text.find("does not say what its motors carry"), std::string::npos)
+      << unknown.text;
+}
+
+}  // namespace
+}  // namespace thimble::app
