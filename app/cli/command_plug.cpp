@@ -1,24 +1,20 @@
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
 #include <CLI/CLI.hpp>
 
-#include <array>
 #include <atomic>
 #include <cstdint>
 #include <cstdio>
-#include <fstream>
 #include <memory>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <thread>
 #include <utility>
 
 #include "arms/falcon/falcon_boot.h"
+#include "bringup/identify/arm_constants.h"
 #include "cli/commands.h"
 #include "cli/complain.h"
 #include "cli/file_options.h"
+#include "cli/plug_orders.h"
 #include "interrupt.h"
 #include "log/logger.h"
 #include "thimble/device_sim/usb/arm_shelf.h"
@@ -82,92 +78,6 @@ class KernelAttachment {
   std::atomic<bool> busy_{false}, failed_{false};
 };
 
-/// What a script orders: faults of the plug, and what the hand on the arm does.
-struct Plugged {
-  usb::FaultyDevice& device;
-  usb::UsbArm& arm;
-  Eigen::Vector3d p_BH{0, 0, 0};  // where the hand began, m
-};
-
-/// Carries out what the hand is told: `off`, `on`, or how far it goes from where it began.
-bool obey_hand(Plugged& plugged, const std::string& words) {
-  if (words == "off" || words == "on") {
-    plugged.arm.hold_tip(words == "on");
-    return true;
-  }
-  std::istringstream numbers(words);
-  Eigen::Vector3d away;
-  std::string more;
-  const bool read = static_cast<bool>(numbers >> away.x() >> away.y() >> away.z());
-  if (!read || numbers >> more || !away.allFinite()) {
-    scene::logger().error(
-        "'hand {}' is not understood; say 'hand X Y Z' (m along the base's axes from where the "
-        "hand began), 'hand off' or 'hand on'.",
-        words);
-    return false;
-  }
-  plugged.arm.lead_hand(plugged.p_BH + away);
-  return true;
-}
-
-/// Carries out one line of a script; a mistake is told and changes nothing.
-bool obey(Plugged& plugged, const std::string& line) {
-  usb::FaultyDevice& device = plugged.device;
-  if (line.empty() || line[0] == '#') return true;
-  if (line == "heal") {
-    device.heal();
-    return true;
-  }
-  if (line.starts_with("hand ")) return obey_hand(plugged, line.substr(5));
-  const auto order = usb::parse_fault(line);
-  if (!order) {
-    scene::logger().error("{}", order.error().message);
-    return false;
-  }
-  device.order(*order);
-  return true;
-}
-
-/// The pipe that takes orders while the arm is plugged in.
-class ControlPipeFile {
- public:
-  ControlPipeFile() = default;
-  ControlPipeFile(const ControlPipeFile&) = delete;
-  ControlPipeFile& operator=(const ControlPipeFile&) = delete;
-  ~ControlPipeFile() {
-    if (file_ < 0) return;
-    close(file_);
-    unlink(path_.c_str());
-  }
-
-  bool open(const std::string& path) {
-    path_ = path;
-    // Open for writing too, so that the pipe stays open when a writer leaves.
-    if (mkfifo(path.c_str(), 0600) != 0) return false;
-    file_ = ::open(path.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
-    return file_ >= 0;
-  }
-
-  void poll(Plugged& plugged) {
-    if (file_ < 0) return;
-    std::array<char, 512> bytes;
-    const ssize_t size = read(file_, bytes.data(), bytes.size());
-    for (ssize_t i = 0; i < size; ++i) {
-      const char letter = bytes[static_cast<std::size_t>(i)];
-      if (letter != '\n') {
-        line_ += letter;
-      } else {
-        obey(plugged, line_);
-        line_.clear();
-      }
-    }
-  }
-
- private:
-  std::string path_, line_;
-  int file_ = -1;
-};
-
 /// Writes what was true of the arm in each frame in which a packet moved, as tests want it.
 class TruthTrace {
  public:
@@ -216,18 +126,6 @@ usb::HandMotion motion_of(const std::string& name) {
   return name == "tap" ? usb::HandMotion::kTap : usb::HandMotion::kStroke;
 }
 
-bool obey_file(Plugged& plugged, const std::string& path) {
-  std::ifstream file(path);
-  if (!file) {
-    scene::logger().error("cannot read the fault script {}.", path);
-    return false;
-  }
-  for (std::string line; std::getline(file, line);) {
-    if (!obey(plugged, line)) return false;
-  }
-  return true;
-}
-
 void say_what_to_do(const usb::UsbipServer& server, const PlugOptions& options) {
   std::printf("The simulated arm '%s' waits on port %u as USB device %s.\n", options.arm.c_str(),
               static_cast<unsigned>(server.port()), server.bus_id().c_str());
@@ -241,15 +139,14 @@ void say_what_to_do(const usb::UsbipServer& server, const PlugOptions& options) 
   std::fflush(stdout);
 }
 
-/// Returns the arm of a file as one on a board of the shelf.
-driver::Result<usb::ShelfArm> shelf_arm(const std::string& path) {
-  const auto file = scene::load_arm(path);
-  if (!file) return file.error();
-  if (!file->can_simulate) {
+/// Returns a file whose arm can be put on a board of the shelf.
+driver::Result<scene::ArmFile> simulated_file(const std::string& path) {
+  auto file = scene::load_arm(path);
+  if (file && !file->can_simulate) {
     return driver::Error{"The arm file " + path +
                          " has no section 'simulation', so the arm cannot be simulated."};
   }
-  return usb::ShelfArm{.model = file->model, .settings = file->simulated};
+  return file;
 }
 
 int plug(const PlugOptions& options) {
@@ -264,19 +161,22 @@ int plug(const PlugOptions& options) {
     }
     shelf.firmware = std::move(*image);
   }
+  std::optional<Eigen::Vector3d> gravity_B;
   if (!options.arm_file.empty()) {
-    auto of_file = shelf_arm(options.arm_file);
-    if (!of_file) return complain(of_file.error(), kExitBadInput);
-    shelf.arm = std::move(*of_file);
+    const auto file = simulated_file(options.arm_file);
+    if (!file) return complain(file.error(), kExitBadInput);
+    shelf.arm = usb::ShelfArm{.model = file->model, .settings = file->simulated};
+    gravity_B = file->R_WB.transpose() * Eigen::Vector3d(0, 0, -kStandardGravity);
   }
   auto arm = usb::make_usb_arm(options.arm, shelf);
   if (!arm) {
     return complain(arm.error(), kExitBadInput);
   }
   usb::FaultyDevice device(**arm, options.seed);
-  Plugged plugged{.device = device, .arm = **arm, .p_BH = (*arm)->truth().p_BT};
+  Plugged plugged{
+      .device = device, .arm = **arm, .p_BH = (*arm)->truth().p_BT, .gravity_B = gravity_B};
   if (!options.faults.empty() && !obey_file(plugged, options.faults)) return kExitBadInput;
-  ControlPipeFile control;
+  OrderPipe control;
   if (!options.control.empty() && !control.open(options.control)) {
     return complain(
         {"cannot make the control pipe " + options.control + "; does it exist already?"},

@@ -92,7 +92,8 @@ void ArmPlant::step(const Eigen::Vector3d& p_BH, std::int64_t dt_ns) noexcept {
   const std::array<AxisState, 3> before = axes_;
   for (int i = 0; i < 3; ++i) {
     dynamics_.step(axes_[static_cast<std::size_t>(i)],
-                   {.force = f_T_B_[i], .anchor = p_BH_[i], .anchor_speed = v_BH[i]}, dt_ns);
+                   {.force = f_T_B_[i] + pull_B_[i], .anchor = p_BH_[i], .anchor_speed = v_BH[i]},
+                   dt_ns);
   }
   p_BH_ = p_BH;
   const SerialPose after(arm_, p_BT());

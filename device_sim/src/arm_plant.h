@@ -39,6 +39,7 @@ class ArmPlant final : public Plant {
   void set_currents(const Eigen::Vector3d& amperes) noexcept override;
   void step(const Eigen::Vector3d& p_BH, std::int64_t dt_ns) noexcept override;
   void take_tip(const AxisDynamics& tip) noexcept override { dynamics_ = tip; }
+  void set_pull(const Eigen::Vector3d& f_T_B) noexcept override { pull_B_ = f_T_B; }
   Eigen::Vector3d p_BT() const noexcept override { return {axes_[0].x, axes_[1].x, axes_[2].x}; }
   Eigen::Vector3d v_BT() const noexcept override { return {axes_[0].v, axes_[1].v, axes_[2].v}; }
   const Eigen::Vector3d& p_BH() const noexcept override { return p_BH_; }
@@ -70,7 +71,8 @@ class ArmPlant final : public Plant {
   Eigen::Vector3d amperes_{0, 0, 0};
   Eigen::Vector3d tau_{0, 0, 0};  // N m
   Eigen::Vector3d f_T_B_{0, 0, 0};
-  bool driven_ = false;  // any torque at all
+  Eigen::Vector3d pull_B_{0, 0, 0};  // N
+  bool driven_ = false;              // any torque at all
   std::uint64_t stops_ = 0;
 };
 

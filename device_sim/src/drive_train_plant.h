@@ -61,6 +61,7 @@ class DriveTrainPlant final : public Plant {
   void set_currents(const Eigen::Vector3d& amperes) noexcept override { train_.ask(amperes); }
   void step(const Eigen::Vector3d& p_BH, std::int64_t dt_ns) noexcept override;
   void take_tip(const AxisDynamics& tip) noexcept override { tip_.take(tip); }
+  void set_pull(const Eigen::Vector3d& f_T_B) noexcept override { weight_B_ = f_T_B; }
   Eigen::Vector3d p_BT() const noexcept override { return tip_.p_BT(); }
   Eigen::Vector3d v_BT() const noexcept override { return tip_.v_BT(); }
   const Eigen::Vector3d& p_BH() const noexcept override { return p_BH_; }

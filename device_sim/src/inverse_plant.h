@@ -32,8 +32,7 @@ class InversePlant final : public Plant {
   void set_currents(const Eigen::Vector3d& amperes) noexcept override;
   void step(const Eigen::Vector3d& p_BH, std::int64_t dt_ns) noexcept override;
   void take_tip(const AxisDynamics& tip) noexcept override { dynamics_ = tip; }
-  /// Sets what pulls on the tip beside motors and hand, such as its weight, N in the base.
-  void set_pull(const Eigen::Vector3d& f_T_B) noexcept { pull_B_ = f_T_B; }
+  void set_pull(const Eigen::Vector3d& f_T_B) noexcept override { pull_B_ = f_T_B; }
   Eigen::Vector3d p_BT() const noexcept override { return {axes_[0].x, axes_[1].x, axes_[2].x}; }
   Eigen::Vector3d v_BT() const noexcept override { return {axes_[0].v, axes_[1].v, axes_[2].v}; }
   const Eigen::Vector3d& p_BH() const noexcept override { return p_BH_; }

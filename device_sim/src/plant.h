@@ -25,6 +25,9 @@ class Plant {
   /// tip, or takes it. How the tip moves stays as it is.
   virtual void take_tip(const AxisDynamics& tip) noexcept = 0;
 
+  /// Sets what pulls on the tip beside motors and hand, such as its weight, N in the base.
+  virtual void set_pull(const Eigen::Vector3d& f_T_B) noexcept = 0;
+
   /// Returns where the tip is, m.
   virtual Eigen::Vector3d p_BT() const noexcept = 0;
   /// Returns how the tip moves, m/s.

@@ -49,17 +49,15 @@ driver::Result<SimulatedArm> SimulatedArm::make_of(const driver::ArmModel& board
   const auto firmware = Firmware::make(board, settings.firmware);
   if (!firmware) return firmware.error();
   // The plant was made of the same constants.
-  const auto held = AxisDynamics::make(settings.plant, settings.hand);
-  if (!held) return held.error();
-  const auto free = AxisDynamics::make(settings.plant, {});
-  if (!free) return free.error();
-  return SimulatedArm(settings, Hand(std::move(path), *tremor), std::move(plant).value(), *held,
-                      *free, *firmware, seed);
+  const auto tips = loaded_tips(settings.plant, settings.hand, 0, {0, 0, 0});
+  if (!tips) return tips.error();
+  return SimulatedArm(settings, Hand(std::move(path), *tremor), std::move(plant).value(), *tips,
+                      *firmware, seed);
 }
 
 SimulatedArm::SimulatedArm(const SimulatedArmSettings& settings, Hand hand, AnyPlant plant,
-                           const AxisDynamics& held_tip, const AxisDynamics& free_tip,
-                           const Firmware& firmware, std::uint64_t seed) noexcept
+                           const LoadedTips& tips, const Firmware& firmware,
+                           std::uint64_t seed) noexcept
     : report_period_ns_(settings.firmware.report_period_ns),
       wire_(settings.wire),
       reports_at_once_(wire_.delay_in_ns == 0 && wire_.regular()),
@@ -69,8 +67,11 @@ SimulatedArm::SimulatedArm(const SimulatedArmSettings& settings, Hand hand, AnyP
       hand_(std::move(hand)),
       gimbal_(settings.gimbal),
       plant_(std::move(plant)),
-      held_tip_(held_tip),
-      free_tip_(free_tip),
+      bare_tip_(settings.plant),
+      held_by_(settings.hand),
+      weight_B_(settings.weight_B),
+      held_tip_(tips.held),
+      free_tip_(tips.free),
       firmware_(firmware) {
   sample();
   deliver();
@@ -108,6 +109,16 @@ driver::Result<SimulatedArm> SimulatedArm::make(const driver::JointModel<driver:
         return as_any<AnyPlant>(
             LinkagePlant::make(model, settings.plant, settings.hand, settings.motors, p_BT, p_BH));
       });
+}
+
+driver::Result<void> SimulatedArm::fix_mass(double mass, const Eigen::Vector3d& gravity_B) {
+  const auto tips = loaded_tips(bare_tip_, held_by_, mass, gravity_B);
+  if (!tips) return tips.error();
+  held_tip_ = tips->held;
+  free_tip_ = tips->free;
+  mechanics().take_tip(held_ ? held_tip_ : free_tip_);
+  mechanics().set_pull(weight_B_ + mass * gravity_B);
+  return {};
 }
 
 void SimulatedArm::advance_to(std::int64_t time_ns) noexcept {

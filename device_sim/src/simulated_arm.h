@@ -13,6 +13,7 @@
 #include "hand.h"
 #include "hand_path.h"
 #include "inverse_plant.h"
+#include "loaded_tips.h"
 #include "split_mix.h"
 #include "thimble/device_sim/settings.h"
 #include "thimble/driver/arm_model.h"
@@ -74,7 +75,15 @@ class SimulatedArm {
 
   /// Lets the hand take the tip (which it does from the beginning) or let go of it: then nothing
   /// but the arm's own mass and friction is there.
-  void hold_tip(bool held) noexcept { mechanics().take_tip(held ? held_tip_ : free_tip_); }
+  void hold_tip(bool held) noexcept {
+    held_ = held;
+    mechanics().take_tip(held ? held_tip_ : free_tip_);
+  }
+
+  /// Fixes a mass (kg, 0: none) to the tip, in place of one that was fixed to it before;
+  /// gravity_B (m/s^2) pulls on it. Fails if it is negative or not finite. Real-time: never from
+  /// the servo thread.
+  driver::Result<void> fix_mass(double mass, const Eigen::Vector3d& gravity_B);
 
   /// Presses the button on the arm, as a hand would.
   void press_button() noexcept { firmware_.press_button(); }
@@ -106,8 +115,7 @@ class SimulatedArm {
                                 LinkageDriveTrainPlant, LinkedSerialPlant>;
 
   SimulatedArm(const SimulatedArmSettings& settings, Hand hand, AnyPlant plant,
-               const AxisDynamics& held_tip, const AxisDynamics& free_tip, const Firmware& firmware,
-               std::uint64_t seed) noexcept;
+               const LoadedTips& tips, const Firmware& firmware, std::uint64_t seed) noexcept;
   template <class MakePlant>
   static driver::Result<SimulatedArm> make_of(const driver::ArmModel& board,
                                               const SimulatedArmSettings& settings, HandPath path,
@@ -128,7 +136,11 @@ class SimulatedArm {
   Hand hand_;
   GimbalMotion gimbal_;
   AnyPlant plant_;
+  PlantSettings bare_tip_;
+  HandSettings held_by_;
+  Eigen::Vector3d weight_B_;  // of the bare tip, N
   AxisDynamics held_tip_, free_tip_;
+  bool held_ = true;
   Firmware firmware_;
   std::int64_t time_ns_ = 0;
   std::int64_t next_sample_ns_ = 0;

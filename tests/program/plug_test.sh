@@ -13,6 +13,8 @@ expect 2 'hand' "$thimble" plug polhem --hand fist
 expect 2 '70000' "$thimble" plug polhem --port 70000
 expect 1 'is not an IPv4 address' "$thimble" plug polhem --port 0 --listen nowhere
 expect 2 'cannot read the fault script' "$thimble" plug polhem --port 0 --faults missing.txt
+echo 'mass 0.02' >mass.txt
+expect 2 'name the arm.s file by --arm' "$thimble" plug polhem --port 0 --faults mass.txt
 echo 'stall sideways' >bad_faults.txt
 expect 2 "'sideways' is not understood" "$thimble" plug polhem --port 0 --faults bad_faults.txt
 if [ ! -e /sys/devices/platform/vhci_hcd.0 ]; then
@@ -36,6 +38,9 @@ echo 'lost out for=5' >pipe
 echo 'hand 0 0.01 0' >pipe
 echo 'hand on' >pipe
 echo 'hand 1 2' >pipe
+echo 'mass 0.025' >pipe
+echo 'mass much' >pipe
+echo 'mass -1' >pipe
 echo 'quake' >pipe
 for _ in $(seq 100); do
   grep -q 'is not a kind of fault' out.txt && break
@@ -48,7 +53,9 @@ expect 0 '^0$' echo $status
 expect 0 'waits on port [0-9]+ as USB device 1-1' cat out.txt
 expect 0 "'quake' is not a kind of fault" cat out.txt
 expect 0 "'hand 1 2' is not understood" cat out.txt
-expect 1 '' grep -E "^thimble: 'hand (0|on)" out.txt
+expect 0 "'mass much' is not understood" cat out.txt
+expect 0 'must be 0 kg at least' cat out.txt
+expect 1 '' grep -E "^thimble: '(hand (0|on)|mass 0)" out.txt
 expect 0 '^Unplugged' cat out.txt
 expect 0 'frame reports sampled_frame' cat trace.txt
 expect 1 '' test -e pipe

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 
 #include "support/random.h"
 #include "thimble/scene/arm_file.h"
@@ -17,11 +18,11 @@ struct HiddenArm {
   double delay = 0;              ///< Both ways together, s.
 };
 
-/// Draws one: mass and friction 1/3 to 3 times the published, gains 0.6 to 1.6, delays up to 4 ms,
-/// and no more weight than its friction carries.
-inline HiddenArm hidden_arm(std::uint64_t seed) {
+/// Draws one like that of a file: mass and friction 1/3 to 3 times the file's, gains 0.6 to 1.6,
+/// delays up to 4 ms, and no more weight than its friction carries.
+inline HiddenArm hidden_arm_of(scene::ArmFile file, std::uint64_t seed) {
   Random random(seed);
-  HiddenArm arm{.file = scene::load_arm("vintage_phantom").value()};
+  HiddenArm arm{.file = std::move(file)};
   const auto third_to_three = [&](double value) {
     return value * std::exp(random.uniform(-1, 1) * std::log(3.0));
   };
@@ -38,6 +39,11 @@ inline HiddenArm hidden_arm(std::uint64_t seed) {
   arm.weight = random.uniform(0, 0.8) * simulated.plant.coulomb;
   simulated.weight_B = arm.file.R_WB.transpose() * Eigen::Vector3d(0, 0, -arm.weight);
   return arm;
+}
+
+/// Draws one like the vintage PHANTOM.
+inline HiddenArm hidden_arm(std::uint64_t seed) {
+  return hidden_arm_of(scene::load_arm("vintage_phantom").value(), seed);
 }
 
 /// Draws one of the serial arms: mass, friction and each gain 1/3 to 3 times the published, delays

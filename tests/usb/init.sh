@@ -26,13 +26,15 @@ as() { su -s /bin/sh "$1" -c "$2"; }
 control=/tmp/control
 count=0
 
-plug() {  # plug ARM TRACE
+plug() {  # plug ARM TRACE [OPTION...]
   rm -f $control
-  thimble plug "$1" --attach --control $control --trace "$2" >/tmp/plug.log 2>&1 &
+  plugs=$1 trace=$2
+  shift 2
+  thimble plug "$plugs" --attach --control $control --trace "$trace" "$@" >/tmp/plug.log 2>&1 &
   plugged=$!
   for i in $(seq 200); do [ -p $control ] && break; usleep 10000; done
   chmod 666 $control
-  as tester "usb_check find $1" >/tmp/found.log || cat /tmp/found.log /tmp/plug.log
+  as tester "usb_check find $plugs" >/tmp/found.log || cat /tmp/found.log /tmp/plug.log
   udevadm settle --timeout=20
 }
 unplug() {
@@ -191,6 +193,14 @@ for arm in $faulty; do
     [ "${hits:-0}" -gt 0 ] || echo "FAIL $arm with faults: no packet was hit by '$kind'"
   done
   echo "NOTE $arm with faults done after $(uptime) s"
+done
+
+. /identify.sh
+seed=1
+for arm in $(setting identify | tr , ' '); do
+  identify $arm $seed
+  seed=$((seed + 1))
+  echo "NOTE $arm identified after $(uptime) s"
 done
 
 # The second way: the kernel's own HID gadget on its own virtual bus, with no USB/IP in between.

@@ -20,8 +20,7 @@ driver::Result<std::unique_ptr<FalconOnUsb>> FalconOnUsb::make(
     UsbDescription description, const driver::JointModel<driver::DeltaArm>& model,
     const SimulatedArmSettings& settings, HandPath path, std::vector<std::byte> image,
     std::uint64_t seed) {
-  const WiringSettings& wiring = settings.firmware.wiring;
-  if (auto wired = wiring.check(); !wired) return wired.error();
+  if (auto wired = settings.firmware.wiring.check(); !wired) return wired.error();
   if (!settings.weight_B.allFinite()) {
     return driver::Error{"The simulated arm's weight must be finite (N)."};
   }
@@ -33,26 +32,26 @@ driver::Result<std::unique_ptr<FalconOnUsb>> FalconOnUsb::make(
                        {.current_max = kMotorValueMax / kMotorValuesPerAmpere}, p_BT, p_BT);
   if (!mechanics) return mechanics.error();
   mechanics->set_pull(settings.weight_B);
-  const auto held = AxisDynamics::make(settings.plant, settings.hand);
-  if (!held) return held.error();
-  const auto free = AxisDynamics::make(settings.plant, {});
-  if (!free) return free.error();
-  return std::unique_ptr<FalconOnUsb>(new FalconOnUsb(std::move(description), *tremor,
-                                                      std::move(path), *mechanics, *held, *free,
-                                                      std::move(image), wiring));
+  const auto tips = loaded_tips(settings.plant, settings.hand, 0, {0, 0, 0});
+  if (!tips) return tips.error();
+  return std::unique_ptr<FalconOnUsb>(new FalconOnUsb(std::move(description), settings, *tremor,
+                                                      std::move(path), *mechanics, *tips,
+                                                      std::move(image)));
 }
 
-FalconOnUsb::FalconOnUsb(UsbDescription description, const Tremor& tremor, HandPath path,
-                         const DeltaPlant& plant, const AxisDynamics& held_tip,
-                         const AxisDynamics& free_tip, std::vector<std::byte> image,
-                         const WiringSettings& wiring)
+FalconOnUsb::FalconOnUsb(UsbDescription description, const SimulatedArmSettings& settings,
+                         const Tremor& tremor, HandPath path, const DeltaPlant& plant,
+                         const LoadedTips& tips, std::vector<std::byte> image)
     : description_(std::move(description)),
       tremor_(tremor),
       hand_(std::move(path), tremor),
       homing_hand_(driver::falcon::falcon_geometry().p_BM),
-      held_tip_(held_tip),
-      free_tip_(free_tip),
-      wiring_(wiring),
+      bare_tip_(settings.plant),
+      held_by_(settings.hand),
+      weight_B_(settings.weight_B),
+      held_tip_(tips.held),
+      free_tip_(tips.free),
+      wiring_(settings.firmware.wiring),
       plant_(plant),
       board_(std::move(image)),
       chip_(board_) {}
@@ -64,8 +63,20 @@ void FalconOnUsb::lead(HandPath path) {
 driver::Result<void> FalconOnUsb::take_hand(const PlantSettings& plant, const HandSettings& hand) {
   const auto tip = AxisDynamics::make(plant, hand);
   if (!tip) return tip.error();
+  bare_tip_ = plant;
+  held_by_ = hand;
   held_tip_ = *tip;
   plant_.take_tip(held_ ? held_tip_ : free_tip_);
+  return {};
+}
+
+driver::Result<void> FalconOnUsb::fix_mass(double mass, const Eigen::Vector3d& gravity_B) {
+  const auto tips = loaded_tips(bare_tip_, held_by_, mass, gravity_B);
+  if (!tips) return tips.error();
+  held_tip_ = tips->held;
+  free_tip_ = tips->free;
+  plant_.take_tip(held_ ? held_tip_ : free_tip_);
+  plant_.set_pull(weight_B_ + mass * gravity_B);
   return {};
 }
 

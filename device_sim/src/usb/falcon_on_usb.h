@@ -9,6 +9,7 @@
 #include "hand.h"
 #include "hand_path.h"
 #include "inverse_plant.h"
+#include "loaded_tips.h"
 #include "thimble/device_sim/usb/usb_arm.h"
 #include "tremor.h"
 #include "usb/falcon_board.h"
@@ -45,6 +46,7 @@ class FalconOnUsb final : public UsbArm {
   driver::Result<void> take_hand(const PlantSettings& plant, const HandSettings& hand);
   void lead_hand(const Eigen::Vector3d& p_BH) noexcept override { hand_.lead(p_BH); }
   void hold_tip(bool held) noexcept override;
+  driver::Result<void> fix_mass(double mass, const Eigen::Vector3d& gravity_B) override;
   /// Sets the guessed watchdog of the board, ns; 0: none (FalconBoard). Real-time: safe.
   void set_watchdog(std::int64_t time_ns) noexcept { board_.set_watchdog(time_ns); }
 
@@ -61,9 +63,9 @@ class FalconOnUsb final : public UsbArm {
   const DeltaPlant& plant() const noexcept { return plant_; }
 
  private:
-  FalconOnUsb(UsbDescription description, const Tremor& tremor, HandPath path,
-              const DeltaPlant& plant, const AxisDynamics& held_tip, const AxisDynamics& free_tip,
-              std::vector<std::byte> image, const WiringSettings& wiring);
+  FalconOnUsb(UsbDescription description, const SimulatedArmSettings& settings,
+              const Tremor& tremor, HandPath path, const DeltaPlant& plant, const LoadedTips& tips,
+              std::vector<std::byte> image);
   void put_tip() noexcept;
   void move_to(std::int64_t time_ns) noexcept;
   void hear_line(std::int64_t dt_ns) noexcept;
@@ -73,6 +75,9 @@ class FalconOnUsb final : public UsbArm {
   Hand hand_;
   HomingHand homing_hand_;
   bool homes_ = false;
+  PlantSettings bare_tip_;
+  HandSettings held_by_;
+  Eigen::Vector3d weight_B_;  // of the bare tip, N
   AxisDynamics held_tip_, free_tip_;
   bool wanted_held_ = true, held_ = true;  // what was asked for; homing takes the tip as well
   WiringSettings wiring_;

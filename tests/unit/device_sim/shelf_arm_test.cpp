@@ -1,6 +1,7 @@
 // A plugged arm of other constants than the shelf's, and what the hand on it is told.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -93,6 +94,42 @@ TEST(ShelfArm, FollowsAHandThatIsLedUntilItLetsGo) {
     arm->advance_to(3'000'000'000);
     EXPECT_LT((arm->truth().p_BT - begin).norm(), 0.001) << name;
   }
+}
+
+TEST(ShelfArm, CarriesAMassThatIsFixedToItsTip) {
+  const Eigen::Vector3d gravity_B(0, -6, -8);
+  const auto woody = arm_model(driver::hfab::woody_model());
+  const std::vector<std::pair<const char*, driver::ArmModel>> boards{
+      {"woodenhaptics", woody},
+      {"polhem", arm_model(driver::hfab::polhem_model())},
+      {"falcon", arm_model(driver::falcon::falcon_model())}};
+  for (const auto& [name, model] : boards) {
+    for (const double weight : {0.0, 0.3}) {  // of the arm itself: of a plant of another build
+      ShelfArm own = shelf_arm(model, 1);
+      own.settings.weight_B = Eigen::Vector3d(0, 0, weight);
+      const auto arm = plugged(name, own, HandMotion::kNone);
+      auto fallen = [&arm, at_ns = std::int64_t{0}](std::int64_t for_ns) mutable {
+        const Eigen::Vector3d begin = arm->truth().p_BT;
+        arm->advance_to(at_ns += for_ns);
+        return Eigen::Vector3d(arm->truth().p_BT - begin);
+      };
+      ASSERT_TRUE(arm->fix_mass(0.05, gravity_B)) << name;
+      const Eigen::Vector3d a = (own.settings.weight_B + 0.05 * gravity_B) / 0.25;
+      EXPECT_LT((fallen(50'000'000) - 0.5 * 0.0025 * a).norm(), 1e-5) << name << weight;
+      // Taken off again, it goes on as it moved then.
+      ASSERT_TRUE(arm->fix_mass(0, gravity_B)) << name;
+      const Eigen::Vector3d b = own.settings.weight_B / 0.2;
+      EXPECT_LT((fallen(50'000'000) - 0.0025 * a - 0.5 * 0.0025 * b).norm(), 1e-5) << name;
+      EXPECT_TRUE(refuses(arm->fix_mass(-0.01, gravity_B), "0 kg at least"));
+      EXPECT_TRUE(refuses(arm->fix_mass(NAN, gravity_B), "0 kg at least"));
+    }
+  }
+  // A hand that takes the tip holds the mass as well: by its spring of 300 N/m.
+  const auto held = plugged("woodenhaptics", shelf_arm(woody, 1), HandMotion::kRest);
+  const Eigen::Vector3d begin = held->truth().p_BT;
+  ASSERT_TRUE(held->fix_mass(0.05, gravity_B));
+  held->advance_to(3'000'000'000);
+  EXPECT_LT((held->truth().p_BT - begin - 0.05 * gravity_B / 300).norm(), 1e-5);
 }
 
 }  // namespace

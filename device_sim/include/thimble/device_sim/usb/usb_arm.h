@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "thimble/device_sim/usb/usb_device.h"
+#include "thimble/driver/result.h"
 
 namespace thimble::device_sim::usb {
 
@@ -34,6 +35,10 @@ class UsbArm : public UsbDevice {
   /// Lets the hand take the tip, which it does from the beginning, or let go of it. Real-time:
   /// safe.
   virtual void hold_tip(bool held) noexcept = 0;
+  /// Fixes a mass (kg, 0: none) to the tip, in place of one that was fixed to it before; gravity_B
+  /// (m/s^2) pulls on it. Fails if it is negative or not finite. Real-time: never from the servo
+  /// thread.
+  virtual driver::Result<void> fix_mass(double mass, const Eigen::Vector3d& gravity_B) = 0;
 };
 
 }  // namespace thimble::device_sim::usb

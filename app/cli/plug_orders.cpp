@@ -1,0 +1,116 @@
+#include "cli/plug_orders.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <fstream>
+#include <sstream>
+
+#include "log/logger.h"
+
+namespace thimble::app {
+namespace {
+
+/// Carries out what the hand is told: `off`, `on`, or how far it goes from where it began.
+bool obey_hand(Plugged& plugged, const std::string& words) {
+  if (words == "off" || words == "on") {
+    plugged.arm.hold_tip(words == "on");
+    return true;
+  }
+  std::istringstream numbers(words);
+  Eigen::Vector3d away;
+  std::string more;
+  const bool read = static_cast<bool>(numbers >> away.x() >> away.y() >> away.z());
+  if (!read || numbers >> more || !away.allFinite()) {
+    scene::logger().error(
+        "'hand {}' is not understood; say 'hand X Y Z' (m along the base's axes from where the "
+        "hand began), 'hand off' or 'hand on'.",
+        words);
+    return false;
+  }
+  plugged.arm.lead_hand(plugged.p_BH + away);
+  return true;
+}
+
+/// Fixes a mass to the tip, kg.
+bool obey_mass(Plugged& plugged, const std::string& words) {
+  std::istringstream numbers(words);
+  double mass = 0;
+  std::string more;
+  if (!(numbers >> mass) || numbers >> more) {
+    scene::logger().error("'mass {}' is not understood; say 'mass KG', or 'mass 0' for none.",
+                          words);
+    return false;
+  }
+  if (!plugged.gravity_B) {
+    scene::logger().error("Where a mass hangs is not known; name the arm's file by --arm.");
+    return false;
+  }
+  const auto fixed = plugged.arm.fix_mass(mass, *plugged.gravity_B);
+  if (!fixed) scene::logger().error("{}", fixed.error().message);
+  return fixed.ok();
+}
+
+}  // namespace
+
+bool obey(Plugged& plugged, const std::string& line) {
+  if (line.empty() || line[0] == '#') return true;
+  if (line == "heal") {
+    plugged.device.heal();
+    return true;
+  }
+  if (line.starts_with("hand ")) return obey_hand(plugged, line.substr(5));
+  if (line.starts_with("mass ")) return obey_mass(plugged, line.substr(5));
+  const auto order = device_sim::usb::parse_fault(line);
+  if (!order) {
+    scene::logger().error("{}", order.error().message);
+    return false;
+  }
+  plugged.device.order(*order);
+  return true;
+}
+
+bool obey_file(Plugged& plugged, const std::string& path) {
+  std::ifstream file(path);
+  if (!file) {
+    scene::logger().error("cannot read the fault script {}.", path);
+    return false;
+  }
+  for (std::string line; std::getline(file, line);) {
+    if (!obey(plugged, line)) return false;
+  }
+  return true;
+}
+
+OrderPipe::~OrderPipe() {
+  if (file_ < 0) return;
+  close(file_);
+  unlink(path_.c_str());
+}
+
+bool OrderPipe::open(const std::string& path) {
+  path_ = path;
+  // Open for writing too, so that the pipe stays open when a writer leaves.
+  if (mkfifo(path.c_str(), 0600) != 0) return false;
+  file_ = ::open(path.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
+  return file_ >= 0;
+}
+
+void OrderPipe::poll(Plugged& plugged) {
+  if (file_ < 0) return;
+  std::array<char, 512> bytes;
+  const ssize_t size = read(file_, bytes.data(), bytes.size());
+  for (ssize_t i = 0; i < size; ++i) {
+    const char letter = bytes[static_cast<std::size_t>(i)];
+    if (letter != '\n') {
+      line_ += letter;
+    } else {
+      obey(plugged, line_);
+      line_.clear();
+    }
+  }
+}
+
+}  // namespace thimble::app

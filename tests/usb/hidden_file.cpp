@@ -1,0 +1,151 @@
+#include "usb/hidden_file.h"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <optional>
+#include <sstream>
+
+#include "support/hidden_arm.h"
+#include "thimble/scene/arm_file.h"
+#include "usb/board_checks.h"
+
+namespace thimble::usb_test {
+namespace {
+
+std::string text_of(const std::string& file) {
+  std::ostringstream text;
+  text << std::ifstream(file).rdbuf();
+  return text.str();
+}
+
+std::string exact(double value) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.17g", value);
+  return text;
+}
+
+/// Puts another value behind the first key of that name after `from`; false if there is none.
+bool exchange(std::string& text, const std::string& key, const std::string& value,
+              std::size_t from = 0) {
+  const std::size_t at = text.find(key + ": ", from);
+  if (at == std::string::npos) return false;
+  const std::size_t begin = at + key.size() + 2;
+  text.replace(begin, text.find('\n', begin) - begin, value);
+  return true;
+}
+
+/// Puts the torque constants into a file, which may leave them, or all joints, to the program.
+void put_torques(std::string& text, const std::string& values) {
+  if (exchange(text, "  torque_constant", values)) return;
+  const std::string line = "  torque_constant: " + values + "\n";
+  if (const std::size_t joints = text.find("\njoints:"); joints != std::string::npos) {
+    text.insert(text.find('\n', joints + 1) + 1, line);
+  } else {
+    text.insert(text.find("\nbase:") + 1, "joints:\n" + line + "\n");
+  }
+}
+
+/// Returns the half-width of the interval that a written file states behind a key: the first after
+/// `from` whose line has one.
+std::optional<double> stated(const std::string& text, const std::string& from,
+                             const std::string& key) {
+  const std::size_t section = text.find(from);
+  const std::size_t at = text.find(key + ": ", section == std::string::npos ? 0 : section);
+  if (at == std::string::npos) return std::nullopt;
+  const std::string line = text.substr(at, text.find('\n', at) - at);
+  const std::size_t mark = line.find("+- ");
+  if (mark == std::string::npos) return std::nullopt;
+  return std::strtod(line.c_str() + mark + 3, nullptr);
+}
+
+/// One constant of a written file beside what is true.
+struct Compared {
+  std::string name, unit;
+  double found, truth, allowed;    // in the unit; `allowed`: how far off it may be
+  std::optional<double> interval;  // half-width that the file states
+  bool interval_will_do = false;   // inside it is as good
+
+  int say(const std::string& arm) const {
+    const double off = std::abs(found - truth);
+    const bool held = interval && off <= *interval;
+    const bool good = found * truth >= 0 && (off <= allowed || (interval_will_do && held));
+    char text[200];
+    std::snprintf(text, sizeof text, "%.6g %s +- %.2g, true %.6g: %.3g off (%.2f %%), allowed %.3g",
+                  found, unit.c_str(), interval.value_or(0), truth, off,
+                  100 * off / std::abs(truth), allowed);
+    const bool in_ms = unit == "ms";
+    std::printf("FIGURE %s.identified_%s_off %.4g %s\n", arm.c_str(), name.c_str(),
+                in_ms ? off : 100 * off / std::abs(truth), in_ms ? "ms" : "%");
+    return verdict(good, arm + " identified: " + name,
+                   text + std::string(held ? "; its interval holds it" : "; outside its interval"));
+  }
+};
+
+}  // namespace
+
+int print_hidden_file(const std::string& file, const std::string& seed) {
+  auto known = scene::load_arm(file);
+  if (!known) return verdict(false, file, known.error().message);
+  const support::HiddenArm arm =
+      support::hidden_arm_of(std::move(*known), std::strtoull(seed.c_str(), nullptr, 10));
+  std::string text = text_of(file);
+  const std::size_t tip = text.find("\n  tip:");
+  const auto& plant = arm.file.simulated.plant;
+  const bool whole = tip != std::string::npos && exchange(text, "mass", exact(plant.mass), tip) &&
+                     exchange(text, "viscous", exact(plant.viscous), tip) &&
+                     exchange(text, "coulomb", exact(plant.coulomb), tip);
+  if (!whole) return verdict(false, file, "has no constants of a simulated tip");
+  std::string torques;
+  for (std::size_t i = 0; i < 3; ++i) {
+    torques +=
+        (i == 0 ? "[" : ", ") + exact(arm.gain[i] * arm.file.model.drives[i].torque_constant);
+  }
+  put_torques(text, torques + "]");
+  std::printf("%s", text.c_str());
+  return 0;
+}
+
+int check_identified(const std::string& arm, const std::string& believed, const std::string& hidden,
+                     const std::string& written, const std::string& delay_ms) {
+  const auto wrong = scene::load_arm(believed);
+  const auto truth = scene::load_arm(hidden), found = scene::load_arm(written);
+  if (!wrong) return verdict(false, arm + " file", wrong.error().message);
+  if (!truth) return verdict(false, arm + " hidden file", truth.error().message);
+  if (!found) return verdict(false, arm + " identified", found.error().message);
+  const std::string text = text_of(written);
+  const auto &is = truth->simulated, &was = found->simulated;
+  const auto of_tip = [&](const char* key) { return stated(text, "\n  tip:", key); };
+  std::vector<Compared> all{
+      {"mass", "kg", was.plant.mass, is.plant.mass, 0.03 * is.plant.mass, of_tip("mass")},
+      {"coulomb", "N", was.plant.coulomb, is.plant.coulomb, 0.05 * is.plant.coulomb,
+       of_tip("coulomb")},
+      {"viscous", "N s/m", was.plant.viscous, is.plant.viscous, 0.1 * is.plant.viscous,
+       of_tip("viscous"), true}};
+  const auto torque = stated(text, "\njoints:", "torque_constant");
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double named = wrong->model.drives[i].torque_constant;
+    const double gain = truth->model.drives[i].torque_constant / named;
+    all.push_back({"gain_" + std::to_string(i + 1), "",
+                   found->model.drives[i].torque_constant / named, gain, 0.02 * gain,
+                   torque ? std::optional(*torque / named) : std::nullopt});
+  }
+  // The bus of a Falcon is code, and its delay a remark.
+  const bool remark = found->is<driver::DeltaArm>();
+  const std::string key = remark ? "# delay from force to motion" : "delay_out";
+  const std::size_t at = text.find("# delay from force to motion: ");
+  const double delay =
+      !remark ? 1e-9 * static_cast<double>(was.wire.delay_in_ns + was.wire.delay_out_ns)
+      : at == std::string::npos ? NAN
+                                : std::strtod(text.c_str() + at + key.size() + 2, nullptr);
+  const auto interval = stated(text, "\nsimulation:", key);
+  all.push_back({"delay", "ms", 1e3 * delay, std::strtod(delay_ms.c_str(), nullptr), 0.1,
+                 interval ? std::optional(1e3 * *interval) : std::nullopt});
+  int bad = 0;
+  for (const Compared& one : all) bad += one.say(arm);
+  return bad;
+}
+
+}  // namespace thimble::usb_test

@@ -1,0 +1,118 @@
+# Identifies simulated arms of hidden constants through this kernel, as a person does it: feel check, then
+# `thimble identify` with a known mass, the arm file being the shipped one, which is wrong. Read by init.sh.
+
+seconds=15  # of each motion
+known=0.025 # kg
+
+# Waits for the prompt number COUNT in a log. Not in a hurry: every look takes time from the servo, with
+# which it shares the one processor.
+prompted() { # LOG COUNT
+  for i in $(seq 1000); do
+    [ "$(grep -c 'Press Enter to begin' "$1")" -ge "$2" ] && return 0
+    [ -d /proc/$asking ] || return 1
+    usleep 400000
+  done
+  return 1
+}
+press() { # LOG COUNT
+  prompted "$1" "$2" && echo >&8
+}
+
+# The hand goes from the middle of the workspace, m along the world's axes.
+lead() { # ARM X Y Z
+  case $1 in
+    woodenhaptics) echo "$2 $3 $4" | awk '{ print "hand", $1 - 0.025, $2, $3 - 0.205 }' ;; # it begins in its home
+    falcon) echo "hand $3 $4 $2" ;; # its base has x to the right, y up, z to the user
+    *) echo "hand $2 $3 $4" ;;
+  esac >$control
+}
+
+feel_check() { # ARM OPTIONS
+  arm=$1
+  as tester "exec thimble feel-check $2" <$keys >/tmp/feel.log 2>&1 &
+  asking=$!
+  press /tmp/feel.log 1 || return 1
+  for place in "0.025 0.025 0" "-0.025 0 0.025" "0 -0.025 -0.025" "0 0 0"; do
+    lead $arm $place
+    usleep 800000
+  done
+  step=2
+  for place in "0.03 0 0" "0 0.03 0" "0 0 0.03"; do
+    press /tmp/feel.log $step || return 1
+    usleep 100000
+    lead $arm $place
+    usleep 700000
+    lead $arm 0 0 0
+    step=$((step + 1))
+  done
+  while [ $step -le 8 ]; do
+    press /tmp/feel.log $step || return 1
+    step=$((step + 1))
+  done
+  wait $asking
+}
+
+# Holds the mass from below, and lets go once it is carried.
+hold_mass() { # ARM
+  lead $1 0 0 0
+  echo "hand on" >$control
+  usleep 300000
+  echo "mass $known" >$control
+  usleep 300000
+  echo >&8
+  usleep 1500000
+  echo "hand off" >$control
+}
+
+# One arm, drawn by SEED.
+identify() { # ARM SEED
+  arm=$1
+  file=/data/app/arms/$arm.yaml
+  options="--arm $file"
+  [ $arm != falcon ] || options="$options --firmware /etc/falcon.bin"
+  usb_check hide $file $2 >/tmp/hidden.yaml || { cat /tmp/hidden.yaml; return; } # a FAIL line
+  begun=$(uptime)
+  plug $arm /tmp/device.trace --hand rest --arm /tmp/hidden.yaml
+  options="--device $(usb_check name $arm) $options"
+  keys=/tmp/keys
+  rm -f $keys
+  mkfifo $keys
+  chmod 666 $keys
+  exec 8<>$keys
+  export HOME=/tmp
+  lead $arm 0 0 0
+  sleep 1
+  if feel_check $arm "$options"; then
+    echo "PASS $arm of hidden constants passes its feel check"
+    echo "hand off" >$control
+    as tester "exec thimble identify $options --known-mass $known --seconds $seconds \
+      --record /tmp/motion.h5 --output /tmp/identified.yaml" <$keys >/tmp/identify.log 2>&1 &
+    asking=$!
+    press /tmp/identify.log 1 && prompted /tmp/identify.log 2 && hold_mass $arm
+    wait $asking && echo "PASS $arm of hidden constants is identified" ||
+      echo "FAIL $arm of hidden constants is identified: $(tr '\n' ' ' </tmp/identify.log)"
+    cat /tmp/identify.log
+  else
+    echo "FAIL $arm of hidden constants passes its feel check: $(tr '\n' ' ' </tmp/feel.log)"
+  fi
+  exec 8>&-
+  unplug
+  sed -n 's/^Unplugged\. /NOTE '$arm': /p' /tmp/plug.log
+  as tester "thimble export /tmp/motion.h5 --csv /tmp/motion.csv"
+  # What stood in each tick, as usb_check keeps it, in the arm's base.
+  awk -F, -v falcon=$([ $arm = falcon ] && echo 1 || echo 0) '
+    !named { for (i = 1; i <= NF; ++i) { sub(/ .*/, "", $i); at[$i] = i }; named = 1; print 0; next }
+    { x = $at["f_sent_W.x"]; y = $at["f_sent_W.y"]; z = $at["f_sent_W.z"]
+      if (falcon) { t = x; x = y; y = z; z = t }
+      print $at["fresh"], $at["counts.1"], $at["counts.2"], $at["counts.3"], x, y, z }' \
+    /tmp/motion.csv >/tmp/driver.trace
+  usb_check compare $arm /tmp/driver.trace /tmp/device.trace >/tmp/compare.log
+  sed 's/^\(PASS\|FAIL\) '$arm'/& identified:/; s/^FIGURE '$arm'\./&identify_/' /tmp/compare.log
+  # Both ends of a HID board's delay lie on frames. A Falcon's message comes within the frame before the one in
+  # which the trace notes it, and so does the sampling of its answer, which is noted by its own time.
+  delay=$(sed -n "s/^FIGURE $arm.delay_median \([0-9]*\).*/\1/p" /tmp/compare.log)
+  [ $arm != falcon ] || delay=$((delay - 1))
+  usb_check identified $arm $file /tmp/hidden.yaml /tmp/identified.yaml ${delay:-0}
+  echo "FIGURE $arm.identify_time $(echo "$(uptime) $begun" | awk '{ print $1 - $2 }') s"
+  rm -f /tmp/motion.* /tmp/identified.yaml /tmp/*.trace
+}
