@@ -1,4 +1,7 @@
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <ctime>
 #include <fstream>
@@ -39,6 +42,10 @@ struct IdentifyCommand {
   bool write_bad_fit = false;
 };
 
+// Of the time of a motion, so that seven places take as long as one, and both motions of 60 s with
+// them three minutes; and the least, s [chosen: the mass of light arms is known to 0.2 % then].
+constexpr double kPlaceShare = 12, kPlaceSecondsLeast = 2;
+
 std::string today() {
   const std::time_t now = std::time(nullptr);
   std::tm utc{};
@@ -51,6 +58,14 @@ std::string today() {
 /// Says how motion is ended.
 const char* how_to_stop(bool terminal) {
   return terminal ? "any key ends it" : "Ctrl-C ends it";
+}
+
+/// Says that the tip goes about.
+std::string led_text(const IdentifyOptions& options) {
+  if (options.places == 0) return "";
+  return fmt::format(
+      ", and then go slowly to {} places of its workspace and shake there for {:g} s each",
+      options.places, options.place_seconds);
 }
 
 /// Opens a real arm and asks for what the motion needs; the arm is idle meanwhile.
@@ -68,9 +83,10 @@ driver::Result<std::unique_ptr<BenchArm>> open_real(const ChosenArm& chosen,
   } else {
     std::printf(
         "Put the tip into the middle of the workspace, so that it stays there, and take your hand "
-        "off. It will shake by some millimetres with at most %g N for %g s; %s. Press Enter to "
+        "off. It will shake by some millimetres with at most %g N for %g s%s; %s. Press Enter to "
         "begin.\n",
-        command.options.force_most, command.options.seconds, how_to_stop(has_terminal()));
+        command.options.force_most, command.options.seconds, led_text(command.options).c_str(),
+        how_to_stop(has_terminal()));
   }
   std::fflush(stdout);
   session::EnterKey key = session::EnterKey::kNothing;
@@ -162,6 +178,8 @@ int identify_arm(IdentifyCommand command) {
   // A person needs time to let go of the mass.
   if (chosen->real_arm) command.options.lead = 4;
   command.options.link = true;
+  command.options.place_seconds =
+      std::max(kPlaceSecondsLeast, command.options.seconds / kPlaceShare);
   std::optional<KeyStop> keys;
   const OpenBench open = [&](bool loaded) {
     keys.reset();  // Enter begins, and is no key that stops
@@ -222,8 +240,10 @@ int identify_arm(IdentifyCommand command) {
 
 void add_identify_command(CLI::App& app, int& exit_code) {
   CLI::App* sub = app.add_subcommand(
-      "identify", "Measure an arm's mass, friction, gains, delay and cables by small forces");
+      "identify",
+      "Measure an arm's mass, links, friction, gains, delay and cables by small forces");
   auto command = std::make_shared<IdentifyCommand>();
+  command->options.places = 7;
   command->choice.add_options(*sub);
   sub->add_option(
          "--known-mass", command->options.known_mass,
@@ -232,6 +252,11 @@ void add_identify_command(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(0.0, 0.06));
   sub->add_option("--seconds", command->options.seconds, "Of each motion")
       ->check(CLI::Range(10.0, 600.0))
+      ->capture_default_str();
+  sub->add_option("--places", command->options.places,
+                  "Places of the workspace that the tip is led to afterwards, where the inertia of "
+                  "the links shows; 0: none")
+      ->check(CLI::Range(3, 9) | CLI::IsMember({0}))
       ->capture_default_str();
   sub->add_option("--force-most", command->options.force_most,
                   "Largest force, N; no more than gate.force_max of the arm file")

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "bringup/identify/constants_table.h"
+#include "bringup/identify/links/place_masses.h"
 #include "bringup/identify/not_identified.h"
 #include "identified/identify_plots.h"
 #include "report/inline_picture.h"
@@ -72,6 +73,23 @@ std::string table(const Identified& found, const scene::ArmFile& file) {
   return text + "</table></div>\n";
 }
 
+/// The masses where the tip was moved, and their range.
+std::string masses_text(const LinkFit& fit, const scene::ArmFile& file) {
+  std::string text =
+      "<div class=\"scroll\"><table><tr><th>place, mm (world)</th><th>along x, g</th><th>along "
+      "y</th><th>along z</th></tr>\n";
+  for (const PlaceMass& place : masses_at_places(fit, file)) {
+    text += fmt::format("<tr><td>{:.0f}, {:.0f}, {:.0f}</td>", 1e3 * place.p_W.x(),
+                        1e3 * place.p_W.y(), 1e3 * place.p_W.z());
+    for (const Estimate& mass : place.mass) {
+      text += fmt::format("<td>{} ± {:.2g}</td>", rounded(1e3 * mass.value, 1e3 * mass.plus_minus),
+                          1e3 * mass.plus_minus);
+    }
+    text += "</tr>\n";
+  }
+  return text + "</table></div>\n" + paragraph(range_text(fit, file), "small");
+}
+
 std::string page_text(const Identified& found, const scene::ArmFile& file,
                       const IdentifyHeading& heading, const std::vector<IdentifyPlot>& plots,
                       const std::filesystem::path& folder) {
@@ -96,6 +114,7 @@ std::string page_text(const Identified& found, const scene::ArmFile& file,
   for (const IdentifyPlot& plot : plots) {
     page += fmt::format("<h2>{}</h2>\n", html_text(plot.title)) + paragraph(plot.caption, "small") +
             inline_picture(folder / (plot.name + ".svg"), plot.name + "-") + "\n";
+    if (plot.name == "identify_masses") page += masses_text(*found.over.fit, file);
   }
   if (plots.empty()) {
     page += "<h2>Plots</h2>\n" +
@@ -136,7 +155,7 @@ driver::Result<void> write_identify_page(const Identified& identified, const sce
       !done) {
     return done;
   }
-  const auto plots = draw_identified(identified, folder);
+  const auto plots = draw_identified(identified, file, folder);
   if (!plots) return plots.error();
   return write_text(page_text(identified, file, heading, *plots, folder), folder / "index.html");
 }

@@ -39,14 +39,15 @@ std::string stacked(const std::string& commands, const std::string& unit,
   return text + "unset multiplot\n";
 }
 
-/// Three panels side by side, one for each joint.
+/// Three panels side by side, one for each joint or axis.
 std::string beside(const std::string& commands, const std::string& x, const std::string& y,
-                   const std::array<std::string, 3>& plots) {
+                   const std::array<std::string, 3>& plots,
+                   const std::array<const char*, 3>& titles = {"joint 1", "joint 2", "joint 3"}) {
   std::string text = quiet("") + commands +
                      "set multiplot layout 1,3 margins 0.085,0.985,0.2,0.885 spacing 0.055\n";
   text += fmt::format("set xlabel '{}' font ',15'\n", x);
   for (std::size_t i = 0; i < 3; ++i) {
-    text += fmt::format("set title 'joint {}' font ',16'\n", i + 1);
+    text += fmt::format("set title '{}' font ',16'\n", titles[i]);
     text += i == 0 ? fmt::format("set ylabel '{}' font ',15' offset 1.5,0\n", y) : "unset ylabel\n";
     text += plots[i] + "\n";
   }
@@ -92,6 +93,18 @@ std::string friction_plot() {
                 "speed of the joint [rad/s]", "torque of friction [mN m]", plots);
 }
 
+std::string masses_plot() {
+  std::array<std::string, 3> plots;
+  for (std::size_t i = 0; i < 3; ++i) {
+    plots[i] = fmt::format(
+        "plot 'data/identify_masses.dat' index {0} using (1e3*$1):(1e3*$1) with lines lw 2 lc rgb "
+        "'{1}', 'data/identify_masses.dat' index {0} using (1e3*$1):(1e3*$2):(1e3*$3) with "
+        "yerrorbars pt 7 ps 0.8 lw 1.5 lc rgb '{2}'",
+        i, kFitInk, kInk);
+  }
+  return beside("", "by the constants [g]", "seen [g]", plots, {"along x", "along y", "along z"});
+}
+
 std::string lines_plot(const Identified& identified) {
   std::array<std::string, 3> plots;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -123,9 +136,10 @@ std::string lines_plot(const Identified& identified) {
 }  // namespace
 
 driver::Result<std::vector<IdentifyPlot>> draw_identified(const Identified& identified,
+                                                          const scene::ArmFile& file,
                                                           const std::filesystem::path& folder) {
   const FittedMotion motion = identified.fitted();
-  const double mass = identified.constants.mass.value;
+  const double mass = identified.moved_mass().value;
   const double dt = identified.moved.dt;
   const bool lines = !identified.lines.noise.empty();
   std::vector<std::pair<const char*, std::string>> tables{
@@ -137,6 +151,8 @@ driver::Result<std::vector<IdentifyPlot>> draw_identified(const Identified& iden
     tables.emplace_back("identify_lines", lines_table(identified, dt));
     tables.emplace_back("identify_resonance", resonance_table(identified, dt));
   }
+  const bool links = identified.constants.links.has_value();
+  if (links) tables.emplace_back("identify_masses", masses_table(identified, file));
   for (const auto& [name, text] : tables) {
     if (auto done = write_text(text, folder / "data" / (std::string(name) + ".dat")); !done) {
       return done.error();
@@ -163,6 +179,15 @@ driver::Result<std::vector<IdentifyPlot>> draw_identified(const Identified& iden
          "the constants. A dip is the link's oscillation on its cable, a peak that of motor "
          "against link; all at 1: nothing stretches."});
     commands.push_back(lines_plot(identified));
+  }
+  if (links) {
+    shown.push_back(
+        {"identify_masses", "Apparent mass over the workspace",
+         "Mass at the tip along the axes of the base, a dot for each place that it was moved "
+         "about: "
+         "as it was seen there, with its 95 % interval, over that by the constants of tip and "
+         "links. The nearer to the line the better."});
+    commands.push_back(masses_plot());
   }
   if (!has_gnuplot()) return std::vector<IdentifyPlot>{};
   for (std::size_t i = 0; i < shown.size(); ++i) {

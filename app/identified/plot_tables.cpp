@@ -8,9 +8,10 @@
 #include <numbers>
 #include <vector>
 
+#include "bringup/identify/cables/two_mass_search.h"
 #include "bringup/identify/joint_friction.h"
 #include "bringup/identify/line_forces.h"
-#include "bringup/identify/two_mass_search.h"
+#include "bringup/identify/links/place_masses.h"
 
 namespace thimble::app {
 namespace {
@@ -110,6 +111,19 @@ std::string friction_medians(const FittedMotion& motion, double mass) {
       text += fmt::format("{:.6g} {:.6g} {:.6g} {:.6g} {:.6g}\n", from + 0.5 * step,
                           quantile(seen, 0.5), quantile(seen, 0.25), quantile(seen, 0.75),
                           quantile(fitted, 0.5));
+    }
+    text += "\n\n";
+  }
+  return text;
+}
+
+std::string masses_table(const Identified& identified, const scene::ArmFile& file) {
+  std::string text = "# apparent mass by the constants, as seen there, half its interval, kg\n";
+  const std::vector<PlaceMass> places = masses_at_places(*identified.over.fit, file);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (const PlaceMass& place : places) {
+      text += fmt::format("{:.6g} {:.6g} {:.3g}\n", place.mass[axis].value, place.seen[axis].value,
+                          place.seen[axis].plus_minus);
     }
     text += "\n\n";
   }

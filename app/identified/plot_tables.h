@@ -22,6 +22,10 @@ std::string friction_table(const FittedMotion& motion, double mass);
 /// fit.
 std::string friction_medians(const FittedMotion& motion, double mass);
 
+/// Returns the apparent mass by the constants and as it was seen at each place, an axis each.
+/// Precondition: links were seen.
+std::string masses_table(const Identified& identified, const scene::ArmFile& file);
+
 /// Returns how far the joints oscillate at each line over what they would with cables that do not
 /// stretch, with the interval that the noise beside the line makes.
 std::string lines_table(const Identified& identified, double dt);

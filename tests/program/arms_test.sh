@@ -87,12 +87,14 @@ expect 3 'No arm is plugged in .*--arm NAME' "$thimble" calibrate --device auto
 
 # What was identified goes into a new file, which runs; nobody's file is written over, and a motor that is
 # turned round is named before anything follows the motion.
-expect 0 '^Written to twin\.yaml' "$thimble" identify --arm "$vintage" --seconds 10 --known-mass 0.025 \
+expect 0 '^Written to twin\.yaml' "$thimble" identify --arm "$vintage" --seconds 10 --known-mass 0.025 --places 0 \
   --output twin.yaml
 expect 0 'mass: 0\.07[45][0-9]*  # kg, apparent \[I ' cat twin.yaml
 expect 0 'touched it [1-9]' "$thimble" run "$source_dir/tests/data/scenes/two_boxes.yaml" --arm twin.yaml
 expect 0 '^Report in report/index\.html' "$thimble" identify --arm "$vintage" --seconds 10 --output told.yaml --report report
 expect 0 '<li><b>Scale</b>: motion alone' cat report/index.html
+expect 0 '<li><b>Links</b>: none seen; over 8 places' cat report/index.html
+expect 1 '' grep -q 'links:' told.yaml
 expect 0 '^good$' /usr/bin/python3 -c '
 import json, re
 page = open("report/index.html").read()
@@ -104,6 +106,17 @@ print("good")'
 if command -v gnuplot >/dev/null; then
   expect_plot report/identify_fit report/identify_rest report/identify_friction report/identify_lines
   expect 0 '^4$' grep -c '^<svg' report/index.html
+fi
+# Links are measured over the workspace; a file that names others gets what was seen.
+sed 's/^simulation:/&\n  links: {inertia: [0.0004, 0.0005, 0.0003], yaw_b: 0.0005, yaw_c: 0.0003}/' "$vintage" >linked.yaml
+expect 0 '^Over the workspace, where the arm moves easily: ' "$thimble" identify --arm linked.yaml --seconds 10 --output links.yaml \
+  --report links
+expect 0 'links: \{inertia: .*yaw_c: .*\}  # inertia: kg m\^2 about A, B and C \[I ' cat links.yaml
+expect 0 'touched it [1-9]' "$thimble" run "$source_dir/tests/data/scenes/two_boxes.yaml" --arm links.yaml
+expect 5 'Nothing was written' "$thimble" identify --arm linked.yaml --seconds 10 --output no.yaml --places 0
+if command -v gnuplot >/dev/null; then
+  expect_plot links/identify_masses
+  expect 0 '^5$' grep -c '^<svg' links/index.html
 fi
 expect 1 'twin\.yaml is there already' "$thimble" identify --arm "$vintage" --seconds 10 --output twin.yaml
 expect 4 'Motor 1 pulls against its encoder' "$thimble" identify --arm reversed.yaml --output no.yaml

@@ -4,7 +4,7 @@ source "$(dirname "$0")/expect.sh" "$@"
 python=/usr/bin/python3
 at_terminal="$python $source_dir/tests/program/at_terminal.py"
 arm=$source_dir/app/arms/vintage_phantom.yaml
-brief="identify --device sim --arm vintage_phantom --seconds 10"
+brief="identify --device sim --arm vintage_phantom --seconds 10 --places 0"
 # Motion of ten minutes is simulated for much longer than it takes to press a key.
 endless="identify --device sim --arm vintage_phantom --seconds 600"
 
@@ -61,4 +61,5 @@ expect 2 'more than the 5 N that the arm file allows' "$thimble" $brief --force-
 expect 2 'at least' "$thimble" $brief --force-most 0.1
 expect 2 'known mass must be' "$thimble" $brief --force-most 0.5 --known-mass 0.05
 expect 2 'force-most' "$thimble" $brief --force-most -1
+expect 2 'places' "$thimble" identify --device sim --arm vintage_phantom --places 2
 finish

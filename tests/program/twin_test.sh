@@ -4,7 +4,7 @@ source "$(dirname "$0")/expect.sh" "$@"
 arm=$source_dir/app/arms/vintage_phantom.yaml
 
 expect 0 '^The motion was recorded in free\.h5\.$' \
-  "$thimble" identify --device sim --arm vintage_phantom --seconds 10 --record free.h5 --output same.yaml
+  "$thimble" identify --device sim --arm vintage_phantom --seconds 10 --places 0 --record free.h5 --output same.yaml
 expect 0 'ticks of identify at 1000 Hz' "$thimble" export free.h5 --csv free.csv
 expect 0 '^No other value of a single constant' \
   "$thimble" twin free.h5 --arm vintage_phantom --fit-least 95 --output same
@@ -36,6 +36,6 @@ expect 2 '--arm' "$thimble" twin free.h5
 head -c 20000 free.h5 >half.h5
 expect 2 'half\.h5' "$thimble" twin half.h5 --arm vintage_phantom
 expect 1 'annot' "$thimble" twin free.h5 --arm vintage_phantom --output "$arm/x"
-expect 1 'nowhere' "$thimble" identify --device sim --arm vintage_phantom --seconds 10 \
+expect 1 'nowhere' "$thimble" identify --device sim --arm vintage_phantom --seconds 10 --places 0 \
   --record nowhere/free.h5 --output other.yaml
 finish

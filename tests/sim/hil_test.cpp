@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "hil/constants_check.h"
 #include "hil/edge_of_wall.h"
 #include "hil/wall_check.h"
 #include "support/figure_value.h"
@@ -75,6 +76,30 @@ TEST(Hil, PassesAnArmThatIsAsItsFileSays) {
     EXPECT_EQ(figure_value(wall.figures, "wall_over_twin"), 1);
     EXPECT_LE(figure_value(wall.figures, "force_most"), kHilForceMax);
     EXPECT_NEAR(figure_value(results.at("force_accuracy").figures, "force_ratio"), 1, 0.02);
+  }
+}
+
+TEST(Hil, KnowsLinksThatTheFileNames) {
+  const auto name_links = [](scene::ArmFile& file, double more) {
+    auto& links = file.simulated.links;
+    links.inertia = more * Eigen::Vector3d(4e-4, 5e-4, 3e-4);
+    links.yaw_b = more * 5e-4, links.yaw_c = more * 3e-4;
+  };
+  const std::atomic<bool> never{false};
+  for (const double more : {1.0, 1.5}) {
+    scene::ArmFile file = scene::load_arm("vintage_phantom").value(), arm = file;
+    name_links(file, 1);
+    name_links(arm, more);
+    const HilRig rig{.file = file,
+                     .open = [&](TipHold hold) { return open_simulated(arm, 0, hold); },
+                     .stop = never,
+                     .prompt = [](const std::string&) { return true; },
+                     .told = true};
+    const HilResult result = check_constants(rig, 10);
+    EXPECT_EQ(result.outcome, more == 1 ? HilOutcome::kPassed : HilOutcome::kFailed) << result.text;
+    EXPECT_LT(figure(result, "dry_friction_difference"), 1) << result.text;
+    EXPECT_EQ(figure(result, "mass_difference"), -1) << "a mass in one place";
+    EXPECT_EQ(figure(result, "mass_x_difference") <= 1, more == 1);
   }
 }
 

@@ -58,6 +58,10 @@ ArmConstants by_declared_torque(const PerMass& bare, const Eigen::Vector3d& down
 
 }  // namespace
 
+void widen(Estimate& estimate, double method) {
+  estimate.plus_minus = math::hypot(estimate.plus_minus, kNormal95 * method);
+}
+
 driver::Result<ArmConstants> arm_constants(const PerMass& bare, const Eigen::Vector3d& down_B,
                                            const std::optional<PerMass>& loaded,
                                            double added_mass) {

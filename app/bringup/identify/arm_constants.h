@@ -26,6 +26,14 @@ struct CableConstants {
   }
 };
 
+/// Links of a serial arm as they are written into an arm file (device_sim::LinkSettings), kg m^2
+/// and kg m, with their intervals.
+struct LinkConstants {
+  std::array<Estimate, 3> inertia;  ///< About A, B and C.
+  Estimate yaw_b, yaw_c, coupling;
+  Estimate moment_b, moment_c;
+};
+
 /// Constants of an arm as they are written into its file, with their intervals.
 struct ArmConstants {
   Estimate mass;                 ///< At the tip, kg.
@@ -40,8 +48,15 @@ struct ArmConstants {
   /// Of motors and cables, where these were seen to stretch. Mass, friction and weight are those of
   /// the links then.
   std::optional<std::array<CableConstants, 3>> cables;
+  /// Whether motion at several places was looked at for links, and those that were seen. Mass,
+  /// friction and weight are those of the tip beside them then.
+  bool links_sought = false;
+  std::optional<LinkConstants> links;
   double misfit = 0;  ///< With a known mass: chi^2 per degree of freedom of both motions together.
 };
+
+/// Widens an interval by what a method costs beyond its statistics, one standard deviation of it.
+void widen(Estimate& estimate, double method);
 
 /// Returns the constants that the motion of a bare tip means, or those of two motions together, the
 /// second with a known mass on the tip: it moves as much slower as its mass is more, whatever the

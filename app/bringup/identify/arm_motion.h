@@ -23,11 +23,14 @@ struct MotionSample {
 
 /// A stretch of an arm's motion under known torques, tick by tick.
 struct ArmMotion {
-  double dt = 0.001;                  ///< s between ticks
-  double added_mass = 0;              ///< That the user fixed to the tip, kg.
-  Eigen::Vector3d down_B{0, 0, -1};   ///< Where the world's down is in the base.
-  Eigen::Vector3d share{1, 1, 1};     ///< Of the torque that was asked for, joint by joint.
-  Eigen::Vector3d step{0, 0, 0};      ///< Of the encoders, rad at the joints.
+  double dt = 0.001;                 ///< s between ticks
+  double added_mass = 0;             ///< That the user fixed to the tip, kg.
+  Eigen::Vector3d down_B{0, 0, -1};  ///< Where the world's down is in the base.
+  Eigen::Vector3d share{1, 1, 1};    ///< Of the torque that was asked for, joint by joint.
+  Eigen::Vector3d step{0, 0, 0};     ///< Of the encoders, rad at the joints.
+  /// Constants of links that are known (LinkEquations) over the mass at the tip, m^2 and m; zero:
+  /// none are. What they take counts as acceleration of the tip.
+  Eigen::Matrix<double, 6, 1> links = Eigen::Matrix<double, 6, 1>::Zero();
   std::vector<MotionSample> samples;  ///< One for each tick.
 };
 

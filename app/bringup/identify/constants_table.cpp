@@ -4,6 +4,7 @@
 
 #include "math/elementary.h"
 
+#include "bringup/identify/links/place_masses.h"
 #include "bringup/identify/not_identified.h"
 
 namespace thimble::app {
@@ -77,6 +78,25 @@ void add_cables(const ArmConstants& found, const scene::ArmFile& file, Rows& row
   }
 }
 
+void add_links(const LinkConstants& found, const scene::ArmFile& file, Rows& rows) {
+  const device_sim::LinkSettings& links = file.simulated.links;
+  const auto add = [&](const char* name, const Estimate& is, const char* unit, double named) {
+    rows.add(name, is, 1e3, unit, links.named() ? std::optional(named) : std::nullopt);
+  };
+  add("inertia of links, A", found.inertia[0], "g m^2", links.inertia[0]);
+  add("inertia of links, B", found.inertia[1], "g m^2", links.inertia[1]);
+  add("inertia of links, C", found.inertia[2], "g m^2", links.inertia[2]);
+  add("about the yaw, sin^2 B", found.yaw_b, "g m^2", links.yaw_b);
+  add("about the yaw, sin^2 C", found.yaw_c, "g m^2", links.yaw_c);
+  // What is zero because it was taken to be is no finding.
+  if (found.coupling.value != 0)
+    add("coupling of B and C", found.coupling, "g m^2", links.coupling);
+  add("first moment along B", found.moment_b, "g m", links.moment_b);
+  if (found.moment_c.value != 0) {
+    add("first moment along C", found.moment_c, "g m", links.moment_c);
+  }
+}
+
 }  // namespace
 
 std::vector<ConstantRow> constant_rows(const Identified& identified, const scene::ArmFile& file) {
@@ -102,6 +122,7 @@ std::vector<ConstantRow> constant_rows(const Identified& identified, const scene
   rows.add("delay, force to motion", found.delay, 1e3, "ms",
            names_delay ? named(delay) : std::nullopt);
   if (found.cables) add_cables(found, file, rows);
+  if (found.links) add_links(*found.links, file, rows);
   for (std::size_t i = 0; i < 3; ++i) {
     const Saturation& one = identified.saturation[i];
     if (one.seen) {
@@ -137,6 +158,7 @@ std::string constants_table(const Identified& identified, const scene::ArmFile& 
   }
   text += fit_text(identified.bare) + "\n";
   if (identified.constants.absolute) text += "Mass and forces were measured with the known mass.\n";
+  if (identified.constants.links) text += place_table(*identified.over.fit, file);
   text += "Not identified:\n";
   for (const std::string& sentence : not_identified(identified)) text += "  " + sentence + "\n";
   return text;

@@ -7,7 +7,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bringup/identify/cables/behind_cables.h"
 #include "bringup/identify/line_forces.h"
+#include "bringup/identify/links/link_constants.h"
+#include "bringup/identify/links/link_equations.h"
 #include "bringup/identify/record_motion.h"
 #include "bringup/identify/rubbing_joints.h"
 #include "math/elementary.h"
@@ -22,44 +25,11 @@ constexpr double kMethodCoulomb = 0.0012;  // of Coulomb friction
 constexpr double kMethodViscous = 0.003;   // N s/m for each N of Coulomb friction
 constexpr double kMethodGain = 0.0002;     // of a gain
 constexpr double kMethodDelay = 2e-6;      // s
-// What a motion behind cables costs beyond that [chosen likewise, with soft arms 1 to 20, 101 to
-// 120 and 6000 to 6019 of identify_cables_test].
-constexpr double kCableMass = 0.01;       // of mass; of the link's inertia for a motor's
-constexpr double kCableFriction = 0.007;  // N of friction and weight for each N of Coulomb friction
-constexpr double kCableViscous = 0.06;    // N s/m for each N of Coulomb friction
-constexpr double kCableGain = 0.0065;     // of a gain
-constexpr double kCableDelay = 2e-5;      // s
-constexpr double kCableDamping = 0.05;    // of a cable's damping, with which dry friction mixes
-constexpr double kCableLines = 2;         // times what the lines' noise says
-// A right arm leaves 1 to 4 times what its encoders' steps do, or below 1 % of its acceleration
-// where it is light; one that is another leaves more of both.
-constexpr double kResidualMost = 4;
-constexpr double kUnexplainedMost = 0.02;
-// Behind cables what the links did is known through them alone: right soft arms leave up to 4 %, 8
-// times the encoders' steps [measured: soft arms 6000 to 6012].
-constexpr double kCableResidualMost = 8;
-constexpr double kCableUnexplainedMost = 0.05;
-// Springs below this are not told from an axis that sticks now and then.
-constexpr double kSpringLeast = 10;  // N/m
-// Of the pieces of motion, how many may be left out because an axis stood.
-constexpr double kLeftOutMost = 0.75;
-// Lines are fitted to 1 to 1.5; bent geometry and friction leave the rest.
-constexpr double kLinesMisfitMost = 10;
-constexpr double kForceLeast = 0.2;   // N [chosen: twice the dry friction of the arms that we know]
-constexpr double kCarriedMost = 0.6;  // of the largest force, to carry a known mass
-constexpr double kKnownMassMost = 0.06;  // kg [chosen: no grip should be heavier than its arm]
-// Half-width of an interval over the value, of a cable, and of a motor's inertia: of one that is
-// small beside its link little is known, and little hangs on it.
-constexpr double kCableUnknownMost = 0.6;
-constexpr double kMotorUnknownMost = 1;
-// Likewise of mass and gains; what is known worse is not written.
+constexpr double kPlaceLead = 0.5;         // s, that it moves about a place before it is recorded
+// Half-width of an interval over the value, of mass and gains; what is known worse is not written.
 constexpr double kUnknownMost = 0.03;
 // By how much the Bayesian information must prefer cables before they are blamed.
 constexpr double kCablesBlamed = 20;
-
-void widen(Estimate& estimate, double method) {
-  estimate.plus_minus = math::hypot(estimate.plus_minus, kNormal95 * method);
-}
 
 void widen(ArmConstants& constants) {
   widen(constants.mass, kMethodMass * constants.mass.value);
@@ -67,98 +37,6 @@ void widen(ArmConstants& constants) {
   widen(constants.viscous, kMethodViscous * constants.coulomb.value);
   for (Estimate& gain : constants.gain) widen(gain, kMethodGain * gain.value);
   widen(constants.delay, kMethodDelay);
-}
-
-/// Fits the links behind cables that stretch, and with `refine` the cables again by what the slow
-/// part of their motion says. Returns the motion of the links.
-driver::Result<ArmMotion> behind_cables(const ArmMotion& motion, const scene::ArmFile& file,
-                                        CableFit& lines, bool refine, PerMass& fit) {
-  constexpr int kRounds = 2;
-  // The method's errors beside those of the statistics [chosen as those above]: times a deviation,
-  // and of the link's inertia.
-  constexpr double kTrust = 3, kShareError = 0.02;
-  const LineSpectrum spectrum = refine ? line_spectrum(motion) : LineSpectrum{};
-  for (int round = 0;; ++round) {
-    auto links = motion_of_links(motion, lines, file);
-    if (!links) return links.error();
-    const bool last = !refine || round == kRounds;
-    auto seen = fit_motion(*links, false, !last);
-    if (!seen) return seen.error();
-    fit = *seen;
-    fit.delay.value += lines.elastic.theta[TwoMass::kDelay] - kHeldBack * motion.dt;
-    if (last) return links;
-    SlowPart slow;
-    slow.gain = fit.theta.segment<3>(PerMass::kGain);
-    for (int i = 0; i < 3; ++i) {
-      const int g = TwoMass::kGain + i, J = TwoMass::kInertia + i;
-      slow.ratio[i] = std::max(0.0, lines.elastic.theta[J] / lines.elastic.theta[g] +
-                                        fit.theta[PerMass::kInertia + i] / slow.gain[i]);
-      slow.gain_error[i] = kTrust * std::sqrt(fit.covariance(i, i));
-      const double error =
-          kTrust * std::sqrt(fit.covariance(PerMass::kInertia + i, PerMass::kInertia + i));
-      slow.ratio_error[i] = math::hypot(error, kShareError * spectrum.JTJ(i, i)) / slow.gain[i];
-    }
-    slow.delay = fit.delay.value;
-    slow.delay_error = kTrust * std::max(2e-6, fit.delay.plus_minus / kNormal95);
-    refine_cables(lines, spectrum, slow, motion.dt);
-  }
-}
-
-/// Adds what the lines say of motors and cables, and what their errors make of the rest.
-void put_cables(Identified& found) {
-  ArmConstants& constants = found.constants;
-  widen(constants.mass, kCableMass * constants.mass.value);
-  widen(constants.coulomb, kCableFriction * constants.coulomb.value);
-  widen(constants.viscous, kCableViscous * constants.coulomb.value);
-  widen(constants.weight, kCableFriction * constants.coulomb.value);
-  widen(constants.delay, kCableDelay);
-  for (Estimate& gain : constants.gain) widen(gain, kCableGain * gain.value);
-  constants.cables = cable_constants(found.lines, constants.gain);
-  for (std::size_t i = 0; i < 3; ++i) {
-    CableConstants& cable = (*constants.cables)[i];
-    // What a motor's inertia is taken for too much, the link's is taken for too little.
-    const auto k = static_cast<Eigen::Index>(i);
-    widen(cable.inertia, kCableMass * constants.mass.value * found.lines.JTJ(k, k));
-    for (Estimate* estimate :
-         {&cable.stiffness, &cable.damping, &cable.antiresonance, &cable.resonance}) {
-      estimate->plus_minus *= kCableLines;
-    }
-    widen(cable.damping, kCableDamping * cable.damping.value);
-  }
-  if (found.lines.elastic.misfit > kLinesMisfitMost) {
-    found.against.push_back(fmt::format(
-        "Above {:g} Hz the arm moves neither like a rigid one nor like one with a mass behind each "
-        "cable (chi^2 {:.0f} per degree of freedom): play, a second resonance or a hand do that.",
-        LineForces::kLowest, found.lines.elastic.misfit));
-  }
-  for (std::size_t i = 0; i < 3; ++i) {
-    const CableConstants& cable = (*constants.cables)[i];
-    if (cable.inertia.plus_minus < kMotorUnknownMost * cable.inertia.value &&
-        cable.stiffness.plus_minus < kCableUnknownMost * cable.stiffness.value) {
-      continue;
-    }
-    found.against.push_back(fmt::format(
-        "The cable of joint {} stretches (its link oscillates on it at {:.0f} Hz), but motor and "
-        "cable are not known well enough to be written: {:.2g} +- {:.2g} kg m^2, {:.3g} +- {:.2g} "
-        "N m/rad. Take more time (--seconds).",
-        i + 1, cable.antiresonance.value, cable.inertia.value, cable.inertia.plus_minus,
-        cable.stiffness.value, cable.stiffness.plus_minus));
-  }
-}
-
-/// Returns the fit of a motion behind cables with the method's errors in its covariance: what two
-/// motions of one arm differ by.
-PerMass with_method(const PerMass& fit) {
-  PerMass wider = fit;
-  const auto add = [&wider](int k, double error) { wider.covariance(k, k) += error * error; };
-  const double coulomb = fit.theta[PerMass::kCoulomb];
-  for (int i = 0; i < 3; ++i) {
-    add(PerMass::kGain + i, kCableGain * fit.theta[PerMass::kGain + i]);
-    add(PerMass::kWeight + i, kCableFriction * coulomb);
-  }
-  add(PerMass::kViscous, kCableViscous * coulomb);
-  add(PerMass::kCoulomb, kCableFriction * coulomb);
-  return wider;
 }
 
 /// Says which constants are not known well enough to be written.
@@ -174,6 +52,28 @@ void look_at_intervals(Identified& found) {
       100 * most));
 }
 
+/// Puts in what motion over the workspace says of the tip beside its links: what `bare` says too,
+/// and with which links.
+void put_links(Identified& found, const Eigen::Vector3d& down_B) {
+  const LinkFit& fit = *found.over.fit;
+  const auto is = tip_and_links(fit, down_B);
+  if (!is) {
+    found.against.push_back(is.error().message);
+    return;
+  }
+  ArmConstants& constants = found.constants;
+  constants.mass = is->mass;
+  constants.weight = is->weight;
+  constants.links = is->links;
+  constants.viscous = fit.constant(LinkFit::kViscous);
+  constants.coulomb = fit.constant(LinkFit::kCoulomb);
+  for (std::size_t i = 0; i < 3; ++i) {
+    constants.gain[i] = fit.constant(LinkFit::kGain + static_cast<int>(i));
+  }
+  constants.delay = fit.delay;
+  constants.absolute = fit.absolute;
+}
+
 /// Measures what does not hang on the motion: how reports come, and the firmware's watchdog.
 void look_at_link(BenchArm& bench, const scene::ArmFile& file, const ArmConstants& bare,
                   double force_most, const std::atomic<bool>& stop, Identified& found) {
@@ -187,13 +87,16 @@ void look_at_link(BenchArm& bench, const scene::ArmFile& file, const ArmConstant
   // Of a force along y, what these motors make of it.
   const Eigen::Matrix3d J_T = found.moved.samples.back().G.inverse().transpose();
   const Eigen::Vector3d y_B = file.R_WB.transpose() * Eigen::Vector3d::UnitY();
+  const Eigen::Matrix3d masses =
+      Eigen::Matrix3d::Identity() + links_at_tip(found.moved.links, found.moved.samples.back());
+  const double yields = y_B.dot(masses.inverse() * y_B);
   Eigen::Vector3d tau = J_T * y_B;
   for (std::size_t i = 0; i < 3; ++i) tau[static_cast<Eigen::Index>(i)] *= bare.gain[i].value;
   const double share = y_B.dot(J_T.inverse() * tau);
   if (!(share > 0.2)) return;
   found.watchdog = watchdog_time(bench,
                                  {.named = 1e-9 * static_cast<double>(file.limits.watchdog_ns),
-                                  .mass = bare.mass.value / share,
+                                  .mass = bare.mass.value / (yields * share),
                                   .coulomb = bare.coulomb.value / share,
                                   .delay = bare.delay.value,
                                   .workspace = file.workspace,
@@ -201,20 +104,14 @@ void look_at_link(BenchArm& bench, const scene::ArmFile& file, const ArmConstant
                                  file.limits.soft_start, stop);
 }
 
-/// Returns whether a spring to a place holds the tip, found in a fit with one.
-bool is_held(const PerMass& held, double mass) {
-  const double spring = held.theta[PerMass::kStiffness] * mass;
-  const double error = std::sqrt(held.covariance(PerMass::kStiffness, PerMass::kStiffness)) * mass;
-  return std::abs(spring) > kSpringLeast && std::abs(spring) > 5 * error;
-}
-
 /// Looks in what the fit leaves for what it does not know of. A hand, which `held` tells of, looks
 /// like joints that stick, and those are not looked for then.
 void look_closer(Identified& found, bool held) {
   const FittedMotion motion = found.fitted();
-  found.friction = friction_directions(motion, found.constants.mass);
+  const Estimate mass = found.moved_mass();
+  found.friction = friction_directions(motion, mass);
   if (!found.against.empty() && !held) {
-    const RubbingJoints rubbing = rubbing_joints(motion, found.constants.mass.value);
+    const RubbingJoints rubbing = rubbing_joints(motion, mass.value);
     const int most = rubbing.most();
     const Estimate& coulomb = rubbing.coulomb[static_cast<std::size_t>(most)];
     if (rubbing.seen) {
@@ -240,58 +137,6 @@ void look_closer(Identified& found, bool held) {
 }
 
 }  // namespace
-
-std::vector<std::string> speaks_against(const PerMass& fit, const PerMass& held, double mass,
-                                        bool stretches) {
-  std::vector<std::string> against;
-  if (is_held(held, mass)) {
-    against.push_back(fmt::format(
-        "Something holds the tip like a spring of {:.0f} N/m: let go of the grip, and keep cables "
-        "off the arm.",
-        held.theta[PerMass::kStiffness] * mass));
-  }
-  const double times = fit.residual / fit.noise;
-  const double unexplained = std::sqrt(std::max(0.0, 1 - fit.explained));
-  if (times > (stretches ? kCableResidualMost : kResidualMost) &&
-      unexplained > (stretches ? kCableUnexplainedMost : kUnexplainedMost)) {
-    against.push_back(fmt::format(
-        "The motion is not that of a rigid arm with dry and viscous friction: the fit leaves "
-        "{:.1f} % of the acceleration, {:.1f} times what the encoders' steps do. Cables that "
-        "stretch, play, a joint that sticks, a hand, or missed edges do that.",
-        100 * unexplained, times));
-  }
-  const double all = static_cast<double>(fit.windows + fit.left_out);
-  if (static_cast<double>(fit.left_out) > kLeftOutMost * all) {
-    against.push_back(fmt::format(
-        "The tip stood still for {:.0f} % of the motion: its friction is too high for the force "
-        "that is allowed.",
-        100 * static_cast<double>(fit.left_out) / all));
-  }
-  return against;
-}
-
-driver::Result<void> check_forces(const scene::ArmFile& file, const IdentifyOptions& options) {
-  if (!(options.force_most >= kForceLeast)) {
-    return driver::Error{fmt::format(
-        "The largest force must be {:g} N at least: less moves no arm that we know.", kForceLeast)};
-  }
-  if (!(options.force_most <= file.limits.force_max)) {
-    return driver::Error{
-        fmt::format("A largest force of {:g} N is more than the {:g} N that the arm file allows "
-                    "(gate.force_max).",
-                    options.force_most, file.limits.force_max)};
-  }
-  // Beside what carries the mass something must be left that moves it.
-  const double carried = kCarriedMost * options.force_most / kStandardGravity;
-  const double most = std::min(kKnownMassMost, carried);
-  if (!(options.known_mass >= 0 && options.known_mass <= most)) {
-    return driver::Error{
-        fmt::format("The known mass must be {:.2g} kg at most: with no more than {:g} N its weight "
-                    "has to be carried, and shaken.",
-                    most, options.force_most)};
-  }
-  return {};
-}
 
 driver::Result<Identified> identify(const OpenBench& open, const scene::ArmFile& file,
                                     const IdentifyOptions& options, const std::atomic<bool>& stop) {
@@ -337,9 +182,31 @@ driver::Result<Identified> identify(const OpenBench& open, const scene::ArmFile&
       if (!behind) return behind.error();
       links = std::move(behind).value();
     }
-    const auto held = fit_motion(*links, true);
+    auto held = fit_motion(*links, true);
     if (!held) return held.error();
     down_B = motion->down_B;
+    if (!loaded) {
+      const auto mass = arm_constants(*fit, down_B, {}, 0);
+      auto over = look_over_places(**bench, file,
+                                   {.seconds = options.place_seconds,
+                                    .lead = kPlaceLead,
+                                    .force_most = options.force_most,
+                                    .seed = options.seed + 2,
+                                    .share = share},
+                                   options.places, *links, found.lines.stretches,
+                                   mass.ok() && is_held(*held, mass->mass.value), stop);
+      if (!over) return over.error();
+      found.over = std::move(over).value();
+    } else if (found.over.links()) {
+      if (auto added = add_loaded(found.over, *links, file); !added) return added.error();
+    }
+    if (found.over.links()) {
+      links = freed_of_links(*links, *found.over.fit);
+      fit = fit_motion(*links, false);
+      if (!fit) return fit.error();
+      held = fit_motion(*links, true);
+      if (!held) return held.error();
+    }
     if (loaded) {
       found.loaded = *fit;
     } else {
@@ -382,10 +249,13 @@ driver::Result<Identified> identify(const OpenBench& open, const scene::ArmFile&
         "freedom): weigh the mass, and fix it so that it does not swing.",
         options.known_mass, found.constants.misfit));
   }
+  found.constants.links_sought = found.over.fit.has_value();
+  if (found.over.links()) put_links(found, down_B);
   widen(found.constants);
   if (found.lines.stretches) put_cables(found);
   look_at_intervals(found);
   look_closer(found, held_tip);
+  found.over.motions.clear();
   return found;
 }
 

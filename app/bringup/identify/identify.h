@@ -7,9 +7,10 @@
 
 #include "bringup/bench_arm.h"
 #include "bringup/identify/arm_constants.h"
-#include "bringup/identify/cables.h"
+#include "bringup/identify/cables/cables.h"
 #include "bringup/identify/encoders.h"
 #include "bringup/identify/friction_directions.h"
+#include "bringup/identify/links/look_over_places.h"
 #include "bringup/identify/saturation.h"
 #include "bringup/identify/weak_form/fitted_motion.h"
 #include "bringup/report_timing.h"
@@ -33,7 +34,11 @@ struct IdentifyOptions {
   /// Whether the reports' timing and the firmware's watchdog are measured after the motion; the
   /// watchdog by pushes of a little more than the friction that was found.
   bool link = false;
-  std::uint64_t seed = 1;  ///< Of the excitation's phases.
+  /// To how many places of its workspace an arm is led after the motion with its bare tip, so that
+  /// the inertia of its links shows: three at least, nine at most; 0: none. They add to the time.
+  int places = 0;
+  double place_seconds = 5;  ///< Of the motion about each of them.
+  std::uint64_t seed = 1;    ///< Of the excitation's phases.
   /// Handed each tick of the motion with the bare tip, for a recording; may be empty.
   std::function<void(const driver::TickRecord&)> watch{};
 };
@@ -48,6 +53,9 @@ struct Identified {
   /// The motion without the known mass, of the links where cables stretch: what `bare` fits.
   ArmMotion moved;
   double moved_ahead = 0;  ///< Of the delay, what that motion was freed from already, s.
+  /// What motion over the workspace says of links. Where it saw some, `moved` knows them, so that
+  /// `bare` fits the tip beside them, and `constants` are those of this fit.
+  OverPlaces over;
   FrictionDirections friction;
   Encoders encoders;  ///< At rest only if the reports' timing was asked for.
   /// Joint by joint; nothing is searched for behind cables that stretch.
@@ -58,6 +66,11 @@ struct Identified {
   /// written then.
   std::vector<std::string> against;
 
+  /// Returns the mass that the constants of `bare` are per.
+  Estimate moved_mass() const {
+    return constants.links ? over.fit->constant(LinkFit::kMass) : constants.mass;
+  }
+
   /// Returns the motion with what its fit leaves. It must not outlive this.
   FittedMotion fitted() const {
     PerMass fit = bare;
@@ -65,6 +78,9 @@ struct Identified {
     return {moved, fit};
   }
 };
+
+/// Returns whether a spring to a place holds the tip, found in a fit with one.
+bool is_held(const PerMass& held, double mass);
 
 /// Returns why fits do not mean what they say, a sentence each: a hand or a spring at the tip, a
 /// motion that mass, friction and weight do not explain, frames that are missing. `held` is the

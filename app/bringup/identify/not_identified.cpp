@@ -166,6 +166,25 @@ void of_link(const Identified& identified, Sentences& all) {
   }
 }
 
+void of_workspace(const Identified& identified, Sentences& all) {
+  const OverPlaces& over = identified.over;
+  if (!over.fit) {
+    all.push_back("Mass over the workspace: " + over.not_done +
+                  " The tip moved in one place, within 4 cm; links whose share changes with the "
+                  "pose look like one mass there.");
+  } else if (!over.fit->links) {
+    all.push_back(fmt::format(
+        "Links: none seen; over {} places of the workspace the mass along an axis is the same "
+        "within {:.2g} %.",
+        over.fit->places.size(), 100 * over.fit->change_most));
+  } else {
+    all.emplace_back(
+        "Coupling of the links, and their moment along C: motion does not tell them from mass and "
+        "weight at the tip. Coupling is the least that links can have, moment along C what weighs "
+        "less than nothing, and the tip has the rest; every such choice moves alike.");
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> not_identified(const Identified& identified) {
@@ -177,9 +196,7 @@ std::vector<std::string> not_identified(const Identified& identified) {
   of_encoders(identified.encoders, all);
   of_link(identified, all);
   all.emplace_back("Play and cogging: not looked for.");
-  all.emplace_back(
-      "Mass over the workspace: the tip moved in one place, within 4 cm; links whose share changes "
-      "with the pose look like one mass there.");
+  of_workspace(identified, all);
   return all;
 }
 

@@ -4,10 +4,12 @@
 
 #include <Eigen/LU>
 #include <cmath>
+#include <utility>
 
 #include "bringup/identify/arm_constants.h"
 #include "bringup/identify/excitation.h"
 #include "bringup/identify/motor_probe.h"
+#include "math/elementary.h"
 
 namespace thimble::app {
 namespace {
@@ -17,6 +19,9 @@ constexpr double kProbeShare = 0.4;  // of the most that is allowed, while motor
 // How fast a force that carries a known mass is found, N/s for each m that it hangs too low: the
 // spring of HoldPlace over 0.4 s, long against its oscillation.
 constexpr double kCarry = 150;
+
+constexpr double kLeadSpeed = 0.06;  // m/s, between places [chosen: slower than a hand's reach]
+constexpr double kSettled = 0.3;     // s, at a new place
 
 /// Fills in what a tick showed: the tip, and how it hangs together with the joints.
 MotionSample sample_of(const scene::ArmFile& file, const driver::DeviceState& state) {
@@ -74,6 +79,25 @@ class Recorder {
     if (!share && share.error().message.empty()) return why();
     if (!share) return share.error();
     share_ = *share;
+    return {};
+  }
+
+  /// Leads the tip to a place (m), about which it moves from then on.
+  driver::Result<void> lead_to(const Eigen::Vector3d& p_W) {
+    const Eigen::Vector3d from = p_WM_, path = p_W - p_WM_;
+    const double lasts = path.norm() / kLeadSpeed, begin = bench_.now();
+    HoldPlace hold(from, carried_W_);
+    const auto law = [&](const driver::DeviceState& state) -> Eigen::Vector3d {
+      const double t = bench_.now() - begin;
+      p_WM_ = t < lasts ? Eigen::Vector3d(from + t / lasts * path) : p_W;
+      hold.go_to(p_WM_);
+      left_ = left_ || !within(state.p_WT);
+      if (left_) return {0, 0, 0};
+      return shared(hold.force(kTick, state.p_WT, state.v_WT), sample_of(file_, state).G);
+    };
+    const bool whole = bench_.run(lasts + kSettled, law, stop_);
+    if (left_) return went_away();
+    if (!whole) return why();
     return {};
   }
 
@@ -168,6 +192,71 @@ driver::Result<ArmMotion> record_motion(BenchArm& bench, const scene::ArmFile& f
   auto motion = probed ? recorder.record(order) : driver::Result<ArmMotion>(probed.error());
   bench.device().deactivate();
   return motion;
+}
+
+bool moves_easily(const scene::ArmFile& file, const Eigen::Vector3d& p_W) {
+  // Of the sine of B + C, which is 1 where the arm is isotropic [chosen: masses along an axis are
+  // no more than some three times those there].
+  constexpr double kSineLeast = 0.5;
+  const auto* const arm = std::get_if<driver::SerialArm>(&file.model.geometry);
+  const Eigen::Vector3d p_BT = file.R_WB.transpose() * (p_W - file.p_WB);
+  const auto q = arm != nullptr ? arm->inverse(p_BT) : std::nullopt;
+  return q && math::sin((*q)[1] + (*q)[2]) > kSineLeast && p_BT.head<2>().norm() > Excitation::kFar;
+}
+
+std::vector<Eigen::Vector3d> places_in(const scene::ArmFile& file, int count) {
+  constexpr double kRoom = 0.02;                // m about a place, in which the arm moves easily
+  constexpr double kLeast = 0.3, kStep = 0.05;  // of the way to a corner
+  const auto has_room = [&](const Eigen::Vector3d& p_W) {
+    for (const double x : {-kRoom, kRoom}) {
+      for (const double z : {-kRoom, kRoom}) {
+        if (!moves_easily(file, p_W + Eigen::Vector3d(x, 0, z))) return false;
+      }
+    }
+    return true;
+  };
+  const Eigen::Vector3d middle = file.workspace.middle();
+  const Eigen::Vector3d half =
+      ((file.workspace.max_W - file.workspace.min_W) / 2).array() - Excitation::kFar;
+  std::vector<Eigen::Vector3d> places{middle};
+  for (int k = 0; k < 8 && static_cast<int>(places.size()) < count; ++k) {
+    // Opposite corners follow each other.
+    const int corner = k % 2 == 0 ? k / 2 : 7 - k / 2;
+    const Eigen::Vector3d side((corner & 1) != 0 ? 1 : -1, (corner & 2) != 0 ? 1 : -1,
+                               (corner & 4) != 0 ? 1 : -1);
+    double share = 1;
+    const auto place = [&] {
+      return Eigen::Vector3d(middle + share * half.cwiseMax(0).cwiseProduct(side));
+    };
+    while (share > kLeast && !has_room(place())) share -= kStep;
+    if (has_room(place())) places.push_back(place());
+  }
+  return places;
+}
+
+driver::Result<std::vector<ArmMotion>> record_places(BenchArm& bench, const scene::ArmFile& file,
+                                                     const MotionOrder& order,
+                                                     const std::vector<Eigen::Vector3d>& places_W,
+                                                     const std::atomic<bool>& stop) {
+  Recorder recorder(bench, file, order, stop);
+  std::vector<ArmMotion> motions;
+  driver::Result<void> done = recorder.begin(order.added_mass == 0);
+  MotionOrder here = order;
+  for (const Eigen::Vector3d& p_W : places_W) {
+    if (done) done = recorder.lead_to(p_W);
+    if (!done) break;
+    auto motion = recorder.record(here);
+    if (!motion) {
+      done = motion.error();
+      break;
+    }
+    motions.push_back(std::move(motion).value());
+    ++here.seed;
+  }
+  if (done && !places_W.empty()) done = recorder.lead_to(places_W.front());
+  bench.device().deactivate();
+  if (!done) return done.error();
+  return motions;
 }
 
 }  // namespace thimble::app

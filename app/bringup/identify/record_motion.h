@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <vector>
 
 #include "bringup/bench_arm.h"
 #include "bringup/identify/arm_motion.h"
@@ -27,5 +28,23 @@ struct MotionOrder {
 /// meanwhile. Real-time: never from the servo thread.
 driver::Result<ArmMotion> record_motion(BenchArm& bench, const scene::ArmFile& file,
                                         const MotionOrder& order, const std::atomic<bool>& stop);
+
+/// Returns up to nine places (world, m) of a serial arm to move about: the middle of its workspace,
+/// then towards the corners of it, opposite ones by turns, as far as excitation and reach leave
+/// room. Real-time: never from the servo thread.
+std::vector<Eigen::Vector3d> places_in(const scene::ArmFile& file, int count);
+
+/// Returns whether a serial arm at a place (world, m) is far from stretched, folded and its yaw
+/// axis, where it moves easily in all directions. Real-time: never from the servo thread.
+bool moves_easily(const scene::ArmFile& file, const Eigen::Vector3d& p_W);
+
+/// Records a motion about each of several places (world, m), to which the arm's own motors lead the
+/// tip straight and slowly, with no more force, and leads it back to the first. Fails as
+/// `record_motion` does; motors are not probed, `order.share` has what that found. Real-time: never
+/// from the servo thread.
+driver::Result<std::vector<ArmMotion>> record_places(BenchArm& bench, const scene::ArmFile& file,
+                                                     const MotionOrder& order,
+                                                     const std::vector<Eigen::Vector3d>& places_W,
+                                                     const std::atomic<bool>& stop);
 
 }  // namespace thimble::app

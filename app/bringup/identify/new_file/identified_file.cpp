@@ -13,6 +13,7 @@
 
 #include "bringup/identify/new_file/file_lines.h"
 #include "bringup/identify/new_file/identified_further.h"
+#include "bringup/identify/new_file/links_section.h"
 #include "read_scene.h"
 #include "yaml/yaml_reader.h"
 
@@ -163,12 +164,11 @@ driver::Result<std::string> identified_text(const std::string& text, const ArmCo
   const auto before = scene::read_arm(*was);
   if (!before) return before.error();
   if (!before->can_simulate) return bad_form("section simulation");
-  if (before->simulated.links.named()) {
+  if (before->simulated.links.named() && !found.links_sought) {
     return driver::Error{
-        "The arm file names links (simulation.links), whose inertia would be in the identified "
-        "mass "
-        "of the tip as well: motion in one place tells no more than a mass. Take that section out "
-        "of a copy, and name it by --arm."};
+        "The arm file names links (simulation.links), and the arm was not moved over its workspace "
+        "to measure them: their inertia would be in the mass of the tip as well. Identify with "
+        "--places, or take that section out of a copy and name it by --arm."};
   }
   FileLines lines(text);
   const YAML::Node tip = root["simulation"]["tip"];
@@ -205,6 +205,9 @@ driver::Result<std::string> identified_text(const std::string& text, const ArmCo
   if (found.cables && !put_train(root["simulation"], *found.cables, mark, lines)) {
     return bad_form("section drive_train");
   }
+  if (auto put_section = put_links(root["simulation"], found, mark, lines); !put_section) {
+    return put_section.error();
+  }
   std::array<double, 3> torque{};
   if (auto put_torque = put_torques(root, *before, found, mark, lines, torque); !put_torque) {
     return put_torque.error();
@@ -218,6 +221,7 @@ driver::Result<std::string> identified_text(const std::string& text, const ArmCo
                near(read->simulated.plant.viscous, viscous) &&
                near(read->simulated.plant.coulomb, coulomb) &&
                near(read->simulated.weight_B.norm(), has_weight || weighs ? weight : 0);
+  right = right && reads_links(read->simulated.links, found);
   const auto& train = read->simulated.drive_train;
   for (std::size_t i = 0; i < 3; ++i) {
     const auto k = static_cast<Eigen::Index>(i);

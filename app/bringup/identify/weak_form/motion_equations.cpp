@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bringup/identify/links/link_equations.h"
+
 namespace thimble::app {
 namespace {
 
@@ -17,6 +19,9 @@ constexpr int kSlowMost = 3;  // ticks that an axis may be so slow, which turns 
 MotionEquations::MotionEquations(const ArmMotion& motion, bool with_inertia)
     : motion_(motion), with_inertia_(with_inertia), bump_(motion.dt) {
   for (const double value : bump_.value) area_ += value;
+  if (!motion.links.isZero(0) && !motion.samples.empty()) {
+    masses_ += links_at_tip(motion.links, motion.samples[motion.samples.size() / 2]);
+  }
   find_velocities();
   gather();
   find_signs(0);
@@ -37,12 +42,16 @@ void MotionEquations::find_velocities() {
 }
 
 void MotionEquations::find_signs(double coulomb) {
+  // Where one axis turns, its own friction alone changes.
+  find_signs(Eigen::Vector3d(std::max(0.0, coulomb) * masses_.inverse().diagonal()));
+}
+
+void MotionEquations::find_signs(const Eigen::Vector3d& slowed) {
   sign_.assign(velocity_.size(), Eigen::Vector3d::Zero());
-  const double lift = std::max(0.0, coulomb) * mean_distance_;
   for (std::size_t k = 1; k + 1 < velocity_.size(); ++k) {
     for (int axis = 0; axis < 3; ++axis) {
       const double rise = velocity_[k + 1][axis] - velocity_[k - 1][axis];
-      const double v = velocity_[k][axis] + std::copysign(lift, rise);
+      const double v = velocity_[k][axis] + std::copysign(slowed[axis] * mean_distance_, rise);
       const double half_tick = 0.25 * std::abs(rise);
       sign_[k][axis] = std::abs(v) < half_tick ? v / half_tick : v > 0 ? 1 : v < 0 ? -1 : 0;
     }
@@ -78,6 +87,9 @@ void MotionEquations::gather() {
       equations_.push_back({.middle = middle, .axis = axis, .left = left / area_});
     }
   }
+  if (motion_.links.isZero(0)) return;
+  const LinkEquations links(motion_);
+  for (Equation& equation : equations_) equation.left += links.row(equation).dot(motion_.links);
 }
 
 void MotionEquations::sum_frictions() {
@@ -169,7 +181,7 @@ double MotionEquations::noise() const {
   double curvature = 0;
   for (const double value : bump_.curvature) curvature += value * value;
   const Eigen::Matrix3d J = at(equations_.front().middle).G.inverse();
-  const double at_tip = (J * motion_.step.asDiagonal()).squaredNorm() / 3;
+  const double at_tip = (masses_ * J * motion_.step.asDiagonal()).squaredNorm() / 3;
   return std::sqrt(curvature * at_tip / 12) / area_;
 }
 

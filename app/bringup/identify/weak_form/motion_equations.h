@@ -26,7 +26,7 @@ class MotionEquations {
   struct Equation {
     int middle = 0;   ///< Tick.
     int axis = 0;     ///< Of the base.
-    double left = 0;  ///< Acceleration, m/s^2.
+    double left = 0;  ///< Acceleration, with what known links take of force per mass, m/s^2.
     double viscous = 0, coulomb = 0, stiffness = 0;
   };
 
@@ -35,8 +35,12 @@ class MotionEquations {
 
   /// Finds the mean sign of the velocity over each tick. Where the velocity turns, dry friction
   /// `coulomb` (per mass, m/s^2) bends it by 2 c |t| / 2, which smoothing lifts by c times the
-  /// bump's mean distance: the axis turns when the smoothed velocity is that far from zero.
+  /// bump's mean distance: the axis turns when the smoothed velocity is that far from zero. Links
+  /// that the motion knows make it bend less.
   void find_signs(double coulomb);
+
+  /// Likewise with what dry friction slows each axis by (m/s^2).
+  void find_signs(const Eigen::Vector3d& slowed);
 
   /// Returns what the constants multiply at a delay (s). Torques stand from tick to tick: within
   /// the tick that they arrive in, the older ones last for the delay's fraction.
@@ -111,6 +115,7 @@ class MotionEquations {
   bool with_inertia_;
   SmoothBump<kHalf> bump_;
   double area_ = 0;
+  Eigen::Matrix3d masses_ = Eigen::Matrix3d::Identity();  // with known links over the tip's own
   std::vector<Eigen::Vector3d> velocity_, sign_;
   double mean_distance_ = 0;  // of a tick from the middle of the smoothing bump, s
   std::vector<Equation> equations_;

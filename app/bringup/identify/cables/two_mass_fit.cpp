@@ -1,10 +1,10 @@
-#include "bringup/identify/two_mass_fit.h"
+#include "bringup/identify/cables/two_mass_fit.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "bringup/identify/two_mass_search.h"
+#include "bringup/identify/cables/two_mass_search.h"
 #include "math/elementary.h"
 
 namespace thimble::app {

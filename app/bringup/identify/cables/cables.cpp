@@ -1,4 +1,4 @@
-#include "bringup/identify/cables.h"
+#include "bringup/identify/cables/cables.h"
 
 #include <Eigen/LU>
 #include <cmath>

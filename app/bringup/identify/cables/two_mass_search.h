@@ -7,7 +7,7 @@
 #include <numbers>
 #include <vector>
 
-#include "bringup/identify/two_mass_fit.h"
+#include "bringup/identify/cables/two_mass_fit.h"
 
 namespace thimble::app {
 

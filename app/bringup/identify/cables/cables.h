@@ -3,7 +3,7 @@
 #include <array>
 
 #include "bringup/identify/arm_constants.h"
-#include "bringup/identify/two_mass_fit.h"
+#include "bringup/identify/cables/two_mass_fit.h"
 #include "thimble/driver/result.h"
 #include "thimble/scene/arm_file.h"
 

@@ -1,0 +1,119 @@
+#include "bringup/identify/cables/behind_cables.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "bringup/identify/line_forces.h"
+#include "math/elementary.h"
+
+namespace thimble::app {
+namespace {
+
+// What a motion behind cables costs beyond its statistics [chosen likewise, with soft arms 1 to 20,
+// 101 to 120 and 6000 to 6019 of identify_cables_test].
+constexpr double kCableMass = 0.01;       // of mass; of the link's inertia for a motor's
+constexpr double kCableFriction = 0.007;  // N of friction and weight for each N of Coulomb friction
+constexpr double kCableViscous = 0.06;    // N s/m for each N of Coulomb friction
+constexpr double kCableGain = 0.0065;     // of a gain
+constexpr double kCableDelay = 2e-5;      // s
+constexpr double kCableDamping = 0.05;    // of a cable's damping, with which dry friction mixes
+constexpr double kCableLines = 2;         // times what the lines' noise says
+// Lines are fitted to 1 to 1.5; bent geometry and friction leave the rest.
+constexpr double kLinesMisfitMost = 10;
+// Half-width of an interval over the value, of a cable, and of a motor's inertia: of one that is
+// small beside its link little is known, and little hangs on it.
+constexpr double kCableUnknownMost = 0.6;
+constexpr double kMotorUnknownMost = 1;
+
+}  // namespace
+
+driver::Result<ArmMotion> behind_cables(const ArmMotion& motion, const scene::ArmFile& file,
+                                        CableFit& lines, bool refine, PerMass& fit) {
+  constexpr int kRounds = 2;
+  // The method's errors beside those of the statistics [chosen as those above]: times a deviation,
+  // and of the link's inertia.
+  constexpr double kTrust = 3, kShareError = 0.02;
+  const LineSpectrum spectrum = refine ? line_spectrum(motion) : LineSpectrum{};
+  for (int round = 0;; ++round) {
+    auto links = motion_of_links(motion, lines, file);
+    if (!links) return links.error();
+    const bool last = !refine || round == kRounds;
+    auto seen = fit_motion(*links, false, !last);
+    if (!seen) return seen.error();
+    fit = *seen;
+    fit.delay.value += lines.elastic.theta[TwoMass::kDelay] - kHeldBack * motion.dt;
+    if (last) return links;
+    SlowPart slow;
+    slow.gain = fit.theta.segment<3>(PerMass::kGain);
+    for (int i = 0; i < 3; ++i) {
+      const int g = TwoMass::kGain + i, J = TwoMass::kInertia + i;
+      slow.ratio[i] = std::max(0.0, lines.elastic.theta[J] / lines.elastic.theta[g] +
+                                        fit.theta[PerMass::kInertia + i] / slow.gain[i]);
+      slow.gain_error[i] = kTrust * std::sqrt(fit.covariance(i, i));
+      const double error =
+          kTrust * std::sqrt(fit.covariance(PerMass::kInertia + i, PerMass::kInertia + i));
+      slow.ratio_error[i] = math::hypot(error, kShareError * spectrum.JTJ(i, i)) / slow.gain[i];
+    }
+    slow.delay = fit.delay.value;
+    slow.delay_error = kTrust * std::max(2e-6, fit.delay.plus_minus / kNormal95);
+    refine_cables(lines, spectrum, slow, motion.dt);
+  }
+}
+
+void put_cables(Identified& found) {
+  ArmConstants& constants = found.constants;
+  widen(constants.mass, kCableMass * constants.mass.value);
+  widen(constants.coulomb, kCableFriction * constants.coulomb.value);
+  widen(constants.viscous, kCableViscous * constants.coulomb.value);
+  widen(constants.weight, kCableFriction * constants.coulomb.value);
+  widen(constants.delay, kCableDelay);
+  for (Estimate& gain : constants.gain) widen(gain, kCableGain * gain.value);
+  constants.cables = cable_constants(found.lines, constants.gain);
+  for (std::size_t i = 0; i < 3; ++i) {
+    CableConstants& cable = (*constants.cables)[i];
+    // What a motor's inertia is taken for too much, the link's is taken for too little.
+    const auto k = static_cast<Eigen::Index>(i);
+    widen(cable.inertia, kCableMass * constants.mass.value * found.lines.JTJ(k, k));
+    for (Estimate* estimate :
+         {&cable.stiffness, &cable.damping, &cable.antiresonance, &cable.resonance}) {
+      estimate->plus_minus *= kCableLines;
+    }
+    widen(cable.damping, kCableDamping * cable.damping.value);
+  }
+  if (found.lines.elastic.misfit > kLinesMisfitMost) {
+    found.against.push_back(fmt::format(
+        "Above {:g} Hz the arm moves neither like a rigid one nor like one with a mass behind each "
+        "cable (chi^2 {:.0f} per degree of freedom): play, a second resonance or a hand do that.",
+        LineForces::kLowest, found.lines.elastic.misfit));
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    const CableConstants& cable = (*constants.cables)[i];
+    if (cable.inertia.plus_minus < kMotorUnknownMost * cable.inertia.value &&
+        cable.stiffness.plus_minus < kCableUnknownMost * cable.stiffness.value) {
+      continue;
+    }
+    found.against.push_back(fmt::format(
+        "The cable of joint {} stretches (its link oscillates on it at {:.0f} Hz), but motor and "
+        "cable are not known well enough to be written: {:.2g} +- {:.2g} kg m^2, {:.3g} +- {:.2g} "
+        "N m/rad. Take more time (--seconds).",
+        i + 1, cable.antiresonance.value, cable.inertia.value, cable.inertia.plus_minus,
+        cable.stiffness.value, cable.stiffness.plus_minus));
+  }
+}
+
+PerMass with_method(const PerMass& fit) {
+  PerMass wider = fit;
+  const auto add = [&wider](int k, double error) { wider.covariance(k, k) += error * error; };
+  const double coulomb = fit.theta[PerMass::kCoulomb];
+  for (int i = 0; i < 3; ++i) {
+    add(PerMass::kGain + i, kCableGain * fit.theta[PerMass::kGain + i]);
+    add(PerMass::kWeight + i, kCableFriction * coulomb);
+  }
+  add(PerMass::kViscous, kCableViscous * coulomb);
+  add(PerMass::kCoulomb, kCableFriction * coulomb);
+  return wider;
+}
+
+}  // namespace thimble::app

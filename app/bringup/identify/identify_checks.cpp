@@ -1,0 +1,87 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "bringup/identify/identify.h"
+
+namespace thimble::app {
+namespace {
+
+// A right arm leaves 1 to 4 times what its encoders' steps do, or below 1 % of its acceleration
+// where it is light; one that is another leaves more of both.
+constexpr double kResidualMost = 4;
+constexpr double kUnexplainedMost = 0.02;
+// Behind cables what the links did is known through them alone: right soft arms leave up to 4 %, 8
+// times the encoders' steps [measured: soft arms 6000 to 6012].
+constexpr double kCableResidualMost = 8;
+constexpr double kCableUnexplainedMost = 0.05;
+// Springs below this are not told from an axis that sticks now and then.
+constexpr double kSpringLeast = 10;  // N/m
+// Of the pieces of motion, how many may be left out because an axis stood.
+constexpr double kLeftOutMost = 0.75;
+constexpr double kForceLeast = 0.2;   // N [chosen: twice the dry friction of the arms that we know]
+constexpr double kCarriedMost = 0.6;  // of the largest force, to carry a known mass
+constexpr double kKnownMassMost = 0.06;  // kg [chosen: no grip should be heavier than its arm]
+
+}  // namespace
+
+bool is_held(const PerMass& held, double mass) {
+  const double spring = held.theta[PerMass::kStiffness] * mass;
+  const double error = std::sqrt(held.covariance(PerMass::kStiffness, PerMass::kStiffness)) * mass;
+  return std::abs(spring) > kSpringLeast && std::abs(spring) > 5 * error;
+}
+
+std::vector<std::string> speaks_against(const PerMass& fit, const PerMass& held, double mass,
+                                        bool stretches) {
+  std::vector<std::string> against;
+  if (is_held(held, mass)) {
+    against.push_back(fmt::format(
+        "Something holds the tip like a spring of {:.0f} N/m: let go of the grip, and keep cables "
+        "off the arm.",
+        held.theta[PerMass::kStiffness] * mass));
+  }
+  const double times = fit.residual / fit.noise;
+  const double unexplained = std::sqrt(std::max(0.0, 1 - fit.explained));
+  if (times > (stretches ? kCableResidualMost : kResidualMost) &&
+      unexplained > (stretches ? kCableUnexplainedMost : kUnexplainedMost)) {
+    against.push_back(fmt::format(
+        "The motion is not that of a rigid arm with dry and viscous friction: the fit leaves "
+        "{:.1f} % of the acceleration, {:.1f} times what the encoders' steps do. Cables that "
+        "stretch, play, a joint that sticks, a hand, or missed edges do that.",
+        100 * unexplained, times));
+  }
+  const double all = static_cast<double>(fit.windows + fit.left_out);
+  if (static_cast<double>(fit.left_out) > kLeftOutMost * all) {
+    against.push_back(fmt::format(
+        "The tip stood still for {:.0f} % of the motion: its friction is too high for the force "
+        "that is allowed.",
+        100 * static_cast<double>(fit.left_out) / all));
+  }
+  return against;
+}
+
+driver::Result<void> check_forces(const scene::ArmFile& file, const IdentifyOptions& options) {
+  if (!(options.force_most >= kForceLeast)) {
+    return driver::Error{fmt::format(
+        "The largest force must be {:g} N at least: less moves no arm that we know.", kForceLeast)};
+  }
+  if (!(options.force_most <= file.limits.force_max)) {
+    return driver::Error{
+        fmt::format("A largest force of {:g} N is more than the {:g} N that the arm file allows "
+                    "(gate.force_max).",
+                    options.force_most, file.limits.force_max)};
+  }
+  // Beside what carries the mass something must be left that moves it.
+  const double carried = kCarriedMost * options.force_most / kStandardGravity;
+  const double most = std::min(kKnownMassMost, carried);
+  if (!(options.known_mass >= 0 && options.known_mass <= most)) {
+    return driver::Error{
+        fmt::format("The known mass must be {:.2g} kg at most: with no more than {:g} N its weight "
+                    "has to be carried, and shaken.",
+                    most, options.force_most)};
+  }
+  return {};
+}
+
+}  // namespace thimble::app
