@@ -86,7 +86,7 @@ identify() { # ARM SEED
     echo "PASS $arm of hidden constants passes its feel check"
     echo "hand off" >$control
     as tester "exec thimble identify $options --known-mass $known --seconds $seconds \
-      --record /tmp/motion.h5 --output /tmp/identified.yaml" <$keys >/tmp/identify.log 2>&1 &
+      --places 0 --record /tmp/motion.h5 --output /tmp/identified.yaml" <$keys >/tmp/identify.log 2>&1 &
     asking=$!
     press /tmp/identify.log 1 && prompted /tmp/identify.log 2 && hold_mass $arm
     wait $asking && echo "PASS $arm of hidden constants is identified" ||
