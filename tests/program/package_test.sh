@@ -43,6 +43,9 @@ for file in usr/include/thimble/driver/safety_gate.h usr/include/thimble/scene/s
   "usr/lib/$(dpkg-architecture -qDEB_HOST_MULTIARCH)/pkgconfig/thimble.pc"; do
   holds "$development" "$file"
 done
+# What two packages hold, dpkg does not install.
+for package in "$work"/*.deb; do dpkg-deb --fsys-tarfile "$package" | tar -t | grep -v '/$'; done | sort | uniq -d >twice
+[ ! -s twice ] || fail "two packages hold $(tr '\n' ' ' <twice)"
 # What thimbleConfig.cmake asks for, by the names that pkg-config and then Debian know it by.
 dpkg-deb --field "$development" Depends >asked
 dpkg-deb --fsys-tarfile "$development" | tar -xO --wildcards '*/thimbleConfig.cmake' >config
