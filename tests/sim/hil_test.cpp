@@ -97,9 +97,9 @@ TEST(Hil, KnowsLinksThatTheFileNames) {
                      .told = true};
     const HilResult result = check_constants(rig, 10);
     EXPECT_EQ(result.outcome, more == 1 ? HilOutcome::kPassed : HilOutcome::kFailed) << result.text;
-    EXPECT_LT(figure(result, "dry_friction_difference"), 1) << result.text;
-    EXPECT_EQ(figure(result, "mass_difference"), -1) << "a mass in one place";
-    EXPECT_EQ(figure(result, "mass_x_difference") <= 1, more == 1);
+    EXPECT_LT(figure_value(result.figures, "dry_friction_difference"), 1) << result.text;
+    EXPECT_EQ(figure_value(result.figures, "mass_difference"), -1) << "a mass in one place";
+    EXPECT_EQ(figure_value(result.figures, "mass_x_difference") <= 1, more == 1);
   }
 }
 
