@@ -15,7 +15,7 @@ source "$here/screen.sh"
 
 expect 0 'Recording' "$thimble" run "$source_dir/app/scenes/tin_can.yaml" --record touch.h5 --no-view
 
-# same_as_kept NAME PICTURE TIMES [LEFT TOP WIDTH HEIGHT]: the picture, or a part of it, so many times smaller is the kept one.
+# same_as_kept NAME PICTURE TIMES...: the picture, or the part that follows (left, top, width, height), so many times smaller, is the kept one.
 same_as_kept() {
   local kept=$source_dir/tests/data/shots/window_$1.png
   /usr/bin/python3 "$here/shrink_picture.py" "$2" "$1.small.png" "${@:3}"
