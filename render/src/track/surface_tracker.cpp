@@ -71,8 +71,7 @@ class NearestAbove {
 
 }  // namespace
 
-inline const std::array<Plane, 3>& SurfaceTracker::edge_planes(std::int32_t triangle) noexcept {
-  if (mesh_->keeps_planes()) return mesh_->edge_planes(triangle);
+const std::array<Plane, 3>& SurfaceTracker::made_edge_planes(std::int32_t triangle) noexcept {
   if (planes_of_ != triangle) {
     for (std::size_t k = 0; k < 3; ++k) planes_[k] = mesh_->edge_plane(triangle, k);
     planes_of_ = triangle;
@@ -82,7 +81,8 @@ inline const std::array<Plane, 3>& SurfaceTracker::edge_planes(std::int32_t tria
 
 inline SurfaceTracker::EdgeDistances SurfaceTracker::edge_distances(std::int32_t triangle,
                                                                     const Vector3d& p) noexcept {
-  const std::array<Plane, 3>& edge = edge_planes(triangle);
+  const std::array<Plane, 3>& edge =
+      mesh_->keeps_planes() ? mesh_->edge_planes(triangle) : made_edge_planes(triangle);
   const double d0 = edge[0].distance(p);
   const double d1 = edge[1].distance(p);
   const double d2 = edge[2].distance(p);
