@@ -1,11 +1,11 @@
 #include "bringup/identify/motion_fit.h"
 
 #include <Eigen/Cholesky>
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 
 #include "bringup/identify/weak_form/clustered_fit.h"
+#include "bringup/identify/weak_form/delay_search.h"
 #include "bringup/identify/weak_form/fit_residual.h"
 #include "bringup/identify/weak_form/motion_equations.h"
 
@@ -22,28 +22,20 @@ class Fit {
         equations_(motion, with_inertia) {}
 
   driver::Result<PerMass> run() {
-    if (equations_.torn()) {
-      return driver::Error{
-          "Too many ticks came without a new report, so the motion was not seen well enough. Run "
-          "`thimble doctor`: it says what makes reports late."};
-    }
+    if (equations_.torn()) return MotionEquations::torn_error();
     if (equations_.equations().size() < 300) {
       return driver::Error{
           "The motion is too short or the tip stood still for most of it, so nothing can be "
           "fitted; let it move freely for some ten seconds."};
     }
     constexpr std::size_t kSome = 8;  // enough for a first look
-    double best = 0, least = residual_at(0, kSome);
-    for (double delay = 0.0005; delay < MotionEquations::kDelayMost; delay += 0.0005) {
-      const double sum = residual_at(delay, kSome);
-      if (sum < least) least = sum, best = delay;
-    }
+    double best = coarse_delay([this](double delay) { return residual_at(delay, kSome); });
     // Where friction turns its sign hangs on how strong it is.
     for (int round = 0; round < 3; ++round) {
       Row theta;
       solve(best, theta);
       equations_.find_signs(theta[PerMass::kCoulomb]);
-      best = refine(best);
+      best = refined_delay(best, 1e-6, [this](double delay) { return residual_at(delay); });
     }
     return at_delay(best);
   }
@@ -87,24 +79,6 @@ class Fit {
   double residual_at(double delay, std::size_t stride = 1) const {
     Row theta;
     return solve(delay, theta, stride);
-  }
-
-  /// Finds the least residual within half a millisecond by golden sections.
-  double refine(double about) const {
-    constexpr double kGolden = 0.6180339887498949;
-    double low = std::max(0.0, about - 0.0005), high = about + 0.0005;
-    double left = high - kGolden * (high - low), right = low + kGolden * (high - low);
-    double at_left = residual_at(left), at_right = residual_at(right);
-    while (high - low > 1e-6) {
-      if (at_left < at_right) {
-        high = right, right = left, at_right = at_left;
-        at_left = residual_at(left = high - kGolden * (high - low));
-      } else {
-        low = left, left = right, at_left = at_right;
-        at_right = residual_at(right = low + kGolden * (high - low));
-      }
-    }
-    return 0.5 * (low + high);
   }
 
   PerMass at_delay(double delay) const {

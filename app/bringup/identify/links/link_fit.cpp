@@ -8,6 +8,7 @@
 #include "bringup/identify/arm_constants.h"
 #include "bringup/identify/links/link_rows.h"
 #include "bringup/identify/weak_form/clustered_fit.h"
+#include "bringup/identify/weak_form/delay_search.h"
 #include "bringup/identify/weak_form/motion_equations.h"
 #include "math/elementary.h"
 
@@ -26,13 +27,13 @@ using MassTerms = Eigen::Matrix<double, 3, 6>;
 
 /// What mass and the five inertias multiply on the mass matrix' diagonal.
 MassTerms masses_at(const driver::SerialArm& arm, const Eigen::Vector3d& q) {
-  const Eigen::Matrix3d G = arm.jacobian(q).inverse();
-  const double sin_b = math::sin(q[1]), sin_c = math::sin(q[2]);
+  MotionSample there;
+  there.q = q;
+  there.G = arm.jacobian(q).inverse();
   MassTerms masses;
-  for (int axis = 0; axis < 3; ++axis) {
-    const Eigen::Vector3d square = G.col(axis).array().square();
-    masses.row(axis) << 1, square[0], square[1], square[2], square[0] * sin_b * sin_b,
-        square[0] * sin_c * sin_c;
+  masses.col(0).setOnes();
+  for (Eigen::Index k = 0; k < 5; ++k) {
+    masses.col(1 + k) = links_at_tip(LinkEquations::Row::Unit(k), there).diagonal();
   }
   return masses;
 }
@@ -43,21 +44,17 @@ class LinkSearch {
       : arm_(arm), table_(motions) {}
 
   driver::Result<LinkFit> run() {
-    if (table_.torn()) {
-      return driver::Error{
-          "Too many ticks came without a new report, so the motion was not seen well enough. Run "
-          "`thimble doctor`: it says what makes reports late."};
-    }
+    if (table_.torn()) return MotionEquations::torn_error();
     if (table_.motions().size() < 3 || table_.count() < 600) {
       return driver::Error{
           "The motions are too short or at places too few to tell links, or the tip stood still "
-          "for "
-          "most of them."};
+          "for most of them."};
     }
-    double delay = coarse();
+    constexpr std::size_t kSome = 8;  // enough for a first look
+    double delay = coarse_delay([this](double at) { return residual_at(at, kSome); });
     for (int round = 0; round < 3; ++round) {
       table_.find_signs(solve(delay));
-      delay = refine(delay);
+      delay = refined_delay(delay, 4e-6, [this](double at) { return residual_at(at); });
     }
     return found_at(delay);
   }
@@ -74,34 +71,6 @@ class LinkSearch {
     const Eigen::VectorXd right = gains.rowwise().sum();
     // Motors that come at the wrong time push less: of all that they do.
     return (right - all * table_.least(all, right)).squaredNorm() / right.squaredNorm();
-  }
-
-  double coarse() const {
-    constexpr std::size_t kSome = 8;  // enough for a first look
-    double best = 0, least_rest = residual_at(0, kSome);
-    for (double delay = 0.0005; delay < MotionEquations::kDelayMost; delay += 0.0005) {
-      const double rest = residual_at(delay, kSome);
-      if (rest < least_rest) least_rest = rest, best = delay;
-    }
-    return best;
-  }
-
-  /// Finds the least residual within a millisecond by golden sections.
-  double refine(double about) const {
-    constexpr double kGolden = 0.6180339887498949;
-    double low = std::max(0.0, about - 0.0005), high = about + 0.0005;
-    double left = high - kGolden * (high - low), right = low + kGolden * (high - low);
-    double at_left = residual_at(left), at_right = residual_at(right);
-    while (high - low > 4e-6) {
-      if (at_left < at_right) {
-        high = right, right = left, at_right = at_left;
-        at_left = residual_at(left = high - kGolden * (high - low));
-      } else {
-        low = left, left = right, at_left = at_right;
-        at_right = residual_at(right = low + kGolden * (high - low));
-      }
-    }
-    return 0.5 * (low + high);
   }
 
   /// One fit with its covariance, the delay's column with it.

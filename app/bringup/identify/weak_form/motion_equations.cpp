@@ -27,6 +27,12 @@ MotionEquations::MotionEquations(const ArmMotion& motion, bool with_inertia)
   find_signs(0);
 }
 
+driver::Error MotionEquations::torn_error() {
+  return driver::Error{
+      "Too many ticks came without a new report, so the motion was not seen well enough. Run "
+      "`thimble doctor`: it says what makes reports late."};
+}
+
 void MotionEquations::find_velocities() {
   const TurnSmoothing<kSmooth> smooth(motion_.dt);
   mean_distance_ = smooth.mean_distance;

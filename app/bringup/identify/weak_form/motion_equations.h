@@ -8,6 +8,7 @@
 #include "bringup/identify/arm_motion.h"
 #include "bringup/identify/motion_fit.h"
 #include "bringup/identify/smooth_bump.h"
+#include "thimble/driver/result.h"
 
 namespace thimble::app {
 
@@ -89,6 +90,8 @@ class MotionEquations {
   std::size_t left_out() const { return left_out_; }
   /// Returns whether most pieces hold ticks that saw no report.
   bool torn() const { return torn_ > whole_; }
+  /// Returns what a person is told then.
+  static driver::Error torn_error();
 
  private:
   static constexpr std::size_t kLateMost = 24;  // ticks, kDelayMost and what a search looks beyond
