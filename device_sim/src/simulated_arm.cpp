@@ -49,14 +49,14 @@ driver::Result<SimulatedArm> SimulatedArm::make_of(const driver::ArmModel& board
   const auto firmware = Firmware::make(board, settings.firmware);
   if (!firmware) return firmware.error();
   // The plant was made of the same constants.
-  const auto tips = loaded_tips(settings.plant, settings.hand, 0, {0, 0, 0});
-  if (!tips) return tips.error();
-  return SimulatedArm(settings, Hand(std::move(path), *tremor), std::move(plant).value(), *tips,
+  const auto tip = LoadedTip::make(settings.plant, settings.hand, settings.weight_B);
+  if (!tip) return tip.error();
+  return SimulatedArm(settings, Hand(std::move(path), *tremor), std::move(plant).value(), *tip,
                       *firmware, seed);
 }
 
 SimulatedArm::SimulatedArm(const SimulatedArmSettings& settings, Hand hand, AnyPlant plant,
-                           const LoadedTips& tips, const Firmware& firmware,
+                           const LoadedTip& tip, const Firmware& firmware,
                            std::uint64_t seed) noexcept
     : report_period_ns_(settings.firmware.report_period_ns),
       wire_(settings.wire),
@@ -67,11 +67,7 @@ SimulatedArm::SimulatedArm(const SimulatedArmSettings& settings, Hand hand, AnyP
       hand_(std::move(hand)),
       gimbal_(settings.gimbal),
       plant_(std::move(plant)),
-      bare_tip_(settings.plant),
-      held_by_(settings.hand),
-      weight_B_(settings.weight_B),
-      held_tip_(tips.held),
-      free_tip_(tips.free),
+      tip_(tip),
       firmware_(firmware) {
   sample();
   deliver();
@@ -112,12 +108,9 @@ driver::Result<SimulatedArm> SimulatedArm::make(const driver::JointModel<driver:
 }
 
 driver::Result<void> SimulatedArm::fix_mass(double mass, const Eigen::Vector3d& gravity_B) {
-  const auto tips = loaded_tips(bare_tip_, held_by_, mass, gravity_B);
-  if (!tips) return tips.error();
-  held_tip_ = tips->held;
-  free_tip_ = tips->free;
-  mechanics().take_tip(held_ ? held_tip_ : free_tip_);
-  mechanics().set_pull(weight_B_ + mass * gravity_B);
+  if (auto fixed = tip_.fix_mass(mass, gravity_B); !fixed) return fixed;
+  mechanics().take_tip(tip_.dynamics(held_));
+  mechanics().set_pull(tip_.pull_B());
   return {};
 }
 

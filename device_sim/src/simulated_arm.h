@@ -13,7 +13,7 @@
 #include "hand.h"
 #include "hand_path.h"
 #include "inverse_plant.h"
-#include "loaded_tips.h"
+#include "loaded_tip.h"
 #include "split_mix.h"
 #include "thimble/device_sim/settings.h"
 #include "thimble/driver/arm_model.h"
@@ -77,7 +77,7 @@ class SimulatedArm {
   /// but the arm's own mass and friction is there.
   void hold_tip(bool held) noexcept {
     held_ = held;
-    mechanics().take_tip(held ? held_tip_ : free_tip_);
+    mechanics().take_tip(tip_.dynamics(held));
   }
 
   /// Fixes a mass (kg, 0: none) to the tip, in place of one that was fixed to it before;
@@ -115,7 +115,7 @@ class SimulatedArm {
                                 LinkageDriveTrainPlant, LinkedSerialPlant>;
 
   SimulatedArm(const SimulatedArmSettings& settings, Hand hand, AnyPlant plant,
-               const LoadedTips& tips, const Firmware& firmware, std::uint64_t seed) noexcept;
+               const LoadedTip& tip, const Firmware& firmware, std::uint64_t seed) noexcept;
   template <class MakePlant>
   static driver::Result<SimulatedArm> make_of(const driver::ArmModel& board,
                                               const SimulatedArmSettings& settings, HandPath path,
@@ -136,10 +136,7 @@ class SimulatedArm {
   Hand hand_;
   GimbalMotion gimbal_;
   AnyPlant plant_;
-  PlantSettings bare_tip_;
-  HandSettings held_by_;
-  Eigen::Vector3d weight_B_;  // of the bare tip, N
-  AxisDynamics held_tip_, free_tip_;
+  LoadedTip tip_;
   bool held_ = true;
   Firmware firmware_;
   std::int64_t time_ns_ = 0;

@@ -32,25 +32,21 @@ driver::Result<std::unique_ptr<FalconOnUsb>> FalconOnUsb::make(
                        {.current_max = kMotorValueMax / kMotorValuesPerAmpere}, p_BT, p_BT);
   if (!mechanics) return mechanics.error();
   mechanics->set_pull(settings.weight_B);
-  const auto tips = loaded_tips(settings.plant, settings.hand, 0, {0, 0, 0});
-  if (!tips) return tips.error();
+  const auto tip = LoadedTip::make(settings.plant, settings.hand, settings.weight_B);
+  if (!tip) return tip.error();
   return std::unique_ptr<FalconOnUsb>(new FalconOnUsb(std::move(description), settings, *tremor,
-                                                      std::move(path), *mechanics, *tips,
+                                                      std::move(path), *mechanics, *tip,
                                                       std::move(image)));
 }
 
 FalconOnUsb::FalconOnUsb(UsbDescription description, const SimulatedArmSettings& settings,
                          const Tremor& tremor, HandPath path, const DeltaPlant& plant,
-                         const LoadedTips& tips, std::vector<std::byte> image)
+                         const LoadedTip& tip, std::vector<std::byte> image)
     : description_(std::move(description)),
       tremor_(tremor),
       hand_(std::move(path), tremor),
       homing_hand_(driver::falcon::falcon_geometry().p_BM),
-      bare_tip_(settings.plant),
-      held_by_(settings.hand),
-      weight_B_(settings.weight_B),
-      held_tip_(tips.held),
-      free_tip_(tips.free),
+      tip_(tip),
       wiring_(settings.firmware.wiring),
       plant_(plant),
       board_(std::move(image)),
@@ -60,23 +56,16 @@ void FalconOnUsb::lead(HandPath path) {
   hand_ = Hand(std::move(path), tremor_, time_ns_);
 }
 
-driver::Result<void> FalconOnUsb::take_hand(const PlantSettings& plant, const HandSettings& hand) {
-  const auto tip = AxisDynamics::make(plant, hand);
-  if (!tip) return tip.error();
-  bare_tip_ = plant;
-  held_by_ = hand;
-  held_tip_ = *tip;
-  plant_.take_tip(held_ ? held_tip_ : free_tip_);
+driver::Result<void> FalconOnUsb::take_hand(const HandSettings& hand) {
+  if (auto taken = tip_.take_hand(hand); !taken) return taken;
+  plant_.take_tip(tip_.dynamics(held_));
   return {};
 }
 
 driver::Result<void> FalconOnUsb::fix_mass(double mass, const Eigen::Vector3d& gravity_B) {
-  const auto tips = loaded_tips(bare_tip_, held_by_, mass, gravity_B);
-  if (!tips) return tips.error();
-  held_tip_ = tips->held;
-  free_tip_ = tips->free;
-  plant_.take_tip(held_ ? held_tip_ : free_tip_);
-  plant_.set_pull(weight_B_ + mass * gravity_B);
+  if (auto fixed = tip_.fix_mass(mass, gravity_B); !fixed) return fixed;
+  plant_.take_tip(tip_.dynamics(held_));
+  plant_.set_pull(tip_.pull_B());
   return {};
 }
 
@@ -89,7 +78,7 @@ void FalconOnUsb::put_tip() noexcept {
   const bool held = wanted_held_ || homing_hand_.busy();
   if (held == held_) return;
   held_ = held;
-  plant_.take_tip(held ? held_tip_ : free_tip_);
+  plant_.take_tip(tip_.dynamics(held));
 }
 
 void FalconOnUsb::move_to(std::int64_t time_ns) noexcept {

@@ -9,7 +9,7 @@
 #include "hand.h"
 #include "hand_path.h"
 #include "inverse_plant.h"
-#include "loaded_tips.h"
+#include "loaded_tip.h"
 #include "thimble/device_sim/usb/usb_arm.h"
 #include "tremor.h"
 #include "usb/falcon_board.h"
@@ -43,7 +43,7 @@ class FalconOnUsb final : public UsbArm {
   Hand& hand() noexcept { return hand_; }
   /// Lets a hand of other constants take the place of the one on the tip; it homes the arm no
   /// longer. Fails if they are out of range. Real-time: never from the servo thread.
-  driver::Result<void> take_hand(const PlantSettings& plant, const HandSettings& hand);
+  driver::Result<void> take_hand(const HandSettings& hand);
   void lead_hand(const Eigen::Vector3d& p_BH) noexcept override { hand_.lead(p_BH); }
   void hold_tip(bool held) noexcept override;
   driver::Result<void> fix_mass(double mass, const Eigen::Vector3d& gravity_B) override;
@@ -64,7 +64,7 @@ class FalconOnUsb final : public UsbArm {
 
  private:
   FalconOnUsb(UsbDescription description, const SimulatedArmSettings& settings,
-              const Tremor& tremor, HandPath path, const DeltaPlant& plant, const LoadedTips& tips,
+              const Tremor& tremor, HandPath path, const DeltaPlant& plant, const LoadedTip& tip,
               std::vector<std::byte> image);
   void put_tip() noexcept;
   void move_to(std::int64_t time_ns) noexcept;
@@ -75,10 +75,7 @@ class FalconOnUsb final : public UsbArm {
   Hand hand_;
   HomingHand homing_hand_;
   bool homes_ = false;
-  PlantSettings bare_tip_;
-  HandSettings held_by_;
-  Eigen::Vector3d weight_B_;  // of the bare tip, N
-  AxisDynamics held_tip_, free_tip_;
+  LoadedTip tip_;
   bool wanted_held_ = true, held_ = true;  // what was asked for; homing takes the tip as well
   WiringSettings wiring_;
   DeltaPlant plant_;

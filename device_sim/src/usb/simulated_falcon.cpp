@@ -53,7 +53,7 @@ driver::Result<std::unique_ptr<SimulatedFalcon>> SimulatedFalcon::make(
     return up.error();
   }
   if (another_homes) {
-    if (auto taken = arm->falcon_->take_hand(settings.plant, settings.hand); !taken) {
+    if (auto taken = arm->falcon_->take_hand(settings.hand); !taken) {
       return taken.error();
     }
   }
