@@ -1,7 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <optional>
+#include <cstdint>
 #include <string>
 #include <vector>
 

@@ -184,9 +184,8 @@ driver::Result<std::vector<IdentifyPlot>> draw_identified(const Identified& iden
     shown.push_back(
         {"identify_masses", "Apparent mass over the workspace",
          "Mass at the tip along the axes of the base, a dot for each place that it was moved "
-         "about: "
-         "as it was seen there, with its 95 % interval, over that by the constants of tip and "
-         "links. The nearer to the line the better."});
+         "about: as it was seen there, with its 95 % interval, over that by the constants of tip "
+         "and links. The nearer to the line the better."});
     commands.push_back(masses_plot());
   }
   if (!has_gnuplot()) return std::vector<IdentifyPlot>{};

@@ -250,18 +250,19 @@ void ScenePainter::paint_pixels(const PaintChoice& choice, Canvas& canvas) {
   if (!choice.fine) return;
   glDisable(GL_BLEND);
   glBindVertexArray(*nothing_);
+  const auto go_over = [&canvas](const GlProgram& program) {
+    glUseProgram(*program);
+    glUniform1i(program.at("lowest"), canvas.strip());
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+  };
   // The first marks by its depth the pixels that the second goes over.
   glDepthFunc(GL_ALWAYS);
   glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-  glUseProgram(*programs_.edges);
-  glUniform1i(programs_.edges.at("lowest"), canvas.strip());
-  glDrawArrays(GL_TRIANGLES, 0, 3);
+  go_over(programs_.edges);
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   glDepthFunc(GL_EQUAL);
   glDepthMask(GL_FALSE);
-  glUseProgram(*programs_.smooth);
-  glUniform1i(programs_.smooth.at("lowest"), canvas.strip());
-  glDrawArrays(GL_TRIANGLES, 0, 3);
+  go_over(programs_.smooth);
   glDepthMask(GL_TRUE);
   glDepthFunc(GL_LESS);
 }

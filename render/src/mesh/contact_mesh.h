@@ -242,8 +242,9 @@ class ContactMesh {
   std::vector<Eigen::Vector3d> vertices_;
   std::vector<std::array<std::int32_t, 3>> triangles_;
   std::vector<TriangleCell> cells_;
-  std::vector<std::array<Plane, 3>> edges_;  // empty where nobody walks over edges, or there are
-  std::vector<std::array<double, 3>> edge_sizes_;  // what their normals are divided by, 0: a face's
+  std::vector<std::array<Plane, 3>> edges_;  // empty where no planes are kept
+  // Where they are made when asked: what their normals are divided by; 0: they are a face's.
+  std::vector<std::array<double, 3>> edge_sizes_;
   std::vector<Fan> fan_of_;
   std::vector<std::int32_t> fans_;
   std::size_t fans_built_ = 0;  // of fans_; behind it stand those that have grown

@@ -7,7 +7,6 @@
 #include "thimble/render/mesh/check_mesh.h"
 
 namespace thimble::render {
-
 namespace {
 
 driver::Result<SoundMesh> look_closely(const TriangleMesh& mesh, bool orient) {
@@ -40,6 +39,13 @@ driver::Result<SoundMesh> look_closely(const TriangleMesh& mesh, bool orient) {
   return sound;
 }
 
+// `neighbours`: what find_adjacency says of the mesh.
+driver::Result<SoundMesh> look_with(const TriangleMesh& mesh,
+                                    const driver::Result<Adjacency>& neighbours, bool orient) {
+  if (neighbours && surely_sound(mesh, *neighbours)) return SoundMesh{};
+  return look_closely(mesh, orient);
+}
+
 // Starts a look on a thread where that is worth it.
 template <class Look>
 std::future<driver::Result<SoundMesh>> beside(const TriangleMesh& mesh, Look look) {
@@ -53,9 +59,7 @@ std::future<driver::Result<SoundMesh>> beside(const TriangleMesh& mesh, Look loo
 }  // namespace
 
 driver::Result<SoundMesh> look_at_mesh(const TriangleMesh& mesh, bool orient) {
-  const auto neighbours = find_adjacency(mesh);
-  if (neighbours && surely_sound(mesh, *neighbours)) return SoundMesh{};
-  return look_closely(mesh, orient);
+  return look_with(mesh, find_adjacency(mesh), orient);
 }
 
 std::future<driver::Result<SoundMesh>> look_at_mesh_beside(const TriangleMesh& mesh, bool orient) {
@@ -64,10 +68,7 @@ std::future<driver::Result<SoundMesh>> look_at_mesh_beside(const TriangleMesh& m
 
 std::future<driver::Result<SoundMesh>> look_at_mesh_beside(
     const TriangleMesh& mesh, const driver::Result<Adjacency>& neighbours, bool orient) {
-  return beside(mesh, [&mesh, &neighbours, orient]() -> driver::Result<SoundMesh> {
-    if (neighbours && surely_sound(mesh, *neighbours)) return SoundMesh{};
-    return look_closely(mesh, orient);
-  });
+  return beside(mesh, [&mesh, &neighbours, orient] { return look_with(mesh, neighbours, orient); });
 }
 
 }  // namespace thimble::render
